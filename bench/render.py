@@ -1,0 +1,379 @@
+#!/usr/bin/python3
+"""Pictures of particles: VTU files -> one PNG, without a screen.
+
+    /usr/bin/python3 bench/render.py out/taylor_bar/vtu/rod_000040.vtu -o rod.png --field plastic_strain --mirror xy
+
+Several files are shown together, with one colour scale. Needs python3-vtk9; where there is no display, xvfb too
+(`sh cmake/install.sh picture`). Exit codes as those of brunt: 64 bad usage, 65 bad input, 74 file system.
+"""
+import argparse
+import io
+import os
+import subprocess
+import sys
+import xml.etree.ElementTree
+
+COMPONENTS = {1: {}, 3: {"x": 0, "y": 1, "z": 2}, 6: {"xx": 0, "yy": 1, "zz": 2, "xy": 3, "yz": 4, "xz": 5}}
+
+# Colour maps as points (share, red, green, blue).
+COLOURS = {
+    "heat": [(0, 0.15, 0.25, 0.55), (0.25, 0.25, 0.6, 0.75), (0.5, 0.93, 0.9, 0.75), (0.75, 0.93, 0.55, 0.25),
+             (1, 0.65, 0.08, 0.12)],
+    "diverging": [(0, 0.1, 0.25, 0.6), (0.5, 0.93, 0.93, 0.93), (1, 0.65, 0.1, 0.12)],
+    "grey": [(0, 0.2, 0.2, 0.2), (1, 0.92, 0.92, 0.92)],
+}
+
+# Every particle is a square facing the camera on which a lit sphere is drawn: a hundred times cheaper than triangles.
+SPHERE = """//VTK::Color::Impl
+float square = dot(offsetVCVSOutput.xy, offsetVCVSOutput.xy);
+if (square > 1.0) discard;
+vec3 ball = vec3(offsetVCVSOutput.xy, sqrt(1.0 - square));
+float light = 0.45 + 0.55 * max(0.0, dot(ball, normalize(vec3(-0.35, 0.45, 0.82))));
+ambientColor = vec3(0.0);
+diffuseColor *= light;
+"""
+
+
+def fail(code, message):
+    sys.stderr.write(f"render.py: {message}\n")
+    sys.exit(code)
+
+
+class Parser(argparse.ArgumentParser):
+    def error(self, message):
+        fail(64, f"{message} (see --help)")
+
+
+def arguments():
+    p = Parser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    p.add_argument("files", nargs="+", metavar="FILE.vtu")
+    p.add_argument("-o", "--output", required=True, metavar="FILE.png")
+    p.add_argument("--field", required=True, help="point data array that gives the colour")
+    p.add_argument("--component", default="magnitude", help="magnitude, x y z, or xx yy zz xy yz xz")
+    p.add_argument("--range", nargs=2, type=float, metavar=("LOW", "HIGH"), help="of the colours; default: all values")
+    p.add_argument("--colours", choices=sorted(COLOURS), default="heat")
+    p.add_argument("--title", help="of the colour bar; default: the field's name")
+    p.add_argument("--unit", help="put behind the title; default: the one in the file, if any")
+    p.add_argument("--caption", help="a line at the top; default: the time in the file. '' for none")
+    p.add_argument("--style", choices=["spheres", "points"], default="spheres")
+    p.add_argument("--radius", type=float, help="of the spheres [m]; default: from the volume field, or the spacing")
+    p.add_argument("--point-size", type=float, default=3, help="pixels, with --style points")
+    p.add_argument("--mirror", default="", help="planes through the origin to mirror at: any of x, y, z")
+    p.add_argument("--cut", action="append", default=[], metavar="AXIS<VALUE",
+                   help="show only particles with a coordinate below (x<0.01) or above (x>0.01) a value [m]; repeatable")
+    p.add_argument("--view", nargs=3, type=float, metavar=("X", "Y", "Z"), help="direction from the scene to the camera")
+    p.add_argument("--up", nargs=3, type=float, metavar=("X", "Y", "Z"))
+    p.add_argument("--centre", nargs=3, type=float, metavar=("X", "Y", "Z"), help="what the camera looks at [m]")
+    p.add_argument("--zoom", type=float, default=1.0)
+    p.add_argument("--size", nargs=2, type=int, default=[1200, 900], metavar=("WIDTH", "HEIGHT"))
+    return p.parse_args()
+
+
+def start_display():
+    """A display of our own where there is none; returns the process to end afterwards."""
+    if os.environ.get("DISPLAY"):
+        return None
+    read, write = os.pipe()
+    command = ["Xvfb", "-displayfd", str(write), "-screen", "0", "1280x1024x24", "-nolisten", "tcp"]
+    try:
+        process = subprocess.Popen(command, pass_fds=[write], stderr=subprocess.DEVNULL)
+    except FileNotFoundError:
+        fail(65, "there is no display, and no Xvfb to make one: install xvfb")
+    os.close(write)
+    with os.fdopen(read) as pipe:
+        number = pipe.readline().strip()
+    if not number:
+        fail(65, "Xvfb did not start")
+    os.environ["DISPLAY"] = ":" + number
+    return process
+
+
+def read_file(vtk, path):
+    if not os.path.isfile(path):
+        fail(74, f"{path}: no such file")
+    reader = vtk.vtkXMLUnstructuredGridReader()
+    reader.SetFileName(path)
+    reader.Update()
+    if reader.GetErrorCode() or not reader.GetOutput():
+        fail(65, f"{path}: not a VTU file that VTK can read")
+    return reader.GetOutput()
+
+
+def file_unit(path, field):
+    """The unit a writer may have put into the array's attributes."""
+    with open(path, "rb") as f:
+        head = f.read(65536).split(b"<AppendedData")[0]
+    try:
+        for _, element in xml.etree.ElementTree.iterparse(io.BytesIO(head), events=["start"]):
+            if element.tag == "DataArray" and element.get("Name") == field:
+                return element.get("unit") or element.get("Unit")
+    except xml.etree.ElementTree.ParseError:
+        pass
+    return None
+
+
+def values_of(np, array, component, path, field):
+    components = array.GetNumberOfComponents()
+    from vtk.util.numpy_support import vtk_to_numpy
+    values = vtk_to_numpy(array).astype(float)
+    if components == 1:
+        return values
+    if component == "magnitude":
+        if components == 6:  # each shear counts twice
+            return np.sqrt((values[:, :3] ** 2).sum(axis=1) + 2 * (values[:, 3:] ** 2).sum(axis=1))
+        return np.sqrt((values ** 2).sum(axis=1))
+    index = COMPONENTS.get(components, {}).get(component)
+    if index is None:
+        fail(65, f"{path}: '{field}' has {components} components, none of them '{component}'")
+    return values[:, index]
+
+
+def load(vtk, np, args):
+    from vtk.util.numpy_support import vtk_to_numpy
+    points, values, radii, time = [], [], [], None
+    for path in args.files:
+        grid = read_file(vtk, path)
+        array = grid.GetPointData().GetArray(args.field)
+        if array is None:
+            names = [grid.GetPointData().GetArrayName(i) for i in range(grid.GetPointData().GetNumberOfArrays())]
+            fail(65, f"{path}: no field '{args.field}', there are {', '.join(names) or 'none'}")
+        count = grid.GetNumberOfPoints()
+        if not count:
+            continue
+        x = vtk_to_numpy(grid.GetPoints().GetData()).astype(float)
+        points.append(x)
+        values.append(values_of(np, array, args.component, path, args.field))
+        flat = np.ptp(x[:, 2]) == 0
+        volume = grid.GetPointData().GetArray("volume")
+        if args.radius:
+            radii.append(np.full(count, args.radius))
+        elif volume is not None:
+            radii.append(0.62 * np.abs(vtk_to_numpy(volume).astype(float)) ** (1 / 2 if flat else 1 / 3))
+        else:
+            radii.append(np.full(count, 0.62 * typical_spacing(vtk, np, grid)))
+        stamp = grid.GetFieldData().GetArray("TimeValue")
+        if stamp is not None and stamp.GetNumberOfTuples():
+            time = stamp.GetTuple1(0)
+    if not points:
+        fail(65, "the files hold no particles")
+    return np.concatenate(points), np.concatenate(values), np.concatenate(radii), time
+
+
+def typical_spacing(vtk, np, grid):
+    """Median distance to the nearest neighbour of at most 200 particles."""
+    locator = vtk.vtkStaticPointLocator()
+    locator.SetDataSet(grid)
+    locator.BuildLocator()
+    found, distances = vtk.vtkIdList(), []
+    for i in range(0, grid.GetNumberOfPoints(), max(1, grid.GetNumberOfPoints() // 200)):
+        x = grid.GetPoint(i)
+        locator.FindClosestNPoints(2, x, found)
+        if found.GetNumberOfIds() == 2:
+            far = [np.linalg.norm(np.array(grid.GetPoint(found.GetId(k))) - x) for k in (0, 1)]
+            distances.append(max(far))
+    return float(np.median(distances)) if distances and np.median(distances) > 0 else 1.0
+
+
+def cut_and_mirror(np, args, points, values, radii):
+    keep = np.ones(len(points), bool)
+    for rule in args.cut:
+        sign = "<" if "<" in rule else ">"
+        axis, _, limit = rule.partition(sign)
+        if axis not in ("x", "y", "z"):
+            fail(64, f"--cut {rule}: x, y or z, then < or >, then a number is wanted")
+        try:
+            limit = float(limit)
+        except ValueError:
+            fail(64, f"--cut {rule}: x, y or z, then < or >, then a number is wanted")
+        x = points[:, "xyz".index(axis)]
+        keep &= (x < limit) if sign == "<" else (x > limit)
+    for axis in args.mirror:
+        if axis not in "xyz":
+            fail(64, f"--mirror {args.mirror}: only x, y and z")
+        copy = points.copy()
+        copy[:, "xyz".index(axis)] *= -1
+        points, values, radii = np.vstack([points, copy]), np.tile(values, 2), np.tile(radii, 2)
+        keep = np.tile(keep, 2)
+    if not keep.any():
+        fail(65, "--cut leaves no particle")
+    return points[keep], values[keep], radii[keep]
+
+
+def colour_table(vtk, args, low, high):
+    transfer = vtk.vtkColorTransferFunction()
+    for share, red, green, blue in COLOURS[args.colours]:
+        transfer.AddRGBPoint(low + share * (high - low), red, green, blue)
+    return transfer
+
+
+def text_style(prop, size):
+    prop.SetFontFamilyToArial()
+    prop.SetColor(0.1, 0.1, 0.1)
+    prop.SetFontSize(size)
+    prop.ItalicOff()
+    prop.BoldOff()
+    prop.ShadowOff()
+
+
+def make_scene(vtk, np, args, scale):
+    from vtk.util.numpy_support import numpy_to_vtk
+    points, values, radii, time = load(vtk, np, args)
+    points, values, radii = cut_and_mirror(np, args, points, values, radii)
+    finite = values[np.isfinite(values)]
+    if args.range:
+        low, high = args.range
+    else:
+        low, high = (float(finite.min()), float(finite.max())) if len(finite) else (0.0, 1.0)
+    if not high > low:
+        high = low + (abs(low) * 1e-6 or 1.0)
+
+    data = vtk.vtkPolyData()
+    vtk_points = vtk.vtkPoints()
+    vtk_points.SetData(numpy_to_vtk(np.ascontiguousarray(points), deep=True))
+    data.SetPoints(vtk_points)
+    for name, array in (("value", values), ("radius", radii)):
+        column = numpy_to_vtk(np.ascontiguousarray(array), deep=True)
+        column.SetName(name)
+        data.GetPointData().AddArray(column)
+    data.GetPointData().SetActiveScalars("value")
+
+    table = colour_table(vtk, args, low, high)
+    if args.style == "spheres":
+        mapper = vtk.vtkPointGaussianMapper()
+        mapper.SetInputData(data)
+        mapper.SetScaleArray("radius")
+        mapper.SetScaleFactor(1.0)
+        mapper.EmissiveOff()
+        mapper.SetSplatShaderCode(SPHERE)
+        mapper.SetTriangleScale(1.5)
+    else:
+        vertices = vtk.vtkVertexGlyphFilter()
+        vertices.SetInputData(data)
+        mapper = vtk.vtkPolyDataMapper()
+        mapper.SetInputConnection(vertices.GetOutputPort())
+    mapper.SetLookupTable(table)
+    mapper.SetScalarModeToUsePointFieldData()
+    mapper.SelectColorArray("value")
+    mapper.SetUseLookupTableScalarRange(True)
+    actor = vtk.vtkActor()
+    actor.SetMapper(mapper)
+    actor.GetProperty().SetPointSize(args.point_size * scale)
+    if args.style == "points":
+        actor.GetProperty().LightingOff()
+
+    renderer = vtk.vtkRenderer()
+    renderer.SetBackground(1, 1, 1)
+    renderer.AddActor(actor)
+
+    unit = args.unit if args.unit is not None else file_unit(args.files[0], args.field)
+    title = args.title or args.field.replace("_", " ")
+    if args.title is None and args.component != "magnitude":
+        title += " " + args.component
+    bar = vtk.vtkScalarBarActor()
+    bar.SetLookupTable(table)
+    bar.SetNumberOfLabels(5)
+    bar.SetLabelFormat("%.3g")
+    bar.SetTitle(f"{title} [{unit}]\n " if unit and unit != "1" else f"{title}\n ")
+    bar.UnconstrainedFontSizeOn()
+    text_style(bar.GetTitleTextProperty(), 20 * scale)
+    text_style(bar.GetLabelTextProperty(), 18 * scale)
+    bar.SetPosition(0.80, 0.15)
+    bar.SetWidth(0.16)
+    bar.SetHeight(0.7)
+    bar.SetBarRatio(0.18)
+    bar.SetTextPad(5 * scale)
+    bar.SetMaximumNumberOfColors(256)
+    renderer.AddActor2D(bar)
+
+    caption = args.caption if args.caption is not None else (f"t = {time:.6g} s" if time is not None else "")
+    if caption:
+        text = vtk.vtkTextActor()
+        text.SetInput(caption)
+        text_style(text.GetTextProperty(), 22 * scale)
+        text.SetPosition(24 * scale, args.size[1] * scale - 44 * scale)
+        renderer.AddActor2D(text)
+    aim(np, args, renderer, points, radii)
+    return renderer
+
+
+def aim(np, args, renderer, points, radii):
+    """A parallel view that just holds every particle in the part of the window left of the colour bar."""
+    flat = np.ptp(points[:, 2]) == 0
+    view = np.array(args.view if args.view else ([0, 0, 1] if flat else [1.0, -1.6, 0.7]), float)
+    if not np.linalg.norm(view) > 0:
+        fail(64, "--view: a direction other than 0 0 0 is wanted")
+    view /= np.linalg.norm(view)
+    up = np.array(args.up if args.up else ([0, 1, 0] if abs(view[2]) > 0.95 else [0, 0, 1]), float)
+    right = np.cross(up, view)
+    if not np.linalg.norm(right) > 1e-12:
+        fail(64, "--up must not be along --view")
+    right /= np.linalg.norm(right)
+    up = np.cross(view, right)
+    across, along = points @ right, points @ up
+    margin = radii.max()
+    width = np.ptp(across) + 2 * margin
+    height = np.ptp(along) + 2 * margin
+    if args.centre:
+        centre = np.array(args.centre, float)
+    else:
+        depth = points @ view
+        centre = (across.min() + np.ptp(across) / 2) * right + (along.min() + np.ptp(along) / 2) * up + \
+                 (depth.min() + np.ptp(depth) / 2) * view
+    aspect = args.size[0] / args.size[1]
+    used = 0.74  # of the window's width; the colour bar has the rest
+    half = 0.54 * max(height, width / (aspect * used)) / args.zoom
+    centre = centre + right * half * aspect * (1 - used)  # puts the scene left of the middle
+    camera = renderer.GetActiveCamera()
+    camera.ParallelProjectionOn()
+    camera.SetFocalPoint(*centre)
+    camera.SetPosition(*(centre + view * 10 * max(width, height, margin)))
+    camera.SetViewUp(*up)
+    camera.SetParallelScale(half)
+    renderer.ResetCameraClippingRange()
+
+
+def write(vtk, args, renderer, scale):
+    window = vtk.vtkRenderWindow()
+    window.SetOffScreenRendering(1)
+    window.SetMultiSamples(0)
+    window.SetSize(args.size[0] * scale, args.size[1] * scale)
+    window.AddRenderer(renderer)
+    window.Render()
+    grab = vtk.vtkWindowToImageFilter()
+    grab.SetInput(window)
+    grab.SetInputBufferTypeToRGB()
+    grab.ReadFrontBufferOff()
+    smaller = vtk.vtkImageShrink3D()  # averages scale x scale pixels: smooth edges
+    smaller.SetInputConnection(grab.GetOutputPort())
+    smaller.SetShrinkFactors(scale, scale, 1)
+    smaller.MeanOn()
+    writer = vtk.vtkPNGWriter()
+    writer.SetFileName(args.output + ".part")
+    writer.SetInputConnection(smaller.GetOutputPort())
+    writer.Write()
+    code = writer.GetErrorCode()
+    window.Finalize()  # before the display goes
+    if code or not os.path.isfile(args.output + ".part"):
+        fail(74, f"{args.output}: cannot be written")
+    os.replace(args.output + ".part", args.output)
+
+
+def main():
+    args = arguments()
+    try:
+        import numpy as np
+        import vtk
+    except ImportError as error:
+        fail(65, f"{error}: install python3-vtk9 and run this with /usr/bin/python3")
+    vtk.vtkObject.GlobalWarningDisplayOff()  # what goes wrong is said once, below
+    display = start_display()
+    try:
+        write(vtk, args, make_scene(vtk, np, args, 2), 2)
+    finally:
+        if display:
+            display.terminate()
+            display.wait()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,279 @@
+// Contact between bodies on the grid, one velocity field a body (Bardenhagen, Guilkey et al. 2001).
+//
+// Only slots that two or more bodies have alive are looked at, and only nodes where two have mass. There, per pair:
+//   normal   from a to b, along -grad phi_a + grad phi_b of the volume fractions: n_ba = -n_ab to the bit
+//   gap      between the surfaces as the particles near the node have them (reach.c), not as the kernels feel them
+//   approach the relative velocity along n may not exceed gap/dt, so the gap closes to zero and not past it; bodies not
+//            yet within reach are left alone
+//   friction the tangential impulse that would stop the slip, at most mu times the normal one
+// Impulses are equal and opposite at one point: linear and angular momentum are kept to rounding. Three and more bodies at a
+// node are solved together by Gauss-Seidel sweeps over the pairs to convergence; bodies are ordered by name, so the order in
+// a file changes nothing.
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "contact.h"
+#include "memory.h"
+#include "threads.h"
+
+enum { MAX_SWEEPS = 1000, MAX_TOGETHER = 12 };
+static const double SWEEP_TOLERANCE = 1e-13;  // of the velocities at the node
+
+// A slot of a body that some other body may share.
+typedef struct shared_slot { uint64_t key; int32_t body, slot; } shared_slot;
+// Slots with the same coordinate: entries first .. first+count-1, and where their pairs' actions are collected.
+typedef struct group { int32_t first, count, action; } group;
+
+struct brunt_contact_workspace {
+    shared_slot *shared; size_t shared_capacity; int32_t shared_count;
+    group *groups; size_t groups_capacity; int32_t group_count;
+    brunt_action *actions; size_t actions_capacity; int32_t action_count;
+};
+
+typedef struct job {
+    brunt_body *bodies; int body_count;
+    const brunt_pair *pairs; const int32_t *pair_of;
+    const brunt_mirror *mirrors; int mirror_count;
+    double dt;
+    brunt_contact_workspace *w;
+} job;
+
+void brunt_contact_workspace_free(brunt_contact_workspace *workspace) {
+    if (!workspace) return;
+    brunt_free(workspace->shared);
+    brunt_free(workspace->groups);
+    brunt_free(workspace->actions);
+    brunt_free(workspace);
+}
+
+// ------------------------------------------------------------------------------------------ who meets whom
+
+typedef struct box { int32_t low[3], high[3]; } box;
+
+static box slot_bounds(const brunt_grid *grid) {
+    box b = {{INT32_MAX, INT32_MAX, INT32_MAX}, {INT32_MIN, INT32_MIN, INT32_MIN}};
+    for (int32_t s = 0; s < grid->slot_count; s++)
+        for (int a = 0; a < 3; a++) {
+            int32_t c = grid->slots[s].coord[a];
+            if (c < b.low[a]) b.low[a] = c;
+            if (c > b.high[a]) b.high[a] = c;
+        }
+    return b;
+}
+
+static bool overlap(const box *a, const box *b) {
+    for (int k = 0; k < 3; k++)
+        if (a->low[k] > b->high[k] || b->low[k] > a->high[k]) return false;
+    return true;
+}
+
+static bool inside(const box *b, const int32_t c[3]) {
+    for (int k = 0; k < 3; k++)
+        if (c[k] < b->low[k] || c[k] > b->high[k]) return false;
+    return true;
+}
+
+static int compare_shared(const void *a, const void *b) {
+    const shared_slot *u = a, *v = b;
+    if (u->key != v->key) return u->key < v->key ? -1 : 1;
+    return (u->body > v->body) - (u->body < v->body);
+}
+
+// Slots inside the box of another body that it may touch, sorted; then those that really coincide. 0, or -1: out of memory.
+static int find_groups(job *j) {
+    brunt_contact_workspace *w = j->w;
+    const int n = j->body_count;
+    box *bounds = brunt_alloc((size_t)n * sizeof *bounds);
+    if (!bounds) return -1;
+    for (int b = 0; b < n; b++) bounds[b] = slot_bounds(&j->bodies[b].grid);
+    w->shared_count = w->group_count = w->action_count = 0;
+    for (int b = 0; b < n; b++) {
+        const brunt_grid *grid = &j->bodies[b].grid;
+        for (int o = 0; o < n; o++) {
+            if (o == b || j->pair_of[b * n + o] < 0 || !overlap(&bounds[b], &bounds[o])) continue;
+            if (brunt_reserve((void **)&w->shared, &w->shared_capacity, (size_t)(w->shared_count + grid->slot_count) * sizeof(shared_slot),
+                              (size_t)w->shared_count * sizeof(shared_slot))) {
+                brunt_free(bounds);
+                return -1;
+            }
+            for (int32_t s = 0; s < grid->slot_count; s++)
+                if (inside(&bounds[o], grid->slots[s].coord))
+                    w->shared[w->shared_count++] = (shared_slot){grid->slot_key[s], b, s};
+        }
+    }
+    brunt_free(bounds);
+    if (!w->shared_count) return 0;
+    qsort(w->shared, (size_t)w->shared_count, sizeof *w->shared, compare_shared);
+    int32_t unique = 0;
+    for (int32_t i = 0; i < w->shared_count; i++)
+        if (!unique || compare_shared(&w->shared[i], &w->shared[unique - 1])) w->shared[unique++] = w->shared[i];
+    w->shared_count = unique;
+    if (brunt_reserve((void **)&w->groups, &w->groups_capacity, (size_t)unique * sizeof(group), 0)) return -1;
+    for (int32_t i = 0, next; i < unique; i = next) {
+        for (next = i + 1; next < unique && w->shared[next].key == w->shared[i].key; next++) {}
+        int32_t count = next - i;
+        if (count < 2) continue;
+        w->groups[w->group_count++] = (group){i, count, w->action_count};
+        w->action_count += count * (count - 1) / 2;
+    }
+    size_t bytes = (size_t)(w->action_count + 1) * sizeof *w->actions;
+    if (brunt_reserve((void **)&w->actions, &w->actions_capacity, bytes, 0)) return -1;
+    memset(w->actions, 0, bytes);
+    return 0;
+}
+
+// ------------------------------------------------------------------------------------------ one node
+
+typedef struct meeting {
+    int a, b;                 // members
+    int action;               // index among the group's pairs
+    double n[3], target;      // normal from a to b; least relative velocity along it [m/s]
+    double friction, inverse; // [-]; [1/kg]
+    double push, drag[3];     // [N s] on b
+} meeting;
+
+typedef struct member { brunt_body *body; int32_t slot; real *node; int entry; double v[3], inverse; } member;
+
+static bool make_normal(const job *j, const member *a, const member *b, int node, double n[3]) {
+    double ga[3], gb[3], size = 0;
+    brunt_reach_gradient(a->body, a->slot, node, ga);
+    brunt_reach_gradient(b->body, b->slot, node, gb);
+    for (int k = 0; k < 3; k++) n[k] = gb[k] - ga[k];
+    // The image of a body behind a mirror plane has no particles of its own: what is left is the part along the plane.
+    int local[3];
+    const brunt_grid *grid = &a->body->grid;
+    brunt_node_local(grid, node, local);
+    for (int m = 0; m < j->mirror_count; m++) {
+        int axis = j->mirrors[m].axis;
+        int32_t away = grid->slots[a->slot].coord[axis] * grid->side + local[axis] - j->mirrors[m].node;
+        if (away >= -1 && away <= 1) n[axis] = 0;
+    }
+    for (int k = 0; k < 3; k++) size += n[k] * n[k];
+    size = sqrt(size);
+    if (!(size * (double)grid->h > 1e-10)) return false;  // volume fractions without a direction: nothing tells the bodies apart
+    for (int k = 0; k < 3; k++) n[k] /= size;
+    return true;
+}
+
+static double relative(const member *members, const meeting *m, double v[3]) {
+    double along = 0;
+    for (int k = 0; k < 3; k++) {
+        v[k] = members[m->b].v[k] - members[m->a].v[k];
+        along += v[k] * m->n[k];
+    }
+    return along;
+}
+
+// Brings one pair to its complementarity condition; returns the change of velocity [m/s].
+static double visit(member *members, meeting *m) {
+    double v[3], J[3], along = relative(members, m, v);
+    double push = fmax(0, m->push + (m->target - along) / m->inverse), step = push - m->push;
+    m->push = push;
+    double changed = fabs(step) * m->inverse;
+    for (int k = 0; k < 3; k++) J[k] = step * m->n[k];
+    if (m->friction > 0) {
+        double drag[3], size = 0, moved = 0;
+        for (int k = 0; k < 3; k++) {
+            drag[k] = m->drag[k] - (v[k] - along * m->n[k]) / m->inverse;
+            size += drag[k] * drag[k];
+        }
+        size = sqrt(size);
+        double most = m->friction * push, scale = size > most ? most / size : 1;
+        for (int k = 0; k < 3; k++) {
+            double now = scale * drag[k];
+            J[k] += now - m->drag[k];
+            moved += (now - m->drag[k]) * (now - m->drag[k]);
+            m->drag[k] = now;
+        }
+        changed = fmax(changed, sqrt(moved) * m->inverse);
+    }
+    for (int k = 0; k < 3; k++) {
+        members[m->a].v[k] -= J[k] * members[m->a].inverse;
+        members[m->b].v[k] += J[k] * members[m->b].inverse;
+    }
+    return changed;
+}
+
+static void meet_at_node(const job *j, const group *g, int node) {
+    member members[MAX_TOGETHER];
+    meeting meetings[MAX_TOGETHER * (MAX_TOGETHER - 1) / 2];
+    int n = 0, met = 0, dim = j->bodies[0].grid.dim;
+    for (int32_t i = 0; i < g->count && n < MAX_TOGETHER; i++) {
+        const shared_slot *s = &j->w->shared[g->first + i];
+        real *at = brunt_slot_nodes(&j->bodies[s->body].grid, s->slot) + node * BRUNT_NODE_REALS;
+        if (!(at[0] > 0)) continue;
+        member *m = &members[n++];
+        *m = (member){.body = &j->bodies[s->body], .slot = s->slot, .node = at, .entry = i, .inverse = 1 / (double)at[0]};
+        for (int a = 0; a < dim; a++) m->v[a] = (double)at[BRUNT_NODE_VELOCITY + a];
+    }
+    if (n < 2) return;
+    double fastest = 0;
+    for (int i = 0; i < n; i++) {
+        for (int a = 0; a < dim; a++) fastest = fmax(fastest, fabs(members[i].v[a]));
+        for (int k = i + 1; k < n; k++) {
+            int32_t pair = j->pair_of[members[i].body->index * j->body_count + members[k].body->index];
+            if (pair < 0) continue;
+            meeting *m = &meetings[met];
+            int low = members[i].entry, high = members[k].entry;
+            *m = (meeting){.a = i, .b = k, .action = low * g->count - low * (low + 1) / 2 + high - low - 1,
+                           .friction = j->pairs[pair].friction, .inverse = members[i].inverse + members[k].inverse};
+            if (!make_normal(j, &members[i], &members[k], node, m->n)) continue;
+            double back[3] = {-m->n[0], -m->n[1], -m->n[2]};
+            double gap = -brunt_reach_extent(members[k].body, members[k].slot, node, back) -
+                         brunt_reach_extent(members[i].body, members[i].slot, node, m->n);
+            m->target = -fmax(gap, 0) / j->dt;
+            met++;
+        }
+    }
+    if (!met) return;
+    for (int sweep = 0; sweep < MAX_SWEEPS; sweep++) {
+        double changed = 0;
+        for (int q = 0; q < met; q++) changed = fmax(changed, visit(members, &meetings[q]));
+        if (met == 1 || changed <= SWEEP_TOLERANCE * fastest) break;
+    }
+    const int32_t *coord = members[0].body->grid.slots[members[0].slot].coord;
+    double x[3];
+    brunt_node_position(&members[0].body->grid, coord, node, x);
+    static const double rest[3] = {0, 0, 0};
+    for (int q = 0; q < met; q++) {
+        const meeting *m = &meetings[q];
+        if (!(m->push > 0)) continue;
+        double J[3], old[3] = {0}, now[3], own = (double)(members[m->b].node[BRUNT_NODE_SPARE] / members[m->b].node[0]);
+        relative(members, m, now);
+        for (int k = 0; k < 3; k++) J[k] = own * (m->push * m->n[k] + m->drag[k]);
+        for (int k = 0; k < dim; k++)
+            old[k] = (double)(members[m->b].node[BRUNT_NODE_OLD + k] - members[m->a].node[BRUNT_NODE_OLD + k]);
+        brunt_action_book(&j->w->actions[g->action + m->action], J, x, old, now, rest, m->n);
+    }
+    for (int i = 0; i < n; i++)
+        for (int a = 0; a < dim; a++) members[i].node[BRUNT_NODE_VELOCITY + a] = (real)members[i].v[a];
+}
+
+static void meet(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    const job *j = context;
+    for (int64_t q = begin; q < end; q++)
+        for (int node = 0; node < BRUNT_BLOCK_NODES; node++) meet_at_node(j, &j->w->groups[q], node);
+}
+
+int brunt_multivelocity_apply(brunt_body *bodies, int body_count, brunt_pair *pairs, int pair_count, const int32_t *pair_of,
+                              const brunt_mirror *mirrors, int mirror_count, double dt, int threads, double *seconds,
+                              brunt_contact_workspace **workspace) {
+    (void)pair_count;
+    if (!*workspace) *workspace = brunt_alloc(sizeof **workspace);
+    if (!*workspace) return -1;
+    job j = {bodies, body_count, pairs, pair_of, mirrors, mirror_count, dt, *workspace};
+    if (find_groups(&j)) return -1;
+    brunt_parallel(threads, j.w->group_count, 1, meet, &j, seconds);
+    for (int32_t q = 0; q < j.w->group_count; q++) {
+        const group *g = &j.w->groups[q];
+        int at = g->action;
+        for (int32_t i = 0; i < g->count; i++)
+            for (int32_t k = i + 1; k < g->count; k++, at++) {
+                int32_t pair = pair_of[j.w->shared[g->first + i].body * body_count + j.w->shared[g->first + k].body];
+                if (pair >= 0) brunt_action_add(&pairs[pair].last, &j.w->actions[at]);
+            }
+    }
+    return 0;
+}

@@ -1,0 +1,47 @@
+// The program: picks a command.
+#include <stdio.h>
+#include <string.h>
+
+#include "app.h"
+#include "real.h"
+
+static const char help[] =
+    "brunt " BRUNT_VERSION ": explicit-dynamics contact engine\n"
+    "\n"
+    "  brunt run SCENE [-o DIR] [-t THREADS] [--set PATH=VALUE]... [--resume] [--profile] [-q]\n"
+    "      compute a scene; results go to DIR (out/<scene name>)\n"
+    "  brunt check SCENE [-t THREADS] [--set PATH=VALUE]...\n"
+    "      read and check a scene; print its plan, memory, time step and estimated time\n"
+    "  brunt keys [SECTION] [--schema]\n"
+    "      the reference of scene files; --schema: as a JSON Schema for editors\n"
+    "  brunt info FILE\n"
+    "      what a checkpoint, history, picture or collection holds\n"
+    "  brunt --version | --help\n"
+    "\n"
+    "Exit codes: 0 done, 64 bad command line, 65 bad input, 70 the computation failed, 74 file system, 75 stopped: "
+    "--resume goes on.\n"
+    "A run asked to stop (SIGTERM, SIGINT, SIGHUP) writes a checkpoint first; SIGUSR1 writes one and goes on.\n";
+
+int main(int argc, char **argv) {
+    static const struct {
+        const char *name;
+        int (*run)(int, char **);
+    } commands[] = {{"run", cmd_run}, {"check", cmd_check}, {"keys", cmd_keys}, {"info", cmd_info}};
+    if (argc < 2) {
+        fputs("brunt: a command is wanted: run, check, keys or info (brunt --help says more)\n", stderr);
+        return BRUNT_BAD_USAGE;
+    }
+    if (!strcmp(argv[1], "--help") || !strcmp(argv[1], "-h")) {
+        fputs(help, stdout);
+        return BRUNT_OK;
+    }
+    if (!strcmp(argv[1], "--version")) {
+        printf("brunt %s (%s precision)\n", BRUNT_VERSION, BRUNT_REAL_NAME);
+        return BRUNT_OK;
+    }
+    for (size_t c = 0; c < sizeof commands / sizeof *commands; c++)
+        if (!strcmp(argv[1], commands[c].name)) return commands[c].run(argc - 1, argv + 1);
+    fprintf(stderr, "brunt: there is no command '%s'; run, check, keys and info are known (brunt --help says more)\n",
+            argv[1]);
+    return BRUNT_BAD_USAGE;
+}

@@ -1,0 +1,52 @@
+// Default values of the definitions. What must be given (cell, end, materials, shapes, normals) starts as 0 and is
+// refused by brunt_world_create when it is left so.
+#include "definitions.h"
+
+#include "brunt.h"
+#include "memory.h"
+
+#include <math.h>
+
+brunt_world_def brunt_world_def_default(void) {
+    return (brunt_world_def){
+        .cookie = BRUNT_WORLD_COOKIE,
+        .dimension = 3,
+        .kernel = BRUNT_QUADRATIC,
+        .transfer = BRUNT_APIC,
+        .flip = 0.99,
+        .cfl = 0.5,
+        .energy_limit = 0.1,
+        .contact = {.method = BRUNT_CONTACT_MULTI_VELOCITY},
+    };
+}
+
+brunt_body_def brunt_body_def_default(void) {
+    return (brunt_body_def){
+        .place = brunt_placement_identity(),
+        .particles_per_cell = 0, // by dimension: 4 or 8
+        .fill = BRUNT_FILL_REGULAR,
+        .seed = 1,
+        .temperature = 293.15,
+    };
+}
+
+brunt_plane_def brunt_plane_def_default(void) { return (brunt_plane_def){.condition = BRUNT_SEPARATE}; }
+
+brunt_region_def brunt_region_def_default(void) {
+    return (brunt_region_def){
+        .place = brunt_placement_identity(),
+        .component = {true, true, true},
+        .end = INFINITY,
+    };
+}
+
+void brunt_world_def_free(brunt_world_def *def) {
+    for (int32_t i = 0; i < def->body_count; i++) brunt_shape_free(&def->bodies[i].shape);
+    for (int32_t i = 0; i < def->region_count; i++) brunt_shape_free(&def->regions[i].shape);
+    brunt_free(def->materials);
+    brunt_free(def->bodies);
+    brunt_free(def->planes);
+    brunt_free(def->regions);
+    brunt_free(def->contact.pairs);
+    *def = (brunt_world_def){0};
+}

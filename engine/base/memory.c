@@ -1,0 +1,47 @@
+// Every block carries a 64-byte header that holds its size, so that the live bytes are known without a table.
+#include "memory.h"
+
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { HEADER = 64 };
+
+static atomic_size_t live, peak;
+static atomic_llong calls;
+
+void *brunt_alloc(size_t bytes) {
+    if (bytes > SIZE_MAX - 2 * HEADER) return NULL;
+    size_t total = (bytes + 2 * HEADER - 1) / HEADER * HEADER;
+    char *block = aligned_alloc(HEADER, total);
+    if (!block) return NULL;
+    memset(block, 0, total);
+    *(size_t *)block = total;
+    size_t now = atomic_fetch_add(&live, total) + total, seen = atomic_load(&peak);
+    while (now > seen && !atomic_compare_exchange_weak(&peak, &seen, now)) {}
+    atomic_fetch_add(&calls, 1);
+    return block + HEADER;
+}
+
+void brunt_free(void *memory) {
+    if (!memory) return;
+    char *block = (char *)memory - HEADER;
+    atomic_fetch_sub(&live, *(size_t *)block);
+    free(block);
+}
+
+int brunt_reserve(void **memory, size_t *capacity, size_t bytes, size_t keep) {
+    if (*capacity >= bytes && *memory) return 0;
+    size_t grown = bytes + bytes / 2;
+    void *larger = brunt_alloc(grown);
+    if (!larger) return -1;
+    if (keep) memcpy(larger, *memory, keep);
+    brunt_free(*memory);
+    *memory = larger;
+    *capacity = grown;
+    return 0;
+}
+
+size_t brunt_memory_live(void) { return atomic_load(&live); }
+size_t brunt_memory_peak(void) { return atomic_load(&peak); }
+int64_t brunt_memory_calls(void) { return atomic_load(&calls); }

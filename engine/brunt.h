@@ -1,0 +1,289 @@
+// brunt: explicit-dynamics contact engine. The public C interface.
+//
+// A world is made from a definition, stepped, read and destroyed. Definitions are plain structures: fill one with its
+// default function first, so that a field added later keeps a sensible value. All quantities are SI. Nothing here prints
+// or exits: what goes wrong comes back as a code and a brunt_error. Two worlds may live side by side.
+#pragma once
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define BRUNT_VERSION "0.1.0"
+
+// The engine is built for double or for float; the symbols differ, so that a mismatch fails to link.
+#ifdef BRUNT_FLOAT
+#define brunt_world_create brunt_world_create_float
+#define brunt_world_step brunt_world_step_float
+#endif
+
+// ---------------------------------------------------------------------------------------------------- errors
+
+enum {                        // also the exit codes of the program
+    BRUNT_OK = 0,
+    BRUNT_BAD_USAGE = 64,     // command line
+    BRUNT_BAD_INPUT = 65,     // scene, mesh or checkpoint that is not acceptable
+    BRUNT_FAILED = 70,        // the computation failed: body, id, place, time and reason say where and why
+    BRUNT_IO_ERROR = 74,      // file system
+    BRUNT_STOPPED = 75        // stopped by a signal; resume from the checkpoint
+};
+
+typedef struct brunt_error {
+    int code;
+    char message[1024];       // complete sentence, with the values that matter
+    char body[64];            // for BRUNT_FAILED: body ...
+    int64_t id;               // ... particle id (-1: none) ...
+    double place[3];          // [m]
+    double time;              // [s]
+} brunt_error;
+
+// ---------------------------------------------------------------------------------------------------- shapes
+
+typedef enum brunt_shape_kind {
+    BRUNT_BOX,                // min, max
+    BRUNT_SPHERE,             // center, radius (a disk in two dimensions)
+    BRUNT_CYLINDER,           // center of one end, axis, radius, length
+    BRUNT_RING,               // like cylinder with inner_radius; in two dimensions an annulus (center, inner_radius, radius)
+    BRUNT_PRISM,              // polygon (counter-clockwise or clockwise, in the x-y plane) between min[2] and max[2]; 2D: the polygon
+    BRUNT_HALF_SPACE,         // center: a point of the plane; axis: normal pointing out of the material
+    BRUNT_UNION, BRUNT_DIFFERENCE, BRUNT_INTERSECTION  // of the children; difference: the first less all others
+} brunt_shape_kind;
+
+typedef struct brunt_shape {
+    brunt_shape_kind kind;
+    double min[3], max[3];            // [m]
+    double center[3], axis[3];        // [m], [-] (any length but 0)
+    double radius, inner_radius, length;  // [m]
+    double (*points)[2]; int32_t point_count;         // owned
+    struct brunt_shape *children; int32_t child_count;  // owned
+} brunt_shape;
+
+// A rigid motion x -> rotation x + translation. Filled with the identity by brunt_placement_identity.
+typedef struct brunt_placement { double rotation[9]; double translation[3]; } brunt_placement;
+
+brunt_placement brunt_placement_identity(void);
+// Follow `first` by a shift [m], or by a turn of `angle` [rad] about the line through `about` along `axis`.
+brunt_placement brunt_placement_translate(brunt_placement first, const double by[3]);
+brunt_placement brunt_placement_rotate(brunt_placement first, const double axis[3], double angle, const double about[3]);
+
+// Signed distance [m] of a point to the shape's surface, negative inside. Exact for primitives and outside corners of
+// unions; a lower bound of its size inside differences and intersections.
+double brunt_shape_distance(const brunt_shape *shape, int dimension, const double point[3]);
+// Axis-aligned bounds [m]; false when the shape is unbounded (a half-space not cut by anything) or empty.
+bool brunt_shape_bounds(const brunt_shape *shape, int dimension, double min[3], double max[3]);
+void brunt_shape_free(brunt_shape *shape);  // frees what the shape owns, not the shape itself
+
+// ---------------------------------------------------------------------------------------------------- definitions
+
+enum { BRUNT_NAME_LENGTH = 48, BRUNT_PARAMETER_LIMIT = 24 };
+
+typedef struct brunt_material_def {
+    char name[BRUNT_NAME_LENGTH];
+    double density;                                   // [kg/m^3] > 0
+    char strength[BRUNT_NAME_LENGTH];                 // model name; `brunt keys materials` lists them
+    double strength_parameters[BRUNT_PARAMETER_LIMIT];  // in the order of the model's parameter table
+    char eos[BRUNT_NAME_LENGTH];                      // "" = none
+    double eos_parameters[BRUNT_PARAMETER_LIMIT];
+    bool bulk_viscosity;
+    double viscosity_parameters[BRUNT_PARAMETER_LIMIT];
+} brunt_material_def;
+
+typedef enum brunt_fill { BRUNT_FILL_REGULAR, BRUNT_FILL_JITTERED } brunt_fill;
+
+typedef struct brunt_body_def {
+    char name[BRUNT_NAME_LENGTH];       // unique; bodies are ordered by name, so the order in a file changes nothing
+    int32_t material;                   // index into the world's materials
+    brunt_shape shape;                  // owned by the definition
+    brunt_placement place;
+    // Particles sit on a lattice fixed to the unplaced shape's bounding box, then move with the placement.
+    int32_t particles_per_cell;         // 2D: a square number, 3D: a cube; default 4 / 8
+    double spacing;                     // [m] lattice spacing; 0 = cell / (particles_per_cell)^(1/dimension)
+    brunt_fill fill;
+    double jitter;                      // [-] of the spacing, 0..0.5, for BRUNT_FILL_JITTERED
+    uint64_t seed;
+    double velocity[3];                 // [m/s]
+    double spin[3];                     // [rad/s] angular velocity about spin_about
+    double spin_about[3];               // [m]
+    double wave_velocity[3];            // [m/s] added as wave_velocity * sin(wave_vector . x + wave_phase)
+    double wave_vector[3], wave_phase;  // [1/m], [rad]
+    double temperature;                 // [K] initial, for thermal materials; default 293.15
+} brunt_body_def;
+
+typedef enum brunt_condition {
+    BRUNT_STICK,      // all components follow the plane
+    BRUNT_SLIP,       // normal component follows the plane, tangential free, never lets go
+    BRUNT_SEPARATE,   // like slip in compression, lets go in tension; with friction > 0 a Coulomb wall
+    BRUNT_SYMMETRY    // mirror plane: axis-aligned and on a grid line
+} brunt_condition;
+
+typedef struct brunt_plane_def {
+    char name[BRUNT_NAME_LENGTH];       // of its column in the history; "" = "plane1", ...
+    double point[3], normal[3];         // [m], [-] pointing into the room the bodies are in
+    brunt_condition condition;
+    double friction;                    // [-] Coulomb coefficient >= 0, for BRUNT_SEPARATE
+    double velocity[3];                 // [m/s] of a moving wall
+    char body[BRUNT_NAME_LENGTH];       // the one body it acts on; "" = all
+} brunt_plane_def;
+
+// Grid nodes inside a region are given a velocity.
+typedef struct brunt_region_def {
+    char name[BRUNT_NAME_LENGTH];
+    brunt_shape shape; brunt_placement place;  // owned by the definition
+    bool component[3];                  // which components are prescribed
+    double velocity[3];                 // [m/s]
+    double start, end;                  // [s] active in start <= t < end
+    char body[BRUNT_NAME_LENGTH];       // "" = all
+} brunt_region_def;
+
+typedef enum brunt_contact_method { BRUNT_CONTACT_NONE, BRUNT_CONTACT_MULTI_VELOCITY } brunt_contact_method;
+
+typedef struct brunt_pair_def {
+    char a[BRUNT_NAME_LENGTH], b[BRUNT_NAME_LENGTH];
+    brunt_contact_method method; double friction;
+} brunt_pair_def;
+
+typedef struct brunt_contact_def {
+    brunt_contact_method method;        // default: multi-velocity
+    double friction;                    // [-] >= 0
+    bool allow_overlap;                 // accept bodies that overlap at the start; default false: an error
+    brunt_pair_def *pairs; int32_t pair_count;  // owned; overrides
+} brunt_contact_def;
+
+typedef enum brunt_kernel { BRUNT_LINEAR = 1, BRUNT_QUADRATIC = 2, BRUNT_CUBIC = 3 } brunt_kernel;
+typedef enum brunt_transfer { BRUNT_PIC, BRUNT_FLIP, BRUNT_APIC } brunt_transfer;
+
+typedef struct brunt_world_def {
+    int cookie;                         // set by brunt_world_def_default
+    int dimension;                      // 3, or 2 = plane strain of unit thickness
+    double cell;                        // [m] > 0
+    double origin[3];                   // [m] where a grid node lies; default 0
+    brunt_kernel kernel;                // default quadratic
+    brunt_transfer transfer;            // default APIC
+    double flip;                        // [-] for FLIP: share of the particle's own velocity kept, 0..1; default 0.99
+    double cfl;                         // [-] 0..1; default 0.5
+    double step;                        // [s] fixed time step, 0 = from cfl
+    double end;                         // [s] the step that would pass it is cut to end on it
+    double energy_limit;                // [-] of the initial plus supplied energy; default 0.1; INFINITY = none
+    int threads;                        // 0 = all there are
+    brunt_material_def *materials; int32_t material_count;  // owned
+    brunt_body_def *bodies; int32_t body_count;             // owned
+    brunt_plane_def *planes; int32_t plane_count;           // owned
+    brunt_region_def *regions; int32_t region_count;        // owned
+    brunt_contact_def contact;
+    double gravity[3];                  // [m/s^2]
+    double gravity_ramp;                // [s] gravity grows linearly from 0 over this time; default 0
+} brunt_world_def;
+
+brunt_world_def brunt_world_def_default(void);
+brunt_body_def brunt_body_def_default(void);
+brunt_plane_def brunt_plane_def_default(void);
+brunt_region_def brunt_region_def_default(void);
+void brunt_world_def_free(brunt_world_def *def);  // frees all that the definition owns
+
+// ---------------------------------------------------------------------------------------------------- the world
+
+typedef struct brunt_world brunt_world;
+
+// Fills the bodies and makes the plan. NULL and an error (BRUNT_BAD_INPUT) when the definition cannot be run.
+brunt_world *brunt_world_create(const brunt_world_def *def, brunt_error *error);
+void brunt_world_destroy(brunt_world *world);
+
+// One time step. BRUNT_OK, or BRUNT_FAILED with where and why; the world then is as the failing step left it, to be looked at.
+// `limit` [s]: a time that must be hit exactly (an output time), INFINITY for none.
+int brunt_world_step(brunt_world *world, double limit, brunt_error *error);
+
+double brunt_world_time(const brunt_world *world);      // [s]
+double brunt_world_end(const brunt_world *world);       // [s]
+int64_t brunt_world_steps(const brunt_world *world);
+double brunt_world_dt(const brunt_world *world);        // [s] of the last step, or the first one to come
+double brunt_world_dt_min(const brunt_world *world);
+double brunt_world_dt_max(const brunt_world *world);
+int brunt_world_dimension(const brunt_world *world);
+int brunt_world_threads(const brunt_world *world);
+int64_t brunt_world_particles(const brunt_world *world);
+int64_t brunt_world_nodes(const brunt_world *world);    // grid nodes alive in the last step
+
+typedef struct brunt_energy {  // [J]; in 2D per metre of thickness
+    double kinetic;            // of the particles, with the affine part of APIC
+    double internal;           // stored
+    double plastic, hourglass, contact, friction, viscosity, transfer, eroded;  // taken out, each by its cause
+    double external_work;      // done on the bodies by gravity, walls and prescribed motion
+    double initial;            // kinetic + internal at the start
+    double total;              // kinetic + internal + all that was taken out
+    double error;              // total - initial - external_work
+    double error_relative;     // error over the largest energy the run has had to do with
+} brunt_energy;
+
+typedef struct brunt_momentum {
+    double linear[3];          // [kg m/s]
+    double angular[3];         // [kg m^2/s] about the origin, with the spin of APIC; 2D: the third component
+    double linear_impulse[3], angular_impulse[3];  // external, so far
+    double linear_drift, angular_drift;  // relative change since the start, external impulses taken off
+    double linear_initial[3], angular_initial[3];
+} brunt_momentum;
+
+void brunt_world_energy(brunt_world *world, brunt_energy *energy);
+void brunt_world_momentum(brunt_world *world, brunt_momentum *momentum);
+// Hash of every state bit of every particle, independent of the order they lie in memory.
+uint64_t brunt_world_hash(const brunt_world *world);
+
+// Bodies, in order of name.
+int32_t brunt_body_count(const brunt_world *world);
+const char *brunt_body_name(const brunt_world *world, int32_t body);
+const char *brunt_body_material(const brunt_world *world, int32_t body);
+int64_t brunt_body_particles(const brunt_world *world, int32_t body);
+typedef struct brunt_body_sums { double mass, momentum[3], centre[3], velocity[3], kinetic, internal, plastic; } brunt_body_sums;
+void brunt_body_totals(brunt_world *world, int32_t body, brunt_body_sums *sums);
+
+// What can be read of a body's particles: stored and derived fields alike ("velocity", "stress" = Cauchy, "pressure",
+// "von_mises", "density", "plastic_strain", "temperature", "J", "volume", "id", ...).
+typedef struct brunt_field_info { const char *name, *unit; int components; bool symmetric; } brunt_field_info;
+int32_t brunt_body_field_count(const brunt_world *world, int32_t body);
+brunt_field_info brunt_body_field(const brunt_world *world, int32_t body, int32_t field);
+// -1 when the body has no such field.
+int32_t brunt_body_find_field(const brunt_world *world, int32_t body, const char *name);
+// Writes particles x components doubles in the order of the ids (0 .. particles-1 within the body). Vectors always have
+// 3 components, symmetric tensors 6 (XX YY ZZ XY YZ XZ), matrices 9, whatever the dimension.
+void brunt_body_read(brunt_world *world, int32_t body, int32_t field, double *out);
+
+// Contact pairs and walls: force averaged over the last step [N] and impulse since the start [N s], on `b` / on the bodies.
+typedef struct brunt_force { char name[2 * BRUNT_NAME_LENGTH + 2]; double force[3], impulse[3]; double normal_work, friction_work; } brunt_force;
+int32_t brunt_pair_count(const brunt_world *world);
+void brunt_pair_force(const brunt_world *world, int32_t pair, brunt_force *force);     // name "a-b", force on b
+int32_t brunt_wall_count(const brunt_world *world);                                     // planes, then regions
+void brunt_wall_force(const brunt_world *world, int32_t wall, brunt_force *force);     // force on the bodies
+
+// ---------------------------------------------------------------------------------------------------- plan, profile, state
+
+typedef struct brunt_effect { const char *name; bool on; const char *because; } brunt_effect;  // because: the key that asked for it
+int32_t brunt_effect_count(const brunt_world *world);
+brunt_effect brunt_world_effect(const brunt_world *world, int32_t effect);
+
+typedef struct brunt_pass { const char *name; int64_t calls; double seconds; double thread_seconds[64]; } brunt_pass;
+int32_t brunt_pass_count(const brunt_world *world);
+brunt_pass brunt_world_pass(const brunt_world *world, int32_t pass);   // passes the plan runs each step, in order
+
+typedef struct brunt_array { char name[96]; const char *unit; int components; size_t bytes; } brunt_array;
+int32_t brunt_array_count(const brunt_world *world);
+brunt_array brunt_world_array(const brunt_world *world, int32_t array);  // every array that grows with the scene
+
+// All that a run needs to go on with the same bits, as named blocks of bytes: a checkpoint stores them, restore brings them back.
+typedef struct brunt_state_block {
+    char name[96];            // "bodies/rod/velocity", "world/ledger"
+    char type;                // 'd' double, 'f' float, 'i' int64, 'b' bytes
+    int64_t count;            // elements
+} brunt_state_block;
+int32_t brunt_state_count(brunt_world *world);
+brunt_state_block brunt_state_info(brunt_world *world, int32_t block);
+void brunt_state_get(brunt_world *world, int32_t block, void *out);             // `count` elements
+int brunt_state_set(brunt_world *world, int32_t block, const void *in, int64_t count, brunt_error *error);
+// Call after the last brunt_state_set: sorts and checks.
+int brunt_state_done(brunt_world *world, brunt_error *error);
+
+#ifdef __cplusplus
+}
+#endif

@@ -1,0 +1,160 @@
+#include "grid.h"
+
+#include <string.h>
+
+#include "hash.h"
+#include "memory.h"
+
+void brunt_grid_init(brunt_grid *grid, int dim, int order, double h, const double origin[3]) {
+    *grid = (brunt_grid){.dim = dim, .order = order, .side = dim == 3 ? 4 : 8, .corners = dim == 3 ? 8 : 4,
+                         .h = (real)h, .inv_h = (real)(1.0 / h)};
+    grid->span = grid->side + order;
+    grid->span_nodes = dim == 3 ? grid->span * grid->span * grid->span : grid->span * grid->span;
+    memcpy(grid->origin, origin, sizeof grid->origin);
+}
+
+void brunt_grid_free(brunt_grid *grid) {
+    void *owned[] = {grid->blocks, grid->block_key, grid->bin_start, grid->slots, grid->slot_key, grid->nodes,
+                     grid->scatter, grid->spare_key, grid->block_table.key, grid->block_table.value,
+                     grid->slot_table.key, grid->slot_table.value};
+    for (size_t k = 0; k < sizeof owned / sizeof owned[0]; k++) brunt_free(owned[k]);
+    *grid = (brunt_grid){0};
+}
+
+size_t brunt_grid_bytes(const brunt_grid *grid) {
+    return grid->blocks_capacity + grid->block_key_capacity + grid->bin_start_capacity + grid->slots_capacity +
+           grid->slot_key_capacity + grid->nodes_capacity + grid->scatter_capacity + grid->spare_key_capacity +
+           12 * (size_t)(grid->block_table.capacity + grid->slot_table.capacity);
+}
+
+// ------------------------------------------------------------------------------------------ keys and tables
+
+// 21 bits a coordinate, biased so that the order of keys is the lexicographic order of coordinates.
+enum { BIAS = 1 << 20, BITS = 21 };
+
+uint64_t brunt_key(const int32_t c[3]) {
+    return (uint64_t)(c[0] + BIAS) << (2 * BITS) | (uint64_t)(c[1] + BIAS) << BITS | (uint64_t)(c[2] + BIAS);
+}
+static void key_coord(uint64_t key, int32_t c[3]) {
+    const uint64_t mask = (1u << BITS) - 1;
+    c[0] = (int32_t)(key >> (2 * BITS)) - BIAS;
+    c[1] = (int32_t)(key >> BITS & mask) - BIAS;
+    c[2] = (int32_t)(key & mask) - BIAS;
+}
+
+enum { EMPTY = -1 };
+
+static int table_build(brunt_table *table, const uint64_t *keys, int32_t count) {
+    int32_t capacity = 64;
+    while (capacity < 2 * count) capacity *= 2;
+    if (capacity > table->capacity) {
+        brunt_free(table->key);
+        brunt_free(table->value);
+        table->key = brunt_alloc((size_t)capacity * sizeof *table->key);
+        table->value = brunt_alloc((size_t)capacity * sizeof *table->value);
+        table->capacity = table->key && table->value ? capacity : 0;
+        if (!table->capacity) return -1;
+    }
+    for (int32_t i = 0; i < table->capacity; i++) table->value[i] = EMPTY;
+    uint64_t mask = (uint64_t)table->capacity - 1;
+    for (int32_t i = 0; i < count; i++) {
+        uint64_t at = brunt_mix(keys[i]) & mask;
+        while (table->value[at] != EMPTY) at = (at + 1) & mask;
+        table->key[at] = keys[i];
+        table->value[at] = i;
+    }
+    return 0;
+}
+
+static int32_t table_find(const brunt_table *table, uint64_t key) {
+    if (!table->capacity) return -1;
+    uint64_t mask = (uint64_t)table->capacity - 1, at = brunt_mix(key) & mask;
+    while (table->value[at] != EMPTY) {
+        if (table->key[at] == key) return table->value[at];
+        at = (at + 1) & mask;
+    }
+    return -1;
+}
+
+int32_t brunt_grid_block(const brunt_grid *grid, uint64_t key) { return table_find(&grid->block_table, key); }
+int32_t brunt_grid_slot(const brunt_grid *grid, uint64_t key) { return table_find(&grid->slot_table, key); }
+
+// ------------------------------------------------------------------------------------------ the set of blocks
+
+// out = keys united with keys + shift, both sorted; returns the count. Adding a constant keeps the order.
+static int32_t unite_shifted(const uint64_t *keys, int32_t count, uint64_t shift, uint64_t *out) {
+    int32_t a = 0, b = 0, n = 0;
+    while (a < count || b < count) {
+        uint64_t u = a < count ? keys[a] : UINT64_MAX, v = b < count ? keys[b] + shift : UINT64_MAX;
+        out[n++] = u < v ? u : v;
+        a += u <= v;
+        b += v <= u;
+    }
+    return n;
+}
+
+static uint64_t corner_shift(const brunt_grid *grid, int corner) {
+    const int32_t zero[3] = {0, 0, 0};
+    int32_t c[3] = {0, 0, 0};
+    for (int a = 0; a < grid->dim; a++) c[a] = corner >> (grid->dim - 1 - a) & 1;
+    return brunt_key(c) - brunt_key(zero);
+}
+
+int brunt_grid_set_blocks(brunt_grid *grid, const uint64_t *keys, int32_t count) {
+    size_t n = (size_t)count, most = n * (size_t)grid->corners;
+    if (brunt_reserve((void **)&grid->block_key, &grid->block_key_capacity, n * sizeof *grid->block_key, 0) ||
+        brunt_reserve((void **)&grid->blocks, &grid->blocks_capacity, n * sizeof *grid->blocks, 0) ||
+        brunt_reserve((void **)&grid->bin_start, &grid->bin_start_capacity, n * BRUNT_BIN_STARTS * sizeof *grid->bin_start, 0) ||
+        brunt_reserve((void **)&grid->scatter, &grid->scatter_capacity,
+                      n * (size_t)grid->span_nodes * BRUNT_NODE_REALS * sizeof(real), 0) ||
+        brunt_reserve((void **)&grid->slot_key, &grid->slot_key_capacity, (most + 1) * sizeof *grid->slot_key, 0) ||
+        brunt_reserve((void **)&grid->spare_key, &grid->spare_key_capacity, (most + 1) * sizeof *grid->spare_key, 0))
+        return -1;
+    memmove(grid->block_key, keys, n * sizeof *keys);
+    grid->block_count = count;
+    if (table_build(&grid->block_table, grid->block_key, count)) return -1;
+
+    // The nodes reached: united with a shift by one along z, then y, then x.
+    uint64_t *from = grid->slot_key, *to = grid->spare_key;
+    memcpy(from, keys, n * sizeof *keys);
+    int32_t slots = count;
+    for (int a = grid->dim - 1; a >= 0; a--) {
+        slots = unite_shifted(from, slots, corner_shift(grid, 1 << (grid->dim - 1 - a)), to);
+        uint64_t *t = from;
+        from = to, to = t;
+    }
+    if (from != grid->slot_key) memcpy(grid->slot_key, from, (size_t)slots * sizeof *from);
+    grid->slot_count = slots;
+    if (brunt_reserve((void **)&grid->slots, &grid->slots_capacity, (size_t)slots * sizeof *grid->slots, 0) ||
+        brunt_reserve((void **)&grid->nodes, &grid->nodes_capacity,
+                      (size_t)slots * BRUNT_BLOCK_NODES * BRUNT_NODE_REALS * sizeof(real), 0) ||
+        table_build(&grid->slot_table, grid->slot_key, slots))
+        return -1;
+
+    for (int32_t s = 0; s < slots; s++) {
+        key_coord(grid->slot_key[s], grid->slots[s].coord);
+        for (int c = 0; c < 8; c++) grid->slots[s].source[c] = -1;
+    }
+    for (int32_t b = 0; b < count; b++) {
+        brunt_block *block = &grid->blocks[b];
+        key_coord(keys[b], block->coord);
+        for (int c = 0; c < grid->corners; c++) {
+            block->slot[c] = brunt_grid_slot(grid, keys[b] + corner_shift(grid, c));
+            grid->slots[block->slot[c]].source[c] = b;
+        }
+    }
+    return 0;
+}
+
+static int32_t floor_divide(int32_t a, int32_t b) { return a >= 0 ? a / b : -((-a + b - 1) / b); }
+
+real *brunt_grid_node(const brunt_grid *grid, const int32_t at[3]) {
+    int32_t block[3] = {0, 0, 0}, local[3] = {0, 0, 0};
+    for (int a = 0; a < grid->dim; a++) {
+        block[a] = floor_divide(at[a], grid->side);
+        local[a] = at[a] - block[a] * grid->side;
+    }
+    int32_t slot = brunt_grid_slot(grid, brunt_key(block));
+    if (slot < 0) return NULL;
+    return brunt_slot_nodes(grid, slot) + brunt_node_index(grid, local[0], local[1], local[2]) * BRUNT_NODE_REALS;
+}

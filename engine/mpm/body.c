@@ -1,0 +1,92 @@
+#include "body.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "error.h"
+#include "lanes.h"
+#include "memory.h"
+
+static int prepare(const brunt_material_def *def, const brunt_model *model, const double *given, bool with_eos,
+                   real *constants, brunt_error *error) {
+    for (int k = 0; k < model->parameter_count; k++) {
+        const brunt_parameter *row = &model->parameters[k];
+        double v = given[k];
+        bool low = row->min_open ? !(v > row->min) : !(v >= row->min), high = row->max_open ? !(v < row->max) : !(v <= row->max);
+        if (low || high)
+            return brunt_fail(error, BRUNT_BAD_INPUT, "materials.%s.%s: %g %s is outside its range %c%g, %g%c", def->name,
+                              row->key, v, row->unit, row->min_open ? '(' : '[', row->min, row->max, row->max_open ? ')' : ']');
+    }
+    const char *wrong = model->prepare(given, def->density, with_eos, constants);
+    if (wrong) return brunt_fail(error, BRUNT_BAD_INPUT, "materials.%s: %s", def->name, wrong);
+    return BRUNT_OK;
+}
+
+int brunt_material_make(const brunt_material_def *def, brunt_material *material, brunt_error *error) {
+    *material = (brunt_material){.density = (real)def->density};
+    memcpy(material->name, def->name, sizeof material->name);
+    if (!(def->density > 0) || !isfinite(def->density))
+        return brunt_fail(error, BRUNT_BAD_INPUT, "materials.%s.density: %g kg/m^3 is not a positive density", def->name, def->density);
+    const brunt_model *strength = brunt_find_strength(def->strength);
+    if (!strength) return brunt_fail(error, BRUNT_BAD_INPUT, "materials.%s.model: there is no model '%s'", def->name, def->strength);
+    const brunt_model *eos = def->eos[0] ? brunt_find_eos(def->eos) : NULL;
+    if (def->eos[0] && !eos)
+        return brunt_fail(error, BRUNT_BAD_INPUT, "materials.%s.eos: there is no equation of state '%s'", def->name, def->eos);
+    if (eos && !strength->accepts_eos)
+        return brunt_fail(error, BRUNT_BAD_INPUT, "materials.%s.eos: model '%s' brings its own pressure and takes no equation of state",
+                          def->name, strength->name);
+    material->model[BRUNT_STRENGTH] = strength;
+    material->model[BRUNT_EOS] = eos;
+    material->model[BRUNT_VISCOSITY] = def->bulk_viscosity ? &brunt_bulk_viscosity : NULL;
+    const double *given[BRUNT_COMPONENTS] = {def->strength_parameters, def->viscosity_parameters, def->eos_parameters};
+    real speed[BRUNT_COMPONENTS] = {0};
+    for (int k = 0; k < BRUNT_COMPONENTS; k++) {
+        const brunt_model *model = material->model[k];
+        if (!model) continue;
+        int status = prepare(def, model, given[k], eos != NULL, material->constants[k], error);
+        if (status) return status;
+        speed[k] = model->wave_speed(material->constants[k]);
+    }
+    material->wave_speed = brunt_wave_speed(speed[BRUNT_STRENGTH], speed[BRUNT_EOS], speed[BRUNT_VISCOSITY]);
+    return BRUNT_OK;
+}
+
+void brunt_body_free(brunt_body *body) {
+    brunt_particles_free(&body->particles);
+    brunt_grid_free(&body->grid);
+    brunt_free(body->report);
+    *body = (brunt_body){0};
+}
+
+brunt_points brunt_body_points(brunt_body *body, brunt_component component, int64_t first, int32_t count) {
+    brunt_particles *p = &body->particles;
+    const int dim = p->dim;
+    brunt_points points = {.count = count, .dim = dim, .cell = body->grid.h, .wave_speed = body->material.wave_speed};
+    real **F = brunt_field(p, BRUNT_FIELD_deformation_gradient), **stress = brunt_field(p, BRUNT_FIELD_kirchhoff_stress);
+    for (int c = 0; c < BRUNT_MATRIX(dim); c++) points.F[c] = F[c] + first;
+    for (int c = 0; c < BRUNT_SYMMETRIC(dim); c++) points.stress[c] = stress[c] + first;
+    points.volume = brunt_field(p, BRUNT_FIELD_reference_volume)[0] + first;
+    const brunt_model *model = body->material.model[component];
+    int at = 0;
+    for (int s = 0; model && s < model->state_count; s++) {
+        real **arrays = brunt_state_arrays(p, model, s);
+        int components = dim == 3 ? model->state[s].components3 : model->state[s].components2;
+        for (int c = 0; c < components; c++) points.state[at++] = arrays[c] + first;
+    }
+    return points;
+}
+
+brunt_point_energy brunt_body_energy(brunt_body *body) {
+    brunt_point_energy energy = {0};
+    for (int32_t b = 0; b < body->grid.block_count; b++) {
+        const brunt_block *block = &body->grid.blocks[b];
+        int32_t padded = (block->count + BRUNT_LANES - 1) / BRUNT_LANES * BRUNT_LANES;
+        for (int k = 0; k < BRUNT_COMPONENTS; k++) {
+            const brunt_model *model = body->material.model[k];
+            if (!model || !model->energy) continue;
+            brunt_points points = brunt_body_points(body, (brunt_component)k, block->first, padded);
+            model->energy(body->material.constants[k], &points, &energy);
+        }
+    }
+    return energy;
+}

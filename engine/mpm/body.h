@@ -1,0 +1,44 @@
+// A body of material points: its particles, its grid, its material with the constants prepared.
+#pragma once
+
+#include "brunt.h"
+#include "grid.h"
+#include "material.h"
+#include "particles.h"
+
+typedef enum brunt_component { BRUNT_STRENGTH, BRUNT_VISCOSITY, BRUNT_EOS, BRUNT_COMPONENTS } brunt_component;
+
+typedef struct brunt_material {
+    char name[BRUNT_NAME_LENGTH];
+    real density;                                     // [kg/m^3]
+    const brunt_model *model[BRUNT_COMPONENTS];       // NULL where there is none
+    real constants[BRUNT_COMPONENTS][BRUNT_MAX_CONSTANTS];
+    real wave_speed;                                  // [m/s] undeformed
+} brunt_material;
+
+// What a block reports of a step; summed or compared over the blocks in their order.
+typedef struct brunt_block_report {
+    double kinetic;           // [J]
+    real speed, wave_speed;   // [m/s] greatest
+    int32_t bad;              // slot of a particle whose update failed, -1
+    const char *reason;
+} brunt_block_report;
+
+typedef struct brunt_body {
+    char name[BRUNT_NAME_LENGTH];
+    int index;
+    brunt_material material;
+    brunt_particles particles;
+    brunt_grid grid;
+    brunt_block_report *report; size_t report_capacity;  // a block each
+    double spacing;           // [m] of the undeformed lattice
+} brunt_body;
+
+// Checks the definition and prepares the constants. BRUNT_BAD_INPUT with the offending key.
+int brunt_material_make(const brunt_material_def *def, brunt_material *material, brunt_error *error);
+void brunt_body_free(brunt_body *body);
+
+// Views particles `first` .. `first + count - 1` (count a multiple of BRUNT_LANES) as the points of a component.
+brunt_points brunt_body_points(brunt_body *body, brunt_component component, int64_t first, int32_t count);
+// Stored and dissipated energy of all particles [J].
+brunt_point_energy brunt_body_energy(brunt_body *body);

@@ -1,0 +1,71 @@
+#include "particles.h"
+
+#include <string.h>
+
+#include "lanes.h"
+#include "memory.h"
+
+void brunt_particles_init(brunt_particles *particles, int dim, const brunt_particle_needs *needs) {
+    *particles = (brunt_particles){.dim = dim};
+    int scalars = 0;
+#define ADD_FIELD(name_, unit_, components_, when)                                                                     \
+    particles->field[BRUNT_FIELD_##name_] =                                                                            \
+        (brunt_particle_field){#name_, unit_, scalars, (when) ? components_(dim) : 0, NULL, 0};                        \
+    scalars += particles->field[BRUNT_FIELD_##name_].components;
+    BRUNT_PARTICLE_FIELDS(ADD_FIELD)
+#undef ADD_FIELD
+    particles->field_count = BRUNT_BASE_FIELDS;
+    for (int m = 0; m < 3; m++) {
+        const brunt_model *model = needs->models[m];
+        for (int s = 0; model && s < model->state_count; s++) {
+            const brunt_state_field *state = &model->state[s];
+            int components = dim == 3 ? state->components3 : state->components2;
+            particles->field[particles->field_count++] =
+                (brunt_particle_field){state->name, state->unit, scalars, components, model, s};
+            scalars += components;
+        }
+    }
+    particles->scalar_count = scalars;
+}
+
+// All arrays lie in one slab. Their distance is 9 cache lines past a multiple of a page: streams read together must not
+// fall into the same sets of the cache.
+int brunt_particles_reserve(brunt_particles *particles, int64_t slots) {
+    if (slots <= particles->capacity) return 0;
+    int64_t capacity = (slots + slots / 8 + 2 * BRUNT_LANES + 511) / 512 * 512;
+    int arrays = particles->scalar_count + BRUNT_SORT_GROUP;
+    size_t stride = ((size_t)capacity * sizeof(real) + 4095) / 4096 * 4096 + (size_t)9 * 64;
+    size_t wide = (size_t)capacity * sizeof(int64_t);
+    size_t bytes = stride * (size_t)arrays + 3 * wide + (size_t)capacity * (sizeof(int32_t) + 1) + 64;
+    char *slab = brunt_alloc(bytes);
+    if (!slab) return -1;
+    char *at = slab;
+    for (int k = 0; k < arrays; k++, at += stride) {
+        if (k < particles->scalar_count && particles->slots)
+            memcpy(at, particles->scalar[k], (size_t)particles->slots * sizeof(real));
+        particles->scalar[k] = (real *)at;
+    }
+    int64_t *ids = (int64_t *)at;
+    if (particles->slots) memcpy(ids, particles->id, (size_t)particles->slots * sizeof *ids);
+    particles->id = ids;
+    particles->spare_id = (int64_t *)(at + wide);
+    particles->key = (uint64_t *)(at + 2 * wide);
+    particles->order = (int32_t *)(at + 3 * wide);
+    particles->bin = (uint8_t *)(at + 3 * wide + (size_t)capacity * sizeof(int32_t));
+    brunt_free(particles->slab);
+    particles->slab = slab;
+    particles->slab_bytes = bytes;
+    particles->capacity = capacity;
+    return 0;
+}
+
+void brunt_particles_free(brunt_particles *particles) {
+    brunt_free(particles->slab);
+    *particles = (brunt_particles){0};
+}
+
+real **brunt_state_arrays(brunt_particles *particles, const brunt_model *model, int state) {
+    for (int f = BRUNT_BASE_FIELDS; f < particles->field_count; f++)
+        if (particles->field[f].model == model && particles->field[f].state == state) return brunt_field(particles, f);
+    return NULL;
+}

@@ -1,0 +1,328 @@
+// Counting sort in three rounds: (1) each particle's block and bin, in ranges; new blocks are collected; (2) particles to
+// blocks, stable, ranges in order; (3) inside each block by bin, then every array is moved once. A step in which no
+// particle changes its bin stops after the first round.
+#include "sort.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "error.h"
+#include "lanes.h"
+#include "memory.h"
+#include "threads.h"
+
+enum { MISS_LIMIT = 1 << 16, BLOCK_GRAIN = 16 };
+
+// What one range of particles finds in the first round.
+typedef struct range {
+    int64_t begin, end;
+    int64_t bad;              // slot of a particle that cannot be placed, -1
+    bool moved;               // some particle is not where the last sort put it
+    uint64_t *missing; size_t missing_capacity; int64_t missing_count;
+    int32_t *count;           // particles per block, then the next place in it
+} range;
+
+typedef struct job {
+    brunt_grid *grid;
+    brunt_particles *particles;
+    range *ranges;
+    int group;                // scalars being moved: BRUNT_SORT_GROUP of them from here
+    bool out_of_memory;
+} job;
+
+static bool range_miss(range *r, uint64_t key) {
+    if (r->missing_count && r->missing[r->missing_count - 1] == key) return true;
+    if (brunt_reserve((void **)&r->missing, &r->missing_capacity, (size_t)(r->missing_count + 1) * sizeof key,
+                      (size_t)r->missing_count * sizeof key))
+        return false;
+    r->missing[r->missing_count++] = key;
+    return true;
+}
+
+// Round one. key[] gets block rank * 64 + bin; of a particle whose block is not alive yet, nothing.
+static void find_places(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    job *j = context;
+    const brunt_grid *grid = j->grid;
+    brunt_particles *p = j->particles;
+    const int dim = grid->dim, shift = dim == 3 ? 2 : 3, mask = grid->side - 1;
+    const double offset = 0.5 * (grid->order - 1);
+    real *const *x = brunt_field(p, BRUNT_FIELD_position);
+    const real o[3] = {(real)grid->origin[0], (real)grid->origin[1], (real)grid->origin[2]};
+    for (int64_t q = begin; q < end; q++) {
+        range *r = &j->ranges[q];
+        uint64_t last_key = UINT64_MAX;
+        int32_t last = -1;
+        r->bad = -1, r->moved = false, r->missing_count = 0;
+        for (int64_t s = r->begin; s < r->end; s++) {
+            if (p->id[s] < 0) continue;
+            int32_t base[3] = {0, 0, 0}, block[3] = {0, 0, 0};
+            int bin = 0;
+            bool good = true;
+            for (int a = 0; a < dim; a++) {
+                double u = floor((double)((x[a][s] - o[a]) * grid->inv_h) - offset);
+                good = good && fabs(u) < (double)(BRUNT_COORD_LIMIT - 1);  // false for NaN too
+                base[a] = good ? (int32_t)u : 0;
+                block[a] = base[a] >> shift;
+                bin = bin << shift | (base[a] & mask);
+            }
+            if (!good) {
+                if (r->bad < 0) r->bad = s;
+                continue;
+            }
+            uint64_t key = brunt_key(block);
+            if (key != last_key) last_key = key, last = brunt_grid_block(grid, key);
+            if (last < 0) {
+                if (!range_miss(r, key)) j->out_of_memory = true;
+                r->moved = true;
+                continue;
+            }
+            uint64_t place = (uint64_t)last << 6 | (uint64_t)bin;
+            r->moved = r->moved || place != p->key[s];
+            p->key[s] = place;
+        }
+    }
+}
+
+static int compare_keys(const void *a, const void *b) {
+    uint64_t u = *(const uint64_t *)a, v = *(const uint64_t *)b;
+    return (u > v) - (u < v);
+}
+
+static void count_blocks(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    job *j = context;
+    brunt_particles *p = j->particles;
+    for (int64_t q = begin; q < end; q++) {
+        range *r = &j->ranges[q];
+        memset(r->count, 0, (size_t)j->grid->block_count * sizeof *r->count);
+        for (int64_t s = r->begin; s < r->end; s++)
+            if (p->id[s] >= 0) r->count[p->key[s] >> 6]++;
+    }
+}
+
+// Round two: the particles of each block in their old order.
+static void fill_blocks(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    job *j = context;
+    brunt_particles *p = j->particles;
+    for (int64_t q = begin; q < end; q++) {
+        range *r = &j->ranges[q];
+        for (int64_t s = r->begin; s < r->end; s++)
+            if (p->id[s] >= 0) p->order[r->count[p->key[s] >> 6]++] = (int32_t)s;
+    }
+}
+
+// Round three: by bin inside the block. The old places are sorted through spare_id, which is free until the arrays move.
+static void sort_blocks(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    job *j = context;
+    brunt_particles *p = j->particles;
+    for (int64_t b = begin; b < end; b++) {
+        brunt_block *block = &j->grid->blocks[b];
+        int32_t *start = j->grid->bin_start + b * BRUNT_BIN_STARTS, at[BRUNT_BIN_STARTS];
+        memset(start, 0, BRUNT_BIN_STARTS * sizeof *start);
+        int32_t *order = p->order + block->first;
+        int64_t *sorted = p->spare_id + block->first;
+        for (int32_t i = 0; i < block->count; i++) start[(p->key[order[i]] & 63) + 1]++;
+        for (int k = 0; k < BRUNT_BLOCK_NODES; k++) start[k + 1] += start[k];
+        memcpy(at, start, sizeof at);
+        for (int32_t i = 0; i < block->count; i++) sorted[at[p->key[order[i]] & 63]++] = order[i];
+        int32_t padded = (block->count + BRUNT_LANES - 1) / BRUNT_LANES * BRUNT_LANES;
+        for (int32_t i = 0; i < padded; i++) {
+            order[i] = (int32_t)sorted[i < block->count ? i : block->count - 1];
+            p->bin[block->first + i] = (uint8_t)(p->key[order[i]] & 63);
+        }
+    }
+}
+
+static void move_scalars(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    job *j = context;
+    brunt_particles *p = j->particles;
+    int first = j->group, last = first + BRUNT_SORT_GROUP;
+    if (last > p->scalar_count) last = p->scalar_count;
+    for (int k = first; k < last; k++) {
+        const real *restrict from = p->scalar[k];
+        real *restrict to = p->scalar[p->scalar_count + k - first];
+        const int32_t *restrict order = p->order;
+        for (int64_t s = begin; s < end; s++) to[s] = from[order[s]];
+    }
+}
+
+static void move_ids(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    job *j = context;
+    brunt_particles *p = j->particles;
+    real *mass = brunt_field(p, BRUNT_FIELD_mass)[0], *volume = brunt_field(p, BRUNT_FIELD_reference_volume)[0];
+    for (int64_t b = begin; b < end; b++) {
+        const brunt_block *block = &j->grid->blocks[b];
+        int32_t padded = (block->count + BRUNT_LANES - 1) / BRUNT_LANES * BRUNT_LANES;
+        for (int32_t i = 0; i < padded; i++) {
+            int64_t s = block->first + i;
+            p->spare_id[s] = i < block->count ? p->id[p->order[s]] : -1;
+            if (i >= block->count) mass[s] = volume[s] = 0;
+        }
+    }
+}
+
+static void set_keys(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    job *j = context;
+    for (int64_t b = begin; b < end; b++) {
+        const brunt_block *block = &j->grid->blocks[b];
+        for (int32_t i = 0; i < block->count; i++)
+            j->particles->key[block->first + i] = (uint64_t)b << 6 | j->particles->bin[block->first + i];
+    }
+}
+
+static int fail_place(const brunt_particles *p, int64_t s, brunt_error *error) {
+    real *const *x = p->scalar + p->field[BRUNT_FIELD_position].first;
+    double place[3] = {0, 0, 0};
+    bool finite = true;
+    for (int a = 0; a < p->dim; a++) place[a] = (double)x[a][s], finite = finite && isfinite(place[a]);
+    if (error) {
+        memcpy(error->place, place, sizeof place);
+        error->id = p->id[s];
+    }
+    return brunt_fail(error, BRUNT_FAILED,
+                      finite ? "the particle is more than four million cells away from the origin of the grid"
+                             : "the position is not a finite number");
+}
+
+// United set of the blocks that are alive and needed: those with particles now, and the missing ones.
+static int renew_blocks(job *j, int ranges, bool first) {
+    brunt_grid *grid = j->grid;
+    int64_t most = first ? 0 : grid->block_count;
+    for (int q = 0; q < ranges; q++) most += j->ranges[q].missing_count;
+    uint64_t *keys = brunt_alloc((size_t)(most + 1) * sizeof *keys);
+    if (!keys) return -1;
+    int64_t n = 0;
+    if (!first)
+        for (int32_t b = 0; b < grid->block_count; b++) keys[n++] = grid->block_key[b];
+    for (int q = 0; q < ranges; q++)
+        for (int64_t i = 0; i < j->ranges[q].missing_count; i++) keys[n++] = j->ranges[q].missing[i];
+    qsort(keys, (size_t)n, sizeof *keys, compare_keys);
+    int64_t unique = 0;
+    for (int64_t i = 0; i < n; i++)
+        if (!unique || keys[i] != keys[unique - 1]) keys[unique++] = keys[i];
+    int failed = brunt_grid_set_blocks(grid, keys, (int32_t)unique);
+    brunt_free(keys);
+    return failed;
+}
+
+// Blocks that have lost all their particles go; their number is rare and their presence would change no sum.
+static int drop_empty(brunt_grid *grid, const int64_t *total) {
+    int32_t kept = 0;
+    for (int32_t b = 0; b < grid->block_count; b++)
+        if (total[b]) grid->block_key[kept++] = grid->block_key[b];
+    return brunt_grid_set_blocks(grid, grid->block_key, kept);
+}
+
+static int sort_ranges(job *j, int ranges, int threads, double *seconds, brunt_error *error) {
+    brunt_grid *grid = j->grid;
+    brunt_particles *p = j->particles;
+    bool first = grid->block_count == 0;
+    int64_t *total = NULL;
+    for (;;) {  // until every particle's block is alive and every block has a particle: at most a few rounds
+        brunt_parallel(threads, ranges, 1, find_places, j, seconds);
+        bool moved = false, missing = false;
+        for (int q = 0; q < ranges; q++) {
+            if (j->ranges[q].bad >= 0) return fail_place(p, j->ranges[q].bad, error);
+            moved = moved || j->ranges[q].moved;
+            missing = missing || j->ranges[q].missing_count > 0;
+        }
+        if (j->out_of_memory) return brunt_fail(error, BRUNT_FAILED, "out of memory while sorting particles");
+        if (!moved && !first) return BRUNT_OK;
+        if (missing) {
+            if (renew_blocks(j, ranges, first)) return brunt_fail(error, BRUNT_FAILED, "out of memory for the grid");
+            first = true;  // ranks have changed: what the last sort stored no longer compares
+            continue;
+        }
+        for (int q = 0; q < ranges; q++) {
+            brunt_free(j->ranges[q].count);
+            j->ranges[q].count = brunt_alloc((size_t)grid->block_count * sizeof(int32_t));
+            if (!j->ranges[q].count) return brunt_fail(error, BRUNT_FAILED, "out of memory while sorting particles");
+        }
+        brunt_parallel(threads, ranges, 1, count_blocks, j, seconds);
+        brunt_free(total);
+        total = brunt_alloc((size_t)grid->block_count * sizeof *total);
+        if (!total) return brunt_fail(error, BRUNT_FAILED, "out of memory while sorting particles");
+        bool empty = false;
+        for (int32_t b = 0; b < grid->block_count; b++) {
+            for (int q = 0; q < ranges; q++) total[b] += j->ranges[q].count[b];
+            empty = empty || total[b] == 0;
+        }
+        if (!empty) break;
+        int failed = drop_empty(grid, total);
+        if (failed) {
+            brunt_free(total);
+            return brunt_fail(error, BRUNT_FAILED, "out of memory for the grid");
+        }
+        first = true;
+    }
+
+    int64_t slots = 0;
+    for (int32_t b = 0; b < grid->block_count; b++) {
+        grid->blocks[b].first = (int32_t)slots;
+        grid->blocks[b].count = (int32_t)total[b];
+        int32_t at = (int32_t)slots;
+        for (int q = 0; q < ranges; q++) {
+            int32_t here = j->ranges[q].count[b];
+            j->ranges[q].count[b] = at;
+            at += here;
+        }
+        slots += (total[b] + BRUNT_LANES - 1) / BRUNT_LANES * BRUNT_LANES;
+    }
+    brunt_free(total);
+
+    // The slab may grow, which moves the keys; they are still needed by the rounds below.
+    if (slots > p->capacity) {
+        size_t bytes = (size_t)p->slots * sizeof *p->key;
+        uint64_t *keys = brunt_alloc(bytes + 1);
+        if (keys) memcpy(keys, p->key, bytes);
+        if (!keys || brunt_particles_reserve(p, slots)) {
+            brunt_free(keys);
+            return brunt_fail(error, BRUNT_FAILED, "out of memory for particles");
+        }
+        memcpy(p->key, keys, bytes);
+        brunt_free(keys);
+    }
+    brunt_parallel(threads, ranges, 1, fill_blocks, j, seconds);
+    brunt_parallel(threads, grid->block_count, BLOCK_GRAIN, sort_blocks, j, seconds);
+    for (int first_scalar = 0; first_scalar < p->scalar_count; first_scalar += BRUNT_SORT_GROUP) {
+        j->group = first_scalar;
+        brunt_parallel(threads, slots, 8192, move_scalars, j, seconds);
+        for (int k = 0; k < BRUNT_SORT_GROUP && first_scalar + k < p->scalar_count; k++) {
+            real *t = p->scalar[first_scalar + k];
+            p->scalar[first_scalar + k] = p->scalar[p->scalar_count + k];
+            p->scalar[p->scalar_count + k] = t;
+        }
+    }
+    brunt_parallel(threads, grid->block_count, BLOCK_GRAIN, move_ids, j, seconds);
+    int64_t *t = p->id;
+    p->id = p->spare_id, p->spare_id = t;
+    p->slots = slots;
+    brunt_parallel(threads, grid->block_count, BLOCK_GRAIN, set_keys, j, seconds);
+    return BRUNT_OK;
+}
+
+int brunt_sort(brunt_grid *grid, brunt_particles *particles, int threads, double *seconds, brunt_error *error) {
+    int ranges = threads > 1 ? 4 * threads : 1;
+    if (particles->slots < 4096) ranges = 1;
+    job j = {.grid = grid, .particles = particles};
+    j.ranges = brunt_alloc((size_t)ranges * sizeof *j.ranges);
+    if (!j.ranges) return brunt_fail(error, BRUNT_FAILED, "out of memory while sorting particles");
+    for (int q = 0; q < ranges; q++) {
+        j.ranges[q].begin = particles->slots * q / ranges;
+        j.ranges[q].end = particles->slots * (q + 1) / ranges;
+    }
+    int status = sort_ranges(&j, ranges, threads, seconds, error);
+    for (int q = 0; q < ranges; q++) {
+        brunt_free(j.ranges[q].missing);
+        brunt_free(j.ranges[q].count);
+    }
+    brunt_free(j.ranges);
+    return status;
+}

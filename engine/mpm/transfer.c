@@ -1,0 +1,363 @@
+#include "transfer.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "lanes.h"
+#include "memory.h"
+#include "node.h"
+
+// ------------------------------------------------------------------------------------------ shared by all instances
+
+#define SYMMETRIC_INDEX(dim, r, c) ((r) == (c) ? (r) : (dim) == 2 ? 3 : (r) + (c) == 1 ? 3 : (r) + (c) == 3 ? 4 : 5)
+
+// B-spline weights (Steffen, Kirby and Berzins 2008) of the nodes from the base on, u cells past the base node:
+// u in [0,1) linear, [1/2,3/2) quadratic, [1,2) cubic.
+BRUNT_INLINE void kernel_weights(int order, lanes u, lanes *w) {
+    if (order == 1) {
+        w[0] = 1 - u, w[1] = u;
+    } else if (order == 2) {
+        lanes a = (real)1.5 - u, b = u - 1, c = u - (real)0.5;
+        w[0] = (real)0.5 * a * a, w[1] = (real)0.75 - b * b, w[2] = (real)0.5 * c * c;
+    } else {
+        lanes f = u - 1, e = 1 - f;
+        w[0] = e * e * e * (real)(1.0 / 6);
+        w[1] = (real)(2.0 / 3) + f * f * ((real)0.5 * f - 1);
+        w[2] = (real)(2.0 / 3) + e * e * ((real)0.5 * e - 1);
+        w[3] = f * f * f * (real)(1.0 / 6);
+    }
+}
+
+BRUNT_INLINE void kernel_slopes(int order, lanes u, real inv_h, lanes *g) {
+    if (order == 1) {
+        g[0] = lanes_set(-inv_h), g[1] = lanes_set(inv_h);
+    } else if (order == 2) {
+        g[0] = inv_h * (u - (real)1.5), g[1] = inv_h * -2 * (u - 1), g[2] = inv_h * (u - (real)0.5);
+    } else {
+        lanes f = u - 1, e = 1 - f;
+        g[0] = inv_h * (real)-0.5 * e * e;
+        g[1] = inv_h * f * ((real)1.5 * f - 2);
+        g[2] = inv_h * -e * ((real)1.5 * e - 2);
+        g[3] = inv_h * (real)0.5 * f * f;
+    }
+}
+
+// D = sum w (x_i - x)^2 of the kernel along one axis [m^2]; x relative to a node.
+BRUNT_INLINE lanes kernel_spread(int order, lanes x, real h, real inv_h) {
+    if (order == 2) return lanes_set(h * h * (real)0.25);
+    if (order == 3) return lanes_set(h * h * (real)(1.0 / 3));
+    lanes u = x * inv_h;
+    for (int l = 0; l < BRUNT_LANES; l++) u[l] -= (real)floor((double)u[l]);
+    return u * (1 - u) * h * h;
+}
+
+typedef struct scatter_arrays {
+    const real *x[3], *v[3], *C[9], *tau[6], *mass, *volume;
+    const uint8_t *bin;
+    const real *all[26]; int count;  // for the prefetches
+} scatter_arrays;
+
+static void scatter_arrays_of(brunt_body *body, scatter_arrays *f) {
+    brunt_particles *p = &body->particles;
+    f->count = 0;
+#define TAKE(to, field, n)                                                                                             \
+    for (int c = 0; c < (n); c++) f->all[f->count++] = (to)[c] = brunt_field(p, BRUNT_FIELD_##field)[c]
+    TAKE(f->x, position, p->dim);
+    TAKE(f->v, velocity, p->dim);
+    TAKE(f->C, affine, p->field[BRUNT_FIELD_affine].components);
+    TAKE(f->tau, kirchhoff_stress, BRUNT_SYMMETRIC(p->dim));
+    TAKE(&f->mass, mass, 1);
+    TAKE(&f->volume, reference_volume, 1);
+#undef TAKE
+    f->bin = p->bin;
+}
+
+// Bins ahead of the hardware's own prefetching, which follows fewer streams than there are arrays.
+BRUNT_INLINE void prefetch_scatter(const scatter_arrays *f, int64_t s) {
+    for (int k = 0; k < f->count; k++) __builtin_prefetch(f->all[k] + s + 6 * BRUNT_LANES, 0, 2);
+}
+
+// The bin's coordinate along an axis, as reals.
+BRUNT_INLINE lanes bin_coordinate(const uint8_t *bin, int dim, int axis) {
+    lanes r;
+    int shift = dim == 3 ? 4 - 2 * axis : 3 - 3 * axis, mask = dim == 3 ? 3 : 7;
+    for (int l = 0; l < BRUNT_LANES; l++) r[l] = (real)(bin[l] >> shift & mask);
+    return r;
+}
+
+// Velocities of the nodes that a block's bins touch: `width` reals a node, the new velocity first and, for a width of 8, the
+// old one from the fourth on.
+BRUNT_INLINE void load_window(const brunt_grid *grid, const brunt_block *block, real *window, int width, int dim, int order) {
+    const int side = dim == 3 ? 4 : 8, span = side + order;
+    for (int x = 0; x < span; x++)
+        for (int y = 0; y < span; y++) {
+            int corner = x >= side ? 1 : 0, cx = x - corner * side;
+            int beyond = y >= side ? 1 : 0, cy = y - beyond * side;
+            corner = corner * 2 + beyond;
+            if (dim == 2) {
+                const real *from = brunt_slot_nodes(grid, block->slot[corner]) + (cx * 8 + cy) * 8;
+                real *to = window + (x * span + y) * width;
+                node4_store(to, node4_load(from + BRUNT_NODE_VELOCITY));
+                if (width == 8) {
+                    node4_store(to + 3, node4_load(from + BRUNT_NODE_OLD));
+                }
+                continue;
+            }
+            for (int half = 0; half < 2; half++) {
+                const real *from = brunt_slot_nodes(grid, block->slot[corner * 2 + half]) + (cx * 4 + cy) * 4 * 8;
+                int n = half ? order : side;
+                real *to = window + ((x * span + y) * span + half * side) * width;
+                for (int z = 0; z < n; z++) {
+                    node4_store(to + z * width, node4_load(from + z * 8 + BRUNT_NODE_VELOCITY));
+                    if (width == 8) node4_store(to + z * width + 3, node4_load(from + z * 8 + BRUNT_NODE_OLD));
+                }
+            }
+        }
+}
+
+static void update_material(brunt_body *body, const brunt_block *block, real dt, brunt_workspace *work, real *const *gradient,
+                            brunt_block_report *report) {
+    int32_t padded = (block->count + BRUNT_LANES - 1) / BRUNT_LANES * BRUNT_LANES;
+    real speed[BRUNT_COMPONENTS] = {0};
+    const brunt_model *const *model = body->material.model;
+    for (int k = 0; k < BRUNT_COMPONENTS; k++) {
+        if (!model[k]) continue;
+        brunt_points points = brunt_body_points(body, (brunt_component)k, block->first, padded);
+        points.dt = dt;
+        for (int c = 0; c < BRUNT_MATRIX(points.dim); c++) points.L[c] = gradient[c];
+        points.plastic_increment = model[BRUNT_EOS] && model[BRUNT_STRENGTH]->plastic ? work->plastic : NULL;
+        points.viscous_pressure = model[BRUNT_EOS] && model[BRUNT_VISCOSITY] ? work->viscous : NULL;
+        brunt_update_result result = model[k]->update(body->material.constants[k], &points);
+        speed[k] = result.wave_speed;
+        if (result.bad >= 0 && report->bad < 0) {
+            report->bad = (int32_t)block->first + result.bad;
+            report->reason = result.reason;
+        }
+    }
+    report->wave_speed = brunt_wave_speed(speed[BRUNT_STRENGTH], speed[BRUNT_EOS], speed[BRUNT_VISCOSITY]);
+}
+
+// ------------------------------------------------------------------------------------------ instances
+
+#define DIM 2
+#define ORDER 1
+#define AFFINE 0
+#include "scatter.inc"
+#define DIM 2
+#define ORDER 1
+#define AFFINE 1
+#include "scatter.inc"
+#define DIM 2
+#define ORDER 2
+#define AFFINE 0
+#include "scatter.inc"
+#define DIM 2
+#define ORDER 2
+#define AFFINE 1
+#include "scatter.inc"
+#define DIM 2
+#define ORDER 3
+#define AFFINE 0
+#include "scatter.inc"
+#define DIM 2
+#define ORDER 3
+#define AFFINE 1
+#include "scatter.inc"
+#define DIM 3
+#define ORDER 1
+#define AFFINE 0
+#include "scatter.inc"
+#define DIM 3
+#define ORDER 1
+#define AFFINE 1
+#include "scatter.inc"
+#define DIM 3
+#define ORDER 2
+#define AFFINE 0
+#include "scatter.inc"
+#define DIM 3
+#define ORDER 2
+#define AFFINE 1
+#include "scatter.inc"
+#define DIM 3
+#define ORDER 3
+#define AFFINE 0
+#include "scatter.inc"
+#define DIM 3
+#define ORDER 3
+#define AFFINE 1
+#include "scatter.inc"
+
+#define DIM 2
+#define ORDER 1
+#define TRANSFER 0
+#include "gather.inc"
+#define DIM 2
+#define ORDER 1
+#define TRANSFER 1
+#include "gather.inc"
+#define DIM 2
+#define ORDER 1
+#define TRANSFER 2
+#include "gather.inc"
+#define DIM 2
+#define ORDER 2
+#define TRANSFER 0
+#include "gather.inc"
+#define DIM 2
+#define ORDER 2
+#define TRANSFER 1
+#include "gather.inc"
+#define DIM 2
+#define ORDER 2
+#define TRANSFER 2
+#include "gather.inc"
+#define DIM 2
+#define ORDER 3
+#define TRANSFER 0
+#include "gather.inc"
+#define DIM 2
+#define ORDER 3
+#define TRANSFER 1
+#include "gather.inc"
+#define DIM 2
+#define ORDER 3
+#define TRANSFER 2
+#include "gather.inc"
+#define DIM 3
+#define ORDER 1
+#define TRANSFER 0
+#include "gather.inc"
+#define DIM 3
+#define ORDER 1
+#define TRANSFER 1
+#include "gather.inc"
+#define DIM 3
+#define ORDER 1
+#define TRANSFER 2
+#include "gather.inc"
+#define DIM 3
+#define ORDER 2
+#define TRANSFER 0
+#include "gather.inc"
+#define DIM 3
+#define ORDER 2
+#define TRANSFER 1
+#include "gather.inc"
+#define DIM 3
+#define ORDER 2
+#define TRANSFER 2
+#include "gather.inc"
+#define DIM 3
+#define ORDER 3
+#define TRANSFER 0
+#include "gather.inc"
+#define DIM 3
+#define ORDER 3
+#define TRANSFER 1
+#include "gather.inc"
+#define DIM 3
+#define ORDER 3
+#define TRANSFER 2
+#include "gather.inc"
+
+brunt_scatter_fn *brunt_find_scatter(int dim, brunt_kernel kernel, brunt_transfer transfer) {
+    static brunt_scatter_fn *const table[2][3][2] = {{{scatter_2_1_0, scatter_2_1_1}, {scatter_2_2_0, scatter_2_2_1}, {scatter_2_3_0, scatter_2_3_1}},
+                                                     {{scatter_3_1_0, scatter_3_1_1}, {scatter_3_2_0, scatter_3_2_1}, {scatter_3_3_0, scatter_3_3_1}}};
+    return table[dim - 2][kernel - 1][transfer == BRUNT_APIC];
+}
+
+brunt_gather_fn *brunt_find_gather(int dim, brunt_kernel kernel, brunt_transfer transfer) {
+#define ORDERS(d)                                                                                                      \
+    {                                                                                                                  \
+        {gather_##d##_1_0, gather_##d##_1_1, gather_##d##_1_2}, {gather_##d##_2_0, gather_##d##_2_1, gather_##d##_2_2},  \
+            {gather_##d##_3_0, gather_##d##_3_1, gather_##d##_3_2}                                                       \
+    }
+    static brunt_gather_fn *const table[2][3][3] = {ORDERS(2), ORDERS(3)};
+#undef ORDERS
+    return table[dim - 2][kernel - 1][transfer];
+}
+
+// ------------------------------------------------------------------------------------------ workspace
+
+int brunt_workspace_fit(brunt_workspace *work, const brunt_grid *grid, int32_t most) {
+    int64_t stride = (most + 2 * BRUNT_LANES + 7) / 8 * 8 + 72;  // 9 cache lines apart, see brunt_particles_reserve
+    int n = grid->order + 1, arrays = (int)(sizeof work->out / sizeof work->out[0]) + 2;
+    int64_t window = ((int64_t)grid->span_nodes + 1) * 8;
+    int64_t planes = (int64_t)n * (grid->dim == 3 ? 16 * n * n : 8 * n) * 8;
+    size_t bytes = (size_t)(window + planes + arrays * stride + 64) * sizeof(real);
+    if (work->memory && work->capacity >= bytes && work->stride >= stride) return 0;
+    if (brunt_reserve(&work->memory, &work->capacity, bytes, 0)) return -1;
+    work->stride = stride;
+    work->window = work->memory;
+    work->planes = work->window + window;
+    real *at = work->planes + planes;
+    for (size_t k = 0; k < sizeof work->out / sizeof work->out[0]; k++, at += stride) work->out[k] = at;
+    work->plastic = at;
+    work->viscous = at + stride;
+    return 0;
+}
+
+void brunt_workspace_free(brunt_workspace *work) {
+    brunt_free(work->memory);
+    *work = (brunt_workspace){0};
+}
+
+// ------------------------------------------------------------------------------------------ point by point
+
+void brunt_kernel_weights(int order, double u, double weight[4]) {
+    lanes w[4] = {0};
+    kernel_weights(order, lanes_set((real)u), w);
+    for (int i = 0; i < 4; i++) weight[i] = i <= order ? (double)w[i][0] : 0.0;
+}
+
+void brunt_kernel_slopes(int order, double u, double slope[4]) {
+    lanes g[4] = {0};
+    kernel_slopes(order, lanes_set((real)u), 1, g);
+    for (int i = 0; i < 4; i++) slope[i] = i <= order ? (double)g[i][0] : 0.0;
+}
+
+// One serial pass in the order of the particles, summed in extended precision: the drift it measures is near rounding itself.
+brunt_audit brunt_body_audit(brunt_body *body) {
+    brunt_particles *p = &body->particles;
+    const int dim = p->dim;
+    const brunt_grid *grid = &body->grid;
+    real *const *x = brunt_field(p, BRUNT_FIELD_position), *const *v = brunt_field(p, BRUNT_FIELD_velocity);
+    real *const *C = brunt_field(p, BRUNT_FIELD_affine);
+    const real *mass = brunt_field(p, BRUNT_FIELD_mass)[0];
+    bool affine = p->field[BRUNT_FIELD_affine].components > 0;
+    long double total_mass = 0, kinetic = 0, linear[3] = {0}, angular[3] = {0}, centre[3] = {0}, scale_linear = 0, scale_angular = 0;
+    for (int64_t s = 0; s < p->slots; s++) {
+        if (p->id[s] < 0) continue;
+        double m = (double)mass[s], X[3] = {0}, V[3] = {0}, spin[3] = {0}, square = 0, B[3][3] = {{0}};
+        for (int k = 0; k < dim; k++) X[k] = (double)x[k][s], V[k] = (double)v[k][s], square += V[k] * V[k];
+        for (int k = 0; affine && k < dim; k++) {
+            double D = (double)kernel_spread(grid->order, lanes_set(x[k][s] - (real)grid->origin[k]), grid->h, grid->inv_h)[0];
+            for (int r = 0; r < dim; r++) {
+                double c = (double)C[r * dim + k][s];
+                B[r][k] = c * D;
+                square += c * c * D;
+            }
+        }
+        for (int k = 0; k < 3; k++) spin[k] = B[(k + 2) % 3][(k + 1) % 3] - B[(k + 1) % 3][(k + 2) % 3];
+        total_mass += m;
+        kinetic += 0.5 * m * square;
+        double size = 0;
+        for (int k = 0; k < 3; k++) {
+            int i = (k + 1) % 3, j = (k + 2) % 3;
+            linear[k] += m * V[k];
+            centre[k] += m * X[k];
+            angular[k] += m * (X[i] * V[j] - X[j] * V[i] + spin[k]);
+            size += X[k] * X[k];
+        }
+        scale_linear += m * sqrt(square);
+        scale_angular += m * sqrt(square * size);
+    }
+    brunt_audit a = {.mass = (double)total_mass, .kinetic = (double)kinetic, .scale_linear = (double)scale_linear, .scale_angular = (double)scale_angular};
+    for (int k = 0; k < 3; k++) {
+        a.linear[k] = (double)linear[k];
+        a.angular[k] = (double)angular[k];
+        a.centre[k] = total_mass > 0 ? (double)(centre[k] / total_mass) : 0;
+    }
+    return a;
+}

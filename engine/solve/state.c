@@ -1,0 +1,154 @@
+// The state of a world as named blocks of bytes, for checkpoints, and its hash.
+//
+// Particles are stored without padding in the order they lie in memory. That order is part of the state: sorting is
+// stable, so a restored world sorts them into the same places and every later sum has the same bits.
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "error.h"
+#include "hash.h"
+#include "lanes.h"
+#include "memory.h"
+#include "sort.h"
+#include "threads.h"
+#include "world.h"
+
+enum { WORLD_BLOCKS = 3 };
+static const char REAL_TYPE = sizeof(real) == 8 ? 'd' : 'f';
+
+// What block `index` is: of a body its ids (field -1) or a field; of the world (body NULL) number `field`.
+typedef struct place { brunt_body *body; int field; } place;
+
+static place find(brunt_world *world, int32_t index) {
+    for (int i = 0; i < world->body_count; i++) {
+        const brunt_particles *p = &world->bodies[i].particles;
+        if (index-- == 0) return (place){&world->bodies[i], -1};
+        for (int f = 0; f < p->field_count; f++)
+            if (p->field[f].components && index-- == 0) return (place){&world->bodies[i], f};
+    }
+    return (place){NULL, index};
+}
+
+int32_t brunt_state_count(brunt_world *world) {
+    int32_t n = WORLD_BLOCKS;
+    for (int i = 0; i < world->body_count; i++) {
+        const brunt_particles *p = &world->bodies[i].particles;
+        n++;
+        for (int f = 0; f < p->field_count; f++) n += p->field[f].components > 0;
+    }
+    return n;
+}
+
+// An action is a run of doubles.
+enum { ACTION_DOUBLES = sizeof(brunt_action) / sizeof(double) };
+enum { CLOCK_DOUBLES = sizeof(struct brunt_clock) / sizeof(double) };
+
+brunt_state_block brunt_state_info(brunt_world *world, int32_t index) {
+    brunt_state_block block = {.type = 'd'};
+    place at = find(world, index);
+    if (at.body) {
+        const brunt_particles *p = &at.body->particles;
+        block.type = at.field < 0 ? 'i' : REAL_TYPE;
+        block.count = p->count * (at.field < 0 ? 1 : p->field[at.field].components);
+        snprintf(block.name, sizeof block.name, "bodies/%s/%s", at.body->name, at.field < 0 ? "id" : p->field[at.field].name);
+        return block;
+    }
+    static const char *const names[WORLD_BLOCKS] = {"world/clock", "world/walls", "world/pairs"};
+    const int64_t counts[WORLD_BLOCKS] = {CLOCK_DOUBLES, 2 * (int64_t)world->wall_count * ACTION_DOUBLES,
+                                          2 * (int64_t)world->pair_count * ACTION_DOUBLES};
+    snprintf(block.name, sizeof block.name, "%s", names[at.field]);
+    block.count = counts[at.field];
+    return block;
+}
+
+void brunt_state_get(brunt_world *world, int32_t index, void *out) {
+    place at = find(world, index);
+    if (at.body) {
+        const brunt_particles *p = &at.body->particles;
+        int64_t n = 0;
+        int components = at.field < 0 ? 1 : p->field[at.field].components;
+        for (int c = 0; c < components; c++)
+            for (int64_t s = 0; s < p->slots; s++) {
+                if (p->id[s] < 0) continue;
+                if (at.field < 0) ((int64_t *)out)[n++] = p->id[s];
+                else ((real *)out)[n++] = p->scalar[p->field[at.field].first + c][s];
+            }
+        return;
+    }
+    double *to = out;
+    if (at.field == 0) memcpy(to, &world->now, sizeof world->now);
+    for (int w = 0; at.field == 1 && w < world->wall_count; w++, to += 2 * ACTION_DOUBLES) {
+        memcpy(to, &world->walls[w].action, sizeof(brunt_action));
+        memcpy(to + ACTION_DOUBLES, &world->walls[w].last, sizeof(brunt_action));
+    }
+    for (int p = 0; at.field == 2 && p < world->pair_count; p++, to += 2 * ACTION_DOUBLES) {
+        memcpy(to, &world->pairs[p].action, sizeof(brunt_action));
+        memcpy(to + ACTION_DOUBLES, &world->pairs[p].last, sizeof(brunt_action));
+    }
+}
+
+int brunt_state_set(brunt_world *world, int32_t index, const void *in, int64_t count, brunt_error *error) {
+    brunt_state_block block = brunt_state_info(world, index);
+    if (count != block.count)
+        return brunt_fail(error, BRUNT_BAD_INPUT, "%s holds %lld values, the scene needs %lld", block.name, (long long)count, (long long)block.count);
+    place at = find(world, index);
+    if (at.body) {
+        brunt_particles *p = &at.body->particles;
+        // From here on the body has no gaps; its grid is made anew by brunt_state_done.
+        for (int64_t s = 0; at.field < 0 && s < p->count; s++) {
+            int64_t id = ((const int64_t *)in)[s];
+            if (id < 0 || id >= p->count) return brunt_fail(error, BRUNT_BAD_INPUT, "%s holds an id out of range", block.name);
+            p->id[s] = id;
+        }
+        for (int c = 0; at.field >= 0 && c < p->field[at.field].components; c++)
+            memcpy(p->scalar[p->field[at.field].first + c], (const real *)in + (int64_t)c * p->count, (size_t)p->count * sizeof(real));
+        return BRUNT_OK;
+    }
+    const double *from = in;
+    if (at.field == 0) memcpy(&world->now, from, sizeof world->now);
+    for (int w = 0; at.field == 1 && w < world->wall_count; w++, from += 2 * ACTION_DOUBLES) {
+        memcpy(&world->walls[w].action, from, sizeof(brunt_action));
+        memcpy(&world->walls[w].last, from + ACTION_DOUBLES, sizeof(brunt_action));
+    }
+    for (int p = 0; at.field == 2 && p < world->pair_count; p++, from += 2 * ACTION_DOUBLES) {
+        memcpy(&world->pairs[p].action, from, sizeof(brunt_action));
+        memcpy(&world->pairs[p].last, from + ACTION_DOUBLES, sizeof(brunt_action));
+    }
+    return BRUNT_OK;
+}
+
+int brunt_state_done(brunt_world *world, brunt_error *error) {
+    for (int i = 0; i < world->body_count; i++) {
+        brunt_body *body = &world->bodies[i];
+        body->particles.slots = body->particles.count;
+        body->grid.block_count = 0;
+        body->grid.block_table.capacity = 0;
+        brunt_free(body->grid.block_table.key);
+        brunt_free(body->grid.block_table.value);
+        body->grid.block_table = (brunt_table){0};
+        int status = brunt_sort(&body->grid, &body->particles, world->threads, NULL, error);
+        if (status) return BRUNT_BAD_INPUT;
+    }
+    return BRUNT_OK;
+}
+
+uint64_t brunt_world_hash(const brunt_world *world) {
+    uint64_t sum = 0;
+    for (int i = 0; i < world->body_count; i++) {
+        const brunt_particles *p = &world->bodies[i].particles;
+        for (int64_t s = 0; s < p->slots; s++) {
+            if (p->id[s] < 0) continue;
+            uint64_t h = brunt_hash_add((uint64_t)i, (uint64_t)p->id[s]);
+            for (int k = 0; k < p->scalar_count; k++) {
+                uint64_t bits = 0;
+                memcpy(&bits, &p->scalar[k][s], sizeof(real));
+                h = brunt_hash_add(h, bits);
+            }
+            sum += h;
+        }
+    }
+    uint64_t bits;
+    memcpy(&bits, &world->now.time, sizeof bits);
+    return brunt_hash_add(sum, bits);
+}

@@ -1,0 +1,272 @@
+// The explicit step.
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "error.h"
+#include "lanes.h"
+#include "memory.h"
+#include "sort.h"
+#include "threads.h"
+#include "world.h"
+
+enum { SLOT_GRAIN = 8, BLOCK_GRAIN = 2, ENERGY_CHECK = 128 };
+
+void brunt_gravity_at(const brunt_world *world, double time, double gravity[3]) {
+    double share = world->gravity_ramp > 0 && time < world->gravity_ramp ? time / world->gravity_ramp : 1;
+    for (int a = 0; a < 3; a++) gravity[a] = a < world->dimension ? share * world->gravity[a] : 0;
+}
+
+double brunt_stable_step(const brunt_world *world) {
+    double inverse = 0, wall_speed = 0;
+    for (int w = 0; w < world->wall_count; w++) {
+        const double *v = world->walls[w].region ? world->walls[w].where.velocity : world->walls[w].plane.velocity;
+        wall_speed = fmax(wall_speed, sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
+    }
+    for (int i = 0; i < world->body_count; i++) {
+        const brunt_body *body = &world->bodies[i];
+        for (int32_t b = 0; b < body->grid.block_count; b++) {
+            const brunt_block_report *r = &body->report[b];
+            inverse = fmax(inverse, (double)r->wave_speed + fmax((double)r->speed, wall_speed));
+        }
+    }
+    return world->cfl * world->cell / inverse;
+}
+
+static void start_pass(brunt_world *world, int pass, double *start) {
+    world->pass[pass].calls++;
+    *start = brunt_clock();
+}
+static void end_pass(brunt_world *world, int pass, double start) { world->pass[pass].seconds += brunt_clock() - start; }
+
+static int fail(const brunt_world *world, const brunt_body *body, brunt_error *error, const char *reason) {
+    if (!error) return BRUNT_FAILED;
+    error->time = world->now.time;
+    if (body) memcpy(error->body, body->name, sizeof error->body < sizeof body->name ? sizeof error->body : sizeof body->name);
+    char where[256] = "";
+    if (body && error->id >= 0)
+        snprintf(where, sizeof where, "body '%s', particle %lld at (%.6g, %.6g, %.6g) m, ", body->name, (long long)error->id,
+                 error->place[0], error->place[1], error->place[2]);
+    else if (body)
+        snprintf(where, sizeof where, "body '%s', ", body->name);
+    return brunt_fail(error, BRUNT_FAILED, "%stime %.9g s, step %.0f: %s", where, world->now.time, world->now.steps, reason);
+}
+
+static int fail_particle(const brunt_world *world, brunt_body *body, int64_t slot, brunt_error *error, const char *reason) {
+    if (error) {
+        real *const *x = brunt_field(&body->particles, BRUNT_FIELD_position);
+        error->id = body->particles.id[slot];
+        for (int64_t s = slot; error->id < 0 && s >= 0; s--) error->id = body->particles.id[s];  // padding copies the last one
+        for (int a = 0; a < 3; a++) error->place[a] = a < world->dimension ? (double)x[a][slot] : 0;
+    }
+    return fail(world, body, error, reason);
+}
+
+// ------------------------------------------------------------------------------------------ passes
+
+typedef struct body_job { brunt_world *world; brunt_body *body; double dt; } body_job;
+
+static void scatter_blocks(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    const body_job *job = context;
+    for (int64_t b = begin; b < end; b++) job->world->scatter(job->body, (int32_t)b, (real)job->dt);
+}
+
+static void gather_blocks(void *context, int64_t begin, int64_t end, int worker) {
+    const body_job *job = context;
+    for (int64_t b = begin; b < end; b++)
+        job->world->gather(job->body, (int32_t)b, (real)job->dt, (real)job->world->flip, &job->world->work[worker]);
+}
+
+static int sort_bodies(brunt_world *world, brunt_error *error) {
+    for (int i = 0; i < world->body_count; i++) {
+        brunt_body *body = &world->bodies[i];
+        if (error) error->id = -1;
+        if (brunt_sort(&body->grid, &body->particles, world->threads, world->pass[BRUNT_PASS_sort].thread_seconds, error)) {
+            char reason[256];
+            snprintf(reason, sizeof reason, "%.250s", error ? error->message : "");
+            return fail(world, body, error, reason);
+        }
+        const brunt_grid *grid = &body->grid;
+        int32_t most = 0;
+        for (int32_t b = 0; b < grid->block_count; b++)
+            if (grid->blocks[b].count > most) most = grid->blocks[b].count;
+        size_t reports = (size_t)grid->block_count * sizeof *body->report, sums = (size_t)grid->slot_count * sizeof *world->node_sums;
+        if (brunt_reserve((void **)&body->report, &body->report_capacity, reports, 0) ||
+            brunt_reserve((void **)&world->node_sums, &world->node_sums_capacity, sums, 0))
+            return fail(world, body, error, "out of memory");
+        for (int t = 0; t < world->threads; t++)
+            if (brunt_workspace_fit(&world->work[t], grid, most)) return fail(world, body, error, "out of memory");
+    }
+    return BRUNT_OK;
+}
+
+static bool acts_on(const brunt_wall *wall, const brunt_body *body) { return wall->body < 0 || wall->body == body->index; }
+
+// Particles and forces to the grid, and the velocities there before anything else acts.
+static void make_grid_velocities(brunt_world *world, brunt_body *body, const double gravity[3], double dt) {
+    double start;
+    body_job job = {world, body, dt};
+    brunt_grid_job grid_job = {.body = body, .gravity = gravity, .dt = dt, .has_gravity = world->has_gravity};
+    start_pass(world, BRUNT_PASS_scatter, &start);
+    brunt_parallel(world->threads, body->grid.block_count, BLOCK_GRAIN, scatter_blocks, &job,
+                   world->pass[BRUNT_PASS_scatter].thread_seconds);
+    end_pass(world, BRUNT_PASS_scatter, start);
+
+    start_pass(world, BRUNT_PASS_grid, &start);
+    brunt_parallel(world->threads, body->grid.slot_count, SLOT_GRAIN, brunt_grid_sum, &grid_job,
+                   world->pass[BRUNT_PASS_grid].thread_seconds);
+    end_pass(world, BRUNT_PASS_grid, start);
+
+    if (world->mirror_count) {
+        start_pass(world, BRUNT_PASS_mirror, &start);
+        for (int m = 0; m < world->mirror_count; m++)
+            if (acts_on(&world->walls[world->mirrors[m].wall], body))
+                brunt_mirror_fold(body, &world->mirrors[m], &world->walls[world->mirrors[m].wall].last);
+        end_pass(world, BRUNT_PASS_mirror, start);
+    }
+
+    start_pass(world, BRUNT_PASS_update, &start);
+    brunt_parallel(world->threads, body->grid.slot_count, SLOT_GRAIN, brunt_grid_update, &grid_job,
+                   world->pass[BRUNT_PASS_update].thread_seconds);
+    end_pass(world, BRUNT_PASS_update, start);
+}
+
+static int constrain_grid_velocities(brunt_world *world, double dt, brunt_error *error) {
+    double start;
+    if (world->has_conditions) {
+        start_pass(world, BRUNT_PASS_conditions, &start);
+        for (int w = 0; w < world->wall_count; w++) {
+            brunt_wall *wall = &world->walls[w];
+            bool at_nodes = wall->region || (wall->mirror < 0 && wall->plane.condition != BRUNT_SEPARATE);
+            for (int i = 0; at_nodes && i < world->body_count; i++)
+                if (acts_on(wall, &world->bodies[i])) brunt_condition_apply(&world->bodies[i], wall, world->now.time, dt);
+        }
+        end_pass(world, BRUNT_PASS_conditions, start);
+    }
+    if (world->has_contact) {
+        start_pass(world, BRUNT_PASS_contact, &start);
+        if (brunt_multivelocity_apply(world->bodies, world->body_count, world->pairs, world->pair_count, world->pair_of, world->mirrors,
+                                      world->mirror_count, dt, world->threads, world->pass[BRUNT_PASS_contact].thread_seconds,
+                                      &world->contact_work))
+            return fail(world, NULL, error, "out of memory in the contact search");
+        end_pass(world, BRUNT_PASS_contact, start);
+    }
+    if (world->has_walls) {
+        start_pass(world, BRUNT_PASS_walls, &start);
+        for (int i = 0; i < world->body_count; i++)
+            if (brunt_walls_apply(&world->bodies[i], world->walls, world->wall_count, world->mirrors, world->mirror_count, world->now.time,
+                                  dt, &world->wall_work[i]))
+                return fail(world, &world->bodies[i], error, "out of memory at a wall");
+        end_pass(world, BRUNT_PASS_walls, start);
+    }
+    return BRUNT_OK;
+}
+
+// Kinetic energy that the grid has before and after the forces, and what gravity did.
+static void keep_ledger(brunt_world *world, const double gravity[3], double dt, double *old_kinetic, double *new_kinetic) {
+    double start;
+    start_pass(world, BRUNT_PASS_ledger, &start);
+    *old_kinetic = *new_kinetic = 0;
+    for (int i = 0; i < world->body_count; i++) {
+        brunt_body *body = &world->bodies[i];
+        brunt_grid_job job = {body, gravity, dt, world->has_gravity, world->node_sums};
+        brunt_parallel(world->threads, body->grid.slot_count, SLOT_GRAIN, brunt_grid_ledger, &job,
+                       world->pass[BRUNT_PASS_ledger].thread_seconds);
+        for (int32_t s = 0; s < body->grid.slot_count; s++) {
+            const brunt_node_sums *n = &world->node_sums[s];
+            *old_kinetic += n->old_kinetic;
+            *new_kinetic += n->new_kinetic;
+            world->now.gravity_work += n->gravity_work;
+            for (int a = 0; a < 3; a++) {
+                int k = (a + 1) % 3, l = (a + 2) % 3;
+                world->now.gravity_impulse[a] += dt * n->mass * gravity[a];
+                world->now.gravity_angular[a] += dt * (n->first_moment[k] * gravity[l] - n->first_moment[l] * gravity[k]);
+            }
+        }
+    }
+    for (int w = 0; w < world->wall_count; w++) brunt_action_add(&world->walls[w].action, &world->walls[w].last);
+    for (int p = 0; p < world->pair_count; p++) brunt_action_add(&world->pairs[p].action, &world->pairs[p].last);
+    end_pass(world, BRUNT_PASS_ledger, start);
+}
+
+static int gather_bodies(brunt_world *world, double dt, double *kinetic, brunt_error *error) {
+    double start;
+    start_pass(world, BRUNT_PASS_gather, &start);
+    *kinetic = 0;
+    brunt_body *bad_body = NULL;
+    int64_t bad = -1;
+    const char *reason = NULL;
+    for (int i = 0; i < world->body_count; i++) {
+        brunt_body *body = &world->bodies[i];
+        body_job job = {world, body, dt};
+        brunt_parallel(world->threads, body->grid.block_count, BLOCK_GRAIN, gather_blocks, &job,
+                       world->pass[BRUNT_PASS_gather].thread_seconds);
+        for (int32_t b = 0; b < body->grid.block_count; b++) {
+            *kinetic += body->report[b].kinetic;
+            if (body->report[b].bad >= 0 && !bad_body) bad_body = body, bad = body->report[b].bad, reason = body->report[b].reason;
+        }
+    }
+    end_pass(world, BRUNT_PASS_gather, start);
+    return bad_body ? fail_particle(world, bad_body, bad, error, reason) : BRUNT_OK;
+}
+
+// The step that is due: stable, not past the end, and exactly on `limit` when that comes first. The last stretch before
+// such a time is cut in two equal steps rather than a whole one and a sliver.
+static double choose_step(const brunt_world *world, double limit) {
+    double dt = world->fixed_step > 0 ? world->fixed_step : world->now.next_dt;
+    double stop = fmin(limit > world->now.time ? limit : INFINITY, world->end), left = stop - world->now.time;
+    if (dt >= left * (1 - 1e-9)) return left;
+    if (world->fixed_step <= 0 && 2 * dt > left) return 0.5 * left;
+    return dt;
+}
+
+int brunt_world_step(brunt_world *world, double limit, brunt_error *error) {
+    double dt = choose_step(world, limit), gravity[3], old_kinetic, new_kinetic, kinetic = 0;
+    double stable = world->now.next_dt / world->cfl;
+    if (error) *error = (brunt_error){.id = -1};
+    if (!(dt > 0)) return fail(world, NULL, error, "the end has been reached, there is no step to take");
+    if (world->fixed_step > 0 && dt > stable) {
+        char reason[160];
+        snprintf(reason, sizeof reason, "the fixed step of %.6g s is larger than the stable one, %.6g s", dt, stable);
+        return fail(world, NULL, error, reason);
+    }
+    if (world->now.time + dt == world->now.time) return fail(world, NULL, error, "the stable step has become too small to advance the time");
+    brunt_gravity_at(world, world->now.time + 0.5 * dt, gravity);
+    for (int w = 0; w < world->wall_count; w++) world->walls[w].last = (brunt_action){.external_work = 0};
+    for (int p = 0; p < world->pair_count; p++) world->pairs[p].last = (brunt_action){.external_work = 0};
+
+    double start;
+    start_pass(world, BRUNT_PASS_sort, &start);
+    int status = sort_bodies(world, error);
+    end_pass(world, BRUNT_PASS_sort, start);
+    if (status) return status;
+    for (int i = 0; i < world->body_count; i++) make_grid_velocities(world, &world->bodies[i], gravity, dt);
+    if ((status = constrain_grid_velocities(world, dt, error))) return status;
+    keep_ledger(world, gravity, dt, &old_kinetic, &new_kinetic);
+    status = gather_bodies(world, dt, &kinetic, error);
+
+    struct brunt_clock *now = &world->now;
+    now->transfer += now->kinetic - old_kinetic + new_kinetic - kinetic;
+    now->kinetic = kinetic;
+    double stop = fmin(limit > now->time ? limit : INFINITY, world->end);
+    now->time = dt == stop - now->time ? stop : now->time + dt;
+    now->steps += 1;
+    now->dt = dt;
+    now->dt_min = fmin(now->dt_min, dt);
+    now->dt_max = fmax(now->dt_max, dt);
+    if (status) return status;
+    now->next_dt = brunt_stable_step(world);
+    if (!isfinite(kinetic) || !isfinite(now->next_dt)) return fail(world, NULL, error, "the kinetic energy is not a finite number");
+    if ((int64_t)now->steps % ENERGY_CHECK == 0 && isfinite(world->energy_limit)) {
+        brunt_energy energy;
+        brunt_world_energy(world, &energy);
+        if (fabs(energy.error_relative) > world->energy_limit) {
+            char reason[200];
+            snprintf(reason, sizeof reason, "the energy error is %.3g %%, more than time.energy_limit (%.3g %%) allows",
+                     100 * energy.error_relative, 100 * world->energy_limit);
+            return fail(world, NULL, error, reason);
+        }
+    }
+    return BRUNT_OK;
+}

@@ -1,0 +1,360 @@
+// Making a world from its definition: bodies filled, conditions sorted out, the plan made.
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "definitions.h"
+#include "error.h"
+#include "fill.h"
+#include "lanes.h"
+#include "memory.h"
+#include "sort.h"
+#include "threads.h"
+#include "world.h"
+
+static const double ON_GRID_LINE = 1e-6;  // cells: how far off a mirror plane may be and still count as on the line
+static const double TOUCHING = 1e-6;      // spacings: bodies closer than that touch, they do not overlap
+
+// ------------------------------------------------------------------------------------------ definition
+
+static int check(const brunt_world_def *def, brunt_error *error) {
+#define REFUSE(...) return brunt_fail(error, BRUNT_BAD_INPUT, __VA_ARGS__)
+    if (def->cookie != brunt_world_def_default().cookie) REFUSE("the world's definition was not made by brunt_world_def_default");
+    if (def->dimension != 2 && def->dimension != 3) REFUSE("dimension: %d is neither 2 nor 3", def->dimension);
+    if (!(def->cell > 0) || !isfinite(def->cell)) REFUSE("grid.cell: %g m is not a positive length", def->cell);
+    if (def->kernel < BRUNT_LINEAR || def->kernel > BRUNT_CUBIC) REFUSE("grid.kernel: there is no kernel %d", (int)def->kernel);
+    if (def->transfer < BRUNT_PIC || def->transfer > BRUNT_APIC) REFUSE("grid.transfer: there is no transfer %d", (int)def->transfer);
+    if (!(def->flip >= 0 && def->flip <= 1)) REFUSE("grid.transfer.flip: %g is not between 0 and 1", def->flip);
+    if (!(def->cfl > 0 && def->cfl <= 1)) REFUSE("time.cfl: %g is not in (0, 1]", def->cfl);
+    if (!(def->step >= 0) || !isfinite(def->step)) REFUSE("time.step: %g s is not a positive time", def->step);
+    if (!(def->end > 0) || !isfinite(def->end)) REFUSE("time.end: %g s is not a positive time", def->end);
+    if (!(def->energy_limit > 0)) REFUSE("time.energy_limit: %g is not positive", def->energy_limit);
+    if (def->threads < 0 || def->threads > 256) REFUSE("threads: %d is not between 0 (all) and 256", def->threads);
+    if (def->body_count < 1) REFUSE("bodies: there is none");
+    if (!(def->contact.friction >= 0)) REFUSE("contact.friction: %g is negative", def->contact.friction);
+    for (int i = 0; i < def->body_count; i++) {
+        const brunt_body_def *body = &def->bodies[i];
+        if (!body->name[0]) REFUSE("bodies: body %d has no name", i + 1);
+        if (body->material < 0 || body->material >= def->material_count) REFUSE("bodies.%s.material: there is no material %d", body->name, body->material);
+        for (int k = 0; k < i; k++)
+            if (!strcmp(body->name, def->bodies[k].name)) REFUSE("bodies.%s: two bodies have this name", body->name);
+    }
+    return BRUNT_OK;
+}
+
+static int compare_names(const void *a, const void *b) {
+    return strcmp((*(const brunt_body_def *const *)a)->name, (*(const brunt_body_def *const *)b)->name);
+}
+
+static double lattice_spacing(const brunt_world_def *def, const brunt_body_def *body) {
+    int per_cell = body->particles_per_cell > 0 ? body->particles_per_cell : def->dimension == 3 ? 8 : 4;
+    return body->spacing > 0 ? body->spacing : def->cell / round(pow(per_cell, 1.0 / def->dimension));
+}
+
+// ------------------------------------------------------------------------------------------ bodies
+
+static void start_motion(const brunt_body_def *def, int dim, const double x[3], double v[3], double gradient[3][3]) {
+    double phase = def->wave_phase, r[3];
+    for (int a = 0; a < 3; a++) phase += def->wave_vector[a] * x[a], r[a] = x[a] - def->spin_about[a];
+    const double *w = def->spin;
+    const double turn[3][3] = {{0, -w[2], w[1]}, {w[2], 0, -w[0]}, {-w[1], w[0], 0}};
+    for (int a = 0; a < 3; a++) {
+        v[a] = def->velocity[a] + def->wave_velocity[a] * sin(phase);
+        for (int b = 0; b < dim; b++) {
+            v[a] += turn[a][b] * r[b];
+            gradient[a][b] = turn[a][b] + def->wave_velocity[a] * cos(phase) * def->wave_vector[b];
+        }
+    }
+}
+
+static int fill_body(const brunt_body_def *def, const brunt_filled *filled, brunt_body *body, brunt_error *error) {
+    brunt_particles *p = &body->particles;
+    const int dim = p->dim;
+    if (brunt_particles_reserve(p, filled->count)) return brunt_fail(error, BRUNT_FAILED, "bodies.%s: out of memory for %d particles", def->name, filled->count);
+    p->count = p->slots = filled->count;
+    real **x = brunt_field(p, BRUNT_FIELD_position), **v = brunt_field(p, BRUNT_FIELD_velocity), **C = brunt_field(p, BRUNT_FIELD_affine);
+    real **F = brunt_field(p, BRUNT_FIELD_deformation_gradient);
+    bool affine = p->field[BRUNT_FIELD_affine].components > 0, reach = p->field[BRUNT_FIELD_reach].components > 0;
+    for (int64_t s = 0; s < p->count; s++) {
+        double at[3] = {0}, speed[3], gradient[3][3] = {{0}};
+        for (int a = 0; a < dim; a++) at[a] = filled->position[a][s];
+        start_motion(def, dim, at, speed, gradient);
+        p->id[s] = s;
+        brunt_field(p, BRUNT_FIELD_mass)[0][s] = (real)(filled->volume * (double)body->material.density);
+        brunt_field(p, BRUNT_FIELD_reference_volume)[0][s] = (real)filled->volume;
+        if (reach) brunt_field(p, BRUNT_FIELD_reach)[0][s] = (real)filled->reach[s];
+        for (int a = 0; a < dim; a++) {
+            x[a][s] = (real)at[a];
+            v[a][s] = (real)speed[a];
+            for (int b = 0; b < dim; b++) {
+                F[a * dim + b][s] = a == b;
+                if (affine) C[a * dim + b][s] = (real)gradient[a][b];
+            }
+        }
+    }
+    for (int f = BRUNT_BASE_FIELDS; f < p->field_count; f++) {
+        const brunt_particle_field *field = &p->field[f];
+        const brunt_state_field *state = &field->model->state[field->state];
+        int component = 0;
+        while (body->material.model[component] != field->model) component++;
+        for (int c = 0; c < field->components; c++) {
+            real value = state->initial ? state->initial(body->material.constants[component], c) : 0;
+            if (!strcmp(state->name, "temperature") && def->temperature > 0) value = (real)def->temperature;
+            for (int64_t s = 0; s < p->count; s++) p->scalar[field->first + c][s] = value;
+        }
+    }
+    return BRUNT_OK;
+}
+
+// Deepest overlap of body `a`'s particles with shape `b` [m]; a particle's reach is material.
+static double overlap_depth(const brunt_filled *a, const brunt_body_def *b, int dim) {
+    double deepest = 0;
+    for (int32_t i = 0; i < a->count; i++) {
+        double local[3] = {0};
+        for (int k = 0; k < 3; k++)
+            for (int r = 0; r < 3; r++)
+                local[k] += b->place.rotation[3 * r + k] * ((r < dim ? a->position[r][i] : 0) - b->place.translation[r]);
+        deepest = fmax(deepest, a->reach[i] - brunt_shape_distance(&b->shape, dim, local));
+    }
+    return deepest;
+}
+
+static int make_bodies(brunt_world *world, const brunt_world_def *def, const brunt_body_def **order, brunt_error *error) {
+    const int n = def->body_count, dim = def->dimension;
+    brunt_filled *filled = brunt_alloc((size_t)n * sizeof *filled);
+    if (!filled) return brunt_fail(error, BRUNT_FAILED, "out of memory");
+    int status = BRUNT_OK;
+    double low[3] = {INFINITY, INFINITY, INFINITY};
+    for (int i = 0; i < n && !status; i++) {
+        status = brunt_fill_shape(order[i], dim, lattice_spacing(def, order[i]), &filled[i], error);
+        for (int32_t k = 0; !status && k < filled[i].count; k++)
+            for (int a = 0; a < dim; a++) low[a] = fmin(low[a], filled[i].position[a][k]);
+    }
+    for (int i = 0; i < n && !status && world->has_contact && !def->contact.allow_overlap; i++)
+        for (int k = 0; k < n && !status; k++) {
+            if (i == k || world->pair_of[i * n + k] < 0) continue;
+            double depth = overlap_depth(&filled[i], order[k], dim);
+            if (depth > TOUCHING * lattice_spacing(def, order[i]))
+                status = brunt_fail(error, BRUNT_BAD_INPUT,
+                                    "bodies.%s overlaps bodies.%s by %.4g m at the start; move one of them, or write contact.initial_overlap: allow",
+                                    order[i]->name, order[k]->name, depth);
+        }
+    // A grid far from the scene would waste the digits of the particles' places on it: it starts near them, whole cells away.
+    double origin[3] = {0};
+    for (int a = 0; a < dim; a++) {
+        double cells = status ? 0 : floor((low[a] - def->origin[a]) / def->cell);
+        origin[a] = def->origin[a] + (fabs(cells) > 1024 ? cells * def->cell : 0);
+    }
+    for (int i = 0; i < n && !status; i++) {
+        brunt_body *body = &world->bodies[i];
+        memcpy(body->name, order[i]->name, sizeof body->name);
+        body->index = i;
+        body->spacing = lattice_spacing(def, order[i]);
+        status = brunt_material_make(&def->materials[order[i]->material], &body->material, error);
+        if (status) break;
+        brunt_particle_needs needs = {.affine = def->transfer == BRUNT_APIC, .reach = world->has_contact || world->has_walls};
+        memcpy(needs.models, body->material.model, sizeof needs.models);
+        brunt_particles_init(&body->particles, dim, &needs);
+        brunt_grid_init(&body->grid, dim, (int)def->kernel, def->cell, origin);
+        status = fill_body(order[i], &filled[i], body, error);
+    }
+    for (int i = 0; i < n; i++) brunt_filled_free(&filled[i]);
+    brunt_free(filled);
+    return status;
+}
+
+// ------------------------------------------------------------------------------------------ conditions and contact
+
+static int find_body(const brunt_body_def **order, int n, const char *name) {
+    for (int i = 0; i < n; i++)
+        if (!strcmp(order[i]->name, name)) return i;
+    return -1;
+}
+
+// Index of the axis a plane is normal to, -1 when it is oblique.
+static int plane_axis(const brunt_plane_def *plane, int dim) {
+    for (int a = 0; a < dim; a++)
+        if (fabs(fabs(plane->normal[a]) - 1) < 1e-12) return a;
+    return -1;
+}
+
+static int make_plane(brunt_world *world, const brunt_world_def *def, int index, brunt_error *error) {
+    brunt_wall *wall = &world->walls[index];
+    brunt_plane_def *plane = &wall->plane;
+    double size = 0;
+    for (int a = 0; a < def->dimension; a++) size += plane->normal[a] * plane->normal[a];
+    if (!(size > 0) || !isfinite(size)) REFUSE("boundaries[%d].plane.normal: it has no direction", index);
+    for (int a = 0; a < 3; a++) plane->normal[a] = a < def->dimension ? plane->normal[a] / sqrt(size) : 0;
+    if (!(plane->friction >= 0)) REFUSE("boundaries[%d].friction: %g is negative", index, plane->friction);
+    bool moves = plane->velocity[0] != 0 || plane->velocity[1] != 0 || plane->velocity[2] != 0;
+    int axis = plane_axis(plane, def->dimension);
+    double at = axis < 0 ? 0 : (plane->point[axis] - def->origin[axis]) / def->cell;
+    bool on_line = axis >= 0 && !moves && fabs(at - round(at)) < ON_GRID_LINE;
+    if (plane->condition == BRUNT_SYMMETRY && !on_line)
+        REFUSE("boundaries[%d] (%s): a symmetry plane must stand still, be normal to an axis and lie on a grid line (cell %g m)", index, wall->name, def->cell);
+    if (on_line && (plane->condition == BRUNT_SYMMETRY || plane->condition == BRUNT_SLIP)) {
+        if (world->mirror_count == (int)(sizeof world->mirrors / sizeof world->mirrors[0])) REFUSE("boundaries: more than 16 symmetry and slip planes");
+        wall->mirror = world->mirror_count;
+        world->mirrors[world->mirror_count++] = (brunt_mirror){.axis = axis, .node = (int32_t)round(at), .wall = index};
+    } else if (plane->condition == BRUNT_SEPARATE) {
+        world->has_walls = true;
+        world->has_friction = world->has_friction || plane->friction > 0;
+    } else {
+        world->has_conditions = true;
+    }
+    return BRUNT_OK;
+}
+
+static int make_walls(brunt_world *world, const brunt_world_def *def, const brunt_body_def **order, brunt_error *error) {
+    world->wall_count = def->plane_count + def->region_count;
+    world->walls = brunt_alloc((size_t)(world->wall_count + 1) * sizeof *world->walls);
+    world->wall_work = brunt_alloc((size_t)def->body_count * sizeof(void *));
+    if (!world->walls || !world->wall_work) return brunt_fail(error, BRUNT_FAILED, "out of memory");
+    for (int w = 0; w < world->wall_count; w++) {
+        brunt_wall *wall = &world->walls[w];
+        wall->region = w >= def->plane_count;
+        wall->mirror = wall->body = -1;
+        if (wall->region) wall->where = def->regions[w - def->plane_count];
+        else wall->plane = def->planes[w];
+        const char *name = wall->region ? wall->where.name : wall->plane.name, *body = wall->region ? wall->where.body : wall->plane.body;
+        if (name[0]) memcpy(wall->name, name, sizeof wall->name);
+        else snprintf(wall->name, sizeof wall->name, "%s%d", wall->region ? "region" : "plane", w + 1);
+        if (body[0] && (wall->body = find_body(order, def->body_count, body)) < 0) REFUSE("boundaries (%s).body: there is no body '%s'", wall->name, body);
+        if (wall->region) world->has_conditions = true;
+        else {
+            int status = make_plane(world, def, w, error);
+            if (status) return status;
+        }
+    }
+    return BRUNT_OK;
+}
+
+static int make_pairs(brunt_world *world, const brunt_world_def *def, const brunt_body_def **order, brunt_error *error) {
+    const int n = def->body_count;
+    world->pair_of = brunt_alloc((size_t)n * (size_t)n * sizeof *world->pair_of);
+    world->pairs = brunt_alloc(((size_t)n * (size_t)n / 2 + 1) * sizeof *world->pairs);
+    if (!world->pair_of || !world->pairs) return brunt_fail(error, BRUNT_FAILED, "out of memory");
+    for (int i = 0; i < n; i++)
+        for (int k = 0; k < n; k++) world->pair_of[i * n + k] = -1;
+    for (int i = 0; i < n; i++)
+        for (int k = i + 1; k < n; k++) {
+            brunt_pair pair = {.a = i, .b = k, .method = def->contact.method, .friction = def->contact.friction};
+            for (int q = 0; q < def->contact.pair_count; q++) {
+                const brunt_pair_def *p = &def->contact.pairs[q];
+                int a = find_body(order, n, p->a), b = find_body(order, n, p->b);
+                if (a < 0 || b < 0 || a == b) REFUSE("contact.pairs[%d].between: '%s' and '%s' are not two bodies", q, p->a, p->b);
+                if ((a == i && b == k) || (a == k && b == i)) pair.method = p->method, pair.friction = p->friction;
+            }
+            if (pair.method == BRUNT_CONTACT_NONE) continue;
+            if (!(pair.friction >= 0)) REFUSE("contact.friction: %g is negative", pair.friction);
+            world->pair_of[i * n + k] = world->pair_of[k * n + i] = world->pair_count;
+            world->pairs[world->pair_count++] = pair;
+            world->has_contact = true;
+            world->has_friction = world->has_friction || pair.friction > 0;
+        }
+    return BRUNT_OK;
+}
+
+// ------------------------------------------------------------------------------------------ start
+
+static void first_reports(brunt_world *world) {
+    for (int i = 0; i < world->body_count; i++) {
+        brunt_body *body = &world->bodies[i];
+        real *const *v = brunt_field(&body->particles, BRUNT_FIELD_velocity);
+        for (int32_t b = 0; b < body->grid.block_count; b++) {
+            const brunt_block *block = &body->grid.blocks[b];
+            double fastest = 0;
+            for (int64_t s = block->first; s < block->first + block->count; s++) {
+                double square = 0;
+                for (int a = 0; a < world->dimension; a++) square += (double)(v[a][s] * v[a][s]);
+                fastest = fmax(fastest, square);
+            }
+            body->report[b] = (brunt_block_report){.speed = (real)sqrt(fastest), .wave_speed = body->material.wave_speed, .bad = -1};
+        }
+    }
+}
+
+static int start(brunt_world *world, brunt_error *error) {
+    for (int i = 0; i < world->body_count; i++) {
+        brunt_body *body = &world->bodies[i];
+        int status = brunt_sort(&body->grid, &body->particles, world->threads, NULL, error);
+        if (status) return status;
+        if (brunt_reserve((void **)&body->report, &body->report_capacity, (size_t)body->grid.block_count * sizeof *body->report, 0))
+            return brunt_fail(error, BRUNT_FAILED, "out of memory");
+    }
+    first_reports(world);
+    struct brunt_clock *now = &world->now;
+    now->next_dt = now->dt = brunt_stable_step(world);
+    if (world->fixed_step > 0) now->dt = world->fixed_step;
+    now->dt_min = INFINITY;
+    for (int i = 0; i < world->body_count; i++) {
+        brunt_audit a = brunt_body_audit(&world->bodies[i]);
+        now->initial_energy += a.kinetic + brunt_body_energy(&world->bodies[i]).internal;
+        now->initial_kinetic += a.kinetic;
+        now->scale_linear += a.scale_linear;
+        now->scale_angular += a.scale_angular;
+        for (int k = 0; k < 3; k++) now->linear_initial[k] += a.linear[k], now->angular_initial[k] += a.angular[k];
+    }
+    now->kinetic = now->initial_kinetic;
+    return BRUNT_OK;
+}
+
+brunt_world *brunt_world_create(const brunt_world_def *def, brunt_error *error) {
+    if (error) *error = (brunt_error){.id = -1};
+    if (check(def, error)) return NULL;
+    brunt_world *world = brunt_alloc(sizeof *world);
+    const brunt_body_def **order = brunt_alloc((size_t)def->body_count * sizeof *order);
+    if (!world || !order) {
+        brunt_free(world);
+        brunt_free(order);
+        brunt_fail(error, BRUNT_FAILED, "out of memory");
+        return NULL;
+    }
+    for (int i = 0; i < def->body_count; i++) order[i] = &def->bodies[i];
+    qsort(order, (size_t)def->body_count, sizeof *order, compare_names);
+
+    world->dimension = def->dimension;
+    world->threads = def->threads > 0 ? def->threads : brunt_threads_available();
+    if (world->threads > 256) world->threads = 256;
+    world->kernel = def->kernel, world->transfer = def->transfer;
+    world->flip = def->flip, world->cfl = def->cfl, world->fixed_step = def->step, world->end = def->end;
+    world->energy_limit = def->energy_limit, world->cell = def->cell, world->gravity_ramp = def->gravity_ramp;
+    memcpy(world->gravity, def->gravity, sizeof world->gravity);
+    for (int a = 0; a < def->dimension; a++) world->has_gravity = world->has_gravity || def->gravity[a] != 0;
+    world->scatter = brunt_find_scatter(def->dimension, def->kernel, def->transfer);
+    world->gather = brunt_find_gather(def->dimension, def->kernel, def->transfer);
+    world->body_count = def->body_count;
+    world->bodies = brunt_alloc((size_t)def->body_count * sizeof *world->bodies);
+
+    int status = world->bodies ? BRUNT_OK : brunt_fail(error, BRUNT_FAILED, "out of memory");
+    if (!status) status = make_walls(world, def, order, error);
+    if (!status) status = make_pairs(world, def, order, error);
+    if (!status) status = make_bodies(world, def, order, error);
+    for (int m = 0; !status && m < world->mirror_count; m++) {  // node numbers count from where the grid starts
+        int axis = world->mirrors[m].axis;
+        world->mirrors[m].node -= (int32_t)round((world->bodies[0].grid.origin[axis] - def->origin[axis]) / def->cell);
+    }
+    if (!status) status = start(world, error);
+    brunt_free(order);
+    if (!status) return world;
+    brunt_world_destroy(world);
+    return NULL;
+}
+
+void brunt_world_destroy(brunt_world *world) {
+    if (!world) return;
+    for (int i = 0; world->bodies && i < world->body_count; i++) {
+        brunt_body_free(&world->bodies[i]);
+        if (world->wall_work) brunt_wall_workspace_free(world->wall_work[i]);
+    }
+    for (size_t t = 0; t < sizeof world->work / sizeof world->work[0]; t++) brunt_workspace_free(&world->work[t]);
+    brunt_contact_workspace_free(world->contact_work);
+    brunt_free(world->wall_work);
+    brunt_free(world->bodies);
+    brunt_free(world->walls);
+    brunt_free(world->pairs);
+    brunt_free(world->pair_of);
+    brunt_free(world->node_sums);
+    brunt_free(world);
+}

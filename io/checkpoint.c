@@ -1,0 +1,332 @@
+#include "checkpoint.h"
+
+#include <libfyaml.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "atomic_file.h"
+#include "error.h"
+#include "hdf5_file.h"
+#include "memory.h"
+#include "real.h"
+
+enum { FORMAT = 1, DATASET_NAME = 128 };
+
+void brunt_run_state_free(brunt_run_state *state) {
+    brunt_free(state->picture_times);
+    state->picture_times = NULL;
+    state->picture_count = 0;
+}
+
+// ---------------------------------------------------------------------------------------------------- element types
+
+typedef struct element_type {
+    char letter;
+    const char *name;
+    size_t bytes;
+    H5T_class_t class;
+} element_type;
+
+static const element_type element_types[] = {{'d', "double", 8, H5T_FLOAT},
+                                             {'f', "float", 4, H5T_FLOAT},
+                                             {'i', "int64", 8, H5T_INTEGER},
+                                             {'b', "bytes", 1, H5T_INTEGER}};
+
+static const element_type *find_type(char letter) {
+    for (size_t t = 0; t < sizeof element_types / sizeof *element_types; t++)
+        if (element_types[t].letter == letter) return &element_types[t];
+    return NULL;
+}
+
+static hid_t file_type(char letter) {
+    return letter == 'd'   ? H5T_IEEE_F64LE
+           : letter == 'f' ? H5T_IEEE_F32LE
+           : letter == 'i' ? H5T_STD_I64LE
+                           : H5T_STD_U8LE;
+}
+
+static hid_t memory_type(char letter) {
+    return letter == 'd'   ? H5T_NATIVE_DOUBLE
+           : letter == 'f' ? H5T_NATIVE_FLOAT
+           : letter == 'i' ? H5T_NATIVE_INT64
+                           : H5T_NATIVE_UINT8;
+}
+
+// ---------------------------------------------------------------------------------------------------- writing
+
+static int put_state(hid_t file, brunt_world *world, const char *path, brunt_error *error) {
+    int32_t count = brunt_state_count(world);
+    for (int32_t b = 0; b < count; b++) {
+        brunt_state_block block = brunt_state_info(world, b);
+        const element_type *type = find_type(block.type);
+        BRUNT_ASSERT(type);
+        void *values = brunt_alloc(type->bytes * (size_t)block.count);
+        if (!values) return brunt_fail(error, BRUNT_FAILED, "out of memory while writing %s", path);
+        brunt_state_get(world, b, values);
+        char name[DATASET_NAME];
+        snprintf(name, sizeof name, "/state/%s", block.name);
+        bool ok =
+            brunt_hdf5_put(file, name, file_type(block.type), memory_type(block.type), (hsize_t)block.count, values);
+        brunt_free(values);
+        if (!ok) return brunt_fail(error, BRUNT_FAILED, "%s: HDF5 could not store the block '%s'", path, block.name);
+    }
+    return BRUNT_OK;
+}
+
+static bool put_run_state(hid_t file, brunt_world *world, const char *scene_text, const brunt_run_state *state) {
+    return brunt_hdf5_put_text(file, "version", BRUNT_VERSION) &&
+           brunt_hdf5_put_text(file, "precision", BRUNT_REAL_NAME) &&
+           brunt_hdf5_put_integer(file, "state_blocks", brunt_state_count(world)) &&
+           brunt_hdf5_put_integer(file, "step", brunt_world_steps(world)) &&
+           brunt_hdf5_put_integer(file, "particles", brunt_world_particles(world)) &&
+           brunt_hdf5_put_number(file, "time", brunt_world_time(world)) &&
+           brunt_hdf5_put_number(file, "wall_seconds", state->wall_seconds) &&
+           brunt_hdf5_put_number(file, "cpu_seconds", state->cpu_seconds) &&
+           brunt_hdf5_put_number(file, "step_seconds", state->step_seconds) &&
+           brunt_hdf5_put_number(file, "output_seconds", state->output_seconds) &&
+           brunt_hdf5_put_integer(file, "failed", state->failed) &&
+           brunt_hdf5_put_text(file, "reason", state->reason) &&
+           brunt_hdf5_put(file, "/picture_times", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, (hsize_t)state->picture_count,
+                          state->picture_times) &&
+           brunt_hdf5_put(file, "/scene", H5T_STD_U8LE, H5T_NATIVE_UINT8, (hsize_t)strlen(scene_text), scene_text);
+}
+
+int brunt_checkpoint_write(const char *path, const char *backup, brunt_world *world, const char *scene_text,
+                           const brunt_run_state *state, brunt_error *error) {
+    size_t expected = 65536 + strlen(scene_text) + sizeof(double) * (size_t)state->picture_count;
+    for (int32_t b = 0; b < brunt_state_count(world); b++) {
+        brunt_state_block block = brunt_state_info(world, b);
+        expected += 4096 + (size_t)block.count * (block.type == 'b' ? 1 : block.type == 'f' ? 4 : 8);
+    }
+    hid_t file = brunt_hdf5_create(expected);
+    if (file < 0) return brunt_fail(error, BRUNT_FAILED, "%s: HDF5 could not start the file", path);
+    int status = put_state(file, world, path, error);
+    if (!status && !put_run_state(file, world, scene_text, state))
+        status = brunt_fail(error, BRUNT_FAILED, "%s: HDF5 could not put the file together", path);
+    if (status) {
+        H5Fclose(file);
+        return status;
+    }
+    brunt_atomic_file out;
+    status = brunt_hdf5_write(file, "checkpoint", FORMAT, path, &out, error);
+    if (status) return status;
+    // All of the new one is on the disk now: the old one may lose its name.
+    status = brunt_keep_backup(path, backup, error);
+    if (status) {
+        brunt_atomic_abandon(&out);
+        return status;
+    }
+    return brunt_atomic_rename(&out, error);
+}
+
+// ---------------------------------------------------------------------------------------------------- the scene
+
+static void remove_key(struct fy_document *document, struct fy_node *map, const char *key) {
+    // Looked up first: libfyaml frees the key it is given only when it finds it.
+    if (fy_node_mapping_lookup_by_string(map, key, FY_NT))
+        fy_node_free(fy_node_mapping_remove_by_key(map, fy_node_build_from_string(document, key, FY_NT)));
+}
+
+// The scene less what may change between the sessions of a run, as block YAML; NULL when it is not YAML. Freed with
+// free().
+static char *comparable(const char *text) {
+    struct fy_parse_cfg quiet = {.flags = FYPCF_QUIET};
+    struct fy_document *document = fy_document_build_from_string(&quiet, text, FY_NT);
+    struct fy_node *root = document ? fy_document_root(document) : NULL;
+    char *out = NULL;
+    if (root && fy_node_is_mapping(root)) {
+        static const char *const free_keys[] = {"output", "measures", "title"};
+        for (size_t k = 0; k < sizeof free_keys / sizeof *free_keys; k++) remove_key(document, root, free_keys[k]);
+        struct fy_node *time = fy_node_by_path(root, "/time", FY_NT, FYNWF_DONT_FOLLOW);
+        if (time && fy_node_is_mapping(time)) remove_key(document, time, "end");
+        out = fy_emit_document_to_string(document, FYECF_MODE_BLOCK | FYECF_WIDTH_INF);
+    }
+    fy_document_destroy(document);
+    return out;
+}
+
+// First line of `a` and of `b` that differ, trimmed.
+static void first_difference(const char *a, const char *b, char line_a[160], char line_b[160]) {
+    size_t start = 0, i = 0;
+    for (; a[i] && a[i] == b[i]; i++)
+        if (a[i] == '\n') start = i + 1;
+    const char *const texts[] = {a + start, b + start};
+    char *const lines[] = {line_a, line_b};
+    for (int t = 0; t < 2; t++) {
+        const char *from = texts[t] + strspn(texts[t], " ");
+        size_t length = strcspn(from, "\n");
+        snprintf(lines[t], 160, "%.*s", (int)(length < 150 ? length : 150), length ? from : "(nothing)");
+    }
+}
+
+static int compare_scenes(const char *path, const char *stored, const char *wanted, brunt_error *error) {
+    char *a = comparable(stored), *b = comparable(wanted);
+    int status = BRUNT_OK;
+    const char *was = a ? a : stored, *is = b ? b : wanted;
+    if (strcmp(was, is)) {
+        char line_a[160], line_b[160];
+        first_difference(was, is, line_a, line_b);
+        status =
+            brunt_fail(error, BRUNT_BAD_INPUT,
+                       "%s: made from another scene: '%s' in the checkpoint, '%s' in the scene (only time.end, output, "
+                       "measures and title may change)",
+                       path, line_a, line_b);
+    }
+    free(a);
+    free(b);
+    return status;
+}
+
+// ---------------------------------------------------------------------------------------------------- reading
+
+// A whole dataset into new memory, with a zero after it. NULL when it is not there or of another type.
+static void *read_dataset(hid_t file, const char *name, char letter, int64_t *count) {
+    const element_type *wanted = find_type(letter);
+    hid_t set = H5Dopen2(file, name, H5P_DEFAULT);
+    if (set < 0) return NULL;
+    hid_t type = H5Dget_type(set), space = H5Dget_space(set);
+    void *values = NULL;
+    bool fits = type >= 0 && space >= 0 && H5Tget_class(type) == wanted->class && H5Tget_size(type) == wanted->bytes;
+    *count = fits ? (int64_t)H5Sget_simple_extent_npoints(space) : -1;
+    if (*count >= 0) values = brunt_alloc(wanted->bytes * (size_t)(*count + 1));
+    if (values && *count > 0 && H5Dread(set, memory_type(letter), H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0) {
+        brunt_free(values);
+        values = NULL;
+    }
+    if (space >= 0) H5Sclose(space);
+    if (type >= 0) H5Tclose(type);
+    H5Dclose(set);
+    return values;
+}
+
+static int read_run_state(hid_t file, const char *path, brunt_run_state *state, brunt_error *error) {
+    long long step = 0, failed = 0;
+    memset(state, 0, sizeof *state);
+    bool ok = brunt_hdf5_get_integer(file, "step", &step) && brunt_hdf5_get_integer(file, "failed", &failed) &&
+              brunt_hdf5_get_number(file, "time", &state->time) &&
+              brunt_hdf5_get_number(file, "wall_seconds", &state->wall_seconds) &&
+              brunt_hdf5_get_number(file, "cpu_seconds", &state->cpu_seconds) &&
+              brunt_hdf5_get_number(file, "step_seconds", &state->step_seconds) &&
+              brunt_hdf5_get_number(file, "output_seconds", &state->output_seconds) &&
+              brunt_hdf5_get_text(file, "reason", state->reason, sizeof state->reason);
+    if (ok) state->picture_times = read_dataset(file, "/picture_times", 'd', &state->picture_count);
+    if (!ok || !state->picture_times)
+        return brunt_fail(error, BRUNT_BAD_INPUT, "%s: the state of the run's outputs is missing", path);
+    state->step = step;
+    state->failed = failed != 0;
+    return BRUNT_OK;
+}
+
+static int check_header(hid_t file, const char *path, brunt_error *error) {
+    char version[64], precision[16];
+    if (!brunt_hdf5_get_text(file, "version", version, sizeof version) ||
+        !brunt_hdf5_get_text(file, "precision", precision, sizeof precision))
+        return brunt_fail(error, BRUNT_BAD_INPUT, "%s: version and precision are missing", path);
+    if (strcmp(version, BRUNT_VERSION))
+        return brunt_fail(error, BRUNT_BAD_INPUT,
+                          "%s: written by brunt %s, this is brunt %s; the same version is wanted", path, version,
+                          BRUNT_VERSION);
+    if (strcmp(precision, BRUNT_REAL_NAME))
+        return brunt_fail(error, BRUNT_BAD_INPUT, "%s: written in %s precision, this program computes in %s", path,
+                          precision, BRUNT_REAL_NAME);
+    return BRUNT_OK;
+}
+
+static int restore_state(hid_t file, const char *path, brunt_world *world, brunt_error *error) {
+    long long stored = -1;
+    int32_t count = brunt_state_count(world);
+    if (!brunt_hdf5_get_integer(file, "state_blocks", &stored) || stored != count)
+        return brunt_fail(error, BRUNT_BAD_INPUT, "%s: holds %lld state blocks, this scene has %d", path, stored,
+                          (int)count);
+    for (int32_t b = 0; b < count; b++) {
+        brunt_state_block block = brunt_state_info(world, b);
+        char name[DATASET_NAME];
+        snprintf(name, sizeof name, "/state/%s", block.name);
+        int64_t found = 0;
+        void *values = read_dataset(file, name, block.type, &found);
+        if (!values)
+            return brunt_fail(error, BRUNT_BAD_INPUT,
+                              "%s: the state block '%s' is missing, of another type than %s, or cannot be read", path,
+                              block.name, find_type(block.type)->name);
+        if (found != block.count) {
+            brunt_free(values);
+            return brunt_fail(error, BRUNT_BAD_INPUT, "%s: the state block '%s' holds %lld values, this scene has %lld",
+                              path, block.name, (long long)found, (long long)block.count);
+        }
+        int status = brunt_state_set(world, b, values, found, error);
+        brunt_free(values);
+        if (status) return status;
+    }
+    return brunt_state_done(world, error);
+}
+
+int brunt_checkpoint_read(const char *path, brunt_world *world, const char *scene_text, brunt_run_state *state,
+                          brunt_error *error) {
+    memset(state, 0, sizeof *state);
+    hid_t file;
+    int status = brunt_hdf5_open(path, "checkpoint", FORMAT, &file, error);
+    if (status) return status;
+    status = check_header(file, path, error);
+    if (!status) status = read_run_state(file, path, state, error);
+    if (!status && state->failed)
+        status = brunt_fail(error, BRUNT_BAD_INPUT,
+                            "%s: written where the computation failed (%.600s); it can be looked at, not resumed: "
+                            "put the checkpoint before it in its place",
+                            path, state->reason);
+    char *stored = NULL;
+    int64_t length;
+    if (!status) {
+        stored = read_dataset(file, "/scene", 'b', &length);
+        status = stored ? compare_scenes(path, stored, scene_text, error)
+                        : brunt_fail(error, BRUNT_BAD_INPUT, "%s: holds no scene", path);
+    }
+    brunt_free(stored);
+    if (!status) status = restore_state(file, path, world, error);
+    H5Fclose(file);
+    if (status) brunt_run_state_free(state);
+    return status;
+}
+
+// ---------------------------------------------------------------------------------------------------- describing
+
+static herr_t describe_block(hid_t root, const char *name, const H5O_info_t *info, void *context) {
+    if (info->type != H5O_TYPE_DATASET) return 0;
+    hid_t set = H5Dopen2(root, name, H5P_DEFAULT);
+    if (set < 0) return -1;
+    hid_t type = H5Dget_type(set), space = H5Dget_space(set);
+    const char *type_name = "unknown";
+    for (size_t t = 0; t < sizeof element_types / sizeof *element_types; t++)
+        if (element_types[t].bytes == H5Tget_size(type) && element_types[t].class == H5Tget_class(type))
+            type_name = element_types[t].name;
+    long long count = (long long)H5Sget_simple_extent_npoints(space);
+    fprintf(context, "%-56s %12lld x %-6s %12lld bytes\n", name, count, type_name,
+            count * (long long)H5Tget_size(type));
+    H5Sclose(space);
+    H5Tclose(type);
+    H5Dclose(set);
+    return 0;
+}
+
+int brunt_checkpoint_describe(const char *path, FILE *out, brunt_error *error) {
+    hid_t file;
+    int status = brunt_hdf5_open(path, "checkpoint", FORMAT, &file, error);
+    if (status) return status;
+    char version[64], precision[16];
+    long long particles = 0;
+    brunt_run_state state;
+    status = read_run_state(file, path, &state, error);
+    if (!status && brunt_hdf5_get_text(file, "version", version, sizeof version) &&
+        brunt_hdf5_get_text(file, "precision", precision, sizeof precision) &&
+        brunt_hdf5_get_integer(file, "particles", &particles)) {
+        fprintf(out, "checkpoint written by brunt %s in %s precision\n", version, precision);
+        fprintf(out,
+                "time       %.17g s\nstep       %lld\nparticles  %lld\npictures   %lld\nwall time  %.1f s so far\n",
+                state.time, (long long)state.step, particles, (long long)state.picture_count, state.wall_seconds);
+        if (state.failed) fprintf(out, "FAILED     %s\n", state.reason);
+        if (H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_NATIVE, describe_block, out, H5O_INFO_BASIC) < 0)
+            status = brunt_fail(error, BRUNT_BAD_INPUT, "%s: HDF5 cannot read the file", path);
+    }
+    brunt_run_state_free(&state);
+    H5Fclose(file);
+    return status;
+}

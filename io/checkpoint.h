@@ -1,0 +1,35 @@
+// Checkpoints: all a run needs to go on with the same bits, in one HDF5 file that is whole or not there.
+//
+// Contents: the world's state blocks under /state, the scene as resolved in /scene, the times of the pictures in
+// /picture_times, and version, precision, time, step and clocks as attributes. The checkpoint before is kept beside it.
+#pragma once
+
+#include <stdio.h>
+
+#include "brunt.h"
+
+// What the run adds to the world's state.
+typedef struct brunt_run_state {
+    double *picture_times; // [s] of the pictures so far; owned
+    int64_t picture_count;
+    double wall_seconds, cpu_seconds, step_seconds, output_seconds; // [s] spent so far, over all sessions of the run
+    bool failed; // written where the computation failed, to be looked at: it cannot be resumed
+    char reason[1024];
+    double time; // [s] of the world
+    int64_t step;
+} brunt_run_state;
+
+void brunt_run_state_free(brunt_run_state *state);
+
+// Writes `path`; a file already there is kept as `backup`.
+int brunt_checkpoint_write(const char *path, const char *backup, brunt_world *world, const char *scene_text,
+                           const brunt_run_state *state, brunt_error *error);
+
+// Restores a world made from the same scene: everything but time.end, output, measures and title must agree (the number
+// of threads is no part of a scene). Fills `state`, to be freed. BRUNT_BAD_INPUT, with what differs, when it cannot be
+// resumed.
+int brunt_checkpoint_read(const char *path, brunt_world *world, const char *scene_text, brunt_run_state *state,
+                          brunt_error *error);
+
+// Says what a checkpoint holds.
+int brunt_checkpoint_describe(const char *path, FILE *out, brunt_error *error);

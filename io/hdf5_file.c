@@ -1,0 +1,186 @@
+#include "hdf5_file.h"
+
+#include <errno.h>
+#include <string.h>
+#include <zlib.h>
+
+#include "error.h"
+#include "memory.h"
+
+// HDF5 prints its error stack unless told otherwise; the library never prints.
+static void silence(void) { H5Eset_auto2(H5E_DEFAULT, NULL, NULL); }
+
+hid_t brunt_hdf5_create(size_t bytes_expected) {
+    silence();
+    hid_t access = H5Pcreate(H5P_FILE_ACCESS), creation = H5Pcreate(H5P_FILE_CREATE), file = -1;
+    size_t increment = bytes_expected / 4 > 65536 ? bytes_expected / 4 : 65536;
+    // The 1.8 file format: its object headers have checksums, and unlike the later ones it holds no "open for writing"
+    // flag.
+    if (access >= 0 && creation >= 0 && H5Pset_fapl_core(access, increment, 0) >= 0 &&
+        H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18) >= 0 &&
+        H5Pset_userblock(creation, BRUNT_HDF5_USER_BLOCK) >= 0)
+        file = H5Fcreate("in memory", H5F_ACC_TRUNC, creation, access);
+    H5Pclose(access);
+    H5Pclose(creation);
+    return file;
+}
+
+int brunt_hdf5_write(hid_t file, const char *kind, int format, const char *path, brunt_atomic_file *out,
+                     brunt_error *error) {
+    void *handle = NULL;
+    hsize_t size = 0;
+    // The core driver's handle is the address of its buffer: written from there, no second copy is needed.
+    bool ready = H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0 && H5Fget_vfd_handle(file, H5P_DEFAULT, &handle) >= 0 &&
+                 H5Fget_filesize(file, &size) >= 0 && size > BRUNT_HDF5_USER_BLOCK;
+    if (!ready) {
+        H5Fclose(file);
+        return brunt_fail(error, BRUNT_FAILED, "%s: HDF5 could not put the file together", path);
+    }
+    const unsigned char *data = *(unsigned char **)handle;
+    size_t length = (size_t)size - BRUNT_HDF5_USER_BLOCK;
+    char block[BRUNT_HDF5_USER_BLOCK] = {0};
+    unsigned long sum = 0;
+    for (size_t at = 0; at < length; at += 1u << 30) {
+        size_t part = length - at < 1u << 30 ? length - at : 1u << 30;
+        sum = crc32(sum, data + BRUNT_HDF5_USER_BLOCK + at, (uInt)part);
+    }
+    snprintf(block, sizeof block, "brunt %s, format %d, %zu bytes of HDF5 follow this block of 512, CRC-32 %08lx\n",
+             kind, format, length, sum);
+    int status = brunt_atomic_open(out, path, error);
+    if (!status) {
+        status = brunt_atomic_write(out, block, sizeof block, error);
+        if (!status) status = brunt_atomic_write(out, data + BRUNT_HDF5_USER_BLOCK, length, error);
+        if (status)
+            brunt_atomic_abandon(out);
+        else
+            status = brunt_atomic_flush(out, error);
+    }
+    H5Fclose(file);
+    return status;
+}
+
+static bool parse_block(FILE *stream, char kind[32], int *format, size_t *length, unsigned long *sum) {
+    char block[BRUNT_HDF5_USER_BLOCK + 1] = {0};
+    if (fread(block, 1, BRUNT_HDF5_USER_BLOCK, stream) != BRUNT_HDF5_USER_BLOCK) return false;
+    return sscanf(block, "brunt %31[a-z], format %d, %zu bytes of HDF5 follow this block of 512, CRC-32 %8lx", kind,
+                  format, length, sum) == 4;
+}
+
+bool brunt_hdf5_kind(const char *path, char kind[32], int *format) {
+    FILE *stream = fopen(path, "rbe");
+    if (!stream) return false;
+    size_t length;
+    unsigned long sum;
+    bool ours = parse_block(stream, kind, format, &length, &sum);
+    fclose(stream);
+    return ours;
+}
+
+static int verify(FILE *stream, const char *path, const char *kind, int format, brunt_error *error) {
+    char found[32];
+    int found_format;
+    size_t length, got = 0;
+    unsigned long wanted, sum = 0;
+    if (!parse_block(stream, found, &found_format, &length, &wanted))
+        return brunt_fail(error, BRUNT_BAD_INPUT, "%s: not a brunt %s, or its beginning is damaged", path, kind);
+    if (strcmp(found, kind))
+        return brunt_fail(error, BRUNT_BAD_INPUT, "%s: this is a brunt %s, a %s is wanted", path, found, kind);
+    if (found_format != format)
+        return brunt_fail(error, BRUNT_BAD_INPUT, "%s: the file has format %d, this program reads format %d", path,
+                          found_format, format);
+    enum { PIECE = 1 << 20 };
+    unsigned char *piece = brunt_alloc(PIECE);
+    if (!piece) return brunt_fail(error, BRUNT_FAILED, "out of memory while reading %s", path);
+    for (size_t n; (n = fread(piece, 1, PIECE, stream)) > 0; got += n) sum = crc32(sum, piece, (uInt)n);
+    brunt_free(piece);
+    if (ferror(stream)) return brunt_fail(error, BRUNT_IO_ERROR, "%s: cannot read the file: %s", path, strerror(errno));
+    if (got < length)
+        return brunt_fail(error, BRUNT_BAD_INPUT, "%s: the file is cut short: %zu of its %zu bytes are there", path,
+                          got + BRUNT_HDF5_USER_BLOCK, length + BRUNT_HDF5_USER_BLOCK);
+    if (got > length || sum != wanted)
+        return brunt_fail(error, BRUNT_BAD_INPUT, "%s: the file is damaged: its checksum does not fit its contents",
+                          path);
+    return BRUNT_OK;
+}
+
+int brunt_hdf5_open(const char *path, const char *kind, int format, hid_t *file, brunt_error *error) {
+    silence();
+    *file = -1;
+    FILE *stream = fopen(path, "rbe");
+    if (!stream) return brunt_fail(error, BRUNT_IO_ERROR, "%s: cannot open the file: %s", path, strerror(errno));
+    int status = verify(stream, path, kind, format, error);
+    fclose(stream);
+    if (status) return status;
+    *file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+    if (*file < 0) return brunt_fail(error, BRUNT_BAD_INPUT, "%s: HDF5 cannot read the file", path);
+    return BRUNT_OK;
+}
+
+bool brunt_hdf5_put(hid_t file, const char *name, hid_t file_type, hid_t memory_type, hsize_t count,
+                    const void *values) {
+    hsize_t unlimited = H5S_UNLIMITED, size = H5Tget_size(file_type), chunk = (1u << 20) / (size ? size : 1);
+    if (chunk > count) chunk = count ? count : 1;
+    hid_t space = H5Screate_simple(1, &count, &unlimited);
+    hid_t creation = H5Pcreate(H5P_DATASET_CREATE), links = H5Pcreate(H5P_LINK_CREATE);
+    bool ok = space >= 0 && creation >= 0 && links >= 0 && H5Pset_chunk(creation, 1, &chunk) >= 0 &&
+              H5Pset_fletcher32(creation) >= 0 && H5Pset_create_intermediate_group(links, 1) >= 0;
+    hid_t set = ok ? H5Dcreate2(file, name, file_type, space, links, creation, H5P_DEFAULT) : -1;
+    ok = set >= 0 && (count == 0 || H5Dwrite(set, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0);
+    if (set >= 0) H5Dclose(set);
+    if (links >= 0) H5Pclose(links);
+    if (creation >= 0) H5Pclose(creation);
+    if (space >= 0) H5Sclose(space);
+    return ok;
+}
+
+static bool put_attribute(hid_t object, const char *name, hid_t file_type, hid_t memory_type, const void *value) {
+    hid_t space = H5Screate(H5S_SCALAR);
+    hid_t attribute = H5Acreate2(object, name, file_type, space, H5P_DEFAULT, H5P_DEFAULT);
+    bool ok = attribute >= 0 && H5Awrite(attribute, memory_type, value) >= 0;
+    if (attribute >= 0) H5Aclose(attribute);
+    if (space >= 0) H5Sclose(space);
+    return ok;
+}
+
+bool brunt_hdf5_put_text(hid_t object, const char *attribute, const char *text) {
+    hid_t type = H5Tcopy(H5T_C_S1);
+    bool ok =
+        type >= 0 && H5Tset_size(type, strlen(text) + 1) >= 0 && put_attribute(object, attribute, type, type, text);
+    if (type >= 0) H5Tclose(type);
+    return ok;
+}
+
+bool brunt_hdf5_put_number(hid_t object, const char *attribute, double value) {
+    return put_attribute(object, attribute, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &value);
+}
+
+bool brunt_hdf5_put_integer(hid_t object, const char *attribute, long long value) {
+    return put_attribute(object, attribute, H5T_STD_I64LE, H5T_NATIVE_LLONG, &value);
+}
+
+static bool get_attribute(hid_t object, const char *name, H5T_class_t kind, hid_t memory_type, void *value) {
+    hid_t attribute = H5Aopen(object, name, H5P_DEFAULT);
+    hid_t type = attribute >= 0 ? H5Aget_type(attribute) : -1, space = attribute >= 0 ? H5Aget_space(attribute) : -1;
+    bool ok = type >= 0 && space >= 0 && H5Tget_class(type) == kind && H5Sget_simple_extent_npoints(space) == 1 &&
+              H5Aread(attribute, memory_type, value) >= 0;
+    if (space >= 0) H5Sclose(space);
+    if (type >= 0) H5Tclose(type);
+    if (attribute >= 0) H5Aclose(attribute);
+    return ok;
+}
+
+bool brunt_hdf5_get_text(hid_t object, const char *attribute, char *text, size_t room) {
+    hid_t type = H5Tcopy(H5T_C_S1);
+    text[0] = 0;
+    bool ok = type >= 0 && H5Tset_size(type, room) >= 0 && get_attribute(object, attribute, H5T_STRING, type, text);
+    if (type >= 0) H5Tclose(type);
+    return ok;
+}
+
+bool brunt_hdf5_get_number(hid_t object, const char *attribute, double *value) {
+    return get_attribute(object, attribute, H5T_FLOAT, H5T_NATIVE_DOUBLE, value);
+}
+
+bool brunt_hdf5_get_integer(hid_t object, const char *attribute, long long *value) {
+    return get_attribute(object, attribute, H5T_INTEGER, H5T_NATIVE_LLONG, value);
+}

@@ -1,0 +1,37 @@
+// HDF5 files that are whole or not there, and whose damage is found before HDF5 looks at them.
+//
+// A file is built in memory by HDF5's core driver and then written by brunt_atomic_file: HDF5 itself never meets a full
+// disk (a failed close leaves it in a state it cannot leave). In front of the HDF5 data lies a user block of 512 bytes
+// with one line of text: what the file is, its format, the number of bytes after the block and their CRC-32. HDF5's own
+// tools skip it.
+#pragma once
+
+#include <hdf5.h>
+
+#include "atomic_file.h"
+
+enum { BRUNT_HDF5_USER_BLOCK = 512 };
+
+// Starts a file in memory; `bytes_expected` sets how much it grows at a time. Negative on failure.
+hid_t brunt_hdf5_create(size_t bytes_expected);
+// Flushes `file`, closes it whatever happens, and writes it to the name aside of `path` (brunt_atomic_rename makes it
+// final). `kind`: "checkpoint" or "history".
+int brunt_hdf5_write(hid_t file, const char *kind, int format, const char *path, brunt_atomic_file *out,
+                     brunt_error *error);
+
+// Verifies the user block and the CRC, then opens for reading. BRUNT_IO_ERROR: cannot be read; BRUNT_BAD_INPUT: of
+// another kind or format, cut short or damaged.
+int brunt_hdf5_open(const char *path, const char *kind, int format, hid_t *file, brunt_error *error);
+// Kind of a file by its user block into `kind`; false when it is none of ours.
+bool brunt_hdf5_kind(const char *path, char kind[32], int *format);
+
+// One-dimensional datasets, chunked, with a Fletcher-32 checksum, extendible; `name` may hold folders, which are made.
+// True on success.
+bool brunt_hdf5_put(hid_t file, const char *name, hid_t file_type, hid_t memory_type, hsize_t count,
+                    const void *values);
+bool brunt_hdf5_put_text(hid_t object, const char *attribute, const char *text);
+bool brunt_hdf5_put_number(hid_t object, const char *attribute, double value);
+bool brunt_hdf5_put_integer(hid_t object, const char *attribute, long long value);
+bool brunt_hdf5_get_text(hid_t object, const char *attribute, char *text, size_t room);
+bool brunt_hdf5_get_number(hid_t object, const char *attribute, double *value);
+bool brunt_hdf5_get_integer(hid_t object, const char *attribute, long long *value);

@@ -1,0 +1,282 @@
+#include "measures.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "error.h"
+#include "memory.h"
+
+// ---------------------------------------------------------------------------------------------------- history
+
+// Reduces the samples of a column within [from, to]. Times at the ends of the window count: output times carry
+// rounding.
+static double reduce_history(const brunt_measure *m, const double *time, const double *value, int64_t rows) {
+    double slack = 1e-9 * fmax(isfinite(m->from) ? fabs(m->from) : 0, isfinite(m->to) ? fabs(m->to) : 0);
+    int64_t first = 0, last = rows - 1;
+    while (first < rows && time[first] < m->from - slack) first++;
+    while (last >= 0 && time[last] > m->to + slack) last--;
+    if (first > last) return NAN;
+    int64_t count = last - first + 1;
+    double least = value[first], most = value[first];
+    for (int64_t r = first; r <= last; r++) {
+        if (isnan(value[r])) return NAN;
+        least = fmin(least, value[r]);
+        most = fmax(most, value[r]);
+    }
+    switch (m->take) {
+    case BRUNT_TAKE_END: return value[last];
+    case BRUNT_TAKE_INITIAL: return value[first];
+    case BRUNT_TAKE_MIN: return least;
+    case BRUNT_TAKE_MAX: return most;
+    case BRUNT_TAKE_MAX_ABS: return fmax(fabs(least), fabs(most));
+    case BRUNT_TAKE_MEAN: {
+        // Over time, by trapezoids: lines need not be evenly spaced.
+        if (time[last] == time[first]) return value[first];
+        double area = 0;
+        for (int64_t r = first; r < last; r++) area += 0.5 * (value[r] + value[r + 1]) * (time[r + 1] - time[r]);
+        return area / (time[last] - time[first]);
+    }
+    case BRUNT_TAKE_SLOPE: {
+        double t0 = 0, v0 = 0, tt = 0, tv = 0;
+        for (int64_t r = first; r <= last; r++) t0 += time[r] / (double)count, v0 += value[r] / (double)count;
+        for (int64_t r = first; r <= last; r++) {
+            tt += (time[r] - t0) * (time[r] - t0);
+            tv += (time[r] - t0) * (value[r] - v0);
+        }
+        return count > 1 ? tv / tt : NAN;
+    }
+    case BRUNT_TAKE_FIRST_NONZERO:
+        for (int64_t r = first; r <= last; r++)
+            if (value[r] != 0) return time[r];
+        return NAN;
+    case BRUNT_TAKE_LAST_NONZERO:
+        for (int64_t r = last; r >= first; r--)
+            if (value[r] != 0) return time[r];
+        return NAN;
+    }
+    return NAN;
+}
+
+// ---------------------------------------------------------------------------------------------------- particles
+
+static int32_t find_body(const brunt_world *world, const char *name) {
+    for (int32_t b = 0; b < brunt_body_count(world); b++)
+        if (!strcmp(brunt_body_name(world, b), name)) return b;
+    return -1;
+}
+
+// A field of a body in new memory.
+static int read_field(brunt_world *world, int32_t body, const char *name, const brunt_measure *m, double **out,
+                      int *components, brunt_error *error) {
+    int32_t field = brunt_body_find_field(world, body, name);
+    if (field < 0)
+        return brunt_fail(error, BRUNT_BAD_INPUT, "measures.%s: body '%s' has no field '%s'", m->name, m->body, name);
+    *components = brunt_body_field(world, body, field).components;
+    *out = brunt_alloc(sizeof(double) * (size_t)*components * (size_t)brunt_body_particles(world, body));
+    if (!*out) return brunt_fail(error, BRUNT_FAILED, "out of memory for measure '%s'", m->name);
+    brunt_body_read(world, body, field, *out);
+    return BRUNT_OK;
+}
+
+typedef struct particle_set {
+    int64_t count;
+    int dimension;
+    double *position, *gradient, *volume, *values;
+    int components;
+} particle_set;
+
+static void free_particles(particle_set *set) {
+    brunt_free(set->position);
+    brunt_free(set->gradient);
+    brunt_free(set->volume);
+    brunt_free(set->values);
+}
+
+static int read_particles(const brunt_measure *m, brunt_world *world, particle_set *set, brunt_error *error) {
+    memset(set, 0, sizeof *set);
+    int32_t body = find_body(world, m->body);
+    if (body < 0) return brunt_fail(error, BRUNT_BAD_INPUT, "measures.%s: there is no body '%s'", m->name, m->body);
+    set->count = brunt_body_particles(world, body);
+    set->dimension = brunt_world_dimension(world);
+    int components;
+    int status = read_field(world, body, "position", m, &set->position, &components, error);
+    if (m->kind == BRUNT_MEASURE_FIELD) {
+        if (!status) status = read_field(world, body, m->field, m, &set->values, &set->components, error);
+        if (!status && m->component >= set->components)
+            status = brunt_fail(error, BRUNT_BAD_INPUT, "measures.%s: component %d of '%s', which has %d", m->name,
+                                m->component, m->field, set->components);
+    } else {
+        if (!status) status = read_field(world, body, "deformation_gradient", m, &set->gradient, &components, error);
+        if (!status) status = read_field(world, body, "volume", m, &set->volume, &components, error);
+    }
+    if (status) free_particles(set);
+    return status;
+}
+
+static double determinant(const double F[9]) {
+    return F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) + F[2] * (F[3] * F[7] - F[4] * F[6]);
+}
+
+// Half the size of particle p along a unit direction n: a lattice cell of edge s deforms with F, and |F^T n| is the
+// stretch of what now lies along n. s from the reference volume (volume / det F).
+static double half_size(const particle_set *set, int64_t p, const double n[3]) {
+    const double *F = set->gradient + 9 * p;
+    double reference = set->volume[p] / determinant(F);
+    double spacing = set->dimension == 3 ? cbrt(reference) : sqrt(reference), square = 0;
+    for (int j = 0; j < 3; j++) {
+        double component = F[j] * n[0] + F[3 + j] * n[1] + F[6 + j] * n[2];
+        square += component * component;
+    }
+    return 0.5 * spacing * sqrt(square);
+}
+
+static bool unit_axis(const brunt_measure *m, double axis[3]) {
+    double length = sqrt(m->axis[0] * m->axis[0] + m->axis[1] * m->axis[1] + m->axis[2] * m->axis[2]);
+    for (int c = 0; c < 3; c++) axis[c] = length > 0 ? m->axis[c] / length : 0;
+    return length > 0;
+}
+
+static double extent(const brunt_measure *m, const particle_set *set) {
+    double axis[3], least = INFINITY, most = -INFINITY;
+    if (!unit_axis(m, axis)) return NAN;
+    for (int64_t p = 0; p < set->count; p++) {
+        const double *x = set->position + 3 * p;
+        double along = x[0] * axis[0] + x[1] * axis[1] + x[2] * axis[2], half = half_size(set, p, axis);
+        least = fmin(least, along - half);
+        most = fmax(most, along + half);
+    }
+    return set->count ? most - least : NAN;
+}
+
+static double radius(const brunt_measure *m, const particle_set *set) {
+    double axis[3], most = NAN;
+    bool has_axis = unit_axis(m, axis);
+    // In two dimensions an axis line may be out of the plane: a disk about its centre.
+    if (!has_axis) axis[2] = 1;
+    for (int64_t p = 0; p < set->count; p++) {
+        double r[3], along = 0, distance = 0;
+        for (int c = 0; c < 3; c++) {
+            r[c] = set->position[3 * p + c] - m->center[c];
+            along += r[c] * axis[c];
+        }
+        if (along < m->slab_min || along > m->slab_max) continue;
+        for (int c = 0; c < 3; c++) {
+            r[c] -= along * axis[c];
+            distance += r[c] * r[c];
+        }
+        distance = sqrt(distance);
+        for (int c = 0; c < 3; c++) r[c] = distance > 0 ? r[c] / distance : 0;
+        most = fmax(most, distance + half_size(set, p, r)); // fmax ignores the NAN it starts with
+    }
+    return most;
+}
+
+static double reduce_field(const brunt_measure *m, const particle_set *set) {
+    double axis[3], least = INFINITY, most = -INFINITY, sum = 0;
+    bool sliced = unit_axis(m, axis);
+    int64_t count = 0;
+    for (int64_t p = 0; p < set->count; p++) {
+        double along = 0, value = 0;
+        for (int c = 0; c < 3; c++) along += (set->position[3 * p + c] - m->center[c]) * axis[c];
+        if (sliced && (along < m->slab_min || along > m->slab_max)) continue;
+        const double *v = set->values + set->components * p;
+        if (m->component >= 0) {
+            value = v[m->component];
+        } else if (set->components == 1) {
+            value = v[0];
+        } else {
+            for (int c = 0; c < set->components; c++) value += v[c] * v[c] * (set->components == 6 && c >= 3 ? 2 : 1);
+            value = sqrt(value);
+        }
+        if (isnan(value)) return NAN;
+        least = fmin(least, value);
+        most = fmax(most, value);
+        sum += value;
+        count++;
+    }
+    if (!count) return NAN;
+    switch (m->take) {
+    case BRUNT_TAKE_MIN: return least;
+    case BRUNT_TAKE_MAX: return most;
+    case BRUNT_TAKE_MAX_ABS: return fmax(fabs(least), fabs(most));
+    case BRUNT_TAKE_MEAN: return sum / (double)count;
+    default: return NAN; // brunt_measure_check refuses the rest
+    }
+}
+
+static int take_particles(const brunt_measure *m, brunt_world *world, double *value, brunt_error *error) {
+    particle_set set;
+    int status = read_particles(m, world, &set, error);
+    if (status) return status;
+    *value = m->kind == BRUNT_MEASURE_EXTENT   ? extent(m, &set)
+             : m->kind == BRUNT_MEASURE_RADIUS ? radius(m, &set)
+                                               : reduce_field(m, &set);
+    free_particles(&set);
+    return BRUNT_OK;
+}
+
+// ---------------------------------------------------------------------------------------------------- public
+
+int brunt_measure_check(const brunt_measure *measure, const brunt_history *history, brunt_world *world,
+                        brunt_error *error) {
+    if (measure->kind != BRUNT_MEASURE_HISTORY) {
+        double unused;
+        if (measure->kind == BRUNT_MEASURE_FIELD && measure->take != BRUNT_TAKE_MIN &&
+            measure->take != BRUNT_TAKE_MAX && measure->take != BRUNT_TAKE_MAX_ABS && measure->take != BRUNT_TAKE_MEAN)
+            return brunt_fail(error, BRUNT_BAD_INPUT,
+                              "measures.%s: a field is reduced over particles by take: min, max, mean or max_abs",
+                              measure->name);
+        return brunt_measure_initial(measure, world, &unused, error);
+    }
+    if (brunt_history_column(history, measure->column)) return BRUNT_OK;
+    // Name the columns that begin alike ("body."), or the beginnings there are.
+    char names[700] = "";
+    size_t used = 0, group = strcspn(measure->column, ".");
+    for (int pass = 0; pass < 2 && used == 0; pass++)
+        for (int32_t c = 0; c < brunt_history_column_count(history); c++) {
+            const char *name = brunt_history_column_name(history, c);
+            int length = (int)strcspn(name, ".");
+            bool alike = (size_t)length == group && !strncmp(name, measure->column, group);
+            if (pass == 0 ? !alike
+                          : c > 0 && !strncmp(name, brunt_history_column_name(history, c - 1), (size_t)length + 1))
+                continue;
+            int wrote = snprintf(names + used, sizeof names - used, " %.*s", pass == 0 ? 200 : length, name);
+            if ((size_t)wrote >= sizeof names - used) break;
+            used += (size_t)wrote;
+        }
+    return brunt_fail(error, BRUNT_BAD_INPUT, "measures.%s: the history has no column '%s'; there are:%s",
+                      measure->name, measure->column, names);
+}
+
+int brunt_measure_initial(const brunt_measure *measure, brunt_world *world, double *initial, brunt_error *error) {
+    *initial = NAN;
+    return measure->kind == BRUNT_MEASURE_HISTORY ? BRUNT_OK : take_particles(measure, world, initial, error);
+}
+
+int brunt_measure_evaluate(const brunt_measure *measure, const brunt_history *history, brunt_world *world,
+                           double initial, brunt_measure_result *result, brunt_error *error) {
+    *result = (brunt_measure_result){.value = NAN, .error = NAN};
+    double value = NAN;
+    if (measure->kind == BRUNT_MEASURE_HISTORY) {
+        const double *column = brunt_history_column(history, measure->column);
+        if (!column)
+            return brunt_fail(error, BRUNT_BAD_INPUT, "measures.%s: the history has no column '%s'", measure->name,
+                              measure->column);
+        value = reduce_history(measure, brunt_history_column(history, "time"), column, brunt_history_rows(history));
+        initial = brunt_history_rows(history) ? column[0] : NAN;
+    } else {
+        int status = take_particles(measure, world, &value, error);
+        if (status) return status;
+    }
+    value -= measure->minus;
+    if (measure->relative_to_initial) value /= initial;
+    if (!isnan(measure->relative_to)) value /= measure->relative_to;
+    result->value = value;
+    if (isnan(measure->expect)) return BRUNT_OK;
+    double difference = fabs(value - measure->expect);
+    // A relative error needs something to be relative to.
+    result->error = measure->absolute || measure->expect == 0 ? difference : difference / fabs(measure->expect);
+    result->judged = !isnan(measure->tolerance);
+    result->ok = result->judged && result->error <= measure->tolerance;
+    return BRUNT_OK;
+}

@@ -1,0 +1,26 @@
+// Named results of a run: numbers taken from the history or from the particles at the end, judged against references.
+#pragma once
+
+#include "history.h"
+#include "scene.h"
+
+typedef struct brunt_measure_result {
+    double value; // in the measure's own (SI) unit; NAN when there was nothing to take it from
+    double error; // relative to the expectation, or absolute [unit] when the measure says so or the expectation is 0;
+                  // NAN without one
+    bool judged;  // an expectation with a tolerance is given
+    bool ok;      // judged and within the tolerance
+} brunt_measure_result;
+
+// Checks before the run that the history columns, bodies and fields a measure names exist. BRUNT_BAD_INPUT with the
+// names there are.
+int brunt_measure_check(const brunt_measure *measure, const brunt_history *history, brunt_world *world,
+                        brunt_error *error);
+
+// The value at the start of a measure that looks at particles (NAN for one that reads the history): the divisor of
+// `relative_to: initial`. To be called before the world has moved or been restored.
+int brunt_measure_initial(const brunt_measure *measure, brunt_world *world, double *initial, brunt_error *error);
+
+// Evaluates with history and world as they are. The value is (reduced - minus) / divisor.
+int brunt_measure_evaluate(const brunt_measure *measure, const brunt_history *history, brunt_world *world,
+                           double initial, brunt_measure_result *result, brunt_error *error);

@@ -1,0 +1,471 @@
+#include "run.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include "atomic_file.h"
+#include "checkpoint.h"
+#include "error.h"
+#include "measures.h"
+#include "memory.h"
+#include "progress.h"
+#include "pvd.h"
+#include "summary.h"
+#include "threads.h"
+#include "vtu.h"
+
+// An output time counts as reached within this relative distance: two series of times may differ by rounding where they
+// meet.
+static const double time_slack = 1e-12;
+
+typedef struct run {
+    const brunt_scene *scene;
+    const brunt_run_options *options;
+    char folder[BRUNT_PATH_LENGTH];
+    brunt_world *world;
+    brunt_history *history;
+    double *measure_initial;              // one a measure
+    char *scene_text;                     // as resolved; from the C library
+    brunt_run_state state;                // clocks hold what earlier sessions spent, plus output and steps of this one
+    size_t picture_capacity;              // [bytes]
+    double next_picture, next_history;    // [s] of the world
+    double session_start, session_output; // [s] of the clock, [s] written by this session
+    int64_t first_step;                   // of this session
+    double checkpoint_wall, history_wall, history_cost; // [s] when last written, [s] it took
+    brunt_console console;
+    bool told; // the mistakes have been printed
+} run;
+
+static int path_in(const run *r, const char *name, char out[BRUNT_PATH_LENGTH], brunt_error *error) {
+    return brunt_join_path(out, r->folder, name, error);
+}
+
+static double cpu_clock(void) {
+    struct rusage usage;
+    getrusage(RUSAGE_SELF, &usage);
+    return (double)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
+           1e-6 * (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
+}
+
+// ---------------------------------------------------------------------------------------------------- output times
+
+static bool reached(double time, double due) { return time >= due - time_slack * fabs(due); }
+
+// The first multiple of `every` after `time`. From the multiples, not by adding up, so that a resumed run meets the
+// same times.
+static double next_time(double time, double every) {
+    if (every == 0 || isinf(every)) return INFINITY;
+    double number = floor(time / every * (1 + time_slack) + 1e-9) + 1;
+    return number * every;
+}
+
+static void schedule(run *r) {
+    double time = brunt_world_time(r->world);
+    r->next_picture = next_time(time, r->scene->output.every);
+    r->next_history = next_time(time, r->scene->output.history);
+}
+
+// ---------------------------------------------------------------------------------------------------- writing
+
+static int write_picture(run *r, brunt_error *error) {
+    const brunt_output_def *output = &r->scene->output;
+    double time = brunt_world_time(r->world);
+    int64_t number = r->state.picture_count;
+    char path[BRUNT_PATH_LENGTH], name[128];
+    int status = BRUNT_OK;
+    for (int32_t b = 0; b < brunt_body_count(r->world) && !status; b++) {
+        brunt_picture_name(name, brunt_body_name(r->world, b), number);
+        status = path_in(r, name, path, error);
+        if (!status)
+            status = brunt_vtu_write_body(path, r->world, b, (const char(*)[64])output->fields, output->field_count,
+                                          output->float32, error);
+    }
+    if (status) return status;
+    void *memory = r->state.picture_times;
+    if (brunt_reserve(&memory, &r->picture_capacity, sizeof(double) * (size_t)(number + 1),
+                      sizeof(double) * (size_t)number))
+        return brunt_fail(error, BRUNT_FAILED, "out of memory after %lld pictures", (long long)number);
+    r->state.picture_times = memory;
+    r->state.picture_times[r->state.picture_count++] = time;
+    status = path_in(r, "brunt.pvd", path, error);
+    return status ? status : brunt_pvd_write(path, r->world, r->state.picture_times, r->state.picture_count, error);
+}
+
+static int write_history(run *r, brunt_error *error) {
+    char path[BRUNT_PATH_LENGTH];
+    int status = path_in(r, "history.h5", path, error);
+    double start = brunt_clock();
+    if (!status) status = brunt_history_write(r->history, path, error);
+    r->history_wall = brunt_clock();
+    r->history_cost = r->history_wall - start;
+    return status;
+}
+
+// The state with the clocks as of now.
+static brunt_run_state state_now(const run *r) {
+    brunt_run_state state = r->state;
+    state.wall_seconds += brunt_clock() - r->session_start;
+    state.cpu_seconds += cpu_clock();
+    return state;
+}
+
+// The history is written before: a checkpoint's lines are in the file whatever happens in between.
+static int write_checkpoint(run *r, const char *failure, brunt_error *error) {
+    char path[BRUNT_PATH_LENGTH], backup[BRUNT_PATH_LENGTH];
+    int status = write_history(r, error);
+    if (!status) status = path_in(r, "checkpoint.h5", path, error);
+    if (!status) status = path_in(r, "checkpoint.previous.h5", backup, error);
+    if (status) return status;
+    brunt_run_state state = state_now(r);
+    if (failure) {
+        state.failed = true;
+        snprintf(state.reason, sizeof state.reason, "%s", failure);
+    }
+    status = brunt_checkpoint_write(path, backup, r->world, r->scene_text, &state, error);
+    r->checkpoint_wall = brunt_clock();
+    return status;
+}
+
+static bool picture_is_here(const run *r) {
+    int64_t n = r->state.picture_count;
+    return n > 0 && r->state.picture_times[n - 1] == brunt_world_time(r->world);
+}
+
+static bool history_is_here(const run *r) {
+    int64_t n = brunt_history_rows(r->history);
+    return n > 0 && brunt_history_column(r->history, "time")[n - 1] == brunt_world_time(r->world);
+}
+
+// What is due after a step (or, with `last`, at the end). History first, then pictures, then the checkpoint that counts
+// them.
+static int write_outputs(run *r, bool last, brunt_error *error) {
+    const brunt_output_def *output = &r->scene->output;
+    double time = brunt_world_time(r->world), start = brunt_clock();
+    bool picture = reached(time, r->next_picture) || (last && !isinf(output->every));
+    bool history = output->history == 0 || reached(time, r->next_history) || last;
+    bool checkpoint = last || (output->checkpoint == 0 ? picture : start - r->checkpoint_wall >= output->checkpoint);
+    // The HDF5 history is rewritten as a whole: every half minute, or more rarely once that takes over a twentieth of
+    // the time.
+    bool save_history = start - r->history_wall >= fmax(30, 20 * r->history_cost);
+    int status = BRUNT_OK;
+    if (history && !history_is_here(r)) status = brunt_history_sample(r->history, r->world, error);
+    if (!status && picture && !picture_is_here(r)) status = write_picture(r, error);
+    if (!status && checkpoint)
+        status = write_checkpoint(r, NULL, error);
+    else if (!status && save_history)
+        status = write_history(r, error);
+    if (!status && r->console.log_failed)
+        status = brunt_fail(error, BRUNT_IO_ERROR, "%s/log.txt: cannot write the file", r->folder);
+    if (picture || history) schedule(r);
+    double spent = brunt_clock() - start;
+    r->state.output_seconds += spent;
+    r->session_output += spent;
+    return status;
+}
+
+// ---------------------------------------------------------------------------------------------------- before the first
+// step
+
+int brunt_run_check(const brunt_scene *scene, brunt_world *world, const brunt_history *history, FILE *messages,
+                    brunt_error *error) {
+    int mistakes = 0;
+    brunt_error found = {0};
+    for (int32_t f = 0; f < scene->output.field_count; f++) {
+        bool known = false;
+        for (int32_t b = 0; b < brunt_body_count(world); b++)
+            known |= brunt_body_find_field(world, b, scene->output.fields[f]) >= 0;
+        if (known) continue;
+        char names[700] = "";
+        size_t used = 0;
+        for (int32_t i = 0; brunt_body_count(world) > 0 && i < brunt_body_field_count(world, 0); i++) {
+            int wrote = snprintf(names + used, sizeof names - used, " %s", brunt_body_field(world, 0, i).name);
+            if ((size_t)wrote >= sizeof names - used) break;
+            used += (size_t)wrote;
+        }
+        brunt_fail(mistakes ? &found : error, BRUNT_BAD_INPUT, "output.fields: no body has a field '%s'; there are:%s",
+                   scene->output.fields[f], names);
+        if (messages) fprintf(messages, "%s: %s\n", scene->source, mistakes ? found.message : error->message);
+        mistakes++;
+    }
+    for (int32_t m = 0; m < scene->measure_count; m++) {
+        if (!brunt_measure_check(&scene->measures[m], history, world, mistakes ? &found : error)) continue;
+        if (messages) fprintf(messages, "%s: %s\n", scene->source, mistakes ? found.message : error->message);
+        mistakes++;
+    }
+    return mistakes ? BRUNT_BAD_INPUT : BRUNT_OK;
+}
+
+static int make_scene_text(run *r, brunt_error *error) {
+    size_t length;
+    FILE *stream = open_memstream(&r->scene_text, &length);
+    if (!stream) return brunt_fail(error, BRUNT_FAILED, "out of memory");
+    int status = brunt_scene_write(r->scene, stream);
+    if (fclose(stream) || status) return brunt_fail(error, BRUNT_FAILED, "the resolved scene could not be written");
+    return BRUNT_OK;
+}
+
+// Makes world, history and measures. Nothing on disk is touched.
+static int make_world(run *r, brunt_error *error) {
+    const brunt_scene *scene = r->scene;
+    brunt_error local = {0};
+    brunt_error *found = error ? error : &local;
+    r->world = brunt_world_create(&scene->world, found);
+    if (r->world) r->history = brunt_history_create(r->world, scene, found);
+    if (!r->world || !r->history) {
+        r->told = r->options->messages && found->code == BRUNT_BAD_INPUT;
+        if (r->told) fprintf(r->options->messages, "%s: %s\n", scene->source, found->message);
+        return found->code;
+    }
+    int status = brunt_run_check(scene, r->world, r->history, r->options->messages, found);
+    r->told = status != BRUNT_OK;
+    r->measure_initial = brunt_alloc(sizeof *r->measure_initial * (size_t)scene->measure_count);
+    if (!status && !r->measure_initial) status = brunt_fail(error, BRUNT_FAILED, "out of memory");
+    for (int32_t m = 0; m < scene->measure_count && !status; m++)
+        status = brunt_measure_initial(&scene->measures[m], r->world, &r->measure_initial[m], error);
+    return status ? status : make_scene_text(r, error);
+}
+
+static int restore(run *r, brunt_error *error) {
+    char path[BRUNT_PATH_LENGTH];
+    int status = path_in(r, "checkpoint.h5", path, error);
+    if (!status) status = brunt_checkpoint_read(path, r->world, r->scene_text, &r->state, error);
+    if (status) return status;
+    r->picture_capacity = sizeof(double) * (size_t)r->state.picture_count;
+    // The clocks of this process start now; those in the checkpoint are of the sessions before.
+    r->state.cpu_seconds -= cpu_clock();
+    status = path_in(r, "history.h5", path, error);
+    if (!status) status = brunt_history_load(r->history, path, brunt_world_steps(r->world), error);
+    if (status) return status;
+    double time = brunt_world_time(r->world), end = brunt_world_end(r->world);
+    if (!reached(end, time))
+        return brunt_fail(error, BRUNT_BAD_INPUT, "time.end is %g s, but the checkpoint in %s is of t = %g s", end,
+                          r->folder, time);
+    return BRUNT_OK;
+}
+
+static bool ends_with(const char *text, const char *ending) {
+    size_t n = strlen(text), m = strlen(ending);
+    return n >= m && !strcmp(text + n - m, ending);
+}
+
+// Removes files of a folder by their endings. What cannot be removed is found when it is written.
+static void remove_files(const char *folder, const char *const *endings, int count) {
+    DIR *directory = opendir(folder);
+    if (!directory) return;
+    for (struct dirent *entry; (entry = readdir(directory));)
+        for (int e = 0; e < count; e++)
+            if (ends_with(entry->d_name, endings[e])) unlinkat(dirfd(directory), entry->d_name, 0);
+    closedir(directory);
+}
+
+// Makes the folder ready: leftovers of a killed writer go; for a fresh run all files of the run before go too, once the
+// new scene has been written and so the folder is known to take files.
+static int prepare_folder(run *r, brunt_error *error) {
+    char path[BRUNT_PATH_LENGTH], pictures[BRUNT_PATH_LENGTH];
+    int status = path_in(r, "vtu", pictures, error);
+    if (!status) status = brunt_make_folder(pictures, error);
+    brunt_atomic_file file;
+    if (!status) status = path_in(r, "scene.yaml", path, error);
+    if (!status) status = brunt_atomic_open(&file, path, error);
+    if (status) return status;
+    fputs(r->scene_text, file.stream);
+    status = brunt_atomic_commit(&file, error);
+    if (status) return status;
+
+    static const char *const leftovers[] = {".h5.part",  ".pvd.part", ".json.part",
+                                            ".csv.part", ".vtu.part", ".yaml.part"};
+    remove_files(r->folder, leftovers, 6);
+    remove_files(pictures, leftovers, 6);
+    if (!r->options->resume) {
+        static const char *const names[] = {"brunt.pvd",   "summary.json",  "history.h5",
+                                            "history.csv", "checkpoint.h5", "checkpoint.previous.h5"};
+        static const char *const vtu[] = {".vtu"};
+        for (size_t n = 0; n < sizeof names / sizeof *names && !status; n++) {
+            status = path_in(r, names[n], path, error);
+            if (!status) unlink(path);
+        }
+        remove_files(pictures, vtu, 1);
+    }
+    if (!status) status = path_in(r, "log.txt", path, error);
+    if (status) return status;
+    r->console.log = fopen(path, r->options->resume ? "ae" : "we");
+    if (!r->console.log)
+        return brunt_fail(error, BRUNT_IO_ERROR, "%s: cannot open the file: %s", path, strerror(errno));
+    status = path_in(r, "history.csv", path, error);
+    return status ? status : brunt_history_open_csv(r->history, path, error);
+}
+
+static int write_first(run *r, brunt_error *error) {
+    double start = brunt_clock();
+    int status = brunt_history_sample(r->history, r->world, error);
+    if (!status && !isinf(r->scene->output.every)) status = write_picture(r, error);
+    // A first checkpoint: a run killed before the second can be resumed, and a disk too small for one is found now.
+    if (!status && !isinf(r->scene->output.checkpoint)) status = write_checkpoint(r, NULL, error);
+    double spent = brunt_clock() - start;
+    r->state.output_seconds += spent;
+    r->session_output += spent;
+    return status;
+}
+
+// ---------------------------------------------------------------------------------------------------- the end
+
+static int finish(run *r, const char *status_name, const char *reason, bool evaluate, brunt_error *error) {
+    const brunt_scene *scene = r->scene;
+    brunt_measure_result *results = NULL;
+    int status = BRUNT_OK;
+    if (evaluate) {
+        results = brunt_alloc(sizeof *results * (size_t)scene->measure_count);
+        if (!results) status = brunt_fail(error, BRUNT_FAILED, "out of memory");
+        for (int32_t m = 0; m < scene->measure_count && !status; m++)
+            status = brunt_measure_evaluate(&scene->measures[m], r->history, r->world, r->measure_initial[m],
+                                            &results[m], error);
+    }
+    brunt_run_state now = state_now(r);
+    brunt_summary summary = {.status = status_name,
+                             .reason = reason,
+                             .wall_seconds = now.wall_seconds,
+                             .cpu_seconds = now.cpu_seconds,
+                             .step_seconds = now.step_seconds,
+                             .output_seconds = now.output_seconds,
+                             .session_steps = brunt_world_steps(r->world) - r->first_step,
+                             .results = status ? NULL : results};
+    brunt_summary_print(&summary, scene, r->world, &r->console);
+    if (r->options->profile) {
+        brunt_summary session = summary;
+        session.output_seconds = r->session_output;
+        brunt_profile_print(&session, r->world, &r->console);
+    }
+    char path[BRUNT_PATH_LENGTH];
+    if (!status) status = path_in(r, "summary.json", path, error);
+    if (!status) status = brunt_summary_write(path, &summary, scene, r->world, error);
+    if (!status) brunt_console_print(&r->console, "results are in %s (open brunt.pvd in ParaView)\n", r->folder);
+    brunt_free(results);
+    return status;
+}
+
+// The failing state is kept to be looked at; what goes wrong here must not hide why the run failed.
+static void finish_failed(run *r, brunt_error *error) {
+    char reason[1600];
+    if (error->code == BRUNT_FAILED && error->body[0] && error->id >= 0)
+        snprintf(reason, sizeof reason, "%s (body '%s', particle %lld at [%.6g, %.6g, %.6g] m, t = %.9g s)",
+                 error->message, error->body, (long long)error->id, error->place[0], error->place[1], error->place[2],
+                 error->time);
+    else if (error->code == BRUNT_FAILED && error->body[0])
+        snprintf(reason, sizeof reason, "%s (body '%s', t = %.9g s)", error->message, error->body, error->time);
+    else
+        snprintf(reason, sizeof reason, "%s", error->message);
+    brunt_error second = {0};
+    if (error->code == BRUNT_FAILED) {
+        if (!picture_is_here(r) && write_picture(r, &second))
+            brunt_console_print(&r->console, "no picture of the failure: %s\n", second.message);
+        if (write_checkpoint(r, reason, &second))
+            brunt_console_print(&r->console, "no checkpoint of the failure: %s\n", second.message);
+    }
+    if (finish(r, "failed", reason, false, &second))
+        brunt_console_print(&r->console, "no summary: %s\n", second.message);
+    snprintf(error->message, sizeof error->message, "%.1000s", reason);
+}
+
+// ---------------------------------------------------------------------------------------------------- the loop
+
+static int serve_signals(run *r, brunt_error *error) {
+    const brunt_run_options *options = r->options;
+    bool stop = options->stop && *options->stop, save = options->save && *options->save;
+    if (!stop && !save) return BRUNT_OK;
+    if (save) *options->save = 0;
+    int status = write_checkpoint(r, NULL, error);
+    if (status) return status;
+    brunt_console_print(&r->console, "checkpoint at t = %.9g s, step %lld\n", brunt_world_time(r->world),
+                        (long long)brunt_world_steps(r->world));
+    return stop ? brunt_fail(error, BRUNT_STOPPED, "stopped by a signal at t = %.9g s; go on with --resume",
+                             brunt_world_time(r->world))
+                : BRUNT_OK;
+}
+
+static int loop(run *r, brunt_error *error) {
+    brunt_progress progress = brunt_progress_start(&r->console, r->world);
+    double end = brunt_world_end(r->world);
+    int status = BRUNT_OK;
+    while (!status && !reached(brunt_world_time(r->world), end)) {
+        status = serve_signals(r, error);
+        if (status) break;
+        double start = brunt_clock();
+        status = brunt_world_step(r->world, fmin(r->next_picture, r->next_history), error);
+        r->state.step_seconds += brunt_clock() - start;
+        if (!status) status = write_outputs(r, false, error);
+        if (!status) brunt_progress_update(&progress, r->world);
+    }
+    brunt_progress_end(&progress);
+    return status ? status : write_outputs(r, true, error);
+}
+
+static int run_made(run *r, brunt_error *error) {
+    int status = r->options->resume ? restore(r, error) : BRUNT_OK;
+    if (!status) status = prepare_folder(r, error);
+    if (status) return status;
+    r->checkpoint_wall = r->history_wall = brunt_clock();
+    r->first_step = brunt_world_steps(r->world);
+    if (r->options->resume) {
+        brunt_console_print(&r->console, "resumed at t = %.9g s, step %lld\n", brunt_world_time(r->world),
+                            (long long)brunt_world_steps(r->world));
+        // Pictures later than the checkpoint are no part of the collection any more.
+        char path[BRUNT_PATH_LENGTH];
+        status = path_in(r, "brunt.pvd", path, error);
+        if (!status && r->state.picture_count)
+            status = brunt_pvd_write(path, r->world, r->state.picture_times, r->state.picture_count, error);
+    } else {
+        brunt_console_print(&r->console, "%s: %lld particles, to t = %g s, into %s\n", r->scene->name,
+                            (long long)brunt_world_particles(r->world), brunt_world_end(r->world), r->folder);
+        status = write_first(r, error);
+    }
+    schedule(r);
+    if (!status) status = loop(r, error);
+    if (status == BRUNT_OK) {
+        char reason[64];
+        snprintf(reason, sizeof reason, "reached t = %.9g s", brunt_world_time(r->world));
+        return finish(r, "done", reason, true, error);
+    }
+    if (status == BRUNT_STOPPED) {
+        brunt_error second = {0};
+        int written = finish(r, "stopped", error->message, false, &second);
+        if (written) *error = second;
+        return written ? written : status;
+    }
+    error->code = status;
+    finish_failed(r, error);
+    return status;
+}
+
+int brunt_run(const brunt_scene *scene, const brunt_run_options *options, brunt_error *error) {
+    brunt_error local = {0};
+    if (!error) error = &local;
+    memset(error, 0, sizeof *error);
+    error->id = -1;
+    run *r = brunt_alloc(sizeof *r);
+    if (!r) return brunt_fail(error, BRUNT_FAILED, "out of memory");
+    r->scene = scene;
+    r->options = options;
+    r->session_start = brunt_clock();
+    r->console = brunt_console_open(options->console);
+    int status = options->folder ? brunt_join_path(r->folder, options->folder, "", error)
+                                 : brunt_join_path(r->folder, "out", scene->name, error);
+    size_t length = strlen(r->folder);
+    if (length > 1 && r->folder[length - 1] == '/') r->folder[length - 1] = 0;
+    if (!status) status = make_world(r, error);
+    if (!status) status = run_made(r, error);
+    if (status == BRUNT_BAD_INPUT && options->messages && !r->told) fprintf(options->messages, "%s\n", error->message);
+    if (r->console.log) fclose(r->console.log);
+    brunt_run_state_free(&r->state);
+    brunt_history_destroy(r->history);
+    brunt_world_destroy(r->world);
+    brunt_free(r->measure_initial);
+    free(r->scene_text);
+    brunt_free(r);
+    error->code = status;
+    return status;
+}

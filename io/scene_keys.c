@@ -1,0 +1,249 @@
+// Every key of a scene, one row each.
+#include "scene_keys.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#define ANY -INFINITY, INFINITY, true, true
+#define POSITIVE 0, INFINITY, true, true
+#define NOT_NEGATIVE 0, INFINITY, false, true
+#define NONE ANY, NULL, 0, false
+#define OPTIONAL ""
+#define REQUIRED NULL
+
+#define SIGNALS "end|initial|min|max|mean|slope|first_nonzero|last_nonzero|max_abs"
+
+// clang-format off
+const scene_key brunt_scene_table[] = {
+    {"brunt", SCENE_INTEGER, NULL, REQUIRED, 1, 1, false, false, NULL, 0, false, "version of the scene format: 1"},
+    {"title", SCENE_TEXT, NULL, "''", NONE, "one line on what the scene is"},
+    {"dimension", SCENE_INTEGER, NULL, "3", 2, 3, false, false, NULL, 0, false, "3, or 2: plane strain of unit thickness"},
+
+    {"time", SCENE_GROUP, NULL, REQUIRED, NONE, "how long, and in which steps"},
+    {"time.end", SCENE_REAL, "s", REQUIRED, POSITIVE, NULL, 0, false, "the run ends exactly there"},
+    {"time.scheme", SCENE_WORD, NULL, "explicit", ANY, "explicit", 0, false, "time integration"},
+    {"time.cfl", SCENE_REAL, "1", "0.5", 0, 1, true, false, NULL, 0, true, "time step as a share of the stable one; not with step"},
+    {"time.step", SCENE_REAL, "s", OPTIONAL, POSITIVE, NULL, 0, false, "fixed time step; not with cfl"},
+    {"time.energy_limit", SCENE_REAL, "1", "0.1", 0, INFINITY, true, true, "none", 0, false, "the run stops when the relative energy error passes it"},
+
+    {"grid", SCENE_GROUP, NULL, REQUIRED, NONE, "the grid that forces are computed on; it has no bounds"},
+    {"grid.cell", SCENE_REAL, "m", REQUIRED, POSITIVE, NULL, 0, false, "edge of a cell"},
+    {"grid.origin", SCENE_VECTOR, "m", "0", NONE, "a point where a grid node lies"},
+    {"grid.kernel", SCENE_WORD, NULL, "quadratic", ANY, "linear|quadratic|cubic", 0, false, "B-spline that links particles to nodes"},
+    {"grid.transfer", SCENE_WORD, NULL, "apic", ANY, "pic|flip|apic", 0, false, "velocity transfer; {flip: SHARE} sets the share of flip"},
+    {"grid.transfer.flip", SCENE_REAL, "1", "0.99", 0, 1, false, false, NULL, 0, true, "share of a particle's own velocity that is kept"},
+
+    {"materials", SCENE_NAMED, NULL, REQUIRED, NONE, "materials by name"},
+    {"materials.*.model", SCENE_WORD, NULL, REQUIRED, NONE, "strength model"},
+    {"materials.*.density", SCENE_REAL, "kg/m^3", REQUIRED, POSITIVE, NULL, 0, false, "density at the start"},
+    {"materials.*.<parameter>", SCENE_PARAMETERS, NULL, OPTIONAL, NONE, "the parameters of the model, below"},
+    {"materials.*.eos", SCENE_GROUP, NULL, OPTIONAL, NONE, "equation of state: gives the pressure in place of the model's own"},
+    {"materials.*.eos.model", SCENE_WORD, NULL, REQUIRED, NONE, "equation of state"},
+    {"materials.*.eos.<parameter>", SCENE_PARAMETERS, NULL, OPTIONAL, NONE, "the parameters of the equation of state, below"},
+    {"materials.*.viscosity", SCENE_GROUP, NULL, OPTIONAL, NONE, "artificial bulk viscosity, for shocks; {} takes its defaults"},
+    {"materials.*.viscosity.<parameter>", SCENE_PARAMETERS, NULL, OPTIONAL, NONE, "its parameters, below"},
+
+    {"bodies", SCENE_NAMED, NULL, REQUIRED, NONE, "bodies by name"},
+    {"bodies.*.method", SCENE_WORD, NULL, REQUIRED, ANY, "mpm", 0, false, "mpm: material points"},
+    {"bodies.*.material", SCENE_NAME, NULL, REQUIRED, NONE, "one of the materials"},
+    {"bodies.*.shape", SCENE_SHAPE, NULL, REQUIRED, NONE, "what is filled with particles"},
+    {"bodies.*.place", SCENE_ENTRIES, NULL, OPTIONAL, NONE, "moves of the shape, one after the other"},
+    {"bodies.*.place[].translate", SCENE_VECTOR, "m", OPTIONAL, NONE, "a shift"},
+    {"bodies.*.place[].rotate", SCENE_GROUP, NULL, OPTIONAL, NONE, "a turn"},
+    {"bodies.*.place[].rotate.axis", SCENE_VECTOR, "1", REQUIRED, ANY, NULL, 3, false, "direction of its axis"},
+    {"bodies.*.place[].rotate.angle", SCENE_REAL, "rad", REQUIRED, NONE, "right-handed; in 2D counter-clockwise"},
+    {"bodies.*.place[].rotate.about", SCENE_VECTOR, "m", "0", NONE, "a point of its axis"},
+    {"bodies.*.particles_per_cell", SCENE_INTEGER, NULL, OPTIONAL, 1, 4096, false, false, NULL, 0, false, "a square in 2D (default 4), a cube in 3D (default 8); not with spacing"},
+    {"bodies.*.spacing", SCENE_REAL, "m", OPTIONAL, POSITIVE, NULL, 0, false, "distance of particles; not with particles_per_cell"},
+    {"bodies.*.fill", SCENE_WORD, NULL, "regular", ANY, "regular|jittered", 0, false, "lattice of particles, or one with random shifts"},
+    {"bodies.*.jitter", SCENE_REAL, "1", "0.25", 0, 0.5, false, false, NULL, 0, true, "greatest shift, of the spacing; with fill: jittered"},
+    {"bodies.*.seed", SCENE_INTEGER, NULL, "1", 0, 9007199254740992.0, false, false, NULL, 0, true, "of the random shifts; with fill: jittered"},
+    {"bodies.*.velocity", SCENE_VECTOR, "m/s", "0", NONE, "at the start"},
+    {"bodies.*.spin", SCENE_GROUP, NULL, OPTIONAL, NONE, "a rotation at the start, added to the velocity"},
+    {"bodies.*.spin.rate", SCENE_TURN, "rad/s", REQUIRED, NONE, "angular velocity: a vector, or a number about `axis` (2D: a number)"},
+    {"bodies.*.spin.axis", SCENE_VECTOR, "1", OPTIONAL, ANY, NULL, 3, false, "direction of the axis, with a number as rate"},
+    {"bodies.*.spin.about", SCENE_VECTOR, "m", "0", NONE, "a point of the axis"},
+    {"bodies.*.wave", SCENE_GROUP, NULL, OPTIONAL, NONE, "a wave at the start, added to the velocity: velocity sin(wave_vector . x + phase)"},
+    {"bodies.*.wave.velocity", SCENE_VECTOR, "m/s", REQUIRED, NONE, "amplitude"},
+    {"bodies.*.wave.wave_vector", SCENE_VECTOR, "1/m", REQUIRED, NONE, "2 pi over the wave length, along the wave"},
+    {"bodies.*.wave.phase", SCENE_REAL, "rad", "0", NONE, "at the origin"},
+    {"bodies.*.temperature", SCENE_REAL, "K", "293.15", 0, INFINITY, true, true, NULL, 0, false, "at the start, for materials that know one"},
+
+    {"<shape>", SCENE_GROUP, NULL, OPTIONAL, NONE, "exactly one of the following"},
+    {"<shape>.box", SCENE_GROUP, NULL, OPTIONAL, NONE, "a box along the axes"},
+    {"<shape>.box.min", SCENE_VECTOR, "m", REQUIRED, NONE, "its lower corner"},
+    {"<shape>.box.max", SCENE_VECTOR, "m", REQUIRED, NONE, "its upper corner"},
+    {"<shape>.sphere", SCENE_GROUP, NULL, OPTIONAL, NONE, "a ball (a disk in 2D)"},
+    {"<shape>.sphere.center", SCENE_VECTOR, "m", REQUIRED, NONE, "its centre"},
+    {"<shape>.sphere.radius", SCENE_REAL, "m", REQUIRED, POSITIVE, NULL, 0, false, "its radius"},
+    {"<shape>.disk", SCENE_GROUP, NULL, OPTIONAL, ANY, NULL, 2, false, "a disk"},
+    {"<shape>.disk.center", SCENE_VECTOR, "m", REQUIRED, ANY, NULL, 2, false, "its centre"},
+    {"<shape>.disk.radius", SCENE_REAL, "m", REQUIRED, POSITIVE, NULL, 2, false, "its radius"},
+    {"<shape>.cylinder", SCENE_GROUP, NULL, OPTIONAL, ANY, NULL, 3, false, "a circular cylinder"},
+    {"<shape>.cylinder.center", SCENE_VECTOR, "m", REQUIRED, ANY, NULL, 3, false, "centre of the end it starts from"},
+    {"<shape>.cylinder.axis", SCENE_VECTOR, "1", REQUIRED, ANY, NULL, 3, false, "direction to its other end"},
+    {"<shape>.cylinder.radius", SCENE_REAL, "m", REQUIRED, POSITIVE, NULL, 3, false, "its radius"},
+    {"<shape>.cylinder.length", SCENE_REAL, "m", REQUIRED, POSITIVE, NULL, 3, false, "its length"},
+    {"<shape>.ring", SCENE_GROUP, NULL, OPTIONAL, NONE, "a tube (an annulus in 2D)"},
+    {"<shape>.ring.center", SCENE_VECTOR, "m", REQUIRED, NONE, "centre of the end it starts from (2D: its centre)"},
+    {"<shape>.ring.axis", SCENE_VECTOR, "1", REQUIRED, ANY, NULL, 3, false, "direction to its other end"},
+    {"<shape>.ring.inner_radius", SCENE_REAL, "m", REQUIRED, POSITIVE, NULL, 0, false, "of the hole"},
+    {"<shape>.ring.radius", SCENE_REAL, "m", REQUIRED, POSITIVE, NULL, 0, false, "its outer radius"},
+    {"<shape>.ring.length", SCENE_REAL, "m", REQUIRED, POSITIVE, NULL, 3, false, "its length"},
+    {"<shape>.polygon", SCENE_GROUP, NULL, OPTIONAL, NONE, "a polygon in the x-y plane (3D: the prism above it)"},
+    {"<shape>.polygon.points", SCENE_POLYGON, "m", REQUIRED, NONE, "its corners in turn, [[x, y], ...]; the last joins the first"},
+    {"<shape>.polygon.min", SCENE_REAL, "m", REQUIRED, ANY, NULL, 3, false, "z of the prism's lower end"},
+    {"<shape>.polygon.max", SCENE_REAL, "m", REQUIRED, ANY, NULL, 3, false, "z of its upper end"},
+    {"<shape>.half-space", SCENE_GROUP, NULL, OPTIONAL, NONE, "all on one side of a plane; for cutting other shapes"},
+    {"<shape>.half-space.point", SCENE_VECTOR, "m", REQUIRED, NONE, "a point of the plane"},
+    {"<shape>.half-space.normal", SCENE_VECTOR, "1", REQUIRED, NONE, "pointing out of the shape"},
+    {"<shape>.union", SCENE_SHAPES, NULL, OPTIONAL, NONE, "what is in any of a list of shapes"},
+    {"<shape>.difference", SCENE_SHAPES, NULL, OPTIONAL, NONE, "the first of a list of shapes less all others"},
+    {"<shape>.intersection", SCENE_SHAPES, NULL, OPTIONAL, NONE, "what is in all of a list of shapes"},
+
+    {"contact", SCENE_GROUP, NULL, "{}", NONE, "contact between bodies"},
+    {"contact.method", SCENE_WORD, NULL, "multi-velocity", ANY, "none|multi-velocity", 0, false, "none: bodies stick together where they share grid nodes"},
+    {"contact.friction", SCENE_REAL, "1", "0", NOT_NEGATIVE, NULL, 0, false, "Coulomb coefficient"},
+    {"contact.initial_overlap", SCENE_WORD, NULL, "error", ANY, "error|allow", 0, false, "bodies that overlap at the start"},
+    {"contact.pairs", SCENE_ENTRIES, NULL, OPTIONAL, NONE, "pairs of bodies that differ from the above"},
+    {"contact.pairs[].between", SCENE_NAMES, NULL, REQUIRED, NONE, "the two bodies, [a, b]"},
+    {"contact.pairs[].method", SCENE_WORD, NULL, OPTIONAL, ANY, "none|multi-velocity", 0, false, "default: that of contact"},
+    {"contact.pairs[].friction", SCENE_REAL, "1", OPTIONAL, NOT_NEGATIVE, NULL, 0, false, "default: that of contact"},
+
+    {"boundaries", SCENE_ENTRIES, NULL, OPTIONAL, NONE, "walls (plane) and places with prescribed motion (region)"},
+    {"boundaries[].name", SCENE_NAME, NULL, OPTIONAL, NONE, "in the history; default plane1, ... and region1, ..."},
+    {"boundaries[].plane", SCENE_GROUP, NULL, OPTIONAL, NONE, "a wall; not with region"},
+    {"boundaries[].plane.point", SCENE_VECTOR, "m", REQUIRED, NONE, "a point of it"},
+    {"boundaries[].plane.normal", SCENE_VECTOR, "1", REQUIRED, NONE, "pointing to the side the bodies are on"},
+    {"boundaries[].condition", SCENE_WORD, NULL, OPTIONAL, ANY, "stick|slip|separate|symmetry", 0, false, "of a plane; symmetry: along the axes and on a grid line"},
+    {"boundaries[].friction", SCENE_REAL, "1", "0", 0, INFINITY, false, true, NULL, 0, true, "Coulomb coefficient, with condition: separate"},
+    {"boundaries[].region", SCENE_SHAPE, NULL, OPTIONAL, NONE, "grid nodes in there are given a velocity; not with plane"},
+    {"boundaries[].place", SCENE_ENTRIES, NULL, OPTIONAL, NONE, "moves of the region, as for bodies"},
+    {"boundaries[].place[].translate", SCENE_VECTOR, "m", OPTIONAL, NONE, "a shift"},
+    {"boundaries[].place[].rotate", SCENE_GROUP, NULL, OPTIONAL, NONE, "a turn"},
+    {"boundaries[].place[].rotate.axis", SCENE_VECTOR, "1", REQUIRED, ANY, NULL, 3, false, "direction of its axis"},
+    {"boundaries[].place[].rotate.angle", SCENE_REAL, "rad", REQUIRED, NONE, "right-handed; in 2D counter-clockwise"},
+    {"boundaries[].place[].rotate.about", SCENE_VECTOR, "m", "0", NONE, "a point of its axis"},
+    {"boundaries[].velocity", SCENE_PARTIAL, "m/s", "0", ANY, NULL, 0, true, "of the wall, or of the region (must be given); there a component may be `free`"},
+    {"boundaries[].from", SCENE_REAL, "s", "0", ANY, NULL, 0, true, "a region acts from then ..."},
+    {"boundaries[].until", SCENE_REAL, "s", OPTIONAL, ANY, "none", 0, false, "... until then (default: for ever)"},
+    {"boundaries[].body", SCENE_NAME, NULL, OPTIONAL, NONE, "the one body it acts on (default: all)"},
+
+    {"loads", SCENE_GROUP, NULL, "{}", NONE, "forces on everything"},
+    {"loads.gravity", SCENE_VECTOR, "m/s^2", "0", NONE, "acceleration"},
+    {"loads.gravity_ramp", SCENE_REAL, "s", "0", NOT_NEGATIVE, NULL, 0, false, "gravity grows from 0 to its value over this time"},
+
+    {"output", SCENE_GROUP, NULL, "{}", NONE, "what is written, and how often"},
+    {"output.every", SCENE_REAL, "s", "0", 0, INFINITY, false, true, "none", 0, false, "time between pictures; 0: the first and the last; none: no pictures"},
+    {"output.history", SCENE_REAL, "s", "0", NOT_NEGATIVE, NULL, 0, false, "time between history lines; 0: every step"},
+    {"output.checkpoint", SCENE_REAL, "s", "600", 0, INFINITY, false, true, "none", 0, false, "wall time between checkpoints; 0: with every picture; none: at the end and on signals"},
+    {"output.fields", SCENE_NAMES, NULL, "[velocity]", NONE, "fields of the particles in pictures"},
+    {"output.precision", SCENE_WORD, NULL, "float32", ANY, "float32|float64", 0, false, "of numbers in pictures"},
+    {"output.probes", SCENE_NAMED, NULL, OPTIONAL, NONE, "single particles to follow in the history, by name"},
+    {"output.probes.*.body", SCENE_NAME, NULL, REQUIRED, NONE, "its body"},
+    {"output.probes.*.point", SCENE_VECTOR, "m", REQUIRED, NONE, "the particle nearest to it at the start is followed"},
+    {"output.probes.*.field", SCENE_NAME, NULL, REQUIRED, NONE, "what is recorded"},
+
+    {"measures", SCENE_NAMED, NULL, OPTIONAL, NONE, "results by name, judged where a value is expected"},
+    {"measures.*.history", SCENE_TEXT, NULL, OPTIONAL, NONE, "a column of the history, as energy.kinetic or body.rod.velocity_x"},
+    {"measures.*.energy", SCENE_NAME, NULL, OPTIONAL, NONE, "short for history: energy.NAME"},
+    {"measures.*.extent", SCENE_GROUP, NULL, OPTIONAL, NONE, "size of a body along an axis, at the end"},
+    {"measures.*.extent.body", SCENE_NAME, NULL, REQUIRED, NONE, "the body"},
+    {"measures.*.extent.axis", SCENE_VECTOR, "1", REQUIRED, NONE, "direction"},
+    {"measures.*.radius", SCENE_GROUP, NULL, OPTIONAL, NONE, "greatest distance of a body's surface from an axis, at the end"},
+    {"measures.*.radius.body", SCENE_NAME, NULL, REQUIRED, NONE, "the body"},
+    {"measures.*.radius.axis", SCENE_VECTOR, "1", OPTIONAL, NONE, "direction of the axis (2D: may be left out, then it is out of the plane)"},
+    {"measures.*.radius.center", SCENE_VECTOR, "m", "0", NONE, "a point of the axis"},
+    {"measures.*.radius.from", SCENE_REAL, "m", OPTIONAL, NONE, "only particles whose coordinate along the axis is above ..."},
+    {"measures.*.radius.to", SCENE_REAL, "m", OPTIONAL, NONE, "... and below this"},
+    {"measures.*.field", SCENE_GROUP, NULL, OPTIONAL, NONE, "a field reduced over the particles of a body, at the end"},
+    {"measures.*.field.body", SCENE_NAME, NULL, REQUIRED, NONE, "the body"},
+    {"measures.*.field.name", SCENE_NAME, NULL, REQUIRED, NONE, "the field"},
+    {"measures.*.field.component", SCENE_WORD, NULL, "magnitude", ANY, "magnitude|x|y|z|xx|yy|zz|xy|yz|xz", 0, false, "of a vector or symmetric tensor; magnitude: also a scalar's value"},
+    {"measures.*.field.axis", SCENE_VECTOR, "1", OPTIONAL, NONE, "direction of a slab, for from and to"},
+    {"measures.*.field.center", SCENE_VECTOR, "m", "0", ANY, NULL, 0, true, "where the coordinate along the axis is 0"},
+    {"measures.*.field.from", SCENE_REAL, "m", OPTIONAL, NONE, "only particles whose coordinate along the axis is above ..."},
+    {"measures.*.field.to", SCENE_REAL, "m", OPTIONAL, NONE, "... and below this"},
+    {"measures.*.take", SCENE_WORD, NULL, "end", ANY, SIGNALS, 0, true, "how history is reduced over time, a field over particles (min max mean max_abs)"},
+    {"measures.*.at", SCENE_WORD, NULL, OPTIONAL, ANY, SIGNALS, 0, false, "another name for take"},
+    {"measures.*.from", SCENE_REAL, "s", OPTIONAL, NOT_NEGATIVE, NULL, 0, false, "of the history only from then ..."},
+    {"measures.*.to", SCENE_REAL, "s", OPTIONAL, NOT_NEGATIVE, NULL, 0, false, "... to then"},
+    {"measures.*.minus", SCENE_ANY_UNIT, "any", "0", NONE, "subtracted first"},
+    {"measures.*.relative_to", SCENE_ANY_UNIT, "any", OPTIONAL, ANY, "initial", 0, false, "then divided by this, or by the first value of the history"},
+    {"measures.*.expect", SCENE_ANY_UNIT, "any", OPTIONAL, NONE, "the value it should have"},
+    {"measures.*.tolerance", SCENE_ANY_UNIT, "any", OPTIONAL, NOT_NEGATIVE, NULL, 0, false, "how far it may be off, relative to expect"},
+    {"measures.*.tolerance_is", SCENE_WORD, NULL, "relative", ANY, "relative|absolute", 0, true, "absolute: the tolerance is in the value's own unit"},
+    {"measures.*.unit", SCENE_TEXT, NULL, "''", NONE, "SI unit of the value, as printed"},
+    {"measures.*.source", SCENE_TEXT, NULL, "''", NONE, "where the expected value is from"},
+};
+const int brunt_scene_table_count = sizeof brunt_scene_table / sizeof *brunt_scene_table;
+
+const scene_section brunt_scene_sections[] = {
+    {"scene", "brunt title dimension", "the file as a whole"},
+    {"time", "time", NULL}, {"grid", "grid", NULL}, {"materials", "materials", NULL}, {"bodies", "bodies", NULL},
+    {"shapes", "<shape>", "of a body (shape), of a prescribed motion (region)"},
+    {"contact", "contact", NULL}, {"boundaries", "boundaries", NULL}, {"loads", "loads", NULL},
+    {"output", "output", NULL}, {"measures", "measures", NULL},
+};
+const int brunt_scene_section_count = sizeof brunt_scene_sections / sizeof *brunt_scene_sections;
+// clang-format on
+
+const scene_key *brunt_scene_row(const char *path) {
+    for (int i = 0; i < brunt_scene_table_count; i++)
+        if (strcmp(brunt_scene_table[i].path, path) == 0) return &brunt_scene_table[i];
+    return NULL;
+}
+
+const char *brunt_scene_child_key(const scene_key *row, const char *parent) {
+    size_t length = strlen(parent);
+    const char *key = row->path;
+    if (length) {
+        if (strncmp(row->path, parent, length) != 0 || row->path[length] != '.') return NULL;
+        key += length + 1;
+    } else if (row->path[0] == '<') {
+        return NULL;
+    }
+    return strpbrk(key, ".[") || strcmp(key, "*") == 0 ? NULL : key;
+}
+
+const brunt_model *const *brunt_scene_models(const char *path, int *count) {
+    static const brunt_model *const viscosity[] = {&brunt_bulk_viscosity};
+    if (strncmp(path, "materials.*.eos.", 16) == 0) {
+        *count = brunt_eos_model_count;
+        return brunt_eos_models;
+    }
+    if (strncmp(path, "materials.*.viscosity.", 22) == 0) {
+        *count = 1;
+        return viscosity;
+    }
+    *count = brunt_strength_model_count;
+    return brunt_strength_models;
+}
+
+bool brunt_scene_word_at(const char *words, int index, char *out, size_t size) {
+    const char *p = words;
+    for (; p && index > 0; index--) {
+        p = strchr(p, '|');
+        if (p) p++;
+    }
+    if (!p) return false;
+    snprintf(out, size, "%.*s", (int)strcspn(p, "|"), p);
+    return true;
+}
+
+static bool same_word(const char *a, const char *b) {
+    for (; *a && *b; a++, b++)
+        if (*a != *b && !((*a == '-' || *a == '_') && (*b == '-' || *b == '_'))) return false;
+    return *a == *b;
+}
+
+bool brunt_scene_word(const char *words, const char *word, int *index) {
+    char candidate[64];
+    for (int i = 0; brunt_scene_word_at(words, i, candidate, sizeof candidate); i++) {
+        if (!same_word(candidate, word)) continue;
+        *index = i;
+        return true;
+    }
+    return false;
+}

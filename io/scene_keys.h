@@ -1,0 +1,63 @@
+// The table of keys. Private to the scene reader: parser, checker, reference, resolved scene and schema are made from
+// it.
+#pragma once
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "material.h"
+
+typedef enum scene_type {
+    SCENE_GROUP,    // a map of the rows below its path
+    SCENE_NAMED,    // a map from names of the user's own to groups; their rows are at "path.*"
+    SCENE_ENTRIES,  // a list of groups; their rows are at "path[]"
+    SCENE_REAL,     // number with unit
+    SCENE_ANY_UNIT, // number with any unit, taken to SI base units
+    SCENE_INTEGER,
+    SCENE_VECTOR,    // as many numbers as there are dimensions
+    SCENE_PARTIAL,   // a vector whose components may be `free`
+    SCENE_TURN,      // a number or, in three dimensions, a vector
+    SCENE_POLYGON,   // list of [x, y]
+    SCENE_TEXT,      // free text
+    SCENE_NAME,      // a name of the user's own, or of a field
+    SCENE_NAMES,     // list of names
+    SCENE_WORD,      // one of `words`
+    SCENE_SHAPE,     // a shape: the rows at "<shape>"
+    SCENE_SHAPES,    // a list of shapes
+    SCENE_PARAMETERS // stands for the parameters of the chosen model
+} scene_type;
+
+typedef struct scene_key {
+    const char *path; // "time.end", "bodies.*.velocity", "boundaries[].plane.point", "<shape>.box.min"
+    scene_type type;
+    const char *unit;    // NULL: none
+    const char *initial; // default as typed; NULL: must be given; "": may be left out
+    double min, max;     // range of a number ...
+    bool min_open, max_open;
+    const char *words; // "a|b|c": of SCENE_WORD; of a number: a word that stands for infinity
+    int dimension;     // 2 or 3: exists in that one only; 0: in both
+    bool depends;      // its default holds only where other keys let it
+    const char *doc;
+} scene_key;
+
+extern const scene_key brunt_scene_table[];
+extern const int brunt_scene_table_count;
+
+// A section of the reference: a heading above the rows that start with one of its prefixes.
+typedef struct scene_section {
+    const char *name, *prefix, *doc;
+} scene_section;
+
+extern const scene_section brunt_scene_sections[];
+extern const int brunt_scene_section_count;
+
+// The row at a path, NULL when there is none.
+const scene_key *brunt_scene_row(const char *path);
+// The last part of a row's path when the row is a child of `parent`, else NULL.
+const char *brunt_scene_child_key(const scene_key *row, const char *parent);
+// The models behind a SCENE_PARAMETERS row or a "model" row.
+const brunt_model *const *brunt_scene_models(const char *path, int *count);
+// True when the word is among "a|b|c", with - and _ counting as the same; `index` its place there, `length` its length.
+bool brunt_scene_word(const char *words, const char *word, int *index);
+// Copies word number `index` of "a|b|c"; false past the end.
+bool brunt_scene_word_at(const char *words, int index, char *out, size_t size);

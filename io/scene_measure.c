@@ -1,0 +1,273 @@
+// Measures of a scene: what is measured, over which time, and against what it is judged.
+#include "scene_reader.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "memory.h"
+
+static bool one_of(const char *name, const char *const *names, int count) {
+    for (int i = 0; i < count; i++)
+        if (strcmp(name, names[i]) == 0) return true;
+    return false;
+}
+
+// "prefix.NAME.rest" or "prefix.NAME": whether NAME is `name`.
+static bool names_part(const char *rest, const char *name) {
+    size_t length = strlen(name);
+    return strncmp(rest, name, length) == 0 && (rest[length] == '.' || rest[length] == 0);
+}
+
+static bool pair_exists(const scene_reader *reader, const char *rest) {
+    const brunt_world_def *world = &reader->scene->world;
+    char pair[2 * BRUNT_NAME_LENGTH];
+    for (int i = 0; i < world->body_count; i++)
+        for (int j = 0; j < world->body_count; j++) {
+            snprintf(pair, sizeof pair, "%s-%s", world->bodies[i].name, world->bodies[j].name);
+            if (i != j && names_part(rest, pair)) return true;
+        }
+    return false;
+}
+
+// What of a column can be known before the engine runs: its family, and the names of bodies, walls and probes in it.
+static const char *column_mistake(const scene_reader *reader, const char *column) {
+    static const char *const plain[] = {"time", "step", "dt"};
+    static const char *const energies[] = {"kinetic",  "internal",  "plastic",  "hourglass",     "contact",
+                                           "friction", "viscosity", "transfer", "eroded",        "external_work",
+                                           "initial",  "total",     "error",    "error_relative"};
+    const brunt_world_def *world = &reader->scene->world;
+    static const char families[] =
+        "columns are time, step, dt, energy.*, momentum.*, body.NAME.*, contact.A-B.*, wall.NAME.* and "
+        "probe.NAME";
+    const char *dot = strchr(column, '.');
+    if (!dot) return one_of(column, plain, 3) ? NULL : families;
+    const char *rest = dot + 1;
+    size_t family = (size_t)(dot - column);
+    if (!*rest) return "the name ends with its dot";
+    if (family == 6 && strncmp(column, "energy", 6) == 0)
+        return one_of(rest, energies, sizeof energies / sizeof *energies)
+                   ? NULL
+                   : "energies are kinetic, internal, plastic, hourglass, contact, friction, viscosity, transfer, "
+                     "eroded, "
+                     "external_work, initial, total, error, error_relative";
+    if (family == 8 && strncmp(column, "momentum", 8) == 0) return NULL;
+    if (family == 4 && strncmp(column, "body", 4) == 0) {
+        for (int i = 0; i < world->body_count; i++)
+            if (names_part(rest, world->bodies[i].name)) return NULL;
+        return "there is no such body";
+    }
+    if (family == 7 && strncmp(column, "contact", 7) == 0)
+        return pair_exists(reader, rest) ? NULL : "there is no such pair of bodies, A-B is wanted";
+    if (family == 4 && strncmp(column, "wall", 4) == 0) {
+        for (int i = 0; i < world->plane_count; i++)
+            if (names_part(rest, world->planes[i].name)) return NULL;
+        for (int i = 0; i < world->region_count; i++)
+            if (names_part(rest, world->regions[i].name)) return NULL;
+        return "there is no boundary of that name";
+    }
+    if (family == 5 && strncmp(column, "probe", 5) == 0) {
+        for (int i = 0; i < reader->scene->output.probe_count; i++)
+            if (names_part(rest, reader->scene->output.probes[i].name)) return NULL;
+        return "there is no probe of that name";
+    }
+    return families;
+}
+
+// `energy: total` is `history: energy.total`; `at` is `take`. The resolved scene has the longer names.
+static void unfold(scene_reader *reader, scene_node *node) {
+    scene_node *energy = brunt_tree_child(node, "energy"), *at = brunt_tree_child(node, "at");
+    if (energy && energy->good && !brunt_tree_child(node, "history")) {
+        char column[96];
+        snprintf(column, sizeof column, "energy.%.60s", energy->text);
+        scene_node *history = brunt_add_default(reader, node, "history", column);
+        if (!history) return;
+        // Mistakes in it are the user's, at the place of what he typed.
+        history->line = energy->line, history->column = energy->column, history->option = energy->option;
+        brunt_tree_remove(energy);
+    }
+    if (at && at->good && !brunt_tree_child(node, "take")) {
+        scene_node *take = brunt_add_default(reader, node, "take", at->text);
+        if (!take) return;
+        take->line = at->line, take->column = at->column, take->option = at->option;
+        brunt_tree_remove(at);
+    } else if (at && brunt_tree_child(node, "take")) {
+        brunt_tree_complain_key(reader->tree, at, "at and take are the same, one of them is wanted");
+    }
+}
+
+static void fill_slab(scene_reader *reader, const scene_node *where, brunt_measure *measure) {
+    const scene_node *to = brunt_tree_child(where, "to");
+    measure->slab_min = brunt_real_of(where, "from", -INFINITY);
+    measure->slab_max = brunt_real_of(where, "to", INFINITY);
+    if (to && to->good && !(measure->slab_min < measure->slab_max))
+        brunt_tree_complain(reader->tree, to, "to must be above from");
+}
+
+static void fill_place_of(scene_reader *reader, scene_node *where, brunt_measure *measure, bool axis_wanted) {
+    scene_node *axis = brunt_tree_child(where, "axis");
+    bool given = brunt_vector_of(where, "axis", measure->axis);
+    if (given && measure->axis[0] == 0 && measure->axis[1] == 0 && measure->axis[2] == 0)
+        brunt_tree_complain(reader->tree, axis, "the axis has zero length");
+    if (!axis && axis_wanted) brunt_tree_complain_key(reader->tree, where, "'axis' is missing: a direction");
+    if (measure->kind != BRUNT_MEASURE_EXTENT) fill_slab(reader, where, measure);
+    if (measure->kind == BRUNT_MEASURE_FIELD && axis && !brunt_tree_child(where, "center"))
+        brunt_add_default(reader, where, "center", "0");
+    brunt_vector_of(where, "center", measure->center);
+}
+
+static void fill_kind(scene_reader *reader, scene_node *node, brunt_measure *measure) {
+    static const char *const kinds[] = {"history", "extent", "radius", "field"};
+    scene_tree *tree = reader->tree;
+    scene_node *where = NULL;
+    int count = 0;
+    for (int k = 0; k < 4; k++) {
+        scene_node *child = brunt_tree_child(node, kinds[k]);
+        if (!child) continue;
+        where = child;
+        measure->kind = (brunt_measure_kind)k;
+        count++;
+    }
+    if (count != 1) {
+        brunt_tree_complain_key(tree, node,
+                                "%s of history (or energy), extent, radius and field is given, exactly one is wanted",
+                                count ? "more than one" : "none");
+        return;
+    }
+    if (measure->kind == BRUNT_MEASURE_HISTORY) {
+        brunt_copy_text(reader, where, measure->column, sizeof measure->column);
+        const char *mistake = where->good ? column_mistake(reader, where->text) : NULL;
+        if (mistake) brunt_tree_complain(tree, where, "'%.100s' is no column of the history: %s", where->text, mistake);
+        return;
+    }
+    if (where->kind != SCENE_MAP) return;
+    brunt_check_body_name(reader, brunt_tree_child(where, "body"));
+    brunt_copy_text(reader, brunt_tree_child(where, "body"), measure->body, sizeof measure->body);
+    if (measure->kind == BRUNT_MEASURE_FIELD) {
+        brunt_copy_text(reader, brunt_tree_child(where, "name"), measure->field, sizeof measure->field);
+        // magnitude x y z xx yy zz xy yz xz: vectors and symmetric tensors both count from 0
+        int word = (int)brunt_real_of(where, "component", 0);
+        measure->component = word == 0 ? -1 : word <= 3 ? word - 1 : word - 4;
+        bool slab =
+            brunt_tree_child(where, "from") || brunt_tree_child(where, "to") || brunt_tree_child(where, "center");
+        fill_place_of(reader, where, measure, slab);
+    } else {
+        fill_place_of(reader, where, measure, measure->kind == BRUNT_MEASURE_RADIUS && reader->dimension == 3);
+    }
+}
+
+static void fill_time_of(scene_reader *reader, scene_node *node, brunt_measure *measure) {
+    scene_tree *tree = reader->tree;
+    const scene_node *take = brunt_tree_child(node, "take"), *from = brunt_tree_child(node, "from"),
+                     *to = brunt_tree_child(node, "to");
+    bool history = measure->kind == BRUNT_MEASURE_HISTORY, field = measure->kind == BRUNT_MEASURE_FIELD;
+    if (!take && field)
+        brunt_tree_complain_key(tree, node,
+                                "'take' is missing: a field is reduced over particles by min, max, mean or max_abs");
+    if (!take && !field) take = brunt_add_default(reader, node, "take", "end");
+    measure->take = (brunt_take)(int)brunt_real_of(node, "take", BRUNT_TAKE_END);
+    if (take && take->good) {
+        brunt_take t = measure->take;
+        bool over_particles =
+            t == BRUNT_TAKE_MIN || t == BRUNT_TAKE_MAX || t == BRUNT_TAKE_MEAN || t == BRUNT_TAKE_MAX_ABS;
+        if (field && !over_particles)
+            brunt_tree_complain(tree, take, "a field is reduced over particles by min, max, mean or max_abs");
+        if (!field && !history && t != BRUNT_TAKE_END)
+            brunt_tree_complain(tree, take, "this is measured at the end only");
+    }
+    if (!history && from) brunt_tree_complain_key(tree, from, "a time window is for measures of the history");
+    if (!history && to) brunt_tree_complain_key(tree, to, "a time window is for measures of the history");
+    measure->from = brunt_real_of(node, "from", 0);
+    measure->to = brunt_real_of(node, "to", INFINITY);
+    double end = reader->scene->world.end, last = end * (1 + 1e-9);
+    char text[32];
+    brunt_format_number(end, text);
+    if (end > 0 && from && from->good && measure->from > last)
+        brunt_tree_complain(tree, from, "the window starts after the run has ended (%s s)", text);
+    if (end > 0 && to && to->good && measure->to > last)
+        brunt_tree_complain(tree, to, "the window ends after the run has ended (%s s)", text);
+    if (to && to->good && !(measure->from < measure->to)) brunt_tree_complain(tree, to, "to must be after from");
+}
+
+static void fill_reference(scene_reader *reader, scene_node *node, brunt_measure *measure) {
+    const scene_node *relative = brunt_tree_child(node, "relative_to");
+    measure->minus = brunt_real_of(node, "minus", 0);
+    measure->relative_to = NAN;
+    if (!relative || !relative->good) return;
+    if (!relative->number)
+        measure->relative_to_initial = true;
+    else if (relative->value[0] == 0)
+        brunt_tree_complain(reader->tree, relative, "a division by zero");
+    else
+        measure->relative_to = relative->value[0];
+}
+
+static bool has_unit(const scene_node *node) {
+    return node && node->good && node->base && strcmp(node->base, "1") != 0;
+}
+
+static void fill_expectation(scene_reader *reader, scene_node *node, brunt_measure *measure) {
+    scene_tree *tree = reader->tree;
+    const scene_node *expect = brunt_tree_child(node, "expect"), *tolerance = brunt_tree_child(node, "tolerance"),
+                     *kind = brunt_tree_child(node, "tolerance_is");
+    measure->expect = brunt_real_of(node, "expect", NAN);
+    measure->tolerance = brunt_real_of(node, "tolerance", NAN);
+    if (tolerance && !expect) brunt_tree_complain_key(tree, tolerance, "a tolerance without expect");
+    if (expect && !tolerance) brunt_tree_complain_key(tree, expect, "expect without a tolerance");
+    if (kind && !tolerance) brunt_tree_complain_key(tree, kind, "tolerance_is without a tolerance");
+    if (tolerance && !kind) kind = brunt_add_default(reader, node, "tolerance_is", "relative");
+    measure->absolute = kind && kind->good && kind->value[0] == 1;
+    if (has_unit(tolerance) && kind && kind->good && !measure->absolute)
+        brunt_tree_complain(tree, tolerance, "a tolerance with a unit needs tolerance_is: absolute");
+    if (has_unit(tolerance) && has_unit(expect) && strcmp(tolerance->base, expect->base) != 0)
+        brunt_tree_complain(tree, tolerance, "the tolerance is in %s, expect in %s", tolerance->base, expect->base);
+    if (expect && expect->good && measure->expect == 0 && tolerance && tolerance->good && !measure->absolute)
+        brunt_tree_complain(tree, tolerance,
+                            "a tolerance relative to 0 cannot be met: tolerance_is: absolute is wanted");
+}
+
+static void fill_unit(scene_reader *reader, scene_node *node, brunt_measure *measure) {
+    scene_node *unit = brunt_tree_child(node, "unit");
+    const scene_node *expect = brunt_tree_child(node, "expect");
+    if (!unit || !unit->good) return;
+    if (*unit->text) {
+        char base[BRUNT_UNIT_LENGTH], why[256];
+        double one = 1, zero = 0;
+        if (!brunt_units_to_si(reader->units, unit->text, &one, base, why, sizeof why) ||
+            !brunt_units_to_si(reader->units, unit->text, &zero, base, why, sizeof why))
+            brunt_tree_complain(reader->tree, unit, "%s", why);
+        else if (one != 1 || zero != 0)
+            brunt_tree_complain(reader->tree, unit, "measures are printed in SI: '%.40s' has a factor, %s is wanted",
+                                unit->text, base);
+        else if (has_unit(expect) && strcmp(expect->base, base) != 0)
+            brunt_tree_complain(reader->tree, unit, "the unit is %s, but expect is in %s", unit->text, expect->base);
+    } else if (has_unit(expect)) {
+        unit->text = (char *)expect->base;
+    }
+    brunt_copy_text(reader, unit, measure->unit, sizeof measure->unit);
+}
+
+void brunt_fill_measures(scene_reader *reader) {
+    brunt_scene *scene = reader->scene;
+    scene_node *map = brunt_tree_child(reader->tree->root, "measures");
+    if (!map || map->kind != SCENE_MAP || map->count == 0) return;
+    scene->measures = brunt_alloc((size_t)map->count * sizeof *scene->measures);
+    if (!scene->measures) {
+        reader->tree->exhausted = true;
+        return;
+    }
+    for (scene_node *node = map->first; node; node = node->next) {
+        brunt_measure *measure = &scene->measures[scene->measure_count++];
+        measure->component = -1;
+        measure->slab_min = -INFINITY;
+        measure->slab_max = INFINITY;
+        snprintf(measure->name, sizeof measure->name, "%.*s", BRUNT_NAME_LENGTH - 1, node->key);
+        if (node->kind != SCENE_MAP) continue;
+        unfold(reader, node);
+        fill_kind(reader, node, measure);
+        fill_time_of(reader, node, measure);
+        fill_reference(reader, node, measure);
+        fill_expectation(reader, node, measure);
+        fill_unit(reader, node, measure);
+        brunt_copy_text(reader, brunt_tree_child(node, "source"), measure->source, sizeof measure->source);
+    }
+}

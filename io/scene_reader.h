@@ -1,0 +1,43 @@
+// What the stages of reading a scene share. Private to the scene reader.
+//
+// 1. scene_yaml.c   text to tree          2. scene_tree.c   overrides
+// 3. scene_check.c  tree against the table of keys: kinds, words, units, ranges, unknown and missing keys, defaults
+// 4. scene_shape.c, scene_parse.c, scene_measure.c  meaning: structures are filled, and what two keys say together is
+// checked
+#pragma once
+
+#include "scene.h"
+#include "scene_keys.h"
+#include "scene_tree.h"
+#include "units.h"
+
+typedef struct scene_reader {
+    scene_tree *tree;
+    brunt_units *units;
+    int dimension; // 0 when the file's is unusable
+    brunt_scene *scene;
+} scene_reader;
+
+// Stage 3. Afterwards every accepted value is `good`, and every key that has a default is there.
+void brunt_check_scene(scene_reader *reader);
+// Adds a key that is not there, as if the user had typed its value; returns it.
+scene_node *brunt_add_default(scene_reader *reader, scene_node *map, const char *key, const char *text);
+// Parameters of a model, in its own order; true when all of them are good.
+bool brunt_read_parameters(const scene_node *map, const brunt_model *model, double *parameters);
+
+// Accepted values of a map; the fallback when there is none.
+double brunt_real_of(const scene_node *map, const char *key, double fallback);
+const char *brunt_text_of(const scene_node *map, const char *key, const char *fallback);
+bool brunt_vector_of(const scene_node *map, const char *key, double out[3]); // false: not there, `out` is left
+
+// Stage 4.
+void brunt_fill_shape_def(scene_reader *reader, const scene_node *node, brunt_shape *shape);
+brunt_placement brunt_fill_place(scene_reader *reader, const scene_node *list);
+void brunt_fill_world(scene_reader *reader);
+void brunt_fill_output(scene_reader *reader);
+void brunt_fill_measures(scene_reader *reader);
+const brunt_body_def *brunt_body_named(const scene_reader *reader, const char *name);
+// Says when `node` names no body.
+void brunt_check_body_name(scene_reader *reader, const scene_node *node);
+// Copies text that must fit, or says that it is too long.
+void brunt_copy_text(scene_reader *reader, const scene_node *node, char *out, size_t size);

@@ -1,0 +1,382 @@
+// The reference of all keys and the JSON Schema, both made from the table that parses them.
+#include "scene_reader.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <string.h>
+
+enum { WIDTH = 120, PATH_WIDTH = 35, KIND_WIDTH = 21, DEFAULT_WIDTH = 15, INDENT = 2 };
+
+static const char example[] =
+    "# A first scene: a copper ball hits a rigid floor at 100 m/s. Save it as ball.yaml, then: brunt run ball.yaml\n"
+    "brunt: 1\n"
+    "title: A copper ball hits the floor\n"
+    "dimension: 3\n"
+    "time: {end: 60 us}\n"
+    "grid: {cell: 1 mm}\n"
+    "materials:\n"
+    "  copper: {model: von-mises, density: 8960 kg/m^3, E: 124 GPa, nu: 0.34, yield: 90 MPa, hardening: 300 MPa}\n"
+    "bodies:\n"
+    "  ball:\n"
+    "    method: mpm\n"
+    "    material: copper\n"
+    "    shape: {sphere: {center: [0, 0, 6 mm], radius: 5 mm}}\n"
+    "    velocity: [0, 0, -100 m/s]\n"
+    "boundaries:\n"
+    "  - {name: floor, plane: {point: [0, 0, 0], normal: [0, 0, 1]}, condition: separate, friction: 0.2}\n"
+    "output: {every: 2 us, history: 0.2 us, fields: [velocity, von_mises, plastic_strain]}\n"
+    "measures:\n"
+    "  energy_kept: {energy: total, take: end, relative_to: initial, expect: 1, tolerance: 0.05}\n";
+
+// ---------------------------------------------------------------------------------------------------- text
+
+static void describe_kind(const scene_key *row, char *out, size_t size) {
+    switch (row->type) {
+    case SCENE_GROUP: snprintf(out, size, "map"); break;
+    case SCENE_NAMED: snprintf(out, size, "map of names"); break;
+    case SCENE_ENTRIES: snprintf(out, size, "list of maps"); break;
+    case SCENE_REAL: snprintf(out, size, strcmp(row->unit, "1") == 0 ? "number" : "number [%s]", row->unit); break;
+    case SCENE_ANY_UNIT: snprintf(out, size, "number, any unit"); break;
+    case SCENE_INTEGER: snprintf(out, size, "whole number"); break;
+    case SCENE_VECTOR:
+    case SCENE_PARTIAL: snprintf(out, size, strcmp(row->unit, "1") == 0 ? "vector" : "vector [%s]", row->unit); break;
+    case SCENE_TURN: snprintf(out, size, "vector or number [%s]", row->unit); break;
+    case SCENE_POLYGON: snprintf(out, size, "list of [x, y] [%s]", row->unit); break;
+    case SCENE_TEXT: snprintf(out, size, "text"); break;
+    case SCENE_NAME: snprintf(out, size, "name"); break;
+    case SCENE_NAMES: snprintf(out, size, "list of names"); break;
+    case SCENE_WORD: snprintf(out, size, "word"); break;
+    case SCENE_SHAPE: snprintf(out, size, "shape"); break;
+    case SCENE_SHAPES: snprintf(out, size, "list of shapes"); break;
+    case SCENE_PARAMETERS: snprintf(out, size, "numbers"); break;
+    }
+}
+
+static void describe_bounds(double min, double max, bool min_open, bool max_open, char *out, size_t size) {
+    char low[32] = "", high[32] = "";
+    out[0] = 0;
+    if (isfinite(min)) brunt_format_number(min, low);
+    if (isfinite(max)) brunt_format_number(max, high);
+    if (*low && *high && min == max) return;
+    if (*low && *high)
+        snprintf(out, size, "%s%s .. %s%s", min_open ? "> " : "", low, max_open ? "< " : "", high);
+    else if (*low)
+        snprintf(out, size, "%s %s", min_open ? ">" : ">=", low);
+    else if (*high)
+        snprintf(out, size, "%s %s", max_open ? "<" : "<=", high);
+}
+
+// Text in a column that begins at `column`, broken at blanks.
+static void write_wrapped(FILE *out, const char *text, int column) {
+    int at = column;
+    while (*text) {
+        int word = (int)strcspn(text, " ");
+        if (at + word > WIDTH && at > column) {
+            fprintf(out, "\n%*s", column, "");
+            at = column;
+        }
+        fprintf(out, "%.*s", word, text);
+        at += word;
+        text += word;
+        while (*text == ' ') text++;
+        if (*text && at + 1 + (int)strcspn(text, " ") <= WIDTH) {
+            fputc(' ', out);
+            at++;
+        } else if (*text) {
+            at = WIDTH + 1;
+        }
+    }
+    fputc('\n', out);
+}
+
+// A line of the reference. A column that is too long pushes what follows to the next line.
+static void write_row(FILE *out, const char *path, const char *kind, const char *initial, const char *doc, int indent) {
+    const char *cells[3] = {path, kind, initial};
+    const int widths[3] = {PATH_WIDTH, KIND_WIDTH, DEFAULT_WIDTH};
+    int at = indent, column = indent;
+    fprintf(out, "%*s", indent, "");
+    for (int c = 0; c < 3; c++) {
+        if (at > column) fprintf(out, "\n%*s", column, ""), at = column;
+        fprintf(out, "%s", cells[c]);
+        at += (int)strlen(cells[c]);
+        column += widths[c] - (c == 0 ? indent - INDENT : 0);
+        if (at < column) fprintf(out, "%*s", column - at, ""), at = column;
+        if (at == column && strlen(cells[c]) >= (size_t)widths[c]) at++;
+    }
+    if (at > column) fprintf(out, "\n%*s", column, "");
+    write_wrapped(out, doc, column);
+}
+
+static void write_key(FILE *out, const scene_key *row) {
+    char kind[64], initial[48], doc[768], bounds[96];
+    describe_kind(row, kind, sizeof kind);
+    if (!row->initial)
+        snprintf(initial, sizeof initial, "required");
+    else if (!*row->initial)
+        snprintf(initial, sizeof initial, "optional");
+    else
+        snprintf(initial, sizeof initial, "%s", row->initial);
+    describe_bounds(row->min, row->max, row->min_open, row->max_open, bounds, sizeof bounds);
+    size_t used = (size_t)snprintf(doc, sizeof doc, "%s", row->doc);
+    if (row->type == SCENE_WORD && row->words) {
+        used += (size_t)snprintf(doc + used, sizeof doc - used, ":");
+        char word[64];
+        for (int i = 0; brunt_scene_word_at(row->words, i, word, sizeof word); i++)
+            used += (size_t)snprintf(doc + used, sizeof doc - used, " %s%s", i ? "| " : "", word);
+    } else if (row->words && !strstr(row->doc, row->words)) {
+        used += (size_t)snprintf(doc + used, sizeof doc - used, "; or the word %s", row->words);
+    }
+    if (*bounds) used += (size_t)snprintf(doc + used, sizeof doc - used, " (%s)", bounds);
+    if (row->dimension) snprintf(doc + used, sizeof doc - used, " [%dD only]", row->dimension);
+    write_row(out, row->path, kind, initial, doc, INDENT);
+}
+
+static void write_model(FILE *out, const brunt_model *model) {
+    fprintf(out, "\n%*s%-24s ", INDENT, "", model->name);
+    write_wrapped(out, model->doc ? model->doc : "", INDENT + 25);
+    for (int p = 0; p < model->parameter_count; p++) {
+        const brunt_parameter *parameter = &model->parameters[p];
+        char kind[64], initial[32] = "required", doc[512], bounds[96];
+        snprintf(kind, sizeof kind, strcmp(parameter->unit, "1") == 0 ? "number" : "number [%s]", parameter->unit);
+        if (!isnan(parameter->initial)) brunt_format_number(parameter->initial, initial);
+        describe_bounds(parameter->min, parameter->max, parameter->min_open, parameter->max_open, bounds,
+                        sizeof bounds);
+        snprintf(doc, sizeof doc, *bounds ? "%s (%s)" : "%s", parameter->doc, bounds);
+        write_row(out, parameter->key, kind, initial, doc, INDENT + 4);
+    }
+}
+
+static void write_models(FILE *out) {
+    fprintf(out, "\nStrength models (materials.NAME.model) and their parameters, beside `model` and `density`:\n");
+    for (int m = 0; m < brunt_strength_model_count; m++) write_model(out, brunt_strength_models[m]);
+    fprintf(out, "\nEquations of state (materials.NAME.eos.model) and their parameters, beside `model`:\n");
+    for (int m = 0; m < brunt_eos_model_count; m++) write_model(out, brunt_eos_models[m]);
+    fprintf(out, "\nArtificial viscosity (materials.NAME.viscosity):\n");
+    write_model(out, &brunt_bulk_viscosity);
+}
+
+static bool in_section(const scene_section *section, const scene_key *row) {
+    size_t top = strcspn(row->path, ".[");
+    for (const char *p = section->prefix; *p;) {
+        size_t length = strcspn(p, " ");
+        if (length == top && strncmp(p, row->path, top) == 0) return true;
+        p += length;
+        while (*p == ' ') p++;
+    }
+    return false;
+}
+
+static void write_section(FILE *out, const scene_section *section) {
+    const scene_key *own = brunt_scene_row(section->prefix);
+    fprintf(out, "\n%s: %s\n", section->name, section->doc ? section->doc : own ? own->doc : "");
+    for (int i = 0; i < brunt_scene_table_count; i++)
+        if (in_section(section, &brunt_scene_table[i])) write_key(out, &brunt_scene_table[i]);
+    if (strcmp(section->name, "materials") == 0) write_models(out);
+}
+
+bool brunt_scene_keys(const char *section, FILE *out) {
+    bool found = false;
+    if (!section) {
+        fputs(example, out);
+        fputs("\nValues take units (190 m/s, 12 mm, 22 deg, 20 degC); bare numbers are SI. Vectors have as many "
+              "components as\n"
+              "the scene has dimensions, each with its own unit if it likes. * stands for a name of your own, [] for "
+              "an entry\n"
+              "of a list. Unknown keys are errors. Columns: key, value, default, meaning (range).\n",
+              out);
+    }
+    for (int i = 0; i < brunt_scene_section_count; i++) {
+        const scene_section *s = &brunt_scene_sections[i];
+        if (section && strcmp(section, s->name) != 0 && strcmp(section, s->prefix) != 0) continue;
+        found = true;
+        write_section(out, s);
+    }
+    if (found) return true;
+    const brunt_model *model = brunt_find_strength(section);
+    if (!model) model = brunt_find_eos(section);
+    if (!model && strcmp(section, "viscosity") == 0) model = &brunt_bulk_viscosity;
+    if (model) write_model(out, model);
+    return model != NULL;
+}
+
+// ---------------------------------------------------------------------------------------------------- JSON Schema
+
+static void json_text(FILE *out, const char *text) {
+    fputc('"', out);
+    for (const char *c = text; *c; c++) {
+        if (*c == '"' || *c == '\\') fputc('\\', out);
+        fputc(*c, out);
+    }
+    fputc('"', out);
+}
+
+static void schema_value(FILE *out, const scene_key *row);
+
+typedef struct listing {
+    FILE *out;
+    bool comma;
+} listing;
+
+static void schema_key(listing *list, const char *key) {
+    if (list->comma) fputs(",\n", list->out);
+    list->comma = true;
+    json_text(list->out, key);
+    fputs(": ", list->out);
+}
+
+static bool first_of_its_name(const brunt_model *const *models, int m, int p) {
+    for (int i = 0; i < m; i++)
+        for (int q = 0; q < models[i]->parameter_count; q++)
+            if (strcmp(models[i]->parameters[q].key, models[m]->parameters[p].key) == 0) return false;
+    return true;
+}
+
+static void schema_group(FILE *out, const char *pattern) {
+    listing list = {out, false};
+    fputs("\"type\": \"object\", \"additionalProperties\": false,\n\"properties\": {\n", out);
+    for (int i = 0; i < brunt_scene_table_count; i++) {
+        const scene_key *row = &brunt_scene_table[i];
+        const char *key = brunt_scene_child_key(row, pattern);
+        if (!key) continue;
+        if (row->type != SCENE_PARAMETERS) {
+            schema_key(&list, key);
+            schema_value(out, row);
+            continue;
+        }
+        int count;
+        const brunt_model *const *models = brunt_scene_models(row->path, &count);
+        for (int m = 0; m < count; m++)
+            for (int p = 0; p < models[m]->parameter_count; p++) {
+                const brunt_parameter *parameter = &models[m]->parameters[p];
+                if (!first_of_its_name(models, m, p)) continue;
+                schema_key(&list, parameter->key);
+                fputs("{\"$ref\": \"#/$defs/number\", \"description\": ", out);
+                char doc[512];
+                snprintf(doc, sizeof doc, "%s: %s [%s]", models[m]->name, parameter->doc, parameter->unit);
+                json_text(out, doc);
+                fputc('}', out);
+            }
+    }
+    fputs("}", out);
+    bool any = false;
+    for (int i = 0; i < brunt_scene_table_count; i++) {
+        const scene_key *row = &brunt_scene_table[i];
+        const char *key = brunt_scene_child_key(row, pattern);
+        // What exists in one dimension only cannot be required here.
+        if (!key || row->initial || row->dimension) continue;
+        fputs(any ? ", " : ",\n\"required\": [", out);
+        any = true;
+        json_text(out, key);
+    }
+    if (any) fputc(']', out);
+}
+
+static void schema_words(FILE *out, const scene_key *row) {
+    fputs("\"enum\": [", out);
+    char word[64];
+    if (row->words) {
+        for (int i = 0; brunt_scene_word_at(row->words, i, word, sizeof word); i++) {
+            if (i) fputs(", ", out);
+            json_text(out, word);
+        }
+    } else {
+        int count;
+        const brunt_model *const *models = brunt_scene_models(
+            strstr(row->path, ".eos.") ? "materials.*.eos.<parameter>" : "materials.*.<parameter>", &count);
+        for (int m = 0; m < count; m++) {
+            if (m) fputs(", ", out);
+            json_text(out, models[m]->name);
+        }
+    }
+    fputc(']', out);
+}
+
+static void schema_value(FILE *out, const scene_key *row) {
+    char pattern[128];
+    fputs("{\"description\": ", out);
+    char doc[512];
+    if (row->unit && strcmp(row->unit, "1") != 0)
+        snprintf(doc, sizeof doc, "%s [%s]", row->doc, row->unit);
+    else
+        snprintf(doc, sizeof doc, "%s", row->doc);
+    json_text(out, doc);
+    if (row->initial && *row->initial) {
+        fputs(", \"default\": ", out);
+        const char *rest;
+        double value;
+        if (strcmp(row->initial, "{}") == 0)
+            fputs("{}", out);
+        else if (row->type == SCENE_VECTOR || row->type == SCENE_PARTIAL)
+            fputs("[0, 0, 0]", out);
+        else if (row->type == SCENE_NAMES)
+            fprintf(out, "[\"%.*s\"]", (int)strlen(row->initial) - 2, row->initial + 1);
+        else if (!brunt_read_number(row->initial, &value, &rest) && !*rest)
+            fputs(row->initial, out);
+        else
+            json_text(out, strcmp(row->initial, "''") == 0 ? "" : row->initial);
+    }
+    fputs(", ", out);
+    switch (row->type) {
+    case SCENE_GROUP: schema_group(out, row->path); break;
+    case SCENE_NAMED:
+        snprintf(pattern, sizeof pattern, "%s.*", row->path);
+        fputs("\"type\": \"object\", \"propertyNames\": {\"pattern\": \"^[A-Za-z0-9_-]{1,47}$\"}, "
+              "\"additionalProperties\": {",
+              out);
+        schema_group(out, pattern);
+        fputc('}', out);
+        break;
+    case SCENE_ENTRIES:
+        snprintf(pattern, sizeof pattern, "%s[]", row->path);
+        fputs("\"type\": \"array\", \"items\": {", out);
+        schema_group(out, pattern);
+        fputc('}', out);
+        break;
+    case SCENE_REAL:
+    case SCENE_ANY_UNIT: fputs("\"$ref\": \"#/$defs/number\"", out); break;
+    case SCENE_INTEGER:
+        fprintf(out, "\"type\": \"integer\", \"minimum\": %.0f, \"maximum\": %.0f", row->min, row->max);
+        break;
+    case SCENE_VECTOR:
+    case SCENE_PARTIAL: fputs("\"$ref\": \"#/$defs/vector\"", out); break;
+    case SCENE_TURN: fputs("\"anyOf\": [{\"$ref\": \"#/$defs/number\"}, {\"$ref\": \"#/$defs/vector\"}]", out); break;
+    case SCENE_POLYGON:
+        fputs("\"type\": \"array\", \"minItems\": 3, \"items\": {\"$ref\": \"#/$defs/vector\"}", out);
+        break;
+    case SCENE_TEXT: fputs("\"type\": [\"string\", \"number\"]", out); break;
+    case SCENE_NAME: fputs("\"type\": [\"string\", \"number\"]", out); break;
+    case SCENE_NAMES:
+        fputs("\"type\": \"array\", \"uniqueItems\": true, \"items\": {\"type\": \"string\"}", out);
+        break;
+    case SCENE_WORD:
+        if (strcmp(row->path, "grid.transfer") == 0) {
+            fputs("\"anyOf\": [{", out);
+            schema_words(out, row);
+            fputs("}, {", out);
+            schema_group(out, row->path);
+            fputs("}]", out);
+        } else {
+            schema_words(out, row);
+        }
+        break;
+    case SCENE_SHAPE: fputs("\"$ref\": \"#/$defs/shape\"", out); break;
+    case SCENE_SHAPES:
+        fputs("\"type\": \"array\", \"minItems\": 1, \"items\": {\"$ref\": \"#/$defs/shape\"}", out);
+        break;
+    case SCENE_PARAMETERS: break;
+    }
+    fputc('}', out);
+}
+
+void brunt_scene_schema(FILE *out) {
+    fputs("{\n\"$schema\": \"https://json-schema.org/draft/2020-12/schema\",\n\"title\": \"brunt scene\",\n"
+          "\"$defs\": {\n\"number\": {\"type\": [\"number\", \"string\"]},\n"
+          "\"vector\": {\"type\": \"array\", \"minItems\": 2, \"maxItems\": 3, \"items\": {\"$ref\": "
+          "\"#/$defs/number\"}},\n"
+          "\"shape\": {\"minProperties\": 1, \"maxProperties\": 1, ",
+          out);
+    schema_group(out, "<shape>");
+    fputs("}\n},\n", out);
+    schema_group(out, "");
+    fputs("\n}\n", out);
+}

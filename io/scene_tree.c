@@ -1,0 +1,385 @@
+// The tree, its arena, its messages and the overrides. scene_yaml.c fills it from text.
+#include "scene_tree.h"
+
+#include <ctype.h>
+#include <limits.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "memory.h"
+
+typedef struct block {
+    struct block *next;
+    char bytes[];
+} block;
+
+void *brunt_tree_alloc(scene_tree *tree, size_t bytes) {
+    bytes = (bytes + 15) / 16 * 16;
+    if (!tree->blocks || tree->size - tree->used < bytes) {
+        size_t size = bytes > 65536 ? bytes : 65536;
+        block *fresh = brunt_alloc(sizeof *fresh + size);
+        if (!fresh) {
+            tree->exhausted = true;
+            return NULL;
+        }
+        fresh->next = tree->blocks;
+        tree->blocks = fresh;
+        tree->used = 0;
+        tree->size = size;
+    }
+    void *memory = ((block *)tree->blocks)->bytes + tree->used;
+    tree->used += bytes;
+    return memory;
+}
+
+char *brunt_tree_text(scene_tree *tree, const char *text, size_t length) {
+    char *copy = brunt_tree_alloc(tree, length + 1);
+    if (!copy) return NULL;
+    if (length) memcpy(copy, text, length);
+    copy[length] = 0;
+    return copy;
+}
+
+void brunt_tree_free(scene_tree *tree) {
+    for (block *b = tree->blocks, *next; b; b = next) {
+        next = b->next;
+        brunt_free(b);
+    }
+    memset(tree, 0, sizeof *tree);
+}
+
+scene_node *brunt_tree_node(scene_tree *tree, scene_kind kind) {
+    scene_node *node = brunt_tree_alloc(tree, sizeof *node);
+    if (!node) return NULL;
+    memset(node, 0, sizeof *node);
+    node->kind = kind;
+    node->plain = true;
+    tree->node_count++;
+    return node;
+}
+
+scene_node *brunt_tree_child(const scene_node *map, const char *key) {
+    if (!map || map->kind != SCENE_MAP) return NULL;
+    for (scene_node *child = map->first; child; child = child->next)
+        if (strcmp(child->key, key) == 0) return child;
+    return NULL;
+}
+
+void brunt_tree_append(scene_node *parent, scene_node *child) {
+    child->parent = parent;
+    child->next = NULL;
+    if (parent->last)
+        parent->last->next = child;
+    else
+        parent->first = child;
+    parent->last = child;
+    parent->count++;
+}
+
+void brunt_tree_remove(scene_node *child) {
+    scene_node *parent = child->parent, *before = NULL;
+    for (scene_node *node = parent->first; node != child; node = node->next) before = node;
+    if (before)
+        before->next = child->next;
+    else
+        parent->first = child->next;
+    if (parent->last == child) parent->last = before;
+    parent->count--;
+    child->parent = NULL;
+    child->next = NULL;
+}
+
+void brunt_tree_path(const scene_node *node, char *out, size_t size) {
+    const scene_node *up[SCENE_DEPTH_LIMIT + 4];
+    int depth = 0;
+    for (; node && node->parent && depth < SCENE_DEPTH_LIMIT + 4; node = node->parent) up[depth++] = node;
+    size_t used = 0;
+    out[0] = 0;
+    while (depth-- > 0 && used + 1 < size) {
+        int wrote;
+        if (up[depth]->key) {
+            wrote = snprintf(out + used, size - used, "%s%.60s", used ? "." : "", up[depth]->key);
+        } else {
+            int index = 0;
+            for (const scene_node *s = up[depth]->parent->first; s && s != up[depth]; s = s->next) index++;
+            wrote = snprintf(out + used, size - used, "[%d]", index);
+        }
+        used += wrote > 0 ? (size_t)wrote : 0;
+    }
+}
+
+// ---------------------------------------------------------------------------------------------------- messages
+
+static void add_message(scene_tree *tree, int line, int column, const char *option, const char *path,
+                        const char *format, va_list arguments) {
+    char text[2048];
+    size_t used = 0;
+    if (path && *path) used = (size_t)snprintf(text, sizeof text, "%.400s: ", path);
+    vsnprintf(text + used, sizeof text - used, format, arguments);
+    // What the user typed is quoted in messages: control bytes in it must not reach a terminal.
+    for (char *c = text; *c; c++)
+        if ((unsigned char)*c < 32 || *c == 127) *c = '?';
+    for (scene_message *m = tree->messages; m; m = m->next)
+        if (m->line == line && m->column == column && m->option == option && strcmp(m->text, text) == 0) return;
+    tree->message_count++;
+    if (tree->message_count > SCENE_MESSAGE_LIMIT) return;
+    scene_message *message = brunt_tree_alloc(tree, sizeof *message);
+    if (!message) return;
+    message->text = brunt_tree_text(tree, text, strlen(text));
+    if (!message->text) return;
+    message->line = line;
+    message->column = column;
+    message->option = option;
+    message->serial = tree->message_count;
+    message->next = tree->messages;
+    tree->messages = message;
+}
+
+void brunt_tree_complain_at(scene_tree *tree, int line, int column, const char *option, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    add_message(tree, line, column, option, NULL, format, arguments);
+    va_end(arguments);
+}
+
+// A default has no place of its own: the nearest thing around it that the user typed has.
+static const scene_node *typed(const scene_node *node) {
+    while (node->parent && !node->line && !node->option) node = node->parent;
+    return node;
+}
+
+void brunt_tree_complain(scene_tree *tree, const scene_node *node, const char *format, ...) {
+    char path[512];
+    brunt_tree_path(node, path, sizeof path);
+    const scene_node *at = typed(node);
+    bool by_key = at != node && at->key_line;
+    va_list arguments;
+    va_start(arguments, format);
+    add_message(tree, by_key ? at->key_line : at->line, by_key ? at->key_column : at->column, at->option, path, format,
+                arguments);
+    va_end(arguments);
+}
+
+void brunt_tree_complain_key(scene_tree *tree, const scene_node *node, const char *format, ...) {
+    char path[512];
+    brunt_tree_path(node, path, sizeof path);
+    const scene_node *at = typed(node);
+    bool by_key = at->key_line != 0;
+    va_list arguments;
+    va_start(arguments, format);
+    add_message(tree, by_key ? at->key_line : at->line, by_key ? at->key_column : at->column, at->option, path, format,
+                arguments);
+    va_end(arguments);
+}
+
+// Overrides come after the file, as on the command line.
+static int by_place(const void *a, const void *b) {
+    const scene_message *x = *(scene_message *const *)a, *y = *(scene_message *const *)b;
+    if (!x->option != !y->option) return x->option ? 1 : -1;
+    if (!x->option && x->line != y->line) return x->line < y->line ? -1 : 1;
+    if (!x->option && x->column != y->column) return x->column < y->column ? -1 : 1;
+    return x->serial - y->serial;
+}
+
+// The line and a caret under its column. Long lines are cut around the column; columns count characters, not bytes.
+static void excerpt(const scene_tree *tree, int line, int column, FILE *out) {
+    const char *p = tree->source, *end = tree->source + tree->length;
+    for (int l = 1; l < line && p < end; p++)
+        if (*p == '\n') l++;
+    if (p >= end) return;
+    enum { WIDTH = 100 };
+    int first = column > WIDTH - 20 ? column - (WIDTH - 20) : 1, at = 0;
+    char text[4 * WIDTH + 8];
+    size_t used = 0;
+    for (; p < end && *p != '\n' && *p != '\r'; p++) {
+        if (((unsigned char)*p & 0xC0) != 0x80) at++;
+        if (at < first) continue;
+        if (at >= first + WIDTH || used + 1 >= sizeof text) break;
+        unsigned char c = (unsigned char)*p;
+        text[used++] = c == '\t' ? ' ' : c < 32 || c == 127 ? '?' : (char)c;
+    }
+    if (used == 0) return;
+    fprintf(out, "    %.*s\n    %*s^\n", (int)used, text, column - first, "");
+}
+
+void brunt_tree_report(scene_tree *tree, FILE *out) {
+    if (!out) return;
+    scene_message *sorted[SCENE_MESSAGE_LIMIT];
+    size_t count = 0;
+    for (scene_message *m = tree->messages; m && count < SCENE_MESSAGE_LIMIT; m = m->next) sorted[count++] = m;
+    qsort(sorted, count, sizeof *sorted, by_place);
+    for (size_t i = 0; i < count; i++) {
+        const scene_message *m = sorted[i];
+        if (m->option) {
+            fprintf(out, "--set %s: %s\n", m->option, m->text);
+        } else if (m->line) {
+            fprintf(out, "%s:%d:%d: %s\n", tree->name, m->line, m->column, m->text);
+            excerpt(tree, m->line, m->column, out);
+        } else {
+            fprintf(out, "%s: %s\n", tree->name, m->text);
+        }
+    }
+    if (tree->message_count > SCENE_MESSAGE_LIMIT)
+        fprintf(out, "%s: and %d more mistakes\n", tree->name, tree->message_count - SCENE_MESSAGE_LIMIT);
+    if (tree->exhausted) fprintf(out, "%s: out of memory\n", tree->name);
+}
+
+// ---------------------------------------------------------------------------------------------------- overrides
+
+// One step of a path: a key, or an index for `[2]` and for `.2` in a list. Returns what is behind it, NULL when
+// malformed.
+static const char *path_step(const char *p, const char *end, const char **word, size_t *length) {
+    bool bracket = *p == '[';
+    if (bracket) p++;
+    *word = p;
+    while (p < end && *p != '.' && *p != '[' && *p != ']') p++;
+    *length = (size_t)(p - *word);
+    if (*length == 0) return NULL;
+    if (bracket) {
+        if (p >= end || *p != ']') return NULL;
+        p++;
+    } else if (p < end && *p == ']') {
+        return NULL;
+    }
+    if (p < end && *p == '.') {
+        p++;
+        if (p >= end) return NULL;
+    } else if (p < end && *p != '[') {
+        return NULL;
+    }
+    return p;
+}
+
+// The child that a step names. `missing`: a list's index may be its length, a map's key may be new.
+static scene_node *step_into(scene_tree *tree, scene_node *node, const char *word, size_t length, const char *option,
+                             bool *missing) {
+    char path[300];
+    brunt_tree_path(node, path, sizeof path);
+    *missing = false;
+    if (node->kind == SCENE_SCALAR) {
+        brunt_tree_complain_at(tree, 0, 0, option, "%s is a single value, it has no '%.*s'", path, (int)length, word);
+        return NULL;
+    }
+    if (node->kind == SCENE_MAP) {
+        for (scene_node *child = node->first; child; child = child->next)
+            if (strlen(child->key) == length && memcmp(child->key, word, length) == 0) return child;
+        *missing = true;
+        return NULL;
+    }
+    int index = 0;
+    for (size_t i = 0; i < length; i++) {
+        if (!isdigit((unsigned char)word[i]) || i > 6) {
+            brunt_tree_complain_at(tree, 0, 0, option,
+                                   "%s is a list, a number from 0 to %d is wanted instead of '%.*s'", path,
+                                   node->count ? node->count - 1 : 0, (int)length, word);
+            return NULL;
+        }
+        index = 10 * index + (word[i] - '0');
+    }
+    scene_node *child = node->first;
+    for (int i = 0; child && i < index; i++) child = child->next;
+    if (!child && index == node->count) {
+        *missing = true;
+    } else if (!child) {
+        brunt_tree_complain_at(tree, 0, 0, option, "%s has %d entries, there is none at [%d]", path, node->count,
+                               index);
+    }
+    return child;
+}
+
+static void replace(scene_node *old, scene_node *fresh) {
+    scene_node *parent = old->parent;
+    fresh->parent = parent;
+    fresh->next = old->next;
+    if (parent->first == old) {
+        parent->first = fresh;
+    } else {
+        scene_node *before = parent->first;
+        while (before->next != old) before = before->next;
+        before->next = fresh;
+    }
+    if (parent->last == old) parent->last = fresh;
+}
+
+void brunt_tree_set(scene_tree *tree, const char *option) {
+    const char *equals = strchr(option, '=');
+    if (!equals || equals == option) {
+        brunt_tree_complain_at(tree, 0, 0, option, "path.to.key=value is wanted");
+        return;
+    }
+    if (strlen(option) > 4096) {
+        brunt_tree_complain_at(tree, 0, 0, "(...)", "an override longer than 4096 characters");
+        return;
+    }
+    // Parsed at column 0 of a document of its own; messages name the option.
+    scene_node *value = brunt_tree_parse(tree, equals + 1, strlen(equals + 1), option);
+    if (!value) return;
+    scene_node *node = tree->root;
+    const char *p = option, *word;
+    size_t length;
+    for (int depth = 0; depth < SCENE_DEPTH_LIMIT / 2; depth++) {
+        p = path_step(p, equals, &word, &length);
+        if (!p) break;
+        bool missing;
+        scene_node *child = step_into(tree, node, word, length, option, &missing);
+        if (!child && !missing) return;
+        bool last = p == equals;
+        if (last || !child) {
+            scene_node *fresh = last ? value : brunt_tree_node(tree, SCENE_MAP);
+            if (!fresh) return;
+            fresh->option = option;
+            if (node->kind == SCENE_MAP && !(fresh->key = brunt_tree_text(tree, word, length))) return;
+            if (child)
+                replace(child, fresh);
+            else
+                brunt_tree_append(node, fresh);
+            child = fresh;
+        }
+        if (last) return;
+        node = child;
+    }
+    brunt_tree_complain_at(tree, 0, 0, option,
+                           "'%.*s' is not a path like bodies.rod.velocity or boundaries[0].friction",
+                           (int)(equals - option), option);
+}
+
+// ---------------------------------------------------------------------------------------------------- likeness
+
+// Levenshtein's distance with transpositions of neighbours, letter case not counted.
+static int likeness(const char *a, const char *b) {
+    enum { LONGEST = 64 };
+    int n = (int)strlen(a), m = (int)strlen(b);
+    if (n >= LONGEST || m >= LONGEST) return INT_MAX;
+    int rows[3][LONGEST + 1];
+    for (int j = 0; j <= m; j++) rows[0][j] = j;
+    for (int i = 1; i <= n; i++) {
+        int *row = rows[i % 3], *up = rows[(i + 2) % 3], *upup = rows[(i + 1) % 3];
+        row[0] = i;
+        for (int j = 1; j <= m; j++) {
+            int x = tolower((unsigned char)a[i - 1]), y = tolower((unsigned char)b[j - 1]);
+            int best = up[j - 1] + (x != y);
+            if (up[j] + 1 < best) best = up[j] + 1;
+            if (row[j - 1] + 1 < best) best = row[j - 1] + 1;
+            if (i > 1 && j > 1 && x == tolower((unsigned char)b[j - 2]) && y == tolower((unsigned char)a[i - 2]) &&
+                upup[j - 2] + 1 < best)
+                best = upup[j - 2] + 1;
+            row[j] = best;
+        }
+    }
+    return rows[n % 3][m];
+}
+
+const char *brunt_nearest_name(const char *name, const char *const *names, int count) {
+    int length = (int)strlen(name), best = length <= 3 ? 2 : length <= 6 ? 3 : 4; // one more than is accepted
+    const char *nearest = NULL;
+    for (int i = 0; i < count; i++) {
+        int distance = likeness(name, names[i]);
+        if (distance < best && distance < (int)strlen(names[i])) {
+            best = distance;
+            nearest = names[i];
+        }
+    }
+    return nearest;
+}

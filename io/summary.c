@@ -1,0 +1,238 @@
+#include "summary.h"
+
+#include <jansson.h>
+#include <math.h>
+#include <string.h>
+#include <sys/resource.h>
+
+#include "atomic_file.h"
+#include "error.h"
+
+static double peak_memory(void) {
+    struct rusage usage;
+    getrusage(RUSAGE_SELF, &usage);
+    return 1024.0 * (double)usage.ru_maxrss;
+}
+
+// JSON knows no infinity and no NAN.
+static json_t *number(double value) { return isfinite(value) ? json_real(value) : json_null(); }
+
+static json_t *vector(const double v[3]) {
+    json_t *array = json_array();
+    for (int c = 0; c < 3; c++) json_array_append_new(array, number(v[c]));
+    return array;
+}
+
+static double particle_steps(const brunt_world *world) {
+    return (double)brunt_world_particles(world) * (double)brunt_world_steps(world);
+}
+
+static json_t *phases_of(const brunt_summary *summary, const brunt_world *world) {
+    json_t *phases = json_object();
+    for (int32_t p = 0; p < brunt_pass_count(world); p++) {
+        brunt_pass pass = brunt_world_pass(world, p);
+        json_object_set_new(phases, pass.name, number(pass.seconds));
+    }
+    json_object_set_new(phases, "output", number(summary->output_seconds));
+    return phases;
+}
+
+static json_t *effects_of(const brunt_world *world) {
+    json_t *effects = json_object();
+    for (int32_t e = 0; e < brunt_effect_count(world); e++) {
+        brunt_effect effect = brunt_world_effect(world, e);
+        json_object_set_new(effects, effect.name, json_boolean(effect.on));
+    }
+    return effects;
+}
+
+static json_t *energy_of(brunt_world *world) {
+    brunt_energy e;
+    brunt_world_energy(world, &e);
+    const struct {
+        const char *name;
+        double value;
+    } rows[] = {{"initial", e.initial},
+                {"final", e.total},
+                {"kinetic", e.kinetic},
+                {"internal", e.internal},
+                {"plastic", e.plastic},
+                {"hourglass", e.hourglass},
+                {"contact", e.contact},
+                {"friction", e.friction},
+                {"viscosity", e.viscosity},
+                {"transfer", e.transfer},
+                {"eroded", e.eroded},
+                {"external_work", e.external_work},
+                {"error_relative", e.error_relative}};
+    json_t *energy = json_object();
+    for (size_t r = 0; r < sizeof rows / sizeof *rows; r++)
+        json_object_set_new(energy, rows[r].name, number(rows[r].value));
+    return energy;
+}
+
+static json_t *momentum_of(brunt_world *world) {
+    brunt_momentum m;
+    brunt_world_momentum(world, &m);
+    json_t *momentum = json_object();
+    json_object_set_new(momentum, "linear_initial", vector(m.linear_initial));
+    json_object_set_new(momentum, "linear_final", vector(m.linear));
+    json_object_set_new(momentum, "linear_drift", number(m.linear_drift));
+    json_object_set_new(momentum, "angular_initial", vector(m.angular_initial));
+    json_object_set_new(momentum, "angular_final", vector(m.angular));
+    json_object_set_new(momentum, "angular_drift", number(m.angular_drift));
+    return momentum;
+}
+
+static json_t *measures_of(const brunt_summary *summary, const brunt_scene *scene) {
+    json_t *measures = json_object();
+    for (int32_t i = 0; i < scene->measure_count; i++) {
+        const brunt_measure *m = &scene->measures[i];
+        const brunt_measure_result *r = summary->results ? &summary->results[i] : NULL;
+        json_t *entry = json_object();
+        json_object_set_new(entry, "value", number(r ? r->value : NAN));
+        json_object_set_new(entry, "unit", json_string(m->unit));
+        json_object_set_new(entry, "expect", number(m->expect));
+        json_object_set_new(entry, "error", number(r ? r->error : NAN));
+        // Neither true nor false where nothing is expected.
+        json_object_set_new(entry, "ok", r && r->judged ? json_boolean(r->ok) : json_null());
+        json_object_set_new(measures, m->name, entry);
+    }
+    return measures;
+}
+
+static void set_text(json_t *object, const char *key, const char *text) {
+    json_t *value = json_string(text);
+    // Text that is not UTF-8 (a file name may be anything) is refused by jansson.
+    json_object_set_new(object, key, value ? value : json_string("(not UTF-8)"));
+}
+
+static json_t *summary_object(const brunt_summary *s, const brunt_scene *scene, brunt_world *world) {
+    double steps = particle_steps(world);
+    char hash[24];
+    snprintf(hash, sizeof hash, "0x%016llx", (unsigned long long)brunt_world_hash(world));
+    json_t *o = json_object();
+    set_text(o, "scene", scene->name);
+    json_object_set_new(o, "version", json_string(BRUNT_VERSION));
+    json_object_set_new(o, "status", json_string(s->status));
+    set_text(o, "reason", s->reason);
+    json_object_set_new(o, "dimension", json_integer(brunt_world_dimension(world)));
+    json_object_set_new(o, "threads", json_integer(brunt_world_threads(world)));
+    json_object_set_new(o, "steps", json_integer(brunt_world_steps(world)));
+    json_object_set_new(o, "time", number(brunt_world_time(world)));
+    json_object_set_new(o, "wall_s", number(s->wall_seconds));
+    json_object_set_new(o, "cpu_s", number(s->cpu_seconds));
+    json_object_set_new(o, "peak_rss_bytes", json_integer((json_int_t)peak_memory()));
+    json_object_set_new(o, "particles", json_integer(brunt_world_particles(world)));
+    json_object_set_new(o, "nodes", json_integer(brunt_world_nodes(world)));
+    json_object_set_new(o, "elements", json_integer(0));
+    json_object_set_new(o, "particle_steps_per_s", number(steps / s->step_seconds));
+    json_object_set_new(o, "element_steps_per_s", json_null());
+    json_object_set_new(o, "ns_per_particle_step", number(1e9 * s->step_seconds / steps));
+    json_object_set_new(o, "ns_per_element_step", json_null());
+    json_object_set_new(o, "dt_min", number(brunt_world_dt_min(world)));
+    json_object_set_new(o, "dt_max", number(brunt_world_dt_max(world)));
+    json_object_set_new(o, "state_hash", json_string(hash));
+    json_object_set_new(o, "phases", phases_of(s, world));
+    json_object_set_new(o, "effects", effects_of(world));
+    json_object_set_new(o, "energy", energy_of(world));
+    json_object_set_new(o, "momentum", momentum_of(world));
+    json_object_set_new(o, "measures", measures_of(s, scene));
+    return o;
+}
+
+int brunt_summary_write(const char *path, const brunt_summary *summary, const brunt_scene *scene, brunt_world *world,
+                        brunt_error *error) {
+    json_t *object = summary_object(summary, scene, world);
+    char *text = json_dumps(object, JSON_INDENT(2) | JSON_PRESERVE_ORDER | JSON_REAL_PRECISION(17));
+    json_decref(object);
+    if (!text) return brunt_fail(error, BRUNT_FAILED, "out of memory while writing %s", path);
+    brunt_atomic_file file;
+    int status = brunt_atomic_open(&file, path, error);
+    if (!status) {
+        fputs(text, file.stream);
+        fputc('\n', file.stream);
+        status = brunt_atomic_commit(&file, error);
+    }
+    void (*release)(void *);
+    json_get_alloc_funcs(NULL, &release);
+    release(text);
+    return status;
+}
+
+static void print_energy(brunt_world *world, brunt_console *console) {
+    brunt_energy e;
+    brunt_world_energy(world, &e);
+    const struct {
+        const char *name;
+        double value;
+    } rows[] = {{"initial", e.initial},     {"external work", e.external_work},
+                {"kinetic", e.kinetic},     {"internal", e.internal},
+                {"plastic", e.plastic},     {"hourglass", e.hourglass},
+                {"contact", e.contact},     {"friction", e.friction},
+                {"viscosity", e.viscosity}, {"transfer", e.transfer},
+                {"eroded", e.eroded},       {"error", e.error}};
+    brunt_console_print(console, "energy [J]\n");
+    for (size_t r = 0; r < sizeof rows / sizeof *rows; r++)
+        // Rows of effects the scene does not have are no more than noise; the four that always matter are always there.
+        if (rows[r].value != 0 || r < 4) brunt_console_print(console, "  %-15s %16.8g\n", rows[r].name, rows[r].value);
+    brunt_console_print(console, "  %-15s %16.3g %%\n", "error, relative", 100 * e.error_relative);
+}
+
+static void print_measures(const brunt_summary *summary, const brunt_scene *scene, brunt_console *console) {
+    if (!scene->measure_count || !summary->results) return;
+    brunt_console_print(console, "measures\n");
+    for (int32_t i = 0; i < scene->measure_count; i++) {
+        const brunt_measure *m = &scene->measures[i];
+        const brunt_measure_result *r = &summary->results[i];
+        brunt_console_print(console, "  %-28s %14.7g %-8s", m->name, r->value, m->unit);
+        if (!isnan(m->expect))
+            brunt_console_print(console, "  expected %.7g, off by %.3g%s", m->expect,
+                                m->absolute || m->expect == 0 ? r->error : 100 * r->error,
+                                m->absolute || m->expect == 0 ? "" : " %");
+        if (r->judged) brunt_console_print(console, "  %s", r->ok ? "ok" : "FAIL");
+        brunt_console_print(console, "%s%s%s\n", m->source[0] ? "  (" : "", m->source, m->source[0] ? ")" : "");
+    }
+}
+
+void brunt_summary_print(const brunt_summary *s, const brunt_scene *scene, brunt_world *world, brunt_console *console) {
+    double steps = particle_steps(world);
+    brunt_momentum m;
+    brunt_world_momentum(world, &m);
+    brunt_console_print(console, "%s: %s\n", s->status, s->reason);
+    brunt_console_print(console, "scene %s, brunt %s, %dD, %d thread%s, %lld particles\n", scene->name, BRUNT_VERSION,
+                        brunt_world_dimension(world), brunt_world_threads(world),
+                        brunt_world_threads(world) == 1 ? "" : "s", (long long)brunt_world_particles(world));
+    brunt_console_print(console, "t = %.9g s after %lld steps of %.4g to %.4g s\n", brunt_world_time(world),
+                        (long long)brunt_world_steps(world), brunt_world_dt_min(world), brunt_world_dt_max(world));
+    brunt_console_print(console, "wall %.2f s, of it steps %.2f s, output %.2f s; cpu %.2f s; peak memory %.1f MB\n",
+                        s->wall_seconds, s->step_seconds, s->output_seconds, s->cpu_seconds, 1e-6 * peak_memory());
+    if (steps > 0 && s->step_seconds > 0)
+        brunt_console_print(console, "%.4g particle-steps/s, %.1f ns per particle-step\n", steps / s->step_seconds,
+                            1e9 * s->step_seconds / steps);
+    print_energy(world, console);
+    brunt_console_print(console, "momentum drift: linear %.2e, angular %.2e\n", m.linear_drift, m.angular_drift);
+    brunt_console_print(console, "state hash 0x%016llx\n", (unsigned long long)brunt_world_hash(world));
+    print_measures(s, scene, console);
+}
+
+void brunt_profile_print(const brunt_summary *summary, brunt_world *world, brunt_console *console) {
+    double total = summary->output_seconds;
+    for (int32_t p = 0; p < brunt_pass_count(world); p++) total += brunt_world_pass(world, p).seconds;
+    // A pass may run once a body: its cost is per step of the whole world, so that the rows add up.
+    double points = (double)brunt_world_particles(world) * (double)summary->session_steps;
+    int threads = brunt_world_threads(world);
+    if (threads > 64) threads = 64;
+    brunt_console_print(console, "profile of this session\n  %-28s %10s %10s %12s %7s  per thread [s]\n", "pass",
+                        "seconds", "calls", "ns/particle", "share");
+    for (int32_t p = 0; p < brunt_pass_count(world); p++) {
+        brunt_pass pass = brunt_world_pass(world, p);
+        brunt_console_print(console, "  %-28s %10.4f %10lld %12.2f %6.1f%% ", pass.name, pass.seconds,
+                            (long long)pass.calls, points > 0 ? 1e9 * pass.seconds / points : 0.0,
+                            total > 0 ? 100 * pass.seconds / total : 0.0);
+        for (int t = 0; t < threads; t++) brunt_console_print(console, " %.3f", pass.thread_seconds[t]);
+        brunt_console_print(console, "\n");
+    }
+    brunt_console_print(console, "  %-28s %10.4f %10s %12s %6.1f%%\n", "output", summary->output_seconds, "", "",
+                        total > 0 ? 100 * summary->output_seconds / total : 0.0);
+}

@@ -1,0 +1,104 @@
+// Linear elasticity with small strain: eps = sym(F) - I, sigma = lambda tr(eps) I + 2 mu eps.
+//
+// Not invariant under rotation, by definition: a rigid turn by theta strains it by 1 - cos(theta). It is here for the
+// closed forms of the linear theory (vibration, Hertz); use st-venant-kirchhoff for the same law with finite rotation.
+//
+// The stored energy V0 (lambda/2 tr(eps)^2 + mu eps:eps) has the first Piola-Kirchhoff stress P = sigma(eps), and the
+// stress power under F' = L F is P : L F = (P F^T) : L. So the Kirchhoff stress of this energy is P F^T = sigma + sigma
+// H^T, not sigma: with sigma alone the ledger would miss work of first order in the strain. Its skew part, of second
+// order, is what a model that is not objective does to angular momentum; it is left out, so the stress is symmetric and
+// the power is exact for every motion whose velocity gradient is symmetric.
+#include "elastic.h"
+
+BRUNT_INLINE void small_strain(int dim, const lanes H[9], lanes eps[6]) {
+    const real half = (real)0.5;
+    eps[XX] = H[0];
+    eps[YY] = H[dim + 1];
+    if (dim == 2) {
+        eps[XY] = half * (H[1] + H[2]);
+        return;
+    }
+    eps[ZZ] = H[8];
+    eps[XY] = half * (H[1] + H[3]);
+    eps[YZ] = half * (H[5] + H[7]);
+    eps[XZ] = half * (H[2] + H[6]);
+}
+
+BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_points *points) {
+    update_record record = update_begin();
+    const real lambda = k[ELASTIC_LAMBDA], mu = k[ELASTIC_MU], half = (real)0.5;
+    for (int32_t i = 0; i < points->count; i += BRUNT_LANES) {
+        lanes H[9], B[6], eps[6], sigma[6], tau[6];
+        load_displacement_gradient(dim, points, i, H);
+        note_deformation(&record, 1 + volume_change(dim, H), i);
+        small_strain(dim, H, eps);
+        lanes pressure = lambda * plane_trace(dim, eps);
+        sigma[XX] = pressure + 2 * mu * eps[XX];
+        sigma[YY] = pressure + 2 * mu * eps[YY];
+        sigma[XY] = 2 * mu * eps[XY];
+        if (dim == 2) {
+            tau[XX] = sigma[XX] + (sigma[XX] * H[0] + sigma[XY] * H[1]);
+            tau[YY] = sigma[YY] + (sigma[XY] * H[2] + sigma[YY] * H[3]);
+            tau[ZZ] = pressure;
+            tau[XY] = sigma[XY] + half * ((sigma[XX] * H[2] + sigma[XY] * H[3]) +
+                                          (sigma[XY] * H[0] + sigma[YY] * H[1]));
+        } else {
+            sigma[ZZ] = pressure + 2 * mu * eps[ZZ];
+            sigma[YZ] = 2 * mu * eps[YZ];
+            sigma[XZ] = 2 * mu * eps[XZ];
+            // rows of sigma times rows of H
+            const lanes *x = H, *y = H + 3, *z = H + 6;
+            lanes sx[3] = {sigma[XX], sigma[XY], sigma[XZ]}, sy[3] = {sigma[XY], sigma[YY], sigma[YZ]},
+                  sz[3] = {sigma[XZ], sigma[YZ], sigma[ZZ]};
+            tau[XX] = sigma[XX] + (sx[0] * x[0] + sx[1] * x[1] + sx[2] * x[2]);
+            tau[YY] = sigma[YY] + (sy[0] * y[0] + sy[1] * y[1] + sy[2] * y[2]);
+            tau[ZZ] = sigma[ZZ] + (sz[0] * z[0] + sz[1] * z[1] + sz[2] * z[2]);
+            tau[XY] = sigma[XY] + half * ((sx[0] * y[0] + sx[1] * y[1] + sx[2] * y[2]) +
+                                          (sy[0] * x[0] + sy[1] * x[1] + sy[2] * x[2]));
+            tau[YZ] = sigma[YZ] + half * ((sy[0] * z[0] + sy[1] * z[1] + sy[2] * z[2]) +
+                                          (sz[0] * y[0] + sz[1] * y[1] + sz[2] * y[2]));
+            tau[XZ] = sigma[XZ] + half * ((sx[0] * z[0] + sx[1] * z[1] + sx[2] * z[2]) +
+                                          (sz[0] * x[0] + sz[1] * x[1] + sz[2] * x[2]));
+        }
+        store_stress(dim, points, i, tau);
+        // Per reference length the speed is constant; a length now is stretched.
+        finger_strain(dim, H, B);
+        note_speed(&record, (lambda + 2 * mu) * k[ELASTIC_INVERSE_DENSITY] * stretch_squared_bound(dim, B));
+    }
+    return update_end(&record, points, NULL);
+}
+
+BRUNT_INLINE void energy_dim(int dim, const real *k, const brunt_points *points, brunt_point_energy *energy) {
+    lane_total stored = {0};
+    for (int32_t i = 0; i < points->count; i += BRUNT_LANES) {
+        lanes H[9], eps[6];
+        load_displacement_gradient(dim, points, i, H);
+        eps[ZZ] = lanes_set(0);
+        small_strain(dim, H, eps);
+        lanes trace = plane_trace(dim, eps);
+        lanes density = (real)0.5 * k[ELASTIC_LAMBDA] * trace * trace + k[ELASTIC_MU] * contraction(dim, eps);
+        total_add(&stored, lanes_load(points->volume + i) * density);
+    }
+    energy->internal += total_end(&stored);
+}
+
+static brunt_update_result update(const real *constants, const brunt_points *points) {
+    return points->dim == 2 ? update_dim(2, constants, points) : update_dim(3, constants, points);
+}
+
+static void add_energy(const real *constants, const brunt_points *points, brunt_point_energy *energy) {
+    if (points->dim == 2) energy_dim(2, constants, points, energy);
+    else energy_dim(3, constants, points, energy);
+}
+
+const brunt_model brunt_linear_elastic = {
+    .name = "linear-elastic",
+    .doc = "Hooke's law with small strain: for small rotations only",
+    .small_strain = true,
+    .parameters = elastic_parameters,
+    .parameter_count = COUNT_OF(elastic_parameters),
+    .prepare = elastic_prepare,
+    .update = update,
+    .energy = add_energy,
+    .wave_speed = elastic_wave_speed,
+};

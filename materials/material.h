@@ -1,0 +1,112 @@
+// What a material is: a table of functions over a range of points, described by tables of parameters and state.
+//
+// A material knows no body, grid or element: it sees parameters, the deformation gradient and its rate, dt and state;
+// it writes Kirchhoff stress tau = J sigma and state. Points come in whole vectors of BRUNT_LANES (padding points
+// repeat a real point with mass and volume 0), so no function here needs a tail loop.
+//
+// A body's material is up to three components applied in this order over the same range:
+//   strength   (required)  deviatoric stress; also the pressure when there is no equation of state
+//   viscosity  (optional)  artificial bulk viscosity: adds q to the pressure while the material is being compressed
+//   eos        (optional)  pressure from density and internal energy
+// Each update gets brunt_points with its own state arrays. With an eos the strength writes the deviatoric stress alone.
+//
+// Work and dissipation are trapezoidal in time: the mean of the stresses at both ends of a step, times its rate. That
+// is what central differences do (summed over a run, force at t_n times the mean of the velocities about it is the same
+// sum, each stress with the rate as seen from its own configuration), so the energies here close with the kinetic
+// energy of the leap-frog.
+//
+// Adding one: a new file with its table, and one line in materials/list.c.
+#pragma once
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "real.h"
+
+enum { BRUNT_MAX_PARAMETERS = 24, BRUNT_MAX_CONSTANTS = 48, BRUNT_MAX_STATE = 24 };
+
+// A range of `count` points (a multiple of BRUNT_LANES). Arrays are one per scalar component, aligned to a vector.
+typedef struct brunt_points {
+    int32_t count;
+    int dim;                  // 2 (plane strain) or 3
+    real dt;                  // [s]
+    real cell;                // [m] length scale of the discretisation (for the artificial viscosity)
+    real wave_speed;          // [m/s] of the undeformed body (for the artificial viscosity)
+    const real *L[9];         // velocity gradient over the step [1/s], BRUNT_MATRIX(dim) components
+    real *F[9];               // deformation gradient at the end of the step [-] (already updated: F = (I + dt L) F_old)
+    real *stress[6];          // Kirchhoff stress [Pa]; in: of the last step, out: of this step; BRUNT_SYMMETRIC(dim) components
+    const real *volume;       // reference volume [m^3]; 0 for padding
+    real *state[BRUNT_MAX_STATE];  // this component's own state arrays, in the order of its state table
+    // What one component leaves for the next, within one update (never stored): dissipation and viscous pressure.
+    real *plastic_increment;  // [J/m^3 of reference volume] plastic work of this step; NULL when nobody reads it
+                              // (no eos), or when the strength model is not plastic
+    real *viscous_pressure;   // [Pa] q > 0 in compression, mean of the last step's and this one's: its work in the step
+                              // is -viscous_pressure dJ per reference volume; NULL when nobody reads it
+} brunt_points;
+
+// What an update tells its caller.
+typedef struct brunt_update_result {
+    real wave_speed;          // [m/s] greatest among the points; of a body: brunt_wave_speed of its components' results
+    int32_t bad;              // index of the first point that failed, -1 when none did
+    const char *reason;       // why, e.g. "the deformation gradient has turned inside out (J <= 0)"
+} brunt_update_result;
+
+// Energies of a range, per kind [J]. A component adds its own share.
+typedef struct brunt_point_energy {
+    double internal;          // stored (recoverable) energy, and heat of an equation of state
+    double plastic;           // dissipated by plastic flow
+    double viscosity;         // dissipated by the artificial viscosity
+} brunt_point_energy;
+
+typedef struct brunt_parameter {
+    const char *key;          // as typed in a scene
+    const char *unit;         // "Pa", "1", "K", "J/kg/K"
+    double initial;           // the default; NAN when it must be given
+    double min, max;          // allowed range ...
+    bool min_open, max_open;  // ... without its ends
+    const char *doc;          // one line
+} brunt_parameter;
+
+typedef struct brunt_state_field {
+    const char *name;         // the field's standard term: "plastic_strain"
+    const char *unit;
+    int components3, components2;  // scalars in 3D, in 2D
+    // Value a new point starts with: NULL for 0, else computed from the prepared constants, per component.
+    real (*initial)(const real *constants, int component);
+} brunt_state_field;
+
+typedef struct brunt_model {
+    const char *name;         // as typed in a scene: "neo-hookean"
+    const char *doc;          // one line, with its source
+    bool plastic, thermal, eos, viscous;  // the effects it brings: the plan and the summary list them
+    bool accepts_eos;         // a strength model whose pressure an equation of state may replace
+    bool small_strain;        // by definition not rotation invariant: exempt from what holds for finite rotations
+    const brunt_parameter *parameters; int parameter_count;   // density is common to all and not listed here
+    const brunt_state_field *state; int state_count;
+    // Fills `constants` (at most BRUNT_MAX_CONSTANTS reals, laid out as the model likes) from the parameters.
+    // `density` [kg/m^3]; `with_eos`: the pressure comes from an equation of state. Returns NULL, or what is wrong, in
+    // a few words.
+    const char *(*prepare)(const double *parameters, double density, bool with_eos, real *constants);
+    // One step for a range. Writes stress and state; a strength model overwrites the stress, the others add to it.
+    brunt_update_result (*update)(const real *constants, const brunt_points *points);
+    // Adds the range's energies to `energy`.
+    void (*energy)(const real *constants, const brunt_points *points, brunt_point_energy *energy);
+    // The same measure as the update's wave_speed, of the undeformed material at rest [m/s]: the first time step, and
+    // the plan.
+    real (*wave_speed)(const real *constants);
+} brunt_model;
+
+// The lists. Order is the order of `brunt keys`.
+extern const brunt_model *const brunt_strength_models[];  extern const int brunt_strength_model_count;
+extern const brunt_model *const brunt_eos_models[];       extern const int brunt_eos_model_count;
+extern const brunt_model brunt_bulk_viscosity;            // there is one
+
+// Wave speed that limits the time step [m/s]. A strength model gives the longitudinal speed, or with an eos its shear
+// share sqrt(4/3 mu / rho); an eos the bulk sound speed; their squares add. A viscosity gives Q = linear c + quadratic
+// l |tr L|: an explicit step of length l is stable up to l / (Q + sqrt(Q^2 + c^2)) (Hallquist, LS-DYNA theory manual,
+// time step control). What a body does not have is 0.
+real brunt_wave_speed(real strength, real eos, real viscosity);
+
+// Finds a model by name, NULL when there is none.
+const brunt_model *brunt_find_strength(const char *name);
+const brunt_model *brunt_find_eos(const char *name);

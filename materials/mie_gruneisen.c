@@ -1,0 +1,122 @@
+// Mie-Gruneisen equation of state about a linear shock Hugoniot Us = c0 + s up, with rho gamma = rho0 gamma0 (for the
+// form: Meyers, Dynamic Behavior of Materials (1994), chapter 5; Wilkins, Computer Simulation of Dynamic Phenomena
+// (1999)):
+//   compression, eta = 1 - J:   p = p_H (1 - gamma0 eta / 2) + gamma0 e,   p_H = rho0 c0^2 eta / (1 - s eta)^2
+//   tension, mu = 1/J - 1 < 0:  p = rho0 c0^2 mu + gamma0 e
+// with e the internal energy per reference volume. With mu, eta = mu / (1 + mu) and 1 - s eta = (1 - (s - 1) mu) / (1 +
+// mu). On the Hugoniot e = p_H eta / 2, and p = p_H: the compression law holds it exactly. Both branches meet at J = 1
+// with value and slope. A compression past eta = 1/s has no shock state; it is reported, never bounded.
+//
+// e changes by -p dJ + viscous work + plastic work. p at the end of the step is linear in e, so the trapezoid
+//   e1 = e0 - (p0 + p1)/2 dJ + Q,  p1 = a + gamma0 e1   is solved in closed form.
+// `compression_work` is -int p dJ alone: plastic work is counted by the strength model, viscous work by the viscosity.
+#include "tensor.h"
+
+enum { DENSITY, SOUND_SPEED, SLOPE, GAMMA, INITIAL_ENERGY, STIFFNESS };
+enum { INTERNAL_ENERGY, COMPRESSION_WORK };
+
+static const brunt_parameter parameters[] = {
+    {"c0", "m/s", NAN, 0, INFINITY, true, true, "bulk sound speed at rest: Us = c0 + s up"},
+    {"s", "1", NAN, 0, INFINITY, false, true, "slope of shock speed over particle speed"},
+    {"gamma0", "1", NAN, 0, INFINITY, false, true, "Gruneisen coefficient at reference density"},
+    {"initial_energy", "J/m^3", 0, -INFINITY, INFINITY, true, true, "energy per reference volume at the start"},
+};
+
+static real initial_energy(const real *constants, int component) {
+    (void)component;
+    return constants[INITIAL_ENERGY];
+}
+
+static const brunt_state_field state[] = {
+    {"internal_energy", "J/m^3", 1, 1, initial_energy},
+    {"compression_work", "J/m^3", 1, 1, NULL},
+};
+
+static const char *prepare(const double *p, double density, bool with_eos, real *constants) {
+    (void)with_eos;
+    constants[DENSITY] = (real)density;
+    constants[SOUND_SPEED] = (real)p[0];
+    constants[SLOPE] = (real)p[1];
+    constants[GAMMA] = (real)p[2];
+    constants[INITIAL_ENERGY] = (real)p[3];
+    constants[STIFFNESS] = (real)(density * p[0] * p[0]);
+    return NULL;
+}
+
+// What of the pressure does not depend on the energy, for J - 1 = change; `valid` is 1 - s eta, which must be positive.
+BRUNT_INLINE lanes cold_pressure(const real *k, lanes change, lanes *valid) {
+    lanes eta = -change;
+    lanes denominator = lanes_select(change > 0, 1 + change, 1 - k[SLOPE] * eta);
+    lanes inverse = 1 / denominator;
+    *valid = denominator;
+    lanes hugoniot = eta * inverse * inverse * (1 - (real)0.5 * k[GAMMA] * eta);
+    return k[STIFFNESS] * lanes_select(change > 0, eta * inverse, hugoniot);
+}
+
+BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_points *points) {
+    update_record record = update_begin();
+    const real half = (real)0.5;
+    for (int32_t i = 0; i < points->count; i += BRUNT_LANES) {
+        lanes H[9], valid, valid_before;
+        load_displacement_gradient(dim, points, i, H);
+        lanes change = volume_change(dim, H), J = 1 + change;
+        load_step_gradient(dim, points, i, H);
+        // J_old = J / (1 + v): dJ = J v / (1 + v).
+        lanes step = volume_change(dim, H), dJ = J * (step / (1 + step));
+        note_deformation(&record, lanes_select(1 + step > 0, J, lanes_set(0)), i);
+
+        lanes e = lanes_load(points->state[INTERNAL_ENERGY] + i);
+        lanes p_old = cold_pressure(k, change - dJ, &valid_before) + k[GAMMA] * e;
+        lanes cold = cold_pressure(k, change, &valid);
+        lanes heat = lanes_set(0);
+        if (points->plastic_increment) heat += lanes_load(points->plastic_increment + i);
+        if (points->viscous_pressure) heat -= lanes_load(points->viscous_pressure + i) * dJ;
+        lanes e_new = (e - half * (p_old + cold) * dJ + heat) / (1 + half * k[GAMMA] * dJ);
+        lanes p = cold + k[GAMMA] * e_new;
+        note_first(&record.model, ~(valid > 0), i);
+
+        lanes_store(points->state[INTERNAL_ENERGY] + i, e_new);
+        real *work = points->state[COMPRESSION_WORK] + i;
+        lanes_store(work, lanes_load(work) - half * (p_old + p) * dJ);
+        lanes Jp = J * p;
+        for (int c = 0; c < 3; c++) lanes_store(points->stress[c] + i, lanes_load(points->stress[c] + i) - Jp);
+
+        // c^2 = J^2 / rho0 (dp/deta at constant e + gamma0 p); in tension c0^2 + gamma0 p J^2 / rho0.
+        lanes eta = -change, inverse = 1 / valid, r = 1 - half * k[GAMMA] * eta;
+        lanes slope = inverse * inverse * ((1 + k[SLOPE] * eta) * inverse * r - half * k[GAMMA] * eta);
+        slope = lanes_select(change > 0, 1 / (J * J), slope);
+        note_speed(&record, J * J * (k[STIFFNESS] * slope + k[GAMMA] * p) / k[DENSITY]);
+    }
+    return update_end(&record, points, "compressed beyond the Mie-Gruneisen equation of state (1 - s (1 - J) <= 0)");
+}
+
+static brunt_update_result update(const real *constants, const brunt_points *points) {
+    return points->dim == 2 ? update_dim(2, constants, points) : update_dim(3, constants, points);
+}
+
+static void add_energy(const real *constants, const brunt_points *points, brunt_point_energy *energy) {
+    (void)constants;
+    lane_total stored = {0};
+    for (int32_t i = 0; i < points->count; i += BRUNT_LANES)
+        total_add(&stored, lanes_load(points->volume + i) * lanes_load(points->state[COMPRESSION_WORK] + i));
+    energy->internal += total_end(&stored);
+}
+
+static real wave_speed(const real *constants) {
+    double c0 = (double)constants[SOUND_SPEED], gamma = (double)constants[GAMMA];
+    return (real)sqrt(c0 * c0 + gamma * gamma * (double)constants[INITIAL_ENERGY] / (double)constants[DENSITY]);
+}
+
+const brunt_model brunt_mie_gruneisen = {
+    .name = "mie-gruneisen",
+    .doc = "Mie-Gruneisen equation of state about a linear shock Hugoniot",
+    .eos = true,
+    .parameters = parameters,
+    .parameter_count = COUNT_OF(parameters),
+    .state = state,
+    .state_count = COUNT_OF(state),
+    .prepare = prepare,
+    .update = update,
+    .energy = add_energy,
+    .wave_speed = wave_speed,
+};

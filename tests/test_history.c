@@ -1,0 +1,241 @@
+// Labels: io
+#include "small_scene.h"
+
+#include <math.h>
+
+#include "history.h"
+#include "memory.h"
+
+static brunt_scene scene;
+static brunt_world *world;
+static brunt_history *history;
+
+static void set_up(void) {
+    brunt_error error = {0};
+    small_folder_make();
+    const char *sets[] = {"time.end=10 s"}; // longer than any test
+    small_scene(&scene, sets, 1);
+    world = small_world(&scene);
+    history = brunt_history_create(world, &scene, &error);
+    ck_assert_msg(history != NULL, "%s", error.message);
+}
+
+static void tear_down(void) {
+    brunt_history_destroy(history);
+    brunt_world_destroy(world);
+    brunt_scene_free(&scene);
+    small_folder_remove();
+    ck_assert_int_eq((int)brunt_memory_live(), 0);
+}
+
+// Samples every few steps until `rows` lines are there.
+static void sample(int rows) {
+    while (brunt_history_rows(history) < rows) {
+        ck_assert_int_eq(brunt_history_sample(history, world, NULL), BRUNT_OK);
+        small_steps(world, 5);
+    }
+}
+
+static double last(const char *name) {
+    const double *values = brunt_history_column(history, name);
+    ck_assert_msg(values != NULL, "no column %s", name);
+    return values[brunt_history_rows(history) - 1];
+}
+
+static const char *unit(const char *name) {
+    for (int32_t c = 0; c < brunt_history_column_count(history); c++)
+        if (!strcmp(brunt_history_column_name(history, c), name)) return brunt_history_column_unit(history, c);
+    ck_abort_msg("no column %s", name);
+}
+
+START_TEST(columns_hold_what_the_world_says) {
+    small_steps(world, 40);
+    ck_assert_int_eq(brunt_history_sample(history, world, NULL), BRUNT_OK);
+    brunt_energy energy;
+    brunt_momentum momentum;
+    brunt_body_sums right;
+    brunt_world_energy(world, &energy);
+    brunt_world_momentum(world, &momentum);
+    brunt_body_totals(world, 1, &right);
+    ck_assert_double_eq(last("time"), brunt_world_time(world));
+    ck_assert_double_eq(last("step"), 40);
+    ck_assert_double_eq(last("dt"), brunt_world_dt(world));
+    ck_assert_double_eq(last("energy.kinetic"), energy.kinetic);
+    ck_assert_double_gt(energy.kinetic, 0);
+    ck_assert_double_eq(last("energy.total"), energy.total);
+    ck_assert_double_eq(last("energy.error_relative"), energy.error_relative);
+    ck_assert_double_eq(last("momentum.linear_y"), momentum.linear[1]);
+    ck_assert_double_eq(last("momentum.angular_z"), momentum.angular[2]);
+    ck_assert_double_eq(last("body.right.mass"), right.mass);
+    ck_assert_double_eq_tol(right.mass, 1000 * 0.5 * 0.3, 1e-3);
+    ck_assert_double_eq(last("body.right.position_x"), right.centre[0]);
+    ck_assert_double_eq(last("body.right.velocity_x"), right.velocity[0]);
+    ck_assert_str_eq(unit("time"), "s");
+    ck_assert_str_eq(unit("energy.kinetic"), "J");
+    ck_assert_str_eq(unit("body.right.velocity_x"), "m/s");
+    ck_assert_str_eq(unit("contact.left-right.force_x"), "N");
+    ck_assert_str_eq(unit("contact.left-right.impulse_x"), "N s");
+    ck_assert_str_eq(unit("wall.floor.force_y"), "N");
+    ck_assert_ptr_null(brunt_history_column(history, "energy.none"));
+}
+END_TEST
+
+// Force x interval, summed up, is the impulse: a contact between two lines is not missed.
+START_TEST(forces_are_means_over_the_interval) {
+    sample(120);
+    const double *time = brunt_history_column(history, "time"),
+                 *force = brunt_history_column(history, "contact.left-right.force_x"),
+                 *impulse = brunt_history_column(history, "contact.left-right.impulse_x"),
+                 *size = brunt_history_column(history, "contact.left-right.force"),
+                 *force_y = brunt_history_column(history, "contact.left-right.force_y");
+    double sum = 0, largest = 0;
+    for (int64_t r = 1; r < brunt_history_rows(history); r++) {
+        sum += force[r] * (time[r] - time[r - 1]);
+        largest = fmax(largest, size[r]);
+        ck_assert_double_eq_tol(size[r], hypot(force[r], force_y[r]), 1e-9 * (1 + size[r]));
+    }
+    ck_assert_double_gt(largest, 0);
+    ck_assert_double_eq(force[0], 0);
+    ck_assert_double_eq_tol(sum, impulse[brunt_history_rows(history) - 1], 1e-9 * fabs(sum));
+    ck_assert_double_gt(fabs(sum), 1); // the blocks have met: their momenta are about 1000 kg m/s
+}
+END_TEST
+
+START_TEST(probe_follows_the_nearest_particle) {
+    ck_assert_int_eq(brunt_history_sample(history, world, NULL), BRUNT_OK);
+    ck_assert_double_eq_tol(last("probe.corner.x"), 5, 1e-6);
+    small_steps(world, 60);
+    ck_assert_int_eq(brunt_history_sample(history, world, NULL), BRUNT_OK);
+    // The particle nearest to the corner of the box at the start, found by hand.
+    int64_t count = brunt_body_particles(world, 0), nearest = 0;
+    double *x = malloc(sizeof *x * 3 * (size_t)count), *v = malloc(sizeof *v * 3 * (size_t)count), best = INFINITY;
+    brunt_world *fresh = small_world(&scene);
+    brunt_body_read(fresh, 0, brunt_body_find_field(fresh, 0, "position"), x);
+    brunt_world_destroy(fresh);
+    for (int64_t i = 0; i < count; i++)
+        if (hypot(x[3 * i], x[3 * i + 1] - 0.1) < best) {
+            best = hypot(x[3 * i], x[3 * i + 1] - 0.1);
+            nearest = i;
+        }
+    brunt_body_read(world, 0, brunt_body_find_field(world, 0, "velocity"), v);
+    ck_assert_double_eq(last("probe.corner.y"), v[3 * nearest + 1]);
+    ck_assert_double_ne(v[3 * nearest + 1], 0);
+    free(x);
+    free(v);
+}
+END_TEST
+
+START_TEST(unknown_probe_field_is_refused) {
+    const char *sets[] = {"output.probes.corner.field=velocitee"};
+    brunt_scene other;
+    brunt_error error = {0};
+    small_scene(&other, sets, 1);
+    ck_assert_ptr_null(brunt_history_create(world, &other, &error));
+    ck_assert_int_eq(error.code, BRUNT_BAD_INPUT);
+    ck_assert_ptr_nonnull(strstr(error.message, "'velocitee'"));
+    brunt_scene_free(&other);
+}
+END_TEST
+
+START_TEST(file_gives_the_same_lines_and_drops_later_ones) {
+    sample(50);
+    const char *path = small_path("history.h5");
+    ck_assert_int_eq(brunt_history_write(history, path, NULL), BRUNT_OK);
+    brunt_history *again = brunt_history_create(world, &scene, NULL);
+    for (int drop = 0; drop < 2; drop++) {
+        int64_t kept = drop ? 31 : 50;
+        int64_t step = (int64_t)brunt_history_column(history, "step")[kept - 1] + (drop ? 2 : 0);
+        ck_assert_int_eq(brunt_history_load(again, path, step, NULL), BRUNT_OK);
+        ck_assert_int_eq((int)brunt_history_rows(again), (int)kept);
+        for (int32_t c = 0; c < brunt_history_column_count(history); c++) {
+            const char *name = brunt_history_column_name(history, c);
+            const double *a = brunt_history_column(history, name), *b = brunt_history_column(again, name);
+            ck_assert_msg(!memcmp(a, b, sizeof *a * (size_t)kept), "%s differs", name);
+        }
+    }
+    // Lines go on after the last kept one.
+    ck_assert_int_eq(brunt_history_sample(again, world, NULL), BRUNT_OK);
+    ck_assert_int_eq((int)brunt_history_rows(again), 32);
+    brunt_history_destroy(again);
+}
+END_TEST
+
+START_TEST(empty_history_is_a_file_too) {
+    const char *path = small_path("history.h5");
+    ck_assert_int_eq(brunt_history_write(history, path, NULL), BRUNT_OK);
+    ck_assert_int_eq(brunt_history_load(history, path, 100, NULL), BRUNT_OK);
+    ck_assert_int_eq((int)brunt_history_rows(history), 0);
+}
+END_TEST
+
+START_TEST(csv_holds_the_columns_with_their_units) {
+    sample(3);
+    const char *path = small_path("history.csv");
+    ck_assert_int_eq(brunt_history_open_csv(history, path, NULL), BRUNT_OK);
+    sample(7);
+    long size;
+    char *text = small_read(path, &size), *line = text;
+    ck_assert_int_eq(strncmp(text, "time [s],step [1],dt [s],energy.kinetic [J],", 43), 0);
+    int lines = 0;
+    for (char *end; (end = strchr(line, '\n')); line = end + 1, lines++) {
+        *end = 0;
+        int32_t c = 0;
+        for (char *field = strtok(line, ","); field; field = strtok(NULL, ","), c++) {
+            const char *name = brunt_history_column_name(history, c);
+            if (lines == 0) {
+                char header[256];
+                snprintf(header, sizeof header, "%s [%s]", name, brunt_history_column_unit(history, c));
+                ck_assert_str_eq(field, header);
+            } else {
+                ck_assert_double_eq(strtod(field, NULL), brunt_history_column(history, name)[lines - 1]);
+            }
+        }
+        ck_assert_int_eq(c, brunt_history_column_count(history));
+    }
+    ck_assert_int_eq(lines, 8);
+    free(text);
+}
+END_TEST
+
+START_TEST(damage_is_an_error) {
+    sample(20);
+    const char *path = small_path("history.h5"), *broken = small_path("broken.h5");
+    ck_assert_int_eq(brunt_history_write(history, path, NULL), BRUNT_OK);
+    long size;
+    char *bytes = small_read(path, &size);
+    brunt_error error;
+    srand(1);
+    for (int i = 0; i < 100; i++) {
+        long at = rand() % size;
+        char kept = bytes[at];
+        bytes[at] = (char)(kept ^ (1 << rand() % 8));
+        // The unused rest of the user block says nothing; everything else is under the checksum.
+        bool matters = at >= 512 || kept;
+        small_write(broken, bytes, size);
+        bytes[at] = kept;
+        if (matters)
+            ck_assert_msg(brunt_history_load(history, broken, 1000, &error) == BRUNT_BAD_INPUT, "byte %ld", at);
+        small_write(broken, bytes, rand() % size);
+        ck_assert_int_eq(brunt_history_load(history, broken, 1000, &error), BRUNT_BAD_INPUT);
+    }
+    free(bytes);
+    ck_assert_int_eq(brunt_history_load(history, small_path("none.h5"), 1000, &error), BRUNT_IO_ERROR);
+    ck_assert_int_eq((int)brunt_history_rows(history), 20);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("history");
+    TCase *lines = tcase_create("lines");
+    tcase_add_checked_fixture(lines, set_up, tear_down);
+    tcase_add_test(lines, columns_hold_what_the_world_says);
+    tcase_add_test(lines, forces_are_means_over_the_interval);
+    tcase_add_test(lines, probe_follows_the_nearest_particle);
+    tcase_add_test(lines, unknown_probe_field_is_refused);
+    tcase_add_test(lines, file_gives_the_same_lines_and_drops_later_ones);
+    tcase_add_test(lines, empty_history_is_a_file_too);
+    tcase_add_test(lines, csv_holds_the_columns_with_their_units);
+    tcase_add_test(lines, damage_is_an_error);
+    suite_add_tcase(suite, lines);
+    return small_main(suite);
+}

@@ -1,0 +1,274 @@
+// Labels: io
+#include "small_scene.h"
+
+#include <math.h>
+
+#include "measures.h"
+#include "memory.h"
+#include "real.h"
+
+// Positions and gradients carry the precision of the build.
+static const double rounding = sizeof(real) == 4 ? 1e-5 : 1e-12;
+
+static brunt_scene scene;
+static brunt_world *world;
+static brunt_history *history;
+
+static void set_up(void) {
+    small_scene(&scene, NULL, 0);
+    world = small_world(&scene);
+    history = brunt_history_create(world, &scene, NULL);
+    ck_assert_ptr_nonnull(history);
+}
+
+static void tear_down(void) {
+    brunt_history_destroy(history);
+    brunt_world_destroy(world);
+    brunt_scene_free(&scene);
+    ck_assert_int_eq((int)brunt_memory_live(), 0);
+}
+
+static brunt_measure blank(brunt_measure_kind kind) {
+    return (brunt_measure){.name = "m",
+                           .kind = kind,
+                           .to = INFINITY,
+                           .slab_min = -INFINITY,
+                           .slab_max = INFINITY,
+                           .component = -1,
+                           .relative_to = NAN,
+                           .expect = NAN,
+                           .tolerance = NAN,
+                           .body = "left"};
+}
+
+static brunt_measure_result evaluate(const brunt_measure *m, double initial) {
+    brunt_measure_result result;
+    brunt_error error = {0};
+    int status = brunt_measure_check(m, history, world, &error);
+    ck_assert_msg(status == BRUNT_OK, "%s", error.message);
+    status = brunt_measure_evaluate(m, history, world, initial, &result, &error);
+    ck_assert_msg(status == BRUNT_OK, "%s", error.message);
+    return result;
+}
+
+static double of_history(const char *column, brunt_take take, double from, double to) {
+    brunt_measure m = blank(BRUNT_MEASURE_HISTORY);
+    strcpy(m.column, column);
+    m.take = take;
+    m.from = from;
+    m.to = to;
+    return evaluate(&m, NAN).value;
+}
+
+// Time and step are columns whose every reduction is known.
+START_TEST(history_is_reduced) {
+    for (int r = 0; r < 11; r++) {
+        ck_assert_int_eq(brunt_history_sample(history, world, NULL), BRUNT_OK);
+        double next = brunt_world_time(world) + 1e-3 * (r + 1); // unevenly spaced
+        brunt_error error = {0};
+        while (brunt_world_time(world) < next) ck_assert_int_eq(brunt_world_step(world, next, &error), BRUNT_OK);
+    }
+    const double *time = brunt_history_column(history, "time"), *step = brunt_history_column(history, "step");
+    double end = time[10];
+    ck_assert_double_eq_tol(end, 0.055, 1e-12);
+    ck_assert_double_eq(of_history("time", BRUNT_TAKE_END, 0, INFINITY), end);
+    ck_assert_double_eq(of_history("time", BRUNT_TAKE_INITIAL, 0, INFINITY), 0);
+    ck_assert_double_eq(of_history("time", BRUNT_TAKE_MIN, time[3], INFINITY), time[3]);
+    ck_assert_double_eq(of_history("time", BRUNT_TAKE_MAX, 0, time[7]), time[7]);
+    ck_assert_double_eq(of_history("time", BRUNT_TAKE_INITIAL, 0.5 * (time[3] + time[4]), INFINITY), time[4]);
+    ck_assert_double_eq(of_history("step", BRUNT_TAKE_END, 0, 0.5 * (time[3] + time[4])), step[3]);
+    ck_assert_double_eq_tol(of_history("time", BRUNT_TAKE_MEAN, 0, INFINITY), end / 2, 1e-15);
+    ck_assert_double_eq_tol(of_history("time", BRUNT_TAKE_MEAN, time[2], time[9]), (time[2] + time[9]) / 2, 1e-15);
+    ck_assert_double_eq_tol(of_history("time", BRUNT_TAKE_SLOPE, 0, INFINITY), 1, 1e-12);
+    ck_assert_double_eq(of_history("step", BRUNT_TAKE_FIRST_NONZERO, 0, INFINITY), time[1]);
+    ck_assert_double_eq(of_history("step", BRUNT_TAKE_LAST_NONZERO, 0, INFINITY), end);
+    ck_assert_double_nan(of_history("energy.eroded", BRUNT_TAKE_FIRST_NONZERO, 0, INFINITY));
+    ck_assert_double_nan(of_history("time", BRUNT_TAKE_END, 1, 2));
+    // Velocities along -y: the greatest size is of the least value.
+    ck_assert_double_eq(of_history("body.right.velocity_y", BRUNT_TAKE_MAX_ABS, 0, INFINITY),
+                        fmax(-of_history("body.right.velocity_y", BRUNT_TAKE_MIN, 0, INFINITY),
+                             of_history("body.right.velocity_y", BRUNT_TAKE_MAX, 0, INFINITY)));
+    ck_assert_double_lt(of_history("body.right.velocity_y", BRUNT_TAKE_MIN, 0, INFINITY), -0.99);
+    brunt_measure m = blank(BRUNT_MEASURE_HISTORY);
+    strcpy(m.column, "step");
+    m.relative_to_initial = true; // 0 / 0 or x / 0: no number, no crash
+    ck_assert(!isfinite(evaluate(&m, NAN).value));
+}
+END_TEST
+
+START_TEST(values_are_judged) {
+    ck_assert_int_eq(brunt_history_sample(history, world, NULL), BRUNT_OK);
+    small_steps(world, 10);
+    ck_assert_int_eq(brunt_history_sample(history, world, NULL), BRUNT_OK);
+    brunt_measure m = blank(BRUNT_MEASURE_HISTORY);
+    strcpy(m.column, "step"); // 10 at the end
+    brunt_measure_result r = evaluate(&m, NAN);
+    ck_assert_double_eq(r.value, 10);
+    ck_assert(!r.judged && !r.ok);
+    ck_assert_double_nan(r.error);
+    m.minus = 4;
+    m.relative_to = 3;
+    ck_assert_double_eq(evaluate(&m, NAN).value, 2);
+    m.minus = 0;
+    m.relative_to = NAN;
+    m.expect = 8;
+    r = evaluate(&m, NAN);
+    ck_assert_double_eq(r.error, 0.25);
+    ck_assert(!r.judged);
+    m.tolerance = 0.25;
+    ck_assert(evaluate(&m, NAN).ok);
+    m.tolerance = 0.24;
+    r = evaluate(&m, NAN);
+    ck_assert(r.judged && !r.ok);
+    m.absolute = true;
+    m.tolerance = 2;
+    r = evaluate(&m, NAN);
+    ck_assert_double_eq(r.error, 2);
+    ck_assert(r.ok);
+    m.tolerance = 1.9;
+    ck_assert(!evaluate(&m, NAN).ok);
+    m.absolute = false;
+    m.expect = -8; // relative to the size of what is expected
+    ck_assert_double_eq(evaluate(&m, NAN).error, 18.0 / 8);
+    strcpy(m.column, "body.left.mass");
+    m.relative_to_initial = true;
+    m.expect = 1;
+    m.tolerance = 0;
+    ck_assert(evaluate(&m, NAN).ok);
+    // What cannot be computed is not within any tolerance.
+    strcpy(m.column, "energy.eroded");
+    m.take = BRUNT_TAKE_FIRST_NONZERO;
+    m.relative_to_initial = false;
+    m.tolerance = INFINITY;
+    r = evaluate(&m, NAN);
+    ck_assert(r.judged && !r.ok);
+}
+END_TEST
+
+START_TEST(extent_reaches_to_the_surfaces) {
+    brunt_measure m = blank(BRUNT_MEASURE_EXTENT);
+    m.axis[0] = 2; // any length
+    ck_assert_double_eq_tol(evaluate(&m, NAN).value, 0.5, rounding);
+    strcpy(m.body, "right");
+    m.axis[0] = 0;
+    m.axis[1] = 1;
+    double initial;
+    ck_assert_int_eq(brunt_measure_initial(&m, world, &initial, NULL), BRUNT_OK);
+    ck_assert_double_eq_tol(initial, 0.3, rounding);
+    m.relative_to_initial = true;
+    ck_assert_double_eq_tol(evaluate(&m, 0.15).value, 2, 10 * rounding);
+}
+END_TEST
+
+// A block turned by 30 degrees has its edges' lengths along its own axes.
+START_TEST(extent_of_a_turned_block) {
+    const char *sets[] = {"bodies.left.place=[{rotate: {angle: 30 deg, about: [0.25, 0.35]}}]",
+                          "bodies.left.shape.box.max=[0.4, 0.6]", "bodies.right.velocity=[0, 0]",
+                          "bodies.right.place=[{translate: [1, 0]}]", "boundaries=[]"};
+    brunt_scene turned;
+    small_scene(&turned, sets, 5);
+    brunt_world *other = small_world(&turned);
+    brunt_measure m = blank(BRUNT_MEASURE_EXTENT);
+    double value, c = cos(acos(-1) / 6), s = 0.5;
+    m.axis[0] = c;
+    m.axis[1] = s;
+    ck_assert_int_eq(brunt_measure_initial(&m, other, &value, NULL), BRUNT_OK);
+    ck_assert_double_eq_tol(value, 0.4, 10 * rounding);
+    m.axis[0] = -s;
+    m.axis[1] = c;
+    ck_assert_int_eq(brunt_measure_initial(&m, other, &value, NULL), BRUNT_OK);
+    ck_assert_double_eq_tol(value, 0.5, 10 * rounding);
+    brunt_world_destroy(other);
+    brunt_scene_free(&turned);
+}
+END_TEST
+
+START_TEST(radius_about_an_axis) {
+    // Left block: [0, 0.5] x [0.1, 0.6] with particles every 0.05; along y the farthest surface from the line y = 0.1
+    // is 0.5 away.
+    brunt_measure m = blank(BRUNT_MEASURE_RADIUS);
+    m.axis[0] = 1;
+    m.center[1] = 0.1;
+    ck_assert_double_eq_tol(evaluate(&m, NAN).value, 0.5, 10 * rounding);
+    m.axis[0] = 0;
+    m.axis[1] = 1;
+    m.center[0] = 0.1;
+    ck_assert_double_eq_tol(evaluate(&m, NAN).value, 0.4, 10 * rounding);
+    // Only a slab without particles.
+    m.slab_min = 2;
+    ck_assert_double_nan(evaluate(&m, NAN).value);
+    // About a point of the plane: the corner particle's centre is 0.475 sqrt 2 away and it is 0.025 big in any
+    // direction.
+    m = blank(BRUNT_MEASURE_RADIUS);
+    m.axis[2] = 1;
+    m.center[1] = 0.1;
+    ck_assert_double_eq_tol(evaluate(&m, NAN).value, 0.475 * sqrt(2) + 0.025, 10 * rounding);
+}
+END_TEST
+
+START_TEST(fields_are_reduced) {
+    brunt_measure m = blank(BRUNT_MEASURE_FIELD);
+    strcpy(m.body, "right");
+    strcpy(m.field, "velocity");
+    m.take = BRUNT_TAKE_MEAN;
+    m.component = 0;
+    ck_assert_double_eq_tol(evaluate(&m, NAN).value, -5, 10 * rounding);
+    m.component = -1;
+    ck_assert_double_eq_tol(evaluate(&m, NAN).value, sqrt(26), 10 * rounding);
+    m.component = 0;
+    m.take = BRUNT_TAKE_MAX_ABS;
+    ck_assert_double_eq_tol(evaluate(&m, NAN).value, 5, 10 * rounding);
+    strcpy(m.field, "position");
+    m.take = BRUNT_TAKE_MIN;
+    ck_assert_double_eq_tol(evaluate(&m, NAN).value, 0.625, 10 * rounding);
+    m.take = BRUNT_TAKE_MAX;
+    ck_assert_double_eq_tol(evaluate(&m, NAN).value, 1.075, 10 * rounding);
+    m.axis[0] = 1;
+    m.slab_max = 0.8;
+    ck_assert_double_eq_tol(evaluate(&m, NAN).value, 0.775, 10 * rounding);
+    m.slab_max = 0;
+    ck_assert_double_nan(evaluate(&m, NAN).value);
+}
+END_TEST
+
+START_TEST(unknown_names_are_refused) {
+    static const struct {
+        brunt_measure_kind kind;
+        const char *column, *body, *field;
+        brunt_take take;
+        const char *message;
+    } cases[] = {
+        {BRUNT_MEASURE_HISTORY, "energy.kinetik", "", "", BRUNT_TAKE_END, "energy.kinetic"},
+        {BRUNT_MEASURE_HISTORY, "enrgy", "", "", BRUNT_TAKE_END, "there are: time step"},
+        {BRUNT_MEASURE_EXTENT, "", "middle", "", BRUNT_TAKE_END, "no body 'middle'"},
+        {BRUNT_MEASURE_FIELD, "", "left", "velocitee", BRUNT_TAKE_MAX, "no field 'velocitee'"},
+        {BRUNT_MEASURE_FIELD, "", "left", "velocity", BRUNT_TAKE_SLOPE, "min, max, mean"},
+    };
+    for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
+        brunt_measure m = blank(cases[c].kind);
+        strcpy(m.column, cases[c].column);
+        strcpy(m.body, cases[c].body);
+        strcpy(m.field, cases[c].field);
+        m.take = cases[c].take;
+        m.axis[0] = 1;
+        brunt_error error = {0};
+        ck_assert_int_eq(brunt_measure_check(&m, history, world, &error), BRUNT_BAD_INPUT);
+        ck_assert_msg(strstr(error.message, cases[c].message) != NULL, "%s", error.message);
+    }
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("measures");
+    TCase *values = tcase_create("values");
+    tcase_add_checked_fixture(values, set_up, tear_down);
+    tcase_add_test(values, history_is_reduced);
+    tcase_add_test(values, values_are_judged);
+    tcase_add_test(values, extent_reaches_to_the_surfaces);
+    tcase_add_test(values, extent_of_a_turned_block);
+    tcase_add_test(values, radius_about_an_axis);
+    tcase_add_test(values, fields_are_reduced);
+    tcase_add_test(values, unknown_names_are_refused);
+    suite_add_tcase(suite, values);
+    return small_main(suite);
+}

@@ -1,0 +1,578 @@
+// Labels: io
+// The scene reader: what a good scene becomes, units, overrides, the resolved scene, the reference, the schema, and
+// broken scenes.
+//
+// Every file of tests/bad_scenes begins with lines "# expect: LINE:COLUMN: SUBSTRING", one for each mistake that must
+// be reported, in order; no other mistake may be.
+#include <dirent.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <check.h>
+#include <jansson.h>
+
+#include "memory.h"
+#include "scene.h"
+#include "scene_keys.h"
+#include "units.h"
+
+static const char good[] =
+    "brunt: 1\n"
+    "title: 'A \"good\" scene: all of it'\n"
+    "dimension: 3\n"
+    "time: {end: 80 us, cfl: 0.4, energy_limit: none}\n"
+    "grid: {cell: 0.5 mm, origin: [1 mm, 0, 0], kernel: cubic, transfer: {flip: 0.98}}\n"
+    "materials:\n"
+    "  steel: {model: johnson-cook, density: 7.85 g/cm^3, E: 200 GPa, nu: 0.3, A: 800 MPa, B: 500 MPa, n: 0.26, C: "
+    "0.014,\n"
+    "    m: 1.03, melt: 1520 degC, heat_capacity: 477 J/kg/K, eos: {model: mie-gruneisen, c0: 4.57 km/s, s: 1.49, "
+    "gamma0: 1.93},\n"
+    "    viscosity: {quadratic: 2}}\n"
+    "  gum: {model: neo-hookean, density: 1000, E: 1e6, nu: 0.4}\n"
+    "bodies:\n"
+    "  rod: &rod\n"
+    "    method: mpm\n"
+    "    material: steel\n"
+    "    shape: {cylinder: {center: [0, 0, 0], axis: [0, 0, 2], radius: 4 mm, length: 25 mm}}\n"
+    "    particles_per_cell: 27\n"
+    "    fill: jittered\n"
+    "    seed: 7\n"
+    "    velocity: [0, 0, -190 m/s]\n"
+    "    spin: {rate: 600 rpm, axis: [0, 0, 3], about: [0, 0, 1 cm]}\n"
+    "    temperature: 20 degC\n"
+    "  anvil:\n"
+    "    method: mpm\n"
+    "    material: gum\n"
+    "    shape:\n"
+    "      difference:\n"
+    "        - box: {min: [-20 mm, -20 mm, -10 mm], max: [20 mm, 20 mm, 0]}\n"
+    "        - half-space: {point: [0, 0, -5 mm], normal: [0, 0, 1]}\n"
+    "    place: [{translate: [0, 0, -1 mm]}, {rotate: {axis: [0, 0, 1], angle: 90 deg}}]\n"
+    "    spacing: 0.4 mm\n"
+    "    wave: {velocity: [1, 0, 0], wave_vector: [0, 0, 2 1/mm], phase: 180 deg}\n"
+    "contact: {friction: 20 %, pairs: [{between: [rod, anvil], friction: 0.5}]}\n"
+    "boundaries:\n"
+    "  - {plane: {point: [0, 0, -5 mm], normal: [0, 0, 1]}, condition: separate, friction: 0.3, body: rod}\n"
+    "  - {name: grip, region: {sphere: {center: [0, 0, 0], radius: 1 mm}}, velocity: [free, 0, 2 m/s], until: 10 us}\n"
+    "  - {plane: {point: [0, 0, 0], normal: [0, 1, 0]}, condition: symmetry}\n"
+    "loads: {gravity: [0, 0, -9.81], gravity_ramp: 1 ms}\n"
+    "output: {every: 2 us, history: 50 ns, checkpoint: none, fields: [velocity, stress], precision: float64,\n"
+    "  probes: {tip: {body: rod, point: [0, 0, 0], field: velocity}}}\n"
+    "measures:\n"
+    "  kept: {energy: total, at: end, relative_to: initial, expect: 1, tolerance: 5 %}\n"
+    "  length: {extent: {body: rod, axis: [0, 0, 1]}, expect: 17.6 mm, tolerance: 0.2 mm, tolerance_is: absolute, "
+    "source: x}\n"
+    "  width: {radius: {body: rod, axis: [0, 0, 1], from: 0, to: 5 mm}}\n"
+    "  strain: {field: {body: rod, name: stress, component: yz}, take: max-abs}\n"
+    "  push: {history: wall.plane1.force_z, take: mean, from: 10 us, to: 40 us}\n";
+
+static char *messages;
+static size_t message_length;
+
+static int parse(const char *text, const char *const *sets, int set_count, brunt_scene *scene) {
+    free(messages);
+    messages = NULL;
+    FILE *out = open_memstream(&messages, &message_length);
+    int status = brunt_scene_parse(text, strlen(text), "dir/good.yaml", sets, set_count, scene, out);
+    fclose(out);
+    return status;
+}
+
+static void parse_good(brunt_scene *scene) {
+    int status = parse(good, NULL, 0, scene);
+    ck_assert_msg(status == BRUNT_OK, "%s", messages);
+}
+
+static char *write_text(const brunt_scene *scene) {
+    char *text = NULL;
+    size_t length;
+    FILE *out = open_memstream(&text, &length);
+    ck_assert_int_eq(brunt_scene_write(scene, out), BRUNT_OK);
+    fclose(out);
+    return text;
+}
+
+static double parameter(const brunt_model *model, const double *values, const char *key) {
+    for (int p = 0; p < model->parameter_count; p++)
+        if (strcmp(model->parameters[p].key, key) == 0) return values[p];
+    ck_abort_msg("no parameter %s", key);
+    return 0;
+}
+
+#define NEAR(a, b) ck_assert_double_eq_tol(a, b, 1e-12 * fabs((double)(b)) + 1e-300)
+
+START_TEST(world_values) {
+    brunt_scene s;
+    parse_good(&s);
+    const brunt_world_def *w = &s.world;
+    ck_assert_str_eq(s.name, "good");
+    ck_assert_str_eq(s.title, "A \"good\" scene: all of it");
+    ck_assert_int_eq(w->dimension, 3);
+    NEAR(w->end, 80e-6);
+    NEAR(w->cfl, 0.4);
+    ck_assert(w->step == 0 && isinf(w->energy_limit));
+    NEAR(w->cell, 0.5e-3);
+    NEAR(w->origin[0], 1e-3);
+    ck_assert_int_eq(w->kernel, BRUNT_CUBIC);
+    ck_assert_int_eq(w->transfer, BRUNT_FLIP);
+    NEAR(w->flip, 0.98);
+    ck_assert_int_eq(w->material_count, 2);
+    const brunt_material_def *steel = &w->materials[0];
+    const brunt_model *jc = brunt_find_strength("johnson-cook"), *mg = brunt_find_eos("mie-gruneisen");
+    ck_assert_str_eq(steel->strength, "johnson-cook");
+    NEAR(steel->density, 7850);
+    NEAR(parameter(jc, steel->strength_parameters, "E"), 200e9);
+    NEAR(parameter(jc, steel->strength_parameters, "melt"), 1793.15);
+    ck_assert_str_eq(steel->eos, "mie-gruneisen");
+    NEAR(parameter(mg, steel->eos_parameters, "c0"), 4570);
+    ck_assert(steel->bulk_viscosity && !w->materials[1].bulk_viscosity);
+    NEAR(parameter(&brunt_bulk_viscosity, steel->viscosity_parameters, "quadratic"), 2);
+    NEAR(parameter(&brunt_bulk_viscosity, steel->viscosity_parameters, "linear"),
+         brunt_bulk_viscosity.parameters[0].initial);
+    ck_assert_str_eq(w->materials[1].eos, "");
+    NEAR(w->gravity[2], -9.81);
+    NEAR(w->gravity_ramp, 1e-3);
+    brunt_scene_free(&s);
+    ck_assert_uint_eq(brunt_memory_live(), 0);
+}
+END_TEST
+
+START_TEST(body_values) {
+    brunt_scene s;
+    parse_good(&s);
+    ck_assert_int_eq(s.world.body_count, 2);
+    const brunt_body_def *anvil = &s.world.bodies[0], *rod = &s.world.bodies[1];
+    ck_assert_str_eq(anvil->name, "anvil");
+    ck_assert_str_eq(rod->name, "rod");
+    ck_assert_int_eq(rod->material, 0);
+    ck_assert_int_eq(anvil->material, 1);
+    ck_assert_int_eq(rod->shape.kind, BRUNT_CYLINDER);
+    NEAR(rod->shape.radius, 4e-3);
+    NEAR(rod->shape.length, 25e-3);
+    ck_assert_int_eq(rod->particles_per_cell, 27);
+    ck_assert_int_eq(rod->fill, BRUNT_FILL_JITTERED);
+    ck_assert_uint_eq(rod->seed, 7);
+    NEAR(rod->jitter, 0.25);
+    NEAR(rod->velocity[2], -190);
+    NEAR(rod->spin[2], 20 * 3.14159265358979323846);
+    NEAR(rod->spin_about[2], 0.01);
+    NEAR(rod->temperature, 293.15);
+    ck_assert_int_eq(anvil->shape.kind, BRUNT_DIFFERENCE);
+    ck_assert_int_eq(anvil->shape.child_count, 2);
+    ck_assert_int_eq(anvil->shape.children[1].kind, BRUNT_HALF_SPACE);
+    NEAR(anvil->shape.children[0].min[0], -0.02);
+    NEAR(anvil->spacing, 0.4e-3);
+    ck_assert_int_eq(anvil->particles_per_cell, 0);
+    // The quarter turn takes x to y, and comes after the shift.
+    ck_assert_double_eq_tol(anvil->place.rotation[3], 1, 1e-14);
+    ck_assert_double_eq_tol(anvil->place.translation[2], -1e-3, 1e-17);
+    NEAR(anvil->wave_vector[2], 2000);
+    NEAR(anvil->wave_phase, 3.14159265358979323846);
+    brunt_scene_free(&s);
+}
+END_TEST
+
+START_TEST(contact_and_boundaries) {
+    brunt_scene s;
+    parse_good(&s);
+    const brunt_world_def *w = &s.world;
+    ck_assert_int_eq(w->contact.method, BRUNT_CONTACT_MULTI_VELOCITY);
+    NEAR(w->contact.friction, 0.2);
+    ck_assert(!w->contact.allow_overlap);
+    ck_assert_int_eq(w->contact.pair_count, 1);
+    ck_assert_str_eq(w->contact.pairs[0].a, "rod");
+    NEAR(w->contact.pairs[0].friction, 0.5);
+    ck_assert_int_eq(w->contact.pairs[0].method, BRUNT_CONTACT_MULTI_VELOCITY);
+    ck_assert_int_eq(w->plane_count, 2);
+    ck_assert_str_eq(w->planes[0].name, "plane1");
+    ck_assert_str_eq(w->planes[0].body, "rod");
+    NEAR(w->planes[0].friction, 0.3);
+    ck_assert_int_eq(w->planes[1].condition, BRUNT_SYMMETRY);
+    ck_assert_int_eq(w->region_count, 1);
+    const brunt_region_def *grip = &w->regions[0];
+    ck_assert_str_eq(grip->name, "grip");
+    ck_assert(!grip->component[0] && grip->component[1] && grip->component[2]);
+    NEAR(grip->velocity[2], 2);
+    ck_assert(grip->start == 0);
+    NEAR(grip->end, 10e-6);
+    brunt_scene_free(&s);
+}
+END_TEST
+
+START_TEST(output_and_measures) {
+    brunt_scene s;
+    parse_good(&s);
+    NEAR(s.output.every, 2e-6);
+    NEAR(s.output.history, 50e-9);
+    ck_assert(isinf(s.output.checkpoint) && !s.output.float32);
+    ck_assert_int_eq(s.output.field_count, 2);
+    ck_assert_str_eq(s.output.fields[1], "stress");
+    ck_assert_str_eq(s.output.probes[0].name, "tip");
+    ck_assert_int_eq(s.measure_count, 5);
+    const brunt_measure *kept = &s.measures[0], *length = &s.measures[1], *width = &s.measures[2],
+                        *strain = &s.measures[3], *push = &s.measures[4];
+    ck_assert_int_eq(kept->kind, BRUNT_MEASURE_HISTORY);
+    ck_assert_str_eq(kept->column, "energy.total");
+    ck_assert(kept->take == BRUNT_TAKE_END && kept->relative_to_initial && isnan(kept->relative_to));
+    NEAR(kept->tolerance, 0.05);
+    ck_assert(!kept->absolute);
+    ck_assert_int_eq(length->kind, BRUNT_MEASURE_EXTENT);
+    NEAR(length->expect, 0.0176);
+    ck_assert(length->absolute);
+    ck_assert_str_eq(length->unit, "m");
+    ck_assert_str_eq(length->source, "x");
+    ck_assert_int_eq(width->kind, BRUNT_MEASURE_RADIUS);
+    NEAR(width->slab_max, 5e-3);
+    ck_assert(width->slab_min == 0 && isnan(width->expect));
+    ck_assert_int_eq(strain->kind, BRUNT_MEASURE_FIELD);
+    ck_assert_int_eq(strain->component, 4);
+    ck_assert_int_eq(strain->take, BRUNT_TAKE_MAX_ABS);
+    ck_assert(isinf(strain->slab_min) && isinf(strain->slab_max));
+    NEAR(push->from, 10e-6);
+    NEAR(push->to, 40e-6);
+    brunt_scene_free(&s);
+}
+END_TEST
+
+START_TEST(units) {
+    static const struct {
+        const char *unit, *wanted;
+        double one; // what 12 of it are; NAN: refused
+    } rows[] = {{"mm", "m", 0.012},
+                {"mm/us", "m/s", 12000},
+                {"N/mm^2", "Pa", 12e6},
+                {"degC", "K", 285.15},
+                {"rpm", "rad/s", 0.4 * 3.14159265358979323846},
+                {"deg", "rad", 12 * 3.14159265358979323846 / 180},
+                {"\xc2\xb5s", "s", 12e-6},
+                {"g/cm^3", "kg/m^3", 12000},
+                {"%", "1", 0.12},
+                {"rad/m", "1/m", 12},
+                {"min", "s", 720},
+                {"GPa", "m/s", NAN},
+                {"Hz", "s", NAN},
+                {"m^3/kg", "kg/m^3", NAN},
+                {"1/s", "rad/s", NAN},
+                {"deg", "1", NAN},
+                {"mmm", "m", NAN},
+                {"m)", "m", NAN},
+                {"seconds since 2000-01-01", "s", NAN},
+                {"m^999", "m", NAN}};
+    brunt_units *u = brunt_units_open();
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        double value = 12;
+        char message[320] = "";
+        bool done = brunt_units_convert(u, rows[i].unit, rows[i].wanted, &value, message, sizeof message);
+        ck_assert_msg(done == !isnan(rows[i].one), "%s to %s: %s", rows[i].unit, rows[i].wanted, message);
+        if (done) ck_assert_double_eq_tol(value, rows[i].one, 1e-14 * fabs(rows[i].one));
+        if (!done) ck_assert(*message && value == 12);
+    }
+    // Decimal prefixes give the double nearest to what was typed.
+    for (int i = 1; i < 1000; i++) {
+        char text[32], message[320];
+        snprintf(text, sizeof text, "%de-3", i);
+        double value = i;
+        ck_assert(brunt_units_convert(u, "mm", "m", &value, message, sizeof message));
+        ck_assert_msg(value == strtod(text, NULL), "%d mm", i);
+    }
+    brunt_units_close(u);
+}
+END_TEST
+
+START_TEST(overrides) {
+    const char *sets[] = {"time.end=0.2 ms",           "bodies.rod.velocity[2]=-50",    "boundaries[0].friction=0.1",
+                          "boundaries.1.until=20 us",  "contact.initial_overlap=allow", "output.fields=[pressure]",
+                          "materials.gum.viscosity={}"};
+    brunt_scene s;
+    int status = parse(good, sets, 7, &s);
+    ck_assert_msg(status == BRUNT_OK, "%s", messages);
+    NEAR(s.world.end, 0.2e-3);
+    NEAR(s.world.bodies[1].velocity[2], -50);
+    NEAR(s.world.planes[0].friction, 0.1);
+    NEAR(s.world.regions[0].end, 20e-6);
+    ck_assert(s.world.contact.allow_overlap);
+    ck_assert_int_eq(s.output.field_count, 1);
+    ck_assert(s.world.materials[1].bulk_viscosity);
+    brunt_scene_free(&s);
+    static const struct {
+        const char *set, *expect;
+    } bad[] = {{"time.end=fast", "--set time.end=fast: time.end: 'fast' is not a number"},
+               {"time.end", "--set time.end: path.to.key=value is wanted"},
+               {"boundaries[9].friction=1", "--set boundaries[9].friction=1: boundaries has 3 entries"},
+               {"time.end.x=1", "time.end is a single value"},
+               {"time..end=1", "is not a path"},
+               {"grid.cel=1", "--set grid.cel=1: grid.cel: unknown key, did you mean 'cell'?"},
+               {"time.end=[", "--set time.end=[: not YAML"}};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        ck_assert_int_eq(parse(good, &bad[i].set, 1, &s), BRUNT_BAD_INPUT);
+        ck_assert_msg(strstr(messages, bad[i].expect) != NULL, "%s\ngave\n%s", bad[i].set, messages);
+    }
+    ck_assert_uint_eq(brunt_memory_live(), 0);
+}
+END_TEST
+
+static void check_fixpoint(const char *text, const char *name) {
+    brunt_scene s;
+    ck_assert_msg(parse(text, NULL, 0, &s) == BRUNT_OK, "%s: %s", name, messages);
+    char *first = write_text(&s);
+    brunt_scene_free(&s);
+    ck_assert_msg(parse(first, NULL, 0, &s) == BRUNT_OK, "%s as written: %s\n%s", name, messages, first);
+    char *second = write_text(&s);
+    brunt_scene_free(&s);
+    ck_assert_str_eq(first, second);
+    free(first);
+    free(second);
+}
+
+static char *read_file(const char *path) {
+    FILE *file = fopen(path, "rb");
+    if (!file) return NULL;
+    char *text = calloc(1, 1 << 20);
+    if (text && fread(text, 1, (1 << 20) - 1, file) == 0) text[0] = 0;
+    fclose(file);
+    return text;
+}
+
+static const char *source_folder(void) {
+    const char *folder = getenv("BRUNT_SOURCE");
+    return folder ? folder : ".";
+}
+
+static bool is_yaml(const char *name) {
+    size_t length = strlen(name);
+    return length > 5 && strcmp(name + length - 5, ".yaml") == 0;
+}
+
+// The resolved scene is in the order of the table, whatever the order it was typed in.
+START_TEST(order) {
+    static const char *const texts[] = {
+        "brunt: 1\ntime: {end: 1, cfl: 0.3}\ngrid: {cell: 1, kernel: linear}\nmaterials: {m: {model: neo-hookean, "
+        "density: 1, "
+        "E: 1, nu: 0}}\nbodies: {b: {method: mpm, material: m, shape: {sphere: {center: [0, 0, 0], radius: 2}}}}\n",
+        "bodies: {b: {shape: {sphere: {radius: 2, center: [0, 0, 0]}}, material: m, method: mpm}}\nmaterials: {m: {nu: "
+        "0, E: 1, "
+        "density: 1, model: neo-hookean}}\ngrid: {kernel: linear, cell: 1}\ntime: {cfl: 0.3, end: 1}\nbrunt: 1\n"};
+    char *written[2];
+    for (int i = 0; i < 2; i++) {
+        brunt_scene s;
+        ck_assert_msg(parse(texts[i], NULL, 0, &s) == BRUNT_OK, "%s", messages);
+        written[i] = write_text(&s);
+        brunt_scene_free(&s);
+    }
+    ck_assert_str_eq(written[0], written[1]);
+    free(written[0]);
+    free(written[1]);
+}
+END_TEST
+
+// The written scene reads back to the same scene, for the one above and for every example.
+START_TEST(fixpoint) {
+    check_fixpoint(good, "good");
+    brunt_scene s;
+    parse_good(&s);
+    char *text = write_text(&s);
+    ck_assert(strstr(text, "  end: 8e-05\n") && strstr(text, "    flip: 0.98\n") &&
+              strstr(text, "    taylor_quinney: 0.9\n"));
+    free(text);
+    brunt_scene_free(&s);
+    char path[1024];
+    snprintf(path, sizeof path, "%s/bench/scenes", source_folder());
+    DIR *folder = opendir(path);
+    ck_assert_msg(folder != NULL, "%s", path);
+    int count = 0;
+    for (struct dirent *entry; (entry = readdir(folder));) {
+        if (!is_yaml(entry->d_name)) continue;
+        snprintf(path, sizeof path, "%s/bench/scenes/%s", source_folder(), entry->d_name);
+        char *scene = read_file(path);
+        ck_assert_ptr_nonnull(scene);
+        check_fixpoint(scene, path);
+        free(scene);
+        count++;
+    }
+    closedir(folder);
+    ck_assert_int_gt(count, 0);
+    ck_assert_uint_eq(brunt_memory_live(), 0);
+}
+END_TEST
+
+// Not inlined: gcc 12 takes what open_memstream sets for a pointer to a dead local.
+__attribute__((noinline)) static char *captured(const char *section, bool *found) {
+    char *text = NULL;
+    size_t length;
+    FILE *out = open_memstream(&text, &length);
+    *found = brunt_scene_keys(section, out);
+    fclose(out);
+    return text;
+}
+
+START_TEST(reference) {
+    bool found;
+    char *text = captured(NULL, &found);
+    ck_assert(found);
+    for (int i = 0; i < brunt_scene_table_count; i++) {
+        char line[256];
+        snprintf(line, sizeof line, "\n  %s ", brunt_scene_table[i].path);
+        ck_assert_msg(strstr(text, line) != NULL, "%s is not in the reference", brunt_scene_table[i].path);
+    }
+    for (int m = 0; m < brunt_strength_model_count; m++) {
+        const brunt_model *model = brunt_strength_models[m];
+        bool known;
+        char *own = captured(model->name, &known);
+        ck_assert(known && strstr(text, model->name));
+        for (int p = 0; p < model->parameter_count; p++) ck_assert(strstr(own, model->parameters[p].key));
+        free(own);
+    }
+    for (const char *line = text; *line; line += strcspn(line, "\n"), line += *line == '\n')
+        ck_assert_msg(strcspn(line, "\n") <= 120, "wider than 120: %.130s", line);
+    // The example at its top is a scene.
+    const char *end = strstr(text, "\nValues take units");
+    ck_assert_ptr_nonnull(end);
+    char *example = strndup(text, (size_t)(end - text));
+    check_fixpoint(example, "the example of the reference");
+    free(example);
+    free(text);
+    text = captured("time", &found);
+    ck_assert(found && strstr(text, "time.end") && !strstr(text, "grid.cell"));
+    free(text);
+    text = captured("nonsense", &found);
+    ck_assert(!found);
+    free(text);
+}
+END_TEST
+
+// Whether a schema node describes the path, key by key.
+static const json_t *schema_child(const json_t *root, const json_t *node, const char *key) {
+    if (strcmp(key, "*") == 0) return json_object_get(node, "additionalProperties");
+    const json_t *either = json_object_get(node, "anyOf");
+    for (size_t i = 0; i < json_array_size(either); i++) {
+        const json_t *found = schema_child(root, json_array_get(either, i), key);
+        if (found) return found;
+    }
+    return json_object_get(json_object_get(node, "properties"), key);
+}
+
+START_TEST(schema) {
+    char *text = NULL;
+    size_t length;
+    FILE *out = open_memstream(&text, &length);
+    brunt_scene_schema(out);
+    fclose(out);
+    json_error_t error;
+    json_t *root = json_loadb(text, length, JSON_REJECT_DUPLICATES, &error);
+    ck_assert_msg(root != NULL, "%d:%d: %s", error.line, error.column, error.text);
+    for (int i = 0; i < brunt_scene_table_count; i++) {
+        char path[160], *rest = path;
+        snprintf(path, sizeof path, "%s", brunt_scene_table[i].path);
+        if (strstr(path, "<parameter>")) continue;
+        const json_t *node = root;
+        for (char *part; node && (part = strsep(&rest, "."));) {
+            char *list = strstr(part, "[]");
+            if (list) *list = 0;
+            node = strcmp(part, "<shape>") == 0 ? json_object_get(json_object_get(root, "$defs"), "shape")
+                                                : schema_child(root, node, part);
+            if (list) node = json_object_get(node, "items");
+        }
+        ck_assert_msg(node != NULL, "%s is not in the schema", brunt_scene_table[i].path);
+    }
+    ck_assert_ptr_nonnull(strstr(text, "\"taylor_quinney\""));
+    json_decref(root);
+    free(text);
+}
+END_TEST
+
+static void check_bad(const char *name, const char *text, size_t length) {
+    char *out_text = NULL;
+    size_t out_length;
+    FILE *out = open_memstream(&out_text, &out_length);
+    brunt_scene s;
+    int status = brunt_scene_parse(text, length, name, NULL, 0, &s, out);
+    fclose(out);
+    ck_assert_msg(status == BRUNT_BAD_INPUT, "%s: status %d", name, status);
+    const char *message = out_text, *expect = text;
+    size_t name_length = strlen(name);
+    int wanted = 0;
+    for (; strncmp(expect, "# expect: ", 10) == 0; expect += strcspn(expect, "\n") + 1, wanted++) {
+        int line, column, used = 0;
+        ck_assert_msg(sscanf(expect, "# expect: %d:%d: %n", &line, &column, &used) == 2 && used > 0,
+                      "%s: bad expect line", name);
+        char place[64], *substring = strndup(expect + used, strcspn(expect + used, "\n"));
+        snprintf(place, sizeof place, ":%d:%d: ", line, column);
+        // The next message: the lines of excerpts are indented.
+        while (*message == ' ') message += strcspn(message, "\n") + 1;
+        char *first = strndup(message, strcspn(message, "\n"));
+        bool as_expected = strncmp(first, name, name_length) == 0 &&
+                           strncmp(first + name_length, place, strlen(place)) == 0 && strstr(first, substring);
+        ck_assert_msg(as_expected, "%s: expected %s%s, got:\n%s", name, place, substring, out_text);
+        message += strcspn(message, "\n");
+        if (*message) message++;
+        free(first);
+        free(substring);
+    }
+    ck_assert_msg(wanted > 0, "%s expects nothing", name);
+    while (*message == ' ') message += strcspn(message, "\n") + 1;
+    ck_assert_msg(*message == 0, "%s: one mistake too many:\n%s", name, message);
+    ck_assert_msg(brunt_memory_live() == 0, "%s leaks", name);
+    free(out_text);
+}
+
+START_TEST(broken) {
+    char path[1024];
+    snprintf(path, sizeof path, "%s/tests/bad_scenes", source_folder());
+    DIR *folder = opendir(path);
+    ck_assert_msg(folder != NULL, "%s", path);
+    int count = 0;
+    for (struct dirent *entry; (entry = readdir(folder));) {
+        if (!is_yaml(entry->d_name)) continue;
+        snprintf(path, sizeof path, "%s/tests/bad_scenes/%s", source_folder(), entry->d_name);
+        FILE *file = fopen(path, "rb");
+        ck_assert_ptr_nonnull(file);
+        static char text[1 << 16];
+        size_t length = fread(text, 1, sizeof text - 1, file);
+        text[length] = 0;
+        fclose(file);
+        check_bad(entry->d_name, text, length);
+        count++;
+    }
+    closedir(folder);
+    ck_assert_int_ge(count, 40);
+}
+END_TEST
+
+START_TEST(files) {
+    brunt_scene s;
+    FILE *out = open_memstream(&messages, &message_length);
+    ck_assert_int_eq(brunt_scene_read("/nonexistent/scene.yaml", NULL, 0, &s, out), BRUNT_IO_ERROR);
+    fclose(out);
+    ck_assert_ptr_nonnull(strstr(messages, "/nonexistent/scene.yaml: cannot be read: "));
+    ck_assert_int_eq(brunt_scene_read("/", NULL, 0, &s, NULL), BRUNT_IO_ERROR);
+    ck_assert_int_eq(brunt_scene_parse("", 0, "empty", NULL, 0, &s, NULL), BRUNT_BAD_INPUT);
+    ck_assert_uint_eq(brunt_memory_live(), 0);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("scene");
+    TCase *tcase = tcase_create("scene");
+    tcase_set_timeout(tcase, 0);
+    tcase_add_test(tcase, world_values);
+    tcase_add_test(tcase, body_values);
+    tcase_add_test(tcase, contact_and_boundaries);
+    tcase_add_test(tcase, output_and_measures);
+    tcase_add_test(tcase, units);
+    tcase_add_test(tcase, overrides);
+    tcase_add_test(tcase, order);
+    tcase_add_test(tcase, fixpoint);
+    tcase_add_test(tcase, reference);
+    tcase_add_test(tcase, schema);
+    tcase_add_test(tcase, broken);
+    tcase_add_test(tcase, files);
+    suite_add_tcase(suite, tcase);
+    SRunner *runner = srunner_create(suite);
+    srunner_run_all(runner, CK_NORMAL);
+    int failed = srunner_ntests_failed(runner);
+    int run = srunner_ntests_run(runner);
+    srunner_free(runner);
+    return failed == 0 && run > 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}
