@@ -47,10 +47,12 @@ int brunt_mirror_images(const brunt_mirror *mirrors, int mirror_count, const int
 void brunt_condition_apply(brunt_body *body, brunt_wall *wall, double time, double dt);
 
 // --- reach (reach.c): where a body's surface really is
-// Gradient of the body's volume fraction at a node [1/m]; it points into the body.
-void brunt_reach_gradient(brunt_body *body, int32_t slot, int node, double gradient[3]);
-// Greatest distance along unit vector n, from the node, that a particle near the node reaches [m]; -INFINITY when there is none.
-double brunt_reach_extent(brunt_body *body, int32_t slot, int node, const double n[3]);
+// Gradient of the body's volume fraction at a node [1/m], which points into the body, and the centre of the volume that the
+// node feels, relative to the node [m].
+void brunt_reach_gradient(brunt_body *body, int32_t slot, int node, double gradient[3], double centre[3]);
+// Greatest distance along unit vector n, from the node, that a particle near the node reaches [m], and where that particle is,
+// relative to the node; -INFINITY when there is none.
+double brunt_reach_extent(brunt_body *body, int32_t slot, int node, const double n[3], double farthest[3]);
 
 // --- walls (walls.c): planes that push and let go, with Coulomb friction, at zero gap
 typedef struct brunt_wall_workspace brunt_wall_workspace;

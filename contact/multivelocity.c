@@ -19,6 +19,8 @@
 
 enum { MAX_SWEEPS = 1000, MAX_TOGETHER = 12 };
 static const double SWEEP_TOLERANCE = 1e-13;  // of the velocities at the node
+enum { CLIMBS = 6 };
+static const double CLIMB = 0.5, SHORTER = 0.7;  // first and later: change of direction per cell of sideways distance between the farthest particles
 
 // A slot of a body that some other body may share.
 typedef struct shared_slot { uint64_t key; int32_t body, slot; } shared_slot;
@@ -135,12 +137,8 @@ typedef struct meeting {
 
 typedef struct member { brunt_body *body; int32_t slot; real *node; int entry; double v[3], inverse; } member;
 
-static bool make_normal(const job *j, const member *a, const member *b, int node, double n[3]) {
-    double ga[3], gb[3], size = 0;
-    brunt_reach_gradient(a->body, a->slot, node, ga);
-    brunt_reach_gradient(b->body, b->slot, node, gb);
-    for (int k = 0; k < 3; k++) n[k] = gb[k] - ga[k];
-    // The image of a body behind a mirror plane has no particles of its own: what is left is the part along the plane.
+// Unit vector along n with the parts taken out that a body cut by mirror planes cannot know: its image has no particles.
+static bool make_unit(const job *j, const member *a, int node, double n[3]) {
     int local[3];
     const brunt_grid *grid = &a->body->grid;
     brunt_node_local(grid, node, local);
@@ -149,10 +147,46 @@ static bool make_normal(const job *j, const member *a, const member *b, int node
         int32_t away = grid->slots[a->slot].coord[axis] * grid->side + local[axis] - j->mirrors[m].node;
         if (away >= -1 && away <= 1) n[axis] = 0;
     }
-    for (int k = 0; k < 3; k++) size += n[k] * n[k];
-    size = sqrt(size);
-    if (!(size * (double)grid->h > 1e-10)) return false;  // volume fractions without a direction: nothing tells the bodies apart
+    double size = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    if (!(size > 0) || !isfinite(size)) return false;
     for (int k = 0; k < 3; k++) n[k] /= size;
+    return true;
+}
+
+// Gap along n; `between`: from the farthest particle of a to that of b, the slope of the gap over directions.
+static double gap_along(const member *a, const member *b, int node, const double n[3], double between[3]) {
+    const double back[3] = {-n[0], -n[1], -n[2]};
+    double pa[3], pb[3];
+    double gap = -brunt_reach_extent(b->body, b->slot, node, back, pb) - brunt_reach_extent(a->body, a->slot, node, n, pa);
+    for (int k = 0; k < 3; k++) between[k] = pb[k] - pa[k];
+    return gap;
+}
+
+// Normal and gap of two bodies at a node. Bodies that some direction separates do not touch, whatever the mean normal says:
+// round surfaces that graze are felt by nodes far off the line of contact, where the mean normal is tilted and finds them
+// touching a third of a cell early. So when the mean normal finds contact, a separating direction is looked for, starting
+// from the line between the bodies' centres near the node and climbing the gap. False when nothing tells the bodies apart.
+static bool make_normal(const job *j, const member *a, const member *b, int node, double n[3], double *gap) {
+    double ga[3], gb[3], ca[3], cb[3], between[3], search[3], v[3], approach = 0;
+    brunt_reach_gradient(a->body, a->slot, node, ga, ca);
+    brunt_reach_gradient(b->body, b->slot, node, gb, cb);
+    for (int k = 0; k < 3; k++) n[k] = gb[k] - ga[k], search[k] = cb[k] - ca[k], v[k] = b->v[k] - a->v[k];
+    if (!make_unit(j, a, node, n)) return false;
+    *gap = gap_along(a, b, node, n, between);
+    for (int k = 0; k < 3; k++) approach += v[k] * n[k];
+    if (approach * j->dt >= -fmax(*gap, 0)) return true;  // nothing will be done
+    double step = CLIMB / (double)a->body->grid.h;
+    for (int climb = 0; climb < CLIMBS && make_unit(j, a, node, search); climb++, step *= SHORTER) {
+        double found = gap_along(a, b, node, search, between), along = 0;
+        if (found > 0 && found > *gap) {
+            memcpy(n, search, sizeof search);
+            *gap = found;
+            approach = v[0] * n[0] + v[1] * n[1] + v[2] * n[2];
+            if (approach * j->dt >= -found) return true;
+        }
+        for (int k = 0; k < 3; k++) along += between[k] * search[k];
+        for (int k = 0; k < 3; k++) search[k] += step * (between[k] - along * search[k]);
+    }
     return true;
 }
 
@@ -218,10 +252,8 @@ static void meet_at_node(const job *j, const group *g, int node) {
             int low = members[i].entry, high = members[k].entry;
             *m = (meeting){.a = i, .b = k, .action = low * g->count - low * (low + 1) / 2 + high - low - 1,
                            .friction = j->pairs[pair].friction, .inverse = members[i].inverse + members[k].inverse};
-            if (!make_normal(j, &members[i], &members[k], node, m->n)) continue;
-            double back[3] = {-m->n[0], -m->n[1], -m->n[2]};
-            double gap = -brunt_reach_extent(members[k].body, members[k].slot, node, back) -
-                         brunt_reach_extent(members[i].body, members[i].slot, node, m->n);
+            double gap;
+            if (!make_normal(j, &members[i], &members[k], node, m->n, &gap)) continue;
             m->target = -fmax(gap, 0) / j->dt;
             met++;
         }

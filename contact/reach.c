@@ -46,7 +46,7 @@ static void visit_particles(brunt_body *body, int32_t slot, int node, visit_fn *
             }
 }
 
-typedef struct gradient_sum { double node[3], sum[3]; } gradient_sum;
+typedef struct gradient_sum { double node[3], sum[3], volume, moment[3]; } gradient_sum;
 
 static void add_gradient(void *context, brunt_body *body, int64_t s, const int base[3]) {
     gradient_sum *g = context;
@@ -64,20 +64,26 @@ static void add_gradient(void *context, brunt_body *body, int64_t s, const int b
     g->sum[0] += volume * slope[0] * w[1] * w[2];
     g->sum[1] += volume * w[0] * slope[1] * w[2];
     g->sum[2] += volume * w[0] * w[1] * slope[2];
+    double share = volume * w[0] * w[1] * w[2];
+    g->volume += share;
+    for (int a = 0; a < p->dim; a++) g->moment[a] += share * ((double)x[a][s] - g->node[a]);
 }
 
-void brunt_reach_gradient(brunt_body *body, int32_t slot, int node, double gradient[3]) {
-    gradient_sum g = {{0}, {0}};
+void brunt_reach_gradient(brunt_body *body, int32_t slot, int node, double gradient[3], double centre[3]) {
+    gradient_sum g = {.volume = 0};
     const brunt_grid *grid = &body->grid;
     brunt_node_position(grid, grid->slots[slot].coord, node, g.node);
     visit_particles(body, slot, node, add_gradient, &g);
     // A particle right of the node has a negative slope there: the sum of V grad_x N points away from the body; its gradient
     // as a field over space, which is asked for, is the opposite.
     double scale = -(double)grid->inv_h / pow((double)grid->h, grid->dim);
-    for (int a = 0; a < 3; a++) gradient[a] = scale * g.sum[a];
+    for (int a = 0; a < 3; a++) {
+        gradient[a] = scale * g.sum[a];
+        centre[a] = g.volume > 0 ? g.moment[a] / g.volume : 0;
+    }
 }
 
-typedef struct extent_max { double node[3], n[3], most; } extent_max;
+typedef struct extent_max { double node[3], n[3], most, point[3]; } extent_max;
 
 static void add_extent(void *context, brunt_body *body, int64_t s, const int base[3]) {
     (void)base;
@@ -93,12 +99,16 @@ static void add_extent(void *context, brunt_body *body, int64_t s, const int bas
         square += t * t;
     }
     along += (double)brunt_field(p, BRUNT_FIELD_reach)[0][s] * sqrt(square);
-    if (along > e->most) e->most = along;
+    if (along > e->most) {
+        e->most = along;
+        for (int a = 0; a < dim; a++) e->point[a] = (double)x[a][s] - e->node[a];
+    }
 }
 
-double brunt_reach_extent(brunt_body *body, int32_t slot, int node, const double n[3]) {
+double brunt_reach_extent(brunt_body *body, int32_t slot, int node, const double n[3], double farthest[3]) {
     extent_max e = {.n = {n[0], n[1], n[2]}, .most = -INFINITY};
     brunt_node_position(&body->grid, body->grid.slots[slot].coord, node, e.node);
     visit_particles(body, slot, node, add_extent, &e);
+    for (int a = 0; a < 3; a++) farthest[a] = e.point[a];
     return e.most;
 }
