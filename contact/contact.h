@@ -69,7 +69,7 @@ typedef struct brunt_pair {
 } brunt_pair;
 
 typedef struct brunt_contact_workspace brunt_contact_workspace;
-// `pair_of[a * body_count + b]`: index of the pair, -1 for none. 0, or -1: out of memory.
+// `pair_of[a * body_count + b]`: index of the pair, -1 for none. 0, or -1: out of memory, -2: more than 16 bodies at a node.
 int brunt_multivelocity_apply(brunt_body *bodies, int body_count, brunt_pair *pairs, int pair_count, const int32_t *pair_of,
                               const brunt_mirror *mirrors, int mirror_count, double dt, int threads, double *seconds,
                               brunt_contact_workspace **workspace);

@@ -17,7 +17,7 @@
 #include "memory.h"
 #include "threads.h"
 
-enum { MAX_SWEEPS = 1000, MAX_TOGETHER = 12 };
+enum { MAX_SWEEPS = 1000, MAX_TOGETHER = 16 };
 static const double SWEEP_TOLERANCE = 1e-13;  // of the velocities at the node
 enum { CLIMBS = 6 };
 static const double CLIMB = 0.5, SHORTER = 0.7;  // first and later: change of direction per cell of sideways distance between the farthest particles
@@ -25,9 +25,12 @@ static const double CLIMB = 0.5, SHORTER = 0.7;  // first and later: change of d
 // A slot of a body that some other body may share.
 typedef struct shared_slot { uint64_t key; int32_t body, slot; } shared_slot;
 // Slots with the same coordinate: entries first .. first+count-1, and where their pairs' actions are collected.
-typedef struct group { int32_t first, count, action; } group;
+typedef struct group { int32_t first, count, action; bool crowded; } group;
+
+typedef struct box { int32_t low[3], high[3]; } box;
 
 struct brunt_contact_workspace {
+    box *bounds; size_t bounds_capacity;
     shared_slot *shared; size_t shared_capacity; int32_t shared_count;
     group *groups; size_t groups_capacity; int32_t group_count;
     brunt_action *actions; size_t actions_capacity; int32_t action_count;
@@ -43,6 +46,7 @@ typedef struct job {
 
 void brunt_contact_workspace_free(brunt_contact_workspace *workspace) {
     if (!workspace) return;
+    brunt_free(workspace->bounds);
     brunt_free(workspace->shared);
     brunt_free(workspace->groups);
     brunt_free(workspace->actions);
@@ -50,8 +54,6 @@ void brunt_contact_workspace_free(brunt_contact_workspace *workspace) {
 }
 
 // ------------------------------------------------------------------------------------------ who meets whom
-
-typedef struct box { int32_t low[3], high[3]; } box;
 
 static box slot_bounds(const brunt_grid *grid) {
     box b = {{INT32_MAX, INT32_MAX, INT32_MAX}, {INT32_MIN, INT32_MIN, INT32_MIN}};
@@ -86,8 +88,8 @@ static int compare_shared(const void *a, const void *b) {
 static int find_groups(job *j) {
     brunt_contact_workspace *w = j->w;
     const int n = j->body_count;
-    box *bounds = brunt_alloc((size_t)n * sizeof *bounds);
-    if (!bounds) return -1;
+    if (brunt_reserve((void **)&w->bounds, &w->bounds_capacity, (size_t)n * sizeof *w->bounds, 0)) return -1;
+    box *bounds = w->bounds;
     for (int b = 0; b < n; b++) bounds[b] = slot_bounds(&j->bodies[b].grid);
     w->shared_count = w->group_count = w->action_count = 0;
     for (int b = 0; b < n; b++) {
@@ -95,16 +97,13 @@ static int find_groups(job *j) {
         for (int o = 0; o < n; o++) {
             if (o == b || j->pair_of[b * n + o] < 0 || !overlap(&bounds[b], &bounds[o])) continue;
             if (brunt_reserve((void **)&w->shared, &w->shared_capacity, (size_t)(w->shared_count + grid->slot_count) * sizeof(shared_slot),
-                              (size_t)w->shared_count * sizeof(shared_slot))) {
-                brunt_free(bounds);
+                              (size_t)w->shared_count * sizeof(shared_slot)))
                 return -1;
-            }
             for (int32_t s = 0; s < grid->slot_count; s++)
                 if (inside(&bounds[o], grid->slots[s].coord))
                     w->shared[w->shared_count++] = (shared_slot){grid->slot_key[s], b, s};
         }
     }
-    brunt_free(bounds);
     if (!w->shared_count) return 0;
     qsort(w->shared, (size_t)w->shared_count, sizeof *w->shared, compare_shared);
     int32_t unique = 0;
@@ -116,7 +115,7 @@ static int find_groups(job *j) {
         for (next = i + 1; next < unique && w->shared[next].key == w->shared[i].key; next++) {}
         int32_t count = next - i;
         if (count < 2) continue;
-        w->groups[w->group_count++] = (group){i, count, w->action_count};
+        w->groups[w->group_count++] = (group){i, count, w->action_count, false};
         w->action_count += count * (count - 1) / 2;
     }
     size_t bytes = (size_t)(w->action_count + 1) * sizeof *w->actions;
@@ -229,14 +228,18 @@ static double visit(member *members, meeting *m) {
     return changed;
 }
 
-static void meet_at_node(const job *j, const group *g, int node) {
+static void meet_at_node(const job *j, group *g, int node) {
     member members[MAX_TOGETHER];
     meeting meetings[MAX_TOGETHER * (MAX_TOGETHER - 1) / 2];
     int n = 0, met = 0, dim = j->bodies[0].grid.dim;
-    for (int32_t i = 0; i < g->count && n < MAX_TOGETHER; i++) {
+    for (int32_t i = 0; i < g->count; i++) {
         const shared_slot *s = &j->w->shared[g->first + i];
         real *at = brunt_slot_nodes(&j->bodies[s->body].grid, s->slot) + node * BRUNT_NODE_REALS;
         if (!(at[0] > 0)) continue;
+        if (n == MAX_TOGETHER) {
+            g->crowded = true;
+            return;
+        }
         member *m = &members[n++];
         *m = (member){.body = &j->bodies[s->body], .slot = s->slot, .node = at, .entry = i, .inverse = 1 / (double)at[0]};
         for (int a = 0; a < dim; a++) m->v[a] = (double)at[BRUNT_NODE_VELOCITY + a];
@@ -300,6 +303,7 @@ int brunt_multivelocity_apply(brunt_body *bodies, int body_count, brunt_pair *pa
     brunt_parallel(threads, j.w->group_count, 1, meet, &j, seconds);
     for (int32_t q = 0; q < j.w->group_count; q++) {
         const group *g = &j.w->groups[q];
+        if (g->crowded) return -2;
         int at = g->action;
         for (int32_t i = 0; i < g->count; i++)
             for (int32_t k = i + 1; k < g->count; k++, at++) {

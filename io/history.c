@@ -104,6 +104,7 @@ static void add_energy(brunt_history *h, brunt_world *world) {
     brunt_world_energy(world, &e);
     add(h, "energy.kinetic", "J", e.kinetic);
     add(h, "energy.internal", "J", e.internal);
+    add(h, "energy.mechanical", "J", e.kinetic + e.internal);
     add(h, "energy.plastic", "J", e.plastic);
     add(h, "energy.hourglass", "J", e.hourglass);
     add(h, "energy.contact", "J", e.contact);

@@ -6,6 +6,7 @@
 #include "error.h"
 #include "lanes.h"
 #include "memory.h"
+#include "sort.h"
 
 static int prepare(const brunt_material_def *def, const brunt_model *model, const double *given, bool with_eos,
                    real *constants, brunt_error *error) {
@@ -52,6 +53,7 @@ int brunt_material_make(const brunt_material_def *def, brunt_material *material,
 }
 
 void brunt_body_free(brunt_body *body) {
+    brunt_sort_room_free(body->particles.sort_room);
     brunt_particles_free(&body->particles);
     brunt_grid_free(&body->grid);
     brunt_free(body->report);

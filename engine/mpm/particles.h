@@ -47,6 +47,8 @@ typedef struct brunt_particle_field {
     int state;                // index in the model's state table
 } brunt_particle_field;
 
+typedef struct brunt_sort_room brunt_sort_room;
+
 typedef struct brunt_particles {
     int dim;
     int64_t count, slots, capacity;
@@ -59,6 +61,7 @@ typedef struct brunt_particles {
     int32_t *order;           // sort: where each slot's particle was before
     uint64_t *key;            // sort: block key of each slot
     void *slab; size_t slab_bytes;
+    brunt_sort_room *sort_room;  // see sort.c
 } brunt_particles;
 
 // Lays out the fields for a body; no particles yet.

@@ -20,13 +20,33 @@ typedef struct range {
     int64_t bad;              // slot of a particle that cannot be placed, -1
     bool moved;               // some particle is not where the last sort put it
     uint64_t *missing; size_t missing_capacity; int64_t missing_count;
-    int32_t *count;           // particles per block, then the next place in it
+    int32_t *count; size_t count_capacity;  // particles per block, then the next place in it
 } range;
+
+// Kept from step to step, so that a step allocates nothing once the body has been everywhere.
+enum { MAX_RANGES = 64 };
+struct brunt_sort_room {
+    range ranges[MAX_RANGES];
+    int64_t *total; size_t total_capacity;
+    uint64_t *keys; size_t keys_capacity;
+};
+
+void brunt_sort_room_free(brunt_sort_room *room) {
+    if (!room) return;
+    for (int q = 0; q < MAX_RANGES; q++) {
+        brunt_free(room->ranges[q].missing);
+        brunt_free(room->ranges[q].count);
+    }
+    brunt_free(room->total);
+    brunt_free(room->keys);
+    brunt_free(room);
+}
 
 typedef struct job {
     brunt_grid *grid;
     brunt_particles *particles;
     range *ranges;
+    brunt_sort_room *room;
     int group;                // scalars being moved: BRUNT_SORT_GROUP of them from here
     bool out_of_memory;
 } job;
@@ -196,8 +216,8 @@ static int renew_blocks(job *j, int ranges, bool first) {
     brunt_grid *grid = j->grid;
     int64_t most = first ? 0 : grid->block_count;
     for (int q = 0; q < ranges; q++) most += j->ranges[q].missing_count;
-    uint64_t *keys = brunt_alloc((size_t)(most + 1) * sizeof *keys);
-    if (!keys) return -1;
+    if (brunt_reserve((void **)&j->room->keys, &j->room->keys_capacity, (size_t)(most + 1) * sizeof(uint64_t), 0)) return -1;
+    uint64_t *keys = j->room->keys;
     int64_t n = 0;
     if (!first)
         for (int32_t b = 0; b < grid->block_count; b++) keys[n++] = grid->block_key[b];
@@ -207,9 +227,7 @@ static int renew_blocks(job *j, int ranges, bool first) {
     int64_t unique = 0;
     for (int64_t i = 0; i < n; i++)
         if (!unique || keys[i] != keys[unique - 1]) keys[unique++] = keys[i];
-    int failed = brunt_grid_set_blocks(grid, keys, (int32_t)unique);
-    brunt_free(keys);
-    return failed;
+    return brunt_grid_set_blocks(grid, keys, (int32_t)unique);
 }
 
 // Blocks that have lost all their particles go; their number is rare and their presence would change no sum.
@@ -240,26 +258,21 @@ static int sort_ranges(job *j, int ranges, int threads, double *seconds, brunt_e
             first = true;  // ranks have changed: what the last sort stored no longer compares
             continue;
         }
-        for (int q = 0; q < ranges; q++) {
-            brunt_free(j->ranges[q].count);
-            j->ranges[q].count = brunt_alloc((size_t)grid->block_count * sizeof(int32_t));
-            if (!j->ranges[q].count) return brunt_fail(error, BRUNT_FAILED, "out of memory while sorting particles");
-        }
+        for (int q = 0; q < ranges; q++)
+            if (brunt_reserve((void **)&j->ranges[q].count, &j->ranges[q].count_capacity, (size_t)grid->block_count * sizeof(int32_t), 0))
+                return brunt_fail(error, BRUNT_FAILED, "out of memory while sorting particles");
         brunt_parallel(threads, ranges, 1, count_blocks, j, seconds);
-        brunt_free(total);
-        total = brunt_alloc((size_t)grid->block_count * sizeof *total);
-        if (!total) return brunt_fail(error, BRUNT_FAILED, "out of memory while sorting particles");
+        if (brunt_reserve((void **)&j->room->total, &j->room->total_capacity, (size_t)grid->block_count * sizeof *total, 0))
+            return brunt_fail(error, BRUNT_FAILED, "out of memory while sorting particles");
+        total = j->room->total;
         bool empty = false;
         for (int32_t b = 0; b < grid->block_count; b++) {
+            total[b] = 0;
             for (int q = 0; q < ranges; q++) total[b] += j->ranges[q].count[b];
             empty = empty || total[b] == 0;
         }
         if (!empty) break;
-        int failed = drop_empty(grid, total);
-        if (failed) {
-            brunt_free(total);
-            return brunt_fail(error, BRUNT_FAILED, "out of memory for the grid");
-        }
+        if (drop_empty(grid, total)) return brunt_fail(error, BRUNT_FAILED, "out of memory for the grid");
         first = true;
     }
 
@@ -275,7 +288,6 @@ static int sort_ranges(job *j, int ranges, int threads, double *seconds, brunt_e
         }
         slots += (total[b] + BRUNT_LANES - 1) / BRUNT_LANES * BRUNT_LANES;
     }
-    brunt_free(total);
 
     // The slab may grow, which moves the keys; they are still needed by the rounds below.
     if (slots > p->capacity) {
@@ -309,20 +321,14 @@ static int sort_ranges(job *j, int ranges, int threads, double *seconds, brunt_e
 }
 
 int brunt_sort(brunt_grid *grid, brunt_particles *particles, int threads, double *seconds, brunt_error *error) {
-    int ranges = threads > 1 ? 4 * threads : 1;
-    if (particles->slots < 4096) ranges = 1;
-    job j = {.grid = grid, .particles = particles};
-    j.ranges = brunt_alloc((size_t)ranges * sizeof *j.ranges);
-    if (!j.ranges) return brunt_fail(error, BRUNT_FAILED, "out of memory while sorting particles");
+    int ranges = threads > 1 && particles->slots >= 4096 ? 4 * threads : 1;
+    if (ranges > MAX_RANGES) ranges = MAX_RANGES;
+    if (!particles->sort_room) particles->sort_room = brunt_alloc(sizeof *particles->sort_room);
+    if (!particles->sort_room) return brunt_fail(error, BRUNT_FAILED, "out of memory while sorting particles");
+    job j = {.grid = grid, .particles = particles, .room = particles->sort_room, .ranges = particles->sort_room->ranges};
     for (int q = 0; q < ranges; q++) {
         j.ranges[q].begin = particles->slots * q / ranges;
         j.ranges[q].end = particles->slots * (q + 1) / ranges;
     }
-    int status = sort_ranges(&j, ranges, threads, seconds, error);
-    for (int q = 0; q < ranges; q++) {
-        brunt_free(j.ranges[q].missing);
-        brunt_free(j.ranges[q].count);
-    }
-    brunt_free(j.ranges);
-    return status;
+    return sort_ranges(&j, ranges, threads, seconds, error);
 }

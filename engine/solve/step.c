@@ -146,10 +146,10 @@ static int constrain_grid_velocities(brunt_world *world, double dt, brunt_error 
     }
     if (world->has_contact) {
         start_pass(world, BRUNT_PASS_contact, &start);
-        if (brunt_multivelocity_apply(world->bodies, world->body_count, world->pairs, world->pair_count, world->pair_of, world->mirrors,
-                                      world->mirror_count, dt, world->threads, world->pass[BRUNT_PASS_contact].thread_seconds,
-                                      &world->contact_work))
-            return fail(world, NULL, error, "out of memory in the contact search");
+        int failed = brunt_multivelocity_apply(world->bodies, world->body_count, world->pairs, world->pair_count, world->pair_of,
+                                               world->mirrors, world->mirror_count, dt, world->threads,
+                                               world->pass[BRUNT_PASS_contact].thread_seconds, &world->contact_work);
+        if (failed) return fail(world, NULL, error, failed == -1 ? "out of memory in the contact search" : "more than 16 bodies meet at one grid node");
         end_pass(world, BRUNT_PASS_contact, start);
     }
     if (world->has_walls) {
