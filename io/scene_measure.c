@@ -32,7 +32,7 @@ static bool pair_exists(const scene_reader *reader, const char *rest) {
 // What of a column can be known before the engine runs: its family, and the names of bodies, walls and probes in it.
 static const char *column_mistake(const scene_reader *reader, const char *column) {
     static const char *const plain[] = {"time", "step", "dt"};
-    static const char *const energies[] = {"kinetic",  "internal",  "plastic",  "hourglass",     "contact",
+    static const char *const energies[] = {"kinetic", "internal", "mechanical",  "plastic",  "hourglass",     "contact",
                                            "friction", "viscosity", "transfer", "eroded",        "external_work",
                                            "initial",  "total",     "error",    "error_relative"};
     const brunt_world_def *world = &reader->scene->world;
