@@ -21,7 +21,8 @@
     X(kirchhoff_stress, "Pa", BRUNT_SYMMETRIC, true)                                                                   \
     X(mass, "kg", BRUNT_SCALAR, true)                                                                                  \
     X(reference_volume, "m^3", BRUNT_SCALAR, true)                                                                     \
-    X(reach, "m", BRUNT_SCALAR, needs->reach)                  /* distance to the body's surface, undeformed */
+    X(reach, "m", BRUNT_SCALAR, needs->reach)                  /* distance to the body's surface, undeformed */          \
+    X(grid_velocity, "m/s", BRUNT_VECTOR, needs->grid_velocity) /* linear FLIP: what the particle moves with */
 
 #define BRUNT_SCALAR(dim) 1
 
@@ -36,7 +37,7 @@ enum {
 };
 
 typedef struct brunt_particle_needs {
-    bool affine, reach;
+    bool affine, reach, grid_velocity;
     const brunt_model *models[3];  // strength, viscosity, equation of state; NULL where there is none
 } brunt_particle_needs;
 

@@ -191,74 +191,122 @@ static void update_material(brunt_body *body, const brunt_block *block, real dt,
 #define DIM 2
 #define ORDER 1
 #define TRANSFER 0
+#define STAGE 1
+#include "gather.inc"
+#define DIM 2
+#define ORDER 1
+#define TRANSFER 0
+#define STAGE 2
 #include "gather.inc"
 #define DIM 2
 #define ORDER 1
 #define TRANSFER 1
+#define STAGE 1
+#include "gather.inc"
+#define DIM 2
+#define ORDER 1
+#define TRANSFER 1
+#define STAGE 2
 #include "gather.inc"
 #define DIM 2
 #define ORDER 1
 #define TRANSFER 2
+#define STAGE 1
+#include "gather.inc"
+#define DIM 2
+#define ORDER 1
+#define TRANSFER 2
+#define STAGE 2
 #include "gather.inc"
 #define DIM 2
 #define ORDER 2
 #define TRANSFER 0
+#define STAGE 0
 #include "gather.inc"
 #define DIM 2
 #define ORDER 2
 #define TRANSFER 1
+#define STAGE 0
 #include "gather.inc"
 #define DIM 2
 #define ORDER 2
 #define TRANSFER 2
+#define STAGE 0
 #include "gather.inc"
 #define DIM 2
 #define ORDER 3
 #define TRANSFER 0
+#define STAGE 0
 #include "gather.inc"
 #define DIM 2
 #define ORDER 3
 #define TRANSFER 1
+#define STAGE 0
 #include "gather.inc"
 #define DIM 2
 #define ORDER 3
 #define TRANSFER 2
+#define STAGE 0
 #include "gather.inc"
 #define DIM 3
 #define ORDER 1
 #define TRANSFER 0
+#define STAGE 1
+#include "gather.inc"
+#define DIM 3
+#define ORDER 1
+#define TRANSFER 0
+#define STAGE 2
 #include "gather.inc"
 #define DIM 3
 #define ORDER 1
 #define TRANSFER 1
+#define STAGE 1
+#include "gather.inc"
+#define DIM 3
+#define ORDER 1
+#define TRANSFER 1
+#define STAGE 2
 #include "gather.inc"
 #define DIM 3
 #define ORDER 1
 #define TRANSFER 2
+#define STAGE 1
+#include "gather.inc"
+#define DIM 3
+#define ORDER 1
+#define TRANSFER 2
+#define STAGE 2
 #include "gather.inc"
 #define DIM 3
 #define ORDER 2
 #define TRANSFER 0
+#define STAGE 0
 #include "gather.inc"
 #define DIM 3
 #define ORDER 2
 #define TRANSFER 1
+#define STAGE 0
 #include "gather.inc"
 #define DIM 3
 #define ORDER 2
 #define TRANSFER 2
+#define STAGE 0
 #include "gather.inc"
 #define DIM 3
 #define ORDER 3
 #define TRANSFER 0
+#define STAGE 0
 #include "gather.inc"
 #define DIM 3
 #define ORDER 3
 #define TRANSFER 1
+#define STAGE 0
 #include "gather.inc"
 #define DIM 3
 #define ORDER 3
 #define TRANSFER 2
+#define STAGE 0
 #include "gather.inc"
 
 brunt_scatter_fn *brunt_find_scatter(int dim, brunt_kernel kernel, brunt_transfer transfer) {
@@ -270,12 +318,17 @@ brunt_scatter_fn *brunt_find_scatter(int dim, brunt_kernel kernel, brunt_transfe
 brunt_gather_fn *brunt_find_gather(int dim, brunt_kernel kernel, brunt_transfer transfer) {
 #define ORDERS(d)                                                                                                      \
     {                                                                                                                  \
-        {gather_##d##_1_0, gather_##d##_1_1, gather_##d##_1_2}, {gather_##d##_2_0, gather_##d##_2_1, gather_##d##_2_2},  \
-            {gather_##d##_3_0, gather_##d##_3_1, gather_##d##_3_2}                                                       \
+        {gather_##d##_1_0_2, gather_##d##_1_1_2, gather_##d##_1_2_2}, {gather_##d##_2_0_0, gather_##d##_2_1_0, gather_##d##_2_2_0},  \
+            {gather_##d##_3_0_0, gather_##d##_3_1_0, gather_##d##_3_2_0}                                                 \
     }
     static brunt_gather_fn *const table[2][3][3] = {ORDERS(2), ORDERS(3)};
 #undef ORDERS
     return table[dim - 2][kernel - 1][transfer];
+}
+
+brunt_gather_fn *brunt_find_advance(int dim, brunt_kernel kernel, brunt_transfer transfer) {
+    static brunt_gather_fn *const table[2][3] = {{gather_2_1_0_1, gather_2_1_1_1, gather_2_1_2_1}, {gather_3_1_0_1, gather_3_1_1_1, gather_3_1_2_1}};
+    return kernel == BRUNT_LINEAR ? table[dim - 2][transfer] : NULL;
 }
 
 // ------------------------------------------------------------------------------------------ workspace

@@ -26,6 +26,9 @@ typedef void brunt_gather_fn(brunt_body *body, int32_t block, real dt, real flip
 // kernel 1..3, transfer BRUNT_PIC, BRUNT_FLIP, BRUNT_APIC
 brunt_scatter_fn *brunt_find_scatter(int dim, brunt_kernel kernel, brunt_transfer transfer);
 brunt_gather_fn *brunt_find_gather(int dim, brunt_kernel kernel, brunt_transfer transfer);
+// The linear kernel gathers in two stages: this one updates the velocities, the one above the rest, after the velocities have
+// been to the grid once more. NULL for the other kernels.
+brunt_gather_fn *brunt_find_advance(int dim, brunt_kernel kernel, brunt_transfer transfer);
 
 // Makes room for blocks of up to `most` particles. 0, or -1: out of memory.
 int brunt_workspace_fit(brunt_workspace *work, const brunt_grid *grid, int32_t most);

@@ -10,7 +10,7 @@
 #include "threads.h"
 #include "world.h"
 
-enum { SLOT_GRAIN = 8, BLOCK_GRAIN = 2, ENERGY_CHECK = 128 };
+enum { SLOT_GRAIN = 8, BLOCK_GRAIN = 2, ENERGY_CHECK = 32 };
 
 void brunt_gravity_at(const brunt_world *world, double time, double gravity[3]) {
     double share = world->gravity_ramp > 0 && time < world->gravity_ramp ? time / world->gravity_ramp : 1;
@@ -190,6 +190,38 @@ static void keep_ledger(brunt_world *world, const double gravity[3], double dt, 
     end_pass(world, BRUNT_PASS_ledger, start);
 }
 
+static void advance_blocks(void *context, int64_t begin, int64_t end, int worker) {
+    const body_job *job = context;
+    for (int64_t b = begin; b < end; b++)
+        job->world->advance(job->body, (int32_t)b, (real)job->dt, (real)job->world->flip, &job->world->work[worker]);
+}
+
+// Linear kernel: the particles' new velocities once more to the grid, without forces, for the gradient. What conditions do to
+// that field is no impulse: it is not booked.
+static void remap_velocities(brunt_world *world, double dt) {
+    double start, *seconds = world->pass[BRUNT_PASS_remap].thread_seconds;
+    start_pass(world, BRUNT_PASS_remap, &start);
+    for (int i = 0; i < world->body_count; i++) {
+        brunt_body *body = &world->bodies[i];
+        static const double weightless[3] = {0, 0, 0};
+        body_job job = {world, body, dt}, still = {world, body, 0};
+        brunt_grid_job grid_job = {.body = body, .gravity = weightless};
+        brunt_action unbooked = {.external_work = 0};
+        brunt_parallel(world->threads, body->grid.block_count, BLOCK_GRAIN, advance_blocks, &job, seconds);
+        brunt_parallel(world->threads, body->grid.block_count, BLOCK_GRAIN, scatter_blocks, &still, seconds);
+        brunt_parallel(world->threads, body->grid.slot_count, SLOT_GRAIN, brunt_grid_sum, &grid_job, seconds);
+        for (int m = 0; m < world->mirror_count; m++)
+            if (acts_on(&world->walls[world->mirrors[m].wall], body)) brunt_mirror_fold(body, &world->mirrors[m], &unbooked);
+        brunt_parallel(world->threads, body->grid.slot_count, SLOT_GRAIN, brunt_grid_update, &grid_job, seconds);
+        for (int w = 0; w < world->wall_count; w++) {
+            brunt_wall wall = world->walls[w];
+            bool at_nodes = wall.region || (wall.mirror < 0 && wall.plane.condition != BRUNT_SEPARATE);
+            if (at_nodes && acts_on(&wall, body)) brunt_condition_apply(body, &wall, world->now.time, dt);
+        }
+    }
+    end_pass(world, BRUNT_PASS_remap, start);
+}
+
 static int gather_bodies(brunt_world *world, double dt, double *kinetic, brunt_error *error) {
     double start;
     start_pass(world, BRUNT_PASS_gather, &start);
@@ -244,6 +276,7 @@ int brunt_world_step(brunt_world *world, double limit, brunt_error *error) {
     for (int i = 0; i < world->body_count; i++) make_grid_velocities(world, &world->bodies[i], gravity, dt);
     if ((status = constrain_grid_velocities(world, dt, error))) return status;
     keep_ledger(world, gravity, dt, &old_kinetic, &new_kinetic);
+    if (world->advance) remap_velocities(world, dt);
     status = gather_bodies(world, dt, &kinetic, error);
 
     struct brunt_clock *now = &world->now;

@@ -153,7 +153,8 @@ static int make_bodies(brunt_world *world, const brunt_world_def *def, const bru
         body->spacing = lattice_spacing(def, order[i]);
         status = brunt_material_make(&def->materials[order[i]->material], &body->material, error);
         if (status) break;
-        brunt_particle_needs needs = {.affine = def->transfer == BRUNT_APIC, .reach = world->has_contact || world->has_walls};
+        brunt_particle_needs needs = {.affine = def->transfer == BRUNT_APIC, .reach = world->has_contact || world->has_walls,
+                                      .grid_velocity = world->advance && def->transfer == BRUNT_FLIP};
         memcpy(needs.models, body->material.model, sizeof needs.models);
         brunt_particles_init(&body->particles, dim, &needs);
         brunt_grid_init(&body->grid, dim, (int)def->kernel, def->cell, origin);
@@ -324,6 +325,7 @@ brunt_world *brunt_world_create(const brunt_world_def *def, brunt_error *error) 
     for (int a = 0; a < def->dimension; a++) world->has_gravity = world->has_gravity || def->gravity[a] != 0;
     world->scatter = brunt_find_scatter(def->dimension, def->kernel, def->transfer);
     world->gather = brunt_find_gather(def->dimension, def->kernel, def->transfer);
+    world->advance = brunt_find_advance(def->dimension, def->kernel, def->transfer);
     world->body_count = def->body_count;
     world->bodies = brunt_alloc((size_t)def->body_count * sizeof *world->bodies);
 

@@ -17,6 +17,7 @@
     X(contact, world->has_contact)                                                                                     \
     X(walls, world->has_walls)                                                                                         \
     X(ledger, true)                                                                                                    \
+    X(remap, world->advance != NULL)                                                                                   \
     X(gather, true)
 
 enum {
@@ -32,7 +33,7 @@ struct brunt_world {
     int dimension, threads;
     brunt_kernel kernel; brunt_transfer transfer;
     double flip, cfl, fixed_step, end, energy_limit, gravity[3], gravity_ramp, cell;
-    brunt_scatter_fn *scatter; brunt_gather_fn *gather;
+    brunt_scatter_fn *scatter; brunt_gather_fn *gather, *advance;
 
     brunt_body *bodies; int body_count;
     brunt_wall *walls; int wall_count;
