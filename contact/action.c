@@ -7,8 +7,8 @@ void brunt_action_add(brunt_action *sum, const brunt_action *part) {
     sum->friction_loss += part->friction_loss;
 }
 
-void brunt_action_book(brunt_action *action, const double J[3], const double x[3], const double old[3], const double now[3],
-                       const double support[3], const double *normal) {
+void brunt_action_book(brunt_action *action, const double J[3], const double x[3], const double old[3],
+                       const double now[3], const double support[3], const double *normal) {
     double Jn = 0, slip_n = 0, loss = 0;
     for (int a = 0; a < 3; a++) {
         int i = (a + 1) % 3, j = (a + 2) % 3;

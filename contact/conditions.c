@@ -4,8 +4,8 @@
 #include <math.h>
 #include <string.h>
 
-static void set_velocity(const brunt_grid *grid, real *n, const brunt_slot *slot, int node, const double now[3], const double support[3],
-                         const double *normal, brunt_action *action) {
+static void set_velocity(const brunt_grid *grid, real *n, const brunt_slot *slot, int node, const double now[3],
+                         const double support[3], const double *normal, brunt_action *action) {
     double x[3], J[3] = {0}, old[3] = {0};
     brunt_node_position(grid, slot->coord, node, x);
     for (int a = 0; a < grid->dim; a++) {
@@ -72,8 +72,9 @@ static void apply_plane(const brunt_grid *grid, brunt_wall *wall, double time) {
             }
             if (distance > 1e-9 * (double)grid->h) continue;
             for (int a = 0; a < grid->dim; a++)
-                now[a] = plane->condition == BRUNT_STICK ? plane->velocity[a]
-                                                         : (double)n[BRUNT_NODE_VELOCITY + a] - approach * plane->normal[a];
+                now[a] = plane->condition == BRUNT_STICK
+                             ? plane->velocity[a]
+                             : (double)n[BRUNT_NODE_VELOCITY + a] - approach * plane->normal[a];
             set_velocity(grid, n, slot, node, now, plane->velocity, plane->normal, &wall->last);
         }
     }

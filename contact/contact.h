@@ -1,76 +1,82 @@
 // What acts on grid velocities between the transfers: mirror planes, node conditions, contact between bodies, walls.
 //
-// Every method gets the bodies after the grid update (new and old velocities at the nodes) and changes the new ones. What it
-// does is booked in a brunt_action: impulse, work and dissipation, taken at the mean of the old and the new velocity, which
-// makes the work of an impulse equal to the change of kinetic energy it causes.
+// Every method gets the bodies after the grid update (new and old velocities at the nodes) and changes the new ones.
+// What it does is booked in a brunt_action: impulse, work and dissipation, taken at the mean of the old and the new
+// velocity, which makes the work of an impulse equal to the change of kinetic energy it causes.
 #pragma once
 
 #include "body.h"
 
 // A condition that is imposed from outside, and what it has done so far.
 typedef struct brunt_action {
-    double impulse[3];        // [N s] on the bodies (a pair: on its second body)
-    double angular[3];        // [N m s] about the origin, on the bodies
-    double external_work;     // [J] done on the bodies by prescribed motion
-    double normal_loss;       // [J] dissipated by the normal impulse
-    double friction_loss;     // [J] dissipated by the tangential impulse
+    double impulse[3];    // [N s] on the bodies (a pair: on its second body)
+    double angular[3];    // [N m s] about the origin, on the bodies
+    double external_work; // [J] done on the bodies by prescribed motion
+    double normal_loss;   // [J] dissipated by the normal impulse
+    double friction_loss; // [J] dissipated by the tangential impulse
 } brunt_action;
 
 void brunt_action_add(brunt_action *sum, const brunt_action *part);
-// Books impulse J acting at x while its material moves with `old` before and `now` after, against a support that moves with
-// `support`; `normal` (unit, or NULL: everything counts as normal) parts normal and frictional dissipation.
-void brunt_action_book(brunt_action *action, const double J[3], const double x[3], const double old[3], const double now[3],
-                       const double support[3], const double *normal);
+// Books impulse J acting at x while its material moves with `old` before and `now` after, against a support that moves
+// with `support`; `normal` (unit, or NULL: everything counts as normal) parts normal and frictional dissipation.
+void brunt_action_book(brunt_action *action, const double J[3], const double x[3], const double old[3],
+                       const double now[3], const double support[3], const double *normal);
 
 // A mirror plane through grid nodes `node` along `axis`: symmetry, and slip walls that lie on a grid line.
-typedef struct brunt_mirror { int axis; int32_t node; int wall; } brunt_mirror;
+typedef struct brunt_mirror {
+    int axis;
+    int32_t node;
+    int wall;
+} brunt_mirror;
 
 typedef struct brunt_wall {
     char name[BRUNT_NAME_LENGTH];
-    bool region;              // else a plane
-    brunt_plane_def plane;    // normal of unit length
-    brunt_region_def where;   // of a region; shares the world's definition
-    int body;                 // the one it acts on, -1: all
-    int mirror;               // index of the mirror plane it has become, -1
-    brunt_action action;      // since the start
-    brunt_action last;        // of the last step
+    bool region;            // else a plane
+    brunt_plane_def plane;  // normal of unit length
+    brunt_region_def where; // of a region; shares the world's definition
+    int body;               // the one it acts on, -1: all
+    int mirror;             // index of the mirror plane it has become, -1
+    brunt_action action;    // since the start
+    brunt_action last;      // of the last step
 } brunt_wall;
 
 // --- mirror planes (mirror.c): symmetry by adding each node's mirror image to it, before velocities are made
 void brunt_mirror_fold(brunt_body *body, const brunt_mirror *mirror, brunt_action *action);
-// Images of a node coordinate under the mirrors it is near to (within the kernel), itself first; `sign` of each velocity component.
+// Images of a node coordinate under the mirrors it is near to (within the kernel), itself first; `sign` of each
+// velocity component.
 enum { BRUNT_MAX_IMAGES = 8 };
-int brunt_mirror_images(const brunt_mirror *mirrors, int mirror_count, const int32_t node[3], int near, int32_t image[BRUNT_MAX_IMAGES][3],
-                        real sign[BRUNT_MAX_IMAGES][3]);
+int brunt_mirror_images(const brunt_mirror *mirrors, int mirror_count, const int32_t node[3], int near,
+                        int32_t image[BRUNT_MAX_IMAGES][3], real sign[BRUNT_MAX_IMAGES][3]);
 
 // --- node conditions (conditions.c): stick and slip planes at the nodes behind them, prescribed velocities in regions
 void brunt_condition_apply(brunt_body *body, brunt_wall *wall, double time, double dt);
 
 // --- reach (reach.c): where a body's surface really is
-// Gradient of the body's volume fraction at a node [1/m], which points into the body, and the centre of the volume that the
-// node feels, relative to the node [m].
+// Gradient of the body's volume fraction at a node [1/m], which points into the body, and the centre of the volume that
+// the node feels, relative to the node [m].
 void brunt_reach_gradient(brunt_body *body, int32_t slot, int node, double gradient[3], double centre[3]);
-// Greatest distance along unit vector n, from the node, that a particle near the node reaches [m], and where that particle is,
-// relative to the node; -INFINITY when there is none.
+// Greatest distance along unit vector n, from the node, that a particle near the node reaches [m], and where that
+// particle is, relative to the node; -INFINITY when there is none.
 double brunt_reach_extent(brunt_body *body, int32_t slot, int node, const double n[3], double farthest[3]);
 
 // --- walls (walls.c): planes that push and let go, with Coulomb friction, at zero gap
 typedef struct brunt_wall_workspace brunt_wall_workspace;
-int brunt_walls_apply(brunt_body *body, brunt_wall *walls, int wall_count, const brunt_mirror *mirrors, int mirror_count, double time,
-                      double dt, brunt_wall_workspace **workspace);
+int brunt_walls_apply(brunt_body *body, brunt_wall *walls, int wall_count, const brunt_mirror *mirrors,
+                      int mirror_count, double time, double dt, brunt_wall_workspace **workspace);
 void brunt_wall_workspace_free(brunt_wall_workspace *workspace);
 
 // --- contact between bodies (multivelocity.c)
 typedef struct brunt_pair {
-    int a, b;                 // bodies, a < b
+    int a, b; // bodies, a < b
     brunt_contact_method method;
     double friction;
     brunt_action action, last;
 } brunt_pair;
 
 typedef struct brunt_contact_workspace brunt_contact_workspace;
-// `pair_of[a * body_count + b]`: index of the pair, -1 for none. 0, or -1: out of memory, -2: more than 16 bodies at a node.
-int brunt_multivelocity_apply(brunt_body *bodies, int body_count, brunt_pair *pairs, int pair_count, const int32_t *pair_of,
-                              const brunt_mirror *mirrors, int mirror_count, double dt, int threads, double *seconds,
-                              brunt_contact_workspace **workspace);
+// `pair_of[a * body_count + b]`: index of the pair, -1 for none. 0, or -1: out of memory, -2: more than 16 bodies at a
+// node.
+int brunt_multivelocity_apply(brunt_body *bodies, int body_count, brunt_pair *pairs, int pair_count,
+                              const int32_t *pair_of, const brunt_mirror *mirrors, int mirror_count, double dt,
+                              int threads, double *seconds, brunt_contact_workspace **workspace);
 void brunt_contact_workspace_free(brunt_contact_workspace *workspace);

@@ -1,17 +1,19 @@
-// Mirror planes. A body cut by a symmetry plane that runs through grid nodes is computed as the half of a whole: the mirror
-// image's particles would give the nodes exactly what the body gives to the mirrored nodes. So each node gets its own sums
-// plus the reflected sums of its partner, and node pairs stay each other's reflection from then on. The spare real of a node
-// keeps the mass that the body itself has there, for the energy and momentum ledgers.
+// Mirror planes. A body cut by a symmetry plane that runs through grid nodes is computed as the half of a whole: the
+// mirror image's particles would give the nodes exactly what the body gives to the mirrored nodes. So each node gets
+// its own sums plus the reflected sums of its partner, and node pairs stay each other's reflection from then on. The
+// spare real of a node keeps the mass that the body itself has there, for the energy and momentum ledgers.
 #include "contact.h"
 
 #include <string.h>
 
-// Nodes further than the kernel reaches from the plane have no partner with mass on the other side; two layers cover a cubic
-// kernel and a body that has sunk into the plane by less than a cell.
+// Nodes further than the kernel reaches from the plane have no partner with mass on the other side; two layers cover a
+// cubic kernel and a body that has sunk into the plane by less than a cell.
 enum { LAYERS = 2 };
 
-// Momentum that a pair of nodes carries for the body itself: before folding its own, afterwards its share of the common velocity.
-static void sum_momentum(const real *n, const double x[3], int dim, double factor, double linear[3], double angular[3]) {
+// Momentum that a pair of nodes carries for the body itself: before folding its own, afterwards its share of the common
+// velocity.
+static void sum_momentum(const real *n, const double x[3], int dim, double factor, double linear[3],
+                         double angular[3]) {
     double p[3] = {0, 0, 0};
     for (int a = 0; a < dim; a++) p[a] = factor * (double)(n[BRUNT_NODE_VELOCITY + a] + n[BRUNT_NODE_OLD + a]);
     for (int a = 0; a < 3; a++) {
@@ -51,7 +53,8 @@ void brunt_mirror_fold(brunt_body *body, const brunt_mirror *mirror, brunt_actio
             real *m = brunt_grid_node(grid, at);
             if (!m || (n[0] <= 0 && m[0] <= 0)) continue;
             // The share of a node's own mass in what earlier mirrors have put there.
-            double own_n = n[0] > 0 ? (double)(n[BRUNT_NODE_SPARE] / n[0]) : 0, own_m = m[0] > 0 ? (double)(m[BRUNT_NODE_SPARE] / m[0]) : 0;
+            double own_n = n[0] > 0 ? (double)(n[BRUNT_NODE_SPARE] / n[0]) : 0,
+                   own_m = m[0] > 0 ? (double)(m[BRUNT_NODE_SPARE] / m[0]) : 0;
             sum_momentum(n, x, dim, own_n, before, turn_before);
             sum_momentum(m, y, dim, own_m, before, turn_before);
             for (int r = 0; r < BRUNT_NODE_SPARE; r++) {
@@ -69,8 +72,8 @@ void brunt_mirror_fold(brunt_body *body, const brunt_mirror *mirror, brunt_actio
     }
 }
 
-int brunt_mirror_images(const brunt_mirror *mirrors, int mirror_count, const int32_t node[3], int near, int32_t image[BRUNT_MAX_IMAGES][3],
-                        real sign[BRUNT_MAX_IMAGES][3]) {
+int brunt_mirror_images(const brunt_mirror *mirrors, int mirror_count, const int32_t node[3], int near,
+                        int32_t image[BRUNT_MAX_IMAGES][3], real sign[BRUNT_MAX_IMAGES][3]) {
     int count = 1;
     memcpy(image[0], node, sizeof image[0]);
     for (int a = 0; a < 3; a++) sign[0][a] = 1;
@@ -78,7 +81,7 @@ int brunt_mirror_images(const brunt_mirror *mirrors, int mirror_count, const int
         int axis = mirrors[m].axis;
         int32_t mirrored = 2 * mirrors[m].node - node[axis];
         if (mirrored - node[axis] > 2 * near || node[axis] - mirrored > 2 * near) continue;
-        if (mirrored == node[axis]) {  // its own image: nothing moves it along the axis
+        if (mirrored == node[axis]) { // its own image: nothing moves it along the axis
             for (int k = 0; k < count; k++) sign[k][axis] = 0;
             continue;
         }

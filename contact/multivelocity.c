@@ -6,9 +6,9 @@
 //   approach the relative velocity along n may not exceed gap/dt, so the gap closes to zero and not past it; bodies not
 //            yet within reach are left alone
 //   friction the tangential impulse that would stop the slip, at most mu times the normal one
-// Impulses are equal and opposite at one point: linear and angular momentum are kept to rounding. Three and more bodies at a
-// node are solved together by Gauss-Seidel sweeps over the pairs to convergence; bodies are ordered by name, so the order in
-// a file changes nothing.
+// Impulses are equal and opposite at one point: linear and angular momentum are kept to rounding. Three and more bodies
+// at a node are solved together by Gauss-Seidel sweeps over the pairs to convergence; bodies are ordered by name, so
+// the order in a file changes nothing.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,28 +18,48 @@
 #include "threads.h"
 
 enum { MAX_SWEEPS = 1000, MAX_TOGETHER = 16 };
-static const double SWEEP_TOLERANCE = 1e-13;  // of the velocities at the node
+static const double SWEEP_TOLERANCE = 1e-13; // of the velocities at the node
 enum { CLIMBS = 6 };
-static const double CLIMB = 0.5, SHORTER = 0.7;  // first and later: change of direction per cell of sideways distance between the farthest particles
+static const double
+    CLIMB = 0.5,
+    SHORTER = 0.7; // first and later: change of direction per cell of sideways distance between the farthest particles
 
 // A slot of a body that some other body may share.
-typedef struct shared_slot { uint64_t key; int32_t body, slot; } shared_slot;
+typedef struct shared_slot {
+    uint64_t key;
+    int32_t body, slot;
+} shared_slot;
 // Slots with the same coordinate: entries first .. first+count-1, and where their pairs' actions are collected.
-typedef struct group { int32_t first, count, action; bool crowded; } group;
+typedef struct group {
+    int32_t first, count, action;
+    bool crowded;
+} group;
 
-typedef struct box { int32_t low[3], high[3]; } box;
+typedef struct box {
+    int32_t low[3], high[3];
+} box;
 
 struct brunt_contact_workspace {
-    box *bounds; size_t bounds_capacity;
-    shared_slot *shared; size_t shared_capacity; int32_t shared_count;
-    group *groups; size_t groups_capacity; int32_t group_count;
-    brunt_action *actions; size_t actions_capacity; int32_t action_count;
+    box *bounds;
+    size_t bounds_capacity;
+    shared_slot *shared;
+    size_t shared_capacity;
+    int32_t shared_count;
+    group *groups;
+    size_t groups_capacity;
+    int32_t group_count;
+    brunt_action *actions;
+    size_t actions_capacity;
+    int32_t action_count;
 };
 
 typedef struct job {
-    brunt_body *bodies; int body_count;
-    const brunt_pair *pairs; const int32_t *pair_of;
-    const brunt_mirror *mirrors; int mirror_count;
+    brunt_body *bodies;
+    int body_count;
+    const brunt_pair *pairs;
+    const int32_t *pair_of;
+    const brunt_mirror *mirrors;
+    int mirror_count;
     double dt;
     brunt_contact_workspace *w;
 } job;
@@ -84,7 +104,8 @@ static int compare_shared(const void *a, const void *b) {
     return (u->body > v->body) - (u->body < v->body);
 }
 
-// Slots inside the box of another body that it may touch, sorted; then those that really coincide. 0, or -1: out of memory.
+// Slots inside the box of another body that it may touch, sorted; then those that really coincide. 0, or -1: out of
+// memory.
 static int find_groups(job *j) {
     brunt_contact_workspace *w = j->w;
     const int n = j->body_count;
@@ -96,7 +117,8 @@ static int find_groups(job *j) {
         const brunt_grid *grid = &j->bodies[b].grid;
         for (int o = 0; o < n; o++) {
             if (o == b || j->pair_of[b * n + o] < 0 || !overlap(&bounds[b], &bounds[o])) continue;
-            if (brunt_reserve((void **)&w->shared, &w->shared_capacity, (size_t)(w->shared_count + grid->slot_count) * sizeof(shared_slot),
+            if (brunt_reserve((void **)&w->shared, &w->shared_capacity,
+                              (size_t)(w->shared_count + grid->slot_count) * sizeof(shared_slot),
                               (size_t)w->shared_count * sizeof(shared_slot)))
                 return -1;
             for (int32_t s = 0; s < grid->slot_count; s++)
@@ -134,9 +156,16 @@ typedef struct meeting {
     double push, drag[3];     // [N s] on b
 } meeting;
 
-typedef struct member { brunt_body *body; int32_t slot; real *node; int entry; double v[3], inverse; } member;
+typedef struct member {
+    brunt_body *body;
+    int32_t slot;
+    real *node;
+    int entry;
+    double v[3], inverse;
+} member;
 
-// Unit vector along n with the parts taken out that a body cut by mirror planes cannot know: its image has no particles.
+// Unit vector along n with the parts taken out that a body cut by mirror planes cannot know: its image has no
+// particles.
 static bool make_unit(const job *j, const member *a, int node, double n[3]) {
     int local[3];
     const brunt_grid *grid = &a->body->grid;
@@ -156,15 +185,17 @@ static bool make_unit(const job *j, const member *a, int node, double n[3]) {
 static double gap_along(const member *a, const member *b, int node, const double n[3], double between[3]) {
     const double back[3] = {-n[0], -n[1], -n[2]};
     double pa[3], pb[3];
-    double gap = -brunt_reach_extent(b->body, b->slot, node, back, pb) - brunt_reach_extent(a->body, a->slot, node, n, pa);
+    double gap =
+        -brunt_reach_extent(b->body, b->slot, node, back, pb) - brunt_reach_extent(a->body, a->slot, node, n, pa);
     for (int k = 0; k < 3; k++) between[k] = pb[k] - pa[k];
     return gap;
 }
 
-// Normal and gap of two bodies at a node. Bodies that some direction separates do not touch, whatever the mean normal says:
-// round surfaces that graze are felt by nodes far off the line of contact, where the mean normal is tilted and finds them
-// touching a third of a cell early. So when the mean normal finds contact, a separating direction is looked for, starting
-// from the line between the bodies' centres near the node and climbing the gap. False when nothing tells the bodies apart.
+// Normal and gap of two bodies at a node. Bodies that some direction separates do not touch, whatever the mean normal
+// says: round surfaces that graze are felt by nodes far off the line of contact, where the mean normal is tilted and
+// finds them touching a third of a cell early. So when the mean normal finds contact, a separating direction is looked
+// for, starting from the line between the bodies' centres near the node and climbing the gap. False when nothing tells
+// the bodies apart.
 static bool make_normal(const job *j, const member *a, const member *b, int node, double n[3], double *gap) {
     double ga[3], gb[3], ca[3], cb[3], between[3], search[3], v[3], approach = 0;
     brunt_reach_gradient(a->body, a->slot, node, ga, ca);
@@ -173,7 +204,7 @@ static bool make_normal(const job *j, const member *a, const member *b, int node
     if (!make_unit(j, a, node, n)) return false;
     *gap = gap_along(a, b, node, n, between);
     for (int k = 0; k < 3; k++) approach += v[k] * n[k];
-    if (approach * j->dt >= -fmax(*gap, 0)) return true;  // nothing will be done
+    if (approach * j->dt >= -fmax(*gap, 0)) return true; // nothing will be done
     double step = CLIMB / (double)a->body->grid.h;
     for (int climb = 0; climb < CLIMBS && make_unit(j, a, node, search); climb++, step *= SHORTER) {
         double found = gap_along(a, b, node, search, between), along = 0;
@@ -241,7 +272,8 @@ static void meet_at_node(const job *j, group *g, int node) {
             return;
         }
         member *m = &members[n++];
-        *m = (member){.body = &j->bodies[s->body], .slot = s->slot, .node = at, .entry = i, .inverse = 1 / (double)at[0]};
+        *m = (member){
+            .body = &j->bodies[s->body], .slot = s->slot, .node = at, .entry = i, .inverse = 1 / (double)at[0]};
         for (int a = 0; a < dim; a++) m->v[a] = (double)at[BRUNT_NODE_VELOCITY + a];
     }
     if (n < 2) return;
@@ -253,8 +285,11 @@ static void meet_at_node(const job *j, group *g, int node) {
             if (pair < 0) continue;
             meeting *m = &meetings[met];
             int low = members[i].entry, high = members[k].entry;
-            *m = (meeting){.a = i, .b = k, .action = low * g->count - low * (low + 1) / 2 + high - low - 1,
-                           .friction = j->pairs[pair].friction, .inverse = members[i].inverse + members[k].inverse};
+            *m = (meeting){.a = i,
+                           .b = k,
+                           .action = low * g->count - low * (low + 1) / 2 + high - low - 1,
+                           .friction = j->pairs[pair].friction,
+                           .inverse = members[i].inverse + members[k].inverse};
             double gap;
             if (!make_normal(j, &members[i], &members[k], node, m->n, &gap)) continue;
             m->target = -fmax(gap, 0) / j->dt;
@@ -292,9 +327,9 @@ static void meet(void *context, int64_t begin, int64_t end, int worker) {
         for (int node = 0; node < BRUNT_BLOCK_NODES; node++) meet_at_node(j, &j->w->groups[q], node);
 }
 
-int brunt_multivelocity_apply(brunt_body *bodies, int body_count, brunt_pair *pairs, int pair_count, const int32_t *pair_of,
-                              const brunt_mirror *mirrors, int mirror_count, double dt, int threads, double *seconds,
-                              brunt_contact_workspace **workspace) {
+int brunt_multivelocity_apply(brunt_body *bodies, int body_count, brunt_pair *pairs, int pair_count,
+                              const int32_t *pair_of, const brunt_mirror *mirrors, int mirror_count, double dt,
+                              int threads, double *seconds, brunt_contact_workspace **workspace) {
     (void)pair_count;
     if (!*workspace) *workspace = brunt_alloc(sizeof **workspace);
     if (!*workspace) return -1;

@@ -1,21 +1,24 @@
 // Where a body's surface really is, seen from a node.
 //
-// A grid knows a body only through its kernel, which feels it up to a cell and a half away. The particles know better: each
-// carries how far it was from the body's surface at the start (its reach). The ball of that radius is material, so the
-// surface along a direction n is the farthest point x.n + r any particle near the node has, with r = reach |F^T n|: the
-// deformed distance of a material plane whose deformed normal is n.
+// A grid knows a body only through its kernel, which feels it up to a cell and a half away. The particles know better:
+// each carries how far it was from the body's surface at the start (its reach). The ball of that radius is material, so
+// the surface along a direction n is the farthest point x.n + r any particle near the node has, with r = reach |F^T n|:
+// the deformed distance of a material plane whose deformed normal is n.
 #include "contact.h"
 
 #include <math.h>
 
-// Weight and slope [1/cell] of one node along one axis; u: cells from the base node, k: the node, counted from the base.
+// Weight and slope [1/cell] of one node along one axis; u: cells from the base node, k: the node, counted from the
+// base.
 static void weight_1d(int order, double u, int k, double *w, double *g) {
     double d = u - k, a = fabs(d), s = d < 0 ? -1 : 1;
     if (order == 1) {
         *w = 1 - a, *g = -s;
     } else if (order == 2) {
-        if (a < 0.5) *w = 0.75 - a * a, *g = -2 * d;
-        else *w = 0.5 * (1.5 - a) * (1.5 - a), *g = -s * (1.5 - a);
+        if (a < 0.5)
+            *w = 0.75 - a * a, *g = -2 * d;
+        else
+            *w = 0.5 * (1.5 - a) * (1.5 - a), *g = -s * (1.5 - a);
     } else if (a < 1) {
         *w = 2.0 / 3 + a * a * (0.5 * a - 1), *g = s * a * (1.5 * a - 2);
     } else {
@@ -34,19 +37,22 @@ static void visit_particles(brunt_body *body, int32_t slot, int node, visit_fn *
         for (int ky = 0; ky <= grid->order; ky++)
             for (int kz = 0; kz <= (grid->dim == 3 ? grid->order : 0); kz++) {
                 int at[3] = {local[0] - kx, local[1] - ky, local[2] - kz}, corner = 0;
-                const int base[3] = {kx, ky, kz};  // the node is number base[] of the bin's nodes
+                const int base[3] = {kx, ky, kz}; // the node is number base[] of the bin's nodes
                 for (int a = 0; a < grid->dim; a++) {
                     corner = 2 * corner + (at[a] < 0);
                     if (at[a] < 0) at[a] += grid->side;
                 }
                 int32_t b = grid->slots[slot].source[corner];
                 if (b < 0) continue;
-                const int32_t *start = grid->bin_start + (int64_t)b * BRUNT_BIN_STARTS + brunt_node_index(grid, at[0], at[1], at[2]);
+                const int32_t *start =
+                    grid->bin_start + (int64_t)b * BRUNT_BIN_STARTS + brunt_node_index(grid, at[0], at[1], at[2]);
                 for (int32_t i = start[0]; i < start[1]; i++) visit(context, body, grid->blocks[b].first + i, base);
             }
 }
 
-typedef struct gradient_sum { double node[3], sum[3], volume, moment[3]; } gradient_sum;
+typedef struct gradient_sum {
+    double node[3], sum[3], volume, moment[3];
+} gradient_sum;
 
 static void add_gradient(void *context, brunt_body *body, int64_t s, const int base[3]) {
     gradient_sum *g = context;
@@ -54,9 +60,11 @@ static void add_gradient(void *context, brunt_body *body, int64_t s, const int b
     const brunt_grid *grid = &body->grid;
     real *const *F = brunt_field(p, BRUNT_FIELD_deformation_gradient), *const *x = brunt_field(p, BRUNT_FIELD_position);
     double J = p->dim == 2 ? (double)(F[0][s] * F[3][s] - F[1][s] * F[2][s])
-                           : (double)(F[0][s] * (F[4][s] * F[8][s] - F[5][s] * F[7][s]) - F[1][s] * (F[3][s] * F[8][s] - F[5][s] * F[6][s]) +
+                           : (double)(F[0][s] * (F[4][s] * F[8][s] - F[5][s] * F[7][s]) -
+                                      F[1][s] * (F[3][s] * F[8][s] - F[5][s] * F[6][s]) +
                                       F[2][s] * (F[3][s] * F[7][s] - F[4][s] * F[6][s]));
-    double volume = J * (double)brunt_field(p, BRUNT_FIELD_reference_volume)[0][s], w[3] = {1, 1, 1}, slope[3] = {0, 0, 0};
+    double volume = J * (double)brunt_field(p, BRUNT_FIELD_reference_volume)[0][s], w[3] = {1, 1, 1},
+           slope[3] = {0, 0, 0};
     for (int a = 0; a < p->dim; a++) {
         double u = ((double)x[a][s] - g->node[a]) * (double)grid->inv_h + base[a];
         weight_1d(grid->order, u, base[a], &w[a], &slope[a]);
@@ -74,8 +82,8 @@ void brunt_reach_gradient(brunt_body *body, int32_t slot, int node, double gradi
     const brunt_grid *grid = &body->grid;
     brunt_node_position(grid, grid->slots[slot].coord, node, g.node);
     visit_particles(body, slot, node, add_gradient, &g);
-    // A particle right of the node has a negative slope there: the sum of V grad_x N points away from the body; its gradient
-    // as a field over space, which is asked for, is the opposite.
+    // A particle right of the node has a negative slope there: the sum of V grad_x N points away from the body; its
+    // gradient as a field over space, which is asked for, is the opposite.
     double scale = -(double)grid->inv_h / pow((double)grid->h, grid->dim);
     for (int a = 0; a < 3; a++) {
         gradient[a] = scale * g.sum[a];
@@ -83,7 +91,9 @@ void brunt_reach_gradient(brunt_body *body, int32_t slot, int node, double gradi
     }
 }
 
-typedef struct extent_max { double node[3], n[3], most, point[3]; } extent_max;
+typedef struct extent_max {
+    double node[3], n[3], most, point[3];
+} extent_max;
 
 static void add_extent(void *context, brunt_body *body, int64_t s, const int base[3]) {
     (void)base;

@@ -1,17 +1,17 @@
 // Planes that push and let go, at zero gap.
 //
-// A wall acts on particles, not on nodes: a particle whose surface would be past the plane at the end of the step gets an
-// impulse that just prevents it, given to the nodes with the particle's own weights. Planes of any direction and position
-// work alike, and the block of a tilted ramp rests where its surface is. The impulses of all particles in reach solve a
-// complementarity problem (push >= 0, gap >= 0, friction within the Coulomb cone).
+// A wall acts on particles, not on nodes: a particle whose surface would be past the plane at the end of the step gets
+// an impulse that just prevents it, given to the nodes with the particle's own weights. Planes of any direction and
+// position work alike, and the block of a tilted ramp rests where its surface is. The impulses of all particles in
+// reach solve a complementarity problem (push >= 0, gap >= 0, friction within the Coulomb cone).
 //
-// It is solved by projected Jacobi iteration. Each particle's correction is divided by its row sum of the coupling matrix
-// N M^-1 N^T, which is non-negative: the spectrum of the scaled matrix lies in (0, 1], the iteration converges, and a
-// uniform approach, the common case, is met in one sweep. All particles of a sweep see the same velocities, so neither their
-// order nor the number of threads matters.
+// It is solved by projected Jacobi iteration. Each particle's correction is divided by its row sum of the coupling
+// matrix N M^-1 N^T, which is non-negative: the spectrum of the scaled matrix lies in (0, 1], the iteration converges,
+// and a uniform approach, the common case, is met in one sweep. All particles of a sweep see the same velocities, so
+// neither their order nor the number of threads matters.
 //
-// Tried and left: conditions on the nodes behind the plane (the surface then depends on where the plane cuts the cells, by
-// up to half a cell); Gauss-Seidel (the first particle visited takes the load of its neighbours, who need 50 to 200
+// Tried and left: conditions on the nodes behind the plane (the surface then depends on where the plane cuts the cells,
+// by up to half a cell); Gauss-Seidel (the first particle visited takes the load of its neighbours, who need 50 to 200
 // sweeps to take it back, against about 10 here).
 #include <math.h>
 #include <string.h>
@@ -21,34 +21,46 @@
 #include "transfer.h"
 
 enum { MAX_SWEEPS = 16 };
-static const double SWEEP_TOLERANCE = 1e-2;  // of the greatest correction of velocity in the first sweep: what is left is met again next step
-static const double NEAR = 0.5;              // cells: a particle moves less than that in a step
+static const double SWEEP_TOLERANCE =
+    1e-2; // of the greatest correction of velocity in the first sweep: what is left is met again next step
+static const double NEAR = 0.5; // cells: a particle moves less than that in a step
 
 // A node under touching particles.
 typedef struct support {
     real *node;
-    double inverse_mass, weight[3];  // [1/kg]; sum of what the particles apply to it, along each axis
-    double impulse[3];               // [N s] of the sweep
+    double inverse_mass, weight[3]; // [1/kg]; sum of what the particles apply to it, along each axis
+    double impulse[3];              // [N s] of the sweep
 } support;
 
-// A node under one touching particle. With mirror planes near by, the particle's images act too: `apply` differs from `weight`.
-typedef struct entry { int32_t support; double weight, apply[3]; } entry;
+// A node under one touching particle. With mirror planes near by, the particle's images act too: `apply` differs from
+// `weight`.
+typedef struct entry {
+    int32_t support;
+    double weight, apply[3];
+} entry;
 
 typedef struct touch {
-    int64_t slot;             // particle
+    int64_t slot; // particle
     int wall;
-    int32_t first, count;     // its entries
-    double target;            // [m/s] least velocity along the normal
-    double response, response_t;  // [1/kg] row sums: along the normal, tangential
-    double push;              // [N s] along the normal
-    double drag[3];           // [N s] tangential
+    int32_t first, count;        // its entries
+    double target;               // [m/s] least velocity along the normal
+    double response, response_t; // [1/kg] row sums: along the normal, tangential
+    double push;                 // [N s] along the normal
+    double drag[3];              // [N s] tangential
 } touch;
 
 struct brunt_wall_workspace {
-    touch *touches; size_t touches_capacity; int32_t touch_count;
-    entry *entries; size_t entries_capacity; int32_t entry_count;
-    support *supports; size_t supports_capacity; int32_t support_count;
-    int32_t *index; size_t index_capacity;   // of each node of the grid: its support + 1, 0 for none
+    touch *touches;
+    size_t touches_capacity;
+    int32_t touch_count;
+    entry *entries;
+    size_t entries_capacity;
+    int32_t entry_count;
+    support *supports;
+    size_t supports_capacity;
+    int32_t support_count;
+    int32_t *index;
+    size_t index_capacity; // of each node of the grid: its support + 1, 0 for none
 };
 
 void brunt_wall_workspace_free(brunt_wall_workspace *workspace) {
@@ -78,7 +90,8 @@ static entry *find_entry(brunt_wall_workspace *w, int32_t first, int32_t at) {
 }
 
 // Nodes and weights under particle `s` of block `b`. 0, or -1: out of memory.
-static int add_entries(brunt_wall_workspace *w, brunt_body *body, int32_t b, int64_t s, const brunt_mirror *mirrors, int mirror_count) {
+static int add_entries(brunt_wall_workspace *w, brunt_body *body, int32_t b, int64_t s, const brunt_mirror *mirrors,
+                       int mirror_count) {
     const brunt_grid *grid = &body->grid;
     const int dim = grid->dim, n = grid->order + 1;
     const size_t room = 64 * BRUNT_MAX_IMAGES;
@@ -109,8 +122,10 @@ static int add_entries(brunt_wall_workspace *w, brunt_body *body, int32_t b, int
                     if (!node || !(node[BRUNT_NODE_MASS] > 0)) continue;
                     int32_t found = find_support(w, grid, node);
                     entry *e = &w->entries[w->entry_count];
-                    if (mirror_count) e = find_entry(w, first, found);
-                    else *e = (entry){.support = found}, w->entry_count++;
+                    if (mirror_count)
+                        e = find_entry(w, first, found);
+                    else
+                        *e = (entry){.support = found}, w->entry_count++;
                     if (m == 0) e->weight += N;
                     for (int a = 0; a < 3; a++) e->apply[a] += (double)sign[m][a] * N;
                 }
@@ -127,8 +142,8 @@ static void particle_velocity(const brunt_wall_workspace *w, const touch *t, int
 }
 
 // Particles that the plane would catch in this step.
-static int find_touches(brunt_wall_workspace *w, brunt_body *body, const brunt_wall *walls, int index, const brunt_mirror *mirrors,
-                        int mirror_count, double time, double dt) {
+static int find_touches(brunt_wall_workspace *w, brunt_body *body, const brunt_wall *walls, int index,
+                        const brunt_mirror *mirrors, int mirror_count, double time, double dt) {
     const brunt_grid *grid = &body->grid;
     const brunt_plane_def *plane = &walls[index].plane;
     brunt_particles *p = &body->particles;
@@ -145,7 +160,8 @@ static int find_touches(brunt_wall_workspace *w, brunt_body *body, const brunt_w
     for (int32_t b = 0; b < grid->block_count; b++) {
         const brunt_block *block = &grid->blocks[b];
         double middle = -offset;
-        for (int a = 0; a < dim; a++) middle += plane->normal[a] * (grid->origin[a] + h * (block->coord[a] + 0.5) * grid->side);
+        for (int a = 0; a < dim; a++)
+            middle += plane->normal[a] * (grid->origin[a] + h * (block->coord[a] + 0.5) * grid->side);
         if (middle > half + (NEAR + 4) * h) continue;
         for (int64_t s = block->first; s < block->first + block->count; s++) {
             double distance = -offset, square = 0;
@@ -168,8 +184,10 @@ static int find_touches(brunt_wall_workspace *w, brunt_body *body, const brunt_w
             double v[3], approach = 0;
             particle_velocity(w, t, dim, v);
             for (int a = 0; a < dim; a++) approach += plane->normal[a] * v[a];
-            if (approach > t->target + 1e-6 * h / dt) w->entry_count = t->first;
-            else w->touch_count++;
+            if (approach > t->target + 1e-6 * h / dt)
+                w->entry_count = t->first;
+            else
+                w->touch_count++;
         }
     }
     return 0;
@@ -187,7 +205,8 @@ static void prepare(brunt_wall_workspace *w, const brunt_wall *walls, int dim) {
             const support *s = &w->supports[w->entries[e].support];
             for (int a = 0; a < dim; a++) along[a] += w->entries[e].weight * s->weight[a] * s->inverse_mass;
         }
-        for (int a = 0; a < dim; a++) t->response += n[a] * n[a] * along[a], t->response_t = fmax(t->response_t, along[a]);
+        for (int a = 0; a < dim; a++)
+            t->response += n[a] * n[a] * along[a], t->response_t = fmax(t->response_t, along[a]);
     }
 }
 
@@ -195,7 +214,8 @@ static void prepare(brunt_wall_workspace *w, const brunt_wall *walls, int dim) {
 static double visit(brunt_wall_workspace *w, touch *t, const brunt_plane_def *plane, int dim) {
     double v[3], J[3] = {0}, normal_velocity = 0, wall_normal = 0;
     particle_velocity(w, t, dim, v);
-    for (int a = 0; a < dim; a++) normal_velocity += plane->normal[a] * v[a], wall_normal += plane->normal[a] * plane->velocity[a];
+    for (int a = 0; a < dim; a++)
+        normal_velocity += plane->normal[a] * v[a], wall_normal += plane->normal[a] * plane->velocity[a];
     double push = fmax(0, t->push + (t->target - normal_velocity) / t->response), step = push - t->push;
     t->push = push;
     double changed = fabs(step) * t->response;
@@ -246,8 +266,10 @@ static void book(const brunt_wall_workspace *w, brunt_body *body, brunt_wall *wa
         for (int32_t e = t->first; e < t->first + t->count; e++) {
             const real *n = w->supports[w->entries[e].support].node;
             int64_t number = (n - grid->nodes) / BRUNT_NODE_REALS;
-            double J[3] = {0}, x[3], old[3] = {0}, now[3] = {0}, own = (double)(n[BRUNT_NODE_SPARE] / n[BRUNT_NODE_MASS]);
-            brunt_node_position(grid, grid->slots[number / BRUNT_BLOCK_NODES].coord, (int)(number % BRUNT_BLOCK_NODES), x);
+            double J[3] = {0}, x[3], old[3] = {0}, now[3] = {0},
+                   own = (double)(n[BRUNT_NODE_SPARE] / n[BRUNT_NODE_MASS]);
+            brunt_node_position(grid, grid->slots[number / BRUNT_BLOCK_NODES].coord, (int)(number % BRUNT_BLOCK_NODES),
+                                x);
             for (int a = 0; a < grid->dim; a++) {
                 J[a] = own * w->entries[e].apply[a] * (t->push * wall->plane.normal[a] + t->drag[a]);
                 old[a] = (double)n[BRUNT_NODE_OLD + a], now[a] = (double)n[BRUNT_NODE_VELOCITY + a];
@@ -257,8 +279,8 @@ static void book(const brunt_wall_workspace *w, brunt_body *body, brunt_wall *wa
     }
 }
 
-int brunt_walls_apply(brunt_body *body, brunt_wall *walls, int wall_count, const brunt_mirror *mirrors, int mirror_count, double time,
-                      double dt, brunt_wall_workspace **workspace) {
+int brunt_walls_apply(brunt_body *body, brunt_wall *walls, int wall_count, const brunt_mirror *mirrors,
+                      int mirror_count, double time, double dt, brunt_wall_workspace **workspace) {
     if (!*workspace) *workspace = brunt_alloc(sizeof **workspace);
     brunt_wall_workspace *w = *workspace;
     if (!w || brunt_reserve((void **)&w->index, &w->index_capacity,
@@ -284,6 +306,7 @@ int brunt_walls_apply(brunt_body *body, brunt_wall *walls, int wall_count, const
         }
         book(w, body, walls);
     }
-    for (int32_t k = 0; k < w->support_count; k++) w->index[(w->supports[k].node - body->grid.nodes) / BRUNT_NODE_REALS] = 0;
+    for (int32_t k = 0; k < w->support_count; k++)
+        w->index[(w->supports[k].node - body->grid.nodes) / BRUNT_NODE_REALS] = 0;
     return failed;
 }

@@ -6,17 +6,22 @@
 #include "memory.h"
 
 void brunt_grid_init(brunt_grid *grid, int dim, int order, double h, const double origin[3]) {
-    *grid = (brunt_grid){.dim = dim, .order = order, .side = dim == 3 ? 4 : 8, .corners = dim == 3 ? 8 : 4,
-                         .h = (real)h, .inv_h = (real)(1.0 / h)};
+    *grid = (brunt_grid){.dim = dim,
+                         .order = order,
+                         .side = dim == 3 ? 4 : 8,
+                         .corners = dim == 3 ? 8 : 4,
+                         .h = (real)h,
+                         .inv_h = (real)(1.0 / h)};
     grid->span = grid->side + order;
     grid->span_nodes = dim == 3 ? grid->span * grid->span * grid->span : grid->span * grid->span;
     memcpy(grid->origin, origin, sizeof grid->origin);
 }
 
 void brunt_grid_free(brunt_grid *grid) {
-    void *owned[] = {grid->blocks, grid->block_key, grid->bin_start, grid->slots, grid->slot_key, grid->nodes,
-                     grid->scatter, grid->spare_key, grid->block_table.key, grid->block_table.value,
-                     grid->slot_table.key, grid->slot_table.value};
+    void *owned[] = {
+        grid->blocks,         grid->block_key,       grid->bin_start, grid->slots,           grid->slot_key,
+        grid->nodes,          grid->scatter,         grid->spare_key, grid->block_table.key, grid->block_table.value,
+        grid->slot_table.key, grid->slot_table.value};
     for (size_t k = 0; k < sizeof owned / sizeof owned[0]; k++) brunt_free(owned[k]);
     *grid = (brunt_grid){0};
 }
@@ -104,7 +109,8 @@ int brunt_grid_set_blocks(brunt_grid *grid, const uint64_t *keys, int32_t count)
     size_t n = (size_t)count, most = n * (size_t)grid->corners;
     if (brunt_reserve((void **)&grid->block_key, &grid->block_key_capacity, n * sizeof *grid->block_key, 0) ||
         brunt_reserve((void **)&grid->blocks, &grid->blocks_capacity, n * sizeof *grid->blocks, 0) ||
-        brunt_reserve((void **)&grid->bin_start, &grid->bin_start_capacity, n * BRUNT_BIN_STARTS * sizeof *grid->bin_start, 0) ||
+        brunt_reserve((void **)&grid->bin_start, &grid->bin_start_capacity,
+                      n * BRUNT_BIN_STARTS * sizeof *grid->bin_start, 0) ||
         brunt_reserve((void **)&grid->scatter, &grid->scatter_capacity,
                       n * (size_t)grid->span_nodes * BRUNT_NODE_REALS * sizeof(real), 0) ||
         brunt_reserve((void **)&grid->slot_key, &grid->slot_key_capacity, (most + 1) * sizeof *grid->slot_key, 0) ||

@@ -1,9 +1,9 @@
 // The sparse grid of one body.
 //
-// A bin is the lowest grid node a particle's kernel reaches: base = floor((x - origin)/h - (order-1)/2) per axis. A block
-// is 4 x 4 x 4 bins (8 x 8 in 2D) and is alive only where the body has particles. A slot is the block of 64 nodes with
-// the same coordinate; because the kernel reaches forward only, the bins of a block touch the nodes of 2^dim slots: its
-// own and those one further along each axis. Memory follows the body, not the box around it.
+// A bin is the lowest grid node a particle's kernel reaches: base = floor((x - origin)/h - (order-1)/2) per axis. A
+// block is 4 x 4 x 4 bins (8 x 8 in 2D) and is alive only where the body has particles. A slot is the block of 64 nodes
+// with the same coordinate; because the kernel reaches forward only, the bins of a block touch the nodes of 2^dim
+// slots: its own and those one further along each axis. Memory follows the body, not the box around it.
 //
 // Blocks and slots are kept in lexicographic order of their coordinates (z fastest), which keeps neighbours close in
 // memory, makes the order of every sum independent of threads, and lets the lists of two bodies be matched by a merge.
@@ -15,8 +15,8 @@
 #include "real.h"
 
 enum {
-    BRUNT_BLOCK_NODES = 64,   // bins of a block = nodes of a slot, in 2D and 3D
-    BRUNT_NODE_REALS = 8,     // reals of a node
+    BRUNT_BLOCK_NODES = 64, // bins of a block = nodes of a slot, in 2D and 3D
+    BRUNT_NODE_REALS = 8,   // reals of a node
     BRUNT_BIN_STARTS = BRUNT_BLOCK_NODES + 1
 };
 
@@ -24,43 +24,56 @@ enum {
 // force; the grid update turns them into the new and the old velocity. Momentum and impulse are kept apart because the
 // energy ledger needs the kinetic energy before the forces act, and FLIP the change of velocity.
 enum {
-    BRUNT_NODE_MASS = 0,      // [kg]
-    BRUNT_NODE_VELOCITY = 1,  // after P2G: momentum [kg m/s]; after the update: velocity at the end of the step [m/s]
-    BRUNT_NODE_OLD = 4,       // after P2G: dt times internal force [N s]; after the update: velocity at its start [m/s]
-    BRUNT_NODE_SPARE = 7      // fills the cache line
+    BRUNT_NODE_MASS = 0,     // [kg]
+    BRUNT_NODE_VELOCITY = 1, // after P2G: momentum [kg m/s]; after the update: velocity at the end of the step [m/s]
+    BRUNT_NODE_OLD = 4,      // after P2G: dt times internal force [N s]; after the update: velocity at its start [m/s]
+    BRUNT_NODE_SPARE = 7     // fills the cache line
 };
 
 typedef struct brunt_block {
     int32_t coord[3];
-    int32_t first, count;     // its particles: slots first .. first+count-1 of the particle arrays, first a multiple of BRUNT_LANES
-    int32_t slot[8];          // node slots at coord + corner (corner x slowest)
+    int32_t first,
+        count; // its particles: slots first .. first+count-1 of the particle arrays, first a multiple of BRUNT_LANES
+    int32_t slot[8]; // node slots at coord + corner (corner x slowest)
 } brunt_block;
 
 typedef struct brunt_slot {
     int32_t coord[3];
-    int32_t source[8];        // blocks at coord - corner whose particles reach these nodes, -1 where there is none
+    int32_t source[8]; // blocks at coord - corner whose particles reach these nodes, -1 where there is none
 } brunt_slot;
 
-typedef struct brunt_table { uint64_t *key; int32_t *value; int32_t capacity; } brunt_table;
+typedef struct brunt_table {
+    uint64_t *key;
+    int32_t *value;
+    int32_t capacity;
+} brunt_table;
 
 typedef struct brunt_grid {
-    int dim, order;           // 2 or 3; 1 linear, 2 quadratic, 3 cubic
-    int side;                 // bins along an edge of a block: 4 in 3D, 8 in 2D
-    int corners;              // 2^dim
-    int span;                 // nodes along an edge that a block's bins touch: side + order
-    int span_nodes;           // span^dim
-    real h, inv_h;            // [m], [1/m]
-    double origin[3];         // [m] place of node 0
+    int dim, order;   // 2 or 3; 1 linear, 2 quadratic, 3 cubic
+    int side;         // bins along an edge of a block: 4 in 3D, 8 in 2D
+    int corners;      // 2^dim
+    int span;         // nodes along an edge that a block's bins touch: side + order
+    int span_nodes;   // span^dim
+    real h, inv_h;    // [m], [1/m]
+    double origin[3]; // [m] place of node 0
 
     int32_t block_count, slot_count;
-    brunt_block *blocks; size_t blocks_capacity;
-    uint64_t *block_key; size_t block_key_capacity;
-    int32_t *bin_start; size_t bin_start_capacity;  // block_count x 65, relative to the block's first particle
-    brunt_slot *slots; size_t slots_capacity;
-    uint64_t *slot_key; size_t slot_key_capacity;
-    real *nodes; size_t nodes_capacity;             // slot_count x 64 x 8
-    real *scatter; size_t scatter_capacity;         // block_count x span_nodes x 8: what each block's particles give
-    uint64_t *spare_key; size_t spare_key_capacity;
+    brunt_block *blocks;
+    size_t blocks_capacity;
+    uint64_t *block_key;
+    size_t block_key_capacity;
+    int32_t *bin_start;
+    size_t bin_start_capacity; // block_count x 65, relative to the block's first particle
+    brunt_slot *slots;
+    size_t slots_capacity;
+    uint64_t *slot_key;
+    size_t slot_key_capacity;
+    real *nodes;
+    size_t nodes_capacity; // slot_count x 64 x 8
+    real *scatter;
+    size_t scatter_capacity; // block_count x span_nodes x 8: what each block's particles give
+    uint64_t *spare_key;
+    size_t spare_key_capacity;
     brunt_table block_table, slot_table;
 } brunt_grid;
 
@@ -76,7 +89,8 @@ uint64_t brunt_key(const int32_t coord[3]);
 int32_t brunt_grid_block(const brunt_grid *grid, uint64_t key);
 int32_t brunt_grid_slot(const brunt_grid *grid, uint64_t key);
 
-// Replaces the set of blocks by `count` keys (sorted, no duplicates) and makes slots and neighbour lists. 0, or -1: out of memory.
+// Replaces the set of blocks by `count` keys (sorted, no duplicates) and makes slots and neighbour lists. 0, or -1: out
+// of memory.
 int brunt_grid_set_blocks(brunt_grid *grid, const uint64_t *keys, int32_t count);
 
 // Node index within a slot of local coordinates (z fastest), and back.

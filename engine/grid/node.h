@@ -19,10 +19,14 @@ BRUNT_INLINE void node4_store(real *p, node4 a) { *(node4_unaligned *)p = a; }
 BRUNT_INLINE void node8_transpose(const lanes component[8], real out[BRUNT_LANES][8]) {
 #if BRUNT_LANES == 8
     const lanes *c = component;
-    lanes a0 = BRUNT_SHUFFLE8(c[0], c[1], 0, 8, 2, 10, 4, 12, 6, 14), a1 = BRUNT_SHUFFLE8(c[0], c[1], 1, 9, 3, 11, 5, 13, 7, 15);
-    lanes a2 = BRUNT_SHUFFLE8(c[2], c[3], 0, 8, 2, 10, 4, 12, 6, 14), a3 = BRUNT_SHUFFLE8(c[2], c[3], 1, 9, 3, 11, 5, 13, 7, 15);
-    lanes a4 = BRUNT_SHUFFLE8(c[4], c[5], 0, 8, 2, 10, 4, 12, 6, 14), a5 = BRUNT_SHUFFLE8(c[4], c[5], 1, 9, 3, 11, 5, 13, 7, 15);
-    lanes a6 = BRUNT_SHUFFLE8(c[6], c[7], 0, 8, 2, 10, 4, 12, 6, 14), a7 = BRUNT_SHUFFLE8(c[6], c[7], 1, 9, 3, 11, 5, 13, 7, 15);
+    lanes a0 = BRUNT_SHUFFLE8(c[0], c[1], 0, 8, 2, 10, 4, 12, 6, 14),
+          a1 = BRUNT_SHUFFLE8(c[0], c[1], 1, 9, 3, 11, 5, 13, 7, 15);
+    lanes a2 = BRUNT_SHUFFLE8(c[2], c[3], 0, 8, 2, 10, 4, 12, 6, 14),
+          a3 = BRUNT_SHUFFLE8(c[2], c[3], 1, 9, 3, 11, 5, 13, 7, 15);
+    lanes a4 = BRUNT_SHUFFLE8(c[4], c[5], 0, 8, 2, 10, 4, 12, 6, 14),
+          a5 = BRUNT_SHUFFLE8(c[4], c[5], 1, 9, 3, 11, 5, 13, 7, 15);
+    lanes a6 = BRUNT_SHUFFLE8(c[6], c[7], 0, 8, 2, 10, 4, 12, 6, 14),
+          a7 = BRUNT_SHUFFLE8(c[6], c[7], 1, 9, 3, 11, 5, 13, 7, 15);
 #define PAIR_LOW(a, b) BRUNT_SHUFFLE8(a, b, 0, 1, 8, 9, 4, 5, 12, 13)
 #define PAIR_HIGH(a, b) BRUNT_SHUFFLE8(a, b, 2, 3, 10, 11, 6, 7, 14, 15)
     lanes b0 = PAIR_LOW(a0, a2), b1 = PAIR_LOW(a1, a3), b2 = PAIR_HIGH(a0, a2), b3 = PAIR_HIGH(a1, a3);

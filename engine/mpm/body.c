@@ -13,10 +13,12 @@ static int prepare(const brunt_material_def *def, const brunt_model *model, cons
     for (int k = 0; k < model->parameter_count; k++) {
         const brunt_parameter *row = &model->parameters[k];
         double v = given[k];
-        bool low = row->min_open ? !(v > row->min) : !(v >= row->min), high = row->max_open ? !(v < row->max) : !(v <= row->max);
+        bool low = row->min_open ? !(v > row->min) : !(v >= row->min),
+             high = row->max_open ? !(v < row->max) : !(v <= row->max);
         if (low || high)
-            return brunt_fail(error, BRUNT_BAD_INPUT, "materials.%s.%s: %g %s is outside its range %c%g, %g%c", def->name,
-                              row->key, v, row->unit, row->min_open ? '(' : '[', row->min, row->max, row->max_open ? ')' : ']');
+            return brunt_fail(error, BRUNT_BAD_INPUT, "materials.%s.%s: %g %s is outside its range %c%g, %g%c",
+                              def->name, row->key, v, row->unit, row->min_open ? '(' : '[', row->min, row->max,
+                              row->max_open ? ')' : ']');
     }
     const char *wrong = model->prepare(given, def->density, with_eos, constants);
     if (wrong) return brunt_fail(error, BRUNT_BAD_INPUT, "materials.%s: %s", def->name, wrong);
@@ -27,14 +29,19 @@ int brunt_material_make(const brunt_material_def *def, brunt_material *material,
     *material = (brunt_material){.density = (real)def->density};
     memcpy(material->name, def->name, sizeof material->name);
     if (!(def->density > 0) || !isfinite(def->density))
-        return brunt_fail(error, BRUNT_BAD_INPUT, "materials.%s.density: %g kg/m^3 is not a positive density", def->name, def->density);
+        return brunt_fail(error, BRUNT_BAD_INPUT, "materials.%s.density: %g kg/m^3 is not a positive density",
+                          def->name, def->density);
     const brunt_model *strength = brunt_find_strength(def->strength);
-    if (!strength) return brunt_fail(error, BRUNT_BAD_INPUT, "materials.%s.model: there is no model '%s'", def->name, def->strength);
+    if (!strength)
+        return brunt_fail(error, BRUNT_BAD_INPUT, "materials.%s.model: there is no model '%s'", def->name,
+                          def->strength);
     const brunt_model *eos = def->eos[0] ? brunt_find_eos(def->eos) : NULL;
     if (def->eos[0] && !eos)
-        return brunt_fail(error, BRUNT_BAD_INPUT, "materials.%s.eos: there is no equation of state '%s'", def->name, def->eos);
+        return brunt_fail(error, BRUNT_BAD_INPUT, "materials.%s.eos: there is no equation of state '%s'", def->name,
+                          def->eos);
     if (eos && !strength->accepts_eos)
-        return brunt_fail(error, BRUNT_BAD_INPUT, "materials.%s.eos: model '%s' brings its own pressure and takes no equation of state",
+        return brunt_fail(error, BRUNT_BAD_INPUT,
+                          "materials.%s.eos: model '%s' brings its own pressure and takes no equation of state",
                           def->name, strength->name);
     material->model[BRUNT_STRENGTH] = strength;
     material->model[BRUNT_EOS] = eos;
@@ -64,7 +71,8 @@ brunt_points brunt_body_points(brunt_body *body, brunt_component component, int6
     brunt_particles *p = &body->particles;
     const int dim = p->dim;
     brunt_points points = {.count = count, .dim = dim, .cell = body->grid.h, .wave_speed = body->material.wave_speed};
-    real **F = brunt_field(p, BRUNT_FIELD_deformation_gradient), **stress = brunt_field(p, BRUNT_FIELD_kirchhoff_stress);
+    real **F = brunt_field(p, BRUNT_FIELD_deformation_gradient),
+         **stress = brunt_field(p, BRUNT_FIELD_kirchhoff_stress);
     for (int c = 0; c < BRUNT_MATRIX(dim); c++) points.F[c] = F[c] + first;
     for (int c = 0; c < BRUNT_SYMMETRIC(dim); c++) points.stress[c] = stress[c] + first;
     points.volume = brunt_field(p, BRUNT_FIELD_reference_volume)[0] + first;

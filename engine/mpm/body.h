@@ -10,17 +10,17 @@ typedef enum brunt_component { BRUNT_STRENGTH, BRUNT_VISCOSITY, BRUNT_EOS, BRUNT
 
 typedef struct brunt_material {
     char name[BRUNT_NAME_LENGTH];
-    real density;                                     // [kg/m^3]
-    const brunt_model *model[BRUNT_COMPONENTS];       // NULL where there is none
+    real density;                               // [kg/m^3]
+    const brunt_model *model[BRUNT_COMPONENTS]; // NULL where there is none
     real constants[BRUNT_COMPONENTS][BRUNT_MAX_CONSTANTS];
-    real wave_speed;                                  // [m/s] undeformed
+    real wave_speed; // [m/s] undeformed
 } brunt_material;
 
 // What a block reports of a step; summed or compared over the blocks in their order.
 typedef struct brunt_block_report {
-    double kinetic;           // [J]
-    real speed, wave_speed;   // [m/s] greatest
-    int32_t bad;              // slot of a particle whose update failed, -1
+    double kinetic;         // [J]
+    real speed, wave_speed; // [m/s] greatest
+    int32_t bad;            // slot of a particle whose update failed, -1
     const char *reason;
 } brunt_block_report;
 
@@ -30,8 +30,9 @@ typedef struct brunt_body {
     brunt_material material;
     brunt_particles particles;
     brunt_grid grid;
-    brunt_block_report *report; size_t report_capacity;  // a block each
-    double spacing;           // [m] of the undeformed lattice
+    brunt_block_report *report;
+    size_t report_capacity; // a block each
+    double spacing;         // [m] of the undeformed lattice
 } brunt_body;
 
 // Checks the definition and prepares the constants. BRUNT_BAD_INPUT with the offending key.

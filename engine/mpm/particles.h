@@ -1,8 +1,9 @@
 // The particles of one body: structure of arrays, made from one list of fields.
 //
 // One array per scalar component. Particles are sorted by grid block and, inside it, by bin. Every block starts at a
-// multiple of BRUNT_LANES; the gap behind its last particle is filled with copies of it that have no mass, no volume and
-// id -1, so that every loop runs over whole vectors. `count` is the number of real particles, `slots` of places with gaps.
+// multiple of BRUNT_LANES; the gap behind its last particle is filled with copies of it that have no mass, no volume
+// and id -1, so that every loop runs over whole vectors. `count` is the number of real particles, `slots` of places
+// with gaps.
 #pragma once
 
 #include <stdbool.h>
@@ -16,12 +17,12 @@
 #define BRUNT_PARTICLE_FIELDS(X)                                                                                       \
     X(position, "m", BRUNT_VECTOR, true)                                                                               \
     X(velocity, "m/s", BRUNT_VECTOR, true)                                                                             \
-    X(affine, "1/s", BRUNT_MATRIX, needs->affine)              /* C = B D^-1 of APIC (Jiang et al. 2015) */            \
+    X(affine, "1/s", BRUNT_MATRIX, needs->affine) /* C = B D^-1 of APIC (Jiang et al. 2015) */                         \
     X(deformation_gradient, "1", BRUNT_MATRIX, true)                                                                   \
     X(kirchhoff_stress, "Pa", BRUNT_SYMMETRIC, true)                                                                   \
     X(mass, "kg", BRUNT_SCALAR, true)                                                                                  \
     X(reference_volume, "m^3", BRUNT_SCALAR, true)                                                                     \
-    X(reach, "m", BRUNT_SCALAR, needs->reach)                  /* distance to the body's surface, undeformed */          \
+    X(reach, "m", BRUNT_SCALAR, needs->reach)                   /* distance to the body's surface, undeformed */       \
     X(grid_velocity, "m/s", BRUNT_VECTOR, needs->grid_velocity) /* linear FLIP: what the particle moves with */
 
 #define BRUNT_SCALAR(dim) 1
@@ -30,15 +31,15 @@ enum {
 #define BRUNT_FIELD_INDEX(name, unit, components, when) BRUNT_FIELD_##name,
     BRUNT_PARTICLE_FIELDS(BRUNT_FIELD_INDEX)
 #undef BRUNT_FIELD_INDEX
-    BRUNT_BASE_FIELDS,
+        BRUNT_BASE_FIELDS,
     BRUNT_MAX_FIELDS = BRUNT_BASE_FIELDS + 3 * 8,
     BRUNT_MAX_SCALARS = 96,
-    BRUNT_SORT_GROUP = 4      // arrays moved together by the sort, and spare arrays kept for it
+    BRUNT_SORT_GROUP = 4 // arrays moved together by the sort, and spare arrays kept for it
 };
 
 typedef struct brunt_particle_needs {
     bool affine, reach, grid_velocity;
-    const brunt_model *models[3];  // strength, viscosity, equation of state; NULL where there is none
+    const brunt_model *models[3]; // strength, viscosity, equation of state; NULL where there is none
 } brunt_particle_needs;
 
 typedef struct brunt_particle_field {
@@ -56,13 +57,14 @@ typedef struct brunt_particles {
     int field_count;
     brunt_particle_field field[BRUNT_MAX_FIELDS];
     int scalar_count;
-    real *scalar[BRUNT_MAX_SCALARS + BRUNT_SORT_GROUP];  // the last ones in use are the spare arrays of the sort
+    real *scalar[BRUNT_MAX_SCALARS + BRUNT_SORT_GROUP]; // the last ones in use are the spare arrays of the sort
     int64_t *id, *spare_id;
-    uint8_t *bin;             // of each slot, inside its block
-    int32_t *order;           // sort: where each slot's particle was before
-    uint64_t *key;            // sort: block key of each slot
-    void *slab; size_t slab_bytes;
-    brunt_sort_room *sort_room;  // see sort.c
+    uint8_t *bin;   // of each slot, inside its block
+    int32_t *order; // sort: where each slot's particle was before
+    uint64_t *key;  // sort: block key of each slot
+    void *slab;
+    size_t slab_bytes;
+    brunt_sort_room *sort_room; // see sort.c
 } brunt_particles;
 
 // Lays out the fields for a body; no particles yet.

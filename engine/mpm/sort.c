@@ -1,5 +1,5 @@
-// Counting sort in three rounds: (1) each particle's block and bin, in ranges; new blocks are collected; (2) particles to
-// blocks, stable, ranges in order; (3) inside each block by bin, then every array is moved once. A step in which no
+// Counting sort in three rounds: (1) each particle's block and bin, in ranges; new blocks are collected; (2) particles
+// to blocks, stable, ranges in order; (3) inside each block by bin, then every array is moved once. A step in which no
 // particle changes its bin stops after the first round.
 #include "sort.h"
 
@@ -17,18 +17,23 @@ enum { MISS_LIMIT = 1 << 16, BLOCK_GRAIN = 16 };
 // What one range of particles finds in the first round.
 typedef struct range {
     int64_t begin, end;
-    int64_t bad;              // slot of a particle that cannot be placed, -1
-    bool moved;               // some particle is not where the last sort put it
-    uint64_t *missing; size_t missing_capacity; int64_t missing_count;
-    int32_t *count; size_t count_capacity;  // particles per block, then the next place in it
+    int64_t bad; // slot of a particle that cannot be placed, -1
+    bool moved;  // some particle is not where the last sort put it
+    uint64_t *missing;
+    size_t missing_capacity;
+    int64_t missing_count;
+    int32_t *count;
+    size_t count_capacity; // particles per block, then the next place in it
 } range;
 
 // Kept from step to step, so that a step allocates nothing once the body has been everywhere.
 enum { MAX_RANGES = 64 };
 struct brunt_sort_room {
     range ranges[MAX_RANGES];
-    int64_t *total; size_t total_capacity;
-    uint64_t *keys; size_t keys_capacity;
+    int64_t *total;
+    size_t total_capacity;
+    uint64_t *keys;
+    size_t keys_capacity;
 };
 
 void brunt_sort_room_free(brunt_sort_room *room) {
@@ -47,7 +52,7 @@ typedef struct job {
     brunt_particles *particles;
     range *ranges;
     brunt_sort_room *room;
-    int group;                // scalars being moved: BRUNT_SORT_GROUP of them from here
+    int group; // scalars being moved: BRUNT_SORT_GROUP of them from here
     bool out_of_memory;
 } job;
 
@@ -82,7 +87,7 @@ static void find_places(void *context, int64_t begin, int64_t end, int worker) {
             bool good = true;
             for (int a = 0; a < dim; a++) {
                 double u = floor((double)((x[a][s] - o[a]) * grid->inv_h) - offset);
-                good = good && fabs(u) < (double)(BRUNT_COORD_LIMIT - 1);  // false for NaN too
+                good = good && fabs(u) < (double)(BRUNT_COORD_LIMIT - 1); // false for NaN too
                 base[a] = good ? (int32_t)u : 0;
                 block[a] = base[a] >> shift;
                 bin = bin << shift | (base[a] & mask);
@@ -134,7 +139,8 @@ static void fill_blocks(void *context, int64_t begin, int64_t end, int worker) {
     }
 }
 
-// Round three: by bin inside the block. The old places are sorted through spare_id, which is free until the arrays move.
+// Round three: by bin inside the block. The old places are sorted through spare_id, which is free until the arrays
+// move.
 static void sort_blocks(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     job *j = context;
@@ -216,7 +222,8 @@ static int renew_blocks(job *j, int ranges, bool first) {
     brunt_grid *grid = j->grid;
     int64_t most = first ? 0 : grid->block_count;
     for (int q = 0; q < ranges; q++) most += j->ranges[q].missing_count;
-    if (brunt_reserve((void **)&j->room->keys, &j->room->keys_capacity, (size_t)(most + 1) * sizeof(uint64_t), 0)) return -1;
+    if (brunt_reserve((void **)&j->room->keys, &j->room->keys_capacity, (size_t)(most + 1) * sizeof(uint64_t), 0))
+        return -1;
     uint64_t *keys = j->room->keys;
     int64_t n = 0;
     if (!first)
@@ -243,7 +250,7 @@ static int sort_ranges(job *j, int ranges, int threads, double *seconds, brunt_e
     brunt_particles *p = j->particles;
     bool first = grid->block_count == 0;
     int64_t *total = NULL;
-    for (;;) {  // until every particle's block is alive and every block has a particle: at most a few rounds
+    for (;;) { // until every particle's block is alive and every block has a particle: at most a few rounds
         brunt_parallel(threads, ranges, 1, find_places, j, seconds);
         bool moved = false, missing = false;
         for (int q = 0; q < ranges; q++) {
@@ -255,14 +262,16 @@ static int sort_ranges(job *j, int ranges, int threads, double *seconds, brunt_e
         if (!moved && !first) return BRUNT_OK;
         if (missing) {
             if (renew_blocks(j, ranges, first)) return brunt_fail(error, BRUNT_FAILED, "out of memory for the grid");
-            first = true;  // ranks have changed: what the last sort stored no longer compares
+            first = true; // ranks have changed: what the last sort stored no longer compares
             continue;
         }
         for (int q = 0; q < ranges; q++)
-            if (brunt_reserve((void **)&j->ranges[q].count, &j->ranges[q].count_capacity, (size_t)grid->block_count * sizeof(int32_t), 0))
+            if (brunt_reserve((void **)&j->ranges[q].count, &j->ranges[q].count_capacity,
+                              (size_t)grid->block_count * sizeof(int32_t), 0))
                 return brunt_fail(error, BRUNT_FAILED, "out of memory while sorting particles");
         brunt_parallel(threads, ranges, 1, count_blocks, j, seconds);
-        if (brunt_reserve((void **)&j->room->total, &j->room->total_capacity, (size_t)grid->block_count * sizeof *total, 0))
+        if (brunt_reserve((void **)&j->room->total, &j->room->total_capacity, (size_t)grid->block_count * sizeof *total,
+                          0))
             return brunt_fail(error, BRUNT_FAILED, "out of memory while sorting particles");
         total = j->room->total;
         bool empty = false;
@@ -325,7 +334,8 @@ int brunt_sort(brunt_grid *grid, brunt_particles *particles, int threads, double
     if (ranges > MAX_RANGES) ranges = MAX_RANGES;
     if (!particles->sort_room) particles->sort_room = brunt_alloc(sizeof *particles->sort_room);
     if (!particles->sort_room) return brunt_fail(error, BRUNT_FAILED, "out of memory while sorting particles");
-    job j = {.grid = grid, .particles = particles, .room = particles->sort_room, .ranges = particles->sort_room->ranges};
+    job j = {
+        .grid = grid, .particles = particles, .room = particles->sort_room, .ranges = particles->sort_room->ranges};
     for (int q = 0; q < ranges; q++) {
         j.ranges[q].begin = particles->slots * q / ranges;
         j.ranges[q].end = particles->slots * (q + 1) / ranges;

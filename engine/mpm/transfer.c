@@ -54,7 +54,8 @@ BRUNT_INLINE lanes kernel_spread(int order, lanes x, real h, real inv_h) {
 typedef struct scatter_arrays {
     const real *x[3], *v[3], *C[9], *tau[6], *mass, *volume;
     const uint8_t *bin;
-    const real *all[26]; int count;  // for the prefetches
+    const real *all[26];
+    int count; // for the prefetches
 } scatter_arrays;
 
 static void scatter_arrays_of(brunt_body *body, scatter_arrays *f) {
@@ -85,9 +86,10 @@ BRUNT_INLINE lanes bin_coordinate(const uint8_t *bin, int dim, int axis) {
     return r;
 }
 
-// Velocities of the nodes that a block's bins touch: `width` reals a node, the new velocity first and, for a width of 8, the
-// old one from the fourth on.
-BRUNT_INLINE void load_window(const brunt_grid *grid, const brunt_block *block, real *window, int width, int dim, int order) {
+// Velocities of the nodes that a block's bins touch: `width` reals a node, the new velocity first and, for a width of
+// 8, the old one from the fourth on.
+BRUNT_INLINE void load_window(const brunt_grid *grid, const brunt_block *block, real *window, int width, int dim,
+                              int order) {
     const int side = dim == 3 ? 4 : 8, span = side + order;
     for (int x = 0; x < span; x++)
         for (int y = 0; y < span; y++) {
@@ -98,9 +100,7 @@ BRUNT_INLINE void load_window(const brunt_grid *grid, const brunt_block *block, 
                 const real *from = brunt_slot_nodes(grid, block->slot[corner]) + (cx * 8 + cy) * 8;
                 real *to = window + (x * span + y) * width;
                 node4_store(to, node4_load(from + BRUNT_NODE_VELOCITY));
-                if (width == 8) {
-                    node4_store(to + 3, node4_load(from + BRUNT_NODE_OLD));
-                }
+                if (width == 8) { node4_store(to + 3, node4_load(from + BRUNT_NODE_OLD)); }
                 continue;
             }
             for (int half = 0; half < 2; half++) {
@@ -115,8 +115,8 @@ BRUNT_INLINE void load_window(const brunt_grid *grid, const brunt_block *block, 
         }
 }
 
-static void update_material(brunt_body *body, const brunt_block *block, real dt, brunt_workspace *work, real *const *gradient,
-                            brunt_block_report *report) {
+static void update_material(brunt_body *body, const brunt_block *block, real dt, brunt_workspace *work,
+                            real *const *gradient, brunt_block_report *report) {
     int32_t padded = (block->count + BRUNT_LANES - 1) / BRUNT_LANES * BRUNT_LANES;
     real speed[BRUNT_COMPONENTS] = {0};
     const brunt_model *const *model = body->material.model;
@@ -310,16 +310,19 @@ static void update_material(brunt_body *body, const brunt_block *block, real dt,
 #include "gather.inc"
 
 brunt_scatter_fn *brunt_find_scatter(int dim, brunt_kernel kernel, brunt_transfer transfer) {
-    static brunt_scatter_fn *const table[2][3][2] = {{{scatter_2_1_0, scatter_2_1_1}, {scatter_2_2_0, scatter_2_2_1}, {scatter_2_3_0, scatter_2_3_1}},
-                                                     {{scatter_3_1_0, scatter_3_1_1}, {scatter_3_2_0, scatter_3_2_1}, {scatter_3_3_0, scatter_3_3_1}}};
+    static brunt_scatter_fn *const table[2][3][2] = {
+        {{scatter_2_1_0, scatter_2_1_1}, {scatter_2_2_0, scatter_2_2_1}, {scatter_2_3_0, scatter_2_3_1}},
+        {{scatter_3_1_0, scatter_3_1_1}, {scatter_3_2_0, scatter_3_2_1}, {scatter_3_3_0, scatter_3_3_1}}};
     return table[dim - 2][kernel - 1][transfer == BRUNT_APIC];
 }
 
 brunt_gather_fn *brunt_find_gather(int dim, brunt_kernel kernel, brunt_transfer transfer) {
 #define ORDERS(d)                                                                                                      \
     {                                                                                                                  \
-        {gather_##d##_1_0_2, gather_##d##_1_1_2, gather_##d##_1_2_2}, {gather_##d##_2_0_0, gather_##d##_2_1_0, gather_##d##_2_2_0},  \
-            {gather_##d##_3_0_0, gather_##d##_3_1_0, gather_##d##_3_2_0}                                                 \
+        {gather_##d##_1_0_2, gather_##d##_1_1_2, gather_##d##_1_2_2},                                                  \
+            {gather_##d##_2_0_0, gather_##d##_2_1_0, gather_##d##_2_2_0}, {                                            \
+            gather_##d##_3_0_0, gather_##d##_3_1_0, gather_##d##_3_2_0                                                 \
+        }                                                                                                              \
     }
     static brunt_gather_fn *const table[2][3][3] = {ORDERS(2), ORDERS(3)};
 #undef ORDERS
@@ -327,14 +330,15 @@ brunt_gather_fn *brunt_find_gather(int dim, brunt_kernel kernel, brunt_transfer 
 }
 
 brunt_gather_fn *brunt_find_advance(int dim, brunt_kernel kernel, brunt_transfer transfer) {
-    static brunt_gather_fn *const table[2][3] = {{gather_2_1_0_1, gather_2_1_1_1, gather_2_1_2_1}, {gather_3_1_0_1, gather_3_1_1_1, gather_3_1_2_1}};
+    static brunt_gather_fn *const table[2][3] = {{gather_2_1_0_1, gather_2_1_1_1, gather_2_1_2_1},
+                                                 {gather_3_1_0_1, gather_3_1_1_1, gather_3_1_2_1}};
     return kernel == BRUNT_LINEAR ? table[dim - 2][transfer] : NULL;
 }
 
 // ------------------------------------------------------------------------------------------ workspace
 
 int brunt_workspace_fit(brunt_workspace *work, const brunt_grid *grid, int32_t most) {
-    int64_t stride = (most + 2 * BRUNT_LANES + 7) / 8 * 8 + 72;  // 9 cache lines apart, see brunt_particles_reserve
+    int64_t stride = (most + 2 * BRUNT_LANES + 7) / 8 * 8 + 72; // 9 cache lines apart, see brunt_particles_reserve
     int n = grid->order + 1, arrays = (int)(sizeof work->out / sizeof work->out[0]) + 2;
     int64_t window = ((int64_t)grid->span_nodes + 1) * 8;
     int64_t planes = (int64_t)n * (grid->dim == 3 ? 16 * n * n : 8 * n) * 8;
@@ -370,7 +374,8 @@ void brunt_kernel_slopes(int order, double u, double slope[4]) {
     for (int i = 0; i < 4; i++) slope[i] = i <= order ? (double)g[i][0] : 0.0;
 }
 
-// One serial pass in the order of the particles, summed in extended precision: the drift it measures is near rounding itself.
+// One serial pass in the order of the particles, summed in extended precision: the drift it measures is near rounding
+// itself.
 brunt_audit brunt_body_audit(brunt_body *body) {
     brunt_particles *p = &body->particles;
     const int dim = p->dim;
@@ -379,13 +384,15 @@ brunt_audit brunt_body_audit(brunt_body *body) {
     real *const *C = brunt_field(p, BRUNT_FIELD_affine);
     const real *mass = brunt_field(p, BRUNT_FIELD_mass)[0];
     bool affine = p->field[BRUNT_FIELD_affine].components > 0;
-    long double total_mass = 0, kinetic = 0, linear[3] = {0}, angular[3] = {0}, centre[3] = {0}, scale_linear = 0, scale_angular = 0;
+    long double total_mass = 0, kinetic = 0, linear[3] = {0}, angular[3] = {0}, centre[3] = {0}, scale_linear = 0,
+                scale_angular = 0;
     for (int64_t s = 0; s < p->slots; s++) {
         if (p->id[s] < 0) continue;
         double m = (double)mass[s], X[3] = {0}, V[3] = {0}, spin[3] = {0}, square = 0, B[3][3] = {{0}};
         for (int k = 0; k < dim; k++) X[k] = (double)x[k][s], V[k] = (double)v[k][s], square += V[k] * V[k];
         for (int k = 0; affine && k < dim; k++) {
-            double D = (double)kernel_spread(grid->order, lanes_set(x[k][s] - (real)grid->origin[k]), grid->h, grid->inv_h)[0];
+            double D =
+                (double)kernel_spread(grid->order, lanes_set(x[k][s] - (real)grid->origin[k]), grid->h, grid->inv_h)[0];
             for (int r = 0; r < dim; r++) {
                 double c = (double)C[r * dim + k][s];
                 B[r][k] = c * D;
@@ -406,7 +413,10 @@ brunt_audit brunt_body_audit(brunt_body *body) {
         scale_linear += m * sqrt(square);
         scale_angular += m * sqrt(square * size);
     }
-    brunt_audit a = {.mass = (double)total_mass, .kinetic = (double)kinetic, .scale_linear = (double)scale_linear, .scale_angular = (double)scale_angular};
+    brunt_audit a = {.mass = (double)total_mass,
+                     .kinetic = (double)kinetic,
+                     .scale_linear = (double)scale_linear,
+                     .scale_angular = (double)scale_angular};
     for (int k = 0; k < 3; k++) {
         a.linear[k] = (double)linear[k];
         a.angular[k] = (double)angular[k];

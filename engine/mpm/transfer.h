@@ -1,45 +1,49 @@
 // Transfers between particles and grid, and the update of the particles: the two passes that cost the time of a step.
 //
-// Both are written once (scatter.inc, gather.inc) and compiled for each dimension, kernel and transfer (transfer.c); a body's
-// functions are looked up once.
+// Both are written once (scatter.inc, gather.inc) and compiled for each dimension, kernel and transfer (transfer.c); a
+// body's functions are looked up once.
 #pragma once
 
 #include "body.h"
 
 // Per-thread room for one block, sized for the fullest block.
 typedef struct brunt_workspace {
-    void *memory; size_t capacity;
-    int64_t stride;           // reals an array of particles takes
-    real *window;             // nodes a block's bins touch
-    real *planes;             // polynomial coefficients of the planes of bins in use
-    real *out[24];            // particle arrays: velocity, gradient, affine, old velocity
-    real *plastic, *viscous;  // what material components leave for the next
+    void *memory;
+    size_t capacity;
+    int64_t stride;          // reals an array of particles takes
+    real *window;            // nodes a block's bins touch
+    real *planes;            // polynomial coefficients of the planes of bins in use
+    real *out[24];           // particle arrays: velocity, gradient, affine, old velocity
+    real *plastic, *viscous; // what material components leave for the next
 } brunt_workspace;
 
 // Particles of block `block` to its scatter buffer: mass, momentum, and dt times internal force.
 typedef void brunt_scatter_fn(brunt_body *body, int32_t block, real dt);
 
-// Velocity and its gradient from the grid to the particles of `block`, then their update: velocity, position, deformation
-// gradient, material. Fills body->report[block].
+// Velocity and its gradient from the grid to the particles of `block`, then their update: velocity, position,
+// deformation gradient, material. Fills body->report[block].
 typedef void brunt_gather_fn(brunt_body *body, int32_t block, real dt, real flip, brunt_workspace *work);
 
 // kernel 1..3, transfer BRUNT_PIC, BRUNT_FLIP, BRUNT_APIC
 brunt_scatter_fn *brunt_find_scatter(int dim, brunt_kernel kernel, brunt_transfer transfer);
 brunt_gather_fn *brunt_find_gather(int dim, brunt_kernel kernel, brunt_transfer transfer);
-// The linear kernel gathers in two stages: this one updates the velocities, the one above the rest, after the velocities have
-// been to the grid once more. NULL for the other kernels.
+// The linear kernel gathers in two stages: this one updates the velocities, the one above the rest, after the
+// velocities have been to the grid once more. NULL for the other kernels.
 brunt_gather_fn *brunt_find_advance(int dim, brunt_kernel kernel, brunt_transfer transfer);
 
 // Makes room for blocks of up to `most` particles. 0, or -1: out of memory.
 int brunt_workspace_fit(brunt_workspace *work, const brunt_grid *grid, int32_t most);
 void brunt_workspace_free(brunt_workspace *work);
 
-// Kernel along one axis: weights of the order+1 nodes from the base node on, for a point u cells past it. For the few places
-// that work point by point.
+// Kernel along one axis: weights of the order+1 nodes from the base node on, for a point u cells past it. For the few
+// places that work point by point.
 void brunt_kernel_weights(int order, double u, double weight[4]);
 // And their derivatives [1/cell].
 void brunt_kernel_slopes(int order, double u, double slope[4]);
 
-// Kinetic energy of a body's particles with the affine part [J], its momentum, and angular momentum about the origin with spin.
-typedef struct brunt_audit { double mass, kinetic, linear[3], angular[3], centre[3], scale_linear, scale_angular; } brunt_audit;
+// Kinetic energy of a body's particles with the affine part [J], its momentum, and angular momentum about the origin
+// with spin.
+typedef struct brunt_audit {
+    double mass, kinetic, linear[3], angular[3], centre[3], scale_linear, scale_angular;
+} brunt_audit;
 brunt_audit brunt_body_audit(brunt_body *body);

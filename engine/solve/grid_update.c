@@ -6,8 +6,8 @@
 #include "node.h"
 #include "world.h"
 
-// Each slot collects what the blocks around it have for it, always in the order of the corners: no locks, and the same bits
-// for any number of threads.
+// Each slot collects what the blocks around it have for it, always in the order of the corners: no locks, and the same
+// bits for any number of threads.
 void brunt_grid_sum(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     const brunt_grid_job *job = context;
@@ -31,14 +31,17 @@ void brunt_grid_sum(void *context, int64_t begin, int64_t end, int worker) {
             for (int x = 0; x < n[0]; x++)
                 for (int y = 0; y < n[1]; y++) {
                     const real *from = buffer + (dim == 3 ? ((x + step[0]) * span + y + step[1]) * span + step[2]
-                                                          : (x + step[0]) * span + y + step[1]) * 8;
+                                                          : (x + step[0]) * span + y + step[1]) *
+                                                    8;
                     real *to = nodes + brunt_node_index(grid, x, y, 0) * 8;
-                    for (int z = 0; z < n[2]; z++) node8_store(to + 8 * z, node8_load(to + 8 * z) + node8_load(from + 8 * z));
+                    for (int z = 0; z < n[2]; z++)
+                        node8_store(to + 8 * z, node8_load(to + 8 * z) + node8_load(from + 8 * z));
                 }
         }
         for (int k = 0; k < BRUNT_BLOCK_NODES; k++, nodes += BRUNT_NODE_REALS) {
             nodes[BRUNT_NODE_SPARE] = nodes[BRUNT_NODE_MASS];
-            for (int a = 0; job->has_gravity && a < 3; a++) nodes[BRUNT_NODE_OLD + a] += nodes[BRUNT_NODE_MASS] * kick[a];
+            for (int a = 0; job->has_gravity && a < 3; a++)
+                nodes[BRUNT_NODE_OLD + a] += nodes[BRUNT_NODE_MASS] * kick[a];
         }
     }
 }

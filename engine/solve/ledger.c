@@ -7,7 +7,10 @@
 
 void brunt_world_energy(brunt_world *world, brunt_energy *energy) {
     const struct brunt_clock *now = &world->now;
-    *energy = (brunt_energy){.kinetic = now->kinetic, .initial = now->initial_energy, .transfer = now->transfer, .external_work = now->gravity_work};
+    *energy = (brunt_energy){.kinetic = now->kinetic,
+                             .initial = now->initial_energy,
+                             .transfer = now->transfer,
+                             .external_work = now->gravity_work};
     for (int i = 0; i < world->body_count; i++) {
         brunt_point_energy e = brunt_body_energy(&world->bodies[i]);
         energy->internal += e.internal;
@@ -23,10 +26,11 @@ void brunt_world_energy(brunt_world *world, brunt_energy *energy) {
         energy->contact += world->pairs[p].action.normal_loss;
         energy->friction += world->pairs[p].action.friction_loss;
     }
-    energy->total = energy->kinetic + energy->internal + energy->plastic + energy->hourglass + energy->contact + energy->friction +
-                    energy->viscosity + energy->transfer + energy->eroded;
+    energy->total = energy->kinetic + energy->internal + energy->plastic + energy->hourglass + energy->contact +
+                    energy->friction + energy->viscosity + energy->transfer + energy->eroded;
     energy->error = energy->total - energy->initial - energy->external_work;
-    double scale = fmax(fmax(fabs(energy->initial), fabs(energy->initial + energy->external_work)), energy->kinetic + fabs(energy->internal));
+    double scale = fmax(fmax(fabs(energy->initial), fabs(energy->initial + energy->external_work)),
+                        energy->kinetic + fabs(energy->internal));
     energy->error_relative = scale > 0 ? energy->error / scale : 0;
 }
 

@@ -24,7 +24,8 @@ static bool any_model(const brunt_world *world, size_t flag, const char **becaus
     X(conditions, world->has_conditions, "boundaries: stick, oblique slip, region")                                    \
     X(gravity, world->has_gravity, "loads.gravity")
 
-#define BRUNT_MODEL_EFFECTS(X) X(plasticity, plastic) X(thermal, thermal) X(equation_of_state, eos) X(bulk_viscosity, viscous)
+#define BRUNT_MODEL_EFFECTS(X)                                                                                         \
+    X(plasticity, plastic) X(thermal, thermal) X(equation_of_state, eos) X(bulk_viscosity, viscous)
 
 enum {
 #define COUNT(name, ...) EFFECT_##name,

@@ -23,15 +23,19 @@ static double jacobian(brunt_particles *p, int64_t s) {
 }
 
 static void derive_position(brunt_body *body, int64_t s, double *out) {
-    for (int a = 0; a < 3; a++) out[a] = a < body->particles.dim ? entry(&body->particles, BRUNT_FIELD_position, a, s) : 0;
+    for (int a = 0; a < 3; a++)
+        out[a] = a < body->particles.dim ? entry(&body->particles, BRUNT_FIELD_position, a, s) : 0;
 }
 static void derive_velocity(brunt_body *body, int64_t s, double *out) {
-    for (int a = 0; a < 3; a++) out[a] = a < body->particles.dim ? entry(&body->particles, BRUNT_FIELD_velocity, a, s) : 0;
+    for (int a = 0; a < 3; a++)
+        out[a] = a < body->particles.dim ? entry(&body->particles, BRUNT_FIELD_velocity, a, s) : 0;
 }
 static void derive_stress(brunt_body *body, int64_t s, double *out) {
     double J = jacobian(&body->particles, s);
     for (int c = 0; c < 6; c++)
-        out[c] = c < BRUNT_SYMMETRIC(body->particles.dim) ? entry(&body->particles, BRUNT_FIELD_kirchhoff_stress, c, s) / J : 0;
+        out[c] = c < BRUNT_SYMMETRIC(body->particles.dim)
+                     ? entry(&body->particles, BRUNT_FIELD_kirchhoff_stress, c, s) / J
+                     : 0;
 }
 static void derive_pressure(brunt_body *body, int64_t s, double *out) {
     double t[6];
@@ -48,17 +52,31 @@ static void derive_J(brunt_body *body, int64_t s, double *out) { *out = jacobian
 static void derive_volume(brunt_body *body, int64_t s, double *out) {
     *out = entry(&body->particles, BRUNT_FIELD_reference_volume, 0, s) * jacobian(&body->particles, s);
 }
-static void derive_density(brunt_body *body, int64_t s, double *out) { *out = (double)body->material.density / jacobian(&body->particles, s); }
-static void derive_mass(brunt_body *body, int64_t s, double *out) { *out = entry(&body->particles, BRUNT_FIELD_mass, 0, s); }
-static void derive_F(brunt_body *body, int64_t s, double *out) { matrix(&body->particles, BRUNT_FIELD_deformation_gradient, s, 1, out); }
+static void derive_density(brunt_body *body, int64_t s, double *out) {
+    *out = (double)body->material.density / jacobian(&body->particles, s);
+}
+static void derive_mass(brunt_body *body, int64_t s, double *out) {
+    *out = entry(&body->particles, BRUNT_FIELD_mass, 0, s);
+}
+static void derive_F(brunt_body *body, int64_t s, double *out) {
+    matrix(&body->particles, BRUNT_FIELD_deformation_gradient, s, 1, out);
+}
 static void derive_id(brunt_body *body, int64_t s, double *out) { *out = (double)body->particles.id[s]; }
 
-static const struct derived { brunt_field_info info; derive_fn *derive; } derived[] = {
-    {{"position", "m", 3, false}, derive_position},     {{"velocity", "m/s", 3, false}, derive_velocity},
-    {{"stress", "Pa", 6, true}, derive_stress},         {{"pressure", "Pa", 1, false}, derive_pressure},
-    {{"von_mises", "Pa", 1, false}, derive_von_mises},  {{"J", "1", 1, false}, derive_J},
-    {{"volume", "m^3", 1, false}, derive_volume},       {{"density", "kg/m^3", 1, false}, derive_density},
-    {{"mass", "kg", 1, false}, derive_mass},            {{"deformation_gradient", "1", 9, false}, derive_F},
+static const struct derived {
+    brunt_field_info info;
+    derive_fn *derive;
+} derived[] = {
+    {{"position", "m", 3, false}, derive_position},
+    {{"velocity", "m/s", 3, false}, derive_velocity},
+    {{"stress", "Pa", 6, true}, derive_stress},
+    {{"pressure", "Pa", 1, false}, derive_pressure},
+    {{"von_mises", "Pa", 1, false}, derive_von_mises},
+    {{"J", "1", 1, false}, derive_J},
+    {{"volume", "m^3", 1, false}, derive_volume},
+    {{"density", "kg/m^3", 1, false}, derive_density},
+    {{"mass", "kg", 1, false}, derive_mass},
+    {{"deformation_gradient", "1", 9, false}, derive_F},
     {{"id", "1", 1, false}, derive_id},
 };
 enum { DERIVED = sizeof derived / sizeof derived[0] };

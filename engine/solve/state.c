@@ -18,7 +18,10 @@ enum { WORLD_BLOCKS = 3 };
 static const char REAL_TYPE = sizeof(real) == 8 ? 'd' : 'f';
 
 // What block `index` is: of a body its ids (field -1) or a field; of the world (body NULL) number `field`.
-typedef struct place { brunt_body *body; int field; } place;
+typedef struct place {
+    brunt_body *body;
+    int field;
+} place;
 
 static place find(brunt_world *world, int32_t index) {
     for (int i = 0; i < world->body_count; i++) {
@@ -51,7 +54,8 @@ brunt_state_block brunt_state_info(brunt_world *world, int32_t index) {
         const brunt_particles *p = &at.body->particles;
         block.type = at.field < 0 ? 'i' : REAL_TYPE;
         block.count = p->count * (at.field < 0 ? 1 : p->field[at.field].components);
-        snprintf(block.name, sizeof block.name, "bodies/%s/%s", at.body->name, at.field < 0 ? "id" : p->field[at.field].name);
+        snprintf(block.name, sizeof block.name, "bodies/%s/%s", at.body->name,
+                 at.field < 0 ? "id" : p->field[at.field].name);
         return block;
     }
     static const char *const names[WORLD_BLOCKS] = {"world/clock", "world/walls", "world/pairs"};
@@ -71,8 +75,10 @@ void brunt_state_get(brunt_world *world, int32_t index, void *out) {
         for (int c = 0; c < components; c++)
             for (int64_t s = 0; s < p->slots; s++) {
                 if (p->id[s] < 0) continue;
-                if (at.field < 0) ((int64_t *)out)[n++] = p->id[s];
-                else ((real *)out)[n++] = p->scalar[p->field[at.field].first + c][s];
+                if (at.field < 0)
+                    ((int64_t *)out)[n++] = p->id[s];
+                else
+                    ((real *)out)[n++] = p->scalar[p->field[at.field].first + c][s];
             }
         return;
     }
@@ -91,18 +97,21 @@ void brunt_state_get(brunt_world *world, int32_t index, void *out) {
 int brunt_state_set(brunt_world *world, int32_t index, const void *in, int64_t count, brunt_error *error) {
     brunt_state_block block = brunt_state_info(world, index);
     if (count != block.count)
-        return brunt_fail(error, BRUNT_BAD_INPUT, "%s holds %lld values, the scene needs %lld", block.name, (long long)count, (long long)block.count);
+        return brunt_fail(error, BRUNT_BAD_INPUT, "%s holds %lld values, the scene needs %lld", block.name,
+                          (long long)count, (long long)block.count);
     place at = find(world, index);
     if (at.body) {
         brunt_particles *p = &at.body->particles;
         // From here on the body has no gaps; its grid is made anew by brunt_state_done.
         for (int64_t s = 0; at.field < 0 && s < p->count; s++) {
             int64_t id = ((const int64_t *)in)[s];
-            if (id < 0 || id >= p->count) return brunt_fail(error, BRUNT_BAD_INPUT, "%s holds an id out of range", block.name);
+            if (id < 0 || id >= p->count)
+                return brunt_fail(error, BRUNT_BAD_INPUT, "%s holds an id out of range", block.name);
             p->id[s] = id;
         }
         for (int c = 0; at.field >= 0 && c < p->field[at.field].components; c++)
-            memcpy(p->scalar[p->field[at.field].first + c], (const real *)in + (int64_t)c * p->count, (size_t)p->count * sizeof(real));
+            memcpy(p->scalar[p->field[at.field].first + c], (const real *)in + (int64_t)c * p->count,
+                   (size_t)p->count * sizeof(real));
         return BRUNT_OK;
     }
     const double *from = in;

@@ -42,21 +42,26 @@ static void end_pass(brunt_world *world, int pass, double start) { world->pass[p
 static int fail(const brunt_world *world, const brunt_body *body, brunt_error *error, const char *reason) {
     if (!error) return BRUNT_FAILED;
     error->time = world->now.time;
-    if (body) memcpy(error->body, body->name, sizeof error->body < sizeof body->name ? sizeof error->body : sizeof body->name);
+    if (body)
+        memcpy(error->body, body->name,
+               sizeof error->body < sizeof body->name ? sizeof error->body : sizeof body->name);
     char where[256] = "";
     if (body && error->id >= 0)
-        snprintf(where, sizeof where, "body '%s', particle %lld at (%.6g, %.6g, %.6g) m, ", body->name, (long long)error->id,
-                 error->place[0], error->place[1], error->place[2]);
+        snprintf(where, sizeof where, "body '%s', particle %lld at (%.6g, %.6g, %.6g) m, ", body->name,
+                 (long long)error->id, error->place[0], error->place[1], error->place[2]);
     else if (body)
         snprintf(where, sizeof where, "body '%s', ", body->name);
-    return brunt_fail(error, BRUNT_FAILED, "%stime %.9g s, step %.0f: %s", where, world->now.time, world->now.steps, reason);
+    return brunt_fail(error, BRUNT_FAILED, "%stime %.9g s, step %.0f: %s", where, world->now.time, world->now.steps,
+                      reason);
 }
 
-static int fail_particle(const brunt_world *world, brunt_body *body, int64_t slot, brunt_error *error, const char *reason) {
+static int fail_particle(const brunt_world *world, brunt_body *body, int64_t slot, brunt_error *error,
+                         const char *reason) {
     if (error) {
         real *const *x = brunt_field(&body->particles, BRUNT_FIELD_position);
         error->id = body->particles.id[slot];
-        for (int64_t s = slot; error->id < 0 && s >= 0; s--) error->id = body->particles.id[s];  // padding copies the last one
+        for (int64_t s = slot; error->id < 0 && s >= 0; s--)
+            error->id = body->particles.id[s]; // padding copies the last one
         for (int a = 0; a < 3; a++) error->place[a] = a < world->dimension ? (double)x[a][slot] : 0;
     }
     return fail(world, body, error, reason);
@@ -64,7 +69,11 @@ static int fail_particle(const brunt_world *world, brunt_body *body, int64_t slo
 
 // ------------------------------------------------------------------------------------------ passes
 
-typedef struct body_job { brunt_world *world; brunt_body *body; double dt; } body_job;
+typedef struct body_job {
+    brunt_world *world;
+    brunt_body *body;
+    double dt;
+} body_job;
 
 static void scatter_blocks(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
@@ -82,7 +91,8 @@ static int sort_bodies(brunt_world *world, brunt_error *error) {
     for (int i = 0; i < world->body_count; i++) {
         brunt_body *body = &world->bodies[i];
         if (error) error->id = -1;
-        if (brunt_sort(&body->grid, &body->particles, world->threads, world->pass[BRUNT_PASS_sort].thread_seconds, error)) {
+        if (brunt_sort(&body->grid, &body->particles, world->threads, world->pass[BRUNT_PASS_sort].thread_seconds,
+                       error)) {
             char reason[256];
             snprintf(reason, sizeof reason, "%.250s", error ? error->message : "");
             return fail(world, body, error, reason);
@@ -91,7 +101,8 @@ static int sort_bodies(brunt_world *world, brunt_error *error) {
         int32_t most = 0;
         for (int32_t b = 0; b < grid->block_count; b++)
             if (grid->blocks[b].count > most) most = grid->blocks[b].count;
-        size_t reports = (size_t)grid->block_count * sizeof *body->report, sums = (size_t)grid->slot_count * sizeof *world->node_sums;
+        size_t reports = (size_t)grid->block_count * sizeof *body->report,
+               sums = (size_t)grid->slot_count * sizeof *world->node_sums;
         if (brunt_reserve((void **)&body->report, &body->report_capacity, reports, 0) ||
             brunt_reserve((void **)&world->node_sums, &world->node_sums_capacity, sums, 0))
             return fail(world, body, error, "out of memory");
@@ -101,7 +112,9 @@ static int sort_bodies(brunt_world *world, brunt_error *error) {
     return BRUNT_OK;
 }
 
-static bool acts_on(const brunt_wall *wall, const brunt_body *body) { return wall->body < 0 || wall->body == body->index; }
+static bool acts_on(const brunt_wall *wall, const brunt_body *body) {
+    return wall->body < 0 || wall->body == body->index;
+}
 
 // Particles and forces to the grid, and the velocities there before anything else acts.
 static void make_grid_velocities(brunt_world *world, brunt_body *body, const double gravity[3], double dt) {
@@ -140,23 +153,27 @@ static int constrain_grid_velocities(brunt_world *world, double dt, brunt_error 
             brunt_wall *wall = &world->walls[w];
             bool at_nodes = wall->region || (wall->mirror < 0 && wall->plane.condition != BRUNT_SEPARATE);
             for (int i = 0; at_nodes && i < world->body_count; i++)
-                if (acts_on(wall, &world->bodies[i])) brunt_condition_apply(&world->bodies[i], wall, world->now.time, dt);
+                if (acts_on(wall, &world->bodies[i]))
+                    brunt_condition_apply(&world->bodies[i], wall, world->now.time, dt);
         }
         end_pass(world, BRUNT_PASS_conditions, start);
     }
     if (world->has_contact) {
         start_pass(world, BRUNT_PASS_contact, &start);
-        int failed = brunt_multivelocity_apply(world->bodies, world->body_count, world->pairs, world->pair_count, world->pair_of,
-                                               world->mirrors, world->mirror_count, dt, world->threads,
+        int failed = brunt_multivelocity_apply(world->bodies, world->body_count, world->pairs, world->pair_count,
+                                               world->pair_of, world->mirrors, world->mirror_count, dt, world->threads,
                                                world->pass[BRUNT_PASS_contact].thread_seconds, &world->contact_work);
-        if (failed) return fail(world, NULL, error, failed == -1 ? "out of memory in the contact search" : "more than 16 bodies meet at one grid node");
+        if (failed)
+            return fail(world, NULL, error,
+                        failed == -1 ? "out of memory in the contact search"
+                                     : "more than 16 bodies meet at one grid node");
         end_pass(world, BRUNT_PASS_contact, start);
     }
     if (world->has_walls) {
         start_pass(world, BRUNT_PASS_walls, &start);
         for (int i = 0; i < world->body_count; i++)
-            if (brunt_walls_apply(&world->bodies[i], world->walls, world->wall_count, world->mirrors, world->mirror_count, world->now.time,
-                                  dt, &world->wall_work[i]))
+            if (brunt_walls_apply(&world->bodies[i], world->walls, world->wall_count, world->mirrors,
+                                  world->mirror_count, world->now.time, dt, &world->wall_work[i]))
                 return fail(world, &world->bodies[i], error, "out of memory at a wall");
         end_pass(world, BRUNT_PASS_walls, start);
     }
@@ -164,7 +181,8 @@ static int constrain_grid_velocities(brunt_world *world, double dt, brunt_error 
 }
 
 // Kinetic energy that the grid has before and after the forces, and what gravity did.
-static void keep_ledger(brunt_world *world, const double gravity[3], double dt, double *old_kinetic, double *new_kinetic) {
+static void keep_ledger(brunt_world *world, const double gravity[3], double dt, double *old_kinetic,
+                        double *new_kinetic) {
     double start;
     start_pass(world, BRUNT_PASS_ledger, &start);
     *old_kinetic = *new_kinetic = 0;
@@ -181,7 +199,8 @@ static void keep_ledger(brunt_world *world, const double gravity[3], double dt, 
             for (int a = 0; a < 3; a++) {
                 int k = (a + 1) % 3, l = (a + 2) % 3;
                 world->now.gravity_impulse[a] += dt * n->mass * gravity[a];
-                world->now.gravity_angular[a] += dt * (n->first_moment[k] * gravity[l] - n->first_moment[l] * gravity[k]);
+                world->now.gravity_angular[a] +=
+                    dt * (n->first_moment[k] * gravity[l] - n->first_moment[l] * gravity[k]);
             }
         }
     }
@@ -196,8 +215,8 @@ static void advance_blocks(void *context, int64_t begin, int64_t end, int worker
         job->world->advance(job->body, (int32_t)b, (real)job->dt, (real)job->world->flip, &job->world->work[worker]);
 }
 
-// Linear kernel: the particles' new velocities once more to the grid, without forces, for the gradient. What conditions do to
-// that field is no impulse: it is not booked.
+// Linear kernel: the particles' new velocities once more to the grid, without forces, for the gradient. What conditions
+// do to that field is no impulse: it is not booked.
 static void remap_velocities(brunt_world *world, double dt) {
     double start, *seconds = world->pass[BRUNT_PASS_remap].thread_seconds;
     start_pass(world, BRUNT_PASS_remap, &start);
@@ -211,7 +230,8 @@ static void remap_velocities(brunt_world *world, double dt) {
         brunt_parallel(world->threads, body->grid.block_count, BLOCK_GRAIN, scatter_blocks, &still, seconds);
         brunt_parallel(world->threads, body->grid.slot_count, SLOT_GRAIN, brunt_grid_sum, &grid_job, seconds);
         for (int m = 0; m < world->mirror_count; m++)
-            if (acts_on(&world->walls[world->mirrors[m].wall], body)) brunt_mirror_fold(body, &world->mirrors[m], &unbooked);
+            if (acts_on(&world->walls[world->mirrors[m].wall], body))
+                brunt_mirror_fold(body, &world->mirrors[m], &unbooked);
         brunt_parallel(world->threads, body->grid.slot_count, SLOT_GRAIN, brunt_grid_update, &grid_job, seconds);
         for (int w = 0; w < world->wall_count; w++) {
             brunt_wall wall = world->walls[w];
@@ -236,7 +256,8 @@ static int gather_bodies(brunt_world *world, double dt, double *kinetic, brunt_e
                        world->pass[BRUNT_PASS_gather].thread_seconds);
         for (int32_t b = 0; b < body->grid.block_count; b++) {
             *kinetic += body->report[b].kinetic;
-            if (body->report[b].bad >= 0 && !bad_body) bad_body = body, bad = body->report[b].bad, reason = body->report[b].reason;
+            if (body->report[b].bad >= 0 && !bad_body)
+                bad_body = body, bad = body->report[b].bad, reason = body->report[b].reason;
         }
     }
     end_pass(world, BRUNT_PASS_gather, start);
@@ -263,7 +284,8 @@ int brunt_world_step(brunt_world *world, double limit, brunt_error *error) {
         snprintf(reason, sizeof reason, "the fixed step of %.6g s is larger than the stable one, %.6g s", dt, stable);
         return fail(world, NULL, error, reason);
     }
-    if (world->now.time + dt == world->now.time) return fail(world, NULL, error, "the stable step has become too small to advance the time");
+    if (world->now.time + dt == world->now.time)
+        return fail(world, NULL, error, "the stable step has become too small to advance the time");
     brunt_gravity_at(world, world->now.time + 0.5 * dt, gravity);
     for (int w = 0; w < world->wall_count; w++) world->walls[w].last = (brunt_action){.external_work = 0};
     for (int p = 0; p < world->pair_count; p++) world->pairs[p].last = (brunt_action){.external_work = 0};
@@ -290,7 +312,8 @@ int brunt_world_step(brunt_world *world, double limit, brunt_error *error) {
     now->dt_max = fmax(now->dt_max, dt);
     if (status) return status;
     now->next_dt = brunt_stable_step(world);
-    if (!isfinite(kinetic) || !isfinite(now->next_dt)) return fail(world, NULL, error, "the kinetic energy is not a finite number");
+    if (!isfinite(kinetic) || !isfinite(now->next_dt))
+        return fail(world, NULL, error, "the kinetic energy is not a finite number");
     if ((int64_t)now->steps % ENERGY_CHECK == 0 && isfinite(world->energy_limit)) {
         brunt_energy energy;
         brunt_world_energy(world, &energy);

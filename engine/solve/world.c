@@ -13,18 +13,21 @@
 #include "threads.h"
 #include "world.h"
 
-static const double ON_GRID_LINE = 1e-6;  // cells: how far off a mirror plane may be and still count as on the line
-static const double TOUCHING = 1e-6;      // spacings: bodies closer than that touch, they do not overlap
+static const double ON_GRID_LINE = 1e-6; // cells: how far off a mirror plane may be and still count as on the line
+static const double TOUCHING = 1e-6;     // spacings: bodies closer than that touch, they do not overlap
 
 // ------------------------------------------------------------------------------------------ definition
 
 static int check(const brunt_world_def *def, brunt_error *error) {
 #define REFUSE(...) return brunt_fail(error, BRUNT_BAD_INPUT, __VA_ARGS__)
-    if (def->cookie != brunt_world_def_default().cookie) REFUSE("the world's definition was not made by brunt_world_def_default");
+    if (def->cookie != brunt_world_def_default().cookie)
+        REFUSE("the world's definition was not made by brunt_world_def_default");
     if (def->dimension != 2 && def->dimension != 3) REFUSE("dimension: %d is neither 2 nor 3", def->dimension);
     if (!(def->cell > 0) || !isfinite(def->cell)) REFUSE("grid.cell: %g m is not a positive length", def->cell);
-    if (def->kernel < BRUNT_LINEAR || def->kernel > BRUNT_CUBIC) REFUSE("grid.kernel: there is no kernel %d", (int)def->kernel);
-    if (def->transfer < BRUNT_PIC || def->transfer > BRUNT_APIC) REFUSE("grid.transfer: there is no transfer %d", (int)def->transfer);
+    if (def->kernel < BRUNT_LINEAR || def->kernel > BRUNT_CUBIC)
+        REFUSE("grid.kernel: there is no kernel %d", (int)def->kernel);
+    if (def->transfer < BRUNT_PIC || def->transfer > BRUNT_APIC)
+        REFUSE("grid.transfer: there is no transfer %d", (int)def->transfer);
     if (!(def->flip >= 0 && def->flip <= 1)) REFUSE("grid.transfer.flip: %g is not between 0 and 1", def->flip);
     if (!(def->cfl > 0 && def->cfl <= 1)) REFUSE("time.cfl: %g is not in (0, 1]", def->cfl);
     if (!(def->step >= 0) || !isfinite(def->step)) REFUSE("time.step: %g s is not a positive time", def->step);
@@ -36,7 +39,8 @@ static int check(const brunt_world_def *def, brunt_error *error) {
     for (int i = 0; i < def->body_count; i++) {
         const brunt_body_def *body = &def->bodies[i];
         if (!body->name[0]) REFUSE("bodies: body %d has no name", i + 1);
-        if (body->material < 0 || body->material >= def->material_count) REFUSE("bodies.%s.material: there is no material %d", body->name, body->material);
+        if (body->material < 0 || body->material >= def->material_count)
+            REFUSE("bodies.%s.material: there is no material %d", body->name, body->material);
         for (int k = 0; k < i; k++)
             if (!strcmp(body->name, def->bodies[k].name)) REFUSE("bodies.%s: two bodies have this name", body->name);
     }
@@ -71,9 +75,11 @@ static void start_motion(const brunt_body_def *def, int dim, const double x[3], 
 static int fill_body(const brunt_body_def *def, const brunt_filled *filled, brunt_body *body, brunt_error *error) {
     brunt_particles *p = &body->particles;
     const int dim = p->dim;
-    if (brunt_particles_reserve(p, filled->count)) return brunt_fail(error, BRUNT_FAILED, "bodies.%s: out of memory for %d particles", def->name, filled->count);
+    if (brunt_particles_reserve(p, filled->count))
+        return brunt_fail(error, BRUNT_FAILED, "bodies.%s: out of memory for %d particles", def->name, filled->count);
     p->count = p->slots = filled->count;
-    real **x = brunt_field(p, BRUNT_FIELD_position), **v = brunt_field(p, BRUNT_FIELD_velocity), **C = brunt_field(p, BRUNT_FIELD_affine);
+    real **x = brunt_field(p, BRUNT_FIELD_position), **v = brunt_field(p, BRUNT_FIELD_velocity),
+         **C = brunt_field(p, BRUNT_FIELD_affine);
     real **F = brunt_field(p, BRUNT_FIELD_deformation_gradient);
     bool affine = p->field[BRUNT_FIELD_affine].components > 0, reach = p->field[BRUNT_FIELD_reach].components > 0;
     for (int64_t s = 0; s < p->count; s++) {
@@ -114,13 +120,15 @@ static double overlap_depth(const brunt_filled *a, const brunt_body_def *b, int 
         double local[3] = {0};
         for (int k = 0; k < 3; k++)
             for (int r = 0; r < 3; r++)
-                local[k] += b->place.rotation[3 * r + k] * ((r < dim ? a->position[r][i] : 0) - b->place.translation[r]);
+                local[k] +=
+                    b->place.rotation[3 * r + k] * ((r < dim ? a->position[r][i] : 0) - b->place.translation[r]);
         deepest = fmax(deepest, a->reach[i] - brunt_shape_distance(&b->shape, dim, local));
     }
     return deepest;
 }
 
-static int make_bodies(brunt_world *world, const brunt_world_def *def, const brunt_body_def **order, brunt_error *error) {
+static int make_bodies(brunt_world *world, const brunt_world_def *def, const brunt_body_def **order,
+                       brunt_error *error) {
     const int n = def->body_count, dim = def->dimension;
     brunt_filled *filled = brunt_alloc((size_t)n * sizeof *filled);
     if (!filled) return brunt_fail(error, BRUNT_FAILED, "out of memory");
@@ -137,10 +145,12 @@ static int make_bodies(brunt_world *world, const brunt_world_def *def, const bru
             double depth = overlap_depth(&filled[i], order[k], dim);
             if (depth > TOUCHING * lattice_spacing(def, order[i]))
                 status = brunt_fail(error, BRUNT_BAD_INPUT,
-                                    "bodies.%s overlaps bodies.%s by %.4g m at the start; move one of them, or write contact.initial_overlap: allow",
+                                    "bodies.%s overlaps bodies.%s by %.4g m at the start; move one of them, or write "
+                                    "contact.initial_overlap: allow",
                                     order[i]->name, order[k]->name, depth);
         }
-    // A grid far from the scene would waste the digits of the particles' places on it: it starts near them, whole cells away.
+    // A grid far from the scene would waste the digits of the particles' places on it: it starts near them, whole cells
+    // away.
     double origin[3] = {0};
     for (int a = 0; a < dim; a++) {
         double cells = status ? 0 : floor((low[a] - def->origin[a]) / def->cell);
@@ -153,7 +163,8 @@ static int make_bodies(brunt_world *world, const brunt_world_def *def, const bru
         body->spacing = lattice_spacing(def, order[i]);
         status = brunt_material_make(&def->materials[order[i]->material], &body->material, error);
         if (status) break;
-        brunt_particle_needs needs = {.affine = def->transfer == BRUNT_APIC, .reach = world->has_contact || world->has_walls,
+        brunt_particle_needs needs = {.affine = def->transfer == BRUNT_APIC,
+                                      .reach = world->has_contact || world->has_walls,
                                       .grid_velocity = world->advance && def->transfer == BRUNT_FLIP};
         memcpy(needs.models, body->material.model, sizeof needs.models);
         brunt_particles_init(&body->particles, dim, &needs);
@@ -193,9 +204,12 @@ static int make_plane(brunt_world *world, const brunt_world_def *def, int index,
     double at = axis < 0 ? 0 : (plane->point[axis] - def->origin[axis]) / def->cell;
     bool on_line = axis >= 0 && !moves && fabs(at - round(at)) < ON_GRID_LINE;
     if (plane->condition == BRUNT_SYMMETRY && !on_line)
-        REFUSE("boundaries[%d] (%s): a symmetry plane must stand still, be normal to an axis and lie on a grid line (cell %g m)", index, wall->name, def->cell);
+        REFUSE("boundaries[%d] (%s): a symmetry plane must stand still, be normal to an axis and lie on a grid line "
+               "(cell %g m)",
+               index, wall->name, def->cell);
     if (on_line && (plane->condition == BRUNT_SYMMETRY || plane->condition == BRUNT_SLIP)) {
-        if (world->mirror_count == (int)(sizeof world->mirrors / sizeof world->mirrors[0])) REFUSE("boundaries: more than 16 symmetry and slip planes");
+        if (world->mirror_count == (int)(sizeof world->mirrors / sizeof world->mirrors[0]))
+            REFUSE("boundaries: more than 16 symmetry and slip planes");
         wall->mirror = world->mirror_count;
         world->mirrors[world->mirror_count++] = (brunt_mirror){.axis = axis, .node = (int32_t)round(at), .wall = index};
     } else if (plane->condition == BRUNT_SEPARATE) {
@@ -207,7 +221,8 @@ static int make_plane(brunt_world *world, const brunt_world_def *def, int index,
     return BRUNT_OK;
 }
 
-static int make_walls(brunt_world *world, const brunt_world_def *def, const brunt_body_def **order, brunt_error *error) {
+static int make_walls(brunt_world *world, const brunt_world_def *def, const brunt_body_def **order,
+                      brunt_error *error) {
     world->wall_count = def->plane_count + def->region_count;
     world->walls = brunt_alloc((size_t)(world->wall_count + 1) * sizeof *world->walls);
     world->wall_work = brunt_alloc((size_t)def->body_count * sizeof(void *));
@@ -216,13 +231,20 @@ static int make_walls(brunt_world *world, const brunt_world_def *def, const brun
         brunt_wall *wall = &world->walls[w];
         wall->region = w >= def->plane_count;
         wall->mirror = wall->body = -1;
-        if (wall->region) wall->where = def->regions[w - def->plane_count];
-        else wall->plane = def->planes[w];
-        const char *name = wall->region ? wall->where.name : wall->plane.name, *body = wall->region ? wall->where.body : wall->plane.body;
-        if (name[0]) memcpy(wall->name, name, sizeof wall->name);
-        else snprintf(wall->name, sizeof wall->name, "%s%d", wall->region ? "region" : "plane", w + 1);
-        if (body[0] && (wall->body = find_body(order, def->body_count, body)) < 0) REFUSE("boundaries (%s).body: there is no body '%s'", wall->name, body);
-        if (wall->region) world->has_conditions = true;
+        if (wall->region)
+            wall->where = def->regions[w - def->plane_count];
+        else
+            wall->plane = def->planes[w];
+        const char *name = wall->region ? wall->where.name : wall->plane.name,
+                   *body = wall->region ? wall->where.body : wall->plane.body;
+        if (name[0])
+            memcpy(wall->name, name, sizeof wall->name);
+        else
+            snprintf(wall->name, sizeof wall->name, "%s%d", wall->region ? "region" : "plane", w + 1);
+        if (body[0] && (wall->body = find_body(order, def->body_count, body)) < 0)
+            REFUSE("boundaries (%s).body: there is no body '%s'", wall->name, body);
+        if (wall->region)
+            world->has_conditions = true;
         else {
             int status = make_plane(world, def, w, error);
             if (status) return status;
@@ -231,7 +253,8 @@ static int make_walls(brunt_world *world, const brunt_world_def *def, const brun
     return BRUNT_OK;
 }
 
-static int make_pairs(brunt_world *world, const brunt_world_def *def, const brunt_body_def **order, brunt_error *error) {
+static int make_pairs(brunt_world *world, const brunt_world_def *def, const brunt_body_def **order,
+                      brunt_error *error) {
     const int n = def->body_count;
     world->pair_of = brunt_alloc((size_t)n * (size_t)n * sizeof *world->pair_of);
     world->pairs = brunt_alloc(((size_t)n * (size_t)n / 2 + 1) * sizeof *world->pairs);
@@ -244,7 +267,8 @@ static int make_pairs(brunt_world *world, const brunt_world_def *def, const brun
             for (int q = 0; q < def->contact.pair_count; q++) {
                 const brunt_pair_def *p = &def->contact.pairs[q];
                 int a = find_body(order, n, p->a), b = find_body(order, n, p->b);
-                if (a < 0 || b < 0 || a == b) REFUSE("contact.pairs[%d].between: '%s' and '%s' are not two bodies", q, p->a, p->b);
+                if (a < 0 || b < 0 || a == b)
+                    REFUSE("contact.pairs[%d].between: '%s' and '%s' are not two bodies", q, p->a, p->b);
                 if ((a == i && b == k) || (a == k && b == i)) pair.method = p->method, pair.friction = p->friction;
             }
             if (pair.method == BRUNT_CONTACT_NONE) continue;
@@ -271,7 +295,8 @@ static void first_reports(brunt_world *world) {
                 for (int a = 0; a < world->dimension; a++) square += (double)(v[a][s] * v[a][s]);
                 fastest = fmax(fastest, square);
             }
-            body->report[b] = (brunt_block_report){.speed = (real)sqrt(fastest), .wave_speed = body->material.wave_speed, .bad = -1};
+            body->report[b] =
+                (brunt_block_report){.speed = (real)sqrt(fastest), .wave_speed = body->material.wave_speed, .bad = -1};
         }
     }
 }
@@ -281,7 +306,8 @@ static int start(brunt_world *world, brunt_error *error) {
         brunt_body *body = &world->bodies[i];
         int status = brunt_sort(&body->grid, &body->particles, world->threads, NULL, error);
         if (status) return status;
-        if (brunt_reserve((void **)&body->report, &body->report_capacity, (size_t)body->grid.block_count * sizeof *body->report, 0))
+        if (brunt_reserve((void **)&body->report, &body->report_capacity,
+                          (size_t)body->grid.block_count * sizeof *body->report, 0))
             return brunt_fail(error, BRUNT_FAILED, "out of memory");
     }
     first_reports(world);
@@ -333,7 +359,7 @@ brunt_world *brunt_world_create(const brunt_world_def *def, brunt_error *error) 
     if (!status) status = make_walls(world, def, order, error);
     if (!status) status = make_pairs(world, def, order, error);
     if (!status) status = make_bodies(world, def, order, error);
-    for (int m = 0; !status && m < world->mirror_count; m++) {  // node numbers count from where the grid starts
+    for (int m = 0; !status && m < world->mirror_count; m++) { // node numbers count from where the grid starts
         int axis = world->mirrors[m].axis;
         world->mirrors[m].node -= (int32_t)round((world->bodies[0].grid.origin[axis] - def->origin[axis]) / def->cell);
     }
