@@ -259,7 +259,7 @@ void brunt_wall_force(const brunt_world *world, int32_t wall, brunt_force *force
 
 // ---------------------------------------------------------------------------------------------------- plan, profile, state
 
-typedef struct brunt_effect { const char *name; bool on; const char *because; } brunt_effect;  // because: the key that asked for it
+typedef struct brunt_effect { const char *name; bool on; const char *because; } brunt_effect;  // because: the key or the material model that asked for it
 int32_t brunt_effect_count(const brunt_world *world);
 brunt_effect brunt_world_effect(const brunt_world *world, int32_t effect);
 

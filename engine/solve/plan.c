@@ -4,15 +4,14 @@
 
 #include "world.h"
 
-static bool any_model(const brunt_world *world, size_t flag, const char **because, char *text, size_t room) {
+// The first model that brings an effect, NULL when none does; `flag`: where brunt_model says so.
+static const brunt_model *find_model(const brunt_world *world, size_t flag) {
     for (int i = 0; i < world->body_count; i++)
         for (int k = 0; k < BRUNT_COMPONENTS; k++) {
             const brunt_model *model = world->bodies[i].material.model[k];
-            if (!model || !*(const bool *)((const char *)model + flag)) continue;
-            if (because) snprintf(text, room, "materials.%s", world->bodies[i].material.name), *because = text;
-            return true;
+            if (model && *(const bool *)((const char *)model + flag)) return model;
         }
-    return false;
+    return NULL;
 }
 
 #define BRUNT_EFFECTS(X)                                                                                               \
@@ -44,10 +43,10 @@ brunt_effect brunt_world_effect(const brunt_world *world, int32_t effect) {
     case EFFECT_##name: return (brunt_effect){#name, on, (on) ? key : ""};
         BRUNT_EFFECTS(ROW)
 #undef ROW
-#define ROW(name, flag)                                                                                                \
-    case EFFECT_##name: {                                                                                              \
-        bool on = any_model(world, offsetof(brunt_model, flag), NULL, NULL, 0);                                        \
-        return (brunt_effect){#name, on, on ? "materials: model, eos, viscosity" : ""};                                \
+#define ROW(effect_name, flag)                                                                                         \
+    case EFFECT_##effect_name: {                                                                                       \
+        const brunt_model *model = find_model(world, offsetof(brunt_model, flag));                                     \
+        return (brunt_effect){#effect_name, model != NULL, model ? model->name : ""};                                         \
     }
         BRUNT_MODEL_EFFECTS(ROW)
 #undef ROW
