@@ -33,6 +33,7 @@ typedef struct brunt_body {
     brunt_block_report *report;
     size_t report_capacity; // a block each
     double spacing;         // [m] of the undeformed lattice
+    real particle_mass; // [kg]
 } brunt_body;
 
 // Checks the definition and prepares the constants. BRUNT_BAD_INPUT with the offending key.

@@ -86,30 +86,97 @@ BRUNT_INLINE lanes bin_coordinate(const uint8_t *bin, int dim, int axis) {
     return r;
 }
 
+// Cells from the base node. One expression for both ways: near the end of a kernel's reach its last bit decides the
+// weight.
+BRUNT_INLINE lanes local_coordinate(lanes x, real corner, real inv_h, lanes bin) { return (x - corner) * inv_h - bin; }
+
+// A light node feels particles only with the last 1/1000 of their kernels. Their stress throws it far, as force over
+// mass grows without bound there; the weights make up for it, but the polynomials of the gather would lose the digits.
+// So the window holds its old velocity, and what it changed by is added with the exact weights (add_light_nodes).
+typedef struct light_node {
+    int16_t at[3];
+    real change[3];
+} light_node;
+enum { MAX_WINDOW = 11 * 11 > 7 * 7 * 7 ? 11 * 11 : 7 * 7 * 7 };
+
+static real light_mass(const brunt_body *body) {
+    const real shares[] = {0, (real)1e-3, (real)1e-6, (real)1e-9};
+    return shares[body->grid.order] * body->particle_mass;
+}
+
 // Velocities of the nodes that a block's bins touch: `width` reals a node, the new velocity first and, for a width of
 // 8, the old one from the fourth on.
-BRUNT_INLINE void load_window(const brunt_grid *grid, const brunt_block *block, real *window, int width, int dim,
-                              int order) {
+// Returns the number of light nodes.
+BRUNT_INLINE int load_window(const brunt_body *body, const brunt_block *block, real *window, light_node *light,
+                             int width, int dim, int order) {
+    const brunt_grid *grid = &body->grid;
     const int side = dim == 3 ? 4 : 8, span = side + order;
+    const real least = light_mass(body);
+    int lights = 0;
     for (int x = 0; x < span; x++)
         for (int y = 0; y < span; y++) {
-            int corner = x >= side ? 1 : 0, cx = x - corner * side;
-            int beyond = y >= side ? 1 : 0, cy = y - beyond * side;
-            corner = corner * 2 + beyond;
-            if (dim == 2) {
-                const real *from = brunt_slot_nodes(grid, block->slot[corner]) + (cx * 8 + cy) * 8;
-                real *to = window + (x * span + y) * width;
-                node4_store(to, node4_load(from + BRUNT_NODE_VELOCITY));
-                if (width == 8) { node4_store(to + 3, node4_load(from + BRUNT_NODE_OLD)); }
-                continue;
+            int corner = (x >= side) * 2 + (y >= side), cx = x % side, cy = y % side;
+            for (int half = 0; half < (dim == 3 ? 2 : 1); half++) {
+                int slot = dim == 3 ? block->slot[corner * 2 + half] : block->slot[corner];
+                int n = dim == 2 ? 1 : half ? order : side;
+                const real *from = brunt_slot_nodes(grid, slot) + (dim == 3 ? (cx * 4 + cy) * 4 : cx * 8 + cy) * 8;
+                real *to = window + (dim == 3 ? (x * span + y) * span + half * side : x * span + y) * width;
+                for (int z = 0; z < n; z++, from += 8, to += width) {
+                    node4_store(to, node4_load(from + BRUNT_NODE_VELOCITY));
+                    if (width == 8) node4_store(to + 3, node4_load(from + BRUNT_NODE_OLD));
+                    if (!(from[BRUNT_NODE_MASS] < least) || !(from[BRUNT_NODE_MASS] > 0)) continue;
+                    light_node *node = &light[lights++];
+                    *node = (light_node){.at = {(int16_t)x, (int16_t)y, (int16_t)(half * side + z)}};
+                    for (int r = 0; r < dim; r++) {
+                        node->change[r] = from[BRUNT_NODE_VELOCITY + r] - from[BRUNT_NODE_OLD + r];
+                        to[r] = from[BRUNT_NODE_OLD + r];
+                    }
+                }
             }
-            for (int half = 0; half < 2; half++) {
-                const real *from = brunt_slot_nodes(grid, block->slot[corner * 2 + half]) + (cx * 4 + cy) * 4 * 8;
-                int n = half ? order : side;
-                real *to = window + ((x * span + y) * span + half * side) * width;
-                for (int z = 0; z < n; z++) {
-                    node4_store(to + z * width, node4_load(from + z * 8 + BRUNT_NODE_VELOCITY));
-                    if (width == 8) node4_store(to + z * width + 3, node4_load(from + z * 8 + BRUNT_NODE_OLD));
+        }
+    return lights;
+}
+
+// `out` as the gather fills it: velocity, gradient (if `slopes`), affine (if `affine`).
+static void add_light_nodes(const brunt_body *body, const brunt_block *block, const int32_t *start,
+                            const light_node *light, int lights, real *const *out, bool slopes, bool affine) {
+    const brunt_grid *grid = &body->grid;
+    const brunt_particles *p = &body->particles;
+    const int dim = grid->dim, order = grid->order;
+    real *const *x = p->scalar + p->field[BRUNT_FIELD_position].first;
+    for (const light_node *node = light; node < light + lights; node++)
+        for (int k = 0; k < (dim == 3 ? (order + 1) * (order + 1) * (order + 1) : (order + 1) * (order + 1)); k++) {
+            int number[3] = {0, 0, 0}, bin[3] = {0, 0, 0}; // the node's number in the bin's kernel; the bin
+            bool inside = true;
+            for (int a = dim - 1, rest = k; a >= 0; a--, rest /= order + 1) {
+                number[a] = rest % (order + 1);
+                bin[a] = node->at[a] - number[a];
+                inside = inside && bin[a] >= 0 && bin[a] < grid->side;
+            }
+            if (!inside) continue;
+            const int32_t *range = start + brunt_node_index(grid, bin[0], bin[1], bin[2]);
+            for (int32_t s = range[0]; s < range[1]; s++) {
+                real w[3] = {1, 1, 1}, g[3] = {0, 0, 0}, spread[3] = {1, 1, 1}, d[3] = {0, 0, 0};
+                for (int a = 0; a < dim; a++) {
+                    const real corner = (real)(grid->origin[a] + (double)grid->h * (block->coord[a] * grid->side));
+                    lanes at = lanes_set(x[a][block->first + s]);
+                    lanes u = local_coordinate(at, corner, grid->inv_h, lanes_set((real)bin[a])), weight[4], slope[4];
+                    kernel_weights(order, u, weight);
+                    kernel_slopes(order, u, grid->inv_h, slope);
+                    w[a] = weight[number[a]][0], g[a] = slope[number[a]][0];
+                    d[a] = ((real)number[a] - u[0]) * grid->h;
+                    spread[a] = kernel_spread(order, at - (real)grid->origin[a], grid->h, grid->inv_h)[0];
+                }
+                real weight = w[0] * w[1] * w[2];
+                const real slope[3] = {g[0] * w[1] * w[2], w[0] * g[1] * w[2], w[0] * w[1] * g[2]};
+                for (int r = 0; r < dim; r++) {
+                    out[r][s] += weight * node->change[r];
+                    for (int a = 0; a < dim; a++) {
+                        if (slopes) out[dim + r * dim + a][s] += slope[a] * node->change[r];
+                        if (!affine) continue;
+                        real share = order == 1 ? slope[a] : weight * d[a] / spread[a];
+                        out[dim + dim * dim + r * dim + a][s] += share * node->change[r];
+                    }
                 }
             }
         }

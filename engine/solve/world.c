@@ -78,6 +78,7 @@ static int fill_body(const brunt_body_def *def, const brunt_filled *filled, brun
     if (brunt_particles_reserve(p, filled->count))
         return brunt_fail(error, BRUNT_FAILED, "bodies.%s: out of memory for %d particles", def->name, filled->count);
     p->count = p->slots = filled->count;
+    body->particle_mass = (real)(filled->volume * (double)body->material.density);
     real **x = brunt_field(p, BRUNT_FIELD_position), **v = brunt_field(p, BRUNT_FIELD_velocity),
          **C = brunt_field(p, BRUNT_FIELD_affine);
     real **F = brunt_field(p, BRUNT_FIELD_deformation_gradient);
