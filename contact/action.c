@@ -7,19 +7,13 @@ void brunt_action_add(brunt_action *sum, const brunt_action *part) {
     sum->friction_loss += part->friction_loss;
 }
 
-void brunt_action_book(brunt_action *action, const double J[3], const double x[3], const double old[3],
-                       const double now[3], const double support[3], const double *normal) {
-    double Jn = 0, slip_n = 0, loss = 0;
+void brunt_action_book(brunt_action *action, double *loss, const double J[3], const double x[3], const double old[3],
+                       const double now[3], const double support[3]) {
     for (int a = 0; a < 3; a++) {
         int i = (a + 1) % 3, j = (a + 2) % 3;
-        double slip = 0.5 * (old[a] + now[a]) - support[a];
         action->impulse[a] += J[a];
         action->angular[a] += x[i] * J[j] - x[j] * J[i];
         action->external_work += J[a] * support[a];
-        loss -= J[a] * slip;
-        if (normal) Jn += J[a] * normal[a], slip_n += slip * normal[a];
+        *loss -= J[a] * (0.5 * (old[a] + now[a]) - support[a]);
     }
-    double normal_loss = normal ? -Jn * slip_n : loss;
-    action->normal_loss += normal_loss;
-    action->friction_loss += loss - normal_loss;
 }

@@ -5,7 +5,7 @@
 #include <string.h>
 
 static void set_velocity(const brunt_grid *grid, real *n, const brunt_slot *slot, int node, const double now[3],
-                         const double support[3], const double *normal, brunt_action *action) {
+                         const double support[3], brunt_action *action) {
     double x[3], J[3] = {0}, old[3] = {0};
     brunt_node_position(grid, slot->coord, node, x);
     for (int a = 0; a < grid->dim; a++) {
@@ -13,7 +13,7 @@ static void set_velocity(const brunt_grid *grid, real *n, const brunt_slot *slot
         old[a] = (double)n[BRUNT_NODE_OLD + a];
         n[BRUNT_NODE_VELOCITY + a] = (real)now[a];
     }
-    brunt_action_book(action, J, x, old, now, support, normal);
+    brunt_action_book(action, &action->normal_loss, J, x, old, now, support);
 }
 
 // Position in the frame the region's shape was described in.
@@ -43,7 +43,7 @@ static void apply_region(const brunt_grid *grid, brunt_wall *wall) {
                 now[a] = wall->where.component[a] ? wall->where.velocity[a] : (double)n[BRUNT_NODE_VELOCITY + a];
                 support[a] = wall->where.component[a] ? wall->where.velocity[a] : 0;
             }
-            set_velocity(grid, n, slot, node, now, support, NULL, &wall->last);
+            set_velocity(grid, n, slot, node, now, support, &wall->last);
         }
     }
 }
@@ -75,7 +75,7 @@ static void apply_plane(const brunt_grid *grid, brunt_wall *wall, double time) {
                 now[a] = plane->condition == BRUNT_STICK
                              ? plane->velocity[a]
                              : (double)n[BRUNT_NODE_VELOCITY + a] - approach * plane->normal[a];
-            set_velocity(grid, n, slot, node, now, plane->velocity, plane->normal, &wall->last);
+            set_velocity(grid, n, slot, node, now, plane->velocity, &wall->last);
         }
     }
 }

@@ -18,9 +18,9 @@ typedef struct brunt_action {
 
 void brunt_action_add(brunt_action *sum, const brunt_action *part);
 // Books impulse J acting at x while its material moves with `old` before and `now` after, against a support that moves
-// with `support`; `normal` (unit, or NULL: everything counts as normal) parts normal and frictional dissipation.
-void brunt_action_book(brunt_action *action, const double J[3], const double x[3], const double old[3],
-                       const double now[3], const double support[3], const double *normal);
+// with `support`. What it dissipates is added to `loss`: the action's normal_loss or its friction_loss.
+void brunt_action_book(brunt_action *action, double *loss, const double J[3], const double x[3], const double old[3],
+                       const double now[3], const double support[3]);
 
 // A mirror plane through grid nodes `node` along `axis`: symmetry, and slip walls that lie on a grid line.
 typedef struct brunt_mirror {
@@ -41,7 +41,9 @@ typedef struct brunt_wall {
 } brunt_wall;
 
 // --- mirror planes (mirror.c): symmetry by adding each node's mirror image to it, before velocities are made
-void brunt_mirror_fold(brunt_body *body, const brunt_mirror *mirror, brunt_action *action);
+// `taken`: the share of the grid's velocity that particles take over, 1 but for FLIP; the rest of what the mirror does
+// to the old velocity never reaches them.
+void brunt_mirror_fold(brunt_body *body, const brunt_mirror *mirror, double taken, brunt_action *action);
 // Images of a node coordinate under the mirrors it is near to (within the kernel), itself first; `sign` of each
 // velocity component.
 enum { BRUNT_MAX_IMAGES = 8 };
@@ -55,9 +57,17 @@ void brunt_condition_apply(brunt_body *body, brunt_wall *wall, double time, doub
 // Gradient of the body's volume fraction at a node [1/m], which points into the body, and the centre of the volume that
 // the node feels, relative to the node [m].
 void brunt_reach_gradient(brunt_body *body, int32_t slot, int node, double gradient[3], double centre[3]);
-// Greatest distance along unit vector n, from the node, that a particle near the node reaches [m], and where that
-// particle is, relative to the node; -INFINITY when there is none.
-double brunt_reach_extent(brunt_body *body, int32_t slot, int node, const double n[3], double farthest[3]);
+// Greatest distance along unit vector n, from the node, that a particle near the node reaches [m], and the point that
+// does, relative to the node; -INFINITY when there is none. `share` of the particles' reach counts: 1, or 0
+// for their centres alone.
+double brunt_reach_extent(brunt_body *body, int32_t slot, int node, double share, const double n[3],
+                          double farthest[3]);
+
+// --- separation (separation.c)
+// Distance between what two bodies have near a node [m], 0 when that overlaps, and its direction from a to b (unit;
+// left alone when 0). `start`: where to look first, any length but 0.
+double brunt_separation(brunt_body *a, int32_t slot_a, brunt_body *b, int32_t slot_b, int node, double share,
+                        const double start[3], double n[3]);
 
 // --- walls (walls.c): planes that push and let go, with Coulomb friction, at zero gap
 typedef struct brunt_wall_workspace brunt_wall_workspace;

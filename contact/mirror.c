@@ -12,10 +12,11 @@ enum { LAYERS = 2 };
 
 // Momentum that a pair of nodes carries for the body itself: before folding its own, afterwards its share of the common
 // velocity.
-static void sum_momentum(const real *n, const double x[3], int dim, double factor, double linear[3],
+static void sum_momentum(const real *n, const double x[3], int dim, double factor, double taken, double linear[3],
                          double angular[3]) {
     double p[3] = {0, 0, 0};
-    for (int a = 0; a < dim; a++) p[a] = factor * (double)(n[BRUNT_NODE_VELOCITY + a] + n[BRUNT_NODE_OLD + a]);
+    for (int a = 0; a < dim; a++)
+        p[a] = factor * (taken * (double)n[BRUNT_NODE_VELOCITY + a] + (double)n[BRUNT_NODE_OLD + a]);
     for (int a = 0; a < 3; a++) {
         int i = (a + 1) % 3, j = (a + 2) % 3;
         linear[a] += p[a];
@@ -23,7 +24,7 @@ static void sum_momentum(const real *n, const double x[3], int dim, double facto
     }
 }
 
-void brunt_mirror_fold(brunt_body *body, const brunt_mirror *mirror, brunt_action *action) {
+void brunt_mirror_fold(brunt_body *body, const brunt_mirror *mirror, double taken, brunt_action *action) {
     const brunt_grid *grid = &body->grid;
     const int dim = grid->dim, axis = mirror->axis;
     double before[3] = {0}, after[3] = {0}, turn_before[3] = {0}, turn_after[3] = {0};
@@ -43,9 +44,10 @@ void brunt_mirror_fold(brunt_body *body, const brunt_mirror *mirror, brunt_actio
             brunt_node_position(grid, slot->coord, node, x);
             memcpy(y, x, sizeof y);
             if (depth == 0) {
-                sum_momentum(n, x, dim, n[0] > 0 ? (double)(n[BRUNT_NODE_SPARE] / n[0]) : 0, before, turn_before);
+                sum_momentum(n, x, dim, n[0] > 0 ? (double)(n[BRUNT_NODE_SPARE] / n[0]) : 0, taken, before,
+                             turn_before);
                 n[BRUNT_NODE_VELOCITY + axis] = n[BRUNT_NODE_OLD + axis] = 0;
-                sum_momentum(n, x, dim, n[0] > 0 ? (double)(n[BRUNT_NODE_SPARE] / n[0]) : 0, after, turn_after);
+                sum_momentum(n, x, dim, n[0] > 0 ? (double)(n[BRUNT_NODE_SPARE] / n[0]) : 0, taken, after, turn_after);
                 continue;
             }
             at[axis] = mirror->node + depth;
@@ -55,15 +57,15 @@ void brunt_mirror_fold(brunt_body *body, const brunt_mirror *mirror, brunt_actio
             // The share of a node's own mass in what earlier mirrors have put there.
             double own_n = n[0] > 0 ? (double)(n[BRUNT_NODE_SPARE] / n[0]) : 0,
                    own_m = m[0] > 0 ? (double)(m[BRUNT_NODE_SPARE] / m[0]) : 0;
-            sum_momentum(n, x, dim, own_n, before, turn_before);
-            sum_momentum(m, y, dim, own_m, before, turn_before);
+            sum_momentum(n, x, dim, own_n, taken, before, turn_before);
+            sum_momentum(m, y, dim, own_m, taken, before, turn_before);
             for (int r = 0; r < BRUNT_NODE_SPARE; r++) {
                 real sign = r == BRUNT_NODE_VELOCITY + axis || r == BRUNT_NODE_OLD + axis ? -1 : 1;
                 m[r] += sign * n[r];
                 n[r] = sign * m[r];
             }
-            sum_momentum(n, x, dim, (double)(n[BRUNT_NODE_SPARE] / n[0]), after, turn_after);
-            sum_momentum(m, y, dim, (double)(m[BRUNT_NODE_SPARE] / m[0]), after, turn_after);
+            sum_momentum(n, x, dim, (double)(n[BRUNT_NODE_SPARE] / n[0]), taken, after, turn_after);
+            sum_momentum(m, y, dim, (double)(m[BRUNT_NODE_SPARE] / m[0]), taken, after, turn_after);
         }
     }
     for (int a = 0; a < 3; a++) {

@@ -19,10 +19,6 @@
 
 enum { MAX_SWEEPS = 1000, MAX_TOGETHER = 16 };
 static const double SWEEP_TOLERANCE = 1e-13; // of the velocities at the node
-enum { CLIMBS = 6 };
-static const double
-    CLIMB = 0.5,
-    SHORTER = 0.7; // first and later: change of direction per cell of sideways distance between the farthest particles
 
 // A slot of a body that some other body may share.
 typedef struct shared_slot {
@@ -181,41 +177,34 @@ static bool make_unit(const job *j, const member *a, int node, double n[3]) {
     return true;
 }
 
-// Gap along n; `between`: from the farthest particle of a to that of b, the slope of the gap over directions.
-static double gap_along(const member *a, const member *b, int node, const double n[3], double between[3]) {
+static double gap_along(const member *a, const member *b, int node, const double n[3]) {
     const double back[3] = {-n[0], -n[1], -n[2]};
-    double pa[3], pb[3];
-    double gap =
-        -brunt_reach_extent(b->body, b->slot, node, back, pb) - brunt_reach_extent(a->body, a->slot, node, n, pa);
-    for (int k = 0; k < 3; k++) between[k] = pb[k] - pa[k];
-    return gap;
+    double far_a[3], far_b[3];
+    return -brunt_reach_extent(b->body, b->slot, node, 1, back, far_b) -
+           brunt_reach_extent(a->body, a->slot, node, 1, n, far_a);
 }
 
-// Normal and gap of two bodies at a node. Bodies that some direction separates do not touch, whatever the mean normal
-// says: round surfaces that graze are felt by nodes far off the line of contact, where the mean normal is tilted and
-// finds them touching a third of a cell early. So when the mean normal finds contact, a separating direction is looked
-// for, starting from the line between the bodies' centres near the node and climbing the gap. False when nothing tells
-// the bodies apart.
+// Normal and gap of two bodies at a node. The mean normal is right in the middle of a contact, and tilted at its rim:
+// there it finds bodies touching that graze a third of a cell apart, and a block sliding over another is held by its
+// edges. So where the mean normal finds contact, the direction that keeps the bodies farthest apart decides: the one of
+// their true distance, or, when they touch, that between the hulls of the particles' centres, which are apart still.
+// False when nothing tells the bodies apart.
 static bool make_normal(const job *j, const member *a, const member *b, int node, double n[3], double *gap) {
-    double ga[3], gb[3], ca[3], cb[3], between[3], search[3], v[3], approach = 0;
+    double ga[3], gb[3], ca[3], cb[3], between[3], approach = 0;
     brunt_reach_gradient(a->body, a->slot, node, ga, ca);
     brunt_reach_gradient(b->body, b->slot, node, gb, cb);
-    for (int k = 0; k < 3; k++) n[k] = gb[k] - ga[k], search[k] = cb[k] - ca[k], v[k] = b->v[k] - a->v[k];
+    for (int k = 0; k < 3; k++) n[k] = gb[k] - ga[k], between[k] = cb[k] - ca[k];
     if (!make_unit(j, a, node, n)) return false;
-    *gap = gap_along(a, b, node, n, between);
-    for (int k = 0; k < 3; k++) approach += v[k] * n[k];
-    if (approach * j->dt >= -fmax(*gap, 0)) return true; // nothing will be done
-    double step = CLIMB / (double)a->body->grid.h;
-    for (int climb = 0; climb < CLIMBS && make_unit(j, a, node, search); climb++, step *= SHORTER) {
-        double found = gap_along(a, b, node, search, between), along = 0;
-        if (found > 0 && found > *gap) {
-            memcpy(n, search, sizeof search);
-            *gap = found;
-            approach = v[0] * n[0] + v[1] * n[1] + v[2] * n[2];
-            if (approach * j->dt >= -found) return true;
-        }
-        for (int k = 0; k < 3; k++) along += between[k] * search[k];
-        for (int k = 0; k < 3; k++) search[k] += step * (between[k] - along * search[k]);
+    for (int k = 0; k < 3; k++) approach += (b->v[k] - a->v[k]) * n[k];
+    *gap = gap_along(a, b, node, n);
+    if (approach * j->dt >= -fmax(*gap, 0) || !make_unit(j, a, node, between)) return true;
+    for (int centres = 0; centres <= 1; centres++) {
+        double direct[3], found;
+        if (!(brunt_separation(a->body, a->slot, b->body, b->slot, node, 1 - centres, between, direct) > 0)) continue;
+        if (!make_unit(j, a, node, direct) || !((found = gap_along(a, b, node, direct)) > *gap)) continue;
+        *gap = found;
+        memcpy(n, direct, sizeof direct);
+        break;
     }
     return true;
 }
@@ -309,12 +298,15 @@ static void meet_at_node(const job *j, group *g, int node) {
     for (int q = 0; q < met; q++) {
         const meeting *m = &meetings[q];
         if (!(m->push > 0)) continue;
-        double J[3], old[3] = {0}, now[3], own = (double)(members[m->b].node[BRUNT_NODE_SPARE] / members[m->b].node[0]);
+        double push[3], drag[3], old[3] = {0}, now[3];
+        double own = (double)(members[m->b].node[BRUNT_NODE_SPARE] / members[m->b].node[0]);
         relative(members, m, now);
-        for (int k = 0; k < 3; k++) J[k] = own * (m->push * m->n[k] + m->drag[k]);
+        for (int k = 0; k < 3; k++) push[k] = own * m->push * m->n[k], drag[k] = own * m->drag[k];
         for (int k = 0; k < dim; k++)
             old[k] = (double)(members[m->b].node[BRUNT_NODE_OLD + k] - members[m->a].node[BRUNT_NODE_OLD + k]);
-        brunt_action_book(&j->w->actions[g->action + m->action], J, x, old, now, rest, m->n);
+        brunt_action *action = &j->w->actions[g->action + m->action];
+        brunt_action_book(action, &action->normal_loss, push, x, old, now, rest);
+        if (m->friction > 0) brunt_action_book(action, &action->friction_loss, drag, x, old, now, rest);
     }
     for (int i = 0; i < n; i++)
         for (int a = 0; a < dim; a++) members[i].node[BRUNT_NODE_VELOCITY + a] = (real)members[i].v[a];

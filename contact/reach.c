@@ -92,33 +92,49 @@ void brunt_reach_gradient(brunt_body *body, int32_t slot, int node, double gradi
 }
 
 typedef struct extent_max {
-    double node[3], n[3], most, point[3];
+    double node[3], n[3], share, most;
+    int64_t slot;
 } extent_max;
+
+// F^T n of a particle.
+static void pull_back(brunt_body *body, int64_t s, const double n[3], double out[3]) {
+    const int dim = body->particles.dim;
+    real *const *F = brunt_field(&body->particles, BRUNT_FIELD_deformation_gradient);
+    for (int c = 0; c < 3; c++) {
+        out[c] = 0;
+        for (int r = 0; r < dim && c < dim; r++) out[c] += (double)F[r * dim + c][s] * n[r];
+    }
+}
 
 static void add_extent(void *context, brunt_body *body, int64_t s, const int base[3]) {
     (void)base;
     extent_max *e = context;
     brunt_particles *p = &body->particles;
-    const int dim = p->dim;
-    real *const *F = brunt_field(p, BRUNT_FIELD_deformation_gradient), *const *x = brunt_field(p, BRUNT_FIELD_position);
-    double along = 0, square = 0;
-    for (int a = 0; a < dim; a++) along += ((double)x[a][s] - e->node[a]) * e->n[a];
-    for (int c = 0; c < dim; c++) {
-        double t = 0;
-        for (int r = 0; r < dim; r++) t += (double)F[r * dim + c][s] * e->n[r];
-        square += t * t;
-    }
-    along += (double)brunt_field(p, BRUNT_FIELD_reach)[0][s] * sqrt(square);
-    if (along > e->most) {
-        e->most = along;
-        for (int a = 0; a < dim; a++) e->point[a] = (double)x[a][s] - e->node[a];
-    }
+    real *const *x = brunt_field(p, BRUNT_FIELD_position);
+    double along = 0, t[3];
+    for (int a = 0; a < p->dim; a++) along += ((double)x[a][s] - e->node[a]) * e->n[a];
+    pull_back(body, s, e->n, t);
+    along += e->share * (double)brunt_field(p, BRUNT_FIELD_reach)[0][s] * sqrt(t[0] * t[0] + t[1] * t[1] + t[2] * t[2]);
+    if (along > e->most) e->most = along, e->slot = s;
 }
 
-double brunt_reach_extent(brunt_body *body, int32_t slot, int node, const double n[3], double farthest[3]) {
-    extent_max e = {.n = {n[0], n[1], n[2]}, .most = -INFINITY};
+double brunt_reach_extent(brunt_body *body, int32_t slot, int node, double share, const double n[3],
+                          double farthest[3]) {
+    extent_max e = {.n = {n[0], n[1], n[2]}, .share = share, .most = -INFINITY, .slot = -1};
+    brunt_particles *p = &body->particles;
     brunt_node_position(&body->grid, body->grid.slots[slot].coord, node, e.node);
     visit_particles(body, slot, node, add_extent, &e);
-    for (int a = 0; a < 3; a++) farthest[a] = e.point[a];
+    for (int a = 0; a < 3; a++) farthest[a] = 0;
+    if (e.slot < 0) return e.most;
+    // The ball of the reach is an ellipsoid by now: its farthest point is x + r F F^T n / |F^T n|.
+    double t[3];
+    pull_back(body, e.slot, n, t);
+    double size = sqrt(t[0] * t[0] + t[1] * t[1] + t[2] * t[2]),
+           r = share * (double)brunt_field(p, BRUNT_FIELD_reach)[0][e.slot];
+    real *const *F = brunt_field(p, BRUNT_FIELD_deformation_gradient), *const *x = brunt_field(p, BRUNT_FIELD_position);
+    for (int a = 0; a < p->dim; a++) {
+        farthest[a] = (double)x[a][e.slot] - e.node[a];
+        for (int c = 0; c < p->dim && size > 0; c++) farthest[a] += r * (double)F[a * p->dim + c][e.slot] * t[c] / size;
+    }
     return e.most;
 }

@@ -266,15 +266,19 @@ static void book(const brunt_wall_workspace *w, brunt_body *body, brunt_wall *wa
         for (int32_t e = t->first; e < t->first + t->count; e++) {
             const real *n = w->supports[w->entries[e].support].node;
             int64_t number = (n - grid->nodes) / BRUNT_NODE_REALS;
-            double J[3] = {0}, x[3], old[3] = {0}, now[3] = {0},
-                   own = (double)(n[BRUNT_NODE_SPARE] / n[BRUNT_NODE_MASS]);
+            double push[3] = {0}, drag[3] = {0}, x[3], old[3] = {0}, now[3] = {0};
+            double own = (double)(n[BRUNT_NODE_SPARE] / n[BRUNT_NODE_MASS]);
             brunt_node_position(grid, grid->slots[number / BRUNT_BLOCK_NODES].coord, (int)(number % BRUNT_BLOCK_NODES),
                                 x);
             for (int a = 0; a < grid->dim; a++) {
-                J[a] = own * w->entries[e].apply[a] * (t->push * wall->plane.normal[a] + t->drag[a]);
+                double share = own * w->entries[e].apply[a];
+                push[a] = share * t->push * wall->plane.normal[a], drag[a] = share * t->drag[a];
                 old[a] = (double)n[BRUNT_NODE_OLD + a], now[a] = (double)n[BRUNT_NODE_VELOCITY + a];
             }
-            brunt_action_book(&wall->last, J, x, old, now, wall->plane.velocity, wall->plane.normal);
+            brunt_action *last = &wall->last;
+            brunt_action_book(last, &last->normal_loss, push, x, old, now, wall->plane.velocity);
+            if (wall->plane.friction > 0)
+                brunt_action_book(last, &last->friction_loss, drag, x, old, now, wall->plane.velocity);
         }
     }
 }

@@ -135,7 +135,8 @@ static void make_grid_velocities(brunt_world *world, brunt_body *body, const dou
         start_pass(world, BRUNT_PASS_mirror, &start);
         for (int m = 0; m < world->mirror_count; m++)
             if (acts_on(&world->walls[world->mirrors[m].wall], body))
-                brunt_mirror_fold(body, &world->mirrors[m], &world->walls[world->mirrors[m].wall].last);
+                brunt_mirror_fold(body, &world->mirrors[m], world->transfer == BRUNT_FLIP ? 1 - world->flip : 1,
+                                  &world->walls[world->mirrors[m].wall].last);
         end_pass(world, BRUNT_PASS_mirror, start);
     }
 
@@ -231,7 +232,7 @@ static void remap_velocities(brunt_world *world, double dt) {
         brunt_parallel(world->threads, body->grid.slot_count, SLOT_GRAIN, brunt_grid_sum, &grid_job, seconds);
         for (int m = 0; m < world->mirror_count; m++)
             if (acts_on(&world->walls[world->mirrors[m].wall], body))
-                brunt_mirror_fold(body, &world->mirrors[m], &unbooked);
+                brunt_mirror_fold(body, &world->mirrors[m], 1, &unbooked);
         brunt_parallel(world->threads, body->grid.slot_count, SLOT_GRAIN, brunt_grid_update, &grid_job, seconds);
         for (int w = 0; w < world->wall_count; w++) {
             brunt_wall wall = world->walls[w];
