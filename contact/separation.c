@@ -11,7 +11,7 @@
 #include "contact.h"
 
 enum { MAX_POINTS = 4, MAX_ROUNDS = 24 };
-static const double CLOSE_ENOUGH = 1e-7; // relative gap between bound and distance
+static const double CLOSE_ENOUGH = 1e-11; // relative gap between bound and distance
 static const double OVERLAP = 1e-9;      // cells: nearer to the origin than this is in it
 
 static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }

@@ -18,7 +18,10 @@ typedef struct brunt_material {
 
 // What a block reports of a step; summed or compared over the blocks in their order.
 typedef struct brunt_block_report {
-    double kinetic;         // [J]
+    double kinetic;      // [J]
+    double stress_power; // [W] new stress times velocity gradient, over the particles
+    double remap_power;  // [W] linear kernel: old stress times what the velocities' second way to the grid does to the
+                         // gradient
     real speed, wave_speed; // [m/s] greatest
     int32_t bad;            // slot of a particle whose update failed, -1
     const char *reason;
@@ -33,7 +36,7 @@ typedef struct brunt_body {
     brunt_block_report *report;
     size_t report_capacity; // a block each
     double spacing;         // [m] of the undeformed lattice
-    real particle_mass; // [kg]
+    real particle_mass;     // [kg]
 } brunt_body;
 
 // Checks the definition and prepares the constants. BRUNT_BAD_INPUT with the offending key.

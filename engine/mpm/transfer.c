@@ -137,9 +137,9 @@ BRUNT_INLINE int load_window(const brunt_body *body, const brunt_block *block, r
     return lights;
 }
 
-// `out` as the gather fills it: velocity, gradient (if `slopes`), affine (if `affine`).
+// `out` as the gather fills it: velocity, gradient, affine (if `affine`).
 static void add_light_nodes(const brunt_body *body, const brunt_block *block, const int32_t *start,
-                            const light_node *light, int lights, real *const *out, bool slopes, bool affine) {
+                            const light_node *light, int lights, real *const *out, bool affine) {
     const brunt_grid *grid = &body->grid;
     const brunt_particles *p = &body->particles;
     const int dim = grid->dim, order = grid->order;
@@ -172,7 +172,7 @@ static void add_light_nodes(const brunt_body *body, const brunt_block *block, co
                 for (int r = 0; r < dim; r++) {
                     out[r][s] += weight * node->change[r];
                     for (int a = 0; a < dim; a++) {
-                        if (slopes) out[dim + r * dim + a][s] += slope[a] * node->change[r];
+                        out[dim + r * dim + a][s] += slope[a] * node->change[r];
                         if (!affine) continue;
                         real share = order == 1 ? slope[a] : weight * d[a] / spread[a];
                         out[dim + dim * dim + r * dim + a][s] += share * node->change[r];
@@ -180,6 +180,29 @@ static void add_light_nodes(const brunt_body *body, const brunt_block *block, co
                 }
             }
         }
+}
+
+// What the stress at the end of the step does over the block's particles [W]. The rate it works on is that of the
+// motion as it stands at the end, Fdot F^-1 = L (I + dt L)^-1 = L - dt L L + O(dt^2).
+static double stress_power(brunt_body *body, const brunt_block *block, real dt, real *const *gradient) {
+    brunt_particles *p = &body->particles;
+    const int dim = p->dim;
+    real *const *tau = brunt_field(p, BRUNT_FIELD_kirchhoff_stress);
+    const real *volume = brunt_field(p, BRUNT_FIELD_reference_volume)[0];
+    lanes sum = (lanes){0};
+    for (int64_t i = 0; i < block->count; i += BRUNT_LANES) {
+        int64_t s = block->first + i;
+        lanes power = (lanes){0}, L[9];
+        for (int c = 0; c < dim * dim; c++) L[c] = lanes_load(gradient[c] + i);
+        for (int r = 0; r < dim; r++)
+            for (int c = 0; c < dim; c++) {
+                lanes rate = L[r * dim + c];
+                for (int k = 0; k < dim; k++) rate -= dt * L[r * dim + k] * L[k * dim + c];
+                power += lanes_load(tau[SYMMETRIC_INDEX(dim, r, c)] + s) * rate;
+            }
+        sum += lanes_load(volume + s) * power;
+    }
+    return (double)lanes_sum(sum);
 }
 
 static void update_material(brunt_body *body, const brunt_block *block, real dt, brunt_workspace *work,
@@ -201,6 +224,7 @@ static void update_material(brunt_body *body, const brunt_block *block, real dt,
             report->reason = result.reason;
         }
     }
+    report->stress_power = stress_power(body, block, dt, gradient);
     report->wave_speed = brunt_wave_speed(speed[BRUNT_STRENGTH], speed[BRUNT_EOS], speed[BRUNT_VISCOSITY]);
 }
 

@@ -57,20 +57,25 @@ void brunt_grid_update(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     const brunt_grid_job *job = context;
     const brunt_grid *grid = &job->body->grid;
+    real kick[3];
+    for (int a = 0; a < 3; a++) kick[a] = (real)(a < grid->dim && job->has_gravity ? job->gravity[a] * job->dt : 0);
     for (int64_t s = begin; s < end; s++) {
         real *n = brunt_slot_nodes(grid, (int32_t)s);
+        double work = 0;
         for (int k = 0; k < BRUNT_BLOCK_NODES; k++, n += BRUNT_NODE_REALS) {
             if (!(n[BRUNT_NODE_MASS] > LEAST_MASS)) {
                 for (int a = 0; a < BRUNT_NODE_REALS; a++) n[a] = 0;
                 continue;
             }
-            real inverse = 1 / n[BRUNT_NODE_MASS];
+            real inverse = 1 / n[BRUNT_NODE_MASS], own = n[BRUNT_NODE_SPARE] * inverse;
             for (int a = 0; a < 3; a++) {
                 real old = n[BRUNT_NODE_VELOCITY + a] * inverse;
+                work += (double)(old * (own * n[BRUNT_NODE_OLD + a] - n[BRUNT_NODE_SPARE] * kick[a]));
                 n[BRUNT_NODE_VELOCITY + a] = old + n[BRUNT_NODE_OLD + a] * inverse;
                 n[BRUNT_NODE_OLD + a] = old;
             }
         }
+        job->sums[s].stress_work = work;
     }
 }
 

@@ -7,9 +7,10 @@
 
 void brunt_world_energy(brunt_world *world, brunt_energy *energy) {
     const struct brunt_clock *now = &world->now;
+    // Velocities are half a step behind the stress: what it does to them in that half step is booked with the transfer.
     *energy = (brunt_energy){.kinetic = now->kinetic,
                              .initial = now->initial_energy,
-                             .transfer = now->transfer,
+                             .transfer = now->transfer - 0.5 * now->stress_work,
                              .external_work = now->gravity_work};
     for (int i = 0; i < world->body_count; i++) {
         brunt_point_energy e = brunt_body_energy(&world->bodies[i]);

@@ -28,7 +28,7 @@ enum {
 };
 
 typedef struct brunt_node_sums {
-    double old_kinetic, new_kinetic, mass, first_moment[3], gravity_work;
+    double old_kinetic, new_kinetic, mass, first_moment[3], gravity_work, stress_work;
 } brunt_node_sums;
 
 struct brunt_world {
@@ -60,6 +60,7 @@ struct brunt_world {
     struct brunt_clock {
         double time, steps, dt, next_dt, dt_min, dt_max;
         double kinetic;                // of the particles [J]
+        double stress_work; // [J] dt times the stress power at the end of the last step
         double transfer, gravity_work; // [J]
         double gravity_impulse[3], gravity_angular[3];
         double initial_energy, initial_kinetic; // [J]
