@@ -1,5 +1,5 @@
 #!/bin/sh
-# Installs what is missing of the package groups named as arguments (build, test), from cmake/packages.txt.
+# Installs what is missing of the package groups named as arguments (build, test, picture), from cmake/packages.txt.
 set -eu
 
 list=$(dirname "$0")/packages.txt

@@ -1,7 +1,8 @@
 #!/bin/sh
 # Runs the tests, on a machine that may have nothing but a shell and this folder.
 #
-#   sh tests/run.sh         all but the long ones; then unit and io once more under the sanitizers
+#   sh tests/run.sh         all but the long ones; unit and io once more under the sanitizers; unit in single precision
+#                           and without vectors; the other compiler; the installed library; the benchmarks run at all
 #   sh tests/run.sh long    the long ones
 #
 # The last line is "N passed, N failed". Exit code 0 only when tests ran and none failed.
@@ -19,24 +20,40 @@ esac
 
 passed=0
 failed=0
-empty=0
+broken=0
 jobs=$(getconf _NPROCESSORS_ONLN)
 
 finish() {
     echo "$passed passed, $failed failed"
-    [ "$failed" -eq 0 ] && [ "$passed" -gt 0 ] && [ "$empty" -eq 0 ] && [ "${1:-0}" -eq 0 ]
+    [ "$failed" -eq 0 ] && [ "$passed" -gt 0 ] && [ "$broken" -eq 0 ]
     exit
 }
 
-# build FOLDER CMAKE_OPTION...
-build() {
-    folder=$1
+# check NAME COMMAND...: one test that is a command.
+check() {
+    name=$1
     shift
-    if ! cmake -S . -B "$folder" "$@" >"$folder.log" 2>&1 || ! cmake --build "$folder" -j "$jobs" >>"$folder.log" 2>&1; then
-        cat "$folder.log"
-        echo "The build in $folder failed." >&2
-        finish 1
+    began=$(date +%s)
+    if "$@"; then
+        passed=$((passed + 1))
+        echo "$name: passed, $(($(date +%s) - began)) s"
+    else
+        failed=$((failed + 1))
+        echo "$name: FAILED"
+        return 1
     fi
+}
+
+# build PRESET [CMAKE_OPTION...]: shows the compiler's words only when it fails.
+build() {
+    preset=$1
+    shift
+    log=$(mktemp)
+    cmake --preset "$preset" >"$log" 2>&1 && cmake --build --preset "$preset" -j "$jobs" "$@" >>"$log" 2>&1
+    code=$?
+    [ "$code" -eq 0 ] || cat "$log"
+    rm -f "$log"
+    return "$code"
 }
 
 # run FOLDER CTEST_OPTION...: adds what ctest counted. A test that could not be started counts as failed, one that said
@@ -57,17 +74,28 @@ run() {
     failed=$((failed + bad))
     if [ $((good + bad)) -eq 0 ]; then
         echo "No test ran in $folder." >&2
-        empty=1
+        broken=1
     fi
 }
 
-sh cmake/install.sh build test || finish 1
-build build -DCMAKE_BUILD_TYPE=Release
+sh cmake/install.sh build test || {
+    broken=1
+    finish
+}
+check "build" build release || finish
 if [ "$label" = long ]; then
     run build -L long
-else
-    run build -LE long
-    build build-asan -DCMAKE_BUILD_TYPE=RelWithDebInfo -DBRUNT_SANITIZE=ON -DBRUNT_BENCH=OFF
-    run build-asan -L '^(unit|io)$' -LE long
+    finish
 fi
-finish 0
+run build -LE long
+check "installed library" sh tests/install.sh build
+check "benchmark of passes" build/bench/bench_passes --quick
+check "benchmark of materials" build/bench/bench_materials --quick
+check "build in single precision" build float && run build-float -L '^unit$' -LE long
+check "build without vectors" build scalar --target test_lanes test_materials &&
+    run build-scalar -R '^(test_lanes|test_materials)$'
+check "build under the sanitizers" build asan && run build-asan -L '^(unit|io)$' -LE long
+if command -v clang >/dev/null; then
+    check "build with clang" build clang
+fi
+finish

@@ -1,0 +1,50 @@
+// A user's program: built by tests/install.sh against the installed library, with what pkg-config says and nothing
+// else. A block flies freely; momentum, time and energy must be as they were given.
+#include <brunt.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define EXPECT(condition)                                                                                              \
+    do {                                                                                                               \
+        if (!(condition)) {                                                                                            \
+            fprintf(stderr, "installed.c:%d: %s does not hold\n", __LINE__, #condition);                               \
+            return 1;                                                                                                  \
+        }                                                                                                              \
+    } while (0)
+
+int main(void) {
+    brunt_world_def def = brunt_world_def_default();
+    brunt_error error = {0};
+    def.dimension = 2, def.cell = 0.1, def.end = 1, def.threads = 1;
+    def.materials = calloc(1, sizeof *def.materials), def.material_count = 1;
+    def.bodies = calloc(1, sizeof *def.bodies), def.body_count = 1;
+    EXPECT(def.materials && def.bodies);
+    brunt_material_def *rubber = def.materials;
+    strcpy(rubber->name, "rubber"), strcpy(rubber->strength, "neo-hookean");
+    rubber->density = 1000, rubber->strength_parameters[0] = 1e6, rubber->strength_parameters[1] = 0.3;
+    brunt_body_def *block = def.bodies;
+    *block = brunt_body_def_default();
+    strcpy(block->name, "block");
+    block->shape.kind = BRUNT_BOX, block->shape.max[0] = 1, block->shape.max[1] = 0.5, block->velocity[0] = 3;
+
+    brunt_world *world = brunt_world_create(&def, &error);
+    if (!world) fprintf(stderr, "%s\n", error.message);
+    EXPECT(world);
+    EXPECT(brunt_world_particles(world) == 200);
+    for (int step = 0; step < 20; step++) EXPECT(brunt_world_step(world, INFINITY, &error) == BRUNT_OK);
+    brunt_body_sums sums;
+    brunt_body_totals(world, 0, &sums);
+    EXPECT(fabs(sums.mass - 500) < 1e-2);
+    EXPECT(fabs(sums.momentum[0] - 1500) < 1e-2);
+    EXPECT(fabs(sums.centre[0] - (0.5 + 3 * brunt_world_time(world))) < 1e-5);
+    brunt_world_destroy(world);
+
+    rubber->density = -1;
+    EXPECT(!brunt_world_create(&def, &error) && error.code == BRUNT_BAD_INPUT);
+    // What the definition owns was allocated here, by the same C library.
+    free(def.materials), free(def.bodies);
+    puts("installed library works, version " BRUNT_VERSION);
+    return 0;
+}
