@@ -30,7 +30,7 @@ const scene_key brunt_scene_table[] = {
     {"grid", SCENE_GROUP, NULL, REQUIRED, NONE, "the grid that forces are computed on; it has no bounds"},
     {"grid.cell", SCENE_REAL, "m", REQUIRED, POSITIVE, NULL, 0, false, "edge of a cell"},
     {"grid.origin", SCENE_VECTOR, "m", "0", NONE, "a point where a grid node lies"},
-    {"grid.kernel", SCENE_WORD, NULL, "quadratic", ANY, "linear|quadratic|cubic", 0, false, "B-spline that links particles to nodes"},
+    {"grid.kernel", SCENE_WORD, NULL, "quadratic", ANY, "linear|quadratic|cubic", 0, false, "B-spline that links particles to nodes; linear goes with flip, apic makes energy on it"},
     {"grid.transfer", SCENE_WORD, NULL, "apic", ANY, "pic|flip|apic", 0, false, "velocity transfer; {flip: SHARE} sets the share of flip"},
     {"grid.transfer.flip", SCENE_REAL, "1", "0.99", 0, 1, false, false, NULL, 0, true, "share of a particle's own velocity that is kept"},
 
