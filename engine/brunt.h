@@ -182,6 +182,15 @@ brunt_world_def brunt_world_def_default(void);
 brunt_body_def brunt_body_def_default(void);
 brunt_plane_def brunt_plane_def_default(void);
 brunt_region_def brunt_region_def_default(void);
+// A material of a strength model, by name, with the model's defaults; parameters without one are NAN and must be set. An unknown
+// model is refused by brunt_material_set and brunt_world_create.
+brunt_material_def brunt_material_def_default(const char *name, const char *model);
+// Sets "density" or a parameter of the strength model by its key; "eos.<key>" and "viscosity.<key>" set those of the equation of
+// state and the bulk viscosity, and "eos" with the name as `text` (else NULL) and "viscosity" switch them on with their
+// defaults. SI units. BRUNT_BAD_INPUT when there is no such key.
+int brunt_material_set(brunt_material_def *def, const char *key, double value, const char *text, brunt_error *error);
+// Zeroed memory for the arrays and shapes a definition owns, so that brunt_world_def_free can free them. NULL: out of memory.
+void *brunt_def_alloc(size_t bytes);
 void brunt_world_def_free(brunt_world_def *def);  // frees all that the definition owns
 
 // ---------------------------------------------------------------------------------------------------- the world

@@ -3,7 +3,6 @@
 #include <brunt.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #define EXPECT(condition)                                                                                              \
@@ -18,12 +17,15 @@ int main(void) {
     brunt_world_def def = brunt_world_def_default();
     brunt_error error = {0};
     def.dimension = 2, def.cell = 0.1, def.end = 1, def.threads = 1;
-    def.materials = calloc(1, sizeof *def.materials), def.material_count = 1;
-    def.bodies = calloc(1, sizeof *def.bodies), def.body_count = 1;
+    def.materials = brunt_def_alloc(sizeof *def.materials), def.material_count = 1;
+    def.bodies = brunt_def_alloc(sizeof *def.bodies), def.body_count = 1;
     EXPECT(def.materials && def.bodies);
     brunt_material_def *rubber = def.materials;
-    strcpy(rubber->name, "rubber"), strcpy(rubber->strength, "neo-hookean");
-    rubber->density = 1000, rubber->strength_parameters[0] = 1e6, rubber->strength_parameters[1] = 0.3;
+    *rubber = brunt_material_def_default("rubber", "neo-hookean");
+    EXPECT(brunt_material_set(rubber, "density", 1000, NULL, &error) == BRUNT_OK);
+    EXPECT(brunt_material_set(rubber, "E", 1e6, NULL, &error) == BRUNT_OK);
+    EXPECT(brunt_material_set(rubber, "nu", 0.3, NULL, &error) == BRUNT_OK);
+    EXPECT(brunt_material_set(rubber, "yield", 1e6, NULL, &error) == BRUNT_BAD_INPUT);
     brunt_body_def *block = def.bodies;
     *block = brunt_body_def_default();
     strcpy(block->name, "block");
@@ -43,8 +45,7 @@ int main(void) {
 
     rubber->density = -1;
     EXPECT(!brunt_world_create(&def, &error) && error.code == BRUNT_BAD_INPUT);
-    // What the definition owns was allocated here, by the same C library.
-    free(def.materials), free(def.bodies);
+    brunt_world_def_free(&def);
     puts("installed library works, version " BRUNT_VERSION);
     return 0;
 }

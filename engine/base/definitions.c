@@ -50,3 +50,5 @@ void brunt_world_def_free(brunt_world_def *def) {
     brunt_free(def->contact.pairs);
     *def = (brunt_world_def){0};
 }
+
+void *brunt_def_alloc(size_t bytes) { return brunt_alloc(bytes); }

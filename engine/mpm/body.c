@@ -1,6 +1,7 @@
 #include "body.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "error.h"
@@ -57,6 +58,51 @@ int brunt_material_make(const brunt_material_def *def, brunt_material *material,
     }
     material->wave_speed = brunt_wave_speed(speed[BRUNT_STRENGTH], speed[BRUNT_EOS], speed[BRUNT_VISCOSITY]);
     return BRUNT_OK;
+}
+
+static void set_defaults(const brunt_model *model, double *values) {
+    for (int k = 0; model && k < model->parameter_count; k++) values[k] = model->parameters[k].initial;
+}
+
+brunt_material_def brunt_material_def_default(const char *name, const char *model) {
+    brunt_material_def def = {.density = NAN};
+    snprintf(def.name, sizeof def.name, "%s", name);
+    snprintf(def.strength, sizeof def.strength, "%s", model);
+    set_defaults(brunt_find_strength(model), def.strength_parameters);
+    return def;
+}
+
+int brunt_material_set(brunt_material_def *def, const char *key, double value, const char *text, brunt_error *error) {
+    const brunt_model *model = brunt_find_strength(def->strength);
+    double *values = def->strength_parameters;
+    const char *rest = key;
+    if (!strcmp(key, "density")) {
+        def->density = value;
+        return BRUNT_OK;
+    }
+    if (!strcmp(key, "viscosity")) {
+        def->bulk_viscosity = true;
+        set_defaults(&brunt_bulk_viscosity, def->viscosity_parameters);
+        return BRUNT_OK;
+    }
+    if (!strcmp(key, "eos")) {
+        if (!text || !brunt_find_eos(text))
+            return brunt_fail(error, BRUNT_BAD_INPUT, "materials.%s.eos: there is no equation of state '%s'", def->name,
+                              text ? text : "");
+        snprintf(def->eos, sizeof def->eos, "%s", text);
+        set_defaults(brunt_find_eos(text), def->eos_parameters);
+        return BRUNT_OK;
+    }
+    if (!strncmp(key, "eos.", 4)) model = brunt_find_eos(def->eos), values = def->eos_parameters, rest = key + 4;
+    if (!strncmp(key, "viscosity.", 10))
+        model = def->bulk_viscosity ? &brunt_bulk_viscosity : NULL, values = def->viscosity_parameters, rest = key + 10;
+    for (int k = 0; model && k < model->parameter_count; k++)
+        if (!strcmp(model->parameters[k].key, rest)) {
+            values[k] = value;
+            return BRUNT_OK;
+        }
+    return brunt_fail(error, BRUNT_BAD_INPUT, "materials.%s: model '%s' has no parameter '%s'", def->name,
+                      model ? model->name : "", key);
 }
 
 void brunt_body_free(brunt_body *body) {
