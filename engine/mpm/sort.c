@@ -87,7 +87,7 @@ static void find_places(void *context, int64_t begin, int64_t end, int worker) {
             bool good = true;
             for (int a = 0; a < dim; a++) {
                 double u = floor((double)((x[a][s] - o[a]) * grid->inv_h) - offset);
-                good = good && fabs(u) < (double)(BRUNT_COORD_LIMIT - 1); // false for NaN too
+                good = good && fabs(u) < 4.0 * (BRUNT_COORD_LIMIT - 1); // false for NaN too
                 base[a] = good ? (int32_t)u : 0;
                 block[a] = base[a] >> shift;
                 bin = bin << shift | (base[a] & mask);

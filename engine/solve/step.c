@@ -23,12 +23,16 @@ double brunt_stable_step(const brunt_world *world) {
         const double *v = world->walls[w].region ? world->walls[w].where.velocity : world->walls[w].plane.velocity;
         wall_speed = fmax(wall_speed, sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
     }
+    // Greatest over the whole body, so that the step does not depend on how blocks cut it.
     for (int i = 0; i < world->body_count; i++) {
         const brunt_body *body = &world->bodies[i];
+        double wave = 0, speed = wall_speed;
         for (int32_t b = 0; b < body->grid.block_count; b++) {
-            const brunt_block_report *r = &body->report[b];
-            inverse = fmax(inverse, (double)r->wave_speed + fmax((double)r->speed, wall_speed));
+            wave = fmax(wave, (double)body->report[b].wave_speed);
+            speed = fmax(speed, (double)body->report[b].speed);
+            if (isnan(body->report[b].wave_speed) || isnan(body->report[b].speed)) return NAN;
         }
+        inverse = fmax(inverse, wave + speed);
     }
     return world->cfl * world->cell / inverse;
 }

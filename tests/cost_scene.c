@@ -1,0 +1,77 @@
+// A small elastic scene in several dresses, for cost.sh to count the instructions of its steps: cost_scene DRESS STEPS.
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "brunt.h"
+
+static brunt_material_def rubber(void) {
+    return (brunt_material_def){
+        .name = "rubber", .density = 1000, .strength = "neo-hookean", .strength_parameters = {1e6, 0.3}};
+}
+
+static brunt_body_def cube(const char *name, double x) {
+    brunt_body_def b = brunt_body_def_default();
+    snprintf(b.name, sizeof b.name, "%s", name);
+    b.shape.kind = BRUNT_BOX;
+    for (int a = 0; a < 3; a++) b.shape.min[a] = a ? 0 : x, b.shape.max[a] = (a ? 0 : x) + 0.8;
+    b.wave_velocity[0] = 1;
+    b.wave_vector[0] = 4, b.wave_phase = -4 * x;
+    return b;
+}
+
+int main(int count, char **words) {
+    if (count != 3) return 64;
+    const char *dress = words[1];
+    brunt_material_def materials[2] = {rubber(), rubber()};
+    brunt_body_def bodies[2] = {cube("a", 0), cube("b", 0.83)};
+    brunt_plane_def plane = brunt_plane_def_default();
+    brunt_world_def def = brunt_world_def_default();
+    def.cell = 0.1;
+    def.end = 1e6;
+    def.step = 5e-4; // the same for all
+    def.threads = 1;
+    def.energy_limit = INFINITY;
+    def.contact.method = BRUNT_CONTACT_NONE;
+    def.materials = materials, def.material_count = 1;
+    def.bodies = bodies, def.body_count = 1;
+    plane.normal[1] = 1, plane.point[1] = -5;
+    if (!strcmp(dress, "plain")) {
+    } else if (!strcmp(dress, "contact")) { // asked for, but there is nobody to touch
+        def.contact.method = BRUNT_CONTACT_MULTI_VELOCITY;
+        def.contact.friction = 0.4;
+        def.contact.allow_overlap = true;
+    } else if (!strcmp(dress, "options")) { // numbers of effects that are off, and a material nobody is made of
+        snprintf(materials[0].eos, sizeof materials[0].eos, "%s", "");
+        materials[0].eos_parameters[0] = 3000;
+        materials[0].viscosity_parameters[0] = 0.06;
+        materials[1] = (brunt_material_def){
+            .name = "copper", .density = 8960, .strength = "von-mises", .strength_parameters = {1e11, 0.3, 1e8}};
+        def.material_count = 2;
+        def.gravity_ramp = 1;
+        def.flip = 0.5;
+        bodies[0].temperature = 500;
+    } else if (!strcmp(dress, "gravity")) {
+        def.gravity[2] = -9.81;
+    } else if (!strcmp(dress, "plastic")) {
+        snprintf(materials[0].strength, sizeof materials[0].strength, "von-mises");
+        materials[0].strength_parameters[2] = 1e4;
+    } else if (!strcmp(dress, "wall")) {
+        def.planes = &plane, def.plane_count = 1;
+    } else if (!strcmp(dress, "two")) { // two bodies that do not know of each other, and two that do
+        def.body_count = 2;
+    } else if (!strcmp(dress, "met")) {
+        def.body_count = 2;
+        def.contact.method = BRUNT_CONTACT_MULTI_VELOCITY;
+    } else {
+        return 64;
+    }
+    brunt_error error = {0};
+    brunt_world *world = brunt_world_create(&def, &error);
+    int status = world ? BRUNT_OK : error.code;
+    for (int s = 0; s < atoi(words[2]) && !status; s++) status = brunt_world_step(world, INFINITY, &error);
+    if (status) fprintf(stderr, "%s\n", error.message);
+    brunt_world_destroy(world);
+    return status;
+}
