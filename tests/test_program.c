@@ -412,13 +412,13 @@ END_TEST
 
 // An energy limit below what two hundred steps of contact and transfer leave open.
 START_TEST(a_failing_run_is_70_and_leaves_what_to_look_at) {
-    expect("run %s/small.yaml -o %s/out --set time.energy_limit=0.002", 70, "failed: ");
+    expect("run %s/small.yaml -o %s/out --set time.energy_limit=1e-9", 70, "failed: ");
     json_t *summary = summary_of("out");
     ck_assert_str_eq(json_string_value(json_object_get(summary, "status")), "failed");
     ck_assert_int_gt((int)strlen(json_string_value(json_object_get(summary, "reason"))), 20);
     json_decref(summary);
     expect("info %s/out/checkpoint.h5", 0, "FAILED");
-    expect("run %s/small.yaml -o %s/out --set time.energy_limit=0.002 --resume", 65, "failed");
+    expect("run %s/small.yaml -o %s/out --set time.energy_limit=1e-9 --resume", 65, "failed");
     ck_assert(exists("out/checkpoint.previous.h5"));
     // The last picture is of the failing state, and readable.
     ck_assert_int_eq(shell("/usr/bin/python3 tests/read_vtu.py --collection %s/out/brunt.pvd > %s/pictures",
