@@ -127,7 +127,7 @@ static void remove_key(struct fy_document *document, struct fy_node *map, const 
         fy_node_free(fy_node_mapping_remove_by_key(map, fy_node_build_from_string(document, key, FY_NT)));
 }
 
-// The scene less what may change between the sessions of a run, as block YAML; NULL when it is not YAML. Freed with
+// The scene less what may change between the legs of a run, as block YAML; NULL when it is not YAML. Freed with
 // free().
 static char *comparable(const char *text) {
     struct fy_parse_cfg quiet = {.flags = FYPCF_QUIET};

@@ -12,7 +12,7 @@
 typedef struct brunt_run_state {
     double *picture_times; // [s] of the pictures so far; owned
     int64_t picture_count;
-    double wall_seconds, cpu_seconds, step_seconds, output_seconds; // [s] spent so far, over all sessions of the run
+    double wall_seconds, cpu_seconds, step_seconds, output_seconds; // [s] spent so far, over all legs of the run
     bool failed; // written where the computation failed, to be looked at: it cannot be resumed
     char reason[1024];
     double time; // [s] of the world

@@ -21,7 +21,7 @@ void brunt_console_print(brunt_console *console, const char *format, ...) __attr
 
 typedef struct brunt_progress {
     brunt_console *console;
-    double start_time, start_wall;  // [s] of the run, [s] of this session's clock
+    double start_time, start_wall;  // [s] of the run, [s] of this leg's clock
     double shown_wall, logged_wall; // [s] when a line was last shown, logged
     double rate_wall, rate_time;    // [s] where the present window of rates began
     long long rate_steps;

@@ -29,13 +29,13 @@ typedef struct run {
     char folder[BRUNT_PATH_LENGTH];
     brunt_world *world;
     brunt_history *history;
-    double *measure_initial;              // one a measure
-    char *scene_text;                     // as resolved; from the C library
-    brunt_run_state state;                // clocks hold what earlier sessions spent, plus output and steps of this one
-    size_t picture_capacity;              // [bytes]
-    double next_picture, next_history;    // [s] of the world
-    double session_start, session_output; // [s] of the clock, [s] written by this session
-    int64_t first_step;                   // of this session
+    double *measure_initial;           // one a measure
+    char *scene_text;                  // as resolved; from the C library
+    brunt_run_state state;             // clocks hold what earlier legs spent, plus output and steps of this one
+    size_t picture_capacity;           // [bytes]
+    double next_picture, next_history; // [s] of the world
+    double leg_start, leg_output;      // [s] of the clock, [s] written by this leg
+    int64_t first_step;                // of this leg
     double checkpoint_wall, history_wall, history_cost; // [s] when last written, [s] it took
     brunt_console console;
     bool told; // the mistakes have been printed
@@ -109,7 +109,7 @@ static int write_history(run *r, brunt_error *error) {
 // The state with the clocks as of now.
 static brunt_run_state state_now(const run *r) {
     brunt_run_state state = r->state;
-    state.wall_seconds += brunt_clock() - r->session_start;
+    state.wall_seconds += brunt_clock() - r->leg_start;
     state.cpu_seconds += cpu_clock();
     return state;
 }
@@ -164,7 +164,7 @@ static int write_outputs(run *r, bool last, brunt_error *error) {
     if (picture || history) schedule(r);
     double spent = brunt_clock() - start;
     r->state.output_seconds += spent;
-    r->session_output += spent;
+    r->leg_output += spent;
     return status;
 }
 
@@ -236,7 +236,7 @@ static int restore(run *r, brunt_error *error) {
     if (!status) status = brunt_checkpoint_read(path, r->world, r->scene_text, &r->state, error);
     if (status) return status;
     r->picture_capacity = sizeof(double) * (size_t)r->state.picture_count;
-    // The clocks of this process start now; those in the checkpoint are of the sessions before.
+    // The clocks of this process start now; those in the checkpoint are of the legs before.
     r->state.cpu_seconds -= cpu_clock();
     status = path_in(r, "history.h5", path, error);
     if (!status) status = brunt_history_load(r->history, path, brunt_world_steps(r->world), error);
@@ -308,7 +308,7 @@ static int write_first(run *r, brunt_error *error) {
     if (!status && !isinf(r->scene->output.checkpoint)) status = write_checkpoint(r, NULL, error);
     double spent = brunt_clock() - start;
     r->state.output_seconds += spent;
-    r->session_output += spent;
+    r->leg_output += spent;
     return status;
 }
 
@@ -332,13 +332,13 @@ static int finish(run *r, const char *status_name, const char *reason, bool eval
                              .cpu_seconds = now.cpu_seconds,
                              .step_seconds = now.step_seconds,
                              .output_seconds = now.output_seconds,
-                             .session_steps = brunt_world_steps(r->world) - r->first_step,
+                             .leg_steps = brunt_world_steps(r->world) - r->first_step,
                              .results = status ? NULL : results};
     brunt_summary_print(&summary, scene, r->world, &r->console);
     if (r->options->profile) {
-        brunt_summary session = summary;
-        session.output_seconds = r->session_output;
-        brunt_profile_print(&session, r->world, &r->console);
+        brunt_summary leg = summary;
+        leg.output_seconds = r->leg_output;
+        brunt_profile_print(&leg, r->world, &r->console);
     }
     char path[BRUNT_PATH_LENGTH];
     if (!status) status = path_in(r, "summary.json", path, error);
@@ -450,7 +450,7 @@ int brunt_run(const brunt_scene *scene, const brunt_run_options *options, brunt_
     if (!r) return brunt_fail(error, BRUNT_FAILED, "out of memory");
     r->scene = scene;
     r->options = options;
-    r->session_start = brunt_clock();
+    r->leg_start = brunt_clock();
     r->console = brunt_console_open(options->console);
     int status = options->folder ? brunt_join_path(r->folder, options->folder, "", error)
                                  : brunt_join_path(r->folder, "out", scene->name, error);

@@ -1,4 +1,4 @@
-// A run: the loop around the time step that writes what the scene asks for, and leaves a folder a later session can go
+// A run: the loop around the time step that writes what the scene asks for, and leaves a folder a later leg can go
 // on from.
 //
 // In the folder: summary.json, history.h5 and history.csv, brunt.pvd with vtu/, checkpoint.h5 and

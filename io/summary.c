@@ -220,10 +220,10 @@ void brunt_profile_print(const brunt_summary *summary, brunt_world *world, brunt
     double total = summary->output_seconds;
     for (int32_t p = 0; p < brunt_pass_count(world); p++) total += brunt_world_pass(world, p).seconds;
     // A pass may run once a body: its cost is per step of the whole world, so that the rows add up.
-    double points = (double)brunt_world_particles(world) * (double)summary->session_steps;
+    double points = (double)brunt_world_particles(world) * (double)summary->leg_steps;
     int threads = brunt_world_threads(world);
     if (threads > 64) threads = 64;
-    brunt_console_print(console, "profile of this session\n  %-28s %10s %10s %12s %7s  per thread [s]\n", "pass",
+    brunt_console_print(console, "profile of this leg of the run\n  %-28s %10s %10s %12s %7s  per thread [s]\n", "pass",
                         "seconds", "calls", "ns/particle", "share");
     for (int32_t p = 0; p < brunt_pass_count(world); p++) {
         brunt_pass pass = brunt_world_pass(world, p);

@@ -8,10 +8,10 @@
 typedef struct brunt_summary {
     const char *status;                  // "done", "failed", "stopped"
     const char *reason;                  // why it ended
-    double wall_seconds, cpu_seconds;    // [s] over all sessions of the run
+    double wall_seconds, cpu_seconds;    // [s] over all legs of the run
     double step_seconds;                 // [s] wall time inside time steps: what the rates are made of
     double output_seconds;               // [s] wall time spent writing
-    long long session_steps;             // taken by this session
+    long long leg_steps;                 // taken by this leg
     const brunt_measure_result *results; // one a measure of the scene; NULL: not evaluated
 } brunt_summary;
 
@@ -19,5 +19,5 @@ int brunt_summary_write(const char *path, const brunt_summary *summary, const br
                         brunt_error *error);
 void brunt_summary_print(const brunt_summary *summary, const brunt_scene *scene, brunt_world *world,
                          brunt_console *console);
-// Per pass of this session: seconds, calls, ns per particle-step, share, and seconds per thread.
+// Per pass of this leg: seconds, calls, ns per particle-step, share, and seconds per thread.
 void brunt_profile_print(const brunt_summary *summary, brunt_world *world, brunt_console *console);

@@ -347,7 +347,7 @@ START_TEST(killed_and_resumed_is_the_same_run) {
     json_decref(summary);
     int kills = 0, code = -1;
     for (int i = 0; i < 12; i++) {
-        // A session killed before its first checkpoint has left none to resume from.
+        // A leg killed before its first checkpoint has left none to resume from.
         bool resume = exists("broken/checkpoint.h5");
         pid_t child = start(resume ? "run %s/small.yaml -o %s/broken -q --resume " SLOW
                                    : "run %s/small.yaml -o %s/broken -q " SLOW,
