@@ -80,8 +80,7 @@ static void apply_plane(const brunt_grid *grid, brunt_wall *wall, double time) {
     }
 }
 
-void brunt_condition_apply(brunt_body *body, brunt_wall *wall, double time, double dt) {
-    (void)dt;
+void brunt_condition_apply(brunt_body *body, brunt_wall *wall, double time) {
     if (wall->region) {
         if (time >= wall->where.start && time < wall->where.end) apply_region(&body->grid, wall);
     } else {

@@ -51,7 +51,7 @@ int brunt_mirror_images(const brunt_mirror *mirrors, int mirror_count, const int
                         int32_t image[BRUNT_MAX_IMAGES][3], real sign[BRUNT_MAX_IMAGES][3]);
 
 // --- node conditions (conditions.c): stick and slip planes at the nodes behind them, prescribed velocities in regions
-void brunt_condition_apply(brunt_body *body, brunt_wall *wall, double time, double dt);
+void brunt_condition_apply(brunt_body *body, brunt_wall *wall, double time);
 
 // --- reach (reach.c): where a body's surface really is
 // Gradient of the body's volume fraction at a node [1/m], which points into the body, and the centre of the volume that

@@ -163,7 +163,7 @@ static int constrain_grid_velocities(brunt_world *world, double dt, brunt_error 
             bool at_nodes = wall->region || (wall->mirror < 0 && wall->plane.condition != BRUNT_SEPARATE);
             for (int i = 0; at_nodes && i < world->body_count; i++)
                 if (acts_on(wall, &world->bodies[i]))
-                    brunt_condition_apply(&world->bodies[i], wall, world->now.time, dt);
+                    brunt_condition_apply(&world->bodies[i], wall, world->now.time);
         }
         end_pass(world, BRUNT_PASS_conditions, start);
     }
@@ -245,7 +245,7 @@ static void remap_velocities(brunt_world *world, double dt) {
         for (int w = 0; w < world->wall_count; w++) {
             brunt_wall wall = world->walls[w];
             bool at_nodes = wall.region || (wall.mirror < 0 && wall.plane.condition != BRUNT_SEPARATE);
-            if (at_nodes && acts_on(&wall, body)) brunt_condition_apply(body, &wall, world->now.time, dt);
+            if (at_nodes && acts_on(&wall, body)) brunt_condition_apply(body, &wall, world->now.time);
         }
     }
     end_pass(world, BRUNT_PASS_remap, start);
