@@ -3,18 +3,8 @@
 
 #include "brunt.h"
 #include "grid.h"
-#include "material.h"
 #include "particles.h"
-
-typedef enum brunt_component { BRUNT_STRENGTH, BRUNT_VISCOSITY, BRUNT_EOS, BRUNT_COMPONENTS } brunt_component;
-
-typedef struct brunt_material {
-    char name[BRUNT_NAME_LENGTH];
-    real density;                               // [kg/m^3]
-    const brunt_model *model[BRUNT_COMPONENTS]; // NULL where there is none
-    real constants[BRUNT_COMPONENTS][BRUNT_MAX_CONSTANTS];
-    real wave_speed; // [m/s] undeformed
-} brunt_material;
+#include "prepared.h"
 
 // What a block reports of a step; summed or compared over the blocks in their order.
 typedef struct brunt_block_report {
@@ -39,8 +29,6 @@ typedef struct brunt_body {
     real particle_mass;     // [kg]
 } brunt_body;
 
-// Checks the definition and prepares the constants. BRUNT_BAD_INPUT with the offending key.
-int brunt_material_make(const brunt_material_def *def, brunt_material *material, brunt_error *error);
 void brunt_body_free(brunt_body *body);
 
 // Views particles `first` .. `first + count - 1` (count a multiple of BRUNT_LANES) as the points of a component.
