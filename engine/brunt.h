@@ -77,9 +77,48 @@ double brunt_shape_distance(const brunt_shape *shape, int dimension, const doubl
 bool brunt_shape_bounds(const brunt_shape *shape, int dimension, double min[3], double max[3]);
 void brunt_shape_free(brunt_shape *shape);  // frees what the shape owns, not the shape itself
 
-// ---------------------------------------------------------------------------------------------------- definitions
+// ---------------------------------------------------------------------------------------------------- meshes
 
 enum { BRUNT_NAME_LENGTH = 48, BRUNT_PARAMETER_LIMIT = 24 };
+
+// Linear elements with one integration point, nodes in the order of VTK. Two-dimensional ones are in plane strain.
+typedef enum brunt_element_kind { BRUNT_TET4, BRUNT_HEX8, BRUNT_TRI3, BRUNT_QUAD4 } brunt_element_kind;
+enum { BRUNT_ELEMENT_KINDS = 4, BRUNT_ELEMENT_NODES = 8 };
+const char *brunt_element_name(brunt_element_kind kind);     // "tet4", "hex8", "tri3", "quad4"
+int brunt_element_nodes(brunt_element_kind kind);
+int brunt_element_dimension(brunt_element_kind kind);
+
+// Nodes with a name: a boundary acts on them, and on the faces whose nodes are all among them.
+typedef struct brunt_group { char name[BRUNT_NAME_LENGTH]; int32_t *nodes, count; } brunt_group;  // ascending; owned by the mesh
+
+typedef struct brunt_mesh {
+    brunt_element_kind kind;             // all elements are of one kind
+    int32_t node_count; double (*nodes)[3];  // [m]; the third is 0 in two dimensions
+    int32_t element_count, *elements;    // brunt_element_nodes(kind) node numbers each, from 0
+    brunt_group *groups; int32_t group_count;
+} brunt_mesh;
+
+// A structured mesh of a shape (not placed) with edges of about `size` [m]: box, sphere, cylinder, ring, prism with four
+// corners; in two dimensions box, disk, annulus, quadrilateral. Boundary groups by shape: box xmin xmax ymin ymax zmin zmax;
+// cylinder and ring start end side (ring: inner outer); prism side1 ... side4 (from corner i to the next) zmin zmax; sphere
+// none; and `surface` for all. BRUNT_BAD_INPUT for shapes that
+// have no such mesh (union, difference, ...).
+int brunt_mesh_shape(const brunt_shape *shape, int dimension, brunt_element_kind kind, double size, brunt_mesh *mesh, brunt_error *error);
+
+typedef struct brunt_mesh_quality {
+    int32_t inverted, degenerate, duplicate_elements, duplicate_nodes, unreferenced;  // how many ...
+    int32_t first[5];                    // ... and the first of each (element or node number from 0), -1
+    double volume, smallest, largest;    // [m^3] in all, of an element; 2D [m^2]
+    double shortest_edge, longest_edge;  // [m]
+    double worst_shape;                  // [-] 1 for the regular element, 0 for a flat one (the least scaled Jacobian)
+    int32_t worst;                       // element with it
+} brunt_mesh_quality;
+// Looks a mesh over. BRUNT_BAD_INPUT and a message with element numbers (from 1) when it cannot be computed with: inverted or
+// flat elements, elements given twice. Duplicate (same place) and unreferenced nodes are only counted.
+int brunt_mesh_check(const brunt_mesh *mesh, brunt_mesh_quality *quality, brunt_error *error);
+void brunt_mesh_free(brunt_mesh *mesh);  // what the mesh owns, not the mesh itself
+
+// ---------------------------------------------------------------------------------------------------- definitions
 
 typedef struct brunt_material_def {
     char name[BRUNT_NAME_LENGTH];
@@ -92,6 +131,10 @@ typedef struct brunt_material_def {
     double viscosity_parameters[BRUNT_PARAMETER_LIMIT];
 } brunt_material_def;
 
+typedef enum brunt_method { BRUNT_MPM, BRUNT_FEM } brunt_method;
+// Control of the zero-energy modes of one-point elements (Flanagan and Belytschko 1981), by a spring or a damper.
+typedef enum brunt_hourglass { BRUNT_HOURGLASS_STIFFNESS, BRUNT_HOURGLASS_VISCOUS } brunt_hourglass;
+
 typedef enum brunt_fill { BRUNT_FILL_REGULAR, BRUNT_FILL_JITTERED } brunt_fill;
 
 typedef struct brunt_body_def {
@@ -99,6 +142,14 @@ typedef struct brunt_body_def {
     int32_t material;                   // index into the world's materials
     brunt_shape shape;                  // owned by the definition
     brunt_placement place;
+    brunt_method method;                // default BRUNT_MPM
+    // BRUNT_FEM: a given mesh, or one made of the shape.
+    brunt_mesh mesh;                    // owned by the definition; node_count 0: made of the shape
+    brunt_element_kind element;         // of a mesh made of the shape
+    double size;                        // [m] edge length of a mesh made of the shape
+    brunt_hourglass hourglass;
+    double hourglass_coefficient;       // [-] 0..1; default 0.05 (stiffness) / 0.1 (viscous) as NAN
+    double mass_scaling;                // [s] elements whose stable step is less get density until it is not; 0 = none
     // Particles sit on a lattice fixed to the unplaced shape's bounding box, then move with the placement.
     int32_t particles_per_cell;         // 2D: a square number, 3D: a cube; default 4 / 8
     double spacing;                     // [m] lattice spacing; 0 = cell / (particles_per_cell)^(1/dimension)
@@ -139,7 +190,36 @@ typedef struct brunt_region_def {
     char body[BRUNT_NAME_LENGTH];       // "" = all
 } brunt_region_def;
 
-typedef enum brunt_contact_method { BRUNT_CONTACT_NONE, BRUNT_CONTACT_MULTI_VELOCITY } brunt_contact_method;
+// A function of time: linear between points, held constant before the first and after the last; no points: 1 always.
+typedef struct brunt_curve { double (*points)[2]; int32_t count; } brunt_curve;  // [s], [-]; ascending in time
+
+// Nodes of a finite-element body that are held, moved or loaded.
+typedef enum brunt_group_action {
+    BRUNT_GROUP_VELOCITY,      // components of `value` times the table are the velocity [m/s]; fixed: value 0
+    BRUNT_GROUP_DISPLACEMENT,  // ... are the displacement since the start [m]
+    BRUNT_GROUP_TRACTION,      // value [Pa] times the table acts on the undeformed area of the group's faces
+    BRUNT_GROUP_PRESSURE       // value[0] [Pa] times the table acts against the outward normal of the deformed faces
+} brunt_group_action;
+typedef struct brunt_group_def {
+    char name[BRUNT_NAME_LENGTH];       // of its column in the history; "" = "group1", ...
+    char body[BRUNT_NAME_LENGTH], group[BRUNT_NAME_LENGTH];
+    brunt_group_action action;
+    bool component[3];                  // velocity, displacement: which are prescribed
+    double value[3];
+    brunt_curve table;                  // owned by the definition
+} brunt_group_def;
+
+typedef enum brunt_kernel { BRUNT_LINEAR = 1, BRUNT_QUADRATIC = 2, BRUNT_CUBIC = 3 } brunt_kernel;
+typedef enum brunt_transfer { BRUNT_PIC, BRUNT_FLIP, BRUNT_APIC } brunt_transfer;
+
+typedef enum brunt_contact_method { BRUNT_CONTACT_NONE, BRUNT_CONTACT_MULTI_VELOCITY, BRUNT_CONTACT_AUGURY } brunt_contact_method;
+// How augury makes the velocity that opposing bodies are to have where they meet.
+typedef enum brunt_augury_form {
+    BRUNT_AUGURY_AFFINE,   // velocity and gap from the same facing facet, extended affinely; reaction by the transpose
+    BRUNT_AUGURY_SMOOTH,   // the same from facets averaged on the grid
+    BRUNT_AUGURY_SURFACE,  // velocities averaged on the grid, gap to the averaged facing surface
+    BRUNT_AUGURY_PAPER     // grid transfers and augury iterations as published
+} brunt_augury_form;
 
 typedef struct brunt_pair_def {
     char a[BRUNT_NAME_LENGTH], b[BRUNT_NAME_LENGTH];
@@ -149,12 +229,13 @@ typedef struct brunt_pair_def {
 typedef struct brunt_contact_def {
     brunt_contact_method method;        // default: multi-velocity
     double friction;                    // [-] >= 0
+    brunt_augury_form form;             // of augury; default affine
+    int iterations;                     // of augury: sweeps, or N of the paper form; -1 = the form's own (4, 4, 4, 1)
+    double cell;                        // [m] of the contact grid; 0 = the mean surface edge (paper: twice that)
+    brunt_transfer transfer;            // of the paper form: BRUNT_PIC or BRUNT_APIC (default)
     bool allow_overlap;                 // accept bodies that overlap at the start; default false: an error
     brunt_pair_def *pairs; int32_t pair_count;  // owned; overrides
 } brunt_contact_def;
-
-typedef enum brunt_kernel { BRUNT_LINEAR = 1, BRUNT_QUADRATIC = 2, BRUNT_CUBIC = 3 } brunt_kernel;
-typedef enum brunt_transfer { BRUNT_PIC, BRUNT_FLIP, BRUNT_APIC } brunt_transfer;
 
 typedef struct brunt_world_def {
     int cookie;                         // set by brunt_world_def_default
@@ -173,6 +254,7 @@ typedef struct brunt_world_def {
     brunt_body_def *bodies; int32_t body_count;             // owned
     brunt_plane_def *planes; int32_t plane_count;           // owned
     brunt_region_def *regions; int32_t region_count;        // owned
+    brunt_group_def *groups; int32_t group_count;           // owned
     brunt_contact_def contact;
     double gravity[3];                  // [m/s^2]
     double gravity_ramp;                // [s] gravity grows linearly from 0 over this time; default 0
@@ -182,6 +264,7 @@ brunt_world_def brunt_world_def_default(void);
 brunt_body_def brunt_body_def_default(void);
 brunt_plane_def brunt_plane_def_default(void);
 brunt_region_def brunt_region_def_default(void);
+brunt_group_def brunt_group_def_default(void);
 // A material of a strength model, by name, with the model's defaults; parameters without one are NAN and must be set. An unknown
 // model is refused by brunt_material_set and brunt_world_create.
 brunt_material_def brunt_material_def_default(const char *name, const char *model);
@@ -214,7 +297,8 @@ double brunt_world_dt_max(const brunt_world *world);
 int brunt_world_dimension(const brunt_world *world);
 int brunt_world_threads(const brunt_world *world);
 int64_t brunt_world_particles(const brunt_world *world);
-int64_t brunt_world_nodes(const brunt_world *world);    // grid nodes alive in the last step
+int64_t brunt_world_nodes(const brunt_world *world);    // grid nodes alive in the last step, and nodes of meshes
+int64_t brunt_world_elements(const brunt_world *world);
 
 typedef struct brunt_energy {  // [J]; in 2D per metre of thickness
     double kinetic;            // of the particles, with the affine part of APIC
@@ -244,26 +328,47 @@ uint64_t brunt_world_hash(const brunt_world *world);
 int32_t brunt_body_count(const brunt_world *world);
 const char *brunt_body_name(const brunt_world *world, int32_t body);
 const char *brunt_body_material(const brunt_world *world, int32_t body);
-int64_t brunt_body_particles(const brunt_world *world, int32_t body);
+brunt_method brunt_body_method(const brunt_world *world, int32_t body);
+int64_t brunt_body_particles(const brunt_world *world, int32_t body);  // 0 of a finite-element body
+int64_t brunt_body_nodes(const brunt_world *world, int32_t body);      // 0 of material points
+int64_t brunt_body_elements(const brunt_world *world, int32_t body);
+brunt_element_kind brunt_body_element(const brunt_world *world, int32_t body);
+// brunt_element_nodes(kind) node numbers of every element, nodes and elements numbered as in the mesh.
+void brunt_body_connectivity(const brunt_world *world, int32_t body, int32_t *out);
+typedef struct brunt_mesh_report { brunt_mesh_quality quality; double least_step, added_mass; int32_t scaled_elements; } brunt_mesh_report;
+// How good the mesh of a finite-element body is, and what mass scaling added [kg].
+void brunt_body_mesh(const brunt_world *world, int32_t body, brunt_mesh_report *report);
 typedef struct brunt_body_sums { double mass, momentum[3], centre[3], velocity[3], kinetic, internal, plastic; } brunt_body_sums;
 void brunt_body_totals(brunt_world *world, int32_t body, brunt_body_sums *sums);
 
-// What can be read of a body's particles: stored and derived fields alike ("velocity", "stress" = Cauchy, "pressure",
+// What can be read of a body, at its particles, or at its nodes and its elements: stored and derived fields alike ("velocity", "stress" = Cauchy, "pressure",
 // "von_mises", "density", "plastic_strain", "temperature", "J", "volume", "id", ...).
-typedef struct brunt_field_info { const char *name, *unit; int components; bool symmetric; } brunt_field_info;
+typedef enum brunt_place { BRUNT_AT_PARTICLES, BRUNT_AT_NODES, BRUNT_AT_ELEMENTS } brunt_place;
+typedef struct brunt_field_info { const char *name, *unit; int components; bool symmetric; brunt_place at; } brunt_field_info;
 int32_t brunt_body_field_count(const brunt_world *world, int32_t body);
 brunt_field_info brunt_body_field(const brunt_world *world, int32_t body, int32_t field);
 // -1 when the body has no such field.
 int32_t brunt_body_find_field(const brunt_world *world, int32_t body, const char *name);
-// Writes particles x components doubles in the order of the ids (0 .. particles-1 within the body). Vectors always have
+int64_t brunt_body_size(const brunt_world *world, int32_t body, brunt_place at);  // particles, nodes or elements
+// Writes brunt_body_size(at) x components doubles in the order of the ids (0 .. count-1 within the body). Vectors always have
 // 3 components, symmetric tensors 6 (XX YY ZZ XY YZ XZ), matrices 9, whatever the dimension.
 void brunt_body_read(brunt_world *world, int32_t body, int32_t field, double *out);
 
+// Warnings about the scene that were found when the world was made: contact grids too fine or too coarse, doubtful meshes.
+int32_t brunt_warning_count(const brunt_world *world);
+const char *brunt_world_warning(const brunt_world *world, int32_t warning);
+
 // Contact pairs and walls: force averaged over the last step [N] and impulse since the start [N s], on `b` / on the bodies.
-typedef struct brunt_force { char name[2 * BRUNT_NAME_LENGTH + 2]; double force[3], impulse[3]; double normal_work, friction_work; } brunt_force;
+typedef struct brunt_force {
+    char name[2 * BRUNT_NAME_LENGTH + 2];
+    double force[3], impulse[3];
+    double normal_work, friction_work;
+    double area;                                        // [m^2] that touched in the last step; 2D [m]
+} brunt_force;
+// Scenes with more than 64 pairs have them all in one, named "all".
 int32_t brunt_pair_count(const brunt_world *world);
 void brunt_pair_force(const brunt_world *world, int32_t pair, brunt_force *force);     // name "a-b", force on b
-int32_t brunt_wall_count(const brunt_world *world);                                     // planes, then regions
+int32_t brunt_wall_count(const brunt_world *world);                                     // planes, regions, then groups
 void brunt_wall_force(const brunt_world *world, int32_t wall, brunt_force *force);     // force on the bodies
 
 // ---------------------------------------------------------------------------------------------------- plan, profile, state

@@ -16,7 +16,7 @@ brunt_world_def brunt_world_def_default(void) {
         .flip = 0.99,
         .cfl = 0.5,
         .energy_limit = 0.1,
-        .contact = {.method = BRUNT_CONTACT_MULTI_VELOCITY},
+        .contact = {.method = BRUNT_CONTACT_MULTI_VELOCITY, .iterations = -1, .transfer = BRUNT_APIC},
     };
 }
 
@@ -27,6 +27,8 @@ brunt_body_def brunt_body_def_default(void) {
         .fill = BRUNT_FILL_REGULAR,
         .seed = 1,
         .temperature = 293.15,
+        .element = BRUNT_HEX8,
+        .hourglass_coefficient = NAN, // by form
     };
 }
 
@@ -40,8 +42,15 @@ brunt_region_def brunt_region_def_default(void) {
     };
 }
 
+brunt_group_def brunt_group_def_default(void) { return (brunt_group_def){.component = {true, true, true}}; }
+
 void brunt_world_def_free(brunt_world_def *def) {
-    for (int32_t i = 0; i < def->body_count; i++) brunt_shape_free(&def->bodies[i].shape);
+    for (int32_t i = 0; i < def->body_count; i++) {
+        brunt_shape_free(&def->bodies[i].shape);
+        brunt_mesh_free(&def->bodies[i].mesh);
+    }
+    for (int32_t i = 0; i < def->group_count; i++) brunt_free(def->groups[i].table.points);
+    brunt_free(def->groups);
     for (int32_t i = 0; i < def->region_count; i++) brunt_shape_free(&def->regions[i].shape);
     brunt_free(def->materials);
     brunt_free(def->bodies);

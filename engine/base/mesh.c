@@ -1,0 +1,37 @@
+// Meshes as data: the kinds of element, and what a mesh owns.
+#include "brunt.h"
+#include "error.h"
+#include "memory.h"
+
+static const struct {
+    const char *name;
+    int nodes, dimension;
+} kinds[BRUNT_ELEMENT_KINDS] = {
+    [BRUNT_TET4] = {"tet4", 4, 3},
+    [BRUNT_HEX8] = {"hex8", 8, 3},
+    [BRUNT_TRI3] = {"tri3", 3, 2},
+    [BRUNT_QUAD4] = {"quad4", 4, 2},
+};
+
+const char *brunt_element_name(brunt_element_kind kind) {
+    BRUNT_ASSERT((unsigned)kind < BRUNT_ELEMENT_KINDS);
+    return kinds[kind].name;
+}
+
+int brunt_element_nodes(brunt_element_kind kind) {
+    BRUNT_ASSERT((unsigned)kind < BRUNT_ELEMENT_KINDS);
+    return kinds[kind].nodes;
+}
+
+int brunt_element_dimension(brunt_element_kind kind) {
+    BRUNT_ASSERT((unsigned)kind < BRUNT_ELEMENT_KINDS);
+    return kinds[kind].dimension;
+}
+
+void brunt_mesh_free(brunt_mesh *mesh) {
+    for (int32_t g = 0; g < mesh->group_count; g++) brunt_free(mesh->groups[g].nodes);
+    brunt_free(mesh->groups);
+    brunt_free(mesh->nodes);
+    brunt_free(mesh->elements);
+    *mesh = (brunt_mesh){0};
+}

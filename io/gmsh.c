@@ -1,0 +1,455 @@
+// From a file of gmsh to the mesh of one body: which elements, which nodes, which groups.
+#include "gmsh.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "error.h"
+#include "gmsh_file.h"
+#include "memory.h"
+#include "scene_tree.h"
+
+// Of each kind of brunt_element_kind: the type of gmsh. Both have the nodes in the same order.
+static const int32_t type_of_kind[BRUNT_ELEMENT_KINDS] = {
+    [BRUNT_TET4] = 4, [BRUNT_HEX8] = 5, [BRUNT_TRI3] = 2, [BRUNT_QUAD4] = 3};
+
+// A mesh of two dimensions may be out of the plane by this share of its extent: rounding of the program that made it.
+static const double plane_tolerance = 1e-9;
+
+// ---------------------------------------------------------------------------------------------------- sentences
+
+typedef struct sentence {
+    char text[900];
+    size_t length;
+} sentence;
+
+static void __attribute__((format(printf, 2, 3))) add(sentence *s, const char *format, ...) {
+    if (s->length >= sizeof s->text) return;
+    va_list arguments;
+    va_start(arguments, format);
+    s->length += (size_t)vsnprintf(s->text + s->length, sizeof s->text - s->length, format, arguments);
+    va_end(arguments);
+}
+
+// ---------------------------------------------------------------------------------------------------- groups
+
+static bool is_member(const gmsh_file *file, const gmsh_run *run, const bool *wanted) {
+    for (int32_t p = 0; p < run->physical_count; p++)
+        if (wanted[file->memberships[run->physical_first + p]]) return true;
+    return false;
+}
+
+static int64_t count_members(const gmsh_file *file, int32_t physical) {
+    int64_t count = 0;
+    for (int32_t r = 0; r < file->run_count; r++)
+        for (int32_t p = 0; p < file->runs[r].physical_count; p++)
+            if (file->memberships[file->runs[r].physical_first + p] == physical) {
+                count += file->runs[r].count;
+                break;
+            }
+    return count;
+}
+
+// "'rod' (3D, 120 elements), 'wall' (2D, 8 elements)"; of all dimensions, or one.
+static void list_groups(const gmsh_file *file, int dimension, sentence *s) {
+    enum { SHOWN = 12 };
+    int32_t shown = 0, all = 0;
+    for (int32_t p = 0; p < file->physical_count; p++) {
+        const gmsh_physical *group = &file->physicals[p];
+        if (dimension >= 0 && group->dimension != dimension) continue;
+        if (all++ >= SHOWN) continue;
+        add(s, "%s'%.40s' (%dD, %lld elements)", shown++ ? ", " : "", group->name, (int)group->dimension,
+            (long long)count_members(file, p));
+    }
+    if (all > SHOWN) add(s, " and %d more", (int)(all - SHOWN));
+    if (!all) add(s, "none");
+}
+
+static int fail_missing(const gmsh_file *file, const char *group, int dimension, brunt_error *error) {
+    const char **names = brunt_alloc((size_t)(file->physical_count + 1) * sizeof *names);
+    sentence s = {.length = 0};
+    add(&s, "%s: no physical group '%.60s' of dimension %d", file->path, group, dimension);
+    if (names) {
+        int count = 0;
+        for (int32_t p = 0; p < file->physical_count; p++)
+            if (file->physicals[p].dimension == dimension) names[count++] = file->physicals[p].name;
+        const char *nearest = brunt_nearest_name(group, names, count);
+        if (nearest) add(&s, ", did you mean '%.60s'?", nearest);
+    }
+    add(&s, "%s", names && s.text[s.length - 1] == '?' ? " There are: " : "; there are: ");
+    list_groups(file, -1, &s);
+    brunt_free(names);
+    return brunt_fail(error, BRUNT_BAD_INPUT, "%s", s.text);
+}
+
+// ---------------------------------------------------------------------------------------------------- which elements
+
+// What is made into a mesh: runs of elements of the dimension, of the wanted physical groups or all.
+typedef struct selection {
+    const gmsh_file *file;
+    int dimension;
+    bool all;
+    bool *wanted; // of each physical group
+    const char *name;
+} selection;
+
+static bool selects(const selection *s, const gmsh_run *run) {
+    return gmsh_types[run->type].dimension == s->dimension && (s->all || is_member(s->file, run, s->wanted));
+}
+
+static int select_all(selection *s, brunt_error *error) {
+    const gmsh_file *file = s->file;
+    int32_t groups = 0;
+    for (int32_t p = 0; p < file->physical_count; p++) groups += file->physicals[p].dimension == s->dimension;
+    for (int32_t r = 0; r < file->run_count; r++)
+        if (gmsh_types[file->runs[r].type].dimension > s->dimension)
+            return brunt_fail(error, BRUNT_BAD_INPUT,
+                              "%s: has elements of dimension %d (%s), the scene is of dimension %d", file->path,
+                              gmsh_types[file->runs[r].type].dimension, gmsh_types[file->runs[r].type].name,
+                              s->dimension);
+    if (groups <= 1) {
+        s->all = true;
+        return BRUNT_OK;
+    }
+    sentence text = {.length = 0};
+    add(&text, "%s: which physical group is the body? There are: ", file->path);
+    list_groups(file, s->dimension, &text);
+    return brunt_fail(error, BRUNT_BAD_INPUT, "%s", text.text);
+}
+
+static int select_group(selection *s, brunt_error *error) {
+    bool found = false;
+    for (int32_t p = 0; p < s->file->physical_count; p++) {
+        const gmsh_physical *group = &s->file->physicals[p];
+        s->wanted[p] = group->dimension == s->dimension && !strcmp(group->name, s->name);
+        found |= s->wanted[p];
+    }
+    return found ? BRUNT_OK : fail_missing(s->file, s->name, s->dimension, error);
+}
+
+// The one kind of all selected elements, and how many.
+static int find_kind(const selection *s, brunt_element_kind *kind, int64_t *count, brunt_error *error) {
+    int64_t counts[GMSH_TYPE_LIMIT] = {0};
+    int types = 0, last = 0, fitting = 0;
+    *count = 0;
+    for (int32_t r = 0; r < s->file->run_count; r++)
+        if (selects(s, &s->file->runs[r])) counts[s->file->runs[r].type] += s->file->runs[r].count;
+    for (int t = 0; t < GMSH_TYPE_LIMIT; t++) {
+        if (!counts[t]) continue;
+        types++, last = t;
+        *count += counts[t];
+        for (int k = 0; k < BRUNT_ELEMENT_KINDS; k++)
+            if (type_of_kind[k] == t) *kind = (brunt_element_kind)k, fitting++;
+    }
+    const char *path = s->file->path;
+    if (!types && s->all)
+        return brunt_fail(error, BRUNT_BAD_INPUT, "%s: has no elements of dimension %d", path, s->dimension);
+    if (!types) return brunt_fail(error, BRUNT_BAD_INPUT, "%s: physical group '%.60s' has no elements", path, s->name);
+    if (types == 1 && fitting == 1 && *count <= INT32_MAX) return BRUNT_OK;
+    if (types == 1 && fitting == 1)
+        return brunt_fail(error, BRUNT_BAD_INPUT, "%s: %lld elements, fewer than 2^31 are wanted", path,
+                          (long long)*count);
+    sentence text = {.length = 0};
+    add(&text, "%s: %s%.60s%s has ", path, s->all ? "the mesh" : "physical group '", s->all ? "" : s->name,
+        s->all ? "" : "'");
+    for (int t = 0, shown = 0; t < GMSH_TYPE_LIMIT; t++)
+        if (counts[t])
+            add(&text, "%s%lld %s",
+                !shown++    ? ""
+                : t == last ? " and "
+                            : ", ",
+                (long long)counts[t], gmsh_types[t].name);
+    add(&text, ": a body has elements of one kind, %s",
+        s->dimension == 3 ? "4-node tetrahedra or 8-node hexahedra" : "3-node triangles or 4-node quadrangles");
+    return brunt_fail(error, BRUNT_BAD_INPUT, "%s", text.text);
+}
+
+// ---------------------------------------------------------------------------------------------------- nodes and
+// elements
+
+static int fail_memory(const gmsh_file *file, brunt_error *error) {
+    return brunt_fail(error, BRUNT_FAILED, "%s: no memory for this mesh", file->path);
+}
+
+// Gives the nodes of the selected elements their numbers, in the order of the file; -1 for the others.
+static int32_t number_nodes(const selection *s, int32_t *number) {
+    const gmsh_file *file = s->file;
+    memset(number, 0xff, (size_t)file->node_count * sizeof *number);
+    for (int32_t r = 0; r < file->run_count; r++) {
+        const gmsh_run *run = &file->runs[r];
+        size_t nodes = (size_t)run->count * (size_t)gmsh_types[run->type].nodes;
+        if (!selects(s, run)) continue;
+        for (size_t i = 0; i < nodes; i++) number[file->element_nodes[run->first + i]] = 0;
+    }
+    int32_t count = 0;
+    for (int32_t n = 0; n < file->node_count; n++)
+        if (number[n] == 0) number[n] = count++;
+    return count;
+}
+
+static int fill_mesh(const selection *s, const int32_t *number, int32_t nodes, int64_t elements, brunt_mesh *mesh,
+                     brunt_error *error) {
+    const gmsh_file *file = s->file;
+    size_t per_element = (size_t)brunt_element_nodes(mesh->kind), filled = 0;
+    mesh->nodes = brunt_alloc((size_t)nodes * sizeof *mesh->nodes);
+    mesh->elements = brunt_alloc((size_t)elements * per_element * sizeof *mesh->elements);
+    if (!mesh->nodes || !mesh->elements) return fail_memory(file, error);
+    mesh->node_count = nodes;
+    mesh->element_count = (int32_t)elements;
+    for (int32_t n = 0; n < file->node_count; n++)
+        if (number[n] >= 0) memcpy(mesh->nodes[number[n]], file->x[n], sizeof *mesh->nodes);
+    for (int32_t r = 0; r < file->run_count; r++) {
+        const gmsh_run *run = &file->runs[r];
+        if (!selects(s, run)) continue;
+        for (size_t i = 0; i < (size_t)run->count * per_element; i++)
+            mesh->elements[filled++] = number[file->element_nodes[run->first + i]];
+    }
+    return BRUNT_OK;
+}
+
+// Twice the area, or a multiple of the volume: exact in sign for straight elements and enough to tell how a body is
+// turned.
+static double turn_of(const brunt_mesh *mesh, int32_t element) {
+    static const int8_t corners[BRUNT_ELEMENT_KINDS][3] = {{1, 2, 3}, {1, 3, 4}, {1, 2, 0}, {1, 2, 3}};
+    const int32_t *node = mesh->elements + (size_t)element * (size_t)brunt_element_nodes(mesh->kind);
+    double e[3][3];
+    if (mesh->kind == BRUNT_QUAD4) { // by the diagonals
+        const double *x0 = mesh->nodes[node[0]], *x1 = mesh->nodes[node[1]], *x2 = mesh->nodes[node[2]],
+                     *x3 = mesh->nodes[node[3]];
+        return (x2[0] - x0[0]) * (x3[1] - x1[1]) - (x2[1] - x0[1]) * (x3[0] - x1[0]);
+    }
+    for (int i = 0; i < 3; i++)
+        for (int d = 0; d < 3; d++) e[i][d] = mesh->nodes[node[corners[mesh->kind][i]]][d] - mesh->nodes[node[0]][d];
+    if (mesh->kind == BRUNT_TRI3) return e[0][0] * e[1][1] - e[0][1] * e[1][0];
+    return e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) + e[0][1] * (e[1][2] * e[2][0] - e[1][0] * e[2][2]) +
+           e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0]);
+}
+
+// Turns a body over whose every element is inside out.
+static bool turn_over(brunt_mesh *mesh) {
+    static const int8_t swaps[BRUNT_ELEMENT_KINDS][2][2] = {{{1, 2}}, {{1, 3}, {5, 7}}, {{1, 2}}, {{1, 3}}};
+    int nodes = brunt_element_nodes(mesh->kind);
+    for (int32_t e = 0; e < mesh->element_count; e++)
+        if (!(turn_of(mesh, e) < 0)) return false;
+    for (int32_t e = 0; e < mesh->element_count; e++) {
+        int32_t *node = mesh->elements + (size_t)e * (size_t)nodes;
+        for (int i = 0; i < 2; i++) {
+            int a = swaps[mesh->kind][i][0], b = swaps[mesh->kind][i][1];
+            int32_t keep = node[a];
+            node[a] = node[b];
+            node[b] = keep;
+        }
+    }
+    return true;
+}
+
+static int flatten(const gmsh_file *file, brunt_mesh *mesh, brunt_error *error) {
+    double least[2] = {INFINITY, INFINITY}, most[2] = {-INFINITY, -INFINITY};
+    for (int32_t n = 0; n < mesh->node_count; n++)
+        for (int d = 0; d < 2; d++)
+            least[d] = fmin(least[d], mesh->nodes[n][d]), most[d] = fmax(most[d], mesh->nodes[n][d]);
+    double reach = plane_tolerance * hypot(most[0] - least[0], most[1] - least[1]);
+    for (int32_t n = 0; n < mesh->node_count; n++) {
+        if (!(fabs(mesh->nodes[n][2]) <= reach))
+            return brunt_fail(error, BRUNT_BAD_INPUT,
+                              "%s: a node at (%g, %g, %g): a mesh of two dimensions lies in the plane z = 0",
+                              file->path, mesh->nodes[n][0], mesh->nodes[n][1], mesh->nodes[n][2]);
+        mesh->nodes[n][2] = 0;
+    }
+    return BRUNT_OK;
+}
+
+// ---------------------------------------------------------------------------------------------------- groups of the
+// mesh
+
+// Marks the body's nodes that elements of a physical group have; returns how many.
+static int32_t mark_group(const gmsh_file *file, const bool *wanted, const int32_t *number, int32_t nodes,
+                          bool *marked) {
+    int32_t count = 0;
+    memset(marked, 0, (size_t)nodes * sizeof *marked);
+    for (int32_t r = 0; r < file->run_count; r++) {
+        const gmsh_run *run = &file->runs[r];
+        if (!is_member(file, run, wanted)) continue;
+        for (size_t i = 0; i < (size_t)run->count * (size_t)gmsh_types[run->type].nodes; i++) {
+            int32_t n = number[file->element_nodes[run->first + i]];
+            if (n < 0 || marked[n]) continue;
+            marked[n] = true;
+            count++;
+        }
+    }
+    return count;
+}
+
+static bool known_group(const brunt_mesh *mesh, const char *name) {
+    for (int32_t g = 0; g < mesh->group_count; g++)
+        if (!strcmp(mesh->groups[g].name, name)) return true;
+    return false;
+}
+
+static void warn(FILE *warnings, const gmsh_file *file, const char *format, ...) __attribute__((format(printf, 3, 4)));
+static void warn(FILE *warnings, const gmsh_file *file, const char *format, ...) {
+    if (!warnings) return;
+    va_list arguments;
+    va_start(arguments, format);
+    fprintf(warnings, "%s: ", file->path);
+    vfprintf(warnings, format, arguments);
+    fputc('\n', warnings);
+    va_end(arguments);
+}
+
+// One group of the mesh from all physical groups of a dimension with the name of `physical`.
+static int add_group(const gmsh_file *file, int32_t physical, const int32_t *number, brunt_mesh *mesh, bool *wanted,
+                     bool *marked, FILE *warnings, brunt_error *error) {
+    const gmsh_physical *group = &file->physicals[physical];
+    for (int32_t p = 0; p < file->physical_count; p++)
+        wanted[p] = file->physicals[p].dimension == group->dimension && !strcmp(file->physicals[p].name, group->name);
+    for (int32_t p = 0; p < physical; p++)
+        if (wanted[p]) return BRUNT_OK; // made with that one
+    int32_t count = mark_group(file, wanted, number, mesh->node_count, marked);
+    if (!count) return BRUNT_OK;
+    if (strlen(group->name) >= BRUNT_NAME_LENGTH) {
+        warn(warnings, file, "physical group '%.60s' is left out: its name is longer than %d bytes", group->name,
+             BRUNT_NAME_LENGTH - 1);
+        return BRUNT_OK;
+    }
+    if (known_group(mesh, group->name)) {
+        warn(warnings, file,
+             "physical group '%s' of dimension %d is left out: there is one of a higher dimension with that name",
+             group->name, (int)group->dimension);
+        return BRUNT_OK;
+    }
+    brunt_group *made = &mesh->groups[mesh->group_count];
+    made->nodes = brunt_alloc((size_t)count * sizeof *made->nodes);
+    if (!made->nodes) return fail_memory(file, error);
+    mesh->group_count++;
+    memcpy(made->name, group->name, strlen(group->name) + 1);
+    for (int32_t n = 0; n < mesh->node_count; n++)
+        if (marked[n]) made->nodes[made->count++] = n;
+    return BRUNT_OK;
+}
+
+static int add_groups(const gmsh_file *file, int dimension, const int32_t *number, brunt_mesh *mesh, FILE *warnings,
+                      brunt_error *error) {
+    bool *wanted = brunt_alloc((size_t)file->physical_count + 1), *marked = brunt_alloc((size_t)mesh->node_count);
+    mesh->groups = brunt_alloc((size_t)(file->physical_count + 1) * sizeof *mesh->groups);
+    int status = wanted && marked && mesh->groups ? BRUNT_OK : fail_memory(file, error);
+    for (int d = dimension - 1; d >= 0; d--)
+        for (int32_t p = 0; p < file->physical_count && !status; p++)
+            if (file->physicals[p].dimension == d)
+                status = add_group(file, p, number, mesh, wanted, marked, warnings, error);
+    brunt_free(wanted);
+    brunt_free(marked);
+    return status;
+}
+
+// ---------------------------------------------------------------------------------------------------- a body
+
+// Nodes that belong to no element of the dimension, of this body or another.
+static int32_t count_loose(const gmsh_file *file, int dimension, int32_t *number) {
+    selection everything = {.file = file, .dimension = dimension, .all = true};
+    return file->node_count - number_nodes(&everything, number);
+}
+
+static int make_body(selection *s, brunt_mesh *mesh, FILE *warnings, brunt_error *error) {
+    const gmsh_file *file = s->file;
+    int64_t elements = 0;
+    int32_t *number = NULL;
+    s->wanted = brunt_alloc((size_t)file->physical_count + 1);
+    int status = !s->wanted ? fail_memory(file, error) : *s->name ? select_group(s, error) : select_all(s, error);
+    if (!status) status = find_kind(s, &mesh->kind, &elements, error);
+    if (!status) {
+        number = brunt_alloc((size_t)file->node_count * sizeof *number);
+        if (!number) status = fail_memory(file, error);
+    }
+    if (!status && warnings) {
+        int32_t loose = count_loose(file, s->dimension, number);
+        if (loose)
+            warn(warnings, file, "%d of its nodes belong to no element of dimension %d and are left out", (int)loose,
+                 s->dimension);
+    }
+    if (!status) status = fill_mesh(s, number, number_nodes(s, number), elements, mesh, error);
+    if (!status && s->dimension == 2) status = flatten(file, mesh, error);
+    if (!status && turn_over(mesh))
+        warn(warnings, file, "all %lld elements were inside out and have been turned over", (long long)elements);
+    if (!status) status = add_groups(file, s->dimension, number, mesh, warnings, error);
+    brunt_free(number);
+    brunt_free(s->wanted);
+    if (status) brunt_mesh_free(mesh);
+    return status;
+}
+
+int brunt_gmsh_read(const char *path, const char *group, int dimension, brunt_mesh *mesh, FILE *warnings,
+                    brunt_error *error) {
+    BRUNT_ASSERT(dimension == 2 || dimension == 3);
+    *mesh = (brunt_mesh){0};
+    gmsh_file file;
+    int status = gmsh_file_read(path, &file, error);
+    selection s = {.file = &file, .dimension = dimension, .name = group ? group : ""};
+    if (!status) status = make_body(&s, mesh, warnings, error);
+    gmsh_file_free(&file);
+    return status;
+}
+
+// ---------------------------------------------------------------------------------------------------- in words
+
+static void describe_body(const gmsh_file *file, const char *name, int dimension, FILE *out) {
+    brunt_mesh mesh = {0};
+    brunt_mesh_quality q;
+    brunt_error error = {0};
+    selection s = {.file = file, .dimension = dimension, .name = name};
+    int status = make_body(&s, &mesh, NULL, &error);
+    if (!status) status = brunt_mesh_check(&mesh, &q, &error);
+    if (status) {
+        fprintf(out, "body '%s'  cannot be computed with: %s\n", name, error.message);
+    } else {
+        fprintf(out, "body '%s'  %d nodes, %d %s elements, %s %.6g %s\n", name, (int)mesh.node_count,
+                (int)mesh.element_count, brunt_element_name(mesh.kind), dimension == 3 ? "volume" : "area", q.volume,
+                dimension == 3 ? "m^3" : "m^2");
+        fprintf(out, "  edges %.4g to %.4g m, worst shape %.3g (element %d; 1 is regular, 0 flat)\n", q.shortest_edge,
+                q.longest_edge, q.worst_shape, (int)(q.worst + 1));
+        if (q.duplicate_nodes)
+            fprintf(out, "  %d nodes at the place of another: parts that are not joined?\n", (int)q.duplicate_nodes);
+    }
+    brunt_mesh_free(&mesh);
+}
+
+static int describe_elements(const gmsh_file *file, FILE *out) {
+    int64_t counts[GMSH_TYPE_LIMIT] = {0};
+    int highest = 0;
+    for (int32_t r = 0; r < file->run_count; r++) counts[file->runs[r].type] += file->runs[r].count;
+    for (int t = 0; t < GMSH_TYPE_LIMIT; t++) {
+        if (!counts[t]) continue;
+        fprintf(out, "elements   %lld %s\n", (long long)counts[t], gmsh_types[t].name);
+        if (gmsh_types[t].dimension > highest) highest = gmsh_types[t].dimension;
+    }
+    return highest;
+}
+
+int brunt_gmsh_describe(const char *path, FILE *out, brunt_error *error) {
+    gmsh_file file;
+    int status = gmsh_file_read(path, &file, error);
+    if (!status) {
+        double least[3] = {INFINITY, INFINITY, INFINITY}, most[3] = {-INFINITY, -INFINITY, -INFINITY};
+        for (int32_t n = 0; n < file.node_count; n++)
+            for (int d = 0; d < 3; d++) least[d] = fmin(least[d], file.x[n][d]), most[d] = fmax(most[d], file.x[n][d]);
+        fprintf(out, "mesh of gmsh, format %s, %s\n", file.version, file.binary ? "binary" : "text");
+        fprintf(out, "nodes      %d\n", (int)file.node_count);
+        int highest = describe_elements(&file, out), bodies = 0;
+        if (file.node_count)
+            fprintf(out, "bounds     (%.6g, %.6g, %.6g) to (%.6g, %.6g, %.6g) m\n", least[0], least[1], least[2],
+                    most[0], most[1], most[2]);
+        for (int32_t p = 0; p < file.physical_count; p++)
+            fprintf(out, "group      '%s', dimension %d, %lld elements\n", file.physicals[p].name,
+                    (int)file.physicals[p].dimension, (long long)count_members(&file, p));
+        for (int32_t p = 0; p < file.physical_count && highest >= 2; p++) {
+            if (file.physicals[p].dimension != highest) continue;
+            describe_body(&file, file.physicals[p].name, highest, out);
+            bodies++;
+        }
+        if (!bodies && highest >= 2) describe_body(&file, "", highest, out);
+    }
+    gmsh_file_free(&file);
+    return status;
+}
