@@ -101,3 +101,20 @@ int brunt_material_set(brunt_material_def *def, const char *key, double value, c
     return brunt_fail(error, BRUNT_BAD_INPUT, "materials.%s: model '%s' has no parameter '%s'", def->name,
                       model ? model->name : "", key);
 }
+
+brunt_update_result brunt_material_update(const brunt_material *material, brunt_points points[BRUNT_COMPONENTS],
+                                          real *plastic, real *viscous) {
+    const brunt_model *const *model = material->model;
+    brunt_update_result total = {.bad = -1};
+    real speed[BRUNT_COMPONENTS] = {0};
+    for (int k = 0; k < BRUNT_COMPONENTS; k++) {
+        if (!model[k]) continue;
+        points[k].plastic_increment = model[BRUNT_EOS] && model[BRUNT_STRENGTH]->plastic ? plastic : NULL;
+        points[k].viscous_pressure = model[BRUNT_EOS] && model[BRUNT_VISCOSITY] ? viscous : NULL;
+        brunt_update_result result = model[k]->update(material->constants[k], &points[k]);
+        speed[k] = result.wave_speed;
+        if (result.bad >= 0 && total.bad < 0) total.bad = result.bad, total.reason = result.reason;
+    }
+    total.wave_speed = brunt_wave_speed(speed[BRUNT_STRENGTH], speed[BRUNT_EOS], speed[BRUNT_VISCOSITY]);
+    return total;
+}

@@ -208,24 +208,19 @@ static double stress_power(brunt_body *body, const brunt_block *block, real dt, 
 static void update_material(brunt_body *body, const brunt_block *block, real dt, brunt_workspace *work,
                             real *const *gradient, brunt_block_report *report) {
     int32_t padded = (block->count + BRUNT_LANES - 1) / BRUNT_LANES * BRUNT_LANES;
-    real speed[BRUNT_COMPONENTS] = {0};
-    const brunt_model *const *model = body->material.model;
+    brunt_points points[BRUNT_COMPONENTS];
     for (int k = 0; k < BRUNT_COMPONENTS; k++) {
-        if (!model[k]) continue;
-        brunt_points points = brunt_body_points(body, (brunt_component)k, block->first, padded);
-        points.dt = dt;
-        for (int c = 0; c < BRUNT_MATRIX(points.dim); c++) points.L[c] = gradient[c];
-        points.plastic_increment = model[BRUNT_EOS] && model[BRUNT_STRENGTH]->plastic ? work->plastic : NULL;
-        points.viscous_pressure = model[BRUNT_EOS] && model[BRUNT_VISCOSITY] ? work->viscous : NULL;
-        brunt_update_result result = model[k]->update(body->material.constants[k], &points);
-        speed[k] = result.wave_speed;
-        if (result.bad >= 0 && report->bad < 0) {
-            report->bad = (int32_t)block->first + result.bad;
-            report->reason = result.reason;
-        }
+        points[k] = brunt_body_points(body, (brunt_component)k, block->first, padded);
+        points[k].dt = dt;
+        for (int c = 0; c < BRUNT_MATRIX(points[k].dim); c++) points[k].L[c] = gradient[c];
+    }
+    brunt_update_result result = brunt_material_update(&body->material, points, work->plastic, work->viscous);
+    if (result.bad >= 0) {
+        report->bad = (int32_t)block->first + result.bad;
+        report->reason = result.reason;
     }
     report->stress_power = stress_power(body, block, dt, gradient);
-    report->wave_speed = brunt_wave_speed(speed[BRUNT_STRENGTH], speed[BRUNT_EOS], speed[BRUNT_VISCOSITY]);
+    report->wave_speed = result.wave_speed;
 }
 
 // ------------------------------------------------------------------------------------------ instances

@@ -1,0 +1,183 @@
+// What finite elements cost: nanoseconds per element-step of the three passes of a step, by element and threads.
+//
+//   bench_elements [--quick] [--cells N] [--steps N] [--rounds N] [--threads N] [--only WORD]
+//
+// A distorted block of neo-Hookean material vibrates: hexahedra N^3 (default 80), tetrahedra 6 (N * 0.55)^3. Rounds go
+// through all configurations one after the other; the table gives the median of the rounds and the least.
+#include <unistd.h>
+
+#include "fem.h"
+#include "typical.h"
+
+enum { ROUND_LIMIT = 64, PASSES = 3, THREAD_LIMIT = 64 };
+static const char *const pass_names[PASSES] = {"kick", "drift", "forces"};
+
+typedef struct bench {
+    brunt_fem_body body;
+    brunt_fem_workspace work[THREAD_LIMIT];
+    brunt_fem_sums *kicked, *drifted; // of each piece
+    double dt;
+} bench;
+
+enum { GRAIN = 4096 };
+
+static void kick_task(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    bench *b = context;
+    const double none[3] = {0};
+    brunt_fem_kick(&b->body, (int32_t)begin, (int32_t)end, b->dt, none, &b->kicked[begin / GRAIN]);
+}
+
+static void drift_task(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    bench *b = context;
+    brunt_fem_drift(&b->body, (int32_t)begin, (int32_t)end, b->dt, &b->drifted[begin / GRAIN]);
+}
+
+static void forces_task(void *context, int64_t begin, int64_t end, int worker) {
+    bench *b = context;
+    for (int64_t k = begin; k < end; k++)
+        b->body.element->forces(&b->body, (int32_t)k, (real)b->dt, &b->work[worker], &b->body.report[k]);
+}
+
+// n cells along each axis, nodes moved by up to 0.05 cells.
+static int make_mesh(brunt_element_kind kind, int n, brunt_mesh *mesh) {
+    static const int corner[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
+                                     {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+    static const int tet[6][4] = {{0, 1, 2, 6}, {0, 2, 3, 6}, {0, 3, 7, 6}, {0, 7, 4, 6}, {0, 4, 5, 6}, {0, 5, 1, 6}};
+    const int m = n + 1, parts = kind == BRUNT_TET4 ? 6 : 1, nodes = brunt_element_nodes(kind);
+    *mesh = (brunt_mesh){.kind = kind, .node_count = m * m * m, .element_count = n * n * n * parts};
+    mesh->nodes = brunt_alloc((size_t)mesh->node_count * sizeof *mesh->nodes);
+    mesh->elements = brunt_alloc((size_t)mesh->element_count * (size_t)nodes * sizeof *mesh->elements);
+    if (!mesh->nodes || !mesh->elements) return -1;
+    uint64_t seed = 1;
+    for (int k = 0; k < mesh->node_count; k++) {
+        const int at[3] = {k % m, k / m % m, k / m / m};
+        for (int a = 0; a < 3; a++) {
+            seed = seed * 6364136223846793005u + 1442695040888963407u;
+            mesh->nodes[k][a] = 1e-3 * (at[a] + 0.05 * ((double)(seed >> 11) / 4503599627370496.0 - 1));
+        }
+    }
+    int32_t *out = mesh->elements;
+    for (int k = 0; k < n * n * n; k++) {
+        const int at[3] = {k % n, k / n % n, k / n / n};
+        for (int p = 0; p < parts; p++)
+            for (int a = 0; a < nodes; a++) {
+                const int *c = corner[kind == BRUNT_TET4 ? tet[p][a] : a];
+                *out++ = ((at[2] + c[2]) * m + at[1] + c[1]) * m + at[0] + c[0];
+            }
+    }
+    return 0;
+}
+
+static int make(brunt_element_kind kind, int cells, bench *b) {
+    brunt_mesh mesh;
+    brunt_error error = {0};
+    if (make_mesh(kind, cells, &mesh)) return BRUNT_FAILED;
+    brunt_body_def def = {
+        .name = "block", .method = BRUNT_FEM, .hourglass_coefficient = NAN, .place = brunt_placement_identity()};
+    brunt_material_def rubber = brunt_material_def_default("rubber", "neo-hookean");
+    brunt_material material;
+    rubber.density = 1100;
+    brunt_material_set(&rubber, "E", 1e6, NULL, &error);
+    brunt_material_set(&rubber, "nu", 0.4, NULL, &error);
+    int status = brunt_material_make(&rubber, &material, &error);
+    if (status == BRUNT_OK) status = brunt_fem_make(&def, &material, 3, &mesh, &b->body, &error);
+    brunt_mesh_free(&mesh);
+    if (status != BRUNT_OK) {
+        fprintf(stderr, "bench_elements: %s\n", error.message);
+        return status;
+    }
+    b->dt = 0.5 * b->body.least_step;
+    size_t pieces = (size_t)b->body.node_count / GRAIN + 1;
+    b->kicked = brunt_alloc(pieces * sizeof *b->kicked);
+    b->drifted = brunt_alloc(pieces * sizeof *b->drifted);
+    for (int t = 0; t < THREAD_LIMIT; t++)
+        if (brunt_fem_workspace_fit(&b->work[t], &b->body)) return BRUNT_FAILED;
+    for (int32_t n = 0; n < b->body.node_count; n++) {
+        real *node = brunt_fem_node(&b->body, n);
+        for (int a = 0; a < 3; a++) node[BRUNT_FEM_V + a] = (real)(0.5 * sin(200.0 * (double)node[(a + 1) % 3]));
+    }
+    return b->kicked && b->drifted ? BRUNT_OK : BRUNT_FAILED;
+}
+
+static void drop(bench *b) {
+    for (int t = 0; t < THREAD_LIMIT; t++) brunt_fem_workspace_free(&b->work[t]);
+    brunt_free(b->kicked);
+    brunt_free(b->drifted);
+    brunt_fem_free(&b->body);
+}
+
+static void run(bench *b, int threads, int steps, double ns[PASSES]) {
+    double seconds[PASSES] = {0};
+    for (int s = -1; s < steps; s++) {
+        double t0 = brunt_clock();
+        brunt_parallel(threads, b->body.node_count, GRAIN, kick_task, b, NULL);
+        double t1 = brunt_clock();
+        brunt_parallel(threads, b->body.node_count, GRAIN, drift_task, b, NULL);
+        double t2 = brunt_clock();
+        brunt_parallel(threads, b->body.block_count, 2, forces_task, b, NULL);
+        double t3 = brunt_clock();
+        if (s < 0) continue; // warm-up
+        seconds[0] += t1 - t0, seconds[1] += t2 - t1, seconds[2] += t3 - t2;
+    }
+    for (int p = 0; p < PASSES; p++) ns[p] = 1e9 * seconds[p] / steps / b->body.element_count;
+}
+
+int main(int argc, char **argv) {
+    if (!getenv("GOMP_SPINCOUNT") && setenv("GOMP_SPINCOUNT", "10000", 1) == 0) execv("/proc/self/exe", argv);
+    int cells = 80, steps = 10, rounds = 5, most_threads = 2;
+    const char *only = "";
+    for (int i = 1; i < argc; i++) {
+        const char *value = i + 1 < argc ? argv[i + 1] : "0";
+        int number = atoi(value);
+        if (strcmp(argv[i], "--quick") == 0) {
+            cells = 10, steps = 3, rounds = 2;
+            continue;
+        }
+        if (strcmp(argv[i], "--only") == 0)
+            only = value;
+        else if (strcmp(argv[i], "--cells") == 0 && number > 1 && number < 400)
+            cells = number;
+        else if (strcmp(argv[i], "--steps") == 0 && number > 0)
+            steps = number;
+        else if (strcmp(argv[i], "--rounds") == 0 && number > 0 && number <= ROUND_LIMIT)
+            rounds = number;
+        else if (strcmp(argv[i], "--threads") == 0 && number > 0 && number <= THREAD_LIMIT)
+            most_threads = number;
+        else {
+            fprintf(stderr, "bench_elements: %s %s is not understood\n", argv[i], value);
+            return BRUNT_BAD_USAGE;
+        }
+        i++;
+    }
+    printf("ns per element-step, median of %d rounds (least in brackets); B: bytes per element\n", rounds);
+    const brunt_element_kind kinds[] = {BRUNT_HEX8, BRUNT_TET4};
+    for (int k = 0; k < 2; k++) {
+        if (*only && strcmp(only, brunt_element_name(kinds[k])) != 0) continue;
+        bench b = {.dt = 0};
+        int status = make(kinds[k], kinds[k] == BRUNT_HEX8 ? cells : (cells * 11 + 10) / 20, &b);
+        if (status != BRUNT_OK) return status;
+        double ns[THREAD_LIMIT + 1][PASSES + 1][ROUND_LIMIT];
+        for (int r = 0; r < rounds; r++)
+            for (int t = 1; t <= most_threads; t++) {
+                double pass[PASSES];
+                run(&b, t, steps, pass);
+                ns[t][PASSES][r] = 0;
+                for (int p = 0; p < PASSES; p++) ns[t][p][r] = pass[p], ns[t][PASSES][r] += pass[p];
+            }
+        for (int t = 1; t <= most_threads; t++) {
+            double median = median_of(ns[t][PASSES], rounds);
+            printf("%s %7d elements %7d nodes %4d blocks %d thread%s %6.1f (%6.1f)", brunt_element_name(kinds[k]),
+                   b.body.element_count, b.body.node_count, b.body.block_count, t, t == 1 ? " " : "s", median,
+                   ns[t][PASSES][0]);
+            for (int p = 0; p < PASSES; p++) {
+                double value = median_of(ns[t][p], rounds);
+                printf("  %s %.1f (%.1f)", pass_names[p], value, ns[t][p][0]);
+            }
+            printf("  B %.0f\n", (double)brunt_fem_bytes(&b.body) / b.body.element_count);
+        }
+        drop(&b);
+    }
+    return BRUNT_OK;
+}

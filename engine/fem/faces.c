@@ -1,0 +1,117 @@
+// The surface of a mesh, and elements folded in at a corner.
+#include <string.h>
+
+#include "layout.h"
+#include "memory.h"
+
+static int32_t face_node(const brunt_fem_body *body, int64_t face, int k) {
+    const brunt_element *type = body->element;
+    int64_t slot = face / type->face_count;
+    return body->element_node[slot * type->nodes + type->face[face % type->face_count][k]];
+}
+
+static int32_t least_node(const brunt_fem_body *body, int64_t face) {
+    int32_t least = face_node(body, face, 0);
+    for (int k = 1; k < body->element->face_nodes; k++) {
+        int32_t node = face_node(body, face, k);
+        if (node < least) least = node;
+    }
+    return least;
+}
+
+static bool same_nodes(const brunt_fem_body *body, int64_t a, int64_t b) {
+    const int count = body->element->face_nodes;
+    for (int i = 0; i < count; i++) {
+        bool found = false;
+        for (int j = 0; j < count; j++) found = found || face_node(body, a, i) == face_node(body, b, j);
+        if (!found) return false;
+    }
+    return true;
+}
+
+// Faces are put into a bin by their least node, where the few others that can be equal are.
+int brunt_fem_faces(const brunt_fem_body *body, brunt_faces *faces) {
+    const brunt_element *type = body->element;
+    *faces = (brunt_faces){0};
+    int64_t count = (int64_t)body->slots * type->face_count;
+    int64_t *first = brunt_alloc(((size_t)body->node_count + 2) * sizeof *first);
+    int64_t *list = brunt_alloc((size_t)count * sizeof *list);
+    uint8_t *outside = brunt_alloc((size_t)count);
+    int status = -1;
+    if (first && list && outside) {
+        for (int64_t f = 0; f < count; f++)
+            if (body->element_id[f / type->face_count] >= 0) first[least_node(body, f) + 2]++;
+        for (int32_t n = 0; n < body->node_count; n++) first[n + 2] += first[n + 1];
+        for (int64_t f = 0; f < count; f++)
+            if (body->element_id[f / type->face_count] >= 0) list[first[least_node(body, f) + 1]++] = f;
+        int32_t found = 0;
+        for (int32_t n = 0; n < body->node_count; n++)
+            for (int64_t i = first[n]; i < first[n + 1]; i++) {
+                bool alone = true;
+                for (int64_t j = first[n]; alone && j < first[n + 1]; j++)
+                    alone = i == j || !same_nodes(body, list[i], list[j]);
+                outside[list[i]] = alone;
+                found += alone;
+            }
+        faces->node = brunt_alloc((size_t)found * sizeof *faces->node);
+        faces->element = brunt_alloc((size_t)found * sizeof *faces->element);
+        if (faces->node && faces->element) {
+            for (int64_t f = 0; f < count; f++) {
+                if (!outside[f]) continue;
+                for (int k = 0; k < 4; k++)
+                    faces->node[faces->count][k] = k < type->face_nodes ? face_node(body, f, k) : -1;
+                faces->element[faces->count++] = (int32_t)(f / type->face_count);
+            }
+            status = 0;
+        } else {
+            brunt_faces_free(faces);
+        }
+    }
+    brunt_free(first);
+    brunt_free(list);
+    brunt_free(outside);
+    return status;
+}
+
+void brunt_faces_free(brunt_faces *faces) {
+    brunt_free(faces->node);
+    brunt_free(faces->element);
+    *faces = (brunt_faces){0};
+}
+
+// The corner's three edges (2D: two) in the order of a right-handed system.
+static bool corner_folded(int dim, const double (*x)[3], int corner) {
+    double e[3][3] = {{0}};
+    int next[3] = {0};
+    if (dim == 2) {
+        next[0] = (corner + 1) % 4, next[1] = (corner + 3) % 4;
+    } else {
+        int level = corner / 4 * 4, round = corner % 4;
+        next[0] = level + (round + (level ? 3 : 1)) % 4, next[1] = level + (round + (level ? 1 : 3)) % 4;
+        next[2] = (corner + 4) % 8;
+    }
+    for (int k = 0; k < dim; k++)
+        for (int i = 0; i < 3; i++) e[k][i] = x[next[k]][i] - x[corner][i];
+    double in_plane = e[0][0] * e[1][1] - e[0][1] * e[1][0];
+    if (dim == 2) return in_plane <= 0;
+    return in_plane * e[2][2] + (e[0][1] * e[1][2] - e[0][2] * e[1][1]) * e[2][0] +
+               (e[0][2] * e[1][0] - e[0][0] * e[1][2]) * e[2][1] <=
+           0;
+}
+
+int32_t brunt_fem_folded(const brunt_fem_body *body) {
+    const brunt_element *type = body->element;
+    int32_t folded = 0;
+    for (int32_t s = 0; s < body->slots && type->hourglass_modes; s++) {
+        if (body->element_id[s] < 0) continue;
+        double x[BRUNT_ELEMENT_NODES][3];
+        for (int a = 0; a < type->nodes; a++) {
+            const real *node = brunt_fem_node(body, body->element_node[(int64_t)s * type->nodes + a]);
+            for (int i = 0; i < 3; i++) x[a][i] = (double)node[i];
+        }
+        bool any = false;
+        for (int a = 0; a < type->nodes; a++) any = any || corner_folded(type->dim, (const double(*)[3])x, a);
+        folded += any;
+    }
+    return folded;
+}

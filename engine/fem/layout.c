@@ -1,0 +1,203 @@
+// The order of elements and nodes in memory.
+//
+// Elements follow a Hilbert curve through their centroids, so that a block of consecutive ones is compact and
+// neighbours in space are neighbours in memory. The curve's grid is laid so that blocks of a structured mesh are cubes
+// of cubes: its unit is the edge of a cube as large as the mean hexahedron, or as 6 mean tetrahedra, or 2 mean
+// triangles.
+#include "layout.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "lanes.h"
+#include "memory.h"
+
+// J. Skilling, Programming the Hilbert curve, AIP Conf. Proc. 707 (2004) 381.
+uint64_t brunt_hilbert_key(int dim, int bits, const uint32_t *coordinate) {
+    uint32_t x[3] = {0}, flip = 0, top = (uint32_t)1 << (bits - 1);
+    for (int a = 0; a < dim; a++) x[a] = coordinate[a];
+    for (uint32_t q = top; q > 1; q >>= 1)
+        for (int a = 0; a < dim; a++) {
+            uint32_t low = q - 1, swap = (x[0] ^ x[a]) & low;
+            if (x[a] & q)
+                x[0] ^= low;
+            else
+                x[0] ^= swap, x[a] ^= swap;
+        }
+    for (int a = 1; a < dim; a++) x[a] ^= x[a - 1];
+    for (uint32_t q = top; q > 1; q >>= 1)
+        if (x[dim - 1] & q) flip ^= q - 1;
+    uint64_t key = 0;
+    for (int b = bits - 1; b >= 0; b--)
+        for (int a = 0; a < dim; a++) key = key << 1 | (((x[a] ^ flip) >> b) & 1);
+    return key;
+}
+
+typedef struct placed_element {
+    uint64_t key;
+    int32_t element;
+} placed_element;
+
+static int by_key(const void *left, const void *right) {
+    const placed_element *a = left, *b = right;
+    if (a->key != b->key) return a->key < b->key ? -1 : 1;
+    return (a->element > b->element) - (a->element < b->element);
+}
+
+static void corners_of(const brunt_mesh *mesh, int nodes, int32_t element, double (*x)[3]) {
+    for (int a = 0; a < nodes; a++)
+        memcpy(x[a], mesh->nodes[mesh->elements[(int64_t)element * nodes + a]], sizeof x[a]);
+}
+
+static void sort_elements(const brunt_element *type, const brunt_mesh *mesh, placed_element *order) {
+    double low[3] = {INFINITY, INFINITY, INFINITY}, extent = 0, volume = 0, x[BRUNT_ELEMENT_NODES][3];
+    for (int pass = 0; pass < 2; pass++)
+        for (int32_t n = 0; n < mesh->node_count; n++)
+            for (int a = 0; a < type->dim; a++) {
+                if (pass == 0)
+                    low[a] = fmin(low[a], mesh->nodes[n][a]);
+                else
+                    extent = fmax(extent, mesh->nodes[n][a] - low[a]);
+            }
+    for (int32_t e = 0; e < mesh->element_count; e++) {
+        corners_of(mesh, type->nodes, e, x);
+        volume += fabs(type->volume((const double(*)[3])x));
+    }
+    bool simplex = type->nodes == type->dim + 1;
+    double share = volume / mesh->element_count * (simplex ? type->dim == 3 ? 6 : 2 : 1);
+    double unit = pow(share, 1.0 / type->dim);
+    const int bits = type->dim == 3 ? 21 : 31;
+    // 2^-fraction units are one step of the grid; the whole extent must fit.
+    int fraction = bits - 1 - (int)ceil(log2(extent / unit + 1));
+    double scale = ldexp(1 / unit, fraction), most = ldexp(1, bits) - 1;
+    for (int32_t e = 0; e < mesh->element_count; e++) {
+        uint32_t at[3] = {0};
+        corners_of(mesh, type->nodes, e, x);
+        for (int a = 0; a < type->dim; a++) {
+            double sum = 0;
+            for (int k = 0; k < type->nodes; k++) sum += x[k][a];
+            at[a] = (uint32_t)fmin(fmax((sum / type->nodes - low[a]) * scale, 0), most);
+        }
+        order[e] = (placed_element){brunt_hilbert_key(type->dim, bits, at), e};
+    }
+    qsort(order, (size_t)mesh->element_count, sizeof *order, by_key);
+}
+
+// Small bodies get small blocks, so that there are enough of them for some threads.
+static int block_size(const brunt_element *type, int32_t elements) {
+    int size = type->block;
+    for (int k = 0; k < (type->dim == 3 ? 1 : 2) && elements < 16 * size; k++) size /= type->dim == 3 ? 8 : 4;
+    return size;
+}
+
+// Elements into blocks and slots, nodes numbered by first use.
+static void place_elements(brunt_fem_body *body, const brunt_mesh *mesh, const placed_element *order, int size,
+                           int32_t *number) {
+    const int nodes = body->element->nodes;
+    memset(number, -1, (size_t)mesh->node_count * sizeof *number);
+    int32_t slot = 0, used = 0;
+    for (int32_t b = 0; b < body->block_count; b++) {
+        int32_t first = b * size, count = body->element_count - first < size ? body->element_count - first : size;
+        body->block[b] = (brunt_fem_block){.first = slot, .count = count};
+        int32_t padded = (count + BRUNT_LANES - 1) / BRUNT_LANES * BRUNT_LANES;
+        for (int32_t k = 0; k < padded; k++, slot++) {
+            int32_t element = order[first + (k < count ? k : count - 1)].element;
+            body->element_id[slot] = k < count ? element : -1;
+            for (int a = 0; a < nodes; a++) {
+                int32_t node = mesh->elements[(int64_t)element * nodes + a];
+                if (number[node] < 0) {
+                    body->node_id[used] = node;
+                    number[node] = used++;
+                }
+                body->element_node[(int64_t)slot * nodes + a] = number[node];
+            }
+        }
+    }
+    body->node_count = used;
+}
+
+static int ascending(const void *left, const void *right) {
+    int32_t a = *(const int32_t *)left, b = *(const int32_t *)right;
+    return (a > b) - (a < b);
+}
+
+// Nodes of each block in ascending order, and the elements' nodes as places among them. `number`: of each node, its
+// place in the block at hand, else -1.
+static void place_nodes(brunt_fem_body *body, int32_t *number) {
+    const int nodes = body->element->nodes;
+    memset(number, -1, (size_t)body->node_count * sizeof *number);
+    int32_t at = 0, most = 0;
+    for (int32_t b = 0; b < body->block_count; b++) {
+        brunt_fem_block *block = &body->block[b];
+        int64_t begin = (int64_t)block->first * nodes, end = begin + (int64_t)block->count * nodes;
+        int64_t last = begin + (int64_t)((block->count + BRUNT_LANES - 1) / BRUNT_LANES * BRUNT_LANES) * nodes;
+        block->node_first = at;
+        for (int64_t k = begin; k < end; k++) {
+            int32_t node = body->element_node[k];
+            if (number[node] >= 0) continue;
+            number[node] = 0;
+            body->block_node[at++] = node;
+        }
+        block->node_count = at - block->node_first;
+        if (block->node_count > most) most = block->node_count;
+        int32_t *list = body->block_node + block->node_first;
+        qsort(list, (size_t)block->node_count, sizeof *list, ascending);
+        for (int32_t k = 0; k < block->node_count; k++) number[list[k]] = k;
+        for (int64_t k = begin; k < last; k++) body->local[k] = (uint16_t)number[body->element_node[k]];
+        for (int32_t k = 0; k < block->node_count; k++) number[list[k]] = -1;
+    }
+    body->partial_count = at;
+    body->block_nodes = (most + 3) / 4 * 4;
+}
+
+static void invert_blocks(brunt_fem_body *body) {
+    int32_t *first = body->partial_first;
+    for (int32_t k = 0; k < body->partial_count; k++) first[body->block_node[k] + 1]++;
+    for (int32_t n = 0; n < body->node_count; n++) first[n + 1] += first[n];
+    for (int32_t k = 0; k < body->partial_count; k++) body->partial_of[first[body->block_node[k]]++] = k;
+    for (int32_t n = body->node_count; n > 0; n--) first[n] = first[n - 1];
+    first[0] = 0;
+}
+
+int brunt_fem_layout(brunt_fem_body *body, const brunt_mesh *mesh) {
+    const brunt_element *type = body->element;
+    const int size = block_size(type, mesh->element_count);
+    body->element_count = mesh->element_count;
+    body->block_count = (mesh->element_count + size - 1) / size;
+    body->slots = (body->block_count - 1) * ((size + BRUNT_LANES - 1) / BRUNT_LANES * BRUNT_LANES);
+    int32_t rest = mesh->element_count - (body->block_count - 1) * size;
+    body->slots += (rest + BRUNT_LANES - 1) / BRUNT_LANES * BRUNT_LANES;
+    size_t corners = (size_t)body->slots * (size_t)type->nodes, nodes = (size_t)mesh->node_count;
+    placed_element *order = brunt_alloc((size_t)mesh->element_count * sizeof *order);
+    int32_t *number = brunt_alloc(nodes * sizeof *number);
+    body->block = brunt_alloc((size_t)body->block_count * sizeof *body->block);
+    body->element_id = brunt_alloc((size_t)body->slots * sizeof *body->element_id);
+    body->element_node = brunt_alloc(corners * sizeof *body->element_node);
+    body->local = brunt_alloc(corners * sizeof *body->local);
+    body->node_id = brunt_alloc(nodes * sizeof *body->node_id);
+    int status = -1;
+    if (order && number && body->block && body->element_id && body->element_node && body->local && body->node_id) {
+        sort_elements(type, mesh, order);
+        place_elements(body, mesh, order, size, number);
+        // A block has at most as many nodes as its elements have corners.
+        int32_t *list = body->block_node = brunt_alloc(corners * sizeof *list);
+        if (list) {
+            place_nodes(body, number);
+            body->block_node = brunt_alloc((size_t)body->partial_count * sizeof *list);
+            if (body->block_node) memcpy(body->block_node, list, (size_t)body->partial_count * sizeof *list);
+            brunt_free(list);
+        }
+        if (body->block_node) {
+            body->partial_first = brunt_alloc(((size_t)body->node_count + 1) * sizeof *body->partial_first);
+            body->partial_of = brunt_alloc((size_t)body->partial_count * sizeof *body->partial_of);
+            if (body->partial_first && body->partial_of) {
+                invert_blocks(body);
+                status = 0;
+            }
+        }
+    }
+    brunt_free(order);
+    brunt_free(number);
+    return status;
+}

@@ -1,0 +1,16 @@
+// Steps of making a body, in the order they are taken. For the files of this folder.
+#pragma once
+
+#include "fem.h"
+
+// Orders elements and nodes, cuts blocks, and numbers what each node sums. Sets element_*, node_*, block_*, partial_*
+// and local of a body whose element and dim are set. 0, or -1: out of memory.
+int brunt_fem_layout(brunt_fem_body *body, const brunt_mesh *mesh);
+// A key that grows along a curve of Hilbert through `dim` coordinates of `bits` bits; dim * bits <= 63.
+uint64_t brunt_hilbert_key(int dim, int bits, const uint32_t *coordinate);
+
+// Norm and overlap of the hourglass modes, mass scaling to steps of `mass_scaling` (0: none), least_step; needs start,
+// the fields and lateral_ratio.
+void brunt_fem_steps(brunt_fem_body *body, double mass_scaling);
+// Places of an element's nodes at the start.
+void brunt_fem_corners(const brunt_fem_body *body, int32_t slot, double (*x)[3]);

@@ -1,0 +1,10 @@
+// The elements there are, in the order of brunt_element_kind.
+#include "element.h"
+
+#define ELEMENTS(X) X(tet4) X(hex8) X(tri3) X(quad4)
+
+#define DECLARE(element) extern const brunt_element brunt_##element;
+ELEMENTS(DECLARE)
+
+#define ADDRESS(element) &brunt_##element,
+const brunt_element *const brunt_elements[BRUNT_ELEMENT_KINDS] = {ELEMENTS(ADDRESS)};
