@@ -5,6 +5,7 @@ void brunt_action_add(brunt_action *sum, const brunt_action *part) {
     sum->external_work += part->external_work;
     sum->normal_loss += part->normal_loss;
     sum->friction_loss += part->friction_loss;
+    sum->area = part->area;
 }
 
 void brunt_action_book(brunt_action *action, double *loss, const double J[3], const double x[3], const double old[3],

@@ -14,6 +14,7 @@ typedef struct brunt_action {
     double external_work; // [J] done on the bodies by prescribed motion
     double normal_loss;   // [J] dissipated by the normal impulse
     double friction_loss; // [J] dissipated by the tangential impulse
+    double area;          // [m^2] that touched in the last step
 } brunt_action;
 
 void brunt_action_add(brunt_action *sum, const brunt_action *part);
@@ -31,7 +32,8 @@ typedef struct brunt_mirror {
 
 typedef struct brunt_wall {
     char name[BRUNT_NAME_LENGTH];
-    bool region;            // else a plane
+    bool region;            // else a plane; a group counts as a region without grid nodes
+    const struct brunt_group_def *group; // of finite-element bodies, NULL for the others
     brunt_plane_def plane;  // normal of unit length
     brunt_region_def where; // of a region; shares the world's definition
     int body;               // the one it acts on, -1: all
@@ -77,14 +79,14 @@ void brunt_wall_workspace_free(brunt_wall_workspace *workspace);
 
 // --- contact between bodies (multivelocity.c)
 typedef struct brunt_pair {
-    int a, b; // bodies, a < b
+    int a, b; // bodies, a < b; -1: all pairs of a crowded scene together
     brunt_contact_method method;
     double friction;
     brunt_action action, last;
 } brunt_pair;
 
 typedef struct brunt_contact_workspace brunt_contact_workspace;
-// `pair_of[a * body_count + b]`: index of the pair, -1 for none. 0, or -1: out of memory, -2: more than 16 bodies at a
+// `pair_of[a * body_count + b]`, by place in `bodies`: index of the pair, -1 for none. 0, or -1: out of memory, -2: more than 16 bodies at a
 // node.
 int brunt_multivelocity_apply(brunt_body *bodies, int body_count, brunt_pair *pairs, int pair_count,
                               const int32_t *pair_of, const brunt_mirror *mirrors, int mirror_count, double dt,

@@ -270,7 +270,7 @@ static void meet_at_node(const job *j, group *g, int node) {
     for (int i = 0; i < n; i++) {
         for (int a = 0; a < dim; a++) fastest = fmax(fastest, fabs(members[i].v[a]));
         for (int k = i + 1; k < n; k++) {
-            int32_t pair = j->pair_of[members[i].body->index * j->body_count + members[k].body->index];
+            int32_t pair = j->pair_of[(members[i].body - j->bodies) * j->body_count + (members[k].body - j->bodies)];
             if (pair < 0) continue;
             meeting *m = &meetings[met];
             int low = members[i].entry, high = members[k].entry;

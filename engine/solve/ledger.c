@@ -18,6 +18,15 @@ void brunt_world_energy(brunt_world *world, brunt_energy *energy) {
         energy->plastic += e.plastic;
         energy->viscosity += e.viscosity;
     }
+    // So are those of meshes; there the half step is added to the kinetic energy.
+    energy->kinetic += now->fem_kinetic - 0.5 * now->fem_stress_work;
+    energy->hourglass = now->hourglass_stored + now->hourglass_lost;
+    for (int k = 0; k < world->fem_count; k++) {
+        brunt_point_energy e = brunt_fem_energy(&world->fems[k]);
+        energy->internal += e.internal;
+        energy->plastic += e.plastic;
+        energy->viscosity += e.viscosity;
+    }
     for (int w = 0; w < world->wall_count; w++) {
         energy->contact += world->walls[w].action.normal_loss;
         energy->friction += world->walls[w].action.friction_loss;
@@ -35,6 +44,16 @@ void brunt_world_energy(brunt_world *world, brunt_energy *energy) {
     energy->error_relative = scale > 0 ? energy->error / scale : 0;
 }
 
+// The paper's form of augury parks angular momentum in the affine velocity of boundary nodes.
+static void add_contact_spin(const brunt_world *world, double angular[3]) {
+    const brunt_skin *s = &world->skin;
+    for (int32_t n = 0; s->affine && n < s->node_count; n++)
+        for (int k = 0; k < 3; k++) {
+            int i = (k + 1) % 3, j = (k + 2) % 3;
+            angular[k] += s->mass[n] * (s->affine[n][3 * j + i] - s->affine[n][3 * i + j]);
+        }
+}
+
 void brunt_world_momentum(brunt_world *world, brunt_momentum *momentum) {
     const struct brunt_clock *now = &world->now;
     memset(momentum, 0, sizeof *momentum);
@@ -45,6 +64,13 @@ void brunt_world_momentum(brunt_world *world, brunt_momentum *momentum) {
         linear_here += a.scale_linear;
         angular_here += a.scale_angular;
     }
+    for (int i = 0; i < world->fem_count; i++) {
+        brunt_fem_sums a = brunt_fem_audit(&world->fems[i]);
+        for (int k = 0; k < 3; k++) momentum->linear[k] += a.momentum[k], momentum->angular[k] += a.angular[k];
+        linear_here += a.scale_linear;
+        angular_here += a.scale_angular;
+    }
+    add_contact_spin(world, momentum->angular);
     // Impulses that cancel, such as weight and support, still set the scale of what rounding may do.
     double linear = 0, angular = 0, impulse = 0, turn = 0;
     for (int k = 0; k < 3; k++) {
@@ -72,8 +98,20 @@ void brunt_world_momentum(brunt_world *world, brunt_momentum *momentum) {
 }
 
 void brunt_body_totals(brunt_world *world, int32_t index, brunt_body_sums *sums) {
-    brunt_audit a = brunt_body_audit(&world->bodies[index]);
-    brunt_point_energy e = brunt_body_energy(&world->bodies[index]);
+    const brunt_body_ref body = world->all[index];
+    if (body.fem) {
+        brunt_fem_sums a = brunt_fem_audit(body.fem);
+        brunt_point_energy e = brunt_fem_energy(body.fem);
+        *sums = (brunt_body_sums){.mass = a.mass, .kinetic = a.kinetic, .internal = e.internal, .plastic = e.plastic};
+        for (int k = 0; k < 3; k++) {
+            sums->momentum[k] = a.momentum[k];
+            sums->centre[k] = a.first_moment[k] / a.mass;
+            sums->velocity[k] = a.momentum[k] / a.mass;
+        }
+        return;
+    }
+    brunt_audit a = brunt_body_audit(body.mpm);
+    brunt_point_energy e = brunt_body_energy(body.mpm);
     *sums = (brunt_body_sums){.mass = a.mass, .kinetic = a.kinetic, .internal = e.internal, .plastic = e.plastic};
     for (int k = 0; k < 3; k++) {
         sums->momentum[k] = a.linear[k];
@@ -89,12 +127,14 @@ static void fill_force(const brunt_action *last, const brunt_action *all, double
     }
     force->normal_work = all->normal_loss;
     force->friction_work = all->friction_loss;
+    force->area = last->area;
 }
 
 int32_t brunt_pair_count(const brunt_world *world) { return world->pair_count; }
 void brunt_pair_force(const brunt_world *world, int32_t index, brunt_force *force) {
     const brunt_pair *pair = &world->pairs[index];
-    snprintf(force->name, sizeof force->name, "%s-%s", world->bodies[pair->a].name, world->bodies[pair->b].name);
+    if (pair->a < 0) snprintf(force->name, sizeof force->name, index ? "all%d" : "all", index + 1);
+    else snprintf(force->name, sizeof force->name, "%s-%s", brunt_body_name(world, pair->a), brunt_body_name(world, pair->b));
     fill_force(&pair->last, &pair->action, world->now.dt, force);
 }
 int32_t brunt_wall_count(const brunt_world *world) { return world->wall_count; }
@@ -120,9 +160,37 @@ int64_t brunt_world_particles(const brunt_world *world) {
 int64_t brunt_world_nodes(const brunt_world *world) {
     int64_t n = 0;
     for (int i = 0; i < world->body_count; i++) n += (int64_t)world->bodies[i].grid.slot_count * BRUNT_BLOCK_NODES;
+    for (int i = 0; i < world->fem_count; i++) n += world->fems[i].node_count;
     return n;
 }
-int32_t brunt_body_count(const brunt_world *world) { return world->body_count; }
-const char *brunt_body_name(const brunt_world *world, int32_t body) { return world->bodies[body].name; }
-const char *brunt_body_material(const brunt_world *world, int32_t body) { return world->bodies[body].material.name; }
-int64_t brunt_body_particles(const brunt_world *world, int32_t body) { return world->bodies[body].particles.count; }
+int64_t brunt_world_elements(const brunt_world *world) {
+    int64_t n = 0;
+    for (int i = 0; i < world->fem_count; i++) n += world->fems[i].element_count;
+    return n;
+}
+int32_t brunt_body_count(const brunt_world *world) { return world->all_count; }
+const char *brunt_body_name(const brunt_world *world, int32_t body) {
+    return world->all[body].fem ? world->all[body].fem->name : world->all[body].mpm->name;
+}
+const char *brunt_body_material(const brunt_world *world, int32_t body) {
+    return world->all[body].fem ? world->all[body].fem->material.name : world->all[body].mpm->material.name;
+}
+brunt_method brunt_body_method(const brunt_world *world, int32_t body) {
+    return world->all[body].fem ? BRUNT_FEM : BRUNT_MPM;
+}
+int64_t brunt_body_size(const brunt_world *world, int32_t body, brunt_place at) {
+    const brunt_body_ref ref = world->all[body];
+    if (ref.mpm) return at == BRUNT_AT_PARTICLES ? ref.mpm->particles.count : 0;
+    return at == BRUNT_AT_NODES ? ref.fem->node_count : at == BRUNT_AT_ELEMENTS ? ref.fem->element_count : 0;
+}
+int64_t brunt_body_particles(const brunt_world *world, int32_t body) {
+    return brunt_body_size(world, body, BRUNT_AT_PARTICLES);
+}
+int64_t brunt_body_nodes(const brunt_world *world, int32_t body) { return brunt_body_size(world, body, BRUNT_AT_NODES); }
+int64_t brunt_body_elements(const brunt_world *world, int32_t body) {
+    return brunt_body_size(world, body, BRUNT_AT_ELEMENTS);
+}
+brunt_element_kind brunt_body_element(const brunt_world *world, int32_t body) { return world->all[body].fem->kind; }
+void brunt_body_mesh(const brunt_world *world, int32_t body, brunt_mesh_report *report) {
+    *report = world->mesh_reports[world->all[body].fem - world->fems];
+}

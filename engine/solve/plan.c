@@ -6,18 +6,36 @@
 
 // The first model that brings an effect, NULL when none does; `flag`: where brunt_model says so.
 static const brunt_model *find_model(const brunt_world *world, size_t flag) {
-    for (int i = 0; i < world->body_count; i++)
+    for (int i = 0; i < world->all_count; i++)
         for (int k = 0; k < BRUNT_COMPONENTS; k++) {
-            const brunt_model *model = world->bodies[i].material.model[k];
+            const brunt_body_ref body = world->all[i];
+            const brunt_model *model = body.fem ? body.fem->material.model[k] : body.mpm->material.model[k];
             if (model && *(const bool *)((const char *)model + flag)) return model;
         }
     return NULL;
 }
 
+static bool has_hourglass(const brunt_world *world) {
+    for (int k = 0; k < world->fem_count; k++)
+        if (world->fems[k].element->hourglass_modes) return true;
+    return false;
+}
+
+static bool has_mass_scaling(const brunt_world *world) {
+    for (int k = 0; k < world->fem_count; k++)
+        if (world->fems[k].field[BRUNT_ELEMENT_density_scale].components) return true;
+    return false;
+}
+
 #define BRUNT_EFFECTS(X)                                                                                               \
-    X(affine, world->transfer == BRUNT_APIC, "grid.transfer")                                                          \
-    X(contact, world->has_contact, "contact.method")                                                                   \
+    X(elements, world->fem_count > 0, "bodies: method fem")                                                            \
+    X(affine, world->transfer == BRUNT_APIC && world->body_count > 0, "grid.transfer")                                 \
+    X(contact, world->has_contact || world->has_augury, "contact.method")                                                                   \
     X(friction, world->has_friction, "friction of contact or boundaries")                                              \
+    X(surfaces, world->has_surfaces, "contact of meshes, or planes they may meet")                                     \
+    X(hourglass, has_hourglass(world), "bodies: element hex8 or quad4")                                                \
+    X(mass_scaling, has_mass_scaling(world), "bodies: mass_scaling")                                                   \
+    X(groups, world->hold_count > 0, "boundaries: group")                                                              \
     X(walls, world->has_walls, "boundaries: condition separate")                                                       \
     X(mirrors, world->mirror_count > 0, "boundaries: condition symmetry or slip")                                      \
     X(conditions, world->has_conditions, "boundaries: stick, oblique slip, region")                                    \
@@ -86,43 +104,68 @@ brunt_pass brunt_world_pass(const brunt_world *world, int32_t index) {
     return (brunt_pass){.name = ""};
 }
 
-// Arrays: of each body its particle fields, its sort and its grid.
+// Arrays: of each body its fields, and what else it has.
 enum { EXTRA = 2 };
 
 int32_t brunt_array_count(const brunt_world *world) {
     int32_t n = 0;
-    for (int i = 0; i < world->body_count; i++) {
-        const brunt_particles *p = &world->bodies[i].particles;
-        for (int f = 0; f < p->field_count; f++) n += p->field[f].components > 0;
+    for (int i = 0; i < world->all_count; i++) {
+        const brunt_body *mpm = world->all[i].mpm;
+        const brunt_fem_body *fem = world->all[i].fem;
+        for (int f = 0; mpm && f < mpm->particles.field_count; f++) n += mpm->particles.field[f].components > 0;
+        for (int f = 0; fem && f < fem->field_count; f++) n += fem->field[f].components > 0;
         n += EXTRA;
     }
-    return n;
+    return n + (world->has_surfaces ? 1 : 0);
+}
+
+static brunt_array particle_array(const brunt_body *body, int32_t index) {
+    brunt_array array = {.unit = "", .components = 1};
+    const brunt_particles *p = &body->particles;
+    size_t fields = 0;
+    for (int f = 0; f < p->field_count; f++) {
+        size_t bytes = (size_t)p->field[f].components * (size_t)p->capacity * sizeof(real);
+        fields += bytes;
+        if (!bytes || index-- > 0) continue;
+        snprintf(array.name, sizeof array.name, "%s.%s", body->name, p->field[f].name);
+        array.unit = p->field[f].unit, array.components = p->field[f].components, array.bytes = bytes;
+        return array;
+    }
+    snprintf(array.name, sizeof array.name, index ? "%s: grid" : "%s: ids and sort", body->name);
+    array.bytes = index ? brunt_grid_bytes(&body->grid) : p->slab_bytes - fields;
+    return array;
+}
+
+static brunt_array element_array(const brunt_fem_body *body, int32_t index) {
+    brunt_array array = {.unit = "", .components = 1};
+    size_t fields = 0;
+    for (int f = 0; f < body->field_count; f++) {
+        size_t bytes = (size_t)body->field[f].components * (size_t)body->slots * sizeof(real);
+        fields += bytes;
+        if (!bytes || index-- > 0) continue;
+        snprintf(array.name, sizeof array.name, "%s.%s", body->name, body->field[f].name);
+        array.unit = body->field[f].unit, array.components = body->field[f].components, array.bytes = bytes;
+        return array;
+    }
+    size_t nodes = (size_t)body->node_count * (BRUNT_FEM_NODE_REALS + 4) * sizeof(real), all = brunt_fem_bytes(body);
+    snprintf(array.name, sizeof array.name, index ? "%s: mesh and forces" : "%s: nodes", body->name);
+    array.bytes = index ? (all > nodes + fields ? all - nodes - fields : 0) : nodes;
+    return array;
 }
 
 brunt_array brunt_world_array(const brunt_world *world, int32_t index) {
-    brunt_array array = {.unit = ""};
-    for (int i = 0; i < world->body_count; i++) {
-        const brunt_body *body = &world->bodies[i];
-        const brunt_particles *p = &body->particles;
-        size_t fields = 0;
-        for (int f = 0; f < p->field_count; f++) {
-            size_t bytes = (size_t)p->field[f].components * (size_t)p->capacity * sizeof(real);
-            fields += bytes;
-            if (!bytes || index-- > 0) continue;
-            snprintf(array.name, sizeof array.name, "%s.%s", body->name, p->field[f].name);
-            array.unit = p->field[f].unit, array.components = p->field[f].components, array.bytes = bytes;
-            return array;
-        }
-        if (index-- == 0) {
-            snprintf(array.name, sizeof array.name, "%s: ids and sort", body->name);
-            array.components = 1, array.bytes = p->slab_bytes - fields;
-            return array;
-        }
-        if (index-- == 0) {
-            snprintf(array.name, sizeof array.name, "%s: grid", body->name);
-            array.components = 1, array.bytes = brunt_grid_bytes(&body->grid);
-            return array;
-        }
+    for (int i = 0; i < world->all_count; i++) {
+        const brunt_body *mpm = world->all[i].mpm;
+        const brunt_fem_body *fem = world->all[i].fem;
+        int32_t n = EXTRA;
+        for (int f = 0; mpm && f < mpm->particles.field_count; f++) n += mpm->particles.field[f].components > 0;
+        for (int f = 0; fem && f < fem->field_count; f++) n += fem->field[f].components > 0;
+        if (index < n) return mpm ? particle_array(mpm, index) : element_array(fem, index);
+        index -= n;
     }
+    brunt_array array = {.name = "contact of surfaces", .unit = "", .components = 1};
+    array.bytes = (size_t)world->skin.node_count * 200 + (size_t)world->skin.face_count * 76 +
+                  brunt_facing_bytes(world->facing) + world->points.point_capacity + world->points.entry_capacity +
+                  world->points.support_capacity;
     return array;
 }

@@ -14,31 +14,40 @@
 #include "threads.h"
 #include "world.h"
 
-enum { WORLD_BLOCKS = 3 };
 static const char REAL_TYPE = sizeof(real) == 8 ? 'd' : 'f';
 
-// What block `index` is: of a body its ids (field -1) or a field; of the world (body NULL) number `field`.
+// World blocks: clock, walls, pairs, and the affine velocities of boundary nodes where contact keeps them.
+static int world_blocks(const brunt_world *world) { return world->skin.affine ? 4 : 3; }
+
+// What block `index` is: of a body its ids (field -1) or a field; of a mesh its nodes (field -1) or a field; of the world number
+// `field`.
 typedef struct place {
     brunt_body *body;
+    brunt_fem_body *fem;
     int field;
 } place;
 
 static place find(brunt_world *world, int32_t index) {
-    for (int i = 0; i < world->body_count; i++) {
-        const brunt_particles *p = &world->bodies[i].particles;
-        if (index-- == 0) return (place){&world->bodies[i], -1};
-        for (int f = 0; f < p->field_count; f++)
-            if (p->field[f].components && index-- == 0) return (place){&world->bodies[i], f};
+    for (int i = 0; i < world->all_count; i++) {
+        brunt_body *mpm = world->all[i].mpm;
+        brunt_fem_body *fem = world->all[i].fem;
+        if (index-- == 0) return (place){mpm, fem, -1};
+        for (int f = 0; mpm && f < mpm->particles.field_count; f++)
+            if (mpm->particles.field[f].components && index-- == 0) return (place){mpm, NULL, f};
+        for (int f = 0; fem && f < fem->field_count; f++)
+            if (fem->field[f].components && index-- == 0) return (place){NULL, fem, f};
     }
-    return (place){NULL, index};
+    return (place){NULL, NULL, index};
 }
 
 int32_t brunt_state_count(brunt_world *world) {
-    int32_t n = WORLD_BLOCKS;
-    for (int i = 0; i < world->body_count; i++) {
-        const brunt_particles *p = &world->bodies[i].particles;
+    int32_t n = world_blocks(world);
+    for (int i = 0; i < world->all_count; i++) {
+        const brunt_body *mpm = world->all[i].mpm;
+        const brunt_fem_body *fem = world->all[i].fem;
         n++;
-        for (int f = 0; f < p->field_count; f++) n += p->field[f].components > 0;
+        for (int f = 0; mpm && f < mpm->particles.field_count; f++) n += mpm->particles.field[f].components > 0;
+        for (int f = 0; fem && f < fem->field_count; f++) n += fem->field[f].components > 0;
     }
     return n;
 }
@@ -58,9 +67,17 @@ brunt_state_block brunt_state_info(brunt_world *world, int32_t index) {
                  at.field < 0 ? "id" : p->field[at.field].name);
         return block;
     }
-    static const char *const names[WORLD_BLOCKS] = {"world/clock", "world/walls", "world/pairs"};
-    const int64_t counts[WORLD_BLOCKS] = {CLOCK_DOUBLES, 2 * (int64_t)world->wall_count * ACTION_DOUBLES,
-                                          2 * (int64_t)world->pair_count * ACTION_DOUBLES};
+    if (at.fem) {
+        block.type = REAL_TYPE;
+        block.count = at.field < 0 ? (int64_t)at.fem->node_count * BRUNT_FEM_NODE_REALS
+                                   : (int64_t)at.fem->slots * at.fem->field[at.field].components;
+        snprintf(block.name, sizeof block.name, "bodies/%s/%s", at.fem->name,
+                 at.field < 0 ? "nodes" : at.fem->field[at.field].name);
+        return block;
+    }
+    static const char *const names[] = {"world/clock", "world/walls", "world/pairs", "world/contact_affine"};
+    const int64_t counts[] = {CLOCK_DOUBLES, 2 * (int64_t)world->wall_count * ACTION_DOUBLES,
+                              2 * (int64_t)world->pair_count * ACTION_DOUBLES, 9 * (int64_t)world->skin.node_count};
     snprintf(block.name, sizeof block.name, "%s", names[at.field]);
     block.count = counts[at.field];
     return block;
@@ -82,7 +99,16 @@ void brunt_state_get(brunt_world *world, int32_t index, void *out) {
             }
         return;
     }
+    if (at.fem) {
+        const brunt_fem_body *fem = at.fem;
+        if (at.field < 0) memcpy(out, fem->node, (size_t)fem->node_count * BRUNT_FEM_NODE_REALS * sizeof(real));
+        for (int c = 0; at.field >= 0 && c < fem->field[at.field].components; c++)
+            memcpy((real *)out + (size_t)c * (size_t)fem->slots, fem->scalar[fem->field[at.field].first + c],
+                   (size_t)fem->slots * sizeof(real));
+        return;
+    }
     double *to = out;
+    if (at.field == 3) memcpy(to, world->skin.affine, 9 * (size_t)world->skin.node_count * sizeof(double));
     if (at.field == 0) memcpy(to, &world->now, sizeof world->now);
     for (int w = 0; at.field == 1 && w < world->wall_count; w++, to += 2 * ACTION_DOUBLES) {
         memcpy(to, &world->walls[w].action, sizeof(brunt_action));
@@ -114,7 +140,16 @@ int brunt_state_set(brunt_world *world, int32_t index, const void *in, int64_t c
                    (size_t)p->count * sizeof(real));
         return BRUNT_OK;
     }
+    if (at.fem) {
+        brunt_fem_body *fem = at.fem;
+        if (at.field < 0) memcpy(fem->node, in, (size_t)fem->node_count * BRUNT_FEM_NODE_REALS * sizeof(real));
+        for (int c = 0; at.field >= 0 && c < fem->field[at.field].components; c++)
+            memcpy(fem->scalar[fem->field[at.field].first + c], (const real *)in + (size_t)c * (size_t)fem->slots,
+                   (size_t)fem->slots * sizeof(real));
+        return BRUNT_OK;
+    }
     const double *from = in;
+    if (at.field == 3) memcpy(world->skin.affine, from, 9 * (size_t)world->skin.node_count * sizeof(double));
     if (at.field == 0) memcpy(&world->now, from, sizeof world->now);
     for (int w = 0; at.field == 1 && w < world->wall_count; w++, from += 2 * ACTION_DOUBLES) {
         memcpy(&world->walls[w].action, from, sizeof(brunt_action));
@@ -139,7 +174,28 @@ int brunt_state_done(brunt_world *world, brunt_error *error) {
         int status = brunt_sort(&body->grid, &body->particles, world->threads, NULL, error);
         if (status) return BRUNT_BAD_INPUT;
     }
+    int32_t bad;
+    const char *reason;
+    const brunt_fem_body *failed = brunt_fem_elements_all(world, 0, &bad, &reason);
+    if (failed) return brunt_fail(error, BRUNT_BAD_INPUT, "bodies.%s: %s", failed->name, reason);
     return BRUNT_OK;
+}
+
+static uint64_t hash_mesh(const brunt_fem_body *fem) {
+    uint64_t h = (uint64_t)fem->index + 0x51ed27;
+    for (size_t k = 0; k < (size_t)fem->node_count * BRUNT_FEM_NODE_REALS; k++) {
+        uint64_t bits = 0;
+        memcpy(&bits, &fem->node[k], sizeof(real));
+        h = brunt_hash_add(h, bits);
+    }
+    for (int c = 0; c < fem->scalar_count; c++)
+        for (int32_t s = 0; s < fem->slots; s++) {
+            if (fem->element_id[s] < 0) continue;
+            uint64_t bits = 0;
+            memcpy(&bits, &fem->scalar[c][s], sizeof(real));
+            h = brunt_hash_add(h, bits);
+        }
+    return h;
 }
 
 uint64_t brunt_world_hash(const brunt_world *world) {
@@ -148,7 +204,7 @@ uint64_t brunt_world_hash(const brunt_world *world) {
         const brunt_particles *p = &world->bodies[i].particles;
         for (int64_t s = 0; s < p->slots; s++) {
             if (p->id[s] < 0) continue;
-            uint64_t h = brunt_hash_add((uint64_t)i, (uint64_t)p->id[s]);
+            uint64_t h = brunt_hash_add((uint64_t)world->bodies[i].index, (uint64_t)p->id[s]);
             for (int k = 0; k < p->scalar_count; k++) {
                 uint64_t bits = 0;
                 memcpy(&bits, &p->scalar[k][s], sizeof(real));
@@ -157,6 +213,7 @@ uint64_t brunt_world_hash(const brunt_world *world) {
             sum += h;
         }
     }
+    for (int i = 0; i < world->fem_count; i++) sum += hash_mesh(&world->fems[i]);
     uint64_t bits;
     memcpy(&bits, &world->now.time, sizeof bits);
     return brunt_hash_add(sum, bits);

@@ -34,7 +34,8 @@ double brunt_stable_step(const brunt_world *world) {
         }
         inverse = fmax(inverse, wave + speed);
     }
-    return world->cfl * world->cell / inverse;
+    double grid = inverse > 0 ? world->cell / inverse : INFINITY;
+    return world->cfl * fmin(grid, brunt_fem_stable_step(world));
 }
 
 static void start_pass(brunt_world *world, int pass, double *start) {
@@ -69,6 +70,23 @@ static int fail_particle(const brunt_world *world, brunt_body *body, int64_t slo
         for (int a = 0; a < 3; a++) error->place[a] = a < world->dimension ? (double)x[a][slot] : 0;
     }
     return fail(world, body, error, reason);
+}
+
+static int fail_element(const brunt_world *world, const brunt_fem_body *fem, int32_t slot, brunt_error *error,
+                        const char *reason) {
+    if (!error) return BRUNT_FAILED;
+    const int nodes = fem->element->nodes;
+    error->time = world->now.time;
+    memcpy(error->body, fem->name, sizeof error->body < sizeof fem->name ? sizeof error->body : sizeof fem->name);
+    for (int32_t s = slot; s >= 0 && (error->id = fem->element_id[s]) < 0; s--) {} // padding copies the last one
+    for (int a = 0; a < 3; a++) {
+        error->place[a] = 0;
+        for (int c = 0; c < nodes; c++)
+            error->place[a] += (double)brunt_fem_node(fem, fem->element_node[(size_t)slot * (size_t)nodes + (size_t)c])[a] / nodes;
+    }
+    return brunt_fail(error, BRUNT_FAILED, "body '%s', element %lld at (%.6g, %.6g, %.6g) m, time %.9g s, step %.0f: %s",
+                      fem->name, (long long)error->id + 1, error->place[0], error->place[1], error->place[2],
+                      world->now.time, world->now.steps, reason);
 }
 
 // ------------------------------------------------------------------------------------------ passes
@@ -154,9 +172,9 @@ static void make_grid_velocities(brunt_world *world, brunt_body *body, const dou
     end_pass(world, BRUNT_PASS_update, start);
 }
 
-static int constrain_grid_velocities(brunt_world *world, double dt, brunt_error *error) {
+static int constrain_velocities(brunt_world *world, const double gravity[3], double kick, double dt, brunt_error *error) {
     double start;
-    if (world->has_conditions) {
+    if (world->has_conditions && world->body_count) {
         start_pass(world, BRUNT_PASS_conditions, &start);
         for (int w = 0; w < world->wall_count; w++) {
             brunt_wall *wall = &world->walls[w];
@@ -170,7 +188,7 @@ static int constrain_grid_velocities(brunt_world *world, double dt, brunt_error 
     if (world->has_contact) {
         start_pass(world, BRUNT_PASS_contact, &start);
         int failed = brunt_multivelocity_apply(world->bodies, world->body_count, world->pairs, world->pair_count,
-                                               world->pair_of, world->mirrors, world->mirror_count, dt, world->threads,
+                                               world->mpm_pair_of, world->mirrors, world->mirror_count, dt, world->threads,
                                                world->pass[BRUNT_PASS_contact].thread_seconds, &world->contact_work);
         if (failed)
             return fail(world, NULL, error,
@@ -178,7 +196,17 @@ static int constrain_grid_velocities(brunt_world *world, double dt, brunt_error 
                                      : "more than 16 bodies meet at one grid node");
         end_pass(world, BRUNT_PASS_contact, start);
     }
-    if (world->has_walls) {
+    if (world->has_surfaces) {
+        start_pass(world, BRUNT_PASS_surfaces, &start);
+        int status = brunt_surfaces_meet(world, gravity, kick, dt, error);
+        end_pass(world, BRUNT_PASS_surfaces, start);
+        if (status) {
+            char reason[256];
+            snprintf(reason, sizeof reason, "%.250s", error ? error->message : "");
+            return fail(world, NULL, error, reason);
+        }
+    }
+    if (world->has_walls && world->body_count) {
         start_pass(world, BRUNT_PASS_walls, &start);
         for (int i = 0; i < world->body_count; i++)
             if (brunt_walls_apply(&world->bodies[i], world->walls, world->wall_count, world->mirrors,
@@ -213,8 +241,6 @@ static void keep_ledger(brunt_world *world, const double gravity[3], double dt, 
             }
         }
     }
-    for (int w = 0; w < world->wall_count; w++) brunt_action_add(&world->walls[w].action, &world->walls[w].last);
-    for (int p = 0; p < world->pair_count; p++) brunt_action_add(&world->pairs[p].action, &world->pairs[p].last);
     end_pass(world, BRUNT_PASS_ledger, start);
 }
 
@@ -278,6 +304,32 @@ static int gather_bodies(brunt_world *world, double dt, double *kinetic, brunt_e
     return bad_body ? fail_particle(world, bad_body, bad, error, reason) : BRUNT_OK;
 }
 
+static void kick_meshes(brunt_world *world, const double gravity[3], double kick, double dt) {
+    double start;
+    start_pass(world, BRUNT_PASS_kick, &start);
+    if (world->hold_count) brunt_loads_begin(world, world->now.time, kick);
+    brunt_fem_kick_all(world, gravity, kick);
+    end_pass(world, BRUNT_PASS_kick, start);
+    if (!world->hold_count) return;
+    start_pass(world, BRUNT_PASS_groups, &start);
+    brunt_fem_hold_all(world, gravity, world->now.time, kick, dt);
+    end_pass(world, BRUNT_PASS_groups, start);
+}
+
+static int move_meshes(brunt_world *world, const double gravity[3], double kick, double dt, brunt_error *error) {
+    double start;
+    int32_t bad = -1;
+    const char *reason = "";
+    start_pass(world, BRUNT_PASS_drift, &start);
+    if (world->hold_count) brunt_loads_end(world, kick);
+    brunt_fem_drift_all(world, gravity, kick, dt);
+    end_pass(world, BRUNT_PASS_drift, start);
+    start_pass(world, BRUNT_PASS_elements, &start);
+    const brunt_fem_body *failed = brunt_fem_elements_all(world, dt, &bad, &reason);
+    end_pass(world, BRUNT_PASS_elements, start);
+    return failed ? fail_element(world, failed, bad, error, reason) : BRUNT_OK;
+}
+
 // The step that is due: stable, not past the end, and exactly on `limit` when that comes first. The last stretch before
 // such a time is cut in two equal steps rather than a whole one and a sliver.
 static double choose_step(const brunt_world *world, double limit) {
@@ -286,6 +338,16 @@ static double choose_step(const brunt_world *world, double limit) {
     if (dt >= left * (1 - 1e-9)) return left;
     if (world->fixed_step <= 0 && 2 * dt > left) return 0.5 * left;
     return dt;
+}
+
+static int make_grids(brunt_world *world, const double gravity[3], double dt, brunt_error *error) {
+    double start;
+    start_pass(world, BRUNT_PASS_sort, &start);
+    int status = sort_bodies(world, error);
+    end_pass(world, BRUNT_PASS_sort, start);
+    if (status) return status;
+    for (int i = 0; i < world->body_count; i++) make_grid_velocities(world, &world->bodies[i], gravity, dt);
+    return BRUNT_OK;
 }
 
 int brunt_world_step(brunt_world *world, double limit, brunt_error *error) {
@@ -304,16 +366,24 @@ int brunt_world_step(brunt_world *world, double limit, brunt_error *error) {
     for (int w = 0; w < world->wall_count; w++) world->walls[w].last = (brunt_action){.external_work = 0};
     for (int p = 0; p < world->pair_count; p++) world->pairs[p].last = (brunt_action){.external_work = 0};
 
-    double start;
-    start_pass(world, BRUNT_PASS_sort, &start);
-    int status = sort_bodies(world, error);
-    end_pass(world, BRUNT_PASS_sort, start);
-    if (status) return status;
-    for (int i = 0; i < world->body_count; i++) make_grid_velocities(world, &world->bodies[i], gravity, dt);
-    if ((status = constrain_grid_velocities(world, dt, error))) return status;
-    keep_ledger(world, gravity, dt, &old_kinetic, &new_kinetic);
-    if (world->advance) remap_velocities(world, dt);
-    status = gather_bodies(world, dt, &kinetic, error);
+    // Velocities are half a step behind, from the first step on: forces act over the mean of the steps before and after.
+    const double kick = world->now.steps > 0 ? 0.5 * (world->now.dt + dt) : 0.5 * dt;
+    int status;
+    if (world->fem_count) kick_meshes(world, gravity, kick, dt);
+    if (world->body_count && (status = make_grids(world, gravity, dt, error))) return status;
+    if ((status = constrain_velocities(world, gravity, kick, dt, error))) return status;
+    old_kinetic = new_kinetic = world->now.kinetic;
+    if (world->body_count) {
+        keep_ledger(world, gravity, dt, &old_kinetic, &new_kinetic);
+        if (world->advance) remap_velocities(world, dt);
+        status = gather_bodies(world, dt, &kinetic, error);
+    }
+    for (int w = 0; w < world->wall_count; w++) brunt_action_add(&world->walls[w].action, &world->walls[w].last);
+    for (int p = 0; p < world->pair_count; p++) brunt_action_add(&world->pairs[p].action, &world->pairs[p].last);
+    if (world->fem_count) {
+        int moved = move_meshes(world, gravity, kick, dt, status ? NULL : error);
+        status = status ? status : moved;
+    }
 
     struct brunt_clock *now = &world->now;
     now->transfer += now->kinetic - old_kinetic + new_kinetic - kinetic;
@@ -326,7 +396,7 @@ int brunt_world_step(brunt_world *world, double limit, brunt_error *error) {
     now->dt_max = fmax(now->dt_max, dt);
     if (status) return status;
     now->next_dt = brunt_stable_step(world);
-    if (!isfinite(kinetic) || !isfinite(now->next_dt))
+    if (!isfinite(kinetic) || !isfinite(now->fem_kinetic) || !isfinite(now->next_dt))
         return fail(world, NULL, error, "the kinetic energy is not a finite number");
     if ((int64_t)now->steps % ENERGY_CHECK == 0 && isfinite(world->energy_limit)) {
         brunt_energy energy;

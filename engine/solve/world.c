@@ -14,6 +14,7 @@
 #include "world.h"
 
 static const double ON_GRID_LINE = 1e-6; // cells: how far off a mirror plane may be and still count as on the line
+enum { MOST_PAIRS = 64 };                // with an account each
 static const double TOUCHING = 1e-6;     // spacings: bodies closer than that touch, they do not overlap
 
 // ------------------------------------------------------------------------------------------ definition
@@ -23,7 +24,10 @@ static int check(const brunt_world_def *def, brunt_error *error) {
     if (def->cookie != brunt_world_def_default().cookie)
         REFUSE("the world's definition was not made by brunt_world_def_default");
     if (def->dimension != 2 && def->dimension != 3) REFUSE("dimension: %d is neither 2 nor 3", def->dimension);
-    if (!(def->cell > 0) || !isfinite(def->cell)) REFUSE("grid.cell: %g m is not a positive length", def->cell);
+    bool particles = false;
+    for (int i = 0; i < def->body_count; i++) particles = particles || def->bodies[i].method == BRUNT_MPM;
+    if (particles && (!(def->cell > 0) || !isfinite(def->cell)))
+        REFUSE("grid.cell: %g m is not a positive length", def->cell);
     if (def->kernel < BRUNT_LINEAR || def->kernel > BRUNT_CUBIC)
         REFUSE("grid.kernel: there is no kernel %d", (int)def->kernel);
     if (def->transfer < BRUNT_PIC || def->transfer > BRUNT_APIC)
@@ -128,21 +132,20 @@ static double overlap_depth(const brunt_filled *a, const brunt_body_def *b, int 
     return deepest;
 }
 
-static int make_bodies(brunt_world *world, const brunt_world_def *def, const brunt_body_def **order,
-                       brunt_error *error) {
+// Particles of the bodies that are made of them, and the lowest of their coordinates. Bodies of meshes stay empty.
+static int fill_shapes(brunt_world *world, const brunt_world_def *def, const brunt_body_def **order, brunt_filled *filled,
+                       double low[3], brunt_error *error) {
     const int n = def->body_count, dim = def->dimension;
-    brunt_filled *filled = brunt_alloc((size_t)n * sizeof *filled);
-    if (!filled) return brunt_fail(error, BRUNT_FAILED, "out of memory");
     int status = BRUNT_OK;
-    double low[3] = {INFINITY, INFINITY, INFINITY};
     for (int i = 0; i < n && !status; i++) {
+        if (order[i]->method != BRUNT_MPM) continue;
         status = brunt_fill_shape(order[i], dim, lattice_spacing(def, order[i]), &filled[i], error);
         for (int32_t k = 0; !status && k < filled[i].count; k++)
             for (int a = 0; a < dim; a++) low[a] = fmin(low[a], filled[i].position[a][k]);
     }
-    for (int i = 0; i < n && !status && world->has_contact && !def->contact.allow_overlap; i++)
+    for (int i = 0; i < n && !status && !def->contact.allow_overlap; i++)
         for (int k = 0; k < n && !status; k++) {
-            if (i == k || world->pair_of[i * n + k] < 0) continue;
+            if (i == k || world->pair_of[i * n + k] < 0 || order[k]->mesh.node_count) continue;
             double depth = overlap_depth(&filled[i], order[k], dim);
             if (depth > TOUCHING * lattice_spacing(def, order[i]))
                 status = brunt_fail(error, BRUNT_BAD_INPUT,
@@ -150,28 +153,101 @@ static int make_bodies(brunt_world *world, const brunt_world_def *def, const bru
                                     "contact.initial_overlap: allow",
                                     order[i]->name, order[k]->name, depth);
         }
+    return status;
+}
+
+static int make_particles(brunt_world *world, const brunt_world_def *def, const brunt_body_def *from,
+                          const brunt_filled *filled, const double origin[3], int index, brunt_error *error) {
+    brunt_body *body = &world->bodies[world->body_count++];
+    world->all[index].mpm = body;
+    memcpy(body->name, from->name, sizeof body->name);
+    body->index = index;
+    body->spacing = lattice_spacing(def, from);
+    int status = brunt_material_make(&def->materials[from->material], &body->material, error);
+    if (status) return status;
+    brunt_particle_needs needs = {.affine = def->transfer == BRUNT_APIC,
+                                  .reach = world->has_contact || world->has_augury || world->has_walls,
+                                  .grid_velocity = world->advance && def->transfer == BRUNT_FLIP};
+    memcpy(needs.models, body->material.model, sizeof needs.models);
+    brunt_particles_init(&body->particles, def->dimension, &needs);
+    brunt_grid_init(&body->grid, def->dimension, (int)def->kernel, def->cell, origin);
+    return fill_body(from, filled, body, error);
+}
+
+// Nodes that no element uses are left out: the others are numbered without gaps, in the mesh's order.
+static int close_ranks(brunt_fem_body *fem, int32_t mesh_nodes) {
+    if (fem->node_count == mesh_nodes) return 0;
+    int32_t *rank = brunt_alloc((size_t)(mesh_nodes + 1) * sizeof *rank), next = 0;
+    if (!rank) return -1;
+    for (int32_t n = 0; n < fem->node_count; n++) rank[fem->node_id[n]] = 1;
+    for (int32_t i = 0; i < mesh_nodes; i++)
+        if (rank[i]) rank[i] = next++;
+    for (int32_t n = 0; n < fem->node_count; n++) fem->node_id[n] = rank[fem->node_id[n]];
+    brunt_free(rank);
+    return 0;
+}
+
+static int make_elements(brunt_world *world, const brunt_world_def *def, const brunt_body_def *from, int index,
+                         brunt_error *error) {
+    brunt_fem_body *fem = &world->fems[world->fem_count];
+    brunt_mesh_report *report = &world->mesh_reports[world->fem_count++];
+    world->all[index].fem = fem;
+    brunt_mesh made = {0};
+    brunt_material material;
+    int status = BRUNT_OK;
+    if (!from->mesh.node_count) {
+        if (!(from->size > 0)) REFUSE("bodies.%s.size: %g m is not a positive length", from->name, from->size);
+        status = brunt_mesh_shape(&from->shape, def->dimension, from->element, from->size, &made, error);
+    }
+    const brunt_mesh *mesh = from->mesh.node_count ? &from->mesh : &made;
+    if (!status) status = brunt_mesh_check(mesh, &report->quality, error);
+    if (status && error) {
+        char reason[sizeof error->message];
+        memcpy(reason, error->message, sizeof reason);
+        brunt_fail(error, error->code, "bodies.%s: %.900s", from->name, reason);
+    }
+    if (!status) status = brunt_material_make(&def->materials[from->material], &material, error);
+    if (!status) status = brunt_fem_make(from, &material, def->dimension, mesh, fem, error);
+    if (!status && close_ranks(fem, mesh->node_count)) status = brunt_fail(error, BRUNT_FAILED, "out of memory");
+    if (!status) {
+        fem->index = index;
+        report->least_step = fem->least_step;
+        report->added_mass = fem->added_mass, report->scaled_elements = fem->scaled_elements;
+        if (report->quality.duplicate_nodes)
+            brunt_warn(world, "bodies.%s: %d nodes of the mesh lie on others: the body is not joined there", from->name,
+                       report->quality.duplicate_nodes);
+        if (report->quality.worst_shape < 0.1)
+            brunt_warn(world, "bodies.%s: element %d is nearly flat (shape %.2g, 1 is regular)", from->name,
+                       report->quality.worst + 1, report->quality.worst_shape);
+    }
+    for (int32_t n = 0; !status && n < fem->node_count; n++) {
+        real *node = brunt_fem_node(fem, n);
+        double x[3], v[3], gradient[3][3];
+        for (int a = 0; a < 3; a++) x[a] = (double)node[a];
+        start_motion(from, def->dimension, x, v, gradient);
+        for (int a = 0; a < def->dimension; a++) node[BRUNT_FEM_V + a] = (real)v[a];
+    }
+    brunt_mesh_free(&made);
+    return status;
+}
+
+static int make_bodies(brunt_world *world, const brunt_world_def *def, const brunt_body_def **order,
+                       brunt_error *error) {
+    const int n = def->body_count, dim = def->dimension;
+    brunt_filled *filled = brunt_alloc((size_t)n * sizeof *filled);
+    if (!filled) return brunt_fail(error, BRUNT_FAILED, "out of memory");
+    double low[3] = {INFINITY, INFINITY, INFINITY};
+    int status = fill_shapes(world, def, order, filled, low, error);
     // A grid far from the scene would waste the digits of the particles' places on it: it starts near them, whole cells
     // away.
     double origin[3] = {0};
     for (int a = 0; a < dim; a++) {
-        double cells = status ? 0 : floor((low[a] - def->origin[a]) / def->cell);
+        double cells = status || isinf(low[a]) ? 0 : floor((low[a] - def->origin[a]) / def->cell);
         origin[a] = def->origin[a] + (fabs(cells) > 1024 ? cells * def->cell : 0);
     }
-    for (int i = 0; i < n && !status; i++) {
-        brunt_body *body = &world->bodies[i];
-        memcpy(body->name, order[i]->name, sizeof body->name);
-        body->index = i;
-        body->spacing = lattice_spacing(def, order[i]);
-        status = brunt_material_make(&def->materials[order[i]->material], &body->material, error);
-        if (status) break;
-        brunt_particle_needs needs = {.affine = def->transfer == BRUNT_APIC,
-                                      .reach = world->has_contact || world->has_walls,
-                                      .grid_velocity = world->advance && def->transfer == BRUNT_FLIP};
-        memcpy(needs.models, body->material.model, sizeof needs.models);
-        brunt_particles_init(&body->particles, dim, &needs);
-        brunt_grid_init(&body->grid, dim, (int)def->kernel, def->cell, origin);
-        status = fill_body(order[i], &filled[i], body, error);
-    }
+    for (int i = 0; i < n && !status; i++)
+        status = order[i]->method == BRUNT_MPM ? make_particles(world, def, order[i], &filled[i], origin, i, error)
+                                               : make_elements(world, def, order[i], i, error);
     for (int i = 0; i < n; i++) brunt_filled_free(&filled[i]);
     brunt_free(filled);
     return status;
@@ -204,6 +280,10 @@ static int make_plane(brunt_world *world, const brunt_world_def *def, int index,
     int axis = plane_axis(plane, def->dimension);
     double at = axis < 0 ? 0 : (plane->point[axis] - def->origin[axis]) / def->cell;
     bool on_line = axis >= 0 && !moves && fabs(at - round(at)) < ON_GRID_LINE;
+    if (!world->has_particles) { // meshes hold their nodes on any plane themselves
+        world->has_friction = world->has_friction || plane->friction > 0;
+        return BRUNT_OK;
+    }
     if (plane->condition == BRUNT_SYMMETRY && !on_line)
         REFUSE("boundaries[%d] (%s): a symmetry plane must stand still, be normal to an axis and lie on a grid line "
                "(cell %g m)",
@@ -224,7 +304,7 @@ static int make_plane(brunt_world *world, const brunt_world_def *def, int index,
 
 static int make_walls(brunt_world *world, const brunt_world_def *def, const brunt_body_def **order,
                       brunt_error *error) {
-    world->wall_count = def->plane_count + def->region_count;
+    world->wall_count = def->plane_count + def->region_count + def->group_count;
     world->walls = brunt_alloc((size_t)(world->wall_count + 1) * sizeof *world->walls);
     world->wall_work = brunt_alloc((size_t)def->body_count * sizeof(void *));
     if (!world->walls || !world->wall_work) return brunt_fail(error, BRUNT_FAILED, "out of memory");
@@ -232,6 +312,12 @@ static int make_walls(brunt_world *world, const brunt_world_def *def, const brun
         brunt_wall *wall = &world->walls[w];
         wall->region = w >= def->plane_count;
         wall->mirror = wall->body = -1;
+        if (w >= def->plane_count + def->region_count) { // the rest follows with the bodies (holds.c)
+            const char *given = def->groups[w - def->plane_count - def->region_count].name;
+            if (given[0]) memcpy(wall->name, given, sizeof wall->name);
+            else snprintf(wall->name, sizeof wall->name, "group%d", w + 1);
+            continue;
+        }
         if (wall->region)
             wall->where = def->regions[w - def->plane_count];
         else
@@ -254,11 +340,19 @@ static int make_walls(brunt_world *world, const brunt_world_def *def, const brun
     return BRUNT_OK;
 }
 
+// In a crowded scene all pairs of one method and friction are one.
+static int find_alike(const brunt_world *world, const brunt_pair *pair) {
+    for (int p = 0; p < world->pair_count; p++)
+        if (world->pairs[p].method == pair->method && world->pairs[p].friction == pair->friction) return p;
+    return -1;
+}
+
 static int make_pairs(brunt_world *world, const brunt_world_def *def, const brunt_body_def **order,
                       brunt_error *error) {
     const int n = def->body_count;
     world->pair_of = brunt_alloc((size_t)n * (size_t)n * sizeof *world->pair_of);
-    world->pairs = brunt_alloc(((size_t)n * (size_t)n / 2 + 1) * sizeof *world->pairs);
+    const bool crowded = n * (n - 1) / 2 > MOST_PAIRS;
+    world->pairs = brunt_alloc(((crowded ? MOST_PAIRS : (size_t)n * (size_t)n / 2) + 1) * sizeof *world->pairs);
     if (!world->pair_of || !world->pairs) return brunt_fail(error, BRUNT_FAILED, "out of memory");
     for (int i = 0; i < n; i++)
         for (int k = 0; k < n; k++) world->pair_of[i * n + k] = -1;
@@ -272,13 +366,35 @@ static int make_pairs(brunt_world *world, const brunt_world_def *def, const brun
                     REFUSE("contact.pairs[%d].between: '%s' and '%s' are not two bodies", q, p->a, p->b);
                 if ((a == i && b == k) || (a == k && b == i)) pair.method = p->method, pair.friction = p->friction;
             }
+            bool meshes = order[i]->method == BRUNT_FEM || order[k]->method == BRUNT_FEM;
             if (pair.method == BRUNT_CONTACT_NONE) continue;
+            if (meshes && pair.method == BRUNT_CONTACT_MULTI_VELOCITY)
+                REFUSE("contact of '%s' and '%s': multi-velocity is between bodies of material points; use augury",
+                       order[i]->name, order[k]->name);
+            // Bodies of material points meet at the nodes of the grid that moves them, whatever the method is called.
+            if (!meshes) pair.method = BRUNT_CONTACT_MULTI_VELOCITY, world->has_contact = true;
+            else world->has_augury = true;
             if (!(pair.friction >= 0)) REFUSE("contact.friction: %g is negative", pair.friction);
-            world->pair_of[i * n + k] = world->pair_of[k * n + i] = world->pair_count;
-            world->pairs[world->pair_count++] = pair;
-            world->has_contact = true;
             world->has_friction = world->has_friction || pair.friction > 0;
+            int index = crowded ? find_alike(world, &pair) : -1;
+            if (index < 0) {
+                if (crowded) pair.a = pair.b = -1;
+                world->pairs[index = world->pair_count++] = pair;
+            }
+            world->pair_of[i * n + k] = world->pair_of[k * n + i] = index;
         }
+    return BRUNT_OK;
+}
+
+// Pairs that meet at grid nodes, by place among the bodies of material points.
+static int map_grid_pairs(brunt_world *world, brunt_error *error) {
+    const int n = world->body_count;
+    world->mpm_pair_of = brunt_alloc(((size_t)n * (size_t)n + 1) * sizeof *world->mpm_pair_of);
+    if (!world->mpm_pair_of) return brunt_fail(error, BRUNT_FAILED, "out of memory");
+    for (int i = 0; i < n; i++)
+        for (int k = 0; k < n; k++)
+            world->mpm_pair_of[i * n + k] =
+                i == k ? -1 : world->pair_of[world->bodies[i].index * world->all_count + world->bodies[k].index];
     return BRUNT_OK;
 }
 
@@ -312,6 +428,9 @@ static int start(brunt_world *world, brunt_error *error) {
             return brunt_fail(error, BRUNT_FAILED, "out of memory");
     }
     first_reports(world);
+    int32_t bad;
+    const char *reason;
+    if (brunt_fem_elements_all(world, 0, &bad, &reason)) return brunt_fail(error, BRUNT_BAD_INPUT, "a mesh: %s", reason);
     struct brunt_clock *now = &world->now;
     now->next_dt = now->dt = brunt_stable_step(world);
     if (world->fixed_step > 0) now->dt = world->fixed_step;
@@ -325,6 +444,16 @@ static int start(brunt_world *world, brunt_error *error) {
         for (int k = 0; k < 3; k++) now->linear_initial[k] += a.linear[k], now->angular_initial[k] += a.angular[k];
     }
     now->kinetic = now->initial_kinetic;
+    for (int k = 0; k < world->fem_count; k++) {
+        brunt_fem_sums a = brunt_fem_audit(&world->fems[k]);
+        now->fem_kinetic += a.kinetic;
+        now->initial_kinetic += a.kinetic;
+        now->initial_energy += a.kinetic + brunt_fem_energy(&world->fems[k]).internal;
+        now->scale_linear += a.scale_linear;
+        now->scale_angular += a.scale_angular;
+        for (int c = 0; c < 3; c++) now->linear_initial[c] += a.momentum[c], now->angular_initial[c] += a.angular[c];
+    }
+    now->initial_energy += now->hourglass_stored;
     return BRUNT_OK;
 }
 
@@ -353,13 +482,21 @@ brunt_world *brunt_world_create(const brunt_world_def *def, brunt_error *error) 
     world->scatter = brunt_find_scatter(def->dimension, def->kernel, def->transfer);
     world->gather = brunt_find_gather(def->dimension, def->kernel, def->transfer);
     world->advance = brunt_find_advance(def->dimension, def->kernel, def->transfer);
-    world->body_count = def->body_count;
+    world->all_count = def->body_count;
+    world->all = brunt_alloc((size_t)def->body_count * sizeof *world->all);
     world->bodies = brunt_alloc((size_t)def->body_count * sizeof *world->bodies);
+    world->fems = brunt_alloc((size_t)def->body_count * sizeof *world->fems);
+    world->mesh_reports = brunt_alloc((size_t)def->body_count * sizeof *world->mesh_reports);
+    for (int i = 0; i < def->body_count; i++) world->has_particles = world->has_particles || order[i]->method == BRUNT_MPM;
 
-    int status = world->bodies ? BRUNT_OK : brunt_fail(error, BRUNT_FAILED, "out of memory");
+    int status = world->bodies && world->all && world->fems && world->mesh_reports ? BRUNT_OK : brunt_fail(error, BRUNT_FAILED, "out of memory");
     if (!status) status = make_walls(world, def, order, error);
     if (!status) status = make_pairs(world, def, order, error);
     if (!status) status = make_bodies(world, def, order, error);
+    if (!status) status = map_grid_pairs(world, error);
+    if (!status) status = brunt_holds_make(world, def, error);
+    if (!status) status = brunt_surfaces_make(world, def, error);
+    if (!status && brunt_fem_tasks(world)) status = brunt_fail(error, BRUNT_FAILED, "out of memory");
     for (int m = 0; !status && m < world->mirror_count; m++) { // node numbers count from where the grid starts
         int axis = world->mirrors[m].axis;
         world->mirrors[m].node -= (int32_t)round((world->bodies[0].grid.origin[axis] - def->origin[axis]) / def->cell);
@@ -379,6 +516,22 @@ void brunt_world_destroy(brunt_world *world) {
     }
     for (size_t t = 0; t < sizeof world->work / sizeof world->work[0]; t++) brunt_workspace_free(&world->work[t]);
     brunt_contact_workspace_free(world->contact_work);
+    brunt_skin_free(&world->skin);
+    brunt_points_free(&world->points);
+    brunt_facing_free(world->facing);
+    brunt_augury_workspace_free(world->augury);
+    brunt_holds_free(world);
+    for (int k = 0; world->fems && k < world->fem_count; k++) brunt_fem_free(&world->fems[k]);
+    for (size_t t = 0; t < sizeof world->fem_work / sizeof world->fem_work[0]; t++)
+        brunt_fem_workspace_free(&world->fem_work[t]);
+    brunt_free(world->all);
+    brunt_free(world->fems);
+    brunt_free(world->mesh_reports);
+    brunt_free(world->node_tasks);
+    brunt_free(world->element_tasks);
+    brunt_free(world->fem_sums);
+    brunt_free(world->mpm_pair_of);
+    brunt_free(world->warnings);
     brunt_free(world->wall_work);
     brunt_free(world->bodies);
     brunt_free(world->walls);

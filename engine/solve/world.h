@@ -1,24 +1,32 @@
 // The inside of a world: bodies, conditions, the plan, the ledgers.
 #pragma once
 
+#include "augury.h"
 #include "body.h"
 #include "brunt.h"
 #include "contact.h"
+#include "facing.h"
+#include "fem.h"
 #include "transfer.h"
 
 // The passes of a step, in their order. A pass nobody asked for is not in the plan and does not run.
 #define BRUNT_PASSES(X)                                                                                                \
-    X(sort, true)                                                                                                      \
-    X(scatter, true)                                                                                                   \
-    X(grid, true)                                                                                                      \
-    X(mirror, world->mirror_count > 0)                                                                                 \
-    X(update, true)                                                                                                    \
+    X(kick, world->fem_count > 0)                                                                                      \
+    X(groups, world->hold_count > 0)                                                                                   \
+    X(sort, world->body_count > 0)                                                                                     \
+    X(scatter, world->body_count > 0)                                                                                  \
+    X(grid, world->body_count > 0)                                                                                     \
+    X(mirror, world->mirror_count > 0 && world->body_count > 0)                                                        \
+    X(update, world->body_count > 0)                                                                                   \
     X(conditions, world->has_conditions)                                                                               \
     X(contact, world->has_contact)                                                                                     \
-    X(walls, world->has_walls)                                                                                         \
-    X(ledger, true)                                                                                                    \
-    X(remap, world->advance != NULL)                                                                                   \
-    X(gather, true)
+    X(surfaces, world->has_surfaces)                                                                                   \
+    X(walls, world->has_walls && world->body_count > 0)                                                                \
+    X(ledger, world->body_count > 0)                                                                                   \
+    X(remap, world->advance != NULL && world->body_count > 0)                                                          \
+    X(gather, world->body_count > 0)                                                                                   \
+    X(drift, world->fem_count > 0)                                                                                     \
+    X(elements, world->fem_count > 0)
 
 enum {
 #define BRUNT_PASS_INDEX(name, when) BRUNT_PASS_##name,
@@ -31,6 +39,27 @@ typedef struct brunt_node_sums {
     double old_kinetic, new_kinetic, mass, first_moment[3], gravity_work, stress_work;
 } brunt_node_sums;
 
+// A named group of nodes that is held, moved or loaded.
+typedef struct brunt_hold {
+    int wall, fem; // its place among the walls; its body among the finite-element bodies
+    const int32_t *node;
+    int32_t node_count;
+    int32_t (*face)[4]; // traction and pressure: the surface's faces that are all in the group
+    int32_t face_count;
+    double *force; // node_count x 3 [N] of this step, for loads
+    int32_t *place; // of each node of the body: its place in the group + 1; for loads
+} brunt_hold;
+
+// A run of nodes or a block of elements of one of the finite-element bodies: a task.
+typedef struct brunt_fem_task {
+    int32_t fem, begin, end;
+} brunt_fem_task;
+
+typedef struct brunt_body_ref {
+    brunt_body *mpm;     // one of the two, the other is NULL
+    brunt_fem_body *fem;
+} brunt_body_ref;
+
 struct brunt_world {
     int dimension, threads;
     brunt_kernel kernel;
@@ -39,8 +68,30 @@ struct brunt_world {
     brunt_scatter_fn *scatter;
     brunt_gather_fn *gather, *advance;
 
-    brunt_body *bodies;
+    brunt_body_ref *all; // in order of name
+    int all_count;
+    brunt_body *bodies; // of material points
     int body_count;
+    brunt_fem_body *fems;
+    int fem_count;
+    brunt_mesh_report *mesh_reports; // a finite-element body each
+    brunt_fem_workspace fem_work[256];
+    brunt_fem_task *node_tasks, *element_tasks;
+    int64_t node_task_count, element_task_count;
+    brunt_fem_sums *fem_sums; // a node task each
+    uint8_t (**holder)[3];    // of each body, node and component: the hold that prescribes it + 1
+    brunt_hold *holds;
+    int hold_count;
+    brunt_group_def *groups; // copies, with their curves
+    int group_count;
+    brunt_skin skin;
+    brunt_contact_points points;
+    brunt_facing *facing;
+    brunt_augury_workspace *augury;
+    brunt_contact_def contact; // without its pairs
+    double contact_cell;
+    char (*warnings)[256];
+    int warning_count;
     brunt_wall *walls;
     int wall_count;
     brunt_mirror mirrors[16];
@@ -48,7 +99,9 @@ struct brunt_world {
     brunt_pair *pairs;
     int pair_count;
     int32_t *pair_of;
-    bool has_conditions, has_contact, has_walls, has_friction, has_gravity;
+    int32_t *mpm_pair_of; // pairs that meet at grid nodes, by place in `bodies`
+    bool has_particles, has_conditions, has_contact, has_walls, has_friction, has_gravity;
+    bool has_augury, has_surfaces; // surfaces of meshes meet something: each other, particles, planes
 
     brunt_workspace work[256];
     brunt_wall_workspace **wall_work; // a body each
@@ -60,6 +113,7 @@ struct brunt_world {
     struct brunt_clock {
         double time, steps, dt, next_dt, dt_min, dt_max;
         double kinetic;                // of the particles [J]
+        double fem_kinetic, fem_stress_work, hourglass_stored, hourglass_lost; // [J] of the meshes
         double stress_work; // [J] dt times the stress power at the end of the last step
         double transfer, gravity_work; // [J]
         double gravity_impulse[3], gravity_angular[3];
@@ -86,6 +140,47 @@ void brunt_grid_sum(void *job, int64_t begin, int64_t end,
                     int worker); // scatter buffers to nodes: mass, momentum, impulse of all forces
 void brunt_grid_update(void *job, int64_t begin, int64_t end, int worker); // momenta to velocities
 void brunt_grid_ledger(void *job, int64_t begin, int64_t end, int worker); // node_sums of each slot
+
+// --- finite_elements.c: the meshes' passes
+// Blocks and runs of nodes of all bodies, as tasks. 0, or -1: out of memory.
+int brunt_fem_tasks(brunt_world *world);
+// Velocities by the internal forces, loads and gravity, over `dt`.
+void brunt_fem_kick_all(brunt_world *world, const double gravity[3], double dt);
+// Prescribed motion of named groups, and their account; `step` is how far the nodes then move.
+void brunt_fem_hold_all(brunt_world *world, const double gravity[3], double time, double dt, double step);
+// Reaction of what contact gave to held nodes.
+void brunt_fem_hold_contact(brunt_world *world);
+// Nodes to their new places.
+void brunt_fem_drift_all(brunt_world *world, const double gravity[3], double kick, double dt);
+// Strain, stress and forces there. The failed body and slot when the update of an element failed.
+brunt_fem_body *brunt_fem_elements_all(brunt_world *world, double dt, int32_t *bad, const char **reason);
+// Mass, momenta and kinetic energy of a body as it is.
+brunt_fem_sums brunt_fem_audit(brunt_fem_body *fem);
+// Least stable step of the blocks as they last reported [s].
+double brunt_fem_stable_step(const brunt_world *world);
+
+// --- surfaces.c: the meshes' surfaces and what they meet
+// 0, or BRUNT_FAILED with the reason in `error`.
+int brunt_surfaces_meet(brunt_world *world, const double gravity[3], double kick, double dt, brunt_error *error);
+int brunt_surfaces_make(brunt_world *world, const brunt_world_def *def, brunt_error *error);
+
+// --- holds.c: named groups
+int brunt_holds_make(brunt_world *world, const brunt_world_def *def, brunt_error *error);
+double brunt_curve_at(const brunt_curve *curve, double time);
+// Loads of this step, made before the kick of `dt` and with half their work booked; the other half once velocities are final.
+void brunt_loads_begin(brunt_world *world, double time, double dt);
+void brunt_loads_end(brunt_world *world, double dt);
+void brunt_holds_free(brunt_world *world);
+// A warning for the user, kept with the world.
+void brunt_warn(brunt_world *world, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+// --- read_particles.c, read_mesh.c
+int32_t brunt_read_particle_fields(const brunt_body *body);
+brunt_field_info brunt_read_particle_field(const brunt_body *body, int32_t field);
+void brunt_read_particles(brunt_body *body, int32_t field, double *out);
+int32_t brunt_read_mesh_fields(const brunt_world *world, const brunt_fem_body *fem);
+brunt_field_info brunt_read_mesh_field(const brunt_world *world, const brunt_fem_body *fem, int32_t field);
+void brunt_read_mesh(brunt_world *world, brunt_fem_body *fem, int32_t field, double *out);
 
 // Acceleration of gravity at a time [m/s^2].
 void brunt_gravity_at(const brunt_world *world, double time, double gravity[3]);

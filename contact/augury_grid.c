@@ -1,0 +1,198 @@
+#include "augury_grid.h"
+
+#include <string.h>
+
+#include "hash.h"
+#include "memory.h"
+#include "threads.h"
+
+enum { FIRST_SLOTS = 1024, BLOCK_GRAIN = 4 };
+static const double FARTHEST = 1 << 20; // [blocks] coordinates are packed in 21 bits
+
+void brunt_augury_grid_start(brunt_augury_grid *grid, int dim, int width, double cell) {
+    grid->dim = dim, grid->width = width, grid->cell = cell;
+    grid->block_nodes = dim == 3 ? 64 : 16;
+    grid->block_count = 0;
+    grid->epoch++;
+}
+
+void brunt_augury_grid_free(brunt_augury_grid *grid) {
+    brunt_free(grid->coord);
+    brunt_free(grid->next);
+    brunt_free(grid->reached);
+    brunt_free(grid->coloured);
+    brunt_free(grid->slot);
+    *grid = (brunt_augury_grid){0};
+}
+
+void brunt_augury_cloud_free(brunt_augury_cloud *cloud) {
+    brunt_free(cloud->point);
+    brunt_free(cloud->item);
+    brunt_free(cloud->block_first);
+    brunt_free(cloud->unsorted);
+    brunt_free(cloud->unsorted_item);
+    *cloud = (brunt_augury_cloud){0};
+}
+
+// ------------------------------------------------------------------------------------------ blocks
+
+static uint64_t pack(const int32_t c[3]) {
+    uint64_t key = 0;
+    for (int a = 0; a < 3; a++) key = key << 21 | ((uint64_t)(int64_t)(c[a] + (1 << 20)) & 0x1fffff);
+    return key;
+}
+
+static brunt_augury_slot *probe(const brunt_augury_grid *grid, uint64_t key) {
+    uint64_t mask = (uint64_t)grid->slot_count - 1, at = brunt_mix(key);
+    for (;; at++) {
+        brunt_augury_slot *s = &grid->slot[at & mask];
+        if (s->epoch != grid->epoch || s->key == key) return s;
+    }
+}
+
+// A table of at least twice as many slots as blocks.
+static int widen(brunt_augury_grid *grid) {
+    if (grid->slot_count >= 2 * (grid->block_count + 1)) return 0;
+    int32_t count = grid->slot_count ? 2 * grid->slot_count : FIRST_SLOTS;
+    if (brunt_reserve((void **)&grid->slot, &grid->slot_capacity, (size_t)count * sizeof *grid->slot, 0)) return -1;
+    memset(grid->slot, 0, (size_t)count * sizeof *grid->slot);
+    grid->slot_count = count;
+    for (int32_t b = 0; b < grid->block_count; b++) {
+        uint64_t key = pack(grid->coord[b]);
+        *probe(grid, key) = (brunt_augury_slot){key, grid->epoch, b};
+    }
+    return 0;
+}
+
+// Number of the block at `coord`, which is made when there is none; -1: out of memory.
+static int32_t block_at(brunt_augury_grid *grid, const int32_t coord[3]) {
+    if (widen(grid)) return -1;
+    uint64_t key = pack(coord);
+    brunt_augury_slot *s = probe(grid, key);
+    if (s->epoch == grid->epoch) return s->block;
+    size_t n = (size_t)grid->block_count;
+    if (brunt_reserve((void **)&grid->coord, &grid->coord_capacity, (n + 1) * sizeof *grid->coord,
+                      n * sizeof *grid->coord) ||
+        brunt_reserve((void **)&grid->reached, &grid->reached_capacity, n + 1, n))
+        return -1;
+    memcpy(grid->coord[n], coord, sizeof grid->coord[n]);
+    grid->reached[n] = 0;
+    *s = (brunt_augury_slot){key, grid->epoch, grid->block_count};
+    return grid->block_count++;
+}
+
+int brunt_augury_cloud_add(brunt_augury_grid *grid, brunt_augury_cloud *cloud, int32_t item, const double x[3]) {
+    // Neighbours that a stencil reaches when it goes past the block's end along the axes of `k`: all their
+    // combinations.
+    static const uint8_t reaches[8] = {0x01, 0x03, 0x05, 0x0f, 0x11, 0x33, 0x55, 0xff};
+    size_t n = (size_t)cloud->count;
+    if (brunt_reserve((void **)&cloud->unsorted, &cloud->unsorted_capacity, (n + 1) * sizeof *cloud->unsorted,
+                      n * sizeof *cloud->unsorted) ||
+        brunt_reserve((void **)&cloud->unsorted_item, &cloud->unsorted_item_capacity, (n + 1) * sizeof(int32_t),
+                      n * sizeof(int32_t)))
+        return -1;
+    brunt_augury_point *p = &cloud->unsorted[n];
+    int32_t coord[3];
+    int past = 0;
+    for (int a = 0; a < 3; a++) {
+        double first = 0;
+        if (a < grid->dim) {
+            brunt_augury_weights(grid->width, x[a] / grid->cell, &first, p->weight[a]);
+        } else {
+            p->weight[a][0] = 1, p->weight[a][1] = p->weight[a][2] = p->weight[a][3] = 0;
+        }
+        p->first[a] = a < grid->dim ? first * grid->cell - x[a] : 0;
+        double block = fmin(fmax(floor(first / BRUNT_AUGURY_EDGE), -FARTHEST), FARTHEST - 2);
+        coord[a] = (int32_t)block;
+        p->local[a] = (uint8_t)fmin(fmax(first - block * BRUNT_AUGURY_EDGE, 0), BRUNT_AUGURY_EDGE - 1);
+        if (a < grid->dim && p->local[a] + grid->width > BRUNT_AUGURY_EDGE) past |= 1 << a;
+    }
+    // Points come roughly along a curve: most lie in the block of the one before.
+    int32_t block = n ? cloud->unsorted[n - 1].block : -1;
+    if (block < 0 || memcmp(grid->coord[block], coord, sizeof coord)) block = block_at(grid, coord);
+    if (block < 0) return -1;
+    p->block = block;
+    grid->reached[block] |= reaches[past];
+    cloud->unsorted_item[n] = item;
+    cloud->count++;
+    return 0;
+}
+
+// Makes the blocks that points reach into, and links them.
+static int link_blocks(brunt_augury_grid *grid) {
+    const int32_t with_points = grid->block_count;
+    size_t n = (size_t)with_points;
+    if (brunt_reserve((void **)&grid->next, &grid->next_capacity, (n + 1) * sizeof *grid->next, 0)) return -1;
+    for (int32_t b = 0; b < with_points; b++)
+        for (int k = 0; k < 8; k++) {
+            int32_t c[3] = {grid->coord[b][0] + (k & 1), grid->coord[b][1] + (k >> 1 & 1),
+                            grid->coord[b][2] + (k >> 2)};
+            grid->next[b][k] = grid->reached[b] >> k & 1 ? block_at(grid, c) : 0;
+            if (grid->next[b][k] < 0) return -1;
+        }
+    // Only blocks with points have anything to do.
+    if (brunt_reserve((void **)&grid->coloured, &grid->coloured_capacity, (n + 1) * sizeof(int32_t), 0)) return -1;
+    int32_t at = 0;
+    for (int colour = 0; colour < BRUNT_AUGURY_COLOURS; colour++) {
+        grid->colour_first[colour] = at;
+        for (int32_t b = 0; b < with_points; b++) {
+            const int32_t *c = grid->coord[b];
+            if (((c[0] & 1) | (c[1] & 1) << 1 | (c[2] & 1) << 2) == colour) grid->coloured[at++] = b;
+        }
+    }
+    grid->colour_first[BRUNT_AUGURY_COLOURS] = at;
+    return 0;
+}
+
+static int sort_cloud(const brunt_augury_grid *grid, brunt_augury_cloud *cloud) {
+    size_t n = (size_t)cloud->count, blocks = (size_t)grid->block_count;
+    if (brunt_reserve((void **)&cloud->point, &cloud->point_capacity, (n + 1) * sizeof *cloud->point, 0) ||
+        brunt_reserve((void **)&cloud->item, &cloud->item_capacity, (n + 1) * sizeof(int32_t), 0) ||
+        brunt_reserve((void **)&cloud->block_first, &cloud->block_first_capacity, (blocks + 2) * sizeof(int32_t), 0))
+        return -1;
+    int32_t *first = cloud->block_first;
+    memset(first, 0, (blocks + 2) * sizeof(int32_t));
+    for (size_t k = 0; k < n; k++) first[cloud->unsorted[k].block + 2]++;
+    for (size_t b = 2; b < blocks + 2; b++) first[b] += first[b - 1];
+    for (size_t k = 0; k < n; k++) {
+        int32_t at = first[cloud->unsorted[k].block + 1]++;
+        cloud->point[at] = cloud->unsorted[k];
+        cloud->item[at] = cloud->unsorted_item[k];
+    }
+    return 0;
+}
+
+int brunt_augury_grid_finish(brunt_augury_grid *grid, brunt_augury_cloud *clouds, int cloud_count) {
+    if (link_blocks(grid)) return -1;
+    for (int k = 0; k < cloud_count; k++)
+        if (sort_cloud(grid, &clouds[k])) return -1;
+    return 0;
+}
+
+// ------------------------------------------------------------------------------------------ scatter
+
+typedef struct scatter_job {
+    const brunt_augury_cloud *cloud;
+    const int32_t *block;
+    brunt_augury_scatter_fn *scatter;
+    void *context;
+} scatter_job;
+
+static void scatter_blocks(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    const scatter_job *j = context;
+    for (int64_t k = begin; k < end; k++) {
+        const int32_t *first = &j->cloud->block_first[j->block[k]];
+        if (first[1] > first[0]) j->scatter(j->context, first[0], first[1]);
+    }
+}
+
+void brunt_augury_scatter(const brunt_augury_grid *grid, const brunt_augury_cloud *cloud,
+                          brunt_augury_scatter_fn *scatter, void *context, int threads, double *seconds) {
+    if (cloud->count < BRUNT_AUGURY_PARALLEL) threads = 1;
+    for (int colour = 0; colour < BRUNT_AUGURY_COLOURS; colour++) {
+        scatter_job j = {cloud, grid->coloured + grid->colour_first[colour], scatter, context};
+        int32_t blocks = grid->colour_first[colour + 1] - grid->colour_first[colour];
+        brunt_parallel(threads, blocks, BLOCK_GRAIN, scatter_blocks, &j, seconds);
+    }
+}

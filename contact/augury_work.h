@@ -1,0 +1,33 @@
+// What the forms of augury keep between steps: room, and nothing else.
+#pragma once
+
+#include "augury.h"
+#include "augury_grid.h"
+#include "augury_near.h"
+
+typedef struct brunt_augury_meet brunt_augury_meet;     // surface and smooth (augury_surface.c)
+typedef struct brunt_augury_filter brunt_augury_filter; // paper (augury_paper.c)
+
+struct brunt_augury_workspace {
+    brunt_augury_near near;
+    brunt_augury_grid grid;
+    brunt_augury_cloud cloud[4]; // surface: nodes of a, of b, faces of a, of b; paper: all nodes
+    brunt_augury_meet *meet;
+    brunt_augury_filter *filter;
+};
+
+// The workspace, made when there is none. NULL: out of memory.
+brunt_augury_workspace *brunt_augury_work(brunt_augury_workspace **work);
+void brunt_augury_meet_free(brunt_augury_meet *meet);
+void brunt_augury_filter_free(brunt_augury_filter *filter);
+
+// An impulse on a node of the skin [N s]: on components with prescribed motion what their support takes.
+typedef struct brunt_augury_impulse {
+    int32_t node;
+    double J[3];
+} brunt_augury_impulse;
+
+// Adds an impulse to a pair's account and to the skin's contact state, once velocities are final. `second`: the node
+// belongs to the pair's second body, whose impulses are the pair's. Returns the loss [J], which the caller divides
+// between normal_loss and friction_loss.
+double brunt_augury_book(brunt_skin *skin, brunt_action *action, const brunt_augury_impulse *impulse, bool second);

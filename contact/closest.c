@@ -1,0 +1,132 @@
+#include "closest.h"
+
+#include <math.h>
+
+static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+static void cross(const double a[3], const double b[3], double c[3]) {
+    c[0] = a[1] * b[2] - a[2] * b[1], c[1] = a[2] * b[0] - a[0] * b[2], c[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+// Nearest point of a segment, as its share of the way; `ends` when that is an end.
+static double on_segment(const double a[3], const double b[3], const double x[3], bool *ends) {
+    double e[3], r[3];
+    for (int k = 0; k < 3; k++) e[k] = b[k] - a[k], r[k] = x[k] - a[k];
+    double length = dot(e, e), t = length > 0 ? dot(e, r) / length : 0;
+    *ends = t <= 0 || t >= 1;
+    return t <= 0 ? 0 : t >= 1 ? 1 : t;
+}
+
+// Ericson, Real-Time Collision Detection (2005), 5.1.5: by the regions of the triangle's Voronoi diagram.
+static void on_triangle(const double *const p[3], const double x[3], double d[3], bool *inside) {
+    double ab[3], ac[3], ap[3], bp[3], cp[3];
+    for (int k = 0; k < 3; k++) {
+        ab[k] = p[1][k] - p[0][k], ac[k] = p[2][k] - p[0][k];
+        ap[k] = x[k] - p[0][k], bp[k] = x[k] - p[1][k], cp[k] = x[k] - p[2][k];
+    }
+    const double d1 = dot(ab, ap), d2 = dot(ac, ap), d3 = dot(ab, bp), d4 = dot(ac, bp), d5 = dot(ab, cp),
+                 d6 = dot(ac, cp);
+    const double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
+    double v = 0, w = 0;
+    *inside = false;
+    if (d1 <= 0 && d2 <= 0) v = w = 0;
+    else if (d3 >= 0 && d4 <= d3) v = 1, w = 0;
+    else if (d6 >= 0 && d5 <= d6) v = 0, w = 1;
+    else if (vc <= 0 && d1 >= 0 && d3 <= 0) v = d1 / (d1 - d3), w = 0;
+    else if (vb <= 0 && d2 >= 0 && d6 <= 0) v = 0, w = d2 / (d2 - d6);
+    else if (va <= 0 && d4 >= d3 && d5 >= d6) w = (d4 - d3) / ((d4 - d3) + (d5 - d6)), v = 1 - w;
+    else {
+        const double sum = va + vb + vc;
+        v = vb / sum, w = vc / sum;
+        *inside = true;
+    }
+    for (int k = 0; k < 3; k++) d[k] = ap[k] - v * ab[k] - w * ac[k];
+}
+
+static void unit_normal(const double *const p[3], double n[3]) {
+    double ab[3], ac[3];
+    for (int k = 0; k < 3; k++) ab[k] = p[1][k] - p[0][k], ac[k] = p[2][k] - p[0][k];
+    cross(ab, ac, n);
+    double size = sqrt(dot(n, n));
+    for (int k = 0; k < 3; k++) n[k] = size > 0 ? n[k] / size : 0;
+}
+
+// Corners of triangle `t` of a face; the third of a quadrilateral's is its centre.
+static void triangle_of(const brunt_skin *s, int32_t face, int t, const double *p[3]) {
+    const int32_t *node = s->face[face];
+    p[0] = s->x[node[t]];
+    p[1] = s->x[node[node[3] < 0 ? 1 : (t + 1) % 4]];
+    p[2] = node[3] < 0 ? s->x[node[2]] : s->face_centre[face];
+}
+
+brunt_closest brunt_closest_on_face(const brunt_skin *s, int32_t face, const double x[3]) {
+    const int32_t *node = s->face[face];
+    brunt_closest best = {.square = INFINITY};
+    if (node[2] < 0) {
+        bool ends;
+        const double *a = s->x[node[0]], *b = s->x[node[1]], t = on_segment(a, b, x, &ends);
+        best.inside = !ends;
+        for (int k = 0; k < 3; k++) {
+            best.d[k] = x[k] - (1 - t) * a[k] - t * b[k];
+            best.normal[k] = s->face_normal[face][k];
+        }
+        best.square = dot(best.d, best.d);
+        return best;
+    }
+    const int triangles = node[3] < 0 ? 1 : 4;
+    for (int t = 0; t < triangles; t++) {
+        const double *p[3];
+        double d[3];
+        bool inside;
+        triangle_of(s, face, t, p);
+        on_triangle(p, x, d, &inside);
+        double square = dot(d, d);
+        if (!(square < best.square)) continue;
+        best.square = square, best.inside = inside, best.triangle = t;
+        for (int k = 0; k < 3; k++) best.d[k] = d[k];
+    }
+    const double *p[3];
+    triangle_of(s, face, best.triangle, p);
+    unit_normal(p, best.normal);
+    // The spokes of a quadrilateral are no edges of the surface: on a flat one the nearest point may lie on one.
+    double along = dot(best.d, best.normal);
+    if (!best.inside && best.square - along * along <= 1e-24 * s->face_area[face]) best.inside = true;
+    return best;
+}
+
+void brunt_face_weights(const brunt_skin *s, int32_t face, int triangle, const double x[3], double weight[4],
+                        double gradient[4][3], double normal[3], double *height) {
+    const int32_t *node = s->face[face];
+    for (int k = 0; k < 4; k++) weight[k] = gradient[k][0] = gradient[k][1] = gradient[k][2] = 0;
+    if (node[2] < 0) {
+        const double *a = s->x[node[0]], *b = s->x[node[1]];
+        double e[3], r[3];
+        for (int k = 0; k < 3; k++) e[k] = b[k] - a[k], r[k] = x[k] - a[k], normal[k] = s->face_normal[face][k];
+        double length = dot(e, e), t = length > 0 ? dot(e, r) / length : 0;
+        weight[0] = 1 - t, weight[1] = t;
+        *height = dot(r, normal);
+        for (int k = 0; k < 3; k++) gradient[1][k] = length > 0 ? e[k] / length : 0, gradient[0][k] = -gradient[1][k];
+        return;
+    }
+    const double *p[3];
+    double e[3], g[3], r[3], n[3];
+    triangle_of(s, face, triangle, p);
+    for (int k = 0; k < 3; k++) e[k] = p[1][k] - p[0][k], g[k] = p[2][k] - p[0][k], r[k] = x[k] - p[0][k];
+    cross(e, g, n);
+    double twice = sqrt(dot(n, n));
+    for (int k = 0; k < 3; k++) normal[k] = twice > 0 ? n[k] / twice : 0;
+    *height = dot(r, normal);
+    // Gradients of the triangle's own weights: g1 = (g x n)/2A, g2 = (n x e)/2A.
+    double g1[3], g2[3];
+    cross(g, normal, g1);
+    cross(normal, e, g2);
+    for (int k = 0; k < 3; k++) g1[k] = twice > 0 ? g1[k] / twice : 0, g2[k] = twice > 0 ? g2[k] / twice : 0;
+    double w1 = dot(g1, r), w2 = dot(g2, r), w0 = 1 - w1 - w2;
+    int i = triangle, j = node[3] < 0 ? 1 : (triangle + 1) % 4;
+    weight[i] += w0, weight[j] += w1;
+    for (int k = 0; k < 3; k++) gradient[i][k] -= g1[k] + g2[k], gradient[j][k] += g1[k];
+    for (int c = 0; c < 4; c++) {
+        double share = node[3] < 0 ? (c == 2 ? 1 : 0) : 0.25; // the centre is the mean of the four
+        weight[c] += share * w2;
+        for (int k = 0; k < 3; k++) gradient[c][k] += share * g2[k];
+    }
+}

@@ -1,0 +1,231 @@
+#include "points.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "memory.h"
+#include "threads.h"
+
+enum { GRAIN = 128 };
+static const double TOLERANCE = 1e-2; // of the greatest correction of the first sweep: the rest is met in the next step
+
+void brunt_points_clear(brunt_contact_points *p) { p->point_count = p->entry_count = p->support_count = 0; }
+
+void brunt_points_free(brunt_contact_points *p) {
+    brunt_free(p->point);
+    brunt_free(p->entry);
+    brunt_free(p->support);
+    brunt_free(p->by_support);
+    brunt_free(p->by_support_first);
+    brunt_free(p->entry_point);
+    brunt_free(p->step);
+    brunt_free(p->changed);
+    memset(p, 0, sizeof *p);
+}
+
+#define ADD(p, what)                                                                                                   \
+    (brunt_reserve((void **)&(p)->what, &(p)->what##_capacity, ((size_t)(p)->what##_count + 1) * sizeof *(p)->what,    \
+                   (size_t)(p)->what##_count * sizeof *(p)->what)                                                      \
+         ? -1                                                                                                          \
+         : (memset(&(p)->what[(p)->what##_count], 0, sizeof *(p)->what), (p)->what##_count++))
+
+int32_t brunt_points_support(brunt_contact_points *p) { return ADD(p, support); }
+
+int32_t brunt_points_add(brunt_contact_points *p) {
+    int32_t at = ADD(p, point);
+    if (at >= 0) p->point[at].first = p->entry_count;
+    return at;
+}
+
+int32_t brunt_points_entry(brunt_contact_points *p, int32_t support, double weight) {
+    int32_t at = ADD(p, entry);
+    if (at < 0) return -1;
+    p->entry[at].support = support;
+    p->entry[at].weight = weight;
+    p->point[p->point_count - 1].count++;
+    return at;
+}
+
+int brunt_points_room(brunt_contact_points *p, int32_t points, int32_t entries) {
+    return brunt_reserve((void **)&p->point, &p->point_capacity, ((size_t)points + 1) * sizeof *p->point,
+                         (size_t)p->point_count * sizeof *p->point) ||
+                   brunt_reserve((void **)&p->entry, &p->entry_capacity, ((size_t)entries + 1) * sizeof *p->entry,
+                                 (size_t)p->entry_count * sizeof *p->entry)
+               ? -1
+               : 0;
+}
+
+void brunt_point_velocity(const brunt_contact_points *p, const brunt_contact_point *point, bool old, double u[3]) {
+    for (int a = 0; a < 3; a++) u[a] = -point->plane[a];
+    for (int32_t e = point->first; e < point->first + point->count; e++) {
+        const brunt_contact_entry *entry = &p->entry[e];
+        const double *v = old ? p->support[entry->support].old : p->support[entry->support].v;
+        double rise = point->facet[0] * v[0] + point->facet[1] * v[1] + point->facet[2] * v[2];
+        for (int a = 0; a < 3; a++) u[a] += entry->weight * v[a] + rise * entry->turn[a];
+    }
+}
+
+// What an entry gives its support of the point's impulse: the transpose of the above.
+static void give(const brunt_contact_point *point, const brunt_contact_entry *entry, const double J[3], double out[3]) {
+    double turn = entry->turn[0] * J[0] + entry->turn[1] * J[1] + entry->turn[2] * J[2];
+    for (int a = 0; a < 3; a++) out[a] = entry->weight * J[a] + turn * point->facet[a];
+}
+
+// Entries by support, in the order of the points.
+static int transpose(brunt_contact_points *p) {
+    size_t entries = (size_t)p->entry_count + 1, supports = (size_t)p->support_count + 1;
+    if (brunt_reserve((void **)&p->by_support, &p->by_support_capacity, entries * sizeof(int32_t), 0) ||
+        brunt_reserve((void **)&p->by_support_first, &p->by_support_first_capacity, (supports + 1) * sizeof(int32_t),
+                      0) ||
+        brunt_reserve((void **)&p->entry_point, &p->entry_point_capacity, entries * sizeof(int32_t), 0) ||
+        brunt_reserve((void **)&p->step, &p->step_capacity, ((size_t)p->point_count + 1) * 3 * sizeof(double), 0) ||
+        brunt_reserve((void **)&p->changed, &p->changed_capacity,
+                      ((size_t)p->point_count / GRAIN + 2) * sizeof(double), 0))
+        return -1;
+    int32_t *first = p->by_support_first;
+    memset(first, 0, (supports + 1) * sizeof(int32_t));
+    for (int32_t e = 0; e < p->entry_count; e++) first[p->entry[e].support + 2]++;
+    for (size_t s = 2; s <= supports; s++) first[s] += first[s - 1];
+    for (int32_t k = 0; k < p->point_count; k++)
+        for (int32_t e = p->point[k].first; e < p->point[k].first + p->point[k].count; e++) {
+            p->entry_point[e] = k;
+            p->by_support[first[p->entry[e].support + 1]++] = e;
+        }
+    return 0;
+}
+
+// Effective mass of each point alone, and its row sum. Points that nothing can move (all masses infinite) get scale 0.
+static void prepare(brunt_contact_points *p) {
+    for (int32_t k = 0; k < p->point_count; k++) {
+        brunt_contact_point *point = &p->point[k];
+        double alone = 0;
+        for (int32_t e = point->first; e < point->first + point->count; e++) {
+            double J[3];
+            give(point, &p->entry[e], point->n, J);
+            const double *inverse = p->support[p->entry[e].support].inverse;
+            for (int a = 0; a < 3; a++) alone += J[a] * J[a] * inverse[a];
+        }
+        point->scale = alone > 0 ? 1 / alone : 0;
+        for (int32_t e = point->first; e < point->first + point->count; e++)
+            for (int a = 0; a < 3; a++)
+                p->support[p->entry[e].support].load[a] += fabs(p->entry[e].weight) * point->scale;
+    }
+    for (int32_t k = 0; k < p->point_count; k++) {
+        brunt_contact_point *point = &p->point[k];
+        double along[3] = {0};
+        for (int32_t e = point->first; e < point->first + point->count; e++) {
+            const brunt_support *s = &p->support[p->entry[e].support];
+            for (int a = 0; a < 3; a++) along[a] += fabs(p->entry[e].weight) * s->load[a] * s->inverse[a];
+        }
+        for (int a = 0; a < 3; a++) {
+            point->response += point->n[a] * point->n[a] * along[a];
+            point->response_t = fmax(point->response_t, along[a]);
+        }
+        point->response = fmax(point->response, 1);
+        point->response_t = fmax(point->response_t, 1);
+    }
+}
+
+// Brings one point to its condition, as far as it is concerned; the impulse goes to `J`. Returns the velocity it is
+// worth [m/s].
+static double visit(const brunt_contact_points *p, brunt_contact_point *point, double J[3]) {
+    J[0] = J[1] = J[2] = 0;
+    if (!(point->scale > 0)) return 0;
+    double u[3], along = 0;
+    brunt_point_velocity(p, point, false, u);
+    for (int a = 0; a < 3; a++) along += u[a] * point->n[a];
+    double unit = point->scale / point->response;
+    double push = fmax(0, point->push + (point->target - along) * unit), step = push - point->push;
+    point->push = push;
+    double changed = fabs(step) / unit;
+    for (int a = 0; a < 3; a++) J[a] = step * point->n[a];
+    if (point->friction > 0) {
+        double drag[3], size = 0, moved = 0, unit_t = point->scale / point->response_t;
+        for (int a = 0; a < 3; a++) {
+            drag[a] = point->drag[a] - (u[a] - along * point->n[a]) * unit_t;
+            size += drag[a] * drag[a];
+        }
+        size = sqrt(size);
+        double most = point->friction * push;
+        point->slips = size > most;
+        double share = point->slips ? most / size : 1;
+        for (int a = 0; a < 3; a++) {
+            double now = share * drag[a], add = now - point->drag[a];
+            J[a] += add;
+            moved += add * add;
+            point->drag[a] = now;
+        }
+        changed = fmax(changed, sqrt(moved) / unit_t);
+    }
+    return changed;
+}
+
+static void visit_points(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    brunt_contact_points *p = context;
+    for (int64_t c = begin; c < end; c++) {
+        double most = 0;
+        for (int32_t k = (int32_t)c * GRAIN; k < (c + 1) * GRAIN && k < p->point_count; k++)
+            most = fmax(most, visit(p, &p->point[k], p->step + 3 * k));
+        p->changed[c] = most;
+    }
+}
+
+static void move_supports(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    brunt_contact_points *p = context;
+    for (int64_t s = begin * GRAIN; s < end * GRAIN && s < p->support_count; s++) {
+        double sum[3] = {0};
+        for (int32_t q = p->by_support_first[s]; q < p->by_support_first[s + 1]; q++) {
+            int32_t e = p->by_support[q], k = p->entry_point[e];
+            double J[3];
+            give(&p->point[k], &p->entry[e], p->step + 3 * k, J);
+            for (int a = 0; a < 3; a++) sum[a] += J[a];
+        }
+        brunt_support *support = &p->support[s];
+        for (int a = 0; a < 3; a++) {
+            support->impulse[a] += sum[a];
+            support->v[a] += sum[a] * support->inverse[a];
+        }
+    }
+}
+
+static void book(brunt_contact_points *p) {
+    for (int32_t k = 0; k < p->point_count; k++) {
+        const brunt_contact_point *point = &p->point[k];
+        if (!(point->push > 0)) continue;
+        point->action->area += point->area;
+        double old[3], now[3], push[3], drag[3], x[3];
+        brunt_point_velocity(p, point, true, old);
+        brunt_point_velocity(p, point, false, now);
+        for (int a = 0; a < 3; a++) {
+            // The account is of the second body: the slave's impulse, or the reaction to it.
+            push[a] = point->sign * point->push * point->n[a], drag[a] = point->sign * point->drag[a];
+            old[a] = point->sign * (old[a] + point->plane[a]), now[a] = point->sign * (now[a] + point->plane[a]);
+            x[a] = point->x[a];
+        }
+        brunt_action_book(point->action, &point->action->normal_loss, push, x, old, now, point->plane);
+        if (point->friction > 0)
+            brunt_action_book(point->action, &point->action->friction_loss, drag, x, old, now, point->plane);
+    }
+}
+
+int brunt_points_solve(brunt_contact_points *p, int sweeps, int threads, double *seconds) {
+    if (!p->point_count) return 0;
+    if (transpose(p)) return -1;
+    prepare(p);
+    const int64_t chunks = (p->point_count + GRAIN - 1) / GRAIN, groups = (p->support_count + GRAIN - 1) / GRAIN;
+    double first = 0;
+    int sweep = 0;
+    while (sweep < sweeps) {
+        brunt_parallel(threads, chunks, 1, visit_points, p, seconds);
+        brunt_parallel(threads, groups, 1, move_supports, p, seconds);
+        sweep++;
+        double most = 0;
+        for (int64_t c = 0; c < chunks; c++) most = fmax(most, p->changed[c]);
+        first = fmax(first, most);
+        if (most <= TOLERANCE * first) break;
+    }
+    book(p);
+    return sweep;
+}

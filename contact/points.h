@@ -1,0 +1,82 @@
+// Contact points: places where something must not move closer, with Coulomb friction, whatever moves them.
+//
+// A support is a velocity that impulses change: a node of a mesh, or of a grid. A point ties a slave, a weighted sum of
+// supports, to a master: a plane that moves as it likes, or a facet of a body, extended affinely:
+//   u = sum_s w_s v_s - sum_k [ beta_k v_k - height (n_f . v_k) grad beta_k ]
+// beta_k are the facet's weights where the slave projects onto its plane, height its distance from the plane, n_f the facet's
+// normal: the velocity of the material plane as it moves, turns and stretches, seen at the slave. The reaction goes back by the
+// transpose. As u is 0 for every rigid motion of both, any impulse leaves linear and angular momentum alone, to round-off.
+//
+// All points of a step together must satisfy: u_n >= target, push >= 0, one of them 0; drag within the Coulomb cone and against
+// what is left of slip. Solved by projected Jacobi sweeps: a point's correction is scaled by its row sum of the coupling matrix
+// (in units of its own effective mass), so that a uniform approach is met in one sweep and no sweep can add energy. Neither the
+// order of points nor the number of threads changes a bit.
+#pragma once
+
+#include "contact.h"
+
+typedef struct brunt_support {
+    double v[3], old[3];   // [m/s] now; before the forces of this step
+    double inverse[3];     // [1/kg] by component; 0: infinite mass
+    double impulse[3];     // [N s] received in all
+    double load[3];        // sum of |weight| effective mass of the points on it, by component
+} brunt_support;
+
+typedef struct brunt_contact_entry {
+    int32_t support;
+    double weight;         // w_s of a slave; -beta_k of a master
+    double turn[3];        // 0 of a slave; height grad beta_k of a master
+} brunt_contact_entry;
+
+typedef struct brunt_contact_point {
+    int32_t first, count;  // entries
+    double x[3];           // [m] where
+    double n[3];           // out of the master, unit
+    double facet[3];       // n_f: normal of the master's facet; unused for planes
+    double gap;            // [m] before the step
+    double target;         // [m/s] least u_n
+    double friction;
+    double plane[3];       // [m/s] velocity of the master when it is a plane; 0 for facets
+    brunt_action *action;  // where the point is booked: impulse on the slave times `sign`
+    double sign;
+    double area;           // [m^2] it stands for in the action's area
+    int32_t tag;           // the caller's
+    // solution
+    double scale, response, response_t; // [kg] effective mass alone; [-] row sums in units of it
+    double push, drag[3];  // [N s]
+    bool slips;
+} brunt_contact_point;
+
+typedef struct brunt_contact_points {
+    brunt_contact_point *point;
+    size_t point_capacity;
+    int32_t point_count;
+    brunt_contact_entry *entry;
+    size_t entry_capacity;
+    int32_t entry_count;
+    brunt_support *support;
+    size_t support_capacity;
+    int32_t support_count;
+    // which points press on a support: entries by support, in the order of the points
+    int32_t *by_support, *by_support_first;
+    size_t by_support_capacity, by_support_first_capacity;
+    int32_t *entry_point;
+    size_t entry_point_capacity;
+    double *step; // [N s] 3 of each point: what the sweep gives
+    size_t step_capacity;
+    double *changed; // [m/s] of each chunk of points: greatest correction of the sweep
+    size_t changed_capacity;
+} brunt_contact_points;
+
+void brunt_points_clear(brunt_contact_points *points);
+void brunt_points_free(brunt_contact_points *points);
+// New support, point, and entry of the last point. The index, or -1: out of memory.
+int32_t brunt_points_support(brunt_contact_points *points);
+int32_t brunt_points_add(brunt_contact_points *points);
+int32_t brunt_points_entry(brunt_contact_points *points, int32_t support, double weight);
+// Makes room for so many points and entries in all, which the caller then fills. 0, or -1.
+int brunt_points_room(brunt_contact_points *points, int32_t point_count, int32_t entry_count);
+// Relative velocity of a point, with the supports' v (old: as they were before the forces).
+void brunt_point_velocity(const brunt_contact_points *points, const brunt_contact_point *point, bool old, double u[3]);
+// Solves with at most `sweeps` sweeps, and books every point. The number of sweeps, or -1: out of memory.
+int brunt_points_solve(brunt_contact_points *points, int sweeps, int threads, double *seconds);

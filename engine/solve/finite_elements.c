@@ -1,0 +1,148 @@
+// The passes over finite-element bodies. Tasks are runs of nodes and blocks of elements of all bodies together, so that many
+// small bodies keep all threads busy as well as one large one does.
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "memory.h"
+#include "threads.h"
+#include "world.h"
+
+enum { NODES_A_TASK = 1024 };
+
+static int64_t list_tasks(const brunt_world *world, brunt_fem_task *nodes, brunt_fem_task *elements) {
+    int64_t n = 0, e = 0;
+    for (int k = 0; k < world->fem_count; k++) {
+        const brunt_fem_body *fem = &world->fems[k];
+        for (int32_t i = 0; i < fem->node_count; i += NODES_A_TASK, n++)
+            if (nodes)
+                nodes[n] = (brunt_fem_task){k, i, i + NODES_A_TASK < fem->node_count ? i + NODES_A_TASK : fem->node_count};
+        for (int32_t b = 0; b < fem->block_count; b++, e++)
+            if (elements) elements[e] = (brunt_fem_task){k, b, b + 1};
+    }
+    return nodes || !elements ? n : e;
+}
+
+int brunt_fem_tasks(brunt_world *world) {
+    world->node_task_count = list_tasks(world, NULL, NULL);
+    for (int k = 0; k < world->fem_count; k++) world->element_task_count += world->fems[k].block_count;
+    world->node_tasks = brunt_alloc((size_t)(world->node_task_count + 1) * sizeof *world->node_tasks);
+    world->element_tasks = brunt_alloc((size_t)(world->element_task_count + 1) * sizeof *world->element_tasks);
+    world->fem_sums = brunt_alloc((size_t)(world->node_task_count + 1) * sizeof *world->fem_sums);
+    if (!world->node_tasks || !world->element_tasks || !world->fem_sums) return -1;
+    list_tasks(world, world->node_tasks, world->element_tasks);
+    for (int t = 0; t < world->threads; t++)
+        for (int k = 0; k < world->fem_count; k++)
+            if (brunt_fem_workspace_fit(&world->fem_work[t], &world->fems[k])) return -1;
+    return 0;
+}
+
+typedef struct job {
+    brunt_world *world;
+    const double *gravity;
+    double dt;
+} job;
+
+static void kick_nodes(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    const job *j = context;
+    for (int64_t t = begin; t < end; t++) {
+        const brunt_fem_task *task = &j->world->node_tasks[t];
+        brunt_fem_kick(&j->world->fems[task->fem], task->begin, task->end, j->dt, j->gravity, &j->world->fem_sums[t]);
+    }
+}
+
+static void drift_nodes(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    const job *j = context;
+    for (int64_t t = begin; t < end; t++) {
+        const brunt_fem_task *task = &j->world->node_tasks[t];
+        brunt_fem_drift(&j->world->fems[task->fem], task->begin, task->end, j->dt, &j->world->fem_sums[t]);
+    }
+}
+
+static void strain_elements(void *context, int64_t begin, int64_t end, int worker) {
+    const job *j = context;
+    for (int64_t t = begin; t < end; t++) {
+        const brunt_fem_task *task = &j->world->element_tasks[t];
+        brunt_fem_body *fem = &j->world->fems[task->fem];
+        fem->element->forces(fem, task->begin, (real)j->dt, &j->world->fem_work[worker], &fem->report[task->begin]);
+    }
+}
+
+// Gravity's work is taken at the mean of the velocities before the kick and after all impulses.
+static void book_gravity(brunt_world *world, const double gravity[3], double dt) {
+    for (int64_t t = 0; t < world->node_task_count; t++) {
+        const brunt_fem_sums *s = &world->fem_sums[t];
+        for (int a = 0; a < 3; a++) {
+            int k = (a + 1) % 3, l = (a + 2) % 3;
+            world->now.gravity_work += 0.5 * dt * gravity[a] * (s->momentum_old[a] + s->momentum[a]);
+            world->now.gravity_impulse[a] += dt * s->mass * gravity[a];
+            world->now.gravity_angular[a] += dt * (s->first_moment[k] * gravity[l] - s->first_moment[l] * gravity[k]);
+        }
+    }
+}
+
+void brunt_fem_kick_all(brunt_world *world, const double gravity[3], double dt) {
+    job j = {world, gravity, dt};
+    brunt_parallel(world->threads, world->node_task_count, 1, kick_nodes, &j, world->pass[BRUNT_PASS_kick].thread_seconds);
+}
+
+void brunt_fem_drift_all(brunt_world *world, const double gravity[3], double kick, double dt) {
+    job j = {world, gravity, dt};
+    brunt_parallel(world->threads, world->node_task_count, 1, drift_nodes, &j,
+                   world->pass[BRUNT_PASS_drift].thread_seconds);
+    if (world->has_gravity) book_gravity(world, gravity, kick);
+    world->now.fem_kinetic = 0;
+    for (int64_t t = 0; t < world->node_task_count; t++) world->now.fem_kinetic += world->fem_sums[t].kinetic;
+}
+
+brunt_fem_body *brunt_fem_elements_all(brunt_world *world, double dt, int32_t *bad, const char **reason) {
+    job j = {.world = world, .dt = dt};
+    brunt_parallel(world->threads, world->element_task_count, 1, strain_elements, &j,
+                   world->pass[BRUNT_PASS_elements].thread_seconds);
+    brunt_fem_body *failed = NULL;
+    double work = 0, stored = 0;
+    for (int k = 0; k < world->fem_count; k++)
+        for (int32_t b = 0; b < world->fems[k].block_count; b++) {
+            const brunt_fem_report *r = &world->fems[k].report[b];
+            work += r->stress_work;
+            stored += r->hourglass_stored;
+            if (dt > 0) world->now.hourglass_lost += r->hourglass_lost;
+            if (r->bad >= 0 && !failed) failed = &world->fems[k], *bad = r->bad, *reason = r->reason;
+        }
+    world->now.hourglass_stored = stored;
+    if (dt > 0) world->now.fem_stress_work = work;
+    return failed;
+}
+
+brunt_fem_sums brunt_fem_audit(brunt_fem_body *fem) {
+    brunt_fem_sums sums = {0};
+    brunt_fem_drift(fem, 0, fem->node_count, 0, &sums);
+    return sums;
+}
+
+double brunt_fem_stable_step(const brunt_world *world) {
+    double least = INFINITY;
+    for (int k = 0; k < world->fem_count; k++)
+        for (int32_t b = 0; b < world->fems[k].block_count; b++) {
+            double step = world->fems[k].report[b].stable_step;
+            if (isnan(step)) return NAN;
+            least = fmin(least, step);
+        }
+    return least;
+}
+
+void brunt_warn(brunt_world *world, const char *format, ...) {
+    enum { MOST = 64 };
+    if (!world->warnings && !(world->warnings = brunt_alloc(MOST * sizeof *world->warnings))) return;
+    if (world->warning_count == MOST) return;
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(world->warnings[world->warning_count++], sizeof *world->warnings, format, arguments);
+    va_end(arguments);
+}
+
+int32_t brunt_warning_count(const brunt_world *world) { return world->warning_count; }
+const char *brunt_world_warning(const brunt_world *world, int32_t warning) { return world->warnings[warning]; }

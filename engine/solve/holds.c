@@ -1,0 +1,250 @@
+// Named groups of nodes that are held, moved or loaded.
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "error.h"
+#include "memory.h"
+#include "world.h"
+
+double brunt_curve_at(const brunt_curve *curve, double time) {
+    if (!curve->count) return 1;
+    const double(*p)[2] = (const double(*)[2])curve->points;
+    if (time <= p[0][0]) return p[0][1];
+    for (int32_t k = 1; k < curve->count; k++)
+        if (time < p[k][0]) return p[k - 1][1] + (p[k][1] - p[k - 1][1]) * (time - p[k - 1][0]) / (p[k][0] - p[k - 1][0]);
+    return p[curve->count - 1][1];
+}
+
+static bool moves(const brunt_group_def *group) {
+    return group->action == BRUNT_GROUP_VELOCITY || group->action == BRUNT_GROUP_DISPLACEMENT;
+}
+
+// ------------------------------------------------------------------------------------------ making
+
+static void list_groups(const brunt_fem_body *fem, char *out, size_t size) {
+    size_t used = 0;
+    out[0] = 0;
+    for (int32_t g = 0; g < fem->group_count && used < size; g++)
+        used += (size_t)snprintf(out + used, size - used, "%s%s", g ? ", " : "", fem->groups[g].name);
+    if (!fem->group_count) snprintf(out, size, "none");
+}
+
+// The faces whose nodes are all in the group.
+static int take_faces(brunt_world *world, brunt_hold *hold, const char *name) {
+    const brunt_fem_body *fem = &world->fems[hold->fem];
+    brunt_faces faces;
+    if (brunt_fem_faces(fem, &faces)) return brunt_fail(NULL, BRUNT_FAILED, "out of memory");
+    hold->place = brunt_alloc((size_t)(fem->node_count + 1) * sizeof *hold->place);
+    hold->force = brunt_alloc((size_t)(hold->node_count + 1) * 3 * sizeof *hold->force);
+    hold->face = brunt_alloc((size_t)(faces.count + 1) * sizeof *hold->face);
+    int status = hold->place && hold->force && hold->face ? BRUNT_OK : BRUNT_FAILED;
+    for (int32_t i = 0; !status && i < hold->node_count; i++) hold->place[hold->node[i]] = i + 1;
+    for (int32_t f = 0; !status && f < faces.count; f++) {
+        bool all = true;
+        for (int c = 0; c < 4; c++) all = all && (faces.node[f][c] < 0 || hold->place[faces.node[f][c]]);
+        if (all) memcpy(hold->face[hold->face_count++], faces.node[f], sizeof *hold->face);
+    }
+    brunt_faces_free(&faces);
+    if (!status && !hold->face_count) brunt_warn(world, "boundaries (%s): no face of the body has all its nodes in the group: nothing is loaded", name);
+    return status;
+}
+
+static int make_hold(brunt_world *world, int index, brunt_error *error) {
+    brunt_hold *hold = &world->holds[index];
+    const brunt_group_def *def = &world->groups[index];
+    brunt_wall *wall = &world->walls[hold->wall];
+    hold->fem = -1;
+    for (int k = 0; k < world->fem_count; k++)
+        if (!strcmp(world->fems[k].name, def->body)) hold->fem = k;
+    if (hold->fem < 0)
+        return brunt_fail(error, BRUNT_BAD_INPUT, "boundaries (%s).body: there is no finite-element body '%s'", wall->name, def->body);
+    brunt_fem_body *fem = &world->fems[hold->fem];
+    wall->body = fem->index;
+    const brunt_group *group = NULL;
+    for (int32_t g = 0; g < fem->group_count; g++)
+        if (!strcmp(fem->groups[g].name, def->group)) group = &fem->groups[g];
+    if (!group) {
+        char names[600];
+        list_groups(fem, names, sizeof names);
+        return brunt_fail(error, BRUNT_BAD_INPUT, "boundaries (%s).group: body '%s' has no group '%s'; it has: %s", wall->name, def->body,
+                          def->group, names);
+    }
+    for (int32_t k = 1; k < def->table.count; k++)
+        if (!(def->table.points[k][0] > def->table.points[k - 1][0]))
+            return brunt_fail(error, BRUNT_BAD_INPUT, "boundaries (%s).table: times must grow from point to point", wall->name);
+    hold->node = group->nodes, hold->node_count = group->count;
+    if (!moves(def)) {
+        if (!fem->load && !(fem->load = brunt_alloc((size_t)(fem->node_count + 1) * 4 * sizeof(real))))
+            return brunt_fail(error, BRUNT_FAILED, "out of memory");
+        return take_faces(world, hold, wall->name) ? brunt_fail(error, BRUNT_FAILED, "out of memory") : BRUNT_OK;
+    }
+    if (!fem->held && !(fem->held = brunt_alloc((size_t)fem->node_count + 1))) return brunt_fail(error, BRUNT_FAILED, "out of memory");
+    if (!world->holder[hold->fem] &&
+        !(world->holder[hold->fem] = brunt_alloc(((size_t)fem->node_count + 1) * sizeof **world->holder)))
+        return brunt_fail(error, BRUNT_FAILED, "out of memory");
+    for (int32_t i = 0; i < hold->node_count; i++)
+        for (int a = 0; a < world->dimension; a++) {
+            if (!def->component[a] || world->holder[hold->fem][hold->node[i]][a]) continue;
+            fem->held[hold->node[i]] |= (uint8_t)(1 << a);
+            world->holder[hold->fem][hold->node[i]][a] = (uint8_t)(index + 1);
+        }
+    return BRUNT_OK;
+}
+
+int brunt_holds_make(brunt_world *world, const brunt_world_def *def, brunt_error *error) {
+    world->hold_count = world->group_count = def->group_count;
+    if (def->group_count > 255) return brunt_fail(error, BRUNT_BAD_INPUT, "boundaries: more than 255 groups");
+    world->holds = brunt_alloc((size_t)(def->group_count + 1) * sizeof *world->holds);
+    world->groups = brunt_alloc((size_t)(def->group_count + 1) * sizeof *world->groups);
+    world->holder = brunt_alloc((size_t)(world->fem_count + 1) * sizeof *world->holder);
+    if (!world->holds || !world->groups || !world->holder) return brunt_fail(error, BRUNT_FAILED, "out of memory");
+    for (int k = 0; k < def->group_count; k++) {
+        brunt_group_def *group = &world->groups[k];
+        *group = def->groups[k];
+        group->table.points = NULL;
+        if (group->table.count) {
+            size_t bytes = (size_t)group->table.count * sizeof *group->table.points;
+            if (!(group->table.points = brunt_alloc(bytes))) return brunt_fail(error, BRUNT_FAILED, "out of memory");
+            memcpy(group->table.points, def->groups[k].table.points, bytes);
+        }
+        world->holds[k].wall = world->wall_count - def->group_count + k;
+        world->walls[world->holds[k].wall].group = group;
+        int status = make_hold(world, k, error);
+        if (status) return status;
+    }
+    return BRUNT_OK;
+}
+
+void brunt_holds_free(brunt_world *world) {
+    for (int k = 0; k < world->hold_count && world->holds; k++) {
+        brunt_free(world->holds[k].face);
+        brunt_free(world->holds[k].force);
+        brunt_free(world->holds[k].place);
+    }
+    for (int k = 0; k < world->group_count && world->groups; k++) brunt_free(world->groups[k].table.points);
+    for (int k = 0; k < world->fem_count && world->holder; k++) brunt_free(world->holder[k]);
+    brunt_free(world->holds);
+    brunt_free(world->groups);
+    brunt_free(world->holder);
+}
+
+// ------------------------------------------------------------------------------------------ loads
+
+// Area vector of a face [m^2], outward: of where its nodes are, or were at the start.
+static void face_area(const brunt_fem_body *fem, const int32_t node[4], bool start, double area[3]) {
+    const int corners = node[2] < 0 ? 2 : node[3] < 0 ? 3 : 4;
+    double x[4][3], e[3], g[3];
+    for (int c = 0; c < corners; c++)
+        for (int a = 0; a < 3; a++)
+            x[c][a] = (double)(start ? fem->start[4 * (size_t)node[c] + (size_t)a] : brunt_fem_node(fem, node[c])[a]);
+    for (int a = 0; a < 3; a++) {
+        e[a] = corners == 4 ? x[2][a] - x[0][a] : x[1][a] - x[0][a];
+        g[a] = corners == 4 ? x[3][a] - x[1][a] : corners == 3 ? x[2][a] - x[0][a] : 0;
+    }
+    if (corners == 2) {
+        area[0] = e[1], area[1] = -e[0], area[2] = 0;
+        return;
+    }
+    for (int a = 0; a < 3; a++) area[a] = 0.5 * (e[(a + 1) % 3] * g[(a + 2) % 3] - e[(a + 2) % 3] * g[(a + 1) % 3]);
+}
+
+static void make_forces(const brunt_world *world, brunt_hold *hold, const brunt_group_def *def, double time) {
+    brunt_fem_body *fem = &world->fems[hold->fem];
+    double factor = brunt_curve_at(&def->table, time);
+    memset(hold->force, 0, (size_t)hold->node_count * 3 * sizeof *hold->force);
+    for (int32_t f = 0; f < hold->face_count; f++) {
+        const int32_t *node = hold->face[f];
+        const int corners = node[2] < 0 ? 2 : node[3] < 0 ? 3 : 4;
+        double area[3];
+        face_area(fem, node, def->action == BRUNT_GROUP_TRACTION, area);
+        double size = sqrt(area[0] * area[0] + area[1] * area[1] + area[2] * area[2]);
+        for (int a = 0; a < world->dimension; a++) {
+            double force = def->action == BRUNT_GROUP_TRACTION ? factor * def->value[a] * size : -factor * def->value[0] * area[a];
+            for (int c = 0; c < corners; c++) hold->force[3 * (hold->place[node[c]] - 1) + a] += force / corners;
+        }
+    }
+    for (int32_t i = 0; i < hold->node_count; i++)
+        for (int a = 0; a < 3; a++) fem->load[4 * (size_t)hold->node[i] + (size_t)a] += (real)hold->force[3 * i + a];
+}
+
+// Half of the work of the loads, at the velocities as they are; with `impulse`, that too.
+static void book_loads(brunt_world *world, const brunt_hold *hold, double dt, bool impulse) {
+    const brunt_fem_body *fem = &world->fems[hold->fem];
+    brunt_action *last = &world->walls[hold->wall].last;
+    for (int32_t i = 0; i < hold->node_count; i++) {
+        const real *node = brunt_fem_node(fem, hold->node[i]);
+        const double *F = hold->force + 3 * i;
+        for (int a = 0; a < 3; a++) {
+            int k = (a + 1) % 3, l = (a + 2) % 3;
+            last->external_work += 0.5 * dt * F[a] * (double)node[BRUNT_FEM_V + a];
+            if (!impulse) continue;
+            last->impulse[a] += dt * F[a];
+            last->angular[a] += dt * ((double)node[k] * F[l] - (double)node[l] * F[k]);
+        }
+    }
+}
+
+void brunt_loads_begin(brunt_world *world, double time, double dt) {
+    for (int k = 0; k < world->fem_count; k++)
+        if (world->fems[k].load) memset(world->fems[k].load, 0, (size_t)world->fems[k].node_count * 4 * sizeof(real));
+    for (int k = 0; k < world->hold_count; k++) {
+        if (moves(&world->groups[k])) continue;
+        make_forces(world, &world->holds[k], &world->groups[k], time);
+        book_loads(world, &world->holds[k], dt, true);
+    }
+}
+
+void brunt_loads_end(brunt_world *world, double dt) {
+    for (int k = 0; k < world->hold_count; k++)
+        if (!moves(&world->groups[k])) book_loads(world, &world->holds[k], dt, false);
+}
+
+// ------------------------------------------------------------------------------------------ prescribed motion
+
+void brunt_fem_hold_all(brunt_world *world, const double gravity[3], double time, double dt, double step) {
+    for (int k = 0; k < world->hold_count; k++) {
+        const brunt_group_def *def = &world->groups[k];
+        if (!moves(def)) continue;
+        const brunt_hold *hold = &world->holds[k];
+        brunt_fem_body *fem = &world->fems[hold->fem];
+        brunt_action *last = &world->walls[hold->wall].last;
+        double now = brunt_curve_at(&def->table, time + 0.5 * step), then = brunt_curve_at(&def->table, time + step);
+        for (int32_t i = 0; i < hold->node_count; i++) {
+            const int32_t n = hold->node[i];
+            real *node = brunt_fem_node(fem, n), force[3];
+            double J[3] = {0}, x[3], old[3] = {0}, v[3] = {0}, mean[3] = {0};
+            brunt_fem_internal_force(fem, n, force);
+            for (int a = 0; a < 3; a++) x[a] = (double)node[a];
+            for (int a = 0; a < world->dimension; a++) {
+                if (world->holder[hold->fem][n][a] != k + 1) continue;
+                double mass = (double)node[BRUNT_FEM_MASS], trial = (double)node[BRUNT_FEM_V + a];
+                double load = fem->load ? (double)fem->load[4 * (size_t)n + (size_t)a] : 0;
+                old[a] = trial - dt * (((double)force[a] + load) / mass + gravity[a]);
+                v[a] = def->action == BRUNT_GROUP_VELOCITY
+                           ? now * def->value[a]
+                           : ((double)fem->start[4 * (size_t)n + (size_t)a] + then * def->value[a] - x[a]) / step;
+                J[a] = mass * (v[a] - trial);
+                mean[a] = 0.5 * (old[a] + v[a]);
+                node[BRUNT_FEM_V + a] = (real)v[a];
+            }
+            brunt_action_book(last, &last->normal_loss, J, x, old, v, mean);
+        }
+    }
+}
+
+void brunt_fem_hold_contact(brunt_world *world) {
+    const brunt_skin *s = &world->skin;
+    for (int k = 0; k < s->fem_count && world->hold_count; k++) {
+        if (!s->active[k] || !world->holder[k]) continue;
+        for (int32_t n = s->node_range[k]; n < s->node_range[k + 1]; n++)
+            for (int a = 0; a < world->dimension; a++) {
+                int holder = world->holder[k][s->node[n]][a];
+                if (!holder || s->impulse[n][a] == 0) continue;
+                double J[3] = {0};
+                J[a] = -s->impulse[n][a];
+                brunt_action *last = &world->walls[world->holds[holder - 1].wall].last;
+                brunt_action_book(last, &last->normal_loss, J, s->x[n], s->v[n], s->v[n], s->v[n]);
+            }
+    }
+}

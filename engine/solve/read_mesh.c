@@ -1,0 +1,196 @@
+// Reading meshes: fields at nodes, then at elements, in the numbers of the mesh they were made from.
+#include <math.h>
+#include <string.h>
+
+#include "lanes.h"
+#include "world.h"
+
+// ------------------------------------------------------------------------------------------ at nodes
+
+typedef void node_fn(const brunt_world *world, const brunt_fem_body *fem, int32_t node, double *out);
+
+static void node_position(const brunt_world *w, const brunt_fem_body *fem, int32_t n, double *out) {
+    (void)w;
+    for (int a = 0; a < 3; a++) out[a] = (double)brunt_fem_node(fem, n)[a];
+}
+static void node_displacement(const brunt_world *w, const brunt_fem_body *fem, int32_t n, double *out) {
+    (void)w;
+    for (int a = 0; a < 3; a++) out[a] = (double)(brunt_fem_node(fem, n)[a] - fem->start[4 * (size_t)n + (size_t)a]);
+}
+static void node_velocity(const brunt_world *w, const brunt_fem_body *fem, int32_t n, double *out) {
+    (void)w;
+    for (int a = 0; a < 3; a++) out[a] = (double)brunt_fem_node(fem, n)[BRUNT_FEM_V + a];
+}
+static void node_mass(const brunt_world *w, const brunt_fem_body *fem, int32_t n, double *out) {
+    (void)w;
+    *out = (double)brunt_fem_node(fem, n)[BRUNT_FEM_MASS];
+}
+static void node_id(const brunt_world *w, const brunt_fem_body *fem, int32_t n, double *out) {
+    (void)w;
+    *out = fem->node_id[n];
+}
+
+static const struct node_field {
+    brunt_field_info info;
+    node_fn *read;
+} node_fields[] = {
+    {{"position", "m", 3, false, BRUNT_AT_NODES}, node_position},
+    {{"displacement", "m", 3, false, BRUNT_AT_NODES}, node_displacement},
+    {{"velocity", "m/s", 3, false, BRUNT_AT_NODES}, node_velocity},
+    {{"mass", "kg", 1, false, BRUNT_AT_NODES}, node_mass},
+    {{"node", "1", 1, false, BRUNT_AT_NODES}, node_id},
+};
+enum { NODE_FIELDS = sizeof node_fields / sizeof node_fields[0] };
+
+// Contact state of boundary nodes in the last step; elsewhere as of a node that touches nothing.
+static const brunt_field_info contact_fields[] = {
+    {"contact_gap", "m", 1, false, BRUNT_AT_NODES},       // to the nearest surface, NaN where none is near
+    {"contact_traction", "Pa", 3, false, BRUNT_AT_NODES}, // impulse over the step and the node's area
+    {"contact_state", "1", 1, false, BRUNT_AT_NODES},     // 0 free, 1 sticks, 2 slips
+};
+enum { CONTACT_FIELDS = sizeof contact_fields / sizeof contact_fields[0] };
+
+static void read_contact(const brunt_world *world, const brunt_fem_body *fem, int32_t field, double *out) {
+    const brunt_skin *s = &world->skin;
+    const int components = contact_fields[field].components;
+    for (int64_t k = 0; k < (int64_t)fem->node_count * components; k++) out[k] = field == 0 ? NAN : 0;
+    const int32_t body = (int32_t)(fem - world->fems);
+    if (world->now.steps == 0 || !s->active[body]) return;
+    for (int32_t n = s->node_range[body]; n < s->node_range[body + 1]; n++) {
+        double *to = out + (int64_t)fem->node_id[s->node[n]] * components;
+        if (field == 0) *to = isinf(s->gap[n]) ? NAN : s->gap[n];
+        if (field == 2) *to = s->state[n];
+        for (int a = 0; field == 1 && a < 3; a++)
+            to[a] = s->area[n] > 0 && world->now.dt > 0 ? s->impulse[n][a] / (s->area[n] * world->now.dt) : 0;
+    }
+}
+
+// ------------------------------------------------------------------------------------------ at elements
+
+typedef struct element_point {
+    double F[9], J, stress[6], volume, density;
+} element_point;
+
+static double scalar(const brunt_fem_body *fem, int field, int c, int32_t s) {
+    return (double)fem->scalar[fem->field[field].first + c][s];
+}
+
+static void read_point(const brunt_fem_body *fem, int32_t s, element_point *p) {
+    const int dim = fem->dim;
+    memset(p, 0, sizeof *p);
+    p->F[8] = 1;
+    for (int r = 0; r < dim; r++)
+        for (int c = 0; c < dim; c++) p->F[3 * r + c] = scalar(fem, BRUNT_ELEMENT_deformation_gradient, r * dim + c, s);
+    const double *F = p->F;
+    p->J = F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) + F[2] * (F[3] * F[7] - F[4] * F[6]);
+    for (int c = 0; c < BRUNT_SYMMETRIC(dim); c++) p->stress[c] = scalar(fem, BRUNT_ELEMENT_kirchhoff_stress, c, s) / p->J;
+    p->volume = scalar(fem, BRUNT_ELEMENT_reference_volume, 0, s) * p->J;
+    p->density = (double)fem->material.density / p->J;
+}
+
+typedef void element_fn(const brunt_fem_body *fem, int32_t slot, const element_point *p, double *out);
+
+static void element_stress(const brunt_fem_body *fem, int32_t s, const element_point *p, double *out) {
+    (void)fem, (void)s;
+    memcpy(out, p->stress, sizeof p->stress);
+}
+static void element_pressure(const brunt_fem_body *fem, int32_t s, const element_point *p, double *out) {
+    (void)fem, (void)s;
+    *out = -(p->stress[0] + p->stress[1] + p->stress[2]) / 3;
+}
+static void element_von_mises(const brunt_fem_body *fem, int32_t s, const element_point *p, double *out) {
+    (void)fem, (void)s;
+    const double *t = p->stress;
+    double a = t[0] - t[1], b = t[1] - t[2], c = t[2] - t[0];
+    *out = sqrt(0.5 * (a * a + b * b + c * c) + 3 * (t[3] * t[3] + t[4] * t[4] + t[5] * t[5]));
+}
+static void element_J(const brunt_fem_body *fem, int32_t s, const element_point *p, double *out) {
+    (void)fem, (void)s;
+    *out = p->J;
+}
+static void element_volume(const brunt_fem_body *fem, int32_t s, const element_point *p, double *out) {
+    (void)fem, (void)s;
+    *out = p->volume;
+}
+static void element_density(const brunt_fem_body *fem, int32_t s, const element_point *p, double *out) {
+    (void)fem, (void)s;
+    *out = p->density;
+}
+static void element_F(const brunt_fem_body *fem, int32_t s, const element_point *p, double *out) {
+    (void)fem, (void)s;
+    memcpy(out, p->F, sizeof p->F);
+}
+static void element_id(const brunt_fem_body *fem, int32_t s, const element_point *p, double *out) {
+    (void)p;
+    *out = fem->element_id[s];
+}
+
+static const struct element_field {
+    brunt_field_info info;
+    element_fn *read;
+} element_fields[] = {
+    {{"stress", "Pa", 6, true, BRUNT_AT_ELEMENTS}, element_stress},
+    {{"pressure", "Pa", 1, false, BRUNT_AT_ELEMENTS}, element_pressure},
+    {{"von_mises", "Pa", 1, false, BRUNT_AT_ELEMENTS}, element_von_mises},
+    {{"J", "1", 1, false, BRUNT_AT_ELEMENTS}, element_J},
+    {{"volume", "m^3", 1, false, BRUNT_AT_ELEMENTS}, element_volume},
+    {{"density", "kg/m^3", 1, false, BRUNT_AT_ELEMENTS}, element_density},
+    {{"deformation_gradient", "1", 9, false, BRUNT_AT_ELEMENTS}, element_F},
+    {{"element", "1", 1, false, BRUNT_AT_ELEMENTS}, element_id},
+};
+enum { ELEMENT_FIELDS = sizeof element_fields / sizeof element_fields[0] };
+
+// ------------------------------------------------------------------------------------------ all together
+
+static int contact_count(const brunt_world *world) { return world->has_surfaces ? CONTACT_FIELDS : 0; }
+
+// Fields at nodes, those of contact, those at elements, and after them the states of the material.
+int32_t brunt_read_mesh_fields(const brunt_world *world, const brunt_fem_body *fem) {
+    return NODE_FIELDS + contact_count(world) + ELEMENT_FIELDS + fem->field_count - BRUNT_ELEMENT_BASE_FIELDS;
+}
+
+brunt_field_info brunt_read_mesh_field(const brunt_world *world, const brunt_fem_body *fem, int32_t field) {
+    if (field < NODE_FIELDS) return node_fields[field].info;
+    if ((field -= NODE_FIELDS) < contact_count(world)) return contact_fields[field];
+    if ((field -= contact_count(world)) < ELEMENT_FIELDS) return element_fields[field].info;
+    const brunt_element_field *f = &fem->field[BRUNT_ELEMENT_BASE_FIELDS + field - ELEMENT_FIELDS];
+    bool symmetric = f->components > 1 && f->components == BRUNT_SYMMETRIC(fem->dim);
+    return (brunt_field_info){f->name, f->unit, symmetric ? 6 : f->components, symmetric, BRUNT_AT_ELEMENTS};
+}
+
+void brunt_read_mesh(brunt_world *world, brunt_fem_body *fem, int32_t field, double *out) {
+    const brunt_field_info info = brunt_read_mesh_field(world, fem, field);
+    if (field < NODE_FIELDS) {
+        for (int32_t n = 0; n < fem->node_count; n++)
+            node_fields[field].read(world, fem, n, out + (int64_t)fem->node_id[n] * info.components);
+        return;
+    }
+    if ((field -= NODE_FIELDS) < contact_count(world)) {
+        read_contact(world, fem, field, out);
+        return;
+    }
+    field -= contact_count(world);
+    const brunt_element_field *state = field < ELEMENT_FIELDS ? NULL : &fem->field[BRUNT_ELEMENT_BASE_FIELDS + field - ELEMENT_FIELDS];
+    for (int32_t s = 0; s < fem->slots; s++) {
+        if (fem->element_id[s] < 0) continue;
+        double *to = out + (int64_t)fem->element_id[s] * info.components;
+        element_point point;
+        if (!state) {
+            read_point(fem, s, &point);
+            element_fields[field].read(fem, s, &point, to);
+        }
+        for (int c = 0; state && c < info.components; c++)
+            to[c] = c < state->components ? (double)fem->scalar[state->first + c][s] : 0;
+    }
+}
+
+void brunt_body_connectivity(const brunt_world *world, int32_t body, int32_t *out) {
+    const brunt_fem_body *fem = world->all[body].fem;
+    const int nodes = fem->element->nodes;
+    for (int32_t s = 0; s < fem->slots; s++) {
+        if (fem->element_id[s] < 0) continue;
+        for (int c = 0; c < nodes; c++)
+            out[(size_t)fem->element_id[s] * (size_t)nodes + (size_t)c] =
+                fem->node_id[fem->element_node[(size_t)s * (size_t)nodes + (size_t)c]];
+    }
+}

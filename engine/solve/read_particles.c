@@ -1,0 +1,110 @@
+// Reading material points: stored fields and those derived from them, in the order of the ids.
+#include <math.h>
+#include <string.h>
+
+#include "lanes.h"
+#include "world.h"
+
+typedef void derive_fn(brunt_body *body, int64_t slot, double *out);
+
+static double entry(brunt_particles *p, int field, int c, int64_t s) { return (double)brunt_field(p, field)[c][s]; }
+
+static void matrix(brunt_particles *p, int field, int64_t s, double last, double out[9]) {
+    memset(out, 0, 9 * sizeof *out);
+    out[8] = last;
+    for (int r = 0; r < p->dim; r++)
+        for (int c = 0; c < p->dim; c++) out[3 * r + c] = entry(p, field, r * p->dim + c, s);
+}
+
+static double jacobian(brunt_particles *p, int64_t s) {
+    double F[9];
+    matrix(p, BRUNT_FIELD_deformation_gradient, s, 1, F);
+    return F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) + F[2] * (F[3] * F[7] - F[4] * F[6]);
+}
+
+static void derive_position(brunt_body *body, int64_t s, double *out) {
+    for (int a = 0; a < 3; a++)
+        out[a] = a < body->particles.dim ? entry(&body->particles, BRUNT_FIELD_position, a, s) : 0;
+}
+static void derive_velocity(brunt_body *body, int64_t s, double *out) {
+    for (int a = 0; a < 3; a++)
+        out[a] = a < body->particles.dim ? entry(&body->particles, BRUNT_FIELD_velocity, a, s) : 0;
+}
+static void derive_stress(brunt_body *body, int64_t s, double *out) {
+    double J = jacobian(&body->particles, s);
+    for (int c = 0; c < 6; c++)
+        out[c] = c < BRUNT_SYMMETRIC(body->particles.dim)
+                     ? entry(&body->particles, BRUNT_FIELD_kirchhoff_stress, c, s) / J
+                     : 0;
+}
+static void derive_pressure(brunt_body *body, int64_t s, double *out) {
+    double t[6];
+    derive_stress(body, s, t);
+    *out = -(t[0] + t[1] + t[2]) / 3;
+}
+static void derive_von_mises(brunt_body *body, int64_t s, double *out) {
+    double t[6];
+    derive_stress(body, s, t);
+    double a = t[0] - t[1], b = t[1] - t[2], c = t[2] - t[0];
+    *out = sqrt(0.5 * (a * a + b * b + c * c) + 3 * (t[3] * t[3] + t[4] * t[4] + t[5] * t[5]));
+}
+static void derive_J(brunt_body *body, int64_t s, double *out) { *out = jacobian(&body->particles, s); }
+static void derive_volume(brunt_body *body, int64_t s, double *out) {
+    *out = entry(&body->particles, BRUNT_FIELD_reference_volume, 0, s) * jacobian(&body->particles, s);
+}
+static void derive_density(brunt_body *body, int64_t s, double *out) {
+    *out = (double)body->material.density / jacobian(&body->particles, s);
+}
+static void derive_mass(brunt_body *body, int64_t s, double *out) {
+    *out = entry(&body->particles, BRUNT_FIELD_mass, 0, s);
+}
+static void derive_F(brunt_body *body, int64_t s, double *out) {
+    matrix(&body->particles, BRUNT_FIELD_deformation_gradient, s, 1, out);
+}
+static void derive_id(brunt_body *body, int64_t s, double *out) { *out = (double)body->particles.id[s]; }
+
+static const struct derived {
+    brunt_field_info info;
+    derive_fn *derive;
+} derived[] = {
+    {{"position", "m", 3, false, BRUNT_AT_PARTICLES}, derive_position},
+    {{"velocity", "m/s", 3, false, BRUNT_AT_PARTICLES}, derive_velocity},
+    {{"stress", "Pa", 6, true, BRUNT_AT_PARTICLES}, derive_stress},
+    {{"pressure", "Pa", 1, false, BRUNT_AT_PARTICLES}, derive_pressure},
+    {{"von_mises", "Pa", 1, false, BRUNT_AT_PARTICLES}, derive_von_mises},
+    {{"J", "1", 1, false, BRUNT_AT_PARTICLES}, derive_J},
+    {{"volume", "m^3", 1, false, BRUNT_AT_PARTICLES}, derive_volume},
+    {{"density", "kg/m^3", 1, false, BRUNT_AT_PARTICLES}, derive_density},
+    {{"mass", "kg", 1, false, BRUNT_AT_PARTICLES}, derive_mass},
+    {{"deformation_gradient", "1", 9, false, BRUNT_AT_PARTICLES}, derive_F},
+    {{"id", "1", 1, false, BRUNT_AT_PARTICLES}, derive_id},
+};
+enum { DERIVED = sizeof derived / sizeof derived[0] };
+
+// After the derived fields come the states of the material.
+int32_t brunt_read_particle_fields(const brunt_body *body) {
+    return DERIVED + body->particles.field_count - BRUNT_BASE_FIELDS;
+}
+
+brunt_field_info brunt_read_particle_field(const brunt_body *body, int32_t field) {
+    if (field < DERIVED) return derived[field].info;
+    const brunt_particles *p = &body->particles;
+    const brunt_particle_field *f = &p->field[BRUNT_BASE_FIELDS + field - DERIVED];
+    bool symmetric = f->components > 1 && f->components == BRUNT_SYMMETRIC(p->dim);
+    return (brunt_field_info){f->name, f->unit, symmetric ? 6 : f->components, symmetric, BRUNT_AT_PARTICLES};
+}
+
+void brunt_read_particles(brunt_body *body, int32_t field, double *out) {
+    brunt_particles *p = &body->particles;
+    brunt_field_info info = brunt_read_particle_field(body, field);
+    for (int64_t s = 0; s < p->slots; s++) {
+        if (p->id[s] < 0) continue;
+        double *to = out + p->id[s] * info.components;
+        if (field < DERIVED) {
+            derived[field].derive(body, s, to);
+            continue;
+        }
+        const brunt_particle_field *f = &p->field[BRUNT_BASE_FIELDS + field - DERIVED];
+        for (int c = 0; c < info.components; c++) to[c] = c < f->components ? (double)p->scalar[f->first + c][s] : 0;
+    }
+}
