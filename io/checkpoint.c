@@ -79,6 +79,8 @@ static bool put_run_state(hid_t file, brunt_world *world, const char *scene_text
            brunt_hdf5_put_integer(file, "state_blocks", brunt_state_count(world)) &&
            brunt_hdf5_put_integer(file, "step", brunt_world_steps(world)) &&
            brunt_hdf5_put_integer(file, "particles", brunt_world_particles(world)) &&
+           brunt_hdf5_put_integer(file, "elements", brunt_world_elements(world)) &&
+           brunt_hdf5_put_integer(file, "mesh_hash", (long long)state->mesh_hash) &&
            brunt_hdf5_put_number(file, "time", brunt_world_time(world)) &&
            brunt_hdf5_put_number(file, "wall_seconds", state->wall_seconds) &&
            brunt_hdf5_put_number(file, "cpu_seconds", state->cpu_seconds) &&
@@ -127,6 +129,26 @@ static void remove_key(struct fy_document *document, struct fy_node *map, const 
         fy_node_free(fy_node_mapping_remove_by_key(map, fy_node_build_from_string(document, key, FY_NT)));
 }
 
+// A run may go on after its folder was moved: of a mesh file only its name counts, not the folders above it.
+static void shorten_mesh(struct fy_document *document, struct fy_node *body) {
+    struct fy_node *mesh = fy_node_is_mapping(body) ? fy_node_mapping_lookup_by_string(body, "mesh", FY_NT) : NULL;
+    size_t length = 0;
+    const char *text = mesh ? fy_node_get_scalar(mesh, &length) : NULL;
+    if (!text) return;
+    size_t start = length;
+    while (start > 0 && text[start - 1] != '/') start--;
+    struct fy_node *name = fy_node_create_scalar_copy(document, text + start, length - start);
+    remove_key(document, body, "mesh");
+    fy_node_mapping_append(body, fy_node_build_from_string(document, "mesh", FY_NT), name);
+}
+
+static void shorten_meshes(struct fy_document *document, struct fy_node *bodies) {
+    if (!bodies || !fy_node_is_mapping(bodies)) return;
+    void *at = NULL;
+    for (struct fy_node_pair *pair; (pair = fy_node_mapping_iterate(bodies, &at));)
+        shorten_mesh(document, fy_node_pair_value(pair));
+}
+
 // The scene less what may change between the legs of a run, as block YAML; NULL when it is not YAML. Freed with
 // free().
 static char *comparable(const char *text) {
@@ -139,6 +161,7 @@ static char *comparable(const char *text) {
         for (size_t k = 0; k < sizeof free_keys / sizeof *free_keys; k++) remove_key(document, root, free_keys[k]);
         struct fy_node *time = fy_node_by_path(root, "/time", FY_NT, FYNWF_DONT_FOLLOW);
         if (time && fy_node_is_mapping(time)) remove_key(document, time, "end");
+        shorten_meshes(document, fy_node_by_path(root, "/bodies", FY_NT, FYNWF_DONT_FOLLOW));
         out = fy_emit_document_to_string(document, FYECF_MODE_BLOCK | FYECF_WIDTH_INF);
     }
     fy_document_destroy(document);
@@ -200,7 +223,7 @@ static void *read_dataset(hid_t file, const char *name, char letter, int64_t *co
 }
 
 static int read_run_state(hid_t file, const char *path, brunt_run_state *state, brunt_error *error) {
-    long long step = 0, failed = 0;
+    long long step = 0, failed = 0, mesh_hash = 0;
     memset(state, 0, sizeof *state);
     bool ok = brunt_hdf5_get_integer(file, "step", &step) && brunt_hdf5_get_integer(file, "failed", &failed) &&
               brunt_hdf5_get_number(file, "time", &state->time) &&
@@ -212,6 +235,7 @@ static int read_run_state(hid_t file, const char *path, brunt_run_state *state, 
     if (ok) state->picture_times = read_dataset(file, "/picture_times", 'd', &state->picture_count);
     if (!ok || !state->picture_times)
         return brunt_fail(error, BRUNT_BAD_INPUT, "%s: the state of the run's outputs is missing", path);
+    if (brunt_hdf5_get_integer(file, "mesh_hash", &mesh_hash)) state->mesh_hash = (uint64_t)mesh_hash;
     state->step = step;
     state->failed = failed != 0;
     return BRUNT_OK;
@@ -312,16 +336,20 @@ int brunt_checkpoint_describe(const char *path, FILE *out, brunt_error *error) {
     int status = brunt_hdf5_open(path, "checkpoint", FORMAT, &file, error);
     if (status) return status;
     char version[64], precision[16];
-    long long particles = 0;
+    long long particles = 0, elements = 0;
     brunt_run_state state;
     status = read_run_state(file, path, &state, error);
     if (!status && brunt_hdf5_get_text(file, "version", version, sizeof version) &&
         brunt_hdf5_get_text(file, "precision", precision, sizeof precision) &&
         brunt_hdf5_get_integer(file, "particles", &particles)) {
+        if (!brunt_hdf5_get_integer(file, "elements", &elements)) elements = 0;
         fprintf(out, "checkpoint written by brunt %s in %s precision\n", version, precision);
         fprintf(out,
-                "time       %.17g s\nstep       %lld\nparticles  %lld\npictures   %lld\nwall time  %.1f s so far\n",
-                state.time, (long long)state.step, particles, (long long)state.picture_count, state.wall_seconds);
+                "time       %.17g s\nstep       %lld\nparticles  %lld\nelements   %lld\npictures   %lld\nwall time  "
+                "%.1f s so "
+                "far\n",
+                state.time, (long long)state.step, particles, elements, (long long)state.picture_count,
+                state.wall_seconds);
         if (state.failed) fprintf(out, "FAILED     %s\n", state.reason);
         if (H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_NATIVE, describe_block, out, H5O_INFO_BASIC) < 0)
             status = brunt_fail(error, BRUNT_BAD_INPUT, "%s: HDF5 cannot read the file", path);

@@ -17,6 +17,7 @@ typedef struct brunt_run_state {
     char reason[1024];
     double time; // [s] of the world
     int64_t step;
+    uint64_t mesh_hash; // of the mesh files' contents, which are no part of the scene's text
 } brunt_run_state;
 
 void brunt_run_state_free(brunt_run_state *state);

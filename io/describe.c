@@ -5,6 +5,7 @@
 
 #include "checkpoint.h"
 #include "error.h"
+#include "gmsh.h"
 #include "hdf5_file.h"
 #include "history.h"
 #include "vtu.h"
@@ -22,6 +23,10 @@ int brunt_describe_file(const char *path, FILE *out, brunt_error *error) {
         return strcmp(kind, "history") ? brunt_checkpoint_describe(path, out, error)
                                        : brunt_history_describe(path, out, error);
     if (!strncmp(start, "<?xml", 5) || !strncmp(start, "<VTKFile", 8)) return brunt_vtu_describe(path, out, error);
+    const char *ending = strrchr(path, '.');
+    if (!strncmp(start, "$MeshFormat", 11) || (ending && !strcmp(ending, ".msh")))
+        return brunt_gmsh_describe(path, out, error);
     return brunt_fail(error, BRUNT_BAD_INPUT,
-                      "%s: not a checkpoint, history, picture (.vtu) or collection (.pvd) of brunt", path);
+                      "%s: not a checkpoint, history, picture (.vtu) or collection (.pvd) of brunt, nor a mesh (.msh)",
+                      path);
 }

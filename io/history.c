@@ -9,6 +9,7 @@
 #include "error.h"
 #include "hdf5_file.h"
 #include "memory.h"
+#include "places.h"
 
 enum { FORMAT = 1, COLUMN_NAME = 200 };
 
@@ -21,7 +22,7 @@ typedef struct column {
 typedef struct probe {
     char name[64];
     int32_t body, field;
-    int64_t id; // particle
+    int64_t id; // particle, node or element
     brunt_field_info info;
 } probe;
 
@@ -151,7 +152,7 @@ static void add_probe(brunt_history *h, brunt_world *world, const probe *p) {
     const double *values = NULL;
     if (!h->declaring) {
         void *memory = h->scratch;
-        size_t bytes = sizeof(double) * (size_t)n * (size_t)brunt_body_particles(world, p->body);
+        size_t bytes = sizeof(double) * (size_t)n * (size_t)brunt_body_size(world, p->body, p->info.at);
         if (brunt_reserve(&memory, &h->scratch_capacity, bytes, 0)) {
             h->out_of_memory = true;
             return;
@@ -186,6 +187,7 @@ static void traverse(brunt_history *h, brunt_world *world) {
         brunt_force force;
         brunt_pair_force(world, p, &force);
         add_force(h, "contact", interval, &force);
+        add_named(h, brunt_world_dimension(world) == 2 ? "m" : "m^2", force.area, "contact.%s.area", force.name);
     }
     for (int32_t w = 0; w < brunt_wall_count(world); w++) {
         brunt_force force;
@@ -197,40 +199,38 @@ static void traverse(brunt_history *h, brunt_world *world) {
 
 // ---------------------------------------------------------------------------------------------------- probes
 
+static int64_t nearest_place(const double *places, int64_t count, int dimension, const double point[3]) {
+    double least = INFINITY;
+    int64_t nearest = -1;
+    for (int64_t i = 0; i < count; i++) {
+        double square = 0;
+        for (int c = 0; c < dimension; c++) {
+            double d = places[3 * i + c] - point[c];
+            square += d * d;
+        }
+        if (square < least) least = square, nearest = i;
+    }
+    return nearest;
+}
+
 static int find_probe(brunt_world *world, const brunt_probe *def, probe *out, brunt_error *error) {
     snprintf(out->name, sizeof out->name, "%s", def->name);
-    out->body = -1;
-    for (int32_t b = 0; b < brunt_body_count(world); b++)
-        if (!strcmp(brunt_body_name(world, b), def->body)) out->body = b;
+    out->body = brunt_find_body(world, def->body);
     if (out->body < 0)
         return brunt_fail(error, BRUNT_BAD_INPUT, "output.probes.%s: there is no body '%s'", def->name, def->body);
     out->field = brunt_body_find_field(world, out->body, def->field);
-    int32_t position = brunt_body_find_field(world, out->body, "position");
-    if (out->field < 0 || position < 0)
+    if (out->field < 0)
         return brunt_fail(error, BRUNT_BAD_INPUT, "output.probes.%s: body '%s' has no field '%s'", def->name, def->body,
                           def->field);
     out->info = brunt_body_field(world, out->body, out->field);
-    int64_t count = brunt_body_particles(world, out->body);
-    double *x = brunt_alloc(sizeof *x * 3 * (size_t)count);
-    if (!x)
-        return brunt_fail(error, BRUNT_FAILED, "out of memory while looking for the particle of probe '%s'", def->name);
-    brunt_body_read(world, out->body, position, x);
-    double nearest = INFINITY;
-    out->id = -1;
-    for (int64_t i = 0; i < count; i++) {
-        double square = 0;
-        for (int c = 0; c < brunt_world_dimension(world); c++) {
-            double d = x[3 * i + c] - def->point[c];
-            square += d * d;
-        }
-        if (square < nearest) {
-            nearest = square;
-            out->id = i;
-        }
-    }
-    brunt_free(x);
+    double *places = NULL;
+    int status = brunt_places_read(world, out->body, out->info.at, &places, error);
+    if (status) return status;
+    out->id = nearest_place(places, brunt_body_size(world, out->body, out->info.at), brunt_world_dimension(world),
+                            def->point);
+    brunt_free(places);
     if (out->id < 0)
-        return brunt_fail(error, BRUNT_BAD_INPUT, "output.probes.%s: body '%s' has no particles", def->name, def->body);
+        return brunt_fail(error, BRUNT_BAD_INPUT, "output.probes.%s: body '%s' is empty", def->name, def->body);
     return BRUNT_OK;
 }
 

@@ -2,7 +2,8 @@
 //
 // Columns are named with dots ("body.rod.velocity_x"); in the HDF5 file the dots are folders. All are doubles with a
 // unit. Forces are the mean over the interval since the line before: change of impulse over change of time, so that a
-// contact between two lines is not missed, and force x interval summed up is the impulse.
+// contact between two lines is not missed, and force x interval summed up is the impulse. The area that touches is that
+// of the step before the line.
 //
 // Lines are kept in memory. The CSV file grows line by line, one write each, so that it can be watched and a kill
 // leaves whole lines. The HDF5 file, which a killed writer could leave unreadable, is written anew aside and renamed:
@@ -14,8 +15,8 @@
 
 typedef struct brunt_history brunt_history;
 
-// Lists the columns and finds the probes' particles; to be called before the world has moved or been restored. NULL and
-// an error (BRUNT_BAD_INPUT) when a probe names what its body has not.
+// Lists the columns and finds the probes' particles, nodes and elements; to be called before the world has moved or
+// been restored. NULL and an error (BRUNT_BAD_INPUT) when a probe names what its body has not.
 brunt_history *brunt_history_create(brunt_world *world, const brunt_scene *scene, brunt_error *error);
 void brunt_history_destroy(brunt_history *history);
 

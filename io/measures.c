@@ -5,6 +5,7 @@
 
 #include "error.h"
 #include "memory.h"
+#include "places.h"
 
 // ---------------------------------------------------------------------------------------------------- history
 
@@ -57,59 +58,58 @@ static double reduce_history(const brunt_measure *m, const double *time, const d
     return NAN;
 }
 
-// ---------------------------------------------------------------------------------------------------- particles
-
-static int32_t find_body(const brunt_world *world, const char *name) {
-    for (int32_t b = 0; b < brunt_body_count(world); b++)
-        if (!strcmp(brunt_body_name(world, b), name)) return b;
-    return -1;
-}
+// ---------------------------------------------------------------------------------------------------- bodies
 
 // A field of a body in new memory.
 static int read_field(brunt_world *world, int32_t body, const char *name, const brunt_measure *m, double **out,
-                      int *components, brunt_error *error) {
+                      brunt_field_info *info, brunt_error *error) {
     int32_t field = brunt_body_find_field(world, body, name);
     if (field < 0)
         return brunt_fail(error, BRUNT_BAD_INPUT, "measures.%s: body '%s' has no field '%s'", m->name, m->body, name);
-    *components = brunt_body_field(world, body, field).components;
-    *out = brunt_alloc(sizeof(double) * (size_t)*components * (size_t)brunt_body_particles(world, body));
+    *info = brunt_body_field(world, body, field);
+    *out = brunt_alloc(sizeof(double) * (size_t)info->components * (size_t)brunt_body_size(world, body, info->at));
     if (!*out) return brunt_fail(error, BRUNT_FAILED, "out of memory for measure '%s'", m->name);
     brunt_body_read(world, body, field, *out);
     return BRUNT_OK;
 }
 
-typedef struct particle_set {
+// What a measure looks at: particles, nodes or elements.
+typedef struct point_set {
     int64_t count;
     int dimension;
-    double *position, *gradient, *volume, *values;
+    double *position, *values;
+    double *gradient, *volume; // of particles, for their size; nodes have none
     int components;
-} particle_set;
+} point_set;
 
-static void free_particles(particle_set *set) {
+static void free_points(point_set *set) {
     brunt_free(set->position);
     brunt_free(set->gradient);
     brunt_free(set->volume);
     brunt_free(set->values);
 }
 
-static int read_particles(const brunt_measure *m, brunt_world *world, particle_set *set, brunt_error *error) {
+static int read_points(const brunt_measure *m, brunt_world *world, point_set *set, brunt_error *error) {
     memset(set, 0, sizeof *set);
-    int32_t body = find_body(world, m->body);
+    int32_t body = brunt_find_body(world, m->body);
     if (body < 0) return brunt_fail(error, BRUNT_BAD_INPUT, "measures.%s: there is no body '%s'", m->name, m->body);
-    set->count = brunt_body_particles(world, body);
+    brunt_field_info info = {.at = brunt_place_of_motion(world, body)};
+    bool sized = m->kind != BRUNT_MEASURE_FIELD && info.at == BRUNT_AT_PARTICLES;
+    int status = BRUNT_OK;
     set->dimension = brunt_world_dimension(world);
-    int components;
-    int status = read_field(world, body, "position", m, &set->position, &components, error);
     if (m->kind == BRUNT_MEASURE_FIELD) {
-        if (!status) status = read_field(world, body, m->field, m, &set->values, &set->components, error);
+        status = read_field(world, body, m->field, m, &set->values, &info, error);
+        set->components = info.components;
         if (!status && m->component >= set->components)
             status = brunt_fail(error, BRUNT_BAD_INPUT, "measures.%s: component %d of '%s', which has %d", m->name,
                                 m->component, m->field, set->components);
-    } else {
-        if (!status) status = read_field(world, body, "deformation_gradient", m, &set->gradient, &components, error);
-        if (!status) status = read_field(world, body, "volume", m, &set->volume, &components, error);
     }
-    if (status) free_particles(set);
+    brunt_field_info unused;
+    if (sized) status = read_field(world, body, "deformation_gradient", m, &set->gradient, &unused, error);
+    if (sized && !status) status = read_field(world, body, "volume", m, &set->volume, &unused, error);
+    set->count = brunt_body_size(world, body, info.at);
+    if (!status) status = brunt_places_read(world, body, info.at, &set->position, error);
+    if (status) free_points(set);
     return status;
 }
 
@@ -118,8 +118,9 @@ static double determinant(const double F[9]) {
 }
 
 // Half the size of particle p along a unit direction n: a lattice cell of edge s deforms with F, and |F^T n| is the
-// stretch of what now lies along n. s from the reference volume (volume / det F).
-static double half_size(const particle_set *set, int64_t p, const double n[3]) {
+// stretch of what now lies along n. s from the reference volume (volume / det F). A node lies on the surface itself.
+static double half_size(const point_set *set, int64_t p, const double n[3]) {
+    if (!set->gradient) return 0;
     const double *F = set->gradient + 9 * p;
     double reference = set->volume[p] / determinant(F);
     double spacing = set->dimension == 3 ? cbrt(reference) : sqrt(reference), square = 0;
@@ -136,7 +137,7 @@ static bool unit_axis(const brunt_measure *m, double axis[3]) {
     return length > 0;
 }
 
-static double extent(const brunt_measure *m, const particle_set *set) {
+static double extent(const brunt_measure *m, const point_set *set) {
     double axis[3], least = INFINITY, most = -INFINITY;
     if (!unit_axis(m, axis)) return NAN;
     for (int64_t p = 0; p < set->count; p++) {
@@ -148,7 +149,7 @@ static double extent(const brunt_measure *m, const particle_set *set) {
     return set->count ? most - least : NAN;
 }
 
-static double radius(const brunt_measure *m, const particle_set *set) {
+static double radius(const brunt_measure *m, const point_set *set) {
     double axis[3], most = NAN;
     bool has_axis = unit_axis(m, axis);
     // In two dimensions an axis line may be out of the plane: a disk about its centre.
@@ -171,7 +172,7 @@ static double radius(const brunt_measure *m, const particle_set *set) {
     return most;
 }
 
-static double reduce_field(const brunt_measure *m, const particle_set *set) {
+static double reduce_field(const brunt_measure *m, const point_set *set) {
     double axis[3], least = INFINITY, most = -INFINITY, sum = 0;
     bool sliced = unit_axis(m, axis);
     int64_t count = 0;
@@ -188,7 +189,8 @@ static double reduce_field(const brunt_measure *m, const particle_set *set) {
             for (int c = 0; c < set->components; c++) value += v[c] * v[c] * (set->components == 6 && c >= 3 ? 2 : 1);
             value = sqrt(value);
         }
-        if (isnan(value)) return NAN;
+        // A world that goes on holds no such values but where there is nothing to say: the gap to a body out of reach.
+        if (isnan(value)) continue;
         least = fmin(least, value);
         most = fmax(most, value);
         sum += value;
@@ -204,14 +206,14 @@ static double reduce_field(const brunt_measure *m, const particle_set *set) {
     }
 }
 
-static int take_particles(const brunt_measure *m, brunt_world *world, double *value, brunt_error *error) {
-    particle_set set;
-    int status = read_particles(m, world, &set, error);
+static int take_points(const brunt_measure *m, brunt_world *world, double *value, brunt_error *error) {
+    point_set set;
+    int status = read_points(m, world, &set, error);
     if (status) return status;
     *value = m->kind == BRUNT_MEASURE_EXTENT   ? extent(m, &set)
              : m->kind == BRUNT_MEASURE_RADIUS ? radius(m, &set)
                                                : reduce_field(m, &set);
-    free_particles(&set);
+    free_points(&set);
     return BRUNT_OK;
 }
 
@@ -224,7 +226,7 @@ int brunt_measure_check(const brunt_measure *measure, const brunt_history *histo
         if (measure->kind == BRUNT_MEASURE_FIELD && measure->take != BRUNT_TAKE_MIN &&
             measure->take != BRUNT_TAKE_MAX && measure->take != BRUNT_TAKE_MAX_ABS && measure->take != BRUNT_TAKE_MEAN)
             return brunt_fail(error, BRUNT_BAD_INPUT,
-                              "measures.%s: a field is reduced over particles by take: min, max, mean or max_abs",
+                              "measures.%s: a field is reduced over the body by take: min, max, mean or max_abs",
                               measure->name);
         return brunt_measure_initial(measure, world, &unused, error);
     }
@@ -250,7 +252,7 @@ int brunt_measure_check(const brunt_measure *measure, const brunt_history *histo
 
 int brunt_measure_initial(const brunt_measure *measure, brunt_world *world, double *initial, brunt_error *error) {
     *initial = NAN;
-    return measure->kind == BRUNT_MEASURE_HISTORY ? BRUNT_OK : take_particles(measure, world, initial, error);
+    return measure->kind == BRUNT_MEASURE_HISTORY ? BRUNT_OK : take_points(measure, world, initial, error);
 }
 
 int brunt_measure_evaluate(const brunt_measure *measure, const brunt_history *history, brunt_world *world,
@@ -265,7 +267,7 @@ int brunt_measure_evaluate(const brunt_measure *measure, const brunt_history *hi
         value = reduce_history(measure, brunt_history_column(history, "time"), column, brunt_history_rows(history));
         initial = brunt_history_rows(history) ? column[0] : NAN;
     } else {
-        int status = take_particles(measure, world, &value, error);
+        int status = take_points(measure, world, &value, error);
         if (status) return status;
     }
     value -= measure->minus;

@@ -1,4 +1,4 @@
-// Named results of a run: numbers taken from the history or from the particles at the end, judged against references.
+// Named results of a run: numbers taken from the history or from the bodies at the end, judged against references.
 #pragma once
 
 #include "history.h"
@@ -17,7 +17,7 @@ typedef struct brunt_measure_result {
 int brunt_measure_check(const brunt_measure *measure, const brunt_history *history, brunt_world *world,
                         brunt_error *error);
 
-// The value at the start of a measure that looks at particles (NAN for one that reads the history): the divisor of
+// The value at the start of a measure that looks at a body (NAN for one that reads the history): the divisor of
 // `relative_to: initial`. To be called before the world has moved or been restored.
 int brunt_measure_initial(const brunt_measure *measure, brunt_world *world, double *initial, brunt_error *error);
 

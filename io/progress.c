@@ -21,6 +21,13 @@ void brunt_duration(double seconds, char out[32]) {
         snprintf(out, 32, "%.*f s", s < 10, seconds);
 }
 
+void brunt_counts(const brunt_world *world, char out[64]) {
+    long long particles = brunt_world_particles(world), elements = brunt_world_elements(world);
+    int used = 0;
+    if (particles || !elements) used = snprintf(out, 64, "%lld particles", particles);
+    if (elements) snprintf(out + used, 64 - (size_t)used, "%s%lld elements", used ? ", " : "", elements);
+}
+
 brunt_console brunt_console_open(FILE *out) {
     return (brunt_console){.out = out, .terminal = out && isatty(fileno(out))};
 }
@@ -68,12 +75,18 @@ static void format_line(const brunt_progress *p, brunt_world *world, char *line,
     brunt_energy energy;
     brunt_world_energy(world, &energy);
     double time = brunt_world_time(world), end = brunt_world_end(world);
-    char left[32];
+    double particles = (double)brunt_world_particles(world), elements = (double)brunt_world_elements(world);
+    char left[32], rates[96] = "";
+    int used = 0;
+    if (particles > 0)
+        used = snprintf(rates, sizeof rates, "  %.3g M particle-steps/s", 1e-6 * p->steps_per_second * particles);
+    if (elements > 0)
+        snprintf(rates + used, sizeof rates - (size_t)used, "  %.3g M element-steps/s",
+                 1e-6 * p->steps_per_second * elements);
     brunt_duration((end - time) / p->time_per_second, left);
-    snprintf(line, room,
-             "step %lld  t %.4g s  dt %.3g s  energy error %.3g %%  %.3g M particle-steps/s  %.1f %%  %s left",
-             (long long)brunt_world_steps(world), time, brunt_world_dt(world), 100 * energy.error_relative,
-             1e-6 * p->steps_per_second * (double)brunt_world_particles(world), 100 * time / end, left);
+    snprintf(line, room, "step %lld  t %.4g s  dt %.3g s  energy error %.3g %%%s  %.1f %%  %s left",
+             (long long)brunt_world_steps(world), time, brunt_world_dt(world), 100 * energy.error_relative, rates,
+             100 * time / end, left);
 }
 
 static void show(brunt_console *console, const char *line, double share) {

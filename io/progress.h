@@ -36,3 +36,5 @@ void brunt_progress_end(brunt_progress *progress);
 
 // "1 h 02 min", "3 min 20 s", "12 s", "0.5 s"
 void brunt_duration(double seconds, char out[32]);
+// "5000 particles", "1200 elements", "5000 particles, 1200 elements"
+void brunt_counts(const brunt_world *world, char out[64]);

@@ -11,6 +11,7 @@
 #include "atomic_file.h"
 #include "checkpoint.h"
 #include "error.h"
+#include "hash.h"
 #include "measures.h"
 #include "memory.h"
 #include "progress.h"
@@ -171,22 +172,41 @@ static int write_outputs(run *r, bool last, brunt_error *error) {
 // ---------------------------------------------------------------------------------------------------- before the first
 // step
 
+// The fields that any body has, each once.
+static void list_fields(const brunt_world *world, char *names, size_t room) {
+    size_t used = 0;
+    for (int32_t b = 0; b < brunt_body_count(world); b++)
+        for (int32_t f = 0; f < brunt_body_field_count(world, b); f++) {
+            const char *name = brunt_body_field(world, b, f).name;
+            bool listed = false;
+            for (int32_t other = 0; other < b; other++) listed |= brunt_body_find_field(world, other, name) >= 0;
+            int wrote = listed ? 0 : snprintf(names + used, room - used, " %s", name);
+            if ((size_t)wrote >= room - used) return;
+            used += (size_t)wrote;
+        }
+}
+
+void brunt_run_warn(const brunt_scene *scene, const brunt_world *world, brunt_console *console) {
+    for (const char *line = scene->warnings; line && *line;) {
+        int length = (int)strcspn(line, "\n");
+        brunt_console_print(console, "warning: %.*s\n", length, line);
+        line += length + (line[length] == '\n');
+    }
+    for (int32_t w = 0; w < brunt_warning_count(world); w++)
+        brunt_console_print(console, "warning: %s\n", brunt_world_warning(world, w));
+}
+
 int brunt_run_check(const brunt_scene *scene, brunt_world *world, const brunt_history *history, FILE *messages,
                     brunt_error *error) {
     int mistakes = 0;
     brunt_error found = {0};
     for (int32_t f = 0; f < scene->output.field_count; f++) {
-        bool known = false;
+        bool known = strcmp(scene->output.fields[f], "default") == 0;
         for (int32_t b = 0; b < brunt_body_count(world); b++)
             known |= brunt_body_find_field(world, b, scene->output.fields[f]) >= 0;
         if (known) continue;
         char names[700] = "";
-        size_t used = 0;
-        for (int32_t i = 0; brunt_body_count(world) > 0 && i < brunt_body_field_count(world, 0); i++) {
-            int wrote = snprintf(names + used, sizeof names - used, " %s", brunt_body_field(world, 0, i).name);
-            if ((size_t)wrote >= sizeof names - used) break;
-            used += (size_t)wrote;
-        }
+        list_fields(world, names, sizeof names);
         brunt_fail(mistakes ? &found : error, BRUNT_BAD_INPUT, "output.fields: no body has a field '%s'; there are:%s",
                    scene->output.fields[f], names);
         if (messages) fprintf(messages, "%s: %s\n", scene->source, mistakes ? found.message : error->message);
@@ -209,6 +229,25 @@ static int make_scene_text(run *r, brunt_error *error) {
     return BRUNT_OK;
 }
 
+// Of the meshes that were read from files: a run must not go on with another mesh that happens to be of the same size.
+static uint64_t hash_meshes(const brunt_scene *scene) {
+    uint64_t hash = 0;
+    for (int32_t b = 0; b < scene->world.body_count; b++) {
+        const brunt_mesh *mesh = &scene->world.bodies[b].mesh;
+        for (int64_t i = 0; i < 3 * (int64_t)mesh->node_count; i++) {
+            uint64_t word;
+            memcpy(&word, &mesh->nodes[i / 3][i % 3], sizeof word);
+            hash = brunt_hash_add(hash, word);
+        }
+        int64_t corners = mesh->element_count ? (int64_t)mesh->element_count * brunt_element_nodes(mesh->kind) : 0;
+        for (int64_t i = 0; i < corners; i++) hash = brunt_hash_add(hash, (uint64_t)mesh->elements[i]);
+        for (int32_t g = 0; g < mesh->group_count; g++)
+            for (int32_t n = 0; n < mesh->groups[g].count; n++)
+                hash = brunt_hash_add(hash, (uint64_t)mesh->groups[g].nodes[n]);
+    }
+    return hash;
+}
+
 // Makes world, history and measures. Nothing on disk is touched.
 static int make_world(run *r, brunt_error *error) {
     const brunt_scene *scene = r->scene;
@@ -227,14 +266,18 @@ static int make_world(run *r, brunt_error *error) {
     if (!status && !r->measure_initial) status = brunt_fail(error, BRUNT_FAILED, "out of memory");
     for (int32_t m = 0; m < scene->measure_count && !status; m++)
         status = brunt_measure_initial(&scene->measures[m], r->world, &r->measure_initial[m], error);
+    r->state.mesh_hash = hash_meshes(scene);
     return status ? status : make_scene_text(r, error);
 }
 
 static int restore(run *r, brunt_error *error) {
     char path[BRUNT_PATH_LENGTH];
+    uint64_t mesh_hash = r->state.mesh_hash;
     int status = path_in(r, "checkpoint.h5", path, error);
     if (!status) status = brunt_checkpoint_read(path, r->world, r->scene_text, &r->state, error);
     if (status) return status;
+    if (r->state.mesh_hash != mesh_hash)
+        return brunt_fail(error, BRUNT_BAD_INPUT, "%s: a mesh file has changed since the checkpoint was written", path);
     r->picture_capacity = sizeof(double) * (size_t)r->state.picture_count;
     // The clocks of this process start now; those in the checkpoint are of the legs before.
     r->state.cpu_seconds -= cpu_clock();
@@ -350,15 +393,8 @@ static int finish(run *r, const char *status_name, const char *reason, bool eval
 
 // The failing state is kept to be looked at; what goes wrong here must not hide why the run failed.
 static void finish_failed(run *r, brunt_error *error) {
-    char reason[1600];
-    if (error->code == BRUNT_FAILED && error->body[0] && error->id >= 0)
-        snprintf(reason, sizeof reason, "%s (body '%s', particle %lld at [%.6g, %.6g, %.6g] m, t = %.9g s)",
-                 error->message, error->body, (long long)error->id, error->place[0], error->place[1], error->place[2],
-                 error->time);
-    else if (error->code == BRUNT_FAILED && error->body[0])
-        snprintf(reason, sizeof reason, "%s (body '%s', t = %.9g s)", error->message, error->body, error->time);
-    else
-        snprintf(reason, sizeof reason, "%s", error->message);
+    char reason[sizeof error->message];
+    memcpy(reason, error->message, sizeof reason);
     brunt_error second = {0};
     if (error->code == BRUNT_FAILED) {
         if (!picture_is_here(r) && write_picture(r, &second))
@@ -368,7 +404,7 @@ static void finish_failed(run *r, brunt_error *error) {
     }
     if (finish(r, "failed", reason, false, &second))
         brunt_console_print(&r->console, "no summary: %s\n", second.message);
-    snprintf(error->message, sizeof error->message, "%.1000s", reason);
+    memcpy(error->message, reason, sizeof reason);
 }
 
 // ---------------------------------------------------------------------------------------------------- the loop
@@ -419,8 +455,11 @@ static int run_made(run *r, brunt_error *error) {
         if (!status && r->state.picture_count)
             status = brunt_pvd_write(path, r->world, r->state.picture_times, r->state.picture_count, error);
     } else {
-        brunt_console_print(&r->console, "%s: %lld particles, to t = %g s, into %s\n", r->scene->name,
-                            (long long)brunt_world_particles(r->world), brunt_world_end(r->world), r->folder);
+        char counts[64];
+        brunt_counts(r->world, counts);
+        brunt_console_print(&r->console, "%s: %s, to t = %g s, into %s\n", r->scene->name, counts,
+                            brunt_world_end(r->world), r->folder);
+        brunt_run_warn(r->scene, r->world, &r->console);
         status = write_first(r, error);
     }
     schedule(r);

@@ -10,6 +10,7 @@
 #include <stdio.h>
 
 #include "history.h"
+#include "progress.h"
 #include "scene.h"
 
 typedef struct brunt_run_options {
@@ -30,3 +31,5 @@ int brunt_run(const brunt_scene *scene, const brunt_run_options *options, brunt_
 // `messages` (may be NULL), the first is in `error`.
 int brunt_run_check(const brunt_scene *scene, brunt_world *world, const brunt_history *history, FILE *messages,
                     brunt_error *error);
+// What is doubtful about a scene and the world made of it, each line after "warning: ".
+void brunt_run_warn(const brunt_scene *scene, const brunt_world *world, brunt_console *console);

@@ -17,6 +17,7 @@ static void release_outputs(brunt_scene *scene) {
 void brunt_scene_free(brunt_scene *scene) {
     if (!scene) return;
     release_outputs(scene);
+    free(scene->warnings);
     if (scene->resolved) {
         brunt_tree_free(scene->resolved);
         brunt_free(scene->resolved);
@@ -32,6 +33,19 @@ static void take_names(brunt_scene *scene, const char *path) {
     if (length >= sizeof scene->name) length = sizeof scene->name - 1;
     memcpy(scene->name, base, length);
     scene->name[length] = 0;
+}
+
+// Warnings of mesh files and of the scene go to a text of the scene's own.
+static bool start_warnings(scene_reader *reader, size_t *length) {
+    reader->warnings = open_memstream(&reader->scene->warnings, length);
+    return reader->warnings != NULL;
+}
+
+static void end_warnings(scene_reader *reader, const size_t *length) {
+    fclose(reader->warnings);
+    if (*length) return;
+    free(reader->scene->warnings);
+    reader->scene->warnings = NULL;
 }
 
 static void read_tree(scene_reader *reader, const char *text, size_t length, const char *const *sets, int set_count) {
@@ -57,10 +71,12 @@ int brunt_scene_parse(const char *text, size_t length, const char *name, const c
     brunt_units *units = brunt_units_open();
     scene->resolved = tree;
     int status = BRUNT_BAD_INPUT;
-    if (tree && units) {
+    size_t warned = 0;
+    scene_reader reader = {.tree = tree, .units = units, .scene = scene};
+    if (tree && units && start_warnings(&reader, &warned)) {
         *tree = (scene_tree){.name = scene->source, .source = text, .length = length};
-        scene_reader reader = {.tree = tree, .units = units, .scene = scene};
         read_tree(&reader, text, length, sets, set_count);
+        end_warnings(&reader, &warned);
         if (tree->message_count == 0 && !tree->exhausted)
             status = BRUNT_OK;
         else

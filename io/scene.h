@@ -8,9 +8,9 @@
 // A named result, judged against an expectation where one is given.
 typedef enum brunt_measure_kind {
     BRUNT_MEASURE_HISTORY,   // a column of the history (`history: energy.kinetic`), reduced over time
-    BRUNT_MEASURE_EXTENT,    // size of a body along an axis, from particle surfaces, at the end
+    BRUNT_MEASURE_EXTENT,    // size of a body along an axis, from particle surfaces or nodes, at the end
     BRUNT_MEASURE_RADIUS,    // greatest distance of a body's surface from an axis line within a slab, at the end
-    BRUNT_MEASURE_FIELD      // a particle field of a body reduced over its particles, at the end
+    BRUNT_MEASURE_FIELD      // a field of a body reduced over its particles, nodes or elements, at the end
 } brunt_measure_kind;
 
 typedef enum brunt_take {
@@ -30,7 +30,7 @@ typedef struct brunt_measure {
     char body[BRUNT_NAME_LENGTH];
     char field[64]; int component;      // field: name, component (-1: scalar or magnitude)
     double axis[3], center[3];          // extent: axis; radius: axis line through center
-    double slab_min, slab_max;          // [m] radius, field: only particles whose coordinate along axis is inside; default all
+    double slab_min, slab_max;          // [m] radius, field: only what has its coordinate along axis inside; default all
     bool relative_to_initial;           // divide by the value at the first sample
     double relative_to;                 // divide by this (NAN: no)
     double minus;                       // subtract this first (default 0)
@@ -40,14 +40,15 @@ typedef struct brunt_measure {
     char source[256];                   // where the reference is from
 } brunt_measure;
 
-// Probe: fields of the particle of a body that is nearest to a point at the start, written to the history.
+// Probe: a field of the particle, node or element (where the field lives) of a body that is nearest to a point at the start,
+// written to the history.
 typedef struct brunt_probe { char name[64], body[BRUNT_NAME_LENGTH]; double point[3]; char field[64]; } brunt_probe;
 
 typedef struct brunt_output_def {
     double every;              // [s] between pictures (VTU); 0 = first and last only; INFINITY = none
     double history;            // [s] between history lines; 0 = every step
     double checkpoint;         // [s of wall time] between checkpoints; 0 = every picture; INFINITY = only at the end and on signals
-    char (*fields)[64]; int32_t field_count;   // owned; what pictures hold besides id
+    char (*fields)[64]; int32_t field_count;   // owned; what pictures hold besides id; "default": what the body's method always shows
     bool float32;              // pictures in single precision; default true
     brunt_probe *probes; int32_t probe_count;  // owned
 } brunt_output_def;
@@ -59,6 +60,7 @@ typedef struct brunt_scene {
     brunt_world_def world;
     brunt_output_def output;
     brunt_measure *measures; int32_t measure_count;  // owned
+    char *warnings;            // doubts about it, one a line; NULL: none. Owned, of the C library
     void *resolved;            // opaque: for brunt_scene_write
 } brunt_scene;
 

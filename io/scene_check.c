@@ -189,6 +189,34 @@ static void check_polygon(scene_reader *reader, scene_node *node, const scene_ke
     }
 }
 
+static void check_table(scene_reader *reader, scene_node *node) {
+    static const scene_key time = {.type = SCENE_REAL, .unit = "s", .min = -INFINITY, .max = INFINITY},
+                           factor = {.type = SCENE_REAL, .unit = "1", .min = -INFINITY, .max = INFINITY};
+    if (node->kind != SCENE_LIST || node->count == 0) {
+        brunt_tree_complain(reader->tree, node, "%s is given, a list of points [[time, factor], ...] is wanted",
+                            node->kind == SCENE_LIST ? "an empty list" : kind_name(node));
+        return;
+    }
+    node->good = true;
+    const scene_node *before = NULL;
+    for (scene_node *child = node->first; child; child = child->next) {
+        child->row = node->row;
+        if (child->kind != SCENE_LIST || child->count != 2) {
+            brunt_tree_complain(reader->tree, child, "[time, factor] is wanted: a time (s) and a pure number");
+            node->good = false;
+            continue;
+        }
+        bool timed = check_number(reader, child->first, &time), good = check_number(reader, child->last, &factor);
+        child->good = timed && good;
+        node->good &= child->good;
+        if (timed && before && !(child->first->value[0] > before->value[0])) {
+            brunt_tree_complain(reader->tree, child->first, "the times must ascend");
+            node->good = false;
+        }
+        if (timed) before = child->first;
+    }
+}
+
 // ---------------------------------------------------------------------------------------------------- words
 
 static void list_names(const char *const *names, int count, char *out, size_t size) {
@@ -287,6 +315,36 @@ static void check_names(scene_reader *reader, scene_node *node, const scene_key 
             child->good = false;
         }
         node->good &= child->good;
+    }
+}
+
+// Which axes: value[c] is 1 for those that are meant.
+static void check_axes(scene_reader *reader, scene_node *node) {
+    static const char *const axes[] = {"x", "y", "z"};
+    int dimension = reader->dimension ? reader->dimension : 3;
+    bool all = node->kind == SCENE_SCALAR && strcmp(node->text, "all") == 0;
+    if (!all && (node->kind != SCENE_LIST || node->count == 0)) {
+        brunt_tree_complain(reader->tree, node, "%s is given, a list of axes like [x, %s] or the word `all` is wanted",
+                            node->kind == SCENE_LIST ? "an empty list" : kind_name(node), axes[dimension - 1]);
+        return;
+    }
+    node->good = true;
+    for (int c = 0; all && c < dimension; c++) node->value[c] = 1;
+    for (scene_node *child = node->first; child; child = child->next) {
+        int axis = -1;
+        for (int c = 0; c < dimension && child->kind == SCENE_SCALAR; c++)
+            if (strcmp(child->text, axes[c]) == 0) axis = c;
+        child->row = node->row;
+        child->good = axis >= 0 && node->value[axis] == 0;
+        node->good &= child->good;
+        if (child->kind != SCENE_SCALAR)
+            brunt_tree_complain(reader->tree, child, "%s is given, one of the axes is wanted", kind_name(child));
+        else if (axis < 0)
+            complain_choice(reader, child, child->text, axes, dimension);
+        else if (!child->good)
+            brunt_tree_complain(reader->tree, child, "'%s' is there twice", child->text);
+        else
+            node->value[axis] = 1;
     }
 }
 
@@ -581,6 +639,8 @@ static void check_value(scene_reader *reader, scene_node *node, const scene_key 
         }
         break;
     case SCENE_POLYGON: check_polygon(reader, node, row); break;
+    case SCENE_TABLE: check_table(reader, node); break;
+    case SCENE_AXES: check_axes(reader, node); break;
     case SCENE_TEXT:
     case SCENE_NAME: check_text(reader, node, row); break;
     case SCENE_NAMES: check_names(reader, node, row); break;

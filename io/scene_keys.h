@@ -18,6 +18,8 @@ typedef enum scene_type {
     SCENE_PARTIAL,   // a vector whose components may be `free`
     SCENE_TURN,      // a number or, in three dimensions, a vector
     SCENE_POLYGON,   // list of [x, y]
+    SCENE_TABLE,     // list of [time, factor], ascending
+    SCENE_AXES,      // list of x, y, z, or the word `all`
     SCENE_TEXT,      // free text
     SCENE_NAME,      // a name of the user's own, or of a field
     SCENE_NAMES,     // list of names

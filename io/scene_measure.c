@@ -63,6 +63,8 @@ static const char *column_mistake(const scene_reader *reader, const char *column
             if (names_part(rest, world->planes[i].name)) return NULL;
         for (int i = 0; i < world->region_count; i++)
             if (names_part(rest, world->regions[i].name)) return NULL;
+        for (int i = 0; i < world->group_count; i++)
+            if (names_part(rest, world->groups[i].name)) return NULL;
         return "there is no boundary of that name";
     }
     if (family == 5 && strncmp(column, "probe", 5) == 0) {
@@ -162,7 +164,7 @@ static void fill_time_of(scene_reader *reader, scene_node *node, brunt_measure *
     bool history = measure->kind == BRUNT_MEASURE_HISTORY, field = measure->kind == BRUNT_MEASURE_FIELD;
     if (!take && field)
         brunt_tree_complain_key(tree, node,
-                                "'take' is missing: a field is reduced over particles by min, max, mean or max_abs");
+                                "'take' is missing: a field is reduced over the body by min, max, mean or max_abs");
     if (!take && !field) take = brunt_add_default(reader, node, "take", "end");
     measure->take = (brunt_take)(int)brunt_real_of(node, "take", BRUNT_TAKE_END);
     if (take && take->good) {
@@ -170,7 +172,7 @@ static void fill_time_of(scene_reader *reader, scene_node *node, brunt_measure *
         bool over_particles =
             t == BRUNT_TAKE_MIN || t == BRUNT_TAKE_MAX || t == BRUNT_TAKE_MEAN || t == BRUNT_TAKE_MAX_ABS;
         if (field && !over_particles)
-            brunt_tree_complain(tree, take, "a field is reduced over particles by min, max, mean or max_abs");
+            brunt_tree_complain(tree, take, "a field is reduced over the body by min, max, mean or max_abs");
         if (!field && !history && t != BRUNT_TAKE_END)
             brunt_tree_complain(tree, take, "this is measured at the end only");
     }

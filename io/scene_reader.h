@@ -2,8 +2,8 @@
 //
 // 1. scene_yaml.c   text to tree          2. scene_tree.c   overrides
 // 3. scene_check.c  tree against the table of keys: kinds, words, units, ranges, unknown and missing keys, defaults
-// 4. scene_shape.c, scene_parse.c, scene_measure.c  meaning: structures are filled, and what two keys say together is
-// checked
+// 4. scene_parse.c, scene_shape.c, scene_body.c, scene_contact.c, scene_boundary.c, scene_measure.c  meaning:
+// structures are filled, and what two keys say together is checked
 #pragma once
 
 #include "scene.h"
@@ -16,6 +16,7 @@ typedef struct scene_reader {
     brunt_units *units;
     int dimension; // 0 when the file's is unusable
     brunt_scene *scene;
+    FILE *warnings; // of the scene, one a line
 } scene_reader;
 
 // Stage 3. Afterwards every accepted value is `good`, and every key that has a default is there.
@@ -30,10 +31,13 @@ double brunt_real_of(const scene_node *map, const char *key, double fallback);
 const char *brunt_text_of(const scene_node *map, const char *key, const char *fallback);
 bool brunt_vector_of(const scene_node *map, const char *key, double out[3]); // false: not there, `out` is left
 
-// Stage 4.
+// Stage 4. World and output are filled in this order.
 void brunt_fill_shape_def(scene_reader *reader, const scene_node *node, brunt_shape *shape);
 brunt_placement brunt_fill_place(scene_reader *reader, const scene_node *list);
-void brunt_fill_world(scene_reader *reader);
+void brunt_fill_bodies(scene_reader *reader);
+void brunt_fill_contact(scene_reader *reader);
+void brunt_fill_boundaries(scene_reader *reader);
+void brunt_fill_world(scene_reader *reader); // calls the three above
 void brunt_fill_output(scene_reader *reader);
 void brunt_fill_measures(scene_reader *reader);
 const brunt_body_def *brunt_body_named(const scene_reader *reader, const char *name);
@@ -41,3 +45,13 @@ const brunt_body_def *brunt_body_named(const scene_reader *reader, const char *n
 void brunt_check_body_name(scene_reader *reader, const scene_node *node);
 // Copies text that must fit, or says that it is too long.
 void brunt_copy_text(scene_reader *reader, const scene_node *node, char *out, size_t size);
+int brunt_children_of(const scene_node *node, scene_kind kind); // 0 when it is of another kind
+// An array for as many entries as a map or list has; NULL for none, or when there is no memory.
+void *brunt_entries_for(scene_reader *reader, int count, size_t size);
+bool brunt_nonzero(const double v[3]);
+// Says that `node` names nothing in the section `parent`, with the nearest name or all there are.
+void brunt_complain_name(scene_reader *reader, const scene_node *node, const char *what, const char *parent);
+// Says `why` at a key that is there but must not be.
+void brunt_refuse_key(scene_reader *reader, const scene_node *node, const char *key, const char *why);
+// A doubt about an acceptable scene.
+void brunt_scene_warn(scene_reader *reader, const char *format, ...) __attribute__((format(printf, 2, 3)));

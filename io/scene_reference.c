@@ -42,6 +42,8 @@ static void describe_kind(const scene_key *row, char *out, size_t size) {
     case SCENE_PARTIAL: snprintf(out, size, strcmp(row->unit, "1") == 0 ? "vector" : "vector [%s]", row->unit); break;
     case SCENE_TURN: snprintf(out, size, "vector or number [%s]", row->unit); break;
     case SCENE_POLYGON: snprintf(out, size, "list of [x, y] [%s]", row->unit); break;
+    case SCENE_TABLE: snprintf(out, size, "list of [t, number]"); break;
+    case SCENE_AXES: snprintf(out, size, "list of axes"); break;
     case SCENE_TEXT: snprintf(out, size, "text"); break;
     case SCENE_NAME: snprintf(out, size, "name"); break;
     case SCENE_NAMES: snprintf(out, size, "list of names"); break;
@@ -342,6 +344,17 @@ static void schema_value(FILE *out, const scene_key *row) {
     case SCENE_TURN: fputs("\"anyOf\": [{\"$ref\": \"#/$defs/number\"}, {\"$ref\": \"#/$defs/vector\"}]", out); break;
     case SCENE_POLYGON:
         fputs("\"type\": \"array\", \"minItems\": 3, \"items\": {\"$ref\": \"#/$defs/vector\"}", out);
+        break;
+    case SCENE_TABLE:
+        fputs(
+            "\"type\": \"array\", \"minItems\": 1, \"items\": {\"type\": \"array\", \"minItems\": 2, \"maxItems\": 2, "
+            "\"items\": {\"$ref\": \"#/$defs/number\"}}",
+            out);
+        break;
+    case SCENE_AXES:
+        fputs("\"anyOf\": [{\"const\": \"all\"}, {\"type\": \"array\", \"minItems\": 1, \"uniqueItems\": true, "
+              "\"items\": {\"enum\": [\"x\", \"y\", \"z\"]}}]",
+              out);
         break;
     case SCENE_TEXT: fputs("\"type\": [\"string\", \"number\"]", out); break;
     case SCENE_NAME: fputs("\"type\": [\"string\", \"number\"]", out); break;

@@ -23,9 +23,8 @@ static json_t *vector(const double v[3]) {
     return array;
 }
 
-static double particle_steps(const brunt_world *world) {
-    return (double)brunt_world_particles(world) * (double)brunt_world_steps(world);
-}
+// A rate of something there is none of is no number.
+static json_t *rate(double of, double per) { return of > 0 && per > 0 ? number(of / per) : json_null(); }
 
 static json_t *phases_of(const brunt_summary *summary, const brunt_world *world) {
     json_t *phases = json_object();
@@ -108,7 +107,8 @@ static void set_text(json_t *object, const char *key, const char *text) {
 }
 
 static json_t *summary_object(const brunt_summary *s, const brunt_scene *scene, brunt_world *world) {
-    double steps = particle_steps(world);
+    double steps = (double)brunt_world_steps(world), particle_steps = steps * (double)brunt_world_particles(world),
+           element_steps = steps * (double)brunt_world_elements(world);
     char hash[24];
     snprintf(hash, sizeof hash, "0x%016llx", (unsigned long long)brunt_world_hash(world));
     json_t *o = json_object();
@@ -125,11 +125,11 @@ static json_t *summary_object(const brunt_summary *s, const brunt_scene *scene, 
     json_object_set_new(o, "peak_rss_bytes", json_integer((json_int_t)peak_memory()));
     json_object_set_new(o, "particles", json_integer(brunt_world_particles(world)));
     json_object_set_new(o, "nodes", json_integer(brunt_world_nodes(world)));
-    json_object_set_new(o, "elements", json_integer(0));
-    json_object_set_new(o, "particle_steps_per_s", number(steps / s->step_seconds));
-    json_object_set_new(o, "element_steps_per_s", json_null());
-    json_object_set_new(o, "ns_per_particle_step", number(1e9 * s->step_seconds / steps));
-    json_object_set_new(o, "ns_per_element_step", json_null());
+    json_object_set_new(o, "elements", json_integer(brunt_world_elements(world)));
+    json_object_set_new(o, "particle_steps_per_s", rate(particle_steps, s->step_seconds));
+    json_object_set_new(o, "element_steps_per_s", rate(element_steps, s->step_seconds));
+    json_object_set_new(o, "ns_per_particle_step", rate(1e9 * s->step_seconds, particle_steps));
+    json_object_set_new(o, "ns_per_element_step", rate(1e9 * s->step_seconds, element_steps));
     json_object_set_new(o, "dt_min", number(brunt_world_dt_min(world)));
     json_object_set_new(o, "dt_max", number(brunt_world_dt_max(world)));
     json_object_set_new(o, "state_hash", json_string(hash));
@@ -195,21 +195,28 @@ static void print_measures(const brunt_summary *summary, const brunt_scene *scen
     }
 }
 
+static void print_rate(brunt_console *console, double count, double steps, double seconds, const char *what) {
+    if (count > 0 && steps > 0 && seconds > 0)
+        brunt_console_print(console, "%.4g %s-steps/s, %.1f ns per %s-step\n", count * steps / seconds, what,
+                            1e9 * seconds / (count * steps), what);
+}
+
 void brunt_summary_print(const brunt_summary *s, const brunt_scene *scene, brunt_world *world, brunt_console *console) {
-    double steps = particle_steps(world);
+    double steps = (double)brunt_world_steps(world);
+    char counts[64];
+    brunt_counts(world, counts);
     brunt_momentum m;
     brunt_world_momentum(world, &m);
     brunt_console_print(console, "%s: %s\n", s->status, s->reason);
-    brunt_console_print(console, "scene %s, brunt %s, %dD, %d thread%s, %lld particles\n", scene->name, BRUNT_VERSION,
+    brunt_console_print(console, "scene %s, brunt %s, %dD, %d thread%s, %s\n", scene->name, BRUNT_VERSION,
                         brunt_world_dimension(world), brunt_world_threads(world),
-                        brunt_world_threads(world) == 1 ? "" : "s", (long long)brunt_world_particles(world));
+                        brunt_world_threads(world) == 1 ? "" : "s", counts);
     brunt_console_print(console, "t = %.9g s after %lld steps of %.4g to %.4g s\n", brunt_world_time(world),
                         (long long)brunt_world_steps(world), brunt_world_dt_min(world), brunt_world_dt_max(world));
     brunt_console_print(console, "wall %.2f s, of it steps %.2f s, output %.2f s; cpu %.2f s; peak memory %.1f MB\n",
                         s->wall_seconds, s->step_seconds, s->output_seconds, s->cpu_seconds, 1e-6 * peak_memory());
-    if (steps > 0 && s->step_seconds > 0)
-        brunt_console_print(console, "%.4g particle-steps/s, %.1f ns per particle-step\n", steps / s->step_seconds,
-                            1e9 * s->step_seconds / steps);
+    print_rate(console, (double)brunt_world_particles(world), steps, s->step_seconds, "particle");
+    print_rate(console, (double)brunt_world_elements(world), steps, s->step_seconds, "element");
     print_energy(world, console);
     brunt_console_print(console, "momentum drift: linear %.2e, angular %.2e\n", m.linear_drift, m.angular_drift);
     brunt_console_print(console, "state hash 0x%016llx\n", (unsigned long long)brunt_world_hash(world));
@@ -220,11 +227,11 @@ void brunt_profile_print(const brunt_summary *summary, brunt_world *world, brunt
     double total = summary->output_seconds;
     for (int32_t p = 0; p < brunt_pass_count(world); p++) total += brunt_world_pass(world, p).seconds;
     // A pass may run once a body: its cost is per step of the whole world, so that the rows add up.
-    double points = (double)brunt_world_particles(world) * (double)summary->leg_steps;
+    double points = (double)(brunt_world_particles(world) + brunt_world_elements(world)) * (double)summary->leg_steps;
     int threads = brunt_world_threads(world);
     if (threads > 64) threads = 64;
     brunt_console_print(console, "profile of this leg of the run\n  %-28s %10s %10s %12s %7s  per thread [s]\n", "pass",
-                        "seconds", "calls", "ns/particle", "share");
+                        "seconds", "calls", "ns/point", "share");
     for (int32_t p = 0; p < brunt_pass_count(world); p++) {
         brunt_pass pass = brunt_world_pass(world, p);
         brunt_console_print(console, "  %-28s %10.4f %10lld %12.2f %6.1f%% ", pass.name, pass.seconds,

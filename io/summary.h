@@ -19,5 +19,5 @@ int brunt_summary_write(const char *path, const brunt_summary *summary, const br
                         brunt_error *error);
 void brunt_summary_print(const brunt_summary *summary, const brunt_scene *scene, brunt_world *world,
                          brunt_console *console);
-// Per pass of this leg: seconds, calls, ns per particle-step, share, and seconds per thread.
+// Per pass of this leg: seconds, calls, ns per step of a particle or element, share, and seconds per thread.
 void brunt_profile_print(const brunt_summary *summary, brunt_world *world, brunt_console *console);

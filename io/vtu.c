@@ -5,6 +5,7 @@
 #include <zlib.h>
 
 #include "atomic_file.h"
+#include "element.h"
 #include "error.h"
 #include "memory.h"
 
@@ -102,36 +103,67 @@ static int append_array(FILE *header, byte_buffer *appended, byte_buffer *scratc
     return append_compressed(appended, scratch->data, values * width, error);
 }
 
-static int append_cells(FILE *header, byte_buffer *appended, byte_buffer *scratch, int64_t count, brunt_error *error) {
-    fputs("      <Cells>\n", header);
-    const char *const names[] = {"connectivity", "offsets"};
-    for (int a = 0; a < 2; a++) {
-        fprintf(header, "        <DataArray type=\"Int64\" Name=\"%s\" format=\"appended\" offset=\"%zu\"/>\n",
-                names[a], appended->size);
-        scratch->size = 0;
-        int status = reserve(scratch, 8 * (size_t)count, error);
-        if (status) return status;
-        for (int64_t i = 0; i < count; i++) put_word(scratch->data + 8 * i, (uint64_t)(i + a));
-        status = append_compressed(appended, scratch->data, 8 * (size_t)count, error);
-        if (status) return status;
-    }
-    enum { VTK_VERTEX = 1 };
-    fprintf(header, "        <DataArray type=\"UInt8\" Name=\"types\" format=\"appended\" offset=\"%zu\"/>\n",
+// Starts an integer array of the cells. Its data are in `scratch`.
+static int append_integers(FILE *header, byte_buffer *appended, const char *type, const char *name,
+                           const byte_buffer *scratch, brunt_error *error) {
+    fprintf(header, "        <DataArray type=\"%s\" Name=\"%s\" format=\"appended\" offset=\"%zu\"/>\n", type, name,
             appended->size);
-    memset(scratch->data, VTK_VERTEX, (size_t)count);
-    int status = append_compressed(appended, scratch->data, (size_t)count, error);
+    return append_compressed(appended, scratch->data, scratch->size, error);
+}
+
+static int append_cells(FILE *header, byte_buffer *appended, byte_buffer *scratch, const brunt_vtu_grid *grid,
+                        brunt_error *error) {
+    enum { VTK_VERTEX = 1 };
+    int64_t count = grid->cells ? grid->cell_count : grid->point_count, nodes = grid->cells ? grid->cell_nodes : 1;
+    fputs("      <Cells>\n", header);
+    scratch->size = 0;
+    int status = reserve(scratch, 8 * (size_t)(count * nodes), error);
+    if (status) return status;
+    for (int64_t i = 0; i < count * nodes; i++)
+        put_word(scratch->data + 8 * i, (uint64_t)(grid->cells ? grid->cells[i] : i));
+    scratch->size = 8 * (size_t)(count * nodes);
+    status = append_integers(header, appended, "Int64", "connectivity", scratch, error);
+    for (int64_t i = 0; i < count; i++) put_word(scratch->data + 8 * i, (uint64_t)((i + 1) * nodes));
+    scratch->size = 8 * (size_t)count;
+    if (!status) status = append_integers(header, appended, "Int64", "offsets", scratch, error);
+    memset(scratch->data, grid->cells ? grid->cell_type : VTK_VERTEX, (size_t)count);
+    scratch->size = (size_t)count;
+    if (!status) status = append_integers(header, appended, "UInt8", "types", scratch, error);
     fputs("      </Cells>\n", header);
     return status;
 }
 
-static const char *first_of(const brunt_vtu_array *arrays, int count, int components) {
-    for (int a = 0; a < count; a++)
-        if (arrays[a].components == components && !arrays[a].integers) return arrays[a].name;
-    return NULL;
+static void put_active(FILE *header, const char *kind, int components, const brunt_vtu_array *arrays, int count,
+                       bool at_cells) {
+    for (int a = 0; a < count; a++) {
+        if (arrays[a].components != components || arrays[a].integers || arrays[a].at_cells != at_cells) continue;
+        fprintf(header, " %s=\"", kind);
+        put_name(header, arrays[a].name);
+        fputc('"', header);
+        return;
+    }
 }
 
-static int write_header(FILE *header, byte_buffer *appended, byte_buffer *scratch, double time, int64_t count,
-                        const double *points, const brunt_vtu_array *arrays, int array_count, bool float32,
+// The arrays at the points, or at the cells.
+static int append_data(FILE *header, byte_buffer *appended, byte_buffer *scratch, const brunt_vtu_grid *grid,
+                       const brunt_vtu_array *arrays, int array_count, bool at_cells, bool float32,
+                       brunt_error *error) {
+    const char *element = at_cells ? "CellData" : "PointData";
+    int status = BRUNT_OK;
+    fprintf(header, "      <%s", element);
+    put_active(header, "Scalars", 1, arrays, array_count, at_cells);
+    put_active(header, "Vectors", 3, arrays, array_count, at_cells);
+    fputs(">\n", header);
+    for (int a = 0; a < array_count && !status; a++)
+        if (arrays[a].at_cells == at_cells)
+            status = append_array(header, appended, scratch, &arrays[a],
+                                  at_cells ? grid->cell_count : grid->point_count, float32, error);
+    fprintf(header, "      </%s>\n", element);
+    return status;
+}
+
+static int write_header(FILE *header, byte_buffer *appended, byte_buffer *scratch, double time,
+                        const brunt_vtu_grid *grid, const brunt_vtu_array *arrays, int array_count, bool float32,
                         brunt_error *error) {
     fputs("<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
           "header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n  <UnstructuredGrid>\n",
@@ -140,35 +172,24 @@ static int write_header(FILE *header, byte_buffer *appended, byte_buffer *scratc
             "    <FieldData>\n      <DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" "
             "format=\"ascii\">%.17g</DataArray>\n    </FieldData>\n",
             time);
-    fprintf(header, "    <Piece NumberOfPoints=\"%lld\" NumberOfCells=\"%lld\">\n      <PointData", (long long)count,
-            (long long)count);
-    const char *scalar = first_of(arrays, array_count, 1), *vector = first_of(arrays, array_count, 3);
-    if (scalar) {
-        fputs(" Scalars=\"", header);
-        put_name(header, scalar);
-        fputc('"', header);
-    }
-    if (vector) {
-        fputs(" Vectors=\"", header);
-        put_name(header, vector);
-        fputc('"', header);
-    }
-    fputs(">\n", header);
-    int status = BRUNT_OK;
-    for (int a = 0; a < array_count && !status; a++)
-        status = append_array(header, appended, scratch, &arrays[a], count, float32, error);
+    fprintf(header, "    <Piece NumberOfPoints=\"%lld\" NumberOfCells=\"%lld\">\n", (long long)grid->point_count,
+            (long long)(grid->cells ? grid->cell_count : grid->point_count));
+    int status = append_data(header, appended, scratch, grid, arrays, array_count, false, float32, error);
+    // Only elements have data of cells: that tells their files from those of particles.
+    if (!status && grid->cells)
+        status = append_data(header, appended, scratch, grid, arrays, array_count, true, float32, error);
     if (status) return status;
-    fputs("      </PointData>\n      <Points>\n", header);
-    const brunt_vtu_array place = {.name = "Points", .components = 3, .values = points};
-    status = append_array(header, appended, scratch, &place, count, float32, error);
+    fputs("      <Points>\n", header);
+    const brunt_vtu_array place = {.name = "Points", .components = 3, .values = grid->points};
+    status = append_array(header, appended, scratch, &place, grid->point_count, float32, error);
     if (status) return status;
     fputs("      </Points>\n", header);
-    status = append_cells(header, appended, scratch, count, error);
+    status = append_cells(header, appended, scratch, grid, error);
     fputs("    </Piece>\n  </UnstructuredGrid>\n  <AppendedData encoding=\"raw\">\n   _", header);
     return status;
 }
 
-int brunt_vtu_write(const char *path, double time, int64_t count, const double *points, const brunt_vtu_array *arrays,
+int brunt_vtu_write(const char *path, double time, const brunt_vtu_grid *grid, const brunt_vtu_array *arrays,
                     int array_count, bool float32, brunt_error *error) {
     brunt_atomic_file file;
     int status = brunt_atomic_open(&file, path, error);
@@ -177,8 +198,7 @@ int brunt_vtu_write(const char *path, double time, int64_t count, const double *
     // Space for one byte at least, so that an empty array has an address.
     status = reserve(&scratch, 1, error);
     if (!status)
-        status =
-            write_header(file.stream, &appended, &scratch, time, count, points, arrays, array_count, float32, error);
+        status = write_header(file.stream, &appended, &scratch, time, grid, arrays, array_count, float32, error);
     if (!status) status = brunt_atomic_write(&file, appended.data, appended.size, error);
     if (!status) {
         fputs("\n  </AppendedData>\n</VTKFile>\n", file.stream);
@@ -191,48 +211,112 @@ int brunt_vtu_write(const char *path, double time, int64_t count, const double *
     return status;
 }
 
-int brunt_vtu_write_body(const char *path, brunt_world *world, int32_t body, const char (*fields)[64], int field_count,
-                         bool float32, brunt_error *error) {
-    int64_t count = brunt_body_particles(world, body);
-    int32_t position = brunt_body_find_field(world, body, "position");
+// ---------------------------------------------------------------------------------------------------- bodies
+
+enum { PICTURE_FIELDS = 256 };
+
+// A body's picture while it is put together, with the memory that is behind it.
+typedef struct picture {
+    brunt_world *world;
+    int32_t body;
+    bool elements;
+    brunt_vtu_grid grid;
+    brunt_vtu_array arrays[PICTURE_FIELDS];
+    int array_count;
+    void *memory[PICTURE_FIELDS + 2];
+    int memory_count;
+} picture;
+
+static void *picture_alloc(picture *p, size_t bytes, brunt_error *error) {
+    void *memory = brunt_alloc(bytes);
+    if (memory)
+        p->memory[p->memory_count++] = memory;
+    else
+        brunt_fail(error, BRUNT_FAILED, "out of memory while writing a picture of body '%s'",
+                   brunt_body_name(p->world, p->body));
+    return memory;
+}
+
+static int add_ids(picture *p, int64_t count, bool at_cells, brunt_error *error) {
+    int64_t *ids = picture_alloc(p, sizeof *ids * (size_t)count, error);
+    if (!ids) return BRUNT_FAILED;
+    for (int64_t i = 0; i < count; i++) ids[i] = i;
+    p->arrays[p->array_count++] =
+        (brunt_vtu_array){.name = "id", .components = 1, .integers = ids, .at_cells = at_cells};
+    return BRUNT_OK;
+}
+
+static int add_grid(picture *p, brunt_error *error) {
+    brunt_world *world = p->world;
+    p->elements = brunt_body_method(world, p->body) == BRUNT_FEM;
+    p->grid.point_count = brunt_body_size(world, p->body, p->elements ? BRUNT_AT_NODES : BRUNT_AT_PARTICLES);
+    int32_t position = brunt_body_find_field(world, p->body, "position");
     if (position < 0)
-        return brunt_fail(error, BRUNT_FAILED, "body '%s' has no field 'position'", brunt_body_name(world, body));
-    brunt_vtu_array *arrays = brunt_alloc(sizeof *arrays * (size_t)(field_count + 1));
-    double **memory = brunt_alloc(sizeof *memory * (size_t)(field_count + 1));
-    int64_t *ids = brunt_alloc(sizeof *ids * (size_t)count);
-    double *points = brunt_alloc(sizeof *points * 3 * (size_t)count);
-    int status = arrays && memory && ids && points
-                     ? BRUNT_OK
-                     : brunt_fail(error, BRUNT_FAILED, "out of memory while writing %s", path);
-    int array_count = 0;
-    if (!status) {
-        brunt_body_read(world, body, position, points);
-        for (int64_t i = 0; i < count; i++) ids[i] = i;
-        arrays[array_count++] = (brunt_vtu_array){.name = "id", .components = 1, .integers = ids};
-    }
-    for (int f = 0; f < field_count && !status; f++) {
-        int32_t field = brunt_body_find_field(world, body, fields[f]);
-        // The id is always there, and the position is the points.
-        if (field < 0 || strcmp(fields[f], "id") == 0 || strcmp(fields[f], "position") == 0) continue;
-        brunt_field_info info = brunt_body_field(world, body, field);
-        double *values = brunt_alloc(sizeof *values * (size_t)count * (size_t)info.components);
-        if (!values) {
-            status = brunt_fail(error, BRUNT_FAILED, "out of memory while writing %s", path);
-            break;
-        }
-        brunt_body_read(world, body, field, values);
-        memory[array_count] = values;
-        arrays[array_count++] = (brunt_vtu_array){.name = info.name, .components = info.components, .values = values};
-    }
-    if (!status)
-        status = brunt_vtu_write(path, brunt_world_time(world), count, points, arrays, array_count, float32, error);
-    for (int a = 0; a < array_count; a++) brunt_free(memory[a]);
-    brunt_free(arrays);
-    brunt_free(memory);
-    brunt_free(ids);
-    brunt_free(points);
+        return brunt_fail(error, BRUNT_FAILED, "body '%s' has no field 'position'", brunt_body_name(world, p->body));
+    double *points = picture_alloc(p, sizeof *points * 3 * (size_t)p->grid.point_count, error);
+    if (!points) return BRUNT_FAILED;
+    brunt_body_read(world, p->body, position, points);
+    p->grid.points = points;
+    int status = add_ids(p, p->grid.point_count, false, error);
+    if (status || !p->elements) return status;
+    const brunt_element *element = brunt_elements[brunt_body_element(world, p->body)];
+    p->grid.cell_count = brunt_body_size(world, p->body, BRUNT_AT_ELEMENTS);
+    p->grid.cell_nodes = element->nodes;
+    p->grid.cell_type = element->vtk_cell;
+    int32_t *cells = picture_alloc(p, sizeof *cells * (size_t)element->nodes * (size_t)p->grid.cell_count, error);
+    if (!cells) return BRUNT_FAILED;
+    brunt_body_connectivity(world, p->body, cells);
+    p->grid.cells = cells;
+    return add_ids(p, p->grid.cell_count, true, error);
+}
+
+static int add_field(picture *p, const char *name, brunt_error *error) {
+    int32_t field = brunt_body_find_field(p->world, p->body, name);
+    // The id is always there, and the position is the points.
+    if (field < 0 || strcmp(name, "id") == 0 || strcmp(name, "position") == 0 || p->array_count == PICTURE_FIELDS)
+        return BRUNT_OK;
+    for (int a = 0; a < p->array_count; a++)
+        if (strcmp(p->arrays[a].name, name) == 0) return BRUNT_OK;
+    brunt_field_info info = brunt_body_field(p->world, p->body, field);
+    size_t count = (size_t)brunt_body_size(p->world, p->body, info.at) * (size_t)info.components;
+    double *values = picture_alloc(p, sizeof *values * count, error);
+    if (!values) return BRUNT_FAILED;
+    brunt_body_read(p->world, p->body, field, values);
+    p->arrays[p->array_count++] = (brunt_vtu_array){
+        .name = info.name, .components = info.components, .values = values, .at_cells = info.at == BRUNT_AT_ELEMENTS};
+    return BRUNT_OK;
+}
+
+// What a body shows when nothing is asked for.
+static int add_default(picture *p, brunt_error *error) {
+    static const char *const of_particles[] = {"velocity", NULL}, *const of_elements[] = {
+                                                                      "displacement",  "velocity",
+                                                                      "stress",        "plastic_strain",
+                                                                      "contact_gap",   "contact_traction",
+                                                                      "contact_state", NULL};
+    int status = BRUNT_OK;
+    for (const char *const *name = p->elements ? of_elements : of_particles; *name && !status; name++)
+        status = add_field(p, *name, error);
     return status;
 }
+
+int brunt_vtu_write_body(const char *path, brunt_world *world, int32_t body, const char (*fields)[64], int field_count,
+                         bool float32, brunt_error *error) {
+    picture *p = brunt_alloc(sizeof *p);
+    if (!p) return brunt_fail(error, BRUNT_FAILED, "out of memory while writing %s", path);
+    p->world = world;
+    p->body = body;
+    int status = add_grid(p, error);
+    for (int f = 0; f < field_count && !status; f++)
+        status = strcmp(fields[f], "default") == 0 ? add_default(p, error) : add_field(p, fields[f], error);
+    if (!status)
+        status = brunt_vtu_write(path, brunt_world_time(world), &p->grid, p->arrays, p->array_count, float32, error);
+    for (int m = 0; m < p->memory_count; m++) brunt_free(p->memory[m]);
+    brunt_free(p);
+    return status;
+}
+
+// ---------------------------------------------------------------------------------------------------- describing
 
 // Finds attribute="value" in one XML element; false when it is not there.
 static bool attribute(const char *element, const char *end, const char *name, char *out, size_t room) {
@@ -271,6 +355,7 @@ int brunt_vtu_describe(const char *path, FILE *out, brunt_error *error) {
     }
     fclose(file);
     const char *text = memory;
+    bool elements = !status && strstr(text, "<CellData");
     if (!status && !strstr(text, "<VTKFile"))
         status = brunt_fail(error, BRUNT_BAD_INPUT, "%s: not a VTK XML file", path);
     char a[256], b[256], c[256];
@@ -280,7 +365,11 @@ int brunt_vtu_describe(const char *path, FILE *out, brunt_error *error) {
         if (!strncmp(at, "<VTKFile", 8) && attribute(at, end, "type", a, sizeof a))
             fprintf(out, "VTK XML file, %s\n", a);
         if (!strncmp(at, "<Piece", 6) && attribute(at, end, "NumberOfPoints", a, sizeof a))
-            fprintf(out, "particles  %s\n", a);
+            fprintf(out, elements ? "nodes      %s\n" : "particles  %s\n", a);
+        if (!strncmp(at, "<Piece", 6) && elements && attribute(at, end, "NumberOfCells", a, sizeof a))
+            fprintf(out, "elements   %s\n", a);
+        if (!strncmp(at, "<PointData", 10) && elements) fputs("at the nodes\n", out);
+        if (!strncmp(at, "<CellData", 9)) fputs("at the elements\n", out);
         if (!strncmp(at, "<DataArray", 10) && attribute(at, end, "Name", a, sizeof a)) {
             if (!strcmp(a, "TimeValue")) {
                 fprintf(out, "time       %.17g s\n", strtod(end + 1, NULL));

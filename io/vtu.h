@@ -1,4 +1,5 @@
-// Pictures for ParaView: one VTK XML unstructured grid per body and time, particles as one vertex cell each.
+// Pictures for ParaView: one VTK XML unstructured grid per body and time; particles as one vertex cell each, finite
+// elements as cells of their own type.
 //
 // Format: VTK XML version 1.0, little endian, 64-bit headers, zlib blocks, raw appended data. No VTK library is used.
 #pragma once
@@ -8,20 +9,32 @@
 
 #include "brunt.h"
 
-// One array of values at the points. `values`: `count` x `components` doubles, or int64 when `integers` is set.
+// What values stand at: points, and cells between them.
+typedef struct brunt_vtu_grid {
+    int64_t point_count, cell_count;
+    const double *points; // point_count x 3 [m]
+    const int32_t
+        *cells; // cell_count x cell_nodes point numbers; NULL: one vertex cell a point, cell_count then unused
+    int cell_nodes, cell_type; // type: VTK's number
+} brunt_vtu_grid;
+
+// One array of values at the points or the cells. `values`: count x `components` doubles, or int64 when `integers` is
+// set.
 typedef struct brunt_vtu_array {
     const char *name; // characters outside [A-Za-z0-9_] become _
     int components;   // 1, 3 (vector), 6 (symmetric XX YY ZZ XY YZ XZ) or 9 (matrix, row major)
     const double *values;
     const int64_t *integers; // NULL unless the array is of integers
+    bool at_cells;           // needs cells of the grid's own
 } brunt_vtu_array;
 
-// Writes one file (aside, then renamed). `points`: count x 3 [m]; the first array of 1 and the first of 3 components
+// Writes one file (aside, then renamed). Of points and of cells, the first array of 1 and the first of 3 components
 // become active.
-int brunt_vtu_write(const char *path, double time, int64_t count, const double *points, const brunt_vtu_array *arrays,
+int brunt_vtu_write(const char *path, double time, const brunt_vtu_grid *grid, const brunt_vtu_array *arrays,
                     int array_count, bool float32, brunt_error *error);
 
-// One body of a world: its id and the named fields it has; a name it has not is left out.
+// One body of a world: its ids and the named fields it has; a name it has not is left out. "default" stands for what
+// the body's method always shows.
 int brunt_vtu_write_body(const char *path, brunt_world *world, int32_t body, const char (*fields)[64], int field_count,
                          bool float32, brunt_error *error);
 

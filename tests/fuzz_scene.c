@@ -85,10 +85,10 @@ static uint64_t draw(uint64_t below) {
 
 static size_t mutate(uint8_t *data, size_t size) {
     static const char *const words[] = {
-        "[",       "]",         "{",         "}",       ": ",   "- ",    "&a ",    "*a",     "\n",
-        "  ",      "\t",        "#",         "'",       "\"",   "|\n",   "1e400",  ".nan",   "-1",
-        "0",       "free",      "1 m/s",     "mm",      "deg",  "---\n", "? ",     "!!int ", "<<: ",
-        "union: ", "\n#--set ", "time.end=", "bodies.", "\xff", "%",     "1e-320", "none",   "~"};
+        "[",      "]",     "{",  "}",      ": ",     "- ",      "&a ",       "*a",        "\n",      "  ",    "\t",
+        "#",      "'",     "\"", "|\n",    "1e400",  ".nan",    "-1",        "0",         "free",    "1 m/s", "mm",
+        "deg",    "---\n", "? ", "!!int ", "<<: ",   "union: ", "\n#--set ", "time.end=", "bodies.", "\xff",  "%",
+        "1e-320", "none",  "~",  "fem",    "mesh: ", "group: ", "fix: ",     "[[0, 0]",   "all"};
     for (uint64_t n = 1 + draw(6); n > 0; n--) {
         size_t at = draw(size + 1);
         switch (draw(5)) {

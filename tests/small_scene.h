@@ -1,4 +1,5 @@
-// Two small rubber blocks that meet above a floor: enough of a world for the tests of what is written about one.
+// Two small rubber blocks that meet above a floor, of particles or of elements: enough of a world for the tests of what
+// is written about one.
 #pragma once
 
 #include <check.h>
@@ -33,15 +34,47 @@ static const char small_scene_text[] =
     "  kept: {history: energy.total, relative_to: initial, expect: 1, tolerance: 0.5}\n"
     "  length: {extent: {body: left, axis: [1, 0]}, unit: m}\n";
 
-static inline void small_scene(brunt_scene *scene, const char *const *sets, int set_count) {
+// The same of finite elements, in three dimensions: a block falls onto one that stands on a floor and is held on one
+// side.
+static const char small_elements_text[] =
+    "brunt: 1\n"
+    "title: Two small blocks of elements\n"
+    "dimension: 3\n"
+    "time: {end: 0.04 s, cfl: 0.5}\n"
+    "materials:\n"
+    "  rubber: {model: neo-hookean, density: 1000 kg/m^3, E: 1 MPa, nu: 0.3}\n"
+    "bodies:\n"
+    "  lower: {method: fem, material: rubber, size: 0.1 m, shape: {box: {min: [0, 0, 0], max: [0.4, 0.4, 0.2]}}}\n"
+    "  upper: {method: fem, material: rubber, size: 0.1 m, element: tet4, velocity: [0, 0, -4],\n"
+    "    shape: {box: {min: [0.1, 0.1, 0.22], max: [0.3, 0.3, 0.42]}}}\n"
+    "contact: {friction: 0.2}\n"
+    "boundaries:\n"
+    "  - {name: floor, plane: {point: [0, 0, 0], normal: [0, 0, 1]}, condition: separate}\n"
+    "  - {name: grip, group: xmin, body: lower, fix: [x]}\n"
+    "loads: {gravity: [0, 0, -10]}\n"
+    "output:\n"
+    "  every: 10 ms\n"
+    "  history: 1 ms\n"
+    "  checkpoint: 0 s\n"
+    "  probes:\n"
+    "    corner: {body: upper, point: [0.1, 0.1, 0.22], field: velocity}\n"
+    "    middle: {body: lower, point: [0.26, 0.26, 0.17], field: stress}\n"
+    "measures:\n"
+    "  kept: {history: energy.total, relative_to: initial, expect: 1, tolerance: 0.5}\n"
+    "  height: {extent: {body: upper, axis: [0, 0, 1]}, unit: m}\n";
+
+static inline void small_scene_of(const char *text, brunt_scene *scene, const char *const *sets, int set_count) {
     char *messages = NULL;
     size_t size;
     FILE *out = open_memstream(&messages, &size);
-    int status =
-        brunt_scene_parse(small_scene_text, sizeof small_scene_text - 1, "small.yaml", sets, set_count, scene, out);
+    int status = brunt_scene_parse(text, strlen(text), "small.yaml", sets, set_count, scene, out);
     fclose(out);
     ck_assert_msg(status == BRUNT_OK, "%s", messages);
     free(messages);
+}
+
+static inline void small_scene(brunt_scene *scene, const char *const *sets, int set_count) {
+    small_scene_of(small_scene_text, scene, sets, set_count);
 }
 
 static inline char *small_scene_resolved(const brunt_scene *scene) {

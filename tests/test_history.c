@@ -10,15 +10,18 @@ static brunt_scene scene;
 static brunt_world *world;
 static brunt_history *history;
 
-static void set_up(void) {
+static void set_up_of(const char *text) {
     brunt_error error = {0};
     small_folder_make();
     const char *sets[] = {"time.end=10 s"}; // longer than any test
-    small_scene(&scene, sets, 1);
+    small_scene_of(text, &scene, sets, 1);
     world = small_world(&scene);
     history = brunt_history_create(world, &scene, &error);
     ck_assert_msg(history != NULL, "%s", error.message);
 }
+
+static void set_up(void) { set_up_of(small_scene_text); }
+static void set_up_elements(void) { set_up_of(small_elements_text); }
 
 static void tear_down(void) {
     brunt_history_destroy(history);
@@ -224,6 +227,69 @@ START_TEST(damage_is_an_error) {
 }
 END_TEST
 
+// Meshes have the columns that particles have, and the area that touches.
+START_TEST(elements_have_the_same_columns) {
+    ck_assert_int_eq(brunt_history_sample(history, world, NULL), BRUNT_OK);
+    ck_assert_double_eq_tol(last("body.upper.mass"), 1000 * 0.2 * 0.2 * 0.2, 1e-5);
+    ck_assert_double_eq_tol(last("body.upper.position_z"), 0.32, 1e-6);
+    ck_assert_double_eq_tol(last("body.upper.velocity_z"), -4, 1e-6);
+    ck_assert_double_eq_tol(last("body.upper.kinetic"), 0.5 * 8 * 16, 1e-4);
+    ck_assert_double_eq(last("contact.lower-upper.area"), 0);
+    ck_assert_double_eq(last("energy.hourglass"), 0);
+    ck_assert_str_eq(unit("contact.lower-upper.area"), "m^2");
+    ck_assert_str_eq(unit("wall.grip.force_x"), "N");
+    double area = 0, force = 0, floor = 0, grip = 0;
+    for (int s = 0; s < 60; s++) {
+        small_steps(world, 10);
+        ck_assert_int_eq(brunt_history_sample(history, world, NULL), BRUNT_OK);
+        area = fmax(area, last("contact.lower-upper.area"));
+        force = fmax(force, last("contact.lower-upper.force_z"));
+        floor = fmax(floor, last("wall.floor.force_z"));
+        grip = fmax(grip, fabs(last("wall.grip.force_x")));
+    }
+    ck_assert(force > 0 && floor > 0 && grip > 0);
+    ck_assert_double_gt(area, 0.01);
+    ck_assert_double_lt(area,
+                        0.1); // the lower face has 0.04 m^2, and its nodes twice that, with what is round its edges
+}
+END_TEST
+
+// A field of nodes is probed at the nearest node, one of elements at the nearest centre.
+START_TEST(probes_of_elements) {
+    small_steps(world, 200);
+    ck_assert_int_eq(brunt_history_sample(history, world, NULL), BRUNT_OK);
+    brunt_world *fresh = small_world(&scene);
+    int64_t nodes = brunt_body_nodes(world, 1), elements = brunt_body_elements(world, 0), corner = -1, middle = -1;
+    double *x = malloc(sizeof *x * 3 * (size_t)nodes), *v = malloc(sizeof *v * 3 * (size_t)nodes);
+    brunt_body_read(fresh, 1, brunt_body_find_field(fresh, 1, "position"), x);
+    brunt_body_read(world, 1, brunt_body_find_field(world, 1, "velocity"), v);
+    for (int64_t i = 0; i < nodes; i++)
+        if (fabs(x[3 * i] - 0.1) + fabs(x[3 * i + 1] - 0.1) + fabs(x[3 * i + 2] - 0.22) < 1e-6) corner = i;
+    ck_assert_int_ge((int)corner, 0);
+    ck_assert_double_eq(last("probe.corner.z"), v[3 * corner + 2]);
+    ck_assert_double_ne(last("probe.corner.z"), -4);
+    // The bricks of 0.1 m: the point lies in that of [0.2, 0.3] x [0.2, 0.3] x [0.1, 0.2].
+    int64_t lower = brunt_body_nodes(world, 0);
+    double *y = malloc(sizeof *y * 3 * (size_t)lower), *stress = malloc(sizeof *stress * 6 * (size_t)elements);
+    int32_t *cells = malloc(sizeof *cells * 8 * (size_t)elements);
+    brunt_body_read(fresh, 0, brunt_body_find_field(fresh, 0, "position"), y);
+    brunt_body_connectivity(fresh, 0, cells);
+    brunt_body_read(world, 0, brunt_body_find_field(world, 0, "stress"), stress);
+    for (int64_t e = 0; e < elements; e++) {
+        double low[3] = {1, 1, 1};
+        for (int n = 0; n < 8; n++)
+            for (int c = 0; c < 3; c++) low[c] = fmin(low[c], y[3 * (size_t)cells[8 * e + n] + c]);
+        if (fabs(low[0] - 0.2) + fabs(low[1] - 0.2) + fabs(low[2] - 0.1) < 1e-6) middle = e;
+    }
+    ck_assert_int_ge((int)middle, 0);
+    ck_assert_double_eq(last("probe.middle.zz"), stress[6 * middle + 2]);
+    ck_assert_double_eq(last("probe.middle.xy"), stress[6 * middle + 3]);
+    ck_assert_double_ne(stress[6 * middle + 2], 0);
+    brunt_world_destroy(fresh);
+    free(x), free(v), free(y), free(stress), free(cells);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("history");
     TCase *lines = tcase_create("lines");
@@ -237,5 +303,11 @@ int main(void) {
     tcase_add_test(lines, csv_holds_the_columns_with_their_units);
     tcase_add_test(lines, damage_is_an_error);
     suite_add_tcase(suite, lines);
+    TCase *elements = tcase_create("elements");
+    tcase_add_checked_fixture(elements, set_up_elements, tear_down);
+    tcase_add_test(elements, elements_have_the_same_columns);
+    tcase_add_test(elements, probes_of_elements);
+    tcase_add_test(elements, file_gives_the_same_lines_and_drops_later_ones);
+    suite_add_tcase(suite, elements);
     return small_main(suite);
 }

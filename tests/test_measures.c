@@ -231,6 +231,56 @@ START_TEST(fields_are_reduced) {
 }
 END_TEST
 
+static double initial_of(const brunt_measure *m, brunt_world *of) {
+    brunt_error error = {0};
+    double value;
+    int status = brunt_measure_initial(m, of, &value, &error);
+    ck_assert_msg(status == BRUNT_OK, "%s", error.message);
+    return value;
+}
+
+// Blocks of elements: nodes lie on the surface, values are of nodes or of elements.
+START_TEST(elements_are_measured) {
+    brunt_scene blocks;
+    const char *sets[] = {"bodies.upper.place=[{rotate: {axis: [0, 0, 1], angle: 30 deg, about: [0.2, 0.2, 0]}}]"};
+    small_scene_of(small_elements_text, &blocks, sets, 1);
+    brunt_world *other = small_world(&blocks);
+    brunt_measure m = blank(BRUNT_MEASURE_EXTENT);
+    strcpy(m.body, "lower");
+    m.axis[0] = 3;
+    ck_assert_double_eq_tol(initial_of(&m, other), 0.4, 10 * rounding);
+    strcpy(m.body, "upper");
+    m.axis[0] = cos(acos(-1) / 6);
+    m.axis[1] = 0.5;
+    ck_assert_double_eq_tol(initial_of(&m, other), 0.2, 10 * rounding);
+    m = blank(BRUNT_MEASURE_RADIUS);
+    strcpy(m.body, "upper");
+    m.axis[2] = 1;
+    m.center[0] = m.center[1] = 0.2;
+    ck_assert_double_eq_tol(initial_of(&m, other), 0.1 * sqrt(2), 10 * rounding);
+    m = blank(BRUNT_MEASURE_FIELD);
+    strcpy(m.body, "upper");
+    strcpy(m.field, "velocity"); // of nodes
+    m.component = 2;
+    m.take = BRUNT_TAKE_MEAN;
+    ck_assert_double_eq_tol(initial_of(&m, other), -4, 10 * rounding);
+    strcpy(m.body, "lower");
+    strcpy(m.field, "volume"); // of elements
+    m.component = -1;
+    m.take = BRUNT_TAKE_MAX;
+    ck_assert_double_eq_tol(initial_of(&m, other), 1e-3, 10 * rounding);
+    // Centres of elements are at 0.05, 0.15, ...: there are none between 0.06 and 0.14, though there are nodes.
+    m.axis[0] = 1;
+    m.slab_min = 0.06;
+    m.slab_max = 0.14;
+    ck_assert_double_nan(initial_of(&m, other));
+    m.slab_max = 0.16;
+    ck_assert_double_eq_tol(initial_of(&m, other), 1e-3, 10 * rounding);
+    brunt_world_destroy(other);
+    brunt_scene_free(&blocks);
+}
+END_TEST
+
 START_TEST(unknown_names_are_refused) {
     static const struct {
         brunt_measure_kind kind;
@@ -268,6 +318,7 @@ int main(void) {
     tcase_add_test(values, extent_of_a_turned_block);
     tcase_add_test(values, radius_about_an_axis);
     tcase_add_test(values, fields_are_reduced);
+    tcase_add_test(values, elements_are_measured);
     tcase_add_test(values, unknown_names_are_refused);
     suite_add_tcase(suite, values);
     return small_main(suite);

@@ -8,6 +8,7 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include "element.h"
 #include "memory.h"
 #include "vtu.h"
 
@@ -63,9 +64,9 @@ static void write_pattern(const char *path, int64_t count, bool float32) {
                                       {.name = "velocity", .components = 3, .values = vector},
                                       {.name = "cauchy stress/2", .components = 6, .values = tensor},
                                       {.name = "deformation_gradient", .components = 9, .values = matrix}};
+    const brunt_vtu_grid grid = {.point_count = count, .points = points};
     brunt_error error = {0};
-    ck_assert_msg(brunt_vtu_write(path, 0.1 + 0.2, count, points, arrays, 5, float32, &error) == BRUNT_OK, "%s",
-                  error.message);
+    ck_assert_msg(brunt_vtu_write(path, 0.1 + 0.2, &grid, arrays, 5, float32, &error) == BRUNT_OK, "%s", error.message);
     brunt_free(ids);
     brunt_free(points);
     brunt_free(scalar);
@@ -138,6 +139,90 @@ START_TEST(block_headers_are_exact) {
 }
 END_TEST
 
+// A strip of elements side by side, in the node order of brunt (which is VTK's): each reads back with its type and a
+// positive volume, and the values of nodes and elements stay apart.
+static const struct {
+    brunt_element_kind kind;
+    int dimension;
+    double measure; // volume or area of one
+    double corner[8][3];
+} shapes[] = {
+    {BRUNT_TET4, 3, 1.0 / 6, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}},
+    {BRUNT_HEX8, 3, 1, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}},
+    {BRUNT_TRI3, 2, 0.5, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}},
+    {BRUNT_QUAD4, 2, 1, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}}};
+
+static void write_elements(const char *path, int shape, int64_t count, bool float32) {
+    const brunt_element *element = brunt_elements[shapes[shape].kind];
+    int64_t n = element->nodes, points = n * count;
+    double *x = brunt_alloc(sizeof *x * 3 * (size_t)points);
+    int32_t *cells = brunt_alloc(sizeof *cells * (size_t)points);
+    int64_t *ids = brunt_alloc(sizeof *ids * (size_t)points);
+    for (int64_t i = 0; i < points; i++) {
+        // Nodes out of order, so that a connectivity nobody reads would show.
+        int64_t at = 7 * i % points;
+        cells[i] = (int32_t)at;
+        ids[i] = i * 3000000000;
+        for (int c = 0; c < 3; c++)
+            x[3 * at + c] = shapes[shape].corner[i % n][c] + (c == 0 ? 2 * (double)(i / n % 1000) : 0);
+    }
+    double *vector = filled(1, points, 3), *scalar = filled(2, count, 1), *tensor = filled(4, count, 6);
+    const brunt_vtu_array arrays[] = {{.name = "id", .components = 1, .integers = ids},
+                                      {.name = "velocity", .components = 3, .values = vector},
+                                      {.name = "plastic_strain", .components = 1, .values = scalar, .at_cells = true},
+                                      {.name = "id", .components = 1, .integers = ids, .at_cells = true},
+                                      {.name = "stress", .components = 6, .values = tensor, .at_cells = true}};
+    const brunt_vtu_grid grid = {points, count, x, cells, element->nodes, element->vtk_cell};
+    brunt_error error = {0};
+    ck_assert_msg(brunt_vtu_write(path, 0.5, &grid, arrays, 5, float32, &error) == BRUNT_OK, "%s", error.message);
+    brunt_free(x);
+    brunt_free(cells);
+    brunt_free(ids);
+    brunt_free(vector);
+    brunt_free(scalar);
+    brunt_free(tensor);
+}
+
+START_TEST(elements_read_back_whole) {
+    static const int64_t numbers[] = {1, 32769, 0};
+    int shape = _i % 4;
+    long long count = numbers[_i / 4], nodes = brunt_element_nodes(shapes[shape].kind);
+    bool float32 = _i / 4 % 2 == 0;
+    char path[128], arguments[192], wanted[512], size[64] = "";
+    snprintf(path, sizeof path, "%s/e.vtu", folder);
+    write_elements(path, shape, count, float32);
+    snprintf(arguments, sizeof arguments, "--elements %s", path);
+    const char *type = float32 ? "float" : "double";
+    static const int types[] = {10, 12, 5, 9};
+    if (count)
+        snprintf(size, sizeof size, "cell types %d\n%s %.6f\n", types[shape],
+                 shapes[shape].dimension == 3 ? "volume" : "area", shapes[shape].measure * (double)count);
+    snprintf(
+        wanted, sizeof wanted,
+        "points %lld cells %lld\ntime 0.5\nactive - velocity\narray id long_long %lld None\narray velocity %s %lld "
+        "X,Y,Z\nactive of cells plastic_strain -\ncell array plastic_strain %s %lld None\ncell array id long_long "
+        "%lld None\ncell array stress %s %lld XX,YY,ZZ,XY,YZ,XZ\n%spattern ok\n",
+        nodes * count, count, nodes * count, type, nodes * count, type, count, count, type, count, size);
+    ck_assert_str_eq(read_back(arguments), wanted);
+    ck_assert_int_eq((int)brunt_memory_live(), 0);
+}
+END_TEST
+
+START_TEST(describes_elements) {
+    char path[128], *text = NULL;
+    size_t size;
+    snprintf(path, sizeof path, "%s/e.vtu", folder);
+    write_elements(path, 1, 100, true);
+    FILE *out = open_memstream(&text, &size);
+    ck_assert_int_eq(brunt_vtu_describe(path, out, NULL), BRUNT_OK);
+    fclose(out);
+    ck_assert_ptr_nonnull(strstr(text, "nodes      800\nelements   100\n"));
+    const char *nodes = strstr(text, "at the nodes\n"), *cells = strstr(text, "at the elements\n");
+    ck_assert(nodes && cells && strstr(nodes, "velocity") < cells && strstr(cells, "plastic_strain"));
+    free(text);
+}
+END_TEST
+
 START_TEST(describes_what_it_wrote) {
     char path[128], *text = NULL;
     size_t size;
@@ -158,7 +243,8 @@ START_TEST(leaves_nothing_behind_when_it_cannot_write) {
     const double point[3] = {0};
     char path[128], command[256];
     snprintf(path, sizeof path, "%s/no/such/folder/p.vtu", folder);
-    ck_assert_int_eq(brunt_vtu_write(path, 0, 1, point, NULL, 0, true, &error), BRUNT_IO_ERROR);
+    const brunt_vtu_grid one = {.point_count = 1, .points = point};
+    ck_assert_int_eq(brunt_vtu_write(path, 0, &one, NULL, 0, true, &error), BRUNT_IO_ERROR);
     ck_assert_ptr_nonnull(strstr(error.message, "No such file or directory"));
     // A file that may not grow stands for a full disk: the old picture stays, nothing lies beside it.
     snprintf(path, sizeof path, "%s/p.vtu", folder);
@@ -172,7 +258,8 @@ START_TEST(leaves_nothing_behind_when_it_cannot_write) {
     int64_t count = 32768;
     double *points = filled(7, count, 3);
     for (int64_t i = 0; i < 3 * count; i++) points[i] = (double)((i * 2654435761u) % 1000003) * 1e-3;
-    int status = brunt_vtu_write(path, 0, count, points, NULL, 0, false, &error);
+    const brunt_vtu_grid many = {.point_count = count, .points = points};
+    int status = brunt_vtu_write(path, 0, &many, NULL, 0, false, &error);
     setrlimit(RLIMIT_FSIZE, &old);
     brunt_free(points);
     ck_assert_int_eq(status, BRUNT_IO_ERROR);
@@ -192,6 +279,8 @@ int main(void) {
     tcase_add_checked_fixture(files, make_folder, remove_folder);
     tcase_add_loop_test(files, reads_back_whole, 0, 2 * (int)(sizeof counts / sizeof *counts));
     tcase_add_loop_test(files, block_headers_are_exact, 0, (int)(sizeof counts / sizeof *counts));
+    tcase_add_loop_test(files, elements_read_back_whole, 0, 9);
+    tcase_add_test(files, describes_elements);
     tcase_add_test(files, describes_what_it_wrote);
     tcase_add_test(files, leaves_nothing_behind_when_it_cannot_write);
     suite_add_tcase(suite, files);

@@ -15,7 +15,7 @@ static const char help[] =
     "  brunt keys [SECTION] [--schema]\n"
     "      the reference of scene files; --schema: as a JSON Schema for editors\n"
     "  brunt info FILE\n"
-    "      what a checkpoint, history, picture or collection holds\n"
+    "      what a checkpoint, history, picture, collection or mesh file (.msh) holds\n"
     "  brunt --version | --help\n"
     "\n"
     "Exit codes: 0 done, 64 bad command line, 65 bad input, 70 the computation failed, 74 file system, 75 stopped: "

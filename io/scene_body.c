@@ -1,0 +1,321 @@
+// Bodies of a scene: what each method needs of them, and which keys are the other's.
+#include "scene_reader.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "gmsh.h"
+
+enum { PATH_ROOM = 4096 };
+
+// Largest number of lattice intervals across anything: block coordinates are 32-bit.
+static const double CELL_COUNT_LIMIT = 1e9, PARTICLE_LIMIT = 2147483648.0, ELEMENT_LIMIT = 2147483648.0;
+
+// ---------------------------------------------------------------------------------------------------- size
+
+typedef struct extents {
+    double smallest, largest, volume, farthest; // [m], [m^dimension]
+} extents;
+
+// False after a message when there is nothing to fill.
+static bool measure_shape(scene_reader *reader, const scene_node *shape, const brunt_body_def *body, extents *out) {
+    double min[3] = {0}, max[3] = {0};
+    int dimension = reader->dimension;
+    if (!brunt_shape_bounds(&body->shape, dimension, min, max)) {
+        brunt_tree_complain_key(reader->tree, shape,
+                                "the shape is unbounded or empty: cut a half-space with a bounded shape");
+        return false;
+    }
+    *out = (extents){.smallest = INFINITY, .volume = 1};
+    for (int c = 0; c < dimension; c++) {
+        double extent = max[c] - min[c];
+        out->smallest = fmin(out->smallest, extent);
+        out->largest = fmax(out->largest, extent);
+        out->volume *= extent;
+        out->farthest = fmax(out->farthest, fmax(fabs(min[c]), fabs(max[c])));
+        out->farthest = fmax(out->farthest, fabs(body->place.translation[c]));
+    }
+    if (isfinite(out->volume) && isfinite(out->farthest)) return true;
+    brunt_tree_complain_key(reader->tree, shape, "the shape is too large to be computed with");
+    return false;
+}
+
+static void check_filling(scene_reader *reader, const scene_node *shape, const brunt_body_def *body) {
+    double cell = reader->scene->world.cell;
+    int dimension = reader->dimension;
+    extents size;
+    if (!measure_shape(reader, shape, body, &size) || !(cell > 0)) return;
+    char a[32], b[32];
+    brunt_format_number(cell, a);
+    brunt_format_number(size.smallest, b);
+    if (cell > size.smallest)
+        brunt_tree_complain_key(reader->tree, shape,
+                                "the grid's cell (%s m) is larger than the body's smallest extent (%s m)", a, b);
+    if (size.farthest / cell > CELL_COUNT_LIMIT)
+        brunt_tree_complain_key(reader->tree, shape, "the body reaches more than 1e9 cells (of %s m) from the origin",
+                                a);
+    int per_cell = body->particles_per_cell > 0 ? body->particles_per_cell : 1;
+    double spacing = body->spacing > 0 ? body->spacing : cell / pow(per_cell, 1.0 / dimension);
+    double particles = size.volume / pow(spacing, dimension);
+    if (!(particles < PARTICLE_LIMIT))
+        brunt_tree_complain_key(reader->tree, shape, "about %.3g particles fill it, at most %.0f can be held",
+                                particles, PARTICLE_LIMIT - 1);
+}
+
+static void check_meshing(scene_reader *reader, const scene_node *node, const brunt_body_def *body) {
+    const scene_node *shape = brunt_tree_child(node, "shape"), *edge = brunt_tree_child(node, "size");
+    brunt_shape_kind kind = body->shape.kind;
+    if (kind >= BRUNT_HALF_SPACE || (kind == BRUNT_PRISM && body->shape.point_count != 4)) {
+        brunt_tree_complain_key(reader->tree, shape,
+                                "%s has no mesh of its own: box, sphere, cylinder, ring and polygons with four corners "
+                                "have; a mesh file (mesh: FILE.msh) can be anything",
+                                kind == BRUNT_PRISM ? "this polygon" : shape->first->key);
+        return;
+    }
+    extents size;
+    if (!measure_shape(reader, shape, body, &size) || !(body->size > 0)) return;
+    char a[32], b[32];
+    brunt_format_number(body->size, a);
+    brunt_format_number(size.largest, b);
+    if (body->size > size.largest)
+        brunt_tree_complain(reader->tree, edge, "the elements (%s m) are larger than the body (%s m)", a, b);
+    // As many as cubes, or six times that of tetrahedra and twice of triangles.
+    double elements = size.volume / pow(body->size, reader->dimension) *
+                      (body->element == BRUNT_TET4   ? 6
+                       : body->element == BRUNT_TRI3 ? 2
+                                                     : 1);
+    if (!(elements < ELEMENT_LIMIT))
+        brunt_tree_complain(reader->tree, edge, "about %.3g elements fill the shape, at most %.0f can be held",
+                            elements, ELEMENT_LIMIT - 1);
+}
+
+// ---------------------------------------------------------------------------------------------------- material points
+
+static void fill_count(scene_reader *reader, scene_node *node, brunt_body_def *body) {
+    scene_tree *tree = reader->tree;
+    int dimension = reader->dimension;
+    const scene_node *count = brunt_tree_child(node, "particles_per_cell"),
+                     *spacing = brunt_tree_child(node, "spacing");
+    if (count && spacing)
+        brunt_tree_complain_key(tree, spacing, "spacing and particles_per_cell are both given, one of them is wanted");
+    if (!count && !spacing && dimension)
+        count = brunt_add_default(reader, node, "particles_per_cell", dimension == 2 ? "4" : "8");
+    body->spacing = brunt_real_of(node, "spacing", 0);
+    body->particles_per_cell = (int32_t)brunt_real_of(node, "particles_per_cell", 0);
+    if (!count || !count->good || !dimension) return;
+    int n = body->particles_per_cell, root = (int)lround(dimension == 2 ? sqrt(n) : cbrt(n));
+    if ((dimension == 2 ? root * root : root * root * root) == n) return;
+    int below = root, above = root + 1;
+    if ((dimension == 2 ? root * root : root * root * root) > n) below = root - 1, above = root;
+    if (below < 1) below = 1;
+    brunt_tree_complain(tree, count, "%d is not a %s, as %d or %d", n, dimension == 2 ? "square number" : "cube",
+                        dimension == 2 ? below * below : below * below * below,
+                        dimension == 2 ? above * above : above * above * above);
+}
+
+static void fill_jitter(scene_reader *reader, scene_node *node, brunt_body_def *body) {
+    if (!brunt_tree_child(node, "fill")) brunt_add_default(reader, node, "fill", "regular");
+    body->fill = (brunt_fill)(int)brunt_real_of(node, "fill", 0);
+    static const char *const keys[2] = {"jitter", "seed"}, *const initial[2] = {"0.25", "1"};
+    for (int i = 0; i < 2; i++) {
+        const scene_node *given = brunt_tree_child(node, keys[i]);
+        if (given && body->fill != BRUNT_FILL_JITTERED)
+            brunt_tree_complain_key(reader->tree, given, "%s is given without fill: jittered", keys[i]);
+        if (!given && body->fill == BRUNT_FILL_JITTERED) brunt_add_default(reader, node, keys[i], initial[i]);
+    }
+    body->jitter = brunt_real_of(node, "jitter", 0);
+    body->seed = (uint64_t)brunt_real_of(node, "seed", (double)body->seed);
+}
+
+static void fill_particles(scene_reader *reader, scene_node *node, brunt_body_def *body, bool measurable) {
+    static const char *const elsewhere[] = {"mesh", "group", "element", "size", "hourglass", "mass_scaling"};
+    for (size_t i = 0; i < sizeof elsewhere / sizeof *elsewhere; i++)
+        brunt_refuse_key(reader, node, elsewhere[i], "this belongs to method: fem");
+    if (!brunt_tree_child(node, "shape"))
+        brunt_tree_complain_key(reader->tree, node, "'shape' is missing: what is filled with particles");
+    int mistakes = reader->tree->message_count;
+    fill_count(reader, node, body);
+    if (measurable && mistakes == reader->tree->message_count)
+        check_filling(reader, brunt_tree_child(node, "shape"), body);
+    fill_jitter(reader, node, body);
+}
+
+// ---------------------------------------------------------------------------------------------------- finite elements
+
+// A path counts from the folder of the scene; the resolved scene, which lies elsewhere, has the whole path.
+static bool find_mesh(scene_reader *reader, scene_node *node, char path[PATH_ROOM]) {
+    const char *source = reader->scene->source, *slash = strrchr(source, '/');
+    int folder = slash && node->text[0] != '/' ? (int)(slash - source) + 1 : 0;
+    struct stat status;
+    char joined[PATH_ROOM], *whole = NULL;
+    int length = snprintf(joined, sizeof joined, "%.*s%s", folder, source, node->text);
+    if (length < 0 || length >= (int)sizeof joined) {
+        brunt_tree_complain(reader->tree, node, "the path is too long");
+        return false;
+    }
+    // Pipes and devices could make the reader wait for ever.
+    if (!*node->text || stat(joined, &status) != 0)
+        brunt_tree_complain(reader->tree, node, "the mesh file '%.400s' cannot be read: %s", joined, strerror(errno));
+    else if (!S_ISREG(status.st_mode))
+        brunt_tree_complain(reader->tree, node, "'%.400s' is not a file", joined);
+    else if (!(whole = realpath(joined, NULL)))
+        brunt_tree_complain(reader->tree, node, "the mesh file '%.400s' cannot be read: %s", joined, strerror(errno));
+    bool found = whole && snprintf(path, PATH_ROOM, "%s", whole) < PATH_ROOM;
+    free(whole);
+    if (found) {
+        char *kept = brunt_tree_text(reader->tree, path, strlen(path));
+        if (!kept) return false;
+        node->text = kept;
+    }
+    return found;
+}
+
+// True when the body has elements whose kind is known.
+static bool read_mesh(scene_reader *reader, scene_node *node, brunt_body_def *body) {
+    scene_node *mesh = brunt_tree_child(node, "mesh");
+    const scene_node *group = brunt_tree_child(node, "group");
+    brunt_refuse_key(reader, node, "element", "a mesh file has elements of its own");
+    brunt_refuse_key(reader, node, "size", "a mesh file has elements of its own");
+    char name[BRUNT_NAME_LENGTH] = "", path[PATH_ROOM];
+    brunt_copy_text(reader, group, name, sizeof name);
+    if (!mesh->good || !reader->dimension || (group && !*name) || !find_mesh(reader, mesh, path)) return false;
+    brunt_error error = {0};
+    int status = brunt_gmsh_read(path, name, reader->dimension, &body->mesh, reader->warnings, &error);
+    if (status) {
+        brunt_tree_complain(reader->tree, mesh, "%s", error.message);
+        return false;
+    }
+    body->element = body->mesh.kind;
+    return true;
+}
+
+static bool fill_elements(scene_reader *reader, scene_node *node, brunt_body_def *body) {
+    static const int dimensions[BRUNT_ELEMENT_KINDS] = {3, 3, 2, 2};
+    const scene_node *kind = brunt_tree_child(node, "element");
+    int dimension = reader->dimension;
+    brunt_refuse_key(reader, node, "group", "this belongs to a mesh file, none is given");
+    if (!kind && dimension) kind = brunt_add_default(reader, node, "element", dimension == 2 ? "quad4" : "hex8");
+    body->element = (brunt_element_kind)(int)brunt_real_of(node, "element", BRUNT_HEX8);
+    if (!brunt_tree_child(node, "size"))
+        brunt_tree_complain_key(reader->tree, node, "'size' is missing: a length (m), edge of the elements");
+    body->size = brunt_real_of(node, "size", 0);
+    bool known = kind && kind->good && dimension;
+    if (known && dimensions[body->element] != dimension) {
+        brunt_tree_complain(reader->tree, kind, "%s is for %d dimensions, %s is wanted", kind->text,
+                            dimensions[body->element], dimension == 2 ? "tri3 or quad4" : "tet4 or hex8");
+        return false;
+    }
+    return known;
+}
+
+static void fill_hourglass(scene_reader *reader, scene_node *node, brunt_body_def *body) {
+    const scene_node *map = brunt_tree_child(node, "hourglass");
+    bool simplex = body->element == BRUNT_TET4 || body->element == BRUNT_TRI3;
+    if (map && simplex) {
+        brunt_tree_complain_key(reader->tree, map, "triangles and tetrahedra have no zero-energy modes to control");
+        return;
+    }
+    if (simplex) return;
+    if (!map) map = brunt_add_default(reader, node, "hourglass", "{}");
+    body->hourglass = (brunt_hourglass)(int)brunt_real_of(map, "form", BRUNT_HOURGLASS_STIFFNESS);
+    body->hourglass_coefficient = brunt_real_of(map, "coefficient", NAN);
+}
+
+static void fill_fem(scene_reader *reader, scene_node *node, brunt_body_def *body, bool measurable) {
+    static const char *const elsewhere[] = {"particles_per_cell", "spacing", "fill", "jitter", "seed"};
+    for (size_t i = 0; i < sizeof elsewhere / sizeof *elsewhere; i++)
+        brunt_refuse_key(reader, node, elsewhere[i], "this belongs to method: mpm");
+    bool shape = brunt_tree_child(node, "shape"), mesh = brunt_tree_child(node, "mesh"), known = false;
+    body->mass_scaling = brunt_real_of(node, "mass_scaling", 0);
+    if (shape == mesh) {
+        brunt_tree_complain_key(reader->tree, node, "exactly one of shape and mesh is wanted, %s given",
+                                shape ? "both are" : "none is");
+        return;
+    }
+    int mistakes = reader->tree->message_count;
+    known = mesh ? read_mesh(reader, node, body) : fill_elements(reader, node, body);
+    if (known) fill_hourglass(reader, node, body);
+    if (shape && measurable && mistakes == reader->tree->message_count && reader->dimension)
+        check_meshing(reader, node, body);
+}
+
+// ---------------------------------------------------------------------------------------------------- motion
+
+static void fill_spin(scene_reader *reader, const scene_node *spin, brunt_body_def *body) {
+    if (!spin || spin->kind != SCENE_MAP) return;
+    const scene_node *rate = brunt_tree_child(spin, "rate"), *axis = brunt_tree_child(spin, "axis");
+    brunt_vector_of(spin, "about", body->spin_about);
+    if (!rate || !rate->good) return;
+    if (rate->components == 3) {
+        if (axis) brunt_tree_complain_key(reader->tree, axis, "the rate is a vector and has its axis already");
+        brunt_vector_of(spin, "rate", body->spin);
+    } else if (reader->dimension == 2) {
+        body->spin[2] = rate->value[0];
+    } else if (!axis) {
+        brunt_tree_complain(reader->tree, rate, "a number needs an axis beside it, or give a vector");
+    } else {
+        double direction[3] = {0};
+        if (!brunt_vector_of(spin, "axis", direction)) return;
+        double length = sqrt(direction[0] * direction[0] + direction[1] * direction[1] + direction[2] * direction[2]);
+        if (!brunt_nonzero(direction))
+            brunt_tree_complain(reader->tree, axis, "the axis has zero length");
+        else
+            for (int c = 0; c < 3; c++) body->spin[c] = rate->value[0] * direction[c] / length;
+    }
+}
+
+static void fill_wave(scene_reader *reader, const scene_node *wave, brunt_body_def *body) {
+    if (!wave || wave->kind != SCENE_MAP) return;
+    brunt_vector_of(wave, "velocity", body->wave_velocity);
+    body->wave_phase = brunt_real_of(wave, "phase", 0);
+    if (brunt_vector_of(wave, "wave_vector", body->wave_vector) && !brunt_nonzero(body->wave_vector))
+        brunt_tree_complain(reader->tree, brunt_tree_child(wave, "wave_vector"), "the wave vector has zero length");
+}
+
+// ---------------------------------------------------------------------------------------------------- bodies
+
+static void fill_body(scene_reader *reader, scene_node *node, brunt_body_def *body) {
+    brunt_world_def *world = &reader->scene->world;
+    if (node->kind != SCENE_MAP) return;
+    const scene_node *material = brunt_tree_child(node, "material"), *method = brunt_tree_child(node, "method");
+    body->material = -1;
+    for (int i = 0; i < world->material_count; i++)
+        if (strcmp(world->materials[i].name, brunt_text_of(node, "material", "")) == 0) body->material = i;
+    if (material && material->good && body->material < 0)
+        brunt_complain_name(reader, material, "material", "materials");
+    int mistakes = reader->tree->message_count;
+    const scene_node *shape = brunt_tree_child(node, "shape");
+    brunt_fill_shape_def(reader, shape, &body->shape);
+    body->place = brunt_fill_place(reader, brunt_tree_child(node, "place"));
+    bool measurable = shape && shape->good && reader->dimension && mistakes == reader->tree->message_count;
+    body->method = (brunt_method)(int)brunt_real_of(node, "method", BRUNT_MPM);
+    // Without a method nobody knows which keys are wanted.
+    if (method && method->good && body->method == BRUNT_MPM) fill_particles(reader, node, body, measurable);
+    if (method && method->good && body->method == BRUNT_FEM) fill_fem(reader, node, body, measurable);
+    brunt_vector_of(node, "velocity", body->velocity);
+    fill_spin(reader, brunt_tree_child(node, "spin"), body);
+    fill_wave(reader, brunt_tree_child(node, "wave"), body);
+    body->temperature = brunt_real_of(node, "temperature", body->temperature);
+}
+
+static int by_name(const void *a, const void *b) {
+    return strcmp(((const brunt_body_def *)a)->name, ((const brunt_body_def *)b)->name);
+}
+
+void brunt_fill_bodies(scene_reader *reader) {
+    brunt_world_def *world = &reader->scene->world;
+    const scene_node *map = brunt_tree_child(reader->tree->root, "bodies");
+    int count = brunt_children_of(map, SCENE_MAP);
+    world->bodies = brunt_entries_for(reader, count, sizeof *world->bodies);
+    if (!world->bodies) return;
+    for (scene_node *child = map->first; child; child = child->next) {
+        brunt_body_def *body = &world->bodies[world->body_count++];
+        *body = brunt_body_def_default();
+        snprintf(body->name, sizeof body->name, "%s", child->key);
+        fill_body(reader, child, body);
+    }
+    qsort(world->bodies, (size_t)world->body_count, sizeof *world->bodies, by_name);
+}

@@ -1,0 +1,247 @@
+// Boundaries of a scene: walls, regions of the grid with prescribed motion, groups of nodes that are held, moved or
+// loaded.
+#include "scene_reader.h"
+
+#include <math.h>
+#include <string.h>
+
+// What can be done to a group of nodes.
+static const struct {
+    const char *key;
+    brunt_group_action action;
+} actions[] = {{"fix", BRUNT_GROUP_VELOCITY},
+               {"velocity", BRUNT_GROUP_VELOCITY},
+               {"displacement", BRUNT_GROUP_DISPLACEMENT},
+               {"traction", BRUNT_GROUP_TRACTION},
+               {"pressure", BRUNT_GROUP_PRESSURE}};
+
+static void refuse_group_keys(scene_reader *reader, const scene_node *node) {
+    static const char *const keys[] = {"fix", "displacement", "traction", "pressure", "table"};
+    for (int i = 0; i < 5; i++) brunt_refuse_key(reader, node, keys[i], "this belongs to a group of nodes");
+}
+
+static void fill_body_of(scene_reader *reader, const scene_node *node, char name[BRUNT_NAME_LENGTH]) {
+    const scene_node *body = brunt_tree_child(node, "body");
+    brunt_check_body_name(reader, body);
+    brunt_copy_text(reader, body, name, BRUNT_NAME_LENGTH);
+}
+
+// Whether there are material points among the bodies a boundary acts on; a name that is wrong is another mistake.
+static bool acts_on_particles(const scene_reader *reader, const char *name) {
+    const brunt_world_def *world = &reader->scene->world;
+    const brunt_body_def *body = brunt_body_named(reader, name);
+    if (*name) return !body || body->method == BRUNT_MPM;
+    bool any = world->body_count == 0;
+    for (int i = 0; i < world->body_count; i++) any |= world->bodies[i].method == BRUNT_MPM;
+    return any;
+}
+
+// A vector of which some components may be free.
+static void fill_partial(scene_reader *reader, const scene_node *node, bool component[3], double value[3]) {
+    bool any = false;
+    for (int c = 0; c < 3; c++) {
+        component[c] = c < reader->dimension && node && node->good && !node->free[c];
+        value[c] = component[c] ? node->value[c] : 0;
+        any |= component[c];
+    }
+    if (node && node->good && !any && reader->dimension)
+        brunt_tree_complain(reader->tree, node, "all components are free: nothing would be prescribed");
+}
+
+// ---------------------------------------------------------------------------------------------------- planes
+
+static void check_symmetry(scene_reader *reader, const scene_node *node, const brunt_plane_def *plane) {
+    const brunt_world_def *world = &reader->scene->world;
+    const scene_node *where = brunt_tree_child(node, "plane");
+    int axis = -1, nonzeros = 0;
+    for (int c = 0; c < 3; c++)
+        if (plane->normal[c] != 0) axis = c, nonzeros++;
+    if (nonzeros > 1) {
+        brunt_tree_complain(reader->tree, brunt_tree_child(where, "normal"),
+                            "a symmetry plane stands across x, y or z");
+        return;
+    }
+    if (nonzeros == 0 || !(world->cell > 0) || !acts_on_particles(reader, plane->body)) return;
+    double lines = (plane->point[axis] - world->origin[axis]) / world->cell;
+    if (!(fabs(lines - round(lines)) < 1e-9 * fmax(1, fabs(lines)))) {
+        char a[32], b[32];
+        brunt_format_number(world->origin[axis] + floor(lines) * world->cell, a);
+        brunt_format_number(world->origin[axis] + ceil(lines) * world->cell, b);
+        brunt_tree_complain(reader->tree, brunt_tree_child(where, "point"),
+                            "a symmetry plane lies on a grid line: %c = %s or %s is wanted (or move grid.origin)",
+                            "xyz"[axis], a, b);
+    }
+}
+
+static void fill_plane(scene_reader *reader, scene_node *node, brunt_plane_def *plane) {
+    const scene_node *where = brunt_tree_child(node, "plane"), *condition = brunt_tree_child(node, "condition");
+    brunt_vector_of(where, "point", plane->point);
+    bool normal = brunt_vector_of(where, "normal", plane->normal);
+    if (normal && !brunt_nonzero(plane->normal))
+        brunt_tree_complain(reader->tree, brunt_tree_child(where, "normal"), "the normal has zero length");
+    if (!condition)
+        brunt_tree_complain(reader->tree, node, "'condition' is missing: one of stick, slip, separate, symmetry");
+    plane->condition = (brunt_condition)(int)brunt_real_of(node, "condition", BRUNT_SEPARATE);
+    if (condition && condition->good && plane->condition != BRUNT_SEPARATE)
+        brunt_refuse_key(reader, node, "friction", "friction acts only with condition: separate");
+    else if (!brunt_tree_child(node, "friction"))
+        brunt_add_default(reader, node, "friction", "0");
+    plane->friction = brunt_real_of(node, "friction", 0);
+    static const char *const regional[] = {"from", "until", "place"};
+    for (int i = 0; i < 3; i++) brunt_refuse_key(reader, node, regional[i], "this belongs to a region, not to a plane");
+    refuse_group_keys(reader, node);
+    scene_node *velocity = brunt_tree_child(node, "velocity");
+    if (plane->condition == BRUNT_SYMMETRY)
+        brunt_refuse_key(reader, node, "velocity", "a symmetry plane does not move");
+    else if (!velocity)
+        brunt_add_default(reader, node, "velocity", "0");
+    if (velocity && (velocity->free[0] || velocity->free[1] || velocity->free[2]))
+        brunt_tree_complain(reader->tree, velocity, "`free` is for regions and groups; a wall has a velocity");
+    else
+        brunt_vector_of(node, "velocity", plane->velocity);
+    fill_body_of(reader, node, plane->body);
+    if (plane->condition == BRUNT_SYMMETRY && normal) check_symmetry(reader, node, plane);
+}
+
+// ---------------------------------------------------------------------------------------------------- regions
+
+static void fill_region(scene_reader *reader, scene_node *node, brunt_region_def *region) {
+    const scene_node *velocity = brunt_tree_child(node, "velocity"), *until = brunt_tree_child(node, "until");
+    brunt_fill_shape_def(reader, brunt_tree_child(node, "region"), &region->shape);
+    region->place = brunt_fill_place(reader, brunt_tree_child(node, "place"));
+    brunt_refuse_key(reader, node, "condition", "this belongs to a plane, not to a region");
+    brunt_refuse_key(reader, node, "friction", "this belongs to a plane, not to a region");
+    refuse_group_keys(reader, node);
+    if (!velocity)
+        brunt_tree_complain(reader->tree, node, "'velocity' is missing: a list of numbers or `free`, in m/s");
+    fill_partial(reader, velocity, region->component, region->velocity);
+    if (!brunt_tree_child(node, "from")) brunt_add_default(reader, node, "from", "0");
+    region->start = brunt_real_of(node, "from", 0);
+    if (!until) until = brunt_add_default(reader, node, "until", "none");
+    region->end = brunt_real_of(node, "until", INFINITY);
+    if (until && until->good && !(region->start < region->end))
+        brunt_tree_complain(reader->tree, until, "until must be after from");
+    fill_body_of(reader, node, region->body);
+    const scene_node *body = brunt_tree_child(node, "body"), *where = body ? body : brunt_tree_child(node, "region");
+    if (!acts_on_particles(reader, region->body))
+        brunt_tree_complain_key(reader->tree, where,
+                                "a region acts on the grid, %s: `group` names nodes of finite elements",
+                                body ? "this body is of method fem" : "no body is of method mpm");
+}
+
+// ---------------------------------------------------------------------------------------------------- groups
+
+static void fill_table(scene_reader *reader, const scene_node *node, brunt_curve *table) {
+    if (!node || !node->good) return;
+    table->points = brunt_entries_for(reader, node->count, sizeof *table->points);
+    for (const scene_node *point = table->points ? node->first : NULL; point; point = point->next) {
+        table->points[table->count][0] = point->first->value[0];
+        table->points[table->count++][1] = point->last->value[0];
+    }
+}
+
+// The one key that says what is done to the group; NULL after a message when there is not exactly one.
+static scene_node *find_action(scene_reader *reader, scene_node *node) {
+    scene_node *found = NULL;
+    int count = 0;
+    for (size_t i = 0; i < sizeof actions / sizeof *actions; i++) {
+        scene_node *child = brunt_tree_child(node, actions[i].key);
+        if (child) found = child, count++;
+    }
+    if (count == 1) return found;
+    brunt_tree_complain(reader->tree, node,
+                        "exactly one of fix, velocity, displacement, traction and pressure is wanted, %d are given",
+                        count);
+    return NULL;
+}
+
+static void fill_action(scene_reader *reader, scene_node *node, brunt_group_def *group) {
+    const scene_node *action = find_action(reader, node);
+    if (!action) return;
+    bool fixed = strcmp(action->key, "fix") == 0;
+    for (size_t i = 0; i < sizeof actions / sizeof *actions; i++)
+        if (strcmp(actions[i].key, action->key) == 0) group->action = actions[i].action;
+    if (fixed) brunt_refuse_key(reader, node, "table", "what is fixed does not change with time");
+    if (!action->good) return;
+    switch (group->action) {
+    case BRUNT_GROUP_VELOCITY:
+    case BRUNT_GROUP_DISPLACEMENT:
+        if (!fixed) fill_partial(reader, action, group->component, group->value);
+        for (int c = 0; fixed && c < 3; c++) group->component[c] = action->value[c] != 0;
+        break;
+    case BRUNT_GROUP_TRACTION: brunt_vector_of(node, "traction", group->value); break;
+    case BRUNT_GROUP_PRESSURE: group->value[0] = action->value[0]; break;
+    }
+}
+
+static void fill_group(scene_reader *reader, scene_node *node, brunt_group_def *group) {
+    static const char *const elsewhere[] = {"condition", "friction", "from", "until", "place"};
+    for (int i = 0; i < 5; i++)
+        brunt_refuse_key(reader, node, elsewhere[i],
+                         i < 2 ? "this belongs to a plane, not to a group"
+                               : "this belongs to a region, not to a group");
+    brunt_copy_text(reader, brunt_tree_child(node, "group"), group->group, sizeof group->group);
+    const scene_node *body = brunt_tree_child(node, "body");
+    if (!body) brunt_tree_complain(reader->tree, node, "'body' is missing: the body whose nodes they are");
+    fill_body_of(reader, node, group->body);
+    const brunt_body_def *def = brunt_body_named(reader, group->body);
+    if (def && def->method != BRUNT_FEM)
+        brunt_tree_complain(reader->tree, body, "groups are of bodies of method fem, '%s' is of method mpm", def->name);
+    fill_action(reader, node, group);
+    fill_table(reader, brunt_tree_child(node, "table"), &group->table);
+}
+
+// ---------------------------------------------------------------------------------------------------- boundaries
+
+static void check_wall_names(scene_reader *reader, const scene_node *list) {
+    for (const scene_node *a = list->first; a; a = a->next) {
+        const char *name = brunt_text_of(a, "name", "");
+        for (const scene_node *b = list->first; *name && b != a; b = b->next)
+            if (strcmp(brunt_text_of(b, "name", ""), name) == 0)
+                brunt_tree_complain(reader->tree, brunt_tree_child(a, "name"), "the name '%s' is there twice", name);
+    }
+}
+
+static void fill_named(scene_reader *reader, scene_node *node, const char *kind, int number, char *name) {
+    char automatic[32];
+    snprintf(automatic, sizeof automatic, "%s%d", kind, number);
+    if (!brunt_tree_child(node, "name")) brunt_add_default(reader, node, "name", automatic);
+    brunt_copy_text(reader, brunt_tree_child(node, "name"), name, BRUNT_NAME_LENGTH);
+}
+
+static void fill_boundary(scene_reader *reader, scene_node *node) {
+    brunt_world_def *world = &reader->scene->world;
+    bool plane = brunt_tree_child(node, "plane"), region = brunt_tree_child(node, "region"),
+         group = brunt_tree_child(node, "group");
+    if (plane + region + group != 1) {
+        brunt_tree_complain(reader->tree, node, "exactly one of plane, region and group is wanted");
+    } else if (plane) {
+        brunt_plane_def *def = &world->planes[world->plane_count++];
+        *def = brunt_plane_def_default();
+        fill_named(reader, node, "plane", world->plane_count, def->name);
+        fill_plane(reader, node, def);
+    } else if (region) {
+        brunt_region_def *def = &world->regions[world->region_count++];
+        *def = brunt_region_def_default();
+        fill_named(reader, node, "region", world->region_count, def->name);
+        fill_region(reader, node, def);
+    } else {
+        brunt_group_def *def = &world->groups[world->group_count++];
+        *def = brunt_group_def_default();
+        fill_named(reader, node, "group", world->group_count, def->name);
+        fill_group(reader, node, def);
+    }
+}
+
+void brunt_fill_boundaries(scene_reader *reader) {
+    brunt_world_def *world = &reader->scene->world;
+    const scene_node *list = brunt_tree_child(reader->tree->root, "boundaries");
+    int count = brunt_children_of(list, SCENE_LIST);
+    world->planes = brunt_entries_for(reader, count, sizeof *world->planes);
+    world->regions = brunt_entries_for(reader, count, sizeof *world->regions);
+    world->groups = brunt_entries_for(reader, count, sizeof *world->groups);
+    if (!world->planes || !world->regions || !world->groups) return;
+    for (scene_node *node = list->first; node; node = node->next)
+        if (node->kind == SCENE_MAP) fill_boundary(reader, node);
+    check_wall_names(reader, list);
+}

@@ -1,0 +1,130 @@
+// Contact of a scene: the method for all, for single pairs, and what goes with which bodies.
+#include "scene_reader.h"
+
+#include <string.h>
+
+static const char *const methods[] = {"none", "multi-velocity", "augury"}; // by brunt_contact_method
+
+static bool is_fem(const scene_reader *reader, const char *name) {
+    const brunt_body_def *body = brunt_body_named(reader, name);
+    return body && body->method == BRUNT_FEM;
+}
+
+static bool same_pair(const brunt_pair_def *pair, const char *a, const char *b) {
+    return (strcmp(pair->a, a) == 0 && strcmp(pair->b, b) == 0) || (strcmp(pair->a, b) == 0 && strcmp(pair->b, a) == 0);
+}
+
+static void check_pair_method(scene_reader *reader, const scene_node *method, const brunt_pair_def *pair) {
+    bool known = brunt_body_named(reader, pair->a) && brunt_body_named(reader, pair->b), a = is_fem(reader, pair->a),
+         b = is_fem(reader, pair->b);
+    if (pair->method == BRUNT_CONTACT_MULTI_VELOCITY && (a || b))
+        brunt_tree_complain(reader->tree, method,
+                            "multi-velocity is between bodies of method mpm, '%s' is of method fem",
+                            a ? pair->a : pair->b);
+    if (pair->method == BRUNT_CONTACT_AUGURY && known && !a && !b)
+        brunt_tree_complain(reader->tree, method, "augury wants a body of method fem, both are of method mpm");
+}
+
+static void fill_pair(scene_reader *reader, scene_node *node, brunt_pair_def *pair) {
+    brunt_contact_def *contact = &reader->scene->world.contact;
+    if (node->kind != SCENE_MAP) return;
+    char friction[32];
+    brunt_format_number(contact->friction, friction);
+    const scene_node *method = brunt_tree_child(node, "method");
+    if (!method) brunt_add_default(reader, node, "method", methods[contact->method]);
+    if (!brunt_tree_child(node, "friction")) brunt_add_default(reader, node, "friction", friction);
+    pair->method = (brunt_contact_method)(int)brunt_real_of(node, "method", contact->method);
+    pair->friction = brunt_real_of(node, "friction", 0);
+    const scene_node *between = brunt_tree_child(node, "between");
+    if (!between || !between->good) return;
+    if (between->count != 2) {
+        brunt_tree_complain(reader->tree, between, "%d names are given, the two bodies of the pair are wanted",
+                            between->count);
+        return;
+    }
+    brunt_check_body_name(reader, between->first);
+    brunt_check_body_name(reader, between->last);
+    brunt_copy_text(reader, between->first, pair->a, sizeof pair->a);
+    brunt_copy_text(reader, between->last, pair->b, sizeof pair->b);
+    if (method && method->good) check_pair_method(reader, method, pair);
+    for (int i = 0; i < contact->pair_count; i++) {
+        const brunt_pair_def *other = &contact->pairs[i];
+        if (other != pair && *other->a && same_pair(other, pair->a, pair->b))
+            brunt_tree_complain(reader->tree, between, "this pair is there twice");
+    }
+}
+
+static void fill_pairs(scene_reader *reader, const scene_node *list) {
+    brunt_contact_def *contact = &reader->scene->world.contact;
+    contact->pairs = brunt_entries_for(reader, brunt_children_of(list, SCENE_LIST), sizeof *contact->pairs);
+    if (!contact->pairs) return;
+    for (scene_node *child = list->first; child; child = child->next)
+        fill_pair(reader, child, &contact->pairs[contact->pair_count++]);
+}
+
+// Whether a pair of its own gives two bodies another method than that of all.
+static bool overridden(const brunt_contact_def *contact, const char *a, const char *b) {
+    for (int i = 0; i < contact->pair_count; i++)
+        if (contact->pairs[i].method != contact->method && same_pair(&contact->pairs[i], a, b)) return true;
+    return false;
+}
+
+// Multi-velocity for all meets a finite-element body: said once, with the first two bodies it is wrong for.
+static void check_multi_velocity(scene_reader *reader, const scene_node *method) {
+    const brunt_world_def *world = &reader->scene->world;
+    for (int f = 0; f < world->body_count; f++) {
+        const brunt_body_def *fem = &world->bodies[f];
+        if (fem->method != BRUNT_FEM) continue;
+        for (int o = 0; o < world->body_count; o++) {
+            const brunt_body_def *other = &world->bodies[o];
+            if (o == f || overridden(&world->contact, fem->name, other->name)) continue;
+            brunt_tree_complain(reader->tree, method,
+                                "multi-velocity is between bodies of method mpm, '%s' is of method fem: augury is "
+                                "wanted, or pairs with a method of their own",
+                                fem->name);
+            return;
+        }
+    }
+}
+
+static void fill_augury(scene_reader *reader, scene_node *node) {
+    brunt_contact_def *contact = &reader->scene->world.contact;
+    bool used = contact->method == BRUNT_CONTACT_AUGURY;
+    for (int i = 0; i < contact->pair_count; i++) used |= contact->pairs[i].method == BRUNT_CONTACT_AUGURY;
+    if (!used) {
+        static const char *const keys[] = {"form", "iterations", "cell", "transfer"};
+        for (int i = 0; i < 4; i++) brunt_refuse_key(reader, node, keys[i], "this belongs to method: augury");
+        return;
+    }
+    if (!brunt_tree_child(node, "form")) brunt_add_default(reader, node, "form", "affine");
+    const scene_node *form = brunt_tree_child(node, "form");
+    contact->form = (brunt_augury_form)(int)brunt_real_of(node, "form", BRUNT_AUGURY_AFFINE);
+    contact->iterations = (int)brunt_real_of(node, "iterations", -1);
+    contact->cell = brunt_real_of(node, "cell", 0);
+    if (contact->form == BRUNT_AUGURY_PAPER) {
+        if (!brunt_tree_child(node, "transfer")) brunt_add_default(reader, node, "transfer", "apic");
+    } else if (form && form->good) {
+        brunt_refuse_key(reader, node, "transfer", "this belongs to form: paper");
+    }
+    contact->transfer = brunt_real_of(node, "transfer", 1) == 0 ? BRUNT_PIC : BRUNT_APIC;
+}
+
+void brunt_fill_contact(scene_reader *reader) {
+    brunt_world_def *world = &reader->scene->world;
+    brunt_contact_def *contact = &world->contact;
+    scene_node *node = brunt_tree_child(reader->tree->root, "contact");
+    if (!node || node->kind != SCENE_MAP) return;
+    bool fem = false;
+    for (int i = 0; i < world->body_count; i++) fem |= world->bodies[i].method == BRUNT_FEM;
+    const scene_node *method = brunt_tree_child(node, "method");
+    contact->method = fem ? BRUNT_CONTACT_AUGURY : BRUNT_CONTACT_MULTI_VELOCITY;
+    if (!method) method = brunt_add_default(reader, node, "method", methods[contact->method]);
+    contact->method = (brunt_contact_method)(int)brunt_real_of(node, "method", contact->method);
+    if (contact->method == BRUNT_CONTACT_AUGURY && !fem && world->body_count)
+        brunt_tree_complain(reader->tree, method, "augury wants a body of method fem, all are of method mpm");
+    contact->friction = brunt_real_of(node, "friction", 0);
+    contact->allow_overlap = brunt_real_of(node, "initial_overlap", 0) == 1;
+    fill_pairs(reader, brunt_tree_child(node, "pairs"));
+    if (contact->method == BRUNT_CONTACT_MULTI_VELOCITY && method && method->good) check_multi_velocity(reader, method);
+    fill_augury(reader, node);
+}
