@@ -58,6 +58,22 @@ static void triangle_of(const brunt_skin *s, int32_t face, int t, const double *
     p[2] = node[3] < 0 ? s->x[node[2]] : s->face_centre[face];
 }
 
+static int sector(const brunt_skin *s, int32_t face, const double x[3]) {
+    const double *centre = s->face_centre[face], *normal = s->face_normal[face];
+    double r[3], turn[4];
+    for (int k = 0; k < 3; k++) r[k] = x[k] - centre[k];
+    for (int t = 0; t < 4; t++) {
+        const double *p = s->x[s->face[face][t]];
+        const double e[3] = {p[0] - centre[0], p[1] - centre[1], p[2] - centre[2]};
+        double c[3];
+        cross(e, r, c);
+        turn[t] = dot(c, normal);
+    }
+    for (int t = 0; t < 4; t++)
+        if (turn[t] >= 0 && turn[(t + 1) % 4] <= 0) return t;
+    return 0;
+}
+
 brunt_closest brunt_closest_on_face(const brunt_skin *s, int32_t face, const double x[3]) {
     const int32_t *node = s->face[face];
     brunt_closest best = {.square = INFINITY};
@@ -72,8 +88,10 @@ brunt_closest brunt_closest_on_face(const brunt_skin *s, int32_t face, const dou
         best.square = dot(best.d, best.d);
         return best;
     }
-    const int triangles = node[3] < 0 ? 1 : 4;
-    for (int t = 0; t < triangles; t++) {
+    // Of a quadrilateral's four triangles the one whose sector x is in settles it, unless the nearest point is on its rim.
+    const int triangles = node[3] < 0 ? 1 : 4, first = triangles == 4 ? sector(s, face, x) : 0;
+    for (int k = 0; k < triangles && !(k == 1 && best.inside); k++) {
+        const int t = (first + k) % triangles;
         const double *p[3];
         double d[3];
         bool inside;
@@ -82,7 +100,7 @@ brunt_closest brunt_closest_on_face(const brunt_skin *s, int32_t face, const dou
         double square = dot(d, d);
         if (!(square < best.square)) continue;
         best.square = square, best.inside = inside, best.triangle = t;
-        for (int k = 0; k < 3; k++) best.d[k] = d[k];
+        for (int c = 0; c < 3; c++) best.d[c] = d[c];
     }
     const double *p[3];
     triangle_of(s, face, best.triangle, p);

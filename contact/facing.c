@@ -11,13 +11,16 @@
 #include "transfer.h"
 
 enum { GRAIN = 64, MAX_HITS = 3, MAX_TIED = 16, MAX_NEAR = 32 };
-static const double RANGE = 0.5;     // mean edges: how far a body looks for others, if nothing moves faster
-static const double MARGIN = 0.25;   // mean edges: how far facets may move before the cells are made anew
+static const double RANGE = 0.25;    // mean edges: how far a body looks for others, if nothing moves faster
+static const double MARGIN = 0.125;  // mean edges: how far facets may move before the cells are made anew
+static const double CELL = 0.5;      // mean edges: of the cells that facets are found in
 static const double OPPOSED = 0.1;   // least cosine between a slave's outward normal and the one into the master
 static const double ASKEW = -0.3;    // ... or, where nothing opposed is within ...
 static const double CLOSE = 0.25;    // ... so many mean edges, the least one with the normal of a facet
 static const double PUSH = 0.2;      // share of a penetration that is pushed out in a step ...
 static const double BOUNCE = 0.5;    // ... but no faster than this share of the approach, so that it adds no energy
+
+static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 // The nearest facet of one other body.
 typedef struct hit {
@@ -43,7 +46,8 @@ typedef struct near_pair {
 
 struct brunt_facing {
     double range; // [m] how far a body looks for others in this step ...
-    double reach; // ... and how far anything moves towards anything
+    double reach; // ... and how far anything moves towards anything ...
+    double wall_reach; // ... and towards a wall
     bounds *box;
     size_t box_capacity;
     int32_t box_count;
@@ -207,28 +211,25 @@ int brunt_facing_near(const brunt_meeting *m, brunt_body *mpm, int mpm_count, co
         if (!(*facing)->node_support || !(*facing)->node_support_capacity) return -1;
     }
     brunt_facing *f = *facing;
-    // Nothing may pass anything unseen: the range covers twice the fastest motion of a step.
-    double fastest = 0;
-    for (int k = 0; k < s->fem_count; k++) {
-        const brunt_fem_body *fem = s->fem[k];
-        for (int32_t n = s->node_range[k]; n < s->node_range[k + 1]; n++) {
-            const real *v = brunt_fem_node(fem, s->node[n]) + BRUNT_FEM_V;
-            fastest = fmax(fastest, (double)(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
-        }
-    }
-    double spacing = 0;
+    // Nothing may pass anything unseen: the reach covers twice the fastest motion of a step, against the frame of all.
+    double fastest = 0, spacing = 0;
+    for (int k = 0; k < s->fem_count; k++) fastest = fmax(fastest, s->speed[k]);
+    const double frame = sqrt(dot(s->frame, s->frame));
     for (int k = 0; k < mpm_count; k++) {
         spacing = fmax(spacing, mpm[k].spacing);
-        for (int32_t b = 0; b < mpm[k].grid.block_count; b++)
-            fastest = fmax(fastest, (double)(mpm[k].report[b].speed * mpm[k].report[b].speed));
+        for (int32_t b = 0; b < mpm[k].grid.block_count; b++) fastest = fmax(fastest, (double)mpm[k].report[b].speed + frame);
     }
-    f->reach = 2 * sqrt(fastest) * m->dt + spacing;
+    double walls_speed = 0;
+    for (int w = 0; w < wall_count; w++)
+        if (!walls[w].region) walls_speed = fmax(walls_speed, sqrt(dot(walls[w].plane.velocity, walls[w].plane.velocity)));
+    f->wall_reach = (fastest + frame + walls_speed) * m->dt;
+    f->reach = 2 * fastest * m->dt + spacing;
     f->range = fmax(fmax(RANGE * s->mean_edge + spacing, f->reach), m->look);
     if (find_boxes(m, mpm, mpm_count, f) || find_pairs(m, f)) return -1;
     for (int k = 0; k < s->fem_count; k++) {
         int32_t box = f->box_of[k];
         s->active[k] = f->near_first[box + 1] > f->near_first[box];
-        for (int w = 0; w < wall_count && !s->active[k]; w++) s->active[k] = near_wall(s, k, &walls[w], time, f->range);
+        for (int w = 0; w < wall_count && !s->active[k]; w++) s->active[k] = near_wall(s, k, &walls[w], time, f->wall_reach + 1e-6 * s->mean_edge);
     }
     f->grid_count = 0;
     if (RESERVE(f, support_of, s->node_count + 1)) return -1;
@@ -299,8 +300,8 @@ static void lay_cells(const brunt_meeting *m, brunt_facing *f) {
             high[k] = fmax(high[k], fmin(a->high[k], b->high[k]) + 3 * f->made_range);
         }
     }
-    const double most = 8.0 * m->skin->face_count + 4096;
-    f->cell = m->cell > 0 ? m->cell : m->skin->mean_edge;
+    const double most = 32.0 * m->skin->face_count + 4096;
+    f->cell = CELL * m->skin->mean_edge;
     for (;; f->cell *= 1.25) {
         double cells = 1;
         for (int k = 0; k < 3; k++) cells *= floor((high[k] - low[k]) / f->cell) + 1;
@@ -362,8 +363,6 @@ static uint64_t pairs_key(const brunt_meeting *m, const brunt_facing *f) {
 }
 
 // ------------------------------------------------------------------------------------------ the nearest facet
-
-static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 typedef struct tied {
     brunt_closest at;
@@ -476,7 +475,8 @@ static int find_nearest(const brunt_meeting *m, const brunt_facing *f, const loo
     const brunt_skin *s = m->skin;
     const double range2 = f->range * f->range;
     double bound = INFINITY; // of the one body that `first` belongs to
-    if (first >= 0) bound = sqrt(brunt_closest_on_face(s, first, l->x).square) * (1 + 1e-8);
+    brunt_closest guess;
+    if (first >= 0) guess = brunt_closest_on_face(s, first, l->x), bound = sqrt(guess.square) * (1 + 1e-8);
     int bodies = 0;
     for (int32_t q = f->cell_first[l->cell]; q < f->cell_first[l->cell + 1]; q++) {
         const int32_t face = f->cell_face[q], other = s->face_body[face];
@@ -491,7 +491,7 @@ static int find_nearest(const brunt_meeting *m, const brunt_facing *f, const loo
             best[b].body = other, best[b].count = 0, best[b].square = range2, best[b].root = f->range;
             bodies++;
         }
-        brunt_closest at = brunt_closest_on_face(s, face, l->x);
+        brunt_closest at = face == first ? guess : brunt_closest_on_face(s, face, l->x);
         if (at.square <= range2) keep(&best[b], &at, face);
     }
     return bodies;
@@ -879,10 +879,10 @@ int brunt_facing_walls(const brunt_meeting *m, brunt_wall *walls, int wall_count
         const brunt_condition condition = wall->plane.condition;
         if (wall->region) continue;
         for (int k = 0; k < s->fem_count; k++) {
-            if (!s->active[k] || !near_wall(s, k, wall, time, f->range)) continue;
+            if (!s->active[k] || !near_wall(s, k, wall, time, f->wall_reach + on)) continue;
             for (int32_t n = s->node_range[k]; n < s->node_range[k + 1]; n++) {
                 double gap = plane_distance(&wall->plane, time, s->x[n]);
-                if (gap > f->range) continue;
+                if (gap > f->wall_reach + on) continue;
                 if (condition == BRUNT_SEPARATE) {
                     s->gap[n] = fmin(s->gap[n], gap);
                     if (push_off(m, f, n, wall, gap, points)) return -1;

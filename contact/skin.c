@@ -96,8 +96,10 @@ int brunt_skin_make(brunt_skin *s, brunt_fem_body **fem, int count, bool affine)
     s->fem = brunt_alloc(k1 * sizeof *s->fem);
     s->node_range = brunt_alloc(k1 * sizeof *s->node_range), s->face_range = brunt_alloc(k1 * sizeof *s->face_range);
     s->low = brunt_alloc(k1 * sizeof *s->low), s->high = brunt_alloc(k1 * sizeof *s->high);
+    s->mean = brunt_alloc(k1 * sizeof *s->mean), s->speed = brunt_alloc(k1 * sizeof *s->speed);
     s->active = brunt_alloc(k1), s->was_active = brunt_alloc(k1);
-    if (!s->fem || !s->node_range || !s->face_range || !s->low || !s->high || !s->active || !s->was_active) return -1;
+    if (!s->fem || !s->node_range || !s->face_range || !s->low || !s->high || !s->active || !s->was_active || !s->mean || !s->speed)
+        return -1;
     for (int k = 0; k < count; k++) {
         s->fem[k] = fem[k];
         if (add_body(s, k, &nodes, &faces, &owners)) return -1;
@@ -118,7 +120,7 @@ int brunt_skin_make(brunt_skin *s, brunt_fem_body **fem, int count, bool affine)
 void brunt_skin_free(brunt_skin *s) {
     void *owned[] = {s->fem, s->node_range, s->face_range, s->low, s->high, s->active, s->node, s->body, s->face,
                      s->face_body, s->x, s->v, s->old, s->mass, s->inverse, s->normal, s->area, s->gap, s->impulse,
-                     s->state, s->face_normal, s->face_centre, s->face_area, s->face_box, s->was_active, s->chunk_moved, s->face_first, s->face_of, s->affine};
+                     s->state, s->face_normal, s->face_centre, s->face_area, s->face_box, s->was_active, s->chunk_moved, s->mean, s->speed, s->face_first, s->face_of, s->affine};
     for (size_t k = 0; k < sizeof owned / sizeof owned[0]; k++) brunt_free(owned[k]);
     *s = (brunt_skin){0};
 }
@@ -136,11 +138,21 @@ static void bound_bodies(void *context, int64_t begin, int64_t end, int worker) 
     brunt_skin *s = ((const job *)context)->skin;
     for (int64_t k = begin; k < end; k++) {
         double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+        double sum[3] = {0}, fastest = 0;
+        const int32_t count = s->node_range[k + 1] - s->node_range[k];
         for (int32_t n = s->node_range[k]; n < s->node_range[k + 1]; n++) {
             const real *at = brunt_fem_node(s->fem[k], s->node[n]);
-            for (int a = 0; a < 3; a++) low[a] = fmin(low[a], (double)at[a]), high[a] = fmax(high[a], (double)at[a]);
+            double square = 0;
+            for (int a = 0; a < 3; a++) {
+                double x = (double)at[a], v = (double)at[BRUNT_FEM_V + a], own = v - s->frame[a];
+                low[a] = x < low[a] ? x : low[a], high[a] = x > high[a] ? x : high[a];
+                sum[a] += v;
+                square += own * own;
+            }
+            fastest = square > fastest ? square : fastest;
         }
-        for (int a = 0; a < 3; a++) s->low[k][a] = low[a], s->high[k][a] = high[a];
+        for (int a = 0; a < 3; a++) s->low[k][a] = low[a], s->high[k][a] = high[a], s->mean[k][a] = sum[a] / count;
+        s->speed[k] = sqrt(fastest);
     }
 }
 
@@ -176,7 +188,8 @@ static void take_nodes(void *context, int64_t begin, int64_t end, int worker) {
         for (int a = 0; a < 3; a++) {
             bool held = (fem->held && fem->held[node] >> a & 1) || a >= s->dim;
             double load = (double)force[a] + (fem->load ? (double)fem->load[4 * (size_t)node + (size_t)a] : 0);
-            moved += ((double)at[a] - s->x[n][a]) * ((double)at[a] - s->x[n][a]);
+            double step = (double)at[a] - s->x[n][a] - s->frame_step[a];
+            moved += step * step;
             s->x[n][a] = (double)at[a];
             s->v[n][a] = (double)at[BRUNT_FEM_V + a];
             s->old[n][a] = held ? s->v[n][a] : s->v[n][a] - j->dt * (load * inverse + j->gravity[a]);
@@ -291,7 +304,12 @@ static void give_nodes(void *context, int64_t begin, int64_t end, int worker) {
     }
 }
 
-void brunt_skin_give(const brunt_skin *s, int threads, double *seconds) {
-    job j = {.skin = (brunt_skin *)(uintptr_t)s};
+void brunt_skin_give(brunt_skin *s, double dt, int threads, double *seconds) {
+    job j = {.skin = s};
     brunt_parallel(threads, s->node_count, GRAIN, give_nodes, &j, seconds);
+    for (int a = 0; a < 3; a++) {
+        s->frame[a] = 0;
+        for (int k = 0; k < s->fem_count; k++) s->frame[a] += s->mean[k][a] / s->fem_count;
+        s->frame_step[a] = s->frame[a] * dt;
+    }
 }

@@ -31,7 +31,12 @@ typedef struct brunt_skin {
     brunt_fem_body **fem;      // the bodies, in their order; body k has nodes node_range[k] .. node_range[k + 1], faces likewise
     int32_t *node_range, *face_range;
     double (*low)[3], (*high)[3];  // [m] bounds of each body's surface
-    double moved;              // [m] furthest any node has moved since it was taken last; INFINITY when bodies became active
+    // Motion is measured against a frame that moves along with the bodies, which leaves what counts: theirs against each other.
+    double frame[3];           // [m/s] mean velocity of all surfaces, a step ago
+    double frame_step[3];      // [m] how far it went in the last step
+    double (*mean)[3], *speed; // [m/s] of each body: mean velocity, greatest against the frame
+    double moved;              // [m] furthest any node has moved against it since it was taken last; INFINITY when bodies
+                               // became active
     bool *was_active;
     double *chunk_moved;
     bool *active;              // of each body: something is near it; x, v, normals are only made for these
@@ -44,12 +49,12 @@ typedef struct brunt_skin {
 // The surfaces of `count` bodies. `affine`: keep B. 0, or -1: out of memory.
 int brunt_skin_make(brunt_skin *skin, brunt_fem_body **fem, int count, bool affine);
 void brunt_skin_free(brunt_skin *skin);
-// Bounds of every body's surface as it is now.
+// Bounds and speeds of every body's surface as it is now.
 void brunt_skin_bounds(brunt_skin *skin, int threads, double *seconds);
 // Places, velocities, masses and normals of the active bodies. `gravity` [m/s^2] and `dt` are those of this step's kick.
 void brunt_skin_take(brunt_skin *skin, double dt, const double gravity[3], int threads, double *seconds);
-// Velocities of the active bodies back to them.
-void brunt_skin_give(const brunt_skin *skin, int threads, double *seconds);
+// Velocities of the active bodies back to them, which then move for `dt`.
+void brunt_skin_give(brunt_skin *skin, double dt, int threads, double *seconds);
 
 // What all forms of augury are given.
 typedef struct brunt_meeting {

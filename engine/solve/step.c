@@ -330,14 +330,16 @@ static int move_meshes(brunt_world *world, const double gravity[3], double kick,
     return failed ? fail_element(world, failed, bad, error, reason) : BRUNT_OK;
 }
 
-// The step that is due: stable, not past the end, and exactly on `limit` when that comes first. The last stretch before
-// such a time is cut in two equal steps rather than a whole one and a sliver.
+// The step that is due: stable, not past the end, and exactly on `limit` when that comes first. The way to such a time is
+// cut in equal steps. Whole ones and two halves at the last excite what swings fastest each time anew: central differences
+// with steps that vary are stable for no share of the limit in general (R. D. Skeel, BIT 33 (1993) 172). At cfl 0.9 and 18
+// steps between outputs, a rod without viscosity gained 10^5 times its energy within 500 steps.
 static double choose_step(const brunt_world *world, double limit) {
     double dt = world->fixed_step > 0 ? world->fixed_step : world->now.next_dt;
     double stop = fmin(limit > world->now.time ? limit : INFINITY, world->end), left = stop - world->now.time;
     if (dt >= left * (1 - 1e-9)) return left;
-    if (world->fixed_step <= 0 && 2 * dt > left) return 0.5 * left;
-    return dt;
+    if (world->fixed_step > 0 || !(left < 1e6 * dt)) return dt;
+    return left / ceil(left / dt * (1 - 1e-9));
 }
 
 static int make_grids(brunt_world *world, const double gravity[3], double dt, brunt_error *error) {

@@ -90,7 +90,7 @@ int brunt_surfaces_meet(brunt_world *world, const double gravity[3], double kick
     }
     if (!failed) failed = meet_by_facets(world, &m);
     if (failed) return brunt_fail(error, BRUNT_FAILED, "out of memory in the contact of surfaces");
-    brunt_skin_give(&world->skin, world->threads, seconds);
+    brunt_skin_give(&world->skin, dt, world->threads, seconds);
     brunt_fem_hold_contact(world);
     return BRUNT_OK;
 }
