@@ -23,7 +23,7 @@ const scene_key brunt_scene_table[] = {
     {"time", SCENE_GROUP, NULL, REQUIRED, NONE, "how long, and in which steps"},
     {"time.end", SCENE_REAL, "s", REQUIRED, POSITIVE, NULL, 0, false, "the run ends exactly there"},
     {"time.scheme", SCENE_WORD, NULL, "explicit", ANY, "explicit", 0, false, "time integration"},
-    {"time.cfl", SCENE_REAL, "1", "0.5", 0, 1, true, false, NULL, 0, true, "time step as a share of the stable one; not with step"},
+    {"time.cfl", SCENE_REAL, "1", "0.5", 0, 1, true, false, NULL, 0, true, "time step as a share of the stable one; default 0.9 when no body is of material points; not with step"},
     {"time.step", SCENE_REAL, "s", OPTIONAL, POSITIVE, NULL, 0, false, "fixed time step; not with cfl"},
     {"time.energy_limit", SCENE_REAL, "1", "0.1", 0, INFINITY, true, true, "none", 0, false, "the run stops when the relative energy error passes it"},
 

@@ -81,6 +81,13 @@ void brunt_check_body_name(scene_reader *reader, const scene_node *node) {
 
 // ---------------------------------------------------------------------------------------------------- time and grid
 
+static bool has_method(const scene_reader *reader, const char *method) {
+    const scene_node *bodies = brunt_tree_child(reader->tree->root, "bodies");
+    for (const scene_node *body = bodies && bodies->kind == SCENE_MAP ? bodies->first : NULL; body; body = body->next)
+        if (body->kind == SCENE_MAP && strcmp(brunt_text_of(body, "method", ""), method) == 0) return true;
+    return false;
+}
+
 static void fill_time(scene_reader *reader) {
     brunt_world_def *world = &reader->scene->world;
     scene_node *time = brunt_tree_child(reader->tree->root, "time");
@@ -91,16 +98,9 @@ static void fill_time(scene_reader *reader) {
     if (step && cfl) brunt_tree_complain_key(reader->tree, step, "step and cfl are both given, one of them is wanted");
     if (step && world->step > world->end && world->end > 0)
         brunt_tree_complain(reader->tree, step, "the step is longer than the run");
-    if (!step && !cfl) brunt_add_default(reader, time, "cfl", "0.5");
+    if (!step && !cfl) brunt_add_default(reader, time, "cfl", has_method(reader, "mpm") ? "0.5" : "0.9");
     world->cfl = brunt_real_of(time, "cfl", world->cfl);
     world->energy_limit = brunt_real_of(time, "energy_limit", world->energy_limit);
-}
-
-static bool has_method(const scene_reader *reader, const char *method) {
-    const scene_node *bodies = brunt_tree_child(reader->tree->root, "bodies");
-    for (const scene_node *body = bodies && bodies->kind == SCENE_MAP ? bodies->first : NULL; body; body = body->next)
-        if (body->kind == SCENE_MAP && strcmp(brunt_text_of(body, "method", ""), method) == 0) return true;
-    return false;
 }
 
 // Only material points need the grid; one beside finite elements alone is accepted, so that a method can be changed by
