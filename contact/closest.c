@@ -111,40 +111,71 @@ brunt_closest brunt_closest_on_face(const brunt_skin *s, int32_t face, const dou
     return best;
 }
 
-void brunt_face_weights(const brunt_skin *s, int32_t face, int triangle, const double x[3], double weight[4],
-                        double gradient[4][3], double normal[3], double *height) {
+// Weights of a triangle's second and third corner at r from the first: e and g its edges from there, n = e x g.
+static void triangle_weights(const double e[3], const double g[3], const double r[3], const double n[3], double inverse,
+                             double *w1, double *w2) {
+    double rg[3], er[3];
+    cross(r, g, rg);
+    cross(e, r, er);
+    *w1 = dot(rg, n) * inverse, *w2 = dot(er, n) * inverse;
+}
+
+static void spread(const int32_t node[4], int triangle, double w0, double w1, double w2, double weight[4]) {
+    const int i = triangle, j = node[3] < 0 ? 1 : (triangle + 1) % 4;
+    for (int c = 0; c < 4; c++) weight[c] = node[3] < 0 ? (c == 2 ? w2 : 0) : 0.25 * w2; // the centre is the mean of the four
+    weight[i] += w0, weight[j] += w1;
+}
+
+void brunt_face_values(const brunt_skin *s, int32_t face, int triangle, const double x[3], double weight[4]) {
     const int32_t *node = s->face[face];
-    for (int k = 0; k < 4; k++) weight[k] = gradient[k][0] = gradient[k][1] = gradient[k][2] = 0;
     if (node[2] < 0) {
         const double *a = s->x[node[0]], *b = s->x[node[1]];
         double e[3], r[3];
-        for (int k = 0; k < 3; k++) e[k] = b[k] - a[k], r[k] = x[k] - a[k], normal[k] = s->face_normal[face][k];
+        for (int k = 0; k < 3; k++) e[k] = b[k] - a[k], r[k] = x[k] - a[k];
         double length = dot(e, e), t = length > 0 ? dot(e, r) / length : 0;
-        weight[0] = 1 - t, weight[1] = t;
-        *height = dot(r, normal);
-        for (int k = 0; k < 3; k++) gradient[1][k] = length > 0 ? e[k] / length : 0, gradient[0][k] = -gradient[1][k];
+        weight[0] = 1 - t, weight[1] = t, weight[2] = weight[3] = 0;
         return;
     }
     const double *p[3];
-    double e[3], g[3], r[3], n[3];
+    double e[3], g[3], r[3], n[3], w1, w2;
     triangle_of(s, face, triangle, p);
     for (int k = 0; k < 3; k++) e[k] = p[1][k] - p[0][k], g[k] = p[2][k] - p[0][k], r[k] = x[k] - p[0][k];
     cross(e, g, n);
-    double twice = sqrt(dot(n, n));
-    for (int k = 0; k < 3; k++) normal[k] = twice > 0 ? n[k] / twice : 0;
+    double size = dot(n, n);
+    triangle_weights(e, g, r, n, size > 0 ? 1 / size : 0, &w1, &w2);
+    spread(node, triangle, 1 - w1 - w2, w1, w2, weight);
+}
+
+void brunt_face_weights(const brunt_skin *s, int32_t face, int triangle, const double x[3], double weight[4],
+                        double gradient[4][3], double normal[3], double *height) {
+    const int32_t *node = s->face[face];
+    brunt_face_values(s, face, triangle, x, weight);
+    if (node[2] < 0) {
+        const double *a = s->x[node[0]], *b = s->x[node[1]];
+        double e[3], length = 0;
+        for (int k = 0; k < 3; k++) e[k] = b[k] - a[k], normal[k] = s->face_normal[face][k], length += e[k] * e[k];
+        *height = 0;
+        for (int k = 0; k < 3; k++) {
+            gradient[1][k] = length > 0 ? e[k] / length : 0, gradient[0][k] = -gradient[1][k];
+            gradient[2][k] = gradient[3][k] = 0;
+            *height += (x[k] - a[k]) * normal[k];
+        }
+        return;
+    }
+    const double *p[3];
+    double e[3], g[3], r[3], n[3], g1[3], g2[3];
+    triangle_of(s, face, triangle, p);
+    for (int k = 0; k < 3; k++) e[k] = p[1][k] - p[0][k], g[k] = p[2][k] - p[0][k], r[k] = x[k] - p[0][k];
+    cross(e, g, n);
+    const double size = dot(n, n), inverse = size > 0 ? 1 / size : 0, root = sqrt(inverse);
+    for (int k = 0; k < 3; k++) normal[k] = n[k] * root;
     *height = dot(r, normal);
-    // Gradients of the triangle's own weights: g1 = (g x n)/2A, g2 = (n x e)/2A.
-    double g1[3], g2[3];
-    cross(g, normal, g1);
-    cross(normal, e, g2);
-    for (int k = 0; k < 3; k++) g1[k] = twice > 0 ? g1[k] / twice : 0, g2[k] = twice > 0 ? g2[k] / twice : 0;
-    double w1 = dot(g1, r), w2 = dot(g2, r), w0 = 1 - w1 - w2;
-    int i = triangle, j = node[3] < 0 ? 1 : (triangle + 1) % 4;
-    weight[i] += w0, weight[j] += w1;
-    for (int k = 0; k < 3; k++) gradient[i][k] -= g1[k] + g2[k], gradient[j][k] += g1[k];
-    for (int c = 0; c < 4; c++) {
-        double share = node[3] < 0 ? (c == 2 ? 1 : 0) : 0.25; // the centre is the mean of the four
-        weight[c] += share * w2;
-        for (int k = 0; k < 3; k++) gradient[c][k] += share * g2[k];
+    // Gradients of the triangle's own weights: g1 = (g x n)/n^2, g2 = (n x e)/n^2.
+    cross(g, n, g1);
+    cross(n, e, g2);
+    for (int k = 0; k < 3; k++) {
+        double weights[4];
+        spread(node, triangle, -(g1[k] + g2[k]) * inverse, g1[k] * inverse, g2[k] * inverse, weights);
+        for (int c = 0; c < 4; c++) gradient[c][k] = weights[c];
     }
 }

@@ -71,8 +71,10 @@ struct brunt_facing {
     double (*made_x)[3]; // skin nodes then
     size_t made_x_capacity;
 
-    slave_hits *found; // of each skin node
+    uint8_t *found; // of each skin node: how many hits ...
     size_t found_capacity;
+    hit *hits; // ... in its MAX_HITS places
+    size_t hits_capacity;
     int32_t *last; // of each skin node: the face it was nearest to, to look at first; -1
     size_t last_capacity;
     // How far from everything each skin node was when it was looked at, and how far things had moved then: until they have moved
@@ -103,7 +105,7 @@ void brunt_facing_free(brunt_facing *f) {
     if (!f) return;
     for (int k = 0; k < f->mpm_count; k++) brunt_free(f->node_support[k]);
     void *owned[] = {f->box,       f->near,       f->box_of,      f->near_first, f->near_list,   f->cell_first,
-                     f->cell_face, f->made_x,     f->found,      f->last,         f->quiet,        f->support_of,  f->first_point,
+                     f->cell_face, f->made_x,     f->found,      f->hits,         f->last,         f->quiet,        f->support_of,  f->first_point,
                      f->node_support, f->node_support_capacity, f->grid, f};
     for (size_t k = 0; k < sizeof owned / sizeof owned[0]; k++) brunt_free(owned[k]);
 }
@@ -546,12 +548,9 @@ static double target_of(double gap, double approach, double dt) {
 
 // Velocity of x relative to the facet under it, along n.
 static double approach_of(const brunt_skin *s, const hit *h, const double x[3], const double v[3]) {
-    double weight[4], gradient[4][3], normal[3], height, along = dot(v, h->n);
-    brunt_face_weights(s, h->face, h->triangle, x, weight, gradient, normal, &height);
-    for (int c = 0; c < 4 && s->face[h->face][c] >= 0; c++) {
-        const double *at = s->v[s->face[h->face][c]];
-        along -= weight[c] * dot(at, h->n) - height * dot(normal, at) * dot(gradient[c], h->n);
-    }
+    double weight[4], along = dot(v, h->n);
+    brunt_face_values(s, h->face, h->triangle, x, weight);
+    for (int c = 0; c < 4 && s->face[h->face][c] >= 0; c++) along -= weight[c] * dot(s->v[s->face[h->face][c]], h->n);
     return along;
 }
 
@@ -559,10 +558,9 @@ static void find_node(const job *j, int k, int32_t n) {
     const brunt_meeting *m = j->m;
     brunt_facing *f = j->f;
     brunt_skin *s = m->skin;
-    slave_hits *found = &f->found[n];
+    slave_hits seen, *found = &seen;
     const double *normal = s->normal[n];
     bool faces = normal[0] != 0 || normal[1] != 0 || normal[2] != 0;
-    found->count = 0;
     if (f->quiet[n].distance - (f->travelled - f->quiet[n].travelled) > f->reach) return;
     looker l = {.box = f->box_of[k], .body = s->body[n], .x = s->x[n], .normal = faces ? normal : NULL};
     if (!look(f, &l)) return;
@@ -575,9 +573,10 @@ static void find_node(const job *j, int k, int32_t n) {
         if (h->gap > f->reach) continue;
         s->gap[n] = fmin(s->gap[n], h->gap);
         h->approach = approach_of(s, h, s->x[n], s->v[n]);
-        if (h->approach < target_of(h->gap, h->approach, m->dt) + 1e-6 * s->mean_edge / m->dt) found->hits[kept++] = *h;
+        if (h->approach < target_of(h->gap, h->approach, m->dt) + 1e-6 * s->mean_edge / m->dt)
+            f->hits[MAX_HITS * n + kept++] = *h;
     }
-    found->count = kept;
+    f->found[n] = (uint8_t)kept;
 }
 
 static void find_nodes(void *context, int64_t begin, int64_t end, int worker) {
@@ -588,7 +587,7 @@ static void find_nodes(void *context, int64_t begin, int64_t end, int worker) {
     int k = 0;
     for (int32_t n = (int32_t)begin; n < end; n++) {
         while (s->node_range[k + 1] <= n) k++;
-        j->f->found[n].count = 0;
+        j->f->found[n] = 0;
         if (s->active[k] && f->near_first[f->box_of[k] + 1] > f->near_first[f->box_of[k]]) find_node(j, k, n);
     }
 }
@@ -635,8 +634,8 @@ static void fill_nodes(void *context, int64_t begin, int64_t end, int worker) {
     brunt_facing *f = j->f;
     for (int32_t n = (int32_t)begin; n < end; n++) {
         int32_t at = f->first_point[2 * n], entry = f->first_point[2 * n + 1];
-        for (int32_t q = 0; q < f->found[n].count; q++, at++) {
-            const hit *h = &f->found[n].hits[q];
+        for (int32_t q = 0; q < f->found[n]; q++, at++) {
+            const hit *h = &f->hits[MAX_HITS * n + q];
             brunt_contact_point *point = &j->points->point[at];
             *point = (brunt_contact_point){.first = entry, .count = 1 + face_corners(s, h->face), .tag = n};
             fill_point(m, h, s->x[n], s->body[n], point);
@@ -667,8 +666,8 @@ static int add_nodes(const brunt_meeting *m, brunt_facing *f, brunt_contact_poin
     if (RESERVE(f, first_point, 2 * (size_t)s->node_count + 2)) return -1;
     for (int32_t n = 0; n < s->node_count; n++) {
         f->first_point[2 * n] = point, f->first_point[2 * n + 1] = entry;
-        for (int32_t q = 0; q < f->found[n].count; q++) {
-            const int32_t face = f->found[n].hits[q].face;
+        for (int32_t q = 0; q < f->found[n]; q++) {
+            const int32_t face = f->hits[MAX_HITS * n + q].face;
             if (skin_support(f, s, n, points) < 0) return -1;
             for (int c = 0; c < face_corners(s, face); c++)
                 if (skin_support(f, s, s->face[face][c], points) < 0) return -1;
@@ -814,7 +813,7 @@ int brunt_facing_find(const brunt_meeting *m, brunt_body *mpm, int mpm_count, br
         f->made_near = f->near_count, f->made_pairs = key;
     }
     if (!f->found) {
-        if (RESERVE(f, found, s->node_count + 1) || RESERVE(f, last, s->node_count + 1) ||
+        if (RESERVE(f, found, s->node_count + 1) || RESERVE(f, hits, MAX_HITS * (s->node_count + 1)) || RESERVE(f, last, s->node_count + 1) ||
             RESERVE(f, quiet, s->node_count + 1))
             return -1;
         for (int32_t n = 0; n < s->node_count; n++) f->last[n] = -1, f->quiet[n].distance = 0;

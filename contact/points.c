@@ -94,9 +94,11 @@ static int transpose(brunt_contact_points *p) {
     return 0;
 }
 
-// Effective mass of each point alone, and its row sum. Points that nothing can move (all masses infinite) get scale 0.
-static void prepare(brunt_contact_points *p) {
-    for (int32_t k = 0; k < p->point_count; k++) {
+// Effective mass of each point alone. Points that nothing can move (all masses infinite) get 0.
+static void weigh_points(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    brunt_contact_points *p = context;
+    for (int64_t k = begin * GRAIN; k < end * GRAIN && k < p->point_count; k++) {
         brunt_contact_point *point = &p->point[k];
         double alone = 0;
         for (int32_t e = point->first; e < point->first + point->count; e++) {
@@ -106,16 +108,30 @@ static void prepare(brunt_contact_points *p) {
             for (int a = 0; a < 3; a++) alone += J[a] * J[a] * inverse[a];
         }
         point->scale = alone > 0 ? 1 / alone : 0;
-        for (int32_t e = point->first; e < point->first + point->count; e++)
-            for (int a = 0; a < 3; a++)
-                p->support[p->entry[e].support].load[a] += fabs(p->entry[e].weight) * point->scale;
     }
-    for (int32_t k = 0; k < p->point_count; k++) {
+}
+
+static void load_supports(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    brunt_contact_points *p = context;
+    for (int64_t s = begin * GRAIN; s < end * GRAIN && s < p->support_count; s++) {
+        double load = 0;
+        for (int32_t q = p->by_support_first[s]; q < p->by_support_first[s + 1]; q++)
+            load += fabs(p->entry[p->by_support[q]].weight) * p->point[p->entry_point[p->by_support[q]]].scale;
+        p->support[s].load = load;
+    }
+}
+
+// Row sums, in units of the effective masses.
+static void sum_rows(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    brunt_contact_points *p = context;
+    for (int64_t k = begin * GRAIN; k < end * GRAIN && k < p->point_count; k++) {
         brunt_contact_point *point = &p->point[k];
         double along[3] = {0};
         for (int32_t e = point->first; e < point->first + point->count; e++) {
             const brunt_support *s = &p->support[p->entry[e].support];
-            for (int a = 0; a < 3; a++) along[a] += fabs(p->entry[e].weight) * s->load[a] * s->inverse[a];
+            for (int a = 0; a < 3; a++) along[a] += fabs(p->entry[e].weight) * s->load * s->inverse[a];
         }
         for (int a = 0; a < 3; a++) {
             point->response += point->n[a] * point->n[a] * along[a];
@@ -213,8 +229,10 @@ static void book(brunt_contact_points *p) {
 int brunt_points_solve(brunt_contact_points *p, int sweeps, int threads, double *seconds) {
     if (!p->point_count) return 0;
     if (transpose(p)) return -1;
-    prepare(p);
     const int64_t chunks = (p->point_count + GRAIN - 1) / GRAIN, groups = (p->support_count + GRAIN - 1) / GRAIN;
+    brunt_parallel(threads, chunks, 1, weigh_points, p, seconds);
+    brunt_parallel(threads, groups, 1, load_supports, p, seconds);
+    brunt_parallel(threads, chunks, 1, sum_rows, p, seconds);
     double first = 0;
     int sweep = 0;
     while (sweep < sweeps) {

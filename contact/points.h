@@ -19,7 +19,7 @@ typedef struct brunt_support {
     double v[3], old[3];   // [m/s] now; before the forces of this step
     double inverse[3];     // [1/kg] by component; 0: infinite mass
     double impulse[3];     // [N s] received in all
-    double load[3];        // sum of |weight| effective mass of the points on it, by component
+    double load;           // [kg] sum of |weight| effective mass of the points on it
 } brunt_support;
 
 typedef struct brunt_contact_entry {

@@ -76,6 +76,7 @@ int brunt_surfaces_meet(brunt_world *world, const double gravity[3], double kick
                        .step = (int64_t)world->now.steps,
                        .threads = world->threads,
                        .seconds = seconds};
+    memcpy(world->skin.frame, world->now.contact_frame, sizeof world->skin.frame);
     brunt_skin_bounds(&world->skin, world->threads, seconds);
     int failed = brunt_facing_near(&m, world->bodies, world->body_count, world->walls, world->wall_count, world->now.time,
                                    &world->facing);
@@ -91,6 +92,7 @@ int brunt_surfaces_meet(brunt_world *world, const double gravity[3], double kick
     if (!failed) failed = meet_by_facets(world, &m);
     if (failed) return brunt_fail(error, BRUNT_FAILED, "out of memory in the contact of surfaces");
     brunt_skin_give(&world->skin, dt, world->threads, seconds);
+    memcpy(world->now.contact_frame, world->skin.frame, sizeof world->skin.frame);
     brunt_fem_hold_contact(world);
     return BRUNT_OK;
 }

@@ -116,6 +116,7 @@ struct brunt_world {
         double fem_kinetic, fem_stress_work, hourglass_stored, hourglass_lost; // [J] of the meshes
         double stress_work; // [J] dt times the stress power at the end of the last step
         double transfer, gravity_work; // [J]
+        double contact_frame[3]; // [m/s] what contact measures motion against
         double gravity_impulse[3], gravity_angular[3];
         double initial_energy, initial_kinetic; // [J]
         double linear_initial[3], angular_initial[3], scale_linear, scale_angular;
