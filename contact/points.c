@@ -15,10 +15,9 @@ void brunt_points_free(brunt_contact_points *p) {
     brunt_free(p->point);
     brunt_free(p->entry);
     brunt_free(p->support);
-    brunt_free(p->by_support);
-    brunt_free(p->by_support_first);
-    brunt_free(p->entry_point);
-    brunt_free(p->step);
+    brunt_free(p->pressing);
+    brunt_free(p->pressing_first);
+    brunt_free(p->given);
     brunt_free(p->changed);
     memset(p, 0, sizeof *p);
 }
@@ -73,24 +72,25 @@ static void give(const brunt_contact_point *point, const brunt_contact_entry *en
 
 // Entries by support, in the order of the points.
 static int transpose(brunt_contact_points *p) {
-    size_t entries = (size_t)p->entry_count + 1, supports = (size_t)p->support_count + 1;
-    if (brunt_reserve((void **)&p->by_support, &p->by_support_capacity, entries * sizeof(int32_t), 0) ||
-        brunt_reserve((void **)&p->by_support_first, &p->by_support_first_capacity, (supports + 1) * sizeof(int32_t),
-                      0) ||
-        brunt_reserve((void **)&p->entry_point, &p->entry_point_capacity, entries * sizeof(int32_t), 0) ||
-        brunt_reserve((void **)&p->step, &p->step_capacity, ((size_t)p->point_count + 1) * 3 * sizeof(double), 0) ||
-        brunt_reserve((void **)&p->changed, &p->changed_capacity,
-                      ((size_t)p->point_count / GRAIN + 2) * sizeof(double), 0))
+    size_t entries = (size_t)p->entry_count + 1, supports = (size_t)p->support_count + 1, points = (size_t)p->point_count + 1;
+    if (brunt_reserve((void **)&p->pressing, &p->pressing_capacity, entries * sizeof *p->pressing, 0) ||
+        brunt_reserve((void **)&p->pressing_first, &p->pressing_first_capacity, (supports + 1) * sizeof(int32_t), 0) ||
+        brunt_reserve((void **)&p->given, &p->given_capacity, points * sizeof *p->given, 0) ||
+        brunt_reserve((void **)&p->changed, &p->changed_capacity, (points / GRAIN + 2) * sizeof(double), 0))
         return -1;
-    int32_t *first = p->by_support_first;
+    int32_t *first = p->pressing_first;
     memset(first, 0, (supports + 1) * sizeof(int32_t));
     for (int32_t e = 0; e < p->entry_count; e++) first[p->entry[e].support + 2]++;
     for (size_t s = 2; s <= supports; s++) first[s] += first[s - 1];
-    for (int32_t k = 0; k < p->point_count; k++)
-        for (int32_t e = p->point[k].first; e < p->point[k].first + p->point[k].count; e++) {
-            p->entry_point[e] = k;
-            p->by_support[first[p->entry[e].support + 1]++] = e;
+    for (int32_t k = 0; k < p->point_count; k++) {
+        const brunt_contact_point *point = &p->point[k];
+        memcpy(p->given[k].facet, point->facet, sizeof point->facet);
+        for (int32_t e = point->first; e < point->first + point->count; e++) {
+            const brunt_contact_entry *entry = &p->entry[e];
+            p->pressing[first[entry->support + 1]++] = (struct brunt_pressing){
+                k, entry->weight, {entry->turn[0], entry->turn[1], entry->turn[2]}};
         }
+    }
     return 0;
 }
 
@@ -116,8 +116,8 @@ static void load_supports(void *context, int64_t begin, int64_t end, int worker)
     brunt_contact_points *p = context;
     for (int64_t s = begin * GRAIN; s < end * GRAIN && s < p->support_count; s++) {
         double load = 0;
-        for (int32_t q = p->by_support_first[s]; q < p->by_support_first[s + 1]; q++)
-            load += fabs(p->entry[p->by_support[q]].weight) * p->point[p->entry_point[p->by_support[q]]].scale;
+        for (int32_t q = p->pressing_first[s]; q < p->pressing_first[s + 1]; q++)
+            load += fabs(p->pressing[q].weight) * p->point[p->pressing[q].point].scale;
         p->support[s].load = load;
     }
 }
@@ -182,7 +182,10 @@ static void visit_points(void *context, int64_t begin, int64_t end, int worker) 
     for (int64_t c = begin; c < end; c++) {
         double most = 0;
         for (int32_t k = (int32_t)c * GRAIN; k < (c + 1) * GRAIN && k < p->point_count; k++)
-            most = fmax(most, visit(p, &p->point[k], p->step + 3 * k));
+            {
+            double changed = visit(p, &p->point[k], p->given[k].impulse);
+            most = changed > most ? changed : most;
+        }
         p->changed[c] = most;
     }
 }
@@ -192,11 +195,11 @@ static void move_supports(void *context, int64_t begin, int64_t end, int worker)
     brunt_contact_points *p = context;
     for (int64_t s = begin * GRAIN; s < end * GRAIN && s < p->support_count; s++) {
         double sum[3] = {0};
-        for (int32_t q = p->by_support_first[s]; q < p->by_support_first[s + 1]; q++) {
-            int32_t e = p->by_support[q], k = p->entry_point[e];
-            double J[3];
-            give(&p->point[k], &p->entry[e], p->step + 3 * k, J);
-            for (int a = 0; a < 3; a++) sum[a] += J[a];
+        for (int32_t q = p->pressing_first[s]; q < p->pressing_first[s + 1]; q++) {
+            const struct brunt_pressing *by = &p->pressing[q];
+            const struct brunt_given *given = &p->given[by->point];
+            const double *J = given->impulse, turn = by->turn[0] * J[0] + by->turn[1] * J[1] + by->turn[2] * J[2];
+            for (int a = 0; a < 3; a++) sum[a] += by->weight * J[a] + turn * given->facet[a];
         }
         brunt_support *support = &p->support[s];
         for (int a = 0; a < 3; a++) {

@@ -57,13 +57,19 @@ typedef struct brunt_contact_points {
     brunt_support *support;
     size_t support_capacity;
     int32_t support_count;
-    // which points press on a support: entries by support, in the order of the points
-    int32_t *by_support, *by_support_first;
-    size_t by_support_capacity, by_support_first_capacity;
-    int32_t *entry_point;
-    size_t entry_point_capacity;
-    double *step; // [N s] 3 of each point: what the sweep gives
-    size_t step_capacity;
+    // Which points press on a support: copies of their entries by support, in the order of the points, with what the sweep gives
+    // beside the facet it turns with, so that a sweep reads little more than it uses.
+    struct brunt_pressing {
+        int32_t point;
+        double weight, turn[3];
+    } *pressing;
+    size_t pressing_capacity;
+    int32_t *pressing_first;
+    size_t pressing_first_capacity;
+    struct brunt_given {
+        double impulse[3], facet[3];
+    } *given; // of each point
+    size_t given_capacity;
     double *changed; // [m/s] of each chunk of points: greatest correction of the sweep
     size_t changed_capacity;
 } brunt_contact_points;
