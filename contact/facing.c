@@ -17,6 +17,7 @@ static const double CELL = 0.5;      // mean edges: of the cells that facets are
 static const double OPPOSED = 0.1;   // least cosine between a slave's outward normal and the one into the master
 static const double ASKEW = -0.3;    // ... or, where nothing opposed is within ...
 static const double CLOSE = 0.25;    // ... so many mean edges, the least one with the normal of a facet
+static const double SLACK = 0.125;  // mean edges: facets so much further than the nearest are looked at closely, too
 static const double PUSH = 0.2;      // share of a penetration that is pushed out in a step ...
 static const double BOUNCE = 0.5;    // ... but no faster than this share of the approach, so that it adds no energy
 
@@ -81,6 +82,7 @@ struct brunt_facing {
     // that far again, it touches nothing and need not be looked at.
     struct quiet {
         double distance, travelled;
+        double second; // of the nearest facet but `last`: until then that one stays the nearest
     } *quiet;
     size_t quiet_capacity;
     double travelled; // [m] twice the furthest motion of each step, summed
@@ -202,16 +204,49 @@ static bool near_wall(const brunt_skin *s, int k, const brunt_wall *wall, double
     return plane_distance(&wall->plane, time, corner) < range;
 }
 
+static int make_facing(brunt_facing **facing, int mpm_count, int32_t nodes) {
+    if (*facing) return 0;
+    brunt_facing *f = *facing = brunt_alloc(sizeof *f);
+    if (!f) return -1;
+    f->mpm_count = mpm_count;
+    f->node_support = brunt_alloc(((size_t)mpm_count + 1) * sizeof(void *));
+    f->node_support_capacity = brunt_alloc(((size_t)mpm_count + 1) * sizeof(size_t));
+    if (!f->node_support || !f->node_support_capacity || RESERVE(f, found, nodes + 1) ||
+        RESERVE(f, hits, MAX_HITS * (nodes + 1)) || RESERVE(f, last, nodes + 1) || RESERVE(f, quiet, nodes + 1))
+        return -1;
+    for (int32_t n = 0; n < nodes; n++) f->last[n] = -1;
+    return 0;
+}
+
+int64_t brunt_facing_state_count(const brunt_skin *s) { return 7 * (int64_t)s->node_count + s->fem_count + 1; }
+
+void brunt_facing_state_get(const brunt_facing *f, const brunt_skin *s, double *out) {
+    *out++ = f ? f->travelled : 0;
+    for (int k = 0; k < s->fem_count; k++) *out++ = s->was_active[k];
+    for (int32_t n = 0; n < s->node_count; n++, out += 7) {
+        out[0] = f ? f->last[n] : -1;
+        out[1] = f ? f->quiet[n].distance : 0, out[2] = f ? f->quiet[n].travelled : 0, out[3] = f ? f->quiet[n].second : 0;
+        for (int a = 0; a < 3; a++) out[4 + a] = s->x[n][a];
+    }
+}
+
+int brunt_facing_state_set(brunt_facing **facing, brunt_skin *s, int mpm_count, const double *in) {
+    if (make_facing(facing, mpm_count, s->node_count)) return -1;
+    brunt_facing *f = *facing;
+    f->travelled = *in++;
+    for (int k = 0; k < s->fem_count; k++) s->was_active[k] = *in++ != 0;
+    for (int32_t n = 0; n < s->node_count; n++, in += 7) {
+        f->last[n] = (int32_t)in[0];
+        f->quiet[n] = (struct quiet){in[1], in[2], in[3]};
+        for (int a = 0; a < 3; a++) s->x[n][a] = in[4 + a];
+    }
+    return 0;
+}
+
 int brunt_facing_near(const brunt_meeting *m, brunt_body *mpm, int mpm_count, const brunt_wall *walls, int wall_count,
                       double time, brunt_facing **facing) {
     brunt_skin *s = m->skin;
-    if (!*facing) {
-        if (!(*facing = brunt_alloc(sizeof **facing))) return -1;
-        (*facing)->mpm_count = mpm_count;
-        (*facing)->node_support = brunt_alloc(((size_t)mpm_count + 1) * sizeof(void *));
-        (*facing)->node_support_capacity = brunt_alloc(((size_t)mpm_count + 1) * sizeof(size_t));
-        if (!(*facing)->node_support || !(*facing)->node_support_capacity) return -1;
-    }
+    if (make_facing(facing, mpm_count, s->node_count)) return -1;
     brunt_facing *f = *facing;
     // Nothing may pass anything unseen: the reach covers twice the fastest motion of a step, against the frame of all.
     double fastest = 0, spacing = 0;
@@ -456,7 +491,7 @@ static bool look(const brunt_facing *f, looker *l) {
     l->touches = l->enters = 0;
     for (int32_t q = f->near_first[l->box]; q < f->near_first[l->box + 1] && l->touches < MAX_NEAR; q++) {
         const bounds *other = &f->box[f->near_list[q]];
-        if (other->fem < 0 || !within(other, l->x, f->reach)) continue;
+        if (other->fem < 0 || !within(other, l->x, f->range)) continue;
         l->touch[l->touches++] = other->body;
         if (within(other, l->x, 0)) l->enter[l->enters++] = other->body;
     }
@@ -470,46 +505,64 @@ static bool is_among(int32_t body, const int32_t *list, int32_t count) {
     return false;
 }
 
+// The two nearest facets of all, whichever way they face.
+typedef struct two_nearest {
+    int32_t face;
+    double first, second; // squares of their distances
+} two_nearest;
+
 // The nearest facets in a cell of each body in `list`, among those that face `normal` by more than `least`. How many bodies.
-// `first`: a face that may well be the nearest, -1; it saves looking closely at most others.
+// `guess`: a face that may well be the nearest, -1; it saves looking closely at most others. `all`: also notes the two nearest
+// facets of any direction, as far as `slack` beyond the nearest; may be NULL.
 static int find_nearest(const brunt_meeting *m, const brunt_facing *f, const looker *l, const double *normal, double least,
-                        const int32_t *list, int32_t count, int32_t first, nearest best[MAX_HITS]) {
+                        const int32_t *list, int32_t count, int32_t guess, double slack, two_nearest *all,
+                        nearest best[MAX_HITS]) {
     const brunt_skin *s = m->skin;
     const double range2 = f->range * f->range;
-    double bound = INFINITY; // of the one body that `first` belongs to
-    brunt_closest guess;
-    if (first >= 0) guess = brunt_closest_on_face(s, first, l->x), bound = sqrt(guess.square) * (1 + 1e-8);
+    double bound = INFINITY; // of the one body that the guess belongs to
+    brunt_closest guessed;
+    if (guess >= 0) guessed = brunt_closest_on_face(s, guess, l->x), bound = sqrt(guessed.square) * (1 + 1e-8);
     int bodies = 0;
+    if (all) *all = (two_nearest){-1, range2, range2};
     for (int32_t q = f->cell_first[l->cell]; q < f->cell_first[l->cell + 1]; q++) {
         const int32_t face = f->cell_face[q], other = s->face_body[face];
+        if (other == l->body) continue;
         int b = 0;
         while (b < bodies && best[b].body != other) b++;
         double reach = b < bodies ? best[b].root : f->range;
-        if (first >= 0 && bound < reach && s->face_body[first] == other) reach = bound;
-        if (!near_box(s->face_box[face], l->x, reach)) continue;
-        if (normal && -dot(s->face_normal[face], normal) <= least) continue;
+        if (guess >= 0 && bound < reach && s->face_body[guess] == other) reach = bound;
+        if (!near_box(s->face_box[face], l->x, reach + slack)) continue;
+        const bool faces = !normal || -dot(s->face_normal[face], normal) > least;
+        if ((!faces && !all) || !is_among(other, list, count)) continue;
+        brunt_closest at = face == guess ? guessed : brunt_closest_on_face(s, face, l->x);
+        if (at.square > range2) continue;
+        if (all && at.square < all->first) all->second = all->first, all->first = at.square, all->face = face;
+        else if (all && at.square < all->second) all->second = at.square;
+        if (!faces) continue;
         if (b == bodies) {
-            if (b == MAX_HITS || !is_among(other, list, count)) continue;
+            if (b == MAX_HITS) continue;
             best[b].body = other, best[b].count = 0, best[b].square = range2, best[b].root = f->range;
             bodies++;
         }
-        brunt_closest at = face == first ? guess : brunt_closest_on_face(s, face, l->x);
-        if (at.square <= range2) keep(&best[b], &at, face);
+        keep(&best[b], &at, face);
     }
     return bodies;
 }
 
 // What someone meets of each other body. Facets that face the slave come first: a node that slides in under a block meets its
 // underside, not the wall it came through. Only a slave that has none of those close by, and is inside, is sent out through the
-// nearest facet there is. Returns the distance of the nearest facet seen, or how far was looked.
-static double look_around(const brunt_meeting *m, const brunt_facing *f, const looker *l, int32_t first, slave_hits *out) {
+// nearest facet there is. Tells how far the nearest facet is, or how far was looked, and how far the nearest but the one hit.
+static void look_around(const brunt_meeting *m, const brunt_facing *f, const looker *l, int32_t guess, slave_hits *out,
+                        double *distance, double *second) {
+    const brunt_skin *s = m->skin;
     nearest facing[MAX_HITS], any[MAX_HITS];
-    const double close = CLOSE * m->skin->mean_edge;
+    two_nearest two;
+    const double close = CLOSE * s->mean_edge, slack = SLACK * s->mean_edge;
     out->count = 0;
-    if (first >= 0 && (!is_among(m->skin->face_body[first], l->touch, l->touches) ||
-                       (l->normal && -dot(m->skin->face_normal[first], l->normal) <= OPPOSED)))
-        first = -1;
-    int bodies = find_nearest(m, f, l, l->normal, OPPOSED, l->touch, l->touches, first, facing), unresolved = 0;
+    if (guess >= 0 && (!is_among(s->face_body[guess], l->touch, l->touches) ||
+                       (l->normal && -dot(s->face_normal[guess], l->normal) <= OPPOSED)))
+        guess = -1;
+    int bodies = find_nearest(m, f, l, l->normal, OPPOSED, l->touch, l->touches, guess, slack, &two, facing), unresolved = 0;
     int32_t entered[MAX_NEAR];
     for (int32_t k = 0; l->normal && k < l->enters; k++) {
         bool resolved = false;
@@ -517,19 +570,30 @@ static double look_around(const brunt_meeting *m, const brunt_facing *f, const l
             resolved = resolved || (facing[b].body == l->enter[k] && facing[b].count && facing[b].square <= close * close);
         if (!resolved) entered[unresolved++] = l->enter[k];
     }
-    int all = unresolved ? find_nearest(m, f, l, NULL, 0, entered, unresolved, -1, any) : 0;
+    int all = unresolved ? find_nearest(m, f, l, NULL, 0, entered, unresolved, -1, 0, NULL, any) : 0;
     for (int b = 0; b < all; b++) {
         if (!any[b].count || !hit_behind(&any[b], l->normal, &out->hits[out->count])) continue;
         out->count++;
         for (int k = 0; k < bodies; k++)
             if (facing[k].body == any[b].body) facing[k].count = 0;
     }
-    for (int b = 0; b < bodies && out->count < MAX_HITS; b++)
-        if (facing[b].count && hit_facing(m->skin, &facing[b], l->normal, &out->hits[out->count])) out->count++;
-    double distance = f->range;
-    for (int b = 0; b < bodies; b++) distance = fmin(distance, facing[b].root);
-    for (int b = 0; b < all; b++) distance = fmin(distance, any[b].root);
-    return distance;
+    // Whoever is before the nearest facet of all is outside, even if the nearest facet that faces him is seen from behind.
+    bool outside = false;
+    if (two.face >= 0) {
+        brunt_closest at = brunt_closest_on_face(s, two.face, l->x);
+        double height = dot(at.normal, at.d);
+        outside = height > 1e-6 * s->mean_edge && height > 0.1 * sqrt(at.square);
+    }
+    const bool plain = out->count == 0 && l->enters <= 1;
+    for (int b = 0; b < bodies && out->count < MAX_HITS; b++) {
+        hit *h = &out->hits[out->count];
+        if (!facing[b].count || !hit_facing(s, &facing[b], l->normal, h)) continue;
+        if (!(h->gap < 0 && outside && h->body == s->face_body[two.face])) out->count++;
+    }
+    *distance = outside || two.face < 0 ? fmin(f->range, sqrt(two.first)) : 0;
+    *second = 0;
+    if (plain && out->count == 1 && two.face == out->hits[0].face)
+        *second = fmin(fmin(f->range, sqrt(two.second)), *distance + slack) * (1 - 1e-8);
 }
 
 // ------------------------------------------------------------------------------------------ boundary nodes
@@ -554,6 +618,19 @@ static double approach_of(const brunt_skin *s, const hit *h, const double x[3], 
     return along;
 }
 
+// The facet that was the nearest, when it is certain that it still is: it is nearer than `least`, which no other one is.
+static bool still_nearest(const brunt_meeting *m, const brunt_facing *f, int32_t n, const double *normal, double least,
+                          slave_hits *out) {
+    const brunt_skin *s = m->skin;
+    const int32_t face = f->last[n];
+    if (face < 0 || (normal && -dot(s->face_normal[face], normal) <= OPPOSED)) return false;
+    nearest one = {.body = s->face_body[face], .count = 1, .tied = {{brunt_closest_on_face(s, face, s->x[n]), face}}};
+    const double square = one.tied[0].at.square, close = CLOSE * s->mean_edge;
+    if (square >= least * least || square > close * close || square > f->range * f->range) return false;
+    out->count = hit_facing(s, &one, normal, &out->hits[0]) ? 1 : 0;
+    return true;
+}
+
 static void find_node(const job *j, int k, int32_t n) {
     const brunt_meeting *m = j->m;
     brunt_facing *f = j->f;
@@ -561,12 +638,20 @@ static void find_node(const job *j, int k, int32_t n) {
     slave_hits seen, *found = &seen;
     const double *normal = s->normal[n];
     bool faces = normal[0] != 0 || normal[1] != 0 || normal[2] != 0;
-    if (f->quiet[n].distance - (f->travelled - f->quiet[n].travelled) > f->reach) return;
-    looker l = {.box = f->box_of[k], .body = s->body[n], .x = s->x[n], .normal = faces ? normal : NULL};
-    if (!look(f, &l)) return;
-    f->quiet[n].distance = look_around(m, f, &l, f->last[n], found);
-    f->quiet[n].travelled = f->travelled;
-    if (found->count) f->last[n] = found->hits[0].face;
+    struct quiet *quiet = &f->quiet[n];
+    const double since = f->travelled - quiet->travelled;
+    if (quiet->distance - since > f->reach) return;
+    if (!(since < quiet->second && still_nearest(m, f, n, faces ? normal : NULL, quiet->second - since, found))) {
+        looker l = {.box = f->box_of[k], .body = s->body[n], .x = s->x[n], .normal = faces ? normal : NULL};
+        quiet->travelled = f->travelled, quiet->distance = f->range, quiet->second = 0;
+        if (!look(f, &l)) {
+            if (l.touches) quiet->distance = 0; // near, but outside the cells
+            return;
+        }
+        look_around(m, f, &l, f->last[n], found, &quiet->distance, &quiet->second);
+        if (l.touches == MAX_NEAR) quiet->distance = quiet->second = 0; // there may be more bodies than were looked at
+        if (found->count) f->last[n] = found->hits[0].face;
+    }
     int32_t kept = 0;
     for (int32_t q = 0; q < found->count; q++) {
         hit *h = &found->hits[q];
@@ -782,7 +867,8 @@ static int add_particles(const brunt_meeting *m, brunt_facing *f, brunt_body *bo
             slave_hits found;
             looker l = {.box = box, .body = body->index, .x = x};
             if (!look(f, &l)) continue;
-            look_around(m, f, &l, -1, &found);
+            double distance, second;
+            look_around(m, f, &l, -1, &found, &distance, &second);
             for (int32_t q = 0; q < found.count; q++) {
                 double square = 0;
                 for (int c = 0; c < dim; c++) {
@@ -804,19 +890,13 @@ int brunt_facing_find(const brunt_meeting *m, brunt_body *mpm, int mpm_count, br
     f->travelled += 2 * s->moved;
     if (!(f->travelled < 1e300)) { // somebody new: nothing is known of distances
         f->travelled = 0;
-        for (int32_t n = 0; f->quiet && n < s->node_count; n++) f->quiet[n].distance = 0;
+        for (int32_t n = 0; f->quiet && n < s->node_count; n++) f->quiet[n].distance = f->quiet[n].second = 0;
     }
     if (!f->near_count) return 0;
     uint64_t key = pairs_key(m, f);
     if (!cells_hold(m, f, key)) {
         if (make_cells(m, f)) return -1;
         f->made_near = f->near_count, f->made_pairs = key;
-    }
-    if (!f->found) {
-        if (RESERVE(f, found, s->node_count + 1) || RESERVE(f, hits, MAX_HITS * (s->node_count + 1)) || RESERVE(f, last, s->node_count + 1) ||
-            RESERVE(f, quiet, s->node_count + 1))
-            return -1;
-        for (int32_t n = 0; n < s->node_count; n++) f->last[n] = -1, f->quiet[n].distance = 0;
     }
     job j = {.m = m, .f = f, .points = points};
     brunt_parallel(m->threads, s->node_count, GRAIN, find_nodes, &j, m->seconds);

@@ -16,8 +16,9 @@
 
 static const char REAL_TYPE = sizeof(real) == 8 ? 'd' : 'f';
 
-// World blocks: clock, walls, pairs, and the affine velocities of boundary nodes where contact keeps them.
-static int world_blocks(const brunt_world *world) { return world->skin.affine ? 4 : 3; }
+// World blocks: clock, walls, pairs; where surfaces meet what their search remembers; and where contact keeps them the affine
+// velocities of boundary nodes.
+static int world_blocks(const brunt_world *world) { return world->skin.affine ? 5 : world->has_surfaces ? 4 : 3; }
 
 // What block `index` is: of a body its ids (field -1) or a field; of a mesh its nodes (field -1) or a field; of the world number
 // `field`.
@@ -75,9 +76,10 @@ brunt_state_block brunt_state_info(brunt_world *world, int32_t index) {
                  at.field < 0 ? "nodes" : at.fem->field[at.field].name);
         return block;
     }
-    static const char *const names[] = {"world/clock", "world/walls", "world/pairs", "world/contact_affine"};
+    static const char *const names[] = {"world/clock", "world/walls", "world/pairs", "world/contact_search", "world/contact_affine"};
     const int64_t counts[] = {CLOCK_DOUBLES, 2 * (int64_t)world->wall_count * ACTION_DOUBLES,
-                              2 * (int64_t)world->pair_count * ACTION_DOUBLES, 9 * (int64_t)world->skin.node_count};
+                              2 * (int64_t)world->pair_count * ACTION_DOUBLES, brunt_facing_state_count(&world->skin),
+                              9 * (int64_t)world->skin.node_count};
     snprintf(block.name, sizeof block.name, "%s", names[at.field]);
     block.count = counts[at.field];
     return block;
@@ -108,7 +110,8 @@ void brunt_state_get(brunt_world *world, int32_t index, void *out) {
         return;
     }
     double *to = out;
-    if (at.field == 3) memcpy(to, world->skin.affine, 9 * (size_t)world->skin.node_count * sizeof(double));
+    if (at.field == 3) brunt_facing_state_get(world->facing, &world->skin, to);
+    if (at.field == 4) memcpy(to, world->skin.affine, 9 * (size_t)world->skin.node_count * sizeof(double));
     if (at.field == 0) memcpy(to, &world->now, sizeof world->now);
     for (int w = 0; at.field == 1 && w < world->wall_count; w++, to += 2 * ACTION_DOUBLES) {
         memcpy(to, &world->walls[w].action, sizeof(brunt_action));
@@ -149,7 +152,9 @@ int brunt_state_set(brunt_world *world, int32_t index, const void *in, int64_t c
         return BRUNT_OK;
     }
     const double *from = in;
-    if (at.field == 3) memcpy(world->skin.affine, from, 9 * (size_t)world->skin.node_count * sizeof(double));
+    if (at.field == 3 && brunt_facing_state_set(&world->facing, &world->skin, world->body_count, from))
+        return brunt_fail(error, BRUNT_FAILED, "out of memory");
+    if (at.field == 4) memcpy(world->skin.affine, from, 9 * (size_t)world->skin.node_count * sizeof(double));
     if (at.field == 0) memcpy(&world->now, from, sizeof world->now);
     for (int w = 0; at.field == 1 && w < world->wall_count; w++, from += 2 * ACTION_DOUBLES) {
         memcpy(&world->walls[w].action, from, sizeof(brunt_action));
@@ -174,6 +179,7 @@ int brunt_state_done(brunt_world *world, brunt_error *error) {
         int status = brunt_sort(&body->grid, &body->particles, world->threads, NULL, error);
         if (status) return BRUNT_BAD_INPUT;
     }
+    for (int a = 0; a < 3; a++) world->skin.frame_step[a] = world->now.contact_frame[a] * world->now.dt;
     int32_t bad;
     const char *reason;
     const brunt_fem_body *failed = brunt_fem_elements_all(world, 0, &bad, &reason);
