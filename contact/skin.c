@@ -299,8 +299,7 @@ static void give_nodes(void *context, int64_t begin, int64_t end, int worker) {
             continue;
         }
         real *at = brunt_fem_node(s->fem[k], s->node[n]);
-        for (int a = 0; a < 3; a++)
-            if (s->inverse[n][a] > 0) at[BRUNT_FEM_V + a] = (real)s->v[n][a];
+        for (int a = 0; a < 3; a++) at[BRUNT_FEM_V + a] = (real)s->v[n][a];
     }
 }
 

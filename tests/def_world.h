@@ -122,7 +122,8 @@ static inline void world_until(brunt_world *world, double time) {
 static inline double *world_field(brunt_world *world, int body, const char *name) { // free()
     int32_t field = brunt_body_find_field(world, body, name);
     ck_assert_msg(field >= 0, "there is no field %s", name);
-    size_t n = (size_t)brunt_body_particles(world, body) * (size_t)brunt_body_field(world, body, field).components;
+    brunt_field_info info = brunt_body_field(world, body, field);
+    size_t n = (size_t)brunt_body_size(world, body, info.at) * (size_t)info.components;
     double *values = malloc(n * sizeof *values);
     brunt_body_read(world, body, field, values);
     return values;

@@ -321,7 +321,6 @@ static int move_meshes(brunt_world *world, const double gravity[3], double kick,
     int32_t bad = -1;
     const char *reason = "";
     start_pass(world, BRUNT_PASS_drift, &start);
-    if (world->hold_count) brunt_loads_end(world, kick);
     brunt_fem_drift_all(world, gravity, kick, dt);
     end_pass(world, BRUNT_PASS_drift, start);
     start_pass(world, BRUNT_PASS_elements, &start);
@@ -380,6 +379,7 @@ int brunt_world_step(brunt_world *world, double limit, brunt_error *error) {
         if (world->advance) remap_velocities(world, dt);
         status = gather_bodies(world, dt, &kinetic, error);
     }
+    if (world->hold_count) brunt_loads_end(world, kick);
     for (int w = 0; w < world->wall_count; w++) brunt_action_add(&world->walls[w].action, &world->walls[w].last);
     for (int p = 0; p < world->pair_count; p++) brunt_action_add(&world->pairs[p].action, &world->pairs[p].last);
     if (world->fem_count) {
