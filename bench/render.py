@@ -1,9 +1,10 @@
 #!/usr/bin/python3
-"""Pictures of particles: VTU files -> one PNG, without a screen.
+"""Pictures of particles and elements: VTU files -> one PNG, without a screen.
 
     /usr/bin/python3 bench/render.py out/taylor_bar/vtu/rod_000040.vtu -o rod.png --field plastic_strain --mirror xy
 
-Several files are shown together, with one colour scale. Needs python3-vtk9; where there is no display, xvfb too
+Particles are drawn as balls, elements as the surface of their mesh, in the places of the file (deformed). Several files are
+shown together, with one colour scale. Needs python3-vtk9; where there is no display, xvfb too
 (`sh cmake/install.sh picture`). Exit codes as those of brunt: 64 bad usage, 65 bad input, 74 file system.
 """
 import argparse
@@ -48,7 +49,7 @@ def arguments():
     p = Parser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     p.add_argument("files", nargs="+", metavar="FILE.vtu")
     p.add_argument("-o", "--output", required=True, metavar="FILE.png")
-    p.add_argument("--field", required=True, help="point data array that gives the colour")
+    p.add_argument("--field", required=True, help="array, of points or of cells, that gives the colour")
     p.add_argument("--component", default="magnitude", help="magnitude, x y z, or xx yy zz xy yz xz")
     p.add_argument("--range", nargs=2, type=float, metavar=("LOW", "HIGH"), help="of the colours; default: all values")
     p.add_argument("--colours", choices=sorted(COLOURS), default="heat")
@@ -58,9 +59,10 @@ def arguments():
     p.add_argument("--style", choices=["spheres", "points"], default="spheres")
     p.add_argument("--radius", type=float, help="of the spheres [m]; default: from the volume field, or the spacing")
     p.add_argument("--point-size", type=float, default=3, help="pixels, with --style points")
+    p.add_argument("--edges", choices=["auto", "on", "off"], default="auto", help="of elements; auto: up to 30,000 faces")
     p.add_argument("--mirror", default="", help="planes through the origin to mirror at: any of x, y, z")
     p.add_argument("--cut", action="append", default=[], metavar="AXIS<VALUE",
-                   help="show only particles with a coordinate below (x<0.01) or above (x>0.01) a value [m]; repeatable")
+                   help="show only what has a coordinate below (x<0.01) or above (x>0.01) a value [m]; repeatable")
     p.add_argument("--view", nargs=3, type=float, metavar=("X", "Y", "Z"), help="direction from the scene to the camera")
     p.add_argument("--up", nargs=3, type=float, metavar=("X", "Y", "Z"))
     p.add_argument("--centre", nargs=3, type=float, metavar=("X", "Y", "Z"), help="what the camera looks at [m]")
@@ -128,35 +130,92 @@ def values_of(np, array, component, path, field):
     return values[:, index]
 
 
+def find_field(grid, field, path):
+    """The array and whether it belongs to the points."""
+    names = []
+    for data, at_points in ((grid.GetPointData(), True), (grid.GetCellData(), False)):
+        if data.GetArray(field) is not None:
+            return data.GetArray(field), at_points
+        names += [data.GetArrayName(i) for i in range(data.GetNumberOfArrays())]
+    fail(65, f"{path}: no field '{field}', there are {', '.join(names) or 'none'}")
+
+
+def is_mesh(grid):
+    return grid.GetNumberOfCells() > 0 and grid.GetCell(0).GetCellDimension() > 1
+
+
 def load(vtk, np, args):
-    from vtk.util.numpy_support import vtk_to_numpy
-    points, values, radii, time = [], [], [], None
+    """Particles (places, values, radii) and the surfaces of meshes, of all files; the time of the last."""
+    particles, surfaces, time = [], [], None
     for path in args.files:
         grid = read_file(vtk, path)
-        array = grid.GetPointData().GetArray(args.field)
-        if array is None:
-            names = [grid.GetPointData().GetArrayName(i) for i in range(grid.GetPointData().GetNumberOfArrays())]
-            fail(65, f"{path}: no field '{args.field}', there are {', '.join(names) or 'none'}")
-        count = grid.GetNumberOfPoints()
-        if not count:
-            continue
-        x = vtk_to_numpy(grid.GetPoints().GetData()).astype(float)
-        points.append(x)
-        values.append(values_of(np, array, args.component, path, args.field))
-        flat = np.ptp(x[:, 2]) == 0
-        volume = grid.GetPointData().GetArray("volume")
-        if args.radius:
-            radii.append(np.full(count, args.radius))
-        elif volume is not None:
-            radii.append(0.62 * np.abs(vtk_to_numpy(volume).astype(float)) ** (1 / 2 if flat else 1 / 3))
-        else:
-            radii.append(np.full(count, 0.62 * typical_spacing(vtk, np, grid)))
+        array, at_points = find_field(grid, args.field, path)
         stamp = grid.GetFieldData().GetArray("TimeValue")
         if stamp is not None and stamp.GetNumberOfTuples():
             time = stamp.GetTuple1(0)
-    if not points:
-        fail(65, "the files hold no particles")
-    return np.concatenate(points), np.concatenate(values), np.concatenate(radii), time
+        if not grid.GetNumberOfPoints():
+            continue
+        values = values_of(np, array, args.component, path, args.field)
+        if is_mesh(grid):
+            surfaces += surfaces_of(vtk, np, args, grid, values, at_points)
+        elif at_points:
+            found = particles_of(vtk, np, args, grid, values)
+            particles += [found] if len(found[0]) else []
+        else:
+            fail(65, f"{path}: '{args.field}' belongs to cells, and there are only points")
+    if not particles and not surfaces:
+        fail(65, "the files hold nothing, or --cut leaves nothing")
+    particles = [np.concatenate(column) for column in zip(*particles)] if particles else None
+    return particles, surfaces, time
+
+
+def particles_of(vtk, np, args, grid, values):
+    from vtk.util.numpy_support import vtk_to_numpy
+    x = vtk_to_numpy(grid.GetPoints().GetData()).astype(float)
+    flat = np.ptp(x[:, 2]) == 0
+    volume = grid.GetPointData().GetArray("volume")
+    if args.radius:
+        radii = np.full(len(x), args.radius)
+    elif volume is not None:
+        radii = 0.62 * np.abs(vtk_to_numpy(volume).astype(float)) ** (1 / 2 if flat else 1 / 3)
+    else:
+        radii = np.full(len(x), 0.62 * typical_spacing(vtk, np, grid))
+    return cut_and_mirror(np, args, x, values, radii)
+
+
+def surfaces_of(vtk, np, args, grid, values, at_points):
+    """The outside of what --cut leaves of a mesh, and its mirror images."""
+    from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+    column = numpy_to_vtk(np.ascontiguousarray(values), deep=True)
+    column.SetName("value")
+    (grid.GetPointData() if at_points else grid.GetCellData()).AddArray(column)
+    centres = vtk.vtkCellCenters()
+    centres.SetInputData(grid)
+    centres.Update()
+    keep = kept(np, args, vtk_to_numpy(centres.GetOutput().GetPoints().GetData()))
+    if not keep.any():
+        return []
+    if not keep.all():
+        chosen = vtk.vtkIdList()
+        for cell in np.flatnonzero(keep):
+            chosen.InsertNextId(int(cell))
+        part = vtk.vtkExtractCells()
+        part.SetInputData(grid)
+        part.SetCellList(chosen)
+        part.Update()
+        grid = part.GetOutput()
+    outside = vtk.vtkDataSetSurfaceFilter()
+    outside.SetInputData(grid)
+    outside.Update()
+    surfaces = [outside.GetOutput()]
+    for axis in mirror_axes(args):
+        for surface in list(surfaces):
+            copy = vtk.vtkPolyData()
+            copy.DeepCopy(surface)
+            x = vtk_to_numpy(copy.GetPoints().GetData())
+            x[:, "xyz".index(axis)] *= -1
+            surfaces.append(copy)
+    return surfaces
 
 
 def typical_spacing(vtk, np, grid):
@@ -174,8 +233,9 @@ def typical_spacing(vtk, np, grid):
     return float(np.median(distances)) if distances and np.median(distances) > 0 else 1.0
 
 
-def cut_and_mirror(np, args, points, values, radii):
-    keep = np.ones(len(points), bool)
+def kept(np, args, places):
+    """Which places the rules of --cut leave."""
+    keep = np.ones(len(places), bool)
     for rule in args.cut:
         sign = "<" if "<" in rule else ">"
         axis, _, limit = rule.partition(sign)
@@ -185,18 +245,25 @@ def cut_and_mirror(np, args, points, values, radii):
             limit = float(limit)
         except ValueError:
             fail(64, f"--cut {rule}: x, y or z, then < or >, then a number is wanted")
-        x = points[:, "xyz".index(axis)]
+        x = places[:, "xyz".index(axis)]
         keep &= (x < limit) if sign == "<" else (x > limit)
-    for axis in args.mirror:
-        if axis not in "xyz":
-            fail(64, f"--mirror {args.mirror}: only x, y and z")
+    return keep
+
+
+def mirror_axes(args):
+    if any(axis not in "xyz" for axis in args.mirror):
+        fail(64, f"--mirror {args.mirror}: only x, y and z")
+    return args.mirror
+
+
+def cut_and_mirror(np, args, points, values, radii):
+    keep = kept(np, args, points)
+    points, values, radii = points[keep], values[keep], radii[keep]
+    for axis in mirror_axes(args):
         copy = points.copy()
         copy[:, "xyz".index(axis)] *= -1
         points, values, radii = np.vstack([points, copy]), np.tile(values, 2), np.tile(radii, 2)
-        keep = np.tile(keep, 2)
-    if not keep.any():
-        fail(65, "--cut leaves no particle")
-    return points[keep], values[keep], radii[keep]
+    return points, values, radii
 
 
 def colour_table(vtk, args, low, high):
@@ -215,18 +282,25 @@ def text_style(prop, size):
     prop.ShadowOff()
 
 
-def make_scene(vtk, np, args, scale):
-    from vtk.util.numpy_support import numpy_to_vtk
-    points, values, radii, time = load(vtk, np, args)
-    points, values, radii = cut_and_mirror(np, args, points, values, radii)
-    finite = values[np.isfinite(values)]
+def surface_values(surface):
+    return surface.GetPointData().GetArray("value") or surface.GetCellData().GetArray("value")
+
+
+def colour_range(np, args, particles, surfaces):
+    from vtk.util.numpy_support import vtk_to_numpy
     if args.range:
         low, high = args.range
     else:
+        values = [vtk_to_numpy(surface_values(s)) for s in surfaces] + ([particles[1]] if particles else [])
+        values = np.concatenate(values)
+        finite = values[np.isfinite(values)]
         low, high = (float(finite.min()), float(finite.max())) if len(finite) else (0.0, 1.0)
-    if not high > low:
-        high = low + (abs(low) * 1e-6 or 1.0)
+    return low, high if high > low else low + (abs(low) * 1e-6 or 1.0)
 
+
+def particle_actor(vtk, np, args, particles, table, scale):
+    from vtk.util.numpy_support import numpy_to_vtk
+    points, values, radii = particles
     data = vtk.vtkPolyData()
     vtk_points = vtk.vtkPoints()
     vtk_points.SetData(numpy_to_vtk(np.ascontiguousarray(points), deep=True))
@@ -236,8 +310,6 @@ def make_scene(vtk, np, args, scale):
         column.SetName(name)
         data.GetPointData().AddArray(column)
     data.GetPointData().SetActiveScalars("value")
-
-    table = colour_table(vtk, args, low, high)
     if args.style == "spheres":
         mapper = vtk.vtkPointGaussianMapper()
         mapper.SetInputData(data)
@@ -260,10 +332,48 @@ def make_scene(vtk, np, args, scale):
     actor.GetProperty().SetPointSize(args.point_size * scale)
     if args.style == "points":
         actor.GetProperty().LightingOff()
+    return actor
 
+
+def surface_actor(vtk, args, surface, table, edges, scale):
+    mapper = vtk.vtkPolyDataMapper()
+    mapper.SetInputData(surface)
+    mapper.SetLookupTable(table)
+    if surface.GetPointData().GetArray("value"):
+        mapper.SetScalarModeToUsePointFieldData()
+    else:
+        mapper.SetScalarModeToUseCellFieldData()
+    mapper.SelectColorArray("value")
+    mapper.SetUseLookupTableScalarRange(True)
+    actor = vtk.vtkActor()
+    actor.SetMapper(mapper)
+    look = actor.GetProperty()
+    look.SetInterpolationToFlat()
+    look.SetAmbient(0.45)
+    look.SetDiffuse(0.55)
+    if edges:
+        look.EdgeVisibilityOn()
+        look.SetEdgeColor(0.25, 0.25, 0.25)
+        look.SetLineWidth(0.6 * scale)
+    return actor
+
+
+def make_scene(vtk, np, args, scale):
+    from vtk.util.numpy_support import vtk_to_numpy
+    particles, surfaces, time = load(vtk, np, args)
+    table = colour_table(vtk, args, *colour_range(np, args, particles, surfaces))
+    table.SetNanColor(0.75, 0.75, 0.75)
     renderer = vtk.vtkRenderer()
     renderer.SetBackground(1, 1, 1)
-    renderer.AddActor(actor)
+    points, radii = [], [0.0]
+    if particles:
+        renderer.AddActor(particle_actor(vtk, np, args, particles, table, scale))
+        points.append(particles[0])
+        radii.append(particles[2].max())
+    edges = args.edges == "on" or args.edges == "auto" and sum(s.GetNumberOfCells() for s in surfaces) <= 30000
+    for surface in surfaces:
+        renderer.AddActor(surface_actor(vtk, args, surface, table, edges, scale))
+        points.append(vtk_to_numpy(surface.GetPoints().GetData()).astype(float))
 
     unit = args.unit if args.unit is not None else file_unit(args.files[0], args.field)
     title = args.title or args.field.replace("_", " ")
@@ -292,12 +402,12 @@ def make_scene(vtk, np, args, scale):
         text_style(text.GetTextProperty(), 22 * scale)
         text.SetPosition(24 * scale, args.size[1] * scale - 44 * scale)
         renderer.AddActor2D(text)
-    aim(np, args, renderer, points, radii)
+    aim(np, args, renderer, np.concatenate(points), max(radii))
     return renderer
 
 
-def aim(np, args, renderer, points, radii):
-    """A parallel view that just holds every particle in the part of the window left of the colour bar."""
+def aim(np, args, renderer, points, margin):
+    """A parallel view that just holds every point, with a margin [m], in the part of the window left of the colour bar."""
     flat = np.ptp(points[:, 2]) == 0
     view = np.array(args.view if args.view else ([0, 0, 1] if flat else [1.0, -1.6, 0.7]), float)
     if not np.linalg.norm(view) > 0:
@@ -310,7 +420,6 @@ def aim(np, args, renderer, points, radii):
     right /= np.linalg.norm(right)
     up = np.cross(view, right)
     across, along = points @ right, points @ up
-    margin = radii.max()
     width = np.ptp(across) + 2 * margin
     height = np.ptp(along) + 2 * margin
     if args.centre:
@@ -326,7 +435,7 @@ def aim(np, args, renderer, points, radii):
     camera = renderer.GetActiveCamera()
     camera.ParallelProjectionOn()
     camera.SetFocalPoint(*centre)
-    camera.SetPosition(*(centre + view * 10 * max(width, height, margin)))
+    camera.SetPosition(*(centre + view * 10 * max(width, height)))
     camera.SetViewUp(*up)
     camera.SetParallelScale(half)
     renderer.ResetCameraClippingRange()

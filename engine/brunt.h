@@ -230,7 +230,7 @@ typedef struct brunt_contact_def {
     brunt_contact_method method;        // default: multi-velocity
     double friction;                    // [-] >= 0
     brunt_augury_form form;             // of augury; default affine
-    int iterations;                     // of augury: sweeps, or N of the paper form; -1 = the form's own (4, 4, 4, 1)
+    int iterations;                     // of augury: sweeps, or N of the paper form; -1 = the form's own (4, with particles 16; 4, 4, 1)
     double cell;                        // [m] of the contact grid; 0 = the mean surface edge (paper: twice that)
     brunt_transfer transfer;            // of the paper form: BRUNT_PIC or BRUNT_APIC (default)
     bool allow_overlap;                 // accept bodies that overlap at the start; default false: an error
@@ -301,7 +301,8 @@ int64_t brunt_world_nodes(const brunt_world *world);    // grid nodes alive in t
 int64_t brunt_world_elements(const brunt_world *world);
 
 typedef struct brunt_energy {  // [J]; in 2D per metre of thickness
-    double kinetic;            // of the particles, with the affine part of APIC
+    double kinetic;            // of the particles, with the affine part of APIC; of meshes at the time of the stress, half a step
+                               // after the velocities: near rest it may be a little below 0
     double internal;           // stored
     double plastic, hourglass, contact, friction, viscosity, transfer, eroded;  // taken out, each by its cause
     double external_work;      // done on the bodies by gravity, walls and prescribed motion

@@ -9,6 +9,24 @@
 
 // ---------------------------------------------------------------------------------------------------- history
 
+// Mean time between the rises through the middle between least and most. A rise counts once the quarter of the range
+// below the middle was left since the last one: higher modes may make the middle be passed several times.
+static double period(const double *time, const double *value, int64_t count, double least, double most) {
+    const double middle = 0.5 * (least + most), low = middle - 0.25 * (most - least);
+    double first = NAN, last = NAN;
+    int64_t rises = 0;
+    bool was_low = false;
+    for (int64_t r = 1; r < count; r++) {
+        was_low = was_low || value[r - 1] < low;
+        if (!was_low || !(value[r] >= middle)) continue;
+        double share = (middle - value[r - 1]) / (value[r] - value[r - 1]);
+        last = time[r - 1] + share * (time[r] - time[r - 1]);
+        if (!rises++) first = last;
+        was_low = false;
+    }
+    return rises > 1 ? (last - first) / (double)(rises - 1) : NAN;
+}
+
 // Reduces the samples of a column within [from, to]. Times at the ends of the window count: output times carry
 // rounding.
 static double reduce_history(const brunt_measure *m, const double *time, const double *value, int64_t rows) {
@@ -54,6 +72,7 @@ static double reduce_history(const brunt_measure *m, const double *time, const d
         for (int64_t r = last; r >= first; r--)
             if (value[r] != 0) return time[r];
         return NAN;
+    case BRUNT_TAKE_PERIOD: return period(time + first, value + first, count, least, most);
     }
     return NAN;
 }

@@ -18,7 +18,8 @@ typedef enum brunt_take {
     BRUNT_TAKE_SLOPE,          // least-squares slope over from..to
     BRUNT_TAKE_FIRST_NONZERO,  // time of the first sample that is not zero
     BRUNT_TAKE_LAST_NONZERO,
-    BRUNT_TAKE_MAX_ABS
+    BRUNT_TAKE_MAX_ABS,
+    BRUNT_TAKE_PERIOD          // mean time between the rises through the middle of what it varies in
 } brunt_take;
 
 typedef struct brunt_measure {

@@ -12,7 +12,7 @@
 #define OPTIONAL ""
 #define REQUIRED NULL
 
-#define SIGNALS "end|initial|min|max|mean|slope|first_nonzero|last_nonzero|max_abs"
+#define SIGNALS "end|initial|min|max|mean|slope|first_nonzero|last_nonzero|max_abs|period"
 
 // clang-format off
 const scene_key brunt_scene_table[] = {
@@ -183,7 +183,7 @@ const scene_key brunt_scene_table[] = {
     {"measures.*.field.center", SCENE_VECTOR, "m", "0", ANY, NULL, 0, true, "where the coordinate along the axis is 0"},
     {"measures.*.field.from", SCENE_REAL, "m", OPTIONAL, NONE, "only what has a coordinate along the axis above ..."},
     {"measures.*.field.to", SCENE_REAL, "m", OPTIONAL, NONE, "... and below this"},
-    {"measures.*.take", SCENE_WORD, NULL, "end", ANY, SIGNALS, 0, true, "how history is reduced over time, a field over the body (min max mean max_abs)"},
+    {"measures.*.take", SCENE_WORD, NULL, "end", ANY, SIGNALS, 0, true, "how history is reduced over time (period: mean time between rises through the middle of its range), a field over the body (min max mean max_abs)"},
     {"measures.*.at", SCENE_WORD, NULL, OPTIONAL, ANY, SIGNALS, 0, false, "another name for take"},
     {"measures.*.from", SCENE_REAL, "s", OPTIONAL, NOT_NEGATIVE, NULL, 0, false, "of the history only from then ..."},
     {"measures.*.to", SCENE_REAL, "s", OPTIONAL, NOT_NEGATIVE, NULL, 0, false, "... to then"},

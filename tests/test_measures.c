@@ -96,6 +96,43 @@ START_TEST(history_is_reduced) {
 }
 END_TEST
 
+// A block of elements, held on one side, that swings along x: c = sqrt(E / rho), period 4 L / c.
+START_TEST(periods_are_found) {
+    brunt_scene elements;
+    const char *const sets[] = {"bodies={lower: {method: fem, material: rubber, size: 0.05, shape: {box: {min: [0, 0, "
+                                "0], max: [1, 0.05, 0.05]}}, "
+                                "wave: {velocity: [0.1, 0, 0], wave_vector: [1.5707963267948966, 0, 0]}}}",
+                                "materials.rubber.nu=0",
+                                "output.probes={}",
+                                "measures={}",
+                                "loads={}",
+                                "time.end=1",
+                                "boundaries=[{name: grip, group: xmin, body: lower, fix: [x]}]"};
+    small_scene_of(small_elements_text, &elements, sets, sizeof sets / sizeof *sets);
+    brunt_world *bar = small_world(&elements);
+    brunt_history *lines = brunt_history_create(bar, &elements, NULL);
+    for (int s = 0; s < 150; s++) {
+        ck_assert_int_eq(brunt_history_sample(lines, bar, NULL), BRUNT_OK);
+        small_steps(bar, 5);
+    }
+    double end = brunt_world_time(bar);
+    brunt_measure m = blank(BRUNT_MEASURE_HISTORY);
+    brunt_measure_result result;
+    strcpy(m.column, "body.lower.position_x");
+    m.take = BRUNT_TAKE_PERIOD;
+    ck_assert_int_eq(brunt_measure_evaluate(&m, lines, bar, NAN, &result, NULL), BRUNT_OK);
+    double exact = 4 * 1 / sqrt(1e6 / 1000);
+    ck_assert_double_gt(end, 3.5 * exact);
+    ck_assert_double_eq_tol(result.value, exact, 2e-3 * exact);
+    m.to = 0.9 * exact; // less than two rises
+    ck_assert_int_eq(brunt_measure_evaluate(&m, lines, bar, NAN, &result, NULL), BRUNT_OK);
+    ck_assert_double_nan(result.value);
+    brunt_history_destroy(lines);
+    brunt_world_destroy(bar);
+    brunt_scene_free(&elements);
+}
+END_TEST
+
 START_TEST(values_are_judged) {
     ck_assert_int_eq(brunt_history_sample(history, world, NULL), BRUNT_OK);
     small_steps(world, 10);
@@ -313,6 +350,7 @@ int main(void) {
     TCase *values = tcase_create("values");
     tcase_add_checked_fixture(values, set_up, tear_down);
     tcase_add_test(values, history_is_reduced);
+    tcase_add_test(values, periods_are_found);
     tcase_add_test(values, values_are_judged);
     tcase_add_test(values, extent_reaches_to_the_surfaces);
     tcase_add_test(values, extent_of_a_turned_block);

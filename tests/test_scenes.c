@@ -1,0 +1,53 @@
+// Labels: verification
+// The short ones of bench/scenes, run by the program as a user would: every measure with an expected value must hold.
+#include "small_scene.h"
+
+#include <jansson.h>
+#include <sys/wait.h>
+
+#include "real.h"
+
+static const struct {
+    const char *name, *options;
+} scenes[] = {
+    {"oblique_blocks", ""}, {"oblique_blocks_mpm", ""},
+    {"ramp", ""},           {"ramp", "--set bodies.cube.size=0.5"},
+    {"resting_stack", ""},  {"rod_on_wall", "--set 'bodies.rod.size=0.1 in'"}, // in the scene half as long
+};
+enum { SCENES = sizeof scenes / sizeof scenes[0] };
+
+START_TEST(measures_hold) {
+    const char *program = getenv("BRUNT"), *source = getenv("BRUNT_SOURCE");
+    ck_assert_msg(program && source, "BRUNT must name the program, BRUNT_SOURCE the source folder");
+    char command[1024], path[256];
+    snprintf(command, sizeof command, "'%s' run '%s/bench/scenes/%s.yaml' %s --set output.every=none -t 1 -q -o '%s'",
+             program, source, scenes[_i].name, scenes[_i].options, small_path("out"));
+    int status = system(command);
+    ck_assert_msg(WIFEXITED(status) && WEXITSTATUS(status) == 0, "%s: %d", command, status);
+    snprintf(path, sizeof path, "%s/out/summary.json", small_folder);
+    json_t *summary = json_load_file(path, 0, NULL), *measures = json_object_get(summary, "measures"), *measure;
+    ck_assert_ptr_nonnull(measures);
+    const char *key;
+    int judged = 0;
+    json_object_foreach(measures, key, measure) {
+        json_t *ok = json_object_get(measure, "ok");
+        if (!json_is_boolean(ok)) continue;
+        if (sizeof(real) == 4 && strstr(key, "_drift")) continue; // the scenes ask for 1e-12
+        ck_assert_msg(json_is_true(ok), "%s %s: %s is %g", scenes[_i].name, scenes[_i].options, key,
+                      json_number_value(json_object_get(measure, "value")));
+        judged++;
+    }
+    ck_assert_int_ge(judged, 3);
+    json_decref(summary);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("scenes");
+    TCase *all = tcase_create("all");
+    tcase_set_timeout(all, 0);
+    tcase_add_checked_fixture(all, small_folder_make, small_folder_remove);
+    tcase_add_loop_test(all, measures_hold, 0, SCENES);
+    suite_add_tcase(suite, all);
+    return small_main(suite);
+}
