@@ -58,6 +58,12 @@ static void triangle_of(const brunt_skin *s, int32_t face, int t, const double *
     p[2] = node[3] < 0 ? s->x[node[2]] : s->face_centre[face];
 }
 
+static double facing(const double *const p[3], const double d[3]) {
+    double n[3];
+    unit_normal(p, n);
+    return fabs(dot(n, d));
+}
+
 static int sector(const brunt_skin *s, int32_t face, const double x[3]) {
     const double *centre = s->face_centre[face], *normal = s->face_normal[face];
     double r[3], turn[4];
@@ -77,6 +83,7 @@ static int sector(const brunt_skin *s, int32_t face, const double x[3]) {
 brunt_closest brunt_closest_on_face(const brunt_skin *s, int32_t face, const double x[3]) {
     const int32_t *node = s->face[face];
     brunt_closest best = {.square = INFINITY};
+    double most = -1;
     if (node[2] < 0) {
         bool ends;
         const double *a = s->x[node[0]], *b = s->x[node[1]], t = on_segment(a, b, x, &ends);
@@ -98,7 +105,11 @@ brunt_closest brunt_closest_on_face(const brunt_skin *s, int32_t face, const dou
         triangle_of(s, face, t, p);
         on_triangle(p, x, d, &inside);
         double square = dot(d, d);
-        if (!(square < best.square)) continue;
+        // Triangles that share the nearest point: the one that most faces x, as between facets.
+        const double same = isinf(best.square) ? 0 : 1e-9 * best.square;
+        if (square > best.square + same) continue;
+        if (square >= best.square - same && !inside && facing(p, d) <= most) continue;
+        most = inside ? INFINITY : facing(p, d);
         best.square = square, best.inside = inside, best.triangle = t;
         for (int c = 0; c < 3; c++) best.d[c] = d[c];
     }

@@ -10,7 +10,7 @@
 #include "threads.h"
 #include "transfer.h"
 
-enum { GRAIN = 64, MAX_HITS = 3, MAX_TIED = 16, MAX_NEAR = 32 };
+enum { GRAIN = 64, MAX_HITS = 7, MAX_TIED = 16, MAX_NEAR = 32 };
 static const double RANGE = 0.25;    // mean edges: how far a body looks for others, if nothing moves faster
 static const double MARGIN = 0.125;  // mean edges: how far facets may move before the cells are made anew
 static const double CELL = 0.5;      // mean edges: of the cells that facets are found in
@@ -18,6 +18,7 @@ static const double OPPOSED = 0.1;   // least cosine between a slave's outward n
 static const double ASKEW = -0.3;    // ... or, where nothing opposed is within ...
 static const double CLOSE = 0.25;    // ... so many mean edges, the least one with the normal of a facet
 static const double SLACK = 0.125;  // mean edges: facets so much further than the nearest are looked at closely, too
+static const double SHALLOW = 0.02; // mean edges: depths that may be pushed out against a load
 static const double PUSH = 0.2;      // share of a penetration that is pushed out in a step ...
 static const double BOUNCE = 0.5;    // ... but no faster than this share of the approach, so that it adds no energy
 
@@ -26,7 +27,7 @@ static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a
 // The nearest facet of one other body.
 typedef struct hit {
     int32_t face, triangle, body;
-    double gap, n[3], approach;
+    double gap, n[3], target;
 } hit;
 
 typedef struct slave_hits {
@@ -605,16 +606,20 @@ typedef struct job {
     int32_t entry_base, point_base;
 } job;
 
-static double target_of(double gap, double approach, double dt) {
+// Least velocity along the normal: to arrive at the surface, not past it. What is behind it is pushed out, but no faster than half
+// as fast as it came, by which no impact gains energy. What rests comes anew each step, as the load brings it: pushing that out
+// does work, and is only done over the small depths that unfinished sweeps leave; deeper ones wait until they part by themselves.
+static double target_of(const brunt_skin *s, double gap, double approach, double before, double dt) {
     if (gap >= 0) return -gap / dt;
-    return fmin(PUSH * -gap / dt, BOUNCE * fmax(0, -approach));
+    double came = gap > -SHALLOW * s->mean_edge ? approach : before;
+    return fmin(PUSH * -gap / dt, BOUNCE * fmax(0, -came));
 }
 
 // Velocity of x relative to the facet under it, along n.
-static double approach_of(const brunt_skin *s, const hit *h, const double x[3], const double v[3]) {
+static double approach_of(const brunt_skin *s, const hit *h, const double x[3], const double v[3], double (*of)[3]) {
     double weight[4], along = dot(v, h->n);
     brunt_face_values(s, h->face, h->triangle, x, weight);
-    for (int c = 0; c < 4 && s->face[h->face][c] >= 0; c++) along -= weight[c] * dot(s->v[s->face[h->face][c]], h->n);
+    for (int c = 0; c < 4 && s->face[h->face][c] >= 0; c++) along -= weight[c] * dot(of[s->face[h->face][c]], h->n);
     return along;
 }
 
@@ -657,8 +662,9 @@ static void find_node(const job *j, int k, int32_t n) {
         hit *h = &found->hits[q];
         if (h->gap > f->reach) continue;
         s->gap[n] = fmin(s->gap[n], h->gap);
-        h->approach = approach_of(s, h, s->x[n], s->v[n]);
-        if (h->approach < target_of(h->gap, h->approach, m->dt) + 1e-6 * s->mean_edge / m->dt)
+        double approach = approach_of(s, h, s->x[n], s->v[n], s->v);
+        h->target = target_of(s, h->gap, approach, h->gap < 0 ? approach_of(s, h, s->x[n], s->old[n], s->old) : 0, m->dt);
+        if (approach < h->target + 1e-6 * s->mean_edge / m->dt)
             f->hits[MAX_HITS * n + kept++] = *h;
     }
     f->found[n] = (uint8_t)kept;
@@ -727,7 +733,7 @@ static void fill_nodes(void *context, int64_t begin, int64_t end, int worker) {
             point->area = 0.5 * area_towards(s, n, h->n); // the other half is counted on the other side
             j->points->entry[entry] = (brunt_contact_entry){.support = f->support_of[n], .weight = 1};
             fill_master(s, f, h, s->x[n], point, j->points->entry + entry + 1);
-            point->target = target_of(h->gap, h->approach, m->dt);
+            point->target = h->target;
             entry += point->count;
         }
     }
@@ -816,11 +822,15 @@ static int add_particle(const brunt_meeting *m, brunt_facing *f, brunt_body *bod
                         const double x[3], const hit *h, brunt_contact_points *points) {
     const brunt_skin *skin = m->skin;
     real *node[64];
-    double weight[64], v[3] = {0};
+    double weight[64], v[3] = {0}, old[3] = {0};
     int count = particle_nodes(body, b, s, node, weight);
     for (int e = 0; e < count; e++)
-        for (int a = 0; a < body->grid.dim; a++) v[a] += weight[e] * (double)node[e][BRUNT_NODE_VELOCITY + a];
-    double approach = approach_of(skin, h, x, v), target = target_of(h->gap, approach, m->dt);
+        for (int a = 0; a < body->grid.dim; a++) {
+            v[a] += weight[e] * (double)node[e][BRUNT_NODE_VELOCITY + a];
+            old[a] += weight[e] * (double)node[e][BRUNT_NODE_OLD + a];
+        }
+    double approach = approach_of(skin, h, x, v, skin->v);
+    double target = target_of(skin, h->gap, approach, approach_of(skin, h, x, old, skin->old), m->dt);
     if (!(approach < target + 1e-6 * skin->mean_edge / m->dt)) return 0;
     int corner = face_corners(skin, h->face);
     for (int c = 0; c < corner; c++)
@@ -934,9 +944,12 @@ static int push_off(const brunt_meeting *m, brunt_facing *f, int32_t n, brunt_wa
                     brunt_contact_points *points) {
     const brunt_skin *s = m->skin;
     const brunt_plane_def *plane = &wall->plane;
-    double approach = 0;
-    for (int a = 0; a < 3; a++) approach += plane->normal[a] * (s->v[n][a] - plane->velocity[a]);
-    double target = target_of(gap, approach, m->dt);
+    double approach = 0, before = 0;
+    for (int a = 0; a < 3; a++) {
+        approach += plane->normal[a] * (s->v[n][a] - plane->velocity[a]);
+        before += plane->normal[a] * (s->old[n][a] - plane->velocity[a]);
+    }
+    double target = target_of(s, gap, approach, before, m->dt);
     if (!(approach < target + 1e-6 * s->mean_edge / m->dt)) return 0;
     int32_t at = brunt_points_add(points), support = skin_support(f, s, n, points);
     if (at < 0 || support < 0) return -1;

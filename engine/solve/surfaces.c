@@ -31,9 +31,8 @@ int brunt_surfaces_make(brunt_world *world, const brunt_world_def *def, brunt_er
     world->contact = def->contact;
     world->contact.pairs = NULL, world->contact.pair_count = 0;
     const brunt_augury_form form = def->contact.form;
-    // Particles share the nodes of the grid, which makes their points depend on each other more than those of facets do.
     if (world->contact.iterations < 0)
-        world->contact.iterations = form == BRUNT_AUGURY_PAPER ? 1 : form == BRUNT_AUGURY_AFFINE && world->body_count ? SWEEPS : 4;
+        world->contact.iterations = form == BRUNT_AUGURY_PAPER ? 1 : form == BRUNT_AUGURY_AFFINE ? SWEEPS : 4;
     brunt_fem_body **fems = brunt_alloc((size_t)(world->fem_count + 1) * sizeof *fems);
     if (!fems) return brunt_fail(error, BRUNT_FAILED, "out of memory");
     for (int k = 0; k < world->fem_count; k++) fems[k] = &world->fems[k];
