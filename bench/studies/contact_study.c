@@ -3,6 +3,7 @@
 //   contact_study cubes|corner|face|ramp|stack|slide|crowd KEY=VALUE ...
 //
 //   h         edge length of the elements [m]                      grid      contact cell, in h (0: chosen)
+//   h2        of the second cube's [m] (0: h)
 //   form      affine|smooth|surface|paper|none|rigid               transfer  pic|apic, of the paper's form
 //   n         iterations or sweeps (-1: the form's own)            mu        friction
 //   element   tet4|hex8                                            end       [s]
@@ -22,7 +23,7 @@
 #include "threads.h"
 
 typedef struct settings {
-    double h, hg, grid, mu, end, speed, stiff, e1, r1, dt, turn, shift, load, ramp;
+    double h, h2, hg, grid, mu, end, speed, stiff, e1, r1, dt, turn, shift, load, ramp;
     int n, samples, threads, trace;
     brunt_augury_form form;
     int none, rigid;
@@ -44,7 +45,7 @@ static const char *word(int argc, char **argv, const char *key, const char *init
 }
 
 static settings read_settings(int argc, char **argv) {
-    settings s = {.h = number(argc, argv, "h", 0.5), .hg = number(argc, argv, "hg", NAN), .grid = number(argc, argv, "grid", 0), .mu = number(argc, argv, "mu", 0),
+    settings s = {.h = number(argc, argv, "h", 0.5), .h2 = number(argc, argv, "h2", 0), .hg = number(argc, argv, "hg", NAN), .grid = number(argc, argv, "grid", 0), .mu = number(argc, argv, "mu", 0),
                   .end = number(argc, argv, "end", 0), .speed = number(argc, argv, "speed", 1), .stiff = number(argc, argv, "stiff", 1),
                   .e1 = number(argc, argv, "e1", 1), .r1 = number(argc, argv, "r1", 1), .dt = number(argc, argv, "dt", 1),
                   .turn = number(argc, argv, "turn", 0), .shift = number(argc, argv, "shift", 0), .load = number(argc, argv, "load", 1),
@@ -118,6 +119,7 @@ static brunt_world_def cubes(const settings *s, const char *kind) {
     material(&def, 1e8 * s->stiff, 0.3, 2700);
     const double low[3] = {-1.5, -1.5, -1.5}, high[3] = {1.5, 1.5, 1.5}, x[3] = {1, 0, 0}, y[3] = {0, 1, 0}, z[3] = {0, 0, 1}, o[3] = {0, 0, 0};
     brunt_body_def *a = box(&def, s, "a", low, high), *b = box(&def, s, "b", low, high);
+    if (s->h2 > 0) b->size = s->h2;
     double up[3] = {0, 3.8, 0}, angle = 22 * M_PI / 180;
     if (!strcmp(kind, "corner")) {
         b->place = brunt_placement_rotate(b->place, z, M_PI / 4, o);
@@ -137,7 +139,7 @@ static brunt_world_def cubes(const settings *s, const char *kind) {
         double c = cos(s->turn * M_PI / 180), w = sin(s->turn * M_PI / 180), u = body->velocity[0], v = body->velocity[2];
         body->velocity[0] = c * u + w * v, body->velocity[2] = -w * u + c * v;
     }
-    def.step = 1e-4 * s->h * s->dt;
+    def.step = 1e-4 * (s->h2 > 0 ? fmin(s->h, s->h2) : s->h) * s->dt;
     return def;
 }
 
