@@ -1,0 +1,348 @@
+// Facets by cell, and the nearest ones of a place.
+#include "facing_inside.h"
+
+#include "closest.h"
+
+enum { MAX_TIED = 16 };
+static const double MARGIN = 0.125;  // mean edges: how far facets may move before the cells are made anew
+static const double CELL = 0.5;      // mean edges: of the cells that facets are found in
+static const double OPPOSED = 0.1;   // least cosine between a slave's outward normal and the one into the master
+static const double ASKEW = -0.3;    // ... or, where nothing opposed is within ...
+static const double CLOSE = 0.25;    // ... so many mean edges, the least one with the normal of a facet
+static const double SLACK = 0.125;  // mean edges: facets so much further than the nearest are looked at closely, too
+
+// ------------------------------------------------------------------------------------------ cells of facets
+
+bool brunt_facing_in_reach(const brunt_facing *f, int32_t box, const double low[3], const double high[3], double by) {
+    for (int32_t q = f->near_first[box]; q < f->near_first[box + 1]; q++) {
+        const bounds *other = &f->box[f->near_list[q]];
+        bool apart = false;
+        for (int a = 0; a < 3; a++) apart = apart || low[a] - by > other->high[a] || other->low[a] - by > high[a];
+        if (!apart) return true;
+    }
+    return false;
+}
+
+static void face_bounds(const brunt_skin *s, int32_t face, double low[3], double high[3]) {
+    for (int a = 0; a < 3; a++) low[a] = INFINITY, high[a] = -INFINITY;
+    for (int c = 0; c < 4 && s->face[face][c] >= 0; c++)
+        for (int a = 0; a < 3; a++) {
+            low[a] = fmin(low[a], s->x[s->face[face][c]][a]);
+            high[a] = fmax(high[a], s->x[s->face[face][c]][a]);
+        }
+}
+
+static void cell_range(const brunt_facing *f, const double low[3], const double high[3], double by, int32_t from[3],
+                       int32_t to[3]) {
+    for (int a = 0; a < 3; a++) {
+        double l = floor((low[a] - by - f->origin[a]) / f->cell), h = floor((high[a] + by - f->origin[a]) / f->cell);
+        from[a] = (int32_t)fmax(0, fmin(l, f->n[a] - 1.0));
+        to[a] = (int32_t)fmax(0, fmin(h, f->n[a] - 1.0));
+    }
+}
+
+// Counts, or lists, the facets of every cell.
+static void visit_cells(const brunt_meeting *m, brunt_facing *f, bool list) {
+    const brunt_skin *s = m->skin;
+    const double by = f->made_range + MARGIN * s->mean_edge;
+    for (int k = 0; k < s->fem_count; k++) {
+        if (f->near_first[f->box_of[k] + 1] == f->near_first[f->box_of[k]]) continue;
+        for (int32_t face = s->face_range[k]; face < s->face_range[k + 1]; face++) {
+            double low[3], high[3];
+            int32_t from[3], to[3];
+            face_bounds(s, face, low, high);
+            if (!brunt_facing_in_reach(f, f->box_of[k], low, high, 2 * by)) continue;
+            cell_range(f, low, high, by, from, to);
+            for (int32_t x = from[0]; x <= to[0]; x++)
+                for (int32_t y = from[1]; y <= to[1]; y++)
+                    for (int32_t z = from[2]; z <= to[2]; z++) {
+                        size_t cell = ((size_t)x * (size_t)f->n[1] + (size_t)y) * (size_t)f->n[2] + (size_t)z;
+                        if (list) f->cell_face[f->cell_first[cell + 1]++] = face;
+                        else f->cell_first[cell + 2]++;
+                    }
+        }
+    }
+}
+
+// The room that pairs share, cut into cells; few enough that making them costs no more than the facets do.
+static void lay_cells(const brunt_meeting *m, brunt_facing *f) {
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (int32_t p = 0; p < f->near_count; p++) {
+        const bounds *a = &f->box[f->near[p].a], *b = &f->box[f->near[p].b];
+        for (int k = 0; k < 3; k++) {
+            low[k] = fmin(low[k], fmax(a->low[k], b->low[k]) - 3 * f->made_range);
+            high[k] = fmax(high[k], fmin(a->high[k], b->high[k]) + 3 * f->made_range);
+        }
+    }
+    const double most = 32.0 * m->skin->face_count + 4096;
+    f->cell = CELL * m->skin->mean_edge;
+    for (;; f->cell *= 1.25) {
+        double cells = 1;
+        for (int k = 0; k < 3; k++) cells *= floor((high[k] - low[k]) / f->cell) + 1;
+        if (cells <= most) break;
+    }
+    for (int k = 0; k < 3; k++) {
+        f->origin[k] = low[k];
+        f->n[k] = (int32_t)(floor((high[k] - low[k]) / f->cell) + 1);
+    }
+}
+
+static int make_cells(const brunt_meeting *m, brunt_facing *f) {
+    const brunt_skin *s = m->skin;
+    f->made_range = 1.25 * f->range;
+    lay_cells(m, f);
+    size_t cells = (size_t)f->n[0] * (size_t)f->n[1] * (size_t)f->n[2];
+    if (RESERVE(f, cell_first, cells + 3) || RESERVE(f, made_x, s->node_count + 1))
+        return -1;
+    memset(f->cell_first, 0, (cells + 3) * sizeof *f->cell_first);
+    visit_cells(m, f, false);
+    for (size_t c = 2; c <= cells + 1; c++) f->cell_first[c] += f->cell_first[c - 1];
+    if (RESERVE(f, cell_face, f->cell_first[cells + 1] + 1)) return -1;
+    visit_cells(m, f, true);
+    for (int k = 0; k < s->fem_count; k++) {
+        if (!s->active[k]) continue;
+        memcpy(f->made_x + s->node_range[k], s->x + s->node_range[k],
+               (size_t)(s->node_range[k + 1] - s->node_range[k]) * sizeof *s->x);
+    }
+    f->made = true;
+    return 0;
+}
+
+// Whether the cells still hold all that may be near: nothing has moved further than they allow, and the same bodies are near.
+static bool cells_hold(const brunt_meeting *m, const brunt_facing *f, uint64_t pairs) {
+    const brunt_skin *s = m->skin;
+    if (!f->made || f->made_near != f->near_count || f->made_pairs != pairs || f->range > f->made_range) return false;
+    const double most = MARGIN * s->mean_edge, square = most * most;
+    for (int k = 0; k < s->fem_count; k++) {
+        if (!s->active[k]) continue;
+        for (int32_t n = s->node_range[k]; n < s->node_range[k + 1]; n++) {
+            double d2 = 0;
+            for (int a = 0; a < 3; a++) d2 += (s->x[n][a] - f->made_x[n][a]) * (s->x[n][a] - f->made_x[n][a]);
+            if (d2 > square) return false;
+        }
+    }
+    return true;
+}
+
+// A number that differs when other bodies are near or active.
+static uint64_t pairs_key(const brunt_meeting *m, const brunt_facing *f) {
+    uint64_t key = 1469598103934665603ull;
+    for (int32_t p = 0; p < f->near_count; p++) {
+        uint64_t a = (uint64_t)f->box[f->near[p].a].body, b = (uint64_t)f->box[f->near[p].b].body;
+        uint64_t low = a < b ? a : b, high = a < b ? b : a;
+        key += (low * 1000003u + high + 1) * 0x9E3779B97F4A7C15ull;
+    }
+    for (int k = 0; k < m->skin->fem_count; k++) key += m->skin->active[k] ? (uint64_t)(k + 1) * 1099511628211ull : 0;
+    return key;
+}
+
+// ------------------------------------------------------------------------------------------ the nearest facet
+
+typedef struct tied {
+    brunt_closest at;
+    int32_t face;
+} tied;
+
+// Keeps `found` among the nearest of its body; nearest points that are equally near belong to facets that share an edge or a
+// corner there, and the one that most faces the place decides on which side of the surface it is.
+typedef struct nearest {
+    int32_t body, count;
+    double square, root; // of the distance; a little more than its root
+    tied tied[MAX_TIED];
+} nearest;
+
+static void keep(nearest *best, const brunt_closest *at, int32_t face) {
+    const double same = 1e-9 * best->square;
+    if (at->square < best->square - same) best->count = 0, best->square = at->square;
+    else if (at->square > best->square + same) return;
+    else if (at->square < best->square) best->square = at->square;
+    best->root = sqrt(best->square) * (1 + 1e-8);
+    if (best->count < MAX_TIED) best->tied[best->count++] = (tied){*at, face};
+}
+
+static const tied *most_facing(const nearest *best) {
+    const tied *chosen = NULL;
+    double most = -1;
+    for (int32_t k = 0; k < best->count; k++) {
+        double facing = best->tied[k].at.inside ? INFINITY : fabs(dot(best->tied[k].at.normal, best->tied[k].at.d));
+        if (facing > most || (facing == most && best->tied[k].face < chosen->face)) most = facing, chosen = &best->tied[k];
+    }
+    return chosen;
+}
+
+// A hit on facets that face the slave; beside an edge or a corner it must also face the way to them.
+static bool hit_facing(const brunt_skin *s, const nearest *best, const double *normal, hit *out) {
+    const tied *chosen = most_facing(best);
+    const brunt_closest *at = &chosen->at;
+    double height = dot(at->normal, at->d), distance = sqrt(at->square);
+    *out = (hit){.face = chosen->face, .triangle = at->triangle, .body = best->body, .gap = height};
+    memcpy(out->n, at->normal, sizeof out->n);
+    if (!at->inside && height >= 0 && distance > 1e-6 * sqrt(s->face_area[chosen->face])) {
+        out->gap = distance;
+        for (int a = 0; a < 3; a++) out->n[a] = at->d[a] / distance;
+    }
+    return !normal || -dot(out->n, normal) > OPPOSED;
+}
+
+// A hit on whatever facet is nearest, when the slave is behind it.
+static bool hit_behind(const nearest *best, const double *normal, hit *out) {
+    const tied *chosen = most_facing(best);
+    const brunt_closest *at = &chosen->at;
+    double height = dot(at->normal, at->d);
+    if (!(height < 0) || -dot(at->normal, normal) <= ASKEW) return false;
+    *out = (hit){.face = chosen->face, .triangle = at->triangle, .body = best->body, .gap = height};
+    memcpy(out->n, at->normal, sizeof out->n);
+    return true;
+}
+
+static int64_t cell_of(const brunt_facing *f, const double x[3]) {
+    int64_t cell = 0;
+    for (int a = 0; a < 3; a++) {
+        double c = floor((x[a] - f->origin[a]) / f->cell);
+        if (!(c >= 0) || c >= f->n[a]) return -1;
+        cell = cell * f->n[a] + (int64_t)c;
+    }
+    return cell;
+}
+
+static bool near_box(const double box[6], const double x[3], double by) {
+    return x[0] >= box[0] - by && x[0] <= box[3] + by && x[1] >= box[1] - by && x[1] <= box[4] + by &&
+           x[2] >= box[2] - by && x[2] <= box[5] + by;
+}
+
+
+static bool within(const bounds *box, const double x[3], double by) {
+    for (int a = 0; a < 3; a++)
+        if (x[a] < box->low[a] - by || x[a] > box->high[a] + by) return false;
+    return true;
+}
+
+bool brunt_facing_look(const brunt_facing *f, looker *l) {
+    l->touches = l->enters = 0;
+    for (int32_t q = f->near_first[l->box]; q < f->near_first[l->box + 1] && l->touches < BRUNT_MAX_NEAR; q++) {
+        const bounds *other = &f->box[f->near_list[q]];
+        if (other->fem < 0 || !within(other, l->x, f->range)) continue;
+        l->touch[l->touches++] = other->body;
+        if (within(other, l->x, 0)) l->enter[l->enters++] = other->body;
+    }
+    l->cell = l->touches ? cell_of(f, l->x) : -1;
+    return l->cell >= 0;
+}
+
+static bool is_among(int32_t body, const int32_t *list, int32_t count) {
+    for (int32_t k = 0; k < count; k++)
+        if (list[k] == body) return true;
+    return false;
+}
+
+// The two nearest facets of all, whichever way they face.
+typedef struct two_nearest {
+    int32_t face;
+    double first, second; // squares of their distances
+} two_nearest;
+
+// The nearest facets in a cell of each body in `list`, among those that face `normal` by more than `least`. How many bodies.
+// `guess`: a face that may well be the nearest, -1; it saves looking closely at most others. `all`: also notes the two nearest
+// facets of any direction, as far as `slack` beyond the nearest; may be NULL.
+static int find_nearest(const brunt_meeting *m, const brunt_facing *f, const looker *l, const double *normal, double least,
+                        const int32_t *list, int32_t count, int32_t guess, double slack, two_nearest *all,
+                        nearest best[BRUNT_MAX_HITS]) {
+    const brunt_skin *s = m->skin;
+    const double range2 = f->range * f->range;
+    double bound = INFINITY; // of the one body that the guess belongs to
+    brunt_closest guessed;
+    if (guess >= 0) guessed = brunt_closest_on_face(s, guess, l->x), bound = sqrt(guessed.square) * (1 + 1e-8);
+    int bodies = 0;
+    if (all) *all = (two_nearest){-1, range2, range2};
+    for (int32_t q = f->cell_first[l->cell]; q < f->cell_first[l->cell + 1]; q++) {
+        const int32_t face = f->cell_face[q], other = s->face_body[face];
+        if (other == l->body) continue;
+        int b = 0;
+        while (b < bodies && best[b].body != other) b++;
+        double reach = b < bodies ? best[b].root : f->range;
+        if (guess >= 0 && bound < reach && s->face_body[guess] == other) reach = bound;
+        if (!near_box(s->face_box[face], l->x, reach + slack)) continue;
+        const bool faces = !normal || -dot(s->face_normal[face], normal) > least;
+        if ((!faces && !all) || !is_among(other, list, count)) continue;
+        brunt_closest at = face == guess ? guessed : brunt_closest_on_face(s, face, l->x);
+        if (at.square > range2) continue;
+        if (all && at.square < all->first) all->second = all->first, all->first = at.square, all->face = face;
+        else if (all && at.square < all->second) all->second = at.square;
+        if (!faces) continue;
+        if (b == bodies) {
+            if (b == BRUNT_MAX_HITS) continue;
+            best[b].body = other, best[b].count = 0, best[b].square = range2, best[b].root = f->range;
+            bodies++;
+        }
+        keep(&best[b], &at, face);
+    }
+    return bodies;
+}
+
+// What someone meets of each other body. Facets that face the slave come first: a node that slides in under a block meets its
+// underside, not the wall it came through. Only a slave that has none of those close by, and is inside, is sent out through the
+// nearest facet there is. Tells how far the nearest facet is, or how far was looked, and how far the nearest but the one hit.
+void brunt_facing_look_around(const brunt_meeting *m, const brunt_facing *f, const looker *l, int32_t guess, slave_hits *out,
+                        double *distance, double *second) {
+    const brunt_skin *s = m->skin;
+    nearest facing[BRUNT_MAX_HITS], any[BRUNT_MAX_HITS];
+    two_nearest two;
+    const double close = CLOSE * s->mean_edge, slack = SLACK * s->mean_edge;
+    out->count = 0;
+    if (guess >= 0 && (!is_among(s->face_body[guess], l->touch, l->touches) ||
+                       (l->normal && -dot(s->face_normal[guess], l->normal) <= OPPOSED)))
+        guess = -1;
+    int bodies = find_nearest(m, f, l, l->normal, OPPOSED, l->touch, l->touches, guess, slack, &two, facing), unresolved = 0;
+    int32_t entered[BRUNT_MAX_NEAR];
+    for (int32_t k = 0; l->normal && k < l->enters; k++) {
+        bool resolved = false;
+        for (int b = 0; b < bodies; b++)
+            resolved = resolved || (facing[b].body == l->enter[k] && facing[b].count && facing[b].square <= close * close);
+        if (!resolved) entered[unresolved++] = l->enter[k];
+    }
+    int all = unresolved ? find_nearest(m, f, l, NULL, 0, entered, unresolved, -1, 0, NULL, any) : 0;
+    for (int b = 0; b < all; b++) {
+        if (!any[b].count || !hit_behind(&any[b], l->normal, &out->hits[out->count])) continue;
+        out->count++;
+        for (int k = 0; k < bodies; k++)
+            if (facing[k].body == any[b].body) facing[k].count = 0;
+    }
+    // Whoever is before the nearest facet of all is outside, even if the nearest facet that faces him is seen from behind.
+    bool outside = false;
+    if (two.face >= 0) {
+        brunt_closest at = brunt_closest_on_face(s, two.face, l->x);
+        double height = dot(at.normal, at.d);
+        outside = height > 1e-6 * s->mean_edge && height > 0.1 * sqrt(at.square);
+    }
+    const bool plain = out->count == 0 && l->enters <= 1;
+    for (int b = 0; b < bodies && out->count < BRUNT_MAX_HITS; b++) {
+        hit *h = &out->hits[out->count];
+        if (!facing[b].count || !hit_facing(s, &facing[b], l->normal, h)) continue;
+        if (!(h->gap < 0 && outside && h->body == s->face_body[two.face])) out->count++;
+    }
+    *distance = outside || two.face < 0 ? fmin(f->range, sqrt(two.first)) : 0;
+    *second = 0;
+    if (plain && out->count == 1 && two.face == out->hits[0].face)
+        *second = fmin(fmin(f->range, sqrt(two.second)), *distance + slack) * (1 - 1e-8);
+}
+
+// The facet that was the nearest, when it is certain that it still is: it is nearer than `least`, which no other one is.
+bool brunt_facing_still_nearest(const brunt_meeting *m, const brunt_facing *f, int32_t n, const double *normal, double least,
+                          slave_hits *out) {
+    const brunt_skin *s = m->skin;
+    const int32_t face = f->last[n];
+    if (face < 0 || (normal && -dot(s->face_normal[face], normal) <= OPPOSED)) return false;
+    nearest one = {.body = s->face_body[face], .count = 1, .tied = {{brunt_closest_on_face(s, face, s->x[n]), face}}};
+    const double square = one.tied[0].at.square, close = CLOSE * s->mean_edge;
+    if (square >= least * least || square > close * close || square > f->range * f->range) return false;
+    out->count = hit_facing(s, &one, normal, &out->hits[0]) ? 1 : 0;
+    return true;
+}
+
+int brunt_facing_cells(const brunt_meeting *m, brunt_facing *f) {
+    uint64_t key = pairs_key(m, f);
+    if (cells_hold(m, f, key)) return 0;
+    if (make_cells(m, f)) return -1;
+    f->made_near = f->near_count, f->made_pairs = key;
+    return 0;
+}
