@@ -91,6 +91,8 @@ run build -LE long
 check "installed library" sh tests/install.sh build
 check "benchmark of passes" build/bench/bench_passes --quick
 check "benchmark of materials" build/bench/bench_materials --quick
+check "benchmark of elements" build/bench/bench_elements --quick
+check "study of contact" build/bench/contact_study cubes h=1
 check "build in single precision" build float && run build-float -L '^unit$' -LE long
 check "build without vectors" build scalar --target test_lanes test_materials &&
     run build-scalar -R '^(test_lanes|test_materials)$'
