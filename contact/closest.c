@@ -28,12 +28,18 @@ static void on_triangle(const double *const p[3], const double x[3], double d[3]
     const double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
     double v = 0, w = 0;
     *inside = false;
-    if (d1 <= 0 && d2 <= 0) v = w = 0;
-    else if (d3 >= 0 && d4 <= d3) v = 1, w = 0;
-    else if (d6 >= 0 && d5 <= d6) v = 0, w = 1;
-    else if (vc <= 0 && d1 >= 0 && d3 <= 0) v = d1 / (d1 - d3), w = 0;
-    else if (vb <= 0 && d2 >= 0 && d6 <= 0) v = 0, w = d2 / (d2 - d6);
-    else if (va <= 0 && d4 >= d3 && d5 >= d6) w = (d4 - d3) / ((d4 - d3) + (d5 - d6)), v = 1 - w;
+    if (d1 <= 0 && d2 <= 0)
+        v = w = 0;
+    else if (d3 >= 0 && d4 <= d3)
+        v = 1, w = 0;
+    else if (d6 >= 0 && d5 <= d6)
+        v = 0, w = 1;
+    else if (vc <= 0 && d1 >= 0 && d3 <= 0)
+        v = d1 / (d1 - d3), w = 0;
+    else if (vb <= 0 && d2 >= 0 && d6 <= 0)
+        v = 0, w = d2 / (d2 - d6);
+    else if (va <= 0 && d4 >= d3 && d5 >= d6)
+        w = (d4 - d3) / ((d4 - d3) + (d5 - d6)), v = 1 - w;
     else {
         const double sum = va + vb + vc;
         v = vb / sum, w = vc / sum;
@@ -95,7 +101,8 @@ brunt_closest brunt_closest_on_face(const brunt_skin *s, int32_t face, const dou
         best.square = dot(best.d, best.d);
         return best;
     }
-    // Of a quadrilateral's four triangles the one whose sector x is in settles it, unless the nearest point is on its rim.
+    // Of a quadrilateral's four triangles the one whose sector x is in settles it, unless the nearest point is on its
+    // rim.
     const int triangles = node[3] < 0 ? 1 : 4, first = triangles == 4 ? sector(s, face, x) : 0;
     for (int k = 0; k < triangles && !(k == 1 && best.inside); k++) {
         const int t = (first + k) % triangles;
@@ -133,7 +140,8 @@ static void triangle_weights(const double e[3], const double g[3], const double 
 
 static void spread(const int32_t node[4], int triangle, double w0, double w1, double w2, double weight[4]) {
     const int i = triangle, j = node[3] < 0 ? 1 : (triangle + 1) % 4;
-    for (int c = 0; c < 4; c++) weight[c] = node[3] < 0 ? (c == 2 ? w2 : 0) : 0.25 * w2; // the centre is the mean of the four
+    for (int c = 0; c < 4; c++)
+        weight[c] = node[3] < 0 ? (c == 2 ? w2 : 0) : 0.25 * w2; // the centre is the mean of the four
     weight[i] += w0, weight[j] += w1;
 }
 

@@ -4,17 +4,17 @@
 #include "skin.h"
 
 typedef struct brunt_closest {
-    double d[3];        // [m] from the nearest point to the place asked for
-    double square;      // d . d
-    double normal[3];   // outward unit normal of the facet there
-    bool inside;        // the nearest point is no edge and no corner of the facet
-    int triangle;       // of a quadrilateral: which of its four triangles about the centre; else 0
+    double d[3];      // [m] from the nearest point to the place asked for
+    double square;    // d . d
+    double normal[3]; // outward unit normal of the facet there
+    bool inside;      // the nearest point is no edge and no corner of the facet
+    int triangle;     // of a quadrilateral: which of its four triangles about the centre; else 0
 } brunt_closest;
 
 brunt_closest brunt_closest_on_face(const brunt_skin *skin, int32_t face, const double x[3]);
 // Weights of the facet's nodes where x projects onto its plane, alone.
 void brunt_face_values(const brunt_skin *skin, int32_t face, int triangle, const double x[3], double weight[4]);
-// Weights of the facet's nodes where x projects onto its plane (they may be outside 0..1), their gradients along the plane, and
-// the distance of x from it. Of a quadrilateral: of the triangle found.
+// Weights of the facet's nodes where x projects onto its plane (they may be outside 0..1), their gradients along the
+// plane, and the distance of x from it. Of a quadrilateral: of the triangle found.
 void brunt_face_weights(const brunt_skin *skin, int32_t face, int triangle, const double x[3], double weight[4],
                         double gradient[4][3], double normal[3], double *height);

@@ -7,8 +7,8 @@
 
 enum { GRAIN = 64 };
 static const double SHALLOW = 0.02; // mean edges: depths that may be pushed out against a load
-static const double PUSH = 0.2;      // share of a penetration that is pushed out in a step ...
-static const double BOUNCE = 0.5;    // ... but no faster than this share of the approach, so that it adds no energy
+static const double PUSH = 0.2;     // share of a penetration that is pushed out in a step ...
+static const double BOUNCE = 0.5;   // ... but no faster than this share of the approach, so that it adds no energy
 
 // ------------------------------------------------------------------------------------------ boundary nodes
 
@@ -19,9 +19,10 @@ typedef struct job {
     int32_t entry_base, point_base;
 } job;
 
-// Least velocity along the normal: to arrive at the surface, not past it. What is behind it is pushed out, but no faster than half
-// as fast as it came, by which no impact gains energy. What rests comes anew each step, as the load brings it: pushing that out
-// does work, and is only done over the small depths that unfinished sweeps leave; deeper ones wait until they part by themselves.
+// Least velocity along the normal: to arrive at the surface, not past it. What is behind it is pushed out, but no
+// faster than half as fast as it came, by which no impact gains energy. What rests comes anew each step, as the load
+// brings it: pushing that out does work, and is only done over the small depths that unfinished sweeps leave; deeper
+// ones wait until they part by themselves.
 double brunt_facing_target(const brunt_skin *s, double gap, double approach, double before, double dt) {
     if (gap >= 0) return -gap / dt;
     double came = gap > -SHALLOW * s->mean_edge ? approach : before;
@@ -36,7 +37,6 @@ static double approach_of(const brunt_skin *s, const hit *h, const double x[3], 
     return along;
 }
 
-
 static void find_node(const job *j, int k, int32_t n) {
     const brunt_meeting *m = j->m;
     brunt_facing *f = j->f;
@@ -47,7 +47,8 @@ static void find_node(const job *j, int k, int32_t n) {
     struct quiet *quiet = &f->quiet[n];
     const double since = f->travelled - quiet->travelled;
     if (quiet->distance - since > f->reach) return;
-    if (!(since < quiet->second && brunt_facing_still_nearest(m, f, n, faces ? normal : NULL, quiet->second - since, found))) {
+    if (!(since < quiet->second &&
+          brunt_facing_still_nearest(m, f, n, faces ? normal : NULL, quiet->second - since, found))) {
         looker l = {.box = f->box_of[k], .body = s->body[n], .x = s->x[n], .normal = faces ? normal : NULL};
         quiet->travelled = f->travelled, quiet->distance = f->range, quiet->second = 0;
         if (!brunt_facing_look(f, &l)) {
@@ -55,7 +56,8 @@ static void find_node(const job *j, int k, int32_t n) {
             return;
         }
         brunt_facing_look_around(m, f, &l, f->last[n], found, &quiet->distance, &quiet->second);
-        if (l.touches == BRUNT_MAX_NEAR) quiet->distance = quiet->second = 0; // there may be more bodies than were looked at
+        if (l.touches == BRUNT_MAX_NEAR)
+            quiet->distance = quiet->second = 0; // there may be more bodies than were looked at
         if (found->count) f->last[n] = found->hits[0].face;
     }
     int32_t kept = 0;
@@ -64,9 +66,9 @@ static void find_node(const job *j, int k, int32_t n) {
         if (h->gap > f->reach) continue;
         s->gap[n] = fmin(s->gap[n], h->gap);
         double approach = approach_of(s, h, s->x[n], s->v[n], s->v);
-        h->target = brunt_facing_target(s, h->gap, approach, h->gap < 0 ? approach_of(s, h, s->x[n], s->old[n], s->old) : 0, m->dt);
-        if (approach < h->target + 1e-6 * s->mean_edge / m->dt)
-            f->hits[BRUNT_MAX_HITS * n + kept++] = *h;
+        h->target = brunt_facing_target(s, h->gap, approach,
+                                        h->gap < 0 ? approach_of(s, h, s->x[n], s->old[n], s->old) : 0, m->dt);
+        if (approach < h->target + 1e-6 * s->mean_edge / m->dt) f->hits[BRUNT_MAX_HITS * n + kept++] = *h;
     }
     f->found[n] = (uint8_t)kept;
 }
@@ -83,7 +85,6 @@ static void find_nodes(void *context, int64_t begin, int64_t end, int worker) {
         if (s->active[k] && f->near_first[f->box_of[k] + 1] > f->near_first[f->box_of[k]]) find_node(j, k, n);
     }
 }
-
 
 static void fill_point(const brunt_meeting *m, const hit *h, const double x[3], int body, brunt_contact_point *point) {
     brunt_pair *pair = &m->pairs[m->pair_of[body * m->body_count + h->body]];
@@ -260,9 +261,11 @@ static int add_particles(const brunt_meeting *m, brunt_facing *f, brunt_body *bo
     brunt_particles *p = &body->particles;
     const int dim = grid->dim;
     const size_t nodes = (size_t)grid->slot_count * BRUNT_BLOCK_NODES;
-    if (brunt_reserve((void **)&f->node_support[k], &f->node_support_capacity[k], nodes * sizeof(int32_t), 0)) return -1;
+    if (brunt_reserve((void **)&f->node_support[k], &f->node_support_capacity[k], nodes * sizeof(int32_t), 0))
+        return -1;
     memset(f->node_support[k], 0, nodes * sizeof(int32_t));
-    real *const *place = brunt_field(p, BRUNT_FIELD_position), *const *F = brunt_field(p, BRUNT_FIELD_deformation_gradient);
+    real *const *place = brunt_field(p, BRUNT_FIELD_position), *const *F =
+                                                                   brunt_field(p, BRUNT_FIELD_deformation_gradient);
     const real *reach = brunt_field(p, BRUNT_FIELD_reach)[0];
     for (int32_t b = 0; b < grid->block_count; b++) {
         double low[3] = {0}, high[3] = {0};
@@ -322,8 +325,10 @@ static void note_state(brunt_skin *s, const brunt_contact_points *points) {
         const brunt_contact_point *p = &points->point[k];
         if (p->tag < 0 || !(p->push > 0)) continue;
         bool slips = p->slips || !(p->friction > 0);
-        if (slips) s->state[p->tag] = 2;
-        else if (!s->state[p->tag]) s->state[p->tag] = 1;
+        if (slips)
+            s->state[p->tag] = 2;
+        else if (!s->state[p->tag])
+            s->state[p->tag] = 1;
     }
 }
 

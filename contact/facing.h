@@ -1,10 +1,11 @@
-// Augury, affine form: who faces whom. Every boundary node of a finite-element body, and every particle near one, looks into the
-// cell of the contact grid it is in, finds the nearest point of the facets opposite, and becomes a contact point there when it
-// would pass it within the step. Gap, velocity and reaction come from the same facet (points.h), so nothing is smeared over a
-// cell: contact closes at zero gap, edges and corners keep their place, and nothing acts on what does not touch.
+// Augury, affine form: who faces whom. Every boundary node of a finite-element body, and every particle near one, looks
+// into the cell of the contact grid it is in, finds the nearest point of the facets opposite, and becomes a contact
+// point there when it would pass it within the step. Gap, velocity and reaction come from the same facet (points.h), so
+// nothing is smeared over a cell: contact closes at zero gap, edges and corners keep their place, and nothing acts on
+// what does not touch.
 //
-// The grid only finds: cells hold the facets within reach of them. It is made anew when the facets have moved by the margin it
-// was made with; what is found does not depend on it, so its cell size, and a restart, change no bit.
+// The grid only finds: cells hold the facets within reach of them. It is made anew when the facets have moved by the
+// margin it was made with; what is found does not depend on it, so its cell size, and a restart, change no bit.
 #pragma once
 
 #include "points.h"
@@ -12,21 +13,23 @@
 
 typedef struct brunt_facing brunt_facing;
 
-// Marks in skin->active which bodies have another one, or a wall (planes of brunt_walls with condition separate and others),
-// near; call after brunt_skin_bounds, before brunt_skin_take. 0, or -1: out of memory.
+// Marks in skin->active which bodies have another one, or a wall (planes of brunt_walls with condition separate and
+// others), near; call after brunt_skin_bounds, before brunt_skin_take. 0, or -1: out of memory.
 int brunt_facing_near(const brunt_meeting *m, brunt_body *mpm, int mpm_count, const brunt_wall *walls, int wall_count,
                       double time, brunt_facing **facing);
 // Adds the contact points of this step.
 int brunt_facing_find(const brunt_meeting *m, brunt_body *mpm, int mpm_count, brunt_facing *facing,
                       brunt_contact_points *points);
-// Adds what walls that push (condition separate) do to boundary nodes, and applies those that hold (stick, slip, symmetry).
+// Adds what walls that push (condition separate) do to boundary nodes, and applies those that hold (stick, slip,
+// symmetry).
 int brunt_facing_walls(const brunt_meeting *m, brunt_wall *walls, int wall_count, double time, brunt_facing *facing,
                        brunt_contact_points *points);
 // After the solution: velocities back to the skin and to the grids' nodes, contact state to the skin.
 void brunt_facing_finish(const brunt_meeting *m, brunt_body *mpm, brunt_facing *facing,
                          const brunt_contact_points *points);
-// What is remembered from step to step only saves work; but where two facets are equally near it may settle which one is taken,
-// so that a run that goes on needs it. So many doubles; copied out; and in, before the first step (0, or -1: out of memory).
+// What is remembered from step to step only saves work; but where two facets are equally near it may settle which one
+// is taken, so that a run that goes on needs it. So many doubles; copied out; and in, before the first step (0, or -1:
+// out of memory).
 int64_t brunt_facing_state_count(const brunt_skin *skin);
 void brunt_facing_state_get(const brunt_facing *facing, const brunt_skin *skin, double *out);
 int brunt_facing_state_set(brunt_facing **facing, brunt_skin *skin, int mpm_count, const double *in);

@@ -34,8 +34,8 @@ typedef struct near_pair {
 } near_pair;
 
 struct brunt_facing {
-    double range; // [m] how far a body looks for others in this step ...
-    double reach; // ... and how far anything moves towards anything ...
+    double range;      // [m] how far a body looks for others in this step ...
+    double reach;      // ... and how far anything moves towards anything ...
     double wall_reach; // ... and towards a wall
     bounds *box;
     size_t box_capacity;
@@ -66,14 +66,14 @@ struct brunt_facing {
     size_t hits_capacity;
     int32_t *last; // of each skin node: the face it was nearest to, to look at first; -1
     size_t last_capacity;
-    // How far from everything each skin node was when it was looked at, and how far things had moved then: until they have moved
-    // that far again, it touches nothing and need not be looked at.
+    // How far from everything each skin node was when it was looked at, and how far things had moved then: until they
+    // have moved that far again, it touches nothing and need not be looked at.
     struct quiet {
         double distance, travelled;
         double second; // of the nearest facet but `last`: until then that one stays the nearest
-    } *quiet;
+    } * quiet;
     size_t quiet_capacity;
-    double travelled; // [m] twice the furthest motion of each step, summed
+    double travelled;    // [m] twice the furthest motion of each step, summed
     int32_t *support_of; // of each skin node: support, -1
     size_t support_of_capacity;
     int32_t *first_point;
@@ -86,12 +86,13 @@ struct brunt_facing {
         int32_t mpm;
         int64_t node;
         int32_t support;
-    } *grid;
+    } * grid;
     size_t grid_capacity;
     int32_t grid_count;
 };
 
-#define RESERVE(f, what, count) brunt_reserve((void **)&(f)->what, &(f)->what##_capacity, (size_t)(count) * sizeof *(f)->what, 0)
+#define RESERVE(f, what, count)                                                                                        \
+    brunt_reserve((void **)&(f)->what, &(f)->what##_capacity, (size_t)(count) * sizeof *(f)->what, 0)
 
 // Someone who looks around: which bodies may be touched (their boxes are that near), and which may have been entered.
 typedef struct looker {
@@ -101,7 +102,9 @@ typedef struct looker {
     int32_t touch[BRUNT_MAX_NEAR], touches, enter[BRUNT_MAX_NEAR], enters;
 } looker;
 
-static inline int face_corners(const brunt_skin *s, int32_t face) { return s->face[face][2] < 0 ? 2 : s->face[face][3] < 0 ? 3 : 4; }
+static inline int face_corners(const brunt_skin *s, int32_t face) {
+    return s->face[face][2] < 0 ? 2 : s->face[face][3] < 0 ? 3 : 4;
+}
 
 // --- facing_near.c
 double brunt_facing_plane_distance(const brunt_plane_def *plane, double time, const double x[3]);
@@ -114,10 +117,10 @@ int brunt_facing_cells(const brunt_meeting *m, brunt_facing *f);
 bool brunt_facing_in_reach(const brunt_facing *f, int32_t box, const double low[3], const double high[3], double by);
 // Fills the bodies a looker may touch or have entered; whether there are facets to look at.
 bool brunt_facing_look(const brunt_facing *f, looker *l);
-void brunt_facing_look_around(const brunt_meeting *m, const brunt_facing *f, const looker *l, int32_t guess, slave_hits *out,
-                              double *distance, double *second);
-bool brunt_facing_still_nearest(const brunt_meeting *m, const brunt_facing *f, int32_t n, const double *normal, double least,
-                                slave_hits *out);
+void brunt_facing_look_around(const brunt_meeting *m, const brunt_facing *f, const looker *l, int32_t guess,
+                              slave_hits *out, double *distance, double *second);
+bool brunt_facing_still_nearest(const brunt_meeting *m, const brunt_facing *f, int32_t n, const double *normal,
+                                double least, slave_hits *out);
 
 // --- facing.c
 double brunt_facing_target(const brunt_skin *s, double gap, double approach, double before, double dt);

@@ -6,20 +6,26 @@
 #include "particles.h"
 #include "transfer.h"
 
-static const double RANGE = 0.25;    // mean edges: how far a body looks for others, if nothing moves faster
+static const double RANGE = 0.25; // mean edges: how far a body looks for others, if nothing moves faster
 
 void brunt_facing_free(brunt_facing *f) {
     if (!f) return;
     for (int k = 0; k < f->mpm_count; k++) brunt_free(f->node_support[k]);
-    void *owned[] = {f->box,       f->near,       f->box_of,      f->near_first, f->near_list,   f->cell_first,
-                     f->cell_face, f->made_x,     f->found,      f->hits,         f->last,         f->quiet,        f->support_of,  f->first_point,
-                     f->node_support, f->node_support_capacity, f->grid, f};
+    void *owned[] = {f->box,          f->near,
+                     f->box_of,       f->near_first,
+                     f->near_list,    f->cell_first,
+                     f->cell_face,    f->made_x,
+                     f->found,        f->hits,
+                     f->last,         f->quiet,
+                     f->support_of,   f->first_point,
+                     f->node_support, f->node_support_capacity,
+                     f->grid,         f};
     for (size_t k = 0; k < sizeof owned / sizeof owned[0]; k++) brunt_free(owned[k]);
 }
 
 size_t brunt_facing_bytes(const brunt_facing *f) {
-    return f ? f->box_capacity + f->near_capacity + f->cell_first_capacity + f->cell_face_capacity + f->made_x_capacity +
-                   f->quiet_capacity + f->found_capacity + f->support_of_capacity
+    return f ? f->box_capacity + f->near_capacity + f->cell_first_capacity + f->cell_face_capacity +
+                   f->made_x_capacity + f->quiet_capacity + f->found_capacity + f->support_of_capacity
              : 0;
 }
 
@@ -27,7 +33,8 @@ size_t brunt_facing_bytes(const brunt_facing *f) {
 
 static void bound_grid(const brunt_body *body, bounds *box) {
     const brunt_grid *grid = &body->grid;
-    for (int a = 0; a < 3; a++) box->low[a] = a < grid->dim ? INFINITY : 0, box->high[a] = a < grid->dim ? -INFINITY : 0;
+    for (int a = 0; a < 3; a++)
+        box->low[a] = a < grid->dim ? INFINITY : 0, box->high[a] = a < grid->dim ? -INFINITY : 0;
     for (int32_t b = 0; b < grid->block_count; b++)
         for (int a = 0; a < grid->dim; a++) {
             double low = grid->origin[a] + (double)grid->h * grid->blocks[b].coord[a] * grid->side;
@@ -128,7 +135,8 @@ void brunt_facing_state_get(const brunt_facing *f, const brunt_skin *s, double *
     for (int k = 0; k < s->fem_count; k++) *out++ = s->was_active[k];
     for (int32_t n = 0; n < s->node_count; n++, out += 7) {
         out[0] = f ? f->last[n] : -1;
-        out[1] = f ? f->quiet[n].distance : 0, out[2] = f ? f->quiet[n].travelled : 0, out[3] = f ? f->quiet[n].second : 0;
+        out[1] = f ? f->quiet[n].distance : 0, out[2] = f ? f->quiet[n].travelled : 0,
+        out[3] = f ? f->quiet[n].second : 0;
         for (int a = 0; a < 3; a++) out[4 + a] = s->x[n][a];
     }
 }
@@ -157,11 +165,13 @@ int brunt_facing_near(const brunt_meeting *m, brunt_body *mpm, int mpm_count, co
     const double frame = sqrt(dot(s->frame, s->frame));
     for (int k = 0; k < mpm_count; k++) {
         spacing = fmax(spacing, mpm[k].spacing);
-        for (int32_t b = 0; b < mpm[k].grid.block_count; b++) fastest = fmax(fastest, (double)mpm[k].report[b].speed + frame);
+        for (int32_t b = 0; b < mpm[k].grid.block_count; b++)
+            fastest = fmax(fastest, (double)mpm[k].report[b].speed + frame);
     }
     double walls_speed = 0;
     for (int w = 0; w < wall_count; w++)
-        if (!walls[w].region) walls_speed = fmax(walls_speed, sqrt(dot(walls[w].plane.velocity, walls[w].plane.velocity)));
+        if (!walls[w].region)
+            walls_speed = fmax(walls_speed, sqrt(dot(walls[w].plane.velocity, walls[w].plane.velocity)));
     f->wall_reach = (fastest + frame + walls_speed) * m->dt;
     f->reach = 2 * fastest * m->dt + spacing;
     f->range = fmax(fmax(RANGE * s->mean_edge + spacing, f->reach), m->look);
@@ -169,7 +179,8 @@ int brunt_facing_near(const brunt_meeting *m, brunt_body *mpm, int mpm_count, co
     for (int k = 0; k < s->fem_count; k++) {
         int32_t box = f->box_of[k];
         s->active[k] = f->near_first[box + 1] > f->near_first[box];
-        for (int w = 0; w < wall_count && !s->active[k]; w++) s->active[k] = brunt_facing_near_wall(s, k, &walls[w], time, f->wall_reach + 1e-6 * s->mean_edge);
+        for (int w = 0; w < wall_count && !s->active[k]; w++)
+            s->active[k] = brunt_facing_near_wall(s, k, &walls[w], time, f->wall_reach + 1e-6 * s->mean_edge);
     }
     f->grid_count = 0;
     if (RESERVE(f, support_of, s->node_count + 1)) return -1;

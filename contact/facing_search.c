@@ -4,11 +4,11 @@
 #include "closest.h"
 
 enum { MAX_TIED = 16 };
-static const double MARGIN = 0.125;  // mean edges: how far facets may move before the cells are made anew
-static const double CELL = 0.5;      // mean edges: of the cells that facets are found in
-static const double OPPOSED = 0.1;   // least cosine between a slave's outward normal and the one into the master
-static const double ASKEW = -0.3;    // ... or, where nothing opposed is within ...
-static const double CLOSE = 0.25;    // ... so many mean edges, the least one with the normal of a facet
+static const double MARGIN = 0.125; // mean edges: how far facets may move before the cells are made anew
+static const double CELL = 0.5;     // mean edges: of the cells that facets are found in
+static const double OPPOSED = 0.1;  // least cosine between a slave's outward normal and the one into the master
+static const double ASKEW = -0.3;   // ... or, where nothing opposed is within ...
+static const double CLOSE = 0.25;   // ... so many mean edges, the least one with the normal of a facet
 static const double SLACK = 0.125;  // mean edges: facets so much further than the nearest are looked at closely, too
 
 // ------------------------------------------------------------------------------------------ cells of facets
@@ -57,8 +57,10 @@ static void visit_cells(const brunt_meeting *m, brunt_facing *f, bool list) {
                 for (int32_t y = from[1]; y <= to[1]; y++)
                     for (int32_t z = from[2]; z <= to[2]; z++) {
                         size_t cell = ((size_t)x * (size_t)f->n[1] + (size_t)y) * (size_t)f->n[2] + (size_t)z;
-                        if (list) f->cell_face[f->cell_first[cell + 1]++] = face;
-                        else f->cell_first[cell + 2]++;
+                        if (list)
+                            f->cell_face[f->cell_first[cell + 1]++] = face;
+                        else
+                            f->cell_first[cell + 2]++;
                     }
         }
     }
@@ -92,8 +94,7 @@ static int make_cells(const brunt_meeting *m, brunt_facing *f) {
     f->made_range = 1.25 * f->range;
     lay_cells(m, f);
     size_t cells = (size_t)f->n[0] * (size_t)f->n[1] * (size_t)f->n[2];
-    if (RESERVE(f, cell_first, cells + 3) || RESERVE(f, made_x, s->node_count + 1))
-        return -1;
+    if (RESERVE(f, cell_first, cells + 3) || RESERVE(f, made_x, s->node_count + 1)) return -1;
     memset(f->cell_first, 0, (cells + 3) * sizeof *f->cell_first);
     visit_cells(m, f, false);
     for (size_t c = 2; c <= cells + 1; c++) f->cell_first[c] += f->cell_first[c - 1];
@@ -108,7 +109,8 @@ static int make_cells(const brunt_meeting *m, brunt_facing *f) {
     return 0;
 }
 
-// Whether the cells still hold all that may be near: nothing has moved further than they allow, and the same bodies are near.
+// Whether the cells still hold all that may be near: nothing has moved further than they allow, and the same bodies are
+// near.
 static bool cells_hold(const brunt_meeting *m, const brunt_facing *f, uint64_t pairs) {
     const brunt_skin *s = m->skin;
     if (!f->made || f->made_near != f->near_count || f->made_pairs != pairs || f->range > f->made_range) return false;
@@ -143,8 +145,8 @@ typedef struct tied {
     int32_t face;
 } tied;
 
-// Keeps `found` among the nearest of its body; nearest points that are equally near belong to facets that share an edge or a
-// corner there, and the one that most faces the place decides on which side of the surface it is.
+// Keeps `found` among the nearest of its body; nearest points that are equally near belong to facets that share an edge
+// or a corner there, and the one that most faces the place decides on which side of the surface it is.
 typedef struct nearest {
     int32_t body, count;
     double square, root; // of the distance; a little more than its root
@@ -153,9 +155,12 @@ typedef struct nearest {
 
 static void keep(nearest *best, const brunt_closest *at, int32_t face) {
     const double same = 1e-9 * best->square;
-    if (at->square < best->square - same) best->count = 0, best->square = at->square;
-    else if (at->square > best->square + same) return;
-    else if (at->square < best->square) best->square = at->square;
+    if (at->square < best->square - same)
+        best->count = 0, best->square = at->square;
+    else if (at->square > best->square + same)
+        return;
+    else if (at->square < best->square)
+        best->square = at->square;
     best->root = sqrt(best->square) * (1 + 1e-8);
     if (best->count < MAX_TIED) best->tied[best->count++] = (tied){*at, face};
 }
@@ -165,7 +170,8 @@ static const tied *most_facing(const nearest *best) {
     double most = -1;
     for (int32_t k = 0; k < best->count; k++) {
         double facing = best->tied[k].at.inside ? INFINITY : fabs(dot(best->tied[k].at.normal, best->tied[k].at.d));
-        if (facing > most || (facing == most && best->tied[k].face < chosen->face)) most = facing, chosen = &best->tied[k];
+        if (facing > most || (facing == most && best->tied[k].face < chosen->face))
+            most = facing, chosen = &best->tied[k];
     }
     return chosen;
 }
@@ -210,7 +216,6 @@ static bool near_box(const double box[6], const double x[3], double by) {
            x[2] >= box[2] - by && x[2] <= box[5] + by;
 }
 
-
 static bool within(const bounds *box, const double x[3], double by) {
     for (int a = 0; a < 3; a++)
         if (x[a] < box->low[a] - by || x[a] > box->high[a] + by) return false;
@@ -241,11 +246,11 @@ typedef struct two_nearest {
     double first, second; // squares of their distances
 } two_nearest;
 
-// The nearest facets in a cell of each body in `list`, among those that face `normal` by more than `least`. How many bodies.
-// `guess`: a face that may well be the nearest, -1; it saves looking closely at most others. `all`: also notes the two nearest
-// facets of any direction, as far as `slack` beyond the nearest; may be NULL.
-static int find_nearest(const brunt_meeting *m, const brunt_facing *f, const looker *l, const double *normal, double least,
-                        const int32_t *list, int32_t count, int32_t guess, double slack, two_nearest *all,
+// The nearest facets in a cell of each body in `list`, among those that face `normal` by more than `least`. How many
+// bodies. `guess`: a face that may well be the nearest, -1; it saves looking closely at most others. `all`: also notes
+// the two nearest facets of any direction, as far as `slack` beyond the nearest; may be NULL.
+static int find_nearest(const brunt_meeting *m, const brunt_facing *f, const looker *l, const double *normal,
+                        double least, const int32_t *list, int32_t count, int32_t guess, double slack, two_nearest *all,
                         nearest best[BRUNT_MAX_HITS]) {
     const brunt_skin *s = m->skin;
     const double range2 = f->range * f->range;
@@ -266,8 +271,10 @@ static int find_nearest(const brunt_meeting *m, const brunt_facing *f, const loo
         if ((!faces && !all) || !is_among(other, list, count)) continue;
         brunt_closest at = face == guess ? guessed : brunt_closest_on_face(s, face, l->x);
         if (at.square > range2) continue;
-        if (all && at.square < all->first) all->second = all->first, all->first = at.square, all->face = face;
-        else if (all && at.square < all->second) all->second = at.square;
+        if (all && at.square < all->first)
+            all->second = all->first, all->first = at.square, all->face = face;
+        else if (all && at.square < all->second)
+            all->second = at.square;
         if (!faces) continue;
         if (b == bodies) {
             if (b == BRUNT_MAX_HITS) continue;
@@ -279,11 +286,12 @@ static int find_nearest(const brunt_meeting *m, const brunt_facing *f, const loo
     return bodies;
 }
 
-// What someone meets of each other body. Facets that face the slave come first: a node that slides in under a block meets its
-// underside, not the wall it came through. Only a slave that has none of those close by, and is inside, is sent out through the
-// nearest facet there is. Tells how far the nearest facet is, or how far was looked, and how far the nearest but the one hit.
-void brunt_facing_look_around(const brunt_meeting *m, const brunt_facing *f, const looker *l, int32_t guess, slave_hits *out,
-                        double *distance, double *second) {
+// What someone meets of each other body. Facets that face the slave come first: a node that slides in under a block
+// meets its underside, not the wall it came through. Only a slave that has none of those close by, and is inside, is
+// sent out through the nearest facet there is. Tells how far the nearest facet is, or how far was looked, and how far
+// the nearest but the one hit.
+void brunt_facing_look_around(const brunt_meeting *m, const brunt_facing *f, const looker *l, int32_t guess,
+                              slave_hits *out, double *distance, double *second) {
     const brunt_skin *s = m->skin;
     nearest facing[BRUNT_MAX_HITS], any[BRUNT_MAX_HITS];
     two_nearest two;
@@ -292,12 +300,14 @@ void brunt_facing_look_around(const brunt_meeting *m, const brunt_facing *f, con
     if (guess >= 0 && (!is_among(s->face_body[guess], l->touch, l->touches) ||
                        (l->normal && -dot(s->face_normal[guess], l->normal) <= OPPOSED)))
         guess = -1;
-    int bodies = find_nearest(m, f, l, l->normal, OPPOSED, l->touch, l->touches, guess, slack, &two, facing), unresolved = 0;
+    int bodies = find_nearest(m, f, l, l->normal, OPPOSED, l->touch, l->touches, guess, slack, &two, facing),
+        unresolved = 0;
     int32_t entered[BRUNT_MAX_NEAR];
     for (int32_t k = 0; l->normal && k < l->enters; k++) {
         bool resolved = false;
         for (int b = 0; b < bodies; b++)
-            resolved = resolved || (facing[b].body == l->enter[k] && facing[b].count && facing[b].square <= close * close);
+            resolved =
+                resolved || (facing[b].body == l->enter[k] && facing[b].count && facing[b].square <= close * close);
         if (!resolved) entered[unresolved++] = l->enter[k];
     }
     int all = unresolved ? find_nearest(m, f, l, NULL, 0, entered, unresolved, -1, 0, NULL, any) : 0;
@@ -307,7 +317,8 @@ void brunt_facing_look_around(const brunt_meeting *m, const brunt_facing *f, con
         for (int k = 0; k < bodies; k++)
             if (facing[k].body == any[b].body) facing[k].count = 0;
     }
-    // Whoever is before the nearest facet of all is outside, even if the nearest facet that faces him is seen from behind.
+    // Whoever is before the nearest facet of all is outside, even if the nearest facet that faces him is seen from
+    // behind.
     bool outside = false;
     if (two.face >= 0) {
         brunt_closest at = brunt_closest_on_face(s, two.face, l->x);
@@ -326,9 +337,10 @@ void brunt_facing_look_around(const brunt_meeting *m, const brunt_facing *f, con
         *second = fmin(fmin(f->range, sqrt(two.second)), *distance + slack) * (1 - 1e-8);
 }
 
-// The facet that was the nearest, when it is certain that it still is: it is nearer than `least`, which no other one is.
-bool brunt_facing_still_nearest(const brunt_meeting *m, const brunt_facing *f, int32_t n, const double *normal, double least,
-                          slave_hits *out) {
+// The facet that was the nearest, when it is certain that it still is: it is nearer than `least`, which no other one
+// is.
+bool brunt_facing_still_nearest(const brunt_meeting *m, const brunt_facing *f, int32_t n, const double *normal,
+                                double least, slave_hits *out) {
     const brunt_skin *s = m->skin;
     const int32_t face = f->last[n];
     if (face < 0 || (normal && -dot(s->face_normal[face], normal) <= OPPOSED)) return false;

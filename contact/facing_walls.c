@@ -62,8 +62,10 @@ int brunt_facing_walls(const brunt_meeting *m, brunt_wall *walls, int wall_count
                 }
                 double along = 0;
                 for (int a = 0; a < 3; a++) along += wall->plane.normal[a] * (s->v[n][a] - wall->plane.velocity[a]);
-                if (gap <= on) hold(s, n, wall, 0, condition == BRUNT_STICK);
-                else if (gap + along * m->dt < 0) hold(s, n, wall, -gap / m->dt, condition == BRUNT_STICK);
+                if (gap <= on)
+                    hold(s, n, wall, 0, condition == BRUNT_STICK);
+                else if (gap + along * m->dt < 0)
+                    hold(s, n, wall, -gap / m->dt, condition == BRUNT_STICK);
             }
         }
     }

@@ -72,7 +72,8 @@ static void give(const brunt_contact_point *point, const brunt_contact_entry *en
 
 // Entries by support, in the order of the points.
 static int transpose(brunt_contact_points *p) {
-    size_t entries = (size_t)p->entry_count + 1, supports = (size_t)p->support_count + 1, points = (size_t)p->point_count + 1;
+    size_t entries = (size_t)p->entry_count + 1, supports = (size_t)p->support_count + 1,
+           points = (size_t)p->point_count + 1;
     if (brunt_reserve((void **)&p->pressing, &p->pressing_capacity, entries * sizeof *p->pressing, 0) ||
         brunt_reserve((void **)&p->pressing_first, &p->pressing_first_capacity, (supports + 1) * sizeof(int32_t), 0) ||
         brunt_reserve((void **)&p->given, &p->given_capacity, points * sizeof *p->given, 0) ||
@@ -87,8 +88,8 @@ static int transpose(brunt_contact_points *p) {
         memcpy(p->given[k].facet, point->facet, sizeof point->facet);
         for (int32_t e = point->first; e < point->first + point->count; e++) {
             const brunt_contact_entry *entry = &p->entry[e];
-            p->pressing[first[entry->support + 1]++] = (struct brunt_pressing){
-                k, entry->weight, {entry->turn[0], entry->turn[1], entry->turn[2]}};
+            p->pressing[first[entry->support + 1]++] =
+                (struct brunt_pressing){k, entry->weight, {entry->turn[0], entry->turn[1], entry->turn[2]}};
         }
     }
     return 0;
@@ -181,8 +182,7 @@ static void visit_points(void *context, int64_t begin, int64_t end, int worker) 
     brunt_contact_points *p = context;
     for (int64_t c = begin; c < end; c++) {
         double most = 0;
-        for (int32_t k = (int32_t)c * GRAIN; k < (c + 1) * GRAIN && k < p->point_count; k++)
-            {
+        for (int32_t k = (int32_t)c * GRAIN; k < (c + 1) * GRAIN && k < p->point_count; k++) {
             double changed = visit(p, &p->point[k], p->given[k].impulse);
             most = changed > most ? changed : most;
         }

@@ -3,47 +3,48 @@
 // A support is a velocity that impulses change: a node of a mesh, or of a grid. A point ties a slave, a weighted sum of
 // supports, to a master: a plane that moves as it likes, or a facet of a body, extended affinely:
 //   u = sum_s w_s v_s - sum_k [ beta_k v_k - height (n_f . v_k) grad beta_k ]
-// beta_k are the facet's weights where the slave projects onto its plane, height its distance from the plane, n_f the facet's
-// normal: the velocity of the material plane as it moves, turns and stretches, seen at the slave. The reaction goes back by the
-// transpose. As u is 0 for every rigid motion of both, any impulse leaves linear and angular momentum alone, to round-off.
+// beta_k are the facet's weights where the slave projects onto its plane, height its distance from the plane, n_f the
+// facet's normal: the velocity of the material plane as it moves, turns and stretches, seen at the slave. The reaction
+// goes back by the transpose. As u is 0 for every rigid motion of both, any impulse leaves linear and angular momentum
+// alone, to round-off.
 //
-// All points of a step together must satisfy: u_n >= target, push >= 0, one of them 0; drag within the Coulomb cone and against
-// what is left of slip. Solved by projected Jacobi sweeps: a point's correction is scaled by its row sum of the coupling matrix
-// (in units of its own effective mass), so that a uniform approach is met in one sweep and no sweep can add energy. Neither the
-// order of points nor the number of threads changes a bit.
+// All points of a step together must satisfy: u_n >= target, push >= 0, one of them 0; drag within the Coulomb cone and
+// against what is left of slip. Solved by projected Jacobi sweeps: a point's correction is scaled by its row sum of the
+// coupling matrix (in units of its own effective mass), so that a uniform approach is met in one sweep and no sweep can
+// add energy. Neither the order of points nor the number of threads changes a bit.
 #pragma once
 
 #include "contact.h"
 
 typedef struct brunt_support {
-    double v[3], old[3];   // [m/s] now; before the forces of this step
-    double inverse[3];     // [1/kg] by component; 0: infinite mass
-    double impulse[3];     // [N s] received in all
-    double load;           // [kg] sum of |weight| effective mass of the points on it
+    double v[3], old[3]; // [m/s] now; before the forces of this step
+    double inverse[3];   // [1/kg] by component; 0: infinite mass
+    double impulse[3];   // [N s] received in all
+    double load;         // [kg] sum of |weight| effective mass of the points on it
 } brunt_support;
 
 typedef struct brunt_contact_entry {
     int32_t support;
-    double weight;         // w_s of a slave; -beta_k of a master
-    double turn[3];        // 0 of a slave; height grad beta_k of a master
+    double weight;  // w_s of a slave; -beta_k of a master
+    double turn[3]; // 0 of a slave; height grad beta_k of a master
 } brunt_contact_entry;
 
 typedef struct brunt_contact_point {
-    int32_t first, count;  // entries
-    double x[3];           // [m] where
-    double n[3];           // out of the master, unit
-    double facet[3];       // n_f: normal of the master's facet; unused for planes
-    double gap;            // [m] before the step
-    double target;         // [m/s] least u_n
+    int32_t first, count; // entries
+    double x[3];          // [m] where
+    double n[3];          // out of the master, unit
+    double facet[3];      // n_f: normal of the master's facet; unused for planes
+    double gap;           // [m] before the step
+    double target;        // [m/s] least u_n
     double friction;
-    double plane[3];       // [m/s] velocity of the master when it is a plane; 0 for facets
-    brunt_action *action;  // where the point is booked: impulse on the slave times `sign`
+    double plane[3];      // [m/s] velocity of the master when it is a plane; 0 for facets
+    brunt_action *action; // where the point is booked: impulse on the slave times `sign`
     double sign;
-    double area;           // [m^2] it stands for in the action's area
-    int32_t tag;           // the caller's
+    double area; // [m^2] it stands for in the action's area
+    int32_t tag; // the caller's
     // solution
     double scale, response, response_t; // [kg] effective mass alone; [-] row sums in units of it
-    double push, drag[3];  // [N s]
+    double push, drag[3];               // [N s]
     bool slips;
 } brunt_contact_point;
 
@@ -57,18 +58,18 @@ typedef struct brunt_contact_points {
     brunt_support *support;
     size_t support_capacity;
     int32_t support_count;
-    // Which points press on a support: copies of their entries by support, in the order of the points, with what the sweep gives
-    // beside the facet it turns with, so that a sweep reads little more than it uses.
+    // Which points press on a support: copies of their entries by support, in the order of the points, with what the
+    // sweep gives beside the facet it turns with, so that a sweep reads little more than it uses.
     struct brunt_pressing {
         int32_t point;
         double weight, turn[3];
-    } *pressing;
+    } * pressing;
     size_t pressing_capacity;
     int32_t *pressing_first;
     size_t pressing_first_capacity;
     struct brunt_given {
         double impulse[3], facet[3];
-    } *given; // of each point
+    } * given; // of each point
     size_t given_capacity;
     double *changed; // [m/s] of each chunk of points: greatest correction of the sweep
     size_t changed_capacity;

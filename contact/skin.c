@@ -26,7 +26,8 @@ static int32_t number_nodes(const brunt_fem_body *fem, const brunt_faces *faces,
 
 static int allocate(brunt_skin *s) {
     size_t n = (size_t)s->node_count + 1, f = (size_t)s->face_count + 1;
-    s->x = brunt_alloc(n * sizeof *s->x), s->v = brunt_alloc(n * sizeof *s->v), s->old = brunt_alloc(n * sizeof *s->old);
+    s->x = brunt_alloc(n * sizeof *s->x), s->v = brunt_alloc(n * sizeof *s->v),
+    s->old = brunt_alloc(n * sizeof *s->old);
     s->mass = brunt_alloc(n * sizeof *s->mass), s->inverse = brunt_alloc(n * sizeof *s->inverse);
     s->normal = brunt_alloc(n * sizeof *s->normal), s->area = brunt_alloc(n * sizeof *s->area);
     s->gap = brunt_alloc(n * sizeof *s->gap), s->impulse = brunt_alloc(n * sizeof *s->impulse);
@@ -36,8 +37,9 @@ static int allocate(brunt_skin *s) {
     s->face_area = brunt_alloc(f * sizeof *s->face_area), s->face_box = brunt_alloc(f * sizeof *s->face_box);
     s->face_first = brunt_alloc((n + 1) * sizeof *s->face_first);
     s->face_of = brunt_alloc(4 * f * sizeof *s->face_of);
-    return s->x && s->v && s->old && s->mass && s->inverse && s->normal && s->area && s->gap && s->impulse && s->state && s->chunk_moved &&
-                   s->face_normal && s->face_centre && s->face_area && s->face_box && s->face_first && s->face_of
+    return s->x && s->v && s->old && s->mass && s->inverse && s->normal && s->area && s->gap && s->impulse &&
+                   s->state && s->chunk_moved && s->face_normal && s->face_centre && s->face_area && s->face_box &&
+                   s->face_first && s->face_of
                ? 0
                : -1;
 }
@@ -75,9 +77,11 @@ static int add_body(brunt_skin *s, int k, size_t *nodes, size_t *faces, size_t *
     int32_t *number = brunt_alloc((size_t)(fem->node_count + 1) * sizeof *number);
     int32_t count = number ? number_nodes(fem, &found, s->node_count, number) : -1;
     size_t n = (size_t)s->node_count + (size_t)(count > 0 ? count : 0), f = (size_t)(s->face_count + found.count);
-    bool failed = count < 0 || brunt_reserve((void **)&s->node, nodes, (n + 1) * sizeof *s->node, (size_t)s->node_count * sizeof *s->node) ||
-                  brunt_reserve((void **)&s->body, owners, (n + 1) * sizeof *s->body, (size_t)s->node_count * sizeof *s->body) ||
-                  brunt_reserve((void **)&s->face, faces, (f + 1) * sizeof *s->face, (size_t)s->face_count * sizeof *s->face);
+    bool failed =
+        count < 0 ||
+        brunt_reserve((void **)&s->node, nodes, (n + 1) * sizeof *s->node, (size_t)s->node_count * sizeof *s->node) ||
+        brunt_reserve((void **)&s->body, owners, (n + 1) * sizeof *s->body, (size_t)s->node_count * sizeof *s->body) ||
+        brunt_reserve((void **)&s->face, faces, (f + 1) * sizeof *s->face, (size_t)s->face_count * sizeof *s->face);
     for (int32_t i = 0; !failed && i < fem->node_count; i++)
         if (number[i] >= 0) s->node[number[i]] = i, s->body[number[i]] = fem->index;
     for (int32_t i = 0; !failed && i < found.count; i++)
@@ -98,7 +102,8 @@ int brunt_skin_make(brunt_skin *s, brunt_fem_body **fem, int count, bool affine)
     s->low = brunt_alloc(k1 * sizeof *s->low), s->high = brunt_alloc(k1 * sizeof *s->high);
     s->mean = brunt_alloc(k1 * sizeof *s->mean), s->speed = brunt_alloc(k1 * sizeof *s->speed);
     s->active = brunt_alloc(k1), s->was_active = brunt_alloc(k1);
-    if (!s->fem || !s->node_range || !s->face_range || !s->low || !s->high || !s->active || !s->was_active || !s->mean || !s->speed)
+    if (!s->fem || !s->node_range || !s->face_range || !s->low || !s->high || !s->active || !s->was_active ||
+        !s->mean || !s->speed)
         return -1;
     for (int k = 0; k < count; k++) {
         s->fem[k] = fem[k];
@@ -118,9 +123,12 @@ int brunt_skin_make(brunt_skin *s, brunt_fem_body **fem, int count, bool affine)
 }
 
 void brunt_skin_free(brunt_skin *s) {
-    void *owned[] = {s->fem, s->node_range, s->face_range, s->low, s->high, s->active, s->node, s->body, s->face,
-                     s->face_body, s->x, s->v, s->old, s->mass, s->inverse, s->normal, s->area, s->gap, s->impulse,
-                     s->state, s->face_normal, s->face_centre, s->face_area, s->face_box, s->was_active, s->chunk_moved, s->mean, s->speed, s->face_first, s->face_of, s->affine};
+    void *owned[] = {s->fem,        s->node_range,  s->face_range,  s->low,         s->high,       s->active,
+                     s->node,       s->body,        s->face,        s->face_body,   s->x,          s->v,
+                     s->old,        s->mass,        s->inverse,     s->normal,      s->area,       s->gap,
+                     s->impulse,    s->state,       s->face_normal, s->face_centre, s->face_area,  s->face_box,
+                     s->was_active, s->chunk_moved, s->mean,        s->speed,       s->face_first, s->face_of,
+                     s->affine};
     for (size_t k = 0; k < sizeof owned / sizeof owned[0]; k++) brunt_free(owned[k]);
     *s = (brunt_skin){0};
 }
@@ -222,7 +230,8 @@ static void make_faces(void *context, int64_t begin, int64_t end, int worker) {
         const int32_t *node = s->face[f];
         const int n = corners(node);
         double normal[3] = {0}, size = 0;
-        const double *p = s->x[node[0]], *q = s->x[node[1]], *r = n > 2 ? s->x[node[2]] : p, *t = n > 3 ? s->x[node[3]] : p;
+        const double *p = s->x[node[0]], *q = s->x[node[1]], *r = n > 2 ? s->x[node[2]] : p,
+                     *t = n > 3 ? s->x[node[3]] : p;
         double e[3], g[3];
         for (int a = 0; a < 3; a++) {
             e[a] = n > 3 ? r[a] - p[a] : q[a] - p[a];

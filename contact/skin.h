@@ -1,5 +1,5 @@
-// The surfaces of all finite-element bodies as contact sees them in one step: boundary nodes and faces, one numbering for the
-// whole world, in the order of the bodies.
+// The surfaces of all finite-element bodies as contact sees them in one step: boundary nodes and faces, one numbering
+// for the whole world, in the order of the bodies.
 //
 // The methods change `v`, never the bodies: the velocities are taken from the bodies before and given back after.
 #pragma once
@@ -10,40 +10,42 @@
 typedef struct brunt_skin {
     int dim;
     int32_t node_count, face_count;
-    int32_t *body, *node;    // of each node: index of its body (brunt_fem_body.index), node number there
-    double (*x)[3];          // [m] at the start of the step
-    double (*v)[3];          // [m/s] after all forces; what contact changes
-    double (*old)[3];        // [m/s] before the forces: works and losses are taken at the mean of this and the final v
-    double *mass;            // [kg]
-    double (*inverse)[3];    // [1/kg] by component: 0 where the motion is prescribed, which is infinite mass
-    double (*normal)[3];     // outward, of unit length: mean of its faces by area; 0 where they cancel
-    double *area;            // [m^2] of the surface that is the node's
-    double (*affine)[9];     // [m^2/s] B of the paper's form, kept from step to step; NULL for the others
-    int32_t (*face)[4];      // nodes; the 4th is -1 for triangles, 3rd and 4th for segments (2D)
+    int32_t *body, *node; // of each node: index of its body (brunt_fem_body.index), node number there
+    double (*x)[3];       // [m] at the start of the step
+    double (*v)[3];       // [m/s] after all forces; what contact changes
+    double (*old)[3];     // [m/s] before the forces: works and losses are taken at the mean of this and the final v
+    double *mass;         // [kg]
+    double (*inverse)[3]; // [1/kg] by component: 0 where the motion is prescribed, which is infinite mass
+    double (*normal)[3];  // outward, of unit length: mean of its faces by area; 0 where they cancel
+    double *area;         // [m^2] of the surface that is the node's
+    double (*affine)[9];  // [m^2/s] B of the paper's form, kept from step to step; NULL for the others
+    int32_t (*face)[4];   // nodes; the 4th is -1 for triangles, 3rd and 4th for segments (2D)
     int32_t *face_body;
-    double (*face_normal)[3];  // outward unit normal ...
-    double (*face_centre)[3];  // ... and centre, at the start of the step
-    double *face_area;         // [m^2]; 2D [m]
-    double (*face_box)[6];     // [m] bounds: low, then high
-    double mean_edge;          // [m] of all faces at the start of the run
-    int32_t *face_first, *face_of;  // faces of node n: face_of[face_first[n] .. face_first[n + 1])
+    double (*face_normal)[3];      // outward unit normal ...
+    double (*face_centre)[3];      // ... and centre, at the start of the step
+    double *face_area;             // [m^2]; 2D [m]
+    double (*face_box)[6];         // [m] bounds: low, then high
+    double mean_edge;              // [m] of all faces at the start of the run
+    int32_t *face_first, *face_of; // faces of node n: face_of[face_first[n] .. face_first[n + 1])
     int fem_count;
-    brunt_fem_body **fem;      // the bodies, in their order; body k has nodes node_range[k] .. node_range[k + 1], faces likewise
+    brunt_fem_body *
+        *fem; // the bodies, in their order; body k has nodes node_range[k] .. node_range[k + 1], faces likewise
     int32_t *node_range, *face_range;
-    double (*low)[3], (*high)[3];  // [m] bounds of each body's surface
-    // Motion is measured against a frame that moves along with the bodies, which leaves what counts: theirs against each other.
+    double (*low)[3], (*high)[3]; // [m] bounds of each body's surface
+    // Motion is measured against a frame that moves along with the bodies, which leaves what counts: theirs against
+    // each other.
     double frame[3];           // [m/s] mean velocity of all surfaces, a step ago
     double frame_step[3];      // [m] how far it went in the last step
     double (*mean)[3], *speed; // [m/s] of each body: mean velocity, greatest against the frame
-    double moved;              // [m] furthest any node has moved against it since it was taken last; INFINITY when bodies
-                               // became active
+    double moved; // [m] furthest any node has moved against it since it was taken last; INFINITY when bodies
+                  // became active
     bool *was_active;
     double *chunk_moved;
-    bool *active;              // of each body: something is near it; x, v, normals are only made for these
+    bool *active; // of each body: something is near it; x, v, normals are only made for these
     // Contact state of the step, for output: greatest gap below which something acted, impulse, slip. Zeroed each step.
-    double *gap;             // [m] of the nearest contact; INFINITY where none is near
-    double (*impulse)[3];    // [N s] on the node
-    uint8_t *state;          // 0 free, 1 sticks, 2 slips
+    double *gap;          // [m] of the nearest contact; INFINITY where none is near
+    double (*impulse)[3]; // [N s] on the node
+    uint8_t *state;       // 0 free, 1 sticks, 2 slips
 } brunt_skin;
 
 // The surfaces of `count` bodies. `affine`: keep B. 0, or -1: out of memory.
@@ -51,7 +53,8 @@ int brunt_skin_make(brunt_skin *skin, brunt_fem_body **fem, int count, bool affi
 void brunt_skin_free(brunt_skin *skin);
 // Bounds and speeds of every body's surface as it is now.
 void brunt_skin_bounds(brunt_skin *skin, int threads, double *seconds);
-// Places, velocities, masses and normals of the active bodies. `gravity` [m/s^2] and `dt` are those of this step's kick.
+// Places, velocities, masses and normals of the active bodies. `gravity` [m/s^2] and `dt` are those of this step's
+// kick.
 void brunt_skin_take(brunt_skin *skin, double dt, const double gravity[3], int threads, double *seconds);
 // Velocities of the active bodies back to them, which then move for `dt`.
 void brunt_skin_give(brunt_skin *skin, double dt, int threads, double *seconds);
@@ -60,12 +63,12 @@ void brunt_skin_give(brunt_skin *skin, double dt, int threads, double *seconds);
 typedef struct brunt_meeting {
     brunt_skin *skin;
     brunt_pair *pairs;
-    const int32_t *pair_of;  // [a * body_count + b], -1: the two do not meet
+    const int32_t *pair_of; // [a * body_count + b], -1: the two do not meet
     int body_count;
-    double dt, cell;         // [s], [m] of the contact grid
-    int iterations;          // sweeps, or augury iterations of the paper's form
-    double look;             // [m] bodies are near from twice this distance on, at least
+    double dt, cell; // [s], [m] of the contact grid
+    int iterations;  // sweeps, or augury iterations of the paper's form
+    double look;     // [m] bodies are near from twice this distance on, at least
     int64_t step;
     int threads;
-    double *seconds;         // of each thread
+    double *seconds; // of each thread
 } brunt_meeting;

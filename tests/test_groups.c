@@ -1,5 +1,6 @@
 // Labels: verification conservation
-// Named groups of nodes: prescribed motion, traction, pressure, and the planes that hold meshes. Closed forms and the ledger.
+// Named groups of nodes: prescribed motion, traction, pressure, and the planes that hold meshes. Closed forms and the
+// ledger.
 #include "def_world.h"
 
 static const double E = 1e6, NU = 0.3, DENSITY = 1000;
@@ -15,7 +16,8 @@ static brunt_world_def bar(int dimension, brunt_element_kind kind) {
     return def;
 }
 
-static brunt_group_def *group(brunt_world_def *def, const char *name, brunt_group_action action, double x, double y, double z) {
+static brunt_group_def *group(brunt_world_def *def, const char *name, brunt_group_action action, double x, double y,
+                              double z) {
     brunt_group_def *g = &def->groups[def->group_count++];
     *g = brunt_group_def_default();
     snprintf(g->body, sizeof g->body, "bar");
@@ -33,10 +35,13 @@ static void check_ledger(brunt_world *world, double tolerance) {
     ck_assert_double_lt(m.angular_drift, ROUNDING);
 }
 
-static const struct { int dimension; brunt_element_kind kind; } kinds[] = {{3, BRUNT_TET4}, {3, BRUNT_HEX8}, {2, BRUNT_TRI3}, {2, BRUNT_QUAD4}};
+static const struct {
+    int dimension;
+    brunt_element_kind kind;
+} kinds[] = {{3, BRUNT_TET4}, {3, BRUNT_HEX8}, {2, BRUNT_TRI3}, {2, BRUNT_QUAD4}};
 
-// A traction on one end and its opposite on the other: equal acceleration of nothing, the bar swings about its static length
-// u = sigma L / E' (plane strain: E' = E / (1 - nu^2)), to which its mean over a period comes.
+// A traction on one end and its opposite on the other: equal acceleration of nothing, the bar swings about its static
+// length u = sigma L / E' (plane strain: E' = E / (1 - nu^2)), to which its mean over a period comes.
 START_TEST(traction_stretches) {
     brunt_world_def def = bar(kinds[_i].dimension, kinds[_i].kind);
     const double sigma = 1000;
@@ -57,7 +62,8 @@ START_TEST(traction_stretches) {
         free(x);
     }
     double stiffness = kinds[_i].dimension == 2 ? E / (1 - NU * NU) : E;
-    printf("traction, %s: stretch %.5f of sigma L / E\n", brunt_element_name(kinds[_i].kind), sum / (double)samples * stiffness / sigma);
+    printf("traction, %s: stretch %.5f of sigma L / E\n", brunt_element_name(kinds[_i].kind),
+           sum / (double)samples * stiffness / sigma);
     ck_assert_double_eq_tol(sum / (double)samples * stiffness / sigma, 1, 0.03);
     check_ledger(world, 1e-4);
     free(x0);
@@ -154,7 +160,9 @@ START_TEST(planes_hold) {
 END_TEST
 
 START_TEST(mistakes_are_said) {
-    static const struct { const char *body, *group, *says; } wrong[] = {
+    static const struct {
+        const char *body, *group, *says;
+    } wrong[] = {
         {"bar", "nose", "body 'bar' has no group 'nose'; it has: xmin, xmax"},
         {"car", "xmin", "there is no finite-element body 'car'"},
     };

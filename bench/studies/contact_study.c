@@ -45,16 +45,31 @@ static const char *word(int argc, char **argv, const char *key, const char *init
 }
 
 static settings read_settings(int argc, char **argv) {
-    settings s = {.h = number(argc, argv, "h", 0.5), .h2 = number(argc, argv, "h2", 0), .hg = number(argc, argv, "hg", NAN), .grid = number(argc, argv, "grid", 0), .mu = number(argc, argv, "mu", 0),
-                  .end = number(argc, argv, "end", 0), .speed = number(argc, argv, "speed", 1), .stiff = number(argc, argv, "stiff", 1),
-                  .e1 = number(argc, argv, "e1", 1), .r1 = number(argc, argv, "r1", 1), .dt = number(argc, argv, "dt", 1),
-                  .turn = number(argc, argv, "turn", 0), .shift = number(argc, argv, "shift", 0), .load = number(argc, argv, "load", 1),
-                  .ramp = number(argc, argv, "ramp", 0.2), .n = (int)number(argc, argv, "n", -1),
-                  .samples = (int)number(argc, argv, "samples", 60), .threads = (int)number(argc, argv, "threads", 1), .trace = (int)number(argc, argv, "trace", 0)};
+    settings s = {.h = number(argc, argv, "h", 0.5),
+                  .h2 = number(argc, argv, "h2", 0),
+                  .hg = number(argc, argv, "hg", NAN),
+                  .grid = number(argc, argv, "grid", 0),
+                  .mu = number(argc, argv, "mu", 0),
+                  .end = number(argc, argv, "end", 0),
+                  .speed = number(argc, argv, "speed", 1),
+                  .stiff = number(argc, argv, "stiff", 1),
+                  .e1 = number(argc, argv, "e1", 1),
+                  .r1 = number(argc, argv, "r1", 1),
+                  .dt = number(argc, argv, "dt", 1),
+                  .turn = number(argc, argv, "turn", 0),
+                  .shift = number(argc, argv, "shift", 0),
+                  .load = number(argc, argv, "load", 1),
+                  .ramp = number(argc, argv, "ramp", 0.2),
+                  .n = (int)number(argc, argv, "n", -1),
+                  .samples = (int)number(argc, argv, "samples", 60),
+                  .threads = (int)number(argc, argv, "threads", 1),
+                  .trace = (int)number(argc, argv, "trace", 0)};
     const char *form = word(argc, argv, "form", "affine");
     s.none = !strcmp(form, "none"), s.rigid = !strcmp(form, "rigid");
-    s.form = !strcmp(form, "smooth") ? BRUNT_AUGURY_SMOOTH : !strcmp(form, "surface") ? BRUNT_AUGURY_SURFACE
-             : !strcmp(form, "paper") ? BRUNT_AUGURY_PAPER : BRUNT_AUGURY_AFFINE;
+    s.form = !strcmp(form, "smooth")    ? BRUNT_AUGURY_SMOOTH
+             : !strcmp(form, "surface") ? BRUNT_AUGURY_SURFACE
+             : !strcmp(form, "paper")   ? BRUNT_AUGURY_PAPER
+                                        : BRUNT_AUGURY_AFFINE;
     s.transfer = !strcmp(word(argc, argv, "transfer", "apic"), "pic") ? BRUNT_PIC : BRUNT_APIC;
     s.element = !strcmp(word(argc, argv, "element", "tet4"), "hex8") ? BRUNT_HEX8 : BRUNT_TET4;
     return s;
@@ -95,7 +110,8 @@ static void material(brunt_world_def *def, double E, double nu, double density) 
     m->density = density;
 }
 
-static brunt_body_def *box(brunt_world_def *def, const settings *s, const char *name, const double low[3], const double high[3]) {
+static brunt_body_def *box(brunt_world_def *def, const settings *s, const char *name, const double low[3],
+                           const double high[3]) {
     brunt_body_def *b = &def->bodies[def->body_count];
     *b = brunt_body_def_default();
     snprintf(b->name, sizeof b->name, "%s", name);
@@ -117,7 +133,8 @@ static brunt_world_def cubes(const settings *s, const char *kind) {
     brunt_world_def def = begin(s, 2);
     material(&def, 1e8 * s->stiff * s->e1, 0.3, 2700 * s->r1);
     material(&def, 1e8 * s->stiff, 0.3, 2700);
-    const double low[3] = {-1.5, -1.5, -1.5}, high[3] = {1.5, 1.5, 1.5}, x[3] = {1, 0, 0}, y[3] = {0, 1, 0}, z[3] = {0, 0, 1}, o[3] = {0, 0, 0};
+    const double low[3] = {-1.5, -1.5, -1.5}, high[3] = {1.5, 1.5, 1.5}, x[3] = {1, 0, 0}, y[3] = {0, 1, 0},
+                 z[3] = {0, 0, 1}, o[3] = {0, 0, 0};
     brunt_body_def *a = box(&def, s, "a", low, high), *b = box(&def, s, "b", low, high);
     if (s->h2 > 0) b->size = s->h2;
     double up[3] = {0, 3.8, 0}, angle = 22 * M_PI / 180;
@@ -136,7 +153,8 @@ static brunt_world_def cubes(const settings *s, const char *kind) {
         brunt_body_def *body = k ? b : a;
         body->place = brunt_placement_rotate(body->place, y, s->turn * M_PI / 180, o);
         body->place = brunt_placement_translate(body->place, shift);
-        double c = cos(s->turn * M_PI / 180), w = sin(s->turn * M_PI / 180), u = body->velocity[0], v = body->velocity[2];
+        double c = cos(s->turn * M_PI / 180), w = sin(s->turn * M_PI / 180), u = body->velocity[0],
+               v = body->velocity[2];
         body->velocity[0] = c * u + w * v, body->velocity[2] = -w * u + c * v;
     }
     def.step = 1e-4 * (s->h2 > 0 ? fmin(s->h, s->h2) : s->h) * s->dt;
@@ -149,17 +167,22 @@ static void run_cubes(const settings *s, const char *kind) {
     brunt_world *world = brunt_world_create(&def, &error);
     if (!world) stop(kind, &error);
     brunt_gap_probe *probe = brunt_gap_probe_make(world);
-    double end = s->end > 0 ? s->end : 0.15 / s->speed, deepest = 0, closest = INFINITY, most = 0, from = brunt_clock(), measuring = 0;
+    double end = s->end > 0 ? s->end : 0.15 / s->speed, deepest = 0, closest = INFINITY, most = 0, from = brunt_clock(),
+           measuring = 0;
     brunt_energy energy;
     int status = BRUNT_OK;
     for (int k = 1; k <= s->samples && !status; k++) {
-        while (!status && brunt_world_time(world) < end * k / s->samples * (1 - 1e-12)) status = brunt_world_step(world, end * k / s->samples, &error);
+        while (!status && brunt_world_time(world) < end * k / s->samples * (1 - 1e-12))
+            status = brunt_world_step(world, end * k / s->samples, &error);
         double depth, distance, start = brunt_clock();
         brunt_gap_measure(probe, &depth, &distance);
         brunt_world_energy(world, &energy);
         deepest = fmax(deepest, depth), closest = fmin(closest, distance);
         most = fmax(most, (energy.kinetic + energy.internal + energy.hourglass) / energy.initial);
-        if (s->trace) printf("%g kinetic %.4f internal %.4f hourglass %.4f contact %.4f depth %.4fh\n", brunt_world_time(world), energy.kinetic / energy.initial, energy.internal / energy.initial, energy.hourglass / energy.initial, energy.contact / energy.initial, depth / s->h);
+        if (s->trace)
+            printf("%g kinetic %.4f internal %.4f hourglass %.4f contact %.4f depth %.4fh\n", brunt_world_time(world),
+                   energy.kinetic / energy.initial, energy.internal / energy.initial, energy.hourglass / energy.initial,
+                   energy.contact / energy.initial, depth / s->h);
         measuring += brunt_clock() - start;
     }
     brunt_momentum p;
@@ -168,10 +191,13 @@ static void run_cubes(const settings *s, const char *kind) {
     brunt_body_totals(world, 0, &a), brunt_body_totals(world, 1, &b);
     double depth, distance;
     brunt_gap_measure(probe, &depth, &distance);
-    printf("%s h=%g status=%d E/E0=%.4f max=%.4f contact=%.4f error=%.1e pen=%.4fh near=%.4fh now=%.2fh dP=%.1e dL=%.1e v=(%.2f %.2f %.2f) apart=%.2f steps=%lld wall=%.1f\n",
-           kind, s->h, status, (energy.kinetic + energy.internal + energy.hourglass) / energy.initial, most, energy.contact / energy.initial, energy.error_relative, deepest / s->h, closest / s->h, depth > 0 ? -depth / s->h : distance / s->h,
-           p.linear_drift, p.angular_drift, b.velocity[0] - a.velocity[0], b.velocity[1] - a.velocity[1], b.velocity[2] - a.velocity[2],
-           (b.velocity[1] - a.velocity[1]), (long long)brunt_world_steps(world), brunt_clock() - from - measuring);
+    printf("%s h=%g status=%d E/E0=%.4f max=%.4f contact=%.4f error=%.1e pen=%.4fh near=%.4fh now=%.2fh dP=%.1e "
+           "dL=%.1e v=(%.2f %.2f %.2f) apart=%.2f steps=%lld wall=%.1f\n",
+           kind, s->h, status, (energy.kinetic + energy.internal + energy.hourglass) / energy.initial, most,
+           energy.contact / energy.initial, energy.error_relative, deepest / s->h, closest / s->h,
+           depth > 0 ? -depth / s->h : distance / s->h, p.linear_drift, p.angular_drift, b.velocity[0] - a.velocity[0],
+           b.velocity[1] - a.velocity[1], b.velocity[2] - a.velocity[2], (b.velocity[1] - a.velocity[1]),
+           (long long)brunt_world_steps(world), brunt_clock() - from - measuring);
     if (status) printf("  %s\n", error.message);
     brunt_gap_probe_free(probe);
     brunt_world_destroy(world);
@@ -180,12 +206,14 @@ static void run_cubes(const settings *s, const char *kind) {
 
 // ------------------------------------------------------------------------------------------ ramp
 
-// A unit cube on a ramp of 30 degrees. The ramp lies level and gravity is turned, then all is turned about the vertical.
+// A unit cube on a ramp of 30 degrees. The ramp lies level and gravity is turned, then all is turned about the
+// vertical.
 static void run_ramp(const settings *s) {
     brunt_world_def def = begin(s, 2);
     material(&def, 1e10 * s->stiff, 0.3, 1e6);
     material(&def, 1e10 * s->stiff, 0.3, 1e6);
-    const double slope = M_PI / 6, g = 100 * s->load, low[3] = {-0.5, 0, -0.75}, high[3] = {3.5, 0.25, 0.75}, l2[3] = {0, 0.25, -0.5}, h2[3] = {1, 1.25, 0.5}, y[3] = {0, 1, 0}, o[3] = {0, 0, 0};
+    const double slope = M_PI / 6, g = 100 * s->load, low[3] = {-0.5, 0, -0.75}, high[3] = {3.5, 0.25, 0.75},
+                 l2[3] = {0, 0.25, -0.5}, h2[3] = {1, 1.25, 0.5}, y[3] = {0, 1, 0}, o[3] = {0, 0, 0};
     brunt_body_def *ramp = s->rigid ? NULL : box(&def, s, "ramp", low, high), *block = box(&def, s, "block", l2, h2);
     const double zaxis[3] = {0, 0, 1}, turn = s->turn * M_PI / 180;
     // Real slope: turned by -30 degrees about z, then about the vertical.
@@ -195,7 +223,8 @@ static void run_ramp(const settings *s) {
         b->place = brunt_placement_rotate(b->place, zaxis, -slope, o);
         b->place = brunt_placement_rotate(b->place, y, turn, o);
     }
-    if (!s->rigid) fix(&def, "ramp", "ymin");
+    if (!s->rigid)
+        fix(&def, "ramp", "ymin");
     else {
         brunt_plane_def *plane = &def.planes[def.plane_count++];
         *plane = brunt_plane_def_default();
@@ -218,7 +247,8 @@ static void run_ramp(const settings *s) {
     while (!status && brunt_world_time(world) < end * (1 - 1e-12)) status = brunt_world_step(world, end, &error);
     brunt_body_totals(world, 0, &now);
     // Gravity that grows linearly over T: sliding starts as it is; distance along the slope by the double integral.
-    double T = s->ramp, after = end - T, a = g * fmax(0, sin(slope) - s->mu * cos(slope)), exact = T > 0 ? a * (T * T / 6 + T / 2 * after + 0.5 * after * after) : 0.5 * a * end * end;
+    double T = s->ramp, after = end - T, a = g * fmax(0, sin(slope) - s->mu * cos(slope)),
+           exact = T > 0 ? a * (T * T / 6 + T / 2 * after + 0.5 * after * after) : 0.5 * a * end * end;
     double down[3] = {cos(slope) * cos(turn), -sin(slope), -cos(slope) * sin(turn)}, along = 0, side = 0;
     for (int k = 0; k < 3; k++) along += (now.centre[k] - start.centre[k]) * down[k];
     side = (now.centre[0] - start.centre[0]) * sin(turn) + (now.centre[2] - start.centre[2]) * cos(turn);
@@ -226,8 +256,10 @@ static void run_ramp(const settings *s) {
     double depth, distance;
     brunt_gap_measure(probe, &depth, &distance);
     brunt_gap_probe_free(probe);
-    printf("ramp h=%g mu=%g status=%d along=%.6f exact=%.6f error=%.3f%% diff=%.2e side=%.1e pen=%.4fh steps=%lld wall=%.1f\n", s->h, s->mu, status, along, exact,
-           exact > 0 ? 100 * (along / exact - 1) : 0, along - exact, side, depth / s->h, (long long)brunt_world_steps(world), brunt_clock() - from);
+    printf("ramp h=%g mu=%g status=%d along=%.6f exact=%.6f error=%.3f%% diff=%.2e side=%.1e pen=%.4fh steps=%lld "
+           "wall=%.1f\n",
+           s->h, s->mu, status, along, exact, exact > 0 ? 100 * (along / exact - 1) : 0, along - exact, side,
+           depth / s->h, (long long)brunt_world_steps(world), brunt_clock() - from);
     if (status) printf("  %s\n", error.message);
     brunt_world_destroy(world);
     brunt_world_def_free(&def);
@@ -266,7 +298,8 @@ static void run_stack(const settings *s) {
     int status = BRUNT_OK;
     for (int64_t k = 0; k < steps && !status; k++) {
         status = brunt_world_step(world, INFINITY, &error);
-        if (k == steps / 2) brunt_body_totals(world, 2, &late), brunt_pair_force(world, 0, &before), t0 = brunt_world_time(world);
+        if (k == steps / 2)
+            brunt_body_totals(world, 2, &late), brunt_pair_force(world, 0, &before), t0 = brunt_world_time(world);
         if (k % (steps / 20) == 0) {
             double depth, distance;
             brunt_gap_measure(probe, &depth, &distance);
@@ -277,9 +310,14 @@ static void run_stack(const settings *s) {
     double force = (after.impulse[1] - before.impulse[1]) / (brunt_world_time(world) - t0);
     double depth, distance;
     brunt_gap_measure(probe, &depth, &distance);
-    printf("stack h=%g mu=%g status=%d t=%.2f pen=%.5fh (max %.5fh) sink2nd=%.2ehh lateral=%.2eh lateral2nd=%.2eh KE/mgh=%.1e N/mg-1=%.1e steps=%lld wall=%.1f\n", s->h, s->mu, status, brunt_world_time(world), depth / s->h, deepest / s->h,
-           (now.centre[1] - late.centre[1]) / s->h, hypot(now.centre[0] - start.centre[0], now.centre[2] - start.centre[2]) / s->h, hypot(now.centre[0] - late.centre[0], now.centre[2] - late.centre[2]) / s->h,
-           now.kinetic / (now.mass * weight * s->h), force / (2 * now.mass * weight) - 1, (long long)brunt_world_steps(world), brunt_clock() - from);
+    printf("stack h=%g mu=%g status=%d t=%.2f pen=%.5fh (max %.5fh) sink2nd=%.2ehh lateral=%.2eh lateral2nd=%.2eh "
+           "KE/mgh=%.1e N/mg-1=%.1e steps=%lld wall=%.1f\n",
+           s->h, s->mu, status, brunt_world_time(world), depth / s->h, deepest / s->h,
+           (now.centre[1] - late.centre[1]) / s->h,
+           hypot(now.centre[0] - start.centre[0], now.centre[2] - start.centre[2]) / s->h,
+           hypot(now.centre[0] - late.centre[0], now.centre[2] - late.centre[2]) / s->h,
+           now.kinetic / (now.mass * weight * s->h), force / (2 * now.mass * weight) - 1,
+           (long long)brunt_world_steps(world), brunt_clock() - from);
     if (status) printf("  %s\n", error.message);
     brunt_gap_probe_free(probe);
     brunt_world_destroy(world);
@@ -294,10 +332,13 @@ static double pass_seconds(const brunt_world *world, const char *name) {
     return 0;
 }
 
-static void report_cost(const settings *s, const char *kind, brunt_world *world, double steps, double wall, double nodes) {
+static void report_cost(const settings *s, const char *kind, brunt_world *world, double steps, double wall,
+                        double nodes) {
     double elements = (double)brunt_world_elements(world), contact = pass_seconds(world, "surfaces");
-    printf("%s threads=%d bodies=%d elements=%.0f steps=%.0f dt=%.3e ns/element-step=%.1f contact: share=%.1f%% ns/surface-node-step=%.1f\n", kind, s->threads, (int)brunt_body_count(world), elements,
-           steps, brunt_world_dt(world), 1e9 * (wall - contact) / elements / steps, 100 * contact / wall, 1e9 * contact / nodes / steps);
+    printf("%s threads=%d bodies=%d elements=%.0f steps=%.0f dt=%.3e ns/element-step=%.1f contact: share=%.1f%% "
+           "ns/surface-node-step=%.1f\n",
+           kind, s->threads, (int)brunt_body_count(world), elements, steps, brunt_world_dt(world),
+           1e9 * (wall - contact) / elements / steps, 100 * contact / wall, 1e9 * contact / nodes / steps);
 }
 
 // Two plates of 140 x 140 x 6 hexahedra, one sliding on the other under pressure: 19,881 nodes a side in contact.
@@ -321,12 +362,15 @@ static void run_slide(const settings *s) {
     for (int k = 0; k < steps / 4 && !status; k++) status = brunt_world_step(world, INFINITY, &error);
     double before = pass_seconds(world, "surfaces"), from = brunt_clock();
     for (int k = 0; k < steps && !status; k++) status = brunt_world_step(world, INFINITY, &error);
-    double wall = brunt_clock() - from, contact = pass_seconds(world, "surfaces") - before, elements = (double)brunt_world_elements(world);
+    double wall = brunt_clock() - from, contact = pass_seconds(world, "surfaces") - before,
+           elements = (double)brunt_world_elements(world);
     brunt_force force;
     memset(&force, 0, sizeof force);
     if (brunt_pair_count(world)) brunt_pair_force(world, 0, &force);
-    printf("slide threads=%d elements=%.0f steps=%d dt=%.3e fem=%.1f ns/element-step contact share=%.1f%% %.1f ns/surface-node-step (both sides) area=%.0f status=%d\n", s->threads, elements, steps, brunt_world_dt(world),
-           1e9 * (wall - contact) / elements / steps, 100 * contact / wall, 1e9 * contact / (2.0 * (n + 1) * (n + 1)) / steps, force.area, status);
+    printf("slide threads=%d elements=%.0f steps=%d dt=%.3e fem=%.1f ns/element-step contact share=%.1f%% %.1f "
+           "ns/surface-node-step (both sides) area=%.0f status=%d\n",
+           s->threads, elements, steps, brunt_world_dt(world), 1e9 * (wall - contact) / elements / steps,
+           100 * contact / wall, 1e9 * contact / (2.0 * (n + 1) * (n + 1)) / steps, force.area, status);
     brunt_world_destroy(world);
     brunt_world_def_free(&def);
 }
@@ -365,10 +409,15 @@ static void run_crowd(const settings *s) {
 int main(int argc, char **argv) {
     if (argc < 2) return fprintf(stderr, "contact_study cubes|corner|face|ramp|stack|slide|crowd KEY=VALUE ...\n"), 64;
     settings s = read_settings(argc, argv);
-    if (!strcmp(argv[1], "ramp")) run_ramp(&s);
-    else if (!strcmp(argv[1], "stack")) run_stack(&s);
-    else if (!strcmp(argv[1], "slide")) run_slide(&s);
-    else if (!strcmp(argv[1], "crowd")) run_crowd(&s);
-    else run_cubes(&s, argv[1]);
+    if (!strcmp(argv[1], "ramp"))
+        run_ramp(&s);
+    else if (!strcmp(argv[1], "stack"))
+        run_stack(&s);
+    else if (!strcmp(argv[1], "slide"))
+        run_slide(&s);
+    else if (!strcmp(argv[1], "crowd"))
+        run_crowd(&s);
+    else
+        run_cubes(&s, argv[1]);
     return 0;
 }

@@ -1,5 +1,5 @@
-// The passes over finite-element bodies. Tasks are runs of nodes and blocks of elements of all bodies together, so that many
-// small bodies keep all threads busy as well as one large one does.
+// The passes over finite-element bodies. Tasks are runs of nodes and blocks of elements of all bodies together, so that
+// many small bodies keep all threads busy as well as one large one does.
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -17,7 +17,8 @@ static int64_t list_tasks(const brunt_world *world, brunt_fem_task *nodes, brunt
         const brunt_fem_body *fem = &world->fems[k];
         for (int32_t i = 0; i < fem->node_count; i += NODES_A_TASK, n++)
             if (nodes)
-                nodes[n] = (brunt_fem_task){k, i, i + NODES_A_TASK < fem->node_count ? i + NODES_A_TASK : fem->node_count};
+                nodes[n] =
+                    (brunt_fem_task){k, i, i + NODES_A_TASK < fem->node_count ? i + NODES_A_TASK : fem->node_count};
         for (int32_t b = 0; b < fem->block_count; b++, e++)
             if (elements) elements[e] = (brunt_fem_task){k, b, b + 1};
     }
@@ -86,7 +87,8 @@ static void book_gravity(brunt_world *world, const double gravity[3], double dt)
 
 void brunt_fem_kick_all(brunt_world *world, const double gravity[3], double dt) {
     job j = {world, gravity, dt};
-    brunt_parallel(world->threads, world->node_task_count, 1, kick_nodes, &j, world->pass[BRUNT_PASS_kick].thread_seconds);
+    brunt_parallel(world->threads, world->node_task_count, 1, kick_nodes, &j,
+                   world->pass[BRUNT_PASS_kick].thread_seconds);
 }
 
 void brunt_fem_drift_all(brunt_world *world, const double gravity[3], double kick, double dt) {

@@ -12,7 +12,8 @@ double brunt_curve_at(const brunt_curve *curve, double time) {
     const double(*p)[2] = (const double(*)[2])curve->points;
     if (time <= p[0][0]) return p[0][1];
     for (int32_t k = 1; k < curve->count; k++)
-        if (time < p[k][0]) return p[k - 1][1] + (p[k][1] - p[k - 1][1]) * (time - p[k - 1][0]) / (p[k][0] - p[k - 1][0]);
+        if (time < p[k][0])
+            return p[k - 1][1] + (p[k][1] - p[k - 1][1]) * (time - p[k - 1][0]) / (p[k][0] - p[k - 1][0]);
     return p[curve->count - 1][1];
 }
 
@@ -46,7 +47,9 @@ static int take_faces(brunt_world *world, brunt_hold *hold, const char *name) {
         if (all) memcpy(hold->face[hold->face_count++], faces.node[f], sizeof *hold->face);
     }
     brunt_faces_free(&faces);
-    if (!status && !hold->face_count) brunt_warn(world, "boundaries (%s): no face of the body has all its nodes in the group: nothing is loaded", name);
+    if (!status && !hold->face_count)
+        brunt_warn(world, "boundaries (%s): no face of the body has all its nodes in the group: nothing is loaded",
+                   name);
     return status;
 }
 
@@ -58,7 +61,8 @@ static int make_hold(brunt_world *world, int index, brunt_error *error) {
     for (int k = 0; k < world->fem_count; k++)
         if (!strcmp(world->fems[k].name, def->body)) hold->fem = k;
     if (hold->fem < 0)
-        return brunt_fail(error, BRUNT_BAD_INPUT, "boundaries (%s).body: there is no finite-element body '%s'", wall->name, def->body);
+        return brunt_fail(error, BRUNT_BAD_INPUT, "boundaries (%s).body: there is no finite-element body '%s'",
+                          wall->name, def->body);
     brunt_fem_body *fem = &world->fems[hold->fem];
     wall->body = fem->index;
     const brunt_group *group = NULL;
@@ -67,19 +71,21 @@ static int make_hold(brunt_world *world, int index, brunt_error *error) {
     if (!group) {
         char names[600];
         list_groups(fem, names, sizeof names);
-        return brunt_fail(error, BRUNT_BAD_INPUT, "boundaries (%s).group: body '%s' has no group '%s'; it has: %s", wall->name, def->body,
-                          def->group, names);
+        return brunt_fail(error, BRUNT_BAD_INPUT, "boundaries (%s).group: body '%s' has no group '%s'; it has: %s",
+                          wall->name, def->body, def->group, names);
     }
     for (int32_t k = 1; k < def->table.count; k++)
         if (!(def->table.points[k][0] > def->table.points[k - 1][0]))
-            return brunt_fail(error, BRUNT_BAD_INPUT, "boundaries (%s).table: times must grow from point to point", wall->name);
+            return brunt_fail(error, BRUNT_BAD_INPUT, "boundaries (%s).table: times must grow from point to point",
+                              wall->name);
     hold->node = group->nodes, hold->node_count = group->count;
     if (!moves(def)) {
         if (!fem->load && !(fem->load = brunt_alloc((size_t)(fem->node_count + 1) * 4 * sizeof(real))))
             return brunt_fail(error, BRUNT_FAILED, "out of memory");
         return take_faces(world, hold, wall->name) ? brunt_fail(error, BRUNT_FAILED, "out of memory") : BRUNT_OK;
     }
-    if (!fem->held && !(fem->held = brunt_alloc((size_t)fem->node_count + 1))) return brunt_fail(error, BRUNT_FAILED, "out of memory");
+    if (!fem->held && !(fem->held = brunt_alloc((size_t)fem->node_count + 1)))
+        return brunt_fail(error, BRUNT_FAILED, "out of memory");
     if (!world->holder[hold->fem] &&
         !(world->holder[hold->fem] = brunt_alloc(((size_t)fem->node_count + 1) * sizeof **world->holder)))
         return brunt_fail(error, BRUNT_FAILED, "out of memory");
@@ -160,7 +166,8 @@ static void make_forces(const brunt_world *world, brunt_hold *hold, const brunt_
         face_area(fem, node, def->action == BRUNT_GROUP_TRACTION, area);
         double size = sqrt(area[0] * area[0] + area[1] * area[1] + area[2] * area[2]);
         for (int a = 0; a < world->dimension; a++) {
-            double force = def->action == BRUNT_GROUP_TRACTION ? factor * def->value[a] * size : -factor * def->value[0] * area[a];
+            double force =
+                def->action == BRUNT_GROUP_TRACTION ? factor * def->value[a] * size : -factor * def->value[0] * area[a];
             for (int c = 0; c < corners; c++) hold->force[3 * (hold->place[node[c]] - 1) + a] += force / corners;
         }
     }

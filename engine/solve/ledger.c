@@ -133,8 +133,11 @@ static void fill_force(const brunt_action *last, const brunt_action *all, double
 int32_t brunt_pair_count(const brunt_world *world) { return world->pair_count; }
 void brunt_pair_force(const brunt_world *world, int32_t index, brunt_force *force) {
     const brunt_pair *pair = &world->pairs[index];
-    if (pair->a < 0) snprintf(force->name, sizeof force->name, index ? "all%d" : "all", index + 1);
-    else snprintf(force->name, sizeof force->name, "%s-%s", brunt_body_name(world, pair->a), brunt_body_name(world, pair->b));
+    if (pair->a < 0)
+        snprintf(force->name, sizeof force->name, index ? "all%d" : "all", index + 1);
+    else
+        snprintf(force->name, sizeof force->name, "%s-%s", brunt_body_name(world, pair->a),
+                 brunt_body_name(world, pair->b));
     fill_force(&pair->last, &pair->action, world->now.dt, force);
 }
 int32_t brunt_wall_count(const brunt_world *world) { return world->wall_count; }
@@ -186,7 +189,9 @@ int64_t brunt_body_size(const brunt_world *world, int32_t body, brunt_place at) 
 int64_t brunt_body_particles(const brunt_world *world, int32_t body) {
     return brunt_body_size(world, body, BRUNT_AT_PARTICLES);
 }
-int64_t brunt_body_nodes(const brunt_world *world, int32_t body) { return brunt_body_size(world, body, BRUNT_AT_NODES); }
+int64_t brunt_body_nodes(const brunt_world *world, int32_t body) {
+    return brunt_body_size(world, body, BRUNT_AT_NODES);
+}
 int64_t brunt_body_elements(const brunt_world *world, int32_t body) {
     return brunt_body_size(world, body, BRUNT_AT_ELEMENTS);
 }

@@ -30,7 +30,7 @@ static bool has_mass_scaling(const brunt_world *world) {
 #define BRUNT_EFFECTS(X)                                                                                               \
     X(elements, world->fem_count > 0, "bodies: method fem")                                                            \
     X(affine, world->transfer == BRUNT_APIC && world->body_count > 0, "grid.transfer")                                 \
-    X(contact, world->has_contact || world->has_augury, "contact.method")                                                                   \
+    X(contact, world->has_contact || world->has_augury, "contact.method")                                              \
     X(friction, world->has_friction, "friction of contact or boundaries")                                              \
     X(surfaces, world->has_surfaces, "contact of meshes, or planes they may meet")                                     \
     X(hourglass, has_hourglass(world), "bodies: element hex8 or quad4")                                                \
@@ -64,7 +64,7 @@ brunt_effect brunt_world_effect(const brunt_world *world, int32_t effect) {
 #define ROW(effect_name, flag)                                                                                         \
     case EFFECT_##effect_name: {                                                                                       \
         const brunt_model *model = find_model(world, offsetof(brunt_model, flag));                                     \
-        return (brunt_effect){#effect_name, model != NULL, model ? model->name : ""};                                         \
+        return (brunt_effect){#effect_name, model != NULL, model ? model->name : ""};                                  \
     }
         BRUNT_MODEL_EFFECTS(ROW)
 #undef ROW

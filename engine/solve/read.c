@@ -21,6 +21,8 @@ int32_t brunt_body_find_field(const brunt_world *world, int32_t body, const char
 
 void brunt_body_read(brunt_world *world, int32_t body, int32_t field, double *out) {
     const brunt_body_ref ref = world->all[body];
-    if (ref.mpm) brunt_read_particles(ref.mpm, field, out);
-    else brunt_read_mesh(world, ref.fem, field, out);
+    if (ref.mpm)
+        brunt_read_particles(ref.mpm, field, out);
+    else
+        brunt_read_mesh(world, ref.fem, field, out);
 }

@@ -83,7 +83,8 @@ static void read_point(const brunt_fem_body *fem, int32_t s, element_point *p) {
         for (int c = 0; c < dim; c++) p->F[3 * r + c] = scalar(fem, BRUNT_ELEMENT_deformation_gradient, r * dim + c, s);
     const double *F = p->F;
     p->J = F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) + F[2] * (F[3] * F[7] - F[4] * F[6]);
-    for (int c = 0; c < BRUNT_SYMMETRIC(dim); c++) p->stress[c] = scalar(fem, BRUNT_ELEMENT_kirchhoff_stress, c, s) / p->J;
+    for (int c = 0; c < BRUNT_SYMMETRIC(dim); c++)
+        p->stress[c] = scalar(fem, BRUNT_ELEMENT_kirchhoff_stress, c, s) / p->J;
     p->volume = scalar(fem, BRUNT_ELEMENT_reference_volume, 0, s) * p->J;
     p->density = (double)fem->material.density / p->J;
 }
@@ -170,7 +171,8 @@ void brunt_read_mesh(brunt_world *world, brunt_fem_body *fem, int32_t field, dou
         return;
     }
     field -= contact_count(world);
-    const brunt_element_field *state = field < ELEMENT_FIELDS ? NULL : &fem->field[BRUNT_ELEMENT_BASE_FIELDS + field - ELEMENT_FIELDS];
+    const brunt_element_field *state =
+        field < ELEMENT_FIELDS ? NULL : &fem->field[BRUNT_ELEMENT_BASE_FIELDS + field - ELEMENT_FIELDS];
     for (int32_t s = 0; s < fem->slots; s++) {
         if (fem->element_id[s] < 0) continue;
         double *to = out + (int64_t)fem->element_id[s] * info.components;

@@ -16,12 +16,12 @@
 
 static const char REAL_TYPE = sizeof(real) == 8 ? 'd' : 'f';
 
-// World blocks: clock, walls, pairs; where surfaces meet what their search remembers; and where contact keeps them the affine
-// velocities of boundary nodes.
+// World blocks: clock, walls, pairs; where surfaces meet what their search remembers; and where contact keeps them the
+// affine velocities of boundary nodes.
 static int world_blocks(const brunt_world *world) { return world->skin.affine ? 5 : world->has_surfaces ? 4 : 3; }
 
-// What block `index` is: of a body its ids (field -1) or a field; of a mesh its nodes (field -1) or a field; of the world number
-// `field`.
+// What block `index` is: of a body its ids (field -1) or a field; of a mesh its nodes (field -1) or a field; of the
+// world number `field`.
 typedef struct place {
     brunt_body *body;
     brunt_fem_body *fem;
@@ -76,7 +76,8 @@ brunt_state_block brunt_state_info(brunt_world *world, int32_t index) {
                  at.field < 0 ? "nodes" : at.fem->field[at.field].name);
         return block;
     }
-    static const char *const names[] = {"world/clock", "world/walls", "world/pairs", "world/contact_search", "world/contact_affine"};
+    static const char *const names[] = {"world/clock", "world/walls", "world/pairs", "world/contact_search",
+                                        "world/contact_affine"};
     const int64_t counts[] = {CLOCK_DOUBLES, 2 * (int64_t)world->wall_count * ACTION_DOUBLES,
                               2 * (int64_t)world->pair_count * ACTION_DOUBLES, brunt_facing_state_count(&world->skin),
                               9 * (int64_t)world->skin.node_count};

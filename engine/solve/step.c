@@ -82,11 +82,13 @@ static int fail_element(const brunt_world *world, const brunt_fem_body *fem, int
     for (int a = 0; a < 3; a++) {
         error->place[a] = 0;
         for (int c = 0; c < nodes; c++)
-            error->place[a] += (double)brunt_fem_node(fem, fem->element_node[(size_t)slot * (size_t)nodes + (size_t)c])[a] / nodes;
+            error->place[a] +=
+                (double)brunt_fem_node(fem, fem->element_node[(size_t)slot * (size_t)nodes + (size_t)c])[a] / nodes;
     }
-    return brunt_fail(error, BRUNT_FAILED, "body '%s', element %lld at (%.6g, %.6g, %.6g) m, time %.9g s, step %.0f: %s",
-                      fem->name, (long long)error->id + 1, error->place[0], error->place[1], error->place[2],
-                      world->now.time, world->now.steps, reason);
+    return brunt_fail(error, BRUNT_FAILED,
+                      "body '%s', element %lld at (%.6g, %.6g, %.6g) m, time %.9g s, step %.0f: %s", fem->name,
+                      (long long)error->id + 1, error->place[0], error->place[1], error->place[2], world->now.time,
+                      world->now.steps, reason);
 }
 
 // ------------------------------------------------------------------------------------------ passes
@@ -172,7 +174,8 @@ static void make_grid_velocities(brunt_world *world, brunt_body *body, const dou
     end_pass(world, BRUNT_PASS_update, start);
 }
 
-static int constrain_velocities(brunt_world *world, const double gravity[3], double kick, double dt, brunt_error *error) {
+static int constrain_velocities(brunt_world *world, const double gravity[3], double kick, double dt,
+                                brunt_error *error) {
     double start;
     if (world->has_conditions && world->body_count) {
         start_pass(world, BRUNT_PASS_conditions, &start);
@@ -180,16 +183,16 @@ static int constrain_velocities(brunt_world *world, const double gravity[3], dou
             brunt_wall *wall = &world->walls[w];
             bool at_nodes = wall->region || (wall->mirror < 0 && wall->plane.condition != BRUNT_SEPARATE);
             for (int i = 0; at_nodes && i < world->body_count; i++)
-                if (acts_on(wall, &world->bodies[i]))
-                    brunt_condition_apply(&world->bodies[i], wall, world->now.time);
+                if (acts_on(wall, &world->bodies[i])) brunt_condition_apply(&world->bodies[i], wall, world->now.time);
         }
         end_pass(world, BRUNT_PASS_conditions, start);
     }
     if (world->has_contact) {
         start_pass(world, BRUNT_PASS_contact, &start);
-        int failed = brunt_multivelocity_apply(world->bodies, world->body_count, world->pairs, world->pair_count,
-                                               world->mpm_pair_of, world->mirrors, world->mirror_count, dt, world->threads,
-                                               world->pass[BRUNT_PASS_contact].thread_seconds, &world->contact_work);
+        int failed =
+            brunt_multivelocity_apply(world->bodies, world->body_count, world->pairs, world->pair_count,
+                                      world->mpm_pair_of, world->mirrors, world->mirror_count, dt, world->threads,
+                                      world->pass[BRUNT_PASS_contact].thread_seconds, &world->contact_work);
         if (failed)
             return fail(world, NULL, error,
                         failed == -1 ? "out of memory in the contact search"
@@ -329,10 +332,10 @@ static int move_meshes(brunt_world *world, const double gravity[3], double kick,
     return failed ? fail_element(world, failed, bad, error, reason) : BRUNT_OK;
 }
 
-// The step that is due: stable, not past the end, and exactly on `limit` when that comes first. The way to such a time is
-// cut in equal steps. Whole ones and two halves at the last excite what swings fastest each time anew: central differences
-// with steps that vary are stable for no share of the limit in general (R. D. Skeel, BIT 33 (1993) 172). At cfl 0.9 and 18
-// steps between outputs, a rod without viscosity gained 10^5 times its energy within 500 steps.
+// The step that is due: stable, not past the end, and exactly on `limit` when that comes first. The way to such a time
+// is cut in equal steps. Whole ones and two halves at the last excite what swings fastest each time anew: central
+// differences with steps that vary are stable for no share of the limit in general (R. D. Skeel, BIT 33 (1993) 172). At
+// cfl 0.9 and 18 steps between outputs, a rod without viscosity gained 10^5 times its energy within 500 steps.
 static double choose_step(const brunt_world *world, double limit) {
     double dt = world->fixed_step > 0 ? world->fixed_step : world->now.next_dt;
     double stop = fmin(limit > world->now.time ? limit : INFINITY, world->end), left = stop - world->now.time;
@@ -367,7 +370,8 @@ int brunt_world_step(brunt_world *world, double limit, brunt_error *error) {
     for (int w = 0; w < world->wall_count; w++) world->walls[w].last = (brunt_action){.external_work = 0};
     for (int p = 0; p < world->pair_count; p++) world->pairs[p].last = (brunt_action){.external_work = 0};
 
-    // Velocities are half a step behind, from the first step on: forces act over the mean of the steps before and after.
+    // Velocities are half a step behind, from the first step on: forces act over the mean of the steps before and
+    // after.
     const double kick = world->now.steps > 0 ? 0.5 * (world->now.dt + dt) : 0.5 * dt;
     int status;
     if (world->fem_count) kick_meshes(world, gravity, kick, dt);

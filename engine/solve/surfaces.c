@@ -25,7 +25,8 @@ static void look_at_edges(const brunt_world *world, double *fine, double *coarse
 }
 
 int brunt_surfaces_make(brunt_world *world, const brunt_world_def *def, brunt_error *error) {
-    for (int w = 0; w < world->wall_count; w++) world->has_surfaces = world->has_surfaces || acts_on_fem(world, &world->walls[w]);
+    for (int w = 0; w < world->wall_count; w++)
+        world->has_surfaces = world->has_surfaces || acts_on_fem(world, &world->walls[w]);
     world->has_surfaces = world->has_surfaces || world->has_augury;
     if (!world->has_surfaces) return BRUNT_OK;
     world->contact = def->contact;
@@ -44,10 +45,14 @@ int brunt_surfaces_make(brunt_world *world, const brunt_world_def *def, brunt_er
     world->contact_cell = def->contact.cell > 0 ? def->contact.cell : form == BRUNT_AUGURY_PAPER ? 2 * coarse : coarse;
     if (!world->has_augury || form == BRUNT_AUGURY_AFFINE) return BRUNT_OK;
     if (world->contact_cell < 0.7 * coarse)
-        brunt_warn(world, "contact.cell %g m is less than 0.7 of the longest mean edge, %g m: nodes may pass between those of the other body unseen",
+        brunt_warn(world,
+                   "contact.cell %g m is less than 0.7 of the longest mean edge, %g m: nodes may pass between those of "
+                   "the other body unseen",
                    world->contact_cell, coarse);
     if (world->contact_cell > 4 * fine)
-        brunt_warn(world, "contact.cell %g m is more than 4 of the shortest mean edge, %g m: edges and corners are rounded by as much",
+        brunt_warn(world,
+                   "contact.cell %g m is more than 4 of the shortest mean edge, %g m: edges and corners are rounded by "
+                   "as much",
                    world->contact_cell, fine);
     return BRUNT_OK;
 }
@@ -66,21 +71,22 @@ static int meet_by_facets(brunt_world *world, const brunt_meeting *m) {
 
 int brunt_surfaces_meet(brunt_world *world, const double gravity[3], double kick, double dt, brunt_error *error) {
     double *seconds = world->pass[BRUNT_PASS_surfaces].thread_seconds;
-    brunt_meeting m = {.skin = &world->skin,
-                       .pairs = world->pairs,
-                       .pair_of = world->pair_of,
-                       .body_count = world->all_count,
-                       .dt = dt,
-                       .cell = world->contact_cell,
-                       .iterations = world->contact.iterations,
-                       .look = world->has_augury && world->contact.form != BRUNT_AUGURY_AFFINE ? 1.6 * world->contact_cell : 0,
-                       .step = (int64_t)world->now.steps,
-                       .threads = world->threads,
-                       .seconds = seconds};
+    brunt_meeting m = {
+        .skin = &world->skin,
+        .pairs = world->pairs,
+        .pair_of = world->pair_of,
+        .body_count = world->all_count,
+        .dt = dt,
+        .cell = world->contact_cell,
+        .iterations = world->contact.iterations,
+        .look = world->has_augury && world->contact.form != BRUNT_AUGURY_AFFINE ? 1.6 * world->contact_cell : 0,
+        .step = (int64_t)world->now.steps,
+        .threads = world->threads,
+        .seconds = seconds};
     memcpy(world->skin.frame, world->now.contact_frame, sizeof world->skin.frame);
     brunt_skin_bounds(&world->skin, world->threads, seconds);
-    int failed = brunt_facing_near(&m, world->bodies, world->body_count, world->walls, world->wall_count, world->now.time,
-                                   &world->facing);
+    int failed = brunt_facing_near(&m, world->bodies, world->body_count, world->walls, world->wall_count,
+                                   world->now.time, &world->facing);
     if (!failed) {
         if (world->has_augury && world->contact.form == BRUNT_AUGURY_PAPER) // acts on every surface, touched or not
             for (int k = 0; k < world->fem_count; k++) world->skin.active[k] = true;

@@ -133,8 +133,8 @@ static double overlap_depth(const brunt_filled *a, const brunt_body_def *b, int 
 }
 
 // Particles of the bodies that are made of them, and the lowest of their coordinates. Bodies of meshes stay empty.
-static int fill_shapes(brunt_world *world, const brunt_world_def *def, const brunt_body_def **order, brunt_filled *filled,
-                       double low[3], brunt_error *error) {
+static int fill_shapes(brunt_world *world, const brunt_world_def *def, const brunt_body_def **order,
+                       brunt_filled *filled, double low[3], brunt_error *error) {
     const int n = def->body_count, dim = def->dimension;
     int status = BRUNT_OK;
     for (int i = 0; i < n && !status; i++) {
@@ -314,8 +314,10 @@ static int make_walls(brunt_world *world, const brunt_world_def *def, const brun
         wall->mirror = wall->body = -1;
         if (w >= def->plane_count + def->region_count) { // the rest follows with the bodies (holds.c)
             const char *given = def->groups[w - def->plane_count - def->region_count].name;
-            if (given[0]) memcpy(wall->name, given, sizeof wall->name);
-            else snprintf(wall->name, sizeof wall->name, "group%d", w + 1);
+            if (given[0])
+                memcpy(wall->name, given, sizeof wall->name);
+            else
+                snprintf(wall->name, sizeof wall->name, "group%d", w + 1);
             continue;
         }
         if (wall->region)
@@ -372,8 +374,10 @@ static int make_pairs(brunt_world *world, const brunt_world_def *def, const brun
                 REFUSE("contact of '%s' and '%s': multi-velocity is between bodies of material points; use augury",
                        order[i]->name, order[k]->name);
             // Bodies of material points meet at the nodes of the grid that moves them, whatever the method is called.
-            if (!meshes) pair.method = BRUNT_CONTACT_MULTI_VELOCITY, world->has_contact = true;
-            else world->has_augury = true;
+            if (!meshes)
+                pair.method = BRUNT_CONTACT_MULTI_VELOCITY, world->has_contact = true;
+            else
+                world->has_augury = true;
             if (!(pair.friction >= 0)) REFUSE("contact.friction: %g is negative", pair.friction);
             world->has_friction = world->has_friction || pair.friction > 0;
             int index = crowded ? find_alike(world, &pair) : -1;
@@ -430,7 +434,8 @@ static int start(brunt_world *world, brunt_error *error) {
     first_reports(world);
     int32_t bad;
     const char *reason;
-    if (brunt_fem_elements_all(world, 0, &bad, &reason)) return brunt_fail(error, BRUNT_BAD_INPUT, "a mesh: %s", reason);
+    if (brunt_fem_elements_all(world, 0, &bad, &reason))
+        return brunt_fail(error, BRUNT_BAD_INPUT, "a mesh: %s", reason);
     struct brunt_clock *now = &world->now;
     now->next_dt = now->dt = brunt_stable_step(world);
     if (world->fixed_step > 0) now->dt = world->fixed_step;
@@ -487,9 +492,12 @@ brunt_world *brunt_world_create(const brunt_world_def *def, brunt_error *error) 
     world->bodies = brunt_alloc((size_t)def->body_count * sizeof *world->bodies);
     world->fems = brunt_alloc((size_t)def->body_count * sizeof *world->fems);
     world->mesh_reports = brunt_alloc((size_t)def->body_count * sizeof *world->mesh_reports);
-    for (int i = 0; i < def->body_count; i++) world->has_particles = world->has_particles || order[i]->method == BRUNT_MPM;
+    for (int i = 0; i < def->body_count; i++)
+        world->has_particles = world->has_particles || order[i]->method == BRUNT_MPM;
 
-    int status = world->bodies && world->all && world->fems && world->mesh_reports ? BRUNT_OK : brunt_fail(error, BRUNT_FAILED, "out of memory");
+    int status = world->bodies && world->all && world->fems && world->mesh_reports
+                     ? BRUNT_OK
+                     : brunt_fail(error, BRUNT_FAILED, "out of memory");
     if (!status) status = make_walls(world, def, order, error);
     if (!status) status = make_pairs(world, def, order, error);
     if (!status) status = make_bodies(world, def, order, error);

@@ -46,7 +46,7 @@ typedef struct brunt_hold {
     int32_t node_count;
     int32_t (*face)[4]; // traction and pressure: the surface's faces that are all in the group
     int32_t face_count;
-    double *force; // node_count x 3 [N] of this step, for loads
+    double *force;  // node_count x 3 [N] of this step, for loads
     int32_t *place; // of each node of the body: its place in the group + 1; for loads
 } brunt_hold;
 
@@ -56,7 +56,7 @@ typedef struct brunt_fem_task {
 } brunt_fem_task;
 
 typedef struct brunt_body_ref {
-    brunt_body *mpm;     // one of the two, the other is NULL
+    brunt_body *mpm; // one of the two, the other is NULL
     brunt_fem_body *fem;
 } brunt_body_ref;
 
@@ -112,11 +112,11 @@ struct brunt_world {
     // Everything a run needs to go on besides the particles, and nothing else: saved as one block of doubles.
     struct brunt_clock {
         double time, steps, dt, next_dt, dt_min, dt_max;
-        double kinetic;                // of the particles [J]
+        double kinetic;                                                        // of the particles [J]
         double fem_kinetic, fem_stress_work, hourglass_stored, hourglass_lost; // [J] of the meshes
-        double stress_work; // [J] dt times the stress power at the end of the last step
+        double stress_work;            // [J] dt times the stress power at the end of the last step
         double transfer, gravity_work; // [J]
-        double contact_frame[3]; // [m/s] what contact measures motion against
+        double contact_frame[3];       // [m/s] what contact measures motion against
         double gravity_impulse[3], gravity_angular[3];
         double initial_energy, initial_kinetic; // [J]
         double linear_initial[3], angular_initial[3], scale_linear, scale_angular;
@@ -168,7 +168,8 @@ int brunt_surfaces_make(brunt_world *world, const brunt_world_def *def, brunt_er
 // --- holds.c: named groups
 int brunt_holds_make(brunt_world *world, const brunt_world_def *def, brunt_error *error);
 double brunt_curve_at(const brunt_curve *curve, double time);
-// Loads of this step, made before the kick of `dt` and with half their work booked; the other half once velocities are final.
+// Loads of this step, made before the kick of `dt` and with half their work booked; the other half once velocities are
+// final.
 void brunt_loads_begin(brunt_world *world, double time, double dt);
 void brunt_loads_end(brunt_world *world, double dt);
 void brunt_holds_free(brunt_world *world);
