@@ -18,7 +18,7 @@ static const char example[] =
     "  copper: {model: von-mises, density: 8960 kg/m^3, E: 124 GPa, nu: 0.34, yield: 90 MPa, hardening: 300 MPa}\n"
     "bodies:\n"
     "  ball:\n"
-    "    method: mpm\n"
+    "    method: mpm                            # of elements: `method: fem`, with `element: hex8` and `size: 0.5 mm`\n"
     "    material: copper\n"
     "    shape: {sphere: {center: [0, 0, 6 mm], radius: 5 mm}}\n"
     "    velocity: [0, 0, -100 m/s]\n"
