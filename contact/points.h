@@ -12,6 +12,9 @@
 // against what is left of slip. Solved by projected Jacobi sweeps: a point's correction is scaled by its row sum of the
 // coupling matrix (in units of its own effective mass), so that a uniform approach is met in one sweep and no sweep can
 // add energy. Neither the order of points nor the number of threads changes a bit.
+//
+// Tried and left: starting the sweeps from the last step's impulses. They end sooner, but what is given too much is
+// taken back only as far as the sweeps go, and a stack of hexahedra at rest gained energy until it fell.
 #pragma once
 
 #include "contact.h"
