@@ -169,9 +169,11 @@ void brunt_skin_bounds(brunt_skin *s, int threads, double *seconds) {
     brunt_parallel(threads, s->fem_count, 1, bound_bodies, &j, seconds);
 }
 
-static int owner_of(const int32_t *range, int32_t item, int from) {
-    while (range[from + 1] <= item) from++;
-    return from;
+// The first node or face from `item` on, by their `range`, that an active body has; `k` becomes that body.
+static int32_t next_active(const brunt_skin *s, const int32_t *range, int32_t item, int *k) {
+    for (; *k < s->fem_count && (range[*k + 1] <= item || !s->active[*k]); ++*k)
+        if (item < range[*k + 1]) item = range[*k + 1];
+    return item;
 }
 
 static void take_nodes(void *context, int64_t begin, int64_t end, int worker) {
@@ -180,12 +182,7 @@ static void take_nodes(void *context, int64_t begin, int64_t end, int worker) {
     brunt_skin *s = j->skin;
     int k = 0;
     double furthest = 0;
-    for (int32_t n = (int32_t)begin; n < end; n++) {
-        k = owner_of(s->node_range, n, k);
-        if (!s->active[k]) {
-            n = s->node_range[k + 1] - 1;
-            continue;
-        }
+    for (int32_t n = (int32_t)begin; (n = next_active(s, s->node_range, n, &k)) < end; n++) {
         const brunt_fem_body *fem = s->fem[k];
         const int32_t node = s->node[n];
         const real *at = brunt_fem_node(fem, node);
@@ -221,12 +218,7 @@ static void make_faces(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     brunt_skin *s = ((const job *)context)->skin;
     int k = 0;
-    for (int32_t f = (int32_t)begin; f < end; f++) {
-        k = owner_of(s->face_range, f, k);
-        if (!s->active[k]) {
-            f = s->face_range[k + 1] - 1;
-            continue;
-        }
+    for (int32_t f = (int32_t)begin; (f = next_active(s, s->face_range, f, &k)) < end; f++) {
         const int32_t *node = s->face[f];
         const int n = corners(node);
         double normal[3] = {0}, size = 0;
@@ -263,12 +255,7 @@ static void make_normals(void *context, int64_t begin, int64_t end, int worker) 
     (void)worker;
     brunt_skin *s = ((const job *)context)->skin;
     int k = 0;
-    for (int32_t n = (int32_t)begin; n < end; n++) {
-        k = owner_of(s->node_range, n, k);
-        if (!s->active[k]) {
-            n = s->node_range[k + 1] - 1;
-            continue;
-        }
+    for (int32_t n = (int32_t)begin; (n = next_active(s, s->node_range, n, &k)) < end; n++) {
         double sum[3] = {0}, area = 0, size = 0;
         for (int32_t q = s->face_first[n]; q < s->face_first[n + 1]; q++) {
             int32_t f = s->face_of[q];
@@ -301,12 +288,7 @@ static void give_nodes(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     const brunt_skin *s = ((const job *)context)->skin;
     int k = 0;
-    for (int32_t n = (int32_t)begin; n < end; n++) {
-        k = owner_of(s->node_range, n, k);
-        if (!s->active[k]) {
-            n = s->node_range[k + 1] - 1;
-            continue;
-        }
+    for (int32_t n = (int32_t)begin; (n = next_active(s, s->node_range, n, &k)) < end; n++) {
         real *at = brunt_fem_node(s->fem[k], s->node[n]);
         for (int a = 0; a < 3; a++) at[BRUNT_FEM_V + a] = (real)s->v[n][a];
     }
