@@ -3,7 +3,8 @@
 
 #include "tensor.h"
 
-enum { ELASTIC_LAMBDA, ELASTIC_MU, ELASTIC_INVERSE_DENSITY };
+// PLANE: E / (1 - nu^2), the longitudinal modulus of a sheet in plane stress.
+enum { ELASTIC_LAMBDA, ELASTIC_MU, ELASTIC_INVERSE_DENSITY, ELASTIC_NU, ELASTIC_PLANE };
 
 static const brunt_parameter elastic_parameters[] = {PARAMETER_E, PARAMETER_NU};
 
@@ -12,6 +13,8 @@ static inline const char *elastic_prepare(const double *parameters, double densi
     constants[ELASTIC_LAMBDA] = (real)lame_lambda(parameters[0], parameters[1]);
     constants[ELASTIC_MU] = (real)shear_modulus(parameters[0], parameters[1]);
     constants[ELASTIC_INVERSE_DENSITY] = (real)(1 / density);
+    constants[ELASTIC_NU] = (real)parameters[1];
+    constants[ELASTIC_PLANE] = (real)(parameters[0] / (1 - parameters[1] * parameters[1]));
     return NULL;
 }
 

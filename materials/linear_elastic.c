@@ -8,7 +8,10 @@
 // H^T, not sigma: with sigma alone the ledger would miss work of first order in the strain. Its skew part, of second
 // order, is what a model that is not objective does to angular momentum; it is left out, so the stress is symmetric and
 // the power is exact for every motion whose velocity gradient is symmetric.
-#include "elastic.h"
+//
+// A sheet is seen from a frame that turns with it, where the small strain is Biot's, e_i = l_i - 1: in plane stress W =
+// E'/2 (e1^2 + e2^2 + 2 nu e1 e2) with E' = E / (1 - nu^2). That is invariant under rotation, and tau_i = l_i dW/de_i.
+#include "sheet.h"
 
 BRUNT_INLINE void small_strain(int dim, const lanes H[9], lanes eps[6]) {
     const real half = (real)0.5;
@@ -40,8 +43,8 @@ BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_
             tau[XX] = sigma[XX] + (sigma[XX] * H[0] + sigma[XY] * H[1]);
             tau[YY] = sigma[YY] + (sigma[XY] * H[2] + sigma[YY] * H[3]);
             tau[ZZ] = pressure;
-            tau[XY] = sigma[XY] + half * ((sigma[XX] * H[2] + sigma[XY] * H[3]) +
-                                          (sigma[XY] * H[0] + sigma[YY] * H[1]));
+            tau[XY] =
+                sigma[XY] + half * ((sigma[XX] * H[2] + sigma[XY] * H[3]) + (sigma[XY] * H[0] + sigma[YY] * H[1]));
         } else {
             sigma[ZZ] = pressure + 2 * mu * eps[ZZ];
             sigma[YZ] = 2 * mu * eps[YZ];
@@ -87,8 +90,37 @@ static brunt_update_result update(const real *constants, const brunt_points *poi
 }
 
 static void add_energy(const real *constants, const brunt_points *points, brunt_point_energy *energy) {
-    if (points->dim == 2) energy_dim(2, constants, points, energy);
-    else energy_dim(3, constants, points, energy);
+    if (points->dim == 2)
+        energy_dim(2, constants, points, energy);
+    else
+        energy_dim(3, constants, points, energy);
+}
+
+BRUNT_INLINE void sheet_response_of(const real *k, bool slack, const lanes strain[2], sheet_response *r) {
+    const real nu = k[ELASTIC_NU], mu = k[ELASTIC_MU], plane = k[ELASTIC_PLANE], half = (real)0.5;
+    lanes e[2] = {strain[0], strain[1]};
+    if (slack) r->taut = relax_linear(nu, e);
+    lanes biot[2] = {plane * (e[0] + nu * e[1]), plane * (e[1] + nu * e[0])}; // dW/de_i
+    lanes l[2] = {1 + e[0], 1 + e[1]};
+    for (int i = 0; i < 2; i++) {
+        r->tau[i] = l[i] * biot[i];
+        r->along[i] = plane * (l[i] * l[i]);
+    }
+    r->energy = half * (e[0] * biot[0] + e[1] * biot[1]);
+    r->thickness = 1 - nu / (1 - nu) * (e[0] + e[1]);
+    r->shear = mu + half * (biot[0] + biot[1]) / (l[0] + l[1]);
+}
+
+static brunt_update_result update_sheet(const real *constants, const brunt_points *points) {
+    return points->slack ? sheet_update(sheet_response_of, true, constants, points)
+                         : sheet_update(sheet_response_of, false, constants, points);
+}
+
+static void add_energy_sheet(const real *constants, const brunt_points *points, brunt_point_energy *energy) {
+    if (points->slack)
+        sheet_energy(sheet_response_of, true, constants, points, energy);
+    else
+        sheet_energy(sheet_response_of, false, constants, points, energy);
 }
 
 const brunt_model brunt_linear_elastic = {
@@ -101,4 +133,7 @@ const brunt_model brunt_linear_elastic = {
     .update = update,
     .energy = add_energy,
     .wave_speed = elastic_wave_speed,
+    .update_sheet = update_sheet,
+    .energy_sheet = add_energy_sheet,
+    .wave_speed_sheet = sheet_wave_speed,
 };

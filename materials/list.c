@@ -11,8 +11,9 @@
     X(brunt_st_venant_kirchhoff)                                                                                       \
     X(brunt_neo_hookean)                                                                                               \
     X(brunt_von_mises)                                                                                                 \
-    X(brunt_johnson_cook)
-#define EOS_MODELS(X) X(brunt_mie_gruneisen)
+    X(brunt_johnson_cook)                                                                                              \
+    X(brunt_newtonian)
+#define EOS_MODELS(X) X(brunt_mie_gruneisen) X(brunt_ideal_gas) X(brunt_tait)
 
 #define DECLARE(model) extern const brunt_model model;
 #define ADDRESS(model) &model,

@@ -35,11 +35,14 @@ typedef struct brunt_points {
     const real *L[9];         // velocity gradient over the step [1/s], BRUNT_MATRIX(dim) components
     real *F[9];               // deformation gradient at the end of the step [-] (already updated: F = (I + dt L) F_old)
     real *stress[6];          // Kirchhoff stress [Pa]; in: of the last step, out: of this step; BRUNT_SYMMETRIC(dim) components
+    bool may_reshape;         // F is the points' own memory (material points): a fluid may replace it by one of the same J
+    bool slack;               // of a sheet: it bears no compression
+    real *thickness;          // of a sheet: stretch across it at the end of the step [-], written; else NULL
     const real *volume;       // reference volume [m^3]; 0 for padding
     real *state[BRUNT_MAX_STATE];  // this component's own state arrays, in the order of its state table
     // What one component leaves for the next, within one update (never stored): dissipation and viscous pressure.
-    real *plastic_increment;  // [J/m^3 of reference volume] plastic work of this step; NULL when nobody reads it
-                              // (no eos), or when the strength model is not plastic
+    real *plastic_increment;  // [J/m^3 of reference volume] what the strength model dissipated in this step; NULL when
+                              // nobody reads it (no eos), or when it is neither plastic nor viscous
     real *viscous_pressure;   // [Pa] q > 0 in compression, mean of the last step's and this one's: its work in the step
                               // is -viscous_pressure dJ per reference volume; NULL when nobody reads it
 } brunt_points;
@@ -49,6 +52,7 @@ typedef struct brunt_update_result {
     real wave_speed;          // [m/s] greatest among the points; of a body: brunt_wave_speed of its components' results
     int32_t bad;              // index of the first point that failed, -1 when none did
     const char *reason;       // why, e.g. "the deformation gradient has turned inside out (J <= 0)"
+    real viscosity;           // [m/s] of a strength model with shear_viscous: what it adds to Q of brunt_wave_speed
 } brunt_update_result;
 
 // Energies of a range, per kind [J]. A component adds its own share.
@@ -79,6 +83,9 @@ typedef struct brunt_model {
     const char *name;         // as typed in a scene: "neo-hookean"
     const char *doc;          // one line, with its source
     bool plastic, thermal, eos, viscous;  // the effects it brings: the plan and the summary list them
+    bool fluid;               // remembers no shape: the history of F but for J is nothing to it
+    bool shear_viscous;       // a strength model whose stress follows the rate of shear, and dissipates
+    bool needs_eos;           // has no pressure of its own
     bool accepts_eos;         // a strength model whose pressure an equation of state may replace
     bool small_strain;        // by definition not rotation invariant: exempt from what holds for finite rotations
     const brunt_parameter *parameters; int parameter_count;   // density is common to all and not listed here
@@ -87,6 +94,9 @@ typedef struct brunt_model {
     // `density` [kg/m^3]; `with_eos`: the pressure comes from an equation of state. Returns NULL, or what is wrong, in
     // a few words.
     const char *(*prepare)(const double *parameters, double density, bool with_eos, real *constants);
+    // What is left of the model when `parameters` switch effects off, with less state to keep; NULL: the model itself.
+    // NULL where there is no such form. Constants are the same.
+    const struct brunt_model *(*reduced)(const double *parameters);
     // One step for a range. Writes stress and state; a strength model overwrites the stress, the others add to it.
     brunt_update_result (*update)(const real *constants, const brunt_points *points);
     // Adds the range's energies to `energy`.
@@ -94,6 +104,13 @@ typedef struct brunt_model {
     // The same measure as the update's wave_speed, of the undeformed material at rest [m/s]: the first time step, and
     // the plan.
     real (*wave_speed)(const real *constants);
+    // The same of a sheet (plane stress), NULL when there is no such form. Points then have dim 2; F is the symmetric stretch U in
+    // the plane (F^T F = U U), L is not given; stress is the Kirchhoff stress R^T tau R in the same axes, its ZZ 0; `thickness` is
+    // written. With `slack` the stress is that of the relaxed energy (tension field theory): 0 when both principal stresses would
+    // be compressive, uniaxial tension when one would.
+    brunt_update_result (*update_sheet)(const real *constants, const brunt_points *points);
+    void (*energy_sheet)(const real *constants, const brunt_points *points, brunt_point_energy *energy);
+    real (*wave_speed_sheet)(const real *constants);
 } brunt_model;
 
 // The lists. Order is the order of `brunt keys`.

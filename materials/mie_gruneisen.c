@@ -10,9 +10,13 @@
 // e changes by -p dJ + viscous work + plastic work. p at the end of the step is linear in e, so the trapezoid
 //   e1 = e0 - (p0 + p1)/2 dJ + Q,  p1 = a + gamma0 e1   is solved in closed form.
 // `compression_work` is -int p dJ alone: plastic work is counted by the strength model, viscous work by the viscosity.
+//
+// With `tension` p stays at -tension where the laws give less, the material then being torn (liquids: 0; p = 0 for mu <
+// 0). The trapezoid is that of the pressures so bounded. Whether the end of a step is torn does not depend on the order
+// of bounding and solving: both pressures lie on the same side of -tension, as 1 + gamma0 dJ/2 > 0.
 #include "tensor.h"
 
-enum { DENSITY, SOUND_SPEED, SLOPE, GAMMA, INITIAL_ENERGY, STIFFNESS };
+enum { DENSITY, SOUND_SPEED, SLOPE, GAMMA, INITIAL_ENERGY, STIFFNESS, TENSION };
 enum { INTERNAL_ENERGY, COMPRESSION_WORK };
 
 static const brunt_parameter parameters[] = {
@@ -20,6 +24,8 @@ static const brunt_parameter parameters[] = {
     {"s", "1", NAN, 0, INFINITY, false, true, "slope of shock speed over particle speed"},
     {"gamma0", "1", NAN, 0, INFINITY, false, true, "Gruneisen coefficient at reference density"},
     {"initial_energy", "J/m^3", 0, -INFINITY, INFINITY, true, true, "energy per reference volume at the start"},
+    {"tension", "Pa", INFINITY, 0, INFINITY, false, false,
+     "greatest tension it bears, beyond which it cavitates; 0: none at all"},
 };
 
 static real initial_energy(const real *constants, int component) {
@@ -40,6 +46,7 @@ static const char *prepare(const double *p, double density, bool with_eos, real 
     constants[GAMMA] = (real)p[2];
     constants[INITIAL_ENERGY] = (real)p[3];
     constants[STIFFNESS] = (real)(density * p[0] * p[0]);
+    constants[TENSION] = (real)p[4];
     return NULL;
 }
 
@@ -53,7 +60,7 @@ BRUNT_INLINE lanes cold_pressure(const real *k, lanes change, lanes *valid) {
     return k[STIFFNESS] * lanes_select(change > 0, eta * inverse, hugoniot);
 }
 
-BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_points *points) {
+BRUNT_INLINE brunt_update_result update_dim(int dim, bool tears, const real *k, const brunt_points *points) {
     update_record record = update_begin();
     const real half = (real)0.5;
     for (int32_t i = 0; i < points->count; i += BRUNT_LANES) {
@@ -67,12 +74,19 @@ BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_
 
         lanes e = lanes_load(points->state[INTERNAL_ENERGY] + i);
         lanes p_old = cold_pressure(k, change - dJ, &valid_before) + k[GAMMA] * e;
+        if (tears) p_old = lanes_max(p_old, lanes_set(-k[TENSION]));
         lanes cold = cold_pressure(k, change, &valid);
         lanes heat = lanes_set(0);
         if (points->plastic_increment) heat += lanes_load(points->plastic_increment + i);
         if (points->viscous_pressure) heat -= lanes_load(points->viscous_pressure + i) * dJ;
         lanes e_new = (e - half * (p_old + cold) * dJ + heat) / (1 + half * k[GAMMA] * dJ);
         lanes p = cold + k[GAMMA] * e_new;
+        lane_mask torn = {0};
+        if (tears) {
+            torn = p < -k[TENSION];
+            e_new = lanes_select(torn, e - half * (p_old - k[TENSION]) * dJ + heat, e_new);
+            p = lanes_max(p, lanes_set(-k[TENSION]));
+        }
         note_first(&record.model, ~(valid > 0), i);
 
         lanes_store(points->state[INTERNAL_ENERGY] + i, e_new);
@@ -85,13 +99,18 @@ BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_
         lanes eta = -change, inverse = 1 / valid, r = 1 - half * k[GAMMA] * eta;
         lanes slope = inverse * inverse * ((1 + k[SLOPE] * eta) * inverse * r - half * k[GAMMA] * eta);
         slope = lanes_select(change > 0, 1 / (J * J), slope);
-        note_speed(&record, J * J * (k[STIFFNESS] * slope + k[GAMMA] * p) / k[DENSITY]);
+        lanes speed2 = J * J * (k[STIFFNESS] * slope + k[GAMMA] * p) / k[DENSITY];
+        // What is torn closes again at c0.
+        if (tears) speed2 = lanes_select(torn, lanes_set(k[STIFFNESS] / k[DENSITY]), speed2);
+        note_speed(&record, speed2);
     }
     return update_end(&record, points, "compressed beyond the Mie-Gruneisen equation of state (1 - s (1 - J) <= 0)");
 }
 
 static brunt_update_result update(const real *constants, const brunt_points *points) {
-    return points->dim == 2 ? update_dim(2, constants, points) : update_dim(3, constants, points);
+    if (constants[TENSION] < (real)INFINITY)
+        return points->dim == 2 ? update_dim(2, true, constants, points) : update_dim(3, true, constants, points);
+    return points->dim == 2 ? update_dim(2, false, constants, points) : update_dim(3, false, constants, points);
 }
 
 static void add_energy(const real *constants, const brunt_points *points, brunt_point_energy *energy) {

@@ -4,7 +4,10 @@
 // Seen from the current configuration, tau = F S F^T = lambda tr(E) b + mu (b^2 - b); with B = b - I: tr E = tr B / 2,
 // b^2 - b = B + B^2, tr E^2 = tr B^2 / 4, so F^T F is never formed. The law softens in strong compression (its stress
 // vanishes again as J -> 0): it is for large rotations, not for large strains.
-#include "elastic.h"
+//
+// In plane stress W = E'/2 (E1^2 + E2^2 + 2 nu E1 E2) with E' = E / (1 - nu^2) and the principal Green strains of the
+// plane, tau_i = l_i^2 S_i.
+#include "sheet.h"
 
 BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_points *points) {
     update_record record = update_begin();
@@ -58,8 +61,37 @@ static brunt_update_result update(const real *constants, const brunt_points *poi
 }
 
 static void add_energy(const real *constants, const brunt_points *points, brunt_point_energy *energy) {
-    if (points->dim == 2) energy_dim(2, constants, points, energy);
-    else energy_dim(3, constants, points, energy);
+    if (points->dim == 2)
+        energy_dim(2, constants, points, energy);
+    else
+        energy_dim(3, constants, points, energy);
+}
+
+BRUNT_INLINE void sheet_response_of(const real *k, bool slack, const lanes e[2], sheet_response *r) {
+    const real nu = k[ELASTIC_NU], mu = k[ELASTIC_MU], plane = k[ELASTIC_PLANE], half = (real)0.5;
+    lanes E[2] = {e[0] + half * (e[0] * e[0]), e[1] + half * (e[1] * e[1])};
+    if (slack) r->taut = relax_linear(nu, E);
+    lanes S[2] = {plane * (E[0] + nu * E[1]), plane * (E[1] + nu * E[0])};
+    lanes square[2] = {1 + 2 * E[0], 1 + 2 * E[1]}; // l_i^2
+    for (int i = 0; i < 2; i++) {
+        r->tau[i] = square[i] * S[i];
+        r->along[i] = r->tau[i] + plane * (square[i] * square[i]);
+    }
+    r->energy = half * (E[0] * S[0] + E[1] * S[1]);
+    r->thickness = lanes_sqrt(1 - 2 * (nu / (1 - nu)) * (E[0] + E[1]));
+    r->shear = half * ((S[0] + S[1]) + mu * (square[0] + square[1]));
+}
+
+static brunt_update_result update_sheet(const real *constants, const brunt_points *points) {
+    return points->slack ? sheet_update(sheet_response_of, true, constants, points)
+                         : sheet_update(sheet_response_of, false, constants, points);
+}
+
+static void add_energy_sheet(const real *constants, const brunt_points *points, brunt_point_energy *energy) {
+    if (points->slack)
+        sheet_energy(sheet_response_of, true, constants, points, energy);
+    else
+        sheet_energy(sheet_response_of, false, constants, points, energy);
 }
 
 const brunt_model brunt_st_venant_kirchhoff = {
@@ -71,4 +103,7 @@ const brunt_model brunt_st_venant_kirchhoff = {
     .update = update,
     .energy = add_energy,
     .wave_speed = elastic_wave_speed,
+    .update_sheet = update_sheet,
+    .energy_sheet = add_energy_sheet,
+    .wave_speed_sheet = sheet_wave_speed,
 };

@@ -118,13 +118,13 @@ static inline int32_t first_index(lane_mask first) {
 // `model_reason`: what record.model stands for.
 static inline brunt_update_result update_end(const update_record *record, const brunt_points *points,
                                              const char *model_reason) {
-    brunt_update_result result = {(real)sqrt((double)lanes_max_of(record->speed_squared)), -1, NULL};
+    brunt_update_result result = {.wave_speed = (real)sqrt((double)lanes_max_of(record->speed_squared)), .bad = -1};
     int32_t deformation = first_index(record->deformation), model = first_index(record->model);
     if (deformation >= 0 && (model < 0 || deformation <= model)) {
         result.bad = deformation;
         result.reason = "the deformation gradient has turned inside out (J <= 0)";
         for (int k = 0; k < BRUNT_MATRIX(points->dim); k++)
-            if (!isfinite(points->F[k][deformation]) || !isfinite(points->L[k][deformation]))
+            if (!isfinite(points->F[k][deformation]) || (points->L[k] && !isfinite(points->L[k][deformation])))
                 result.reason = "the deformation gradient or the velocity gradient is not a finite number";
     } else if (model >= 0) {
         result.bad = model;

@@ -5,7 +5,7 @@
 
 static brunt_material_def *copper(brunt_world_def *def) {
     static const double strength[] = {124e9, 0.34, 90e6, 292e6, 0.31, 0.025, 1.09, 1, 1356, 293.15, 383, 0.9};
-    static const double eos[] = {3940, 1.49, 1.96, 0}, viscosity[] = {0.06, 1.5};
+    static const double eos[] = {3940, 1.49, 1.96, 0, INFINITY}, viscosity[] = {0.06, 1.5};
     brunt_material_def *m = def_material(def, "johnson-cook", 8960, 0, 0);
     memcpy(m->strength_parameters, strength, sizeof strength);
     snprintf(m->eos, sizeof m->eos, "mie-gruneisen");

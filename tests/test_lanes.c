@@ -105,6 +105,35 @@ START_TEST(exponential) {
 }
 END_TEST
 
+// exp(x) - 1 keeps its digits at any size of x, and saturates.
+START_TEST(exponential_less_one) {
+    uint64_t seed = 6;
+    double worst = 0, limit = log((double)REAL_MAX), decades = log((double)REAL_EPSILON) - 5;
+    for (int i = 0; i < COUNT; i++) {
+        lanes x;
+        for (int l = 0; l < BRUNT_LANES; l++) {
+            volatile real argument = (real)(i % 3 == 0   ? uniform(&seed, -limit, limit) * 0.999
+                                            : i % 3 == 1 ? uniform(&seed, -2, 2)
+                                                         : exp(uniform(&seed, decades, 0)) * (l % 2 ? 1 : -1));
+            x[l] = argument;
+        }
+        lanes y = lanes_expm1(x);
+        for (int l = 0; l < BRUNT_LANES; l++) worst = fmax(worst, ulps(y[l], expm1l((long double)x[l])));
+    }
+    printf("expm1 %.3f ulp\n", worst);
+    ck_assert_double_le(worst, 2);
+    ck_assert(lanes_expm1(lanes_set(0))[0] == 0);
+    const real tiny = LANES_REAL_MIN;
+    ck_assert(lanes_expm1(lanes_set(tiny))[0] == tiny && lanes_expm1(lanes_set(-tiny))[0] == -tiny);
+    const double beyond[] = {limit * 1.001, limit * 1.5, 1e4, 1e30, INFINITY};
+    for (unsigned i = 0; i < sizeof beyond / sizeof *beyond; i++) {
+        ck_assert(lanes_expm1(lanes_set((real)beyond[i]))[0] == (real)INFINITY);
+        ck_assert(lanes_expm1(lanes_set((real)-beyond[i]))[0] == -1);
+    }
+    ck_assert(isnan(lanes_expm1(lanes_set((real)NAN))[0]));
+}
+END_TEST
+
 START_TEST(power) {
     uint64_t seed = 3;
     double worst = 0, worst_large = 0;
@@ -188,6 +217,7 @@ int main(void) {
     tcase_add_test(tests, logarithm);
     tcase_add_test(tests, logarithm_ends);
     tcase_add_test(tests, exponential);
+    tcase_add_test(tests, exponential_less_one);
     tcase_add_test(tests, power);
     tcase_add_test(tests, inverse_cube_root);
     tcase_add_test(tests, lanes_are_independent);

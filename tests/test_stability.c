@@ -508,7 +508,7 @@ static extreme run_extreme(brunt_world_def *def, double end, int most) {
 static void give_eos(brunt_material_def *m, double c0, double s, double initial_energy) {
     snprintf(m->eos, sizeof m->eos, "mie-gruneisen");
     m->eos_parameters[0] = c0, m->eos_parameters[1] = s, m->eos_parameters[2] = 1.5,
-    m->eos_parameters[3] = initial_energy;
+    m->eos_parameters[3] = initial_energy, m->eos_parameters[4] = INFINITY;
     m->strength_parameters[2] = 1e4; // yield stress
 }
 

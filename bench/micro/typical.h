@@ -21,7 +21,7 @@ static inline void typical_parameters(const brunt_model *model, double *out) {
     } copper[] = {
         {"E", 124e9}, {"nu", 0.34}, {"yield", 90e6},  {"hardening", 292e6},     {"A", 90e6},   {"B", 292e6},
         {"n", 0.31},  {"C", 0.025}, {"m", 1.09},      {"melt", 1356},           {"c0", 3940},  {"s", 1.49},
-        {"gamma0", 1.96},           {"heat_capacity", 383},
+        {"gamma0", 1.96},           {"heat_capacity", 383}, {"dynamic_viscosity", 1e-3}, {"initial_energy", 1e9},
     };
     for (int i = 0; i < model->parameter_count; i++) {
         out[i] = model->parameters[i].initial;

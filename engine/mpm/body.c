@@ -1,5 +1,7 @@
 #include "body.h"
 
+#include <math.h>
+
 #include "lanes.h"
 #include "memory.h"
 #include "sort.h"
@@ -15,7 +17,8 @@ void brunt_body_free(brunt_body *body) {
 brunt_points brunt_body_points(brunt_body *body, brunt_component component, int64_t first, int32_t count) {
     brunt_particles *p = &body->particles;
     const int dim = p->dim;
-    brunt_points points = {.count = count, .dim = dim, .cell = body->grid.h, .wave_speed = body->material.wave_speed};
+    brunt_points points = {
+        .count = count, .dim = dim, .cell = body->grid.h, .wave_speed = body->material.wave_speed, .may_reshape = true};
     real **F = brunt_field(p, BRUNT_FIELD_deformation_gradient),
          **stress = brunt_field(p, BRUNT_FIELD_kirchhoff_stress);
     for (int c = 0; c < BRUNT_MATRIX(dim); c++) points.F[c] = F[c] + first;
@@ -37,11 +40,25 @@ brunt_point_energy brunt_body_energy(brunt_body *body) {
         const brunt_block *block = &body->grid.blocks[b];
         int32_t padded = (block->count + BRUNT_LANES - 1) / BRUNT_LANES * BRUNT_LANES;
         for (int k = 0; k < BRUNT_COMPONENTS; k++) {
-            const brunt_model *model = body->material.model[k];
-            if (!model || !model->energy) continue;
+            if (!body->material.model[k]) continue;
             brunt_points points = brunt_body_points(body, (brunt_component)k, block->first, padded);
-            model->energy(body->material.constants[k], &points, &energy);
+            brunt_material_energy(&body->material, (brunt_component)k, &points, &energy);
         }
     }
     return energy;
+}
+
+double brunt_body_spread(brunt_body *body) {
+    brunt_particles *p = &body->particles;
+    real *const *F = brunt_field(p, BRUNT_FIELD_deformation_gradient);
+    const real *volume = brunt_field(p, BRUNT_FIELD_reference_volume)[0];
+    double most = 0;
+    for (int64_t s = 0; s < p->slots; s++) {
+        double J = p->dim == 2 ? (double)(F[0][s] * F[3][s] - F[1][s] * F[2][s])
+                               : (double)(F[0][s] * (F[4][s] * F[8][s] - F[5][s] * F[7][s]) -
+                                          F[1][s] * (F[3][s] * F[8][s] - F[5][s] * F[6][s]) +
+                                          F[2][s] * (F[3][s] * F[7][s] - F[4][s] * F[6][s]));
+        most = fmax(most, J * (double)volume[s]);
+    }
+    return pow(most, 1.0 / p->dim) / (double)body->grid.h;
 }

@@ -27,6 +27,7 @@ typedef struct brunt_body {
     size_t report_capacity; // a block each
     double spacing;         // [m] of the undeformed lattice
     real particle_mass;     // [kg]
+    bool spread_told;       // that its particles no longer cover every cell
 } brunt_body;
 
 void brunt_body_free(brunt_body *body);
@@ -35,3 +36,5 @@ void brunt_body_free(brunt_body *body);
 brunt_points brunt_body_points(brunt_body *body, brunt_component component, int64_t first, int32_t count);
 // Stored and dissipated energy of all particles [J].
 brunt_point_energy brunt_body_energy(brunt_body *body);
+// How many cells wide what a particle stands for has become at most: (J V0)^(1/dim) / h.
+double brunt_body_spread(brunt_body *body);

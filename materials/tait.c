@@ -1,0 +1,105 @@
+// Tait's equation of state, for liquids that are hardly compressed (Cole, Underwater Explosions (1948), section 2.3;
+// for weakly compressible free-surface flow: Monaghan, J. Comput. Phys. 110 (1994) 399):
+//   p = B (J^-gamma - 1),  B = rho0 c0^2 / gamma;  gamma = 1: p = c0^2 (rho - rho0).
+// The pressure is a function of J alone, so is the energy U = -int p dJ from J = 1 on: no state. With L = ln J and
+// phi(z) = e^z - 1 - z,
+//   p = B (phi(-gamma L) - gamma L),  U = B (phi((1 - gamma) L) / (gamma - 1) + phi(L)),
+// which keeps the digits of small compressions, and of which each term is positive.
+//
+// Beyond `tension` the liquid tears: p stays at -tension however far it expands, and U grows by tension dJ.
+#include "tensor.h"
+
+enum { DENSITY, SOUND_SPEED, GAMMA, MODULUS, TENSION, TEAR };
+
+static const brunt_parameter parameters[] = {
+    {"c0", "m/s", NAN, 0, INFINITY, true, true, "sound speed at rest; ten times the flow's keeps density to 1 %"},
+    {"gamma", "1", 7, 1, INFINITY, false, true, "exponent; 1: pressure linear in density"},
+    {"tension", "Pa", INFINITY, 0, INFINITY, false, false,
+     "greatest tension it bears, beyond which it cavitates; 0: none at all"},
+};
+
+static const char *prepare(const double *p, double density, bool with_eos, real *constants) {
+    (void)with_eos;
+    double modulus = density * p[0] * p[0] / p[1], share = p[2] / modulus;
+    constants[DENSITY] = (real)density;
+    constants[SOUND_SPEED] = (real)p[0];
+    constants[GAMMA] = (real)p[1];
+    constants[MODULUS] = (real)modulus;
+    constants[TENSION] = (real)p[2];
+    // ln J at which it tears. Tension stays below the modulus in any expansion.
+    constants[TEAR] = (real)(share < 1 ? -log1p(-share) / p[1] : INFINITY);
+    return NULL;
+}
+
+// phi(z) = e^z - 1 - z: its series up to 1/2, beyond which little is lost to the subtraction.
+BRUNT_INLINE lanes exponential_excess(lanes z) {
+#ifdef BRUNT_FLOAT
+    enum { TERMS = 9 };
+#else
+    enum { TERMS = 15 };
+#endif
+    lanes series = lanes_set(1);
+    for (int k = TERMS; k > 2; k--) series = 1 + z * series * (real)(1.0 / k);
+    lanes value = (real)0.5 * z * z * series;
+    lane_mask far = lanes_abs(z) > (real)0.5;
+    if (lanes_any(far)) value = lanes_select(far, lanes_exp(z) - 1 - z, value);
+    return value;
+}
+
+BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_points *points) {
+    update_record record = update_begin();
+    const lanes slack = lanes_set(-k[TENSION]);
+    for (int32_t i = 0; i < points->count; i += BRUNT_LANES) {
+        lanes H[9];
+        load_displacement_gradient(dim, points, i, H);
+        lanes change = volume_change(dim, H), J = 1 + change;
+        note_deformation(&record, J, i);
+        lanes z = -k[GAMMA] * lanes_log1p(change), power = z + exponential_excess(z); // J^-gamma - 1
+        lanes Jp = J * lanes_max(k[MODULUS] * power, slack);
+        for (int c = 0; c < 3; c++) lanes_store(points->stress[c] + i, lanes_load(points->stress[c] + i) - Jp);
+        // c^2 = dp/drho = c0^2 J^(1 - gamma). A liquid that has expanded, or torn, closes again at c0.
+        lanes faster = lanes_max(J * (1 + power), lanes_set(1));
+        note_speed(&record, k[SOUND_SPEED] * k[SOUND_SPEED] * faster);
+    }
+    return update_end(&record, points, NULL);
+}
+
+static brunt_update_result update(const real *constants, const brunt_points *points) {
+    return points->dim == 2 ? update_dim(2, constants, points) : update_dim(3, constants, points);
+}
+
+BRUNT_INLINE void energy_dim(int dim, const real *k, const brunt_points *points, brunt_point_energy *energy) {
+    lane_total stored = {0};
+    const real rest = k[GAMMA] - 1, inverse = rest > 0 ? 1 / rest : 0;
+    for (int32_t i = 0; i < points->count; i += BRUNT_LANES) {
+        lanes H[9];
+        load_displacement_gradient(dim, points, i, H);
+        lanes log_J = lanes_log1p(volume_change(dim, H)), liquid = lanes_min(log_J, lanes_set(k[TEAR]));
+        lanes density = exponential_excess(-rest * liquid) * inverse + exponential_excess(liquid);
+        density *= k[MODULUS];
+        if (k[TEAR] < (real)INFINITY) density += k[TENSION] * (lanes_exp(log_J) - lanes_exp(liquid));
+        total_add(&stored, lanes_load(points->volume + i) * density);
+    }
+    energy->internal += total_end(&stored);
+}
+
+static void add_energy(const real *constants, const brunt_points *points, brunt_point_energy *energy) {
+    if (points->dim == 2)
+        energy_dim(2, constants, points, energy);
+    else
+        energy_dim(3, constants, points, energy);
+}
+
+static real wave_speed(const real *constants) { return constants[SOUND_SPEED]; }
+
+const brunt_model brunt_tait = {
+    .name = "tait",
+    .doc = "liquid, weakly compressible, pressure by density alone (Cole 1948, Monaghan 1994)",
+    .eos = true,
+    .parameters = parameters,
+    .parameter_count = COUNT_OF(parameters),
+    .prepare = prepare,
+    .update = update,
+    .energy = add_energy,
+    .wave_speed = wave_speed,
+};
