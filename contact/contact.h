@@ -65,6 +65,12 @@ void brunt_reach_gradient(brunt_body *body, int32_t slot, int node, double gradi
 double brunt_reach_extent(brunt_body *body, int32_t slot, int node, double share, const double n[3],
                           double farthest[3]);
 
+// The particles of the bins whose kernel covers a node, slot by slot. `base`: the node's number among the bin's nodes.
+typedef void brunt_reach_visit_fn(void *context, brunt_body *body, int64_t slot, const int base[3]);
+void brunt_reach_visit(brunt_body *body, int32_t slot, int node, brunt_reach_visit_fn *visit, void *context);
+// How far the particle in a slot reaches from its centre along unit vector n [m].
+double brunt_reach_along(brunt_body *body, int64_t slot, const double n[3]);
+
 // --- separation (separation.c)
 // Distance between what two bodies have near a node [m], 0 when that overlaps, and its direction from a to b (unit;
 // left alone when 0). `start`: where to look first, any length but 0.

@@ -30,11 +30,20 @@ double brunt_facing_target(const brunt_skin *s, double gap, double approach, dou
 }
 
 // Velocity of x relative to the facet under it, along n.
-static double approach_of(const brunt_skin *s, const hit *h, const double x[3], const double v[3], double (*of)[3]) {
+double brunt_facing_approach(const brunt_skin *s, const hit *h, const double x[3], const double v[3], double (*of)[3]) {
     double weight[4], along = dot(v, h->n);
     brunt_face_values(s, h->face, h->triangle, x, weight);
     for (int c = 0; c < 4 && s->face[h->face][c] >= 0; c++) along -= weight[c] * dot(of[s->face[h->face][c]], h->n);
     return along;
+}
+
+// What a node needs to look at sheets, or as one.
+static void look_at_sheets(const brunt_skin *s, int32_t n, looker *l) {
+    const brunt_side *side = &s->side[s->body[n]];
+    l->sheet = side->faces > 0, l->half = side->half, l->shallow = side->shallow;
+    if (!s->ring_first) return;
+    const int32_t first = s->ring_first[s->front[n]];
+    l->ring = s->ring_face + first, l->ring_count = s->ring_first[s->front[n] + 1] - first;
 }
 
 static void find_node(const job *j, int k, int32_t n) {
@@ -50,6 +59,7 @@ static void find_node(const job *j, int k, int32_t n) {
     if (!(since < quiet->second &&
           brunt_facing_still_nearest(m, f, n, faces ? normal : NULL, quiet->second - since, found))) {
         looker l = {.box = f->box_of[k], .body = s->body[n], .x = s->x[n], .normal = faces ? normal : NULL};
+        if (s->side) look_at_sheets(s, n, &l);
         quiet->travelled = f->travelled, quiet->distance = f->range, quiet->second = 0;
         if (!brunt_facing_look(f, &l)) {
             if (l.touches) quiet->distance = 0; // near, but outside the cells
@@ -65,9 +75,9 @@ static void find_node(const job *j, int k, int32_t n) {
         hit *h = &found->hits[q];
         if (h->gap > f->reach) continue;
         s->gap[n] = fmin(s->gap[n], h->gap);
-        double approach = approach_of(s, h, s->x[n], s->v[n], s->v);
-        h->target = brunt_facing_target(s, h->gap, approach,
-                                        h->gap < 0 ? approach_of(s, h, s->x[n], s->old[n], s->old) : 0, m->dt);
+        double approach = brunt_facing_approach(s, h, s->x[n], s->v[n], s->v);
+        h->target = brunt_facing_target(
+            s, h->gap, approach, h->gap < 0 ? brunt_facing_approach(s, h, s->x[n], s->old[n], s->old) : 0, m->dt);
         if (approach < h->target + 1e-6 * s->mean_edge / m->dt) f->hits[BRUNT_MAX_HITS * n + kept++] = *h;
     }
     f->found[n] = (uint8_t)kept;
@@ -86,7 +96,7 @@ static void find_nodes(void *context, int64_t begin, int64_t end, int worker) {
     }
 }
 
-static void fill_point(const brunt_meeting *m, const hit *h, const double x[3], int body, brunt_contact_point *point) {
+void brunt_facing_point(const brunt_meeting *m, const hit *h, const double x[3], int body, brunt_contact_point *point) {
     brunt_pair *pair = &m->pairs[m->pair_of[body * m->body_count + h->body]];
     memcpy(point->x, x, sizeof point->x);
     memcpy(point->n, h->n, sizeof point->n);
@@ -96,14 +106,13 @@ static void fill_point(const brunt_meeting *m, const hit *h, const double x[3], 
     point->sign = body > h->body ? 1 : -1;
 }
 
-// The master's entries; sets the point's facet.
-static void fill_master(const brunt_skin *s, const brunt_facing *f, const hit *h, const double x[3],
-                        brunt_contact_point *point, brunt_contact_entry *entry) {
+void brunt_facing_master(const brunt_skin *s, const brunt_facing *f, const hit *h, const double x[3],
+                         brunt_contact_point *point, brunt_contact_entry *entry) {
     double weight[4], gradient[4][3], height;
     brunt_face_weights(s, h->face, h->triangle, x, weight, gradient, point->facet, &height);
     for (int c = 0; c < face_corners(s, h->face); c++) {
-        entry[c] = (brunt_contact_entry){.support = f->support_of[s->face[h->face][c]], .weight = -weight[c]};
-        for (int a = 0; a < 3; a++) entry[c].turn[a] = height * gradient[c][a];
+        entry[c].support = f->support_of[s->face[h->face][c]];
+        for (int a = 0; a < 3; a++) entry[c].weight[a] = -weight[c], entry[c].turn[a] = height * gradient[c][a];
     }
 }
 
@@ -130,10 +139,10 @@ static void fill_nodes(void *context, int64_t begin, int64_t end, int worker) {
             const hit *h = &f->hits[BRUNT_MAX_HITS * n + q];
             brunt_contact_point *point = &j->points->point[at];
             *point = (brunt_contact_point){.first = entry, .count = 1 + face_corners(s, h->face), .tag = n};
-            fill_point(m, h, s->x[n], s->body[n], point);
+            brunt_facing_point(m, h, s->x[n], s->body[n], point);
             point->area = 0.5 * brunt_facing_area(s, n, h->n); // the other half is counted on the other side
-            j->points->entry[entry] = (brunt_contact_entry){.support = f->support_of[n], .weight = 1};
-            fill_master(s, f, h, s->x[n], point, j->points->entry + entry + 1);
+            j->points->entry[entry] = (brunt_contact_entry){.support = f->support_of[n], .weight = {1, 1, 1}};
+            brunt_facing_master(s, f, h, s->x[n], point, j->points->entry + entry + 1);
             point->target = h->target;
             entry += point->count;
         }
@@ -143,6 +152,7 @@ static void fill_nodes(void *context, int64_t begin, int64_t end, int worker) {
 // The support of a skin node, made when it is first asked for. -1: out of memory.
 int32_t brunt_facing_support(brunt_facing *f, const brunt_skin *s, int32_t n, brunt_contact_points *points) {
     if (f->support_of[n] >= 0) return f->support_of[n];
+    if (s->front && s->front[n] != n) return f->support_of[n] = brunt_facing_support(f, s, s->front[n], points);
     int32_t at = brunt_points_support(points);
     if (at < 0) return -1;
     brunt_support *support = &points->support[at];
@@ -173,130 +183,6 @@ static int add_nodes(const brunt_meeting *m, brunt_facing *f, brunt_contact_poin
     return 0;
 }
 
-// ------------------------------------------------------------------------------------------ material points
-
-static int32_t grid_support(brunt_facing *f, brunt_body *mpm, int k, real *node, brunt_contact_points *points) {
-    int64_t number = (node - mpm->grid.nodes) / BRUNT_NODE_REALS;
-    int32_t *index = &f->node_support[k][number];
-    if (*index) return *index - 1;
-    if (brunt_reserve((void **)&f->grid, &f->grid_capacity, ((size_t)f->grid_count + 1) * sizeof *f->grid,
-                      (size_t)f->grid_count * sizeof *f->grid))
-        return -1;
-    int32_t at = brunt_points_support(points);
-    if (at < 0) return -1;
-    for (int a = 0; a < mpm->grid.dim; a++) {
-        points->support[at].v[a] = (double)node[BRUNT_NODE_VELOCITY + a];
-        points->support[at].old[a] = (double)node[BRUNT_NODE_OLD + a];
-        points->support[at].inverse[a] = 1 / (double)node[BRUNT_NODE_MASS];
-    }
-    f->grid[f->grid_count].mpm = k, f->grid[f->grid_count].node = number, f->grid[f->grid_count++].support = at;
-    *index = at + 1;
-    return at;
-}
-
-// Nodes and weights under particle `s` of block `b`, at most 64. Their count.
-static int particle_nodes(brunt_body *body, int32_t b, int64_t s, real *node[64], double weight[64]) {
-    brunt_grid *grid = &body->grid;
-    const int dim = grid->dim, n = grid->order + 1;
-    int local[3], count = 0;
-    int32_t base[3] = {0, 0, 0};
-    double w[3][4] = {{1}, {1}, {1}};
-    brunt_node_local(grid, body->particles.bin[s], local);
-    real *const *x = brunt_field(&body->particles, BRUNT_FIELD_position);
-    for (int a = 0; a < dim; a++) {
-        base[a] = grid->blocks[b].coord[a] * grid->side + local[a];
-        brunt_kernel_weights(grid->order, ((double)x[a][s] - grid->origin[a]) / (double)grid->h - base[a], w[a]);
-    }
-    for (int i = 0; i < n; i++)
-        for (int k = 0; k < n; k++)
-            for (int l = 0; l < (dim == 3 ? n : 1); l++) {
-                const int32_t at[3] = {base[0] + i, base[1] + k, base[2] + l};
-                real *found = brunt_grid_node(grid, at);
-                if (!found || !(found[BRUNT_NODE_MASS] > 0)) continue;
-                node[count] = found;
-                weight[count++] = w[0][i] * w[1][k] * w[2][l];
-            }
-    return count;
-}
-
-static int add_particle(const brunt_meeting *m, brunt_facing *f, brunt_body *body, int k, int32_t b, int64_t s,
-                        const double x[3], const hit *h, brunt_contact_points *points) {
-    const brunt_skin *skin = m->skin;
-    real *node[64];
-    double weight[64], v[3] = {0}, old[3] = {0};
-    int count = particle_nodes(body, b, s, node, weight);
-    for (int e = 0; e < count; e++)
-        for (int a = 0; a < body->grid.dim; a++) {
-            v[a] += weight[e] * (double)node[e][BRUNT_NODE_VELOCITY + a];
-            old[a] += weight[e] * (double)node[e][BRUNT_NODE_OLD + a];
-        }
-    double approach = approach_of(skin, h, x, v, skin->v);
-    double target = brunt_facing_target(skin, h->gap, approach, approach_of(skin, h, x, old, skin->old), m->dt);
-    if (!(approach < target + 1e-6 * skin->mean_edge / m->dt)) return 0;
-    int corner = face_corners(skin, h->face);
-    for (int c = 0; c < corner; c++)
-        if (brunt_facing_support(f, skin, skin->face[h->face][c], points) < 0) return -1;
-    int32_t at = brunt_points_add(points);
-    if (at < 0) return -1;
-    fill_point(m, h, x, body->index, &points->point[at]);
-    points->point[at].target = target, points->point[at].tag = -1;
-    points->point[at].area = body->grid.dim == 3 ? body->spacing * body->spacing : body->spacing;
-    for (int e = 0; e < count; e++) {
-        int32_t support = grid_support(f, body, k, node[e], points);
-        if (support < 0 || brunt_points_entry(points, support, weight[e]) < 0) return -1;
-    }
-    brunt_contact_entry master[4];
-    fill_master(skin, f, h, x, &points->point[at], master);
-    for (int c = 0; c < corner; c++) {
-        int32_t entry = brunt_points_entry(points, master[c].support, master[c].weight);
-        if (entry < 0) return -1;
-        points->entry[entry] = master[c];
-    }
-    return 0;
-}
-
-static int add_particles(const brunt_meeting *m, brunt_facing *f, brunt_body *body, int k, int32_t box,
-                         brunt_contact_points *points) {
-    const brunt_grid *grid = &body->grid;
-    brunt_particles *p = &body->particles;
-    const int dim = grid->dim;
-    const size_t nodes = (size_t)grid->slot_count * BRUNT_BLOCK_NODES;
-    if (brunt_reserve((void **)&f->node_support[k], &f->node_support_capacity[k], nodes * sizeof(int32_t), 0))
-        return -1;
-    memset(f->node_support[k], 0, nodes * sizeof(int32_t));
-    real *const *place = brunt_field(p, BRUNT_FIELD_position), *const *F =
-                                                                   brunt_field(p, BRUNT_FIELD_deformation_gradient);
-    const real *reach = brunt_field(p, BRUNT_FIELD_reach)[0];
-    for (int32_t b = 0; b < grid->block_count; b++) {
-        double low[3] = {0}, high[3] = {0};
-        for (int a = 0; a < dim; a++) {
-            low[a] = grid->origin[a] + (double)grid->h * grid->blocks[b].coord[a] * grid->side;
-            high[a] = low[a] + (double)grid->h * (grid->side + 1);
-        }
-        if (!brunt_facing_in_reach(f, box, low, high, f->range)) continue;
-        for (int64_t s = grid->blocks[b].first; s < grid->blocks[b].first + grid->blocks[b].count; s++) {
-            double x[3] = {0};
-            for (int a = 0; a < dim; a++) x[a] = (double)place[a][s];
-            slave_hits found;
-            looker l = {.box = box, .body = body->index, .x = x};
-            if (!brunt_facing_look(f, &l)) continue;
-            double distance, second;
-            brunt_facing_look_around(m, f, &l, -1, &found, &distance, &second);
-            for (int32_t q = 0; q < found.count; q++) {
-                double square = 0;
-                for (int c = 0; c < dim; c++) {
-                    double t = 0;
-                    for (int r = 0; r < dim; r++) t += (double)F[r * dim + c][s] * found.hits[q].n[r];
-                    square += t * t;
-                }
-                found.hits[q].gap -= (double)reach[s] * sqrt(square);
-                if (add_particle(m, f, body, k, b, s, x, &found.hits[q], points)) return -1;
-            }
-        }
-    }
-    return 0;
-}
-
 int brunt_facing_find(const brunt_meeting *m, brunt_body *mpm, int mpm_count, brunt_facing *f,
                       brunt_contact_points *points) {
     const brunt_skin *s = m->skin;
@@ -313,7 +199,8 @@ int brunt_facing_find(const brunt_meeting *m, brunt_body *mpm, int mpm_count, br
     for (int k = 0; k < mpm_count; k++) {
         int32_t box = 0;
         while (f->box[box].mpm != k) box++;
-        if (f->near_first[box + 1] > f->near_first[box] && add_particles(m, f, &mpm[k], k, box, points)) return -1;
+        if (f->near_first[box + 1] > f->near_first[box] && brunt_facing_particles(m, f, &mpm[k], k, box, points))
+            return -1;
     }
     return 0;
 }
@@ -324,29 +211,33 @@ static void note_state(brunt_skin *s, const brunt_contact_points *points) {
     for (int32_t k = 0; k < points->point_count; k++) {
         const brunt_contact_point *p = &points->point[k];
         if (p->tag < 0 || !(p->push > 0)) continue;
+        uint8_t *state = &s->state[s->front ? s->front[p->tag] : p->tag];
         bool slips = p->slips || !(p->friction > 0);
         if (slips)
-            s->state[p->tag] = 2;
-        else if (!s->state[p->tag])
-            s->state[p->tag] = 1;
+            *state = 2;
+        else if (!*state)
+            *state = 1;
     }
+}
+
+// The front of a sheet tells what is nearest to either side.
+static void note_gaps(brunt_skin *s) {
+    for (int k = 0; k < s->fem_count; k++)
+        for (int32_t n = s->node_end[k]; s->active[k] && n < s->node_range[k + 1]; n++)
+            s->gap[s->front[n]] = fmin(s->gap[s->front[n]], s->gap[n]);
 }
 
 void brunt_facing_finish(const brunt_meeting *m, brunt_body *mpm, brunt_facing *f, const brunt_contact_points *points) {
     brunt_skin *s = m->skin;
     for (int32_t n = 0; n < s->node_count; n++) {
         int32_t at = f->support_of[n];
-        if (at < 0) continue;
+        if (at < 0 || (s->front && s->front[n] != n)) continue;
         for (int a = 0; a < 3; a++) {
-            s->impulse[n][a] = points->support[at].impulse[a];
+            s->impulse[n][a] += points->support[at].impulse[a];
             if (s->inverse[n][a] > 0) s->v[n][a] = points->support[at].v[a];
         }
     }
-    for (int32_t g = 0; g < f->grid_count; g++) {
-        brunt_body *body = &mpm[f->grid[g].mpm];
-        real *node = body->grid.nodes + f->grid[g].node * BRUNT_NODE_REALS;
-        for (int a = 0; a < body->grid.dim; a++)
-            node[BRUNT_NODE_VELOCITY + a] = (real)points->support[f->grid[g].support].v[a];
-    }
+    brunt_facing_give_grids(m, mpm, f, points);
     note_state(s, points);
+    if (s->front) note_gaps(s);
 }

@@ -24,6 +24,9 @@ int brunt_facing_find(const brunt_meeting *m, brunt_body *mpm, int mpm_count, br
 // symmetry).
 int brunt_facing_walls(const brunt_meeting *m, brunt_wall *walls, int wall_count, double time, brunt_facing *facing,
                        brunt_contact_points *points);
+// After the solution: what contact gave to nodes that planes hold is those planes' reaction.
+void brunt_facing_book_holds(const brunt_meeting *m, brunt_wall *walls, int wall_count, double time,
+                             const brunt_facing *facing, const brunt_contact_points *points);
 // After the solution: velocities back to the skin and to the grids' nodes, contact state to the skin.
 void brunt_facing_finish(const brunt_meeting *m, brunt_body *mpm, brunt_facing *facing,
                          const brunt_contact_points *points);

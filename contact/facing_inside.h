@@ -27,6 +27,7 @@ typedef struct bounds {
     int body; // of the world
     int fem;  // index in the skin, -1: material points
     int mpm;
+    bool sheet;
 } bounds;
 
 typedef struct near_pair {
@@ -79,16 +80,35 @@ struct brunt_facing {
     int32_t *first_point;
     size_t first_point_capacity;
 
-    int32_t **node_support; // of each mpm body: of each grid node its support + 1
+    int32_t **node_support; // of each mpm body: of each grid node its place in `grid` + 1
     size_t *node_support_capacity;
     int mpm_count;
     struct grid_support {
         int32_t mpm;
         int64_t node;
         int32_t support;
+        double sign[3]; // v of the node is that of the support, turned over by mirrors; 0 across one it lies on
     } * grid;
     size_t grid_capacity;
     int32_t grid_count;
+    // What particles have seen, by the worker that looked; and of each block of a body where it is there.
+    struct sight {
+        struct seen {
+            int32_t block;
+            int64_t particle;
+            double x[3];
+            hit h;
+        } * seen;
+        size_t capacity;
+        int32_t count;
+        bool failed;
+    } * sight;
+    int sight_count;
+    struct run {
+        int worker;
+        int32_t first, count;
+    } * run;
+    size_t run_capacity;
 };
 
 #define RESERVE(f, what, count)                                                                                        \
@@ -100,6 +120,12 @@ typedef struct looker {
     const double *x, *normal; // outward; NULL when it has none
     int64_t cell;
     int32_t touch[BRUNT_MAX_NEAR], touches, enter[BRUNT_MAX_NEAR], enters;
+    // Where there are sheets: half its own thickness, how far behind one it may be found, and the elements of its own
+    // body that are no obstacle; without those the body does not meet itself.
+    bool sheet;
+    double half, shallow;
+    const int32_t *ring;
+    int32_t ring_count;
 } looker;
 
 static inline int face_corners(const brunt_skin *s, int32_t face) {
@@ -126,3 +152,15 @@ bool brunt_facing_still_nearest(const brunt_meeting *m, const brunt_facing *f, i
 double brunt_facing_target(const brunt_skin *s, double gap, double approach, double before, double dt);
 double brunt_facing_area(const brunt_skin *s, int32_t n, const double direction[3]);
 int32_t brunt_facing_support(brunt_facing *f, const brunt_skin *s, int32_t n, brunt_contact_points *points);
+double brunt_facing_approach(const brunt_skin *s, const hit *h, const double x[3], const double v[3], double (*of)[3]);
+void brunt_facing_point(const brunt_meeting *m, const hit *h, const double x[3], int body, brunt_contact_point *point);
+// The master's entries; sets the point's facet.
+void brunt_facing_master(const brunt_skin *s, const brunt_facing *f, const hit *h, const double x[3],
+                         brunt_contact_point *point, brunt_contact_entry *entry);
+
+// --- facing_particles.c
+// Contact points of the particles of body k of the mpm bodies. 0, or -1: out of memory.
+int brunt_facing_particles(const brunt_meeting *m, brunt_facing *f, brunt_body *body, int k, int32_t box,
+                           brunt_contact_points *points);
+// After the solution: velocities back to the grids' nodes.
+void brunt_facing_give_grids(const brunt_meeting *m, brunt_body *mpm, brunt_facing *f, const brunt_contact_points *points);

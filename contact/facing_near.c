@@ -11,15 +11,12 @@ static const double RANGE = 0.25; // mean edges: how far a body looks for others
 void brunt_facing_free(brunt_facing *f) {
     if (!f) return;
     for (int k = 0; k < f->mpm_count; k++) brunt_free(f->node_support[k]);
-    void *owned[] = {f->box,          f->near,
-                     f->box_of,       f->near_first,
-                     f->near_list,    f->cell_first,
-                     f->cell_face,    f->made_x,
-                     f->found,        f->hits,
-                     f->last,         f->quiet,
-                     f->support_of,   f->first_point,
-                     f->node_support, f->node_support_capacity,
-                     f->grid,         f};
+    for (int t = 0; t < f->sight_count; t++) brunt_free(f->sight[t].seen);
+    void *owned[] = {f->box,        f->near,        f->box_of,       f->near_first,
+                     f->near_list,  f->cell_first,  f->cell_face,    f->made_x,
+                     f->found,      f->hits,        f->last,         f->quiet,
+                     f->support_of, f->first_point, f->node_support, f->node_support_capacity,
+                     f->grid,       f->sight,       f->run,          f};
     for (size_t k = 0; k < sizeof owned / sizeof owned[0]; k++) brunt_free(owned[k]);
 }
 
@@ -66,7 +63,7 @@ static int find_boxes(const brunt_meeting *m, brunt_body *mpm, int mpm_count, br
     if (RESERVE(f, box, f->box_count + 1) || RESERVE(f, box_of, s->fem_count + 1)) return -1;
     for (int k = 0; k < s->fem_count; k++) {
         bounds *box = &f->box[k];
-        *box = (bounds){.body = s->fem[k]->index, .fem = k, .mpm = -1};
+        *box = (bounds){.body = s->fem[k]->index, .fem = k, .mpm = -1, .sheet = s->fem[k]->element->sheet};
         memcpy(box->low, s->low[k], sizeof box->low), memcpy(box->high, s->high[k], sizeof box->high);
     }
     for (int k = 0; k < mpm_count; k++) {
@@ -83,7 +80,9 @@ static int find_boxes(const brunt_meeting *m, brunt_body *mpm, int mpm_count, br
 static int find_pairs(const brunt_meeting *m, brunt_facing *f) {
     f->near_count = 0;
     for (int32_t i = 0; i < f->box_count; i++)
-        for (int32_t k = i + 1; k < f->box_count && f->box[k].low[0] - 2 * f->range <= f->box[i].high[0]; k++) {
+        // A sheet may be near itself.
+        for (int32_t k = f->box[i].sheet ? i : i + 1;
+             k < f->box_count && f->box[k].low[0] - 2 * f->range <= f->box[i].high[0]; k++) {
             if (!overlap(&f->box[i], &f->box[k], 2 * f->range) || !meets(m, &f->box[i], &f->box[k])) continue;
             if (brunt_reserve((void **)&f->near, &f->near_capacity, ((size_t)f->near_count + 1) * sizeof *f->near,
                               (size_t)f->near_count * sizeof *f->near))
@@ -92,11 +91,14 @@ static int find_pairs(const brunt_meeting *m, brunt_facing *f) {
         }
     if (RESERVE(f, near_first, f->box_count + 2) || RESERVE(f, near_list, 2 * f->near_count + 1)) return -1;
     memset(f->near_first, 0, ((size_t)f->box_count + 2) * sizeof *f->near_first);
-    for (int32_t p = 0; p < f->near_count; p++) f->near_first[f->near[p].a + 2]++, f->near_first[f->near[p].b + 2]++;
+    for (int32_t p = 0; p < f->near_count; p++) {
+        f->near_first[f->near[p].a + 2]++;
+        if (f->near[p].b != f->near[p].a) f->near_first[f->near[p].b + 2]++;
+    }
     for (int32_t k = 2; k <= f->box_count + 1; k++) f->near_first[k] += f->near_first[k - 1];
     for (int32_t p = 0; p < f->near_count; p++) {
         f->near_list[f->near_first[f->near[p].a + 1]++] = f->near[p].b;
-        f->near_list[f->near_first[f->near[p].b + 1]++] = f->near[p].a;
+        if (f->near[p].b != f->near[p].a) f->near_list[f->near_first[f->near[p].b + 1]++] = f->near[p].a;
     }
     return 0;
 }
@@ -172,9 +174,9 @@ int brunt_facing_near(const brunt_meeting *m, brunt_body *mpm, int mpm_count, co
     for (int w = 0; w < wall_count; w++)
         if (!walls[w].region)
             walls_speed = fmax(walls_speed, sqrt(dot(walls[w].plane.velocity, walls[w].plane.velocity)));
-    f->wall_reach = (fastest + frame + walls_speed) * m->dt;
-    f->reach = 2 * fastest * m->dt + spacing;
-    f->range = fmax(fmax(RANGE * s->mean_edge + spacing, f->reach), m->look);
+    f->wall_reach = (fastest + frame + walls_speed) * m->dt + 0.5 * s->thickest;
+    f->reach = 2 * fastest * m->dt + spacing + s->thickest;
+    f->range = fmax(fmax(RANGE * s->mean_edge + spacing + s->thickest, f->reach), m->look);
     if (find_boxes(m, mpm, mpm_count, f) || find_pairs(m, f)) return -1;
     for (int k = 0; k < s->fem_count; k++) {
         int32_t box = f->box_of[k];

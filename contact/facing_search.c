@@ -4,12 +4,13 @@
 #include "closest.h"
 
 enum { MAX_TIED = 16 };
-static const double MARGIN = 0.125; // mean edges: how far facets may move before the cells are made anew
-static const double CELL = 0.5;     // mean edges: of the cells that facets are found in
-static const double OPPOSED = 0.1;  // least cosine between a slave's outward normal and the one into the master
-static const double ASKEW = -0.3;   // ... or, where nothing opposed is within ...
-static const double CLOSE = 0.25;   // ... so many mean edges, the least one with the normal of a facet
-static const double SLACK = 0.125;  // mean edges: facets so much further than the nearest are looked at closely, too
+static const double MARGIN = 0.125;   // mean edges: how far facets may move before the cells are made anew
+static const double CELL = 0.5;       // mean edges: of the cells that facets are found in
+static const double OPPOSED = 0.1;    // least cosine between a slave's outward normal and the one into the master
+static const double ASKEW = -0.3;     // ... or, where nothing opposed is within ...
+static const double CLOSE = 0.25;     // ... so many mean edges, the least one with the normal of a facet
+static const double SAME_SLOPE = 0.7; // cosine of normals from which on two facets of a sheet are one slope
+static const double SLACK = 0.125;    // mean edges: facets so much further than the nearest are looked at closely, too
 
 // ------------------------------------------------------------------------------------------ cells of facets
 
@@ -47,7 +48,7 @@ static void visit_cells(const brunt_meeting *m, brunt_facing *f, bool list) {
     const double by = f->made_range + MARGIN * s->mean_edge;
     for (int k = 0; k < s->fem_count; k++) {
         if (f->near_first[f->box_of[k] + 1] == f->near_first[f->box_of[k]]) continue;
-        for (int32_t face = s->face_range[k]; face < s->face_range[k + 1]; face++) {
+        for (int32_t face = s->face_range[k]; face < s->face_end[k]; face++) { // of a sheet, for both its sides
             double low[3], high[3];
             int32_t from[3], to[3];
             face_bounds(s, face, low, high);
@@ -145,6 +146,35 @@ typedef struct tied {
     int32_t face;
 } tied;
 
+static bool is_sheet(const brunt_skin *s, int32_t body) { return s->side && s->side[body].faces > 0; }
+
+// The nearest point of the front of a sheet as one of its back: nodes there are in reversed order.
+static void turn_over(const brunt_skin *s, int32_t *face, brunt_closest *at) {
+    if (s->face[*face][3] >= 0) at->triangle = (6 - at->triangle) % 4;
+    *face += s->side[s->face_body[*face]].faces;
+    for (int a = 0; a < 3; a++) at->normal[a] = -at->normal[a];
+}
+
+// Of either side of a sheet: the same numbers for both.
+static brunt_closest closest_on(const brunt_skin *s, int32_t face, const double x[3]) {
+    const int32_t node = s->face[face][0];
+    if (!s->front || s->front[node] == node) return brunt_closest_on_face(s, face, x);
+    int32_t front = face - s->side[s->face_body[face]].faces;
+    brunt_closest at = brunt_closest_on_face(s, front, x);
+    turn_over(s, &front, &at);
+    return at;
+}
+
+// Whether someone is on the side of a sheet that facet is of, and not beyond its edge when a little behind it. There is
+// no inside that it could have entered: who is further behind belongs to the other side, or to the far side of a body
+// that is on this one.
+static bool on_side(const looker *l, const brunt_closest *at) {
+    const double height = dot(at->normal, at->d);
+    if (height > 0) return true;
+    if (!l->normal) return height == 0;
+    return height > -l->shallow && height * height >= 0.5 * at->square;
+}
+
 // Keeps `found` among the nearest of its body; nearest points that are equally near belong to facets that share an edge
 // or a corner there, and the one that most faces the place decides on which side of the surface it is.
 typedef struct nearest {
@@ -228,7 +258,7 @@ bool brunt_facing_look(const brunt_facing *f, looker *l) {
         const bounds *other = &f->box[f->near_list[q]];
         if (other->fem < 0 || !within(other, l->x, f->range)) continue;
         l->touch[l->touches++] = other->body;
-        if (within(other, l->x, 0)) l->enter[l->enters++] = other->body;
+        if (!other->sheet && within(other, l->x, 0)) l->enter[l->enters++] = other->body;
     }
     l->cell = l->touches ? cell_of(f, l->x) : -1;
     return l->cell >= 0;
@@ -246,12 +276,27 @@ typedef struct two_nearest {
     double first, second; // squares of their distances
 } two_nearest;
 
+static bool in_ring(const looker *l, int32_t face) {
+    int32_t low = 0, high = l->ring_count;
+    while (low < high) {
+        int32_t middle = (low + high) / 2;
+        if (l->ring[middle] < face)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < l->ring_count && l->ring[low] == face;
+}
+
 // The nearest facets in a cell of each body in `list`, among those that face `normal` by more than `least`. How many
 // bodies. `guess`: a face that may well be the nearest, -1; it saves looking closely at most others. `all`: also notes
-// the two nearest facets of any direction, as far as `slack` beyond the nearest; may be NULL.
-static int find_nearest(const brunt_meeting *m, const brunt_facing *f, const looker *l, const double *normal,
-                        double least, const int32_t *list, int32_t count, int32_t guess, double slack, two_nearest *all,
-                        nearest best[BRUNT_MAX_HITS]) {
+// the two nearest facets of any direction, as far as `slack` beyond the nearest; may be NULL. `sheets`: whether
+// there are any; the cells have their fronts, for both sides.
+static inline __attribute__((always_inline)) int find_nearest(const brunt_meeting *m, const brunt_facing *f,
+                                                              const looker *l, const double *normal, double least,
+                                                              const int32_t *list, int32_t count, int32_t guess,
+                                                              double slack, two_nearest *all, bool sheets,
+                                                              nearest best[BRUNT_MAX_HITS]) {
     const brunt_skin *s = m->skin;
     const double range2 = f->range * f->range;
     double bound = INFINITY; // of the one body that the guess belongs to
@@ -260,22 +305,31 @@ static int find_nearest(const brunt_meeting *m, const brunt_facing *f, const loo
     int bodies = 0;
     if (all) *all = (two_nearest){-1, range2, range2};
     for (int32_t q = f->cell_first[l->cell]; q < f->cell_first[l->cell + 1]; q++) {
-        const int32_t face = f->cell_face[q], other = s->face_body[face];
-        if (other == l->body) continue;
+        int32_t face = f->cell_face[q];
+        const int32_t other = s->face_body[face];
+        if (other == l->body && !(sheets && l->ring_count)) continue;
+        const bool sheet = sheets && s->side[other].faces;
         int b = 0;
         while (b < bodies && best[b].body != other) b++;
         double reach = b < bodies ? best[b].root : f->range;
         if (guess >= 0 && bound < reach && s->face_body[guess] == other) reach = bound;
         if (!near_box(s->face_box[face], l->x, reach + slack)) continue;
-        const bool faces = !normal || -dot(s->face_normal[face], normal) > least;
+        const double cosine = normal ? -dot(s->face_normal[face], normal) : 1;
+        bool faces = !normal || cosine > least || (sheet && -cosine > least);
         if ((!faces && !all) || !is_among(other, list, count)) continue;
+        if (sheets && other == l->body && in_ring(l, face)) continue;
         brunt_closest at = face == guess ? guessed : brunt_closest_on_face(s, face, l->x);
         if (at.square > range2) continue;
+        const bool behind = sheet && dot(at.normal, at.d) < 0;
         if (all && at.square < all->first)
-            all->second = all->first, all->first = at.square, all->face = face;
+            all->second = all->first, all->first = at.square, all->face = behind ? face + s->side[other].faces : face;
         else if (all && at.square < all->second)
             all->second = at.square;
         if (!faces) continue;
+        if (sheet) {
+            if (normal ? cosine < 0 : behind) turn_over(s, &face, &at);
+            if (!on_side(l, &at)) continue;
+        }
         if (b == bodies) {
             if (b == BRUNT_MAX_HITS) continue;
             best[b].body = other, best[b].count = 0, best[b].square = range2, best[b].root = f->range;
@@ -286,12 +340,62 @@ static int find_nearest(const brunt_meeting *m, const brunt_facing *f, const loo
     return bodies;
 }
 
+// Whether a body, behind whose facet someone with a normal is, has one that he would sooner leave it through the other
+// way: then he is before that one, or on the far side of a body thinner than the range, or the other side of a sheet.
+static bool other_way_out(const brunt_meeting *m, const brunt_facing *f, const looker *l, int32_t body, double square) {
+    const brunt_skin *s = m->skin;
+    for (int32_t q = f->cell_first[l->cell]; q < f->cell_first[l->cell + 1]; q++) {
+        const int32_t face = f->cell_face[q];
+        if (s->face_body[face] != body || dot(s->face_normal[face], l->normal) <= OPPOSED) continue;
+        if (near_box(s->face_box[face], l->x, sqrt(square)) && brunt_closest_on_face(s, face, l->x).square < square)
+            return true;
+    }
+    return false;
+}
+
+// Facets of sheets that someone is right above, beside the nearest one and on another slope: in a valley all of them
+// bear. Else what moves along one wall of a corner would be let through the other in the steps in which that is the
+// further one.
+static void add_slopes(const brunt_meeting *m, const brunt_facing *f, const looker *l, slave_hits *out) {
+    const brunt_skin *s = m->skin;
+    bool any = false;
+    for (int32_t k = 0; k < out->count; k++) any = any || is_sheet(s, out->hits[k].body);
+    for (int32_t q = f->cell_first[l->cell]; any && q < f->cell_first[l->cell + 1]; q++) {
+        int32_t face = f->cell_face[q];
+        const int32_t body = s->face_body[face];
+        if (!is_sheet(s, body) || !near_box(s->face_box[face], l->x, f->range)) continue;
+        const double *normal = s->face_normal[face], *centre = s->face_centre[face];
+        double towards = 0;
+        for (int a = 0; a < 3; a++) towards += normal[a] * (l->normal ? -l->normal[a] : l->x[a] - centre[a]);
+        if (l->normal && fabs(towards) <= OPPOSED) continue;
+        bool met = false, same = false;
+        for (int32_t k = 0; k < out->count; k++) {
+            if (out->hits[k].body != body) continue;
+            met = true;
+            same = same || (towards < 0 ? -1 : 1) * dot(out->hits[k].n, normal) > SAME_SLOPE;
+        }
+        if (!met || same || (body == l->body && in_ring(l, face)) || out->count == BRUNT_MAX_HITS) continue;
+        brunt_closest at = brunt_closest_on_face(s, face, l->x);
+        if (towards < 0) turn_over(s, &face, &at);
+        if (!at.inside || at.square > f->range * f->range || !on_side(l, &at)) continue;
+        hit *h = &out->hits[out->count++];
+        *h = (hit){.face = face, .triangle = at.triangle, .body = body, .gap = dot(at.normal, at.d)};
+        memcpy(h->n, at.normal, sizeof h->n);
+    }
+}
+
+// Middle surfaces of sheets stay half their thickness away from what they meet.
+static void thicken(const brunt_skin *s, double half, slave_hits *out) {
+    for (int32_t q = 0; q < out->count; q++) out->hits[q].gap -= half + s->side[out->hits[q].body].half;
+}
+
 // What someone meets of each other body. Facets that face the slave come first: a node that slides in under a block
 // meets its underside, not the wall it came through. Only a slave that has none of those close by, and is inside, is
 // sent out through the nearest facet there is. Tells how far the nearest facet is, or how far was looked, and how far
 // the nearest but the one hit.
-void brunt_facing_look_around(const brunt_meeting *m, const brunt_facing *f, const looker *l, int32_t guess,
-                              slave_hits *out, double *distance, double *second) {
+static inline __attribute__((always_inline)) void look_around(const brunt_meeting *m, const brunt_facing *f,
+                                                              const looker *l, int32_t guess, slave_hits *out,
+                                                              double *distance, double *second, bool sheets) {
     const brunt_skin *s = m->skin;
     nearest facing[BRUNT_MAX_HITS], any[BRUNT_MAX_HITS];
     two_nearest two;
@@ -300,7 +404,8 @@ void brunt_facing_look_around(const brunt_meeting *m, const brunt_facing *f, con
     if (guess >= 0 && (!is_among(s->face_body[guess], l->touch, l->touches) ||
                        (l->normal && -dot(s->face_normal[guess], l->normal) <= OPPOSED)))
         guess = -1;
-    int bodies = find_nearest(m, f, l, l->normal, OPPOSED, l->touch, l->touches, guess, slack, &two, facing),
+    if (sheets && guess >= 0 && is_sheet(s, s->face_body[guess])) guess = -1; // it may be on the other side now
+    int bodies = find_nearest(m, f, l, l->normal, OPPOSED, l->touch, l->touches, guess, slack, &two, sheets, facing),
         unresolved = 0;
     int32_t entered[BRUNT_MAX_NEAR];
     for (int32_t k = 0; l->normal && k < l->enters; k++) {
@@ -310,7 +415,7 @@ void brunt_facing_look_around(const brunt_meeting *m, const brunt_facing *f, con
                 resolved || (facing[b].body == l->enter[k] && facing[b].count && facing[b].square <= close * close);
         if (!resolved) entered[unresolved++] = l->enter[k];
     }
-    int all = unresolved ? find_nearest(m, f, l, NULL, 0, entered, unresolved, -1, 0, NULL, any) : 0;
+    int all = unresolved ? find_nearest(m, f, l, NULL, 0, entered, unresolved, -1, 0, NULL, false, any) : 0;
     for (int b = 0; b < all; b++) {
         if (!any[b].count || !hit_behind(&any[b], l->normal, &out->hits[out->count])) continue;
         out->count++;
@@ -318,23 +423,40 @@ void brunt_facing_look_around(const brunt_meeting *m, const brunt_facing *f, con
             if (facing[k].body == any[b].body) facing[k].count = 0;
     }
     // Whoever is before the nearest facet of all is outside, even if the nearest facet that faces him is seen from
-    // behind.
+    // behind. A sheet has no inside: it tells nothing of the others.
+    const bool by_sheet = sheets && two.face >= 0 && is_sheet(s, s->face_body[two.face]);
     bool outside = false;
-    if (two.face >= 0) {
+    if (two.face >= 0 && !by_sheet) {
         brunt_closest at = brunt_closest_on_face(s, two.face, l->x);
         double height = dot(at.normal, at.d);
         outside = height > 1e-6 * s->mean_edge && height > 0.1 * sqrt(at.square);
     }
     const bool plain = out->count == 0 && l->enters <= 1;
+    bool inside = out->count > 0;
     for (int b = 0; b < bodies && out->count < BRUNT_MAX_HITS; b++) {
         hit *h = &out->hits[out->count];
         if (!facing[b].count || !hit_facing(s, &facing[b], l->normal, h)) continue;
-        if (!(h->gap < 0 && outside && h->body == s->face_body[two.face])) out->count++;
+        if (h->gap < 0 && outside && h->body == s->face_body[two.face]) continue;
+        if (sheets && h->gap < 0 && l->normal && (by_sheet || l->sheet) && !is_sheet(s, h->body) &&
+            other_way_out(m, f, l, h->body, facing[b].square))
+            continue;
+        inside = inside || h->gap < 0;
+        out->count++;
     }
-    *distance = outside || two.face < 0 ? fmin(f->range, sqrt(two.first)) : 0;
+    if (sheets) add_slopes(m, f, l, out);
+    *distance = outside || two.face < 0 || (by_sheet && !inside) ? fmin(f->range, sqrt(two.first)) : 0;
     *second = 0;
     if (plain && out->count == 1 && two.face == out->hits[0].face)
         *second = fmin(fmin(f->range, sqrt(two.second)), *distance + slack) * (1 - 1e-8);
+    if (sheets) thicken(s, l->half, out);
+}
+
+void brunt_facing_look_around(const brunt_meeting *m, const brunt_facing *f, const looker *l, int32_t guess,
+                              slave_hits *out, double *distance, double *second) {
+    if (m->skin->side)
+        look_around(m, f, l, guess, out, distance, second, true);
+    else
+        look_around(m, f, l, guess, out, distance, second, false);
 }
 
 // The facet that was the nearest, when it is certain that it still is: it is nearer than `least`, which no other one
@@ -344,10 +466,12 @@ bool brunt_facing_still_nearest(const brunt_meeting *m, const brunt_facing *f, i
     const brunt_skin *s = m->skin;
     const int32_t face = f->last[n];
     if (face < 0 || (normal && -dot(s->face_normal[face], normal) <= OPPOSED)) return false;
-    nearest one = {.body = s->face_body[face], .count = 1, .tied = {{brunt_closest_on_face(s, face, s->x[n]), face}}};
+    nearest one = {.body = s->face_body[face], .count = 1, .tied = {{closest_on(s, face, s->x[n]), face}}};
+    if (is_sheet(s, one.body) && !(dot(one.tied[0].at.normal, one.tied[0].at.d) > 0)) return false;
     const double square = one.tied[0].at.square, close = CLOSE * s->mean_edge;
     if (square >= least * least || square > close * close || square > f->range * f->range) return false;
     out->count = hit_facing(s, &one, normal, &out->hits[0]) ? 1 : 0;
+    if (s->side) thicken(s, s->side[s->body[n]].half, out);
     return true;
 }
 

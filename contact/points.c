@@ -40,7 +40,7 @@ int32_t brunt_points_entry(brunt_contact_points *p, int32_t support, double weig
     int32_t at = ADD(p, entry);
     if (at < 0) return -1;
     p->entry[at].support = support;
-    p->entry[at].weight = weight;
+    for (int a = 0; a < 3; a++) p->entry[at].weight[a] = weight;
     p->point[p->point_count - 1].count++;
     return at;
 }
@@ -60,14 +60,14 @@ void brunt_point_velocity(const brunt_contact_points *p, const brunt_contact_poi
         const brunt_contact_entry *entry = &p->entry[e];
         const double *v = old ? p->support[entry->support].old : p->support[entry->support].v;
         double rise = point->facet[0] * v[0] + point->facet[1] * v[1] + point->facet[2] * v[2];
-        for (int a = 0; a < 3; a++) u[a] += entry->weight * v[a] + rise * entry->turn[a];
+        for (int a = 0; a < 3; a++) u[a] += entry->weight[a] * v[a] + rise * entry->turn[a];
     }
 }
 
 // What an entry gives its support of the point's impulse: the transpose of the above.
 static void give(const brunt_contact_point *point, const brunt_contact_entry *entry, const double J[3], double out[3]) {
     double turn = entry->turn[0] * J[0] + entry->turn[1] * J[1] + entry->turn[2] * J[2];
-    for (int a = 0; a < 3; a++) out[a] = entry->weight * J[a] + turn * point->facet[a];
+    for (int a = 0; a < 3; a++) out[a] = entry->weight[a] * J[a] + turn * point->facet[a];
 }
 
 // Entries by support, in the order of the points.
@@ -89,7 +89,9 @@ static int transpose(brunt_contact_points *p) {
         for (int32_t e = point->first; e < point->first + point->count; e++) {
             const brunt_contact_entry *entry = &p->entry[e];
             p->pressing[first[entry->support + 1]++] =
-                (struct brunt_pressing){k, entry->weight, {entry->turn[0], entry->turn[1], entry->turn[2]}};
+                (struct brunt_pressing){k,
+                                        {entry->weight[0], entry->weight[1], entry->weight[2]},
+                                        {entry->turn[0], entry->turn[1], entry->turn[2]}};
         }
     }
     return 0;
@@ -112,13 +114,15 @@ static void weigh_points(void *context, int64_t begin, int64_t end, int worker) 
     }
 }
 
+static double greatest(const double weight[3]) { return fmax(fabs(weight[0]), fmax(fabs(weight[1]), fabs(weight[2]))); }
+
 static void load_supports(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     brunt_contact_points *p = context;
     for (int64_t s = begin * GRAIN; s < end * GRAIN && s < p->support_count; s++) {
         double load = 0;
         for (int32_t q = p->pressing_first[s]; q < p->pressing_first[s + 1]; q++)
-            load += fabs(p->pressing[q].weight) * p->point[p->pressing[q].point].scale;
+            load += greatest(p->pressing[q].weight) * p->point[p->pressing[q].point].scale;
         p->support[s].load = load;
     }
 }
@@ -132,7 +136,7 @@ static void sum_rows(void *context, int64_t begin, int64_t end, int worker) {
         double along[3] = {0};
         for (int32_t e = point->first; e < point->first + point->count; e++) {
             const brunt_support *s = &p->support[p->entry[e].support];
-            for (int a = 0; a < 3; a++) along[a] += fabs(p->entry[e].weight) * s->load * s->inverse[a];
+            for (int a = 0; a < 3; a++) along[a] += fabs(p->entry[e].weight[a]) * s->load * s->inverse[a];
         }
         for (int a = 0; a < 3; a++) {
             point->response += point->n[a] * point->n[a] * along[a];
@@ -199,7 +203,7 @@ static void move_supports(void *context, int64_t begin, int64_t end, int worker)
             const struct brunt_pressing *by = &p->pressing[q];
             const struct brunt_given *given = &p->given[by->point];
             const double *J = given->impulse, turn = by->turn[0] * J[0] + by->turn[1] * J[1] + by->turn[2] * J[2];
-            for (int a = 0; a < 3; a++) sum[a] += by->weight * J[a] + turn * given->facet[a];
+            for (int a = 0; a < 3; a++) sum[a] += by->weight[a] * J[a] + turn * given->facet[a];
         }
         brunt_support *support = &p->support[s];
         for (int a = 0; a < 3; a++) {

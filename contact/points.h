@@ -28,7 +28,7 @@ typedef struct brunt_support {
 
 typedef struct brunt_contact_entry {
     int32_t support;
-    double weight;  // w_s of a slave; -beta_k of a master
+    double weight[3]; // w_s of a slave, -beta_k of a master, by component: mirrors turn some of them
     double turn[3]; // 0 of a slave; height grad beta_k of a master
 } brunt_contact_entry;
 
@@ -65,7 +65,7 @@ typedef struct brunt_contact_points {
     // sweep gives beside the facet it turns with, so that a sweep reads little more than it uses.
     struct brunt_pressing {
         int32_t point;
-        double weight, turn[3];
+        double weight[3], turn[3];
     } * pressing;
     size_t pressing_capacity;
     int32_t *pressing_first;
@@ -83,7 +83,7 @@ void brunt_points_free(brunt_contact_points *points);
 // New support, point, and entry of the last point. The index, or -1: out of memory.
 int32_t brunt_points_support(brunt_contact_points *points);
 int32_t brunt_points_add(brunt_contact_points *points);
-int32_t brunt_points_entry(brunt_contact_points *points, int32_t support, double weight);
+int32_t brunt_points_entry(brunt_contact_points *points, int32_t support, double weight); // all components alike
 // Makes room for so many points and entries in all, which the caller then fills. 0, or -1.
 int brunt_points_room(brunt_contact_points *points, int32_t point_count, int32_t entry_count);
 // Relative velocity of a point, with the supports' v (old: as they were before the forces).

@@ -26,10 +26,7 @@ static void weight_1d(int order, double u, int k, double *w, double *g) {
     }
 }
 
-// The particles of the bins whose kernel covers a node, as ranges of slots. Calls `visit` for each.
-typedef void visit_fn(void *context, brunt_body *body, int64_t slot, const int base[3]);
-
-static void visit_particles(brunt_body *body, int32_t slot, int node, visit_fn *visit, void *context) {
+void brunt_reach_visit(brunt_body *body, int32_t slot, int node, brunt_reach_visit_fn *visit, void *context) {
     const brunt_grid *grid = &body->grid;
     int local[3];
     brunt_node_local(grid, node, local);
@@ -81,7 +78,7 @@ void brunt_reach_gradient(brunt_body *body, int32_t slot, int node, double gradi
     gradient_sum g = {.volume = 0};
     const brunt_grid *grid = &body->grid;
     brunt_node_position(grid, grid->slots[slot].coord, node, g.node);
-    visit_particles(body, slot, node, add_gradient, &g);
+    brunt_reach_visit(body, slot, node, add_gradient, &g);
     // A particle right of the node has a negative slope there: the sum of V grad_x N points away from the body; its
     // gradient as a field over space, which is asked for, is the opposite.
     double scale = -(double)grid->inv_h / pow((double)grid->h, grid->dim);
@@ -106,6 +103,13 @@ static void pull_back(brunt_body *body, int64_t s, const double n[3], double out
     }
 }
 
+double brunt_reach_along(brunt_body *body, int64_t s, const double n[3]) {
+    double t[3];
+    pull_back(body, s, n, t);
+    return (double)brunt_field(&body->particles, BRUNT_FIELD_reach)[0][s] *
+           sqrt(t[0] * t[0] + t[1] * t[1] + t[2] * t[2]);
+}
+
 static void add_extent(void *context, brunt_body *body, int64_t s, const int base[3]) {
     (void)base;
     extent_max *e = context;
@@ -123,7 +127,7 @@ double brunt_reach_extent(brunt_body *body, int32_t slot, int node, double share
     extent_max e = {.n = {n[0], n[1], n[2]}, .share = share, .most = -INFINITY, .slot = -1};
     brunt_particles *p = &body->particles;
     brunt_node_position(&body->grid, body->grid.slots[slot].coord, node, e.node);
-    visit_particles(body, slot, node, add_extent, &e);
+    brunt_reach_visit(body, slot, node, add_extent, &e);
     for (int a = 0; a < 3; a++) farthest[a] = 0;
     if (e.slot < 0) return e.most;
     // The ball of the reach is an ellipsoid by now: its farthest point is x + r F F^T n / |F^T n|.

@@ -8,6 +8,8 @@
 #include "threads.h"
 
 enum { GRAIN = 256 };
+static const double SHALLOW =
+    0.25; // mean edges: how far a node may get behind a sheet, at most, and still be sent back
 
 // ------------------------------------------------------------------------------------------ topology
 
@@ -58,6 +60,7 @@ static double edge_sum(const brunt_skin *s, int32_t *edges) {
         int n = corners(s->face[f]);
         int k = 0;
         while (s->face_range[k + 1] <= f) k++;
+        if (f >= s->face_end[k]) continue;
         for (int e = 0; e < (n == 2 ? 1 : n); e++) {
             const real *a = brunt_fem_node(s->fem[k], s->node[s->face[f][e]]),
                        *b = brunt_fem_node(s->fem[k], s->node[s->face[f][(e + 1) % n]]);
@@ -70,13 +73,28 @@ static double edge_sum(const brunt_skin *s, int32_t *edges) {
     return sum;
 }
 
+// The other side of a sheet: the nodes from `first` on and the faces from `first_face` on once more, facing the other
+// way.
+static void add_back(brunt_skin *s, int32_t first, int32_t nodes, int32_t first_face, int32_t faces) {
+    for (int32_t n = first; n < first + nodes; n++) s->node[n + nodes] = s->node[n], s->body[n + nodes] = s->body[n];
+    for (int32_t f = first_face; f < first_face + faces; f++) {
+        const int32_t *front = s->face[f];
+        int32_t *back = s->face[f + faces];
+        const int n = corners(front);
+        back[3] = -1;
+        for (int c = 0; c < n; c++) back[c] = front[n - 1 - c] + nodes;
+    }
+}
+
 static int add_body(brunt_skin *s, int k, size_t *nodes, size_t *faces, size_t *owners) {
     brunt_fem_body *fem = s->fem[k];
     brunt_faces found;
     if (brunt_fem_faces(fem, &found)) return -1;
+    const int sides = fem->element->sheet ? 2 : 1;
     int32_t *number = brunt_alloc((size_t)(fem->node_count + 1) * sizeof *number);
     int32_t count = number ? number_nodes(fem, &found, s->node_count, number) : -1;
-    size_t n = (size_t)s->node_count + (size_t)(count > 0 ? count : 0), f = (size_t)(s->face_count + found.count);
+    size_t n = (size_t)s->node_count + (size_t)(count > 0 ? count : 0) * (size_t)sides,
+           f = (size_t)s->face_count + (size_t)found.count * (size_t)sides;
     bool failed =
         count < 0 ||
         brunt_reserve((void **)&s->node, nodes, (n + 1) * sizeof *s->node, (size_t)s->node_count * sizeof *s->node) ||
@@ -87,11 +105,71 @@ static int add_body(brunt_skin *s, int k, size_t *nodes, size_t *faces, size_t *
     for (int32_t i = 0; !failed && i < found.count; i++)
         for (int c = 0; c < 4; c++)
             s->face[s->face_count + i][c] = found.node[i][c] < 0 ? -1 : number[found.node[i][c]];
+    if (!failed && sides == 2) add_back(s, s->node_count, count, s->face_count, found.count);
+    s->node_end[k] = s->node_count + (count > 0 ? count : 0), s->face_end[k] = s->face_count + found.count;
     s->node_count = (int32_t)n, s->face_count = (int32_t)f;
     s->node_range[k + 1] = s->node_count, s->face_range[k + 1] = s->face_count;
     brunt_free(number);
     brunt_faces_free(&found);
     return failed ? -1 : 0;
+}
+
+// Least height of the elements behind a body's surface [m], as volume over area of the face: what it may have been
+// entered by, and still be told from what is behind it.
+static int least_height(const brunt_fem_body *fem, double *least) {
+    brunt_faces found;
+    if (brunt_fem_faces(fem, &found)) return -1;
+    *least = INFINITY;
+    for (int32_t f = 0; f < found.count; f++) {
+        double x[BRUNT_ELEMENT_NODES][3], e[3], g[3], square = 0;
+        const int32_t *node = found.node[f];
+        for (int c = 0; c < fem->element->nodes; c++) {
+            const real *at = brunt_fem_node(
+                fem, fem->element_node[(size_t)found.element[f] * (size_t)fem->element->nodes + (size_t)c]);
+            for (int a = 0; a < 3; a++) x[c][a] = (double)at[a];
+        }
+        const bool quad = corners(node) == 4;
+        const real *p = brunt_fem_node(fem, node[0]), *q = brunt_fem_node(fem, node[1]),
+                   *r = brunt_fem_node(fem, node[2]), *t = quad ? brunt_fem_node(fem, node[3]) : r;
+        for (int a = 0; a < 3; a++)
+            e[a] = (double)(quad ? r[a] - p[a] : q[a] - p[a]), g[a] = (double)(quad ? t[a] - q[a] : r[a] - p[a]);
+        for (int a = 0; a < 3; a++) {
+            double n = 0.5 * (e[(a + 1) % 3] * g[(a + 2) % 3] - e[(a + 2) % 3] * g[(a + 1) % 3]);
+            square += n * n;
+        }
+        if (square > 0) *least = fmin(*least, fem->element->volume((const double(*)[3])x) / sqrt(square));
+    }
+    brunt_faces_free(&found);
+    return 0;
+}
+
+// What sheets need besides, when there are any.
+static int add_sheets(brunt_skin *s) {
+    int32_t last = 0;
+    bool any = false;
+    for (int k = 0; k < s->fem_count; k++) {
+        any = any || s->fem[k]->element->sheet;
+        last = s->fem[k]->index > last ? s->fem[k]->index : last;
+    }
+    if (!any) return 0;
+    s->front = brunt_alloc(((size_t)s->node_count + 1) * sizeof *s->front);
+    s->side = brunt_alloc(((size_t)last + 1) * sizeof *s->side);
+    if (!s->front || !s->side) return -1;
+    for (int k = 0; k < s->fem_count; k++) {
+        const brunt_fem_body *fem = s->fem[k];
+        const int32_t first = s->node_range[k], nodes = s->node_end[k] - first;
+        brunt_side *side = &s->side[fem->index];
+        for (int32_t n = first; n < s->node_range[k + 1]; n++) s->front[n] = n < s->node_end[k] ? n : n - nodes;
+        if (!fem->element->sheet) {
+            if (least_height(fem, &side->shallow)) return -1;
+            side->shallow *= 0.5;
+            continue;
+        }
+        side->faces = s->face_end[k] - s->face_range[k];
+        side->half = 0.5 * (double)fem->contact_thickness;
+        s->thickest = fmax(s->thickest, (double)fem->contact_thickness);
+    }
+    return 0;
 }
 
 int brunt_skin_make(brunt_skin *s, brunt_fem_body **fem, int count, bool affine) {
@@ -102,15 +180,16 @@ int brunt_skin_make(brunt_skin *s, brunt_fem_body **fem, int count, bool affine)
     s->low = brunt_alloc(k1 * sizeof *s->low), s->high = brunt_alloc(k1 * sizeof *s->high);
     s->mean = brunt_alloc(k1 * sizeof *s->mean), s->speed = brunt_alloc(k1 * sizeof *s->speed);
     s->active = brunt_alloc(k1), s->was_active = brunt_alloc(k1);
-    if (!s->fem || !s->node_range || !s->face_range || !s->low || !s->high || !s->active || !s->was_active ||
-        !s->mean || !s->speed)
+    s->node_end = brunt_alloc(k1 * sizeof *s->node_end), s->face_end = brunt_alloc(k1 * sizeof *s->face_end);
+    if (!s->node_end || !s->face_end || !s->fem || !s->node_range || !s->face_range || !s->low || !s->high ||
+        !s->active || !s->was_active || !s->mean || !s->speed)
         return -1;
     for (int k = 0; k < count; k++) {
         s->fem[k] = fem[k];
         if (add_body(s, k, &nodes, &faces, &owners)) return -1;
     }
     s->face_body = brunt_alloc(((size_t)s->face_count + 1) * sizeof *s->face_body);
-    if (!s->face_body || allocate(s)) return -1;
+    if (!s->face_body || allocate(s) || add_sheets(s)) return -1;
     for (int k = 0; k < count; k++)
         for (int32_t f = s->face_range[k]; f < s->face_range[k + 1]; f++) s->face_body[f] = fem[k]->index;
     for (int32_t n = 0; n < s->node_count; n++) s->gap[n] = INFINITY;
@@ -118,8 +197,52 @@ int brunt_skin_make(brunt_skin *s, brunt_fem_body **fem, int count, bool affine)
     int32_t edges = 0;
     double sum = edge_sum(s, &edges);
     s->mean_edge = edges ? sum / edges : 0;
+    for (int k = 0; s->side && k < count; k++)
+        s->side[fem[k]->index].shallow = fmin(s->side[fem[k]->index].shallow, SHALLOW * s->mean_edge);
     if (affine && !(s->affine = brunt_alloc(((size_t)s->node_count + 1) * sizeof *s->affine))) return -1;
     return 0;
+}
+
+static int ascending(const void *a, const void *b) {
+    return (*(const int32_t *)a > *(const int32_t *)b) - (*(const int32_t *)a < *(const int32_t *)b);
+}
+
+// Faces of the front within two rings of node n, each once, into `list`, which has room for them. Their count.
+static int32_t list_rings(const brunt_skin *s, int32_t n, int32_t *list) {
+    int32_t count = 0, kept = 0;
+    for (int32_t p = s->face_first[n]; p < s->face_first[n + 1]; p++)
+        for (int c = 0; c < corners(s->face[s->face_of[p]]); c++) {
+            const int32_t other = s->face[s->face_of[p]][c];
+            for (int32_t q = s->face_first[other]; q < s->face_first[other + 1]; q++) list[count++] = s->face_of[q];
+        }
+    qsort(list, (size_t)count, sizeof *list, ascending);
+    for (int32_t i = 0; i < count; i++)
+        if (!i || list[i] != list[i - 1]) list[kept++] = list[i];
+    return kept;
+}
+
+int brunt_skin_rings(brunt_skin *s, const bool *self) {
+    size_t most = 0;
+    for (int32_t n = 0; n < s->node_count; n++) {
+        const size_t at = (size_t)(s->face_first[n + 1] - s->face_first[n]);
+        most = at > most ? at : most;
+    }
+    size_t room = 0, used = 0;
+    int32_t *list = brunt_alloc((4 * most * most + 1) * sizeof *list);
+    s->ring_first = brunt_alloc(((size_t)s->node_count + 2) * sizeof *s->ring_first);
+    bool failed = !list || !s->ring_first;
+    for (int k = 0; !failed && k < s->fem_count; k++)
+        for (int32_t n = s->node_range[k]; !failed && n < s->node_range[k + 1]; n++) {
+            const int32_t count = self[k] && n < s->node_end[k] ? list_rings(s, n, list) : 0;
+            failed = brunt_reserve((void **)&s->ring_face, &room, (used + (size_t)count + 1) * sizeof *list,
+                                   used * sizeof *list);
+            if (failed) break;
+            memcpy(s->ring_face + used, list, (size_t)count * sizeof *list);
+            used += (size_t)count;
+            s->ring_first[n + 1] = (int32_t)used;
+        }
+    brunt_free(list);
+    return failed ? -1 : 0;
 }
 
 void brunt_skin_free(brunt_skin *s) {
@@ -128,7 +251,8 @@ void brunt_skin_free(brunt_skin *s) {
                      s->old,        s->mass,        s->inverse,     s->normal,      s->area,       s->gap,
                      s->impulse,    s->state,       s->face_normal, s->face_centre, s->face_area,  s->face_box,
                      s->was_active, s->chunk_moved, s->mean,        s->speed,       s->face_first, s->face_of,
-                     s->affine};
+                     s->affine,     s->node_end,    s->face_end,    s->front,       s->side,       s->ring_first,
+                     s->ring_face};
     for (size_t k = 0; k < sizeof owned / sizeof owned[0]; k++) brunt_free(owned[k]);
     *s = (brunt_skin){0};
 }
@@ -147,8 +271,8 @@ static void bound_bodies(void *context, int64_t begin, int64_t end, int worker) 
     for (int64_t k = begin; k < end; k++) {
         double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
         double sum[3] = {0}, fastest = 0;
-        const int32_t count = s->node_range[k + 1] - s->node_range[k];
-        for (int32_t n = s->node_range[k]; n < s->node_range[k + 1]; n++) {
+        const int32_t count = s->node_end[k] - s->node_range[k];
+        for (int32_t n = s->node_range[k]; n < s->node_end[k]; n++) {
             const real *at = brunt_fem_node(s->fem[k], s->node[n]);
             double square = 0;
             for (int a = 0; a < 3; a++) {
@@ -289,6 +413,7 @@ static void give_nodes(void *context, int64_t begin, int64_t end, int worker) {
     const brunt_skin *s = ((const job *)context)->skin;
     int k = 0;
     for (int32_t n = (int32_t)begin; (n = next_active(s, s->node_range, n, &k)) < end; n++) {
+        if (n >= s->node_end[k]) continue;
         real *at = brunt_fem_node(s->fem[k], s->node[n]);
         for (int a = 0; a < 3; a++) at[BRUNT_FEM_V + a] = (real)s->v[n][a];
     }

@@ -2,10 +2,22 @@
 // for the whole world, in the order of the bodies.
 //
 // The methods change `v`, never the bodies: the velocities are taken from the bodies before and given back after.
+//
+// A sheet (the elements of a membrane) has two sides: its nodes and faces are there twice, first the front as the
+// elements are oriented, then the back, with the order of the nodes reversed, on the same nodes of the body. What acts
+// on a node of the back is gathered at its twin of the front, which alone gives a velocity back.
 #pragma once
 
 #include "contact.h"
 #include "fem.h"
+
+// What a body is to sheets.
+typedef struct brunt_side {
+    int32_t faces;  // of one side of a sheet; 0: no sheet
+    double half;    // [m] half its thickness
+    double shallow; // [m] a node of another body that is behind a sheet, but no further than this, has come through it;
+                    // one that is further is on the far side of its own body
+} brunt_side;
 
 typedef struct brunt_skin {
     int dim;
@@ -31,6 +43,14 @@ typedef struct brunt_skin {
     brunt_fem_body *
         *fem; // the bodies, in their order; body k has nodes node_range[k] .. node_range[k + 1], faces likewise
     int32_t *node_range, *face_range;
+    int32_t *node_end, *face_end; // of each body: end of what counts once; of a sheet, of its front
+    // Of sheets; NULL where there are none.
+    int32_t *front;           // of each node: its twin of the front, or itself
+    brunt_side *side;  // of each body by its index among all, to the last of the meshes
+    double thickest;          // [m] of all sheets, 0 where there are none
+    // Elements within two rings of the nodes of sheets that may touch themselves, as faces of the front, ascending:
+    // ring_face[ring_first[n] .. ring_first[n + 1]) of node n of the front.
+    int32_t *ring_first, *ring_face;
     double (*low)[3], (*high)[3]; // [m] bounds of each body's surface
     // Motion is measured against a frame that moves along with the bodies, which leaves what counts: theirs against
     // each other.
@@ -50,6 +70,9 @@ typedef struct brunt_skin {
 
 // The surfaces of `count` bodies. `affine`: keep B. 0, or -1: out of memory.
 int brunt_skin_make(brunt_skin *skin, brunt_fem_body **fem, int count, bool affine);
+// Lists the elements near each node of the bodies marked in `self`, which are sheets in contact with themselves: those
+// are no obstacles to it. 0, or -1: out of memory.
+int brunt_skin_rings(brunt_skin *skin, const bool *self);
 void brunt_skin_free(brunt_skin *skin);
 // Bounds and speeds of every body's surface as it is now.
 void brunt_skin_bounds(brunt_skin *skin, int threads, double *seconds);
@@ -69,6 +92,9 @@ typedef struct brunt_meeting {
     int iterations;  // sweeps, or augury iterations of the paper's form
     double look;     // [m] bodies are near from twice this distance on, at least
     int64_t step;
+    const brunt_mirror *mirrors; // of the grids
+    int mirror_count;
+    brunt_wall *walls; // what the mirrors are
     int threads;
     double *seconds; // of each thread
 } brunt_meeting;

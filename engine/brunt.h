@@ -81,12 +81,16 @@ void brunt_shape_free(brunt_shape *shape);  // frees what the shape owns, not th
 
 enum { BRUNT_NAME_LENGTH = 48, BRUNT_PARAMETER_LIMIT = 24 };
 
-// Linear elements with one integration point, nodes in the order of VTK. Two-dimensional ones are in plane strain.
-typedef enum brunt_element_kind { BRUNT_TET4, BRUNT_HEX8, BRUNT_TRI3, BRUNT_QUAD4 } brunt_element_kind;
-enum { BRUNT_ELEMENT_KINDS = 4, BRUNT_ELEMENT_NODES = 8 };
-const char *brunt_element_name(brunt_element_kind kind);     // "tet4", "hex8", "tri3", "quad4"
+// Linear elements with one integration point, nodes in the order of VTK. Two-dimensional ones are in plane strain; those of
+// membranes are sheets in three dimensions, in plane stress.
+typedef enum brunt_element_kind {
+    BRUNT_TET4, BRUNT_HEX8, BRUNT_TRI3, BRUNT_QUAD4, BRUNT_MEMBRANE_QUAD4, BRUNT_MEMBRANE_TRI3
+} brunt_element_kind;
+enum { BRUNT_ELEMENT_KINDS = 6, BRUNT_ELEMENT_NODES = 8 };
+const char *brunt_element_name(brunt_element_kind kind);     // "tet4", "hex8", "tri3", "quad4", "membrane_quad4", "membrane_tri3"
 int brunt_element_nodes(brunt_element_kind kind);
-int brunt_element_dimension(brunt_element_kind kind);
+int brunt_element_dimension(brunt_element_kind kind);        // of the room its nodes are in: 3 for membranes
+bool brunt_element_is_sheet(brunt_element_kind kind);        // of membranes
 
 // Nodes with a name: a boundary acts on them, and on the faces whose nodes are all among them.
 typedef struct brunt_group { char name[BRUNT_NAME_LENGTH]; int32_t *nodes, count; } brunt_group;  // ascending; owned by the mesh
@@ -104,6 +108,11 @@ typedef struct brunt_mesh {
 // none; and `surface` for all. BRUNT_BAD_INPUT for shapes that
 // have no such mesh (union, difference, ...).
 int brunt_mesh_shape(const brunt_shape *shape, int dimension, brunt_element_kind kind, double size, brunt_mesh *mesh, brunt_error *error);
+// The surface of such a mesh in three dimensions, as sheets (a membrane kind), seen counter-clockwise from outside: all of it, or
+// the faces in the named boundary groups. Groups are kept, with the nodes that are left; `border` is added where the surface is
+// open: the nodes of edges that only one element has. A flat sheet is one face of a box, a disk the start of a cylinder.
+int brunt_mesh_surface(const brunt_shape *shape, brunt_element_kind kind, double size, const char (*faces)[BRUNT_NAME_LENGTH],
+                       int32_t face_count, brunt_mesh *mesh, brunt_error *error);
 
 typedef struct brunt_mesh_quality {
     int32_t inverted, degenerate, duplicate_elements, duplicate_nodes, unreferenced;  // how many ...
@@ -131,7 +140,7 @@ typedef struct brunt_material_def {
     double viscosity_parameters[BRUNT_PARAMETER_LIMIT];
 } brunt_material_def;
 
-typedef enum brunt_method { BRUNT_MPM, BRUNT_FEM } brunt_method;
+typedef enum brunt_method { BRUNT_MPM, BRUNT_FEM, BRUNT_MEMBRANE } brunt_method;
 // Control of the zero-energy modes of one-point elements (Flanagan and Belytschko 1981), by a spring or a damper.
 typedef enum brunt_hourglass { BRUNT_HOURGLASS_STIFFNESS, BRUNT_HOURGLASS_VISCOUS } brunt_hourglass;
 
@@ -143,13 +152,19 @@ typedef struct brunt_body_def {
     brunt_shape shape;                  // owned by the definition
     brunt_placement place;
     brunt_method method;                // default BRUNT_MPM
-    // BRUNT_FEM: a given mesh, or one made of the shape.
+    // BRUNT_FEM and BRUNT_MEMBRANE: a given mesh, or one made of the shape (of its surface).
     brunt_mesh mesh;                    // owned by the definition; node_count 0: made of the shape
     brunt_element_kind element;         // of a mesh made of the shape
     double size;                        // [m] edge length of a mesh made of the shape
     brunt_hourglass hourglass;
     double hourglass_coefficient;       // [-] 0..1; default 0.05 (stiffness) / 0.1 (viscous) as NAN
     double mass_scaling;                // [s] elements whose stable step is less get density until it is not; 0 = none
+    double damping;                     // [1/s] >= 0: a force of -damping m v on each node; default 0
+    // BRUNT_MEMBRANE
+    double thickness;                   // [m] > 0, of the undeformed sheet
+    double contact_thickness;           // [m] >= 0: contact keeps its middle surface half of it from others; NAN (default): thickness
+    bool slack;                         // bears no compression (tension field) instead of what its material says
+    char (*faces)[BRUNT_NAME_LENGTH]; int32_t face_count;  // owned; groups of the shape's boundary to take, 0: all of it
     // Particles sit on a lattice fixed to the unplaced shape's bounding box, then move with the placement.
     int32_t particles_per_cell;         // 2D: a square number, 3D: a cube; default 4 / 8
     double spacing;                     // [m] lattice spacing; 0 = cell / (particles_per_cell)^(1/dimension)
@@ -198,8 +213,17 @@ typedef enum brunt_group_action {
     BRUNT_GROUP_VELOCITY,      // components of `value` times the table are the velocity [m/s]; fixed: value 0
     BRUNT_GROUP_DISPLACEMENT,  // ... are the displacement since the start [m]
     BRUNT_GROUP_TRACTION,      // value [Pa] times the table acts on the undeformed area of the group's faces
-    BRUNT_GROUP_PRESSURE       // value[0] [Pa] times the table acts against the outward normal of the deformed faces
+    BRUNT_GROUP_PRESSURE,      // value[0] [Pa] times the table acts against the outward normal of the deformed faces
+    BRUNT_GROUP_GAS            // the pressure of gas that the group's faces enclose, less that outside, acts along their normal
 } brunt_group_action;
+// Ideal gas of one pressure and temperature in an enclosed volume V: p = (gamma - 1) E / V, dE = -p dV + inflow dt.
+typedef struct brunt_gas_def {
+    double gamma;                       // [-] > 1, ratio of specific heats; default 1.4
+    double pressure;                    // [Pa] >= 0 at the start, absolute
+    double outside;                     // [Pa] >= 0, default 0
+    double volume;                      // [m^3] >= 0 of gas beside what the faces enclose (pipes, a vessel); default 0
+    double inflow;                      // [W] times the table: enthalpy that flows in; default 0
+} brunt_gas_def;
 typedef struct brunt_group_def {
     char name[BRUNT_NAME_LENGTH];       // of its column in the history; "" = "group1", ...
     char body[BRUNT_NAME_LENGTH], group[BRUNT_NAME_LENGTH];
@@ -207,6 +231,7 @@ typedef struct brunt_group_def {
     bool component[3];                  // velocity, displacement: which are prescribed
     double value[3];
     brunt_curve table;                  // owned by the definition
+    brunt_gas_def gas;
 } brunt_group_def;
 
 typedef enum brunt_kernel { BRUNT_LINEAR = 1, BRUNT_QUADRATIC = 2, BRUNT_CUBIC = 3 } brunt_kernel;
@@ -221,6 +246,7 @@ typedef enum brunt_augury_form {
     BRUNT_AUGURY_PAPER     // grid transfers and augury iterations as published
 } brunt_augury_form;
 
+// Of two bodies; with both names the same, of a membrane with itself, which is not in contact unless it is asked for.
 typedef struct brunt_pair_def {
     char a[BRUNT_NAME_LENGTH], b[BRUNT_NAME_LENGTH];
     brunt_contact_method method; double friction;
@@ -304,7 +330,7 @@ typedef struct brunt_energy {  // [J]; in 2D per metre of thickness
     double kinetic;            // of the particles, with the affine part of APIC; of meshes at the time of the stress, half a step
                                // after the velocities: near rest it may be a little below 0
     double internal;           // stored
-    double plastic, hourglass, contact, friction, viscosity, transfer, eroded;  // taken out, each by its cause
+    double plastic, hourglass, contact, friction, viscosity, transfer, eroded;  // taken out, each by its cause; damping is viscosity
     double external_work;      // done on the bodies by gravity, walls and prescribed motion
     double initial;            // kinetic + internal at the start
     double total;              // kinetic + internal + all that was taken out
@@ -339,7 +365,10 @@ void brunt_body_connectivity(const brunt_world *world, int32_t body, int32_t *ou
 typedef struct brunt_mesh_report { brunt_mesh_quality quality; double least_step, added_mass; int32_t scaled_elements; } brunt_mesh_report;
 // How good the mesh of a finite-element body is, and what mass scaling added [kg].
 void brunt_body_mesh(const brunt_world *world, int32_t body, brunt_mesh_report *report);
-typedef struct brunt_body_sums { double mass, momentum[3], centre[3], velocity[3], kinetic, internal, plastic; } brunt_body_sums;
+typedef struct brunt_body_sums {
+    double mass, momentum[3], centre[3], velocity[3], kinetic, internal, plastic;
+    double low[3], high[3];  // [m] bounds of its nodes, or of its particles' centres
+} brunt_body_sums;
 void brunt_body_totals(brunt_world *world, int32_t body, brunt_body_sums *sums);
 
 // What can be read of a body, at its particles, or at its nodes and its elements: stored and derived fields alike ("velocity", "stress" = Cauchy, "pressure",
@@ -355,7 +384,8 @@ int64_t brunt_body_size(const brunt_world *world, int32_t body, brunt_place at);
 // 3 components, symmetric tensors 6 (XX YY ZZ XY YZ XZ), matrices 9, whatever the dimension.
 void brunt_body_read(brunt_world *world, int32_t body, int32_t field, double *out);
 
-// Warnings about the scene that were found when the world was made: contact grids too fine or too coarse, doubtful meshes.
+// Warnings about the scene: found when the world was made (contact grids too fine or too coarse, doubtful meshes), or in a step
+// (fluids that have spread until cells are empty between their particles).
 int32_t brunt_warning_count(const brunt_world *world);
 const char *brunt_world_warning(const brunt_world *world, int32_t warning);
 
@@ -371,6 +401,15 @@ int32_t brunt_pair_count(const brunt_world *world);
 void brunt_pair_force(const brunt_world *world, int32_t pair, brunt_force *force);     // name "a-b", force on b
 int32_t brunt_wall_count(const brunt_world *world);                                     // planes, regions, then groups
 void brunt_wall_force(const brunt_world *world, int32_t wall, brunt_force *force);     // force on the bodies
+
+// Gas in enclosed volumes.
+typedef struct brunt_gas {
+    char name[BRUNT_NAME_LENGTH];       // of its boundary
+    double volume, pressure, energy;    // [m^3], [Pa] absolute, [J]
+    double inflow;                      // [J] so far
+} brunt_gas;
+int32_t brunt_gas_count(const brunt_world *world);
+void brunt_world_gas(const brunt_world *world, int32_t index, brunt_gas *gas);
 
 // ---------------------------------------------------------------------------------------------------- plan, profile, state
 

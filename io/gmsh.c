@@ -90,6 +90,7 @@ static int fail_missing(const gmsh_file *file, const char *group, int dimension,
 typedef struct selection {
     const gmsh_file *file;
     int dimension;
+    bool sheet; // a surface in three dimensions
     bool all;
     bool *wanted; // of each physical group
     const char *name;
@@ -106,8 +107,11 @@ static int select_all(selection *s, brunt_error *error) {
     for (int32_t r = 0; r < file->run_count; r++)
         if (gmsh_types[file->runs[r].type].dimension > s->dimension)
             return brunt_fail(error, BRUNT_BAD_INPUT,
-                              "%s: has elements of dimension %d (%s), the scene is of dimension %d", file->path,
-                              gmsh_types[file->runs[r].type].dimension, gmsh_types[file->runs[r].type].name,
+                              s->sheet
+                                  ? "%s: has elements of dimension %d (%s): which physical group of dimension %d is "
+                                    "the sheet?"
+                                  : "%s: has elements of dimension %d (%s), the scene is of dimension %d",
+                              file->path, gmsh_types[file->runs[r].type].dimension, gmsh_types[file->runs[r].type].name,
                               s->dimension);
     if (groups <= 1) {
         s->all = true;
@@ -209,10 +213,12 @@ static int fill_mesh(const selection *s, const int32_t *number, int32_t nodes, i
     return BRUNT_OK;
 }
 
+enum { SOLID_KINDS = BRUNT_MEMBRANE_QUAD4 }; // those before it have an inside
+
 // Twice the area, or a multiple of the volume: exact in sign for straight elements and enough to tell how a body is
 // turned.
 static double turn_of(const brunt_mesh *mesh, int32_t element) {
-    static const int8_t corners[BRUNT_ELEMENT_KINDS][3] = {{1, 2, 3}, {1, 3, 4}, {1, 2, 0}, {1, 2, 3}};
+    static const int8_t corners[SOLID_KINDS][3] = {{1, 2, 3}, {1, 3, 4}, {1, 2, 0}, {1, 2, 3}};
     const int32_t *node = mesh->elements + (size_t)element * (size_t)brunt_element_nodes(mesh->kind);
     double e[3][3];
     if (mesh->kind == BRUNT_QUAD4) { // by the diagonals
@@ -229,7 +235,7 @@ static double turn_of(const brunt_mesh *mesh, int32_t element) {
 
 // Turns a body over whose every element is inside out.
 static bool turn_over(brunt_mesh *mesh) {
-    static const int8_t swaps[BRUNT_ELEMENT_KINDS][2][2] = {{{1, 2}}, {{1, 3}, {5, 7}}, {{1, 2}}, {{1, 3}}};
+    static const int8_t swaps[SOLID_KINDS][2][2] = {{{1, 2}}, {{1, 3}, {5, 7}}, {{1, 2}}, {{1, 3}}};
     int nodes = brunt_element_nodes(mesh->kind);
     for (int32_t e = 0; e < mesh->element_count; e++)
         if (!(turn_of(mesh, e) < 0)) return false;
@@ -330,15 +336,30 @@ static int add_group(const gmsh_file *file, int32_t physical, const int32_t *num
     return BRUNT_OK;
 }
 
-static int add_groups(const gmsh_file *file, int dimension, const int32_t *number, brunt_mesh *mesh, FILE *warnings,
-                      brunt_error *error) {
+// All nodes of a sheet, as meshes made of shapes have them.
+static int add_surface(const gmsh_file *file, brunt_mesh *mesh, brunt_error *error) {
+    static const char name[] = "surface";
+    brunt_group *group = &mesh->groups[mesh->group_count];
+    if (known_group(mesh, name)) return BRUNT_OK;
+    group->nodes = brunt_alloc((size_t)mesh->node_count * sizeof *group->nodes);
+    if (!group->nodes) return fail_memory(file, error);
+    mesh->group_count++;
+    memcpy(group->name, name, sizeof name);
+    for (int32_t n = 0; n < mesh->node_count; n++) group->nodes[group->count++] = n;
+    return BRUNT_OK;
+}
+
+// From physical groups of lower dimension; of a sheet those of its own as well: what loads it acts on its elements.
+static int add_groups(const selection *s, const int32_t *number, brunt_mesh *mesh, FILE *warnings, brunt_error *error) {
+    const gmsh_file *file = s->file;
     bool *wanted = brunt_alloc((size_t)file->physical_count + 1), *marked = brunt_alloc((size_t)mesh->node_count);
     mesh->groups = brunt_alloc((size_t)(file->physical_count + 1) * sizeof *mesh->groups);
     int status = wanted && marked && mesh->groups ? BRUNT_OK : fail_memory(file, error);
-    for (int d = dimension - 1; d >= 0; d--)
+    for (int d = s->sheet ? s->dimension : s->dimension - 1; d >= 0; d--)
         for (int32_t p = 0; p < file->physical_count && !status; p++)
             if (file->physicals[p].dimension == d)
                 status = add_group(file, p, number, mesh, wanted, marked, warnings, error);
+    if (s->sheet && !status) status = add_surface(file, mesh, error);
     brunt_free(wanted);
     brunt_free(marked);
     return status;
@@ -346,10 +367,19 @@ static int add_groups(const gmsh_file *file, int dimension, const int32_t *numbe
 
 // ---------------------------------------------------------------------------------------------------- a body
 
-// Nodes that belong to no element of the dimension, of this body or another.
-static int32_t count_loose(const gmsh_file *file, int dimension, int32_t *number) {
-    selection everything = {.file = file, .dimension = dimension, .all = true};
-    return file->node_count - number_nodes(&everything, number);
+// Nodes that belong to no element of the dimension or, beside a sheet, a higher one, of this body or another.
+static int32_t count_loose(const selection *s, int32_t *number) {
+    int32_t loose = 0;
+    memset(number, 0, (size_t)s->file->node_count * sizeof *number);
+    for (int32_t r = 0; r < s->file->run_count; r++) {
+        const gmsh_run *run = &s->file->runs[r];
+        const int dimension = gmsh_types[run->type].dimension;
+        if (dimension != s->dimension && !(s->sheet && dimension > s->dimension)) continue;
+        for (size_t i = 0; i < (size_t)run->count * (size_t)gmsh_types[run->type].nodes; i++)
+            number[s->file->element_nodes[run->first + i]] = 1;
+    }
+    for (int32_t n = 0; n < s->file->node_count; n++) loose += !number[n];
+    return loose;
 }
 
 static int make_body(selection *s, brunt_mesh *mesh, FILE *warnings, brunt_error *error) {
@@ -364,41 +394,51 @@ static int make_body(selection *s, brunt_mesh *mesh, FILE *warnings, brunt_error
         if (!number) status = fail_memory(file, error);
     }
     if (!status && warnings) {
-        int32_t loose = count_loose(file, s->dimension, number);
+        int32_t loose = count_loose(s, number);
         if (loose)
             warn(warnings, file, "%d of its nodes belong to no element of dimension %d and are left out", (int)loose,
                  s->dimension);
     }
     if (!status) status = fill_mesh(s, number, number_nodes(s, number), elements, mesh, error);
-    if (!status && s->dimension == 2) status = flatten(file, mesh, error);
-    if (!status && turn_over(mesh))
+    if (!status && s->dimension == 2 && !s->sheet) status = flatten(file, mesh, error);
+    if (!status && !s->sheet && turn_over(mesh))
         warn(warnings, file, "all %lld elements were inside out and have been turned over", (long long)elements);
-    if (!status) status = add_groups(file, s->dimension, number, mesh, warnings, error);
+    if (!status) status = add_groups(s, number, mesh, warnings, error);
+    if (s->sheet) mesh->kind = mesh->kind == BRUNT_QUAD4 ? BRUNT_MEMBRANE_QUAD4 : BRUNT_MEMBRANE_TRI3;
     brunt_free(number);
     brunt_free(s->wanted);
     if (status) brunt_mesh_free(mesh);
     return status;
 }
 
-int brunt_gmsh_read(const char *path, const char *group, int dimension, brunt_mesh *mesh, FILE *warnings,
-                    brunt_error *error) {
-    BRUNT_ASSERT(dimension == 2 || dimension == 3);
+static int read_body(const char *path, const char *group, int dimension, bool sheet, brunt_mesh *mesh, FILE *warnings,
+                     brunt_error *error) {
     *mesh = (brunt_mesh){0};
     gmsh_file file;
     int status = gmsh_file_read(path, &file, error);
-    selection s = {.file = &file, .dimension = dimension, .name = group ? group : ""};
+    selection s = {.file = &file, .dimension = dimension, .sheet = sheet, .name = group ? group : ""};
     if (!status) status = make_body(&s, mesh, warnings, error);
     gmsh_file_free(&file);
     return status;
 }
 
+int brunt_gmsh_read(const char *path, const char *group, int dimension, brunt_mesh *mesh, FILE *warnings,
+                    brunt_error *error) {
+    BRUNT_ASSERT(dimension == 2 || dimension == 3);
+    return read_body(path, group, dimension, false, mesh, warnings, error);
+}
+
+int brunt_gmsh_read_sheet(const char *path, const char *group, brunt_mesh *mesh, FILE *warnings, brunt_error *error) {
+    return read_body(path, group, 2, true, mesh, warnings, error);
+}
+
 // ---------------------------------------------------------------------------------------------------- in words
 
-static void describe_body(const gmsh_file *file, const char *name, int dimension, FILE *out) {
+static void describe_body(const gmsh_file *file, const char *name, int dimension, bool sheet, FILE *out) {
     brunt_mesh mesh = {0};
     brunt_mesh_quality q;
     brunt_error error = {0};
-    selection s = {.file = file, .dimension = dimension, .name = name};
+    selection s = {.file = file, .dimension = dimension, .sheet = sheet, .name = name};
     int status = make_body(&s, &mesh, NULL, &error);
     if (!status) status = brunt_mesh_check(&mesh, &q, &error);
     if (status) {
@@ -437,6 +477,8 @@ int brunt_gmsh_describe(const char *path, FILE *out, brunt_error *error) {
         fprintf(out, "mesh of gmsh, format %s, %s\n", file.version, file.binary ? "binary" : "text");
         fprintf(out, "nodes      %d\n", (int)file.node_count);
         int highest = describe_elements(&file, out), bodies = 0;
+        const double reach = plane_tolerance * hypot(most[0] - least[0], most[1] - least[1]);
+        const bool sheet = highest == 2 && file.node_count && !(fmax(fabs(least[2]), fabs(most[2])) <= reach);
         if (file.node_count)
             fprintf(out, "bounds     (%.6g, %.6g, %.6g) to (%.6g, %.6g, %.6g) m\n", least[0], least[1], least[2],
                     most[0], most[1], most[2]);
@@ -445,10 +487,10 @@ int brunt_gmsh_describe(const char *path, FILE *out, brunt_error *error) {
                     (int)file.physicals[p].dimension, (long long)count_members(&file, p));
         for (int32_t p = 0; p < file.physical_count && highest >= 2; p++) {
             if (file.physicals[p].dimension != highest) continue;
-            describe_body(&file, file.physicals[p].name, highest, out);
+            describe_body(&file, file.physicals[p].name, highest, sheet, out);
             bodies++;
         }
-        if (!bodies && highest >= 2) describe_body(&file, "", highest, out);
+        if (!bodies && highest >= 2) describe_body(&file, "", highest, sheet, out);
     }
     gmsh_file_free(&file);
     return status;

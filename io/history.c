@@ -100,6 +100,15 @@ static void add_force(brunt_history *h, const char *prefix, double interval, con
     add_vector(h, name, "N s", force->impulse);
 }
 
+static void add_gas(brunt_history *h, const brunt_world *world, int32_t index) {
+    brunt_gas gas;
+    brunt_world_gas(world, index, &gas);
+    add_named(h, "m^3", gas.volume, "gas.%s.volume", gas.name);
+    add_named(h, "Pa", gas.pressure, "gas.%s.pressure", gas.name);
+    add_named(h, "J", gas.energy, "gas.%s.energy", gas.name);
+    add_named(h, "J", gas.inflow, "gas.%s.inflow", gas.name);
+}
+
 static void add_energy(brunt_history *h, brunt_world *world) {
     brunt_energy e;
     brunt_world_energy(world, &e);
@@ -139,6 +148,10 @@ static void add_body(brunt_history *h, brunt_world *world, int32_t body) {
     add_vector(h, name, "m", sums.centre);
     snprintf(name, sizeof name, "body.%s.velocity", body_name);
     add_vector(h, name, "m/s", sums.velocity);
+    snprintf(name, sizeof name, "body.%s.low", body_name);
+    add_vector(h, name, "m", sums.low);
+    snprintf(name, sizeof name, "body.%s.high", body_name);
+    add_vector(h, name, "m", sums.high);
     add_named(h, "J", sums.kinetic, "body.%s.kinetic", body_name);
     add_named(h, "J", sums.internal, "body.%s.internal", body_name);
     add_named(h, "J", sums.plastic, "body.%s.plastic", body_name);
@@ -194,6 +207,7 @@ static void traverse(brunt_history *h, brunt_world *world) {
         brunt_wall_force(world, w, &force);
         add_force(h, "wall", interval, &force);
     }
+    for (int32_t g = 0; g < brunt_gas_count(world); g++) add_gas(h, world, g);
     for (int32_t p = 0; p < h->probe_count; p++) add_probe(h, world, &h->probes[p]);
 }
 

@@ -6,6 +6,7 @@
 #include "error.h"
 #include "memory.h"
 #include "places.h"
+#include "units.h"
 
 // ---------------------------------------------------------------------------------------------------- history
 
@@ -75,6 +76,46 @@ static double reduce_history(const brunt_measure *m, const double *time, const d
     case BRUNT_TAKE_PERIOD: return period(time + first, value + first, count, least, most);
     }
     return NAN;
+}
+
+// Linear between the points x[i * stride], y[i * stride], which ascend and reach over `at`. `*near` is where the last
+// search ended: calls with ascending `at` walk through the points once.
+static double between(const double *x, const double *y, int stride, int64_t count, double at, int64_t *near) {
+    while (*near + 2 < count && x[(*near + 1) * stride] < at) ++*near;
+    const double *a = x + *near * stride, *b = a + stride, *ya = y + *near * stride;
+    if (count < 2 || at <= a[0]) return ya[0];
+    return at >= b[0] ? ya[stride] : ya[0] + (ya[stride] - ya[0]) * ((at - a[0]) / (b[0] - a[0]));
+}
+
+// The distance of the history, less `minus` over `divisor`, from the curve, over the curve's range. Both are linear
+// between their points, so that the greatest is at a point of either or at an end of the window. NAN where the history
+// has none: a run that ended before the window did.
+static int reduce_distance(const brunt_measure *m, const double *time, const double *value, int64_t rows,
+                           double divisor, double *out, brunt_error *error) {
+    const double(*points)[2] = (const double(*)[2])m->curve.points;
+    const int64_t count = m->curve.count;
+    const double slack = 1e-9 * fmax(fabs(m->from), fabs(m->to));
+    *out = NAN;
+    if (!rows || time[0] > m->from + slack || time[rows - 1] < m->to - slack) return BRUNT_OK;
+    double *at = brunt_alloc(2 * sizeof(double) * (size_t)(rows + count + 2)), least = INFINITY, most = -INFINITY;
+    if (!at) return brunt_fail(error, BRUNT_FAILED, "out of memory for measure '%s'", m->name);
+    double *distance = at + rows + count + 2;
+    int64_t used = 0, r = 0, c = 0;
+    at[used++] = m->from;
+    while (r < rows || c < count) {
+        double t = c >= count || (r < rows && time[r] <= points[c][0]) ? time[r++] : points[c++][0];
+        if (t > at[used - 1] && t < m->to) at[used++] = t;
+    }
+    at[used++] = m->to;
+    for (c = 0; c < count; c++) least = fmin(least, points[c][1]), most = fmax(most, points[c][1]);
+    int64_t row = 0, point = 0;
+    for (int64_t i = 0; i < used; i++) {
+        double h = (between(time, value, 1, rows, at[i], &row) - m->minus) / divisor;
+        distance[i] = (h - between(points[0], points[0] + 1, 2, count, at[i], &point)) / (most - least);
+    }
+    *out = reduce_history(m, at, distance, used);
+    brunt_free(at);
+    return BRUNT_OK;
 }
 
 // ---------------------------------------------------------------------------------------------------- bodies
@@ -238,6 +279,16 @@ static int take_points(const brunt_measure *m, brunt_world *world, double *value
 
 // ---------------------------------------------------------------------------------------------------- public
 
+// Whether a column's unit is that of the curve, which came in SI base units: "m.s-1".
+static bool same_unit(const char *column, const char *curve) {
+    char base[BRUNT_UNIT_LENGTH] = "", why[256];
+    double one = 1;
+    brunt_units *units = brunt_units_open();
+    bool same = units && brunt_units_to_si(units, column, &one, base, why, sizeof why) && strcmp(base, curve) == 0;
+    brunt_units_close(units);
+    return same;
+}
+
 int brunt_measure_check(const brunt_measure *measure, const brunt_history *history, brunt_world *world,
                         brunt_error *error) {
     if (measure->kind != BRUNT_MEASURE_HISTORY) {
@@ -249,7 +300,13 @@ int brunt_measure_check(const brunt_measure *measure, const brunt_history *histo
                               measure->name);
         return brunt_measure_initial(measure, world, &unused, error);
     }
-    if (brunt_history_column(history, measure->column)) return BRUNT_OK;
+    for (int32_t c = 0; c < brunt_history_column_count(history); c++) {
+        const char *unit = brunt_history_column_unit(history, c);
+        if (strcmp(brunt_history_column_name(history, c), measure->column) != 0) continue;
+        if (!*measure->curve_unit || same_unit(unit, measure->curve_unit)) return BRUNT_OK;
+        return brunt_fail(error, BRUNT_BAD_INPUT, "measures.%s: the curve is in %s, the history's column '%s' in %s",
+                          measure->name, measure->curve_unit, measure->column, unit);
+    }
     // Name the columns that begin alike ("body."), or the beginnings there are.
     char names[700] = "";
     size_t used = 0, group = strcspn(measure->column, ".");
@@ -283,15 +340,26 @@ int brunt_measure_evaluate(const brunt_measure *measure, const brunt_history *hi
         if (!column)
             return brunt_fail(error, BRUNT_BAD_INPUT, "measures.%s: the history has no column '%s'", measure->name,
                               measure->column);
-        value = reduce_history(measure, brunt_history_column(history, "time"), column, brunt_history_rows(history));
-        initial = brunt_history_rows(history) ? column[0] : NAN;
+        const double *time = brunt_history_column(history, "time");
+        const int64_t rows = brunt_history_rows(history);
+        initial = rows ? column[0] : NAN;
+        if (!measure->curve.count) {
+            value = reduce_history(measure, time, column, rows);
+        } else {
+            double divisor =
+                (measure->relative_to_initial ? initial : 1) * (isnan(measure->relative_to) ? 1 : measure->relative_to);
+            int status = reduce_distance(measure, time, column, rows, divisor, &value, error);
+            if (status) return status;
+        }
     } else {
         int status = take_points(measure, world, &value, error);
         if (status) return status;
     }
-    value -= measure->minus;
-    if (measure->relative_to_initial) value /= initial;
-    if (!isnan(measure->relative_to)) value /= measure->relative_to;
+    if (!measure->curve.count) {
+        value -= measure->minus;
+        if (measure->relative_to_initial) value /= initial;
+        if (!isnan(measure->relative_to)) value /= measure->relative_to;
+    }
     result->value = value;
     if (isnan(measure->expect)) return BRUNT_OK;
     double difference = fabs(value - measure->expect);

@@ -12,7 +12,7 @@ int32_t brunt_find_body(const brunt_world *world, const char *name) {
 }
 
 brunt_place brunt_place_of_motion(const brunt_world *world, int32_t body) {
-    return brunt_body_method(world, body) == BRUNT_FEM ? BRUNT_AT_NODES : BRUNT_AT_PARTICLES;
+    return brunt_body_method(world, body) == BRUNT_MPM ? BRUNT_AT_PARTICLES : BRUNT_AT_NODES;
 }
 
 static int no_memory(const brunt_world *world, int32_t body, brunt_error *error) {

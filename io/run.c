@@ -186,14 +186,19 @@ static void list_fields(const brunt_world *world, char *names, size_t room) {
         }
 }
 
+// Warnings of the world from number `from` on.
+static void warn_from(const brunt_world *world, int32_t from, brunt_console *console) {
+    for (int32_t w = from; w < brunt_warning_count(world); w++)
+        brunt_console_print(console, "warning: %s\n", brunt_world_warning(world, w));
+}
+
 void brunt_run_warn(const brunt_scene *scene, const brunt_world *world, brunt_console *console) {
     for (const char *line = scene->warnings; line && *line;) {
         int length = (int)strcspn(line, "\n");
         brunt_console_print(console, "warning: %.*s\n", length, line);
         line += length + (line[length] == '\n');
     }
-    for (int32_t w = 0; w < brunt_warning_count(world); w++)
-        brunt_console_print(console, "warning: %s\n", brunt_world_warning(world, w));
+    warn_from(world, 0, console);
 }
 
 int brunt_run_check(const brunt_scene *scene, brunt_world *world, const brunt_history *history, FILE *messages,
@@ -426,6 +431,7 @@ static int serve_signals(run *r, brunt_error *error) {
 static int loop(run *r, brunt_error *error) {
     brunt_progress progress = brunt_progress_start(&r->console, r->world);
     double end = brunt_world_end(r->world);
+    int32_t warned = brunt_warning_count(r->world);
     int status = BRUNT_OK;
     while (!status && !reached(brunt_world_time(r->world), end)) {
         status = serve_signals(r, error);
@@ -433,6 +439,10 @@ static int loop(run *r, brunt_error *error) {
         double start = brunt_clock();
         status = brunt_world_step(r->world, fmin(r->next_picture, r->next_history), error);
         r->state.step_seconds += brunt_clock() - start;
+        if (warned < brunt_warning_count(r->world)) {
+            warn_from(r->world, warned, &r->console);
+            warned = brunt_warning_count(r->world);
+        }
         if (!status) status = write_outputs(r, false, error);
         if (!status) brunt_progress_update(&progress, r->world);
     }

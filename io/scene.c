@@ -11,6 +11,7 @@ static void release_outputs(brunt_scene *scene) {
     brunt_world_def_free(&scene->world);
     brunt_free(scene->output.fields);
     brunt_free(scene->output.probes);
+    for (int32_t m = 0; m < scene->measure_count; m++) brunt_free(scene->measures[m].curve.points);
     brunt_free(scene->measures);
 }
 

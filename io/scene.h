@@ -27,7 +27,9 @@ typedef struct brunt_measure {
     brunt_measure_kind kind;
     char column[160];          // history: column name without unit, e.g. "body.rod.velocity_x"
     brunt_take take;           // how it is reduced; default end
-    double from, to;           // [s] window of the history, default everything
+    double from, to;           // [s] window of the history, default everything, or the curve's times
+    brunt_curve curve;         // history: its distance from this [s], [SI], over the curve's range, is reduced; no points: none. Owned
+    char curve_unit[64];       // SI unit its values were given in; "": none was
     char body[BRUNT_NAME_LENGTH];
     char field[64]; int component;      // field: name, component (-1: scalar or magnitude)
     double axis[3], center[3];          // extent: axis; radius: axis line through center

@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 
 #include "gmsh.h"
+#include "prepared.h"
 
 enum { PATH_ROOM = 4096 };
 
@@ -17,7 +18,7 @@ static const double CELL_COUNT_LIMIT = 1e9, PARTICLE_LIMIT = 2147483648.0, ELEME
 // ---------------------------------------------------------------------------------------------------- size
 
 typedef struct extents {
-    double smallest, largest, volume, farthest; // [m], [m^dimension]
+    double smallest, largest, volume, surface, farthest; // of the box around it: [m], [m^dimension], [m^2]
 } extents;
 
 // False after a message when there is nothing to fill.
@@ -32,6 +33,7 @@ static bool measure_shape(scene_reader *reader, const scene_node *shape, const b
     *out = (extents){.smallest = INFINITY, .volume = 1};
     for (int c = 0; c < dimension; c++) {
         double extent = max[c] - min[c];
+        out->surface += 2 * extent * (max[(c + 1) % 3] - min[(c + 1) % 3]);
         out->smallest = fmin(out->smallest, extent);
         out->largest = fmax(out->largest, extent);
         out->volume *= extent;
@@ -65,6 +67,16 @@ static void check_filling(scene_reader *reader, const scene_node *shape, const b
                                 particles, PARTICLE_LIMIT - 1);
 }
 
+// Which faces a shape has does not depend on the size of the elements: the coarsest mesh tells.
+static void check_faces(scene_reader *reader, const scene_node *node, const brunt_body_def *body, double largest) {
+    brunt_mesh mesh;
+    brunt_error error = {0};
+    if (brunt_mesh_surface(&body->shape, body->element, largest, (const char(*)[BRUNT_NAME_LENGTH])body->faces,
+                           body->face_count, &mesh, &error))
+        brunt_tree_complain(reader->tree, brunt_tree_child(node, "faces"), "%s", error.message);
+    brunt_mesh_free(&mesh);
+}
+
 static void check_meshing(scene_reader *reader, const scene_node *node, const brunt_body_def *body) {
     const scene_node *shape = brunt_tree_child(node, "shape"), *edge = brunt_tree_child(node, "size");
     brunt_shape_kind kind = body->shape.kind;
@@ -83,13 +95,23 @@ static void check_meshing(scene_reader *reader, const scene_node *node, const br
     if (body->size > size.largest)
         brunt_tree_complain(reader->tree, edge, "the elements (%s m) are larger than the body (%s m)", a, b);
     // As many as cubes, or six times that of tetrahedra and twice of triangles.
-    double elements = size.volume / pow(body->size, reader->dimension) *
-                      (body->element == BRUNT_TET4   ? 6
-                       : body->element == BRUNT_TRI3 ? 2
-                                                     : 1);
+    static const int pieces[BRUNT_ELEMENT_KINDS] = {
+        [BRUNT_TET4] = 6,  [BRUNT_HEX8] = 1,           [BRUNT_TRI3] = 2,
+        [BRUNT_QUAD4] = 1, [BRUNT_MEMBRANE_QUAD4] = 1, [BRUNT_MEMBRANE_TRI3] = 2};
+    double cells = body->method == BRUNT_MEMBRANE ? size.surface / (body->size * body->size)
+                                                  : size.volume / pow(body->size, reader->dimension);
+    double elements = cells * pieces[body->element];
     if (!(elements < ELEMENT_LIMIT))
         brunt_tree_complain(reader->tree, edge, "about %.3g elements fill the shape, at most %.0f can be held",
                             elements, ELEMENT_LIMIT - 1);
+    else if (body->face_count && reader->dimension == 3)
+        check_faces(reader, node, body, size.largest);
+}
+
+static void refuse_sheet_keys(scene_reader *reader, const scene_node *node) {
+    static const char *const keys[] = {"thickness", "contact_thickness", "slack", "faces"};
+    for (size_t i = 0; i < sizeof keys / sizeof *keys; i++)
+        brunt_refuse_key(reader, node, keys[i], "this belongs to method: membrane");
 }
 
 // ---------------------------------------------------------------------------------------------------- material points
@@ -131,9 +153,10 @@ static void fill_jitter(scene_reader *reader, scene_node *node, brunt_body_def *
 }
 
 static void fill_particles(scene_reader *reader, scene_node *node, brunt_body_def *body, bool measurable) {
-    static const char *const elsewhere[] = {"mesh", "group", "element", "size", "hourglass", "mass_scaling"};
+    static const char *const elsewhere[] = {"mesh", "group", "element", "size", "hourglass", "mass_scaling", "damping"};
     for (size_t i = 0; i < sizeof elsewhere / sizeof *elsewhere; i++)
-        brunt_refuse_key(reader, node, elsewhere[i], "this belongs to method: fem");
+        brunt_refuse_key(reader, node, elsewhere[i], "this belongs to method: fem or membrane");
+    refuse_sheet_keys(reader, node);
     if (!brunt_tree_child(node, "shape"))
         brunt_tree_complain_key(reader->tree, node, "'shape' is missing: what is filled with particles");
     int mistakes = reader->tree->message_count;
@@ -183,7 +206,9 @@ static bool read_mesh(scene_reader *reader, scene_node *node, brunt_body_def *bo
     brunt_copy_text(reader, group, name, sizeof name);
     if (!mesh->good || !reader->dimension || (group && !*name) || !find_mesh(reader, mesh, path)) return false;
     brunt_error error = {0};
-    int status = brunt_gmsh_read(path, name, reader->dimension, &body->mesh, reader->warnings, &error);
+    int status = body->method == BRUNT_MEMBRANE
+                     ? brunt_gmsh_read_sheet(path, name, &body->mesh, reader->warnings, &error)
+                     : brunt_gmsh_read(path, name, reader->dimension, &body->mesh, reader->warnings, &error);
     if (status) {
         brunt_tree_complain(reader->tree, mesh, "%s", error.message);
         return false;
@@ -193,16 +218,26 @@ static bool read_mesh(scene_reader *reader, scene_node *node, brunt_body_def *bo
 }
 
 static bool fill_elements(scene_reader *reader, scene_node *node, brunt_body_def *body) {
-    static const int dimensions[BRUNT_ELEMENT_KINDS] = {3, 3, 2, 2};
+    static const int dimensions[] = {3, 3, 2, 2}; // by element
     const scene_node *kind = brunt_tree_child(node, "element");
     int dimension = reader->dimension;
+    const bool sheet = body->method == BRUNT_MEMBRANE;
     brunt_refuse_key(reader, node, "group", "this belongs to a mesh file, none is given");
-    if (!kind && dimension) kind = brunt_add_default(reader, node, "element", dimension == 2 ? "quad4" : "hex8");
+    if (!kind && dimension)
+        kind = brunt_add_default(reader, node, "element", dimension == 2 || sheet ? "quad4" : "hex8");
     body->element = (brunt_element_kind)(int)brunt_real_of(node, "element", BRUNT_HEX8);
     if (!brunt_tree_child(node, "size"))
         brunt_tree_complain_key(reader->tree, node, "'size' is missing: a length (m), edge of the elements");
     body->size = brunt_real_of(node, "size", 0);
     bool known = kind && kind->good && dimension;
+    if (known && sheet && dimensions[body->element] == 3) {
+        brunt_tree_complain(reader->tree, kind, "a membrane has elements quad4 or tri3, not %s", kind->text);
+        return false;
+    }
+    if (known && sheet) {
+        body->element = body->element == BRUNT_QUAD4 ? BRUNT_MEMBRANE_QUAD4 : BRUNT_MEMBRANE_TRI3;
+        return true;
+    }
     if (known && dimensions[body->element] != dimension) {
         brunt_tree_complain(reader->tree, kind, "%s is for %d dimensions, %s is wanted", kind->text,
                             dimensions[body->element], dimension == 2 ? "tri3 or quad4" : "tet4 or hex8");
@@ -213,7 +248,7 @@ static bool fill_elements(scene_reader *reader, scene_node *node, brunt_body_def
 
 static void fill_hourglass(scene_reader *reader, scene_node *node, brunt_body_def *body) {
     const scene_node *map = brunt_tree_child(node, "hourglass");
-    bool simplex = body->element == BRUNT_TET4 || body->element == BRUNT_TRI3;
+    bool simplex = body->element == BRUNT_TET4 || body->element == BRUNT_TRI3 || body->element == BRUNT_MEMBRANE_TRI3;
     if (map && simplex) {
         brunt_tree_complain_key(reader->tree, map, "triangles and tetrahedra have no zero-energy modes to control");
         return;
@@ -224,11 +259,46 @@ static void fill_hourglass(scene_reader *reader, scene_node *node, brunt_body_de
     body->hourglass_coefficient = brunt_real_of(map, "coefficient", NAN);
 }
 
+// A material that is good by itself may have no form for sheets.
+static void check_sheet_material(scene_reader *reader, const scene_node *node, const brunt_body_def *body) {
+    brunt_material material;
+    brunt_error error = {0};
+    if (body->material < 0) return;
+    const brunt_material_def *def = &reader->scene->world.materials[body->material];
+    if (brunt_material_make(def, &material, NULL) == BRUNT_OK &&
+        brunt_material_make_sheet(def, body->slack, &material, &error) != BRUNT_OK)
+        brunt_tree_complain(reader->tree, brunt_tree_child(node, "material"), "%s", error.message);
+}
+
+static void fill_sheet(scene_reader *reader, scene_node *node, brunt_body_def *body) {
+    const scene_node *faces = brunt_tree_child(node, "faces"), *method = brunt_tree_child(node, "method");
+    if (reader->dimension == 2) brunt_tree_complain(reader->tree, method, "membranes are for three dimensions");
+    if (!brunt_tree_child(node, "thickness"))
+        brunt_tree_complain_key(reader->tree, node, "'thickness' is missing: a length (m), of the sheet");
+    if (!brunt_tree_child(node, "slack")) brunt_add_default(reader, node, "slack", "false");
+    body->thickness = brunt_real_of(node, "thickness", 0);
+    body->contact_thickness = brunt_real_of(node, "contact_thickness", NAN);
+    body->slack = brunt_real_of(node, "slack", 0) == 1;
+    check_sheet_material(reader, node, body);
+    if (brunt_tree_child(node, "mesh"))
+        brunt_refuse_key(reader, node, "faces", "a mesh file is the sheet as it is: group chooses a part of it");
+    if (!faces || !faces->good || brunt_tree_child(node, "mesh")) return;
+    body->faces = brunt_entries_for(reader, faces->count, sizeof *body->faces);
+    for (const scene_node *face = body->faces ? faces->first : NULL; face; face = face->next)
+        brunt_copy_text(reader, face, body->faces[body->face_count++], sizeof *body->faces);
+}
+
 static void fill_fem(scene_reader *reader, scene_node *node, brunt_body_def *body, bool measurable) {
     static const char *const elsewhere[] = {"particles_per_cell", "spacing", "fill", "jitter", "seed"};
     for (size_t i = 0; i < sizeof elsewhere / sizeof *elsewhere; i++)
         brunt_refuse_key(reader, node, elsewhere[i], "this belongs to method: mpm");
     bool shape = brunt_tree_child(node, "shape"), mesh = brunt_tree_child(node, "mesh"), known = false;
+    if (body->method == BRUNT_MEMBRANE)
+        fill_sheet(reader, node, body);
+    else
+        refuse_sheet_keys(reader, node);
+    if (!brunt_tree_child(node, "damping")) brunt_add_default(reader, node, "damping", "0");
+    body->damping = brunt_real_of(node, "damping", 0);
     body->mass_scaling = brunt_real_of(node, "mass_scaling", 0);
     if (shape == mesh) {
         brunt_tree_complain_key(reader->tree, node, "exactly one of shape and mesh is wanted, %s given",
@@ -294,7 +364,7 @@ static void fill_body(scene_reader *reader, scene_node *node, brunt_body_def *bo
     body->method = (brunt_method)(int)brunt_real_of(node, "method", BRUNT_MPM);
     // Without a method nobody knows which keys are wanted.
     if (method && method->good && body->method == BRUNT_MPM) fill_particles(reader, node, body, measurable);
-    if (method && method->good && body->method == BRUNT_FEM) fill_fem(reader, node, body, measurable);
+    if (method && method->good && body->method != BRUNT_MPM) fill_fem(reader, node, body, measurable);
     brunt_vector_of(node, "velocity", body->velocity);
     fill_spin(reader, brunt_tree_child(node, "spin"), body);
     fill_wave(reader, brunt_tree_child(node, "wave"), body);

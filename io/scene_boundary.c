@@ -9,15 +9,15 @@
 static const struct {
     const char *key;
     brunt_group_action action;
-} actions[] = {{"fix", BRUNT_GROUP_VELOCITY},
-               {"velocity", BRUNT_GROUP_VELOCITY},
-               {"displacement", BRUNT_GROUP_DISPLACEMENT},
-               {"traction", BRUNT_GROUP_TRACTION},
-               {"pressure", BRUNT_GROUP_PRESSURE}};
+} actions[] = {
+    {"fix", BRUNT_GROUP_VELOCITY},      {"velocity", BRUNT_GROUP_VELOCITY}, {"displacement", BRUNT_GROUP_DISPLACEMENT},
+    {"traction", BRUNT_GROUP_TRACTION}, {"pressure", BRUNT_GROUP_PRESSURE}, {"gas", BRUNT_GROUP_GAS}};
+
+static const char *const methods[] = {"mpm", "fem", "membrane"}; // by brunt_method
 
 static void refuse_group_keys(scene_reader *reader, const scene_node *node) {
-    static const char *const keys[] = {"fix", "displacement", "traction", "pressure", "table"};
-    for (int i = 0; i < 5; i++) brunt_refuse_key(reader, node, keys[i], "this belongs to a group of nodes");
+    static const char *const keys[] = {"fix", "displacement", "traction", "pressure", "gas", "table"};
+    for (int i = 0; i < 6; i++) brunt_refuse_key(reader, node, keys[i], "this belongs to a group of nodes");
 }
 
 static void fill_body_of(scene_reader *reader, const scene_node *node, char name[BRUNT_NAME_LENGTH]) {
@@ -123,10 +123,11 @@ static void fill_region(scene_reader *reader, scene_node *node, brunt_region_def
         brunt_tree_complain(reader->tree, until, "until must be after from");
     fill_body_of(reader, node, region->body);
     const scene_node *body = brunt_tree_child(node, "body"), *where = body ? body : brunt_tree_child(node, "region");
+    const brunt_body_def *def = brunt_body_named(reader, region->body);
     if (!acts_on_particles(reader, region->body))
         brunt_tree_complain_key(reader->tree, where,
-                                "a region acts on the grid, %s: `group` names nodes of finite elements",
-                                body ? "this body is of method fem" : "no body is of method mpm");
+                                "a region acts on the grid, %s is of method %s: `group` names nodes of finite elements",
+                                body ? "this body" : "no body", body && def ? methods[def->method] : "mpm");
 }
 
 // ---------------------------------------------------------------------------------------------------- groups
@@ -149,10 +150,24 @@ static scene_node *find_action(scene_reader *reader, scene_node *node) {
         if (child) found = child, count++;
     }
     if (count == 1) return found;
-    brunt_tree_complain(reader->tree, node,
-                        "exactly one of fix, velocity, displacement, traction and pressure is wanted, %d are given",
-                        count);
+    brunt_tree_complain(
+        reader->tree, node,
+        "exactly one of fix, velocity, displacement, traction, pressure and gas is wanted, %d are given", count);
     return NULL;
+}
+
+// Gas is kept between the steps, and its pressure is what comes of it: only the inflow follows a table.
+static void fill_gas(scene_reader *reader, const scene_node *node, brunt_gas_def *gas) {
+    const scene_node *inflow = brunt_tree_child(node, "inflow");
+    if (node->kind != SCENE_MAP) return;
+    if (inflow && inflow->good && inflow->value[0] == 0)
+        brunt_refuse_key(reader, node->parent, "table", "a table is the factor of gas.inflow, there is none");
+    gas->gamma = brunt_real_of(node, "gamma", 1.4);
+    gas->pressure = brunt_real_of(node, "pressure", 0);
+    gas->outside = brunt_real_of(node, "outside", 0);
+    gas->volume = brunt_real_of(node, "volume", 0);
+    gas->inflow = brunt_real_of(node, "inflow", 0);
+    if (reader->dimension == 2) brunt_tree_complain_key(reader->tree, node, "enclosed gas is for three dimensions");
 }
 
 static void fill_action(scene_reader *reader, scene_node *node, brunt_group_def *group) {
@@ -171,6 +186,7 @@ static void fill_action(scene_reader *reader, scene_node *node, brunt_group_def 
         break;
     case BRUNT_GROUP_TRACTION: brunt_vector_of(node, "traction", group->value); break;
     case BRUNT_GROUP_PRESSURE: group->value[0] = action->value[0]; break;
+    case BRUNT_GROUP_GAS: fill_gas(reader, action, &group->gas); break;
     }
 }
 
@@ -185,8 +201,9 @@ static void fill_group(scene_reader *reader, scene_node *node, brunt_group_def *
     if (!body) brunt_tree_complain(reader->tree, node, "'body' is missing: the body whose nodes they are");
     fill_body_of(reader, node, group->body);
     const brunt_body_def *def = brunt_body_named(reader, group->body);
-    if (def && def->method != BRUNT_FEM)
-        brunt_tree_complain(reader->tree, body, "groups are of bodies of method fem, '%s' is of method mpm", def->name);
+    if (def && def->method == BRUNT_MPM)
+        brunt_tree_complain(reader->tree, body, "groups are of bodies of method fem or membrane, '%s' is of method mpm",
+                            def->name);
     fill_action(reader, node, group);
     fill_table(reader, brunt_tree_child(node, "table"), &group->table);
 }

@@ -189,12 +189,16 @@ static void check_polygon(scene_reader *reader, scene_node *node, const scene_ke
     }
 }
 
+// Points over ascending times: of a table factors, of a curve numbers with any unit.
 static void check_table(scene_reader *reader, scene_node *node) {
     static const scene_key time = {.type = SCENE_REAL, .unit = "s", .min = -INFINITY, .max = INFINITY},
-                           factor = {.type = SCENE_REAL, .unit = "1", .min = -INFINITY, .max = INFINITY};
+                           factor = {.type = SCENE_REAL, .unit = "1", .min = -INFINITY, .max = INFINITY},
+                           any = {.type = SCENE_ANY_UNIT, .unit = "any", .min = -INFINITY, .max = INFINITY};
+    bool curve = node->row->type == SCENE_CURVE;
+    const char *point = curve ? "[time, value]" : "[time, factor]";
     if (node->kind != SCENE_LIST || node->count == 0) {
-        brunt_tree_complain(reader->tree, node, "%s is given, a list of points [[time, factor], ...] is wanted",
-                            node->kind == SCENE_LIST ? "an empty list" : kind_name(node));
+        brunt_tree_complain(reader->tree, node, "%s is given, a list of points [%s, ...] is wanted",
+                            node->kind == SCENE_LIST ? "an empty list" : kind_name(node), point);
         return;
     }
     node->good = true;
@@ -202,11 +206,13 @@ static void check_table(scene_reader *reader, scene_node *node) {
     for (scene_node *child = node->first; child; child = child->next) {
         child->row = node->row;
         if (child->kind != SCENE_LIST || child->count != 2) {
-            brunt_tree_complain(reader->tree, child, "[time, factor] is wanted: a time (s) and a pure number");
+            brunt_tree_complain(reader->tree, child, "%s is wanted: a time (s) and a %s", point,
+                                curve ? "number" : "pure number");
             node->good = false;
             continue;
         }
-        bool timed = check_number(reader, child->first, &time), good = check_number(reader, child->last, &factor);
+        bool timed = check_number(reader, child->first, &time),
+             good = check_number(reader, child->last, curve ? &any : &factor);
         child->good = timed && good;
         node->good &= child->good;
         if (timed && before && !(child->first->value[0] > before->value[0])) {
@@ -306,11 +312,12 @@ static void check_names(scene_reader *reader, scene_node *node, const scene_key 
     }
     node->good = true;
     static const scene_key entry = {.type = SCENE_NAME};
+    const bool pair = strcmp(row->path, "contact.pairs[].between") == 0; // a membrane may meet itself
     for (scene_node *child = node->first; child; child = child->next) {
         child->row = row;
         check_text(reader, child, &entry);
         for (scene_node *other = node->first; other != child; other = other->next) {
-            if (!child->good || !other->good || strcmp(other->text, child->text) != 0) continue;
+            if (pair || !child->good || !other->good || strcmp(other->text, child->text) != 0) continue;
             brunt_tree_complain(reader->tree, child, "'%s' is there twice", child->text);
             child->good = false;
         }
@@ -366,7 +373,10 @@ static const scene_key *parameter_row(scene_reader *reader, const scene_key *slo
     char *kept = brunt_tree_text(reader->tree, path, strlen(path));
     if (!row || !kept) return NULL;
     char initial[32] = "";
-    if (!isnan(parameter->initial)) brunt_format_number(parameter->initial, initial);
+    if (isinf(parameter->initial))
+        snprintf(initial, sizeof initial, "none");
+    else if (!isnan(parameter->initial))
+        brunt_format_number(parameter->initial, initial);
     *row = (scene_key){.path = kept,
                        .type = SCENE_REAL,
                        .unit = parameter->unit,
@@ -376,6 +386,7 @@ static const scene_key *parameter_row(scene_reader *reader, const scene_key *slo
                        .max = parameter->max,
                        .min_open = parameter->min_open,
                        .max_open = parameter->max_open,
+                       .words = isinf(parameter->initial) ? "none" : NULL,
                        .doc = parameter->doc};
     return row;
 }
@@ -639,7 +650,8 @@ static void check_value(scene_reader *reader, scene_node *node, const scene_key 
         }
         break;
     case SCENE_POLYGON: check_polygon(reader, node, row); break;
-    case SCENE_TABLE: check_table(reader, node); break;
+    case SCENE_TABLE:
+    case SCENE_CURVE: check_table(reader, node); break;
     case SCENE_AXES: check_axes(reader, node); break;
     case SCENE_TEXT:
     case SCENE_NAME: check_text(reader, node, row); break;

@@ -5,9 +5,9 @@
 
 static const char *const methods[] = {"none", "multi-velocity", "augury"}; // by brunt_contact_method
 
-static bool is_fem(const scene_reader *reader, const char *name) {
+static bool has_mesh(const scene_reader *reader, const char *name) {
     const brunt_body_def *body = brunt_body_named(reader, name);
-    return body && body->method == BRUNT_FEM;
+    return body && body->method != BRUNT_MPM;
 }
 
 static bool same_pair(const brunt_pair_def *pair, const char *a, const char *b) {
@@ -15,14 +15,31 @@ static bool same_pair(const brunt_pair_def *pair, const char *a, const char *b) 
 }
 
 static void check_pair_method(scene_reader *reader, const scene_node *method, const brunt_pair_def *pair) {
-    bool known = brunt_body_named(reader, pair->a) && brunt_body_named(reader, pair->b), a = is_fem(reader, pair->a),
-         b = is_fem(reader, pair->b);
-    if (pair->method == BRUNT_CONTACT_MULTI_VELOCITY && (a || b))
-        brunt_tree_complain(reader->tree, method,
-                            "multi-velocity is between bodies of method mpm, '%s' is of method fem",
-                            a ? pair->a : pair->b);
+    bool known = brunt_body_named(reader, pair->a) && brunt_body_named(reader, pair->b), a = has_mesh(reader, pair->a),
+         b = has_mesh(reader, pair->b);
+    if (pair->method == BRUNT_CONTACT_MULTI_VELOCITY && a && b)
+        brunt_tree_complain(reader->tree, method, "multi-velocity wants a body of method mpm, neither '%s' nor '%s' is",
+                            pair->a, pair->b);
     if (pair->method == BRUNT_CONTACT_AUGURY && known && !a && !b)
-        brunt_tree_complain(reader->tree, method, "augury wants a body of method fem, both are of method mpm");
+        brunt_tree_complain(reader->tree, method,
+                            "augury wants a body of method fem or membrane, both are of method mpm");
+}
+
+// A membrane folds onto itself, and meets itself by augury alone: `method` is NULL when it is that of all pairs.
+static void check_self(scene_reader *reader, const scene_node *between, const scene_node *method,
+                       const brunt_pair_def *pair) {
+    const brunt_body_def *body = brunt_body_named(reader, pair->a);
+    if (!body || pair->method == BRUNT_CONTACT_NONE) return;
+    if (body->method != BRUNT_MEMBRANE)
+        brunt_tree_complain(reader->tree, between, "contact of a body with itself is for membranes, '%s' is none",
+                            pair->a);
+    else if (pair->method == BRUNT_CONTACT_MULTI_VELOCITY)
+        brunt_tree_complain(reader->tree, method ? method : between,
+                            "contact of a membrane with itself is by augury: method: augury is wanted");
+    else if (body->contact_thickness == 0)
+        brunt_tree_complain(reader->tree, between,
+                            "contact of a membrane with itself wants a contact_thickness above 0, '%s' has none",
+                            pair->a);
 }
 
 static void fill_pair(scene_reader *reader, scene_node *node, brunt_pair_def *pair) {
@@ -46,7 +63,10 @@ static void fill_pair(scene_reader *reader, scene_node *node, brunt_pair_def *pa
     brunt_check_body_name(reader, between->last);
     brunt_copy_text(reader, between->first, pair->a, sizeof pair->a);
     brunt_copy_text(reader, between->last, pair->b, sizeof pair->b);
-    if (method && method->good) check_pair_method(reader, method, pair);
+    if (strcmp(pair->a, pair->b) == 0)
+        check_self(reader, between, method, pair);
+    else if (method && method->good)
+        check_pair_method(reader, method, pair);
     for (int i = 0; i < contact->pair_count; i++) {
         const brunt_pair_def *other = &contact->pairs[i];
         if (other != pair && *other->a && same_pair(other, pair->a, pair->b))
@@ -69,22 +89,21 @@ static bool overridden(const brunt_contact_def *contact, const char *a, const ch
     return false;
 }
 
-// Multi-velocity for all meets a finite-element body: said once, with the first two bodies it is wrong for.
+// Multi-velocity for all meets two bodies of meshes: said once, with the first two it is wrong for.
 static void check_multi_velocity(scene_reader *reader, const scene_node *method) {
     const brunt_world_def *world = &reader->scene->world;
-    for (int f = 0; f < world->body_count; f++) {
-        const brunt_body_def *fem = &world->bodies[f];
-        if (fem->method != BRUNT_FEM) continue;
-        for (int o = 0; o < world->body_count; o++) {
-            const brunt_body_def *other = &world->bodies[o];
-            if (o == f || overridden(&world->contact, fem->name, other->name)) continue;
-            brunt_tree_complain(reader->tree, method,
-                                "multi-velocity is between bodies of method mpm, '%s' is of method fem: augury is "
-                                "wanted, or pairs with a method of their own",
-                                fem->name);
+    for (int a = 0; a < world->body_count; a++)
+        for (int b = a + 1; b < world->body_count; b++) {
+            const brunt_body_def *one = &world->bodies[a], *other = &world->bodies[b];
+            if (one->method == BRUNT_MPM || other->method == BRUNT_MPM) continue;
+            if (overridden(&world->contact, one->name, other->name)) continue;
+            brunt_tree_complain(
+                reader->tree, method,
+                "multi-velocity wants a body of method mpm, neither '%s' nor '%s' is: augury is wanted, "
+                "or pairs with a method of their own",
+                one->name, other->name);
             return;
         }
-    }
 }
 
 static void fill_augury(scene_reader *reader, scene_node *node) {
@@ -115,13 +134,14 @@ void brunt_fill_contact(scene_reader *reader) {
     scene_node *node = brunt_tree_child(reader->tree->root, "contact");
     if (!node || node->kind != SCENE_MAP) return;
     bool fem = false;
-    for (int i = 0; i < world->body_count; i++) fem |= world->bodies[i].method == BRUNT_FEM;
+    for (int i = 0; i < world->body_count; i++) fem |= world->bodies[i].method != BRUNT_MPM;
     const scene_node *method = brunt_tree_child(node, "method");
     contact->method = fem ? BRUNT_CONTACT_AUGURY : BRUNT_CONTACT_MULTI_VELOCITY;
     if (!method) method = brunt_add_default(reader, node, "method", methods[contact->method]);
     contact->method = (brunt_contact_method)(int)brunt_real_of(node, "method", contact->method);
     if (contact->method == BRUNT_CONTACT_AUGURY && !fem && world->body_count)
-        brunt_tree_complain(reader->tree, method, "augury wants a body of method fem, all are of method mpm");
+        brunt_tree_complain(reader->tree, method,
+                            "augury wants a body of method fem or membrane, all are of method mpm");
     contact->friction = brunt_real_of(node, "friction", 0);
     contact->allow_overlap = brunt_real_of(node, "initial_overlap", 0) == 1;
     fill_pairs(reader, brunt_tree_child(node, "pairs"));

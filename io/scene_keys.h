@@ -19,6 +19,7 @@ typedef enum scene_type {
     SCENE_TURN,      // a number or, in three dimensions, a vector
     SCENE_POLYGON,   // list of [x, y]
     SCENE_TABLE,     // list of [time, factor], ascending
+    SCENE_CURVE,     // list of [time, number with any unit], ascending
     SCENE_AXES,      // list of x, y, z, or the word `all`
     SCENE_TEXT,      // free text
     SCENE_NAME,      // a name of the user's own, or of a field

@@ -29,16 +29,28 @@ static bool pair_exists(const scene_reader *reader, const char *rest) {
     return false;
 }
 
+static const char *gas_mistake(const brunt_world_def *world, const char *rest) {
+    static const char *const quantities[] = {"volume", "pressure", "energy", "inflow"};
+    for (int i = 0; i < world->group_count; i++) {
+        const brunt_group_def *group = &world->groups[i];
+        size_t length = strlen(group->name);
+        if (group->action != BRUNT_GROUP_GAS || strncmp(rest, group->name, length) != 0 || rest[length] != '.')
+            continue;
+        return one_of(rest + length + 1, quantities, 4) ? NULL : "of gas there are volume, pressure, energy and inflow";
+    }
+    return "there is no boundary of that name with gas";
+}
+
 // What of a column can be known before the engine runs: its family, and the names of bodies, walls and probes in it.
 static const char *column_mistake(const scene_reader *reader, const char *column) {
     static const char *const plain[] = {"time", "step", "dt"};
-    static const char *const energies[] = {"kinetic", "internal", "mechanical",  "plastic",  "hourglass",     "contact",
-                                           "friction", "viscosity", "transfer", "eroded",        "external_work",
-                                           "initial",  "total",     "error",    "error_relative"};
+    static const char *const energies[] = {"kinetic",       "internal", "mechanical", "plastic",  "hourglass",
+                                           "contact",       "friction", "viscosity",  "transfer", "eroded",
+                                           "external_work", "initial",  "total",      "error",    "error_relative"};
     const brunt_world_def *world = &reader->scene->world;
     static const char families[] =
-        "columns are time, step, dt, energy.*, momentum.*, body.NAME.*, contact.A-B.*, wall.NAME.* and "
-        "probe.NAME";
+        "columns are time, step, dt, energy.*, momentum.*, body.NAME.*, contact.A-B.*, wall.NAME.*, gas.NAME.* "
+        "and probe.NAME";
     const char *dot = strchr(column, '.');
     if (!dot) return one_of(column, plain, 3) ? NULL : families;
     const char *rest = dot + 1;
@@ -67,6 +79,7 @@ static const char *column_mistake(const scene_reader *reader, const char *column
             if (names_part(rest, world->groups[i].name)) return NULL;
         return "there is no boundary of that name";
     }
+    if (family == 3 && strncmp(column, "gas", 3) == 0) return gas_mistake(world, rest);
     if (family == 5 && strncmp(column, "probe", 5) == 0) {
         for (int i = 0; i < reader->scene->output.probe_count; i++)
             if (names_part(rest, reader->scene->output.probes[i].name)) return NULL;
@@ -157,6 +170,93 @@ static void fill_kind(scene_reader *reader, scene_node *node, brunt_measure *mea
     }
 }
 
+static bool has_unit(const scene_node *node) {
+    return node && node->good && node->base && strcmp(node->base, "1") != 0;
+}
+
+// A distance over a range is a pure number; the curve's own unit is compared with that of the column once there is one.
+static void check_curve_units(scene_reader *reader, const scene_node *node, const scene_node *curve) {
+    static const char *const pure[] = {"expect", "tolerance"};
+    scene_tree *tree = reader->tree;
+    const char *unit = "1";
+    for (const scene_node *point = curve->first; point; point = point->next) {
+        const char *base = point->last->base;
+        if (strcmp(base, "1") == 0) continue;
+        if (strcmp(unit, "1") != 0 && strcmp(unit, base) != 0)
+            brunt_tree_complain(tree, point->last, "this value is in %s, one before it in %s", base, unit);
+        unit = base;
+        if (brunt_tree_child(node, "relative_to")) {
+            brunt_tree_complain(tree, point->last,
+                                "the history is divided (relative_to): a number without unit is wanted");
+            break;
+        }
+    }
+    for (int i = 0; i < 2; i++) {
+        const scene_node *key = brunt_tree_child(node, pure[i]);
+        if (has_unit(key)) brunt_tree_complain(tree, key, "a distance relative to the curve's range has no unit");
+    }
+    const scene_node *printed = brunt_tree_child(node, "unit");
+    if (printed && printed->good && *printed->text && strcmp(printed->text, "1") != 0)
+        brunt_tree_complain(tree, printed, "a distance relative to the curve's range has no unit");
+}
+
+static void fill_curve(scene_reader *reader, scene_node *node, brunt_measure *measure) {
+    const scene_node *curve = brunt_tree_child(node, "curve");
+    scene_tree *tree = reader->tree;
+    if (!curve) return;
+    if (measure->kind != BRUNT_MEASURE_HISTORY) {
+        brunt_tree_complain_key(tree, curve, "a curve over time is for measures of the history");
+        return;
+    }
+    if (!curve->good) return;
+    check_curve_units(reader, node, curve);
+    double least = INFINITY, most = -INFINITY;
+    measure->curve.points = brunt_entries_for(reader, curve->count, sizeof *measure->curve.points);
+    for (const scene_node *point = measure->curve.points ? curve->first : NULL; point; point = point->next) {
+        double *to = measure->curve.points[measure->curve.count++], value = point->last->value[0];
+        to[0] = point->first->value[0];
+        to[1] = value;
+        least = fmin(least, value);
+        most = fmax(most, value);
+        if (has_unit(point->last))
+            snprintf(measure->curve_unit, sizeof measure->curve_unit, "%.63s", point->last->base);
+    }
+    if (measure->curve.count && !(most > least))
+        brunt_tree_complain(tree, curve, "its values are all the same, distances are relative to their range");
+    else if (!isfinite(most - least))
+        brunt_tree_complain(tree, curve, "the range of its values is no number");
+}
+
+// The window of a curve is where there is one, unless a narrower one is given.
+static void check_curve_times(scene_reader *reader, scene_node *node, brunt_measure *measure) {
+    const brunt_curve *curve = &measure->curve;
+    scene_tree *tree = reader->tree;
+    const scene_node *take = brunt_tree_child(node, "take"), *from = brunt_tree_child(node, "from"),
+                     *to = brunt_tree_child(node, "to"), *shown = brunt_tree_child(node, "curve");
+    double first = curve->points[0][0], last = curve->points[curve->count - 1][0], end = reader->scene->world.end;
+    char text[32];
+    brunt_take t = measure->take;
+    if (take && take->good && t != BRUNT_TAKE_END && t != BRUNT_TAKE_INITIAL && t != BRUNT_TAKE_MIN &&
+        t != BRUNT_TAKE_MAX && t != BRUNT_TAKE_MEAN && t != BRUNT_TAKE_MAX_ABS)
+        brunt_tree_complain(tree, take,
+                            "the distance from a curve is reduced by max_abs, max, min, mean, initial or end");
+    if (!from) measure->from = first;
+    if (!to) measure->to = last;
+    double slack = 1e-9 * (last - first);
+    if (from && from->good && (measure->from < first - slack || measure->from > last + slack))
+        brunt_tree_complain(tree, from, "there is no curve then");
+    if (to && to->good && (measure->to < first - slack || measure->to > last + slack))
+        brunt_tree_complain(tree, to, "there is no curve then");
+    brunt_format_number(end, text);
+    if (!from && first < 0)
+        brunt_tree_complain(tree, shown, "it begins before the run: `from` says from when it is compared");
+    if (!to && end > 0 && last > end * (1 + 1e-9))
+        brunt_tree_complain(tree, shown, "it ends after the run has ended (%s s): `to` says until when it is compared",
+                            text);
+    else if (!(measure->from < measure->to) && !(from && to))
+        brunt_tree_complain(tree, shown, "nothing of it is left between from and to");
+}
+
 static void fill_time_of(scene_reader *reader, scene_node *node, brunt_measure *measure) {
     scene_tree *tree = reader->tree;
     const scene_node *take = brunt_tree_child(node, "take"), *from = brunt_tree_child(node, "from"),
@@ -165,7 +265,8 @@ static void fill_time_of(scene_reader *reader, scene_node *node, brunt_measure *
     if (!take && field)
         brunt_tree_complain_key(tree, node,
                                 "'take' is missing: a field is reduced over the body by min, max, mean or max_abs");
-    if (!take && !field) take = brunt_add_default(reader, node, "take", "end");
+    const bool curved = brunt_tree_child(node, "curve") != NULL;
+    if (!take && !field) take = brunt_add_default(reader, node, "take", history && curved ? "max_abs" : "end");
     measure->take = (brunt_take)(int)brunt_real_of(node, "take", BRUNT_TAKE_END);
     if (take && take->good) {
         brunt_take t = measure->take;
@@ -188,6 +289,7 @@ static void fill_time_of(scene_reader *reader, scene_node *node, brunt_measure *
     if (end > 0 && to && to->good && measure->to > last)
         brunt_tree_complain(tree, to, "the window ends after the run has ended (%s s)", text);
     if (to && to->good && !(measure->from < measure->to)) brunt_tree_complain(tree, to, "to must be after from");
+    if (measure->curve.count) check_curve_times(reader, node, measure);
 }
 
 static void fill_reference(scene_reader *reader, scene_node *node, brunt_measure *measure) {
@@ -203,10 +305,6 @@ static void fill_reference(scene_reader *reader, scene_node *node, brunt_measure
         measure->relative_to = relative->value[0];
 }
 
-static bool has_unit(const scene_node *node) {
-    return node && node->good && node->base && strcmp(node->base, "1") != 0;
-}
-
 static void fill_expectation(scene_reader *reader, scene_node *node, brunt_measure *measure) {
     scene_tree *tree = reader->tree;
     const scene_node *expect = brunt_tree_child(node, "expect"), *tolerance = brunt_tree_child(node, "tolerance"),
@@ -216,7 +314,9 @@ static void fill_expectation(scene_reader *reader, scene_node *node, brunt_measu
     if (tolerance && !expect) brunt_tree_complain_key(tree, tolerance, "a tolerance without expect");
     if (expect && !tolerance) brunt_tree_complain_key(tree, expect, "expect without a tolerance");
     if (kind && !tolerance) brunt_tree_complain_key(tree, kind, "tolerance_is without a tolerance");
-    if (tolerance && !kind) kind = brunt_add_default(reader, node, "tolerance_is", "relative");
+    // A distance from a curve is relative as it is, to the curve's range.
+    if (tolerance && !kind)
+        kind = brunt_add_default(reader, node, "tolerance_is", measure->curve.count ? "absolute" : "relative");
     measure->absolute = kind && kind->good && kind->value[0] == 1;
     if (has_unit(tolerance) && kind && kind->good && !measure->absolute)
         brunt_tree_complain(tree, tolerance, "a tolerance with a unit needs tolerance_is: absolute");
@@ -266,6 +366,7 @@ void brunt_fill_measures(scene_reader *reader) {
         if (node->kind != SCENE_MAP) continue;
         unfold(reader, node);
         fill_kind(reader, node, measure);
+        fill_curve(reader, node, measure);
         fill_time_of(reader, node, measure);
         fill_reference(reader, node, measure);
         fill_expectation(reader, node, measure);

@@ -108,7 +108,7 @@ static void fill_time(scene_reader *reader) {
 static void fill_grid(scene_reader *reader) {
     brunt_world_def *world = &reader->scene->world;
     scene_node *grid = brunt_tree_child(reader->tree->root, "grid");
-    bool only_fem = has_method(reader, "fem") && !has_method(reader, "mpm");
+    bool only_fem = (has_method(reader, "fem") || has_method(reader, "membrane")) && !has_method(reader, "mpm");
     if (!grid && !only_fem)
         brunt_tree_complain_key(reader->tree, reader->tree->root, "'grid' is missing: %s",
                                 brunt_scene_row("grid")->doc);
@@ -155,6 +155,9 @@ static void fill_material(scene_reader *reader, const scene_node *node, brunt_ma
     if (strength && eos && !strength->accepts_eos)
         brunt_tree_complain_key(reader->tree, eos, "%s has a pressure of its own and takes no equation of state",
                                 strength->name);
+    if (strength && !eos && strength->needs_eos)
+        brunt_tree_complain_key(reader->tree, node,
+                                "%s has no pressure of its own: eos, an equation of state, is missing", strength->name);
     if (eos && eos->kind == SCENE_MAP) {
         snprintf(material->eos, sizeof material->eos, "%s", brunt_text_of(eos, "model", ""));
         const brunt_model *model = brunt_find_eos(material->eos);

@@ -42,7 +42,8 @@ static void describe_kind(const scene_key *row, char *out, size_t size) {
     case SCENE_PARTIAL: snprintf(out, size, strcmp(row->unit, "1") == 0 ? "vector" : "vector [%s]", row->unit); break;
     case SCENE_TURN: snprintf(out, size, "vector or number [%s]", row->unit); break;
     case SCENE_POLYGON: snprintf(out, size, "list of [x, y] [%s]", row->unit); break;
-    case SCENE_TABLE: snprintf(out, size, "list of [t, number]"); break;
+    case SCENE_TABLE:
+    case SCENE_CURVE: snprintf(out, size, "list of [t, number]"); break;
     case SCENE_AXES: snprintf(out, size, "list of axes"); break;
     case SCENE_TEXT: snprintf(out, size, "text"); break;
     case SCENE_NAME: snprintf(out, size, "name"); break;
@@ -140,7 +141,10 @@ static void write_model(FILE *out, const brunt_model *model) {
         const brunt_parameter *parameter = &model->parameters[p];
         char kind[64], initial[32] = "required", doc[512], bounds[96];
         snprintf(kind, sizeof kind, strcmp(parameter->unit, "1") == 0 ? "number" : "number [%s]", parameter->unit);
-        if (!isnan(parameter->initial)) brunt_format_number(parameter->initial, initial);
+        if (isinf(parameter->initial))
+            snprintf(initial, sizeof initial, "none");
+        else if (!isnan(parameter->initial))
+            brunt_format_number(parameter->initial, initial);
         describe_bounds(parameter->min, parameter->max, parameter->min_open, parameter->max_open, bounds,
                         sizeof bounds);
         snprintf(doc, sizeof doc, *bounds ? "%s (%s)" : "%s", parameter->doc, bounds);
@@ -273,13 +277,19 @@ static void schema_group(FILE *out, const char *pattern) {
     if (any) fputc(']', out);
 }
 
+// YAML makes truth values of these words.
+static bool is_truth(const char *word) { return strcmp(word, "true") == 0 || strcmp(word, "false") == 0; }
+
 static void schema_words(FILE *out, const scene_key *row) {
     fputs("\"enum\": [", out);
     char word[64];
     if (row->words) {
         for (int i = 0; brunt_scene_word_at(row->words, i, word, sizeof word); i++) {
             if (i) fputs(", ", out);
-            json_text(out, word);
+            if (is_truth(word))
+                fputs(word, out);
+            else
+                json_text(out, word);
         }
     } else {
         int count;
@@ -314,6 +324,8 @@ static void schema_value(FILE *out, const scene_key *row) {
             fprintf(out, "[\"%.*s\"]", (int)strlen(row->initial) - 2, row->initial + 1);
         else if (!brunt_read_number(row->initial, &value, &rest) && !*rest)
             fputs(row->initial, out);
+        else if (is_truth(row->initial))
+            fputs(row->initial, out);
         else
             json_text(out, strcmp(row->initial, "''") == 0 ? "" : row->initial);
     }
@@ -346,6 +358,7 @@ static void schema_value(FILE *out, const scene_key *row) {
         fputs("\"type\": \"array\", \"minItems\": 3, \"items\": {\"$ref\": \"#/$defs/vector\"}", out);
         break;
     case SCENE_TABLE:
+    case SCENE_CURVE:
         fputs(
             "\"type\": \"array\", \"minItems\": 1, \"items\": {\"type\": \"array\", \"minItems\": 2, \"maxItems\": 2, "
             "\"items\": {\"$ref\": \"#/$defs/number\"}}",

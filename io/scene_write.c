@@ -48,6 +48,8 @@ static void write_flow(FILE *out, const scene_node *node) {
     if (node->kind == SCENE_SCALAR) {
         if (node->number)
             write_number(out, node->value[0]);
+        else if (node->row && node->row->type == SCENE_WORD && node->good)
+            fputs(node->text, out); // one of ours: also true and false are read as words
         else
             write_text(out, node->text);
         return;

@@ -248,7 +248,7 @@ static int add_ids(picture *p, int64_t count, bool at_cells, brunt_error *error)
 
 static int add_grid(picture *p, brunt_error *error) {
     brunt_world *world = p->world;
-    p->elements = brunt_body_method(world, p->body) == BRUNT_FEM;
+    p->elements = brunt_body_method(world, p->body) != BRUNT_MPM;
     p->grid.point_count = brunt_body_size(world, p->body, p->elements ? BRUNT_AT_NODES : BRUNT_AT_PARTICLES);
     int32_t position = brunt_body_find_field(world, p->body, "position");
     if (position < 0)

@@ -42,6 +42,15 @@ static brunt_mesh read_from(const char *file, const char *group, int dimension, 
     return mesh;
 }
 
+static brunt_mesh read_sheet(const char *file, const char *group, char *warnings) {
+    brunt_mesh mesh;
+    brunt_error error = {0};
+    FILE *stream = warnings ? fmemopen(warnings, 1024, "w") : NULL;
+    ck_assert_msg(!brunt_gmsh_read_sheet(file, group, &mesh, stream, &error), "%s", error.message);
+    if (stream) fclose(stream);
+    return mesh;
+}
+
 static void expect_refused(const char *file, const char *group, int dimension, int code, const char *message) {
     brunt_mesh mesh;
     brunt_error error = {0};
@@ -126,14 +135,17 @@ END_TEST
 
 // ---------------------------------------------------------------------------------------------------- all formats
 
-static const int types[BRUNT_ELEMENT_KINDS] = {4, 5, 2, 3};
+static const int types[BRUNT_ELEMENT_KINDS] = {4, 5, 2, 3, 3, 2};
 
 // A mesh of a shape as gmsh would have it, with its groups as points (type 15).
 static gmsh_model model_of(const brunt_mesh *mesh, const int64_t *tags) {
     gmsh_model m = {.node_count = mesh->node_count, .x = mesh->nodes, .tags = tags, .part_count = 1, .name_count = 1};
-    m.part[0] = (gmsh_part){
-        types[mesh->kind], brunt_element_nodes(mesh->kind), brunt_element_dimension(mesh->kind), 7, mesh->element_count,
-        mesh->elements};
+    m.part[0] = (gmsh_part){types[mesh->kind],
+                            brunt_element_nodes(mesh->kind),
+                            brunt_element_is_sheet(mesh->kind) ? 2 : brunt_element_dimension(mesh->kind),
+                            7,
+                            mesh->element_count,
+                            mesh->elements};
     m.name[0].dimension = m.part[0].dimension, m.name[0].tag = 7, m.name[0].name = "body";
     for (int32_t g = 0; g < mesh->group_count; g++) {
         m.part[m.part_count++] = (gmsh_part){15, 1, 0, g + 1, mesh->groups[g].count, mesh->groups[g].nodes};
@@ -147,7 +159,10 @@ START_TEST(every_kind_in_every_format) {
     brunt_shape ring = {.kind = BRUNT_RING, .axis = {0, 0, 1}, .radius = 1, .inner_radius = 0.5, .length = 1};
     for (int k = 0; k < BRUNT_ELEMENT_KINDS; k++) {
         brunt_mesh mesh;
-        ck_assert_int_eq(brunt_mesh_shape(&ring, brunt_element_dimension(k), k, 0.4, &mesh, NULL), 0);
+        const bool sheet = brunt_element_is_sheet(k);
+        ck_assert_int_eq(sheet ? brunt_mesh_surface(&ring, k, 0.4, NULL, 0, &mesh, NULL)
+                               : brunt_mesh_shape(&ring, brunt_element_dimension(k), k, 0.4, &mesh, NULL),
+                         0);
         // Bytes of numbers that would be blanks in text.
         for (int n = 0; n < mesh.node_count; n++)
             for (int d = 0; d < 2; d++) *(char *)&mesh.nodes[n][d] = " \t\r\n"[n % 4];
@@ -160,9 +175,10 @@ START_TEST(every_kind_in_every_format) {
                     tags[n] = numbering == 1 ? 5 + 3 * (mesh.node_count - n) : 17 + far * ((n * 7) % mesh.node_count);
                 gmsh_model m = model_of(&mesh, numbering ? tags : NULL);
                 gmsh_write(path, &m, format < 2 ? 2 : 4, format % 2);
-                brunt_mesh back = read_from(path, "body", brunt_element_dimension(k), NULL);
+                brunt_mesh back =
+                    sheet ? read_sheet(path, "body", NULL) : read_from(path, "body", brunt_element_dimension(k), NULL);
                 expect_same(&back, &mesh);
-                ck_assert_int_eq(back.group_count, mesh.group_count);
+                ck_assert_int_eq(back.group_count, mesh.group_count + sheet); // a sheet is one of its groups
                 for (int32_t g = 0; g < mesh.group_count; g++) {
                     const brunt_group *group = group_of(&back, mesh.groups[g].name);
                     ck_assert_int_eq(group->count, mesh.groups[g].count);
@@ -284,6 +300,79 @@ START_TEST(bodies_are_physical_groups) {
         ck_assert_double_eq(mesh.nodes[2][2], 0);
         brunt_mesh_free(&mesh);
     }
+}
+END_TEST
+
+// A tent: two squares that meet at a ridge, the second clockwise; a solid stands below it, a line along the ridge.
+START_TEST(sheets_are_surfaces_in_space) {
+    double x[][3] = {{0, 0, 0}, {1, 0, 1}, {1, 1, 1}, {0, 1, 0}, {2, 0, 0}, {2, 1, 0}, {1, 0.5, 0}};
+    const int32_t ridge[] = {1, 2}, tet[] = {0, 4, 3, 6}, backwards[] = {1, 2, 5, 4};
+    for (int format = 0; format < 4; format++) {
+        int version = format < 2 ? 2 : 4;
+        bool binary = format % 2;
+        char warnings[1024] = "";
+        gmsh_model m = {.node_count = 6, .x = x, .part_count = 3, .name_count = 3};
+        m.part[0] = (gmsh_part){3, 4, 2, 1, 1, left};
+        m.part[1] = (gmsh_part){3, 4, 2, 2, 1, right};
+        m.part[2] = (gmsh_part){1, 2, 1, 3, 1, ridge};
+        const char *names[] = {"west", "east", "ridge"};
+        for (int i = 0; i < 3; i++)
+            m.name[i].dimension = i < 2 ? 2 : 1, m.name[i].tag = i + 1, m.name[i].name = names[i];
+        gmsh_write(path, &m, version, binary);
+        brunt_mesh mesh = read_sheet(path, "east", warnings);
+        ck_assert_str_eq(warnings, "");
+        ck_assert_int_eq(mesh.kind, BRUNT_MEMBRANE_QUAD4);
+        ck_assert_int_eq(mesh.node_count, 4);
+        ck_assert_double_eq(mesh.nodes[0][2], 1);
+        ck_assert_double_eq_tol(checked(&mesh).volume, sqrt(2), 1e-14);
+        ck_assert_int_eq(mesh.group_count, 4);
+        ck_assert_int_eq(group_of(&mesh, "east")->count, 4);
+        ck_assert_int_eq(group_of(&mesh, "west")->count, 2); // where it touches
+        ck_assert_int_eq(group_of(&mesh, "ridge")->count, 2);
+        ck_assert_int_eq(group_of(&mesh, "surface")->count, 4);
+        brunt_mesh_free(&mesh);
+
+        m.part[0].elements = clockwise; // seen from below: that is its front then
+        gmsh_write(path, &m, version, binary);
+        mesh = read_sheet(path, "west", warnings);
+        ck_assert_str_eq(warnings, "");
+        ck_assert_mem_eq(mesh.elements, clockwise, 4 * sizeof *clockwise);
+        brunt_mesh_free(&mesh);
+        m.part[0].elements = left;
+
+        m.name[1].name = "west", m.part[1].elements = backwards; // two groups of one name; turned as in the file
+        gmsh_write(path, &m, version, binary);
+        mesh = read_sheet(path, "west", NULL);
+        ck_assert_int_eq(mesh.element_count, 2);
+        ck_assert_mem_eq(mesh.elements + 4, backwards, sizeof backwards);
+        brunt_mesh_quality quality;
+        brunt_error error = {0};
+        ck_assert_int_eq(brunt_mesh_check(&mesh, &quality, &error), BRUNT_BAD_INPUT);
+        ck_assert_msg(strstr(error.message, "elements 1 and 2 are turned to opposite sides") != NULL, "'%s'",
+                      error.message);
+        brunt_mesh_free(&mesh);
+
+        m.part[1] = (gmsh_part){4, 4, 3, 0, 1, tet}; // beside a solid the sheet must be named
+        m.node_count = 7, m.name_count = 1;
+        gmsh_write(path, &m, version, binary);
+        ck_assert_int_eq(brunt_gmsh_read_sheet(path, "", &mesh, NULL, &error), BRUNT_BAD_INPUT);
+        ck_assert_msg(strstr(error.message, "which physical group of dimension 2 is the sheet?") != NULL, "'%s'",
+                      error.message);
+        mesh = read_sheet(path, "west", warnings);
+        ck_assert_int_eq(mesh.element_count, 1);
+        ck_assert_msg(strstr(warnings, "1 of its nodes belong to no element") != NULL, "'%s'", warnings); // the sixth
+        brunt_mesh_free(&mesh);
+        ck_assert_int_eq(brunt_gmsh_read_sheet(path, "east", &mesh, NULL, &error), BRUNT_BAD_INPUT);
+        ck_assert_msg(strstr(error.message, "no physical group 'east' of dimension 2") != NULL, "'%s'", error.message);
+    }
+    char text[2048] = "";
+    FILE *out = fmemopen(text, sizeof text, "w");
+    gmsh_model m = {.node_count = 6, .x = x, .part_count = 1};
+    m.part[0] = (gmsh_part){3, 4, 2, 0, 1, left};
+    gmsh_write(path, &m, 4, false);
+    ck_assert_int_eq(brunt_gmsh_describe(path, out, NULL), BRUNT_OK);
+    fclose(out);
+    ck_assert_msg(strstr(text, "1 membrane_quad4 elements, area 1.41421 m^2") != NULL, "%s", text);
 }
 END_TEST
 
@@ -610,6 +699,7 @@ int main(void) {
     tcase_add_test(tests, disks_of_gmsh);
     tcase_add_test(tests, every_kind_in_every_format);
     tcase_add_test(tests, bodies_are_physical_groups);
+    tcase_add_test(tests, sheets_are_surfaces_in_space);
     tcase_add_test(tests, groups_that_cannot_be_are_said);
     tcase_add_test(tests, description);
     tcase_add_test(tests, broken_files_are_refused);

@@ -133,6 +133,115 @@ START_TEST(periods_are_found) {
 }
 END_TEST
 
+// The history is time itself, so that its distance from any broken line is known.
+START_TEST(history_against_a_curve) {
+    for (int r = 0; r < 6; r++) {
+        ck_assert_int_eq(brunt_history_sample(history, world, NULL), BRUNT_OK);
+        brunt_error error = {0};
+        double next = 0.01 * (r + 1);
+        while (brunt_world_time(world) < next) ck_assert_int_eq(brunt_world_step(world, next, &error), BRUNT_OK);
+    }
+    double roof[3][2] = {{0, 0}, {0.02, 0.02}, {0.05, 0.01}},
+           between_lines[3][2] = {{0, 0}, {0.025, 0.035}, {0.05, 0.05}};
+    brunt_measure m = blank(BRUNT_MEASURE_HISTORY);
+    strcpy(m.column, "time");
+    m.take = BRUNT_TAKE_MAX_ABS;
+    m.curve = (brunt_curve){roof, 3};
+    m.from = 0;
+    m.to = 0.05;
+    ck_assert_double_eq_tol(evaluate(&m, NAN).value, 0.04 / 0.02, 1e-12);
+    m.take = BRUNT_TAKE_MIN;
+    ck_assert_double_eq_tol(evaluate(&m, NAN).value, 0, 1e-12);
+    m.take = BRUNT_TAKE_MEAN;
+    ck_assert_double_eq_tol(evaluate(&m, NAN).value, 0.5 * 0.03 * 0.04 / 0.05 / 0.02, 1e-12);
+    m.take = BRUNT_TAKE_MAX;
+    m.to = 0.02;
+    ck_assert_double_eq_tol(evaluate(&m, NAN).value, 0, 1e-12);
+    m.to = 0.035; // an end between two lines
+    ck_assert_double_eq_tol(evaluate(&m, NAN).value, (0.035 - 0.015) / 0.02, 1e-12);
+    m.take = BRUNT_TAKE_INITIAL;
+    m.from = 0.026; // likewise
+    ck_assert_double_eq_tol(evaluate(&m, NAN).value, (0.026 - 0.018) / 0.02, 1e-12);
+    // The greatest distance is at a point of the curve that is between two lines of the history.
+    m.curve = (brunt_curve){between_lines, 3};
+    m.from = 0;
+    m.to = 0.05;
+    m.take = BRUNT_TAKE_MAX_ABS;
+    ck_assert_double_eq_tol(evaluate(&m, NAN).value, 0.01 / 0.05, 1e-12);
+    m.take = BRUNT_TAKE_MIN;
+    ck_assert_double_eq_tol(evaluate(&m, NAN).value, -0.01 / 0.05, 1e-12);
+    // 1 + t, over 2, less the curve.
+    m.minus = -1;
+    m.relative_to = 2;
+    m.take = BRUNT_TAKE_MAX;
+    ck_assert_double_eq_tol(evaluate(&m, NAN).value, 0.5 / 0.05, 1e-12);
+    m.expect = 0;
+    m.absolute = true;
+    m.tolerance = 10.1;
+    ck_assert(evaluate(&m, NAN).ok);
+    m.tolerance = 9.9;
+    ck_assert(!evaluate(&m, NAN).ok);
+    // A run that ended before the window has no distance to show, however near it was.
+    m.tolerance = INFINITY;
+    m.to = 0.06;
+    ck_assert_double_nan(evaluate(&m, NAN).value);
+    ck_assert(!evaluate(&m, NAN).ok);
+}
+END_TEST
+
+// The initial value of a column is what `relative_to: initial` divides the history by, also before a curve.
+START_TEST(curves_of_shares) {
+    ck_assert_int_eq(brunt_history_sample(history, world, NULL), BRUNT_OK);
+    small_steps(world, 5);
+    ck_assert_int_eq(brunt_history_sample(history, world, NULL), BRUNT_OK);
+    double line[2][2] = {{0, 0.5}, {brunt_world_time(world), 1}};
+    brunt_measure m = blank(BRUNT_MEASURE_HISTORY);
+    strcpy(m.column, "body.left.mass");
+    m.take = BRUNT_TAKE_MAX;
+    m.relative_to_initial = true;
+    m.curve = (brunt_curve){line, 2};
+    m.from = 0;
+    m.to = line[1][0];
+    ck_assert_double_eq_tol(evaluate(&m, NAN).value, 1, 1e-12);
+}
+END_TEST
+
+START_TEST(curves_of_scenes) {
+    brunt_scene read, again;
+    const char *const sets[] = {"measures={way: {history: body.left.position_x, expect: 0, tolerance: 0.1,"
+                                " curve: [[0 ms, 25 cm], [10 ms, 0.3], [50 ms, 400 mm]]}}"};
+    small_scene(&read, sets, 1);
+    const brunt_measure *m = &read.measures[0];
+    ck_assert_int_eq(m->curve.count, 3);
+    ck_assert_double_eq_tol(m->curve.points[2][0], 0.05, 1e-15);
+    ck_assert_double_eq_tol(m->curve.points[2][1], 0.4, 1e-15);
+    ck_assert_str_eq(m->curve_unit, "m");
+    ck_assert_double_eq(m->from, 0);
+    ck_assert_double_eq_tol(m->to, 0.05, 1e-15);
+    ck_assert(m->take == BRUNT_TAKE_MAX_ABS && m->absolute);
+    char *text = small_scene_resolved(&read);
+    small_scene_of(text, &again, NULL, 0);
+    ck_assert_int_eq(again.measures[0].curve.count, 3);
+    ck_assert_mem_eq(again.measures[0].curve.points, m->curve.points, sizeof(double[3][2]));
+    ck_assert(again.measures[0].take == m->take && again.measures[0].absolute);
+    free(text);
+    brunt_scene_free(&again);
+    // The unit is that of the column.
+    brunt_error error = {0};
+    ck_assert_int_eq(brunt_measure_check(m, history, world, &error), BRUNT_OK);
+    brunt_measure other = *m;
+    strcpy(other.column, "body.left.velocity_x");
+    ck_assert_int_eq(brunt_measure_check(&other, history, world, &error), BRUNT_BAD_INPUT);
+    ck_assert_msg(strstr(error.message, "the curve is in m, the history's column 'body.left.velocity_x' in m/s"), "%s",
+                  error.message);
+    strcpy(other.curve_unit, "m.s-1");
+    ck_assert_int_eq(brunt_measure_check(&other, history, world, &error), BRUNT_OK);
+    other.curve_unit[0] = 0; // SI, whatever that is
+    ck_assert_int_eq(brunt_measure_check(&other, history, world, &error), BRUNT_OK);
+    brunt_scene_free(&read);
+}
+END_TEST
+
 START_TEST(values_are_judged) {
     ck_assert_int_eq(brunt_history_sample(history, world, NULL), BRUNT_OK);
     small_steps(world, 10);
@@ -351,6 +460,9 @@ int main(void) {
     tcase_add_checked_fixture(values, set_up, tear_down);
     tcase_add_test(values, history_is_reduced);
     tcase_add_test(values, periods_are_found);
+    tcase_add_test(values, history_against_a_curve);
+    tcase_add_test(values, curves_of_shares);
+    tcase_add_test(values, curves_of_scenes);
     tcase_add_test(values, values_are_judged);
     tcase_add_test(values, extent_reaches_to_the_surfaces);
     tcase_add_test(values, extent_of_a_turned_block);

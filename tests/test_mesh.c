@@ -1,5 +1,5 @@
 // Labels: unit
-// Structured meshes of shapes, and looking meshes over.
+// Structured meshes of shapes, and looking meshes over; more of sheets is in test_mesh_surface.c.
 #include <check.h>
 #include <math.h>
 #include <stdint.h>
@@ -11,6 +11,7 @@
 #include "memory.h"
 
 static const double pi = 3.14159265358979323846;
+enum { SOLID_KINDS = BRUNT_MEMBRANE_QUAD4 }; // those that fill their room; sheets follow in the list
 
 // ---------------------------------------------------------------------------------------------------- shapes
 
@@ -59,6 +60,17 @@ static brunt_mesh make(const brunt_shape *shape, int dimension, brunt_element_ki
     return mesh;
 }
 
+static brunt_mesh wrap(const brunt_shape *shape, brunt_element_kind kind, double size, const char *face) {
+    brunt_mesh mesh;
+    brunt_error error = {0};
+    char faces[1][BRUNT_NAME_LENGTH] = {""};
+    if (face) memcpy(faces[0], face, strlen(face) + 1);
+    int status =
+        brunt_mesh_surface(shape, kind, size, (const char(*)[BRUNT_NAME_LENGTH])faces, face != NULL, &mesh, &error);
+    ck_assert_msg(!status, "%s", error.message);
+    return mesh;
+}
+
 static brunt_mesh_quality look(const brunt_mesh *mesh) {
     brunt_mesh_quality quality;
     brunt_error error = {0};
@@ -83,13 +95,13 @@ static int by_nodes(const void *a, const void *b) {
 }
 
 // Outward faces of elements in VTK's order; -1 ends a face.
-static const int8_t faces_of[4][6][4] = {
+static const int8_t faces_of[SOLID_KINDS][6][4] = {
     [BRUNT_TET4] = {{0, 2, 1, -1}, {0, 1, 3, -1}, {1, 2, 3, -1}, {0, 3, 2, -1}},
     [BRUNT_HEX8] = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}},
     [BRUNT_TRI3] = {{0, 1, -1, -1}, {1, 2, -1, -1}, {2, 0, -1, -1}},
     [BRUNT_QUAD4] = {{0, 1, -1, -1}, {1, 2, -1, -1}, {2, 3, -1, -1}, {3, 0, -1, -1}},
 };
-static const int face_counts[4] = {4, 6, 3, 4};
+static const int face_counts[SOLID_KINDS] = {4, 6, 3, 4};
 
 // All faces of all elements, those with the same nodes one after the other.
 static face *sorted_faces(const brunt_mesh *mesh, int32_t *count) {
@@ -171,8 +183,8 @@ START_TEST(shapes_give_conforming_good_meshes) {
     all_meshed(list);
     size_t before = brunt_memory_live();
     for (int i = 0; i < MESHED; i++) {
-        for (int k = 0; k < BRUNT_ELEMENT_KINDS; k++) {
-            if (brunt_element_dimension(k) != list[i].dimension) continue;
+        for (int k = 0; k < SOLID_KINDS; k++) {
+            if (brunt_element_dimension(k) != list[i].dimension || brunt_element_is_sheet(k)) continue;
             bool cut = k == BRUNT_TET4 || k == BRUNT_TRI3;
             double worst = 1;
             const double sizes[] = {3, 0.5, 0.31, 0.2, 0.13};
@@ -204,8 +216,8 @@ START_TEST(volume_converges) {
     meshed list[MESHED];
     all_meshed(list);
     for (int i = 0; i < MESHED; i++) {
-        for (int k = 0; k < BRUNT_ELEMENT_KINDS; k++) {
-            if (brunt_element_dimension(k) != list[i].dimension) continue;
+        for (int k = 0; k < SOLID_KINDS; k++) {
+            if (brunt_element_dimension(k) != list[i].dimension || brunt_element_is_sheet(k)) continue;
             double error[2];
             if (list[i].shape.kind == BRUNT_RING) { // 20 edges of a quarter around at half the width, then 40
                 double inner = list[i].shape.inner_radius = 5 / pi - 1;
@@ -375,7 +387,8 @@ START_TEST(meshes_are_as_symmetric_as_their_shapes) {
     for (size_t i = 0; i < sizeof list / sizeof *list; i++) {
         for (int k = 0; k < BRUNT_ELEMENT_KINDS; k++) {
             for (double size = 0.5; size > 0.15 && brunt_element_dimension(k) == list[i].dimension; size /= 2) {
-                brunt_mesh mesh = make(&list[i].shape, list[i].dimension, k, size);
+                brunt_mesh mesh = brunt_element_is_sheet(k) ? wrap(&list[i].shape, k, size, NULL)
+                                                            : make(&list[i].shape, list[i].dimension, k, size);
                 expect_symmetric(&mesh, list[i].name, turn);
                 expect_symmetric(&mesh, list[i].name, mirror_x);
                 expect_symmetric(&mesh, list[i].name, mirror_y);
@@ -413,6 +426,7 @@ START_TEST(what_cannot_be_meshed_is_refused) {
          BRUNT_HEX8,
          1,
          "elements of kind hex8 are of 3 dimensions, the shape is of 2"},
+        {{.kind = BRUNT_BOX, .max = {1, 1, 1}}, 3, BRUNT_MEMBRANE_TRI3, 1, "elements of kind membrane_tri3 are sheets"},
         {{.kind = BRUNT_BOX, .max = {1, 1, 1}}, 3, BRUNT_HEX8, 0, "an edge length of 0 m"},
         {{.kind = BRUNT_BOX, .max = {1, 1, 1}}, 3, BRUNT_HEX8, NAN, "an edge length of nan m"},
         {{.kind = BRUNT_BOX, .max = {1, 1, 1}}, 3, BRUNT_TET4, 1e-4, "more than 100 million nodes"},
@@ -518,8 +532,8 @@ static void swap_nodes(brunt_mesh *mesh, int32_t element, int a, int b) {
 
 START_TEST(damage_is_found) {
     brunt_shape box = {.kind = BRUNT_BOX, .max = {1, 1, 1}};
-    const int swap[4][2] = {{1, 2}, {0, 6}, {1, 2}, {1, 3}};
-    for (int k = 0; k < BRUNT_ELEMENT_KINDS; k++) {
+    const int swap[SOLID_KINDS][2] = {{1, 2}, {0, 6}, {1, 2}, {1, 3}};
+    for (int k = 0; k < BRUNT_MEMBRANE_QUAD4; k++) {
         int nodes = brunt_element_nodes(k);
         damaged d = {.mesh = make(&box, brunt_element_dimension(k), k, 0.25)};
         judge(&d);

@@ -143,14 +143,21 @@ END_TEST
 // positive volume, and the values of nodes and elements stay apart.
 static const struct {
     brunt_element_kind kind;
-    int dimension;
-    double measure; // volume or area of one
+    int vtk_cell;   // number in VTK's file formats
+    bool flat;      // has an area, not a volume
+    double measure; // of one
     double corner[8][3];
-} shapes[] = {
-    {BRUNT_TET4, 3, 1.0 / 6, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}},
-    {BRUNT_HEX8, 3, 1, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}},
-    {BRUNT_TRI3, 2, 0.5, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}},
-    {BRUNT_QUAD4, 2, 1, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}}};
+} shapes[] = {{BRUNT_TET4, 10, false, 1.0 / 6, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}},
+              {BRUNT_HEX8,
+               12,
+               false,
+               1,
+               {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}},
+              {BRUNT_TRI3, 5, true, 0.5, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}},
+              {BRUNT_QUAD4, 9, true, 1, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}},
+              {BRUNT_MEMBRANE_QUAD4, 9, true, 1.25, {{0, 0, 0}, {1, 0, 0.75}, {1, 1, 0.75}, {0, 1, 0}}},
+              {BRUNT_MEMBRANE_TRI3, 5, true, 0.625, {{0, 0, 0}, {1, 0, 0.75}, {0, 1, 0}}}};
+enum { SHAPES = sizeof shapes / sizeof *shapes };
 
 static void write_elements(const char *path, int shape, int64_t count, bool float32) {
     const brunt_element *element = brunt_elements[shapes[shape].kind];
@@ -185,18 +192,17 @@ static void write_elements(const char *path, int shape, int64_t count, bool floa
 
 START_TEST(elements_read_back_whole) {
     static const int64_t numbers[] = {1, 32769, 0};
-    int shape = _i % 4;
-    long long count = numbers[_i / 4], nodes = brunt_element_nodes(shapes[shape].kind);
-    bool float32 = _i / 4 % 2 == 0;
+    int shape = _i % SHAPES;
+    long long count = numbers[_i / SHAPES], nodes = brunt_element_nodes(shapes[shape].kind);
+    bool float32 = _i / SHAPES % 2 == 0;
     char path[128], arguments[192], wanted[512], size[64] = "";
     snprintf(path, sizeof path, "%s/e.vtu", folder);
     write_elements(path, shape, count, float32);
     snprintf(arguments, sizeof arguments, "--elements %s", path);
     const char *type = float32 ? "float" : "double";
-    static const int types[] = {10, 12, 5, 9};
     if (count)
-        snprintf(size, sizeof size, "cell types %d\n%s %.6f\n", types[shape],
-                 shapes[shape].dimension == 3 ? "volume" : "area", shapes[shape].measure * (double)count);
+        snprintf(size, sizeof size, "cell types %d\n%s %.6f\n", shapes[shape].vtk_cell,
+                 shapes[shape].flat ? "area" : "volume", shapes[shape].measure * (double)count);
     snprintf(
         wanted, sizeof wanted,
         "points %lld cells %lld\ntime 0.5\nactive - velocity\narray id long_long %lld None\narray velocity %s %lld "
@@ -279,7 +285,7 @@ int main(void) {
     tcase_add_checked_fixture(files, make_folder, remove_folder);
     tcase_add_loop_test(files, reads_back_whole, 0, 2 * (int)(sizeof counts / sizeof *counts));
     tcase_add_loop_test(files, block_headers_are_exact, 0, (int)(sizeof counts / sizeof *counts));
-    tcase_add_loop_test(files, elements_read_back_whole, 0, 9);
+    tcase_add_loop_test(files, elements_read_back_whole, 0, 2 * SHAPES + 1);
     tcase_add_test(files, describes_elements);
     tcase_add_test(files, describes_what_it_wrote);
     tcase_add_test(files, leaves_nothing_behind_when_it_cannot_write);

@@ -2,8 +2,9 @@
 //
 //   bench_elements [--quick] [--cells N] [--steps N] [--rounds N] [--threads N] [--only WORD]
 //
-// A distorted block of neo-Hookean material vibrates: hexahedra N^3 (default 80), tetrahedra 6 (N * 0.55)^3. Rounds go
-// through all configurations one after the other; the table gives the median of the rounds and the least.
+// A distorted block of neo-Hookean material vibrates: hexahedra N^3 (default 80), tetrahedra 6 (N * 0.55)^3, membranes
+// of N^1.5 by N^1.5 quadrilaterals and as many squares of two triangles. Rounds go through all configurations one after
+// the other; the table gives the median of the rounds and the least.
 #include <unistd.h>
 
 #include "fem.h"
@@ -40,13 +41,16 @@ static void forces_task(void *context, int64_t begin, int64_t end, int worker) {
         b->body.element->forces(&b->body, (int32_t)k, (real)b->dt, &b->work[worker], &b->body.report[k]);
 }
 
-// n cells along each axis, nodes moved by up to 0.05 cells.
+// n cells along each axis (of a sheet, two of them), nodes moved by up to 0.05 cells.
 static int make_mesh(brunt_element_kind kind, int n, brunt_mesh *mesh) {
     static const int corner[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
                                      {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
     static const int tet[6][4] = {{0, 1, 2, 6}, {0, 2, 3, 6}, {0, 3, 7, 6}, {0, 7, 4, 6}, {0, 4, 5, 6}, {0, 5, 1, 6}};
-    const int m = n + 1, parts = kind == BRUNT_TET4 ? 6 : 1, nodes = brunt_element_nodes(kind);
-    *mesh = (brunt_mesh){.kind = kind, .node_count = m * m * m, .element_count = n * n * n * parts};
+    static const int triangle[2][3] = {{0, 1, 2}, {0, 2, 3}};
+    const int m = n + 1, parts = kind == BRUNT_TET4 ? 6 : kind == BRUNT_MEMBRANE_TRI3 ? 2 : 1;
+    const int nodes = brunt_element_nodes(kind), layers = brunt_element_is_sheet(kind) ? 1 : n;
+    const int levels = brunt_element_is_sheet(kind) ? 1 : m;
+    *mesh = (brunt_mesh){.kind = kind, .node_count = m * m * levels, .element_count = n * n * layers * parts};
     mesh->nodes = brunt_alloc((size_t)mesh->node_count * sizeof *mesh->nodes);
     mesh->elements = brunt_alloc((size_t)mesh->element_count * (size_t)nodes * sizeof *mesh->elements);
     if (!mesh->nodes || !mesh->elements) return -1;
@@ -59,11 +63,13 @@ static int make_mesh(brunt_element_kind kind, int n, brunt_mesh *mesh) {
         }
     }
     int32_t *out = mesh->elements;
-    for (int k = 0; k < n * n * n; k++) {
+    for (int k = 0; k < n * n * layers; k++) {
         const int at[3] = {k % n, k / n % n, k / n / n};
         for (int p = 0; p < parts; p++)
             for (int a = 0; a < nodes; a++) {
-                const int *c = corner[kind == BRUNT_TET4 ? tet[p][a] : a];
+                const int *c = corner[kind == BRUNT_TET4            ? tet[p][a]
+                                      : kind == BRUNT_MEMBRANE_TRI3 ? triangle[p][a]
+                                                                    : a];
                 *out++ = ((at[2] + c[2]) * m + at[1] + c[1]) * m + at[0] + c[0];
             }
     }
@@ -75,13 +81,15 @@ static int make(brunt_element_kind kind, int cells, bench *b) {
     brunt_error error = {0};
     if (make_mesh(kind, cells, &mesh)) return BRUNT_FAILED;
     brunt_body_def def = {
-        .name = "block", .method = BRUNT_FEM, .hourglass_coefficient = NAN, .place = brunt_placement_identity()};
+        .name = "block", .hourglass_coefficient = NAN, .thickness = 1e-4, .place = brunt_placement_identity()};
+    def.method = brunt_element_is_sheet(kind) ? BRUNT_MEMBRANE : BRUNT_FEM;
     brunt_material_def rubber = brunt_material_def_default("rubber", "neo-hookean");
     brunt_material material;
     rubber.density = 1100;
     brunt_material_set(&rubber, "E", 1e6, NULL, &error);
     brunt_material_set(&rubber, "nu", 0.4, NULL, &error);
-    int status = brunt_material_make(&rubber, &material, &error);
+    int status = brunt_element_is_sheet(kind) ? brunt_material_make_sheet(&rubber, false, &material, &error)
+                                              : brunt_material_make(&rubber, &material, &error);
     if (status == BRUNT_OK) status = brunt_fem_make(&def, &material, 3, &mesh, &b->body, &error);
     brunt_mesh_free(&mesh);
     if (status != BRUNT_OK) {
@@ -152,11 +160,13 @@ int main(int argc, char **argv) {
         i++;
     }
     printf("ns per element-step, median of %d rounds (least in brackets); B: bytes per element\n", rounds);
-    const brunt_element_kind kinds[] = {BRUNT_HEX8, BRUNT_TET4};
-    for (int k = 0; k < 2; k++) {
+    const brunt_element_kind kinds[] = {BRUNT_HEX8, BRUNT_TET4, BRUNT_MEMBRANE_QUAD4, BRUNT_MEMBRANE_TRI3};
+    for (int k = 0; k < 4; k++) {
         if (*only && strcmp(only, brunt_element_name(kinds[k])) != 0) continue;
         bench b = {.dt = 0};
-        int status = make(kinds[k], kinds[k] == BRUNT_HEX8 ? cells : (cells * 11 + 10) / 20, &b);
+        int along = kinds[k] == BRUNT_HEX8 ? cells : (cells * 11 + 10) / 20;
+        if (brunt_element_is_sheet(kinds[k])) along = (int)(pow(cells, 1.5) + 0.5);
+        int status = make(kinds[k], along, &b);
         if (status != BRUNT_OK) return status;
         double ns[THREAD_LIMIT + 1][PASSES + 1][ROUND_LIMIT];
         for (int r = 0; r < rounds; r++)

@@ -31,7 +31,7 @@ static void print_bodies(brunt_world *world) {
     for (int32_t b = 0; b < brunt_body_count(world); b++) {
         brunt_body_sums sums;
         char size[96];
-        bool fem = brunt_body_method(world, b) == BRUNT_FEM;
+        bool fem = brunt_body_method(world, b) != BRUNT_MPM;
         brunt_body_totals(world, b, &sums);
         if (fem)
             snprintf(size, sizeof size, "%10lld %s elements, %lld nodes", (long long)brunt_body_elements(world, b),
@@ -98,10 +98,10 @@ static int measure_step(brunt_world *world, double *seconds, int *taken, brunt_e
 
 // What a step usually takes on one core [s], contact and walls apart: to compare the measured time with.
 static double usual_cost(const brunt_world *world) {
-    static const double element[BRUNT_ELEMENT_KINDS] = {30e-9, 100e-9, 20e-9, 40e-9}, particle = 75e-9;
+    static const double element[BRUNT_ELEMENT_KINDS] = {30e-9, 100e-9, 20e-9, 40e-9, 60e-9, 40e-9}, particle = 75e-9;
     double cost = 0;
     for (int32_t b = 0; b < brunt_body_count(world); b++)
-        cost += brunt_body_method(world, b) == BRUNT_FEM
+        cost += brunt_body_method(world, b) != BRUNT_MPM
                     ? element[brunt_body_element(world, b)] * (double)brunt_body_elements(world, b)
                     : particle * (double)brunt_body_particles(world, b);
     return cost;

@@ -29,6 +29,7 @@ brunt_body_def brunt_body_def_default(void) {
         .temperature = 293.15,
         .element = BRUNT_HEX8,
         .hourglass_coefficient = NAN, // by form
+        .contact_thickness = NAN,     // the thickness
     };
 }
 
@@ -42,12 +43,15 @@ brunt_region_def brunt_region_def_default(void) {
     };
 }
 
-brunt_group_def brunt_group_def_default(void) { return (brunt_group_def){.component = {true, true, true}}; }
+brunt_group_def brunt_group_def_default(void) {
+    return (brunt_group_def){.component = {true, true, true}, .gas = {.gamma = 1.4}};
+}
 
 void brunt_world_def_free(brunt_world_def *def) {
     for (int32_t i = 0; i < def->body_count; i++) {
         brunt_shape_free(&def->bodies[i].shape);
         brunt_mesh_free(&def->bodies[i].mesh);
+        brunt_free(def->bodies[i].faces);
     }
     for (int32_t i = 0; i < def->group_count; i++) brunt_free(def->groups[i].table.points);
     brunt_free(def->groups);

@@ -6,11 +6,14 @@
 static const struct {
     const char *name;
     int nodes, dimension;
+    bool sheet;
 } kinds[BRUNT_ELEMENT_KINDS] = {
-    [BRUNT_TET4] = {"tet4", 4, 3},
-    [BRUNT_HEX8] = {"hex8", 8, 3},
-    [BRUNT_TRI3] = {"tri3", 3, 2},
-    [BRUNT_QUAD4] = {"quad4", 4, 2},
+    [BRUNT_TET4] = {"tet4", 4, 3, false},
+    [BRUNT_HEX8] = {"hex8", 8, 3, false},
+    [BRUNT_TRI3] = {"tri3", 3, 2, false},
+    [BRUNT_QUAD4] = {"quad4", 4, 2, false},
+    [BRUNT_MEMBRANE_QUAD4] = {"membrane_quad4", 4, 3, true},
+    [BRUNT_MEMBRANE_TRI3] = {"membrane_tri3", 3, 3, true},
 };
 
 const char *brunt_element_name(brunt_element_kind kind) {
@@ -26,6 +29,11 @@ int brunt_element_nodes(brunt_element_kind kind) {
 int brunt_element_dimension(brunt_element_kind kind) {
     BRUNT_ASSERT((unsigned)kind < BRUNT_ELEMENT_KINDS);
     return kinds[kind].dimension;
+}
+
+bool brunt_element_is_sheet(brunt_element_kind kind) {
+    BRUNT_ASSERT((unsigned)kind < BRUNT_ELEMENT_KINDS);
+    return kinds[kind].sheet;
 }
 
 void brunt_mesh_free(brunt_mesh *mesh) {

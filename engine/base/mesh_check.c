@@ -107,7 +107,7 @@ static const int8_t hex_corner[8][3] = {{1, 3, 4}, {2, 0, 5}, {3, 1, 6}, {0, 2, 
 static const int8_t tet_corner[4][3] = {{1, 2, 3}, {2, 0, 3}, {0, 1, 3}, {2, 1, 0}};
 
 typedef struct element_look {
-    double volume;            // [m^3], 2D [m^2]
+    double volume;            // [m^3], 2D and sheets [m^2]
     double least, shape;      // [m^3] least determinant at a corner; [-] least scaled one
     double shortest, longest; // [m] edges
 } element_look;
@@ -149,7 +149,46 @@ static double hex_volume(const double (*x)[3]) {
     return sum;
 }
 
+static void cross(const double *a, const double *b, double *c) {
+    for (int d = 0; d < 3; d++) c[d] = a[(d + 1) % 3] * b[(d + 2) % 3] - a[(d + 2) % 3] * b[(d + 1) % 3];
+}
+
+// Corners of a sheet's element as seen along its normal, that of its diagonals: area and shape are what they make in
+// that plane. One that is folded upon itself is flat there, one whose sides cross has corners that turn back.
+static void view_along_normal(int nodes, const double (*x)[3], double (*plane)[3]) {
+    double first[3], second[3], normal[3], across[3];
+    edge(x[0], nodes == 4 ? x[2] : x[1], first);
+    edge(nodes == 4 ? x[1] : x[0], nodes == 4 ? x[3] : x[2], second);
+    cross(first, second, normal);
+    cross(normal, first, across);
+    const double along = length(first), square = length(normal) * along;
+    for (int n = 0; n < nodes; n++) {
+        double d[3];
+        edge(x[0], x[n], d);
+        plane[n][0] = along > 0 ? (d[0] * first[0] + d[1] * first[1] + d[2] * first[2]) / along : 0;
+        plane[n][1] = square > 0 ? (d[0] * across[0] + d[1] * across[1] + d[2] * across[2]) / square : 0;
+        plane[n][2] = 0;
+    }
+}
+
+static element_look look_at(brunt_element_kind kind, const double (*x)[3]);
+
+static element_look look_at_sheet(brunt_element_kind kind, const double (*x)[3]) {
+    const int nodes = brunt_element_nodes(kind);
+    double plane[4][3];
+    view_along_normal(nodes, x, plane);
+    element_look look = look_at(nodes == 4 ? BRUNT_QUAD4 : BRUNT_TRI3, (const double(*)[3])plane);
+    look.shortest = INFINITY, look.longest = 0;
+    for (int a = 0; a < nodes; a++) {
+        double e[3];
+        edge(x[a], x[(a + 1) % nodes], e);
+        look.shortest = fmin(look.shortest, length(e)), look.longest = fmax(look.longest, length(e));
+    }
+    return look;
+}
+
 static element_look look_at(brunt_element_kind kind, const double (*x)[3]) {
+    if (brunt_element_is_sheet(kind)) return look_at_sheet(kind, x);
     element_look look = {.least = INFINITY, .shape = INFINITY, .shortest = INFINITY};
     int nodes = brunt_element_nodes(kind);
     for (int a = 0; a < nodes; a++) {
@@ -164,6 +203,9 @@ static element_look look_at(brunt_element_kind kind, const double (*x)[3]) {
         case BRUNT_QUAD4:
             to[0] = x[(a + 1) % nodes], to[1] = x[(a + nodes - 1) % nodes];
             look_at_corner(x[a], to, 2, kind == BRUNT_QUAD4 ? 1 : 2 / sqrt(3.0), &look);
+            break;
+        case BRUNT_MEMBRANE_QUAD4:
+        case BRUNT_MEMBRANE_TRI3: break; // above
         }
     }
     switch (kind) {
@@ -175,7 +217,10 @@ static element_look look_at(brunt_element_kind kind, const double (*x)[3]) {
         edge(x[0], x[2], a);
         edge(x[1], x[3], b);
         look.volume = (a[0] * b[1] - a[1] * b[0]) / 2;
+        break;
     }
+    case BRUNT_MEMBRANE_QUAD4:
+    case BRUNT_MEMBRANE_TRI3: break;
     }
     return look;
 }
@@ -328,6 +373,64 @@ static bool find_unreferenced(const brunt_mesh *mesh, list *found) {
     return true;
 }
 
+// ---------------------------------------------------------------------------------------------------- sides of sheets
+
+// An edge of an element that runs from its lesser to its greater node, or back.
+typedef struct border {
+    int32_t least, most, element;
+    bool back;
+} border;
+
+static int by_border(const void *a, const void *b) {
+    const border *p = a, *q = b;
+    if (p->least != q->least) return p->least < q->least ? -1 : 1;
+    if (p->most != q->most) return p->most < q->most ? -1 : 1;
+    return (p->element > q->element) - (p->element < q->element);
+}
+
+// Pairs of elements that run along the edge they share in the same direction: one shows its front where the other shows
+// its back. Where more than two meet, at a seam, any way will do.
+typedef struct turned {
+    int32_t count, first, second; // how many pairs, and the elements of the first
+} turned;
+
+static bool find_turned(const brunt_mesh *mesh, turned *found) {
+    const int nodes = brunt_element_nodes(mesh->kind);
+    const size_t count = (size_t)mesh->element_count * (size_t)nodes;
+    border *edges = brunt_alloc(count * sizeof *edges);
+    if (!edges) return false;
+    for (size_t i = 0; i < count; i++) {
+        const size_t corner = i % (size_t)nodes;
+        int32_t p = mesh->elements[i], q = mesh->elements[i - corner + (corner + 1) % (size_t)nodes];
+        edges[i] = (border){p < q ? p : q, p < q ? q : p, (int32_t)(i / (size_t)nodes), p > q};
+    }
+    qsort(edges, count, sizeof *edges, by_border);
+    for (size_t i = 0, same; i < count; i += same) {
+        for (same = 1;
+             i + same < count && edges[i + same].least == edges[i].least && edges[i + same].most == edges[i].most;)
+            same++;
+        if (same != 2 || edges[i].back != edges[i + 1].back) continue;
+        if (!found->count++ || edges[i].element < found->first)
+            found->first = edges[i].element, found->second = edges[i + 1].element;
+    }
+    brunt_free(edges);
+    return true;
+}
+
+static int check_sides(const brunt_mesh *mesh, brunt_error *error) {
+    turned found = {0};
+    if (!find_turned(mesh, &found))
+        return brunt_fail(error, BRUNT_FAILED, "no memory to check a mesh of %d nodes", (int)mesh->node_count);
+    if (!found.count) return BRUNT_OK;
+    char more[48] = "";
+    if (found.count > 1) snprintf(more, sizeof more, ", as are %d more pairs", (int)(found.count - 1));
+    return brunt_fail(
+        error, BRUNT_BAD_INPUT,
+        "elements %lld and %lld are turned to opposite sides%s: neighbours in a sheet have their nodes in "
+        "the same sense, counter-clockwise seen from the front",
+        found.first + 1LL, found.second + 1LL, more);
+}
+
 // ---------------------------------------------------------------------------------------------------- all of it
 
 static int judge(const list found[5], brunt_error *error) {
@@ -363,5 +466,6 @@ int brunt_mesh_check(const brunt_mesh *mesh, brunt_mesh_quality *quality, brunt_
     quality->unreferenced = found[UNREFERENCED].count;
     for (int k = 0; k < 5; k++)
         if (found[k].count) quality->first[k] = found[k].first[0];
-    return judge(found, error);
+    status = judge(found, error);
+    return status || !brunt_element_is_sheet(mesh->kind) ? status : check_sides(mesh, error);
 }

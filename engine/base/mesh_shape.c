@@ -244,6 +244,9 @@ int brunt_mesh_shape(const brunt_shape *shape, int dimension, brunt_element_kind
     if (brunt_element_dimension(kind) != dimension)
         return brunt_fail(error, BRUNT_BAD_INPUT, "elements of kind %s are of %d dimensions, the shape is of %d",
                           brunt_element_name(kind), brunt_element_dimension(kind), dimension);
+    if (brunt_element_is_sheet(kind))
+        return brunt_fail(error, BRUNT_BAD_INPUT, "elements of kind %s are sheets: a shape's surface is made of them",
+                          brunt_element_name(kind));
     if (!(size > 0) || !isfinite(size))
         return brunt_fail(error, BRUNT_BAD_INPUT, "an edge length of %g m, a positive length is wanted", size);
     int status = check_shape(shape, dimension, error);

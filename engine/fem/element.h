@@ -13,12 +13,13 @@ typedef struct brunt_fem_report brunt_fem_report;
 typedef struct brunt_element {
     const char *name, *doc;
     int dim, nodes, face_count, face_nodes;
+    bool sheet;                      // of a membrane: dim is 3, its material points are of dimension 2
     int vtk_cell;                    // cell type of the VTK formats
     int block;                       // elements of a block of a large body: 8^3 hexahedra, 4^3 cubes of 6 tetrahedra, ...
     int hourglass_modes;             // zero-energy modes per direction ...
     const int8_t (*hourglass)[BRUNT_ELEMENT_NODES];  // ... and each node's share in them
     const uint8_t (*face)[4];        // nodes of each face, counter-clockwise seen from outside (2D: outside on the right)
-    double (*volume)(const double (*x)[3]);  // [m^3] exact, of corners x; 2D [m^2]; negative when inside out
+    double (*volume)(const double (*x)[3]);  // [m^3] exact, of corners x; 2D [m^2]; negative when inside out; sheets: area [m^2]
     // Mean material gradients b_a = 1/V int dN_a/dX dV [1/m] of all nodes, of corners x.
     void (*gradient)(const double (*x)[3], real (*b)[3]);
     // Moves the elements of `block` to where their nodes are now, updates the material over a step `dt` (or, with dt 0, leaves

@@ -47,8 +47,8 @@ int brunt_fem_faces(const brunt_fem_body *body, brunt_faces *faces) {
         int32_t found = 0;
         for (int32_t n = 0; n < body->node_count; n++)
             for (int64_t i = first[n]; i < first[n + 1]; i++) {
-                bool alone = true;
-                for (int64_t j = first[n]; alone && j < first[n + 1]; j++)
+                bool alone = true; // a sheet's element is its one face
+                for (int64_t j = first[n]; alone && !type->sheet && j < first[n + 1]; j++)
                     alone = i == j || !same_nodes(body, list[i], list[j]);
                 outside[list[i]] = alone;
                 found += alone;
@@ -110,7 +110,9 @@ int32_t brunt_fem_folded(const brunt_fem_body *body) {
             for (int i = 0; i < 3; i++) x[a][i] = (double)node[i];
         }
         bool any = false;
-        for (int a = 0; a < type->nodes; a++) any = any || corner_folded(type->dim, (const double(*)[3])x, a);
+        if (type->sheet) brunt_fem_flatten(type->nodes, x);
+        const int span = brunt_element_span(type);
+        for (int a = 0; a < type->nodes; a++) any = any || corner_folded(span, (const double(*)[3])x, a);
         folded += any;
     }
     return folded;

@@ -11,11 +11,11 @@
 #include "memory.h"
 
 typedef struct element_needs {
-    bool mass_scaling, viscous_hourglass;
+    bool mass_scaling, viscous_hourglass, sheet;
 } element_needs;
 
 static void list_fields(brunt_fem_body *body, const element_needs *needs) {
-    const int dim = body->dim;
+    const int dim = body->point_dim;
     int scalars = 0;
 #define ADD_FIELD(name_, unit_, components_, when)                                                                     \
     body->field[BRUNT_ELEMENT_##name_] =                                                                               \
@@ -58,7 +58,9 @@ static void reset_state(brunt_fem_body *body, double temperature, int32_t count)
         if (f == BRUNT_ELEMENT_reference_volume || f == BRUNT_ELEMENT_density_scale) continue;
         for (int c = 0; c < field->components; c++) {
             real value = 0;
-            if (f == BRUNT_ELEMENT_deformation_gradient) value = c % (body->dim + 1) == 0;
+            if (f == BRUNT_ELEMENT_deformation_gradient) value = c % (body->point_dim + 1) == 0;
+            if (f == BRUNT_ELEMENT_thickness_stretch) value = 1;
+            if (f == BRUNT_ELEMENT_kirchhoff_stress && c < 3) value = body->material.rest_stress;
             if (state && state->initial) value = state->initial(body->material.constants[component], c);
             if (state && !strcmp(state->name, "temperature") && temperature > 0) value = (real)temperature;
             for (int32_t s = 0; s < count; s++) body->scalar[field->first + c][s] = value;
@@ -84,7 +86,7 @@ static void measure_lateral_ratio(brunt_fem_body *body, double temperature) {
             points[k] = brunt_fem_points(body, (brunt_component)k, 0, BRUNT_LANES);
             points[k].dt = 1;
             points[k].cell = 1;
-            for (int c = 0; c < BRUNT_MATRIX(body->dim); c++) points[k].L[c] = L[c];
+            for (int c = 0; c < BRUNT_MATRIX(body->point_dim); c++) points[k].L[c] = L[c];
         }
         brunt_material_update(&body->material, points, plastic, viscous);
         for (int k = 0; k < 2; k++) stress[k] = (double)points[BRUNT_STRENGTH].stress[k][0];
@@ -107,6 +109,7 @@ static void place_nodes(const brunt_body_def *def, const brunt_mesh *mesh, brunt
 }
 
 static int measure_volumes(brunt_fem_body *body, brunt_error *error) {
+    const double across = body->element->sheet ? (double)body->thickness : 1;
     real *volume = brunt_element_scalars(body, BRUNT_ELEMENT_reference_volume)[0];
     for (int32_t b = 0; b < body->block_count; b++) {
         brunt_fem_block *block = &body->block[b];
@@ -114,7 +117,7 @@ static int measure_volumes(brunt_fem_body *body, brunt_error *error) {
         for (int32_t s = block->first; s < block->first + block->count; s++) {
             double x[BRUNT_ELEMENT_NODES][3];
             brunt_fem_corners(body, s, x);
-            double V = body->element->volume((const double(*)[3])x);
+            double V = body->element->volume((const double(*)[3])x) * across;
             if (!(V > 0) || !isfinite(V))
                 return brunt_fail(error, BRUNT_BAD_INPUT,
                                   "bodies.%s: element %d of the mesh has volume %g: it is flat or inside out",
@@ -122,7 +125,7 @@ static int measure_volumes(brunt_fem_body *body, brunt_error *error) {
             volume[s] = (real)V;
             sum += V;
         }
-        block->length = (real)pow(sum / block->count, 1.0 / body->dim);
+        block->length = (real)pow(sum / (across * block->count), 1.0 / brunt_element_span(body->element));
     }
     return BRUNT_OK;
 }
@@ -212,6 +215,12 @@ static int make(const brunt_body_def *def, const brunt_mesh *mesh, brunt_fem_bod
 int brunt_fem_make(const brunt_body_def *def, const brunt_material *material, int dim, const brunt_mesh *mesh,
                    brunt_fem_body *body, brunt_error *error) {
     *body = (brunt_fem_body){.dim = dim,
+                             .point_dim = brunt_element_is_sheet(mesh->kind) ? 2 : dim,
+                             .thickness = brunt_element_is_sheet(mesh->kind) ? (real)def->thickness : 0,
+                             .contact_thickness = !brunt_element_is_sheet(mesh->kind) ? 0
+                                                  : isnan(def->contact_thickness)     ? (real)def->thickness
+                                                                                      : (real)def->contact_thickness,
+                             .damping = def->damping,
                              .kind = mesh->kind,
                              .element = brunt_elements[mesh->kind],
                              .material = *material,
@@ -225,7 +234,14 @@ int brunt_fem_make(const brunt_body_def *def, const brunt_material *material, in
                           body->element->name, body->element->dim, dim);
     if (mesh->element_count < 1)
         return brunt_fail(error, BRUNT_BAD_INPUT, "bodies.%s: the mesh has no elements", def->name);
+    if (body->element->sheet && !(def->thickness > 0 && isfinite(def->thickness)))
+        return brunt_fail(error, BRUNT_BAD_INPUT, "bodies.%s.thickness: %g m is no thickness of a membrane", def->name,
+                          def->thickness);
+    if (body->element->sheet && body->element->hourglass_modes && def->hourglass == BRUNT_HOURGLASS_VISCOUS)
+        return brunt_fail(error, BRUNT_BAD_INPUT, "bodies.%s.hourglass: membranes have the stiffness form only",
+                          def->name);
     const element_needs needs = {.mass_scaling = def->mass_scaling > 0,
+                                 .sheet = body->element->sheet,
                                  .viscous_hourglass =
                                      body->element->hourglass_modes && def->hourglass == BRUNT_HOURGLASS_VISCOUS};
     list_fields(body, &needs);
@@ -271,11 +287,13 @@ void brunt_fem_workspace_free(brunt_fem_workspace *work) {
 }
 
 brunt_points brunt_fem_points(brunt_fem_body *body, brunt_component component, int64_t first, int32_t count) {
-    brunt_points points = {.count = count, .dim = body->dim, .wave_speed = body->material.wave_speed};
+    brunt_points points = {.count = count, .dim = body->point_dim, .wave_speed = body->material.wave_speed};
     real **F = brunt_element_scalars(body, BRUNT_ELEMENT_deformation_gradient),
          **stress = brunt_element_scalars(body, BRUNT_ELEMENT_kirchhoff_stress);
-    for (int c = 0; c < BRUNT_MATRIX(body->dim); c++) points.F[c] = F[c] + first;
-    for (int c = 0; c < BRUNT_SYMMETRIC(body->dim); c++) points.stress[c] = stress[c] + first;
+    for (int c = 0; c < BRUNT_MATRIX(body->point_dim); c++) points.F[c] = F[c] + first;
+    for (int c = 0; c < BRUNT_SYMMETRIC(body->point_dim); c++) points.stress[c] = stress[c] + first;
+    if (body->element->sheet)
+        points.thickness = brunt_element_scalars(body, BRUNT_ELEMENT_thickness_stretch)[0] + first;
     points.volume = brunt_element_scalars(body, BRUNT_ELEMENT_reference_volume)[0] + first;
     const brunt_model *model = body->material.model[component];
     int at = 0;
@@ -293,10 +311,9 @@ brunt_point_energy brunt_fem_energy(brunt_fem_body *body) {
         const brunt_fem_block *block = &body->block[b];
         int32_t padded = (block->count + BRUNT_LANES - 1) / BRUNT_LANES * BRUNT_LANES;
         for (int k = 0; k < BRUNT_COMPONENTS; k++) {
-            const brunt_model *model = body->material.model[k];
-            if (!model || !model->energy) continue;
+            if (!body->material.model[k]) continue;
             brunt_points points = brunt_fem_points(body, (brunt_component)k, block->first, padded);
-            model->energy(body->material.constants[k], &points, &energy);
+            brunt_material_energy(&body->material, (brunt_component)k, &points, &energy);
         }
     }
     return energy;

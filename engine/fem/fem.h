@@ -21,6 +21,7 @@ enum { BRUNT_FEM_TILE = 64 };       // elements that go through kinematics, mate
     X(deformation_gradient, "1", BRUNT_MATRIX, true)                                                                   \
     X(kirchhoff_stress, "Pa", BRUNT_SYMMETRIC, true)                                                                   \
     X(reference_volume, "m^3", BRUNT_ONE, true)                                                                        \
+    X(thickness_stretch, "1", BRUNT_ONE, needs->sheet)           /* of membranes, across the sheet */                  \
     X(density_scale, "1", BRUNT_ONE, needs->mass_scaling)        /* factor of mass scaling on the density */           \
     X(hourglass_rate, "1/s", BRUNT_HOURGLASS_RATES, needs->viscous_hourglass) /* of the last step, for its work */
 #define BRUNT_ONE(dim) 1
@@ -63,7 +64,11 @@ struct brunt_fem_report {
 struct brunt_fem_body {
     char name[BRUNT_NAME_LENGTH];
     int index;                 // among all bodies, in order of name
-    int dim;
+    int dim;                   // of the room the nodes are in
+    int point_dim;             // of the material's points: 2 for membranes (F is then the stretch U in the plane, see material.h)
+    real thickness;            // [m] of membranes, undeformed; 0 of others
+    real contact_thickness;    // [m] of membranes, as contact sees it; 0 of others
+    double damping;            // [1/s] of the mass
     const brunt_element *element;
     brunt_element_kind kind;
     brunt_material material;
@@ -126,6 +131,9 @@ brunt_points brunt_fem_points(brunt_fem_body *body, brunt_component component, i
 // How many elements have a corner that is turned inside out now, the mean Jacobian still being positive. One-point elements go on
 // with that, since the mean is all they see; it says that the mesh is too coarse for what happens. For output, not for each step.
 int32_t brunt_fem_folded(const brunt_fem_body *body);
+// Cauchy stress of a membrane's element [Pa] in global axes, XX YY ZZ XY YZ XZ, from where its nodes are now and its stretch and
+// Kirchhoff stress: none across the sheet. The area that stress acts on has `thickness` times the stretch across.
+void brunt_fem_sheet_stress(const brunt_fem_body *body, int32_t slot, double sigma[6]);
 // Stored and dissipated energy of all elements [J], without the hourglass modes.
 brunt_point_energy brunt_fem_energy(brunt_fem_body *body);
 // Internal force on a node [N], from the partial forces.
@@ -165,7 +173,8 @@ void brunt_fem_drift(brunt_fem_body *body, int32_t begin, int32_t end, double dt
 void brunt_fem_sums_add(brunt_fem_sums *sums, const brunt_fem_sums *more);
 
 // The faces of a body's surface: those that only one element has. Nodes (of this body) as in brunt_element.face, the 4th is -1 for
-// triangles, 3rd and 4th for 2D; `element` is a slot. Ordered by slot and face.
+// triangles, 3rd and 4th for 2D; `element` is a slot. Ordered by slot and face. Of a sheet, each of its elements
+// is one face, with its own order of nodes.
 typedef struct brunt_faces { int32_t count; int32_t (*node)[4]; int32_t *element; } brunt_faces;
 int brunt_fem_faces(const brunt_fem_body *body, brunt_faces *faces);  // 0, or -1: out of memory
 void brunt_faces_free(brunt_faces *faces);

@@ -67,7 +67,8 @@ typedef struct fem_pass {
     bool viscous;
     real spring, damper;   // what is common to all elements of the hourglass coefficients
     real lateral, c0, rho; // see brunt_fem_body
-    real norm, overlap;
+    real norm, overlap, cosine;
+    real thickness;     // of membranes
     lanes stored, lost; // hourglass work so far
 } fem_pass;
 
@@ -104,6 +105,7 @@ static inline brunt_points fem_points_from(const brunt_points *whole, int32_t of
     for (int c = 0; c < BRUNT_MATRIX(points.dim); c++) points.F[c] += offset;
     for (int c = 0; c < BRUNT_SYMMETRIC(points.dim); c++) points.stress[c] += offset;
     for (int s = 0; s < BRUNT_MAX_STATE && points.state[s]; s++) points.state[s] += offset;
+    if (points.thickness) points.thickness += offset;
     points.volume += offset;
     return points;
 }
@@ -130,5 +132,7 @@ static inline fem_pass fem_pass_begin(brunt_fem_body *body, const brunt_fem_bloc
                       .c0 = c0,
                       .rho = density,
                       .norm = body->hourglass_norm,
-                      .overlap = body->hourglass_overlap};
+                      .overlap = body->hourglass_overlap,
+                      .cosine = (real)sqrt((double)body->hourglass_overlap),
+                      .thickness = body->thickness};
 }

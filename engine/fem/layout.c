@@ -64,9 +64,10 @@ static void sort_elements(const brunt_element *type, const brunt_mesh *mesh, pla
         corners_of(mesh, type->nodes, e, x);
         volume += fabs(type->volume((const double(*)[3])x));
     }
-    bool simplex = type->nodes == type->dim + 1;
-    double share = volume / mesh->element_count * (simplex ? type->dim == 3 ? 6 : 2 : 1);
-    double unit = pow(share, 1.0 / type->dim);
+    const int span = brunt_element_span(type);
+    bool simplex = type->nodes == span + 1;
+    double share = volume / mesh->element_count * (simplex ? span == 3 ? 6 : 2 : 1);
+    double unit = pow(share, 1.0 / span);
     const int bits = type->dim == 3 ? 21 : 31;
     // 2^-fraction units are one step of the grid; the whole extent must fit.
     int fraction = bits - 1 - (int)ceil(log2(extent / unit + 1));
@@ -87,7 +88,8 @@ static void sort_elements(const brunt_element *type, const brunt_mesh *mesh, pla
 // Small bodies get small blocks, so that there are enough of them for some threads.
 static int block_size(const brunt_element *type, int32_t elements) {
     int size = type->block;
-    for (int k = 0; k < (type->dim == 3 ? 1 : 2) && elements < 16 * size; k++) size /= type->dim == 3 ? 8 : 4;
+    const int span = brunt_element_span(type);
+    for (int k = 0; k < (span == 3 ? 1 : 2) && elements < 16 * size; k++) size /= span == 3 ? 8 : 4;
     return size;
 }
 

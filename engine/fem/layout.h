@@ -14,3 +14,8 @@ uint64_t brunt_hilbert_key(int dim, int bits, const uint32_t *coordinate);
 void brunt_fem_steps(brunt_fem_body *body, double mass_scaling);
 // Places of an element's nodes at the start.
 void brunt_fem_corners(const brunt_fem_body *body, int32_t slot, double (*x)[3]);
+// Of a sheet: its frame (see membrane.inc) from the places x of its nodes; and x in that frame, from node 0.
+void brunt_fem_sheet_frame(int nodes, const double (*x)[3], double e[3][3]);
+void brunt_fem_flatten(int nodes, double (*x)[3]);
+// Dimension of the elements, which for a sheet is less than that of the room.
+static inline int brunt_element_span(const brunt_element *type) { return type->sheet ? 2 : type->dim; }

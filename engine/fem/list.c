@@ -1,7 +1,7 @@
 // The elements there are, in the order of brunt_element_kind.
 #include "element.h"
 
-#define ELEMENTS(X) X(tet4) X(hex8) X(tri3) X(quad4)
+#define ELEMENTS(X) X(tet4) X(hex8) X(tri3) X(quad4) X(membrane_quad4) X(membrane_tri3)
 
 #define DECLARE(element) extern const brunt_element brunt_##element;
 ELEMENTS(DECLARE)

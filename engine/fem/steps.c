@@ -32,7 +32,7 @@ static void orthonormalise(int n, int count, double (*v)[BRUNT_ELEMENT_NODES]) {
 // What distortion does to the hourglass vectors gamma of an element: the greatest eigenvalue of their Gram matrix, by
 // Gershgorin's circles, over that of the undistorted element; and a bound of the squared cosine between them and b.
 static void hourglass_shape(const brunt_element *type, const double (*x)[3], double *norm, double *overlap) {
-    const int n = type->nodes, modes = type->hourglass_modes, dim = type->dim;
+    const int n = type->nodes, modes = type->hourglass_modes, dim = brunt_element_span(type);
     real gradient[BRUNT_ELEMENT_NODES][3];
     double b[3][BRUNT_ELEMENT_NODES], gamma[4][BRUNT_ELEMENT_NODES];
     type->gradient(x, gradient);
@@ -60,10 +60,12 @@ static void hourglass_shape(const brunt_element *type, const double (*x)[3], dou
     *overlap = fmin(*overlap, 1);
 }
 
-// omega^2 of strain, and of the hourglass springs [1/s^2] or dampers [1/s], of an undeformed element.
-static void element_frequencies(const brunt_fem_body *body, const double (*x)[3], double *strain, double *hourglass) {
+// omega^2 of strain, and of the hourglass springs [1/s^2] or dampers [1/s], of an undeformed element. `warp`: what the
+// warp of a sheet adds to their joint bound (membrane.inc), inside its root and after it.
+static void element_frequencies(const brunt_fem_body *body, const double (*x)[3], double *strain, double *hourglass,
+                                double warp[2]) {
     const brunt_element *type = body->element;
-    const int n = type->nodes, dim = body->dim;
+    const int n = type->nodes, dim = brunt_element_span(type);
     const double c0 = (double)body->material.wave_speed, r = (double)body->lateral_ratio;
     real b[BRUNT_ELEMENT_NODES][3];
     double S[3][3] = {{0}}, trace = 0, deviator = 0;
@@ -76,26 +78,33 @@ static void element_frequencies(const brunt_fem_body *body, const double (*x)[3]
         for (int j = 0; j < dim; j++) deviator += pow(S[i][j] - (i == j ? trace / dim : 0), 2);
     double greatest = trace / dim + sqrt((dim - 1.0) / dim * deviator);
     *strain = n * c0 * c0 * (fmax(r, 0) * trace + (1 - r) * greatest);
-    *hourglass = 0;
+    *hourglass = warp[0] = warp[1] = 0;
     if (!type->hourglass_modes) return;
     double share = (double)body->hourglass_coefficient * (double)body->hourglass_norm;
     if (body->hourglass == BRUNT_HOURGLASS_STIFFNESS)
         *hourglass = share * c0 * c0 * n * trace / dim;
     else
         *hourglass = 16 * share * c0 / pow(type->volume(x), 1.0 / dim);
+    if (!type->sheet) return;
+    double w = 0, cosine = sqrt((double)body->hourglass_overlap);
+    for (int a = 0; a < n; a++) w += type->hourglass[0][a] * (x[a][2] - x[0][2]);
+    double D = (double)body->hourglass_norm * *strain * w * w * trace / 36;
+    warp[0] = D + 2 * cosine * sqrt(*strain * D);
+    warp[1] = (1 + cosine) * *hourglass * (0.289 * w * w * greatest + 0.5 * fabs(w) * sqrt(greatest));
 }
 
 // (step / stable step)^2 of an element, so that it is also the factor its density needs for `step`.
 static double step_ratio(const brunt_fem_body *body, const double (*x)[3], double step) {
-    double strain, hourglass, overlap = (double)body->hourglass_overlap;
-    element_frequencies(body, x, &strain, &hourglass);
+    double strain, hourglass, warp[2], overlap = (double)body->hourglass_overlap;
+    element_frequencies(body, x, &strain, &hourglass, warp);
     double a = strain * step * step / 4;
     if (body->hourglass == BRUNT_HOURGLASS_VISCOUS) {
         double b = hourglass * step / 2, s = sqrt(overlap);
         return fmax(a + s * b, b + s * a);
     }
     double b = hourglass * step * step / 4;
-    return 0.5 * (a + b + sqrt((a - b) * (a - b) + 4 * overlap * a * b));
+    double more = warp[0] * step * step / 4, after = warp[1] * step * step / 4;
+    return 0.5 * (a + b + more + sqrt((a - b) * (a - b) + 4 * overlap * a * b + more * (2 * (a + b) + more))) + after;
 }
 
 // Of ratio(step) = 1: that of springs alone is quadratic in the step; with dampers it is found by halving.
@@ -115,11 +124,18 @@ static double stable_step(const brunt_fem_body *body, const double (*x)[3], doub
     return low;
 }
 
+// An element's corners as its bounds see them: of a sheet, in its own frame.
+static void own_corners(const brunt_fem_body *body, int32_t slot, double (*x)[3]) {
+    brunt_fem_corners(body, slot, x);
+    if (body->element->sheet) brunt_fem_flatten(body->element->nodes, x);
+}
+
 void brunt_fem_steps(brunt_fem_body *body, double mass_scaling) {
+    const double across = body->element->sheet ? (double)body->thickness : 1;
     double x[BRUNT_ELEMENT_NODES][3], norm = 1, overlap = 0;
     for (int32_t s = 0; s < body->slots && body->element->hourglass_modes; s++) {
         double element_norm, element_overlap;
-        brunt_fem_corners(body, s, x);
+        own_corners(body, s, x);
         hourglass_shape(body->element, (const double(*)[3])x, &element_norm, &element_overlap);
         norm = fmax(norm, element_norm);
         overlap = fmax(overlap, element_overlap);
@@ -130,7 +146,7 @@ void brunt_fem_steps(brunt_fem_body *body, double mass_scaling) {
     body->least_step = INFINITY;
     for (int32_t s = 0; s < body->slots; s++) {
         double density = 1;
-        brunt_fem_corners(body, s, x);
+        own_corners(body, s, x);
         if (field->components) {
             // A little more, for the rounding of the kernels.
             double wanted =
@@ -139,8 +155,8 @@ void brunt_fem_steps(brunt_fem_body *body, double mass_scaling) {
             body->scalar[field->first][s] = (real)density;
             if (body->element_id[s] >= 0 && density > 1) {
                 body->scaled_elements++;
-                body->added_mass +=
-                    (density - 1) * body->element->volume((const double(*)[3])x) * (double)body->material.density;
+                body->added_mass += (density - 1) * across * body->element->volume((const double(*)[3])x) *
+                                    (double)body->material.density;
             }
         }
         body->least_step = fmin(body->least_step, stable_step(body, (const double(*)[3])x, density));

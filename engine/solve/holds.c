@@ -82,7 +82,8 @@ static int make_hold(brunt_world *world, int index, brunt_error *error) {
     if (!moves(def)) {
         if (!fem->load && !(fem->load = brunt_alloc((size_t)(fem->node_count + 1) * 4 * sizeof(real))))
             return brunt_fail(error, BRUNT_FAILED, "out of memory");
-        return take_faces(world, hold, wall->name) ? brunt_fail(error, BRUNT_FAILED, "out of memory") : BRUNT_OK;
+        if (take_faces(world, hold, wall->name)) return brunt_fail(error, BRUNT_FAILED, "out of memory");
+        return def->action == BRUNT_GROUP_GAS ? brunt_gas_start(world, hold, def, error) : BRUNT_OK;
     }
     if (!fem->held && !(fem->held = brunt_alloc((size_t)fem->node_count + 1)))
         return brunt_fail(error, BRUNT_FAILED, "out of memory");
@@ -137,38 +138,66 @@ void brunt_holds_free(brunt_world *world) {
 
 // ------------------------------------------------------------------------------------------ loads
 
-// Area vector of a face [m^2], outward: of where its nodes are, or were at the start.
-static void face_area(const brunt_fem_body *fem, const int32_t node[4], bool start, double area[3]) {
-    const int corners = node[2] < 0 ? 2 : node[3] < 0 ? 3 : 4;
-    double x[4][3], e[3], g[3];
-    for (int c = 0; c < corners; c++)
+// Corners of a face: where its nodes are, or were at the start.
+static void face_corners(const brunt_fem_body *fem, const int32_t node[4], bool start, double (*x)[3]) {
+    for (int c = 0; c < 4 && node[c] >= 0; c++)
         for (int a = 0; a < 3; a++)
             x[c][a] = (double)(start ? fem->start[4 * (size_t)node[c] + (size_t)a] : brunt_fem_node(fem, node[c])[a]);
-    for (int a = 0; a < 3; a++) {
-        e[a] = corners == 4 ? x[2][a] - x[0][a] : x[1][a] - x[0][a];
-        g[a] = corners == 4 ? x[3][a] - x[1][a] : corners == 3 ? x[2][a] - x[0][a] : 0;
-    }
-    if (corners == 2) {
-        area[0] = e[1], area[1] = -e[0], area[2] = 0;
-        return;
-    }
-    for (int a = 0; a < 3; a++) area[a] = 0.5 * (e[(a + 1) % 3] * g[(a + 2) % 3] - e[(a + 2) % 3] * g[(a + 1) % 3]);
 }
 
-static void make_forces(const brunt_world *world, brunt_hold *hold, const brunt_group_def *def, double time) {
+static void cross(const double a[3], const double b[3], double out[3]) {
+    for (int i = 0; i < 3; i++) out[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
+}
+
+// The integrand is at most quadratic in each coordinate of a bilinear face: two Gauss points a direction are exact.
+static void quad_share(const double (*x)[3], int corner, double share[3]) {
+    static const double sign[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+    const double g = 1 / sqrt(3.0);
+    for (int p = 0; p < 4; p++) {
+        double along[2][3] = {{0}}, normal[3];
+        for (int c = 0; c < 4; c++)
+            for (int a = 0; a < 3; a++) {
+                along[0][a] += 0.25 * sign[c][0] * (1 + g * sign[c][1] * sign[p][1]) * (x[c][a] - x[0][a]);
+                along[1][a] += 0.25 * sign[c][1] * (1 + g * sign[c][0] * sign[p][0]) * (x[c][a] - x[0][a]);
+            }
+        cross(along[0], along[1], normal);
+        double weight = 0.25 * (1 + g * sign[corner][0] * sign[p][0]) * (1 + g * sign[corner][1] * sign[p][1]);
+        for (int a = 0; a < 3; a++) share[a] += weight * normal[a];
+    }
+}
+
+void brunt_face_share(const double (*x)[3], int corners, int corner, double share[3]) {
+    share[0] = share[1] = share[2] = 0;
+    if (corners == 2) {
+        share[0] = 0.5 * (x[1][1] - x[0][1]), share[1] = -0.5 * (x[1][0] - x[0][0]);
+    } else if (corners == 3) {
+        double e[3], g[3], normal[3];
+        for (int a = 0; a < 3; a++) e[a] = x[1][a] - x[0][a], g[a] = x[2][a] - x[0][a];
+        cross(e, g, normal);
+        for (int a = 0; a < 3; a++) share[a] = normal[a] / 6;
+    } else {
+        quad_share(x, corner, share);
+    }
+}
+
+static void make_forces(brunt_world *world, brunt_hold *hold, const brunt_group_def *def, double time, double dt) {
     brunt_fem_body *fem = &world->fems[hold->fem];
-    double factor = brunt_curve_at(&def->table, time);
+    const bool traction = def->action == BRUNT_GROUP_TRACTION;
+    double push = def->action == BRUNT_GROUP_GAS ? brunt_gas_push(world, hold, def, time, dt)
+                                                 : -def->value[0] * brunt_curve_at(&def->table, time);
+    double factor = traction ? brunt_curve_at(&def->table, time) : 0;
     memset(hold->force, 0, (size_t)hold->node_count * 3 * sizeof *hold->force);
     for (int32_t f = 0; f < hold->face_count; f++) {
         const int32_t *node = hold->face[f];
         const int corners = node[2] < 0 ? 2 : node[3] < 0 ? 3 : 4;
-        double area[3];
-        face_area(fem, node, def->action == BRUNT_GROUP_TRACTION, area);
-        double size = sqrt(area[0] * area[0] + area[1] * area[1] + area[2] * area[2]);
-        for (int a = 0; a < world->dimension; a++) {
-            double force =
-                def->action == BRUNT_GROUP_TRACTION ? factor * def->value[a] * size : -factor * def->value[0] * area[a];
-            for (int c = 0; c < corners; c++) hold->force[3 * (hold->place[node[c]] - 1) + a] += force / corners;
+        double x[4][3];
+        face_corners(fem, node, traction, x);
+        for (int c = 0; c < corners; c++) {
+            double share[3], *force = hold->force + 3 * (hold->place[node[c]] - 1);
+            brunt_face_share((const double(*)[3])x, corners, c, share);
+            double size = sqrt(share[0] * share[0] + share[1] * share[1] + share[2] * share[2]);
+            for (int a = 0; a < world->dimension; a++)
+                force[a] += traction ? factor * def->value[a] * size : push * share[a];
         }
     }
     for (int32_t i = 0; i < hold->node_count; i++)
@@ -197,7 +226,7 @@ void brunt_loads_begin(brunt_world *world, double time, double dt) {
         if (world->fems[k].load) memset(world->fems[k].load, 0, (size_t)world->fems[k].node_count * 4 * sizeof(real));
     for (int k = 0; k < world->hold_count; k++) {
         if (moves(&world->groups[k])) continue;
-        make_forces(world, &world->holds[k], &world->groups[k], time);
+        make_forces(world, &world->holds[k], &world->groups[k], time, dt);
         book_loads(world, &world->holds[k], dt, true);
     }
 }
@@ -244,7 +273,7 @@ void brunt_fem_hold_contact(brunt_world *world) {
     const brunt_skin *s = &world->skin;
     for (int k = 0; k < s->fem_count && world->hold_count; k++) {
         if (!s->active[k] || !world->holder[k]) continue;
-        for (int32_t n = s->node_range[k]; n < s->node_range[k + 1]; n++)
+        for (int32_t n = s->node_range[k]; n < s->node_end[k]; n++)
             for (int a = 0; a < world->dimension; a++) {
                 int holder = world->holder[k][s->node[n]][a];
                 if (!holder || s->impulse[n][a] == 0) continue;

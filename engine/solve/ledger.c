@@ -27,6 +27,7 @@ void brunt_world_energy(brunt_world *world, brunt_energy *energy) {
         energy->plastic += e.plastic;
         energy->viscosity += e.viscosity;
     }
+    energy->viscosity += now->damped;
     for (int w = 0; w < world->wall_count; w++) {
         energy->contact += world->walls[w].action.normal_loss;
         energy->friction += world->walls[w].action.friction_loss;
@@ -76,10 +77,10 @@ void brunt_world_momentum(brunt_world *world, brunt_momentum *momentum) {
     for (int k = 0; k < 3; k++) {
         momentum->linear_initial[k] = now->linear_initial[k];
         momentum->angular_initial[k] = now->angular_initial[k];
-        momentum->linear_impulse[k] = now->gravity_impulse[k];
-        momentum->angular_impulse[k] = now->gravity_angular[k];
-        impulse += fabs(now->gravity_impulse[k]);
-        turn += fabs(now->gravity_angular[k]);
+        momentum->linear_impulse[k] = now->gravity_impulse[k] + now->damping_impulse[k];
+        momentum->angular_impulse[k] = now->gravity_angular[k] + now->damping_angular[k];
+        impulse += fabs(now->gravity_impulse[k]) + fabs(now->damping_impulse[k]);
+        turn += fabs(now->gravity_angular[k]) + fabs(now->damping_angular[k]);
         for (int w = 0; w < world->wall_count; w++) {
             const brunt_action *action = &world->walls[w].action;
             momentum->linear_impulse[k] += action->impulse[k];
@@ -97,6 +98,25 @@ void brunt_world_momentum(brunt_world *world, brunt_momentum *momentum) {
     momentum->angular_drift = angular_scale > 0 ? sqrt(angular) / angular_scale : 0;
 }
 
+static void bound(const double x[3], brunt_body_sums *sums) {
+    for (int a = 0; a < 3; a++) sums->low[a] = fmin(sums->low[a], x[a]), sums->high[a] = fmax(sums->high[a], x[a]);
+}
+
+static void bound_body(const brunt_world *world, const brunt_body_ref *body, brunt_body_sums *sums) {
+    for (int a = 0; a < 3; a++) {
+        bool there = a < world->dimension;
+        sums->low[a] = there ? INFINITY : 0, sums->high[a] = there ? -INFINITY : 0;
+    }
+    for (int32_t n = 0; body->fem && n < body->fem->node_count; n++) {
+        const real *node = brunt_fem_node(body->fem, n);
+        bound((const double[3]){(double)node[0], (double)node[1], (double)node[2]}, sums);
+    }
+    for (int64_t s = 0; body->mpm && s < body->mpm->particles.slots; s++) { // padding repeats real ones
+        real *const *x = brunt_field(&body->mpm->particles, BRUNT_FIELD_position);
+        bound((const double[3]){(double)x[0][s], (double)x[1][s], world->dimension == 3 ? (double)x[2][s] : 0}, sums);
+    }
+}
+
 void brunt_body_totals(brunt_world *world, int32_t index, brunt_body_sums *sums) {
     const brunt_body_ref body = world->all[index];
     if (body.fem) {
@@ -108,6 +128,7 @@ void brunt_body_totals(brunt_world *world, int32_t index, brunt_body_sums *sums)
             sums->centre[k] = a.first_moment[k] / a.mass;
             sums->velocity[k] = a.momentum[k] / a.mass;
         }
+        bound_body(world, &world->all[index], sums);
         return;
     }
     brunt_audit a = brunt_body_audit(body.mpm);
@@ -118,6 +139,7 @@ void brunt_body_totals(brunt_world *world, int32_t index, brunt_body_sums *sums)
         sums->centre[k] = a.centre[k];
         sums->velocity[k] = a.mass > 0 ? a.linear[k] / a.mass : 0;
     }
+    bound_body(world, &world->all[index], sums);
 }
 
 static void fill_force(const brunt_action *last, const brunt_action *all, double dt, brunt_force *force) {
@@ -179,7 +201,8 @@ const char *brunt_body_material(const brunt_world *world, int32_t body) {
     return world->all[body].fem ? world->all[body].fem->material.name : world->all[body].mpm->material.name;
 }
 brunt_method brunt_body_method(const brunt_world *world, int32_t body) {
-    return world->all[body].fem ? BRUNT_FEM : BRUNT_MPM;
+    const brunt_fem_body *fem = world->all[body].fem;
+    return !fem ? BRUNT_MPM : fem->element->sheet ? BRUNT_MEMBRANE : BRUNT_FEM;
 }
 int64_t brunt_body_size(const brunt_world *world, int32_t body, brunt_place at) {
     const brunt_body_ref ref = world->all[body];

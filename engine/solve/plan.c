@@ -21,6 +21,12 @@ static bool has_hourglass(const brunt_world *world) {
     return false;
 }
 
+static bool has_sheets(const brunt_world *world) {
+    for (int k = 0; k < world->fem_count; k++)
+        if (world->fems[k].element->sheet) return true;
+    return false;
+}
+
 static bool has_mass_scaling(const brunt_world *world) {
     for (int k = 0; k < world->fem_count; k++)
         if (world->fems[k].field[BRUNT_ELEMENT_density_scale].components) return true;
@@ -28,21 +34,26 @@ static bool has_mass_scaling(const brunt_world *world) {
 }
 
 #define BRUNT_EFFECTS(X)                                                                                               \
-    X(elements, world->fem_count > 0, "bodies: method fem")                                                            \
+    X(elements, world->fem_count > 0, "bodies: method fem or membrane")                                                \
     X(affine, world->transfer == BRUNT_APIC && world->body_count > 0, "grid.transfer")                                 \
-    X(contact, world->has_contact || world->has_augury, "contact.method")                                              \
+    X(contact, world->has_contact || world->has_augury || world->has_grid_surfaces, "contact.method")                  \
     X(friction, world->has_friction, "friction of contact or boundaries")                                              \
     X(surfaces, world->has_surfaces, "contact of meshes, or planes they may meet")                                     \
-    X(hourglass, has_hourglass(world), "bodies: element hex8 or quad4")                                                \
+    X(hourglass, has_hourglass(world), "bodies: elements with hourglass modes")                                        \
     X(mass_scaling, has_mass_scaling(world), "bodies: mass_scaling")                                                   \
     X(groups, world->hold_count > 0, "boundaries: group")                                                              \
+    X(gas, world->has_gas, "boundaries: gas")                                                                          \
+    X(damping, world->has_damping, "bodies: damping")                                                                  \
+    X(membranes, has_sheets(world), "bodies: method membrane")                                                         \
     X(walls, world->has_walls, "boundaries: condition separate")                                                       \
     X(mirrors, world->mirror_count > 0, "boundaries: condition symmetry or slip")                                      \
     X(conditions, world->has_conditions, "boundaries: stick, oblique slip, region")                                    \
     X(gravity, world->has_gravity, "loads.gravity")
 
 #define BRUNT_MODEL_EFFECTS(X)                                                                                         \
-    X(plasticity, plastic) X(thermal, thermal) X(equation_of_state, eos) X(bulk_viscosity, viscous)
+    X(plasticity, plastic)                                                                                             \
+    X(thermal, thermal) X(equation_of_state, eos) X(bulk_viscosity, viscous) X(fluid, fluid)                           \
+        X(shear_viscosity, shear_viscous)
 
 enum {
 #define COUNT(name, ...) EFFECT_##name,

@@ -56,7 +56,7 @@ static void read_contact(const brunt_world *world, const brunt_fem_body *fem, in
     for (int64_t k = 0; k < (int64_t)fem->node_count * components; k++) out[k] = field == 0 ? NAN : 0;
     const int32_t body = (int32_t)(fem - world->fems);
     if (world->now.steps == 0 || !s->active[body]) return;
-    for (int32_t n = s->node_range[body]; n < s->node_range[body + 1]; n++) {
+    for (int32_t n = s->node_range[body]; n < s->node_end[body]; n++) {
         double *to = out + (int64_t)fem->node_id[s->node[n]] * components;
         if (field == 0) *to = isinf(s->gap[n]) ? NAN : s->gap[n];
         if (field == 2) *to = s->state[n];
@@ -68,7 +68,7 @@ static void read_contact(const brunt_world *world, const brunt_fem_body *fem, in
 // ------------------------------------------------------------------------------------------ at elements
 
 typedef struct element_point {
-    double F[9], J, stress[6], volume, density;
+    double F[9], J, stress[6], volume, density; // of sheets F is the stretch U in its plane, and that across
 } element_point;
 
 static double scalar(const brunt_fem_body *fem, int field, int c, int32_t s) {
@@ -76,15 +76,17 @@ static double scalar(const brunt_fem_body *fem, int field, int c, int32_t s) {
 }
 
 static void read_point(const brunt_fem_body *fem, int32_t s, element_point *p) {
-    const int dim = fem->dim;
+    const int dim = fem->point_dim;
+    const bool sheet = fem->element->sheet;
     memset(p, 0, sizeof *p);
-    p->F[8] = 1;
+    p->F[8] = sheet ? scalar(fem, BRUNT_ELEMENT_thickness_stretch, 0, s) : 1;
     for (int r = 0; r < dim; r++)
         for (int c = 0; c < dim; c++) p->F[3 * r + c] = scalar(fem, BRUNT_ELEMENT_deformation_gradient, r * dim + c, s);
     const double *F = p->F;
     p->J = F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) + F[2] * (F[3] * F[7] - F[4] * F[6]);
     for (int c = 0; c < BRUNT_SYMMETRIC(dim); c++)
         p->stress[c] = scalar(fem, BRUNT_ELEMENT_kirchhoff_stress, c, s) / p->J;
+    if (sheet) brunt_fem_sheet_stress(fem, s, p->stress);
     p->volume = scalar(fem, BRUNT_ELEMENT_reference_volume, 0, s) * p->J;
     p->density = (double)fem->material.density / p->J;
 }
@@ -126,6 +128,11 @@ static void element_id(const brunt_fem_body *fem, int32_t s, const element_point
     *out = fem->element_id[s];
 }
 
+static void element_thickness(const brunt_fem_body *fem, int32_t s, const element_point *p, double *out) {
+    (void)s;
+    *out = (double)fem->thickness * p->F[8];
+}
+
 static const struct element_field {
     brunt_field_info info;
     element_fn *read;
@@ -138,8 +145,11 @@ static const struct element_field {
     {{"density", "kg/m^3", 1, false, BRUNT_AT_ELEMENTS}, element_density},
     {{"deformation_gradient", "1", 9, false, BRUNT_AT_ELEMENTS}, element_F},
     {{"element", "1", 1, false, BRUNT_AT_ELEMENTS}, element_id},
+    {{"thickness", "m", 1, false, BRUNT_AT_ELEMENTS}, element_thickness}, // the last: of sheets alone
 };
-enum { ELEMENT_FIELDS = sizeof element_fields / sizeof element_fields[0] };
+static int element_count(const brunt_fem_body *fem) {
+    return (int)(sizeof element_fields / sizeof element_fields[0]) - (fem->element->sheet ? 0 : 1);
+}
 
 // ------------------------------------------------------------------------------------------ all together
 
@@ -147,15 +157,15 @@ static int contact_count(const brunt_world *world) { return world->has_surfaces 
 
 // Fields at nodes, those of contact, those at elements, and after them the states of the material.
 int32_t brunt_read_mesh_fields(const brunt_world *world, const brunt_fem_body *fem) {
-    return NODE_FIELDS + contact_count(world) + ELEMENT_FIELDS + fem->field_count - BRUNT_ELEMENT_BASE_FIELDS;
+    return NODE_FIELDS + contact_count(world) + element_count(fem) + fem->field_count - BRUNT_ELEMENT_BASE_FIELDS;
 }
 
 brunt_field_info brunt_read_mesh_field(const brunt_world *world, const brunt_fem_body *fem, int32_t field) {
     if (field < NODE_FIELDS) return node_fields[field].info;
     if ((field -= NODE_FIELDS) < contact_count(world)) return contact_fields[field];
-    if ((field -= contact_count(world)) < ELEMENT_FIELDS) return element_fields[field].info;
-    const brunt_element_field *f = &fem->field[BRUNT_ELEMENT_BASE_FIELDS + field - ELEMENT_FIELDS];
-    bool symmetric = f->components > 1 && f->components == BRUNT_SYMMETRIC(fem->dim);
+    if ((field -= contact_count(world)) < element_count(fem)) return element_fields[field].info;
+    const brunt_element_field *f = &fem->field[BRUNT_ELEMENT_BASE_FIELDS + field - element_count(fem)];
+    bool symmetric = f->components > 1 && f->components == BRUNT_SYMMETRIC(fem->point_dim);
     return (brunt_field_info){f->name, f->unit, symmetric ? 6 : f->components, symmetric, BRUNT_AT_ELEMENTS};
 }
 
@@ -172,7 +182,7 @@ void brunt_read_mesh(brunt_world *world, brunt_fem_body *fem, int32_t field, dou
     }
     field -= contact_count(world);
     const brunt_element_field *state =
-        field < ELEMENT_FIELDS ? NULL : &fem->field[BRUNT_ELEMENT_BASE_FIELDS + field - ELEMENT_FIELDS];
+        field < element_count(fem) ? NULL : &fem->field[BRUNT_ELEMENT_BASE_FIELDS + field - element_count(fem)];
     for (int32_t s = 0; s < fem->slots; s++) {
         if (fem->element_id[s] < 0) continue;
         double *to = out + (int64_t)fem->element_id[s] * info.components;

@@ -16,7 +16,7 @@
 
 static const char REAL_TYPE = sizeof(real) == 8 ? 'd' : 'f';
 
-// World blocks: clock, walls, pairs; where surfaces meet what their search remembers; and where contact keeps them the
+// World blocks: clock, walls (with the gas that groups of them enclose), pairs; where surfaces meet what their search remembers; and where contact keeps them the
 // affine velocities of boundary nodes.
 static int world_blocks(const brunt_world *world) { return world->skin.affine ? 5 : world->has_surfaces ? 4 : 3; }
 
@@ -78,7 +78,8 @@ brunt_state_block brunt_state_info(brunt_world *world, int32_t index) {
     }
     static const char *const names[] = {"world/clock", "world/walls", "world/pairs", "world/contact_search",
                                         "world/contact_affine"};
-    const int64_t counts[] = {CLOCK_DOUBLES, 2 * (int64_t)world->wall_count * ACTION_DOUBLES,
+    const int64_t counts[] = {CLOCK_DOUBLES,
+                              2 * (int64_t)world->wall_count * ACTION_DOUBLES + brunt_gas_state_count(world),
                               2 * (int64_t)world->pair_count * ACTION_DOUBLES, brunt_facing_state_count(&world->skin),
                               9 * (int64_t)world->skin.node_count};
     snprintf(block.name, sizeof block.name, "%s", names[at.field]);
@@ -118,6 +119,7 @@ void brunt_state_get(brunt_world *world, int32_t index, void *out) {
         memcpy(to, &world->walls[w].action, sizeof(brunt_action));
         memcpy(to + ACTION_DOUBLES, &world->walls[w].last, sizeof(brunt_action));
     }
+    if (at.field == 1) brunt_gas_state_get(world, to);
     for (int p = 0; at.field == 2 && p < world->pair_count; p++, to += 2 * ACTION_DOUBLES) {
         memcpy(to, &world->pairs[p].action, sizeof(brunt_action));
         memcpy(to + ACTION_DOUBLES, &world->pairs[p].last, sizeof(brunt_action));
@@ -161,6 +163,7 @@ int brunt_state_set(brunt_world *world, int32_t index, const void *in, int64_t c
         memcpy(&world->walls[w].action, from, sizeof(brunt_action));
         memcpy(&world->walls[w].last, from + ACTION_DOUBLES, sizeof(brunt_action));
     }
+    if (at.field == 1) brunt_gas_state_set(world, from);
     for (int p = 0; at.field == 2 && p < world->pair_count; p++, from += 2 * ACTION_DOUBLES) {
         memcpy(&world->pairs[p].action, from, sizeof(brunt_action));
         memcpy(&world->pairs[p].last, from + ACTION_DOUBLES, sizeof(brunt_action));

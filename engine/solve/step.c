@@ -10,7 +10,7 @@
 #include "threads.h"
 #include "world.h"
 
-enum { SLOT_GRAIN = 8, BLOCK_GRAIN = 2, ENERGY_CHECK = 32 };
+enum { SLOT_GRAIN = 8, BLOCK_GRAIN = 2, ENERGY_CHECK = 32, SPREAD_CHECK = 32 };
 
 void brunt_gravity_at(const brunt_world *world, double time, double gravity[3]) {
     double share = world->gravity_ramp > 0 && time < world->gravity_ramp ? time / world->gravity_ramp : 1;
@@ -174,19 +174,24 @@ static void make_grid_velocities(brunt_world *world, brunt_body *body, const dou
     end_pass(world, BRUNT_PASS_update, start);
 }
 
+// Planes that stick or slip and regions, at the nodes of the grids.
+static void apply_conditions(brunt_world *world) {
+    double start;
+    start_pass(world, BRUNT_PASS_conditions, &start);
+    for (int w = 0; w < world->wall_count; w++) {
+        brunt_wall *wall = &world->walls[w];
+        bool at_nodes = wall->region || (wall->mirror < 0 && wall->plane.condition != BRUNT_SEPARATE);
+        for (int i = 0; at_nodes && i < world->body_count; i++)
+            if (acts_on(wall, &world->bodies[i])) brunt_condition_apply(&world->bodies[i], wall, world->now.time);
+    }
+    end_pass(world, BRUNT_PASS_conditions, start);
+}
+
 static int constrain_velocities(brunt_world *world, const double gravity[3], double kick, double dt,
                                 brunt_error *error) {
     double start;
-    if (world->has_conditions && world->body_count) {
-        start_pass(world, BRUNT_PASS_conditions, &start);
-        for (int w = 0; w < world->wall_count; w++) {
-            brunt_wall *wall = &world->walls[w];
-            bool at_nodes = wall->region || (wall->mirror < 0 && wall->plane.condition != BRUNT_SEPARATE);
-            for (int i = 0; at_nodes && i < world->body_count; i++)
-                if (acts_on(wall, &world->bodies[i])) brunt_condition_apply(&world->bodies[i], wall, world->now.time);
-        }
-        end_pass(world, BRUNT_PASS_conditions, start);
-    }
+    const bool conditions = world->has_conditions && world->body_count;
+    if (conditions) apply_conditions(world);
     if (world->has_contact) {
         start_pass(world, BRUNT_PASS_contact, &start);
         int failed =
@@ -209,6 +214,7 @@ static int constrain_velocities(brunt_world *world, const double gravity[3], dou
             return fail(world, NULL, error, reason);
         }
     }
+    if (conditions && world->has_surfaces) apply_conditions(world); // what contact gave to nodes that are held
     if (world->has_walls && world->body_count) {
         start_pass(world, BRUNT_PASS_walls, &start);
         for (int i = 0; i < world->body_count; i++)
@@ -310,7 +316,8 @@ static int gather_bodies(brunt_world *world, double dt, double *kinetic, brunt_e
 static void kick_meshes(brunt_world *world, const double gravity[3], double kick, double dt) {
     double start;
     start_pass(world, BRUNT_PASS_kick, &start);
-    if (world->hold_count) brunt_loads_begin(world, world->now.time, kick);
+    if (world->hold_count || world->has_damping) brunt_loads_begin(world, world->now.time, kick);
+    if (world->has_damping) brunt_damping_begin(world, gravity, kick);
     brunt_fem_kick_all(world, gravity, kick);
     end_pass(world, BRUNT_PASS_kick, start);
     if (!world->hold_count) return;
@@ -354,6 +361,24 @@ static int make_grids(brunt_world *world, const double gravity[3], double dt, br
     return BRUNT_OK;
 }
 
+// A fluid spreads until there are cells between its particles that none of them reaches: there pressure and contact act
+// on single particles.
+static void watch_spread(brunt_world *world) {
+    for (int i = 0; i < world->body_count; i++) {
+        brunt_body *body = &world->bodies[i];
+        if (!body->material.model[BRUNT_STRENGTH]->fluid || body->spread_told) continue;
+        double spread = brunt_body_spread(body);
+        if (!(spread > 1)) continue;
+        body->spread_told = true;
+        brunt_warn(
+            world,
+            "bodies.%s: at t = %.4g s the fluid has spread: particles stand for volumes %.2g cells wide, so that "
+            "there are cells with none; pressure there is as coarse as that (more particles_per_cell, or a "
+            "coarser grid, helps)",
+            body->name, world->now.time, spread);
+    }
+}
+
 int brunt_world_step(brunt_world *world, double limit, brunt_error *error) {
     double dt = choose_step(world, limit), gravity[3], old_kinetic, new_kinetic, kinetic = 0;
     double stable = world->now.next_dt / world->cfl;
@@ -384,6 +409,7 @@ int brunt_world_step(brunt_world *world, double limit, brunt_error *error) {
         status = gather_bodies(world, dt, &kinetic, error);
     }
     if (world->hold_count) brunt_loads_end(world, kick);
+    if (world->has_damping) brunt_damping_end(world, kick);
     for (int w = 0; w < world->wall_count; w++) brunt_action_add(&world->walls[w].action, &world->walls[w].last);
     for (int p = 0; p < world->pair_count; p++) brunt_action_add(&world->pairs[p].action, &world->pairs[p].last);
     if (world->fem_count) {
@@ -404,6 +430,7 @@ int brunt_world_step(brunt_world *world, double limit, brunt_error *error) {
     now->next_dt = brunt_stable_step(world);
     if (!isfinite(kinetic) || !isfinite(now->fem_kinetic) || !isfinite(now->next_dt))
         return fail(world, NULL, error, "the kinetic energy is not a finite number");
+    if (world->has_fluid && (int64_t)now->steps % SPREAD_CHECK == 0) watch_spread(world);
     if ((int64_t)now->steps % ENERGY_CHECK == 0 && isfinite(world->energy_limit)) {
         brunt_energy energy;
         brunt_world_energy(world, &energy);

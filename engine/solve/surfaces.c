@@ -6,7 +6,12 @@
 #include "memory.h"
 #include "world.h"
 
-enum { SWEEPS = 16 };
+// A membrane between two blocks is light between heavy ones: each sweep passes on the share of its mass in theirs. At a
+// twentieth, 16 sweeps let the nodes of blocks that meet at a tenth of their wave speed through its middle; 64 leave a
+// hundredth of its thickness. Sweeps end sooner where there is nothing to do.
+static const double COARSE = 1.25; // cells: edges of meshes that meet particles at grid nodes
+enum { GRID_SWEEPS = 8, SWEEPS = 16, SHEET_SWEEPS = 64 };
+static const double THIN = 0.01; // mean edges
 
 static bool acts_on_fem(const brunt_world *world, const brunt_wall *wall) {
     if (wall->region) return false;
@@ -24,13 +29,72 @@ static void look_at_edges(const brunt_world *world, double *fine, double *coarse
     }
 }
 
+// Sheets keep apart by their thickness, which is all there is to tell their sides by.
+static void warn_of_thickness(brunt_world *world, const brunt_fem_body *fem, bool self) {
+    const double thick = (double)fem->contact_thickness;
+    bool other = self;
+    for (int k = 0; k < world->fem_count; k++)
+        other = other || (world->fems[k].element->sheet &&
+                          world->pair_of[fem->index * world->all_count + world->fems[k].index] >= 0);
+    if (self && thick > fem->mean_edge)
+        brunt_warn(world,
+                   "bodies.%s: its thickness in contact, %.4g m, is more than its mean edge, %.4g m: elements that are "
+                   "neighbours across a fold push each other apart",
+                   fem->name, thick, fem->mean_edge);
+    if (other && thick < THIN * fem->mean_edge)
+        brunt_warn(world,
+                   "bodies.%s: its thickness in contact, %.4g m, is less than a hundredth of its mean edge, %.4g m: "
+                   "layers that are pressed may pass through each other; contact_thickness takes a greater one",
+                   fem->name, thick, fem->mean_edge);
+}
+
+// What membranes ask of contact: a form that knows their two sides, elements that particles do not fit through, and
+// elements longer than they are thick.
+static int check_sheets(brunt_world *world, bool *self, brunt_error *error) {
+    const brunt_augury_form form = world->contact.form;
+    const int n = world->all_count;
+    for (int k = 0; k < world->fem_count; k++) {
+        const brunt_fem_body *fem = &world->fems[k];
+        bool meets = form == BRUNT_AUGURY_PAPER; // which acts on all
+        if (!fem->element->sheet) continue;
+        for (int i = 0; i < n; i++) {
+            const bool pair = world->pair_of[fem->index * n + i] >= 0;
+            const brunt_body *mpm = world->all[i].mpm;
+            meets = meets || pair;
+            if (pair && mpm && fem->mean_edge < (1 - 1e-6) * mpm->spacing)
+                brunt_warn(world,
+                           "bodies.%s: its mean edge, %.4g m, is less than the spacing of the particles of '%s', %.4g "
+                           "m: nodes can pass between them",
+                           fem->name, fem->mean_edge, mpm->name, mpm->spacing);
+        }
+        if (world->has_augury && meets && form != BRUNT_AUGURY_AFFINE)
+            return brunt_fail(error, BRUNT_BAD_INPUT,
+                              "contact.form: affine is wanted where a membrane is in contact, here '%s'", fem->name);
+        self[k] = world->pair_of[fem->index * n + fem->index] >= 0;
+        warn_of_thickness(world, fem, self[k]);
+    }
+    return BRUNT_OK;
+}
+
+static int make_sheets(brunt_world *world, brunt_error *error) {
+    bool any = false, *self = brunt_alloc((size_t)world->fem_count + 1);
+    if (!self) return brunt_fail(error, BRUNT_FAILED, "out of memory");
+    int status = check_sheets(world, self, error);
+    for (int k = 0; k < world->fem_count; k++) any = any || self[k];
+    if (!status && any && brunt_skin_rings(&world->skin, self))
+        status = brunt_fail(error, BRUNT_FAILED, "out of memory for the bodies' surfaces");
+    brunt_free(self);
+    return status;
+}
+
 int brunt_surfaces_make(brunt_world *world, const brunt_world_def *def, brunt_error *error) {
     for (int w = 0; w < world->wall_count; w++)
         world->has_surfaces = world->has_surfaces || acts_on_fem(world, &world->walls[w]);
-    world->has_surfaces = world->has_surfaces || world->has_augury;
+    world->has_surfaces = world->has_surfaces || world->has_augury || world->has_grid_surfaces;
     if (!world->has_surfaces) return BRUNT_OK;
     world->contact = def->contact;
     world->contact.pairs = NULL, world->contact.pair_count = 0;
+    world->grid_sweeps = def->contact.iterations > 0 ? def->contact.iterations : GRID_SWEEPS;
     const brunt_augury_form form = def->contact.form;
     if (world->contact.iterations < 0)
         world->contact.iterations = form == BRUNT_AUGURY_PAPER ? 1 : form == BRUNT_AUGURY_AFFINE ? SWEEPS : 4;
@@ -40,9 +104,20 @@ int brunt_surfaces_make(brunt_world *world, const brunt_world_def *def, brunt_er
     int failed = brunt_skin_make(&world->skin, fems, world->fem_count, world->has_augury && form == BRUNT_AUGURY_PAPER);
     brunt_free(fems);
     if (failed) return brunt_fail(error, BRUNT_FAILED, "out of memory for the bodies' surfaces");
+    if (world->skin.side) {
+        int status = make_sheets(world, error);
+        if (status) return status;
+        if (def->contact.iterations < 0 && form == BRUNT_AUGURY_AFFINE) world->contact.iterations = SHEET_SWEEPS;
+    }
     double fine, coarse;
     look_at_edges(world, &fine, &coarse);
     world->contact_cell = def->contact.cell > 0 ? def->contact.cell : form == BRUNT_AUGURY_PAPER ? 2 * coarse : coarse;
+    if (world->has_grid_surfaces && coarse > COARSE * world->cell)
+        brunt_warn(
+            world,
+            "grid.cell %g m is much less than the longest mean edge of a mesh, %g m: multi-velocity contact may not "
+            "see particles between its nodes",
+            world->cell, coarse);
     if (!world->has_augury || form == BRUNT_AUGURY_AFFINE) return BRUNT_OK;
     if (world->contact_cell < 0.7 * coarse)
         brunt_warn(world,
@@ -65,8 +140,10 @@ static int meet_by_facets(brunt_world *world, const brunt_meeting *m) {
         failed = brunt_facing_find(m, world->bodies, world->body_count, world->facing, points);
     int sweeps = world->contact.form == BRUNT_AUGURY_AFFINE ? world->contact.iterations : SWEEPS;
     if (!failed && brunt_points_solve(points, sweeps, m->threads, m->seconds) < 0) failed = -1;
-    if (!failed) brunt_facing_finish(m, world->bodies, world->facing, points);
-    return failed;
+    if (failed) return failed;
+    brunt_facing_book_holds(m, world->walls, world->wall_count, world->now.time, world->facing, points);
+    brunt_facing_finish(m, world->bodies, world->facing, points);
+    return 0;
 }
 
 int brunt_surfaces_meet(brunt_world *world, const double gravity[3], double kick, double dt, brunt_error *error) {
@@ -81,6 +158,9 @@ int brunt_surfaces_meet(brunt_world *world, const double gravity[3], double kick
         .iterations = world->contact.iterations,
         .look = world->has_augury && world->contact.form != BRUNT_AUGURY_AFFINE ? 1.6 * world->contact_cell : 0,
         .step = (int64_t)world->now.steps,
+        .mirrors = world->mirrors,
+        .mirror_count = world->mirror_count,
+        .walls = world->walls,
         .threads = world->threads,
         .seconds = seconds};
     memcpy(world->skin.frame, world->now.contact_frame, sizeof world->skin.frame);
@@ -88,6 +168,7 @@ int brunt_surfaces_meet(brunt_world *world, const double gravity[3], double kick
     int failed = brunt_facing_near(&m, world->bodies, world->body_count, world->walls, world->wall_count,
                                    world->now.time, &world->facing);
     if (!failed) {
+        if (world->has_grid_surfaces) brunt_grid_surfaces_near(&m, world->bodies, world->body_count);
         if (world->has_augury && world->contact.form == BRUNT_AUGURY_PAPER) // acts on every surface, touched or not
             for (int k = 0; k < world->fem_count; k++) world->skin.active[k] = true;
         brunt_skin_take(&world->skin, kick, gravity, world->threads, seconds);
@@ -96,7 +177,13 @@ int brunt_surfaces_meet(brunt_world *world, const double gravity[3], double kick
         else if (world->has_augury && world->contact.form != BRUNT_AUGURY_AFFINE)
             failed = brunt_augury_surface(&m, world->contact.form == BRUNT_AUGURY_SMOOTH, &world->augury);
     }
+    if (!failed && world->has_grid_surfaces)
+        failed = brunt_grid_surfaces_meet(&m, world->bodies, world->body_count, world->mirrors, world->mirror_count,
+                                          world->grid_sweeps, &world->grid_surfaces);
     if (!failed) failed = meet_by_facets(world, &m);
+    if (!failed && world->has_grid_surfaces)
+        brunt_grid_surfaces_finish(&m, world->bodies, world->mirrors, world->mirror_count, world->walls,
+                                   world->grid_surfaces);
     if (failed) return brunt_fail(error, BRUNT_FAILED, "out of memory in the contact of surfaces");
     brunt_skin_give(&world->skin, dt, world->threads, seconds);
     memcpy(world->now.contact_frame, world->skin.frame, sizeof world->skin.frame);

@@ -94,7 +94,13 @@ static int fill_body(const brunt_body_def *def, const brunt_filled *filled, brun
         p->id[s] = s;
         brunt_field(p, BRUNT_FIELD_mass)[0][s] = (real)(filled->volume * (double)body->material.density);
         brunt_field(p, BRUNT_FIELD_reference_volume)[0][s] = (real)filled->volume;
-        if (reach) brunt_field(p, BRUNT_FIELD_reach)[0][s] = (real)filled->reach[s];
+        // What is inside a fluid comes to its surface later: there is a particle's own material about it, no more.
+        if (reach)
+            brunt_field(p, BRUNT_FIELD_reach)[0][s] =
+                (real)(body->material.model[BRUNT_STRENGTH]->fluid ? fmin(filled->reach[s], 0.5 * body->spacing)
+                                                                   : filled->reach[s]);
+        for (int a = 0; a < 3 && body->material.rest_stress != 0; a++)
+            brunt_field(p, BRUNT_FIELD_kirchhoff_stress)[a][s] = body->material.rest_stress;
         for (int a = 0; a < dim; a++) {
             x[a][s] = (real)at[a];
             v[a][s] = (real)speed[a];
@@ -145,7 +151,9 @@ static int fill_shapes(brunt_world *world, const brunt_world_def *def, const bru
     }
     for (int i = 0; i < n && !status && !def->contact.allow_overlap; i++)
         for (int k = 0; k < n && !status; k++) {
-            if (i == k || world->pair_of[i * n + k] < 0 || order[k]->mesh.node_count) continue;
+            if (i == k || world->pair_of[i * n + k] < 0 || order[k]->mesh.node_count ||
+                order[k]->method == BRUNT_MEMBRANE) // of a membrane the shape is only what it is wrapped around
+                continue;
             double depth = overlap_depth(&filled[i], order[k], dim);
             if (depth > TOUCHING * lattice_spacing(def, order[i]))
                 status = brunt_fail(error, BRUNT_BAD_INPUT,
@@ -165,8 +173,10 @@ static int make_particles(brunt_world *world, const brunt_world_def *def, const 
     body->spacing = lattice_spacing(def, from);
     int status = brunt_material_make(&def->materials[from->material], &body->material, error);
     if (status) return status;
+    world->has_fluid = world->has_fluid || body->material.model[BRUNT_STRENGTH]->fluid;
     brunt_particle_needs needs = {.affine = def->transfer == BRUNT_APIC,
-                                  .reach = world->has_contact || world->has_augury || world->has_walls,
+                                  .reach = world->has_contact || world->has_augury || world->has_grid_surfaces ||
+                                           world->has_walls,
                                   .grid_velocity = world->advance && def->transfer == BRUNT_FLIP};
     memcpy(needs.models, body->material.model, sizeof needs.models);
     brunt_particles_init(&body->particles, def->dimension, &needs);
@@ -194,10 +204,21 @@ static int make_elements(brunt_world *world, const brunt_world_def *def, const b
     world->all[index].fem = fem;
     brunt_mesh made = {0};
     brunt_material material;
+    const bool sheet = from->method == BRUNT_MEMBRANE;
     int status = BRUNT_OK;
+    if (sheet && !(from->thickness > 0 && isfinite(from->thickness)))
+        REFUSE("bodies.%s.thickness: %g m is not a positive length", from->name, from->thickness);
+    if (sheet &&
+        !(isnan(from->contact_thickness) || (from->contact_thickness >= 0 && isfinite(from->contact_thickness))))
+        REFUSE("bodies.%s.contact_thickness: %g m is negative", from->name, from->contact_thickness);
+    if (!(from->damping >= 0) || !isfinite(from->damping))
+        REFUSE("bodies.%s.damping: %g 1/s is not a rate", from->name, from->damping);
     if (!from->mesh.node_count) {
         if (!(from->size > 0)) REFUSE("bodies.%s.size: %g m is not a positive length", from->name, from->size);
-        status = brunt_mesh_shape(&from->shape, def->dimension, from->element, from->size, &made, error);
+        status = sheet
+                     ? brunt_mesh_surface(&from->shape, from->element, from->size,
+                                          (const char(*)[BRUNT_NAME_LENGTH])from->faces, from->face_count, &made, error)
+                     : brunt_mesh_shape(&from->shape, def->dimension, from->element, from->size, &made, error);
     }
     const brunt_mesh *mesh = from->mesh.node_count ? &from->mesh : &made;
     if (!status) status = brunt_mesh_check(mesh, &report->quality, error);
@@ -206,7 +227,13 @@ static int make_elements(brunt_world *world, const brunt_world_def *def, const b
         memcpy(reason, error->message, sizeof reason);
         brunt_fail(error, error->code, "bodies.%s: %.900s", from->name, reason);
     }
-    if (!status) status = brunt_material_make(&def->materials[from->material], &material, error);
+    if (!status && brunt_element_is_sheet(mesh->kind) != sheet)
+        REFUSE("bodies.%s: elements of kind %s are not for method %s", from->name, brunt_element_name(mesh->kind),
+               sheet ? "membrane" : "fem");
+    const brunt_material_def *law = &def->materials[from->material];
+    if (!status)
+        status = sheet ? brunt_material_make_sheet(law, from->slack, &material, error)
+                       : brunt_material_make(law, &material, error);
     if (!status) status = brunt_fem_make(from, &material, def->dimension, mesh, fem, error);
     if (!status && close_ranks(fem, mesh->node_count)) status = brunt_fail(error, BRUNT_FAILED, "out of memory");
     if (!status) {
@@ -268,6 +295,14 @@ static int plane_axis(const brunt_plane_def *plane, int dim) {
     return -1;
 }
 
+static bool has_fluid(const brunt_world_def *def) {
+    for (int i = 0; i < def->body_count; i++) {
+        const brunt_model *model = brunt_find_strength(def->materials[def->bodies[i].material].strength);
+        if (def->bodies[i].method == BRUNT_MPM && model && model->fluid) return true;
+    }
+    return false;
+}
+
 static int make_plane(brunt_world *world, const brunt_world_def *def, int index, brunt_error *error) {
     brunt_wall *wall = &world->walls[index];
     brunt_plane_def *plane = &wall->plane;
@@ -291,6 +326,16 @@ static int make_plane(brunt_world *world, const brunt_world_def *def, int index,
     if (on_line && (plane->condition == BRUNT_SYMMETRY || plane->condition == BRUNT_SLIP)) {
         if (world->mirror_count == (int)(sizeof world->mirrors / sizeof world->mirrors[0]))
             REFUSE("boundaries: more than 16 symmetry and slip planes");
+        for (int m = 0; m < world->mirror_count; m++) {
+            const brunt_mirror *other = &world->mirrors[m];
+            int32_t apart = (int32_t)round(at) - other->node;
+            if (other->axis == axis && apart != 0 && abs(apart) <= (int)def->kernel && has_fluid(def))
+                brunt_warn(
+                    world,
+                    "boundaries[%d] (%s): this plane of symmetry or slip and '%s' are %d cells apart; the kernel "
+                    "reaches over both, and fluids leak: at least %d are wanted",
+                    index, wall->name, world->walls[other->wall].name, abs(apart), (int)def->kernel + 1);
+        }
         wall->mirror = world->mirror_count;
         world->mirrors[world->mirror_count++] = (brunt_mirror){.axis = axis, .node = (int32_t)round(at), .wall = index};
     } else if (plane->condition == BRUNT_SEPARATE) {
@@ -298,6 +343,12 @@ static int make_plane(brunt_world *world, const brunt_world_def *def, int index,
         world->has_friction = world->has_friction || plane->friction > 0;
     } else {
         world->has_conditions = true;
+        if (plane->condition == BRUNT_SLIP && has_fluid(def))
+            brunt_warn(
+                world,
+                "boundaries[%d] (%s): a slip plane that is not on a line of the grid lets fluids in by half a cell; "
+                "move it, or grid.origin",
+                index, wall->name);
     }
     return BRUNT_OK;
 }
@@ -349,33 +400,63 @@ static int find_alike(const brunt_world *world, const brunt_pair *pair) {
     return -1;
 }
 
+// Checks the names of a pair, and makes that of a membrane with itself.
+static int make_self_pair(brunt_world *world, const brunt_pair_def *def, int q, const brunt_body_def **order, int n,
+                          brunt_error *error) {
+    const int a = find_body(order, n, def->a), b = find_body(order, n, def->b);
+    if (a < 0 || b < 0) REFUSE("contact.pairs[%d].between: '%s' and '%s' are not two bodies", q, def->a, def->b);
+    if (a != b) return BRUNT_OK;
+    if (order[a]->method != BRUNT_MEMBRANE)
+        REFUSE("contact.pairs[%d].between: '%s' is no membrane: no other body can be in contact with itself", q,
+               def->a);
+    if (def->method == BRUNT_CONTACT_NONE) return BRUNT_OK;
+    if (def->method != BRUNT_CONTACT_AUGURY)
+        REFUSE("contact.pairs[%d].method: contact of '%s' with itself is by augury", q, def->a);
+    if (!(def->friction >= 0)) REFUSE("contact.pairs[%d].friction: %g is negative", q, def->friction);
+    if (world->pair_of[a * n + a] >= 0) REFUSE("contact.pairs[%d].between: '%s' is listed twice", q, def->a);
+    world->has_augury = true;
+    world->has_friction = world->has_friction || def->friction > 0;
+    world->pair_of[a * n + a] = world->pair_count;
+    world->pairs[world->pair_count++] =
+        (brunt_pair){.a = a, .b = a, .method = BRUNT_CONTACT_AUGURY, .friction = def->friction};
+    return BRUNT_OK;
+}
+
 static int make_pairs(brunt_world *world, const brunt_world_def *def, const brunt_body_def **order,
                       brunt_error *error) {
     const int n = def->body_count;
     world->pair_of = brunt_alloc((size_t)n * (size_t)n * sizeof *world->pair_of);
     const bool crowded = n * (n - 1) / 2 > MOST_PAIRS;
-    world->pairs = brunt_alloc(((crowded ? MOST_PAIRS : (size_t)n * (size_t)n / 2) + 1) * sizeof *world->pairs);
+    size_t room = crowded ? MOST_PAIRS : (size_t)n * (size_t)n / 2;
+    for (int q = 0; q < def->contact.pair_count; q++) room += !strcmp(def->contact.pairs[q].a, def->contact.pairs[q].b);
+    world->pairs = brunt_alloc((room + 1) * sizeof *world->pairs);
     if (!world->pair_of || !world->pairs) return brunt_fail(error, BRUNT_FAILED, "out of memory");
     for (int i = 0; i < n; i++)
         for (int k = 0; k < n; k++) world->pair_of[i * n + k] = -1;
+    for (int q = 0; q < def->contact.pair_count; q++) {
+        int status = make_self_pair(world, &def->contact.pairs[q], q, order, n, error);
+        if (status) return status;
+    }
     for (int i = 0; i < n; i++)
         for (int k = i + 1; k < n; k++) {
             brunt_pair pair = {.a = i, .b = k, .method = def->contact.method, .friction = def->contact.friction};
             for (int q = 0; q < def->contact.pair_count; q++) {
                 const brunt_pair_def *p = &def->contact.pairs[q];
                 int a = find_body(order, n, p->a), b = find_body(order, n, p->b);
-                if (a < 0 || b < 0 || a == b)
-                    REFUSE("contact.pairs[%d].between: '%s' and '%s' are not two bodies", q, p->a, p->b);
                 if ((a == i && b == k) || (a == k && b == i)) pair.method = p->method, pair.friction = p->friction;
             }
-            bool meshes = order[i]->method == BRUNT_FEM || order[k]->method == BRUNT_FEM;
+            bool meshes = order[i]->method != BRUNT_MPM || order[k]->method != BRUNT_MPM;
             if (pair.method == BRUNT_CONTACT_NONE) continue;
-            if (meshes && pair.method == BRUNT_CONTACT_MULTI_VELOCITY)
-                REFUSE("contact of '%s' and '%s': multi-velocity is between bodies of material points; use augury",
+            const bool on_grid = pair.method == BRUNT_CONTACT_MULTI_VELOCITY;
+            if (order[i]->method != BRUNT_MPM && order[k]->method != BRUNT_MPM && on_grid)
+                REFUSE("contact of '%s' and '%s': multi-velocity needs the grid of a body of material points; use "
+                       "augury between meshes",
                        order[i]->name, order[k]->name);
             // Bodies of material points meet at the nodes of the grid that moves them, whatever the method is called.
             if (!meshes)
                 pair.method = BRUNT_CONTACT_MULTI_VELOCITY, world->has_contact = true;
+            else if (on_grid)
+                world->has_grid_surfaces = true;
             else
                 world->has_augury = true;
             if (!(pair.friction >= 0)) REFUSE("contact.friction: %g is negative", pair.friction);
@@ -505,6 +586,7 @@ brunt_world *brunt_world_create(const brunt_world_def *def, brunt_error *error) 
     if (!status) status = brunt_holds_make(world, def, error);
     if (!status) status = brunt_surfaces_make(world, def, error);
     if (!status && brunt_fem_tasks(world)) status = brunt_fail(error, BRUNT_FAILED, "out of memory");
+    if (!status) status = brunt_damping_make(world, error);
     for (int m = 0; !status && m < world->mirror_count; m++) { // node numbers count from where the grid starts
         int axis = world->mirrors[m].axis;
         world->mirrors[m].node -= (int32_t)round((world->bodies[0].grid.origin[axis] - def->origin[axis]) / def->cell);
@@ -528,7 +610,9 @@ void brunt_world_destroy(brunt_world *world) {
     brunt_points_free(&world->points);
     brunt_facing_free(world->facing);
     brunt_augury_workspace_free(world->augury);
+    brunt_grid_surfaces_free(world->grid_surfaces);
     brunt_holds_free(world);
+    brunt_damping_free(world);
     for (int k = 0; world->fems && k < world->fem_count; k++) brunt_fem_free(&world->fems[k]);
     for (size_t t = 0; t < sizeof world->fem_work / sizeof world->fem_work[0]; t++)
         brunt_fem_workspace_free(&world->fem_work[t]);

@@ -7,6 +7,7 @@
 #include "contact.h"
 #include "facing.h"
 #include "fem.h"
+#include "grid_surfaces.h"
 #include "transfer.h"
 
 // The passes of a step, in their order. A pass nobody asked for is not in the plan and does not run.
@@ -35,6 +36,10 @@ enum {
         BRUNT_PASS_COUNT
 };
 
+typedef struct brunt_damping_sums {
+    double work, impulse[3], angular[3]; // [J], [N s], [N m s] of a node task
+} brunt_damping_sums;
+
 typedef struct brunt_node_sums {
     double old_kinetic, new_kinetic, mass, first_moment[3], gravity_work, stress_work;
 } brunt_node_sums;
@@ -48,6 +53,7 @@ typedef struct brunt_hold {
     int32_t face_count;
     double *force;  // node_count x 3 [N] of this step, for loads
     int32_t *place; // of each node of the body: its place in the group + 1; for loads
+    double gas_energy, gas_volume, gas_inflow; // [J], [m^3], [J] so far: of enclosed gas
 } brunt_hold;
 
 // A run of nodes or a block of elements of one of the finite-element bodies: a task.
@@ -79,6 +85,8 @@ struct brunt_world {
     brunt_fem_task *node_tasks, *element_tasks;
     int64_t node_task_count, element_task_count;
     brunt_fem_sums *fem_sums; // a node task each
+    real **drag;              // of each body with damping: node_count x 4 [N]
+    brunt_damping_sums *damping_sums; // a node task each
     uint8_t (**holder)[3];    // of each body, node and component: the hold that prescribes it + 1
     brunt_hold *holds;
     int hold_count;
@@ -88,6 +96,8 @@ struct brunt_world {
     brunt_contact_points points;
     brunt_facing *facing;
     brunt_augury_workspace *augury;
+    brunt_grid_surfaces *grid_surfaces;
+    int grid_sweeps;
     brunt_contact_def contact; // without its pairs
     double contact_cell;
     char (*warnings)[256];
@@ -101,6 +111,8 @@ struct brunt_world {
     int32_t *pair_of;
     int32_t *mpm_pair_of; // pairs that meet at grid nodes, by place in `bodies`
     bool has_particles, has_conditions, has_contact, has_walls, has_friction, has_gravity;
+    bool has_damping, has_gas, has_fluid;
+    bool has_grid_surfaces;        // multi-velocity contact of meshes with material points
     bool has_augury, has_surfaces; // surfaces of meshes meet something: each other, particles, planes
 
     brunt_workspace work[256];
@@ -118,6 +130,7 @@ struct brunt_world {
         double transfer, gravity_work; // [J]
         double contact_frame[3];       // [m/s] what contact measures motion against
         double gravity_impulse[3], gravity_angular[3];
+        double damped, damping_impulse[3], damping_angular[3]; // [J], [N s], [N m s]
         double initial_energy, initial_kinetic; // [J]
         double linear_initial[3], angular_initial[3], scale_linear, scale_angular;
         double energy_scale; // [J] the largest energy the run has had to do with
@@ -165,6 +178,25 @@ double brunt_fem_stable_step(const brunt_world *world);
 int brunt_surfaces_meet(brunt_world *world, const double gravity[3], double kick, double dt, brunt_error *error);
 int brunt_surfaces_make(brunt_world *world, const brunt_world_def *def, brunt_error *error);
 
+// --- damping.c: drag on the nodes of bodies with damping
+// After the node tasks are made.
+int brunt_damping_make(brunt_world *world, brunt_error *error);
+void brunt_damping_free(brunt_world *world);
+// Adds the drag to the loads of this step, with half of its work booked; the other half once velocities are final.
+void brunt_damping_begin(brunt_world *world, const double gravity[3], double dt);
+void brunt_damping_end(brunt_world *world, double dt);
+
+// --- gas.c: gas in enclosed volumes
+// Volume that the faces of a hold enclose, with that beside it [m^3].
+double brunt_gas_volume(const brunt_world *world, const brunt_hold *hold, const brunt_group_def *def);
+// Energy of the gas at the start. BRUNT_BAD_INPUT when the faces enclose nothing.
+int brunt_gas_start(brunt_world *world, brunt_hold *hold, const brunt_group_def *def, brunt_error *error);
+// Pressure [Pa] above that outside for the step from `time` on, over `dt`, by the volume as it is now.
+double brunt_gas_push(const brunt_world *world, brunt_hold *hold, const brunt_group_def *def, double time, double dt);
+int64_t brunt_gas_state_count(const brunt_world *world);
+void brunt_gas_state_get(const brunt_world *world, double *out);
+void brunt_gas_state_set(brunt_world *world, const double *in);
+
 // --- holds.c: named groups
 int brunt_holds_make(brunt_world *world, const brunt_world_def *def, brunt_error *error);
 double brunt_curve_at(const brunt_curve *curve, double time);
@@ -172,6 +204,8 @@ double brunt_curve_at(const brunt_curve *curve, double time);
 // final.
 void brunt_loads_begin(brunt_world *world, double time, double dt);
 void brunt_loads_end(brunt_world *world, double dt);
+// Vector of the share that corner `corner` of a face has of its area [m^2], outward: int N_a n dA.
+void brunt_face_share(const double (*x)[3], int corners, int corner, double share[3]);
 void brunt_holds_free(brunt_world *world);
 // A warning for the user, kept with the world.
 void brunt_warn(brunt_world *world, const char *format, ...) __attribute__((format(printf, 2, 3)));

@@ -1,0 +1,300 @@
+// Material points that face the surfaces of meshes: each that is near looks for the facet it would pass, and becomes a
+// contact point whose slave is the grid's velocity at its place.
+//
+// The looking is done block by block, by any thread; the points are then made in the order of the blocks. Where a
+// mirror plane is near, a node and its images have one velocity, turned over: they are one support, and what a point
+// gives it is the sum of the weights of all of them, each turned over, since the image of the point presses too. A node
+// on the plane moves along it only. Tangentially the body then gets all of the impulse; what is missing across the
+// plane is what the mirror bears.
+#include "facing_inside.h"
+
+#include "body.h"
+#include "particles.h"
+#include "threads.h"
+#include "transfer.h"
+
+enum { MAX_NODES = 64, IMAGE_LAYERS = 2, MAX_MIRRORS = 16 };
+
+typedef struct job {
+    const brunt_meeting *m;
+    brunt_facing *f;
+    brunt_body *body;
+    int32_t box;
+} job;
+
+typedef struct nodes {
+    int count;
+    real *node[MAX_NODES];
+    int32_t at[MAX_NODES][3];
+    double weight[MAX_NODES];
+} nodes;
+
+// Nodes and weights under particle `s` of block `b`.
+static void particle_nodes(const brunt_body *body, int32_t b, int64_t s, nodes *out) {
+    const brunt_grid *grid = &body->grid;
+    const int dim = grid->dim, n = grid->order + 1;
+    int local[3];
+    int32_t base[3] = {0, 0, 0};
+    double w[3][4] = {{1}, {1}, {1}};
+    out->count = 0;
+    brunt_node_local(grid, body->particles.bin[s], local);
+    real *const *x = brunt_field((brunt_particles *)&body->particles, BRUNT_FIELD_position);
+    for (int a = 0; a < dim; a++) {
+        base[a] = grid->blocks[b].coord[a] * grid->side + local[a];
+        brunt_kernel_weights(grid->order, ((double)x[a][s] - grid->origin[a]) / (double)grid->h - base[a], w[a]);
+    }
+    for (int i = 0; i < n; i++)
+        for (int k = 0; k < n; k++)
+            for (int l = 0; l < (dim == 3 ? n : 1); l++) {
+                const int32_t at[3] = {base[0] + i, base[1] + k, base[2] + l};
+                real *found = brunt_grid_node(grid, at);
+                if (!found || !(found[BRUNT_NODE_MASS] > 0)) continue;
+                memcpy(out->at[out->count], at, sizeof at);
+                out->node[out->count] = found;
+                out->weight[out->count++] = w[0][i] * w[1][k] * w[2][l];
+            }
+}
+
+// ------------------------------------------------------------------------------------------ looking
+
+// Keeps a hit that the particle would pass in this step. 0, or -1: out of memory.
+static int note_sight(const job *j, struct sight *sight, int32_t b, int64_t s, const double x[3], const hit *h) {
+    const brunt_skin *skin = j->m->skin;
+    nodes under;
+    double v[3] = {0}, old[3] = {0};
+    particle_nodes(j->body, b, s, &under);
+    for (int e = 0; e < under.count; e++)
+        for (int a = 0; a < j->body->grid.dim; a++) {
+            v[a] += under.weight[e] * (double)under.node[e][BRUNT_NODE_VELOCITY + a];
+            old[a] += under.weight[e] * (double)under.node[e][BRUNT_NODE_OLD + a];
+        }
+    double approach = brunt_facing_approach(skin, h, x, v, skin->v);
+    double target =
+        brunt_facing_target(skin, h->gap, approach, brunt_facing_approach(skin, h, x, old, skin->old), j->m->dt);
+    if (!(approach < target + 1e-6 * skin->mean_edge / j->m->dt)) return 0;
+    size_t used = (size_t)sight->count * sizeof *sight->seen;
+    if (brunt_reserve((void **)&sight->seen, &sight->capacity, used + sizeof *sight->seen, used)) return -1;
+    struct seen *seen = &sight->seen[sight->count++];
+    *seen = (struct seen){.block = b, .particle = s, .h = *h};
+    memcpy(seen->x, x, sizeof seen->x);
+    seen->h.target = target;
+    return 0;
+}
+
+// How far the ball of material about a particle reaches along n [m].
+static double reach_along(brunt_body *body, int64_t s, const double n[3]) {
+    const int dim = body->grid.dim;
+    real *const *F = brunt_field(&body->particles, BRUNT_FIELD_deformation_gradient);
+    double square = 0;
+    for (int c = 0; c < dim; c++) {
+        double t = 0;
+        for (int r = 0; r < dim; r++) t += (double)F[r * dim + c][s] * n[r];
+        square += t * t;
+    }
+    return (double)brunt_field(&body->particles, BRUNT_FIELD_reach)[0][s] * sqrt(square);
+}
+
+static int look_from_block(const job *j, int32_t b, struct sight *sight) {
+    brunt_facing *f = j->f;
+    const brunt_grid *grid = &j->body->grid;
+    const int dim = grid->dim;
+    double low[3] = {0}, high[3] = {0};
+    for (int a = 0; a < dim; a++) {
+        low[a] = grid->origin[a] + (double)grid->h * grid->blocks[b].coord[a] * grid->side;
+        high[a] = low[a] + (double)grid->h * (grid->side + 1);
+    }
+    if (!brunt_facing_in_reach(f, j->box, low, high, f->range)) return 0;
+    real *const *place = brunt_field(&j->body->particles, BRUNT_FIELD_position);
+    for (int64_t s = grid->blocks[b].first; s < grid->blocks[b].first + grid->blocks[b].count; s++) {
+        double x[3] = {0}, distance, second;
+        for (int a = 0; a < dim; a++) x[a] = (double)place[a][s];
+        slave_hits found;
+        looker l = {.box = j->box, .body = j->body->index, .x = x};
+        if (!brunt_facing_look(f, &l)) continue;
+        brunt_facing_look_around(j->m, f, &l, -1, &found, &distance, &second);
+        for (int32_t q = 0; q < found.count; q++) {
+            found.hits[q].gap -= reach_along(j->body, s, found.hits[q].n);
+            if (found.hits[q].gap <= f->reach && note_sight(j, sight, b, s, x, &found.hits[q])) return -1;
+        }
+    }
+    return 0;
+}
+
+static void look_from_blocks(void *context, int64_t begin, int64_t end, int worker) {
+    const job *j = context;
+    struct sight *sight = &j->f->sight[worker];
+    for (int64_t b = begin; b < end; b++) {
+        j->f->run[b] = (struct run){.worker = worker, .first = sight->count};
+        if (look_from_block(j, (int32_t)b, sight)) sight->failed = true;
+        j->f->run[b].count = sight->count - j->f->run[b].first;
+    }
+}
+
+// ------------------------------------------------------------------------------------------ supports
+
+// The mirrors that act on a body.
+static int mirrors_of(const brunt_meeting *m, const brunt_body *body, brunt_mirror out[MAX_MIRRORS]) {
+    int count = 0;
+    for (int k = 0; k < m->mirror_count && count < MAX_MIRRORS; k++) {
+        int on = m->walls[m->mirrors[k].wall].body;
+        if (on < 0 || on == body->index) out[count++] = m->mirrors[k];
+    }
+    return count;
+}
+
+// Makes the support of a node and of its images. 0, or -1: out of memory.
+static int make_support(brunt_facing *f, const brunt_body *body, int k, const brunt_mirror *mirrors, int mirror_count,
+                        const int32_t at[3], brunt_contact_points *points) {
+    int32_t image[BRUNT_MAX_IMAGES][3];
+    real sign[BRUNT_MAX_IMAGES][3];
+    int images = brunt_mirror_images(mirrors, mirror_count, at, IMAGE_LAYERS, image, sign);
+    int32_t support = brunt_points_support(points);
+    if (support < 0) return -1;
+    for (int i = 0; i < images; i++) {
+        real *node = brunt_grid_node(&body->grid, image[i]);
+        if (!node || !(node[BRUNT_NODE_MASS] > 0)) continue;
+        int64_t number = (node - body->grid.nodes) / BRUNT_NODE_REALS;
+        size_t used = (size_t)f->grid_count * sizeof *f->grid;
+        if (brunt_reserve((void **)&f->grid, &f->grid_capacity, used + sizeof *f->grid, used)) return -1;
+        struct grid_support *entry = &f->grid[f->grid_count];
+        *entry = (struct grid_support){.mpm = k, .node = number, .support = support};
+        for (int a = 0; a < 3; a++) entry->sign[a] = (double)sign[i][a];
+        f->node_support[k][number] = ++f->grid_count;
+        for (int a = 0; a < body->grid.dim && i == 0; a++) {
+            points->support[support].v[a] = (double)node[BRUNT_NODE_VELOCITY + a];
+            points->support[support].old[a] = (double)node[BRUNT_NODE_OLD + a];
+            points->support[support].inverse[a] = sign[0][a] != 0 ? 1 / (double)node[BRUNT_NODE_MASS] : 0;
+        }
+    }
+    return 0;
+}
+
+// Entries of the slave: of each support the weights of all its nodes, turned over as they are.
+static int add_slave(brunt_facing *f, const brunt_body *body, int k, const brunt_mirror *mirrors, int mirror_count,
+                     const nodes *under, brunt_contact_points *points) {
+    const int32_t first = points->entry_count;
+    for (int e = 0; e < under->count; e++) {
+        const int64_t number = (under->node[e] - body->grid.nodes) / BRUNT_NODE_REALS;
+        if (!f->node_support[k][number] && make_support(f, body, k, mirrors, mirror_count, under->at[e], points))
+            return -1;
+        const struct grid_support *g = &f->grid[f->node_support[k][number] - 1];
+        int32_t entry = mirror_count ? first : points->entry_count; // without mirrors each node has its own
+        while (entry < points->entry_count && points->entry[entry].support != g->support) entry++;
+        if (entry == points->entry_count && brunt_points_entry(points, g->support, 0) < 0) return -1;
+        for (int a = 0; a < 3; a++) points->entry[entry].weight[a] += under->weight[e] * g->sign[a];
+    }
+    return 0;
+}
+
+static int add_point(const brunt_meeting *m, brunt_facing *f, brunt_body *body, int k, const brunt_mirror *mirrors,
+                     int mirror_count, const struct seen *seen, brunt_contact_points *points) {
+    const brunt_skin *skin = m->skin;
+    const int corners = face_corners(skin, seen->h.face);
+    nodes under;
+    particle_nodes(body, seen->block, seen->particle, &under);
+    for (int c = 0; c < corners; c++)
+        if (brunt_facing_support(f, skin, skin->face[seen->h.face][c], points) < 0) return -1;
+    int32_t at = brunt_points_add(points);
+    if (at < 0) return -1;
+    brunt_facing_point(m, &seen->h, seen->x, body->index, &points->point[at]);
+    points->point[at].target = seen->h.target, points->point[at].tag = -1 - k;
+    points->point[at].area = body->grid.dim == 3 ? body->spacing * body->spacing : body->spacing;
+    if (add_slave(f, body, k, mirrors, mirror_count, &under, points)) return -1;
+    brunt_contact_entry master[4];
+    brunt_facing_master(skin, f, &seen->h, seen->x, &points->point[at], master);
+    for (int c = 0; c < corners; c++) {
+        int32_t entry = brunt_points_entry(points, master[c].support, 0);
+        if (entry < 0) return -1;
+        points->entry[entry] = master[c];
+    }
+    return 0;
+}
+
+static int fit_room(brunt_facing *f, const brunt_body *body, int k, int threads) {
+    const size_t bytes = (size_t)body->grid.slot_count * BRUNT_BLOCK_NODES * sizeof(int32_t);
+    if (brunt_reserve((void **)&f->node_support[k], &f->node_support_capacity[k], bytes, 0) ||
+        RESERVE(f, run, body->grid.block_count + 1))
+        return -1;
+    memset(f->node_support[k], 0, bytes);
+    if (!f->sight) {
+        if (!(f->sight = brunt_alloc((size_t)threads * sizeof *f->sight))) return -1;
+        f->sight_count = threads;
+    }
+    for (int t = 0; t < f->sight_count; t++) f->sight[t].count = 0, f->sight[t].failed = false;
+    return 0;
+}
+
+int brunt_facing_particles(const brunt_meeting *m, brunt_facing *f, brunt_body *body, int k, int32_t box,
+                           brunt_contact_points *points) {
+    job j = {m, f, body, box};
+    if (fit_room(f, body, k, m->threads)) return -1;
+    brunt_parallel(m->threads, body->grid.block_count, 1, look_from_blocks, &j, m->seconds);
+    for (int t = 0; t < f->sight_count; t++)
+        if (f->sight[t].failed) return -1;
+    brunt_mirror mirrors[MAX_MIRRORS];
+    const int mirror_count = mirrors_of(m, body, mirrors);
+    for (int32_t b = 0; b < body->grid.block_count; b++) {
+        const struct run *run = &f->run[b];
+        const struct seen *seen = f->sight[run->worker].seen;
+        for (int32_t i = run->first; i < run->first + run->count; i++)
+            if (add_point(m, f, body, k, mirrors, mirror_count, &seen[i], points)) return -1;
+    }
+    return 0;
+}
+
+// ------------------------------------------------------------------------------------------ the way back
+
+static void add_moment(const double x[3], const double P[3], double factor, double linear[3], double angular[3]) {
+    for (int a = 0; a < 3; a++) {
+        const int b = (a + 1) % 3, c = (a + 2) % 3;
+        linear[a] += factor * P[a];
+        angular[a] += factor * (x[b] * P[c] - x[c] * P[b]);
+    }
+}
+
+// What the body's own share of the nodes has got, less what the points gave it, is the mirrors'.
+static void book_mirrors(const brunt_meeting *m, const brunt_body *body, int k, double linear[3], double angular[3],
+                         const brunt_contact_points *points) {
+    brunt_mirror mirrors[MAX_MIRRORS];
+    const int count = mirrors_of(m, body, mirrors);
+    for (int32_t p = 0; p < points->point_count; p++) {
+        const brunt_contact_point *point = &points->point[p];
+        double J[3];
+        if (point->tag != -1 - k || !(point->push > 0)) continue;
+        for (int a = 0; a < 3; a++) J[a] = point->push * point->n[a] + point->drag[a];
+        add_moment(point->x, J, -1, linear, angular);
+    }
+    for (int a = 0; a < 3; a++) {
+        int i = 0;
+        while (i < count && mirrors[i].axis != a) i++;
+        if (i < count) m->walls[mirrors[i].wall].last.impulse[a] += linear[a];
+        m->walls[mirrors[0].wall].last.angular[a] += angular[a];
+    }
+}
+
+void brunt_facing_give_grids(const brunt_meeting *m, brunt_body *mpm, brunt_facing *f,
+                             const brunt_contact_points *points) {
+    for (int32_t g = 0; g < f->grid_count;) {
+        const int k = f->grid[g].mpm;
+        brunt_body *body = &mpm[k];
+        const brunt_grid *grid = &body->grid;
+        double linear[3] = {0}, angular[3] = {0};
+        brunt_mirror mirrors[MAX_MIRRORS];
+        const bool mirrored = mirrors_of(m, body, mirrors) > 0;
+        for (; g < f->grid_count && f->grid[g].mpm == k; g++) {
+            const struct grid_support *entry = &f->grid[g];
+            real *node = grid->nodes + entry->node * BRUNT_NODE_REALS;
+            double P[3] = {0}, x[3];
+            for (int a = 0; a < grid->dim; a++) {
+                double v = entry->sign[a] * points->support[entry->support].v[a];
+                P[a] = (double)node[BRUNT_NODE_SPARE] * (v - (double)node[BRUNT_NODE_VELOCITY + a]);
+                node[BRUNT_NODE_VELOCITY + a] = (real)v;
+            }
+            if (!mirrored) continue;
+            brunt_node_position(grid, grid->slots[entry->node / BRUNT_BLOCK_NODES].coord,
+                                (int)(entry->node % BRUNT_BLOCK_NODES), x);
+            add_moment(x, P, 1, linear, angular);
+        }
+        if (mirrored) book_mirrors(m, body, k, linear, angular, points);
+    }
+}

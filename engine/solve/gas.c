@@ -1,0 +1,133 @@
+// Ideal gas of one pressure and temperature in the volume that a group's faces enclose (the control volume of airbags:
+// Wang and Nefske, SAE paper 880654 (1988)): p = (gamma - 1) E / V, dE = -p dV + inflow.
+//
+// The volume is that of the cone of the faces with the origin, 1/3 int x . n dA, which is the enclosed one when the
+// faces close, by themselves or with planes of symmetry through the origin. Its derivative by a node's place is
+// int N_a n dA, by which the pressure acts: exact for bilinear faces, so that pressure on a closed surface has neither
+// resultant nor torque. Between two steps the gas expands at constant entropy.
+#include <math.h>
+#include <string.h>
+
+#include "error.h"
+#include "world.h"
+
+static int corners_of(const int32_t node[4]) { return node[3] < 0 ? 3 : 4; }
+
+static void places(const brunt_fem_body *fem, const int32_t node[4], double (*x)[3]) {
+    for (int c = 0; c < corners_of(node); c++)
+        for (int a = 0; a < 3; a++) x[c][a] = (double)brunt_fem_node(fem, node[c])[a];
+}
+
+static double triple(const double a[3], const double b[3], const double c[3]) {
+    return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
+}
+
+double brunt_gas_volume(const brunt_world *world, const brunt_hold *hold, const brunt_group_def *def) {
+    const brunt_fem_body *fem = &world->fems[hold->fem];
+    double volume = 0;
+    for (int32_t f = 0; f < hold->face_count; f++) {
+        double x[4][3];
+        const int n = corners_of(hold->face[f]);
+        places(fem, hold->face[f], x);
+        if (n == 3)
+            volume += triple(x[0], x[1], x[2]) / 6;
+        else // the mean of the two ways to cut a quadrilateral is its bilinear surface
+            volume += (triple(x[0], x[1], x[2]) + triple(x[0], x[2], x[3]) + triple(x[0], x[1], x[3]) +
+                       triple(x[1], x[2], x[3])) /
+                      12;
+    }
+    return volume + def->gas.volume;
+}
+
+int brunt_gas_start(brunt_world *world, brunt_hold *hold, const brunt_group_def *def, brunt_error *error) {
+    const char *name = world->walls[hold->wall].name;
+    const brunt_gas_def *gas = &def->gas;
+    if (world->dimension != 3)
+        return brunt_fail(error, BRUNT_BAD_INPUT, "boundaries (%s).gas: enclosed gas is for three dimensions", name);
+    if (!(gas->gamma > 1) || !(gas->pressure >= 0) || !(gas->outside >= 0) || !(gas->volume >= 0))
+        return brunt_fail(error, BRUNT_BAD_INPUT,
+                          "boundaries (%s).gas: gamma > 1 and pressures and volume >= 0 are wanted", name);
+    double open[3] = {0}, area = 0;
+    for (int32_t f = 0; f < hold->face_count; f++) {
+        double x[4][3], whole = 0;
+        const int n = corners_of(hold->face[f]);
+        places(&world->fems[hold->fem], hold->face[f], x);
+        for (int c = 0; c < n; c++) {
+            double share[3], square = 0;
+            brunt_face_share((const double(*)[3])x, n, c, share);
+            for (int a = 0; a < 3; a++) open[a] += share[a], square += share[a] * share[a];
+            whole += sqrt(square);
+        }
+        area += whole;
+    }
+    double gap = sqrt(open[0] * open[0] + open[1] * open[1] + open[2] * open[2]);
+    if (gap > 1e-6 * area)
+        brunt_warn(
+            world,
+            "boundaries (%s).gas: the faces do not close (their area vectors sum to %.3g, %.3g, %.3g m^2): planes "
+            "of symmetry through the origin must",
+            name, open[0], open[1], open[2]);
+    hold->gas_volume = brunt_gas_volume(world, hold, def);
+    hold->gas_energy = gas->pressure * hold->gas_volume / (gas->gamma - 1);
+    world->has_gas = true;
+    if (hold->gas_volume > 0) return BRUNT_OK;
+    return brunt_fail(
+        error, BRUNT_BAD_INPUT,
+        "boundaries (%s).gas: the faces enclose %.4g m^3: they must be turned outward and enclose some, or "
+        "give gas.volume",
+        name, hold->gas_volume);
+}
+
+double brunt_gas_push(const brunt_world *world, brunt_hold *hold, const brunt_group_def *def, double time, double dt) {
+    const double volume = brunt_gas_volume(world, hold, def), gamma = def->gas.gamma;
+    hold->gas_energy *= pow(hold->gas_volume / volume, gamma - 1);
+    hold->gas_volume = volume;
+    const double inflow = def->gas.inflow * brunt_curve_at(&def->table, time) * dt;
+    // dt reaches from the middle of the last step to that of the next one: half of its inflow is there by now. With all
+    // of it the work would be first order in the step.
+    const double energy = hold->gas_energy + 0.5 * inflow;
+    hold->gas_energy += inflow;
+    hold->gas_inflow += inflow;
+    return (gamma - 1) * energy / volume - def->gas.outside;
+}
+
+// ------------------------------------------------------------------------------------------ to be read, and kept
+
+static const brunt_hold *gas_number(const brunt_world *world, int32_t index) {
+    for (int k = 0; k < world->hold_count; k++)
+        if (world->groups[k].action == BRUNT_GROUP_GAS && index-- == 0) return &world->holds[k];
+    return NULL;
+}
+
+int32_t brunt_gas_count(const brunt_world *world) {
+    int32_t count = 0;
+    while (world->has_gas && gas_number(world, count)) count++;
+    return count;
+}
+
+void brunt_world_gas(const brunt_world *world, int32_t index, brunt_gas *gas) {
+    const brunt_hold *hold = gas_number(world, index);
+    const brunt_group_def *def = &world->groups[hold - world->holds];
+    *gas = (brunt_gas){.volume = brunt_gas_volume(world, hold, def), .inflow = hold->gas_inflow};
+    memcpy(gas->name, world->walls[hold->wall].name, sizeof gas->name);
+    gas->energy = hold->gas_energy * pow(hold->gas_volume / gas->volume, def->gas.gamma - 1);
+    gas->pressure = (def->gas.gamma - 1) * gas->energy / gas->volume;
+}
+
+int64_t brunt_gas_state_count(const brunt_world *world) { return 3 * (int64_t)brunt_gas_count(world); }
+
+void brunt_gas_state_get(const brunt_world *world, double *out) {
+    for (int k = 0; k < world->hold_count; k++) {
+        const brunt_hold *hold = &world->holds[k];
+        if (world->groups[k].action != BRUNT_GROUP_GAS) continue;
+        *out++ = hold->gas_energy, *out++ = hold->gas_volume, *out++ = hold->gas_inflow;
+    }
+}
+
+void brunt_gas_state_set(brunt_world *world, const double *in) {
+    for (int k = 0; k < world->hold_count; k++) {
+        brunt_hold *hold = &world->holds[k];
+        if (world->groups[k].action != BRUNT_GROUP_GAS) continue;
+        hold->gas_energy = *in++, hold->gas_volume = *in++, hold->gas_inflow = *in++;
+    }
+}
