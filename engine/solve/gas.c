@@ -49,13 +49,13 @@ int brunt_gas_start(brunt_world *world, brunt_hold *hold, const brunt_group_def 
                           "boundaries (%s).gas: gamma > 1 and pressures and volume >= 0 are wanted", name);
     double open[3] = {0}, area = 0;
     for (int32_t f = 0; f < hold->face_count; f++) {
-        double x[4][3], whole = 0;
+        double x[4][3], share[4][3], whole = 0;
         const int n = corners_of(hold->face[f]);
         places(&world->fems[hold->fem], hold->face[f], x);
+        brunt_face_shares((const double(*)[3])x, n, share);
         for (int c = 0; c < n; c++) {
-            double share[3], square = 0;
-            brunt_face_share((const double(*)[3])x, n, c, share);
-            for (int a = 0; a < 3; a++) open[a] += share[a], square += share[a] * share[a];
+            double square = 0;
+            for (int a = 0; a < 3; a++) open[a] += share[c][a], square += share[c][a] * share[c][a];
             whole += sqrt(square);
         }
         area += whole;

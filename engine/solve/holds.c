@@ -149,35 +149,37 @@ static void cross(const double a[3], const double b[3], double out[3]) {
     for (int i = 0; i < 3; i++) out[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
 }
 
-// The integrand is at most quadratic in each coordinate of a bilinear face: two Gauss points a direction are exact.
-static void quad_share(const double (*x)[3], int corner, double share[3]) {
+// With x = m + a xi + b eta + c xi eta, the normal (a + c eta) x (b + c xi) = a x b + xi a x c + eta c x b is linear,
+// and int N = 1, int N xi = s / 3, int N eta = t / 3 for the corner at xi = s, eta = t.
+static void quad_shares(const double (*x)[3], double (*share)[3]) {
     static const double sign[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
-    const double g = 1 / sqrt(3.0);
-    for (int p = 0; p < 4; p++) {
-        double along[2][3] = {{0}}, normal[3];
-        for (int c = 0; c < 4; c++)
-            for (int a = 0; a < 3; a++) {
-                along[0][a] += 0.25 * sign[c][0] * (1 + g * sign[c][1] * sign[p][1]) * (x[c][a] - x[0][a]);
-                along[1][a] += 0.25 * sign[c][1] * (1 + g * sign[c][0] * sign[p][0]) * (x[c][a] - x[0][a]);
-            }
-        cross(along[0], along[1], normal);
-        double weight = 0.25 * (1 + g * sign[corner][0] * sign[p][0]) * (1 + g * sign[corner][1] * sign[p][1]);
-        for (int a = 0; a < 3; a++) share[a] += weight * normal[a];
+    double a[3], b[3], c[3], flat[3], along[3], across[3];
+    for (int k = 0; k < 3; k++) {
+        const double p = x[2][k] - x[0][k], q = x[3][k] - x[1][k];
+        a[k] = 0.25 * (p - q), b[k] = 0.25 * (p + q);
+        c[k] = 0.25 * ((x[0][k] - x[1][k]) + (x[2][k] - x[3][k]));
     }
+    cross(a, b, flat);
+    cross(a, c, along);
+    cross(c, b, across);
+    for (int n = 0; n < 4; n++)
+        for (int k = 0; k < 3; k++) share[n][k] = flat[k] + (sign[n][0] * along[k] + sign[n][1] * across[k]) / 3;
 }
 
-void brunt_face_share(const double (*x)[3], int corners, int corner, double share[3]) {
-    share[0] = share[1] = share[2] = 0;
-    if (corners == 2) {
-        share[0] = 0.5 * (x[1][1] - x[0][1]), share[1] = -0.5 * (x[1][0] - x[0][0]);
-    } else if (corners == 3) {
-        double e[3], g[3], normal[3];
-        for (int a = 0; a < 3; a++) e[a] = x[1][a] - x[0][a], g[a] = x[2][a] - x[0][a];
-        cross(e, g, normal);
-        for (int a = 0; a < 3; a++) share[a] = normal[a] / 6;
-    } else {
-        quad_share(x, corner, share);
+void brunt_face_shares(const double (*x)[3], int corners, double (*share)[3]) {
+    if (corners == 4) {
+        quad_shares(x, share);
+        return;
     }
+    double e[3], g[3], normal[3];
+    if (corners == 2) {
+        normal[0] = 0.5 * (x[1][1] - x[0][1]), normal[1] = -0.5 * (x[1][0] - x[0][0]), normal[2] = 0;
+    } else {
+        for (int k = 0; k < 3; k++) e[k] = x[1][k] - x[0][k], g[k] = x[2][k] - x[0][k];
+        cross(e, g, normal);
+        for (int k = 0; k < 3; k++) normal[k] /= 6;
+    }
+    for (int n = 0; n < corners; n++) memcpy(share[n], normal, sizeof normal);
 }
 
 static void make_forces(brunt_world *world, brunt_hold *hold, const brunt_group_def *def, double time, double dt) {
@@ -190,11 +192,12 @@ static void make_forces(brunt_world *world, brunt_hold *hold, const brunt_group_
     for (int32_t f = 0; f < hold->face_count; f++) {
         const int32_t *node = hold->face[f];
         const int corners = node[2] < 0 ? 2 : node[3] < 0 ? 3 : 4;
-        double x[4][3];
+        double x[4][3], shares[4][3];
         face_corners(fem, node, traction, x);
+        brunt_face_shares((const double(*)[3])x, corners, shares);
         for (int c = 0; c < corners; c++) {
-            double share[3], *force = hold->force + 3 * (hold->place[node[c]] - 1);
-            brunt_face_share((const double(*)[3])x, corners, c, share);
+            const double *share = shares[c];
+            double *force = hold->force + 3 * (hold->place[node[c]] - 1);
             double size = sqrt(share[0] * share[0] + share[1] * share[1] + share[2] * share[2]);
             for (int a = 0; a < world->dimension; a++)
                 force[a] += traction ? factor * def->value[a] * size : push * share[a];

@@ -204,8 +204,8 @@ double brunt_curve_at(const brunt_curve *curve, double time);
 // final.
 void brunt_loads_begin(brunt_world *world, double time, double dt);
 void brunt_loads_end(brunt_world *world, double dt);
-// Vector of the share that corner `corner` of a face has of its area [m^2], outward: int N_a n dA.
-void brunt_face_share(const double (*x)[3], int corners, int corner, double share[3]);
+// Vectors of the shares that the corners of a face have of its area [m^2], outward: int N_a n dA.
+void brunt_face_shares(const double (*x)[3], int corners, double (*share)[3]);
 void brunt_holds_free(brunt_world *world);
 // A warning for the user, kept with the world.
 void brunt_warn(brunt_world *world, const char *format, ...) __attribute__((format(printf, 2, 3)));
