@@ -10,9 +10,17 @@
 static const struct {
     const char *name, *options;
 } scenes[] = {
-    {"oblique_blocks", ""}, {"oblique_blocks_mpm", ""},
-    {"ramp", ""},           {"ramp", "--set bodies.cube.size=0.5"},
-    {"resting_stack", ""},  {"rod_on_wall", "--set 'bodies.rod.size=0.1 in'"}, // in the scene half as long
+    {"oblique_blocks", ""},
+    {"oblique_blocks_mpm", ""},
+    {"ramp", ""},
+    {"ramp", "--set bodies.cube.size=0.5"},
+    {"resting_stack", ""},
+    {"rod_on_wall", "--set 'bodies.rod.size=0.1 in'"}, // in the scene half as long
+    {"dam_break", ""},
+    {"hencky_membrane", "--set 'bodies.membrane.size=10 mm'"},
+    {"sphere_on_membrane",
+     "--set 'grid.cell=2 mm' --set 'bodies.membrane.size=2 mm' --set 'bodies.sphere.spacing=1 mm'"},
+    {"gas_in_soft_membrane", "--set bodies.gas.spacing=0.05"},
 };
 enum { SCENES = sizeof scenes / sizeof scenes[0] };
 
