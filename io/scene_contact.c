@@ -110,15 +110,20 @@ static void fill_augury(scene_reader *reader, scene_node *node) {
     brunt_contact_def *contact = &reader->scene->world.contact;
     bool used = contact->method == BRUNT_CONTACT_AUGURY;
     for (int i = 0; i < contact->pair_count; i++) used |= contact->pairs[i].method == BRUNT_CONTACT_AUGURY;
+    bool meshes = false, at_nodes = contact->method == BRUNT_CONTACT_MULTI_VELOCITY;
+    for (int i = 0; i < contact->pair_count; i++) at_nodes |= contact->pairs[i].method == BRUNT_CONTACT_MULTI_VELOCITY;
+    for (int i = 0; i < reader->scene->world.body_count; i++)
+        meshes |= reader->scene->world.bodies[i].method != BRUNT_MPM;
+    contact->iterations = (int)brunt_real_of(node, "iterations", -1);
     if (!used) {
-        static const char *const keys[] = {"form", "iterations", "cell", "transfer"};
-        for (int i = 0; i < 4; i++) brunt_refuse_key(reader, node, keys[i], "this belongs to method: augury");
+        static const char *const keys[] = {"form", "cell", "transfer"};
+        for (int i = 0; i < 3; i++) brunt_refuse_key(reader, node, keys[i], "this belongs to method: augury");
+        if (!meshes || !at_nodes) brunt_refuse_key(reader, node, "iterations", "this belongs to method: augury");
         return;
     }
     if (!brunt_tree_child(node, "form")) brunt_add_default(reader, node, "form", "affine");
     const scene_node *form = brunt_tree_child(node, "form");
     contact->form = (brunt_augury_form)(int)brunt_real_of(node, "form", BRUNT_AUGURY_AFFINE);
-    contact->iterations = (int)brunt_real_of(node, "iterations", -1);
     contact->cell = brunt_real_of(node, "cell", 0);
     if (contact->form == BRUNT_AUGURY_PAPER) {
         if (!brunt_tree_child(node, "transfer")) brunt_add_default(reader, node, "transfer", "apic");

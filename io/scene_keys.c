@@ -119,7 +119,7 @@ const scene_key brunt_scene_table[] = {
     {"contact.method", SCENE_WORD, NULL, "multi-velocity", ANY, "none|multi-velocity|augury", 0, true, "augury is for all pairs with a fem or membrane body, two mpm bodies then meet by multi-velocity; multi-velocity also takes one of them with an mpm body; the default is augury when a body is of method fem or membrane; none: these pass through others, mpm bodies stick together where they share grid nodes"},
     {"contact.friction", SCENE_REAL, "1", "0", NOT_NEGATIVE, NULL, 0, false, "Coulomb coefficient"},
     {"contact.form", SCENE_WORD, NULL, "affine", ANY, "affine|smooth|surface|paper", 0, true, "of augury: velocity and gap from facing facets, from facets averaged on a grid, from averaged velocities and surfaces, or as published"},
-    {"contact.iterations", SCENE_INTEGER, NULL, OPTIONAL, 0, 1000, false, false, NULL, 0, false, "of augury: most sweeps of a step (default 16, forms smooth and surface 4); of form paper its augury iterations (default 1)"},
+    {"contact.iterations", SCENE_INTEGER, NULL, OPTIONAL, 0, 1000, false, false, NULL, 0, false, "most sweeps of a step (default: augury 16, with membranes 64, forms smooth and surface 4; multi-velocity of a mesh with material points 8); of form paper its augury iterations (default 1)"},
     {"contact.cell", SCENE_REAL, "m", OPTIONAL, POSITIVE, NULL, 0, false, "of augury: edge of the contact grid (default: the mean edge of the surfaces; form paper: twice that)"},
     {"contact.transfer", SCENE_WORD, NULL, "apic", ANY, "pic|apic", 0, true, "of augury, form paper: velocity transfer to the contact grid"},
     {"contact.initial_overlap", SCENE_WORD, NULL, "error", ANY, "error|allow", 0, false, "bodies that overlap at the start"},
