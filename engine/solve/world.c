@@ -340,6 +340,12 @@ static int make_plane(brunt_world *world, const brunt_world_def *def, int index,
         world->mirrors[world->mirror_count++] = (brunt_mirror){.axis = axis, .node = (int32_t)round(at), .wall = index};
     } else if (plane->condition == BRUNT_SEPARATE) {
         world->has_walls = true;
+        if (has_fluid(def))
+            brunt_warn(
+                world,
+                "boundaries[%d] (%s): beside a plane of condition separate the pressure of fluids is wrong in the "
+                "two nearest rows of particles, and gas at rest tears there; slip on a line of the grid is exact",
+                index, wall->name);
         world->has_friction = world->has_friction || plane->friction > 0;
     } else {
         world->has_conditions = true;
