@@ -157,7 +157,7 @@ typedef struct brunt_body_def {
     brunt_element_kind element;         // of a mesh made of the shape
     double size;                        // [m] edge length of a mesh made of the shape
     brunt_hourglass hourglass;
-    double hourglass_coefficient;       // [-] 0..1; default 0.05 (stiffness) / 0.1 (viscous) as NAN
+    double hourglass_coefficient;       // [-] 0..1; default 0.05 (stiffness) / 0.1 (viscous) as NAN; of lambda + 2 mu, but at most of 7 mu
     double mass_scaling;                // [s] elements whose stable step is less get density until it is not; 0 = none
     double damping;                     // [1/s] >= 0: a force of -damping m v on each node; default 0
     // BRUNT_MEMBRANE

@@ -54,7 +54,7 @@ const scene_key brunt_scene_table[] = {
     {"bodies.*.size", SCENE_REAL, "m", OPTIONAL, POSITIVE, NULL, 0, false, "fem, membrane, with a shape (must be given): edge length of the elements"},
     {"bodies.*.hourglass", SCENE_GROUP, NULL, OPTIONAL, NONE, "fem, membrane: control of the zero-energy modes of hex8 and quad4"},
     {"bodies.*.hourglass.form", SCENE_WORD, NULL, "stiffness", ANY, "stiffness|viscous", 0, false, "by springs or by dampers"},
-    {"bodies.*.hourglass.coefficient", SCENE_REAL, "1", OPTIONAL, 0, 1, false, false, NULL, 0, false, "default 0.05 of stiffness, 0.1 of viscous"},
+    {"bodies.*.hourglass.coefficient", SCENE_REAL, "1", OPTIONAL, 0, 1, false, false, NULL, 0, false, "default 0.05 of stiffness (of lambda + 2 mu, at most of 7 mu), 0.1 of viscous"},
     {"bodies.*.thickness", SCENE_REAL, "m", OPTIONAL, POSITIVE, NULL, 0, false, "membrane (must be given): of the sheet at the start"},
     {"bodies.*.contact_thickness", SCENE_REAL, "m", OPTIONAL, NOT_NEGATIVE, NULL, 0, false, "membrane: contact keeps half of it between the middle surface and others (default: thickness)"},
     {"bodies.*.slack", SCENE_WORD, NULL, "false", ANY, "false|true", 0, true, "membrane: true: it bears no compression but wrinkles (tension field)"},

@@ -221,31 +221,40 @@ END_TEST
 // the contact, 0.13 R, is that of two and a half elements here, so that nodes coming and going are seen in the force
 // (10 % of it at 28 elements a diameter, 4 % at 56); Boussinesq's displacement of a half-space at the depth of the
 // centre, which a ball does not have, is 9 % of the approach: up to 5 % of F and t.
+// Almost incompressible (nu = 0.499) it is the same with its own E*, coarser as its steps are ten times shorter;
+// springs against hourglass modes in proportion to the volume's stiffness would take over.
+static const struct {
+    double nu, size, force, lasts, hourglass;
+} balls[] = {{0.3, 5e-3, 0.05, 0.03, 0.05}, {0.499, 7.1e-3, 0.15, 0.05, 0.05}};
+
 START_TEST(ball_on_plane) {
-    const double R = 0.1, E = 1e6, nu = 0.3, rho = 1000, v = 0.1, gap = 2e-4, e_star = E / (1 - nu * nu);
+    const double R = 0.1, E = 1e6, nu = balls[_i].nu, rho = 1000, v = 0.1, gap = 2e-4, e_star = E / (1 - nu * nu);
     const double m = 4.0 / 3 * PI * R * R * R * rho, d = pow(15 * m * v * v / (16 * sqrt(R) * e_star), 0.4);
     const double force = 4.0 / 3 * e_star * sqrt(R) * pow(d, 1.5), lasts = 2.94328 * d / v, dt = 2e-4;
     brunt_world_def def = def_begin(3, 1);
     def.cfl = 0.9;
     def_material(&def, "neo-hookean", rho, E, nu);
-    def_velocity(mesh_of(def_ball(&def, "ball", XYZ(0, 0, R + gap), R), BRUNT_HEX8, 5e-3), 0, 0, -v);
+    def_velocity(mesh_of(def_ball(&def, "ball", XYZ(0, 0, R + gap), R), BRUNT_HEX8, balls[_i].size), 0, 0, -v);
     def_plane(&def, XYZ(0, 0, 0), XYZ(0, 0, 1), BRUNT_SEPARATE, 0);
     brunt_world *world = world_take(&def);
-    double before = 0, most = 0, last = 0;
+    double before = 0, most = 0, last = 0, springs = 0;
     for (int k = 1; k <= 275; k++) {
         world_until(world, k * dt);
         double now = world_wall(world, 0).impulse[2], mean = (now - before) / dt;
         most = fmax(most, mean);
         if (mean > 0) last = k * dt;
         before = now;
+        if (k % 5 == 0) springs = fmax(springs, world_energy(world).hourglass);
     }
     const double speed = world_sums(world, 0).velocity[2] / v;
     const brunt_energy energy = world_energy(world);
-    printf("  ball on a plane: force %.4f and time %.4f of Hertz's, leaves at %.4f of its speed; hourglass %.1e of the "
-           "energy\n",
-           most / force, (last - gap / v) / lasts, speed, energy.hourglass / energy.initial);
-    ck_assert_double_eq_tol(most / force, 1, 0.05);
-    ck_assert_double_eq_tol((last - gap / v) / lasts, 1, 0.03);
+    printf(
+        "  ball on a plane, nu %g: force %.4f and time %.4f of Hertz's, leaves at %.4f of its speed; at most %.1e of "
+        "the energy in hourglass modes\n",
+        nu, most / force, (last - gap / v) / lasts, speed, springs / energy.initial);
+    ck_assert_double_eq_tol(most / force, 1, balls[_i].force);
+    ck_assert_double_eq_tol((last - gap / v) / lasts, 1, balls[_i].lasts);
+    ck_assert_double_lt(springs / energy.initial, balls[_i].hourglass);
     ck_assert_double_ge(speed, 0.99);
     ck_assert_double_le(speed, 1);
     brunt_world_destroy(world);
@@ -261,7 +270,7 @@ int main(void) {
     tcase_add_test(waves, elements_and_material_points_agree);
     tcase_add_test(bending, beam_swings);
     tcase_add_test(impact, rod_on_wall);
-    tcase_add_test(impact, ball_on_plane);
+    tcase_add_loop_test(impact, ball_on_plane, 0, 2);
     TCase *cases[] = {waves, bending, impact};
     for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
         tcase_set_timeout(cases[k], 0);
