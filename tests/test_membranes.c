@@ -387,6 +387,8 @@ START_TEST(stable_step_is_a_bound_and_a_close_one) {
                 for (int n = 0; n < mesh.node_count; n++) mesh.nodes[n][1] *= 0.2;
             brunt_fem_body body = sheet_of(&mesh, o);
             double l = uniform(0.9, 1.3), A[3][3] = {{l, 0.1, 0}, {0.1, 0.95 * l, 0.2}, {0.2, 0.1, 1}}, shift[3] = {0};
+            if (o.slack) // folds may be crushed to almost nothing, beside tension or not
+                for (int i = 0; i < 3; i++) A[i][1] *= uniform(0.02, 1), A[i][0] *= uniform(0.9, 1.2);
             ck_assert_double_eq_tol(forces(&body, 0).stable_step, body.least_step, 1e-3 * body.least_step);
             if (k % 2) move_affine(&body, A, shift);
             scatter(&body, k % 3 ? 0.05 : 0.2);

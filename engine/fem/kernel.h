@@ -64,7 +64,7 @@ typedef struct fem_pass {
     const real *scale, *volume; // scale: NULL without mass scaling
     real *L[9];                 // of a tile
     real dt;
-    bool viscous;
+    bool viscous, slack;
     real spring, damper;   // what is common to all elements of the hourglass coefficients
     real lateral, c0, rho; // see brunt_fem_body
     real norm, overlap, cosine;
@@ -126,6 +126,7 @@ static inline fem_pass fem_pass_begin(brunt_fem_body *body, const brunt_fem_bloc
                       .volume = brunt_element_scalars(body, BRUNT_ELEMENT_reference_volume)[0],
                       .dt = dt,
                       .viscous = viscous,
+                      .slack = body->material.slack,
                       .spring = body->hourglass_coefficient * density * c0 * c0,
                       .damper = body->hourglass_coefficient * density * c0 * (body->dim == 3 ? (real)0.25 : 1),
                       .lateral = body->lateral_ratio,
