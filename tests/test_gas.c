@@ -81,14 +81,13 @@ static double work_error(double step) {
     def.step = step;
     brunt_world *world = world_take(&def);
     brunt_gas start = gas_of(world);
-    world_until(world, 0.01 - step);
-    const double before = world_energy(world).external_work;
     world_until(world, 0.01);
     brunt_gas end = gas_of(world);
     double outside = OUTSIDE * (end.volume - start.volume), lost = start.energy + end.inflow - end.energy;
     ck_assert_double_eq_tol(end.inflow, 10, 1.5 * 2000 * step); // a step's share less at the end
-    const double after = world_energy(world).external_work,
-                 done = after + 0.5 * (after - before); // it is half a step behind
+    const brunt_energy e = world_energy(world);
+    ck_assert_double_ge(e.kinetic, 0); // of the middle of a step and the half step to come, whatever acts in it
+    const double done = e.external_work;
     ck_assert_double_gt(fabs(outside), 1e-3);
     brunt_world_destroy(world);
     return fabs(done - (lost - outside)) / fabs(lost);
@@ -122,8 +121,8 @@ START_TEST(nonsense_is_refused) {
     ck_assert_ptr_nonnull(strstr(refused(&def), "damping"));
     def = box(BRUNT_HEX8, OUTSIDE, 0);
     snprintf(def.groups[0].group, sizeof def.groups[0].group,
-             "zmin"); // a cone from the origin, which the box is behind
-    ck_assert_ptr_nonnull(strstr(refused(&def), "enclose"));
+             "zmin"); // one face of six
+    ck_assert_ptr_nonnull(strstr(refused(&def), "open at"));
 }
 END_TEST
 

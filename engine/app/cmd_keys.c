@@ -1,6 +1,7 @@
 #include <stdio.h>
 
 #include "app.h"
+#include "scene_keys.h"
 
 int cmd_keys(int argc, char **argv) {
     app_arguments arguments;
@@ -9,7 +10,9 @@ int cmd_keys(int argc, char **argv) {
     if (arguments.schema) {
         brunt_scene_schema(stdout);
     } else if (!brunt_scene_keys(arguments.operand, stdout)) {
-        fprintf(stderr, "brunt: there is no section '%s'; brunt keys lists all\n", arguments.operand);
+        fprintf(stderr, "brunt: there is no section '%s'; there are:", arguments.operand);
+        for (int s = 0; s < brunt_scene_section_count; s++) fprintf(stderr, " %s", brunt_scene_sections[s].name);
+        fputc('\n', stderr);
         return BRUNT_BAD_USAGE;
     }
     return fflush(stdout) ? BRUNT_IO_ERROR : BRUNT_OK;

@@ -78,6 +78,7 @@ static void damp(brunt_world *world, double dt, const double *gravity) {
     for (int64_t t = 0; t < world->node_task_count; t++) {
         const brunt_damping_sums *s = &world->damping_sums[t];
         world->now.damped -= s->work;
+        if (!gravity) world->now.fem_damping_work += s->work;
         for (int a = 0; a < 3; a++)
             world->now.damping_impulse[a] += s->impulse[a], world->now.damping_angular[a] += s->angular[a];
     }

@@ -6,9 +6,11 @@
 // int N_a n dA, by which the pressure acts: exact for bilinear faces, so that pressure on a closed surface has neither
 // resultant nor torque. Between two steps the gas expands at constant entropy.
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "error.h"
+#include "memory.h"
 #include "world.h"
 
 static int corners_of(const int32_t node[4]) { return node[3] < 0 ? 3 : 4; }
@@ -39,6 +41,49 @@ double brunt_gas_volume(const brunt_world *world, const brunt_hold *hold, const 
     return volume + def->gas.volume;
 }
 
+typedef struct edge {
+    int32_t low, high;
+} edge;
+
+static int by_nodes(const void *a, const void *b) {
+    const edge *p = a, *q = b;
+    return p->low != q->low ? (p->low > q->low) - (p->low < q->low) : (p->high > q->high) - (p->high < q->high);
+}
+
+static bool on_plane_of_symmetry(const brunt_fem_body *fem, const edge *e) {
+    for (int a = 0; a < fem->dim; a++) {
+        const double p = fabs((double)brunt_fem_node(fem, e->low)[a]),
+                     q = fabs((double)brunt_fem_node(fem, e->high)[a]);
+        if (fmax(p, q) <= 1e-6 * (double)fem->mean_edge) return true;
+    }
+    return false;
+}
+
+// An edge that an odd number of the faces has, and that is on no plane of symmetry through the origin: 1 and its
+// middle, 0 when there is none, -1: out of memory.
+static int find_opening(const brunt_fem_body *fem, const brunt_hold *hold, double at[3]) {
+    edge *edges = brunt_alloc(((size_t)hold->face_count * 4 + 1) * sizeof *edges);
+    size_t count = 0;
+    if (!edges) return -1;
+    for (int32_t f = 0; f < hold->face_count; f++) {
+        const int n = corners_of(hold->face[f]);
+        for (int c = 0; c < n; c++) {
+            const int32_t p = hold->face[f][c], q = hold->face[f][(c + 1) % n];
+            edges[count++] = (edge){p < q ? p : q, p < q ? q : p};
+        }
+    }
+    qsort(edges, count, sizeof *edges, by_nodes);
+    int open = 0;
+    for (size_t i = 0, next; i < count && !open; i = next) {
+        for (next = i; next < count && !by_nodes(&edges[i], &edges[next]);) next++;
+        open = (next - i) % 2 == 1 && !on_plane_of_symmetry(fem, &edges[i]);
+        for (int a = 0; a < 3 && open; a++)
+            at[a] = 0.5 * (double)(brunt_fem_node(fem, edges[i].low)[a] + brunt_fem_node(fem, edges[i].high)[a]);
+    }
+    brunt_free(edges);
+    return open;
+}
+
 int brunt_gas_start(brunt_world *world, brunt_hold *hold, const brunt_group_def *def, brunt_error *error) {
     const char *name = world->walls[hold->wall].name;
     const brunt_gas_def *gas = &def->gas;
@@ -47,26 +92,15 @@ int brunt_gas_start(brunt_world *world, brunt_hold *hold, const brunt_group_def 
     if (!(gas->gamma > 1) || !(gas->pressure >= 0) || !(gas->outside >= 0) || !(gas->volume >= 0))
         return brunt_fail(error, BRUNT_BAD_INPUT,
                           "boundaries (%s).gas: gamma > 1 and pressures and volume >= 0 are wanted", name);
-    double open[3] = {0}, area = 0;
-    for (int32_t f = 0; f < hold->face_count; f++) {
-        double x[4][3], share[4][3], whole = 0;
-        const int n = corners_of(hold->face[f]);
-        places(&world->fems[hold->fem], hold->face[f], x);
-        brunt_face_shares((const double(*)[3])x, n, share);
-        for (int c = 0; c < n; c++) {
-            double square = 0;
-            for (int a = 0; a < 3; a++) open[a] += share[c][a], square += share[c][a] * share[c][a];
-            whole += sqrt(square);
-        }
-        area += whole;
-    }
-    double gap = sqrt(open[0] * open[0] + open[1] * open[1] + open[2] * open[2]);
-    if (gap > 1e-6 * area)
-        brunt_warn(
-            world,
-            "boundaries (%s).gas: the faces do not close (their area vectors sum to %.3g, %.3g, %.3g m^2): planes "
-            "of symmetry through the origin must",
-            name, open[0], open[1], open[2]);
+    double at[3];
+    int open = find_opening(&world->fems[hold->fem], hold, at);
+    if (open < 0) return brunt_fail(error, BRUNT_FAILED, "out of memory");
+    if (open)
+        return brunt_fail(
+            error, BRUNT_BAD_INPUT,
+            "boundaries (%s).gas: the faces are open at (%.4g, %.4g, %.4g) m: they must close, by themselves "
+            "or with planes of symmetry x = 0, y = 0, z = 0",
+            name, at[0], at[1], at[2]);
     hold->gas_volume = brunt_gas_volume(world, hold, def);
     hold->gas_energy = gas->pressure * hold->gas_volume / (gas->gamma - 1);
     world->has_gas = true;
@@ -78,8 +112,13 @@ int brunt_gas_start(brunt_world *world, brunt_hold *hold, const brunt_group_def 
         name, hold->gas_volume);
 }
 
-double brunt_gas_push(const brunt_world *world, brunt_hold *hold, const brunt_group_def *def, double time, double dt) {
+double brunt_gas_push(brunt_world *world, brunt_hold *hold, const brunt_group_def *def, double time, double dt) {
     const double volume = brunt_gas_volume(world, hold, def), gamma = def->gas.gamma;
+    if (!(volume > 0)) {
+        hold->gas_volume = volume;
+        world->gas_lost = hold;
+        return 0;
+    }
     hold->gas_energy *= pow(hold->gas_volume / volume, gamma - 1);
     hold->gas_volume = volume;
     const double inflow = def->gas.inflow * brunt_curve_at(&def->table, time) * dt;

@@ -208,20 +208,23 @@ static void make_forces(brunt_world *world, brunt_hold *hold, const brunt_group_
 }
 
 // Half of the work of the loads, at the velocities as they are; with `impulse`, that too.
-static void book_loads(brunt_world *world, const brunt_hold *hold, double dt, bool impulse) {
+static double book_loads(brunt_world *world, const brunt_hold *hold, double dt, bool impulse) {
     const brunt_fem_body *fem = &world->fems[hold->fem];
     brunt_action *last = &world->walls[hold->wall].last;
+    double work = 0;
     for (int32_t i = 0; i < hold->node_count; i++) {
         const real *node = brunt_fem_node(fem, hold->node[i]);
         const double *F = hold->force + 3 * i;
         for (int a = 0; a < 3; a++) {
             int k = (a + 1) % 3, l = (a + 2) % 3;
-            last->external_work += 0.5 * dt * F[a] * (double)node[BRUNT_FEM_V + a];
+            work += 0.5 * dt * F[a] * (double)node[BRUNT_FEM_V + a];
             if (!impulse) continue;
             last->impulse[a] += dt * F[a];
             last->angular[a] += dt * ((double)node[k] * F[l] - (double)node[l] * F[k]);
         }
     }
+    last->external_work += work;
+    return work;
 }
 
 void brunt_loads_begin(brunt_world *world, double time, double dt) {
@@ -236,7 +239,7 @@ void brunt_loads_begin(brunt_world *world, double time, double dt) {
 
 void brunt_loads_end(brunt_world *world, double dt) {
     for (int k = 0; k < world->hold_count; k++)
-        if (!moves(&world->groups[k])) book_loads(world, &world->holds[k], dt, false);
+        if (!moves(&world->groups[k])) world->now.fem_load_work += book_loads(world, &world->holds[k], dt, false);
 }
 
 // ------------------------------------------------------------------------------------------ prescribed motion

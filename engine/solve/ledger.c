@@ -18,8 +18,11 @@ void brunt_world_energy(brunt_world *world, brunt_energy *energy) {
         energy->plastic += e.plastic;
         energy->viscosity += e.viscosity;
     }
-    // So are those of meshes; there the half step is added to the kinetic energy.
-    energy->kinetic += now->fem_kinetic - 0.5 * now->fem_stress_work;
+    // So are those of meshes; there the half step is added to the kinetic energy, with what stress, loads, gravity and
+    // damping do in it (of the last three, what they did in the half step before).
+    energy->kinetic += now->fem_kinetic - 0.5 * now->fem_stress_work + now->fem_load_work + now->fem_damping_work;
+    energy->external_work += now->fem_load_work;
+    energy->viscosity -= now->fem_damping_work;
     energy->hourglass = now->hourglass_stored + now->hourglass_lost;
     for (int k = 0; k < world->fem_count; k++) {
         brunt_point_energy e = brunt_fem_energy(&world->fems[k]);

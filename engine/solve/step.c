@@ -316,6 +316,7 @@ static int gather_bodies(brunt_world *world, double dt, double *kinetic, brunt_e
 static void kick_meshes(brunt_world *world, const double gravity[3], double kick, double dt) {
     double start;
     start_pass(world, BRUNT_PASS_kick, &start);
+    world->now.fem_load_work = world->now.fem_damping_work = 0;
     if (world->hold_count || world->has_damping) brunt_loads_begin(world, world->now.time, kick);
     if (world->has_damping) brunt_damping_begin(world, gravity, kick);
     brunt_fem_kick_all(world, gravity, kick);
@@ -400,6 +401,12 @@ int brunt_world_step(brunt_world *world, double limit, brunt_error *error) {
     const double kick = world->now.steps > 0 ? 0.5 * (world->now.dt + dt) : 0.5 * dt;
     int status;
     if (world->fem_count) kick_meshes(world, gravity, kick, dt);
+    if (world->gas_lost) {
+        char reason[200];
+        snprintf(reason, sizeof reason, "boundaries (%s): the gas's volume has become %.4g m^3",
+                 world->walls[world->gas_lost->wall].name, world->gas_lost->gas_volume);
+        return fail(world, NULL, error, reason);
+    }
     if (world->body_count && (status = make_grids(world, gravity, dt, error))) return status;
     if ((status = constrain_velocities(world, gravity, kick, dt, error))) return status;
     old_kinetic = new_kinetic = world->now.kinetic;

@@ -111,6 +111,7 @@ struct brunt_world {
     int32_t *pair_of;
     int32_t *mpm_pair_of; // pairs that meet at grid nodes, by place in `bodies`
     bool has_particles, has_conditions, has_contact, has_walls, has_friction, has_gravity;
+    const brunt_hold *gas_lost; // gas whose volume is no longer positive
     bool has_damping, has_gas, has_fluid;
     bool has_grid_surfaces;        // multi-velocity contact of meshes with material points
     bool has_augury, has_surfaces; // surfaces of meshes meet something: each other, particles, planes
@@ -130,6 +131,7 @@ struct brunt_world {
         double transfer, gravity_work; // [J]
         double contact_frame[3];       // [m/s] what contact measures motion against
         double gravity_impulse[3], gravity_angular[3];
+        double fem_load_work, fem_damping_work; // [J] of the last step at its end: half of it comes anew
         double damped, damping_impulse[3], damping_angular[3]; // [J], [N s], [N m s]
         double initial_energy, initial_kinetic; // [J]
         double linear_initial[3], angular_initial[3], scale_linear, scale_angular;
@@ -192,7 +194,7 @@ double brunt_gas_volume(const brunt_world *world, const brunt_hold *hold, const 
 // Energy of the gas at the start. BRUNT_BAD_INPUT when the faces enclose nothing.
 int brunt_gas_start(brunt_world *world, brunt_hold *hold, const brunt_group_def *def, brunt_error *error);
 // Pressure [Pa] above that outside for the step from `time` on, over `dt`, by the volume as it is now.
-double brunt_gas_push(const brunt_world *world, brunt_hold *hold, const brunt_group_def *def, double time, double dt);
+double brunt_gas_push(brunt_world *world, brunt_hold *hold, const brunt_group_def *def, double time, double dt);
 int64_t brunt_gas_state_count(const brunt_world *world);
 void brunt_gas_state_get(const brunt_world *world, double *out);
 void brunt_gas_state_set(brunt_world *world, const double *in);
