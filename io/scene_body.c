@@ -88,7 +88,10 @@ static void check_meshing(scene_reader *reader, const scene_node *node, const br
         return;
     }
     extents size;
-    if (!measure_shape(reader, shape, body, &size) || !(body->size > 0)) return;
+    if (!measure_shape(reader, shape, body, &size)) return;
+    if (body->face_count && reader->dimension == 3 && brunt_element_is_sheet(body->element))
+        check_faces(reader, node, body, size.largest);
+    if (!(body->size > 0)) return;
     char a[32], b[32];
     brunt_format_number(body->size, a);
     brunt_format_number(size.largest, b);
@@ -104,8 +107,6 @@ static void check_meshing(scene_reader *reader, const scene_node *node, const br
     if (!(elements < ELEMENT_LIMIT))
         brunt_tree_complain(reader->tree, edge, "about %.3g elements fill the shape, at most %.0f can be held",
                             elements, ELEMENT_LIMIT - 1);
-    else if (body->face_count && reader->dimension == 3)
-        check_faces(reader, node, body, size.largest);
 }
 
 static void refuse_sheet_keys(scene_reader *reader, const scene_node *node) {

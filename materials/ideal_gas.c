@@ -8,25 +8,14 @@
 // stress with its rate at either end, which depends on the rotation of the frame.
 //
 // Internal energy is that of the start with the work done on the gas by its pressure alone: heat is where it came from.
-#include "tensor.h"
+#include "energy_state.h"
 
-enum { GAMMA_1, SOUND, INITIAL_ENERGY }; // gamma - 1, gamma (gamma - 1) / rho0
-enum { INTERNAL_ENERGY, COMPRESSION_WORK };
+enum { GAMMA_1 = ENERGY_CONSTANTS, SOUND }; // gamma - 1, gamma (gamma - 1) / rho0
 
 static const brunt_parameter parameters[] = {
     {"gamma", "1", 1.4, 1, INFINITY, true, true, "ratio of specific heats"},
     {"initial_energy", "J/m^3", NAN, 0, INFINITY, true, true,
      "internal energy per volume at the start: pressure over gamma - 1"},
-};
-
-static real initial_energy(const real *constants, int component) {
-    (void)component;
-    return constants[INITIAL_ENERGY];
-}
-
-static const brunt_state_field state[] = {
-    {"internal_energy", "J/m^3", 1, 1, initial_energy},
-    {"compression_work", "J/m^3", 1, 1, NULL},
 };
 
 static const char *prepare(const double *p, double density, bool with_eos, real *constants) {
@@ -86,8 +75,8 @@ const brunt_model brunt_ideal_gas = {
     .eos = true,
     .parameters = parameters,
     .parameter_count = COUNT_OF(parameters),
-    .state = state,
-    .state_count = COUNT_OF(state),
+    .state = energy_state,
+    .state_count = COUNT_OF(energy_state),
     .prepare = prepare,
     .update = update,
     .energy = add_energy,

@@ -14,10 +14,9 @@
 // With `tension` p stays at -tension where the laws give less, the material then being torn (liquids: 0; p = 0 for mu <
 // 0). The trapezoid is that of the pressures so bounded. Whether the end of a step is torn does not depend on the order
 // of bounding and solving: both pressures lie on the same side of -tension, as 1 + gamma0 dJ/2 > 0.
-#include "tensor.h"
+#include "energy_state.h"
 
-enum { DENSITY, SOUND_SPEED, SLOPE, GAMMA, INITIAL_ENERGY, STIFFNESS, TENSION };
-enum { INTERNAL_ENERGY, COMPRESSION_WORK };
+enum { DENSITY = ENERGY_CONSTANTS, SOUND_SPEED, SLOPE, GAMMA, STIFFNESS, TENSION };
 
 static const brunt_parameter parameters[] = {
     {"c0", "m/s", NAN, 0, INFINITY, true, true, "bulk sound speed at rest: Us = c0 + s up"},
@@ -26,16 +25,6 @@ static const brunt_parameter parameters[] = {
     {"initial_energy", "J/m^3", 0, -INFINITY, INFINITY, true, true, "energy per reference volume at the start"},
     {"tension", "Pa", INFINITY, 0, INFINITY, false, false,
      "greatest tension it bears, beyond which it cavitates; 0: none at all"},
-};
-
-static real initial_energy(const real *constants, int component) {
-    (void)component;
-    return constants[INITIAL_ENERGY];
-}
-
-static const brunt_state_field state[] = {
-    {"internal_energy", "J/m^3", 1, 1, initial_energy},
-    {"compression_work", "J/m^3", 1, 1, NULL},
 };
 
 static const char *prepare(const double *p, double density, bool with_eos, real *constants) {
@@ -132,8 +121,8 @@ const brunt_model brunt_mie_gruneisen = {
     .eos = true,
     .parameters = parameters,
     .parameter_count = COUNT_OF(parameters),
-    .state = state,
-    .state_count = COUNT_OF(state),
+    .state = energy_state,
+    .state_count = COUNT_OF(energy_state),
     .prepare = prepare,
     .update = update,
     .energy = add_energy,
