@@ -154,6 +154,22 @@ START_TEST(damping_slows) {
 }
 END_TEST
 
+// A balloon without gas in it is crushed: the run ends with the name of the boundary before anything is divided by
+// nothing.
+START_TEST(volume_passes_zero) {
+    brunt_world_def def = box(BRUNT_HEX8, 0, 0);
+    brunt_body_def *body = &def.bodies[0];
+    body->method = BRUNT_MEMBRANE, body->element = BRUNT_MEMBRANE_QUAD4, body->thickness = 1e-3;
+    brunt_world *world = world_take(&def);
+    brunt_error error = {0};
+    int status = BRUNT_OK;
+    for (int k = 0; k < 5000 && !status; k++) status = brunt_world_step(world, INFINITY, &error);
+    ck_assert_int_eq(status, BRUNT_FAILED);
+    ck_assert_msg(strstr(error.message, "(gas)") && strstr(error.message, "volume"), "%s", error.message);
+    brunt_world_destroy(world);
+}
+END_TEST
+
 static void copy_state(brunt_world *from, brunt_world *to) {
     brunt_error error = {0};
     for (int32_t b = 0; b < brunt_state_count(from); b++) {
@@ -196,6 +212,7 @@ int main(void) {
     tcase_add_test(all, work_is_what_the_gas_loses);
     tcase_add_test(all, nonsense_is_refused);
     tcase_add_loop_test(all, damping_slows, 0, 2);
+    tcase_add_test(all, volume_passes_zero);
     tcase_add_test(all, goes_on_with_the_same_bits);
     suite_add_tcase(suite, all);
     return suite_main(suite);
