@@ -27,7 +27,7 @@ void brunt_action_book(brunt_action *action, double *loss, const double J[3], co
 typedef struct brunt_mirror {
     int axis;
     int32_t node;
-    int wall;
+    int wall; // -1: the axis of revolution of rings, which is there for every body and gives no impulse
 } brunt_mirror;
 
 typedef struct brunt_wall {
@@ -64,6 +64,10 @@ void brunt_reach_gradient(brunt_body *body, int32_t slot, int node, double gradi
 // for their centres alone.
 double brunt_reach_extent(brunt_body *body, int32_t slot, int node, double share, const double n[3],
                           double farthest[3]);
+
+// Where a node of a total-Lagrangian body is now, as its particles see it: mean of x_p + F (X_i - X_p) [m]; `x` its
+// undeformed place, replaced when it has any particles.
+void brunt_reach_deformed(brunt_body *body, int32_t slot, int node, double x[3]);
 
 // The particles of the bins whose kernel covers a node, slot by slot. `base`: the node's number among the bin's nodes.
 typedef void brunt_reach_visit_fn(void *context, brunt_body *body, int64_t slot, const int base[3]);

@@ -56,6 +56,7 @@ static void find_node(const job *j, int k, int32_t n) {
     struct quiet *quiet = &f->quiet[n];
     const double since = f->travelled - quiet->travelled;
     if (quiet->distance - since > f->reach) return;
+    if (s->front && s->front[n] != n && s->face_first[n + 1] == s->face_first[n]) return; // a loose node has one side
     if (!(since < quiet->second &&
           brunt_facing_still_nearest(m, f, n, faces ? normal : NULL, quiet->second - since, found))) {
         looker l = {.box = f->box_of[k], .body = s->body[n], .x = s->x[n], .normal = faces ? normal : NULL};
@@ -122,7 +123,7 @@ double brunt_facing_area(const brunt_skin *s, int32_t n, const double direction[
     for (int32_t q = s->face_first[n]; q < s->face_first[n + 1]; q++) {
         int32_t f = s->face_of[q];
         double cosine = -dot(s->face_normal[f], direction);
-        if (cosine > 0.5) area += cosine * s->face_area[f] / face_corners(s, f);
+        if (cosine > 0.5) area += cosine * brunt_skin_share(s, f, n);
     }
     return area;
 }

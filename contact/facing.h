@@ -27,12 +27,14 @@ int brunt_facing_walls(const brunt_meeting *m, brunt_wall *walls, int wall_count
 // After the solution: what contact gave to nodes that planes hold is those planes' reaction.
 void brunt_facing_book_holds(const brunt_meeting *m, brunt_wall *walls, int wall_count, double time,
                              const brunt_facing *facing, const brunt_contact_points *points);
+// After brunt_skin_renew: what is remembered follows its nodes, and all look anew. 0, or -1: out of memory.
+int brunt_facing_renew(brunt_facing *facing, const brunt_skin *skin);
 // After the solution: velocities back to the skin and to the grids' nodes, contact state to the skin.
 void brunt_facing_finish(const brunt_meeting *m, brunt_body *mpm, brunt_facing *facing,
                          const brunt_contact_points *points);
 // What is remembered from step to step only saves work; but where two facets are equally near it may settle which one
-// is taken, so that a run that goes on needs it. So many doubles; copied out; and in, before the first step (0, or -1:
-// out of memory).
+// is taken, so that a run that goes on needs it. So many doubles, however many elements have left; copied out; and in,
+// before the first step and after the bodies, from which the skin is renewed (0, or -1: out of memory).
 int64_t brunt_facing_state_count(const brunt_skin *skin);
 void brunt_facing_state_get(const brunt_facing *facing, const brunt_skin *skin, double *out);
 int brunt_facing_state_set(brunt_facing **facing, brunt_skin *skin, int mpm_count, const double *in);

@@ -67,6 +67,8 @@ struct brunt_facing {
     size_t hits_capacity;
     int32_t *last; // of each skin node: the face it was nearest to, to look at first; -1
     size_t last_capacity;
+    int32_t *last_spare; // while they are put in a new order
+    size_t last_spare_capacity;
     // How far from everything each skin node was when it was looked at, and how far things had moved then: until they
     // have moved that far again, it touches nothing and need not be looked at.
     struct quiet {

@@ -12,11 +12,27 @@ void brunt_facing_free(brunt_facing *f) {
     if (!f) return;
     for (int k = 0; k < f->mpm_count; k++) brunt_free(f->node_support[k]);
     for (int t = 0; t < f->sight_count; t++) brunt_free(f->sight[t].seen);
-    void *owned[] = {f->box,        f->near,        f->box_of,       f->near_first,
-                     f->near_list,  f->cell_first,  f->cell_face,    f->made_x,
-                     f->found,      f->hits,        f->last,         f->quiet,
-                     f->support_of, f->first_point, f->node_support, f->node_support_capacity,
-                     f->grid,       f->sight,       f->run,          f};
+    void *owned[] = {f->box,
+                     f->near,
+                     f->box_of,
+                     f->near_first,
+                     f->near_list,
+                     f->cell_first,
+                     f->cell_face,
+                     f->made_x,
+                     f->found,
+                     f->hits,
+                     f->last,
+                     f->quiet,
+                     f->support_of,
+                     f->first_point,
+                     f->node_support,
+                     f->node_support_capacity,
+                     f->grid,
+                     f->sight,
+                     f->run,
+                     f->last_spare,
+                     f};
     for (size_t k = 0; k < sizeof owned / sizeof owned[0]; k++) brunt_free(owned[k]);
 }
 
@@ -32,7 +48,16 @@ static void bound_grid(const brunt_body *body, bounds *box) {
     const brunt_grid *grid = &body->grid;
     for (int a = 0; a < 3; a++)
         box->low[a] = a < grid->dim ? INFINITY : 0, box->high[a] = a < grid->dim ? -INFINITY : 0;
-    for (int32_t b = 0; b < grid->block_count; b++)
+    const bool total = brunt_total_lagrangian(&body->particles);
+    for (int32_t b = 0; b < grid->block_count && total; b++) {
+        double low[3], high[3];
+        brunt_body_block_bounds(body, b, low, high);
+        for (int a = 0; a < grid->dim; a++) {
+            box->low[a] = fmin(box->low[a], low[a] - (double)grid->h * grid->order);
+            box->high[a] = fmax(box->high[a], high[a] + (double)grid->h * grid->order);
+        }
+    }
+    for (int32_t b = 0; b < grid->block_count && !total; b++)
         for (int a = 0; a < grid->dim; a++) {
             double low = grid->origin[a] + (double)grid->h * grid->blocks[b].coord[a] * grid->side;
             box->low[a] = fmin(box->low[a], low);
@@ -116,6 +141,16 @@ bool brunt_facing_near_wall(const brunt_skin *s, int k, const brunt_wall *wall, 
     return brunt_facing_plane_distance(&wall->plane, time, corner) < range;
 }
 
+// Room for what is remembered of so many nodes.
+static int fit_nodes(brunt_facing *f, int32_t nodes, int32_t kept) {
+    return RESERVE(f, found, nodes + 1) || RESERVE(f, hits, BRUNT_MAX_HITS * (nodes + 1)) ||
+                   brunt_reserve((void **)&f->last, &f->last_capacity, ((size_t)nodes + 1) * sizeof *f->last,
+                                 (size_t)kept * sizeof *f->last) ||
+                   RESERVE(f, quiet, nodes + 1)
+               ? -1
+               : 0;
+}
+
 static int make_facing(brunt_facing **facing, int mpm_count, int32_t nodes) {
     if (*facing) return 0;
     brunt_facing *f = *facing = brunt_alloc(sizeof *f);
@@ -123,36 +158,57 @@ static int make_facing(brunt_facing **facing, int mpm_count, int32_t nodes) {
     f->mpm_count = mpm_count;
     f->node_support = brunt_alloc(((size_t)mpm_count + 1) * sizeof(void *));
     f->node_support_capacity = brunt_alloc(((size_t)mpm_count + 1) * sizeof(size_t));
-    if (!f->node_support || !f->node_support_capacity || RESERVE(f, found, nodes + 1) ||
-        RESERVE(f, hits, BRUNT_MAX_HITS * (nodes + 1)) || RESERVE(f, last, nodes + 1) || RESERVE(f, quiet, nodes + 1))
-        return -1;
+    if (!f->node_support || !f->node_support_capacity || fit_nodes(f, nodes, 0)) return -1;
     for (int32_t n = 0; n < nodes; n++) f->last[n] = -1;
     return 0;
 }
 
-int64_t brunt_facing_state_count(const brunt_skin *s) { return 7 * (int64_t)s->node_count + s->fem_count + 1; }
+// Distances are to facets that may be gone, so that everyone looks anew. A face that was the nearest and is still there
+// is looked at first as before.
+int brunt_facing_renew(brunt_facing *f, const brunt_skin *s) {
+    const brunt_skin_change *c = &s->change;
+    if (!f || !c->any) return 0;
+    if (fit_nodes(f, s->node_count, c->node_count) || RESERVE(f, last_spare, s->node_count + 1)) return -1;
+    for (int32_t n = 0; n < s->node_count; n++) {
+        const int32_t face = c->node_was[n] < 0 ? -1 : f->last[c->node_was[n]];
+        f->last_spare[n] = face < 0 ? -1 : c->face_now[face];
+        f->quiet[n] = (struct quiet){.travelled = f->travelled};
+    }
+    memcpy(f->last, f->last_spare, (size_t)s->node_count * sizeof *f->last);
+    f->made = false;
+    return 0;
+}
+
+int64_t brunt_facing_state_count(const brunt_skin *s) { return 7 * brunt_skin_places(s) + s->fem_count + 1; }
 
 void brunt_facing_state_get(const brunt_facing *f, const brunt_skin *s, double *out) {
+    memset(out, 0, (size_t)brunt_facing_state_count(s) * sizeof *out);
     *out++ = f ? f->travelled : 0;
     for (int k = 0; k < s->fem_count; k++) *out++ = s->was_active[k];
-    for (int32_t n = 0; n < s->node_count; n++, out += 7) {
-        out[0] = f ? f->last[n] : -1;
-        out[1] = f ? f->quiet[n].distance : 0, out[2] = f ? f->quiet[n].travelled : 0,
-        out[3] = f ? f->quiet[n].second : 0;
-        for (int a = 0; a < 3; a++) out[4 + a] = s->x[n][a];
-    }
+    for (int k = 0; k < s->fem_count; k++)
+        for (int32_t n = s->node_range[k]; n < s->node_range[k + 1]; n++) {
+            double *to = out + 7 * brunt_skin_place(s, k, n);
+            to[0] = f ? f->last[n] : -1;
+            to[1] = f ? f->quiet[n].distance : 0, to[2] = f ? f->quiet[n].travelled : 0;
+            to[3] = f ? f->quiet[n].second : 0;
+            for (int a = 0; a < 3; a++) to[4 + a] = s->x[n][a];
+        }
 }
 
 int brunt_facing_state_set(brunt_facing **facing, brunt_skin *s, int mpm_count, const double *in) {
-    if (make_facing(facing, mpm_count, s->node_count)) return -1;
+    if (brunt_skin_renew(s, true) || make_facing(facing, mpm_count, s->node_count)) return -1;
     brunt_facing *f = *facing;
+    if (fit_nodes(f, s->node_count, 0)) return -1;
+    f->made = f->made && !s->change.any;
     f->travelled = *in++;
     for (int k = 0; k < s->fem_count; k++) s->was_active[k] = *in++ != 0;
-    for (int32_t n = 0; n < s->node_count; n++, in += 7) {
-        f->last[n] = (int32_t)in[0];
-        f->quiet[n] = (struct quiet){in[1], in[2], in[3]};
-        for (int a = 0; a < 3; a++) s->x[n][a] = in[4 + a];
-    }
+    for (int k = 0; k < s->fem_count; k++)
+        for (int32_t n = s->node_range[k]; n < s->node_range[k + 1]; n++) {
+            const double *from = in + 7 * brunt_skin_place(s, k, n);
+            f->last[n] = (int32_t)from[0];
+            f->quiet[n] = (struct quiet){from[1], from[2], from[3]};
+            for (int a = 0; a < 3; a++) s->x[n][a] = from[4 + a];
+        }
     return 0;
 }
 

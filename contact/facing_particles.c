@@ -38,7 +38,7 @@ static void particle_nodes(const brunt_body *body, int32_t b, int64_t s, nodes *
     double w[3][4] = {{1}, {1}, {1}};
     out->count = 0;
     brunt_node_local(grid, body->particles.bin[s], local);
-    real *const *x = brunt_field((brunt_particles *)&body->particles, BRUNT_FIELD_position);
+    real *const *x = brunt_kernel_place(&body->particles);
     for (int a = 0; a < dim; a++) {
         base[a] = grid->blocks[b].coord[a] * grid->side + local[a];
         brunt_kernel_weights(grid->order, ((double)x[a][s] - grid->origin[a]) / (double)grid->h - base[a], w[a]);
@@ -83,12 +83,12 @@ static int note_sight(const job *j, struct sight *sight, int32_t b, int64_t s, c
 
 // How far the ball of material about a particle reaches along n [m].
 static double reach_along(brunt_body *body, int64_t s, const double n[3]) {
-    const int dim = body->grid.dim;
+    const int dim = body->grid.dim, stride = body->particles.point_dim;
     real *const *F = brunt_field(&body->particles, BRUNT_FIELD_deformation_gradient);
     double square = 0;
     for (int c = 0; c < dim; c++) {
         double t = 0;
-        for (int r = 0; r < dim; r++) t += (double)F[r * dim + c][s] * n[r];
+        for (int r = 0; r < dim; r++) t += (double)F[r * stride + c][s] * n[r];
         square += t * t;
     }
     return (double)brunt_field(&body->particles, BRUNT_FIELD_reach)[0][s] * sqrt(square);
@@ -103,8 +103,9 @@ static int look_from_block(const job *j, int32_t b, struct sight *sight) {
         low[a] = grid->origin[a] + (double)grid->h * grid->blocks[b].coord[a] * grid->side;
         high[a] = low[a] + (double)grid->h * (grid->side + 1);
     }
-    if (!brunt_facing_in_reach(f, j->box, low, high, f->range)) return 0;
     real *const *place = brunt_field(&j->body->particles, BRUNT_FIELD_position);
+    if (brunt_total_lagrangian(&j->body->particles)) brunt_body_block_bounds(j->body, b, low, high);
+    if (!brunt_facing_in_reach(f, j->box, low, high, f->range)) return 0;
     for (int64_t s = grid->blocks[b].first; s < grid->blocks[b].first + grid->blocks[b].count; s++) {
         double x[3] = {0}, distance, second;
         for (int a = 0; a < dim; a++) x[a] = (double)place[a][s];
@@ -136,7 +137,7 @@ static void look_from_blocks(void *context, int64_t begin, int64_t end, int work
 static int mirrors_of(const brunt_meeting *m, const brunt_body *body, brunt_mirror out[MAX_MIRRORS]) {
     int count = 0;
     for (int k = 0; k < m->mirror_count && count < MAX_MIRRORS; k++) {
-        int on = m->walls[m->mirrors[k].wall].body;
+        int on = m->mirrors[k].wall < 0 ? -1 : m->walls[m->mirrors[k].wall].body;
         if (on < 0 || on == body->index) out[count++] = m->mirrors[k];
     }
     return count;
@@ -198,7 +199,9 @@ static int add_point(const brunt_meeting *m, brunt_facing *f, brunt_body *body, 
     if (at < 0) return -1;
     brunt_facing_point(m, &seen->h, seen->x, body->index, &points->point[at]);
     points->point[at].target = seen->h.target, points->point[at].tag = -1 - k;
-    points->point[at].area = body->grid.dim == 3 ? body->spacing * body->spacing : body->spacing;
+    points->point[at].area = body->spacing * (body->grid.dim == 3  ? body->spacing
+                                              : skin->axisymmetric ? 2 * M_PI * seen->x[0]
+                                                                   : 1);
     if (add_slave(f, body, k, mirrors, mirror_count, &under, points)) return -1;
     brunt_contact_entry master[4];
     brunt_facing_master(skin, f, &seen->h, seen->x, &points->point[at], master);
@@ -267,8 +270,8 @@ static void book_mirrors(const brunt_meeting *m, const brunt_body *body, int k, 
     for (int a = 0; a < 3; a++) {
         int i = 0;
         while (i < count && mirrors[i].axis != a) i++;
-        if (i < count) m->walls[mirrors[i].wall].last.impulse[a] += linear[a];
-        m->walls[mirrors[0].wall].last.angular[a] += angular[a];
+        if (i < count && mirrors[i].wall >= 0) m->walls[mirrors[i].wall].last.impulse[a] += linear[a];
+        if (mirrors[0].wall >= 0) m->walls[mirrors[0].wall].last.angular[a] += angular[a];
     }
 }
 

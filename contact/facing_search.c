@@ -11,6 +11,8 @@ static const double ASKEW = -0.3;     // ... or, where nothing opposed is within
 static const double CLOSE = 0.25;     // ... so many mean edges, the least one with the normal of a facet
 static const double SAME_SLOPE = 0.7; // cosine of normals from which on two facets of a sheet are one slope
 static const double SLACK = 0.125;    // mean edges: facets so much further than the nearest are looked at closely, too
+static const double BEHIND = 0.05; // mean edges: how far behind a facet of a ragged surface someone is still before it
+static const double VALLEY = 0.05; // mean edges: how far before one slope the middle of the other is, in a valley
 
 // ------------------------------------------------------------------------------------------ cells of facets
 
@@ -220,12 +222,12 @@ static bool hit_facing(const brunt_skin *s, const nearest *best, const double *n
     return !normal || -dot(out->n, normal) > OPPOSED;
 }
 
-// A hit on whatever facet is nearest, when the slave is behind it.
-static bool hit_behind(const nearest *best, const double *normal, hit *out) {
+// A hit on whatever facet is nearest, when the slave is behind it; `least`: the least cosine with its normal.
+static bool hit_behind(const nearest *best, const double *normal, double least, hit *out) {
     const tied *chosen = most_facing(best);
     const brunt_closest *at = &chosen->at;
     double height = dot(at->normal, at->d);
-    if (!(height < 0) || -dot(at->normal, normal) <= ASKEW) return false;
+    if (!(height < 0) || -dot(at->normal, normal) <= least) return false;
     *out = (hit){.face = chosen->face, .triangle = at->triangle, .body = best->body, .gap = height};
     memcpy(out->n, at->normal, sizeof out->n);
     return true;
@@ -384,6 +386,38 @@ static void add_slopes(const brunt_meeting *m, const brunt_facing *f, const look
     }
 }
 
+static bool is_ragged(const brunt_skin *s, int32_t body) { return s->ragged && s->ragged[body]; }
+
+// Where elements have left, surfaces have steps, pits and spikes of the size of an element, and edges cut into edges: a
+// node has its own body on the very side of a facet that it comes through, so that its normal tells nothing of it. All
+// facets that someone is right before bear, whichever way they look, but for those beyond a ridge: who slides in under
+// a block, a little too high, meets its underside and not the wall it came past.
+static void add_ragged(const brunt_meeting *m, const brunt_facing *f, const looker *l, slave_hits *out) {
+    const brunt_skin *s = m->skin;
+    const double edge = s->mean_edge;
+    for (int32_t q = f->cell_first[l->cell]; q < f->cell_first[l->cell + 1]; q++) {
+        const int32_t face = f->cell_face[q], body = s->face_body[face];
+        if (body == l->body || is_sheet(s, body) || !(is_ragged(s, body) || is_ragged(s, l->body))) continue;
+        if (out->count == BRUNT_MAX_HITS || !near_box(s->face_box[face], l->x, fmin(f->range, f->reach))) continue;
+        if (!is_among(body, l->touch, l->touches)) continue;
+        const double *centre = s->face_centre[face];
+        const double to[3] = {centre[0] - l->x[0], centre[1] - l->x[1], centre[2] - l->x[2]};
+        bool known = false;
+        for (int32_t k = 0; k < out->count; k++) {
+            const hit *h = &out->hits[k];
+            known = known || (h->body == body &&
+                              (dot(h->n, s->face_normal[face]) > SAME_SLOPE || dot(h->n, to) + h->gap < VALLEY * edge));
+        }
+        if (known) continue;
+        const brunt_closest at = brunt_closest_on_face(s, face, l->x);
+        const double height = dot(at.normal, at.d);
+        if (!at.inside || height < -BEHIND * edge) continue;
+        hit *h = &out->hits[out->count++];
+        *h = (hit){.face = face, .triangle = at.triangle, .body = body, .gap = height};
+        memcpy(h->n, at.normal, sizeof h->n);
+    }
+}
+
 // Middle surfaces of sheets stay half their thickness away from what they meet.
 static void thicken(const brunt_skin *s, double half, slave_hits *out) {
     for (int32_t q = 0; q < out->count; q++) out->hits[q].gap -= half + s->side[out->hits[q].body].half;
@@ -417,7 +451,8 @@ static inline __attribute__((always_inline)) void look_around(const brunt_meetin
     }
     int all = unresolved ? find_nearest(m, f, l, NULL, 0, entered, unresolved, -1, 0, NULL, false, any) : 0;
     for (int b = 0; b < all; b++) {
-        if (!any[b].count || !hit_behind(&any[b], l->normal, &out->hits[out->count])) continue;
+        const double least = is_ragged(s, l->body) || is_ragged(s, any[b].body) ? -INFINITY : ASKEW;
+        if (!any[b].count || !hit_behind(&any[b], l->normal, least, &out->hits[out->count])) continue;
         out->count++;
         for (int k = 0; k < bodies; k++)
             if (facing[k].body == any[b].body) facing[k].count = 0;
@@ -444,9 +479,10 @@ static inline __attribute__((always_inline)) void look_around(const brunt_meetin
         out->count++;
     }
     if (sheets) add_slopes(m, f, l, out);
+    if (s->ragged) add_ragged(m, f, l, out);
     *distance = outside || two.face < 0 || (by_sheet && !inside) ? fmin(f->range, sqrt(two.first)) : 0;
     *second = 0;
-    if (plain && out->count == 1 && two.face == out->hits[0].face)
+    if (plain && out->count == 1 && two.face == out->hits[0].face && !s->ragged)
         *second = fmin(fmin(f->range, sqrt(two.second)), *distance + slack) * (1 - 1e-8);
     if (sheets) thicken(s, l->half, out);
 }

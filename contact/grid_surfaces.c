@@ -279,12 +279,13 @@ static int add_item(job *j, int b, int k, brunt_pair *pair, int32_t n) {
 static bool on_cut(const job *j, const brunt_grid *grid, int32_t n) {
     const brunt_skin *s = j->m->skin;
     double normal[3] = {s->normal[n][0], s->normal[n][1], s->normal[n][2]};
+    bool cut = false;
     for (int m = 0; m < j->mirror_count; m++) {
         const int axis = j->mirrors[m].axis;
         const double plane = grid->origin[axis] + (double)grid->h * j->mirrors[m].node;
-        if (fabs(s->x[n][axis] - plane) < CUT * (double)grid->h) normal[axis] = 0;
+        if (fabs(s->x[n][axis] - plane) < CUT * (double)grid->h) normal[axis] = 0, cut = true;
     }
-    return j->mirror_count && dot(normal, normal) < CUT * CUT;
+    return cut && dot(normal, normal) < CUT * CUT;
 }
 
 static bool inside(const double x[3], const double low[3], const double high[3]) {
@@ -312,8 +313,10 @@ static int find_contacts(job *j, int b) {
             memset(w->place, 0, nodes * sizeof *w->place);
             any = true;
         }
-        for (int32_t n = s->node_range[k]; n < s->node_end[k]; n++)
+        for (int32_t n = s->node_range[k]; n < s->node_end[k]; n++) {
+            if (s->face_first[n + 1] == s->face_first[n]) continue; // a loose node: there is no surface to press with
             if (inside(s->x[n], low, high) && !on_cut(j, grid, n) && add_item(j, b, k, pair, n)) return -1;
+        }
     }
     r->contact_end = w->contact_count, r->item_end = w->item_count;
     return 0;
@@ -840,7 +843,7 @@ static void book_mirror(const job *j, const contact *c, brunt_wall *walls) {
     for (int m = 0; m < j->mirror_count; m++) {
         const int axis = j->mirrors[m].axis;
         const double plane = grid->origin[axis] + (double)grid->h * j->mirrors[m].node;
-        if (fabs(c->x[axis] - plane) > 2.5 * (double)grid->h) continue;
+        if (j->mirrors[m].wall < 0 || fabs(c->x[axis] - plane) > 2.5 * (double)grid->h) continue;
         walls[j->mirrors[m].wall].last.impulse[axis] += (own - given) * (c->push * c->n[axis] + c->drag[axis]);
     }
 }

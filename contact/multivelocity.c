@@ -6,6 +6,7 @@
 //   approach the relative velocity along n may not exceed gap/dt, so the gap closes to zero and not past it; bodies not
 //            yet within reach are left alone
 //   friction the tangential impulse that would stop the slip, at most mu times the normal one
+// Tied pairs share one velocity instead, whatever the normal and the gap.
 // Impulses are equal and opposite at one point: linear and angular momentum are kept to rounding. Three and more bodies
 // at a node are solved together by Gauss-Seidel sweeps over the pairs to convergence; bodies are ordered by name, so
 // the order in a file changes nothing.
@@ -58,6 +59,7 @@ typedef struct job {
     int mirror_count;
     double dt;
     brunt_contact_workspace *w;
+    const brunt_mirror *axis; // of rings; NULL
 } job;
 
 void brunt_contact_workspace_free(brunt_contact_workspace *workspace) {
@@ -150,6 +152,7 @@ typedef struct meeting {
     double n[3], target;      // normal from a to b; least relative velocity along it [m/s]
     double friction, inverse; // [-]; [1/kg]
     double push, drag[3];     // [N s] on b
+    bool tied;                // `drag` takes all of the relative velocity
 } meeting;
 
 typedef struct member {
@@ -218,8 +221,23 @@ static double relative(const member *members, const meeting *m, double v[3]) {
     return along;
 }
 
+// Gives a tied pair one velocity; returns the change of velocity [m/s].
+static double tie(member *members, meeting *m) {
+    double v[3], changed = 0;
+    relative(members, m, v);
+    for (int k = 0; k < 3; k++) {
+        const double J = -v[k] / m->inverse;
+        m->drag[k] += J;
+        members[m->a].v[k] -= J * members[m->a].inverse;
+        members[m->b].v[k] += J * members[m->b].inverse;
+        changed = fmax(changed, fabs(v[k]));
+    }
+    return changed;
+}
+
 // Brings one pair to its complementarity condition; returns the change of velocity [m/s].
 static double visit(member *members, meeting *m) {
+    if (m->tied) return tie(members, m);
     double v[3], J[3], along = relative(members, m, v);
     double push = fmax(0, m->push + (m->target - along) / m->inverse), step = push - m->push;
     m->push = push;
@@ -248,7 +266,46 @@ static double visit(member *members, meeting *m) {
     return changed;
 }
 
+// How many nodes from the axis of rings a node is, negative beyond it.
+static int32_t from_axis(const job *j, const shared_slot *s, int node) {
+    const brunt_grid *grid = &j->bodies[s->body].grid;
+    int local[3];
+    brunt_node_local(grid, node, local);
+    return grid->slots[s->slot].coord[j->axis->axis] * grid->side + local[j->axis->axis] - j->axis->node;
+}
+
+// The image of a member's node beyond the axis, NULL when there is none, and the signs of its velocity.
+static real *beyond_axis(const job *j, const member *m, int node, real sign[3]) {
+    const brunt_grid *grid = &m->body->grid;
+    int local[3];
+    int32_t at[3], image[BRUNT_MAX_IMAGES][3];
+    real signs[BRUNT_MAX_IMAGES][3];
+    brunt_node_local(grid, node, local);
+    for (int a = 0; a < 3; a++) at[a] = a < grid->dim ? grid->slots[m->slot].coord[a] * grid->side + local[a] : 0;
+    if (brunt_mirror_images(j->axis, 1, at, grid->order, image, signs) < 2) return NULL;
+    memcpy(sign, signs[1], 3 * sizeof *sign);
+    real *found = brunt_grid_node(grid, image[1]);
+    return found && found[0] > 0 ? found : NULL;
+}
+
+// Nodes beyond the axis stay the images of those before it, where the bodies have met. The bodies see less of each
+// other there, or nothing: contacts of its own would give two bodies different impulses.
+static void follow_axis(const job *j, const member *m, int node) {
+    real sign[3], *image = beyond_axis(j, m, node, sign);
+    for (int a = 0; image && a < m->body->grid.dim; a++)
+        image[BRUNT_NODE_VELOCITY + a] = sign[a] * m->node[BRUNT_NODE_VELOCITY + a];
+}
+
+// The body's own share of what a member gets.
+static double own_share(const job *j, const member *m, int node) {
+    const double own = (double)(m->node[BRUNT_NODE_SPARE] / m->node[0]);
+    real sign[3];
+    const real *image = j->axis ? beyond_axis(j, m, node, sign) : NULL;
+    return image ? own + (double)(image[BRUNT_NODE_SPARE] / image[0]) : own;
+}
+
 static void meet_at_node(const job *j, group *g, int node) {
+    if (j->axis && from_axis(j, &j->w->shared[g->first], node) < 0) return;
     member members[MAX_TOGETHER];
     meeting meetings[MAX_TOGETHER * (MAX_TOGETHER - 1) / 2];
     int n = 0, met = 0, dim = j->bodies[0].grid.dim;
@@ -278,9 +335,10 @@ static void meet_at_node(const job *j, group *g, int node) {
                            .b = k,
                            .action = low * g->count - low * (low + 1) / 2 + high - low - 1,
                            .friction = j->pairs[pair].friction,
+                           .tied = j->pairs[pair].method == BRUNT_CONTACT_TIED,
                            .inverse = members[i].inverse + members[k].inverse};
-            double gap;
-            if (!make_normal(j, &members[i], &members[k], node, m->n, &gap)) continue;
+            double gap = 0;
+            if (!m->tied && !make_normal(j, &members[i], &members[k], node, m->n, &gap)) continue;
             m->target = -fmax(gap, 0) / j->dt;
             met++;
         }
@@ -297,19 +355,20 @@ static void meet_at_node(const job *j, group *g, int node) {
     static const double rest[3] = {0, 0, 0};
     for (int q = 0; q < met; q++) {
         const meeting *m = &meetings[q];
-        if (!(m->push > 0)) continue;
+        if (!(m->push > 0) && !m->tied) continue;
         double push[3], drag[3], old[3] = {0}, now[3];
-        double own = (double)(members[m->b].node[BRUNT_NODE_SPARE] / members[m->b].node[0]);
+        double own = own_share(j, &members[m->b], node);
         relative(members, m, now);
         for (int k = 0; k < 3; k++) push[k] = own * m->push * m->n[k], drag[k] = own * m->drag[k];
         for (int k = 0; k < dim; k++)
             old[k] = (double)(members[m->b].node[BRUNT_NODE_OLD + k] - members[m->a].node[BRUNT_NODE_OLD + k]);
         brunt_action *action = &j->w->actions[g->action + m->action];
-        brunt_action_book(action, &action->normal_loss, push, x, old, now, rest);
-        if (m->friction > 0) brunt_action_book(action, &action->friction_loss, drag, x, old, now, rest);
+        brunt_action_book(action, &action->normal_loss, m->tied ? drag : push, x, old, now, rest);
+        if (m->friction > 0 && !m->tied) brunt_action_book(action, &action->friction_loss, drag, x, old, now, rest);
     }
     for (int i = 0; i < n; i++)
         for (int a = 0; a < dim; a++) members[i].node[BRUNT_NODE_VELOCITY + a] = (real)members[i].v[a];
+    for (int i = 0; j->axis && i < n; i++) follow_axis(j, &members[i], node);
 }
 
 static void meet(void *context, int64_t begin, int64_t end, int worker) {
@@ -325,7 +384,9 @@ int brunt_multivelocity_apply(brunt_body *bodies, int body_count, brunt_pair *pa
     (void)pair_count;
     if (!*workspace) *workspace = brunt_alloc(sizeof **workspace);
     if (!*workspace) return -1;
-    job j = {bodies, body_count, pairs, pair_of, mirrors, mirror_count, dt, *workspace};
+    job j = {bodies, body_count, pairs, pair_of, mirrors, mirror_count, dt, *workspace, NULL};
+    for (int m = 0; m < mirror_count; m++)
+        if (mirrors[m].wall < 0) j.axis = &mirrors[m];
     if (find_groups(&j)) return -1;
     brunt_parallel(threads, j.w->group_count, 1, meet, &j, seconds);
     for (int32_t q = 0; q < j.w->group_count; q++) {

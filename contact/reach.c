@@ -55,13 +55,10 @@ static void add_gradient(void *context, brunt_body *body, int64_t s, const int b
     gradient_sum *g = context;
     brunt_particles *p = &body->particles;
     const brunt_grid *grid = &body->grid;
-    real *const *F = brunt_field(p, BRUNT_FIELD_deformation_gradient), *const *x = brunt_field(p, BRUNT_FIELD_position);
-    double J = p->dim == 2 ? (double)(F[0][s] * F[3][s] - F[1][s] * F[2][s])
-                           : (double)(F[0][s] * (F[4][s] * F[8][s] - F[5][s] * F[7][s]) -
-                                      F[1][s] * (F[3][s] * F[8][s] - F[5][s] * F[6][s]) +
-                                      F[2][s] * (F[3][s] * F[7][s] - F[4][s] * F[6][s]));
-    double volume = J * (double)brunt_field(p, BRUNT_FIELD_reference_volume)[0][s], w[3] = {1, 1, 1},
-           slope[3] = {0, 0, 0};
+    real *const *x = brunt_field(p, BRUNT_FIELD_position);
+    // Rings count by their area: their volume grows with r, and so would seem to have a surface that faces the axis.
+    double volume = (double)brunt_plane_volume(p, s), w[3] = {1, 1, 1}, slope[3] = {0, 0, 0};
+    if (body->keeps && volume == 0) volume = pow(body->spacing, p->dim); // freed of stress, not of its place
     for (int a = 0; a < p->dim; a++) {
         double u = ((double)x[a][s] - g->node[a]) * (double)grid->inv_h + base[a];
         weight_1d(grid->order, u, base[a], &w[a], &slope[a]);
@@ -88,6 +85,35 @@ void brunt_reach_gradient(brunt_body *body, int32_t slot, int node, double gradi
     }
 }
 
+typedef struct deformed_sum {
+    double undeformed[3], weight, moment[3];
+} deformed_sum;
+
+static void add_deformed(void *context, brunt_body *body, int64_t s, const int base[3]) {
+    deformed_sum *d = context;
+    brunt_particles *p = &body->particles;
+    real *const *F = brunt_field(p, BRUNT_FIELD_deformation_gradient), *const *x = brunt_field(p, BRUNT_FIELD_position),
+                *const *X = brunt_kernel_place(p);
+    double weight = (double)brunt_field(p, BRUNT_FIELD_mass)[0][s], w, g;
+    for (int a = 0; a < p->dim; a++) {
+        double u = ((double)X[a][s] - d->undeformed[a]) * (double)body->grid.inv_h + base[a];
+        weight_1d(body->grid.order, u, base[a], &w, &g);
+        weight *= w;
+    }
+    d->weight += weight;
+    for (int r = 0; r < p->dim; r++) {
+        double at = (double)x[r][s];
+        for (int c = 0; c < p->dim; c++) at += (double)F[r * p->dim + c][s] * (d->undeformed[c] - (double)X[c][s]);
+        d->moment[r] += weight * at;
+    }
+}
+
+void brunt_reach_deformed(brunt_body *body, int32_t slot, int node, double x[3]) {
+    deformed_sum d = {.undeformed = {x[0], x[1], x[2]}};
+    brunt_reach_visit(body, slot, node, add_deformed, &d);
+    for (int a = 0; a < body->particles.dim && d.weight > 0; a++) x[a] = d.moment[a] / d.weight;
+}
+
 typedef struct extent_max {
     double node[3], n[3], share, most;
     int64_t slot;
@@ -95,11 +121,11 @@ typedef struct extent_max {
 
 // F^T n of a particle.
 static void pull_back(brunt_body *body, int64_t s, const double n[3], double out[3]) {
-    const int dim = body->particles.dim;
+    const int dim = body->particles.dim, stride = body->particles.point_dim;
     real *const *F = brunt_field(&body->particles, BRUNT_FIELD_deformation_gradient);
     for (int c = 0; c < 3; c++) {
         out[c] = 0;
-        for (int r = 0; r < dim && c < dim; r++) out[c] += (double)F[r * dim + c][s] * n[r];
+        for (int r = 0; r < dim && c < dim; r++) out[c] += (double)F[r * stride + c][s] * n[r];
     }
 }
 
@@ -138,7 +164,8 @@ double brunt_reach_extent(brunt_body *body, int32_t slot, int node, double share
     real *const *F = brunt_field(p, BRUNT_FIELD_deformation_gradient), *const *x = brunt_field(p, BRUNT_FIELD_position);
     for (int a = 0; a < p->dim; a++) {
         farthest[a] = (double)x[a][e.slot] - e.node[a];
-        for (int c = 0; c < p->dim && size > 0; c++) farthest[a] += r * (double)F[a * p->dim + c][e.slot] * t[c] / size;
+        for (int c = 0; c < p->dim && size > 0; c++)
+            farthest[a] += r * (double)F[a * p->point_dim + c][e.slot] * t[c] / size;
     }
     return e.most;
 }

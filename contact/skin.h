@@ -8,8 +8,11 @@
 // on a node of the back is gathered at its twin of the front, which alone gives a velocity back.
 #pragma once
 
+#include <math.h>
+
 #include "contact.h"
 #include "fem.h"
+#include "shell.h"
 
 // What a body is to sheets.
 typedef struct brunt_side {
@@ -19,8 +22,18 @@ typedef struct brunt_side {
                     // one that is further is on the far side of its own body
 } brunt_side;
 
+// Where the nodes and faces of a skin have gone when it was made anew.
+typedef struct brunt_skin_change {
+    bool any;
+    int32_t node_count, face_count; // that there were
+    int32_t *node_was;              // of each node: its number before; -1: it is new
+    int32_t *face_now;              // of each face that there was: its number now; -1: it is gone
+    size_t node_was_capacity, face_now_capacity;
+} brunt_skin_change;
+
 typedef struct brunt_skin {
     int dim;
+    bool axisymmetric; // rings: masses and impulses are those of the whole circle
     int32_t node_count, face_count;
     int32_t *body, *node; // of each node: index of its body (brunt_fem_body.index), node number there
     double (*x)[3];       // [m] at the start of the step
@@ -29,7 +42,7 @@ typedef struct brunt_skin {
     double *mass;         // [kg]
     double (*inverse)[3]; // [1/kg] by component: 0 where the motion is prescribed, which is infinite mass
     double (*normal)[3];  // outward, of unit length: mean of its faces by area; 0 where they cancel
-    double *area;         // [m^2] of the surface that is the node's
+    double *area;         // [m^2] of the surface that is the node's; 0 of loose nodes, which have no faces
     double (*affine)[9];  // [m^2/s] B of the paper's form, kept from step to step; NULL for the others
     int32_t (*face)[4];   // nodes; the 4th is -1 for triangles, 3rd and 4th for segments (2D)
     int32_t *face_body;
@@ -51,6 +64,16 @@ typedef struct brunt_skin {
     // Elements within two rings of the nodes of sheets that may touch themselves, as faces of the front, ascending:
     // ring_face[ring_first[n] .. ring_first[n + 1]) of node n of the front.
     int32_t *ring_first, *ring_face;
+    bool *self; // of each body: it has rings
+    // Of bodies that may lose elements, else NULL: of each body the bookkeeping of its surface (elements 0: it loses none).
+    brunt_shell *shell;
+    brunt_skin_change change; // of the last time
+    bool *ragged;             // of each body by its index among all, to the last of the meshes: its surface may be ragged, since
+                              // it may lose elements; NULL where none do
+    int32_t *next_node, (*next_face)[4];
+    void *spare;
+    size_t node_room, face_room, node_capacity, body_capacity, face_capacity, next_node_capacity, next_face_capacity,
+        spare_capacity, ring_first_capacity, ring_face_capacity;
     double (*low)[3], (*high)[3]; // [m] bounds of each body's surface
     // Motion is measured against a frame that moves along with the bodies, which leaves what counts: theirs against
     // each other.
@@ -73,6 +96,18 @@ int brunt_skin_make(brunt_skin *skin, brunt_fem_body **fem, int count, bool affi
 // Lists the elements near each node of the bodies marked in `self`, which are sheets in contact with themselves: those
 // are no obstacles to it. 0, or -1: out of memory.
 int brunt_skin_rings(brunt_skin *skin, const bool *self);
+// The surfaces anew after elements have left bodies, or (`restored`) of a saved state. What is kept of a node from step to step stays with it, and
+// skin->change tells who has gone where. The order of nodes and faces follows from which elements there are. 0, or -1: out of
+// memory.
+int brunt_skin_renew(brunt_skin *skin, bool restored);
+// The affine velocities as they are saved: so many doubles, of all nodes that may ever be of the skin.
+int64_t brunt_skin_affine_count(const brunt_skin *skin);
+void brunt_skin_affine_get(const brunt_skin *skin, double *out);
+void brunt_skin_affine_set(brunt_skin *skin, const double *in);
+// Where node `n` of the skin is among all nodes that may ever be of it, and how many those are: what a saved state is in the
+// order of, since its size must not depend on what has left.
+int64_t brunt_skin_place(const brunt_skin *skin, int k, int32_t n);
+int64_t brunt_skin_places(const brunt_skin *skin);
 void brunt_skin_free(brunt_skin *skin);
 // Bounds and speeds of every body's surface as it is now.
 void brunt_skin_bounds(brunt_skin *skin, int threads, double *seconds);
@@ -81,6 +116,14 @@ void brunt_skin_bounds(brunt_skin *skin, int threads, double *seconds);
 void brunt_skin_take(brunt_skin *skin, double dt, const double gravity[3], int threads, double *seconds);
 // Velocities of the active bodies back to them, which then move for `dt`.
 void brunt_skin_give(brunt_skin *skin, double dt, int threads, double *seconds);
+
+// Area of face f that is its node n's [m^2], 2D [m]; of a ring that of the whole circle, 2 pi int N_n r ds [m^2].
+static inline double brunt_skin_share(const brunt_skin *skin, int32_t f, int32_t n) {
+    const int32_t *node = skin->face[f];
+    if (skin->axisymmetric)
+        return M_PI / 3 * skin->face_area[f] * (skin->x[n][0] + skin->x[node[0]][0] + skin->x[node[1]][0]);
+    return skin->face_area[f] / (node[2] < 0 ? 2 : node[3] < 0 ? 3 : 4);
+}
 
 // What all forms of augury are given.
 typedef struct brunt_meeting {

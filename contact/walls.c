@@ -104,7 +104,7 @@ static int add_entries(brunt_wall_workspace *w, brunt_body *body, int32_t b, int
     int32_t base[3] = {0, 0, 0}, first = w->entry_count;
     double weight[3][4] = {{1}, {1}, {1}};
     brunt_node_local(grid, body->particles.bin[s], local);
-    real *const *x = brunt_field(&body->particles, BRUNT_FIELD_position);
+    real *const *x = brunt_kernel_place(&body->particles);
     for (int a = 0; a < dim; a++) {
         base[a] = grid->blocks[b].coord[a] * grid->side + local[a];
         brunt_kernel_weights(grid->order, ((double)x[a][s] - grid->origin[a]) / (double)grid->h - base[a], weight[a]);
@@ -147,7 +147,7 @@ static int find_touches(brunt_wall_workspace *w, brunt_body *body, const brunt_w
     const brunt_grid *grid = &body->grid;
     const brunt_plane_def *plane = &walls[index].plane;
     brunt_particles *p = &body->particles;
-    const int dim = grid->dim;
+    const int dim = grid->dim, stride = p->point_dim;
     const double h = (double)grid->h;
     real *const *x = brunt_field(p, BRUNT_FIELD_position), *const *F = brunt_field(p, BRUNT_FIELD_deformation_gradient);
     const real *reach = brunt_field(p, BRUNT_FIELD_reach)[0];
@@ -162,14 +162,14 @@ static int find_touches(brunt_wall_workspace *w, brunt_body *body, const brunt_w
         double middle = -offset;
         for (int a = 0; a < dim; a++)
             middle += plane->normal[a] * (grid->origin[a] + h * (block->coord[a] + 0.5) * grid->side);
-        if (middle > half + (NEAR + 4) * h) continue;
+        if (middle > half + (NEAR + 4) * h && !brunt_total_lagrangian(p)) continue;
         for (int64_t s = block->first; s < block->first + block->count; s++) {
             double distance = -offset, square = 0;
             for (int a = 0; a < dim; a++) distance += plane->normal[a] * (double)x[a][s];
             if (distance > (NEAR + 4) * h) continue;
             for (int c = 0; c < dim; c++) {
                 double t = 0;
-                for (int r = 0; r < dim; r++) t += (double)F[r * dim + c][s] * plane->normal[r];
+                for (int r = 0; r < dim; r++) t += (double)F[r * stride + c][s] * plane->normal[r];
                 square += t * t;
             }
             double gap = distance - (double)reach[s] * sqrt(square);
@@ -255,6 +255,19 @@ static void give_impulses(brunt_wall_workspace *w, int dim) {
     }
 }
 
+// Where a node of a total-Lagrangian body is now, as the particle that touches sees it: x_p + F (X_i - X_p).
+static void deformed_place(brunt_body *body, int64_t s, double x[3]) {
+    brunt_particles *p = &body->particles;
+    real *const *F = brunt_field(p, BRUNT_FIELD_deformation_gradient), *const *X = brunt_kernel_place(p),
+                *const *here = brunt_field(p, BRUNT_FIELD_position);
+    double now[3] = {0};
+    for (int r = 0; r < p->dim; r++) {
+        now[r] = (double)here[r][s];
+        for (int c = 0; c < p->dim; c++) now[r] += (double)F[r * p->dim + c][s] * (x[c] - (double)X[c][s]);
+    }
+    memcpy(x, now, sizeof now);
+}
+
 // Booked node by node: near mirror planes a node keeps only the body's own share of what it is given, the rest is the
 // mirror's reaction.
 static void book(const brunt_wall_workspace *w, brunt_body *body, brunt_wall *walls) {
@@ -270,6 +283,7 @@ static void book(const brunt_wall_workspace *w, brunt_body *body, brunt_wall *wa
             double own = (double)(n[BRUNT_NODE_SPARE] / n[BRUNT_NODE_MASS]);
             brunt_node_position(grid, grid->slots[number / BRUNT_BLOCK_NODES].coord, (int)(number % BRUNT_BLOCK_NODES),
                                 x);
+            if (brunt_total_lagrangian(&body->particles)) deformed_place(body, t->slot, x);
             for (int a = 0; a < grid->dim; a++) {
                 double share = own * w->entries[e].apply[a];
                 push[a] = share * t->push * wall->plane.normal[a], drag[a] = share * t->drag[a];

@@ -102,12 +102,18 @@ typedef struct brunt_mesh {
     brunt_group *groups; int32_t group_count;
 } brunt_mesh;
 
+// A function of time (or place): linear between points, held constant before the first and after the last; no points: 1 always.
+typedef struct brunt_curve { double (*points)[2]; int32_t count; } brunt_curve;  // [s] (or [m]), [-]; ascending
+
 // A structured mesh of a shape (not placed) with edges of about `size` [m]: box, sphere, cylinder, ring, prism with four
 // corners; in two dimensions box, disk, annulus, quadrilateral. Boundary groups by shape: box xmin xmax ymin ymax zmin zmax;
 // cylinder and ring start end side (ring: inner outer); prism side1 ... side4 (from corner i to the next) zmin zmax; sphere
 // none; and `surface` for all. BRUNT_BAD_INPUT for shapes that
 // have no such mesh (union, difference, ...).
 int brunt_mesh_shape(const brunt_shape *shape, int dimension, brunt_element_kind kind, double size, brunt_mesh *mesh, brunt_error *error);
+// The same of a box whose elements grow along the axes: grading[a] is the factor on `size` along axis a, over the coordinate [m].
+int brunt_mesh_graded(const brunt_shape *box, int dimension, brunt_element_kind kind, double size, const brunt_curve grading[3],
+                      brunt_mesh *mesh, brunt_error *error);
 // The surface of such a mesh in three dimensions, as sheets (a membrane kind), seen counter-clockwise from outside: all of it, or
 // the faces in the named boundary groups. Groups are kept, with the nodes that are left; `border` is added where the surface is
 // open: the nodes of edges that only one element has. A flat sheet is one face of a box, a disk the start of a cylinder.
@@ -129,6 +135,12 @@ void brunt_mesh_free(brunt_mesh *mesh);  // what the mesh owns, not the mesh its
 
 // ---------------------------------------------------------------------------------------------------- definitions
 
+// What becomes of material that a failure model has declared failed.
+typedef enum brunt_failure_action {
+    BRUNT_FAILURE_ERODE,      // its element or material point leaves the body (default)
+    BRUNT_FAILURE_SOFTEN      // it stays, without strength and without tension; needs an equation of state
+} brunt_failure_action;
+
 typedef struct brunt_material_def {
     char name[BRUNT_NAME_LENGTH];
     double density;                                   // [kg/m^3] > 0
@@ -138,11 +150,24 @@ typedef struct brunt_material_def {
     double eos_parameters[BRUNT_PARAMETER_LIMIT];
     bool bulk_viscosity;
     double viscosity_parameters[BRUNT_PARAMETER_LIMIT];
+    char failure[BRUNT_NAME_LENGTH];                  // "" = none
+    double failure_parameters[BRUNT_PARAMETER_LIMIT]; // NAN: of the strength model's parameter of the same name
+    brunt_failure_action failure_action;
 } brunt_material_def;
 
 typedef enum brunt_method { BRUNT_MPM, BRUNT_FEM, BRUNT_MEMBRANE } brunt_method;
 // Control of the zero-energy modes of one-point elements (Flanagan and Belytschko 1981), by a spring or a damper.
 typedef enum brunt_hourglass { BRUNT_HOURGLASS_STIFFNESS, BRUNT_HOURGLASS_VISCOUS } brunt_hourglass;
+
+// What takes elements or material points out of a body besides failure of its material, and what becomes of their mass.
+typedef struct brunt_erosion_def {
+    double strain;            // [-] > 0: those whose equivalent total strain reaches it go (LS-DYNA's effective strain: sqrt(2/3 e:e)
+                              // of the deviator of the logarithmic strain); default INFINITY
+    double step;              // [s] elements whose stable step falls below it go; default 0
+    bool inverted;            // those that turn inside out go; default false: an error that stops the run
+    bool keep;                // what they were made of stays: nodes that no element has left go on as free particles in contact,
+                              // material points as points without stress; default false: mass and momentum leave the world
+} brunt_erosion_def;
 
 typedef enum brunt_fill { BRUNT_FILL_REGULAR, BRUNT_FILL_JITTERED } brunt_fill;
 
@@ -156,8 +181,12 @@ typedef struct brunt_body_def {
     brunt_mesh mesh;                    // owned by the definition; node_count 0: made of the shape
     brunt_element_kind element;         // of a mesh made of the shape
     double size;                        // [m] edge length of a mesh made of the shape
+    brunt_curve grading[3];             // of a box: factor on it along x, y, z, over the coordinate; owned by the definition
     brunt_hourglass hourglass;
     double hourglass_coefficient;       // [-] 0..1; default 0.05 (stiffness) / 0.1 (viscous) as NAN; of lambda + 2 mu, but at most of 7 mu
+    brunt_erosion_def erosion;
+    bool total_lagrangian;              // BRUNT_MPM: kernels live in the undeformed configuration: no numerical fracture, however far it
+                                        // is stretched; contact with meshes and planes only; default false
     double mass_scaling;                // [s] elements whose stable step is less get density until it is not; 0 = none
     double damping;                     // [1/s] >= 0: a force of -damping m v on each node; default 0
     // BRUNT_MEMBRANE
@@ -205,9 +234,6 @@ typedef struct brunt_region_def {
     char body[BRUNT_NAME_LENGTH];       // "" = all
 } brunt_region_def;
 
-// A function of time: linear between points, held constant before the first and after the last; no points: 1 always.
-typedef struct brunt_curve { double (*points)[2]; int32_t count; } brunt_curve;  // [s], [-]; ascending in time
-
 // Nodes of a finite-element body that are held, moved or loaded.
 typedef enum brunt_group_action {
     BRUNT_GROUP_VELOCITY,      // components of `value` times the table are the velocity [m/s]; fixed: value 0
@@ -234,10 +260,19 @@ typedef struct brunt_group_def {
     brunt_gas_def gas;
 } brunt_group_def;
 
+// Where and when explosives are lit: at a point, or on a plane. Material at distance d burns from time + d / detonation speed on.
+typedef struct brunt_detonation_def {
+    double point[3], normal[3];         // [m]; [-] of a plane, 0: a point
+    double time;                        // [s]
+    char body[BRUNT_NAME_LENGTH];       // "" = all explosives
+} brunt_detonation_def;
+
 typedef enum brunt_kernel { BRUNT_LINEAR = 1, BRUNT_QUADRATIC = 2, BRUNT_CUBIC = 3 } brunt_kernel;
 typedef enum brunt_transfer { BRUNT_PIC, BRUNT_FLIP, BRUNT_APIC } brunt_transfer;
 
-typedef enum brunt_contact_method { BRUNT_CONTACT_NONE, BRUNT_CONTACT_MULTI_VELOCITY, BRUNT_CONTACT_AUGURY } brunt_contact_method;
+// Tied: bodies of material points share one velocity field at the grid nodes that both reach, in both directions: they neither part nor
+// slide (what material-point codes without contact do).
+typedef enum brunt_contact_method { BRUNT_CONTACT_NONE, BRUNT_CONTACT_MULTI_VELOCITY, BRUNT_CONTACT_AUGURY, BRUNT_CONTACT_TIED } brunt_contact_method;
 // How augury makes the velocity that opposing bodies are to have where they meet.
 typedef enum brunt_augury_form {
     BRUNT_AUGURY_AFFINE,   // velocity and gap from the same facing facet, extended affinely; reaction by the transpose
@@ -267,6 +302,8 @@ typedef struct brunt_contact_def {
 typedef struct brunt_world_def {
     int cookie;                         // set by brunt_world_def_default
     int dimension;                      // 3, or 2 = plane strain of unit thickness
+    bool axisymmetric;                  // with dimension 2: x is the distance r >= 0 from the axis of revolution, y along it; bodies are
+                                        // whole rings: masses, forces and energies are those of the full circle; default false
     double cell;                        // [m] > 0
     double origin[3];                   // [m] where a grid node lies; default 0
     brunt_kernel kernel;                // default quadratic
@@ -274,6 +311,7 @@ typedef struct brunt_world_def {
     double flip;                        // [-] for FLIP: share of the particle's own velocity kept, 0..1; default 0.99
     double cfl;                         // [-] 0..1; default 0.5
     double step;                        // [s] fixed time step, 0 = from cfl
+    double least_step;                  // [s] the run stops, with the reason, when the stable step falls below it; default 0
     double end;                         // [s] the step that would pass it is cut to end on it
     double energy_limit;                // [-] of the initial plus supplied energy; default 0.1; INFINITY = none
     int threads;                        // 0 = all there are
@@ -282,6 +320,7 @@ typedef struct brunt_world_def {
     brunt_plane_def *planes; int32_t plane_count;           // owned
     brunt_region_def *regions; int32_t region_count;        // owned
     brunt_group_def *groups; int32_t group_count;           // owned
+    brunt_detonation_def *detonations; int32_t detonation_count;  // owned
     brunt_contact_def contact;
     double gravity[3];                  // [m/s^2]
     double gravity_ramp;                // [s] gravity grows linearly from 0 over this time; default 0
@@ -295,9 +334,14 @@ brunt_group_def brunt_group_def_default(void);
 // A material of a strength model, by name, with the model's defaults; parameters without one are NAN and must be set. An unknown
 // model is refused by brunt_material_set and brunt_world_create.
 brunt_material_def brunt_material_def_default(const char *name, const char *model);
-// Sets "density" or a parameter of the strength model by its key; "eos.<key>" and "viscosity.<key>" set those of the equation of
-// state and the bulk viscosity, and "eos" with the name as `text` (else NULL) and "viscosity" switch them on with their
-// defaults. SI units. BRUNT_BAD_INPUT when there is no such key.
+// A material from the library, by name: `brunt keys presets` lists them with their sources. BRUNT_BAD_INPUT when there is none.
+int brunt_material_preset(const char *preset, const char *name, brunt_material_def *def, brunt_error *error);
+typedef struct brunt_preset_info { const char *name, *doc, *source; } brunt_preset_info;
+int32_t brunt_preset_count(void);
+brunt_preset_info brunt_preset(int32_t index);
+// Sets "density" or a parameter of the strength model by its key; "eos.<key>", "viscosity.<key>" and "failure.<key>" set those of
+// the equation of state, the bulk viscosity and the failure model, and "eos", "failure" with the name as `text` (else NULL) and
+// "viscosity" switch them on with their defaults; "failure.action" takes "erode" or "soften" as `text`. SI units. BRUNT_BAD_INPUT when there is no such key.
 int brunt_material_set(brunt_material_def *def, const char *key, double value, const char *text, brunt_error *error);
 // Zeroed memory for the arrays and shapes a definition owns, so that brunt_world_def_free can free them. NULL: out of memory.
 void *brunt_def_alloc(size_t bytes);
@@ -331,7 +375,9 @@ typedef struct brunt_energy {  // [J]; in 2D per metre of thickness
     double kinetic;            // of the particles, with the affine part of APIC; of meshes at the time of the stress, half a step
                                // after the velocities: near rest it may be a little below 0
     double internal;           // stored
-    double plastic, hourglass, contact, friction, viscosity, transfer, eroded;  // taken out, each by its cause; damping is viscosity
+    double plastic, hourglass, contact, friction, viscosity, transfer, eroded;  // taken out, each by its cause; damping is viscosity;
+                               // eroded: kinetic and stored energy that left with elements, nodes and material points
+    double heat;               // of plastic: what has warmed the material; a part, no term of the sum
     double external_work;      // done on the bodies by gravity, walls and prescribed motion
     double initial;            // kinetic + internal at the start
     double total;              // kinetic + internal + all that was taken out
@@ -342,7 +388,7 @@ typedef struct brunt_energy {  // [J]; in 2D per metre of thickness
 typedef struct brunt_momentum {
     double linear[3];          // [kg m/s]
     double angular[3];         // [kg m^2/s] about the origin, with the spin of APIC; 2D: the third component
-    double linear_impulse[3], angular_impulse[3];  // external, so far
+    double linear_impulse[3], angular_impulse[3];  // external, so far, with what erosion took away (negative)
     double linear_drift, angular_drift;  // relative change since the start, external impulses taken off
     double linear_initial[3], angular_initial[3];
 } brunt_momentum;
@@ -361,7 +407,8 @@ int64_t brunt_body_particles(const brunt_world *world, int32_t body);  // 0 of a
 int64_t brunt_body_nodes(const brunt_world *world, int32_t body);      // 0 of material points
 int64_t brunt_body_elements(const brunt_world *world, int32_t body);
 brunt_element_kind brunt_body_element(const brunt_world *world, int32_t body);
-// brunt_element_nodes(kind) node numbers of every element, nodes and elements numbered as in the mesh.
+// brunt_element_nodes(kind) node numbers of every element, nodes numbered as in the mesh, elements in its order. Of a body that
+// erodes, of the elements that are left: the field "element" says which those are. Nodes stay, with those that have left.
 void brunt_body_connectivity(const brunt_world *world, int32_t body, int32_t *out);
 typedef struct brunt_mesh_report { brunt_mesh_quality quality; double least_step, added_mass; int32_t scaled_elements; } brunt_mesh_report;
 // How good the mesh of a finite-element body is, and what mass scaling added [kg].
@@ -371,6 +418,14 @@ typedef struct brunt_body_sums {
     double low[3], high[3];  // [m] bounds of its nodes, or of its particles' centres
 } brunt_body_sums;
 void brunt_body_totals(brunt_world *world, int32_t body, brunt_body_sums *sums);
+
+// What has left a body, or been freed of stress, since the start.
+typedef struct brunt_eroded {
+    int64_t elements, particles, nodes;   // eroded elements and material points, nodes that left (or went on free, with `keep`)
+    double mass, momentum[3], angular[3], energy;  // that left the world [kg], [kg m/s], [kg m^2/s] about the origin, [J]
+    int64_t failed, strained, short_step, inverted;  // elements and points by cause
+} brunt_eroded;
+void brunt_body_eroded(const brunt_world *world, int32_t body, brunt_eroded *eroded);
 
 // What can be read of a body, at its particles, or at its nodes and its elements: stored and derived fields alike ("velocity", "stress" = Cauchy, "pressure",
 // "von_mises", "density", "plastic_strain", "temperature", "J", "volume", "id", ...).

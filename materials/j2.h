@@ -18,6 +18,9 @@
 //     closes to second order in the step; where the Lode angle of d changes under flow a first-order rest of about Y/mu
 //     times a tenth stays (measured: 4e-8 of the work at strain steps of 3e-6).
 //
+// Where a failure model softens, the flow stress is multiplied by the point's integrity: the stress then falls back to it in
+// one step, and what was stored becomes plastic work by the same trapezoid. Models take `softens` as a literal.
+//
 //   notation  m = tr b/3   d = dev b   q = sqrt(3/2) |s|, s = mu d   delta: increment of equivalent plastic strain
 #pragma once
 
@@ -123,11 +126,28 @@ BRUNT_INLINE j2_point j2_trial(int dim, const real *k, const brunt_points *point
     return p;
 }
 
-// 3 mu_bar at the middle of the return, whose end q_old estimates (exactly so in steady flow).
+// 3 mu_bar where q is `share` of the trial's.
+BRUNT_INLINE void j2_set_stiffness_at(const real *k, j2_point *p, lanes share) {
+    lanes numerator = p->m * p->m - share * share * p->dd * (real)(1.0 / 6);
+    p->stiffness = 3 * k[J2_MU] * numerator * p->dd / (p->m * p->dd - 3 * share * p->det_d);
+}
+
+// At the middle of the return, whose end q_old estimates (exactly so in steady flow).
 BRUNT_INLINE void j2_set_stiffness(const real *k, j2_point *p) {
-    lanes middle = (real)0.5 * (1 + lanes_min(p->q_old / p->q, lanes_set(1)));
-    lanes numerator = p->m * p->m - middle * middle * p->dd * (real)(1.0 / 6);
-    p->stiffness = 3 * k[J2_MU] * numerator * p->dd / (p->m * p->dd - 3 * middle * p->det_d);
+    j2_set_stiffness_at(k, p, (real)0.5 * (1 + lanes_min(p->q_old / p->q, lanes_set(1))));
+}
+
+// What is left of the flow stress, 1 to 0; and the stiffness of a return that may end much lower for it: where the area
+// under q over the return has its centroid, with which the trapezoid of the plastic work is that area (at the middle
+// Y/mu times a sixth of what was stored would be missed).
+BRUNT_INLINE lanes j2_integrity(bool softens, const brunt_points *points, int32_t i) {
+    return softens ? lanes_load(points->integrity + i) : lanes_set(1);
+}
+BRUNT_INLINE void j2_set_softened_stiffness(const real *k, const brunt_points *points, int32_t i, j2_point *p) {
+    lanes before = lanes_load(points->integrity_before + i), now = lanes_load(points->integrity + i);
+    lanes end = p->q_old * lanes_select(before > 0, now / before, lanes_set(0));
+    lanes r = lanes_min(end / p->q, lanes_set(1));
+    j2_set_stiffness_at(k, p, (real)(2.0 / 3) * (1 + r * (1 + r)) / (1 + r));
 }
 
 // Scales d by q_new / q where `plastic`, and solves m^3 - (d:d/2) m + det d = 1 for m by Newton's method. The start is
@@ -170,6 +190,7 @@ BRUNT_INLINE lanes j2_store(int dim, const real *k, const brunt_points *points, 
     lanes_store(points->state[j2_slot(dim, J2_PLASTIC_STRAIN)] + i, p->plastic_strain + delta);
     lanes_store(plastic_work, lanes_load(plastic_work) + work);
     if (points->plastic_increment) lanes_store(points->plastic_increment + i, work);
+    if (points->strain_increment) lanes_store(points->strain_increment + i, delta);
     // Along n: rho0 c^2 = kappa (J^2 + 1)/2 + 4/3 mu m - s_nn / 3.
     lanes volumetric = k[J2_KAPPA] * (1 + p->volume_change * (1 + (real)0.5 * p->volume_change));
     lanes shear = k[J2_MU] * ((real)(4.0 / 3) * p->m + (real)(1.0 / 3) * lanes_sqrt((real)(2.0 / 3) * p->dd));
@@ -222,6 +243,14 @@ BRUNT_INLINE j2_root j2_root_begin(const j2_point *p, lane_mask plastic) {
     lanes guess = (p->q - p->q_old) / p->stiffness;
     root.delta = lanes_select((guess > 0) & (guess < root.high), guess, (real)0.5 * root.high);
     return root;
+}
+
+// Lanes whose flow stress is 0 have their root at the upper end, which the search would only come near.
+BRUNT_INLINE lane_mask j2_root_collapse(j2_root *root, lanes integrity) {
+    lane_mask gone = root->active & ~(integrity > 0);
+    root->delta = lanes_select(gone, root->high, root->delta);
+    root->active &= ~gone;
+    return gone;
 }
 
 // One step after flow and its slope were evaluated at root->delta; lanes that have converged keep their delta.

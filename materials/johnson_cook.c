@@ -8,7 +8,19 @@
 // flow stress at the end is the formula's to the solver's tolerance (1e-10), whatever the step.
 #include "j2.h"
 
-enum { STATIC = J2_CONSTANTS, POWER, EXPONENT, RATE, RATE_ZERO, SOFTENING, REFERENCE, MELT, INVERSE_RANGE, HEATING };
+enum {
+    STATIC = J2_CONSTANTS,
+    POWER,
+    EXPONENT,
+    RATE,
+    RATE_ZERO,
+    SOFTENING,
+    REFERENCE,
+    MELT,
+    INVERSE_RANGE,
+    HEATING,
+    HEAT_SHARE
+};
 enum { TEMPERATURE = J2_MODEL_STATE };
 
 static const brunt_parameter parameters[] = {
@@ -46,6 +58,7 @@ static const char *prepare(const double *p, double density, bool with_eos, real 
     constants[REFERENCE] = (real)p[9];
     constants[INVERSE_RANGE] = (real)(1 / (p[8] - p[9]));
     constants[HEATING] = (real)(p[11] / (density * p[10]));
+    constants[HEAT_SHARE] = (real)p[11];
     return NULL;
 }
 
@@ -91,7 +104,7 @@ BRUNT_INLINE lanes flow_stress(const real *k, const j2_point *p, lanes start, la
     return hard * rate * soft;
 }
 
-BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_points *points) {
+BRUNT_INLINE brunt_update_result update_dim(int dim, bool softens, const real *k, const brunt_points *points) {
     update_record record = update_begin();
     const lanes inverse_rate_step = lanes_set(points->dt > 0 ? 1 / (points->dt * k[RATE_ZERO]) : 0);
     for (int32_t i = 0; i < points->count; i += BRUNT_LANES) {
@@ -99,18 +112,30 @@ BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_
         real *temperature = points->state[j2_slot(dim, TEMPERATURE)] + i;
         lanes zero = lanes_set(0), delta = zero, q = p.q, start = lanes_load(temperature), slope;
         // Below the static strength without any hardening nothing flows: most vectors of most runs stop here.
-        lane_mask plastic = p.q > k[STATIC] * softening(k, start, &slope);
+        const lanes integrity = j2_integrity(softens, points, i);
+        lanes lowest = k[STATIC] * softening(k, start, &slope);
+        if (softens) lowest *= integrity;
+        lane_mask plastic = p.q > lowest;
         if (lanes_any(plastic)) {
-            plastic = p.q > (k[STATIC] + k[POWER] * power(p.plastic_strain, k[EXPONENT])) * softening(k, start, &slope);
-            j2_set_stiffness(k, &p);
+            lanes yield = (k[STATIC] + k[POWER] * power(p.plastic_strain, k[EXPONENT])) * softening(k, start, &slope);
+            if (softens) yield *= integrity;
+            plastic = p.q > yield;
+            if (softens)
+                j2_set_softened_stiffness(k, points, i, &p);
+            else
+                j2_set_stiffness(k, &p);
             j2_root root = j2_root_begin(&p, plastic);
+            lane_mask gone = {0};
+            if (softens) gone = j2_root_collapse(&root, integrity);
             for (int step = 0; step < J2_ROOT_STEPS && lanes_any(root.active); step++) {
                 q = flow_stress(k, &p, start, inverse_rate_step, root.delta, &slope);
+                if (softens) q *= integrity, slope *= integrity;
                 j2_root_step(&p, &root, q, slope);
             }
             note_first(&record.model, root.active, i);
             delta = lanes_select(plastic, root.delta, zero);
             q = lanes_select(plastic, q, p.q);
+            if (softens) q = lanes_select(gone, zero, q);
             j2_return(dim, &p, plastic, q);
         }
         lanes work = j2_store(dim, k, points, i, &p, delta, q, &record);
@@ -120,7 +145,17 @@ BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_
 }
 
 static brunt_update_result update(const real *constants, const brunt_points *points) {
-    return points->dim == 2 ? update_dim(2, constants, points) : update_dim(3, constants, points);
+    if (points->integrity)
+        return points->dim == 2 ? update_dim(2, true, constants, points) : update_dim(3, true, constants, points);
+    return points->dim == 2 ? update_dim(2, false, constants, points) : update_dim(3, false, constants, points);
+}
+
+static void add_energy(const real *constants, const brunt_points *points, brunt_point_energy *energy) {
+    brunt_point_energy own = {0};
+    j2_energy(constants, points, &own);
+    energy->internal += own.internal;
+    energy->plastic += own.plastic;
+    energy->heat += (double)constants[HEAT_SHARE] * own.plastic;
 }
 
 const brunt_model brunt_johnson_cook = {
@@ -135,6 +170,6 @@ const brunt_model brunt_johnson_cook = {
     .state_count = COUNT_OF(state),
     .prepare = prepare,
     .update = update,
-    .energy = j2_energy,
+    .energy = add_energy,
     .wave_speed = j2_wave_speed,
 };

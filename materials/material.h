@@ -4,10 +4,13 @@
 // it writes Kirchhoff stress tau = J sigma and state. Points come in whole vectors of BRUNT_LANES (padding points
 // repeat a real point with mass and volume 0), so no function here needs a tail loop.
 //
-// A body's material is up to three components applied in this order over the same range:
+// A body's material is up to four components applied in this order over the same range:
 //   strength   (required)  deviatoric stress; also the pressure when there is no equation of state
 //   viscosity  (optional)  artificial bulk viscosity: adds q to the pressure while the material is being compressed
 //   eos        (optional)  pressure from density and internal energy
+//   failure    (optional)  damage from stress, plastic strain, rate and temperature of the strength model
+// What damage does to strength and tension acts from the next step on, by `integrity`; whether a failed point then leaves
+// its body is not the material's business.
 // Each update gets brunt_points with its own state arrays. With an eos the strength writes the deviatoric stress alone.
 //
 // Work and dissipation are trapezoidal in time: the mean of the stresses at both ends of a step, times its rate. That
@@ -30,6 +33,7 @@ typedef struct brunt_points {
     int32_t count;
     int dim;                  // 2 (plane strain) or 3
     real dt;                  // [s]
+    real time;                // [s] at the end of the step
     real cell;                // [m] length scale of the discretisation (for the artificial viscosity)
     real wave_speed;          // [m/s] of the undeformed body (for the artificial viscosity)
     const real *L[9];         // velocity gradient over the step [1/s], BRUNT_MATRIX(dim) components
@@ -43,6 +47,12 @@ typedef struct brunt_points {
     // What one component leaves for the next, within one update (never stored): dissipation and viscous pressure.
     real *plastic_increment;  // [J/m^3 of reference volume] what the strength model dissipated in this step; NULL when
                               // nobody reads it (no eos), or when it is neither plastic nor viscous
+    real *strain_increment;   // [-] equivalent plastic strain of this step, from the strength model; NULL when nobody reads it
+    // What failure says to the others, and they to it.
+    const real *integrity;    // [-] 1 sound .. 0 failed, as the last step left it: a factor on the flow stress; at 0 there is no
+                              // tension either. NULL when nothing softens
+    const real *integrity_before;  // [-] the same as the step before left it: that of the stress at the start of this step
+    const real *temperature;  // [K] of the strength model at the end of the step, for failure; NULL when it has none
     real *viscous_pressure;   // [Pa] q > 0 in compression, mean of the last step's and this one's: its work in the step
                               // is -viscous_pressure dJ per reference volume; NULL when nobody reads it
 } brunt_points;
@@ -53,6 +63,7 @@ typedef struct brunt_update_result {
     int32_t bad;              // index of the first point that failed, -1 when none did
     const char *reason;       // why, e.g. "the deformation gradient has turned inside out (J <= 0)"
     real viscosity;           // [m/s] of a strength model with shear_viscous: what it adds to Q of brunt_wave_speed
+    bool failed;              // a point with volume has failed: its first state component named "damage" is at least 1
 } brunt_update_result;
 
 // Energies of a range, per kind [J]. A component adds its own share.
@@ -60,6 +71,7 @@ typedef struct brunt_point_energy {
     double internal;          // stored (recoverable) energy, and heat of an equation of state
     double plastic;           // dissipated by plastic flow
     double viscosity;         // dissipated by the artificial viscosity
+    double heat;              // of `plastic`, what has warmed the points adiabatically: part of it, no term of the sum
 } brunt_point_energy;
 
 typedef struct brunt_parameter {
@@ -82,7 +94,9 @@ typedef struct brunt_state_field {
 typedef struct brunt_model {
     const char *name;         // as typed in a scene: "neo-hookean"
     const char *doc;          // one line, with its source
-    bool plastic, thermal, eos, viscous;  // the effects it brings: the plan and the summary list them
+    bool plastic, thermal, eos, viscous, damage;  // the effects it brings: the plan and the summary list them
+    bool burns;               // an explosive: has a state "lighting_time" [s], set from the detonators when a body is made, and
+                              // its first parameter "detonation_speed" [m/s]
     bool fluid;               // remembers no shape: the history of F but for J is nothing to it
     bool shear_viscous;       // a strength model whose stress follows the rate of shear, and dissipates
     bool needs_eos;           // has no pressure of its own
@@ -116,6 +130,7 @@ typedef struct brunt_model {
 // The lists. Order is the order of `brunt keys`.
 extern const brunt_model *const brunt_strength_models[];  extern const int brunt_strength_model_count;
 extern const brunt_model *const brunt_eos_models[];       extern const int brunt_eos_model_count;
+extern const brunt_model *const brunt_failure_models[];  extern const int brunt_failure_model_count;
 extern const brunt_model brunt_bulk_viscosity;            // there is one
 
 // Wave speed that limits the time step [m/s]. A strength model gives the longitudinal speed, or with an eos its shear
@@ -127,3 +142,4 @@ real brunt_wave_speed(real strength, real eos, real viscosity);
 // Finds a model by name, NULL when there is none.
 const brunt_model *brunt_find_strength(const char *name);
 const brunt_model *brunt_find_eos(const char *name);
+const brunt_model *brunt_find_failure(const char *name);

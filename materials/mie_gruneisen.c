@@ -1,19 +1,25 @@
-// Mie-Gruneisen equation of state about a linear shock Hugoniot Us = c0 + s up, with rho gamma = rho0 gamma0 (for the
-// form: Meyers, Dynamic Behavior of Materials (1994), chapter 5; Wilkins, Computer Simulation of Dynamic Phenomena
-// (1999)):
-//   compression, eta = 1 - J:   p = p_H (1 - gamma0 eta / 2) + gamma0 e,   p_H = rho0 c0^2 eta / (1 - s eta)^2
-//   tension, mu = 1/J - 1 < 0:  p = rho0 c0^2 mu + gamma0 e
+// Mie-Gruneisen equation of state about a linear shock Hugoniot Us = c0 + s up (for the form: Meyers, Dynamic Behavior
+// of Materials (1994), chapter 5; Wilkins, Computer Simulation of Dynamic Phenomena (1999)), with rho gamma = rho0
+// gamma0 in compression and gamma = gamma0 in expansion:
+//   compression, eta = 1 - J:  p = p_H (1 - gamma0 eta / 2) + gamma0 e,   p_H = rho0 c0^2 eta / (1 - s eta)^2
+//   expansion, mu = 1/J - 1:   p = rho0 c0^2 mu + gamma0 e / J
 // with e the internal energy per reference volume. With mu, eta = mu / (1 + mu) and 1 - s eta = (1 - (s - 1) mu) / (1 +
-// mu). On the Hugoniot e = p_H eta / 2, and p = p_H: the compression law holds it exactly. Both branches meet at J = 1
-// with value and slope. A compression past eta = 1/s has no shock state; it is reported, never bounded.
+// mu). On the Hugoniot e = p_H eta / 2, and p = p_H: the compression law holds it exactly. Both branches meet at J = 1,
+// without energy with their slope too. A compression past eta = 1/s has no shock state; it is reported, never bounded.
+//
+// In expansion rho gamma = rho0 gamma0 would have a gas whose adiabatic energy goes as exp(-gamma0 J): debris that has
+// spread thirty times and is stopped by a wall would be heated by exp(30 gamma0) (as measured: steps fell to 1e-14 s).
+// With gamma constant it is a gas of exponent 1 + gamma0.
 //
 // e changes by -p dJ + viscous work + plastic work. p at the end of the step is linear in e, so the trapezoid
-//   e1 = e0 - (p0 + p1)/2 dJ + Q,  p1 = a + gamma0 e1   is solved in closed form.
+//   e1 = e0 - (p0 + p1)/2 dJ + Q,  p1 = a + g e1,  g = gamma0 / max(J, 1)   is solved in closed form.
 // `compression_work` is -int p dJ alone: plastic work is counted by the strength model, viscous work by the viscosity.
 //
 // With `tension` p stays at -tension where the laws give less, the material then being torn (liquids: 0; p = 0 for mu <
 // 0). The trapezoid is that of the pressures so bounded. Whether the end of a step is torn does not depend on the order
-// of bounding and solving: both pressures lie on the same side of -tension, as 1 + gamma0 dJ/2 > 0.
+// of bounding and solving: both pressures lie on the same side of -tension, as 1 + g dJ/2 > 0.
+// A point that has failed (integrity 0) bears none, from the step after on: the bound then differs at both ends of a
+// step.
 #include "energy_state.h"
 
 enum { DENSITY = ENERGY_CONSTANTS, SOUND_SPEED, SLOPE, GAMMA, STIFFNESS, TENSION };
@@ -49,6 +55,15 @@ BRUNT_INLINE lanes cold_pressure(const real *k, lanes change, lanes *valid) {
     return k[STIFFNESS] * lanes_select(change > 0, eta * inverse, hugoniot);
 }
 
+// Pressure per energy, g.
+BRUNT_INLINE lanes thermal(const real *k, lanes change) { return k[GAMMA] / (1 + lanes_max(change, lanes_set(0))); }
+
+// Pressure at which a point tears.
+BRUNT_INLINE lanes tear_pressure(const real *k, const real *integrity, int32_t i) {
+    lanes sound = lanes_set(-k[TENSION]);
+    return integrity ? lanes_select(lanes_load(integrity + i) > 0, sound, lanes_set(0)) : sound;
+}
+
 BRUNT_INLINE brunt_update_result update_dim(int dim, bool tears, const real *k, const brunt_points *points) {
     update_record record = update_begin();
     const real half = (real)0.5;
@@ -62,19 +77,20 @@ BRUNT_INLINE brunt_update_result update_dim(int dim, bool tears, const real *k, 
         note_deformation(&record, lanes_select(1 + step > 0, J, lanes_set(0)), i);
 
         lanes e = lanes_load(points->state[INTERNAL_ENERGY] + i);
-        lanes p_old = cold_pressure(k, change - dJ, &valid_before) + k[GAMMA] * e;
-        if (tears) p_old = lanes_max(p_old, lanes_set(-k[TENSION]));
-        lanes cold = cold_pressure(k, change, &valid);
+        lanes p_old = cold_pressure(k, change - dJ, &valid_before) + thermal(k, change - dJ) * e;
+        if (tears) p_old = lanes_max(p_old, tear_pressure(k, points->integrity_before, i));
+        lanes cold = cold_pressure(k, change, &valid), g = thermal(k, change);
         lanes heat = lanes_set(0);
         if (points->plastic_increment) heat += lanes_load(points->plastic_increment + i);
         if (points->viscous_pressure) heat -= lanes_load(points->viscous_pressure + i) * dJ;
-        lanes e_new = (e - half * (p_old + cold) * dJ + heat) / (1 + half * k[GAMMA] * dJ);
-        lanes p = cold + k[GAMMA] * e_new;
+        lanes e_new = (e - half * (p_old + cold) * dJ + heat) / (1 + half * g * dJ);
+        lanes p = cold + g * e_new;
         lane_mask torn = {0};
         if (tears) {
-            torn = p < -k[TENSION];
-            e_new = lanes_select(torn, e - half * (p_old - k[TENSION]) * dJ + heat, e_new);
-            p = lanes_max(p, lanes_set(-k[TENSION]));
+            lanes least = tear_pressure(k, points->integrity, i);
+            torn = p < least;
+            e_new = lanes_select(torn, e - half * (p_old + least) * dJ + heat, e_new);
+            p = lanes_max(p, least);
         }
         note_first(&record.model, ~(valid > 0), i);
 
@@ -84,11 +100,12 @@ BRUNT_INLINE brunt_update_result update_dim(int dim, bool tears, const real *k, 
         lanes Jp = J * p;
         for (int c = 0; c < 3; c++) lanes_store(points->stress[c] + i, lanes_load(points->stress[c] + i) - Jp);
 
-        // c^2 = J^2 / rho0 (dp/deta at constant e + gamma0 p); in tension c0^2 + gamma0 p J^2 / rho0.
+        // c^2 = J^2 / rho0 (dp/deta at constant e + g p); in expansion c0^2 + J (gamma0 p + g e) / rho0.
         lanes eta = -change, inverse = 1 / valid, r = 1 - half * k[GAMMA] * eta;
         lanes slope = inverse * inverse * ((1 + k[SLOPE] * eta) * inverse * r - half * k[GAMMA] * eta);
-        slope = lanes_select(change > 0, 1 / (J * J), slope);
-        lanes speed2 = J * J * (k[STIFFNESS] * slope + k[GAMMA] * p) / k[DENSITY];
+        lanes expanding = 1 / (J * J) + g * e_new / (J * k[STIFFNESS]);
+        slope = lanes_select(change > 0, expanding, slope);
+        lanes speed2 = J * J * (k[STIFFNESS] * slope + g * p) / k[DENSITY];
         // What is torn closes again at c0.
         if (tears) speed2 = lanes_select(torn, lanes_set(k[STIFFNESS] / k[DENSITY]), speed2);
         note_speed(&record, speed2);
@@ -97,7 +114,7 @@ BRUNT_INLINE brunt_update_result update_dim(int dim, bool tears, const real *k, 
 }
 
 static brunt_update_result update(const real *constants, const brunt_points *points) {
-    if (constants[TENSION] < (real)INFINITY)
+    if (constants[TENSION] < (real)INFINITY || points->integrity)
         return points->dim == 2 ? update_dim(2, true, constants, points) : update_dim(3, true, constants, points);
     return points->dim == 2 ? update_dim(2, false, constants, points) : update_dim(3, false, constants, points);
 }

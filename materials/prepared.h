@@ -4,7 +4,7 @@
 #include "brunt.h"
 #include "material.h"
 
-typedef enum brunt_component { BRUNT_STRENGTH, BRUNT_VISCOSITY, BRUNT_EOS, BRUNT_COMPONENTS } brunt_component;
+typedef enum brunt_component { BRUNT_STRENGTH, BRUNT_VISCOSITY, BRUNT_EOS, BRUNT_FAILURE, BRUNT_COMPONENTS } brunt_component;
 
 typedef struct brunt_material {
     char name[BRUNT_NAME_LENGTH];
@@ -14,19 +14,24 @@ typedef struct brunt_material {
     real wave_speed; // [m/s] undeformed
     real rest_stress; // [Pa] what every normal stress is while undeformed: less the pressure of the equation of state
     bool sheet, slack; // in plane stress; bears no compression
+    brunt_failure_action failure_action;
+    // Of models in 2D and 3D: the first of their state arrays that holds this, -1 where there is none. `integrity` is followed by
+    // `integrity_before`.
+    int8_t temperature[2], integrity[2];
 } brunt_material;
 
 // Checks the definition and prepares the constants. BRUNT_BAD_INPUT with the offending key.
 int brunt_material_make(const brunt_material_def *def, brunt_material *material, brunt_error *error);
-// The same of a sheet: of a model that has a plane-stress form, without equation of state and viscosity.
+// The same of a sheet: of a model that has a plane-stress form, without equation of state, viscosity and failure.
 int brunt_material_make_sheet(const brunt_material_def *def, bool slack, brunt_material *material, brunt_error *error);
 // Stored and dissipated energy of a range [J], of component k; as a sheet when the material is one.
 void brunt_material_energy(const brunt_material *material, brunt_component k, const brunt_points *points,
                            brunt_point_energy *energy);
 
-// One step of a material over a range: strength, viscosity and equation of state, in this order. points[k] is the range
-// as component k sees it, with L, dt and its state; `plastic` and `viscous` have room for points->count reals each, for
-// what one component leaves for the next. Gives the wave speed of all components together, and the first point that
-// failed in the first component that did.
+// One step of a material over a range: strength, viscosity, equation of state and failure, in this order. points[k] is the
+// range as component k sees it, with L, dt, time and its state; `plastic`, `viscous` and `strain` have room for points->count
+// reals each, for what one component leaves for the next (strain: [-] plastic, for failure; may be NULL without). Gives the
+// wave speed of all components together, the first point whose update is bad in the first component that has one, and
+// whether points have failed.
 brunt_update_result brunt_material_update(const brunt_material *material, brunt_points points[BRUNT_COMPONENTS],
-                                          real *plastic, real *viscous);
+                                          real *plastic, real *viscous, real *strain);

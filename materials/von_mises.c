@@ -32,24 +32,34 @@ BRUNT_INLINE lanes flow_stress(const real *k, lanes plastic_strain, lanes *slope
     return k[YIELD] + k[HARDENING] * plastic_strain + k[RISE] * (1 - decay);
 }
 
-BRUNT_INLINE brunt_update_result update_dim(int dim, bool saturates, const real *k, const brunt_points *points) {
+BRUNT_INLINE brunt_update_result update_dim(int dim, bool saturates, bool softens, const real *k,
+                                            const brunt_points *points) {
     update_record record = update_begin();
     for (int32_t i = 0; i < points->count; i += BRUNT_LANES) {
         j2_point p = j2_trial(dim, k, points, i, &record);
         lanes zero = lanes_set(0), delta = zero, q = p.q, slope = lanes_set(k[HARDENING]);
         lanes yield = saturates ? flow_stress(k, p.plastic_strain, &slope) : k[YIELD] + k[HARDENING] * p.plastic_strain;
+        const lanes integrity = j2_integrity(softens, points, i);
+        if (softens) yield *= integrity, slope *= integrity;
         lane_mask plastic = p.q > yield;
         if (lanes_any(plastic)) {
-            j2_set_stiffness(k, &p);
+            if (softens)
+                j2_set_softened_stiffness(k, points, i, &p);
+            else
+                j2_set_stiffness(k, &p);
             if (saturates) {
                 j2_root root = j2_root_begin(&p, plastic);
+                lane_mask gone = {0};
+                if (softens) gone = j2_root_collapse(&root, integrity);
                 for (int step = 0; step < J2_ROOT_STEPS && lanes_any(root.active); step++) {
                     q = flow_stress(k, p.plastic_strain + root.delta, &slope);
+                    if (softens) q *= integrity, slope *= integrity;
                     j2_root_step(&p, &root, q, slope);
                 }
                 note_first(&record.model, root.active, i);
                 delta = lanes_select(plastic, root.delta, zero);
                 q = lanes_select(plastic, q, p.q);
+                if (softens) q = lanes_select(gone, zero, q);
             } else {
                 delta = lanes_select(plastic, (p.q - yield) / (p.stiffness + slope), zero);
                 q = yield + slope * delta;
@@ -61,11 +71,15 @@ BRUNT_INLINE brunt_update_result update_dim(int dim, bool saturates, const real 
     return update_end(&record, points, "the plastic increment of the hardening law was not found");
 }
 
+BRUNT_INLINE brunt_update_result update_of(int dim, const real *k, const brunt_points *points) {
+    const bool saturates = k[RISE] > 0;
+    if (points->integrity)
+        return saturates ? update_dim(dim, true, true, k, points) : update_dim(dim, false, true, k, points);
+    return saturates ? update_dim(dim, true, false, k, points) : update_dim(dim, false, false, k, points);
+}
+
 static brunt_update_result update(const real *constants, const brunt_points *points) {
-    bool saturates = constants[RISE] > 0;
-    if (points->dim == 2)
-        return saturates ? update_dim(2, true, constants, points) : update_dim(2, false, constants, points);
-    return saturates ? update_dim(3, true, constants, points) : update_dim(3, false, constants, points);
+    return points->dim == 2 ? update_of(2, constants, points) : update_of(3, constants, points);
 }
 
 const brunt_model brunt_von_mises = {

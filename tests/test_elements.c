@@ -243,7 +243,7 @@ START_TEST(patch_test) {
                 }
             }
             for (int c = 0; c < 6; c++) p->stress[c] = stress[c];
-            brunt_material_update(&body.material, points, plastic, q);
+            brunt_material_update(&body.material, points, plastic, q, NULL);
 
             // Floats of places 5 m away, in elements of a few centimetres.
             const double near = (sizeof(real) == 4 && m == 4 ? 2000 : 100) * tolerance;

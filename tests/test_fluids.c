@@ -92,7 +92,7 @@ static brunt_update_result drop_try(drop *d, const double H[9]) {
                 d->F[r * dim + c][l] = F[r * dim + c];
                 d->L[r * dim + c][l] = (real)(H[3 * r + c] / d->dt);
             }
-    return d->last = brunt_material_update(&d->material, d->points, d->plastic, d->viscous);
+    return d->last = brunt_material_update(&d->material, d->points, d->plastic, d->viscous, NULL);
 }
 static void drop_step(drop *d, const double H[9]) {
     brunt_update_result result = drop_try(d, H);

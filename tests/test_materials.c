@@ -37,6 +37,23 @@ static const typical typical_values[] = {
     {"tension", {NAN, 5e9}},      {"ideal-gas.initial_energy", {1e9, 3e8}},
     {"gamma", {1.4, 5.0 / 3}},    {"tait.gamma", {NAN, 1}},
     {"dynamic_viscosity", {1e3, 5e4}},
+    // A solid and a gas; TNT, of a set that is consistent with the typical density.
+    {"C1", {137e9, 0}}, {"C2", {272e9, 0}}, {"C3", {214e9, 0}}, {"C4", {2, 0.4}}, {"C5", {0.5, 0.4}}, {"C6", {-0.3, 0}},
+    {"polynomial.initial_energy", {NAN, 1e9}}, {"detonation_speed", {2960, 2944}}, {"jwl.A", {371.2e9, 371.2e9}},
+    {"jwl.B", {3.231e9, 3.21e9}}, {"R1", {4.15, 4.15}}, {"R2", {0.95, 0.95}}, {"omega", {0.30, 0.35}},
+    {"jwl.initial_energy", {7.0e9, 6.0e9}}, {"bulk_modulus", {10e9, 20e9}},
+    // Alumina AD-99.5 and float glass; the 48 MPa concrete and one of four times its strength.
+    {"johnson-holmquist-2.A", {0.93, 0.93}}, {"johnson-holmquist-2.B", {0.31, 0.088}}, {"johnson-holmquist-2.C", {NAN, 0.003}},
+    {"johnson-holmquist-2.T", {0.2e9, 0.15e9}}, {"johnson-holmquist-2.D1", {0.005, 0.053}}, {"johnson-holmquist-2.D2", {1, 0.85}},
+    {"johnson-holmquist-2.K1", {130.95e9, 45.4e9}}, {"johnson-holmquist-2.K2", {NAN, -138e9}}, {"johnson-holmquist-2.K3", {NAN, 290e9}},
+    {"johnson-holmquist-2.G", {90.16e9, 30.4e9}}, {"johnson-holmquist-2.N", {0.6, 0.77}}, {"M", {0.6, 0.35}},
+    {"SFMAX", {NAN, 0.5}}, {"HEL", {2.79e9, 5.95e9}}, {"P_HEL", {1.46e9, 2.92e9}},
+    {"holmquist-johnson-cook.A", {0.79, 0.79}}, {"holmquist-johnson-cook.B", {1.6, 1.6}}, {"holmquist-johnson-cook.C", {0.007, NAN}},
+    {"holmquist-johnson-cook.T", {4e6, 16e6}}, {"holmquist-johnson-cook.D1", {0.04, 0.02}}, {"holmquist-johnson-cook.K1", {85e9, 85e9}},
+    {"holmquist-johnson-cook.K2", {-171e9, -171e9}}, {"holmquist-johnson-cook.K3", {208e9, 208e9}}, {"holmquist-johnson-cook.G", {14.86e9, 14.86e9}},
+    {"holmquist-johnson-cook.N", {0.61, 0.61}}, {"fc", {48e6, 192e6}}, {"SMAX", {7, NAN}}, {"EFMIN", {0.01, 0.005}},
+    {"P_crush", {16e6, 64e6}}, {"mu_crush", {0.001, 0.004}}, {"P_lock", {0.8e9, 1e9}}, {"mu_lock", {0.1, 0.05}},
+    {"cohesion", {200e6, 50e6}}, {"friction_angle", {0.5, 0.6}}, {"dilatancy_angle", {NAN, 0.2}},
 };
 static const double typical_density = 8930;
 
@@ -103,6 +120,8 @@ static sample sample_create(const brunt_model *model, const double *parameters, 
             ck_assert_int_lt(s.state_scalars, BRUNT_MAX_STATE);
             real *a = s.points.state[s.state_scalars++] = reals(count);
             for (int i = 0; i < count; i++) a[i] = field->initial ? field->initial(s.constants, c) : 0;
+            // An explosive that is lit long ago: products, from the first step on.
+            for (int i = 0; i < count && !strcmp(field->name, "lighting_time"); i++) a[i] = -1;
         }
     }
     s.points.plastic_increment = reals(count);
@@ -324,7 +343,10 @@ START_TEST(zero_strain_gives_zero_stress) {
         mat rest = combine(1, get_stress(&s, 0), pressure, identity);
         ck_assert(inner(rest, rest) == 0);
         double expect = (double)s.model->wave_speed(s.constants);
-        ck_assert_double_eq_tol((double)result.wave_speed, expect, TOLERANCE(1e-12, 1e-5) * expect + DBL_MIN);
+        if (s.model->burns) // that of the front, before it has burnt
+            ck_assert_double_lt((double)result.wave_speed, expect);
+        else
+            ck_assert_double_eq_tol((double)result.wave_speed, expect, TOLERANCE(1e-12, 1e-5) * expect + DBL_MIN);
     }
     brunt_point_energy e = energy_of(&s);
     ck_assert(e.internal == stored && e.plastic == 0 && e.viscosity == 0);
@@ -362,8 +384,10 @@ START_TEST(rotation_changes_nothing) {
     sample s = sample_of(f, BRUNT_LANES), turned = sample_of(f, BRUNT_LANES);
     uint64_t seed = 11;
     enum { STEPS = 200 };
-    mat H = random_matrix(&seed, f.dim, 0.2 / STEPS), f_step = combine(1, identity, 1, H);
-    mat R = identity;
+    mat H = random_matrix(&seed, f.dim, 0.2 / STEPS);
+    // What tears would have no stress to turn.
+    if (f.model->damage && H.a[0][0] + H.a[1][1] + H.a[2][2] > 0) H = combine(-1, H, 0, H);
+    mat f_step = combine(1, identity, 1, H), R = identity;
     for (int step = 0; step < STEPS; step++) {
         bool moving = (step < STEPS / 2) != f.model->fluid;
         mat next = rotation(f.dim, 0.07 * (step + 1));
@@ -466,11 +490,15 @@ START_TEST(extremes_are_admissible) {
             for (int k = 0; k < (shape ? 1 : f.dim); k++) U.a[k][k] = pow(volumes[v], shape ? 1 : 1.0 / f.dim);
             mat R = rotation(f.dim, 1);
             mat H = combine(1, mul(R, mul(U, transpose(R))), -1, identity);
+            if (f.model->burns) step_all(&s, (mat){{{0}}});
             for (int i = 0; i < s.points.count; i++) set_step(&s, i, H);
             brunt_update_result result = try_update(&s);
             if (strcmp(f.model->name, "mie-gruneisen") == 0 && volumes[v] < 0.4) {
                 ck_assert_int_eq(result.bad, 0);
                 ck_assert_ptr_nonnull(strstr(result.reason, "Mie-Gruneisen"));
+            } else if (strcmp(f.model->name, "polynomial") == 0 && result.bad == 0) {
+                ck_assert_ptr_nonnull(strstr(result.reason, "polynomial"));
+                ck_assert(volumes[v] < 0.1 || volumes[v] > 10); // of a gas, in one step
             } else check_finite(&s, result, "volume");
             sample_destroy(&s);
         }
@@ -572,9 +600,11 @@ static double ledger_error(form f, int steps, double size, double *flowed) {
 
 START_TEST(energy_ledger_closes) {
     form f = forms[_i];
-    double flowed, size = f.model->small_strain ? 0.01 : 0.3, coarse = ledger_error(f, 100, size, &flowed),
+    // Where strength follows pressure a path of 0.3 has stresses of the order of the moduli, and fracture is over in a step.
+    bool small = f.model->small_strain || (f.model->plastic && !f.model->accepts_eos);
+    double flowed, size = small ? 0.01 : 0.3, coarse = ledger_error(f, 100, size, &flowed),
                    fine = ledger_error(f, 1600, size, &flowed);
-    ck_assert_msg(fine <= TOLERANCE(3e-6, 5e-3), "%s %dD: energy off by %.3g", f.model->name, f.dim, fine);
+    ck_assert_msg(fine <= TOLERANCE(f.model->damage ? 1e-5 : 3e-6, 5e-3), "%s %dD: energy off by %.3g", f.model->name, f.dim, fine);
     // A sixteenth of the step: 1/16 of the error would be first order, 1/256 is second. Where in its step the material
     // first yields varies the factor.
     if (TOLERANCE(1, 0))

@@ -30,6 +30,7 @@ brunt_body_def brunt_body_def_default(void) {
         .element = BRUNT_HEX8,
         .hourglass_coefficient = NAN, // by form
         .contact_thickness = NAN,     // the thickness
+        .erosion = {.strain = INFINITY},
     };
 }
 
@@ -52,6 +53,7 @@ void brunt_world_def_free(brunt_world_def *def) {
         brunt_shape_free(&def->bodies[i].shape);
         brunt_mesh_free(&def->bodies[i].mesh);
         brunt_free(def->bodies[i].faces);
+        for (int a = 0; a < 3; a++) brunt_free(def->bodies[i].grading[a].points);
     }
     for (int32_t i = 0; i < def->group_count; i++) brunt_free(def->groups[i].table.points);
     brunt_free(def->groups);
@@ -60,6 +62,7 @@ void brunt_world_def_free(brunt_world_def *def) {
     brunt_free(def->bodies);
     brunt_free(def->planes);
     brunt_free(def->regions);
+    brunt_free(def->detonations);
     brunt_free(def->contact.pairs);
     *def = (brunt_world_def){0};
 }

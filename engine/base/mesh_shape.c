@@ -238,8 +238,8 @@ static bool take_elements(const brunt_mesh_grid *grid, brunt_element_kind kind, 
     return true;
 }
 
-int brunt_mesh_shape(const brunt_shape *shape, int dimension, brunt_element_kind kind, double size, brunt_mesh *mesh,
-                     brunt_error *error) {
+static int mesh_shape(const brunt_shape *shape, int dimension, brunt_element_kind kind, double size, bool half,
+                      brunt_mesh *mesh, brunt_error *error) {
     *mesh = (brunt_mesh){0};
     if (brunt_element_dimension(kind) != dimension)
         return brunt_fail(error, BRUNT_BAD_INPUT, "elements of kind %s are of %d dimensions, the shape is of %d",
@@ -253,8 +253,9 @@ int brunt_mesh_shape(const brunt_shape *shape, int dimension, brunt_element_kind
     if (status) return status;
     const char *names[GROUP_LIMIT] = {0};
     brunt_mesh_grid grid = {0};
-    int made =
-        make_grid(shape, dimension, size, kind == BRUNT_TET4 || kind == BRUNT_TRI3, &grid, names, &status, error);
+    const bool even = half || kind == BRUNT_TET4 || kind == BRUNT_TRI3;
+    int made = make_grid(shape, dimension, size, even, &grid, names, &status, error);
+    if (!made && !status && half) made = brunt_mesh_grid_keep(shape->center[0] - 1e-9 * shape->radius, &grid);
     if (!status && made == BRUNT_GRID_TOO_MANY)
         status = brunt_fail(error, BRUNT_BAD_INPUT,
                             "an edge length of %g m makes more than 100 million nodes of this shape", size);
@@ -269,4 +270,15 @@ int brunt_mesh_shape(const brunt_shape *shape, int dimension, brunt_element_kind
     }
     brunt_mesh_grid_free(&grid);
     return status;
+}
+
+int brunt_mesh_shape(const brunt_shape *shape, int dimension, brunt_element_kind kind, double size, brunt_mesh *mesh,
+                     brunt_error *error) {
+    return mesh_shape(shape, dimension, kind, size, false, mesh, error);
+}
+
+int brunt_mesh_half(const brunt_shape *shape, brunt_element_kind kind, double size, brunt_mesh *mesh,
+                    brunt_error *error) {
+    BRUNT_ASSERT(shape->kind == BRUNT_SPHERE || shape->kind == BRUNT_RING);
+    return mesh_shape(shape, 2, kind, size, true, mesh, error);
 }

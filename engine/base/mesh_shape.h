@@ -30,6 +30,12 @@ int brunt_mesh_grid_annulus(double inner, double outer, int32_t around, int32_t 
 // Replaces a two-dimensional grid by its extrusion from z = `from` to `to` in `layers`.
 int brunt_mesh_grid_extrude(double from, double to, int32_t layers, brunt_mesh_grid *grid);
 void brunt_mesh_grid_free(brunt_mesh_grid *grid);
+// Takes out the cells with a node at x < `from`, and the nodes that are left without one. 0, or BRUNT_GRID_MEMORY.
+int brunt_mesh_grid_keep(double from, brunt_mesh_grid *grid);
 
 // Cuts quadrilaterals into 2 triangles each, hexahedra into 6 tetrahedra each: `elements` takes 6 resp. 24 numbers a cell.
 void brunt_mesh_grid_split(const brunt_mesh_grid *grid, int32_t *elements);
+
+// As brunt_mesh_shape in two dimensions, of the half of a disk or an annulus on the right of its centre: the section of a ball or a
+// shell that is revolved about x = center[0].
+int brunt_mesh_half(const brunt_shape *shape, brunt_element_kind kind, double size, brunt_mesh *mesh, brunt_error *error);

@@ -51,6 +51,30 @@ static int allocate(int dimension, double nodes, double cells, brunt_mesh_grid *
     return BRUNT_GRID_MEMORY;
 }
 
+int brunt_mesh_grid_keep(double from, brunt_mesh_grid *grid) {
+    const int corners = grid->dimension == 2 ? 4 : 8;
+    int32_t cells = 0, nodes = 0, *number = brunt_alloc(((size_t)grid->node_count + 1) * sizeof *number);
+    if (!number) return BRUNT_GRID_MEMORY;
+    for (int32_t c = 0; c < grid->cell_count; c++) {
+        bool stays = true;
+        for (int a = 0; a < corners; a++) stays = stays && grid->x[grid->cell[c][a]][0] >= from;
+        if (!stays) continue;
+        for (int a = 0; a < corners; a++) number[grid->cell[c][a]] = 1;
+        memmove(grid->cell[cells++], grid->cell[c], sizeof *grid->cell);
+    }
+    for (int32_t n = 0; n < grid->node_count; n++) {
+        if (!number[n]) continue;
+        memmove(grid->x[nodes], grid->x[n], sizeof *grid->x);
+        grid->rank[nodes] = grid->rank[n], grid->groups[nodes] = grid->groups[n];
+        number[n] = nodes++;
+    }
+    for (int32_t c = 0; c < cells; c++)
+        for (int a = 0; a < corners; a++) grid->cell[c][a] = number[grid->cell[c][a]];
+    grid->node_count = nodes, grid->cell_count = cells;
+    brunt_free(number);
+    return 0;
+}
+
 // Point i of n between a and b. Exactly a and b at the ends, exactly a everywhere when b is a, and mirrored bit for
 // bit.
 static double between(double a, double b, int32_t i, int32_t n) {

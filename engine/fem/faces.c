@@ -29,6 +29,12 @@ static bool same_nodes(const brunt_fem_body *body, int64_t a, int64_t b) {
     return true;
 }
 
+// Of rings, the axis is no surface.
+static bool on_axis(const brunt_fem_body *body, int64_t face) {
+    return body->element->axisymmetric && body->start[4 * (size_t)face_node(body, face, 0)] == 0 &&
+           body->start[4 * (size_t)face_node(body, face, 1)] == 0;
+}
+
 // Faces are put into a bin by their least node, where the few others that can be equal are.
 int brunt_fem_faces(const brunt_fem_body *body, brunt_faces *faces) {
     const brunt_element *type = body->element;
@@ -47,7 +53,7 @@ int brunt_fem_faces(const brunt_fem_body *body, brunt_faces *faces) {
         int32_t found = 0;
         for (int32_t n = 0; n < body->node_count; n++)
             for (int64_t i = first[n]; i < first[n + 1]; i++) {
-                bool alone = true; // a sheet's element is its one face
+                bool alone = !on_axis(body, list[i]); // a sheet's element is its one face
                 for (int64_t j = first[n]; alone && !type->sheet && j < first[n + 1]; j++)
                     alone = i == j || !same_nodes(body, list[i], list[j]);
                 outside[list[i]] = alone;

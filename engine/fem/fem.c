@@ -73,7 +73,7 @@ static void reset_state(brunt_fem_body *body, double temperature, int32_t count)
 static void measure_lateral_ratio(brunt_fem_body *body, double temperature) {
     const real stretch = sizeof(real) == 4 ? (real)1e-4 : (real)1e-6;
     enum { AXIAL, LATERAL };
-    real L[9][BRUNT_LANES] = {{0}}, plastic[BRUNT_LANES] = {0}, viscous[BRUNT_LANES] = {0};
+    real L[9][BRUNT_LANES] = {{0}}, plastic[BRUNT_LANES] = {0}, viscous[BRUNT_LANES] = {0}, strain[BRUNT_LANES] = {0};
     double before[2], stress[2];
     brunt_points points[BRUNT_COMPONENTS];
     for (int step = 0; step < 2; step++) { // an equation of state may have stress at rest
@@ -88,7 +88,7 @@ static void measure_lateral_ratio(brunt_fem_body *body, double temperature) {
             points[k].cell = 1;
             for (int c = 0; c < BRUNT_MATRIX(body->point_dim); c++) points[k].L[c] = L[c];
         }
-        brunt_material_update(&body->material, points, plastic, viscous);
+        brunt_material_update(&body->material, points, plastic, viscous, strain);
         for (int k = 0; k < 2; k++) stress[k] = (double)points[BRUNT_STRENGTH].stress[k][0];
         if (step == 0) memcpy(before, stress, sizeof before);
     }
@@ -119,8 +119,33 @@ static void place_nodes(const brunt_body_def *def, const brunt_mesh *mesh, brunt
     }
 }
 
+// Rings lie at r >= 0. What is on the axis up to rounding is on it.
+static int put_on_axis(brunt_fem_body *body, brunt_error *error) {
+    double far = 0;
+    for (int32_t n = 0; n < body->node_count; n++) far = fmax(far, fabs((double)body->start[(size_t)n * 4]));
+    const double on = far * (sizeof(real) == 4 ? 1e-6 : 1e-12);
+    for (int32_t n = 0; n < body->node_count; n++) {
+        real *r = &body->start[(size_t)n * 4];
+        if ((double)*r < -on)
+            return brunt_fail(error, BRUNT_BAD_INPUT,
+                              "bodies.%s: node %d of the mesh is at r = %g m: rings about the axis lie at r >= 0",
+                              body->name, body->node_id[n] + 1, (double)*r);
+        if ((double)*r > on) continue;
+        *r = brunt_fem_node(body, n)[BRUNT_FEM_X] = 0;
+        body->held[n] = 1;
+    }
+    return BRUNT_OK;
+}
+
+static double element_volume(const brunt_fem_body *body, const double (*x)[3]) {
+    double share[BRUNT_ELEMENT_NODES], volume = 0;
+    if (!body->element->shares) return body->element->volume(x) * (body->element->sheet ? (double)body->thickness : 1);
+    body->element->shares(x, share);
+    for (int a = 0; a < body->element->nodes; a++) volume += share[a] > 0 ? share[a] : NAN;
+    return volume;
+}
+
 static int measure_volumes(brunt_fem_body *body, brunt_error *error) {
-    const double across = body->element->sheet ? (double)body->thickness : 1;
     real *volume = brunt_element_scalars(body, BRUNT_ELEMENT_reference_volume)[0];
     for (int32_t b = 0; b < body->block_count; b++) {
         brunt_fem_block *block = &body->block[b];
@@ -128,29 +153,40 @@ static int measure_volumes(brunt_fem_body *body, brunt_error *error) {
         for (int32_t s = block->first; s < block->first + block->count; s++) {
             double x[BRUNT_ELEMENT_NODES][3];
             brunt_fem_corners(body, s, x);
-            double V = body->element->volume((const double(*)[3])x) * across;
+            double V = element_volume(body, (const double(*)[3])x);
             if (!(V > 0) || !isfinite(V))
                 return brunt_fail(error, BRUNT_BAD_INPUT,
                                   "bodies.%s: element %d of the mesh has volume %g: it is flat or inside out",
                                   body->name, body->element_id[s] + 1, V);
             volume[s] = (real)V;
-            sum += V;
+            sum += body->element->volume((const double(*)[3])x);
         }
-        block->length = (real)pow(sum / (across * block->count), 1.0 / brunt_element_span(body->element));
+        block->length = (real)pow(sum / block->count, 1.0 / brunt_element_span(body->element));
     }
     return BRUNT_OK;
 }
 
+void brunt_fem_shares(const brunt_fem_body *body, int32_t slot, double *share) {
+    const real volume = body->scalar[body->field[BRUNT_ELEMENT_reference_volume].first][slot];
+    const int nodes = body->element->nodes;
+    double x[BRUNT_ELEMENT_NODES][3];
+    for (int a = 0; a < nodes; a++) share[a] = (double)volume / nodes;
+    if (!body->element->shares || !(volume > 0)) return;
+    brunt_fem_corners(body, slot, x);
+    body->element->shares((const double(*)[3])x, share);
+}
+
 // Each node gets an equal share of its elements' masses: the sum of a row of the consistent matrix for simplices and
-// parallelograms. The bound of the stable step is for equal shares.
+// parallelograms. The bound of the stable step is for equal shares. Nodes of a ring get that row itself.
 static void share_masses(brunt_fem_body *body, double *mass) {
     const int nodes = body->element->nodes;
-    const real *volume = brunt_element_scalars(body, BRUNT_ELEMENT_reference_volume)[0];
     const brunt_element_field *scale = &body->field[BRUNT_ELEMENT_density_scale];
     for (int32_t s = 0; s < body->slots; s++) {
         double factor = scale->components ? (double)body->scalar[scale->first][s] : 1;
-        double share = (double)body->material.density * factor * (double)volume[s] / nodes;
-        for (int a = 0; a < nodes; a++) mass[body->element_node[(int64_t)s * nodes + a]] += share;
+        double share[BRUNT_ELEMENT_NODES];
+        brunt_fem_shares(body, s, share);
+        for (int a = 0; a < nodes; a++)
+            mass[body->element_node[(int64_t)s * nodes + a]] += (double)body->material.density * factor * share[a];
     }
     for (int32_t n = 0; n < body->node_count; n++) brunt_fem_node(body, n)[BRUNT_FEM_MASS] = (real)mass[n];
 }
@@ -202,6 +238,7 @@ static int allocate_nodes(brunt_fem_body *body) {
     body->start = brunt_alloc((size_t)body->node_count * 4 * sizeof(real));
     body->partial = brunt_alloc((size_t)body->partial_count * 4 * sizeof(real));
     body->report = brunt_alloc((size_t)body->block_count * sizeof *body->report);
+    if (body->element->axisymmetric && !(body->held = brunt_alloc((size_t)body->node_count + 1))) return -1;
     return body->node && body->start && body->partial && body->report ? 0 : -1;
 }
 
@@ -212,7 +249,8 @@ static int make(const brunt_body_def *def, const brunt_mesh *mesh, brunt_fem_bod
         return brunt_fail(error, BRUNT_FAILED, "bodies.%s: out of memory for %d elements", def->name,
                           mesh->element_count);
     place_nodes(def, mesh, body);
-    int status = measure_volumes(body, error);
+    int status = body->element->axisymmetric ? put_on_axis(body, error) : BRUNT_OK;
+    if (!status) status = measure_volumes(body, error);
     if (status) return status;
     if (measure_surface(body)) return brunt_fail(error, BRUNT_FAILED, "bodies.%s: out of memory", def->name);
     measure_lateral_ratio(body, def->temperature);
@@ -224,22 +262,27 @@ static int make(const brunt_body_def *def, const brunt_mesh *mesh, brunt_fem_bod
     return BRUNT_OK;
 }
 
-int brunt_fem_make(const brunt_body_def *def, const brunt_material *material, int dim, const brunt_mesh *mesh,
-                   brunt_fem_body *body, brunt_error *error) {
+static int make_body(const brunt_body_def *def, const brunt_material *material, int dim, bool axisymmetric,
+                     const brunt_mesh *mesh, brunt_fem_body *body, brunt_error *error) {
     *body = (brunt_fem_body){.dim = dim,
-                             .point_dim = brunt_element_is_sheet(mesh->kind) ? 2 : dim,
+                             .point_dim = brunt_element_is_sheet(mesh->kind) ? 2
+                                          : axisymmetric                     ? 3
+                                                                             : dim,
                              .thickness = brunt_element_is_sheet(mesh->kind) ? (real)def->thickness : 0,
                              .contact_thickness = !brunt_element_is_sheet(mesh->kind) ? 0
                                                   : isnan(def->contact_thickness)     ? (real)def->thickness
                                                                                       : (real)def->contact_thickness,
                              .damping = def->damping,
                              .kind = mesh->kind,
-                             .element = brunt_elements[mesh->kind],
+                             .element = (axisymmetric ? brunt_axisymmetric_elements : brunt_elements)[mesh->kind],
                              .material = *material,
                              .hourglass = def->hourglass};
     memcpy(body->name, def->name, sizeof body->name);
     const double standard = def->hourglass == BRUNT_HOURGLASS_VISCOUS ? 0.1 : 0.05;
     body->hourglass_coefficient = (real)(isnan(def->hourglass_coefficient) ? standard : def->hourglass_coefficient);
+    if (!body->element)
+        return brunt_fail(error, BRUNT_BAD_INPUT, "bodies.%s: %s elements do not turn about an axis: tri3 and quad4 do",
+                          def->name, brunt_element_name(mesh->kind));
     if (body->element->dim != dim)
         return brunt_fail(error, BRUNT_BAD_INPUT,
                           "bodies.%s: %s elements are %d-dimensional, the scene is %d-dimensional", def->name,
@@ -266,12 +309,22 @@ int brunt_fem_make(const brunt_body_def *def, const brunt_material *material, in
     return status;
 }
 
+int brunt_fem_make(const brunt_body_def *def, const brunt_material *material, int dim, const brunt_mesh *mesh,
+                   brunt_fem_body *body, brunt_error *error) {
+    return make_body(def, material, dim, false, mesh, body, error);
+}
+
+int brunt_fem_make_axisymmetric(const brunt_body_def *def, const brunt_material *material, const brunt_mesh *mesh,
+                                brunt_fem_body *body, brunt_error *error) {
+    return make_body(def, material, 2, true, mesh, body, error);
+}
+
 void brunt_fem_free(brunt_fem_body *body) {
     for (int32_t g = 0; g < body->group_count; g++) brunt_free(body->groups[g].nodes);
-    void *const owned[] = {body->node,   body->start,      body->node_id,       body->held,
-                           body->load,   body->element_id, body->local,         body->slab,
-                           body->block,  body->block_node, body->element_node,  body->partial,
-                           body->report, body->partial_of, body->partial_first, body->groups};
+    void *const owned[] = {body->node,         body->start,   body->node_id, body->held,       body->load,
+                           body->element_id,   body->local,   body->slab,    body->block,      body->block_node,
+                           body->element_node, body->partial, body->report,  body->partial_of, body->partial_first,
+                           body->groups,       body->bonds,   body->mark,    body->rank};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++) brunt_free(owned[k]);
     *body = (brunt_fem_body){0};
 }
@@ -283,13 +336,18 @@ size_t brunt_fem_bytes(const brunt_fem_body *body) {
     bytes += body->load ? nodes * 4 * sizeof(real) : 0;
     bytes += corners * (sizeof(int32_t) + sizeof(uint16_t)) + (size_t)body->slots * sizeof(int32_t) + body->slab_bytes;
     bytes += (size_t)body->partial_count * (4 * sizeof(real) + 2 * sizeof(int32_t));
+    if (body->bonds) bytes += (nodes + (size_t)body->mesh_elements) * sizeof(int32_t) + (size_t)body->slots;
     return bytes + (size_t)body->block_count * (sizeof *body->block + sizeof *body->report);
 }
 
+// See element.inc: copies of the nodes, at most 40 vectors of a stage, 9 components of the gradient and 3 increments.
+size_t brunt_fem_tile_reals(const brunt_fem_body *body) {
+    return (size_t)body->block_nodes * 12 + (size_t)(40 + 9 + 3) * BRUNT_FEM_TILE;
+}
+
 int brunt_fem_workspace_fit(brunt_fem_workspace *work, const brunt_fem_body *body) {
-    // See element.inc: copies of the nodes, at most 40 vectors of a stage, 9 components of the gradient and 2
-    // increments.
-    size_t reals = (size_t)body->block_nodes * 12 + (size_t)(40 + 9 + 2) * BRUNT_FEM_TILE;
+    size_t reals = brunt_fem_tile_reals(body);
+    if (body->erodes_inverted) reals += (size_t)body->scalar_count * BRUNT_FEM_TILE;
     return brunt_reserve(&work->memory, &work->capacity, reals * sizeof(real), 0);
 }
 
@@ -299,7 +357,8 @@ void brunt_fem_workspace_free(brunt_fem_workspace *work) {
 }
 
 brunt_points brunt_fem_points(brunt_fem_body *body, brunt_component component, int64_t first, int32_t count) {
-    brunt_points points = {.count = count, .dim = body->point_dim, .wave_speed = body->material.wave_speed};
+    brunt_points points = {
+        .count = count, .dim = body->point_dim, .wave_speed = body->material.wave_speed, .time = body->time};
     real **F = brunt_element_scalars(body, BRUNT_ELEMENT_deformation_gradient),
          **stress = brunt_element_scalars(body, BRUNT_ELEMENT_kirchhoff_stress);
     for (int c = 0; c < BRUNT_MATRIX(body->point_dim); c++) points.F[c] = F[c] + first;

@@ -32,7 +32,7 @@ enum {
     BRUNT_ELEMENT_FIELDS(BRUNT_ELEMENT_FIELD_INDEX)
 #undef BRUNT_ELEMENT_FIELD_INDEX
         BRUNT_ELEMENT_BASE_FIELDS,
-    BRUNT_ELEMENT_MAX_FIELDS = BRUNT_ELEMENT_BASE_FIELDS + 3 * 8,
+    BRUNT_ELEMENT_MAX_FIELDS = BRUNT_ELEMENT_BASE_FIELDS + 4 * 8,
     BRUNT_ELEMENT_MAX_SCALARS = 96
 };
 
@@ -56,16 +56,34 @@ struct brunt_fem_report {
     double hourglass_stored;   // [J] in the springs of the stiffness form, now
     double hourglass_lost;     // [J] taken by the dampers of the viscous form in the step just made: trapezoidal, both steps' rates
     double stable_step;        // [s] least of the block (see element.inc), with the wave speeds of this step; with dt 0 of the
-                               // undeformed material
+                               // undeformed material, or of the step before
+    real wave_speed;           // [m/s] greatest of the step; 0 before the first
+    bool failed;               // the material of an element has failed
+    int32_t marked;            // of bodies that erode: elements with a mark (see brunt_fem_body)
     int32_t bad;               // slot of an element whose update failed, -1
     const char *reason;
 };
+
+typedef enum brunt_fem_mark {
+    BRUNT_MARK_NONE,
+    BRUNT_MARK_INVERTED,       // the last step would have turned it inside out: set by the kernels
+    BRUNT_MARK_FAILED, BRUNT_MARK_STRAINED, BRUNT_MARK_SHORT
+} brunt_fem_mark;
+
+// The mass of a node that has left its body with its last element: the smallest there is, so that neither the kick nor sums need
+// to know. Such a node is at rest and stays where it was.
+#ifdef BRUNT_FLOAT
+#define BRUNT_FEM_NO_MASS 1.17549435e-38f
+#else
+#define BRUNT_FEM_NO_MASS 2.2250738585072014e-308
+#endif
 
 struct brunt_fem_body {
     char name[BRUNT_NAME_LENGTH];
     int index;                 // among all bodies, in order of name
     int dim;                   // of the room the nodes are in
-    int point_dim;             // of the material's points: 2 for membranes (F is then the stretch U in the plane, see material.h)
+    int point_dim;             // of the material's points: 2 for membranes (F is then the stretch U in the plane, see material.h);
+                               // 3 for rings about an axis (r, z, hoop: F_rt, F_zt, F_tr, F_tz are 0)
     real thickness;            // [m] of membranes, undeformed; 0 of others
     real contact_thickness;    // [m] of membranes, as contact sees it; 0 of others
     double damping;            // [1/s] of the mass
@@ -85,7 +103,7 @@ struct brunt_fem_body {
     uint8_t *held;             // of each node: bit a set when component a is prescribed; NULL when nothing is
     real *load;                // node_count x 4 [N] external forces on nodes of this step (traction, pressure); NULL when none
 
-    int32_t element_count, slots;  // real elements, places with padding: each block is filled to whole vectors with copies of
+    int32_t element_count, slots;  // real elements (of now), places with padding: each block is filled to whole vectors with copies of
                                    // its last element that have volume 0 and exert no force
     int32_t *element_id;       // of each slot: its number in the mesh, -1 for padding
     int32_t *element_node;     // slots x element->nodes: node numbers (of this body)
@@ -105,22 +123,75 @@ struct brunt_fem_body {
     int32_t *partial_first, *partial_of;  // of node n: partial_of[partial_first[n] .. partial_first[n + 1])
     brunt_fem_report *report;  // a block each
 
+    // Of bodies that erode, else NULL and 0.
+    int32_t *bonds;            // of each node: how many elements it still has; 0: it is loose
+    bool erodes_inverted;      // an element that would turn inside out keeps its last state and is marked instead
+    uint8_t *mark;             // of each slot: why its element is to leave (brunt_fem_mark)
+    int32_t mesh_elements;     // elements at the start
+    int32_t *rank;             // of each element of the mesh: its place among those that are left, by their numbers; for readers
+    bool ranked;               // `rank` is up to date
     brunt_group *groups; int32_t group_count;  // the mesh's, in this body's node numbers
     double added_mass;         // [kg] by mass scaling
     int32_t scaled_elements;   // how many got some
     double mean_edge;          // [m] of the surface at the start
     double least_step;         // [s] stable step of the undeformed mesh
+    real time;                 // [s] at the end of the step, for materials that burn
 };
 
 // Makes a body of a mesh that brunt_mesh_check accepts. Nodes are placed by the definition's placement, at rest; stress and state
 // are those of new material. BRUNT_BAD_INPUT or BRUNT_FAILED (memory).
 int brunt_fem_make(const brunt_body_def *def, const brunt_material *material, int dim, const brunt_mesh *mesh, brunt_fem_body *body,
                    brunt_error *error);
+// The same of a mesh of triangles or quadrilaterals in x = r and y = z that is revolved about the axis x = 0: rings with masses and
+// forces of the whole circle. Nodes on the axis are held there (`held`).
+int brunt_fem_make_axisymmetric(const brunt_body_def *def, const brunt_material *material, const brunt_mesh *mesh,
+                                brunt_fem_body *body, brunt_error *error);
+// Shares of an element's reference volume that its nodes have of its mass [m^3]; 0 of padding.
+void brunt_fem_shares(const brunt_fem_body *body, int32_t slot, double *share);
 void brunt_fem_free(brunt_fem_body *body);
 size_t brunt_fem_bytes(const brunt_fem_body *body);
 
+// --- erode.c
+// What a body needs to lose elements: bonds, marks, ranks. 0, or -1: out of memory.
+int brunt_fem_erodes(brunt_fem_body *body, bool inverted);
+// Takes `count` elements out, given by ascending slots: the last element of a block moves into the gap, so that others change
+// their slots; element_count, bonds, marks and the padding follow. Forces and reports of their blocks are made anew (dt 0). Nodes
+// are left alone.
+void brunt_fem_remove(brunt_fem_body *body, const int32_t *slots, int32_t count, brunt_fem_workspace *work);
+// Elements of a saved state by their slots, brunt_fem_elements_count numbers: first the mesh's number of each (-1: none), then
+// their nodes. `set` makes of them all that follows from them but the forces; -1 when they are not of this body.
+int64_t brunt_fem_elements_count(const brunt_fem_body *body);
+void brunt_fem_elements_get(const brunt_fem_body *body, int64_t *out);
+int brunt_fem_elements_set(brunt_fem_body *body, const int64_t *in);
+// Brings `rank` up to date.
+void brunt_fem_ranks(brunt_fem_body *body);
+// The node has left with its last element.
+static inline bool brunt_fem_gone(const brunt_fem_body *body, int32_t node) {
+    return body->bonds && !body->bonds[node] &&
+           body->node[(size_t)node * BRUNT_FEM_NODE_REALS + BRUNT_FEM_MASS] == (real)BRUNT_FEM_NO_MASS;
+}
+// Equivalent logarithmic strain of the elements of a block (materials/log_strain.h): marks those at which it is `limit` or more.
+void brunt_fem_mark_strained(brunt_fem_body *body, int32_t block, double limit);
+// -dt sum f . v of a block with its forces and velocities as they are [J]: stress_work of its report.
+double brunt_fem_stress_work(const brunt_fem_body *body, int32_t block, double dt);
+
+// One element of a body as a body of its own, so that what the kernels say of blocks can be had of single elements.
+typedef struct brunt_fem_single brunt_fem_single;
+brunt_fem_single *brunt_fem_single_make(const brunt_fem_body *body);  // NULL: out of memory
+void brunt_fem_single_free(brunt_fem_single *single);
+typedef struct brunt_fem_share {
+    brunt_point_energy energy;   // [J] of the material
+    double hourglass_stored;     // [J]
+    double half_work;            // [J] -dt/2 sum f . v
+    double stable_step;          // [s] with the greatest wave speed of its block
+} brunt_fem_share;
+// Element `slot` with its nodes moved back by `back` times their velocities [s]; `dt` is that of half_work.
+brunt_fem_share brunt_fem_single_look(brunt_fem_single *single, const brunt_fem_body *body, int32_t slot, double back, double dt,
+                                      brunt_fem_workspace *work);
+
 struct brunt_fem_workspace { void *memory; size_t capacity; };  // of a thread, for any body
 int brunt_fem_workspace_fit(brunt_fem_workspace *work, const brunt_fem_body *body);  // 0, or -1: out of memory
+size_t brunt_fem_tile_reals(const brunt_fem_body *body);  // of it, what a tile takes; states that are kept follow
 void brunt_fem_workspace_free(brunt_fem_workspace *work);
 
 static inline real **brunt_element_scalars(brunt_fem_body *body, int field) { return body->scalar + body->field[field].first; }

@@ -70,6 +70,10 @@ typedef struct fem_pass {
     real norm, overlap, cosine;
     real thickness;     // of membranes
     lanes stored, lost; // hourglass work so far
+    // Of bodies whose elements may turn inside out, else NULL.
+    uint8_t *mark;
+    real *kept; // scalar_count x FEM_TILE
+    int32_t turned; // in this tile
 } fem_pass;
 
 enum { FEM_TILE = BRUNT_FEM_TILE };
@@ -110,11 +114,40 @@ static inline brunt_points fem_points_from(const brunt_points *whole, int32_t of
     return points;
 }
 
+// --- elements that would turn inside out, of bodies where they leave instead: their state stays that of the last step
+
+// J is no larger than what rounding makes of it.
+BRUNT_INLINE lane_mask inside_out(int dim, const lanes *F) {
+    lanes J = F[0] * F[3] - F[1] * F[2], size = lanes_set(0);
+    for (int c = 0; c < dim * dim; c++) size += F[c] * F[c];
+    if (dim == 3)
+        J = F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) + F[2] * (F[3] * F[7] - F[4] * F[6]);
+    return J <= 64 * LANES_REAL_EPSILON * (dim == 3 ? size * lanes_sqrt(size) : size);
+}
+
+static inline void fem_note_turned(fem_pass *pass, int64_t slot, lane_mask turned) {
+    for (int l = 0; l < BRUNT_LANES && lanes_any(turned); l++)
+        if (turned[l] && pass->volume[slot + l] > 0) pass->mark[slot + l] = BRUNT_MARK_INVERTED, pass->turned++;
+}
+
+// Everything the elements of a tile keep, aside before the material's update and back after it.
+static inline void fem_keep_state(const brunt_fem_body *body, const fem_pass *pass, int64_t slot, int32_t count) {
+    for (int c = 0; pass->turned && c < body->scalar_count; c++)
+        memcpy(pass->kept + c * FEM_TILE, body->scalar[c] + slot, (size_t)count * sizeof(real));
+}
+
+static inline void fem_restore_state(const brunt_fem_body *body, const fem_pass *pass, int64_t slot, int32_t count) {
+    for (int32_t k = 0; pass->turned && k < count; k++)
+        for (int c = 0; pass->mark[slot + k] == BRUNT_MARK_INVERTED && c < body->scalar_count; c++)
+            body->scalar[c][slot + k] = pass->kept[c * FEM_TILE + k];
+}
+
 static inline fem_pass fem_pass_begin(brunt_fem_body *body, const brunt_fem_block *block, real dt, real *room) {
     const bool viscous = body->element->hourglass_modes && body->hourglass == BRUNT_HOURGLASS_VISCOUS;
     const brunt_element_field *rate = &body->field[BRUNT_ELEMENT_hourglass_rate],
                               *scale = &body->field[BRUNT_ELEMENT_density_scale];
     real *copy = room, *velocity = copy + (size_t)body->block_nodes * 8;
+    const bool keeps = body->erodes_inverted && dt > 0;
     fem_load_block(body, block, copy, viscous ? velocity : NULL);
     const real c0 = body->material.wave_speed, density = body->material.density;
     return (fem_pass){.copy = copy,
@@ -135,5 +168,7 @@ static inline fem_pass fem_pass_begin(brunt_fem_body *body, const brunt_fem_bloc
                       .norm = body->hourglass_norm,
                       .overlap = body->hourglass_overlap,
                       .cosine = (real)sqrt((double)body->hourglass_overlap),
-                      .thickness = body->thickness};
+                      .thickness = body->thickness,
+                      .mark = keeps ? body->mark : NULL,
+                      .kept = keeps ? room + brunt_fem_tile_reals(body) : NULL};
 }

@@ -3,6 +3,7 @@
 #include "layout.h"
 
 #include <math.h>
+#include <string.h>
 
 void brunt_fem_corners(const brunt_fem_body *body, int32_t slot, double (*x)[3]) {
     const int nodes = body->element->nodes;
@@ -29,14 +30,47 @@ static void orthonormalise(int n, int count, double (*v)[BRUNT_ELEMENT_NODES]) {
     }
 }
 
+// What the lumped masses of an element's nodes make of products of vectors over them: 1 / (n mu_a), with mu_a a node's
+// share of the mass, for motions along any axis, and for radial ones, which nodes on the axis of rings do not make.
+static void node_weights(const brunt_element *type, const double (*x)[3], double *weight, double *radial) {
+    double share[BRUNT_ELEMENT_NODES], sum = 0;
+    for (int a = 0; a < type->nodes; a++) weight[a] = radial[a] = 1;
+    if (!type->shares) return;
+    type->shares(x, share);
+    for (int a = 0; a < type->nodes; a++) sum += share[a];
+    for (int a = 0; a < type->nodes; a++) {
+        weight[a] = sum / (type->nodes * share[a]);
+        radial[a] = x[a][0] > 0 ? weight[a] : 0;
+    }
+}
+
+// Squared cosine of the least angle between the span of `count` vectors of n and that of `modes` others, at most; in
+// the product with `weight`. Both are orthonormalised.
+static double greatest_cosine(int n, const double *weight, int count, double (*b)[BRUNT_ELEMENT_NODES], int modes,
+                              double (*gamma)[BRUNT_ELEMENT_NODES]) {
+    double sum = 0;
+    for (int a = 0; a < n; a++) {
+        for (int i = 0; i < count; i++) b[i][a] *= sqrt(weight[a]);
+        for (int m = 0; m < modes; m++) gamma[m][a] *= sqrt(weight[a]);
+    }
+    orthonormalise(n, count, b);
+    orthonormalise(n, modes, gamma);
+    for (int i = 0; i < count; i++)
+        for (int m = 0; m < modes; m++) sum += pow(product(n, b[i], gamma[m]), 2);
+    return fmin(sum, 1);
+}
+
 // What distortion does to the hourglass vectors gamma of an element: the greatest eigenvalue of their Gram matrix, by
-// Gershgorin's circles, over that of the undistorted element; and a bound of the squared cosine between them and b.
+// Gershgorin's circles, over that of the undistorted element; and a bound of the squared cosine between them and b (of
+// rings, in radial motion, b and the hoop).
 static void hourglass_shape(const brunt_element *type, const double (*x)[3], double *norm, double *overlap) {
     const int n = type->nodes, modes = type->hourglass_modes, dim = brunt_element_span(type);
     real gradient[BRUNT_ELEMENT_NODES][3];
-    double b[3][BRUNT_ELEMENT_NODES], gamma[4][BRUNT_ELEMENT_NODES];
+    double b[3][BRUNT_ELEMENT_NODES], gamma[4][BRUNT_ELEMENT_NODES] = {{0}}, other[4][BRUNT_ELEMENT_NODES];
+    double weight[BRUNT_ELEMENT_NODES], radial[BRUNT_ELEMENT_NODES];
     type->gradient(x, gradient);
-    for (int i = 0; i < dim; i++)
+    node_weights(type, x, weight, radial);
+    for (int i = 0; i < 3; i++)
         for (int a = 0; a < n; a++) b[i][a] = (double)gradient[a][i];
     for (int m = 0; m < modes; m++) {
         for (int a = 0; a < n; a++) gamma[m][a] = type->hourglass[m][a];
@@ -49,15 +83,19 @@ static void hourglass_shape(const brunt_element *type, const double (*x)[3], dou
     *norm = 0;
     for (int m = 0; m < modes; m++) {
         double row = 0;
-        for (int k = 0; k < modes; k++) row += fabs(product(n, gamma[m], gamma[k]));
+        for (int k = 0; k < modes; k++) {
+            double inner = 0;
+            for (int a = 0; a < n; a++) inner += weight[a] * gamma[m][a] * gamma[k][a];
+            row += fabs(inner);
+        }
         *norm = fmax(*norm, row / n);
     }
-    orthonormalise(n, dim, b);
-    orthonormalise(n, modes, gamma);
-    *overlap = 0;
-    for (int i = 0; i < dim; i++)
-        for (int m = 0; m < modes; m++) *overlap += pow(product(n, b[i], gamma[m]), 2);
-    *overlap = fmin(*overlap, 1);
+    memcpy(other, gamma, sizeof other);
+    *overlap = greatest_cosine(n, weight, dim, b, modes, gamma);
+    if (!type->axisymmetric) return;
+    for (int i = 0; i < 3; i++)
+        for (int a = 0; a < n; a++) b[i][a] = (double)gradient[a][i];
+    *overlap = fmax(*overlap, greatest_cosine(n, radial, 3, b, modes, other));
 }
 
 // omega^2 of strain, and of the hourglass springs [1/s^2] or dampers [1/s], of an undeformed element. `warp`: what the
@@ -78,6 +116,7 @@ static void element_frequencies(const brunt_fem_body *body, const double (*x)[3]
         for (int j = 0; j < dim; j++) deviator += pow(S[i][j] - (i == j ? trace / dim : 0), 2);
     double greatest = trace / dim + sqrt((dim - 1.0) / dim * deviator);
     *strain = n * c0 * c0 * (fmax(r, 0) * trace + (1 - r) * greatest);
+    if (type->axisymmetric) *strain = c0 * c0 * brunt_fem_ring_bound(type, x, r);
     *hourglass = warp[0] = warp[1] = 0;
     if (!type->hourglass_modes) return;
     double share = (double)body->hourglass_coefficient * (double)body->hourglass_norm;
@@ -131,7 +170,7 @@ static void own_corners(const brunt_fem_body *body, int32_t slot, double (*x)[3]
 }
 
 void brunt_fem_steps(brunt_fem_body *body, double mass_scaling) {
-    const double across = body->element->sheet ? (double)body->thickness : 1;
+    const real *volume = brunt_element_scalars(body, BRUNT_ELEMENT_reference_volume)[0];
     double x[BRUNT_ELEMENT_NODES][3], norm = 1, overlap = 0;
     for (int32_t s = 0; s < body->slots && body->element->hourglass_modes; s++) {
         double element_norm, element_overlap;
@@ -155,8 +194,7 @@ void brunt_fem_steps(brunt_fem_body *body, double mass_scaling) {
             body->scalar[field->first][s] = (real)density;
             if (body->element_id[s] >= 0 && density > 1) {
                 body->scaled_elements++;
-                body->added_mass += (density - 1) * across * body->element->volume((const double(*)[3])x) *
-                                    (double)body->material.density;
+                body->added_mass += (density - 1) * (double)volume[s] * (double)body->material.density;
             }
         }
         body->least_step = fmin(body->least_step, stable_step(body, (const double(*)[3])x, density));

@@ -11,14 +11,19 @@ void brunt_body_free(brunt_body *body) {
     brunt_particles_free(&body->particles);
     brunt_grid_free(&body->grid);
     brunt_free(body->report);
+    brunt_free(body->rank);
     *body = (brunt_body){0};
 }
 
 brunt_points brunt_body_points(brunt_body *body, brunt_component component, int64_t first, int32_t count) {
     brunt_particles *p = &body->particles;
-    const int dim = p->dim;
-    brunt_points points = {
-        .count = count, .dim = dim, .cell = body->grid.h, .wave_speed = body->material.wave_speed, .may_reshape = true};
+    const int dim = p->point_dim;
+    brunt_points points = {.count = count,
+                           .dim = dim,
+                           .cell = body->grid.h,
+                           .wave_speed = body->material.wave_speed,
+                           .may_reshape = true,
+                           .time = body->time};
     real **F = brunt_field(p, BRUNT_FIELD_deformation_gradient),
          **stress = brunt_field(p, BRUNT_FIELD_kirchhoff_stress);
     for (int c = 0; c < BRUNT_MATRIX(dim); c++) points.F[c] = F[c] + first;
@@ -48,17 +53,19 @@ brunt_point_energy brunt_body_energy(brunt_body *body) {
     return energy;
 }
 
+void brunt_body_block_bounds(const brunt_body *body, int32_t b, double low[3], double high[3]) {
+    const brunt_block *block = &body->grid.blocks[b];
+    real *const *x = body->particles.scalar + body->particles.field[BRUNT_FIELD_position].first;
+    for (int a = 0; a < body->particles.dim; a++) {
+        low[a] = INFINITY, high[a] = -INFINITY;
+        for (int64_t s = block->first; s < block->first + block->count; s++)
+            low[a] = fmin(low[a], (double)x[a][s]), high[a] = fmax(high[a], (double)x[a][s]);
+    }
+}
+
 double brunt_body_spread(brunt_body *body) {
     brunt_particles *p = &body->particles;
-    real *const *F = brunt_field(p, BRUNT_FIELD_deformation_gradient);
-    const real *volume = brunt_field(p, BRUNT_FIELD_reference_volume)[0];
     double most = 0;
-    for (int64_t s = 0; s < p->slots; s++) {
-        double J = p->dim == 2 ? (double)(F[0][s] * F[3][s] - F[1][s] * F[2][s])
-                               : (double)(F[0][s] * (F[4][s] * F[8][s] - F[5][s] * F[7][s]) -
-                                          F[1][s] * (F[3][s] * F[8][s] - F[5][s] * F[6][s]) +
-                                          F[2][s] * (F[3][s] * F[7][s] - F[4][s] * F[6][s]));
-        most = fmax(most, J * (double)volume[s]);
-    }
+    for (int64_t s = 0; s < p->slots; s++) most = fmax(most, (double)brunt_plane_volume(p, s));
     return pow(most, 1.0 / p->dim) / (double)body->grid.h;
 }

@@ -5,21 +5,21 @@
 #include "lanes.h"
 #include "memory.h"
 
-void brunt_particles_init(brunt_particles *particles, int dim, const brunt_particle_needs *needs) {
-    *particles = (brunt_particles){.dim = dim};
+void brunt_particles_init(brunt_particles *particles, int dim, int point_dim, const brunt_particle_needs *needs) {
+    *particles = (brunt_particles){.dim = dim, .point_dim = point_dim};
     int scalars = 0;
-#define ADD_FIELD(name_, unit_, components_, when)                                                                     \
+#define ADD_FIELD(name_, unit_, components_, which_, when)                                                             \
     particles->field[BRUNT_FIELD_##name_] =                                                                            \
-        (brunt_particle_field){#name_, unit_, scalars, (when) ? components_(dim) : 0, NULL, 0};                        \
+        (brunt_particle_field){#name_, unit_, scalars, (when) ? components_(which_) : 0, NULL, 0};                     \
     scalars += particles->field[BRUNT_FIELD_##name_].components;
     BRUNT_PARTICLE_FIELDS(ADD_FIELD)
 #undef ADD_FIELD
     particles->field_count = BRUNT_BASE_FIELDS;
-    for (int m = 0; m < 3; m++) {
+    for (int m = 0; m < 4; m++) {
         const brunt_model *model = needs->models[m];
         for (int s = 0; model && s < model->state_count; s++) {
             const brunt_state_field *state = &model->state[s];
-            int components = dim == 3 ? state->components3 : state->components2;
+            int components = point_dim == 3 ? state->components3 : state->components2;
             particles->field[particles->field_count++] =
                 (brunt_particle_field){state->name, state->unit, scalars, components, model, s};
             scalars += components;
@@ -62,6 +62,19 @@ int brunt_particles_reserve(brunt_particles *particles, int64_t slots) {
 void brunt_particles_free(brunt_particles *particles) {
     brunt_free(particles->slab);
     *particles = (brunt_particles){0};
+}
+
+real brunt_plane_volume(brunt_particles *particles, int64_t s) {
+    real *const *F = brunt_field(particles, BRUNT_FIELD_deformation_gradient);
+    const real volume = brunt_field(particles, BRUNT_FIELD_reference_volume)[0][s];
+    const real *x = brunt_field(particles, BRUNT_FIELD_position)[0];
+    if (particles->dim == 3)
+        return volume *
+               (F[0][s] * (F[4][s] * F[8][s] - F[5][s] * F[7][s]) - F[1][s] * (F[3][s] * F[8][s] - F[5][s] * F[6][s]) +
+                F[2][s] * (F[3][s] * F[7][s] - F[4][s] * F[6][s]));
+    if (brunt_axisymmetric(particles)) // the ring's volume over its circumference; the hoop stretch is r / R
+        return volume * F[8][s] * (F[0][s] * F[4][s] - F[1][s] * F[3][s]) / ((real)6.283185307179586 * x[s]);
+    return volume * (F[0][s] * F[3][s] - F[1][s] * F[2][s]);
 }
 
 real **brunt_state_arrays(brunt_particles *particles, const brunt_model *model, int state) {

@@ -73,7 +73,7 @@ static void find_places(void *context, int64_t begin, int64_t end, int worker) {
     brunt_particles *p = j->particles;
     const int dim = grid->dim, shift = dim == 3 ? 2 : 3, mask = grid->side - 1;
     const double offset = 0.5 * (grid->order - 1);
-    real *const *x = brunt_field(p, BRUNT_FIELD_position);
+    real *const *x = brunt_kernel_place(p);
     const real o[3] = {(real)grid->origin[0], (real)grid->origin[1], (real)grid->origin[2]};
     for (int64_t q = begin; q < end; q++) {
         range *r = &j->ranges[q];
@@ -252,7 +252,7 @@ static int sort_ranges(job *j, int ranges, int threads, double *seconds, brunt_e
     int64_t *total = NULL;
     for (;;) { // until every particle's block is alive and every block has a particle: at most a few rounds
         brunt_parallel(threads, ranges, 1, find_places, j, seconds);
-        bool moved = false, missing = false;
+        bool moved = p->holes, missing = false;
         for (int q = 0; q < ranges; q++) {
             if (j->ranges[q].bad >= 0) return fail_place(p, j->ranges[q].bad, error);
             moved = moved || j->ranges[q].moved;
@@ -325,6 +325,7 @@ static int sort_ranges(job *j, int ranges, int threads, double *seconds, brunt_e
     int64_t *t = p->id;
     p->id = p->spare_id, p->spare_id = t;
     p->slots = slots;
+    p->holes = false;
     brunt_parallel(threads, grid->block_count, BLOCK_GRAIN, set_keys, j, seconds);
     return BRUNT_OK;
 }

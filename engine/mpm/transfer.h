@@ -7,14 +7,17 @@
 #include "body.h"
 
 // Per-thread room for one block, sized for the fullest block.
+// Of rings: places in `out` that plane strain leaves free.
+enum { BRUNT_OUT_STRETCH = 21, BRUNT_OUT_HOOP = 22, BRUNT_OUT_ZERO = 23 };
+
 typedef struct brunt_workspace {
     void *memory;
     size_t capacity;
     int64_t stride;          // reals an array of particles takes
     real *window;            // nodes a block's bins touch
     real *planes;            // polynomial coefficients of the planes of bins in use
-    real *out[24];           // particle arrays: velocity, gradient, affine, old velocity
-    real *plastic, *viscous; // what material components leave for the next
+    real *out[24];           // particle arrays: velocity, gradient, affine, old velocity; of rings the hoop rate, and zeros
+    real *plastic, *viscous, *strain; // what material components leave for the next
 } brunt_workspace;
 
 // Particles of block `block` to its scatter buffer: mass, momentum, and dt times internal force.
@@ -24,12 +27,25 @@ typedef void brunt_scatter_fn(brunt_body *body, int32_t block, real dt);
 // deformation gradient, material. Fills body->report[block].
 typedef void brunt_gather_fn(brunt_body *body, int32_t block, real dt, real flip, brunt_workspace *work);
 
-// kernel 1..3, transfer BRUNT_PIC, BRUNT_FLIP, BRUNT_APIC
-brunt_scatter_fn *brunt_find_scatter(int dim, brunt_kernel kernel, brunt_transfer transfer);
-brunt_gather_fn *brunt_find_gather(int dim, brunt_kernel kernel, brunt_transfer transfer);
+// kernel 1..3, transfer BRUNT_PIC, BRUNT_FLIP, BRUNT_APIC; axisymmetric with dim 2
+brunt_scatter_fn *brunt_find_scatter(int dim, bool axisymmetric, brunt_kernel kernel, brunt_transfer transfer);
+brunt_gather_fn *brunt_find_gather(int dim, bool axisymmetric, brunt_kernel kernel, brunt_transfer transfer);
+// The same of total-Lagrangian bodies (not axisymmetric). NULL for the linear kernel: the slope of its fields jumps
+// between cells, and particles that never leave their corner of a cell do not average it.
+brunt_scatter_fn *brunt_find_total_scatter(int dim, brunt_kernel kernel, brunt_transfer transfer);
+brunt_gather_fn *brunt_find_total_gather(int dim, brunt_kernel kernel, brunt_transfer transfer);
 // The linear kernel gathers in two stages: this one updates the velocities, the one above the rest, after the
 // velocities have been to the grid once more. NULL for the other kernels.
-brunt_gather_fn *brunt_find_advance(int dim, brunt_kernel kernel, brunt_transfer transfer);
+brunt_gather_fn *brunt_find_advance(int dim, bool axisymmetric, brunt_kernel kernel, brunt_transfer transfer);
+
+// --- leaving.c: particles of a block whose deformation gradient stands still, of bodies that erode or keep what has left
+// Sets the velocity gradient of those that would turn inside out (they are marked in particles.order) and of those freed
+// of stress (volume 0) to 0, before F is updated. `hoop_stretch` takes F[8] of rings. How many are newly marked.
+int32_t brunt_hold_points(brunt_body *body, const brunt_block *block, real dt, real *const *gradient, real *hoop_stretch);
+// The same for the hoop of rings, after F is updated: rate to 0, stretch as it was.
+int32_t brunt_hold_hoops(brunt_body *body, const brunt_block *block, real dt, real *hoop, const real *hoop_stretch);
+// What is freed has no stress.
+void brunt_still_stress(brunt_body *body, const brunt_block *block);
 
 // Makes room for blocks of up to `most` particles. 0, or -1: out of memory.
 int brunt_workspace_fit(brunt_workspace *work, const brunt_grid *grid, int32_t most);
@@ -42,8 +58,10 @@ void brunt_kernel_weights(int order, double u, double weight[4]);
 void brunt_kernel_slopes(int order, double u, double slope[4]);
 
 // Kinetic energy of a body's particles with the affine part [J], its momentum, and angular momentum about the origin
-// with spin.
+// with spin; of total-Lagrangian bodies as if their motion were affine within a kernel. Of rings what the whole circle has: no radial momentum, no angular momentum, a centre on the axis.
 typedef struct brunt_audit {
     double mass, kinetic, linear[3], angular[3], centre[3], scale_linear, scale_angular;
 } brunt_audit;
 brunt_audit brunt_body_audit(brunt_body *body);
+// The same of the particles in `count` slots.
+brunt_audit brunt_slots_audit(brunt_body *body, const int64_t *slots, int64_t count);

@@ -45,12 +45,31 @@ typedef struct job {
     double dt;
 } job;
 
+// Nodes that have left their body stay where they were, whatever gravity.
+static void keep_still(brunt_fem_body *fem, int32_t begin, int32_t end) {
+    for (int32_t n = begin; n < end; n++)
+        for (int a = 0; brunt_fem_gone(fem, n) && a < 3; a++) brunt_fem_node(fem, n)[BRUNT_FEM_V + a] = 0;
+}
+
 static void kick_nodes(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     const job *j = context;
     for (int64_t t = begin; t < end; t++) {
         const brunt_fem_task *task = &j->world->node_tasks[t];
-        brunt_fem_kick(&j->world->fems[task->fem], task->begin, task->end, j->dt, j->gravity, &j->world->fem_sums[t]);
+        brunt_fem_body *fem = &j->world->fems[task->fem];
+        brunt_fem_kick(fem, task->begin, task->end, j->dt, j->gravity, &j->world->fem_sums[t]);
+        if (fem->bonds) keep_still(fem, task->begin, task->end);
+    }
+}
+
+// A free ring that closes on the axis opens again: what came from one side goes on on the other.
+static void pass_axis(brunt_fem_body *fem, const brunt_fem_task *task) {
+    for (int32_t n = task->begin; n < task->end; n++) {
+        real *node = brunt_fem_node(fem, n);
+        if (fem->bonds[n] == 0 && node[BRUNT_FEM_X] < 0) {
+            node[BRUNT_FEM_X] = -node[BRUNT_FEM_X];
+            node[BRUNT_FEM_V] = -node[BRUNT_FEM_V];
+        }
     }
 }
 
@@ -59,7 +78,9 @@ static void drift_nodes(void *context, int64_t begin, int64_t end, int worker) {
     const job *j = context;
     for (int64_t t = begin; t < end; t++) {
         const brunt_fem_task *task = &j->world->node_tasks[t];
-        brunt_fem_drift(&j->world->fems[task->fem], task->begin, task->end, j->dt, &j->world->fem_sums[t]);
+        brunt_fem_body *fem = &j->world->fems[task->fem];
+        brunt_fem_drift(fem, task->begin, task->end, j->dt, &j->world->fem_sums[t]);
+        if (fem->bonds && fem->element->axisymmetric) pass_axis(fem, task);
     }
 }
 
@@ -68,7 +89,8 @@ static void strain_elements(void *context, int64_t begin, int64_t end, int worke
     for (int64_t t = begin; t < end; t++) {
         const brunt_fem_task *task = &j->world->element_tasks[t];
         brunt_fem_body *fem = &j->world->fems[task->fem];
-        fem->element->forces(fem, task->begin, (real)j->dt, &j->world->fem_work[worker], &fem->report[task->begin]);
+        if (fem->block[task->begin].count) // all of them may have eroded
+            fem->element->forces(fem, task->begin, (real)j->dt, &j->world->fem_work[worker], &fem->report[task->begin]);
     }
 }
 
@@ -135,6 +157,25 @@ double brunt_fem_stable_step(const brunt_world *world) {
             least = fmin(least, step);
         }
     return least;
+}
+
+brunt_fem_body *brunt_fem_shortest(brunt_world *world, int32_t *slot) {
+    const double least = brunt_fem_stable_step(world);
+    for (int k = 0; k < world->fem_count; k++)
+        for (int32_t b = 0; b < world->fems[k].block_count; b++) {
+            brunt_fem_body *fem = &world->fems[k];
+            const brunt_fem_block *block = &fem->block[b];
+            if (!block->count || fem->report[b].stable_step > least) continue;
+            brunt_fem_single *single = brunt_fem_single_make(fem);
+            double shortest = INFINITY;
+            for (int32_t s = block->first; single && s < block->first + block->count; s++) {
+                double step = brunt_fem_single_look(single, fem, s, 0, 0, &world->fem_work[0]).stable_step;
+                if (step < shortest) shortest = step, *slot = s;
+            }
+            brunt_fem_single_free(single);
+            return single ? fem : NULL;
+        }
+    return NULL;
 }
 
 void brunt_warn(brunt_world *world, const char *format, ...) {

@@ -40,17 +40,43 @@ static int take_faces(brunt_world *world, brunt_hold *hold, const char *name) {
     hold->force = brunt_alloc((size_t)(hold->node_count + 1) * 3 * sizeof *hold->force);
     hold->face = brunt_alloc((size_t)(faces.count + 1) * sizeof *hold->face);
     int status = hold->place && hold->force && hold->face ? BRUNT_OK : BRUNT_FAILED;
+    if (fem->bonds) {
+        hold->whole = brunt_alloc((size_t)(faces.count + 1) * sizeof *hold->whole);
+        hold->owner = brunt_alloc((size_t)(faces.count + 1) * sizeof *hold->owner);
+        status = hold->whole && hold->owner ? status : BRUNT_FAILED;
+    }
     for (int32_t i = 0; !status && i < hold->node_count; i++) hold->place[hold->node[i]] = i + 1;
     for (int32_t f = 0; !status && f < faces.count; f++) {
         bool all = true;
         for (int c = 0; c < 4; c++) all = all && (faces.node[f][c] < 0 || hold->place[faces.node[f][c]]);
-        if (all) memcpy(hold->face[hold->face_count++], faces.node[f], sizeof *hold->face);
+        if (!all) continue;
+        memcpy(hold->face[hold->face_count++], faces.node[f], sizeof *hold->face);
+        if (!hold->whole) continue;
+        memcpy(hold->whole[hold->whole_count], faces.node[f], sizeof *hold->face);
+        hold->owner[hold->whole_count++] = fem->element_id[faces.element[f]];
     }
     brunt_faces_free(&faces);
     if (!status && !hold->face_count)
         brunt_warn(world, "boundaries (%s): no face of the body has all its nodes in the group: nothing is loaded",
                    name);
     return status;
+}
+
+const brunt_hold *brunt_holds_follow(brunt_world *world, int fem, int32_t *element) {
+    const brunt_hold *opened = NULL;
+    for (int k = 0; k < world->hold_count; k++) {
+        brunt_hold *hold = &world->holds[k];
+        if (hold->fem != fem || !hold->whole_count) continue;
+        brunt_fem_ranks(&world->fems[fem]);
+        hold->face_count = 0;
+        for (int32_t f = 0; f < hold->whole_count; f++) {
+            if (world->fems[fem].rank[hold->owner[f]] >= 0)
+                memcpy(hold->face[hold->face_count++], hold->whole[f], sizeof *hold->face);
+            else if (world->groups[k].action == BRUNT_GROUP_GAS && !opened)
+                opened = hold, *element = hold->owner[f];
+        }
+    }
+    return opened;
 }
 
 static int make_hold(brunt_world *world, int index, brunt_error *error) {
@@ -126,6 +152,8 @@ int brunt_holds_make(brunt_world *world, const brunt_world_def *def, brunt_error
 void brunt_holds_free(brunt_world *world) {
     for (int k = 0; k < world->hold_count && world->holds; k++) {
         brunt_free(world->holds[k].face);
+        brunt_free(world->holds[k].whole);
+        brunt_free(world->holds[k].owner);
         brunt_free(world->holds[k].force);
         brunt_free(world->holds[k].place);
     }
@@ -182,6 +210,15 @@ void brunt_face_shares(const double (*x)[3], int corners, double (*share)[3]) {
     for (int n = 0; n < corners; n++) memcpy(share[n], normal, sizeof normal);
 }
 
+// Of rings, those of the whole circle: 2 pi int N_a r n ds, r being linear along the face. A pressure on them is the
+// slope of the volume pi int r^2 dz that they enclose.
+static void ring_shares(const double (*x)[3], double (*share)[3]) {
+    for (int c = 0; c < 2; c++) {
+        const double around = M_PI / 3 * (x[0][0] + x[1][0] + x[c][0]);
+        share[c][0] = around * (x[1][1] - x[0][1]), share[c][1] = around * (x[0][0] - x[1][0]), share[c][2] = 0;
+    }
+}
+
 static void make_forces(brunt_world *world, brunt_hold *hold, const brunt_group_def *def, double time, double dt) {
     brunt_fem_body *fem = &world->fems[hold->fem];
     const bool traction = def->action == BRUNT_GROUP_TRACTION;
@@ -194,7 +231,10 @@ static void make_forces(brunt_world *world, brunt_hold *hold, const brunt_group_
         const int corners = node[2] < 0 ? 2 : node[3] < 0 ? 3 : 4;
         double x[4][3], shares[4][3];
         face_corners(fem, node, traction, x);
-        brunt_face_shares((const double(*)[3])x, corners, shares);
+        if (world->axisymmetric)
+            ring_shares((const double(*)[3])x, shares);
+        else
+            brunt_face_shares((const double(*)[3])x, corners, shares);
         for (int c = 0; c < corners; c++) {
             const double *share = shares[c];
             double *force = hold->force + 3 * (hold->place[node[c]] - 1);
@@ -203,6 +243,8 @@ static void make_forces(brunt_world *world, brunt_hold *hold, const brunt_group_
                 force[a] += traction ? factor * def->value[a] * size : push * share[a];
         }
     }
+    for (int32_t i = 0; world->axisymmetric && i < hold->node_count; i++)
+        if (fem->start[4 * (size_t)hold->node[i]] == 0) hold->force[3 * i] = 0; // the axis bears it
     for (int32_t i = 0; i < hold->node_count; i++)
         for (int a = 0; a < 3; a++) fem->load[4 * (size_t)hold->node[i] + (size_t)a] += (real)hold->force[3 * i + a];
 }
@@ -254,6 +296,7 @@ void brunt_fem_hold_all(brunt_world *world, const double gravity[3], double time
         double now = brunt_curve_at(&def->table, time + 0.5 * step), then = brunt_curve_at(&def->table, time + step);
         for (int32_t i = 0; i < hold->node_count; i++) {
             const int32_t n = hold->node[i];
+            if (brunt_fem_gone(fem, n)) continue;
             real *node = brunt_fem_node(fem, n), force[3];
             double J[3] = {0}, x[3], old[3] = {0}, v[3] = {0}, mean[3] = {0};
             brunt_fem_internal_force(fem, n, force);

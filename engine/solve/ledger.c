@@ -17,6 +17,7 @@ void brunt_world_energy(brunt_world *world, brunt_energy *energy) {
         energy->internal += e.internal;
         energy->plastic += e.plastic;
         energy->viscosity += e.viscosity;
+        energy->heat += e.heat;
     }
     // So are those of meshes; there the half step is added to the kinetic energy, with what stress, loads, gravity and
     // damping do in it (of the last three, what they did in the half step before).
@@ -29,8 +30,12 @@ void brunt_world_energy(brunt_world *world, brunt_energy *energy) {
         energy->internal += e.internal;
         energy->plastic += e.plastic;
         energy->viscosity += e.viscosity;
+        energy->heat += e.heat;
     }
-    energy->viscosity += now->damped;
+    energy->viscosity += now->damped + now->eroded_viscosity;
+    energy->plastic += now->eroded_plastic;
+    energy->heat += now->eroded_heat;
+    for (int i = 0; i < world->all_count && world->has_erosion; i++) energy->eroded += world->eroded[i].energy;
     for (int w = 0; w < world->wall_count; w++) {
         energy->contact += world->walls[w].action.normal_loss;
         energy->friction += world->walls[w].action.friction_loss;
@@ -56,6 +61,13 @@ static void add_contact_spin(const brunt_world *world, double angular[3]) {
             int i = (k + 1) % 3, j = (k + 2) % 3;
             angular[k] += s->mass[n] * (s->affine[n][3 * j + i] - s->affine[n][3 * i + j]);
         }
+}
+
+// A whole circle has momentum and gets impulses along its axis only.
+static void keep_axial(int component, brunt_momentum *momentum) {
+    double *const all[] = {momentum->linear, momentum->linear_initial, momentum->linear_impulse};
+    for (int q = 0; q < 3 && component != 1; q++) all[q][component] = 0;
+    momentum->angular[component] = momentum->angular_initial[component] = momentum->angular_impulse[component] = 0;
 }
 
 void brunt_world_momentum(brunt_world *world, brunt_momentum *momentum) {
@@ -91,6 +103,14 @@ void brunt_world_momentum(brunt_world *world, brunt_momentum *momentum) {
             impulse += fabs(action->impulse[k]);
             turn += fabs(action->angular[k]);
         }
+        if (world->axisymmetric) keep_axial(k, momentum);
+        for (int i = 0; i < world->all_count && world->has_erosion; i++) {
+            const brunt_eroded *eroded = &world->eroded[i];
+            momentum->linear_impulse[k] -= eroded->momentum[k];
+            momentum->angular_impulse[k] -= eroded->angular[k];
+            impulse += fabs(eroded->momentum[k]);
+            turn += fabs(eroded->angular[k]);
+        }
         double d = momentum->linear[k] - momentum->linear_initial[k] - momentum->linear_impulse[k];
         double e = momentum->angular[k] - momentum->angular_initial[k] - momentum->angular_impulse[k];
         linear += d * d, angular += e * e;
@@ -111,11 +131,13 @@ static void bound_body(const brunt_world *world, const brunt_body_ref *body, bru
         sums->low[a] = there ? INFINITY : 0, sums->high[a] = there ? -INFINITY : 0;
     }
     for (int32_t n = 0; body->fem && n < body->fem->node_count; n++) {
+        if (body->fem->element_count && brunt_fem_gone(body->fem, n)) continue;
         const real *node = brunt_fem_node(body->fem, n);
         bound((const double[3]){(double)node[0], (double)node[1], (double)node[2]}, sums);
     }
-    for (int64_t s = 0; body->mpm && s < body->mpm->particles.slots; s++) { // padding repeats real ones
+    for (int64_t s = 0; body->mpm && s < body->mpm->particles.slots; s++) {
         real *const *x = brunt_field(&body->mpm->particles, BRUNT_FIELD_position);
+        if (body->mpm->particles.id[s] < 0) continue; // padding, or left in the last step
         bound((const double[3]){(double)x[0][s], (double)x[1][s], world->dimension == 3 ? (double)x[2][s] : 0}, sums);
     }
 }

@@ -33,6 +33,11 @@ static bool has_mass_scaling(const brunt_world *world) {
     return false;
 }
 
+// Besides the axis of rings.
+static bool has_mirrors(const brunt_world *world) {
+    return world->mirror_count > 0 && world->mirrors[world->mirror_count - 1].wall >= 0;
+}
+
 #define BRUNT_EFFECTS(X)                                                                                               \
     X(elements, world->fem_count > 0, "bodies: method fem or membrane")                                                \
     X(affine, world->transfer == BRUNT_APIC && world->body_count > 0, "grid.transfer")                                 \
@@ -46,14 +51,17 @@ static bool has_mass_scaling(const brunt_world *world) {
     X(damping, world->has_damping, "bodies: damping")                                                                  \
     X(membranes, has_sheets(world), "bodies: method membrane")                                                         \
     X(walls, world->has_walls, "boundaries: condition separate")                                                       \
-    X(mirrors, world->mirror_count > 0, "boundaries: condition symmetry or slip")                                      \
+    X(axisymmetric, world->axisymmetric, "axisymmetric")                                                               \
+    X(mirrors, has_mirrors(world), "boundaries: condition symmetry or slip")                                           \
     X(conditions, world->has_conditions, "boundaries: stick, oblique slip, region")                                    \
+    X(erosion, world->has_erosion, "bodies: erosion, materials: failure")                                              \
     X(gravity, world->has_gravity, "loads.gravity")
 
 #define BRUNT_MODEL_EFFECTS(X)                                                                                         \
     X(plasticity, plastic)                                                                                             \
-    X(thermal, thermal) X(equation_of_state, eos) X(bulk_viscosity, viscous) X(fluid, fluid)                           \
-        X(shear_viscosity, shear_viscous)
+    X(thermal, thermal)                                                                                                \
+    X(equation_of_state, eos) X(bulk_viscosity, viscous) X(fluid, fluid) X(shear_viscosity, shear_viscous)             \
+        X(damage, damage)
 
 enum {
 #define COUNT(name, ...) EFFECT_##name,

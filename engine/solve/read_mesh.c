@@ -169,6 +169,13 @@ brunt_field_info brunt_read_mesh_field(const brunt_world *world, const brunt_fem
     return (brunt_field_info){f->name, f->unit, symmetric ? 6 : f->components, symmetric, BRUNT_AT_ELEMENTS};
 }
 
+// The place of a slot's element among those that are left, in the order of their numbers in the mesh.
+static int64_t place_of(brunt_fem_body *fem, int32_t slot) {
+    if (!fem->rank) return fem->element_id[slot];
+    brunt_fem_ranks(fem);
+    return fem->rank[fem->element_id[slot]];
+}
+
 void brunt_read_mesh(brunt_world *world, brunt_fem_body *fem, int32_t field, double *out) {
     const brunt_field_info info = brunt_read_mesh_field(world, fem, field);
     if (field < NODE_FIELDS) {
@@ -185,7 +192,7 @@ void brunt_read_mesh(brunt_world *world, brunt_fem_body *fem, int32_t field, dou
         field < element_count(fem) ? NULL : &fem->field[BRUNT_ELEMENT_BASE_FIELDS + field - element_count(fem)];
     for (int32_t s = 0; s < fem->slots; s++) {
         if (fem->element_id[s] < 0) continue;
-        double *to = out + (int64_t)fem->element_id[s] * info.components;
+        double *to = out + place_of(fem, s) * info.components;
         element_point point;
         if (!state) {
             read_point(fem, s, &point);
@@ -197,12 +204,12 @@ void brunt_read_mesh(brunt_world *world, brunt_fem_body *fem, int32_t field, dou
 }
 
 void brunt_body_connectivity(const brunt_world *world, int32_t body, int32_t *out) {
-    const brunt_fem_body *fem = world->all[body].fem;
+    brunt_fem_body *fem = world->all[body].fem;
     const int nodes = fem->element->nodes;
     for (int32_t s = 0; s < fem->slots; s++) {
         if (fem->element_id[s] < 0) continue;
         for (int c = 0; c < nodes; c++)
-            out[(size_t)fem->element_id[s] * (size_t)nodes + (size_t)c] =
+            out[(size_t)place_of(fem, s) * (size_t)nodes + (size_t)c] =
                 fem->node_id[fem->element_node[(size_t)s * (size_t)nodes + (size_t)c]];
     }
 }

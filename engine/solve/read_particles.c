@@ -12,8 +12,8 @@ static double entry(brunt_particles *p, int field, int c, int64_t s) { return (d
 static void matrix(brunt_particles *p, int field, int64_t s, double last, double out[9]) {
     memset(out, 0, 9 * sizeof *out);
     out[8] = last;
-    for (int r = 0; r < p->dim; r++)
-        for (int c = 0; c < p->dim; c++) out[3 * r + c] = entry(p, field, r * p->dim + c, s);
+    for (int r = 0; r < p->point_dim; r++)
+        for (int c = 0; c < p->point_dim; c++) out[3 * r + c] = entry(p, field, r * p->point_dim + c, s);
 }
 
 static double jacobian(brunt_particles *p, int64_t s) {
@@ -33,7 +33,7 @@ static void derive_velocity(brunt_body *body, int64_t s, double *out) {
 static void derive_stress(brunt_body *body, int64_t s, double *out) {
     double J = jacobian(&body->particles, s);
     for (int c = 0; c < 6; c++)
-        out[c] = c < BRUNT_SYMMETRIC(body->particles.dim)
+        out[c] = c < BRUNT_SYMMETRIC(body->particles.point_dim)
                      ? entry(&body->particles, BRUNT_FIELD_kirchhoff_stress, c, s) / J
                      : 0;
 }
@@ -90,16 +90,31 @@ brunt_field_info brunt_read_particle_field(const brunt_body *body, int32_t field
     if (field < DERIVED) return derived[field].info;
     const brunt_particles *p = &body->particles;
     const brunt_particle_field *f = &p->field[BRUNT_BASE_FIELDS + field - DERIVED];
-    bool symmetric = f->components > 1 && f->components == BRUNT_SYMMETRIC(p->dim);
+    bool symmetric = f->components > 1 && f->components == BRUNT_SYMMETRIC(p->point_dim);
     return (brunt_field_info){f->name, f->unit, symmetric ? 6 : f->components, symmetric, BRUNT_AT_PARTICLES};
+}
+
+// Where some have left: the place of each id among those that are alive.
+static const int32_t *rank_ids(brunt_body *body) {
+    const brunt_particles *p = &body->particles;
+    memset(body->rank, 0, (size_t)p->made * sizeof *body->rank);
+    for (int64_t s = 0; s < p->slots; s++)
+        if (p->id[s] >= 0) body->rank[p->id[s]] = 1;
+    for (int64_t id = 0, next = 0; id < p->made; id++) {
+        const bool alive = body->rank[id];
+        body->rank[id] = (int32_t)next;
+        next += alive;
+    }
+    return body->rank;
 }
 
 void brunt_read_particles(brunt_body *body, int32_t field, double *out) {
     brunt_particles *p = &body->particles;
     brunt_field_info info = brunt_read_particle_field(body, field);
+    const int32_t *rank = p->count < p->made ? rank_ids(body) : NULL;
     for (int64_t s = 0; s < p->slots; s++) {
         if (p->id[s] < 0) continue;
-        double *to = out + p->id[s] * info.components;
+        double *to = out + (rank ? rank[p->id[s]] : p->id[s]) * info.components;
         if (field < DERIVED) {
             derived[field].derive(body, s, to);
             continue;

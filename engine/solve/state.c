@@ -16,12 +16,16 @@
 
 static const char REAL_TYPE = sizeof(real) == 8 ? 'd' : 'f';
 
-// World blocks: clock, walls (with the gas that groups of them enclose), pairs; where surfaces meet what their search remembers; and where contact keeps them the
-// affine velocities of boundary nodes.
-static int world_blocks(const brunt_world *world) { return world->skin.affine ? 5 : world->has_surfaces ? 4 : 3; }
+// World blocks: clock, walls (with the gas that groups of them enclose), pairs; where surfaces meet what their search
+// remembers; and where contact keeps them the affine velocities of boundary nodes. Last the accounts of erosion, if
+// there is any.
+static int plain_blocks(const brunt_world *world) { return world->skin.affine ? 5 : world->has_surfaces ? 4 : 3; }
+static int world_blocks(const brunt_world *world) { return plain_blocks(world) + (world->has_erosion ? 1 : 0); }
 
-// What block `index` is: of a body its ids (field -1) or a field; of a mesh its nodes (field -1) or a field; of the
-// world number `field`.
+enum { EROSION_BLOCK = 5, ELEMENTS_FIELD = -2 };
+
+// What block `index` is: of a body its ids (field -1) or a field; of a mesh its nodes (field -1), the elements it still
+// has where it erodes (ELEMENTS_FIELD), or a field; of the world number `field`.
 typedef struct place {
     brunt_body *body;
     brunt_fem_body *fem;
@@ -33,12 +37,13 @@ static place find(brunt_world *world, int32_t index) {
         brunt_body *mpm = world->all[i].mpm;
         brunt_fem_body *fem = world->all[i].fem;
         if (index-- == 0) return (place){mpm, fem, -1};
+        if (fem && fem->bonds && index-- == 0) return (place){NULL, fem, ELEMENTS_FIELD};
         for (int f = 0; mpm && f < mpm->particles.field_count; f++)
             if (mpm->particles.field[f].components && index-- == 0) return (place){mpm, NULL, f};
         for (int f = 0; fem && f < fem->field_count; f++)
             if (fem->field[f].components && index-- == 0) return (place){NULL, fem, f};
     }
-    return (place){NULL, NULL, index};
+    return (place){NULL, NULL, index == plain_blocks(world) ? EROSION_BLOCK : index};
 }
 
 int32_t brunt_state_count(brunt_world *world) {
@@ -46,7 +51,7 @@ int32_t brunt_state_count(brunt_world *world) {
     for (int i = 0; i < world->all_count; i++) {
         const brunt_body *mpm = world->all[i].mpm;
         const brunt_fem_body *fem = world->all[i].fem;
-        n++;
+        n += fem && fem->bonds ? 2 : 1;
         for (int f = 0; mpm && f < mpm->particles.field_count; f++) n += mpm->particles.field[f].components > 0;
         for (int f = 0; fem && f < fem->field_count; f++) n += fem->field[f].components > 0;
     }
@@ -68,6 +73,12 @@ brunt_state_block brunt_state_info(brunt_world *world, int32_t index) {
                  at.field < 0 ? "id" : p->field[at.field].name);
         return block;
     }
+    if (at.fem && at.field == ELEMENTS_FIELD) {
+        block.type = 'i';
+        block.count = brunt_fem_elements_count(at.fem);
+        snprintf(block.name, sizeof block.name, "bodies/%s/elements", at.fem->name);
+        return block;
+    }
     if (at.fem) {
         block.type = REAL_TYPE;
         block.count = at.field < 0 ? (int64_t)at.fem->node_count * BRUNT_FEM_NODE_REALS
@@ -76,12 +87,14 @@ brunt_state_block brunt_state_info(brunt_world *world, int32_t index) {
                  at.field < 0 ? "nodes" : at.fem->field[at.field].name);
         return block;
     }
-    static const char *const names[] = {"world/clock", "world/walls", "world/pairs", "world/contact_search",
-                                        "world/contact_affine"};
+    static const char *const names[] = {"world/clock",          "world/walls",          "world/pairs",
+                                        "world/contact_search", "world/contact_affine", "world/erosion"};
     const int64_t counts[] = {CLOCK_DOUBLES,
                               2 * (int64_t)world->wall_count * ACTION_DOUBLES + brunt_gas_state_count(world),
-                              2 * (int64_t)world->pair_count * ACTION_DOUBLES, brunt_facing_state_count(&world->skin),
-                              9 * (int64_t)world->skin.node_count};
+                              2 * (int64_t)world->pair_count * ACTION_DOUBLES,
+                              brunt_facing_state_count(&world->skin),
+                              brunt_skin_affine_count(&world->skin),
+                              brunt_erosion_state_count(world)};
     snprintf(block.name, sizeof block.name, "%s", names[at.field]);
     block.count = counts[at.field];
     return block;
@@ -105,15 +118,17 @@ void brunt_state_get(brunt_world *world, int32_t index, void *out) {
     }
     if (at.fem) {
         const brunt_fem_body *fem = at.fem;
-        if (at.field < 0) memcpy(out, fem->node, (size_t)fem->node_count * BRUNT_FEM_NODE_REALS * sizeof(real));
+        if (at.field == ELEMENTS_FIELD) brunt_fem_elements_get(fem, out);
+        if (at.field == -1) memcpy(out, fem->node, (size_t)fem->node_count * BRUNT_FEM_NODE_REALS * sizeof(real));
         for (int c = 0; at.field >= 0 && c < fem->field[at.field].components; c++)
             memcpy((real *)out + (size_t)c * (size_t)fem->slots, fem->scalar[fem->field[at.field].first + c],
                    (size_t)fem->slots * sizeof(real));
         return;
     }
     double *to = out;
+    if (at.field == EROSION_BLOCK) brunt_erosion_state_get(world, to);
     if (at.field == 3) brunt_facing_state_get(world->facing, &world->skin, to);
-    if (at.field == 4) memcpy(to, world->skin.affine, 9 * (size_t)world->skin.node_count * sizeof(double));
+    if (at.field == 4) brunt_skin_affine_get(&world->skin, to);
     if (at.field == 0) memcpy(to, &world->now, sizeof world->now);
     for (int w = 0; at.field == 1 && w < world->wall_count; w++, to += 2 * ACTION_DOUBLES) {
         memcpy(to, &world->walls[w].action, sizeof(brunt_action));
@@ -126,18 +141,31 @@ void brunt_state_get(brunt_world *world, int32_t index, void *out) {
     }
 }
 
+// What follows from the elements there are: loads, and the surfaces, whose numbers the blocks of the world are in.
+static int set_elements(brunt_world *world, brunt_fem_body *fem, const int64_t *in, brunt_error *error) {
+    int32_t element;
+    if (brunt_fem_elements_set(fem, in))
+        return brunt_fail(error, BRUNT_BAD_INPUT, "the state block 'bodies/%s/elements' is not of this mesh",
+                          fem->name);
+    brunt_holds_follow(world, (int)(fem - world->fems), &element);
+    return world->has_surfaces ? brunt_surfaces_renew(world, error) : BRUNT_OK;
+}
+
 int brunt_state_set(brunt_world *world, int32_t index, const void *in, int64_t count, brunt_error *error) {
     brunt_state_block block = brunt_state_info(world, index);
-    if (count != block.count)
-        return brunt_fail(error, BRUNT_BAD_INPUT, "%s holds %lld values, the scene needs %lld", block.name,
-                          (long long)count, (long long)block.count);
     place at = find(world, index);
+    // Of a body that erodes there may be fewer particles by now than in the world as it is; its ids say how many.
+    if (at.body && at.field < 0 && at.body->erodes && count >= 0 && count <= at.body->particles.made)
+        at.body->particles.count = block.count = count;
+    if (count != block.count)
+        return brunt_fail(error, BRUNT_BAD_INPUT, "the state block '%s' holds %lld values, this scene has %lld",
+                          block.name, (long long)count, (long long)block.count);
     if (at.body) {
         brunt_particles *p = &at.body->particles;
         // From here on the body has no gaps; its grid is made anew by brunt_state_done.
         for (int64_t s = 0; at.field < 0 && s < p->count; s++) {
             int64_t id = ((const int64_t *)in)[s];
-            if (id < 0 || id >= p->count)
+            if (id < 0 || id >= p->made)
                 return brunt_fail(error, BRUNT_BAD_INPUT, "%s holds an id out of range", block.name);
             p->id[s] = id;
         }
@@ -148,16 +176,18 @@ int brunt_state_set(brunt_world *world, int32_t index, const void *in, int64_t c
     }
     if (at.fem) {
         brunt_fem_body *fem = at.fem;
-        if (at.field < 0) memcpy(fem->node, in, (size_t)fem->node_count * BRUNT_FEM_NODE_REALS * sizeof(real));
+        if (at.field == ELEMENTS_FIELD) return set_elements(world, fem, in, error);
+        if (at.field == -1) memcpy(fem->node, in, (size_t)fem->node_count * BRUNT_FEM_NODE_REALS * sizeof(real));
         for (int c = 0; at.field >= 0 && c < fem->field[at.field].components; c++)
             memcpy(fem->scalar[fem->field[at.field].first + c], (const real *)in + (size_t)c * (size_t)fem->slots,
                    (size_t)fem->slots * sizeof(real));
         return BRUNT_OK;
     }
     const double *from = in;
+    if (at.field == EROSION_BLOCK) brunt_erosion_state_set(world, from);
     if (at.field == 3 && brunt_facing_state_set(&world->facing, &world->skin, world->body_count, from))
         return brunt_fail(error, BRUNT_FAILED, "out of memory");
-    if (at.field == 4) memcpy(world->skin.affine, from, 9 * (size_t)world->skin.node_count * sizeof(double));
+    if (at.field == 4) brunt_skin_affine_set(&world->skin, from);
     if (at.field == 0) memcpy(&world->now, from, sizeof world->now);
     for (int w = 0; at.field == 1 && w < world->wall_count; w++, from += 2 * ACTION_DOUBLES) {
         memcpy(&world->walls[w].action, from, sizeof(brunt_action));
@@ -205,6 +235,7 @@ static uint64_t hash_mesh(const brunt_fem_body *fem) {
             memcpy(&bits, &fem->scalar[c][s], sizeof(real));
             h = brunt_hash_add(h, bits);
         }
+    for (int32_t s = 0; fem->bonds && s < fem->slots; s++) h = brunt_hash_add(h, (uint64_t)(int64_t)fem->element_id[s]);
     return h;
 }
 

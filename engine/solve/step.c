@@ -34,8 +34,13 @@ double brunt_stable_step(const brunt_world *world) {
         }
         inverse = fmax(inverse, wave + speed);
     }
-    double grid = inverse > 0 ? world->cell / inverse : INFINITY;
-    return world->cfl * fmin(grid, brunt_fem_stable_step(world));
+    double grid = inverse > 0 ? world->cell / inverse : INFINITY, least = fmin(grid, brunt_fem_stable_step(world));
+    if (isinf(least)) { // all has eroded: steps as of what there was
+        for (int i = 0; i < world->body_count; i++)
+            least = fmin(least, world->cell / (double)world->bodies[i].material.wave_speed);
+        for (int k = 0; k < world->fem_count; k++) least = fmin(least, world->fems[k].least_step);
+    }
+    return world->cfl * least;
 }
 
 static void start_pass(brunt_world *world, int pass, double *start) {
@@ -85,10 +90,11 @@ static int fail_element(const brunt_world *world, const brunt_fem_body *fem, int
             error->place[a] +=
                 (double)brunt_fem_node(fem, fem->element_node[(size_t)slot * (size_t)nodes + (size_t)c])[a] / nodes;
     }
+    const char *hint = strstr(reason, "inside out") ? "; erosion.inverted takes such elements out instead" : "";
     return brunt_fail(error, BRUNT_FAILED,
-                      "body '%s', element %lld at (%.6g, %.6g, %.6g) m, time %.9g s, step %.0f: %s", fem->name,
+                      "body '%s', element %lld at (%.6g, %.6g, %.6g) m, time %.9g s, step %.0f: %s%s", fem->name,
                       (long long)error->id + 1, error->place[0], error->place[1], error->place[2], world->now.time,
-                      world->now.steps, reason);
+                      world->now.steps, reason, hint);
 }
 
 // ------------------------------------------------------------------------------------------ passes
@@ -102,13 +108,17 @@ typedef struct body_job {
 static void scatter_blocks(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     const body_job *job = context;
-    for (int64_t b = begin; b < end; b++) job->world->scatter(job->body, (int32_t)b, (real)job->dt);
+    brunt_scatter_fn *scatter =
+        brunt_total_lagrangian(&job->body->particles) ? job->world->total_scatter : job->world->scatter;
+    for (int64_t b = begin; b < end; b++) scatter(job->body, (int32_t)b, (real)job->dt);
 }
 
 static void gather_blocks(void *context, int64_t begin, int64_t end, int worker) {
     const body_job *job = context;
+    brunt_gather_fn *gather =
+        brunt_total_lagrangian(&job->body->particles) ? job->world->total_gather : job->world->gather;
     for (int64_t b = begin; b < end; b++)
-        job->world->gather(job->body, (int32_t)b, (real)job->dt, (real)job->world->flip, &job->world->work[worker]);
+        gather(job->body, (int32_t)b, (real)job->dt, (real)job->world->flip, &job->world->work[worker]);
 }
 
 static int sort_bodies(brunt_world *world, brunt_error *error) {
@@ -140,6 +150,10 @@ static bool acts_on(const brunt_wall *wall, const brunt_body *body) {
     return wall->body < 0 || wall->body == body->index;
 }
 
+static bool mirrors(const brunt_world *world, const brunt_mirror *mirror, const brunt_body *body) {
+    return mirror->wall < 0 || acts_on(&world->walls[mirror->wall], body);
+}
+
 // Particles and forces to the grid, and the velocities there before anything else acts.
 static void make_grid_velocities(brunt_world *world, brunt_body *body, const double gravity[3], double dt) {
     double start;
@@ -158,10 +172,13 @@ static void make_grid_velocities(brunt_world *world, brunt_body *body, const dou
 
     if (world->mirror_count) {
         start_pass(world, BRUNT_PASS_mirror, &start);
-        for (int m = 0; m < world->mirror_count; m++)
-            if (acts_on(&world->walls[world->mirrors[m].wall], body))
-                brunt_mirror_fold(body, &world->mirrors[m], world->transfer == BRUNT_FLIP ? 1 - world->flip : 1,
-                                  &world->walls[world->mirrors[m].wall].last);
+        brunt_action unbooked = {.external_work = 0}; // of the axis: its impulses cancel around the circle
+        for (int m = 0; m < world->mirror_count; m++) {
+            const brunt_mirror *mirror = &world->mirrors[m];
+            if (mirrors(world, mirror, body))
+                brunt_mirror_fold(body, mirror, world->transfer == BRUNT_FLIP ? 1 - world->flip : 1,
+                                  mirror->wall < 0 ? &unbooked : &world->walls[mirror->wall].last);
+        }
         end_pass(world, BRUNT_PASS_mirror, start);
     }
 
@@ -226,6 +243,16 @@ static int constrain_velocities(brunt_world *world, const double gravity[3], dou
     return BRUNT_OK;
 }
 
+// The grid of a total-Lagrangian body is not where its weight acts.
+static void book_gravity_moment(brunt_world *world, brunt_body *body, const double gravity[3], double dt) {
+    const brunt_audit audit = brunt_body_audit(body);
+    for (int a = 0; a < 3; a++) {
+        const int k = (a + 1) % 3, l = (a + 2) % 3;
+        world->now.gravity_angular[a] +=
+            dt * audit.mass * (audit.centre[k] * gravity[l] - audit.centre[l] * gravity[k]);
+    }
+}
+
 // Kinetic energy that the grid has before and after the forces, and what gravity did.
 static void keep_ledger(brunt_world *world, const double gravity[3], double dt, double *old_kinetic,
                         double *new_kinetic) {
@@ -234,6 +261,7 @@ static void keep_ledger(brunt_world *world, const double gravity[3], double dt, 
     *old_kinetic = *new_kinetic = 0;
     for (int i = 0; i < world->body_count; i++) {
         brunt_body *body = &world->bodies[i];
+        const bool total = brunt_total_lagrangian(&body->particles);
         brunt_grid_job job = {body, gravity, dt, world->has_gravity, world->node_sums};
         brunt_parallel(world->threads, body->grid.slot_count, SLOT_GRAIN, brunt_grid_ledger, &job,
                        world->pass[BRUNT_PASS_ledger].thread_seconds);
@@ -245,10 +273,12 @@ static void keep_ledger(brunt_world *world, const double gravity[3], double dt, 
             for (int a = 0; a < 3; a++) {
                 int k = (a + 1) % 3, l = (a + 2) % 3;
                 world->now.gravity_impulse[a] += dt * n->mass * gravity[a];
+                if (total) continue;
                 world->now.gravity_angular[a] +=
                     dt * (n->first_moment[k] * gravity[l] - n->first_moment[l] * gravity[k]);
             }
         }
+        if (total && world->has_gravity) book_gravity_moment(world, body, gravity, dt);
     }
     end_pass(world, BRUNT_PASS_ledger, start);
 }
@@ -274,8 +304,7 @@ static void remap_velocities(brunt_world *world, double dt) {
         brunt_parallel(world->threads, body->grid.block_count, BLOCK_GRAIN, scatter_blocks, &still, seconds);
         brunt_parallel(world->threads, body->grid.slot_count, SLOT_GRAIN, brunt_grid_sum, &grid_job, seconds);
         for (int m = 0; m < world->mirror_count; m++)
-            if (acts_on(&world->walls[world->mirrors[m].wall], body))
-                brunt_mirror_fold(body, &world->mirrors[m], 1, &unbooked);
+            if (mirrors(world, &world->mirrors[m], body)) brunt_mirror_fold(body, &world->mirrors[m], 1, &unbooked);
         brunt_parallel(world->threads, body->grid.slot_count, SLOT_GRAIN, brunt_grid_update, &grid_job, seconds);
         for (int w = 0; w < world->wall_count; w++) {
             brunt_wall wall = world->walls[w];
@@ -380,11 +409,33 @@ static void watch_spread(brunt_world *world) {
     }
 }
 
+static int erode(brunt_world *world, double dt, brunt_error *error) {
+    double start;
+    start_pass(world, BRUNT_PASS_erosion, &start);
+    int status = world->fem_count ? brunt_erode_meshes(world, dt, error) : BRUNT_OK;
+    if (!status && world->body_count) status = brunt_erode_particles(world, dt, error);
+    end_pass(world, BRUNT_PASS_erosion, start);
+    return status;
+}
+
+// What has the stable step that is too short: an element, or a body of material points.
+static int fail_short(brunt_world *world, double stable, brunt_error *error) {
+    char reason[200];
+    snprintf(reason, sizeof reason, "the stable step has become %.4g s, time.least_step is %.4g s", stable,
+             world->least_step);
+    int32_t slot;
+    const bool by_element = !world->body_count || brunt_fem_stable_step(world) <= stable * (1 + 1e-9);
+    brunt_fem_body *fem = by_element ? brunt_fem_shortest(world, &slot) : NULL;
+    if (fem) return fail_element(world, fem, slot, error, reason);
+    return fail(world, NULL, error, reason);
+}
+
 int brunt_world_step(brunt_world *world, double limit, brunt_error *error) {
     double dt = choose_step(world, limit), gravity[3], old_kinetic, new_kinetic, kinetic = 0;
     double stable = world->now.next_dt / world->cfl;
     if (error) *error = (brunt_error){.id = -1};
     if (!(dt > 0)) return fail(world, NULL, error, "the end has been reached, there is no step to take");
+    if (stable < world->least_step) return fail_short(world, stable, error);
     if (world->fixed_step > 0 && dt > stable) {
         char reason[160];
         snprintf(reason, sizeof reason, "the fixed step of %.6g s is larger than the stable one, %.6g s", dt, stable);
@@ -393,6 +444,8 @@ int brunt_world_step(brunt_world *world, double limit, brunt_error *error) {
     if (world->now.time + dt == world->now.time)
         return fail(world, NULL, error, "the stable step has become too small to advance the time");
     brunt_gravity_at(world, world->now.time + 0.5 * dt, gravity);
+    for (int i = 0; i < world->body_count; i++) world->bodies[i].time = (real)(world->now.time + dt);
+    for (int k = 0; k < world->fem_count; k++) world->fems[k].time = (real)(world->now.time + dt);
     for (int w = 0; w < world->wall_count; w++) world->walls[w].last = (brunt_action){.external_work = 0};
     for (int p = 0; p < world->pair_count; p++) world->pairs[p].last = (brunt_action){.external_work = 0};
 
@@ -433,7 +486,7 @@ int brunt_world_step(brunt_world *world, double limit, brunt_error *error) {
     now->dt = dt;
     now->dt_min = fmin(now->dt_min, dt);
     now->dt_max = fmax(now->dt_max, dt);
-    if (status) return status;
+    if (status || (world->has_erosion && (status = erode(world, dt, error)))) return status;
     now->next_dt = brunt_stable_step(world);
     if (!isfinite(kinetic) || !isfinite(now->fem_kinetic) || !isfinite(now->next_dt))
         return fail(world, NULL, error, "the kinetic energy is not a finite number");

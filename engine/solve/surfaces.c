@@ -132,6 +132,13 @@ int brunt_surfaces_make(brunt_world *world, const brunt_world_def *def, brunt_er
     return BRUNT_OK;
 }
 
+int brunt_surfaces_renew(brunt_world *world, brunt_error *error) {
+    if (!world->has_surfaces) return BRUNT_OK;
+    if (brunt_skin_renew(&world->skin, false) || brunt_facing_renew(world->facing, &world->skin))
+        return brunt_fail(error, BRUNT_FAILED, "out of memory for the bodies' surfaces");
+    return BRUNT_OK;
+}
+
 static int meet_by_facets(brunt_world *world, const brunt_meeting *m) {
     brunt_contact_points *points = &world->points;
     brunt_points_clear(points);

@@ -9,6 +9,7 @@
 #include "fill.h"
 #include "lanes.h"
 #include "memory.h"
+#include "mesh_shape.h"
 #include "sort.h"
 #include "threads.h"
 #include "world.h"
@@ -19,8 +20,32 @@ static const double TOUCHING = 1e-6;     // spacings: bodies closer than that to
 
 // ------------------------------------------------------------------------------------------ definition
 
-static int check(const brunt_world_def *def, brunt_error *error) {
 #define REFUSE(...) return brunt_fail(error, BRUNT_BAD_INPUT, __VA_ARGS__)
+
+// What is not the same all around the axis cannot be computed as rings.
+static int check_axis(const brunt_world_def *def, bool particles, brunt_error *error) {
+    const double at = -def->origin[0] / def->cell;
+    if (def->dimension != 2) REFUSE("axisymmetric: dimension %d, 2 is wanted", def->dimension);
+    if (particles && !(fabs(at - round(at)) < ON_GRID_LINE))
+        REFUSE("grid.origin: the axis of revolution, x = 0, must lie on a line of the grid (cell %g m)", def->cell);
+    if (def->gravity[0] != 0)
+        REFUSE("loads.gravity: %g m/s^2 along x, away from the axis of revolution: only y is possible",
+               def->gravity[0]);
+    for (int i = 0; i < def->body_count; i++)
+        for (int a = 0; a < 3; a++)
+            if (def->bodies[i].spin[a] != 0)
+                REFUSE("bodies.%s.spin: rings do not turn in their plane", def->bodies[i].name);
+    for (int q = 0; q < def->plane_count; q++) {
+        const brunt_plane_def *plane = &def->planes[q];
+        const bool round_axis = plane->normal[0] != 0 && plane->normal[1] == 0, fixed = plane->condition == BRUNT_SLIP;
+        if (round_axis && (plane->condition == BRUNT_SYMMETRY || (fixed && plane->point[0] == 0)))
+            REFUSE("boundaries[%d]: a cylinder is no plane of symmetry, and the axis of revolution x = 0 needs none",
+                   q);
+    }
+    return BRUNT_OK;
+}
+
+static int check(const brunt_world_def *def, brunt_error *error) {
     if (def->cookie != brunt_world_def_default().cookie)
         REFUSE("the world's definition was not made by brunt_world_def_default");
     if (def->dimension != 2 && def->dimension != 3) REFUSE("dimension: %d is neither 2 nor 3", def->dimension);
@@ -35,11 +60,17 @@ static int check(const brunt_world_def *def, brunt_error *error) {
     if (!(def->flip >= 0 && def->flip <= 1)) REFUSE("grid.transfer.flip: %g is not between 0 and 1", def->flip);
     if (!(def->cfl > 0 && def->cfl <= 1)) REFUSE("time.cfl: %g is not in (0, 1]", def->cfl);
     if (!(def->step >= 0) || !isfinite(def->step)) REFUSE("time.step: %g s is not a positive time", def->step);
+    if (!(def->least_step >= 0) || !isfinite(def->least_step))
+        REFUSE("time.least_step: %g s is not a time", def->least_step);
     if (!(def->end > 0) || !isfinite(def->end)) REFUSE("time.end: %g s is not a positive time", def->end);
     if (!(def->energy_limit > 0)) REFUSE("time.energy_limit: %g is not positive", def->energy_limit);
     if (def->threads < 0 || def->threads > 256) REFUSE("threads: %d is not between 0 (all) and 256", def->threads);
     if (def->body_count < 1) REFUSE("bodies: there is none");
     if (!(def->contact.friction >= 0)) REFUSE("contact.friction: %g is negative", def->contact.friction);
+    if (def->axisymmetric) {
+        int status = check_axis(def, particles, error);
+        if (status) return status;
+    }
     for (int i = 0; i < def->body_count; i++) {
         const brunt_body_def *body = &def->bodies[i];
         if (!body->name[0]) REFUSE("bodies: body %d has no name", i + 1);
@@ -76,13 +107,23 @@ static void start_motion(const brunt_body_def *def, int dim, const double x[3], 
     }
 }
 
+// How far a particle reaches that is at a distance from the body's surface. What is inside a fluid comes to its surface
+// later, and so does what is inside a body that erodes: there is a particle's own material about it, no more. Of a body
+// that erodes those in the outermost layer keep their distance: it says where the surface is that there is now.
+static double particle_reach(const brunt_body *body, double distance) {
+    const double own = 0.5 * body->spacing;
+    if (body->material.model[BRUNT_STRENGTH]->fluid) return fmin(distance, own);
+    return body->erodes && distance > body->spacing ? own : distance;
+}
+
 static int fill_body(const brunt_body_def *def, const brunt_filled *filled, brunt_body *body, brunt_error *error) {
     brunt_particles *p = &body->particles;
     const int dim = p->dim;
     if (brunt_particles_reserve(p, filled->count))
         return brunt_fail(error, BRUNT_FAILED, "bodies.%s: out of memory for %d particles", def->name, filled->count);
-    p->count = p->slots = filled->count;
-    body->particle_mass = (real)(filled->volume * (double)body->material.density);
+    p->count = p->slots = p->made = filled->count;
+    const bool rings = brunt_axisymmetric(p);
+    body->particle_mass = (real)(filled->volume * (double)body->material.density * (rings ? 2 * M_PI : 1));
     real **x = brunt_field(p, BRUNT_FIELD_position), **v = brunt_field(p, BRUNT_FIELD_velocity),
          **C = brunt_field(p, BRUNT_FIELD_affine);
     real **F = brunt_field(p, BRUNT_FIELD_deformation_gradient);
@@ -92,20 +133,25 @@ static int fill_body(const brunt_body_def *def, const brunt_filled *filled, brun
         for (int a = 0; a < dim; a++) at[a] = filled->position[a][s];
         start_motion(def, dim, at, speed, gradient);
         p->id[s] = s;
-        brunt_field(p, BRUNT_FIELD_mass)[0][s] = (real)(filled->volume * (double)body->material.density);
-        brunt_field(p, BRUNT_FIELD_reference_volume)[0][s] = (real)filled->volume;
-        // What is inside a fluid comes to its surface later: there is a particle's own material about it, no more.
-        if (reach)
-            brunt_field(p, BRUNT_FIELD_reach)[0][s] =
-                (real)(body->material.model[BRUNT_STRENGTH]->fluid ? fmin(filled->reach[s], 0.5 * body->spacing)
-                                                                   : filled->reach[s]);
+        // Of a ring, 2 pi times the integral of r over its square: exact.
+        const double volume = filled->volume * (rings ? 2 * M_PI * at[0] : 1);
+        if (!(volume > 0))
+            REFUSE("bodies.%s: a particle at r = %g m: bodies lie at r > 0, what is on the axis of revolution is cut "
+                   "there "
+                   "(an intersection with a box)",
+                   def->name, at[0]);
+        brunt_field(p, BRUNT_FIELD_mass)[0][s] = (real)(volume * (double)body->material.density);
+        brunt_field(p, BRUNT_FIELD_reference_volume)[0][s] = (real)volume;
+        if (reach) brunt_field(p, BRUNT_FIELD_reach)[0][s] = (real)particle_reach(body, filled->reach[s]);
         for (int a = 0; a < 3 && body->material.rest_stress != 0; a++)
             brunt_field(p, BRUNT_FIELD_kirchhoff_stress)[a][s] = body->material.rest_stress;
+        if (rings) F[8][s] = 1;
         for (int a = 0; a < dim; a++) {
             x[a][s] = (real)at[a];
+            if (brunt_total_lagrangian(p)) brunt_kernel_place(p)[a][s] = (real)at[a];
             v[a][s] = (real)speed[a];
             for (int b = 0; b < dim; b++) {
-                F[a * dim + b][s] = a == b;
+                F[a * p->point_dim + b][s] = a == b;
                 if (affine) C[a * dim + b][s] = (real)gradient[a][b];
             }
         }
@@ -164,6 +210,49 @@ static int fill_shapes(brunt_world *world, const brunt_world_def *def, const bru
     return status;
 }
 
+// What needs the bodies' grids at one place in space is not for bodies whose grids are undeformed.
+static int check_total_lagrangian(const brunt_world *world, const brunt_world_def *def, const brunt_body_def *from,
+                                  const brunt_body *body, brunt_error *error) {
+    if (def->axisymmetric) REFUSE("bodies.%s.total_lagrangian: not in axisymmetric scenes", from->name);
+    if (!world->total_gather)
+        REFUSE(
+            "bodies.%s.total_lagrangian: kernel linear has gradients that jump between cells; use quadratic or cubic",
+            from->name);
+    if (body->material.model[BRUNT_STRENGTH]->fluid)
+        REFUSE("bodies.%s.total_lagrangian: material '%s' is a fluid: it has no undeformed configuration", from->name,
+               body->material.name);
+    for (int k = 0; k < def->body_count; k++) {
+        const brunt_body_def *other = &def->bodies[k];
+        int32_t n = 0; // its place in order of name
+        for (int q = 0; q < def->body_count; q++) n += strcmp(def->bodies[q].name, other->name) < 0;
+        const int32_t pair = other == from ? -1 : world->pair_of[body->index * def->body_count + n];
+        if (pair < 0) continue;
+        if (other->method == BRUNT_MPM)
+            REFUSE("contact of '%s' and '%s': bodies of material points meet at the nodes of their grids, and that of "
+                   "'%s' "
+                   "is undeformed (total_lagrangian); let one of them be a mesh, or switch contact off between them",
+                   from->name, other->name, from->name);
+        if (world->pairs[pair].method == BRUNT_CONTACT_MULTI_VELOCITY)
+            REFUSE("contact of '%s' and '%s': the grid of '%s' is undeformed (total_lagrangian): use augury, not "
+                   "multi-velocity",
+                   from->name, other->name, from->name);
+    }
+    return BRUNT_OK;
+}
+
+static int set_erosion(const brunt_world_def *def, const brunt_body_def *from, int32_t count, brunt_body *body,
+                       brunt_error *error) {
+    for (int k = 0; k < BRUNT_COMPONENTS; k++)
+        body->fails = body->fails || (body->material.model[k] && body->material.model[k]->damage);
+    body->fails = body->fails && def->materials[from->material].failure_action == BRUNT_FAILURE_ERODE;
+    body->erodes_inverted = from->erosion.inverted;
+    body->erodes = body->fails || body->erodes_inverted || isfinite(from->erosion.strain);
+    body->keeps = body->erodes && from->erosion.keep;
+    if (!body->erodes) return BRUNT_OK;
+    body->rank = brunt_alloc(((size_t)count + 1) * sizeof *body->rank);
+    return body->rank ? BRUNT_OK : brunt_fail(error, BRUNT_FAILED, "out of memory");
+}
+
 static int make_particles(brunt_world *world, const brunt_world_def *def, const brunt_body_def *from,
                           const brunt_filled *filled, const double origin[3], int index, brunt_error *error) {
     brunt_body *body = &world->bodies[world->body_count++];
@@ -173,13 +262,16 @@ static int make_particles(brunt_world *world, const brunt_world_def *def, const 
     body->spacing = lattice_spacing(def, from);
     int status = brunt_material_make(&def->materials[from->material], &body->material, error);
     if (status) return status;
+    if (from->total_lagrangian && (status = check_total_lagrangian(world, def, from, body, error))) return status;
+    if ((status = set_erosion(def, from, filled->count, body, error))) return status;
     world->has_fluid = world->has_fluid || body->material.model[BRUNT_STRENGTH]->fluid;
     brunt_particle_needs needs = {.affine = def->transfer == BRUNT_APIC,
                                   .reach = world->has_contact || world->has_augury || world->has_grid_surfaces ||
                                            world->has_walls,
-                                  .grid_velocity = world->advance && def->transfer == BRUNT_FLIP};
+                                  .grid_velocity = world->advance && def->transfer == BRUNT_FLIP,
+                                  .total = from->total_lagrangian};
     memcpy(needs.models, body->material.model, sizeof needs.models);
-    brunt_particles_init(&body->particles, def->dimension, &needs);
+    brunt_particles_init(&body->particles, def->dimension, def->axisymmetric ? 3 : def->dimension, &needs);
     brunt_grid_init(&body->grid, def->dimension, (int)def->kernel, def->cell, origin);
     return fill_body(from, filled, body, error);
 }
@@ -195,6 +287,13 @@ static int close_ranks(brunt_fem_body *fem, int32_t mesh_nodes) {
     for (int32_t n = 0; n < fem->node_count; n++) fem->node_id[n] = rank[fem->node_id[n]];
     brunt_free(rank);
     return 0;
+}
+
+// A disk or an annulus about a point of the axis of revolution: half of it is the section of a ball or a shell.
+static bool is_halved(const brunt_world_def *def, const brunt_body_def *body) {
+    const double *R = body->place.rotation;
+    return def->axisymmetric && (body->shape.kind == BRUNT_SPHERE || body->shape.kind == BRUNT_RING) && R[0] == 1 &&
+           fabs(body->shape.center[0] + body->place.translation[0]) <= 1e-12 * body->shape.radius;
 }
 
 static int make_elements(brunt_world *world, const brunt_world_def *def, const brunt_body_def *from, int index,
@@ -218,6 +317,10 @@ static int make_elements(brunt_world *world, const brunt_world_def *def, const b
         status = sheet
                      ? brunt_mesh_surface(&from->shape, from->element, from->size,
                                           (const char(*)[BRUNT_NAME_LENGTH])from->faces, from->face_count, &made, error)
+                 : is_halved(def, from) ? brunt_mesh_half(&from->shape, from->element, from->size, &made, error)
+                 : from->grading[0].count || from->grading[1].count || from->grading[2].count
+                     ? brunt_mesh_graded(&from->shape, def->dimension, from->element, from->size, from->grading, &made,
+                                         error)
                      : brunt_mesh_shape(&from->shape, def->dimension, from->element, from->size, &made, error);
     }
     const brunt_mesh *mesh = from->mesh.node_count ? &from->mesh : &made;
@@ -234,7 +337,9 @@ static int make_elements(brunt_world *world, const brunt_world_def *def, const b
     if (!status)
         status = sheet ? brunt_material_make_sheet(law, from->slack, &material, error)
                        : brunt_material_make(law, &material, error);
-    if (!status) status = brunt_fem_make(from, &material, def->dimension, mesh, fem, error);
+    if (!status)
+        status = def->axisymmetric ? brunt_fem_make_axisymmetric(from, &material, mesh, fem, error)
+                                   : brunt_fem_make(from, &material, def->dimension, mesh, fem, error);
     if (!status && close_ranks(fem, mesh->node_count)) status = brunt_fail(error, BRUNT_FAILED, "out of memory");
     if (!status) {
         fem->index = index;
@@ -253,6 +358,7 @@ static int make_elements(brunt_world *world, const brunt_world_def *def, const b
         for (int a = 0; a < 3; a++) x[a] = (double)node[a];
         start_motion(from, def->dimension, x, v, gradient);
         for (int a = 0; a < def->dimension; a++) node[BRUNT_FEM_V + a] = (real)v[a];
+        if (def->axisymmetric && fem->held[n]) node[BRUNT_FEM_V] = 0; // on the axis
     }
     brunt_mesh_free(&made);
     return status;
@@ -329,7 +435,8 @@ static int make_plane(brunt_world *world, const brunt_world_def *def, int index,
         for (int m = 0; m < world->mirror_count; m++) {
             const brunt_mirror *other = &world->mirrors[m];
             int32_t apart = (int32_t)round(at) - other->node;
-            if (other->axis == axis && apart != 0 && abs(apart) <= (int)def->kernel && has_fluid(def))
+            if (other->wall >= 0 && other->axis == axis && apart != 0 && abs(apart) <= (int)def->kernel &&
+                has_fluid(def))
                 brunt_warn(
                     world,
                     "boundaries[%d] (%s): this plane of symmetry or slip and '%s' are %d cells apart; the kernel "
@@ -365,6 +472,9 @@ static int make_walls(brunt_world *world, const brunt_world_def *def, const brun
     world->walls = brunt_alloc((size_t)(world->wall_count + 1) * sizeof *world->walls);
     world->wall_work = brunt_alloc((size_t)def->body_count * sizeof(void *));
     if (!world->walls || !world->wall_work) return brunt_fail(error, BRUNT_FAILED, "out of memory");
+    if (def->axisymmetric && world->has_particles)
+        world->mirrors[world->mirror_count++] =
+            (brunt_mirror){.axis = 0, .node = (int32_t)round(-def->origin[0] / def->cell), .wall = -1};
     for (int w = 0; w < world->wall_count; w++) {
         brunt_wall *wall = &world->walls[w];
         wall->region = w >= def->plane_count;
@@ -459,9 +569,13 @@ static int make_pairs(brunt_world *world, const brunt_world_def *def, const brun
                        "augury between meshes",
                        order[i]->name, order[k]->name);
             // Bodies of material points meet at the nodes of the grid that moves them, whatever the method is called.
-            if (!meshes)
-                pair.method = BRUNT_CONTACT_MULTI_VELOCITY, world->has_contact = true;
-            else if (on_grid)
+            if (meshes && pair.method == BRUNT_CONTACT_TIED)
+                REFUSE("contact of '%s' and '%s': only bodies of material points can be tied", order[i]->name,
+                       order[k]->name);
+            if (!meshes) {
+                if (pair.method != BRUNT_CONTACT_TIED) pair.method = BRUNT_CONTACT_MULTI_VELOCITY;
+                world->has_contact = true;
+            } else if (on_grid)
                 world->has_grid_surfaces = true;
             else
                 world->has_augury = true;
@@ -568,12 +682,16 @@ brunt_world *brunt_world_create(const brunt_world_def *def, brunt_error *error) 
     if (world->threads > 256) world->threads = 256;
     world->kernel = def->kernel, world->transfer = def->transfer;
     world->flip = def->flip, world->cfl = def->cfl, world->fixed_step = def->step, world->end = def->end;
+    world->axisymmetric = def->axisymmetric;
+    world->least_step = def->least_step;
     world->energy_limit = def->energy_limit, world->cell = def->cell, world->gravity_ramp = def->gravity_ramp;
     memcpy(world->gravity, def->gravity, sizeof world->gravity);
     for (int a = 0; a < def->dimension; a++) world->has_gravity = world->has_gravity || def->gravity[a] != 0;
-    world->scatter = brunt_find_scatter(def->dimension, def->kernel, def->transfer);
-    world->gather = brunt_find_gather(def->dimension, def->kernel, def->transfer);
-    world->advance = brunt_find_advance(def->dimension, def->kernel, def->transfer);
+    world->scatter = brunt_find_scatter(def->dimension, def->axisymmetric, def->kernel, def->transfer);
+    world->total_scatter = brunt_find_total_scatter(def->dimension, def->kernel, def->transfer);
+    world->total_gather = brunt_find_total_gather(def->dimension, def->kernel, def->transfer);
+    world->gather = brunt_find_gather(def->dimension, def->axisymmetric, def->kernel, def->transfer);
+    world->advance = brunt_find_advance(def->dimension, def->axisymmetric, def->kernel, def->transfer);
     world->all_count = def->body_count;
     world->all = brunt_alloc((size_t)def->body_count * sizeof *world->all);
     world->bodies = brunt_alloc((size_t)def->body_count * sizeof *world->bodies);
@@ -588,7 +706,9 @@ brunt_world *brunt_world_create(const brunt_world_def *def, brunt_error *error) 
     if (!status) status = make_walls(world, def, order, error);
     if (!status) status = make_pairs(world, def, order, error);
     if (!status) status = make_bodies(world, def, order, error);
+    if (!status) status = brunt_detonation_make(world, def, error);
     if (!status) status = map_grid_pairs(world, error);
+    if (!status) status = brunt_erosion_make(world, def, error);
     if (!status) status = brunt_holds_make(world, def, error);
     if (!status) status = brunt_surfaces_make(world, def, error);
     if (!status && brunt_fem_tasks(world)) status = brunt_fail(error, BRUNT_FAILED, "out of memory");
@@ -619,6 +739,7 @@ void brunt_world_destroy(brunt_world *world) {
     brunt_grid_surfaces_free(world->grid_surfaces);
     brunt_holds_free(world);
     brunt_damping_free(world);
+    brunt_erosion_free(world);
     for (int k = 0; world->fems && k < world->fem_count; k++) brunt_fem_free(&world->fems[k]);
     for (size_t t = 0; t < sizeof world->fem_work / sizeof world->fem_work[0]; t++)
         brunt_fem_workspace_free(&world->fem_work[t]);

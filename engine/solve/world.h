@@ -27,7 +27,8 @@
     X(remap, world->advance != NULL && world->body_count > 0)                                                          \
     X(gather, world->body_count > 0)                                                                                   \
     X(drift, world->fem_count > 0)                                                                                     \
-    X(elements, world->fem_count > 0)
+    X(elements, world->fem_count > 0)                                                                                  \
+    X(erosion, world->has_erosion)
 
 enum {
 #define BRUNT_PASS_INDEX(name, when) BRUNT_PASS_##name,
@@ -51,6 +52,9 @@ typedef struct brunt_hold {
     int32_t node_count;
     int32_t (*face)[4]; // traction and pressure: the surface's faces that are all in the group
     int32_t face_count;
+    // Of bodies that erode, the faces at the start and the elements they are of, by their numbers in the mesh; else NULL.
+    int32_t (*whole)[4], *owner;
+    int32_t whole_count;
     double *force;  // node_count x 3 [N] of this step, for loads
     int32_t *place; // of each node of the body: its place in the group + 1; for loads
     double gas_energy, gas_volume, gas_inflow; // [J], [m^3], [J] so far: of enclosed gas
@@ -73,6 +77,8 @@ struct brunt_world {
     double flip, cfl, fixed_step, end, energy_limit, gravity[3], gravity_ramp, cell;
     brunt_scatter_fn *scatter;
     brunt_gather_fn *gather, *advance;
+    brunt_scatter_fn *total_scatter; // of total-Lagrangian bodies
+    brunt_gather_fn *total_gather;
 
     brunt_body_ref *all; // in order of name
     int all_count;
@@ -112,6 +118,12 @@ struct brunt_world {
     int32_t *mpm_pair_of; // pairs that meet at grid nodes, by place in `bodies`
     bool has_particles, has_conditions, has_contact, has_walls, has_friction, has_gravity;
     const brunt_hold *gas_lost; // gas whose volume is no longer positive
+    bool axisymmetric;
+    brunt_eroded *eroded; // of each body of `all`; NULL without erosion. Saved with the state
+    brunt_erosion_def *erosion; // of each body of `all`; NULL without erosion
+    bool has_erosion; // elements or material points may leave their bodies
+    struct brunt_erosion_work *erosion_work; // of meshes that erode; NULL without erosion
+    double least_step;
     bool has_damping, has_gas, has_fluid;
     bool has_grid_surfaces;        // multi-velocity contact of meshes with material points
     bool has_augury, has_surfaces; // surfaces of meshes meet something: each other, particles, planes
@@ -136,6 +148,7 @@ struct brunt_world {
         double initial_energy, initial_kinetic; // [J]
         double linear_initial[3], angular_initial[3], scale_linear, scale_angular;
         double energy_scale; // [J] the largest energy the run has had to do with
+        double eroded_plastic, eroded_viscosity, eroded_heat; // [J] dissipated by what has been eroded since
     } now;
 
     struct brunt_pass_time {
@@ -174,11 +187,33 @@ brunt_fem_body *brunt_fem_elements_all(brunt_world *world, double dt, int32_t *b
 brunt_fem_sums brunt_fem_audit(brunt_fem_body *fem);
 // Least stable step of the blocks as they last reported [s].
 double brunt_fem_stable_step(const brunt_world *world);
+// The body and slot of the element that has it; NULL without elements, or without memory to look.
+brunt_fem_body *brunt_fem_shortest(brunt_world *world, int32_t *slot);
 
 // --- surfaces.c: the meshes' surfaces and what they meet
 // 0, or BRUNT_FAILED with the reason in `error`.
 int brunt_surfaces_meet(brunt_world *world, const double gravity[3], double kick, double dt, brunt_error *error);
 int brunt_surfaces_make(brunt_world *world, const brunt_world_def *def, brunt_error *error);
+// The surfaces anew, after elements have left meshes.
+int brunt_surfaces_renew(brunt_world *world, brunt_error *error);
+
+// --- erosion.c, erosion_particles.c: elements and material points that leave their bodies, at the end of a step
+// The accounts and lists of bodies that erode; world->has_erosion. Before the first step.
+int brunt_erosion_make(brunt_world *world, const brunt_world_def *def, brunt_error *error);
+void brunt_erosion_free(brunt_world *world);
+// Takes out what has failed, is strained, short of step or inside out, and books it. BRUNT_OK, or BRUNT_FAILED with the reason.
+int brunt_erode_meshes(brunt_world *world, double dt, brunt_error *error);
+int brunt_erode_particles(brunt_world *world, double dt, brunt_error *error);
+// Of brunt_erode_meshes, the taking out of elements that have a mark, counted in the reports of their blocks.
+int brunt_erode_marked(brunt_world *world, double dt, brunt_error *error);
+// The accounts, as doubles.
+int64_t brunt_erosion_state_count(const brunt_world *world);
+void brunt_erosion_state_get(const brunt_world *world, double *out);
+void brunt_erosion_state_set(brunt_world *world, const double *in);
+
+// --- detonation.c: when explosives are lit
+// After the bodies are made, before their particles are sorted. BRUNT_BAD_INPUT for detonations that light nothing.
+int brunt_detonation_make(brunt_world *world, const brunt_world_def *def, brunt_error *error);
 
 // --- damping.c: drag on the nodes of bodies with damping
 // After the node tasks are made.
@@ -202,6 +237,9 @@ void brunt_gas_state_set(brunt_world *world, const double *in);
 // --- holds.c: named groups
 int brunt_holds_make(brunt_world *world, const brunt_world_def *def, brunt_error *error);
 double brunt_curve_at(const brunt_curve *curve, double time);
+// Loads of a body's groups from now on act on the faces of those elements alone that it still has. The group whose faces
+// enclose gas and one of its elements (by number in the mesh) that has gone, or NULL.
+const brunt_hold *brunt_holds_follow(brunt_world *world, int fem, int32_t *element);
 // Loads of this step, made before the kick of `dt` and with half their work booked; the other half once velocities are
 // final.
 void brunt_loads_begin(brunt_world *world, double time, double dt);

@@ -1,0 +1,95 @@
+// Bilinear quadrilateral revolved about the axis, with one point. Modes as in quad4.c: xi, eta, and the hourglass xi
+// eta.
+#include "ring.h"
+
+static const uint8_t faces[][4] = {{0, 1, 0, 0}, {1, 2, 0, 0}, {2, 3, 0, 0}, {3, 0, 0, 0}};
+
+static const int8_t hourglass_mode[][BRUNT_ELEMENT_NODES] = {{1, -1, 1, -1}};
+
+static double area(const double (*x)[3]) {
+    return 0.5 * ((x[2][0] - x[0][0]) * (x[3][1] - x[1][1]) - (x[2][1] - x[0][1]) * (x[3][0] - x[1][0]));
+}
+
+BRUNT_INLINE void axisymmetric_quad4_modes(const lanes x[4][2], lanes m[3][2]) {
+    for (int i = 0; i < 2; i++) {
+        lanes rising = x[2][i] - x[0][i], falling = x[1][i] - x[3][i];
+        m[0][i] = rising + falling;
+        m[1][i] = rising - falling;
+        m[2][i] = (x[0][i] + x[2][i]) - (x[1][i] + x[3][i]);
+    }
+}
+
+BRUNT_INLINE void axisymmetric_quad4_nodal(const lanes p[3][2], lanes f[4][2]) {
+    for (int i = 0; i < 2; i++) {
+        lanes rising = p[0][i] + p[1][i], falling = p[0][i] - p[1][i];
+        f[0][i] = p[2][i] - rising;
+        f[2][i] = p[2][i] + rising;
+        f[1][i] = falling - p[2][i];
+        f[3][i] = -falling - p[2][i];
+    }
+}
+
+// Nodes' values c + m0 + m1 + m2 of combinations of 1, xi, eta, xi eta.
+BRUNT_INLINE void spread(lanes c, lanes xi, lanes eta, lanes both, lanes out[4]) {
+    out[0] = (c - xi) - (eta - both);
+    out[1] = (c + xi) - (eta + both);
+    out[2] = (c + xi) + (eta + both);
+    out[3] = (c - xi) + (eta - both);
+}
+
+// With R = R0 + (R1 xi + R2 eta + R3 xi eta) / 4 and the Jacobian j = (j0 + j1 xi + j2 eta) / 16, N_a = (1 + xi_a xi +
+// eta_a eta + xi_a eta_a xi eta) / 4: integrals of products over [-1, 1]^2, where xi^2 has the mean 1/3. For G,
+// int R dX/deta = R0 m1 + R1 m2 / 12, int R dX/dxi = R0 m0 + R2 m2 / 12, and their difference with weights eta and xi
+// (R2 m1 - R1 m0) / 12, turned by 90 degrees.
+BRUNT_INLINE void axisymmetric_quad4_ring(const lanes X[4][2], const lanes m[3][2], ring_section *out) {
+    const real third = (real)(1.0 / 3), twelfth = (real)(1.0 / 12);
+    lanes R0 = (real)0.25 * ((X[0][0] + X[2][0]) + (X[1][0] + X[3][0]));
+    lanes R1 = m[0][0], R2 = m[1][0], R3 = m[2][0];
+    lanes j0 = m[0][0] * m[1][1] - m[0][1] * m[1][0];
+    lanes j1 = m[0][0] * m[2][1] - m[0][1] * m[2][0];
+    lanes j2 = m[2][0] * m[1][1] - m[2][1] * m[1][0];
+    out->area = (real)0.25 * j0;
+    lanes c = (real)0.25 * (R0 * j0 + twelfth * (R1 * j1 + R2 * j2));
+    lanes xi = third * (real)0.25 * (R0 * j1 + (real)0.25 * (R1 * j0 + third * R3 * j2));
+    lanes eta = third * (real)0.25 * (R0 * j2 + (real)0.25 * (R2 * j0 + third * R3 * j1));
+    lanes both = third * third * (real)0.0625 * (R1 * j2 + R2 * j1 + R3 * j0);
+    out->volume = c;
+    spread((real)0.25 * c, (real)0.25 * xi, (real)0.25 * eta, (real)0.25 * both, out->share);
+    spread((real)0.0625 * j0, (real)0.0625 * third * j1, (real)0.0625 * third * j2, lanes_set(0), out->hoop);
+    lanes along[2], across[2], rest[2];
+    for (int i = 0; i < 2; i++) {
+        across[i] = R0 * m[1][i] + twelfth * R1 * m[2][i];
+        along[i] = R0 * m[0][i] + twelfth * R2 * m[2][i];
+        rest[i] = twelfth * (R2 * m[1][i] - R1 * m[0][i]);
+    }
+    out->G[0][0] = (real)0.25 * across[1], out->G[0][1] = (real)-0.25 * across[0];
+    out->G[1][0] = (real)-0.25 * along[1], out->G[1][1] = (real)0.25 * along[0];
+    out->G[2][0] = (real)0.25 * rest[1], out->G[2][1] = (real)-0.25 * rest[0];
+    for (int a = 0; a < 4; a++) out->off_axis[a] = X[a][0];
+}
+
+#define ELEMENT axisymmetric_quad4
+#define NODES 4
+#define MODES 3
+#define HOURGLASS_MODES 1
+#define MODE_NORM 4
+#include "axisymmetric.inc"
+
+const brunt_element brunt_axisymmetric_quad4 = {
+    .name = "quad4",
+    .doc = "bilinear quadrilateral about an axis, one point with hourglass control (Flanagan and Belytschko 1981)",
+    .dim = 2,
+    .nodes = 4,
+    .face_count = 4,
+    .face_nodes = 2,
+    .axisymmetric = true,
+    .block = 1024,
+    .vtk_cell = 9,
+    .hourglass_modes = 1,
+    .hourglass = hourglass_mode,
+    .face = faces,
+    .volume = area,
+    .shares = shares,
+    .gradient = mean_gradient,
+    .forces = axisymmetric_quad4_forces,
+};

@@ -1,0 +1,60 @@
+// Linear triangle revolved about the axis, with one point. Modes as in tri3.c: the edges from node 0.
+#include "ring.h"
+
+static const uint8_t faces[][4] = {{0, 1, 0, 0}, {1, 2, 0, 0}, {2, 0, 0, 0}};
+
+static double area(const double (*x)[3]) {
+    return 0.5 * ((x[1][0] - x[0][0]) * (x[2][1] - x[0][1]) - (x[1][1] - x[0][1]) * (x[2][0] - x[0][0]));
+}
+
+BRUNT_INLINE void axisymmetric_tri3_modes(const lanes x[3][2], lanes m[2][2]) {
+    for (int k = 0; k < 2; k++)
+        for (int i = 0; i < 2; i++) m[k][i] = x[k + 1][i] - x[0][i];
+}
+
+BRUNT_INLINE void axisymmetric_tri3_nodal(const lanes p[2][2], lanes f[3][2]) {
+    for (int i = 0; i < 2; i++) {
+        for (int k = 0; k < 2; k++) f[k + 1][i] = p[k][i];
+        f[0][i] = -(p[0][i] + p[1][i]);
+    }
+}
+
+// Gradients are constant: int R grad N = mean R times that of tri3.c; int N_a = A / 3, int N_a N_b = A (1 + [a = b])
+// / 12.
+BRUNT_INLINE void axisymmetric_tri3_ring(const lanes X[3][2], const lanes m[2][2], ring_section *out) {
+    lanes sum = X[0][0] + X[1][0] + X[2][0], R = (real)(1.0 / 3) * sum;
+    lanes A = out->area = (real)0.5 * (m[0][0] * m[1][1] - m[0][1] * m[1][0]);
+    out->volume = R * A;
+    lanes half = (real)0.5 * R;
+    out->G[0][0] = half * m[1][1], out->G[0][1] = -half * m[1][0];
+    out->G[1][0] = -half * m[0][1], out->G[1][1] = half * m[0][0];
+    for (int a = 0; a < 3; a++) {
+        out->hoop[a] = (real)(1.0 / 3) * A;
+        out->share[a] = (real)(1.0 / 12) * A * (sum + X[a][0]);
+        out->off_axis[a] = X[a][0];
+    }
+}
+
+#define ELEMENT axisymmetric_tri3
+#define NODES 3
+#define MODES 2
+#define HOURGLASS_MODES 0
+#define MODE_NORM 0
+#include "axisymmetric.inc"
+
+const brunt_element brunt_axisymmetric_tri3 = {
+    .name = "tri3",
+    .doc = "linear triangle about an axis: constant gradient, mean hoop strain, no zero-energy modes",
+    .dim = 2,
+    .nodes = 3,
+    .face_count = 3,
+    .face_nodes = 2,
+    .axisymmetric = true,
+    .block = 512,
+    .vtk_cell = 5,
+    .face = faces,
+    .volume = area,
+    .shares = shares,
+    .gradient = mean_gradient,
+    .forces = axisymmetric_tri3_forces,
+};

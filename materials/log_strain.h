@@ -1,0 +1,57 @@
+// Equivalent logarithmic strain of a deformation gradient: sqrt(2/3 e:e) with e the deviator of ln sqrt(F^T F).
+//
+// Its principal values e_i sum to 0, so that with F scaled to volume 1 tr C + tr C^-1 - 6 = sum 2 (cosh 2 e_i - 1), which
+// is at least 4 e:e: (tr C + tr C^-1 - 6) / 6 is a bound of the square, close for small strains, that needs no
+// eigenvalues. Only points past the bound are worth those.
+#pragma once
+
+#include <math.h>
+
+#include "lanes_math.h"
+
+// F with rows one after the other, 3 x 3. Upper bound of the square of the strain; J > 0 is wanted.
+BRUNT_INLINE lanes log_strain_bound(const lanes F[9]) {
+    lanes C[6], J = F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) +
+                    F[2] * (F[3] * F[7] - F[4] * F[6]);
+    static const int row[6] = {0, 1, 2, 0, 1, 0}, column[6] = {0, 1, 2, 1, 2, 2};
+    for (int k = 0; k < 6; k++) {
+        int r = row[k], c = column[k];
+        C[k] = F[r] * F[c] + F[3 + r] * F[3 + c] + F[6 + r] * F[6 + c];
+    }
+    lanes first = C[0] + C[1] + C[2], second = C[0] * C[1] + C[1] * C[2] + C[2] * C[0] - C[3] * C[3] - C[4] * C[4] -
+                                               C[5] * C[5];
+    lanes scale = lanes_inverse_cbrt(J);
+    scale *= scale;
+    return (first * scale + second * scale * scale - 6) * (real)(1.0 / 6);
+}
+
+// The strain itself, by Jacobi's rotations of C (relative accuracy of the eigenvalues near rounding).
+static inline double equivalent_log_strain(const double F[9]) {
+    double C[3][3];
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++) C[r][c] = F[r] * F[c] + F[3 + r] * F[3 + c] + F[6 + r] * F[6 + c];
+    for (int sweep = 0; sweep < 12; sweep++) {
+        double off = 0, size = 0;
+        for (int p = 0; p < 3; p++) size += C[p][p] * C[p][p], off += C[p][(p + 1) % 3] * C[p][(p + 1) % 3];
+        if (!(off > 1e-30 * size)) break;
+        for (int p = 0; p < 2; p++)
+            for (int q = p + 1; q < 3; q++) {
+                if (C[p][q] == 0) continue;
+                double theta = (C[q][q] - C[p][p]) / (2 * C[p][q]);
+                double t = (theta < 0 ? -1 : 1) / (fabs(theta) + sqrt(theta * theta + 1)), c = 1 / sqrt(t * t + 1),
+                       s = t * c;
+                for (int k = 0; k < 3; k++) {
+                    double a = C[p][k], b = C[q][k];
+                    C[p][k] = c * a - s * b, C[q][k] = s * a + c * b;
+                }
+                for (int k = 0; k < 3; k++) {
+                    double a = C[k][p], b = C[k][q];
+                    C[k][p] = c * a - s * b, C[k][q] = s * a + c * b;
+                }
+            }
+    }
+    double e[3], mean = 0, square = 0;
+    for (int k = 0; k < 3; k++) e[k] = 0.5 * log(C[k][k]), mean += e[k] / 3;
+    for (int k = 0; k < 3; k++) square += (e[k] - mean) * (e[k] - mean);
+    return sqrt(2.0 / 3 * square);
+}
