@@ -272,14 +272,11 @@ static int restore_state(hid_t file, const char *path, brunt_world *world, brunt
             return brunt_fail(error, BRUNT_BAD_INPUT,
                               "%s: the state block '%s' is missing, of another type than %s, or cannot be read", path,
                               block.name, find_type(block.type)->name);
-        if (found != block.count) {
-            brunt_free(values);
-            return brunt_fail(error, BRUNT_BAD_INPUT, "%s: the state block '%s' holds %lld values, this scene has %lld",
-                              path, block.name, (long long)found, (long long)block.count);
-        }
-        int status = brunt_state_set(world, b, values, found, error);
+        // Whether that many are right is for the world to say: of what erodes there may be fewer.
+        brunt_error refused;
+        int status = brunt_state_set(world, b, values, found, &refused);
         brunt_free(values);
-        if (status) return status;
+        if (status) return brunt_fail(error, status, "%s: %.900s", path, refused.message);
     }
     return brunt_state_done(world, error);
 }

@@ -22,7 +22,8 @@ typedef struct column {
 typedef struct probe {
     char name[64];
     int32_t body, field;
-    int64_t id; // particle, node or element
+    int64_t id;    // particle, node or element
+    int64_t count; // how many of them there were at the start
     brunt_field_info info;
 } probe;
 
@@ -122,6 +123,7 @@ static void add_energy(brunt_history *h, brunt_world *world) {
     add(h, "energy.viscosity", "J", e.viscosity);
     add(h, "energy.transfer", "J", e.transfer);
     add(h, "energy.eroded", "J", e.eroded);
+    add(h, "energy.heat", "J", e.heat);
     add(h, "energy.external_work", "J", e.external_work);
     add(h, "energy.initial", "J", e.initial);
     add(h, "energy.total", "J", e.total);
@@ -136,6 +138,12 @@ static void add_momentum(brunt_history *h, brunt_world *world) {
     add_vector(h, "momentum.angular", "kg m^2/s", m.angular);
     add(h, "momentum.linear_drift", "1", m.linear_drift);
     add(h, "momentum.angular_drift", "1", m.angular_drift);
+}
+
+static bool has_effect(const brunt_world *world, const char *name) {
+    for (int32_t e = 0; e < brunt_effect_count(world); e++)
+        if (!strcmp(brunt_world_effect(world, e).name, name)) return brunt_world_effect(world, e).on;
+    return false;
 }
 
 static void add_body(brunt_history *h, brunt_world *world, int32_t body) {
@@ -155,6 +163,28 @@ static void add_body(brunt_history *h, brunt_world *world, int32_t body) {
     add_named(h, "J", sums.kinetic, "body.%s.kinetic", body_name);
     add_named(h, "J", sums.internal, "body.%s.internal", body_name);
     add_named(h, "J", sums.plastic, "body.%s.plastic", body_name);
+    if (!has_effect(world, "erosion")) return;
+    brunt_eroded eroded;
+    brunt_body_eroded(world, body, &eroded);
+    add_named(h, "1", (double)(eroded.elements + eroded.particles), "body.%s.eroded", body_name);
+    add_named(h, "kg", eroded.mass, "body.%s.eroded_mass", body_name);
+}
+
+// Where the probe's id is among those there are now, -1 when it has eroded. Uses the scratch.
+static int64_t probe_place(brunt_history *h, brunt_world *world, const probe *p) {
+    const int64_t count = brunt_body_size(world, p->body, p->info.at);
+    const int32_t field = brunt_place_ids(world, p->body, p->info.at);
+    if (count == p->count || field < 0) return p->id;
+    brunt_body_read(world, p->body, field, h->scratch);
+    int64_t low = 0, high = count; // ids ascend
+    while (low < high) {
+        int64_t middle = (low + high) / 2;
+        if (h->scratch[middle] < (double)p->id)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < count && h->scratch[low] == (double)p->id ? low : -1;
 }
 
 static void add_probe(brunt_history *h, brunt_world *world, const probe *p) {
@@ -171,11 +201,12 @@ static void add_probe(brunt_history *h, brunt_world *world, const probe *p) {
             return;
         }
         h->scratch = memory;
+        const int64_t place = probe_place(h, world, p);
         brunt_body_read(world, p->body, p->field, h->scratch);
-        values = h->scratch + (size_t)n * (size_t)p->id;
+        if (place >= 0) values = h->scratch + (size_t)n * (size_t)place;
     }
     for (int c = 0; c < n; c++) {
-        double value = values ? values[c] : 0;
+        double value = values ? values[c] : h->declaring ? 0 : NAN; // it has eroded
         if (names)
             add_named(h, p->info.unit, value, "probe.%s.%s", p->name, names[c]);
         else if (n == 1)
@@ -240,8 +271,8 @@ static int find_probe(brunt_world *world, const brunt_probe *def, probe *out, br
     double *places = NULL;
     int status = brunt_places_read(world, out->body, out->info.at, &places, error);
     if (status) return status;
-    out->id = nearest_place(places, brunt_body_size(world, out->body, out->info.at), brunt_world_dimension(world),
-                            def->point);
+    out->count = brunt_body_size(world, out->body, out->info.at);
+    out->id = nearest_place(places, out->count, brunt_world_dimension(world), def->point);
     brunt_free(places);
     if (out->id < 0)
         return brunt_fail(error, BRUNT_BAD_INPUT, "output.probes.%s: body '%s' is empty", def->name, def->body);

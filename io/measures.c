@@ -73,6 +73,13 @@ static double reduce_history(const brunt_measure *m, const double *time, const d
         for (int64_t r = last; r >= first; r--)
             if (value[r] != 0) return time[r];
         return NAN;
+    case BRUNT_TAKE_RISE:
+        for (int64_t r = first; most > 0 && r <= last; r++) {
+            if (!(value[r] >= 0.5 * most)) continue;
+            double share = r > first ? (0.5 * most - value[r - 1]) / (value[r] - value[r - 1]) : 1;
+            return r > first ? time[r - 1] + share * (time[r] - time[r - 1]) : time[r];
+        }
+        return NAN;
     case BRUNT_TAKE_PERIOD: return period(time + first, value + first, count, least, most);
     }
     return NAN;
@@ -149,15 +156,14 @@ static void free_points(point_set *set) {
     brunt_free(set->values);
 }
 
-static int read_points(const brunt_measure *m, brunt_world *world, point_set *set, brunt_error *error) {
+static int read_points(const brunt_measure *m, brunt_world *world, int32_t body, point_set *set, brunt_error *error) {
     memset(set, 0, sizeof *set);
-    int32_t body = brunt_find_body(world, m->body);
-    if (body < 0) return brunt_fail(error, BRUNT_BAD_INPUT, "measures.%s: there is no body '%s'", m->name, m->body);
     brunt_field_info info = {.at = brunt_place_of_motion(world, body)};
-    bool sized = m->kind != BRUNT_MEASURE_FIELD && info.at == BRUNT_AT_PARTICLES;
+    const bool of_field = m->kind == BRUNT_MEASURE_FIELD || m->kind == BRUNT_MEASURE_PROFILE;
+    bool sized = !of_field && info.at == BRUNT_AT_PARTICLES;
     int status = BRUNT_OK;
     set->dimension = brunt_world_dimension(world);
-    if (m->kind == BRUNT_MEASURE_FIELD) {
+    if (of_field) {
         status = read_field(world, body, m->field, m, &set->values, &info, error);
         set->components = info.components;
         if (!status && m->component >= set->components)
@@ -166,7 +172,12 @@ static int read_points(const brunt_measure *m, brunt_world *world, point_set *se
     }
     brunt_field_info unused;
     if (sized) status = read_field(world, body, "deformation_gradient", m, &set->gradient, &unused, error);
-    if (sized && !status) status = read_field(world, body, "volume", m, &set->volume, &unused, error);
+    if (!status && m->kind == BRUNT_MEASURE_PROFILE && info.at == BRUNT_AT_NODES)
+        status = brunt_fail(error, BRUNT_BAD_INPUT,
+                            "measures.%s: '%s' of body '%s' is at nodes, a profile wants particles or elements",
+                            m->name, m->field, brunt_body_name(world, body));
+    if (!status && (sized || m->kind == BRUNT_MEASURE_PROFILE))
+        status = read_field(world, body, "volume", m, &set->volume, &unused, error);
     set->count = brunt_body_size(world, body, info.at);
     if (!status) status = brunt_places_read(world, body, info.at, &set->position, error);
     if (status) free_points(set);
@@ -232,23 +243,25 @@ static double radius(const brunt_measure *m, const point_set *set) {
     return most;
 }
 
+// The component of a field that a measure asks for, or its magnitude.
+static double value_of(const brunt_measure *m, const point_set *set, int64_t p) {
+    const double *v = set->values + set->components * p;
+    if (m->component >= 0) return v[m->component];
+    if (set->components == 1) return v[0];
+    double square = 0;
+    for (int c = 0; c < set->components; c++) square += v[c] * v[c] * (set->components == 6 && c >= 3 ? 2 : 1);
+    return sqrt(square);
+}
+
 static double reduce_field(const brunt_measure *m, const point_set *set) {
     double axis[3], least = INFINITY, most = -INFINITY, sum = 0;
     bool sliced = unit_axis(m, axis);
     int64_t count = 0;
     for (int64_t p = 0; p < set->count; p++) {
-        double along = 0, value = 0;
+        double along = 0;
         for (int c = 0; c < 3; c++) along += (set->position[3 * p + c] - m->center[c]) * axis[c];
         if (sliced && (along < m->slab_min || along > m->slab_max)) continue;
-        const double *v = set->values + set->components * p;
-        if (m->component >= 0) {
-            value = v[m->component];
-        } else if (set->components == 1) {
-            value = v[0];
-        } else {
-            for (int c = 0; c < set->components; c++) value += v[c] * v[c] * (set->components == 6 && c >= 3 ? 2 : 1);
-            value = sqrt(value);
-        }
+        const double value = value_of(m, set, p);
         // A world that goes on holds no such values but where there is nothing to say: the gap to a body out of reach.
         if (isnan(value)) continue;
         least = fmin(least, value);
@@ -266,9 +279,53 @@ static double reduce_field(const brunt_measure *m, const point_set *set) {
     }
 }
 
+// The reference at a coordinate. Of a jump, its upper end at the coordinate itself.
+static double reference_at(const brunt_curve *reference, double at) {
+    const double(*p)[2] = (const double(*)[2])reference->points;
+    int32_t k = 0;
+    if (at < p[0][0]) return p[0][1];
+    while (k + 1 < reference->count && p[k + 1][0] <= at) k++;
+    if (k + 1 == reference->count) return p[k][1];
+    return p[k][1] + (p[k + 1][1] - p[k][1]) * ((at - p[k][0]) / (p[k + 1][0] - p[k][0]));
+}
+
+// Adds a body's share of the volume integrals of |field - reference| and |reference|.
+static void add_profile(const brunt_measure *m, const point_set *set, double *difference, double *whole) {
+    double axis[3];
+    unit_axis(m, axis);
+    for (int64_t p = 0; p < set->count; p++) {
+        double along = 0;
+        for (int c = 0; c < 3; c++) along += (set->position[3 * p + c] - m->center[c]) * axis[c];
+        const double wanted = reference_at(&m->curve, along);
+        *difference += set->volume[p] * fabs(value_of(m, set, p) - wanted);
+        *whole += set->volume[p] * fabs(wanted);
+    }
+}
+
+static int take_profile(const brunt_measure *m, brunt_world *world, double *value, brunt_error *error) {
+    double difference = 0, whole = 0;
+    int found = 0;
+    for (int32_t body = 0; body < brunt_body_count(world); body++) {
+        if (*m->body && strcmp(brunt_body_name(world, body), m->body) != 0) continue;
+        if (!*m->body && brunt_body_find_field(world, body, m->field) < 0) continue;
+        point_set set;
+        int status = read_points(m, world, body, &set, error);
+        if (status) return status;
+        add_profile(m, &set, &difference, &whole);
+        free_points(&set);
+        found++;
+    }
+    if (!found) return brunt_fail(error, BRUNT_BAD_INPUT, "measures.%s: no body has a field '%s'", m->name, m->field);
+    *value = difference / whole;
+    return BRUNT_OK;
+}
+
 static int take_points(const brunt_measure *m, brunt_world *world, double *value, brunt_error *error) {
     point_set set;
-    int status = read_points(m, world, &set, error);
+    if (m->kind == BRUNT_MEASURE_PROFILE) return take_profile(m, world, value, error);
+    const int32_t body = brunt_find_body(world, m->body);
+    if (body < 0) return brunt_fail(error, BRUNT_BAD_INPUT, "measures.%s: there is no body '%s'", m->name, m->body);
+    int status = read_points(m, world, body, &set, error);
     if (status) return status;
     *value = m->kind == BRUNT_MEASURE_EXTENT   ? extent(m, &set)
              : m->kind == BRUNT_MEASURE_RADIUS ? radius(m, &set)
@@ -289,10 +346,29 @@ static bool same_unit(const char *column, const char *curve) {
     return same;
 }
 
+static int check_profile(const brunt_measure *m, brunt_world *world, brunt_error *error) {
+    if (m->take != BRUNT_TAKE_END)
+        return brunt_fail(error, BRUNT_BAD_INPUT, "measures.%s: a profile is measured at the end only", m->name);
+    if (!m->curve.count)
+        return brunt_fail(error, BRUNT_BAD_INPUT, "measures.%s: a profile wants a reference", m->name);
+    if (*m->body && brunt_find_body(world, m->body) < 0)
+        return brunt_fail(error, BRUNT_BAD_INPUT, "measures.%s: there is no body '%s'", m->name, m->body);
+    for (int32_t body = 0; *m->curve_unit && body < brunt_body_count(world); body++) {
+        const int32_t field = brunt_body_find_field(world, body, m->field);
+        if (field < 0 || (*m->body && strcmp(brunt_body_name(world, body), m->body) != 0)) continue;
+        const char *unit = brunt_body_field(world, body, field).unit;
+        if (!same_unit(unit, m->curve_unit))
+            return brunt_fail(error, BRUNT_BAD_INPUT, "measures.%s: the reference is in %s, the field '%s' in %s",
+                              m->name, m->curve_unit, m->field, unit);
+    }
+    return BRUNT_OK;
+}
+
 int brunt_measure_check(const brunt_measure *measure, const brunt_history *history, brunt_world *world,
                         brunt_error *error) {
     if (measure->kind != BRUNT_MEASURE_HISTORY) {
         double unused;
+        if (measure->kind == BRUNT_MEASURE_PROFILE && check_profile(measure, world, error)) return BRUNT_BAD_INPUT;
         if (measure->kind == BRUNT_MEASURE_FIELD && measure->take != BRUNT_TAKE_MIN &&
             measure->take != BRUNT_TAKE_MAX && measure->take != BRUNT_TAKE_MAX_ABS && measure->take != BRUNT_TAKE_MEAN)
             return brunt_fail(error, BRUNT_BAD_INPUT,
@@ -343,7 +419,7 @@ int brunt_measure_evaluate(const brunt_measure *measure, const brunt_history *hi
         const double *time = brunt_history_column(history, "time");
         const int64_t rows = brunt_history_rows(history);
         initial = rows ? column[0] : NAN;
-        if (!measure->curve.count) {
+        if (!measure->curve.count) { // of a history
             value = reduce_history(measure, time, column, rows);
         } else {
             double divisor =
@@ -355,7 +431,7 @@ int brunt_measure_evaluate(const brunt_measure *measure, const brunt_history *hi
         int status = take_points(measure, world, &value, error);
         if (status) return status;
     }
-    if (!measure->curve.count) {
+    if (!measure->curve.count || measure->kind == BRUNT_MEASURE_PROFILE) {
         value -= measure->minus;
         if (measure->relative_to_initial) value /= initial;
         if (!isnan(measure->relative_to)) value /= measure->relative_to;

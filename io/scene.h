@@ -10,7 +10,8 @@ typedef enum brunt_measure_kind {
     BRUNT_MEASURE_HISTORY,   // a column of the history (`history: energy.kinetic`), reduced over time
     BRUNT_MEASURE_EXTENT,    // size of a body along an axis, from particle surfaces or nodes, at the end
     BRUNT_MEASURE_RADIUS,    // greatest distance of a body's surface from an axis line within a slab, at the end
-    BRUNT_MEASURE_FIELD      // a field of a body reduced over its particles, nodes or elements, at the end
+    BRUNT_MEASURE_FIELD,     // a field of a body reduced over its particles, nodes or elements, at the end
+    BRUNT_MEASURE_PROFILE    // distance of a field of one body or all from a reference along an axis, at the end
 } brunt_measure_kind;
 
 typedef enum brunt_take {
@@ -19,7 +20,8 @@ typedef enum brunt_take {
     BRUNT_TAKE_FIRST_NONZERO,  // time of the first sample that is not zero
     BRUNT_TAKE_LAST_NONZERO,
     BRUNT_TAKE_MAX_ABS,
-    BRUNT_TAKE_PERIOD          // mean time between the rises through the middle of what it varies in
+    BRUNT_TAKE_PERIOD,         // mean time between the rises through the middle of what it varies in
+    BRUNT_TAKE_RISE            // [s] when it first passes half of its greatest value
 } brunt_take;
 
 typedef struct brunt_measure {
@@ -28,9 +30,10 @@ typedef struct brunt_measure {
     char column[160];          // history: column name without unit, e.g. "body.rod.velocity_x"
     brunt_take take;           // how it is reduced; default end
     double from, to;           // [s] window of the history, default everything, or the curve's times
-    brunt_curve curve;         // history: its distance from this [s], [SI], over the curve's range, is reduced; no points: none. Owned
+    brunt_curve curve;         // history: its distance from this [s], [SI], over the curve's range, is reduced; no points: none. profile: the reference
+                               // [m], [SI]. Owned
     char curve_unit[64];       // SI unit its values were given in; "": none was
-    char body[BRUNT_NAME_LENGTH];
+    char body[BRUNT_NAME_LENGTH];       // profile: "" = all bodies with the field
     char field[64]; int component;      // field: name, component (-1: scalar or magnitude)
     double axis[3], center[3];          // extent: axis; radius: axis line through center
     double slab_min, slab_max;          // [m] radius, field: only what has its coordinate along axis inside; default all

@@ -104,7 +104,7 @@ static void check_meshing(scene_reader *reader, const scene_node *node, const br
     double cells = body->method == BRUNT_MEMBRANE ? size.surface / (body->size * body->size)
                                                   : size.volume / pow(body->size, reader->dimension);
     double elements = cells * pieces[body->element];
-    if (!(elements < ELEMENT_LIMIT))
+    if (!brunt_tree_child(node, "grading") && !(elements < ELEMENT_LIMIT))
         brunt_tree_complain(reader->tree, edge, "about %.3g elements fill the shape, at most %.0f can be held",
                             elements, ELEMENT_LIMIT - 1);
 }
@@ -154,7 +154,8 @@ static void fill_jitter(scene_reader *reader, scene_node *node, brunt_body_def *
 }
 
 static void fill_particles(scene_reader *reader, scene_node *node, brunt_body_def *body, bool measurable) {
-    static const char *const elsewhere[] = {"mesh", "group", "element", "size", "hourglass", "mass_scaling", "damping"};
+    static const char *const elsewhere[] = {"mesh",      "group",        "element", "size",
+                                            "hourglass", "mass_scaling", "damping", "grading"};
     for (size_t i = 0; i < sizeof elsewhere / sizeof *elsewhere; i++)
         brunt_refuse_key(reader, node, elsewhere[i], "this belongs to method: fem or membrane");
     refuse_sheet_keys(reader, node);
@@ -165,6 +166,8 @@ static void fill_particles(scene_reader *reader, scene_node *node, brunt_body_de
     if (measurable && mistakes == reader->tree->message_count)
         check_filling(reader, brunt_tree_child(node, "shape"), body);
     fill_jitter(reader, node, body);
+    if (!brunt_tree_child(node, "lagrangian")) brunt_add_default(reader, node, "lagrangian", "updated");
+    body->total_lagrangian = brunt_real_of(node, "lagrangian", 0) == 1;
 }
 
 // ---------------------------------------------------------------------------------------------------- finite elements
@@ -247,6 +250,31 @@ static bool fill_elements(scene_reader *reader, scene_node *node, brunt_body_def
     return known;
 }
 
+static void fill_grading(scene_reader *reader, const scene_node *node, brunt_body_def *body) {
+    static const char *const axes[] = {"x", "y", "z"};
+    const scene_node *map = brunt_tree_child(node, "grading");
+    if (!map || map->kind != SCENE_MAP) return;
+    if (body->shape.kind != BRUNT_BOX || body->method == BRUNT_MEMBRANE || brunt_tree_child(node, "mesh"))
+        brunt_tree_complain_key(reader->tree, map, "only the mesh of a box of method fem is graded");
+    for (int a = 0; a < 3; a++) {
+        const scene_node *list = brunt_tree_child(map, axes[a]);
+        brunt_curve *curve = &body->grading[a];
+        if (!list || !list->good) continue;
+        curve->points = brunt_entries_for(reader, list->count, sizeof *curve->points);
+        for (const scene_node *point = curve->points ? list->first : NULL; point; point = point->next) {
+            double *to = curve->points[curve->count++];
+            to[0] = point->first->value[0];
+            to[1] = point->last->value[0];
+            if (point->last->base && strcmp(point->last->base, "1") != 0)
+                brunt_tree_complain(reader->tree, point->last, "a factor on size has no unit");
+            else if (!(to[1] > 0))
+                brunt_tree_complain(reader->tree, point->last, "a factor on size must be above 0");
+            if (curve->count > 1 && !(to[0] > to[-2]))
+                brunt_tree_complain(reader->tree, point->first, "the coordinates must ascend");
+        }
+    }
+}
+
 static void fill_hourglass(scene_reader *reader, scene_node *node, brunt_body_def *body) {
     const scene_node *map = brunt_tree_child(node, "hourglass");
     bool simplex = body->element == BRUNT_TET4 || body->element == BRUNT_TRI3 || body->element == BRUNT_MEMBRANE_TRI3;
@@ -290,7 +318,7 @@ static void fill_sheet(scene_reader *reader, scene_node *node, brunt_body_def *b
 }
 
 static void fill_fem(scene_reader *reader, scene_node *node, brunt_body_def *body, bool measurable) {
-    static const char *const elsewhere[] = {"particles_per_cell", "spacing", "fill", "jitter", "seed"};
+    static const char *const elsewhere[] = {"particles_per_cell", "spacing", "fill", "jitter", "seed", "lagrangian"};
     for (size_t i = 0; i < sizeof elsewhere / sizeof *elsewhere; i++)
         brunt_refuse_key(reader, node, elsewhere[i], "this belongs to method: mpm");
     bool shape = brunt_tree_child(node, "shape"), mesh = brunt_tree_child(node, "mesh"), known = false;
@@ -309,6 +337,7 @@ static void fill_fem(scene_reader *reader, scene_node *node, brunt_body_def *bod
     int mistakes = reader->tree->message_count;
     known = mesh ? read_mesh(reader, node, body) : fill_elements(reader, node, body);
     if (known) fill_hourglass(reader, node, body);
+    fill_grading(reader, node, body);
     if (shape && measurable && mistakes == reader->tree->message_count && reader->dimension)
         check_meshing(reader, node, body);
 }
@@ -346,6 +375,17 @@ static void fill_wave(scene_reader *reader, const scene_node *wave, brunt_body_d
         brunt_tree_complain(reader->tree, brunt_tree_child(wave, "wave_vector"), "the wave vector has zero length");
 }
 
+static void fill_erosion(scene_reader *reader, const scene_node *node, brunt_body_def *body) {
+    const scene_node *erosion = brunt_tree_child(node, "erosion");
+    if (!erosion || erosion->kind != SCENE_MAP) return;
+    body->erosion.strain = brunt_real_of(erosion, "strain", INFINITY);
+    body->erosion.step = brunt_real_of(erosion, "step", 0);
+    body->erosion.inverted = brunt_real_of(erosion, "inverted", 0) == 1;
+    body->erosion.keep = brunt_real_of(erosion, "debris", 0) == 1;
+    if (body->method == BRUNT_MPM)
+        brunt_refuse_key(reader, erosion, "step", "material points have no stable step of their own");
+}
+
 // ---------------------------------------------------------------------------------------------------- bodies
 
 static void fill_body(scene_reader *reader, scene_node *node, brunt_body_def *body) {
@@ -366,6 +406,7 @@ static void fill_body(scene_reader *reader, scene_node *node, brunt_body_def *bo
     // Without a method nobody knows which keys are wanted.
     if (method && method->good && body->method == BRUNT_MPM) fill_particles(reader, node, body, measurable);
     if (method && method->good && body->method != BRUNT_MPM) fill_fem(reader, node, body, measurable);
+    fill_erosion(reader, node, body);
     brunt_vector_of(node, "velocity", body->velocity);
     fill_spin(reader, brunt_tree_child(node, "spin"), body);
     fill_wave(reader, brunt_tree_child(node, "wave"), body);

@@ -189,13 +189,15 @@ static void check_polygon(scene_reader *reader, scene_node *node, const scene_ke
     }
 }
 
-// Points over ascending times: of a table factors, of a curve numbers with any unit.
+// Points over ascending times, of a table factors, of a curve numbers with any unit; over places for a profile, which
+// may jump.
 static void check_table(scene_reader *reader, scene_node *node) {
     static const scene_key time = {.type = SCENE_REAL, .unit = "s", .min = -INFINITY, .max = INFINITY},
                            factor = {.type = SCENE_REAL, .unit = "1", .min = -INFINITY, .max = INFINITY},
+                           place = {.type = SCENE_REAL, .unit = "m", .min = -INFINITY, .max = INFINITY},
                            any = {.type = SCENE_ANY_UNIT, .unit = "any", .min = -INFINITY, .max = INFINITY};
-    bool curve = node->row->type == SCENE_CURVE;
-    const char *point = curve ? "[time, value]" : "[time, factor]";
+    bool profile = node->row->type == SCENE_PROFILE, curve = node->row->type == SCENE_CURVE || profile;
+    const char *point = profile ? "[coordinate, value]" : curve ? "[time, value]" : "[time, factor]";
     if (node->kind != SCENE_LIST || node->count == 0) {
         brunt_tree_complain(reader->tree, node, "%s is given, a list of points [%s, ...] is wanted",
                             node->kind == SCENE_LIST ? "an empty list" : kind_name(node), point);
@@ -206,17 +208,19 @@ static void check_table(scene_reader *reader, scene_node *node) {
     for (scene_node *child = node->first; child; child = child->next) {
         child->row = node->row;
         if (child->kind != SCENE_LIST || child->count != 2) {
-            brunt_tree_complain(reader->tree, child, "%s is wanted: a time (s) and a %s", point,
-                                curve ? "number" : "pure number");
+            brunt_tree_complain(reader->tree, child, "%s is wanted: a %s and a %s", point,
+                                profile ? "length (m)" : "time (s)", curve ? "number" : "pure number");
             node->good = false;
             continue;
         }
-        bool timed = check_number(reader, child->first, &time),
+        bool timed = check_number(reader, child->first, profile ? &place : &time),
              good = check_number(reader, child->last, curve ? &any : &factor);
         child->good = timed && good;
         node->good &= child->good;
-        if (timed && before && !(child->first->value[0] > before->value[0])) {
-            brunt_tree_complain(reader->tree, child->first, "the times must ascend");
+        if (timed && before &&
+            !(profile ? child->first->value[0] >= before->value[0] : child->first->value[0] > before->value[0])) {
+            brunt_tree_complain(reader->tree, child->first,
+                                profile ? "the coordinates must not descend" : "the times must ascend");
             node->good = false;
         }
         if (timed) before = child->first;
@@ -250,6 +254,10 @@ static void complain_choice(scene_reader *reader, const scene_node *node, const 
 static int model_names(const char *path, const char **names) {
     int count, n = 0;
     char parent[64];
+    if (strcmp(path, "materials.*.preset") == 0) {
+        for (; n < brunt_preset_count() && n < NAMES_LIMIT; n++) names[n] = brunt_preset(n).name;
+        return n;
+    }
     // "materials.*.eos.model" to the path of its parameters
     snprintf(parent, sizeof parent, "%.*s<parameter>", (int)(strlen(path) - strlen("model")), path);
     const brunt_model *const *models = brunt_scene_models(parent, &count);
@@ -283,10 +291,9 @@ static void check_word(scene_reader *reader, scene_node *node, const scene_key *
             if (!node->text) node->good = false;
             return;
         }
-    } else {
+    } else if (strcmp(row->path, "materials.*.preset") != 0) {
         // Spellings that the list itself accepts (mie-grueneisen) count.
-        const brunt_model *model =
-            strstr(row->path, ".eos.") ? brunt_find_eos(node->text) : brunt_find_strength(node->text);
+        const brunt_model *model = brunt_scene_model(row->path, node->text);
         if (model) {
             node->text = brunt_tree_text(reader->tree, model->name, strlen(model->name));
             node->good = node->text != NULL;
@@ -362,26 +369,39 @@ static const brunt_model *model_of(const scene_node *map, const char *path) {
     if (strncmp(path, "materials.*.viscosity.", 22) == 0) return &brunt_bulk_viscosity;
     const scene_node *name = brunt_tree_child(map, "model");
     if (!name || name->kind != SCENE_SCALAR) return NULL;
-    return strncmp(path, "materials.*.eos.", 16) == 0 ? brunt_find_eos(name->text) : brunt_find_strength(name->text);
+    return brunt_scene_model(path, name->text);
 }
 
-static const scene_key *parameter_row(scene_reader *reader, const scene_key *slot, const brunt_parameter *parameter) {
+// A failure model takes what it shares with the strength model from there.
+static bool is_shared(const scene_node *map, const scene_key *slot, const char *key) {
+    if (strncmp(slot->path, "materials.*.failure.", 20) != 0 || !map->parent) return false;
+    const scene_node *name = brunt_tree_child(map->parent, "model"); // which may be typed, and checked, after `failure`
+    if (!name || name->kind != SCENE_SCALAR) return false;
+    const brunt_model *strength = brunt_find_strength(name->text);
+    for (int p = 0; strength && p < strength->parameter_count; p++)
+        if (strcmp(strength->parameters[p].key, key) == 0) return true;
+    return false;
+}
+
+static const scene_key *parameter_row(scene_reader *reader, const scene_key *slot, const brunt_parameter *parameter,
+                                      bool shared) {
     scene_key *row = brunt_tree_alloc(reader->tree, sizeof *row);
     char path[128];
     snprintf(path, sizeof path, "%.*s%s", (int)(strlen(slot->path) - strlen("<parameter>")), slot->path,
              parameter->key);
     char *kept = brunt_tree_text(reader->tree, path, strlen(path));
     if (!row || !kept) return NULL;
-    char initial[32] = "";
-    if (isinf(parameter->initial))
+    char initial[32] = ""; // what is shared stays open
+    if (isinf(parameter->initial) && !shared)
         snprintf(initial, sizeof initial, "none");
-    else if (!isnan(parameter->initial))
+    else if (!isnan(parameter->initial) && !shared)
         brunt_format_number(parameter->initial, initial);
     *row = (scene_key){.path = kept,
                        .type = SCENE_REAL,
                        .unit = parameter->unit,
-                       .initial =
-                           isnan(parameter->initial) ? NULL : brunt_tree_text(reader->tree, initial, strlen(initial)),
+                       .initial = shared                      ? ""
+                                  : isnan(parameter->initial) ? NULL
+                                                              : brunt_tree_text(reader->tree, initial, strlen(initial)),
                        .min = parameter->min,
                        .max = parameter->max,
                        .min_open = parameter->min_open,
@@ -498,7 +518,8 @@ static void collect_rows(scene_reader *reader, const scene_node *node, const cha
             rows->model = model_of(node, row->path);
             rows->model_unknown = !rows->model;
             for (int p = 0; rows->model && p < rows->model->parameter_count && rows->count < NAMES_LIMIT; p++) {
-                const scene_key *made = parameter_row(reader, row, &rows->model->parameters[p]);
+                const scene_key *made = parameter_row(reader, row, &rows->model->parameters[p],
+                                                      is_shared(node, row, rows->model->parameters[p].key));
                 if (!made) return;
                 rows->row[rows->count] = made;
                 rows->key[rows->count] = rows->model->parameters[p].key;
@@ -514,6 +535,8 @@ static void collect_rows(scene_reader *reader, const scene_node *node, const cha
 
 static void add_missing(scene_reader *reader, scene_node *node, const group_rows *rows, int r) {
     const scene_key *row = rows->row[r];
+    if (brunt_tree_child(node, "preset") || (node->parent && brunt_tree_child(node->parent, "preset")))
+        return; // one that is unknown: what it would have brought is not missed
     if (!row->initial) {
         char want[160] = "";
         if (row->type == SCENE_REAL || row->type == SCENE_VECTOR) {
@@ -651,6 +674,7 @@ static void check_value(scene_reader *reader, scene_node *node, const scene_key 
         break;
     case SCENE_POLYGON: check_polygon(reader, node, row); break;
     case SCENE_TABLE:
+    case SCENE_PROFILE:
     case SCENE_CURVE: check_table(reader, node); break;
     case SCENE_AXES: check_axes(reader, node); break;
     case SCENE_TEXT:
@@ -677,6 +701,7 @@ void brunt_check_scene(scene_reader *reader) {
         if (strcmp(dimension->text, "2") == 0) reader->dimension = 2;
         if (strcmp(dimension->text, "3") == 0) reader->dimension = 3;
     }
+    brunt_expand_presets(reader);
     check_group(reader, root, "");
 }
 
@@ -686,6 +711,8 @@ bool brunt_read_parameters(const scene_node *map, const brunt_model *model, doub
     bool good = true;
     for (int p = 0; p < model->parameter_count && p < BRUNT_PARAMETER_LIMIT; p++) {
         parameters[p] = brunt_real_of(map, model->parameters[p].key, NAN);
+        const double initial = model->parameters[p].initial; // the word `none` is infinity of its sign
+        if (isinf(parameters[p]) && isinf(initial)) parameters[p] = initial;
         good &= !isnan(parameters[p]);
     }
     return good;

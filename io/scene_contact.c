@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-static const char *const methods[] = {"none", "multi-velocity", "augury"}; // by brunt_contact_method
+static const char *const methods[] = {"none", "multi-velocity", "augury", "tied"}; // by brunt_contact_method
 
 static bool has_mesh(const scene_reader *reader, const char *name) {
     const brunt_body_def *body = brunt_body_named(reader, name);
@@ -20,6 +20,9 @@ static void check_pair_method(scene_reader *reader, const scene_node *method, co
     if (pair->method == BRUNT_CONTACT_MULTI_VELOCITY && a && b)
         brunt_tree_complain(reader->tree, method, "multi-velocity wants a body of method mpm, neither '%s' nor '%s' is",
                             pair->a, pair->b);
+    if (pair->method == BRUNT_CONTACT_TIED && (a || b))
+        brunt_tree_complain(reader->tree, method, "only bodies of method mpm can be tied, '%s' is none",
+                            a ? pair->a : pair->b);
     if (pair->method == BRUNT_CONTACT_AUGURY && known && !a && !b)
         brunt_tree_complain(reader->tree, method,
                             "augury wants a body of method fem or membrane, both are of method mpm");
@@ -33,7 +36,7 @@ static void check_self(scene_reader *reader, const scene_node *between, const sc
     if (body->method != BRUNT_MEMBRANE)
         brunt_tree_complain(reader->tree, between, "contact of a body with itself is for membranes, '%s' is none",
                             pair->a);
-    else if (pair->method == BRUNT_CONTACT_MULTI_VELOCITY)
+    else if (pair->method != BRUNT_CONTACT_AUGURY)
         brunt_tree_complain(reader->tree, method ? method : between,
                             "contact of a membrane with itself is by augury: method: augury is wanted");
     else if (body->contact_thickness == 0)
@@ -49,9 +52,13 @@ static void fill_pair(scene_reader *reader, scene_node *node, brunt_pair_def *pa
     brunt_format_number(contact->friction, friction);
     const scene_node *method = brunt_tree_child(node, "method");
     if (!method) brunt_add_default(reader, node, "method", methods[contact->method]);
-    if (!brunt_tree_child(node, "friction")) brunt_add_default(reader, node, "friction", friction);
     pair->method = (brunt_contact_method)(int)brunt_real_of(node, "method", contact->method);
+    const bool tied = pair->method == BRUNT_CONTACT_TIED;
+    scene_node *rubs = brunt_tree_child(node, "friction");
+    if (!rubs) rubs = brunt_add_default(reader, node, "friction", tied ? "0" : friction);
     pair->friction = brunt_real_of(node, "friction", 0);
+    if (tied && pair->friction > 0)
+        brunt_tree_complain_key(reader->tree, rubs, "tied bodies do not slide on each other: there is no friction");
     const scene_node *between = brunt_tree_child(node, "between");
     if (!between || !between->good) return;
     if (between->count != 2) {
@@ -147,6 +154,9 @@ void brunt_fill_contact(scene_reader *reader) {
     if (contact->method == BRUNT_CONTACT_AUGURY && !fem && world->body_count)
         brunt_tree_complain(reader->tree, method,
                             "augury wants a body of method fem or membrane, all are of method mpm");
+    if (contact->method == BRUNT_CONTACT_TIED && fem)
+        brunt_tree_complain(reader->tree, method,
+                            "only bodies of method mpm can be tied, and some are not: tied is for a pair in pairs");
     contact->friction = brunt_real_of(node, "friction", 0);
     contact->allow_overlap = brunt_real_of(node, "initial_overlap", 0) == 1;
     fill_pairs(reader, brunt_tree_child(node, "pairs"));

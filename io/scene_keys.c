@@ -12,7 +12,7 @@
 #define OPTIONAL ""
 #define REQUIRED NULL
 
-#define SIGNALS "end|initial|min|max|mean|slope|first_nonzero|last_nonzero|max_abs|period"
+#define SIGNALS "end|initial|min|max|mean|slope|first_nonzero|last_nonzero|max_abs|period|rise"
 
 // clang-format off
 const scene_key brunt_scene_table[] = {
@@ -20,11 +20,14 @@ const scene_key brunt_scene_table[] = {
     {"title", SCENE_TEXT, NULL, "''", NONE, "one line on what the scene is"},
     {"dimension", SCENE_INTEGER, NULL, "3", 2, 3, false, false, NULL, 0, false, "3, or 2: plane strain of unit thickness"},
 
+    {"axisymmetric", SCENE_WORD, NULL, "false", ANY, "false|true", 2, false, "true: x is the distance from an axis of revolution, y runs along it; bodies are full rings, and masses, forces and energies those of the whole circle"},
+
     {"time", SCENE_GROUP, NULL, REQUIRED, NONE, "how long, and in which steps"},
     {"time.end", SCENE_REAL, "s", REQUIRED, POSITIVE, NULL, 0, false, "the run ends exactly there"},
     {"time.scheme", SCENE_WORD, NULL, "explicit", ANY, "explicit", 0, false, "time integration"},
     {"time.cfl", SCENE_REAL, "1", "0.5", 0, 1, true, false, NULL, 0, true, "time step as a share of the stable one; default 0.9 when no body is of material points; not with step"},
     {"time.step", SCENE_REAL, "s", OPTIONAL, POSITIVE, NULL, 0, false, "fixed time step; not with cfl"},
+    {"time.least_step", SCENE_REAL, "s", OPTIONAL, POSITIVE, NULL, 0, false, "the run stops when the stable step falls below it (default: none)"},
     {"time.energy_limit", SCENE_REAL, "1", "0.1", 0, INFINITY, true, true, "none", 0, false, "the run stops when the relative energy error passes it"},
 
     {"grid", SCENE_GROUP, NULL, OPTIONAL, NONE, "the grid of the material points; it has no bounds; wanted when a body is of method mpm"},
@@ -35,6 +38,7 @@ const scene_key brunt_scene_table[] = {
     {"grid.transfer.flip", SCENE_REAL, "1", "0.99", 0, 1, false, false, NULL, 0, true, "share of a particle's own velocity that is kept"},
 
     {"materials", SCENE_NAMED, NULL, REQUIRED, NONE, "materials by name"},
+    {"materials.*.preset", SCENE_WORD, NULL, OPTIONAL, NONE, "a material of the library (brunt keys presets): what is not given beside it is taken from there, with another model only density, eos and viscosity; eos, failure and viscosity: none leave them out"},
     {"materials.*.model", SCENE_WORD, NULL, REQUIRED, NONE, "strength model"},
     {"materials.*.density", SCENE_REAL, "kg/m^3", REQUIRED, POSITIVE, NULL, 0, false, "density at the start"},
     {"materials.*.<parameter>", SCENE_PARAMETERS, NULL, OPTIONAL, NONE, "the parameters of the model, below"},
@@ -43,6 +47,16 @@ const scene_key brunt_scene_table[] = {
     {"materials.*.eos.<parameter>", SCENE_PARAMETERS, NULL, OPTIONAL, NONE, "the parameters of the equation of state, below"},
     {"materials.*.viscosity", SCENE_GROUP, NULL, OPTIONAL, NONE, "artificial bulk viscosity, for shocks; {} takes its defaults"},
     {"materials.*.viscosity.<parameter>", SCENE_PARAMETERS, NULL, OPTIONAL, NONE, "its parameters, below"},
+    {"materials.*.failure", SCENE_GROUP, NULL, OPTIONAL, NONE, "damage and failure of a plastic material"},
+    {"materials.*.failure.model", SCENE_WORD, NULL, REQUIRED, NONE, "failure model"},
+    {"materials.*.failure.action", SCENE_WORD, NULL, "erode", ANY, "erode|soften", 0, false, "what has failed leaves its body, or stays without strength and tension (wants an eos)"},
+    {"materials.*.failure.<parameter>", SCENE_PARAMETERS, NULL, OPTIONAL, NONE, "the parameters of the failure model, below; those that the strength model has too are taken from there when not given"},
+
+    {"detonations", SCENE_ENTRIES, NULL, OPTIONAL, NONE, "where and when explosives are lit"},
+    {"detonations[].point", SCENE_VECTOR, "m", REQUIRED, NONE, "where; the front runs from there with the detonation speed of the material"},
+    {"detonations[].normal", SCENE_VECTOR, "1", OPTIONAL, NONE, "a plane through the point is lit instead, both ways along its normal"},
+    {"detonations[].time", SCENE_REAL, "s", "0", NONE, "when"},
+    {"detonations[].body", SCENE_NAME, NULL, OPTIONAL, NONE, "the one body that it lights (default: all explosives)"},
 
     {"bodies", SCENE_NAMED, NULL, REQUIRED, NONE, "bodies by name"},
     {"bodies.*.method", SCENE_WORD, NULL, REQUIRED, ANY, "mpm|fem|membrane", 0, false, "material points, finite elements, or a thin sheet of elements without bending stiffness (3D)"},
@@ -52,6 +66,10 @@ const scene_key brunt_scene_table[] = {
     {"bodies.*.group", SCENE_TEXT, NULL, OPTIONAL, NONE, "fem, membrane: the physical group of the mesh file that is the body (default: the only one)"},
     {"bodies.*.element", SCENE_WORD, NULL, "hex8", ANY, "tet4|hex8|tri3|quad4", 0, true, "fem, membrane, with a shape: kind of element (default in 2D and of membranes: quad4; membranes: quad4 or tri3)"},
     {"bodies.*.size", SCENE_REAL, "m", OPTIONAL, POSITIVE, NULL, 0, false, "fem, membrane, with a shape (must be given): edge length of the elements"},
+    {"bodies.*.grading", SCENE_GROUP, NULL, OPTIONAL, NONE, "fem, of a box: a factor on size along its axes, so that the mesh is fine where something happens"},
+    {"bodies.*.grading.x", SCENE_PROFILE, "any", OPTIONAL, NONE, "[[15 mm, 1], [250 mm, 40]]: factor over the coordinate of the shape (before place), linear between, constant beyond"},
+    {"bodies.*.grading.y", SCENE_PROFILE, "any", OPTIONAL, NONE, "likewise"},
+    {"bodies.*.grading.z", SCENE_PROFILE, "any", OPTIONAL, ANY, NULL, 3, false, "likewise"},
     {"bodies.*.hourglass", SCENE_GROUP, NULL, OPTIONAL, NONE, "fem, membrane: control of the zero-energy modes of hex8 and quad4"},
     {"bodies.*.hourglass.form", SCENE_WORD, NULL, "stiffness", ANY, "stiffness|viscous", 0, false, "by springs or by dampers"},
     {"bodies.*.hourglass.coefficient", SCENE_REAL, "1", OPTIONAL, 0, 1, false, false, NULL, 0, false, "default 0.05 of stiffness (of lambda + 2 mu, at most of 7 mu), 0.1 of viscous"},
@@ -59,6 +77,12 @@ const scene_key brunt_scene_table[] = {
     {"bodies.*.contact_thickness", SCENE_REAL, "m", OPTIONAL, NOT_NEGATIVE, NULL, 0, false, "membrane: contact keeps half of it between the middle surface and others (default: thickness)"},
     {"bodies.*.slack", SCENE_WORD, NULL, "false", ANY, "false|true", 0, true, "membrane: true: it bears no compression but wrinkles (tension field)"},
     {"bodies.*.faces", SCENE_NAMES, NULL, OPTIONAL, NONE, "membrane, with a shape: groups of the shape's boundary that are the sheet, as [zmin] of a box (default: all of it); where it is open its edge is the group border"},
+    {"bodies.*.lagrangian", SCENE_WORD, NULL, "updated", ANY, "updated|total", 0, true, "mpm: configuration of the grid; total: the undeformed one, so that the body does not come apart however far it is stretched; it meets meshes and planes only"},
+    {"bodies.*.erosion", SCENE_GROUP, NULL, OPTIONAL, NONE, "what takes elements or material points out of the body, beside failure of its material"},
+    {"bodies.*.erosion.strain", SCENE_REAL, "1", OPTIONAL, POSITIVE, NULL, 0, false, "equivalent logarithmic strain (of its deviator) at which they go (default: none)"},
+    {"bodies.*.erosion.step", SCENE_REAL, "s", OPTIONAL, POSITIVE, NULL, 0, false, "fem, membrane: elements go whose stable step falls below it (default: none)"},
+    {"bodies.*.erosion.inverted", SCENE_WORD, NULL, "error", ANY, "error|erode", 0, false, "what is turned inside out stops the run, or goes"},
+    {"bodies.*.erosion.debris", SCENE_WORD, NULL, "remove", ANY, "remove|keep", 0, false, "mass without elements leaves, with an account; or flies on: loose nodes as free particles in contact, material points without stress"},
     {"bodies.*.damping", SCENE_REAL, "1/s", "0", NOT_NEGATIVE, NULL, 0, true, "fem, membrane: a force of - damping m v on every node"},
     {"bodies.*.mass_scaling", SCENE_REAL, "s", OPTIONAL, POSITIVE, NULL, 0, false, "fem, membrane: elements whose stable step is less are made denser until it is not (default: none are)"},
     {"bodies.*.place", SCENE_ENTRIES, NULL, OPTIONAL, NONE, "moves of the shape or mesh, one after the other"},
@@ -116,7 +140,7 @@ const scene_key brunt_scene_table[] = {
     {"<shape>.intersection", SCENE_SHAPES, NULL, OPTIONAL, NONE, "what is in all of a list of shapes"},
 
     {"contact", SCENE_GROUP, NULL, "{}", NONE, "contact between bodies"},
-    {"contact.method", SCENE_WORD, NULL, "multi-velocity", ANY, "none|multi-velocity|augury", 0, true, "augury is for all pairs with a fem or membrane body, two mpm bodies then meet by multi-velocity; multi-velocity also takes one of them with an mpm body; the default is augury when a body is of method fem or membrane; none: these pass through others, mpm bodies stick together where they share grid nodes"},
+    {"contact.method", SCENE_WORD, NULL, "multi-velocity", ANY, "none|multi-velocity|augury|tied", 0, true, "augury is for all pairs with a fem or membrane body, two mpm bodies then meet by multi-velocity; multi-velocity also takes one of them with an mpm body; the default is augury when a body is of method fem or membrane; none: they pass through each other; tied: mpm bodies share one velocity where they share grid nodes, they neither part nor slide"},
     {"contact.friction", SCENE_REAL, "1", "0", NOT_NEGATIVE, NULL, 0, false, "Coulomb coefficient"},
     {"contact.form", SCENE_WORD, NULL, "affine", ANY, "affine|smooth|surface|paper", 0, true, "of augury: velocity and gap from facing facets, from facets averaged on a grid, from averaged velocities and surfaces, or as published"},
     {"contact.iterations", SCENE_INTEGER, NULL, OPTIONAL, 0, 1000, false, false, NULL, 0, false, "most sweeps of a step (default: augury 16, with membranes 64, forms smooth and surface 4; multi-velocity of a mesh with material points 8); of form paper its augury iterations (default 1)"},
@@ -125,7 +149,7 @@ const scene_key brunt_scene_table[] = {
     {"contact.initial_overlap", SCENE_WORD, NULL, "error", ANY, "error|allow", 0, false, "particles that overlap other bodies at the start; of meshes with each other it is not looked at"},
     {"contact.pairs", SCENE_ENTRIES, NULL, OPTIONAL, NONE, "pairs of bodies that differ from the above"},
     {"contact.pairs[].between", SCENE_NAMES, NULL, REQUIRED, NONE, "the two bodies, [a, b]; [a, a]: a membrane with itself, which it is not in contact with otherwise"},
-    {"contact.pairs[].method", SCENE_WORD, NULL, OPTIONAL, ANY, "none|multi-velocity|augury", 0, false, "default: that of contact"},
+    {"contact.pairs[].method", SCENE_WORD, NULL, OPTIONAL, ANY, "none|multi-velocity|augury|tied", 0, false, "default: that of contact"},
     {"contact.pairs[].friction", SCENE_REAL, "1", OPTIONAL, NOT_NEGATIVE, NULL, 0, false, "default: that of contact"},
 
     {"boundaries", SCENE_ENTRIES, NULL, OPTIONAL, NONE, "walls (plane), places with prescribed motion (region), nodes that are held, moved or loaded (group)"},
@@ -194,7 +218,14 @@ const scene_key brunt_scene_table[] = {
     {"measures.*.field.center", SCENE_VECTOR, "m", "0", ANY, NULL, 0, true, "where the coordinate along the axis is 0"},
     {"measures.*.field.from", SCENE_REAL, "m", OPTIONAL, NONE, "only what has a coordinate along the axis above ..."},
     {"measures.*.field.to", SCENE_REAL, "m", OPTIONAL, NONE, "... and below this"},
-    {"measures.*.take", SCENE_WORD, NULL, "end", ANY, SIGNALS, 0, true, "how history is reduced over time (period: mean time between rises through the middle of its range), a field over the body (min max mean max_abs)"},
+    {"measures.*.profile", SCENE_GROUP, NULL, OPTIONAL, NONE, "distance of a field at the end from a reference along an axis: sum of volume |field - reference| over sum of volume |reference|"},
+    {"measures.*.profile.body", SCENE_NAME, NULL, OPTIONAL, NONE, "the body (default: all that have the field)"},
+    {"measures.*.profile.name", SCENE_NAME, NULL, REQUIRED, NONE, "the field"},
+    {"measures.*.profile.component", SCENE_WORD, NULL, "magnitude", ANY, "magnitude|x|y|z|xx|yy|zz|xy|yz|xz", 0, false, "of a vector or symmetric tensor; magnitude: also a scalar's value"},
+    {"measures.*.profile.axis", SCENE_VECTOR, "1", REQUIRED, NONE, "direction of the coordinate"},
+    {"measures.*.profile.center", SCENE_VECTOR, "m", "0", NONE, "where it is 0"},
+    {"measures.*.profile.reference", SCENE_PROFILE, "any", REQUIRED, NONE, "[[-1 m, 3 Pa], [0 m, 4 Pa]]: linear between, held beyond its ends; the same coordinate twice is a jump"},
+    {"measures.*.take", SCENE_WORD, NULL, "end", ANY, SIGNALS, 0, true, "how history is reduced over time (period: mean time between rises through the middle of its range; rise: time at which it first passes half of its greatest value), a field over the body (min max mean max_abs)"},
     {"measures.*.at", SCENE_WORD, NULL, OPTIONAL, ANY, SIGNALS, 0, false, "another name for take"},
     {"measures.*.curve", SCENE_CURVE, "any", OPTIONAL, NONE, "reference over time for the history, [[0 s, 0 m], [1 s, 2 m]], linear between: what is reduced (take: max_abs by default, max, min, mean, initial or end) is history less curve, after minus and relative_to, over the curve's range of values, from its first to its last time"},
     {"measures.*.from", SCENE_REAL, "s", OPTIONAL, NOT_NEGATIVE, NULL, 0, false, "of the history only from then ..."},
@@ -210,8 +241,9 @@ const scene_key brunt_scene_table[] = {
 const int brunt_scene_table_count = sizeof brunt_scene_table / sizeof *brunt_scene_table;
 
 const scene_section brunt_scene_sections[] = {
-    {"scene", "brunt title dimension", "the file as a whole"},
+    {"scene", "brunt title dimension axisymmetric", "the file as a whole"},
     {"time", "time", NULL}, {"grid", "grid", NULL}, {"materials", "materials", NULL}, {"bodies", "bodies", NULL},
+    {"detonations", "detonations", NULL},
     {"shapes", "<shape>", "of a body (shape), of a prescribed motion (region)"},
     {"contact", "contact", NULL}, {"boundaries", "boundaries", NULL}, {"loads", "loads", NULL},
     {"output", "output", NULL}, {"measures", "measures", NULL},
@@ -247,8 +279,18 @@ const brunt_model *const *brunt_scene_models(const char *path, int *count) {
         *count = 1;
         return viscosity;
     }
+    if (strncmp(path, "materials.*.failure.", 20) == 0) {
+        *count = brunt_failure_model_count;
+        return brunt_failure_models;
+    }
     *count = brunt_strength_model_count;
     return brunt_strength_models;
+}
+
+const brunt_model *brunt_scene_model(const char *path, const char *name) {
+    if (strncmp(path, "materials.*.eos.", 16) == 0) return brunt_find_eos(name);
+    if (strncmp(path, "materials.*.failure.", 20) == 0) return brunt_find_failure(name);
+    return brunt_find_strength(name);
 }
 
 bool brunt_scene_word_at(const char *words, int index, char *out, size_t size) {

@@ -19,6 +19,7 @@ typedef enum scene_type {
     SCENE_TURN,      // a number or, in three dimensions, a vector
     SCENE_POLYGON,   // list of [x, y]
     SCENE_TABLE,     // list of [time, factor], ascending
+    SCENE_PROFILE,   // list of [coordinate, number with any unit], not descending
     SCENE_CURVE,     // list of [time, number with any unit], ascending
     SCENE_AXES,      // list of x, y, z, or the word `all`
     SCENE_TEXT,      // free text
@@ -60,6 +61,8 @@ const scene_key *brunt_scene_row(const char *path);
 const char *brunt_scene_child_key(const scene_key *row, const char *parent);
 // The models behind a SCENE_PARAMETERS row or a "model" row.
 const brunt_model *const *brunt_scene_models(const char *path, int *count);
+// The one of them by name, other accepted spellings included; NULL: none.
+const brunt_model *brunt_scene_model(const char *path, const char *name);
 // True when the word is among "a|b|c", with - and _ counting as the same; `index` its place there, `length` its length.
 bool brunt_scene_word(const char *words, const char *word, int *index);
 // Copies word number `index` of "a|b|c"; false past the end.

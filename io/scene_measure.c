@@ -44,9 +44,9 @@ static const char *gas_mistake(const brunt_world_def *world, const char *rest) {
 // What of a column can be known before the engine runs: its family, and the names of bodies, walls and probes in it.
 static const char *column_mistake(const scene_reader *reader, const char *column) {
     static const char *const plain[] = {"time", "step", "dt"};
-    static const char *const energies[] = {"kinetic",       "internal", "mechanical", "plastic",  "hourglass",
-                                           "contact",       "friction", "viscosity",  "transfer", "eroded",
-                                           "external_work", "initial",  "total",      "error",    "error_relative"};
+    static const char *const energies[] = {
+        "kinetic",  "internal", "mechanical", "plastic",       "hourglass", "contact", "friction", "viscosity",
+        "transfer", "eroded",   "heat",       "external_work", "initial",   "total",   "error",    "error_relative"};
     const brunt_world_def *world = &reader->scene->world;
     static const char families[] =
         "columns are time, step, dt, energy.*, momentum.*, body.NAME.*, contact.A-B.*, wall.NAME.*, gas.NAME.* "
@@ -60,7 +60,7 @@ static const char *column_mistake(const scene_reader *reader, const char *column
         return one_of(rest, energies, sizeof energies / sizeof *energies)
                    ? NULL
                    : "energies are kinetic, internal, plastic, hourglass, contact, friction, viscosity, transfer, "
-                     "eroded, "
+                     "eroded, heat, "
                      "external_work, initial, total, error, error_relative";
     if (family == 8 && strncmp(column, "momentum", 8) == 0) return NULL;
     if (family == 4 && strncmp(column, "body", 4) == 0) {
@@ -124,18 +124,43 @@ static void fill_place_of(scene_reader *reader, scene_node *where, brunt_measure
     if (given && measure->axis[0] == 0 && measure->axis[1] == 0 && measure->axis[2] == 0)
         brunt_tree_complain(reader->tree, axis, "the axis has zero length");
     if (!axis && axis_wanted) brunt_tree_complain_key(reader->tree, where, "'axis' is missing: a direction");
-    if (measure->kind != BRUNT_MEASURE_EXTENT) fill_slab(reader, where, measure);
+    if (measure->kind != BRUNT_MEASURE_EXTENT && measure->kind != BRUNT_MEASURE_PROFILE)
+        fill_slab(reader, where, measure);
     if (measure->kind == BRUNT_MEASURE_FIELD && axis && !brunt_tree_child(where, "center"))
         brunt_add_default(reader, where, "center", "0");
     brunt_vector_of(where, "center", measure->center);
 }
 
+static bool has_unit(const scene_node *node) {
+    return node && node->good && node->base && strcmp(node->base, "1") != 0;
+}
+
+static void fill_profile(scene_reader *reader, scene_node *where, brunt_measure *measure) {
+    const scene_node *reference = brunt_tree_child(where, "reference");
+    fill_place_of(reader, where, measure, false);
+    if (!reference || !reference->good) return;
+    measure->curve.points = brunt_entries_for(reader, reference->count, sizeof *measure->curve.points);
+    bool zero = true;
+    for (const scene_node *point = measure->curve.points ? reference->first : NULL; point; point = point->next) {
+        double *to = measure->curve.points[measure->curve.count++];
+        to[0] = point->first->value[0];
+        to[1] = point->last->value[0];
+        zero = zero && to[1] == 0;
+        if (!has_unit(point->last)) continue;
+        if (*measure->curve_unit && strcmp(measure->curve_unit, point->last->base) != 0)
+            brunt_tree_complain(reader->tree, point->last, "this value is in %s, one before it in %s",
+                                point->last->base, measure->curve_unit);
+        snprintf(measure->curve_unit, sizeof measure->curve_unit, "%.63s", point->last->base);
+    }
+    if (zero) brunt_tree_complain(reader->tree, reference, "it is 0 everywhere, distances are relative to its size");
+}
+
 static void fill_kind(scene_reader *reader, scene_node *node, brunt_measure *measure) {
-    static const char *const kinds[] = {"history", "extent", "radius", "field"};
+    static const char *const kinds[] = {"history", "extent", "radius", "field", "profile"};
     scene_tree *tree = reader->tree;
     scene_node *where = NULL;
     int count = 0;
-    for (int k = 0; k < 4; k++) {
+    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
         scene_node *child = brunt_tree_child(node, kinds[k]);
         if (!child) continue;
         where = child;
@@ -144,7 +169,8 @@ static void fill_kind(scene_reader *reader, scene_node *node, brunt_measure *mea
     }
     if (count != 1) {
         brunt_tree_complain_key(tree, node,
-                                "%s of history (or energy), extent, radius and field is given, exactly one is wanted",
+                                "%s of history (or energy), extent, radius, field and profile is given, exactly one is "
+                                "wanted",
                                 count ? "more than one" : "none");
         return;
     }
@@ -157,21 +183,21 @@ static void fill_kind(scene_reader *reader, scene_node *node, brunt_measure *mea
     if (where->kind != SCENE_MAP) return;
     brunt_check_body_name(reader, brunt_tree_child(where, "body"));
     brunt_copy_text(reader, brunt_tree_child(where, "body"), measure->body, sizeof measure->body);
-    if (measure->kind == BRUNT_MEASURE_FIELD) {
+    if (measure->kind == BRUNT_MEASURE_FIELD || measure->kind == BRUNT_MEASURE_PROFILE) {
         brunt_copy_text(reader, brunt_tree_child(where, "name"), measure->field, sizeof measure->field);
         // magnitude x y z xx yy zz xy yz xz: vectors and symmetric tensors both count from 0
         int word = (int)brunt_real_of(where, "component", 0);
         measure->component = word == 0 ? -1 : word <= 3 ? word - 1 : word - 4;
+        if (measure->kind == BRUNT_MEASURE_PROFILE) {
+            fill_profile(reader, where, measure);
+            return;
+        }
         bool slab =
             brunt_tree_child(where, "from") || brunt_tree_child(where, "to") || brunt_tree_child(where, "center");
         fill_place_of(reader, where, measure, slab);
     } else {
         fill_place_of(reader, where, measure, measure->kind == BRUNT_MEASURE_RADIUS && reader->dimension == 3);
     }
-}
-
-static bool has_unit(const scene_node *node) {
-    return node && node->good && node->base && strcmp(node->base, "1") != 0;
 }
 
 // A distance over a range is a pure number; the curve's own unit is compared with that of the column once there is one.
@@ -289,7 +315,7 @@ static void fill_time_of(scene_reader *reader, scene_node *node, brunt_measure *
     if (end > 0 && to && to->good && measure->to > last)
         brunt_tree_complain(tree, to, "the window ends after the run has ended (%s s)", text);
     if (to && to->good && !(measure->from < measure->to)) brunt_tree_complain(tree, to, "to must be after from");
-    if (measure->curve.count) check_curve_times(reader, node, measure);
+    if (measure->curve.count && history) check_curve_times(reader, node, measure);
 }
 
 static void fill_reference(scene_reader *reader, scene_node *node, brunt_measure *measure) {
@@ -316,7 +342,9 @@ static void fill_expectation(scene_reader *reader, scene_node *node, brunt_measu
     if (kind && !tolerance) brunt_tree_complain_key(tree, kind, "tolerance_is without a tolerance");
     // A distance from a curve is relative as it is, to the curve's range.
     if (tolerance && !kind)
-        kind = brunt_add_default(reader, node, "tolerance_is", measure->curve.count ? "absolute" : "relative");
+        kind =
+            brunt_add_default(reader, node, "tolerance_is",
+                              measure->curve.count && measure->kind == BRUNT_MEASURE_HISTORY ? "absolute" : "relative");
     measure->absolute = kind && kind->good && kind->value[0] == 1;
     if (has_unit(tolerance) && kind && kind->good && !measure->absolute)
         brunt_tree_complain(tree, tolerance, "a tolerance with a unit needs tolerance_is: absolute");

@@ -100,6 +100,7 @@ static void fill_time(scene_reader *reader) {
         brunt_tree_complain(reader->tree, step, "the step is longer than the run");
     if (!step && !cfl) brunt_add_default(reader, time, "cfl", has_method(reader, "mpm") ? "0.5" : "0.9");
     world->cfl = brunt_real_of(time, "cfl", world->cfl);
+    world->least_step = brunt_real_of(time, "least_step", 0);
     world->energy_limit = brunt_real_of(time, "energy_limit", world->energy_limit);
 }
 
@@ -143,9 +144,25 @@ static void check_model(scene_reader *reader, const scene_node *at, const brunt_
     if (wrong) brunt_tree_complain_key(reader->tree, at, "%s: %s", model->name, wrong);
 }
 
+static void fill_failure(scene_reader *reader, const scene_node *node, const brunt_model *strength, bool with_eos,
+                         brunt_material_def *material) {
+    const brunt_model *model = brunt_find_failure(brunt_text_of(node, "model", ""));
+    const scene_node *action = brunt_tree_child(node, "action");
+    material->failure_action = (brunt_failure_action)(int)brunt_real_of(node, "action", BRUNT_FAILURE_ERODE);
+    if (!model) return;
+    snprintf(material->failure, sizeof material->failure, "%s", model->name);
+    brunt_read_parameters(node, model, material->failure_parameters);
+    if (strength && !strength->plastic)
+        brunt_tree_complain_key(reader->tree, node, "%s does not flow plastically: it has no failure model",
+                                strength->name);
+    if (action && material->failure_action == BRUNT_FAILURE_SOFTEN && !with_eos)
+        brunt_tree_complain(reader->tree, action, "softening wants an eos: only there is tension taken away");
+}
+
 static void fill_material(scene_reader *reader, const scene_node *node, brunt_material_def *material) {
     if (node->kind != SCENE_MAP) return;
-    scene_node *eos = brunt_tree_child(node, "eos"), *viscosity = brunt_tree_child(node, "viscosity");
+    scene_node *eos = brunt_tree_child(node, "eos"), *viscosity = brunt_tree_child(node, "viscosity"),
+               *failure = brunt_tree_child(node, "failure");
     material->density = brunt_real_of(node, "density", 0);
     snprintf(material->strength, sizeof material->strength, "%s", brunt_text_of(node, "model", ""));
     const brunt_model *strength = brunt_find_strength(material->strength);
@@ -164,6 +181,7 @@ static void fill_material(scene_reader *reader, const scene_node *node, brunt_ma
         if (model && brunt_read_parameters(eos, model, material->eos_parameters) && density)
             check_model(reader, eos, model, material->eos_parameters, material->density, true);
     }
+    if (failure && failure->kind == SCENE_MAP) fill_failure(reader, failure, strength, eos != NULL, material);
     if (viscosity && viscosity->kind == SCENE_MAP) {
         material->bulk_viscosity = true;
         if (brunt_read_parameters(viscosity, &brunt_bulk_viscosity, material->viscosity_parameters) && density)
@@ -185,6 +203,36 @@ static void fill_materials(scene_reader *reader) {
     }
 }
 
+// ---------------------------------------------------------------------------------------------------- detonations
+
+static bool has_explosive(const brunt_world_def *world) {
+    for (int i = 0; i < world->material_count; i++) {
+        const brunt_model *eos = brunt_find_eos(world->materials[i].eos);
+        if (eos && eos->burns) return true;
+    }
+    return false;
+}
+
+static void fill_detonations(scene_reader *reader) {
+    brunt_world_def *world = &reader->scene->world;
+    const scene_node *list = brunt_tree_child(reader->tree->root, "detonations");
+    int count = brunt_children_of(list, SCENE_LIST);
+    world->detonations = brunt_entries_for(reader, count, sizeof *world->detonations);
+    if (!world->detonations) return;
+    if (!has_explosive(world))
+        brunt_tree_complain_key(reader->tree, list, "no material is an explosive (eos: {model: jwl, ...})");
+    for (const scene_node *child = list->first; child; child = child->next) {
+        brunt_detonation_def *detonation = &world->detonations[world->detonation_count++];
+        const scene_node *normal = brunt_tree_child(child, "normal"), *body = brunt_tree_child(child, "body");
+        brunt_vector_of(child, "point", detonation->point);
+        if (normal && brunt_vector_of(child, "normal", detonation->normal) && !brunt_nonzero(detonation->normal))
+            brunt_tree_complain(reader->tree, normal, "the normal has zero length");
+        detonation->time = brunt_real_of(child, "time", 0);
+        brunt_check_body_name(reader, body);
+        brunt_copy_text(reader, body, detonation->body, sizeof detonation->body);
+    }
+}
+
 // ---------------------------------------------------------------------------------------------------- world
 
 void brunt_fill_world(scene_reader *reader) {
@@ -193,10 +241,12 @@ void brunt_fill_world(scene_reader *reader) {
     *world = brunt_world_def_default();
     if (reader->dimension) world->dimension = reader->dimension;
     brunt_copy_text(reader, brunt_tree_child(root, "title"), reader->scene->title, sizeof reader->scene->title);
+    world->axisymmetric = brunt_real_of(root, "axisymmetric", 0) == 1;
     fill_time(reader);
     fill_grid(reader);
     fill_materials(reader);
     brunt_fill_bodies(reader);
+    fill_detonations(reader);
     brunt_fill_contact(reader);
     brunt_fill_boundaries(reader);
     brunt_vector_of(loads, "gravity", world->gravity);

@@ -19,6 +19,8 @@ typedef struct scene_reader {
     FILE *warnings; // of the scene, one a line
 } scene_reader;
 
+// Before it, scene_preset.c puts the keys of materials of the library in.
+void brunt_expand_presets(scene_reader *reader);
 // Stage 3. Afterwards every accepted value is `good`, and every key that has a default is there.
 void brunt_check_scene(scene_reader *reader);
 // Adds a key that is not there, as if the user had typed its value; returns it.

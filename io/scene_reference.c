@@ -44,6 +44,7 @@ static void describe_kind(const scene_key *row, char *out, size_t size) {
     case SCENE_POLYGON: snprintf(out, size, "list of [x, y] [%s]", row->unit); break;
     case SCENE_TABLE:
     case SCENE_CURVE: snprintf(out, size, "list of [t, number]"); break;
+    case SCENE_PROFILE: snprintf(out, size, "list of [x, number]"); break;
     case SCENE_AXES: snprintf(out, size, "list of axes"); break;
     case SCENE_TEXT: snprintf(out, size, "text"); break;
     case SCENE_NAME: snprintf(out, size, "name"); break;
@@ -157,8 +158,22 @@ static void write_models(FILE *out) {
     for (int m = 0; m < brunt_strength_model_count; m++) write_model(out, brunt_strength_models[m]);
     fprintf(out, "\nEquations of state (materials.NAME.eos.model) and their parameters, beside `model`:\n");
     for (int m = 0; m < brunt_eos_model_count; m++) write_model(out, brunt_eos_models[m]);
+    fprintf(out,
+            "\nFailure models (materials.NAME.failure.model) and their parameters, beside `model` and `action`:\n");
+    for (int m = 0; m < brunt_failure_model_count; m++) write_model(out, brunt_failure_models[m]);
     fprintf(out, "\nArtificial viscosity (materials.NAME.viscosity):\n");
     write_model(out, &brunt_bulk_viscosity);
+}
+
+static void write_presets(FILE *out) {
+    fprintf(out, "\nMaterials of the library (materials.NAME.preset):\n");
+    for (int p = 0; p < brunt_preset_count(); p++) {
+        const brunt_preset_info info = brunt_preset(p);
+        char doc[1024];
+        snprintf(doc, sizeof doc, "%s (%s)", info.doc, info.source);
+        fprintf(out, "\n%*s%-24s ", INDENT, "", info.name);
+        write_wrapped(out, doc, INDENT + 25);
+    }
 }
 
 static bool in_section(const scene_section *section, const scene_key *row) {
@@ -197,9 +212,11 @@ bool brunt_scene_keys(const char *section, FILE *out) {
         found = true;
         write_section(out, s);
     }
+    if (strcmp(section ? section : "presets", "presets") == 0) write_presets(out), found = true;
     if (found) return true;
     const brunt_model *model = brunt_find_strength(section);
     if (!model) model = brunt_find_eos(section);
+    if (!model) model = brunt_find_failure(section);
     if (!model && strcmp(section, "viscosity") == 0) model = &brunt_bulk_viscosity;
     if (model) write_model(out, model);
     return model != NULL;
@@ -358,6 +375,7 @@ static void schema_value(FILE *out, const scene_key *row) {
         fputs("\"type\": \"array\", \"minItems\": 3, \"items\": {\"$ref\": \"#/$defs/vector\"}", out);
         break;
     case SCENE_TABLE:
+    case SCENE_PROFILE:
     case SCENE_CURVE:
         fputs(
             "\"type\": \"array\", \"minItems\": 1, \"items\": {\"type\": \"array\", \"minItems\": 2, \"maxItems\": 2, "

@@ -62,12 +62,36 @@ static json_t *energy_of(brunt_world *world) {
                 {"viscosity", e.viscosity},
                 {"transfer", e.transfer},
                 {"eroded", e.eroded},
+                {"heat", e.heat},
                 {"external_work", e.external_work},
                 {"error_relative", e.error_relative}};
     json_t *energy = json_object();
     for (size_t r = 0; r < sizeof rows / sizeof *rows; r++)
         json_object_set_new(energy, rows[r].name, number(rows[r].value));
     return energy;
+}
+
+// What left each body that has lost something.
+static json_t *eroded_of(brunt_world *world) {
+    json_t *bodies = json_object();
+    for (int32_t b = 0; b < brunt_body_count(world); b++) {
+        brunt_eroded e;
+        brunt_body_eroded(world, b, &e);
+        if (!e.elements && !e.particles && !e.nodes) continue;
+        json_t *entry = json_object();
+        json_object_set_new(entry, "elements", json_integer(e.elements));
+        json_object_set_new(entry, "particles", json_integer(e.particles));
+        json_object_set_new(entry, "nodes", json_integer(e.nodes));
+        json_object_set_new(entry, "mass", number(e.mass));
+        json_object_set_new(entry, "momentum", vector(e.momentum));
+        json_object_set_new(entry, "energy", number(e.energy));
+        json_object_set_new(entry, "failed", json_integer(e.failed));
+        json_object_set_new(entry, "strained", json_integer(e.strained));
+        json_object_set_new(entry, "short_step", json_integer(e.short_step));
+        json_object_set_new(entry, "inverted", json_integer(e.inverted));
+        json_object_set_new(bodies, brunt_body_name(world, b), entry);
+    }
+    return bodies;
 }
 
 static json_t *momentum_of(brunt_world *world) {
@@ -137,6 +161,7 @@ static json_t *summary_object(const brunt_summary *s, const brunt_scene *scene, 
     json_object_set_new(o, "effects", effects_of(world));
     json_object_set_new(o, "energy", energy_of(world));
     json_object_set_new(o, "momentum", momentum_of(world));
+    json_object_set_new(o, "eroded", eroded_of(world));
     json_object_set_new(o, "measures", measures_of(s, scene));
     return o;
 }
@@ -166,17 +191,32 @@ static void print_energy(brunt_world *world, brunt_console *console) {
     const struct {
         const char *name;
         double value;
-    } rows[] = {{"initial", e.initial},     {"external work", e.external_work},
-                {"kinetic", e.kinetic},     {"internal", e.internal},
-                {"plastic", e.plastic},     {"hourglass", e.hourglass},
-                {"contact", e.contact},     {"friction", e.friction},
-                {"viscosity", e.viscosity}, {"transfer", e.transfer},
-                {"eroded", e.eroded},       {"error", e.error}};
+    } rows[] = {{"initial", e.initial},      {"external work", e.external_work},
+                {"kinetic", e.kinetic},      {"internal", e.internal},
+                {"plastic", e.plastic},      {"hourglass", e.hourglass},
+                {"contact", e.contact},      {"friction", e.friction},
+                {"viscosity", e.viscosity},  {"transfer", e.transfer},
+                {"eroded", e.eroded},        {"error", e.error},
+                {"of plastic, heat", e.heat}};
     brunt_console_print(console, "energy [J]\n");
     for (size_t r = 0; r < sizeof rows / sizeof *rows; r++)
         // Rows of effects the scene does not have are no more than noise; the four that always matter are always there.
         if (rows[r].value != 0 || r < 4) brunt_console_print(console, "  %-15s %16.8g\n", rows[r].name, rows[r].value);
     brunt_console_print(console, "  %-15s %16.3g %%\n", "error, relative", 100 * e.error_relative);
+}
+
+static void print_eroded(brunt_world *world, brunt_console *console) {
+    for (int32_t b = 0; b < brunt_body_count(world); b++) {
+        brunt_eroded e;
+        brunt_body_eroded(world, b, &e);
+        if (!e.elements && !e.particles && !e.nodes) continue;
+        brunt_console_print(
+            console, "eroded of %s: %lld %s (failed %lld, strained %lld, short of step %lld, inverted %lld)",
+            brunt_body_name(world, b), (long long)(e.elements + e.particles), e.elements ? "elements" : "points",
+            (long long)e.failed, (long long)e.strained, (long long)e.short_step, (long long)e.inverted);
+        if (e.nodes) brunt_console_print(console, ", %lld nodes", (long long)e.nodes);
+        brunt_console_print(console, "; %.4g kg and %.4g J left\n", e.mass, e.energy);
+    }
 }
 
 static void print_measures(const brunt_summary *summary, const brunt_scene *scene, brunt_console *console) {
@@ -218,6 +258,7 @@ void brunt_summary_print(const brunt_summary *s, const brunt_scene *scene, brunt
     print_rate(console, (double)brunt_world_particles(world), steps, s->step_seconds, "particle");
     print_rate(console, (double)brunt_world_elements(world), steps, s->step_seconds, "element");
     print_energy(world, console);
+    print_eroded(world, console);
     brunt_console_print(console, "momentum drift: linear %.2e, angular %.2e\n", m.linear_drift, m.angular_drift);
     brunt_console_print(console, "state hash 0x%016llx\n", (unsigned long long)brunt_world_hash(world));
     print_measures(s, scene, console);

@@ -8,6 +8,7 @@
 #include "element.h"
 #include "error.h"
 #include "memory.h"
+#include "places.h"
 
 // Uncompressed bytes of a zlib block. VTK's own default is 32768; larger blocks compress better and read as fast.
 enum { BLOCK_BYTES = 262144 };
@@ -223,7 +224,7 @@ typedef struct picture {
     brunt_vtu_grid grid;
     brunt_vtu_array arrays[PICTURE_FIELDS];
     int array_count;
-    void *memory[PICTURE_FIELDS + 2];
+    void *memory[PICTURE_FIELDS + 5];
     int memory_count;
 } picture;
 
@@ -241,6 +242,14 @@ static int add_ids(picture *p, int64_t count, bool at_cells, brunt_error *error)
     int64_t *ids = picture_alloc(p, sizeof *ids * (size_t)count, error);
     if (!ids) return BRUNT_FAILED;
     for (int64_t i = 0; i < count; i++) ids[i] = i;
+    const brunt_place here = at_cells ? BRUNT_AT_ELEMENTS : p->elements ? BRUNT_AT_NODES : BRUNT_AT_PARTICLES;
+    const int32_t field = brunt_place_ids(p->world, p->body, here);
+    if (field >= 0) {
+        double *values = picture_alloc(p, sizeof *values * (size_t)count, error);
+        if (!values) return BRUNT_FAILED;
+        brunt_body_read(p->world, p->body, field, values);
+        for (int64_t i = 0; i < count; i++) ids[i] = (int64_t)values[i];
+    }
     p->arrays[p->array_count++] =
         (brunt_vtu_array){.name = "id", .components = 1, .integers = ids, .at_cells = at_cells};
     return BRUNT_OK;

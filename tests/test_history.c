@@ -76,6 +76,11 @@ static const char *unit(const char *name) {
     ck_abort_msg("no column %s", name);
 }
 
+static double last_of_fresh(const char *name) {
+    ck_assert_int_eq(brunt_history_sample(history, world, NULL), BRUNT_OK);
+    return last(name);
+}
+
 START_TEST(columns_hold_what_the_world_says) {
     small_steps(world, 40);
     ck_assert_int_eq(brunt_history_sample(history, world, NULL), BRUNT_OK);
@@ -294,6 +299,51 @@ START_TEST(elements_have_the_same_columns) {
 }
 END_TEST
 
+// Bodies of which something may go tell how much has gone; a probe at what is gone has no value. In a scene where
+// nothing may there are no such columns.
+START_TEST(eroded_is_counted) {
+    ck_assert_ptr_null(brunt_history_column(history, "body.upper.eroded"));
+    ck_assert_double_eq(last_of_fresh("energy.heat"), 0);
+    brunt_scene pulled;
+    const char *sets[] = {"bodies.lower.erosion={strain: 0.1}", "bodies.lower.velocity=[0, 0, 0]",
+                          "bodies.lower.wave={velocity: [-12, 0, 0], wave_vector: [7.854, 0, 0], phase: 90 deg}",
+                          "output.probes={first: {body: lower, point: [0.15, 0.05, 0.05], field: density},"
+                          " last: {body: lower, point: [0.35, 0.35, 0.15], field: density}}",
+                          "boundaries=[]"};
+    small_scene_of(small_elements_text, &pulled, sets, 5);
+    brunt_world *bar = small_world(&pulled);
+    brunt_history *lines = brunt_history_create(bar, &pulled, NULL);
+    brunt_eroded gone = {0};
+    ck_assert_int_eq(brunt_history_sample(lines, bar, NULL), BRUNT_OK);
+    for (int s = 0; s < 400 && !gone.elements; s++) {
+        small_steps(bar, 1);
+        brunt_body_eroded(bar, 0, &gone);
+    }
+    ck_assert_int_gt(gone.elements, 0);
+    ck_assert_int_eq(brunt_history_sample(lines, bar, NULL), BRUNT_OK);
+    const double *count = brunt_history_column(lines, "body.lower.eroded"),
+                 *mass = brunt_history_column(lines, "body.lower.eroded_mass"),
+                 *first = brunt_history_column(lines, "probe.first"), *at_end = brunt_history_column(lines, "probe.last");
+    ck_assert(count && mass && first && at_end);
+    ck_assert(count[0] == 0 && mass[0] == 0);
+    ck_assert_double_eq(count[1], (double)gone.elements);
+    ck_assert_double_eq(mass[1], gone.mass);
+    ck_assert_double_eq(brunt_history_column(lines, "body.upper.eroded")[1], 0);
+    // Where the bar was drawn out it is gone; elsewhere the probe is still at its element, whose number is another.
+    ck_assert_double_eq_tol(first[0], 1000, 1e-3);
+    ck_assert(isnan(first[1]) && fabs(at_end[1] - 1000) < 300);
+    const char *path = small_path("eroded.h5");
+    ck_assert_int_eq(brunt_history_write(lines, path, NULL), BRUNT_OK);
+    brunt_history *again = brunt_history_create(bar, &pulled, NULL); // declared when something is gone
+    ck_assert_int_eq(brunt_history_load(again, path, 1000, NULL), BRUNT_OK);
+    ck_assert_double_eq(brunt_history_column(again, "body.lower.eroded_mass")[1], gone.mass);
+    brunt_history_destroy(again);
+    brunt_history_destroy(lines);
+    brunt_world_destroy(bar);
+    brunt_scene_free(&pulled);
+}
+END_TEST
+
 // A field of nodes is probed at the nearest node, one of elements at the nearest centre.
 START_TEST(probes_of_elements) {
     small_steps(world, 200);
@@ -407,6 +457,7 @@ int main(void) {
     TCase *elements = tcase_create("elements");
     tcase_add_checked_fixture(elements, set_up_elements, tear_down);
     tcase_add_test(elements, elements_have_the_same_columns);
+    tcase_add_test(elements, eroded_is_counted);
     tcase_add_test(elements, probes_of_elements);
     tcase_add_test(elements, file_gives_the_same_lines_and_drops_later_ones);
     suite_add_tcase(suite, elements);

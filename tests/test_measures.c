@@ -84,6 +84,18 @@ START_TEST(history_is_reduced) {
     ck_assert_double_eq(of_history("step", BRUNT_TAKE_LAST_NONZERO, 0, INFINITY), end);
     ck_assert_double_nan(of_history("energy.eroded", BRUNT_TAKE_FIRST_NONZERO, 0, INFINITY));
     ck_assert_double_nan(of_history("time", BRUNT_TAKE_END, 1, 2));
+    // Half of the greatest value is passed between two lines, at the first of the window, or never.
+    ck_assert_double_eq_tol(of_history("time", BRUNT_TAKE_RISE, 0, INFINITY), end / 2, 1e-12);
+    ck_assert_double_eq_tol(of_history("time", BRUNT_TAKE_RISE, 0, time[7]), time[7] / 2, 1e-12);
+    ck_assert_double_eq(of_history("time", BRUNT_TAKE_RISE, time[8], INFINITY), time[8]);
+    ck_assert_double_eq(of_history("body.left.mass", BRUNT_TAKE_RISE, 0, INFINITY), 0);
+    ck_assert_double_nan(of_history("energy.eroded", BRUNT_TAKE_RISE, 0, INFINITY)); // nothing rose
+    ck_assert_double_nan(of_history("body.right.velocity_y", BRUNT_TAKE_RISE, 0, time[2]));
+    int64_t row = 1;
+    while (step[row] < 0.5 * step[10]) row++;
+    double share = (0.5 * step[10] - step[row - 1]) / (step[row] - step[row - 1]);
+    ck_assert_double_eq_tol(of_history("step", BRUNT_TAKE_RISE, 0, INFINITY),
+                            time[row - 1] + share * (time[row] - time[row - 1]), 1e-12);
     // Velocities along -y: the greatest size is of the least value.
     ck_assert_double_eq(of_history("body.right.velocity_y", BRUNT_TAKE_MAX_ABS, 0, INFINITY),
                         fmax(-of_history("body.right.velocity_y", BRUNT_TAKE_MIN, 0, INFINITY),
@@ -427,6 +439,128 @@ START_TEST(elements_are_measured) {
 }
 END_TEST
 
+static double profile_of(const char *body, const char *field, int component, double (*points)[2], int32_t count) {
+    brunt_measure m = blank(BRUNT_MEASURE_PROFILE);
+    strcpy(m.body, body);
+    strcpy(m.field, field);
+    m.component = component;
+    m.axis[0] = 3; // any length
+    m.curve = (brunt_curve){points, count};
+    return evaluate(&m, NAN).value;
+}
+
+// Of blocks at rest with the density 1000: `left` has 0.25 m^2 over [0, 0.5], `right` 0.15 m^2 over [0.6, 1.1]. Sums
+// over a lattice of what is linear are its integrals.
+START_TEST(profiles_are_compared) {
+    double exact[1][2] = {{7, 1000}}, line[2][2] = {{0, 1000}, {0.5, 1500}}, jump[4][2] = {{-1, 1000}, {0.25, 1000}, {0.25, 500}, {2, 500}},
+           beside[4][2] = {{0, 2000}, {0.55, 2000}, {0.55, 1000}, {1, 1000}}, held[2][2] = {{0.2, 800}, {0.3, 1200}},
+           at_point[3][2] = {{-1, 1000}, {0, 1000}, {0, 2000}}, thrice[4][2] = {{0, 1000}, {0.25, 1000}, {0.25, 9000}, {0.25, 500}};
+    ck_assert_double_eq_tol(profile_of("left", "density", -1, exact, 1), 0, rounding);
+    ck_assert_double_eq_tol(profile_of("", "density", -1, exact, 1), 0, rounding);
+    ck_assert_double_eq_tol(profile_of("left", "density", -1, line, 2), 250 / 1250.0, 100 * rounding);
+    ck_assert_double_eq_tol(profile_of("left", "density", -1, jump, 4), 0.5 * 500 / 750.0, 100 * rounding);
+    ck_assert_double_eq_tol(profile_of("left", "density", -1, thrice, 4), 0.5 * 500 / 750.0, 100 * rounding);
+    // Two bodies, by their volumes.
+    ck_assert_double_eq_tol(profile_of("", "density", -1, beside, 4), 0.25 * 1000 / (0.25 * 2000 + 0.15 * 1000),
+                            100 * rounding);
+    ck_assert_double_eq_tol(profile_of("right", "density", -1, beside, 4), 0, rounding);
+    // Beyond its ends the reference is held: |200| over 0.2 m twice, |x - 0.25| 4000 in between.
+    ck_assert_double_eq_tol(profile_of("left", "density", -1, held, 2), (0.4 * 200 + 0.1 * 100) / (0.5 * 1000),
+                            100 * rounding);
+    // Components and magnitudes: velocities (5, 0) and (-5, -1).
+    double five[1][2] = {{0, 5}}, minus[1][2] = {{0, -5}};
+    ck_assert_double_eq_tol(profile_of("", "velocity", 0, five, 1), 0.15 * 10 / (0.4 * 5), 100 * rounding);
+    ck_assert_double_eq_tol(profile_of("right", "velocity", 0, minus, 1), 0, rounding);
+    ck_assert_double_eq_tol(profile_of("right", "velocity", -1, five, 1), (sqrt(26) - 5) / 5, 100 * rounding);
+    // Along another axis, from another origin; what is measured is offset and divided like any other.
+    brunt_measure m = blank(BRUNT_MEASURE_PROFILE);
+    double up[2][2] = {{0, 1000}, {0.5, 2000}};
+    strcpy(m.field, "density");
+    m.axis[1] = 0.1;
+    m.center[0] = 9, m.center[1] = 0.1;
+    m.curve = (brunt_curve){up, 2};
+    ck_assert_double_eq_tol(evaluate(&m, NAN).value, 500 / 1500.0, 100 * rounding);
+    m.minus = 0.25;
+    m.relative_to = 0.5;
+    ck_assert_double_eq_tol(evaluate(&m, NAN).value, 2 * (1 / 3.0 - 0.25), 200 * rounding);
+    // A jump at the first of 10 columns of particles is behind it.
+    double *x = malloc((size_t)brunt_body_particles(world, 0) * sizeof(double[3])), first = INFINITY;
+    brunt_body_read(world, 0, brunt_body_find_field(world, 0, "position"), x);
+    for (int64_t i = 0; i < brunt_body_particles(world, 0); i++) first = fmin(first, x[3 * i]);
+    free(x);
+    m = blank(BRUNT_MEASURE_PROFILE);
+    strcpy(m.field, "density");
+    m.axis[0] = 1;
+    m.center[0] = first;
+    m.curve = (brunt_curve){at_point, 3};
+    ck_assert_double_eq_tol(evaluate(&m, NAN).value, 1000 / 2000.0, 0.01);
+}
+END_TEST
+
+// Each element of a graded bar counts by its volume: eight of the fine half are no more than the one of the coarse.
+START_TEST(profiles_weigh_by_volume) {
+    brunt_scene blocks;
+    const char *sets[] = {"bodies.lower={method: fem, material: rubber, size: 0.1, grading: {x: [[0, 1], [0.999999, 1], "
+                          "[1, 10]]}, shape: {box: {min: [0, 0, 0], max: [2, 0.1, 0.1]}}}",
+                          "boundaries=[]", "contact={method: none}", "output.probes={}"};
+    small_scene_of(small_elements_text, &blocks, sets, 4);
+    brunt_world *bar = small_world(&blocks);
+    ck_assert_int_eq(brunt_body_size(bar, 0, BRUNT_AT_ELEMENTS), 11);
+    brunt_measure m = blank(BRUNT_MEASURE_PROFILE);
+    double step[4][2] = {{0, 1000}, {1.1, 1000}, {1.1, 3000}, {2, 3000}}, value;
+    strcpy(m.body, "lower");
+    strcpy(m.field, "density");
+    m.axis[0] = 1;
+    m.curve = (brunt_curve){step, 4};
+    ck_assert_int_eq(brunt_measure_initial(&m, bar, &value, NULL), BRUNT_OK);
+    ck_assert_double_eq_tol(value, 2000 / 4000.0, 1e-4);
+    // Velocities are at nodes: there is no volume.
+    brunt_error error = {0};
+    strcpy(m.field, "velocity");
+    ck_assert_int_eq(brunt_measure_check(&m, NULL, bar, &error), BRUNT_BAD_INPUT);
+    ck_assert_msg(strstr(error.message, "'velocity' of body 'lower' is at nodes, a profile wants particles or elements"),
+                  "%s", error.message);
+    brunt_world_destroy(bar);
+    brunt_scene_free(&blocks);
+}
+END_TEST
+
+START_TEST(profiles_that_cannot_be_are_refused) {
+    brunt_scene read;
+    const char *const sets[] = {"measures={a: {profile: {name: density, axis: [1, 0], reference: [[0, 3 Pa]]}},"
+                                " b: {profile: {name: density, axis: [1, 0], reference: [[0, 3 g/cm^3]]}}}"};
+    brunt_error error = {0};
+    small_scene(&read, sets, 1);
+    brunt_measure m = read.measures[0];
+    ck_assert_int_eq(brunt_measure_check(&m, history, world, &error), BRUNT_BAD_INPUT);
+    ck_assert_msg(strstr(error.message, "the reference is in m-1.kg.s-2, the field 'density' in kg/m^3"), "%s",
+                  error.message);
+    m = read.measures[1];
+    ck_assert_int_eq(brunt_measure_check(&m, history, world, &error), BRUNT_OK);
+    ck_assert_double_eq_tol(evaluate(&m, NAN).value, 2.0 / 3, 100 * rounding);
+    strcpy(m.body, "middle");
+    ck_assert_int_eq(brunt_measure_check(&m, history, world, &error), BRUNT_BAD_INPUT);
+    ck_assert_msg(strstr(error.message, "no body 'middle'"), "%s", error.message);
+    m.body[0] = 0;
+    strcpy(m.field, "desnity");
+    ck_assert_int_eq(brunt_measure_check(&m, history, world, &error), BRUNT_BAD_INPUT);
+    ck_assert_msg(strstr(error.message, "no body has a field 'desnity'"), "%s", error.message);
+    strcpy(m.body, "left");
+    ck_assert_int_eq(brunt_measure_check(&m, history, world, &error), BRUNT_BAD_INPUT);
+    ck_assert_msg(strstr(error.message, "body 'left' has no field 'desnity'"), "%s", error.message);
+    strcpy(m.field, "density");
+    m.component = 3;
+    ck_assert_int_eq(brunt_measure_check(&m, history, world, &error), BRUNT_BAD_INPUT);
+    m.component = -1;
+    m.take = BRUNT_TAKE_MAX;
+    ck_assert_int_eq(brunt_measure_check(&m, history, world, &error), BRUNT_BAD_INPUT);
+    m.take = BRUNT_TAKE_END;
+    m.curve.count = 0;
+    ck_assert_int_eq(brunt_measure_check(&m, history, world, &error), BRUNT_BAD_INPUT);
+    brunt_scene_free(&read);
+}
+END_TEST
+
 START_TEST(unknown_names_are_refused) {
     static const struct {
         brunt_measure_kind kind;
@@ -469,6 +603,9 @@ int main(void) {
     tcase_add_test(values, radius_about_an_axis);
     tcase_add_test(values, fields_are_reduced);
     tcase_add_test(values, elements_are_measured);
+    tcase_add_test(values, profiles_are_compared);
+    tcase_add_test(values, profiles_weigh_by_volume);
+    tcase_add_test(values, profiles_that_cannot_be_are_refused);
     tcase_add_test(values, unknown_names_are_refused);
     suite_add_tcase(suite, values);
     return small_main(suite);

@@ -1,5 +1,6 @@
 // Labels: io
-// Finite elements through the program: what a run writes of them, read back by VTK; a run in two legs; check and info.
+// Finite elements through the program: what a run writes of them, read back by VTK; a run in two legs; erosion of
+// them and of material points; check and info.
 #include "small_scene.h"
 
 #include <jansson.h>
@@ -106,6 +107,89 @@ START_TEST(two_legs_give_the_same_bits) {
 }
 END_TEST
 
+// A bar of elements and one of material points, both drawn out until a part of each fails.
+static const char torn_text[] =
+    "brunt: 1\n"
+    "title: Two bars torn\n"
+    "dimension: 2\n"
+    "time: {end: 8 us}\n"
+    "grid: {cell: 2 mm}\n"
+    "materials: {copper: {preset: copper-ofhc, failure: {d1: 0.1, d2: 0, d3: 0, d4: 0, d5: 0}}}\n"
+    "bodies:\n"
+    "  bar: {method: fem, material: copper, size: 2 mm, shape: {box: {min: [0, 0], max: [40 mm, 8 mm]}},\n"
+    "    wave: {velocity: [-500, 0], wave_vector: [78.54, 0], phase: 90 deg}}\n"
+    "  points: {method: mpm, material: copper, shape: {box: {min: [0, 20 mm], max: [40 mm, 28 mm]}},\n"
+    "    wave: {velocity: [-500, 0], wave_vector: [78.54, 0], phase: 90 deg}}\n"
+    "  still: {method: mpm, material: copper, shape: {box: {min: [0, 40 mm], max: [4 mm, 44 mm]}}}\n"
+    "output: {every: 2 us, history: 0.5 us, fields: [velocity, plastic_strain],\n"
+    "  probes: {middle: {body: bar, point: [21 mm, 1 mm], field: pressure}}}\n"
+    "measures: {gone: {history: body.bar.eroded_mass, unit: kg}, heat: {history: energy.heat}}\n";
+
+static double measured(const json_t *summary, const char *name) {
+    return number_of(json_object_get(json_object_get(summary, "measures"), name), "value");
+}
+
+START_TEST(erosion_is_reported) {
+    small_write(small_path("torn.yaml"), torn_text, sizeof torn_text - 1);
+    const char *text = shell(0, "$P run torn.yaml -o torn -t 1");
+    contains(text, "eroded of bar: ");
+    contains(text, " elements (failed ");
+    contains(text, "eroded of points: ");
+    contains(text, "of plastic, heat");
+    ck_assert_ptr_null(strstr(text, "eroded of still"));
+    json_t *summary = summary_of("torn"), *eroded = json_object_get(summary, "eroded"),
+           *bar = json_object_get(eroded, "bar"), *points = json_object_get(eroded, "points"),
+           *energy = json_object_get(summary, "energy");
+    ck_assert_int_eq((int)json_object_size(eroded), 2); // of `still` nothing
+    ck_assert(number_of(bar, "elements") > 0 && number_of(bar, "particles") == 0 && number_of(points, "particles") > 0);
+    ck_assert_double_eq(number_of(bar, "failed"), number_of(bar, "elements"));
+    ck_assert(number_of(bar, "strained") == 0 && number_of(bar, "short_step") == 0 && number_of(bar, "inverted") == 0);
+    ck_assert_int_eq((int)json_array_size(json_object_get(bar, "momentum")), 3);
+    // Material points leave with all of their mass, 4 to a cell of 2 mm.
+    const double point = 8930 * 1e-6;
+    ck_assert_double_eq_tol(number_of(points, "mass"), number_of(points, "particles") * point, 1e-4 * point);
+    ck_assert_double_eq(measured(summary, "gone"), number_of(bar, "mass"));
+    ck_assert_double_eq_tol(number_of(energy, "eroded"), number_of(bar, "energy") + number_of(points, "energy"),
+                            1e-9 * number_of(energy, "initial"));
+    // Nine tenths of the plastic work become heat, of what is still there and of what is gone.
+    ck_assert_double_eq(measured(summary, "heat"), number_of(energy, "heat"));
+    ck_assert_double_eq_tol(number_of(energy, "heat"), 0.9 * number_of(energy, "plastic"), 1e-3 * number_of(energy, "plastic"));
+    ck_assert_double_gt(number_of(energy, "heat"), 0);
+    json_decref(summary);
+    contains(shell(0, "head -1 torn/history.csv"), "body.points.eroded [1],body.points.eroded_mass [kg]");
+    contains(shell(0, "tail -1 torn/history.csv"), "nan"); // the probe's element is gone
+    // Pictures keep the numbers that elements and points had.
+    double range[2];
+    range_of(shell(0, "$R --facts torn/vtu/bar_000004.vtu"), "cell id", range);
+    ck_assert(range[0] == 0 && range[1] == 79);
+    range_of(shell(0, "$R --facts torn/vtu/points_000004.vtu"), "point id", range);
+    ck_assert(range[0] == 0 && range[1] == 4 * 80 - 1);
+}
+END_TEST
+
+START_TEST(erosion_in_two_legs_gives_the_same_bits) {
+    small_write(small_path("torn.yaml"), torn_text, sizeof torn_text - 1);
+    shell(0, "$P run torn.yaml -o whole -t 1 -q");
+    shell(0, "$P run torn.yaml -o legs -t 2 -q --set time.end=4us");
+    json_t *half = summary_of("legs");
+    const double before = number_of(json_object_get(json_object_get(half, "eroded"), "bar"), "elements");
+    json_decref(half);
+    shell(0, "$P run torn.yaml -o legs -t 1 -q --resume");
+    json_t *a = summary_of("whole"), *b = summary_of("legs");
+    ck_assert_str_eq(json_string_value(json_object_get(a, "state_hash")),
+                     json_string_value(json_object_get(b, "state_hash")));
+    ck_assert(json_equal(json_object_get(a, "eroded"), json_object_get(b, "eroded")));
+    ck_assert(json_equal(json_object_get(a, "energy"), json_object_get(b, "energy")));
+    const double after = number_of(json_object_get(json_object_get(b, "eroded"), "bar"), "elements");
+    ck_assert(before > 0 && after > before); // in both legs
+    json_decref(a);
+    json_decref(b);
+    shell(0, "cmp whole/history.csv legs/history.csv && diff -r whole/vtu legs/vtu");
+    // The scene as it was resolved is the same run.
+    shell(0, "$P run whole/scene.yaml -o again -t 1 -q && cmp whole/history.csv again/history.csv");
+}
+END_TEST
+
 START_TEST(check_and_warnings) {
     const char *text = shell(0, "$P check blocks.yaml -t 1");
     contains(text, "32 hex8 elements, 75 nodes");
@@ -159,6 +243,8 @@ int main(void) {
     tcase_add_checked_fixture(runs, set_up, small_folder_remove);
     tcase_add_test(runs, runs_and_pictures);
     tcase_add_test(runs, two_legs_give_the_same_bits);
+    tcase_add_test(runs, erosion_is_reported);
+    tcase_add_test(runs, erosion_in_two_legs_gives_the_same_bits);
     tcase_add_test(runs, check_and_warnings);
     tcase_add_test(runs, mesh_files);
     suite_add_tcase(suite, runs);
