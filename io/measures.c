@@ -349,8 +349,7 @@ static bool same_unit(const char *column, const char *curve) {
 static int check_profile(const brunt_measure *m, brunt_world *world, brunt_error *error) {
     if (m->take != BRUNT_TAKE_END)
         return brunt_fail(error, BRUNT_BAD_INPUT, "measures.%s: a profile is measured at the end only", m->name);
-    if (!m->curve.count)
-        return brunt_fail(error, BRUNT_BAD_INPUT, "measures.%s: a profile wants a reference", m->name);
+    if (!m->curve.count) return brunt_fail(error, BRUNT_BAD_INPUT, "measures.%s: a profile wants a reference", m->name);
     if (*m->body && brunt_find_body(world, m->body) < 0)
         return brunt_fail(error, BRUNT_BAD_INPUT, "measures.%s: there is no body '%s'", m->name, m->body);
     for (int32_t body = 0; *m->curve_unit && body < brunt_body_count(world); body++) {

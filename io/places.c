@@ -23,7 +23,8 @@ static int read_points(brunt_world *world, int32_t body, double **points, brunt_
     int32_t position = brunt_body_find_field(world, body, "position");
     if (position < 0)
         return brunt_fail(error, BRUNT_FAILED, "body '%s' has no field 'position'", brunt_body_name(world, body));
-    *points = brunt_alloc(sizeof(double) * 3 * (size_t)brunt_body_size(world, body, brunt_place_of_motion(world, body)));
+    *points =
+        brunt_alloc(sizeof(double) * 3 * (size_t)brunt_body_size(world, body, brunt_place_of_motion(world, body)));
     if (!*points) return no_memory(world, body, error);
     brunt_body_read(world, body, position, *points);
     return BRUNT_OK;

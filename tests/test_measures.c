@@ -452,9 +452,11 @@ static double profile_of(const char *body, const char *field, int component, dou
 // Of blocks at rest with the density 1000: `left` has 0.25 m^2 over [0, 0.5], `right` 0.15 m^2 over [0.6, 1.1]. Sums
 // over a lattice of what is linear are its integrals.
 START_TEST(profiles_are_compared) {
-    double exact[1][2] = {{7, 1000}}, line[2][2] = {{0, 1000}, {0.5, 1500}}, jump[4][2] = {{-1, 1000}, {0.25, 1000}, {0.25, 500}, {2, 500}},
+    double exact[1][2] = {{7, 1000}}, line[2][2] = {{0, 1000}, {0.5, 1500}},
+           jump[4][2] = {{-1, 1000}, {0.25, 1000}, {0.25, 500}, {2, 500}},
            beside[4][2] = {{0, 2000}, {0.55, 2000}, {0.55, 1000}, {1, 1000}}, held[2][2] = {{0.2, 800}, {0.3, 1200}},
-           at_point[3][2] = {{-1, 1000}, {0, 1000}, {0, 2000}}, thrice[4][2] = {{0, 1000}, {0.25, 1000}, {0.25, 9000}, {0.25, 500}};
+           at_point[3][2] = {{-1, 1000}, {0, 1000}, {0, 2000}},
+           thrice[4][2] = {{0, 1000}, {0.25, 1000}, {0.25, 9000}, {0.25, 500}};
     ck_assert_double_eq_tol(profile_of("left", "density", -1, exact, 1), 0, rounding);
     ck_assert_double_eq_tol(profile_of("", "density", -1, exact, 1), 0, rounding);
     ck_assert_double_eq_tol(profile_of("left", "density", -1, line, 2), 250 / 1250.0, 100 * rounding);
@@ -500,9 +502,10 @@ END_TEST
 // Each element of a graded bar counts by its volume: eight of the fine half are no more than the one of the coarse.
 START_TEST(profiles_weigh_by_volume) {
     brunt_scene blocks;
-    const char *sets[] = {"bodies.lower={method: fem, material: rubber, size: 0.1, grading: {x: [[0, 1], [0.999999, 1], "
-                          "[1, 10]]}, shape: {box: {min: [0, 0, 0], max: [2, 0.1, 0.1]}}}",
-                          "boundaries=[]", "contact={method: none}", "output.probes={}"};
+    const char *sets[] = {
+        ("bodies.lower={method: fem, material: rubber, size: 0.1, grading: {x: [[0, 1], [0.999999, 1], "
+         "[1, 10]]}, shape: {box: {min: [0, 0, 0], max: [2, 0.1, 0.1]}}}"),
+        "boundaries=[]", "contact={method: none}", "output.probes={}"};
     small_scene_of(small_elements_text, &blocks, sets, 4);
     brunt_world *bar = small_world(&blocks);
     ck_assert_int_eq(brunt_body_size(bar, 0, BRUNT_AT_ELEMENTS), 11);
@@ -518,8 +521,9 @@ START_TEST(profiles_weigh_by_volume) {
     brunt_error error = {0};
     strcpy(m.field, "velocity");
     ck_assert_int_eq(brunt_measure_check(&m, NULL, bar, &error), BRUNT_BAD_INPUT);
-    ck_assert_msg(strstr(error.message, "'velocity' of body 'lower' is at nodes, a profile wants particles or elements"),
-                  "%s", error.message);
+    ck_assert_msg(
+        strstr(error.message, "'velocity' of body 'lower' is at nodes, a profile wants particles or elements"), "%s",
+        error.message);
     brunt_world_destroy(bar);
     brunt_scene_free(&blocks);
 }

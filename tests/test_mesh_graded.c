@@ -114,9 +114,10 @@ END_TEST
 // and from node to node the integral of 1 / (size factor) is the same.
 START_TEST(nodes_divide_the_integral_evenly) {
     points two[1] = {{7, 2}}, bump[4] = {{-0.4, 4}, {0.1, 1}, {0.2, 1}, {0.9, 20}},
-           outside[4] = {{-9, 1}, {-3, 2}, {5, 6}, {9, 1}}, before[2] = {{-3, 7}, {-2, 3}}, after[2] = {{3, 0.5}, {4, 9}},
-           nearly[2] = {{-1, 1}, {1, 1 + 1e-13}}, steep[3] = {{-0.5, 50}, {0.25, 0.5}, {0.9, 50}};
-    const brunt_curve list[] = {{two, 1},    {bump, 4},   {outside, 4}, {before, 2},
+           outside[4] = {{-9, 1}, {-3, 2}, {5, 6}, {9, 1}}, before[2] = {{-3, 7}, {-2, 3}},
+           after[2] = {{3, 0.5}, {4, 9}}, nearly[2] = {{-1, 1}, {1, 1 + 1e-13}},
+           steep[3] = {{-0.5, 50}, {0.25, 0.5}, {0.9, 50}};
+    const brunt_curve list[] = {{two, 1},   {bump, 4},   {outside, 4}, {before, 2},
                                 {after, 2}, {nearly, 2}, {steep, 3},   {NULL, 0}};
     for (size_t i = 0; i < sizeof list / sizeof *list; i++) {
         const double low = -0.7, high = 1.1, size = 0.01;
@@ -181,7 +182,8 @@ END_TEST
 
 START_TEST(what_cannot_be_graded_is_refused) {
     points none[1] = {{0, 0}}, negative[2] = {{0, 1}, {1, -1}}, endless[1] = {{0, INFINITY}}, lost[1] = {{NAN, 1}},
-           unknown[1] = {{0, NAN}}, descending[2] = {{1, 1}, {0, 2}}, twice[2] = {{1, 1}, {1, 2}}, fine[1] = {{0, 1e-6}};
+           unknown[1] = {{0, NAN}}, descending[2] = {{1, 1}, {0, 2}}, twice[2] = {{1, 1}, {1, 2}},
+           fine[1] = {{0, 1e-6}};
     const brunt_shape box = {.kind = BRUNT_BOX, .max = {1, 1, 1}}, ball = {.kind = BRUNT_SPHERE, .radius = 1},
                       flat = {.kind = BRUNT_BOX, .max = {1, 0, 1}}, turned = {.kind = BRUNT_BOX, .max = {1, 1, -1}};
     const struct {
@@ -254,7 +256,8 @@ static double thrown_onto(int dimension, bool graded, double *depth) {
     brunt_error error = {0};
     while (brunt_world_time(world) < 0.05) {
         ck_assert_msg(brunt_world_step(world, 0.05, &error) == BRUNT_OK, "%s", error.message);
-        const double *const plate_y = world_field(world, 1, "position"), *const block_y = world_field(world, 0, "position");
+        const double *const plate_y = world_field(world, 1, "position"), *const block_y =
+                                                                             world_field(world, 0, "position");
         double top = -INFINITY, bottom = INFINITY; // under the block, of the plate; of the block
         for (int64_t n = 0; n < brunt_body_size(world, 1, BRUNT_AT_NODES); n++)
             if (fabs(plate_y[3 * n]) < 0.12) top = fmax(top, plate_y[3 * n + 1]);

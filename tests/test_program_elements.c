@@ -153,7 +153,8 @@ START_TEST(erosion_is_reported) {
                             1e-9 * number_of(energy, "initial"));
     // Nine tenths of the plastic work become heat, of what is still there and of what is gone.
     ck_assert_double_eq(measured(summary, "heat"), number_of(energy, "heat"));
-    ck_assert_double_eq_tol(number_of(energy, "heat"), 0.9 * number_of(energy, "plastic"), 1e-3 * number_of(energy, "plastic"));
+    ck_assert_double_eq_tol(number_of(energy, "heat"), 0.9 * number_of(energy, "plastic"),
+                            1e-3 * number_of(energy, "plastic"));
     ck_assert_double_gt(number_of(energy, "heat"), 0);
     json_decref(summary);
     contains(shell(0, "head -1 torn/history.csv"), "body.points.eroded [1],body.points.eroded_mass [kg]");

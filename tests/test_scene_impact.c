@@ -227,7 +227,8 @@ START_TEST(keys_have_their_values) {
         "materials: {copper: {preset: copper-ofhc}, tnt: {preset: tnt}}\n"
         "bodies:\n"
         "  a: {method: fem, material: copper, size: 1 mm, shape: {box: {min: [0, 0], max: [8 mm, 4 mm]}},\n"
-        "    grading: {x: [[2 mm, 50 %], [8 mm, 2]]}, erosion: {strain: 150 %, step: 3 ns, inverted: erode, debris: keep}}\n"
+        "    grading: {x: [[2 mm, 50 %], [8 mm, 2]]}, erosion: {strain: 150 %, step: 3 ns, inverted: erode, debris: "
+        "keep}}\n"
         "  b: {method: mpm, material: tnt, shape: {box: {min: [0, 6 mm], max: [8 mm, 9 mm]}}, erosion: {}}\n"
         "  c: {method: mpm, material: copper, shape: {box: {min: [0, 9 mm], max: [8 mm, 12 mm]}}}\n"
         "detonations:\n"
@@ -235,7 +236,8 @@ START_TEST(keys_have_their_values) {
         "  - {point: [1 mm, 6 mm]}\n"
         "contact: {pairs: [{between: [c, b], method: tied}]}\n"
         "measures:\n"
-        "  shape: {profile: {name: density, axis: [0, 1], center: [0, 1 mm], reference: [[0 mm, 1 g/cm^3], [2 mm, 3e3], [2 mm, 5 g/cm^3]]}, "
+        "  shape: {profile: {name: density, axis: [0, 1], center: [0, 1 mm], reference: [[0 mm, 1 g/cm^3], [2 mm, "
+        "3e3], [2 mm, 5 g/cm^3]]}, "
         "expect: 0, tolerance: 1 %, tolerance_is: absolute}\n"
         "  of_b: {profile: {name: stress, component: yy, body: b, axis: [1, 0], reference: [[0, 1]]}}\n"
         "  front: {history: body.b.velocity_y, take: rise}\n";
@@ -300,7 +302,8 @@ END_TEST
 START_TEST(graded_bodies) {
     static const char text[] =
         "brunt: 1\ndimension: 2\ntime: {end: 1}\nmaterials: {m: {model: neo-hookean, density: 1, E: 1, nu: 0}}\n"
-        "bodies: {b: {method: fem, material: m, size: 0.1, shape: {box: {min: [0, 0], max: [1, 1]}}, place: [{translate: [5, 0]}], "
+        "bodies: {b: {method: fem, material: m, size: 0.1, shape: {box: {min: [0, 0], max: [1, 1]}}, place: "
+        "[{translate: [5, 0]}], "
         "grading: {x: [[0, 1], [1, 3]]}}}\n"
         "boundaries: [{group: xmax, body: b, fix: all}]\n";
     brunt_scene scene;
@@ -338,24 +341,30 @@ START_TEST(worlds_that_are_refused) {
          "bodies: {b: {method: mpm, material: m, shape: {box: {min: [0, 0], max: [4 mm, 4 mm]}}}}\n",
          "loads.gravity: 9.81 m/s^2 along x, away from the axis of revolution"},
         {"dimension: 2\naxisymmetric: true\n"
-         "bodies: {b: {method: mpm, material: m, spin: {rate: 3 rad/s}, shape: {box: {min: [0, 0], max: [4 mm, 4 mm]}}}}\n",
+         "bodies: {b: {method: mpm, material: m, spin: {rate: 3 rad/s}, shape: {box: {min: [0, 0], max: [4 mm, 4 "
+         "mm]}}}}\n",
          "bodies.b.spin: rings do not turn in their plane"},
         {"dimension: 2\naxisymmetric: true\n"
          "bodies: {b: {method: mpm, material: m, lagrangian: total, shape: {box: {min: [0, 0], max: [4 mm, 4 mm]}}}}\n",
          "not in axisymmetric scenes"},
-        {"bodies: {b: {method: mpm, material: gum, lagrangian: total, shape: {box: {min: [0, 0, 0], max: [4 mm, 4 mm, 4 mm]}}}, "
+        {"bodies: {b: {method: mpm, material: gum, lagrangian: total, shape: {box: {min: [0, 0, 0], max: [4 mm, 4 mm, "
+         "4 mm]}}}, "
          "c: {method: mpm, material: gum, shape: {box: {min: [9 mm, 0, 0], max: [12 mm, 4 mm, 4 mm]}}}}\n",
          "contact of 'b' and 'c': bodies of material points meet at the nodes of their grids"},
-        {"bodies: {b: {method: mpm, material: gum, lagrangian: total, shape: {box: {min: [0, 0, 0], max: [4 mm, 4 mm, 4 mm]}}}, "
+        {"bodies: {b: {method: mpm, material: gum, lagrangian: total, shape: {box: {min: [0, 0, 0], max: [4 mm, 4 mm, "
+         "4 mm]}}}, "
          "c: {method: mpm, material: gum, shape: {box: {min: [9 mm, 0, 0], max: [12 mm, 4 mm, 4 mm]}}}}\n"
          "contact: {method: tied}\n",
          "contact of 'b' and 'c'"},
-        {"bodies: {b: {method: mpm, material: water, lagrangian: total, shape: {box: {min: [0, 0, 0], max: [4 mm, 4 mm, 4 mm]}}}}\n",
+        {"bodies: {b: {method: mpm, material: water, lagrangian: total, shape: {box: {min: [0, 0, 0], max: [4 mm, 4 "
+         "mm, 4 mm]}}}}\n",
          "is a fluid: it has no undeformed configuration"},
-        {"bodies: {b: {method: fem, material: m, size: 1 mm, shape: {box: {min: [0, 0, 0], max: [4 mm, 4 mm, 4 mm]}}}}\n"
+        {"bodies: {b: {method: fem, material: m, size: 1 mm, shape: {box: {min: [0, 0, 0], max: [4 mm, 4 mm, 4 "
+         "mm]}}}}\n"
          "detonations: [{point: [0, 0, 0], body: b}]\n",
          "detonations[0]: it lights nothing, no material of body b is an explosive"},
-        {"bodies: {b: {method: fem, material: m, size: 1 mm, shape: {box: {min: [0, 0, 0], max: [1, 1, 1]}}, grading: {x: [[0, 1e-3]]}}}\n",
+        {"bodies: {b: {method: fem, material: m, size: 1 mm, shape: {box: {min: [0, 0, 0], max: [1, 1, 1]}}, grading: "
+         "{x: [[0, 1e-3]]}}}\n",
          "bodies.b: an edge length of 0.001 m makes more than 100 million nodes"},
     };
     for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {

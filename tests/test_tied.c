@@ -14,7 +14,9 @@ typedef struct choice {
     brunt_transfer transfer;
 } choice;
 
-static choice choose(int i) { return (choice){i % 3, (brunt_kernel)(BRUNT_QUADRATIC + i / 3 % 2), (brunt_transfer)(i / 6)}; }
+static choice choose(int i) {
+    return (choice){i % 3, (brunt_kernel)(BRUNT_QUADRATIC + i / 3 % 2), (brunt_transfer)(i / 6)};
+}
 
 static const char *name_of(choice c) {
     static const char *const transfers[] = {"pic", "flip", "apic"};
@@ -81,9 +83,9 @@ static int64_t all_points(brunt_world *world, point **out) { // free()
         double *x = world_field(world, b, "position"), *v = world_field(world, b, "velocity"),
                *F = world_field(world, b, "deformation_gradient");
         for (int64_t i = 0; i < brunt_body_particles(world, b); i++, at++) {
-            memcpy((*out)[at].x, x + 3 * i, sizeof (*out)[at].x);
-            memcpy((*out)[at].v, v + 3 * i, sizeof (*out)[at].v);
-            memcpy((*out)[at].F, F + 9 * i, sizeof (*out)[at].F);
+            memcpy((*out)[at].x, x + 3 * i, sizeof(*out)[at].x);
+            memcpy((*out)[at].v, v + 3 * i, sizeof(*out)[at].v);
+            memcpy((*out)[at].F, F + 9 * i, sizeof(*out)[at].F);
         }
         free(x), free(v), free(F);
     }
@@ -114,12 +116,13 @@ static int64_t *partners(const point *of, const point *among, int64_t count) {
 // lost in the transfer and in their contact: a common velocity has less energy than two.
 static void judge_energy(choice c, const brunt_energy *whole, const brunt_energy *parts) {
     const double close = (sizeof(real) == 4 ? 1e-3 : 1e-10) * whole->initial;
-    printf("  %s energy of the whole (of the parts less that): kinetic %.5f (%.0e) stored %.5f (%.0e); lost in transfer "
-           "%.2e, of the parts %.2e + contact %.2e; ledger %.1e, %.1e\n",
-           name_of(c), whole->kinetic / whole->initial, (parts->kinetic - whole->kinetic) / whole->initial,
-           whole->internal / whole->initial, (parts->internal - whole->internal) / whole->initial,
-           whole->transfer / whole->initial, parts->transfer / whole->initial, parts->contact / whole->initial,
-           whole->error_relative, parts->error_relative);
+    printf(
+        "  %s energy of the whole (of the parts less that): kinetic %.5f (%.0e) stored %.5f (%.0e); lost in transfer "
+        "%.2e, of the parts %.2e + contact %.2e; ledger %.1e, %.1e\n",
+        name_of(c), whole->kinetic / whole->initial, (parts->kinetic - whole->kinetic) / whole->initial,
+        whole->internal / whole->initial, (parts->internal - whole->internal) / whole->initial,
+        whole->transfer / whole->initial, parts->transfer / whole->initial, parts->contact / whole->initial,
+        whole->error_relative, parts->error_relative);
     ck_assert_double_eq_tol(parts->kinetic, whole->kinetic, close);
     ck_assert_double_eq_tol(parts->internal, whole->internal, close);
     ck_assert_double_eq_tol(parts->error, whole->error, close);
@@ -174,9 +177,9 @@ START_TEST(they_neither_part_nor_slide) {
         brunt_world_def def = begin(c);
         if (!method) def.contact.method = BRUNT_CONTACT_MULTI_VELOCITY;
         for (int p = 0; p < 2; p++) {
-            brunt_body_def *part = c.shape == 2
-                                       ? def_box(&def, p ? "b" : "a", XYZ(0, p ? 0 : -0.25, 0), XYZ(0.25, p ? 0.25 : 0, 0))
-                                       : def_box(&def, p ? "b" : "a", XYZ(p ? 0 : -0.25, 0, 0), XYZ(p ? 0.25 : 0, 0.25, 0.25));
+            brunt_body_def *part =
+                c.shape == 2 ? def_box(&def, p ? "b" : "a", XYZ(0, p ? 0 : -0.25, 0), XYZ(0.25, p ? 0.25 : 0, 0))
+                             : def_box(&def, p ? "b" : "a", XYZ(p ? 0 : -0.25, 0, 0), XYZ(p ? 0.25 : 0, 0.25, 0.25));
             part->particles_per_cell = 0;
             part->spacing = spacing;
             def_velocity(part, c.shape == 2 ? 0 : 0.3 * p, 0.3 * p, 0);
@@ -190,8 +193,8 @@ START_TEST(they_neither_part_nor_slide) {
         const brunt_momentum m = world_momentum(world);
         const brunt_energy e = world_energy(world);
         energy[method] = fabs(e.error_relative);
-        ck_assert_double_le(m.linear_drift, ROUNDING);
-        if (c.transfer == BRUNT_APIC && c.shape != 2) ck_assert_double_le(m.angular_drift, ROUNDING);
+        ck_assert_double_le(m.linear_drift, 3 * ROUNDING); // some hundred steps, cubic in float 1.4
+        if (c.transfer == BRUNT_APIC && c.shape != 2) ck_assert_double_le(m.angular_drift, 3 * ROUNDING);
         brunt_world_destroy(world);
     }
     printf("  %s thrown apart: %.3f m in contact, %.3f m tied; ledger %.1e, %.1e\n", name_of(c), way[0], way[1],
@@ -202,11 +205,33 @@ START_TEST(they_neither_part_nor_slide) {
 }
 END_TEST
 
+// Two bodies in one place have no normal to each other, and need none: those that fly through each other stop.
+START_TEST(no_normal_is_wanted) {
+    choice c = {_i, BRUNT_QUADRATIC, BRUNT_APIC};
+    brunt_world_def def = begin(c);
+    def.contact.allow_overlap = true;
+    for (int p = 0; p < 2; p++) {
+        brunt_body_def *body = def_box(&def, p ? "b" : "a", XYZ(0, 0, 0), XYZ(0.25, 0.25, 0.25));
+        body->particles_per_cell = 0;
+        body->spacing = spacing;
+        def_velocity(body, c.shape == 2 ? 0 : p ? 1 : -1, p ? 1 : -1, 0);
+    }
+    brunt_world *world = world_take(&def);
+    const double before = world_energy(world).kinetic;
+    world_steps(world, 3);
+    const brunt_energy e = world_energy(world);
+    for (int b = 0; b < 2; b++)
+        for (int a = 0; a < 2; a++) ck_assert_double_le(fabs(world_sums(world, b).velocity[a]), 1e3 * ROUNDING);
+    ck_assert_double_eq_tol(e.contact + e.transfer, before, 1e-6 * before);
+    brunt_world_destroy(world);
+}
+END_TEST
+
 // ------------------------------------------------------------------------------------------ beside contact
 
 // A bar of two tied parts, cut where a third body hits it: all three meet at the nodes there. `whole`: the bar uncut.
 static brunt_world *hit(int dimension, bool whole, double friction, int threads) {
-    static const brunt_pair_def tied = {.a = "a", .b = "b", .method = BRUNT_CONTACT_TIED};
+    static const brunt_pair_def tied = {.a = "a", .b = "b", .method = BRUNT_CONTACT_TIED, .friction = 0.5};
     brunt_world_def def = begin((choice){dimension == 3, BRUNT_QUADRATIC, BRUNT_APIC});
     def.threads = threads;
     def.contact.method = BRUNT_CONTACT_MULTI_VELOCITY;
@@ -334,6 +359,7 @@ int main(void) {
     TCase *tests = tcase_create("tied");
     tcase_add_loop_test(tests, tied_parts_are_the_whole, 0, 18);
     tcase_add_loop_test(tests, they_neither_part_nor_slide, 0, 18);
+    tcase_add_loop_test(tests, no_normal_is_wanted, 0, SHAPES);
     tcase_add_loop_test(tests, three_bodies_one_pair_tied, 0, 2);
     tcase_add_loop_test(tests, contact_elsewhere_is_unaffected, 0, 2);
     tcase_add_loop_test(tests, threads_and_order_change_no_bit, 0, 2);

@@ -213,13 +213,13 @@ static int fill_shapes(brunt_world *world, const brunt_world_def *def, const bru
 // What needs the bodies' grids at one place in space is not for bodies whose grids are undeformed.
 static int check_total_lagrangian(const brunt_world *world, const brunt_world_def *def, const brunt_body_def *from,
                                   const brunt_body *body, brunt_error *error) {
-    if (def->axisymmetric) REFUSE("bodies.%s.total_lagrangian: not in axisymmetric scenes", from->name);
+    if (def->axisymmetric) REFUSE("bodies.%s.lagrangian: total: not in axisymmetric scenes", from->name);
     if (!world->total_gather)
         REFUSE(
-            "bodies.%s.total_lagrangian: kernel linear has gradients that jump between cells; use quadratic or cubic",
+            "bodies.%s.lagrangian: total: kernel linear has gradients that jump between cells; use quadratic or cubic",
             from->name);
     if (body->material.model[BRUNT_STRENGTH]->fluid)
-        REFUSE("bodies.%s.total_lagrangian: material '%s' is a fluid: it has no undeformed configuration", from->name,
+        REFUSE("bodies.%s.lagrangian: total: material '%s' is a fluid: it has no undeformed configuration", from->name,
                body->material.name);
     for (int k = 0; k < def->body_count; k++) {
         const brunt_body_def *other = &def->bodies[k];
@@ -230,10 +230,10 @@ static int check_total_lagrangian(const brunt_world *world, const brunt_world_de
         if (other->method == BRUNT_MPM)
             REFUSE("contact of '%s' and '%s': bodies of material points meet at the nodes of their grids, and that of "
                    "'%s' "
-                   "is undeformed (total_lagrangian); let one of them be a mesh, or switch contact off between them",
+                   "is undeformed (lagrangian: total); let one of them be a mesh, or switch contact off between them",
                    from->name, other->name, from->name);
         if (world->pairs[pair].method == BRUNT_CONTACT_MULTI_VELOCITY)
-            REFUSE("contact of '%s' and '%s': the grid of '%s' is undeformed (total_lagrangian): use augury, not "
+            REFUSE("contact of '%s' and '%s': the grid of '%s' is undeformed (lagrangian: total): use augury, not "
                    "multi-velocity",
                    from->name, other->name, from->name);
     }
@@ -312,16 +312,18 @@ static int make_elements(brunt_world *world, const brunt_world_def *def, const b
         REFUSE("bodies.%s.contact_thickness: %g m is negative", from->name, from->contact_thickness);
     if (!(from->damping >= 0) || !isfinite(from->damping))
         REFUSE("bodies.%s.damping: %g 1/s is not a rate", from->name, from->damping);
+    const bool graded = from->grading[0].count || from->grading[1].count || from->grading[2].count;
+    if (graded && (sheet || from->mesh.node_count || from->shape.kind != BRUNT_BOX))
+        REFUSE("bodies.%s.grading: only the mesh of a box of method fem is graded", from->name);
     if (!from->mesh.node_count) {
         if (!(from->size > 0)) REFUSE("bodies.%s.size: %g m is not a positive length", from->name, from->size);
         status = sheet
                      ? brunt_mesh_surface(&from->shape, from->element, from->size,
                                           (const char(*)[BRUNT_NAME_LENGTH])from->faces, from->face_count, &made, error)
                  : is_halved(def, from) ? brunt_mesh_half(&from->shape, from->element, from->size, &made, error)
-                 : from->grading[0].count || from->grading[1].count || from->grading[2].count
-                     ? brunt_mesh_graded(&from->shape, def->dimension, from->element, from->size, from->grading, &made,
-                                         error)
-                     : brunt_mesh_shape(&from->shape, def->dimension, from->element, from->size, &made, error);
+                 : graded ? brunt_mesh_graded(&from->shape, def->dimension, from->element, from->size, from->grading,
+                                              &made, error)
+                          : brunt_mesh_shape(&from->shape, def->dimension, from->element, from->size, &made, error);
     }
     const brunt_mesh *mesh = from->mesh.node_count ? &from->mesh : &made;
     if (!status) status = brunt_mesh_check(mesh, &report->quality, error);
