@@ -450,7 +450,7 @@ typedef struct brunt_force {
     char name[2 * BRUNT_NAME_LENGTH + 2];
     double force[3], impulse[3];
     double normal_work, friction_work;
-    double area;                                        // [m^2] that touched in the last step; 2D [m]
+    double area;                                        // [m^2] that touched in the last step; in plane strain [m]
 } brunt_force;
 // Scenes with more than 64 pairs have them all in one, named "all".
 int32_t brunt_pair_count(const brunt_world *world);

@@ -227,11 +227,12 @@ static void traverse(brunt_history *h, brunt_world *world) {
     add_energy(h, world);
     add_momentum(h, world);
     for (int32_t b = 0; b < brunt_body_count(world); b++) add_body(h, world, b);
+    const bool flat = brunt_world_dimension(world) == 2 && !has_effect(world, "axisymmetric");
     for (int32_t p = 0; p < brunt_pair_count(world); p++) {
         brunt_force force;
         brunt_pair_force(world, p, &force);
         add_force(h, "contact", interval, &force);
-        add_named(h, brunt_world_dimension(world) == 2 ? "m" : "m^2", force.area, "contact.%s.area", force.name);
+        add_named(h, flat ? "m" : "m^2", force.area, "contact.%s.area", force.name);
     }
     for (int32_t w = 0; w < brunt_wall_count(world); w++) {
         brunt_force force;

@@ -21,6 +21,18 @@ static const struct {
     {"sphere_on_membrane",
      "--set 'grid.cell=2 mm' --set 'bodies.membrane.size=2 mm' --set 'bodies.sphere.spacing=1 mm'"},
     {"gas_in_soft_membrane", "--set bodies.gas.spacing=0.05"},
+    {"tensile_bar", "--set 'grid.cell=0.5 mm'"},
+    {"whipple_shield", "--set 'grid.cell=1 mm'"},
+    {"shock_tube", ""},
+    {"shock_tube_mpm", ""},
+    {"plate_impact_copper", ""},
+    {"plate_impact_copper_mpm", ""},
+    {"taylor_bar_wilkins", ""},
+    {"tnt_slab", "--set 'bodies.slab.size=0.1 mm'"},
+    {"taylor_bar_axisymmetric", ""},
+    {"ceramic_impact", ""},
+    {"ogive_6061", "--set 'grid.cell=1 mm'"},
+    {"plate_weldox_blunt", "--set 'bodies.plate.size=0.4 mm'"},
 };
 enum { SCENES = sizeof scenes / sizeof scenes[0] };
 
