@@ -26,6 +26,10 @@ static void set_velocity(brunt_body *body, real *n, const brunt_slot *slot, int 
     brunt_action_book(action, &action->normal_loss, J, x, old, now, support);
 }
 
+// Of a cell: what a node may stand off a plane or a shape that it is meant to lie in. Places of nodes are rounded by as
+// much as they are cells away from the origin, in float that of the cell's edge itself.
+static const double ON_PLANE = sizeof(real) == 4 ? 1e-4 : 1e-9;
+
 // Position in the frame the region's shape was described in.
 static void unplace(const brunt_placement *place, const double x[3], double out[3]) {
     for (int a = 0; a < 3; a++) {
@@ -52,7 +56,7 @@ static void apply_region(brunt_body *body, bool rings, brunt_wall *wall) {
             memcpy(x, place, sizeof x);
             if (rings) x[0] = fabs(x[0]);
             unplace(&wall->where.place, x, local);
-            if (brunt_shape_distance(&wall->where.shape, grid->dim, local) > 1e-9 * (double)grid->h) continue;
+            if (brunt_shape_distance(&wall->where.shape, grid->dim, local) > ON_PLANE * (double)grid->h) continue;
             for (int a = 0; a < grid->dim; a++) {
                 now[a] = wall->where.component[a] ? wall->where.velocity[a] : (double)n[BRUNT_NODE_VELOCITY + a];
                 support[a] = wall->where.component[a] ? wall->where.velocity[a] : 0;
@@ -68,7 +72,7 @@ static void apply_plane(brunt_body *body, bool rings, brunt_wall *wall, double t
     const brunt_grid *grid = &body->grid;
     if (brunt_total_lagrangian(&body->particles)) time = 0;
     const brunt_plane_def *plane = &wall->plane;
-    double offset = 0, reach = 0;
+    double offset = 0, reach = ON_PLANE * (double)grid->h;
     for (int a = 0; a < grid->dim; a++) {
         offset += plane->normal[a] * (plane->point[a] + plane->velocity[a] * time);
         reach += fabs(plane->normal[a]) * 0.5 * grid->side * (double)grid->h;
@@ -92,7 +96,7 @@ static void apply_plane(brunt_body *body, bool rings, brunt_wall *wall, double t
                 distance += plane->normal[a] * sign * x[a];
                 approach += plane->normal[a] * (v[a] - plane->velocity[a]);
             }
-            if (distance > 1e-9 * (double)grid->h) continue;
+            if (distance > ON_PLANE * (double)grid->h) continue;
             for (int a = 0; a < grid->dim; a++)
                 now[a] = plane->condition == BRUNT_STICK ? plane->velocity[a] : v[a] - approach * plane->normal[a];
             reflect(rings, x, (double)grid->h, now);
