@@ -2,9 +2,10 @@
 //
 //   bench_elements [--quick] [--cells N] [--steps N] [--rounds N] [--threads N] [--only WORD]
 //
-// A distorted block of neo-Hookean material vibrates: hexahedra N^3 (default 80), tetrahedra 6 (N * 0.55)^3, membranes
-// of N^1.5 by N^1.5 quadrilaterals and as many squares of two triangles. Rounds go through all configurations one after
-// the other; the table gives the median of the rounds and the least.
+// A distorted block of neo-Hookean material vibrates: hexahedra N^3 (default 80), tetrahedra 6 (N * 0.55)^3; of N^1.5
+// by N^1.5 quadrilaterals and as many squares of two triangles membranes, sections of plane strain and, from the axis
+// on, sections of rings. Rounds go through all configurations one after the other; the table gives the median of the
+// rounds and the least.
 #include <unistd.h>
 
 #include "fem.h"
@@ -41,15 +42,16 @@ static void forces_task(void *context, int64_t begin, int64_t end, int worker) {
         b->body.element->forces(&b->body, (int32_t)k, (real)b->dt, &b->work[worker], &b->body.report[k]);
 }
 
-// n cells along each axis (of a sheet, two of them), nodes moved by up to 0.05 cells.
+static bool flat(brunt_element_kind kind) { return brunt_element_is_sheet(kind) || brunt_element_dimension(kind) == 2; }
+
+// n cells along each axis (of a flat one, two of them), nodes moved by up to 0.05 cells, but for those at x = 0.
 static int make_mesh(brunt_element_kind kind, int n, brunt_mesh *mesh) {
     static const int corner[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
                                      {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
     static const int tet[6][4] = {{0, 1, 2, 6}, {0, 2, 3, 6}, {0, 3, 7, 6}, {0, 7, 4, 6}, {0, 4, 5, 6}, {0, 5, 1, 6}};
     static const int triangle[2][3] = {{0, 1, 2}, {0, 2, 3}};
-    const int m = n + 1, parts = kind == BRUNT_TET4 ? 6 : kind == BRUNT_MEMBRANE_TRI3 ? 2 : 1;
-    const int nodes = brunt_element_nodes(kind), layers = brunt_element_is_sheet(kind) ? 1 : n;
-    const int levels = brunt_element_is_sheet(kind) ? 1 : m;
+    const int nodes = brunt_element_nodes(kind), layers = flat(kind) ? 1 : n;
+    const int m = n + 1, parts = kind == BRUNT_TET4 ? 6 : nodes == 3 ? 2 : 1, levels = flat(kind) ? 1 : m;
     *mesh = (brunt_mesh){.kind = kind, .node_count = m * m * levels, .element_count = n * n * layers * parts};
     mesh->nodes = brunt_alloc((size_t)mesh->node_count * sizeof *mesh->nodes);
     mesh->elements = brunt_alloc((size_t)mesh->element_count * (size_t)nodes * sizeof *mesh->elements);
@@ -59,7 +61,8 @@ static int make_mesh(brunt_element_kind kind, int n, brunt_mesh *mesh) {
         const int at[3] = {k % m, k / m % m, k / m / m};
         for (int a = 0; a < 3; a++) {
             seed = seed * 6364136223846793005u + 1442695040888963407u;
-            mesh->nodes[k][a] = 1e-3 * (at[a] + 0.05 * ((double)(seed >> 11) / 4503599627370496.0 - 1));
+            const double aside = a == 0 && at[0] == 0 ? 0 : 0.05 * ((double)(seed >> 11) / 4503599627370496.0 - 1);
+            if (a < 2 || levels > 1 || brunt_element_is_sheet(kind)) mesh->nodes[k][a] = 1e-3 * (at[a] + aside);
         }
     }
     int32_t *out = mesh->elements;
@@ -67,16 +70,14 @@ static int make_mesh(brunt_element_kind kind, int n, brunt_mesh *mesh) {
         const int at[3] = {k % n, k / n % n, k / n / n};
         for (int p = 0; p < parts; p++)
             for (int a = 0; a < nodes; a++) {
-                const int *c = corner[kind == BRUNT_TET4            ? tet[p][a]
-                                      : kind == BRUNT_MEMBRANE_TRI3 ? triangle[p][a]
-                                                                    : a];
+                const int *c = corner[kind == BRUNT_TET4 ? tet[p][a] : nodes == 3 ? triangle[p][a] : a];
                 *out++ = ((at[2] + c[2]) * m + at[1] + c[1]) * m + at[0] + c[0];
             }
     }
     return 0;
 }
 
-static int make(brunt_element_kind kind, int cells, bench *b) {
+static int make(brunt_element_kind kind, bool rings, int cells, bench *b) {
     brunt_mesh mesh;
     brunt_error error = {0};
     if (make_mesh(kind, cells, &mesh)) return BRUNT_FAILED;
@@ -90,7 +91,9 @@ static int make(brunt_element_kind kind, int cells, bench *b) {
     brunt_material_set(&rubber, "nu", 0.4, NULL, &error);
     int status = brunt_element_is_sheet(kind) ? brunt_material_make_sheet(&rubber, false, &material, &error)
                                               : brunt_material_make(&rubber, &material, &error);
-    if (status == BRUNT_OK) status = brunt_fem_make(&def, &material, 3, &mesh, &b->body, &error);
+    if (status == BRUNT_OK)
+        status = rings ? brunt_fem_make_axisymmetric(&def, &material, &mesh, &b->body, &error)
+                       : brunt_fem_make(&def, &material, brunt_element_dimension(kind), &mesh, &b->body, &error);
     brunt_mesh_free(&mesh);
     if (status != BRUNT_OK) {
         fprintf(stderr, "bench_elements: %s\n", error.message);
@@ -104,7 +107,9 @@ static int make(brunt_element_kind kind, int cells, bench *b) {
         if (brunt_fem_workspace_fit(&b->work[t], &b->body)) return BRUNT_FAILED;
     for (int32_t n = 0; n < b->body.node_count; n++) {
         real *node = brunt_fem_node(&b->body, n);
-        for (int a = 0; a < 3; a++) node[BRUNT_FEM_V + a] = (real)(0.5 * sin(200.0 * (double)node[(a + 1) % 3]));
+        for (int a = 0; a < b->body.dim; a++)
+            if (!b->body.held || !(b->body.held[n] >> a & 1))
+                node[BRUNT_FEM_V + a] = (real)(0.5 * sin(200.0 * (double)node[(a + 1) % 3]));
     }
     return b->kicked && b->drifted ? BRUNT_OK : BRUNT_FAILED;
 }
@@ -160,13 +165,17 @@ int main(int argc, char **argv) {
         i++;
     }
     printf("ns per element-step, median of %d rounds (least in brackets); B: bytes per element\n", rounds);
-    const brunt_element_kind kinds[] = {BRUNT_HEX8, BRUNT_TET4, BRUNT_MEMBRANE_QUAD4, BRUNT_MEMBRANE_TRI3};
-    for (int k = 0; k < 4; k++) {
-        if (*only && strcmp(only, brunt_element_name(kinds[k])) != 0) continue;
+    const brunt_element_kind kinds[] = {BRUNT_HEX8,  BRUNT_TET4, BRUNT_MEMBRANE_QUAD4, BRUNT_MEMBRANE_TRI3,
+                                        BRUNT_QUAD4, BRUNT_TRI3, BRUNT_QUAD4,          BRUNT_TRI3};
+    for (int k = 0; k < 8; k++) {
+        const bool rings = k >= 6;
+        char name[64];
+        snprintf(name, sizeof name, "%s%s", rings ? "axisymmetric-" : "", brunt_element_name(kinds[k]));
+        if (*only && strcmp(only, name) != 0) continue;
         bench b = {.dt = 0};
         int along = kinds[k] == BRUNT_HEX8 ? cells : (cells * 11 + 10) / 20;
-        if (brunt_element_is_sheet(kinds[k])) along = (int)(pow(cells, 1.5) + 0.5);
-        int status = make(kinds[k], along, &b);
+        if (flat(kinds[k])) along = (int)(pow(cells, 1.5) + 0.5);
+        int status = make(kinds[k], rings, along, &b);
         if (status != BRUNT_OK) return status;
         double ns[THREAD_LIMIT + 1][PASSES + 1][ROUND_LIMIT];
         for (int r = 0; r < rounds; r++)
@@ -178,9 +187,8 @@ int main(int argc, char **argv) {
             }
         for (int t = 1; t <= most_threads; t++) {
             double median = median_of(ns[t][PASSES], rounds);
-            printf("%s %7d elements %7d nodes %4d blocks %d thread%s %6.1f (%6.1f)", brunt_element_name(kinds[k]),
-                   b.body.element_count, b.body.node_count, b.body.block_count, t, t == 1 ? " " : "s", median,
-                   ns[t][PASSES][0]);
+            printf("%s %7d elements %7d nodes %4d blocks %d thread%s %6.1f (%6.1f)", name, b.body.element_count,
+                   b.body.node_count, b.body.block_count, t, t == 1 ? " " : "s", median, ns[t][PASSES][0]);
             for (int p = 0; p < PASSES; p++) {
                 double value = median_of(ns[t][p], rounds);
                 printf("  %s %.1f (%.1f)", pass_names[p], value, ns[t][p][0]);

@@ -62,10 +62,10 @@ static void velocity_gradient(int dim, double dt, real *const from[9], real *con
 static bool measure(bench_case *c, int updates) {
     double parameters[BRUNT_MAX_PARAMETERS] = {0};
     real constants[BRUNT_MAX_CONSTANTS] = {0};
-    typical_parameters(c->model, parameters);
-    const char *wrong = c->model->prepare(parameters, typical_density, c->with_eos, constants);
-    const double dt = 1e-7;
-    brunt_points points = {.count = POINTS, .dim = c->dim, .dt = (real)dt, .cell = (real)1e-3, .wave_speed = 4000};
+    const double density = typical_parameters(c->model, parameters), dt = 1e-7;
+    const char *wrong = c->model->prepare(parameters, density, c->with_eos, constants);
+    brunt_points points = {
+        .count = POINTS, .dim = c->dim, .dt = (real)dt, .time = 1, .cell = (real)1e-3, .wave_speed = 4000};
     real *F[2][9] = {{0}}, *L[2][9] = {{0}}, *volume = reals(1);
     uint64_t seed = 1;
     for (int k = 0; k < BRUNT_MATRIX(c->dim); k++) {
@@ -83,8 +83,9 @@ static bool measure(bench_case *c, int updates) {
     int scalars = 0;
     for (int f = 0; f < c->model->state_count; f++) {
         const brunt_state_field *field = &c->model->state[f];
+        const bool lit = strcmp(field->name, "lighting_time") == 0; // long ago: explosives have burnt
         for (int k = 0; k < (c->dim == 3 ? field->components3 : field->components2); k++)
-            points.state[scalars++] = reals(field->initial ? field->initial(constants, k) : 0);
+            points.state[scalars++] = reals(field->initial && !lit ? field->initial(constants, k) : 0);
     }
     double start = 0;
     enum { WARM_UP = 4 };
@@ -110,8 +111,8 @@ static int add_cases(bench_case *list, int count, const brunt_model *model) {
         for (int with_eos = 0; with_eos <= (model->accepts_eos ? 1 : 0); with_eos++)
             for (int flowing = 0; flowing <= (model->plastic ? 1 : 0); flowing++)
                 if (count < CASE_LIMIT)
-                    list[count++] = (bench_case){
-                        .model = model, .dim = dim, .with_eos = with_eos, .strain = flowing ? 2e-3 : 1e-6};
+                    list[count++] =
+                        (bench_case){.model = model, .dim = dim, .with_eos = with_eos, .strain = flowing ? 2e-3 : 1e-6};
     return count;
 }
 
@@ -151,7 +152,7 @@ int main(int argc, char **argv) {
         bench_case *c = &list[i];
         double median = median_of(c->ns, c->rounds);
         const char *kind = !c->model->plastic ? "" : c->strain > 1e-4 ? "flowing" : "elastic";
-        printf("%-20s %dD %-8s %-8s %7.2f (%.2f)\n", c->model->name, c->dim, c->with_eos ? "with eos" : "", kind,
+        printf("%-22s %dD %-8s %-8s %7.2f (%.2f)\n", c->model->name, c->dim, c->with_eos ? "with eos" : "", kind,
                median, c->ns[0]);
         if (csv)
             fprintf(csv, "%s,%d,%d,%g,%.3f,%.3f\n", c->model->name, c->dim, c->with_eos, c->strain, median, c->ns[0]);

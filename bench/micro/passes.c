@@ -23,7 +23,7 @@ typedef struct configuration {
     int dimension, threads;
     brunt_kernel kernel;
     brunt_transfer transfer;
-    const char *material; // of the plan below
+    const char *material; // of the plan below; behind a stroke what else is special
     int64_t wanted, particles;
     double bytes; // of all arrays, per particle
     int pass_count, round_count;
@@ -47,7 +47,11 @@ static brunt_world *create(const configuration *c, int turn, int turns, brunt_er
 
     brunt_material_def material = {.name = "material", .density = typical_density};
     bool impact = strcmp(c->material, "johnson-cook+mie-gruneisen") == 0;
-    snprintf(material.strength, sizeof material.strength, "%s", impact ? "johnson-cook" : c->material);
+    const char *special = strchr(c->material, '/');
+    const bool rings = special && strcmp(special, "/rings") == 0;
+    snprintf(material.strength, sizeof material.strength, "%.*s", (int)strcspn(c->material, "+/"), c->material);
+    def.axisymmetric = rings;
+    if (rings) def.origin[0] = 0; // a line of the grid is the axis
     const brunt_model *strength = brunt_find_strength(material.strength), *eos = brunt_find_eos("mie-gruneisen");
     typical_parameters(strength, material.strength_parameters);
     if (impact) {
@@ -64,12 +68,14 @@ static brunt_world *create(const configuration *c, int turn, int turns, brunt_er
     brunt_body_def body = brunt_body_def_default();
     snprintf(body.name, sizeof body.name, "block");
     body.shape.kind = BRUNT_BOX, body.particles_per_cell = per_cell;
+    body.total_lagrangian = special && !rings;
     for (int a = 0; a < c->dimension; a++) {
         body.shape.max[a] = side;
         body.spin_about[a] = side / 2;
         body.velocity[a] = (0.05 - 0.01 * a) * def.cell / step;
     }
-    body.spin[2] = 0.01 * wave / side;
+    if (rings) body.shape.min[0] += side, body.shape.max[0] += side; // off the axis, about which nothing may turn over
+    else body.spin[2] = 0.01 * wave / side;
     body.wave_velocity[0] = 0.01 * wave, body.wave_vector[0] = 12.566370614359172 / side;
     def.bodies = &body, def.body_count = 1;
     return brunt_world_create(&def, error);
@@ -114,19 +120,22 @@ static int measure(configuration *c, int round, const settings *s) {
 
 // Runs of the same configuration that differ in threads alone stand one after the other.
 static int plan(const settings *s, configuration *list) {
-    static const char *const materials[] = {"neo-hookean", "von-mises", "johnson-cook+mie-gruneisen"};
+    static const char *const materials[] = {"neo-hookean", "von-mises", "johnson-cook+mie-gruneisen",
+                                            "neo-hookean/total", "neo-hookean/rings"};
     int count = 0;
     for (int d = 0; d < s->dimension_count; d++)
         for (int n = 0; n < s->size_count; n++)
-            for (int m = 0; m < 3; m++)
+            for (int m = 0; m < 5; m++)
                 for (int k = BRUNT_LINEAR; k <= BRUNT_CUBIC; k++)
                     for (int transfer = BRUNT_APIC; transfer >= BRUNT_PIC; transfer--)
                         for (int t = 0; t < s->thread_count; t++) {
-                            // Plasticity changes one pass only: once, with the default kernel and transfer.
+                            // Plasticity changes one pass only: once, with the default kernel and transfer. So do the
+                            // rest; rings are plane.
                             bool usual = k == BRUNT_QUADRATIC && transfer == BRUNT_APIC && n == 0;
                             char words[128];
                             snprintf(words, sizeof words, "%s %s %s", kernel_names[k], transfer_names[transfer],
                                      materials[m]);
+                            if (m == 4 && s->dimensions[d] != 2) continue;
                             if ((m > 0 && !usual) || (s->only && !strstr(words, s->only))) continue;
                             if (count == CONFIGURATION_LIMIT) return count;
                             list[count++] = (configuration){.dimension = (int)s->dimensions[d],
