@@ -139,7 +139,9 @@ END_TEST
 
 // A uniform pressure on a ball: its work is that of the volume it takes, and it makes no stress but -p.
 START_TEST(ball_under_pressure) {
-    const double R = 0.01, E = 1e9, nu = 0.25, p = 1e6, K = E / (3 * (1 - 2 * nu));
+    // In float places 0.3 m from the origin are rounded by 2e-5 of an edge: strains by that, 2 % of p a node.
+    const double R = 0.01, E = 1e9, nu = 0.25, p = 1e6, K = E / (3 * (1 - 2 * nu)),
+                 rounding = sizeof(real) == 4 ? 0.1 : 1e-3;
     for (int k = 0; k < 2; k++) {
         brunt_world_def def = rings_begin("neo-hookean", 1000, E, nu);
         of_elements(def_ball(&def, "ball", XYZ(0, 0.3, 0), R), k ? BRUNT_TRI3 : BRUNT_QUAD4, R / 6)->damping = 2e5;
@@ -148,8 +150,7 @@ START_TEST(ball_under_pressure) {
         world_until(world, 5e-4);
         double *stress = world_field(world, 0, "stress");
         for (int64_t e = 0; e < brunt_body_elements(world, 0); e++)
-            for (int c = 0; c < 6; c++)
-                ck_assert_double_eq_tol(stress[6 * e + c], c < 3 ? -p : 0, (sizeof(real) == 4 ? 0.05 : 1e-3) * p);
+            for (int c = 0; c < 6; c++) ck_assert_double_eq_tol(stress[6 * e + c], c < 3 ? -p : 0, rounding * p);
         free(stress);
         const brunt_body_sums sums = world_sums(world, 0);
         ck_assert_double_eq_tol(sums.high[1] - sums.low[1], 2 * R * (1 - p / (3 * K)),

@@ -21,8 +21,9 @@
 // ---------------------------------------------------------------------------------------------------- typical
 // parameters
 
-// By key or, where models use one key for different things, by model and key; in two variants; NAN: the table's default.
-// A parameter without default that is not here fails the tests.
+// By key or, where models use one key for different things, by model and key; in two variants; NAN: the table's
+// default. A parameter without default that is not here fails the tests.
+// clang-format off
 typedef struct typical { const char *key; double value[2]; } typical;
 static const typical typical_values[] = {
     {"E", {117e9, 60e9}},         {"nu", {0.35, 0.2}},
@@ -55,6 +56,7 @@ static const typical typical_values[] = {
     {"P_crush", {16e6, 64e6}}, {"mu_crush", {0.001, 0.004}}, {"P_lock", {0.8e9, 1e9}}, {"mu_lock", {0.1, 0.05}},
     {"cohesion", {200e6, 50e6}}, {"friction_angle", {0.5, 0.6}}, {"dilatancy_angle", {NAN, 0.2}},
 };
+// clang-format on
 static const double typical_density = 8930;
 
 static double typical_value(const brunt_model *model, const brunt_parameter *parameter, int variant) {
@@ -157,7 +159,9 @@ static void copy_points(const sample *from, sample *to) {
 }
 
 // Plain 3 by 3 algebra of the tests, in double.
-typedef struct mat { double a[3][3]; } mat;
+typedef struct mat {
+    double a[3][3];
+} mat;
 static const mat identity = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 
 static mat mul(mat a, mat b) {
@@ -178,7 +182,7 @@ static mat combine(double x, mat a, double y, mat b) {
     return a;
 }
 static double det(mat m) {
-    double (*a)[3] = m.a;
+    double(*a)[3] = m.a;
     return a[0][0] * (a[1][1] * a[2][2] - a[1][2] * a[2][1]) - a[0][1] * (a[1][0] * a[2][2] - a[1][2] * a[2][0]) +
            a[0][2] * (a[1][0] * a[2][1] - a[1][1] * a[2][0]);
 }
@@ -207,7 +211,7 @@ static mat rotation(int dim, double angle) {
     return r;
 }
 
-static double uniform(uint64_t *seed) {  // -1 .. 1
+static double uniform(uint64_t *seed) { // -1 .. 1
     *seed = *seed * 6364136223846793005u + 1442695040888963407u;
     uint64_t x = (*seed ^ (*seed >> 31)) * 0x9e3779b97f4a7c15u;
     return (double)(x >> 11) / 4503599627370496.0 - 1;
@@ -277,7 +281,11 @@ static double total_of(const sample *s) {
 }
 
 // Every model there is, in every form it is used in.
-typedef struct form { const brunt_model *model; bool with_eos; int dim, variant; } form;
+typedef struct form {
+    const brunt_model *model;
+    bool with_eos;
+    int dim, variant;
+} form;
 enum { FORM_LIMIT = 200 };
 static form forms[FORM_LIMIT];
 static int form_count;
@@ -399,7 +407,8 @@ START_TEST(rotation_changes_nothing) {
     mat expect = mul(R, mul(get_stress(&s, 0), transpose(R))), got = get_stress(&turned, 0);
     mat difference = combine(1, expect, -1, got);
     double error = sqrt(inner(difference, difference) / inner(expect, expect));
-    double allowed = f.model->fluid ? 0.07 : TOLERANCE(1e-9, 5e-2), kept = total_of(&s), turned_energy = total_of(&turned);
+    double allowed = f.model->fluid ? 0.07 : TOLERANCE(1e-9, 5e-2), kept = total_of(&s),
+           turned_energy = total_of(&turned);
     ck_assert_msg(error <= allowed, "%s %dD: stress off by %.3g", f.model->name, f.dim, error);
     if (f.model->fluid) allowed = 0.07 * 0.07;
     ck_assert_msg(fabs(turned_energy - kept) <= allowed * fabs(kept), "%s: energy %.12g, turned %.12g", f.model->name,
@@ -499,7 +508,8 @@ START_TEST(extremes_are_admissible) {
             } else if (strcmp(f.model->name, "polynomial") == 0 && result.bad == 0) {
                 ck_assert_ptr_nonnull(strstr(result.reason, "polynomial"));
                 ck_assert(volumes[v] < 0.1 || volumes[v] > 10); // of a gas, in one step
-            } else check_finite(&s, result, "volume");
+            } else
+                check_finite(&s, result, "volume");
             sample_destroy(&s);
         }
     sample s = sample_of(f, 2 * BRUNT_LANES);
@@ -553,11 +563,14 @@ START_TEST(plane_strain_equals_three_dimensions) {
     uint64_t seed = 13;
     for (int step = 0; step < 50; step++) {
         mat H = random_matrix(&seed, 2, 0.004);
-        H = combine(1, H, 1, (mat){{{0.001, 0.002, 0}}});
+        H = combine(1, H, 1,
+                    (mat){{{f.model->damage ? -0.001 : 0.001, 0.002, 0}}}); // brittle: pressed, or nothing is left
         brunt_update_result ra = step_all(&a, H), rb = step_all(&b, H);
         mat difference = combine(1, get_stress(&a, 0), -1, get_stress(&b, 0));
         double scale = sqrt(inner(get_stress(&b, 0), get_stress(&b, 0)));
-        ck_assert_msg(sqrt(inner(difference, difference)) <= TOLERANCE(1e-10, 2e-2) * scale, "%s: step %d",
+        // What is torn bears rounding of the strain, times moduli of 1e11 Pa.
+        const double torn = f.model->damage ? TOLERANCE(1e-15, 1e-6) * 1e11 : 0;
+        ck_assert_msg(sqrt(inner(difference, difference)) <= TOLERANCE(1e-10, 2e-2) * scale + torn, "%s: step %d",
                       f.model->name, step);
         ck_assert_double_eq_tol((double)ra.wave_speed, (double)rb.wave_speed,
                                 TOLERANCE(1e-10, 1e-3) * (double)rb.wave_speed + DBL_MIN);
@@ -600,11 +613,13 @@ static double ledger_error(form f, int steps, double size, double *flowed) {
 
 START_TEST(energy_ledger_closes) {
     form f = forms[_i];
-    // Where strength follows pressure a path of 0.3 has stresses of the order of the moduli, and fracture is over in a step.
+    // Where strength follows pressure a path of 0.3 has stresses of the order of the moduli, and fracture is over in a
+    // step.
     bool small = f.model->small_strain || (f.model->plastic && !f.model->accepts_eos);
     double flowed, size = small ? 0.01 : 0.3, coarse = ledger_error(f, 100, size, &flowed),
                    fine = ledger_error(f, 1600, size, &flowed);
-    ck_assert_msg(fine <= TOLERANCE(f.model->damage ? 1e-5 : 3e-6, 5e-3), "%s %dD: energy off by %.3g", f.model->name, f.dim, fine);
+    ck_assert_msg(fine <= TOLERANCE(f.model->damage ? 1e-5 : 3e-6, 5e-3), "%s %dD: energy off by %.3g", f.model->name,
+                  f.dim, fine);
     // A sixteenth of the step: 1/16 of the error would be first order, 1/256 is second. Where in its step the material
     // first yields varies the factor.
     if (TOLERANCE(1, 0))
@@ -629,13 +644,14 @@ START_TEST(von_mises_uniaxial) {
         sample s = sample_create(model, parameters, false, 3, BRUNT_LANES);
         int steps = fine ? 1000 : 250;
         double strain = 0.5, grow = exp(strain / steps) - 1, shrink = exp(-0.5 * strain / steps) - 1;
-        for (int step = 0; step < steps; step++)
-            step_all(&s, (mat){{{grow, 0, 0}, {0, shrink, 0}, {0, 0, shrink}}});
+        for (int step = 0; step < steps; step++) step_all(&s, (mat){{{grow, 0, 0}, {0, shrink, 0}, {0, 0, shrink}}});
         double low = 0, high = strain;
         for (int k = 0; k < 200; k++) {
             double elastic = 0.5 * (low + high), l = exp(elastic);
-            if (mu * (l * l - 1 / l) > yield + hardening * (strain - elastic)) high = elastic;
-            else low = elastic;
+            if (mu * (l * l - 1 / l) > yield + hardening * (strain - elastic))
+                high = elastic;
+            else
+                low = elastic;
         }
         double expect = yield + hardening * (strain - low);
         error[fine] = fabs(equivalent(get_stress(&s, 0)) - expect) / expect;
@@ -787,8 +803,7 @@ START_TEST(mie_gruneisen_hugoniot) {
         // Isentropic release in small steps: it comes back hot, so larger than it was, and has given back less than it
         // took.
         double stored = energy_of(&s).internal;
-        for (int step = 0; step < 400; step++)
-            step_all(&s, (mat){{{pow(1 / (1 - u / Us), 1.0 / 400) - 1, 0, 0}}});
+        for (int step = 0; step < 400; step++) step_all(&s, (mat){{{pow(1 / (1 - u / Us), 1.0 / 400) - 1, 0, 0}}});
         p = -get_stress(&s, 0).a[1][1];
         double hot = (double)state_of(&s, "internal_energy")[0];
         ck_assert_double_eq_tol(p, 2.0 * hot, TOLERANCE(1e-6, 1e-1) * p);

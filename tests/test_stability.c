@@ -562,7 +562,8 @@ START_TEST(expansion_to_the_twentyfold) {
             def_material(&def, "neo-hookean", 1000, i < 3 ? 1e2 : 1e5, 0.3);
         else
             give_eos(def_material(&def, "von-mises", 1000, 1e5, 0.3), 10, 1.5, 1e7);
-        if (i > 6) def.materials[0].eos_parameters[4] = 0; // a gas bears no tension; what does pulls lone particles shut
+        if (i > 6)
+            def.materials[0].eos_parameters[4] = 0; // a gas bears no tension; what does pulls lone particles shut
         brunt_body_def *b = def_box(&def, "block", XYZ(-0.5, -0.25, 0), XYZ(0.5, 0.25, 0));
         b->wave_vector[0] = 1e-3;
         b->wave_velocity[0] = rate * 1e3;

@@ -41,7 +41,7 @@ START_TEST(affine_motion_is_exact) {
         for (int r = 0; r < 2; r++)
             for (int c = 0; c < 2; c++) worst = fmax(worst, fabs(F[9 * i + 3 * r + c] - (r == c) - 0.5 * A[r][c]));
     printf("  %dD kernel %d: F to %.1e\n", 2 + _i % 2, 2 + _i / 2, worst);
-    ck_assert_double_lt(worst, 1e-8);
+    ck_assert_double_lt(worst, sizeof(real) == 4 ? 2e-4 : 1e-8); // of 4; float: a rounding of 500 steps each
     free(F);
     free(v);
     free(x);
@@ -204,7 +204,7 @@ START_TEST(contact) {
         back[total] = sums.velocity[1];
         ck_assert_double_gt(sums.velocity[1], mesh ? -3 : 3); // the mesh is free to go
         ck_assert_double_lt(m.linear_drift, 10 * ROUNDING);
-        ck_assert_double_lt(m.angular_drift, total ? 5e-3 : 1e-9);
+        ck_assert_double_lt(m.angular_drift, total ? 5e-3 : fmax(ROUNDING, 1e-9));
         ck_assert_double_lt(fabs(e.error_relative), 0.01);
         brunt_world_destroy(world);
     }
