@@ -1,33 +1,14 @@
 // Bilinear quadrilateral revolved about the axis, with one point. Modes as in quad4.c: xi, eta, and the hourglass xi
 // eta.
+#include "plane.h"
 #include "ring.h"
 
-static const uint8_t faces[][4] = {{0, 1, 0, 0}, {1, 2, 0, 0}, {2, 3, 0, 0}, {3, 0, 0, 0}};
+static const uint8_t faces[][4] = QUAD4_FACES;
 
-static const int8_t hourglass_mode[][BRUNT_ELEMENT_NODES] = {{1, -1, 1, -1}};
+static const int8_t hourglass_mode[][BRUNT_ELEMENT_NODES] = QUAD4_HOURGLASS;
 
-static double area(const double (*x)[3]) {
-    return 0.5 * ((x[2][0] - x[0][0]) * (x[3][1] - x[1][1]) - (x[2][1] - x[0][1]) * (x[3][0] - x[1][0]));
-}
-
-BRUNT_INLINE void axisymmetric_quad4_modes(const lanes x[4][2], lanes m[3][2]) {
-    for (int i = 0; i < 2; i++) {
-        lanes rising = x[2][i] - x[0][i], falling = x[1][i] - x[3][i];
-        m[0][i] = rising + falling;
-        m[1][i] = rising - falling;
-        m[2][i] = (x[0][i] + x[2][i]) - (x[1][i] + x[3][i]);
-    }
-}
-
-BRUNT_INLINE void axisymmetric_quad4_nodal(const lanes p[3][2], lanes f[4][2]) {
-    for (int i = 0; i < 2; i++) {
-        lanes rising = p[0][i] + p[1][i], falling = p[0][i] - p[1][i];
-        f[0][i] = p[2][i] - rising;
-        f[2][i] = p[2][i] + rising;
-        f[1][i] = falling - p[2][i];
-        f[3][i] = -falling - p[2][i];
-    }
-}
+#define axisymmetric_quad4_modes quad4_modes
+#define axisymmetric_quad4_nodal quad4_nodal
 
 // Nodes' values c + m0 + m1 + m2 of combinations of 1, xi, eta, xi eta.
 BRUNT_INLINE void spread(lanes c, lanes xi, lanes eta, lanes both, lanes out[4]) {
@@ -88,7 +69,7 @@ const brunt_element brunt_axisymmetric_quad4 = {
     .hourglass_modes = 1,
     .hourglass = hourglass_mode,
     .face = faces,
-    .volume = area,
+    .volume = quad4_area,
     .shares = shares,
     .gradient = mean_gradient,
     .forces = axisymmetric_quad4_forces,

@@ -1,23 +1,11 @@
 // Linear triangle revolved about the axis, with one point. Modes as in tri3.c: the edges from node 0.
+#include "plane.h"
 #include "ring.h"
 
-static const uint8_t faces[][4] = {{0, 1, 0, 0}, {1, 2, 0, 0}, {2, 0, 0, 0}};
+static const uint8_t faces[][4] = TRI3_FACES;
 
-static double area(const double (*x)[3]) {
-    return 0.5 * ((x[1][0] - x[0][0]) * (x[2][1] - x[0][1]) - (x[1][1] - x[0][1]) * (x[2][0] - x[0][0]));
-}
-
-BRUNT_INLINE void axisymmetric_tri3_modes(const lanes x[3][2], lanes m[2][2]) {
-    for (int k = 0; k < 2; k++)
-        for (int i = 0; i < 2; i++) m[k][i] = x[k + 1][i] - x[0][i];
-}
-
-BRUNT_INLINE void axisymmetric_tri3_nodal(const lanes p[2][2], lanes f[3][2]) {
-    for (int i = 0; i < 2; i++) {
-        for (int k = 0; k < 2; k++) f[k + 1][i] = p[k][i];
-        f[0][i] = -(p[0][i] + p[1][i]);
-    }
-}
+#define axisymmetric_tri3_modes tri3_modes
+#define axisymmetric_tri3_nodal tri3_nodal
 
 // Gradients are constant: int R grad N = mean R times that of tri3.c; int N_a = A / 3, int N_a N_b = A (1 + [a = b])
 // / 12.
@@ -53,7 +41,7 @@ const brunt_element brunt_axisymmetric_tri3 = {
     .block = 512,
     .vtk_cell = 5,
     .face = faces,
-    .volume = area,
+    .volume = tri3_area,
     .shares = shares,
     .gradient = mean_gradient,
     .forces = axisymmetric_tri3_forces,

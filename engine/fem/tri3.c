@@ -1,23 +1,7 @@
 // Linear triangle in plane strain. Modes: the edges from node 0.
-#include "kernel.h"
+#include "plane.h"
 
-static const uint8_t faces[][4] = {{0, 1, 0, 0}, {1, 2, 0, 0}, {2, 0, 0, 0}};
-
-static double volume(const double (*x)[3]) {
-    return 0.5 * ((x[1][0] - x[0][0]) * (x[2][1] - x[0][1]) - (x[1][1] - x[0][1]) * (x[2][0] - x[0][0]));
-}
-
-BRUNT_INLINE void tri3_modes(const lanes x[3][2], lanes m[2][2]) {
-    for (int k = 0; k < 2; k++)
-        for (int i = 0; i < 2; i++) m[k][i] = x[k + 1][i] - x[0][i];
-}
-
-BRUNT_INLINE void tri3_nodal(const lanes p[2][2], lanes f[3][2]) {
-    for (int i = 0; i < 2; i++) {
-        for (int k = 0; k < 2; k++) f[k + 1][i] = p[k][i];
-        f[0][i] = -(p[0][i] + p[1][i]);
-    }
-}
+static const uint8_t faces[][4] = TRI3_FACES;
 
 BRUNT_INLINE lanes tri3_gradient(const lanes m[2][2], lanes G[2][2]) {
     G[0][0] = (real)0.5 * m[1][1], G[0][1] = (real)-0.5 * m[1][0];
@@ -44,7 +28,7 @@ const brunt_element brunt_tri3 = {
     .block = 512,
     .vtk_cell = 5,
     .face = faces,
-    .volume = volume,
+    .volume = tri3_area,
     .gradient = tri3_mean_gradient,
     .forces = tri3_forces,
 };
