@@ -664,7 +664,8 @@ START_TEST(lighting_times) {
         def_detonation(&def, at, NULL, 2e-6);
         snprintf(def_detonation(&def, on, along, 1e-6)->body, sizeof def.detonations->body, "charge");
         brunt_world *world = world_take(&def);
-        ck_assert_int_eq(brunt_warning_count(world), 0);
+        for (int32_t k = 0; k < brunt_warning_count(world); k++) // of what is far away, and of having no viscosity
+            ck_assert_ptr_null(strstr(brunt_world_warning(world, k), "never lit"));
         double *time = world_field(world, 0, "lighting_time"), *x = world_field(world, 0, "position"), worst = 0;
         const int64_t n = brunt_body_size(world, 0, mesh ? BRUNT_AT_ELEMENTS : BRUNT_AT_PARTICLES);
         int32_t *corner = malloc((size_t)n * 8 * sizeof *corner);

@@ -337,6 +337,13 @@ START_TEST(worlds_that_are_refused) {
         {"dimension: 2\naxisymmetric: true\n"
          "bodies: {b: {method: fem, material: m, size: 1 mm, shape: {box: {min: [-1 mm, 0], max: [4 mm, 4 mm]}}}}\n",
          "bodies.b"},
+        {"boundaries: [{name: cut, plane: {point: [0, 0, 0], normal: [1, 0, 0]}, condition: symmetry}]\n"
+         "bodies: {b: {method: fem, material: m, size: 1 mm, shape: {box: {min: [-1 mm, 0, 0], max: [4 mm, 4 mm, 4 "
+         "mm]}}}}\n",
+         "bodies.b: it reaches 0.001 m behind the plane of symmetry 'cut'"},
+        {"boundaries: [{name: cut, plane: {point: [0, 0, 0], normal: [1, 0, 0]}, condition: symmetry}]\n"
+         "bodies: {b: {method: mpm, material: m, shape: {box: {min: [-1 mm, 0, 0], max: [4 mm, 4 mm, 4 mm]}}}}\n",
+         "behind the plane of symmetry 'cut'"},
         {"dimension: 2\naxisymmetric: true\nloads: {gravity: [9.81, 0]}\n"
          "bodies: {b: {method: mpm, material: m, shape: {box: {min: [0, 0], max: [4 mm, 4 mm]}}}}\n",
          "loads.gravity: 9.81 m/s^2 along x, away from the axis of revolution"},
@@ -383,24 +390,29 @@ START_TEST(worlds_that_are_refused) {
 }
 END_TEST
 
-START_TEST(explosives_that_nothing_lights) {
+// How many warnings of a world of two explosives say `text`.
+static int warnings_with(const char *detonations, const char *text) {
     brunt_scene scene;
-    read_with("{preset: tnt}", &scene);
+    char typed[256];
+    snprintf(typed, sizeof typed, "{preset: tnt}%s", detonations);
+    read_with(typed, &scene);
     brunt_world *world = small_world(&scene);
     int found = 0;
     for (int32_t w = 0; w < brunt_warning_count(world); w++)
-        found += strstr(brunt_world_warning(world, w), "this explosive is never lit") != NULL;
-    ck_assert_int_eq(found, 2);
+        found += strstr(brunt_world_warning(world, w), text) != NULL;
     brunt_world_destroy(world);
     brunt_scene_free(&scene);
-    read_with("{preset: tnt}\ndetonations: [{point: [0, 0, 0], body: left}]", &scene);
-    world = small_world(&scene);
-    found = 0;
-    for (int32_t w = 0; w < brunt_warning_count(world); w++)
-        found += strstr(brunt_world_warning(world, w), "bodies.right: this explosive is never lit") != NULL;
-    ck_assert_int_eq(found, 1);
-    brunt_world_destroy(world);
-    brunt_scene_free(&scene);
+    return found;
+}
+
+START_TEST(explosives_that_are_doubtful) {
+    ck_assert_int_eq(warnings_with("", "this explosive is never lit"), 2);
+    const char *left = "\ndetonations: [{point: [0, 0, 0], body: left}]",
+               *far = "\ndetonations: [{point: [9 m, 0, 0]}]";
+    ck_assert_int_eq(warnings_with(left, "bodies.right: this explosive is never lit"), 1);
+    ck_assert_int_eq(warnings_with(left, "bodies.left: an explosive without bulk viscosity"), 1);
+    ck_assert_int_eq(warnings_with(left, "outside of this explosive"), 0);
+    ck_assert_int_eq(warnings_with(far, "outside of this explosive"), 2);
 }
 END_TEST
 
@@ -449,7 +461,7 @@ int main(void) {
     tcase_add_test(tests, total_lagrangian_bodies);
     tcase_add_test(tests, graded_bodies);
     tcase_add_test(tests, worlds_that_are_refused);
-    tcase_add_test(tests, explosives_that_nothing_lights);
+    tcase_add_test(tests, explosives_that_are_doubtful);
     tcase_add_test(tests, reference_has_presets_and_failure);
     suite_add_tcase(suite, tests);
     return small_main(suite);

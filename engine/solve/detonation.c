@@ -35,20 +35,25 @@ static int state_index(const brunt_model *model) {
     return s;
 }
 
-static void light_particles(const brunt_world_def *def, brunt_body *body, double speed) {
+// First time at which something of the body burns [s].
+static double light_particles(const brunt_world_def *def, brunt_body *body, double speed) {
     brunt_particles *p = &body->particles;
+    double first = INFINITY;
     const brunt_model *model = body->material.model[BRUNT_EOS];
     real *time = brunt_state_arrays(p, model, state_index(model))[0], *const *x = brunt_field(p, BRUNT_FIELD_position);
     for (int64_t s = 0; s < p->slots; s++) {
         const double at[3] = {(double)x[0][s], (double)x[1][s], p->dim == 3 ? (double)x[2][s] : 0};
         time[s] = lighting_time(def, body->name, speed, at);
+        first = fmin(first, (double)time[s]);
     }
+    return first;
 }
 
 // Padding repeats real elements, so it is treated like them.
-static void light_elements(const brunt_world_def *def, brunt_fem_body *fem, double speed) {
+static double light_elements(const brunt_world_def *def, brunt_fem_body *fem, double speed) {
     const brunt_model *model = fem->material.model[BRUNT_EOS];
     const int nodes = fem->element->nodes;
+    double first = INFINITY;
     int f = BRUNT_ELEMENT_BASE_FIELDS;
     while (fem->field[f].model != model || fem->field[f].state != state_index(model)) f++;
     real *time = brunt_element_scalars(fem, f)[0];
@@ -59,7 +64,9 @@ static void light_elements(const brunt_world_def *def, brunt_fem_body *fem, doub
             for (int a = 0; a < fem->dim; a++) centre[a] += (double)node[a] / nodes;
         }
         time[s] = lighting_time(def, fem->name, speed, centre);
+        first = fmin(first, (double)time[s]);
     }
+    return first;
 }
 
 static bool burns(const brunt_body_ref *ref) {
@@ -94,6 +101,29 @@ static int check(const brunt_world *world, const brunt_detonation_def *d, int in
     return BRUNT_OK;
 }
 
+// What is odd about an explosive that first burns at `first` [s].
+static void warn(brunt_world *world, const brunt_world_def *def, const brunt_body_ref *ref, const char *name,
+                 double speed, double first) {
+    double earliest = INFINITY;
+    for (int32_t k = 0; k < def->detonation_count; k++)
+        if (lights(&def->detonations[k], name)) earliest = fmin(earliest, def->detonations[k].time);
+    if (!(earliest < INFINITY)) {
+        brunt_warn(world, "bodies.%s: this explosive is never lit, no detonation reaches it", name);
+        return;
+    }
+    const double gap = (first - earliest) * speed, near = ref->mpm ? ref->mpm->spacing : ref->fem->mean_edge;
+    if (gap > 2 * near)
+        brunt_warn(world,
+                   "bodies.%s: the first detonation is %.3g m outside of this explosive, its front runs through "
+                   "what is between as through explosive",
+                   name, gap);
+    const brunt_material *material = ref->mpm ? &ref->mpm->material : &ref->fem->material;
+    if (!material->model[BRUNT_VISCOSITY])
+        brunt_warn(world,
+                   "bodies.%s: an explosive without bulk viscosity rings behind its front (materials: viscosity: {})",
+                   name);
+}
+
 int brunt_detonation_make(brunt_world *world, const brunt_world_def *def, brunt_error *error) {
     for (int32_t k = 0; k < def->detonation_count; k++) {
         int status = check(world, &def->detonations[k], k, error);
@@ -103,14 +133,9 @@ int brunt_detonation_make(brunt_world *world, const brunt_world_def *def, brunt_
         const brunt_body_ref *ref = &world->all[i];
         if (!burns(ref)) continue;
         const char *name = brunt_body_name(world, i);
-        bool reached = false;
-        for (int32_t k = 0; k < def->detonation_count; k++) reached = reached || lights(&def->detonations[k], name);
-        if (!reached) brunt_warn(world, "bodies.%s: this explosive is never lit, no detonation reaches it", name);
         const double speed = detonation_speed(def, name);
-        if (ref->mpm)
-            light_particles(def, ref->mpm, speed);
-        else
-            light_elements(def, ref->fem, speed);
+        const double first = ref->mpm ? light_particles(def, ref->mpm, speed) : light_elements(def, ref->fem, speed);
+        warn(world, def, ref, name, speed, first);
     }
     return BRUNT_OK;
 }

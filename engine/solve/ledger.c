@@ -5,6 +5,8 @@
 
 #include "world.h"
 
+static const double MOST_GROWTH = 10;
+
 void brunt_world_energy(brunt_world *world, brunt_energy *energy) {
     const struct brunt_clock *now = &world->now;
     // Velocities are half a step behind the stress: what it does to them in that half step is booked with the transfer.
@@ -48,8 +50,11 @@ void brunt_world_energy(brunt_world *world, brunt_energy *energy) {
     energy->total = energy->kinetic + energy->internal + energy->plastic + energy->hourglass + energy->contact +
                     energy->friction + energy->viscosity + energy->transfer + energy->eroded;
     energy->error = energy->total - energy->initial - energy->external_work;
-    double scale = fmax(fmax(fabs(energy->initial), fabs(energy->initial + energy->external_work)),
-                        energy->kinetic + fabs(energy->internal));
+    // Relative to what the run was given. What it has may be more, when heat of an equation of state that counts from 0
+    // becomes motion; but beyond ten times that it is energy out of nothing, which must not measure itself.
+    const double given = fmax(fabs(energy->initial), fabs(energy->initial + energy->external_work));
+    const double has = energy->kinetic + fabs(energy->internal);
+    const double scale = fmax(given, given > 0 ? fmin(has, MOST_GROWTH * given) : has);
     energy->error_relative = scale > 0 ? energy->error / scale : 0;
 }
 

@@ -625,6 +625,38 @@ static void first_reports(brunt_world *world) {
     }
 }
 
+// A plane of symmetry stands for what is behind it: what a body has there would be there twice.
+static int check_symmetry(const brunt_world *world, brunt_error *error) {
+    for (int w = 0; w < world->wall_count; w++) {
+        const brunt_wall *wall = &world->walls[w];
+        const double *n = wall->plane.normal, *at = wall->plane.point;
+        if (wall->region || wall->plane.condition != BRUNT_SYMMETRY) continue;
+        for (int i = 0; i < world->all_count; i++) {
+            if (wall->body >= 0 && wall->body != i) continue;
+            brunt_body *mpm = world->all[i].mpm;
+            const brunt_fem_body *fem = world->all[i].fem;
+            const int64_t count = mpm ? mpm->particles.slots : fem->node_count;
+            real *const *x = mpm ? brunt_field(&mpm->particles, BRUNT_FIELD_position) : NULL;
+            double least = 0, size = mpm ? mpm->spacing : fem->mean_edge, far = 0;
+            for (int64_t s = 0; s < count; s++) {
+                double distance = 0;
+                for (int a = 0; a < world->dimension; a++) {
+                    const double place = (double)(mpm ? x[a][s] : brunt_fem_node(fem, (int32_t)s)[a]);
+                    distance += n[a] * (place - at[a]);
+                    far = fmax(far, fabs(place));
+                }
+                least = fmin(least, distance);
+            }
+            if (least < -(1e-3 * size + 1e-6 * far))
+                REFUSE(
+                    "bodies.%s: it reaches %.4g m behind the plane of symmetry '%s', which stands for what is there: "
+                    "cut the body at the plane",
+                    brunt_body_name(world, i), -least, wall->name);
+        }
+    }
+    return BRUNT_OK;
+}
+
 static int start(brunt_world *world, brunt_error *error) {
     for (int i = 0; i < world->body_count; i++) {
         brunt_body *body = &world->bodies[i];
@@ -708,6 +740,7 @@ brunt_world *brunt_world_create(const brunt_world_def *def, brunt_error *error) 
     if (!status) status = make_walls(world, def, order, error);
     if (!status) status = make_pairs(world, def, order, error);
     if (!status) status = make_bodies(world, def, order, error);
+    if (!status) status = check_symmetry(world, error);
     if (!status) status = brunt_detonation_make(world, def, error);
     if (!status) status = map_grid_pairs(world, error);
     if (!status) status = brunt_erosion_make(world, def, error);
