@@ -78,17 +78,18 @@ static json_t *eroded_of(brunt_world *world) {
         brunt_eroded e;
         brunt_body_eroded(world, b, &e);
         if (!e.elements && !e.particles && !e.nodes) continue;
+        const struct {
+            const char *name;
+            int64_t count;
+        } counts[] = {{"elements", e.elements}, {"particles", e.particles}, {"nodes", e.nodes},
+                      {"failed", e.failed},     {"strained", e.strained},   {"short_step", e.short_step},
+                      {"inverted", e.inverted}};
         json_t *entry = json_object();
-        json_object_set_new(entry, "elements", json_integer(e.elements));
-        json_object_set_new(entry, "particles", json_integer(e.particles));
-        json_object_set_new(entry, "nodes", json_integer(e.nodes));
+        for (size_t c = 0; c < sizeof counts / sizeof *counts; c++)
+            json_object_set_new(entry, counts[c].name, json_integer(counts[c].count));
         json_object_set_new(entry, "mass", number(e.mass));
         json_object_set_new(entry, "momentum", vector(e.momentum));
         json_object_set_new(entry, "energy", number(e.energy));
-        json_object_set_new(entry, "failed", json_integer(e.failed));
-        json_object_set_new(entry, "strained", json_integer(e.strained));
-        json_object_set_new(entry, "short_step", json_integer(e.short_step));
-        json_object_set_new(entry, "inverted", json_integer(e.inverted));
         json_object_set_new(bodies, brunt_body_name(world, b), entry);
     }
     return bodies;

@@ -27,12 +27,6 @@
 // fracture.
 #define BRITTLE_ROUNDING (8 * LANES_REAL_EPSILON)
 
-// x^y for y >= 0; 0 for x <= 0, also where y is 0.
-BRUNT_INLINE lanes power(lanes x, real y) {
-    lanes tiny = lanes_set(LANES_REAL_MIN);
-    return lanes_select(x > tiny, lanes_pow(lanes_max(x, tiny), lanes_set(y)), lanes_set(0));
-}
-
 // K1 x + K2 x^2 + K3 x^3 with the three moduli at `modulus`, its slope, and int_0^x (that) / (1 + y)^2 dy for x > -1.
 BRUNT_INLINE lanes cubic(const real *modulus, lanes x) { return x * (modulus[0] + x * (modulus[1] + x * modulus[2])); }
 BRUNT_INLINE lanes cubic_slope(const real *modulus, lanes x) {
@@ -169,3 +163,25 @@ static inline real brittle_wave_speed(const real *constants, real bulk) {
 #define PARAMETER_FAILURE_STRAIN                                                                                       \
     {"failure_strain", "1", INFINITY, 0, INFINITY, true, false,                                                        \
      "equivalent plastic strain at which the material fails and may erode; default: never"}
+
+// Stored energy of the volume of a range, the deviator's beside it: stored(k, J - 1, the model's own variable, damage), the last two
+// by their places behind J2_MODEL_STATE.
+typedef lanes brittle_stored_fn(const real *k, lanes change, lanes variable, lanes damage);
+BRUNT_INLINE void brittle_energy_dim(int dim, const real *k, const brunt_points *points, int variable, int damage,
+                                     brittle_stored_fn *stored, brunt_point_energy *energy) {
+    lane_total sum = {0};
+    for (int32_t i = 0; i < points->count; i += BRUNT_LANES) {
+        lanes H[9];
+        load_displacement_gradient(dim, points, i, H);
+        lanes s = lanes_load(points->state[j2_slot(dim, variable)] + i);
+        lanes D = lanes_load(points->state[j2_slot(dim, damage)] + i);
+        total_add(&sum, lanes_load(points->volume + i) * stored(k, volume_change(dim, H), s, D));
+    }
+    energy->internal += total_end(&sum);
+}
+BRUNT_INLINE void brittle_energy(const real *k, const brunt_points *points, int variable, int damage, brittle_stored_fn *stored,
+                                 brunt_point_energy *energy) {
+    j2_energy(k, points, energy);
+    if (points->dim == 2) brittle_energy_dim(2, k, points, variable, damage, stored, energy);
+    else brittle_energy_dim(3, k, points, variable, damage, stored, energy);
+}

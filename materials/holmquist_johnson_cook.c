@@ -228,24 +228,8 @@ static brunt_update_result update(const real *constants, const brunt_points *poi
     return points->dim == 2 ? update_dim(2, constants, points) : update_dim(3, constants, points);
 }
 
-BRUNT_INLINE void volume_energy(int dim, const real *k, const brunt_points *points, brunt_point_energy *energy) {
-    lane_total stored = {0};
-    for (int32_t i = 0; i < points->count; i += BRUNT_LANES) {
-        lanes H[9];
-        load_displacement_gradient(dim, points, i, H);
-        lanes D = lanes_load(points->state[j2_slot(dim, DAMAGE)] + i);
-        lanes h = lanes_load(points->state[j2_slot(dim, COMPACTION)] + i);
-        total_add(&stored, lanes_load(points->volume + i) * stored_energy(k, volume_change(dim, H), h, D));
-    }
-    energy->internal += total_end(&stored);
-}
-
 static void add_energy(const real *constants, const brunt_points *points, brunt_point_energy *energy) {
-    j2_energy(constants, points, energy);
-    if (points->dim == 2)
-        volume_energy(2, constants, points, energy);
-    else
-        volume_energy(3, constants, points, energy);
+    brittle_energy(constants, points, COMPACTION, DAMAGE, stored_energy, energy);
 }
 
 static real wave_speed(const real *constants) { return brittle_wave_speed(constants, constants[ELASTIC]); }

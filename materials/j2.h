@@ -62,6 +62,12 @@ typedef struct j2_point {
     lanes plastic_strain;     // of the last step
 } j2_point;
 
+// x^y for y >= 0; 0 for x <= 0, also where y is 0.
+BRUNT_INLINE lanes power(lanes x, real y) {
+    lanes tiny = lanes_set(LANES_REAL_MIN);
+    return lanes_select(x > tiny, lanes_pow(lanes_max(x, tiny), lanes_set(y)), lanes_set(0));
+}
+
 // Splits b into m I + d.
 BRUNT_INLINE lanes j2_deviator(int dim, const lanes b[6], lanes d[6]) {
     lanes m = (b[XX] + b[YY] + b[ZZ]) * (real)(1.0 / 3);

@@ -62,12 +62,6 @@ static const char *prepare(const double *p, double density, bool with_eos, real 
     return NULL;
 }
 
-// x^y for x >= 0, y > 0.
-BRUNT_INLINE lanes power(lanes x, real y) {
-    lanes tiny = lanes_set(LANES_REAL_MIN);
-    return lanes_select(x > tiny, lanes_pow(lanes_max(x, tiny), lanes_set(y)), lanes_set(0));
-}
-
 // 1 - T*^m, and its derivative with respect to T.
 BRUNT_INLINE lanes softening(const real *k, lanes temperature, lanes *slope) {
     lanes zero = lanes_set(0), one = lanes_set(1);

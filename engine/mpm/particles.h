@@ -97,7 +97,7 @@ static inline real *const *brunt_kernel_place(const brunt_particles *particles) 
 static inline bool brunt_total_lagrangian(const brunt_particles *particles) {
     return particles->field[BRUNT_FIELD_undeformed_position].components > 0;
 }
-// Volume that particle `s` stands for now [m^3]; in 2D, of rings too, its area in the plane [m^2].
+// Volume that particle `s` stands for in the present configuration [m^3]; in 2D, of rings too, its area in the plane [m^2].
 real brunt_plane_volume(brunt_particles *particles, int64_t s);
 // First scalar of state `state` of `model`, NULL when there is none.
 real **brunt_state_arrays(brunt_particles *particles, const brunt_model *model, int state);
