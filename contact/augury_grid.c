@@ -188,11 +188,11 @@ static void scatter_blocks(void *context, int64_t begin, int64_t end, int worker
 }
 
 void brunt_augury_scatter(const brunt_augury_grid *grid, const brunt_augury_cloud *cloud,
-                          brunt_augury_scatter_fn *scatter, void *context, int threads, double *seconds) {
+                          brunt_augury_scatter_fn *scatter, void *context, int threads, brunt_timer *timer) {
     if (cloud->count < BRUNT_AUGURY_PARALLEL) threads = 1;
     for (int colour = 0; colour < BRUNT_AUGURY_COLOURS; colour++) {
         scatter_job j = {cloud, grid->coloured + grid->colour_first[colour], scatter, context};
         int32_t blocks = grid->colour_first[colour + 1] - grid->colour_first[colour];
-        brunt_parallel(threads, blocks, BLOCK_GRAIN, scatter_blocks, &j, seconds);
+        brunt_parallel(threads, blocks, BLOCK_GRAIN, scatter_blocks, &j, timer);
     }
 }

@@ -12,6 +12,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "threads.h"
+
 enum { BRUNT_AUGURY_EDGE = 4, BRUNT_AUGURY_STENCIL = 64, BRUNT_AUGURY_COLOURS = 8 };
 // Points from which on a phase is worth more than one thread: a pair goes through some hundred phases a step, and on a
 // busy machine each may wait for a thread that is not running (measured: 70 times slower with 512).
@@ -123,7 +125,7 @@ int brunt_augury_grid_finish(brunt_augury_grid *grid, brunt_augury_cloud *clouds
 typedef void brunt_augury_scatter_fn(void *context, int32_t begin, int32_t end);
 // Calls `scatter` for the points of each block, such that no two calls at a time reach a common node.
 void brunt_augury_scatter(const brunt_augury_grid *grid, const brunt_augury_cloud *cloud,
-                          brunt_augury_scatter_fn *scatter, void *context, int threads, double *seconds);
+                          brunt_augury_scatter_fn *scatter, void *context, int threads, brunt_timer *timer);
 
 void brunt_augury_grid_free(brunt_augury_grid *grid);
 void brunt_augury_cloud_free(brunt_augury_cloud *cloud);

@@ -119,7 +119,7 @@ static void bound_runs(void *context, int64_t begin, int64_t end, int worker) {
     }
 }
 
-int brunt_augury_near_runs(brunt_augury_near *near, const brunt_skin *s, int threads, double *seconds) {
+int brunt_augury_near_runs(brunt_augury_near *near, const brunt_skin *s, int threads, brunt_timer *timer) {
     size_t nodes = (size_t)(s->node_count / RUN + s->fem_count + 1),
            faces = (size_t)(s->face_count / RUN + s->fem_count + 1);
     if (brunt_reserve((void **)&near->node_run, &near->node_run_capacity, nodes * sizeof *near->node_run, 0) ||
@@ -127,8 +127,8 @@ int brunt_augury_near_runs(brunt_augury_near *near, const brunt_skin *s, int thr
         return -1;
     bound_job node = {s->x, s->node_range, s, near->node_run};
     bound_job face = {s->face_centre, s->face_range, s, near->face_run};
-    brunt_parallel(threads, s->fem_count, GRAIN, bound_runs, &node, seconds);
-    brunt_parallel(threads, s->fem_count, GRAIN, bound_runs, &face, seconds);
+    brunt_parallel(threads, s->fem_count, GRAIN, bound_runs, &node, timer);
+    brunt_parallel(threads, s->fem_count, GRAIN, bound_runs, &face, timer);
     return 0;
 }
 

@@ -29,7 +29,7 @@ static inline int brunt_augury_body(const brunt_skin *skin, int k) { return skin
 // memory.
 int brunt_augury_near_find(brunt_augury_near *near, const brunt_meeting *m, double margin);
 // Boxes of runs, once a step, before the next.
-int brunt_augury_near_runs(brunt_augury_near *near, const brunt_skin *skin, int threads, double *seconds);
+int brunt_augury_near_runs(brunt_augury_near *near, const brunt_skin *skin, int threads, brunt_timer *timer);
 
 // Called with each point of a body's surface inside a box; returns 0 to go on.
 typedef int brunt_augury_visit_fn(void *context, int32_t item, const double x[3]);

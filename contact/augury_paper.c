@@ -150,10 +150,10 @@ static void collect_change(void *context, int64_t begin, int64_t end, int worker
 static void apply_G(job *j) {
     const int64_t nodes = (int64_t)j->w->grid.block_count * j->w->grid.block_nodes;
     const int threads = j->m->threads;
-    brunt_parallel(threads, nodes, FIELD_GRAIN, clear_momentum, j, j->m->seconds);
-    brunt_augury_scatter(&j->w->grid, &j->w->cloud[0], add_momentum, j, threads, j->m->seconds);
-    brunt_parallel(threads, nodes, FIELD_GRAIN, make_velocity, j, j->m->seconds);
-    brunt_parallel(threads, j->w->cloud[0].count, NODE_GRAIN, collect_change, j, j->m->seconds);
+    brunt_parallel(threads, nodes, FIELD_GRAIN, clear_momentum, j, j->m->timer);
+    brunt_augury_scatter(&j->w->grid, &j->w->cloud[0], add_momentum, j, threads, j->m->timer);
+    brunt_parallel(threads, nodes, FIELD_GRAIN, make_velocity, j, j->m->timer);
+    brunt_parallel(threads, j->w->cloud[0].count, NODE_GRAIN, collect_change, j, j->m->timer);
 }
 
 // ------------------------------------------------------------------------------------------ what is not wanted
@@ -309,14 +309,14 @@ int brunt_augury_paper(const brunt_meeting *m, brunt_transfer transfer, brunt_au
     job j = {.m = m, .skin = m->skin, .w = w, .filter = w->filter, .affine = transfer == BRUNT_APIC && m->skin->affine};
     if (find_pairs(&j) || make_grid(&j)) return -1;
     const int64_t count = w->cloud[0].count;
-    brunt_augury_scatter(&w->grid, &w->cloud[0], add_mass, &j, m->threads, m->seconds);
-    brunt_parallel(m->threads, count, NODE_GRAIN, start_points, &j, m->seconds);
+    brunt_augury_scatter(&w->grid, &w->cloud[0], add_mass, &j, m->threads, m->timer);
+    brunt_parallel(m->threads, count, NODE_GRAIN, start_points, &j, m->timer);
     apply_G(&j);
     for (int k = 0; k < m->iterations; k++) {
-        brunt_parallel(m->threads, count, NODE_GRAIN, find_unwanted, &j, m->seconds);
+        brunt_parallel(m->threads, count, NODE_GRAIN, find_unwanted, &j, m->timer);
         apply_G(&j);
     }
-    brunt_parallel(m->threads, count, NODE_GRAIN, finish_points, &j, m->seconds);
+    brunt_parallel(m->threads, count, NODE_GRAIN, finish_points, &j, m->timer);
     book(&j);
     return 0;
 }

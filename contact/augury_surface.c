@@ -312,7 +312,7 @@ static void add_masses(void *context, int32_t begin, int32_t end) {
 
 static void scatter(job *j, int cloud, brunt_augury_scatter_fn *each) {
     j->of = cloud % 2;
-    brunt_augury_scatter(&j->w->grid, &j->w->cloud[cloud], each, j, j->m->threads, j->m->seconds);
+    brunt_augury_scatter(&j->w->grid, &j->w->cloud[cloud], each, j, j->m->threads, j->m->timer);
 }
 
 // The grid nodes where the two meet, and the direction there. 1 when there are any, 0, or -1: out of memory.
@@ -730,7 +730,7 @@ static void take_reaction(void *context, int64_t begin, int64_t end, int worker)
 
 static void run(job *j, int64_t count, brunt_task_fn *task) {
     int threads = count < BRUNT_AUGURY_PARALLEL ? 1 : j->m->threads;
-    brunt_parallel(threads, count, NODE_GRAIN, task, j, j->m->seconds);
+    brunt_parallel(threads, count, NODE_GRAIN, task, j, j->m->timer);
 }
 
 // One sweep, with nodes of the body other than j->master as slaves. Whether any of them was held back.
@@ -956,8 +956,8 @@ static int prepare(job *j) {
     for (; meet->marked_nodes < s->node_count; meet->marked_nodes++) meet->touched_of[meet->marked_nodes] = -1;
     for (; meet->marked_faces < s->face_count; meet->marked_faces++) meet->face_of[meet->marked_faces] = -1;
     meet->impulse_count = meet->deed_count = 0;
-    brunt_parallel(j->m->threads, s->fem_count, 1, find_held, j, j->m->seconds);
-    return brunt_augury_near_runs(&j->w->near, s, j->m->threads, j->m->seconds);
+    brunt_parallel(j->m->threads, s->fem_count, 1, find_held, j, j->m->timer);
+    return brunt_augury_near_runs(&j->w->near, s, j->m->threads, j->m->timer);
 }
 
 static void book(const job *j) {

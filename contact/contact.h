@@ -6,6 +6,7 @@
 #pragma once
 
 #include "body.h"
+#include "threads.h"
 
 // A condition that is imposed from outside, and what it has done so far.
 typedef struct brunt_action {
@@ -100,5 +101,5 @@ typedef struct brunt_contact_workspace brunt_contact_workspace;
 // node.
 int brunt_multivelocity_apply(brunt_body *bodies, int body_count, brunt_pair *pairs, int pair_count,
                               const int32_t *pair_of, const brunt_mirror *mirrors, int mirror_count, double dt,
-                              int threads, double *seconds, brunt_contact_workspace **workspace);
+                              int threads, brunt_timer *timer, brunt_contact_workspace **workspace);
 void brunt_contact_workspace_free(brunt_contact_workspace *workspace);

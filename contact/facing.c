@@ -180,7 +180,7 @@ static int add_nodes(const brunt_meeting *m, brunt_facing *f, brunt_contact_poin
     if (brunt_points_room(points, point, entry)) return -1;
     points->point_count = point, points->entry_count = entry;
     job j = {.m = m, .f = f, .points = points};
-    brunt_parallel(m->threads, s->node_count, GRAIN, fill_nodes, &j, m->seconds);
+    brunt_parallel(m->threads, s->node_count, GRAIN, fill_nodes, &j, m->timer);
     return 0;
 }
 
@@ -195,7 +195,7 @@ int brunt_facing_find(const brunt_meeting *m, brunt_body *mpm, int mpm_count, br
     if (!f->near_count) return 0;
     if (brunt_facing_cells(m, f)) return -1;
     job j = {.m = m, .f = f, .points = points};
-    brunt_parallel(m->threads, s->node_count, GRAIN, find_nodes, &j, m->seconds);
+    brunt_parallel(m->threads, s->node_count, GRAIN, find_nodes, &j, m->timer);
     if (add_nodes(m, f, points)) return -1;
     for (int k = 0; k < mpm_count; k++) {
         int32_t box = 0;

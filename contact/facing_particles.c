@@ -237,7 +237,7 @@ int brunt_facing_particles(const brunt_meeting *m, brunt_facing *f, brunt_body *
                            brunt_contact_points *points) {
     job j = {m, f, body, box};
     if (fit_room(f, body, k, m->threads)) return -1;
-    brunt_parallel(m->threads, body->grid.block_count, 1, look_from_blocks, &j, m->seconds);
+    brunt_parallel(m->threads, body->grid.block_count, 1, look_from_blocks, &j, m->timer);
     for (int t = 0; t < f->sight_count; t++)
         if (f->sight[t].failed) return -1;
     brunt_mirror mirrors[MAX_MIRRORS];

@@ -614,10 +614,10 @@ static int look_at_facets(job *j, int b) {
         for (next = c + 1; next < whole.contact_end && w->contact[next].fem == j->range_fem; next++) {}
         w->range_of_sight = SIGHT * j->mpm[b].spacing + MARGIN * fastest(j) * j->m->dt;
         if (list_faces(j, b, j->range_fem)) return -1;
-        brunt_parallel(j->m->threads, j->mpm[b].grid.block_count, 1, touch_blocks, j, j->m->seconds);
+        brunt_parallel(j->m->threads, j->mpm[b].grid.block_count, 1, touch_blocks, j, j->m->timer);
         const range run = {.contact = c, .contact_end = next};
         j->range = &run;
-        brunt_parallel(j->m->threads, next - c, GRAIN, prepare_all, j, j->m->seconds);
+        brunt_parallel(j->m->threads, next - c, GRAIN, prepare_all, j, j->m->timer);
     }
     j->range = &w->range[b];
     return 0;
@@ -764,8 +764,8 @@ static double sweep(job *j) {
     for (int32_t k = 0; k < j->w->range_count; k++) {
         // What two bodies squeeze between them should not know which of them has the first name.
         const range *r = j->range = &j->w->range[m->step % 2 ? j->w->range_count - 1 - k : k];
-        brunt_parallel(m->threads, r->contact_end - r->contact, GRAIN, visit_all, j, m->seconds);
-        brunt_parallel(m->threads, r->item_end - r->item, GRAIN, give_all, j, m->seconds);
+        brunt_parallel(m->threads, r->contact_end - r->contact, GRAIN, visit_all, j, m->timer);
+        brunt_parallel(m->threads, r->item_end - r->item, GRAIN, give_all, j, m->timer);
         for (int32_t c = r->contact; c < r->contact_end; c++) most = fmax(most, j->w->changed[c]);
     }
     return most;

@@ -380,7 +380,7 @@ static void meet(void *context, int64_t begin, int64_t end, int worker) {
 
 int brunt_multivelocity_apply(brunt_body *bodies, int body_count, brunt_pair *pairs, int pair_count,
                               const int32_t *pair_of, const brunt_mirror *mirrors, int mirror_count, double dt,
-                              int threads, double *seconds, brunt_contact_workspace **workspace) {
+                              int threads, brunt_timer *timer, brunt_contact_workspace **workspace) {
     (void)pair_count;
     if (!*workspace) *workspace = brunt_alloc(sizeof **workspace);
     if (!*workspace) return -1;
@@ -388,7 +388,7 @@ int brunt_multivelocity_apply(brunt_body *bodies, int body_count, brunt_pair *pa
     for (int m = 0; m < mirror_count; m++)
         if (mirrors[m].wall < 0) j.axis = &mirrors[m];
     if (find_groups(&j)) return -1;
-    brunt_parallel(threads, j.w->group_count, 1, meet, &j, seconds);
+    brunt_parallel(threads, j.w->group_count, 1, meet, &j, timer);
     for (int32_t q = 0; q < j.w->group_count; q++) {
         const group *g = &j.w->groups[q];
         if (g->crowded) return -2;

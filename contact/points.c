@@ -233,18 +233,18 @@ static void book(brunt_contact_points *p) {
     }
 }
 
-int brunt_points_solve(brunt_contact_points *p, int sweeps, int threads, double *seconds) {
+int brunt_points_solve(brunt_contact_points *p, int sweeps, int threads, brunt_timer *timer) {
     if (!p->point_count) return 0;
     if (transpose(p)) return -1;
     const int64_t chunks = (p->point_count + GRAIN - 1) / GRAIN, groups = (p->support_count + GRAIN - 1) / GRAIN;
-    brunt_parallel(threads, chunks, 1, weigh_points, p, seconds);
-    brunt_parallel(threads, groups, 1, load_supports, p, seconds);
-    brunt_parallel(threads, chunks, 1, sum_rows, p, seconds);
+    brunt_parallel(threads, chunks, 1, weigh_points, p, timer);
+    brunt_parallel(threads, groups, 1, load_supports, p, timer);
+    brunt_parallel(threads, chunks, 1, sum_rows, p, timer);
     double first = 0;
     int sweep = 0;
     while (sweep < sweeps) {
-        brunt_parallel(threads, chunks, 1, visit_points, p, seconds);
-        brunt_parallel(threads, groups, 1, move_supports, p, seconds);
+        brunt_parallel(threads, chunks, 1, visit_points, p, timer);
+        brunt_parallel(threads, groups, 1, move_supports, p, timer);
         sweep++;
         double most = 0;
         for (int64_t c = 0; c < chunks; c++) most = fmax(most, p->changed[c]);

@@ -89,4 +89,4 @@ int brunt_points_room(brunt_contact_points *points, int32_t point_count, int32_t
 // Relative velocity of a point, with the supports' v (old: as they were before the forces).
 void brunt_point_velocity(const brunt_contact_points *points, const brunt_contact_point *point, bool old, double u[3]);
 // Solves with at most `sweeps` sweeps, and books every point. The number of sweeps, or -1: out of memory.
-int brunt_points_solve(brunt_contact_points *points, int sweeps, int threads, double *seconds);
+int brunt_points_solve(brunt_contact_points *points, int sweeps, int threads, brunt_timer *timer);

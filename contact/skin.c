@@ -559,9 +559,9 @@ static void bound_bodies(void *context, int64_t begin, int64_t end, int worker) 
     }
 }
 
-void brunt_skin_bounds(brunt_skin *s, int threads, double *seconds) {
+void brunt_skin_bounds(brunt_skin *s, int threads, brunt_timer *timer) {
     job j = {.skin = s};
-    brunt_parallel(threads, s->fem_count, 1, bound_bodies, &j, seconds);
+    brunt_parallel(threads, s->fem_count, 1, bound_bodies, &j, timer);
 }
 
 // The first node or face from `item` on, by their `range`, that an active body has; `k` becomes that body.
@@ -668,9 +668,9 @@ static void make_normals(void *context, int64_t begin, int64_t end, int worker) 
     }
 }
 
-void brunt_skin_take(brunt_skin *s, double dt, const double gravity[3], int threads, double *seconds) {
+void brunt_skin_take(brunt_skin *s, double dt, const double gravity[3], int threads, brunt_timer *timer) {
     job j = {s, dt, gravity};
-    brunt_parallel(threads, (s->node_count + GRAIN - 1) / GRAIN, 1, take_chunks, &j, seconds);
+    brunt_parallel(threads, (s->node_count + GRAIN - 1) / GRAIN, 1, take_chunks, &j, timer);
     s->moved = 0;
     for (int32_t c = 0; c < (s->node_count + GRAIN - 1) / GRAIN; c++) s->moved = fmax(s->moved, s->chunk_moved[c]);
     s->moved = sqrt(s->moved);
@@ -678,8 +678,8 @@ void brunt_skin_take(brunt_skin *s, double dt, const double gravity[3], int thre
         if (s->active[k] && !s->was_active[k]) s->moved = INFINITY; // where it was before is not known
         s->was_active[k] = s->active[k];
     }
-    brunt_parallel(threads, s->face_count, GRAIN, make_faces, &j, seconds);
-    brunt_parallel(threads, s->node_count, GRAIN, make_normals, &j, seconds);
+    brunt_parallel(threads, s->face_count, GRAIN, make_faces, &j, timer);
+    brunt_parallel(threads, s->node_count, GRAIN, make_normals, &j, timer);
 }
 
 static void give_nodes(void *context, int64_t begin, int64_t end, int worker) {
@@ -693,9 +693,9 @@ static void give_nodes(void *context, int64_t begin, int64_t end, int worker) {
     }
 }
 
-void brunt_skin_give(brunt_skin *s, double dt, int threads, double *seconds) {
+void brunt_skin_give(brunt_skin *s, double dt, int threads, brunt_timer *timer) {
     job j = {.skin = s};
-    brunt_parallel(threads, s->node_count, GRAIN, give_nodes, &j, seconds);
+    brunt_parallel(threads, s->node_count, GRAIN, give_nodes, &j, timer);
     for (int a = 0; a < 3; a++) {
         s->frame[a] = 0;
         for (int k = 0; k < s->fem_count; k++) s->frame[a] += s->mean[k][a] / s->fem_count;

@@ -110,12 +110,12 @@ int64_t brunt_skin_place(const brunt_skin *skin, int k, int32_t n);
 int64_t brunt_skin_places(const brunt_skin *skin);
 void brunt_skin_free(brunt_skin *skin);
 // Bounds and speeds of every body's surface as it is now.
-void brunt_skin_bounds(brunt_skin *skin, int threads, double *seconds);
+void brunt_skin_bounds(brunt_skin *skin, int threads, brunt_timer *timer);
 // Places, velocities, masses and normals of the active bodies. `gravity` [m/s^2] and `dt` are those of this step's
 // kick.
-void brunt_skin_take(brunt_skin *skin, double dt, const double gravity[3], int threads, double *seconds);
+void brunt_skin_take(brunt_skin *skin, double dt, const double gravity[3], int threads, brunt_timer *timer);
 // Velocities of the active bodies back to them, which then move for `dt`.
-void brunt_skin_give(brunt_skin *skin, double dt, int threads, double *seconds);
+void brunt_skin_give(brunt_skin *skin, double dt, int threads, brunt_timer *timer);
 
 // Area of face f that is its node n's [m^2], 2D [m]; of a ring that of the whole circle, 2 pi int N_n r ds [m^2].
 static inline double brunt_skin_share(const brunt_skin *skin, int32_t f, int32_t n) {
@@ -139,5 +139,5 @@ typedef struct brunt_meeting {
     int mirror_count;
     brunt_wall *walls; // what the mirrors are
     int threads;
-    double *seconds; // of each thread
+    brunt_timer *timer; // of the pass
 } brunt_meeting;

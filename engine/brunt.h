@@ -473,9 +473,25 @@ typedef struct brunt_effect { const char *name; bool on; const char *because; } 
 int32_t brunt_effect_count(const brunt_world *world);
 brunt_effect brunt_world_effect(const brunt_world *world, int32_t effect);
 
-typedef struct brunt_pass { const char *name; int64_t calls; double seconds; double thread_seconds[64]; } brunt_pass;
+// What a pass has cost so far. `units`: particles, nodes or elements it has gone over, all steps together; bytes and flops per unit are counted from
+// the arrays and the arithmetic of its kernels (engine/solve/work.c), 0 where they depend on what meets what.
+typedef struct brunt_pass {
+    const char *name; int64_t calls; double seconds; double thread_seconds[64];
+    const char *unit; double units, bytes_per_unit, flops_per_unit;
+} brunt_pass;
 int32_t brunt_pass_count(const brunt_world *world);
 brunt_pass brunt_world_pass(const brunt_world *world, int32_t pass);   // passes the plan runs each step, in order
+double brunt_world_step_seconds(const brunt_world *world);             // [s] of the clock in brunt_world_step so far; the passes are its parts
+
+// Told when a pass begins and ends and which thread worked when, by the thread that takes the step. `pass` counts as in brunt_world_pass; times are of
+// the monotonic clock [s]. Any of the functions may be NULL. They must not touch the world.
+typedef struct brunt_observer {
+    void *context;
+    void (*begin)(void *context, int32_t pass, double time);
+    void (*thread)(void *context, int32_t pass, int32_t thread, double begin, double end); // one parallel phase of the pass, after it; before `end`
+    void (*end)(void *context, int32_t pass, double begin, double end);
+} brunt_observer;
+void brunt_world_observe(brunt_world *world, const brunt_observer *observer);          // copied; NULL: none (default)
 
 typedef struct brunt_array { char name[96]; const char *unit; int components; size_t bytes; } brunt_array;
 int32_t brunt_array_count(const brunt_world *world);

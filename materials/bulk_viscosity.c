@@ -84,6 +84,7 @@ const brunt_model brunt_bulk_viscosity = {
     .state = state,
     .state_count = COUNT_OF(state),
     .prepare = prepare,
+    .flops = {34, 83},
     .update = update,
     .energy = add_energy,
     .wave_speed = wave_speed,

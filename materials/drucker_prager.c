@@ -146,10 +146,10 @@ static real wave_speed(const real *constants) { return brittle_wave_speed(consta
     .prepare = prepare, .wave_speed = wave_speed
 
 // Flow that keeps the volume has no plastic one to remember.
-static const brunt_model isochoric = {DRUCKER_PRAGER, .state_count = COUNT_OF(state) - 1, .update = update_isochoric,
-                                      .energy = add_energy_isochoric};
+static const brunt_model isochoric = {DRUCKER_PRAGER, .state_count = COUNT_OF(state) - 1, .flops = {223, 329},
+                                      .update = update_isochoric, .energy = add_energy_isochoric};
 
 static const brunt_model *reduced(const double *p) { return p[4] > 0 ? NULL : &isochoric; }
 
-const brunt_model brunt_drucker_prager = {DRUCKER_PRAGER, .state_count = COUNT_OF(state), .update = update,
-                                          .energy = add_energy, .reduced = reduced};
+const brunt_model brunt_drucker_prager = {DRUCKER_PRAGER,   .state_count = COUNT_OF(state), .flops = {264, 377},
+                                          .update = update, .energy = add_energy,           .reduced = reduced};

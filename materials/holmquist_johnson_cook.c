@@ -244,6 +244,7 @@ const brunt_model brunt_holmquist_johnson_cook = {
     .state = state,
     .state_count = COUNT_OF(state),
     .prepare = prepare,
+    .flops = {598, 736},
     .update = update,
     .energy = add_energy,
     .wave_speed = wave_speed,

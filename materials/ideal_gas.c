@@ -78,6 +78,7 @@ const brunt_model brunt_ideal_gas = {
     .state = energy_state,
     .state_count = COUNT_OF(energy_state),
     .prepare = prepare,
+    .flops = {115, 163},
     .update = update,
     .energy = add_energy,
     .wave_speed = wave_speed,

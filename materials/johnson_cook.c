@@ -163,6 +163,7 @@ const brunt_model brunt_johnson_cook = {
     .state = state,
     .state_count = COUNT_OF(state),
     .prepare = prepare,
+    .flops = {231, 334},
     .update = update,
     .energy = add_energy,
     .wave_speed = j2_wave_speed,

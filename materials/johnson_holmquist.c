@@ -187,6 +187,7 @@ const brunt_model brunt_johnson_holmquist = {
     .state = state,
     .state_count = COUNT_OF(state),
     .prepare = prepare,
+    .flops = {538, 648},
     .update = update,
     .energy = add_energy,
     .wave_speed = wave_speed,

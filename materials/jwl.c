@@ -206,6 +206,7 @@ const brunt_model brunt_jwl = {
     .state = state,
     .state_count = COUNT_OF(state),
     .prepare = prepare,
+    .flops = {318, 366},
     .update = update,
     .energy = add_energy,
     .wave_speed = wave_speed,

@@ -130,6 +130,7 @@ const brunt_model brunt_linear_elastic = {
     .parameters = elastic_parameters,
     .parameter_count = COUNT_OF(elastic_parameters),
     .prepare = elastic_prepare,
+    .flops = {51, 151, 46},
     .update = update,
     .energy = add_energy,
     .wave_speed = elastic_wave_speed,

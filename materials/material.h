@@ -104,6 +104,8 @@ typedef struct brunt_model {
     bool small_strain;        // by definition not rotation invariant: exempt from what holds for finite rotations
     const brunt_parameter *parameters; int parameter_count;   // density is common to all and not listed here
     const brunt_state_field *state; int state_count;
+    int flops[3];             // arithmetic of an update of a point that does not flow, in 2D, in 3D, of a sheet, as executed (divisions
+                              // and roots 1); 0: not counted
     // Fills `constants` (at most BRUNT_MAX_CONSTANTS reals, laid out as the model likes) from the parameters.
     // `density` [kg/m^3]; `with_eos`: the pressure comes from an equation of state. Returns NULL, or what is wrong, in
     // a few words.

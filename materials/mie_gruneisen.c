@@ -141,6 +141,7 @@ const brunt_model brunt_mie_gruneisen = {
     .state = energy_state,
     .state_count = COUNT_OF(energy_state),
     .prepare = prepare,
+    .flops = {89, 137},
     .update = update,
     .energy = add_energy,
     .wave_speed = wave_speed,

@@ -163,6 +163,7 @@ const brunt_model brunt_neo_hookean = {
     .parameters = elastic_parameters,
     .parameter_count = COUNT_OF(elastic_parameters),
     .prepare = elastic_prepare,
+    .flops = {78, 136, 169},
     .update = update,
     .energy = add_energy,
     .wave_speed = elastic_wave_speed,

@@ -157,11 +157,11 @@ static real wave_speed(const real *constants) {
     .fluid = true, .needs_eos = true, .accepts_eos = true, .parameters = parameters,                                   \
     .parameter_count = COUNT_OF(parameters), .prepare = prepare, .wave_speed = wave_speed
 
-static const brunt_model inviscid = {NEWTONIAN, .update = update_inviscid};
+static const brunt_model inviscid = {NEWTONIAN, .flops = {8, 30}, .update = update_inviscid};
 
 static const brunt_model *reduced(const double *p) { return p[0] > 0 ? NULL : &inviscid; }
 
 const brunt_model brunt_newtonian = {
-    NEWTONIAN,        .shear_viscous = true, .state = state,     .state_count = COUNT_OF(state),
-    .update = update, .energy = add_energy,  .reduced = reduced,
+    NEWTONIAN,          .shear_viscous = true, .state = state,       .state_count = COUNT_OF(state),
+    .flops = {96, 188}, .update = update,      .energy = add_energy, .reduced = reduced,
 };

@@ -146,6 +146,7 @@ const brunt_model brunt_polynomial = {
     .state = energy_state,
     .state_count = COUNT_OF(energy_state),
     .prepare = prepare,
+    .flops = {91, 139},
     .update = update,
     .energy = add_energy,
     .wave_speed = wave_speed,

@@ -100,6 +100,7 @@ const brunt_model brunt_st_venant_kirchhoff = {
     .parameters = elastic_parameters,
     .parameter_count = COUNT_OF(elastic_parameters),
     .prepare = elastic_prepare,
+    .flops = {54, 136, 59},
     .update = update,
     .energy = add_energy,
     .wave_speed = elastic_wave_speed,

@@ -99,6 +99,7 @@ const brunt_model brunt_tait = {
     .parameters = parameters,
     .parameter_count = COUNT_OF(parameters),
     .prepare = prepare,
+    .flops = {102, 124},
     .update = update,
     .energy = add_energy,
     .wave_speed = wave_speed,

@@ -92,6 +92,7 @@ const brunt_model brunt_von_mises = {
     .state = state,
     .state_count = COUNT_OF(state),
     .prepare = prepare,
+    .flops = {140, 243},
     .update = update,
     .energy = j2_energy,
     .wave_speed = j2_wave_speed,

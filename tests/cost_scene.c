@@ -38,6 +38,11 @@ int main(int count, char **words) {
     def.bodies = bodies, def.body_count = 1;
     plane.normal[1] = 1, plane.point[1] = -5;
     if (!strcmp(dress, "plain")) {
+    } else if (!strcmp(dress, "few")) { // 125 particles
+        for (int a = 0; a < 3; a++) bodies[0].shape.max[a] = 0.25;
+    } else if (!strcmp(dress, "hex8")) { // 1000 elements
+        bodies[0].method = BRUNT_FEM;
+        bodies[0].size = 0.08;
     } else if (!strcmp(dress, "contact")) { // asked for, but there is nobody to touch
         def.contact.method = BRUNT_CONTACT_MULTI_VELOCITY;
         def.contact.friction = 0.4;

@@ -4,12 +4,23 @@
 
 #include <stdint.h>
 
+#include "brunt.h"
+
+enum { BRUNT_THREADS_MOST = 256 };
+
 // Work on tasks [begin, end) as `worker` (0 .. threads-1).
 typedef void brunt_task_fn(void *context, int64_t begin, int64_t end, int worker);
 
-// Runs all tasks [0, count) in pieces of `grain`, on `threads` threads. If `seconds` is not NULL, adds each worker's
-// time to seconds[worker].
-void brunt_parallel(int threads, int64_t count, int64_t grain, brunt_task_fn *task, void *context, double *seconds);
+// Where the time of parallel phases goes. Nothing is kept of the single phase: who wants to know is told after it.
+typedef struct brunt_timer {
+    double seconds[BRUNT_THREADS_MOST]; // [s] that each worker was at work
+    const brunt_observer *observer;     // told when each worker began and ended; NULL: nobody
+    int32_t pass;                       // what the observer knows the phases by
+} brunt_timer;
+
+// Runs all tasks [0, count) in pieces of `grain`, on at most `threads` threads (1 .. BRUNT_THREADS_MOST). `timer`: NULL when
+// nobody wants the time; else two readings of the clock a worker.
+void brunt_parallel(int threads, int64_t count, int64_t grain, brunt_task_fn *task, void *context, brunt_timer *timer);
 
 int brunt_threads_available(void);
 

@@ -61,6 +61,7 @@ typedef struct brunt_particles {
                    // masses and volumes are those of the full circle
     int64_t count, slots, capacity;
     int64_t made; // how many there were at the start: ids are below it
+    int64_t sorts, moves; // sorts so far in this process, and those in which the arrays moved
     bool holes;   // some have left since the last sort: their slots have id -1, no mass and no volume
     int field_count;
     brunt_particle_field field[BRUNT_MAX_FIELDS];

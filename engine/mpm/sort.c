@@ -245,13 +245,13 @@ static int drop_empty(brunt_grid *grid, const int64_t *total) {
     return brunt_grid_set_blocks(grid, grid->block_key, kept);
 }
 
-static int sort_ranges(job *j, int ranges, int threads, double *seconds, brunt_error *error) {
+static int sort_ranges(job *j, int ranges, int threads, brunt_timer *timer, brunt_error *error) {
     brunt_grid *grid = j->grid;
     brunt_particles *p = j->particles;
     bool first = grid->block_count == 0;
     int64_t *total = NULL;
     for (;;) { // until every particle's block is alive and every block has a particle: at most a few rounds
-        brunt_parallel(threads, ranges, 1, find_places, j, seconds);
+        brunt_parallel(threads, ranges, 1, find_places, j, timer);
         bool moved = p->holes, missing = false;
         for (int q = 0; q < ranges; q++) {
             if (j->ranges[q].bad >= 0) return fail_place(p, j->ranges[q].bad, error);
@@ -269,7 +269,7 @@ static int sort_ranges(job *j, int ranges, int threads, double *seconds, brunt_e
             if (brunt_reserve((void **)&j->ranges[q].count, &j->ranges[q].count_capacity,
                               (size_t)grid->block_count * sizeof(int32_t), 0))
                 return brunt_fail(error, BRUNT_FAILED, "out of memory while sorting particles");
-        brunt_parallel(threads, ranges, 1, count_blocks, j, seconds);
+        brunt_parallel(threads, ranges, 1, count_blocks, j, timer);
         if (brunt_reserve((void **)&j->room->total, &j->room->total_capacity, (size_t)grid->block_count * sizeof *total,
                           0))
             return brunt_fail(error, BRUNT_FAILED, "out of memory while sorting particles");
@@ -310,27 +310,28 @@ static int sort_ranges(job *j, int ranges, int threads, double *seconds, brunt_e
         memcpy(p->key, keys, bytes);
         brunt_free(keys);
     }
-    brunt_parallel(threads, ranges, 1, fill_blocks, j, seconds);
-    brunt_parallel(threads, grid->block_count, BLOCK_GRAIN, sort_blocks, j, seconds);
+    brunt_parallel(threads, ranges, 1, fill_blocks, j, timer);
+    brunt_parallel(threads, grid->block_count, BLOCK_GRAIN, sort_blocks, j, timer);
     for (int first_scalar = 0; first_scalar < p->scalar_count; first_scalar += BRUNT_SORT_GROUP) {
         j->group = first_scalar;
-        brunt_parallel(threads, slots, 8192, move_scalars, j, seconds);
+        brunt_parallel(threads, slots, 8192, move_scalars, j, timer);
         for (int k = 0; k < BRUNT_SORT_GROUP && first_scalar + k < p->scalar_count; k++) {
             real *t = p->scalar[first_scalar + k];
             p->scalar[first_scalar + k] = p->scalar[p->scalar_count + k];
             p->scalar[p->scalar_count + k] = t;
         }
     }
-    brunt_parallel(threads, grid->block_count, BLOCK_GRAIN, move_ids, j, seconds);
+    brunt_parallel(threads, grid->block_count, BLOCK_GRAIN, move_ids, j, timer);
     int64_t *t = p->id;
     p->id = p->spare_id, p->spare_id = t;
     p->slots = slots;
+    p->moves++;
     p->holes = false;
-    brunt_parallel(threads, grid->block_count, BLOCK_GRAIN, set_keys, j, seconds);
+    brunt_parallel(threads, grid->block_count, BLOCK_GRAIN, set_keys, j, timer);
     return BRUNT_OK;
 }
 
-int brunt_sort(brunt_grid *grid, brunt_particles *particles, int threads, double *seconds, brunt_error *error) {
+int brunt_sort(brunt_grid *grid, brunt_particles *particles, int threads, brunt_timer *timer, brunt_error *error) {
     int ranges = threads > 1 && particles->slots >= 4096 ? 4 * threads : 1;
     if (ranges > MAX_RANGES) ranges = MAX_RANGES;
     if (!particles->sort_room) particles->sort_room = brunt_alloc(sizeof *particles->sort_room);
@@ -341,5 +342,6 @@ int brunt_sort(brunt_grid *grid, brunt_particles *particles, int threads, double
         j.ranges[q].begin = particles->slots * q / ranges;
         j.ranges[q].end = particles->slots * (q + 1) / ranges;
     }
-    return sort_ranges(&j, ranges, threads, seconds, error);
+    particles->sorts++;
+    return sort_ranges(&j, ranges, threads, timer, error);
 }

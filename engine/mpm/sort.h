@@ -4,9 +4,10 @@
 #include "brunt.h"
 #include "grid.h"
 #include "particles.h"
+#include "threads.h"
 
-// Stable: particles of one bin keep their order, so the result does not depend on the number of threads. `seconds` may
+// Stable: particles of one bin keep their order, so the result does not depend on the number of threads. `timer` may
 // be NULL. Errors: BRUNT_FAILED with id and place when a position is not finite or too far away; the particles are then
 // untouched.
-int brunt_sort(brunt_grid *grid, brunt_particles *particles, int threads, double *seconds, brunt_error *error);
+int brunt_sort(brunt_grid *grid, brunt_particles *particles, int threads, brunt_timer *timer, brunt_error *error);
 void brunt_sort_room_free(brunt_sort_room *room);

@@ -73,8 +73,7 @@ static void damp_tasks(void *context, int64_t begin, int64_t end, int worker) {
 
 static void damp(brunt_world *world, double dt, const double *gravity) {
     job j = {world, dt, gravity};
-    brunt_parallel(world->threads, world->node_task_count, 1, damp_tasks, &j,
-                   world->pass[BRUNT_PASS_kick].thread_seconds);
+    brunt_parallel(world->threads, world->node_task_count, 1, damp_tasks, &j, &world->pass[BRUNT_PASS_kick].threads);
     for (int64_t t = 0; t < world->node_task_count; t++) {
         const brunt_damping_sums *s = &world->damping_sums[t];
         world->now.damped -= s->work;

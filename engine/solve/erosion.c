@@ -311,7 +311,7 @@ int brunt_erode_marked(brunt_world *world, double dt, brunt_error *error) {
 
 int brunt_erode_meshes(brunt_world *world, double dt, brunt_error *error) {
     brunt_parallel(world->threads, world->element_task_count, 1, mark_blocks, world,
-                   world->pass[BRUNT_PASS_erosion].thread_seconds);
+                   &world->pass[BRUNT_PASS_erosion].threads);
     for (int k = 0; k < world->fem_count; k++) {
         const brunt_fem_body *fem = &world->fems[k];
         const double least = fem->bonds ? world->erosion[fem->index].step : 0;

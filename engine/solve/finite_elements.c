@@ -110,14 +110,12 @@ static void book_gravity(brunt_world *world, const double gravity[3], double dt)
 
 void brunt_fem_kick_all(brunt_world *world, const double gravity[3], double dt) {
     job j = {world, gravity, dt};
-    brunt_parallel(world->threads, world->node_task_count, 1, kick_nodes, &j,
-                   world->pass[BRUNT_PASS_kick].thread_seconds);
+    brunt_parallel(world->threads, world->node_task_count, 1, kick_nodes, &j, &world->pass[BRUNT_PASS_kick].threads);
 }
 
 void brunt_fem_drift_all(brunt_world *world, const double gravity[3], double kick, double dt) {
     job j = {world, gravity, dt};
-    brunt_parallel(world->threads, world->node_task_count, 1, drift_nodes, &j,
-                   world->pass[BRUNT_PASS_drift].thread_seconds);
+    brunt_parallel(world->threads, world->node_task_count, 1, drift_nodes, &j, &world->pass[BRUNT_PASS_drift].threads);
     if (world->has_gravity) book_gravity(world, gravity, kick);
     world->now.fem_kinetic = 0;
     for (int64_t t = 0; t < world->node_task_count; t++) world->now.fem_kinetic += world->fem_sums[t].kinetic;
@@ -126,7 +124,7 @@ void brunt_fem_drift_all(brunt_world *world, const double gravity[3], double kic
 brunt_fem_body *brunt_fem_elements_all(brunt_world *world, double dt, int32_t *bad, const char **reason) {
     job j = {.world = world, .dt = dt};
     brunt_parallel(world->threads, world->element_task_count, 1, strain_elements, &j,
-                   world->pass[BRUNT_PASS_elements].thread_seconds);
+                   dt > 0 ? &world->pass[BRUNT_PASS_elements].threads : NULL); // no step: no time of one
     brunt_fem_body *failed = NULL;
     double work = 0, stored = 0;
     for (int k = 0; k < world->fem_count; k++)

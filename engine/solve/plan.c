@@ -117,10 +117,13 @@ brunt_pass brunt_world_pass(const brunt_world *world, int32_t index) {
         if (!brunt_pass_planned(world, p) || index-- > 0) continue;
         brunt_pass pass = {.name = names[p], .calls = world->pass[p].calls, .seconds = world->pass[p].seconds};
         for (size_t t = 0; t < sizeof pass.thread_seconds / sizeof pass.thread_seconds[0]; t++)
-            pass.thread_seconds[t] = world->pass[p].thread_seconds[t];
+            pass.thread_seconds[t] = world->pass[p].threads.seconds[t];
+        const brunt_work work = brunt_pass_work(world, p);
+        pass.unit = work.unit, pass.units = world->pass[p].units;
+        pass.bytes_per_unit = work.bytes, pass.flops_per_unit = work.flops;
         return pass;
     }
-    return (brunt_pass){.name = ""};
+    return (brunt_pass){.name = "", .unit = ""};
 }
 
 // Arrays: of each body its fields, and what else it has.

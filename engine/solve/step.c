@@ -43,12 +43,6 @@ double brunt_stable_step(const brunt_world *world) {
     return world->cfl * least;
 }
 
-static void start_pass(brunt_world *world, int pass, double *start) {
-    world->pass[pass].calls++;
-    *start = brunt_clock();
-}
-static void end_pass(brunt_world *world, int pass, double start) { world->pass[pass].seconds += brunt_clock() - start; }
-
 static int fail(const brunt_world *world, const brunt_body *body, brunt_error *error, const char *reason) {
     if (!error) return BRUNT_FAILED;
     error->time = world->now.time;
@@ -125,8 +119,7 @@ static int sort_bodies(brunt_world *world, brunt_error *error) {
     for (int i = 0; i < world->body_count; i++) {
         brunt_body *body = &world->bodies[i];
         if (error) error->id = -1;
-        if (brunt_sort(&body->grid, &body->particles, world->threads, world->pass[BRUNT_PASS_sort].thread_seconds,
-                       error)) {
+        if (brunt_sort(&body->grid, &body->particles, world->threads, &world->pass[BRUNT_PASS_sort].threads, error)) {
             char reason[256];
             snprintf(reason, sizeof reason, "%.250s", error ? error->message : "");
             return fail(world, body, error, reason);
@@ -154,24 +147,40 @@ static bool mirrors(const brunt_world *world, const brunt_mirror *mirror, const 
     return mirror->wall < 0 || acts_on(&world->walls[mirror->wall], body);
 }
 
+static double grid_nodes(const brunt_body *body) { return (double)body->grid.slot_count * BRUNT_BLOCK_NODES; }
+
+static double all_particles(const brunt_world *world) { return (double)brunt_world_particles(world); }
+
+static double all_grid_nodes(const brunt_world *world) {
+    double nodes = 0;
+    for (int i = 0; i < world->body_count; i++) nodes += grid_nodes(&world->bodies[i]);
+    return nodes;
+}
+
+static double all_mesh_nodes(const brunt_world *world) {
+    double nodes = 0;
+    for (int k = 0; k < world->fem_count; k++) nodes += world->fems[k].node_count;
+    return nodes;
+}
+
 // Particles and forces to the grid, and the velocities there before anything else acts.
 static void make_grid_velocities(brunt_world *world, brunt_body *body, const double gravity[3], double dt) {
-    double start;
+    const double nodes = grid_nodes(body);
     body_job job = {world, body, dt};
     brunt_grid_job grid_job = {
         .body = body, .gravity = gravity, .dt = dt, .has_gravity = world->has_gravity, .sums = world->node_sums};
-    start_pass(world, BRUNT_PASS_scatter, &start);
+    brunt_pass_begin(world, BRUNT_PASS_scatter);
     brunt_parallel(world->threads, body->grid.block_count, BLOCK_GRAIN, scatter_blocks, &job,
-                   world->pass[BRUNT_PASS_scatter].thread_seconds);
-    end_pass(world, BRUNT_PASS_scatter, start);
+                   &world->pass[BRUNT_PASS_scatter].threads);
+    brunt_pass_end(world, (double)body->particles.count);
 
-    start_pass(world, BRUNT_PASS_grid, &start);
+    brunt_pass_begin(world, BRUNT_PASS_grid);
     brunt_parallel(world->threads, body->grid.slot_count, SLOT_GRAIN, brunt_grid_sum, &grid_job,
-                   world->pass[BRUNT_PASS_grid].thread_seconds);
-    end_pass(world, BRUNT_PASS_grid, start);
+                   &world->pass[BRUNT_PASS_grid].threads);
+    brunt_pass_end(world, nodes);
 
     if (world->mirror_count) {
-        start_pass(world, BRUNT_PASS_mirror, &start);
+        brunt_pass_begin(world, BRUNT_PASS_mirror);
         brunt_action unbooked = {.external_work = 0}; // of the axis: its impulses cancel around the circle
         for (int m = 0; m < world->mirror_count; m++) {
             const brunt_mirror *mirror = &world->mirrors[m];
@@ -179,52 +188,49 @@ static void make_grid_velocities(brunt_world *world, brunt_body *body, const dou
                 brunt_mirror_fold(body, mirror, world->transfer == BRUNT_FLIP ? 1 - world->flip : 1,
                                   mirror->wall < 0 ? &unbooked : &world->walls[mirror->wall].last);
         }
-        end_pass(world, BRUNT_PASS_mirror, start);
+        brunt_pass_end(world, nodes);
     }
 
-    start_pass(world, BRUNT_PASS_update, &start);
+    brunt_pass_begin(world, BRUNT_PASS_update);
     brunt_parallel(world->threads, body->grid.slot_count, SLOT_GRAIN, brunt_grid_update, &grid_job,
-                   world->pass[BRUNT_PASS_update].thread_seconds);
+                   &world->pass[BRUNT_PASS_update].threads);
     // Between two steps the transfers change the velocities that the stress works on, without any change of strain: the
     // work at the new velocities less that at the last ones is theirs.
     for (int32_t n = 0; n < body->grid.slot_count; n++) world->now.transfer -= 0.5 * world->node_sums[n].stress_work;
-    end_pass(world, BRUNT_PASS_update, start);
+    brunt_pass_end(world, nodes);
 }
 
 // Planes that stick or slip and regions, at the nodes of the grids.
 static void apply_conditions(brunt_world *world) {
-    double start;
-    start_pass(world, BRUNT_PASS_conditions, &start);
+    brunt_pass_begin(world, BRUNT_PASS_conditions);
     for (int w = 0; w < world->wall_count; w++) {
         brunt_wall *wall = &world->walls[w];
         bool at_nodes = wall->region || (wall->mirror < 0 && wall->plane.condition != BRUNT_SEPARATE);
         for (int i = 0; at_nodes && i < world->body_count; i++)
             if (acts_on(wall, &world->bodies[i])) brunt_condition_apply(&world->bodies[i], wall, world->now.time);
     }
-    end_pass(world, BRUNT_PASS_conditions, start);
+    brunt_pass_end(world, all_grid_nodes(world));
 }
 
 static int constrain_velocities(brunt_world *world, const double gravity[3], double kick, double dt,
                                 brunt_error *error) {
-    double start;
     const bool conditions = world->has_conditions && world->body_count;
     if (conditions) apply_conditions(world);
     if (world->has_contact) {
-        start_pass(world, BRUNT_PASS_contact, &start);
-        int failed =
-            brunt_multivelocity_apply(world->bodies, world->body_count, world->pairs, world->pair_count,
-                                      world->mpm_pair_of, world->mirrors, world->mirror_count, dt, world->threads,
-                                      world->pass[BRUNT_PASS_contact].thread_seconds, &world->contact_work);
+        brunt_pass_begin(world, BRUNT_PASS_contact);
+        int failed = brunt_multivelocity_apply(
+            world->bodies, world->body_count, world->pairs, world->pair_count, world->mpm_pair_of, world->mirrors,
+            world->mirror_count, dt, world->threads, &world->pass[BRUNT_PASS_contact].threads, &world->contact_work);
         if (failed)
             return fail(world, NULL, error,
                         failed == -1 ? "out of memory in the contact search"
                                      : "more than 16 bodies meet at one grid node");
-        end_pass(world, BRUNT_PASS_contact, start);
+        brunt_pass_end(world, all_grid_nodes(world));
     }
     if (world->has_surfaces) {
-        start_pass(world, BRUNT_PASS_surfaces, &start);
+        brunt_pass_begin(world, BRUNT_PASS_surfaces);
         int status = brunt_surfaces_meet(world, gravity, kick, dt, error);
-        end_pass(world, BRUNT_PASS_surfaces, start);
+        brunt_pass_end(world, world->skin.node_count);
         if (status) {
             char reason[256];
             snprintf(reason, sizeof reason, "%.250s", error ? error->message : "");
@@ -233,12 +239,12 @@ static int constrain_velocities(brunt_world *world, const double gravity[3], dou
     }
     if (conditions && world->has_surfaces) apply_conditions(world); // what contact gave to nodes that are held
     if (world->has_walls && world->body_count) {
-        start_pass(world, BRUNT_PASS_walls, &start);
+        brunt_pass_begin(world, BRUNT_PASS_walls);
         for (int i = 0; i < world->body_count; i++)
             if (brunt_walls_apply(&world->bodies[i], world->walls, world->wall_count, world->mirrors,
                                   world->mirror_count, world->now.time, dt, &world->wall_work[i]))
                 return fail(world, &world->bodies[i], error, "out of memory at a wall");
-        end_pass(world, BRUNT_PASS_walls, start);
+        brunt_pass_end(world, all_grid_nodes(world));
     }
     return BRUNT_OK;
 }
@@ -256,15 +262,14 @@ static void book_gravity_moment(brunt_world *world, brunt_body *body, const doub
 // Kinetic energy that the grid has before and after the forces, and what gravity did.
 static void keep_ledger(brunt_world *world, const double gravity[3], double dt, double *old_kinetic,
                         double *new_kinetic) {
-    double start;
-    start_pass(world, BRUNT_PASS_ledger, &start);
+    brunt_pass_begin(world, BRUNT_PASS_ledger);
     *old_kinetic = *new_kinetic = 0;
     for (int i = 0; i < world->body_count; i++) {
         brunt_body *body = &world->bodies[i];
         const bool total = brunt_total_lagrangian(&body->particles);
         brunt_grid_job job = {body, gravity, dt, world->has_gravity, world->node_sums};
         brunt_parallel(world->threads, body->grid.slot_count, SLOT_GRAIN, brunt_grid_ledger, &job,
-                       world->pass[BRUNT_PASS_ledger].thread_seconds);
+                       &world->pass[BRUNT_PASS_ledger].threads);
         for (int32_t s = 0; s < body->grid.slot_count; s++) {
             const brunt_node_sums *n = &world->node_sums[s];
             *old_kinetic += n->old_kinetic;
@@ -280,7 +285,7 @@ static void keep_ledger(brunt_world *world, const double gravity[3], double dt, 
         }
         if (total && world->has_gravity) book_gravity_moment(world, body, gravity, dt);
     }
-    end_pass(world, BRUNT_PASS_ledger, start);
+    brunt_pass_end(world, all_grid_nodes(world));
 }
 
 static void advance_blocks(void *context, int64_t begin, int64_t end, int worker) {
@@ -292,32 +297,31 @@ static void advance_blocks(void *context, int64_t begin, int64_t end, int worker
 // Linear kernel: the particles' new velocities once more to the grid, without forces, for the gradient. What conditions
 // do to that field is no impulse: it is not booked.
 static void remap_velocities(brunt_world *world, double dt) {
-    double start, *seconds = world->pass[BRUNT_PASS_remap].thread_seconds;
-    start_pass(world, BRUNT_PASS_remap, &start);
+    brunt_timer *timer = &world->pass[BRUNT_PASS_remap].threads;
+    brunt_pass_begin(world, BRUNT_PASS_remap);
     for (int i = 0; i < world->body_count; i++) {
         brunt_body *body = &world->bodies[i];
         static const double weightless[3] = {0, 0, 0};
         body_job job = {world, body, dt}, still = {world, body, 0};
         brunt_grid_job grid_job = {.body = body, .gravity = weightless, .sums = world->node_sums};
         brunt_action unbooked = {.external_work = 0};
-        brunt_parallel(world->threads, body->grid.block_count, BLOCK_GRAIN, advance_blocks, &job, seconds);
-        brunt_parallel(world->threads, body->grid.block_count, BLOCK_GRAIN, scatter_blocks, &still, seconds);
-        brunt_parallel(world->threads, body->grid.slot_count, SLOT_GRAIN, brunt_grid_sum, &grid_job, seconds);
+        brunt_parallel(world->threads, body->grid.block_count, BLOCK_GRAIN, advance_blocks, &job, timer);
+        brunt_parallel(world->threads, body->grid.block_count, BLOCK_GRAIN, scatter_blocks, &still, timer);
+        brunt_parallel(world->threads, body->grid.slot_count, SLOT_GRAIN, brunt_grid_sum, &grid_job, timer);
         for (int m = 0; m < world->mirror_count; m++)
             if (mirrors(world, &world->mirrors[m], body)) brunt_mirror_fold(body, &world->mirrors[m], 1, &unbooked);
-        brunt_parallel(world->threads, body->grid.slot_count, SLOT_GRAIN, brunt_grid_update, &grid_job, seconds);
+        brunt_parallel(world->threads, body->grid.slot_count, SLOT_GRAIN, brunt_grid_update, &grid_job, timer);
         for (int w = 0; w < world->wall_count; w++) {
             brunt_wall wall = world->walls[w];
             bool at_nodes = wall.region || (wall.mirror < 0 && wall.plane.condition != BRUNT_SEPARATE);
             if (at_nodes && acts_on(&wall, body)) brunt_condition_apply(body, &wall, world->now.time);
         }
     }
-    end_pass(world, BRUNT_PASS_remap, start);
+    brunt_pass_end(world, all_particles(world));
 }
 
 static int gather_bodies(brunt_world *world, double dt, double *kinetic, brunt_error *error) {
-    double start;
-    start_pass(world, BRUNT_PASS_gather, &start);
+    brunt_pass_begin(world, BRUNT_PASS_gather);
     double power = 0, remap = 0;
     *kinetic = 0;
     brunt_body *bad_body = NULL;
@@ -327,7 +331,7 @@ static int gather_bodies(brunt_world *world, double dt, double *kinetic, brunt_e
         brunt_body *body = &world->bodies[i];
         body_job job = {world, body, dt};
         brunt_parallel(world->threads, body->grid.block_count, BLOCK_GRAIN, gather_blocks, &job,
-                       world->pass[BRUNT_PASS_gather].thread_seconds);
+                       &world->pass[BRUNT_PASS_gather].threads);
         for (int32_t b = 0; b < body->grid.block_count; b++) {
             *kinetic += body->report[b].kinetic;
             power += body->report[b].stress_power;
@@ -338,34 +342,42 @@ static int gather_bodies(brunt_world *world, double dt, double *kinetic, brunt_e
     }
     world->now.transfer -= 0.5 * (world->now.stress_work + dt * remap);
     world->now.stress_work = dt * power;
-    end_pass(world, BRUNT_PASS_gather, start);
+    brunt_pass_end(world, all_particles(world));
     return bad_body ? fail_particle(world, bad_body, bad, error, reason) : BRUNT_OK;
 }
 
 static void kick_meshes(brunt_world *world, const double gravity[3], double kick, double dt) {
-    double start;
-    start_pass(world, BRUNT_PASS_kick, &start);
+    brunt_pass_begin(world, BRUNT_PASS_kick);
     world->now.fem_load_work = world->now.fem_damping_work = 0;
     if (world->hold_count || world->has_damping) brunt_loads_begin(world, world->now.time, kick);
     if (world->has_damping) brunt_damping_begin(world, gravity, kick);
     brunt_fem_kick_all(world, gravity, kick);
-    end_pass(world, BRUNT_PASS_kick, start);
+    brunt_pass_end(world, all_mesh_nodes(world));
     if (!world->hold_count) return;
-    start_pass(world, BRUNT_PASS_groups, &start);
+    double held = 0;
+    brunt_pass_begin(world, BRUNT_PASS_groups);
     brunt_fem_hold_all(world, gravity, world->now.time, kick, dt);
-    end_pass(world, BRUNT_PASS_groups, start);
+    for (int h = 0; h < world->hold_count; h++) held += world->holds[h].node_count;
+    brunt_pass_end(world, held);
+}
+
+// The other half of what loads and drag do: velocities are final now.
+static void finish_kick(brunt_world *world, double kick) {
+    brunt_pass_begin(world, BRUNT_PASS_kick);
+    if (world->hold_count) brunt_loads_end(world, kick);
+    if (world->has_damping) brunt_damping_end(world, kick);
+    brunt_pass_end(world, 0);
 }
 
 static int move_meshes(brunt_world *world, const double gravity[3], double kick, double dt, brunt_error *error) {
-    double start;
     int32_t bad = -1;
     const char *reason = "";
-    start_pass(world, BRUNT_PASS_drift, &start);
+    brunt_pass_begin(world, BRUNT_PASS_drift);
     brunt_fem_drift_all(world, gravity, kick, dt);
-    end_pass(world, BRUNT_PASS_drift, start);
-    start_pass(world, BRUNT_PASS_elements, &start);
+    brunt_pass_end(world, all_mesh_nodes(world));
+    brunt_pass_begin(world, BRUNT_PASS_elements);
     const brunt_fem_body *failed = brunt_fem_elements_all(world, dt, &bad, &reason);
-    end_pass(world, BRUNT_PASS_elements, start);
+    brunt_pass_end(world, (double)brunt_world_elements(world));
     return failed ? fail_element(world, failed, bad, error, reason) : BRUNT_OK;
 }
 
@@ -382,10 +394,9 @@ static double choose_step(const brunt_world *world, double limit) {
 }
 
 static int make_grids(brunt_world *world, const double gravity[3], double dt, brunt_error *error) {
-    double start;
-    start_pass(world, BRUNT_PASS_sort, &start);
+    brunt_pass_begin(world, BRUNT_PASS_sort);
     int status = sort_bodies(world, error);
-    end_pass(world, BRUNT_PASS_sort, start);
+    brunt_pass_end(world, all_particles(world));
     if (status) return status;
     for (int i = 0; i < world->body_count; i++) make_grid_velocities(world, &world->bodies[i], gravity, dt);
     return BRUNT_OK;
@@ -410,11 +421,11 @@ static void watch_spread(brunt_world *world) {
 }
 
 static int erode(brunt_world *world, double dt, brunt_error *error) {
-    double start;
-    start_pass(world, BRUNT_PASS_erosion, &start);
+    const double looked_at = (double)brunt_world_elements(world) + all_particles(world);
+    brunt_pass_begin(world, BRUNT_PASS_erosion);
     int status = world->fem_count ? brunt_erode_meshes(world, dt, error) : BRUNT_OK;
     if (!status && world->body_count) status = brunt_erode_particles(world, dt, error);
-    end_pass(world, BRUNT_PASS_erosion, start);
+    brunt_pass_end(world, looked_at);
     return status;
 }
 
@@ -430,10 +441,13 @@ static int fail_short(brunt_world *world, double stable, brunt_error *error) {
     return fail(world, NULL, error, reason);
 }
 
-int brunt_world_step(brunt_world *world, double limit, brunt_error *error) {
-    double dt = choose_step(world, limit), gravity[3], old_kinetic, new_kinetic, kinetic = 0;
-    double stable = world->now.next_dt / world->cfl;
-    if (error) *error = (brunt_error){.id = -1};
+// The step that is due and what acts in it; everything else is of the passes.
+typedef struct step {
+    double limit, dt, kick, gravity[3]; // [s], [s], [s], [m/s^2]
+} step;
+
+static int refuse_step(brunt_world *world, double dt, brunt_error *error) {
+    const double stable = world->now.next_dt / world->cfl;
     if (!(dt > 0)) return fail(world, NULL, error, "the end has been reached, there is no step to take");
     if (stable < world->least_step) return fail_short(world, stable, error);
     if (world->fixed_step > 0 && dt > stable) {
@@ -443,67 +457,106 @@ int brunt_world_step(brunt_world *world, double limit, brunt_error *error) {
     }
     if (world->now.time + dt == world->now.time)
         return fail(world, NULL, error, "the stable step has become too small to advance the time");
-    brunt_gravity_at(world, world->now.time + 0.5 * dt, gravity);
+    return BRUNT_OK;
+}
+
+static int begin_step(brunt_world *world, step *s, brunt_error *error) {
+    brunt_pass_begin(world, BRUNT_PASS_advance);
+    const double dt = s->dt = choose_step(world, s->limit);
+    if (error) *error = (brunt_error){.id = -1};
+    int status = refuse_step(world, dt, error);
+    if (status) return status;
+    // Velocities are half a step behind, from the first step on: forces act over the mean of the steps before and
+    // after.
+    s->kick = world->now.steps > 0 ? 0.5 * (world->now.dt + dt) : 0.5 * dt;
+    brunt_gravity_at(world, world->now.time + 0.5 * dt, s->gravity);
     for (int i = 0; i < world->body_count; i++) world->bodies[i].time = (real)(world->now.time + dt);
     for (int k = 0; k < world->fem_count; k++) world->fems[k].time = (real)(world->now.time + dt);
     for (int w = 0; w < world->wall_count; w++) world->walls[w].last = (brunt_action){.external_work = 0};
     for (int p = 0; p < world->pair_count; p++) world->pairs[p].last = (brunt_action){.external_work = 0};
+    brunt_pass_end(world, world->all_count);
+    return BRUNT_OK;
+}
 
-    // Velocities are half a step behind, from the first step on: forces act over the mean of the steps before and
-    // after.
-    const double kick = world->now.steps > 0 ? 0.5 * (world->now.dt + dt) : 0.5 * dt;
-    int status;
-    if (world->fem_count) kick_meshes(world, gravity, kick, dt);
-    if (world->gas_lost) {
-        char reason[200];
-        snprintf(reason, sizeof reason, "boundaries (%s): the gas's volume has become %.4g m^3",
-                 world->walls[world->gas_lost->wall].name, world->gas_lost->gas_volume);
-        return fail(world, NULL, error, reason);
-    }
-    if (world->body_count && (status = make_grids(world, gravity, dt, error))) return status;
-    if ((status = constrain_velocities(world, gravity, kick, dt, error))) return status;
-    old_kinetic = new_kinetic = world->now.kinetic;
-    if (world->body_count) {
-        keep_ledger(world, gravity, dt, &old_kinetic, &new_kinetic);
-        if (world->advance) remap_velocities(world, dt);
-        status = gather_bodies(world, dt, &kinetic, error);
-    }
-    if (world->hold_count) brunt_loads_end(world, kick);
-    if (world->has_damping) brunt_damping_end(world, kick);
+static int fail_gas(const brunt_world *world, brunt_error *error) {
+    char reason[200];
+    snprintf(reason, sizeof reason, "boundaries (%s): the gas's volume has become %.4g m^3",
+             world->walls[world->gas_lost->wall].name, world->gas_lost->gas_volume);
+    return fail(world, NULL, error, reason);
+}
+
+// The clock, and the accounts of what acts from outside and between bodies.
+static void advance(brunt_world *world, const step *s) {
+    struct brunt_clock *now = &world->now;
+    brunt_pass_begin(world, BRUNT_PASS_advance);
     for (int w = 0; w < world->wall_count; w++) brunt_action_add(&world->walls[w].action, &world->walls[w].last);
     for (int p = 0; p < world->pair_count; p++) brunt_action_add(&world->pairs[p].action, &world->pairs[p].last);
-    if (world->fem_count) {
-        int moved = move_meshes(world, gravity, kick, dt, status ? NULL : error);
-        status = status ? status : moved;
-    }
-
-    struct brunt_clock *now = &world->now;
-    now->transfer += now->kinetic - old_kinetic + new_kinetic - kinetic;
-    now->kinetic = kinetic;
-    double stop = fmin(limit > now->time ? limit : INFINITY, world->end);
-    now->time = dt == stop - now->time ? stop : now->time + dt;
+    double stop = fmin(s->limit > now->time ? s->limit : INFINITY, world->end);
+    now->time = s->dt == stop - now->time ? stop : now->time + s->dt;
     now->steps += 1;
-    now->dt = dt;
-    now->dt_min = fmin(now->dt_min, dt);
-    now->dt_max = fmax(now->dt_max, dt);
-    if (status || (world->has_erosion && (status = erode(world, dt, error)))) return status;
+    now->dt = s->dt;
+    now->dt_min = fmin(now->dt_min, s->dt);
+    now->dt_max = fmax(now->dt_max, s->dt);
+    brunt_pass_end(world, 0);
+}
+
+static int check_energy(brunt_world *world, brunt_error *error) {
+    brunt_energy energy;
+    brunt_world_energy(world, &energy);
+    // Energy that the transfers make is as wrong as energy that is not accounted for.
+    double made = energy.error_relative != 0 ? -energy.transfer * energy.error_relative / energy.error : 0;
+    if (!(fabs(energy.error_relative) > world->energy_limit || made > world->energy_limit)) return BRUNT_OK;
+    char reason[240];
+    snprintf(reason, sizeof reason,
+             "the energy error is %.3g %%, and the transfers have made %.3g %%; time.energy_limit allows %.3g %%",
+             100 * energy.error_relative, 100 * fmax(made, 0), 100 * world->energy_limit);
+    return fail(world, NULL, error, reason);
+}
+
+// The stable step that follows, and whether all is as it should be.
+static int look_over(brunt_world *world, brunt_error *error) {
+    struct brunt_clock *now = &world->now;
+    brunt_pass_begin(world, BRUNT_PASS_advance);
     now->next_dt = brunt_stable_step(world);
-    if (!isfinite(kinetic) || !isfinite(now->fem_kinetic) || !isfinite(now->next_dt))
+    if (!isfinite(now->kinetic) || !isfinite(now->fem_kinetic) || !isfinite(now->next_dt))
         return fail(world, NULL, error, "the kinetic energy is not a finite number");
     if (world->has_fluid && (int64_t)now->steps % SPREAD_CHECK == 0) watch_spread(world);
-    if ((int64_t)now->steps % ENERGY_CHECK == 0 && isfinite(world->energy_limit)) {
-        brunt_energy energy;
-        brunt_world_energy(world, &energy);
-        // Energy that the transfers make is as wrong as energy that is not accounted for.
-        double made = energy.error_relative != 0 ? -energy.transfer * energy.error_relative / energy.error : 0;
-        if (fabs(energy.error_relative) > world->energy_limit || made > world->energy_limit) {
-            char reason[240];
-            snprintf(
-                reason, sizeof reason,
-                "the energy error is %.3g %%, and the transfers have made %.3g %%; time.energy_limit allows %.3g %%",
-                100 * energy.error_relative, 100 * fmax(made, 0), 100 * world->energy_limit);
-            return fail(world, NULL, error, reason);
-        }
+    int status = (int64_t)now->steps % ENERGY_CHECK == 0 && isfinite(world->energy_limit) ? check_energy(world, error)
+                                                                                          : BRUNT_OK;
+    brunt_pass_end(world, 0);
+    return status;
+}
+
+static int take_step(brunt_world *world, double limit, brunt_error *error) {
+    step s = {.limit = limit};
+    double old_kinetic, new_kinetic, kinetic = 0;
+    int status = begin_step(world, &s, error);
+    if (status) return status;
+    if (world->fem_count) kick_meshes(world, s.gravity, s.kick, s.dt);
+    if (world->gas_lost) return fail_gas(world, error);
+    if (world->body_count && (status = make_grids(world, s.gravity, s.dt, error))) return status;
+    if ((status = constrain_velocities(world, s.gravity, s.kick, s.dt, error))) return status;
+    old_kinetic = new_kinetic = world->now.kinetic;
+    if (world->body_count) {
+        keep_ledger(world, s.gravity, s.dt, &old_kinetic, &new_kinetic);
+        if (world->advance) remap_velocities(world, s.dt);
+        status = gather_bodies(world, s.dt, &kinetic, error);
     }
-    return BRUNT_OK;
+    if (world->hold_count || world->has_damping) finish_kick(world, s.kick);
+    if (world->fem_count) {
+        int moved = move_meshes(world, s.gravity, s.kick, s.dt, status ? NULL : error);
+        status = status ? status : moved;
+    }
+    world->now.transfer += world->now.kinetic - old_kinetic + new_kinetic - kinetic;
+    world->now.kinetic = kinetic;
+    advance(world, &s);
+    if (!status && world->has_erosion) status = erode(world, s.dt, error);
+    return status ? status : look_over(world, error);
+}
+
+int brunt_world_step(brunt_world *world, double limit, brunt_error *error) {
+    brunt_step_begin(world);
+    int status = take_step(world, limit, error);
+    brunt_step_end(world);
+    return status;
 }

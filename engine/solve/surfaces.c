@@ -146,7 +146,7 @@ static int meet_by_facets(brunt_world *world, const brunt_meeting *m) {
     if (!failed && world->has_augury && world->contact.form == BRUNT_AUGURY_AFFINE)
         failed = brunt_facing_find(m, world->bodies, world->body_count, world->facing, points);
     int sweeps = world->contact.form == BRUNT_AUGURY_AFFINE ? world->contact.iterations : SWEEPS;
-    if (!failed && brunt_points_solve(points, sweeps, m->threads, m->seconds) < 0) failed = -1;
+    if (!failed && brunt_points_solve(points, sweeps, m->threads, m->timer) < 0) failed = -1;
     if (failed) return failed;
     brunt_facing_book_holds(m, world->walls, world->wall_count, world->now.time, world->facing, points);
     brunt_facing_finish(m, world->bodies, world->facing, points);
@@ -154,7 +154,7 @@ static int meet_by_facets(brunt_world *world, const brunt_meeting *m) {
 }
 
 int brunt_surfaces_meet(brunt_world *world, const double gravity[3], double kick, double dt, brunt_error *error) {
-    double *seconds = world->pass[BRUNT_PASS_surfaces].thread_seconds;
+    brunt_timer *timer = &world->pass[BRUNT_PASS_surfaces].threads;
     brunt_meeting m = {
         .skin = &world->skin,
         .pairs = world->pairs,
@@ -169,16 +169,16 @@ int brunt_surfaces_meet(brunt_world *world, const double gravity[3], double kick
         .mirror_count = world->mirror_count,
         .walls = world->walls,
         .threads = world->threads,
-        .seconds = seconds};
+        .timer = timer};
     memcpy(world->skin.frame, world->now.contact_frame, sizeof world->skin.frame);
-    brunt_skin_bounds(&world->skin, world->threads, seconds);
+    brunt_skin_bounds(&world->skin, world->threads, timer);
     int failed = brunt_facing_near(&m, world->bodies, world->body_count, world->walls, world->wall_count,
                                    world->now.time, &world->facing);
     if (!failed) {
         if (world->has_grid_surfaces) brunt_grid_surfaces_near(&m, world->bodies, world->body_count);
         if (world->has_augury && world->contact.form == BRUNT_AUGURY_PAPER) // acts on every surface, touched or not
             for (int k = 0; k < world->fem_count; k++) world->skin.active[k] = true;
-        brunt_skin_take(&world->skin, kick, gravity, world->threads, seconds);
+        brunt_skin_take(&world->skin, kick, gravity, world->threads, timer);
         if (world->has_augury && world->contact.form == BRUNT_AUGURY_PAPER)
             failed = brunt_augury_paper(&m, world->contact.transfer, &world->augury);
         else if (world->has_augury && world->contact.form != BRUNT_AUGURY_AFFINE)
@@ -192,7 +192,7 @@ int brunt_surfaces_meet(brunt_world *world, const double gravity[3], double kick
         brunt_grid_surfaces_finish(&m, world->bodies, world->mirrors, world->mirror_count, world->walls,
                                    world->grid_surfaces);
     if (failed) return brunt_fail(error, BRUNT_FAILED, "out of memory in the contact of surfaces");
-    brunt_skin_give(&world->skin, dt, world->threads, seconds);
+    brunt_skin_give(&world->skin, dt, world->threads, timer);
     memcpy(world->now.contact_frame, world->skin.frame, sizeof world->skin.frame);
     brunt_fem_hold_contact(world);
     return BRUNT_OK;

@@ -8,6 +8,7 @@
 #include "facing.h"
 #include "fem.h"
 #include "grid_surfaces.h"
+#include "threads.h"
 #include "transfer.h"
 
 // The passes of a step, in their order. A pass nobody asked for is not in the plan and does not run.
@@ -28,7 +29,8 @@
     X(gather, world->body_count > 0)                                                                                   \
     X(drift, world->fem_count > 0)                                                                                     \
     X(elements, world->fem_count > 0)                                                                                  \
-    X(erosion, world->has_erosion)
+    X(erosion, world->has_erosion)                                                                                     \
+    X(advance, true) // which step is due, the clock, accounts, what is watched: in parts, around the others
 
 enum {
 #define BRUNT_PASS_INDEX(name, when) BRUNT_PASS_##name,
@@ -153,9 +155,32 @@ struct brunt_world {
 
     struct brunt_pass_time {
         int64_t calls;
-        double seconds, thread_seconds[256];
+        double seconds, units; // units: particles, nodes or elements gone over
+        brunt_timer threads;
     } pass[BRUNT_PASS_COUNT];
+    struct brunt_timing {
+        double seconds;     // [s] of all steps, without what the observer took
+        double begin, mark; // [s] of the clock: where the step began (later by what the observer took), and the pass
+        int pass;           // that runs; -1: none
+        bool observed;
+        brunt_observer observer;
+    } timing;
 };
+
+// --- timing.c: what the step and its passes take. A pass begins where the one before ended, so that no moment of a step is
+// left out and the clock is read once a pass.
+void brunt_step_begin(brunt_world *world);
+void brunt_step_end(brunt_world *world); // ends a pass that was left by an error as well
+void brunt_pass_begin(brunt_world *world, int pass);
+// `units`: how many particles, nodes or elements the pass has gone over.
+void brunt_pass_end(brunt_world *world, double units);
+
+// --- work.c: what a pass moves and computes, counted
+typedef struct brunt_work {
+    const char *unit;    // what it goes over: "particle", "node", "element"; of erosion with both "point"; "body"
+    double bytes, flops; // for one of them, as the world is now; 0: not counted, since it depends on what meets what
+} brunt_work;
+brunt_work brunt_pass_work(const brunt_world *world, int pass);
 
 // --- grid_update.c
 typedef struct brunt_grid_job {
