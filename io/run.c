@@ -14,10 +14,12 @@
 #include "hash.h"
 #include "measures.h"
 #include "memory.h"
+#include "observers.h"
 #include "progress.h"
 #include "pvd.h"
 #include "summary.h"
 #include "threads.h"
+#include "trace.h"
 #include "vtu.h"
 
 // An output time counts as reached within this relative distance: two series of times may differ by rounding where they
@@ -39,7 +41,11 @@ typedef struct run {
     int64_t first_step;                // of this leg
     double checkpoint_wall, history_wall, history_cost; // [s] when last written, [s] it took
     brunt_console console;
-    bool told; // the mistakes have been printed
+    brunt_trace *trace; // NULL: none
+    brunt_observers observers;
+    brunt_counters counters;
+    bool counting; // the processor's counters are open
+    bool told;     // the mistakes have been printed
 } run;
 
 static int path_in(const run *r, const char *name, char out[BRUNT_PATH_LENGTH], brunt_error *error) {
@@ -73,9 +79,20 @@ static void schedule(run *r) {
 
 // ---------------------------------------------------------------------------------------------------- writing
 
+static void trace_output(const run *r, const char *what, double start) {
+    if (r->trace) brunt_trace_output(r->trace, what, start, brunt_clock());
+}
+
+static int sample_history(run *r, brunt_error *error) {
+    double start = brunt_clock();
+    int status = brunt_history_sample(r->history, r->world, error);
+    trace_output(r, "history", start);
+    return status;
+}
+
 static int write_picture(run *r, brunt_error *error) {
     const brunt_output_def *output = &r->scene->output;
-    double time = brunt_world_time(r->world);
+    double time = brunt_world_time(r->world), start = brunt_clock();
     int64_t number = r->state.picture_count;
     char path[BRUNT_PATH_LENGTH], name[128];
     int status = BRUNT_OK;
@@ -94,7 +111,9 @@ static int write_picture(run *r, brunt_error *error) {
     r->state.picture_times = memory;
     r->state.picture_times[r->state.picture_count++] = time;
     status = path_in(r, "brunt.pvd", path, error);
-    return status ? status : brunt_pvd_write(path, r->world, r->state.picture_times, r->state.picture_count, error);
+    if (!status) status = brunt_pvd_write(path, r->world, r->state.picture_times, r->state.picture_count, error);
+    trace_output(r, "picture", start);
+    return status;
 }
 
 static int write_history(run *r, brunt_error *error) {
@@ -104,6 +123,7 @@ static int write_history(run *r, brunt_error *error) {
     if (!status) status = brunt_history_write(r->history, path, error);
     r->history_wall = brunt_clock();
     r->history_cost = r->history_wall - start;
+    trace_output(r, "history file", start);
     return status;
 }
 
@@ -118,6 +138,7 @@ static brunt_run_state state_now(const run *r) {
 // The history is written before: a checkpoint's lines are in the file whatever happens in between.
 static int write_checkpoint(run *r, const char *failure, brunt_error *error) {
     char path[BRUNT_PATH_LENGTH], backup[BRUNT_PATH_LENGTH];
+    double start = brunt_clock();
     int status = write_history(r, error);
     if (!status) status = path_in(r, "checkpoint.h5", path, error);
     if (!status) status = path_in(r, "checkpoint.previous.h5", backup, error);
@@ -129,6 +150,7 @@ static int write_checkpoint(run *r, const char *failure, brunt_error *error) {
     }
     status = brunt_checkpoint_write(path, backup, r->world, r->scene_text, &state, error);
     r->checkpoint_wall = brunt_clock();
+    trace_output(r, "checkpoint", start);
     return status;
 }
 
@@ -154,7 +176,7 @@ static int write_outputs(run *r, bool last, brunt_error *error) {
     // the time.
     bool save_history = start - r->history_wall >= fmax(30, 20 * r->history_cost);
     int status = BRUNT_OK;
-    if (history && !history_is_here(r)) status = brunt_history_sample(r->history, r->world, error);
+    if (history && !history_is_here(r)) status = sample_history(r, error);
     if (!status && picture && !picture_is_here(r)) status = write_picture(r, error);
     if (!status && checkpoint)
         status = write_checkpoint(r, NULL, error);
@@ -350,7 +372,7 @@ static int prepare_folder(run *r, brunt_error *error) {
 
 static int write_first(run *r, brunt_error *error) {
     double start = brunt_clock();
-    int status = brunt_history_sample(r->history, r->world, error);
+    int status = sample_history(r, error);
     if (!status && !isinf(r->scene->output.every)) status = write_picture(r, error);
     // A first checkpoint: a run killed before the second can be resumed, and a disk too small for one is found now.
     if (!status && !isinf(r->scene->output.checkpoint)) status = write_checkpoint(r, NULL, error);
@@ -380,13 +402,15 @@ static int finish(run *r, const char *status_name, const char *reason, bool eval
                              .cpu_seconds = now.cpu_seconds,
                              .step_seconds = now.step_seconds,
                              .output_seconds = now.output_seconds,
-                             .leg_steps = brunt_world_steps(r->world) - r->first_step,
+                             .peak_bytes = brunt_summary_peak(),
                              .results = status ? NULL : results};
     brunt_summary_print(&summary, scene, r->world, &r->console);
+    brunt_profile profile;
     if (r->options->profile) {
-        brunt_summary leg = summary;
-        leg.output_seconds = r->leg_output;
-        brunt_profile_print(&leg, r->world, &r->console);
+        brunt_profile_make(r->world, r->counting ? &r->counters : NULL, brunt_world_steps(r->world) - r->first_step,
+                           r->leg_output, &profile);
+        brunt_profile_print(&profile, &r->console);
+        summary.profile = &profile;
     }
     char path[BRUNT_PATH_LENGTH];
     if (!status) status = path_in(r, "summary.json", path, error);
@@ -436,9 +460,10 @@ static int loop(run *r, brunt_error *error) {
     while (!status && !reached(brunt_world_time(r->world), end)) {
         status = serve_signals(r, error);
         if (status) break;
-        double start = brunt_clock();
+        double start = brunt_clock(), before = brunt_world_step_seconds(r->world);
         status = brunt_world_step(r->world, fmin(r->next_picture, r->next_history), error);
-        r->state.step_seconds += brunt_clock() - start;
+        r->state.step_seconds += brunt_world_step_seconds(r->world) - before; // without what observers took
+        if (r->trace) brunt_trace_step(r->trace, start, brunt_clock());
         if (warned < brunt_warning_count(r->world)) {
             warn_from(r->world, warned, &r->console);
             warned = brunt_warning_count(r->world);
@@ -450,9 +475,50 @@ static int loop(run *r, brunt_error *error) {
     return status ? status : write_outputs(r, true, error);
 }
 
+// Where the trace cannot be written is found before anything of an earlier run goes.
+static int check_trace(const run *r, brunt_error *error) {
+    if (!r->options->trace) return BRUNT_OK;
+    int status = brunt_make_folder(r->folder, error); // it may be to lie there
+    return status ? status : brunt_trace_check(r->options->trace, error);
+}
+
+static int start_observers(run *r, brunt_error *error) {
+    if (r->options->trace) {
+        r->trace = brunt_trace_open(r->options->trace, r->scene->name, r->world, r->leg_start, error);
+        if (!r->trace) return error->code;
+        brunt_observers_add(&r->observers, brunt_trace_observer(r->trace));
+    }
+    if (r->counting) brunt_observers_add(&r->observers, brunt_counters_observer(&r->counters));
+    brunt_observers_watch(&r->observers, r->world);
+    return BRUNT_OK;
+}
+
+// After the last file has been written; also when the run has failed, which comes before what goes wrong here.
+static int end_trace(run *r, int status, brunt_error *error) {
+    if (!r->trace) return status;
+    brunt_trace_count count;
+    brunt_error second = {0};
+    brunt_world_observe(r->world, NULL);
+    int failed = brunt_trace_close(r->trace, &count, &second);
+    r->trace = NULL;
+    if (failed)
+        brunt_console_print(&r->console, "no trace: %s\n", second.message);
+    else
+        brunt_console_print(&r->console, "trace: %lld events in %s (open in ui.perfetto.dev)\n",
+                            (long long)count.events, r->options->trace);
+    if (!failed && count.left_out)
+        brunt_console_print(&r->console, "trace: %lld of %lld steps are left out, with %lld events\n",
+                            (long long)count.steps_left_out, (long long)count.steps, (long long)count.left_out);
+    if (status || !failed) return status;
+    *error = second;
+    return failed;
+}
+
 static int run_made(run *r, brunt_error *error) {
     int status = r->options->resume ? restore(r, error) : BRUNT_OK;
+    if (!status) status = check_trace(r, error);
     if (!status) status = prepare_folder(r, error);
+    if (!status) status = start_observers(r, error);
     if (status) return status;
     r->checkpoint_wall = r->history_wall = brunt_clock();
     r->first_step = brunt_world_steps(r->world);
@@ -505,13 +571,15 @@ int brunt_run(const brunt_scene *scene, const brunt_run_options *options, brunt_
                                  : brunt_join_path(r->folder, "out", scene->name, error);
     size_t length = strlen(r->folder);
     if (length > 1 && r->folder[length - 1] == '/') r->folder[length - 1] = 0;
+    if (options->profile) r->counting = brunt_counters_open(&r->counters); // threads made from now on are counted
     if (!status) status = make_world(r, error);
-    if (!status) status = run_made(r, error);
+    if (!status) status = end_trace(r, run_made(r, error), error);
     if (status == BRUNT_BAD_INPUT && options->messages && !r->told) fprintf(options->messages, "%s\n", error->message);
     if (r->console.log) fclose(r->console.log);
     brunt_run_state_free(&r->state);
     brunt_history_destroy(r->history);
     brunt_world_destroy(r->world);
+    if (r->counting) brunt_counters_close(&r->counters);
     brunt_free(r->measure_initial);
     free(r->scene_text);
     brunt_free(r);

@@ -17,6 +17,7 @@ typedef struct brunt_run_options {
     const char *folder;                // NULL: out/<scene name>
     bool resume;                       // go on from the folder's checkpoint
     bool profile;                      // print what each pass cost
+    const char *trace;                 // file for a time line of the run (trace.h), of this leg alone; NULL: none
     FILE *console;                     // NULL: all is kept in log.txt alone
     FILE *messages;                    // mistakes found before the run, one a line; NULL: only the first is in `error`
     const volatile sig_atomic_t *stop; // checkpoint and stop as soon as it is not 0; may be NULL

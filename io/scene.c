@@ -75,7 +75,7 @@ int brunt_scene_parse(const char *text, size_t length, const char *name, const c
     size_t warned = 0;
     scene_reader reader = {.tree = tree, .units = units, .scene = scene};
     if (tree && units && start_warnings(&reader, &warned)) {
-        *tree = (scene_tree){.name = scene->source, .source = text, .length = length};
+        *tree = (scene_tree){.format = &brunt_scene_format, .name = scene->source, .source = text, .length = length};
         read_tree(&reader, text, length, sets, set_count);
         end_warnings(&reader, &warned);
         if (tree->message_count == 0 && !tree->exhausted)
@@ -93,11 +93,12 @@ int brunt_scene_parse(const char *text, size_t length, const char *name, const c
     return status;
 }
 
-int brunt_scene_read(const char *path, const char *const *sets, int set_count, brunt_scene *scene, FILE *messages) {
-    memset(scene, 0, sizeof *scene);
+int brunt_read_text(const char *path, char **out, size_t *size, FILE *messages) {
     FILE *file = fopen(path, "rb");
     size_t length = 0, capacity = 0;
     void *text = NULL;
+    *out = NULL;
+    *size = 0;
     bool failed = !file;
     while (!failed) {
         // One byte more than is accepted: the parser then says that the file is too large.
@@ -118,7 +119,18 @@ int brunt_scene_read(const char *path, const char *const *sets, int set_count, b
         return BRUNT_IO_ERROR;
     }
     fclose(file);
-    int status = brunt_scene_parse(text, length, path, sets, set_count, scene, messages);
+    *out = text;
+    *size = length;
+    return BRUNT_OK;
+}
+
+int brunt_scene_read(const char *path, const char *const *sets, int set_count, brunt_scene *scene, FILE *messages) {
+    memset(scene, 0, sizeof *scene);
+    char *text;
+    size_t length;
+    int status = brunt_read_text(path, &text, &length, messages);
+    if (status) return status;
+    status = brunt_scene_parse(text, length, path, sets, set_count, scene, messages);
     brunt_free(text);
     return status;
 }

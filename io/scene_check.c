@@ -332,6 +332,18 @@ static void check_names(scene_reader *reader, scene_node *node, const scene_key 
     }
 }
 
+static void check_reals(scene_reader *reader, scene_node *node, const scene_key *row) {
+    char want[128];
+    wanted(reader, row, want, sizeof want);
+    if (node->kind != SCENE_LIST || node->count == 0) {
+        brunt_tree_complain(reader->tree, node, "%s is given, a list of numbers is wanted: each %s",
+                            node->kind == SCENE_LIST ? "an empty list" : kind_name(node), want);
+        return;
+    }
+    node->good = true;
+    for (scene_node *child = node->first; child; child = child->next) node->good &= check_number(reader, child, row);
+}
+
 // Which axes: value[c] is 1 for those that are meant.
 static void check_axes(scene_reader *reader, scene_node *node) {
     static const char *const axes[] = {"x", "y", "z"};
@@ -428,6 +440,7 @@ static void sort_children(scene_node *node) {
 
 scene_node *brunt_add_default(scene_reader *reader, scene_node *map, const char *key, const char *text) {
     char path[256];
+    const scene_format *format = reader->tree->format;
     const scene_key *row = NULL;
     if (map->row) {
         bool entry = map->parent && map->parent->row && map->parent->row == map->row;
@@ -436,9 +449,9 @@ scene_node *brunt_add_default(scene_reader *reader, scene_node *map, const char 
                  : map->row->type == SCENE_NAMED ? ".*"
                                                  : "[]",
                  key);
-        row = brunt_scene_row(path);
+        row = brunt_format_row(format, path);
     } else {
-        row = brunt_scene_row(key);
+        row = brunt_format_row(format, key);
     }
     if (!row) return NULL;
     scene_node *node = NULL;
@@ -464,7 +477,7 @@ scene_node *brunt_add_default(scene_reader *reader, scene_node *map, const char 
     if (!node || !(node->key = brunt_tree_text(reader->tree, key, strlen(key)))) return NULL;
     brunt_tree_append(map, node);
     check_value(reader, node, row);
-    node->order = (int)(row - brunt_scene_table) * PARAMETER_ORDER;
+    node->order = (int)(row - format->rows) * PARAMETER_ORDER;
     sort_children(map);
     return node;
 }
@@ -509,8 +522,9 @@ static void collect_rows(scene_reader *reader, const scene_node *node, const cha
     rows->count = 0;
     rows->model = NULL;
     rows->model_unknown = false;
-    for (int i = 0; i < brunt_scene_table_count; i++) {
-        const scene_key *row = &brunt_scene_table[i];
+    const scene_format *format = reader->tree->format;
+    for (int i = 0; i < *format->row_count; i++) {
+        const scene_key *row = &format->rows[i];
         const char *key = brunt_scene_child_key(row, pattern);
         if (!key || rows->count >= NAMES_LIMIT) continue;
         if (row->dimension && reader->dimension && row->dimension != reader->dimension) continue;
@@ -548,7 +562,7 @@ static void add_missing(scene_reader *reader, scene_node *node, const group_rows
         return;
     }
     if (!*row->initial || row->depends) return;
-    if (brunt_scene_row(row->path) == row) {
+    if (brunt_format_row(reader->tree->format, row->path) == row) {
         brunt_add_default(reader, node, rows->key[r], row->initial);
         return;
     }
@@ -584,7 +598,7 @@ static void check_group(scene_reader *reader, scene_node *node, const char *patt
         }
         char path[256];
         snprintf(path, sizeof path, "%s%s%.100s", pattern, *pattern ? "." : "", child->key);
-        const scene_key *other = brunt_scene_row(path);
+        const scene_key *other = brunt_format_row(reader->tree->format, path);
         if (other && other->dimension)
             brunt_tree_complain_key(reader->tree, child, "there is none in %d dimensions", reader->dimension);
         else if (!rows.model_unknown)
@@ -689,9 +703,13 @@ static void check_value(scene_reader *reader, scene_node *node, const scene_key 
         break;
     case SCENE_SHAPE: check_shape(reader, node); break;
     case SCENE_SHAPES: check_shapes(reader, node); break;
+    case SCENE_REALS: check_reals(reader, node, row); break;
+    case SCENE_ANY: node->good = true; break;
     case SCENE_PARAMETERS: break; // never a row of its own: replaced by the parameters
     }
 }
+
+void brunt_check_keys(scene_reader *reader) { check_group(reader, reader->tree->root, ""); }
 
 void brunt_check_scene(scene_reader *reader) {
     // The lengths of all vectors hang on the dimension, so it is looked at before anything else.
@@ -702,7 +720,7 @@ void brunt_check_scene(scene_reader *reader) {
         if (strcmp(dimension->text, "3") == 0) reader->dimension = 3;
     }
     brunt_expand_presets(reader);
-    check_group(reader, root, "");
+    brunt_check_keys(reader);
 }
 
 // ---------------------------------------------------------------------------------------------------- accepted values

@@ -251,11 +251,15 @@ const scene_section brunt_scene_sections[] = {
 const int brunt_scene_section_count = sizeof brunt_scene_sections / sizeof *brunt_scene_sections;
 // clang-format on
 
-const scene_key *brunt_scene_row(const char *path) {
-    for (int i = 0; i < brunt_scene_table_count; i++)
-        if (strcmp(brunt_scene_table[i].path, path) == 0) return &brunt_scene_table[i];
+const scene_format brunt_scene_format = {"scene", "brunt: 1", brunt_scene_table, &brunt_scene_table_count};
+
+const scene_key *brunt_format_row(const scene_format *format, const char *path) {
+    for (int i = 0; i < *format->row_count; i++)
+        if (strcmp(format->rows[i].path, path) == 0) return &format->rows[i];
     return NULL;
 }
+
+const scene_key *brunt_scene_row(const char *path) { return brunt_format_row(&brunt_scene_format, path); }
 
 const char *brunt_scene_child_key(const scene_key *row, const char *parent) {
     size_t length = strlen(parent);

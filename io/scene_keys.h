@@ -1,5 +1,5 @@
-// The table of keys. Private to the scene reader: parser, checker, reference, resolved scene and schema are made from
-// it.
+// The tables of keys, one a kind of file. Private to their readers: parser, checker, reference, resolved scene and
+// schema are made from them.
 #pragma once
 
 #include <stdbool.h>
@@ -28,7 +28,9 @@ typedef enum scene_type {
     SCENE_WORD,      // one of `words`
     SCENE_SHAPE,     // a shape: the rows at "<shape>"
     SCENE_SHAPES,    // a list of shapes
-    SCENE_PARAMETERS // stands for the parameters of the chosen model
+    SCENE_PARAMETERS, // stands for the parameters of the chosen model
+    SCENE_REALS,     // list of numbers with unit
+    SCENE_ANY        // anything: whoever reads it checks it
 } scene_type;
 
 typedef struct scene_key {
@@ -47,6 +49,15 @@ typedef struct scene_key {
 extern const scene_key brunt_scene_table[];
 extern const int brunt_scene_table_count;
 
+// A kind of file: what it is called, how it begins, and its rows.
+typedef struct scene_format {
+    const char *name, *first; // "scene", "brunt: 1"
+    const scene_key *rows;
+    const int *row_count;
+} scene_format;
+
+extern const scene_format brunt_scene_format, brunt_study_format;
+
 // A section of the reference: a heading above the rows that start with one of its prefixes.
 typedef struct scene_section {
     const char *name, *prefix, *doc;
@@ -56,7 +67,8 @@ extern const scene_section brunt_scene_sections[];
 extern const int brunt_scene_section_count;
 
 // The row at a path, NULL when there is none.
-const scene_key *brunt_scene_row(const char *path);
+const scene_key *brunt_format_row(const scene_format *format, const char *path);
+const scene_key *brunt_scene_row(const char *path); // of scenes
 // The last part of a row's path when the row is a child of `parent`, else NULL.
 const char *brunt_scene_child_key(const scene_key *row, const char *parent);
 // The models behind a SCENE_PARAMETERS row or a "model" row.

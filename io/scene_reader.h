@@ -23,6 +23,9 @@ typedef struct scene_reader {
 void brunt_expand_presets(scene_reader *reader);
 // Stage 3. Afterwards every accepted value is `good`, and every key that has a default is there.
 void brunt_check_scene(scene_reader *reader);
+void brunt_check_keys(scene_reader *reader); // the same for a file of any format, without what is particular to scenes
+// The text of a file, to be given back with brunt_free. BRUNT_IO_ERROR after a message.
+int brunt_read_text(const char *path, char **text, size_t *length, FILE *messages);
 // Adds a key that is not there, as if the user had typed its value; returns it.
 scene_node *brunt_add_default(scene_reader *reader, scene_node *map, const char *key, const char *text);
 // Parameters of a model, in its own order; true when all of them are good.

@@ -28,6 +28,18 @@ static const char example[] =
     "measures:\n"
     "  energy_kept: {energy: total, take: end, relative_to: initial, expect: 1, tolerance: 0.05}\n";
 
+static const char study_example[] =
+    "# The ball of `brunt keys` at four cells and with two transfers: which is how far from the finest, in what time?\n"
+    "brunt_study: 1\n"
+    "title: A copper ball, transfers\n"
+    "scene: ball.yaml                           # from the folder of this file\n"
+    "set: {output.every: none}\n"
+    "axes:\n"
+    "  transfer: {key: grid.transfer, values: {APIC: apic, FLIP: {flip: 0.99}}}\n"
+    "  h: {key: grid.cell, values: [2 mm, 1.4 mm, 1 mm, 0.7 mm], role: resolution}\n"
+    "measures:\n"
+    "  energy_kept: {reference: finest, title: error of the energy}\n";
+
 // ---------------------------------------------------------------------------------------------------- text
 
 static void describe_kind(const scene_key *row, char *out, size_t size) {
@@ -53,6 +65,10 @@ static void describe_kind(const scene_key *row, char *out, size_t size) {
     case SCENE_SHAPE: snprintf(out, size, "shape"); break;
     case SCENE_SHAPES: snprintf(out, size, "list of shapes"); break;
     case SCENE_PARAMETERS: snprintf(out, size, "numbers"); break;
+    case SCENE_REALS:
+        snprintf(out, size, strcmp(row->unit, "1") == 0 ? "list of numbers" : "list [%s]", row->unit);
+        break;
+    case SCENE_ANY: snprintf(out, size, "see meaning"); break;
     }
 }
 
@@ -195,8 +211,23 @@ static void write_section(FILE *out, const scene_section *section) {
     if (strcmp(section->name, "materials") == 0) write_models(out);
 }
 
+static void write_study(FILE *out) {
+    fputs(study_example, out);
+    fputs("\nA path is what --set of brunt run takes: bodies.rod.size, boundaries[0].friction. Text that holds {NAME} "
+          "of an "
+          "axis gets\nthe number of its value in SI, or its label; {NAME*2} and {NAME/2} twice and half of it. Columns "
+          "as "
+          "of scenes.\n\nstudy: the file of brunt study\n",
+          out);
+    for (int i = 0; i < *brunt_study_format.row_count; i++) write_key(out, &brunt_study_format.rows[i]);
+}
+
 bool brunt_scene_keys(const char *section, FILE *out) {
     bool found = false;
+    if (section && strcmp(section, brunt_study_format.name) == 0) {
+        write_study(out);
+        return true;
+    }
     if (!section) {
         fputs(example, out);
         fputs("\nValues take units (190 m/s, 12 mm, 22 deg, 20 degC); bare numbers are SI. Vectors have as many "
@@ -407,6 +438,8 @@ static void schema_value(FILE *out, const scene_key *row) {
     case SCENE_SHAPES:
         fputs("\"type\": \"array\", \"minItems\": 1, \"items\": {\"$ref\": \"#/$defs/shape\"}", out);
         break;
+    case SCENE_REALS: fputs("\"type\": \"array\", \"items\": {\"$ref\": \"#/$defs/number\"}", out); break;
+    case SCENE_ANY: fputs("\"type\": [\"object\", \"array\", \"string\", \"number\"]", out); break;
     case SCENE_PARAMETERS: break;
     }
     fputc('}', out);

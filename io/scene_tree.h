@@ -1,4 +1,5 @@
-// A YAML document as a bounded tree with places, and the list of mistakes found in it. Private to the scene reader.
+// A YAML document as a bounded tree with places, and the list of mistakes found in it. Private to the readers of scenes
+// and studies.
 //
 // libfyaml scans and parses; the tree is our own, made from its events, so that depth, size and aliases are bounded
 // before anything is built, and so that overrides and defaults are put in like what the user typed.
@@ -9,6 +10,7 @@
 #include <stdio.h>
 
 struct scene_key;
+struct scene_format;
 
 typedef enum scene_kind { SCENE_SCALAR, SCENE_MAP, SCENE_LIST } scene_kind;
 
@@ -55,6 +57,7 @@ typedef struct scene_tree {
     int node_count;
     scene_message *messages;
     int message_count;
+    const struct scene_format *format; // what it is to be
     const char *name;   // of the file, for messages
     const char *source; // its text; valid while it is read
     size_t length;

@@ -3,6 +3,7 @@
 // The events are taken rather than libfyaml's own document: aliases are then expanded under our budget, depth is cut
 // where we say, and no stage of the library sees more than one event at a time. Text that is no text (binary, broken
 // UTF-8) and tabs used as indentation are refused before it is called, with better messages than a scanner can give.
+#include "scene_keys.h"
 #include "scene_tree.h"
 
 #include <stdint.h>
@@ -55,22 +56,31 @@ static int character(const unsigned char *p, const unsigned char *end) {
     return overlong || surrogate || refused ? 0 : length;
 }
 
+static void complain_empty(builder *b) {
+    char message[96];
+    snprintf(message, sizeof message, "the file is empty: a %s starts with '%s'", b->tree->format->name,
+             b->tree->format->first);
+    complain(b, message);
+}
+
 // False after one message when the text cannot be handed to the scanner.
 static bool readable(builder *b, const char *text, size_t length) {
+    const scene_format *format = b->tree->format;
+    char message[96];
     const unsigned char *p = (const unsigned char *)text, *end = p + length;
     bool indentation = true, tab = false, content = false;
     int nesting = 0;
     b->line = b->column = 1;
     if (length > SCENE_TEXT_LIMIT) {
-        complain(b, "the file is larger than 4 MiB, too large for a scene");
+        snprintf(message, sizeof message, "the file is larger than 4 MiB, too large for a %s", format->name);
+        complain(b, message);
         return false;
     }
     while (p < end) {
         int bytes = character(p, end);
         if (*p == '\r' && p + 1 < end && p[1] != '\n') bytes = 0; // old Macintosh line ends
         if (!bytes) {
-            char message[96];
-            snprintf(message, sizeof message, "byte 0x%02X is not text: a scene is YAML in UTF-8", *p);
+            snprintf(message, sizeof message, "byte 0x%02X is not text: a %s is YAML in UTF-8", *p, format->name);
             complain(b, message);
             return false;
         }
@@ -117,8 +127,10 @@ static bool readable(builder *b, const char *text, size_t length) {
     }
     if (!content) {
         b->line = b->column = 1;
-        complain(b,
-                 b->option ? "a value is wanted behind the '='" : "the file is empty: a scene starts with 'brunt: 1'");
+        if (b->option)
+            complain(b, "a value is wanted behind the '='");
+        else
+            complain_empty(b);
         return false;
     }
     return true;
@@ -324,7 +336,7 @@ static void on_event(builder *b, struct fy_event *event, int *documents) {
     switch (event->type) {
     case FYET_DOCUMENT_START:
         if (++*documents > 1) {
-            complain(b, "a second document starts here: a scene is one");
+            complain(b, "a second document starts here: one is wanted");
             b->stop = true;
         }
         break;
@@ -377,7 +389,7 @@ scene_node *brunt_tree_parse(scene_tree *tree, const char *text, size_t length, 
     fy_diag_destroy(diag);
     if (!b.root && tree->message_count == messages && !tree->exhausted) {
         b.line = b.column = 1;
-        complain(&b, "the file is empty: a scene starts with 'brunt: 1'");
+        complain_empty(&b);
     }
     return tree->message_count == messages && !tree->exhausted ? b.root : NULL;
 }

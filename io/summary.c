@@ -8,7 +8,7 @@
 #include "atomic_file.h"
 #include "error.h"
 
-static double peak_memory(void) {
+double brunt_summary_peak(void) {
     struct rusage usage;
     getrusage(RUSAGE_SELF, &usage);
     return 1024.0 * (double)usage.ru_maxrss;
@@ -147,7 +147,8 @@ static json_t *summary_object(const brunt_summary *s, const brunt_scene *scene, 
     json_object_set_new(o, "time", number(brunt_world_time(world)));
     json_object_set_new(o, "wall_s", number(s->wall_seconds));
     json_object_set_new(o, "cpu_s", number(s->cpu_seconds));
-    json_object_set_new(o, "peak_rss_bytes", json_integer((json_int_t)peak_memory()));
+    json_object_set_new(o, "step_s", number(s->step_seconds));
+    json_object_set_new(o, "peak_rss_bytes", json_integer((json_int_t)s->peak_bytes));
     json_object_set_new(o, "particles", json_integer(brunt_world_particles(world)));
     json_object_set_new(o, "nodes", json_integer(brunt_world_nodes(world)));
     json_object_set_new(o, "elements", json_integer(brunt_world_elements(world)));
@@ -164,6 +165,7 @@ static json_t *summary_object(const brunt_summary *s, const brunt_scene *scene, 
     json_object_set_new(o, "momentum", momentum_of(world));
     json_object_set_new(o, "eroded", eroded_of(world));
     json_object_set_new(o, "measures", measures_of(s, scene));
+    if (s->profile) json_object_set_new(o, "profile", brunt_profile_json(s->profile));
     return o;
 }
 
@@ -255,7 +257,7 @@ void brunt_summary_print(const brunt_summary *s, const brunt_scene *scene, brunt
     brunt_console_print(console, "t = %.9g s after %lld steps of %.4g to %.4g s\n", brunt_world_time(world),
                         (long long)brunt_world_steps(world), brunt_world_dt_min(world), brunt_world_dt_max(world));
     brunt_console_print(console, "wall %.2f s, of it steps %.2f s, output %.2f s; cpu %.2f s; peak memory %.1f MB\n",
-                        s->wall_seconds, s->step_seconds, s->output_seconds, s->cpu_seconds, 1e-6 * peak_memory());
+                        s->wall_seconds, s->step_seconds, s->output_seconds, s->cpu_seconds, 1e-6 * s->peak_bytes);
     print_rate(console, (double)brunt_world_particles(world), steps, s->step_seconds, "particle");
     print_rate(console, (double)brunt_world_elements(world), steps, s->step_seconds, "element");
     print_energy(world, console);
@@ -263,25 +265,4 @@ void brunt_summary_print(const brunt_summary *s, const brunt_scene *scene, brunt
     brunt_console_print(console, "momentum drift: linear %.2e, angular %.2e\n", m.linear_drift, m.angular_drift);
     brunt_console_print(console, "state hash 0x%016llx\n", (unsigned long long)brunt_world_hash(world));
     print_measures(s, scene, console);
-}
-
-void brunt_profile_print(const brunt_summary *summary, brunt_world *world, brunt_console *console) {
-    double total = summary->output_seconds;
-    for (int32_t p = 0; p < brunt_pass_count(world); p++) total += brunt_world_pass(world, p).seconds;
-    // A pass may run once a body: its cost is per step of the whole world, so that the rows add up.
-    double points = (double)(brunt_world_particles(world) + brunt_world_elements(world)) * (double)summary->leg_steps;
-    int threads = brunt_world_threads(world);
-    if (threads > 64) threads = 64;
-    brunt_console_print(console, "profile of this leg of the run\n  %-28s %10s %10s %12s %7s  per thread [s]\n", "pass",
-                        "seconds", "calls", "ns/point", "share");
-    for (int32_t p = 0; p < brunt_pass_count(world); p++) {
-        brunt_pass pass = brunt_world_pass(world, p);
-        brunt_console_print(console, "  %-28s %10.4f %10lld %12.2f %6.1f%% ", pass.name, pass.seconds,
-                            (long long)pass.calls, points > 0 ? 1e9 * pass.seconds / points : 0.0,
-                            total > 0 ? 100 * pass.seconds / total : 0.0);
-        for (int t = 0; t < threads; t++) brunt_console_print(console, " %.3f", pass.thread_seconds[t]);
-        brunt_console_print(console, "\n");
-    }
-    brunt_console_print(console, "  %-28s %10.4f %10s %12s %6.1f%%\n", "output", summary->output_seconds, "", "",
-                        total > 0 ? 100 * summary->output_seconds / total : 0.0);
 }

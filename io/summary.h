@@ -2,6 +2,7 @@
 #pragma once
 
 #include "measures.h"
+#include "profile.h"
 #include "progress.h"
 #include "scene.h"
 
@@ -11,7 +12,8 @@ typedef struct brunt_summary {
     double wall_seconds, cpu_seconds;    // [s] over all legs of the run
     double step_seconds;                 // [s] wall time inside time steps: what the rates are made of
     double output_seconds;               // [s] wall time spent writing
-    long long leg_steps;                 // taken by this leg
+    double peak_bytes;                   // [bytes] the most memory that the process has had: brunt_summary_peak
+    const brunt_profile *profile;        // of this leg; NULL: none
     const brunt_measure_result *results; // one a measure of the scene; NULL: not evaluated
 } brunt_summary;
 
@@ -19,5 +21,5 @@ int brunt_summary_write(const char *path, const brunt_summary *summary, const br
                         brunt_error *error);
 void brunt_summary_print(const brunt_summary *summary, const brunt_scene *scene, brunt_world *world,
                          brunt_console *console);
-// Per pass of this leg: seconds, calls, ns per step of a particle or element, share, and seconds per thread.
-void brunt_profile_print(const brunt_summary *summary, brunt_world *world, brunt_console *console);
+// [bytes] the most memory that the process has had so far. Before a profile is made, which needs some of its own.
+double brunt_summary_peak(void);

@@ -249,6 +249,7 @@ START_TEST(summary_has_exactly_the_promised_names) {
                                         "time",
                                         "wall_s",
                                         "cpu_s",
+                                        "step_s",
                                         "peak_rss_bytes",
                                         "particles",
                                         "nodes",

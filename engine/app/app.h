@@ -8,15 +8,17 @@ int cmd_run(int argc, char **argv);
 int cmd_check(int argc, char **argv);
 int cmd_keys(int argc, char **argv);
 int cmd_info(int argc, char **argv);
+int cmd_study(int argc, char **argv);
 
 // What the commands that read a scene have in common.
 typedef struct app_arguments {
     const char *operand; // the scene; NULL: none
     const char *folder;  // -o
+    const char *trace;   // --trace
     int threads;         // -t, 0: as the scene or all
     const char *sets[256];
     int set_count; // --set
-    bool resume, profile, quiet, schema;
+    bool resume, profile, quiet, schema, fresh, quick;
 } app_arguments;
 
 typedef enum app_option {
@@ -26,7 +28,10 @@ typedef enum app_option {
     APP_RESUME = 8,
     APP_PROFILE = 16,
     APP_QUIET = 32,
-    APP_SCHEMA = 64
+    APP_SCHEMA = 64,
+    APP_TRACE = 128,
+    APP_FRESH = 256,
+    APP_QUICK = 512
 } app_option;
 
 // Reads options of those `allowed` (app_option, or-ed) and one operand. On a mistake prints one line with a hint and

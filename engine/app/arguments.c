@@ -16,7 +16,8 @@ static const struct {
     {APP_OUTPUT, {"output", required_argument, NULL, 'o'}}, {APP_THREADS, {"threads", required_argument, NULL, 't'}},
     {APP_SET, {"set", required_argument, NULL, 's'}},       {APP_RESUME, {"resume", no_argument, NULL, 'r'}},
     {APP_PROFILE, {"profile", no_argument, NULL, 'p'}},     {APP_QUIET, {"quiet", no_argument, NULL, 'q'}},
-    {APP_SCHEMA, {"schema", no_argument, NULL, 'S'}},
+    {APP_SCHEMA, {"schema", no_argument, NULL, 'S'}},       {APP_TRACE, {"trace", required_argument, NULL, 'T'}},
+    {APP_FRESH, {"fresh", no_argument, NULL, 'F'}},         {APP_QUICK, {"quick", no_argument, NULL, 'Q'}},
 };
 enum { OPTION_COUNT = sizeof options / sizeof *options };
 
@@ -46,7 +47,7 @@ int app_parse(int argc, char **argv, const char *usage, int allowed, bool operan
     for (int o = 0; o < OPTION_COUNT; o++) {
         if (!(allowed & (int)options[o].option)) continue;
         forms[count++] = options[o].form;
-        // Only these three have a short form that is documented; -s, -r, -p, -S are private to this table.
+        // Only these three have a short form that is documented; -s, -r, -p, -S, -T, -F, -Q are private to this table.
         if (strchr("otq", options[o].form.val)) {
             size_t length = strlen(letters);
             letters[length] = (char)options[o].form.val;
@@ -83,6 +84,9 @@ int app_parse(int argc, char **argv, const char *usage, int allowed, bool operan
         case 'p': arguments->profile = true; break;
         case 'q': arguments->quiet = true; break;
         case 'S': arguments->schema = true; break;
+        case 'F': arguments->fresh = true; break;
+        case 'T': arguments->trace = optarg; break;
+        case 'Q': arguments->quick = true; break;
         case 'h': printf("usage: %s\n", usage); return -1;
         case ':': return bad_usage(usage, "%s wants a value", argv[optind - 1]);
         default: return bad_usage(usage, "there is no option %s here", argv[optind - 1]);
@@ -90,6 +94,7 @@ int app_parse(int argc, char **argv, const char *usage, int allowed, bool operan
     }
     if (operand_required && !arguments->operand) return bad_usage(usage, "a file is wanted");
     if (arguments->folder && !*arguments->folder) return bad_usage(usage, "-o wants the name of a folder");
+    if (arguments->trace && !*arguments->trace) return bad_usage(usage, "--trace wants the name of a file");
     return BRUNT_OK;
 }
 

@@ -27,9 +27,9 @@ static void handle(int number, void (*handler)(int)) {
     sigaction(number, &action, NULL);
 }
 
-// Threads that wait at the end of a pass spin for a moment, then sleep. libgomp's own choice is to spin for milliseconds,
-// which on a machine with other work keeps the very thread waited for from running: two threads were 20 times slower
-// than one there. It reads the variable when it is loaded, hence the second start.
+// Threads that wait at the end of a pass spin for a moment, then sleep. libgomp's own choice is to spin for
+// milliseconds, which on a machine with other work keeps the very thread waited for from running: two threads were 20
+// times slower than one there. It reads the variable when it is loaded, hence the second start.
 static void start_with_short_spins(char **argv) {
     if (getenv("GOMP_SPINCOUNT") || getenv("OMP_WAIT_POLICY")) return;
     if (setenv("GOMP_SPINCOUNT", "10000", 1) == 0) execv("/proc/self/exe", argv - 1);
@@ -37,9 +37,10 @@ static void start_with_short_spins(char **argv) {
 
 int cmd_run(int argc, char **argv) {
     app_arguments arguments;
-    int status =
-        app_parse(argc, argv, "brunt run SCENE [-o DIR] [-t THREADS] [--set PATH=VALUE]... [--resume] [--profile] [-q]",
-                  APP_OUTPUT | APP_THREADS | APP_SET | APP_RESUME | APP_PROFILE | APP_QUIET, true, &arguments);
+    int status = app_parse(
+        argc, argv,
+        "brunt run SCENE [-o DIR] [-t THREADS] [--set PATH=VALUE]... [--resume] [--profile] [--trace FILE.json] [-q]",
+        APP_OUTPUT | APP_THREADS | APP_SET | APP_RESUME | APP_PROFILE | APP_TRACE | APP_QUIET, true, &arguments);
     if (status) return status < 0 ? BRUNT_OK : status;
     if (arguments.threads != 1) start_with_short_spins(argv);
     // A run of hours must not end because the reader of its output has gone, nor without a word because a file may not
@@ -57,6 +58,7 @@ int cmd_run(int argc, char **argv) {
     const brunt_run_options options = {.folder = arguments.folder,
                                        .resume = arguments.resume,
                                        .profile = arguments.profile,
+                                       .trace = arguments.trace,
                                        .console = arguments.quiet ? NULL : stdout,
                                        .messages = stderr,
                                        .stop = &stop_asked,

@@ -8,12 +8,15 @@
 static const char help[] =
     "brunt " BRUNT_VERSION ": explicit-dynamics contact engine\n"
     "\n"
-    "  brunt run SCENE [-o DIR] [-t THREADS] [--set PATH=VALUE]... [--resume] [--profile] [-q]\n"
+    "  brunt run SCENE [-o DIR] [-t THREADS] [--set PATH=VALUE]... [--resume] [--profile] [--trace FILE.json] [-q]\n"
     "      compute a scene; results go to DIR (out/<scene name>)\n"
-    "  brunt check SCENE [-t THREADS] [--set PATH=VALUE]...\n"
+    "  brunt check SCENE [-t THREADS] [--quick] [--set PATH=VALUE]...\n"
     "      read and check a scene; print its plan, memory, time step and estimated time\n"
+    "  brunt study STUDY [-o DIR] [-t THREADS] [--fresh] [-q]\n"
+    "      run a scene over a grid of settings; errors against time, with plots and a report, go to DIR (out/study/<study\n"
+    "      name>); the same command goes on with what is not finished, --fresh begins anew\n"
     "  brunt keys [SECTION] [--schema]\n"
-    "      the reference of scene files; --schema: as a JSON Schema for editors\n"
+    "      the reference of scene files (section study: of study files); --schema: as a JSON Schema for editors\n"
     "  brunt info FILE\n"
     "      what a checkpoint, history, picture, collection or mesh file (.msh) holds\n"
     "  brunt --version | --help\n"
@@ -26,9 +29,9 @@ int main(int argc, char **argv) {
     static const struct {
         const char *name;
         int (*run)(int, char **);
-    } commands[] = {{"run", cmd_run}, {"check", cmd_check}, {"keys", cmd_keys}, {"info", cmd_info}};
+    } commands[] = {{"run", cmd_run}, {"check", cmd_check}, {"keys", cmd_keys}, {"info", cmd_info}, {"study", cmd_study}};
     if (argc < 2) {
-        fputs("brunt: a command is wanted: run, check, keys or info (brunt --help says more)\n", stderr);
+        fputs("brunt: a command is wanted: run, check, study, keys or info (brunt --help says more)\n", stderr);
         return BRUNT_BAD_USAGE;
     }
     if (!strcmp(argv[1], "--help") || !strcmp(argv[1], "-h")) {
@@ -41,7 +44,7 @@ int main(int argc, char **argv) {
     }
     for (size_t c = 0; c < sizeof commands / sizeof *commands; c++)
         if (!strcmp(argv[1], commands[c].name)) return commands[c].run(argc - 1, argv + 1);
-    fprintf(stderr, "brunt: there is no command '%s'; run, check, keys and info are known (brunt --help says more)\n",
+    fprintf(stderr, "brunt: there is no command '%s'; run, check, study, keys and info are known (brunt --help says more)\n",
             argv[1]);
     return BRUNT_BAD_USAGE;
 }

@@ -1,0 +1,687 @@
+// The pictures of a study: a script for gnuplot each, with its data inside, so that it can be restyled and drawn again
+// by hand.
+//
+// Ranges and labels are worked out here: gnuplot's own leave logarithmic axes of less than a decade without a number.
+// All text is drawn as it is ("noenhanced"); the powers of ten are characters.
+#include "study.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
+#include <spawn.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "atomic_file.h"
+#include "error.h"
+#include "memory.h"
+#include "study_view.h"
+
+extern char **environ;
+
+// M. Okabe and K. Ito's colours, which people who see few colours still tell apart (jfly.uni-koeln.de/color, 2008);
+// their yellow is too light for lines on white.
+static const char *const colours[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000"};
+static const int symbols[] = {7, 5, 9, 13, 11, 15, 6, 4, 8, 12, 10, 14}; // filled ones first
+static const int dashes[] = {1, 2, 4, 5, 3};
+enum { COLOURS = 7, SYMBOLS = 12, DASHES = 5 };
+
+typedef struct look {
+    int colour, symbol, dash;
+} look;
+
+static int32_t method_value(const brunt_study *study, int32_t line, int32_t axis) {
+    for (int32_t i = 0; i < study->case_count; i++)
+        if (study->cases[i].line == line) return study->cases[i].value[axis];
+    return 0;
+}
+
+// Few lines: a colour, a symbol and a dash each. Many, made by several axes: the colour says the first axis, symbol and
+// dash the rest.
+static look look_of(const brunt_study *study, int32_t line) {
+    look own = {line % COLOURS, line % SYMBOLS, line % DASHES};
+    if (study->line_count <= COLOURS) return own;
+    int32_t first = -1, rest = 0;
+    for (int32_t a = 0; a < study->axis_count; a++) {
+        if (a == study->resolution || study->axes[a].value_count < 2) continue;
+        if (first < 0)
+            first = a;
+        else
+            rest = rest * study->axes[a].value_count + method_value(study, line, a);
+    }
+    if (first < 0 || study->axes[first].value_count > COLOURS || study->axes[first].value_count == study->line_count)
+        return own;
+    return (look){method_value(study, line, first), rest % SYMBOLS, rest % DASHES};
+}
+
+// --- axes
+
+typedef struct axis {
+    double from, to; // as drawn: data times `factor`
+    double factor;
+} axis;
+
+static void widen(axis *a, double value) {
+    if (!(value > 0) || !isfinite(value)) return;
+    a->from = fmin(a->from, a->factor * value), a->to = fmax(a->to, a->factor * value);
+}
+
+static bool empty(const axis *a) { return !(a->to >= a->from); }
+
+// Air around the data; what is all at one place gets a factor of two to both sides.
+static void pad(axis *a) {
+    const double decades = log10(a->to / a->from), air = decades < 0.05 ? 0.3 : 0.04 + 0.06 * decades;
+    a->from *= pow(10, -air), a->to *= pow(10, air);
+}
+
+static void number_label(double value, char out[48]) {
+    static const char *const raised[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+    if (value >= 0.99e-4 && value < 0.99e6) {
+        snprintf(out, 48, "%.10g", value);
+        return;
+    }
+    char text[32];
+    snprintf(text, sizeof text, "%.9e", value);
+    const double mantissa = strtod(text, NULL) / pow(10, atoi(strchr(text, 'e') + 1));
+    const int exponent = atoi(strchr(text, 'e') + 1), size = abs(exponent);
+    int length = fabs(mantissa - 1) < 1e-6 ? snprintf(out, 48, "10") : snprintf(out, 48, "%.4g·10", mantissa);
+    length += snprintf(out + length, 48 - (size_t)length, "%s", exponent < 0 ? "⁻" : "");
+    if (size >= 100) length += snprintf(out + length, 48 - (size_t)length, "%s", raised[size / 100]);
+    if (size >= 10) length += snprintf(out + length, 48 - (size_t)length, "%s", raised[size / 10 % 10]);
+    snprintf(out + length, 48 - (size_t)length, "%s", raised[size % 10]);
+}
+
+static void tic(FILE *out, const axis *a, double value, bool major, bool *first) {
+    if (value < a->from * (1 - 1e-9) || value > a->to * (1 + 1e-9)) return;
+    char label[48] = "";
+    if (major) number_label(value, label);
+    fprintf(out, "%s'%s' %.10g %d", *first ? "" : ", ", label, value, !major);
+    *first = false;
+}
+
+// Less than a decade: round steps. More: decades, with 2 and 5 between them or every second, third, ... alone.
+static void write_tics(FILE *out, char name, const axis *a) {
+    const double decades = log10(a->to / a->from);
+    bool first = true;
+    fprintf(out, "set %ctics (", name);
+    if (decades < 0.8) {
+        const double rough = (a->to - a->from) / 5, power = pow(10, floor(log10(rough))), m = rough / power;
+        const double step = power * (m < 1.5 ? 1 : m < 3.5 ? 2 : m < 7.5 ? 5 : 10);
+        for (double k = ceil(a->from / step - 1e-9); k * step <= a->to * (1 + 1e-9); k++)
+            tic(out, a, k * step, true, &first);
+    } else {
+        const int low = (int)floor(log10(a->from)), high = (int)ceil(log10(a->to)), every = (high - low + 7) / 8;
+        for (int e = low; e <= high; e++)
+            for (int m = 1; m <= (every == 1 ? 9 : 1); m++) {
+                bool major = m == 1 ? e % every == 0 : (m == 2 || m == 5) && decades < 3;
+                tic(out, a, m * pow(10, e), major, &first);
+            }
+    }
+    fprintf(out, ")\nset %crange [%.10g:%.10g]\n", name, a->from, a->to);
+}
+
+// --- text
+
+// As gnuplot takes it between single quotes.
+static void write_text(FILE *out, const char *text) {
+    fputc('\'', out);
+    for (const char *t = text; *t; t++) {
+        if (*t == '\'') fputc('\'', out);
+        fputc((unsigned char)*t < ' ' ? ' ' : *t, out);
+    }
+    fputc('\'', out);
+}
+
+static void write_label(FILE *out, const char *what, const char *format, ...) __attribute__((format(printf, 3, 4)));
+static void write_label(FILE *out, const char *what, const char *format, ...) {
+    char text[512];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    fprintf(out, "set %s ", what);
+    write_text(out, text);
+    fputc('\n', out);
+}
+
+// Parts of a unit that read better as thousands or thousandths: factor of the numbers, and the unit with its prefix.
+static double prefixed(const char *unit, double most, char out[48]) {
+    static const char *const plain[] = {"m", "s", "Pa", "N", "J", "Hz", "V", "W"};
+    static const char *const prefix[] = {"n", "u", "m", "", "k", "M", "G"};
+    bool known = false;
+    for (size_t u = 0; u < sizeof plain / sizeof *plain; u++) known = known || !strcmp(unit, plain[u]);
+    int p = 3;
+    if (known && most > 0) p += (int)floor(log10(most) / 3 + 1e-9);
+    p = p < 0 ? 0 : p > 6 ? 6 : p;
+    snprintf(out, 48, "%s%s", prefix[p], unit[0] ? unit : "1");
+    return pow(1000, 3 - p);
+}
+
+// --- a picture
+
+typedef struct picture {
+    const brunt_study *study;
+    brunt_atomic_file file;
+    char name[160]; // without ending
+    int32_t *cases; // of a line; room for all
+    FILE *out;
+    int32_t drawn; // what the plot command lists so far
+} picture;
+
+static bool finished(const brunt_study_case *c) { return c->status == BRUNT_STUDY_DONE; }
+static bool failed(const brunt_study_case *c) { return c->status == BRUNT_STUDY_FAILED; }
+
+static int begin(picture *p, const char *folder, brunt_error *error) {
+    char path[BRUNT_PATH_LENGTH], name[176];
+    snprintf(name, sizeof name, "%s.gp", p->name);
+    int status = brunt_join_path(path, folder, name, error);
+    if (!status) status = brunt_atomic_open(&p->file, path, error);
+    if (status) return status;
+    p->out = p->file.stream;
+    p->drawn = 0;
+    fprintf(
+        p->out,
+        "# gnuplot %s.gp\nset encoding utf8\nset termoption noenhanced\nset logscale xy\nset border 3 linewidth 1\n"
+        "set tics nomirror out\nset grid xtics ytics linecolor '#dddddd' linewidth 0.6 dashtype 1\nset pointsize 1.2\n",
+        p->name);
+    return BRUNT_OK;
+}
+
+// From the top: title, key, the plot, a line of notes. The key stands outside, in as many columns as there is room for:
+// nowhere else is it sure to cover no data.
+static void write_layout(picture *p, int32_t entries, size_t longest, bool accuracies, const char *note) {
+    enum { WIDTH = 900, PLOT = 470, LETTER = 11, ROW = 25, TITLE = 42, BELOW = 98 }; // pixels
+    const int room = (WIDTH - 40) / (75 + LETTER * (int)longest), columns = room < 1         ? 1
+                                                                            : room > entries ? entries
+                                                                                             : room;
+    const int rows = (entries + columns - 1) / columns, head = TITLE + ROW * rows + 22,
+              foot = BELOW + (note[0] ? ROW + 6 : 0);
+    const int height = head + PLOT + foot;
+    const brunt_study *study = p->study;
+    fprintf(p->out,
+            "height = %d\nset tmargin at screen %.4f\nset bmargin at screen %.4f\nset lmargin at screen 0.12\nset "
+            "rmargin at screen %s\n",
+            height, 1 - (double)head / height, (double)foot / height, accuracies ? "0.91" : "0.97");
+    fprintf(p->out,
+            "set key at screen 0.03, screen %.4f left top vertical Left reverse maxrows %d samplen 2.6 width %d "
+            "noenhanced\n",
+            1 - (double)TITLE / height, rows, -(int)longest / 8); // letters are narrower than gnuplot takes them for
+    fprintf(p->out, "set label ");
+    write_text(p->out, study->title[0] ? study->title : study->name);
+    fprintf(p->out, " at screen 0.5, screen %.4f center noenhanced\n", 1 - 20.0 / height);
+    if (!note[0]) return;
+    fprintf(p->out, "set label ");
+    write_text(p->out, note);
+    fprintf(p->out, " at screen 0.03, screen %.4f left textcolor '#444444'\n", 16.0 / height);
+}
+
+static void plot_part(picture *p) { fputs(p->drawn++ ? ", \\\n  " : "plot \\\n  ", p->out); }
+
+static int commit(picture *p, brunt_error *error) {
+    // SVG first: what fails leaves no picture that looks whole.
+    fprintf(
+        p->out,
+        "\nset terminal push\nset terminal svg size 900,height font 'sans,17' linewidth 1.6 noenhanced background "
+        "'white'\n"
+        "set output '%s.svg'\nreplot\nset terminal pngcairo size 900,height font 'sans,15' linewidth 1.6 noenhanced\n"
+        "set output '%s.png'\nreplot\nunset output\n",
+        p->name, p->name);
+    return brunt_atomic_commit(&p->file, error);
+}
+
+// Text of a key entry of a line: its label, and a slope where one is wanted.
+static void entry(const brunt_study *study, int32_t line, const brunt_study_fit *fit, double sign, char out[256]) {
+    char slope[48] = "";
+    if (fit) brunt_study_format_slope(fit, sign, slope);
+    snprintf(out, 256, "%s%s%s", brunt_study_line_label(study, line), slope[0] ? ": " : "", slope);
+}
+
+static size_t characters(const char *utf8) {
+    size_t count = 0;
+    for (const char *t = utf8; *t; t++) count += ((unsigned char)*t & 0xC0) != 0x80;
+    return count;
+}
+
+static void plot_line(picture *p, int32_t line, bool connected, const char *title) {
+    const look l = look_of(p->study, line);
+    plot_part(p);
+    fprintf(p->out, "$line%d using 1:2 with %s linecolor '%s' ", (int)line, connected ? "linespoints" : "points",
+            colours[l.colour]);
+    if (connected) fprintf(p->out, "dashtype %d ", dashes[l.dash]);
+    fprintf(p->out, "pointtype %d linewidth 1.8 title ", symbols[l.symbol]);
+    write_text(p->out, title);
+}
+
+// --- error against time, or against resolution
+
+typedef struct errors {
+    picture p;
+    int32_t measure;
+    bool over_resolution;
+    axis x, y;
+    bool percent;
+    double floor;  // where errors of zero are drawn, as drawn
+    int32_t zeros; // how many there are
+    char unit_x[48];
+} errors;
+
+static double abscissa(const errors *e, const brunt_study_case *c) {
+    return e->over_resolution ? brunt_study_resolution(e->p.study, c) : c->wall_median;
+}
+
+static bool shown(const errors *e, const brunt_study_case *c) {
+    return finished(c) && abscissa(e, c) > 0 && isfinite(abscissa(e, c)) && isfinite(c->error[e->measure]);
+}
+
+static double ordinate(const errors *e, const brunt_study_case *c) {
+    return c->error[e->measure] > 0 ? e->y.factor * c->error[e->measure] : e->floor;
+}
+
+// A run that failed has no time of its own: it stands where the others of its resolution are, or in the middle.
+static double failed_abscissa(const errors *e, const brunt_study_case *c) {
+    if (e->over_resolution) return brunt_study_resolution(e->p.study, c);
+    double sum = 0;
+    int32_t count = 0;
+    for (int32_t i = 0; i < e->p.study->case_count; i++) {
+        const brunt_study_case *o = &e->p.study->cases[i];
+        if (!shown(e, o) || (e->p.study->resolution >= 0 &&
+                             brunt_study_resolution(e->p.study, o) != brunt_study_resolution(e->p.study, c)))
+            continue;
+        sum += log(o->wall_median), count++;
+    }
+    return count ? exp(sum / count) : sqrt(e->x.from * e->x.to) / e->x.factor;
+}
+
+static void find_ranges(errors *e) {
+    const brunt_study *study = e->p.study;
+    double least = INFINITY, most_x = 0;
+    e->x = (axis){INFINITY, -INFINITY, 1}, e->y = (axis){INFINITY, -INFINITY, 1};
+    for (int32_t i = 0; i < study->case_count; i++) {
+        const brunt_study_case *c = &study->cases[i];
+        if (!shown(e, c)) continue;
+        e->zeros += c->error[e->measure] == 0;
+        if (c->error[e->measure] > 0) least = fmin(least, c->error[e->measure]);
+        most_x = fmax(most_x, abscissa(e, c));
+    }
+    e->percent = !(least < 1e-6);
+    e->y.factor = e->percent ? 100 : 1;
+    if (e->over_resolution) e->x.factor = prefixed(study->axes[study->resolution].unit, most_x, e->unit_x);
+    for (int32_t i = 0; i < study->case_count; i++) {
+        const brunt_study_case *c = &study->cases[i];
+        if (!shown(e, c)) continue;
+        widen(&e->x, abscissa(e, c)), widen(&e->y, c->error[e->measure]);
+        if (!e->over_resolution) widen(&e->x, c->wall_least), widen(&e->x, c->wall_most);
+    }
+    if (empty(&e->x)) return;
+    if (e->over_resolution)
+        for (int32_t i = 0; i < study->case_count; i++)
+            if (failed(&study->cases[i])) widen(&e->x, brunt_study_resolution(study, &study->cases[i]));
+    // What is asked for belongs into the picture, unless it is far from what there is.
+    const axis data = e->y;
+    for (int32_t a = 0; a < study->accuracy_count && !empty(&data); a++) {
+        const double wanted = e->y.factor * study->accuracies[a];
+        if (wanted > data.from / 10 && wanted < data.to * 10) widen(&e->y, study->accuracies[a]);
+    }
+    if (empty(&e->y)) e->percent = false, e->y = (axis){1e-16, 1e-15, 1}; // all errors are zero
+    if (e->zeros) e->floor = e->y.from = e->y.from / 4;
+    pad(&e->x), pad(&e->y);
+}
+
+static void write_points(errors *e, int32_t line, int32_t *points) {
+    const brunt_study *study = e->p.study;
+    const int32_t count = brunt_study_line_cases(study, line, e->p.cases);
+    *points = 0;
+    for (int32_t i = 0; i < count; i++) *points += shown(e, &study->cases[e->p.cases[i]]);
+    if (!*points) return;
+    fprintf(e->p.out, "$line%d << END\n# %s, error%s, least and most time [s]\n", (int)line,
+            e->over_resolution ? "resolution" : "time [s]", e->percent ? " [%]" : "");
+    for (int32_t i = 0; i < count; i++) {
+        const brunt_study_case *c = &study->cases[e->p.cases[i]];
+        if (shown(e, c))
+            fprintf(e->p.out, "%.9g %.9g %.9g %.9g\n", e->x.factor * abscissa(e, c), ordinate(e, c),
+                    isfinite(c->wall_least) ? c->wall_least : c->wall_median,
+                    isfinite(c->wall_most) ? c->wall_most : c->wall_median);
+    }
+    fprintf(e->p.out, "END\n");
+}
+
+// The stair along which nothing is both faster and more accurate, from the upper edge to the right one.
+static bool write_front(errors *e) {
+    const brunt_study *study = e->p.study;
+    int32_t count = 0, *front = e->p.cases;
+    for (int32_t i = 0; i < study->case_count; i++) {
+        const brunt_study_case *c = &study->cases[i];
+        if (!c->front[e->measure] || !shown(e, c)) continue;
+        int32_t place = count++;
+        for (; place > 0 && study->cases[front[place - 1]].wall_median > c->wall_median; place--)
+            front[place] = front[place - 1];
+        front[place] = i;
+    }
+    if (!count) return false;
+    fprintf(e->p.out, "$front << END\n%.9g %.9g\n", study->cases[front[0]].wall_median, e->y.to);
+    for (int32_t i = 0; i < count; i++) {
+        const brunt_study_case *c = &study->cases[front[i]];
+        fprintf(e->p.out, "%.9g %.9g\n", c->wall_median, ordinate(e, c));
+    }
+    fprintf(e->p.out, "%.9g %.9g\nEND\n", e->x.to, ordinate(e, &study->cases[front[count - 1]]));
+    return true;
+}
+
+static void write_accuracies(errors *e) {
+    for (int32_t a = 0; a < e->p.study->accuracy_count; a++) {
+        const double y = e->y.factor * e->p.study->accuracies[a];
+        if (y < e->y.from || y > e->y.to) continue;
+        fprintf(e->p.out,
+                "set arrow from graph 0, first %.9g to graph 1, first %.9g nohead back dashtype 2 linewidth 0.9 "
+                "linecolor '#666666'\n",
+                y, y);
+        fprintf(e->p.out, "set label '%.4g %%' at graph 1.01, first %.9g left textcolor '#444444'\n",
+                100 * e->p.study->accuracies[a], y);
+    }
+}
+
+static int32_t write_failed(errors *e) {
+    const brunt_study *study = e->p.study;
+    int32_t count = 0;
+    for (int32_t i = 0; i < study->case_count; i++) {
+        const brunt_study_case *c = &study->cases[i];
+        const double x = e->x.factor * failed_abscissa(e, c);
+        if (!failed(c) || !(x > 0) || !isfinite(x)) continue;
+        // Several at one place: beside each other.
+        int32_t before = 0;
+        for (int32_t j = 0; j < i; j++)
+            before += failed(&study->cases[j]) && e->x.factor * failed_abscissa(e, &study->cases[j]) == x;
+        const double at = log(x / e->x.from) / log(e->x.to / e->x.from) + 0.016 * before;
+        fprintf(e->p.out,
+                "set label '' at graph %.4f, graph 0.985 point pointtype 2 pointsize 1.4 linewidth 2 linecolor '%s' "
+                "front\n",
+                at, colours[look_of(study, c->line).colour]);
+        count++;
+    }
+    return count;
+}
+
+static void note_of(const errors *e, int32_t failures, char note[160]) {
+    note[0] = 0;
+    int length = 0;
+    if (failures)
+        length = snprintf(note, 160, "× at the upper edge: %d %s failed%s", (int)failures,
+                          failures == 1 ? "run" : "runs", e->over_resolution ? "" : ", without a time");
+    if (e->zeros)
+        snprintf(note + length, 160 - (size_t)length, "%serrors of 0 stand at the lower edge", length ? "; " : "");
+}
+
+// What errors are measured in: "% of the reference", "% of 2 mm".
+static void scale_words(const errors *e, char out[128]) {
+    const brunt_study *study = e->p.study;
+    const double scale = study->measures[e->measure].scale;
+    const char *unit = "";
+    for (int32_t i = 0; i < study->case_count && !unit[0]; i++) unit = study->cases[i].unit[e->measure];
+    const bool bare = !unit[0] || !strcmp(unit, "1");
+    if (isnan(scale))
+        snprintf(out, 128, "%s", e->percent ? "% of the reference" : "of the reference");
+    else
+        snprintf(out, 128, "%s%.4g%s%s", e->percent ? "% of " : "of ", scale, bare ? "" : " ", bare ? "" : unit);
+}
+
+static bool threads_differ(const brunt_study *study) {
+    for (int32_t a = 0; a < study->axis_count; a++)
+        for (int32_t v = 0; v < study->axes[a].value_count; v++)
+            if (study->axes[a].values[v].threads && study->axes[a].values[v].threads != study->threads) return true;
+    return false;
+}
+
+static void write_time_label(FILE *out, char axis_name, const brunt_study *study) {
+    const char what[] = {axis_name, 'l', 'a', 'b', 'e', 'l', 0};
+    if (threads_differ(study) || study->threads < 1)
+        write_label(out, what, "time of the steps [s]");
+    else
+        write_label(out, what, "time of the steps on %d %s [s]", (int)study->threads,
+                    study->threads == 1 ? "thread" : "threads");
+}
+
+static void write_axes(errors *e) {
+    const brunt_study *study = e->p.study;
+    const brunt_study_measure *m = &study->measures[e->measure];
+    char words[128];
+    scale_words(e, words);
+    write_label(e->p.out, "ylabel", "%s%s [%s]", m->title[0] ? "" : "error of ", m->title[0] ? m->title : m->name,
+                words);
+    if (e->over_resolution)
+        write_label(e->p.out, "xlabel", "%s [%s]", study->axes[study->resolution].name, e->unit_x);
+    else
+        write_time_label(e->p.out, 'x', study);
+    write_tics(e->p.out, 'x', &e->x);
+    write_tics(e->p.out, 'y', &e->y);
+}
+
+// Theory's slope, half a decade's third below the lowest point, so that it crosses no line that keeps to it.
+static bool write_theory(errors *e) {
+    const double order = e->p.study->measures[e->measure].order;
+    if (!e->over_resolution || !isfinite(order)) return false;
+    double factor = INFINITY; // lowest of error / resolution^order
+    for (int32_t i = 0; i < e->p.study->case_count; i++) {
+        const brunt_study_case *c = &e->p.study->cases[i];
+        if (shown(e, c) && c->error[e->measure] > 0)
+            factor = fmin(factor, ordinate(e, c) / pow(e->x.factor * abscissa(e, c), order));
+    }
+    if (!isfinite(factor)) return false;
+    factor *= 0.6;
+    fprintf(e->p.out, "theory(x) = %.9g * x**%.9g\n", factor, order);
+    return true;
+}
+
+static bool repeated(const brunt_study *study) {
+    for (int32_t i = 0; i < study->case_count; i++)
+        if (study->cases[i].wall_most > 1.05 * study->cases[i].wall_least) return true;
+    return false;
+}
+
+static void plot_errors(errors *e, const int32_t *points, bool front, bool theory) {
+    const brunt_study *study = e->p.study;
+    const bool connect = study->resolution >= 0;
+    if (front) {
+        plot_part(&e->p);
+        fprintf(e->p.out, "$front using 1:2 with steps linewidth 5 linecolor '#c8c8c8' title 'Pareto front'");
+    }
+    if (theory) {
+        plot_part(&e->p);
+        fprintf(e->p.out,
+                "theory(x) with lines linewidth 1.6 dashtype 2 linecolor '#777777' title 'theory: order %.3g'",
+                study->measures[e->measure].order);
+    }
+    for (int32_t l = 0; l < study->line_count; l++) {
+        char title[256];
+        if (!points[l]) continue;
+        if (!e->over_resolution && repeated(study)) {
+            plot_part(&e->p);
+            fprintf(e->p.out, "$line%d using 1:2:3:4 with xerrorbars pointtype 0 linewidth 0.9 linecolor '%s' notitle",
+                    (int)l, colours[look_of(study, l).colour]);
+        }
+        entry(study, l, e->over_resolution ? &study->lines[l].order[e->measure] : NULL, 1, title);
+        plot_line(&e->p, l, connect && points[l] > 1, title);
+    }
+}
+
+static int draw_errors(errors *e, const char *folder, int32_t *points, bool *wanted, brunt_error *error) {
+    const brunt_study *study = e->p.study;
+    find_ranges(e);
+    *wanted = !empty(&e->x);
+    if (!*wanted) return BRUNT_OK;
+    int status = begin(&e->p, folder, error);
+    if (status) return status;
+    size_t longest = 0;
+    int32_t entries = 0;
+    for (int32_t l = 0; l < study->line_count; l++) {
+        char title[256];
+        write_points(e, l, &points[l]);
+        entry(study, l, e->over_resolution ? &study->lines[l].order[e->measure] : NULL, 1, title);
+        if (points[l]) longest = characters(title) > longest ? characters(title) : longest, entries++;
+    }
+    const bool front = !e->over_resolution && write_front(e), theory = write_theory(e);
+    char note[160];
+    note_of(e, write_failed(e), note);
+    write_layout(&e->p, entries + front + theory, longest < 15 ? 15 : longest, true, note);
+    write_axes(e);
+    write_accuracies(e);
+    plot_errors(e, points, front, theory);
+    return commit(&e->p, error);
+}
+
+// --- time against size
+
+static bool sized(const brunt_study_case *c) {
+    return finished(c) && c->units > 0 && c->wall_median > 0 && isfinite(c->wall_median);
+}
+
+static int draw_cost(picture *p, const char *folder, bool *wanted, brunt_error *error) {
+    const brunt_study *study = p->study;
+    axis x = {INFINITY, -INFINITY, 1}, y = x;
+    for (int32_t i = 0; i < study->case_count; i++)
+        if (sized(&study->cases[i])) widen(&x, study->cases[i].units), widen(&y, study->cases[i].wall_median);
+    *wanted = !empty(&x) && !empty(&y);
+    if (!*wanted) return BRUNT_OK;
+    int status = begin(p, folder, error);
+    if (status) return status;
+    pad(&x), pad(&y);
+    size_t longest = 0;
+    int32_t entries = 0;
+    char title[256];
+    for (int32_t l = 0; l < study->line_count; l++) {
+        const int32_t count = brunt_study_line_cases(study, l, p->cases);
+        fprintf(p->out, "$line%d << END\n# particles and elements, time [s]\n", (int)l);
+        for (int32_t i = 0; i < count; i++) {
+            const brunt_study_case *c = &study->cases[p->cases[i]];
+            if (sized(c)) fprintf(p->out, "%.9g %.9g\n", c->units, c->wall_median);
+        }
+        fprintf(p->out, "END\n");
+        entry(study, l, &study->lines[l].cost, 1, title);
+        longest = characters(title) > longest ? characters(title) : longest, entries++;
+    }
+    write_layout(p, entries, longest, false, "");
+    write_label(p->out, "xlabel", "particles and elements [1]");
+    write_time_label(p->out, 'y', study);
+    write_tics(p->out, 'x', &x), write_tics(p->out, 'y', &y);
+    for (int32_t l = 0; l < study->line_count; l++) {
+        int32_t points = 0;
+        for (int32_t i = 0; i < study->case_count; i++) points += study->cases[i].line == l && sized(&study->cases[i]);
+        entry(study, l, &study->lines[l].cost, 1, title);
+        if (points) plot_line(p, l, points > 1 && study->resolution >= 0, title);
+    }
+    return commit(p, error);
+}
+
+// --- gnuplot
+
+static int remove_file(const char *folder, const char *name, const char *ending, brunt_error *error) {
+    char path[BRUNT_PATH_LENGTH], file[176];
+    snprintf(file, sizeof file, "%s%s", name, ending);
+    int status = brunt_join_path(path, folder, file, error);
+    if (!status && unlink(path) && errno != ENOENT)
+        status =
+            brunt_fail(error, BRUNT_IO_ERROR, "%s: cannot remove what was there before: %s", path, strerror(errno));
+    return status;
+}
+
+static int remove_pictures(const char *folder, const char *name, brunt_error *error) {
+    int status = remove_file(folder, name, ".svg", error);
+    return status ? status : remove_file(folder, name, ".png", error);
+}
+
+// All that gnuplot says, as far as there is room; the rest is read and dropped, so that it is not held up.
+static void listen(int descriptor, char *said, size_t size) {
+    size_t length = 0;
+    char part[512];
+    for (;;) {
+        ssize_t got = read(descriptor, part, sizeof part);
+        if (got < 0 && errno == EINTR) continue;
+        if (got <= 0) break;
+        for (ssize_t i = 0; i < got && length + 1 < size; i++) said[length++] = part[i] == '\n' ? ' ' : part[i];
+    }
+    said[length] = 0;
+}
+
+// In the folder, so that the script names no place. `*there` is false when there is no gnuplot.
+static int run_gnuplot(const char *folder, const char *name, bool *there, brunt_error *error) {
+    char script[176], said[400] = "";
+    snprintf(script, sizeof script, "%s.gp", name);
+    char *const arguments[] = {"gnuplot", "-d", script, NULL}; // -d: nobody's own settings
+    int ends[2], result = 0;
+    pid_t child;
+    if (pipe2(ends, O_CLOEXEC)) return brunt_fail(error, BRUNT_IO_ERROR, "no pipe for gnuplot: %s", strerror(errno));
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_adddup2(&actions, ends[1], 1);
+    posix_spawn_file_actions_adddup2(&actions, ends[1], 2);
+    posix_spawn_file_actions_addchdir_np(&actions, folder);
+    int spawned = posix_spawnp(&child, "gnuplot", &actions, NULL, arguments, environ);
+    posix_spawn_file_actions_destroy(&actions);
+    close(ends[1]);
+    *there = spawned != ENOENT;
+    if (!spawned) {
+        listen(ends[0], said, sizeof said);
+        while (waitpid(child, &result, 0) < 0 && errno == EINTR) {}
+    }
+    close(ends[0]);
+    if (spawned && *there) return brunt_fail(error, BRUNT_IO_ERROR, "gnuplot cannot be started: %s", strerror(spawned));
+    if (!spawned && result)
+        return brunt_fail(error, BRUNT_IO_ERROR, "%s/%s: gnuplot refused it: %s", folder, script, said);
+    return BRUNT_OK;
+}
+
+static int finish(const char *folder, const char *name, bool wanted, bool *drawn, brunt_error *error) {
+    int status = remove_pictures(folder, name, error);
+    if (!status && !wanted) status = remove_file(folder, name, ".gp", error); // of an earlier study here
+    if (status || !wanted || !*drawn) return status;
+    bool there;
+    status = run_gnuplot(folder, name, &there, error);
+    if (status) remove_pictures(folder, name, NULL);
+    *drawn = *drawn && there;
+    return status;
+}
+
+// "study" for the first measure, "study_NAME" for the rest; kept apart from the other pictures.
+void brunt_study_picture_name(const brunt_study *study, int32_t m, char out[160]) {
+    snprintf(out, 160, "study");
+    if (!m) return;
+    const char *name = study->measures[m].name;
+    const bool taken = !strcmp(name, "order") || !strcmp(name, "cost");
+    size_t length = (size_t)snprintf(out, 160, "study_%s%s", taken ? "measure_" : "", name);
+    for (size_t i = 0; i < length; i++)
+        if (strchr("/\\'\"` ", out[i]) || (unsigned char)out[i] < ' ') out[i] = '_';
+}
+
+static int write_errors(const brunt_study *study, const char *folder, int32_t m, bool over_resolution, int32_t *cases,
+                        int32_t *points, bool *drawn, brunt_error *error) {
+    errors e = {.p = {.study = study, .cases = cases}, .measure = m, .over_resolution = over_resolution};
+    bool wanted = false;
+    if (over_resolution)
+        snprintf(e.p.name, sizeof e.p.name, "study_order");
+    else
+        brunt_study_picture_name(study, m, e.p.name);
+    int status = over_resolution && study->resolution < 0 ? BRUNT_OK : draw_errors(&e, folder, points, &wanted, error);
+    return status ? status : finish(folder, e.p.name, wanted, drawn, error);
+}
+
+int brunt_study_write_plots(const brunt_study *study, const char *folder, bool *drawn, brunt_error *error) {
+    *drawn = true;
+    int32_t *cases = brunt_alloc((size_t)study->case_count * sizeof *cases);
+    int32_t *points = brunt_alloc((size_t)study->line_count * sizeof *points);
+    int status =
+        cases && points ? BRUNT_OK : brunt_fail(error, BRUNT_IO_ERROR, "no memory for the pictures of the study");
+    for (int32_t m = 0; m < study->measure_count && !status; m++)
+        status = write_errors(study, folder, m, false, cases, points, drawn, error);
+    if (!status && study->measure_count) status = write_errors(study, folder, 0, true, cases, points, drawn, error);
+    if (!status) {
+        picture p = {.study = study, .cases = cases, .name = "study_cost"};
+        bool wanted;
+        status = draw_cost(&p, folder, &wanted, error);
+        if (!status) status = finish(folder, p.name, wanted, drawn, error);
+    }
+    brunt_free(cases), brunt_free(points);
+    return status;
+}

@@ -1,0 +1,626 @@
+// The runs of a study, one at a time, each in a folder of its own that says whether it is finished and of what.
+//
+// FOLDER/runs/CASE.rREPEAT/ keeps summary.json, log.txt, scene.yaml and run.json; the last, written when all else is,
+// holds the key of the run: a hash over the program, the scene as resolved, its mesh files, the number of threads and
+// the kind of machine. A folder whose key is the same is taken over, failed runs too; all others are run again.
+#include "study_reader.h"
+
+#include <ctype.h>
+#include <dirent.h>
+#include <errno.h>
+#include <jansson.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "atomic_file.h"
+#include "child.h"
+#include "error.h"
+#include "hash.h"
+#include "machine.h"
+#include "memory.h"
+#include "progress.h"
+#include "scene_reader.h"
+#include "study_view.h"
+
+typedef struct case_state {
+    uint64_t key;
+    char name[160];      // of its folders, without the repeat
+    char state_hash[24]; // of the first repeat; "": none yet
+    double elapsed;      // [s] of one run, with start and output; NAN: not known
+} case_state;
+
+typedef struct runner {
+    brunt_study *study;
+    const brunt_study_options *options;
+    char folder[BRUNT_PATH_LENGTH], program[BRUNT_PATH_LENGTH];
+    case_state *cases;
+    char hashed[BRUNT_PATH_LENGTH]; // file whose hash was taken last
+    uint64_t hashed_value;
+    int32_t dimension;
+    int32_t finished, total; // runs
+    bool broken_promise;     // repeats that ended in different bits
+} runner;
+
+// What a run left.
+typedef struct run_result {
+    brunt_study_status status;
+    char reason[256], state_hash[24];
+    double elapsed, limit; // [s]; limit: that it was killed at, NAN: it was not
+    double wall, peak, steps, units;
+    double value[BRUNT_STUDY_MEASURES], expect[BRUNT_STUDY_MEASURES];
+    char unit[BRUNT_STUDY_MEASURES][32];
+} run_result;
+
+__attribute__((format(printf, 2, 3))) static void say(const runner *r, const char *format, ...) {
+    if (!r->options->console) return;
+    va_list arguments;
+    va_start(arguments, format);
+    vfprintf(r->options->console, format, arguments);
+    va_end(arguments);
+    fflush(r->options->console);
+}
+
+static bool stop_asked(const runner *r) { return r->options->stop && *r->options->stop; }
+
+// ---------------------------------------------------------------------------------------------------- keys
+
+static uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t length) {
+    const unsigned char *p = bytes;
+    uint64_t word;
+    for (; length >= sizeof word; p += sizeof word, length -= sizeof word) {
+        memcpy(&word, p, sizeof word);
+        hash = brunt_hash_add(hash, word);
+    }
+    word = 0;
+    memcpy(&word, p, length);
+    return brunt_hash_add(brunt_hash_add(hash, word), length);
+}
+
+static int hash_file(const char *path, uint64_t *hash, brunt_error *error) {
+    unsigned char block[1 << 14];
+    FILE *file = fopen(path, "rb");
+    if (!file) return brunt_fail(error, BRUNT_IO_ERROR, "%s: cannot be read: %s", path, strerror(errno));
+    for (size_t got; (got = fread(block, 1, sizeof block, file)) > 0;) *hash = hash_bytes(*hash, block, got);
+    bool failed = ferror(file);
+    fclose(file);
+    return failed ? brunt_fail(error, BRUNT_IO_ERROR, "%s: cannot be read", path) : BRUNT_OK;
+}
+
+// Programs are large and mostly the same one.
+static int hash_program(runner *r, const char *path, uint64_t *hash, brunt_error *error) {
+    if (strcmp(r->hashed, path) != 0) {
+        r->hashed_value = 0;
+        int status = hash_file(path, &r->hashed_value, error);
+        if (status) return status;
+        snprintf(r->hashed, sizeof r->hashed, "%s", path);
+    }
+    *hash = brunt_hash_add(*hash, r->hashed_value);
+    return BRUNT_OK;
+}
+
+static int hash_meshes(const brunt_scene *scene, uint64_t *hash, brunt_error *error) {
+    const scene_tree *tree = scene->resolved;
+    const scene_node *bodies = brunt_tree_child(tree->root, "bodies");
+    const char *slash = strrchr(scene->source, '/');
+    int status = BRUNT_OK;
+    for (const scene_node *body = bodies ? bodies->first : NULL; body && !status; body = body->next) {
+        const char *mesh = brunt_text_of(body, "mesh", NULL);
+        if (!mesh) continue;
+        char path[BRUNT_PATH_LENGTH];
+        int folder = slash && *mesh != '/' ? (int)(slash + 1 - scene->source) : 0;
+        snprintf(path, sizeof path, "%.*s%s", folder, scene->source, mesh);
+        status = hash_file(path, hash, error);
+    }
+    return status;
+}
+
+static const char *program_of(const runner *r, const study_job *job) {
+    return *job->program ? job->program : r->program;
+}
+
+static int hash_scene(runner *r, const study_job *job, uint64_t *hash, brunt_error *error) {
+    brunt_scene scene;
+    char *text = NULL;
+    size_t length = 0;
+    if (brunt_scene_read(job->scene, (const char *const *)job->sets, job->set_count, &scene, NULL))
+        return brunt_fail(error, BRUNT_IO_ERROR, "%s has changed while the study was read", job->scene);
+    FILE *out = open_memstream(&text, &length);
+    int status = out ? brunt_scene_write(&scene, out) : BRUNT_IO_ERROR;
+    if (out) fclose(out);
+    if (!status) *hash = hash_bytes(*hash, text, length);
+    status = status ? brunt_fail(error, status, "out of memory") : hash_meshes(&scene, hash, error);
+    r->dimension = scene.world.dimension;
+    free(text);
+    brunt_scene_free(&scene);
+    return status;
+}
+
+// "APIC,quadratic,2_mm": what is no good in the name of a folder becomes _, and a hash then keeps it apart.
+static void name_case(const brunt_study *study, const brunt_study_case *c, char out[160]) {
+    char all[BRUNT_STUDY_AXES * 66 + 1] = "";
+    uint64_t hash = 0;
+    bool changed = false;
+    for (int32_t a = 0; a < study->axis_count; a++) {
+        const char *label = study->axes[a].values[c->value[a]].label;
+        snprintf(all + strlen(all), sizeof all - strlen(all), "%s%s", a ? "," : "", label);
+        hash = hash_bytes(hash, label, strlen(label));
+        changed |= strchr(label, ',') || strchr(label, '_');
+    }
+    for (char *p = all; *p; p++) {
+        if (isalnum((unsigned char)*p) || strchr(",.-+_", *p)) continue;
+        changed |= *p != ' ';
+        *p = '_';
+    }
+    if (all[0] == '.') all[0] = '_', changed = true;
+    if (changed || strlen(all) > 120)
+        snprintf(out, 160, "%.100s-%08x", all, (unsigned)(hash & 0xffffffffu));
+    else
+        snprintf(out, 160, "%.120s", all);
+}
+
+static int prepare_case(runner *r, int32_t index, brunt_error *error) {
+    const brunt_study_case *c = &r->study->cases[index];
+    case_state *state = &r->cases[index];
+    study_job job;
+    study_origin culprit;
+    state->elapsed = NAN;
+    name_case(r->study, c, state->name);
+    int status = brunt_study_job(r->study, c, &job, &culprit, error);
+    if (!status) status = hash_program(r, program_of(r, &job), &state->key, error);
+    if (!status) status = hash_scene(r, &job, &state->key, error);
+    state->key = brunt_hash_add(state->key, (uint64_t)job.threads);
+    char machine[128]; // times of another one do not go with those of this
+    brunt_machine_name(machine);
+    state->key = hash_bytes(state->key, machine, strlen(machine));
+    brunt_study_job_free(&job);
+    return status;
+}
+
+// ---------------------------------------------------------------------------------------------------- folders
+
+static const char *const kept[] = {"summary.json", "log.txt", "scene.yaml", "run.json", "messages.txt"};
+static const char *const passing[] = {"brunt.pvd", "history.h5", "history.csv", "checkpoint.h5",
+                                      "checkpoint.previous.h5"};
+
+static void remove_in(const char *folder, const char *const *names, size_t count) {
+    char path[BRUNT_PATH_LENGTH];
+    for (size_t n = 0; n < count; n++)
+        if (brunt_join_path(path, folder, names[n], NULL) == BRUNT_OK) unlink(path);
+}
+
+static bool ends_with(const char *name, const char *ending) {
+    size_t n = strlen(name), e = strlen(ending);
+    return n > e && strcmp(name + n - e, ending) == 0;
+}
+
+// Pictures and what a kill left half written; nothing else is ours to remove.
+static void remove_pictures(const char *folder) {
+    char path[BRUNT_PATH_LENGTH];
+    DIR *list = opendir(folder);
+    if (!list) return;
+    for (struct dirent *entry; (entry = readdir(list));)
+        if ((ends_with(entry->d_name, ".vtu") || ends_with(entry->d_name, ".part")) &&
+            brunt_join_path(path, folder, entry->d_name, NULL) == BRUNT_OK)
+            unlink(path);
+    closedir(list);
+}
+
+// Histories, pictures and checkpoints of all the runs of a study would fill disks.
+static void remove_outputs(const char *folder) {
+    char vtu[BRUNT_PATH_LENGTH];
+    remove_in(folder, passing, sizeof passing / sizeof *passing);
+    remove_pictures(folder);
+    if (brunt_join_path(vtu, folder, "vtu", NULL) != BRUNT_OK) return;
+    remove_pictures(vtu);
+    rmdir(vtu);
+}
+
+// run.json goes first: a folder that is half emptied must not count as finished.
+static void remove_run(const char *folder) {
+    static const char *const first[] = {"run.json"};
+    remove_in(folder, first, 1);
+    remove_in(folder, kept, sizeof kept / sizeof *kept);
+    remove_outputs(folder);
+}
+
+// Folders that hold something else as well stay, with that in them.
+static void remove_all_runs(const char *runs) {
+    DIR *list = opendir(runs);
+    if (!list) return;
+    char path[BRUNT_PATH_LENGTH];
+    for (struct dirent *entry; (entry = readdir(list));) {
+        struct stat info;
+        if (entry->d_name[0] == '.' || brunt_join_path(path, runs, entry->d_name, NULL) != BRUNT_OK) continue;
+        if (lstat(path, &info) != 0 || !S_ISDIR(info.st_mode)) continue;
+        remove_run(path);
+        rmdir(path);
+    }
+    closedir(list);
+}
+
+static int run_folder(const runner *r, int32_t index, int32_t repeat, char out[BRUNT_PATH_LENGTH], brunt_error *error) {
+    char name[200];
+    snprintf(name, sizeof name, "runs/%s.r%d", r->cases[index].name, (int)repeat + 1);
+    return brunt_join_path(out, r->folder, name, error);
+}
+
+// ---------------------------------------------------------------------------------------------------- what a run left
+
+static double number_of(const json_t *object, const char *key) {
+    const json_t *value = json_object_get(object, key);
+    return json_is_number(value) ? json_number_value(value) : NAN;
+}
+
+static const char *text_of(const json_t *object, const char *key) {
+    const char *text = json_string_value(json_object_get(object, key));
+    return text ? text : "";
+}
+
+static json_t *load(const char *folder, const char *name) {
+    char path[BRUNT_PATH_LENGTH];
+    return brunt_join_path(path, folder, name, NULL) == BRUNT_OK ? json_load_file(path, 0, NULL) : NULL;
+}
+
+// False when there is no summary. Its status may still be one of failure.
+static bool read_summary(const brunt_study *study, const char *folder, run_result *result) {
+    json_t *summary = load(folder, "summary.json");
+    if (!summary) return false;
+    bool done = strcmp(text_of(summary, "status"), "done") == 0;
+    result->status = done ? BRUNT_STUDY_DONE : BRUNT_STUDY_FAILED;
+    snprintf(result->reason, sizeof result->reason, "%s", done ? "" : text_of(summary, "reason"));
+    snprintf(result->state_hash, sizeof result->state_hash, "%s", text_of(summary, "state_hash"));
+    result->wall = number_of(summary, "step_s");
+    result->peak = number_of(summary, "peak_rss_bytes");
+    result->steps = number_of(summary, "steps");
+    result->units = number_of(summary, "particles") + number_of(summary, "elements");
+    const json_t *measures = json_object_get(summary, "measures");
+    for (int32_t m = 0; m < study->measure_count; m++) {
+        const json_t *measure = json_object_get(measures, study->measures[m].name);
+        result->value[m] = number_of(measure, "value");
+        result->expect[m] = number_of(measure, "expect");
+        snprintf(result->unit[m], sizeof result->unit[m], "%s", text_of(measure, "unit"));
+    }
+    json_decref(summary);
+    return true;
+}
+
+static void first_line(const char *folder, char *out, size_t size) {
+    char path[BRUNT_PATH_LENGTH];
+    FILE *file = brunt_join_path(path, folder, "messages.txt", NULL) == BRUNT_OK ? fopen(path, "r") : NULL;
+    *out = 0;
+    if (!file) return;
+    if (!fgets(out, (int)size, file)) *out = 0;
+    out[strcspn(out, "\n")] = 0;
+    fclose(file);
+}
+
+static void judge(const runner *r, const char *folder, const brunt_child_end *end, run_result *result) {
+    bool summary = end->fate == BRUNT_CHILD_ENDED && read_summary(r->study, folder, result);
+    result->elapsed = end->seconds;
+    if (summary && (result->status == BRUNT_STUDY_FAILED || end->code == 0)) return;
+    result->status = BRUNT_STUDY_FAILED;
+    char line[200];
+    first_line(folder, line, sizeof line);
+    if (end->fate == BRUNT_CHILD_TIMEOUT) {
+        char limit[32];
+        brunt_duration(r->study->time_limit, limit);
+        result->limit = r->study->time_limit;
+        snprintf(result->reason, sizeof result->reason, "not done after %s, the time limit of a run", limit);
+    } else if (end->fate == BRUNT_CHILD_KILLED) {
+        snprintf(result->reason, sizeof result->reason, "ended by signal %d (%s)", end->code, strsignal(end->code));
+    } else if (*line) {
+        snprintf(result->reason, sizeof result->reason, "%s", line);
+    } else {
+        snprintf(result->reason, sizeof result->reason, "exit code %d, and no summary", end->code);
+    }
+}
+
+static int write_record(const char *folder, uint64_t key, const run_result *result, brunt_error *error) {
+    char path[BRUNT_PATH_LENGTH], text[24];
+    brunt_atomic_file file;
+    int status = brunt_join_path(path, folder, "run.json", error);
+    if (!status) status = brunt_atomic_open(&file, path, error);
+    if (status) return status;
+    snprintf(text, sizeof text, "0x%016llx", (unsigned long long)key);
+    json_t *record = json_object(), *reason = json_string(result->reason);
+    json_object_set_new(record, "key", json_string(text));
+    json_object_set_new(record, "status", json_string(result->status == BRUNT_STUDY_DONE ? "done" : "failed"));
+    json_object_set_new(record, "reason", reason ? reason : json_string("(not UTF-8)"));
+    json_object_set_new(record, "elapsed_s", json_real(result->elapsed));
+    json_object_set_new(record, "limit_s", isfinite(result->limit) ? json_real(result->limit) : json_null());
+    json_dumpf(record, file.stream, JSON_INDENT(2) | JSON_PRESERVE_ORDER);
+    json_decref(record);
+    fputc('\n', file.stream);
+    return brunt_atomic_commit(&file, error);
+}
+
+// True when the folder holds a finished run of this very key.
+static bool take_over(const runner *r, int32_t index, const char *folder, run_result *result) {
+    json_t *record = load(folder, "run.json");
+    char key[24];
+    *result = (run_result){.limit = NAN};
+    snprintf(key, sizeof key, "0x%016llx", (unsigned long long)r->cases[index].key);
+    bool same = record && strcmp(text_of(record, "key"), key) == 0;
+    bool done = strcmp(text_of(record, "status"), "done") == 0;
+    // What was killed at its limit deserves another try when it is given more.
+    if (isfinite(number_of(record, "limit_s"))) same &= r->study->time_limit <= number_of(record, "limit_s");
+    if (same && done) same = read_summary(r->study, folder, result) && result->status == BRUNT_STUDY_DONE;
+    if (same && !done) {
+        result->status = BRUNT_STUDY_FAILED;
+        snprintf(result->reason, sizeof result->reason, "%s", text_of(record, "reason"));
+    }
+    result->elapsed = number_of(record, "elapsed_s");
+    json_decref(record);
+    return same;
+}
+
+// ---------------------------------------------------------------------------------------------------- one run
+
+static int start_run(const runner *r, const study_job *job, const char *folder, brunt_child_end *end,
+                     brunt_error *error) {
+    char threads[16], messages[BRUNT_PATH_LENGTH];
+    const char **words = brunt_alloc((size_t)(2 * job->set_count + 9) * sizeof *words);
+    int count = 0, status = words ? brunt_join_path(messages, folder, "messages.txt", error)
+                                  : brunt_fail(error, BRUNT_FAILED, "out of memory");
+    if (status) return status;
+    snprintf(threads, sizeof threads, "%d", (int)job->threads);
+    words[count++] = program_of(r, job);
+    words[count++] = "run";
+    words[count++] = job->scene;
+    for (int32_t s = 0; s < job->set_count; s++) {
+        words[count++] = "--set";
+        words[count++] = job->sets[s];
+    }
+    words[count++] = "-o";
+    words[count++] = folder;
+    words[count++] = "-q";
+    words[count++] = "-t";
+    words[count++] = threads;
+    words[count] = NULL;
+    status = brunt_child_run((char *const *)words, messages, r->study->time_limit, r->options->stop, end, error);
+    struct stat info;
+    if (!status && stat(messages, &info) == 0 && info.st_size == 0) unlink(messages);
+    brunt_free(words);
+    return status;
+}
+
+static int run_anew(const runner *r, int32_t index, const char *folder, run_result *result, brunt_error *error) {
+    study_job job;
+    study_origin culprit;
+    brunt_child_end end;
+    *result = (run_result){.limit = NAN};
+    remove_run(folder);
+    int status = brunt_make_folder(folder, error);
+    if (status) return status;
+    status = brunt_study_job(r->study, &r->study->cases[index], &job, &culprit, error);
+    if (!status) status = start_run(r, &job, folder, &end, error);
+    brunt_study_job_free(&job);
+    if (status) return status;
+    if (end.fate == BRUNT_CHILD_STOPPED) {
+        remove_run(folder);
+        rmdir(folder);
+        return brunt_fail(error, BRUNT_STOPPED, "stopped; go on with the same command");
+    }
+    judge(r, folder, &end, result);
+    remove_outputs(folder);
+    return write_record(folder, r->cases[index].key, result, error);
+}
+
+// ---------------------------------------------------------------------------------------------------- results
+
+static int by_size(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static void take_times(brunt_study_case *c) {
+    double sorted[1000];
+    int32_t n = c->runs;
+    memcpy(sorted, c->wall, (size_t)n * sizeof *sorted);
+    qsort(sorted, (size_t)n, sizeof *sorted, by_size);
+    c->wall_median = n % 2 ? sorted[n / 2] : 0.5 * (sorted[n / 2 - 1] + sorted[n / 2]);
+    c->wall_least = sorted[0];
+    c->wall_most = sorted[n - 1];
+}
+
+static void take_result(runner *r, int32_t index, const run_result *result) {
+    brunt_study_case *c = &r->study->cases[index];
+    case_state *state = &r->cases[index];
+    state->elapsed = result->elapsed;
+    if (result->status == BRUNT_STUDY_FAILED) {
+        c->status = BRUNT_STUDY_FAILED;
+        snprintf(c->reason, sizeof c->reason, "%s", result->reason);
+        r->finished += r->study->repeats - c->runs; // its other repeats are not run
+        return;
+    }
+    c->wall[c->runs++] = result->wall;
+    r->finished++;
+    take_times(c);
+    c->peak_bytes = fmax(c->peak_bytes, result->peak);
+    if (!*state->state_hash) {
+        snprintf(state->state_hash, sizeof state->state_hash, "%s", result->state_hash);
+        c->steps = result->steps;
+        c->units = result->units;
+        memcpy(c->result, result->value, sizeof c->result);
+        memcpy(c->expect, result->expect, sizeof c->expect);
+        memcpy(c->unit, result->unit, sizeof c->unit);
+    } else if (strcmp(state->state_hash, result->state_hash) != 0) {
+        c->status = BRUNT_STUDY_FAILED;
+        r->broken_promise = true;
+        r->finished += r->study->repeats - c->runs;
+        snprintf(c->reason, sizeof c->reason,
+                 "repeat %d ended in another state (%s) than repeat 1 (%s): the same bits are promised", (int)c->runs,
+                 result->state_hash, state->state_hash);
+        return;
+    }
+    if (c->runs == r->study->repeats) c->status = BRUNT_STUDY_DONE;
+}
+
+// [s] of a run that has not been made: that of the most alike case, its steps scaled by the cells and steps that the
+// resolutions let expect, start and output as they are.
+static double expected_time(const runner *r, int32_t index) {
+    const brunt_study *study = r->study;
+    if (isfinite(r->cases[index].elapsed)) return r->cases[index].elapsed;
+    double best = INFINITY, time = NAN, h = brunt_study_resolution(study, &study->cases[index]);
+    for (int32_t k = 0; k < study->case_count; k++) {
+        if (!isfinite(r->cases[k].elapsed) || study->cases[k].status == BRUNT_STUDY_FAILED) continue;
+        double ratio = brunt_study_resolution(study, &study->cases[k]) / h;
+        if (!isfinite(ratio)) ratio = 1;
+        double distance = 10 * fabs(log(ratio)) + (study->cases[k].line != study->cases[index].line);
+        if (distance >= best) continue;
+        best = distance;
+        double steps = study->cases[k].wall_median;
+        time = r->cases[k].elapsed + steps * (pow(ratio, r->dimension + 1) - 1);
+    }
+    return isfinite(time) ? fmin(time, study->time_limit) : 0;
+}
+
+// "; about 3 min left", or nothing when nothing is known.
+static void write_left(const runner *r, char out[64]) {
+    double left = 0;
+    bool known = false;
+    for (int32_t k = 0; k < r->study->case_count; k++) {
+        const brunt_study_case *c = &r->study->cases[k];
+        known |= isfinite(r->cases[k].elapsed) && c->status != BRUNT_STUDY_FAILED;
+        if (c->status == BRUNT_STUDY_WAITING) left += (r->study->repeats - c->runs) * expected_time(r, k);
+    }
+    char duration[32];
+    out[0] = 0;
+    if (!known || !isfinite(left) || r->finished == r->total) return;
+    brunt_duration(left, duration);
+    snprintf(out, 64, "; about %s left", duration);
+}
+
+// "error 1.2 %", or the value where the reference is still to come.
+static void write_outcome(const runner *r, const brunt_study_case *c, char out[128]) {
+    const brunt_study_measure *measure = &r->study->measures[0];
+    bool known = measure->reference == BRUNT_REFERENCE_NUMBER || measure->reference == BRUNT_REFERENCE_TABLE;
+    double error =
+        known ? fabs(c->result[0] - brunt_study_truth_of(r->study, c, 0).value) / brunt_study_scale_of(r->study, c, 0)
+              : NAN;
+    char percent[32];
+    brunt_study_format_percent(error, percent);
+    if (isfinite(error))
+        snprintf(out, 128, "error %s", percent);
+    else
+        snprintf(out, 128, "%.60s %.6g %s", measure->name, c->result[0], c->unit[0]);
+}
+
+static void say_run(const runner *r, int32_t index, int32_t repeat, double wall) {
+    const brunt_study_case *c = &r->study->cases[index];
+    char label[320], again[48] = "", outcome[128], seconds[32], left[64];
+    brunt_study_case_label(r->study, c, label);
+    if (r->study->repeats > 1)
+        snprintf(again, sizeof again, ", repeat %d of %d", (int)repeat + 1, (int)r->study->repeats);
+    write_left(r, left);
+    write_outcome(r, c, outcome);
+    brunt_study_format_seconds(wall, seconds);
+    if (c->status == BRUNT_STUDY_FAILED)
+        say(r, "[%d of %d] %s%s: failed: %s%s\n", r->finished, r->total, label, again, c->reason, left);
+    else
+        say(r, "[%d of %d] %s%s: %s, %s%s\n", r->finished, r->total, label, again, outcome, seconds, left);
+}
+
+static int one_run(runner *r, int32_t index, int32_t repeat, brunt_error *error) {
+    char folder[BRUNT_PATH_LENGTH];
+    run_result result;
+    int status = run_folder(r, index, repeat, folder, error);
+    if (status) return status;
+    bool there = take_over(r, index, folder, &result);
+    if (!there && stop_asked(r)) return brunt_fail(error, BRUNT_STOPPED, "stopped; go on with the same command");
+    if (!there) status = run_anew(r, index, folder, &result, error);
+    if (status) return status;
+    take_result(r, index, &result);
+    if (!there) say_run(r, index, repeat, result.wall);
+    return BRUNT_OK;
+}
+
+// The first repeat of all cases, then the second: when the machine grows slower in between, it does so for all alike.
+static int run_all(runner *r, brunt_error *error) {
+    int status = BRUNT_OK;
+    for (int32_t repeat = 0; repeat < r->study->repeats && !status; repeat++)
+        for (int32_t c = 0; c < r->study->case_count && !status; c++)
+            if (r->study->cases[c].status == BRUNT_STUDY_WAITING) status = one_run(r, c, repeat, error);
+    return status;
+}
+
+// ---------------------------------------------------------------------------------------------------- the study
+
+static int32_t count_earlier(const runner *r) {
+    int32_t count = 0;
+    for (int32_t c = 0; c < r->study->case_count; c++)
+        for (int32_t repeat = 0; repeat < r->study->repeats; repeat++) {
+            char folder[BRUNT_PATH_LENGTH];
+            run_result result;
+            if (run_folder(r, c, repeat, folder, NULL) != BRUNT_OK || !take_over(r, c, folder, &result)) break;
+            count += result.status == BRUNT_STUDY_FAILED ? r->study->repeats - repeat : 1;
+            if (result.status == BRUNT_STUDY_FAILED) break;
+        }
+    return count;
+}
+
+static int prepare(runner *r, brunt_error *error) {
+    const brunt_study_options *options = r->options;
+    char runs[BRUNT_PATH_LENGTH], name[160];
+    snprintf(name, sizeof name, "out/study/%.140s", r->study->name);
+    int status = brunt_join_path(r->folder, options->folder ? options->folder : name, "", error);
+    size_t length = strlen(r->folder);
+    if (length > 1 && r->folder[length - 1] == '/') r->folder[length - 1] = 0;
+    if (!status) status = brunt_join_path(runs, r->folder, "runs", error);
+    if (!status && options->fresh) remove_all_runs(runs);
+    if (!status) status = brunt_make_folder(runs, error);
+    snprintf(r->program, sizeof r->program, "%s", options->program);
+    r->total = r->study->case_count * r->study->repeats;
+    r->cases = brunt_alloc((size_t)(r->study->case_count + 1) * sizeof *r->cases);
+    if (!r->cases && !status) status = brunt_fail(error, BRUNT_FAILED, "out of memory");
+    for (int32_t c = 0; c < r->study->case_count && !status; c++) status = prepare_case(r, c, error);
+    if (status) return status;
+    int32_t earlier = count_earlier(r);
+    say(r, "%s: %d runs of %d cases into %s", r->study->name, r->total, r->study->case_count, r->folder);
+    if (earlier)
+        say(r, "; %d of them are there from earlier\n", earlier);
+    else
+        say(r, "\n");
+    return BRUNT_OK;
+}
+
+static int write_all(const runner *r, brunt_error *error) {
+    bool drawn = false;
+    brunt_study_analyse(r->study);
+    int status = brunt_study_write_tables(r->study, r->folder, error);
+    if (!status) status = brunt_study_write_plots(r->study, r->folder, &drawn, error);
+    if (!status) status = brunt_study_write_report(r->study, r->folder, error);
+    if (status) return status;
+    if (r->options->console) brunt_study_print(r->study, r->options->console);
+    say(r, "results are in %s: report.md, study.csv, study.json%s\n", r->folder,
+        drawn ? ", study.png, study_order.png, study_cost.png (and .svg)"
+              : "; no gnuplot here: its scripts are there, its pictures are not");
+    return BRUNT_OK;
+}
+
+static int verdict(const runner *r, brunt_error *error) {
+    int32_t done = 0;
+    for (int32_t c = 0; c < r->study->case_count; c++) done += r->study->cases[c].status == BRUNT_STUDY_DONE;
+    if (r->broken_promise) return brunt_fail(error, BRUNT_FAILED, "repeats of a case ended in different bits");
+    return done ? BRUNT_OK : brunt_fail(error, BRUNT_FAILED, "no case came to its end");
+}
+
+int brunt_study_run(brunt_study *study, const brunt_study_options *options, brunt_error *error) {
+    brunt_error local = {0};
+    if (!error) error = &local;
+    memset(error, 0, sizeof *error);
+    runner *r = brunt_alloc(sizeof *r);
+    if (!r) return brunt_fail(error, BRUNT_FAILED, "out of memory");
+    r->study = study;
+    r->options = options;
+    int status = prepare(r, error);
+    if (!status) status = run_all(r, error);
+    if (!status) status = write_all(r, error);
+    if (!status) status = verdict(r, error);
+    brunt_free(r->cases);
+    brunt_free(r);
+    return status;
+}
