@@ -90,9 +90,7 @@ if [ "$label" = long ]; then
 fi
 run build -LE long
 check "installed library" sh tests/install.sh build
-check "benchmark of passes" build/bench/bench_passes --quick
-check "benchmark of materials" build/bench/bench_materials --quick
-check "benchmark of elements" build/bench/bench_elements --quick
+check "whole benchmark" sh bench/run.sh --quick
 check "study of contact" build/bench/contact_study cubes h=1
 check "build in single precision" build float && run build-float -L '^unit$' -LE long &&
     run build-float -R '^test_(axisymmetric_bodies|point_erosion|tied|total_lagrangian)$'

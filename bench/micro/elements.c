@@ -1,24 +1,26 @@
 // What finite elements cost: nanoseconds per element-step of the three passes of a step, by element and threads.
 //
-//   bench_elements [--quick] [--cells N] [--steps N] [--rounds N] [--threads N] [--only WORD]
+//   bench_elements [--quick] [--cells N] [--steps N] [--rounds N] [--threads N] [--only WORD] [--growth] [-o FILE.csv]
 //
 // A distorted block of neo-Hookean material vibrates: hexahedra N^3 (default 80), tetrahedra 6 (N * 0.55)^3; of N^1.5
 // by N^1.5 quadrilaterals and as many squares of two triangles membranes, sections of plane strain and, from the axis
 // on, sections of rings. Rounds go through all configurations one after the other; the table gives the median of the
-// rounds and the least.
-#include <unistd.h>
-
+// rounds and the least. --growth: the cost over size, hexahedra and tetrahedra alone, from 10,000 to a million. -o:
+// rows of a machine's file (bench/machines/README.md) are appended.
 #include "fem.h"
 #include "typical.h"
 
-enum { ROUND_LIMIT = 64, PASSES = 3, THREAD_LIMIT = 64 };
+enum { ROUND_LIMIT = 64, PASSES = 3, THREAD_LIMIT = 16, BENCH_LIMIT = 16 };
 static const char *const pass_names[PASSES] = {"kick", "drift", "forces"};
 
 typedef struct bench {
+    char name[64];
     brunt_fem_body body;
     brunt_fem_workspace work[THREAD_LIMIT];
     brunt_fem_sums *kicked, *drifted; // of each piece
     double dt;
+    int steps;                                            // of a window
+    double ns[THREAD_LIMIT + 1][PASSES + 1][ROUND_LIMIT]; // per element-step; last: all passes
 } bench;
 
 enum { GRAIN = 4096 };
@@ -121,9 +123,10 @@ static void drop(bench *b) {
     brunt_fem_free(&b->body);
 }
 
-static void run(bench *b, int threads, int steps, double ns[PASSES]) {
+// One window: the parts and their sum go to the round's place.
+static void run(bench *b, int threads, int round) {
     double seconds[PASSES] = {0};
-    for (int s = -1; s < steps; s++) {
+    for (int s = -1; s < b->steps; s++) {
         double t0 = brunt_clock();
         brunt_parallel(threads, b->body.node_count, GRAIN, kick_task, b, NULL);
         double t1 = brunt_clock();
@@ -134,68 +137,113 @@ static void run(bench *b, int threads, int steps, double ns[PASSES]) {
         if (s < 0) continue; // warm-up
         seconds[0] += t1 - t0, seconds[1] += t2 - t1, seconds[2] += t3 - t2;
     }
-    for (int p = 0; p < PASSES; p++) ns[p] = 1e9 * seconds[p] / steps / b->body.element_count;
+    b->ns[threads][PASSES][round] = 0;
+    for (int p = 0; p < PASSES; p++) {
+        b->ns[threads][p][round] = 1e9 * seconds[p] / b->steps / b->body.element_count;
+        b->ns[threads][PASSES][round] += b->ns[threads][p][round];
+    }
 }
 
-int main(int argc, char **argv) {
-    if (!getenv("GOMP_SPINCOUNT") && setenv("GOMP_SPINCOUNT", "10000", 1) == 0) execv("/proc/self/exe", argv);
-    int cells = 80, steps = 10, rounds = 5, most_threads = 2;
-    const char *only = "";
+typedef struct settings {
+    int cells, steps, rounds, threads;
+    const char *only, *file;
+    bool quick, growth;
+} settings;
+
+static bool read_settings(int argc, char **argv, settings *s) {
     for (int i = 1; i < argc; i++) {
-        const char *value = i + 1 < argc ? argv[i + 1] : "0";
-        int number = atoi(value);
-        if (strcmp(argv[i], "--quick") == 0) {
-            cells = 10, steps = 3, rounds = 2;
+        const char *option = argv[i], *value = i + 1 < argc ? argv[i + 1] : "0";
+        const int number = atoi(value);
+        if (strcmp(option, "--quick") == 0) {
+            s->quick = true;
+            s->cells = 10, s->steps = 3, s->rounds = 2;
             continue;
         }
-        if (strcmp(argv[i], "--only") == 0)
-            only = value;
-        else if (strcmp(argv[i], "--cells") == 0 && number > 1 && number < 400)
-            cells = number;
-        else if (strcmp(argv[i], "--steps") == 0 && number > 0)
-            steps = number;
-        else if (strcmp(argv[i], "--rounds") == 0 && number > 0 && number <= ROUND_LIMIT)
-            rounds = number;
-        else if (strcmp(argv[i], "--threads") == 0 && number > 0 && number <= THREAD_LIMIT)
-            most_threads = number;
+        if (strcmp(option, "--growth") == 0) {
+            s->growth = true;
+            continue;
+        }
+        if (strcmp(option, "--only") == 0)
+            s->only = value;
+        else if (strcmp(option, "-o") == 0 && i + 1 < argc)
+            s->file = value;
+        else if (strcmp(option, "--cells") == 0 && number > 1 && number < 400)
+            s->cells = number;
+        else if (strcmp(option, "--steps") == 0 && number > 0)
+            s->steps = number;
+        else if (strcmp(option, "--rounds") == 0 && number > 0 && number <= ROUND_LIMIT)
+            s->rounds = number;
+        else if (strcmp(option, "--threads") == 0 && number > 0 && number <= THREAD_LIMIT)
+            s->threads = number;
         else {
-            fprintf(stderr, "bench_elements: %s %s is not understood\n", argv[i], value);
-            return BRUNT_BAD_USAGE;
+            fprintf(stderr, "bench_elements: %s %s is not understood\n", option, value);
+            return false;
         }
         i++;
     }
-    printf("ns per element-step, median of %d rounds (least in brackets); B: bytes per element\n", rounds);
-    const brunt_element_kind kinds[] = {BRUNT_HEX8,  BRUNT_TET4, BRUNT_MEMBRANE_QUAD4, BRUNT_MEMBRANE_TRI3,
-                                        BRUNT_QUAD4, BRUNT_TRI3, BRUNT_QUAD4,          BRUNT_TRI3};
-    for (int k = 0; k < 8; k++) {
-        const bool rings = k >= 6;
-        char name[64];
-        snprintf(name, sizeof name, "%s%s", rings ? "axisymmetric-" : "", brunt_element_name(kinds[k]));
-        if (*only && strcmp(only, name) != 0) continue;
-        bench b = {.dt = 0};
-        int along = kinds[k] == BRUNT_HEX8 ? cells : (cells * 11 + 10) / 20;
-        if (flat(kinds[k])) along = (int)(pow(cells, 1.5) + 0.5);
-        int status = make(kinds[k], rings, along, &b);
-        if (status != BRUNT_OK) return status;
-        double ns[THREAD_LIMIT + 1][PASSES + 1][ROUND_LIMIT];
-        for (int r = 0; r < rounds; r++)
-            for (int t = 1; t <= most_threads; t++) {
-                double pass[PASSES];
-                run(&b, t, steps, pass);
-                ns[t][PASSES][r] = 0;
-                for (int p = 0; p < PASSES; p++) ns[t][p][r] = pass[p], ns[t][PASSES][r] += pass[p];
-            }
-        for (int t = 1; t <= most_threads; t++) {
-            double median = median_of(ns[t][PASSES], rounds);
-            printf("%s %7d elements %7d nodes %4d blocks %d thread%s %6.1f (%6.1f)", name, b.body.element_count,
-                   b.body.node_count, b.body.block_count, t, t == 1 ? " " : "s", median, ns[t][PASSES][0]);
-            for (int p = 0; p < PASSES; p++) {
-                double value = median_of(ns[t][p], rounds);
-                printf("  %s %.1f (%.1f)", pass_names[p], value, ns[t][p][0]);
-            }
-            printf("  B %.0f\n", (double)brunt_fem_bytes(&b.body) / b.body.element_count);
-        }
-        drop(&b);
+    return true;
+}
+
+// One of about `elements`.
+static int add(const settings *s, brunt_element_kind kind, bool rings, double elements, bench *list, int *count) {
+    char name[64];
+    snprintf(name, sizeof name, "%s%s", rings ? "axisymmetric-" : "", brunt_element_name(kind));
+    if (*s->only && strcmp(s->only, name) != 0) return BRUNT_OK;
+    const double cells = flat(kind) ? sqrt(elements) : cbrt(kind == BRUNT_TET4 ? elements / 6 : elements);
+    bench *b = &list[(*count)++];
+    memcpy(b->name, name, sizeof name);
+    const int status = make(kind, rings, (int)lround(cells), b);
+    // Small ones take more steps: a window is to be long against what a clock and other work disturb.
+    const double more = s->quick ? 1 : 500000.0 / b->body.element_count;
+    b->steps = s->steps * (int)fmax(1, fmin(more, 10));
+    return status;
+}
+
+static int add_all(const settings *s, bench *list, int *count) {
+    static const brunt_element_kind kinds[] = {BRUNT_HEX8,  BRUNT_TET4, BRUNT_MEMBRANE_QUAD4, BRUNT_MEMBRANE_TRI3,
+                                               BRUNT_QUAD4, BRUNT_TRI3, BRUNT_QUAD4,          BRUNT_TRI3};
+    static const double sizes[] = {1e4, 3e4, 1e5, 3e5, 1e6};
+    int status = BRUNT_OK;
+    for (int k = 0; k < 8 && !s->growth && !status; k++)
+        status = add(s, kinds[k], k >= 6, pow(s->cells, 3), list, count);
+    for (int n = 0; n < (s->quick ? 2 : 5) && s->growth && !status; n++)
+        for (int k = 0; k < 2 && !status; k++)
+            status = add(s, kinds[k], false, sizes[n] / (s->quick ? 10 : 1), list, count);
+    return status;
+}
+
+static void report(FILE *csv, const settings *s, bench *b, int threads) {
+    const row_key key = {s->growth ? "growth" : "elements", b->name, b->body.element_count, threads};
+    const double bytes = (double)brunt_fem_bytes(&b->body) / b->body.element_count,
+                 total = write_samples(csv, key, "step", "ns/element", b->ns[threads][PASSES], s->rounds);
+    printf("%s %7d elements %7d nodes %4d blocks %d thread%s %6.1f (%6.1f)", b->name, b->body.element_count,
+           b->body.node_count, b->body.block_count, threads, threads == 1 ? " " : "s", total,
+           b->ns[threads][PASSES][0]);
+    for (int p = 0; p < PASSES; p++) {
+        const double median = write_samples(csv, key, pass_names[p], "ns/element", b->ns[threads][p], s->rounds);
+        printf("  %s %.1f (%.1f)", pass_names[p], median, b->ns[threads][p][0]);
     }
-    return BRUNT_OK;
+    printf("  B %.0f\n", bytes);
+    write_row(csv, key, "bytes", "B/element", bytes, bytes, s->rounds);
+}
+
+int main(int argc, char **argv) {
+    start_with_short_spins(argv);
+    settings s = {.cells = 80, .steps = 10, .rounds = 5, .threads = 2, .only = ""};
+    if (!read_settings(argc, argv, &s)) return BRUNT_BAD_USAGE;
+    FILE *csv = s.file ? open_rows(s.file) : NULL;
+    if (s.file && !csv) return BRUNT_IO_ERROR;
+    bench *list = brunt_alloc(BENCH_LIMIT * sizeof *list);
+    int count = 0, status = list ? add_all(&s, list, &count) : BRUNT_FAILED;
+    for (int r = 0; r < s.rounds && !status; r++)
+        for (int k = 0; k < count; k++)
+            for (int t = 1; t <= s.threads; t++) run(&list[k], t, r);
+    if (!status)
+        printf("ns per element-step, median of %d rounds (least in brackets); B: bytes per element\n", s.rounds);
+    for (int k = 0; k < count; k++) {
+        for (int t = 1; t <= s.threads && !status; t++) report(csv, &s, &list[k], t);
+        drop(&list[k]);
+    }
+    brunt_free(list);
+    return close_rows(csv) || status ? status : BRUNT_IO_ERROR;
 }

@@ -2,13 +2,14 @@
 //
 //   bench_materials [--quick] [-o FILE.csv]
 //
+// -o: rows of a machine's file (bench/machines/README.md) are appended.
+//
 // 8192 points go back and forth between two deformation gradients close to one another, so that state stays bounded.
 // "elastic": strain steps of 1e-6; "flowing": of 2e-3, which takes a plastic model through yield every time. Rounds go
 // through all models one after the other; the table gives the median and the least of the rounds.
-#include "lanes.h"
 #include "typical.h"
 
-enum { POINTS = 8192, ROUND_LIMIT = 64, CASE_LIMIT = 64 };
+enum { POINTS = 8192, ROUND_LIMIT = 64, CASE_LIMIT = 256 };
 
 typedef struct bench_case {
     const brunt_model *model;
@@ -123,11 +124,8 @@ int main(int argc, char **argv) {
         if (strcmp(argv[i], "--quick") == 0) {
             rounds = 2, updates = 4;
         } else if (strcmp(argv[i], "-o") == 0 && i + 1 < argc && !csv) {
-            csv = fopen(argv[++i], "w");
-            if (!csv) {
-                perror(argv[i]);
-                return 74;
-            }
+            csv = open_rows(argv[++i]);
+            if (!csv) return 74;
         } else {
             fprintf(stderr, "usage: bench_materials [--quick] [-o FILE.csv]\n");
             return 64;
@@ -143,20 +141,18 @@ int main(int argc, char **argv) {
         for (int i = 0; i < count; i++)
             if (!measure(&list[i], updates)) return 70;
 
-    if (csv) {
-        write_heading(csv, argc, argv);
-        fprintf(csv, "model,dimension,eos,strain_step,ns_median,ns_least\n");
-    }
     printf("ns per point, median of the rounds (least in brackets), %d points\n", POINTS);
     for (int i = 0; i < count; i++) {
         bench_case *c = &list[i];
-        double median = median_of(c->ns, c->rounds);
-        const char *kind = !c->model->plastic ? "" : c->strain > 1e-4 ? "flowing" : "elastic";
-        printf("%-22s %dD %-8s %-8s %7.2f (%.2f)\n", c->model->name, c->dim, c->with_eos ? "with eos" : "", kind,
-               median, c->ns[0]);
-        if (csv)
-            fprintf(csv, "%s,%d,%d,%g,%.3f,%.3f\n", c->model->name, c->dim, c->with_eos, c->strain, median, c->ns[0]);
+        char name[96];
+        const char *kind = c->strain > 1e-4 ? "flowing" : "elastic";
+        snprintf(name, sizeof name, "%s%s %s%s", c->dim == 2 ? "2d " : "", c->model->name, kind,
+                 c->with_eos ? " with eos" : "");
+        const row_key key = {"materials", name, POINTS, 1};
+        const double median = write_samples(csv, key, "update", "ns/point", c->ns, c->rounds);
+        printf("%-22s %dD %-8s %-8s %7.2f (%.2f)\n", c->model->name, c->dim, c->with_eos ? "with eos" : "",
+               c->model->plastic ? kind : "", median, c->ns[0]);
     }
     brunt_free(list);
-    return csv && (ferror(csv) || fclose(csv)) ? 74 : 0;
+    return close_rows(csv) ? 0 : 74;
 }

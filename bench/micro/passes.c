@@ -1,16 +1,16 @@
 // What a step costs, pass by pass: nanoseconds per particle-step for each kernel, transfer, size and number of threads.
 //
 //   bench_passes [--quick] [--particles N[,N...]] [--threads N[,N...]] [--dimension D[,D]] [--only WORDS] [--rounds N]
-//                [--steps N] [-o FILE.csv]
+//                [--steps N] [--growth] [-o FILE.csv]
+//
+// --growth: the cost over size, quadratic APIC alone, from 10,000 to 3,000,000 particles (2D: three sizes). -o: rows of
+// a machine's file (bench/machines/README.md) are appended.
 //
 // A block, 8 particles a cell (2D: 4), moves as one in an impact does: 0.05, 0.04 and 0.03 cells a step along the axes,
 // turning slowly, with a longitudinal wave through it. Rounds go through all configurations one after the other, so
 // that what else the machine does falls on all of them alike; the grid is shifted by another part of a cell in each
 // round, since the kernels' speed depends on where the particles lie in the cells. Every sample is the mean over a
 // window of steps; the table gives the median and the least of the rounds.
-#include <errno.h>
-#include <unistd.h>
-
 #include "brunt.h"
 #include "typical.h"
 
@@ -37,6 +37,7 @@ typedef struct settings {
     int64_t threads[SIZE_LIMIT], dimensions[SIZE_LIMIT];
     int size_count, thread_count, dimension_count, rounds, steps;
     const char *only, *file;
+    bool growth;
 } settings;
 
 static brunt_world *create(const configuration *c, int turn, int turns, brunt_error *error) {
@@ -74,11 +75,19 @@ static brunt_world *create(const configuration *c, int turn, int turns, brunt_er
         body.spin_about[a] = side / 2;
         body.velocity[a] = (0.05 - 0.01 * a) * def.cell / step;
     }
-    if (rings) body.shape.min[0] += side, body.shape.max[0] += side; // off the axis, about which nothing may turn over
-    else body.spin[2] = 0.01 * wave / side;
+    if (rings)
+        body.shape.min[0] += side, body.shape.max[0] += side; // off the axis, about which nothing may turn over
+    else
+        body.spin[2] = 0.01 * wave / side;
     body.wave_velocity[0] = 0.01 * wave, body.wave_vector[0] = 12.566370614359172 / side;
     def.bodies = &body, def.body_count = 1;
     return brunt_world_create(&def, error);
+}
+
+// Small ones take more steps: a window is to be long against what a clock and other work disturb.
+static int window_of(const configuration *c, const settings *s) {
+    const int64_t more = s->growth && s->steps > 2 ? 250000 / c->particles : 1;
+    return s->steps * (int)(more < 1 ? 1 : more > 10 ? 10 : more);
 }
 
 static int measure(configuration *c, int round, const settings *s) {
@@ -93,9 +102,10 @@ static int measure(configuration *c, int round, const settings *s) {
         if (c->pass_count > PASS_LIMIT) c->pass_count = PASS_LIMIT;
         for (int p = 0; p < c->pass_count; p++) before[p] = brunt_world_pass(world, p);
     }
+    const int window = status == BRUNT_OK ? window_of(c, s) : 0;
     double start = brunt_clock();
-    for (steps = 0; status == BRUNT_OK && steps < s->steps; steps++) status = brunt_world_step(world, INFINITY, &error);
-    double scale = 1e9 / ((double)c->particles * s->steps);
+    for (steps = 0; status == BRUNT_OK && steps < window; steps++) status = brunt_world_step(world, INFINITY, &error);
+    double scale = 1e9 / ((double)c->particles * window);
     if (status == BRUNT_OK) {
         int r = c->round_count++;
         c->total[r] = scale * (brunt_clock() - start);
@@ -136,6 +146,8 @@ static int plan(const settings *s, configuration *list) {
                             snprintf(words, sizeof words, "%s %s %s", kernel_names[k], transfer_names[transfer],
                                      materials[m]);
                             if (m == 4 && s->dimensions[d] != 2) continue;
+                            if (s->growth && (m > 0 || k != BRUNT_QUADRATIC || transfer != BRUNT_APIC)) continue;
+                            if (s->growth && s->dimensions[d] == 2 && n % 2 == 1) continue;
                             if ((m > 0 && !usual) || (s->only && !strstr(words, s->only))) continue;
                             if (count == CONFIGURATION_LIMIT) return count;
                             list[count++] = (configuration){.dimension = (int)s->dimensions[d],
@@ -148,67 +160,50 @@ static int plan(const settings *s, configuration *list) {
     return count;
 }
 
-typedef struct figures {
-    double median, least, busy;
-} figures;
-
-static figures figures_of(double *samples, double *busy, int count) {
-    figures f = {.median = median_of(samples, count), .busy = busy ? median_of(busy, count) : 1};
-    f.least = samples[0];
-    return f;
-}
-
-static void write_row(FILE *out, const configuration *c, const char *pass, figures f) {
-    fprintf(out, "%d,%s,%s,%s,%lld,%d,%s,%.3f,%.3f,%.3f,%.1f,%d\n", c->dimension, kernel_names[c->kernel],
-            transfer_names[c->transfer], c->material, (long long)c->particles, c->threads, pass, f.median, f.least,
-            f.busy, c->bytes, c->round_count);
+static void write_passes(FILE *csv, const settings *s, configuration *c) {
+    char name[96], figure[48];
+    snprintf(name, sizeof name, "%dd %s %s %s", c->dimension, kernel_names[c->kernel], transfer_names[c->transfer],
+             c->material);
+    const row_key key = {s->growth ? "growth" : "particles", name, (double)c->particles, c->threads};
+    write_samples(csv, key, "step", "ns/particle", c->total, c->round_count);
+    write_row(csv, key, "bytes", "B/particle", c->bytes, c->bytes, c->round_count);
+    for (int p = 0; p < c->pass_count; p++) {
+        write_samples(csv, key, c->pass_name[p], "ns/particle", c->pass[p], c->round_count);
+        if (c->threads == 1) continue;
+        snprintf(figure, sizeof figure, "busy %.40s", c->pass_name[p]);
+        write_samples(csv, key, figure, "1", c->busy[p], c->round_count);
+    }
 }
 
 // Table on standard output: total with the least in brackets, then the passes' medians; what of a step is in no pass is
 // its rest. The speed-up is that of the medians over the line with one thread.
-static int report(FILE *csv, configuration *list, int count) {
+static bool report(FILE *csv, const settings *s, configuration *list, int count) {
     double single = 0;
-    if (csv)
-        fprintf(csv, "dimension,kernel,transfer,material,particles,threads,pass,ns_median,ns_least,busy,"
-                     "bytes_per_particle,rounds\n");
     printf("ns per particle-step, median of the rounds (least in brackets); B: bytes per particle\n");
     for (int i = 0; i < count; i++) {
         configuration *c = &list[i];
-        figures total = figures_of(c->total, NULL, c->round_count);
-        if (c->threads == 1) single = total.median;
+        const double total = median_of(c->total, c->round_count);
+        if (c->threads == 1) single = total;
         printf("%dD %-9s %-4s %-27s %8lld %d thread%s %7.1f (%6.1f)", c->dimension, kernel_names[c->kernel],
                transfer_names[c->transfer], c->material, (long long)c->particles, c->threads,
-               c->threads == 1 ? " " : "s", total.median, total.least);
-        if (csv) write_row(csv, c, "total", total);
-        double rest = total.median;
+               c->threads == 1 ? " " : "s", total, c->total[0]);
+        double rest = total;
         for (int p = 0; p < c->pass_count; p++) {
-            figures f = figures_of(c->pass[p], c->busy[p], c->round_count);
-            rest -= f.median;
-            printf("  %s %.1f", c->pass_name[p], f.median);
-            if (csv) write_row(csv, c, c->pass_name[p], f);
+            const double median = median_of(c->pass[p], c->round_count);
+            rest -= median;
+            printf("  %s %.1f", c->pass_name[p], median);
         }
         printf("  rest %.1f  B %.0f", rest, c->bytes);
-        if (c->threads > 1 && single > 0) printf("  speed-up %.2f", single / total.median);
+        if (c->threads > 1 && single > 0) printf("  speed-up %.2f", single / total);
         printf("\n");
+        write_passes(csv, s, c);
     }
-    return csv && (ferror(csv) || fclose(csv)) ? BRUNT_IO_ERROR : BRUNT_OK;
-}
-
-// A list of whole numbers from 1 to `most`, 0 when it is none.
-static int read_list(const char *text, int64_t most, int64_t *out) {
-    int count = 0;
-    for (;;) {
-        char *end;
-        long long value = strtoll(text, &end, 10);
-        if (end == text || value < 1 || value > most || count == SIZE_LIMIT) return 0;
-        out[count++] = value;
-        if (!*end) return count;
-        if (*end != ',') return 0;
-        text = end + 1;
-    }
+    return close_rows(csv);
 }
 
 static bool read_settings(int argc, char **argv, settings *s) {
+    static const int64_t sizes[] = {10000, 30000, 100000, 300000, 1000000, 3000000};
+    bool quick = false, sized = false;
     for (int i = 1; i < argc; i++) {
         const char *option = argv[i], *value = i + 1 < argc ? argv[i + 1] : "";
         int64_t number[SIZE_LIMIT];
@@ -216,40 +211,53 @@ static bool read_settings(int argc, char **argv, settings *s) {
         if (strcmp(option, "--quick") == 0) {
             s->particles[0] = 8000, s->size_count = 1;
             s->rounds = 2, s->steps = 2;
+            quick = true;
+            continue;
+        }
+        if (strcmp(option, "--growth") == 0) {
+            s->growth = true;
             continue;
         }
         i++;
-        if (strcmp(option, "--particles") == 0) ok = (s->size_count = read_list(value, 100000000, s->particles)) > 0;
-        else if (strcmp(option, "--threads") == 0) ok = (s->thread_count = read_list(value, 64, s->threads)) > 0;
+        if (strcmp(option, "--particles") == 0)
+            sized = ok = (s->size_count = read_list(value, 100000000, SIZE_LIMIT, s->particles)) > 0;
+        else if (strcmp(option, "--threads") == 0)
+            ok = (s->thread_count = read_list(value, 64, SIZE_LIMIT, s->threads)) > 0;
         else if (strcmp(option, "--dimension") == 0)
-            ok = (s->dimension_count = read_list(value, 3, s->dimensions)) > 0 && s->dimensions[0] > 1 &&
+            ok = (s->dimension_count = read_list(value, 3, SIZE_LIMIT, s->dimensions)) > 0 && s->dimensions[0] > 1 &&
                  s->dimensions[s->dimension_count - 1] > 1;
         else if (strcmp(option, "--rounds") == 0)
-            ok = read_list(value, ROUND_LIMIT, number) == 1, s->rounds = ok ? (int)number[0] : 0;
+            ok = read_list(value, ROUND_LIMIT, SIZE_LIMIT, number) == 1, s->rounds = ok ? (int)number[0] : 0;
         else if (strcmp(option, "--steps") == 0)
-            ok = read_list(value, 1000000, number) == 1, s->steps = ok ? (int)number[0] : 0;
-        else if (strcmp(option, "--only") == 0) s->only = value;
-        else if (strcmp(option, "-o") == 0) s->file = value, ok = *value;
-        else ok = false;
+            ok = read_list(value, 1000000, SIZE_LIMIT, number) == 1, s->steps = ok ? (int)number[0] : 0;
+        else if (strcmp(option, "--only") == 0)
+            s->only = value;
+        else if (strcmp(option, "-o") == 0)
+            s->file = value, ok = *value;
+        else
+            ok = false;
         if (!ok) {
             fprintf(stderr, "bench_passes: %s %s is not understood\n", option, value);
             return false;
         }
     }
+    if (s->growth && !sized) {
+        s->size_count = quick ? 3 : (int)(sizeof sizes / sizeof *sizes);
+        for (int n = 0; n < s->size_count; n++) s->particles[n] = sizes[n] / (quick ? 10 : 1);
+    }
     return true;
-}
-
-// As the program does (engine/app/cmd_run.c): libgomp reads it when it is loaded, hence the second start. Where other
-// work wants the processors too, its own choice made each pass last 8 ms.
-static void start_with_short_spins(char **argv) {
-    if (getenv("GOMP_SPINCOUNT") || getenv("OMP_WAIT_POLICY")) return;
-    if (setenv("GOMP_SPINCOUNT", "10000", 1) == 0) execv("/proc/self/exe", argv);
 }
 
 int main(int argc, char **argv) {
     start_with_short_spins(argv);
-    settings s = {.particles = {250000, 1000000}, .size_count = 2, .threads = {1, 2}, .thread_count = 2,
-                  .dimensions = {3, 2}, .dimension_count = 2, .rounds = 5, .steps = 12};
+    settings s = {.particles = {250000, 1000000},
+                  .size_count = 2,
+                  .threads = {1, 2},
+                  .thread_count = 2,
+                  .dimensions = {3, 2},
+                  .dimension_count = 2,
+                  .rounds = 5,
+                  .steps = 12};
     if (!read_settings(argc, argv, &s)) return BRUNT_BAD_USAGE;
     configuration *list = brunt_alloc(CONFIGURATION_LIMIT * sizeof *list);
     if (!list) return BRUNT_FAILED;
@@ -257,20 +265,17 @@ int main(int argc, char **argv) {
     if (!count) fprintf(stderr, "bench_passes: no configuration has '%s' in it\n", s.only);
     FILE *csv = NULL;
     if (status == BRUNT_OK && s.file) {
-        csv = fopen(s.file, "w");
-        if (!csv) {
-            fprintf(stderr, "bench_passes: %s: %s\n", s.file, strerror(errno));
-            status = BRUNT_IO_ERROR;
-        } else {
-            write_heading(csv, argc, argv);
-        }
+        csv = open_rows(s.file);
+        if (!csv) status = BRUNT_IO_ERROR;
     }
     for (int round = 0; status == BRUNT_OK && round < s.rounds; round++) {
         for (int i = 0; status == BRUNT_OK && i < count; i++) status = measure(&list[i], round, &s);
         fprintf(stderr, "round %d of %d done\n", round + 1, s.rounds);
     }
-    if (status == BRUNT_OK) status = report(csv, list, count);
-    else if (csv) fclose(csv);
+    if (status == BRUNT_OK)
+        status = report(csv, &s, list, count) ? BRUNT_OK : BRUNT_IO_ERROR;
+    else
+        close_rows(csv);
     brunt_free(list);
     return status;
 }

@@ -1,16 +1,15 @@
-// What the benchmarks of kernels have in common: parameters of a model, the machine's name, medians.
+// What the benchmarks of kernels have in common: parameters of a model, and how results are written.
 #pragma once
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "brunt.h"
 #include "material.h"
 #include "memory.h"
-#include "threads.h"
+#include "rows.h"
 
 static const double typical_density = 8960;
 
@@ -48,40 +47,4 @@ static inline double typical_parameters(const brunt_model *model, double *out) {
             if (strcmp(copper[k].key, model->parameters[i].key) == 0) out[i] = copper[k].value;
     }
     return typical_density;
-}
-
-static inline int ascending(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-// Sorts the samples.
-static inline double median_of(double *samples, int count) {
-    qsort(samples, (size_t)count, sizeof *samples, ascending);
-    return 0.5 * (samples[(count - 1) / 2] + samples[count / 2]);
-}
-
-// First lines of a result file: what it was measured on and by which command.
-static inline void write_heading(FILE *out, int argc, char **argv) {
-    char line[256], model[256] = "unknown processor\n", date[32];
-    FILE *info = fopen("/proc/cpuinfo", "r");
-    while (info && fgets(line, sizeof line, info))
-        if (strncmp(line, "model name", 10) == 0 && strchr(line, ':')) {
-            snprintf(model, sizeof model, "%s", strchr(line, ':') + 2);
-            break;
-        }
-    if (info) fclose(info);
-#ifdef __clang__
-    const char *compiler = __VERSION__;
-#else
-    const char *compiler = "gcc " __VERSION__;
-#endif
-    time_t now = time(NULL);
-    strftime(date, sizeof date, "%Y-%m-%d", gmtime(&now));
-    fprintf(out, "# %s# %d processors, %s, compiler %s\n# %s:", model, brunt_threads_available(), BRUNT_REAL_NAME,
-            compiler, date);
-    const char *name = strrchr(argv[0], '/');
-    fprintf(out, " %s", name ? name + 1 : argv[0]);
-    for (int i = 1; i < argc; i++) fprintf(out, " %s", argv[i]);
-    fprintf(out, "\n");
 }

@@ -12,7 +12,9 @@
 //   turn      angle about the vertical [deg]                       shift     of everything, in h
 //   load      factor on gravity                                    ramp      s over which gravity grows
 //   hg        hourglass coefficient                              trace     1: a line for every sample
-//   samples   how often penetration is measured
+//   samples   how often penetration is measured; slide, crowd: steps
+//   bodies    of the crowd (0: n^3)                                rounds    slide, crowd: of which the median is given
+//   rows      FILE.csv: slide, crowd append to a machine's file (bench/machines/README.md)
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -20,11 +22,14 @@
 
 #include "brunt.h"
 #include "penetration.h"
-#include "threads.h"
+#include "rows.h"
+
+enum { ROUND_LIMIT = 16 };
 
 typedef struct settings {
     double h, h2, hg, grid, mu, end, speed, stiff, e1, r1, dt, turn, shift, load, ramp;
-    int n, samples, threads, trace;
+    int n, samples, threads, trace, bodies, rounds;
+    const char *rows;
     brunt_augury_form form;
     int none, rigid;
     brunt_transfer transfer;
@@ -63,7 +68,12 @@ static settings read_settings(int argc, char **argv) {
                   .n = (int)number(argc, argv, "n", -1),
                   .samples = (int)number(argc, argv, "samples", 60),
                   .threads = (int)number(argc, argv, "threads", 1),
-                  .trace = (int)number(argc, argv, "trace", 0)};
+                  .trace = (int)number(argc, argv, "trace", 0),
+                  .bodies = (int)number(argc, argv, "bodies", 0),
+                  .rounds = (int)number(argc, argv, "rounds", 1),
+                  .rows = word(argc, argv, "rows", NULL)};
+    if (s.rounds < 1) s.rounds = 1;
+    if (s.rounds > ROUND_LIMIT) s.rounds = ROUND_LIMIT;
     const char *form = word(argc, argv, "form", "affine");
     s.none = !strcmp(form, "none"), s.rigid = !strcmp(form, "rigid");
     s.form = !strcmp(form, "smooth")    ? BRUNT_AUGURY_SMOOTH
@@ -332,13 +342,36 @@ static double pass_seconds(const brunt_world *world, const char *name) {
     return 0;
 }
 
-static void report_cost(const settings *s, const char *kind, brunt_world *world, double steps, double wall,
-                        double nodes) {
-    double elements = (double)brunt_world_elements(world), contact = pass_seconds(world, "surfaces");
-    printf("%s threads=%d bodies=%d elements=%.0f steps=%.0f dt=%.3e ns/element-step=%.1f contact: share=%.1f%% "
-           "ns/surface-node-step=%.1f\n",
-           kind, s->threads, (int)brunt_body_count(world), elements, steps, brunt_world_dt(world),
-           1e9 * (wall - contact) / elements / steps, 100 * contact / wall, 1e9 * contact / nodes / steps);
+typedef struct cost {
+    double contact[ROUND_LIMIT], step[ROUND_LIMIT]; // [s] a step: the pass of contact, all
+    int rounds, status;
+} cost;
+
+// One round of so many steps.
+static void measure_cost(cost *c, brunt_world *world, int steps, brunt_error *error) {
+    const double before = pass_seconds(world, "surfaces"), from = brunt_clock();
+    int done = 0;
+    for (; done < steps && !c->status; done++) c->status = brunt_world_step(world, INFINITY, error);
+    c->step[c->rounds] = (brunt_clock() - from) / done;
+    c->contact[c->rounds++] = (pass_seconds(world, "surfaces") - before) / done;
+}
+
+// A line, and rows; `nodes` that contact is counted by, `units` the name is about.
+static void report_cost(const settings *s, const char *name, double units, double nodes, const brunt_world *world,
+                        cost *c) {
+    FILE *csv = s->rows ? open_rows(s->rows) : NULL;
+    const row_key key = {"contact", name, units, s->threads};
+    const double step = write_samples(csv, key, "step", "s", c->step, c->rounds),
+                 elements = (double)brunt_world_elements(world);
+    for (int r = 0; r < c->rounds; r++) c->contact[r] *= 1e9 / nodes;
+    const double contact = write_samples(csv, key, "contact", "ns/node", c->contact, c->rounds);
+    printf(
+        "%s threads=%d bodies=%d elements=%.0f nodes=%.0f steps=%lld dt=%.3e rounds=%d ns/element-step=%.1f contact: "
+        "share=%.1f%% ns/surface-node-step=%.1f (%.1f) status=%d\n",
+        name, s->threads, (int)brunt_body_count(world), elements, nodes, (long long)brunt_world_steps(world),
+        brunt_world_dt(world), c->rounds, (1e9 * step - contact * nodes) / elements, 1e-7 * contact * nodes / step,
+        contact, c->contact[0], c->status);
+    if (s->rows && (!csv || !close_rows(csv))) exit(BRUNT_IO_ERROR);
 }
 
 // Two plates of 140 x 140 x 6 hexahedra, one sliding on the other under pressure: 19,881 nodes a side in contact.
@@ -358,26 +391,22 @@ static void run_slide(const settings *s) {
     brunt_error error;
     brunt_world *world = brunt_world_create(&def, &error);
     if (!world) stop("slide", &error);
-    int steps = s->samples, status = BRUNT_OK;
-    for (int k = 0; k < steps / 4 && !status; k++) status = brunt_world_step(world, INFINITY, &error);
-    double before = pass_seconds(world, "surfaces"), from = brunt_clock();
-    for (int k = 0; k < steps && !status; k++) status = brunt_world_step(world, INFINITY, &error);
-    double wall = brunt_clock() - from, contact = pass_seconds(world, "surfaces") - before,
-           elements = (double)brunt_world_elements(world);
-    brunt_force force;
-    memset(&force, 0, sizeof force);
-    if (brunt_pair_count(world)) brunt_pair_force(world, 0, &force);
-    printf("slide threads=%d elements=%.0f steps=%d dt=%.3e fem=%.1f ns/element-step contact share=%.1f%% %.1f "
-           "ns/surface-node-step (both sides) area=%.0f status=%d\n",
-           s->threads, elements, steps, brunt_world_dt(world), 1e9 * (wall - contact) / elements / steps,
-           100 * contact / wall, 1e9 * contact / (2.0 * (n + 1) * (n + 1)) / steps, force.area, status);
+    cost c = {.rounds = 0};
+    char name[64];
+    const int steps = s->samples / s->rounds > 1 ? s->samples / s->rounds : 1;
+    for (int k = 0; k < s->samples / 4 && !c.status; k++) c.status = brunt_world_step(world, INFINITY, &error);
+    for (int r = 0; r < s->rounds && !c.status; r++) measure_cost(&c, world, steps, &error);
+    if (c.status) stop("slide", &error);
+    const double nodes = 2.0 * (n + 1) * (n + 1);
+    snprintf(name, sizeof name, "augury slide %d sweeps", s->n > 0 ? s->n : 16);
+    report_cost(s, name, nodes, nodes, world, &c);
     brunt_world_destroy(world);
     brunt_world_def_free(&def);
 }
 
-// n^3 cubes of 4^3 elements falling on each other and on the floor.
-static void run_crowd(const settings *s) {
-    int n = s->n > 0 ? s->n : 2, count = n * n * n;
+// Cubes of 4^3 cells, layer by layer in a cube of them, falling on each other and on the floor.
+static brunt_world_def crowd(const settings *s, int count) {
+    const int n = (int)ceil(cbrt(count) - 1e-9);
     settings one = *s;
     one.h = 0.25, one.n = -1;
     brunt_world_def def = begin(&one, count);
@@ -394,16 +423,24 @@ static void run_crowd(const settings *s) {
     *plane = brunt_plane_def_default();
     plane->normal[1] = 1, plane->point[1] = -0.05;
     def.gravity[1] = -100;
+    return def;
+}
+
+// Each round is the same fall.
+static void run_crowd(const settings *s) {
+    const int n = s->n > 0 ? s->n : 2, count = s->bodies > 0 ? s->bodies : n * n * n;
     brunt_error error;
-    brunt_world *world = brunt_world_create(&def, &error);
-    if (!world) stop("crowd", &error);
-    int status = BRUNT_OK, steps = 0;
-    double from = brunt_clock();
-    while (!status && steps < s->samples) status = brunt_world_step(world, INFINITY, &error), steps++;
-    report_cost(s, "crowd", world, steps, brunt_clock() - from, count * 98.0);
-    if (status) printf("  %s\n", error.message);
-    brunt_world_destroy(world);
-    brunt_world_def_free(&def);
+    cost c = {.rounds = 0};
+    for (int r = 0; r < s->rounds; r++) {
+        brunt_world_def def = crowd(s, count);
+        brunt_world *world = brunt_world_create(&def, &error);
+        if (!world) stop("crowd", &error);
+        measure_cost(&c, world, s->samples, &error);
+        if (c.status) stop("crowd", &error);
+        if (r == s->rounds - 1) report_cost(s, "augury crowd", count, count * 98.0, world, &c);
+        brunt_world_destroy(world);
+        brunt_world_def_free(&def);
+    }
 }
 
 int main(int argc, char **argv) {
