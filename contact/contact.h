@@ -60,11 +60,18 @@ void brunt_condition_apply(brunt_body *body, brunt_wall *wall, double time);
 // Gradient of the body's volume fraction at a node [1/m], which points into the body, and the centre of the volume that
 // the node feels, relative to the node [m].
 void brunt_reach_gradient(brunt_body *body, int32_t slot, int node, double gradient[3], double centre[3]);
-// Greatest distance along unit vector n, from the node, that a particle near the node reaches [m], and the point that
-// does, relative to the node; -INFINITY when there is none. `share` of the particles' reach counts: 1, or 0
-// for their centres alone.
-double brunt_reach_extent(brunt_body *body, int32_t slot, int node, double share, const double n[3],
-                          double farthest[3]);
+// The particles near a node, as ellipsoids of material: gathered once, since contact asks for many directions.
+typedef struct brunt_reach_cloud {
+    double *data; // rows of `stride` numbers: place relative to the node, deformation gradient, reach, and one to work in
+    size_t stride, bytes;
+    int count;
+} brunt_reach_cloud;
+// Refills a cloud, empty at first ({0}). 0, or -1: out of memory.
+int brunt_reach_gather(brunt_body *body, int32_t slot, int node, brunt_reach_cloud *cloud);
+void brunt_reach_cloud_free(brunt_reach_cloud *cloud);
+// Greatest distance along unit vector n, from the node, that one of them reaches [m], and the point that does, relative
+// to the node; -INFINITY when there is none. `share` of their reach counts: 1, or 0 for their centres alone.
+double brunt_reach_extent(const brunt_reach_cloud *cloud, double share, const double n[3], double farthest[3]);
 
 // Where a node of a total-Lagrangian body is now, as its particles see it: mean of x_p + F (X_i - X_p) [m]; `x` its
 // undeformed place, replaced when it has any particles.
@@ -78,8 +85,8 @@ double brunt_reach_along(brunt_body *body, int64_t slot, const double n[3]);
 
 // --- separation (separation.c)
 // Distance between what two bodies have near a node [m], 0 when that overlaps, and its direction from a to b (unit;
-// left alone when 0). `start`: where to look first, any length but 0.
-double brunt_separation(brunt_body *a, int32_t slot_a, brunt_body *b, int32_t slot_b, int node, double share,
+// left alone when 0). `start`: where to look first, any length but 0. `h`: edge of a cell.
+double brunt_separation(const brunt_reach_cloud *a, const brunt_reach_cloud *b, double h, double share,
                         const double start[3], double n[3]);
 
 // --- walls (walls.c): planes that push and let go, with Coulomb friction, at zero gap

@@ -29,7 +29,7 @@ typedef struct shared_slot {
 // Slots with the same coordinate: entries first .. first+count-1, and where their pairs' actions are collected.
 typedef struct group {
     int32_t first, count, action;
-    bool crowded;
+    bool crowded, starved; // too many bodies, too little memory at one of its nodes
 } group;
 
 typedef struct box {
@@ -48,6 +48,8 @@ struct brunt_contact_workspace {
     brunt_action *actions;
     size_t actions_capacity;
     int32_t action_count;
+    brunt_reach_cloud (*clouds)[2]; // of each thread: two bodies near a node
+    int cloud_count;
 };
 
 typedef struct job {
@@ -68,6 +70,9 @@ void brunt_contact_workspace_free(brunt_contact_workspace *workspace) {
     brunt_free(workspace->shared);
     brunt_free(workspace->groups);
     brunt_free(workspace->actions);
+    for (int t = 0; t < workspace->cloud_count; t++)
+        for (int k = 0; k < 2; k++) brunt_reach_cloud_free(&workspace->clouds[t][k]);
+    brunt_free(workspace->clouds);
     brunt_free(workspace);
 }
 
@@ -135,7 +140,7 @@ static int find_groups(job *j) {
         for (next = i + 1; next < unique && w->shared[next].key == w->shared[i].key; next++) {}
         int32_t count = next - i;
         if (count < 2) continue;
-        w->groups[w->group_count++] = (group){i, count, w->action_count, false};
+        w->groups[w->group_count++] = (group){i, count, w->action_count, false, false};
         w->action_count += count * (count - 1) / 2;
     }
     size_t bytes = (size_t)(w->action_count + 1) * sizeof *w->actions;
@@ -180,36 +185,38 @@ static bool make_unit(const job *j, const member *a, int node, double n[3]) {
     return true;
 }
 
-static double gap_along(const member *a, const member *b, int node, const double n[3]) {
+static double gap_along(const brunt_reach_cloud *a, const brunt_reach_cloud *b, const double n[3]) {
     const double back[3] = {-n[0], -n[1], -n[2]};
     double far_a[3], far_b[3];
-    return -brunt_reach_extent(b->body, b->slot, node, 1, back, far_b) -
-           brunt_reach_extent(a->body, a->slot, node, 1, n, far_a);
+    return -brunt_reach_extent(b, 1, back, far_b) - brunt_reach_extent(a, 1, n, far_a);
 }
 
 // Normal and gap of two bodies at a node. The mean normal is right in the middle of a contact, and tilted at its rim:
 // there it finds bodies touching that graze a third of a cell apart, and a block sliding over another is held by its
 // edges. So where the mean normal finds contact, the direction that keeps the bodies farthest apart decides: the one of
 // their true distance, or, when they touch, that between the hulls of the particles' centres, which are apart still.
-// False when nothing tells the bodies apart.
-static bool make_normal(const job *j, const member *a, const member *b, int node, double n[3], double *gap) {
+// 0 when nothing tells the bodies apart, 1, or -1: out of memory.
+static int make_normal(const job *j, const member *a, const member *b, int node, brunt_reach_cloud cloud[2],
+                       double n[3], double *gap) {
     double ga[3], gb[3], ca[3], cb[3], between[3], approach = 0;
     brunt_reach_gradient(a->body, a->slot, node, ga, ca);
     brunt_reach_gradient(b->body, b->slot, node, gb, cb);
     for (int k = 0; k < 3; k++) n[k] = gb[k] - ga[k], between[k] = cb[k] - ca[k];
-    if (!make_unit(j, a, node, n)) return false;
+    if (!make_unit(j, a, node, n)) return 0;
+    if (brunt_reach_gather(a->body, a->slot, node, &cloud[0]) || brunt_reach_gather(b->body, b->slot, node, &cloud[1]))
+        return -1;
     for (int k = 0; k < 3; k++) approach += (b->v[k] - a->v[k]) * n[k];
-    *gap = gap_along(a, b, node, n);
-    if (approach * j->dt >= -fmax(*gap, 0) || !make_unit(j, a, node, between)) return true;
+    *gap = gap_along(&cloud[0], &cloud[1], n);
+    if (approach * j->dt >= -fmax(*gap, 0) || !make_unit(j, a, node, between)) return 1;
     for (int centres = 0; centres <= 1; centres++) {
-        double direct[3], found;
-        if (!(brunt_separation(a->body, a->slot, b->body, b->slot, node, 1 - centres, between, direct) > 0)) continue;
-        if (!make_unit(j, a, node, direct) || !((found = gap_along(a, b, node, direct)) > *gap)) continue;
+        double direct[3], found, h = (double)a->body->grid.h;
+        if (!(brunt_separation(&cloud[0], &cloud[1], h, 1 - centres, between, direct) > 0)) continue;
+        if (!make_unit(j, a, node, direct) || !((found = gap_along(&cloud[0], &cloud[1], direct)) > *gap)) continue;
         *gap = found;
         memcpy(n, direct, sizeof direct);
         break;
     }
-    return true;
+    return 1;
 }
 
 static double relative(const member *members, const meeting *m, double v[3]) {
@@ -304,7 +311,7 @@ static double own_share(const job *j, const member *m, int node) {
     return image ? own + (double)(image[BRUNT_NODE_SPARE] / image[0]) : own;
 }
 
-static void meet_at_node(const job *j, group *g, int node) {
+static void meet_at_node(const job *j, group *g, int node, brunt_reach_cloud cloud[2]) {
     if (j->axis && from_axis(j, &j->w->shared[g->first], node) < 0) return;
     member members[MAX_TOGETHER];
     meeting meetings[MAX_TOGETHER * (MAX_TOGETHER - 1) / 2];
@@ -338,7 +345,9 @@ static void meet_at_node(const job *j, group *g, int node) {
                            .tied = j->pairs[pair].method == BRUNT_CONTACT_TIED,
                            .inverse = members[i].inverse + members[k].inverse};
             double gap = 0;
-            if (!m->tied && !make_normal(j, &members[i], &members[k], node, m->n, &gap)) continue;
+            const int told = m->tied ? 1 : make_normal(j, &members[i], &members[k], node, cloud, m->n, &gap);
+            if (told < 0) g->starved = true;
+            if (told <= 0) continue;
             m->target = -fmax(gap, 0) / j->dt;
             met++;
         }
@@ -372,10 +381,17 @@ static void meet_at_node(const job *j, group *g, int node) {
 }
 
 static void meet(void *context, int64_t begin, int64_t end, int worker) {
-    (void)worker;
     const job *j = context;
     for (int64_t q = begin; q < end; q++)
-        for (int node = 0; node < BRUNT_BLOCK_NODES; node++) meet_at_node(j, &j->w->groups[q], node);
+        for (int node = 0; node < BRUNT_BLOCK_NODES; node++)
+            meet_at_node(j, &j->w->groups[q], node, j->w->clouds[worker]);
+}
+
+static int make_clouds(brunt_contact_workspace *w, int threads) {
+    if (w->cloud_count >= threads) return 0;
+    w->clouds = brunt_alloc(sizeof *w->clouds * (size_t)threads);
+    w->cloud_count = w->clouds ? threads : 0;
+    return w->clouds ? 0 : -1;
 }
 
 int brunt_multivelocity_apply(brunt_body *bodies, int body_count, brunt_pair *pairs, int pair_count,
@@ -383,7 +399,7 @@ int brunt_multivelocity_apply(brunt_body *bodies, int body_count, brunt_pair *pa
                               int threads, brunt_timer *timer, brunt_contact_workspace **workspace) {
     (void)pair_count;
     if (!*workspace) *workspace = brunt_alloc(sizeof **workspace);
-    if (!*workspace) return -1;
+    if (!*workspace || make_clouds(*workspace, threads)) return -1;
     job j = {bodies, body_count, pairs, pair_of, mirrors, mirror_count, dt, *workspace, NULL};
     for (int m = 0; m < mirror_count; m++)
         if (mirrors[m].wall < 0) j.axis = &mirrors[m];
@@ -391,7 +407,7 @@ int brunt_multivelocity_apply(brunt_body *bodies, int body_count, brunt_pair *pa
     brunt_parallel(threads, j.w->group_count, 1, meet, &j, timer);
     for (int32_t q = 0; q < j.w->group_count; q++) {
         const group *g = &j.w->groups[q];
-        if (g->crowded) return -2;
+        if (g->crowded || g->starved) return g->crowded ? -2 : -1;
         int at = g->action;
         for (int32_t i = 0; i < g->count; i++)
             for (int32_t k = i + 1; k < g->count; k++, at++) {

@@ -8,6 +8,8 @@
 
 #include <math.h>
 
+#include "memory.h"
+
 // Weight and slope [1/cell] of one node along one axis; u: cells from the base node, k: the node, counted from the
 // base.
 static void weight_1d(int order, double u, int k, double *w, double *g) {
@@ -114,11 +116,6 @@ void brunt_reach_deformed(brunt_body *body, int32_t slot, int node, double x[3])
     for (int a = 0; a < body->particles.dim && d.weight > 0; a++) x[a] = d.moment[a] / d.weight;
 }
 
-typedef struct extent_max {
-    double node[3], n[3], share, most;
-    int64_t slot;
-} extent_max;
-
 // F^T n of a particle.
 static void pull_back(brunt_body *body, int64_t s, const double n[3], double out[3]) {
     const int dim = body->particles.dim, stride = body->particles.point_dim;
@@ -136,36 +133,91 @@ double brunt_reach_along(brunt_body *body, int64_t s, const double n[3]) {
            sqrt(t[0] * t[0] + t[1] * t[1] + t[2] * t[2]);
 }
 
-static void add_extent(void *context, brunt_body *body, int64_t s, const int base[3]) {
-    (void)base;
-    extent_max *e = context;
-    brunt_particles *p = &body->particles;
-    real *const *x = brunt_field(p, BRUNT_FIELD_position);
-    double along = 0, t[3];
-    for (int a = 0; a < p->dim; a++) along += ((double)x[a][s] - e->node[a]) * e->n[a];
-    pull_back(body, s, e->n, t);
-    along += e->share * (double)brunt_field(p, BRUNT_FIELD_reach)[0][s] * sqrt(t[0] * t[0] + t[1] * t[1] + t[2] * t[2]);
-    if (along > e->most) e->most = along, e->slot = s;
+// Rows of a cloud's memory, `stride` numbers each.
+enum { CLOUD_X = 0, CLOUD_F = 3, CLOUD_REACH = 12, CLOUD_ALONG = 13, CLOUD_ROWS = 14, CLOUD_LANES = 8 };
+
+typedef struct cloud_fill {
+    brunt_reach_cloud *cloud;
+    double node[3];
+} cloud_fill;
+
+static void count_particle(void *context, brunt_body *body, int64_t s, const int base[3]) {
+    (void)body, (void)s, (void)base;
+    ++*(int *)context;
 }
 
-double brunt_reach_extent(brunt_body *body, int32_t slot, int node, double share, const double n[3],
-                          double farthest[3]) {
-    extent_max e = {.n = {n[0], n[1], n[2]}, .share = share, .most = -INFINITY, .slot = -1};
+static void add_particle(void *context, brunt_body *body, int64_t s, const int base[3]) {
+    (void)base;
+    const cloud_fill *fill = context;
     brunt_particles *p = &body->particles;
-    brunt_node_position(&body->grid, body->grid.slots[slot].coord, node, e.node);
-    brunt_reach_visit(body, slot, node, add_extent, &e);
-    for (int a = 0; a < 3; a++) farthest[a] = 0;
-    if (e.slot < 0) return e.most;
-    // The ball of the reach is an ellipsoid by now: its farthest point is x + r F F^T n / |F^T n|.
-    double t[3];
-    pull_back(body, e.slot, n, t);
-    double size = sqrt(t[0] * t[0] + t[1] * t[1] + t[2] * t[2]),
-           r = share * (double)brunt_field(p, BRUNT_FIELD_reach)[0][e.slot];
-    real *const *F = brunt_field(p, BRUNT_FIELD_deformation_gradient), *const *x = brunt_field(p, BRUNT_FIELD_position);
-    for (int a = 0; a < p->dim; a++) {
-        farthest[a] = (double)x[a][e.slot] - e.node[a];
-        for (int c = 0; c < p->dim && size > 0; c++)
-            farthest[a] += r * (double)F[a * p->point_dim + c][e.slot] * t[c] / size;
+    real *const *x = brunt_field(p, BRUNT_FIELD_position), *const *F = brunt_field(p, BRUNT_FIELD_deformation_gradient);
+    double *to = fill->cloud->data + fill->cloud->count++;
+    const size_t stride = fill->cloud->stride;
+    for (int r = 0; r < 3; r++) {
+        to[(size_t)(CLOUD_X + r) * stride] = r < p->dim ? (double)x[r][s] - fill->node[r] : 0;
+        for (int c = 0; c < 3; c++)
+            to[(size_t)(CLOUD_F + 3 * r + c) * stride] =
+                r < p->dim && c < p->dim ? (double)F[r * p->point_dim + c][s] : 0;
     }
-    return e.most;
+    to[CLOUD_REACH * stride] = (double)brunt_field(p, BRUNT_FIELD_reach)[0][s];
+}
+
+int brunt_reach_gather(brunt_body *body, int32_t slot, int node, brunt_reach_cloud *cloud) {
+    int count = 0;
+    brunt_reach_visit(body, slot, node, count_particle, &count);
+    cloud->stride = ((size_t)count + CLOUD_LANES - 1) / CLOUD_LANES * CLOUD_LANES;
+    cloud->count = 0;
+    if (brunt_reserve((void **)&cloud->data, &cloud->bytes, CLOUD_ROWS * cloud->stride * sizeof(double), 0)) return -1;
+    cloud_fill fill = {.cloud = cloud};
+    brunt_node_position(&body->grid, body->grid.slots[slot].coord, node, fill.node);
+    brunt_reach_visit(body, slot, node, add_particle, &fill);
+    return 0;
+}
+
+void brunt_reach_cloud_free(brunt_reach_cloud *cloud) { brunt_free(cloud->data); }
+
+// x . n + share reach |F^T n| of each particle.
+static void extents(const brunt_reach_cloud *cloud, double share, const double n[3]) {
+    const double *const data = cloud->data;
+    const size_t stride = cloud->stride;
+    const double *restrict x = data, *restrict y = data + stride, *restrict z = data + 2 * stride,
+                           *restrict F = data + CLOUD_F * stride, *restrict reach = data + CLOUD_REACH * stride;
+    double *restrict along = cloud->data + CLOUD_ALONG * stride;
+#pragma omp simd
+    for (int i = 0; i < cloud->count; i++) along[i] = x[i] * n[0] + y[i] * n[1] + z[i] * n[2];
+    if (share == 0) return;
+#pragma omp simd
+    for (int i = 0; i < cloud->count; i++) {
+        const double *f = F + i;
+        const double t0 = f[0] * n[0] + f[3 * stride] * n[1] + f[6 * stride] * n[2],
+                     t1 = f[stride] * n[0] + f[4 * stride] * n[1] + f[7 * stride] * n[2],
+                     t2 = f[2 * stride] * n[0] + f[5 * stride] * n[1] + f[8 * stride] * n[2];
+        along[i] += share * reach[i] * sqrt(t0 * t0 + t1 * t1 + t2 * t2);
+    }
+}
+
+double brunt_reach_extent(const brunt_reach_cloud *cloud, double share, const double n[3], double farthest[3]) {
+    for (int a = 0; a < 3; a++) farthest[a] = 0;
+    if (!cloud->count) return -INFINITY;
+    extents(cloud, share, n);
+    const double *data = cloud->data, *along = data + CLOUD_ALONG * cloud->stride;
+    int most = 0;
+    for (int i = 1; i < cloud->count; i++)
+        if (along[i] > along[most]) most = i;
+    // The ball of the reach is an ellipsoid by now: its farthest point is x + r F F^T n / |F^T n|.
+    const double *of = data + most;
+    double t[3], size = 0;
+    for (int c = 0; c < 3; c++) {
+        t[c] = 0;
+        for (int r = 0; r < 3; r++) t[c] += of[(size_t)(CLOUD_F + 3 * r + c) * cloud->stride] * n[r];
+        size += t[c] * t[c];
+    }
+    size = sqrt(size);
+    const double r = share * of[CLOUD_REACH * cloud->stride];
+    for (int a = 0; a < 3; a++) {
+        farthest[a] = of[(size_t)(CLOUD_X + a) * cloud->stride];
+        for (int c = 0; c < 3 && size > 0; c++)
+            farthest[a] += r * of[(size_t)(CLOUD_F + 3 * a + c) * cloud->stride] * t[c] / size;
+    }
+    return along[most];
 }

@@ -11,8 +11,8 @@
 #include "contact.h"
 
 enum { MAX_POINTS = 4, MAX_ROUNDS = 24 };
-static const double CLOSE_ENOUGH = 1e-11; // relative gap between bound and distance
-static const double OVERLAP = 1e-9;      // cells: nearer to the origin than this is in it
+static const double CLOSE_ENOUGH = 1e-13; // relative gap between bound and distance
+static const double OVERLAP = 1e-9;       // cells: nearer to the origin than this is in it
 
 static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
@@ -83,17 +83,15 @@ static void nearest(double points[MAX_POINTS][3], int *count, double v[3]) {
     *count = kept;
 }
 
-double brunt_separation(brunt_body *a, int32_t slot_a, brunt_body *b, int32_t slot_b, int node, double share,
+double brunt_separation(const brunt_reach_cloud *a, const brunt_reach_cloud *b, double h, double share,
                         const double start[3], double n[3]) {
     double points[MAX_POINTS][3], v[3] = {start[0], start[1], start[2]}, bound = 0;
-    const double h = (double)a->grid.h;
     int count = 0;
     for (int round = 0; round < MAX_ROUNDS; round++) {
         double size = sqrt(dot(v, v)), along[3], back[3], pa[3], pb[3], w[3];
         if (!(size > OVERLAP * h) || !isfinite(size)) return 0;
         for (int k = 0; k < 3; k++) along[k] = v[k] / size, back[k] = -along[k];
-        if (!isfinite(brunt_reach_extent(a, slot_a, node, share, along, pa)) ||
-            !isfinite(brunt_reach_extent(b, slot_b, node, share, back, pb)))
+        if (!isfinite(brunt_reach_extent(a, share, along, pa)) || !isfinite(brunt_reach_extent(b, share, back, pb)))
             return 0;
         for (int k = 0; k < 3; k++) w[k] = pb[k] - pa[k];
         double reached = dot(w, along);
