@@ -461,7 +461,7 @@ static int loop(run *r, brunt_error *error) {
         status = serve_signals(r, error);
         if (status) break;
         double start = brunt_clock(), before = brunt_world_step_seconds(r->world);
-        status = brunt_world_step(r->world, fmin(r->next_picture, r->next_history), error);
+        status = brunt_world_step(r->world, r->next_picture, error);
         r->state.step_seconds += brunt_world_step_seconds(r->world) - before; // without what observers took
         if (r->trace) brunt_trace_step(r->trace, start, brunt_clock());
         if (warned < brunt_warning_count(r->world)) {

@@ -2,8 +2,8 @@
 // on from.
 //
 // In the folder: summary.json, history.h5 and history.csv, brunt.pvd with vtu/, checkpoint.h5 and
-// checkpoint.previous.h5, scene.yaml as resolved, log.txt. Output times are hit exactly; a run stopped and resumed
-// takes the same steps.
+// checkpoint.previous.h5, scene.yaml as resolved, log.txt. Pictures are of exactly their times, lines of the
+// history of the first step at or after theirs; a run stopped and resumed takes the same steps.
 #pragma once
 
 #include <signal.h>

@@ -208,6 +208,24 @@ START_TEST(check_and_keys_explain) {
 }
 END_TEST
 
+// How often a line is written moves no bit of what happens: lines are of steps that are taken anyway.
+START_TEST(history_does_not_cut_steps) {
+    char often[32], rarely[32];
+    expect("run %s/small.yaml -o %s/often -q --set output.history=0", 0, NULL);
+    expect("run %s/small.yaml -o %s/rarely -q --set output.history=3.3e-3", 0, NULL);
+    hash_of("often", often);
+    hash_of("rarely", rarely);
+    ck_assert_str_eq(often, rarely);
+    // The first, those of the first step at or after each of 30 multiples, the last.
+    ck_assert_int_eq(shell("test $(grep -c . %s/rarely/history.csv) = 33", small_folder), 0);
+    ck_assert_int_eq(
+        shell("awk -F, 'NR > 2 && $1 < 0.1 { due = 3.3e-3 * (NR - 2); if ($1 < due || $1 > due + 1e-3) exit 1 }' "
+              "%s/rarely/history.csv",
+              small_folder),
+        0);
+}
+END_TEST
+
 START_TEST(a_run_writes_what_it_promises) {
     expect("run %s/small.yaml -o %s/out --profile", 0, "done: reached t = 0.1 s");
     char *output = output_text();
@@ -219,7 +237,7 @@ START_TEST(a_run_writes_what_it_promises) {
                                         "out/scene.yaml",   "out/log.txt"};
     for (size_t f = 0; f < sizeof files / sizeof *files; f++) ck_assert_msg(exists(files[f]), "%s", files[f]);
     ck_assert_int_eq(shell("find %s/out -name '*.part' | grep .", small_folder), 1);
-    // 11 pictures of 2 bodies, 101 lines of history, at the very times.
+    // 11 pictures of 2 bodies at the very times, 101 lines of history.
     ck_assert_int_eq(shell("test $(ls %s/out/vtu | wc -l) = 22", small_folder), 0);
     ck_assert_int_eq(shell("test $(grep -c . %s/out/history.csv) = 102", small_folder), 0);
     ck_assert_int_eq(shell("tail -n 1 %s/out/history.csv | grep -q '^0.1,\\|^0.10000000000000001,'", small_folder), 0);
@@ -499,6 +517,7 @@ int main(void) {
     tcase_add_test(commands, bad_usage_is_64);
     tcase_add_test(commands, bad_input_is_65_and_touches_nothing);
     tcase_add_test(commands, check_and_keys_explain);
+    tcase_add_test(commands, history_does_not_cut_steps);
     tcase_add_test(commands, a_run_writes_what_it_promises);
     tcase_add_test(commands, summary_has_exactly_the_promised_names);
     tcase_add_test(commands, quiet_is_quiet_and_the_log_keeps_all);
