@@ -127,6 +127,30 @@ START_TEST(elements_and_material_points_agree) {
 }
 END_TEST
 
+// A free block under a weight that grows with time: way g t^3 / 6T, which central differences miss by (step / t)^2.
+static double fall_error(bool elements, double step) {
+    const double g = 10, T = 0.2, end = 0.1;
+    brunt_world_def def = def_begin(2, 0.5);
+    def_material(&def, "linear-elastic", 1000, 1e6, 0.3);
+    brunt_body_def *body = def_box(&def, "block", XYZ(0, 0, 0), XYZ(1, 1, 0));
+    if (elements) mesh_of(body, BRUNT_QUAD4, 0.5);
+    def.gravity[1] = -g, def.gravity_ramp = T;
+    def.step = step;
+    brunt_world *world = world_take(&def);
+    const double from = world_sums(world, 0).centre[1];
+    world_until(world, end);
+    double error = (from - world_sums(world, 0).centre[1]) / (g * end * end * end / (6 * T)) - 1;
+    printf("  growing weight, %s, step %g s: way off by %.2e\n", elements ? "elements" : "points", step, error);
+    brunt_world_destroy(world);
+    return error;
+}
+
+START_TEST(growing_weight_acts_in_time) {
+    for (double step = 2e-3; step > 9e-4; step /= 2)
+        ck_assert_double_le(fabs(fall_error(_i, step)), 1.01 * (step / 0.1) * (step / 0.1) + 10 * ROUNDING);
+}
+END_TEST
+
 // ------------------------------------------------------------------------------------------ bending
 
 // Period of a cantilever of ten times its height, between two falls of its centre through the middle.
@@ -268,6 +292,7 @@ int main(void) {
     TCase *waves = tcase_create("waves"), *bending = tcase_create("bending"), *impact = tcase_create("impact");
     tcase_add_loop_test(waves, standing_waves_converge, 0, 2 * SOLID_KINDS);
     tcase_add_test(waves, elements_and_material_points_agree);
+    tcase_add_loop_test(waves, growing_weight_acts_in_time, 0, 2);
     tcase_add_test(bending, beam_swings);
     tcase_add_test(impact, rod_on_wall);
     tcase_add_loop_test(impact, ball_on_plane, 0, 2);

@@ -469,7 +469,7 @@ static int begin_step(brunt_world *world, step *s, brunt_error *error) {
     // Velocities are half a step behind, from the first step on: forces act over the mean of the steps before and
     // after.
     s->kick = world->now.steps > 0 ? 0.5 * (world->now.dt + dt) : 0.5 * dt;
-    brunt_gravity_at(world, world->now.time + 0.5 * dt, s->gravity);
+    brunt_gravity_at(world, world->now.time, s->gravity); // as the forces: of the middle of the kick
     for (int i = 0; i < world->body_count; i++) world->bodies[i].time = (real)(world->now.time + dt);
     for (int k = 0; k < world->fem_count; k++) world->fems[k].time = (real)(world->now.time + dt);
     for (int w = 0; w < world->wall_count; w++) world->walls[w].last = (brunt_action){.external_work = 0};
