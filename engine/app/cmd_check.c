@@ -1,18 +1,17 @@
 // The plan of a scene, without running it: what is switched on and by what, what it costs in memory and time.
-#include <math.h>
 #include <stdio.h>
 
 #include "app.h"
 #include "history.h"
+#include "predict.h"
 #include "progress.h"
 #include "run.h"
-#include "threads.h"
 
-static void print_size(double bytes) {
+static void print_size(double bytes, int width) {
     static const char *const units[] = {"B", "kB", "MB", "GB", "TB"};
     int u = 0;
     for (; bytes >= 999.5 && u < 4; u++) bytes /= 1000;
-    printf(u ? "%10.2f %s" : "%10.0f %s", bytes, units[u]);
+    printf("%*.*f %s", width, u ? 2 : 0, bytes, units[u]);
 }
 
 static void print_mesh(brunt_world *world, int32_t body) {
@@ -66,67 +65,68 @@ static void print_memory(brunt_world *world) {
     for (int32_t a = 0; a < brunt_array_count(world); a++) {
         brunt_array array = brunt_world_array(world, a);
         printf("  %-52s %2d x [%-8s] ", array.name, array.components, array.unit);
-        print_size((double)array.bytes);
+        print_size((double)array.bytes, 10);
         printf("\n");
         total += (double)array.bytes;
     }
     printf("  %-68s", "all arrays");
-    print_size(total);
+    print_size(total, 10);
     printf(", %.0f bytes a %s\n", total / points_of(world),
            brunt_world_elements(world) ? "particle or element" : "particle");
 }
 
-// Times up to three steps of this very scene: no stored figure knows its materials, contacts and threads. The first
-// step is left out when there are more, since it touches memory for the first time; no more are taken once two seconds
-// are up.
-static int measure_step(brunt_world *world, double *seconds, int *taken, brunt_error *error) {
-    enum { STEPS = 3 };
-    double spent[STEPS], start = brunt_clock();
-    *taken = 0;
-    while (*taken < STEPS && brunt_world_time(world) < brunt_world_end(world)) {
-        double from = brunt_clock();
-        int status = brunt_world_step(world, INFINITY, error);
-        if (status) return status;
-        spent[(*taken)++] = brunt_clock() - from;
-        if (brunt_clock() - start > 2) break;
+static const char *plural(double count) { return count == 1 ? "" : "s"; }
+
+// The passes that take the most, as shares of the steps.
+static void print_shares(const brunt_prediction *p) {
+    enum { SHOWN = 4 };
+    bool shown[BRUNT_PREDICTION_PASSES] = {false};
+    for (int n = 0; n < SHOWN; n++) {
+        int32_t most = -1;
+        for (int32_t i = 0; i < p->pass_count; i++)
+            if (!shown[i] && (most < 0 || p->passes[i].seconds > p->passes[most].seconds)) most = i;
+        if (most < 0 || !(p->passes[most].seconds > 0.02 * p->step_seconds)) break;
+        shown[most] = true;
+        printf("%s%s %.0f %%", n ? ", " : "", p->passes[most].name, 100 * p->passes[most].seconds / p->step_seconds);
     }
-    *seconds = 0;
-    int first = *taken > 1 ? 1 : 0;
-    for (int s = first; s < *taken; s++) *seconds += spent[s] / (*taken - first);
-    return BRUNT_OK;
 }
 
-// What a step usually takes on one core [s], contact and walls apart: to compare the measured time with.
-static double usual_cost(const brunt_world *world) {
-    static const double element[BRUNT_ELEMENT_KINDS] = {30e-9, 100e-9, 20e-9, 40e-9, 60e-9, 40e-9}, particle = 75e-9;
-    double cost = 0;
-    for (int32_t b = 0; b < brunt_body_count(world); b++)
-        cost += brunt_body_method(world, b) != BRUNT_MPM
-                    ? element[brunt_body_element(world, b)] * (double)brunt_body_elements(world, b)
-                    : particle * (double)brunt_body_particles(world, b);
-    return cost;
+static void print_rehearsal(const brunt_prediction *p) {
+    if (p->factor > 1)
+        printf("  rehearsed %.2g times coarser in %.2g s\n", p->factor, p->rehearsal_seconds);
+    else if (p->factor > 0)
+        printf("  rehearsed as it is, without output, in %.2g s\n", p->rehearsal_seconds);
+    if (p->note[0]) printf("  note: %s\n", p->note);
 }
 
-static int print_cost(brunt_world *world, brunt_error *error) {
-    double dt = brunt_world_dt(world), steps = ceil(brunt_world_end(world) / dt), seconds;
-    printf("time\n  first step %.6g s, end %.6g s, about %.0f steps\n", dt, brunt_world_end(world), steps);
-    int taken, status = measure_step(world, &seconds, &taken, error);
+static int print_cost(const brunt_scene *scene, brunt_world *world, brunt_history *history, bool quick,
+                      brunt_error *error) {
+    brunt_prediction p;
+    const int threads = brunt_world_threads(world);
+    int status = brunt_predict(scene, world, history, quick, &p, error);
     if (status) return status;
-    char duration[32];
-    brunt_duration(seconds * steps, duration);
-    printf("  measured over %d step%s on %d thread%s: %.4g s a step, %.1f ns per %s-step; about %s in all\n", taken,
-           taken == 1 ? "" : "s", brunt_world_threads(world), brunt_world_threads(world) == 1 ? "" : "s", seconds,
-           1e9 * seconds / points_of(world),
+    char all[32];
+    brunt_duration(p.step_seconds + p.output_seconds, all);
+    double step = p.sampled_seconds / p.sampled_steps;
+    printf("time\n  first step %.6g s, end %.6g s, about %.0f steps\n", p.first_step, brunt_world_end(world), p.steps);
+    printf("  measured over %.0f step%s on %d thread%s: %.4g s a step, %.1f ns per %s-step\n", p.sampled_steps,
+           plural(p.sampled_steps), threads, plural(threads), step, 1e9 * step / points_of(world),
            brunt_world_elements(world) == 0    ? "particle"
            : brunt_world_particles(world) == 0 ? "element"
-                                               : "particle- or element",
-           duration);
-    printf("  usual on one core, without contact: %.4g s a step\n", usual_cost(world));
-    printf("  (without output; steps grow shorter where material is compressed, so this is a lower estimate)\n");
+                                               : "particle- or element");
+    print_rehearsal(&p);
+    printf("  steps %.3g s (", p.step_seconds);
+    print_shares(&p);
+    printf(") + output %.2g s = about %s on %d thread%s\n", p.output_seconds, all, threads, plural(threads));
+    printf("memory\n  arrays ");
+    print_size(p.array_bytes, 0);
+    printf(", peak about ");
+    print_size(p.peak_bytes, 0);
+    printf(" (program, arrays as they grow, output)\n");
     return BRUNT_OK;
 }
 
-static int check(const brunt_scene *scene, brunt_error *error) {
+static int check(const brunt_scene *scene, bool quick, brunt_error *error) {
     brunt_world *world = brunt_world_create(&scene->world, error);
     brunt_history *history = world ? brunt_history_create(world, scene, error) : NULL;
     int status = history ? BRUNT_OK : error->code;
@@ -144,7 +144,7 @@ static int check(const brunt_scene *scene, brunt_error *error) {
         print_bodies(world);
         print_plan(world);
         print_memory(world);
-        status = print_cost(world, error);
+        status = print_cost(scene, world, history, quick, error);
         if (status) fprintf(stderr, "brunt: the scene fails in its first steps: %s\n", error->message);
     }
     brunt_history_destroy(history);
@@ -154,14 +154,14 @@ static int check(const brunt_scene *scene, brunt_error *error) {
 
 int cmd_check(int argc, char **argv) {
     app_arguments arguments;
-    int status = app_parse(argc, argv, "brunt check SCENE [-t THREADS] [--set PATH=VALUE]...", APP_THREADS | APP_SET,
-                           true, &arguments);
+    int status = app_parse(argc, argv, "brunt check SCENE [-t THREADS] [--quick] [--set PATH=VALUE]...",
+                           APP_THREADS | APP_SET | APP_QUICK, true, &arguments);
     if (status) return status < 0 ? BRUNT_OK : status;
     brunt_scene scene;
     status = app_read_scene(&arguments, &scene);
     if (status) return status;
     brunt_error error = {0};
-    status = check(&scene, &error);
+    status = check(&scene, arguments.quick, &error);
     brunt_scene_free(&scene);
     return status;
 }

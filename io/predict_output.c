@@ -1,0 +1,104 @@
+// What a run's output will cost: bytes over rates, and two things that are measured since they differ by far between
+// scenes and between disks: a line of history, and a file that is kept.
+#include <fcntl.h>
+#include <math.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "predict.h"
+#include "threads.h"
+
+// From the summaries of bench/scenes: bytes that are compressed, and what a file
+// costs that is empty; then HDF5 with checksums.
+static const double picture_rate = 70e6, file_seconds = 0.3e-3, checkpoint_rate = 400e6, cell_seconds = 0.4e-6,
+                    column_seconds = 150e-6;
+
+// What the disk takes to keep a file, with its folder: 1.4 times as long as without it. A file without a name in the
+// working folder, so that nothing is left of it; 0 where the file system has no such files.
+static double commit_seconds(void) {
+    static const char content[1 << 14];
+    enum { TIMES = 5 };
+    const double start = brunt_clock();
+    for (int i = 0; i < TIMES; i++) {
+        int file = open(".", O_TMPFILE | O_WRONLY | O_CLOEXEC, 0600);
+        if (file < 0) return 0;
+        bool written = write(file, content, sizeof content) == (ssize_t)sizeof content && fsync(file) == 0;
+        close(file);
+        if (!written) return 0;
+    }
+    return 1.4 * (brunt_clock() - start) / TIMES;
+}
+
+static double numbers_of(brunt_world *world, int32_t body, const char *field) {
+    int32_t f = brunt_body_find_field(world, body, field);
+    if (f < 0) return 0;
+    brunt_field_info info = brunt_body_field(world, body, f);
+    return (double)brunt_body_size(world, body, info.at) * info.components;
+}
+
+// Bytes of one body's picture before they are compressed.
+static double picture_bytes(const brunt_scene *scene, brunt_world *world, int32_t body) {
+    static const char *const of_elements[] = {"displacement", "velocity",         "stress",       "plastic_strain",
+                                              "contact_gap",  "contact_traction", "contact_state"};
+    const brunt_output_def *o = &scene->output;
+    const bool mesh = brunt_body_method(world, body) != BRUNT_MPM;
+    double width = o->float32 ? 4 : 8,
+           points = (double)brunt_body_size(world, body, mesh ? BRUNT_AT_NODES : BRUNT_AT_PARTICLES);
+    double bytes = points * (3 * width + 8);
+    if (mesh)
+        bytes +=
+            (double)brunt_body_elements(world, body) * (8 + 4 * brunt_element_nodes(brunt_body_element(world, body)));
+    for (int32_t f = 0; f < o->field_count; f++) {
+        if (strcmp(o->fields[f], "default")) {
+            bytes += width * numbers_of(world, body, o->fields[f]);
+        } else if (mesh) {
+            for (size_t d = 0; d < sizeof of_elements / sizeof *of_elements; d++)
+                bytes += width * numbers_of(world, body, of_elements[d]);
+        } else {
+            bytes += width * numbers_of(world, body, "velocity");
+        }
+    }
+    return bytes;
+}
+
+static double state_bytes(brunt_world *world) {
+    double bytes = 0;
+    for (int32_t b = 0; b < brunt_state_count(world); b++) {
+        brunt_state_block block = brunt_state_info(world, b);
+        bytes += (double)block.count * (block.type == 'd' || block.type == 'i' ? 8 : block.type == 'f' ? 4 : 1);
+    }
+    return bytes;
+}
+
+// Multiples of `every` in the run and its start; with 0 what `each` says.
+static double count_of(double every, double end, double each) {
+    return isinf(every) ? 0 : every > 0 ? floor(end / every * (1 + 1e-9)) + 1 : each;
+}
+
+int brunt_predict_output(const brunt_scene *scene, brunt_world *world, brunt_history *history, brunt_prediction *out,
+                         double *buffer_bytes, brunt_error *error) {
+    const brunt_output_def *o = &scene->output;
+    double end = scene->world.end, lines = fmax(count_of(o->history, end, out->steps + 1), 2);
+    double pictures = count_of(o->every, end, 2), line = INFINITY, bytes = 0, most = 0;
+    for (int s = 0; s < 3; s++) {
+        double start = brunt_clock();
+        int status = brunt_history_sample(history, world, error);
+        if (status) return status;
+        line = fmin(line, brunt_clock() - start);
+    }
+    for (int32_t b = 0; b < brunt_body_count(world); b++) {
+        double one = picture_bytes(scene, world, b);
+        bytes += one;
+        most = fmax(most, one);
+    }
+    double columns = brunt_history_column_count(history), checkpoints = isinf(o->checkpoint) ? 1 : 2;
+    if (o->checkpoint == 0) checkpoints = fmax(pictures, 1);
+    double state = state_bytes(world), files = pictures * (brunt_body_count(world) + 1) + 2 * checkpoints;
+    out->output_seconds = pictures * bytes / picture_rate + files * (file_seconds + commit_seconds()) +
+                          lines * (line + columns * cell_seconds) +
+                          checkpoints * (state / checkpoint_rate + columns * column_seconds);
+    // Of a picture, one body at a time, the values are doubles before they are written, whatever its width; HDF5 builds
+    // a checkpoint in memory, which it lets grow by doubling.
+    *buffer_bytes = (o->float32 ? 2 : 1) * most * (pictures > 0) + 2 * state + 8 * columns * lines;
+    return BRUNT_OK;
+}
