@@ -241,3 +241,32 @@ double brunt_machine_figure(const brunt_machine *machine, const char *kind, cons
     const double share = log(units / below->units) / log(above->units / below->units);
     return below->median + share * (above->median - below->median);
 }
+
+// ------------------------------------------------------------------------------------------ what a step costs by it
+
+// Over sizes where that is stored, at one size elsewhere.
+static double cost_of(const brunt_machine *machine, const char *kind, const char *name, double units, int32_t threads) {
+    const double growing = brunt_machine_figure(machine, "growth", name, "step", units, threads);
+    return 1e-9 * units *
+           (isnan(growing) ? brunt_machine_figure(machine, kind, name, "step", units, threads) : growing);
+}
+
+double brunt_machine_step(const brunt_machine *machine, const brunt_world_def *def, const brunt_world *world) {
+    static const char *const kernels[] = {"", "linear", "quadratic", "cubic"}, *const transfers[] = {"pic", "flip",
+                                                                                                     "apic"};
+    const int32_t threads = brunt_world_threads(world);
+    double seconds = 0;
+    for (int32_t b = 0; b < brunt_body_count(world); b++) {
+        char name[96];
+        if (brunt_body_method(world, b) == BRUNT_MPM) {
+            snprintf(name, sizeof name, "%dd %s %s neo-hookean", def->dimension, kernels[def->kernel],
+                     transfers[def->transfer]);
+            seconds += cost_of(machine, "particles", name, (double)brunt_body_particles(world, b), threads);
+        } else {
+            snprintf(name, sizeof name, "%s%s", def->axisymmetric ? "axisymmetric-" : "",
+                     brunt_element_name(brunt_body_element(world, b)));
+            seconds += cost_of(machine, "elements", name, (double)brunt_body_elements(world, b), threads);
+        }
+    }
+    return seconds;
+}

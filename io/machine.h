@@ -32,3 +32,6 @@ void brunt_machine_free(brunt_machine *machine);
 void brunt_machine_name(char out[128]);
 // The median of a figure, linear between the logarithms of the stored units, constant beyond them; NAN when nothing fits. `threads`: the nearest stored.
 double brunt_machine_figure(const brunt_machine *machine, const char *kind, const char *name, const char *figure, double units, int32_t threads);
+// Seconds that a step of a world takes by the stored figures of its bodies' particles and elements: neo-Hookean material, no contact, no other effects.
+// NAN when nothing is stored of one of them.
+double brunt_machine_step(const brunt_machine *machine, const brunt_world_def *def, const brunt_world *world);

@@ -142,9 +142,11 @@ static void write_label(FILE *out, const char *what, const char *format, ...) {
     va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
-    fprintf(out, "set %s ", what);
+    // Where the margin is given, gnuplot puts the label of the ordinate outside of the picture: it is placed by hand.
+    const bool upright = !strcmp(what, "ylabel");
+    fprintf(out, "set %s ", upright ? "label" : what);
     write_text(out, text);
-    fputc('\n', out);
+    fputs(upright ? " at screen 0.025, graph 0.5 center rotate by 90\n" : "\n", out);
 }
 
 // Parts of a unit that read better as thousands or thousandths: factor of the numbers, and the unit with its prefix.
@@ -193,7 +195,7 @@ static int begin(picture *p, const char *folder, brunt_error *error) {
 // From the top: title, key, the plot, a line of notes. The key stands outside, in as many columns as there is room for:
 // nowhere else is it sure to cover no data.
 static void write_layout(picture *p, int32_t entries, size_t longest, bool accuracies, const char *note) {
-    enum { WIDTH = 900, PLOT = 470, LETTER = 11, ROW = 25, TITLE = 42, BELOW = 98 }; // pixels
+    enum { WIDTH = 900, PLOT = 470, LETTER = 10, ROW = 25, TITLE = 42, BELOW = 98 }; // pixels
     const int room = (WIDTH - 40) / (75 + LETTER * (int)longest), columns = room < 1         ? 1
                                                                             : room > entries ? entries
                                                                                              : room;
@@ -202,13 +204,13 @@ static void write_layout(picture *p, int32_t entries, size_t longest, bool accur
     const int height = head + PLOT + foot;
     const brunt_study *study = p->study;
     fprintf(p->out,
-            "height = %d\nset tmargin at screen %.4f\nset bmargin at screen %.4f\nset lmargin at screen 0.12\nset "
+            "height = %d\nset tmargin at screen %.4f\nset bmargin at screen %.4f\nset lmargin at screen 0.13\nset "
             "rmargin at screen %s\n",
             height, 1 - (double)head / height, (double)foot / height, accuracies ? "0.91" : "0.97");
     fprintf(p->out,
             "set key at screen 0.03, screen %.4f left top vertical Left reverse maxrows %d samplen 2.6 width %d "
             "noenhanced\n",
-            1 - (double)TITLE / height, rows, -(int)longest / 8); // letters are narrower than gnuplot takes them for
+            1 - (double)TITLE / height, rows, -(int)longest / 5); // letters are narrower than gnuplot takes them for
     fprintf(p->out, "set label ");
     write_text(p->out, study->title[0] ? study->title : study->name);
     fprintf(p->out, " at screen 0.5, screen %.4f center noenhanced\n", 1 - 20.0 / height);

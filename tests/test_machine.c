@@ -69,6 +69,31 @@ START_TEST(figures_between_and_beyond) {
 }
 END_TEST
 
+// Two bodies of material points, each at the cost of its size; nothing stored of a kernel: no figure.
+START_TEST(a_step_by_what_is_stored) {
+    brunt_machine m;
+    brunt_scene scene;
+    brunt_error error = {0};
+    small_scene_of(small_scene_text, &scene, NULL, 0);
+    scene.world.threads = 1;
+    brunt_world *world = brunt_world_create(&scene.world, &error);
+    ck_assert_msg(world != NULL, "%s", error.message);
+    char rows[256];
+    snprintf(rows, sizeof rows,
+             "growth,%dd quadratic apic neo-hookean,10,1,step,ns/particle,50,50,3\n"
+             "particles,%dd quadratic apic neo-hookean,10,1,step,ns/particle,99,99,3\n",
+             scene.world.dimension, scene.world.dimension);
+    load_good(rows, &m);
+    ck_assert_double_eq_tol(brunt_machine_step(&m, &scene.world, world), 50e-9 * (double)brunt_world_particles(world),
+                            1e-18);
+    scene.world.kernel = BRUNT_CUBIC;
+    ck_assert(isnan(brunt_machine_step(&m, &scene.world, world)));
+    brunt_machine_free(&m);
+    brunt_world_destroy(world);
+    brunt_scene_free(&scene);
+}
+END_TEST
+
 START_TEST(figures_of_the_nearest_threads) {
     brunt_machine m;
     load_good("growth,hex8,10,8,step,ns/element,1,1,3\n"
@@ -182,6 +207,7 @@ int main(void) {
     tcase_add_checked_fixture(all, small_folder_make, small_folder_remove);
     tcase_add_test(all, rows_are_read);
     tcase_add_test(all, figures_between_and_beyond);
+    tcase_add_test(all, a_step_by_what_is_stored);
     tcase_add_test(all, figures_of_the_nearest_threads);
     tcase_add_test(all, bad_rows_are_refused_with_their_line);
     tcase_add_test(all, files_that_are_none);

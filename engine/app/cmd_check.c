@@ -1,8 +1,10 @@
 // The plan of a scene, without running it: what is switched on and by what, what it costs in memory and time.
+#include <math.h>
 #include <stdio.h>
 
 #include "app.h"
 #include "history.h"
+#include "machine.h"
 #include "predict.h"
 #include "progress.h"
 #include "run.h"
@@ -91,6 +93,18 @@ static void print_shares(const brunt_prediction *p) {
     }
 }
 
+// Beside what was measured: far more of it means other work on the machine, or effects that cost more than the bodies
+// do.
+static void print_stored(const brunt_machine *machine, const brunt_scene *scene, const brunt_world *world) {
+    const double step = brunt_machine_step(machine, &scene->world, world);
+    if (isfinite(step))
+        printf(
+            "  the stored benchmark of this machine gives %.4g s for the bodies alone, neo-Hookean, without contact\n",
+            step);
+    else if (!machine->row_count)
+        printf("  no benchmark of this machine is stored (sh bench/run.sh --store)\n");
+}
+
 static void print_rehearsal(const brunt_prediction *p) {
     if (p->factor > 1)
         printf("  rehearsed %.2g times coarser in %.2g s\n", p->factor, p->rehearsal_seconds);
@@ -99,8 +113,8 @@ static void print_rehearsal(const brunt_prediction *p) {
     if (p->note[0]) printf("  note: %s\n", p->note);
 }
 
-static int print_cost(const brunt_scene *scene, brunt_world *world, brunt_history *history, bool quick,
-                      brunt_error *error) {
+static int print_cost(const brunt_machine *machine, const brunt_scene *scene, brunt_world *world,
+                      brunt_history *history, bool quick, brunt_error *error) {
     brunt_prediction p;
     const int threads = brunt_world_threads(world);
     int status = brunt_predict(scene, world, history, quick, &p, error);
@@ -114,6 +128,7 @@ static int print_cost(const brunt_scene *scene, brunt_world *world, brunt_histor
            brunt_world_elements(world) == 0    ? "particle"
            : brunt_world_particles(world) == 0 ? "element"
                                                : "particle- or element");
+    print_stored(machine, scene, world);
     print_rehearsal(&p);
     printf("  steps %.3g s (", p.step_seconds);
     print_shares(&p);
@@ -127,9 +142,15 @@ static int print_cost(const brunt_scene *scene, brunt_world *world, brunt_histor
 }
 
 static int check(const brunt_scene *scene, bool quick, brunt_error *error) {
+    brunt_machine machine;
+    int status = brunt_machine_load(&machine, error);
+    if (status) {
+        fprintf(stderr, "brunt: %s\n", error->message);
+        return status;
+    }
     brunt_world *world = brunt_world_create(&scene->world, error);
     brunt_history *history = world ? brunt_history_create(world, scene, error) : NULL;
-    int status = history ? BRUNT_OK : error->code;
+    status = history ? BRUNT_OK : error->code;
     if (status) fprintf(stderr, "%s: %s\n", scene->source, error->message);
     if (!status) status = brunt_run_check(scene, world, history, stderr, error);
     if (!status) {
@@ -144,9 +165,10 @@ static int check(const brunt_scene *scene, bool quick, brunt_error *error) {
         print_bodies(world);
         print_plan(world);
         print_memory(world);
-        status = print_cost(scene, world, history, quick, error);
+        status = print_cost(&machine, scene, world, history, quick, error);
         if (status) fprintf(stderr, "brunt: the scene fails in its first steps: %s\n", error->message);
     }
+    brunt_machine_free(&machine);
     brunt_history_destroy(history);
     brunt_world_destroy(world);
     return status;
