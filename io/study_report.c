@@ -428,7 +428,7 @@ static void write_reference(FILE *out, const brunt_study *study, int32_t m) {
         if (isnan(measure->exact))
             fprintf(out, "what the scene expects");
         else
-            fprintf(out, "%.10g %s", measure->exact, unit);
+            fprintf(out, "%.10g%s%s", measure->exact, *unit ? " " : "", unit);
         break;
     case BRUNT_REFERENCE_TABLE:
         fprintf(out, "a value for each ");
