@@ -79,10 +79,10 @@ set title 'Cost of a step over size ($machine)'
 set logscale x
 set format x '10^{%L}'
 set termoption enhanced
-set xlabel 'particles or elements [-]' offset 0,0.5
+set xlabel 'particles or elements [-]' offset 0,0.8
 set ylabel 'time per particle or element and step [ns]'
 set yrange [0:*]
-set key outside center bottom horizontal maxcols 4 samplen 3 font ',12'
+set key outside center bottom horizontal maxcols 4 samplen 3 font ',12' spacing 0.95
 plot $plots
 SCRIPT
 }
