@@ -1,10 +1,10 @@
 // What a run's output will cost: bytes over rates, and two things that are measured since they differ by far between
 // scenes and between disks: a line of history, and a file that is kept.
-#include <fcntl.h>
 #include <math.h>
 #include <string.h>
 #include <unistd.h>
 
+#include "atomic_file.h"
 #include "predict.h"
 #include "threads.h"
 
@@ -13,20 +13,28 @@
 static const double picture_rate = 70e6, file_seconds = 0.3e-3, checkpoint_rate = 400e6, cell_seconds = 0.4e-6,
                     column_seconds = 150e-6;
 
-// What the disk takes to keep a file, with its folder: 1.4 times as long as without it. A file without a name in the
-// working folder, so that nothing is left of it; 0 where the file system has no such files.
-static double commit_seconds(void) {
+// What the disk takes to keep a file, written aside, flushed and renamed: where none was, and in the place of one,
+// which may take ten times as long. In the working folder, and removed again; 0 where none can be written.
+static void commit_seconds(double *fresh, double *replaced) {
     static const char content[1 << 14];
-    enum { TIMES = 5 };
-    const double start = brunt_clock();
-    for (int i = 0; i < TIMES; i++) {
-        int file = open(".", O_TMPFILE | O_WRONLY | O_CLOEXEC, 0600);
-        if (file < 0) return 0;
-        bool written = write(file, content, sizeof content) == (ssize_t)sizeof content && fsync(file) == 0;
-        close(file);
-        if (!written) return 0;
+    enum { TIMES = 4 };
+    char path[2 * TIMES][32];
+    double at[2 * TIMES + 1];
+    int kept = 0;
+    brunt_error error;
+    for (; kept < 2 * TIMES; kept++) {
+        brunt_atomic_file file;
+        snprintf(path[kept], sizeof path[kept], ".brunt-check-%d", kept < TIMES ? kept : TIMES - 1);
+        at[kept] = brunt_clock();
+        if (brunt_atomic_open(&file, path[kept], &error) ||
+            brunt_atomic_write(&file, content, sizeof content, &error) || brunt_atomic_commit(&file, &error))
+            break;
     }
-    return 1.4 * (brunt_clock() - start) / TIMES;
+    at[kept] = brunt_clock();
+    const bool all = kept == 2 * TIMES;
+    *fresh = all ? (at[TIMES] - at[0]) / TIMES : 0;
+    *replaced = all ? (at[2 * TIMES] - at[TIMES]) / TIMES : 0;
+    for (int i = 0; i < TIMES && i < kept; i++) unlink(path[i]);
 }
 
 static double numbers_of(brunt_world *world, int32_t body, const char *field) {
@@ -93,10 +101,12 @@ int brunt_predict_output(const brunt_scene *scene, brunt_world *world, brunt_his
     }
     double columns = brunt_history_column_count(history), checkpoints = isinf(o->checkpoint) ? 1 : 2;
     if (o->checkpoint == 0) checkpoints = fmax(pictures, 1);
-    double state = state_bytes(world), files = pictures * (brunt_body_count(world) + 1) + 2 * checkpoints;
-    out->output_seconds = pictures * bytes / picture_rate + files * (file_seconds + commit_seconds()) +
-                          lines * (line + columns * cell_seconds) +
-                          checkpoints * (state / checkpoint_rate + columns * column_seconds);
+    double state = state_bytes(world), fresh, replaced;
+    commit_seconds(&fresh, &replaced);
+    out->output_seconds =
+        pictures * (bytes / picture_rate + brunt_body_count(world) * (file_seconds + fresh) + file_seconds + replaced) +
+        lines * (line + columns * cell_seconds) +
+        checkpoints * (state / checkpoint_rate + columns * column_seconds + 2 * (file_seconds + replaced));
     // Of a picture, one body at a time, the values are doubles before they are written, whatever its width; HDF5 builds
     // a checkpoint in memory, which it lets grow by doubling.
     *buffer_bytes = (o->float32 ? 2 : 1) * most * (pictures > 0) + 2 * state + 8 * columns * lines;

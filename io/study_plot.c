@@ -206,11 +206,12 @@ static void write_layout(picture *p, int32_t entries, size_t longest, bool accur
     fprintf(p->out,
             "height = %d\nset tmargin at screen %.4f\nset bmargin at screen %.4f\nset lmargin at screen 0.13\nset "
             "rmargin at screen %s\n",
-            height, 1 - (double)head / height, (double)foot / height, accuracies ? "0.91" : "0.97");
+            height, 1 - (double)head / height, (double)foot / height, accuracies ? "0.91" : "0.95");
     fprintf(p->out,
             "set key at screen 0.03, screen %.4f left top vertical Left reverse maxrows %d samplen 2.6 width %d "
             "noenhanced\n",
-            1 - (double)TITLE / height, rows, -(int)longest / 5); // letters are narrower than gnuplot takes them for
+            1 - (double)TITLE / height, rows,
+            longest < 24 ? -(int)longest / 8 : -(int)longest / 5); // letters are narrower than gnuplot takes them for
     fprintf(p->out, "set label ");
     write_text(p->out, study->title[0] ? study->title : study->name);
     fprintf(p->out, " at screen 0.5, screen %.4f center noenhanced\n", 1 - 20.0 / height);

@@ -456,7 +456,8 @@ static void write_reference(FILE *out, const brunt_study *study, int32_t m) {
         }
         break;
     }
-    if (isfinite(measure->scale)) fprintf(out, "; they are given in parts of %.6g %s", measure->scale, unit);
+    if (isfinite(measure->scale))
+        fprintf(out, "; they are given in parts of %.6g%s%s", measure->scale, *unit ? " " : "", unit);
     fprintf(out, ".\n");
 }
 

@@ -624,12 +624,74 @@ START_TEST(interrupted) {
 }
 END_TEST
 
+// What is shipped, and the pair of files that the README has one type.
+START_TEST(shipped_studies_are_read) {
+    const char *source = getenv("BRUNT_SOURCE");
+    ck_assert_ptr_nonnull(source);
+    char path[1200];
+    snprintf(path, sizeof path, "%s/bench/studies", source);
+    DIR *folder = opendir(path);
+    ck_assert_ptr_nonnull(folder);
+    int read = 0;
+    for (struct dirent *entry; (entry = readdir(folder));) {
+        const char *dot = strrchr(entry->d_name, '.');
+        if (!dot || strcmp(dot, ".yaml")) continue;
+        brunt_study study;
+        snprintf(path, sizeof path, "%s/bench/studies/%s", source, entry->d_name);
+        ck_assert_msg(brunt_study_read(path, &study, stderr) == BRUNT_OK, "%s", path);
+        ck_assert_int_gt(study.case_count, 1);
+        brunt_study_free(&study);
+        read++;
+    }
+    closedir(folder);
+    ck_assert_int_ge(read, 11);
+}
+END_TEST
+
+// The first YAML block of the README from a line that starts with `start` on, as a file of the small folder.
+static void take_from_readme(const char *start, const char *name) {
+    char path[1200], line[512], text[8192] = "";
+    snprintf(path, sizeof path, "%s/README.md", getenv("BRUNT_SOURCE"));
+    FILE *readme = fopen(path, "r");
+    ck_assert_ptr_nonnull(readme);
+    bool block = false, found = false;
+    while (fgets(line, sizeof line, readme)) {
+        if (block && !strncmp(line, start, strlen(start))) found = true;
+        if (block && !strncmp(line, "```", 3)) {
+            if (found) break;
+            block = false, text[0] = 0;
+        } else if (!block && !strcmp(line, "```yaml\n")) {
+            block = true, text[0] = 0;
+        } else if (block) {
+            strcat(text, line);
+        }
+    }
+    fclose(readme);
+    ck_assert_msg(found, "no block with '%s'", start);
+    small_write(small_path(name), text, (long)strlen(text));
+}
+
+START_TEST(the_study_of_the_readme) {
+    take_from_readme("title: A ball falls on a floor", "drop.yaml");
+    take_from_readme("title: The ball, cells and transfers", "drop_study.yaml");
+    brunt_study study;
+    char path[1024];
+    snprintf(path, sizeof path, "%s", small_path("drop_study.yaml"));
+    ck_assert_int_eq(brunt_study_read(path, &study, stderr), BRUNT_OK);
+    ck_assert_int_eq(study.case_count, 6);
+    ck_assert_int_eq(study.line_count, 2);
+    brunt_study_free(&study);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("study");
     TCase *tcase = tcase_create("study");
     tcase_set_timeout(tcase, 0);
     tcase_add_checked_fixture(tcase, set_up, tear_down);
     tcase_add_test(tcase, whole_file);
+    tcase_add_test(tcase, shipped_studies_are_read);
+    tcase_add_test(tcase, the_study_of_the_readme);
     tcase_add_test(tcase, measures_and_cases);
     tcase_add_test(tcase, jobs);
     tcase_add_test(tcase, defaults);
