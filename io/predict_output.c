@@ -86,7 +86,8 @@ static double count_of(double every, double end, double each) {
 int brunt_predict_output(const brunt_scene *scene, brunt_world *world, brunt_history *history, brunt_prediction *out,
                          double *buffer_bytes, brunt_error *error) {
     const brunt_output_def *o = &scene->output;
-    double end = scene->world.end, lines = fmax(count_of(o->history, end, out->steps + 1), 2);
+    double end = scene->world.end,
+           lines = fmin(count_of(o->history, end, out->steps + 1), out->steps + 1); // one a step at most
     double pictures = count_of(o->every, end, 2), line = INFINITY, bytes = 0, most = 0;
     for (int s = 0; s < 3; s++) {
         double start = brunt_clock();
