@@ -57,6 +57,10 @@ static void read_tree(scene_reader *reader, const char *text, size_t length, con
         brunt_tree_complain(tree, tree->root, "a scene is a map that starts with 'brunt: 1'");
         return;
     }
+    if (brunt_tree_child(tree->root, "brunt_study")) {
+        brunt_tree_complain(tree, tree->root, "this is a study, of which 'brunt study' makes runs; a scene is wanted");
+        return;
+    }
     for (int i = 0; i < set_count; i++) brunt_tree_set(tree, sets[i]);
     brunt_check_scene(reader);
     brunt_fill_world(reader);

@@ -547,12 +547,27 @@ static void collect_rows(scene_reader *reader, const scene_node *node, const cha
     }
 }
 
+// An override may make an entry where another was meant: the name among the file's own that is like it, NULL for none.
+static const char *meant_instead(const scene_node *node) {
+    const char *names[NAMES_LIMIT];
+    int count = 0;
+    if (!node->option || !node->key || !node->parent || node->parent->kind != SCENE_MAP) return NULL;
+    for (const scene_node *other = node->parent->first; other && count < NAMES_LIMIT; other = other->next)
+        if (other != node && other->key && !other->option) names[count++] = other->key;
+    return brunt_nearest_name(node->key, names, count);
+}
+
 static void add_missing(scene_reader *reader, scene_node *node, const group_rows *rows, int r) {
     const scene_key *row = rows->row[r];
     if (brunt_tree_child(node, "preset") || (node->parent && brunt_tree_child(node->parent, "preset")))
         return; // one that is unknown: what it would have brought is not missed
     if (!row->initial) {
         char want[160] = "";
+        const char *meant = meant_instead(node);
+        if (meant) { // said once, however much is missing: the same message at one place counts once
+            brunt_tree_complain_key(reader->tree, node, "there is no '%s', did you mean '%s'?", node->key, meant);
+            return;
+        }
         if (row->type == SCENE_REAL || row->type == SCENE_VECTOR) {
             brunt_units_describe(reader->units, row->unit, want, sizeof want);
             brunt_tree_complain_key(reader->tree, node, "'%s' is missing: %s, %s", rows->key[r], want, row->doc);

@@ -213,12 +213,15 @@ static void write_section(FILE *out, const scene_section *section) {
 
 static void write_study(FILE *out) {
     fputs(study_example, out);
-    fputs("\nA path is what --set of brunt run takes: bodies.rod.size, boundaries[0].friction. Text that holds {NAME} "
-          "of an "
-          "axis gets\nthe number of its value in SI, or its label; {NAME*2} and {NAME/2} twice and half of it. Columns "
-          "as "
-          "of scenes.\n\nstudy: the file of brunt study\n",
-          out);
+    fputs(
+        "\nA path is what --set of brunt run takes: bodies.rod.size, boundaries[0].friction. Text that holds {NAME} of "
+        "an\n"
+        "axis gets the number of its value in SI, or its label; {NAME*2} and {NAME/2} twice and half of it. A body of\n"
+        "another method is given as a whole, by an axis without key:\n"
+        "  method: {values: {FEM: {}, MPM: {bodies.rod: {method: mpm, material: steel, shape: {...}, velocity: "
+        "[...]}}}}\n"
+        "Columns as of scenes.\n\nstudy: the file of brunt study\n",
+        out);
     for (int i = 0; i < *brunt_study_format.row_count; i++) write_key(out, &brunt_study_format.rows[i]);
 }
 

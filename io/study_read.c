@@ -828,6 +828,8 @@ int brunt_study_read(const char *path, brunt_study *study, FILE *messages) {
     tree.root = tree.exhausted ? NULL : brunt_tree_parse(&tree, text, length, NULL);
     if (tree.root && tree.root->kind != SCENE_MAP)
         brunt_tree_complain(&tree, tree.root, "a study is a map that starts with 'brunt_study: 1'");
+    else if (tree.root && brunt_tree_child(tree.root, "brunt"))
+        brunt_tree_complain(&tree, tree.root, "this is a scene, for 'brunt run'; a study is wanted");
     else if (tree.root)
         read_study(&reader);
     status = tree.message_count || tree.exhausted ? BRUNT_BAD_INPUT : BRUNT_OK;

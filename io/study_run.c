@@ -305,10 +305,9 @@ static void judge(const runner *r, const char *folder, const brunt_child_end *en
     char line[200];
     first_line(folder, line, sizeof line);
     if (end->fate == BRUNT_CHILD_TIMEOUT) {
-        char limit[32];
-        brunt_duration(r->study->time_limit, limit);
         result->limit = r->study->time_limit;
-        snprintf(result->reason, sizeof result->reason, "not done after %s, the time limit of a run", limit);
+        snprintf(result->reason, sizeof result->reason, "not done after %.4g s, the time limit of a run",
+                 result->limit);
     } else if (end->fate == BRUNT_CHILD_KILLED) {
         snprintf(result->reason, sizeof result->reason, "ended by signal %d (%s)", end->code, strsignal(end->code));
     } else if (*line) {

@@ -532,7 +532,7 @@ START_TEST(failures) {
     ck_assert_int_eq(run_good(&s, false), 1);
     ck_assert_ptr_nonnull(strstr(s.cases[3].reason, "not done after 2"));
     char *csv = file_text("out/study.csv");
-    const char *row = "\nslow,slow,failed,\"not done after 2.0 s, the time limit of a run\",,,,,,,,,,0\n";
+    const char *row = "\nslow,slow,failed,\"not done after 2 s, the time limit of a run\",,,,,,,,,,0\n";
     ck_assert_msg(strstr(csv, row) != NULL, "%s", csv);
     free(csv);
     brunt_study_free(&s);
