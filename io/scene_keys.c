@@ -188,7 +188,7 @@ const scene_key brunt_scene_table[] = {
     {"loads.gravity_ramp", SCENE_REAL, "s", "0", NOT_NEGATIVE, NULL, 0, false, "gravity grows from 0 to its value over this time"},
 
     {"output", SCENE_GROUP, NULL, "{}", NONE, "what is written, and how often"},
-    {"output.every", SCENE_REAL, "s", "0", 0, INFINITY, false, true, "none", 0, false, "time between pictures; 0: the first and the last; none: no pictures"},
+    {"output.every", SCENE_REAL, "s", "0", 0, INFINITY, false, true, "none", 0, false, "time between pictures, to which steps are cut; 0: the first and the last; none: no pictures"},
     {"output.history", SCENE_REAL, "s", "0", NOT_NEGATIVE, NULL, 0, false, "time between history lines, each of the first step at or after its time; 0: every step"},
     {"output.checkpoint", SCENE_REAL, "s", "600", 0, INFINITY, false, true, "none", 0, false, "wall time between checkpoints; 0: with every picture; none: at the end and on signals"},
     {"output.fields", SCENE_NAMES, NULL, "[default]", NONE, "fields in pictures; default: velocity, and of fem and membrane bodies displacement, stress, plastic_strain and what contact does, where there are"},

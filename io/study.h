@@ -42,7 +42,8 @@ typedef enum brunt_study_reference {
     BRUNT_REFERENCE_NUMBER,     // `exact`, or what the scene's measure expects (taken from its summary when NAN)
     BRUNT_REFERENCE_TABLE,      // by the value of one axis
     BRUNT_REFERENCE_FINEST,     // the finest run of all methods (`of`: of that method); its own error is not defined
-    BRUNT_REFERENCE_RICHARDSON  // each method's own limit, extrapolated from its three finest runs; `of`: that method's for all
+    BRUNT_REFERENCE_RICHARDSON  // each method's own limit, extrapolated from its three finest runs, or the finest where they settle without
+                                // showing an order; `of`: that method's for all
 } brunt_study_reference;
 
 typedef struct brunt_study_measure {
@@ -88,8 +89,9 @@ typedef struct brunt_study_line {
     char label[160];     // "APIC, quadratic"
     brunt_study_fit order[BRUNT_STUDY_MEASURES];   // error over resolution
     brunt_study_fit cost;                          // wall time over units
-    double limit[BRUNT_STUDY_MEASURES];            // Richardson's, NAN: none
+    double limit[BRUNT_STUDY_MEASURES];            // Richardson's, or the finest value when `settled`; NAN: none
     double limit_uncertainty[BRUNT_STUDY_MEASURES];
+    bool settled[BRUNT_STUDY_MEASURES];            // no order could be seen, but the last change is smaller than the one before
     double observed_order[BRUNT_STUDY_MEASURES];   // of the three finest values, without a reference; NAN: they do not converge
 } brunt_study_line;
 

@@ -116,12 +116,29 @@ static double guarded(double distance, double observed, double theory) {
     return (as_theory ? 1.25 : 3) * fabs(distance);
 }
 
+// Values that swing, the last change smaller than the one before: the limit is the finest, give or take that change. A
+// change of exactly zero would claim a limit known to the bit: there the one before stands for it.
+static void settle(brunt_study_line *line, int32_t m, const double x[3], const double y[3]) {
+    for (int i = 0; i < 3; i++)
+        if (!(x[i] > 0) || (i && x[i] >= x[i - 1])) return;
+    const double before = fabs(y[1] - y[0]), last = fabs(y[2] - y[1]);
+    // One that creeps on in the same direction has not settled, however slowly.
+    if (!(last < before) || !isfinite(before) || (y[1] - y[0]) * (y[2] - y[1]) > 0) return;
+    line->settled[m] = true;
+    line->limit[m] = y[2];
+    line->limit_uncertainty[m] = last > 0 ? last : before;
+}
+
 // The limit by the three finest results; `x`, `y` from the coarsest to the finest.
 static void extrapolate(brunt_study_line *line, int32_t m, const double *x, const double *y, int32_t count,
                         double theory) {
     line->limit[m] = line->limit_uncertainty[m] = line->observed_order[m] = NAN;
-    if (count < 3 || !brunt_study_richardson(x + count - 3, y + count - 3, &line->limit[m], &line->observed_order[m]))
+    line->settled[m] = false;
+    if (count < 3) return;
+    if (!brunt_study_richardson(x + count - 3, y + count - 3, &line->limit[m], &line->observed_order[m])) {
+        settle(line, m, x + count - 3, y + count - 3);
         return;
+    }
     double coarser, order;
     if (count > 3 && brunt_study_richardson(x + count - 4, y + count - 4, &coarser, &order))
         line->limit_uncertainty[m] = fabs(line->limit[m] - coarser);
@@ -153,6 +170,7 @@ static double error_of(const brunt_study *study, const brunt_study_case *c, int3
     if (truth.finest >= 0 && c == &study->cases[truth.finest])
         return NAN; // it is its own measure: 0 would look accurate
     double distance = fabs(c->result[m] - truth.value), scale = brunt_study_scale_of(study, c, m);
+    if (brunt_study_is_limit(study, c, m)) distance = truth.uncertainty;
     return scale > 0 ? distance / scale : NAN; // relative to zero: nothing is
 }
 
@@ -167,7 +185,8 @@ static void take_fits(brunt_study *study, int32_t l, scratch *s) {
     for (int32_t m = 0; m < study->measure_count; m++) {
         for (int32_t i = 0; i < count; i++) {
             const brunt_study_case *c = &study->cases[s->cases[i]];
-            s->x[i] = brunt_study_resolution(study, c), s->y[i] = c->error[m];
+            s->x[i] = brunt_study_resolution(study, c);
+            s->y[i] = brunt_study_is_limit(study, c, m) ? NAN : c->error[m];
         }
         bool own = count > 0 && own_limit(study, l, m, &study->cases[s->cases[0]]);
         line->order[m] = fit_line(s->x, s->y, count, own ? 3 : 2);
@@ -205,6 +224,7 @@ static void forget(brunt_study *study) {
         for (int32_t m = 0; m < BRUNT_STUDY_MEASURES; m++) {
             line->order[m] = none;
             line->limit[m] = line->limit_uncertainty[m] = line->observed_order[m] = NAN;
+            line->settled[m] = false;
         }
     }
 }

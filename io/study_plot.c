@@ -164,6 +164,9 @@ static double prefixed(const char *unit, double most, char out[48]) {
 
 // --- a picture
 
+enum { NOTES = 4 }; // lines at the foot: runs that failed, errors of zero, the reference, methods without a limit
+typedef char notes[NOTES][256]; // "": none
+
 typedef struct picture {
     const brunt_study *study;
     brunt_atomic_file file;
@@ -186,7 +189,7 @@ static int begin(picture *p, const char *folder, brunt_error *error) {
     p->drawn = 0;
     fprintf(
         p->out,
-        "# gnuplot %s.gp\nset encoding utf8\nset termoption noenhanced\nset logscale xy\nset border 3 linewidth 1\n"
+        "# gnuplot %s.gp\nset encoding utf8\nset logscale xy\nset border 3 linewidth 1\n"
         "set tics nomirror out\nset grid xtics ytics linecolor '#dddddd' linewidth 0.6 dashtype 1\nset pointsize 1.2\n",
         p->name);
     return BRUNT_OK;
@@ -194,13 +197,16 @@ static int begin(picture *p, const char *folder, brunt_error *error) {
 
 // From the top: title, key, the plot, a line of notes. The key stands outside, in as many columns as there is room for:
 // nowhere else is it sure to cover no data.
-static void write_layout(picture *p, int32_t entries, size_t longest, bool accuracies, const char *note) {
+static void write_layout(picture *p, int32_t entries, size_t longest, bool accuracies, const char *suffix,
+                         const notes *note) {
     enum { WIDTH = 900, PLOT = 470, LETTER = 10, ROW = 25, TITLE = 42, BELOW = 98 }; // pixels
     const int room = (WIDTH - 40) / (75 + LETTER * (int)longest), columns = room < 1         ? 1
                                                                             : room > entries ? entries
                                                                                              : room;
+    int noted = 0;
+    for (int n = 0; note && n < NOTES; n++) noted += (*note)[n][0] != 0;
     const int rows = (entries + columns - 1) / columns, head = TITLE + ROW * rows + 22,
-              foot = BELOW + (note[0] ? ROW + 6 : 0);
+              foot = BELOW + (noted ? ROW * noted + 6 : 0);
     const int height = head + PLOT + foot;
     const brunt_study *study = p->study;
     fprintf(p->out,
@@ -212,26 +218,36 @@ static void write_layout(picture *p, int32_t entries, size_t longest, bool accur
             "noenhanced\n",
             1 - (double)TITLE / height, rows,
             longest < 24 ? -(int)longest / 8 : -(int)longest / 5); // letters are narrower than gnuplot takes them for
+    char title[320];
+    snprintf(title, sizeof title, "%s%s", study->title[0] ? study->title : study->name, suffix);
     fprintf(p->out, "set label ");
-    write_text(p->out, study->title[0] ? study->title : study->name);
+    write_text(p->out, title);
     fprintf(p->out, " at screen 0.5, screen %.4f center noenhanced\n", 1 - 20.0 / height);
-    if (!note[0]) return;
-    fprintf(p->out, "set label ");
-    write_text(p->out, note);
-    fprintf(p->out, " at screen 0.03, screen %.4f left textcolor '#444444'\n", 16.0 / height);
+    for (int n = 0; note && n < NOTES; n++) {
+        if (!(*note)[n][0]) continue;
+        fprintf(p->out, "set label ");
+        write_text(p->out, (*note)[n]);
+        fprintf(p->out, " at screen 0.03, screen %.4f left textcolor '#444444'\n", (16.0 + ROW * --noted) / height);
+    }
 }
 
-static void plot_part(picture *p) { fputs(p->drawn++ ? ", \\\n  " : "plot \\\n  ", p->out); }
+// SVG first: what fails leaves no picture that looks whole. A terminal has to be there before the plot is.
+static void plot_part(picture *p) {
+    if (p->drawn++) {
+        fputs(", \\\n  ", p->out);
+        return;
+    }
+    fprintf(p->out,
+            "set terminal svg size 900,height font 'sans,17' linewidth 1.6 noenhanced background 'white'\n"
+            "set output '%s.svg'\nplot \\\n  ",
+            p->name);
+}
 
 static int commit(picture *p, brunt_error *error) {
-    // SVG first: what fails leaves no picture that looks whole.
-    fprintf(
-        p->out,
-        "\nset terminal push\nset terminal svg size 900,height font 'sans,17' linewidth 1.6 noenhanced background "
-        "'white'\n"
-        "set output '%s.svg'\nreplot\nset terminal pngcairo size 900,height font 'sans,15' linewidth 1.6 noenhanced\n"
-        "set output '%s.png'\nreplot\nunset output\n",
-        p->name, p->name);
+    fprintf(p->out,
+            "\nset terminal pngcairo size 900,height font 'sans,15' linewidth 1.6 noenhanced\n"
+            "set output '%s.png'\nreplot\nunset output\n",
+            p->name);
     return brunt_atomic_commit(&p->file, error);
 }
 
@@ -281,21 +297,6 @@ static bool shown(const errors *e, const brunt_study_case *c) {
 
 static double ordinate(const errors *e, const brunt_study_case *c) {
     return c->error[e->measure] > 0 ? e->y.factor * c->error[e->measure] : e->floor;
-}
-
-// A run that failed has no time of its own: it stands where the others of its resolution are, or in the middle.
-static double failed_abscissa(const errors *e, const brunt_study_case *c) {
-    if (e->over_resolution) return brunt_study_resolution(e->p.study, c);
-    double sum = 0;
-    int32_t count = 0;
-    for (int32_t i = 0; i < e->p.study->case_count; i++) {
-        const brunt_study_case *o = &e->p.study->cases[i];
-        if (!shown(e, o) || (e->p.study->resolution >= 0 &&
-                             brunt_study_resolution(e->p.study, o) != brunt_study_resolution(e->p.study, c)))
-            continue;
-        sum += log(o->wall_median), count++;
-    }
-    return count ? exp(sum / count) : sqrt(e->x.from * e->x.to) / e->x.factor;
 }
 
 static void find_ranges(errors *e) {
@@ -386,43 +387,86 @@ static void write_accuracies(errors *e) {
     }
 }
 
+// A run that failed has a resolution but no time: over time they stand in rows from the upper left corner.
 static int32_t write_failed(errors *e) {
+    enum { ROW = 50 };
+    const double step = 0.016; // of the width: crosses beside each other
     const brunt_study *study = e->p.study;
     int32_t count = 0;
     for (int32_t i = 0; i < study->case_count; i++) {
         const brunt_study_case *c = &study->cases[i];
-        const double x = e->x.factor * failed_abscissa(e, c);
-        if (!failed(c) || !(x > 0) || !isfinite(x)) continue;
-        // Several at one place: beside each other.
-        int32_t before = 0;
-        for (int32_t j = 0; j < i; j++)
-            before += failed(&study->cases[j]) && e->x.factor * failed_abscissa(e, &study->cases[j]) == x;
-        const double at = log(x / e->x.from) / log(e->x.to / e->x.from) + 0.016 * before;
+        if (!failed(c)) continue;
+        double at = 0.02 + step * (count % ROW), height = 0.985 - 0.03 * (count / ROW);
+        if (e->over_resolution) {
+            int32_t before = 0; // at the same place
+            for (int32_t j = 0; j < i; j++)
+                before += failed(&study->cases[j]) &&
+                          brunt_study_resolution(study, &study->cases[j]) == brunt_study_resolution(study, c);
+            const double x = e->x.factor * brunt_study_resolution(study, c);
+            if (!(x > 0) || !isfinite(x)) continue;
+            at = log(x / e->x.from) / log(e->x.to / e->x.from) + step * before, height = 0.985;
+        }
         fprintf(e->p.out,
-                "set label '' at graph %.4f, graph 0.985 point pointtype 2 pointsize 1.4 linewidth 2 linecolor '%s' "
+                "set label '' at graph %.4f, graph %.4f point pointtype 2 pointsize 1.4 linewidth 2 linecolor '%s' "
                 "front\n",
-                at, colours[look_of(study, c->line).colour]);
+                at, height, colours[look_of(study, c->line).colour]);
         count++;
     }
     return count;
 }
 
-static void note_of(const errors *e, int32_t failures, char note[160]) {
-    note[0] = 0;
-    int length = 0;
-    if (failures)
-        length = snprintf(note, 160, "× at the upper edge: %d %s failed%s", (int)failures,
-                          failures == 1 ? "run" : "runs", e->over_resolution ? "" : ", without a time");
-    if (e->zeros)
-        snprintf(note + length, 160 - (size_t)length, "%serrors of 0 stand at the lower edge", length ? "; " : "");
+// Adds a method's name to a list that ends in "..." where it does not fit the picture; its own commas go, so that they
+// part the names only. False: nothing more goes in.
+static bool enlist(char note[256], int32_t before, const char *label, const char *suffix) {
+    static const size_t most = 92; // characters of a line
+    char name[192];
+    size_t n = 0;
+    for (const char *t = label; *t && n + 1 < sizeof name; t++)
+        if (*t != ',') name[n++] = *t;
+    name[n] = 0;
+    const size_t length = strlen(note);
+    if (characters(note) + characters(name) + strlen(suffix) + 2 > most || length + n + strlen(suffix) + 8 > 256) {
+        snprintf(note + length, 256 - length, "%s...", before ? ", " : "");
+        return false;
+    }
+    snprintf(note + length, 256 - length, "%s%s%s", before ? ", " : "", name, suffix);
+    return true;
+}
+
+static bool line_failed(const brunt_study *study, int32_t line) {
+    for (int32_t i = 0; i < study->case_count; i++)
+        if (study->cases[i].line == line && failed(&study->cases[i])) return true;
+    return false;
+}
+
+static void notes_of(const errors *e, int32_t failures, notes *note) {
+    const brunt_study *study = e->p.study;
+    char(*out)[256] = *note;
+    int32_t listed = 0;
+    memset(note, 0, sizeof *note);
+    if (failures) snprintf(out[0], 256, "× %d %s failed: ", (int)failures, failures == 1 ? "run" : "runs");
+    for (int32_t l = 0; failures && l < study->line_count; l++)
+        if (line_failed(study, l) && !enlist(out[0], listed++, brunt_study_line_label(study, l), "")) break;
+    if (e->zeros) snprintf(out[1], 256, "errors of 0 stand at the lower edge");
+    const int32_t reference = brunt_study_reference_case(study, e->measure);
+    if (reference >= 0) {
+        char label[320];
+        brunt_study_case_label(study, &study->cases[reference], label);
+        snprintf(out[2], 256, "reference, not shown: %.220s", label);
+    }
+    for (int32_t l = listed = 0; l < study->line_count; l++) {
+        char why[160];
+        if (!brunt_study_lacks_limit(study, l, e->measure, why)) continue;
+        if (!listed) snprintf(out[3], 256, "not shown: ");
+        if (!enlist(out[3], listed++, brunt_study_line_label(study, l), " (no limit)")) break;
+    }
 }
 
 // What errors are measured in: "% of the reference", "% of 2 mm".
 static void scale_words(const errors *e, char out[128]) {
     const brunt_study *study = e->p.study;
     const double scale = study->measures[e->measure].scale;
-    const char *unit = "";
-    for (int32_t i = 0; i < study->case_count && !unit[0]; i++) unit = study->cases[i].unit[e->measure];
+    const char *unit = brunt_study_unit(study, e->measure);
     const bool bare = !unit[0] || !strcmp(unit, "1");
     if (isnan(scale))
         snprintf(out, 128, "%s", e->percent ? "% of the reference" : "of the reference");
@@ -525,9 +569,13 @@ static int draw_errors(errors *e, const char *folder, int32_t *points, bool *wan
         if (points[l]) longest = characters(title) > longest ? characters(title) : longest, entries++;
     }
     const bool front = !e->over_resolution && write_front(e), theory = write_theory(e);
-    char note[160];
-    note_of(e, write_failed(e), note);
-    write_layout(&e->p, entries + front + theory, longest < 15 ? 15 : longest, true, note);
+    bool fitted = false; // in the key
+    for (int32_t l = 0; l < study->line_count; l++)
+        fitted |= e->over_resolution && points[l] && isfinite(study->lines[l].order[e->measure].slope);
+    notes note;
+    notes_of(e, write_failed(e), &note);
+    write_layout(&e->p, entries + front + theory, longest < 15 ? 15 : longest, true, fitted ? " (fitted orders)" : "",
+                 &note);
     write_axes(e);
     write_accuracies(e);
     plot_errors(e, points, front, theory);
@@ -550,6 +598,7 @@ static int draw_cost(picture *p, const char *folder, bool *wanted, brunt_error *
     int status = begin(p, folder, error);
     if (status) return status;
     pad(&x), pad(&y);
+    bool fitted = false; // in the key
     size_t longest = 0;
     int32_t entries = 0;
     char title[256];
@@ -562,9 +611,10 @@ static int draw_cost(picture *p, const char *folder, bool *wanted, brunt_error *
         }
         fprintf(p->out, "END\n");
         entry(study, l, &study->lines[l].cost, 1, title);
+        fitted |= isfinite(study->lines[l].cost.slope);
         longest = characters(title) > longest ? characters(title) : longest, entries++;
     }
-    write_layout(p, entries, longest, false, "");
+    write_layout(p, entries, longest, false, fitted ? " (fitted exponents)" : "", NULL);
     write_label(p->out, "xlabel", "particles and elements [1]");
     write_time_label(p->out, 'y', study);
     write_tics(p->out, 'x', &x), write_tics(p->out, 'y', &y);

@@ -33,6 +33,15 @@ static void put_case(FILE *out, const brunt_study *study, const brunt_study_case
     put(out, label);
 }
 
+// " [mm]"; nothing where no run has said the unit.
+static void put_unit(FILE *out, const brunt_study *study, int32_t m) {
+    const char *unit = brunt_study_unit(study, m);
+    if (!unit[0]) return;
+    fprintf(out, " [");
+    put(out, unit);
+    fprintf(out, "]");
+}
+
 // A number in words, for one use in an argument.
 typedef struct words {
     char text[32];
@@ -136,6 +145,10 @@ static void write_setting(FILE *out, const brunt_study *study) {
     fprintf(out, ".\nOn %d %s of %s (%ld cores), brunt " BRUNT_VERSION " in " BRUNT_REAL_NAME " precision%s. ",
             (int)study->threads, study->threads == 1 ? "thread" : "threads", processor, sysconf(_SC_NPROCESSORS_ONLN),
             other_programs(study) ? " unless a value of an axis says otherwise" : "");
+    if (!count_of(study, BRUNT_STUDY_DONE)) {
+        fprintf(out, "No run has come to its end.\n");
+        return;
+    }
     if (study->repeats > 1)
         fprintf(out,
                 "Times are those of the steps alone, the median of %d repeats that gave the same results to the bit.\n",
@@ -213,7 +226,9 @@ static bool overlap(const brunt_study_case *a, const brunt_study_case *b) {
 static void write_error(FILE *out, const brunt_study *study, const brunt_study_case *c, int32_t m) {
     fprintf(out, "error %s", percent(c->error[m]).text);
     const double least = brunt_study_resolvable(study, c, m);
-    if (c->error[m] < least) fprintf(out, ", below the %s that the reference can tell", percent(least).text);
+    if (brunt_study_doubtful(study, c, m))
+        fprintf(out, ", %s the %s that the reference can tell",
+                c->error[m] < least * (1 - 1e-9) ? "below" : "no more than", percent(least).text);
 }
 
 // The next best of another method, for whom the first is out of the question.
@@ -222,7 +237,8 @@ static void write_second(FILE *out, const brunt_study *study, int32_t m, double 
     const brunt_study_case *second = cheapest(study, m, accuracy, first->line, NULL);
     if (study->line_count < 2) return;
     if (!second) {
-        fprintf(out, " No other method reaches it.");
+        fprintf(out, brunt_study_reference_case(study, m) >= 0 ? " Beside the reference, no other method reaches it."
+                                                               : " No other method reaches it.");
         return;
     }
     fprintf(out, " Next best: ");
@@ -245,7 +261,8 @@ static void write_accident(FILE *out, const brunt_study *study, int32_t m, doubl
 static void write_not_reached(FILE *out, const brunt_study *study, int32_t m, double accuracy,
                               const brunt_study_case *lucky) {
     const brunt_study_case *best = most_accurate(study, m);
-    fprintf(out, "not reached%s", lucky ? " reliably" : "");
+    fprintf(out, "not reached%s%s", lucky ? " reliably" : "",
+            brunt_study_reference_case(study, m) >= 0 ? " beside the reference" : "");
     if (best && !lucky) {
         words error = percent(best->error[m]);
         if (atof(error.text) <= 100 * accuracy) // rounded, it would look reached
@@ -288,6 +305,24 @@ static void write_answers(FILE *out, const brunt_study *study, int32_t m) {
         if (lucky) write_accident(out, study, m, accuracies[a], lucky);
         fprintf(out, "\n");
         if (best) before = best, accuracy_before = accuracies[a];
+    }
+}
+
+// What the answers above leave out: the run that is the reference, and methods that have none.
+static void write_left_out(FILE *out, const brunt_study *study, int32_t m) {
+    const int32_t reference = brunt_study_reference_case(study, m);
+    if (reference >= 0) {
+        fprintf(out, "\nThe reference is ");
+        put_case(out, study, &study->cases[reference]);
+        fprintf(out, " (%s) itself.\n", seconds(study->cases[reference].wall_median).text);
+    }
+    if (!count_of(study, BRUNT_STUDY_DONE)) return;
+    for (int32_t l = 0; l < study->line_count; l++) {
+        char why[160];
+        if (!brunt_study_lacks_limit(study, l, m, why)) continue;
+        fprintf(out, "\n");
+        put(out, brunt_study_line_label(study, l));
+        fprintf(out, " has no limit: %s%s.\n", why, most_accurate(study, m) ? "; it is not among these" : "");
     }
 }
 
@@ -375,7 +410,9 @@ static const brunt_study_case *best_of_line(const brunt_study *study, int32_t li
 
 static void write_methods(FILE *out, const brunt_study *study, int32_t m) {
     fprintf(out, "\n| method | runs | least error | order of the error | order of theory | order without reference | "
-                 "limit | time over size | time over accuracy |\n"
+                 "limit");
+    put_unit(out, study, m);
+    fprintf(out, " | time over size | time over accuracy |\n"
                  "| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
     for (int32_t l = 0; l < study->line_count; l++) {
         const brunt_study_line *line = &study->lines[l];
@@ -395,10 +432,10 @@ static void write_methods(FILE *out, const brunt_study *study, int32_t m) {
         if (isfinite(line->observed_order[m]))
             fprintf(out, " %.2f |", line->observed_order[m]);
         else
-            fprintf(out, " %s |", isfinite(line->limit[m]) ? "the same values" : "-");
+            fprintf(out, " %s |", isfinite(line->limit[m]) && !line->settled[m] ? "the same values" : "-");
         char limit[64];
         brunt_study_format_value(line->limit[m], line->limit_uncertainty[m], limit);
-        fprintf(out, " %s |", limit);
+        fprintf(out, " %s%s |", limit, line->settled[m] ? " (settled, not extrapolated)" : "");
         write_slope_cell(out, &line->cost, 1);
         write_slope_cell(out, &price, -1);
         fprintf(out, "\n");
@@ -411,6 +448,19 @@ static void write_methods(FILE *out, const brunt_study *study, int32_t m) {
             "Intervals: 95 %% by Student's t, "
             "of three points and more.\n",
             study->resolution >= 0 ? study->axes[study->resolution].name : "resolution");
+}
+
+// Whose limits are no extrapolation.
+static void write_settled(FILE *out, const brunt_study *study, int32_t m) {
+    int32_t count = 0;
+    for (int32_t l = 0; l < study->line_count; l++) {
+        if (!study->lines[l].settled[m]) continue;
+        fprintf(out, "%s", count++ ? "; " : "\nSettled, not extrapolated, are the limits of ");
+        put(out, brunt_study_line_label(study, l));
+    }
+    if (count)
+        fprintf(out, ": their finest values show no order, but the last change is smaller than the one before. The "
+                     "limit is the finest value, that change its uncertainty, and the error of the finest run.\n");
 }
 
 static void write_reference(FILE *out, const brunt_study *study, int32_t m) {
@@ -449,7 +499,10 @@ static void write_reference(FILE *out, const brunt_study *study, int32_t m) {
         if (measure->of[0] && truth.line >= 0) {
             fprintf(out, "the limit of ");
             put(out, brunt_study_line_label(study, truth.line));
-            fprintf(out, ", %s%s%s, extrapolated from its three finest results", value, unit[0] ? " " : "", unit);
+            fprintf(out, ", %s%s%s, %s", value, unit[0] ? " " : "", unit,
+                    study->lines[truth.line].settled[m]
+                        ? "its finest result: the values have settled, and are not extrapolated"
+                        : "extrapolated from its three finest results");
         } else {
             fprintf(out, "each method's own limit, extrapolated from its three finest results: methods that go to "
                          "different limits are each measured by their own");
@@ -459,6 +512,7 @@ static void write_reference(FILE *out, const brunt_study *study, int32_t m) {
     if (isfinite(measure->scale))
         fprintf(out, "; they are given in parts of %.6g%s%s", measure->scale, *unit ? " " : "", unit);
     fprintf(out, ".\n");
+    if (measure->reference == BRUNT_REFERENCE_RICHARDSON && !measure->of[0]) write_settled(out, study, m);
 }
 
 static void write_plateaus(FILE *out, const brunt_study *study, int32_t m) {
@@ -482,14 +536,15 @@ static void write_doubts(FILE *out, const brunt_study *study, int32_t m) {
         const brunt_study_case *c = &study->cases[i];
         const bool reference = finished(c) && brunt_study_truth_of(study, c, m).finest == i;
         zero += judged(c, m) && c->error[m] == 0;
-        below += judged(c, m) && c->error[m] < brunt_study_resolvable(study, c, m);
+        below += judged(c, m) && brunt_study_doubtful(study, c, m);
         without += finished(c) && !isfinite(c->error[m]) && !reference;
     }
     if (below)
-        fprintf(out,
-                "\nErrors marked ? (%d) are below what the reference can tell: they say that the run is at least as "
-                "good as the reference, no more.\n",
-                (int)below);
+        fprintf(
+            out,
+            "\nErrors marked ? (%d) are not above what the reference can tell: they say that the run is at least as "
+            "good as the reference, no more.\n",
+            (int)below);
     if (zero)
         fprintf(out, "\n%d %s the reference to the last bit; logarithms, and so the fits, leave %s out.\n", (int)zero,
                 zero == 1 ? "run meets" : "runs meet", zero == 1 ? "it" : "them");
@@ -506,10 +561,12 @@ static void write_measure(FILE *out, const brunt_study *study, int32_t m, int32_
     fprintf(out, "\n\n");
     if (!most_accurate(study, m)) {
         fprintf(out, "No finished run has an error to speak of.\n");
+        write_left_out(out, study, m);
         write_doubts(out, study, m);
         return;
     }
     write_answers(out, study, m);
+    write_left_out(out, study, m);
     fprintf(out, "\n");
     write_next_digit(out, study, m);
     write_front(out, study, m, cases);
@@ -545,7 +602,24 @@ static int write_picture(FILE *out, const char *folder, const char *name, const 
     return 1;
 }
 
+static bool has_script(const char *folder, const char *name) {
+    char path[BRUNT_PATH_LENGTH], file[192];
+    snprintf(file, sizeof file, "%s.gp", name);
+    return !brunt_join_path(path, folder, file, NULL) && brunt_file_exists(path);
+}
+
+static bool has_scripts(const brunt_study *study, const char *folder) {
+    bool any = has_script(folder, "study_order") || has_script(folder, "study_cost");
+    for (int32_t m = 0; m < study->measure_count && !any; m++) {
+        char name[160];
+        brunt_study_picture_name(study, m, name);
+        any = has_script(folder, name);
+    }
+    return any;
+}
+
 static void write_pictures(FILE *out, const brunt_study *study, const char *folder) {
+    if (!has_scripts(study, folder)) return;
     fprintf(out, "\n## Pictures\n");
     int drawn = 0;
     for (int32_t m = 0; m < study->measure_count; m++) {
@@ -575,19 +649,16 @@ static void write_result(FILE *out, const brunt_study *study, const brunt_study_
         fprintf(out, " reference |");
     else
         fprintf(out, " %s%s%s |", percent(c->error[m]).text,
-                judged(c, m) && c->error[m] < brunt_study_resolvable(study, c, m) ? " ?" : "", c->front[m] ? " ★" : "");
+                judged(c, m) && brunt_study_doubtful(study, c, m) ? " ?" : "", c->front[m] ? " ★" : "");
 }
 
 static void write_runs(FILE *out, const brunt_study *study, int32_t *cases) {
     fprintf(out, "\n## All runs\n\n| run | particles + elements | steps | time | least to most | memory [MB] |");
     for (int32_t m = 0; m < study->measure_count; m++) {
-        const char *unit = "";
-        for (int32_t i = 0; i < study->case_count && !unit[0]; i++) unit = study->cases[i].unit[m];
         fprintf(out, " ");
         put(out, study->measures[m].name);
-        fprintf(out, " [");
-        put(out, unit[0] ? unit : "1");
-        fprintf(out, "] | error |");
+        put_unit(out, study, m);
+        fprintf(out, " | error |");
     }
     fprintf(out, "\n| --- | --- | --- | --- | --- | --- |");
     for (int32_t m = 0; m < study->measure_count; m++) fprintf(out, " --- | --- |");
@@ -615,7 +686,7 @@ static void write_runs(FILE *out, const brunt_study *study, int32_t *cases) {
             fprintf(out, "\n");
         }
     }
-    fprintf(out, "\n★ on the front.\n");
+    if (count_of(study, BRUNT_STUDY_DONE)) fprintf(out, "\n★ on the front.\n");
 }
 
 int brunt_study_write_report(const brunt_study *study, const char *folder, brunt_error *error) {

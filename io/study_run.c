@@ -586,6 +586,34 @@ static int prepare(runner *r, brunt_error *error) {
     return BRUNT_OK;
 }
 
+// ", NAME" when the file is there.
+static bool say_file(const runner *r, const char *name, const char *before) {
+    char path[BRUNT_PATH_LENGTH];
+    if (brunt_join_path(path, r->folder, name, NULL) || !brunt_file_exists(path)) return false;
+    say(r, "%s%s", before, name);
+    return true;
+}
+
+static void say_files(const runner *r, bool drawn) {
+    char script[176], picture[176], name[160];
+    bool pictures = false, scripts = false;
+    say(r, "results are in %s: ", r->folder);
+    say_file(r, "report.md", ""), say_file(r, "study.csv", ", "), say_file(r, "study.json", ", ");
+    const int32_t measures = r->study->measure_count;
+    for (int32_t m = 0; m < measures + 2; m++) { // and the order, and the cost
+        if (m < measures)
+            brunt_study_picture_name(r->study, m, name);
+        else
+            snprintf(name, sizeof name, "%s", m == measures ? "study_order" : "study_cost");
+        snprintf(script, sizeof script, "%s.gp", name), snprintf(picture, sizeof picture, "%s.png", name);
+        if (drawn)
+            pictures |= say_file(r, picture, ", ");
+        else
+            scripts |= say_file(r, script, ", ");
+    }
+    say(r, "%s\n", pictures ? " (and .svg)" : scripts ? "; no gnuplot here, so no pictures" : "");
+}
+
 static int write_all(const runner *r, brunt_error *error) {
     bool drawn = false;
     brunt_study_analyse(r->study);
@@ -594,9 +622,7 @@ static int write_all(const runner *r, brunt_error *error) {
     if (!status) status = brunt_study_write_report(r->study, r->folder, error);
     if (status) return status;
     if (r->options->console) brunt_study_print(r->study, r->options->console);
-    say(r, "results are in %s: report.md, study.csv, study.json%s\n", r->folder,
-        drawn ? ", study.png, study_order.png, study_cost.png (and .svg)"
-              : "; no gnuplot here: its scripts are there, its pictures are not");
+    say_files(r, drawn);
     return BRUNT_OK;
 }
 

@@ -252,7 +252,14 @@ static int label_width(const brunt_study *study) {
     return width;
 }
 
-static void print_case(const brunt_study *study, const brunt_study_case *c, int width, FILE *out) {
+static bool any_doubt(const brunt_study *study) {
+    for (int32_t c = 0; c < study->case_count; c++)
+        for (int32_t m = 0; m < study->measure_count; m++)
+            if (brunt_study_doubtful(study, &study->cases[c], m)) return true;
+    return false;
+}
+
+static void print_case(const brunt_study *study, const brunt_study_case *c, int width, bool doubts, FILE *out) {
     char label[320], seconds[32], percent[32];
     brunt_study_case_label(study, c, label);
     fprintf(out, "  %s%*s", label, width - shown_width(label), "");
@@ -266,7 +273,10 @@ static void print_case(const brunt_study *study, const brunt_study_case *c, int 
         char text[64];
         brunt_study_format_percent(c->error[m], percent);
         if (isfinite(c->error[m]))
-            snprintf(text, sizeof text, "%s%s", percent, c->front[m] ? " *" : "  ");
+            snprintf(text, sizeof text, "%s%s%s", percent, c->front[m] ? " *" : "  ",
+                     brunt_study_doubtful(study, c, m) ? " ?"
+                     : doubts                          ? "  "
+                                                       : "");
         else
             snprintf(text, sizeof text, "%.5g %.16s  ", c->result[m], c->unit[m]);
         fprintf(out, " %*s", 16 > shown_width(study->measures[m].name) ? 16 : shown_width(study->measures[m].name),
@@ -277,6 +287,7 @@ static void print_case(const brunt_study *study, const brunt_study_case *c, int 
 
 void brunt_study_print(const brunt_study *study, FILE *out) {
     int width = label_width(study);
+    const bool doubts = any_doubt(study);
     int32_t *cases = brunt_alloc((size_t)(study->case_count + 1) * sizeof *cases);
     if (!cases) return;
     fprintf(out, "\n  %-*s %10s %9s %10s %11s", width, "case", "units", "steps", "time", "memory");
@@ -284,8 +295,9 @@ void brunt_study_print(const brunt_study *study, FILE *out) {
     fputc('\n', out);
     for (int32_t l = 0; l < study->line_count; l++) {
         int32_t count = brunt_study_line_cases(study, l, cases);
-        for (int32_t i = 0; i < count; i++) print_case(study, &study->cases[cases[i]], width, out);
+        for (int32_t i = 0; i < count; i++) print_case(study, &study->cases[cases[i]], width, doubts, out);
     }
-    fputs("  errors, * where no case is both faster and more accurate; units are particles and elements\n\n", out);
+    fprintf(out, "  errors, * where no case is both faster and more accurate%s; units are particles and elements\n\n",
+            doubts ? ", ? where the reference can tell no more" : "");
     brunt_free(cases);
 }

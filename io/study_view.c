@@ -71,13 +71,15 @@ brunt_study_truth brunt_study_truth_of(const brunt_study *study, const brunt_stu
     switch (measure->reference) {
     case BRUNT_REFERENCE_NUMBER: truth.value = isnan(measure->exact) ? c->expect[m] : measure->exact; break;
     case BRUNT_REFERENCE_TABLE: truth.value = measure->table[c->value[measure->table_axis]]; break;
-    case BRUNT_REFERENCE_FINEST:
+    case BRUNT_REFERENCE_FINEST: {
         truth.finest = finest(study, m);
         truth.uncertainty = NAN;
         if (truth.finest < 0) break;
         truth.value = study->cases[truth.finest].result[m];
-        truth.uncertainty = fabs(study->lines[study->cases[truth.finest].line].limit[m] - truth.value);
+        const brunt_study_line *own = &study->lines[study->cases[truth.finest].line];
+        truth.uncertainty = own->settled[m] ? own->limit_uncertainty[m] : fabs(own->limit[m] - truth.value);
         break;
+    }
     case BRUNT_REFERENCE_RICHARDSON:
         truth.line = limit_line(study, c, m);
         truth.uncertainty = NAN;
@@ -97,6 +99,53 @@ double brunt_study_scale_of(const brunt_study *study, const brunt_study_case *c,
 double brunt_study_resolvable(const brunt_study *study, const brunt_study_case *c, int32_t m) {
     const double ratio = brunt_study_truth_of(study, c, m).uncertainty / brunt_study_scale_of(study, c, m);
     return isfinite(ratio) ? ratio : 0;
+}
+
+bool brunt_study_is_limit(const brunt_study *study, const brunt_study_case *c, int32_t m) {
+    if (study->measures[m].reference != BRUNT_REFERENCE_RICHARDSON || !finished(c)) return false;
+    const brunt_study_truth truth = brunt_study_truth_of(study, c, m);
+    return truth.line >= 0 && study->lines[truth.line].settled[m] && c->result[m] == truth.value;
+}
+
+bool brunt_study_doubtful(const brunt_study *study, const brunt_study_case *c, int32_t m) {
+    const double least = brunt_study_resolvable(study, c, m);
+    return finished(c) && least > 0 && c->error[m] <= least * (1 + 1e-9); // equal but for rounding
+}
+
+bool brunt_study_lacks_limit(const brunt_study *study, int32_t line, int32_t m, char why[160]) {
+    if (study->measures[m].reference != BRUNT_REFERENCE_RICHARDSON || isfinite(study->lines[line].limit[m]))
+        return false;
+    int32_t *cases = brunt_alloc((size_t)study->case_count * sizeof *cases);
+    bool wanted = false;
+    if (cases) {
+        double finest_values[3] = {NAN, NAN, NAN}; // the last of them the finest
+        int32_t known = 0, count = brunt_study_line_cases(study, line, cases);
+        for (int32_t i = 0; i < count; i++) {
+            const brunt_study_case *c = &study->cases[cases[i]];
+            const char *of = study->measures[m].of;
+            wanted = !of[0] || (is_of(study, c, of) && limit_line(study, c, m) < 0);
+            if (!finished(c) || !isfinite(c->result[m])) continue;
+            finest_values[0] = finest_values[1], finest_values[1] = finest_values[2];
+            finest_values[2] = c->result[m], known++;
+        }
+        if (known < 3)
+            snprintf(why, 160, "fewer than three of its runs give a value");
+        else
+            snprintf(why, 160, "its values %.6g, %.6g, %.6g do not settle", finest_values[0], finest_values[1],
+                     finest_values[2]);
+    }
+    brunt_free(cases);
+    return wanted;
+}
+
+int32_t brunt_study_reference_case(const brunt_study *study, int32_t m) {
+    return study->measures[m].reference == BRUNT_REFERENCE_FINEST ? finest(study, m) : -1;
+}
+
+const char *brunt_study_unit(const brunt_study *study, int32_t m) {
+    for (int32_t i = 0; i < study->case_count; i++)
+        if (study->cases[i].unit[m][0]) return study->cases[i].unit[m];
+    return "";
 }
 
 // --- fits
@@ -124,7 +173,7 @@ double brunt_study_plateau(const brunt_study *study, int32_t line, int32_t m) {
         for (int32_t i = 0; i < count; i++) {
             const brunt_study_case *c = &study->cases[cases[i]];
             h[n] = brunt_study_resolution(study, c), e[n] = c->error[m];
-            if (h[n] > 0 && e[n] > 0 && isfinite(e[n])) n++;
+            if (h[n] > 0 && e[n] > 0 && isfinite(e[n]) && !brunt_study_is_limit(study, c, m)) n++;
         }
         level = level_from(h, e, n);
     }
@@ -141,6 +190,7 @@ brunt_study_fit brunt_study_price(const brunt_study *study, int32_t line, int32_
         for (int32_t i = 0; i < study->case_count; i++) {
             const brunt_study_case *c = &study->cases[i];
             if (!finished(c) || !(line < 0 ? c->front[m] : c->line == line)) continue;
+            if (brunt_study_is_limit(study, c, m)) continue;
             error[n] = c->error[m], wall[n++] = c->wall_median;
         }
         fit = brunt_study_line_fit(error, wall, n);

@@ -1,6 +1,6 @@
 // What plots and report both have to know of an analysed study, and how they write numbers.
 //
-// Within io only: study_view.c, study_plot.c, study_report.c.
+// Within io only: study_view.c, study_fit.c, study_plot.c, study_report.c, study_table.c.
 #pragma once
 
 #include <stddef.h>
@@ -26,6 +26,17 @@ brunt_study_truth brunt_study_truth_of(const brunt_study *study, const brunt_stu
 double brunt_study_scale_of(const brunt_study *study, const brunt_study_case *c, int32_t measure);
 // Uncertainty of the reference in the units of errors; 0 when none is known. An error below it says nothing.
 double brunt_study_resolvable(const brunt_study *study, const brunt_study_case *c, int32_t measure);
+
+// Whether the result is itself a limit to which the values settled: its error is then the uncertainty of that limit, a bound that no fit may use.
+bool brunt_study_is_limit(const brunt_study *study, const brunt_study_case *c, int32_t measure);
+// Whether the error is not above what the reference can tell (marked by ?).
+bool brunt_study_doubtful(const brunt_study *study, const brunt_study_case *c, int32_t measure);
+// Whether a limit of this line is wanted as reference and there is none; `why` reads behind "has no limit: ".
+bool brunt_study_lacks_limit(const brunt_study *study, int32_t line, int32_t measure, char why[160]);
+// Index of the case that is the reference itself, or -1.
+int32_t brunt_study_reference_case(const brunt_study *study, int32_t measure);
+// Unit of the measure; "": no run has said it.
+const char *brunt_study_unit(const brunt_study *study, int32_t measure);
 
 // Resolution below which the error of a line no longer falls; NAN: it goes on falling, or there are too few points to tell.
 double brunt_study_plateau(const brunt_study *study, int32_t line, int32_t measure);

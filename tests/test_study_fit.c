@@ -231,6 +231,42 @@ START_TEST(limits_serve_as_reference) {
 }
 END_TEST
 
+// Values that settle without being monotone: the finest is the limit, the last change its uncertainty and its error.
+START_TEST(settled_values_have_a_limit) {
+    made_study(&study, methods, 3, cells, 3, NAN);
+    static const double values[3][3] = {{-15.38, -16.97, -16.94}, {1, 3, 1}, {1, 2, 2}};
+    for (int32_t l = 0; l < 3; l++)
+        for (int32_t v = 0; v < 3; v++) made_result(&study, l, v, values[l][v], pow(8, v));
+    study.measures[0].reference = BRUNT_REFERENCE_RICHARDSON;
+    brunt_study_analyse(&study);
+    const brunt_study_line *settled = &study.lines[0], *still = &study.lines[2];
+    ck_assert(settled->settled[0] && isnan(settled->observed_order[0]));
+    ck_assert_double_eq(settled->limit[0], -16.94);
+    ck_assert_double_eq_tol(settled->limit_uncertainty[0], 0.03, 1e-12);
+    const brunt_study_case *finest = made_at(&study, 0, 2);
+    ck_assert_double_eq_tol(finest->error[0], 0.03 / 16.94, 1e-12);
+    ck_assert_double_eq_tol(made_at(&study, 0, 0)->error[0], 1.56 / 16.94, 1e-12);
+    ck_assert(brunt_study_doubtful(&study, finest, 0) && !brunt_study_doubtful(&study, made_at(&study, 0, 0), 0));
+    ck_assert_int_eq(settled->order[0].points, 2); // the finest's own error is a bound, not a distance
+    ck_assert(isnan(brunt_study_plateau(&study, 0, 0)));
+    char why[160];
+    ck_assert(!brunt_study_lacks_limit(&study, 0, 0, why));
+    ck_assert(isnan(study.lines[1].limit[0]) && !study.lines[1].settled[0]);
+    ck_assert(brunt_study_lacks_limit(&study, 1, 0, why));
+    ck_assert_str_eq(why, "its values 1, 3, 1 do not settle");
+    // A last change of zero is no certainty: nobody is without error.
+    ck_assert(still->settled[0]);
+    ck_assert_double_eq(still->limit_uncertainty[0], 1);
+    for (int32_t v = 0; v < 3; v++) ck_assert_double_gt(made_at(&study, 2, v)->error[0], 0);
+    made_failure(&study, 1, 0, "lost");
+    brunt_study_analyse(&study);
+    ck_assert(brunt_study_lacks_limit(&study, 1, 0, why));
+    ck_assert_str_eq(why, "fewer than three of its runs give a value");
+    study.measures[0].reference = BRUNT_REFERENCE_FINEST; // a limit is not asked for
+    ck_assert(!brunt_study_lacks_limit(&study, 1, 0, why));
+}
+END_TEST
+
 // Three points give limit, slope and intercept exactly: of the order's uncertainty they say nothing.
 START_TEST(own_limit_takes_a_degree_of_freedom) {
     made_study(&study, methods, 1, cells, 3, 2);
@@ -468,6 +504,65 @@ START_TEST(report_knows_levelling_off_and_noise) {
 }
 END_TEST
 
+START_TEST(report_names_settled_and_missing_limits) {
+    made_study(&study, methods, 3, cells, 3, NAN);
+    fill_line(0, 2, 0.1, 2, 1);
+    static const double values[2][3] = {{-15.38, -16.97, -16.94}, {1, 3, 1}};
+    for (int32_t l = 0; l < 2; l++)
+        for (int32_t v = 0; v < 3; v++) made_result(&study, l + 1, v, values[l][v], pow(8, v));
+    study.measures[0].reference = BRUNT_REFERENCE_RICHARDSON;
+    const char *text = report();
+    SAYS(text, "FLIP \\| 'x'\\_y has no limit: its values 1, 3, 1 do not settle; it is not among these.\n");
+    ck_assert(strstr(text, "has no limit") < strstr(text, "What the next digit costs"));
+    SAYS(text, "| limit [m] |");
+    SAYS(text, "| -16.94 ± 0.03 (settled, not extrapolated) |");
+    SAYS(text, "Settled, not extrapolated, are the limits of FEM: ");
+    SAYS(text, " | -16.94 | 0.177 % ? |");
+    DOES_NOT_SAY(text, "FEM has no limit");
+    strcpy(study.measures[0].of, methods[1]);
+    text = report();
+    SAYS(text, "the limit of FEM, -16.94 ± 0.03 m, its finest result: the values have settled");
+    DOES_NOT_SAY(text, "has no limit");
+    strcpy(study.measures[0].of, methods[2]);
+    text = report();
+    SAYS(text, "No finished run has an error");
+    SAYS(text, "FLIP \\| 'x'\\_y has no limit: its values 1, 3, 1 do not settle.\n");
+}
+END_TEST
+
+START_TEST(report_counts_the_reference) {
+    made_study(&study, methods, 2, cells, 3, NAN);
+    fill_line(0, 2, 0.4, 1, 0.01), fill_line(1, 2, 1.6, 1, 0.01);
+    study.measures[0].reference = BRUNT_REFERENCE_FINEST;
+    made_at(&study, 0, 2)->units *= 2;
+    study.accuracies[3] = 0.001, study.accuracy_count = 4;
+    const char *text = report();
+    SAYS(text, "Beside the reference, no other method reaches it.");
+    DOES_NOT_SAY(text, "No other method");
+    SAYS(text, "- **0.1 %**: not reached beside the reference; ");
+    SAYS(text, "\nThe reference is APIC, quadratic, h = 2 mm (640 ms) itself.\n");
+}
+END_TEST
+
+// Nothing is said of times, bits, pictures or units that are not there.
+START_TEST(report_of_nothing_is_short) {
+    made_study(&study, methods, 2, cells, 3, 1);
+    for (int32_t i = 0; i < study.case_count; i++) {
+        made_failure(&study, study.cases[i].line, study.cases[i].value[1], "lost");
+        study.cases[i].unit[0][0] = 0;
+    }
+    study.repeats = 3;
+    const char *text = report();
+    SAYS(text, "No run has come to its end.");
+    SAYS(text, "| length | error |");
+    DOES_NOT_SAY(text, "median");
+    DOES_NOT_SAY(text, "to the bit");
+    DOES_NOT_SAY(text, "gnuplot");
+    DOES_NOT_SAY(text, "Pictures");
+    DOES_NOT_SAY(text, "timed once");
+}
+END_TEST
+
 static bool here(const char *name) { return access(path_of(name), F_OK) == 0; }
 
 static bool plot(void) {
@@ -509,6 +604,61 @@ START_TEST(pictures_are_drawn) {
         if (kind == 3) SAYS(content("study.gp"), " 2.5e-17 "); // where zeros are drawn
         if (drawn && kind == 0) SAYS(content("study.svg"), "It's \"50 %\" of `date` \\n {x}^2_a &amp; &lt;b");
         tear_down();
+    }
+}
+END_TEST
+
+START_TEST(pictures_say_what_they_leave_out) {
+    made_study(&study, methods, 3, cells, 4, NAN);
+    fill_line(0, 2, 0.4, 1, 1), fill_line(1, 2, 0.1, 2, 2);
+    for (int32_t v = 0; v < 4; v++) made_result(&study, 2, v, v % 2 ? 4 + v : 1, 1);
+    made_failure(&study, 0, 0, "lost"), made_failure(&study, 1, 0, "lost");
+    study.measures[0].reference = BRUNT_REFERENCE_RICHARDSON;
+    plot();
+    SAYS(content("study.gp"), "× 2 runs failed: APIC quadratic, FEM'");
+    SAYS(content("study.gp"), "set label '' at graph 0.0360, graph 0.9850 point");
+    SAYS(content("study.gp"), "'not shown: FLIP | ''x''_y (no limit)'");
+    SAYS(content("study.gp"), "'A made-up study' at");
+    SAYS(content("study_order.gp"), "'A made-up study (fitted orders)'");
+    SAYS(content("study_cost.gp"), "'A made-up study (fitted exponents)'");
+    study.measures[0].reference = BRUNT_REFERENCE_FINEST;
+    made_at(&study, 1, 3)->units *= 2;
+    plot();
+    SAYS(content("study.gp"), "'reference, not shown: FEM, h = 1 mm'");
+    DOES_NOT_SAY(content("study.gp"), "no limit");
+}
+END_TEST
+
+START_TEST(long_lists_of_failures_are_cut) {
+    static char names[30][48];
+    const char *labels[30];
+    for (int i = 0; i < 30; i++) {
+        snprintf(names[i], sizeof names[i], "method, number %d", i);
+        labels[i] = names[i];
+    }
+    made_study(&study, labels, 30, cells, 3, 1);
+    for (int32_t l = 0; l < 30; l++) {
+        fill_line(l, 1, 0.1, 1, 1);
+        made_failure(&study, l, 2, "lost"), made_failure(&study, l, 1, "lost");
+    }
+    plot();
+    SAYS(content("study.gp"), "× 60 runs failed: method number 0, ");
+    SAYS(content("study.gp"), ", ...'");
+    SAYS(content("study.gp"), "graph 0.9550 point"); // a second row
+}
+END_TEST
+
+// A word of gnuplot's own would be its warning that there is no terminal yet.
+START_TEST(scripts_run_without_a_word) {
+    made_study(&study, methods, 2, cells, 4, 1);
+    fill_line(0, 1, 0.4, 1, 1), fill_line(1, 1, 0.1, 2, 2);
+    if (!plot()) return; // no gnuplot
+    char command[256];
+    static const char *const scripts[] = {"study", "study_order", "study_cost"};
+    for (int i = 0; i < 3; i++) {
+        snprintf(command, sizeof command, "cd '%s' && env -u DISPLAY gnuplot -d %s.gp >said 2>&1", folder, scripts[i]);
+        ck_assert_int_eq(system(command), 0);
+        ck_assert_str_eq(content("said"), "");
     }
 }
 END_TEST
@@ -565,6 +715,7 @@ int main(void) {
     tcase_add_test(errors, errors_follow_the_reference);
     tcase_add_test(errors, finest_run_is_not_accurate_by_definition);
     tcase_add_test(errors, limits_serve_as_reference);
+    tcase_add_test(errors, settled_values_have_a_limit);
     tcase_add_test(errors, own_limit_takes_a_degree_of_freedom);
     tcase_add_test(errors, times_are_medians);
     tcase_add_test(errors, front_has_what_nothing_beats);
@@ -579,6 +730,12 @@ int main(void) {
     tcase_add_test(files, report_doubts_errors_below_the_reference);
     tcase_add_test(files, report_knows_levelling_off_and_noise);
     tcase_add_test(files, pictures_are_drawn);
+    tcase_add_test(files, report_names_settled_and_missing_limits);
+    tcase_add_test(files, report_counts_the_reference);
+    tcase_add_test(files, report_of_nothing_is_short);
+    tcase_add_test(files, pictures_say_what_they_leave_out);
+    tcase_add_test(files, long_lists_of_failures_are_cut);
+    tcase_add_test(files, scripts_run_without_a_word);
     tcase_add_test(files, without_gnuplot_the_scripts_are_there);
     tcase_add_test(files, what_gnuplot_says_is_returned);
     suite_add_tcase(suite, files);
