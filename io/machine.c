@@ -17,15 +17,15 @@ enum { FIELDS = 9 };
 
 // ------------------------------------------------------------------------------------------ the file's name
 
-static void processor_name(char *out, size_t size) {
+void brunt_machine_processor(char out[128]) {
     char line[256];
-    snprintf(out, size, "unknown processor");
+    snprintf(out, 128, "unknown processor");
     FILE *info = fopen("/proc/cpuinfo", "r");
     while (info && fgets(line, sizeof line, info)) {
         const char *value = strchr(line, ':');
         if (strncmp(line, "model name", 10) != 0 || !value) continue;
         value += 1 + strspn(value + 1, " \t");
-        snprintf(out, size, "%.*s", (int)strcspn(value, "\n"), value);
+        snprintf(out, 128, "%.*s", (int)strcspn(value, "\n"), value);
         break;
     }
     if (info) fclose(info);
@@ -40,8 +40,8 @@ static bool is_filler(const char *word) {
 }
 
 void brunt_machine_name(char out[128]) {
-    char processor[100], word[100];
-    processor_name(processor, sizeof processor);
+    char processor[128], word[128];
+    brunt_machine_processor(processor);
     processor[strcspn(processor, "@")] = 0; // the rest is the clock
     size_t length = 0;
     for (const char *p = processor; *p;) {

@@ -28,6 +28,8 @@ typedef struct brunt_machine {
 // that is not one, with its line.
 int brunt_machine_load(brunt_machine *machine, brunt_error *error);
 void brunt_machine_free(brunt_machine *machine);
+// The processor as the system names it, "unknown processor" where it does not.
+void brunt_machine_processor(char out[128]);
 // "amd-epyc-2", as the file is called.
 void brunt_machine_name(char out[128]);
 // The median of a figure, linear between the logarithms of the stored units, constant beyond them; NAN when nothing fits. `threads`: the nearest stored.

@@ -8,6 +8,7 @@
 
 #include "atomic_file.h"
 #include "error.h"
+#include "machine.h"
 #include "memory.h"
 #include "real.h"
 #include "study_view.h"
@@ -69,19 +70,6 @@ static const char *title_of(const brunt_study_measure *m) { return m->title[0] ?
 
 // --- what was run
 
-static void processor_name(char out[128]) {
-    snprintf(out, 128, "an unknown processor");
-    FILE *file = fopen("/proc/cpuinfo", "re");
-    char line[256];
-    while (file && fgets(line, sizeof line, file)) {
-        const char *colon = strchr(line, ':');
-        if (strncmp(line, "model name", 10) || !colon) continue;
-        snprintf(out, 128, "%.*s", (int)strcspn(colon + 2, "\n"), colon + 2);
-        break;
-    }
-    if (file) fclose(file);
-}
-
 static int32_t count_of(const brunt_study *study, brunt_study_status status) {
     int32_t count = 0;
     for (int32_t i = 0; i < study->case_count; i++) count += study->cases[i].status == status;
@@ -127,7 +115,7 @@ static void write_noise(FILE *out, const brunt_study *study) {
 
 static void write_setting(FILE *out, const brunt_study *study) {
     char processor[128];
-    processor_name(processor);
+    brunt_machine_processor(processor);
     const char *file = strrchr(study->scene, '/');
     fprintf(out, "Scene ");
     put(out, file ? file + 1 : study->scene);
