@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "memory.h"
 #include "scene.h"
 
 static const char small_scene_text[] =
@@ -146,4 +147,30 @@ static inline int small_main(Suite *suite) {
     int failed = srunner_ntests_failed(runner), run = srunner_ntests_run(runner);
     srunner_free(runner);
     return failed || !run;
+}
+
+// A file that must be refused begins with lines "# expect: LINE:COLUMN: SUBSTRING", one for each mistake in order; no
+// other mistake may be among the messages, which name the file `path`, and nothing may be left in memory.
+static inline void small_expect_mistakes(const char *name, const char *path, const char *text, const char *messages) {
+    const char *message = messages, *expect = text;
+    int wanted = 0;
+    for (; strncmp(expect, "# expect: ", 10) == 0; expect += strcspn(expect, "\n") + 1, wanted++) {
+        int line, column, used = 0;
+        ck_assert_msg(sscanf(expect, "# expect: %d:%d: %n", &line, &column, &used) == 2 && used > 0,
+                      "%s: bad expect line", name);
+        char place[1200], *substring = strndup(expect + used, strcspn(expect + used, "\n"));
+        snprintf(place, sizeof place, "%s:%d:%d: ", path, line, column);
+        while (*message == ' ') message += strcspn(message, "\n") + 1; // lines of excerpts are indented
+        char *first = strndup(message, strcspn(message, "\n"));
+        bool as_expected = strncmp(first, place, strlen(place)) == 0 && strstr(first, substring);
+        ck_assert_msg(as_expected, "%s: expected %d:%d: %s, got:\n%s", name, line, column, substring, messages);
+        message += strcspn(message, "\n");
+        if (*message) message++;
+        free(first);
+        free(substring);
+    }
+    ck_assert_msg(wanted > 0, "%s expects nothing", name);
+    while (*message == ' ') message += strcspn(message, "\n") + 1;
+    ck_assert_msg(*message == 0, "%s: one mistake too many:\n%s", name, message);
+    ck_assert_msg(brunt_memory_live() == 0, "%s leaks", name);
 }

@@ -13,6 +13,7 @@
 #include <check.h>
 #include <jansson.h>
 
+#include "small_scene.h"
 #include "memory.h"
 #include "scene.h"
 #include "scene_keys.h"
@@ -742,30 +743,7 @@ static void check_bad(const char *name, const char *text, size_t length) {
     int status = brunt_scene_parse(text, length, name, NULL, 0, &s, out);
     fclose(out);
     ck_assert_msg(status == BRUNT_BAD_INPUT, "%s: status %d", name, status);
-    const char *message = out_text, *expect = text;
-    size_t name_length = strlen(name);
-    int wanted = 0;
-    for (; strncmp(expect, "# expect: ", 10) == 0; expect += strcspn(expect, "\n") + 1, wanted++) {
-        int line, column, used = 0;
-        ck_assert_msg(sscanf(expect, "# expect: %d:%d: %n", &line, &column, &used) == 2 && used > 0,
-                      "%s: bad expect line", name);
-        char place[64], *substring = strndup(expect + used, strcspn(expect + used, "\n"));
-        snprintf(place, sizeof place, ":%d:%d: ", line, column);
-        // The next message: the lines of excerpts are indented.
-        while (*message == ' ') message += strcspn(message, "\n") + 1;
-        char *first = strndup(message, strcspn(message, "\n"));
-        bool as_expected = strncmp(first, name, name_length) == 0 &&
-                           strncmp(first + name_length, place, strlen(place)) == 0 && strstr(first, substring);
-        ck_assert_msg(as_expected, "%s: expected %s%s, got:\n%s", name, place, substring, out_text);
-        message += strcspn(message, "\n");
-        if (*message) message++;
-        free(first);
-        free(substring);
-    }
-    ck_assert_msg(wanted > 0, "%s expects nothing", name);
-    while (*message == ' ') message += strcspn(message, "\n") + 1;
-    ck_assert_msg(*message == 0, "%s: one mistake too many:\n%s", name, message);
-    ck_assert_msg(brunt_memory_live() == 0, "%s leaks", name);
+    small_expect_mistakes(name, name, text, out_text);
     free(out_text);
 }
 

@@ -281,29 +281,10 @@ END_TEST
 
 static void check_bad(const char *path, const char *text) {
     brunt_study s;
-    const char *slash = strrchr(path, '/'), *name = slash + 1, *expect = text;
-    int status = read_file(path, &s), wanted = 0;
+    const char *name = strrchr(path, '/') + 1;
+    int status = read_file(path, &s);
     ck_assert_msg(status == BRUNT_BAD_INPUT, "%s: status %d", name, status);
-    const char *message = messages;
-    for (; strncmp(expect, "# expect: ", 10) == 0; expect += strcspn(expect, "\n") + 1, wanted++) {
-        int line, column, used = 0;
-        ck_assert_msg(sscanf(expect, "# expect: %d:%d: %n", &line, &column, &used) == 2 && used > 0,
-                      "%s: bad expect line", name);
-        char place[1200], *substring = strndup(expect + used, strcspn(expect + used, "\n"));
-        snprintf(place, sizeof place, "%s:%d:%d: ", path, line, column);
-        while (*message == ' ') message += strcspn(message, "\n") + 1; // lines of excerpts are indented
-        char *first = strndup(message, strcspn(message, "\n"));
-        bool as_expected = strncmp(first, place, strlen(place)) == 0 && strstr(first, substring);
-        ck_assert_msg(as_expected, "%s: expected %d:%d: %s, got:\n%s", name, line, column, substring, messages);
-        message += strcspn(message, "\n");
-        if (*message) message++;
-        free(first);
-        free(substring);
-    }
-    ck_assert_msg(wanted > 0, "%s expects nothing", name);
-    while (*message == ' ') message += strcspn(message, "\n") + 1;
-    ck_assert_msg(*message == 0, "%s: one mistake too many:\n%s", name, message);
-    ck_assert_msg(brunt_memory_live() == 0, "%s leaks", name);
+    small_expect_mistakes(name, path, text, messages);
 }
 
 START_TEST(broken) {
