@@ -44,7 +44,7 @@ BRUNT_INLINE lanes lanes_min(lanes a, lanes b) { return lanes_select(a < b, a, b
 BRUNT_INLINE lanes lanes_abs(lanes a) { return lanes_max(a, -a); }
 
 BRUNT_INLINE lanes lanes_sqrt(lanes a) {
-    lanes r;
+    lanes r = a; // set whole: compilers that vectorise the loop in parts would call it uninitialised
     for (int l = 0; l < BRUNT_LANES; l++)
 #ifdef BRUNT_FLOAT
         r[l] = __builtin_sqrtf(a[l]);
