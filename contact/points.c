@@ -7,7 +7,6 @@
 #include "threads.h"
 
 enum { GRAIN = 128 };
-static const double TOLERANCE = 1e-2; // of the greatest correction of the first sweep: the rest is met in the next step
 
 void brunt_points_clear(brunt_contact_points *p) { p->point_count = p->entry_count = p->support_count = 0; }
 
@@ -233,7 +232,7 @@ static void book(brunt_contact_points *p) {
     }
 }
 
-int brunt_points_solve(brunt_contact_points *p, int sweeps, int threads, brunt_timer *timer) {
+int brunt_points_solve(brunt_contact_points *p, int sweeps, double tolerance, int threads, brunt_timer *timer) {
     if (!p->point_count) return 0;
     if (transpose(p)) return -1;
     const int64_t chunks = (p->point_count + GRAIN - 1) / GRAIN, groups = (p->support_count + GRAIN - 1) / GRAIN;
@@ -249,7 +248,7 @@ int brunt_points_solve(brunt_contact_points *p, int sweeps, int threads, brunt_t
         double most = 0;
         for (int64_t c = 0; c < chunks; c++) most = fmax(most, p->changed[c]);
         first = fmax(first, most);
-        if (most <= TOLERANCE * first) break;
+        if (most <= tolerance * first) break;
     }
     book(p);
     return sweep;

@@ -88,5 +88,6 @@ int32_t brunt_points_entry(brunt_contact_points *points, int32_t support, double
 int brunt_points_room(brunt_contact_points *points, int32_t point_count, int32_t entry_count);
 // Relative velocity of a point, with the supports' v (old: as they were before the forces).
 void brunt_point_velocity(const brunt_contact_points *points, const brunt_contact_point *point, bool old, double u[3]);
-// Solves with at most `sweeps` sweeps, and books every point. The number of sweeps, or -1: out of memory.
-int brunt_points_solve(brunt_contact_points *points, int sweeps, int threads, brunt_timer *timer);
+// Solves with at most `sweeps` sweeps, until the greatest correction of one is no more than `tolerance` of that of the
+// first; what is left is met in the next step. Books every point. The number of sweeps, or -1: out of memory.
+int brunt_points_solve(brunt_contact_points *points, int sweeps, double tolerance, int threads, brunt_timer *timer);

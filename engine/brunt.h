@@ -293,6 +293,8 @@ typedef struct brunt_contact_def {
     brunt_augury_form form;             // of augury; default affine
     int iterations;                     // most sweeps of a step, or N of the paper form; -1 = the method's own: augury 16 (64 where
                                         // there are membranes), 4, 4, 1 by form; multi-velocity of a mesh with material points 8
+    double tolerance;                   // [-] 0..1 (not 1): sweeps end when the greatest correction of one is no more than this share of the
+                                        // first one's; 0: when nothing changes, or by `iterations`; of form affine; default 0.01
     double cell;                        // [m] of the contact grid; 0 = the mean surface edge (paper: twice that)
     brunt_transfer transfer;            // of the paper form: BRUNT_PIC or BRUNT_APIC (default)
     bool allow_overlap;                 // accept bodies that overlap at the start; default false: an error

@@ -123,8 +123,8 @@ static void fill_augury(scene_reader *reader, scene_node *node) {
         meshes |= reader->scene->world.bodies[i].method != BRUNT_MPM;
     contact->iterations = (int)brunt_real_of(node, "iterations", -1);
     if (!used) {
-        static const char *const keys[] = {"form", "cell", "transfer"};
-        for (int i = 0; i < 3; i++) brunt_refuse_key(reader, node, keys[i], "this belongs to method: augury");
+        static const char *const keys[] = {"form", "cell", "transfer", "tolerance"};
+        for (int i = 0; i < 4; i++) brunt_refuse_key(reader, node, keys[i], "this belongs to method: augury");
         if (!meshes || !at_nodes) brunt_refuse_key(reader, node, "iterations", "this belongs to method: augury");
         return;
     }
@@ -132,6 +132,12 @@ static void fill_augury(scene_reader *reader, scene_node *node) {
     const scene_node *form = brunt_tree_child(node, "form");
     contact->form = (brunt_augury_form)(int)brunt_real_of(node, "form", BRUNT_AUGURY_AFFINE);
     contact->cell = brunt_real_of(node, "cell", 0);
+    if (contact->form == BRUNT_AUGURY_AFFINE) {
+        if (!brunt_tree_child(node, "tolerance")) brunt_add_default(reader, node, "tolerance", "0.01");
+        contact->tolerance = brunt_real_of(node, "tolerance", contact->tolerance);
+    } else if (form && form->good) {
+        brunt_refuse_key(reader, node, "tolerance", "this belongs to form: affine");
+    }
     if (contact->form == BRUNT_AUGURY_PAPER) {
         if (!brunt_tree_child(node, "transfer")) brunt_add_default(reader, node, "transfer", "apic");
     } else if (form && form->good) {

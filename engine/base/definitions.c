@@ -16,7 +16,10 @@ brunt_world_def brunt_world_def_default(void) {
         .flip = 0.99,
         .cfl = 0.5,
         .energy_limit = 0.1,
-        .contact = {.method = BRUNT_CONTACT_MULTI_VELOCITY, .iterations = -1, .transfer = BRUNT_APIC},
+        .contact = {.method = BRUNT_CONTACT_MULTI_VELOCITY,
+                    .iterations = -1,
+                    .tolerance = 0.01,
+                    .transfer = BRUNT_APIC},
     };
 }
 

@@ -146,7 +146,7 @@ static int meet_by_facets(brunt_world *world, const brunt_meeting *m) {
     if (!failed && world->has_augury && world->contact.form == BRUNT_AUGURY_AFFINE)
         failed = brunt_facing_find(m, world->bodies, world->body_count, world->facing, points);
     int sweeps = world->contact.form == BRUNT_AUGURY_AFFINE ? world->contact.iterations : SWEEPS;
-    if (!failed && brunt_points_solve(points, sweeps, m->threads, m->timer) < 0) failed = -1;
+    if (!failed && brunt_points_solve(points, sweeps, world->contact.tolerance, m->threads, m->timer) < 0) failed = -1;
     if (failed) return failed;
     brunt_facing_book_holds(m, world->walls, world->wall_count, world->now.time, world->facing, points);
     brunt_facing_finish(m, world->bodies, world->facing, points);

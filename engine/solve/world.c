@@ -67,6 +67,8 @@ static int check(const brunt_world_def *def, brunt_error *error) {
     if (def->threads < 0 || def->threads > 256) REFUSE("threads: %d is not between 0 (all) and 256", def->threads);
     if (def->body_count < 1) REFUSE("bodies: there is none");
     if (!(def->contact.friction >= 0)) REFUSE("contact.friction: %g is negative", def->contact.friction);
+    if (!(def->contact.tolerance >= 0 && def->contact.tolerance < 1))
+        REFUSE("contact.tolerance: %g is not in [0, 1)", def->contact.tolerance);
     if (def->axisymmetric) {
         int status = check_axis(def, particles, error);
         if (status) return status;
