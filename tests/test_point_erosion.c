@@ -245,6 +245,42 @@ START_TEST(inside_out) {
 }
 END_TEST
 
+// Rings that would come past the axis in one step. Three columns of them rush in through v dt = 1.2 cells, and the
+// grid, at rest on the axis, slows them to v (1 - (1.5 - r)^2 / 2) with the quadratic kernel [cells]: the first, at
+// 0.75, would get to -0.11; the second, at 1.25, gets to 0.09 and stays, though its hoops shrink to a fourteenth. None
+// of them turns inside out in the plane, where the greatest factor of the first is 1 - 0.75 * 1.2.
+START_TEST(rings_that_cross_the_axis) {
+    const double h = 0.1;
+    const bool keep = _i;
+    brunt_world_def def = def_begin(2, h);
+    def.axisymmetric = true, def.transfer = BRUNT_FLIP, def.flip = 1;
+    def_material(&def, "st-venant-kirchhoff", 1000, 1e6, 0.3);
+    brunt_body_def *b = def_box(&def, "pipe", XYZ(0.5 * h, 0, 0), XYZ(2 * h, 5 * h, 0));
+    b->erosion.inverted = true, b->erosion.keep = keep;
+    brunt_world *world = world_take(&def);
+    brunt_particles *p = &world->bodies[0].particles;
+    const int64_t columns = 3, count = brunt_body_particles(world, 0);
+    for (int64_t s = 0; s < p->slots; s++)
+        brunt_field(p, BRUNT_FIELD_velocity)[0][s] = (real)(-1.2 * h / brunt_world_dt(world));
+    world_steps(world, 1);
+    brunt_eroded gone;
+    brunt_body_eroded(world, 0, &gone);
+    ck_assert_int_eq(gone.inverted, count / columns);
+    ck_assert_int_eq(gone.particles, count / columns);
+    ck_assert_int_eq(brunt_body_particles(world, 0), keep ? count : count - count / columns);
+    double *x = world_field(world, 0, "position"), *F = world_field(world, 0, "deformation_gradient");
+    for (int64_t i = 0; i < brunt_body_particles(world, 0); i++) {
+        const double r = x[3 * i] / h;
+        if (r < 0) // stays as mass, with the hoop that it had
+            ck_assert_double_eq_tol(F[9 * i + 8], 1, ROUNDING);
+        else if (r < 0.2)
+            ck_assert_double_eq_tol(F[9 * i + 8], r / 1.25, 10 * ROUNDING);
+    }
+    free(x), free(F);
+    brunt_world_destroy(world);
+}
+END_TEST
+
 // What stays as mass flies on freely, without stress, and is not taken out again.
 START_TEST(kept_points_fly_on) {
     brunt_world_def def = shaken(2, BRUNT_APIC, BRUNT_QUADRATIC, 8);
@@ -434,6 +470,7 @@ int main(void) {
     tcase_add_loop_test(tests, ledger_closes, 0, 2);
     tcase_add_test(tests, torn_bar);
     tcase_add_loop_test(tests, inside_out, 0, 4);
+    tcase_add_loop_test(tests, rings_that_cross_the_axis, 0, 2);
     tcase_add_test(tests, kept_points_fly_on);
     tcase_add_test(tests, failed_material);
     tcase_add_loop_test(tests, empty_body, 0, 2);
