@@ -146,33 +146,55 @@ brunt_fem_sums brunt_fem_audit(brunt_fem_body *fem) {
     return sums;
 }
 
+static double blocks_step(const brunt_fem_body *fem) {
+    double least = INFINITY;
+    for (int32_t b = 0; b < fem->block_count; b++) {
+        if (isnan(fem->report[b].stable_step)) return NAN;
+        least = fmin(least, fem->report[b].stable_step);
+    }
+    return least;
+}
+
+// Elements alone are stable up to dt_e. That is dt^2 omega^2 <= 4 of springs, but with dampers, of rates half a step
+// behind, dt^2 omega^2 + 2 c dt <= 4, which at a share s of dt_e is at most 4 s: with loads 4 dt / dt_e + dt^2 q <= 4.
+double brunt_fem_body_step(const brunt_world *world, int fem) {
+    const double inverse = 1 / blocks_step(&world->fems[fem]), q = brunt_load_frequency(world, fem);
+    return q > 0 ? 2 / (inverse + sqrt(inverse * inverse + q)) : 1 / inverse;
+}
+
 double brunt_fem_stable_step(const brunt_world *world) {
     double least = INFINITY;
-    for (int k = 0; k < world->fem_count; k++)
-        for (int32_t b = 0; b < world->fems[k].block_count; b++) {
-            double step = world->fems[k].report[b].stable_step;
-            if (isnan(step)) return NAN;
-            least = fmin(least, step);
-        }
+    for (int k = 0; k < world->fem_count; k++) {
+        double step = brunt_fem_body_step(world, k);
+        if (isnan(step)) return NAN;
+        least = fmin(least, step);
+    }
     return least;
+}
+
+// The slot of a body's element that has the shortest step, -1: out of memory.
+static int32_t shortest_element(brunt_world *world, const brunt_fem_body *fem) {
+    brunt_fem_single *single = brunt_fem_single_make(fem);
+    const double block_least = blocks_step(fem);
+    double shortest = INFINITY;
+    int32_t slot = -1;
+    for (int32_t b = 0; single && b < fem->block_count; b++) {
+        const brunt_fem_block *block = &fem->block[b];
+        if (!block->count || fem->report[b].stable_step > block_least) continue;
+        for (int32_t s = block->first; s < block->first + block->count; s++) {
+            double step = brunt_fem_single_look(single, fem, s, 0, 0, &world->fem_work[0]).stable_step;
+            if (step < shortest) shortest = step, slot = s;
+        }
+    }
+    brunt_fem_single_free(single);
+    return slot;
 }
 
 brunt_fem_body *brunt_fem_shortest(brunt_world *world, int32_t *slot) {
     const double least = brunt_fem_stable_step(world);
     for (int k = 0; k < world->fem_count; k++)
-        for (int32_t b = 0; b < world->fems[k].block_count; b++) {
-            brunt_fem_body *fem = &world->fems[k];
-            const brunt_fem_block *block = &fem->block[b];
-            if (!block->count || fem->report[b].stable_step > least) continue;
-            brunt_fem_single *single = brunt_fem_single_make(fem);
-            double shortest = INFINITY;
-            for (int32_t s = block->first; single && s < block->first + block->count; s++) {
-                double step = brunt_fem_single_look(single, fem, s, 0, 0, &world->fem_work[0]).stable_step;
-                if (step < shortest) shortest = step, *slot = s;
-            }
-            brunt_fem_single_free(single);
-            return single ? fem : NULL;
-        }
+        if (brunt_fem_body_step(world, k) <= least)
+            return (*slot = shortest_element(world, &world->fems[k])) < 0 ? NULL : &world->fems[k];
     return NULL;
 }
 

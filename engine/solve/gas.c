@@ -144,13 +144,17 @@ int32_t brunt_gas_count(const brunt_world *world) {
     return count;
 }
 
+brunt_gas brunt_gas_now(const brunt_world *world, const brunt_hold *hold, const brunt_group_def *def) {
+    brunt_gas gas = {.volume = brunt_gas_volume(world, hold, def), .inflow = hold->gas_inflow};
+    memcpy(gas.name, world->walls[hold->wall].name, sizeof gas.name);
+    gas.energy = hold->gas_energy * pow(hold->gas_volume / gas.volume, def->gas.gamma - 1);
+    gas.pressure = (def->gas.gamma - 1) * gas.energy / gas.volume;
+    return gas;
+}
+
 void brunt_world_gas(const brunt_world *world, int32_t index, brunt_gas *gas) {
     const brunt_hold *hold = gas_number(world, index);
-    const brunt_group_def *def = &world->groups[hold - world->holds];
-    *gas = (brunt_gas){.volume = brunt_gas_volume(world, hold, def), .inflow = hold->gas_inflow};
-    memcpy(gas->name, world->walls[hold->wall].name, sizeof gas->name);
-    gas->energy = hold->gas_energy * pow(hold->gas_volume / gas->volume, def->gas.gamma - 1);
-    gas->pressure = (def->gas.gamma - 1) * gas->energy / gas->volume;
+    *gas = brunt_gas_now(world, hold, &world->groups[hold - world->holds]);
 }
 
 int64_t brunt_gas_state_count(const brunt_world *world) { return 3 * (int64_t)brunt_gas_count(world); }

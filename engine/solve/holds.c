@@ -40,6 +40,10 @@ static int take_faces(brunt_world *world, brunt_hold *hold, const char *name) {
     hold->force = brunt_alloc((size_t)(hold->node_count + 1) * 3 * sizeof *hold->force);
     hold->face = brunt_alloc((size_t)(faces.count + 1) * sizeof *hold->face);
     int status = hold->place && hold->force && hold->face ? BRUNT_OK : BRUNT_FAILED;
+    if (world->groups[hold - world->holds].action == BRUNT_GROUP_GAS) {
+        hold->area = brunt_alloc((size_t)(hold->node_count + 1) * 3 * sizeof *hold->area);
+        status = hold->area ? status : BRUNT_FAILED;
+    }
     if (fem->bonds) {
         hold->whole = brunt_alloc((size_t)(faces.count + 1) * sizeof *hold->whole);
         hold->owner = brunt_alloc((size_t)(faces.count + 1) * sizeof *hold->owner);
@@ -156,6 +160,7 @@ void brunt_holds_free(brunt_world *world) {
         brunt_free(world->holds[k].owner);
         brunt_free(world->holds[k].force);
         brunt_free(world->holds[k].place);
+        brunt_free(world->holds[k].area);
     }
     for (int k = 0; k < world->group_count && world->groups; k++) brunt_free(world->groups[k].table.points);
     for (int k = 0; k < world->fem_count && world->holder; k++) brunt_free(world->holder[k]);

@@ -429,16 +429,17 @@ static int erode(brunt_world *world, double dt, brunt_error *error) {
     return status;
 }
 
-// What has the stable step that is too short: an element, or a body of material points.
-static int fail_short(brunt_world *world, double stable, brunt_error *error) {
-    char reason[200];
-    snprintf(reason, sizeof reason, "the stable step has become %.4g s, time.least_step is %.4g s", stable,
-             world->least_step);
+// For what has the stable step that is too short: an element, with the loads on its body, or a body of material points.
+static int fail_short(brunt_world *world, double stable, brunt_error *error, const char *why) {
     int32_t slot;
     const bool by_element = !world->body_count || brunt_fem_stable_step(world) <= stable * (1 + 1e-9);
     brunt_fem_body *fem = by_element ? brunt_fem_shortest(world, &slot) : NULL;
-    if (fem) return fail_element(world, fem, slot, error, reason);
-    return fail(world, NULL, error, reason);
+    if (!fem) return fail(world, NULL, error, why);
+    char reason[240];
+    const bool by_load = brunt_load_frequency(world, (int)(fem - world->fems)) * stable * stable > 2; // half of 4
+    snprintf(reason, sizeof reason, "%s%s", why,
+             by_load ? ", most of it by gas or pressure on the body's surface" : "");
+    return fail_element(world, fem, slot, error, reason);
 }
 
 // The step that is due and what acts in it; everything else is of the passes.
@@ -449,12 +450,12 @@ typedef struct step {
 static int refuse_step(brunt_world *world, double dt, brunt_error *error) {
     const double stable = world->now.next_dt / world->cfl;
     if (!(dt > 0)) return fail(world, NULL, error, "the end has been reached, there is no step to take");
-    if (stable < world->least_step) return fail_short(world, stable, error);
-    if (world->fixed_step > 0 && dt > stable) {
-        char reason[160];
-        snprintf(reason, sizeof reason, "the fixed step of %.6g s is larger than the stable one, %.6g s", dt, stable);
-        return fail(world, NULL, error, reason);
-    }
+    char reason[160];
+    snprintf(reason, sizeof reason, "the stable step has become %.4g s, time.least_step is %.4g s", stable,
+             world->least_step);
+    if (stable < world->least_step) return fail_short(world, stable, error, reason);
+    snprintf(reason, sizeof reason, "the fixed step of %.6g s is larger than the stable one, %.6g s", dt, stable);
+    if (world->fixed_step > 0 && dt > stable) return fail_short(world, stable, error, reason);
     if (world->now.time + dt == world->now.time)
         return fail(world, NULL, error, "the stable step has become too small to advance the time");
     return BRUNT_OK;

@@ -750,6 +750,7 @@ brunt_world *brunt_world_create(const brunt_world_def *def, brunt_error *error) 
     if (!status) status = brunt_surfaces_make(world, def, error);
     if (!status && brunt_fem_tasks(world)) status = brunt_fail(error, BRUNT_FAILED, "out of memory");
     if (!status) status = brunt_damping_make(world, error);
+    if (!status) status = brunt_load_step_make(world, error);
     for (int m = 0; !status && m < world->mirror_count; m++) { // node numbers count from where the grid starts
         int axis = world->mirrors[m].axis;
         world->mirrors[m].node -= (int32_t)round((world->bodies[0].grid.origin[axis] - def->origin[axis]) / def->cell);
@@ -776,6 +777,7 @@ void brunt_world_destroy(brunt_world *world) {
     brunt_grid_surfaces_free(world->grid_surfaces);
     brunt_holds_free(world);
     brunt_damping_free(world);
+    brunt_load_step_free(world);
     brunt_erosion_free(world);
     for (int k = 0; world->fems && k < world->fem_count; k++) brunt_fem_free(&world->fems[k]);
     for (size_t t = 0; t < sizeof world->fem_work / sizeof world->fem_work[0]; t++)

@@ -60,6 +60,7 @@ typedef struct brunt_hold {
     double *force;  // node_count x 3 [N] of this step, for loads
     int32_t *place; // of each node of the body: its place in the group + 1; for loads
     double gas_energy, gas_volume, gas_inflow; // [J], [m^3], [J] so far: of enclosed gas
+    double *area;                              // node_count x 3: room for the stable step of gas; NULL of others
 } brunt_hold;
 
 // A run of nodes or a block of elements of one of the finite-element bodies: a task.
@@ -95,6 +96,7 @@ struct brunt_world {
     brunt_fem_sums *fem_sums; // a node task each
     real **drag;              // of each body with damping: node_count x 4 [N]
     brunt_damping_sums *damping_sums; // a node task each
+    double **load_rate;       // of each body with loads that follow its surface: node_count, room for its stable step
     uint8_t (**holder)[3];    // of each body, node and component: the hold that prescribes it + 1
     brunt_hold *holds;
     int hold_count;
@@ -210,7 +212,9 @@ void brunt_fem_drift_all(brunt_world *world, const double gravity[3], double kic
 brunt_fem_body *brunt_fem_elements_all(brunt_world *world, double dt, int32_t *bad, const char **reason);
 // Mass, momenta and kinetic energy of a body as it is.
 brunt_fem_sums brunt_fem_audit(brunt_fem_body *fem);
-// Least stable step of the blocks as they last reported [s].
+// Stable step of a body [s]: that of its blocks as they last reported, and of the loads that follow its surface.
+double brunt_fem_body_step(const brunt_world *world, int fem);
+// Least of the bodies [s].
 double brunt_fem_stable_step(const brunt_world *world);
 // The body and slot of the element that has it; NULL without elements, or without memory to look.
 brunt_fem_body *brunt_fem_shortest(brunt_world *world, int32_t *slot);
@@ -258,6 +262,16 @@ double brunt_gas_push(brunt_world *world, brunt_hold *hold, const brunt_group_de
 int64_t brunt_gas_state_count(const brunt_world *world);
 void brunt_gas_state_get(const brunt_world *world, double *out);
 void brunt_gas_state_set(brunt_world *world, const double *in);
+
+// What is there now.
+brunt_gas brunt_gas_now(const brunt_world *world, const brunt_hold *hold, const brunt_group_def *def);
+
+// --- load_step.c: the stable step of gas and of pressure that follows
+// After the groups are made.
+int brunt_load_step_make(brunt_world *world, brunt_error *error);
+void brunt_load_step_free(brunt_world *world);
+// Bound of the squared frequency that they add to a body's [1/s^2], as everything is now; 0 without them.
+double brunt_load_frequency(const brunt_world *world, int fem);
 
 // --- holds.c: named groups
 int brunt_holds_make(brunt_world *world, const brunt_world_def *def, brunt_error *error);
