@@ -8,6 +8,7 @@
 // through the cells, whatever the step. PIC throws the spin away each step, FLIP adds increments filtered by a lumped
 // mass: neither keeps it.
 #include "def_world.h"
+#include "hard_case.h"
 
 enum { CASES = 2 * 3 * 3 };
 typedef struct choice {
@@ -157,6 +158,11 @@ static void run_meeting(int i, int count) {
     brunt_world *world = world_take(&def);
     world_until(world, soft(c) ? 0.03 : 0.08);
     judge_momentum(count == 3 ? "three bodies" : "four bodies", c, world);
+    hard_case("C09", world_momentum(world).linear_drift, ROUNDING, ROUNDING,
+              "%d bodies at a node, %s: drift of momentum", count, name_of(c));
+    if (keeps_angular(c))
+        hard_case("C09", world_momentum(world).angular_drift, ROUNDING, ROUNDING,
+                  "%d bodies at a node, %s: drift of angular momentum", count, name_of(c));
     double pushed = 0;
     for (int p = 0; p < brunt_pair_count(world); p++)
         pushed += fabs(world_pair(world, p).impulse[0]) + fabs(world_pair(world, p).impulse[1]);
@@ -175,6 +181,7 @@ START_TEST(order_of_bodies) {
     static const int orders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
     choice c = {2 + _i, BRUNT_QUADRATIC, BRUNT_APIC};
     uint64_t first = 0;
+    int others = 0;
     for (int o = 0; o < 6; o++) {
         brunt_world_def def = meeting(c, 3);
         brunt_body_def bodies[3];
@@ -186,9 +193,10 @@ START_TEST(order_of_bodies) {
         ck_assert_double_ne(world_pair(world, 0).impulse[0], 0);
         ck_assert_uint_ne(brunt_world_hash(world), start);
         if (o == 0) first = brunt_world_hash(world);
-        ck_assert_msg(brunt_world_hash(world) == first, "order %d gives other bits", o);
+        others += brunt_world_hash(world) != first;
         brunt_world_destroy(world);
     }
+    hard_case("C09", others, 0, 0, "orders of three bodies, %dD, of six, that give other bits", c.dimension);
 }
 END_TEST
 
@@ -256,7 +264,7 @@ START_TEST(contact_never_pulls) {
     printf("  %s: impulse %.3f of an inelastic one, least force %.1e of the greatest, last push at %.3f s\n",
            name_of(c), last / possible, least / most, time_of_last);
     ck_assert_double_gt(most, 0);
-    ck_assert_double_ge(least, -1e-3 * most);
+    hard_case("C25", -least / most, 1e-3, 1e-3, "two blocks that bounce, %s: greatest pull, of the push", name_of(c));
     if (!soft(c)) {
         ck_assert_double_ge(last, 0.98 * possible);
         ck_assert_double_lt(time_of_last, 0.45); // and they have let go of each other

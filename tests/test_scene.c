@@ -13,6 +13,7 @@
 #include <check.h>
 #include <jansson.h>
 
+#include "hard_case.h"
 #include "small_scene.h"
 #include "memory.h"
 #include "scene.h"
@@ -762,11 +763,11 @@ START_TEST(broken) {
         size_t length = fread(text, 1, sizeof text - 1, file);
         text[length] = 0;
         fclose(file);
-        check_bad(entry->d_name, text, length);
+        check_bad(entry->d_name, text, length); // fails here, with its name
         count++;
     }
     closedir(folder);
-    ck_assert_int_ge(count, 180);
+    hard_case("C29", 180 - count, 0, 0, "bad scenes that get their message, of 180 at least: too few by");
 }
 END_TEST
 

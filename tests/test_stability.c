@@ -2,6 +2,7 @@
 // Hard cases of a single body: free flight, empty nodes, spin, extreme strain, far places, time steps, threads.
 //
 // What is asserted is what holds; where a bound is wider than one would wish, the measured number stands beside it.
+#include "hard_case.h"
 #include "hard_world.h"
 
 static const brunt_kernel kernels[] = {BRUNT_LINEAR, BRUNT_QUADRATIC, BRUNT_CUBIC};
@@ -50,8 +51,8 @@ START_TEST(lone_particles_fly_ballistically) {
         brunt_world_destroy(world);
     }
     printf("  lone particles: velocity off by %.1e m/s, sideways %.1e m\n", worst, furthest);
-    ck_assert_double_le(worst, 30 * ROUNDING);
-    ck_assert_double_le(furthest, ROUNDING);
+    hard_case("C11", worst, 30 * ROUNDING, 30 * ROUNDING, "velocity of one alone in its cell that falls, off by [m/s]");
+    hard_case("C11", furthest, ROUNDING, ROUNDING, "way sideways of it [m]");
 }
 END_TEST
 
@@ -160,9 +161,10 @@ START_TEST(nodes_with_almost_no_mass_do_no_harm) {
     printf("  almost empty nodes: fastest %.3f m/s of 1 at the start, energy differs by %.1e, momentum by %.1e, at "
            "-1e-12 h by %.1e\n",
            fastest, inside, drift[0], drift[1]);
-    ck_assert_double_le(fastest, 1.1);
-    ck_assert_double_le(inside, 1e-3);
-    ck_assert_double_le(fmax(drift[0], drift[1]), 100 * ROUNDING); // though such a node may move at 1e11 m/s
+    hard_case("C12", fastest, 1.1, 1.1, "fastest particle, of the fastest at the start");
+    hard_case("C12", inside, 1e-3, 1e-3, "energy, by distance from the face of a cell, relative");
+    hard_case("C12", fmax(drift[0], drift[1]), 100 * ROUNDING, 100 * ROUNDING,
+              "drift of momentum"); // though such a node may move at 1e11 m/s
 
     // With the linear kernel the force on such a node does not vanish with its mass: no step is stable for sure. All 36
     // runs come to their end; what is asked is that one that does not says where.
@@ -257,7 +259,9 @@ START_TEST(walls_hold_every_way_out) {
             }
     printf("  thrown at walls: %d of 78 runs with the linear kernel stopped; momentum lost %.1e, the others %.1e\n",
            stopped, lost_linear, lost);
-    ck_assert_double_le(lost, 100 * ROUNDING);
+    hard_case("C13", lost, 100 * ROUNDING, 100 * ROUNDING,
+              "momentum lost to walls, beside what they report; quadratic and cubic kernel");
+    hard_case("C13", stopped / 78.0, 0, 0.2, "share of runs that stop with the linear kernel");
 }
 END_TEST
 
@@ -338,11 +342,11 @@ START_TEST(step_size_hardly_matters) {
         outcome o = bounce(&def, 0);
         compare("cfl", cfl[i], &middle, &o, &worst);
     }
-    ck_assert_double_le(worst.impulse, 0.01);
-    ck_assert_double_le(worst.velocity, 0.02); // 1.3 % at 0.1
+    hard_case("C18", worst.impulse, 0.01, 0.01, "points, cfl 0.1 to 0.9: impulse, relative");
+    hard_case("C18", worst.velocity, 0.01, 0.02, "points, cfl 0.1 to 0.9: speed, relative");
     // Each transfer takes some energy of what the grid does not resolve, the more steps the more: 5.5 % of it more at
     // 0.1 than at 0.5.
-    ck_assert_double_le(worst.kinetic, 0.08);
+    hard_case("C18", worst.kinetic, 0.01, 0.08, "points, cfl 0.1 to 0.9: kinetic energy, of all at the start");
     def = def_bounce(0.1, XYZ(0, 0, 0));
     def.cfl = 1;
     outcome o = bounce(&def, 0);
@@ -414,9 +418,9 @@ START_TEST(grid_place_and_direction_hardly_matter) {
     }
     // Asked were 1e-3; found 1.6e-3 of the impulse, 2.9e-3 of the speed, 3.6e-3 of the energy, with 20 particles a
     // side.
-    ck_assert_double_le(part.impulse, 0.004);
-    ck_assert_double_le(part.velocity, 0.006);
-    ck_assert_double_le(part.kinetic, 0.008);
+    hard_case("C23", part.impulse, 1e-3, 0.004, "shift by eighths of a cell: impulse, relative");
+    hard_case("C23", part.velocity, 1e-3, 0.006, "shift by eighths of a cell: speed, relative");
+    hard_case("C23", part.kinetic, 1e-3, 0.008, "shift by eighths of a cell: kinetic energy, of all at the start");
 
     // A quarter turn, and a shift by whole cells, change where the blocks of cells cut the bodies. The time step is
     // found block by block, and shows it: 3e-4.
@@ -431,11 +435,12 @@ START_TEST(grid_place_and_direction_hardly_matter) {
     cells = bounce_turned(whole, false, step);
     compare("step given, turned by degrees", 90, &here, &turned, &fixed);
     compare("step given, shifted by cells", 14, &here, &cells, &fixed);
-    ck_assert_double_le(largest(&fixed), ROUNDING > 1e-8 ? 0.02 : 1e-10);
+    hard_case("C23", largest(&fixed), ROUNDING > 1e-8 ? 0.02 : 1e-12, ROUNDING > 1e-8 ? 0.02 : 1e-10,
+              "quarter turn, whole cells; step given");
     if (sizeof(real) == 8) { // floats are 6 cm apart there
         outcome far = {0}, o = bounce_turned(distant, false, step);
         compare("step given, shifted by m", 1e6, &here, &o, &far);
-        ck_assert_double_le(largest(&far), 1e-6);
+        hard_case("C23", largest(&far), 1e-6, 1e-6, "a million metres away");
     }
 }
 END_TEST
@@ -539,7 +544,8 @@ START_TEST(compression_to_a_twentieth) {
         ck_assert(runs[i].sound);
         ck_assert_double_le(runs[i].low, 0.08);
         ck_assert_double_gt(runs[i].internal, 0);
-        ck_assert_double_le(fabs(runs[i].error), 0.06);
+        hard_case("C26", fabs(runs[i].error), 0.02, 0.06, "pressed to a twentieth, %s: error of the energy",
+                  i < 2 ? "rubber" : "solid with Mie-Gruneisen");
     }
     // This equation of state ends at J = 1 - 1/s = 1/3. It hardens without bound before, and the step follows: the run
     // creeps towards the end of its time, with sound values, and does not get there.
@@ -575,7 +581,8 @@ START_TEST(expansion_to_the_twentyfold) {
                      // it collapses
             ck_assert_int_eq(x.status, BRUNT_OK);
             ck_assert_double_gt(x.low, 20);
-            ck_assert_double_le(fabs(x.error), 0.06);
+            hard_case("C26", fabs(x.error), 0.02, 0.06, "gas drawn out twentyfold, kernel %d: error of the energy",
+                      i % 3);
         }
     }
 }
@@ -600,6 +607,7 @@ START_TEST(threads_and_restart_keep_every_bit) {
     static const int threads[] = {1, 2, 3, 7};
     uint64_t hash = 0;
     double impulse[3] = {0};
+    int others = 0;
     for (int i = 0; i < 8; i++) {
         brunt_world_def def = def_balls(threads[i % 4]);
         brunt_world *world = world_from(&def);
@@ -616,11 +624,12 @@ START_TEST(threads_and_restart_keep_every_bit) {
         brunt_force f = world_pair(world, 0);
         if (i == 0) hash = brunt_world_hash(world), memcpy(impulse, f.impulse, sizeof impulse);
         ck_assert_double_gt(fabs(f.impulse[0]), 0);
-        ck_assert_msg(brunt_world_hash(world) == hash, "%d threads, restart %d", threads[i % 4], i >= 4);
+        others += brunt_world_hash(world) != hash;
         for (int k = 0; k < 3; k++) ck_assert_double_eq(f.impulse[k], impulse[k]);
         brunt_world_destroy(world);
         brunt_world_def_free(&def);
     }
+    hard_case("C28", others, 0, 0, "1, 2, 3, 7 threads, with a restart and without: runs of eight with other bits");
 }
 END_TEST
 

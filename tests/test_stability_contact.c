@@ -1,6 +1,7 @@
 // Labels: stability
 // Hard cases of bodies that meet: friction at its limits, bodies that touch or overlap at the start, sudden and
 // chattering contact, plates thinner than a cell.
+#include "hard_case.h"
 #include "hard_world.h"
 
 // ------------------------------------------------------------------------------------------ friction at its limits
@@ -68,7 +69,7 @@ START_TEST(without_friction_nothing_drags) {
     sliding wall = slide(false, 0, 3), slab = slide(true, 0, 3);
     report_slide("wall", 0, &wall);
     report_slide("slab", 0, &slab);
-    ck_assert_double_eq(wall.tangential, 0);
+    hard_case("C14", fabs(wall.tangential), 0, 0, "no friction, on a plane: tangential impulse [N s]");
     ck_assert_double_eq(wall.friction_work, 0);
     ck_assert_double_ge(wall.pull, 0);
     ck_assert_double_ge(wall.slip, 0.8 * wall.way); // the ramp of gravity takes its share
@@ -76,7 +77,8 @@ START_TEST(without_friction_nothing_drags) {
     // Between bodies the impulse is along the normal that nodes see; at the block's edges it leans: a friction of 4e-4.
     ck_assert_double_le(fabs(slab.friction_work), 1e-6 * fmax(1, ROUNDING * 1e9));
     ck_assert_double_ge(slab.pull, 0);
-    ck_assert_double_le(fabs(slab.tangential), 2e-3 * slab.normal);
+    hard_case("C14", fabs(slab.tangential / slab.normal), 1e-14, 2e-3,
+              "no friction, points on points: tangential impulse of the normal one");
 }
 END_TEST
 
@@ -88,7 +90,8 @@ START_TEST(much_friction_holds) {
             report_slide(on ? "slab" : "wall", mu[i], &s);
             // On a wall the particles are held, 1e-5 of the way is left. Between bodies the nodes are: the half cell
             // between the rows that are compared shears by rho a H/mu h/2 = 1e-4 m, twice that as the load swings.
-            ck_assert_double_le(s.slip, on ? 4e-4 : 3e-5 * s.way);
+            hard_case("C14", s.slip / s.way, 1e-6, on ? 4e-4 / s.way : 3e-5,
+                      "friction %g, points on %s: slip of the way", mu[i], on ? "points" : "a plane");
             ck_assert_double_lt(s.tangential, 0);
             ck_assert_double_le(s.back, 0.1); // N, of some 500: no reversal
             ck_assert_double_ge(s.pull, 0);
@@ -106,6 +109,7 @@ END_TEST
 START_TEST(bodies_that_touch_or_overlap_at_rest_stay_quiet) {
     static const double overlap[] = {0, 0.01, 0.1, 0.5};
     brunt_error error = {0};
+    double quiet = 0;
     for (int kernel = 2; kernel <= 3; kernel++)
         for (int i = 0; i < 4; i++)
             for (int tilted = 0; tilted < 2; tilted++) {
@@ -125,11 +129,11 @@ START_TEST(bodies_that_touch_or_overlap_at_rest_stay_quiet) {
                 def.contact.allow_overlap = overlap[i] > 0;
                 brunt_world *world = world_take(&def);
                 world_steps(world, 200);
-                ck_assert_double_eq(fastest_particle(world, 0), 0);
-                ck_assert_double_eq(fastest_particle(world, 1), 0);
-                for (int k = 0; k < 3; k++) ck_assert_double_eq(world_pair(world, 0).impulse[k], 0);
+                quiet = fmax(quiet, fmax(fastest_particle(world, 0), fastest_particle(world, 1)));
+                for (int k = 0; k < 3; k++) quiet = fmax(quiet, fabs(world_pair(world, 0).impulse[k]));
                 brunt_world_destroy(world);
             }
+    hard_case("C17", quiet, 0, 0, "points that touch or overlap by 0.01, 0.1, 0.5 h: speed [m/s] or impulse [N s]");
 }
 END_TEST
 
@@ -159,10 +163,12 @@ START_TEST(bodies_that_touch_or_overlap_bounce_without_gain) {
                 ck_assert_double_le(fastest, 1 + 100 * ROUNDING);
             } else { // a free face doubles the speed of what arrives there: 1 m/s becomes 2; 2.01 was measured
                 if (i == 0) impulse = f.impulse[0];
-                ck_assert_double_le(fastest, 2.1);
+                hard_case("C17", fastest, 2, 2.1, "points that overlap by %g h and meet at 1 m/s: fastest [m/s]",
+                          overlap[i]);
                 ck_assert_double_eq_tol(f.impulse[0], impulse, 0.05 * impulse);
             }
-            ck_assert_double_le(gained, 100 * ROUNDING);
+            hard_case("C17", gained, 100 * ROUNDING, 100 * ROUNDING, "points that overlap by %g h and %s: energy made",
+                      overlap[i], way > 0 ? "meet" : "part");
             brunt_world_destroy(world);
         }
 }
@@ -195,7 +201,9 @@ START_TEST(a_wall_that_starts_suddenly_pushes_once) {
             printf("  wall %+d kernel %d: velocity %.4f m/s, momentum less impulse %.1e, pull %.1e N, on or off %d "
                    "times, energy error %.1e\n",
                    way, k, b.velocity[0], most, low, changes, world_energy(world).error_relative);
-            ck_assert_double_le(most, 10 * ROUNDING); // every impulse is counted once
+            hard_case("C19", most, 10 * ROUNDING, 10 * ROUNDING,
+                      "wall that starts %s, %s kernel: momentum beside the impulse booked",
+                      way > 0 ? "towards a block" : "away", k == 2 ? "quadratic" : "cubic");
             ck_assert_double_ge(low, 0);
             if (way < 0) {
                 ck_assert_double_eq(b.velocity[0], 0);
@@ -221,7 +229,10 @@ START_TEST(bodies_that_part_are_not_held) {
         brunt_world *world = world_take(&def);
         world_steps(world, 100);
         for (int a = 0; a < 3; a++) ck_assert_double_eq(world_pair(world, 0).impulse[a], 0);
-        for (int b = 0; b < 2; b++) ck_assert_double_eq_tol(world_sums(world, b).velocity[0], b ? 1 : -1, ROUNDING);
+        double held = 0;
+        for (int b = 0; b < 2; b++) held = fmax(held, fabs(world_sums(world, b).velocity[0] - (b ? 1 : -1)));
+        hard_case("C25", held, 1e-3, ROUNDING, "points that part, %s kernel: change of speed in 100 steps",
+                  k == 2 ? "quadratic" : "cubic");
         brunt_world_destroy(world);
     }
 }
@@ -267,6 +278,7 @@ START_TEST(thin_plates_are_not_passed) {
         error = fmax(error, fabs(world_energy(world).error_relative));
         brunt_world_destroy(world);
     }
+    hard_case("C24", fmax(0, -nearest), 0, 0, "how far particles of a ball came past a plate of h/4, of 36 runs [h]");
     printf("  thin plates: particles of ball and plate come as near as %.3f h, energy error %.1e\n", nearest, error);
     ck_assert_double_le(error, 0.08); // 6 % where two fast balls squeeze the plate
 }

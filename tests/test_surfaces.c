@@ -2,6 +2,7 @@
 // Contact of finite-element bodies by the facing facets of each other (augury, all its forms), through the public
 // interface: what is kept, what does not get through, what is left alone, and hard cases. tests/README.md has the table.
 #include "../bench/studies/penetration.h"
+#include "hard_case.h"
 #include "hard_world.h"
 
 typedef enum form { AFFINE, SMOOTH, SURFACE, PAPER, FORMS } form;
@@ -344,8 +345,11 @@ START_TEST(touching_at_the_start_stays_quiet) {
     brunt_world_def def = touching((form)(_i % FORMS), _i / FORMS ? BRUNT_HEX8 : BRUNT_TET4, 0);
     brunt_world *world = world_take(&def);
     world_steps(world, 200);
-    for (int b = 0; b < 2; b++) ck_assert_double_eq(body_speed(world, b), 0);
-    for (int k = 0; k < 3; k++) ck_assert_double_eq(world_pair(world, 0).impulse[k], 0);
+    double most = 0;
+    for (int b = 0; b < 2; b++) most = fmax(most, body_speed(world, b));
+    for (int k = 0; k < 3; k++) most = fmax(most, fabs(world_pair(world, 0).impulse[k]));
+    hard_case("C07", most, 0, 0, "nodes on nodes, %s, %s: speed [m/s] or impulse [N s]", form_name[_i % FORMS],
+              _i / FORMS ? "hex8" : "tet4");
     brunt_world_destroy(world);
 }
 END_TEST
@@ -368,6 +372,10 @@ START_TEST(overlap_makes_no_energy) {
     brunt_energy e = world_energy(world);
     printf("%s, overlap %g h, %g m/s: made %.2e J, pressing them would take %.2e J, fastest %.2f m/s\n", form_name[f],
            overlap / h, speed, most, pressed, fastest);
+    if (f == AFFINE) {
+        hard_case("C17", fmax(0, most) / pressed, 1, 1,
+                  "meshes, overlap %g h, %g m/s: energy made [of what pressing takes]", overlap / h, speed);
+    }
     ck_assert_double_lt(most, ROUNDING * (e.initial + pressed)); // far below what pressing them would take
     ck_assert_double_lt(fabs(e.error), 1e-3 * fmax(e.initial, pressed));
     brunt_world_destroy(world);
@@ -404,7 +412,11 @@ START_TEST(fast_bodies_do_not_pass) {
         brunt_world_destroy(world);
     }
     printf("%s, %g edges a step: stopped %.1f to %.1f kg, depth %.4f h\n", form_name[f], way, least, most, deepest / h);
-    if (way < 1) ck_assert_double_lt(deepest, (f == AFFINE ? 0.1 : 0.2) * h);
+    if (way < 1 && f == AFFINE) {
+        hard_case("C03", deepest / h, 0.1, 0.1, "meshes, %g of an edge in a step: depth [edges]", way);
+    } else if (way < 1) {
+        ck_assert_double_lt(deepest, 0.2 * h);
+    }
     if (f == AFFINE) ck_assert_double_lt(most / least, 1.2); // the others look no further than their cells
     if (way < 1) ck_assert_double_gt(least, 0.3 * most);
 }
@@ -491,7 +503,10 @@ START_TEST(pressure_through_unequal_meshes) {
     press(f, fine_below, &row, &one, &force);
     printf("%s, edges 10:1, fine mesh %s: rows %.2f %%, element %.1f %%, force %.2f %%\n", form_name[f],
            fine_below ? "below" : "above", 100 * row, 100 * one, 100 * force);
-    if (f == AFFINE) ck_assert_double_lt(one, 0.02);
+    if (f == AFFINE)
+        hard_case("C22", one, 0.02, 0.02, "%s",
+                  fine_below ? "edges 10:1, the fine mesh below: stress of one element, relative"
+                             : "edges 10:1, the fine mesh above: stress of one element, relative");
     ck_assert_double_lt(force, 0.05);
 }
 END_TEST
