@@ -4,8 +4,9 @@
 // nothing is smeared over a cell: contact closes at zero gap, edges and corners keep their place, and nothing acts on
 // what does not touch.
 //
-// The grid only finds: cells hold the facets within reach of them. It is made anew when the facets have moved by the
-// margin it was made with; what is found does not depend on it, so its cell size, and a restart, change no bit.
+// The grid only finds: cells hold the facets within reach of them. It is made anew when the facets, or the
+// bodies that look for them, have moved by the margin it was made with; what is found does not depend on it, so its
+// cell size, and a restart, change no bit.
 #pragma once
 
 #include "points.h"

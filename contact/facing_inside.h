@@ -58,8 +58,9 @@ struct brunt_facing {
     int32_t n[3];
     int32_t *cell_first, *cell_face;
     size_t cell_first_capacity, cell_face_capacity;
-    double (*made_x)[3]; // skin nodes then
-    size_t made_x_capacity;
+    double (*made_x)[3]; // skin nodes then ...
+    bounds *made_box;    // ... and boxes, bodies with facets first
+    size_t made_x_capacity, made_box_capacity;
 
     uint8_t *found; // of each skin node: how many hits ...
     size_t found_capacity;

@@ -20,6 +20,7 @@ void brunt_facing_free(brunt_facing *f) {
                      f->cell_first,
                      f->cell_face,
                      f->made_x,
+                     f->made_box,
                      f->found,
                      f->hits,
                      f->last,

@@ -92,12 +92,19 @@ static void lay_cells(const brunt_meeting *m, brunt_facing *f) {
     }
 }
 
+// Where a body's box is kept: bodies with facets, then bodies of material points.
+static int32_t box_number(const brunt_skin *s, const bounds *box) {
+    return box->fem >= 0 ? box->fem : s->fem_count + box->mpm;
+}
+
 static int make_cells(const brunt_meeting *m, brunt_facing *f) {
     const brunt_skin *s = m->skin;
     f->made_range = 1.25 * f->range;
     lay_cells(m, f);
     size_t cells = (size_t)f->n[0] * (size_t)f->n[1] * (size_t)f->n[2];
-    if (RESERVE(f, cell_first, cells + 3) || RESERVE(f, made_x, s->node_count + 1)) return -1;
+    if (RESERVE(f, cell_first, cells + 3) || RESERVE(f, made_x, s->node_count + 1) ||
+        RESERVE(f, made_box, f->box_count + 1))
+        return -1;
     memset(f->cell_first, 0, (cells + 3) * sizeof *f->cell_first);
     visit_cells(m, f, false);
     for (size_t c = 2; c <= cells + 1; c++) f->cell_first[c] += f->cell_first[c - 1];
@@ -108,8 +115,22 @@ static int make_cells(const brunt_meeting *m, brunt_facing *f) {
         memcpy(f->made_x + s->node_range[k], s->x + s->node_range[k],
                (size_t)(s->node_range[k + 1] - s->node_range[k]) * sizeof *s->x);
     }
+    for (int32_t b = 0; b < f->box_count; b++) f->made_box[box_number(s, &f->box[b])] = f->box[b];
     f->made = true;
     return 0;
+}
+
+// Whether all that look in are where the cells were made for: what they share then is within the room (three ranges, of
+// which looking takes one), and the facets in their range are listed (two ranges from where they were).
+static bool boxes_hold(const brunt_meeting *m, const brunt_facing *f) {
+    for (int32_t b = 0; b < f->box_count; b++) {
+        const bounds *now = &f->box[b], *then = &f->made_box[box_number(m->skin, now)];
+        if (f->near_first[b + 1] == f->near_first[b]) continue;
+        for (int a = 0; a < 3; a++)
+            if (now->low[a] < then->low[a] - f->made_range || now->high[a] > then->high[a] + f->made_range)
+                return false;
+    }
+    return true;
 }
 
 // Whether the cells still hold all that may be near: nothing has moved further than they allow, and the same bodies are
@@ -126,7 +147,7 @@ static bool cells_hold(const brunt_meeting *m, const brunt_facing *f, uint64_t p
             if (d2 > square) return false;
         }
     }
-    return true;
+    return boxes_hold(m, f);
 }
 
 // A number that differs when other bodies are near or active.
