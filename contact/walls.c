@@ -23,7 +23,7 @@
 enum { MAX_SWEEPS = 16 };
 static const double SWEEP_TOLERANCE =
     1e-2; // of the greatest correction of velocity in the first sweep: what is left is met again next step
-static const double NEAR = 0.5; // cells: a particle moves less than that in a step
+static const double NEAR = 0.5; // cells: how far from a plane particles are looked at, if nothing moves faster
 
 // A node under touching particles.
 typedef struct support {
@@ -141,6 +141,12 @@ static void particle_velocity(const brunt_wall_workspace *w, const touch *t, int
     }
 }
 
+static double fastest(const brunt_body *body) {
+    double speed = 0;
+    for (int32_t b = 0; b < body->grid.block_count; b++) speed = fmax(speed, (double)body->report[b].speed);
+    return speed;
+}
+
 // Particles that the plane would catch in this step.
 static int find_touches(brunt_wall_workspace *w, brunt_body *body, const brunt_wall *walls, int index,
                         const brunt_mirror *mirrors, int mirror_count, double time, double dt) {
@@ -157,23 +163,24 @@ static int find_touches(brunt_wall_workspace *w, brunt_body *body, const brunt_w
         wall_speed += plane->normal[a] * plane->velocity[a];
         half += fabs(plane->normal[a]) * (0.5 * grid->side + 2) * h;
     }
+    const double near = fmax(NEAR * h, (fastest(body) + fabs(wall_speed)) * dt);
     for (int32_t b = 0; b < grid->block_count; b++) {
         const brunt_block *block = &grid->blocks[b];
         double middle = -offset;
         for (int a = 0; a < dim; a++)
             middle += plane->normal[a] * (grid->origin[a] + h * (block->coord[a] + 0.5) * grid->side);
-        if (middle > half + (NEAR + 4) * h && !brunt_total_lagrangian(p)) continue;
+        if (middle > half + near + 4 * h && !brunt_total_lagrangian(p)) continue;
         for (int64_t s = block->first; s < block->first + block->count; s++) {
             double distance = -offset, square = 0;
             for (int a = 0; a < dim; a++) distance += plane->normal[a] * (double)x[a][s];
-            if (distance > (NEAR + 4) * h) continue;
+            if (distance > near + 4 * h) continue;
             for (int c = 0; c < dim; c++) {
                 double t = 0;
                 for (int r = 0; r < dim; r++) t += (double)F[r * stride + c][s] * plane->normal[r];
                 square += t * t;
             }
             double gap = distance - (double)reach[s] * sqrt(square);
-            if (gap > NEAR * h) continue;
+            if (gap > near) continue;
             if (brunt_reserve((void **)&w->touches, &w->touches_capacity, (size_t)(w->touch_count + 1) * sizeof(touch),
                               (size_t)w->touch_count * sizeof(touch)))
                 return -1;

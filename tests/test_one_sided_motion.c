@@ -283,6 +283,32 @@ START_TEST(column_falls) {
 }
 END_TEST
 
+// How far the lowest centre is behind a plane after the first blow [cells]. The plane goes most of a cell in a step, or
+// it and the block together.
+static double first_blow(bool both, double gap) {
+    const double v = both ? 20 : 40; // [m/s] two and four times the wave speed
+    brunt_world_def def = def_begin(2, H);
+    def.cfl = 0.9;
+    def_material(&def, "neo-hookean", 1000, 1e5, 0.3);
+    brunt_body_def *b = def_box(&def, "block", XYZ(0, gap, 0), XYZ(8 * H, gap + 10 * H, 0));
+    if (both) def_velocity(b, 0, -v, 0);
+    brunt_plane_def *p = def_plane(&def, XYZ(0, 0, 0), XYZ(0, 1, 0), BRUNT_SEPARATE, 0);
+    p->velocity[1] = v;
+    brunt_world *world = world_take(&def);
+    while (world_wall(world, 0).impulse[1] == 0) world_steps(world, 1);
+    const double depth = v * brunt_world_time(world) - end_of(world, &(motion){.dim = 2}, 0, false);
+    brunt_world_destroy(world);
+    return depth / H;
+}
+
+START_TEST(fast_plane) {
+    double deepest = -INFINITY;
+    for (int k = 0; k < 10; k++) deepest = fmax(deepest, first_blow(_i == 1, (5 + 0.1 * k) * H));
+    printf("a fast plane%s: centres %.4f cells behind it after the first blow\n", _i ? " that is met" : "", deepest);
+    ck_assert(deepest < 0);
+}
+END_TEST
+
 // The cells of the run that goes on were made for where the block was long ago, those of the other one just now.
 START_TEST(restart_on_the_way) {
     motion m = {.dim = 2, .a = POINTS, .b = MESH, .b_moves = _i == 1, .method = BRUNT_CONTACT_AUGURY};
@@ -310,7 +336,8 @@ int main(void) {
     ADD(on_the_grid_3d);
     ADD(cylinder_rolls);
     ADD(column_falls);
-    TCase *looped = tcase_create("restart_on_the_way");
+    TCase *looped = tcase_create("fast_plane");
+    tcase_add_loop_test(looped, fast_plane, 0, 2);
     tcase_add_loop_test(looped, restart_on_the_way, 0, 2);
     suite_add_tcase(suite, looped);
     return suite_main(suite);
