@@ -15,6 +15,18 @@ extern "C" {
 
 #define BRUNT_VERSION "0.1.0"
 
+// Numbers of a definition are at most so large [SI], so that their products are numbers as well; what must be above 0 is at least so
+// large, and nothing else but 0 is smaller than normal numbers are. INFINITY and NAN stand where it is said that they do.
+#ifdef BRUNT_FLOAT
+#define BRUNT_GREATEST_NUMBER 1e18
+#define BRUNT_LEAST_NUMBER 1e-18
+#define BRUNT_LEAST_NORMAL 1.2e-38
+#else
+#define BRUNT_GREATEST_NUMBER 1e30
+#define BRUNT_LEAST_NUMBER 1e-30
+#define BRUNT_LEAST_NORMAL 2.3e-308
+#endif
+
 // The engine is built for double or for float; the symbols differ, so that a mismatch fails to link.
 #ifdef BRUNT_FLOAT
 #define brunt_world_create brunt_world_create_float

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "brunt.h"
 #include "error.h"
 
 void gmsh_complain(gmsh_cursor *c, const char *at, const char *format, ...) {
@@ -131,6 +132,8 @@ double gmsh_real(gmsh_cursor *c, const char *what) {
         }
         c->at = end;
     }
+    if (fabs(value) > BRUNT_GREATEST_NUMBER)
+        gmsh_complain(c, at, "%s is %g, at most %g is wanted", what, value, BRUNT_GREATEST_NUMBER);
     return c->status ? 0 : value;
 }
 

@@ -126,15 +126,13 @@ static bool check_number(scene_reader *reader, scene_node *node, const scene_key
         brunt_tree_complain(tree, node, "'%.60s' is not a whole number", node->text);
         return false;
     }
-#ifdef BRUNT_FLOAT
-    if (fabs(value) > 3.4028234e38) {
-        brunt_tree_complain(tree, node, "'%.60s' is too large a number for a single precision build", node->text);
-        return false;
-    }
-#endif
     if (!within(row, value)) {
         describe_range(row, want, sizeof want);
         brunt_tree_complain(tree, node, "'%.60s' is out of range, %s is wanted", node->text, want);
+        return false;
+    }
+    if (!brunt_usable_number(value, row->min == 0 && row->min_open, why, sizeof why)) {
+        brunt_tree_complain(tree, node, "'%.60s' is %s", node->text, why);
         return false;
     }
     node->value[0] = value;

@@ -26,10 +26,7 @@ void *brunt_entries_for(scene_reader *reader, int count, size_t size) {
     return memory;
 }
 
-bool brunt_nonzero(const double v[3]) {
-    double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    return length > 0 && isfinite(length);
-}
+bool brunt_nonzero(const double v[3]) { return v[0] != 0 || v[1] != 0 || v[2] != 0; }
 
 void brunt_scene_warn(scene_reader *reader, const char *format, ...) {
     if (!reader->warnings) return;

@@ -93,8 +93,9 @@ static int32_t value_labelled(study_reader *r, const scene_node *node, int32_t a
 
 static void copy_name(char *out, size_t size, const char *text) { snprintf(out, size, "%.*s", (int)size - 1, text); }
 
-// A number with any unit. NOT_ONE: it does not begin like a number.
-typedef enum number_state { NOT_ONE, NUMBER, BAD_UNIT } number_state;
+// A number with any unit. NOT_ONE: it does not begin like a number. BAD_NUMBER: its unit is none, or it is too large or
+// small; `why` says so.
+typedef enum number_state { NOT_ONE, NUMBER, BAD_NUMBER } number_state;
 
 static number_state read_number(study_reader *r, const char *text, double *value, char base[BRUNT_UNIT_LENGTH],
                                 char *why, size_t size) {
@@ -103,7 +104,12 @@ static number_state read_number(study_reader *r, const char *text, double *value
     if (brunt_read_number(text, &number, &rest)) return NOT_ONE;
     while (*rest == ' ') rest++;
     strcpy(base, "1");
-    if (*rest && !brunt_units_to_si(r->base.units, rest, &number, base, why, size)) return BAD_UNIT;
+    if (*rest && !brunt_units_to_si(r->base.units, rest, &number, base, why, size)) return BAD_NUMBER;
+    char reach[160];
+    if (!brunt_usable_number(number, false, reach, sizeof reach)) {
+        snprintf(why, size, "'%.60s' is %s", text, reach);
+        return BAD_NUMBER;
+    }
     *value = number;
     return NUMBER;
 }
@@ -315,7 +321,7 @@ static void take_number(study_reader *r, const scene_node *child, int32_t a, bru
     number_state state =
         child->kind == SCENE_SCALAR ? read_number(r, child->text, &value->number, base, why, sizeof why) : NOT_ONE;
     if (state == NOT_ONE && child->key) state = read_number(r, child->key, &value->number, base, why, sizeof why);
-    if (resolution && state == BAD_UNIT) brunt_tree_complain(tree_of(r), child, "%s", why);
+    if (resolution && state == BAD_NUMBER) brunt_tree_complain(tree_of(r), child, "%s", why);
     if (resolution && state == NOT_ONE)
         brunt_tree_complain(tree_of(r), child,
                             "a number is wanted (as the value or as its label): a resolution has one");
@@ -471,7 +477,7 @@ static void fill_reference(study_reader *r, const scene_node *node, brunt_study_
     } else {
         char base[BRUNT_UNIT_LENGTH], why[320];
         number_state state = read_number(r, text, &measure->exact, base, why, sizeof why);
-        if (state == BAD_UNIT) brunt_tree_complain(tree_of(r), node, "%s", why);
+        if (state == BAD_NUMBER) brunt_tree_complain(tree_of(r), node, "%s", why);
         if (state != NOT_ONE) return;
         const char *nearest = brunt_nearest_name(text, words, 3);
         brunt_tree_complain(tree_of(r), node,

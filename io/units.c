@@ -11,6 +11,7 @@
 
 #include <udunits2.h>
 
+#include "brunt.h"
 #include "memory.h"
 
 struct brunt_units {
@@ -313,6 +314,17 @@ const char *brunt_read_number(const char *text, double *value, const char **rest
     if (*value == 0 && nonzero) return "too small a number for a double";
     *rest = p;
     return NULL;
+}
+
+bool brunt_usable_number(double value, bool positive, char *why, size_t size) {
+    const double least = positive ? BRUNT_LEAST_NUMBER : BRUNT_LEAST_NORMAL;
+    if (fabs(value) > BRUNT_GREATEST_NUMBER)
+        snprintf(why, size, "too large a number, at most %g is wanted in SI units", BRUNT_GREATEST_NUMBER);
+    else if (value != 0 && fabs(value) < least)
+        snprintf(why, size, "too small a number, %sat least %g is wanted in SI units", positive ? "" : "0 or ", least);
+    else
+        return true;
+    return false;
 }
 
 void brunt_format_number(double value, char out[32]) {

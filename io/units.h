@@ -28,5 +28,8 @@ void brunt_units_describe(brunt_units *units, const char *unit, char *out, size_
 // Reads a whole number literal at the start of `text` (decimal, optional exponent) and sets `*rest` behind it. Returns
 // NULL, or what is wrong with it in a few words. Infinities, NaN and numbers a double cannot hold are refused.
 const char *brunt_read_number(const char *text, double *value, const char **rest);
+// Says in `why` that a number in SI units cannot be computed with ("too large a number, at most 1e+30 is wanted in SI
+// units"); `positive`: where it must be above 0. True when it can be.
+bool brunt_usable_number(double value, bool positive, char *why, size_t size);
 // Shortest decimal form that reads back to the same double.
 void brunt_format_number(double value, char out[32]);

@@ -80,13 +80,15 @@ static int check_numbers(const brunt_mesh *mesh, brunt_error *error) {
         if (out) note(&bad, e);
     }
     if (bad.count) return fail_list(error, "element", &bad, "given with node numbers that the mesh does not have");
-    list off = {0};
+    list off = {0}, far = {0};
     for (int32_t n = 0; n < mesh->node_count; n++) {
         const double *x = mesh->nodes[n];
         if (!isfinite(x[0]) || !isfinite(x[1]) || !isfinite(x[2])) note(&bad, n);
+        if (fmax(fabs(x[0]), fmax(fabs(x[1]), fabs(x[2]))) > BRUNT_GREATEST_NUMBER) note(&far, n);
         if (brunt_element_dimension(mesh->kind) == 2 && x[2] != 0) note(&off, n);
     }
     if (bad.count) return fail_list(error, "node", &bad, "at a place that is not a finite number");
+    if (far.count) return fail_list(error, "node", &far, "too far from the origin to be computed with");
     if (off.count) return fail_list(error, "node", &off, "off the x-y plane: a mesh of two dimensions has z = 0");
     return BRUNT_OK;
 }

@@ -449,8 +449,12 @@ typedef struct step {
 
 static int refuse_step(brunt_world *world, double dt, brunt_error *error) {
     const double stable = world->now.next_dt / world->cfl;
-    if (!(dt > 0)) return fail(world, NULL, error, "the end has been reached, there is no step to take");
+    if (world->now.time >= world->end)
+        return fail(world, NULL, error, "the end has been reached, there is no step to take");
     char reason[160];
+    snprintf(reason, sizeof reason,
+             "the stable step is %.4g s: something moves, or its waves run, too fast to be computed with", stable);
+    if (!(dt > 0)) return fail(world, NULL, error, reason);
     snprintf(reason, sizeof reason, "the stable step has become %.4g s, time.least_step is %.4g s", stable,
              world->least_step);
     if (stable < world->least_step) return fail_short(world, stable, error, reason);
