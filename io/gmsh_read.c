@@ -613,6 +613,7 @@ int gmsh_file_read(const char *path, gmsh_file *file, brunt_error *error) {
     gmsh_cursor c = {
         .file = file, .at = file->bytes, .end = file->bytes + file->size, .section = "the file", .error = error};
     bool seen[SECTIONS] = {false};
+    if (file->size >= 3 && !memcmp(file->bytes, "\xEF\xBB\xBF", 3)) c.at += 3; // a byte order mark of UTF-8
     gmsh_skip_blank(&c);
     if (c.at == c.end || *c.at != '$')
         gmsh_complain(&c, c.at, "not a mesh of gmsh: it does not begin with $MeshFormat");

@@ -186,6 +186,7 @@ static int by_place(const void *a, const void *b) {
 // The line and a caret under its column. Long lines are cut around the column; columns count characters, not bytes.
 static void excerpt(const scene_tree *tree, int line, int column, FILE *out) {
     const char *p = tree->source, *end = tree->source + tree->length;
+    if (tree->length >= 3 && !memcmp(p, "\xEF\xBB\xBF", 3)) p += 3; // a byte order mark has no column
     for (int l = 1; l < line && p < end; p++)
         if (*p == '\n') l++;
     if (p >= end) return;

@@ -189,9 +189,11 @@ static void place(builder *b, scene_node *node) {
     brunt_tree_append(parent, node);
 }
 
+// An escape ("\\0") can make what no text of ours holds: it would end there.
 static char *token_text(builder *b, struct fy_token *token) {
     size_t length = 0;
     const char *text = token ? fy_token_get_text(token, &length) : NULL;
+    if (text && memchr(text, 0, length)) complain(b, "a NUL character (\\0) in text");
     return brunt_tree_text(b->tree, text ? text : "", text ? length : 0);
 }
 
@@ -352,7 +354,10 @@ static void on_event(builder *b, struct fy_event *event, int *documents) {
     }
 }
 
+static const char byte_order_mark[] = "\xEF\xBB\xBF"; // of UTF-8: it may stand first, and says nothing
+
 scene_node *brunt_tree_parse(scene_tree *tree, const char *text, size_t length, const char *option) {
+    if (!option && length >= 3 && !memcmp(text, byte_order_mark, 3)) text += 3, length -= 3;
     builder b = {.tree = tree, .option = option, .line = 1, .column = 1};
     int messages = tree->message_count;
     if (!readable(&b, text, length)) return NULL;
