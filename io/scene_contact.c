@@ -3,6 +3,8 @@
 
 #include <string.h>
 
+#include "definitions.h"
+
 static const char *const methods[] = {"none", "multi-velocity", "augury", "tied"}; // by brunt_contact_method
 
 static bool has_mesh(const scene_reader *reader, const char *name) {
@@ -146,6 +148,20 @@ static void fill_augury(scene_reader *reader, scene_node *node) {
     contact->transfer = brunt_real_of(node, "transfer", 1) == 0 ? BRUNT_PIC : BRUNT_APIC;
 }
 
+// Names may hold the hyphen that columns of pairs are joined by.
+static void check_pair_columns(scene_reader *reader) {
+    const brunt_world_def *world = &reader->scene->world;
+    int32_t first[2], second[2];
+    if (!brunt_pairs_of_one_name(world, first, second)) return;
+    const brunt_body_def *body = world->bodies;
+    const scene_node *node = brunt_tree_child(brunt_tree_child(reader->tree->root, "bodies"), body[second[0]].name);
+    brunt_tree_complain_key(reader->tree, node,
+                            "the pair of '%s' and '%s' has the name of that of '%s' and '%s' in the history, "
+                            "contact.%s-%s: another name is wanted",
+                            body[second[0]].name, body[second[1]].name, body[first[0]].name, body[first[1]].name,
+                            body[first[0]].name, body[first[1]].name);
+}
+
 void brunt_fill_contact(scene_reader *reader) {
     brunt_world_def *world = &reader->scene->world;
     brunt_contact_def *contact = &world->contact;
@@ -168,4 +184,5 @@ void brunt_fill_contact(scene_reader *reader) {
     fill_pairs(reader, brunt_tree_child(node, "pairs"));
     if (contact->method == BRUNT_CONTACT_MULTI_VELOCITY && method && method->good) check_multi_velocity(reader, method);
     fill_augury(reader, node);
+    check_pair_columns(reader);
 }

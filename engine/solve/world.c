@@ -15,7 +15,6 @@
 #include "world.h"
 
 static const double ON_GRID_LINE = 1e-6; // cells: how far off a mirror plane may be and still count as on the line
-enum { MOST_PAIRS = 64 };                // with an account each
 static const double TOUCHING = 1e-6;     // spacings: bodies closer than that touch, they do not overlap
 
 // ------------------------------------------------------------------------------------------ definition
@@ -546,8 +545,8 @@ static int make_pairs(brunt_world *world, const brunt_world_def *def, const brun
                       brunt_error *error) {
     const int n = def->body_count;
     world->pair_of = brunt_alloc((size_t)n * (size_t)n * sizeof *world->pair_of);
-    const bool crowded = n * (n - 1) / 2 > MOST_PAIRS;
-    size_t room = crowded ? MOST_PAIRS : (size_t)n * (size_t)n / 2;
+    const bool crowded = n * (n - 1) / 2 > BRUNT_MOST_PAIRS;
+    size_t room = crowded ? BRUNT_MOST_PAIRS : (size_t)n * (size_t)n / 2;
     for (int q = 0; q < def->contact.pair_count; q++) room += !strcmp(def->contact.pairs[q].a, def->contact.pairs[q].b);
     world->pairs = brunt_alloc((room + 1) * sizeof *world->pairs);
     if (!world->pair_of || !world->pairs) return brunt_fail(error, BRUNT_FAILED, "out of memory");
