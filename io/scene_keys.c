@@ -83,7 +83,7 @@ const scene_key brunt_scene_table[] = {
     {"bodies.*.erosion.step", SCENE_REAL, "s", OPTIONAL, POSITIVE, NULL, 0, false, "fem, membrane: elements go whose stable step falls below it (default: none)"},
     {"bodies.*.erosion.inverted", SCENE_WORD, NULL, "error", ANY, "error|erode", 0, false, "what is turned inside out stops the run, or goes"},
     {"bodies.*.erosion.debris", SCENE_WORD, NULL, "remove", ANY, "remove|keep", 0, false, "mass without elements leaves, with an account; or flies on: loose nodes as free particles in contact, material points without stress, which want transfer: {flip: 1} (apic stretches a lone one without end)"},
-    {"bodies.*.damping", SCENE_REAL, "1/s", "0", NOT_NEGATIVE, NULL, 0, true, "fem, membrane: a force of - damping m v on every node"},
+    {"bodies.*.damping", SCENE_REAL, "1/s", "0", NOT_NEGATIVE, NULL, 0, true, "fem, membrane: a force of - damping m v on every node; exact, whatever the step"},
     {"bodies.*.mass_scaling", SCENE_REAL, "s", OPTIONAL, POSITIVE, NULL, 0, false, "fem, membrane: elements whose stable step is less are made denser until it is not (default: none are)"},
     {"bodies.*.place", SCENE_ENTRIES, NULL, OPTIONAL, NONE, "moves of the shape or mesh, one after the other"},
     {"bodies.*.place[].translate", SCENE_VECTOR, "m", OPTIONAL, NONE, "a shift"},

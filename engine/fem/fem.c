@@ -273,6 +273,7 @@ static int make_body(const brunt_body_def *def, const brunt_material *material, 
                                                   : isnan(def->contact_thickness)     ? (real)def->thickness
                                                                                       : (real)def->contact_thickness,
                              .damping = def->damping,
+                             .drag_mass = 1,
                              .kind = mesh->kind,
                              .element = (axisymmetric ? brunt_axisymmetric_elements : brunt_elements)[mesh->kind],
                              .material = *material,

@@ -87,6 +87,8 @@ struct brunt_fem_body {
     real thickness;            // [m] of membranes, undeformed; 0 of others
     real contact_thickness;    // [m] of membranes, as contact sees it; 0 of others
     double damping;            // [1/s] of the mass
+    double drag_mass; // [-] of a kick: mass that impulses of contact and holders meet, over that of the node; 1 without
+                      // damping
     const brunt_element *element;
     brunt_element_kind kind;
     brunt_material material;

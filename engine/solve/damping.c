@@ -1,7 +1,12 @@
-// Mass-proportional damping of finite-element bodies: a force of -damping m v on every node, at the mean of the
-// velocities before and after the kick (before contact), which makes it of second order and stable for any damping. It
-// is a load like others, but what it takes is booked as viscosity, and the impulse that the ground behind the dashpots
-// bears as external.
+// Mass-proportional damping of finite-element bodies: m dv/dt = F - c m v, exactly for the mean force F of a kick K:
+//   v' = e v + phi K F / m,   e = exp(-c K), phi = (1 - e) / (c K)
+// so that any damping slows and none turns a velocity round; with 2 / omega as step it is stable whatever c is (the
+// product of its two factors is e, and c dt / 2 >= tanh(c dt / 2)). Impulses of contact and of holders are part of F,
+// though not known before the kick: what they change of a velocity is phi J / m, so that they meet a mass m / phi
+// (drag_mass times the node's), and drag takes its share of them. What it did in all follows from v and v' alone:
+// the impulse m (v' - v) - m (v' - e v) / phi, booked as viscosity at the mean velocity, as all work is, and as
+// external to the momentum, which the ground behind the dashpots bears.
+#include <math.h>
 #include <string.h>
 
 #include "error.h"
@@ -12,7 +17,7 @@
 typedef struct job {
     brunt_world *world;
     double dt;
-    const double *gravity; // NULL at the end
+    const double *gravity;
 } job;
 
 int brunt_damping_make(brunt_world *world, brunt_error *error) {
@@ -37,51 +42,79 @@ void brunt_damping_free(brunt_world *world) {
     brunt_free(world->damping_sums);
 }
 
-// Half of the work of the drag at the velocities as they are; at the beginning the drag itself, too.
-static void damp_nodes(const job *j, const brunt_fem_task *task, brunt_damping_sums *sums) {
+// The drag on what is known of the force, as a load; the velocities from before it are kept.
+static void drag_nodes(const job *j, const brunt_fem_task *task) {
     const brunt_fem_body *fem = &j->world->fems[task->fem];
-    real *drag = j->world->drag[task->fem];
-    memset(sums, 0, sizeof *sums);
-    for (int32_t n = task->begin; drag && n < task->end; n++) {
+    const double loss = -expm1(-fem->damping * j->dt) / j->dt, share = 1 - 1 / fem->drag_mass;
+    real *kept = j->world->drag[task->fem];
+    for (int32_t n = task->begin; kept && n < task->end; n++) {
         const real *node = brunt_fem_node(fem, n);
         const double mass = (double)node[BRUNT_FEM_MASS];
-        real *D = drag + 4 * (size_t)n, force[3];
-        if (j->gravity) brunt_fem_internal_force(fem, n, force);
+        real force[3];
+        brunt_fem_internal_force(fem, n, force);
         for (int a = 0; a < 3; a++) {
             const double v = (double)node[BRUNT_FEM_V + a];
-            if (j->gravity) {
-                real *load = &fem->load[4 * (size_t)n + (size_t)a];
-                double half = 0.5 * j->dt * (((double)force[a] + (double)*load) / mass + j->gravity[a]);
-                D[a] = (real)(-fem->damping * mass * (v + half) / (1 + 0.5 * j->dt * fem->damping));
-                *load += D[a];
-            }
-            sums->work += 0.5 * j->dt * (double)D[a] * v;
-        }
-        for (int a = 0; j->gravity && a < 3; a++) {
-            const int b = (a + 1) % 3, c = (a + 2) % 3;
-            sums->impulse[a] += j->dt * (double)D[a];
-            sums->angular[a] += j->dt * ((double)node[b] * (double)D[c] - (double)node[c] * (double)D[b]);
+            real *load = &fem->load[4 * (size_t)n + (size_t)a];
+            *load -= (real)(mass * loss * v + share * ((double)force[a] + (double)*load + mass * j->gravity[a]));
+            kept[4 * (size_t)n + (size_t)a] = (real)v;
         }
     }
 }
 
-static void damp_tasks(void *context, int64_t begin, int64_t end, int worker) {
-    (void)worker;
-    const job *j = context;
-    for (int64_t t = begin; t < end; t++) damp_nodes(j, &j->world->node_tasks[t], &j->world->damping_sums[t]);
+// What the drag of the kick did; and half of the work of the next one, as of the same forces, which is of the half step
+// that velocities are behind.
+static void book_nodes(const job *j, const brunt_fem_task *task, brunt_damping_sums *sums) {
+    const brunt_fem_body *fem = &j->world->fems[task->fem];
+    const double left = exp(-fem->damping * j->dt);
+    const real *kept = j->world->drag[task->fem];
+    memset(sums, 0, sizeof *sums);
+    for (int32_t n = task->begin; kept && n < task->end; n++) {
+        const real *node = brunt_fem_node(fem, n);
+        double J[3];
+        for (int a = 0; a < 3; a++) {
+            const double v = (double)node[BRUNT_FEM_V + a], old = (double)kept[4 * (size_t)n + (size_t)a];
+            const double mass = (double)node[BRUNT_FEM_MASS], other = fem->drag_mass * (v - left * old);
+            J[a] = mass * ((v - old) - other);
+            sums->work += 0.5 * J[a] * (old + v);
+            sums->half_work -= 0.5 * mass * ((1 - left) * v + (1 - 1 / fem->drag_mass) * other) * v;
+            sums->impulse[a] += J[a];
+        }
+        for (int a = 0; a < 3; a++) {
+            const int b = (a + 1) % 3, c = (a + 2) % 3;
+            sums->angular[a] += (double)node[b] * J[c] - (double)node[c] * J[b];
+        }
+    }
 }
 
-static void damp(brunt_world *world, double dt, const double *gravity) {
+static void drag_tasks(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    const job *j = context;
+    for (int64_t t = begin; t < end; t++) drag_nodes(j, &j->world->node_tasks[t]);
+}
+
+static void book_tasks(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    const job *j = context;
+    for (int64_t t = begin; t < end; t++) book_nodes(j, &j->world->node_tasks[t], &j->world->damping_sums[t]);
+}
+
+void brunt_damping_begin(brunt_world *world, const double gravity[3], double dt) {
     job j = {world, dt, gravity};
-    brunt_parallel(world->threads, world->node_task_count, 1, damp_tasks, &j, &world->pass[BRUNT_PASS_kick].threads);
+    for (int k = 0; k < world->fem_count; k++) {
+        brunt_fem_body *fem = &world->fems[k];
+        if (world->drag[k]) fem->drag_mass = fem->damping * dt / -expm1(-fem->damping * dt);
+    }
+    brunt_parallel(world->threads, world->node_task_count, 1, drag_tasks, &j, &world->pass[BRUNT_PASS_kick].threads);
+}
+
+void brunt_damping_end(brunt_world *world, double dt) {
+    job j = {.world = world, .dt = dt};
+    brunt_parallel(world->threads, world->node_task_count, 1, book_tasks, &j, &world->pass[BRUNT_PASS_kick].threads);
     for (int64_t t = 0; t < world->node_task_count; t++) {
         const brunt_damping_sums *s = &world->damping_sums[t];
         world->now.damped -= s->work;
-        if (!gravity) world->now.fem_damping_work += s->work;
+        world->now.fem_damping_work += s->half_work;
         for (int a = 0; a < 3; a++)
             world->now.damping_impulse[a] += s->impulse[a], world->now.damping_angular[a] += s->angular[a];
     }
 }
-
-void brunt_damping_begin(brunt_world *world, const double gravity[3], double dt) { damp(world, dt, gravity); }
-void brunt_damping_end(brunt_world *world, double dt) { damp(world, dt, NULL); }

@@ -314,7 +314,7 @@ void brunt_fem_hold_all(brunt_world *world, const double gravity[3], double time
                 v[a] = def->action == BRUNT_GROUP_VELOCITY
                            ? now * def->value[a]
                            : ((double)fem->start[4 * (size_t)n + (size_t)a] + then * def->value[a] - x[a]) / step;
-                J[a] = mass * (v[a] - trial);
+                J[a] = mass * fem->drag_mass * (v[a] - trial);
                 mean[a] = 0.5 * (old[a] + v[a]);
                 node[BRUNT_FEM_V + a] = (real)v[a];
             }

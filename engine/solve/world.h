@@ -40,7 +40,7 @@ enum {
 };
 
 typedef struct brunt_damping_sums {
-    double work, impulse[3], angular[3]; // [J], [N s], [N m s] of a node task
+    double work, half_work, impulse[3], angular[3]; // [J], [J], [N s], [N m s] of a node task
 } brunt_damping_sums;
 
 typedef struct brunt_node_sums {
@@ -94,7 +94,7 @@ struct brunt_world {
     brunt_fem_task *node_tasks, *element_tasks;
     int64_t node_task_count, element_task_count;
     brunt_fem_sums *fem_sums; // a node task each
-    real **drag;              // of each body with damping: node_count x 4 [N]
+    real **drag;              // of each body with damping: node_count x 4 [m/s], velocities before the kick
     brunt_damping_sums *damping_sums; // a node task each
     double **load_rate;       // of each body with loads that follow its surface: node_count, room for its stable step
     uint8_t (**holder)[3];    // of each body, node and component: the hold that prescribes it + 1
@@ -248,7 +248,7 @@ int brunt_detonation_make(brunt_world *world, const brunt_world_def *def, brunt_
 // After the node tasks are made.
 int brunt_damping_make(brunt_world *world, brunt_error *error);
 void brunt_damping_free(brunt_world *world);
-// Adds the drag to the loads of this step, with half of its work booked; the other half once velocities are final.
+// Adds the drag to the loads of this step; what it did is booked once velocities are final.
 void brunt_damping_begin(brunt_world *world, const double gravity[3], double dt);
 void brunt_damping_end(brunt_world *world, double dt);
 
