@@ -565,6 +565,33 @@ START_TEST(profiles_that_cannot_be_are_refused) {
 }
 END_TEST
 
+// The magnitude of a symmetric tensor stored by six components counts each shear twice, as the tensor holds it:
+// sqrt(s : s). The blocks have met and shear.
+START_TEST(magnitude_of_a_tensor_counts_shear_twice) {
+    small_steps(world, 80);
+    const int64_t count = brunt_body_particles(world, 0);
+    double *s = malloc(sizeof *s * 6 * (size_t)count), most = 0, sum = 0, shear = 0;
+    brunt_body_read(world, 0, brunt_body_find_field(world, 0, "stress"), s);
+    for (int64_t p = 0; p < count; p++) {
+        const double *v = s + 6 * p; // xx, yy, zz, xy, yz, xz
+        const double full[3][3] = {{v[0], v[3], v[5]}, {v[3], v[1], v[4]}, {v[5], v[4], v[2]}};
+        double square = 0;
+        for (int i = 0; i < 9; i++) square += full[i / 3][i % 3] * full[i / 3][i % 3];
+        most = fmax(most, sqrt(square));
+        sum += sqrt(square);
+        shear = fmax(shear, v[3] * v[3] / square);
+    }
+    free(s);
+    ck_assert_double_gt(shear, 0.1); // of the square: half of it lost would show
+    brunt_measure m = blank(BRUNT_MEASURE_FIELD);
+    strcpy(m.field, "stress");
+    m.take = BRUNT_TAKE_MAX;
+    ck_assert_double_eq_tol(evaluate(&m, NAN).value, most, 1e-14 * most);
+    m.take = BRUNT_TAKE_MEAN;
+    ck_assert_double_eq_tol(evaluate(&m, NAN).value, sum / (double)count, 1e-12 * most);
+}
+END_TEST
+
 START_TEST(unknown_names_are_refused) {
     static const struct {
         brunt_measure_kind kind;
@@ -597,6 +624,7 @@ int main(void) {
     TCase *values = tcase_create("values");
     tcase_add_checked_fixture(values, set_up, tear_down);
     tcase_add_test(values, history_is_reduced);
+    tcase_add_test(values, magnitude_of_a_tensor_counts_shear_twice);
     tcase_add_test(values, periods_are_found);
     tcase_add_test(values, history_against_a_curve);
     tcase_add_test(values, curves_of_shares);
