@@ -10,6 +10,6 @@ sh cmake/install.sh build
 cmake -S . -B build
 cmake --build build -j "$(getconf _NPROCESSORS_ONLN)" --target brunt_program
 out=out/$(basename "$scene" .yaml)
-build/brunt run "$scene" -o "$out"
+build/brunt run "$scene" --fresh -o "$out"
 echo
 echo "Done. Open $PWD/$out/brunt.pvd in ParaView and press play."

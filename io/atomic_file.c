@@ -45,8 +45,12 @@ int brunt_atomic_open(brunt_atomic_file *file, const char *path, brunt_error *er
     memcpy(file->path, path, length + 1);
     memcpy(file->aside, path, length);
     strcpy(file->aside + length, ".part");
-    file->stream = fopen(file->aside, "wbe");
+    // What an earlier writer left there goes; a link of that name is not followed.
+    unlink(file->aside);
+    int descriptor = open(file->aside, O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+    file->stream = descriptor < 0 ? NULL : fdopen(descriptor, "w+b");
     if (!file->stream) {
+        if (descriptor >= 0) close(descriptor);
         int status = system_error(error, "create the file", file->aside);
         file->aside[0] = 0;
         return status;

@@ -308,6 +308,15 @@ int brunt_checkpoint_read(const char *path, brunt_world *world, const char *scen
     return status;
 }
 
+bool brunt_checkpoint_failed(const char *path) {
+    hid_t file;
+    long long failed = 0;
+    if (brunt_hdf5_open(path, "checkpoint", FORMAT, &file, NULL)) return false;
+    bool known = brunt_hdf5_get_integer(file, "failed", &failed);
+    H5Fclose(file);
+    return known && failed;
+}
+
 // ---------------------------------------------------------------------------------------------------- describing
 
 static herr_t describe_block(hid_t root, const char *name, const H5O_info_t *info, void *context) {

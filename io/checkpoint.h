@@ -32,5 +32,7 @@ int brunt_checkpoint_write(const char *path, const char *backup, brunt_world *wo
 int brunt_checkpoint_read(const char *path, brunt_world *world, const char *scene_text, brunt_run_state *state,
                           brunt_error *error);
 
+// True for one that was written where the computation failed; false for any other, and where it cannot be told.
+bool brunt_checkpoint_failed(const char *path);
 // Says what a checkpoint holds.
 int brunt_checkpoint_describe(const char *path, FILE *out, brunt_error *error);

@@ -1,6 +1,7 @@
 // What a run's output will cost: bytes over rates, and two things that are measured since they differ by far between
 // scenes and between disks: a line of history, and a file that is kept.
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -14,27 +15,32 @@ static const double picture_rate = 70e6, file_seconds = 0.3e-3, checkpoint_rate 
                     column_seconds = 150e-6;
 
 // What the disk takes to keep a file, written aside, flushed and renamed: where none was, and in the place of one,
-// which may take ten times as long. In the working folder, and removed again; 0 where none can be written.
+// which may take ten times as long. In a folder of its own in the working folder, removed again; 0 where none can be
+// made.
 static void commit_seconds(double *fresh, double *replaced) {
     static const char content[1 << 14];
     enum { TIMES = 4 };
-    char path[2 * TIMES][32];
+    char folder[] = ".brunt-check-XXXXXX", path[2 * TIMES][32];
     double at[2 * TIMES + 1];
     int kept = 0;
     brunt_error error;
+    *fresh = *replaced = 0;
+    if (!mkdtemp(folder)) return;
     for (; kept < 2 * TIMES; kept++) {
         brunt_atomic_file file;
-        snprintf(path[kept], sizeof path[kept], ".brunt-check-%d", kept < TIMES ? kept : TIMES - 1);
+        snprintf(path[kept], sizeof path[kept], "%s/%d", folder, kept < TIMES ? kept : TIMES - 1);
         at[kept] = brunt_clock();
         if (brunt_atomic_open(&file, path[kept], &error) ||
             brunt_atomic_write(&file, content, sizeof content, &error) || brunt_atomic_commit(&file, &error))
             break;
     }
     at[kept] = brunt_clock();
-    const bool all = kept == 2 * TIMES;
-    *fresh = all ? (at[TIMES] - at[0]) / TIMES : 0;
-    *replaced = all ? (at[2 * TIMES] - at[TIMES]) / TIMES : 0;
+    if (kept == 2 * TIMES) {
+        *fresh = (at[TIMES] - at[0]) / TIMES;
+        *replaced = (at[2 * TIMES] - at[TIMES]) / TIMES;
+    }
     for (int i = 0; i < TIMES && i < kept; i++) unlink(path[i]);
+    rmdir(folder);
 }
 
 static double numbers_of(brunt_world *world, int32_t body, const char *field) {

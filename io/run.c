@@ -1,12 +1,9 @@
 #include "run.h"
 
-#include <dirent.h>
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
-#include <unistd.h>
 
 #include "atomic_file.h"
 #include "checkpoint.h"
@@ -17,6 +14,7 @@
 #include "observers.h"
 #include "progress.h"
 #include "pvd.h"
+#include "run_folder.h"
 #include "summary.h"
 #include "threads.h"
 #include "trace.h"
@@ -29,7 +27,8 @@ static const double time_slack = 1e-12;
 typedef struct run {
     const brunt_scene *scene;
     const brunt_run_options *options;
-    char folder[BRUNT_PATH_LENGTH];
+    brunt_output_folder output;
+    const char *folder; // its path
     brunt_world *world;
     brunt_history *history;
     double *measure_initial;           // one a measure
@@ -95,7 +94,7 @@ static int write_picture(run *r, brunt_error *error) {
     double time = brunt_world_time(r->world), start = brunt_clock();
     int64_t number = r->state.picture_count;
     char path[BRUNT_PATH_LENGTH], name[128];
-    int status = BRUNT_OK;
+    int status = brunt_run_folder_list_picture(&r->output, r->world, number, error);
     for (int32_t b = 0; b < brunt_body_count(r->world) && !status; b++) {
         brunt_picture_name(name, brunt_body_name(r->world, b), number);
         status = path_in(r, name, path, error);
@@ -318,54 +317,12 @@ static int restore(run *r, brunt_error *error) {
     return BRUNT_OK;
 }
 
-static bool ends_with(const char *text, const char *ending) {
-    size_t n = strlen(text), m = strlen(ending);
-    return n >= m && !strcmp(text + n - m, ending);
-}
-
-// Removes files of a folder by their endings. What cannot be removed is found when it is written.
-static void remove_files(const char *folder, const char *const *endings, int count) {
-    DIR *directory = opendir(folder);
-    if (!directory) return;
-    for (struct dirent *entry; (entry = readdir(directory));)
-        for (int e = 0; e < count; e++)
-            if (ends_with(entry->d_name, endings[e])) unlinkat(dirfd(directory), entry->d_name, 0);
-    closedir(directory);
-}
-
-// Makes the folder ready: leftovers of a killed writer go; for a fresh run all files of the run before go too, once the
-// new scene has been written and so the folder is known to take files.
 static int prepare_folder(run *r, brunt_error *error) {
-    char path[BRUNT_PATH_LENGTH], pictures[BRUNT_PATH_LENGTH];
-    int status = path_in(r, "vtu", pictures, error);
-    if (!status) status = brunt_make_folder(pictures, error);
-    brunt_atomic_file file;
-    if (!status) status = path_in(r, "scene.yaml", path, error);
-    if (!status) status = brunt_atomic_open(&file, path, error);
+    char path[BRUNT_PATH_LENGTH];
+    int status = brunt_run_folder_prepare(&r->output, r->options, r->scene_text, error);
     if (status) return status;
-    fputs(r->scene_text, file.stream);
-    status = brunt_atomic_commit(&file, error);
-    if (status) return status;
-
-    static const char *const leftovers[] = {".h5.part",  ".pvd.part", ".json.part",
-                                            ".csv.part", ".vtu.part", ".yaml.part"};
-    remove_files(r->folder, leftovers, 6);
-    remove_files(pictures, leftovers, 6);
-    if (!r->options->resume) {
-        static const char *const names[] = {"brunt.pvd",   "summary.json",  "history.h5",
-                                            "history.csv", "checkpoint.h5", "checkpoint.previous.h5"};
-        static const char *const vtu[] = {".vtu"};
-        for (size_t n = 0; n < sizeof names / sizeof *names && !status; n++) {
-            status = path_in(r, names[n], path, error);
-            if (!status) unlink(path);
-        }
-        remove_files(pictures, vtu, 1);
-    }
-    if (!status) status = path_in(r, "log.txt", path, error);
-    if (status) return status;
-    r->console.log = fopen(path, r->options->resume ? "ae" : "we");
-    if (!r->console.log)
-        return brunt_fail(error, BRUNT_IO_ERROR, "%s: cannot open the file: %s", path, strerror(errno));
+    r->console.log = brunt_output_stream(&r->output, "log.txt", !r->options->resume, error);
+    if (!r->console.log) return BRUNT_IO_ERROR;
     status = path_in(r, "history.csv", path, error);
     return status ? status : brunt_history_open_csv(r->history, path, error);
 }
@@ -475,13 +432,6 @@ static int loop(run *r, brunt_error *error) {
     return status ? status : write_outputs(r, true, error);
 }
 
-// Where the trace cannot be written is found before anything of an earlier run goes.
-static int check_trace(const run *r, brunt_error *error) {
-    if (!r->options->trace) return BRUNT_OK;
-    int status = brunt_make_folder(r->folder, error); // it may be to lie there
-    return status ? status : brunt_trace_check(r->options->trace, error);
-}
-
 static int start_observers(run *r, brunt_error *error) {
     if (r->options->trace) {
         r->trace = brunt_trace_open(r->options->trace, r->scene->name, r->world, r->leg_start, error);
@@ -516,7 +466,6 @@ static int end_trace(run *r, int status, brunt_error *error) {
 
 static int run_made(run *r, brunt_error *error) {
     int status = r->options->resume ? restore(r, error) : BRUNT_OK;
-    if (!status) status = check_trace(r, error);
     if (!status) status = prepare_folder(r, error);
     if (!status) status = start_observers(r, error);
     if (status) return status;
@@ -565,17 +514,20 @@ int brunt_run(const brunt_scene *scene, const brunt_run_options *options, brunt_
     if (!r) return brunt_fail(error, BRUNT_FAILED, "out of memory");
     r->scene = scene;
     r->options = options;
+    r->output = (brunt_output_folder){.folder = -1, .index = -1};
+    r->folder = r->output.path;
     r->leg_start = brunt_clock();
     r->console = brunt_console_open(options->console);
-    int status = options->folder ? brunt_join_path(r->folder, options->folder, "", error)
-                                 : brunt_join_path(r->folder, "out", scene->name, error);
-    size_t length = strlen(r->folder);
-    if (length > 1 && r->folder[length - 1] == '/') r->folder[length - 1] = 0;
+    char path[BRUNT_PATH_LENGTH];
+    int status = brunt_join_path(path, "out", scene->name, error);
     if (options->profile) r->counting = brunt_counters_open(&r->counters); // threads made from now on are counted
     if (!status) status = make_world(r, error);
+    if (!status)
+        status = brunt_run_folder_open(&r->output, scene, options, options->folder ? options->folder : path, error);
     if (!status) status = end_trace(r, run_made(r, error), error);
     if (status == BRUNT_BAD_INPUT && options->messages && !r->told) fprintf(options->messages, "%s\n", error->message);
     if (r->console.log) fclose(r->console.log);
+    brunt_output_close(&r->output);
     brunt_run_state_free(&r->state);
     brunt_history_destroy(r->history);
     brunt_world_destroy(r->world);

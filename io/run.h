@@ -2,8 +2,9 @@
 // on from.
 //
 // In the folder: summary.json, history.h5 and history.csv, brunt.pvd with vtu/, checkpoint.h5 and
-// checkpoint.previous.h5, scene.yaml as resolved, log.txt. Pictures are of exactly their times, lines of the
-// history of the first step at or after theirs; a run stopped and resumed takes the same steps.
+// checkpoint.previous.h5, scene.yaml as resolved, log.txt, and brunt.files, which lists them: what it does not list is
+// neither replaced nor removed (output_folder.h), and one run at a time has the folder. Pictures are of exactly their
+// times, lines of the history of the first step at or after theirs; a run stopped and resumed takes the same steps.
 #pragma once
 
 #include <signal.h>
@@ -16,6 +17,7 @@
 typedef struct brunt_run_options {
     const char *folder;                // NULL: out/<scene name>
     bool resume;                       // go on from the folder's checkpoint
+    bool fresh;                        // begin anew though the folder has the checkpoint of an unfinished run
     bool profile;                      // print what each pass cost
     const char *trace;                 // file for a time line of the run (trace.h), of this leg alone; NULL: none
     FILE *console;                     // NULL: all is kept in log.txt alone

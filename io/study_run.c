@@ -1,12 +1,13 @@
 // The runs of a study, one at a time, each in a folder of its own that says whether it is finished and of what.
 //
-// FOLDER/runs/CASE.rREPEAT/ keeps summary.json, log.txt, scene.yaml and run.json; the last, written when all else is,
-// holds the key of the run: a hash over the program, the scene as resolved, its mesh files, the number of threads and
-// the kind of machine. A folder whose key is the same is taken over, failed runs too; all others are run again.
+// FOLDER/brunt.files lists what a study wrote, its runs' files as well; only that is replaced or removed
+// (output_folder.h). FOLDER/runs/CASE.rREPEAT/ keeps summary.json, log.txt, scene.yaml and run.json; the last, written
+// when all else is, holds the key of the run: a hash over the program, the scene as resolved, its mesh files, the
+// number of threads and the kind of machine. A folder whose key is the same is taken over, failed runs too; all others
+// are run again.
 #include "study_reader.h"
 
 #include <ctype.h>
-#include <dirent.h>
 #include <errno.h>
 #include <jansson.h>
 #include <math.h>
@@ -21,6 +22,7 @@
 #include "hash.h"
 #include "machine.h"
 #include "memory.h"
+#include "output_folder.h"
 #include "progress.h"
 #include "scene_reader.h"
 #include "study_view.h"
@@ -35,6 +37,7 @@ typedef struct case_state {
 typedef struct runner {
     brunt_study *study;
     const brunt_study_options *options;
+    brunt_output_folder output;
     char folder[BRUNT_PATH_LENGTH], program[BRUNT_PATH_LENGTH];
     case_state *cases;
     char hashed[BRUNT_PATH_LENGTH]; // file whose hash was taken last
@@ -181,9 +184,12 @@ static int prepare_case(runner *r, int32_t index, brunt_error *error) {
 
 // ---------------------------------------------------------------------------------------------------- folders
 
-static const char *const kept[] = {"summary.json", "log.txt", "scene.yaml", "run.json", "messages.txt"};
-static const char *const passing[] = {"brunt.pvd", "history.h5", "history.csv", "checkpoint.h5",
-                                      "checkpoint.previous.h5"};
+// What is in the folder of a run, from the study itself and from any program; what else a program of ours wrote there
+// its own list says.
+static const char *const kept[] = {"run.json", "summary.json", "log.txt", "scene.yaml", "messages.txt"},
+                         *const passing[] = {"brunt.pvd", "history.h5", "history.csv", "checkpoint.h5",
+                                             "checkpoint.previous.h5"};
+enum { KEPT = sizeof kept / sizeof *kept, PASSING = sizeof passing / sizeof *passing };
 
 static void remove_in(const char *folder, const char *const *names, size_t count) {
     char path[BRUNT_PATH_LENGTH];
@@ -191,59 +197,50 @@ static void remove_in(const char *folder, const char *const *names, size_t count
         if (brunt_join_path(path, folder, names[n], NULL) == BRUNT_OK) unlink(path);
 }
 
-static bool ends_with(const char *name, const char *ending) {
-    size_t n = strlen(name), e = strlen(ending);
-    return n > e && strcmp(name + n - e, ending) == 0;
-}
-
-// Pictures and what a kill left half written; nothing else is ours to remove.
-static void remove_pictures(const char *folder) {
-    char path[BRUNT_PATH_LENGTH];
-    DIR *list = opendir(folder);
-    if (!list) return;
-    for (struct dirent *entry; (entry = readdir(list));)
-        if ((ends_with(entry->d_name, ".vtu") || ends_with(entry->d_name, ".part")) &&
-            brunt_join_path(path, folder, entry->d_name, NULL) == BRUNT_OK)
-            unlink(path);
-    closedir(list);
-}
-
 // Histories, pictures and checkpoints of all the runs of a study would fill disks.
-static void remove_outputs(const char *folder) {
-    char vtu[BRUNT_PATH_LENGTH];
-    remove_in(folder, passing, sizeof passing / sizeof *passing);
-    remove_pictures(folder);
-    if (brunt_join_path(vtu, folder, "vtu", NULL) != BRUNT_OK) return;
-    remove_pictures(vtu);
-    rmdir(vtu);
+static int remove_outputs(const char *folder, bool all, brunt_error *error) {
+    brunt_output_folder output;
+    int status = brunt_output_open(&output, folder, error);
+    if (!status) status = all ? brunt_output_remove(&output, error) : brunt_output_clear(&output, kept, KEPT, error);
+    brunt_output_close(&output);
+    if (!status) remove_in(folder, passing, PASSING);
+    return status;
 }
 
 // run.json goes first: a folder that is half emptied must not count as finished.
-static void remove_run(const char *folder) {
-    static const char *const first[] = {"run.json"};
-    remove_in(folder, first, 1);
-    remove_in(folder, kept, sizeof kept / sizeof *kept);
-    remove_outputs(folder);
+static int remove_run(const char *folder, brunt_error *error) {
+    remove_in(folder, kept, 1);
+    int status = remove_outputs(folder, true, error);
+    if (!status) remove_in(folder, kept, KEPT);
+    if (!status) rmdir(folder); // stays with what else is in it
+    return status;
 }
 
-// Folders that hold something else as well stay, with that in them.
-static void remove_all_runs(const char *runs) {
-    DIR *list = opendir(runs);
-    if (!list) return;
+// Those that are listed. Folders that hold something else as well stay, with that in them.
+static int remove_all_runs(const runner *r, brunt_error *error) {
+    static const char record[] = "/run.json";
     char path[BRUNT_PATH_LENGTH];
-    for (struct dirent *entry; (entry = readdir(list));) {
+    int status = BRUNT_OK;
+    for (int32_t n = 0; n < r->output.count && !status; n++) {
+        const char *name = r->output.names[n];
+        size_t length = strlen(name), end = sizeof record - 1;
+        if (strncmp(name, "runs/", 5) != 0 || length <= end || strcmp(name + length - end, record) != 0) continue;
+        status = brunt_join_path(path, r->folder, name, error);
+        if (status) return status;
+        path[strlen(path) - end] = 0;
         struct stat info;
-        if (entry->d_name[0] == '.' || brunt_join_path(path, runs, entry->d_name, NULL) != BRUNT_OK) continue;
-        if (lstat(path, &info) != 0 || !S_ISDIR(info.st_mode)) continue;
-        remove_run(path);
-        rmdir(path);
+        if (lstat(path, &info) == 0 && S_ISDIR(info.st_mode)) status = remove_run(path, error);
     }
-    closedir(list);
+    return status;
+}
+
+static void run_name(const runner *r, int32_t index, int32_t repeat, char out[200]) {
+    snprintf(out, 200, "runs/%s.r%d", r->cases[index].name, (int)repeat + 1);
 }
 
 static int run_folder(const runner *r, int32_t index, int32_t repeat, char out[BRUNT_PATH_LENGTH], brunt_error *error) {
     char name[200];
-    snprintf(name, sizeof name, "runs/%s.r%d", r->cases[index].name, (int)repeat + 1);
+    run_name(r, index, repeat, name);
     return brunt_join_path(out, r->folder, name, error);
 }
 
@@ -391,21 +388,20 @@ static int run_anew(const runner *r, int32_t index, const char *folder, run_resu
     study_origin culprit;
     brunt_child_end end;
     *result = (run_result){.limit = NAN};
-    remove_run(folder);
-    int status = brunt_make_folder(folder, error);
+    int status = remove_run(folder, error);
+    if (!status) status = brunt_make_folder(folder, error);
     if (status) return status;
     status = brunt_study_job(r->study, &r->study->cases[index], &job, &culprit, error);
     if (!status) status = start_run(r, &job, folder, &end, error);
     brunt_study_job_free(&job);
     if (status) return status;
     if (end.fate == BRUNT_CHILD_STOPPED) {
-        remove_run(folder);
-        rmdir(folder);
-        return brunt_fail(error, BRUNT_STOPPED, "stopped; go on with the same command");
+        status = remove_run(folder, error);
+        return status ? status : brunt_fail(error, BRUNT_STOPPED, "stopped; go on with the same command");
     }
     judge(r, folder, &end, result);
-    remove_outputs(folder);
-    return write_record(folder, r->cases[index].key, result, error);
+    status = remove_outputs(folder, false, error);
+    return status ? status : write_record(folder, r->cases[index].key, result, error);
 }
 
 // ---------------------------------------------------------------------------------------------------- results
@@ -561,21 +557,91 @@ static int32_t count_earlier(const runner *r) {
     return count;
 }
 
+// Of a measure, and after them of the order and of the cost.
+static void picture_name(const brunt_study *study, int32_t index, char out[160]) {
+    if (index < study->measure_count)
+        brunt_study_picture_name(study, index, out);
+    else
+        snprintf(out, 160, "%s", index == study->measure_count ? "study_order" : "study_cost");
+}
+
+// The names of the study's own files: report and tables, of each picture three files, then the runs' folders with
+// theirs.
+static char **own_names(const runner *r, int32_t *count) {
+    static const char *const tables[] = {"report.md", "study.csv", "study.json"}, *const endings[] = {".gp", ".svg",
+                                                                                                      ".png"};
+    const int32_t pictures = r->study->measure_count + 2, runs = r->total;
+    const size_t room = 256;
+    const int32_t most = 4 + 3 * pictures + (KEPT + PASSING + 2) * runs;
+    char **names = brunt_alloc((size_t)most * (sizeof *names + room)), *text = (char *)(names + most), picture[160],
+         run[200];
+    *count = 0;
+    for (int32_t n = 0; names && n < most; n++) names[n] = text + room * (size_t)n;
+    for (int t = 0; names && t < 3; t++) snprintf(names[(*count)++], room, "%s", tables[t]);
+    for (int32_t p = 0; names && p < pictures; p++) {
+        picture_name(r->study, p, picture);
+        for (int e = 0; e < 3; e++) snprintf(names[(*count)++], room, "%s%s", picture, endings[e]);
+    }
+    if (names) snprintf(names[(*count)++], room, "runs/");
+    for (int32_t n = 0; names && n < runs; n++) {
+        run_name(r, n / r->study->repeats, n % r->study->repeats, run);
+        snprintf(names[(*count)++], room, "%s/", run);
+        for (int k = 0; k < KEPT; k++) snprintf(names[(*count)++], room, "%s/%s", run, kept[k]);
+        for (int k = 0; k < PASSING; k++) snprintf(names[(*count)++], room, "%s/%s", run, passing[k]);
+    }
+    return names;
+}
+
+// What stands in the way of a run within its folder and is not listed there either.
+static int look_at_run(const runner *r, int32_t index, int32_t repeat, brunt_obstacles *found, brunt_error *error) {
+    brunt_output_folder own;
+    char folder[BRUNT_PATH_LENGTH], name[200], whole[256];
+    run_name(r, index, repeat, name);
+    snprintf(whole, sizeof whole, "%s/", name);
+    brunt_output_obstacle(&r->output, whole, found);
+    int status = run_folder(r, index, repeat, folder, error);
+    if (status || found->count) return status;
+    status = brunt_output_open(&own, folder, error);
+    for (int k = 0; k < KEPT + PASSING && !status; k++) {
+        const char *file = k < KEPT ? kept[k] : passing[k - KEPT];
+        snprintf(whole, sizeof whole, "%s/%s", name, file);
+        if (!brunt_output_listed(&own, file)) brunt_output_obstacle(&r->output, whole, found);
+    }
+    brunt_output_close(&own);
+    return status;
+}
+
+static int open_folder(runner *r, brunt_error *error) {
+    brunt_obstacles found = {0};
+    int32_t count;
+    char **names = own_names(r, &count);
+    int status = names ? BRUNT_OK : brunt_fail(error, BRUNT_FAILED, "out of memory");
+    for (int32_t n = 0; n < count && !strchr(names[n], '/'); n++) brunt_output_obstacle(&r->output, names[n], &found);
+    brunt_output_obstacle(&r->output, "runs/", &found);
+    for (int32_t n = 0; n < r->total && !status; n++)
+        status = look_at_run(r, n / r->study->repeats, n % r->study->repeats, &found, error);
+    if (!status) status = brunt_output_refuse(&r->output, &found, error);
+    if (!status) status = brunt_output_make(&r->output, error);
+    if (!status && r->options->fresh) status = remove_all_runs(r, error);
+    if (!status) status = brunt_output_list(&r->output, (const char *const *)names, count, error);
+    brunt_free(names);
+    return status;
+}
+
 static int prepare(runner *r, brunt_error *error) {
     const brunt_study_options *options = r->options;
     char runs[BRUNT_PATH_LENGTH], name[160];
     snprintf(name, sizeof name, "out/study/%.140s", r->study->name);
-    int status = brunt_join_path(r->folder, options->folder ? options->folder : name, "", error);
-    size_t length = strlen(r->folder);
-    if (length > 1 && r->folder[length - 1] == '/') r->folder[length - 1] = 0;
+    int status = brunt_output_open(&r->output, options->folder ? options->folder : name, error);
+    memcpy(r->folder, r->output.path, sizeof r->folder);
     if (!status) status = brunt_join_path(runs, r->folder, "runs", error);
-    if (!status && options->fresh) remove_all_runs(runs);
-    if (!status) status = brunt_make_folder(runs, error);
     snprintf(r->program, sizeof r->program, "%s", options->program);
     r->total = r->study->case_count * r->study->repeats;
     r->cases = brunt_alloc((size_t)(r->study->case_count + 1) * sizeof *r->cases);
     if (!r->cases && !status) status = brunt_fail(error, BRUNT_FAILED, "out of memory");
     for (int32_t c = 0; c < r->study->case_count && !status; c++) status = prepare_case(r, c, error);
+    if (!status) status = open_folder(r, error);
+    if (!status) status = brunt_make_folder(runs, error);
     if (status) return status;
     int32_t earlier = count_earlier(r);
     say(r, "%s: %d runs of %d cases into %s", r->study->name, r->total, r->study->case_count, r->folder);
@@ -601,10 +667,7 @@ static void say_files(const runner *r, bool drawn) {
     say_file(r, "report.md", ""), say_file(r, "study.csv", ", "), say_file(r, "study.json", ", ");
     const int32_t measures = r->study->measure_count;
     for (int32_t m = 0; m < measures + 2; m++) { // and the order, and the cost
-        if (m < measures)
-            brunt_study_picture_name(r->study, m, name);
-        else
-            snprintf(name, sizeof name, "%s", m == measures ? "study_order" : "study_cost");
+        picture_name(r->study, m, name);
         snprintf(script, sizeof script, "%s.gp", name), snprintf(picture, sizeof picture, "%s.png", name);
         if (drawn)
             pictures |= say_file(r, picture, ", ");
@@ -641,10 +704,12 @@ int brunt_study_run(brunt_study *study, const brunt_study_options *options, brun
     if (!r) return brunt_fail(error, BRUNT_FAILED, "out of memory");
     r->study = study;
     r->options = options;
+    r->output = (brunt_output_folder){.folder = -1, .index = -1};
     int status = prepare(r, error);
     if (!status) status = run_all(r, error);
     if (!status) status = write_all(r, error);
     if (!status) status = verdict(r, error);
+    brunt_output_close(&r->output);
     brunt_free(r->cases);
     brunt_free(r);
     return status;

@@ -188,6 +188,13 @@ int brunt_summary_write(const char *path, const brunt_summary *summary, const br
     return status;
 }
 
+void brunt_summary_status(const char *path, char status[16]) {
+    json_t *object = json_load_file(path, 0, NULL);
+    const char *text = json_string_value(json_object_get(object, "status"));
+    snprintf(status, 16, "%s", text ? text : "");
+    json_decref(object);
+}
+
 static void print_energy(brunt_world *world, brunt_console *console) {
     brunt_energy e;
     brunt_world_energy(world, &e);

@@ -23,3 +23,5 @@ void brunt_summary_print(const brunt_summary *summary, const brunt_scene *scene,
                          brunt_console *console);
 // [bytes] the most memory that the process has had so far. Before a profile is made, which needs some of its own.
 double brunt_summary_peak(void);
+// The status in a summary.json; "" when there is none.
+void brunt_summary_status(const char *path, char status[16]);

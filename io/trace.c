@@ -177,10 +177,36 @@ void brunt_trace_step(brunt_trace *trace, double begin, double end) {
 
 // ---------------------------------------------------------------------------------------------------- open and close
 
-int brunt_trace_check(const char *path, brunt_error *error) {
+static const char beginning[] = "{\"program\":\"brunt ";
+
+// True for an earlier trace, or, of one that was cut off, an empty file.
+static bool begins_as_a_trace(const char *path, bool may_be_empty) {
+    char start[sizeof beginning] = "";
+    FILE *file = fopen(path, "rbe");
+    if (!file) return false;
+    size_t got = fread(start, 1, sizeof start - 1, file);
+    fclose(file);
+    return (may_be_empty && got == 0) || !strcmp(start, beginning);
+}
+
+static int refuse(const char *path, bool aside, brunt_error *error) {
     struct stat info;
-    if (stat(path, &info) == 0 && S_ISDIR(info.st_mode))
+    if (lstat(path, &info)) return BRUNT_OK;
+    if (S_ISDIR(info.st_mode))
         return brunt_fail(error, BRUNT_IO_ERROR, "%s: cannot write the file: %s", path, strerror(EISDIR));
+    if (S_ISREG(info.st_mode) && begins_as_a_trace(path, aside)) return BRUNT_OK;
+    return brunt_fail(error, BRUNT_BAD_INPUT,
+                      "%s: is there already and no trace of brunt's; another name is wanted (--trace)", path);
+}
+
+int brunt_trace_refuse(const char *path, brunt_error *error) {
+    char aside[BRUNT_PATH_LENGTH];
+    int status = refuse(path, false, error);
+    if ((size_t)snprintf(aside, sizeof aside, "%s.part", path) >= sizeof aside) return status;
+    return status ? status : refuse(aside, true, error);
+}
+
+int brunt_trace_check(const char *path, brunt_error *error) {
     brunt_atomic_file file;
     int status = brunt_atomic_open(&file, path, error);
     if (!status) brunt_atomic_abandon(&file);
@@ -227,7 +253,7 @@ brunt_trace *brunt_trace_open(const char *path, const char *scene, brunt_world *
         brunt_pass pass = brunt_world_pass(world, p);
         trace->pass_name[p] = pass.name, trace->units[p] = pass.units;
     }
-    fputs("{\"traceEvents\":[", trace->file.stream);
+    fprintf(trace->file.stream, "%s%s\",\"traceEvents\":[", beginning, BRUNT_VERSION);
     describe_lines(trace);
     return trace;
 }

@@ -1,13 +1,14 @@
 // The run as a time line: steps, passes, what each thread did, output. Chrome's trace event format, which Perfetto
 // (ui.perfetto.dev) and chrome://tracing show.
 //
-//   {"traceEvents": [ ... ], "displayTimeUnit": "ms", "otherData": {...}}
+//   {"program": "brunt VERSION", "traceEvents": [ ... ], "displayTimeUnit": "ms", "otherData": {...}}
 //
-// Line "step" (tid 0): an event for each step, within it one for each pass, between steps the output. Line "thread N" (tid N + 1):
-// when the thread was at work, by pass. Counters: dt, energy error. Times are in microseconds since the run began.
+// Line "step" (tid 0): an event for each step, within it one for each pass, between steps the output. Line "thread N"
+// (tid N + 1): when the thread was at work, by pass. Counters: dt, energy error. Times are in microseconds since the
+// run began.
 //
-// Long runs: all of the first steps, up to 300,000 events; then every 10th step, and ten times more rarely after each 10,000
-// events more; steps are kept or left out as a whole. A file has at most 400,000 events, some 50 MB.
+// Long runs: all of the first steps, up to 300,000 events; then every 10th step, and ten times more rarely after each
+// 10,000 events more; steps are kept or left out as a whole. A file has at most 400,000 events, some 50 MB.
 #pragma once
 
 #include "brunt.h"
@@ -19,6 +20,9 @@ typedef struct brunt_trace_count {
     int64_t steps, steps_left_out;
 } brunt_trace_count;
 
+// Whether what is there already may be replaced: nothing, or an earlier trace of brunt's. BRUNT_OK; BRUNT_BAD_INPUT:
+// another file, a device or a link; BRUNT_IO_ERROR: a folder.
+int brunt_trace_refuse(const char *path, brunt_error *error);
 // Whether a file can be written there; what is there stays. BRUNT_OK, BRUNT_IO_ERROR.
 int brunt_trace_check(const char *path, brunt_error *error);
 // Times count from `origin` [s of brunt_clock]. `scene`: its name; the world outlives the trace. NULL: cannot be written, or no memory.

@@ -570,7 +570,7 @@ START_TEST(from_the_command_line) {
     ck_assert_int_eq(command("study scenes/blocks.yaml"), BRUNT_BAD_INPUT);
     ck_assert_int_eq(command("study"), BRUNT_BAD_USAGE);
     ck_assert_int_eq(command("study nowhere.yaml"), BRUNT_IO_ERROR);
-    ck_assert_int_eq(command("run scenes/blocks.yaml --fresh"), BRUNT_BAD_USAGE);
+    ck_assert_int_eq(command("run scenes/blocks.yaml --fresh --resume"), BRUNT_BAD_USAGE);
 }
 END_TEST
 

@@ -20,7 +20,7 @@ frictions="0 0.02"
 run() { # CELL VELOCITY END FRICTION
     dir=$out/$1_$2_$4
     grep -q '"status": *"done"' "$dir/summary.json" 2>/dev/null && return
-    "$brunt" run bench/scenes/ogive_6061.yaml -q -t 1 -o "$dir" --set "grid.cell=$1 mm" --set "contact.friction=$4" \
+    "$brunt" run bench/scenes/ogive_6061.yaml --fresh -q -t 1 -o "$dir" --set "grid.cell=$1 mm" --set "contact.friction=$4" \
         --set "bodies.rod.velocity=[0, -$2]" --set "time.end=$3 us" --set output.every=none \
         --set "measures.force_at_the_end.from=$(($3 - 20)) us" >/dev/null 2>&1
 }

@@ -25,7 +25,7 @@ for cell in $cells; do
         grep -q '"status": *"done"' "$dir/summary.json" 2>/dev/null && continue
         end=$((180000 / v)) # us; the rod is used up in some 85 to 110 mm / v
         [ "$v" -eq 2500 ] && every="10 us" || every=none
-        "$brunt" run bench/scenes/rod_on_plate.yaml -q -t 1 -o "$dir" --set "grid.cell=$cell mm" --set "bodies.rod.velocity=[0, -$v]" \
+        "$brunt" run bench/scenes/rod_on_plate.yaml --fresh -q -t 1 -o "$dir" --set "grid.cell=$cell mm" --set "bodies.rod.velocity=[0, -$v]" \
             --set "time.end=$end us" --set "output.every=$every" >/dev/null 2>&1
     done
 done

@@ -28,7 +28,7 @@ def run(size, velocity):
     folder = f"{out}/{size}_{velocity:g}"
     path = folder + "/summary.json"
     if not os.path.exists(path) or json.load(open(path))["status"] != "done":
-        subprocess.run([brunt, "run", "bench/scenes/plate_weldox_blunt.yaml", "-q", "-t", "1", "-o", folder,
+        subprocess.run([brunt, "run", "bench/scenes/plate_weldox_blunt.yaml", "--fresh", "-q", "-t", "1", "-o", folder,
                         "--set", f"bodies.plate.size={size} mm", "--set", f"bodies.projectile.velocity=[0, -{velocity:g}]",
                         "--set", "output.every=50 us", "--set", "time.end=400 us"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     try:

@@ -24,7 +24,7 @@ run() { # CELL BUMPER STANDOFF WALL
     grep -q '"status": *"done"' "$dir/summary.json" 2>/dev/null && return
     if [ "$1" = 0 ]; then from=-1000 to=-997.5 front=-100; else from=-$1 to=0 front=-$(echo "$1 + $2" | bc); fi
     # 80 us from when the cloud is there
-    "$brunt" run bench/scenes/whipple_shield.yaml -q -t 1 -o "$dir" --set "grid.cell=$cell mm" \
+    "$brunt" run bench/scenes/whipple_shield.yaml --fresh -q -t 1 -o "$dir" --set "grid.cell=$cell mm" \
         --set "bodies.bumper.shape.box={min: [0, $from mm], max: [40 mm, $to mm]}" \
         --set "bodies.wall.shape.box={min: [0, $(echo "$front - $3" | bc) mm], max: [100 mm, $front mm]}" \
         --set "time.end=$(echo "80 + $2 / 5" | bc) us" --set "output.every=$(echo "80 + $2 / 5" | bc) us" >/dev/null 2>&1

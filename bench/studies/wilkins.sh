@@ -14,7 +14,7 @@ mkdir -p "$out"
 csv=bench/studies/wilkins.csv
 echo "speed [m/s],rho U^2 [Pa],length [m],foot radius [m]" >$csv
 for speed in 100 125 150 175 200 225 250 275 300; do
-    "$brunt" run bench/scenes/taylor_bar_wilkins.yaml -q -o "$out/$speed" --set "bodies.rod.velocity=[0, -$speed]" --set "output.every=60 us" >/dev/null
+    "$brunt" run bench/scenes/taylor_bar_wilkins.yaml --fresh -q -o "$out/$speed" --set "bodies.rod.velocity=[0, -$speed]" --set "output.every=60 us" >/dev/null
     python3 - "$out/$speed/summary.json" "$speed" <<'END' >>$csv
 import json, sys
 m = json.load(open(sys.argv[1]))["measures"]

@@ -93,6 +93,8 @@ int app_parse(int argc, char **argv, const char *usage, int allowed, bool operan
         }
     }
     if (operand_required && !arguments->operand) return bad_usage(usage, "a file is wanted");
+    if (arguments->resume && arguments->fresh)
+        return bad_usage(usage, "--resume goes on, --fresh begins anew: one of them");
     if (arguments->folder && !*arguments->folder) return bad_usage(usage, "-o wants the name of a folder");
     if (arguments->trace && !*arguments->trace) return bad_usage(usage, "--trace wants the name of a file");
     return BRUNT_OK;

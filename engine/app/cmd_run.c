@@ -37,10 +37,12 @@ static void start_with_short_spins(char **argv) {
 
 int cmd_run(int argc, char **argv) {
     app_arguments arguments;
-    int status = app_parse(
-        argc, argv,
-        "brunt run SCENE [-o DIR] [-t THREADS] [--set PATH=VALUE]... [--resume] [--profile] [--trace FILE.json] [-q]",
-        APP_OUTPUT | APP_THREADS | APP_SET | APP_RESUME | APP_PROFILE | APP_TRACE | APP_QUIET, true, &arguments);
+    int status =
+        app_parse(argc, argv,
+                  "brunt run SCENE [-o DIR] [-t THREADS] [--set PATH=VALUE]... [--resume | --fresh] [--profile] "
+                  "[--trace FILE.json] [-q]",
+                  APP_OUTPUT | APP_THREADS | APP_SET | APP_RESUME | APP_FRESH | APP_PROFILE | APP_TRACE | APP_QUIET,
+                  true, &arguments);
     if (status) return status < 0 ? BRUNT_OK : status;
     if (arguments.threads != 1) start_with_short_spins(argv);
     // A run of hours must not end because the reader of its output has gone, nor without a word because a file may not
@@ -57,6 +59,7 @@ int cmd_run(int argc, char **argv) {
     if (status) return status;
     const brunt_run_options options = {.folder = arguments.folder,
                                        .resume = arguments.resume,
+                                       .fresh = arguments.fresh,
                                        .profile = arguments.profile,
                                        .trace = arguments.trace,
                                        .console = arguments.quiet ? NULL : stdout,
