@@ -1,5 +1,5 @@
 // Labels: long
-// Hard cases that need many steps: a million in free flight, a hundred turns of a finer ring.
+// Hard cases that need many steps: a million in free flight and at rest, a hundred turns of a finer ring.
 #include "hard_case.h"
 #include "hard_world.h"
 
@@ -46,10 +46,55 @@ START_TEST(hundred_turns_of_a_fine_ring) {
 }
 END_TEST
 
+// C04. A block at rest on a plane and on held elements, without damping, under gravity that grows over two
+// thousand periods. Without friction nothing holds the place of a block: only with it is a drift asked.
+START_TEST(million_steps_at_rest) {
+    const bool plane = _i & 1;
+    const double h = 0.5, ramp = 200, g = 10, mu = _i & 2 ? 0.5 : 0;
+    brunt_world_def def = def_begin(2, 1);
+    def.groups = brunt_alloc(sizeof *def.groups);
+    def.contact.method = BRUNT_CONTACT_AUGURY;
+    def.contact.friction = mu;
+    def_material(&def, "neo-hookean", 1000, 1e6, 0.3);
+    brunt_body_def *block = def_box(&def, "block", XYZ(0, 0, 0), XYZ(1, 1, 0));
+    block->method = BRUNT_FEM, block->element = BRUNT_QUAD4, block->size = h;
+    if (plane) {
+        def_plane(&def, XYZ(0, 0, 0), XYZ(0, 1, 0), BRUNT_SEPARATE, mu);
+    } else {
+        brunt_body_def *base = def_box(&def, "base", XYZ(-1, -0.5, 0), XYZ(2, 0, 0));
+        base->method = BRUNT_FEM, base->element = BRUNT_QUAD4, base->size = h;
+        def.groups[0] = brunt_group_def_default(), def.group_count = 1;
+        snprintf(def.groups[0].body, sizeof def.groups[0].body, "base");
+        snprintf(def.groups[0].group, sizeof def.groups[0].group, "surface");
+    }
+    def.gravity[1] = -g, def.gravity_ramp = ramp;
+    brunt_world *world = world_take(&def);
+    const int body = plane ? 0 : 1; // in order of name
+    world_until(world, 1.1 * ramp);
+    const brunt_body_sums start = world_sums(world, body);
+    const double from = (plane ? world_wall(world, 0) : world_pair(world, 0)).impulse[1],
+                 begun = brunt_world_time(world);
+    world_steps(world, MILLION - (int)brunt_world_steps(world));
+    const brunt_body_sums end = world_sums(world, body);
+    const brunt_force f = plane ? world_wall(world, 0) : world_pair(world, 0);
+    const double weight = end.mass * g, time = brunt_world_time(world) - begun;
+    char what[64];
+    snprintf(what, sizeof what, "mesh on %s, friction %g", plane ? "a plane" : "held elements", mu);
+    if (mu > 0) hard_case("C04", fabs(end.centre[0] - start.centre[0]) / h, 1e-6, 1e-6, "%s: drift [edges]", what);
+    hard_case("C04", -fmin(0, end.low[1]) / h, 0.02, 0.02, "%s: depth [edges]", what);
+    hard_case("C04", end.kinetic / (weight * h), 1e-10, 1e-10, "%s: kinetic energy [m g h]", what);
+    hard_case("C04", fabs((f.impulse[1] - from) / time / weight - 1), 1e-4, 1e-4, "%s: mean force of the weight", what);
+    brunt_world_destroy(world);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("long stability");
     ADD(million_steps_of_free_flight);
     ADD(million_steps_of_turning_flight);
     ADD(hundred_turns_of_a_fine_ring);
+    TCase *rest = tcase_create("million_steps_at_rest");
+    tcase_add_loop_test(rest, million_steps_at_rest, 0, 4);
+    suite_add_tcase(suite, rest);
     return suite_main(suite);
 }
