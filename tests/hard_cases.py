@@ -52,8 +52,29 @@ def measures(folder):
     return rows
 
 
+def places(number):
+    """Suites and scenes with a comment that names the case."""
+    found = []
+    for pattern, mark in (("tests/test_*.c", "//"), ("bench/scenes/*.yaml", "#")):
+        for path in sorted(glob.glob(os.path.join(HERE, "..", pattern))):
+            with open(path, encoding="utf-8") as lines:
+                if re.search(r"^ *%s.*\b%s\b" % (mark, number), lines.read(), re.M):
+                    found.append(os.path.splitext(os.path.basename(path))[0])
+    return found
+
+
+def benchmarks():
+    lines = ["", "## Benchmarks", "", "| | | where it is tested |", "| --- | --- | --- |"]
+    for number, (what, note) in sorted(catalogue().items()):
+        if number[0] == "B":
+            where = ", ".join(places(number)) or note
+            complain([] if where else [number + " stands in no suite and no scene, and has no note"])
+            lines.append("| **%s** | %s | %s |" % (number, what, where))
+    return "\n".join(lines) + "\n"
+
+
 def page(rows):
-    cases = catalogue()
+    cases = {number: case for number, case in catalogue().items() if number[0] == "C"}
     complain([("%s is not in the catalogue" % n) for n, _, _ in rows if n not in cases])
     lines = []
     for number, (asked, note) in sorted(cases.items()):
@@ -66,7 +87,7 @@ def page(rows):
         lines += ["| | %s | %s of %s | %s | %s |" % (what, row[0], row[1], "holds" if row[2] == "holds" else "**falls short**",
                                                    suite) for (_, suite, what), row in own]
     good = sum(row[2] == "holds" for row in rows.values())
-    return HEAD % (good, len(rows), len({n for n, _, _ in rows})) + "\n".join(lines) + "\n"
+    return HEAD % (good, len(rows), len({n for n, _, _ in rows})) + "\n".join(lines) + "\n" + benchmarks()
 
 
 def told():
@@ -94,6 +115,8 @@ def check(rows):
               for key, row in found.items() if key not in page_says or page_says[key] != row[2] and not close(row)] +
              ["%s, %s: on the page, and not measured" % key for key in page_says
               if key[0] in suites and key not in found])
+    with open(PAGE, encoding="utf-8") as lines:
+        complain([] if lines.read().endswith(benchmarks()) else ["the page's benchmarks are not those of the sources"])
     print("hard_cases.md: %d measures as they were found" % len(found))
 
 

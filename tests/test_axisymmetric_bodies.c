@@ -178,8 +178,8 @@ START_TEST(traction_acts_on_the_circle) {
 }
 END_TEST
 
-// A rod without lateral contraction hits a wall: the time in contact is 2 L / c, the force rho c v A, and it leaves as
-// it came.
+// B05. A rod without lateral contraction hits a wall: the time in contact is 2 L / c, the force rho c v A, and it
+// leaves as it came.
 START_TEST(rod_on_a_wall) {
     const double R = 0.01, L = 0.1, E = 1e9, density = 1000, c = sqrt(E / density), v = 1;
     brunt_world_def def = rings_begin("neo-hookean", density, E, 0);

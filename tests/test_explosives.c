@@ -557,6 +557,7 @@ static const struct {
              {true, 200, 0, 1.5, 0.05},
              {true, 200, 10.8e9, 1.5, 0.05}};
 
+// B32.
 START_TEST(detonation) {
     const cj_state cj = chapman_jouguet();
     taylor_wave *wave = make_wave(&cj);
@@ -599,8 +600,8 @@ static void sod(double xi, double *rho, double *p) {
     *rho = pow(slower, 5), *p = pow(slower, 7);
 }
 
-// Two bodies of elements in contact, of the ideal gas as itself and as a polynomial: mean error of the density below 1
-// % of its mean at 400 cells.
+// B07. Two bodies of elements in contact, of the ideal gas as itself and as a polynomial: mean error of the density
+// below 1 % of its mean at 400 cells.
 START_TEST(shock_tube) {
     const int cells = 400;
     const double h = 1.0 / cells, time = 0.2;

@@ -478,8 +478,8 @@ START_TEST(drop_is_drawn_out) {
 }
 END_TEST
 
-// A column between slippery walls that comes to rest under its weight: hydrostatic pressure, and the height that the
-// compression of a linear liquid leaves.
+// B24. A column between slippery walls that comes to rest under its weight: hydrostatic pressure, and the height that
+// the compression of a linear liquid leaves.
 START_TEST(hydrostatic_column) {
     const double height = 1, h = 0.05, c = 40, g = 9.81, rho = 1000;
     brunt_world_def def = def_begin(2, h);

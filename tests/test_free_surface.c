@@ -48,12 +48,12 @@ static field_range range_of(brunt_world *world, const char *name) {
     return range;
 }
 
-// A column a wide and 2 a high between a wall and a floor, in units of a = 1, g = 1, density 1; ten cells to a. The
-// front's speed against Martin and Moyce's measurement (Phil. Trans. R. Soc. A 244 (1952) 312: the slope of x / a over
-// t sqrt(2 g / a) is 1.324 between 1.5 and 3; with these cells it is a tenth too much) and Ritter's bound 2 sqrt(g 2
-// a). First the floor bears what a potential flow presses on it: p is harmonic, 0 on the top and on the free side, so
-// that the force is 16 / pi^3 sum 1 / (2 k - 1)^3 = 0.5427, not the weight 2; in the mean over the gravest sound wave,
-// whose wave number is (pi / 2, pi / 4).
+// B21, B22. A column a wide and 2 a high between a wall and a floor, in units of a = 1, g = 1, density 1; ten cells to
+// a. The front's speed against Martin and Moyce's measurement (Phil. Trans. R. Soc. A 244 (1952) 312: the slope of x /
+// a over t sqrt(2 g / a) is 1.324 between 1.5 and 3; with these cells it is a tenth too much) and Ritter's bound 2
+// sqrt(g 2 a). First the floor bears what a potential flow presses on it: p is harmonic, 0 on the top and on the free
+// side, so that the force is 16 / pi^3 sum 1 / (2 k - 1)^3 = 0.5427, not the weight 2; in the mean over the gravest
+// sound wave, whose wave number is (pi / 2, pi / 4).
 START_TEST(column_falls) {
     const double h = 0.1, c = 40, unit = 1 / sqrt(2), wave = 2 * PI / (c * hypot(PI / 2, PI / 4));
     brunt_world_def def = def_begin(2, h);

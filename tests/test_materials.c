@@ -784,8 +784,8 @@ static sample copper(int dim) {
     return sample_create(model, parameters, false, dim, BRUNT_LANES);
 }
 
-// Symmetric copper impact at 500 and 1000 m/s. On the Hugoniot the jump conditions give p = rho0 (c0 + s u) u, rho =
-// rho0 Us/(Us - u) and e = p (1 - rho0/rho)/2 (Rankine-Hugoniot); the published values are Us = c0 + s u for copper
+// B08. Symmetric copper impact at 500 and 1000 m/s. On the Hugoniot the jump conditions give p = rho0 (c0 + s u) u, rho
+// = rho0 Us/(Us - u) and e = p (1 - rho0/rho)/2 (Rankine-Hugoniot); the published values are Us = c0 + s u for copper
 // with c0 3940, s 1.489.
 START_TEST(mie_gruneisen_hugoniot) {
     const double expect[2][4] = {{250, 4312.2, 9.627e9, 9479.6}, {500, 4684.5, 20.916e9, 9997.0}};

@@ -122,7 +122,8 @@ END_TEST
 
 // ------------------------------------------------------------------------------------------ motions
 
-// A warped sheet as it is made, and after ten thousand turns about an axis across it, has neither stress nor springs.
+// B28. A warped sheet as it is made, and after ten thousand turns about an axis across it, has neither stress nor
+// springs.
 START_TEST(rigid_motion_makes_no_stress) {
     FOR_SHEETS(kind)
     for (int m = 0; m < 3; m++) {
@@ -158,7 +159,7 @@ static void stress_of(double A[3][3], sheet_options o, double sigma[6], double *
     brunt_fem_free(&body);
 }
 
-// An affine motion, out of the plane too, of a distorted flat mesh that lies anywhere in space.
+// B28. An affine motion, out of the plane too, of a distorted flat mesh that lies anywhere in space.
 START_TEST(patch_test) {
     FOR_SHEETS(kind)
     for (int m = 0; m < 3; m++) {
@@ -642,6 +643,7 @@ static hencky hencky_membrane(int m, int rings, double slope, double t) {
     return result;
 }
 
+// B26.
 START_TEST(hencky_membrane_under_pressure) {
     hencky h[3];
     for (int k = 0; k < 3; k++) {

@@ -77,9 +77,9 @@ START_TEST(constants_agree) {
 }
 END_TEST
 
-// A point of copper's equation of state taken from rest to the end state of a shock in one step: by the trapezoid of
-// the pressure the energy is that of the Hugoniot, p (1 - J) / 2, when p is on it: p = rho0 (c0 + s u) u, 1 - J = u /
-// (c0 + s u).
+// B08. A point of copper's equation of state taken from rest to the end state of a shock in one step: by the trapezoid
+// of the pressure the energy is that of the Hugoniot, p (1 - J) / 2, when p is on it: p = rho0 (c0 + s u) u, 1 - J = u
+// / (c0 + s u).
 START_TEST(copper_hugoniot) {
     brunt_material_def def = preset("copper-ofhc");
     brunt_material material;

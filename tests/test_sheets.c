@@ -364,7 +364,7 @@ START_TEST(neo_hookean_is_the_solid) {
 }
 END_TEST
 
-// Pressure of a rubber balloon, p R0 / (2 mu t0) = tau / (mu l^3): with no change of volume 1/l - 1/l^7, which is
+// B27. Pressure of a rubber balloon, p R0 / (2 mu t0) = tau / (mu l^3): with no change of volume 1/l - 1/l^7, which is
 // greatest at l = 7^(1/6) (Needleman, Int. J. Solids Struct. 13 (1977) 409).
 static double balloon_pressure(sheet *s, double l) { return stress_at(s, (sym){l, l, 0}).xx / (s->mu * l * l * l); }
 

@@ -51,6 +51,7 @@ static const struct {
     {"cubic apic", BRUNT_CUBIC, BRUNT_APIC, 1.85, 1e-4},
 };
 
+// B09.
 START_TEST(axial_vibration_converges) {
     enum { LEVELS = 4 };
     double error[LEVELS];
@@ -153,8 +154,8 @@ END_TEST
 
 // ------------------------------------------------------------------------------------------ own weight
 
-// A column between smooth walls, its weight put on over ten periods of its first mode: sigma_yy = -rho g (H - y), and
-// the base carries rho g w H.
+// B24. A column between smooth walls, its weight put on over ten periods of its first mode: sigma_yy = -rho g (H - y),
+// and the base carries rho g w H.
 START_TEST(column_under_its_own_weight) {
     const double rho = 1800, E = 1e6, g = 9.81, H = 0.1, w = 0.02, period = 4 * H * sqrt(rho / E);
     brunt_world_def def = def_begin(2, 0.005);
@@ -193,9 +194,9 @@ END_TEST
 
 // ------------------------------------------------------------------------------------------ first touch
 
-// Two disks or spheres, head on and off centre: the first push comes when the distance of their centres is the sum of
-// the radii, a step more or less and a twentieth of a particle spacing (the hull of the particles lies so close to the
-// surface).
+// B15. Two disks or spheres, head on and off centre: the first push comes when the distance of their centres is the sum
+// of the radii, a step more or less and a twentieth of a particle spacing (the hull of the particles lies so close to
+// the surface).
 START_TEST(first_contact_time) {
     const int dimension = 2 + _i % 2;
     const double offset = _i / 2 % 2 ? 0.19 : 0, shift = _i / 4 ? 0.0137 : 0;
@@ -265,7 +266,7 @@ END_TEST
 
 // ------------------------------------------------------------------------------------------ spin
 
-// A free elastic square, and a cube about an axis that is none of the grid's, turn a hundred times. The angular
+// B31. A free elastic square, and a cube about an axis that is none of the grid's, turn a hundred times. The angular
 // momentum is that of a rigid body to begin with and the same to rounding at the end; the kinetic energy to a percent
 // (rounding and the transfer's damping of what swings).
 START_TEST(hundred_turns) {
@@ -355,6 +356,7 @@ static const struct {
 };
 enum { SLOPES = sizeof slopes / sizeof slopes[0] };
 
+// B17.
 START_TEST(slope) {
     const double angle = degrees(24), friction = slopes[_i].friction;
     double way,

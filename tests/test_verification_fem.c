@@ -193,9 +193,9 @@ END_TEST
 
 // ------------------------------------------------------------------------------------------ impact on a wall
 
-// A rod of length 10 and section 1 hits a rigid wall: force rho c V A for 2 L / c, then it leaves as fast as it came.
-// Units in which E, rho and c are 1. The half element at the wall stops at once, which costs 1 / 2N of the energy; with
-// that and what the dispersed fronts keep, N = 50 elements leave 0.98 of the speed.
+// B05. A rod of length 10 and section 1 hits a rigid wall: force rho c V A for 2 L / c, then it leaves as fast as it
+// came. Units in which E, rho and c are 1. The half element at the wall stops at once, which costs 1 / 2N of the
+// energy; with that and what the dispersed fronts keep, N = 50 elements leave 0.98 of the speed.
 START_TEST(rod_on_wall) {
     const double L = 10, V = 1e-3, gap = 1e-3 * L;
     const int N = 50;
@@ -251,6 +251,7 @@ static const struct {
     double nu, size, force, lasts, hourglass;
 } balls[] = {{0.3, 5e-3, 0.05, 0.03, 0.05}, {0.499, 7.1e-3, 0.15, 0.05, 0.05}};
 
+// B14.
 START_TEST(ball_on_plane) {
     const double R = 0.1, E = 1e6, nu = balls[_i].nu, rho = 1000, v = 0.1, gap = 2e-4, e_star = E / (1 - nu * nu);
     const double m = 4.0 / 3 * PI * R * R * R * rho, d = pow(15 * m * v * v / (16 * sqrt(R) * e_star), 0.4);
