@@ -1,16 +1,19 @@
 #include "checkpoint.h"
 
 #include <libfyaml.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "atomic_file.h"
 #include "error.h"
+#include "hash.h"
 #include "hdf5_file.h"
+#include "lanes.h"
 #include "memory.h"
 #include "real.h"
 
-enum { FORMAT = 1, DATASET_NAME = 128 };
+enum { FORMAT = 2, DATASET_NAME = 128 };
 
 void brunt_run_state_free(brunt_run_state *state) {
     brunt_free(state->picture_times);
@@ -76,11 +79,13 @@ static int put_state(hid_t file, brunt_world *world, const char *path, brunt_err
 static bool put_run_state(hid_t file, brunt_world *world, const char *scene_text, const brunt_run_state *state) {
     return brunt_hdf5_put_text(file, "version", BRUNT_VERSION) &&
            brunt_hdf5_put_text(file, "precision", BRUNT_REAL_NAME) &&
+           brunt_hdf5_put_integer(file, "lanes", BRUNT_LANES) &&
            brunt_hdf5_put_integer(file, "state_blocks", brunt_state_count(world)) &&
            brunt_hdf5_put_integer(file, "step", brunt_world_steps(world)) &&
            brunt_hdf5_put_integer(file, "particles", brunt_world_particles(world)) &&
            brunt_hdf5_put_integer(file, "elements", brunt_world_elements(world)) &&
            brunt_hdf5_put_integer(file, "mesh_hash", (long long)state->mesh_hash) &&
+           brunt_hdf5_put_integer(file, "run", (long long)brunt_checkpoint_identity(scene_text, state->mesh_hash)) &&
            brunt_hdf5_put_number(file, "time", brunt_world_time(world)) &&
            brunt_hdf5_put_number(file, "wall_seconds", state->wall_seconds) &&
            brunt_hdf5_put_number(file, "cpu_seconds", state->cpu_seconds) &&
@@ -168,6 +173,14 @@ static char *comparable(const char *text) {
     return out;
 }
 
+uint64_t brunt_checkpoint_identity(const char *scene_text, uint64_t mesh_hash) {
+    char *text = comparable(scene_text);
+    uint64_t hash = mesh_hash;
+    for (const char *c = text ? text : scene_text; *c; c++) hash = brunt_hash_add(hash, (uint64_t)(unsigned char)*c);
+    free(text);
+    return hash;
+}
+
 // First line of `a` and of `b` that differ, trimmed.
 static void first_difference(const char *a, const char *b, char line_a[160], char line_b[160]) {
     size_t start = 0, i = 0;
@@ -205,21 +218,24 @@ static int compare_scenes(const char *path, const char *stored, const char *want
 // A whole dataset into new memory, with a zero after it. NULL when it is not there or of another type.
 static void *read_dataset(hid_t file, const char *name, char letter, int64_t *count) {
     const element_type *wanted = find_type(letter);
-    hid_t set = H5Dopen2(file, name, H5P_DEFAULT);
+    hid_t set = brunt_hdf5_dataset(file, name, wanted->class, wanted->bytes, count);
     if (set < 0) return NULL;
-    hid_t type = H5Dget_type(set), space = H5Dget_space(set);
-    void *values = NULL;
-    bool fits = type >= 0 && space >= 0 && H5Tget_class(type) == wanted->class && H5Tget_size(type) == wanted->bytes;
-    *count = fits ? (int64_t)H5Sget_simple_extent_npoints(space) : -1;
-    if (*count >= 0) values = brunt_alloc(wanted->bytes * (size_t)(*count + 1));
-    if (values && *count > 0 && H5Dread(set, memory_type(letter), H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0) {
+    void *values = brunt_alloc(wanted->bytes * ((size_t)*count + 1)); // no more than the file is large
+    if (values && !brunt_hdf5_read(set, memory_type(letter), 0, *count, values)) {
         brunt_free(values);
         values = NULL;
     }
-    if (space >= 0) H5Sclose(space);
-    if (type >= 0) H5Tclose(type);
     H5Dclose(set);
     return values;
+}
+
+// What no run has written: counts and times below zero or not finite, pictures that go back in time.
+static bool is_sound(const brunt_run_state *s) {
+    const double numbers[] = {s->time, s->wall_seconds, s->step_seconds, s->output_seconds, s->cpu_seconds};
+    bool sound = s->step >= 0;
+    for (size_t n = 0; n < sizeof numbers / sizeof *numbers; n++) sound &= isfinite(numbers[n]) && numbers[n] >= 0;
+    for (int64_t p = 0; p < s->picture_count; p++) sound &= s->picture_times[p] >= (p ? s->picture_times[p - 1] : 0);
+    return sound;
 }
 
 static int read_run_state(hid_t file, const char *path, brunt_run_state *state, brunt_error *error) {
@@ -238,21 +254,27 @@ static int read_run_state(hid_t file, const char *path, brunt_run_state *state, 
     if (brunt_hdf5_get_integer(file, "mesh_hash", &mesh_hash)) state->mesh_hash = (uint64_t)mesh_hash;
     state->step = step;
     state->failed = failed != 0;
-    return BRUNT_OK;
+    return is_sound(state) ? BRUNT_OK
+                           : brunt_fail(error, BRUNT_BAD_INPUT,
+                                        "%s: the state of the run's outputs holds numbers that no run has", path);
 }
 
 static int check_header(hid_t file, const char *path, brunt_error *error) {
     char version[64], precision[16];
+    long long width = 0;
     if (!brunt_hdf5_get_text(file, "version", version, sizeof version) ||
-        !brunt_hdf5_get_text(file, "precision", precision, sizeof precision))
-        return brunt_fail(error, BRUNT_BAD_INPUT, "%s: version and precision are missing", path);
+        !brunt_hdf5_get_text(file, "precision", precision, sizeof precision) ||
+        !brunt_hdf5_get_integer(file, "lanes", &width))
+        return brunt_fail(error, BRUNT_BAD_INPUT, "%s: version, precision and vector width are missing", path);
     if (strcmp(version, BRUNT_VERSION))
         return brunt_fail(error, BRUNT_BAD_INPUT,
                           "%s: written by brunt %s, this is brunt %s; the same version is wanted", path, version,
                           BRUNT_VERSION);
-    if (strcmp(precision, BRUNT_REAL_NAME))
-        return brunt_fail(error, BRUNT_BAD_INPUT, "%s: written in %s precision, this program computes in %s", path,
-                          precision, BRUNT_REAL_NAME);
+    if (width != BRUNT_LANES || strcmp(precision, BRUNT_REAL_NAME))
+        return brunt_fail(
+            error, BRUNT_BAD_INPUT,
+            "%s: written by a build with %lld lane%s in %s; this one has %d in %s, which would give other bits", path,
+            width, width == 1 ? "" : "s", precision, BRUNT_LANES, BRUNT_REAL_NAME);
     return BRUNT_OK;
 }
 
@@ -321,19 +343,20 @@ bool brunt_checkpoint_failed(const char *path) {
 
 static herr_t describe_block(hid_t root, const char *name, const H5O_info_t *info, void *context) {
     if (info->type != H5O_TYPE_DATASET) return 0;
-    hid_t set = H5Dopen2(root, name, H5P_DEFAULT);
-    if (set < 0) return -1;
-    hid_t type = H5Dget_type(set), space = H5Dget_space(set);
-    const char *type_name = "unknown";
-    for (size_t t = 0; t < sizeof element_types / sizeof *element_types; t++)
-        if (element_types[t].bytes == H5Tget_size(type) && element_types[t].class == H5Tget_class(type))
-            type_name = element_types[t].name;
-    long long count = (long long)H5Sget_simple_extent_npoints(space);
-    fprintf(context, "%-56s %12lld x %-6s %12lld bytes\n", name, count, type_name,
-            count * (long long)H5Tget_size(type));
-    H5Sclose(space);
-    H5Tclose(type);
-    H5Dclose(set);
+    char shown[DATASET_NAME + 1], path[DATASET_NAME + 2];
+    snprintf(shown, sizeof shown, "%s", name);
+    snprintf(path, sizeof path, "/%s", shown);
+    brunt_hdf5_printable(shown);
+    for (size_t t = 0; t < sizeof element_types / sizeof *element_types; t++) {
+        int64_t count;
+        hid_t set = brunt_hdf5_dataset(root, path, element_types[t].class, element_types[t].bytes, &count);
+        if (set < 0) continue;
+        H5Dclose(set);
+        fprintf(context, "%-56s %12lld x %-6s %12lld bytes\n", shown, (long long)count, element_types[t].name,
+                (long long)count * (long long)element_types[t].bytes);
+        return 0;
+    }
+    fprintf(context, "%-56s no data that brunt reads\n", shown);
     return 0;
 }
 

@@ -26,6 +26,10 @@ void brunt_run_state_free(brunt_run_state *state);
 int brunt_checkpoint_write(const char *path, const char *backup, brunt_world *world, const char *scene_text,
                            const brunt_run_state *state, brunt_error *error);
 
+// A number for what a run computes: the scene less what may change between its legs, and its meshes. In the checkpoint
+// and the history.
+uint64_t brunt_checkpoint_identity(const char *scene_text, uint64_t mesh_hash);
+
 // Restores a world made from the same scene: everything but time.end, output, measures and title must agree (the number
 // of threads is no part of a scene). Fills `state`, to be freed. BRUNT_BAD_INPUT, with what differs, when it cannot be
 // resumed.

@@ -5,6 +5,7 @@
 
 #include "checkpoint.h"
 #include "error.h"
+#include "input_file.h"
 #include "gmsh.h"
 #include "hdf5_file.h"
 #include "history.h"
@@ -13,8 +14,9 @@
 int brunt_describe_file(const char *path, FILE *out, brunt_error *error) {
     char start[64] = "", kind[32];
     int format;
-    FILE *file = fopen(path, "rbe");
-    if (!file) return brunt_fail(error, BRUNT_IO_ERROR, "%s: cannot open the file: %s", path, strerror(errno));
+    const char *why;
+    FILE *file = brunt_input_open(path, &why);
+    if (!file) return brunt_fail(error, BRUNT_IO_ERROR, "%s: cannot open the file: %s", path, why);
     bool unreadable = fread(start, 1, sizeof start - 1, file) == 0 && ferror(file);
     if (unreadable) brunt_fail(error, BRUNT_IO_ERROR, "%s: cannot read the file: %s", path, strerror(errno));
     fclose(file);

@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 
 #include "error.h"
+#include "input_file.h"
 #include "gmsh_cursor.h"
 #include "gmsh_file.h"
 #include "memory.h"
@@ -588,11 +589,12 @@ static void read_section(gmsh_cursor *c, bool seen[SECTIONS]) {
 
 static int load(gmsh_file *file, brunt_error *error) {
     struct stat status;
-    FILE *stream = fopen(file->path, "rbe");
-    if (!stream) return brunt_fail(error, BRUNT_IO_ERROR, "%s: cannot open the file: %s", file->path, strerror(errno));
+    const char *why;
+    FILE *stream = brunt_input_open(file->path, &why);
+    if (!stream) return brunt_fail(error, BRUNT_IO_ERROR, "%s: cannot open the file: %s", file->path, why);
     int result = BRUNT_OK;
-    if (fstat(fileno(stream), &status) || !S_ISREG(status.st_mode)) {
-        result = brunt_fail(error, BRUNT_IO_ERROR, "%s: not a file", file->path);
+    if (fstat(fileno(stream), &status)) {
+        result = brunt_fail(error, BRUNT_IO_ERROR, "%s: cannot read the file: %s", file->path, strerror(errno));
     } else {
         file->size = (size_t)status.st_size;
         file->bytes = brunt_alloc(file->size + 1); // a 0 behind it stops strtod

@@ -5,6 +5,7 @@
 #include <zlib.h>
 
 #include "error.h"
+#include "input_file.h"
 #include "memory.h"
 
 // HDF5 prints its error stack unless told otherwise; the library never prints.
@@ -67,7 +68,8 @@ static bool parse_block(FILE *stream, char kind[32], int *format, size_t *length
 }
 
 bool brunt_hdf5_kind(const char *path, char kind[32], int *format) {
-    FILE *stream = fopen(path, "rbe");
+    const char *why;
+    FILE *stream = brunt_input_open(path, &why);
     if (!stream) return false;
     size_t length;
     unsigned long sum;
@@ -106,8 +108,9 @@ static int verify(FILE *stream, const char *path, const char *kind, int format, 
 int brunt_hdf5_open(const char *path, const char *kind, int format, hid_t *file, brunt_error *error) {
     silence();
     *file = -1;
-    FILE *stream = fopen(path, "rbe");
-    if (!stream) return brunt_fail(error, BRUNT_IO_ERROR, "%s: cannot open the file: %s", path, strerror(errno));
+    const char *why;
+    FILE *stream = brunt_input_open(path, &why);
+    if (!stream) return brunt_fail(error, BRUNT_IO_ERROR, "%s: cannot open the file: %s", path, why);
     int status = verify(stream, path, kind, format, error);
     fclose(stream);
     if (status) return status;
@@ -131,6 +134,79 @@ bool brunt_hdf5_put(hid_t file, const char *name, hid_t file_type, hid_t memory_
     if (creation >= 0) H5Pclose(creation);
     if (space >= 0) H5Sclose(space);
     return ok;
+}
+
+// Whether the name leads to its object by hard links alone, that is, within the file.
+static bool stays_within(hid_t file, const char *name) {
+    char part[256];
+    size_t length = strlen(name);
+    if (length >= sizeof part) return false;
+    for (size_t at = 1; at <= length; at++) {
+        if (name[at] && name[at] != '/') continue;
+        H5L_info_t info;
+        memcpy(part, name, at);
+        part[at] = 0;
+        if (H5Lget_info(file, part, &info, H5P_DEFAULT) < 0 || info.type != H5L_TYPE_HARD) return false;
+    }
+    return true;
+}
+
+// No data outside of the file, no filter but the checksum: values take as many bytes in the file as in memory.
+static bool is_plain(hid_t set) {
+    hid_t creation = H5Dget_create_plist(set);
+    if (creation < 0) return false;
+    const H5D_layout_t layout = H5Pget_layout(creation);
+    bool plain = (layout == H5D_CHUNKED || layout == H5D_CONTIGUOUS || layout == H5D_COMPACT) &&
+                 H5Pget_external_count(creation) == 0;
+    const int filters = H5Pget_nfilters(creation);
+    for (int f = 0; f < filters && plain; f++) {
+        unsigned flags, config;
+        size_t none = 0;
+        plain = H5Pget_filter2(creation, (unsigned)f, &flags, &none, NULL, 0, NULL, &config) == H5Z_FILTER_FLETCHER32;
+    }
+    H5Pclose(creation);
+    return plain && filters >= 0;
+}
+
+static int64_t count_of(hid_t file, hid_t set, H5T_class_t kind, size_t bytes) {
+    hid_t type = H5Dget_type(set), space = H5Dget_space(set);
+    hsize_t count = 0, size = 0;
+    bool good = type >= 0 && space >= 0 && H5Tget_class(type) == kind && H5Tget_size(type) == bytes &&
+                H5Sget_simple_extent_ndims(space) == 1 && H5Sget_simple_extent_dims(space, &count, NULL) == 1 &&
+                H5Fget_filesize(file, &size) >= 0 && count <= size / bytes;
+    if (space >= 0) H5Sclose(space);
+    if (type >= 0) H5Tclose(type);
+    return good ? (int64_t)count : -1;
+}
+
+hid_t brunt_hdf5_dataset(hid_t file, const char *name, H5T_class_t kind, size_t bytes, int64_t *count) {
+    *count = -1;
+    H5O_info_t info;
+    if (!stays_within(file, name) || H5Oget_info_by_name2(file, name, &info, H5O_INFO_BASIC, H5P_DEFAULT) < 0 ||
+        info.type != H5O_TYPE_DATASET)
+        return -1;
+    hid_t set = H5Dopen2(file, name, H5P_DEFAULT);
+    if (set < 0) return -1;
+    if (is_plain(set)) *count = count_of(file, set, kind, bytes);
+    if (*count >= 0) return set;
+    H5Dclose(set);
+    return -1;
+}
+
+bool brunt_hdf5_read(hid_t set, hid_t memory_type, int64_t first, int64_t count, void *values) {
+    hsize_t start = (hsize_t)first, length = (hsize_t)count;
+    if (!count) return true;
+    hid_t there = H5Dget_space(set), here = H5Screate_simple(1, &length, NULL);
+    bool ok = there >= 0 && here >= 0 && H5Sselect_hyperslab(there, H5S_SELECT_SET, &start, NULL, &length, NULL) >= 0 &&
+              H5Dread(set, memory_type, here, there, H5P_DEFAULT, values) >= 0;
+    if (here >= 0) H5Sclose(here);
+    if (there >= 0) H5Sclose(there);
+    return ok;
+}
+
+void brunt_hdf5_printable(char *text) {
+    for (; *text; text++)
+        if ((unsigned char)*text < ' ' || *text == 127) *text = '?';
 }
 
 static bool put_attribute(hid_t object, const char *name, hid_t file_type, hid_t memory_type, const void *value) {
@@ -162,7 +238,7 @@ static bool get_attribute(hid_t object, const char *name, H5T_class_t kind, hid_
     hid_t attribute = H5Aopen(object, name, H5P_DEFAULT);
     hid_t type = attribute >= 0 ? H5Aget_type(attribute) : -1, space = attribute >= 0 ? H5Aget_space(attribute) : -1;
     bool ok = type >= 0 && space >= 0 && H5Tget_class(type) == kind && H5Sget_simple_extent_npoints(space) == 1 &&
-              H5Aread(attribute, memory_type, value) >= 0;
+              H5Tis_variable_str(type) <= 0 && H5Aread(attribute, memory_type, value) >= 0;
     if (space >= 0) H5Sclose(space);
     if (type >= 0) H5Tclose(type);
     if (attribute >= 0) H5Aclose(attribute);
@@ -171,9 +247,10 @@ static bool get_attribute(hid_t object, const char *name, H5T_class_t kind, hid_
 
 bool brunt_hdf5_get_text(hid_t object, const char *attribute, char *text, size_t room) {
     hid_t type = H5Tcopy(H5T_C_S1);
-    text[0] = 0;
     bool ok = type >= 0 && H5Tset_size(type, room) >= 0 && get_attribute(object, attribute, H5T_STRING, type, text);
+    text[ok ? room - 1 : 0] = 0;
     if (type >= 0) H5Tclose(type);
+    brunt_hdf5_printable(text);
     return ok;
 }
 

@@ -29,6 +29,14 @@ bool brunt_hdf5_kind(const char *path, char kind[32], int *format);
 // True on success.
 bool brunt_hdf5_put(hid_t file, const char *name, hid_t file_type, hid_t memory_type, hsize_t count,
                     const void *values);
+// A dataset as `put` writes them, of `count` numbers of that class and size; -1 for anything else: what is not there,
+// links to elsewhere, other ranks, types and filters, data outside of the file, or more numbers than the file has room
+// for.
+hid_t brunt_hdf5_dataset(hid_t file, const char *name, H5T_class_t kind, size_t bytes, int64_t *count);
+// The numbers [first, first + count) of such a dataset.
+bool brunt_hdf5_read(hid_t set, hid_t memory_type, int64_t first, int64_t count, void *values);
+// For a terminal: what is no printable character becomes '?'.
+void brunt_hdf5_printable(char *text);
 bool brunt_hdf5_put_text(hid_t object, const char *attribute, const char *text);
 bool brunt_hdf5_put_number(hid_t object, const char *attribute, double value);
 bool brunt_hdf5_put_integer(hid_t object, const char *attribute, long long value);

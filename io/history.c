@@ -11,7 +11,7 @@
 #include "memory.h"
 #include "places.h"
 
-enum { FORMAT = 1, COLUMN_NAME = 200 };
+enum { FORMAT = 2, COLUMN_NAME = 200 };
 
 typedef struct column {
     char name[COLUMN_NAME], unit[16];
@@ -41,6 +41,7 @@ struct brunt_history {
     FILE *csv;
     char csv_path[BRUNT_PATH_LENGTH];
     char title[256];
+    uint64_t run; // brunt_checkpoint_identity
 };
 
 // ---------------------------------------------------------------------------------------------------- columns
@@ -317,6 +318,8 @@ void brunt_history_destroy(brunt_history *history) {
     brunt_free(history);
 }
 
+void brunt_history_identify(brunt_history *history, uint64_t run) { history->run = run; }
+
 int64_t brunt_history_rows(const brunt_history *history) { return history->rows; }
 int32_t brunt_history_column_count(const brunt_history *history) { return history->column_count; }
 const char *brunt_history_column_name(const brunt_history *history, int32_t c) { return history->columns[c].name; }
@@ -383,6 +386,7 @@ int brunt_history_write(const brunt_history *history, const char *path, brunt_er
     if (file < 0) return brunt_fail(error, BRUNT_FAILED, "%s: HDF5 could not start the file", path);
     bool ok = brunt_hdf5_put_text(file, "title", history->title) &&
               brunt_hdf5_put_text(file, "version", BRUNT_VERSION) &&
+              brunt_hdf5_put_integer(file, "run", (long long)history->run) &&
               brunt_hdf5_put_text(file, "force", "mean over the interval since the line before");
     for (int32_t c = 0; c < history->column_count && ok; c++) {
         char name[COLUMN_NAME + 1];
@@ -402,32 +406,34 @@ int brunt_history_write(const brunt_history *history, const char *path, brunt_er
     return status ? status : brunt_atomic_rename(&out, error);
 }
 
-// Reads a column into `values` (NULL: only its length). Returns its length, -1 when there is none.
-static int64_t read_column(hid_t file, const char *name, double *values, int64_t room) {
+// Opens a column of a file; negative when there is none.
+static hid_t open_column(hid_t file, const char *name, int64_t *count) {
     char path[COLUMN_NAME + 1];
     dataset_name(name, path);
-    hid_t set = H5Dopen2(file, path, H5P_DEFAULT);
-    if (set < 0) return -1;
-    hid_t space = H5Dget_space(set);
-    int64_t count = space >= 0 ? (int64_t)H5Sget_simple_extent_npoints(space) : -1;
-    if (values &&
-        (count > room || (count > 0 && H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0)))
-        count = -1;
-    if (space >= 0) H5Sclose(space);
-    H5Dclose(set);
-    return count;
+    return brunt_hdf5_dataset(file, path, H5T_FLOAT, sizeof(double), count);
+}
+
+// Reads a column of `length` values; false when there is none.
+static bool read_column(hid_t file, const char *name, double *values, int64_t length) {
+    int64_t count;
+    hid_t set = open_column(file, name, &count);
+    bool good = set >= 0 && count == length && brunt_hdf5_read(set, H5T_NATIVE_DOUBLE, 0, count, values);
+    if (set >= 0) H5Dclose(set);
+    return good;
 }
 
 static int load_columns(brunt_history *h, hid_t file, const char *path, int64_t last_step, brunt_error *error) {
-    int64_t length = read_column(file, "step", NULL, 0), rows = 0;
-    if (length < 0) return brunt_fail(error, BRUNT_BAD_INPUT, "%s: the history has no column 'step'", path);
+    int64_t length, rows = 0;
+    hid_t step = open_column(file, "step", &length);
+    if (step >= 0) H5Dclose(step);
+    if (step < 0) return brunt_fail(error, BRUNT_BAD_INPUT, "%s: the history has no column 'step'", path);
     for (int32_t c = 0; c < h->column_count; c++) {
         void *memory = h->columns[c].values;
-        if (brunt_reserve(&memory, &h->columns[c].capacity, sizeof(double) * (size_t)(length + 1), 0))
+        if (brunt_reserve(&memory, &h->columns[c].capacity, sizeof(double) * ((size_t)length + 1), 0))
             return brunt_fail(error, BRUNT_FAILED, "out of memory while reading %s", path);
         h->columns[c].values = memory;
-        int64_t found = read_column(file, h->columns[c].name, memory, length);
-        for (int64_t r = 0; found != length && r < length; r++) h->columns[c].values[r] = NAN;
+        bool found = read_column(file, h->columns[c].name, memory, length);
+        for (int64_t r = 0; !found && r < length; r++) h->columns[c].values[r] = NAN;
     }
     const double *steps = h->columns[1].values;
     while (rows < length && steps[rows] <= (double)last_step) rows++;
@@ -439,7 +445,10 @@ int brunt_history_load(brunt_history *history, const char *path, int64_t last_st
     hid_t file;
     int status = brunt_hdf5_open(path, "history", FORMAT, &file, error);
     if (status) return status;
-    status = load_columns(history, file, path, last_step, error);
+    long long run = 0;
+    if (!brunt_hdf5_get_integer(file, "run", &run) || (uint64_t)run != history->run)
+        status = brunt_fail(error, BRUNT_BAD_INPUT, "%s: the history of another run than this scene's", path);
+    if (!status) status = load_columns(history, file, path, last_step, error);
     H5Fclose(file);
     return status;
 }
@@ -451,23 +460,22 @@ typedef struct description {
 
 static herr_t describe_dataset(hid_t root, const char *name, const H5O_info_t *info, void *context) {
     const description *d = context;
+    (void)root;
     if (info->type != H5O_TYPE_DATASET) return 0;
-    hid_t set = H5Dopen2(root, name, H5P_DEFAULT);
-    if (set < 0) return -1;
-    char unit[32], column_name[COLUMN_NAME];
-    brunt_hdf5_get_text(set, "unit", unit, sizeof unit);
-    H5Dclose(set);
+    char unit[32] = "", column_name[COLUMN_NAME];
+    double first = NAN, last = NAN;
+    int64_t count;
     snprintf(column_name, sizeof column_name, "%s", name);
     for (char *c = column_name; *c; c++)
         if (*c == '/') *c = '.';
-    int64_t count = read_column(d->file, column_name, NULL, 0);
-    double *values = brunt_alloc(sizeof *values * (size_t)(count > 0 ? count : 1));
-    double first = NAN, last = NAN;
-    if (values && count > 0 && read_column(d->file, column_name, values, count) == count) {
-        first = values[0];
-        last = values[count - 1];
+    hid_t set = open_column(d->file, column_name, &count);
+    if (set >= 0) {
+        brunt_hdf5_get_text(set, "unit", unit, sizeof unit);
+        if (count > 0) brunt_hdf5_read(set, H5T_NATIVE_DOUBLE, 0, 1, &first);
+        if (count > 0) brunt_hdf5_read(set, H5T_NATIVE_DOUBLE, count - 1, 1, &last);
+        H5Dclose(set);
     }
-    brunt_free(values);
+    brunt_hdf5_printable(column_name);
     fprintf(d->out, "%-44s [%-8s] first %15.8g  last %15.8g\n", column_name, unit, first, last);
     return 0;
 }
@@ -476,13 +484,19 @@ int brunt_history_describe(const char *path, FILE *out, brunt_error *error) {
     hid_t file;
     int status = brunt_hdf5_open(path, "history", FORMAT, &file, error);
     if (status) return status;
-    char title[256], version[64];
+    char title[256] = "", version[64] = "";
     brunt_hdf5_get_text(file, "title", title, sizeof title);
     brunt_hdf5_get_text(file, "version", version, sizeof version);
-    fprintf(out, "history of '%s', written by brunt %s: %lld lines\n", title, version,
-            (long long)read_column(file, "time", NULL, 0));
+    int64_t lines;
+    hid_t time = open_column(file, "time", &lines);
+    if (time >= 0) {
+        H5Dclose(time);
+        fprintf(out, "history of '%s', written by brunt %s: %lld lines\n", title, version, (long long)lines);
+    } else {
+        status = brunt_fail(error, BRUNT_BAD_INPUT, "%s: the history has no column 'time'", path);
+    }
     description d = {out, file};
-    if (H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_NATIVE, describe_dataset, &d, H5O_INFO_BASIC) < 0)
+    if (!status && H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_NATIVE, describe_dataset, &d, H5O_INFO_BASIC) < 0)
         status = brunt_fail(error, BRUNT_BAD_INPUT, "%s: HDF5 cannot read the file", path);
     H5Fclose(file);
     return status;

@@ -20,6 +20,9 @@ typedef struct brunt_history brunt_history;
 brunt_history *brunt_history_create(brunt_world *world, const brunt_scene *scene, brunt_error *error);
 void brunt_history_destroy(brunt_history *history);
 
+// What the history is of (brunt_checkpoint_identity): goes to its file, and a file of another run is not taken over.
+void brunt_history_identify(brunt_history *history, uint64_t run);
+
 // Adds a line for the world as it is.
 int brunt_history_sample(brunt_history *history, brunt_world *world, brunt_error *error);
 

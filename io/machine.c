@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "error.h"
+#include "input_file.h"
 #include "memory.h"
 
 static const char header[] = "kind,name,units,threads,figure,unit,median,least,rounds";
@@ -169,11 +170,12 @@ static int read_line(reader *r, char *text) {
 
 static int read_file(brunt_machine *machine, brunt_error *error) {
     reader r = {.machine = machine, .error = error};
-    FILE *in = fopen(machine->path, "r");
+    const char *why;
+    FILE *in = brunt_input_open(machine->path, &why);
     char *text = NULL;
     size_t size = 0;
     int status = BRUNT_OK;
-    if (!in) return brunt_fail(error, BRUNT_IO_ERROR, "%.500s cannot be read: %s", machine->path, strerror(errno));
+    if (!in) return brunt_fail(error, BRUNT_IO_ERROR, "%.500s cannot be read: %s", machine->path, why);
     for (ssize_t length; !status && (length = getline(&text, &size, in)) >= 0;) {
         r.line++;
         status = strlen(text) == (size_t)length ? read_line(&r, text) : bad(&r, "a zero byte behind", "");

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "memory.h"
+#include "input_file.h"
 
 static void release_outputs(brunt_scene *scene) {
     brunt_world_def_free(&scene->world);
@@ -98,7 +99,8 @@ int brunt_scene_parse(const char *text, size_t length, const char *name, const c
 }
 
 int brunt_read_text(const char *path, char **out, size_t *size, FILE *messages) {
-    FILE *file = fopen(path, "rb");
+    const char *why;
+    FILE *file = brunt_input_open(path, &why);
     size_t length = 0, capacity = 0;
     void *text = NULL;
     *out = NULL;
@@ -108,16 +110,16 @@ int brunt_read_text(const char *path, char **out, size_t *size, FILE *messages) 
         // One byte more than is accepted: the parser then says that the file is too large.
         if (brunt_reserve(&text, &capacity, length + 65536, length) != 0) {
             failed = true;
-            errno = ENOMEM;
+            why = strerror(ENOMEM);
             break;
         }
         size_t got = fread((char *)text + length, 1, capacity - length, file);
         length += got;
-        if (ferror(file)) failed = true;
+        if (ferror(file)) failed = true, why = strerror(errno);
         if (got == 0 || length > SCENE_TEXT_LIMIT) break;
     }
     if (failed) {
-        if (messages) fprintf(messages, "%s: cannot be read: %s\n", path, strerror(errno));
+        if (messages) fprintf(messages, "%s: cannot be read: %s\n", path, why);
         if (file) fclose(file);
         brunt_free(text);
         return BRUNT_IO_ERROR;

@@ -20,6 +20,7 @@
 #include "child.h"
 #include "error.h"
 #include "hash.h"
+#include "input_file.h"
 #include "machine.h"
 #include "memory.h"
 #include "output_folder.h"
@@ -84,8 +85,9 @@ static uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t length) {
 
 static int hash_file(const char *path, uint64_t *hash, brunt_error *error) {
     unsigned char block[1 << 14];
-    FILE *file = fopen(path, "rb");
-    if (!file) return brunt_fail(error, BRUNT_IO_ERROR, "%s: cannot be read: %s", path, strerror(errno));
+    const char *why;
+    FILE *file = brunt_input_open(path, &why);
+    if (!file) return brunt_fail(error, BRUNT_IO_ERROR, "%s: cannot be read: %s", path, why);
     for (size_t got; (got = fread(block, 1, sizeof block, file)) > 0;) *hash = hash_bytes(*hash, block, got);
     bool failed = ferror(file);
     fclose(file);

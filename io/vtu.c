@@ -7,6 +7,7 @@
 #include "atomic_file.h"
 #include "element.h"
 #include "error.h"
+#include "input_file.h"
 #include "memory.h"
 #include "places.h"
 
@@ -345,8 +346,9 @@ static bool attribute(const char *element, const char *end, const char *name, ch
 }
 
 int brunt_vtu_describe(const char *path, FILE *out, brunt_error *error) {
-    FILE *file = fopen(path, "rbe");
-    if (!file) return brunt_fail(error, BRUNT_IO_ERROR, "%s: cannot open the file", path);
+    const char *why;
+    FILE *file = brunt_input_open(path, &why);
+    if (!file) return brunt_fail(error, BRUNT_IO_ERROR, "%s: cannot open the file: %s", path, why);
     // All that describes the file comes before the appended data; a collection of a million entries still fits.
     enum { LIMIT = 64 << 20 };
     size_t capacity = 0, size = 0;

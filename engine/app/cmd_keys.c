@@ -16,5 +16,5 @@ int cmd_keys(int argc, char **argv) {
         fputc('\n', stderr);
         return BRUNT_BAD_USAGE;
     }
-    return fflush(stdout) ? BRUNT_IO_ERROR : BRUNT_OK;
+    return BRUNT_OK;
 }

@@ -1,4 +1,5 @@
 // The program: picks a command.
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -30,25 +31,41 @@ static const char help[] =
     "--resume goes on.\n"
     "A run asked to stop (SIGTERM, SIGINT, SIGHUP) writes a checkpoint first; SIGUSR1 writes one and goes on.\n";
 
+// What was asked for is on the terminal or in its file, or the exit code says that it is not.
+static int printed(int status) {
+    if (!fflush(stdout) && !ferror(stdout)) return status;
+    fputs("brunt: standard output cannot be written\n", stderr);
+    return status ? status : BRUNT_IO_ERROR;
+}
+
 int main(int argc, char **argv) {
+    // Runs and studies go on when nobody listens: their results are in files.
     static const struct {
         const char *name;
         int (*run)(int, char **);
-    } commands[] = {{"run", cmd_run}, {"check", cmd_check}, {"keys", cmd_keys}, {"info", cmd_info}, {"study", cmd_study}};
+        bool writes_files;
+    } commands[] = {{"run", cmd_run, true},
+                    {"check", cmd_check, false},
+                    {"keys", cmd_keys, false},
+                    {"info", cmd_info, false},
+                    {"study", cmd_study, true}};
     if (argc < 2) {
         fputs("brunt: a command is wanted: run, check, study, keys or info (brunt --help says more)\n", stderr);
         return BRUNT_BAD_USAGE;
     }
     if (!strcmp(argv[1], "--help") || !strcmp(argv[1], "-h")) {
         fputs(help, stdout);
-        return BRUNT_OK;
+        return printed(BRUNT_OK);
     }
     if (!strcmp(argv[1], "--version")) {
         printf("brunt %s (%s precision)\n", BRUNT_VERSION, BRUNT_REAL_NAME);
-        return BRUNT_OK;
+        return printed(BRUNT_OK);
     }
     for (size_t c = 0; c < sizeof commands / sizeof *commands; c++)
-        if (!strcmp(argv[1], commands[c].name)) return commands[c].run(argc - 1, argv + 1);
+        if (!strcmp(argv[1], commands[c].name)) {
+            int status = commands[c].run(argc - 1, argv + 1);
+            return commands[c].writes_files ? status : printed(status);
+        }
     fprintf(stderr, "brunt: there is no command '%s'; run, check, study, keys and info are known (brunt --help says more)\n",
             argv[1]);
     return BRUNT_BAD_USAGE;
