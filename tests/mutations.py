@@ -3,7 +3,8 @@
 
     python3 tests/mutations.py [PART ...]    all of them, or those whose file's path holds one of the parts
 
-Each is three lines: the file and the suites that are to notice, the text that is there once, what stands there instead.
+Each is three lines: the file and the suites that are to notice, the text that is there once, what stands there instead
+(with \\n where a line ends).
 The last line is "N passed, N failed": noticed and not. A mistake that does not build, or whose text is not there just
 once, counts as not noticed. Takes some ten seconds a mistake.
 """
@@ -23,7 +24,7 @@ def read(path):
     for block in filter(str.strip, text.split("\n\n")):
         head, old, new = block.strip("\n").split("\n")
         file, suites = head.split(":")
-        yield file, suites.split(), old[2:], new[2:]
+        yield file, suites.split(), old[2:].replace("\\n", "\n"), new[2:].replace("\\n", "\n")
 
 
 def copy_sources():
@@ -75,6 +76,10 @@ def noticed(file, suites, old, new):
 def main():
     mistakes = [m for m in read(os.path.join(SOURCE, "tests", "mutations.txt"))
                 if not sys.argv[1:] or any(part in m[0] for part in sys.argv[1:])]
+    for file, _, old, _ in mistakes:
+        with open(os.path.join(SOURCE, file), encoding="utf-8") as lines:
+            if (times := lines.read().count(old)) != 1:
+                print("%s: %d times: %s" % (file, times, old))
     suites = sorted({name for m in mistakes for name in m[1]})
     copy_sources()
     subprocess.run(["cmake", "--preset", "release", "-DBRUNT_BENCH=OFF"], cwd=COPY, check=True, stdout=subprocess.DEVNULL)
@@ -85,7 +90,7 @@ def main():
     for file, names, old, new in mistakes:
         what, good = noticed(file, names, old, new)
         count[good] += 1
-        print("%-9s %s: %s -> %s" % (what, file, old, new), flush=True)
+        print("%-9s %s: %r -> %r" % (what, file, old, new), flush=True)
     print("%d passed, %d failed" % (count[1], count[0]))
     sys.exit(count[0] > 0 or count[1] == 0)
 
