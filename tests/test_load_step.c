@@ -152,7 +152,7 @@ END_TEST
 int main(void) {
     Suite *suite = suite_create("load step");
     TCase *all = tcase_create("all");
-    tcase_set_timeout(all, 60);
+    tcase_set_timeout(all, 0);
     tcase_add_test(all, step_of_a_cube_of_gas);
     tcase_add_loop_test(all, bound_is_one_and_a_close_one, 0, 8);
     tcase_add_loop_test(all, gas_at_rest_stays_so, 0, 12);

@@ -11,6 +11,7 @@
 #include <sys/mount.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/time.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
@@ -28,6 +29,8 @@ static const char *program(void) {
     ck_assert_msg(path != NULL, "BRUNT must name the program");
     return path;
 }
+
+static double killed_after; // [s] of a processor: SIGPROF ends what is started then; 0: nothing does
 
 // Starts the program with words split at blanks; %s in a word is the test's folder. `limit`: bytes a file may grow to,
 // 0 none.
@@ -59,6 +62,10 @@ static pid_t start(const char *arguments, const char *output, rlim_t limit) {
         if (limit) {
             struct rlimit value = {limit, limit};
             setrlimit(RLIMIT_FSIZE, &value);
+        }
+        if (killed_after > 0) {
+            struct itimerval timer = {.it_value = {(time_t)killed_after, (suseconds_t)(1e6 * fmod(killed_after, 1))}};
+            setitimer(ITIMER_PROF, &timer, NULL);
         }
         // Signals are tested one by one; the suite's own process group must not matter.
         execv(words[0], words);
@@ -357,30 +364,29 @@ START_TEST(threads_change_nothing) {
 }
 END_TEST
 
-// Kills and resumes one run again and again at moments that differ from test to test, until it is through.
+// Kills and resumes one run again and again at moments that differ from test to test, until it is through. Moments are
+// of the run's own time on a processor, so that it comes as far on any machine: SIGPROF ends it as SIGKILL does.
 START_TEST(killed_and_resumed_is_the_same_run) {
     expect("run %s/small.yaml -o %s/whole -q " SLOW, 0, NULL);
     unsigned seed = (unsigned)time(NULL) ^ (unsigned)getpid();
     printf("kill times are drawn from seed %u\n", seed);
     json_t *summary = summary_of("whole");
-    double wall = json_number_value(json_object_get(summary, "wall_s"));
+    double cpu = json_number_value(json_object_get(summary, "cpu_s"));
     json_decref(summary);
     int kills = 0, code = -1;
     for (int i = 0; i < 12; i++) {
         // A leg killed before its first checkpoint has left none to resume from.
         bool resume = exists("broken/checkpoint.h5");
+        seed = seed * 1664525u + 1013904223u;
+        killed_after = i < 11 ? cpu * (0.02 + 0.3 * (seed >> 8) / (double)(1 << 24)) : 0;
         pid_t child = start(resume ? "run %s/small.yaml -o %s/broken -q --resume " SLOW
                                    : "run %s/small.yaml -o %s/broken -q " SLOW,
                             small_path("output"), 0);
-        if (i < 11) {
-            seed = seed * 1664525u + 1013904223u;
-            wait_seconds(wall * (0.02 + 0.3 * (seed >> 8) / (double)(1 << 24)));
-            kill(child, SIGKILL);
-        }
         code = finish(child);
-        if (code == -SIGKILL) kills++;
-        if (code != -SIGKILL) break;
+        if (code != -SIGPROF) break;
+        kills++;
     }
+    killed_after = 0;
     char *output = output_text();
     ck_assert_msg(code == 0, "%d: %s", code, output);
     free(output);

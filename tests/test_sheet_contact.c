@@ -818,7 +818,7 @@ int main(void) {
 #define ADD_LOOP(test, count)                                                                                          \
     do {                                                                                                               \
         TCase *tests = tcase_create(#test);                                                                            \
-        tcase_set_timeout(tests, 300);                                                                                 \
+        tcase_set_timeout(tests, 0);                                                                                   \
         tcase_add_loop_test(tests, test, 0, count);                                                                    \
         suite_add_tcase(suite, tests);                                                                                 \
     } while (0)

@@ -591,10 +591,12 @@ START_TEST(interrupted) {
         execl(program(), program(), "study", "study.yaml", "-o", "out", (char *)NULL);
         _exit(127);
     }
-    for (int i = 0; i < 1000 && !exists("out/runs/1000_s.r1/scene.yaml"); i++) wait_seconds(0.01);
-    ck_assert(exists("out/runs/1000_s.r1/scene.yaml"));
+    int status = 0;
+    pid_t ended = 0;
+    while (!exists("out/runs/1000_s.r1/scene.yaml") && !ended)
+        wait_seconds(0.01), ended = waitpid(child, &status, WNOHANG);
+    ck_assert_int_eq(ended, 0);
     kill(child, SIGTERM);
-    int status;
     ck_assert_int_eq(waitpid(child, &status, 0), child);
     ck_assert(WIFEXITED(status));
     ck_assert_int_eq(WEXITSTATUS(status), BRUNT_STOPPED);

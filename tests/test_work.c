@@ -290,7 +290,7 @@ END_TEST
 int main(void) {
     Suite *suite = suite_create("work");
     TCase *tests = tcase_create("work");
-    tcase_set_timeout(tests, 60);
+    tcase_set_timeout(tests, 0);
     tcase_add_test(tests, bytes_are_those_of_the_arrays);
     tcase_add_test(tests, bytes_of_elements_are_those_of_the_arrays);
     tcase_add_test(tests, sort_moves_what_changes_its_bin);

@@ -1,15 +1,8 @@
 #include "threads.h"
 
 #include <omp.h>
-#include <time.h>
 
 enum { LEAST_PIECES = 4 };
-
-double brunt_clock(void) {
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 int brunt_threads_available(void) { return omp_get_num_procs(); }
 
