@@ -82,6 +82,10 @@ typedef void brunt_reach_visit_fn(void *context, brunt_body *body, int64_t slot,
 void brunt_reach_visit(brunt_body *body, int32_t slot, int node, brunt_reach_visit_fn *visit, void *context);
 // How far the particle in a slot reaches from its centre along unit vector n [m].
 double brunt_reach_along(brunt_body *body, int64_t slot, const double n[3]);
+// Where what the particle in a slot has around it meets something `distance` [m] away against unit vector n, once they
+// touch: from its centre, and the same where its kernel lives. Friction acts there.
+void brunt_reach_arm(brunt_body *body, int64_t slot, const double n[3], double distance, double arm[3],
+                     double kernel_arm[3]);
 
 // --- separation (separation.c)
 // Distance between what two bodies have near a node [m], 0 when that overlaps, and its direction from a to b (unit;

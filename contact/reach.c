@@ -133,6 +133,24 @@ double brunt_reach_along(brunt_body *body, int64_t s, const double n[3]) {
            sqrt(t[0] * t[0] + t[1] * t[1] + t[2] * t[2]);
 }
 
+// The farthest point of the ellipsoid is x - r F t / |t|, t = F^T n: X - r t / |t| of the undeformed ball.
+void brunt_reach_arm(brunt_body *body, int64_t s, const double n[3], double distance, double arm[3],
+                     double kernel_arm[3]) {
+    const brunt_particles *p = &body->particles;
+    const double extent = brunt_reach_along(body, s, n), length = fmin(extent, distance);
+    for (int a = 0; a < 3; a++) arm[a] = kernel_arm[a] = -length * n[a];
+    if (!brunt_total_lagrangian(p)) return;
+    real *const *F = brunt_field(&body->particles, BRUNT_FIELD_deformation_gradient);
+    const double reach = (double)brunt_field(&body->particles, BRUNT_FIELD_reach)[0][s];
+    double t[3];
+    pull_back(body, s, n, t);
+    for (int a = 0; a < 3; a++) kernel_arm[a] = -length * reach * reach / (extent * extent) * t[a];
+    for (int r = 0; r < p->dim; r++) {
+        arm[r] = 0;
+        for (int c = 0; c < p->dim; c++) arm[r] += (double)F[r * p->point_dim + c][s] * kernel_arm[c];
+    }
+}
+
 // Rows of a cloud's memory, `stride` numbers each.
 enum { CLOUD_X = 0, CLOUD_F = 3, CLOUD_REACH = 12, CLOUD_ALONG = 13, CLOUD_ROWS = 14, CLOUD_LANES = 8 };
 

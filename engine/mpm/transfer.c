@@ -827,6 +827,10 @@ void brunt_kernel_slopes(int order, double u, double slope[4]) {
     for (int i = 0; i < 4; i++) slope[i] = i <= order ? (double)g[i][0] : 0.0;
 }
 
+void brunt_kernel_levers(int order, double u, const double weight[4], double lever[4]) {
+    for (int i = 0; i <= order; i++) lever[i] = order == 1 ? 2 * i - 1 : (order == 2 ? 4 : 3) * weight[i] * (i - u);
+}
+
 // One serial pass in the order of the particles, summed in extended precision: the drift it measures is near rounding
 // itself.
 brunt_audit brunt_body_audit(brunt_body *body) { return brunt_slots_audit(body, NULL, body->particles.slots); }
