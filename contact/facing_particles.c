@@ -1,6 +1,9 @@
 // Material points that face the surfaces of meshes: each that is near looks for the facet it would pass, and becomes a
 // contact point whose slave is the grid's velocity at its place.
 //
+// Friction acts at the particle's surface, not at its centre, half a spacing inside: where a pair has friction its
+// points have levers (points.h), with the weights of the velocity extended affinely to there.
+//
 // The looking is done block by block, by any thread; the points are then made in the order of the blocks. Where a
 // mirror plane is near, a node and its images have one velocity, turned over: they are one support, and what a point
 // gives it is the sum of the weights of all of them, each turned over, since the image of the point presses too. A node
@@ -35,19 +38,23 @@ typedef struct nodes {
     double weight[MAX_NODES];
 } nodes;
 
-// Nodes and weights under particle `s` of block `b`.
-static void particle_nodes(const brunt_body *body, int32_t b, int64_t s, nodes *out) {
+// Nodes and weights under particle `s` of block `b`, or at an arm's length from it [m]; NULL: none.
+static void particle_nodes(const brunt_body *body, int32_t b, int64_t s, const double *arm, nodes *out) {
     const brunt_grid *grid = &body->grid;
     const int dim = grid->dim, n = grid->order + 1;
     int local[3];
     int32_t base[3] = {0, 0, 0};
-    double w[3][4] = {{1}, {1}, {1}};
+    double w[3][4] = {{1}, {1}, {1}}, lever[3][4] = {{0}};
     out->count = 0;
     brunt_node_local(grid, body->particles.bin[s], local);
     real *const *x = brunt_kernel_place(&body->particles);
     for (int a = 0; a < dim; a++) {
         base[a] = grid->blocks[b].coord[a] * grid->side + local[a];
-        brunt_kernel_weights(grid->order, ((double)x[a][s] - grid->origin[a]) / (double)grid->h - base[a], w[a]);
+        const double u = ((double)x[a][s] - grid->origin[a]) / (double)grid->h - base[a];
+        brunt_kernel_weights(grid->order, u, w[a]);
+        if (!arm) continue;
+        brunt_kernel_levers(grid->order, u, w[a], lever[a]);
+        for (int i = 0; i < n; i++) lever[a][i] *= arm[a] / (double)grid->h;
     }
     for (int i = 0; i < n; i++)
         for (int k = 0; k < n; k++)
@@ -57,7 +64,11 @@ static void particle_nodes(const brunt_body *body, int32_t b, int64_t s, nodes *
                 if (!found || !(found[BRUNT_NODE_MASS] > 0)) continue;
                 memcpy(out->at[out->count], at, sizeof at);
                 out->node[out->count] = found;
-                out->weight[out->count++] = w[0][i] * w[1][k] * w[2][l];
+                double weight = w[0][i] * w[1][k] * w[2][l];
+                if (arm)
+                    weight += lever[0][i] * w[1][k] * w[2][l] + w[0][i] * lever[1][k] * w[2][l] +
+                              w[0][i] * w[1][k] * lever[2][l];
+                out->weight[out->count++] = weight;
             }
 }
 
@@ -68,7 +79,7 @@ static int note_sight(const job *j, struct sight *sight, int32_t b, int64_t s, c
     const brunt_skin *skin = j->m->skin;
     nodes under;
     double v[3] = {0}, old[3] = {0};
-    particle_nodes(j->body, b, s, &under);
+    particle_nodes(j->body, b, s, NULL, &under);
     for (int e = 0; e < under.count; e++)
         for (int a = 0; a < j->body->grid.dim; a++) {
             v[a] += under.weight[e] * (double)under.node[e][BRUNT_NODE_VELOCITY + a];
@@ -193,12 +204,36 @@ static int add_slave(brunt_facing *f, const brunt_body *body, int k, const brunt
     return 0;
 }
 
+// What the last point rubs with: the same supports, at the particle's surface.
+static int add_lever(const brunt_meeting *m, const brunt_facing *f, brunt_body *body, int k, const struct seen *seen,
+                     brunt_contact_points *points) {
+    const int32_t number = points->point_count - 1, corners = face_corners(m->skin, seen->h.face);
+    double arm[3], kernel_arm[3], x[3];
+    const double extent = brunt_reach_along(body, seen->particle, seen->h.n);
+    brunt_reach_arm(body, seen->particle, seen->h.n, extent + seen->h.gap, arm, kernel_arm);
+    for (int a = 0; a < 3; a++) x[a] = seen->x[a] + arm[a];
+    const int32_t first = brunt_points_lever(points, x);
+    if (first < 0) return -1;
+    brunt_contact_point *point = &points->point[number];
+    nodes under;
+    particle_nodes(body, seen->block, seen->particle, kernel_arm, &under);
+    for (int e = 0; e < under.count; e++) {
+        const int64_t node = (under.node[e] - body->grid.nodes) / BRUNT_NODE_REALS;
+        const struct grid_support *g = &f->grid[f->node_support[k][node] - 1];
+        int32_t entry = first;
+        while (points->entry[entry].support != g->support) entry++;
+        for (int a = 0; a < 3; a++) points->entry[entry].weight[a] += under.weight[e] * g->sign[a];
+    }
+    brunt_facing_master(m->skin, f, &seen->h, x, point, &points->entry[first + point->count - corners]);
+    return 0;
+}
+
 static int add_point(const brunt_meeting *m, brunt_facing *f, brunt_body *body, int k, const brunt_mirror *mirrors,
                      int mirror_count, const struct seen *seen, brunt_contact_points *points) {
     const brunt_skin *skin = m->skin;
     const int corners = face_corners(skin, seen->h.face);
     nodes under;
-    particle_nodes(body, seen->block, seen->particle, &under);
+    particle_nodes(body, seen->block, seen->particle, NULL, &under);
     for (int c = 0; c < corners; c++)
         if (brunt_facing_support(f, skin, skin->face[seen->h.face][c], points) < 0) return -1;
     int32_t at = brunt_points_add(points);
@@ -216,7 +251,7 @@ static int add_point(const brunt_meeting *m, brunt_facing *f, brunt_body *body, 
         if (entry < 0) return -1;
         points->entry[entry] = master[c];
     }
-    return 0;
+    return points->point[at].friction > 0 ? add_lever(m, f, body, k, seen, points) : 0;
 }
 
 static int fit_room(brunt_facing *f, const brunt_body *body, int k, int threads) {
@@ -268,10 +303,11 @@ static void book_mirrors(const brunt_meeting *m, const brunt_body *body, int k, 
     const int count = mirrors_of(m, body, mirrors);
     for (int32_t p = 0; p < points->point_count; p++) {
         const brunt_contact_point *point = &points->point[p];
-        double J[3];
+        double push[3];
         if (point->tag != -1 - k || !(point->push > 0)) continue;
-        for (int a = 0; a < 3; a++) J[a] = point->push * point->n[a] + point->drag[a];
-        add_moment(point->x, J, -1, linear, angular);
+        for (int a = 0; a < 3; a++) push[a] = point->push * point->n[a];
+        add_moment(point->x, push, -1, linear, angular);
+        add_moment(point->lever ? points->lever[point->lever - 1].x : point->x, point->drag, -1, linear, angular);
     }
     for (int a = 0; a < 3; a++) {
         int i = 0;

@@ -8,6 +8,10 @@
 // goes back by the transpose. As u is 0 for every rigid motion of both, any impulse leaves linear and angular momentum
 // alone, to round-off.
 //
+// Material points are balls: their centres, whose velocity is weighed, stand off the surface. Where one rubs, friction
+// acts at its surface: with a lever, u of slip has entries of its own, on the same supports, and drag goes back by
+// their transpose, so that it acts there.
+//
 // All points of a step together must satisfy: u_n >= target, push >= 0, one of them 0; drag within the Coulomb cone and
 // against what is left of slip. Solved by projected Jacobi sweeps: a point's correction is scaled by its row sum of the
 // coupling matrix (in units of its own effective mass), so that a uniform approach is met in one sweep and no sweep can
@@ -45,6 +49,8 @@ typedef struct brunt_contact_point {
     double sign;
     double area; // [m^2] it stands for in the action's area
     int32_t tag; // the caller's
+    int32_t lever; // number + 1 of its own for friction, whose `count` entries follow the others; 0: it rubs where it
+                   // pushes
     // solution
     double scale, response, response_t; // [kg] effective mass alone; [-] row sums in units of it
     double push, drag[3];               // [N s]
@@ -58,13 +64,18 @@ typedef struct brunt_contact_points {
     brunt_contact_entry *entry;
     size_t entry_capacity;
     int32_t entry_count;
+    struct brunt_lever {
+        double x[3]; // [m] where friction acts
+    } * lever;
+    size_t lever_capacity;
+    int32_t lever_count;
     brunt_support *support;
     size_t support_capacity;
     int32_t support_count;
     // Which points press on a support: copies of their entries by support, in the order of the points, with what the
     // sweep gives beside the facet it turns with, so that a sweep reads little more than it uses.
     struct brunt_pressing {
-        int32_t point;
+        int32_t point; // from the number of points on: levers
         double weight[3], turn[3];
     } * pressing;
     size_t pressing_capacity;
@@ -72,7 +83,7 @@ typedef struct brunt_contact_points {
     size_t pressing_first_capacity;
     struct brunt_given {
         double impulse[3], facet[3];
-    } * given; // of each point
+    } * given; // of each point, then of each lever
     size_t given_capacity;
     double *changed; // [m/s] of each chunk of points: greatest correction of the sweep
     size_t changed_capacity;
@@ -84,6 +95,9 @@ void brunt_points_free(brunt_contact_points *points);
 int32_t brunt_points_support(brunt_contact_points *points);
 int32_t brunt_points_add(brunt_contact_points *points);
 int32_t brunt_points_entry(brunt_contact_points *points, int32_t support, double weight); // all components alike
+// Gives the last point, when its entries are complete, a lever to x: entries without weights, for the caller to fill.
+// The index of the first, or -1.
+int32_t brunt_points_lever(brunt_contact_points *points, const double x[3]);
 // Makes room for so many points and entries in all, which the caller then fills. 0, or -1.
 int brunt_points_room(brunt_contact_points *points, int32_t point_count, int32_t entry_count);
 // Relative velocity of a point, with the supports' v (old: as they were before the forces).
