@@ -309,7 +309,8 @@ typedef struct brunt_contact_def {
                                         // first one's; 0: when nothing changes, or by `iterations`; of form affine; default 0.01
     double cell;                        // [m] of the contact grid; 0 = the mean surface edge (paper: twice that)
     brunt_transfer transfer;            // of the paper form: BRUNT_PIC or BRUNT_APIC (default)
-    bool allow_overlap;                 // accept bodies that overlap at the start; default false: an error
+    bool allow_overlap; // accept bodies that overlap at the start (meshes: by more than a fifth of an edge), or lie
+                        // behind a plane of condition separate; default false: an error
     brunt_pair_def *pairs; int32_t pair_count;  // owned; overrides
 } brunt_contact_def;
 

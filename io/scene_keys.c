@@ -147,7 +147,7 @@ const scene_key brunt_scene_table[] = {
     {"contact.tolerance", SCENE_REAL, "1", "0.01", 0, 1, false, true, NULL, 0, true, "of augury, form affine: sweeps end before iterations when the greatest correction of one is no more than this share of the first one's; what is left is met in the next step; 0: when nothing changes any more"},
     {"contact.cell", SCENE_REAL, "m", OPTIONAL, POSITIVE, NULL, 0, false, "of augury: edge of the contact grid (default: the mean edge of the surfaces; form paper: twice that)"},
     {"contact.transfer", SCENE_WORD, NULL, "apic", ANY, "pic|apic", 0, true, "of augury, form paper: velocity transfer to the contact grid"},
-    {"contact.initial_overlap", SCENE_WORD, NULL, "error", ANY, "error|allow", 0, false, "particles that overlap other bodies at the start; of meshes with each other it is not looked at"},
+    {"contact.initial_overlap", SCENE_WORD, NULL, "error", ANY, "error|allow", 0, false, "bodies that overlap at the start, or lie behind a plane of condition separate: contact ends an approach, and what is in each other already may pass. Of meshes a fifth of an edge is let be"},
     {"contact.pairs", SCENE_ENTRIES, NULL, OPTIONAL, NONE, "pairs of bodies that differ from the above"},
     {"contact.pairs[].between", SCENE_NAMES, NULL, REQUIRED, NONE, "the two bodies, [a, b]; [a, a]: a membrane with itself, which it is not in contact with otherwise"},
     {"contact.pairs[].method", SCENE_WORD, NULL, OPTIONAL, ANY, "none|multi-velocity|augury|tied", 0, false, "default: that of contact"},

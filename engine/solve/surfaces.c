@@ -4,6 +4,7 @@
 
 #include "error.h"
 #include "memory.h"
+#include "overlap.h"
 #include "world.h"
 
 // A membrane between two blocks is light between heavy ones: each sweep passes on the share of its mass in theirs. At a
@@ -130,6 +131,32 @@ int brunt_surfaces_make(brunt_world *world, const brunt_world_def *def, brunt_er
                    "as much",
                    world->contact_cell, fine);
     return BRUNT_OK;
+}
+
+// Bodies that lie in each other, or behind a plane, at the start. The skin is taken for it, and forgets that it was.
+int brunt_surfaces_overlap(brunt_world *world, brunt_error *error) {
+    const double none[3] = {0};
+    brunt_skin *s = &world->skin;
+    brunt_meeting m = {.skin = s, .pair_of = world->pair_of, .body_count = world->all_count, .walls = world->walls};
+    if (s->fem_count) {
+        brunt_skin_bounds(s, world->threads, NULL);
+        for (int k = 0; k < s->fem_count; k++) s->active[k] = true;
+        brunt_skin_take(s, 0, none, world->threads, NULL);
+        for (int k = 0; k < s->fem_count; k++) s->active[k] = s->was_active[k] = false;
+    }
+    brunt_overlap o;
+    const int status = brunt_overlap_find(&m, world->bodies, world->body_count, world->wall_count, &o);
+    if (status < 0) return brunt_fail(error, BRUNT_FAILED, "out of memory for the bodies' surfaces");
+    if (!status) return BRUNT_OK;
+    static const char way_out[] = "move one of them, or write contact.initial_overlap: allow";
+    if (o.b < 0)
+        return brunt_fail(error, BRUNT_BAD_INPUT,
+                          "bodies.%s is %.4g m behind the plane '%s' at the start, at (%.6g, %.6g, %.6g) m; %s",
+                          brunt_body_name(world, o.a), o.depth, world->walls[o.wall].name, o.x[0], o.x[1], o.x[2],
+                          way_out);
+    return brunt_fail(
+        error, BRUNT_BAD_INPUT, "bodies.%s overlaps bodies.%s by %.4g m at the start, at (%.6g, %.6g, %.6g) m; %s",
+        brunt_body_name(world, o.a), brunt_body_name(world, o.b), o.depth, o.x[0], o.x[1], o.x[2], way_out);
 }
 
 int brunt_surfaces_renew(brunt_world *world, brunt_error *error) {

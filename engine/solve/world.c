@@ -755,6 +755,7 @@ brunt_world *brunt_world_create(const brunt_world_def *def, brunt_error *error) 
         world->mirrors[m].node -= (int32_t)round((world->bodies[0].grid.origin[axis] - def->origin[axis]) / def->cell);
     }
     if (!status) status = start(world, error);
+    if (!status && !def->contact.allow_overlap) status = brunt_surfaces_overlap(world, error);
     brunt_free(order);
     if (!status) return world;
     brunt_world_destroy(world);

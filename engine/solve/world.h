@@ -223,6 +223,8 @@ brunt_fem_body *brunt_fem_shortest(brunt_world *world, int32_t *slot);
 // 0, or BRUNT_FAILED with the reason in `error`.
 int brunt_surfaces_meet(brunt_world *world, const double gravity[3], double kick, double dt, brunt_error *error);
 int brunt_surfaces_make(brunt_world *world, const brunt_world_def *def, brunt_error *error);
+// After the start: refuses bodies that lie in each other, or behind a plane that pushes.
+int brunt_surfaces_overlap(brunt_world *world, brunt_error *error);
 // The surfaces anew, after elements have left meshes.
 int brunt_surfaces_renew(brunt_world *world, brunt_error *error);
 
