@@ -78,7 +78,8 @@ typedef struct brunt_shape {
 typedef struct brunt_placement { double rotation[9]; double translation[3]; } brunt_placement;
 
 brunt_placement brunt_placement_identity(void);
-// Follow `first` by a shift [m], or by a turn of `angle` [rad] about the line through `about` along `axis`.
+// Follow `first` by a shift [m], or by a turn of `angle` [rad] about the line through `about` along `axis`;
+// an axis without direction gives NANs, which brunt_world_create refuses.
 brunt_placement brunt_placement_translate(brunt_placement first, const double by[3]);
 brunt_placement brunt_placement_rotate(brunt_placement first, const double axis[3], double angle, const double about[3]);
 
@@ -99,8 +100,8 @@ typedef enum brunt_element_kind {
     BRUNT_TET4, BRUNT_HEX8, BRUNT_TRI3, BRUNT_QUAD4, BRUNT_MEMBRANE_QUAD4, BRUNT_MEMBRANE_TRI3
 } brunt_element_kind;
 enum { BRUNT_ELEMENT_KINDS = 6, BRUNT_ELEMENT_NODES = 8 };
-const char *brunt_element_name(brunt_element_kind kind);     // "tet4", "hex8", "tri3", "quad4", "membrane_quad4", "membrane_tri3"
-int brunt_element_nodes(brunt_element_kind kind);
+const char *brunt_element_name(brunt_element_kind kind);     // "tet4", "hex8", "tri3", "quad4", "membrane_quad4", "membrane_tri3"; "unknown"
+int brunt_element_nodes(brunt_element_kind kind);            // this and the next are 0 of what is no kind
 int brunt_element_dimension(brunt_element_kind kind);        // of the room its nodes are in: 3 for membranes
 bool brunt_element_is_sheet(brunt_element_kind kind);        // of membranes
 
@@ -366,7 +367,9 @@ void brunt_world_def_free(brunt_world_def *def);  // frees all that the definiti
 
 typedef struct brunt_world brunt_world;
 
-// Fills the bodies and makes the plan. NULL and an error (BRUNT_BAD_INPUT) when the definition cannot be run.
+// Fills the bodies and makes the plan. NULL and an error (BRUNT_BAD_INPUT) when the definition cannot be run, whatever is wrong with
+// it: numbers, enumerators, counts and names in it are looked at first. The functions below want a world that has been made, and indices
+// that are there.
 brunt_world *brunt_world_create(const brunt_world_def *def, brunt_error *error);
 void brunt_world_destroy(brunt_world *world);
 
@@ -518,8 +521,14 @@ typedef struct brunt_state_block {
     char type;                // 'd' double, 'f' float, 'i' int64, 'b' bytes
     int64_t count;            // elements
 } brunt_state_block;
+//
+// At any moment brunt_state_get writes the `count` elements that brunt_state_info says then, and every set keeps what it does not name.
+// The blocks of a body of particles list the same particles in the same order; only setting its ids (or the elements of a mesh that
+// erodes) may change how many there are, so what it holds comes first: after fewer ids the first particles are left, after more the new
+// ones are all 0. A set that is refused changes nothing. After ids, elements or a block "world/...", brunt_state_done must be called
+// before the next step; after other fields alone it need not be.
 int32_t brunt_state_count(brunt_world *world);
-brunt_state_block brunt_state_info(brunt_world *world, int32_t block);
+brunt_state_block brunt_state_info(brunt_world *world, int32_t block);          // no name and no elements: there is no such block
 void brunt_state_get(brunt_world *world, int32_t block, void *out);             // `count` elements
 int brunt_state_set(brunt_world *world, int32_t block, const void *in, int64_t count, brunt_error *error);
 // Call after the last brunt_state_set: sorts and checks.

@@ -224,14 +224,18 @@ static void set_defaults(const brunt_model *model, double *values) {
 
 brunt_material_def brunt_material_def_default(const char *name, const char *model) {
     brunt_material_def def = {.density = NAN};
-    snprintf(def.name, sizeof def.name, "%s", name);
-    snprintf(def.strength, sizeof def.strength, "%s", model);
-    set_defaults(brunt_find_strength(model), def.strength_parameters);
+    snprintf(def.name, sizeof def.name, "%s", name ? name : "");
+    snprintf(def.strength, sizeof def.strength, "%s", model ? model : "");
+    set_defaults(brunt_find_strength(def.strength), def.strength_parameters);
     for (int k = 0; k < BRUNT_PARAMETER_LIMIT; k++) def.failure_parameters[k] = NAN;
     return def;
 }
 
 int brunt_material_set(brunt_material_def *def, const char *key, double value, const char *text, brunt_error *error) {
+    if (!def || !key) return brunt_fail(error, BRUNT_BAD_INPUT, "a material and the key of what is set are wanted");
+    if (!memchr(def->name, 0, sizeof def->name) || !memchr(def->strength, 0, sizeof def->strength) ||
+        !memchr(def->eos, 0, sizeof def->eos) || !memchr(def->failure, 0, sizeof def->failure))
+        return brunt_fail(error, BRUNT_BAD_INPUT, "a material has a name without its end");
     const brunt_model *model = brunt_find_strength(def->strength);
     double *values = def->strength_parameters;
     const char *rest = key;

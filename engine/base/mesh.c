@@ -1,6 +1,5 @@
 // Meshes as data: the kinds of element, and what a mesh owns.
 #include "brunt.h"
-#include "error.h"
 #include "memory.h"
 
 static const struct {
@@ -16,25 +15,13 @@ static const struct {
     [BRUNT_MEMBRANE_TRI3] = {"membrane_tri3", 3, 3, true},
 };
 
-const char *brunt_element_name(brunt_element_kind kind) {
-    BRUNT_ASSERT((unsigned)kind < BRUNT_ELEMENT_KINDS);
-    return kinds[kind].name;
-}
+// Of a number that is no kind: a name that says so, no nodes, no dimension.
+static bool known(brunt_element_kind kind) { return (unsigned)kind < BRUNT_ELEMENT_KINDS; }
 
-int brunt_element_nodes(brunt_element_kind kind) {
-    BRUNT_ASSERT((unsigned)kind < BRUNT_ELEMENT_KINDS);
-    return kinds[kind].nodes;
-}
-
-int brunt_element_dimension(brunt_element_kind kind) {
-    BRUNT_ASSERT((unsigned)kind < BRUNT_ELEMENT_KINDS);
-    return kinds[kind].dimension;
-}
-
-bool brunt_element_is_sheet(brunt_element_kind kind) {
-    BRUNT_ASSERT((unsigned)kind < BRUNT_ELEMENT_KINDS);
-    return kinds[kind].sheet;
-}
+const char *brunt_element_name(brunt_element_kind kind) { return known(kind) ? kinds[kind].name : "unknown"; }
+int brunt_element_nodes(brunt_element_kind kind) { return known(kind) ? kinds[kind].nodes : 0; }
+int brunt_element_dimension(brunt_element_kind kind) { return known(kind) ? kinds[kind].dimension : 0; }
+bool brunt_element_is_sheet(brunt_element_kind kind) { return known(kind) && kinds[kind].sheet; }
 
 void brunt_mesh_free(brunt_mesh *mesh) {
     for (int32_t g = 0; g < mesh->group_count; g++) brunt_free(mesh->groups[g].nodes);

@@ -4,7 +4,6 @@
 // largest of the first and the negated others: still no farther than the true distance (1-Lipschitz), which is all that
 // filling a lattice and limiting a particle's reach rely on.
 #include "brunt.h"
-#include "error.h"
 #include "memory.h"
 
 #include <math.h>
@@ -22,7 +21,7 @@ brunt_placement brunt_placement_translate(brunt_placement first, const double by
 brunt_placement brunt_placement_rotate(brunt_placement first, const double axis[3], double angle,
                                        const double about[3]) {
     double length = sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
-    BRUNT_ASSERT(length > 0);
+    if (!(length > 0)) length = NAN; // no direction: the placement is none, and refused as such
     double a[3] = {axis[0] / length, axis[1] / length, axis[2] / length};
     double c = cos(angle), s = sin(angle);
     // Rodrigues: R = c I + s [a]x + (1 - c) a a^T

@@ -14,7 +14,7 @@ brunt_field_info brunt_body_field(const brunt_world *world, int32_t body, int32_
 }
 
 int32_t brunt_body_find_field(const brunt_world *world, int32_t body, const char *name) {
-    for (int32_t f = 0; f < brunt_body_field_count(world, body); f++)
+    for (int32_t f = 0; name && f < brunt_body_field_count(world, body); f++)
         if (!strcmp(brunt_body_field(world, body, f).name, name)) return f;
     return -1;
 }

@@ -47,6 +47,7 @@ static place find(brunt_world *world, int32_t index) {
 }
 
 int32_t brunt_state_count(brunt_world *world) {
+    if (!world) return 0;
     int32_t n = world_blocks(world);
     for (int i = 0; i < world->all_count; i++) {
         const brunt_body *mpm = world->all[i].mpm;
@@ -64,6 +65,7 @@ enum { CLOCK_DOUBLES = sizeof(struct brunt_clock) / sizeof(double) };
 
 brunt_state_block brunt_state_info(brunt_world *world, int32_t index) {
     brunt_state_block block = {.type = 'd'};
+    if (index < 0 || index >= brunt_state_count(world)) return block;
     place at = find(world, index);
     if (at.body) {
         const brunt_particles *p = &at.body->particles;
@@ -101,6 +103,7 @@ brunt_state_block brunt_state_info(brunt_world *world, int32_t index) {
 }
 
 void brunt_state_get(brunt_world *world, int32_t index, void *out) {
+    if (index < 0 || index >= brunt_state_count(world)) return;
     place at = find(world, index);
     if (at.body) {
         const brunt_particles *p = &at.body->particles;
@@ -151,27 +154,65 @@ static int set_elements(brunt_world *world, brunt_fem_body *fem, const int64_t *
     return world->has_surfaces ? brunt_surfaces_renew(world, error) : BRUNT_OK;
 }
 
-int brunt_state_set(brunt_world *world, int32_t index, const void *in, int64_t count, brunt_error *error) {
-    brunt_state_block block = brunt_state_info(world, index);
-    place at = find(world, index);
+// Particles without gaps between them, in their order; new ones at the end are all 0. Their grid is out of date then.
+static void close_ranks(brunt_particles *p, int64_t count) {
+    int64_t n = 0;
+    for (int64_t s = 0; s < p->slots; s++) {
+        if (p->id[s] < 0) continue;
+        for (int k = 0; k < p->scalar_count && n < s; k++) p->scalar[k][n] = p->scalar[k][s];
+        p->id[n++] = p->id[s];
+    }
+    for (int k = 0; k < p->scalar_count; k++)
+        for (int64_t s = n; s < count; s++) p->scalar[k][s] = 0;
+    p->count = p->slots = count;
+    p->holes = false;
+}
+
+static int set_ids(brunt_particles *p, const char *name, const int64_t *id, int64_t count, brunt_error *error) {
+    bool *there = brunt_alloc((size_t)p->made + 1);
+    if (!there) return brunt_fail(error, BRUNT_FAILED, "out of memory");
+    int64_t s = 0;
+    for (; s < count && id[s] >= 0 && id[s] < p->made && !there[id[s]]; s++) there[id[s]] = true;
+    brunt_free(there);
+    if (s < count)
+        return brunt_fail(error, BRUNT_BAD_INPUT, "the state block '%s' holds the id %lld, which is %s", name,
+                          (long long)id[s], id[s] >= 0 && id[s] < p->made ? "there twice" : "out of range");
+    close_ranks(p, count);
+    memcpy(p->id, id, (size_t)count * sizeof *id);
+    return BRUNT_OK;
+}
+
+static void set_field(brunt_particles *p, const brunt_particle_field *field, const real *in) {
+    for (int c = 0; c < field->components; c++)
+        for (int64_t s = 0; s < p->slots; s++)
+            if (p->id[s] >= 0) p->scalar[field->first + c][s] = *in++;
+}
+
+static int check_set(brunt_world *world, int32_t index, const void *in, int64_t count, brunt_error *error) {
+    if (!world) return brunt_fail(error, BRUNT_BAD_INPUT, "there is no world");
+    if (index < 0 || index >= brunt_state_count(world))
+        return brunt_fail(error, BRUNT_BAD_INPUT, "there is no state block %d, this scene has %d", index,
+                          brunt_state_count(world));
+    const brunt_state_block block = brunt_state_info(world, index);
+    const place at = find(world, index);
     // Of a body that erodes there may be fewer particles by now than in the world as it is; its ids say how many.
-    if (at.body && at.field < 0 && at.body->erodes && count >= 0 && count <= at.body->particles.made)
-        at.body->particles.count = block.count = count;
-    if (count != block.count)
+    const bool fits = at.body && at.field < 0 && at.body->erodes ? count >= 0 && count <= at.body->particles.made
+                                                                 : count == block.count;
+    if (!fits)
         return brunt_fail(error, BRUNT_BAD_INPUT, "the state block '%s' holds %lld values, this scene has %lld",
                           block.name, (long long)count, (long long)block.count);
+    if (count > 0 && !in) return brunt_fail(error, BRUNT_BAD_INPUT, "the state block '%s' is not given", block.name);
+    return BRUNT_OK;
+}
+
+int brunt_state_set(brunt_world *world, int32_t index, const void *in, int64_t count, brunt_error *error) {
+    int status = check_set(world, index, in, count, error);
+    if (status) return status;
+    place at = find(world, index);
     if (at.body) {
         brunt_particles *p = &at.body->particles;
-        // From here on the body has no gaps; its grid is made anew by brunt_state_done.
-        for (int64_t s = 0; at.field < 0 && s < p->count; s++) {
-            int64_t id = ((const int64_t *)in)[s];
-            if (id < 0 || id >= p->made)
-                return brunt_fail(error, BRUNT_BAD_INPUT, "%s holds an id out of range", block.name);
-            p->id[s] = id;
-        }
-        for (int c = 0; at.field >= 0 && c < p->field[at.field].components; c++)
-            memcpy(p->scalar[p->field[at.field].first + c], (const real *)in + (int64_t)c * p->count,
-                   (size_t)p->count * sizeof(real));
+        if (at.field < 0) return set_ids(p, brunt_state_info(world, index).name, in, count, error);
+        set_field(p, &p->field[at.field], in);
         return BRUNT_OK;
     }
     if (at.fem) {
@@ -202,9 +243,10 @@ int brunt_state_set(brunt_world *world, int32_t index, const void *in, int64_t c
 }
 
 int brunt_state_done(brunt_world *world, brunt_error *error) {
+    if (!world) return brunt_fail(error, BRUNT_BAD_INPUT, "there is no world");
     for (int i = 0; i < world->body_count; i++) {
         brunt_body *body = &world->bodies[i];
-        body->particles.slots = body->particles.count;
+        close_ranks(&body->particles, body->particles.count);
         body->grid.block_count = 0;
         body->grid.block_table.capacity = 0;
         brunt_free(body->grid.block_table.key);

@@ -560,6 +560,7 @@ static int take_step(brunt_world *world, double limit, brunt_error *error) {
 }
 
 int brunt_world_step(brunt_world *world, double limit, brunt_error *error) {
+    if (!world) return brunt_fail(error, BRUNT_BAD_INPUT, "there is no world to take a step of");
     brunt_step_begin(world);
     int status = take_step(world, limit, error);
     brunt_step_end(world);

@@ -17,71 +17,7 @@
 static const double ON_GRID_LINE = 1e-6; // cells: how far off a mirror plane may be and still count as on the line
 static const double TOUCHING = 1e-6;     // spacings: bodies closer than that touch, they do not overlap
 
-// ------------------------------------------------------------------------------------------ definition
-
 #define REFUSE(...) return brunt_fail(error, BRUNT_BAD_INPUT, __VA_ARGS__)
-
-// What is not the same all around the axis cannot be computed as rings.
-static int check_axis(const brunt_world_def *def, bool particles, brunt_error *error) {
-    const double at = -def->origin[0] / def->cell;
-    if (def->dimension != 2) REFUSE("axisymmetric: dimension %d, 2 is wanted", def->dimension);
-    if (particles && !(fabs(at - round(at)) < ON_GRID_LINE))
-        REFUSE("grid.origin: the axis of revolution, x = 0, must lie on a line of the grid (cell %g m)", def->cell);
-    if (def->gravity[0] != 0)
-        REFUSE("loads.gravity: %g m/s^2 along x, away from the axis of revolution: only y is possible",
-               def->gravity[0]);
-    for (int i = 0; i < def->body_count; i++)
-        for (int a = 0; a < 3; a++)
-            if (def->bodies[i].spin[a] != 0)
-                REFUSE("bodies.%s.spin: rings do not turn in their plane", def->bodies[i].name);
-    for (int q = 0; q < def->plane_count; q++) {
-        const brunt_plane_def *plane = &def->planes[q];
-        const bool round_axis = plane->normal[0] != 0 && plane->normal[1] == 0, fixed = plane->condition == BRUNT_SLIP;
-        if (round_axis && (plane->condition == BRUNT_SYMMETRY || (fixed && plane->point[0] == 0)))
-            REFUSE("boundaries[%d]: a cylinder is no plane of symmetry, and the axis of revolution x = 0 needs none",
-                   q);
-    }
-    return BRUNT_OK;
-}
-
-static int check(const brunt_world_def *def, brunt_error *error) {
-    if (def->cookie != brunt_world_def_default().cookie)
-        REFUSE("the world's definition was not made by brunt_world_def_default");
-    if (def->dimension != 2 && def->dimension != 3) REFUSE("dimension: %d is neither 2 nor 3", def->dimension);
-    bool particles = false;
-    for (int i = 0; i < def->body_count; i++) particles = particles || def->bodies[i].method == BRUNT_MPM;
-    if (particles && (!(def->cell > 0) || !isfinite(def->cell)))
-        REFUSE("grid.cell: %g m is not a positive length", def->cell);
-    if (def->kernel < BRUNT_LINEAR || def->kernel > BRUNT_CUBIC)
-        REFUSE("grid.kernel: there is no kernel %d", (int)def->kernel);
-    if (def->transfer < BRUNT_PIC || def->transfer > BRUNT_APIC)
-        REFUSE("grid.transfer: there is no transfer %d", (int)def->transfer);
-    if (!(def->flip >= 0 && def->flip <= 1)) REFUSE("grid.transfer.flip: %g is not between 0 and 1", def->flip);
-    if (!(def->cfl > 0 && def->cfl <= 1)) REFUSE("time.cfl: %g is not in (0, 1]", def->cfl);
-    if (!(def->step >= 0) || !isfinite(def->step)) REFUSE("time.step: %g s is not a positive time", def->step);
-    if (!(def->least_step >= 0) || !isfinite(def->least_step))
-        REFUSE("time.least_step: %g s is not a time", def->least_step);
-    if (!(def->end > 0) || !isfinite(def->end)) REFUSE("time.end: %g s is not a positive time", def->end);
-    if (!(def->energy_limit > 0)) REFUSE("time.energy_limit: %g is not positive", def->energy_limit);
-    if (def->threads < 0 || def->threads > 256) REFUSE("threads: %d is not between 0 (all) and 256", def->threads);
-    if (def->body_count < 1) REFUSE("bodies: there is none");
-    if (!(def->contact.friction >= 0)) REFUSE("contact.friction: %g is negative", def->contact.friction);
-    if (!(def->contact.tolerance >= 0 && def->contact.tolerance < 1))
-        REFUSE("contact.tolerance: %g is not in [0, 1)", def->contact.tolerance);
-    if (def->axisymmetric) {
-        int status = check_axis(def, particles, error);
-        if (status) return status;
-    }
-    for (int i = 0; i < def->body_count; i++) {
-        const brunt_body_def *body = &def->bodies[i];
-        if (!body->name[0]) REFUSE("bodies: body %d has no name", i + 1);
-        if (body->material < 0 || body->material >= def->material_count)
-            REFUSE("bodies.%s.material: there is no material %d", body->name, body->material);
-        for (int k = 0; k < i; k++)
-            if (!strcmp(body->name, def->bodies[k].name)) REFUSE("bodies.%s: two bodies have this name", body->name);
-    }
-    return BRUNT_OK;
-}
 
 static int compare_names(const void *a, const void *b) {
     return strcmp((*(const brunt_body_def *const *)a)->name, (*(const brunt_body_def *const *)b)->name);
@@ -700,7 +636,7 @@ static int start(brunt_world *world, brunt_error *error) {
 
 brunt_world *brunt_world_create(const brunt_world_def *def, brunt_error *error) {
     if (error) *error = (brunt_error){.id = -1};
-    if (check(def, error)) return NULL;
+    if (brunt_definition_check(def, error)) return NULL;
     brunt_world *world = brunt_alloc(sizeof *world);
     const brunt_body_def **order = brunt_alloc((size_t)def->body_count * sizeof *order);
     if (!world || !order) {

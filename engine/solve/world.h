@@ -222,6 +222,8 @@ brunt_fem_body *brunt_fem_shortest(brunt_world *world, int32_t *slot);
 // --- surfaces.c: the meshes' surfaces and what they meet
 // 0, or BRUNT_FAILED with the reason in `error`.
 int brunt_surfaces_meet(brunt_world *world, const double gravity[3], double kick, double dt, brunt_error *error);
+// definition.c: whether a world can be made of it. BRUNT_OK, or BRUNT_BAD_INPUT and what is wrong.
+int brunt_definition_check(const brunt_world_def *def, brunt_error *error);
 int brunt_surfaces_make(brunt_world *world, const brunt_world_def *def, brunt_error *error);
 // After the start: refuses bodies that lie in each other, or behind a plane that pushes.
 int brunt_surfaces_overlap(brunt_world *world, brunt_error *error);
