@@ -121,8 +121,10 @@ typedef struct brunt_curve { double (*points)[2]; int32_t count; } brunt_curve; 
 // A structured mesh of a shape (not placed) with edges of about `size` [m]: box, sphere, cylinder, ring, prism with four
 // corners; in two dimensions box, disk, annulus, quadrilateral. Boundary groups by shape: box xmin xmax ymin ymax zmin zmax;
 // cylinder and ring start end side (ring: inner outer); prism side1 ... side4 (from corner i to the next) zmin zmax; sphere
-// none; and `surface` for all. BRUNT_BAD_INPUT for shapes that
-// have no such mesh (union, difference, ...).
+// none; and `surface` for all. Intersections of one sphere (disk), cylinder or ring with boxes, or half-spaces along the axes, are its halves,
+// quarters and eighths: cut through its centre along x, y, z, or across its axis (cuts may miss it, too); nodes lie exactly on the cuts,
+// which are the groups xmin xmax ymin ymax zmin zmax. Intersections of boxes are boxes. BRUNT_BAD_INPUT for shapes that have no such
+// mesh (union, difference, ...).
 int brunt_mesh_shape(const brunt_shape *shape, int dimension, brunt_element_kind kind, double size, brunt_mesh *mesh, brunt_error *error);
 // The same of a box whose elements grow along the axes: grading[a] is the factor on `size` along axis a, over the coordinate [m].
 int brunt_mesh_graded(const brunt_shape *box, int dimension, brunt_element_kind kind, double size, const brunt_curve grading[3],

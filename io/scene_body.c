@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 
 #include "gmsh.h"
+#include "mesh_shape.h"
 #include "prepared.h"
 
 enum { PATH_ROOM = 4096 };
@@ -80,10 +81,18 @@ static void check_faces(scene_reader *reader, const scene_node *node, const brun
 static void check_meshing(scene_reader *reader, const scene_node *node, const brunt_body_def *body) {
     const scene_node *shape = brunt_tree_child(node, "shape"), *edge = brunt_tree_child(node, "size");
     brunt_shape_kind kind = body->shape.kind;
-    if (kind >= BRUNT_HALF_SPACE || (kind == BRUNT_PRISM && body->shape.point_count != 4)) {
+    brunt_mesh_cut cut;
+    brunt_error error = {0};
+    if (brunt_mesh_cutting(&body->shape, reader->dimension, &cut, &error)) {
+        brunt_tree_complain_key(reader->tree, shape, "%s; a mesh file (mesh: FILE.msh) can be anything", error.message);
+        return;
+    }
+    if ((kind >= BRUNT_HALF_SPACE && kind != BRUNT_INTERSECTION) ||
+        (kind == BRUNT_PRISM && body->shape.point_count != 4)) {
         brunt_tree_complain_key(reader->tree, shape,
                                 "%s has no mesh of its own: box, sphere, cylinder, ring and polygons with four corners "
-                                "have; a mesh file (mesh: FILE.msh) can be anything",
+                                "have, and halves and quarters of them as intersections with boxes; a mesh file (mesh: "
+                                "FILE.msh) can be anything",
                                 kind == BRUNT_PRISM ? "this polygon" : shape->first->key);
         return;
     }

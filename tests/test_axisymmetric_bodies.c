@@ -20,6 +20,19 @@ static brunt_body_def *of_elements(brunt_body_def *body, brunt_element_kind kind
     return body;
 }
 
+// The section of a ball or a shell about a point of the axis: what is right of it.
+static brunt_body_def *cut_at_axis(brunt_body_def *body) {
+    brunt_shape *children = brunt_def_alloc(2 * sizeof *children);
+    children[0] = body->shape;
+    children[1] = (brunt_shape){.kind = BRUNT_BOX, .min = {0, -1}, .max = {1, 1}};
+    body->shape = (brunt_shape){.kind = BRUNT_INTERSECTION, .children = children, .child_count = 2};
+    return body;
+}
+
+static brunt_body_def *half_ball(brunt_world_def *def, const char *name, const double center[3], double radius) {
+    return cut_at_axis(def_ball(def, name, center, radius));
+}
+
 static brunt_group_def *add_group(brunt_world_def *def, const char *body, const char *group,
                                   brunt_group_action action) {
     brunt_group_def *g = &def->groups[def->group_count++];
@@ -115,6 +128,7 @@ START_TEST(shell_breathes) {
     brunt_body_def *body = of_elements(def_body(&def, "shell"), BRUNT_QUAD4, h / 1.5);
     body->shape.kind = BRUNT_RING;
     body->shape.inner_radius = R - h / 2, body->shape.radius = R + h / 2;
+    cut_at_axis(body);
     add_group(&def, "shell", "inner", BRUNT_GROUP_PRESSURE)->value[0] = p;
     brunt_world *world = world_take(&def);
     const double mass = world_sums(world, 0).mass,
@@ -144,7 +158,7 @@ START_TEST(ball_under_pressure) {
                  rounding = sizeof(real) == 4 ? 0.1 : 1e-3;
     for (int k = 0; k < 2; k++) {
         brunt_world_def def = rings_begin("neo-hookean", 1000, E, nu);
-        of_elements(def_ball(&def, "ball", XYZ(0, 0.3, 0), R), k ? BRUNT_TRI3 : BRUNT_QUAD4, R / 6)->damping = 2e5;
+        of_elements(half_ball(&def, "ball", XYZ(0, 0.3, 0), R), k ? BRUNT_TRI3 : BRUNT_QUAD4, R / 6)->damping = 2e5;
         add_group(&def, "ball", "surface", BRUNT_GROUP_PRESSURE)->value[0] = p;
         brunt_world *world = world_take(&def);
         world_until(world, 5e-4);
@@ -204,7 +218,7 @@ static brunt_world *rod_on_plate(int threads, int nose) {
     const double R = 0.01;
     def.threads = threads;
     def.contact.friction = 0.2;
-    brunt_body_def *rod = nose ? def_ball(&def, "rod", XYZ(0, 1.001 * R, 0), R)
+    brunt_body_def *rod = nose ? half_ball(&def, "rod", XYZ(0, 1.001 * R, 0), R)
                                : def_box(&def, "rod", XYZ(0, 0.001 * R, 0), XYZ(R, 3 * R, 0));
     def_velocity(of_elements(rod, nose == 2 ? BRUNT_TRI3 : BRUNT_QUAD4, R / 8), 0, -10, 0);
     of_elements(def_box(&def, "plate", XYZ(0, -R, 0), XYZ(4 * R, 0, 0)), BRUNT_QUAD4, R / 5);
@@ -254,7 +268,7 @@ START_TEST(elements_meet_material_points) {
         brunt_world_def def = rings_begin("neo-hookean", 1000, 1e8, 0.3);
         def.cfl = 0.5;
         def.contact.friction = 0.1;
-        brunt_body_def *rod = swap ? def_ball(&def, "rod", XYZ(0, 1.02 * R, 0), R)
+        brunt_body_def *rod = swap ? half_ball(&def, "rod", XYZ(0, 1.02 * R, 0), R)
                                    : def_box(&def, "rod", XYZ(0, 0.02 * R, 0), XYZ(R, 2 * R, 0));
         def_velocity(rod, 0, -10, 0);
         brunt_body_def *plate = def_box(&def, "plate", XYZ(0, -R, 0), XYZ(4 * R, 0, 0));
@@ -281,7 +295,7 @@ START_TEST(debris_passes_the_axis) {
     def.materials[0] = brunt_material_def_default("copper", "von-mises");
     for (int k = 0; k < 4; k++) brunt_material_set(&def.materials[0], keys[k], values[k], NULL, &error);
     brunt_body_def *plate = def_box(&def, "plate", XYZ(0, -0.006, 0), XYZ(0.04, 0, 0));
-    brunt_body_def *ball = def_ball(&def, "ball", XYZ(0, 0.0101, 0), 0.01);
+    brunt_body_def *ball = half_ball(&def, "ball", XYZ(0, 0.0101, 0), 0.01);
     of_elements(plate, BRUNT_TRI3, 1e-3)->erosion = (brunt_erosion_def){.strain = 0.8, .inverted = true, .keep = true};
     of_elements(ball, BRUNT_TRI3, 1e-3)->erosion = plate->erosion;
     def_velocity(ball, 0, -800, 0);
@@ -392,7 +406,7 @@ END_TEST
 // Weight and momentum of a free fall: the mass is that of the full circle.
 START_TEST(gravity_pulls_along_the_axis) {
     brunt_world_def def = rings_begin("neo-hookean", 1000, 1e6, 0.3);
-    of_elements(def_ball(&def, "ball", XYZ(0, 0, 0), 0.1), BRUNT_QUAD4, 0.02);
+    of_elements(half_ball(&def, "ball", XYZ(0, 0, 0), 0.1), BRUNT_QUAD4, 0.02);
     def.gravity[1] = -9.81;
     brunt_world *world = world_take(&def);
     world_steps(world, 100);

@@ -713,7 +713,7 @@ typedef struct refusal {
 static const refusal refusals[] = {
     {"dimension 3, 2 is wanted", 0}, {"must lie on a line of the grid", 1},
     {"only y is possible", 2},       {"do not turn", 3},
-    {"bodies lie at r > 0", 4},      {"is no plane of symmetry", 5},
+    {"bodies lie at r >= 0", 4},     {"is no plane of symmetry", 5},
 };
 
 START_TEST(what_is_not_round_is_refused) {

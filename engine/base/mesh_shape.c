@@ -144,20 +144,18 @@ static int check_shape(const brunt_shape *shape, int dimension, brunt_error *err
     case BRUNT_HALF_SPACE: return refuse(error, "a half-space");
     case BRUNT_UNION: return refuse(error, "a union");
     case BRUNT_DIFFERENCE: return refuse(error, "a difference");
-    case BRUNT_INTERSECTION: return refuse(error, "an intersection");
+    case BRUNT_INTERSECTION: break; // has become what it is of
     }
     return refuse(error, "an unknown shape");
 }
 
-enum { GROUP_LIMIT = 8 };
-
-static void name_groups(const char *names[GROUP_LIMIT], int dimension, const char *start, const char *end) {
+static void name_groups(const char *names[BRUNT_GRID_GROUPS], int dimension, const char *start, const char *end) {
     if (dimension == 3) names[BRUNT_GRID_START] = start, names[BRUNT_GRID_END] = end;
 }
 
 // Makes the grid of a checked shape and names the bits of its groups.
 static int make_grid(const brunt_shape *shape, int dimension, double size, bool even, brunt_mesh_grid *grid,
-                     const char *names[GROUP_LIMIT], int *status, brunt_error *error) {
+                     const char *names[BRUNT_GRID_GROUPS], int *status, brunt_error *error) {
     static const char *const box_sides[4] = {"ymin", "xmax", "ymax", "xmin"};
     static const char *const prism_sides[4] = {"side1", "side2", "side3", "side4"};
     double corner[4][2] = {{shape->min[0], shape->min[1]},
@@ -212,13 +210,13 @@ static bool add_group(const brunt_mesh_grid *grid, const char *name, unsigned ma
 
 // In the order of the documentation, which is that of the names: xmin xmax ymin ..., start end side, and the surface
 // last.
-static bool add_groups(const brunt_mesh_grid *grid, const char *const names[GROUP_LIMIT], brunt_mesh *mesh) {
+static bool add_groups(const brunt_mesh_grid *grid, const char *const names[BRUNT_GRID_GROUPS], brunt_mesh *mesh) {
     static const char *const order[] = {"xmin", "xmax",  "ymin",  "ymax",  "zmin",  "zmax",  "start", "end",
                                         "side", "inner", "outer", "side1", "side2", "side3", "side4"};
-    mesh->groups = brunt_alloc((GROUP_LIMIT + 1) * sizeof *mesh->groups);
+    mesh->groups = brunt_alloc((BRUNT_GRID_GROUPS + 1) * sizeof *mesh->groups);
     if (!mesh->groups) return false;
     for (size_t o = 0; o < sizeof order / sizeof *order; o++)
-        for (int bit = 0; bit < GROUP_LIMIT; bit++)
+        for (int bit = 0; bit < BRUNT_GRID_GROUPS; bit++)
             if (names[bit] && !strcmp(names[bit], order[o]) && !add_group(grid, names[bit], 1u << bit, mesh))
                 return false;
     return add_group(grid, "surface", ~0u, mesh);
@@ -238,8 +236,8 @@ static bool take_elements(const brunt_mesh_grid *grid, brunt_element_kind kind, 
     return true;
 }
 
-static int mesh_shape(const brunt_shape *shape, int dimension, brunt_element_kind kind, double size, bool half,
-                      brunt_mesh *mesh, brunt_error *error) {
+int brunt_mesh_shape(const brunt_shape *shape, int dimension, brunt_element_kind kind, double size, brunt_mesh *mesh,
+                     brunt_error *error) {
     *mesh = (brunt_mesh){0};
     if (brunt_element_dimension(kind) != dimension)
         return brunt_fail(error, BRUNT_BAD_INPUT, "elements of kind %s are of %d dimensions, the shape is of %d",
@@ -249,13 +247,15 @@ static int mesh_shape(const brunt_shape *shape, int dimension, brunt_element_kin
                           brunt_element_name(kind));
     if (!(size > 0) || !isfinite(size))
         return brunt_fail(error, BRUNT_BAD_INPUT, "an edge length of %g m, a positive length is wanted", size);
-    int status = check_shape(shape, dimension, error);
+    brunt_mesh_cut cut;
+    int status = brunt_mesh_cutting(shape, dimension, &cut, error);
+    if (!status) status = check_shape(&cut.whole, dimension, error);
     if (status) return status;
-    const char *names[GROUP_LIMIT] = {0};
+    const char *names[BRUNT_GRID_GROUPS] = {0};
     brunt_mesh_grid grid = {0};
-    const bool even = half || kind == BRUNT_TET4 || kind == BRUNT_TRI3;
-    int made = make_grid(shape, dimension, size, even, &grid, names, &status, error);
-    if (!made && !status && half) made = brunt_mesh_grid_keep(shape->center[0] - 1e-9 * shape->radius, &grid);
+    const bool even = brunt_mesh_is_cut(&cut) || kind == BRUNT_TET4 || kind == BRUNT_TRI3;
+    int made = make_grid(&cut.whole, dimension, size, even, &grid, names, &status, error);
+    if (!made && !status) made = brunt_mesh_grid_cut(&cut, names, &grid);
     if (!status && made == BRUNT_GRID_TOO_MANY)
         status = brunt_fail(error, BRUNT_BAD_INPUT,
                             "an edge length of %g m makes more than 100 million nodes of this shape", size);
@@ -270,15 +270,4 @@ static int mesh_shape(const brunt_shape *shape, int dimension, brunt_element_kin
     }
     brunt_mesh_grid_free(&grid);
     return status;
-}
-
-int brunt_mesh_shape(const brunt_shape *shape, int dimension, brunt_element_kind kind, double size, brunt_mesh *mesh,
-                     brunt_error *error) {
-    return mesh_shape(shape, dimension, kind, size, false, mesh, error);
-}
-
-int brunt_mesh_half(const brunt_shape *shape, brunt_element_kind kind, double size, brunt_mesh *mesh,
-                    brunt_error *error) {
-    BRUNT_ASSERT(shape->kind == BRUNT_SPHERE || shape->kind == BRUNT_RING);
-    return mesh_shape(shape, 2, kind, size, true, mesh, error);
 }

@@ -51,13 +51,16 @@ static int allocate(int dimension, double nodes, double cells, brunt_mesh_grid *
     return BRUNT_GRID_MEMORY;
 }
 
-int brunt_mesh_grid_keep(double from, brunt_mesh_grid *grid) {
+int brunt_mesh_grid_keep(int axis, bool upper, double at, brunt_mesh_grid *grid) {
     const int corners = grid->dimension == 2 ? 4 : 8;
     int32_t cells = 0, nodes = 0, *number = brunt_alloc(((size_t)grid->node_count + 1) * sizeof *number);
     if (!number) return BRUNT_GRID_MEMORY;
     for (int32_t c = 0; c < grid->cell_count; c++) {
         bool stays = true;
-        for (int a = 0; a < corners; a++) stays = stays && grid->x[grid->cell[c][a]][0] >= from;
+        for (int a = 0; a < corners; a++) {
+            const double x = grid->x[grid->cell[c][a]][axis];
+            stays = stays && (upper ? x >= at : x <= at);
+        }
         if (!stays) continue;
         for (int a = 0; a < corners; a++) number[grid->cell[c][a]] = 1;
         memmove(grid->cell[cells++], grid->cell[c], sizeof *grid->cell);

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "definitions.h"
 #include "error.h"
 #include "lanes.h"
 #include "layout.h"
@@ -128,8 +129,8 @@ static int put_on_axis(brunt_fem_body *body, brunt_error *error) {
         real *r = &body->start[(size_t)n * 4];
         if ((double)*r < -on)
             return brunt_fail(error, BRUNT_BAD_INPUT,
-                              "bodies.%s: node %d of the mesh is at r = %g m: rings about the axis lie at r >= 0",
-                              body->name, body->node_id[n] + 1, (double)*r);
+                              "bodies.%s: node %d of the mesh is at r = %g m: " BRUNT_CUT_AT_AXIS, body->name,
+                              body->node_id[n] + 1, (double)*r);
         if ((double)*r > on) continue;
         *r = brunt_fem_node(body, n)[BRUNT_FEM_X] = 0;
         body->held[n] = 1;

@@ -9,7 +9,6 @@
 #include "fill.h"
 #include "lanes.h"
 #include "memory.h"
-#include "mesh_shape.h"
 #include "sort.h"
 #include "threads.h"
 #include "world.h"
@@ -72,11 +71,7 @@ static int fill_body(const brunt_body_def *def, const brunt_filled *filled, brun
         p->id[s] = s;
         // Of a ring, 2 pi times the integral of r over its square: exact.
         const double volume = filled->volume * (rings ? 2 * M_PI * at[0] : 1);
-        if (!(volume > 0))
-            REFUSE("bodies.%s: a particle at r = %g m: bodies lie at r > 0, what is on the axis of revolution is cut "
-                   "there "
-                   "(an intersection with a box)",
-                   def->name, at[0]);
+        if (!(volume > 0)) REFUSE("bodies.%s: a particle at r = %g m: " BRUNT_CUT_AT_AXIS, def->name, at[0]);
         brunt_field(p, BRUNT_FIELD_mass)[0][s] = (real)(volume * (double)body->material.density);
         brunt_field(p, BRUNT_FIELD_reference_volume)[0][s] = (real)volume;
         if (reach) brunt_field(p, BRUNT_FIELD_reach)[0][s] = (real)particle_reach(body, filled->reach[s]);
@@ -226,13 +221,6 @@ static int close_ranks(brunt_fem_body *fem, int32_t mesh_nodes) {
     return 0;
 }
 
-// A disk or an annulus about a point of the axis of revolution: half of it is the section of a ball or a shell.
-static bool is_halved(const brunt_world_def *def, const brunt_body_def *body) {
-    const double *R = body->place.rotation;
-    return def->axisymmetric && (body->shape.kind == BRUNT_SPHERE || body->shape.kind == BRUNT_RING) && R[0] == 1 &&
-           fabs(body->shape.center[0] + body->place.translation[0]) <= 1e-12 * body->shape.radius;
-}
-
 static int make_elements(brunt_world *world, const brunt_world_def *def, const brunt_body_def *from, int index,
                          brunt_error *error) {
     brunt_fem_body *fem = &world->fems[world->fem_count];
@@ -257,7 +245,6 @@ static int make_elements(brunt_world *world, const brunt_world_def *def, const b
         status = sheet
                      ? brunt_mesh_surface(&from->shape, from->element, from->size,
                                           (const char(*)[BRUNT_NAME_LENGTH])from->faces, from->face_count, &made, error)
-                 : is_halved(def, from) ? brunt_mesh_half(&from->shape, from->element, from->size, &made, error)
                  : graded ? brunt_mesh_graded(&from->shape, def->dimension, from->element, from->size, from->grading,
                                               &made, error)
                           : brunt_mesh_shape(&from->shape, def->dimension, from->element, from->size, &made, error);
