@@ -1,5 +1,5 @@
-// A clock that no other work on the machine touches, in the place of engine/base/clock.c: a reading is one tick later than the
-// one before, by whichever thread. Ticks are powers of two, so that sums and differences of times are exact.
+// A clock that no other work on the machine touches, in the place of engine/base/clock.c: a reading is one tick later
+// than the one before, by whichever thread. Ticks are powers of two, so that sums and differences of times are exact.
 #pragma once
 
 #include <stdatomic.h>

@@ -2,14 +2,22 @@
 # Measurements of contact between meshes: runs contact_study over forms, edge lengths, regimes, slopes and stacks, two runs at a
 # time, and writes bench/studies/contact_table.md.
 #
-#   sh bench/studies/contact_table.sh [-f] [CONTACT_STUDY]
+#   sh bench/studies/contact_table.sh [-f] [-o FILE] [-p PATTERN] [CONTACT_STUDY]
 #
-# -f: also edges of 1/8 m (minutes more). CONTACT_STUDY: the program; default build/bench/contact_study. Takes some ten minutes.
-# A run that is stopped after LIMIT seconds, or fails, has a row that says so.
+# -f: also edges of 1/8 m (minutes more). -o: writes FILE instead. -p: only runs whose arguments match. CONTACT_STUDY: the program; default
+# build/bench/contact_study. Takes some ten minutes. A run that is stopped after LIMIT seconds, or fails, has a row that says so.
 set -u
 cd "$(dirname "$0")/../.."
-fine=no
-[ "${1:-}" = -f ] && fine=yes && shift
+fine=no file=bench/studies/contact_table.md pattern=
+while getopts fo:p: option; do
+    case $option in
+    f) fine=yes ;;
+    o) file=$OPTARG ;;
+    p) pattern=$OPTARG ;;
+    *) exit 64 ;;
+    esac
+done
+shift $((OPTIND - 1))
 study=${1:-build/bench/contact_study}
 limit=${LIMIT:-400}
 [ -x "$study" ] || { echo "no program $study: build the target contact_study" >&2; exit 64; }
@@ -97,7 +105,7 @@ plan() {
     done
 }
 
-plan >"$work/plan"
+plan | grep -E "\|[^|]*$pattern[^|]*$" >"$work/plan"
 number=0
 : >"$work/jobs"
 while IFS='|' read -r section what arguments; do
@@ -187,5 +195,5 @@ END
         "| form, case | E/E0 | most | deepest [h] | nearest [h] | gap [h] | linear drift | angular drift | v_y [m/s] | s |"
     rows unequal "E/E0 max pen near now dP dL apart wall"
 } >"$work/table"
-mv "$work/table" bench/studies/contact_table.md
-wc -l <"$work/plan" | sed 's/ *\(.*\)/\1 runs; bench\/studies\/contact_table.md/'
+mv "$work/table" "$file"
+echo "$(($(wc -l <"$work/plan"))) runs; $file"
