@@ -84,6 +84,8 @@ static bool put_run_state(hid_t file, brunt_world *world, const char *scene_text
            brunt_hdf5_put_integer(file, "step", brunt_world_steps(world)) &&
            brunt_hdf5_put_integer(file, "particles", brunt_world_particles(world)) &&
            brunt_hdf5_put_integer(file, "elements", brunt_world_elements(world)) &&
+           brunt_hdf5_put_integer(file, "history_lines", state->history_lines) &&
+           brunt_hdf5_put_integer(file, "history_hash", (long long)state->history_hash) &&
            brunt_hdf5_put_integer(file, "mesh_hash", (long long)state->mesh_hash) &&
            brunt_hdf5_put_integer(file, "run", (long long)brunt_checkpoint_identity(scene_text, state->mesh_hash)) &&
            brunt_hdf5_put_number(file, "time", brunt_world_time(world)) &&
@@ -232,16 +234,18 @@ static void *read_dataset(hid_t file, const char *name, char letter, int64_t *co
 // What no run has written: counts and times below zero or not finite, pictures that go back in time.
 static bool is_sound(const brunt_run_state *s) {
     const double numbers[] = {s->time, s->wall_seconds, s->step_seconds, s->output_seconds, s->cpu_seconds};
-    bool sound = s->step >= 0;
+    bool sound = s->step >= 0 && s->history_lines >= 0;
     for (size_t n = 0; n < sizeof numbers / sizeof *numbers; n++) sound &= isfinite(numbers[n]) && numbers[n] >= 0;
     for (int64_t p = 0; p < s->picture_count; p++) sound &= s->picture_times[p] >= (p ? s->picture_times[p - 1] : 0);
     return sound;
 }
 
 static int read_run_state(hid_t file, const char *path, brunt_run_state *state, brunt_error *error) {
-    long long step = 0, failed = 0, mesh_hash = 0;
+    long long step = 0, failed = 0, mesh_hash = 0, lines = 0, hash = 0;
     memset(state, 0, sizeof *state);
     bool ok = brunt_hdf5_get_integer(file, "step", &step) && brunt_hdf5_get_integer(file, "failed", &failed) &&
+              brunt_hdf5_get_integer(file, "history_lines", &lines) &&
+              brunt_hdf5_get_integer(file, "history_hash", &hash) &&
               brunt_hdf5_get_number(file, "time", &state->time) &&
               brunt_hdf5_get_number(file, "wall_seconds", &state->wall_seconds) &&
               brunt_hdf5_get_number(file, "cpu_seconds", &state->cpu_seconds) &&
@@ -252,6 +256,8 @@ static int read_run_state(hid_t file, const char *path, brunt_run_state *state, 
     if (!ok || !state->picture_times)
         return brunt_fail(error, BRUNT_BAD_INPUT, "%s: the state of the run's outputs is missing", path);
     if (brunt_hdf5_get_integer(file, "mesh_hash", &mesh_hash)) state->mesh_hash = (uint64_t)mesh_hash;
+    state->history_lines = lines;
+    state->history_hash = (uint64_t)hash;
     state->step = step;
     state->failed = failed != 0;
     return is_sound(state) ? BRUNT_OK

@@ -17,6 +17,8 @@ typedef struct brunt_run_state {
     char reason[1024];
     double time; // [s] of the world
     int64_t step;
+    int64_t history_lines; // of the history up to here, and
+    uint64_t history_hash; // what they are: brunt_history_hash
     uint64_t mesh_hash; // of the mesh files' contents, which are no part of the scene's text
 } brunt_run_state;
 

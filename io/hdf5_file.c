@@ -1,7 +1,10 @@
 #include "hdf5_file.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <string.h>
+#include <sys/resource.h>
+#include <unistd.h>
 #include <zlib.h>
 
 #include "error.h"
@@ -11,19 +14,35 @@
 // HDF5 prints its error stack unless told otherwise; the library never prints.
 static void silence(void) { H5Eset_auto2(H5E_DEFAULT, NULL, NULL); }
 
-hid_t brunt_hdf5_create(size_t bytes_expected) {
-    silence();
-    hid_t access = H5Pcreate(H5P_FILE_ACCESS), creation = H5Pcreate(H5P_FILE_CREATE), file = -1;
-    size_t increment = bytes_expected / 4 > 65536 ? bytes_expected / 4 : 65536;
-    // The 1.8 file format: its object headers have checksums, and unlike the later ones it holds no "open for writing"
-    // flag.
-    if (access >= 0 && creation >= 0 && H5Pset_fapl_core(access, increment, 0) >= 0 &&
-        H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18) >= 0 &&
-        H5Pset_userblock(creation, BRUNT_HDF5_USER_BLOCK) >= 0)
-        file = H5Fcreate("in memory", H5F_ACC_TRUNC, creation, access);
+// The 1.8 file format: its object headers have checksums, and unlike the later ones it holds no "open for writing"
+// flag. Without the times of its objects: the same contents are the same bytes.
+static hid_t create(const char *name, hid_t access) {
+    hid_t creation = H5Pcreate(H5P_FILE_CREATE), file = -1;
+    if (access >= 0 && creation >= 0 && H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18) >= 0 &&
+        H5Pset_userblock(creation, BRUNT_HDF5_USER_BLOCK) >= 0 && H5Pset_obj_track_times(creation, false) >= 0)
+        file = H5Fcreate(name, H5F_ACC_TRUNC, creation, access);
     H5Pclose(access);
     H5Pclose(creation);
     return file;
+}
+
+hid_t brunt_hdf5_create(size_t bytes_expected) {
+    silence();
+    hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+    size_t increment = bytes_expected / 4 > 65536 ? bytes_expected / 4 : 65536;
+    if (access >= 0 && H5Pset_fapl_core(access, increment, 0) < 0) {
+        H5Pclose(access);
+        return -1;
+    }
+    return create("in memory", access);
+}
+
+static void print_block(char block[BRUNT_HDF5_USER_BLOCK], const char *kind, int format, size_t length,
+                        unsigned long sum) {
+    memset(block, 0, BRUNT_HDF5_USER_BLOCK);
+    snprintf(block, BRUNT_HDF5_USER_BLOCK,
+             "brunt %s, format %d, %zu bytes of HDF5 follow this block of 512, CRC-32 %08lx\n", kind, format, length,
+             sum);
 }
 
 int brunt_hdf5_write(hid_t file, const char *kind, int format, const char *path, brunt_atomic_file *out,
@@ -39,14 +58,13 @@ int brunt_hdf5_write(hid_t file, const char *kind, int format, const char *path,
     }
     const unsigned char *data = *(unsigned char **)handle;
     size_t length = (size_t)size - BRUNT_HDF5_USER_BLOCK;
-    char block[BRUNT_HDF5_USER_BLOCK] = {0};
+    char block[BRUNT_HDF5_USER_BLOCK];
     unsigned long sum = 0;
     for (size_t at = 0; at < length; at += 1u << 30) {
         size_t part = length - at < 1u << 30 ? length - at : 1u << 30;
         sum = crc32(sum, data + BRUNT_HDF5_USER_BLOCK + at, (uInt)part);
     }
-    snprintf(block, sizeof block, "brunt %s, format %d, %zu bytes of HDF5 follow this block of 512, CRC-32 %08lx\n",
-             kind, format, length, sum);
+    print_block(block, kind, format, length, sum);
     int status = brunt_atomic_open(out, path, error);
     if (!status) {
         status = brunt_atomic_write(out, block, sizeof block, error);
@@ -57,6 +75,59 @@ int brunt_hdf5_write(hid_t file, const char *kind, int format, const char *path,
             status = brunt_atomic_flush(out, error);
     }
     H5Fclose(file);
+    return status;
+}
+
+// Room for a file that HDF5 writes itself, so that it does not meet a full disk. Some file systems keep none; errno.
+static bool keep_room(int descriptor, size_t bytes) {
+    struct rlimit limit;
+    if (!getrlimit(RLIMIT_FSIZE, &limit) && limit.rlim_cur != RLIM_INFINITY && bytes > limit.rlim_cur) {
+        errno = EFBIG;
+        return false;
+    }
+    return !fallocate(descriptor, FALLOC_FL_KEEP_SIZE, 0, (off_t)bytes) ||
+           (errno != ENOSPC && errno != EDQUOT && errno != EFBIG);
+}
+
+int brunt_hdf5_create_aside(const char *path, size_t bytes, brunt_atomic_file *out, hid_t *file, brunt_error *error) {
+    silence();
+    int status = brunt_atomic_open(out, path, error);
+    if (status) return status;
+    *file = create(out->aside, H5Pcreate(H5P_FILE_ACCESS));
+    if (*file >= 0 && keep_room(fileno(out->stream), bytes)) return BRUNT_OK;
+    status = brunt_fail(error, BRUNT_IO_ERROR, "%s: cannot write the file: %s", path,
+                        *file < 0 ? "HDF5 could not start it" : strerror(errno));
+    if (*file >= 0) H5Fclose(*file);
+    brunt_atomic_abandon(out);
+    return status;
+}
+
+// The user block of a file that is there but for it.
+static int put_block(const char *kind, int format, brunt_atomic_file *out, brunt_error *error) {
+    enum { PIECE = 1 << 20 };
+    unsigned char *piece = brunt_alloc(PIECE);
+    if (!piece) return brunt_fail(error, BRUNT_FAILED, "out of memory while writing %s", out->path);
+    const int descriptor = fileno(out->stream);
+    size_t length = 0;
+    unsigned long sum = 0;
+    ssize_t got;
+    while ((got = pread(descriptor, piece, PIECE, (off_t)(BRUNT_HDF5_USER_BLOCK + length))) > 0) {
+        sum = crc32(sum, piece, (uInt)got);
+        length += (size_t)got;
+    }
+    brunt_free(piece);
+    char block[BRUNT_HDF5_USER_BLOCK];
+    print_block(block, kind, format, length, sum);
+    if (got == 0 && pwrite(descriptor, block, sizeof block, 0) == (ssize_t)sizeof block) return BRUNT_OK;
+    return brunt_fail(error, BRUNT_IO_ERROR, "%s: cannot write the file: %s", out->path, strerror(errno));
+}
+
+int brunt_hdf5_seal(hid_t file, const char *kind, int format, int status, brunt_atomic_file *out, brunt_error *error) {
+    if (H5Fclose(file) < 0 && !status)
+        status = brunt_fail(error, BRUNT_IO_ERROR, "%s: HDF5 could not write the file", out->path);
+    if (!status) status = put_block(kind, format, out, error);
+    if (!status) return brunt_atomic_flush(out, error);
+    brunt_atomic_abandon(out);
     return status;
 }
 
@@ -119,20 +190,39 @@ int brunt_hdf5_open(const char *path, const char *kind, int format, hid_t *file,
     return BRUNT_OK;
 }
 
-bool brunt_hdf5_put(hid_t file, const char *name, hid_t file_type, hid_t memory_type, hsize_t count,
-                    const void *values) {
-    hsize_t unlimited = H5S_UNLIMITED, size = H5Tget_size(file_type), chunk = (1u << 20) / (size ? size : 1);
-    if (chunk > count) chunk = count ? count : 1;
-    hid_t space = H5Screate_simple(1, &count, &unlimited);
-    hid_t creation = H5Pcreate(H5P_DATASET_CREATE), links = H5Pcreate(H5P_LINK_CREATE);
-    bool ok = space >= 0 && creation >= 0 && links >= 0 && H5Pset_chunk(creation, 1, &chunk) >= 0 &&
-              H5Pset_fletcher32(creation) >= 0 && H5Pset_create_intermediate_group(links, 1) >= 0;
-    hid_t set = ok ? H5Dcreate2(file, name, file_type, space, links, creation, H5P_DEFAULT) : -1;
-    ok = set >= 0 && (count == 0 || H5Dwrite(set, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0);
-    if (set >= 0) H5Dclose(set);
-    if (links >= 0) H5Pclose(links);
+static bool make_groups(hid_t file, const char *name) {
+    hid_t creation = H5Pcreate(H5P_GROUP_CREATE);
+    bool ok = creation >= 0 && H5Pset_obj_track_times(creation, false) >= 0;
+    for (const char *slash = strchr(name + 1, '/'); slash && ok; slash = strchr(slash + 1, '/')) {
+        char group[256];
+        ok = (size_t)snprintf(group, sizeof group, "%.*s", (int)(slash - name), name) < sizeof group;
+        if (!ok || H5Lexists(file, group, H5P_DEFAULT) > 0) continue;
+        hid_t made = H5Gcreate2(file, group, H5P_DEFAULT, creation, H5P_DEFAULT);
+        ok = made >= 0;
+        if (made >= 0) H5Gclose(made);
+    }
+    if (creation >= 0) H5Pclose(creation);
+    return ok;
+}
+
+hid_t brunt_hdf5_make(hid_t file, const char *name, hid_t file_type, hsize_t count, hsize_t chunk) {
+    const hsize_t unlimited = H5S_UNLIMITED;
+    hid_t space = H5Screate_simple(1, &count, &unlimited), creation = H5Pcreate(H5P_DATASET_CREATE), set = -1;
+    if (space >= 0 && creation >= 0 && H5Pset_chunk(creation, 1, &chunk) >= 0 && H5Pset_fletcher32(creation) >= 0 &&
+        H5Pset_obj_track_times(creation, false) >= 0 && make_groups(file, name))
+        set = H5Dcreate2(file, name, file_type, space, H5P_DEFAULT, creation, H5P_DEFAULT);
     if (creation >= 0) H5Pclose(creation);
     if (space >= 0) H5Sclose(space);
+    return set;
+}
+
+bool brunt_hdf5_put(hid_t file, const char *name, hid_t file_type, hid_t memory_type, hsize_t count,
+                    const void *values) {
+    hsize_t size = H5Tget_size(file_type), chunk = (1u << 20) / (size ? size : 1);
+    if (chunk > count) chunk = count ? count : 1;
+    hid_t set = brunt_hdf5_make(file, name, file_type, count, chunk);
+    bool ok = set >= 0 && (count == 0 || H5Dwrite(set, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0);
+    if (set >= 0) H5Dclose(set);
     return ok;
 }
 
@@ -193,15 +283,25 @@ hid_t brunt_hdf5_dataset(hid_t file, const char *name, H5T_class_t kind, size_t 
     return -1;
 }
 
-bool brunt_hdf5_read(hid_t set, hid_t memory_type, int64_t first, int64_t count, void *values) {
+// Reads into `values`, or writes `source`.
+static bool move_part(hid_t set, hid_t memory_type, int64_t first, int64_t count, void *values, const void *source) {
     hsize_t start = (hsize_t)first, length = (hsize_t)count;
     if (!count) return true;
     hid_t there = H5Dget_space(set), here = H5Screate_simple(1, &length, NULL);
     bool ok = there >= 0 && here >= 0 && H5Sselect_hyperslab(there, H5S_SELECT_SET, &start, NULL, &length, NULL) >= 0 &&
-              H5Dread(set, memory_type, here, there, H5P_DEFAULT, values) >= 0;
+              (source ? H5Dwrite(set, memory_type, here, there, H5P_DEFAULT, source)
+                      : H5Dread(set, memory_type, here, there, H5P_DEFAULT, values)) >= 0;
     if (here >= 0) H5Sclose(here);
     if (there >= 0) H5Sclose(there);
     return ok;
+}
+
+bool brunt_hdf5_read(hid_t set, hid_t memory_type, int64_t first, int64_t count, void *values) {
+    return move_part(set, memory_type, first, count, values, NULL);
+}
+
+bool brunt_hdf5_write_part(hid_t set, hid_t memory_type, int64_t first, int64_t count, const void *values) {
+    return move_part(set, memory_type, first, count, NULL, values);
 }
 
 void brunt_hdf5_printable(char *text) {

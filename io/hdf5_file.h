@@ -19,6 +19,12 @@ hid_t brunt_hdf5_create(size_t bytes_expected);
 int brunt_hdf5_write(hid_t file, const char *kind, int format, const char *path, brunt_atomic_file *out,
                      brunt_error *error);
 
+// For what is too large to be in memory: a file made aside of `path`, for which the disk has `bytes` left, and its
+// sealing, which closes it, writes the user block and flushes it. With a `status` that is not BRUNT_OK it is abandoned,
+// and that returned.
+int brunt_hdf5_create_aside(const char *path, size_t bytes, brunt_atomic_file *out, hid_t *file, brunt_error *error);
+int brunt_hdf5_seal(hid_t file, const char *kind, int format, int status, brunt_atomic_file *out, brunt_error *error);
+
 // Verifies the user block and the CRC, then opens for reading. BRUNT_IO_ERROR: cannot be read; BRUNT_BAD_INPUT: of
 // another kind or format, cut short or damaged.
 int brunt_hdf5_open(const char *path, const char *kind, int format, hid_t *file, brunt_error *error);
@@ -29,6 +35,9 @@ bool brunt_hdf5_kind(const char *path, char kind[32], int *format);
 // True on success.
 bool brunt_hdf5_put(hid_t file, const char *name, hid_t file_type, hid_t memory_type, hsize_t count,
                     const void *values);
+// Makes a dataset for `put`'s kind of values, to be written in parts; `name` begins with a slash. Negative on failure.
+hid_t brunt_hdf5_make(hid_t file, const char *name, hid_t file_type, hsize_t count, hsize_t chunk);
+bool brunt_hdf5_write_part(hid_t set, hid_t memory_type, int64_t first, int64_t count, const void *values);
 // A dataset as `put` writes them, of `count` numbers of that class and size; -1 for anything else: what is not there,
 // links to elsewhere, other ranks, types and filters, data outside of the file, or more numbers than the file has room
 // for.

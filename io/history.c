@@ -1,22 +1,27 @@
 #include "history.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <math.h>
 #include <stdarg.h>
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "atomic_file.h"
 #include "error.h"
+#include "hash.h"
 #include "hdf5_file.h"
+#include "input_file.h"
 #include "memory.h"
 #include "places.h"
 
-enum { FORMAT = 2, COLUMN_NAME = 200 };
+enum { FORMAT = 2, COLUMN_NAME = 200, BLOCK = 1 << 17 }; // BLOCK: numbers at a time
 
 typedef struct column {
     char name[COLUMN_NAME], unit[16];
-    double *values;
-    size_t capacity; // [bytes]
+    double now, last; // of the line that is being made, of the one before
+    double *values;   // all lines, when they have been asked for
 } column;
 
 typedef struct probe {
@@ -34,6 +39,10 @@ struct brunt_history {
     bool declaring; // the first traversal names the columns, later ones fill them
     bool out_of_memory;
     int64_t rows;
+    uint64_t hash; // of all lines but their probes, which may change from leg to leg
+    double *lines; // one after the other, as long as they go to no file
+    size_t lines_capacity;
+    bool resumed; // lines are in a file that is to be gone on with
     probe *probes;
     int32_t probe_count;
     double *scratch; // a field of a probe's body
@@ -61,15 +70,7 @@ static void add(brunt_history *h, const char *name, const char *unit, double val
         snprintf(c->unit, sizeof c->unit, "%s", unit);
         return;
     }
-    column *c = &h->columns[h->cursor++];
-    void *memory = c->values;
-    if (brunt_reserve(&memory, &c->capacity, sizeof(double) * (size_t)(h->rows + 1),
-                      sizeof(double) * (size_t)h->rows)) {
-        h->out_of_memory = true;
-        return;
-    }
-    c->values = memory;
-    c->values[h->rows] = value;
+    h->columns[h->cursor++].now = value;
 }
 
 __attribute__((format(printf, 4, 5))) static void add_named(brunt_history *h, const char *unit, double value,
@@ -91,7 +92,7 @@ static void add_force(brunt_history *h, const char *prefix, double interval, con
     double mean[3] = {0, 0, 0}, square = 0;
     for (int c = 0; c < 3; c++) {
         if (!h->declaring && h->rows > 0 && interval > 0)
-            mean[c] = (force->impulse[c] - h->columns[h->cursor + 4 + c].values[h->rows - 1]) / interval;
+            mean[c] = (force->impulse[c] - h->columns[h->cursor + 4 + c].last) / interval;
         square += mean[c] * mean[c];
     }
     char name[COLUMN_NAME];
@@ -221,7 +222,7 @@ static void add_probe(brunt_history *h, brunt_world *world, const probe *p) {
 static void traverse(brunt_history *h, brunt_world *world) {
     h->cursor = 0;
     double time = brunt_world_time(world), interval = 0;
-    if (!h->declaring && h->rows > 0) interval = time - h->columns[0].values[h->rows - 1];
+    if (!h->declaring && h->rows > 0) interval = time - h->columns[0].last;
     add(h, "time", "s", time);
     add(h, "step", "1", (double)brunt_world_steps(world));
     add(h, "dt", "s", brunt_world_dt(world));
@@ -308,11 +309,20 @@ brunt_history *brunt_history_create(brunt_world *world, const brunt_scene *scene
     return h;
 }
 
+// What was read back is no longer all.
+static void forget_columns(const brunt_history *h) {
+    for (int32_t c = 0; c < h->column_count; c++) {
+        brunt_free(h->columns[c].values);
+        h->columns[c].values = NULL;
+    }
+}
+
 void brunt_history_destroy(brunt_history *history) {
     if (!history) return;
     if (history->csv) fclose(history->csv);
-    for (int32_t c = 0; c < history->column_count; c++) brunt_free(history->columns[c].values);
+    forget_columns(history);
     brunt_free(history->columns);
+    brunt_free(history->lines);
     brunt_free(history->probes);
     brunt_free(history->scratch);
     brunt_free(history);
@@ -325,53 +335,275 @@ int32_t brunt_history_column_count(const brunt_history *history) { return histor
 const char *brunt_history_column_name(const brunt_history *history, int32_t c) { return history->columns[c].name; }
 const char *brunt_history_column_unit(const brunt_history *history, int32_t c) { return history->columns[c].unit; }
 
-const double *brunt_history_column(const brunt_history *history, const char *name) {
-    static const double none[1];
-    for (int32_t c = 0; c < history->column_count; c++)
-        if (!strcmp(history->columns[c].name, name)) return history->rows ? history->columns[c].values : none;
-    return NULL;
+uint64_t brunt_history_hash(const brunt_history *history) { return history->hash; }
+double brunt_history_time(const brunt_history *history) { return history->rows ? history->columns[0].last : NAN; }
+
+// ---------------------------------------------------------------------------------------------------- lines, one at a
+// time
+
+static bool counts(const char *name) { return strncmp(name, "probe.", 6) != 0; }
+
+static uint64_t hash_value(uint64_t hash, double value) {
+    uint64_t bits;
+    if (isnan(value)) value = NAN; // there are many, and a text knows one
+    memcpy(&bits, &value, sizeof bits);
+    return brunt_hash_add(hash, bits);
 }
 
-// ---------------------------------------------------------------------------------------------------- files
-
-static void print_line(const brunt_history *h, int64_t row, FILE *out) {
+static void print_line(const brunt_history *h, const double *values, FILE *out) {
     for (int32_t c = 0; c < h->column_count; c++) {
-        if (c == 1)
-            fprintf(out, ",%.0f", h->columns[c].values[row]);
+        if (isnan(values[c]))
+            fputs(",nan", out);
+        else if (c == 1)
+            fprintf(out, ",%.0f", values[c]);
         else
-            fprintf(out, c ? ",%.17g" : "%.17g", h->columns[c].values[row]);
+            fprintf(out, c ? ",%.17g" : "%.17g", values[c]);
     }
     fputc('\n', out);
+}
+
+// Lines as they were sampled, from memory or from history.csv. 17 digits give every bit of a double back.
+typedef struct line_reader {
+    const brunt_history *history;
+    const char *path; // NULL: from memory
+    FILE *file;
+    char *text; // of the C library, as the next one
+    size_t capacity;
+    int32_t *column; // of each of the file's: the history's, -1: it has no such
+    bool *counted;
+    int32_t column_count; // of the file
+    int64_t row;
+    uint64_t hash; // of the lines so far
+} line_reader;
+
+static void close_lines(line_reader *r) {
+    if (r->file) fclose(r->file);
+    free(r->text);
+    brunt_free(r->column);
+    brunt_free(r->counted);
+}
+
+static int bad_line(const line_reader *r, brunt_error *error) {
+    return brunt_fail(error, BRUNT_BAD_INPUT, "%s: line %lld is no line of a history of %d columns", r->path,
+                      (long long)r->row + 1, (int)r->column_count);
+}
+
+static int next_text(line_reader *r, brunt_error *error) {
+    errno = 0;
+    ssize_t length = getline(&r->text, &r->capacity, r->file);
+    if (length < 0 && errno)
+        return brunt_fail(error, BRUNT_IO_ERROR, "%s: cannot read the file: %s", r->path, strerror(errno));
+    if (length < 1 || r->text[length - 1] != '\n' || strlen(r->text) != (size_t)length) return bad_line(r, error);
+    return BRUNT_OK;
+}
+
+// "time [s],step [1],..."
+static int read_heading(line_reader *r, brunt_error *error) {
+    const brunt_history *h = r->history;
+    int status = next_text(r, error);
+    if (status) return status;
+    int32_t count = 1;
+    for (const char *c = r->text; *c; c++) count += *c == ',';
+    r->column_count = count;
+    r->column = brunt_alloc(sizeof *r->column * (size_t)count);
+    r->counted = brunt_alloc(sizeof *r->counted * (size_t)count);
+    if (!r->column || !r->counted) return brunt_fail(error, BRUNT_FAILED, "out of memory while reading %s", r->path);
+    const char *at = r->text;
+    for (int32_t f = 0; f < count; f++, at += strcspn(at, ",\n") + 1) {
+        char wanted[COLUMN_NAME + 32];
+        const size_t length = strcspn(at, ",\n");
+        r->column[f] = -1;
+        r->counted[f] = counts(at);
+        for (int32_t c = 0; c < h->column_count && r->column[f] < 0; c++) {
+            snprintf(wanted, sizeof wanted, "%s [%s]", h->columns[c].name, h->columns[c].unit);
+            if (strlen(wanted) == length && !strncmp(wanted, at, length)) r->column[f] = c;
+        }
+    }
+    return BRUNT_OK;
+}
+
+static int open_lines(line_reader *r, const brunt_history *h, const char *path, brunt_error *error) {
+    *r = (line_reader){.history = h, .path = path};
+    if (!path) return BRUNT_OK;
+    const char *why;
+    r->file = brunt_input_open(path, &why);
+    if (!r->file) return brunt_fail(error, BRUNT_IO_ERROR, "%s: cannot open the file: %s", path, why);
+    return read_heading(r, error);
+}
+
+// The next line into `values`, one a column of the history, NAN where the file has none; of one column alone with
+// `only` >= 0.
+static int next_line(line_reader *r, int32_t only, double *values, brunt_error *error) {
+    const int32_t columns = r->history->column_count;
+    if (!r->path) {
+        memcpy(values, r->history->lines + columns * r->row++, sizeof *values * (size_t)columns);
+        return BRUNT_OK;
+    }
+    r->row++;
+    int status = next_text(r, error);
+    for (int32_t c = 0; c < columns && only < 0; c++) values[c] = NAN;
+    char *at = r->text;
+    for (int32_t f = 0; f < r->column_count && !status; f++) {
+        char *end = at;
+        if (only < 0 || r->column[f] == only) {
+            double value = strtod(at, &end);
+            if (end == at) return bad_line(r, error);
+            if (r->column[f] >= 0) values[r->column[f]] = value;
+            if (r->counted[f]) r->hash = hash_value(r->hash, value);
+        } else {
+            end += strcspn(at, ",\n");
+        }
+        if (*end != (f + 1 < r->column_count ? ',' : '\n')) status = bad_line(r, error);
+        at = end + 1;
+    }
+    return status;
+}
+
+static const char *lines_path(const brunt_history *h) { return h->csv ? h->csv_path : NULL; }
+
+// ---------------------------------------------------------------------------------------------------- sampling
+
+static int keep_in_memory(brunt_history *h, brunt_error *error) {
+    void *memory = h->lines;
+    const size_t bytes = sizeof(double) * (size_t)h->column_count, used = bytes * (size_t)h->rows;
+    if (brunt_reserve(&memory, &h->lines_capacity, used + bytes, used))
+        return brunt_fail(error, BRUNT_FAILED, "out of memory after %lld history lines", (long long)h->rows);
+    h->lines = memory;
+    for (int32_t c = 0; c < h->column_count; c++) h->lines[h->column_count * h->rows + c] = h->columns[c].now;
+    return BRUNT_OK;
+}
+
+static int append_to_file(brunt_history *h, brunt_error *error) {
+    void *memory = h->scratch;
+    if (brunt_reserve(&memory, &h->scratch_capacity, sizeof(double) * (size_t)h->column_count, 0))
+        return brunt_fail(error, BRUNT_FAILED, "out of memory after %lld history lines", (long long)h->rows);
+    h->scratch = memory;
+    for (int32_t c = 0; c < h->column_count; c++) h->scratch[c] = h->columns[c].now;
+    print_line(h, h->scratch, h->csv);
+    if (fflush(h->csv) || ferror(h->csv))
+        return brunt_fail(error, BRUNT_IO_ERROR, "%s: cannot write the file: %s", h->csv_path, strerror(errno));
+    return BRUNT_OK;
 }
 
 int brunt_history_sample(brunt_history *history, brunt_world *world, brunt_error *error) {
     traverse(history, world);
     if (history->out_of_memory)
         return brunt_fail(error, BRUNT_FAILED, "out of memory after %lld history lines", (long long)history->rows);
+    int status = history->csv ? append_to_file(history, error) : keep_in_memory(history, error);
+    if (status) return status;
+    for (int32_t c = 0; c < history->column_count; c++) {
+        column *at = &history->columns[c];
+        if (counts(at->name)) history->hash = hash_value(history->hash, at->now);
+        at->last = at->now;
+    }
     history->rows++;
-    if (!history->csv) return BRUNT_OK;
-    print_line(history, history->rows - 1, history->csv);
-    if (fflush(history->csv) || ferror(history->csv))
-        return brunt_fail(error, BRUNT_IO_ERROR, "%s: cannot write the file: %s", history->csv_path, strerror(errno));
+    forget_columns(history);
     return BRUNT_OK;
+}
+
+int brunt_history_read(const brunt_history *history, const char *name, const double **values, brunt_error *error) {
+    int32_t c = 0;
+    while (c < history->column_count && strcmp(history->columns[c].name, name) != 0) c++;
+    if (c == history->column_count) return brunt_fail(error, BRUNT_BAD_INPUT, "the history has no column '%s'", name);
+    *values = history->columns[c].values;
+    if (*values) return BRUNT_OK;
+    double *all = brunt_alloc(sizeof *all * (size_t)history->rows),
+           *line = brunt_alloc(sizeof *line * (size_t)history->column_count);
+    line_reader r = {0};
+    int status = all && line ? open_lines(&r, history, lines_path(history), error)
+                             : brunt_fail(error, BRUNT_FAILED, "out of memory for the history's column '%s'", name);
+    for (int64_t row = 0; row < history->rows && !status; row++) {
+        status = next_line(&r, c, line, error);
+        all[row] = line[c];
+    }
+    close_lines(&r);
+    brunt_free(line);
+    if (status) {
+        brunt_free(all);
+        return status;
+    }
+    *values = history->columns[c].values = all;
+    return BRUNT_OK;
+}
+
+const double *brunt_history_column(const brunt_history *history, const char *name) {
+    const double *values;
+    return brunt_history_read(history, name, &values, NULL) ? NULL : values;
+}
+
+// ---------------------------------------------------------------------------------------------------- files
+
+int brunt_history_resume(brunt_history *history, const char *path, int64_t lines, uint64_t hash, brunt_error *error) {
+    double *line = brunt_alloc(sizeof *line * (size_t)history->column_count);
+    line_reader r = {0};
+    int status = line ? open_lines(&r, history, path, error)
+                      : brunt_fail(error, BRUNT_FAILED, "out of memory while reading %s", path);
+    for (int64_t row = 0; row < lines && !status; row++) status = next_line(&r, -1, line, error);
+    if (!status && r.hash != hash)
+        status =
+            brunt_fail(error, BRUNT_BAD_INPUT,
+                       "%s: its first %lld lines are not those of the checkpoint: of another run, or changed since",
+                       path, (long long)lines);
+    for (int32_t c = 0; c < history->column_count && !status && lines; c++) history->columns[c].last = line[c];
+    if (!status) history->rows = lines, history->hash = hash, history->resumed = true;
+    close_lines(&r);
+    brunt_free(line);
+    return status;
+}
+
+static int print_all(const brunt_history *h, const char *path, FILE *out, brunt_error *error) {
+    for (int32_t c = 0; c < h->column_count; c++)
+        fprintf(out, "%s%s [%s]", c ? "," : "", h->columns[c].name, h->columns[c].unit);
+    fputc('\n', out);
+    if (!h->rows) return BRUNT_OK;
+    double *line = brunt_alloc(sizeof *line * (size_t)h->column_count);
+    line_reader r = {0};
+    int status = line ? open_lines(&r, h, h->resumed ? path : NULL, error)
+                      : brunt_fail(error, BRUNT_FAILED, "out of memory while writing %s", path);
+    for (int64_t row = 0; row < h->rows && !status; row++) {
+        status = next_line(&r, -1, line, error);
+        if (!status) print_line(h, line, out);
+    }
+    close_lines(&r);
+    brunt_free(line);
+    return status;
 }
 
 int brunt_history_open_csv(brunt_history *history, const char *path, brunt_error *error) {
     brunt_atomic_file file;
     int status = brunt_atomic_open(&file, path, error);
     if (status) return status;
-    for (int32_t c = 0; c < history->column_count; c++)
-        fprintf(file.stream, "%s%s [%s]", c ? "," : "", history->columns[c].name, history->columns[c].unit);
-    fputc('\n', file.stream);
-    for (int64_t row = 0; row < history->rows; row++) print_line(history, row, file.stream);
+    status = print_all(history, path, file.stream, error);
+    if (status) {
+        brunt_atomic_abandon(&file);
+        return status;
+    }
     status = brunt_atomic_commit(&file, error);
     if (status) return status;
     memcpy(history->csv_path, file.path, sizeof file.path);
-    history->csv = fopen(path, "abe");
-    if (!history->csv) return brunt_fail(error, BRUNT_IO_ERROR, "%s: cannot open the file: %s", path, strerror(errno));
+    int descriptor = open(path, O_WRONLY | O_APPEND | O_NOFOLLOW | O_CLOEXEC);
+    history->csv = descriptor < 0 ? NULL : fdopen(descriptor, "a");
+    if (!history->csv) {
+        if (descriptor >= 0) close(descriptor);
+        return brunt_fail(error, BRUNT_IO_ERROR, "%s: cannot open the file: %s", path, strerror(errno));
+    }
     // A line fits the buffer (25 characters a number), so that it reaches the file in one write.
     setvbuf(history->csv, NULL, _IOFBF, 64 + 26 * (size_t)history->column_count);
+    brunt_free(history->lines);
+    history->lines = NULL, history->lines_capacity = 0;
     return BRUNT_OK;
+}
+
+int brunt_history_sync(const brunt_history *history, brunt_error *error) {
+    if (!history->csv || !fdatasync(fileno(history->csv))) return BRUNT_OK;
+    return brunt_fail(error, BRUNT_IO_ERROR, "%s: cannot write the file: %s", history->csv_path, strerror(errno));
+}
+
+double brunt_history_line_bytes(const brunt_history *history) {
+    double bytes = 8 * (double)history->column_count; // history.h5
+    for (int32_t c = 0; c < history->column_count; c++)
+        bytes += 1 + snprintf(NULL, 0, "%.17g", history->columns[c].last);
+    return bytes;
 }
 
 // "body.rod.mass" -> "/body/rod/mass"
@@ -381,28 +613,66 @@ static void dataset_name(const char *column_name, char out[COLUMN_NAME + 1]) {
         if (*c == '.') *c = '/';
 }
 
-int brunt_history_write(const brunt_history *history, const char *path, brunt_error *error) {
-    hid_t file = brunt_hdf5_create((size_t)history->column_count * (1024 + sizeof(double) * (size_t)history->rows));
-    if (file < 0) return brunt_fail(error, BRUNT_FAILED, "%s: HDF5 could not start the file", path);
-    bool ok = brunt_hdf5_put_text(file, "title", history->title) &&
-              brunt_hdf5_put_text(file, "version", BRUNT_VERSION) &&
-              brunt_hdf5_put_integer(file, "run", (long long)history->run) &&
+static bool make_columns(const brunt_history *h, hid_t file, int64_t chunk) {
+    bool ok = brunt_hdf5_put_text(file, "title", h->title) && brunt_hdf5_put_text(file, "version", BRUNT_VERSION) &&
+              brunt_hdf5_put_integer(file, "run", (long long)h->run) &&
               brunt_hdf5_put_text(file, "force", "mean over the interval since the line before");
-    for (int32_t c = 0; c < history->column_count && ok; c++) {
+    for (int32_t c = 0; c < h->column_count && ok; c++) {
         char name[COLUMN_NAME + 1];
-        dataset_name(history->columns[c].name, name);
-        ok = brunt_hdf5_put(file, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, (hsize_t)history->rows,
-                            history->columns[c].values);
-        hid_t set = ok ? H5Dopen2(file, name, H5P_DEFAULT) : -1;
-        ok = set >= 0 && brunt_hdf5_put_text(set, "unit", history->columns[c].unit);
+        dataset_name(h->columns[c].name, name);
+        hid_t set = brunt_hdf5_make(file, name, H5T_IEEE_F64LE, (hsize_t)h->rows, (hsize_t)chunk);
+        ok = set >= 0 && brunt_hdf5_put_text(set, "unit", h->columns[c].unit);
         if (set >= 0) H5Dclose(set);
     }
-    if (!ok) {
-        H5Fclose(file);
-        return brunt_fail(error, BRUNT_FAILED, "%s: HDF5 could not put the file together", path);
+    return ok;
+}
+
+// Lines [first, first + count), which lie one after the other in `lines`, to their columns.
+static bool put_lines(const brunt_history *h, hid_t file, int64_t first, int64_t count, const double *lines,
+                      double *values) {
+    bool ok = true;
+    for (int32_t c = 0; c < h->column_count && ok; c++) {
+        char name[COLUMN_NAME + 1];
+        dataset_name(h->columns[c].name, name);
+        for (int64_t row = 0; row < count; row++) values[row] = lines[h->column_count * row + c];
+        hid_t set = H5Dopen2(file, name, H5P_DEFAULT);
+        ok = set >= 0 && brunt_hdf5_write_part(set, H5T_NATIVE_DOUBLE, first, count, values);
+        if (set >= 0) H5Dclose(set);
     }
+    return ok;
+}
+
+// A block of lines at a time: no more of them is in memory.
+static int put_all(const brunt_history *h, hid_t file, const char *path, brunt_error *error) {
+    const int64_t most = BLOCK / h->column_count > 0 ? BLOCK / h->column_count : 1, block = h->rows < 1      ? 1
+                                                                                            : h->rows < most ? h->rows
+                                                                                                             : most;
+    double *lines = brunt_alloc(sizeof *lines * (size_t)(block * (h->column_count + 1)));
+    line_reader r = {0};
+    int status = lines ? open_lines(&r, h, lines_path(h), error)
+                       : brunt_fail(error, BRUNT_FAILED, "out of memory while writing %s", path);
+    if (!status && !make_columns(h, file, block))
+        status = brunt_fail(error, BRUNT_IO_ERROR, "%s: HDF5 could not write the file", path);
+    for (int64_t first = 0; first < h->rows && !status; first += block) {
+        const int64_t count = h->rows - first < block ? h->rows - first : block;
+        for (int64_t row = 0; row < count && !status; row++)
+            status = next_line(&r, -1, lines + h->column_count * row, error);
+        if (!status && !put_lines(h, file, first, count, lines, lines + block * h->column_count))
+            status = brunt_fail(error, BRUNT_IO_ERROR, "%s: HDF5 could not write the file", path);
+    }
+    close_lines(&r);
+    brunt_free(lines);
+    return status;
+}
+
+int brunt_history_write(const brunt_history *history, const char *path, brunt_error *error) {
+    const double room = 65536 + (double)history->column_count * (4096 + 8.1 * (double)history->rows);
     brunt_atomic_file out;
-    int status = brunt_hdf5_write(file, "history", FORMAT, path, &out, error);
+    hid_t file;
+    int status = brunt_hdf5_create_aside(path, (size_t)room, &out, &file, error);
+    if (status) return status;
+    status = put_all(history, file, path, error);
+    status = brunt_hdf5_seal(file, "history", FORMAT, status, &out, error);
     return status ? status : brunt_atomic_rename(&out, error);
 }
 
@@ -413,42 +683,13 @@ static hid_t open_column(hid_t file, const char *name, int64_t *count) {
     return brunt_hdf5_dataset(file, path, H5T_FLOAT, sizeof(double), count);
 }
 
-// Reads a column of `length` values; false when there is none.
-static bool read_column(hid_t file, const char *name, double *values, int64_t length) {
-    int64_t count;
-    hid_t set = open_column(file, name, &count);
-    bool good = set >= 0 && count == length && brunt_hdf5_read(set, H5T_NATIVE_DOUBLE, 0, count, values);
-    if (set >= 0) H5Dclose(set);
-    return good;
-}
-
-static int load_columns(brunt_history *h, hid_t file, const char *path, int64_t last_step, brunt_error *error) {
-    int64_t length, rows = 0;
-    hid_t step = open_column(file, "step", &length);
-    if (step >= 0) H5Dclose(step);
-    if (step < 0) return brunt_fail(error, BRUNT_BAD_INPUT, "%s: the history has no column 'step'", path);
-    for (int32_t c = 0; c < h->column_count; c++) {
-        void *memory = h->columns[c].values;
-        if (brunt_reserve(&memory, &h->columns[c].capacity, sizeof(double) * ((size_t)length + 1), 0))
-            return brunt_fail(error, BRUNT_FAILED, "out of memory while reading %s", path);
-        h->columns[c].values = memory;
-        bool found = read_column(file, h->columns[c].name, memory, length);
-        for (int64_t r = 0; !found && r < length; r++) h->columns[c].values[r] = NAN;
-    }
-    const double *steps = h->columns[1].values;
-    while (rows < length && steps[rows] <= (double)last_step) rows++;
-    h->rows = rows;
-    return BRUNT_OK;
-}
-
-int brunt_history_load(brunt_history *history, const char *path, int64_t last_step, brunt_error *error) {
+int brunt_history_check_file(const brunt_history *history, const char *path, brunt_error *error) {
     hid_t file;
+    long long run = 0;
     int status = brunt_hdf5_open(path, "history", FORMAT, &file, error);
     if (status) return status;
-    long long run = 0;
     if (!brunt_hdf5_get_integer(file, "run", &run) || (uint64_t)run != history->run)
         status = brunt_fail(error, BRUNT_BAD_INPUT, "%s: the history of another run than this scene's", path);
-    if (!status) status = load_columns(history, file, path, last_step, error);
     H5Fclose(file);
     return status;
 }

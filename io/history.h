@@ -5,9 +5,10 @@
 // contact between two lines is not missed, and force x interval summed up is the impulse. The area that touches is that
 // of the step before the line.
 //
-// Lines are kept in memory. The CSV file grows line by line, one write each, so that it can be watched and a kill
-// leaves whole lines. The HDF5 file, which a killed writer could leave unreadable, is written anew aside and renamed:
-// before each checkpoint, now and then, and at the end.
+// Lines are written as they come, one write each, to the CSV file, from which they are read back: none is kept in
+// memory, and a kill leaves whole lines. The checkpoint holds their number and a hash of them. The HDF5 file, which a
+// killed writer could leave unreadable, is made of them aside and renamed: now and then, and at the end. Without a CSV
+// file lines are in memory.
 #pragma once
 
 #include "brunt.h"
@@ -30,14 +31,29 @@ int64_t brunt_history_rows(const brunt_history *history);
 int32_t brunt_history_column_count(const brunt_history *history);
 const char *brunt_history_column_name(const brunt_history *history, int32_t column);
 const char *brunt_history_column_unit(const brunt_history *history, int32_t column);
-// The values of a column, one a line, or NULL when there is none of that name. Valid until the next sample.
+// [s] of the last line; NAN without one.
+double brunt_history_time(const brunt_history *history);
+// Of the numbers in all lines but those of probes, which may change between the legs of a run.
+uint64_t brunt_history_hash(const brunt_history *history);
+// [B] that a line takes in both files.
+double brunt_history_line_bytes(const brunt_history *history);
+// The values of a column, one a line, read back; valid until the next sample. BRUNT_BAD_INPUT when there is none of
+// that name.
+int brunt_history_read(const brunt_history *history, const char *name, const double **values, brunt_error *error);
+// The same, or NULL.
 const double *brunt_history_column(const brunt_history *history, const char *name);
 
 // Writes history.h5.
 int brunt_history_write(const brunt_history *history, const char *path, brunt_error *error);
 // Starts history.csv with all lines so far, aside and renamed; lines sampled later are appended at once.
 int brunt_history_open_csv(brunt_history *history, const char *path, brunt_error *error);
-// Takes over the lines of a file up to `last_step`; later ones are dropped. Columns the file has not are NAN there.
-int brunt_history_load(brunt_history *history, const char *path, int64_t last_step, brunt_error *error);
+// The lines so far are on the disk when it returns.
+int brunt_history_sync(const brunt_history *history, brunt_error *error);
+// Takes over the first `lines` lines of a CSV file, whose hash is known; brunt_history_open_csv of the same file then
+// drops what is after them. Columns the file has not are NAN there. BRUNT_BAD_INPUT, with nothing changed: they are
+// others.
+int brunt_history_resume(brunt_history *history, const char *path, int64_t lines, uint64_t hash, brunt_error *error);
+// BRUNT_OK when an HDF5 file is a history of the same run.
+int brunt_history_check_file(const brunt_history *history, const char *path, brunt_error *error);
 // Says what a file holds.
 int brunt_history_describe(const char *path, FILE *out, brunt_error *error);

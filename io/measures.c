@@ -411,11 +411,10 @@ int brunt_measure_evaluate(const brunt_measure *measure, const brunt_history *hi
     *result = (brunt_measure_result){.value = NAN, .error = NAN};
     double value = NAN;
     if (measure->kind == BRUNT_MEASURE_HISTORY) {
-        const double *column = brunt_history_column(history, measure->column);
-        if (!column)
-            return brunt_fail(error, BRUNT_BAD_INPUT, "measures.%s: the history has no column '%s'", measure->name,
-                              measure->column);
-        const double *time = brunt_history_column(history, "time");
+        const double *column, *time;
+        int status = brunt_history_read(history, measure->column, &column, error);
+        if (!status) status = brunt_history_read(history, "time", &time, error);
+        if (status) return status;
         const int64_t rows = brunt_history_rows(history);
         initial = rows ? column[0] : NAN;
         if (!measure->curve.count) { // of a history
@@ -423,7 +422,7 @@ int brunt_measure_evaluate(const brunt_measure *measure, const brunt_history *hi
         } else {
             double divisor =
                 (measure->relative_to_initial ? initial : 1) * (isnan(measure->relative_to) ? 1 : measure->relative_to);
-            int status = reduce_distance(measure, time, column, rows, divisor, &value, error);
+            status = reduce_distance(measure, time, column, rows, divisor, &value, error);
             if (status) return status;
         }
     } else {

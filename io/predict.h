@@ -22,6 +22,9 @@ typedef struct brunt_prediction {
     double steps;             // of the whole run
     double step_seconds;      // [s] of the clock in them
     double output_seconds;    // [s] pictures, history, checkpoints
+    double pictures, lines;   // of bodies together, and of the history
+    double picture_bytes, line_bytes,
+        checkpoint_bytes;     // [B] of all of them on the disk; pictures before they are compressed
     double array_bytes;       // [B] of the world's arrays at the start
     double peak_bytes;        // [B] of the process: program, arrays as they grow, history, buffers of a picture
     brunt_prediction_pass passes[BRUNT_PREDICTION_PASSES]; // the plan's, in its order, then "other" between them

@@ -12,7 +12,7 @@
 // From the summaries of bench/scenes: bytes that are compressed, and what a file
 // costs that is empty; then HDF5 with checksums.
 static const double picture_rate = 70e6, file_seconds = 0.3e-3, checkpoint_rate = 400e6, cell_seconds = 0.4e-6,
-                    column_seconds = 150e-6;
+                    column_seconds = 150e-6, block_bytes = 3e6;
 
 // What the disk takes to keep a file, written aside, flushed and renamed: where none was, and in the place of one,
 // which may take ten times as long. In a folder of its own in the working folder, removed again; 0 where none can be
@@ -92,9 +92,10 @@ static double count_of(double every, double end, double each) {
 int brunt_predict_output(const brunt_scene *scene, brunt_world *world, brunt_history *history, brunt_prediction *out,
                          double *buffer_bytes, brunt_error *error) {
     const brunt_output_def *o = &scene->output;
-    double end = scene->world.end,
-           lines = fmin(count_of(o->history, end, out->steps + 1), out->steps + 1); // one a step at most
-    double pictures = count_of(o->every, end, 2), line = INFINITY, bytes = 0, most = 0;
+    double end = scene->world.end, pictures = count_of(o->every, end, 2),
+           steps = fmax(out->steps, pictures) + 1,             // no step goes beyond a picture
+        lines = fmin(count_of(o->history, end, steps), steps); // one a step at most
+    double line = INFINITY, bytes = 0, most = 0;
     for (int s = 0; s < 3; s++) {
         double start = brunt_clock();
         int status = brunt_history_sample(history, world, error);
@@ -113,9 +114,16 @@ int brunt_predict_output(const brunt_scene *scene, brunt_world *world, brunt_his
     out->output_seconds =
         pictures * (bytes / picture_rate + brunt_body_count(world) * (file_seconds + fresh) + file_seconds + replaced) +
         lines * (line + columns * cell_seconds) +
-        checkpoints * (state / checkpoint_rate + columns * column_seconds + 2 * (file_seconds + replaced));
+        checkpoints * (state / checkpoint_rate + 2 * (file_seconds + replaced)) + 2 * columns * column_seconds;
     // Of a picture, one body at a time, the values are doubles before they are written, whatever its width; HDF5 builds
     // a checkpoint in memory, which it lets grow by doubling.
-    *buffer_bytes = (o->float32 ? 2 : 1) * most * (pictures > 0) + 2 * state + 8 * columns * lines;
+    // Of the history a block of lines, and the columns that measures ask for with that of time.
+    *buffer_bytes = (o->float32 ? 2 : 1) * most * (pictures > 0) + 2 * state + block_bytes +
+                    8 * lines * (1 + (double)scene->measure_count);
+    out->pictures = pictures;
+    out->picture_bytes = pictures * bytes;
+    out->lines = lines;
+    out->line_bytes = lines * brunt_history_line_bytes(history);
+    out->checkpoint_bytes = isinf(o->checkpoint) ? 0 : 2 * state;
     return BRUNT_OK;
 }

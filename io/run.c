@@ -129,16 +129,18 @@ static int write_history(run *r, brunt_error *error) {
 // The state with the clocks as of now.
 static brunt_run_state state_now(const run *r) {
     brunt_run_state state = r->state;
+    state.history_lines = brunt_history_rows(r->history);
+    state.history_hash = brunt_history_hash(r->history);
     state.wall_seconds += brunt_clock() - r->leg_start;
     state.cpu_seconds += cpu_clock();
     return state;
 }
 
-// The history is written before: a checkpoint's lines are in the file whatever happens in between.
+// The history's lines are on the disk before: a checkpoint counts them.
 static int write_checkpoint(run *r, const char *failure, brunt_error *error) {
     char path[BRUNT_PATH_LENGTH], backup[BRUNT_PATH_LENGTH];
     double start = brunt_clock();
-    int status = write_history(r, error);
+    int status = brunt_history_sync(r->history, error);
     if (!status) status = path_in(r, "checkpoint.h5", path, error);
     if (!status) status = path_in(r, "checkpoint.previous.h5", backup, error);
     if (status) return status;
@@ -158,10 +160,7 @@ static bool picture_is_here(const run *r) {
     return n > 0 && r->state.picture_times[n - 1] == brunt_world_time(r->world);
 }
 
-static bool history_is_here(const run *r) {
-    int64_t n = brunt_history_rows(r->history);
-    return n > 0 && brunt_history_column(r->history, "time")[n - 1] == brunt_world_time(r->world);
-}
+static bool history_is_here(const run *r) { return brunt_history_time(r->history) == brunt_world_time(r->world); }
 
 // What is due after a step (or, with `last`, at the end). History first, then pictures, then the checkpoint that counts
 // them.
@@ -171,16 +170,14 @@ static int write_outputs(run *r, bool last, brunt_error *error) {
     bool picture = reached(time, r->next_picture) || (last && !isinf(output->every));
     bool history = output->history == 0 || reached(time, r->next_history) || last;
     bool checkpoint = last || (output->checkpoint == 0 ? picture : start - r->checkpoint_wall >= output->checkpoint);
-    // The HDF5 history is rewritten as a whole: every half minute, or more rarely once that takes over a twentieth of
+    // The HDF5 history is made anew as a whole: every half minute, or more rarely once that takes over a twentieth of
     // the time.
-    bool save_history = start - r->history_wall >= fmax(30, 20 * r->history_cost);
+    bool save_history = last || start - r->history_wall >= fmax(30, 20 * r->history_cost);
     int status = BRUNT_OK;
     if (history && !history_is_here(r)) status = sample_history(r, error);
     if (!status && picture && !picture_is_here(r)) status = write_picture(r, error);
-    if (!status && checkpoint)
-        status = write_checkpoint(r, NULL, error);
-    else if (!status && save_history)
-        status = write_history(r, error);
+    if (!status && checkpoint) status = write_checkpoint(r, NULL, error);
+    if (!status && save_history) status = write_history(r, error);
     if (!status && r->console.log_failed)
         status = brunt_fail(error, BRUNT_IO_ERROR, "%s/log.txt: cannot write the file", r->folder);
     if (picture || history) schedule(r);
@@ -310,7 +307,9 @@ static int restore(run *r, brunt_error *error) {
     // The clocks of this process start now; those in the checkpoint are of the legs before.
     r->state.cpu_seconds -= cpu_clock();
     status = path_in(r, "history.h5", path, error);
-    if (!status) status = brunt_history_load(r->history, path, brunt_world_steps(r->world), error);
+    if (!status && brunt_file_exists(path)) status = brunt_history_check_file(r->history, path, error);
+    if (!status) status = path_in(r, "history.csv", path, error);
+    if (!status) status = brunt_history_resume(r->history, path, r->state.history_lines, r->state.history_hash, error);
     if (status) return status;
     double time = brunt_world_time(r->world), end = brunt_world_end(r->world);
     if (!reached(end, time))
@@ -335,6 +334,7 @@ static int write_first(run *r, brunt_error *error) {
     if (!status && !isinf(r->scene->output.every)) status = write_picture(r, error);
     // A first checkpoint: a run killed before the second can be resumed, and a disk too small for one is found now.
     if (!status && !isinf(r->scene->output.checkpoint)) status = write_checkpoint(r, NULL, error);
+    if (!status) status = write_history(r, error);
     double spent = brunt_clock() - start;
     r->state.output_seconds += spent;
     r->leg_output += spent;
@@ -389,6 +389,8 @@ static void finish_failed(run *r, brunt_error *error) {
             brunt_console_print(&r->console, "no picture of the failure: %s\n", second.message);
         if (write_checkpoint(r, reason, &second))
             brunt_console_print(&r->console, "no checkpoint of the failure: %s\n", second.message);
+        if (write_history(r, &second))
+            brunt_console_print(&r->console, "no history.h5 of the failure: %s\n", second.message);
     }
     if (finish(r, "failed", reason, false, &second))
         brunt_console_print(&r->console, "no summary: %s\n", second.message);
@@ -403,6 +405,7 @@ static int serve_signals(run *r, brunt_error *error) {
     if (!stop && !save) return BRUNT_OK;
     if (save) *options->save = 0;
     int status = write_checkpoint(r, NULL, error);
+    if (!status) status = write_history(r, error);
     if (status) return status;
     brunt_console_print(&r->console, "checkpoint at t = %.9g s, step %lld\n", brunt_world_time(r->world),
                         (long long)brunt_world_steps(r->world));

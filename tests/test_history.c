@@ -2,6 +2,7 @@
 #include "small_scene.h"
 
 #include <math.h>
+#include <unistd.h>
 
 #include "history.h"
 #include "memory.h"
@@ -183,21 +184,34 @@ START_TEST(unknown_probe_field_is_refused) {
 }
 END_TEST
 
+// The lines of a file, read back, are the same to the bit, and a resumed run goes on after the last of its own.
 START_TEST(file_gives_the_same_lines_and_drops_later_ones) {
+    sample(31);
+    const uint64_t hash31 = brunt_history_hash(history);
     sample(50);
-    const char *path = small_path("history.h5");
-    ck_assert_int_eq(brunt_history_write(history, path, NULL), BRUNT_OK);
     brunt_history *again = brunt_history_create(world, &scene, NULL);
+    char path[160];
+    snprintf(path, sizeof path, "%s", small_path("again.csv"));
+    ck_assert_int_eq(brunt_history_open_csv(history, small_path("history.csv"), NULL), BRUNT_OK);
+    long size;
+    char *bytes = small_read(small_path("history.csv"), &size);
+    small_write(path, bytes, size);
+    free(bytes);
     for (int drop = 0; drop < 2; drop++) {
         int64_t kept = drop ? 31 : 50;
-        int64_t step = (int64_t)brunt_history_column(history, "step")[kept - 1] + (drop ? 2 : 0);
-        ck_assert_int_eq(brunt_history_load(again, path, step, NULL), BRUNT_OK);
+        brunt_error error = {0};
+        int status = brunt_history_resume(again, path, kept, drop ? hash31 : brunt_history_hash(history), &error);
+        ck_assert_msg(status == BRUNT_OK, "%s", error.message);
+        ck_assert_int_eq(brunt_history_open_csv(again, path, NULL), BRUNT_OK);
         ck_assert_int_eq((int)brunt_history_rows(again), (int)kept);
         for (int32_t c = 0; c < brunt_history_column_count(history); c++) {
             const char *name = brunt_history_column_name(history, c);
             const double *a = brunt_history_column(history, name), *b = brunt_history_column(again, name);
-            ck_assert_msg(!memcmp(a, b, sizeof *a * (size_t)kept), "%s differs", name);
+            ck_assert_msg(a && b && !memcmp(a, b, sizeof *a * (size_t)kept), "%s differs", name);
         }
+        if (drop) break;
+        brunt_history_destroy(again);
+        again = brunt_history_create(world, &scene, NULL);
     }
     // Lines go on after the last kept one.
     ck_assert_int_eq(brunt_history_sample(again, world, NULL), BRUNT_OK);
@@ -206,11 +220,71 @@ START_TEST(file_gives_the_same_lines_and_drops_later_ones) {
 }
 END_TEST
 
+// What is no history of these lines is refused and changes nothing: another number of them, another value, a line cut
+// off.
+START_TEST(other_lines_are_refused) {
+    sample(20);
+    char path[160], other[160];
+    snprintf(path, sizeof path, "%s", small_path("history.csv"));
+    snprintf(other, sizeof other, "%s", small_path("other.csv"));
+    const uint64_t hash = brunt_history_hash(history);
+    ck_assert_int_eq(brunt_history_open_csv(history, path, NULL), BRUNT_OK);
+    brunt_history *again = brunt_history_create(world, &scene, NULL);
+    brunt_error error;
+    ck_assert_int_eq(brunt_history_resume(again, path, 21, hash, &error), BRUNT_BAD_INPUT);
+    ck_assert_int_eq(brunt_history_resume(again, path, 19, hash, &error), BRUNT_BAD_INPUT);
+    ck_assert_int_eq(brunt_history_resume(again, path, 20, hash + 1, &error), BRUNT_BAD_INPUT);
+    ck_assert_int_eq(brunt_history_resume(again, small_path("none.csv"), 20, hash, &error), BRUNT_IO_ERROR);
+    long size;
+    char *bytes = small_read(path, &size), *second = strchr(strchr(bytes, '\n') + 1, '\n') + 1;
+    small_write(other, bytes, size - 1);
+    ck_assert_int_eq(brunt_history_resume(again, other, 20, hash, &error), BRUNT_BAD_INPUT);
+    for (int i = 0; i < 3; i++) { // a digit, a comma, a zero byte
+        char *at = second + strcspn(second, i ? "," : "123456"), kept = *at;
+        *at = "9;"[i < 2 ? i : 2];
+        small_write(other, bytes, size);
+        *at = kept;
+        ck_assert_int_eq(brunt_history_resume(again, other, 20, hash, &error), BRUNT_BAD_INPUT);
+    }
+    ck_assert_int_eq((int)brunt_history_rows(again), 0);
+    ck_assert_int_eq(brunt_history_resume(again, path, 20, hash, &error), BRUNT_OK);
+    brunt_history_destroy(again);
+    free(bytes);
+}
+END_TEST
+
 START_TEST(empty_history_is_a_file_too) {
-    const char *path = small_path("history.h5");
-    ck_assert_int_eq(brunt_history_write(history, path, NULL), BRUNT_OK);
-    ck_assert_int_eq(brunt_history_load(history, path, 100, NULL), BRUNT_OK);
+    ck_assert_int_eq(brunt_history_write(history, small_path("history.h5"), NULL), BRUNT_OK);
+    ck_assert_int_eq(brunt_history_check_file(history, small_path("history.h5"), NULL), BRUNT_OK);
+    ck_assert_int_eq(brunt_history_open_csv(history, small_path("history.csv"), NULL), BRUNT_OK);
+    ck_assert_int_eq(brunt_history_resume(history, small_path("history.csv"), 0, 0, NULL), BRUNT_OK);
     ck_assert_int_eq((int)brunt_history_rows(history), 0);
+}
+END_TEST
+
+// However long a run, its lines take no memory, also not while the HDF5 file is made of them; the file is the same
+// bytes each time.
+START_TEST(lines_take_no_memory) {
+    char path[2][160];
+    snprintf(path[0], sizeof path[0], "%s", small_path("a.h5")),
+        snprintf(path[1], sizeof path[1], "%s", small_path("b.h5"));
+    ck_assert_int_eq(brunt_history_open_csv(history, small_path("history.csv"), NULL), BRUNT_OK);
+    sample(10);
+    const size_t live = brunt_memory_live();
+    for (int i = 0; i < 5000; i++) ck_assert_int_eq(brunt_history_sample(history, world, NULL), BRUNT_OK);
+    ck_assert_int_eq((int)brunt_memory_live(), (int)live);
+    const size_t peak = brunt_memory_peak();
+    for (int f = 0; f < 2; f++) ck_assert_int_eq(brunt_history_write(history, path[f], NULL), BRUNT_OK);
+    ck_assert_int_eq((int)brunt_memory_live(), (int)live);
+    const size_t whole = 5010 * sizeof(double) * (size_t)brunt_history_column_count(history);
+    ck_assert_uint_lt(brunt_memory_peak() - peak, whole / 2);
+    ck_assert_double_eq(last("time"), brunt_world_time(world));
+    long size[2];
+    char *bytes[2] = {small_read(path[0], &size[0]), small_read(path[1], &size[1])};
+    ck_assert(size[0] == size[1] && !memcmp(bytes[0], bytes[1], (size_t)size[0]));
+    ck_assert_int_gt((int)size[0], (int)whole);
+    free(bytes[0]), free(bytes[1]);
+    ck_assert(access(small_path("a.h5.part"), F_OK) != 0);
 }
 END_TEST
 
@@ -260,12 +334,12 @@ START_TEST(damage_is_an_error) {
         small_write(broken, bytes, size);
         bytes[at] = kept;
         if (matters)
-            ck_assert_msg(brunt_history_load(history, broken, 1000, &error) == BRUNT_BAD_INPUT, "byte %ld", at);
+            ck_assert_msg(brunt_history_check_file(history, broken, &error) == BRUNT_BAD_INPUT, "byte %ld", at);
         small_write(broken, bytes, rand() % size);
-        ck_assert_int_eq(brunt_history_load(history, broken, 1000, &error), BRUNT_BAD_INPUT);
+        ck_assert_int_eq(brunt_history_check_file(history, broken, &error), BRUNT_BAD_INPUT);
     }
     free(bytes);
-    ck_assert_int_eq(brunt_history_load(history, small_path("none.h5"), 1000, &error), BRUNT_IO_ERROR);
+    ck_assert_int_eq(brunt_history_check_file(history, small_path("none.h5"), &error), BRUNT_IO_ERROR);
     ck_assert_int_eq((int)brunt_history_rows(history), 20);
 }
 END_TEST
@@ -351,10 +425,12 @@ START_TEST(eroded_is_counted) {
     ck_assert_double_eq(at_end[1], density[at]);
     free(ids);
     free(density);
-    const char *path = small_path("eroded.h5");
-    ck_assert_int_eq(brunt_history_write(lines, path, NULL), BRUNT_OK);
+    char path[160];
+    snprintf(path, sizeof path, "%s", small_path("eroded.csv"));
+    ck_assert_int_eq(brunt_history_open_csv(lines, path, NULL), BRUNT_OK);
     brunt_history *again = brunt_history_create(bar, &pulled, NULL); // declared when something is gone
-    ck_assert_int_eq(brunt_history_load(again, path, 1000, NULL), BRUNT_OK);
+    ck_assert_int_eq(brunt_history_resume(again, path, 2, brunt_history_hash(lines), NULL), BRUNT_OK);
+    ck_assert_int_eq(brunt_history_open_csv(again, path, NULL), BRUNT_OK);
     ck_assert_double_eq(brunt_history_column(again, "body.lower.eroded_mass")[1], gone.mass);
     brunt_history_destroy(again);
     brunt_history_destroy(lines);
@@ -469,6 +545,8 @@ int main(void) {
     tcase_add_test(lines, probe_follows_the_nearest_particle);
     tcase_add_test(lines, unknown_probe_field_is_refused);
     tcase_add_test(lines, file_gives_the_same_lines_and_drops_later_ones);
+    tcase_add_test(lines, other_lines_are_refused);
+    tcase_add_test(lines, lines_take_no_memory);
     tcase_add_test(lines, empty_history_is_a_file_too);
     tcase_add_test(lines, csv_holds_the_columns_with_their_units);
     tcase_add_test(lines, damage_is_an_error);

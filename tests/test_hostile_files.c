@@ -226,6 +226,9 @@ START_TEST(histories_of_another_run) {
             0);
         ck_assert_int_eq(small_shell("cp other/history.h5 out/"), 0);
         small_expect("run small.yaml -q -t 1 -o out --resume", 65, "history.h5: the history of another run");
+        ck_assert_int_eq(small_shell("cp whole/history.h5 out/ && cp other/history.csv out/"), 0);
+        small_expect("run small.yaml -q -t 1 -o out --resume", 65, "21 lines are not those of the checkpoint");
+        ck_assert_int_eq(small_shell("cp whole/history.csv out/"), 0);
         ck_assert_int_eq(
             small_shell("cmp out/checkpoint.h5 whole/checkpoint.h5 && cmp out/history.csv whole/history.csv"), 0);
     }

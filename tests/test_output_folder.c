@@ -263,6 +263,17 @@ START_TEST(check_leaves_no_trace) {
 }
 END_TEST
 
+// What a run will leave is said before, and warned of when it is too much for any disk.
+START_TEST(check_says_what_the_disk_will_hold) {
+    small_expect("check small.yaml --quick", 0, "\n  11 pictures, ");
+    small_expect("check small.yaml --quick", 0, "before compression; 101 history lines, ");
+    ck_assert_int_eq(small_shell("! grep -q 'warning: .*\\(pictures\\|room\\)' output"), 0);
+    small_expect("check small.yaml --quick --set output.every='1 ns'", 0, "warning: 1e+08 pictures");
+    small_expect("check small.yaml --quick --set output.every='1 ns'", 0, "warning: this disk has room for ");
+    small_expect("check small.yaml --quick --set output.every=none", 0, "\n  0 pictures, 0 B before");
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("output_folder");
     TCase *tcase = tcase_create("output folder");
@@ -278,6 +289,7 @@ int main(void) {
     tcase_add_test(tcase, a_list_that_lies);
     tcase_add_test(tcase, studies_likewise);
     tcase_add_test(tcase, check_leaves_no_trace);
+    tcase_add_test(tcase, check_says_what_the_disk_will_hold);
     suite_add_tcase(suite, tcase);
     return small_main(suite);
 }

@@ -135,6 +135,7 @@ static void same_results(const char *a, const char *b) {
     hash_of(b, hash_b);
     ck_assert_str_eq(hash_a, hash_b);
     ck_assert_int_eq(shell("cmp %s/%s/history.csv %s/%s/history.csv", small_folder, a, small_folder, b), 0);
+    ck_assert_int_eq(shell("cmp %s/%s/history.h5 %s/%s/history.h5", small_folder, a, small_folder, b), 0);
     ck_assert_int_eq(shell("cmp %s/%s/brunt.pvd %s/%s/brunt.pvd", small_folder, a, small_folder, b), 0);
     ck_assert_int_eq(shell("diff -r %s/%s/vtu %s/%s/vtu", small_folder, a, small_folder, b), 0);
 }

@@ -1,6 +1,7 @@
 // The plan of a scene, without running it: what is switched on and by what, what it costs in memory and time.
 #include <math.h>
 #include <stdio.h>
+#include <sys/statvfs.h>
 
 #include "app.h"
 #include "history.h"
@@ -113,6 +114,30 @@ static void print_rehearsal(const brunt_prediction *p) {
     if (p->note[0]) printf("  note: %s\n", p->note);
 }
 
+// What the run will leave on the disk, and whether that is a mistake: an interval of nanoseconds fills any.
+static void print_output(const brunt_prediction *p) {
+    enum { MANY = 100000 };
+    const double bytes = p->picture_bytes + p->line_bytes + p->checkpoint_bytes;
+    struct statvfs disk;
+    printf("output\n  %.0f picture%s, ", p->pictures, plural(p->pictures));
+    print_size(p->picture_bytes, 0);
+    printf(" before compression; %.0f history line%s, ", p->lines, plural(p->lines));
+    print_size(p->line_bytes, 0);
+    printf("; two checkpoints, ");
+    print_size(p->checkpoint_bytes, 0);
+    printf("\n");
+    if (p->pictures > MANY)
+        printf("warning: %.3g pictures, a file each for every body: is output.every as long as it is meant to be?\n",
+               p->pictures);
+    if (!statvfs(".", &disk) && bytes > (double)disk.f_bavail * (double)disk.f_frsize) {
+        printf("warning: this disk has room for ");
+        print_size((double)disk.f_bavail * (double)disk.f_frsize, 0);
+        printf(", the output may take ");
+        print_size(bytes, 0);
+        printf("\n");
+    }
+}
+
 static int print_cost(const brunt_machine *machine, const brunt_scene *scene, brunt_world *world,
                       brunt_history *history, bool quick, brunt_error *error) {
     brunt_prediction p;
@@ -138,6 +163,7 @@ static int print_cost(const brunt_machine *machine, const brunt_scene *scene, br
     printf(", peak about ");
     print_size(p.peak_bytes, 0);
     printf(" (program, arrays as they grow, output)\n");
+    print_output(&p);
     return BRUNT_OK;
 }
 
