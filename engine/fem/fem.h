@@ -218,23 +218,19 @@ static inline void brunt_fem_internal_force(const brunt_fem_body *body, int32_t 
     }
 }
 
-// Sums over a run of nodes, added up in order by the caller (over runs whose bounds do not depend on the threads). Of a step
-// v -> v_new (kick, and what contact and boundaries then change), x -> x + dt v_new (drift):
+// Sums over a run of nodes, added up in order by the caller (over runs whose bounds do not depend on the threads). Of a
+// step v -> v_new (kick, and what contact and boundaries then change), x -> x + dt v_new (drift):
 //   work of gravity g       dt g . (momentum_old + momentum) / 2         impulse dt mass g, angular dt first_moment x g
-//   work of the loads       dt (load_power_old + load_power) / 2         impulse dt load, angular dt load_moment
-// first_moment and load_moment are at the start of the step, where the forces act.
+// first_moment is at the start of the step, where the forces act. What loads do is booked by whoever makes them.
 typedef struct brunt_fem_sums {
     // by kick, at the velocities before it
-    double momentum_old[3];                // [kg m/s] sum m v
-    double load_power_old;                 // [W] sum load . v
+    double momentum_old[3]; // [kg m/s] sum m v
     // by drift
     double mass, first_moment[3];          // [kg], [kg m] sum m x, before the move
     double momentum[3], kinetic;           // sum m v_new, sum m v_new^2 / 2
     double angular[3];                     // [kg m^2/s] about the origin, after the move
     double scale_linear, scale_angular;    // sums of magnitudes m |v|, m |x| |v|, after the move
     double speed;                          // [m/s] greatest
-    double load[3], load_moment[3];        // [N] sum load, [N m] sum x x load, before the move
-    double load_power;                     // [W] sum load . v_new
 } brunt_fem_sums;
 
 // Changes the velocities of nodes [begin, end) by dt (f / m + gravity), f the internal and external forces. Fills its part of

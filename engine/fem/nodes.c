@@ -27,27 +27,22 @@ void brunt_fem_kick(brunt_fem_body *body, int32_t begin, int32_t end, double dt,
                     brunt_fem_sums *sums) {
     *sums = (brunt_fem_sums){0};
     const real4 g = {(real)(dt * gravity[0]), (real)(dt * gravity[1]), (real)(dt * gravity[2]), 0};
-    double4 momentum = {0}, power = {0};
+    double4 momentum = {0};
     for (int32_t n = begin; n < end; n++) {
         real *node = brunt_fem_node(body, n);
         real4 v = real4_load(node + BRUNT_FEM_V), force = {0};
         for (int32_t k = body->partial_first[n]; k < body->partial_first[n + 1]; k++)
             force += real4_load(body->partial + (size_t)body->partial_of[k] * 4);
-        if (body->load) {
-            real4 load = real4_load(body->load + (size_t)n * 4);
-            power += widen(load) * widen(v);
-            force += load;
-        }
+        if (body->load) force += real4_load(body->load + (size_t)n * 4);
         const real mass = node[BRUNT_FEM_MASS];
         momentum += (double)mass * widen(v);
         real4_store(node + BRUNT_FEM_V, v + force * ((real)dt / mass) + g);
     }
     store3(sums->momentum_old, momentum);
-    sums->load_power_old = sum3(power);
 }
 
 void brunt_fem_drift(brunt_fem_body *body, int32_t begin, int32_t end, double dt, brunt_fem_sums *sums) {
-    double4 first = {0}, momentum = {0}, kinetic = {0}, angular = {0}, load_sum = {0}, moment = {0}, power = {0};
+    double4 first = {0}, momentum = {0}, kinetic = {0}, angular = {0};
     double mass_sum = 0, linear = 0, turning = 0, fastest = 0;
     for (int32_t n = begin; n < end; n++) {
         real *node = brunt_fem_node(body, n);
@@ -56,12 +51,6 @@ void brunt_fem_drift(brunt_fem_body *body, int32_t begin, int32_t end, double dt
         x[3] = 0, v[3] = 0;
         const double m = (double)mass;
         double4 wide_v = widen(v), mv = m * wide_v;
-        if (body->load) {
-            double4 load = widen(real4_load(body->load + (size_t)n * 4));
-            load_sum += load;
-            moment += cross4(widen(x), load);
-            power += load * wide_v;
-        }
         first += m * widen(x);
         x += (real)dt * v;
         double4 wide_x = widen(x), square = wide_v * wide_v, distance = wide_x * wide_x;
@@ -84,9 +73,6 @@ void brunt_fem_drift(brunt_fem_body *body, int32_t begin, int32_t end, double dt
     sums->scale_linear = linear;
     sums->scale_angular = turning;
     sums->speed = sqrt(fastest);
-    store3(sums->load, load_sum);
-    store3(sums->load_moment, moment);
-    sums->load_power = sum3(power);
 }
 
 void brunt_fem_sums_add(brunt_fem_sums *sums, const brunt_fem_sums *more) {
@@ -95,14 +81,10 @@ void brunt_fem_sums_add(brunt_fem_sums *sums, const brunt_fem_sums *more) {
         sums->first_moment[i] += more->first_moment[i];
         sums->momentum[i] += more->momentum[i];
         sums->angular[i] += more->angular[i];
-        sums->load[i] += more->load[i];
-        sums->load_moment[i] += more->load_moment[i];
     }
-    sums->load_power_old += more->load_power_old;
     sums->mass += more->mass;
     sums->kinetic += more->kinetic;
     sums->scale_linear += more->scale_linear;
     sums->scale_angular += more->scale_angular;
     sums->speed = fmax(sums->speed, more->speed);
-    sums->load_power += more->load_power;
 }
