@@ -71,6 +71,38 @@ START_TEST(traction_stretches) {
 }
 END_TEST
 
+// A shear traction on one end of a free bar, which turns it: what the boundary books is the momentum that the bar
+// gains, about the origin, and its work the energy, while the load rises with a table. The force is known: the traction
+// times the area.
+START_TEST(a_load_off_the_centre_turns) {
+    brunt_world_def def = bar(kinds[_i].dimension, kinds[_i].kind);
+    const bool plane = kinds[_i].dimension == 2;
+    const double area = plane ? 0.2 : 0.04, sigma = 500, rise = 0.05, end = 0.1;
+    brunt_group_def *g = group(&def, "xmax", BRUNT_GROUP_TRACTION, 0, sigma, plane ? 0 : -0.5 * sigma);
+    g->table.points = brunt_alloc(2 * sizeof *g->table.points), g->table.count = 2;
+    g->table.points[1][0] = rise, g->table.points[1][1] = 1;
+    brunt_world *world = world_take(&def);
+    world_until(world, end);
+    const brunt_body_sums body = world_sums(world, 0);
+    const brunt_force f = world_wall(world, 0);
+    const brunt_energy e = world_energy(world);
+    const brunt_momentum m = world_momentum(world);
+    const double push =
+        area * sigma * (end - rise / 2); // the table's integral, by rectangles at the start of each step
+    ck_assert_double_eq_tol(f.impulse[1], push, 0.02 * push);
+    for (int a = 0; a < 3; a++) {
+        ck_assert_double_eq_tol(body.momentum[a], f.impulse[a], ROUNDING * push);
+        ck_assert_double_eq_tol(m.angular[a], m.angular_impulse[a], 10 * ROUNDING * push);
+    }
+    ck_assert_double_gt(m.angular[2], 0.5 * push); // about the origin, nearly a metre from the end
+    ck_assert_double_gt(e.external_work, 0.5 * push * push / body.mass);
+    ck_assert_double_eq_tol(e.kinetic + e.internal + e.hourglass, e.external_work - e.viscosity,
+                            2e-3 * e.external_work);
+    ck_assert_double_lt(m.angular_drift, 10 * ROUNDING);
+    brunt_world_destroy(world);
+}
+END_TEST
+
 // Pressure on all of the surface: no resultant force or moment, and the volume falls by p / K in the mean.
 START_TEST(pressure_squeezes) {
     brunt_world_def def = bar(3, kinds[_i].kind);
@@ -183,6 +215,7 @@ int main(void) {
     Suite *suite = suite_create("groups");
     TCase *tcase = tcase_create("groups");
     tcase_add_loop_test(tcase, traction_stretches, 0, 4);
+    tcase_add_loop_test(tcase, a_load_off_the_centre_turns, 0, 4);
     tcase_add_loop_test(tcase, pressure_squeezes, 0, 2);
     tcase_add_loop_test(tcase, displacement_follows_its_table, 0, 4);
     tcase_add_loop_test(tcase, planes_hold, 0, 2);
