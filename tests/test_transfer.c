@@ -1,5 +1,5 @@
 // Labels: unit
-// What particles take from the grid, where it is known exactly: affine velocities.
+// What particles take from the grid, where it is known exactly: affine velocities, free fall.
 #include "def_world.h"
 
 // An array of body a in the state, component by component.
@@ -86,10 +86,31 @@ START_TEST(affine_matrix_turns_with_the_particle) {
 }
 END_TEST
 
+// Whatever share of their own velocity particles keep, they fall as the grid does: FLIP's other share is the grid's
+// velocity at the end of the step.
+START_TEST(flip_falls_freely) {
+    static const double share[] = {0, 0.5, 0.99, 1};
+    brunt_world_def def = def_begin(2, 0.1);
+    def.kernel = (brunt_kernel)(BRUNT_LINEAR + _i % 3);
+    def.transfer = BRUNT_FLIP, def.flip = share[_i / 3];
+    def.gravity[0] = 3, def.gravity[1] = -10;
+    def_material(&def, "neo-hookean", 1000, 1e3, 0.3);
+    def_velocity(def_box(&def, "a", XYZ(0, 0, 0), XYZ(0.3, 0.2, 0)), 1, 2, 0);
+    brunt_world *w = world_take(&def);
+    world_steps(w, 20);
+    const double t = brunt_world_time(w);
+    const brunt_body_sums s = world_sums(w, 0);
+    ck_assert_double_eq_tol(s.velocity[0], 1 + 3 * t, 10 * ROUNDING);
+    ck_assert_double_eq_tol(s.velocity[1], 2 - 10 * t, 10 * ROUNDING);
+    brunt_world_destroy(w);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("transfer");
     TCase *all = tcase_create("all");
     tcase_add_loop_test(all, affine_matrix_turns_with_the_particle, 0, 12);
+    tcase_add_loop_test(all, flip_falls_freely, 0, 12);
     suite_add_tcase(suite, all);
     return suite_main(suite);
 }
