@@ -14,6 +14,7 @@ static const double CUT = 1e-3;    // edges on either side from which on an edge
 static const double RIM = 1e-6;    // ... and share of a triangle that is its rim
 static const double NEXT = 1.25;   // edges: nodes so near to a sheet tell on which sides of it a body is
 static const double SPACING = 0.5; // of the other body's elements: how close a long facet is looked at
+static const double FARTHEST = 1e150; // [m] squares of distances are still numbers
 enum { MOST_PIECES = 64 };
 
 static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
@@ -61,16 +62,19 @@ typedef struct cells {
 
 static void lay_cells(cells *c, const box *room, double edge, int32_t items) {
     c->room = *room;
-    for (c->edge = edge > 0 ? edge : 1;; c->edge *= 1.25) {
+    double widest = 0;
+    for (int a = 0; a < 3; a++) widest = fmax(widest, room->high[a] - room->low[a]);
+    c->edge = widest < FARTHEST ? fmax(edge, 1e-9 * widest) : INFINITY; // one cell
+    c->edge = c->edge > 0 ? c->edge : 1;
+    for (;; c->edge *= 1.25) {
         double count = 1;
-        for (int a = 0; a < 3; a++) count *= floor((room->high[a] - room->low[a]) / c->edge) + 1;
+        for (int a = 0; a < 3; a++) {
+            c->n[a] = isinf(c->edge) ? 1 : (int32_t)floor((room->high[a] - room->low[a]) / c->edge) + 1;
+            count *= c->n[a];
+        }
         if (!(count > 4.0 * items + 64)) break;
     }
-    c->count = 1;
-    for (int a = 0; a < 3; a++) {
-        c->n[a] = (int32_t)floor((room->high[a] - room->low[a]) / c->edge) + 1;
-        c->count *= c->n[a];
-    }
+    c->count = c->n[0] * c->n[1] * c->n[2];
 }
 
 static int32_t cell_along(const cells *c, int a, double x) {
@@ -454,6 +458,11 @@ static bool keep_behind(const brunt_plane_def *plane, const double x[3], double 
     return true;
 }
 
+// Whether nothing moves a node but what is prescribed.
+static bool is_held(const brunt_skin *s, int32_t n) {
+    return !(s->inverse[n][0] + s->inverse[n][1] + s->inverse[n][2] > 0);
+}
+
 // The deepest place of a body behind a plane that pushes it.
 static bool find_behind(const brunt_meeting *m, brunt_body *mpm, int mpm_count, int w, brunt_overlap *found) {
     const brunt_skin *s = m->skin;
@@ -464,7 +473,7 @@ static bool find_behind(const brunt_meeting *m, brunt_body *mpm, int mpm_count, 
     for (int k = 0; k < s->fem_count; k++) {
         if (wall->body >= 0 && wall->body != s->fem[k]->index) continue;
         for (int32_t n = s->node_range[k]; n < s->node_end[k]; n++)
-            if (keep_behind(&wall->plane, s->x[n], 0, BEHIND * s->fem[k]->mean_edge, found))
+            if (!is_held(s, n) && keep_behind(&wall->plane, s->x[n], 0, BEHIND * s->fem[k]->mean_edge, found))
                 found->a = s->fem[k]->index, any = true;
     }
     for (int i = 0; i < mpm_count; i++) {
