@@ -15,7 +15,8 @@
 typedef struct brunt_facing brunt_facing;
 
 // Marks in skin->active which bodies have another one, or a wall (planes of brunt_walls with condition separate and
-// others), near; call after brunt_skin_bounds, before brunt_skin_take. 0, or -1: out of memory.
+// others), near; call after brunt_skin_bounds, before brunt_skin_take. 0, or -1: out of memory, -2: a place or a way of
+// a step is not a number that can be worked with.
 int brunt_facing_near(const brunt_meeting *m, brunt_body *mpm, int mpm_count, const brunt_wall *walls, int wall_count,
                       double time, brunt_facing **facing);
 // Adds the contact points of this step.

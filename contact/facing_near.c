@@ -6,7 +6,8 @@
 #include "particles.h"
 #include "transfer.h"
 
-static const double RANGE = 0.25; // mean edges: how far a body looks for others, if nothing moves faster
+static const double RANGE = 0.25;     // mean edges: how far a body looks for others, if nothing moves faster
+static const double FARTHEST = 1e150; // [m] squares of distances are still numbers
 
 void brunt_facing_free(brunt_facing *f) {
     if (!f) return;
@@ -213,6 +214,18 @@ int brunt_facing_state_set(brunt_facing **facing, brunt_skin *s, int mpm_count, 
     return 0;
 }
 
+// Whether there is a place for everything: else no cells could be laid.
+static bool all_finite(const brunt_facing *f) {
+    if (!(f->range < FARTHEST) || !(f->wall_reach < FARTHEST)) return false;
+    for (int32_t b = 0; b < f->box_count; b++)
+        for (int a = 0; a < 3; a++) {
+            const double low = f->box[b].low[a], high = f->box[b].high[a];
+            if (low == INFINITY && high == -INFINITY) continue; // of nothing
+            if (!(fabs(low) < FARTHEST) || !(fabs(high) < FARTHEST)) return false;
+        }
+    return true;
+}
+
 int brunt_facing_near(const brunt_meeting *m, brunt_body *mpm, int mpm_count, const brunt_wall *walls, int wall_count,
                       double time, brunt_facing **facing) {
     brunt_skin *s = m->skin;
@@ -234,7 +247,9 @@ int brunt_facing_near(const brunt_meeting *m, brunt_body *mpm, int mpm_count, co
     f->wall_reach = (fastest + frame + walls_speed) * m->dt + 0.5 * s->thickest;
     f->reach = 2 * fastest * m->dt + spacing + s->thickest;
     f->range = fmax(fmax(RANGE * s->mean_edge + spacing + s->thickest, f->reach), m->look);
-    if (find_boxes(m, mpm, mpm_count, f) || find_pairs(m, f)) return -1;
+    if (find_boxes(m, mpm, mpm_count, f)) return -1;
+    if (!all_finite(f)) return -2;
+    if (find_pairs(m, f)) return -1;
     for (int k = 0; k < s->fem_count; k++) {
         int32_t box = f->box_of[k];
         s->active[k] = f->near_first[box + 1] > f->near_first[box];

@@ -5,7 +5,8 @@
 
 enum { MAX_TIED = 16 };
 static const double MARGIN = 0.125;   // mean edges: how far facets may move before the cells are made anew
-static const double CELL = 0.5;       // mean edges: of the cells that facets are found in
+static const double CELL = 0.5;       // mean edges: of the cells that facets are found in ...
+static const double COARSE = 0.25;    // ... of how far they are looked for, where all is fast
 static const double OPPOSED = 0.1;    // least cosine between a slave's outward normal and the one into the master
 static const double ASKEW = -0.3;     // ... or, where nothing opposed is within ...
 static const double CLOSE = 0.25;     // ... so many mean edges, the least one with the normal of a facet
@@ -80,7 +81,7 @@ static void lay_cells(const brunt_meeting *m, brunt_facing *f) {
         }
     }
     const double most = 32.0 * m->skin->face_count + 4096;
-    f->cell = CELL * m->skin->mean_edge;
+    f->cell = fmax(CELL * m->skin->mean_edge, COARSE * f->made_range);
     for (;; f->cell *= 1.25) {
         double cells = 1;
         for (int k = 0; k < 3; k++) cells *= floor((high[k] - low[k]) / f->cell) + 1;

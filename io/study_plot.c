@@ -27,7 +27,7 @@ extern char **environ;
 static const char *const colours[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000"};
 static const int symbols[] = {7, 5, 9, 13, 11, 15, 6, 4, 8, 12, 10, 14}; // filled ones first
 static const int dashes[] = {1, 2, 4, 5, 3};
-enum { COLOURS = 7, SYMBOLS = 12, DASHES = 5 };
+enum { COLOURS = 7, SYMBOLS = 12, DASHES = 5, MOST_TICS = 64 };
 
 typedef struct look {
     int colour, symbol, dash;
@@ -110,8 +110,9 @@ static void write_tics(FILE *out, char name, const axis *a) {
     if (decades < 0.8) {
         const double rough = (a->to - a->from) / 5, power = pow(10, floor(log10(rough))), m = rough / power;
         const double step = power * (m < 1.5 ? 1 : m < 3.5 ? 2 : m < 7.5 ? 5 : 10);
-        for (double k = ceil(a->from / step - 1e-9); k * step <= a->to * (1 + 1e-9); k++)
-            tic(out, a, k * step, true, &first);
+        const double start = ceil(a->from / step - 1e-9);
+        for (int k = 0; k < MOST_TICS && (start + k) * step <= a->to * (1 + 1e-9); k++)
+            tic(out, a, (start + k) * step, true, &first);
     } else {
         const int low = (int)floor(log10(a->from)), high = (int)ceil(log10(a->to)), every = (high - low + 7) / 8;
         for (int e = low; e <= high; e++)

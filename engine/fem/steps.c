@@ -152,7 +152,7 @@ static double stable_step(const brunt_fem_body *body, const double (*x)[3], doub
     double step = guess * sqrt(density / step_ratio(body, x, guess));
     if (body->hourglass != BRUNT_HOURGLASS_VISCOUS || !body->element->hourglass_modes) return step;
     double low = 0, high = 2 * step;
-    while (step_ratio(body, x, high) < density) high *= 2;
+    while (high > 0 && isfinite(high) && step_ratio(body, x, high) < density) high *= 2;
     for (int k = 0; k < 60; k++) {
         double middle = 0.5 * (low + high);
         if (step_ratio(body, x, middle) < density)

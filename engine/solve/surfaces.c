@@ -180,6 +180,24 @@ static int meet_by_facets(brunt_world *world, const brunt_meeting *m) {
     return 0;
 }
 
+// Names the mesh that is fastest, or farthest away: contact cannot look that far.
+static int fail_far(const brunt_world *world, brunt_error *error) {
+    const brunt_skin *s = &world->skin;
+    int worst = -1;
+    double most = -1;
+    for (int k = 0; k < s->fem_count; k++) {
+        double size = s->speed[k];
+        for (int a = 0; a < s->dim; a++) size = fmax(size, fmax(fabs(s->low[k][a]), fabs(s->high[k][a])));
+        if (isnan(s->speed[k]) || size > most) worst = k, most = isnan(s->speed[k]) ? INFINITY : size;
+    }
+    if (worst < 0 || most < 1e150)
+        return brunt_fail(error, BRUNT_FAILED, "a plane goes too far in a step for contact to be looked for");
+    return brunt_fail(
+        error, BRUNT_FAILED,
+        "body '%s' goes so far in a step, or is so far away, that contact cannot be looked for (%.4g m, or m/s)",
+        s->fem[worst]->name, most);
+}
+
 int brunt_surfaces_meet(brunt_world *world, const double gravity[3], double kick, double dt, brunt_error *error) {
     brunt_timer *timer = &world->pass[BRUNT_PASS_surfaces].threads;
     brunt_meeting m = {
@@ -201,6 +219,7 @@ int brunt_surfaces_meet(brunt_world *world, const double gravity[3], double kick
     brunt_skin_bounds(&world->skin, world->threads, timer);
     int failed = brunt_facing_near(&m, world->bodies, world->body_count, world->walls, world->wall_count,
                                    world->now.time, &world->facing);
+    if (failed == -2) return fail_far(world, error);
     if (!failed) {
         if (world->has_grid_surfaces) brunt_grid_surfaces_near(&m, world->bodies, world->body_count);
         if (world->has_augury && world->contact.form == BRUNT_AUGURY_PAPER) // acts on every surface, touched or not
