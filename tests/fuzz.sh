@@ -23,7 +23,7 @@ cp "$root"/bench/scenes/*.yaml "$root"/tests/bad_scenes/*.yaml "$work/corpus/"
 flags="-std=gnu17 -D_GNU_SOURCE -g -O1 -fno-math-errno -fno-omit-frame-pointer -Wno-psabi
   -I$root/io -I$root/engine -I$root/engine/base -I$root/engine/fem -I$root/materials -I/usr/include/udunits2"
 sources="$root/tests/fuzz_scene.c $root/io/units.c $root/engine/base/memory.c $root/engine/base/error.c
-  $root/engine/base/shape.c $root/engine/base/definitions.c"
+  $root/engine/base/shape.c $root/engine/base/definitions.c $root/io/input_file.c $root/io/study_keys.c"
 # A scene may name mesh files; the table of elements comes with the kernels.
 for file in "$root"/io/scene*.c "$root"/io/gmsh*.c "$root"/engine/base/mesh*.c "$root"/engine/fem/*.c "$root"/materials/*.c; do
   sources="$sources $file"
