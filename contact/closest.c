@@ -1,6 +1,9 @@
 #include "closest.h"
 
 #include <math.h>
+#include <string.h>
+
+static const double NEAR_SPOKE = 1e-3; // of a quadrilateral's area, as the area between a place and a spoke
 
 static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 static void cross(const double a[3], const double b[3], double c[3]) {
@@ -64,15 +67,12 @@ static void triangle_of(const brunt_skin *s, int32_t face, int t, const double *
     p[2] = node[3] < 0 ? s->x[node[2]] : s->face_centre[face];
 }
 
-static double facing(const double *const p[3], const double d[3]) {
-    double n[3];
-    unit_normal(p, n);
-    return fabs(dot(n, d));
-}
-
-static int sector(const brunt_skin *s, int32_t face, const double x[3]) {
+// The triangle of a quadrilateral that x is over; `between`: whether it is on the way to another one.
+static int sector(const brunt_skin *s, int32_t face, const double x[3], bool *between) {
     const double *centre = s->face_centre[face], *normal = s->face_normal[face];
+    const double near = NEAR_SPOKE * s->face_area[face];
     double r[3], turn[4];
+    *between = false;
     for (int k = 0; k < 3; k++) r[k] = x[k] - centre[k];
     for (int t = 0; t < 4; t++) {
         const double *p = s->x[s->face[face][t]];
@@ -80,16 +80,58 @@ static int sector(const brunt_skin *s, int32_t face, const double x[3]) {
         double c[3];
         cross(e, r, c);
         turn[t] = dot(c, normal);
+        *between = *between || fabs(turn[t]) < near;
     }
     for (int t = 0; t < 4; t++)
         if (turn[t] >= 0 && turn[(t + 1) % 4] <= 0) return t;
     return 0;
 }
 
+// Of a quadrilateral's four triangles the one whose sector x is in settles it, unless the nearest point is on its rim.
+static brunt_closest closest_on_quadrilateral(const brunt_skin *s, int32_t face, const double x[3]) {
+    double d[4][3], square[4], least = INFINITY;
+    bool inside[4], between, alone = false;
+    const int first = sector(s, face, x, &between);
+    int tested = 0;
+    for (; tested < 4 && !alone; tested++) {
+        const int t = (first + tested) % 4;
+        const double *p[3];
+        triangle_of(s, face, t, p);
+        on_triangle(p, x, d[tested], &inside[tested]);
+        alone = tested == 0 && inside[0] && !between;
+        square[tested] = dot(d[tested], d[tested]);
+        least = fmin(least, square[tested]);
+    }
+    brunt_closest best = {.square = INFINITY};
+    const double root = tested > 1 ? sqrt(least) + BRUNT_TIE * sqrt(s->face_area[face]) : INFINITY;
+    double most = -1;
+    int count = 0;
+    // Triangles that are as near as each other: the mean of their normals and of the ways to x, whose length is that of
+    // either, and as its triangle the one that most faces x, as between facets.
+    for (int k = 0; k < tested; k++) {
+        if (square[k] > root * root) continue;
+        const int t = (first + k) % 4;
+        const double *p[3];
+        double n[3];
+        triangle_of(s, face, t, p);
+        unit_normal(p, n);
+        const double facing = inside[k] ? INFINITY : fabs(dot(n, d[k]));
+        count++, best.triangles |= 1 << t;
+        for (int c = 0; c < 3; c++) best.normal[c] += n[c], best.d[c] += d[k][c];
+        if (facing > most) most = facing, best.square = square[k], best.inside = inside[k], best.triangle = t;
+    }
+    if (count == 1) best.triangles = 0;
+    const double size = count > 1 ? sqrt(dot(best.normal, best.normal)) : 1;
+    for (int c = 0; c < 3; c++) best.normal[c] = size > 0 ? best.normal[c] / size : 0, best.d[c] /= count;
+    // The spokes of a quadrilateral are no edges of the surface: on a flat one the nearest point may lie on one.
+    double along = dot(best.d, best.normal);
+    if (!best.inside && best.square - along * along <= 1e-24 * s->face_area[face]) best.inside = true;
+    return best;
+}
+
 brunt_closest brunt_closest_on_face(const brunt_skin *s, int32_t face, const double x[3]) {
     const int32_t *node = s->face[face];
     brunt_closest best = {.square = INFINITY};
-    double most = -1;
     if (node[2] < 0) {
         bool ends;
         const double *a = s->x[node[0]], *b = s->x[node[1]], t = on_segment(a, b, x, &ends);
@@ -101,31 +143,12 @@ brunt_closest brunt_closest_on_face(const brunt_skin *s, int32_t face, const dou
         best.square = dot(best.d, best.d);
         return best;
     }
-    // Of a quadrilateral's four triangles the one whose sector x is in settles it, unless the nearest point is on its
-    // rim.
-    const int triangles = node[3] < 0 ? 1 : 4, first = triangles == 4 ? sector(s, face, x) : 0;
-    for (int k = 0; k < triangles && !(k == 1 && best.inside); k++) {
-        const int t = (first + k) % triangles;
-        const double *p[3];
-        double d[3];
-        bool inside;
-        triangle_of(s, face, t, p);
-        on_triangle(p, x, d, &inside);
-        double square = dot(d, d);
-        // Triangles that share the nearest point: the one that most faces x, as between facets.
-        const double same = isinf(best.square) ? 0 : 1e-9 * best.square;
-        if (square > best.square + same) continue;
-        if (square >= best.square - same && !inside && facing(p, d) <= most) continue;
-        most = inside ? INFINITY : facing(p, d);
-        best.square = square, best.inside = inside, best.triangle = t;
-        for (int c = 0; c < 3; c++) best.d[c] = d[c];
-    }
+    if (node[3] >= 0) return closest_on_quadrilateral(s, face, x);
     const double *p[3];
-    triangle_of(s, face, best.triangle, p);
+    triangle_of(s, face, 0, p);
+    on_triangle(p, x, best.d, &best.inside);
+    best.square = dot(best.d, best.d);
     unit_normal(p, best.normal);
-    // The spokes of a quadrilateral are no edges of the surface: on a flat one the nearest point may lie on one.
-    double along = dot(best.d, best.normal);
-    if (!best.inside && best.square - along * along <= 1e-24 * s->face_area[face]) best.inside = true;
     return best;
 }
 

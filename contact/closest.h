@@ -4,12 +4,16 @@
 #include "skin.h"
 
 typedef struct brunt_closest {
-    double d[3];      // [m] from the nearest point to the place asked for
-    double square;    // d . d
-    double normal[3]; // outward unit normal of the facet there
+    double d[3];      // [m] from the nearest point to the place asked for; mean, where several are as near
+    double square;    // [m^2] of the distance
+    double normal[3]; // outward unit normal of the facet there, mean where triangles meet
     bool inside;      // the nearest point is no edge and no corner of the facet
-    int triangle;     // of a quadrilateral: which of its four triangles about the centre; else 0
+    int triangle;     // of a quadrilateral: which of its four triangles about the centre; else 0 ...
+    int triangles;    // ... and bits of all that have the nearest point, when there are several; else 0
 } brunt_closest;
+
+// What is as near as this share of a facet's width is equally near.
+#define BRUNT_TIE 1e-6
 
 brunt_closest brunt_closest_on_face(const brunt_skin *skin, int32_t face, const double x[3]);
 // Weights of the facet's nodes where x projects onto its plane, alone.

@@ -32,8 +32,19 @@ double brunt_facing_target(const brunt_skin *s, double gap, double approach, dou
 // Velocity of x relative to the facet under it, along n.
 double brunt_facing_approach(const brunt_skin *s, const hit *h, const double x[3], const double v[3], double (*of)[3]) {
     double weight[4], along = dot(v, h->n);
-    brunt_face_values(s, h->face, h->triangle, x, weight);
-    for (int c = 0; c < 4 && s->face[h->face][c] >= 0; c++) along -= weight[c] * dot(of[s->face[h->face][c]], h->n);
+    if (h->feature.triangles) {
+        brunt_master m;
+        brunt_facing_master(s, h, x, &m);
+        for (int c = 0; c < m.count; c++) along -= m.weight[c] * dot(of[m.node[c]], h->n);
+        return along;
+    }
+    const int32_t *node = h->feature.any ? h->feature.end : s->face[h->face];
+    const int count = h->feature.any ? 2 : face_corners(s, h->face);
+    if (h->feature.any)
+        brunt_feature_values(s, &h->feature, x, weight);
+    else
+        brunt_face_values(s, h->face, h->triangle, x, weight);
+    for (int c = 0; c < count; c++) along -= weight[c] * dot(of[node[c]], h->n);
     return along;
 }
 
@@ -107,13 +118,35 @@ void brunt_facing_point(const brunt_meeting *m, const hit *h, const double x[3],
     point->sign = body > h->body ? 1 : -1;
 }
 
-void brunt_facing_master(const brunt_skin *s, const brunt_facing *f, const hit *h, const double x[3],
-                         brunt_contact_point *point, brunt_contact_entry *entry) {
-    double weight[4], gradient[4][3], height;
-    brunt_face_weights(s, h->face, h->triangle, x, weight, gradient, point->facet, &height);
-    for (int c = 0; c < face_corners(s, h->face); c++) {
-        entry[c].support = f->support_of[s->face[h->face][c]];
-        for (int a = 0; a < 3; a++) entry[c].weight[a] = -weight[c], entry[c].turn[a] = height * gradient[c][a];
+int brunt_facing_master(const brunt_skin *s, const hit *h, const double x[3], brunt_master *m) {
+    if (h->feature.any) {
+        memcpy(m->facet, h->n, sizeof m->facet);
+        return m->count = brunt_feature_weights(s, &h->feature, h->n, x, m->node, m->weight, m->gradient, &m->height);
+    }
+    memcpy(m->node, s->face[h->face], sizeof s->face[h->face]);
+    brunt_face_weights(s, h->face, h->triangle, x, m->weight, m->gradient, m->facet, &m->height);
+    return m->count = face_corners(s, h->face);
+}
+
+// The master's nodes alone.
+static int master_nodes(const brunt_skin *s, const hit *h, const double x[3], int32_t node[BRUNT_FEATURE_NODES]) {
+    brunt_master m;
+    if (!h->feature.any) {
+        memcpy(node, s->face[h->face], sizeof s->face[h->face]);
+        return face_corners(s, h->face);
+    }
+    brunt_facing_master(s, h, x, &m);
+    memcpy(node, m.node, (size_t)m.count * sizeof *node);
+    return m.count;
+}
+
+void brunt_facing_entries(const brunt_facing *f, const brunt_master *m, brunt_contact_point *point,
+                          brunt_contact_entry *entry) {
+    memcpy(point->facet, m->facet, sizeof point->facet);
+    for (int c = 0; c < m->count; c++) {
+        entry[c].support = f->support_of[m->node[c]];
+        for (int a = 0; a < 3; a++)
+            entry[c].weight[a] = -m->weight[c], entry[c].turn[a] = m->height * m->gradient[c][a];
     }
 }
 
@@ -139,11 +172,13 @@ static void fill_nodes(void *context, int64_t begin, int64_t end, int worker) {
         for (int32_t q = 0; q < f->found[n]; q++, at++) {
             const hit *h = &f->hits[BRUNT_MAX_HITS * n + q];
             brunt_contact_point *point = &j->points->point[at];
-            *point = (brunt_contact_point){.first = entry, .count = 1 + face_corners(s, h->face), .tag = n};
+            brunt_master master;
+            *point = (brunt_contact_point){
+                .first = entry, .count = 1 + brunt_facing_master(s, h, s->x[n], &master), .tag = n};
             brunt_facing_point(m, h, s->x[n], s->body[n], point);
             point->area = 0.5 * brunt_facing_area(s, n, h->n); // the other half is counted on the other side
             j->points->entry[entry] = (brunt_contact_entry){.support = f->support_of[n], .weight = {1, 1, 1}};
-            brunt_facing_master(s, f, h, s->x[n], point, j->points->entry + entry + 1);
+            brunt_facing_entries(f, &master, point, j->points->entry + entry + 1);
             point->target = h->target;
             entry += point->count;
         }
@@ -170,11 +205,12 @@ static int add_nodes(const brunt_meeting *m, brunt_facing *f, brunt_contact_poin
     for (int32_t n = 0; n < s->node_count; n++) {
         f->first_point[2 * n] = point, f->first_point[2 * n + 1] = entry;
         for (int32_t q = 0; q < f->found[n]; q++) {
-            const int32_t face = f->hits[BRUNT_MAX_HITS * n + q].face;
+            int32_t node[BRUNT_FEATURE_NODES];
+            const int count = master_nodes(s, &f->hits[BRUNT_MAX_HITS * n + q], s->x[n], node);
             if (brunt_facing_support(f, s, n, points) < 0) return -1;
-            for (int c = 0; c < face_corners(s, face); c++)
-                if (brunt_facing_support(f, s, s->face[face][c], points) < 0) return -1;
-            point++, entry += 1 + face_corners(s, face);
+            for (int c = 0; c < count; c++)
+                if (brunt_facing_support(f, s, node[c], points) < 0) return -1;
+            point++, entry += 1 + count;
         }
     }
     if (brunt_points_room(points, point, entry)) return -1;

@@ -5,15 +5,17 @@
 #include <string.h>
 
 #include "facing.h"
+#include "feature.h"
 #include "memory.h"
 
 enum { BRUNT_MAX_HITS = 7, BRUNT_MAX_NEAR = 32 };
 
 static inline double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-// The nearest facet of one other body.
+// The nearest facet of one other body, or the edge or corner of it (`feature`).
 typedef struct hit {
     int32_t face, triangle, body;
+    brunt_feature feature;
     double gap, n[3], target;
 } hit;
 
@@ -135,6 +137,13 @@ static inline int face_corners(const brunt_skin *s, int32_t face) {
     return s->face[face][2] < 0 ? 2 : s->face[face][3] < 0 ? 3 : 4;
 }
 
+// What a slave meets: an edge or corner with the faces about it, or a facet.
+typedef struct brunt_master {
+    int32_t node[BRUNT_FEATURE_NODES];
+    double weight[BRUNT_FEATURE_NODES], gradient[BRUNT_FEATURE_NODES][3], facet[3], height;
+    int count;
+} brunt_master;
+
 // --- facing_near.c
 double brunt_facing_plane_distance(const brunt_plane_def *plane, double time, const double x[3]);
 bool brunt_facing_near_wall(const brunt_skin *s, int k, const brunt_wall *wall, double time, double range);
@@ -157,9 +166,10 @@ double brunt_facing_area(const brunt_skin *s, int32_t n, const double direction[
 int32_t brunt_facing_support(brunt_facing *f, const brunt_skin *s, int32_t n, brunt_contact_points *points);
 double brunt_facing_approach(const brunt_skin *s, const hit *h, const double x[3], const double v[3], double (*of)[3]);
 void brunt_facing_point(const brunt_meeting *m, const hit *h, const double x[3], int body, brunt_contact_point *point);
-// The master's entries; sets the point's facet.
-void brunt_facing_master(const brunt_skin *s, const brunt_facing *f, const hit *h, const double x[3],
-                         brunt_contact_point *point, brunt_contact_entry *entry);
+int brunt_facing_master(const brunt_skin *s, const hit *h, const double x[3], brunt_master *master);
+// The master's entries, whose supports there are; sets the point's facet.
+void brunt_facing_entries(const brunt_facing *f, const brunt_master *master, brunt_contact_point *point,
+                          brunt_contact_entry *entry);
 
 // --- facing_particles.c
 // Contact points of the particles of body k of the mpm bodies. 0, or -1: out of memory.

@@ -207,7 +207,7 @@ static int add_slave(brunt_facing *f, const brunt_body *body, int k, const brunt
 // What the last point rubs with: the same supports, at the particle's surface.
 static int add_lever(const brunt_meeting *m, const brunt_facing *f, brunt_body *body, int k, const struct seen *seen,
                      brunt_contact_points *points) {
-    const int32_t number = points->point_count - 1, corners = face_corners(m->skin, seen->h.face);
+    const int32_t number = points->point_count - 1;
     double arm[3], kernel_arm[3], x[3];
     const double extent = brunt_reach_along(body, seen->particle, seen->h.n);
     brunt_reach_arm(body, seen->particle, seen->h.n, extent + seen->h.gap, arm, kernel_arm);
@@ -224,18 +224,21 @@ static int add_lever(const brunt_meeting *m, const brunt_facing *f, brunt_body *
         while (points->entry[entry].support != g->support) entry++;
         for (int a = 0; a < 3; a++) points->entry[entry].weight[a] += under.weight[e] * g->sign[a];
     }
-    brunt_facing_master(m->skin, f, &seen->h, x, point, &points->entry[first + point->count - corners]);
+    brunt_master master;
+    brunt_facing_master(m->skin, &seen->h, x, &master);
+    brunt_facing_entries(f, &master, point, &points->entry[first + point->count - master.count]);
     return 0;
 }
 
 static int add_point(const brunt_meeting *m, brunt_facing *f, brunt_body *body, int k, const brunt_mirror *mirrors,
                      int mirror_count, const struct seen *seen, brunt_contact_points *points) {
     const brunt_skin *skin = m->skin;
-    const int corners = face_corners(skin, seen->h.face);
+    brunt_master master;
     nodes under;
     particle_nodes(body, seen->block, seen->particle, NULL, &under);
-    for (int c = 0; c < corners; c++)
-        if (brunt_facing_support(f, skin, skin->face[seen->h.face][c], points) < 0) return -1;
+    brunt_facing_master(skin, &seen->h, seen->x, &master);
+    for (int c = 0; c < master.count; c++)
+        if (brunt_facing_support(f, skin, master.node[c], points) < 0) return -1;
     int32_t at = brunt_points_add(points);
     if (at < 0) return -1;
     brunt_facing_point(m, &seen->h, seen->x, body->index, &points->point[at]);
@@ -244,13 +247,10 @@ static int add_point(const brunt_meeting *m, brunt_facing *f, brunt_body *body, 
                                               : skin->axisymmetric ? 2 * M_PI * seen->x[0]
                                                                    : 1);
     if (add_slave(f, body, k, mirrors, mirror_count, &under, points)) return -1;
-    brunt_contact_entry master[4];
-    brunt_facing_master(skin, f, &seen->h, seen->x, &points->point[at], master);
-    for (int c = 0; c < corners; c++) {
-        int32_t entry = brunt_points_entry(points, master[c].support, 0);
-        if (entry < 0) return -1;
-        points->entry[entry] = master[c];
-    }
+    const int32_t first = points->entry_count;
+    for (int c = 0; c < master.count; c++)
+        if (brunt_points_entry(points, f->support_of[master.node[c]], 0) < 0) return -1;
+    brunt_facing_entries(f, &master, &points->point[at], points->entry + first);
     return points->point[at].friction > 0 ? add_lever(m, f, body, k, seen, points) : 0;
 }
 

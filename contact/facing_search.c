@@ -13,6 +13,8 @@ static const double CLOSE = 0.25;     // ... so many mean edges, the least one w
 static const double SAME_SLOPE = 0.7; // cosine of normals from which on two facets of a sheet are one slope
 static const double SLACK = 0.125;    // mean edges: facets so much further than the nearest are looked at closely, too
 static const double BEHIND = 0.05; // mean edges: how far behind a facet of a ragged surface someone is still before it
+static const double STRAIGHT = 0.01; // [rad] within it of their mean normal, ways to edges and corners are along it
+static const double TOUCH = 1e-6;    // mean edges: facets that are nearer by less than this are equally near
 static const double VALLEY = 0.05; // mean edges: how far before one slope the middle of the other is, in a valley
 
 // ------------------------------------------------------------------------------------------ cells of facets
@@ -174,7 +176,10 @@ static bool is_sheet(const brunt_skin *s, int32_t body) { return s->side && s->s
 
 // The nearest point of the front of a sheet as one of its back: nodes there are in reversed order.
 static void turn_over(const brunt_skin *s, int32_t *face, brunt_closest *at) {
-    if (s->face[*face][3] >= 0) at->triangle = (6 - at->triangle) % 4;
+    if (s->face[*face][3] >= 0) {
+        at->triangle = (6 - at->triangle) % 4;
+        at->triangles = (at->triangles & 10) | (at->triangles & 1) << 2 | (at->triangles & 4) >> 2;
+    }
     *face += s->side[s->face_body[*face]].faces;
     for (int a = 0; a < 3; a++) at->normal[a] = -at->normal[a];
 }
@@ -203,19 +208,20 @@ static bool on_side(const looker *l, const brunt_closest *at) {
 // or a corner there, and the one that most faces the place decides on which side of the surface it is.
 typedef struct nearest {
     int32_t body, count;
-    double square, root; // of the distance; a little more than its root
+    double square, root; // of the distance; what is no further than its root is as near
     tied tied[MAX_TIED];
 } nearest;
 
-static void keep(nearest *best, const brunt_closest *at, int32_t face) {
-    const double same = 1e-9 * best->square;
-    if (at->square < best->square - same)
-        best->count = 0, best->square = at->square;
-    else if (at->square > best->square + same)
-        return;
-    else if (at->square < best->square)
-        best->square = at->square;
-    best->root = sqrt(best->square) * (1 + 1e-8);
+// What counts as near as the nearest, whose distance has this square.
+static double tie(const brunt_skin *s, double square) { return sqrt(square) * (1 + 1e-8) + TOUCH * s->mean_edge; }
+
+static void keep(const brunt_skin *s, nearest *best, const brunt_closest *at, int32_t face) {
+    if (at->square > best->root * best->root) return;
+    if (at->square < best->square) {
+        const double root = tie(s, at->square);
+        if (best->square > root * root) best->count = 0;
+        best->square = at->square, best->root = root;
+    }
     if (best->count < MAX_TIED) best->tied[best->count++] = (tied){*at, face};
 }
 
@@ -223,6 +229,7 @@ static const tied *most_facing(const nearest *best) {
     const tied *chosen = NULL;
     double most = -1;
     for (int32_t k = 0; k < best->count; k++) {
+        if (best->tied[k].at.square > best->root * best->root) continue;
         double facing = best->tied[k].at.inside ? INFINITY : fabs(dot(best->tied[k].at.normal, best->tied[k].at.d));
         if (facing > most || (facing == most && best->tied[k].face < chosen->face))
             most = facing, chosen = &best->tied[k];
@@ -230,29 +237,76 @@ static const tied *most_facing(const nearest *best) {
     return chosen;
 }
 
-// A hit on facets that face the slave; beside an edge or a corner it must also face the way to them.
-static bool hit_facing(const brunt_skin *s, const nearest *best, const double *normal, hit *out) {
+// Whether two facets that tie are of one slope, or of a ridge; of a valley each bears for itself.
+static bool bear_together(const brunt_skin *s, const tied *a, const tied *b) {
+    if (dot(a->at.normal, b->at.normal) > SAME_SLOPE) return true;
+    double to[3];
+    for (int k = 0; k < 3; k++) to[k] = s->face_centre[b->face][k] - s->face_centre[a->face][k];
+    return dot(a->at.normal, to) < 0 && dot(b->at.normal, to) > 0;
+}
+
+// The edge or corner that the chosen facet has in common with those that tie with it, their mean normal and the mean
+// height above them; `way`: the sum of their ways to the slave.
+static void find_feature(const brunt_skin *s, const nearest *best, const tied *chosen, hit *out, double way[3]) {
+    int32_t face[MAX_TIED];
+    int count = 1;
+    double height = out->gap;
+    brunt_shared shared = {.count = 0};
+    brunt_feature_share(s, face[0] = chosen->face, &shared);
+    for (int32_t k = 0; k < best->count; k++) {
+        const tied *other = &best->tied[k];
+        if (other == chosen || other->at.square > best->root * best->root || !bear_together(s, chosen, other)) continue;
+        if (!brunt_feature_share(s, other->face, &shared)) continue;
+        face[count++] = other->face;
+        height += dot(other->at.normal, other->at.d);
+        for (int a = 0; a < 3; a++) way[a] += other->at.d[a];
+    }
+    if (count == 1) return;
+    out->gap = height / count;
+    out->feature = (brunt_feature){true, {shared.node[0], shared.node[shared.count > 1]}, 0, 0};
+    if (brunt_feature_normal(s, &out->feature, face, count, out->n)) return;
+    out->feature.any = false;
+    memcpy(out->n, chosen->at.normal, sizeof out->n);
+}
+
+static const tied *take_nearest(const brunt_skin *s, const nearest *best, hit *out, double way[3]) {
     const tied *chosen = most_facing(best);
     const brunt_closest *at = &chosen->at;
-    double height = dot(at->normal, at->d), distance = sqrt(at->square);
-    *out = (hit){.face = chosen->face, .triangle = at->triangle, .body = best->body, .gap = height};
+    *out = (hit){.face = chosen->face, .triangle = at->triangle, .body = best->body, .gap = dot(at->normal, at->d)};
     memcpy(out->n, at->normal, sizeof out->n);
-    if (!at->inside && height >= 0 && distance > 1e-6 * sqrt(s->face_area[chosen->face])) {
+    memcpy(way, at->d, sizeof at->d);
+    if (at->triangles) out->feature = (brunt_feature){true, {-1, -1}, chosen->face, at->triangles};
+    if (best->count > 1) find_feature(s, best, chosen, out, way);
+    return chosen;
+}
+
+// Whether the nearest point is so far from straight below, as n says, that the way to it tells a direction of its own.
+// Over small gaps that way is made of the places' rounding, which the push along it would enlarge from step to step.
+static bool aside(const double n[3], const double d[3]) {
+    const double height = dot(n, d);
+    double square = 0;
+    for (int a = 0; a < 3; a++) square += (d[a] - height * n[a]) * (d[a] - height * n[a]);
+    return square > STRAIGHT * STRAIGHT * dot(d, d);
+}
+
+// A hit on facets that face the slave; beside an edge or a corner it must also face the way to them.
+static bool hit_facing(const brunt_skin *s, const nearest *best, const double *normal, hit *out) {
+    double way[3];
+    const brunt_closest *at = &take_nearest(s, best, out, way)->at;
+    const double distance = sqrt(best->square), length = sqrt(dot(way, way));
+    const bool tilted = !out->feature.any || aside(out->n, way);
+    if ((out->feature.any || !at->inside) && out->gap >= 0 && distance > TOUCH * s->mean_edge) {
         out->gap = distance;
-        for (int a = 0; a < 3; a++) out->n[a] = at->d[a] / distance;
+        for (int a = 0; a < 3 && tilted; a++) out->n[a] = way[a] / length;
     }
     return !normal || -dot(out->n, normal) > OPPOSED;
 }
 
 // A hit on whatever facet is nearest, when the slave is behind it; `least`: the least cosine with its normal.
-static bool hit_behind(const nearest *best, const double *normal, double least, hit *out) {
-    const tied *chosen = most_facing(best);
-    const brunt_closest *at = &chosen->at;
-    double height = dot(at->normal, at->d);
-    if (!(height < 0) || -dot(at->normal, normal) <= least) return false;
-    *out = (hit){.face = chosen->face, .triangle = at->triangle, .body = best->body, .gap = height};
-    memcpy(out->n, at->normal, sizeof out->n);
-    return true;
+static bool hit_behind(const brunt_skin *s, const nearest *best, const double *normal, double least, hit *out) {
+    double way[3];
+    take_nearest(s, best, out, way);
+    return out->gap < 0 && -dot(out->n, normal) > least;
 }
 
 static int64_t cell_of(const brunt_facing *f, const double x[3]) {
@@ -325,7 +379,7 @@ static inline __attribute__((always_inline)) int find_nearest(const brunt_meetin
     const double range2 = f->range * f->range;
     double bound = INFINITY; // of the one body that the guess belongs to
     brunt_closest guessed;
-    if (guess >= 0) guessed = brunt_closest_on_face(s, guess, l->x), bound = sqrt(guessed.square) * (1 + 1e-8);
+    if (guess >= 0) guessed = brunt_closest_on_face(s, guess, l->x), bound = tie(s, guessed.square);
     int bodies = 0;
     if (all) *all = (two_nearest){-1, range2, range2};
     for (int32_t q = f->cell_first[l->cell]; q < f->cell_first[l->cell + 1]; q++) {
@@ -359,7 +413,7 @@ static inline __attribute__((always_inline)) int find_nearest(const brunt_meetin
             best[b].body = other, best[b].count = 0, best[b].square = range2, best[b].root = f->range;
             bodies++;
         }
-        keep(&best[b], &at, face);
+        keep(s, &best[b], &at, face);
     }
     return bodies;
 }
@@ -474,7 +528,7 @@ static inline __attribute__((always_inline)) void look_around(const brunt_meetin
     int all = unresolved ? find_nearest(m, f, l, NULL, 0, entered, unresolved, -1, 0, NULL, false, any) : 0;
     for (int b = 0; b < all; b++) {
         const double least = is_ragged(s, l->body) || is_ragged(s, any[b].body) ? -INFINITY : ASKEW;
-        if (!any[b].count || !hit_behind(&any[b], l->normal, least, &out->hits[out->count])) continue;
+        if (!any[b].count || !hit_behind(s, &any[b], l->normal, least, &out->hits[out->count])) continue;
         out->count++;
         for (int k = 0; k < bodies; k++)
             if (facing[k].body == any[b].body) facing[k].count = 0;
@@ -505,7 +559,7 @@ static inline __attribute__((always_inline)) void look_around(const brunt_meetin
     *distance = outside || two.face < 0 || (by_sheet && !inside) ? fmin(f->range, sqrt(two.first)) : 0;
     *second = 0;
     if (plain && out->count == 1 && two.face == out->hits[0].face && !s->ragged)
-        *second = fmin(fmin(f->range, sqrt(two.second)), *distance + slack) * (1 - 1e-8);
+        *second = fmin(fmin(f->range, sqrt(two.second)), *distance + slack) * (1 - 1e-8) - TOUCH * s->mean_edge;
     if (sheets) thicken(s, l->half, out);
 }
 
@@ -524,9 +578,10 @@ bool brunt_facing_still_nearest(const brunt_meeting *m, const brunt_facing *f, i
     const brunt_skin *s = m->skin;
     const int32_t face = f->last[n];
     if (face < 0 || (normal && -dot(s->face_normal[face], normal) <= OPPOSED)) return false;
-    nearest one = {.body = s->face_body[face], .count = 1, .tied = {{closest_on(s, face, s->x[n]), face}}};
-    if (is_sheet(s, one.body) && !(dot(one.tied[0].at.normal, one.tied[0].at.d) > 0)) return false;
-    const double square = one.tied[0].at.square, close = CLOSE * s->mean_edge;
+    const brunt_closest at = closest_on(s, face, s->x[n]);
+    nearest one = {.body = s->face_body[face], .count = 1, .square = at.square, .root = INFINITY, .tied = {{at, face}}};
+    if (is_sheet(s, one.body) && !(dot(at.normal, at.d) > 0)) return false;
+    const double square = at.square, close = CLOSE * s->mean_edge;
     if (square >= least * least || square > close * close || square > f->range * f->range) return false;
     out->count = hit_facing(s, &one, normal, &out->hits[0]) ? 1 : 0;
     if (s->side) thicken(s, s->side[s->body[n]].half, out);
