@@ -367,6 +367,10 @@ void brunt_world_def_free(brunt_world_def *def);  // frees all that the definiti
 
 // ---------------------------------------------------------------------------------------------------- the world
 
+// Time is integrated by central differences, for all bodies: places, stress and stored energy are those of the world's
+// time, velocities, momenta, kinetic energy, work and impulses those of the middle of the last step, up to which forces
+// have acted; a force is an impulse over the time it acted, the mean of the steps before and after. Thrown bodies are
+// at g t^2 / 2 exactly, with velocities g (t - dt / 2).
 typedef struct brunt_world brunt_world;
 
 // Fills the bodies and makes the plan. NULL and an error (BRUNT_BAD_INPUT) when the definition cannot be run, whatever is wrong with
@@ -392,8 +396,7 @@ int64_t brunt_world_nodes(const brunt_world *world);    // grid nodes alive in t
 int64_t brunt_world_elements(const brunt_world *world);
 
 typedef struct brunt_energy {  // [J]; in 2D per metre of thickness
-    double kinetic;            // of the particles, with the affine part of APIC; of meshes at the time of the stress, half a step
-                               // after the velocities: near rest it may be a little below 0
+    double kinetic;            // with the affine part of APIC; as velocities, of the middle of the last step
     double internal;           // stored
     double plastic, hourglass, contact, friction, viscosity, transfer, eroded;  // taken out, each by its cause; damping is viscosity;
                                // eroded: kinetic and stored energy that left with elements, nodes and material points

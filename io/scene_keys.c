@@ -190,7 +190,7 @@ const scene_key brunt_scene_table[] = {
 
     {"output", SCENE_GROUP, NULL, "{}", NONE, "what is written, and how often"},
     {"output.every", SCENE_REAL, "s", "0", 0, INFINITY, false, true, "none", 0, false, "time between pictures, to which steps are cut; 0: the first and the last; none: no pictures"},
-    {"output.history", SCENE_REAL, "s", "0", NOT_NEGATIVE, NULL, 0, false, "time between history lines, each of the first step at or after its time; 0: every step"},
+    {"output.history", SCENE_REAL, "s", "0", NOT_NEGATIVE, NULL, 0, false, "time between history lines, each of the first step at or after its time; 0: every step. Places, stress and stored energy are of the time of the line, velocities, momenta, kinetic energy and forces of the middle of the step that ends there"},
     {"output.checkpoint", SCENE_REAL, "s", "600", 0, INFINITY, false, true, "none", 0, false, "wall time between checkpoints; 0: with every picture; none: at the end and on signals"},
     {"output.fields", SCENE_NAMES, NULL, "[default]", NONE, "fields in pictures; default: velocity, and of fem and membrane bodies displacement, stress, plastic_strain and what contact does, where there are"},
     {"output.precision", SCENE_WORD, NULL, "float32", ANY, "float32|float64", 0, false, "of numbers in pictures"},
@@ -200,7 +200,7 @@ const scene_key brunt_scene_table[] = {
     {"output.probes.*.field", SCENE_NAME, NULL, REQUIRED, NONE, "what is recorded"},
 
     {"measures", SCENE_NAMED, NULL, OPTIONAL, NONE, "results by name, judged where a value is expected"},
-    {"measures.*.history", SCENE_TEXT, NULL, OPTIONAL, NONE, "a column of the history, as energy.kinetic, body.rod.velocity_x or gas.bag.pressure"},
+    {"measures.*.history", SCENE_TEXT, NULL, OPTIONAL, NONE, "a column of the history, as energy.kinetic, body.rod.velocity_x or gas.bag.pressure (velocities and kinetic energy are of the middle of the step that ends at its time)"},
     {"measures.*.energy", SCENE_NAME, NULL, OPTIONAL, NONE, "short for history: energy.NAME"},
     {"measures.*.extent", SCENE_GROUP, NULL, OPTIONAL, NONE, "size of a body along an axis, at the end"},
     {"measures.*.extent.body", SCENE_NAME, NULL, REQUIRED, NONE, "the body"},

@@ -12,6 +12,7 @@ typedef struct brunt_block_report {
     double stress_power; // [W] new stress times velocity gradient, over the particles
     double remap_power;  // [W] linear kernel: old stress times what the velocities' second way to the grid does to the
                          // gradient
+    double old_power;    // [W] where the step changes: old stress times the grid's new velocity gradient; else 0
     real speed, wave_speed; // [m/s] greatest
     bool failed;            // the material of one has failed
     int32_t turned, leaving; // of bodies that erode: how many would have turned inside out; how many are to leave
@@ -20,6 +21,7 @@ typedef struct brunt_block_report {
 } brunt_block_report;
 
 typedef struct brunt_body {
+    bool uneven; // of this step: forces act over another time than bodies move
     char name[BRUNT_NAME_LENGTH];
     int index;
     brunt_material material;

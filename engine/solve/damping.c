@@ -61,8 +61,7 @@ static void drag_nodes(const job *j, const brunt_fem_task *task) {
     }
 }
 
-// What the drag of the kick did; and half of the work of the next one, as of the same forces, which is of the half step
-// that velocities are behind.
+// What the drag of the kick did.
 static void book_nodes(const job *j, const brunt_fem_task *task, brunt_damping_sums *sums) {
     const brunt_fem_body *fem = &j->world->fems[task->fem];
     const double left = exp(-fem->damping * j->dt);
@@ -73,10 +72,8 @@ static void book_nodes(const job *j, const brunt_fem_task *task, brunt_damping_s
         double J[3];
         for (int a = 0; a < 3; a++) {
             const double v = (double)node[BRUNT_FEM_V + a], old = (double)kept[4 * (size_t)n + (size_t)a];
-            const double mass = (double)node[BRUNT_FEM_MASS], other = fem->drag_mass * (v - left * old);
-            J[a] = mass * ((v - old) - other);
+            J[a] = (double)node[BRUNT_FEM_MASS] * ((v - old) - fem->drag_mass * (v - left * old));
             sums->work += 0.5 * J[a] * (old + v);
-            sums->half_work -= 0.5 * mass * ((1 - left) * v + (1 - 1 / fem->drag_mass) * other) * v;
             sums->impulse[a] += J[a];
         }
         for (int a = 0; a < 3; a++) {
@@ -113,7 +110,6 @@ void brunt_damping_end(brunt_world *world, double dt) {
     for (int64_t t = 0; t < world->node_task_count; t++) {
         const brunt_damping_sums *s = &world->damping_sums[t];
         world->now.damped -= s->work;
-        world->now.fem_damping_work += s->half_work;
         for (int a = 0; a < 3; a++)
             world->now.damping_impulse[a] += s->impulse[a], world->now.damping_angular[a] += s->angular[a];
     }

@@ -101,7 +101,6 @@ static void book_gravity(brunt_world *world, const double gravity[3], double dt)
         for (int a = 0; a < 3; a++) {
             int k = (a + 1) % 3, l = (a + 2) % 3;
             world->now.gravity_work += 0.5 * dt * gravity[a] * (s->momentum_old[a] + s->momentum[a]);
-            world->now.fem_load_work += 0.5 * dt * gravity[a] * s->momentum[a];
             world->now.gravity_impulse[a] += dt * s->mass * gravity[a];
             world->now.gravity_angular[a] += dt * (s->first_moment[k] * gravity[l] - s->first_moment[l] * gravity[k]);
         }

@@ -255,7 +255,7 @@ static void make_forces(brunt_world *world, brunt_hold *hold, const brunt_group_
 }
 
 // Half of the work of the loads, at the velocities as they are; with `impulse`, that too.
-static double book_loads(brunt_world *world, const brunt_hold *hold, double dt, bool impulse) {
+static void book_loads(brunt_world *world, const brunt_hold *hold, double dt, bool impulse) {
     const brunt_fem_body *fem = &world->fems[hold->fem];
     brunt_action *last = &world->walls[hold->wall].last;
     double work = 0;
@@ -271,7 +271,6 @@ static double book_loads(brunt_world *world, const brunt_hold *hold, double dt, 
         }
     }
     last->external_work += work;
-    return work;
 }
 
 void brunt_loads_begin(brunt_world *world, double time, double dt) {
@@ -286,7 +285,7 @@ void brunt_loads_begin(brunt_world *world, double time, double dt) {
 
 void brunt_loads_end(brunt_world *world, double dt) {
     for (int k = 0; k < world->hold_count; k++)
-        if (!moves(&world->groups[k])) world->now.fem_load_work += book_loads(world, &world->holds[k], dt, false);
+        if (!moves(&world->groups[k])) book_loads(world, &world->holds[k], dt, false);
 }
 
 // ------------------------------------------------------------------------------------------ prescribed motion

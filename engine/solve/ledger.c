@@ -9,10 +9,11 @@ static const double MOST_GROWTH = 10;
 
 void brunt_world_energy(brunt_world *world, brunt_energy *energy) {
     const struct brunt_clock *now = &world->now;
-    // Velocities are half a step behind the stress: what it does to them in that half step is booked with the transfer.
-    *energy = (brunt_energy){.kinetic = now->kinetic,
+    // Velocities are those of the middle of the last step, stress that of its end: what it does to them in that half
+    // step is booked with the transfer.
+    *energy = (brunt_energy){.kinetic = now->kinetic + now->fem_kinetic,
                              .initial = now->initial_energy,
-                             .transfer = now->transfer - 0.5 * now->stress_work,
+                             .transfer = now->transfer - 0.5 * (now->stress_work + now->fem_stress_work),
                              .external_work = now->gravity_work};
     for (int i = 0; i < world->body_count; i++) {
         brunt_point_energy e = brunt_body_energy(&world->bodies[i]);
@@ -21,11 +22,6 @@ void brunt_world_energy(brunt_world *world, brunt_energy *energy) {
         energy->viscosity += e.viscosity;
         energy->heat += e.heat;
     }
-    // So are those of meshes; there the half step is added to the kinetic energy, with what stress, loads, gravity and
-    // damping do in it (of the last three, what they did in the half step before).
-    energy->kinetic += now->fem_kinetic - 0.5 * now->fem_stress_work + now->fem_load_work + now->fem_damping_work;
-    energy->external_work += now->fem_load_work;
-    energy->viscosity -= now->fem_damping_work;
     energy->hourglass = now->hourglass_stored + now->hourglass_lost;
     for (int k = 0; k < world->fem_count; k++) {
         brunt_point_energy e = brunt_fem_energy(&world->fems[k]);
@@ -172,9 +168,9 @@ void brunt_body_totals(brunt_world *world, int32_t index, brunt_body_sums *sums)
     bound_body(world, &world->all[index], sums);
 }
 
-static void fill_force(const brunt_action *last, const brunt_action *all, double dt, brunt_force *force) {
+static void fill_force(const brunt_action *last, const brunt_action *all, double kick, brunt_force *force) {
     for (int k = 0; k < 3; k++) {
-        force->force[k] = dt > 0 ? last->impulse[k] / dt : 0;
+        force->force[k] = kick > 0 ? last->impulse[k] / kick : 0;
         force->impulse[k] = all->impulse[k];
     }
     force->normal_work = all->normal_loss;
@@ -190,13 +186,13 @@ void brunt_pair_force(const brunt_world *world, int32_t index, brunt_force *forc
     else
         snprintf(force->name, sizeof force->name, "%s-%s", brunt_body_name(world, pair->a),
                  brunt_body_name(world, pair->b));
-    fill_force(&pair->last, &pair->action, world->now.dt, force);
+    fill_force(&pair->last, &pair->action, world->now.kick, force);
 }
 int32_t brunt_wall_count(const brunt_world *world) { return world->wall_count; }
 void brunt_wall_force(const brunt_world *world, int32_t index, brunt_force *force) {
     const brunt_wall *wall = &world->walls[index];
     snprintf(force->name, sizeof force->name, "%s", wall->name);
-    fill_force(&wall->last, &wall->action, world->now.dt, force);
+    fill_force(&wall->last, &wall->action, world->now.kick, force);
 }
 
 double brunt_world_time(const brunt_world *world) { return world->now.time; }

@@ -61,7 +61,7 @@ static void read_contact(const brunt_world *world, const brunt_fem_body *fem, in
         if (field == 0) *to = isinf(s->gap[n]) ? NAN : s->gap[n];
         if (field == 2) *to = s->state[n];
         for (int a = 0; field == 1 && a < 3; a++)
-            to[a] = s->area[n] > 0 && world->now.dt > 0 ? s->impulse[n][a] / (s->area[n] * world->now.dt) : 0;
+            to[a] = s->area[n] > 0 && world->now.kick > 0 ? s->impulse[n][a] / (s->area[n] * world->now.kick) : 0;
     }
 }
 

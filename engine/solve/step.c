@@ -164,11 +164,11 @@ static double all_mesh_nodes(const brunt_world *world) {
 }
 
 // Particles and forces to the grid, and the velocities there before anything else acts.
-static void make_grid_velocities(brunt_world *world, brunt_body *body, const double gravity[3], double dt) {
+static void make_grid_velocities(brunt_world *world, brunt_body *body, const double gravity[3], double kick) {
     const double nodes = grid_nodes(body);
-    body_job job = {world, body, dt};
+    body_job job = {world, body, kick};
     brunt_grid_job grid_job = {
-        .body = body, .gravity = gravity, .dt = dt, .has_gravity = world->has_gravity, .sums = world->node_sums};
+        .body = body, .gravity = gravity, .dt = kick, .has_gravity = world->has_gravity, .sums = world->node_sums};
     brunt_pass_begin(world, BRUNT_PASS_scatter);
     brunt_parallel(world->threads, body->grid.block_count, BLOCK_GRAIN, scatter_blocks, &job,
                    &world->pass[BRUNT_PASS_scatter].threads);
@@ -320,9 +320,11 @@ static void remap_velocities(brunt_world *world, double dt) {
     brunt_pass_end(world, all_particles(world));
 }
 
-static int gather_bodies(brunt_world *world, double dt, double *kinetic, brunt_error *error) {
+// Where the step changes, the two halves of the kick are not alike: velocities are further behind the stress, or less,
+// by which central differences gain or lose (dt_old^2 - dt^2) / 8 f^2 / m. That is booked with the transfers, too.
+static int gather_bodies(brunt_world *world, double kick, double dt, double *kinetic, brunt_error *error) {
     brunt_pass_begin(world, BRUNT_PASS_gather);
-    double power = 0, remap = 0;
+    double power = 0, remap = 0, before = 0;
     *kinetic = 0;
     brunt_body *bad_body = NULL;
     int64_t bad = -1;
@@ -330,17 +332,19 @@ static int gather_bodies(brunt_world *world, double dt, double *kinetic, brunt_e
     for (int i = 0; i < world->body_count; i++) {
         brunt_body *body = &world->bodies[i];
         body_job job = {world, body, dt};
+        body->uneven = kick != dt;
         brunt_parallel(world->threads, body->grid.block_count, BLOCK_GRAIN, gather_blocks, &job,
                        &world->pass[BRUNT_PASS_gather].threads);
         for (int32_t b = 0; b < body->grid.block_count; b++) {
             *kinetic += body->report[b].kinetic;
             power += body->report[b].stress_power;
             remap += body->report[b].remap_power;
+            before += body->report[b].old_power;
             if (body->report[b].bad >= 0 && !bad_body)
                 bad_body = body, bad = body->report[b].bad, reason = body->report[b].reason;
         }
     }
-    world->now.transfer -= 0.5 * (world->now.stress_work + dt * remap);
+    world->now.transfer -= 0.5 * (world->now.stress_work + dt * remap + (dt - kick) * before);
     world->now.stress_work = dt * power;
     brunt_pass_end(world, all_particles(world));
     return bad_body ? fail_particle(world, bad_body, bad, error, reason) : BRUNT_OK;
@@ -348,7 +352,6 @@ static int gather_bodies(brunt_world *world, double dt, double *kinetic, brunt_e
 
 static void kick_meshes(brunt_world *world, const double gravity[3], double kick, double dt) {
     brunt_pass_begin(world, BRUNT_PASS_kick);
-    world->now.fem_load_work = world->now.fem_damping_work = 0;
     if (world->hold_count || world->has_damping) brunt_loads_begin(world, world->now.time, kick);
     if (world->has_damping) brunt_damping_begin(world, gravity, kick);
     brunt_fem_kick_all(world, gravity, kick);
@@ -393,12 +396,12 @@ static double choose_step(const brunt_world *world, double limit) {
     return left / ceil(left / dt * (1 - 1e-9));
 }
 
-static int make_grids(brunt_world *world, const double gravity[3], double dt, brunt_error *error) {
+static int make_grids(brunt_world *world, const double gravity[3], double kick, brunt_error *error) {
     brunt_pass_begin(world, BRUNT_PASS_sort);
     int status = sort_bodies(world, error);
     brunt_pass_end(world, all_particles(world));
     if (status) return status;
-    for (int i = 0; i < world->body_count; i++) make_grid_velocities(world, &world->bodies[i], gravity, dt);
+    for (int i = 0; i < world->body_count; i++) make_grid_velocities(world, &world->bodies[i], gravity, kick);
     return BRUNT_OK;
 }
 
@@ -471,8 +474,8 @@ static int begin_step(brunt_world *world, step *s, brunt_error *error) {
     if (error) *error = (brunt_error){.id = -1};
     int status = refuse_step(world, dt, error);
     if (status) return status;
-    // Velocities are half a step behind, from the first step on: forces act over the mean of the steps before and
-    // after.
+    // Central differences: velocities are those of the middle of a step, so that forces act over the mean of the steps
+    // before and after, and over half a step at the start.
     s->kick = world->now.steps > 0 ? 0.5 * (world->now.dt + dt) : 0.5 * dt;
     brunt_gravity_at(world, world->now.time, s->gravity); // as the forces: of the middle of the kick
     for (int i = 0; i < world->body_count; i++) world->bodies[i].time = (real)(world->now.time + dt);
@@ -500,6 +503,7 @@ static void advance(brunt_world *world, const step *s) {
     now->time = s->dt == stop - now->time ? stop : now->time + s->dt;
     now->steps += 1;
     now->dt = s->dt;
+    now->kick = s->kick;
     now->dt_min = fmin(now->dt_min, s->dt);
     now->dt_max = fmax(now->dt_max, s->dt);
     brunt_pass_end(world, 0);
@@ -509,7 +513,7 @@ static int check_energy(brunt_world *world, brunt_error *error) {
     brunt_energy energy;
     brunt_world_energy(world, &energy);
     // Energy that the transfers make is as wrong as energy that is not accounted for.
-    double made = energy.error_relative != 0 ? -energy.transfer * energy.error_relative / energy.error : 0;
+    double made = energy.error_relative != 0 ? -world->now.transfer * energy.error_relative / energy.error : 0;
     if (!(fabs(energy.error_relative) > world->energy_limit || made > world->energy_limit)) return BRUNT_OK;
     char reason[240];
     snprintf(reason, sizeof reason,
@@ -539,13 +543,13 @@ static int take_step(brunt_world *world, double limit, brunt_error *error) {
     if (status) return status;
     if (world->fem_count) kick_meshes(world, s.gravity, s.kick, s.dt);
     if (world->gas_lost) return fail_gas(world, error);
-    if (world->body_count && (status = make_grids(world, s.gravity, s.dt, error))) return status;
+    if (world->body_count && (status = make_grids(world, s.gravity, s.kick, error))) return status;
     if ((status = constrain_velocities(world, s.gravity, s.kick, s.dt, error))) return status;
     old_kinetic = new_kinetic = world->now.kinetic;
     if (world->body_count) {
-        keep_ledger(world, s.gravity, s.dt, &old_kinetic, &new_kinetic);
+        keep_ledger(world, s.gravity, s.kick, &old_kinetic, &new_kinetic);
         if (world->advance) remap_velocities(world, s.dt);
-        status = gather_bodies(world, s.dt, &kinetic, error);
+        status = gather_bodies(world, s.kick, s.dt, &kinetic, error);
     }
     if (world->hold_count || world->has_damping) finish_kick(world, s.kick);
     if (world->fem_count) {

@@ -40,7 +40,7 @@ enum {
 };
 
 typedef struct brunt_damping_sums {
-    double work, half_work, impulse[3], angular[3]; // [J], [J], [N s], [N m s] of a node task
+    double work, impulse[3], angular[3]; // [J], [N s], [N m s] of a node task
 } brunt_damping_sums;
 
 typedef struct brunt_node_sums {
@@ -140,14 +140,13 @@ struct brunt_world {
 
     // Everything a run needs to go on besides the particles, and nothing else: saved as one block of doubles.
     struct brunt_clock {
-        double time, steps, dt, next_dt, dt_min, dt_max;
+        double time, steps, dt, kick, next_dt, dt_min, dt_max;                 // kick: what the last forces acted over
         double kinetic;                                                        // of the particles [J]
         double fem_kinetic, fem_stress_work, hourglass_stored, hourglass_lost; // [J] of the meshes
         double stress_work;            // [J] dt times the stress power at the end of the last step
         double transfer, gravity_work; // [J]
         double contact_frame[3];       // [m/s] what contact measures motion against
         double gravity_impulse[3], gravity_angular[3];
-        double fem_load_work, fem_damping_work; // [J] of the last step at its end: half of it comes anew
         double damped, damping_impulse[3], damping_angular[3]; // [J], [N s], [N m s]
         double initial_energy, initial_kinetic; // [J]
         double linear_initial[3], angular_initial[3], scale_linear, scale_angular;
