@@ -133,6 +133,7 @@ static double rolling(const roll *r) {
     return a / rigid;
 }
 
+// B18.
 START_TEST(rolls_on_its_radius) {
     for (int on = PLANE; on <= MESH; on++)
         for (int cells = 4; cells <= 8; cells *= 2) {
@@ -176,7 +177,7 @@ static brunt_world *bounced(const roll *r, double tangential, double normal) {
     return w;
 }
 
-// Friction that takes v from its speed gives it the spin v / k: it acts at a radius from the centre. Where it sticks
+// B16. Friction that takes v from its speed gives it the spin v / k: it acts at a radius from the centre. Where it sticks
 // the disk, being soft, leaves with more spin than a rigid one (Maw, Barber and Fawcett 1976), so it slides here. What
 // is left is the pressure, which friction moves off the middle of the contact: at 8 cells a radius 3 %, at 4 cells,
 // where it stands on two particles, 13 %.
