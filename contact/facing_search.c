@@ -275,6 +275,7 @@ static const tied *take_nearest(const brunt_skin *s, const nearest *best, hit *o
     *out = (hit){.face = chosen->face, .triangle = at->triangle, .body = best->body, .gap = dot(at->normal, at->d)};
     memcpy(out->n, at->normal, sizeof out->n);
     memcpy(way, at->d, sizeof at->d);
+    if (is_sheet(s, best->body)) return chosen; // faces of a crumpled sheet have no turn in common at a node
     if (at->triangles) out->feature = (brunt_feature){true, {-1, -1}, chosen->face, at->triangles};
     if (best->count > 1) find_feature(s, best, chosen, out, way);
     return chosen;

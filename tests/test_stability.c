@@ -112,7 +112,7 @@ END_TEST
 // feel it: that node's mass goes as d^order. Particles must not feel whether it is 1e-12 or nothing.
 typedef struct at_face {
     bool finished, located;
-    double fastest, kinetic, internal, drift;
+    double fastest, kinetic, internal, initial, drift;
 } at_face;
 
 static at_face run_at_face(int dimension, brunt_kernel kernel, brunt_transfer transfer, double d) {
@@ -138,7 +138,8 @@ static at_face run_at_face(int dimension, brunt_kernel kernel, brunt_transfer tr
     }
     out.located = !out.finished && error.id >= 0 && error.body[0] && strstr(error.message, "inside out");
     brunt_energy e = world_energy(world);
-    out.kinetic = e.kinetic, out.internal = e.internal, out.drift = world_momentum(world).linear_drift;
+    out.kinetic = e.kinetic, out.internal = e.internal, out.initial = e.initial,
+    out.drift = world_momentum(world).linear_drift;
     brunt_world_destroy(world);
     return out;
 }
@@ -154,16 +155,16 @@ START_TEST(nodes_with_almost_no_mass_do_no_harm) {
         ck_assert(r.finished);
         fastest = fmax(fastest, r.fastest);
         drift[n == 3] = fmax(drift[n == 3], r.drift);
-        // On one side of the face, energy depends on the distance as on any other place: by as much as it has changed.
-        double change = fabs(r.kinetic + r.internal - reference.kinetic - reference.internal) /
-                        (reference.kinetic + reference.internal);
+        // On one side of the face, energy depends on the distance as on any other place. Of all at the start: PIC
+        // leaves less than a thousandth of it, which differs by 4e-3 of itself.
+        double change = fabs(r.kinetic + r.internal - reference.kinetic - reference.internal) / r.initial;
         inside = fmax(inside, change);
     }
     printf("  almost empty nodes: fastest %.3f m/s of 1 at the start, energy differs by %.1e, momentum by %.1e, at "
            "-1e-12 h by %.1e\n",
            fastest, inside, drift[0], drift[1]);
     hard_case("C12", fastest, 1.1, 1.1, "fastest particle, of the fastest at the start");
-    hard_case("C12", inside, 1e-3, 1e-3, "energy, by distance from the face of a cell, relative");
+    hard_case("C12", inside, 1e-5, 1e-5, "energy, by distance from the face of a cell, of all at the start");
     hard_case("C12", fmax(drift[0], drift[1]), 100 * ROUNDING, 100 * ROUNDING,
               "drift of momentum"); // though such a node may move at 1e11 m/s
 
@@ -597,7 +598,7 @@ static brunt_world_def def_balls(int threads) {
     def.contact.friction = 0.3;
     def.gravity[2] = -9.81;
     def_material(&def, "neo-hookean", 1000, 1e6, 0.3);
-    def_velocity(def_ball(&def, "a", XYZ(-0.45, 0.013, 0.43), 0.4), 8, 1, -5);
+    def_velocity(def_ball(&def, "a", XYZ(-0.45, 0.013, 0.46), 0.4), 8, 1, -5);
     def_velocity(def_ball(&def, "b", XYZ(0.45, -0.11, 0.5), 0.4), -8, 0, -2);
     def_plane(&def, XYZ(0, 0, 0), XYZ(0.1, 0, 1), BRUNT_SEPARATE, 0.4);
     return def;
