@@ -353,7 +353,22 @@ static bool is_among(int32_t body, const int32_t *list, int32_t count) {
 typedef struct two_nearest {
     int32_t face;
     double first, second; // squares of their distances
+    double facing;        // [m] how far the place is before or behind the nearest one
 } two_nearest;
+
+// Notes a facet. Of those that are equally near, as at an edge or a corner, the one that most faces the place tells on
+// which side of the surface that is, whatever their order.
+static void note(two_nearest *two, const brunt_closest *at, int32_t face) {
+    const double facing = fabs(dot(at->normal, at->d)), same = two->face < 0 ? 0 : 1e-9 * two->first;
+    if (at->square >= two->first + same) {
+        two->second = fmin(two->second, at->square);
+        return;
+    }
+    const bool nearer = at->square < two->first - same;
+    two->second = fmax(two->first, at->square);
+    two->first = fmin(two->first, at->square);
+    if (nearer || facing > two->facing) two->face = face, two->facing = facing;
+}
 
 static bool in_ring(const looker *l, int32_t face) {
     int32_t low = 0, high = l->ring_count;
@@ -382,7 +397,7 @@ static inline __attribute__((always_inline)) int find_nearest(const brunt_meetin
     brunt_closest guessed;
     if (guess >= 0) guessed = brunt_closest_on_face(s, guess, l->x), bound = tie(s, guessed.square);
     int bodies = 0;
-    if (all) *all = (two_nearest){-1, range2, range2};
+    if (all) *all = (two_nearest){-1, range2, range2, 0};
     for (int32_t q = f->cell_first[l->cell]; q < f->cell_first[l->cell + 1]; q++) {
         int32_t face = f->cell_face[q];
         const int32_t other = s->face_body[face];
@@ -400,10 +415,7 @@ static inline __attribute__((always_inline)) int find_nearest(const brunt_meetin
         brunt_closest at = face == guess ? guessed : brunt_closest_on_face(s, face, l->x);
         if (at.square > range2) continue;
         const bool behind = sheet && dot(at.normal, at.d) < 0;
-        if (all && at.square < all->first)
-            all->second = all->first, all->first = at.square, all->face = behind ? face + s->side[other].faces : face;
-        else if (all && at.square < all->second)
-            all->second = at.square;
+        if (all) note(all, &at, behind ? face + s->side[other].faces : face);
         if (!faces) continue;
         if (sheet) {
             if (normal ? cosine < 0 : behind) turn_over(s, &face, &at);

@@ -2,6 +2,7 @@
 // Corners and edges that meet corners and edges: the impulse is along the line of centres wherever both bodies are
 // symmetric about it, and what is mirrored, swapped or turned does the same, mirrored, swapped or turned (C06).
 #include "def_world.h"
+#include "hard_case.h"
 
 typedef enum feature { FACE, EDGE, CROSSED_EDGE, CORNER } feature; // what a body turns to the other one
 typedef enum matter { COARSE, FINE, POINTS } matter;               // elements: two or three a side
@@ -154,6 +155,7 @@ static const meeting meetings[] = {
     {3, EDGE, EDGE, FINE, COARSE},         {3, EDGE, CROSSED_EDGE, COARSE, COARSE},
     {3, EDGE, CROSSED_EDGE, COARSE, FINE}, {3, EDGE, FACE, COARSE, COARSE},
     {3, EDGE, FACE, COARSE, FINE},         {3, FACE, FACE, COARSE, COARSE},
+    {3, FACE, FACE, COARSE, FINE},         {2, FACE, FACE, COARSE, FINE},
     {2, CORNER, CORNER, COARSE, POINTS},   {2, CORNER, FACE, COARSE, POINTS},
     {2, CORNER, FACE, POINTS, COARSE},     {3, CORNER, CORNER, COARSE, POINTS},
     {3, CORNER, EDGE, COARSE, POINTS},     {3, CORNER, EDGE, POINTS, COARSE},
@@ -184,18 +186,20 @@ START_TEST(impulse_is_along_the_line_of_centres) {
     const meeting *m = &meetings[_i];
     const bool points = m->of_a == POINTS || m->of_b == POINTS;
     const bool even = !points || m->dimension == 2 || (m->a != CORNER && m->b != CORNER);
+    double worst = 0;
     for (int k = 0; k < FRAMES; k++) {
         const frame g = frame_of(k, m);
         const outcome o = measure(m, &g);
         printf("%dD, %s of %s on %s of %s, %d: off by %.1e, %.1e degrees, contact keeps %.4f, drift %.1e %.1e\n",
                m->dimension, name[m->a], of[m->of_a], name[m->b], of[m->of_b], k, o.across[0], o.across[1], o.kept,
                o.linear, o.angular);
-        ck_assert_double_lt(o.across[0], 1e-8);
-        if (even) ck_assert_double_lt(o.across[1], 1e-8);
+        worst = fmax(worst, fmax(o.across[0], even ? o.across[1] : 0));
         ck_assert_double_lt(o.linear, 1e-12);
         ck_assert_double_lt(o.angular, 1e-12);
         ck_assert_double_gt(o.kept, 0.7);
     }
+    hard_case("C06", worst, 1e-8, 1e-8, "%dD, %s of %s on %s of %s: impulse off the line of centres [deg]",
+              m->dimension, name[m->a], of[m->of_a], name[m->b], of[m->of_b]);
 }
 END_TEST
 
@@ -224,24 +228,25 @@ START_TEST(mirror_image_does_as_the_thing) {
     const meeting *m = &meetings[_i];
     if (m->of_a == POINTS || m->of_b == POINTS) return;
     const bool lie[] = {true, true, m->dimension == 3};
-    frame g = {.friction = 0.3, .aside = {0, m->a == FACE ? 0 : 0.0625, 0}};
+    frame g = {.friction = 0.3, .aside = {0, 0.0625, 0}};
     unturned(g.turn);
     int64_t n;
-    double *thing = velocities(m, &g, &n);
+    double *thing = velocities(m, &g, &n), worst = 0;
     for (int k = 0; k < 6; k++) {
         if (!lie[k % 3]) continue;
         unturned(g.turn);
         g.turn[k % 3][k % 3] = -1, g.swapped = k > 2;
         double *image = velocities(m, &g, &n), most = 0;
         for (int64_t i = 0; i < 3 * n; i++) most = fmax(most, fabs(image[i] - thing[i]));
-        ck_assert_msg(most < 1e-10, "meeting %d, mirrored across %c: off by %.1e m/s", _i, 'x' + k % 3, most);
+        worst = fmax(worst, most);
         free(image);
     }
+    hard_case("C06", worst, 1e-10, 1e-10, "meeting %d and its mirror images: velocities of nodes off by [m/s]", _i);
     free(thing);
 }
 END_TEST
 
-// A copper rod on its mirror image, each at the speed of a Taylor test.
+// B04. A copper rod on its mirror image, each at the speed of a Taylor test.
 START_TEST(rod_on_mirror_rod) {
     const double length = 32.4e-3, radius = 3.2e-3, size = 1.1e-3, speed = 190;
     brunt_world_def def = def_begin(3, size);
@@ -279,7 +284,7 @@ START_TEST(rod_on_mirror_rod) {
     ck_assert_double_lt(upper.high[2] - upper.low[2], 0.9 * length); // it has been flattened
     ck_assert_double_lt(fabs(plane), 1e-10);
     ck_assert_double_lt(fabs(lengths), 1e-10);
-    ck_assert_double_lt(most, 1e-10);
+    hard_case("C06", most, 1e-10, 1e-10, "rod on its mirror image, friction %g: nodes off by [m]", friction);
     ck_assert_double_lt(p.angular_drift, 1e-12);
     free(x), free(y);
     brunt_world_destroy(world);
