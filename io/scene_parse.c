@@ -95,7 +95,6 @@ static void fill_time(scene_reader *reader) {
     if (step && cfl) brunt_tree_complain_key(reader->tree, step, "step and cfl are both given, one of them is wanted");
     if (step && world->step > world->end && world->end > 0)
         brunt_tree_complain(reader->tree, step, "the step is longer than the run");
-    if (!step && !cfl) brunt_add_default(reader, time, "cfl", has_method(reader, "mpm") ? "0.5" : "0.9");
     world->cfl = brunt_real_of(time, "cfl", world->cfl);
     world->least_step = brunt_real_of(time, "least_step", 0);
     world->energy_limit = brunt_real_of(time, "energy_limit", world->energy_limit);
@@ -130,6 +129,19 @@ static void fill_grid(scene_reader *reader) {
     } else {
         world->transfer = (brunt_transfer)(int)brunt_real_of(grid, "transfer", BRUNT_APIC);
     }
+}
+
+// Where neither step nor cfl is given: as the grid, kernel and transfer of the points ask for, or meshes alone bear.
+static void fill_cfl(scene_reader *reader) {
+    brunt_world_def *world = &reader->scene->world;
+    scene_node *time = brunt_tree_child(reader->tree->root, "time");
+    if (!time || time->kind != SCENE_MAP || brunt_tree_child(time, "step") || brunt_tree_child(time, "cfl")) return;
+    const double cfl =
+        has_method(reader, "mpm") ? brunt_default_cfl(world->dimension, world->kernel, world->transfer) : 0.9;
+    char text[16];
+    snprintf(text, sizeof text, "%g", cfl);
+    brunt_add_default(reader, time, "cfl", text);
+    world->cfl = brunt_real_of(time, "cfl", cfl);
 }
 
 // ---------------------------------------------------------------------------------------------------- materials
@@ -241,6 +253,7 @@ void brunt_fill_world(scene_reader *reader) {
     world->axisymmetric = brunt_real_of(root, "axisymmetric", 0) == 1;
     fill_time(reader);
     fill_grid(reader);
+    fill_cfl(reader);
     fill_materials(reader);
     brunt_fill_bodies(reader);
     fill_detonations(reader);

@@ -387,7 +387,7 @@ START_TEST(definitions_start_sensible_and_leave_nothing) {
     ck_assert_int_eq(world.kernel, BRUNT_QUADRATIC);
     ck_assert_int_eq(world.transfer, BRUNT_APIC);
     ck_assert_int_eq(world.contact.method, BRUNT_CONTACT_MULTI_VELOCITY);
-    ck_assert_double_eq(world.cfl, 0.5);
+    ck_assert_double_eq(world.cfl, 0); // by kernel, transfer and dimension
     ck_assert_double_eq(world.energy_limit, 0.1);
     ck_assert_int_eq(brunt_plane_def_default().condition, BRUNT_SEPARATE);
     brunt_region_def region = brunt_region_def_default();

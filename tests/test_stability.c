@@ -57,57 +57,6 @@ START_TEST(lone_particles_fly_ballistically) {
 }
 END_TEST
 
-// A particle or two with no neighbours, breathing a little, where the kernel is stiffest. All the force of a lone
-// particle goes through its own weights: with quadratic ones sum slope^2/weight reaches 6/h^2 an axis, and the
-// breathing has the stiffness dim K, so that (6 dim K / rho) (dt/h)^2 < 4 is needed: cfl < 0.60 in 3D for nu = 0.3
-// though c is that of plane waves.
-static double breathing_growth(int dimension, brunt_kernel kernel, brunt_transfer transfer, double cfl) {
-    const double h = 0.1;
-    double worst = 0;
-    for (int o = 0; o < 11; o++) {
-        brunt_world_def def = def_begin(dimension, h);
-        def.kernel = kernel;
-        def.transfer = transfer;
-        def.cfl = cfl;
-        def_material(&def, "neo-hookean", 1000, 1e5, 0.3);
-        const double at[3] = {0.1 * h * o, 0.1 * h * (3 * o % 11), 0.1 * h * (5 * o % 11)};
-        brunt_body_def *b = def_point(&def, "a", at, 0.5 * h, XYZ(0, 0, 0));
-        if (transfer != BRUNT_APIC) b->shape.max[0] += 0.5 * h; // one particle alone has nothing to breathe with
-        for (int a = 0; a < dimension; a++) b->wave_velocity[a] = 1e-5, b->wave_vector[a] = 1, b->wave_phase -= at[a];
-        brunt_world *world = world_take(&def);
-        brunt_error error = {0};
-        int status = BRUNT_OK;
-        for (int s = 0; s < 400 && !status; s++) status = brunt_world_step(world, INFINITY, &error);
-        brunt_energy e = world_energy(world);
-        worst = fmax(worst, status ? INFINITY : (e.kinetic + e.internal) / e.initial);
-        brunt_world_destroy(world);
-    }
-    return worst;
-}
-
-START_TEST(lone_particles_are_stable_at_moderate_steps) {
-    // Stable, for the transfers as they are numbered; two tenths above it nearly all are not.
-    static const struct {
-        int dimension;
-        brunt_kernel kernel;
-        double cfl[3];
-    } found[] = {{2, BRUNT_QUADRATIC, {0.5, 0.5, 0.6}},
-                 {3, BRUNT_QUADRATIC, {0.4, 0.4, 0.5}},
-                 {2, BRUNT_CUBIC, {0.7, 0.7, 0.8}},
-                 {3, BRUNT_CUBIC, {0.6, 0.6, 0.7}}};
-    for (int i = 0; i < 4; i++)
-        for (int t = 0; t < 3; t++) {
-            double growth = breathing_growth(found[i].dimension, found[i].kernel, transfers[t], found[i].cfl[t]);
-            double above =
-                breathing_growth(found[i].dimension, found[i].kernel, transfers[t], fmin(1, found[i].cfl[t] + 0.2));
-            printf("  breathing, %dD kernel %d transfer %d: energy grows %.1e fold at cfl %.1f, %.1e fold at %.1f\n",
-                   found[i].dimension, (int)found[i].kernel, t, growth, found[i].cfl[t], above,
-                   fmin(1, found[i].cfl[t] + 0.2));
-            ck_assert_double_le(growth, 100);
-        }
-}
-END_TEST
-
 // A wobbling block, moved bodily so that one surface particle sits at a distance d from where the next node begins to
 // feel it: that node's mass goes as d^order. Particles must not feel whether it is 1e-12 or nothing.
 typedef struct at_face {
@@ -365,8 +314,8 @@ END_TEST
 START_TEST(steps_above_the_stable_one_are_refused) {
     brunt_error error = {0};
     brunt_world_def def = def_bounce(0.1, XYZ(0, 0, 0));
-    static const double bad[] = {1.2, 0, -1, NAN};
-    for (int i = 0; i < 4; i++) {
+    static const double bad[] = {1.2, -1, NAN};
+    for (int i = 0; i < 3; i++) {
         def.cfl = bad[i];
         ck_assert_ptr_null(brunt_world_create(&def, &error));
         ck_assert_int_eq(error.code, BRUNT_BAD_INPUT);
@@ -638,7 +587,6 @@ END_TEST
 int main(void) {
     Suite *suite = suite_create("stability");
     ADD(lone_particles_fly_ballistically);
-    ADD(lone_particles_are_stable_at_moderate_steps);
     ADD(nodes_with_almost_no_mass_do_no_harm);
     ADD(leaving_the_grid_is_reported);
     ADD(walls_hold_every_way_out);

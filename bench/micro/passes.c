@@ -65,7 +65,7 @@ static brunt_world *create(const configuration *c, int turn, int turns, brunt_er
 
     int per_cell = c->dimension == 3 ? 8 : 4;
     double side = def.cell * round(pow((double)c->wanted / per_cell, 1.0 / c->dimension));
-    double wave = sqrt(124e9 / typical_density), step = def.cfl * def.cell / (1.3 * wave);
+    double wave = sqrt(124e9 / typical_density), step = 0.5 * def.cell / (1.3 * wave);
     brunt_body_def body = brunt_body_def_default();
     snprintf(body.name, sizeof body.name, "block");
     body.shape.kind = BRUNT_BOX, body.particles_per_cell = per_cell;

@@ -147,7 +147,9 @@ static int print_cost(const brunt_machine *machine, const brunt_scene *scene, br
     char all[32];
     brunt_duration(p.step_seconds + p.output_seconds, all);
     double step = p.sampled_seconds / p.sampled_steps;
-    printf("time\n  first step %.6g s, end %.6g s, about %.0f steps\n", p.first_step, brunt_world_end(world), p.steps);
+    printf("time\n  ");
+    if (!(scene->world.step > 0)) printf("cfl %.3g, ", scene->world.cfl);
+    printf("first step %.6g s, end %.6g s, about %.0f steps\n", p.first_step, brunt_world_end(world), p.steps);
     printf("  measured over %.0f step%s on %d thread%s: %.4g s a step, %.1f ns per %s-step\n", p.sampled_steps,
            plural(p.sampled_steps), threads, plural(threads), step, 1e9 * step / points_of(world),
            brunt_world_elements(world) == 0    ? "particle"

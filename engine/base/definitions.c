@@ -16,7 +16,6 @@ brunt_world_def brunt_world_def_default(void) {
         .kernel = BRUNT_QUADRATIC,
         .transfer = BRUNT_APIC,
         .flip = 0.99,
-        .cfl = 0.5,
         .energy_limit = 0.1,
         .contact = {.method = BRUNT_CONTACT_MULTI_VELOCITY,
                     .iterations = -1,

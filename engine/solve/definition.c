@@ -371,7 +371,7 @@ static int check_time_and_grid(const brunt_world_def *def, bool particles, brunt
         REFUSE("grid.kernel: there is no kernel %d", (int)def->kernel);
     if ((unsigned)def->transfer > BRUNT_APIC) REFUSE("grid.transfer: there is no transfer %d", (int)def->transfer);
     if (!(def->flip >= 0 && def->flip <= 1)) REFUSE("grid.transfer.flip: %g is not between 0 and 1", def->flip);
-    if (!(def->cfl > 0 && def->cfl <= 1)) REFUSE("time.cfl: %g is not in (0, 1]", def->cfl);
+    if (!(def->cfl >= 0 && def->cfl <= 1)) REFUSE("time.cfl: %g is not in (0, 1]", def->cfl);
     if (!(def->step >= 0) || !isfinite(def->step)) REFUSE("time.step: %g s is not a positive time", def->step);
     if (!(def->least_step >= 0) || !isfinite(def->least_step))
         REFUSE("time.least_step: %g s is not a time", def->least_step);

@@ -10,6 +10,7 @@
 #include "lanes.h"
 #include "memory.h"
 #include "sort.h"
+#include "stable.h"
 #include "threads.h"
 #include "world.h"
 
@@ -621,6 +622,27 @@ static int start(brunt_world *world, brunt_error *error) {
     return BRUNT_OK;
 }
 
+static double cfl_of(const brunt_world_def *def, bool particles) {
+    if (def->cfl > 0) return def->cfl;
+    return particles ? brunt_default_cfl(def->dimension, def->kernel, def->transfer) : 0.5;
+}
+
+// Points that fail and stay, or that are a fluid's, fly on alone, and bear pressure there. (What erosion keeps has no
+// stress, and nothing to be unstable with.)
+static void warn_of_lone_points(brunt_world *world) {
+    const double limit = brunt_lone_points_cfl(world->dimension, world->kernel, world->transfer);
+    if (world->fixed_step > 0 || world->cfl <= limit * (1 + 1e-9)) return;
+    for (int i = 0; i < world->body_count; i++) {
+        const brunt_body *body = &world->bodies[i];
+        const bool softens = body->material.model[BRUNT_FAILURE] && !body->fails;
+        if (!softens && !body->material.model[BRUNT_STRENGTH]->fluid) continue;
+        brunt_warn(world,
+                   "bodies.%s: material points that come away from others bear pressure alone, which with this kernel "
+                   "and transfer is stable up to cfl %.2g; time.cfl is %.2g",
+                   body->name, limit, world->cfl);
+    }
+}
+
 brunt_world *brunt_world_create(const brunt_world_def *def, brunt_error *error) {
     if (error) *error = (brunt_error){.id = -1};
     if (brunt_definition_check(def, error)) return NULL;
@@ -639,7 +661,7 @@ brunt_world *brunt_world_create(const brunt_world_def *def, brunt_error *error) 
     world->threads = def->threads > 0 ? def->threads : brunt_threads_available();
     if (world->threads > 256) world->threads = 256;
     world->kernel = def->kernel, world->transfer = def->transfer;
-    world->flip = def->flip, world->cfl = def->cfl, world->fixed_step = def->step, world->end = def->end;
+    world->flip = def->flip, world->fixed_step = def->step, world->end = def->end;
     world->axisymmetric = def->axisymmetric;
     world->least_step = def->least_step;
     world->energy_limit = def->energy_limit, world->cell = def->cell, world->gravity_ramp = def->gravity_ramp;
@@ -657,6 +679,7 @@ brunt_world *brunt_world_create(const brunt_world_def *def, brunt_error *error) 
     world->mesh_reports = brunt_alloc((size_t)def->body_count * sizeof *world->mesh_reports);
     for (int i = 0; i < def->body_count; i++)
         world->has_particles = world->has_particles || order[i]->method == BRUNT_MPM;
+    world->cfl = cfl_of(def, world->has_particles);
 
     int status = world->bodies && world->all && world->fems && world->mesh_reports
                      ? BRUNT_OK
@@ -679,6 +702,7 @@ brunt_world *brunt_world_create(const brunt_world_def *def, brunt_error *error) 
     }
     if (!status) status = start(world, error);
     if (!status && !def->contact.allow_overlap) status = brunt_surfaces_overlap(world, error);
+    if (!status) warn_of_lone_points(world);
     brunt_free(order);
     if (!status) return world;
     brunt_world_destroy(world);
