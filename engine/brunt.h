@@ -329,7 +329,8 @@ typedef struct brunt_world_def {
     double flip;                        // [-] for FLIP: share of the particle's own velocity kept, 0..1; default 0.99
     double cfl; // [-] 0..1, of the stable step; default 0: with material points brunt_default_cfl, without 0.5
     double step;                        // [s] fixed time step, 0 = from cfl
-    double least_step; // [s] the run stops, with the reason, when the stable step falls below it; default 0
+    double least_step; // [s] the run stops, with the reason, when the stable step falls below it; default 0:
+                       // when steps that follow it fall below a millionth of the greatest so far
     double end;                         // [s] the step that would pass it is cut to end on it
     double energy_limit;                // [-] of the initial plus supplied energy; default 0.1; INFINITY = none
     int threads;                        // 0 = all there are

@@ -90,6 +90,67 @@ static brunt_world_def def_press(brunt_method method, double speed) {
     return def;
 }
 
+static int step_on(brunt_world *world, int most, brunt_error *error) {
+    int status = BRUNT_OK;
+    for (int s = 0; s < most && !status; s++) status = brunt_world_step(world, INFINITY, error);
+    return status;
+}
+
+// C18, C26: told once at a thousandth of the longest step, an error that says where at a millionth, and with the same
+// bits from a restart; a scene that sets its least step goes on.
+START_TEST(steps_that_shorten_without_end_are_reported) {
+    for (int i = 0; i < 2; i++) {
+        brunt_error error = {0}, again = {0};
+        brunt_world_def def = def_press(i ? BRUNT_FEM : BRUNT_MPM, i ? 5 : 100);
+        brunt_world *world = world_from(&def), *other = world_from(&def);
+        while (brunt_warning_count(world) == 0)
+            ck_assert_msg(step_on(world, 1, &error) == BRUNT_OK, "%s", error.message);
+        printf("  %s\n", brunt_world_warning(world, 0));
+        ck_assert_int_eq(step_on(world, 1, &error), BRUNT_OK);
+        const double share = brunt_world_dt(world) / brunt_world_dt_max(world);
+        ck_assert_double_lt(share, 1e-3);
+        ck_assert_double_gt(share, 1e-4);
+        ck_assert_ptr_nonnull(strstr(brunt_world_warning(world, 0), "'block'"));
+        while (brunt_world_dt(world) > 1.1e-6 * brunt_world_dt_max(world))
+            ck_assert_int_eq(step_on(world, 1, &error), BRUNT_OK);
+        copy_state(world, other);
+        ck_assert_int_eq(step_on(world, 100000, &error), BRUNT_FAILED);
+        printf("  %s\n", error.message);
+        ck_assert_int_eq(brunt_warning_count(world), 1);
+        ck_assert_str_eq(error.body, "block");
+        ck_assert(error.id >= 0 && error.place[0] > 0 && error.place[0] < 1 && error.time > 0);
+        ck_assert_ptr_nonnull(strstr(error.message, "least_step"));
+        hard_case("C26", brunt_world_dt(world) / brunt_world_dt_max(world), 1.1e-6, 1.1e-6,
+                  "hardening without bound, %s: last step, of the longest", i ? "elements" : "points");
+        ck_assert_int_eq(step_on(other, 100000, &again), BRUNT_FAILED);
+        ck_assert_str_eq(error.message, again.message);
+        ck_assert_uint_eq(brunt_world_hash(world), brunt_world_hash(other));
+        brunt_world_destroy(world), brunt_world_destroy(other);
+
+        def.least_step = 1e-30;
+        world = world_from(&def);
+        ck_assert_int_eq(step_on(world, 200, &error), BRUNT_OK);
+        brunt_world_destroy(world);
+        brunt_world_def_free(&def);
+    }
+}
+END_TEST
+
+// C18: cut to end on times that somebody asks for, before and after long ones, they are sound.
+START_TEST(steps_cut_short_do_not_count) {
+    brunt_world_def def = def_bounce(0.1, XYZ(0, 0, 0));
+    brunt_world *world = world_take(&def);
+    brunt_error error = {0};
+    const double whole = brunt_world_dt(world);
+    for (int s = 0; s < 50; s++) {
+        ck_assert_int_eq(brunt_world_step(world, brunt_world_time(world) + 1e-8 * whole, &error), BRUNT_OK);
+        world_steps(world, 1);
+    }
+    ck_assert_int_eq(brunt_warning_count(world), 0);
+    brunt_world_destroy(world);
+}
+END_TEST
+
 // Points that soften stay, and bear pressure alone: above what that is stable with, the scene is told.
 START_TEST(steps_too_long_for_lone_points_are_told) {
     for (int i = 0; i < 4; i++) {
@@ -112,6 +173,8 @@ END_TEST
 int main(void) {
     Suite *suite = suite_create("point_steps");
     ADD(lone_particles_are_stable_at_the_default_step);
+    ADD(steps_that_shorten_without_end_are_reported);
+    ADD(steps_cut_short_do_not_count);
     ADD(steps_too_long_for_lone_points_are_told);
     return suite_main(suite);
 }

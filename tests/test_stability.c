@@ -499,7 +499,8 @@ START_TEST(compression_to_a_twentieth) {
                   i < 2 ? "rubber" : "solid with Mie-Gruneisen");
     }
     // This equation of state ends at J = 1 - 1/s = 1/3. It hardens without bound before, and the step follows: the run
-    // creeps towards the end of its time, with sound values, and does not get there.
+    // creeps towards the end of its time, with sound values, and does not get there (test_point_steps: it is told, and
+    // ends at a millionth of the longest step).
     ck_assert(runs[3].sound);
     ck_assert_double_gt(runs[3].low, 1 / 3.0);
     ck_assert_double_lt(runs[3].low, 0.36);

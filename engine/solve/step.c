@@ -432,12 +432,55 @@ static int erode(brunt_world *world, double dt, brunt_error *error) {
     return status;
 }
 
+// The body of material points that has the shortest stable step, and of the block where its waves or its points are
+// fastest the densest or the fastest point. NULL: there is none.
+static brunt_body *shortest_points(brunt_world *world, int64_t *slot, double *wave) {
+    brunt_body *shortest = NULL;
+    int32_t block = 0;
+    double most = 0, speed = 0;
+    for (int i = 0; i < world->body_count; i++) {
+        const brunt_block_report *report = world->bodies[i].report;
+        int32_t w = 0, v = 0;
+        for (int32_t b = 1; b < world->bodies[i].grid.block_count; b++) {
+            if (report[b].wave_speed > report[w].wave_speed) w = b;
+            if (report[b].speed > report[v].speed) v = b;
+        }
+        if (!world->bodies[i].grid.block_count || !((double)report[w].wave_speed + (double)report[v].speed > most))
+            continue;
+        *wave = (double)report[w].wave_speed, speed = (double)report[v].speed, most = *wave + speed;
+        shortest = &world->bodies[i], block = *wave > speed ? w : v;
+    }
+    if (!shortest) return NULL;
+    brunt_particles *p = &shortest->particles;
+    real *const *v = brunt_field(p, BRUNT_FIELD_velocity);
+    const brunt_block *at = &shortest->grid.blocks[block];
+    double greatest = -1;
+    *slot = at->first;
+    for (int64_t s = at->first; s < at->first + at->count; s++) {
+        double is = 1 / (double)brunt_plane_volume(p, s);
+        if (*wave <= speed) is = 0;
+        for (int a = 0; a < p->dim && *wave <= speed; a++) is += (double)v[a][s] * (double)v[a][s];
+        if (p->id[s] >= 0 && isfinite(is) && is > greatest) greatest = is, *slot = s;
+    }
+    return shortest;
+}
+
+static int fail_short_points(brunt_world *world, brunt_error *error, const char *why) {
+    char reason[240];
+    int64_t slot;
+    double wave;
+    brunt_body *body = shortest_points(world, &slot, &wave);
+    if (!body) return fail(world, NULL, error, why);
+    snprintf(reason, sizeof reason, "%s: waves run at %.4g m/s in cells of %.4g m", why, wave, world->cell);
+    return fail_particle(world, body, slot, error, reason);
+}
+
 // For what has the stable step that is too short: an element, with the loads on its body, or a body of material points.
 static int fail_short(brunt_world *world, double stable, brunt_error *error, const char *why) {
     int32_t slot;
     const bool by_element = !world->body_count || brunt_fem_stable_step(world) <= stable * (1 + 1e-9);
     brunt_fem_body *fem = by_element ? brunt_fem_shortest(world, &slot) : NULL;
-    if (!fem) return fail(world, NULL, error, why);
+    if (!fem) return fail_short_points(world, error, why);
     char reason[240];
     const bool by_load = brunt_load_frequency(world, (int)(fem - world->fems)) * stable * stable > 2; // half of 4
     snprintf(reason, sizeof reason, "%s%s", why,
@@ -504,6 +547,7 @@ static void advance(brunt_world *world, const step *s) {
     now->steps += 1;
     now->dt = s->dt;
     now->kick = s->kick;
+    if (2 * s->dt >= now->next_dt) now->longest = fmax(now->longest, s->dt); // else it was cut to end on a time
     now->dt_min = fmin(now->dt_min, s->dt);
     now->dt_max = fmax(now->dt_max, s->dt);
     brunt_pass_end(world, 0);
@@ -522,6 +566,24 @@ static int check_energy(brunt_world *world, brunt_error *error) {
     return fail(world, NULL, error, reason);
 }
 
+// Steps that shorten without end never get there: told at a thousandth of the longest so far that was not cut short,
+// and the end at a millionth, unless the scene says where. It is looked at while it is known what was fast in the step.
+static int watch_creep(brunt_world *world, brunt_error *error) {
+    const struct brunt_clock *now = &world->now;
+    const double share = now->next_dt / now->longest;
+    if (world->fixed_step > 0 || now->time >= world->end || !(share < 1e-3)) return BRUNT_OK;
+    const bool ends = share < 1e-6 && !(world->least_step > 0);
+    if (world->creep_told && !ends) return BRUNT_OK;
+    char why[160];
+    snprintf(why, sizeof why, "the step has become %.4g s, %s of the longest so far%s", now->next_dt,
+             ends ? "less than a millionth" : "less than a thousandth", ends ? " (time.least_step allows less)" : "");
+    brunt_error told = {.id = -1};
+    fail_short(world, now->next_dt / world->cfl, ends ? error : &told, why);
+    if (!ends) brunt_warn(world, "%s", told.message);
+    world->creep_told = true;
+    return ends ? BRUNT_FAILED : BRUNT_OK;
+}
+
 // The stable step that follows, and whether all is as it should be.
 static int look_over(brunt_world *world, brunt_error *error) {
     struct brunt_clock *now = &world->now;
@@ -532,6 +594,7 @@ static int look_over(brunt_world *world, brunt_error *error) {
     if (world->has_fluid && (int64_t)now->steps % SPREAD_CHECK == 0) watch_spread(world);
     int status = (int64_t)now->steps % ENERGY_CHECK == 0 && isfinite(world->energy_limit) ? check_energy(world, error)
                                                                                           : BRUNT_OK;
+    if (!status) status = watch_creep(world, error);
     brunt_pass_end(world, 0);
     return status;
 }

@@ -128,6 +128,7 @@ struct brunt_world {
     bool has_erosion; // elements or material points may leave their bodies
     struct brunt_erosion_work *erosion_work; // of meshes that erode; NULL without erosion
     double least_step;
+    bool creep_told; // that steps have become short
     bool has_damping, has_gas, has_fluid;
     bool has_grid_surfaces;        // multi-velocity contact of meshes with material points
     bool has_augury, has_surfaces; // surfaces of meshes meet something: each other, particles, planes
@@ -141,6 +142,7 @@ struct brunt_world {
     // Everything a run needs to go on besides the particles, and nothing else: saved as one block of doubles.
     struct brunt_clock {
         double time, steps, dt, kick, next_dt, dt_min, dt_max;                 // kick: what the last forces acted over
+        double longest; // [s] of the steps that were not cut short
         double kinetic;                                                        // of the particles [J]
         double fem_kinetic, fem_stress_work, hourglass_stored, hourglass_lost; // [J] of the meshes
         double stress_work;            // [J] dt times the stress power at the end of the last step
