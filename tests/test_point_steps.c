@@ -71,6 +71,26 @@ START_TEST(lone_particles_are_stable_at_the_default_step) {
 }
 END_TEST
 
+// What hardly shears is the stiffest for its wave speed: at the default step, which bodies that hold together bear,
+// some kernels and transfers gain energy.
+START_TEST(lone_particles_that_hardly_shear) {
+    static const int known[] = {2, 5, 2};
+    for (int space = 0; space < 3; space++) {
+        int unstable = 0;
+        for (int i = 0; i < 6; i++) {
+            lone c = {space == 1 ? 3 : 2, space == 2, kernels[1 + i % 2], transfers[i / 2], 0.49};
+            unstable += !(breathing_growth(&c, 0) < 100);
+        }
+        hard_case(
+            "C11", unstable, 0, known[space],
+            "points alone, Poisson's ratio 0.49, default step, %s: of 6 kernels and transfers, how many gain energy",
+            space == 2   ? "rings"
+            : space == 1 ? "3D"
+                         : "2D");
+    }
+}
+END_TEST
+
 // A block between mirror planes, pressed by one of them, of a solid whose equation of state ends at J = 1/3: it hardens
 // without bound before, so that the end of the time is never reached.
 static brunt_world_def def_press(brunt_method method, double speed) {
@@ -173,6 +193,7 @@ END_TEST
 int main(void) {
     Suite *suite = suite_create("point_steps");
     ADD(lone_particles_are_stable_at_the_default_step);
+    ADD(lone_particles_that_hardly_shear);
     ADD(steps_that_shorten_without_end_are_reported);
     ADD(steps_cut_short_do_not_count);
     ADD(steps_too_long_for_lone_points_are_told);
