@@ -146,6 +146,7 @@ typedef struct point_set {
     int dimension;
     double *position, *values;
     double *gradient, *volume; // of particles, for their size; nodes have none
+    double *integrity;         // of particles that may fail and stay; else NULL
     int components;
 } point_set;
 
@@ -153,6 +154,7 @@ static void free_points(point_set *set) {
     brunt_free(set->position);
     brunt_free(set->gradient);
     brunt_free(set->volume);
+    brunt_free(set->integrity);
     brunt_free(set->values);
 }
 
@@ -172,6 +174,8 @@ static int read_points(const brunt_measure *m, brunt_world *world, int32_t body,
     }
     brunt_field_info unused;
     if (sized) status = read_field(world, body, "deformation_gradient", m, &set->gradient, &unused, error);
+    if (!status && sized && brunt_body_find_field(world, body, "integrity") >= 0)
+        status = read_field(world, body, "integrity", m, &set->integrity, &unused, error);
     if (!status && m->kind == BRUNT_MEASURE_PROFILE && info.at == BRUNT_AT_NODES)
         status = brunt_fail(error, BRUNT_BAD_INPUT,
                             "measures.%s: '%s' of body '%s' is at nodes, a profile wants particles or elements",
@@ -189,9 +193,13 @@ static double determinant(const double F[9]) {
 }
 
 // Half the size of particle p along a unit direction n: a lattice cell of edge s deforms with F, and |F^T n| is the
-// stretch of what now lies along n. s from the reference volume (volume / det F). A node lies on the surface itself.
+// stretch of what now lies along n. s from the reference volume (volume / det F). What has failed has a volume and no
+// shape: it resists no shear, so that F is as the motion about it has happened to draw it out. A node lies on the
+// surface itself.
 static double half_size(const point_set *set, int64_t p, const double n[3]) {
     if (!set->gradient) return 0;
+    if (set->integrity && !(set->integrity[p] > 0))
+        return 0.5 * (set->dimension == 3 ? cbrt(set->volume[p]) : sqrt(set->volume[p]));
     const double *F = set->gradient + 9 * p;
     double reference = set->volume[p] / determinant(F);
     double spacing = set->dimension == 3 ? cbrt(reference) : sqrt(reference), square = 0;

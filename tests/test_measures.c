@@ -341,6 +341,49 @@ START_TEST(extent_of_a_turned_block) {
 }
 END_TEST
 
+// Gives one component of a field of the left block a value at all its particles.
+static void set_left(brunt_world *at, const char *field, int components, int component, double value) {
+    char name[96];
+    brunt_error error = {0};
+    snprintf(name, sizeof name, "bodies/left/%s", field);
+    for (int32_t b = 0; b < brunt_state_count(at); b++) {
+        brunt_state_block block = brunt_state_info(at, b);
+        if (strcmp(block.name, name)) continue;
+        real *values = malloc((size_t)block.count * sizeof *values);
+        brunt_state_get(at, b, values);
+        const int64_t n = block.count / components;
+        for (int64_t i = 0; i < n; i++) values[component * n + i] = (real)value;
+        ck_assert_msg(brunt_state_set(at, b, values, block.count, &error) == BRUNT_OK, "%s", error.message);
+        free(values);
+        return;
+    }
+    ck_abort_msg("there is no %s", name);
+}
+
+// Sheared by 5, particles every 0.05 reach sqrt(26) half a spacing along x; what has failed has no shape, and reaches
+// as far as its volume.
+START_TEST(extent_of_what_has_failed) {
+    const char *sets[] = {
+        "materials.rubber={model: von-mises, density: 1000, E: 1e6, nu: 0.3, yield: 1e4, eos: {model: "
+        "mie-gruneisen, c0: 30, s: 1.5, gamma0: 1.5}, failure: {model: johnson-cook-damage, d1: 0.1, "
+        "action: soften}}"};
+    brunt_scene soft;
+    small_scene(&soft, sets, 1);
+    brunt_world *other = small_world(&soft);
+    brunt_measure m = blank(BRUNT_MEASURE_EXTENT);
+    double value;
+    m.axis[0] = 1;
+    set_left(other, "deformation_gradient", 4, 1, 5);
+    ck_assert_int_eq(brunt_measure_initial(&m, other, &value, NULL), BRUNT_OK);
+    ck_assert_double_eq_tol(value, 0.45 + 0.05 * sqrt(26), 10 * rounding);
+    set_left(other, "integrity", 1, 0, 0);
+    ck_assert_int_eq(brunt_measure_initial(&m, other, &value, NULL), BRUNT_OK);
+    ck_assert_double_eq_tol(value, 0.5, 10 * rounding);
+    brunt_world_destroy(other);
+    brunt_scene_free(&soft);
+}
+END_TEST
+
 START_TEST(radius_about_an_axis) {
     // Left block: [0, 0.5] x [0.1, 0.6] with particles every 0.05; along y the farthest surface from the line y = 0.1
     // is 0.5 away.
@@ -632,6 +675,7 @@ int main(void) {
     tcase_add_test(values, values_are_judged);
     tcase_add_test(values, extent_reaches_to_the_surfaces);
     tcase_add_test(values, extent_of_a_turned_block);
+    tcase_add_test(values, extent_of_what_has_failed);
     tcase_add_test(values, radius_about_an_axis);
     tcase_add_test(values, fields_are_reduced);
     tcase_add_test(values, elements_are_measured);
