@@ -88,7 +88,9 @@ if [ "$label" = long ]; then
     run build -L long
     finish
 fi
-run build -LE long
+rm -rf build/hard_cases && mkdir build/hard_cases
+BRUNT_HARD_CASES=$PWD/build/hard_cases run build -LE long
+check "page of hard cases" python3 tests/hard_cases.py check build/hard_cases
 check "installed library" sh tests/install.sh build
 check "whole benchmark" sh bench/run.sh --quick
 check "study of contact" build/bench/contact_study cubes h=1
