@@ -49,7 +49,7 @@ def build(targets):
 
 
 def suites_pass(suites):
-    done = subprocess.run(["ctest", "--test-dir", "build", "--stop-on-failure", "-R", "^(%s)$" % "|".join(suites)],
+    done = subprocess.run(["ctest", "--test-dir", "build", "--stop-on-failure", "-j", str(os.cpu_count()), "-R", "^(%s)$" % "|".join(suites)],
                           cwd=COPY, capture_output=True)
     return done.returncode == 0
 
