@@ -226,7 +226,7 @@ int brunt_facing_find(const brunt_meeting *m, brunt_body *mpm, int mpm_count, br
     f->travelled += 2 * s->moved;
     if (!(f->travelled < 1e300)) { // somebody new: nothing is known of distances
         f->travelled = 0;
-        for (int32_t n = 0; f->quiet && n < s->node_count; n++) f->quiet[n].distance = f->quiet[n].second = 0;
+        for (int32_t n = 0; f->quiet && n < s->node_count; n++) f->quiet[n] = (struct quiet){0};
     }
     if (!f->near_count) return 0;
     if (brunt_facing_cells(m, f)) return -1;

@@ -422,6 +422,35 @@ START_TEST(fast_bodies_do_not_pass) {
 }
 END_TEST
 
+// C25. A block that falls on a held slab, leaves it further than contact looks, and comes back, again and again: what
+// was known of the distances of its nodes before they parted is forgotten. In either order of the bodies.
+START_TEST(bodies_that_part_meet_again) {
+    brunt_world_def def = begin(2, AFFINE, 0);
+    def_material(&def, "neo-hookean", 1000, 1e6, 0.3);
+    mesh_box(&def, _i ? "a" : "b", XYZ(-0.1, 0.02, 0), XYZ(0.1, 0.22, 0), BRUNT_QUAD4, 0.02);
+    mesh_box(&def, _i ? "b" : "a", XYZ(-0.5, -0.1, 0), XYZ(0.5, 0, 0), BRUNT_QUAD4, 0.025);
+    hold(&def, _i ? "b" : "a", "ymin");
+    def.gravity[1] = -9.81;
+    brunt_world *world = world_take(&def);
+    const int block = _i ? 0 : 1;
+    double lowest = 1, highest = 0, speed = -1;
+    int rebounds = 0;
+    while (brunt_world_time(world) < 1) {
+        world_steps(world, 1);
+        const brunt_body_sums s = world_sums(world, block);
+        lowest = fmin(lowest, s.low[1]);
+        if (rebounds) highest = fmax(highest, s.low[1]);
+        rebounds += speed < -0.1 && s.velocity[1] > 0;
+        if (fabs(s.velocity[1]) > 0.1 || s.velocity[1] > 0) speed = s.velocity[1];
+    }
+    printf("block %d: %d rebounds, as high as %.4f m, as low as %.4f m\n", block, rebounds, highest, lowest);
+    ck_assert_int_ge(rebounds, 3);
+    ck_assert_double_gt(highest, 0.01); // past half an edge
+    hard_case("C25", -lowest / 0.025, 0.1, 0.1, "block that comes back, body %d: depth [edges]", block);
+    brunt_world_destroy(world);
+}
+END_TEST
+
 // A long slanted plate whose box holds two blocks that meet, without being near them, must not keep contact from seeing them.
 START_TEST(a_box_around_changes_nothing) {
     double depth[2] = {0};
@@ -637,6 +666,7 @@ int main(void) {
     ADD_LOOP(touching_at_the_start_stays_quiet, 2 * FORMS);
     ADD_LOOP(overlap_makes_no_energy, 4 * FORMS);
     ADD_LOOP(fast_bodies_do_not_pass, 3 * PAPER);
+    ADD_LOOP(bodies_that_part_meet_again, 2);
     ADD(a_box_around_changes_nothing);
     ADD_LOOP(pressure_through_unequal_meshes, 2 * FORMS);
     ADD_LOOP(weight_of_a_block, FORMS);
