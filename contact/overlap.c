@@ -273,9 +273,24 @@ static bool facet_is_deep(job *j, int32_t f) {
     return false;
 }
 
-// Whether the surface of body `other` is in the solid body k.
+// Bodies in one place, or with sides in common, have no node in each other: the middles of their elements have.
+static bool element_is_deep(job *j, const brunt_fem_body *fem) {
+    for (int32_t slot = 0; slot < fem->slots && !fem->element->sheet; slot++) {
+        if (fem->element_id[slot] < 0) continue;
+        double x[3] = {0}, at[3];
+        for (int c = 0; c < fem->element->nodes; c++) {
+            corner(fem, slot, c, at);
+            for (int a = 0; a < 3; a++) x[a] += at[a] / fem->element->nodes;
+        }
+        if (is_deep(j, x, 0)) return true;
+    }
+    return false;
+}
+
+// Whether the surface of body `other`, or an element of it, is in the solid body k.
 static bool mesh_is_deep(job *j, int other) {
     const brunt_skin *s = j->m->skin;
+    if (element_is_deep(j, s->fem[other])) return true;
     for (int32_t n = s->node_range[other]; n < s->node_end[other]; n++)
         if (is_deep(j, s->x[n], 0)) return true;
     for (int32_t f = s->face_range[other]; f < s->face_end[other]; f++) {

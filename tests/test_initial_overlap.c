@@ -101,6 +101,17 @@ START_TEST(one_in_the_other) {
 }
 END_TEST
 
+// One in the place of the other, of the same elements and of others: no node of either is in the other one.
+START_TEST(one_in_the_place_of_the_other) {
+    for (int i = 0; i < 2 * (TET + 1); i++) {
+        const kind k = (kind)(i / 2);
+        const bool half = i % 2;
+        brunt_world_def def = stack(k, k, half ? 0.125 : 0.25, -1, 0, false);
+        refused(&def, kind_name[k]);
+    }
+}
+END_TEST
+
 // None of the nodes on the surface of the outer one is near the inner one.
 START_TEST(one_wholly_in_the_other) {
     static const kind inner[] = {QUAD, HEX, TET, POINTS, SHEET};
@@ -221,6 +232,7 @@ END_TEST
 int main(void) {
     Suite *suite = suite_create("initial_overlap");
     ADD(one_in_the_other);
+    ADD(one_in_the_place_of_the_other);
     ADD(one_wholly_in_the_other);
     ADD(bars_that_cross);
     ADD(sheet_through_a_body);
