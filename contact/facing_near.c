@@ -237,8 +237,7 @@ int brunt_facing_near(const brunt_meeting *m, brunt_body *mpm, int mpm_count, co
     const double frame = sqrt(dot(s->frame, s->frame));
     for (int k = 0; k < mpm_count; k++) {
         spacing = fmax(spacing, mpm[k].spacing);
-        for (int32_t b = 0; b < mpm[k].grid.block_count; b++)
-            fastest = fmax(fastest, (double)mpm[k].report[b].speed + frame);
+        fastest = fmax(fastest, (double)mpm[k].speed + frame);
     }
     double walls_speed = 0;
     for (int w = 0; w < wall_count; w++)

@@ -598,10 +598,7 @@ static void prepare_all(void *context, int64_t begin, int64_t end, int worker) {
 // Greatest speed of the body and the mesh looked at against each other, at most [m/s].
 static double fastest(const job *j) {
     const brunt_skin *s = j->m->skin;
-    const brunt_body *body = &j->mpm[j->range_mpm];
-    double speed = 0;
-    for (int32_t b = 0; b < body->grid.block_count; b++) speed = fmax(speed, (double)body->report[b].speed);
-    return speed + s->speed[j->range_fem] + sqrt(dot(s->frame, s->frame));
+    return (double)j->mpm[j->range_mpm].speed + s->speed[j->range_fem] + sqrt(dot(s->frame, s->frame));
 }
 
 // Normals and gaps of all contacts of body b, mesh after mesh.

@@ -261,12 +261,6 @@ static quad surface_velocity(const brunt_wall_workspace *w, const touch *t, quad
     return v;
 }
 
-static double fastest(const brunt_body *body) {
-    double speed = 0;
-    for (int32_t b = 0; b < body->grid.block_count; b++) speed = fmax(speed, (double)body->report[b].speed);
-    return speed;
-}
-
 // Particles that the plane would catch in this step.
 static int find_touches(brunt_wall_workspace *w, brunt_body *body, const brunt_wall *walls, int index,
                         const brunt_mirror *mirrors, int mirror_count, double time, double dt) {
@@ -283,7 +277,7 @@ static int find_touches(brunt_wall_workspace *w, brunt_body *body, const brunt_w
         wall_speed += plane->normal[a] * plane->velocity[a];
         half += fabs(plane->normal[a]) * (0.5 * grid->side + 2) * h;
     }
-    const double near = fmax(NEAR * h, (fastest(body) + fabs(wall_speed)) * dt);
+    const double near = fmax(NEAR * h, ((double)body->speed + fabs(wall_speed)) * dt);
     for (int32_t b = 0; b < grid->block_count; b++) {
         const brunt_block *block = &grid->blocks[b];
         double middle = -offset;

@@ -184,6 +184,75 @@ START_TEST(worlds_do_not_meet) {
 }
 END_TEST
 
+// ------------------------------------------------------------------------------------------ speed
+
+// A soft block that comes down much faster than its waves run, by nearly a cell a step, on a plane or a mesh; `gap`
+// [cells] above it. Without a speed it is left to gravity.
+typedef enum floor_kind { PLANE, MESH_AT_FACETS, MESH_AT_NODES, FLOORS } floor_kind;
+
+static brunt_world_def dropped(floor_kind floor, double gap, double speed) {
+    brunt_world_def def = def_begin(2, 1);
+    def_material(&def, "neo-hookean", 1000, 1000, 0.3);
+    def_velocity(def_box(&def, "block", XYZ(0.25, gap, 0), XYZ(2.25, gap + 2, 0)), 0, -speed, 0);
+    def.cfl = 0.9;
+    def.gravity[1] = speed > 0 ? 0 : -100;
+    if (floor == PLANE) {
+        def_plane(&def, XYZ(0, 0, 0), XYZ(0, 1, 0), BRUNT_SEPARATE, 0.2);
+        return def;
+    }
+    brunt_body_def *mesh = def_box(&def, "mesh", XYZ(-2, -1, 0), XYZ(4, 0, 0));
+    mesh->method = BRUNT_FEM, mesh->element = BRUNT_QUAD4, mesh->size = 1;
+    def.groups = brunt_alloc(sizeof *def.groups);
+    def.groups[0] = brunt_group_def_default(), def.group_count = 1; // which holds all of its nodes
+    snprintf(def.groups[0].body, sizeof def.groups[0].body, "mesh");
+    snprintf(def.groups[0].group, sizeof def.groups[0].group, "surface");
+    def.contact.method = floor == MESH_AT_NODES ? BRUNT_CONTACT_MULTI_VELOCITY : BRUNT_CONTACT_AUGURY;
+    return def;
+}
+
+static double pushed(const brunt_world *world, floor_kind floor) {
+    return fabs(floor == PLANE ? world_wall(world, 0).impulse[1] : world_pair(world, 0).impulse[1]);
+}
+
+// Contact looks as far as the fastest particle goes. A world that is restored starts from rest, and must look no less
+// far: restored before any of the steps in which the block comes down.
+START_TEST(restored_knows_how_fast_bodies_are) {
+    for (double gap = 40; gap < 41; gap += 0.25) {
+        brunt_world_def def = dropped((floor_kind)_i, gap, 0);
+        brunt_world *whole = world_from(&def);
+        while (pushed(whole, (floor_kind)_i) == 0) {
+            ck_assert_int_lt(brunt_world_steps(whole), 1000);
+            brunt_world *restored = world_from(&def);
+            copy_state(whole, restored);
+            world_steps(whole, 1), world_steps(restored, 1);
+            ck_assert_msg(brunt_world_hash(whole) == brunt_world_hash(restored),
+                          "restored after step %lld, another one than that from %g cells above",
+                          (long long)brunt_world_steps(whole) - 1, gap);
+            brunt_world_destroy(restored);
+        }
+        brunt_world_destroy(whole);
+        brunt_world_def_free(&def);
+    }
+}
+END_TEST
+
+// Nor less far in a step in which the body comes to lie in more blocks than before.
+START_TEST(nothing_passes_a_plane_in_a_step_that_finds_new_blocks) {
+    for (int k = 0; k < 80; k++) {
+        const double at = 5 + 0.05 * k;
+        brunt_world_def def = dropped(PLANE, 9.2, 50); // in one block
+        def.planes[0].point[1] = at;
+        brunt_world *world = world_take(&def);
+        for (int n = 0; n < 100 && pushed(world, PLANE) == 0; n++) world_steps(world, 1);
+        double *x = world_field(world, 0, "position"), lowest = INFINITY;
+        for (int64_t i = 0; i < brunt_body_particles(world, 0); i++) lowest = fmin(lowest, x[3 * i + 1]);
+        ck_assert_msg(lowest > at, "a plane at %g m: a centre is %g m behind it", at, at - lowest);
+        free(x);
+        brunt_world_destroy(world);
+    }
+}
+END_TEST
+
 // ------------------------------------------------------------------------------------------ memory
 
 // Two blocks pressed together and on a wall by gravity: what happens in their blocks changes, the blocks do not.
@@ -273,6 +342,8 @@ int main(void) {
     tcase_add_test(bits, hash_sees_every_field);
     tcase_add_loop_test(bits, restored_is_as_good_as_continuous, 0, 2);
     tcase_add_test(bits, worlds_do_not_meet);
+    tcase_add_loop_test(bits, restored_knows_how_fast_bodies_are, 0, FLOORS);
+    tcase_add_test(bits, nothing_passes_a_plane_in_a_step_that_finds_new_blocks);
     tcase_add_loop_test(memory, no_allocation_in_a_step, 0, 2);
     tcase_add_loop_test(memory, few_allocations_on_the_move, 0, 2);
     tcase_add_loop_test(memory, nothing_is_left, 0, 2);

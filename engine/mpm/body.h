@@ -22,6 +22,7 @@ typedef struct brunt_block_report {
 
 typedef struct brunt_body {
     bool uneven; // of this step: forces act over another time than bodies move
+    real speed;  // [m/s] of its fastest particle after the last step; reports are of the blocks that there were then
     char name[BRUNT_NAME_LENGTH];
     int index;
     brunt_material material;

@@ -16,9 +16,9 @@
 
 static const char REAL_TYPE = sizeof(real) == 8 ? 'd' : 'f';
 
-// World blocks: clock, walls (with the gas that groups of them enclose), pairs; where surfaces meet what their search
-// remembers; and where contact keeps them the affine velocities of boundary nodes. Last the accounts of erosion, if
-// there is any.
+// World blocks: clock (with the speeds of bodies of particles), walls (with the gas that groups of them enclose),
+// pairs; where surfaces meet what their search remembers; and where contact keeps them the affine velocities of
+// boundary nodes. Last the accounts of erosion, if there is any.
 static int plain_blocks(const brunt_world *world) { return world->skin.affine ? 5 : world->has_surfaces ? 4 : 3; }
 static int world_blocks(const brunt_world *world) { return plain_blocks(world) + (world->has_erosion ? 1 : 0); }
 
@@ -91,7 +91,7 @@ brunt_state_block brunt_state_info(brunt_world *world, int32_t index) {
     }
     static const char *const names[] = {"world/clock",          "world/walls",          "world/pairs",
                                         "world/contact_search", "world/contact_affine", "world/erosion"};
-    const int64_t counts[] = {CLOCK_DOUBLES,
+    const int64_t counts[] = {CLOCK_DOUBLES + world->body_count,
                               2 * (int64_t)world->wall_count * ACTION_DOUBLES + brunt_gas_state_count(world),
                               2 * (int64_t)world->pair_count * ACTION_DOUBLES,
                               brunt_facing_state_count(&world->skin),
@@ -133,6 +133,7 @@ void brunt_state_get(brunt_world *world, int32_t index, void *out) {
     if (at.field == 3) brunt_facing_state_get(world->facing, &world->skin, to);
     if (at.field == 4) brunt_skin_affine_get(&world->skin, to);
     if (at.field == 0) memcpy(to, &world->now, sizeof world->now);
+    for (int i = 0; at.field == 0 && i < world->body_count; i++) to[CLOCK_DOUBLES + i] = (double)world->bodies[i].speed;
     for (int w = 0; at.field == 1 && w < world->wall_count; w++, to += 2 * ACTION_DOUBLES) {
         memcpy(to, &world->walls[w].action, sizeof(brunt_action));
         memcpy(to + ACTION_DOUBLES, &world->walls[w].last, sizeof(brunt_action));
@@ -230,6 +231,7 @@ int brunt_state_set(brunt_world *world, int32_t index, const void *in, int64_t c
         return brunt_fail(error, BRUNT_FAILED, "out of memory");
     if (at.field == 4) brunt_skin_affine_set(&world->skin, from);
     if (at.field == 0) memcpy(&world->now, from, sizeof world->now);
+    for (int i = 0; at.field == 0 && i < world->body_count; i++) world->bodies[i].speed = (real)from[CLOCK_DOUBLES + i];
     for (int w = 0; at.field == 1 && w < world->wall_count; w++, from += 2 * ACTION_DOUBLES) {
         memcpy(&world->walls[w].action, from, sizeof(brunt_action));
         memcpy(&world->walls[w].last, from + ACTION_DOUBLES, sizeof(brunt_action));
@@ -255,6 +257,8 @@ int brunt_state_done(brunt_world *world, brunt_error *error) {
         int status = brunt_sort(&body->grid, &body->particles, world->threads, NULL, error);
         if (status) return BRUNT_BAD_INPUT;
     }
+    int status = brunt_reports_make(world, error);
+    if (status) return status;
     for (int a = 0; a < 3; a++) world->skin.frame_step[a] = world->now.contact_frame[a] * world->now.dt;
     int32_t bad;
     const char *reason;

@@ -333,9 +333,11 @@ static int gather_bodies(brunt_world *world, double kick, double dt, double *kin
         brunt_body *body = &world->bodies[i];
         body_job job = {world, body, dt};
         body->uneven = kick != dt;
+        body->speed = 0;
         brunt_parallel(world->threads, body->grid.block_count, BLOCK_GRAIN, gather_blocks, &job,
                        &world->pass[BRUNT_PASS_gather].threads);
         for (int32_t b = 0; b < body->grid.block_count; b++) {
+            body->speed = body->report[b].speed > body->speed ? body->report[b].speed : body->speed;
             *kinetic += body->report[b].kinetic;
             power += body->report[b].stress_power;
             remap += body->report[b].remap_power;

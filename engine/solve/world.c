@@ -532,9 +532,12 @@ static int map_grid_pairs(brunt_world *world, brunt_error *error) {
 
 // ------------------------------------------------------------------------------------------ start
 
-static void first_reports(brunt_world *world) {
+int brunt_reports_make(brunt_world *world, brunt_error *error) {
     for (int i = 0; i < world->body_count; i++) {
         brunt_body *body = &world->bodies[i];
+        if (brunt_reserve((void **)&body->report, &body->report_capacity,
+                          (size_t)body->grid.block_count * sizeof *body->report, 0))
+            return brunt_fail(error, BRUNT_FAILED, "out of memory");
         real *const *v = brunt_field(&body->particles, BRUNT_FIELD_velocity);
         for (int32_t b = 0; b < body->grid.block_count; b++) {
             const brunt_block *block = &body->grid.blocks[b];
@@ -548,6 +551,7 @@ static void first_reports(brunt_world *world) {
                 (brunt_block_report){.speed = (real)sqrt(fastest), .wave_speed = body->material.wave_speed, .bad = -1};
         }
     }
+    return BRUNT_OK;
 }
 
 // A plane of symmetry stands for what is behind it: what a body has there would be there twice.
@@ -587,11 +591,13 @@ static int start(brunt_world *world, brunt_error *error) {
         brunt_body *body = &world->bodies[i];
         int status = brunt_sort(&body->grid, &body->particles, world->threads, NULL, error);
         if (status) return status;
-        if (brunt_reserve((void **)&body->report, &body->report_capacity,
-                          (size_t)body->grid.block_count * sizeof *body->report, 0))
-            return brunt_fail(error, BRUNT_FAILED, "out of memory");
     }
-    first_reports(world);
+    int status = brunt_reports_make(world, error);
+    if (status) return status;
+    for (int i = 0; i < world->body_count; i++)
+        for (int32_t b = 0; b < world->bodies[i].grid.block_count; b++)
+            world->bodies[i].speed =
+                (real)fmax((double)world->bodies[i].speed, (double)world->bodies[i].report[b].speed);
     int32_t bad;
     const char *reason;
     if (brunt_fem_elements_all(world, 0, &bad, &reason))

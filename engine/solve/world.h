@@ -220,11 +220,18 @@ double brunt_fem_stable_step(const brunt_world *world);
 // The body and slot of the element that has it; NULL without elements, or without memory to look.
 brunt_fem_body *brunt_fem_shortest(brunt_world *world, int32_t *slot);
 
+// --- definition.c
+// Whether a world can be made of it. BRUNT_OK, or BRUNT_BAD_INPUT and what is wrong.
+int brunt_definition_check(const brunt_world_def *def, brunt_error *error);
+
+// --- world.c
+// Reports of the blocks that there are, when none has been through a step: with the speeds of their particles. 0, or
+// BRUNT_FAILED.
+int brunt_reports_make(brunt_world *world, brunt_error *error);
+
 // --- surfaces.c: the meshes' surfaces and what they meet
 // 0, or BRUNT_FAILED with the reason in `error`.
 int brunt_surfaces_meet(brunt_world *world, const double gravity[3], double kick, double dt, brunt_error *error);
-// definition.c: whether a world can be made of it. BRUNT_OK, or BRUNT_BAD_INPUT and what is wrong.
-int brunt_definition_check(const brunt_world_def *def, brunt_error *error);
 int brunt_surfaces_make(brunt_world *world, const brunt_world_def *def, brunt_error *error);
 // After the start: refuses bodies that lie in each other, or behind a plane that pushes.
 int brunt_surfaces_overlap(brunt_world *world, brunt_error *error);
