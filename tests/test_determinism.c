@@ -1,6 +1,6 @@
 // Labels: conservation
 // The same bits, whatever the number of threads and however often the run was interrupted; and no memory that grows.
-#include "def_world.h"
+#include "hard_world.h"
 #include "threads.h"
 
 static brunt_material_def *copper(brunt_world_def *def) {
@@ -118,19 +118,6 @@ START_TEST(hash_sees_every_field) {
     brunt_world_destroy(world);
 }
 END_TEST
-
-static void copy_state(brunt_world *from, brunt_world *to) {
-    brunt_error error = {0};
-    ck_assert_int_eq(brunt_state_count(from), brunt_state_count(to));
-    for (int32_t b = 0; b < brunt_state_count(from); b++) {
-        brunt_state_block block = brunt_state_info(from, b);
-        void *bytes = malloc((size_t)block.count * 8 + 1);
-        brunt_state_get(from, b, bytes);
-        ck_assert_msg(brunt_state_set(to, b, bytes, block.count, &error) == BRUNT_OK, "%s", error.message);
-        free(bytes);
-    }
-    ck_assert_msg(brunt_state_done(to, &error) == BRUNT_OK, "%s", error.message);
-}
 
 // Stopped twice on the way, once into a world that had gone another way, and once with more threads.
 START_TEST(restored_is_as_good_as_continuous) {

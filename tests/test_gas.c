@@ -1,6 +1,6 @@
 // Labels: verification conservation
 // Gas in enclosed volumes and mass-proportional damping: closed forms, accounts, restart.
-#include "def_world.h"
+#include "hard_world.h"
 
 static const double GAMMA = 1.4, OUTSIDE = 1000;
 
@@ -228,18 +228,6 @@ START_TEST(volume_passes_zero) {
     brunt_world_destroy(world);
 }
 END_TEST
-
-static void copy_state(brunt_world *from, brunt_world *to) {
-    brunt_error error = {0};
-    for (int32_t b = 0; b < brunt_state_count(from); b++) {
-        brunt_state_block block = brunt_state_info(from, b);
-        void *bytes = malloc((size_t)block.count * 8 + 8);
-        brunt_state_get(from, b, bytes);
-        ck_assert_msg(!brunt_state_set(to, b, bytes, block.count, &error), "%s", error.message);
-        free(bytes);
-    }
-    ck_assert_int_eq(brunt_state_done(to, &error), BRUNT_OK);
-}
 
 START_TEST(goes_on_with_the_same_bits) {
     brunt_world_def def = box(BRUNT_HEX8, 3 * OUTSIDE, 500);
