@@ -2,7 +2,7 @@
 // Central differences for meshes, membranes and material points alike: places and stress are of the time that a world
 // is at, velocities, momenta, kinetic energy and impulses of the middle of the last step. A body that is thrown is at
 // v t + g t^2 / 2 exactly, with a velocity of v + g (t - dt / 2).
-#include "def_world.h"
+#include "hard_world.h"
 
 typedef enum kind { POINTS, TOTAL_POINTS, MESH, SHEET } kind;
 
@@ -24,6 +24,14 @@ static brunt_body_def *thrown(brunt_world_def *def, const char *name, kind k, do
     return body;
 }
 
+// Steps that change all the time.
+static double uneven_step(brunt_world *world, int number) {
+    brunt_error error = {0};
+    const double limit = brunt_world_time(world) + (number % 3 ? 1 : 0.3) * 3e-3;
+    ck_assert_msg(brunt_world_step(world, limit, &error) == BRUNT_OK, "%s", error.message);
+    return brunt_world_dt(world);
+}
+
 // How far a body is off from its parabola, in places and velocities, after steps that change all the time.
 static double off(kind k, int dimension, bool rings, int choice, double ramp) {
     brunt_world_def def = def_begin(dimension, 0.1);
@@ -39,11 +47,9 @@ static double off(kind k, int dimension, bool rings, int choice, double ramp) {
     double worst = 0, place[3], v[3], last = 0;
     memcpy(place, start.centre, sizeof place), memcpy(v, start.velocity, sizeof v);
     for (int s = 0; s < 40; s++) {
-        brunt_error error = {0};
         const double t = brunt_world_time(world), share = ramp > 0 && t < ramp ? t / ramp : 1,
-                     g[3] = {rings ? 0 : 3 * share, -10 * share, 0};
-        ck_assert_int_eq(brunt_world_step(world, t + (s % 3 ? 1 : 0.3) * 3e-3, &error), BRUNT_OK);
-        const double dt = brunt_world_dt(world), now = brunt_world_time(world);
+                     g[3] = {rings ? 0 : 3 * share, -10 * share, 0}, dt = uneven_step(world, s),
+                     now = brunt_world_time(world);
         const brunt_body_sums sums = world_sums(world, 0);
         for (int a = 0; a < dimension; a++) {
             v[a] += 0.5 * (last + dt) * g[a], place[a] += dt * v[a];
@@ -176,17 +182,125 @@ START_TEST(oscillator_is_of_second_order) {
 }
 END_TEST
 
-static void copy_state(brunt_world *from, brunt_world *to) {
-    brunt_error error = {0};
-    for (int32_t b = 0; b < brunt_state_count(from); b++) {
-        brunt_state_block block = brunt_state_info(from, b);
-        void *bytes = malloc((size_t)block.count * 8 + 8);
-        brunt_state_get(from, b, bytes);
-        ck_assert_msg(!brunt_state_set(to, b, bytes, block.count, &error), "%s", error.message);
-        free(bytes);
+// All nodes of a body are told how to go: by a velocity that grows, or the way of one. Places are those of the time of
+// a line of the history, velocities those of the middle of the step; the force that holds them is mass times
+// acceleration in each step, and its work the kinetic energy.
+START_TEST(prescribed_nodes_go_as_they_are_told) {
+    const kind k = _i % 2 ? SHEET : MESH;
+    const brunt_group_action action = _i < 2 ? BRUNT_GROUP_VELOCITY : BRUNT_GROUP_DISPLACEMENT;
+    static const double a[3] = {4, -3, 2}, end = 0.06;
+    enum { POINTS_OF_WAY = 2000 };
+    brunt_world_def def = def_begin(3, 0.2);
+    def_material(&def, "neo-hookean", 1000, 1e4, 0.3);
+    brunt_body_def *body = thrown(&def, "body", k, 0.1);
+    body->size = 0.2;
+    def.cfl = 0.3;
+    def.groups = brunt_alloc(sizeof *def.groups), def.group_count = 1;
+    brunt_group_def *group = &def.groups[0];
+    *group = brunt_group_def_default();
+    snprintf(group->body, sizeof group->body, "body"), snprintf(group->group, sizeof group->group, "surface");
+    group->action = action;
+    const bool way = action == BRUNT_GROUP_DISPLACEMENT;
+    group->table.points = brunt_alloc((POINTS_OF_WAY + 1) * sizeof *group->table.points);
+    group->table.count = way ? POINTS_OF_WAY + 1 : 2;
+    for (int c = 0; c < 3; c++) group->component[c] = true, group->value[c] = a[c];
+    for (int q = 0; q < group->table.count; q++) {
+        const double t = end * q / (group->table.count - 1);
+        group->table.points[q][0] = t, group->table.points[q][1] = way ? 0.5 * t * t : t;
     }
-    ck_assert_int_eq(brunt_state_done(to, &error), BRUNT_OK);
+    // Between its points a way is cut straight: off by an eighth of their distance squared, at most.
+    const double off = way ? end * end / POINTS_OF_WAY / POINTS_OF_WAY : 0;
+    brunt_world *world = world_take(&def);
+    const brunt_body_sums start = world_sums(world, 0);
+    double last = 0;
+    for (int s = 0; brunt_world_time(world) < end - 4e-3; s++) {
+        const double dt = uneven_step(world, s), kick = 0.5 * (last + dt), now = brunt_world_time(world);
+        const brunt_body_sums sums = world_sums(world, 0);
+        const brunt_force f = world_wall(world, 0);
+        for (int c = 0; c < 3; c++) {
+            const double v = a[c] * (now - 0.5 * dt);
+            ck_assert_double_eq_tol(sums.centre[c], start.centre[c] + 0.5 * a[c] * now * now, off + 10 * ROUNDING);
+            ck_assert_double_eq_tol(sums.velocity[c], v, 2 * off / dt + 1e3 * ROUNDING);
+            ck_assert_double_eq_tol(f.impulse[c], sums.mass * v, sums.mass * (2 * off / dt + 1e3 * ROUNDING));
+            ck_assert_double_eq_tol(f.force[c], sums.mass * a[c], sums.mass * (4 * off / dt + 1e3 * ROUNDING) / kick);
+        }
+        last = dt;
+    }
+    ck_assert_double_le(fabs(world_energy(world).error_relative), 1e4 * ROUNDING);
+    ck_assert_double_le(world_momentum(world).linear_drift, 10 * ROUNDING);
+    brunt_world_destroy(world);
 }
+END_TEST
+
+// A rigid plane that moves takes along what sticks to it, to where it is itself at the time of the line; what it pushes
+// is never behind it. A body that goes with it from the start feels nothing.
+START_TEST(planes_take_nodes_to_where_they_are) {
+    static const double V[3] = {0.4, -0.7, 0.5};
+    for (int with = 0; with < 2; with++) {
+        const brunt_condition condition = _i ? BRUNT_SEPARATE : BRUNT_STICK;
+        brunt_world_def def = def_begin(3, 0.1);
+        def_material(&def, "neo-hookean", 1000, 1e4, 0.3);
+        brunt_body_def *body = thrown(&def, "body", MESH, 0);
+        if (with) def_velocity(body, V[0], V[1], V[2]);
+        brunt_plane_def *plane = def_plane(&def, XYZ(0, 0, 0), XYZ(0, 0, 1), condition, 0);
+        memcpy(plane->velocity, V, sizeof V);
+        def.cfl = 0.3;
+        brunt_world *world = world_take(&def);
+        for (int s = 0; s < 30; s++) {
+            const double dt = uneven_step(world, s), now = brunt_world_time(world);
+            const brunt_body_sums sums = world_sums(world, 0);
+            ck_assert_double_ge(sums.low[2], V[2] * now - 10 * ROUNDING);
+            if (condition == BRUNT_STICK || with || s == 0)
+                ck_assert_double_eq_tol(sums.low[2], V[2] * now, 10 * ROUNDING);
+            const brunt_force f = world_wall(world, 0);
+            for (int a = 0; a < 3; a++)
+                ck_assert_double_eq_tol(sums.momentum[a], f.impulse[a] + (with ? sums.mass * V[a] : 0),
+                                        100 * ROUNDING * sums.mass);
+            if (with)
+                ck_assert_double_eq_tol(f.impulse[2], 0, 10 * ROUNDING);
+            else if (s == 0)
+                ck_assert_double_eq_tol(f.force[2] * 0.5 * dt, sums.momentum[2], 10 * ROUNDING);
+        }
+        brunt_world_destroy(world);
+    }
+}
+END_TEST
+
+// A region prescribes the velocity of all of a body of material points, from a time on that is between two steps.
+START_TEST(regions_move_points_from_their_start_on) {
+    for (int dimension = 2; dimension <= 3; dimension++) {
+        static const double V[3] = {0.4, -0.7, 0.5};
+        brunt_world_def def = def_begin(dimension, 0.1);
+        def_material(&def, "neo-hookean", 1000, 1e4, 0.3);
+        thrown(&def, "body", POINTS, 0.1);
+        def.regions = brunt_alloc(sizeof *def.regions), def.region_count = 1;
+        brunt_region_def *region = &def.regions[0];
+        *region = brunt_region_def_default();
+        region->shape.kind = BRUNT_BOX;
+        for (int a = 0; a < 3; a++) {
+            region->shape.min[a] = -9, region->shape.max[a] = 9;
+            region->component[a] = a < dimension, region->velocity[a] = V[a];
+        }
+        region->start = _i ? 0.01 : 0;
+        def.cfl = 0.3;
+        brunt_world *world = world_take(&def);
+        double place[3];
+        memcpy(place, world_sums(world, 0).centre, sizeof place);
+        for (int s = 0; s < 20; s++) {
+            const bool active = brunt_world_time(world) >= (_i ? 0.01 : 0);
+            const double dt = uneven_step(world, s);
+            const brunt_body_sums sums = world_sums(world, 0);
+            for (int a = 0; a < dimension; a++) {
+                place[a] += active ? dt * V[a] : 0;
+                ck_assert_double_eq_tol(sums.velocity[a], active ? V[a] : 0, 10 * ROUNDING);
+                ck_assert_double_eq_tol(sums.centre[a], place[a], 10 * ROUNDING);
+                ck_assert_double_eq_tol(world_wall(world, 0).impulse[a], sums.momentum[a], 10 * ROUNDING * sums.mass);
+            }
+        }
+        brunt_world_destroy(world);
+    }
+}
+END_TEST
 
 // A restart after the first step, whose kick is half of one, and later.
 START_TEST(restart_keeps_bits_and_forces) {
@@ -217,6 +331,9 @@ int main(void) {
     tcase_add_loop_test(all, thrown_bodies_of_each_kind_agree, 0, 2);
     tcase_add_test(all, force_is_that_of_the_kick);
     tcase_add_loop_test(all, oscillator_is_of_second_order, 0, 2);
+    tcase_add_loop_test(all, prescribed_nodes_go_as_they_are_told, 0, 4);
+    tcase_add_loop_test(all, planes_take_nodes_to_where_they_are, 0, 2);
+    tcase_add_loop_test(all, regions_move_points_from_their_start_on, 0, 2);
     tcase_add_test(all, restart_keeps_bits_and_forces);
     suite_add_tcase(suite, all);
     return suite_main(suite);
