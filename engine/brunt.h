@@ -332,7 +332,7 @@ typedef struct brunt_world_def {
     double least_step; // [s] the run stops, with the reason, when the stable step falls below it; default 0:
                        // when steps that follow it fall below a millionth of the greatest so far
     double end;                         // [s] the step that would pass it is cut to end on it
-    double energy_limit;                // [-] of the initial plus supplied energy; default 0.1; INFINITY = none
+    double energy_limit; // [-] of the energy `reference` (see brunt_energy); default 0.1; INFINITY = none
     int threads;                        // 0 = all there are
     brunt_material_def *materials; int32_t material_count;  // owned
     brunt_body_def *bodies; int32_t body_count;             // owned
@@ -409,7 +409,10 @@ typedef struct brunt_energy {  // [J]; in 2D per metre of thickness
     double initial;            // kinetic + internal at the start
     double total;              // kinetic + internal + all that was taken out
     double error;              // total - initial - external_work
-    double error_relative;     // error over the largest energy the run has had to do with
+    double reference; // the most by now of: initial; initial + external_work; the work of each cause, summed by amount.
+                      // What the run has (kinetic + internal) where that is more, up to ten times it. At least what
+                      // rounding does
+    double error_relative; // error / reference
 } brunt_energy;
 
 typedef struct brunt_momentum {

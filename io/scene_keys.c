@@ -28,7 +28,7 @@ const scene_key brunt_scene_table[] = {
     {"time.cfl", SCENE_REAL, "1", "0.5", 0, 1, true, false, NULL, 0, true, "time step as a share of the stable one; default 0.4 with pic or flip and the quadratic kernel in 3D, where lone material points are unstable above, 0.9 when no body is of material points; not with step"},
     {"time.step", SCENE_REAL, "s", OPTIONAL, POSITIVE, NULL, 0, false, "fixed time step; not with cfl"},
     {"time.least_step", SCENE_REAL, "s", OPTIONAL, POSITIVE, NULL, 0, false, "the run stops when the stable step falls below it (default: a millionth of the greatest step so far)"},
-    {"time.energy_limit", SCENE_REAL, "1", "0.1", 0, INFINITY, true, true, "none", 0, false, "the run stops when the relative energy error passes it"},
+    {"time.energy_limit", SCENE_REAL, "1", "0.1", 0, INFINITY, true, true, "none", 0, false, "the run stops when the energy error passes this share of the most energy that it has been given by then: at the start, with the work done on it, or by all causes of work together, each by its amount; what it has (kinetic, internal) where that is more, up to ten times; never less than what rounding does"},
 
     {"grid", SCENE_GROUP, NULL, OPTIONAL, NONE, "the grid of the material points; it has no bounds; wanted when a body is of method mpm"},
     {"grid.cell", SCENE_REAL, "m", REQUIRED, POSITIVE, NULL, 0, false, "edge of a cell"},

@@ -64,6 +64,7 @@ static json_t *energy_of(brunt_world *world) {
                 {"eroded", e.eroded},
                 {"heat", e.heat},
                 {"external_work", e.external_work},
+                {"reference", e.reference},
                 {"error_relative", e.error_relative}};
     json_t *energy = json_object();
     for (size_t r = 0; r < sizeof rows / sizeof *rows; r++)
@@ -212,7 +213,8 @@ static void print_energy(brunt_world *world, brunt_console *console) {
     for (size_t r = 0; r < sizeof rows / sizeof *rows; r++)
         // Rows of effects the scene does not have are no more than noise; the four that always matter are always there.
         if (rows[r].value != 0 || r < 4) brunt_console_print(console, "  %-15s %16.8g\n", rows[r].name, rows[r].value);
-    brunt_console_print(console, "  %-15s %16.3g %%\n", "error, relative", 100 * e.error_relative);
+    brunt_console_print(console, "  %-15s %16.3g %% of %.4g J\n", "error, relative", 100 * e.error_relative,
+                        e.reference);
 }
 
 static void print_eroded(brunt_world *world, brunt_console *console) {

@@ -1,11 +1,50 @@
 // Energy and momentum of a world, and what is known of bodies, pairs and walls.
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "world.h"
 
-static const double MOST_GROWTH = 10;
+static const double MOST_GROWTH = 10, STEP_ROUNDINGS = 10;
+static const double REAL_EPSILON = sizeof(real) == sizeof(float) ? FLT_EPSILON : DBL_EPSILON;
+
+// What the run has been given by now [J]: the energy at the start, with the work done on it, and that work itself, each
+// cause by its amount, since what one wall puts in another may take out.
+static double given_energy(const brunt_world *world) {
+    double work = world->now.gravity_work, turned_over = fabs(work);
+    for (int w = 0; w < world->wall_count; w++) {
+        work += world->walls[w].action.external_work;
+        turned_over += fabs(world->walls[w].action.external_work);
+    }
+    const double initial = world->now.initial_energy;
+    return fmax(fmax(fabs(initial), fabs(initial + work)), turned_over);
+}
+
+void brunt_ledger_remember(brunt_world *world) {
+    world->now.energy_scale = fmax(world->now.energy_scale, given_energy(world));
+}
+
+static void bound_body(const brunt_world *world, const brunt_body_ref *body, brunt_body_sums *sums);
+
+// Places x are known to eps |x|, strains of elements of size h to eps |x| / h, and rounded some ten times a step, now
+// up now down: m c^2 (10 eps |x| / h)^2 for each step.
+double brunt_rounding_energy(brunt_world *world) {
+    double energy = 0;
+    for (int i = 0; i < world->all_count; i++) {
+        const brunt_body_ref *body = &world->all[i];
+        brunt_body_sums sums;
+        double far = 0;
+        bound_body(world, body, &sums);
+        for (int a = 0; a < world->dimension; a++) far = fmax(far, fmax(fabs(sums.low[a]), fabs(sums.high[a])));
+        const double mass = body->fem ? brunt_fem_audit(body->fem).mass : brunt_body_audit(body->mpm).mass;
+        const double size = body->fem ? body->fem->mean_edge : body->mpm->spacing;
+        const brunt_material *material = body->fem ? &body->fem->material : &body->mpm->material;
+        const double v = (double)material->wave_speed * STEP_ROUNDINGS * REAL_EPSILON * far / size;
+        energy += mass * v * v;
+    }
+    return energy;
+}
 
 void brunt_world_energy(brunt_world *world, brunt_energy *energy) {
     const struct brunt_clock *now = &world->now;
@@ -46,12 +85,15 @@ void brunt_world_energy(brunt_world *world, brunt_energy *energy) {
     energy->total = energy->kinetic + energy->internal + energy->plastic + energy->hourglass + energy->contact +
                     energy->friction + energy->viscosity + energy->transfer + energy->eroded;
     energy->error = energy->total - energy->initial - energy->external_work;
-    // Relative to what the run was given. What it has may be more, when heat of an equation of state that counts from 0
-    // becomes motion; but beyond ten times that it is energy out of nothing, which must not measure itself.
-    const double given = fmax(fabs(energy->initial), fabs(energy->initial + energy->external_work));
+    // Relative to the most that the run has been given so far, so that energy that comes and goes does not make the
+    // error large where there is little. What it has may be more, when heat of an equation of state that counts from 0
+    // becomes motion; but beyond ten times that it is energy out of nothing, which must not measure itself. Where next
+    // to nothing happens, it is rounding that does.
+    const double given = fmax(now->energy_scale, given_energy(world));
     const double has = energy->kinetic + fabs(energy->internal);
     const double scale = fmax(given, given > 0 ? fmin(has, MOST_GROWTH * given) : has);
-    energy->error_relative = scale > 0 ? energy->error / scale : 0;
+    energy->reference = fmax(scale, world->rounding_energy * fmax(now->steps, 1));
+    energy->error_relative = energy->reference > 0 ? energy->error / energy->reference : 0;
 }
 
 // The paper's form of augury parks angular momentum in the affine velocity of boundary nodes.

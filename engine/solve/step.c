@@ -544,6 +544,7 @@ static void advance(brunt_world *world, const step *s) {
     brunt_pass_begin(world, BRUNT_PASS_advance);
     for (int w = 0; w < world->wall_count; w++) brunt_action_add(&world->walls[w].action, &world->walls[w].last);
     for (int p = 0; p < world->pair_count; p++) brunt_action_add(&world->pairs[p].action, &world->pairs[p].last);
+    brunt_ledger_remember(world);
     double stop = fmin(s->limit > now->time ? s->limit : INFINITY, world->end);
     now->time = s->dt == stop - now->time ? stop : now->time + s->dt;
     now->steps += 1;
@@ -559,12 +560,13 @@ static int check_energy(brunt_world *world, brunt_error *error) {
     brunt_energy energy;
     brunt_world_energy(world, &energy);
     // Energy that the transfers make is as wrong as energy that is not accounted for.
-    double made = energy.error_relative != 0 ? -world->now.transfer * energy.error_relative / energy.error : 0;
+    const double made = world->body_count && energy.reference > 0 ? -world->now.transfer / energy.reference : 0;
     if (!(fabs(energy.error_relative) > world->energy_limit || made > world->energy_limit)) return BRUNT_OK;
-    char reason[240];
-    snprintf(reason, sizeof reason,
-             "the energy error is %.3g %%, and the transfers have made %.3g %%; time.energy_limit allows %.3g %%",
-             100 * energy.error_relative, 100 * fmax(made, 0), 100 * world->energy_limit);
+    char reason[240], transfers[80] = "";
+    if (world->body_count)
+        snprintf(transfers, sizeof transfers, ", and the transfers have made %.3g %%", 100 * fmax(made, 0));
+    snprintf(reason, sizeof reason, "the energy error is %.3g %% of %.3g J%s; time.energy_limit allows %.3g %%",
+             100 * energy.error_relative, energy.reference, transfers, 100 * world->energy_limit);
     return fail(world, NULL, error, reason);
 }
 

@@ -625,6 +625,8 @@ static int start(brunt_world *world, brunt_error *error) {
         for (int c = 0; c < 3; c++) now->linear_initial[c] += a.momentum[c], now->angular_initial[c] += a.angular[c];
     }
     now->initial_energy += now->hourglass_stored;
+    brunt_ledger_remember(world);
+    world->rounding_energy = brunt_rounding_energy(world);
     return BRUNT_OK;
 }
 

@@ -128,6 +128,7 @@ struct brunt_world {
     bool has_erosion; // elements or material points may leave their bodies
     struct brunt_erosion_work *erosion_work; // of meshes that erode; NULL without erosion
     double least_step;
+    double rounding_energy; // [J] a step: what rounding may do, follows from the bodies at the start
     bool creep_told; // that steps have become short
     bool has_damping, has_gas, has_fluid;
     bool has_grid_surfaces;        // multi-velocity contact of meshes with material points
@@ -152,7 +153,7 @@ struct brunt_world {
         double damped, damping_impulse[3], damping_angular[3]; // [J], [N s], [N m s]
         double initial_energy, initial_kinetic; // [J]
         double linear_initial[3], angular_initial[3], scale_linear, scale_angular;
-        double energy_scale; // [J] the largest energy the run has had to do with
+        double energy_scale; // [J] the most that the run has been given so far: what its energy error is relative to
         double eroded_plastic, eroded_viscosity, eroded_heat; // [J] dissipated by what has been eroded since
     } now;
 
@@ -263,6 +264,12 @@ void brunt_damping_free(brunt_world *world);
 // Adds the drag to the loads of this step; what it did is booked once velocities are final.
 void brunt_damping_begin(brunt_world *world, const double gravity[3], double dt);
 void brunt_damping_end(brunt_world *world, double dt);
+
+// --- ledger.c: what the energy error is relative to
+// Keeps the most that the run has been given so far; once a step.
+void brunt_ledger_remember(brunt_world *world);
+// Energy that rounding may make in a step, or lose [J].
+double brunt_rounding_energy(brunt_world *world);
 
 // --- gas.c: gas in enclosed volumes
 // Volume that the faces of a hold enclose, with that beside it [m^3].
