@@ -230,14 +230,14 @@ int brunt_run_check(const brunt_scene *scene, brunt_world *world, const brunt_hi
         if (known) continue;
         char names[700] = "";
         list_fields(world, names, sizeof names);
-        brunt_fail(mistakes ? &found : error, BRUNT_BAD_INPUT, "output.fields: no body has a field '%s'; there are:%s",
-                   scene->output.fields[f], names);
-        if (messages) fprintf(messages, "%s: %s\n", scene->source, mistakes ? found.message : error->message);
+        brunt_fail(mistakes ? &found : error, BRUNT_BAD_INPUT,
+                   "output.fields[%d]: no body has a field '%s'; there are:%s", f, scene->output.fields[f], names);
+        if (messages) brunt_scene_complain(scene, mistakes ? found.message : error->message, messages);
         mistakes++;
     }
     for (int32_t m = 0; m < scene->measure_count; m++) {
         if (!brunt_measure_check(&scene->measures[m], history, world, mistakes ? &found : error)) continue;
-        if (messages) fprintf(messages, "%s: %s\n", scene->source, mistakes ? found.message : error->message);
+        if (messages) brunt_scene_complain(scene, mistakes ? found.message : error->message, messages);
         mistakes++;
     }
     return mistakes ? BRUNT_BAD_INPUT : BRUNT_OK;
@@ -280,7 +280,7 @@ static int make_world(run *r, brunt_error *error) {
     if (r->world) r->history = brunt_history_create(r->world, scene, found);
     if (!r->world || !r->history) {
         r->told = r->options->messages && found->code == BRUNT_BAD_INPUT;
-        if (r->told) fprintf(r->options->messages, "%s: %s\n", scene->source, found->message);
+        if (r->told) brunt_scene_complain(scene, found->message, r->options->messages);
         return found->code;
     }
     int status = brunt_run_check(scene, r->world, r->history, r->options->messages, found);

@@ -27,6 +27,12 @@ void brunt_scene_free(brunt_scene *scene) {
     memset(scene, 0, sizeof *scene);
 }
 
+void brunt_scene_complain(const brunt_scene *scene, const char *message, FILE *out) {
+    scene_tree tree = *(const scene_tree *)scene->resolved;
+    tree.name = scene->source; // a scene may have been moved since it was read
+    brunt_tree_say(&tree, brunt_tree_find(&tree, message), message, out);
+}
+
 // "dir/impact.yaml" is the scene "impact".
 static void take_names(brunt_scene *scene, const char *path) {
     snprintf(scene->source, sizeof scene->source, "%s", path);

@@ -77,6 +77,10 @@ int brunt_scene_read(const char *path, const char *const *sets, int set_count, b
 int brunt_scene_parse(const char *text, size_t length, const char *name, const char *const *sets, int set_count, brunt_scene *scene, FILE *messages);
 void brunt_scene_free(brunt_scene *scene);
 
+// A mistake found later, "bodies.rod.size: ...", with the place in the file (or the override) of the longest part of
+// its path that is there: "file:line:column: bodies.rod.size: ...".
+void brunt_scene_complain(const brunt_scene *scene, const char *message, FILE *out);
+
 // The scene as resolved: every default filled in, SI units. It reads back to the same scene.
 int brunt_scene_write(const brunt_scene *scene, FILE *out);
 // The reference of all keys, made from the table that parses them. `section` NULL: all. False when there is no such section.

@@ -22,6 +22,9 @@ typedef struct extents {
     double smallest, largest, volume, surface, farthest; // of the box around it: [m], [m^dimension], [m^2]
 } extents;
 
+// A length of 0.1 and an extent of 0.3 - 0.2 are the same: decimals of a file are taken as this near.
+static const double DECIMALS = 1e-6;
+
 // False after a message when there is nothing to fill.
 static bool measure_shape(scene_reader *reader, const scene_node *shape, const brunt_body_def *body, extents *out) {
     double min[3] = {0}, max[3] = {0};
@@ -54,7 +57,7 @@ static void check_filling(scene_reader *reader, const scene_node *shape, const b
     char a[32], b[32];
     brunt_format_number(cell, a);
     brunt_format_number(size.smallest, b);
-    if (cell > size.smallest)
+    if (cell > size.smallest * (1 + DECIMALS))
         brunt_tree_complain_key(reader->tree, shape,
                                 "the grid's cell (%s m) is larger than the body's smallest extent (%s m)", a, b);
     if (size.farthest / cell > CELL_COUNT_LIMIT)
@@ -104,7 +107,7 @@ static void check_meshing(scene_reader *reader, const scene_node *node, const br
     char a[32], b[32];
     brunt_format_number(body->size, a);
     brunt_format_number(size.largest, b);
-    if (body->size > size.largest)
+    if (body->size > size.largest * (1 + DECIMALS))
         brunt_tree_complain(reader->tree, edge, "the elements (%s m) are larger than the body (%s m)", a, b);
     // As many as cubes, or six times that of tetrahedra and twice of triangles.
     static const int pieces[BRUNT_ELEMENT_KINDS] = {

@@ -31,7 +31,7 @@ const scene_key brunt_scene_table[] = {
     {"time.energy_limit", SCENE_REAL, "1", "0.1", 0, INFINITY, true, true, "none", 0, false, "the run stops when the energy error passes this share of the most energy that it has been given by then: at the start, with the work done on it, or by all causes of work together, each by its amount; what it has (kinetic, internal) where that is more, up to ten times; never less than what rounding does"},
 
     {"grid", SCENE_GROUP, NULL, OPTIONAL, NONE, "the grid of the material points; it has no bounds; wanted when a body is of method mpm"},
-    {"grid.cell", SCENE_REAL, "m", REQUIRED, POSITIVE, NULL, 0, false, "edge of a cell"},
+    {"grid.cell", SCENE_REAL, "m", REQUIRED, POSITIVE, NULL, 0, false, "edge of a cell; no body may be thinner (by more than a millionth, for decimals)"},
     {"grid.origin", SCENE_VECTOR, "m", "0", NONE, "a point where a grid node lies"},
     {"grid.kernel", SCENE_WORD, NULL, "quadratic", ANY, "linear|quadratic|cubic", 0, false, "B-spline that links particles to nodes; linear goes with flip, apic makes energy on it"},
     {"grid.transfer", SCENE_WORD, NULL, "apic", ANY, "pic|flip|apic", 0, false, "velocity transfer; {flip: SHARE} sets the share of flip"},
@@ -65,7 +65,7 @@ const scene_key brunt_scene_table[] = {
     {"bodies.*.mesh", SCENE_TEXT, NULL, OPTIONAL, NONE, "fem, membrane: a gmsh file (.msh 2.2 or 4.1) instead of a shape; its path counts from the scene's folder"},
     {"bodies.*.group", SCENE_TEXT, NULL, OPTIONAL, NONE, "fem, membrane: the physical group of the mesh file that is the body (default: the only one)"},
     {"bodies.*.element", SCENE_WORD, NULL, "hex8", ANY, "tet4|hex8|tri3|quad4", 0, true, "fem, membrane, with a shape: kind of element (default in 2D and of membranes: quad4; membranes: quad4 or tri3)"},
-    {"bodies.*.size", SCENE_REAL, "m", OPTIONAL, POSITIVE, NULL, 0, false, "fem, membrane, with a shape (must be given): edge length of the elements"},
+    {"bodies.*.size", SCENE_REAL, "m", OPTIONAL, POSITIVE, NULL, 0, false, "fem, membrane, with a shape (must be given): edge length of the elements; as long as the body at most (to a millionth, for decimals)"},
     {"bodies.*.grading", SCENE_GROUP, NULL, OPTIONAL, NONE, "fem, of a box: a factor on size along its axes, so that the mesh is fine where something happens"},
     {"bodies.*.grading.x", SCENE_PROFILE, "any", OPTIONAL, NONE, "[[15 mm, 1], [250 mm, 40]]: factor over the coordinate of the shape (before place), linear between, constant beyond"},
     {"bodies.*.grading.y", SCENE_PROFILE, "any", OPTIONAL, NONE, "likewise"},

@@ -110,6 +110,38 @@ void brunt_tree_path(const scene_node *node, char *out, size_t size) {
     }
 }
 
+static const scene_node *entry_at(const scene_node *list, const char *name, size_t length) {
+    int64_t index = 0;
+    for (const scene_node *entry = list->first; entry; entry = entry->next, index++) {
+        char number[24];
+        snprintf(number, sizeof number, "%lld", (long long)index);
+        const scene_node *named = brunt_tree_child(entry, "name");
+        const char *texts[] = {number, named ? named->text : NULL};
+        for (int t = 0; t < 2; t++)
+            if (texts[t] && strlen(texts[t]) == length && !strncmp(texts[t], name, length)) return entry;
+    }
+    return NULL;
+}
+
+const scene_node *brunt_tree_find(const scene_tree *tree, const char *message) {
+    const scene_node *node = tree->root, *next = node;
+    for (const char *p = message; next && *p;) {
+        const bool entry = *p == '[' || !strncmp(p, " (", 2);
+        if (entry || *p == '.') p += *p == ' ' ? 2 : 1;
+        const size_t length = strcspn(p, entry ? "])" : ".[: ");
+        char key[128];
+        if (!length || length >= sizeof key) break;
+        snprintf(key, sizeof key, "%.*s", (int)length, p);
+        next = !entry && node->kind == SCENE_MAP   ? brunt_tree_child(node, key)
+               : entry && node->kind == SCENE_LIST ? entry_at(node, key, length)
+                                                   : NULL;
+        if (next) node = next;
+        p += length + (entry && p[length]);
+        if (*p == ':' || (*p == ' ' && p[1] != '(')) break;
+    }
+    return node;
+}
+
 // ---------------------------------------------------------------------------------------------------- messages
 
 static void add_message(scene_tree *tree, int line, int column, const char *option, const char *path,
@@ -148,6 +180,18 @@ void brunt_tree_complain_at(scene_tree *tree, int line, int column, const char *
 static const scene_node *typed(const scene_node *node) {
     while (node->parent && !node->line && !node->option) node = node->parent;
     return node;
+}
+
+void brunt_tree_say(const scene_tree *tree, const scene_node *node, const char *message, FILE *out) {
+    const scene_node *at = typed(node);
+    const bool by_key = at->key_line && (at != node || at->kind != SCENE_SCALAR);
+    if (at->option)
+        fprintf(out, "--set %s: %s\n", at->option, message);
+    else if (at->parent && at->line)
+        fprintf(out, "%s:%d:%d: %s\n", tree->name, by_key ? at->key_line : at->line,
+                by_key ? at->key_column : at->column, message);
+    else
+        fprintf(out, "%s: %s\n", tree->name, message);
 }
 
 void brunt_tree_complain(scene_tree *tree, const scene_node *node, const char *format, ...) {

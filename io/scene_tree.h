@@ -80,6 +80,12 @@ void brunt_tree_remove(scene_node *child);
 // "bodies.rod.place[1].rotate"
 void brunt_tree_path(const scene_node *node, char *out, size_t size);
 
+// The node deepest on the path that a message begins with, "boundaries (rim).gas: ..." being that of the entry named
+// rim.
+const scene_node *brunt_tree_find(const scene_tree *tree, const char *message);
+// Prints a message with the place of a node: of a scalar or an entry of a list its own, else of its key.
+void brunt_tree_say(const scene_tree *tree, const scene_node *node, const char *message, FILE *out);
+
 // A mistake at a line and column, at a value, or at its key.
 void brunt_tree_complain_at(scene_tree *tree, int line, int column, const char *option, const char *format, ...)
     __attribute__((format(printf, 5, 6)));

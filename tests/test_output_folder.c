@@ -121,6 +121,21 @@ START_TEST(an_unfinished_run_is_not_begun_anew) {
 }
 END_TEST
 
+// What has ended is replaced, whichever scene it was of; to go on with, it must be of this one.
+START_TEST(a_run_that_ended_is_replaced) {
+    small_put("other.yaml", small_elements_text);
+    small_expect("run small.yaml -q -t 1 -o out --set time.end='20 ms'", 0, NULL);
+    small_expect("run small.yaml -q -t 1 -o out --set time.end='20 ms' --resume", 0, NULL); // nothing is left to do
+    small_expect("run small.yaml -q -t 1 -o out --set time.end='40 ms' --resume", 0, NULL);
+    ck_assert_int_eq(small_shell("grep -q '\"time\": 0.04' out/summary.json"), 0);
+    small_expect("run other.yaml -q -t 1 -o out --resume", 65, "made from another scene");
+    ck_assert_int_eq(small_shell("grep -q '\"scene\": \"small\"' out/summary.json"), 0);
+    small_expect("run other.yaml -q -t 1 -o out", 0, NULL);
+    ck_assert_int_eq(small_shell("grep -q '\"scene\": \"other\"' out/summary.json"), 0);
+    ck_assert(!small_exists("out/vtu/left_000000.vtu"));
+}
+END_TEST
+
 START_TEST(one_run_a_folder) {
     pid_t first = begin("out");
     small_expect("run small.yaml -q -t 1 -o out", 65, "another run is writing into this folder");
@@ -283,6 +298,7 @@ int main(void) {
     tcase_add_test(tcase, all_that_is_in_the_way_is_said);
     tcase_add_test(tcase, what_is_listed_goes_and_the_rest_stays);
     tcase_add_test(tcase, an_unfinished_run_is_not_begun_anew);
+    tcase_add_test(tcase, a_run_that_ended_is_replaced);
     tcase_add_test(tcase, one_run_a_folder);
     tcase_add_test(tcase, a_trace_replaces_traces_only);
     tcase_add_test(tcase, links_are_not_followed);

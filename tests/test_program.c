@@ -293,9 +293,9 @@ START_TEST(summary_has_exactly_the_promised_names) {
                                         "momentum",
                                         "eroded",
                                         "measures"};
-    static const char *const energy[] = {"initial",   "final",   "kinetic",       "internal",      "plastic",
-                                         "hourglass", "contact", "friction",      "viscosity",     "transfer",
-                                         "eroded",    "heat",    "external_work", "error_relative"};
+    static const char *const energy[] = {"initial",   "final",   "kinetic",       "internal",  "plastic",
+                                         "hourglass", "contact", "friction",      "viscosity", "transfer",
+                                         "eroded",    "heat",    "external_work", "reference", "error_relative"};
     static const char *const momentum[] = {"linear_initial",  "linear_final",  "linear_drift",
                                            "angular_initial", "angular_final", "angular_drift"};
     static const char *const measure[] = {"value", "unit", "expect", "error", "ok"};

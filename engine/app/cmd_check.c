@@ -179,7 +179,7 @@ static int check(const brunt_scene *scene, bool quick, brunt_error *error) {
     brunt_world *world = brunt_world_create(&scene->world, error);
     brunt_history *history = world ? brunt_history_create(world, scene, error) : NULL;
     status = history ? BRUNT_OK : error->code;
-    if (status) fprintf(stderr, "%s: %s\n", scene->source, error->message);
+    if (status) brunt_scene_complain(scene, error->message, stderr);
     if (!status) status = brunt_run_check(scene, world, history, stderr, error);
     if (!status) {
         char counts[64];
