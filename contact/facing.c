@@ -57,7 +57,17 @@ static void look_at_sheets(const brunt_skin *s, int32_t n, looker *l) {
     l->ring = s->ring_face + first, l->ring_count = s->ring_first[s->front[n] + 1] - first;
 }
 
-static void find_node(const job *j, int k, int32_t n) {
+// Keeps what a feature bears with, which is made once.
+static void keep_master(brunt_facing *f, const brunt_skin *s, hit *h, const double x[3], int worker) {
+    struct masters *of = &f->masters[worker];
+    const size_t used = (size_t)of->count * sizeof *of->master;
+    of->failed = of->failed || brunt_reserve((void **)&of->master, &of->capacity, used + sizeof *of->master, used);
+    if (of->failed) return;
+    h->worker = worker, h->master = of->count;
+    brunt_facing_master(s, h, x, &of->master[of->count++]);
+}
+
+static void find_node(const job *j, int k, int32_t n, int worker) {
     const brunt_meeting *m = j->m;
     brunt_facing *f = j->f;
     brunt_skin *s = m->skin;
@@ -90,13 +100,14 @@ static void find_node(const job *j, int k, int32_t n) {
         double approach = brunt_facing_approach(s, h, s->x[n], s->v[n], s->v);
         h->target = brunt_facing_target(
             s, h->gap, approach, h->gap < 0 ? brunt_facing_approach(s, h, s->x[n], s->old[n], s->old) : 0, m->dt);
-        if (approach < h->target + 1e-6 * s->mean_edge / m->dt) f->hits[BRUNT_MAX_HITS * n + kept++] = *h;
+        if (!(approach < h->target + 1e-6 * s->mean_edge / m->dt)) continue;
+        if (h->feature.any) keep_master(f, s, h, s->x[n], worker);
+        f->hits[BRUNT_MAX_HITS * n + kept++] = *h;
     }
     f->found[n] = (uint8_t)kept;
 }
 
 static void find_nodes(void *context, int64_t begin, int64_t end, int worker) {
-    (void)worker;
     const job *j = context;
     const brunt_skin *s = j->m->skin;
     const brunt_facing *f = j->f;
@@ -104,7 +115,7 @@ static void find_nodes(void *context, int64_t begin, int64_t end, int worker) {
     for (int32_t n = (int32_t)begin; n < end; n++) {
         while (s->node_range[k + 1] <= n) k++;
         j->f->found[n] = 0;
-        if (s->active[k] && f->near_first[f->box_of[k] + 1] > f->near_first[f->box_of[k]]) find_node(j, k, n);
+        if (s->active[k] && f->near_first[f->box_of[k] + 1] > f->near_first[f->box_of[k]]) find_node(j, k, n, worker);
     }
 }
 
@@ -128,18 +139,6 @@ int brunt_facing_master(const brunt_skin *s, const hit *h, const double x[3], br
     return m->count = face_corners(s, h->face);
 }
 
-// The master's nodes alone.
-static int master_nodes(const brunt_skin *s, const hit *h, const double x[3], int32_t node[BRUNT_FEATURE_NODES]) {
-    brunt_master m;
-    if (!h->feature.any) {
-        memcpy(node, s->face[h->face], sizeof s->face[h->face]);
-        return face_corners(s, h->face);
-    }
-    brunt_facing_master(s, h, x, &m);
-    memcpy(node, m.node, (size_t)m.count * sizeof *node);
-    return m.count;
-}
-
 void brunt_facing_entries(const brunt_facing *f, const brunt_master *m, brunt_contact_point *point,
                           brunt_contact_entry *entry) {
     memcpy(point->facet, m->facet, sizeof point->facet);
@@ -161,6 +160,10 @@ double brunt_facing_area(const brunt_skin *s, int32_t n, const double direction[
     return area;
 }
 
+static const brunt_master *kept_master(const brunt_facing *f, const hit *h) {
+    return &f->masters[h->worker].master[h->master];
+}
+
 static void fill_nodes(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     const job *j = context;
@@ -172,13 +175,14 @@ static void fill_nodes(void *context, int64_t begin, int64_t end, int worker) {
         for (int32_t q = 0; q < f->found[n]; q++, at++) {
             const hit *h = &f->hits[BRUNT_MAX_HITS * n + q];
             brunt_contact_point *point = &j->points->point[at];
-            brunt_master master;
-            *point = (brunt_contact_point){
-                .first = entry, .count = 1 + brunt_facing_master(s, h, s->x[n], &master), .tag = n};
+            brunt_master plain;
+            const brunt_master *master = h->feature.any ? kept_master(f, h) : &plain;
+            if (!h->feature.any) brunt_facing_master(s, h, s->x[n], &plain);
+            *point = (brunt_contact_point){.first = entry, .count = 1 + master->count, .tag = n};
             brunt_facing_point(m, h, s->x[n], s->body[n], point);
             point->area = 0.5 * brunt_facing_area(s, n, h->n); // the other half is counted on the other side
             j->points->entry[entry] = (brunt_contact_entry){.support = f->support_of[n], .weight = {1, 1, 1}};
-            brunt_facing_entries(f, &master, point, j->points->entry + entry + 1);
+            brunt_facing_entries(f, master, point, j->points->entry + entry + 1);
             point->target = h->target;
             entry += point->count;
         }
@@ -205,8 +209,10 @@ static int add_nodes(const brunt_meeting *m, brunt_facing *f, brunt_contact_poin
     for (int32_t n = 0; n < s->node_count; n++) {
         f->first_point[2 * n] = point, f->first_point[2 * n + 1] = entry;
         for (int32_t q = 0; q < f->found[n]; q++) {
-            int32_t node[BRUNT_FEATURE_NODES];
-            const int count = master_nodes(s, &f->hits[BRUNT_MAX_HITS * n + q], s->x[n], node);
+            const hit *h = &f->hits[BRUNT_MAX_HITS * n + q];
+            const brunt_master *feature = h->feature.any ? kept_master(f, h) : NULL;
+            const int32_t *node = feature ? feature->node : s->face[h->face];
+            const int count = feature ? feature->count : face_corners(s, h->face);
             if (brunt_facing_support(f, s, n, points) < 0) return -1;
             for (int c = 0; c < count; c++)
                 if (brunt_facing_support(f, s, node[c], points) < 0) return -1;
@@ -217,6 +223,18 @@ static int add_nodes(const brunt_meeting *m, brunt_facing *f, brunt_contact_poin
     points->point_count = point, points->entry_count = entry;
     job j = {.m = m, .f = f, .points = points};
     brunt_parallel(m->threads, s->node_count, GRAIN, fill_nodes, &j, m->timer);
+    return 0;
+}
+
+static int look_from_nodes(job *j) {
+    const brunt_meeting *m = j->m;
+    brunt_facing *f = j->f;
+    if (!f->masters && !(f->masters = brunt_alloc((size_t)m->threads * sizeof *f->masters))) return -1;
+    f->masters_count = m->threads;
+    for (int t = 0; t < m->threads; t++) f->masters[t].count = 0;
+    brunt_parallel(m->threads, m->skin->node_count, GRAIN, find_nodes, j, m->timer);
+    for (int t = 0; t < m->threads; t++)
+        if (f->masters[t].failed) return -1;
     return 0;
 }
 
@@ -231,8 +249,7 @@ int brunt_facing_find(const brunt_meeting *m, brunt_body *mpm, int mpm_count, br
     if (!f->near_count) return 0;
     if (brunt_facing_cells(m, f)) return -1;
     job j = {.m = m, .f = f, .points = points};
-    brunt_parallel(m->threads, s->node_count, GRAIN, find_nodes, &j, m->timer);
-    if (add_nodes(m, f, points)) return -1;
+    if (look_from_nodes(&j) || add_nodes(m, f, points)) return -1;
     for (int k = 0; k < mpm_count; k++) {
         int32_t box = 0;
         while (f->box[box].mpm != k) box++;

@@ -17,7 +17,15 @@ typedef struct hit {
     int32_t face, triangle, body;
     brunt_feature feature;
     double gap, n[3], target;
+    int32_t worker, master; // of a feature that bears: who looked, and which of its masters
 } hit;
+
+// What a slave meets: an edge or corner with the faces about it, or a facet.
+typedef struct brunt_master {
+    int32_t node[BRUNT_FEATURE_NODES];
+    double weight[BRUNT_FEATURE_NODES], gradient[BRUNT_FEATURE_NODES][3], facet[3], height;
+    int count;
+} brunt_master;
 
 typedef struct slave_hits {
     hit hits[BRUNT_MAX_HITS];
@@ -68,6 +76,14 @@ struct brunt_facing {
     size_t found_capacity;
     hit *hits; // ... in its BRUNT_MAX_HITS places
     size_t hits_capacity;
+    // The edges and corners that bear, by the worker that looked; none where nobody meets one.
+    struct masters {
+        brunt_master *master;
+        size_t capacity;
+        int32_t count;
+        bool failed;
+    } * masters;
+    int masters_count;
     int32_t *last; // of each skin node: the face it was nearest to, to look at first; -1
     size_t last_capacity;
     int32_t *last_spare; // while they are put in a new order
@@ -136,13 +152,6 @@ typedef struct looker {
 static inline int face_corners(const brunt_skin *s, int32_t face) {
     return s->face[face][2] < 0 ? 2 : s->face[face][3] < 0 ? 3 : 4;
 }
-
-// What a slave meets: an edge or corner with the faces about it, or a facet.
-typedef struct brunt_master {
-    int32_t node[BRUNT_FEATURE_NODES];
-    double weight[BRUNT_FEATURE_NODES], gradient[BRUNT_FEATURE_NODES][3], facet[3], height;
-    int count;
-} brunt_master;
 
 // --- facing_near.c
 double brunt_facing_plane_distance(const brunt_plane_def *plane, double time, const double x[3]);

@@ -13,6 +13,7 @@ void brunt_facing_free(brunt_facing *f) {
     if (!f) return;
     for (int k = 0; k < f->mpm_count; k++) brunt_free(f->node_support[k]);
     for (int t = 0; t < f->sight_count; t++) brunt_free(f->sight[t].seen);
+    for (int t = 0; t < f->masters_count; t++) brunt_free(f->masters[t].master);
     void *owned[] = {f->box,
                      f->near,
                      f->box_of,
@@ -32,6 +33,7 @@ void brunt_facing_free(brunt_facing *f) {
                      f->node_support_capacity,
                      f->grid,
                      f->sight,
+                     f->masters,
                      f->run,
                      f->last_spare,
                      f};

@@ -97,14 +97,18 @@ typedef struct about {
     double seen; // [m^2] twice the area of the faces as seen along the normal; 2D [m]
 } about;
 
-static void add_gradient(about *to, int32_t node, const double by[3], double factor) {
+// The gradient of a node's weight, which begins as 0.
+static double *gradient_of(about *to, int32_t node) {
     int k = 0;
     while (k < to->count && to->node[k] != node) k++;
-    if (k == to->count) {
-        to->node[to->count++] = node;
-        memset(to->gradient[k], 0, sizeof to->gradient[k]);
-    }
-    for (int a = 0; a < 3; a++) to->gradient[k][a] += factor * by[a];
+    if (k < to->count) return to->gradient[k];
+    to->node[to->count++] = node;
+    return memset(to->gradient[k], 0, sizeof to->gradient[k]);
+}
+
+static inline void add_gradient(about *to, int32_t node, const double by[3], double factor) {
+    double *gradient = gradient_of(to, node);
+    for (int a = 0; a < 3; a++) gradient[a] += factor * by[a];
 }
 
 // A segment: its weights grow along the line across n.
