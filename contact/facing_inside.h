@@ -16,6 +16,7 @@ static inline double dot(const double a[3], const double b[3]) { return a[0] * b
 typedef struct hit {
     int32_t face, triangle, body;
     brunt_feature feature;
+    bool valley; // another slope of it is as near
     double gap, n[3], target;
     int32_t worker, master; // of a feature that bears: who looked, and which of its masters
 } hit;

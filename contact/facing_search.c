@@ -255,7 +255,11 @@ static void find_feature(const brunt_skin *s, const nearest *best, const tied *c
     brunt_feature_share(s, face[0] = chosen->face, &shared);
     for (int32_t k = 0; k < best->count; k++) {
         const tied *other = &best->tied[k];
-        if (other == chosen || other->at.square > best->root * best->root || !bear_together(s, chosen, other)) continue;
+        if (other == chosen || other->at.square > best->root * best->root) continue;
+        if (!bear_together(s, chosen, other)) {
+            out->valley = true;
+            continue;
+        }
         if (!brunt_feature_share(s, other->face, &shared)) continue;
         face[count++] = other->face;
         height += dot(other->at.normal, other->at.d);
@@ -301,6 +305,33 @@ static bool hit_facing(const brunt_skin *s, const nearest *best, const double *n
         for (int a = 0; a < 3 && tilted; a++) out->n[a] = way[a] / length;
     }
     return !normal || -dot(out->n, normal) > OPPOSED;
+}
+
+// Leaves the facets that tie with the chosen one and are of another slope. Whether there are any.
+static bool next_slope(const brunt_skin *s, nearest *best) {
+    const tied chosen = *most_facing(best);
+    int32_t left = 0;
+    double square = INFINITY;
+    for (int32_t k = 0; k < best->count; k++) {
+        const tied *other = &best->tied[k];
+        if (other->face == chosen.face || other->at.square > best->root * best->root) continue;
+        if (bear_together(s, &chosen, other)) continue;
+        square = fmin(square, other->at.square);
+        best->tied[left++] = *other;
+    }
+    best->count = left, best->square = square;
+    return left > 0;
+}
+
+// The other slopes of a valley, in which all bear: with the first of two, an inside corner and its mirror image bore
+// differently.
+static void add_valley(const brunt_skin *s, nearest *best, const double *normal, slave_hits *out) {
+    bool more = out->hits[out->count - 1].valley;
+    while (more && out->count < BRUNT_MAX_HITS && next_slope(s, best)) {
+        hit *h = &out->hits[out->count];
+        if (hit_facing(s, best, normal, h)) out->count++;
+        more = h->valley;
+    }
 }
 
 // A hit on whatever facet is nearest, when the slave is behind it; `least`: the least cosine with its normal.
@@ -566,6 +597,7 @@ static inline __attribute__((always_inline)) void look_around(const brunt_meetin
             continue;
         inside = inside || h->gap < 0;
         out->count++;
+        if (!is_ragged(s, h->body)) add_valley(s, &facing[b], l->normal, out);
     }
     if (sheets) add_slopes(m, f, l, out);
     if (s->ragged) add_ragged(m, f, l, out);
