@@ -146,6 +146,7 @@ typedef struct point_set {
     int dimension;
     double *position, *values;
     double *gradient, *volume; // of particles, for their size; nodes have none
+    bool rings;                // about the axis x = 0, as long as they are there
     double *integrity;         // of particles that may fail and stay; else NULL
     int components;
 } point_set;
@@ -158,6 +159,12 @@ static void free_points(point_set *set) {
     brunt_free(set->values);
 }
 
+static bool is_axisymmetric(const brunt_world *world) {
+    for (int32_t e = 0; e < brunt_effect_count(world); e++)
+        if (!strcmp(brunt_world_effect(world, e).name, "axisymmetric")) return brunt_world_effect(world, e).on;
+    return false;
+}
+
 static int read_points(const brunt_measure *m, brunt_world *world, int32_t body, point_set *set, brunt_error *error) {
     memset(set, 0, sizeof *set);
     brunt_field_info info = {.at = brunt_place_of_motion(world, body)};
@@ -165,6 +172,7 @@ static int read_points(const brunt_measure *m, brunt_world *world, int32_t body,
     bool sized = !of_field && info.at == BRUNT_AT_PARTICLES;
     int status = BRUNT_OK;
     set->dimension = brunt_world_dimension(world);
+    set->rings = is_axisymmetric(world);
     if (of_field) {
         status = read_field(world, body, m->field, m, &set->values, &info, error);
         set->components = info.components;
@@ -193,15 +201,15 @@ static double determinant(const double F[9]) {
 }
 
 // Half the size of particle p along a unit direction n: a lattice cell of edge s deforms with F, and |F^T n| is the
-// stretch of what now lies along n. s from the reference volume (volume / det F). What has failed has a volume and no
-// shape: it resists no shear, so that F is as the motion about it has happened to draw it out. A node lies on the
-// surface itself.
+// stretch of what now lies along n. s from the reference volume (volume / det F); of a ring from that of its section,
+// which F stretches in its plane alone. What has failed has a volume and no shape: it resists no shear, so that F is as
+// the motion about it has happened to draw it out. A node lies on the surface itself.
 static double half_size(const point_set *set, int64_t p, const double n[3]) {
     if (!set->gradient) return 0;
-    if (set->integrity && !(set->integrity[p] > 0))
-        return 0.5 * (set->dimension == 3 ? cbrt(set->volume[p]) : sqrt(set->volume[p]));
+    const double volume = set->volume[p] / (set->rings ? 2 * acos(-1) * set->position[3 * p] : 1);
+    if (set->integrity && !(set->integrity[p] > 0)) return 0.5 * (set->dimension == 3 ? cbrt(volume) : sqrt(volume));
     const double *F = set->gradient + 9 * p;
-    double reference = set->volume[p] / determinant(F);
+    double reference = volume / (set->rings ? F[0] * F[4] - F[1] * F[3] : determinant(F));
     double spacing = set->dimension == 3 ? cbrt(reference) : sqrt(reference), square = 0;
     for (int j = 0; j < 3; j++) {
         double component = F[j] * n[0] + F[3 + j] * n[1] + F[6 + j] * n[2];

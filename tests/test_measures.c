@@ -384,6 +384,34 @@ START_TEST(extent_of_what_has_failed) {
 }
 END_TEST
 
+// Rings about the axis: a volume of 2 pi r of their section's. Stretched along it, and failed.
+START_TEST(extent_of_rings) {
+    const char *sets[] = {"axisymmetric=true",
+                          "materials.rubber={model: von-mises, density: 1000, E: 1e6, nu: 0.3, yield: 1e4, eos: "
+                          "{model: mie-gruneisen, c0: 30, s: 1.5, gamma0: 1.5}, failure: {model: "
+                          "johnson-cook-damage, d1: 0.1, action: soften}}"};
+    brunt_scene rings;
+    small_scene(&rings, sets, 2);
+    brunt_world *other = small_world(&rings);
+    brunt_measure m = blank(BRUNT_MEASURE_EXTENT);
+    double value;
+    for (int a = 0; a < 2; a++) {
+        m.axis[a] = 1, m.axis[1 - a] = 0;
+        ck_assert_int_eq(brunt_measure_initial(&m, other, &value, NULL), BRUNT_OK);
+        ck_assert_double_eq_tol(value, 0.5, 10 * rounding);
+    }
+    set_left(other, "deformation_gradient", 9, 4, 2);
+    ck_assert_int_eq(brunt_measure_initial(&m, other, &value, NULL), BRUNT_OK);
+    ck_assert_double_eq_tol(value, 0.45 + 2 * 0.05, 10 * rounding);
+    set_left(other, "deformation_gradient", 9, 4, 1);
+    set_left(other, "integrity", 1, 0, 0);
+    ck_assert_int_eq(brunt_measure_initial(&m, other, &value, NULL), BRUNT_OK);
+    ck_assert_double_eq_tol(value, 0.5, 10 * rounding);
+    brunt_world_destroy(other);
+    brunt_scene_free(&rings);
+}
+END_TEST
+
 START_TEST(radius_about_an_axis) {
     // Left block: [0, 0.5] x [0.1, 0.6] with particles every 0.05; along y the farthest surface from the line y = 0.1
     // is 0.5 away.
@@ -676,6 +704,7 @@ int main(void) {
     tcase_add_test(values, extent_reaches_to_the_surfaces);
     tcase_add_test(values, extent_of_a_turned_block);
     tcase_add_test(values, extent_of_what_has_failed);
+    tcase_add_test(values, extent_of_rings);
     tcase_add_test(values, radius_about_an_axis);
     tcase_add_test(values, fields_are_reduced);
     tcase_add_test(values, elements_are_measured);
