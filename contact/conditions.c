@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "memory.h"
+
 // Nodes beyond the axis of rings are the images of those before it: they get what those get, mirrored. On the axis
 // there is no radial velocity.
 static void reflect(bool rings, const double place[3], double h, double now[3]) {
@@ -13,9 +15,10 @@ static void reflect(bool rings, const double place[3], double h, double now[3]) 
 }
 
 static void set_velocity(brunt_body *body, real *n, const brunt_slot *slot, int node, const double now[3],
-                         const double support[3], brunt_action *action) {
+                         const double support[3], unsigned held, brunt_action *action) {
     const brunt_grid *grid = &body->grid;
     double x[3], J[3] = {0}, old[3] = {0};
+    grid->held[(slot - grid->slots) * BRUNT_BLOCK_NODES + node] |= (uint8_t)held;
     brunt_node_position(grid, slot->coord, node, x);
     if (brunt_total_lagrangian(&body->particles)) brunt_reach_deformed(body, (int32_t)(slot - grid->slots), node, x);
     for (int a = 0; a < grid->dim; a++) {
@@ -40,6 +43,8 @@ static void unplace(const brunt_placement *place, const double x[3], double out[
 
 static void apply_region(brunt_body *body, bool rings, brunt_wall *wall) {
     const brunt_grid *grid = &body->grid;
+    unsigned held = 0;
+    for (int a = 0; a < grid->dim; a++) held |= (unsigned)wall->where.component[a] << a;
     for (int32_t s = 0; s < grid->slot_count; s++) {
         const brunt_slot *slot = &grid->slots[s];
         double middle[3], local[3], place[3], reach = 0.5 * sqrt((double)grid->dim) * grid->side * (double)grid->h;
@@ -62,7 +67,7 @@ static void apply_region(brunt_body *body, bool rings, brunt_wall *wall) {
                 support[a] = wall->where.component[a] ? wall->where.velocity[a] : 0;
             }
             if (wall->where.component[0]) reflect(rings, place, (double)grid->h, now);
-            set_velocity(body, n, slot, node, now, support, &wall->last);
+            set_velocity(body, n, slot, node, now, support, held, &wall->last);
         }
     }
 }
@@ -73,7 +78,9 @@ static void apply_plane(brunt_body *body, bool rings, brunt_wall *wall, double t
     if (brunt_total_lagrangian(&body->particles)) time = 0;
     const brunt_plane_def *plane = &wall->plane;
     double offset = 0, reach = ON_PLANE * (double)grid->h;
+    unsigned held = 0; // what an oblique plane lets slip along itself has no component that it holds
     for (int a = 0; a < grid->dim; a++) {
+        held |= (unsigned)(plane->condition == BRUNT_STICK || fabs(plane->normal[a]) > 1 - 1e-12) << a;
         offset += plane->normal[a] * (plane->point[a] + plane->velocity[a] * time);
         reach += fabs(plane->normal[a]) * 0.5 * grid->side * (double)grid->h;
     }
@@ -100,9 +107,16 @@ static void apply_plane(brunt_body *body, bool rings, brunt_wall *wall, double t
             for (int a = 0; a < grid->dim; a++)
                 now[a] = plane->condition == BRUNT_STICK ? plane->velocity[a] : v[a] - approach * plane->normal[a];
             reflect(rings, x, (double)grid->h, now);
-            set_velocity(body, n, slot, node, now, plane->velocity, &wall->last);
+            set_velocity(body, n, slot, node, now, plane->velocity, held, &wall->last);
         }
     }
+}
+
+int brunt_condition_clear(brunt_body *body) {
+    const size_t bytes = (size_t)body->grid.slot_count * BRUNT_BLOCK_NODES;
+    if (brunt_reserve((void **)&body->grid.held, &body->grid.held_capacity, bytes, 0)) return -1;
+    memset(body->grid.held, 0, bytes);
+    return 0;
 }
 
 void brunt_condition_apply(brunt_body *body, brunt_wall *wall, double time) {

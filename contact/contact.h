@@ -54,6 +54,9 @@ int brunt_mirror_images(const brunt_mirror *mirrors, int mirror_count, const int
                         int32_t image[BRUNT_MAX_IMAGES][3], real sign[BRUNT_MAX_IMAGES][3]);
 
 // --- node conditions (conditions.c): stick and slip planes at the nodes behind them, prescribed velocities in regions
+// Each marks the components of nodes that it gives (brunt_grid.held); cleared before the first of them. 0, or -1: out
+// of memory.
+int brunt_condition_clear(brunt_body *body);
 void brunt_condition_apply(brunt_body *body, brunt_wall *wall, double time);
 
 // --- reach (reach.c): where a body's surface really is

@@ -181,7 +181,8 @@ static int make_support(brunt_facing *f, const brunt_body *body, int k, const br
         for (int a = 0; a < body->grid.dim && i == 0; a++) {
             points->support[support].v[a] = (double)node[BRUNT_NODE_VELOCITY + a];
             points->support[support].old[a] = (double)node[BRUNT_NODE_OLD + a];
-            points->support[support].inverse[a] = sign[0][a] != 0 ? 1 / (double)node[BRUNT_NODE_MASS] : 0;
+            points->support[support].inverse[a] =
+                sign[0][a] != 0 && !brunt_node_held(&body->grid, number, a) ? 1 / (double)node[BRUNT_NODE_MASS] : 0;
         }
     }
     return 0;
@@ -331,7 +332,10 @@ void brunt_facing_give_grids(const brunt_meeting *m, brunt_body *mpm, brunt_faci
             real *node = grid->nodes + entry->node * BRUNT_NODE_REALS;
             double P[3] = {0}, x[3];
             for (int a = 0; a < grid->dim; a++) {
-                double v = entry->sign[a] * points->support[entry->support].v[a];
+                const brunt_support *support = &points->support[entry->support];
+                double v = entry->sign[a] * support->v[a];
+                if (brunt_node_held(grid, entry->node, a)) // the condition takes it again, and books it
+                    v += entry->sign[a] * support->impulse[a] / (double)node[BRUNT_NODE_MASS];
                 P[a] = (double)node[BRUNT_NODE_SPARE] * (v - (double)node[BRUNT_NODE_VELOCITY + a]);
                 node[BRUNT_NODE_VELOCITY + a] = (real)v;
             }

@@ -155,7 +155,8 @@ typedef struct meeting {
     int a, b;                 // members
     int action;               // index among the group's pairs
     double n[3], target;      // normal from a to b; least relative velocity along it [m/s]
-    double friction, inverse; // [-]; [1/kg]
+    double friction;          // [-]
+    double inverse, slide;    // [1/kg] along n; the greatest across
     double push, drag[3];     // [N s] on b
     bool tied;                // `drag` takes all of the relative velocity
 } meeting;
@@ -165,7 +166,8 @@ typedef struct member {
     int32_t slot;
     real *node;
     int entry;
-    double v[3], inverse;
+    bool held;
+    double v[3], inverse[3], given[3]; // [m/s], [1/kg] by component: 0 where a condition gives v; [N s]
 } member;
 
 // Unit vector along n with the parts taken out that a body cut by mirror planes cannot know: its image has no
@@ -233,10 +235,12 @@ static double tie(member *members, meeting *m) {
     double v[3], changed = 0;
     relative(members, m, v);
     for (int k = 0; k < 3; k++) {
-        const double J = -v[k] / m->inverse;
+        const double inverse = members[m->a].inverse[k] + members[m->b].inverse[k];
+        if (!(inverse > 0)) continue;
+        const double J = -v[k] / inverse;
         m->drag[k] += J;
-        members[m->a].v[k] -= J * members[m->a].inverse;
-        members[m->b].v[k] += J * members[m->b].inverse;
+        members[m->a].v[k] -= J * members[m->a].inverse[k];
+        members[m->b].v[k] += J * members[m->b].inverse[k];
         changed = fmax(changed, fabs(v[k]));
     }
     return changed;
@@ -253,7 +257,7 @@ static double visit(member *members, meeting *m) {
     if (m->friction > 0) {
         double drag[3], size = 0, moved = 0;
         for (int k = 0; k < 3; k++) {
-            drag[k] = m->drag[k] - (v[k] - along * m->n[k]) / m->inverse;
+            drag[k] = m->drag[k] - (v[k] - along * m->n[k]) / m->slide;
             size += drag[k] * drag[k];
         }
         size = sqrt(size);
@@ -264,13 +268,43 @@ static double visit(member *members, meeting *m) {
             moved += (now - m->drag[k]) * (now - m->drag[k]);
             m->drag[k] = now;
         }
-        changed = fmax(changed, sqrt(moved) * m->inverse);
+        changed = fmax(changed, sqrt(moved) * m->slide);
     }
     for (int k = 0; k < 3; k++) {
-        members[m->a].v[k] -= J[k] * members[m->a].inverse;
-        members[m->b].v[k] += J[k] * members[m->b].inverse;
+        members[m->a].v[k] -= J[k] * members[m->a].inverse[k];
+        members[m->b].v[k] += J[k] * members[m->b].inverse[k];
     }
     return changed;
+}
+
+// What two members yield along the normal, and at most across it.
+static void make_inverse(const member *a, const member *b, meeting *m) {
+    m->inverse = m->slide = a->inverse[0] + b->inverse[0];
+    if (!a->held && !b->held) return;
+    m->inverse = 0;
+    for (int k = 0; k < 3; k++) {
+        const double inverse = a->inverse[k] + b->inverse[k];
+        m->inverse += m->n[k] * m->n[k] * inverse;
+        m->slide = fmax(m->slide, inverse);
+    }
+}
+
+static member make_member(brunt_body *body, const shared_slot *s, int node, real *at, int entry) {
+    member m = {.body = body, .slot = s->slot, .node = at, .entry = entry};
+    for (int a = 0; a < body->grid.dim; a++) {
+        const bool held = brunt_node_held(&body->grid, (int64_t)s->slot * BRUNT_BLOCK_NODES + node, a);
+        m.v[a] = (double)at[BRUNT_NODE_VELOCITY + a];
+        m.inverse[a] = held ? 0 : 1 / (double)at[0];
+        m.held |= held;
+    }
+    return m;
+}
+
+// The node has what it was given even where it is held: the condition then takes it, and books it.
+static void leave_node(const member *m) {
+    for (int a = 0; a < m->body->grid.dim; a++)
+        m->node[BRUNT_NODE_VELOCITY + a] =
+            (real)(m->inverse[a] > 0 ? m->v[a] : m->v[a] + m->given[a] / (double)m->node[0]);
 }
 
 // How many nodes from the axis of rings a node is, negative beyond it.
@@ -315,6 +349,7 @@ static void meet_at_node(const job *j, group *g, int node, brunt_reach_cloud clo
     if (j->axis && from_axis(j, &j->w->shared[g->first], node) < 0) return;
     member members[MAX_TOGETHER];
     meeting meetings[MAX_TOGETHER * (MAX_TOGETHER - 1) / 2];
+    bool held = false;
     int n = 0, met = 0, dim = j->bodies[0].grid.dim;
     for (int32_t i = 0; i < g->count; i++) {
         const shared_slot *s = &j->w->shared[g->first + i];
@@ -324,10 +359,7 @@ static void meet_at_node(const job *j, group *g, int node, brunt_reach_cloud clo
             g->crowded = true;
             return;
         }
-        member *m = &members[n++];
-        *m = (member){
-            .body = &j->bodies[s->body], .slot = s->slot, .node = at, .entry = i, .inverse = 1 / (double)at[0]};
-        for (int a = 0; a < dim; a++) m->v[a] = (double)at[BRUNT_NODE_VELOCITY + a];
+        members[n++] = make_member(&j->bodies[s->body], s, node, at, i);
     }
     if (n < 2) return;
     double fastest = 0;
@@ -342,21 +374,22 @@ static void meet_at_node(const job *j, group *g, int node, brunt_reach_cloud clo
                            .b = k,
                            .action = low * g->count - low * (low + 1) / 2 + high - low - 1,
                            .friction = j->pairs[pair].friction,
-                           .tied = j->pairs[pair].method == BRUNT_CONTACT_TIED,
-                           .inverse = members[i].inverse + members[k].inverse};
+                           .tied = j->pairs[pair].method == BRUNT_CONTACT_TIED};
             double gap = 0;
             const int told = m->tied ? 1 : make_normal(j, &members[i], &members[k], node, cloud, m->n, &gap);
             if (told < 0) g->starved = true;
             if (told <= 0) continue;
             m->target = -fmax(gap, 0) / j->dt;
-            met++;
+            make_inverse(&members[i], &members[k], m);
+            held |= members[i].held || members[k].held;
+            met += m->tied || m->inverse > 0;
         }
     }
     if (!met) return;
     for (int sweep = 0; sweep < MAX_SWEEPS; sweep++) {
         double changed = 0;
         for (int q = 0; q < met; q++) changed = fmax(changed, visit(members, &meetings[q]));
-        if (met == 1 || changed <= SWEEP_TOLERANCE * fastest) break;
+        if ((met == 1 && !held) || changed <= SWEEP_TOLERANCE * fastest) break;
     }
     const int32_t *coord = members[0].body->grid.slots[members[0].slot].coord;
     double x[3];
@@ -368,15 +401,18 @@ static void meet_at_node(const job *j, group *g, int node, brunt_reach_cloud clo
         double push[3], drag[3], old[3] = {0}, now[3];
         double own = own_share(j, &members[m->b], node);
         relative(members, m, now);
-        for (int k = 0; k < 3; k++) push[k] = own * m->push * m->n[k], drag[k] = own * m->drag[k];
+        for (int k = 0; k < 3; k++) {
+            push[k] = own * m->push * m->n[k], drag[k] = own * m->drag[k];
+            members[m->a].given[k] -= m->push * m->n[k] + m->drag[k];
+            members[m->b].given[k] += m->push * m->n[k] + m->drag[k];
+        }
         for (int k = 0; k < dim; k++)
             old[k] = (double)(members[m->b].node[BRUNT_NODE_OLD + k] - members[m->a].node[BRUNT_NODE_OLD + k]);
         brunt_action *action = &j->w->actions[g->action + m->action];
         brunt_action_book(action, &action->normal_loss, m->tied ? drag : push, x, old, now, rest);
         if (m->friction > 0 && !m->tied) brunt_action_book(action, &action->friction_loss, drag, x, old, now, rest);
     }
-    for (int i = 0; i < n; i++)
-        for (int a = 0; a < dim; a++) members[i].node[BRUNT_NODE_VELOCITY + a] = (real)members[i].v[a];
+    for (int i = 0; i < n; i++) leave_node(&members[i]);
     for (int i = 0; j->axis && i < n; i++) follow_axis(j, &members[i], node);
 }
 

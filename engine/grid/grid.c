@@ -19,9 +19,9 @@ void brunt_grid_init(brunt_grid *grid, int dim, int order, double h, const doubl
 
 void brunt_grid_free(brunt_grid *grid) {
     void *owned[] = {
-        grid->blocks,         grid->block_key,       grid->bin_start, grid->slots,           grid->slot_key,
-        grid->nodes,          grid->scatter,         grid->spare_key, grid->block_table.key, grid->block_table.value,
-        grid->slot_table.key, grid->slot_table.value};
+        grid->blocks,         grid->block_key,        grid->bin_start, grid->slots,           grid->slot_key,
+        grid->nodes,          grid->scatter,          grid->spare_key, grid->block_table.key, grid->block_table.value,
+        grid->slot_table.key, grid->slot_table.value, grid->held};
     for (size_t k = 0; k < sizeof owned / sizeof owned[0]; k++) brunt_free(owned[k]);
     *grid = (brunt_grid){0};
 }
@@ -29,7 +29,7 @@ void brunt_grid_free(brunt_grid *grid) {
 size_t brunt_grid_bytes(const brunt_grid *grid) {
     return grid->blocks_capacity + grid->block_key_capacity + grid->bin_start_capacity + grid->slots_capacity +
            grid->slot_key_capacity + grid->nodes_capacity + grid->scatter_capacity + grid->spare_key_capacity +
-           12 * (size_t)(grid->block_table.capacity + grid->slot_table.capacity);
+           grid->held_capacity + 12 * (size_t)(grid->block_table.capacity + grid->slot_table.capacity);
 }
 
 // ------------------------------------------------------------------------------------------ keys and tables

@@ -9,6 +9,7 @@
 // memory, makes the order of every sum independent of threads, and lets the lists of two bodies be matched by a merge.
 #pragma once
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -72,6 +73,8 @@ typedef struct brunt_grid {
     size_t nodes_capacity; // slot_count x 64 x 8
     real *scatter;
     size_t scatter_capacity; // block_count x span_nodes x 8: what each block's particles give
+    uint8_t *held;
+    size_t held_capacity; // slot_count x 64, a bit for each component that a condition gives; NULL where none acts
     uint64_t *spare_key;
     size_t spare_key_capacity;
     brunt_table block_table, slot_table;
@@ -106,6 +109,10 @@ static inline void brunt_node_local(const brunt_grid *grid, int node, int local[
 }
 static inline real *brunt_slot_nodes(const brunt_grid *grid, int32_t slot) {
     return grid->nodes + (size_t)slot * BRUNT_BLOCK_NODES * BRUNT_NODE_REALS;
+}
+// Whether a condition gives this component of a node's velocity: to contact its mass is infinite.
+static inline bool brunt_node_held(const brunt_grid *grid, int64_t number, int component) {
+    return grid->held && grid->held[number] >> component & 1;
 }
 // The node with global coordinates `at`, NULL when it is not alive.
 real *brunt_grid_node(const brunt_grid *grid, const int32_t at[3]);

@@ -201,8 +201,11 @@ static void make_grid_velocities(brunt_world *world, brunt_body *body, const dou
 }
 
 // Planes that stick or slip and regions, at the nodes of the grids.
-static void apply_conditions(brunt_world *world) {
+static int apply_conditions(brunt_world *world, brunt_error *error) {
     brunt_pass_begin(world, BRUNT_PASS_conditions);
+    for (int i = 0; i < world->body_count; i++)
+        if (brunt_condition_clear(&world->bodies[i]))
+            return fail(world, &world->bodies[i], error, "out of memory at a condition");
     for (int w = 0; w < world->wall_count; w++) {
         brunt_wall *wall = &world->walls[w];
         bool at_nodes = wall->region || (wall->mirror < 0 && wall->plane.condition != BRUNT_SEPARATE);
@@ -210,12 +213,14 @@ static void apply_conditions(brunt_world *world) {
             if (acts_on(wall, &world->bodies[i])) brunt_condition_apply(&world->bodies[i], wall, world->now.time);
     }
     brunt_pass_end(world, all_grid_nodes(world));
+    return BRUNT_OK;
 }
 
 static int constrain_velocities(brunt_world *world, const double gravity[3], double kick, double dt,
                                 brunt_error *error) {
     const bool conditions = world->has_conditions && world->body_count;
-    if (conditions) apply_conditions(world);
+    int status = conditions ? apply_conditions(world, error) : BRUNT_OK;
+    if (status) return status;
     if (world->has_contact) {
         brunt_pass_begin(world, BRUNT_PASS_contact);
         int failed = brunt_multivelocity_apply(
@@ -226,10 +231,12 @@ static int constrain_velocities(brunt_world *world, const double gravity[3], dou
                         failed == -1 ? "out of memory in the contact search"
                                      : "more than 16 bodies meet at one grid node");
         brunt_pass_end(world, all_grid_nodes(world));
+        // What contact gave to nodes that are held.
+        if (conditions && (status = apply_conditions(world, error))) return status;
     }
     if (world->has_surfaces) {
         brunt_pass_begin(world, BRUNT_PASS_surfaces);
-        int status = brunt_surfaces_meet(world, gravity, kick, dt, error);
+        status = brunt_surfaces_meet(world, gravity, kick, dt, error);
         brunt_pass_end(world, world->skin.node_count);
         if (status) {
             char reason[256];
@@ -237,7 +244,7 @@ static int constrain_velocities(brunt_world *world, const double gravity[3], dou
             return fail(world, NULL, error, reason);
         }
     }
-    if (conditions && world->has_surfaces) apply_conditions(world); // what contact gave to nodes that are held
+    if (conditions && world->has_surfaces && (status = apply_conditions(world, error))) return status;
     if (world->has_walls && world->body_count) {
         brunt_pass_begin(world, BRUNT_PASS_walls);
         for (int i = 0; i < world->body_count; i++)
