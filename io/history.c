@@ -338,8 +338,7 @@ const char *brunt_history_column_unit(const brunt_history *history, int32_t c) {
 uint64_t brunt_history_hash(const brunt_history *history) { return history->hash; }
 double brunt_history_time(const brunt_history *history) { return history->rows ? history->columns[0].last : NAN; }
 
-// ---------------------------------------------------------------------------------------------------- lines, one at a
-// time
+// ---------------------------------------------------------------------------------------------------- lines
 
 static bool counts(const char *name) { return strncmp(name, "probe.", 6) != 0; }
 

@@ -15,8 +15,7 @@ static const char *const files[] = {"scene.yaml", "log.txt",       "summary.json
                                     "history.h5", "checkpoint.h5", "checkpoint.previous.h5", "vtu/"};
 enum { FILES = sizeof files / sizeof *files };
 
-// ---------------------------------------------------------------------------------------------------- what may not be
-// touched
+// ---------------------------------------------------------------------------------------------------- what stays
 
 static bool same_file(const struct stat *a, const struct stat *b) {
     return a->st_dev == b->st_dev && a->st_ino == b->st_ino;
