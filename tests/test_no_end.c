@@ -1,6 +1,8 @@
 // Labels: verification
 // Loads, speeds and places without bounds: a run ends with a message in a few steps, or goes on; it never hangs. What
 // guards the test is a number of steps.
+#include <sys/resource.h>
+
 #include "hard_world.h"
 
 enum { MOST_STEPS = 50 };
@@ -85,11 +87,40 @@ START_TEST(endless_planes) {
 }
 END_TEST
 
+// Places and speeds that come in by the state, past all that looks at definitions. What would never end is ended by the
+// processor's time, which does not depend on what else the machine does.
+START_TEST(endless_states) {
+    static const double values[] = {INFINITY, -INFINITY, 1e200, NAN};
+    const struct rlimit seconds = {20, 20};
+    ck_assert_int_eq(setrlimit(RLIMIT_CPU, &seconds), 0);
+    for (int k = 0; k < 2 * (int)(sizeof values / sizeof *values); k++) {
+        brunt_world_def def = blocks(0.01);
+        brunt_world *world = world_take(&def);
+        brunt_error error = {0};
+        for (int32_t b = 0; b < brunt_state_count(world); b++) {
+            const brunt_state_block block = brunt_state_info(world, b);
+            if (strcmp(block.name, "bodies/upper/nodes")) continue;
+            real *node = malloc((size_t)block.count * sizeof *node);
+            brunt_state_get(world, b, node);
+            node[k & 1 ? 4 : 0] = (real)values[k / 2]; // vx, x of the first
+            ck_assert_int_eq(brunt_state_set(world, b, node, block.count, &error), BRUNT_OK);
+            free(node);
+        }
+        int status = BRUNT_OK;
+        for (int s = 0; s < MOST_STEPS && !status; s++) status = brunt_world_step(world, INFINITY, &error);
+        printf("  a node %s %g: %s\n", k & 1 ? "at a speed of" : "at", values[k / 2], error.message);
+        ck_assert_int_eq(status, BRUNT_FAILED);
+        brunt_world_destroy(world);
+    }
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("no_end");
     ADD(endless_pressures);
     ADD(endless_speeds);
     ADD(endless_sizes);
     ADD(endless_planes);
+    ADD(endless_states);
     return suite_main(suite);
 }
