@@ -6,6 +6,10 @@
 // the order of magnitude is what counts, and a constant keeps every point's result its own, and a resumed run the same,
 // where the current greatest speed of the body would not. What grows with a strong shock is the quadratic term.
 //
+// Both have a bound, from which on they would no longer be a correction. Compression sets in within a step that was
+// chosen without q: with 60 and 1500 the first such step made 13 and 2.4 % of an impact's energy, with 5 and 100 at 0.9
+// of the stable step 11 and 53 %; with 1 and 10 it is 2 % at the most.
+//
 // The stress at the end of a step carries q of that step's rate and acts until the next, so the work it does in a step
 // is with the mean of the last q and this one, and q of the last step is state. In the step after a compression ends
 // that work is negative once: the old q still pushes.
@@ -15,8 +19,8 @@ enum { LINEAR, QUADRATIC, DENSITY };
 enum { VISCOUS_WORK, LAST_PRESSURE };
 
 static const brunt_parameter parameters[] = {
-    {"linear", "1", 0.06, 0, INFINITY, false, true, "factor of the linear term"},
-    {"quadratic", "1", 1.5, 0, INFINITY, false, true, "factor of the quadratic term"},
+    {"linear", "1", 0.06, 0, 1, false, false, "factor of the linear term; 1 ends all ringing"},
+    {"quadratic", "1", 1.5, 0, 10, false, false, "factor of the quadratic term"},
 };
 
 static const brunt_state_field state[] = {
