@@ -140,7 +140,7 @@ static void mirror(brunt_mesh *mesh) {
 
 typedef struct trough {
     int dimension;
-    double size;     // [m] of the cube's elements; the trough's are 0.5 m
+    double size;     // [m] of the cube's elements, 0: of points; the trough's are 0.5 m
     double vx, vy;   // [m/s] of the cube
     bool cube_first; // by its name, which is the order of the bodies
 } trough;
@@ -154,8 +154,8 @@ static void add_trough(brunt_world_def *def, const trough *t, bool mirrored) {
 
 static void add_cube(brunt_world_def *def, const trough *t, bool mirrored) {
     brunt_body_def *b = def_box(def, t->cube_first ? "c" : "u", XYZ(1.01, 1.01, 0), XYZ(2.01, 2.01, 1));
-    make_mesh(b, t->dimension, t->dimension == 2 ? BRUNT_QUAD4 : BRUNT_HEX8, t->size);
-    if (mirrored) mirror(&b->mesh);
+    if (t->size > 0) make_mesh(b, t->dimension, t->dimension == 2 ? BRUNT_QUAD4 : BRUNT_HEX8, t->size);
+    if (mirrored && t->size > 0) mirror(&b->mesh);
     b->velocity[0] = mirrored ? t->vy : t->vx, b->velocity[1] = mirrored ? t->vx : t->vy;
 }
 
@@ -185,8 +185,9 @@ static double mirror_error(const trough *t) {
 // C06. Pressed in along the diagonal both walls bear the same, and all of what the cube loses. The node in the inside
 // corner is as near to both: with the first alone they differed by 8 %, and mirror images by 0.5 m/s.
 START_TEST(cube_in_the_corner_of_a_trough) {
-    for (int k = 0; k < 4; k++) {
-        const trough even = {_i ? 3 : 2, k % 2 ? 0.5 : 1.0 / 3, -SPEED, -SPEED, k > 1};
+    for (int k = 0; k < 6; k++) {
+        const double sizes[] = {1.0 / 3, 0.5, 0};
+        const trough even = {_i ? 3 : 2, sizes[k % 3], -SPEED, -SPEED, k > 2};
         trough odd = even;
         odd.vy *= 0.4;
         brunt_world *world = press(&even, false);
@@ -198,7 +199,7 @@ START_TEST(cube_in_the_corner_of_a_trough) {
         const double lost = s.momentum[0] + s.mass * SPEED, J = fabs(f.impulse[0]);
         ck_assert_double_gt(lost, 0.5 * s.mass * SPEED);
         const double balance = fabs(f.impulse[0] - f.impulse[1]) / J, all = fabs(J - lost) / lost;
-        const double mirrored = mirror_error(&even), askew = mirror_error(&odd);
+        const double mirrored = even.size > 0 ? mirror_error(&even) : 0, askew = even.size > 0 ? mirror_error(&odd) : 0;
         printf("%dD, elements of %.2f m: walls differ by %.1e, impulse from what was lost by %.1e; mirror images by "
                "%.1e, %.1e m/s; contact took %.1e, drift %.1e %.1e\n",
                even.dimension, even.size, balance, all, mirrored, askew, e.contact / e.initial, p.linear_drift,
