@@ -238,8 +238,6 @@ typedef struct brunt_fem_sums {
 void brunt_fem_kick(brunt_fem_body *body, int32_t begin, int32_t end, double dt, const double gravity[3], brunt_fem_sums *sums);
 // Moves nodes [begin, end) by dt v. Fills its part of `sums`, leaves the rest.
 void brunt_fem_drift(brunt_fem_body *body, int32_t begin, int32_t end, double dt, brunt_fem_sums *sums);
-// Adds `more` to `sums`; the greater of the speeds.
-void brunt_fem_sums_add(brunt_fem_sums *sums, const brunt_fem_sums *more);
 
 // The faces of a body's surface: those that only one element has. Nodes (of this body) as in brunt_element.face, the 4th is -1 for
 // triangles, 3rd and 4th for 2D; `element` is a slot. Ordered by slot and face. Of a sheet, each of its elements

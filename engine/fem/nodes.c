@@ -74,17 +74,3 @@ void brunt_fem_drift(brunt_fem_body *body, int32_t begin, int32_t end, double dt
     sums->scale_angular = turning;
     sums->speed = sqrt(fastest);
 }
-
-void brunt_fem_sums_add(brunt_fem_sums *sums, const brunt_fem_sums *more) {
-    for (int i = 0; i < 3; i++) {
-        sums->momentum_old[i] += more->momentum_old[i];
-        sums->first_moment[i] += more->first_moment[i];
-        sums->momentum[i] += more->momentum[i];
-        sums->angular[i] += more->angular[i];
-    }
-    sums->mass += more->mass;
-    sums->kinetic += more->kinetic;
-    sums->scale_linear += more->scale_linear;
-    sums->scale_angular += more->scale_angular;
-    sums->speed = fmax(sums->speed, more->speed);
-}
