@@ -132,6 +132,51 @@ START_TEST(gas_at_rest_stays_so) {
 }
 END_TEST
 
+// A cube of one element a side, L = 0.2 m, of sheets of rho t = 1 kg/m^2. Pressure p on its squares, k_f = sqrt(5)/3 p
+// L of which a corner has three, on 0.75 rho t L^2: 4 sqrt(5)/3 p / (rho t L); on their right triangles, k_f = p L /
+// sqrt(3) and a sixth of rho t L^2 to each: 2 sqrt(3) p / (rho t L). Gas adds 2 gamma p / (rho t L), or half where half
+// the corners are held.
+START_TEST(frequency_of_a_cube) {
+    const double p = 1e5, unit = p / 0.2;
+    for (int k = 0; k < 6; k++) {
+        brunt_world_def def = box(k % 2 ? SHEET_TRI : SHEET_QUAD, 1e-3, 0.2);
+        for (int a = 0; a < 3; a++) def.bodies[0].shape.max[a] = 0.2;
+        load(&def, k < 2 ? BRUNT_GROUP_PRESSURE : BRUNT_GROUP_GAS, p, 0);
+        if (k >= 4) {
+            brunt_group_def *held = &def.groups[def.group_count++];
+            *held = brunt_group_def_default();
+            snprintf(held->body, sizeof held->body, "box"), snprintf(held->group, sizeof held->group, "xmin");
+        }
+        brunt_world *world = world_take(&def);
+        const double faces = (k % 2 ? 2 * sqrt(3) : 4 * sqrt(5) / 3) * unit, now = brunt_load_frequency(world, 0);
+        if (k < 2) ck_assert_double_eq_tol(now, faces, 100 * ROUNDING * faces);
+        if (k == 2) ck_assert_double_eq_tol(now, faces + 2 * GAMMA * unit, 100 * ROUNDING * faces);
+        if (k == 4) ck_assert_double_eq_tol(now, faces + GAMMA * unit, 100 * ROUNDING * faces);
+        if (k % 2) ck_assert_double_ge(now, (1 - 100 * ROUNDING) * faces);
+        brunt_world_destroy(world);
+    }
+}
+END_TEST
+
+// One element turned about the axis from r = 0.1 to 0.5 m, 0.3 m high: k_f is p (pi L + 2 pi r) of an upright edge,
+// p (pi L + pi/3 sqrt(2 ((2 r + R)^2 + (r + 2 R)^2))) of a level one.
+START_TEST(frequency_of_a_ring) {
+    brunt_world_def def = box(RING_QUAD, 1e5, 1);
+    load(&def, BRUNT_GROUP_PRESSURE, 1e5, 0);
+    brunt_world *world = world_take(&def);
+    const brunt_fem_body *fem = &world->fems[0];
+    ck_assert_int_eq(fem->node_count, 4);
+    const double level = 0.4 + sqrt(2 * (0.7 * 0.7 + 1.1 * 1.1)) / 3;
+    double most = 0;
+    for (int32_t n = 0; n < 4; n++) {
+        const double r = (double)brunt_fem_node(fem, n)[0], m = (double)brunt_fem_node(fem, n)[BRUNT_FEM_MASS];
+        most = fmax(most, 1e5 * PI * (level + 0.3 + 2 * r) / m);
+    }
+    ck_assert_double_eq_tol(brunt_load_frequency(world, 0), most, 100 * ROUNDING * most);
+    brunt_world_destroy(world);
+}
+END_TEST
+
 // A step that is too long for the gas, though not for the sheet, is refused as such.
 START_TEST(the_step_is_named) {
     brunt_world_def def = box(SHEET_QUAD, 1e5, 0.1);
@@ -155,6 +200,8 @@ int main(void) {
     tcase_set_timeout(all, 0);
     tcase_add_test(all, step_of_a_cube_of_gas);
     tcase_add_loop_test(all, bound_is_one_and_a_close_one, 0, 8);
+    tcase_add_test(all, frequency_of_a_cube);
+    tcase_add_test(all, frequency_of_a_ring);
     tcase_add_loop_test(all, gas_at_rest_stays_so, 0, 12);
     tcase_add_test(all, the_step_is_named);
     suite_add_tcase(suite, all);
