@@ -1,6 +1,6 @@
 // Particles that are to leave a body that erodes, or have left it and stay as mass: while a step updates them, their
 // deformation gradient stands still. (Who leaves is found out at the end of the step,
-// engine/solve/erosion_particles.c.)
+// engine/account/erosion_particles.c.)
 #include "body.h"
 #include "lanes.h"
 #include "transfer.h"

@@ -504,7 +504,7 @@ int32_t brunt_effect_count(const brunt_world *world);
 brunt_effect brunt_world_effect(const brunt_world *world, int32_t effect);
 
 // What a pass has cost so far. `units`: particles, nodes or elements it has gone over, all steps together; bytes and flops per unit are counted from
-// the arrays and the arithmetic of its kernels (engine/solve/work.c), 0 where they depend on what meets what.
+// the arrays and the arithmetic of its kernels (engine/scheme/work.c), 0 where they depend on what meets what.
 typedef struct brunt_pass {
     const char *name; int64_t calls; double seconds; double thread_seconds[64];
     const char *unit; double units, bytes_per_unit, flops_per_unit;

@@ -1,6 +1,6 @@
 // What each pass of a run took, and how far that is from what the machine can do at most (base/roofline.h).
 //
-// The least time a pass can take is max(bytes / bandwidth, flops / peak) by its counted work (engine/solve/work.c); its share of
+// The least time a pass can take is max(bytes / bandwidth, flops / peak) by its counted work (engine/scheme/work.c); its share of
 // the roofline is that over the time it took. Above 1: its arrays stay in the caches between passes, which the count of bytes does
 // not assume.
 #pragma once
