@@ -5,8 +5,8 @@
 // velocity, which makes the work of an impulse equal to the change of kinetic energy it causes.
 #pragma once
 
-#include "body.h"
-#include "threads.h"
+#include "mpm/mpm_body.h"
+#include "base/parallel.h"
 
 // A condition that is imposed from outside, and what it has done so far.
 typedef struct brunt_action {

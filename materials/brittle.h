@@ -17,7 +17,7 @@
 // above 2 G / K is more; it lasts as long as that stress.
 #pragma once
 
-#include "j2.h"
+#include "materials/j2.h"
 
 // Damage of 1 says that a point has failed and may be taken away (material.h). Material that is but fractured keeps its residual
 // strength: its damage stays this far below.

@@ -13,7 +13,7 @@
 // The stress at the end of a step carries q of that step's rate and acts until the next, so the work it does in a step
 // is with the mean of the last q and this one, and q of the last step is state. In the step after a compression ends
 // that work is negative once: the old q still pushes.
-#include "tensor.h"
+#include "materials/tensor.h"
 
 enum { LINEAR, QUADRATIC, DENSITY };
 enum { VISCOUS_WORK, LAST_PRESSURE };

@@ -14,7 +14,7 @@
 // The pressure is linear in the logarithmic elastic volume, p = -K log(J / J_p), energy K/2 log^2(J / J_p). Below
 // -tension the material is open: p stays, and it closes where it opened (brittle.h); this is no plastic flow and leaves
 // no volume behind.
-#include "brittle.h"
+#include "materials/brittle.h"
 
 enum { BULK = J2_CONSTANTS, COHESION, FRICTION, DILATANCY, HARDENING, TENSION };
 enum { PLASTIC_VOLUME = J2_MODEL_STATE };

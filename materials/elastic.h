@@ -1,7 +1,7 @@
 // What the elastic models without state share: two parameters, their constants, and the loop over dimension.
 #pragma once
 
-#include "tensor.h"
+#include "materials/tensor.h"
 
 // PLANE: E / (1 - nu^2), the longitudinal modulus of a sheet in plane stress.
 enum { ELASTIC_LAMBDA, ELASTIC_MU, ELASTIC_INVERSE_DENSITY, ELASTIC_NU, ELASTIC_PLANE };

@@ -1,7 +1,7 @@
 // What equations of state with an internal energy of their own share: the energy a point starts with, and its state.
 #pragma once
 
-#include "tensor.h"
+#include "materials/tensor.h"
 
 enum { INITIAL_ENERGY, ENERGY_CONSTANTS }; // the first constants: [J/m^3]; a model's own begin at ENERGY_CONSTANTS
 enum { INTERNAL_ENERGY, COMPRESSION_WORK };

@@ -19,7 +19,7 @@
 // is the plastic volumetric strain.
 //
 // Compaction is dissipated (brittle.h: the stored energy is that of unloading) and counted as plastic work.
-#include "brittle.h"
+#include "materials/brittle.h"
 
 enum {
     K1 = J2_CONSTANTS,

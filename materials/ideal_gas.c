@@ -8,7 +8,7 @@
 // stress with its rate at either end, which depends on the rotation of the frame.
 //
 // Internal energy is that of the start with the work done on the gas by its pressure alone: heat is where it came from.
-#include "energy_state.h"
+#include "materials/energy_state.h"
 
 enum { GAMMA_1 = ENERGY_CONSTANTS, SOUND }; // gamma - 1, gamma (gamma - 1) / rho0
 

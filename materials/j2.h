@@ -24,7 +24,7 @@
 //   notation  m = tr b/3   d = dev b   q = sqrt(3/2) |s|, s = mu d   delta: increment of equivalent plastic strain
 #pragma once
 
-#include "tensor.h"
+#include "materials/tensor.h"
 
 enum { J2_MU, J2_KAPPA, J2_INVERSE_DENSITY, J2_CONSTANTS };
 

@@ -6,7 +6,7 @@
 //
 // Strain, rate and temperature are all taken at the end of the step, in one equation for the plastic increment: the
 // flow stress at the end is the formula's to the solver's tolerance (1e-10), whatever the step.
-#include "j2.h"
+#include "materials/j2.h"
 
 enum {
     STATIC = J2_CONSTANTS,

@@ -13,7 +13,7 @@
 //           cut-off value of negative triaxiality for fracture") found none below -1/3 in upsetting tests; published
 //           sets of D1..D3 are fitted without it, and with D3 of -0.5 a third of the damage of a shear band under
 //           pressure may lie there, so that it belongs to a set and not to the law.
-#include "tensor.h"
+#include "materials/tensor.h"
 
 enum { D1, D2, D3, D4, D5, INVERSE_RATE_ZERO, REFERENCE, INVERSE_RANGE, ONSET_SLOPE, SPALL, CUTOFF };
 enum { DAMAGE, INTEGRITY, INTEGRITY_BEFORE };

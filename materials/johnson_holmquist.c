@@ -18,7 +18,7 @@
 // eta and mu differ by a part mu. For mu < 0 the paper has K1 mu; with K1 eta W is (K1 eta + dP)^2 / (2 K1), which ends
 // at 0 where fragments part (with K1 mu it ends below 0). Where the net compression K1 eta + dP is negative nothing is
 // pushed apart, and U is lost. dP stays when the load goes: it is the room that fragments take.
-#include "brittle.h"
+#include "materials/brittle.h"
 
 enum {
     K1 = J2_CONSTANTS,

@@ -31,7 +31,7 @@
 //   e1 = e0 - (p0 + p1)/2 dJ + Q,  p1 = a + b e1,   in closed form, so that the energy closes while F changes.
 //
 // Time step: what is not burnt has D for its wave speed, so that the front never skips a cell.
-#include "energy_state.h"
+#include "materials/energy_state.h"
 
 enum {
     DENSITY = ENERGY_CONSTANTS,

@@ -11,7 +11,7 @@
 //
 // A sheet is seen from a frame that turns with it, where the small strain is Biot's, e_i = l_i - 1: in plane stress W =
 // E'/2 (e1^2 + e2^2 + 2 nu e1 e2) with E' = E / (1 - nu^2). That is invariant under rotation, and tau_i = l_i dW/de_i.
-#include "sheet.h"
+#include "materials/sheet.h"
 
 BRUNT_INLINE void small_strain(int dim, const lanes H[9], lanes eps[6]) {
     const real half = (real)0.5;

@@ -1,10 +1,10 @@
 // The lists of models. A new model is a file of its own and a line here; everything else (keys, checks, tests) follows.
-#include "material.h"
+#include "materials/material.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "lanes.h"
+#include "base/simd.h"
 
 #define STRENGTH_MODELS(X)                                                                                             \
     X(brunt_linear_elastic)                                                                                            \

@@ -7,7 +7,7 @@
 
 #include <math.h>
 
-#include "lanes_math.h"
+#include "base/simd_math.h"
 
 // F with rows one after the other, 3 x 3. Upper bound of the square of the strain; J > 0 is wanted.
 BRUNT_INLINE lanes log_strain_bound(const lanes F[9]) {

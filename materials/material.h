@@ -24,7 +24,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "real.h"
+#include "base/real.h"
 
 enum { BRUNT_MAX_PARAMETERS = 24, BRUNT_MAX_CONSTANTS = 48, BRUNT_MAX_STATE = 24 };
 

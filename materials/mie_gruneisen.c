@@ -20,7 +20,7 @@
 // of bounding and solving: both pressures lie on the same side of -tension, as 1 + g dJ/2 > 0.
 // A point that has failed (integrity 0) bears none, from the step after on: the bound then differs at both ends of a
 // step.
-#include "energy_state.h"
+#include "materials/energy_state.h"
 
 enum { DENSITY = ENERGY_CONSTANTS, SOUND_SPEED, SLOPE, GAMMA, STIFFNESS, TENSION };
 

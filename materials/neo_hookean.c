@@ -3,7 +3,7 @@
 //   psi = mu/2 (tr b - 3) - mu ln J + lambda/2 (ln J)^2,   tau = mu (b - I) + lambda ln(J) I.
 //
 // In plane stress l3 makes tau_33 = mu (l3^2 - 1) + lambda ln(l1 l2 l3) vanish; then tau_i = mu (l_i^2 - l3^2).
-#include "sheet.h"
+#include "materials/sheet.h"
 
 BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_points *points) {
     update_record record = update_begin();

@@ -17,7 +17,7 @@
 // quadratic kernels' ends alone has (dN/dx)^2 / N = 2 / h^2 of its own: 5.3 / h^2 with its neighbours, over all places
 // of an edge and up to one particle a cell, along one axis, and less than half of that from each of the others. With Q
 // for 4 / h^2 a lump of material points came apart at cfl 0.7.
-#include "tensor.h"
+#include "materials/tensor.h"
 
 enum { VISCOSITY, DIFFUSION }; // 2 nu_l
 enum { VISCOUS_WORK };

@@ -15,7 +15,7 @@
 //
 // c^2 = (a' + b' e + b p J^2) / rho0, slopes with mu. Where a set of coefficients has no real speed of sound (in
 // expansion past its use) it limits no step.
-#include "energy_state.h"
+#include "materials/energy_state.h"
 
 enum { DENSITY = ENERGY_CONSTANTS, C0, C1, C2, C3, C4, C5, C6, TENSION };
 

@@ -1,11 +1,11 @@
-#include "prepared.h"
+#include "materials/prepared.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "error.h"
-#include "lanes.h"
+#include "base/error.h"
+#include "base/simd.h"
 
 static int prepare(const brunt_material_def *def, brunt_component component, const brunt_model *model,
                    const double *given, bool with_eos, real *constants, brunt_error *error) {

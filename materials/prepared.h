@@ -2,7 +2,7 @@
 #pragma once
 
 #include "brunt.h"
-#include "material.h"
+#include "materials/material.h"
 
 typedef enum brunt_component { BRUNT_STRENGTH, BRUNT_VISCOSITY, BRUNT_EOS, BRUNT_FAILURE, BRUNT_COMPONENTS } brunt_component;
 

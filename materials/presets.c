@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "brunt.h"
-#include "error.h"
-#include "tensor.h"
+#include "base/error.h"
+#include "materials/tensor.h"
 
 enum { MOST_VALUES = 40 };
 

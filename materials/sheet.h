@@ -30,7 +30,7 @@
 // but either may be gone within the step.
 #pragma once
 
-#include "elastic.h"
+#include "materials/elastic.h"
 
 typedef struct sheet_response {
     lanes tau[2];    // principal Kirchhoff stresses [Pa]

@@ -7,7 +7,7 @@
 //
 // In plane stress W = E'/2 (E1^2 + E2^2 + 2 nu E1 E2) with E' = E / (1 - nu^2) and the principal Green strains of the
 // plane, tau_i = l_i^2 S_i.
-#include "sheet.h"
+#include "materials/sheet.h"
 
 BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_points *points) {
     update_record record = update_begin();

@@ -7,7 +7,7 @@
 // which keeps the digits of small compressions, and of which each term is positive.
 //
 // Beyond `tension` the liquid tears: p stays at -tension however far it expands, and U grows by tension dJ.
-#include "tensor.h"
+#include "materials/tensor.h"
 
 enum { DENSITY, SOUND_SPEED, GAMMA, MODULUS, TENSION, TEAR };
 

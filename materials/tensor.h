@@ -7,8 +7,8 @@
 //   H = F - I     J = det F     B = F F^T - I     e:f full contraction of symmetric tensors
 #pragma once
 
-#include "lanes_math.h"
-#include "material.h"
+#include "base/simd_math.h"
+#include "materials/material.h"
 
 #ifdef BRUNT_FLOAT
 #define MATERIAL_REAL_MAX FLT_MAX

@@ -1,7 +1,7 @@
 // Von Mises plasticity with isotropic hardening, finite strain (kinematics and return: j2.h):
 //   Y = yield + hardening eps_p + (saturation_stress - yield) (1 - exp(-saturation_rate eps_p)),
 // the last term (Voce) only when a saturation stress is given. Linear hardening returns in closed form.
-#include "j2.h"
+#include "materials/j2.h"
 
 enum { YIELD = J2_CONSTANTS, HARDENING, RISE, RATE };
 

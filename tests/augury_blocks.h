@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "augury.h"
+#include "contact/methods/augury.h"
 
 typedef enum blocks_kind { BLOCKS_TETS, BLOCKS_HEXES, BLOCKS_PLANE } blocks_kind;
 

@@ -8,8 +8,8 @@
 #include <string.h>
 
 #include "brunt.h"
-#include "memory.h"
-#include "real.h"
+#include "base/memory.h"
+#include "base/real.h"
 
 // What rounding may leave of a conserved quantity after some hundred steps, relative.
 #ifdef BRUNT_FLOAT

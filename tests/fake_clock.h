@@ -5,7 +5,7 @@
 #include <stdatomic.h>
 #include <stdint.h>
 
-#include "threads.h"
+#include "base/parallel.h"
 
 static _Atomic int64_t fake_ticks;
 static double fake_tick = 0x1p-16; // [s]

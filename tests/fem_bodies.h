@@ -6,8 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "fem.h"
-#include "memory.h"
+#include "fem/fem_body.h"
+#include "base/memory.h"
 
 static uint64_t random_state = 1;
 static inline double uniform(double low, double high) {

@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "memory.h"
-#include "study.h"
+#include "base/memory.h"
+#include "io/study/study.h"
 
 static inline void made_axis(brunt_study *study, const char *name, const char *unit, brunt_study_role role, int32_t count) {
     brunt_study_axis *axis = &study->axes[study->axis_count];

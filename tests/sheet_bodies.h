@@ -2,7 +2,7 @@
 #pragma once
 
 #include "fem_bodies.h"
-#include "layout.h"
+#include "fem/layout.h"
 
 typedef struct sheet_options {
     const char *model; // neo-hookean when NULL

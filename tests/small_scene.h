@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "memory.h"
-#include "scene.h"
+#include "base/memory.h"
+#include "io/scene/scene.h"
 
 static const char small_scene_text[] =
     "brunt: 1\n"

@@ -6,9 +6,9 @@
 #include <stdlib.h>
 
 #include "augury_blocks.h"
-#include "augury_grid.h"
+#include "contact/methods/augury_grid.h"
 #include "hard_case.h"
-#include "memory.h"
+#include "base/memory.h"
 
 typedef enum form { SURFACE, SMOOTH, PAPER_APIC, PAPER_PIC, FORMS } form;
 

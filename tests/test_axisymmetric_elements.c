@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 #include "fem_bodies.h"
-#include "layout.h"
+#include "fem/layout.h"
 
 static const double tolerance = sizeof(real) == 4 ? 2e-5 : 1e-11;
 static const brunt_element_kind kinds[] = {BRUNT_TRI3, BRUNT_QUAD4};

@@ -2,7 +2,7 @@
 // Material points that are rings about an axis: closed forms of rings, cylinders, tubes, bars and spheres, the axis
 // itself, contact, the ledgers, and the bits.
 #include "def_world.h"
-#include "world.h"
+#include "world/world.h"
 
 #ifdef BRUNT_FLOAT
 #define TOLERANCE(in_double, in_float) (in_float)

@@ -5,9 +5,9 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 
-#include "checkpoint.h"
-#include "history.h"
-#include "memory.h"
+#include "io/output/checkpoint.h"
+#include "io/output/history.h"
+#include "base/memory.h"
 
 static brunt_scene scene;
 static brunt_world *world;

@@ -2,7 +2,7 @@
 // What ends the sweeps of contact: their greatest number (contact.iterations), and how little the last one corrected
 // (contact.tolerance). Both must tell, alone, on what is left of the approach.
 #include "hard_world.h"
-#include "points.h"
+#include "contact/constraint/constraint.h"
 
 // ------------------------------------------------------------------------------------------ points alone
 

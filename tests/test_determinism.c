@@ -1,7 +1,7 @@
 // Labels: conservation
 // The same bits, whatever the number of threads and however often the run was interrupted; and no memory that grows.
 #include "hard_world.h"
-#include "threads.h"
+#include "base/parallel.h"
 
 static brunt_material_def *copper(brunt_world_def *def) {
     static const double strength[] = {124e9, 0.34, 90e6, 292e6, 0.31, 0.025, 1.09, 1, 1356, 293.15, 383, 0.9};

@@ -9,10 +9,10 @@
 #include <string.h>
 
 #include "fem_bodies.h"
-#include "lanes.h"
-#include "layout.h"
-#include "memory.h"
-#include "threads.h"
+#include "base/simd.h"
+#include "fem/layout.h"
+#include "base/memory.h"
+#include "base/parallel.h"
 
 static const double tolerance = sizeof(real) == 4 ? 2e-5 : 1e-11;
 

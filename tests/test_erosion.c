@@ -4,7 +4,7 @@
 #include "def_world.h"
 
 #include "hard_case.h"
-#include "world.h"
+#include "world/world.h"
 
 static const double E = 1e7, NU = 0.3, DENSITY = 1000;
 

@@ -4,7 +4,7 @@
 // through the marks that failure and strain set.
 #include "hard_case.h"
 #include "hard_world.h"
-#include "world.h"
+#include "world/world.h"
 
 static double random_number(uint64_t *state) {
     *state = *state * 6364136223846793005u + 1442695040888963407u;

@@ -4,8 +4,8 @@
 // and the self-similar wave behind it (Fickett and Davis, Detonation (1979), chapter 2).
 #include "def_world.h"
 
-#include "lanes.h"
-#include "prepared.h"
+#include "base/simd.h"
+#include "materials/prepared.h"
 
 #ifdef BRUNT_FLOAT
 #define TOLERANCE(in_double, in_float) (in_float)

@@ -3,8 +3,8 @@
 // temperature do to them; strength and tension that go; and the energy of it all, of points and of bodies torn apart.
 #include "def_world.h"
 
-#include "lanes.h"
-#include "prepared.h"
+#include "base/simd.h"
+#include "materials/prepared.h"
 
 #ifdef BRUNT_FLOAT
 #define TOLERANCE(in_double, in_float) (in_float)

@@ -3,8 +3,8 @@
 // a gas let into vacuum and of a swinging drop, a column under its weight, the flow between two walls.
 #include "def_world.h"
 
-#include "lanes.h"
-#include "prepared.h"
+#include "base/simd.h"
+#include "materials/prepared.h"
 
 #ifdef BRUNT_FLOAT
 #define TOLERANCE(in_double, in_float) (in_float)

@@ -10,9 +10,9 @@
 #include <unistd.h>
 
 #include "brunt.h"
-#include "gmsh.h"
+#include "io/mesh/gmsh.h"
 #include "gmsh_writer.h"
-#include "memory.h"
+#include "base/memory.h"
 
 static char path[64];
 static size_t live;

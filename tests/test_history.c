@@ -4,10 +4,10 @@
 #include <math.h>
 #include <unistd.h>
 
-#include "history.h"
-#include "memory.h"
-#include "places.h"
-#include "real.h"
+#include "io/output/history.h"
+#include "base/memory.h"
+#include "io/output/places.h"
+#include "base/real.h"
 
 static brunt_scene scene;
 static brunt_world *world;

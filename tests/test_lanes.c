@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "lanes_math.h"
+#include "base/simd_math.h"
 
 #ifdef BRUNT_FLOAT
 #define REAL_MAX FLT_MAX

@@ -1,7 +1,7 @@
 // Labels: unit stability
 // Gas and pressure that follow a surface have a stiffness: the stable step knows it. C18: the share of the limit.
 #include "def_world.h"
-#include "world.h"
+#include "world/world.h"
 
 static const double GAMMA = 1.4;
 

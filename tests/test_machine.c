@@ -5,7 +5,7 @@
 #include <math.h>
 #include <unistd.h>
 
-#include "machine.h"
+#include "io/performance/machine.h"
 
 static const char head[] = "# processor: Some Processor 7\n"
                            "# cores: 2\n"

@@ -7,9 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "lanes.h"
-#include "material.h"
-#include "memory.h"
+#include "base/simd.h"
+#include "materials/material.h"
+#include "base/memory.h"
 
 // A tolerance for either precision of the engine.
 #ifdef BRUNT_FLOAT

@@ -3,9 +3,9 @@
 
 #include <math.h>
 
-#include "measures.h"
-#include "memory.h"
-#include "real.h"
+#include "io/output/measures.h"
+#include "base/memory.h"
+#include "base/real.h"
 
 // Positions and gradients carry the precision of the build.
 static const double rounding = sizeof(real) == 4 ? 1e-5 : 1e-12;

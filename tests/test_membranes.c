@@ -4,7 +4,7 @@
 // closed forms (uniaxial tension, the tense string, Hencky's membrane).
 #include <stdlib.h>
 
-#include "error.h"
+#include "base/error.h"
 #include "sheet_bodies.h"
 
 static const double tolerance = sizeof(real) == 4 ? 2e-5 : 1e-11;

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "brunt.h"
-#include "memory.h"
+#include "base/memory.h"
 
 static const double pi = 3.14159265358979323846;
 enum { SOLID_KINDS = BRUNT_MEMBRANE_QUAD4 }; // those that fill their room; sheets follow in the list

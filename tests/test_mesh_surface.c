@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "brunt.h"
-#include "memory.h"
+#include "base/memory.h"
 
 static const double pi = 3.14159265358979323846;
 static const brunt_element_kind kinds[] = {BRUNT_MEMBRANE_QUAD4, BRUNT_MEMBRANE_TRI3};

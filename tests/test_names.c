@@ -1,9 +1,9 @@
 // Labels: io
 // Text and names: byte order marks, NUL characters, and names that make one column of the history of two things.
-#include "gmsh.h"
-#include "history.h"
+#include "io/mesh/gmsh.h"
+#include "io/output/history.h"
 #include "small_scene.h"
-#include "study.h"
+#include "io/study/study.h"
 
 #define MARK "\xEF\xBB\xBF"
 

@@ -5,9 +5,9 @@
 #include <math.h>
 
 #include "brunt.h"
-#include "scene_keys.h"
+#include "io/scene/scene_keys.h"
 #include "small_scene.h"
-#include "units.h"
+#include "io/scene/units.h"
 
 // What the two small scenes lack of keys with numbers.
 static const char rich_text[] =

@@ -2,8 +2,8 @@
 // Material points that leave their bodies: what they take along is booked to the last bit that rounding leaves, nothing
 // else notices, and a run goes on with the same bits from a state with gaps in it.
 #include "def_world.h"
-#include "log_strain.h"
-#include "world.h"
+#include "materials/log_strain.h"
+#include "world/world.h"
 
 // A block that turns, flies and is shaken through and through, so that points strain by some tenths at random.
 static brunt_world_def shaken(int dimension, brunt_transfer transfer, brunt_kernel kernel, int cells) {

@@ -2,7 +2,7 @@
 // How long steps may be for material points: alone in their cells, and where they shorten without end.
 #include "hard_case.h"
 #include "hard_world.h"
-#include "stable.h"
+#include "mpm/courant.h"
 
 static const brunt_kernel kernels[] = {BRUNT_LINEAR, BRUNT_QUADRATIC, BRUNT_CUBIC};
 static const brunt_transfer transfers[] = {BRUNT_PIC, BRUNT_FLIP, BRUNT_APIC};
@@ -16,7 +16,7 @@ typedef struct lone {
 } lone;
 
 // A particle or two with no neighbours, breathing a little, at 11 places in a cell: how many times as great as at the
-// start its energy is at most. See engine/mpm/stable.c for what limits the step.
+// start its energy is at most. See engine/mpm/courant.c for what limits the step.
 static double breathing_growth(const lone *c, double cfl) {
     const double h = 0.1;
     double worst = 0;

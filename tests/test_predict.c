@@ -5,8 +5,8 @@
 #include <math.h>
 
 #include "fake_clock.h"
-#include "history.h"
-#include "predict.h"
+#include "io/output/history.h"
+#include "io/performance/predict.h"
 
 // Two soft blocks of material points that meet after an eighth of the time: contact costs nothing until then.
 static const char touching[] =

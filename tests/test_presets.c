@@ -3,8 +3,8 @@
 // that its equation of state was measured by.
 #include "def_world.h"
 
-#include "lanes.h"
-#include "prepared.h"
+#include "base/simd.h"
+#include "materials/prepared.h"
 
 #ifdef BRUNT_FLOAT
 #define TOLERANCE(in_double, in_float) (in_float)

@@ -4,11 +4,11 @@
 #include <jansson.h>
 #include <math.h>
 
-#include "counters.h"
+#include "io/performance/counters.h"
 #include "fake_clock.h"
-#include "profile.h"
-#include "roofline.h"
-#include "run.h"
+#include "io/performance/profile.h"
+#include "io/performance/roofline.h"
+#include "io/run/run.h"
 #include "small_scene.h"
 
 static void set_up(void) { small_folder_make(); }

@@ -15,10 +15,10 @@
 
 #include "hard_case.h"
 #include "small_scene.h"
-#include "memory.h"
-#include "scene.h"
-#include "scene_keys.h"
-#include "units.h"
+#include "base/memory.h"
+#include "io/scene/scene.h"
+#include "io/scene/scene_keys.h"
+#include "io/scene/units.h"
 
 static const char good[] =
     "brunt: 1\n"

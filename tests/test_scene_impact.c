@@ -5,9 +5,9 @@
 
 #include <math.h>
 
-#include "measures.h"
-#include "memory.h"
-#include "scene_keys.h"
+#include "io/output/measures.h"
+#include "base/memory.h"
+#include "io/scene/scene_keys.h"
 
 // `materials` and what else a test is about are put in front of two touching blocks.
 static const char blocks[] =

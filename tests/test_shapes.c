@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "brunt.h"
-#include "fill.h"
-#include "memory.h"
+#include "geometry/fill.h"
+#include "base/memory.h"
 
 static const double pi = 3.14159265358979323846;
 

@@ -7,9 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "lanes.h"
-#include "memory.h"
-#include "prepared.h"
+#include "base/simd.h"
+#include "base/memory.h"
+#include "materials/prepared.h"
 
 #ifdef BRUNT_FLOAT
 #define TOLERANCE(in_double, in_float) (in_float)

@@ -14,9 +14,9 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "memory.h"
-#include "scene_keys.h"
-#include "study_reader.h"
+#include "base/memory.h"
+#include "io/scene/scene_keys.h"
+#include "io/study/study_reader.h"
 
 static const char scene_text[] =
     "brunt: 1\n"

@@ -7,7 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "study_view.h"
+#include "io/study/study_view.h"
 
 static const double cells[] = {8e-3, 4e-3, 2e-3, 1e-3, 0.5e-3};
 static const char *const methods[] = {"APIC, quadratic", "FEM", "FLIP | 'x'_y"};

@@ -2,7 +2,7 @@
 // Material points whose kernels live in the undeformed configuration: they stretch as far as the material does, and
 // what that costs is said in numbers (angular momentum).
 #include "def_world.h"
-#include "world.h"
+#include "world/world.h"
 
 static const double E = 1e6, NU = 0.3, DENSITY = 1000;
 

@@ -9,10 +9,10 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
 
-#include "observers.h"
-#include "run.h"
-#include "threads.h"
-#include "trace.h"
+#include "io/performance/observers.h"
+#include "io/run/run.h"
+#include "base/parallel.h"
+#include "io/performance/trace.h"
 
 // ---------------------------------------------------------------------------------------------------- reading
 

@@ -8,9 +8,9 @@
 #include <signal.h>
 #include <unistd.h>
 
-#include "element.h"
-#include "memory.h"
-#include "vtu.h"
+#include "fem/element.h"
+#include "base/memory.h"
+#include "io/output/vtu.h"
 
 static char folder[64];
 

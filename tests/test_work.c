@@ -2,7 +2,7 @@
 // Bytes and flops of the passes as counted: against the arrays there are, against instructions counted by valgrind, and
 // by what they depend on.
 #include "def_world.h"
-#include "world.h"
+#include "world/world.h"
 
 enum { STEPS = 4 };
 

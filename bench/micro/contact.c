@@ -7,7 +7,7 @@
 // other, each in a world of its own. -o: rows of a machine's file (bench/machines/README.md) are appended.
 #include <math.h>
 
-#include "memory.h"
+#include "base/memory.h"
 #include "rows.h"
 
 enum { ROUND_LIMIT = 32, THREADS_LIMIT = 4, CASES = 3, WARM_UP = 3 };

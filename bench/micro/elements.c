@@ -7,7 +7,7 @@
 // on, sections of rings. Rounds go through all configurations one after the other; the table gives the median of the
 // rounds and the least. --growth: the cost over size, hexahedra and tetrahedra alone, from 10,000 to a million. -o:
 // rows of a machine's file (bench/machines/README.md) are appended.
-#include "fem.h"
+#include "fem/fem_body.h"
 #include "typical.h"
 
 enum { ROUND_LIMIT = 64, PASSES = 3, THREAD_LIMIT = 16, BENCH_LIMIT = 16 };

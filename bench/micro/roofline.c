@@ -5,8 +5,8 @@
 //
 // 1, 2, 4, ... threads and as many as there are. -o: rows of a machine's file (bench/machines/README.md) are appended;
 // in the column of the least stands the greatest, which says what the machine can do.
-#include "roofline.h"
-#include "machine.h"
+#include "io/performance/roofline.h"
+#include "io/performance/machine.h"
 #include "rows.h"
 
 enum { ROUND_LIMIT = 8, COUNT_LIMIT = 16 };

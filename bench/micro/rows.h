@@ -9,8 +9,8 @@
 #include <unistd.h>
 
 #include "brunt.h"
-#include "lanes.h"
-#include "threads.h"
+#include "base/simd.h"
+#include "base/parallel.h"
 
 #ifndef BRUNT_BENCH_FLAGS
 #define BRUNT_BENCH_FLAGS "unknown"

@@ -11,7 +11,7 @@
 #include <sys/wait.h>
 
 #include "rows.h"
-#include "scene.h"
+#include "io/scene/scene.h"
 
 enum { SCENE_LIMIT = 128, THREADS_LIMIT = 4, ROUND_LIMIT = 16, SECONDS_LIMIT = 120 };
 

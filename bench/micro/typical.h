@@ -7,8 +7,8 @@
 #include <string.h>
 
 #include "brunt.h"
-#include "material.h"
-#include "memory.h"
+#include "materials/material.h"
+#include "base/memory.h"
 #include "rows.h"
 
 static const double typical_density = 8960;

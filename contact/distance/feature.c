@@ -1,4 +1,4 @@
-#include "feature.h"
+#include "contact/distance/feature.h"
 
 #include <math.h>
 #include <string.h>

@@ -5,7 +5,7 @@
 // outside. Of two bodies that are mirror images neither has a side of its own to slide off to.
 #pragma once
 
-#include "closest.h"
+#include "contact/distance/point_facet.h"
 
 enum { BRUNT_FEATURE_NODES = 32 };
 

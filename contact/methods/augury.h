@@ -11,8 +11,8 @@
 // nodes mean, from `old` to what they are now, is external_work - normal_loss - friction_loss plus what the forces did.
 #pragma once
 
-#include "contact.h"
-#include "skin.h"
+#include "contact/contact.h"
+#include "contact/surface/contact_surface.h"
 
 typedef struct brunt_augury_workspace brunt_augury_workspace;
 

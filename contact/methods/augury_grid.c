@@ -1,10 +1,10 @@
-#include "augury_grid.h"
+#include "contact/methods/augury_grid.h"
 
 #include <string.h>
 
-#include "hash.h"
-#include "memory.h"
-#include "threads.h"
+#include "base/hash.h"
+#include "base/memory.h"
+#include "base/parallel.h"
 
 enum { FIRST_SLOTS = 1024, BLOCK_GRAIN = 4 };
 static const double FARTHEST = 1 << 20; // [blocks] coordinates are packed in 21 bits

@@ -12,7 +12,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "threads.h"
+#include "base/parallel.h"
 
 enum { BRUNT_AUGURY_EDGE = 4, BRUNT_AUGURY_STENCIL = 64, BRUNT_AUGURY_COLOURS = 8 };
 // Points from which on a phase is worth more than one thread: a pair goes through some hundred phases a step, and on a

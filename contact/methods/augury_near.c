@@ -1,11 +1,11 @@
-#include "augury_near.h"
+#include "contact/methods/augury_near.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "memory.h"
-#include "threads.h"
+#include "base/memory.h"
+#include "base/parallel.h"
 
 enum { RUN = 32, GRAIN = 16 };
 

@@ -1,6 +1,6 @@
-#include "augury_work.h"
+#include "contact/methods/augury_work.h"
 
-#include "memory.h"
+#include "base/memory.h"
 
 brunt_augury_workspace *brunt_augury_work(brunt_augury_workspace **work) {
     if (!*work) *work = brunt_alloc(sizeof **work);

@@ -1,9 +1,9 @@
 // What the forms of augury keep between steps: room, and nothing else.
 #pragma once
 
-#include "augury.h"
-#include "augury_grid.h"
-#include "augury_near.h"
+#include "contact/methods/augury.h"
+#include "contact/methods/augury_grid.h"
+#include "contact/methods/augury_near.h"
 
 typedef struct brunt_augury_meet brunt_augury_meet;     // surface and smooth (augury_surface.c)
 typedef struct brunt_augury_filter brunt_augury_filter; // paper (augury_paper.c)

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "world.h"
+#include "world/world.h"
 
 static const double MOST_GROWTH = 10, STEP_ROUNDINGS = 10;
 static const double REAL_EPSILON = sizeof(real) == sizeof(float) ? FLT_EPSILON : DBL_EPSILON;

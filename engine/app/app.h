@@ -2,7 +2,7 @@
 #pragma once
 
 #include "brunt.h"
-#include "scene.h"
+#include "io/scene/scene.h"
 
 int cmd_run(int argc, char **argv);
 int cmd_check(int argc, char **argv);

@@ -3,12 +3,12 @@
 #include <stdio.h>
 #include <sys/statvfs.h>
 
-#include "app.h"
-#include "history.h"
-#include "machine.h"
-#include "predict.h"
-#include "progress.h"
-#include "run.h"
+#include "app/app.h"
+#include "io/output/history.h"
+#include "io/performance/machine.h"
+#include "io/performance/predict.h"
+#include "io/performance/progress.h"
+#include "io/run/run.h"
 
 static void print_size(double bytes, int width) {
     static const char *const units[] = {"B", "kB", "MB", "GB", "TB"};

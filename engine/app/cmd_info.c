@@ -1,7 +1,7 @@
 #include <stdio.h>
 
-#include "app.h"
-#include "describe.h"
+#include "app/app.h"
+#include "io/output/describe.h"
 
 int cmd_info(int argc, char **argv) {
     app_arguments arguments;

@@ -1,7 +1,7 @@
 #include <stdio.h>
 
-#include "app.h"
-#include "scene_keys.h"
+#include "app/app.h"
+#include "io/scene/scene_keys.h"
 
 int cmd_keys(int argc, char **argv) {
     app_arguments arguments;

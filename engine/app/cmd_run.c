@@ -3,8 +3,8 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-#include "app.h"
-#include "run.h"
+#include "app/app.h"
+#include "io/run/run.h"
 
 // A signal handler can reach nothing but what is static; it sets a flag, the run loop does the rest.
 static volatile sig_atomic_t stop_asked, save_asked;

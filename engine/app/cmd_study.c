@@ -3,8 +3,8 @@
 #include <stdio.h>
 #include <unistd.h>
 
-#include "app.h"
-#include "study.h"
+#include "app/app.h"
+#include "io/study/study.h"
 
 static volatile sig_atomic_t stop_asked;
 

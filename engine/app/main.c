@@ -3,8 +3,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "app.h"
-#include "real.h"
+#include "app/app.h"
+#include "base/real.h"
 
 static const char help[] =
     "brunt " BRUNT_VERSION ": explicit-dynamics contact engine\n"

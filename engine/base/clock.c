@@ -1,7 +1,7 @@
 // A file of its own, so that tests may have a clock of theirs instead (tests/fake_clock.h).
 #include <time.h>
 
-#include "threads.h"
+#include "base/parallel.h"
 
 double brunt_clock(void) {
     struct timespec t;

@@ -1,5 +1,5 @@
 // Every block carries a 64-byte header that holds its size, so that the live bytes are known without a table.
-#include "memory.h"
+#include "base/memory.h"
 
 #include <stdatomic.h>
 #include <stdbool.h>

@@ -9,10 +9,10 @@
 #include <math.h>
 #include <string.h>
 
-#include "error.h"
-#include "memory.h"
-#include "threads.h"
-#include "world.h"
+#include "base/error.h"
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "world/world.h"
 
 typedef struct job {
     brunt_world *world;

@@ -9,9 +9,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "error.h"
-#include "memory.h"
-#include "world.h"
+#include "base/error.h"
+#include "base/memory.h"
+#include "world/world.h"
 
 static int corners_of(const int32_t node[4]) { return node[3] < 0 ? 3 : 4; }
 

@@ -14,9 +14,9 @@
 #include <math.h>
 #include <string.h>
 
-#include "error.h"
-#include "memory.h"
-#include "world.h"
+#include "base/error.h"
+#include "base/memory.h"
+#include "world/world.h"
 
 static bool follows(const brunt_group_def *group) {
     return group->action == BRUNT_GROUP_GAS || group->action == BRUNT_GROUP_PRESSURE;

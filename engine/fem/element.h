@@ -4,7 +4,7 @@
 #pragma once
 
 #include "brunt.h"
-#include "real.h"
+#include "base/real.h"
 
 typedef struct brunt_fem_body brunt_fem_body;
 typedef struct brunt_fem_workspace brunt_fem_workspace;

@@ -1,8 +1,8 @@
 // The surface of a mesh, and elements folded in at a corner.
 #include <string.h>
 
-#include "layout.h"
-#include "memory.h"
+#include "fem/layout.h"
+#include "base/memory.h"
 
 static int32_t face_node(const brunt_fem_body *body, int64_t face, int k) {
     const brunt_element *type = body->element;

@@ -1,9 +1,9 @@
 // What the kernels of all elements share: small vectors, the room of a block, the way from nodes to a block and back.
 #pragma once
 
-#include "fem.h"
-#include "lanes_math.h"
-#include "record.h"
+#include "fem/fem_body.h"
+#include "base/simd_math.h"
+#include "fem/record.h"
 
 #include <string.h>
 

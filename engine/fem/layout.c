@@ -4,14 +4,14 @@
 // neighbours in space are neighbours in memory. The curve's grid is laid so that blocks of a structured mesh are cubes
 // of cubes: its unit is the edge of a cube as large as the mean hexahedron, or as 6 mean tetrahedra, or 2 mean
 // triangles.
-#include "layout.h"
+#include "fem/layout.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "lanes.h"
-#include "memory.h"
+#include "base/simd.h"
+#include "base/memory.h"
 
 // J. Skilling, Programming the Hilbert curve, AIP Conf. Proc. 707 (2004) 381.
 uint64_t brunt_hilbert_key(int dim, int bits, const uint32_t *coordinate) {

@@ -1,7 +1,7 @@
 // Steps of making a body, in the order they are taken. For the files of this folder.
 #pragma once
 
-#include "fem.h"
+#include "fem/fem_body.h"
 
 // Orders elements and nodes, cuts blocks, and numbers what each node sums. Sets element_*, node_*, block_*, partial_*
 // and local of a body whose element and dim are set. 0, or -1: out of memory.

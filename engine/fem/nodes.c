@@ -1,9 +1,9 @@
 // The nodes' part of a step: velocities from forces, places from velocities, and what the accounts need of both.
 #include <math.h>
 
-#include "fem.h"
-#include "lanes.h"
-#include "record.h"
+#include "fem/fem_body.h"
+#include "base/simd.h"
+#include "fem/record.h"
 
 // Running sums of one kind, in double whatever the reals are: a float build would lose the digits of large bodies.
 typedef double double4 __attribute__((vector_size(4 * sizeof(double))));

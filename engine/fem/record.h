@@ -1,7 +1,7 @@
 // Records of four reals (place and mass, velocity, force) as vectors, and the way between records and element lanes.
 #pragma once
 
-#include "lanes.h"
+#include "base/simd.h"
 
 typedef real real4 __attribute__((vector_size(4 * sizeof(real))));
 typedef real real4_unaligned __attribute__((vector_size(4 * sizeof(real)), aligned(sizeof(real)), may_alias));

@@ -1,8 +1,8 @@
-#include "fill.h"
+#include "geometry/fill.h"
 
-#include "error.h"
-#include "hash.h"
-#include "memory.h"
+#include "base/error.h"
+#include "base/hash.h"
+#include "base/memory.h"
 
 #include <math.h>
 

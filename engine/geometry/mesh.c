@@ -1,6 +1,6 @@
 // Meshes as data: the kinds of element, and what a mesh owns.
 #include "brunt.h"
-#include "memory.h"
+#include "base/memory.h"
 
 static const struct {
     const char *name;

@@ -5,9 +5,9 @@
 // Verdict geometric quality library"): at each corner the determinant of the edges that meet there over the product of
 // their lengths, times sqrt(2) for a tetrahedron and 2/sqrt(3) for a triangle, so that the regular element has 1.
 #include "brunt.h"
-#include "error.h"
-#include "hash.h"
-#include "memory.h"
+#include "base/error.h"
+#include "base/hash.h"
+#include "base/memory.h"
 
 #include <math.h>
 #include <stdio.h>

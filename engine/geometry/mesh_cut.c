@@ -2,8 +2,8 @@
 //
 // The grids of round shapes have nodes on the planes through their centre, so that a part is the whole grid less the
 // cells beyond; across its axis a cylinder is cut to another cylinder. Boxes cut by boxes are boxes.
-#include "error.h"
-#include "mesh_shape.h"
+#include "base/error.h"
+#include "geometry/mesh_shape.h"
 
 #include <math.h>
 

@@ -5,8 +5,8 @@
 // its nodes lie where the integral is k N / n. g is linear between its points and constant beyond them, so that both
 // the integral and its inverse are closed: int_0^x dx / (g0 + m x) = ln(1 + m x / g0) / m.
 #include "brunt.h"
-#include "error.h"
-#include "memory.h"
+#include "base/error.h"
+#include "base/memory.h"
 
 #include <math.h>
 #include <string.h>

@@ -4,9 +4,9 @@
 // cylinders of triangles and tetrahedra), and at least 8. Nodes lie on curved surfaces, so that the mesh's volume is
 // below the shape's (above, at a bore) by a share of the square of size over radius.
 #include "brunt.h"
-#include "error.h"
-#include "memory.h"
-#include "mesh_shape.h"
+#include "base/error.h"
+#include "base/memory.h"
+#include "geometry/mesh_shape.h"
 
 #include <math.h>
 #include <string.h>

@@ -8,12 +8,12 @@
 // b, and a shell point at share s of the way is (1 - s) core(q) + s S(q) with w = 1. Nodes with s = 1 lie on the
 // surface up to rounding. b = 0 is a straight-sided core, whose corner cells are squeezed, b = 1 a round one, whose
 // corners are flat.
-#include "mesh_shape.h"
+#include "geometry/mesh_shape.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "memory.h"
+#include "base/memory.h"
 
 // c and b, found by trying c from 0.5 to 0.8 and b from 0.2 to 0.9 with even cores of 2 to 40 cells: the least scaled
 // Jacobian of a ball's hexahedra is then 0.68 or more at any size and that of its tetrahedra 0.25 (c = 0.62: 0.21; b =

@@ -7,7 +7,7 @@
 // disturbed this makes the triangulation known as J1 or union jack (Todd 1976): Kuhn's six tetrahedra around one
 // diagonal, in cells that are mirror images of their neighbours, so that a mesh with an even number of cells keeps the
 // mirror symmetry of its shape.
-#include "mesh_shape.h"
+#include "geometry/mesh_shape.h"
 
 // Faces of a hexahedron, counter-clockwise seen from outside.
 static const uint8_t hex_face[6][4] = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4},

@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "brunt.h"
-#include "error.h"
-#include "memory.h"
+#include "base/error.h"
+#include "base/memory.h"
 
 // Faces of an element in VTK's order, counter-clockwise seen from outside.
 typedef struct solid {

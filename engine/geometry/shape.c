@@ -4,7 +4,7 @@
 // largest of the first and the negated others: still no farther than the true distance (1-Lipschitz), which is all that
 // filling a lattice and limiting a particle's reach rely on.
 #include "brunt.h"
-#include "memory.h"
+#include "base/memory.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,9 +1,9 @@
-#include "grid.h"
+#include "grid/grid.h"
 
 #include <string.h>
 
-#include "hash.h"
-#include "memory.h"
+#include "base/hash.h"
+#include "base/memory.h"
 
 void brunt_grid_init(brunt_grid *grid, int dim, int order, double h, const double origin[3]) {
     *grid = (brunt_grid){.dim = dim,

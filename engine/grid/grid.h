@@ -13,7 +13,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "real.h"
+#include "base/real.h"
 
 enum {
     BRUNT_BLOCK_NODES = 64, // bins of a block = nodes of a slot, in 2D and 3D

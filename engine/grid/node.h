@@ -1,7 +1,7 @@
 // Nodes as vectors: eight reals of a node, or four of them at once, and the transposition from particle lanes to nodes.
 #pragma once
 
-#include "lanes.h"
+#include "base/simd.h"
 
 typedef real node8 __attribute__((vector_size(8 * sizeof(real))));
 typedef real node4 __attribute__((vector_size(4 * sizeof(real))));

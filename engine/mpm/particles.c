@@ -1,9 +1,9 @@
-#include "particles.h"
+#include "mpm/particles.h"
 
 #include <string.h>
 
-#include "lanes.h"
-#include "memory.h"
+#include "base/simd.h"
+#include "base/memory.h"
 
 void brunt_particles_init(brunt_particles *particles, int dim, int point_dim, const brunt_particle_needs *needs) {
     *particles = (brunt_particles){.dim = dim, .point_dim = point_dim};

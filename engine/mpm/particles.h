@@ -10,8 +10,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "material.h"
-#include "real.h"
+#include "materials/material.h"
+#include "base/real.h"
 
 // name, unit, components as a function of the dimension, which one: that of space or that of the material points, kept only when
 #define BRUNT_PARTICLE_FIELDS(X)                                                                                       \

@@ -1,16 +1,16 @@
 // Counting sort in three rounds: (1) each particle's block and bin, in ranges; new blocks are collected; (2) particles
 // to blocks, stable, ranges in order; (3) inside each block by bin, then every array is moved once. A step in which no
 // particle changes its bin stops after the first round.
-#include "sort.h"
+#include "mpm/sort.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "error.h"
-#include "lanes.h"
-#include "memory.h"
-#include "threads.h"
+#include "base/error.h"
+#include "base/simd.h"
+#include "base/memory.h"
+#include "base/parallel.h"
 
 enum { MISS_LIMIT = 1 << 16, BLOCK_GRAIN = 16 };
 

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "brunt.h"
-#include "grid.h"
-#include "particles.h"
-#include "threads.h"
+#include "grid/grid.h"
+#include "mpm/particles.h"
+#include "base/parallel.h"
 
 // Stable: particles of one bin keep their order, so the result does not depend on the number of threads. `timer` may
 // be NULL. Errors: BRUNT_FAILED with id and place when a position is not finite or too far away; the particles are then

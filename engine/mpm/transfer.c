@@ -1,11 +1,11 @@
-#include "transfer.h"
+#include "mpm/transfer.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "lanes.h"
-#include "memory.h"
-#include "node.h"
+#include "base/simd.h"
+#include "base/memory.h"
+#include "grid/node.h"
 
 // ------------------------------------------------------------------------------------------ shared by all instances
 
@@ -298,311 +298,311 @@ static void update_material(brunt_body *body, const brunt_block *block, real dt,
 #define ORDER 1
 #define AFFINE 0
 #define AXIS 0
-#include "scatter.inc"
+#include "mpm/p2g.inc"
 #define DIM 2
 #define ORDER 1
 #define AFFINE 1
 #define AXIS 0
-#include "scatter.inc"
+#include "mpm/p2g.inc"
 #define DIM 2
 #define ORDER 2
 #define AFFINE 0
 #define AXIS 0
-#include "scatter.inc"
+#include "mpm/p2g.inc"
 #define DIM 2
 #define ORDER 2
 #define AFFINE 1
 #define AXIS 0
-#include "scatter.inc"
+#include "mpm/p2g.inc"
 #define DIM 2
 #define ORDER 3
 #define AFFINE 0
 #define AXIS 0
-#include "scatter.inc"
+#include "mpm/p2g.inc"
 #define DIM 2
 #define ORDER 3
 #define AFFINE 1
 #define AXIS 0
-#include "scatter.inc"
+#include "mpm/p2g.inc"
 #define DIM 3
 #define ORDER 1
 #define AFFINE 0
 #define AXIS 0
-#include "scatter.inc"
+#include "mpm/p2g.inc"
 #define DIM 3
 #define ORDER 1
 #define AFFINE 1
 #define AXIS 0
-#include "scatter.inc"
+#include "mpm/p2g.inc"
 #define DIM 3
 #define ORDER 2
 #define AFFINE 0
 #define AXIS 0
-#include "scatter.inc"
+#include "mpm/p2g.inc"
 #define DIM 3
 #define ORDER 2
 #define AFFINE 1
 #define AXIS 0
-#include "scatter.inc"
+#include "mpm/p2g.inc"
 #define DIM 3
 #define ORDER 3
 #define AFFINE 0
 #define AXIS 0
-#include "scatter.inc"
+#include "mpm/p2g.inc"
 #define DIM 3
 #define ORDER 3
 #define AFFINE 1
 #define AXIS 0
-#include "scatter.inc"
+#include "mpm/p2g.inc"
 
 #define DIM 2
 #define ORDER 1
 #define TRANSFER 0
 #define STAGE 1
 #define AXIS 0
-#include "gather.inc"
+#include "mpm/g2p.inc"
 #define DIM 2
 #define ORDER 1
 #define TRANSFER 0
 #define STAGE 2
 #define AXIS 0
-#include "gather.inc"
+#include "mpm/g2p.inc"
 #define DIM 2
 #define ORDER 1
 #define TRANSFER 1
 #define STAGE 1
 #define AXIS 0
-#include "gather.inc"
+#include "mpm/g2p.inc"
 #define DIM 2
 #define ORDER 1
 #define TRANSFER 1
 #define STAGE 2
 #define AXIS 0
-#include "gather.inc"
+#include "mpm/g2p.inc"
 #define DIM 2
 #define ORDER 1
 #define TRANSFER 2
 #define STAGE 1
 #define AXIS 0
-#include "gather.inc"
+#include "mpm/g2p.inc"
 #define DIM 2
 #define ORDER 1
 #define TRANSFER 2
 #define STAGE 2
 #define AXIS 0
-#include "gather.inc"
+#include "mpm/g2p.inc"
 #define DIM 2
 #define ORDER 2
 #define TRANSFER 0
 #define STAGE 0
 #define AXIS 0
-#include "gather.inc"
+#include "mpm/g2p.inc"
 #define DIM 2
 #define ORDER 2
 #define TRANSFER 1
 #define STAGE 0
 #define AXIS 0
-#include "gather.inc"
+#include "mpm/g2p.inc"
 #define DIM 2
 #define ORDER 2
 #define TRANSFER 2
 #define STAGE 0
 #define AXIS 0
-#include "gather.inc"
+#include "mpm/g2p.inc"
 #define DIM 2
 #define ORDER 3
 #define TRANSFER 0
 #define STAGE 0
 #define AXIS 0
-#include "gather.inc"
+#include "mpm/g2p.inc"
 #define DIM 2
 #define ORDER 3
 #define TRANSFER 1
 #define STAGE 0
 #define AXIS 0
-#include "gather.inc"
+#include "mpm/g2p.inc"
 #define DIM 2
 #define ORDER 3
 #define TRANSFER 2
 #define STAGE 0
 #define AXIS 0
-#include "gather.inc"
+#include "mpm/g2p.inc"
 #define DIM 3
 #define ORDER 1
 #define TRANSFER 0
 #define STAGE 1
 #define AXIS 0
-#include "gather.inc"
+#include "mpm/g2p.inc"
 #define DIM 3
 #define ORDER 1
 #define TRANSFER 0
 #define STAGE 2
 #define AXIS 0
-#include "gather.inc"
+#include "mpm/g2p.inc"
 #define DIM 3
 #define ORDER 1
 #define TRANSFER 1
 #define STAGE 1
 #define AXIS 0
-#include "gather.inc"
+#include "mpm/g2p.inc"
 #define DIM 3
 #define ORDER 1
 #define TRANSFER 1
 #define STAGE 2
 #define AXIS 0
-#include "gather.inc"
+#include "mpm/g2p.inc"
 #define DIM 3
 #define ORDER 1
 #define TRANSFER 2
 #define STAGE 1
 #define AXIS 0
-#include "gather.inc"
+#include "mpm/g2p.inc"
 #define DIM 3
 #define ORDER 1
 #define TRANSFER 2
 #define STAGE 2
 #define AXIS 0
-#include "gather.inc"
+#include "mpm/g2p.inc"
 #define DIM 3
 #define ORDER 2
 #define TRANSFER 0
 #define STAGE 0
 #define AXIS 0
-#include "gather.inc"
+#include "mpm/g2p.inc"
 #define DIM 3
 #define ORDER 2
 #define TRANSFER 1
 #define STAGE 0
 #define AXIS 0
-#include "gather.inc"
+#include "mpm/g2p.inc"
 #define DIM 3
 #define ORDER 2
 #define TRANSFER 2
 #define STAGE 0
 #define AXIS 0
-#include "gather.inc"
+#include "mpm/g2p.inc"
 #define DIM 3
 #define ORDER 3
 #define TRANSFER 0
 #define STAGE 0
 #define AXIS 0
-#include "gather.inc"
+#include "mpm/g2p.inc"
 #define DIM 3
 #define ORDER 3
 #define TRANSFER 1
 #define STAGE 0
 #define AXIS 0
-#include "gather.inc"
+#include "mpm/g2p.inc"
 #define DIM 3
 #define ORDER 3
 #define TRANSFER 2
 #define STAGE 0
 #define AXIS 0
-#include "gather.inc"
+#include "mpm/g2p.inc"
 
 // Rings: their gathers use the bins of plane strain above.
 #define DIM 2
 #define ORDER 1
 #define AFFINE 0
 #define AXIS 1
-#include "scatter.inc"
+#include "mpm/p2g.inc"
 #define DIM 2
 #define ORDER 1
 #define AFFINE 1
 #define AXIS 1
-#include "scatter.inc"
+#include "mpm/p2g.inc"
 #define DIM 2
 #define ORDER 2
 #define AFFINE 0
 #define AXIS 1
-#include "scatter.inc"
+#include "mpm/p2g.inc"
 #define DIM 2
 #define ORDER 2
 #define AFFINE 1
 #define AXIS 1
-#include "scatter.inc"
+#include "mpm/p2g.inc"
 #define DIM 2
 #define ORDER 3
 #define AFFINE 0
 #define AXIS 1
-#include "scatter.inc"
+#include "mpm/p2g.inc"
 #define DIM 2
 #define ORDER 3
 #define AFFINE 1
 #define AXIS 1
-#include "scatter.inc"
+#include "mpm/p2g.inc"
 #define DIM 2
 #define ORDER 1
 #define TRANSFER 0
 #define STAGE 1
 #define AXIS 1
-#include "gather.inc"
+#include "mpm/g2p.inc"
 #define DIM 2
 #define ORDER 1
 #define TRANSFER 0
 #define STAGE 2
 #define AXIS 1
-#include "gather.inc"
+#include "mpm/g2p.inc"
 #define DIM 2
 #define ORDER 1
 #define TRANSFER 1
 #define STAGE 1
 #define AXIS 1
-#include "gather.inc"
+#include "mpm/g2p.inc"
 #define DIM 2
 #define ORDER 1
 #define TRANSFER 1
 #define STAGE 2
 #define AXIS 1
-#include "gather.inc"
+#include "mpm/g2p.inc"
 #define DIM 2
 #define ORDER 1
 #define TRANSFER 2
 #define STAGE 1
 #define AXIS 1
-#include "gather.inc"
+#include "mpm/g2p.inc"
 #define DIM 2
 #define ORDER 1
 #define TRANSFER 2
 #define STAGE 2
 #define AXIS 1
-#include "gather.inc"
+#include "mpm/g2p.inc"
 #define DIM 2
 #define ORDER 2
 #define TRANSFER 0
 #define STAGE 0
 #define AXIS 1
-#include "gather.inc"
+#include "mpm/g2p.inc"
 #define DIM 2
 #define ORDER 2
 #define TRANSFER 1
 #define STAGE 0
 #define AXIS 1
-#include "gather.inc"
+#include "mpm/g2p.inc"
 #define DIM 2
 #define ORDER 2
 #define TRANSFER 2
 #define STAGE 0
 #define AXIS 1
-#include "gather.inc"
+#include "mpm/g2p.inc"
 #define DIM 2
 #define ORDER 3
 #define TRANSFER 0
 #define STAGE 0
 #define AXIS 1
-#include "gather.inc"
+#include "mpm/g2p.inc"
 #define DIM 2
 #define ORDER 3
 #define TRANSFER 1
 #define STAGE 0
 #define AXIS 1
-#include "gather.inc"
+#include "mpm/g2p.inc"
 #define DIM 2
 #define ORDER 3
 #define TRANSFER 2
 #define STAGE 0
 #define AXIS 1
-#include "gather.inc"
+#include "mpm/g2p.inc"
 
 // Total-Lagrangian bodies: their gathers use the bins above.
 #define DIM 2
@@ -610,133 +610,133 @@ static void update_material(brunt_body *body, const brunt_block *block, real dt,
 #define AFFINE 0
 #define AXIS 0
 #define TOTAL 1
-#include "scatter.inc"
+#include "mpm/p2g.inc"
 #define DIM 2
 #define ORDER 2
 #define AFFINE 1
 #define AXIS 0
 #define TOTAL 1
-#include "scatter.inc"
+#include "mpm/p2g.inc"
 #define DIM 2
 #define ORDER 2
 #define TRANSFER 0
 #define STAGE 0
 #define AXIS 0
 #define TOTAL 1
-#include "gather.inc"
+#include "mpm/g2p.inc"
 #define DIM 2
 #define ORDER 2
 #define TRANSFER 1
 #define STAGE 0
 #define AXIS 0
 #define TOTAL 1
-#include "gather.inc"
+#include "mpm/g2p.inc"
 #define DIM 2
 #define ORDER 2
 #define TRANSFER 2
 #define STAGE 0
 #define AXIS 0
 #define TOTAL 1
-#include "gather.inc"
+#include "mpm/g2p.inc"
 #define DIM 2
 #define ORDER 3
 #define AFFINE 0
 #define AXIS 0
 #define TOTAL 1
-#include "scatter.inc"
+#include "mpm/p2g.inc"
 #define DIM 2
 #define ORDER 3
 #define AFFINE 1
 #define AXIS 0
 #define TOTAL 1
-#include "scatter.inc"
+#include "mpm/p2g.inc"
 #define DIM 2
 #define ORDER 3
 #define TRANSFER 0
 #define STAGE 0
 #define AXIS 0
 #define TOTAL 1
-#include "gather.inc"
+#include "mpm/g2p.inc"
 #define DIM 2
 #define ORDER 3
 #define TRANSFER 1
 #define STAGE 0
 #define AXIS 0
 #define TOTAL 1
-#include "gather.inc"
+#include "mpm/g2p.inc"
 #define DIM 2
 #define ORDER 3
 #define TRANSFER 2
 #define STAGE 0
 #define AXIS 0
 #define TOTAL 1
-#include "gather.inc"
+#include "mpm/g2p.inc"
 #define DIM 3
 #define ORDER 2
 #define AFFINE 0
 #define AXIS 0
 #define TOTAL 1
-#include "scatter.inc"
+#include "mpm/p2g.inc"
 #define DIM 3
 #define ORDER 2
 #define AFFINE 1
 #define AXIS 0
 #define TOTAL 1
-#include "scatter.inc"
+#include "mpm/p2g.inc"
 #define DIM 3
 #define ORDER 2
 #define TRANSFER 0
 #define STAGE 0
 #define AXIS 0
 #define TOTAL 1
-#include "gather.inc"
+#include "mpm/g2p.inc"
 #define DIM 3
 #define ORDER 2
 #define TRANSFER 1
 #define STAGE 0
 #define AXIS 0
 #define TOTAL 1
-#include "gather.inc"
+#include "mpm/g2p.inc"
 #define DIM 3
 #define ORDER 2
 #define TRANSFER 2
 #define STAGE 0
 #define AXIS 0
 #define TOTAL 1
-#include "gather.inc"
+#include "mpm/g2p.inc"
 #define DIM 3
 #define ORDER 3
 #define AFFINE 0
 #define AXIS 0
 #define TOTAL 1
-#include "scatter.inc"
+#include "mpm/p2g.inc"
 #define DIM 3
 #define ORDER 3
 #define AFFINE 1
 #define AXIS 0
 #define TOTAL 1
-#include "scatter.inc"
+#include "mpm/p2g.inc"
 #define DIM 3
 #define ORDER 3
 #define TRANSFER 0
 #define STAGE 0
 #define AXIS 0
 #define TOTAL 1
-#include "gather.inc"
+#include "mpm/g2p.inc"
 #define DIM 3
 #define ORDER 3
 #define TRANSFER 1
 #define STAGE 0
 #define AXIS 0
 #define TOTAL 1
-#include "gather.inc"
+#include "mpm/g2p.inc"
 #define DIM 3
 #define ORDER 3
 #define TRANSFER 2
 #define STAGE 0
 #define AXIS 0
 #define TOTAL 1
-#include "gather.inc"
+#include "mpm/g2p.inc"
 
 #define SCATTERS(d, axis)                                                                                              \
     {                                                                                                                  \

@@ -4,7 +4,7 @@
 // body's functions are looked up once.
 #pragma once
 
-#include "body.h"
+#include "mpm/mpm_body.h"
 
 // Per-thread room for one block, sized for the fullest block.
 // Of rings: places in `out` that plane strain leaves free.

@@ -5,9 +5,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "memory.h"
-#include "threads.h"
-#include "world.h"
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "world/world.h"
 
 enum { NODES_A_TASK = 1024 };
 

@@ -2,9 +2,9 @@
 #include <math.h>
 #include <string.h>
 
-#include "lanes.h"
-#include "node.h"
-#include "world.h"
+#include "base/simd.h"
+#include "grid/node.h"
+#include "world/world.h"
 
 // Each slot collects what the blocks around it have for it, always in the order of the corners: no locks, and the same
 // bits for any number of threads.

@@ -2,7 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "world.h"
+#include "world/world.h"
 
 // The first model that brings an effect, NULL when none does; `flag`: where brunt_model says so.
 static const brunt_model *find_model(const brunt_world *world, size_t flag) {

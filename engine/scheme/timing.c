@@ -4,9 +4,9 @@
 // between two of them is lost: for a hundred particles that is as much as a short pass.
 #include <stddef.h>
 
-#include "error.h"
-#include "threads.h"
-#include "world.h"
+#include "base/error.h"
+#include "base/parallel.h"
+#include "world/world.h"
 
 static int32_t planned_index(const brunt_world *world, int pass) {
     int32_t index = 0;

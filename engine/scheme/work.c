@@ -12,12 +12,12 @@
 //
 // Checked against the floating-point instructions that valgrind counts in a build with one lane: README.md of this
 // folder.
-#include "world.h"
+#include "world/world.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "lanes.h"
+#include "base/simd.h"
 
 typedef struct amount {
     double bytes, flops;

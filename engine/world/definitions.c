@@ -1,9 +1,9 @@
 // Default values of the definitions. What must be given (cell, end, materials, shapes, normals) starts as 0 and is
 // refused by brunt_world_create when it is left so.
-#include "definitions.h"
+#include "world/definitions.h"
 
 #include "brunt.h"
-#include "memory.h"
+#include "base/memory.h"
 
 #include <math.h>
 #include <stdio.h>

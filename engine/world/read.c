@@ -1,7 +1,7 @@
 // Reading a body's fields, whatever it is made of.
 #include <string.h>
 
-#include "world.h"
+#include "world/world.h"
 
 int32_t brunt_body_field_count(const brunt_world *world, int32_t body) {
     const brunt_body_ref ref = world->all[body];

@@ -2,8 +2,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "lanes.h"
-#include "world.h"
+#include "base/simd.h"
+#include "world/world.h"
 
 // ------------------------------------------------------------------------------------------ at nodes
 

@@ -2,8 +2,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "lanes.h"
-#include "world.h"
+#include "base/simd.h"
+#include "world/world.h"
 
 typedef void derive_fn(brunt_body *body, int64_t slot, double *out);
 

@@ -6,13 +6,13 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "error.h"
-#include "hash.h"
-#include "lanes.h"
-#include "memory.h"
-#include "sort.h"
-#include "threads.h"
-#include "world.h"
+#include "base/error.h"
+#include "base/hash.h"
+#include "base/simd.h"
+#include "base/memory.h"
+#include "mpm/sort.h"
+#include "base/parallel.h"
+#include "world/world.h"
 
 static const char REAL_TYPE = sizeof(real) == 8 ? 'd' : 'f';
 

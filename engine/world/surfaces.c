@@ -2,10 +2,10 @@
 #include <math.h>
 #include <string.h>
 
-#include "error.h"
-#include "memory.h"
-#include "overlap.h"
-#include "world.h"
+#include "base/error.h"
+#include "base/memory.h"
+#include "contact/search/initial_overlap.h"
+#include "world/world.h"
 
 // A membrane between two blocks is light between heavy ones: each sweep passes on the share of its mass in theirs. At a
 // twentieth, 16 sweeps let the nodes of blocks that meet at a tenth of their wave speed through its middle; 64 leave a

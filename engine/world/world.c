@@ -4,15 +4,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "definitions.h"
-#include "error.h"
-#include "fill.h"
-#include "lanes.h"
-#include "memory.h"
-#include "sort.h"
-#include "stable.h"
-#include "threads.h"
-#include "world.h"
+#include "world/definitions.h"
+#include "base/error.h"
+#include "geometry/fill.h"
+#include "base/simd.h"
+#include "base/memory.h"
+#include "mpm/sort.h"
+#include "mpm/courant.h"
+#include "base/parallel.h"
+#include "world/world.h"
 
 static const double ON_GRID_LINE = 1e-6; // cells: how far off a mirror plane may be and still count as on the line
 static const double TOUCHING = 1e-6;     // spacings: bodies closer than that touch, they do not overlap

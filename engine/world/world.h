@@ -1,15 +1,15 @@
 // The inside of a world: bodies, conditions, the plan, the ledgers.
 #pragma once
 
-#include "augury.h"
-#include "body.h"
+#include "contact/methods/augury.h"
+#include "mpm/mpm_body.h"
 #include "brunt.h"
-#include "contact.h"
-#include "facing.h"
-#include "fem.h"
-#include "grid_surfaces.h"
-#include "threads.h"
-#include "transfer.h"
+#include "contact/contact.h"
+#include "contact/search/node_to_facet.h"
+#include "fem/fem_body.h"
+#include "contact/methods/surface_on_grid.h"
+#include "base/parallel.h"
+#include "mpm/transfer.h"
 
 // The passes of a step, in their order. A pass nobody asked for is not in the plan and does not run.
 #define BRUNT_PASSES(X)                                                                                                \

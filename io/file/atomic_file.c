@@ -1,6 +1,6 @@
 // The rename of a file on the same file system is atomic in POSIX; the fsync before it puts the bytes on the disk
 // before the name points to them, the fsync of the folder after it makes the new name last.
-#include "atomic_file.h"
+#include "io/file/atomic_file.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -8,7 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "error.h"
+#include "base/error.h"
 
 static int system_error(brunt_error *error, const char *what, const char *path) {
     return brunt_fail(error, BRUNT_IO_ERROR, "%s: cannot %s: %s", path, what, strerror(errno));

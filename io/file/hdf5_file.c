@@ -1,4 +1,4 @@
-#include "hdf5_file.h"
+#include "io/file/hdf5_file.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -7,9 +7,9 @@
 #include <unistd.h>
 #include <zlib.h>
 
-#include "error.h"
-#include "input_file.h"
-#include "memory.h"
+#include "base/error.h"
+#include "io/file/input_file.h"
+#include "base/memory.h"
 
 // HDF5 prints its error stack unless told otherwise; the library never prints.
 static void silence(void) { H5Eset_auto2(H5E_DEFAULT, NULL, NULL); }

@@ -8,7 +8,7 @@
 
 #include <hdf5.h>
 
-#include "atomic_file.h"
+#include "io/file/atomic_file.h"
 
 enum { BRUNT_HDF5_USER_BLOCK = 512 };
 

@@ -1,4 +1,4 @@
-#include "output_folder.h"
+#include "io/file/output_folder.h"
 
 #include <ctype.h>
 #include <dirent.h>
@@ -10,8 +10,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "error.h"
-#include "memory.h"
+#include "base/error.h"
+#include "base/memory.h"
 
 enum { NAME_MAX_BYTES = 255 };
 

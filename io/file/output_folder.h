@@ -10,7 +10,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "atomic_file.h"
+#include "io/file/atomic_file.h"
 
 #define BRUNT_OUTPUT_LIST "brunt.files"
 

@@ -1,15 +1,15 @@
 // From a file of gmsh to the mesh of one body: which elements, which nodes, which groups.
-#include "gmsh.h"
+#include "io/mesh/gmsh.h"
 
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "error.h"
-#include "gmsh_file.h"
-#include "memory.h"
-#include "scene_tree.h"
+#include "base/error.h"
+#include "io/mesh/gmsh_file.h"
+#include "base/memory.h"
+#include "io/scene/scene_tree.h"
 
 // Of each kind of brunt_element_kind: the type of gmsh. Both have the nodes in the same order.
 static const int32_t type_of_kind[BRUNT_ELEMENT_KINDS] = {

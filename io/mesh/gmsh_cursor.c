@@ -1,4 +1,4 @@
-#include "gmsh_cursor.h"
+#include "io/mesh/gmsh_cursor.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "brunt.h"
-#include "error.h"
+#include "base/error.h"
 
 void gmsh_complain(gmsh_cursor *c, const char *at, const char *format, ...) {
     if (c->status) return;

@@ -4,7 +4,7 @@
 // a while, not after every number.
 #pragma once
 
-#include "gmsh_file.h"
+#include "io/mesh/gmsh_file.h"
 
 typedef struct gmsh_cursor {
     gmsh_file *file;

@@ -6,11 +6,11 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "error.h"
-#include "input_file.h"
-#include "gmsh_cursor.h"
-#include "gmsh_file.h"
-#include "memory.h"
+#include "base/error.h"
+#include "io/file/input_file.h"
+#include "io/mesh/gmsh_cursor.h"
+#include "io/mesh/gmsh_file.h"
+#include "base/memory.h"
 
 const gmsh_type gmsh_types[GMSH_TYPE_LIMIT] = {
     [1] = {1, 2, "2-node lines"},         [2] = {2, 3, "3-node triangles"},     [3] = {2, 4, "4-node quadrangles"},

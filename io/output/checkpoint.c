@@ -1,17 +1,17 @@
-#include "checkpoint.h"
+#include "io/output/checkpoint.h"
 
 #include <libfyaml.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "atomic_file.h"
-#include "error.h"
-#include "hash.h"
-#include "hdf5_file.h"
-#include "lanes.h"
-#include "memory.h"
-#include "real.h"
+#include "io/file/atomic_file.h"
+#include "base/error.h"
+#include "base/hash.h"
+#include "io/file/hdf5_file.h"
+#include "base/simd.h"
+#include "base/memory.h"
+#include "base/real.h"
 
 enum { FORMAT = 2, DATASET_NAME = 128 };
 

@@ -1,15 +1,15 @@
-#include "describe.h"
+#include "io/output/describe.h"
 
 #include <errno.h>
 #include <string.h>
 
-#include "checkpoint.h"
-#include "error.h"
-#include "input_file.h"
-#include "gmsh.h"
-#include "hdf5_file.h"
-#include "history.h"
-#include "vtu.h"
+#include "io/output/checkpoint.h"
+#include "base/error.h"
+#include "io/file/input_file.h"
+#include "io/mesh/gmsh.h"
+#include "io/file/hdf5_file.h"
+#include "io/output/history.h"
+#include "io/output/vtu.h"
 
 int brunt_describe_file(const char *path, FILE *out, brunt_error *error) {
     char start[64] = "", kind[32];

@@ -1,4 +1,4 @@
-#include "history.h"
+#include "io/output/history.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -8,13 +8,13 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "atomic_file.h"
-#include "error.h"
-#include "hash.h"
-#include "hdf5_file.h"
-#include "input_file.h"
-#include "memory.h"
-#include "places.h"
+#include "io/file/atomic_file.h"
+#include "base/error.h"
+#include "base/hash.h"
+#include "io/file/hdf5_file.h"
+#include "io/file/input_file.h"
+#include "base/memory.h"
+#include "io/output/places.h"
 
 enum { FORMAT = 2, COLUMN_NAME = 200, BLOCK = 1 << 17 }; // BLOCK: numbers at a time
 

@@ -12,7 +12,7 @@
 #pragma once
 
 #include "brunt.h"
-#include "scene.h"
+#include "io/scene/scene.h"
 
 typedef struct brunt_history brunt_history;
 

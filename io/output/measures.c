@@ -1,12 +1,12 @@
-#include "measures.h"
+#include "io/output/measures.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "error.h"
-#include "memory.h"
-#include "places.h"
-#include "units.h"
+#include "base/error.h"
+#include "base/memory.h"
+#include "io/output/places.h"
+#include "io/scene/units.h"
 
 // ---------------------------------------------------------------------------------------------------- history
 

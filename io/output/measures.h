@@ -1,8 +1,8 @@
 // Named results of a run: numbers taken from the history or from the bodies at the end, judged against references.
 #pragma once
 
-#include "history.h"
-#include "scene.h"
+#include "io/output/history.h"
+#include "io/scene/scene.h"
 
 typedef struct brunt_measure_result {
     double value; // in the measure's own (SI) unit; NAN when there was nothing to take it from

@@ -1,9 +1,9 @@
-#include "places.h"
+#include "io/output/places.h"
 
 #include <string.h>
 
-#include "error.h"
-#include "memory.h"
+#include "base/error.h"
+#include "base/memory.h"
 
 int32_t brunt_find_body(const brunt_world *world, const char *name) {
     for (int32_t b = 0; b < brunt_body_count(world); b++)

@@ -1,8 +1,8 @@
-#include "pvd.h"
+#include "io/output/pvd.h"
 
 #include <stdio.h>
 
-#include "atomic_file.h"
+#include "io/file/atomic_file.h"
 
 void brunt_picture_name(char out[128], const char *body, int64_t number) {
     snprintf(out, 128, "vtu/%s_%06lld.vtu", body, (long long)number);

@@ -1,15 +1,15 @@
-#include "vtu.h"
+#include "io/output/vtu.h"
 
 #include <stdlib.h>
 #include <string.h>
 #include <zlib.h>
 
-#include "atomic_file.h"
-#include "element.h"
-#include "error.h"
-#include "input_file.h"
-#include "memory.h"
-#include "places.h"
+#include "io/file/atomic_file.h"
+#include "fem/element.h"
+#include "base/error.h"
+#include "io/file/input_file.h"
+#include "base/memory.h"
+#include "io/output/places.h"
 
 // Uncompressed bytes of a zlib block. VTK's own default is 32768; larger blocks compress better and read as fast.
 enum { BLOCK_BYTES = 262144 };

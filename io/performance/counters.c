@@ -1,6 +1,6 @@
 // Each kind has a file of its own: the kernel does not let a group of counters be inherited by threads and read at
 // once.
-#include "counters.h"
+#include "io/performance/counters.h"
 
 #include <string.h>
 

@@ -1,5 +1,5 @@
 // The stored benchmark of this machine: the file is found, read, and asked for figures.
-#include "machine.h"
+#include "io/performance/machine.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -9,9 +9,9 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "error.h"
-#include "input_file.h"
-#include "memory.h"
+#include "base/error.h"
+#include "io/file/input_file.h"
+#include "base/memory.h"
 
 static const char header[] = "kind,name,units,threads,figure,unit,median,least,rounds";
 enum { FIELDS = 9 };

@@ -1,8 +1,8 @@
-#include "observers.h"
+#include "io/performance/observers.h"
 
 #include <stddef.h>
 
-#include "error.h"
+#include "base/error.h"
 
 static void begin(void *context, int32_t pass, double time) {
     const brunt_observers *all = context;

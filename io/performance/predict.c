@@ -1,12 +1,12 @@
-#include "predict.h"
+#include "io/performance/predict.h"
 
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "memory.h"
-#include "threads.h"
+#include "base/memory.h"
+#include "base/parallel.h"
 
 // The plan's passes, and what a step takes between them.
 enum { PASSES = BRUNT_PREDICTION_PASSES };

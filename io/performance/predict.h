@@ -7,8 +7,8 @@
 // A run that is short is rehearsed as it is.
 #pragma once
 
-#include "history.h"
-#include "scene.h"
+#include "io/output/history.h"
+#include "io/scene/scene.h"
 
 enum { BRUNT_PREDICTION_PASSES = 32 };
 

@@ -5,9 +5,9 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "atomic_file.h"
-#include "predict.h"
-#include "threads.h"
+#include "io/file/atomic_file.h"
+#include "io/performance/predict.h"
+#include "base/parallel.h"
 
 // From the summaries of bench/scenes: bytes that are compressed, and what a file
 // costs that is empty; then HDF5 with checksums.

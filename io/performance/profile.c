@@ -1,10 +1,10 @@
-#include "profile.h"
+#include "io/performance/profile.h"
 
 #include <jansson.h>
 #include <math.h>
 
-#include "real.h"
-#include "roofline.h"
+#include "base/real.h"
+#include "io/performance/roofline.h"
 
 enum { THREADS_SHOWN = 4 }; // one by one
 

@@ -5,8 +5,8 @@
 // not assume.
 #pragma once
 
-#include "counters.h"
-#include "progress.h"
+#include "io/performance/counters.h"
+#include "io/performance/progress.h"
 
 enum { BRUNT_PROFILE_PASSES = 32, BRUNT_PROFILE_THREADS = 64 };
 

@@ -1,11 +1,11 @@
-#include "progress.h"
+#include "io/performance/progress.h"
 
 #include <math.h>
 #include <stdarg.h>
 #include <string.h>
 #include <unistd.h>
 
-#include "threads.h"
+#include "base/parallel.h"
 
 void brunt_duration(double seconds, char out[32]) {
     if (!(seconds >= 0 && seconds < 1e9)) {

@@ -1,6 +1,6 @@
 // OpenMP is used here directly: each thread works on the memory that it touched first (on machines with several
 // memories that is its own), which the pieces of brunt_parallel, taken by whoever is free, do not promise.
-#include "roofline.h"
+#include "io/performance/roofline.h"
 
 #include <omp.h>
 #include <stddef.h>
@@ -8,8 +8,8 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include "real.h"
-#include "threads.h"
+#include "base/real.h"
+#include "base/parallel.h"
 
 // The widest vectors of the build's target, whatever the kernels use (BRUNT_LANES).
 #if defined __AVX512F__

@@ -3,7 +3,7 @@
 //
 // Events of a step are kept as numbers and written once it is over and so known to be kept: within a step nothing is
 // formatted and nothing goes to the disk.
-#include "trace.h"
+#include "io/performance/trace.h"
 
 #include <errno.h>
 #include <jansson.h>
@@ -12,9 +12,9 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "atomic_file.h"
-#include "error.h"
-#include "memory.h"
+#include "io/file/atomic_file.h"
+#include "base/error.h"
+#include "base/memory.h"
 
 enum { FIRST_EVENTS = 300000, MORE_EVENTS = 10000, MOST_EVENTS = 400000 };
 static const double counter_every = 0.1; // [s] of the clock: reading the energy goes over all bodies

@@ -1,24 +1,24 @@
-#include "run.h"
+#include "io/run/run.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
 
-#include "atomic_file.h"
-#include "checkpoint.h"
-#include "error.h"
-#include "hash.h"
-#include "measures.h"
-#include "memory.h"
-#include "observers.h"
-#include "progress.h"
-#include "pvd.h"
-#include "run_folder.h"
-#include "summary.h"
-#include "threads.h"
-#include "trace.h"
-#include "vtu.h"
+#include "io/file/atomic_file.h"
+#include "io/output/checkpoint.h"
+#include "base/error.h"
+#include "base/hash.h"
+#include "io/output/measures.h"
+#include "base/memory.h"
+#include "io/performance/observers.h"
+#include "io/performance/progress.h"
+#include "io/output/pvd.h"
+#include "io/run/run_folder.h"
+#include "io/run/summary.h"
+#include "base/parallel.h"
+#include "io/performance/trace.h"
+#include "io/output/vtu.h"
 
 // An output time counts as reached within this relative distance: two series of times may differ by rounding where they
 // meet.

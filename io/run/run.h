@@ -10,9 +10,9 @@
 #include <signal.h>
 #include <stdio.h>
 
-#include "history.h"
-#include "progress.h"
-#include "scene.h"
+#include "io/output/history.h"
+#include "io/performance/progress.h"
+#include "io/scene/scene.h"
 
 typedef struct brunt_run_options {
     const char *folder;                // NULL: out/<scene name>

@@ -1,15 +1,15 @@
-#include "run_folder.h"
+#include "io/run/run_folder.h"
 
 #include <fcntl.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "checkpoint.h"
-#include "error.h"
-#include "pvd.h"
-#include "summary.h"
-#include "trace.h"
+#include "io/output/checkpoint.h"
+#include "base/error.h"
+#include "io/output/pvd.h"
+#include "io/run/summary.h"
+#include "io/performance/trace.h"
 
 static const char *const files[] = {"scene.yaml", "log.txt",       "summary.json",           "brunt.pvd", "history.csv",
                                     "history.h5", "checkpoint.h5", "checkpoint.previous.h5", "vtu/"};

@@ -1,8 +1,8 @@
 // The folder of a run: what it will write there, and whether it may.
 #pragma once
 
-#include "output_folder.h"
-#include "run.h"
+#include "io/file/output_folder.h"
+#include "io/run/run.h"
 
 // Opens and locks the folder and looks at all that the run is going to write. BRUNT_BAD_INPUT, with nothing touched:
 // another run is at work there, something that is not brunt's or the scene itself is in the way, or a new run would

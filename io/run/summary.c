@@ -1,12 +1,12 @@
-#include "summary.h"
+#include "io/run/summary.h"
 
 #include <jansson.h>
 #include <math.h>
 #include <string.h>
 #include <sys/resource.h>
 
-#include "atomic_file.h"
-#include "error.h"
+#include "io/file/atomic_file.h"
+#include "base/error.h"
 
 double brunt_summary_peak(void) {
     struct rusage usage;

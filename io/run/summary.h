@@ -1,10 +1,10 @@
 // What came out of a run: summary.json for programs, a page of text for people.
 #pragma once
 
-#include "measures.h"
-#include "profile.h"
-#include "progress.h"
-#include "scene.h"
+#include "io/output/measures.h"
+#include "io/performance/profile.h"
+#include "io/performance/progress.h"
+#include "io/scene/scene.h"
 
 typedef struct brunt_summary {
     const char *status;                  // "done", "failed", "stopped"

@@ -1,12 +1,12 @@
 // Reading a scene: the stages in their order, and the scene's life.
-#include "scene_reader.h"
+#include "io/scene/scene_reader.h"
 
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "memory.h"
-#include "input_file.h"
+#include "base/memory.h"
+#include "io/file/input_file.h"
 
 static void release_outputs(brunt_scene *scene) {
     brunt_world_def_free(&scene->world);

@@ -1,5 +1,5 @@
 // Bodies of a scene: what each method needs of them, and which keys are the other's.
-#include "scene_reader.h"
+#include "io/scene/scene_reader.h"
 
 #include <errno.h>
 #include <math.h>
@@ -7,9 +7,9 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "gmsh.h"
-#include "mesh_shape.h"
-#include "prepared.h"
+#include "io/mesh/gmsh.h"
+#include "geometry/mesh_shape.h"
+#include "materials/prepared.h"
 
 enum { PATH_ROOM = 4096 };
 

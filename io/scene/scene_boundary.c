@@ -1,6 +1,6 @@
 // Boundaries of a scene: walls, regions of the grid with prescribed motion, groups of nodes that are held, moved or
 // loaded.
-#include "scene_reader.h"
+#include "io/scene/scene_reader.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,12 +1,12 @@
 // The tree against the table of keys: every value gets its kind, unit and range checked, every missing one its default.
-#include "scene_reader.h"
+#include "io/scene/scene_reader.h"
 
 #include <ctype.h>
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
 
-#include "memory.h"
+#include "base/memory.h"
 
 enum { NAMES_LIMIT = 128, PARAMETER_ORDER = 32 };
 

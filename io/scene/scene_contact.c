@@ -1,9 +1,9 @@
 // Contact of a scene: the method for all, for single pairs, and what goes with which bodies.
-#include "scene_reader.h"
+#include "io/scene/scene_reader.h"
 
 #include <string.h>
 
-#include "definitions.h"
+#include "world/definitions.h"
 
 static const char *const methods[] = {"none", "multi-velocity", "augury", "tied"}; // by brunt_contact_method
 

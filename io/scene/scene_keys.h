@@ -5,7 +5,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "material.h"
+#include "materials/material.h"
 
 typedef enum scene_type {
     SCENE_GROUP,    // a map of the rows below its path

@@ -1,10 +1,10 @@
 // Measures of a scene: what is measured, over which time, and against what it is judged.
-#include "scene_reader.h"
+#include "io/scene/scene_reader.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "memory.h"
+#include "base/memory.h"
 
 static bool one_of(const char *name, const char *const *names, int count) {
     for (int i = 0; i < count; i++)

@@ -1,12 +1,12 @@
 // The world that a checked tree describes, and what its keys must say together.
-#include "scene_reader.h"
+#include "io/scene/scene_reader.h"
 
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "memory.h"
+#include "base/memory.h"
 
 void brunt_copy_text(scene_reader *reader, const scene_node *node, char *out, size_t size) {
     if (!node || !node->good || !node->text) return;

@@ -1,6 +1,6 @@
 // Materials of the library: `preset` is replaced, before the scene is checked, by the keys it stands for, as if they
 // had been typed. What the user gives beside it stays. The resolved scene then has every value and needs no library.
-#include "scene_reader.h"
+#include "io/scene/scene_reader.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -6,10 +6,10 @@
 // structures are filled, and what two keys say together is checked
 #pragma once
 
-#include "scene.h"
-#include "scene_keys.h"
-#include "scene_tree.h"
-#include "units.h"
+#include "io/scene/scene.h"
+#include "io/scene/scene_keys.h"
+#include "io/scene/scene_tree.h"
+#include "io/scene/units.h"
 
 typedef struct scene_reader {
     scene_tree *tree;

@@ -1,5 +1,5 @@
 // The reference of all keys and the JSON Schema, both made from the table that parses them.
-#include "scene_reader.h"
+#include "io/scene/scene_reader.h"
 
 #include <ctype.h>
 #include <math.h>

@@ -1,10 +1,10 @@
 // Shapes and placements of a scene.
-#include "scene_reader.h"
+#include "io/scene/scene_reader.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "memory.h"
+#include "base/memory.h"
 
 enum { POINT_LIMIT = 2000 }; // corners of a polygon: crossing is looked for pair by pair
 

@@ -1,5 +1,5 @@
 // The tree, its arena, its messages and the overrides. scene_yaml.c fills it from text.
-#include "scene_tree.h"
+#include "io/scene/scene_tree.h"
 
 #include <ctype.h>
 #include <limits.h>
@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "memory.h"
+#include "base/memory.h"
 
 typedef struct block {
     struct block *next;

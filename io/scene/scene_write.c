@@ -1,5 +1,5 @@
 // The scene as resolved: the checked tree with its defaults, in SI and in the order of the table of keys.
-#include "scene_reader.h"
+#include "io/scene/scene_reader.h"
 
 #include <ctype.h>
 #include <math.h>

@@ -3,8 +3,8 @@
 // The events are taken rather than libfyaml's own document: aliases are then expanded under our budget, depth is cut
 // where we say, and no stage of the library sees more than one event at a time. Text that is no text (binary, broken
 // UTF-8) and tabs used as indentation are refused before it is called, with better messages than a scanner can give.
-#include "scene_keys.h"
-#include "scene_tree.h"
+#include "io/scene/scene_keys.h"
+#include "io/scene/scene_tree.h"
 
 #include <stdint.h>
 #include <stdlib.h>
@@ -12,7 +12,7 @@
 
 #include <libfyaml.h>
 
-#include "memory.h"
+#include "base/memory.h"
 
 typedef struct anchor {
     char *name;

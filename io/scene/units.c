@@ -1,6 +1,6 @@
 // Units through udunits2. What it is given is looked at first: its grammar takes dates, logarithms and numbers between
 // units, none of which has a meaning in a scene, and a misread unit is worse than a refused one.
-#include "units.h"
+#include "io/scene/units.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -12,7 +12,7 @@
 #include <udunits2.h>
 
 #include "brunt.h"
-#include "memory.h"
+#include "base/memory.h"
 
 struct brunt_units {
     ut_system *system;

@@ -1,4 +1,4 @@
-#include "child.h"
+#include "io/study/child.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -10,8 +10,8 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "error.h"
-#include "threads.h"
+#include "base/error.h"
+#include "base/parallel.h"
 
 enum { GRACE = 10 }; // [s] a child has to write its checkpoint
 

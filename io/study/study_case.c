@@ -1,14 +1,14 @@
 // What a case of a study comes to: the scene, the program and the sets, with placeholders and factors put in.
-#include "study_reader.h"
+#include "io/study/study_reader.h"
 
 #include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "error.h"
-#include "memory.h"
-#include "scene_reader.h"
+#include "base/error.h"
+#include "base/memory.h"
+#include "io/scene/scene_reader.h"
 
 char *brunt_study_copy(const char *text) {
     char *copy = text ? brunt_alloc(strlen(text) + 1) : NULL;

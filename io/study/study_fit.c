@@ -3,13 +3,13 @@
 // Errors are taken to follow e = C h^p, times t = D n^q: straight lines in log-log, drawn by least squares. Where no
 // closed form is known, the limit of h -> 0 comes from the values themselves (L. F. Richardson, Phil. Trans. A 210,
 // 1911), its uncertainty after P. J. Roache, Annu. Rev. Fluid Mech. 29, 1997.
-#include "study.h"
+#include "io/study/study.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-#include "memory.h"
-#include "study_view.h"
+#include "base/memory.h"
+#include "io/study/study_view.h"
 
 // Half width of the two-sided 95 % interval in standard errors, by degrees of freedom from 1 (NIST/SEMATECH e-Handbook
 // of Statistical Methods, 1.3.6.7.2).

@@ -1,5 +1,5 @@
 // Every key of a study file, one row each.
-#include "scene_keys.h"
+#include "io/scene/scene_keys.h"
 
 #include <math.h>
 

@@ -3,7 +3,7 @@
 //
 // Ranges and labels are worked out here: gnuplot's own leave logarithmic axes of less than a decade without a number.
 // All text is drawn as it is ("noenhanced"); the powers of ten are characters.
-#include "study.h"
+#include "io/study/study.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -15,10 +15,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "atomic_file.h"
-#include "error.h"
-#include "memory.h"
-#include "study_view.h"
+#include "io/file/atomic_file.h"
+#include "base/error.h"
+#include "base/memory.h"
+#include "io/study/study_view.h"
 
 extern char **environ;
 

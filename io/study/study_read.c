@@ -1,6 +1,6 @@
 // A study file: its keys are checked like those of a scene, then every case is made and its scene read, so that nothing
 // is found out after hours that could have been said at once.
-#include "study_reader.h"
+#include "io/study/study_reader.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -8,9 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "memory.h"
-#include "scene_reader.h"
-#include "study_view.h"
+#include "base/memory.h"
+#include "io/scene/scene_reader.h"
+#include "io/study/study_view.h"
 
 enum { CASE_LIMIT = 10000, CHOICE_LIMIT = 64 };
 

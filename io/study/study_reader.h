@@ -1,7 +1,7 @@
 // What reading and running a study share: what a case comes to when its values are put in. Private to study_*.c.
 #pragma once
 
-#include "study.h"
+#include "io/study/study.h"
 
 // Which entry of the file brought a set: number `set` of a value of an axis; axis -1: of the study's own `set`.
 typedef struct study_origin {

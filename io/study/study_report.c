@@ -1,17 +1,17 @@
 // report.md: the answers of a study in sentences first, then the tables they come from.
-#include "study.h"
+#include "io/study/study.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include "atomic_file.h"
-#include "error.h"
-#include "machine.h"
-#include "memory.h"
-#include "real.h"
-#include "study_view.h"
+#include "io/file/atomic_file.h"
+#include "base/error.h"
+#include "io/performance/machine.h"
+#include "base/memory.h"
+#include "base/real.h"
+#include "io/study/study_view.h"
 
 static bool finished(const brunt_study_case *c) { return c->status == BRUNT_STUDY_DONE; }
 static bool judged(const brunt_study_case *c, int32_t m) {

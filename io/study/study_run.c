@@ -5,7 +5,7 @@
 // when all else is, holds the key of the run: a hash over the program, the scene as resolved, its mesh files, the
 // number of threads and the kind of machine. A folder whose key is the same is taken over, failed runs too; all others
 // are run again.
-#include "study_reader.h"
+#include "io/study/study_reader.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -16,17 +16,17 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "atomic_file.h"
-#include "child.h"
-#include "error.h"
-#include "hash.h"
-#include "input_file.h"
-#include "machine.h"
-#include "memory.h"
-#include "output_folder.h"
-#include "progress.h"
-#include "scene_reader.h"
-#include "study_view.h"
+#include "io/file/atomic_file.h"
+#include "io/study/child.h"
+#include "base/error.h"
+#include "base/hash.h"
+#include "io/file/input_file.h"
+#include "io/performance/machine.h"
+#include "base/memory.h"
+#include "io/file/output_folder.h"
+#include "io/performance/progress.h"
+#include "io/scene/scene_reader.h"
+#include "io/study/study_view.h"
 
 typedef struct case_state {
     uint64_t key;

@@ -3,11 +3,11 @@
 #include <math.h>
 #include <string.h>
 
-#include "atomic_file.h"
-#include "error.h"
-#include "memory.h"
-#include "study_view.h"
-#include "units.h"
+#include "io/file/atomic_file.h"
+#include "base/error.h"
+#include "base/memory.h"
+#include "io/study/study_view.h"
+#include "io/scene/units.h"
 
 static const char *const statuses[] = {"waiting", "done", "failed"};
 

@@ -1,12 +1,12 @@
 // References, fits that only reports want, and words for numbers.
-#include "study_view.h"
+#include "io/study/study_view.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "memory.h"
+#include "base/memory.h"
 
 static bool finished(const brunt_study_case *c) { return c->status == BRUNT_STUDY_DONE; }
 

@@ -5,7 +5,7 @@
 
 #include <stddef.h>
 
-#include "study.h"
+#include "io/study/study.h"
 
 // Number of the case on the resolution axis [of that axis]; NAN without one.
 double brunt_study_resolution(const brunt_study *study, const brunt_study_case *c);

@@ -1,7 +1,7 @@
 // Bilinear quadrilateral revolved about the axis, with one point. Modes as in quad4.c: xi, eta, and the hourglass xi
 // eta.
-#include "plane.h"
-#include "ring.h"
+#include "fem/plane_strain.h"
+#include "fem/axisymmetric.h"
 
 static const uint8_t faces[][4] = QUAD4_FACES;
 
@@ -54,7 +54,7 @@ BRUNT_INLINE void axisymmetric_quad4_ring(const lanes X[4][2], const lanes m[3][
 #define MODES 3
 #define HOURGLASS_MODES 1
 #define MODE_NORM 4
-#include "axisymmetric.inc"
+#include "fem/axisymmetric.inc"
 
 const brunt_element brunt_axisymmetric_quad4 = {
     .name = "quad4",

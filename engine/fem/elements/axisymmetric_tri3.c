@@ -1,6 +1,6 @@
 // Linear triangle revolved about the axis, with one point. Modes as in tri3.c: the edges from node 0.
-#include "plane.h"
-#include "ring.h"
+#include "fem/plane_strain.h"
+#include "fem/axisymmetric.h"
 
 static const uint8_t faces[][4] = TRI3_FACES;
 
@@ -28,7 +28,7 @@ BRUNT_INLINE void axisymmetric_tri3_ring(const lanes X[3][2], const lanes m[2][2
 #define MODES 2
 #define HOURGLASS_MODES 0
 #define MODE_NORM 0
-#include "axisymmetric.inc"
+#include "fem/axisymmetric.inc"
 
 const brunt_element brunt_axisymmetric_tri3 = {
     .name = "tri3",

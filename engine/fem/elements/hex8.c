@@ -5,7 +5,7 @@
 // from integrating det dx/dxi over the cube: all other products are odd, or have a vector twice. So dV/dX_a, the mean
 // gradient times V (Flanagan and Belytschko, Int. J. Numer. Meth. Eng. 17 (1981) 679, there with 24 sums of products),
 // follows from six vectors dV/dmode, and 18 numbers do the work of 24.
-#include "kernel.h"
+#include "fem/kernel.h"
 
 static const uint8_t faces[][4] = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
 
@@ -86,7 +86,7 @@ BRUNT_INLINE lanes hex8_gradient(const lanes m[7][3], lanes G[6][3]) {
 #define STRAIN_MODES 6
 #define HOURGLASS_MODES 4
 #define MODE_NORM 8
-#include "element.inc"
+#include "fem/element.inc"
 
 const brunt_element brunt_hex8 = {
     .name = "hex8",

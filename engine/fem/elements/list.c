@@ -1,5 +1,5 @@
 // The elements there are, in the order of brunt_element_kind.
-#include "element.h"
+#include "fem/element.h"
 
 #define ELEMENTS(X) X(tet4) X(hex8) X(tri3) X(quad4) X(membrane_quad4) X(membrane_tri3)
 

@@ -1,6 +1,6 @@
 // Bilinear membrane quadrilateral with one point. Modes: the tangents chi (along xi) and psi (along eta), and the
 // hourglass xi eta, each the sum of the nodes' values times the mode's +-1 there.
-#include "kernel.h"
+#include "fem/kernel.h"
 
 static const uint8_t faces[][4] = {{0, 1, 2, 3}};
 
@@ -31,7 +31,7 @@ BRUNT_INLINE void membrane_quad4_nodal(const lanes p[3][3], lanes f[4][3]) {
 #define HOURGLASS_MODES 1
 #define MODE_NORM 4
 #define AREA_SHARE 0.25
-#include "membrane.inc"
+#include "fem/membrane.inc"
 
 const brunt_element brunt_membrane_quad4 = {
     .name = "membrane_quad4",

@@ -1,5 +1,5 @@
 // Linear membrane triangle. Modes: the edges from node 0.
-#include "kernel.h"
+#include "fem/kernel.h"
 
 static const uint8_t faces[][4] = {{0, 1, 2, 0}};
 
@@ -21,7 +21,7 @@ BRUNT_INLINE void membrane_tri3_nodal(const lanes p[2][3], lanes f[3][3]) {
 #define HOURGLASS_MODES 0
 #define MODE_NORM 0
 #define AREA_SHARE 0.5
-#include "membrane.inc"
+#include "fem/membrane.inc"
 
 const brunt_element brunt_membrane_tri3 = {
     .name = "membrane_tri3",

@@ -1,6 +1,6 @@
 // Bilinear quadrilateral in plane strain with one point. Modes: xi, eta, and the hourglass xi eta, each the sum of the
 // nodes' values times the mode's +-1 there.
-#include "plane.h"
+#include "fem/plane_strain.h"
 
 static const uint8_t faces[][4] = QUAD4_FACES;
 
@@ -20,7 +20,7 @@ BRUNT_INLINE lanes quad4_gradient(const lanes m[3][2], lanes G[2][2]) {
 #define STRAIN_MODES 2
 #define HOURGLASS_MODES 1
 #define MODE_NORM 4
-#include "element.inc"
+#include "fem/element.inc"
 
 const brunt_element brunt_quad4 = {
     .name = "quad4",

@@ -1,5 +1,5 @@
 // Linear tetrahedron. Modes: the edges from node 0.
-#include "kernel.h"
+#include "fem/kernel.h"
 
 static const uint8_t faces[][4] = {{0, 2, 1, 0}, {0, 1, 3, 0}, {1, 2, 3, 0}, {0, 3, 2, 0}};
 
@@ -38,7 +38,7 @@ BRUNT_INLINE lanes tet4_gradient(const lanes m[3][3], lanes G[3][3]) {
 #define STRAIN_MODES 3
 #define HOURGLASS_MODES 0
 #define MODE_NORM 0
-#include "element.inc"
+#include "fem/element.inc"
 
 const brunt_element brunt_tet4 = {
     .name = "tet4",

@@ -1,5 +1,5 @@
 // Linear triangle in plane strain. Modes: the edges from node 0.
-#include "plane.h"
+#include "fem/plane_strain.h"
 
 static const uint8_t faces[][4] = TRI3_FACES;
 
@@ -16,7 +16,7 @@ BRUNT_INLINE lanes tri3_gradient(const lanes m[2][2], lanes G[2][2]) {
 #define STRAIN_MODES 2
 #define HOURGLASS_MODES 0
 #define MODE_NORM 0
-#include "element.inc"
+#include "fem/element.inc"
 
 const brunt_element brunt_tri3 = {
     .name = "tri3",

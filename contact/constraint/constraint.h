@@ -1,0 +1,107 @@
+// Contact points: places where something must not move closer, with Coulomb friction, whatever moves them.
+//
+// A support is a velocity that impulses change: a node of a mesh, or of a grid. A point ties a slave, a weighted sum of
+// supports, to a master: a plane that moves as it likes, or a facet of a body, extended affinely:
+//   u = sum_s w_s v_s - sum_k [ beta_k v_k - height (n_f . v_k) grad beta_k ]
+// beta_k are the facet's weights where the slave projects onto its plane, height its distance from the plane, n_f the
+// facet's normal: the velocity of the material plane as it moves, turns and stretches, seen at the slave. The reaction
+// goes back by the transpose. As u is 0 for every rigid motion of both, any impulse leaves linear and angular momentum
+// alone, to round-off.
+//
+// Material points are balls: their centres, whose velocity is weighed, stand off the surface. Where one rubs, friction
+// acts at its surface: with a lever, u of slip has entries of its own, on the same supports, and drag goes back by
+// their transpose, so that it acts there.
+//
+// All points of a step together must satisfy: u_n >= target, push >= 0, one of them 0; drag within the Coulomb cone and
+// against what is left of slip. Solved by projected Jacobi sweeps: a point's correction is scaled by its row sum of the
+// coupling matrix (in units of its own effective mass), so that a uniform approach is met in one sweep and no sweep can
+// add energy. Neither the order of points nor the number of threads changes a bit.
+//
+// Tried and left: starting the sweeps from the last step's impulses. They end sooner, but what is given too much is
+// taken back only as far as the sweeps go, and a stack of hexahedra at rest gained energy until it fell.
+#pragma once
+
+#include "contact/contact.h"
+
+typedef struct brunt_support {
+    double v[3], old[3]; // [m/s] now; before the forces of this step
+    double inverse[3];   // [1/kg] by component; 0: infinite mass
+    double impulse[3];   // [N s] received in all
+    double load;         // [kg] sum of |weight| effective mass of the points on it
+} brunt_support;
+
+typedef struct brunt_contact_entry {
+    int32_t support;
+    double weight[3]; // w_s of a slave, -beta_k of a master, by component: mirrors turn some of them
+    double turn[3]; // 0 of a slave; height grad beta_k of a master
+} brunt_contact_entry;
+
+typedef struct brunt_contact_point {
+    int32_t first, count; // entries
+    double x[3];          // [m] where
+    double n[3];          // out of the master, unit
+    double facet[3];      // n_f: normal of the master's facet; unused for planes
+    double gap;           // [m] before the step
+    double target;        // [m/s] least u_n
+    double friction;
+    double plane[3];      // [m/s] velocity of the master when it is a plane; 0 for facets
+    brunt_action *action; // where the point is booked: impulse on the slave times `sign`
+    double sign;
+    double area; // [m^2] it stands for in the action's area
+    int32_t tag; // the caller's
+    int32_t lever; // number + 1 of its own for friction, whose `count` entries follow the others; 0: it rubs where it
+                   // pushes
+    // solution
+    double scale, response, response_t; // [kg] effective mass alone; [-] row sums in units of it
+    double push, drag[3];               // [N s]
+    bool slips;
+} brunt_contact_point;
+
+typedef struct brunt_contact_points {
+    brunt_contact_point *point;
+    size_t point_capacity;
+    int32_t point_count;
+    brunt_contact_entry *entry;
+    size_t entry_capacity;
+    int32_t entry_count;
+    struct brunt_lever {
+        double x[3]; // [m] where friction acts
+    } * lever;
+    size_t lever_capacity;
+    int32_t lever_count;
+    brunt_support *support;
+    size_t support_capacity;
+    int32_t support_count;
+    // Which points press on a support: copies of their entries by support, in the order of the points, with what the
+    // sweep gives beside the facet it turns with, so that a sweep reads little more than it uses.
+    struct brunt_pressing {
+        int32_t point; // from the number of points on: levers
+        double weight[3], turn[3];
+    } * pressing;
+    size_t pressing_capacity;
+    int32_t *pressing_first;
+    size_t pressing_first_capacity;
+    struct brunt_given {
+        double impulse[3], facet[3];
+    } * given; // of each point, then of each lever
+    size_t given_capacity;
+    double *changed; // [m/s] of each chunk of points: greatest correction of the sweep
+    size_t changed_capacity;
+} brunt_contact_points;
+
+void brunt_points_clear(brunt_contact_points *points);
+void brunt_points_free(brunt_contact_points *points);
+// New support, point, and entry of the last point. The index, or -1: out of memory.
+int32_t brunt_points_support(brunt_contact_points *points);
+int32_t brunt_points_add(brunt_contact_points *points);
+int32_t brunt_points_entry(brunt_contact_points *points, int32_t support, double weight); // all components alike
+// Gives the last point, when its entries are complete, a lever to x: entries without weights, for the caller to fill.
+// The index of the first, or -1.
+int32_t brunt_points_lever(brunt_contact_points *points, const double x[3]);
+// Makes room for so many points and entries in all, which the caller then fills. 0, or -1.
+int brunt_points_room(brunt_contact_points *points, int32_t point_count, int32_t entry_count);
+// Relative velocity of a point, with the supports' v (old: as they were before the forces).
+void brunt_point_velocity(const brunt_contact_points *points, const brunt_contact_point *point, bool old, double u[3]);
+// Solves with at most `sweeps` sweeps, until the greatest correction of one is no more than `tolerance` of that of the
+// first; what is left is met in the next step. Books every point. The number of sweeps, or -1: out of memory.
+int brunt_points_solve(brunt_contact_points *points, int sweeps, double tolerance, int threads, brunt_timer *timer);

@@ -1,0 +1,20 @@
+#include "contact/contact.h"
+
+void brunt_action_add(brunt_action *sum, const brunt_action *part) {
+    for (int a = 0; a < 3; a++) sum->impulse[a] += part->impulse[a], sum->angular[a] += part->angular[a];
+    sum->external_work += part->external_work;
+    sum->normal_loss += part->normal_loss;
+    sum->friction_loss += part->friction_loss;
+    sum->area = part->area;
+}
+
+void brunt_action_book(brunt_action *action, double *loss, const double J[3], const double x[3], const double old[3],
+                       const double now[3], const double support[3]) {
+    for (int a = 0; a < 3; a++) {
+        int i = (a + 1) % 3, j = (a + 2) % 3;
+        action->impulse[a] += J[a];
+        action->angular[a] += x[i] * J[j] - x[j] * J[i];
+        action->external_work += J[a] * support[a];
+        *loss -= J[a] * (0.5 * (old[a] + now[a]) - support[a]);
+    }
+}

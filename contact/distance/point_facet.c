@@ -1,0 +1,223 @@
+#include "contact/distance/point_facet.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double NEAR_SPOKE = 1e-3; // of a quadrilateral's area, as the area between a place and a spoke
+
+static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+static void cross(const double a[3], const double b[3], double c[3]) {
+    c[0] = a[1] * b[2] - a[2] * b[1], c[1] = a[2] * b[0] - a[0] * b[2], c[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+// Nearest point of a segment, as its share of the way; `ends` when that is an end.
+static double on_segment(const double a[3], const double b[3], const double x[3], bool *ends) {
+    double e[3], r[3];
+    for (int k = 0; k < 3; k++) e[k] = b[k] - a[k], r[k] = x[k] - a[k];
+    double length = dot(e, e), t = length > 0 ? dot(e, r) / length : 0;
+    *ends = t <= 0 || t >= 1;
+    return t <= 0 ? 0 : t >= 1 ? 1 : t;
+}
+
+// Ericson, Real-Time Collision Detection (2005), 5.1.5: by the regions of the triangle's Voronoi diagram.
+static void on_triangle(const double *const p[3], const double x[3], double d[3], bool *inside) {
+    double ab[3], ac[3], ap[3], bp[3], cp[3];
+    for (int k = 0; k < 3; k++) {
+        ab[k] = p[1][k] - p[0][k], ac[k] = p[2][k] - p[0][k];
+        ap[k] = x[k] - p[0][k], bp[k] = x[k] - p[1][k], cp[k] = x[k] - p[2][k];
+    }
+    const double d1 = dot(ab, ap), d2 = dot(ac, ap), d3 = dot(ab, bp), d4 = dot(ac, bp), d5 = dot(ab, cp),
+                 d6 = dot(ac, cp);
+    const double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
+    double v = 0, w = 0;
+    *inside = false;
+    if (d1 <= 0 && d2 <= 0)
+        v = w = 0;
+    else if (d3 >= 0 && d4 <= d3)
+        v = 1, w = 0;
+    else if (d6 >= 0 && d5 <= d6)
+        v = 0, w = 1;
+    else if (vc <= 0 && d1 >= 0 && d3 <= 0)
+        v = d1 / (d1 - d3), w = 0;
+    else if (vb <= 0 && d2 >= 0 && d6 <= 0)
+        v = 0, w = d2 / (d2 - d6);
+    else if (va <= 0 && d4 >= d3 && d5 >= d6)
+        w = (d4 - d3) / ((d4 - d3) + (d5 - d6)), v = 1 - w;
+    else {
+        const double sum = va + vb + vc;
+        v = vb / sum, w = vc / sum;
+        *inside = true;
+    }
+    for (int k = 0; k < 3; k++) d[k] = ap[k] - v * ab[k] - w * ac[k];
+}
+
+static void unit_normal(const double *const p[3], double n[3]) {
+    double ab[3], ac[3];
+    for (int k = 0; k < 3; k++) ab[k] = p[1][k] - p[0][k], ac[k] = p[2][k] - p[0][k];
+    cross(ab, ac, n);
+    double size = sqrt(dot(n, n));
+    for (int k = 0; k < 3; k++) n[k] = size > 0 ? n[k] / size : 0;
+}
+
+// Corners of triangle `t` of a face; the third of a quadrilateral's is its centre.
+static void triangle_of(const brunt_skin *s, int32_t face, int t, const double *p[3]) {
+    const int32_t *node = s->face[face];
+    p[0] = s->x[node[t]];
+    p[1] = s->x[node[node[3] < 0 ? 1 : (t + 1) % 4]];
+    p[2] = node[3] < 0 ? s->x[node[2]] : s->face_centre[face];
+}
+
+// The triangle of a quadrilateral that x is over; `between`: whether it is on the way to another one.
+static int sector(const brunt_skin *s, int32_t face, const double x[3], bool *between) {
+    const double *centre = s->face_centre[face], *normal = s->face_normal[face];
+    const double near = NEAR_SPOKE * s->face_area[face];
+    double r[3], turn[4];
+    *between = false;
+    for (int k = 0; k < 3; k++) r[k] = x[k] - centre[k];
+    for (int t = 0; t < 4; t++) {
+        const double *p = s->x[s->face[face][t]];
+        const double e[3] = {p[0] - centre[0], p[1] - centre[1], p[2] - centre[2]};
+        double c[3];
+        cross(e, r, c);
+        turn[t] = dot(c, normal);
+        *between = *between || fabs(turn[t]) < near;
+    }
+    for (int t = 0; t < 4; t++)
+        if (turn[t] >= 0 && turn[(t + 1) % 4] <= 0) return t;
+    return 0;
+}
+
+// Of a quadrilateral's four triangles the one whose sector x is in settles it, unless the nearest point is on its rim.
+static brunt_closest closest_on_quadrilateral(const brunt_skin *s, int32_t face, const double x[3]) {
+    double d[4][3], square[4], least = INFINITY;
+    bool inside[4], between, alone = false;
+    const int first = sector(s, face, x, &between);
+    int tested = 0;
+    for (; tested < 4 && !alone; tested++) {
+        const int t = (first + tested) % 4;
+        const double *p[3];
+        triangle_of(s, face, t, p);
+        on_triangle(p, x, d[tested], &inside[tested]);
+        alone = tested == 0 && inside[0] && !between;
+        square[tested] = dot(d[tested], d[tested]);
+        least = fmin(least, square[tested]);
+    }
+    brunt_closest best = {.square = INFINITY};
+    const double root = tested > 1 ? sqrt(least) + BRUNT_TIE * sqrt(s->face_area[face]) : INFINITY;
+    double most = -1;
+    int count = 0;
+    // Triangles that are as near as each other: the mean of their normals and of the ways to x, whose length is that of
+    // either, and as its triangle the one that most faces x, as between facets.
+    for (int k = 0; k < tested; k++) {
+        if (square[k] > root * root) continue;
+        const int t = (first + k) % 4;
+        const double *p[3];
+        double n[3];
+        triangle_of(s, face, t, p);
+        unit_normal(p, n);
+        const double facing = inside[k] ? INFINITY : fabs(dot(n, d[k]));
+        count++, best.triangles |= 1 << t;
+        for (int c = 0; c < 3; c++) best.normal[c] += n[c], best.d[c] += d[k][c];
+        if (facing > most) most = facing, best.square = square[k], best.inside = inside[k], best.triangle = t;
+    }
+    if (count == 1) best.triangles = 0;
+    const double size = count > 1 ? sqrt(dot(best.normal, best.normal)) : 1;
+    for (int c = 0; c < 3; c++) best.normal[c] = size > 0 ? best.normal[c] / size : 0, best.d[c] /= count;
+    // The spokes of a quadrilateral are no edges of the surface: on a flat one the nearest point may lie on one.
+    double along = dot(best.d, best.normal);
+    if (!best.inside && best.square - along * along <= 1e-24 * s->face_area[face]) best.inside = true;
+    return best;
+}
+
+brunt_closest brunt_closest_on_face(const brunt_skin *s, int32_t face, const double x[3]) {
+    const int32_t *node = s->face[face];
+    brunt_closest best = {.square = INFINITY};
+    if (node[2] < 0) {
+        bool ends;
+        const double *a = s->x[node[0]], *b = s->x[node[1]], t = on_segment(a, b, x, &ends);
+        best.inside = !ends;
+        for (int k = 0; k < 3; k++) {
+            best.d[k] = x[k] - (1 - t) * a[k] - t * b[k];
+            best.normal[k] = s->face_normal[face][k];
+        }
+        best.square = dot(best.d, best.d);
+        return best;
+    }
+    if (node[3] >= 0) return closest_on_quadrilateral(s, face, x);
+    const double *p[3];
+    triangle_of(s, face, 0, p);
+    on_triangle(p, x, best.d, &best.inside);
+    best.square = dot(best.d, best.d);
+    unit_normal(p, best.normal);
+    return best;
+}
+
+// Weights of a triangle's second and third corner at r from the first: e and g its edges from there, n = e x g.
+static void triangle_weights(const double e[3], const double g[3], const double r[3], const double n[3], double inverse,
+                             double *w1, double *w2) {
+    double rg[3], er[3];
+    cross(r, g, rg);
+    cross(e, r, er);
+    *w1 = dot(rg, n) * inverse, *w2 = dot(er, n) * inverse;
+}
+
+static void spread(const int32_t node[4], int triangle, double w0, double w1, double w2, double weight[4]) {
+    const int i = triangle, j = node[3] < 0 ? 1 : (triangle + 1) % 4;
+    for (int c = 0; c < 4; c++)
+        weight[c] = node[3] < 0 ? (c == 2 ? w2 : 0) : 0.25 * w2; // the centre is the mean of the four
+    weight[i] += w0, weight[j] += w1;
+}
+
+void brunt_face_values(const brunt_skin *s, int32_t face, int triangle, const double x[3], double weight[4]) {
+    const int32_t *node = s->face[face];
+    if (node[2] < 0) {
+        const double *a = s->x[node[0]], *b = s->x[node[1]];
+        double e[3], r[3];
+        for (int k = 0; k < 3; k++) e[k] = b[k] - a[k], r[k] = x[k] - a[k];
+        double length = dot(e, e), t = length > 0 ? dot(e, r) / length : 0;
+        weight[0] = 1 - t, weight[1] = t, weight[2] = weight[3] = 0;
+        return;
+    }
+    const double *p[3];
+    double e[3], g[3], r[3], n[3], w1, w2;
+    triangle_of(s, face, triangle, p);
+    for (int k = 0; k < 3; k++) e[k] = p[1][k] - p[0][k], g[k] = p[2][k] - p[0][k], r[k] = x[k] - p[0][k];
+    cross(e, g, n);
+    double size = dot(n, n);
+    triangle_weights(e, g, r, n, size > 0 ? 1 / size : 0, &w1, &w2);
+    spread(node, triangle, 1 - w1 - w2, w1, w2, weight);
+}
+
+void brunt_face_weights(const brunt_skin *s, int32_t face, int triangle, const double x[3], double weight[4],
+                        double gradient[4][3], double normal[3], double *height) {
+    const int32_t *node = s->face[face];
+    brunt_face_values(s, face, triangle, x, weight);
+    if (node[2] < 0) {
+        const double *a = s->x[node[0]], *b = s->x[node[1]];
+        double e[3], length = 0;
+        for (int k = 0; k < 3; k++) e[k] = b[k] - a[k], normal[k] = s->face_normal[face][k], length += e[k] * e[k];
+        *height = 0;
+        for (int k = 0; k < 3; k++) {
+            gradient[1][k] = length > 0 ? e[k] / length : 0, gradient[0][k] = -gradient[1][k];
+            gradient[2][k] = gradient[3][k] = 0;
+            *height += (x[k] - a[k]) * normal[k];
+        }
+        return;
+    }
+    const double *p[3];
+    double e[3], g[3], r[3], n[3], g1[3], g2[3];
+    triangle_of(s, face, triangle, p);
+    for (int k = 0; k < 3; k++) e[k] = p[1][k] - p[0][k], g[k] = p[2][k] - p[0][k], r[k] = x[k] - p[0][k];
+    cross(e, g, n);
+    const double size = dot(n, n), inverse = size > 0 ? 1 / size : 0, root = sqrt(inverse);
+    for (int k = 0; k < 3; k++) normal[k] = n[k] * root;
+    *height = dot(r, normal);
+    // Gradients of the triangle's own weights: g1 = (g x n)/n^2, g2 = (n x e)/n^2.
+    cross(g, n, g1);
+    cross(n, e, g2);
+    for (int k = 0; k < 3; k++) {
+        double weights[4];
+        spread(node, triangle, -(g1[k] + g2[k]) * inverse, g1[k] * inverse, g2[k] * inverse, weights);
+        for (int c = 0; c < 4; c++) gradient[c][k] = weights[c];
+    }
+}

@@ -1,0 +1,455 @@
+// Contact between bodies on the grid, one velocity field a body (Bardenhagen, Guilkey et al. 2001).
+//
+// Only slots that two or more bodies have alive are looked at, and only nodes where two have mass. There, per pair:
+//   normal   from a to b, along -grad phi_a + grad phi_b of the volume fractions: n_ba = -n_ab to the bit
+//   gap      between the surfaces as the particles near the node have them (reach.c), not as the kernels feel them
+//   approach the relative velocity along n may not exceed gap/dt, so the gap closes to zero and not past it; bodies not
+//            yet within reach are left alone
+//   friction the tangential impulse that would stop the slip, at most mu times the normal one
+// Tied pairs share one velocity instead, whatever the normal and the gap.
+// Impulses are equal and opposite at one point: linear and angular momentum are kept to rounding. Three and more bodies
+// at a node are solved together by Gauss-Seidel sweeps over the pairs to convergence; bodies are ordered by name, so
+// the order in a file changes nothing.
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "contact/contact.h"
+#include "base/memory.h"
+#include "base/parallel.h"
+
+enum { MAX_SWEEPS = 1000, MAX_TOGETHER = 16 };
+static const double SWEEP_TOLERANCE = 1e-13; // of the velocities at the node
+
+// A slot of a body that some other body may share.
+typedef struct shared_slot {
+    uint64_t key;
+    int32_t body, slot;
+} shared_slot;
+// Slots with the same coordinate: entries first .. first+count-1, and where their pairs' actions are collected.
+typedef struct group {
+    int32_t first, count, action;
+    bool crowded, starved; // too many bodies, too little memory at one of its nodes
+} group;
+
+typedef struct box {
+    int32_t low[3], high[3];
+} box;
+
+struct brunt_contact_workspace {
+    box *bounds;
+    size_t bounds_capacity;
+    shared_slot *shared;
+    size_t shared_capacity;
+    int32_t shared_count;
+    group *groups;
+    size_t groups_capacity;
+    int32_t group_count;
+    brunt_action *actions;
+    size_t actions_capacity;
+    int32_t action_count;
+    brunt_reach_cloud (*clouds)[2]; // of each thread: two bodies near a node
+    int cloud_count;
+};
+
+typedef struct job {
+    brunt_body *bodies;
+    int body_count;
+    const brunt_pair *pairs;
+    const int32_t *pair_of;
+    const brunt_mirror *mirrors;
+    int mirror_count;
+    double dt;
+    brunt_contact_workspace *w;
+    const brunt_mirror *axis; // of rings; NULL
+} job;
+
+void brunt_contact_workspace_free(brunt_contact_workspace *workspace) {
+    if (!workspace) return;
+    brunt_free(workspace->bounds);
+    brunt_free(workspace->shared);
+    brunt_free(workspace->groups);
+    brunt_free(workspace->actions);
+    for (int t = 0; t < workspace->cloud_count; t++)
+        for (int k = 0; k < 2; k++) brunt_reach_cloud_free(&workspace->clouds[t][k]);
+    brunt_free(workspace->clouds);
+    brunt_free(workspace);
+}
+
+// ------------------------------------------------------------------------------------------ who meets whom
+
+static box slot_bounds(const brunt_grid *grid) {
+    box b = {{INT32_MAX, INT32_MAX, INT32_MAX}, {INT32_MIN, INT32_MIN, INT32_MIN}};
+    for (int32_t s = 0; s < grid->slot_count; s++)
+        for (int a = 0; a < 3; a++) {
+            int32_t c = grid->slots[s].coord[a];
+            if (c < b.low[a]) b.low[a] = c;
+            if (c > b.high[a]) b.high[a] = c;
+        }
+    return b;
+}
+
+static bool overlap(const box *a, const box *b) {
+    for (int k = 0; k < 3; k++)
+        if (a->low[k] > b->high[k] || b->low[k] > a->high[k]) return false;
+    return true;
+}
+
+static bool inside(const box *b, const int32_t c[3]) {
+    for (int k = 0; k < 3; k++)
+        if (c[k] < b->low[k] || c[k] > b->high[k]) return false;
+    return true;
+}
+
+static int compare_shared(const void *a, const void *b) {
+    const shared_slot *u = a, *v = b;
+    if (u->key != v->key) return u->key < v->key ? -1 : 1;
+    return (u->body > v->body) - (u->body < v->body);
+}
+
+// Slots inside the box of another body that it may touch, sorted; then those that really coincide. 0, or -1: out of
+// memory.
+static int find_groups(job *j) {
+    brunt_contact_workspace *w = j->w;
+    const int n = j->body_count;
+    if (brunt_reserve((void **)&w->bounds, &w->bounds_capacity, (size_t)n * sizeof *w->bounds, 0)) return -1;
+    box *bounds = w->bounds;
+    for (int b = 0; b < n; b++) bounds[b] = slot_bounds(&j->bodies[b].grid);
+    w->shared_count = w->group_count = w->action_count = 0;
+    for (int b = 0; b < n; b++) {
+        const brunt_grid *grid = &j->bodies[b].grid;
+        for (int o = 0; o < n; o++) {
+            if (o == b || j->pair_of[b * n + o] < 0 || !overlap(&bounds[b], &bounds[o])) continue;
+            if (brunt_reserve((void **)&w->shared, &w->shared_capacity,
+                              (size_t)(w->shared_count + grid->slot_count) * sizeof(shared_slot),
+                              (size_t)w->shared_count * sizeof(shared_slot)))
+                return -1;
+            for (int32_t s = 0; s < grid->slot_count; s++)
+                if (inside(&bounds[o], grid->slots[s].coord))
+                    w->shared[w->shared_count++] = (shared_slot){grid->slot_key[s], b, s};
+        }
+    }
+    if (!w->shared_count) return 0;
+    qsort(w->shared, (size_t)w->shared_count, sizeof *w->shared, compare_shared);
+    int32_t unique = 0;
+    for (int32_t i = 0; i < w->shared_count; i++)
+        if (!unique || compare_shared(&w->shared[i], &w->shared[unique - 1])) w->shared[unique++] = w->shared[i];
+    w->shared_count = unique;
+    if (brunt_reserve((void **)&w->groups, &w->groups_capacity, (size_t)unique * sizeof(group), 0)) return -1;
+    for (int32_t i = 0, next; i < unique; i = next) {
+        for (next = i + 1; next < unique && w->shared[next].key == w->shared[i].key; next++) {}
+        int32_t count = next - i;
+        if (count < 2) continue;
+        w->groups[w->group_count++] = (group){i, count, w->action_count, false, false};
+        w->action_count += count * (count - 1) / 2;
+    }
+    size_t bytes = (size_t)(w->action_count + 1) * sizeof *w->actions;
+    if (brunt_reserve((void **)&w->actions, &w->actions_capacity, bytes, 0)) return -1;
+    memset(w->actions, 0, bytes);
+    return 0;
+}
+
+// ------------------------------------------------------------------------------------------ one node
+
+typedef struct meeting {
+    int a, b;                 // members
+    int action;               // index among the group's pairs
+    double n[3], target;      // normal from a to b; least relative velocity along it [m/s]
+    double friction;          // [-]
+    double inverse, slide;    // [1/kg] along n; the greatest across
+    double push, drag[3];     // [N s] on b
+    bool tied;                // `drag` takes all of the relative velocity
+} meeting;
+
+typedef struct member {
+    brunt_body *body;
+    int32_t slot;
+    real *node;
+    int entry;
+    bool held;
+    double v[3], inverse[3], given[3]; // [m/s], [1/kg] by component: 0 where a condition gives v; [N s]
+} member;
+
+// Unit vector along n with the parts taken out that a body cut by mirror planes cannot know: its image has no
+// particles.
+static bool make_unit(const job *j, const member *a, int node, double n[3]) {
+    int local[3];
+    const brunt_grid *grid = &a->body->grid;
+    brunt_node_local(grid, node, local);
+    for (int m = 0; m < j->mirror_count; m++) {
+        int axis = j->mirrors[m].axis;
+        int32_t away = grid->slots[a->slot].coord[axis] * grid->side + local[axis] - j->mirrors[m].node;
+        if (away >= -1 && away <= 1) n[axis] = 0;
+    }
+    double size = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    if (!(size > 0) || !isfinite(size)) return false;
+    for (int k = 0; k < 3; k++) n[k] /= size;
+    return true;
+}
+
+static double gap_along(const brunt_reach_cloud *a, const brunt_reach_cloud *b, const double n[3]) {
+    const double back[3] = {-n[0], -n[1], -n[2]};
+    double far_a[3], far_b[3];
+    return -brunt_reach_extent(b, 1, back, far_b) - brunt_reach_extent(a, 1, n, far_a);
+}
+
+// Normal and gap of two bodies at a node. The mean normal is right in the middle of a contact, and tilted at its rim:
+// there it finds bodies touching that graze a third of a cell apart, and a block sliding over another is held by its
+// edges. So where the mean normal finds contact, the direction that keeps the bodies farthest apart decides: the one of
+// their true distance, or, when they touch, that between the hulls of the particles' centres, which are apart still.
+// 0 when nothing tells the bodies apart, 1, or -1: out of memory.
+static int make_normal(const job *j, const member *a, const member *b, int node, brunt_reach_cloud cloud[2],
+                       double n[3], double *gap) {
+    double ga[3], gb[3], ca[3], cb[3], between[3], approach = 0;
+    brunt_reach_gradient(a->body, a->slot, node, ga, ca);
+    brunt_reach_gradient(b->body, b->slot, node, gb, cb);
+    for (int k = 0; k < 3; k++) n[k] = gb[k] - ga[k], between[k] = cb[k] - ca[k];
+    if (!make_unit(j, a, node, n)) return 0;
+    if (brunt_reach_gather(a->body, a->slot, node, &cloud[0]) || brunt_reach_gather(b->body, b->slot, node, &cloud[1]))
+        return -1;
+    for (int k = 0; k < 3; k++) approach += (b->v[k] - a->v[k]) * n[k];
+    *gap = gap_along(&cloud[0], &cloud[1], n);
+    if (approach * j->dt >= -fmax(*gap, 0) || !make_unit(j, a, node, between)) return 1;
+    for (int centres = 0; centres <= 1; centres++) {
+        double direct[3], found, h = (double)a->body->grid.h;
+        if (!(brunt_separation(&cloud[0], &cloud[1], h, 1 - centres, between, direct) > 0)) continue;
+        if (!make_unit(j, a, node, direct) || !((found = gap_along(&cloud[0], &cloud[1], direct)) > *gap)) continue;
+        *gap = found;
+        memcpy(n, direct, sizeof direct);
+        break;
+    }
+    return 1;
+}
+
+static double relative(const member *members, const meeting *m, double v[3]) {
+    double along = 0;
+    for (int k = 0; k < 3; k++) {
+        v[k] = members[m->b].v[k] - members[m->a].v[k];
+        along += v[k] * m->n[k];
+    }
+    return along;
+}
+
+// Gives a tied pair one velocity; returns the change of velocity [m/s].
+static double tie(member *members, meeting *m) {
+    double v[3], changed = 0;
+    relative(members, m, v);
+    for (int k = 0; k < 3; k++) {
+        const double inverse = members[m->a].inverse[k] + members[m->b].inverse[k];
+        if (!(inverse > 0)) continue;
+        const double J = -v[k] / inverse;
+        m->drag[k] += J;
+        members[m->a].v[k] -= J * members[m->a].inverse[k];
+        members[m->b].v[k] += J * members[m->b].inverse[k];
+        changed = fmax(changed, fabs(v[k]));
+    }
+    return changed;
+}
+
+// Brings one pair to its complementarity condition; returns the change of velocity [m/s].
+static double visit(member *members, meeting *m) {
+    if (m->tied) return tie(members, m);
+    double v[3], J[3], along = relative(members, m, v);
+    double push = fmax(0, m->push + (m->target - along) / m->inverse), step = push - m->push;
+    m->push = push;
+    double changed = fabs(step) * m->inverse;
+    for (int k = 0; k < 3; k++) J[k] = step * m->n[k];
+    if (m->friction > 0) {
+        double drag[3], size = 0, moved = 0;
+        for (int k = 0; k < 3; k++) {
+            drag[k] = m->drag[k] - (v[k] - along * m->n[k]) / m->slide;
+            size += drag[k] * drag[k];
+        }
+        size = sqrt(size);
+        double most = m->friction * push, scale = size > most ? most / size : 1;
+        for (int k = 0; k < 3; k++) {
+            double now = scale * drag[k];
+            J[k] += now - m->drag[k];
+            moved += (now - m->drag[k]) * (now - m->drag[k]);
+            m->drag[k] = now;
+        }
+        changed = fmax(changed, sqrt(moved) * m->slide);
+    }
+    for (int k = 0; k < 3; k++) {
+        members[m->a].v[k] -= J[k] * members[m->a].inverse[k];
+        members[m->b].v[k] += J[k] * members[m->b].inverse[k];
+    }
+    return changed;
+}
+
+// What two members yield along the normal, and at most across it.
+static void make_inverse(const member *a, const member *b, meeting *m) {
+    m->inverse = m->slide = a->inverse[0] + b->inverse[0];
+    if (!a->held && !b->held) return;
+    m->inverse = 0;
+    for (int k = 0; k < 3; k++) {
+        const double inverse = a->inverse[k] + b->inverse[k];
+        m->inverse += m->n[k] * m->n[k] * inverse;
+        m->slide = fmax(m->slide, inverse);
+    }
+}
+
+static member make_member(brunt_body *body, const shared_slot *s, int node, real *at, int entry) {
+    member m = {.body = body, .slot = s->slot, .node = at, .entry = entry};
+    for (int a = 0; a < body->grid.dim; a++) {
+        const bool held = brunt_node_held(&body->grid, (int64_t)s->slot * BRUNT_BLOCK_NODES + node, a);
+        m.v[a] = (double)at[BRUNT_NODE_VELOCITY + a];
+        m.inverse[a] = held ? 0 : 1 / (double)at[0];
+        m.held |= held;
+    }
+    return m;
+}
+
+// The node has what it was given even where it is held: the condition then takes it, and books it.
+static void leave_node(const member *m) {
+    for (int a = 0; a < m->body->grid.dim; a++)
+        m->node[BRUNT_NODE_VELOCITY + a] =
+            (real)(m->inverse[a] > 0 ? m->v[a] : m->v[a] + m->given[a] / (double)m->node[0]);
+}
+
+// How many nodes from the axis of rings a node is, negative beyond it.
+static int32_t from_axis(const job *j, const shared_slot *s, int node) {
+    const brunt_grid *grid = &j->bodies[s->body].grid;
+    int local[3];
+    brunt_node_local(grid, node, local);
+    return grid->slots[s->slot].coord[j->axis->axis] * grid->side + local[j->axis->axis] - j->axis->node;
+}
+
+// The image of a member's node beyond the axis, NULL when there is none, and the signs of its velocity.
+static real *beyond_axis(const job *j, const member *m, int node, real sign[3]) {
+    const brunt_grid *grid = &m->body->grid;
+    int local[3];
+    int32_t at[3], image[BRUNT_MAX_IMAGES][3];
+    real signs[BRUNT_MAX_IMAGES][3];
+    brunt_node_local(grid, node, local);
+    for (int a = 0; a < 3; a++) at[a] = a < grid->dim ? grid->slots[m->slot].coord[a] * grid->side + local[a] : 0;
+    if (brunt_mirror_images(j->axis, 1, at, grid->order, image, signs) < 2) return NULL;
+    memcpy(sign, signs[1], 3 * sizeof *sign);
+    real *found = brunt_grid_node(grid, image[1]);
+    return found && found[0] > 0 ? found : NULL;
+}
+
+// Nodes beyond the axis stay the images of those before it, where the bodies have met. The bodies see less of each
+// other there, or nothing: contacts of its own would give two bodies different impulses.
+static void follow_axis(const job *j, const member *m, int node) {
+    real sign[3], *image = beyond_axis(j, m, node, sign);
+    for (int a = 0; image && a < m->body->grid.dim; a++)
+        image[BRUNT_NODE_VELOCITY + a] = sign[a] * m->node[BRUNT_NODE_VELOCITY + a];
+}
+
+// The body's own share of what a member gets.
+static double own_share(const job *j, const member *m, int node) {
+    const double own = (double)(m->node[BRUNT_NODE_SPARE] / m->node[0]);
+    real sign[3];
+    const real *image = j->axis ? beyond_axis(j, m, node, sign) : NULL;
+    return image ? own + (double)(image[BRUNT_NODE_SPARE] / image[0]) : own;
+}
+
+static void meet_at_node(const job *j, group *g, int node, brunt_reach_cloud cloud[2]) {
+    if (j->axis && from_axis(j, &j->w->shared[g->first], node) < 0) return;
+    member members[MAX_TOGETHER];
+    meeting meetings[MAX_TOGETHER * (MAX_TOGETHER - 1) / 2];
+    bool held = false;
+    int n = 0, met = 0, dim = j->bodies[0].grid.dim;
+    for (int32_t i = 0; i < g->count; i++) {
+        const shared_slot *s = &j->w->shared[g->first + i];
+        real *at = brunt_slot_nodes(&j->bodies[s->body].grid, s->slot) + node * BRUNT_NODE_REALS;
+        if (!(at[0] > 0)) continue;
+        if (n == MAX_TOGETHER) {
+            g->crowded = true;
+            return;
+        }
+        members[n++] = make_member(&j->bodies[s->body], s, node, at, i);
+    }
+    if (n < 2) return;
+    double fastest = 0;
+    for (int i = 0; i < n; i++) {
+        for (int a = 0; a < dim; a++) fastest = fmax(fastest, fabs(members[i].v[a]));
+        for (int k = i + 1; k < n; k++) {
+            int32_t pair = j->pair_of[(members[i].body - j->bodies) * j->body_count + (members[k].body - j->bodies)];
+            if (pair < 0) continue;
+            meeting *m = &meetings[met];
+            int low = members[i].entry, high = members[k].entry;
+            *m = (meeting){.a = i,
+                           .b = k,
+                           .action = low * g->count - low * (low + 1) / 2 + high - low - 1,
+                           .friction = j->pairs[pair].friction,
+                           .tied = j->pairs[pair].method == BRUNT_CONTACT_TIED};
+            double gap = 0;
+            const int told = m->tied ? 1 : make_normal(j, &members[i], &members[k], node, cloud, m->n, &gap);
+            if (told < 0) g->starved = true;
+            if (told <= 0) continue;
+            m->target = -fmax(gap, 0) / j->dt;
+            make_inverse(&members[i], &members[k], m);
+            held |= members[i].held || members[k].held;
+            met += m->tied || m->inverse > 0;
+        }
+    }
+    if (!met) return;
+    for (int sweep = 0; sweep < MAX_SWEEPS; sweep++) {
+        double changed = 0;
+        for (int q = 0; q < met; q++) changed = fmax(changed, visit(members, &meetings[q]));
+        if ((met == 1 && !held) || changed <= SWEEP_TOLERANCE * fastest) break;
+    }
+    const int32_t *coord = members[0].body->grid.slots[members[0].slot].coord;
+    double x[3];
+    brunt_node_position(&members[0].body->grid, coord, node, x);
+    static const double rest[3] = {0, 0, 0};
+    for (int q = 0; q < met; q++) {
+        const meeting *m = &meetings[q];
+        if (!(m->push > 0) && !m->tied) continue;
+        double push[3], drag[3], old[3] = {0}, now[3];
+        double own = own_share(j, &members[m->b], node);
+        relative(members, m, now);
+        for (int k = 0; k < 3; k++) {
+            push[k] = own * m->push * m->n[k], drag[k] = own * m->drag[k];
+            members[m->a].given[k] -= m->push * m->n[k] + m->drag[k];
+            members[m->b].given[k] += m->push * m->n[k] + m->drag[k];
+        }
+        for (int k = 0; k < dim; k++)
+            old[k] = (double)(members[m->b].node[BRUNT_NODE_OLD + k] - members[m->a].node[BRUNT_NODE_OLD + k]);
+        brunt_action *action = &j->w->actions[g->action + m->action];
+        brunt_action_book(action, &action->normal_loss, m->tied ? drag : push, x, old, now, rest);
+        if (m->friction > 0 && !m->tied) brunt_action_book(action, &action->friction_loss, drag, x, old, now, rest);
+    }
+    for (int i = 0; i < n; i++) leave_node(&members[i]);
+    for (int i = 0; j->axis && i < n; i++) follow_axis(j, &members[i], node);
+}
+
+static void meet(void *context, int64_t begin, int64_t end, int worker) {
+    const job *j = context;
+    for (int64_t q = begin; q < end; q++)
+        for (int node = 0; node < BRUNT_BLOCK_NODES; node++)
+            meet_at_node(j, &j->w->groups[q], node, j->w->clouds[worker]);
+}
+
+static int make_clouds(brunt_contact_workspace *w, int threads) {
+    if (w->cloud_count >= threads) return 0;
+    w->clouds = brunt_alloc(sizeof *w->clouds * (size_t)threads);
+    w->cloud_count = w->clouds ? threads : 0;
+    return w->clouds ? 0 : -1;
+}
+
+int brunt_multivelocity_apply(brunt_body *bodies, int body_count, brunt_pair *pairs, int pair_count,
+                              const int32_t *pair_of, const brunt_mirror *mirrors, int mirror_count, double dt,
+                              int threads, brunt_timer *timer, brunt_contact_workspace **workspace) {
+    (void)pair_count;
+    if (!*workspace) *workspace = brunt_alloc(sizeof **workspace);
+    if (!*workspace || make_clouds(*workspace, threads)) return -1;
+    job j = {bodies, body_count, pairs, pair_of, mirrors, mirror_count, dt, *workspace, NULL};
+    for (int m = 0; m < mirror_count; m++)
+        if (mirrors[m].wall < 0) j.axis = &mirrors[m];
+    if (find_groups(&j)) return -1;
+    brunt_parallel(threads, j.w->group_count, 1, meet, &j, timer);
+    for (int32_t q = 0; q < j.w->group_count; q++) {
+        const group *g = &j.w->groups[q];
+        if (g->crowded || g->starved) return g->crowded ? -2 : -1;
+        int at = g->action;
+        for (int32_t i = 0; i < g->count; i++)
+            for (int32_t k = i + 1; k < g->count; k++, at++) {
+                int32_t pair = pair_of[j.w->shared[g->first + i].body * body_count + j.w->shared[g->first + k].body];
+                if (pair >= 0) brunt_action_add(&pairs[pair].last, &j.w->actions[at]);
+            }
+    }
+    return 0;
+}

@@ -1,0 +1,264 @@
+// Which bodies are near each other and near walls, and what a search remembers from step to step.
+#include "contact/search/node_to_facet_parts.h"
+
+#include <stdlib.h>
+
+#include "mpm/particles.h"
+#include "mpm/transfer.h"
+
+static const double RANGE = 0.25;     // mean edges: how far a body looks for others, if nothing moves faster
+static const double FARTHEST = 1e150; // [m] squares of distances are still numbers
+
+void brunt_facing_free(brunt_facing *f) {
+    if (!f) return;
+    for (int k = 0; k < f->mpm_count; k++) brunt_free(f->node_support[k]);
+    for (int t = 0; t < f->sight_count; t++) brunt_free(f->sight[t].seen);
+    for (int t = 0; t < f->masters_count; t++) brunt_free(f->masters[t].master);
+    void *owned[] = {f->box,
+                     f->near,
+                     f->box_of,
+                     f->near_first,
+                     f->near_list,
+                     f->cell_first,
+                     f->cell_face,
+                     f->made_x,
+                     f->made_box,
+                     f->found,
+                     f->hits,
+                     f->last,
+                     f->quiet,
+                     f->support_of,
+                     f->first_point,
+                     f->node_support,
+                     f->node_support_capacity,
+                     f->grid,
+                     f->sight,
+                     f->masters,
+                     f->run,
+                     f->last_spare,
+                     f};
+    for (size_t k = 0; k < sizeof owned / sizeof owned[0]; k++) brunt_free(owned[k]);
+}
+
+size_t brunt_facing_bytes(const brunt_facing *f) {
+    return f ? f->box_capacity + f->near_capacity + f->cell_first_capacity + f->cell_face_capacity +
+                   f->made_x_capacity + f->quiet_capacity + f->found_capacity + f->support_of_capacity
+             : 0;
+}
+
+// ------------------------------------------------------------------------------------------ which bodies are near
+
+static void bound_grid(const brunt_body *body, bounds *box) {
+    const brunt_grid *grid = &body->grid;
+    for (int a = 0; a < 3; a++)
+        box->low[a] = a < grid->dim ? INFINITY : 0, box->high[a] = a < grid->dim ? -INFINITY : 0;
+    const bool total = brunt_total_lagrangian(&body->particles);
+    for (int32_t b = 0; b < grid->block_count && total; b++) {
+        double low[3], high[3];
+        brunt_body_block_bounds(body, b, low, high);
+        for (int a = 0; a < grid->dim; a++) {
+            box->low[a] = fmin(box->low[a], low[a] - (double)grid->h * grid->order);
+            box->high[a] = fmax(box->high[a], high[a] + (double)grid->h * grid->order);
+        }
+    }
+    for (int32_t b = 0; b < grid->block_count && !total; b++)
+        for (int a = 0; a < grid->dim; a++) {
+            double low = grid->origin[a] + (double)grid->h * grid->blocks[b].coord[a] * grid->side;
+            box->low[a] = fmin(box->low[a], low);
+            box->high[a] = fmax(box->high[a], low + (double)grid->h * (grid->side + grid->order));
+        }
+}
+
+static int by_low(const void *a, const void *b) {
+    const bounds *p = a, *q = b;
+    return p->low[0] < q->low[0] ? -1 : p->low[0] > q->low[0] ? 1 : p->body - q->body;
+}
+
+static bool overlap(const bounds *a, const bounds *b, double by) {
+    for (int k = 0; k < 3; k++)
+        if (a->low[k] - by > b->high[k] || b->low[k] - by > a->high[k]) return false;
+    return true;
+}
+
+static bool meets(const brunt_meeting *m, const bounds *a, const bounds *b) {
+    if (a->fem < 0 && b->fem < 0) return false; // particles have no facets: those meet at grid nodes
+    int32_t pair = m->pair_of[a->body * m->body_count + b->body];
+    return pair >= 0 && m->pairs[pair].method == BRUNT_CONTACT_AUGURY;
+}
+
+static int find_boxes(const brunt_meeting *m, brunt_body *mpm, int mpm_count, brunt_facing *f) {
+    const brunt_skin *s = m->skin;
+    f->box_count = s->fem_count + mpm_count;
+    if (RESERVE(f, box, f->box_count + 1) || RESERVE(f, box_of, s->fem_count + 1)) return -1;
+    for (int k = 0; k < s->fem_count; k++) {
+        bounds *box = &f->box[k];
+        *box = (bounds){.body = s->fem[k]->index, .fem = k, .mpm = -1, .sheet = s->fem[k]->element->sheet};
+        memcpy(box->low, s->low[k], sizeof box->low), memcpy(box->high, s->high[k], sizeof box->high);
+    }
+    for (int k = 0; k < mpm_count; k++) {
+        bounds *box = &f->box[s->fem_count + k];
+        *box = (bounds){.body = mpm[k].index, .fem = -1, .mpm = k};
+        bound_grid(&mpm[k], box);
+    }
+    qsort(f->box, (size_t)f->box_count, sizeof *f->box, by_low);
+    for (int32_t k = 0; k < f->box_count; k++)
+        if (f->box[k].fem >= 0) f->box_of[f->box[k].fem] = k;
+    return 0;
+}
+
+static int find_pairs(const brunt_meeting *m, brunt_facing *f) {
+    f->near_count = 0;
+    for (int32_t i = 0; i < f->box_count; i++)
+        // A sheet may be near itself.
+        for (int32_t k = f->box[i].sheet ? i : i + 1;
+             k < f->box_count && f->box[k].low[0] - 2 * f->range <= f->box[i].high[0]; k++) {
+            if (!overlap(&f->box[i], &f->box[k], 2 * f->range) || !meets(m, &f->box[i], &f->box[k])) continue;
+            if (brunt_reserve((void **)&f->near, &f->near_capacity, ((size_t)f->near_count + 1) * sizeof *f->near,
+                              (size_t)f->near_count * sizeof *f->near))
+                return -1;
+            f->near[f->near_count++] = (near_pair){i, k};
+        }
+    if (RESERVE(f, near_first, f->box_count + 2) || RESERVE(f, near_list, 2 * f->near_count + 1)) return -1;
+    memset(f->near_first, 0, ((size_t)f->box_count + 2) * sizeof *f->near_first);
+    for (int32_t p = 0; p < f->near_count; p++) {
+        f->near_first[f->near[p].a + 2]++;
+        if (f->near[p].b != f->near[p].a) f->near_first[f->near[p].b + 2]++;
+    }
+    for (int32_t k = 2; k <= f->box_count + 1; k++) f->near_first[k] += f->near_first[k - 1];
+    for (int32_t p = 0; p < f->near_count; p++) {
+        f->near_list[f->near_first[f->near[p].a + 1]++] = f->near[p].b;
+        if (f->near[p].b != f->near[p].a) f->near_list[f->near_first[f->near[p].b + 1]++] = f->near[p].a;
+    }
+    return 0;
+}
+
+double brunt_facing_plane_distance(const brunt_plane_def *plane, double time, const double x[3]) {
+    double d = 0;
+    for (int a = 0; a < 3; a++) d += plane->normal[a] * (x[a] - plane->point[a] - plane->velocity[a] * time);
+    return d;
+}
+
+bool brunt_facing_near_wall(const brunt_skin *s, int k, const brunt_wall *wall, double time, double range) {
+    if (wall->region || (wall->body >= 0 && wall->body != s->fem[k]->index)) return false;
+    double corner[3]; // of the box, deepest behind the plane
+    for (int a = 0; a < 3; a++) corner[a] = wall->plane.normal[a] > 0 ? s->low[k][a] : s->high[k][a];
+    return brunt_facing_plane_distance(&wall->plane, time, corner) < range;
+}
+
+// Room for what is remembered of so many nodes.
+static int fit_nodes(brunt_facing *f, int32_t nodes, int32_t kept) {
+    return RESERVE(f, found, nodes + 1) || RESERVE(f, hits, BRUNT_MAX_HITS * (nodes + 1)) ||
+                   brunt_reserve((void **)&f->last, &f->last_capacity, ((size_t)nodes + 1) * sizeof *f->last,
+                                 (size_t)kept * sizeof *f->last) ||
+                   RESERVE(f, quiet, nodes + 1)
+               ? -1
+               : 0;
+}
+
+static int make_facing(brunt_facing **facing, int mpm_count, int32_t nodes) {
+    if (*facing) return 0;
+    brunt_facing *f = *facing = brunt_alloc(sizeof *f);
+    if (!f) return -1;
+    f->mpm_count = mpm_count;
+    f->node_support = brunt_alloc(((size_t)mpm_count + 1) * sizeof(void *));
+    f->node_support_capacity = brunt_alloc(((size_t)mpm_count + 1) * sizeof(size_t));
+    if (!f->node_support || !f->node_support_capacity || fit_nodes(f, nodes, 0)) return -1;
+    for (int32_t n = 0; n < nodes; n++) f->last[n] = -1;
+    return 0;
+}
+
+// Distances are to facets that may be gone, so that everyone looks anew. A face that was the nearest and is still there
+// is looked at first as before.
+int brunt_facing_renew(brunt_facing *f, const brunt_skin *s) {
+    const brunt_skin_change *c = &s->change;
+    if (!f || !c->any) return 0;
+    if (fit_nodes(f, s->node_count, c->node_count) || RESERVE(f, last_spare, s->node_count + 1)) return -1;
+    for (int32_t n = 0; n < s->node_count; n++) {
+        const int32_t face = c->node_was[n] < 0 ? -1 : f->last[c->node_was[n]];
+        f->last_spare[n] = face < 0 ? -1 : c->face_now[face];
+        f->quiet[n] = (struct quiet){.travelled = f->travelled};
+    }
+    memcpy(f->last, f->last_spare, (size_t)s->node_count * sizeof *f->last);
+    f->made = false;
+    return 0;
+}
+
+int64_t brunt_facing_state_count(const brunt_skin *s) { return 7 * brunt_skin_places(s) + s->fem_count + 1; }
+
+void brunt_facing_state_get(const brunt_facing *f, const brunt_skin *s, double *out) {
+    memset(out, 0, (size_t)brunt_facing_state_count(s) * sizeof *out);
+    *out++ = f ? f->travelled : 0;
+    for (int k = 0; k < s->fem_count; k++) *out++ = s->was_active[k];
+    for (int k = 0; k < s->fem_count; k++)
+        for (int32_t n = s->node_range[k]; n < s->node_range[k + 1]; n++) {
+            double *to = out + 7 * brunt_skin_place(s, k, n);
+            to[0] = f ? f->last[n] : -1;
+            to[1] = f ? f->quiet[n].distance : 0, to[2] = f ? f->quiet[n].travelled : 0;
+            to[3] = f ? f->quiet[n].second : 0;
+            for (int a = 0; a < 3; a++) to[4 + a] = s->x[n][a];
+        }
+}
+
+int brunt_facing_state_set(brunt_facing **facing, brunt_skin *s, int mpm_count, const double *in) {
+    if (brunt_skin_renew(s, true) || make_facing(facing, mpm_count, s->node_count)) return -1;
+    brunt_facing *f = *facing;
+    if (fit_nodes(f, s->node_count, 0)) return -1;
+    f->made = f->made && !s->change.any;
+    f->travelled = *in++;
+    for (int k = 0; k < s->fem_count; k++) s->was_active[k] = *in++ != 0;
+    for (int k = 0; k < s->fem_count; k++)
+        for (int32_t n = s->node_range[k]; n < s->node_range[k + 1]; n++) {
+            const double *from = in + 7 * brunt_skin_place(s, k, n);
+            f->last[n] = (int32_t)from[0];
+            f->quiet[n] = (struct quiet){from[1], from[2], from[3]};
+            for (int a = 0; a < 3; a++) s->x[n][a] = from[4 + a];
+        }
+    return 0;
+}
+
+// Whether there is a place for everything: else no cells could be laid.
+static bool all_finite(const brunt_facing *f) {
+    if (!(f->range < FARTHEST) || !(f->wall_reach < FARTHEST)) return false;
+    for (int32_t b = 0; b < f->box_count; b++)
+        for (int a = 0; a < 3; a++) {
+            const double low = f->box[b].low[a], high = f->box[b].high[a];
+            if (low == INFINITY && high == -INFINITY) continue; // of nothing
+            if (!(fabs(low) < FARTHEST) || !(fabs(high) < FARTHEST)) return false;
+        }
+    return true;
+}
+
+int brunt_facing_near(const brunt_meeting *m, brunt_body *mpm, int mpm_count, const brunt_wall *walls, int wall_count,
+                      double time, brunt_facing **facing) {
+    brunt_skin *s = m->skin;
+    if (make_facing(facing, mpm_count, s->node_count)) return -1;
+    brunt_facing *f = *facing;
+    // Nothing may pass anything unseen: the reach covers twice the fastest motion of a step, against the frame of all.
+    double fastest = 0, spacing = 0;
+    for (int k = 0; k < s->fem_count; k++) fastest = fmax(fastest, s->speed[k]);
+    const double frame = sqrt(dot(s->frame, s->frame));
+    for (int k = 0; k < mpm_count; k++) {
+        spacing = fmax(spacing, mpm[k].spacing);
+        fastest = fmax(fastest, (double)mpm[k].speed + frame);
+    }
+    double walls_speed = 0;
+    for (int w = 0; w < wall_count; w++)
+        if (!walls[w].region)
+            walls_speed = fmax(walls_speed, sqrt(dot(walls[w].plane.velocity, walls[w].plane.velocity)));
+    f->wall_reach = (fastest + frame + walls_speed) * m->dt + 0.5 * s->thickest;
+    f->reach = 2 * fastest * m->dt + spacing + s->thickest;
+    f->range = fmax(fmax(RANGE * s->mean_edge + spacing + s->thickest, f->reach), m->look);
+    if (find_boxes(m, mpm, mpm_count, f)) return -1;
+    if (!all_finite(f)) return -2;
+    if (find_pairs(m, f)) return -1;
+    for (int k = 0; k < s->fem_count; k++) {
+        int32_t box = f->box_of[k];
+        s->active[k] = f->near_first[box + 1] > f->near_first[box];
+        for (int w = 0; w < wall_count && !s->active[k]; w++)
+            s->active[k] = brunt_facing_near_wall(s, k, &walls[w], time, f->wall_reach + 1e-6 * s->mean_edge);
+    }
+    f->grid_count = 0;
+    if (RESERVE(f, support_of, s->node_count + 1)) return -1;
+    for (int32_t n = 0; n < s->node_count; n++) f->support_of[n] = -1;
+    return 0;
+}

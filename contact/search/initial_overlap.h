@@ -1,0 +1,16 @@
+// Bodies that lie in each other, or behind a plane that pushes, at the start. Contact ends an approach: it looks a
+// quarter of an edge behind a facet, and what is deeper is never met.
+#pragma once
+
+#include "contact/surface/contact_surface.h"
+
+typedef struct brunt_overlap {
+    int a, b;     // bodies by their index among all; b: -1 where it is a plane
+    int wall;     // the plane, -1
+    double depth; // [m] at least so much of `a` is in the other, or behind it
+    double x[3];  // [m] there
+} brunt_overlap;
+
+// The first overlap of a mesh or membrane with another body that it has a pair with, or of any body with a plane of
+// condition separate. Call with the skin of all bodies taken. 1, or 0: there is none, -1: out of memory.
+int brunt_overlap_find(const brunt_meeting *m, brunt_body *mpm, int mpm_count, int wall_count, brunt_overlap *found);

@@ -1,0 +1,143 @@
+// The surfaces of all finite-element bodies as contact sees them in one step: boundary nodes and faces, one numbering
+// for the whole world, in the order of the bodies.
+//
+// The methods change `v`, never the bodies: the velocities are taken from the bodies before and given back after.
+//
+// A sheet (the elements of a membrane) has two sides: its nodes and faces are there twice, first the front as the
+// elements are oriented, then the back, with the order of the nodes reversed, on the same nodes of the body. What acts
+// on a node of the back is gathered at its twin of the front, which alone gives a velocity back.
+#pragma once
+
+#include <math.h>
+
+#include "contact/contact.h"
+#include "fem/fem_body.h"
+#include "fem/surface_topology.h"
+
+// What a body is to sheets.
+typedef struct brunt_side {
+    int32_t faces;  // of one side of a sheet; 0: no sheet
+    double half;    // [m] half its thickness
+    double shallow; // [m] a node of another body that is behind a sheet, but no further than this, has come through it;
+                    // one that is further is on the far side of its own body
+} brunt_side;
+
+// Where the nodes and faces of a skin have gone when it was made anew.
+typedef struct brunt_skin_change {
+    bool any;
+    int32_t node_count, face_count; // that there were
+    int32_t *node_was;              // of each node: its number before; -1: it is new
+    int32_t *face_now;              // of each face that there was: its number now; -1: it is gone
+    size_t node_was_capacity, face_now_capacity;
+} brunt_skin_change;
+
+typedef struct brunt_skin {
+    int dim;
+    bool axisymmetric; // rings: masses and impulses are those of the whole circle
+    int32_t node_count, face_count;
+    int32_t *body, *node; // of each node: index of its body (brunt_fem_body.index), node number there
+    double (*x)[3];       // [m] at the start of the step
+    double (*v)[3];       // [m/s] after all forces; what contact changes
+    double (*old)[3];     // [m/s] before the forces: works and losses are taken at the mean of this and the final v
+    double *mass;         // [kg]
+    double (*inverse)[3]; // [1/kg] by component: 0 where the motion is prescribed, which is infinite mass
+    double (*normal)[3];  // outward, of unit length: mean of its faces by area; 0 where they cancel
+    double *area;         // [m^2] of the surface that is the node's; 0 of loose nodes, which have no faces
+    double (*affine)[9];  // [m^2/s] B of the paper's form, kept from step to step; NULL for the others
+    int32_t (*face)[4];   // nodes; the 4th is -1 for triangles, 3rd and 4th for segments (2D)
+    int32_t *face_body;
+    double (*face_normal)[3];      // outward unit normal ...
+    double (*face_centre)[3];      // ... and centre, at the start of the step
+    double *face_area;             // [m^2]; 2D [m]
+    double (*face_box)[6];         // [m] bounds: low, then high
+    double mean_edge;              // [m] of all faces at the start of the run
+    int32_t *face_first, *face_of; // faces of node n: face_of[face_first[n] .. face_first[n + 1])
+    int fem_count;
+    brunt_fem_body *
+        *fem; // the bodies, in their order; body k has nodes node_range[k] .. node_range[k + 1], faces likewise
+    int32_t *node_range, *face_range;
+    int32_t *node_end, *face_end; // of each body: end of what counts once; of a sheet, of its front
+    // Of sheets; NULL where there are none.
+    int32_t *front;           // of each node: its twin of the front, or itself
+    brunt_side *side;  // of each body by its index among all, to the last of the meshes
+    double thickest;          // [m] of all sheets, 0 where there are none
+    // Elements within two rings of the nodes of sheets that may touch themselves, as faces of the front, ascending:
+    // ring_face[ring_first[n] .. ring_first[n + 1]) of node n of the front.
+    int32_t *ring_first, *ring_face;
+    bool *self; // of each body: it has rings
+    // Of bodies that may lose elements, else NULL: of each body the bookkeeping of its surface (elements 0: it loses none).
+    brunt_shell *shell;
+    brunt_skin_change change; // of the last time
+    bool *ragged;             // of each body by its index among all, to the last of the meshes: its surface may be ragged, since
+                              // it may lose elements; NULL where none do
+    int32_t *next_node, (*next_face)[4];
+    void *spare;
+    size_t node_room, face_room, node_capacity, body_capacity, face_capacity, next_node_capacity, next_face_capacity,
+        spare_capacity, ring_first_capacity, ring_face_capacity;
+    double (*low)[3], (*high)[3]; // [m] bounds of each body's surface
+    // Motion is measured against a frame that moves along with the bodies, which leaves what counts: theirs against
+    // each other.
+    double frame[3];           // [m/s] mean velocity of all surfaces, a step ago
+    double frame_step[3];      // [m] how far it went in the last step
+    double (*mean)[3], *speed; // [m/s] of each body: mean velocity, greatest against the frame
+    double moved; // [m] furthest any node has moved against it since it was taken last; INFINITY when bodies
+                  // became active
+    bool *was_active;
+    double *chunk_moved;
+    bool *active; // of each body: something is near it; x, v, normals are only made for these
+    // Contact state of the step, for output: greatest gap below which something acted, impulse, slip. Zeroed each step.
+    double *gap;          // [m] of the nearest contact; INFINITY where none is near
+    double (*impulse)[3]; // [N s] on the node
+    uint8_t *state;       // 0 free, 1 sticks, 2 slips
+} brunt_skin;
+
+// The surfaces of `count` bodies. `affine`: keep B. 0, or -1: out of memory.
+int brunt_skin_make(brunt_skin *skin, brunt_fem_body **fem, int count, bool affine);
+// Lists the elements near each node of the bodies marked in `self`, which are sheets in contact with themselves: those
+// are no obstacles to it. 0, or -1: out of memory.
+int brunt_skin_rings(brunt_skin *skin, const bool *self);
+// The surfaces anew after elements have left bodies, or (`restored`) of a saved state. What is kept of a node from step to step stays with it, and
+// skin->change tells who has gone where. The order of nodes and faces follows from which elements there are. 0, or -1: out of
+// memory.
+int brunt_skin_renew(brunt_skin *skin, bool restored);
+// The affine velocities as they are saved: so many doubles, of all nodes that may ever be of the skin.
+int64_t brunt_skin_affine_count(const brunt_skin *skin);
+void brunt_skin_affine_get(const brunt_skin *skin, double *out);
+void brunt_skin_affine_set(brunt_skin *skin, const double *in);
+// Where node `n` of the skin is among all nodes that may ever be of it, and how many those are: what a saved state is in the
+// order of, since its size must not depend on what has left.
+int64_t brunt_skin_place(const brunt_skin *skin, int k, int32_t n);
+int64_t brunt_skin_places(const brunt_skin *skin);
+void brunt_skin_free(brunt_skin *skin);
+// Bounds and speeds of every body's surface as it is now.
+void brunt_skin_bounds(brunt_skin *skin, int threads, brunt_timer *timer);
+// Places, velocities, masses and normals of the active bodies. `gravity` [m/s^2] and `dt` are those of this step's
+// kick.
+void brunt_skin_take(brunt_skin *skin, double dt, const double gravity[3], int threads, brunt_timer *timer);
+// Velocities of the active bodies back to them, which then move for `dt`.
+void brunt_skin_give(brunt_skin *skin, double dt, int threads, brunt_timer *timer);
+
+// Area of face f that is its node n's [m^2], 2D [m]; of a ring that of the whole circle, 2 pi int N_n r ds [m^2].
+static inline double brunt_skin_share(const brunt_skin *skin, int32_t f, int32_t n) {
+    const int32_t *node = skin->face[f];
+    if (skin->axisymmetric)
+        return M_PI / 3 * skin->face_area[f] * (skin->x[n][0] + skin->x[node[0]][0] + skin->x[node[1]][0]);
+    return skin->face_area[f] / (node[2] < 0 ? 2 : node[3] < 0 ? 3 : 4);
+}
+
+// What all forms of augury are given.
+typedef struct brunt_meeting {
+    brunt_skin *skin;
+    brunt_pair *pairs;
+    const int32_t *pair_of; // [a * body_count + b], -1: the two do not meet
+    int body_count;
+    double dt, cell; // [s], [m] of the contact grid
+    int iterations;  // sweeps, or augury iterations of the paper's form
+    double look;     // [m] bodies are near from twice this distance on, at least
+    int64_t step;
+    const brunt_mirror *mirrors; // of the grids
+    int mirror_count;
+    brunt_wall *walls; // what the mirrors are
+    int threads;
+    brunt_timer *timer; // of the pass
+} brunt_meeting;

@@ -1,0 +1,48 @@
+#include "base/parallel.h"
+
+#include <omp.h>
+
+enum { LEAST_PIECES = 4 };
+
+int brunt_threads_available(void) { return omp_get_num_procs(); }
+
+typedef struct span {
+    double begin, end; // [s]
+} span;
+
+// By the thread that started the phase, after the others have joined it: observers need no locks.
+static void book(brunt_timer *timer, const span *spans, int workers) {
+    const brunt_observer *observer = timer->observer;
+    for (int w = 0; w < workers; w++) {
+        timer->seconds[w] += spans[w].end - spans[w].begin;
+        if (observer) observer->thread(observer->context, timer->pass, w, spans[w].begin, spans[w].end);
+    }
+}
+
+void brunt_parallel(int threads, int64_t count, int64_t grain, brunt_task_fn *task, void *context, brunt_timer *timer) {
+    if (count <= 0) return;
+    int64_t pieces = (count + grain - 1) / grain;
+    int workers = 1; // may be fewer than asked for
+    span spans[BRUNT_THREADS_MOST];
+    // A thread that gets less than a few pieces costs more to wake and wait for than it saves.
+    if (threads > pieces / LEAST_PIECES) threads = (int)(pieces / LEAST_PIECES);
+    if (threads <= 1) {
+        if (timer) spans[0].begin = brunt_clock();
+        task(context, 0, count, 0);
+        if (timer) spans[0].end = brunt_clock();
+    } else {
+#pragma omp parallel num_threads(threads)
+        {
+            int worker = omp_get_thread_num();
+            if (worker == 0) workers = omp_get_num_threads();
+            if (timer) spans[worker].begin = brunt_clock();
+#pragma omp for schedule(dynamic, 1) nowait
+            for (int64_t piece = 0; piece < pieces; piece++) {
+                int64_t begin = piece * grain, end = begin + grain < count ? begin + grain : count;
+                task(context, begin, end, worker);
+            }
+            if (timer) spans[worker].end = brunt_clock();
+        }
+    }
+    if (timer) book(timer, spans, workers);
+}

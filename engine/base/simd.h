@@ -1,0 +1,78 @@
+// Vectors of reals, written once with the compilers' portable vector extension.
+//
+// BRUNT_LANES is the number of reals a vector holds: 64 bytes' worth by default, 1 in the scalar build that the tests
+// run too. Element-wise arithmetic is the language's own (a + b, a * b); this header adds loads, selects and the few
+// functions the kernels need. Comparisons give lane_mask vectors of 0 and -1.
+#pragma once
+
+#include "base/real.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <string.h>
+
+#ifndef BRUNT_LANES
+#ifdef BRUNT_FLOAT
+#define BRUNT_LANES 16
+#else
+#define BRUNT_LANES 8
+#endif
+#endif
+#define BRUNT_LANE_BYTES (BRUNT_LANES * sizeof(real))
+
+#ifdef BRUNT_FLOAT
+typedef int32_t lane_int;
+#else
+typedef int64_t lane_int;
+#endif
+
+typedef real lanes __attribute__((vector_size(BRUNT_LANE_BYTES)));
+typedef lane_int lane_mask __attribute__((vector_size(BRUNT_LANE_BYTES)));
+// The same type as it lies in memory, aligned no better than one real.
+typedef real lanes_unaligned __attribute__((vector_size(BRUNT_LANE_BYTES), aligned(sizeof(real)), may_alias));
+
+#define BRUNT_INLINE static inline __attribute__((always_inline))
+
+BRUNT_INLINE lanes lanes_load(const real *p) { return (lanes) * (const lanes_unaligned *)p; }
+BRUNT_INLINE void lanes_store(real *p, lanes a) { *(lanes_unaligned *)p = a; }
+BRUNT_INLINE lanes lanes_set(real a) { return a - (lanes){0}; }
+BRUNT_INLINE lanes lanes_select(lane_mask m, lanes a, lanes b) {
+    return (lanes)(((lane_mask)a & m) | ((lane_mask)b & ~m));
+}
+BRUNT_INLINE lanes lanes_max(lanes a, lanes b) { return lanes_select(a > b, a, b); }
+BRUNT_INLINE lanes lanes_min(lanes a, lanes b) { return lanes_select(a < b, a, b); }
+BRUNT_INLINE lanes lanes_abs(lanes a) { return lanes_max(a, -a); }
+
+BRUNT_INLINE lanes lanes_sqrt(lanes a) {
+    lanes r = a; // set whole: compilers that vectorise the loop in parts would call it uninitialised
+    for (int l = 0; l < BRUNT_LANES; l++)
+#ifdef BRUNT_FLOAT
+        r[l] = __builtin_sqrtf(a[l]);
+#else
+        r[l] = __builtin_sqrt(a[l]);
+#endif
+    return r;
+}
+
+BRUNT_INLINE bool lanes_any(lane_mask m) {
+    lane_int any = 0;
+    for (int l = 0; l < BRUNT_LANES; l++) any |= m[l];
+    return any != 0;
+}
+
+// Sums and extremes over the lanes, always in lane order.
+BRUNT_INLINE real lanes_sum(lanes a) {
+    real s = a[0];
+    for (int l = 1; l < BRUNT_LANES; l++) s += a[l];
+    return s;
+}
+BRUNT_INLINE real lanes_max_of(lanes a) {
+    real s = a[0];
+    for (int l = 1; l < BRUNT_LANES; l++) s = a[l] > s ? a[l] : s;
+    return s;
+}
+BRUNT_INLINE real lanes_min_of(lanes a) {
+    real s = a[0];
+    for (int l = 1; l < BRUNT_LANES; l++) s = a[l] < s ? a[l] : s;
+    return s;
+}
