@@ -55,7 +55,7 @@ def measures(folder):
 def places(number):
     """Suites and scenes with a comment that names the case."""
     found = []
-    for pattern, mark in (("tests/test_*.c", "//"), ("bench/scenes/*.yaml", "#")):
+    for pattern, mark in (("tests/*/test_*.c", "//"), ("bench/scenes/*.yaml", "#")):
         for path in sorted(glob.glob(os.path.join(HERE, "..", pattern))):
             with open(path, encoding="utf-8") as lines:
                 if re.search(r"^ *%s.*\b%s\b" % (mark, number), lines.read(), re.M):

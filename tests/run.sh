@@ -91,7 +91,7 @@ fi
 rm -rf build/hard_cases && mkdir build/hard_cases
 BRUNT_HARD_CASES=$PWD/build/hard_cases run build -LE long
 check "page of hard cases" python3 tests/hard_cases.py check build/hard_cases
-check "installed library" sh tests/install.sh build
+check "installed library" sh tests/support/install.sh build
 check "whole benchmark" sh bench/run.sh --quick
 check "study of contact" build/bench/contact_study cubes h=1
 check "build in single precision" build float && run build-float -L '^unit$' -LE long &&

@@ -1,4 +1,4 @@
-// A file of its own, so that tests may have a clock of theirs instead (tests/fake_clock.h).
+// A file of its own, so that tests may have a clock of theirs instead (tests/support/fake_clock.h).
 #include <time.h>
 
 #include "base/parallel.h"

@@ -1,0 +1,23 @@
+#!/bin/sh
+# Installs the build in the folder named as argument under a prefix of its own, builds tests/support/installed.c against it with
+# what pkg-config says, and runs that and the installed program.
+#
+#   sh tests/support/install.sh BUILD [COMPILER]      default: cc
+set -eu
+cd "$(dirname "$0")/../.."
+build=${1:?"usage: sh tests/support/install.sh BUILD [COMPILER]"}
+prefix=$(mktemp -d)
+trap 'rm -rf "$prefix"' EXIT
+
+DESTDIR='' cmake --install "$build" --prefix "$prefix" >"$prefix/log" || { cat "$prefix/log"; exit 1; }
+PKG_CONFIG_PATH=$(dirname "$(find "$prefix" -name brunt.pc)")
+export PKG_CONFIG_PATH
+flags=$(pkg-config --cflags --libs brunt)
+# shellcheck disable=SC2086
+${2:-cc} -std=c17 -Wall -Wextra -Werror tests/support/installed.c -o "$prefix/installed" $flags -lm
+"$prefix/installed"
+[ "$(pkg-config --modversion brunt)" = "$("$prefix/bin/brunt" --version | awk '{print $2}')" ] || {
+    echo "brunt.pc and the program give different versions"
+    exit 1
+}
+"$prefix/bin/brunt" check bench/scenes/two_disks.yaml >"$prefix/log" || { cat "$prefix/log"; exit 1; }

@@ -1,0 +1,116 @@
+// Labels: conservation
+// What the accounts say of what acts on bodies: moments about the origin, and the area that touches.
+#include "tests/support/def_world.h"
+
+static brunt_body_def *mesh(brunt_body_def *body, int dimension, double size) {
+    body->method = BRUNT_FEM, body->element = dimension == 3 ? BRUNT_HEX8 : BRUNT_QUAD4, body->size = size;
+    return body;
+}
+
+// Of the nodes of a mesh that has thousands of them every one has its part in the moment: a body that falls freely from
+// the centre c has m c x g t after the time t, as it falls along g. Its velocities are those of half a step before.
+START_TEST(gravity_turns_a_mesh_of_many_nodes) {
+    const int dimension = _i + 2;
+    brunt_world_def def = def_begin(dimension, 0);
+    def_material(&def, "neo-hookean", 1000, 1e6, 0.3);
+    mesh(def_box(&def, "block", XYZ(2, -1, 1), XYZ(4, 0.5, 2.5)), dimension, _i ? 0.1 : 0.03);
+    static const double fall[3] = {3, -9, 1};
+    const double g[3] = {fall[0], fall[1], _i ? fall[2] : 0}, c[3] = {3, -0.25, _i ? 1.75 : 0}, step = 1e-5;
+    memcpy(def.gravity, g, sizeof def.gravity);
+    def.step = step;
+    brunt_world *world = world_take(&def);
+    ck_assert_int_gt(brunt_body_nodes(world, 0), 3000);
+    const double mass = world_sums(world, 0).mass;
+    world_steps(world, 20);
+    const brunt_momentum m = world_momentum(world);
+    const double t = brunt_world_time(world) - 0.5 * step, near = 100 * ROUNDING * mass * 10 * t;
+    for (int a = 0; a < 3; a++) {
+        const int k = (a + 1) % 3, l = (a + 2) % 3;
+        const double moment = mass * (c[k] * g[l] - c[l] * g[k]) * t;
+        ck_assert_double_eq_tol(m.linear_impulse[a], mass * g[a] * t, near);
+        ck_assert_double_eq_tol(m.angular_impulse[a], moment, near);
+        ck_assert_double_eq_tol(m.angular[a], moment, near);
+    }
+    brunt_world_destroy(world);
+}
+END_TEST
+
+// A block that falls on a plane, far from the origin: what the wall gives it is a push where they touch.
+START_TEST(a_wall_pushes_where_it_is_touched) {
+    const int dimension = _i % 2 + 2;
+    const bool points = _i / 2;
+    brunt_world_def def = def_begin(dimension, 0.25);
+    def_material(&def, "neo-hookean", 1000, 1e5, 0.3);
+    def.contact.method = BRUNT_CONTACT_AUGURY;
+    brunt_body_def *body = def_box(&def, "block", XYZ(5, 2, 3), XYZ(6, 3, 4));
+    if (!points) mesh(body, dimension, 0.25);
+    def_velocity(body, 0, -2, 0);
+    def_plane(&def, XYZ(0, 1.99, 0), XYZ(0, 1, 0), BRUNT_SEPARATE, 0);
+    brunt_world *world = world_take(&def);
+    const double mass = world_sums(world, 0).mass;
+    world_until(world, 0.05);
+    const brunt_momentum m = world_momentum(world);
+    const double push = world_wall(world, 0).impulse[1], near = 1e3 * ROUNDING * mass * 10;
+    ck_assert_double_gt(push, 0.1 * mass);
+    ck_assert_double_eq_tol(m.angular_impulse[2], 5.5 * push, near);
+    ck_assert_double_eq_tol(m.angular_impulse[0], dimension == 3 ? -3.5 * push : 0, near);
+    for (int a = 0; a < 3; a++) {
+        ck_assert_double_eq_tol(m.linear[a] - m.linear_initial[a], a == 1 ? push : 0, near);
+        ck_assert_double_eq_tol(m.angular[a] - m.angular_initial[a], m.angular_impulse[a], near);
+    }
+    brunt_world_destroy(world);
+}
+END_TEST
+
+// Two blocks with faces of 0.8 x 0.5 that come upon each other, with as many elements or more on one side.
+START_TEST(faces_that_meet_have_their_area) {
+    const int dimension = _i % 2 + 2;
+    brunt_world_def def = def_begin(dimension, 0);
+    def_material(&def, "neo-hookean", 1000, 1e6, 0.3);
+    def.contact.method = BRUNT_CONTACT_AUGURY;
+    mesh(def_box(&def, "low", XYZ(0, -0.4, 0), XYZ(0.8, 0, 0.5)), dimension, 0.1);
+    brunt_body_def *high = def_box(&def, "high", XYZ(0, 1e-4, 0), XYZ(0.8, 0.4, 0.5));
+    mesh(high, dimension, _i / 2 ? 0.05 : 0.1);
+    def_velocity(high, 0, -1, 0);
+    def.step = 4e-4;
+    brunt_world *world = world_take(&def);
+    ck_assert_double_eq(world_pair(world, 0).area, 0);
+    world_steps(world, 1);
+    ck_assert_double_gt(fabs(world_pair(world, 0).impulse[1]), 0);
+    ck_assert_double_eq_tol(world_pair(world, 0).area, dimension == 3 ? 0.4 : 0.8, 100 * ROUNDING);
+    brunt_world_destroy(world);
+}
+END_TEST
+
+// A block turned by 20 degrees that meets a plane with an edge: what is next to the edge of the side that faces the
+// plane counts, half an element, as the plane sees it. The side that rises at 70 degrees does not.
+START_TEST(an_edge_has_what_is_beside_it) {
+    const int dimension = _i % 2 + 2;
+    const double turn = (_i / 2 ? -20 : 20) * PI / 180, size = 0.1;
+    brunt_world_def def = def_begin(dimension, 0);
+    def_material(&def, "neo-hookean", 1000, 1e6, 0.3);
+    brunt_body_def *body = mesh(def_box(&def, "block", XYZ(0, 0, 0), XYZ(0.4, 0.4, 0.4)), dimension, size);
+    body->place = brunt_placement_rotate(body->place, XYZ(0, 0, 1), turn, _i / 2 ? XYZ(0.4, 0, 0) : XYZ(0, 0, 0));
+    def_velocity(body, 0, -1, 0);
+    def_plane(&def, XYZ(0, -1e-4, 0), XYZ(0, 1, 0), BRUNT_SEPARATE, 0);
+    def.step = 4e-4;
+    brunt_world *world = world_take(&def);
+    world_steps(world, 1);
+    ck_assert_double_gt(world_wall(world, 0).impulse[1], 0);
+    ck_assert_double_eq_tol(world_wall(world, 0).area, cos(turn) * size / 2 * (dimension == 3 ? 0.4 : 1),
+                            100 * ROUNDING);
+    brunt_world_destroy(world);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("accounts");
+    TCase *all = tcase_create("all");
+    tcase_set_timeout(all, 120);
+    tcase_add_loop_test(all, gravity_turns_a_mesh_of_many_nodes, 0, 2);
+    tcase_add_loop_test(all, a_wall_pushes_where_it_is_touched, 0, 4);
+    tcase_add_loop_test(all, faces_that_meet_have_their_area, 0, 4);
+    tcase_add_loop_test(all, an_edge_has_what_is_beside_it, 0, 4);
+    suite_add_tcase(suite, all);
+    return suite_main(suite);
+}

@@ -1,0 +1,166 @@
+// What ends the sweeps of contact: their greatest number (contact.iterations), and how little the last one corrected
+// (contact.tolerance). Both must tell, alone, on what is left of the approach.
+#include "tests/support/hard_world.h"
+#include "contact/constraint/constraint.h"
+
+// ------------------------------------------------------------------------------------------ points alone
+
+enum { CHAIN = 24 };
+
+// A row of beads that touch, the first against a wall, all on their way towards it: an impulse must travel through all
+// of them, and every sweep takes it one bead on.
+static void make_chain(brunt_contact_points *p, brunt_action *action) {
+    memset(p, 0, sizeof *p);
+    memset(action, 0, sizeof *action);
+    for (int i = 0; i < CHAIN; i++) {
+        ck_assert_int_eq(brunt_points_support(p), i);
+        brunt_support *s = &p->support[i];
+        s->v[0] = s->old[0] = -1;
+        for (int a = 0; a < 3; a++) s->inverse[a] = 1;
+    }
+    for (int i = 0; i < CHAIN; i++) {
+        ck_assert_int_eq(brunt_points_add(p), i);
+        brunt_contact_point *point = &p->point[i];
+        point->n[0] = point->facet[0] = 1;
+        point->action = action, point->sign = 1;
+        brunt_points_entry(p, i, 1);
+        if (i > 0) brunt_points_entry(p, i - 1, -1);
+    }
+}
+
+// Fastest approach that is left [m/s], after sweeps that took `*sweeps` of them.
+static double approach_left(int most, double tolerance, int *sweeps) {
+    brunt_contact_points p;
+    brunt_action action;
+    brunt_timer timer = {0};
+    make_chain(&p, &action);
+    *sweeps = brunt_points_solve(&p, most, tolerance, 1, &timer);
+    double left = 0;
+    for (int k = 0; k < p.point_count; k++) {
+        double u[3];
+        brunt_point_velocity(&p, &p.point[k], false, u);
+        left = fmax(left, -u[0]);
+    }
+    brunt_points_free(&p);
+    return left;
+}
+
+START_TEST(more_sweeps_leave_less) {
+    int sweeps;
+    double last = INFINITY;
+    for (int most = 4; most <= 1024; most *= 4) {
+        const double left = approach_left(most, 0, &sweeps);
+        ck_assert_int_le(sweeps, most);
+        printf("%4d sweeps: %.3e m/s of approach left\n", sweeps, left);
+        ck_assert_msg(left < 0.9 * last, "%d sweeps leave %g m/s, fewer left %g", most, left, last);
+        last = left;
+    }
+}
+END_TEST
+
+START_TEST(a_tighter_tolerance_leaves_less) {
+    int sweeps, before = 0;
+    double last = INFINITY;
+    for (double tolerance = 0.3; tolerance > 1e-5; tolerance *= 0.1) {
+        const double left = approach_left(100000, tolerance, &sweeps);
+        printf("tolerance %.0e: %4d sweeps, %.3e m/s of approach left\n", tolerance, sweeps, left);
+        ck_assert_msg(left < 0.5 * last, "tolerance %g leaves %g m/s, a greater one %g", tolerance, left, last);
+        ck_assert_int_gt(sweeps, before);
+        last = left, before = sweeps;
+    }
+}
+END_TEST
+
+// Either alone holds the other up: sweeps that may be many end by the tolerance, a tight tolerance by the sweeps.
+START_TEST(whichever_comes_first_ends_them) {
+    int few, many, tight;
+    approach_left(40, 0.3, &few);
+    approach_left(1000, 0.3, &many);
+    ck_assert_int_eq(few, many);
+    ck_assert_int_lt(few, 40);
+    approach_left(16, 1e-9, &tight);
+    ck_assert_int_eq(tight, 16);
+}
+END_TEST
+
+// ------------------------------------------------------------------------------------------ a world
+
+enum { NODES = 4096 };
+
+// Velocities after one step of five blocks in a row that touch, with edges that do not match, of which the outer two
+// are thrown at the others.
+static int velocities(int iterations, double tolerance, real *out) {
+    static const char *const names[] = {"a", "b", "c", "d", "e"};
+    brunt_world_def def = def_begin(2, 1);
+    def.contact.method = BRUNT_CONTACT_AUGURY;
+    def.contact.iterations = iterations, def.contact.tolerance = tolerance;
+    def_material(&def, "neo-hookean", 1000, 1e6, 0.3);
+    for (int i = 0; i < 5; i++) {
+        brunt_body_def *b = def_box(&def, names[i], XYZ(0.1 * i, 0, 0), XYZ(0.1 * (i + 1), 1, 0));
+        b->method = BRUNT_FEM, b->element = BRUNT_QUAD4, b->size = i % 2 ? 0.1 : 0.07;
+        def_velocity(b, i == 0 ? 3 : i == 4 ? -3 : 0, 0, 0);
+    }
+    brunt_world *world = world_take(&def);
+    world_steps(world, 1);
+    int count = 0;
+    for (int32_t k = 0; k < brunt_body_count(world); k++) {
+        const int32_t field = brunt_body_find_field(world, k, "velocity");
+        double *v = malloc((size_t)brunt_body_nodes(world, k) * 3 * sizeof *v);
+        brunt_body_read(world, k, field, v);
+        for (int64_t i = 0; i < 3 * brunt_body_nodes(world, k) && count < NODES; i++) out[count++] = (real)v[i];
+        free(v);
+    }
+    brunt_world_destroy(world);
+    return count;
+}
+
+static double far_from_solved(int iterations, double tolerance) {
+    static real solved[NODES], now[NODES];
+    const int count = velocities(20000, 0, solved);
+    ck_assert_int_eq(count, velocities(iterations, tolerance, now));
+    double far = 0;
+    for (int i = 0; i < count; i++) far = fmax(far, fabs((double)(now[i] - solved[i])));
+    printf("%d sweeps at most, tolerance %g: %.3e m/s from the solution\n", iterations, tolerance, far);
+    return far;
+}
+
+// More than the 16 that there are by default, and less than the hundredth.
+START_TEST(a_world_takes_both) {
+    const double fewer = far_from_solved(16, 1e-6), more = far_from_solved(64, 1e-6);
+    ck_assert_msg(more < 0.7 * fewer, "64 sweeps end %g m/s from the solution, 16 end %g", more, fewer);
+    const double plain = far_from_solved(1000, 0.01), tight = far_from_solved(1000, 1e-3),
+                 tighter = far_from_solved(1000, 1e-4);
+    ck_assert_msg(tight < 0.5 * plain && tighter < 0.5 * tight, "tolerances 0.01, 1e-3, 1e-4: %g, %g, %g m/s", plain,
+                  tight, tighter);
+}
+END_TEST
+
+START_TEST(a_tolerance_out_of_range_is_refused) {
+    static const double bad[] = {-0.01, 1, 2, NAN, INFINITY};
+    for (int i = 0; i < 5; i++) {
+        brunt_world_def def = def_begin(2, 1);
+        def_material(&def, "neo-hookean", 1000, 1e6, 0.3);
+        def_box(&def, "a", XYZ(0, 0, 0), XYZ(1, 1, 0));
+        def.contact.tolerance = bad[i];
+        brunt_error error = {0};
+        ck_assert_ptr_null(brunt_world_create(&def, &error));
+        ck_assert_int_eq(error.code, BRUNT_BAD_INPUT);
+        ck_assert_msg(strstr(error.message, "contact.tolerance"), "%s", error.message);
+        brunt_world_def_free(&def);
+    }
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("contact sweeps");
+    ADD(more_sweeps_leave_less);
+    ADD(a_tighter_tolerance_leaves_less);
+    ADD(whichever_comes_first_ends_them);
+    ADD(a_world_takes_both);
+    ADD(a_tolerance_out_of_range_is_refused);
+    SRunner *runner = srunner_create(suite);
+    srunner_run_all(runner, CK_NORMAL);
+    const int failed = srunner_ntests_failed(runner);
+    srunner_free(runner);
+    return failed > 0;
+}

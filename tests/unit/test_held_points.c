@@ -1,0 +1,54 @@
+// What meets material points that a region holds meets an infinite mass: a block that rests on them does not sink, and
+// they take no energy.
+#include "tests/support/hard_world.h"
+
+static const double H = 0.1; // [m] cells and edges
+static const double END = 0.3;
+
+static brunt_world *block_on_held_points(bool mesh) {
+    brunt_world_def def = def_begin(2, H);
+    def.regions = brunt_alloc(DEF_ROOM * sizeof *def.regions);
+    def.contact.method = mesh ? BRUNT_CONTACT_AUGURY : BRUNT_CONTACT_MULTI_VELOCITY;
+    def_material(&def, "neo-hookean", 1000, 1e6, 0.3);
+    brunt_body_def *block = def_box(&def, "block", XYZ(1.3 * H, 0, 0), XYZ(4.3 * H, 2 * H, 0));
+    if (mesh) block->method = BRUNT_FEM, block->element = BRUNT_QUAD4, block->size = H;
+    def_box(&def, "slab", XYZ(0, -2 * H, 0), XYZ(6 * H, 0, 0));
+    brunt_region_def *r = &def.regions[def.region_count++];
+    *r = brunt_region_def_default();
+    snprintf(r->body, sizeof r->body, "slab");
+    r->shape.kind = BRUNT_BOX;
+    for (int a = 0; a < 2; a++) r->component[a] = true, r->shape.min[a] = -100 * H, r->shape.max[a] = 100 * H;
+    def.gravity[1] = -1;
+    return world_take(&def);
+}
+
+// [m] furthest that any of a body's particles or nodes has gone up or down since `from`
+static double gone(brunt_world *world, int body, const double *from) {
+    double(*x)[3] = (void *)world_field(world, body, "position"), most = 0;
+    for (int64_t i = 0; i < brunt_body_nodes(world, body) + brunt_body_particles(world, body); i++)
+        most = fmax(most, fabs(x[i][1] - from[3 * i + 1]));
+    free(x);
+    return most;
+}
+
+START_TEST(bears_a_block) {
+    brunt_world *world = block_on_held_points(_i == 1);
+    double *from[2] = {world_field(world, 0, "position"), world_field(world, 1, "position")};
+    world_until(world, END);
+    const int slab = !strcmp(brunt_body_name(world, 1), "slab");
+    const double sunk = gone(world, !slab, from[!slab]), moved = gone(world, slab, from[slab]);
+    printf("%s on held points: sunk %.3g, they moved %.3g edges\n", _i == 1 ? "mesh" : "points", sunk / H, moved / H);
+    ck_assert(moved < 1e-12);   // they are held
+    ck_assert(sunk < 1e-3 * H); // twice rho g h^2 / 2 E is 4e-4 edges, and the height they begin at
+    free(from[0]), free(from[1]);
+    brunt_world_destroy(world);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("held_points");
+    TCase *looped = tcase_create("bears_a_block");
+    tcase_add_loop_test(looped, bears_a_block, 0, 2);
+    suite_add_tcase(suite, looped);
+    return suite_main(suite);
+}
