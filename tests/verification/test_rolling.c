@@ -253,6 +253,33 @@ START_TEST(what_rubs_keeps_momentum) {
 }
 END_TEST
 
+// A disk of points rubs past a block of points, both free.
+START_TEST(points_that_rub_keep_momentum) {
+    for (int i = 0; i < 8; i++) {
+        roll r = plain;
+        r.turn = i % 2 ? 0.7 : 0, r.friction = i / 2 % 2 ? 5 : 0.3;
+        r.kernel = i < 4 ? BRUNT_QUADRATIC : BRUNT_CUBIC;
+        brunt_world_def def = def_roll(&r);
+        memset(def.gravity, 0, sizeof def.gravity);
+        def.gravity_ramp = 0;
+        def.plane_count = 0;
+        brunt_body_def *slab = def_box(&def, "slab", XYZ(-2, -0.75, 0), XYZ(2, 0, 0));
+        slab->place = brunt_placement_rotate(slab->place, r.axis, r.turn, XYZ(0, 0, 0));
+        turned(&r, 2, -1, def.bodies[0].velocity);
+        brunt_world *w = world_take(&def);
+        world_until(w, 0.6);
+        const brunt_momentum m = world_momentum(w);
+        ck_assert_double_gt(observe(w, &r).spin, 0.1);
+        ck_assert_double_lt(m.linear_drift, ROUNDING);
+        ck_assert_double_lt(m.angular_drift, ROUNDING);
+        const brunt_energy e = world_energy(w);
+        ck_assert_double_gt(e.friction, 0);
+        ck_assert_double_lt(fabs(e.error_relative), 5e-3);
+        brunt_world_destroy(w);
+    }
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("rolling");
     TCase *all = tcase_create("all");
@@ -264,6 +291,7 @@ int main(void) {
     tcase_add_test(all, friction_only_takes_energy);
     tcase_add_test(all, without_friction_nothing_rubs);
     tcase_add_test(all, what_rubs_keeps_momentum);
+    tcase_add_test(all, points_that_rub_keep_momentum);
     suite_add_tcase(suite, all);
     return suite_main(suite);
 }
