@@ -90,6 +90,7 @@ if [ "$label" = long ]; then
 fi
 rm -rf build/hard_cases && mkdir build/hard_cases
 BRUNT_HARD_CASES=$PWD/build/hard_cases run build -LE long
+check "structure of the sources" python3 tests/structure.py check
 check "page of hard cases" python3 tests/hard_cases.py check build/hard_cases
 check "installed library" sh tests/support/install.sh build
 check "whole benchmark" sh bench/run.sh --quick

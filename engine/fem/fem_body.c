@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "world/definitions.h"
+#include "geometry/axis.h"
 #include "base/error.h"
 #include "base/simd.h"
 #include "fem/layout.h"

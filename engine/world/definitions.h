@@ -6,10 +6,6 @@
 enum { BRUNT_WORLD_COOKIE = 0x6272756e }; // the mark of a definition that was filled by its default function
 enum { BRUNT_MOST_PAIRS = 64 };           // of bodies in contact, with an account each
 
-// What a body of an axisymmetric scene is told that reaches over the axis, whatever it is made of.
-#define BRUNT_CUT_AT_AXIS                                                                                              \
-    "bodies lie at r >= 0, what is on the axis of revolution is cut there (shape: an intersection with a box from x = 0 on)"
-
 // Two pairs of bodies in contact that have one name, "a-b", which columns of the history are called by: of 'a-b' with
 // 'c' and 'a' with 'b-c'. Bodies by index, each pair in order of name. False: there are none.
 bool brunt_pairs_of_one_name(const brunt_world_def *def, int32_t first[2], int32_t second[2]);

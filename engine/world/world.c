@@ -6,6 +6,7 @@
 
 #include "world/definitions.h"
 #include "base/error.h"
+#include "geometry/axis.h"
 #include "geometry/fill.h"
 #include "base/simd.h"
 #include "base/memory.h"

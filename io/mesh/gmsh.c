@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "io/mesh/gmsh_file.h"
 #include "base/memory.h"
-#include "io/scene/scene_tree.h"
+#include "base/text.h"
 
 // Of each kind of brunt_element_kind: the type of gmsh. Both have the nodes in the same order.
 static const int32_t type_of_kind[BRUNT_ELEMENT_KINDS] = {

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/text.h"
 
 enum { NAMES_LIMIT = 128, PARAMETER_ORDER = 32 };
 

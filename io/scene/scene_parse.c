@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/text.h"
 
 void brunt_copy_text(scene_reader *reader, const scene_node *node, char *out, size_t size) {
     if (!node || !node->good || !node->text) return;

@@ -95,6 +95,3 @@ void brunt_tree_complain_key(scene_tree *tree, const scene_node *node, const cha
     __attribute__((format(printf, 3, 4)));
 // All mistakes in the order of their lines, with the line they are in.
 void brunt_tree_report(scene_tree *tree, FILE *out);
-
-// The name among `count` that is most like `name`, NULL when none is near.
-const char *brunt_nearest_name(const char *name, const char *const *names, int count);

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/text.h"
 #include "io/scene/scene_reader.h"
 #include "io/study/study_view.h"
 
