@@ -11,7 +11,7 @@
 // detonation speed D gets there (Wilkins, Calculation of Elastic-Plastic Flow, UCRL-7322 (1964); LS-DYNA
 // *MAT_HIGH_EXPLOSIVE_BURN),
 //   p = F p_products + (1 - F) K mu,   F = max(F1, F2) within 0 .. 1, never falling,
-//   F1 = (time - lighting_time) D / (width cell),    F2 = (1 - V) / (1 - V_CJ) from one such width ahead of the front
+//   F1 = (time - ignition_time) D / (width cell),    F2 = (1 - V) / (1 - V_CJ) from one such width ahead of the front
 //   on.
 // A width of 1.5 is LS-DYNA's (its 2 D A_max / 3 v is D / 1.5 length of a cube). F2, its beta burn, keeps a point on
 // the Rayleigh line of the front when the artificial viscosity compresses it early: it has burnt when it is as dense as
@@ -87,7 +87,7 @@ static real never(const real *constants, int component) {
 static const brunt_state_field state[] = {
     {"internal_energy", "J/m^3", 1, 1, energy_at_start},
     {"compression_work", "J/m^3", 1, 1, NULL},
-    {"lighting_time", "s", 1, 1, never},
+    {"ignition_time", "s", 1, 1, never},
     {"burn_fraction", "1", 1, 1, NULL},
 };
 

@@ -95,7 +95,7 @@ typedef struct brunt_model {
     const char *name;         // as typed in a scene: "neo-hookean"
     const char *doc;          // one line, with its source
     bool plastic, thermal, eos, viscous, damage;  // the effects it brings: the plan and the summary list them
-    bool burns;               // an explosive: has a state "lighting_time" [s], set from the detonators when a body is made, and
+    bool burns;               // an explosive: has a state "ignition_time" [s], set from the detonators when a body is made, and
                               // its first parameter "detonation_speed" [m/s]
     bool fluid;               // remembers no shape: the history of F but for J is nothing to it
     bool shear_viscous;       // a strength model whose stress follows the rate of shear, and dissipates

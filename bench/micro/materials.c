@@ -84,7 +84,7 @@ static bool measure(bench_case *c, int updates) {
     int scalars = 0;
     for (int f = 0; f < c->model->state_count; f++) {
         const brunt_state_field *field = &c->model->state[f];
-        const bool lit = strcmp(field->name, "lighting_time") == 0; // long ago: explosives have burnt
+        const bool lit = strcmp(field->name, "ignition_time") == 0; // long ago: explosives have burnt
         for (int k = 0; k < (c->dim == 3 ? field->components3 : field->components2); k++)
             points.state[scalars++] = reals(field->initial && !lit ? field->initial(constants, k) : 0);
     }

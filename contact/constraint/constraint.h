@@ -23,20 +23,20 @@
 
 #include "contact/contact.h"
 
-typedef struct brunt_support {
+typedef struct brunt_dof_node {
     double v[3], old[3]; // [m/s] now; before the forces of this step
     double inverse[3];   // [1/kg] by component; 0: infinite mass
     double impulse[3];   // [N s] received in all
     double load;         // [kg] sum of |weight| effective mass of the points on it
-} brunt_support;
+} brunt_dof_node;
 
-typedef struct brunt_contact_entry {
+typedef struct brunt_constraint_entry {
     int32_t support;
     double weight[3]; // w_s of a slave, -beta_k of a master, by component: mirrors turn some of them
     double turn[3]; // 0 of a slave; height grad beta_k of a master
-} brunt_contact_entry;
+} brunt_constraint_entry;
 
-typedef struct brunt_contact_point {
+typedef struct brunt_constraint {
     int32_t first, count; // entries
     double x[3];          // [m] where
     double n[3];          // out of the master, unit
@@ -45,7 +45,7 @@ typedef struct brunt_contact_point {
     double target;        // [m/s] least u_n
     double friction;
     double plane[3];      // [m/s] velocity of the master when it is a plane; 0 for facets
-    brunt_action *action; // where the point is booked: impulse on the slave times `sign`
+    brunt_impulse_account *action; // where the point is booked: impulse on the slave times `sign`
     double sign;
     double area; // [m^2] it stands for in the action's area
     int32_t tag; // the caller's
@@ -55,13 +55,13 @@ typedef struct brunt_contact_point {
     double scale, response, response_t; // [kg] effective mass alone; [-] row sums in units of it
     double push, drag[3];               // [N s]
     bool slips;
-} brunt_contact_point;
+} brunt_constraint;
 
-typedef struct brunt_contact_points {
-    brunt_contact_point *point;
+typedef struct brunt_constraint_set {
+    brunt_constraint *point;
     size_t point_capacity;
     int32_t point_count;
-    brunt_contact_entry *entry;
+    brunt_constraint_entry *entry;
     size_t entry_capacity;
     int32_t entry_count;
     struct brunt_lever {
@@ -69,7 +69,7 @@ typedef struct brunt_contact_points {
     } * lever;
     size_t lever_capacity;
     int32_t lever_count;
-    brunt_support *support;
+    brunt_dof_node *support;
     size_t support_capacity;
     int32_t support_count;
     // Which points press on a support: copies of their entries by support, in the order of the points, with what the
@@ -87,21 +87,21 @@ typedef struct brunt_contact_points {
     size_t given_capacity;
     double *changed; // [m/s] of each chunk of points: greatest correction of the sweep
     size_t changed_capacity;
-} brunt_contact_points;
+} brunt_constraint_set;
 
-void brunt_points_clear(brunt_contact_points *points);
-void brunt_points_free(brunt_contact_points *points);
+void brunt_constraints_clear(brunt_constraint_set *points);
+void brunt_constraints_free(brunt_constraint_set *points);
 // New support, point, and entry of the last point. The index, or -1: out of memory.
-int32_t brunt_points_support(brunt_contact_points *points);
-int32_t brunt_points_add(brunt_contact_points *points);
-int32_t brunt_points_entry(brunt_contact_points *points, int32_t support, double weight); // all components alike
+int32_t brunt_constraints_dof_node(brunt_constraint_set *points);
+int32_t brunt_constraints_add(brunt_constraint_set *points);
+int32_t brunt_constraints_entry(brunt_constraint_set *points, int32_t support, double weight); // all components alike
 // Gives the last point, when its entries are complete, a lever to x: entries without weights, for the caller to fill.
 // The index of the first, or -1.
-int32_t brunt_points_lever(brunt_contact_points *points, const double x[3]);
+int32_t brunt_constraints_friction_point(brunt_constraint_set *points, const double x[3]);
 // Makes room for so many points and entries in all, which the caller then fills. 0, or -1.
-int brunt_points_room(brunt_contact_points *points, int32_t point_count, int32_t entry_count);
+int brunt_constraints_reserve(brunt_constraint_set *points, int32_t point_count, int32_t entry_count);
 // Relative velocity of a point, with the supports' v (old: as they were before the forces).
-void brunt_point_velocity(const brunt_contact_points *points, const brunt_contact_point *point, bool old, double u[3]);
+void brunt_constraint_velocity(const brunt_constraint_set *points, const brunt_constraint *point, bool old, double u[3]);
 // Solves with at most `sweeps` sweeps, until the greatest correction of one is no more than `tolerance` of that of the
 // first; what is left is met in the next step. Books every point. The number of sweeps, or -1: out of memory.
-int brunt_points_solve(brunt_contact_points *points, int sweeps, double tolerance, int threads, brunt_timer *timer);
+int brunt_constraints_solve(brunt_constraint_set *points, int sweeps, double tolerance, int threads, brunt_timer *timer);

@@ -1,6 +1,6 @@
 #include "contact/contact.h"
 
-void brunt_action_add(brunt_action *sum, const brunt_action *part) {
+void brunt_impulse_account_add(brunt_impulse_account *sum, const brunt_impulse_account *part) {
     for (int a = 0; a < 3; a++) sum->impulse[a] += part->impulse[a], sum->angular[a] += part->angular[a];
     sum->external_work += part->external_work;
     sum->normal_loss += part->normal_loss;
@@ -8,7 +8,7 @@ void brunt_action_add(brunt_action *sum, const brunt_action *part) {
     sum->area = part->area;
 }
 
-void brunt_action_book(brunt_action *action, double *loss, const double J[3], const double x[3], const double old[3],
+void brunt_impulse_account_book(brunt_impulse_account *action, double *loss, const double J[3], const double x[3], const double old[3],
                        const double now[3], const double support[3]) {
     for (int a = 0; a < 3; a++) {
         int i = (a + 1) % 3, j = (a + 2) % 3;

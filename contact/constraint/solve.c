@@ -8,11 +8,11 @@
 
 enum { GRAIN = 128 };
 
-void brunt_points_clear(brunt_contact_points *p) {
+void brunt_constraints_clear(brunt_constraint_set *p) {
     p->point_count = p->entry_count = p->lever_count = p->support_count = 0;
 }
 
-void brunt_points_free(brunt_contact_points *p) {
+void brunt_constraints_free(brunt_constraint_set *p) {
     brunt_free(p->point);
     brunt_free(p->entry);
     brunt_free(p->lever);
@@ -30,15 +30,15 @@ void brunt_points_free(brunt_contact_points *p) {
          ? -1                                                                                                          \
          : (memset(&(p)->what[(p)->what##_count], 0, sizeof *(p)->what), (p)->what##_count++))
 
-int32_t brunt_points_support(brunt_contact_points *p) { return ADD(p, support); }
+int32_t brunt_constraints_dof_node(brunt_constraint_set *p) { return ADD(p, support); }
 
-int32_t brunt_points_add(brunt_contact_points *p) {
+int32_t brunt_constraints_add(brunt_constraint_set *p) {
     int32_t at = ADD(p, point);
     if (at >= 0) p->point[at].first = p->entry_count;
     return at;
 }
 
-int32_t brunt_points_entry(brunt_contact_points *p, int32_t support, double weight) {
+int32_t brunt_constraints_entry(brunt_constraint_set *p, int32_t support, double weight) {
     int32_t at = ADD(p, entry);
     if (at < 0) return -1;
     p->entry[at].support = support;
@@ -47,9 +47,9 @@ int32_t brunt_points_entry(brunt_contact_points *p, int32_t support, double weig
     return at;
 }
 
-int32_t brunt_points_lever(brunt_contact_points *p, const double x[3]) {
+int32_t brunt_constraints_friction_point(brunt_constraint_set *p, const double x[3]) {
     const int32_t at = ADD(p, lever), first = p->entry_count;
-    brunt_contact_point *point = &p->point[p->point_count - 1];
+    brunt_constraint *point = &p->point[p->point_count - 1];
     if (at < 0) return -1;
     memcpy(p->lever[at].x, x, sizeof p->lever[at].x);
     for (int32_t e = 0; e < point->count; e++) {
@@ -61,7 +61,7 @@ int32_t brunt_points_lever(brunt_contact_points *p, const double x[3]) {
     return first;
 }
 
-int brunt_points_room(brunt_contact_points *p, int32_t points, int32_t entries) {
+int brunt_constraints_reserve(brunt_constraint_set *p, int32_t points, int32_t entries) {
     return brunt_reserve((void **)&p->point, &p->point_capacity, ((size_t)points + 1) * sizeof *p->point,
                          (size_t)p->point_count * sizeof *p->point) ||
                    brunt_reserve((void **)&p->entry, &p->entry_capacity, ((size_t)entries + 1) * sizeof *p->entry,
@@ -71,35 +71,35 @@ int brunt_points_room(brunt_contact_points *p, int32_t points, int32_t entries) 
 }
 
 // `first`: of the entries that are weighed.
-static void velocity(const brunt_contact_points *p, const brunt_contact_point *point, int32_t first, bool old,
+static void velocity(const brunt_constraint_set *p, const brunt_constraint *point, int32_t first, bool old,
                      double u[3]) {
     for (int a = 0; a < 3; a++) u[a] = -point->plane[a];
     for (int32_t e = first; e < first + point->count; e++) {
-        const brunt_contact_entry *entry = &p->entry[e];
+        const brunt_constraint_entry *entry = &p->entry[e];
         const double *v = old ? p->support[entry->support].old : p->support[entry->support].v;
         double rise = point->facet[0] * v[0] + point->facet[1] * v[1] + point->facet[2] * v[2];
         for (int a = 0; a < 3; a++) u[a] += entry->weight[a] * v[a] + rise * entry->turn[a];
     }
 }
 
-void brunt_point_velocity(const brunt_contact_points *p, const brunt_contact_point *point, bool old, double u[3]) {
+void brunt_constraint_velocity(const brunt_constraint_set *p, const brunt_constraint *point, bool old, double u[3]) {
     velocity(p, point, point->first, old, u);
 }
 
 // What an entry gives its support of the point's impulse: the transpose of the above.
-static void give(const brunt_contact_point *point, const brunt_contact_entry *entry, const double J[3], double out[3]) {
+static void give(const brunt_constraint *point, const brunt_constraint_entry *entry, const double J[3], double out[3]) {
     double turn = entry->turn[0] * J[0] + entry->turn[1] * J[1] + entry->turn[2] * J[2];
     for (int a = 0; a < 3; a++) out[a] = entry->weight[a] * J[a] + turn * point->facet[a];
 }
 
-static struct brunt_pressing pressing_of(int32_t point, const brunt_contact_entry *entry) {
+static struct brunt_pressing pressing_of(int32_t point, const brunt_constraint_entry *entry) {
     return (struct brunt_pressing){point,
                                    {entry->weight[0], entry->weight[1], entry->weight[2]},
                                    {entry->turn[0], entry->turn[1], entry->turn[2]}};
 }
 
 // Entries by support, in the order of the points, each with that of its lever.
-static int transpose(brunt_contact_points *p) {
+static int transpose(brunt_constraint_set *p) {
     size_t entries = (size_t)p->entry_count + 1, supports = (size_t)p->support_count + 1,
            points = (size_t)p->point_count + (size_t)p->lever_count + 1;
     if (brunt_reserve((void **)&p->pressing, &p->pressing_capacity, entries * sizeof *p->pressing, 0) ||
@@ -112,7 +112,7 @@ static int transpose(brunt_contact_points *p) {
     for (int32_t e = 0; e < p->entry_count; e++) first[p->entry[e].support + 2]++;
     for (size_t s = 2; s <= supports; s++) first[s] += first[s - 1];
     for (int32_t k = 0; k < p->point_count; k++) {
-        const brunt_contact_point *point = &p->point[k];
+        const brunt_constraint *point = &p->point[k];
         const int32_t lever = p->point_count + point->lever - 1;
         memcpy(p->given[k].facet, point->facet, sizeof point->facet);
         if (point->lever) memcpy(p->given[lever].facet, point->facet, sizeof point->facet);
@@ -128,9 +128,9 @@ static int transpose(brunt_contact_points *p) {
 // Effective mass of each point alone. Points that nothing can move (all masses infinite) get 0.
 static void weigh_points(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
-    brunt_contact_points *p = context;
+    brunt_constraint_set *p = context;
     for (int64_t k = begin * GRAIN; k < end * GRAIN && k < p->point_count; k++) {
-        brunt_contact_point *point = &p->point[k];
+        brunt_constraint *point = &p->point[k];
         double alone = 0;
         for (int32_t e = point->first; e < point->first + point->count; e++) {
             double J[3];
@@ -146,7 +146,7 @@ static double greatest(const double weight[3]) { return fmax(fabs(weight[0]), fm
 
 static void load_supports(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
-    brunt_contact_points *p = context;
+    brunt_constraint_set *p = context;
     for (int64_t s = begin * GRAIN; s < end * GRAIN && s < p->support_count; s++) {
         double load = 0;
         for (int32_t q = p->pressing_first[s]; q < p->pressing_first[s + 1]; q++) {
@@ -162,12 +162,12 @@ static void load_supports(void *context, int64_t begin, int64_t end, int worker)
 // Row sums, in units of the effective masses.
 static void sum_rows(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
-    brunt_contact_points *p = context;
+    brunt_constraint_set *p = context;
     for (int64_t k = begin * GRAIN; k < end * GRAIN && k < p->point_count; k++) {
-        brunt_contact_point *point = &p->point[k];
+        brunt_constraint *point = &p->point[k];
         double along[3] = {0};
         for (int32_t e = point->first; e < point->first + point->count; e++) {
-            const brunt_support *s = &p->support[p->entry[e].support];
+            const brunt_dof_node *s = &p->support[p->entry[e].support];
             const double *weight = p->entry[e].weight, *other = p->entry[e + (point->lever ? point->count : 0)].weight;
             for (int a = 0; a < 3; a++) along[a] += fmax(fabs(weight[a]), fabs(other[a])) * s->load * s->inverse[a];
         }
@@ -182,11 +182,11 @@ static void sum_rows(void *context, int64_t begin, int64_t end, int worker) {
 
 // Brings one point to its condition, as far as it is concerned; the impulse goes to `J`, that of friction to `rub`,
 // which is the same without a lever. Returns the velocity it is worth [m/s].
-static double visit(const brunt_contact_points *p, brunt_contact_point *point, double J[3], double rub[3]) {
+static double visit(const brunt_constraint_set *p, brunt_constraint *point, double J[3], double rub[3]) {
     for (int a = 0; a < 3; a++) J[a] = rub[a] = 0;
     if (!(point->scale > 0)) return 0;
     double u[3], along = 0;
-    brunt_point_velocity(p, point, false, u);
+    brunt_constraint_velocity(p, point, false, u);
     for (int a = 0; a < 3; a++) along += u[a] * point->n[a];
     double unit = point->scale / point->response;
     double push = fmax(0, point->push + (point->target - along) * unit), step = push - point->push;
@@ -220,7 +220,7 @@ static double visit(const brunt_contact_points *p, brunt_contact_point *point, d
 
 static void visit_points(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
-    brunt_contact_points *p = context;
+    brunt_constraint_set *p = context;
     for (int64_t c = begin; c < end; c++) {
         double most = 0;
         for (int32_t k = (int32_t)c * GRAIN; k < (c + 1) * GRAIN && k < p->point_count; k++) {
@@ -235,7 +235,7 @@ static void visit_points(void *context, int64_t begin, int64_t end, int worker) 
 
 static void move_supports(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
-    brunt_contact_points *p = context;
+    brunt_constraint_set *p = context;
     for (int64_t s = begin * GRAIN; s < end * GRAIN && s < p->support_count; s++) {
         double sum[3] = {0};
         for (int32_t q = p->pressing_first[s]; q < p->pressing_first[s + 1]; q++) {
@@ -244,7 +244,7 @@ static void move_supports(void *context, int64_t begin, int64_t end, int worker)
             const double *J = given->impulse, turn = by->turn[0] * J[0] + by->turn[1] * J[1] + by->turn[2] * J[2];
             for (int a = 0; a < 3; a++) sum[a] += by->weight[a] * J[a] + turn * given->facet[a];
         }
-        brunt_support *support = &p->support[s];
+        brunt_dof_node *support = &p->support[s];
         for (int a = 0; a < 3; a++) {
             support->impulse[a] += sum[a];
             support->v[a] += sum[a] * support->inverse[a];
@@ -252,21 +252,21 @@ static void move_supports(void *context, int64_t begin, int64_t end, int worker)
     }
 }
 
-static void book(brunt_contact_points *p) {
+static void book(brunt_constraint_set *p) {
     for (int32_t k = 0; k < p->point_count; k++) {
-        const brunt_contact_point *point = &p->point[k];
+        const brunt_constraint *point = &p->point[k];
         if (!(point->push > 0)) continue;
         point->action->area += point->area;
         double old[3], now[3], push[3], drag[3], x[3];
-        brunt_point_velocity(p, point, true, old);
-        brunt_point_velocity(p, point, false, now);
+        brunt_constraint_velocity(p, point, true, old);
+        brunt_constraint_velocity(p, point, false, now);
         for (int a = 0; a < 3; a++) {
             // The account is of the second body: the slave's impulse, or the reaction to it.
             push[a] = point->sign * point->push * point->n[a], drag[a] = point->sign * point->drag[a];
             old[a] = point->sign * (old[a] + point->plane[a]), now[a] = point->sign * (now[a] + point->plane[a]);
             x[a] = point->x[a];
         }
-        brunt_action_book(point->action, &point->action->normal_loss, push, x, old, now, point->plane);
+        brunt_impulse_account_book(point->action, &point->action->normal_loss, push, x, old, now, point->plane);
         if (point->lever) {
             velocity(p, point, point->first + point->count, true, old);
             velocity(p, point, point->first + point->count, false, now);
@@ -276,11 +276,11 @@ static void book(brunt_contact_points *p) {
             }
         }
         if (point->friction > 0)
-            brunt_action_book(point->action, &point->action->friction_loss, drag, x, old, now, point->plane);
+            brunt_impulse_account_book(point->action, &point->action->friction_loss, drag, x, old, now, point->plane);
     }
 }
 
-int brunt_points_solve(brunt_contact_points *p, int sweeps, double tolerance, int threads, brunt_timer *timer) {
+int brunt_constraints_solve(brunt_constraint_set *p, int sweeps, double tolerance, int threads, brunt_timer *timer) {
     if (!p->point_count) return 0;
     if (transpose(p)) return -1;
     const int64_t chunks = (p->point_count + GRAIN - 1) / GRAIN, groups = (p->support_count + GRAIN - 1) / GRAIN;

@@ -20,7 +20,7 @@ static int corner_of(const int32_t face[4], int32_t node) {
     return -1;
 }
 
-bool brunt_feature_share(const brunt_skin *s, int32_t face, brunt_shared *shared) {
+bool brunt_feature_share(const brunt_contact_surface *s, int32_t face, brunt_shared *shared) {
     const int32_t *node = s->face[face];
     brunt_shared both = {.count = 0};
     if (!shared->count) {
@@ -35,14 +35,14 @@ bool brunt_feature_share(const brunt_skin *s, int32_t face, brunt_shared *shared
 }
 
 // The two edges of a face that leave a corner, in the order in which their cross product is outward.
-static void edges_at(const brunt_skin *s, const int32_t face[4], int corner, double e[3], double g[3]) {
+static void edges_at(const brunt_contact_surface *s, const int32_t face[4], int corner, double e[3], double g[3]) {
     const int n = corners(face);
     between(s->x[face[corner]], s->x[face[(corner + 1) % n]], e);
     between(s->x[face[corner]], s->x[face[(corner + n - 1) % n]], g);
 }
 
 // The normal of a face at a feature, as long as it counts there.
-static void normal_at(const brunt_skin *s, const brunt_feature *f, int32_t face, double out[3]) {
+static void normal_at(const brunt_contact_surface *s, const brunt_feature *f, int32_t face, double out[3]) {
     const int32_t *node = s->face[face];
     const int n = corners(node), corner = corner_of(node, f->end[0]);
     double e[3], g[3], size = 1;
@@ -65,7 +65,7 @@ static void normal_at(const brunt_skin *s, const brunt_feature *f, int32_t face,
         for (int a = 0; a < 3; a++) out[a] = length > 0 ? size * c[a] / length : 0;
 }
 
-bool brunt_feature_normal(const brunt_skin *s, const brunt_feature *f, const int32_t *face, int count, double n[3]) {
+bool brunt_feature_normal(const brunt_contact_surface *s, const brunt_feature *f, const int32_t *face, int count, double n[3]) {
     double sum[3] = {0};
     for (int k = 0; k < count; k++) {
         double one[3];
@@ -78,7 +78,7 @@ bool brunt_feature_normal(const brunt_skin *s, const brunt_feature *f, const int
     return size > 1e-6;
 }
 
-void brunt_feature_values(const brunt_skin *s, const brunt_feature *f, const double x[3], double weight[2]) {
+void brunt_feature_values(const brunt_contact_surface *s, const brunt_feature *f, const double x[3], double weight[2]) {
     weight[0] = 1, weight[1] = 0;
     if (f->end[0] == f->end[1]) return;
     double e[3], r[3];
@@ -112,7 +112,7 @@ static inline void add_gradient(about *to, int32_t node, const double by[3], dou
 }
 
 // A segment: its weights grow along the line across n.
-static void add_segment(const brunt_skin *s, const int32_t node[4], const double n[3], about *to) {
+static void add_segment(const brunt_contact_surface *s, const int32_t node[4], const double n[3], about *to) {
     const double along[3] = {-n[1], n[0], 0};
     double e[3];
     between(s->x[node[0]], s->x[node[1]], e);
@@ -123,7 +123,7 @@ static void add_segment(const brunt_skin *s, const int32_t node[4], const double
 }
 
 // The triangle of a face at the feature, as it is seen along n: twice its area times the gradients of its weights.
-static void add_triangle(const brunt_skin *s, const brunt_feature *f, int32_t face, const double n[3], about *to) {
+static void add_triangle(const brunt_contact_surface *s, const brunt_feature *f, int32_t face, const double n[3], about *to) {
     const int32_t *node = s->face[face];
     const int count = corners(node), first = corner_of(node, f->end[0]);
     int i = first, j = (first + 1) % count, k = (first + count - 1) % count;
@@ -144,7 +144,7 @@ static void add_triangle(const brunt_skin *s, const brunt_feature *f, int32_t fa
 }
 
 // Those of a quadrilateral's triangles that meet, as they are seen along n.
-static void add_sectors(const brunt_skin *s, const brunt_feature *f, const double n[3], about *to) {
+static void add_sectors(const brunt_contact_surface *s, const brunt_feature *f, const double n[3], about *to) {
     const int32_t *node = s->face[f->face];
     for (int t = 0; t < 4; t++) {
         const brunt_feature edge = {.any = true, .end = {node[t], node[(t + 1) % 4]}};
@@ -152,7 +152,7 @@ static void add_sectors(const brunt_skin *s, const brunt_feature *f, const doubl
     }
 }
 
-static void add_faces(const brunt_skin *s, const brunt_feature *f, const double n[3], about *to) {
+static void add_faces(const brunt_contact_surface *s, const brunt_feature *f, const double n[3], about *to) {
     for (int32_t q = s->face_first[f->end[0]]; q < s->face_first[f->end[0] + 1]; q++) {
         const int32_t *corner = s->face[s->face_of[q]];
         if (corner_of(corner, f->end[1]) < 0 || to->count > BRUNT_FEATURE_NODES - 4) continue;
@@ -163,7 +163,7 @@ static void add_faces(const brunt_skin *s, const brunt_feature *f, const double 
     }
 }
 
-int brunt_feature_weights(const brunt_skin *s, const brunt_feature *f, const double n[3], const double x[3],
+int brunt_feature_weights(const brunt_contact_surface *s, const brunt_feature *f, const double n[3], const double x[3],
                           int32_t node[BRUNT_FEATURE_NODES], double weight[BRUNT_FEATURE_NODES],
                           double gradient[BRUNT_FEATURE_NODES][3], double *height) {
     const double none[3] = {0};

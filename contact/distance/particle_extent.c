@@ -28,7 +28,7 @@ static void weight_1d(int order, double u, int k, double *w, double *g) {
     }
 }
 
-void brunt_reach_visit(brunt_body *body, int32_t slot, int node, brunt_reach_visit_fn *visit, void *context) {
+void brunt_extent_visit(brunt_body *body, int32_t slot, int node, brunt_extent_visit_fn *visit, void *context) {
     const brunt_grid *grid = &body->grid;
     int local[3];
     brunt_node_local(grid, node, local);
@@ -73,11 +73,11 @@ static void add_gradient(void *context, brunt_body *body, int64_t s, const int b
     for (int a = 0; a < p->dim; a++) g->moment[a] += share * ((double)x[a][s] - g->node[a]);
 }
 
-void brunt_reach_gradient(brunt_body *body, int32_t slot, int node, double gradient[3], double centre[3]) {
+void brunt_extent_gradient(brunt_body *body, int32_t slot, int node, double gradient[3], double centre[3]) {
     gradient_sum g = {.volume = 0};
     const brunt_grid *grid = &body->grid;
     brunt_node_position(grid, grid->slots[slot].coord, node, g.node);
-    brunt_reach_visit(body, slot, node, add_gradient, &g);
+    brunt_extent_visit(body, slot, node, add_gradient, &g);
     // A particle right of the node has a negative slope there: the sum of V grad_x N points away from the body; its
     // gradient as a field over space, which is asked for, is the opposite.
     double scale = -(double)grid->inv_h / pow((double)grid->h, grid->dim);
@@ -110,9 +110,9 @@ static void add_deformed(void *context, brunt_body *body, int64_t s, const int b
     }
 }
 
-void brunt_reach_deformed(brunt_body *body, int32_t slot, int node, double x[3]) {
+void brunt_extent_deformed(brunt_body *body, int32_t slot, int node, double x[3]) {
     deformed_sum d = {.undeformed = {x[0], x[1], x[2]}};
-    brunt_reach_visit(body, slot, node, add_deformed, &d);
+    brunt_extent_visit(body, slot, node, add_deformed, &d);
     for (int a = 0; a < body->particles.dim && d.weight > 0; a++) x[a] = d.moment[a] / d.weight;
 }
 
@@ -126,7 +126,7 @@ static void pull_back(brunt_body *body, int64_t s, const double n[3], double out
     }
 }
 
-double brunt_reach_along(brunt_body *body, int64_t s, const double n[3]) {
+double brunt_extent_along(brunt_body *body, int64_t s, const double n[3]) {
     double t[3];
     pull_back(body, s, n, t);
     return (double)brunt_field(&body->particles, BRUNT_FIELD_reach)[0][s] *
@@ -134,10 +134,10 @@ double brunt_reach_along(brunt_body *body, int64_t s, const double n[3]) {
 }
 
 // The farthest point of the ellipsoid is x - r F t / |t|, t = F^T n: X - r t / |t| of the undeformed ball.
-void brunt_reach_arm(brunt_body *body, int64_t s, const double n[3], double distance, double arm[3],
+void brunt_extent_arm(brunt_body *body, int64_t s, const double n[3], double distance, double arm[3],
                      double kernel_arm[3]) {
     const brunt_particles *p = &body->particles;
-    const double extent = brunt_reach_along(body, s, n), length = fmin(extent, distance);
+    const double extent = brunt_extent_along(body, s, n), length = fmin(extent, distance);
     for (int a = 0; a < 3; a++) arm[a] = kernel_arm[a] = -length * n[a];
     if (!brunt_total_lagrangian(p)) return;
     real *const *F = brunt_field(&body->particles, BRUNT_FIELD_deformation_gradient);
@@ -155,7 +155,7 @@ void brunt_reach_arm(brunt_body *body, int64_t s, const double n[3], double dist
 enum { CLOUD_X = 0, CLOUD_F = 3, CLOUD_REACH = 12, CLOUD_ALONG = 13, CLOUD_ROWS = 14, CLOUD_LANES = 8 };
 
 typedef struct cloud_fill {
-    brunt_reach_cloud *cloud;
+    brunt_extent_cloud *cloud;
     double node[3];
 } cloud_fill;
 
@@ -180,22 +180,22 @@ static void add_particle(void *context, brunt_body *body, int64_t s, const int b
     to[CLOUD_REACH * stride] = (double)brunt_field(p, BRUNT_FIELD_reach)[0][s];
 }
 
-int brunt_reach_gather(brunt_body *body, int32_t slot, int node, brunt_reach_cloud *cloud) {
+int brunt_extent_gather(brunt_body *body, int32_t slot, int node, brunt_extent_cloud *cloud) {
     int count = 0;
-    brunt_reach_visit(body, slot, node, count_particle, &count);
+    brunt_extent_visit(body, slot, node, count_particle, &count);
     cloud->stride = ((size_t)count + CLOUD_LANES - 1) / CLOUD_LANES * CLOUD_LANES;
     cloud->count = 0;
     if (brunt_reserve((void **)&cloud->data, &cloud->bytes, CLOUD_ROWS * cloud->stride * sizeof(double), 0)) return -1;
     cloud_fill fill = {.cloud = cloud};
     brunt_node_position(&body->grid, body->grid.slots[slot].coord, node, fill.node);
-    brunt_reach_visit(body, slot, node, add_particle, &fill);
+    brunt_extent_visit(body, slot, node, add_particle, &fill);
     return 0;
 }
 
-void brunt_reach_cloud_free(brunt_reach_cloud *cloud) { brunt_free(cloud->data); }
+void brunt_extent_cloud_free(brunt_extent_cloud *cloud) { brunt_free(cloud->data); }
 
 // x . n + share reach |F^T n| of each particle.
-static void extents(const brunt_reach_cloud *cloud, double share, const double n[3]) {
+static void extents(const brunt_extent_cloud *cloud, double share, const double n[3]) {
     const double *const data = cloud->data;
     const size_t stride = cloud->stride;
     const double *restrict x = data, *restrict y = data + stride, *restrict z = data + 2 * stride,
@@ -214,7 +214,7 @@ static void extents(const brunt_reach_cloud *cloud, double share, const double n
     }
 }
 
-double brunt_reach_extent(const brunt_reach_cloud *cloud, double share, const double n[3], double farthest[3]) {
+double brunt_extent_of(const brunt_extent_cloud *cloud, double share, const double n[3], double farthest[3]) {
     for (int a = 0; a < 3; a++) farthest[a] = 0;
     if (!cloud->count) return -INFINITY;
     extents(cloud, share, n);

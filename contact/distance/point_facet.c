@@ -60,7 +60,7 @@ static void unit_normal(const double *const p[3], double n[3]) {
 }
 
 // Corners of triangle `t` of a face; the third of a quadrilateral's is its centre.
-static void triangle_of(const brunt_skin *s, int32_t face, int t, const double *p[3]) {
+static void triangle_of(const brunt_contact_surface *s, int32_t face, int t, const double *p[3]) {
     const int32_t *node = s->face[face];
     p[0] = s->x[node[t]];
     p[1] = s->x[node[node[3] < 0 ? 1 : (t + 1) % 4]];
@@ -68,7 +68,7 @@ static void triangle_of(const brunt_skin *s, int32_t face, int t, const double *
 }
 
 // The triangle of a quadrilateral that x is over; `between`: whether it is on the way to another one.
-static int sector(const brunt_skin *s, int32_t face, const double x[3], bool *between) {
+static int sector(const brunt_contact_surface *s, int32_t face, const double x[3], bool *between) {
     const double *centre = s->face_centre[face], *normal = s->face_normal[face];
     const double near = NEAR_SPOKE * s->face_area[face];
     double r[3], turn[4];
@@ -88,7 +88,7 @@ static int sector(const brunt_skin *s, int32_t face, const double x[3], bool *be
 }
 
 // Of a quadrilateral's four triangles the one whose sector x is in settles it, unless the nearest point is on its rim.
-static brunt_closest closest_on_quadrilateral(const brunt_skin *s, int32_t face, const double x[3]) {
+static brunt_closest closest_on_quadrilateral(const brunt_contact_surface *s, int32_t face, const double x[3]) {
     double d[4][3], square[4], least = INFINITY;
     bool inside[4], between, alone = false;
     const int first = sector(s, face, x, &between);
@@ -129,7 +129,7 @@ static brunt_closest closest_on_quadrilateral(const brunt_skin *s, int32_t face,
     return best;
 }
 
-brunt_closest brunt_closest_on_face(const brunt_skin *s, int32_t face, const double x[3]) {
+brunt_closest brunt_closest_on_face(const brunt_contact_surface *s, int32_t face, const double x[3]) {
     const int32_t *node = s->face[face];
     brunt_closest best = {.square = INFINITY};
     if (node[2] < 0) {
@@ -168,7 +168,7 @@ static void spread(const int32_t node[4], int triangle, double w0, double w1, do
     weight[i] += w0, weight[j] += w1;
 }
 
-void brunt_face_values(const brunt_skin *s, int32_t face, int triangle, const double x[3], double weight[4]) {
+void brunt_face_values(const brunt_contact_surface *s, int32_t face, int triangle, const double x[3], double weight[4]) {
     const int32_t *node = s->face[face];
     if (node[2] < 0) {
         const double *a = s->x[node[0]], *b = s->x[node[1]];
@@ -188,7 +188,7 @@ void brunt_face_values(const brunt_skin *s, int32_t face, int triangle, const do
     spread(node, triangle, 1 - w1 - w2, w1, w2, weight);
 }
 
-void brunt_face_weights(const brunt_skin *s, int32_t face, int triangle, const double x[3], double weight[4],
+void brunt_face_weights(const brunt_contact_surface *s, int32_t face, int triangle, const double x[3], double weight[4],
                         double gradient[4][3], double normal[3], double *height) {
     const int32_t *node = s->face[face];
     brunt_face_values(s, face, triangle, x, weight);

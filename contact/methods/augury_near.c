@@ -20,7 +20,7 @@ void brunt_augury_near_free(brunt_augury_near *near) {
 // ------------------------------------------------------------------------------------------ bodies
 
 // The axis along which bodies lie farthest apart.
-static int sweep_axis(const brunt_skin *s) {
+static int sweep_axis(const brunt_contact_surface *s) {
     int best = 0;
     double widest = -1;
     for (int a = 0; a < s->dim; a++) {
@@ -33,7 +33,7 @@ static int sweep_axis(const brunt_skin *s) {
 
 // Bodies by their low ends. Sorted by insertion from the last step's order, which is nearly right; ties go by number,
 // so that where it starts does not show.
-static int sort_bodies(brunt_augury_near *near, const brunt_skin *s, int axis) {
+static int sort_bodies(brunt_augury_near *near, const brunt_contact_surface *s, int axis) {
     const int32_t n = s->fem_count;
     if (near->order_count != n) {
         if (brunt_reserve((void **)&near->order, &near->order_capacity, (size_t)(n + 1) * sizeof(int32_t), 0))
@@ -59,8 +59,8 @@ static int compare(const void *p, const void *q) {
     return (u->pair > v->pair) - (u->pair < v->pair);
 }
 
-int brunt_augury_near_find(brunt_augury_near *near, const brunt_meeting *m, double margin) {
-    const brunt_skin *s = m->skin;
+int brunt_augury_near_find(brunt_augury_near *near, const brunt_contact_context *m, double margin) {
+    const brunt_contact_surface *s = m->skin;
     const int axis = sweep_axis(s);
     near->count = 0;
     if (sort_bodies(near, s, axis)) return -1;
@@ -94,7 +94,7 @@ int brunt_augury_near_find(brunt_augury_near *near, const brunt_meeting *m, doub
 typedef struct bound_job {
     const double (*x)[3];
     const int32_t *range;
-    const brunt_skin *skin;
+    const brunt_contact_surface *skin;
     brunt_augury_box *run;
 } bound_job;
 
@@ -119,7 +119,7 @@ static void bound_runs(void *context, int64_t begin, int64_t end, int worker) {
     }
 }
 
-int brunt_augury_near_runs(brunt_augury_near *near, const brunt_skin *s, int threads, brunt_timer *timer) {
+int brunt_augury_near_runs(brunt_augury_near *near, const brunt_contact_surface *s, int threads, brunt_timer *timer) {
     size_t nodes = (size_t)(s->node_count / RUN + s->fem_count + 1),
            faces = (size_t)(s->face_count / RUN + s->fem_count + 1);
     if (brunt_reserve((void **)&near->node_run, &near->node_run_capacity, nodes * sizeof *near->node_run, 0) ||
@@ -138,7 +138,7 @@ static bool apart(const brunt_augury_box *u, const brunt_augury_box *v, int dim)
     return false;
 }
 
-int brunt_augury_near_visit(const brunt_augury_near *near, const brunt_skin *s, int k, bool faces,
+int brunt_augury_near_visit(const brunt_augury_near *near, const brunt_contact_surface *s, int k, bool faces,
                             const brunt_augury_box *box, brunt_augury_visit_fn *visit, void *context) {
     const int32_t *range = faces ? s->face_range : s->node_range;
     const double(*x)[3] = faces ? s->face_centre : s->x;

@@ -23,18 +23,18 @@ typedef struct brunt_augury_near {
 } brunt_augury_near;
 
 // Index among all bodies of the skin's body k, which has nodes.
-static inline int brunt_augury_body(const brunt_skin *skin, int k) { return skin->body[skin->node_range[k]]; }
+static inline int brunt_augury_body(const brunt_contact_surface *skin, int k) { return skin->body[skin->node_range[k]]; }
 
 // Active bodies with a pair of method augury that come closer than `margin` [m] by their boxes. 0, or -1: out of
 // memory.
-int brunt_augury_near_find(brunt_augury_near *near, const brunt_meeting *m, double margin);
+int brunt_augury_near_find(brunt_augury_near *near, const brunt_contact_context *m, double margin);
 // Boxes of runs, once a step, before the next.
-int brunt_augury_near_runs(brunt_augury_near *near, const brunt_skin *skin, int threads, brunt_timer *timer);
+int brunt_augury_near_runs(brunt_augury_near *near, const brunt_contact_surface *skin, int threads, brunt_timer *timer);
 
 // Called with each point of a body's surface inside a box; returns 0 to go on.
 typedef int brunt_augury_visit_fn(void *context, int32_t item, const double x[3]);
 // Nodes (faces: their centres) of the skin's body k in the box, in order. What `visit` returned.
-int brunt_augury_near_visit(const brunt_augury_near *near, const brunt_skin *skin, int k, bool faces,
+int brunt_augury_near_visit(const brunt_augury_near *near, const brunt_contact_surface *skin, int k, bool faces,
                             const brunt_augury_box *box, brunt_augury_visit_fn *visit, void *context);
 
 void brunt_augury_near_free(brunt_augury_near *near);

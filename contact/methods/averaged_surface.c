@@ -134,8 +134,8 @@ struct brunt_augury_meet {
 };
 
 typedef struct job {
-    const brunt_meeting *m;
-    brunt_skin *skin;
+    const brunt_contact_context *m;
+    brunt_contact_surface *skin;
     brunt_augury_workspace *w;
     brunt_augury_meet *meet;
     bool affine;
@@ -179,7 +179,7 @@ static int add_point(void *context, int32_t item, const double x[3]) {
 // Points of each body within reach of the other's box. 1 when there are some of each, 0, or -1: out of memory.
 static int collect(job *j, int a, int b) {
     brunt_augury_workspace *w = j->w;
-    const brunt_skin *s = j->skin;
+    const brunt_contact_surface *s = j->skin;
     const double reach = REACH * j->m->cell;
     brunt_augury_grid_start(&w->grid, s->dim, WIDTH, j->m->cell);
     for (int c = 0; c < 4; c++) w->cloud[c].count = 0;
@@ -423,7 +423,7 @@ static void cross(const double a[3], const double b[3], double c[3]) {
     }
 }
 
-static facet make_triangle(const brunt_skin *s, const int32_t *node, int p, int q, int r, double weight) {
+static facet make_triangle(const brunt_contact_surface *s, const int32_t *node, int p, int q, int r, double weight) {
     facet t = {.corner = {(int8_t)p, (int8_t)q, (int8_t)r}, .count = 3};
     double e1[3], e2[3];
     for (int a = 0; a < 3; a++) {
@@ -443,7 +443,7 @@ static facet make_triangle(const brunt_skin *s, const int32_t *node, int p, int 
     return t;
 }
 
-static facet make_segment(const brunt_skin *s, int32_t face) {
+static facet make_segment(const brunt_contact_surface *s, int32_t face) {
     const int32_t *node = s->face[face];
     facet t = {.corner = {0, 1, 0}, .count = 2, .weight = s->face_area[face]};
     double length = 0;
@@ -456,7 +456,7 @@ static facet make_segment(const brunt_skin *s, int32_t face) {
     return t;
 }
 
-static void make_facets(const brunt_skin *s, used_face *f) {
+static void make_facets(const brunt_contact_surface *s, used_face *f) {
     const int32_t *node = s->face[f->face];
     f->facet_count = 0;
     if (node[2] < 0) {
@@ -565,7 +565,7 @@ static double mass_share(const side *s, double w, double mass, double inverse, i
 
 static void send_motion(void *context, int32_t begin, int32_t end) {
     const job *j = context;
-    const brunt_skin *skin = j->skin;
+    const brunt_contact_surface *skin = j->skin;
     for (int32_t k = begin; k < end; k++) {
         const party *p = &j->meet->party[j->party_first[j->of] + k];
         const entry *e = entries_of(j, p, true);
@@ -595,7 +595,7 @@ static double least_velocity(const job *j, double gap, double along) {
     return fmin(PUSH * (-gap - slop) / j->m->dt, RESTITUTION * fmax(0, -along));
 }
 
-static bool can_move(const brunt_skin *s, int32_t node) {
+static bool can_move(const brunt_contact_surface *s, int32_t node) {
     return s->inverse[node][0] > 0 || s->inverse[node][1] > 0 || s->inverse[node][2] > 0;
 }
 
@@ -646,7 +646,7 @@ static void send_pressing(void *context, int32_t begin, int32_t end) {
 }
 
 // What an impulse of 1 along a unit vector does to the relative velocity, others pressing too [1/kg].
-static double compliance(const brunt_skin *skin, const party *p, const double yield[3], const double along[3]) {
+static double compliance(const brunt_contact_surface *skin, const party *p, const double yield[3], const double along[3]) {
     double sum = 0;
     for (int a = 0; a < 3; a++)
         sum += along[a] * along[a] * (skin->inverse[p->node][a] + yield[a] / skin->mass[p->node]);
@@ -656,7 +656,7 @@ static double compliance(const brunt_skin *skin, const party *p, const double yi
 static void press(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     const job *j = context;
-    brunt_skin *skin = j->skin;
+    brunt_contact_surface *skin = j->skin;
     for (int64_t k = begin; k < end; k++) {
         party *p = &j->meet->party[j->party_first[!j->master] + k];
         if (!p->presses) continue;
@@ -705,7 +705,7 @@ static void send_reaction(void *context, int32_t begin, int32_t end) {
 static void take_reaction(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     const job *j = context;
-    const brunt_skin *skin = j->skin;
+    const brunt_contact_surface *skin = j->skin;
     for (int64_t k = begin; k < end; k++) {
         const party *p = &j->meet->party[j->party_first[j->master] + k];
         if (!p->master_count) continue;
@@ -789,7 +789,7 @@ static int touch_face(job *j, int32_t face) {
 // Everything that may change, body by body. 0, or -1: out of memory.
 static int touch_all(job *j) {
     brunt_augury_meet *meet = j->meet;
-    const brunt_skin *s = j->skin;
+    const brunt_contact_surface *s = j->skin;
     meet->touched_count = meet->face_count = 0;
     for (int b = 0; b < 2; b++) {
         j->touched_first[b] = meet->touched_count, j->face_first[b] = meet->face_count;
@@ -844,7 +844,7 @@ static bool spin_of(const double I[6], const double T[3], double w[3]) {
 // Gives the nodes that changed the rigid spin that takes back the moment of their impulses.
 static void repair_moment(job *j) {
     const brunt_augury_meet *meet = j->meet;
-    brunt_skin *s = j->skin;
+    brunt_contact_surface *s = j->skin;
     double mass = 0, centre[3] = {0}, T[3] = {0}, I[6] = {0}, w[3];
     for (int32_t k = 0; k < meet->touched_count; k++) {
         const touched_node *t = &meet->touched[k];
@@ -878,7 +878,7 @@ static void repair_moment(job *j) {
 // Notes what was done. 0, or -1: out of memory.
 static int note(job *j, const brunt_augury_neighbours *who) {
     brunt_augury_meet *meet = j->meet;
-    const brunt_skin *s = j->skin;
+    const brunt_contact_surface *s = j->skin;
     if (NEED(meet, impulse, meet->impulse_count + meet->touched_count, meet->impulse_count) ||
         NEED(meet, deed, meet->deed_count + 1, meet->deed_count))
         return -1;
@@ -938,7 +938,7 @@ static int meet_pair(job *j, const brunt_augury_neighbours *who) {
 static void find_held(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     const job *j = context;
-    const brunt_skin *s = j->skin;
+    const brunt_contact_surface *s = j->skin;
     for (int64_t k = begin; k < end; k++) {
         j->meet->held[k] = false;
         if (!s->active[k]) continue;
@@ -949,7 +949,7 @@ static void find_held(void *context, int64_t begin, int64_t end, int worker) {
 
 static int prepare(job *j) {
     brunt_augury_meet *meet = j->meet;
-    const brunt_skin *s = j->skin;
+    const brunt_contact_surface *s = j->skin;
     if (NEED(meet, touched_of, s->node_count, meet->marked_nodes) ||
         NEED(meet, face_of, s->face_count, meet->marked_faces) || NEED(meet, held, s->fem_count, 0))
         return -1;
@@ -963,7 +963,7 @@ static int prepare(job *j) {
 static void book(const job *j) {
     for (int32_t k = 0; k < j->meet->deed_count; k++) {
         const deed *d = &j->meet->deed[k];
-        brunt_action *action = &j->m->pairs[d->pair].last;
+        brunt_impulse_account *action = &j->m->pairs[d->pair].last;
         double loss = 0;
         for (int32_t i = d->first; i < d->end; i++) {
             const brunt_augury_impulse *J = &j->meet->impulse[i];
@@ -975,7 +975,7 @@ static void book(const job *j) {
     }
 }
 
-int brunt_augury_surface(const brunt_meeting *m, bool affine, brunt_augury_workspace **work) {
+int brunt_augury_surface(const brunt_contact_context *m, bool affine, brunt_augury_workspace **work) {
     brunt_augury_workspace *w = brunt_augury_work(work);
     if (!w) return -1;
     if (!w->meet && !(w->meet = brunt_alloc(sizeof *w->meet))) return -1;

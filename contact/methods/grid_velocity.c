@@ -45,10 +45,10 @@ struct brunt_contact_workspace {
     group *groups;
     size_t groups_capacity;
     int32_t group_count;
-    brunt_action *actions;
+    brunt_impulse_account *actions;
     size_t actions_capacity;
     int32_t action_count;
-    brunt_reach_cloud (*clouds)[2]; // of each thread: two bodies near a node
+    brunt_extent_cloud (*clouds)[2]; // of each thread: two bodies near a node
     int cloud_count;
 };
 
@@ -57,11 +57,11 @@ typedef struct job {
     int body_count;
     const brunt_pair *pairs;
     const int32_t *pair_of;
-    const brunt_mirror *mirrors;
+    const brunt_symmetry_plane *mirrors;
     int mirror_count;
     double dt;
     brunt_contact_workspace *w;
-    const brunt_mirror *axis; // of rings; NULL
+    const brunt_symmetry_plane *axis; // of rings; NULL
 } job;
 
 void brunt_contact_workspace_free(brunt_contact_workspace *workspace) {
@@ -71,7 +71,7 @@ void brunt_contact_workspace_free(brunt_contact_workspace *workspace) {
     brunt_free(workspace->groups);
     brunt_free(workspace->actions);
     for (int t = 0; t < workspace->cloud_count; t++)
-        for (int k = 0; k < 2; k++) brunt_reach_cloud_free(&workspace->clouds[t][k]);
+        for (int k = 0; k < 2; k++) brunt_extent_cloud_free(&workspace->clouds[t][k]);
     brunt_free(workspace->clouds);
     brunt_free(workspace);
 }
@@ -187,10 +187,10 @@ static bool make_unit(const job *j, const member *a, int node, double n[3]) {
     return true;
 }
 
-static double gap_along(const brunt_reach_cloud *a, const brunt_reach_cloud *b, const double n[3]) {
+static double gap_along(const brunt_extent_cloud *a, const brunt_extent_cloud *b, const double n[3]) {
     const double back[3] = {-n[0], -n[1], -n[2]};
     double far_a[3], far_b[3];
-    return -brunt_reach_extent(b, 1, back, far_b) - brunt_reach_extent(a, 1, n, far_a);
+    return -brunt_extent_of(b, 1, back, far_b) - brunt_extent_of(a, 1, n, far_a);
 }
 
 // Normal and gap of two bodies at a node. The mean normal is right in the middle of a contact, and tilted at its rim:
@@ -198,21 +198,21 @@ static double gap_along(const brunt_reach_cloud *a, const brunt_reach_cloud *b, 
 // edges. So where the mean normal finds contact, the direction that keeps the bodies farthest apart decides: the one of
 // their true distance, or, when they touch, that between the hulls of the particles' centres, which are apart still.
 // 0 when nothing tells the bodies apart, 1, or -1: out of memory.
-static int make_normal(const job *j, const member *a, const member *b, int node, brunt_reach_cloud cloud[2],
+static int make_normal(const job *j, const member *a, const member *b, int node, brunt_extent_cloud cloud[2],
                        double n[3], double *gap) {
     double ga[3], gb[3], ca[3], cb[3], between[3], approach = 0;
-    brunt_reach_gradient(a->body, a->slot, node, ga, ca);
-    brunt_reach_gradient(b->body, b->slot, node, gb, cb);
+    brunt_extent_gradient(a->body, a->slot, node, ga, ca);
+    brunt_extent_gradient(b->body, b->slot, node, gb, cb);
     for (int k = 0; k < 3; k++) n[k] = gb[k] - ga[k], between[k] = cb[k] - ca[k];
     if (!make_unit(j, a, node, n)) return 0;
-    if (brunt_reach_gather(a->body, a->slot, node, &cloud[0]) || brunt_reach_gather(b->body, b->slot, node, &cloud[1]))
+    if (brunt_extent_gather(a->body, a->slot, node, &cloud[0]) || brunt_extent_gather(b->body, b->slot, node, &cloud[1]))
         return -1;
     for (int k = 0; k < 3; k++) approach += (b->v[k] - a->v[k]) * n[k];
     *gap = gap_along(&cloud[0], &cloud[1], n);
     if (approach * j->dt >= -fmax(*gap, 0) || !make_unit(j, a, node, between)) return 1;
     for (int centres = 0; centres <= 1; centres++) {
         double direct[3], found, h = (double)a->body->grid.h;
-        if (!(brunt_separation(&cloud[0], &cloud[1], h, 1 - centres, between, direct) > 0)) continue;
+        if (!(brunt_gjk_distance(&cloud[0], &cloud[1], h, 1 - centres, between, direct) > 0)) continue;
         if (!make_unit(j, a, node, direct) || !((found = gap_along(&cloud[0], &cloud[1], direct)) > *gap)) continue;
         *gap = found;
         memcpy(n, direct, sizeof direct);
@@ -323,7 +323,7 @@ static real *beyond_axis(const job *j, const member *m, int node, real sign[3]) 
     real signs[BRUNT_MAX_IMAGES][3];
     brunt_node_local(grid, node, local);
     for (int a = 0; a < 3; a++) at[a] = a < grid->dim ? grid->slots[m->slot].coord[a] * grid->side + local[a] : 0;
-    if (brunt_mirror_images(j->axis, 1, at, grid->order, image, signs) < 2) return NULL;
+    if (brunt_symmetry_images(j->axis, 1, at, grid->order, image, signs) < 2) return NULL;
     memcpy(sign, signs[1], 3 * sizeof *sign);
     real *found = brunt_grid_node(grid, image[1]);
     return found && found[0] > 0 ? found : NULL;
@@ -345,7 +345,7 @@ static double own_share(const job *j, const member *m, int node) {
     return image ? own + (double)(image[BRUNT_NODE_SPARE] / image[0]) : own;
 }
 
-static void meet_at_node(const job *j, group *g, int node, brunt_reach_cloud cloud[2]) {
+static void meet_at_node(const job *j, group *g, int node, brunt_extent_cloud cloud[2]) {
     if (j->axis && from_axis(j, &j->w->shared[g->first], node) < 0) return;
     member members[MAX_TOGETHER];
     meeting meetings[MAX_TOGETHER * (MAX_TOGETHER - 1) / 2];
@@ -408,9 +408,9 @@ static void meet_at_node(const job *j, group *g, int node, brunt_reach_cloud clo
         }
         for (int k = 0; k < dim; k++)
             old[k] = (double)(members[m->b].node[BRUNT_NODE_OLD + k] - members[m->a].node[BRUNT_NODE_OLD + k]);
-        brunt_action *action = &j->w->actions[g->action + m->action];
-        brunt_action_book(action, &action->normal_loss, m->tied ? drag : push, x, old, now, rest);
-        if (m->friction > 0 && !m->tied) brunt_action_book(action, &action->friction_loss, drag, x, old, now, rest);
+        brunt_impulse_account *action = &j->w->actions[g->action + m->action];
+        brunt_impulse_account_book(action, &action->normal_loss, m->tied ? drag : push, x, old, now, rest);
+        if (m->friction > 0 && !m->tied) brunt_impulse_account_book(action, &action->friction_loss, drag, x, old, now, rest);
     }
     for (int i = 0; i < n; i++) leave_node(&members[i]);
     for (int i = 0; j->axis && i < n; i++) follow_axis(j, &members[i], node);
@@ -430,8 +430,8 @@ static int make_clouds(brunt_contact_workspace *w, int threads) {
     return w->clouds ? 0 : -1;
 }
 
-int brunt_multivelocity_apply(brunt_body *bodies, int body_count, brunt_pair *pairs, int pair_count,
-                              const int32_t *pair_of, const brunt_mirror *mirrors, int mirror_count, double dt,
+int brunt_grid_velocity_apply(brunt_body *bodies, int body_count, brunt_pair *pairs, int pair_count,
+                              const int32_t *pair_of, const brunt_symmetry_plane *mirrors, int mirror_count, double dt,
                               int threads, brunt_timer *timer, brunt_contact_workspace **workspace) {
     (void)pair_count;
     if (!*workspace) *workspace = brunt_alloc(sizeof **workspace);
@@ -448,7 +448,7 @@ int brunt_multivelocity_apply(brunt_body *bodies, int body_count, brunt_pair *pa
         for (int32_t i = 0; i < g->count; i++)
             for (int32_t k = i + 1; k < g->count; k++, at++) {
                 int32_t pair = pair_of[j.w->shared[g->first + i].body * body_count + j.w->shared[g->first + k].body];
-                if (pair >= 0) brunt_action_add(&pairs[pair].last, &j.w->actions[at]);
+                if (pair >= 0) brunt_impulse_account_add(&pairs[pair].last, &j.w->actions[at]);
             }
     }
     return 0;

@@ -38,8 +38,8 @@ struct brunt_augury_filter {
 };
 
 typedef struct job {
-    const brunt_meeting *m;
-    brunt_skin *skin;
+    const brunt_contact_context *m;
+    brunt_contact_surface *skin;
     brunt_augury_workspace *w;
     brunt_augury_filter *filter;
     bool affine;
@@ -158,7 +158,7 @@ static void apply_G(job *j) {
 
 // ------------------------------------------------------------------------------------------ what is not wanted
 
-static int owner(const brunt_skin *s, int32_t node) {
+static int owner(const brunt_contact_surface *s, int32_t node) {
     int low = 0, high = s->fem_count;
     while (high - low > 1) {
         int middle = (low + high) / 2;
@@ -221,7 +221,7 @@ static void start_points(void *context, int64_t begin, int64_t end, int worker) 
 static void finish_points(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     const job *j = context;
-    brunt_skin *s = j->skin;
+    brunt_contact_surface *s = j->skin;
     for (int64_t k = begin; k < end; k++) {
         const int32_t n = j->w->cloud[0].item[k];
         const state *delta = &j->filter->delta[k];
@@ -234,8 +234,8 @@ static void finish_points(void *context, int64_t begin, int64_t end, int worker)
 // The account of each body: the first pair of it whose other body is near, else its first. Where more than two bodies
 // share nodes, whom an impulse comes from is not known: the sums are exact, their division among pairs is nominal.
 static int find_pairs(job *j) {
-    const brunt_meeting *m = j->m;
-    const brunt_skin *s = j->skin;
+    const brunt_contact_context *m = j->m;
+    const brunt_contact_surface *s = j->skin;
     brunt_augury_filter *f = j->filter;
     if (brunt_reserve((void **)&f->pair, &f->pair_capacity, ((size_t)s->fem_count + 1) * sizeof(int32_t), 0) ||
         brunt_augury_near_find(&j->w->near, m, WIDTH * m->cell))
@@ -260,7 +260,7 @@ static int find_pairs(job *j) {
 // The grid under all nodes that take part. 0, or -1: out of memory.
 static int make_grid(job *j) {
     brunt_augury_workspace *w = j->w;
-    const brunt_skin *s = j->skin;
+    const brunt_contact_surface *s = j->skin;
     brunt_augury_grid_start(&w->grid, s->dim, WIDTH, j->m->cell);
     j->moment = brunt_augury_moment(&w->grid);
     w->cloud[0].count = 0;
@@ -281,7 +281,7 @@ static int make_grid(job *j) {
 
 // Friction is what the tangential changes cost that Coulomb allows, where a surface is pushed in.
 static void book(job *j) {
-    brunt_skin *s = j->skin;
+    brunt_contact_surface *s = j->skin;
     const brunt_augury_cloud *cloud = &j->w->cloud[0];
     for (int32_t k = 0; k < cloud->count; k++) {
         const int32_t n = cloud->item[k];
@@ -302,7 +302,7 @@ static void book(job *j) {
     }
 }
 
-int brunt_augury_paper(const brunt_meeting *m, brunt_transfer transfer, brunt_augury_workspace **work) {
+int brunt_augury_paper(const brunt_contact_context *m, brunt_transfer transfer, brunt_augury_workspace **work) {
     brunt_augury_workspace *w = brunt_augury_work(work);
     if (!w) return -1;
     if (!w->filter && !(w->filter = brunt_alloc(sizeof *w->filter))) return -1;

@@ -83,10 +83,10 @@ struct brunt_grid_surfaces {
 };
 
 typedef struct job {
-    const brunt_meeting *m;
+    const brunt_contact_context *m;
     brunt_grid_surfaces *w;
     brunt_body *mpm;
-    const brunt_mirror *mirrors;
+    const brunt_symmetry_plane *mirrors;
     int mirror_count;
     const range *range;       // contacts and items that are worked on ...
     int range_mpm, range_fem; // ... of these two
@@ -124,7 +124,7 @@ size_t brunt_grid_surfaces_bytes(const brunt_grid_surfaces *w) {
 
 // ------------------------------------------------------------------------------------------ who meets whom
 
-static brunt_pair *pair_of(const brunt_meeting *m, const brunt_body *body, const brunt_fem_body *fem) {
+static brunt_pair *pair_of(const brunt_contact_context *m, const brunt_body *body, const brunt_fem_body *fem) {
     int32_t pair = m->pair_of[body->index * m->body_count + fem->index];
     return pair >= 0 && m->pairs[pair].method == BRUNT_CONTACT_MULTI_VELOCITY ? &m->pairs[pair] : NULL;
 }
@@ -147,8 +147,8 @@ static bool overlap(const double low[3], const double high[3], const double low2
     return true;
 }
 
-void brunt_grid_surfaces_near(const brunt_meeting *m, const brunt_body *mpm, int mpm_count) {
-    brunt_skin *s = m->skin;
+void brunt_grid_surfaces_near(const brunt_contact_context *m, const brunt_body *mpm, int mpm_count) {
+    brunt_contact_surface *s = m->skin;
     for (int b = 0; b < mpm_count; b++) {
         double low[3], high[3];
         bound_grid(&mpm[b].grid, low, high);
@@ -232,7 +232,7 @@ static int add_link(job *j, int b, int k, brunt_pair *pair, int32_t n, const int
 }
 
 // Links of skin node n with the nodes of body b, and, near mirrors, with their images: the same as the particles'
-// shares get from brunt_mirror_fold.
+// shares get from brunt_symmetry_fold.
 static int add_item(job *j, int b, int k, brunt_pair *pair, int32_t n) {
     brunt_grid_surfaces *w = j->w;
     const brunt_grid *grid = &j->mpm[b].grid;
@@ -259,7 +259,7 @@ static int add_item(job *j, int b, int k, brunt_pair *pair, int32_t n) {
                 }
                 int32_t image[BRUNT_MAX_IMAGES][3];
                 real sign[BRUNT_MAX_IMAGES][3];
-                int images = brunt_mirror_images(j->mirrors, j->mirror_count, at, 2, image, sign);
+                int images = brunt_symmetry_images(j->mirrors, j->mirror_count, at, 2, image, sign);
                 for (int i = 0; i < images; i++) {
                     const int32_t before = w->link_count;
                     if (add_link(j, b, k, pair, n, image[i], share, sign[i], i ? &seen_image : &seen)) return -1;
@@ -277,7 +277,7 @@ static int add_item(job *j, int b, int k, brunt_pair *pair, int32_t n) {
 
 // Whether a skin node is on what mirror planes have cut open, and on no other surface.
 static bool on_cut(const job *j, const brunt_grid *grid, int32_t n) {
-    const brunt_skin *s = j->m->skin;
+    const brunt_contact_surface *s = j->m->skin;
     double normal[3] = {s->normal[n][0], s->normal[n][1], s->normal[n][2]};
     bool cut = false;
     for (int m = 0; m < j->mirror_count; m++) {
@@ -297,7 +297,7 @@ static bool inside(const double x[3], const double low[3], const double high[3])
 // Contacts, links and items of body b.
 static int find_contacts(job *j, int b) {
     brunt_grid_surfaces *w = j->w;
-    const brunt_skin *s = j->m->skin;
+    const brunt_contact_surface *s = j->m->skin;
     const brunt_grid *grid = &j->mpm[b].grid;
     range *r = &w->range[w->range_count++];
     *r = (range){w->contact_count, w->contact_count, w->item_count, w->item_count};
@@ -352,7 +352,7 @@ static double box_distance(const double box[6], const double x[3]) {
 // Lists, for each block of the body, the faces of mesh k that come near its particles. 0, or -1: out of memory.
 static int list_faces(job *j, int b, int k) {
     brunt_grid_surfaces *w = j->w;
-    const brunt_skin *s = j->m->skin;
+    const brunt_contact_surface *s = j->m->skin;
     const brunt_body *body = &j->mpm[b];
     const brunt_grid *grid = &body->grid;
     const double width = (double)grid->h * grid->side;
@@ -394,7 +394,7 @@ typedef struct faces {
 
 static void faces_of_bin(const job *j, int32_t block, int bin, faces *near) {
     const brunt_grid_surfaces *w = j->w;
-    const brunt_skin *s = j->m->skin;
+    const brunt_contact_surface *s = j->m->skin;
     const brunt_grid *grid = &j->mpm[j->range_mpm].grid;
     double low[3] = {0}, high[3] = {0};
     int local[3];
@@ -419,7 +419,7 @@ static void faces_of_bin(const job *j, int32_t block, int bin, faces *near) {
 }
 
 static bool find_nearest(const job *j, const faces *near, const double x[3], brunt_closest *best) {
-    const brunt_skin *s = j->m->skin;
+    const brunt_contact_surface *s = j->m->skin;
     best->square = j->w->range_of_sight * j->w->range_of_sight;
     bool found = false;
     for (int32_t q = 0; q < near->count; q++) {
@@ -452,7 +452,7 @@ static void touch_particle(const job *j, int64_t s, const faces *near) {
     // Where the nearest point is an edge or a corner, the way from there; behind a solid's, out of the facet.
     const double along = c.inside || !(size > 0) || (above < 0 && !sheet) ? 0 : above >= 0 || t->beside ? 1 : -1;
     for (int a = 0; a < 3; a++) t->n[a] = along != 0 ? along * c.d[a] / size : c.normal[a];
-    t->radius = brunt_reach_along(body, s, t->n);
+    t->radius = brunt_extent_along(body, s, t->n);
 }
 
 static void touch_block(const job *j, int32_t b) {
@@ -524,17 +524,17 @@ static void add_normal(void *context, brunt_body *body, int64_t s, const int bas
 // Gap between the facets and what the particles near a node reach, and the mean direction to those that are nearest.
 static void find_gap(const job *j, contact *c) {
     brunt_body *body = &j->mpm[c->mpm];
-    const brunt_skin *s = j->m->skin;
+    const brunt_contact_surface *s = j->m->skin;
     const brunt_fem_body *fem = s->fem[c->fem];
     view v = {.w = j->w, .x = c->x, .front = INFINITY, .back = INFINITY};
     v.band = BAND * body->spacing, v.support = 0.5 * (body->grid.order + 1) * (double)body->grid.h;
     v.half = fem->element->sheet && s->side ? s->side[fem->index].half : 0;
     c->gap = INFINITY;
-    brunt_reach_visit(body, c->slot, c->node, find_least, &v);
+    brunt_extent_visit(body, c->slot, c->node, find_least, &v);
     v.side = fem->element->sheet && v.side < 0 ? -1 : 1;
     v.least = v.side > 0 ? v.front : v.back;
     if (!isfinite(v.least)) return;
-    brunt_reach_visit(body, c->slot, c->node, add_normal, &v);
+    brunt_extent_visit(body, c->slot, c->node, add_normal, &v);
     for (int a = 0; a < 3; a++) c->n[a] = c->across[a] * v.sum[a];
     if (make_unit(c->n)) c->gap = v.least;
 }
@@ -553,7 +553,7 @@ static void map_velocity(const job *j, const contact *c, double (*of)[3], double
 }
 
 // What is a skin node's of the surface, as a vector [m^2].
-static void area_vector(const brunt_skin *s, int32_t n, double area[3]) {
+static void area_vector(const brunt_contact_surface *s, int32_t n, double area[3]) {
     area[0] = area[1] = area[2] = 0;
     for (int32_t q = s->face_first[n]; q < s->face_first[n + 1]; q++) {
         const int32_t f = s->face_of[q], *node = s->face[f];
@@ -567,7 +567,7 @@ static void area_vector(const brunt_skin *s, int32_t n, double area[3]) {
 // fast.
 static void prepare(const job *j, contact *c) {
     const brunt_grid_surfaces *w = j->w;
-    const brunt_skin *s = j->m->skin;
+    const brunt_contact_surface *s = j->m->skin;
     const brunt_grid *grid = &j->mpm[c->mpm].grid;
     double area[3] = {0}, free[3] = {0}, held = 0;
     for (int32_t i = c->first; i < c->first + c->count; i++) {
@@ -597,7 +597,7 @@ static void prepare_all(void *context, int64_t begin, int64_t end, int worker) {
 
 // Greatest speed of the body and the mesh looked at against each other, at most [m/s].
 static double fastest(const job *j) {
-    const brunt_skin *s = j->m->skin;
+    const brunt_contact_surface *s = j->m->skin;
     return (double)j->mpm[j->range_mpm].speed + s->speed[j->range_fem] + sqrt(dot(s->frame, s->frame));
 }
 
@@ -638,7 +638,7 @@ static void reflect(const job *j) {
         double most = 0;
         brunt_node_local(grid, c->node, local);
         for (int a = 0; a < grid->dim; a++) at[a] = grid->slots[c->slot].coord[a] * grid->side + local[a];
-        const int images = brunt_mirror_images(j->mirrors, j->mirror_count, at, 2, image, sign);
+        const int images = brunt_symmetry_images(j->mirrors, j->mirror_count, at, 2, image, sign);
         for (int q = 0; q < images; q++) {
             seen_slot seen = {.is = false};
             int32_t slot;
@@ -717,7 +717,7 @@ static void give_all(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     const job *j = context;
     const brunt_grid_surfaces *w = j->w;
-    brunt_skin *s = j->m->skin;
+    brunt_contact_surface *s = j->m->skin;
     for (int64_t i = j->range->item + begin; i < j->range->item + end; i++) {
         const int32_t n = w->item[i].skin;
         double change[3] = {0};
@@ -736,7 +736,7 @@ static void give_all(void *context, int64_t begin, int64_t end, int worker) {
 // ------------------------------------------------------------------------------------------ a step
 
 // The back of a sheet moves with its front.
-static void follow_front(brunt_skin *s) {
+static void follow_front(brunt_contact_surface *s) {
     for (int k = 0; k < s->fem_count; k++)
         for (int32_t n = s->node_end[k]; s->active[k] && n < s->node_range[k + 1]; n++)
             memcpy(s->v[n], s->v[s->front[n]], sizeof s->v[n]);
@@ -744,7 +744,7 @@ static void follow_front(brunt_skin *s) {
 
 // Whether some node of a mesh is met by two bodies. What they squeeze between them passes on in a sweep no more than a
 // share of what its own mass can carry.
-static bool squeezed(brunt_grid_surfaces *w, const brunt_skin *s, bool *found) {
+static bool squeezed(brunt_grid_surfaces *w, const brunt_contact_surface *s, bool *found) {
     int32_t met = 0;
     *found = false;
     for (int32_t b = 0; b < w->range_count; b++) met += w->range[b].item_end > w->range[b].item;
@@ -756,7 +756,7 @@ static bool squeezed(brunt_grid_surfaces *w, const brunt_skin *s, bool *found) {
 }
 
 static double sweep(job *j) {
-    const brunt_meeting *m = j->m;
+    const brunt_contact_context *m = j->m;
     double most = 0;
     for (int32_t k = 0; k < j->w->range_count; k++) {
         // What two bodies squeeze between them should not know which of them has the first name.
@@ -768,7 +768,7 @@ static double sweep(job *j) {
     return most;
 }
 
-int brunt_grid_surfaces_meet(const brunt_meeting *m, brunt_body *mpm, int mpm_count, const brunt_mirror *mirrors,
+int brunt_grid_surfaces_meet(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, const brunt_symmetry_plane *mirrors,
                              int mirror_count, int sweeps, brunt_grid_surfaces **work) {
     if (!*work) *work = brunt_alloc(sizeof **work);
     if (!*work) return -1;
@@ -811,14 +811,14 @@ static void book(const job *j, const contact *c) {
         old[a] = sign * ((a < dim ? (double)c->at[BRUNT_NODE_OLD + a] : 0) - old[a]);
         now[a] = sign * ((a < dim ? (double)c->at[BRUNT_NODE_VELOCITY + a] : 0) - now[a]);
     }
-    brunt_action *last = &c->pair->last;
-    brunt_action_book(last, &last->normal_loss, push, c->x, old, now, rest);
-    if (c->pair->friction > 0) brunt_action_book(last, &last->friction_loss, drag, c->x, old, now, rest);
+    brunt_impulse_account *last = &c->pair->last;
+    brunt_impulse_account_book(last, &last->normal_loss, push, c->x, old, now, rest);
+    if (c->pair->friction > 0) brunt_impulse_account_book(last, &last->friction_loss, drag, c->x, old, now, rest);
     last->area += own * c->area;
 }
 
 static void note_state(const job *j, const contact *c) {
-    brunt_skin *s = j->m->skin;
+    brunt_contact_surface *s = j->m->skin;
     const bool slips = !(dot(c->drag, c->drag) < (1 - 1e-9) * pow(c->pair->friction * c->push, 2));
     for (int32_t i = c->first; i < c->first + c->count; i++) {
         const link *l = &j->w->link[j->w->by_contact[i]];
@@ -845,7 +845,7 @@ static void book_mirror(const job *j, const contact *c, brunt_wall *walls) {
     }
 }
 
-void brunt_grid_surfaces_finish(const brunt_meeting *m, brunt_body *mpm, const brunt_mirror *mirrors, int mirror_count,
+void brunt_grid_surfaces_finish(const brunt_contact_context *m, brunt_body *mpm, const brunt_symmetry_plane *mirrors, int mirror_count,
                                 brunt_wall *walls, const brunt_grid_surfaces *work) {
     if (!work) return;
     job j = {.m = m, .w = (brunt_grid_surfaces *)work, .mpm = mpm, .mirrors = mirrors, .mirror_count = mirror_count};

@@ -30,14 +30,14 @@
 typedef struct brunt_grid_surfaces brunt_grid_surfaces;
 
 // Marks in skin->active the meshes that the grid of a body they meet in this way reaches; call between
-// brunt_skin_bounds and brunt_skin_take, after whoever sets it.
-void brunt_grid_surfaces_near(const brunt_meeting *m, const brunt_body *mpm, int mpm_count);
+// brunt_surface_bounds and brunt_surface_gather_state, after whoever sets it.
+void brunt_grid_surfaces_near(const brunt_contact_context *m, const brunt_body *mpm, int mpm_count);
 // Changes the velocities of grid nodes and of the skin, with `sweeps` sweeps; four times as many where two bodies meet
 // one place of a mesh. 0, or -1: out of memory.
-int brunt_grid_surfaces_meet(const brunt_meeting *m, brunt_body *mpm, int mpm_count, const brunt_mirror *mirrors,
+int brunt_grid_surfaces_meet(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, const brunt_symmetry_plane *mirrors,
                              int mirror_count, int sweeps, brunt_grid_surfaces **work);
 // Accounts and contact state, once all else has acted on the skin's velocities.
-void brunt_grid_surfaces_finish(const brunt_meeting *m, brunt_body *mpm, const brunt_mirror *mirrors, int mirror_count,
+void brunt_grid_surfaces_finish(const brunt_contact_context *m, brunt_body *mpm, const brunt_symmetry_plane *mirrors, int mirror_count,
                                 brunt_wall *walls, const brunt_grid_surfaces *work);
 void brunt_grid_surfaces_free(brunt_grid_surfaces *work);
 size_t brunt_grid_surfaces_bytes(const brunt_grid_surfaces *work);

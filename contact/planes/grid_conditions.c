@@ -15,18 +15,18 @@ static void reflect(bool rings, const double place[3], double h, double now[3]) 
 }
 
 static void set_velocity(brunt_body *body, real *n, const brunt_slot *slot, int node, const double now[3],
-                         const double support[3], unsigned held, brunt_action *action) {
+                         const double support[3], unsigned held, brunt_impulse_account *action) {
     const brunt_grid *grid = &body->grid;
     double x[3], J[3] = {0}, old[3] = {0};
     grid->held[(slot - grid->slots) * BRUNT_BLOCK_NODES + node] |= (uint8_t)held;
     brunt_node_position(grid, slot->coord, node, x);
-    if (brunt_total_lagrangian(&body->particles)) brunt_reach_deformed(body, (int32_t)(slot - grid->slots), node, x);
+    if (brunt_total_lagrangian(&body->particles)) brunt_extent_deformed(body, (int32_t)(slot - grid->slots), node, x);
     for (int a = 0; a < grid->dim; a++) {
         J[a] = (double)n[BRUNT_NODE_SPARE] * (now[a] - (double)n[BRUNT_NODE_VELOCITY + a]);
         old[a] = (double)n[BRUNT_NODE_OLD + a];
         n[BRUNT_NODE_VELOCITY + a] = (real)now[a];
     }
-    brunt_action_book(action, &action->normal_loss, J, x, old, now, support);
+    brunt_impulse_account_book(action, &action->normal_loss, J, x, old, now, support);
 }
 
 // Of a cell: what a node may stand off a plane or a shape that it is meant to lie in. Places of nodes are rounded by as

@@ -143,10 +143,10 @@ static void place_kernel(const brunt_body *body, int32_t b, int64_t s, int32_t b
 
 // Beside mirrors: entries of a node and its images.
 static void add_images(brunt_wall_workspace *w, const brunt_grid *grid, int32_t first, const int32_t at[3], double N,
-                       const brunt_mirror *mirrors, int mirror_count) {
+                       const brunt_symmetry_plane *mirrors, int mirror_count) {
     int32_t image[BRUNT_MAX_IMAGES][3];
     real sign[BRUNT_MAX_IMAGES][3];
-    int images = brunt_mirror_images(mirrors, mirror_count, at, grid->order, image, sign);
+    int images = brunt_symmetry_images(mirrors, mirror_count, at, grid->order, image, sign);
     for (int m = 0; m < images; m++) {
         real *node = brunt_grid_node(grid, image[m]);
         if (!node || !(node[BRUNT_NODE_MASS] > 0)) continue;
@@ -157,7 +157,7 @@ static void add_images(brunt_wall_workspace *w, const brunt_grid *grid, int32_t 
 }
 
 // Nodes and weights under particle `s` of block `b`. 0, or -1: out of memory.
-static int add_entries(brunt_wall_workspace *w, brunt_body *body, int32_t b, int64_t s, const brunt_mirror *mirrors,
+static int add_entries(brunt_wall_workspace *w, brunt_body *body, int32_t b, int64_t s, const brunt_symmetry_plane *mirrors,
                        int mirror_count) {
     const brunt_grid *grid = &body->grid;
     const int dim = grid->dim, n = grid->order + 1;
@@ -189,10 +189,10 @@ static int add_entries(brunt_wall_workspace *w, brunt_body *body, int32_t b, int
 
 // Beside mirrors: a node and its images.
 static void add_lever(brunt_wall_workspace *w, const brunt_grid *grid, const touch *t, const int32_t at[3], double N,
-                      const brunt_mirror *mirrors, int mirror_count) {
+                      const brunt_symmetry_plane *mirrors, int mirror_count) {
     int32_t image[BRUNT_MAX_IMAGES][3];
     real sign[BRUNT_MAX_IMAGES][3];
-    int images = brunt_mirror_images(mirrors, mirror_count, at, grid->order, image, sign);
+    int images = brunt_symmetry_images(mirrors, mirror_count, at, grid->order, image, sign);
     for (int m = 0; m < images; m++) {
         const real *node = brunt_grid_node(grid, image[m]);
         if (!node || !(node[BRUNT_NODE_MASS] > 0)) continue;
@@ -208,7 +208,7 @@ static void add_lever(brunt_wall_workspace *w, const brunt_grid *grid, const tou
 // Levers of the entries of a touch, which add_entries has made; `arm`: from the particle to its surface, where its
 // kernel lives [m]. 0, or -1: out of memory.
 static int add_levers(brunt_wall_workspace *w, const brunt_body *body, int32_t b, touch *t, const double arm[3],
-                      const brunt_mirror *mirrors, int mirror_count) {
+                      const brunt_symmetry_plane *mirrors, int mirror_count) {
     const brunt_grid *grid = &body->grid;
     const int dim = grid->dim, n = grid->order + 1;
     const size_t used = (size_t)w->lever_count;
@@ -263,7 +263,7 @@ static quad surface_velocity(const brunt_wall_workspace *w, const touch *t, quad
 
 // Particles that the plane would catch in this step.
 static int find_touches(brunt_wall_workspace *w, brunt_body *body, const brunt_wall *walls, int index,
-                        const brunt_mirror *mirrors, int mirror_count, double time, double dt) {
+                        const brunt_symmetry_plane *mirrors, int mirror_count, double time, double dt) {
     const brunt_grid *grid = &body->grid;
     const brunt_plane_def *plane = &walls[index].plane;
     brunt_particles *p = &body->particles;
@@ -313,7 +313,7 @@ static int find_touches(brunt_wall_workspace *w, brunt_body *body, const brunt_w
                 w->entry_count = t->first;
             else if (w->touch_count++, plane->friction > 0) {
                 double arm[3], kernel_arm[3];
-                brunt_reach_arm(body, s, plane->normal, distance, arm, kernel_arm);
+                brunt_extent_arm(body, s, plane->normal, distance, arm, kernel_arm);
                 if (add_levers(w, body, b, t, kernel_arm, mirrors, mirror_count)) return -1;
             }
         }
@@ -447,15 +447,15 @@ static void book(const brunt_wall_workspace *w, brunt_body *body, brunt_wall *wa
                 if (t->levers >= 0) drag[a] = own * w->levers[t->levers + e - t->first].apply[a] * t->drag[a];
                 old[a] = (double)n[BRUNT_NODE_OLD + a], now[a] = (double)n[BRUNT_NODE_VELOCITY + a];
             }
-            brunt_action *last = &wall->last;
-            brunt_action_book(last, &last->normal_loss, push, x, old, now, wall->plane.velocity);
+            brunt_impulse_account *last = &wall->last;
+            brunt_impulse_account_book(last, &last->normal_loss, push, x, old, now, wall->plane.velocity);
             if (wall->plane.friction > 0)
-                brunt_action_book(last, &last->friction_loss, drag, x, old, now, wall->plane.velocity);
+                brunt_impulse_account_book(last, &last->friction_loss, drag, x, old, now, wall->plane.velocity);
         }
     }
 }
 
-int brunt_walls_apply(brunt_body *body, brunt_wall *walls, int wall_count, const brunt_mirror *mirrors,
+int brunt_planes_apply(brunt_body *body, brunt_wall *walls, int wall_count, const brunt_symmetry_plane *mirrors,
                       int mirror_count, double time, double dt, brunt_wall_workspace **workspace) {
     if (!*workspace) *workspace = brunt_alloc(sizeof **workspace);
     brunt_wall_workspace *w = *workspace;

@@ -24,7 +24,7 @@ static void sum_momentum(const real *n, const double x[3], int dim, double facto
     }
 }
 
-void brunt_mirror_fold(brunt_body *body, const brunt_mirror *mirror, double taken, brunt_action *action) {
+void brunt_symmetry_fold(brunt_body *body, const brunt_symmetry_plane *mirror, double taken, brunt_impulse_account *action) {
     const brunt_grid *grid = &body->grid;
     const int dim = grid->dim, axis = mirror->axis;
     double before[3] = {0}, after[3] = {0}, turn_before[3] = {0}, turn_after[3] = {0};
@@ -74,7 +74,7 @@ void brunt_mirror_fold(brunt_body *body, const brunt_mirror *mirror, double take
     }
 }
 
-int brunt_mirror_images(const brunt_mirror *mirrors, int mirror_count, const int32_t node[3], int near,
+int brunt_symmetry_images(const brunt_symmetry_plane *mirrors, int mirror_count, const int32_t node[3], int near,
                         int32_t image[BRUNT_MAX_IMAGES][3], real sign[BRUNT_MAX_IMAGES][3]) {
     int count = 1;
     memcpy(image[0], node, sizeof image[0]);

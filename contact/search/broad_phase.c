@@ -9,7 +9,7 @@
 static const double RANGE = 0.25;     // mean edges: how far a body looks for others, if nothing moves faster
 static const double FARTHEST = 1e150; // [m] squares of distances are still numbers
 
-void brunt_facing_free(brunt_facing *f) {
+void brunt_node_to_facet_free(brunt_node_to_facet *f) {
     if (!f) return;
     for (int k = 0; k < f->mpm_count; k++) brunt_free(f->node_support[k]);
     for (int t = 0; t < f->sight_count; t++) brunt_free(f->sight[t].seen);
@@ -40,7 +40,7 @@ void brunt_facing_free(brunt_facing *f) {
     for (size_t k = 0; k < sizeof owned / sizeof owned[0]; k++) brunt_free(owned[k]);
 }
 
-size_t brunt_facing_bytes(const brunt_facing *f) {
+size_t brunt_node_to_facet_bytes(const brunt_node_to_facet *f) {
     return f ? f->box_capacity + f->near_capacity + f->cell_first_capacity + f->cell_face_capacity +
                    f->made_x_capacity + f->quiet_capacity + f->found_capacity + f->support_of_capacity
              : 0;
@@ -80,14 +80,14 @@ static bool overlap(const bounds *a, const bounds *b, double by) {
     return true;
 }
 
-static bool meets(const brunt_meeting *m, const bounds *a, const bounds *b) {
+static bool meets(const brunt_contact_context *m, const bounds *a, const bounds *b) {
     if (a->fem < 0 && b->fem < 0) return false; // particles have no facets: those meet at grid nodes
     int32_t pair = m->pair_of[a->body * m->body_count + b->body];
     return pair >= 0 && m->pairs[pair].method == BRUNT_CONTACT_AUGURY;
 }
 
-static int find_boxes(const brunt_meeting *m, brunt_body *mpm, int mpm_count, brunt_facing *f) {
-    const brunt_skin *s = m->skin;
+static int find_boxes(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, brunt_node_to_facet *f) {
+    const brunt_contact_surface *s = m->skin;
     f->box_count = s->fem_count + mpm_count;
     if (RESERVE(f, box, f->box_count + 1) || RESERVE(f, box_of, s->fem_count + 1)) return -1;
     for (int k = 0; k < s->fem_count; k++) {
@@ -106,7 +106,7 @@ static int find_boxes(const brunt_meeting *m, brunt_body *mpm, int mpm_count, br
     return 0;
 }
 
-static int find_pairs(const brunt_meeting *m, brunt_facing *f) {
+static int find_pairs(const brunt_contact_context *m, brunt_node_to_facet *f) {
     f->near_count = 0;
     for (int32_t i = 0; i < f->box_count; i++)
         // A sheet may be near itself.
@@ -132,21 +132,21 @@ static int find_pairs(const brunt_meeting *m, brunt_facing *f) {
     return 0;
 }
 
-double brunt_facing_plane_distance(const brunt_plane_def *plane, double time, const double x[3]) {
+double brunt_node_to_facet_plane_distance(const brunt_plane_def *plane, double time, const double x[3]) {
     double d = 0;
     for (int a = 0; a < 3; a++) d += plane->normal[a] * (x[a] - plane->point[a] - plane->velocity[a] * time);
     return d;
 }
 
-bool brunt_facing_near_wall(const brunt_skin *s, int k, const brunt_wall *wall, double time, double range) {
+bool brunt_broad_phase_plane(const brunt_contact_surface *s, int k, const brunt_wall *wall, double time, double range) {
     if (wall->region || (wall->body >= 0 && wall->body != s->fem[k]->index)) return false;
     double corner[3]; // of the box, deepest behind the plane
     for (int a = 0; a < 3; a++) corner[a] = wall->plane.normal[a] > 0 ? s->low[k][a] : s->high[k][a];
-    return brunt_facing_plane_distance(&wall->plane, time, corner) < range;
+    return brunt_node_to_facet_plane_distance(&wall->plane, time, corner) < range;
 }
 
 // Room for what is remembered of so many nodes.
-static int fit_nodes(brunt_facing *f, int32_t nodes, int32_t kept) {
+static int fit_nodes(brunt_node_to_facet *f, int32_t nodes, int32_t kept) {
     return RESERVE(f, found, nodes + 1) || RESERVE(f, hits, BRUNT_MAX_HITS * (nodes + 1)) ||
                    brunt_reserve((void **)&f->last, &f->last_capacity, ((size_t)nodes + 1) * sizeof *f->last,
                                  (size_t)kept * sizeof *f->last) ||
@@ -155,9 +155,9 @@ static int fit_nodes(brunt_facing *f, int32_t nodes, int32_t kept) {
                : 0;
 }
 
-static int make_facing(brunt_facing **facing, int mpm_count, int32_t nodes) {
+static int make_facing(brunt_node_to_facet **facing, int mpm_count, int32_t nodes) {
     if (*facing) return 0;
-    brunt_facing *f = *facing = brunt_alloc(sizeof *f);
+    brunt_node_to_facet *f = *facing = brunt_alloc(sizeof *f);
     if (!f) return -1;
     f->mpm_count = mpm_count;
     f->node_support = brunt_alloc(((size_t)mpm_count + 1) * sizeof(void *));
@@ -169,8 +169,8 @@ static int make_facing(brunt_facing **facing, int mpm_count, int32_t nodes) {
 
 // Distances are to facets that may be gone, so that everyone looks anew. A face that was the nearest and is still there
 // is looked at first as before.
-int brunt_facing_renew(brunt_facing *f, const brunt_skin *s) {
-    const brunt_skin_change *c = &s->change;
+int brunt_node_to_facet_renew(brunt_node_to_facet *f, const brunt_contact_surface *s) {
+    const brunt_surface_change *c = &s->change;
     if (!f || !c->any) return 0;
     if (fit_nodes(f, s->node_count, c->node_count) || RESERVE(f, last_spare, s->node_count + 1)) return -1;
     for (int32_t n = 0; n < s->node_count; n++) {
@@ -183,15 +183,15 @@ int brunt_facing_renew(brunt_facing *f, const brunt_skin *s) {
     return 0;
 }
 
-int64_t brunt_facing_state_count(const brunt_skin *s) { return 7 * brunt_skin_places(s) + s->fem_count + 1; }
+int64_t brunt_node_to_facet_state_count(const brunt_contact_surface *s) { return 7 * brunt_surface_slots(s) + s->fem_count + 1; }
 
-void brunt_facing_state_get(const brunt_facing *f, const brunt_skin *s, double *out) {
-    memset(out, 0, (size_t)brunt_facing_state_count(s) * sizeof *out);
+void brunt_node_to_facet_state_get(const brunt_node_to_facet *f, const brunt_contact_surface *s, double *out) {
+    memset(out, 0, (size_t)brunt_node_to_facet_state_count(s) * sizeof *out);
     *out++ = f ? f->travelled : 0;
     for (int k = 0; k < s->fem_count; k++) *out++ = s->was_active[k];
     for (int k = 0; k < s->fem_count; k++)
         for (int32_t n = s->node_range[k]; n < s->node_range[k + 1]; n++) {
-            double *to = out + 7 * brunt_skin_place(s, k, n);
+            double *to = out + 7 * brunt_surface_slot(s, k, n);
             to[0] = f ? f->last[n] : -1;
             to[1] = f ? f->quiet[n].distance : 0, to[2] = f ? f->quiet[n].travelled : 0;
             to[3] = f ? f->quiet[n].second : 0;
@@ -199,16 +199,16 @@ void brunt_facing_state_get(const brunt_facing *f, const brunt_skin *s, double *
         }
 }
 
-int brunt_facing_state_set(brunt_facing **facing, brunt_skin *s, int mpm_count, const double *in) {
-    if (brunt_skin_renew(s, true) || make_facing(facing, mpm_count, s->node_count)) return -1;
-    brunt_facing *f = *facing;
+int brunt_node_to_facet_state_set(brunt_node_to_facet **facing, brunt_contact_surface *s, int mpm_count, const double *in) {
+    if (brunt_surface_renew(s, true) || make_facing(facing, mpm_count, s->node_count)) return -1;
+    brunt_node_to_facet *f = *facing;
     if (fit_nodes(f, s->node_count, 0)) return -1;
     f->made = f->made && !s->change.any;
     f->travelled = *in++;
     for (int k = 0; k < s->fem_count; k++) s->was_active[k] = *in++ != 0;
     for (int k = 0; k < s->fem_count; k++)
         for (int32_t n = s->node_range[k]; n < s->node_range[k + 1]; n++) {
-            const double *from = in + 7 * brunt_skin_place(s, k, n);
+            const double *from = in + 7 * brunt_surface_slot(s, k, n);
             f->last[n] = (int32_t)from[0];
             f->quiet[n] = (struct quiet){from[1], from[2], from[3]};
             for (int a = 0; a < 3; a++) s->x[n][a] = from[4 + a];
@@ -217,7 +217,7 @@ int brunt_facing_state_set(brunt_facing **facing, brunt_skin *s, int mpm_count, 
 }
 
 // Whether there is a place for everything: else no cells could be laid.
-static bool all_finite(const brunt_facing *f) {
+static bool all_finite(const brunt_node_to_facet *f) {
     if (!(f->range < FARTHEST) || !(f->wall_reach < FARTHEST)) return false;
     for (int32_t b = 0; b < f->box_count; b++)
         for (int a = 0; a < 3; a++) {
@@ -228,11 +228,11 @@ static bool all_finite(const brunt_facing *f) {
     return true;
 }
 
-int brunt_facing_near(const brunt_meeting *m, brunt_body *mpm, int mpm_count, const brunt_wall *walls, int wall_count,
-                      double time, brunt_facing **facing) {
-    brunt_skin *s = m->skin;
+int brunt_broad_phase(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, const brunt_wall *walls, int wall_count,
+                      double time, brunt_node_to_facet **facing) {
+    brunt_contact_surface *s = m->skin;
     if (make_facing(facing, mpm_count, s->node_count)) return -1;
-    brunt_facing *f = *facing;
+    brunt_node_to_facet *f = *facing;
     // Nothing may pass anything unseen: the reach covers twice the fastest motion of a step, against the frame of all.
     double fastest = 0, spacing = 0;
     for (int k = 0; k < s->fem_count; k++) fastest = fmax(fastest, s->speed[k]);
@@ -255,7 +255,7 @@ int brunt_facing_near(const brunt_meeting *m, brunt_body *mpm, int mpm_count, co
         int32_t box = f->box_of[k];
         s->active[k] = f->near_first[box + 1] > f->near_first[box];
         for (int w = 0; w < wall_count && !s->active[k]; w++)
-            s->active[k] = brunt_facing_near_wall(s, k, &walls[w], time, f->wall_reach + 1e-6 * s->mean_edge);
+            s->active[k] = brunt_broad_phase_plane(s, k, &walls[w], time, f->wall_reach + 1e-6 * s->mean_edge);
     }
     f->grid_count = 0;
     if (RESERVE(f, support_of, s->node_count + 1)) return -1;

@@ -122,7 +122,7 @@ static int fill_cells(cells *c, const box *room, double edge, int32_t items, box
 // ------------------------------------------------------------------------------------------ one body in another
 
 typedef struct job {
-    const brunt_meeting *m;
+    const brunt_contact_context *m;
     int k;        // the other body, of the skin
     double by;    // its facets reach so much further than they are [m]
     double size;  // of what it is made of: its elements, or all of it [m]
@@ -149,7 +149,7 @@ static bool element_box(const void *context, int32_t slot, box *out) {
 
 static bool facet_box(const void *context, int32_t i, box *out) {
     const job *j = context;
-    const brunt_skin *s = j->m->skin;
+    const brunt_contact_surface *s = j->m->skin;
     const double *b = s->face_box[s->face_range[j->k] + i];
     memcpy(out->low, b, sizeof out->low), memcpy(out->high, b + 3, sizeof out->high);
     *out = grown(*out, s->dim, j->by);
@@ -192,7 +192,7 @@ static bool in_element(const brunt_fem_body *fem, int32_t slot, const double x[3
 
 // Distance of x from the facets listed near it [m], and how far before the nearest it is; INFINITY when there are none.
 static double distance(const job *j, const double x[3], double *height) {
-    const brunt_skin *s = j->m->skin;
+    const brunt_contact_surface *s = j->m->skin;
     const int32_t cell = cell_at(&j->facets, x);
     double least = INFINITY;
     for (int32_t q = j->facets.first[cell]; q < j->facets.first[cell + 1]; q++) {
@@ -213,7 +213,7 @@ static bool in_elements(const job *j, const double x[3]) {
 
 // Whether x is in an element of the other body, and with its `reach` deeper than the limit.
 static bool is_deep(job *j, const double x[3], double reach) {
-    const brunt_skin *s = j->m->skin;
+    const brunt_contact_surface *s = j->m->skin;
     double height, least = INFINITY;
     if (!in_elements(j, x) || !(reach + distance(j, x, &height) > j->limit)) return false;
     for (int32_t f = s->face_range[j->k]; f < s->face_end[j->k]; f++)
@@ -225,7 +225,7 @@ static bool is_deep(job *j, const double x[3], double reach) {
 
 // ------------------------------------------------------------------------------------------ meshes
 
-static box skin_box(const brunt_skin *s, int k) {
+static box skin_box(const brunt_contact_surface *s, int k) {
     box b;
     memcpy(b.low, s->low[k], sizeof b.low), memcpy(b.high, s->high[k], sizeof b.high);
     return b;
@@ -236,7 +236,7 @@ static int corners(const int32_t face[4]) { return face[2] < 0 ? 2 : face[3] < 0
 // Calls for the edges of a body's facets; those of two facets twice. Whether any call said true.
 typedef bool edge_fn(job *j, const double p[3], const double q[3]);
 static bool any_edge(job *j, int other, edge_fn *visit) {
-    const brunt_skin *s = j->m->skin;
+    const brunt_contact_surface *s = j->m->skin;
     for (int32_t f = s->face_range[other]; f < s->face_end[other]; f++) {
         const int n = corners(s->face[f]);
         for (int c = 0; c < (n == 2 ? 1 : n); c++)
@@ -253,7 +253,7 @@ static double pieces_of(const double p[3], const double q[3], double size) {
 // A facet that is long for the other body may go through it between its nodes: places on it, of a triangle as of a
 // quadrilateral with two corners in one place.
 static bool facet_is_deep(job *j, int32_t f) {
-    const brunt_skin *s = j->m->skin;
+    const brunt_contact_surface *s = j->m->skin;
     const int32_t *node = s->face[f];
     const int n = corners(node);
     const double *p = s->x[node[0]], *q = s->x[node[1]], *r = n == 2 ? q : s->x[node[2]],
@@ -289,7 +289,7 @@ static bool element_is_deep(job *j, const brunt_fem_body *fem) {
 
 // Whether the surface of body `other`, or an element of it, is in the solid body k.
 static bool mesh_is_deep(job *j, int other) {
-    const brunt_skin *s = j->m->skin;
+    const brunt_contact_surface *s = j->m->skin;
     if (element_is_deep(j, s->fem[other])) return true;
     for (int32_t n = s->node_range[other]; n < s->node_end[other]; n++)
         if (is_deep(j, s->x[n], 0)) return true;
@@ -333,7 +333,7 @@ static double angle_about(const double *const t[3], const double p[3], const dou
 
 // Whether an edge goes through the sheet k: there are facets all around the place, else it passes along the border.
 static bool edge_cuts(job *j, const double p[3], const double q[3]) {
-    const brunt_skin *s = j->m->skin;
+    const brunt_contact_surface *s = j->m->skin;
     const double least = CUT * s->fem[j->k]->mean_edge;
     double angle = 0;
     for (int32_t f = s->face_range[j->k]; f < s->face_end[j->k]; f++) {
@@ -354,7 +354,7 @@ static bool edge_cuts(job *j, const double p[3], const double q[3]) {
 
 // Whether the sheet k cuts body `other`: edges go through it, and there are nodes well on either side.
 static bool is_cut(job *j, int other) {
-    const brunt_skin *s = j->m->skin;
+    const brunt_contact_surface *s = j->m->skin;
     double side[2] = {0};
     for (int32_t n = s->node_range[other]; n < s->node_end[other]; n++) {
         double height = 0;
@@ -368,7 +368,7 @@ static bool is_cut(job *j, int other) {
 }
 
 // A mesh's mean edge, or how thin all of it is [m].
-static double size_of_body(const brunt_skin *s, int k) {
+static double size_of_body(const brunt_contact_surface *s, int k) {
     double size = s->fem[k]->mean_edge;
     for (int a = 0; a < s->dim && !s->fem[k]->element->sheet; a++) size = fmin(size, s->high[k][a] - s->low[k][a]);
     return size;
@@ -376,7 +376,7 @@ static double size_of_body(const brunt_skin *s, int k) {
 
 // Facets, and elements of a solid, near what the other body's box shares with its own. 1, or 0: that is nothing.
 static int look_at(job *j, int k, const box *other, double limit, double by) {
-    const brunt_skin *s = j->m->skin;
+    const brunt_contact_surface *s = j->m->skin;
     const brunt_fem_body *fem = s->fem[k];
     const box own = grown(skin_box(s, k), s->dim, fem->element->sheet ? by : -limit);
     box room;
@@ -389,7 +389,7 @@ static int look_at(job *j, int k, const box *other, double limit, double by) {
 
 // Whether mesh `other` is in mesh or sheet `k`.
 static int meshes_overlap(job *j, int other, int k) {
-    const brunt_skin *s = j->m->skin;
+    const brunt_contact_surface *s = j->m->skin;
     const double edge = s->fem[other]->mean_edge, limit = DEEP * fmin(size_of_body(s, other), size_of_body(s, k));
     const box of_other = skin_box(s, other);
     const bool sheet = s->fem[k]->element->sheet;
@@ -448,7 +448,7 @@ static bool sheet_cuts_points(job *j, brunt_body *body) {
 
 // Whether material points are in mesh or sheet k.
 static int points_overlap(job *j, brunt_body *body, int k) {
-    const brunt_skin *s = j->m->skin;
+    const brunt_contact_surface *s = j->m->skin;
     const bool sheet = s->fem[k]->element->sheet;
     box of_points = empty_box();
     double x[3];
@@ -474,13 +474,13 @@ static bool keep_behind(const brunt_plane_def *plane, const double x[3], double 
 }
 
 // Whether nothing moves a node but what is prescribed.
-static bool is_held(const brunt_skin *s, int32_t n) {
+static bool is_held(const brunt_contact_surface *s, int32_t n) {
     return !(s->inverse[n][0] + s->inverse[n][1] + s->inverse[n][2] > 0);
 }
 
 // The deepest place of a body behind a plane that pushes it.
-static bool find_behind(const brunt_meeting *m, brunt_body *mpm, int mpm_count, int w, brunt_overlap *found) {
-    const brunt_skin *s = m->skin;
+static bool find_behind(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, int w, brunt_overlap *found) {
+    const brunt_contact_surface *s = m->skin;
     const brunt_wall *wall = &m->walls[w];
     bool any = false;
     if (wall->region || wall->plane.condition != BRUNT_SEPARATE) return false;
@@ -507,8 +507,8 @@ static bool find_behind(const brunt_meeting *m, brunt_body *mpm, int mpm_count, 
 // ------------------------------------------------------------------------------------------ all
 
 static int find_in_meshes(job *j, brunt_body *mpm, int mpm_count) {
-    const brunt_meeting *m = j->m;
-    const brunt_skin *s = m->skin;
+    const brunt_contact_context *m = j->m;
+    const brunt_contact_surface *s = m->skin;
     int status = 0;
     for (int k = 0; k < s->fem_count && !status; k++) {
         const int b = s->fem[k]->index;
@@ -522,7 +522,7 @@ static int find_in_meshes(job *j, brunt_body *mpm, int mpm_count) {
     return status;
 }
 
-int brunt_overlap_find(const brunt_meeting *m, brunt_body *mpm, int mpm_count, int wall_count, brunt_overlap *found) {
+int brunt_overlap_find(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, int wall_count, brunt_overlap *found) {
     job j = {.m = m, .found = found};
     int status = find_in_meshes(&j, mpm, mpm_count);
     cells *made[] = {&j.elements, &j.facets};

@@ -19,7 +19,7 @@ static const double VALLEY = 0.05; // mean edges: how far before one slope the m
 
 // ------------------------------------------------------------------------------------------ cells of facets
 
-bool brunt_facing_in_reach(const brunt_facing *f, int32_t box, const double low[3], const double high[3], double by) {
+bool brunt_node_to_facet_in_reach(const brunt_node_to_facet *f, int32_t box, const double low[3], const double high[3], double by) {
     for (int32_t q = f->near_first[box]; q < f->near_first[box + 1]; q++) {
         const bounds *other = &f->box[f->near_list[q]];
         bool apart = false;
@@ -29,7 +29,7 @@ bool brunt_facing_in_reach(const brunt_facing *f, int32_t box, const double low[
     return false;
 }
 
-static void face_bounds(const brunt_skin *s, int32_t face, double low[3], double high[3]) {
+static void face_bounds(const brunt_contact_surface *s, int32_t face, double low[3], double high[3]) {
     for (int a = 0; a < 3; a++) low[a] = INFINITY, high[a] = -INFINITY;
     for (int c = 0; c < 4 && s->face[face][c] >= 0; c++)
         for (int a = 0; a < 3; a++) {
@@ -38,7 +38,7 @@ static void face_bounds(const brunt_skin *s, int32_t face, double low[3], double
         }
 }
 
-static void cell_range(const brunt_facing *f, const double low[3], const double high[3], double by, int32_t from[3],
+static void cell_range(const brunt_node_to_facet *f, const double low[3], const double high[3], double by, int32_t from[3],
                        int32_t to[3]) {
     for (int a = 0; a < 3; a++) {
         double l = floor((low[a] - by - f->origin[a]) / f->cell), h = floor((high[a] + by - f->origin[a]) / f->cell);
@@ -48,8 +48,8 @@ static void cell_range(const brunt_facing *f, const double low[3], const double 
 }
 
 // Counts, or lists, the facets of every cell.
-static void visit_cells(const brunt_meeting *m, brunt_facing *f, bool list) {
-    const brunt_skin *s = m->skin;
+static void visit_cells(const brunt_contact_context *m, brunt_node_to_facet *f, bool list) {
+    const brunt_contact_surface *s = m->skin;
     const double by = f->made_range + MARGIN * s->mean_edge;
     for (int k = 0; k < s->fem_count; k++) {
         if (f->near_first[f->box_of[k] + 1] == f->near_first[f->box_of[k]]) continue;
@@ -57,7 +57,7 @@ static void visit_cells(const brunt_meeting *m, brunt_facing *f, bool list) {
             double low[3], high[3];
             int32_t from[3], to[3];
             face_bounds(s, face, low, high);
-            if (!brunt_facing_in_reach(f, f->box_of[k], low, high, 2 * by)) continue;
+            if (!brunt_node_to_facet_in_reach(f, f->box_of[k], low, high, 2 * by)) continue;
             cell_range(f, low, high, by, from, to);
             for (int32_t x = from[0]; x <= to[0]; x++)
                 for (int32_t y = from[1]; y <= to[1]; y++)
@@ -73,7 +73,7 @@ static void visit_cells(const brunt_meeting *m, brunt_facing *f, bool list) {
 }
 
 // The room that pairs share, cut into cells; few enough that making them costs no more than the facets do.
-static void lay_cells(const brunt_meeting *m, brunt_facing *f) {
+static void lay_cells(const brunt_contact_context *m, brunt_node_to_facet *f) {
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
     for (int32_t p = 0; p < f->near_count; p++) {
         const bounds *a = &f->box[f->near[p].a], *b = &f->box[f->near[p].b];
@@ -96,12 +96,12 @@ static void lay_cells(const brunt_meeting *m, brunt_facing *f) {
 }
 
 // Where a body's box is kept: bodies with facets, then bodies of material points.
-static int32_t box_number(const brunt_skin *s, const bounds *box) {
+static int32_t box_number(const brunt_contact_surface *s, const bounds *box) {
     return box->fem >= 0 ? box->fem : s->fem_count + box->mpm;
 }
 
-static int make_cells(const brunt_meeting *m, brunt_facing *f) {
-    const brunt_skin *s = m->skin;
+static int make_cells(const brunt_contact_context *m, brunt_node_to_facet *f) {
+    const brunt_contact_surface *s = m->skin;
     f->made_range = 1.25 * f->range;
     lay_cells(m, f);
     size_t cells = (size_t)f->n[0] * (size_t)f->n[1] * (size_t)f->n[2];
@@ -125,7 +125,7 @@ static int make_cells(const brunt_meeting *m, brunt_facing *f) {
 
 // Whether all that look in are where the cells were made for: what they share then is within the room (three ranges, of
 // which looking takes one), and the facets in their range are listed (two ranges from where they were).
-static bool boxes_hold(const brunt_meeting *m, const brunt_facing *f) {
+static bool boxes_hold(const brunt_contact_context *m, const brunt_node_to_facet *f) {
     for (int32_t b = 0; b < f->box_count; b++) {
         const bounds *now = &f->box[b], *then = &f->made_box[box_number(m->skin, now)];
         if (f->near_first[b + 1] == f->near_first[b]) continue;
@@ -138,8 +138,8 @@ static bool boxes_hold(const brunt_meeting *m, const brunt_facing *f) {
 
 // Whether the cells still hold all that may be near: nothing has moved further than they allow, and the same bodies are
 // near.
-static bool cells_hold(const brunt_meeting *m, const brunt_facing *f, uint64_t pairs) {
-    const brunt_skin *s = m->skin;
+static bool cells_hold(const brunt_contact_context *m, const brunt_node_to_facet *f, uint64_t pairs) {
+    const brunt_contact_surface *s = m->skin;
     if (!f->made || f->made_near != f->near_count || f->made_pairs != pairs || f->range > f->made_range) return false;
     const double most = MARGIN * s->mean_edge, square = most * most;
     for (int k = 0; k < s->fem_count; k++) {
@@ -154,7 +154,7 @@ static bool cells_hold(const brunt_meeting *m, const brunt_facing *f, uint64_t p
 }
 
 // A number that differs when other bodies are near or active.
-static uint64_t pairs_key(const brunt_meeting *m, const brunt_facing *f) {
+static uint64_t pairs_key(const brunt_contact_context *m, const brunt_node_to_facet *f) {
     uint64_t key = 1469598103934665603ull;
     for (int32_t p = 0; p < f->near_count; p++) {
         uint64_t a = (uint64_t)f->box[f->near[p].a].body, b = (uint64_t)f->box[f->near[p].b].body;
@@ -172,10 +172,10 @@ typedef struct tied {
     int32_t face;
 } tied;
 
-static bool is_sheet(const brunt_skin *s, int32_t body) { return s->side && s->side[body].faces > 0; }
+static bool is_sheet(const brunt_contact_surface *s, int32_t body) { return s->side && s->side[body].faces > 0; }
 
 // The nearest point of the front of a sheet as one of its back: nodes there are in reversed order.
-static void turn_over(const brunt_skin *s, int32_t *face, brunt_closest *at) {
+static void turn_over(const brunt_contact_surface *s, int32_t *face, brunt_closest *at) {
     if (s->face[*face][3] >= 0) {
         at->triangle = (6 - at->triangle) % 4;
         at->triangles = (at->triangles & 10) | (at->triangles & 1) << 2 | (at->triangles & 4) >> 2;
@@ -185,7 +185,7 @@ static void turn_over(const brunt_skin *s, int32_t *face, brunt_closest *at) {
 }
 
 // Of either side of a sheet: the same numbers for both.
-static brunt_closest closest_on(const brunt_skin *s, int32_t face, const double x[3]) {
+static brunt_closest closest_on(const brunt_contact_surface *s, int32_t face, const double x[3]) {
     const int32_t node = s->face[face][0];
     if (!s->front || s->front[node] == node) return brunt_closest_on_face(s, face, x);
     int32_t front = face - s->side[s->face_body[face]].faces;
@@ -213,9 +213,9 @@ typedef struct nearest {
 } nearest;
 
 // What counts as near as the nearest, whose distance has this square.
-static double tie(const brunt_skin *s, double square) { return sqrt(square) * (1 + 1e-8) + TOUCH * s->mean_edge; }
+static double tie(const brunt_contact_surface *s, double square) { return sqrt(square) * (1 + 1e-8) + TOUCH * s->mean_edge; }
 
-static void keep(const brunt_skin *s, nearest *best, const brunt_closest *at, int32_t face) {
+static void keep(const brunt_contact_surface *s, nearest *best, const brunt_closest *at, int32_t face) {
     if (at->square > best->root * best->root) return;
     if (at->square < best->square) {
         const double root = tie(s, at->square);
@@ -238,7 +238,7 @@ static const tied *most_facing(const nearest *best) {
 }
 
 // Whether two facets that tie are of one slope, or of a ridge; of a valley each bears for itself.
-static bool bear_together(const brunt_skin *s, const tied *a, const tied *b) {
+static bool bear_together(const brunt_contact_surface *s, const tied *a, const tied *b) {
     if (dot(a->at.normal, b->at.normal) > SAME_SLOPE) return true;
     double to[3];
     for (int k = 0; k < 3; k++) to[k] = s->face_centre[b->face][k] - s->face_centre[a->face][k];
@@ -247,7 +247,7 @@ static bool bear_together(const brunt_skin *s, const tied *a, const tied *b) {
 
 // The edge or corner that the chosen facet has in common with those that tie with it, their mean normal and the mean
 // height above them; `way`: the sum of their ways to the slave.
-static void find_feature(const brunt_skin *s, const nearest *best, const tied *chosen, hit *out, double way[3]) {
+static void find_feature(const brunt_contact_surface *s, const nearest *best, const tied *chosen, hit *out, double way[3]) {
     int32_t face[MAX_TIED];
     int count = 1;
     double height = out->gap;
@@ -273,7 +273,7 @@ static void find_feature(const brunt_skin *s, const nearest *best, const tied *c
     memcpy(out->n, chosen->at.normal, sizeof out->n);
 }
 
-static const tied *take_nearest(const brunt_skin *s, const nearest *best, hit *out, double way[3]) {
+static const tied *take_nearest(const brunt_contact_surface *s, const nearest *best, hit *out, double way[3]) {
     const tied *chosen = most_facing(best);
     const brunt_closest *at = &chosen->at;
     *out = (hit){.face = chosen->face, .triangle = at->triangle, .body = best->body, .gap = dot(at->normal, at->d)};
@@ -295,7 +295,7 @@ static bool aside(const double n[3], const double d[3]) {
 }
 
 // A hit on facets that face the slave; beside an edge or a corner it must also face the way to them.
-static bool hit_facing(const brunt_skin *s, const nearest *best, const double *normal, hit *out) {
+static bool hit_facing(const brunt_contact_surface *s, const nearest *best, const double *normal, hit *out) {
     double way[3];
     const brunt_closest *at = &take_nearest(s, best, out, way)->at;
     const double distance = sqrt(best->square), length = sqrt(dot(way, way));
@@ -308,7 +308,7 @@ static bool hit_facing(const brunt_skin *s, const nearest *best, const double *n
 }
 
 // Leaves the facets that tie with the chosen one and are of another slope. Whether there are any.
-static bool next_slope(const brunt_skin *s, nearest *best) {
+static bool next_slope(const brunt_contact_surface *s, nearest *best) {
     const tied chosen = *most_facing(best);
     int32_t left = 0;
     double square = INFINITY;
@@ -325,7 +325,7 @@ static bool next_slope(const brunt_skin *s, nearest *best) {
 
 // The other slopes of a valley, in which all bear: with the first of two, an inside corner and its mirror image bore
 // differently.
-static void add_valley(const brunt_skin *s, nearest *best, const double *normal, slave_hits *out) {
+static void add_valley(const brunt_contact_surface *s, nearest *best, const double *normal, slave_hits *out) {
     bool more = out->hits[out->count - 1].valley;
     while (more && out->count < BRUNT_MAX_HITS && next_slope(s, best)) {
         hit *h = &out->hits[out->count];
@@ -335,13 +335,13 @@ static void add_valley(const brunt_skin *s, nearest *best, const double *normal,
 }
 
 // A hit on whatever facet is nearest, when the slave is behind it; `least`: the least cosine with its normal.
-static bool hit_behind(const brunt_skin *s, const nearest *best, const double *normal, double least, hit *out) {
+static bool hit_behind(const brunt_contact_surface *s, const nearest *best, const double *normal, double least, hit *out) {
     double way[3];
     take_nearest(s, best, out, way);
     return out->gap < 0 && -dot(out->n, normal) > least;
 }
 
-static int64_t cell_of(const brunt_facing *f, const double x[3]) {
+static int64_t cell_of(const brunt_node_to_facet *f, const double x[3]) {
     int64_t cell = 0;
     for (int a = 0; a < 3; a++) {
         double c = floor((x[a] - f->origin[a]) / f->cell);
@@ -362,7 +362,7 @@ static bool within(const bounds *box, const double x[3], double by) {
     return true;
 }
 
-bool brunt_facing_look(const brunt_facing *f, looker *l) {
+bool brunt_node_to_facet_look(const brunt_node_to_facet *f, looker *l) {
     l->touches = l->enters = 0;
     for (int32_t q = f->near_first[l->box]; q < f->near_first[l->box + 1] && l->touches < BRUNT_MAX_NEAR; q++) {
         const bounds *other = &f->box[f->near_list[q]];
@@ -417,12 +417,12 @@ static bool in_ring(const looker *l, int32_t face) {
 // bodies. `guess`: a face that may well be the nearest, -1; it saves looking closely at most others. `all`: also notes
 // the two nearest facets of any direction, as far as `slack` beyond the nearest; may be NULL. `sheets`: whether
 // there are any; the cells have their fronts, for both sides.
-static inline __attribute__((always_inline)) int find_nearest(const brunt_meeting *m, const brunt_facing *f,
+static inline __attribute__((always_inline)) int find_nearest(const brunt_contact_context *m, const brunt_node_to_facet *f,
                                                               const looker *l, const double *normal, double least,
                                                               const int32_t *list, int32_t count, int32_t guess,
                                                               double slack, two_nearest *all, bool sheets,
                                                               nearest best[BRUNT_MAX_HITS]) {
-    const brunt_skin *s = m->skin;
+    const brunt_contact_surface *s = m->skin;
     const double range2 = f->range * f->range;
     double bound = INFINITY; // of the one body that the guess belongs to
     brunt_closest guessed;
@@ -464,8 +464,8 @@ static inline __attribute__((always_inline)) int find_nearest(const brunt_meetin
 
 // Whether a body, behind whose facet someone with a normal is, has one that he would sooner leave it through the other
 // way: then he is before that one, or on the far side of a body thinner than the range, or the other side of a sheet.
-static bool other_way_out(const brunt_meeting *m, const brunt_facing *f, const looker *l, int32_t body, double square) {
-    const brunt_skin *s = m->skin;
+static bool other_way_out(const brunt_contact_context *m, const brunt_node_to_facet *f, const looker *l, int32_t body, double square) {
+    const brunt_contact_surface *s = m->skin;
     for (int32_t q = f->cell_first[l->cell]; q < f->cell_first[l->cell + 1]; q++) {
         const int32_t face = f->cell_face[q];
         if (s->face_body[face] != body || dot(s->face_normal[face], l->normal) <= OPPOSED) continue;
@@ -478,8 +478,8 @@ static bool other_way_out(const brunt_meeting *m, const brunt_facing *f, const l
 // Facets of sheets that someone is right above, beside the nearest one and on another slope: in a valley all of them
 // bear. Else what moves along one wall of a corner would be let through the other in the steps in which that is the
 // further one.
-static void add_slopes(const brunt_meeting *m, const brunt_facing *f, const looker *l, slave_hits *out) {
-    const brunt_skin *s = m->skin;
+static void add_slopes(const brunt_contact_context *m, const brunt_node_to_facet *f, const looker *l, slave_hits *out) {
+    const brunt_contact_surface *s = m->skin;
     bool any = false;
     for (int32_t k = 0; k < out->count; k++) any = any || is_sheet(s, out->hits[k].body);
     for (int32_t q = f->cell_first[l->cell]; any && q < f->cell_first[l->cell + 1]; q++) {
@@ -506,14 +506,14 @@ static void add_slopes(const brunt_meeting *m, const brunt_facing *f, const look
     }
 }
 
-static bool is_ragged(const brunt_skin *s, int32_t body) { return s->ragged && s->ragged[body]; }
+static bool is_ragged(const brunt_contact_surface *s, int32_t body) { return s->ragged && s->ragged[body]; }
 
 // Where elements have left, surfaces have steps, pits and spikes of the size of an element, and edges cut into edges: a
 // node has its own body on the very side of a facet that it comes through, so that its normal tells nothing of it. All
 // facets that someone is right before bear, whichever way they look, but for those beyond a ridge: who slides in under
 // a block, a little too high, meets its underside and not the wall it came past.
-static void add_ragged(const brunt_meeting *m, const brunt_facing *f, const looker *l, slave_hits *out) {
-    const brunt_skin *s = m->skin;
+static void add_ragged(const brunt_contact_context *m, const brunt_node_to_facet *f, const looker *l, slave_hits *out) {
+    const brunt_contact_surface *s = m->skin;
     const double edge = s->mean_edge;
     for (int32_t q = f->cell_first[l->cell]; q < f->cell_first[l->cell + 1]; q++) {
         const int32_t face = f->cell_face[q], body = s->face_body[face];
@@ -539,7 +539,7 @@ static void add_ragged(const brunt_meeting *m, const brunt_facing *f, const look
 }
 
 // Middle surfaces of sheets stay half their thickness away from what they meet.
-static void thicken(const brunt_skin *s, double half, slave_hits *out) {
+static void thicken(const brunt_contact_surface *s, double half, slave_hits *out) {
     for (int32_t q = 0; q < out->count; q++) out->hits[q].gap -= half + s->side[out->hits[q].body].half;
 }
 
@@ -547,10 +547,10 @@ static void thicken(const brunt_skin *s, double half, slave_hits *out) {
 // meets its underside, not the wall it came through. Only a slave that has none of those close by, and is inside, is
 // sent out through the nearest facet there is. Tells how far the nearest facet is, or how far was looked, and how far
 // the nearest but the one hit.
-static inline __attribute__((always_inline)) void look_around(const brunt_meeting *m, const brunt_facing *f,
+static inline __attribute__((always_inline)) void look_around(const brunt_contact_context *m, const brunt_node_to_facet *f,
                                                               const looker *l, int32_t guess, slave_hits *out,
                                                               double *distance, double *second, bool sheets) {
-    const brunt_skin *s = m->skin;
+    const brunt_contact_surface *s = m->skin;
     nearest facing[BRUNT_MAX_HITS], any[BRUNT_MAX_HITS];
     two_nearest two;
     const double close = CLOSE * s->mean_edge, slack = SLACK * s->mean_edge;
@@ -608,7 +608,7 @@ static inline __attribute__((always_inline)) void look_around(const brunt_meetin
     if (sheets) thicken(s, l->half, out);
 }
 
-void brunt_facing_look_around(const brunt_meeting *m, const brunt_facing *f, const looker *l, int32_t guess,
+void brunt_node_to_facet_look_around(const brunt_contact_context *m, const brunt_node_to_facet *f, const looker *l, int32_t guess,
                               slave_hits *out, double *distance, double *second) {
     if (m->skin->side)
         look_around(m, f, l, guess, out, distance, second, true);
@@ -618,9 +618,9 @@ void brunt_facing_look_around(const brunt_meeting *m, const brunt_facing *f, con
 
 // The facet that was the nearest, when it is certain that it still is: it is nearer than `least`, which no other one
 // is.
-bool brunt_facing_still_nearest(const brunt_meeting *m, const brunt_facing *f, int32_t n, const double *normal,
+bool brunt_node_to_facet_still_nearest(const brunt_contact_context *m, const brunt_node_to_facet *f, int32_t n, const double *normal,
                                 double least, slave_hits *out) {
-    const brunt_skin *s = m->skin;
+    const brunt_contact_surface *s = m->skin;
     const int32_t face = f->last[n];
     if (face < 0 || (normal && -dot(s->face_normal[face], normal) <= OPPOSED)) return false;
     const brunt_closest at = closest_on(s, face, s->x[n]);
@@ -633,7 +633,7 @@ bool brunt_facing_still_nearest(const brunt_meeting *m, const brunt_facing *f, i
     return true;
 }
 
-int brunt_facing_cells(const brunt_meeting *m, brunt_facing *f) {
+int brunt_search_cells(const brunt_contact_context *m, brunt_node_to_facet *f) {
     uint64_t key = pairs_key(m, f);
     if (cells_hold(m, f, key)) return 0;
     if (make_cells(m, f)) return -1;

@@ -45,7 +45,7 @@ typedef struct near_pair {
     int32_t a, b; // of the boxes
 } near_pair;
 
-struct brunt_facing {
+struct brunt_node_to_facet {
     double range;      // [m] how far a body looks for others in this step ...
     double reach;      // ... and how far anything moves towards anything ...
     double wall_reach; // ... and towards a wall
@@ -150,40 +150,40 @@ typedef struct looker {
     int32_t ring_count;
 } looker;
 
-static inline int face_corners(const brunt_skin *s, int32_t face) {
+static inline int face_corners(const brunt_contact_surface *s, int32_t face) {
     return s->face[face][2] < 0 ? 2 : s->face[face][3] < 0 ? 3 : 4;
 }
 
 // --- facing_near.c
-double brunt_facing_plane_distance(const brunt_plane_def *plane, double time, const double x[3]);
-bool brunt_facing_near_wall(const brunt_skin *s, int k, const brunt_wall *wall, double time, double range);
+double brunt_node_to_facet_plane_distance(const brunt_plane_def *plane, double time, const double x[3]);
+bool brunt_broad_phase_plane(const brunt_contact_surface *s, int k, const brunt_wall *wall, double time, double range);
 
 // --- facing_search.c
 // Makes the cells anew when they no longer hold all that may be near. 0, or -1: out of memory.
-int brunt_facing_cells(const brunt_meeting *m, brunt_facing *f);
+int brunt_search_cells(const brunt_contact_context *m, brunt_node_to_facet *f);
 // Whether anything reaches, within `by`, a box near box `box`.
-bool brunt_facing_in_reach(const brunt_facing *f, int32_t box, const double low[3], const double high[3], double by);
+bool brunt_node_to_facet_in_reach(const brunt_node_to_facet *f, int32_t box, const double low[3], const double high[3], double by);
 // Fills the bodies a looker may touch or have entered; whether there are facets to look at.
-bool brunt_facing_look(const brunt_facing *f, looker *l);
-void brunt_facing_look_around(const brunt_meeting *m, const brunt_facing *f, const looker *l, int32_t guess,
+bool brunt_node_to_facet_look(const brunt_node_to_facet *f, looker *l);
+void brunt_node_to_facet_look_around(const brunt_contact_context *m, const brunt_node_to_facet *f, const looker *l, int32_t guess,
                               slave_hits *out, double *distance, double *second);
-bool brunt_facing_still_nearest(const brunt_meeting *m, const brunt_facing *f, int32_t n, const double *normal,
+bool brunt_node_to_facet_still_nearest(const brunt_contact_context *m, const brunt_node_to_facet *f, int32_t n, const double *normal,
                                 double least, slave_hits *out);
 
 // --- facing.c
-double brunt_facing_target(const brunt_skin *s, double gap, double approach, double before, double dt);
-double brunt_facing_area(const brunt_skin *s, int32_t n, const double direction[3]);
-int32_t brunt_facing_support(brunt_facing *f, const brunt_skin *s, int32_t n, brunt_contact_points *points);
-double brunt_facing_approach(const brunt_skin *s, const hit *h, const double x[3], const double v[3], double (*of)[3]);
-void brunt_facing_point(const brunt_meeting *m, const hit *h, const double x[3], int body, brunt_contact_point *point);
-int brunt_facing_master(const brunt_skin *s, const hit *h, const double x[3], brunt_master *master);
+double brunt_node_to_facet_target(const brunt_contact_surface *s, double gap, double approach, double before, double dt);
+double brunt_node_to_facet_area(const brunt_contact_surface *s, int32_t n, const double direction[3]);
+int32_t brunt_node_to_facet_support(brunt_node_to_facet *f, const brunt_contact_surface *s, int32_t n, brunt_constraint_set *points);
+double brunt_node_to_facet_approach(const brunt_contact_surface *s, const hit *h, const double x[3], const double v[3], double (*of)[3]);
+void brunt_node_to_facet_point(const brunt_contact_context *m, const hit *h, const double x[3], int body, brunt_constraint *point);
+int brunt_node_to_facet_master(const brunt_contact_surface *s, const hit *h, const double x[3], brunt_master *master);
 // The master's entries, whose supports there are; sets the point's facet.
-void brunt_facing_entries(const brunt_facing *f, const brunt_master *master, brunt_contact_point *point,
-                          brunt_contact_entry *entry);
+void brunt_node_to_facet_entries(const brunt_node_to_facet *f, const brunt_master *master, brunt_constraint *point,
+                          brunt_constraint_entry *entry);
 
 // --- facing_particles.c
 // Contact points of the particles of body k of the mpm bodies. 0, or -1: out of memory.
-int brunt_facing_particles(const brunt_meeting *m, brunt_facing *f, brunt_body *body, int k, int32_t box,
-                           brunt_contact_points *points);
+int brunt_node_to_facet_particles(const brunt_contact_context *m, brunt_node_to_facet *f, brunt_body *body, int k, int32_t box,
+                           brunt_constraint_set *points);
 // After the solution: velocities back to the grids' nodes.
-void brunt_facing_give_grids(const brunt_meeting *m, brunt_body *mpm, brunt_facing *f, const brunt_contact_points *points);
+void brunt_node_to_facet_give_grids(const brunt_contact_context *m, brunt_body *mpm, brunt_node_to_facet *f, const brunt_constraint_set *points);

@@ -25,8 +25,8 @@ enum { MAX_NODES = 64, IMAGE_LAYERS = 2, MAX_MIRRORS = 16 };
 static const double LIFT = 0.02;
 
 typedef struct job {
-    const brunt_meeting *m;
-    brunt_facing *f;
+    const brunt_contact_context *m;
+    brunt_node_to_facet *f;
     brunt_body *body;
     int32_t box;
 } job;
@@ -76,7 +76,7 @@ static void particle_nodes(const brunt_body *body, int32_t b, int64_t s, const d
 
 // Keeps a hit that the particle would pass in this step. 0, or -1: out of memory.
 static int note_sight(const job *j, struct sight *sight, int32_t b, int64_t s, const double x[3], const hit *h) {
-    const brunt_skin *skin = j->m->skin;
+    const brunt_contact_surface *skin = j->m->skin;
     nodes under;
     double v[3] = {0}, old[3] = {0};
     particle_nodes(j->body, b, s, NULL, &under);
@@ -85,9 +85,9 @@ static int note_sight(const job *j, struct sight *sight, int32_t b, int64_t s, c
             v[a] += under.weight[e] * (double)under.node[e][BRUNT_NODE_VELOCITY + a];
             old[a] += under.weight[e] * (double)under.node[e][BRUNT_NODE_OLD + a];
         }
-    const double approach = brunt_facing_approach(skin, h, x, v, skin->v);
-    const double before = brunt_facing_approach(skin, h, x, old, skin->old);
-    const double target = brunt_facing_target(skin, h->gap, fmin(before, LIFT * approach), before, j->m->dt);
+    const double approach = brunt_node_to_facet_approach(skin, h, x, v, skin->v);
+    const double before = brunt_node_to_facet_approach(skin, h, x, old, skin->old);
+    const double target = brunt_node_to_facet_target(skin, h->gap, fmin(before, LIFT * approach), before, j->m->dt);
     if (!(approach < target + 1e-6 * skin->mean_edge / j->m->dt)) return 0;
     size_t used = (size_t)sight->count * sizeof *sight->seen;
     if (brunt_reserve((void **)&sight->seen, &sight->capacity, used + sizeof *sight->seen, used)) return -1;
@@ -112,7 +112,7 @@ static double reach_along(brunt_body *body, int64_t s, const double n[3]) {
 }
 
 static int look_from_block(const job *j, int32_t b, struct sight *sight) {
-    brunt_facing *f = j->f;
+    brunt_node_to_facet *f = j->f;
     const brunt_grid *grid = &j->body->grid;
     const int dim = grid->dim;
     double low[3] = {0}, high[3] = {0};
@@ -122,14 +122,14 @@ static int look_from_block(const job *j, int32_t b, struct sight *sight) {
     }
     real *const *place = brunt_field(&j->body->particles, BRUNT_FIELD_position);
     if (brunt_total_lagrangian(&j->body->particles)) brunt_body_block_bounds(j->body, b, low, high);
-    if (!brunt_facing_in_reach(f, j->box, low, high, f->range)) return 0;
+    if (!brunt_node_to_facet_in_reach(f, j->box, low, high, f->range)) return 0;
     for (int64_t s = grid->blocks[b].first; s < grid->blocks[b].first + grid->blocks[b].count; s++) {
         double x[3] = {0}, distance, second;
         for (int a = 0; a < dim; a++) x[a] = (double)place[a][s];
         slave_hits found;
         looker l = {.box = j->box, .body = j->body->index, .x = x};
-        if (!brunt_facing_look(f, &l)) continue;
-        brunt_facing_look_around(j->m, f, &l, -1, &found, &distance, &second);
+        if (!brunt_node_to_facet_look(f, &l)) continue;
+        brunt_node_to_facet_look_around(j->m, f, &l, -1, &found, &distance, &second);
         for (int32_t q = 0; q < found.count; q++) {
             found.hits[q].gap -= reach_along(j->body, s, found.hits[q].n);
             if (found.hits[q].gap <= f->reach && note_sight(j, sight, b, s, x, &found.hits[q])) return -1;
@@ -151,7 +151,7 @@ static void look_from_blocks(void *context, int64_t begin, int64_t end, int work
 // ------------------------------------------------------------------------------------------ supports
 
 // The mirrors that act on a body.
-static int mirrors_of(const brunt_meeting *m, const brunt_body *body, brunt_mirror out[MAX_MIRRORS]) {
+static int mirrors_of(const brunt_contact_context *m, const brunt_body *body, brunt_symmetry_plane out[MAX_MIRRORS]) {
     int count = 0;
     for (int k = 0; k < m->mirror_count && count < MAX_MIRRORS; k++) {
         int on = m->mirrors[k].wall < 0 ? -1 : m->walls[m->mirrors[k].wall].body;
@@ -161,12 +161,12 @@ static int mirrors_of(const brunt_meeting *m, const brunt_body *body, brunt_mirr
 }
 
 // Makes the support of a node and of its images. 0, or -1: out of memory.
-static int make_support(brunt_facing *f, const brunt_body *body, int k, const brunt_mirror *mirrors, int mirror_count,
-                        const int32_t at[3], brunt_contact_points *points) {
+static int make_support(brunt_node_to_facet *f, const brunt_body *body, int k, const brunt_symmetry_plane *mirrors, int mirror_count,
+                        const int32_t at[3], brunt_constraint_set *points) {
     int32_t image[BRUNT_MAX_IMAGES][3];
     real sign[BRUNT_MAX_IMAGES][3];
-    int images = brunt_mirror_images(mirrors, mirror_count, at, IMAGE_LAYERS, image, sign);
-    int32_t support = brunt_points_support(points);
+    int images = brunt_symmetry_images(mirrors, mirror_count, at, IMAGE_LAYERS, image, sign);
+    int32_t support = brunt_constraints_dof_node(points);
     if (support < 0) return -1;
     for (int i = 0; i < images; i++) {
         real *node = brunt_grid_node(&body->grid, image[i]);
@@ -189,8 +189,8 @@ static int make_support(brunt_facing *f, const brunt_body *body, int k, const br
 }
 
 // Entries of the slave: of each support the weights of all its nodes, turned over as they are.
-static int add_slave(brunt_facing *f, const brunt_body *body, int k, const brunt_mirror *mirrors, int mirror_count,
-                     const nodes *under, brunt_contact_points *points) {
+static int add_slave(brunt_node_to_facet *f, const brunt_body *body, int k, const brunt_symmetry_plane *mirrors, int mirror_count,
+                     const nodes *under, brunt_constraint_set *points) {
     const int32_t first = points->entry_count;
     for (int e = 0; e < under->count; e++) {
         const int64_t number = (under->node[e] - body->grid.nodes) / BRUNT_NODE_REALS;
@@ -199,23 +199,23 @@ static int add_slave(brunt_facing *f, const brunt_body *body, int k, const brunt
         const struct grid_support *g = &f->grid[f->node_support[k][number] - 1];
         int32_t entry = mirror_count ? first : points->entry_count; // without mirrors each node has its own
         while (entry < points->entry_count && points->entry[entry].support != g->support) entry++;
-        if (entry == points->entry_count && brunt_points_entry(points, g->support, 0) < 0) return -1;
+        if (entry == points->entry_count && brunt_constraints_entry(points, g->support, 0) < 0) return -1;
         for (int a = 0; a < 3; a++) points->entry[entry].weight[a] += under->weight[e] * g->sign[a];
     }
     return 0;
 }
 
 // What the last point rubs with: the same supports, at the particle's surface.
-static int add_lever(const brunt_meeting *m, const brunt_facing *f, brunt_body *body, int k, const struct seen *seen,
-                     brunt_contact_points *points) {
+static int add_lever(const brunt_contact_context *m, const brunt_node_to_facet *f, brunt_body *body, int k, const struct seen *seen,
+                     brunt_constraint_set *points) {
     const int32_t number = points->point_count - 1;
     double arm[3], kernel_arm[3], x[3];
-    const double extent = brunt_reach_along(body, seen->particle, seen->h.n);
-    brunt_reach_arm(body, seen->particle, seen->h.n, extent + seen->h.gap, arm, kernel_arm);
+    const double extent = brunt_extent_along(body, seen->particle, seen->h.n);
+    brunt_extent_arm(body, seen->particle, seen->h.n, extent + seen->h.gap, arm, kernel_arm);
     for (int a = 0; a < 3; a++) x[a] = seen->x[a] + arm[a];
-    const int32_t first = brunt_points_lever(points, x);
+    const int32_t first = brunt_constraints_friction_point(points, x);
     if (first < 0) return -1;
-    brunt_contact_point *point = &points->point[number];
+    brunt_constraint *point = &points->point[number];
     nodes under;
     particle_nodes(body, seen->block, seen->particle, kernel_arm, &under);
     for (int e = 0; e < under.count; e++) {
@@ -226,23 +226,23 @@ static int add_lever(const brunt_meeting *m, const brunt_facing *f, brunt_body *
         for (int a = 0; a < 3; a++) points->entry[entry].weight[a] += under.weight[e] * g->sign[a];
     }
     brunt_master master;
-    brunt_facing_master(m->skin, &seen->h, x, &master);
-    brunt_facing_entries(f, &master, point, &points->entry[first + point->count - master.count]);
+    brunt_node_to_facet_master(m->skin, &seen->h, x, &master);
+    brunt_node_to_facet_entries(f, &master, point, &points->entry[first + point->count - master.count]);
     return 0;
 }
 
-static int add_point(const brunt_meeting *m, brunt_facing *f, brunt_body *body, int k, const brunt_mirror *mirrors,
-                     int mirror_count, const struct seen *seen, brunt_contact_points *points) {
-    const brunt_skin *skin = m->skin;
+static int add_point(const brunt_contact_context *m, brunt_node_to_facet *f, brunt_body *body, int k, const brunt_symmetry_plane *mirrors,
+                     int mirror_count, const struct seen *seen, brunt_constraint_set *points) {
+    const brunt_contact_surface *skin = m->skin;
     brunt_master master;
     nodes under;
     particle_nodes(body, seen->block, seen->particle, NULL, &under);
-    brunt_facing_master(skin, &seen->h, seen->x, &master);
+    brunt_node_to_facet_master(skin, &seen->h, seen->x, &master);
     for (int c = 0; c < master.count; c++)
-        if (brunt_facing_support(f, skin, master.node[c], points) < 0) return -1;
-    int32_t at = brunt_points_add(points);
+        if (brunt_node_to_facet_support(f, skin, master.node[c], points) < 0) return -1;
+    int32_t at = brunt_constraints_add(points);
     if (at < 0) return -1;
-    brunt_facing_point(m, &seen->h, seen->x, body->index, &points->point[at]);
+    brunt_node_to_facet_point(m, &seen->h, seen->x, body->index, &points->point[at]);
     points->point[at].target = seen->h.target, points->point[at].tag = -1 - k;
     points->point[at].area = body->spacing * (body->grid.dim == 3  ? body->spacing
                                               : skin->axisymmetric ? 2 * M_PI * seen->x[0]
@@ -250,12 +250,12 @@ static int add_point(const brunt_meeting *m, brunt_facing *f, brunt_body *body, 
     if (add_slave(f, body, k, mirrors, mirror_count, &under, points)) return -1;
     const int32_t first = points->entry_count;
     for (int c = 0; c < master.count; c++)
-        if (brunt_points_entry(points, f->support_of[master.node[c]], 0) < 0) return -1;
-    brunt_facing_entries(f, &master, &points->point[at], points->entry + first);
+        if (brunt_constraints_entry(points, f->support_of[master.node[c]], 0) < 0) return -1;
+    brunt_node_to_facet_entries(f, &master, &points->point[at], points->entry + first);
     return points->point[at].friction > 0 ? add_lever(m, f, body, k, seen, points) : 0;
 }
 
-static int fit_room(brunt_facing *f, const brunt_body *body, int k, int threads) {
+static int fit_room(brunt_node_to_facet *f, const brunt_body *body, int k, int threads) {
     const size_t bytes = (size_t)body->grid.slot_count * BRUNT_BLOCK_NODES * sizeof(int32_t);
     if (brunt_reserve((void **)&f->node_support[k], &f->node_support_capacity[k], bytes, 0) ||
         RESERVE(f, run, body->grid.block_count + 1))
@@ -269,14 +269,14 @@ static int fit_room(brunt_facing *f, const brunt_body *body, int k, int threads)
     return 0;
 }
 
-int brunt_facing_particles(const brunt_meeting *m, brunt_facing *f, brunt_body *body, int k, int32_t box,
-                           brunt_contact_points *points) {
+int brunt_node_to_facet_particles(const brunt_contact_context *m, brunt_node_to_facet *f, brunt_body *body, int k, int32_t box,
+                           brunt_constraint_set *points) {
     job j = {m, f, body, box};
     if (fit_room(f, body, k, m->threads)) return -1;
     brunt_parallel(m->threads, body->grid.block_count, 1, look_from_blocks, &j, m->timer);
     for (int t = 0; t < f->sight_count; t++)
         if (f->sight[t].failed) return -1;
-    brunt_mirror mirrors[MAX_MIRRORS];
+    brunt_symmetry_plane mirrors[MAX_MIRRORS];
     const int mirror_count = mirrors_of(m, body, mirrors);
     for (int32_t b = 0; b < body->grid.block_count; b++) {
         const struct run *run = &f->run[b];
@@ -298,12 +298,12 @@ static void add_moment(const double x[3], const double P[3], double factor, doub
 }
 
 // What the body's own share of the nodes has got, less what the points gave it, is the mirrors'.
-static void book_mirrors(const brunt_meeting *m, const brunt_body *body, int k, double linear[3], double angular[3],
-                         const brunt_contact_points *points) {
-    brunt_mirror mirrors[MAX_MIRRORS];
+static void book_mirrors(const brunt_contact_context *m, const brunt_body *body, int k, double linear[3], double angular[3],
+                         const brunt_constraint_set *points) {
+    brunt_symmetry_plane mirrors[MAX_MIRRORS];
     const int count = mirrors_of(m, body, mirrors);
     for (int32_t p = 0; p < points->point_count; p++) {
-        const brunt_contact_point *point = &points->point[p];
+        const brunt_constraint *point = &points->point[p];
         double push[3];
         if (point->tag != -1 - k || !(point->push > 0)) continue;
         for (int a = 0; a < 3; a++) push[a] = point->push * point->n[a];
@@ -318,21 +318,21 @@ static void book_mirrors(const brunt_meeting *m, const brunt_body *body, int k, 
     }
 }
 
-void brunt_facing_give_grids(const brunt_meeting *m, brunt_body *mpm, brunt_facing *f,
-                             const brunt_contact_points *points) {
+void brunt_node_to_facet_give_grids(const brunt_contact_context *m, brunt_body *mpm, brunt_node_to_facet *f,
+                             const brunt_constraint_set *points) {
     for (int32_t g = 0; g < f->grid_count;) {
         const int k = f->grid[g].mpm;
         brunt_body *body = &mpm[k];
         const brunt_grid *grid = &body->grid;
         double linear[3] = {0}, angular[3] = {0};
-        brunt_mirror mirrors[MAX_MIRRORS];
+        brunt_symmetry_plane mirrors[MAX_MIRRORS];
         const bool mirrored = mirrors_of(m, body, mirrors) > 0;
         for (; g < f->grid_count && f->grid[g].mpm == k; g++) {
             const struct grid_support *entry = &f->grid[g];
             real *node = grid->nodes + entry->node * BRUNT_NODE_REALS;
             double P[3] = {0}, x[3];
             for (int a = 0; a < grid->dim; a++) {
-                const brunt_support *support = &points->support[entry->support];
+                const brunt_dof_node *support = &points->support[entry->support];
                 double v = entry->sign[a] * support->v[a];
                 if (brunt_node_held(grid, entry->node, a)) // the condition takes it again, and books it
                     v += entry->sign[a] * support->impulse[a] / (double)node[BRUNT_NODE_MASS];

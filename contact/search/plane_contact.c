@@ -3,7 +3,7 @@
 
 // Holds a node on a plane: stick takes all components, slip and symmetry the normal one. `back`: how much further its
 // twin is, of a sheet; else 0.
-static void hold(brunt_skin *s, int32_t n, int32_t back, brunt_wall *wall, double normal_velocity, bool stick) {
+static void hold(brunt_contact_surface *s, int32_t n, int32_t back, brunt_wall *wall, double normal_velocity, bool stick) {
     const brunt_plane_def *plane = &wall->plane;
     double now[3], J[3], old[3], along = 0;
     for (int a = 0; a < 3; a++) along += plane->normal[a] * (s->v[n][a] - plane->velocity[a]);
@@ -14,7 +14,7 @@ static void hold(brunt_skin *s, int32_t n, int32_t back, brunt_wall *wall, doubl
         if (!(s->inverse[n][a] > 0)) now[a] = s->v[n][a], J[a] = 0;
         old[a] = s->old[n][a];
     }
-    brunt_action_book(&wall->last, &wall->last.normal_loss, J, s->x[n], old, now, plane->velocity);
+    brunt_impulse_account_book(&wall->last, &wall->last.normal_loss, J, s->x[n], old, now, plane->velocity);
     for (int a = 0; a < 3; a++) {
         s->v[n][a] = now[a];
         if (stick || fabs(plane->normal[a]) > 1 - 1e-12) s->inverse[n][a] = 0;
@@ -24,43 +24,43 @@ static void hold(brunt_skin *s, int32_t n, int32_t back, brunt_wall *wall, doubl
     memcpy(s->inverse[n + back], s->inverse[n], sizeof *s->inverse);
 }
 
-static int push_off(const brunt_meeting *m, brunt_facing *f, int32_t n, int32_t back, brunt_wall *wall, double gap,
-                    brunt_contact_points *points) {
-    const brunt_skin *s = m->skin;
+static int push_off(const brunt_contact_context *m, brunt_node_to_facet *f, int32_t n, int32_t back, brunt_wall *wall, double gap,
+                    brunt_constraint_set *points) {
+    const brunt_contact_surface *s = m->skin;
     const brunt_plane_def *plane = &wall->plane;
     double approach = 0, before = 0;
     for (int a = 0; a < 3; a++) {
         approach += plane->normal[a] * (s->v[n][a] - plane->velocity[a]);
         before += plane->normal[a] * (s->old[n][a] - plane->velocity[a]);
     }
-    double target = brunt_facing_target(s, gap, approach, before, m->dt);
+    double target = brunt_node_to_facet_target(s, gap, approach, before, m->dt);
     if (!(approach < target + 1e-6 * s->mean_edge / m->dt)) return 0;
-    int32_t at = brunt_points_add(points), support = brunt_facing_support(f, s, n, points);
+    int32_t at = brunt_constraints_add(points), support = brunt_node_to_facet_support(f, s, n, points);
     if (at < 0 || support < 0) return -1;
-    brunt_contact_point *point = &points->point[at];
+    brunt_constraint *point = &points->point[at];
     memcpy(point->x, s->x[n], sizeof point->x);
     memcpy(point->n, plane->normal, sizeof point->n);
     memcpy(point->plane, plane->velocity, sizeof point->plane);
     point->gap = gap, point->target = target, point->friction = plane->friction;
-    point->action = &wall->last, point->sign = 1, point->tag = n, point->area = brunt_facing_area(s, n, plane->normal);
-    if (back) point->area += brunt_facing_area(s, n + back, plane->normal);
-    return brunt_points_entry(points, support, 1) < 0 ? -1 : 0;
+    point->action = &wall->last, point->sign = 1, point->tag = n, point->area = brunt_node_to_facet_area(s, n, plane->normal);
+    if (back) point->area += brunt_node_to_facet_area(s, n + back, plane->normal);
+    return brunt_constraints_entry(points, support, 1) < 0 ? -1 : 0;
 }
 
-int brunt_facing_walls(const brunt_meeting *m, brunt_wall *walls, int wall_count, double time, brunt_facing *f,
-                       brunt_contact_points *points) {
-    brunt_skin *s = m->skin;
+int brunt_node_to_facet_walls(const brunt_contact_context *m, brunt_wall *walls, int wall_count, double time, brunt_node_to_facet *f,
+                       brunt_constraint_set *points) {
+    brunt_contact_surface *s = m->skin;
     const double on = 1e-6 * s->mean_edge;
     for (int w = 0; w < wall_count; w++) {
         brunt_wall *wall = &walls[w];
         const brunt_condition condition = wall->plane.condition;
         if (wall->region) continue;
         for (int k = 0; k < s->fem_count; k++) {
-            if (!s->active[k] || !brunt_facing_near_wall(s, k, wall, time, f->wall_reach + on)) continue;
+            if (!s->active[k] || !brunt_broad_phase_plane(s, k, wall, time, f->wall_reach + on)) continue;
             const int32_t back = s->node_range[k + 1] - s->node_end[k];
             const double half = s->side ? s->side[s->fem[k]->index].half : 0;
             for (int32_t n = s->node_range[k]; n < s->node_end[k]; n++) {
-                double gap = brunt_facing_plane_distance(&wall->plane, time, s->x[n]);
+                double gap = brunt_node_to_facet_plane_distance(&wall->plane, time, s->x[n]);
                 if (gap > f->wall_reach + on) continue;
                 if (condition == BRUNT_SEPARATE) {
                     s->gap[n] = fmin(s->gap[n], gap - half);
@@ -80,7 +80,7 @@ int brunt_facing_walls(const brunt_meeting *m, brunt_wall *walls, int wall_count
 }
 
 // The plane that keeps component a of a node from moving: of those that hold it, the nearest. -1: none.
-static int holding_plane(const brunt_skin *s, int32_t n, int a, const brunt_wall *walls, int wall_count, double time) {
+static int holding_plane(const brunt_contact_surface *s, int32_t n, int a, const brunt_wall *walls, int wall_count, double time) {
     int nearest = -1;
     double least = INFINITY;
     for (int w = 0; w < wall_count; w++) {
@@ -88,15 +88,15 @@ static int holding_plane(const brunt_skin *s, int32_t n, int a, const brunt_wall
         if (walls[w].region || plane->condition == BRUNT_SEPARATE) continue;
         if (walls[w].body >= 0 && walls[w].body != s->body[n]) continue;
         if (plane->condition != BRUNT_STICK && !(fabs(plane->normal[a]) > 1 - 1e-12)) continue;
-        double gap = brunt_facing_plane_distance(plane, time, s->x[n]);
+        double gap = brunt_node_to_facet_plane_distance(plane, time, s->x[n]);
         if (gap < least) least = gap, nearest = w;
     }
     return nearest;
 }
 
-void brunt_facing_book_holds(const brunt_meeting *m, brunt_wall *walls, int wall_count, double time,
-                             const brunt_facing *f, const brunt_contact_points *points) {
-    const brunt_skin *s = m->skin;
+void brunt_node_to_facet_book_holds(const brunt_contact_context *m, brunt_wall *walls, int wall_count, double time,
+                             const brunt_node_to_facet *f, const brunt_constraint_set *points) {
+    const brunt_contact_surface *s = m->skin;
     int k = 0;
     for (int32_t n = 0; n < s->node_count; n++) {
         while (s->node_range[k + 1] <= n) k++;
@@ -109,7 +109,7 @@ void brunt_facing_book_holds(const brunt_meeting *m, brunt_wall *walls, int wall
             if (w < 0) continue;
             double J[3] = {0};
             J[a] = -given;
-            brunt_action_book(&walls[w].last, &walls[w].last.normal_loss, J, s->x[n], s->v[n], s->v[n], s->v[n]);
+            brunt_impulse_account_book(&walls[w].last, &walls[w].last.normal_loss, J, s->x[n], s->v[n], s->v[n], s->v[n]);
         }
     }
 }

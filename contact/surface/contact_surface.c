@@ -50,7 +50,7 @@ static int enlarge(void *array, size_t keep, size_t bytes) {
 
 // Room for so many nodes and faces, with what is there kept: exactly that at the start, later half as much again, so
 // that surfaces that grow seldom ask for it.
-static int make_room(brunt_skin *s, int32_t node_count, int32_t face_count) {
+static int make_room(brunt_contact_surface *s, int32_t node_count, int32_t face_count) {
     const size_t nodes = (size_t)node_count + 2, faces = (size_t)face_count + 1;
     if (nodes > s->node_room) {
         const size_t room = s->node_room ? nodes + nodes / 2 : nodes, had = s->node_room;
@@ -75,7 +75,7 @@ static int make_room(brunt_skin *s, int32_t node_count, int32_t face_count) {
     return 0;
 }
 
-static void link_faces(brunt_skin *s) {
+static void link_faces(brunt_contact_surface *s) {
     memset(s->face_first, 0, ((size_t)s->node_count + 2) * sizeof *s->face_first);
     for (int32_t f = 0; f < s->face_count; f++)
         for (int k = 0; k < corners(s->face[f]); k++) s->face_first[s->face[f][k] + 2]++;
@@ -84,7 +84,7 @@ static void link_faces(brunt_skin *s) {
         for (int k = 0; k < corners(s->face[f]); k++) s->face_of[s->face_first[s->face[f][k] + 1]++] = f;
 }
 
-static double edge_sum(const brunt_skin *s, int32_t *edges) {
+static double edge_sum(const brunt_contact_surface *s, int32_t *edges) {
     double sum = 0;
     for (int32_t f = 0; f < s->face_count; f++) {
         int n = corners(s->face[f]);
@@ -114,7 +114,7 @@ static void add_back(int32_t *node, int32_t nodes, int32_t (*face)[4], int32_t f
     }
 }
 
-static int add_body(brunt_skin *s, int k) {
+static int add_body(brunt_contact_surface *s, int k) {
     brunt_fem_body *fem = s->fem[k];
     brunt_faces found;
     if (brunt_fem_faces(fem, &found)) return -1;
@@ -171,7 +171,7 @@ static int least_height(const brunt_fem_body *fem, double *least) {
 }
 
 // What sheets need besides, when there are any.
-static int add_sheets(brunt_skin *s) {
+static int add_sheets(brunt_contact_surface *s) {
     int32_t last = 0;
     bool any = false;
     for (int k = 0; k < s->fem_count; k++) {
@@ -197,7 +197,7 @@ static int add_sheets(brunt_skin *s) {
 }
 
 // Owners of nodes and faces, and what follows from the lists of them.
-static int relate(brunt_skin *s) {
+static int relate(brunt_contact_surface *s) {
     if (brunt_reserve((void **)&s->body, &s->body_capacity, ((size_t)s->node_count + 1) * sizeof *s->body, 0))
         return -1;
     for (int k = 0; k < s->fem_count; k++) {
@@ -212,21 +212,21 @@ static int relate(brunt_skin *s) {
     return 0;
 }
 
-static int add_shells(brunt_skin *s) {
+static int add_shells(brunt_contact_surface *s) {
     int32_t last = 0;
     for (int k = 0; k < s->fem_count; k++) last = s->fem[k]->index > last ? s->fem[k]->index : last;
     for (int k = 0; k < s->fem_count; k++) {
         if (!s->fem[k]->bonds) continue;
         if (!s->shell && !(s->shell = brunt_alloc(((size_t)s->fem_count + 1) * sizeof *s->shell))) return -1;
         if (!s->ragged && !(s->ragged = brunt_alloc((size_t)last + 1))) return -1;
-        if (brunt_shell_make(&s->shell[k], s->fem[k])) return -1;
+        if (brunt_topology_make(&s->shell[k], s->fem[k])) return -1;
         s->ragged[s->fem[k]->index] = true;
     }
     return 0;
 }
 
-int brunt_skin_make(brunt_skin *s, brunt_fem_body **fem, int count, bool affine) {
-    *s = (brunt_skin){
+int brunt_surface_make(brunt_contact_surface *s, brunt_fem_body **fem, int count, bool affine) {
+    *s = (brunt_contact_surface){
         .fem_count = count, .dim = count ? fem[0]->dim : 3, .axisymmetric = count && fem[0]->element->axisymmetric};
     size_t k1 = (size_t)count + 1;
     s->fem = brunt_alloc(k1 * sizeof *s->fem);
@@ -258,7 +258,7 @@ static int ascending(const void *a, const void *b) {
 }
 
 // Faces of the front within two rings of node n, each once, into `list`, which has room for them. Their count.
-static int32_t list_rings(const brunt_skin *s, int32_t n, int32_t *list) {
+static int32_t list_rings(const brunt_contact_surface *s, int32_t n, int32_t *list) {
     int32_t count = 0, kept = 0;
     for (int32_t p = s->face_first[n]; p < s->face_first[n + 1]; p++)
         for (int c = 0; c < corners(s->face[s->face_of[p]]); c++) {
@@ -271,7 +271,7 @@ static int32_t list_rings(const brunt_skin *s, int32_t n, int32_t *list) {
     return kept;
 }
 
-static int make_rings(brunt_skin *s) {
+static int make_rings(brunt_contact_surface *s) {
     size_t most = 0, used = 0;
     for (int32_t n = 0; n < s->node_count; n++) {
         const size_t at = (size_t)(s->face_first[n + 1] - s->face_first[n]);
@@ -296,13 +296,13 @@ static int make_rings(brunt_skin *s) {
     return 0;
 }
 
-int brunt_skin_rings(brunt_skin *s, const bool *self) {
+int brunt_surface_patches(brunt_contact_surface *s, const bool *self) {
     if (!(s->self = brunt_alloc((size_t)s->fem_count + 1))) return -1;
     memcpy(s->self, self, (size_t)s->fem_count);
     return make_rings(s);
 }
 
-void brunt_skin_free(brunt_skin *s) {
+void brunt_surface_free(brunt_contact_surface *s) {
     void *owned[] = {s->fem,
                      s->node_range,
                      s->face_range,
@@ -347,10 +347,10 @@ void brunt_skin_free(brunt_skin *s) {
                      s->change.node_was,
                      s->change.face_now,
                      s->ragged};
-    for (int k = 0; s->shell && k < s->fem_count; k++) brunt_shell_free(&s->shell[k]);
+    for (int k = 0; s->shell && k < s->fem_count; k++) brunt_topology_free(&s->shell[k]);
     brunt_free(s->shell);
     for (size_t k = 0; k < sizeof owned / sizeof owned[0]; k++) brunt_free(owned[k]);
-    *s = (brunt_skin){0};
+    *s = (brunt_contact_surface){0};
 }
 
 // ------------------------------------------------------------------------------------------ after erosion
@@ -360,7 +360,7 @@ typedef struct extent {
     int32_t node, nodes, face, faces;
 } extent;
 
-static void keep_body(brunt_skin *s, int32_t sides, const extent *was, const extent *is) {
+static void keep_body(brunt_contact_surface *s, int32_t sides, const extent *was, const extent *is) {
     for (int32_t n = 0; n < sides * was->nodes; n++) {
         s->next_node[is->node + n] = s->node[was->node + n];
         s->change.node_was[is->node + n] = was->node + n;
@@ -374,8 +374,8 @@ static void keep_body(brunt_skin *s, int32_t sides, const extent *was, const ext
     }
 }
 
-static void renew_body(brunt_skin *s, int k, int32_t sides, const extent *was, const extent *is) {
-    const brunt_shell *shell = &s->shell[k];
+static void renew_body(brunt_contact_surface *s, int k, int32_t sides, const extent *was, const extent *is) {
+    const brunt_surface_topology *shell = &s->shell[k];
     const brunt_fem_body *fem = s->fem[k];
     for (int32_t n = 0; n < fem->node_count; n++) {
         if (shell->number[n] < 0) continue;
@@ -387,7 +387,7 @@ static void renew_body(brunt_skin *s, int k, int32_t sides, const extent *was, c
     }
     for (int32_t f = 0; f < is->faces; f++) {
         int32_t node[4];
-        brunt_shell_face(shell, fem, f, node);
+        brunt_topology_face(shell, fem, f, node);
         for (int c = 0; c < 4; c++)
             s->next_face[is->face + f][c] = node[c] < 0 ? -1 : is->node + shell->number[node[c]];
     }
@@ -401,7 +401,7 @@ static void renew_body(brunt_skin *s, int k, int32_t sides, const extent *was, c
 }
 
 // An array by nodes in their new order; those that are new get zeros.
-static int reorder(brunt_skin *s, void *array, size_t bytes) {
+static int reorder(brunt_contact_surface *s, void *array, size_t bytes) {
     if (!array) return 0;
     if (brunt_reserve(&s->spare, &s->spare_capacity, (size_t)s->node_count * bytes + 1, 0)) return -1;
     for (int32_t n = 0; n < s->node_count; n++) {
@@ -417,7 +417,7 @@ static int reorder(brunt_skin *s, void *array, size_t bytes) {
 
 // What is known of nodes from step to step, or told to others until the next one. A new node has not moved by more than
 // the frame since the step began.
-static int keep_nodes(brunt_skin *s) {
+static int keep_nodes(brunt_contact_surface *s) {
     if (reorder(s, s->x, sizeof *s->x) || reorder(s, s->affine, sizeof *s->affine) ||
         reorder(s, s->gap, sizeof *s->gap) || reorder(s, s->impulse, sizeof *s->impulse) ||
         reorder(s, s->state, sizeof *s->state) || reorder(s, s->area, sizeof *s->area) ||
@@ -433,12 +433,12 @@ static int keep_nodes(brunt_skin *s) {
     return 0;
 }
 
-static extent extent_of(const brunt_skin *s, int k) {
+static extent extent_of(const brunt_contact_surface *s, int k) {
     return (extent){s->node_range[k], s->node_end[k] - s->node_range[k], s->face_range[k],
                     s->face_end[k] - s->face_range[k]};
 }
 
-static int list_anew(brunt_skin *s) {
+static int list_anew(brunt_contact_surface *s) {
     int64_t nodes = 0, faces = 0;
     for (int k = 0; k < s->fem_count; k++) {
         const extent was = extent_of(s, k);
@@ -446,7 +446,7 @@ static int list_anew(brunt_skin *s) {
         nodes += sides * (int64_t)(s->shell[k].changed ? s->shell[k].number_count : was.nodes);
         faces += sides * (int64_t)(s->shell[k].changed ? s->shell[k].key_count : was.faces);
     }
-    brunt_skin_change *c = &s->change;
+    brunt_surface_change *c = &s->change;
     if (brunt_reserve((void **)&s->next_node, &s->next_node_capacity, ((size_t)nodes + 1) * sizeof *s->node, 0) ||
         brunt_reserve((void **)&s->next_face, &s->next_face_capacity, ((size_t)faces + 1) * sizeof *s->face, 0) ||
         brunt_reserve((void **)&c->node_was, &c->node_was_capacity, ((size_t)nodes + 1) * sizeof(int32_t), 0) ||
@@ -473,7 +473,7 @@ static int list_anew(brunt_skin *s) {
     return 0;
 }
 
-static void swap_lists(brunt_skin *s) {
+static void swap_lists(brunt_contact_surface *s) {
     int32_t *const node = s->node, (*const face)[4] = s->face;
     const size_t nodes = s->node_capacity, faces = s->face_capacity;
     s->node = s->next_node, s->node_capacity = s->next_node_capacity;
@@ -482,12 +482,12 @@ static void swap_lists(brunt_skin *s) {
     s->next_face = face, s->next_face_capacity = faces;
 }
 
-int brunt_skin_renew(brunt_skin *s, bool restored) {
+int brunt_surface_renew(brunt_contact_surface *s, bool restored) {
     s->change.any = false;
     if (!s->shell) return 0;
     int failed = 0;
     for (int k = 0; !failed && k < s->fem_count; k++) {
-        const int renewed = s->shell[k].elements ? brunt_shell_renew(&s->shell[k], s->fem[k], restored) : 0;
+        const int renewed = s->shell[k].elements ? brunt_topology_renew(&s->shell[k], s->fem[k], restored) : 0;
         if (renewed < 0) failed = -1;
         s->shell[k].changed = renewed > 0;
         s->change.any = s->change.any || renewed > 0;
@@ -498,46 +498,46 @@ int brunt_skin_renew(brunt_skin *s, bool restored) {
     return keep_nodes(s) || relate(s) || (s->self && make_rings(s)) ? -1 : 0;
 }
 
-int64_t brunt_skin_places(const brunt_skin *s) {
+int64_t brunt_surface_slots(const brunt_contact_surface *s) {
     if (!s->shell) return s->node_count;
     int64_t sum = 0;
     for (int k = 0; k < s->fem_count; k++) sum += (s->fem[k]->element->sheet ? 2 : 1) * (int64_t)s->fem[k]->node_count;
     return sum;
 }
 
-int64_t brunt_skin_place(const brunt_skin *s, int k, int32_t n) {
+int64_t brunt_surface_slot(const brunt_contact_surface *s, int k, int32_t n) {
     if (!s->shell) return n;
     int64_t first = n < s->node_end[k] ? 0 : s->fem[k]->node_count;
     for (int i = 0; i < k; i++) first += (s->fem[i]->element->sheet ? 2 : 1) * (int64_t)s->fem[i]->node_count;
     return first + s->node[n];
 }
 
-int64_t brunt_skin_affine_count(const brunt_skin *s) { return 9 * brunt_skin_places(s); }
+int64_t brunt_surface_affine_count(const brunt_contact_surface *s) { return 9 * brunt_surface_slots(s); }
 
-void brunt_skin_affine_get(const brunt_skin *s, double *out) {
-    memset(out, 0, (size_t)brunt_skin_affine_count(s) * sizeof *out);
+void brunt_surface_affine_get(const brunt_contact_surface *s, double *out) {
+    memset(out, 0, (size_t)brunt_surface_affine_count(s) * sizeof *out);
     for (int k = 0; k < s->fem_count; k++)
         for (int32_t n = s->node_range[k]; n < s->node_range[k + 1]; n++)
-            memcpy(out + 9 * brunt_skin_place(s, k, n), s->affine[n], sizeof *s->affine);
+            memcpy(out + 9 * brunt_surface_slot(s, k, n), s->affine[n], sizeof *s->affine);
 }
 
-void brunt_skin_affine_set(brunt_skin *s, const double *in) {
+void brunt_surface_affine_set(brunt_contact_surface *s, const double *in) {
     for (int k = 0; k < s->fem_count; k++)
         for (int32_t n = s->node_range[k]; n < s->node_range[k + 1]; n++)
-            memcpy(s->affine[n], in + 9 * brunt_skin_place(s, k, n), sizeof *s->affine);
+            memcpy(s->affine[n], in + 9 * brunt_surface_slot(s, k, n), sizeof *s->affine);
 }
 
 // ------------------------------------------------------------------------------------------ each step
 
 typedef struct job {
-    brunt_skin *skin;
+    brunt_contact_surface *skin;
     double dt;
     const double *gravity;
 } job;
 
 static void bound_bodies(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
-    brunt_skin *s = ((const job *)context)->skin;
+    brunt_contact_surface *s = ((const job *)context)->skin;
     for (int64_t k = begin; k < end; k++) {
         double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
         double sum[3] = {0}, fastest = 0;
@@ -559,13 +559,13 @@ static void bound_bodies(void *context, int64_t begin, int64_t end, int worker) 
     }
 }
 
-void brunt_skin_bounds(brunt_skin *s, int threads, brunt_timer *timer) {
+void brunt_surface_bounds(brunt_contact_surface *s, int threads, brunt_timer *timer) {
     job j = {.skin = s};
     brunt_parallel(threads, s->fem_count, 1, bound_bodies, &j, timer);
 }
 
 // The first node or face from `item` on, by their `range`, that an active body has; `k` becomes that body.
-static int32_t next_active(const brunt_skin *s, const int32_t *range, int32_t item, int *k) {
+static int32_t next_active(const brunt_contact_surface *s, const int32_t *range, int32_t item, int *k) {
     for (; *k < s->fem_count && (range[*k + 1] <= item || !s->active[*k]); ++*k)
         if (item < range[*k + 1]) item = range[*k + 1];
     return item;
@@ -574,7 +574,7 @@ static int32_t next_active(const brunt_skin *s, const int32_t *range, int32_t it
 static void take_nodes(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     const job *j = context;
-    brunt_skin *s = j->skin;
+    brunt_contact_surface *s = j->skin;
     int k = 0;
     double furthest = 0;
     for (int32_t n = (int32_t)begin; (n = next_active(s, s->node_range, n, &k)) < end; n++) {
@@ -611,7 +611,7 @@ static void take_chunks(void *context, int64_t begin, int64_t end, int worker) {
 
 static void make_faces(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
-    brunt_skin *s = ((const job *)context)->skin;
+    brunt_contact_surface *s = ((const job *)context)->skin;
     int k = 0;
     for (int32_t f = (int32_t)begin; (f = next_active(s, s->face_range, f, &k)) < end; f++) {
         const int32_t *node = s->face[f];
@@ -648,7 +648,7 @@ static void make_faces(void *context, int64_t begin, int64_t end, int worker) {
 
 static void make_normals(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
-    brunt_skin *s = ((const job *)context)->skin;
+    brunt_contact_surface *s = ((const job *)context)->skin;
     int k = 0;
     for (int32_t n = (int32_t)begin; (n = next_active(s, s->node_range, n, &k)) < end; n++) {
         double sum[3] = {0}, area = 0, whole = 0, size = 0;
@@ -656,7 +656,7 @@ static void make_normals(void *context, int64_t begin, int64_t end, int worker) 
             int32_t f = s->face_of[q];
             double share = s->face_area[f] / corners(s->face[f]);
             area += share;
-            whole += brunt_skin_share(s, f, n);
+            whole += brunt_surface_nodal_area(s, f, n);
             for (int a = 0; a < 3; a++) sum[a] += share * s->face_normal[f][a];
         }
         if (s->axisymmetric && s->x[n][0] == 0) sum[0] = 0; // the other side of the axis
@@ -668,7 +668,7 @@ static void make_normals(void *context, int64_t begin, int64_t end, int worker) 
     }
 }
 
-void brunt_skin_take(brunt_skin *s, double dt, const double gravity[3], int threads, brunt_timer *timer) {
+void brunt_surface_gather_state(brunt_contact_surface *s, double dt, const double gravity[3], int threads, brunt_timer *timer) {
     job j = {s, dt, gravity};
     brunt_parallel(threads, (s->node_count + GRAIN - 1) / GRAIN, 1, take_chunks, &j, timer);
     s->moved = 0;
@@ -684,7 +684,7 @@ void brunt_skin_take(brunt_skin *s, double dt, const double gravity[3], int thre
 
 static void give_nodes(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
-    const brunt_skin *s = ((const job *)context)->skin;
+    const brunt_contact_surface *s = ((const job *)context)->skin;
     int k = 0;
     for (int32_t n = (int32_t)begin; (n = next_active(s, s->node_range, n, &k)) < end; n++) {
         if (n >= s->node_end[k]) continue;
@@ -693,7 +693,7 @@ static void give_nodes(void *context, int64_t begin, int64_t end, int worker) {
     }
 }
 
-void brunt_skin_give(brunt_skin *s, double dt, int threads, brunt_timer *timer) {
+void brunt_surface_scatter_velocity(brunt_contact_surface *s, double dt, int threads, brunt_timer *timer) {
     job j = {.skin = s};
     brunt_parallel(threads, s->node_count, GRAIN, give_nodes, &j, timer);
     for (int a = 0; a < 3; a++) {

@@ -23,15 +23,15 @@ typedef struct brunt_side {
 } brunt_side;
 
 // Where the nodes and faces of a skin have gone when it was made anew.
-typedef struct brunt_skin_change {
+typedef struct brunt_surface_change {
     bool any;
     int32_t node_count, face_count; // that there were
     int32_t *node_was;              // of each node: its number before; -1: it is new
     int32_t *face_now;              // of each face that there was: its number now; -1: it is gone
     size_t node_was_capacity, face_now_capacity;
-} brunt_skin_change;
+} brunt_surface_change;
 
-typedef struct brunt_skin {
+typedef struct brunt_contact_surface {
     int dim;
     bool axisymmetric; // rings: masses and impulses are those of the whole circle
     int32_t node_count, face_count;
@@ -66,8 +66,8 @@ typedef struct brunt_skin {
     int32_t *ring_first, *ring_face;
     bool *self; // of each body: it has rings
     // Of bodies that may lose elements, else NULL: of each body the bookkeeping of its surface (elements 0: it loses none).
-    brunt_shell *shell;
-    brunt_skin_change change; // of the last time
+    brunt_surface_topology *shell;
+    brunt_surface_change change; // of the last time
     bool *ragged;             // of each body by its index among all, to the last of the meshes: its surface may be ragged, since
                               // it may lose elements; NULL where none do
     int32_t *next_node, (*next_face)[4];
@@ -89,36 +89,36 @@ typedef struct brunt_skin {
     double *gap;          // [m] of the nearest contact; INFINITY where none is near
     double (*impulse)[3]; // [N s] on the node
     uint8_t *state;       // 0 free, 1 sticks, 2 slips
-} brunt_skin;
+} brunt_contact_surface;
 
 // The surfaces of `count` bodies. `affine`: keep B. 0, or -1: out of memory.
-int brunt_skin_make(brunt_skin *skin, brunt_fem_body **fem, int count, bool affine);
+int brunt_surface_make(brunt_contact_surface *skin, brunt_fem_body **fem, int count, bool affine);
 // Lists the elements near each node of the bodies marked in `self`, which are sheets in contact with themselves: those
 // are no obstacles to it. 0, or -1: out of memory.
-int brunt_skin_rings(brunt_skin *skin, const bool *self);
+int brunt_surface_patches(brunt_contact_surface *skin, const bool *self);
 // The surfaces anew after elements have left bodies, or (`restored`) of a saved state. What is kept of a node from step to step stays with it, and
 // skin->change tells who has gone where. The order of nodes and faces follows from which elements there are. 0, or -1: out of
 // memory.
-int brunt_skin_renew(brunt_skin *skin, bool restored);
+int brunt_surface_renew(brunt_contact_surface *skin, bool restored);
 // The affine velocities as they are saved: so many doubles, of all nodes that may ever be of the skin.
-int64_t brunt_skin_affine_count(const brunt_skin *skin);
-void brunt_skin_affine_get(const brunt_skin *skin, double *out);
-void brunt_skin_affine_set(brunt_skin *skin, const double *in);
+int64_t brunt_surface_affine_count(const brunt_contact_surface *skin);
+void brunt_surface_affine_get(const brunt_contact_surface *skin, double *out);
+void brunt_surface_affine_set(brunt_contact_surface *skin, const double *in);
 // Where node `n` of the skin is among all nodes that may ever be of it, and how many those are: what a saved state is in the
 // order of, since its size must not depend on what has left.
-int64_t brunt_skin_place(const brunt_skin *skin, int k, int32_t n);
-int64_t brunt_skin_places(const brunt_skin *skin);
-void brunt_skin_free(brunt_skin *skin);
+int64_t brunt_surface_slot(const brunt_contact_surface *skin, int k, int32_t n);
+int64_t brunt_surface_slots(const brunt_contact_surface *skin);
+void brunt_surface_free(brunt_contact_surface *skin);
 // Bounds and speeds of every body's surface as it is now.
-void brunt_skin_bounds(brunt_skin *skin, int threads, brunt_timer *timer);
+void brunt_surface_bounds(brunt_contact_surface *skin, int threads, brunt_timer *timer);
 // Places, velocities, masses and normals of the active bodies. `gravity` [m/s^2] and `dt` are those of this step's
 // kick.
-void brunt_skin_take(brunt_skin *skin, double dt, const double gravity[3], int threads, brunt_timer *timer);
+void brunt_surface_gather_state(brunt_contact_surface *skin, double dt, const double gravity[3], int threads, brunt_timer *timer);
 // Velocities of the active bodies back to them, which then move for `dt`.
-void brunt_skin_give(brunt_skin *skin, double dt, int threads, brunt_timer *timer);
+void brunt_surface_scatter_velocity(brunt_contact_surface *skin, double dt, int threads, brunt_timer *timer);
 
 // Area of face f that is its node n's [m^2], 2D [m]; of a ring that of the whole circle, 2 pi int N_n r ds [m^2].
-static inline double brunt_skin_share(const brunt_skin *skin, int32_t f, int32_t n) {
+static inline double brunt_surface_nodal_area(const brunt_contact_surface *skin, int32_t f, int32_t n) {
     const int32_t *node = skin->face[f];
     if (skin->axisymmetric)
         return M_PI / 3 * skin->face_area[f] * (skin->x[n][0] + skin->x[node[0]][0] + skin->x[node[1]][0]);
@@ -126,8 +126,8 @@ static inline double brunt_skin_share(const brunt_skin *skin, int32_t f, int32_t
 }
 
 // What all forms of augury are given.
-typedef struct brunt_meeting {
-    brunt_skin *skin;
+typedef struct brunt_contact_context {
+    brunt_contact_surface *skin;
     brunt_pair *pairs;
     const int32_t *pair_of; // [a * body_count + b], -1: the two do not meet
     int body_count;
@@ -135,9 +135,9 @@ typedef struct brunt_meeting {
     int iterations;  // sweeps, or augury iterations of the paper's form
     double look;     // [m] bodies are near from twice this distance on, at least
     int64_t step;
-    const brunt_mirror *mirrors; // of the grids
+    const brunt_symmetry_plane *mirrors; // of the grids
     int mirror_count;
     brunt_wall *walls; // what the mirrors are
     int threads;
     brunt_timer *timer; // of the pass
-} brunt_meeting;
+} brunt_contact_context;

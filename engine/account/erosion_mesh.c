@@ -249,7 +249,7 @@ static int32_t list_corners(brunt_world *world, const brunt_fem_body *fem, int32
     return once;
 }
 
-static int gas_escapes(brunt_world *world, const brunt_fem_body *fem, const brunt_hold *hold, int32_t element,
+static int gas_escapes(brunt_world *world, const brunt_fem_body *fem, const brunt_node_set *hold, int32_t element,
                        brunt_error *error) {
     brunt_fail(error, BRUNT_FAILED,
                "boundaries (%s): the envelope of the gas has lost element %d of body '%s', time %.9g s, step %.0f: "
@@ -276,7 +276,7 @@ static int erode(brunt_world *world, int k, int32_t count, double dt, brunt_erro
         if (!world->erosion[fem->index].keep) book_node(world, fem, work->corner[i]);
     }
     int32_t element;
-    const brunt_hold *gas = brunt_holds_follow(world, k, &element);
+    const brunt_node_set *gas = brunt_node_sets_follow(world, k, &element);
     return gas ? gas_escapes(world, fem, gas, element, error) : BRUNT_OK;
 }
 

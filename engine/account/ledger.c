@@ -98,7 +98,7 @@ void brunt_world_energy(brunt_world *world, brunt_energy *energy) {
 
 // The paper's form of augury parks angular momentum in the affine velocity of boundary nodes.
 static void add_contact_spin(const brunt_world *world, double angular[3]) {
-    const brunt_skin *s = &world->skin;
+    const brunt_contact_surface *s = &world->skin;
     for (int32_t n = 0; s->affine && n < s->node_count; n++)
         for (int k = 0; k < 3; k++) {
             int i = (k + 1) % 3, j = (k + 2) % 3;
@@ -140,7 +140,7 @@ void brunt_world_momentum(brunt_world *world, brunt_momentum *momentum) {
         impulse += fabs(now->gravity_impulse[k]) + fabs(now->damping_impulse[k]);
         turn += fabs(now->gravity_angular[k]) + fabs(now->damping_angular[k]);
         for (int w = 0; w < world->wall_count; w++) {
-            const brunt_action *action = &world->walls[w].action;
+            const brunt_impulse_account *action = &world->walls[w].action;
             momentum->linear_impulse[k] += action->impulse[k];
             momentum->angular_impulse[k] += action->angular[k];
             impulse += fabs(action->impulse[k]);
@@ -174,7 +174,7 @@ static void bound_body(const brunt_world *world, const brunt_body_ref *body, bru
         sums->low[a] = there ? INFINITY : 0, sums->high[a] = there ? -INFINITY : 0;
     }
     for (int32_t n = 0; body->fem && n < body->fem->node_count; n++) {
-        if (body->fem->element_count && brunt_fem_gone(body->fem, n)) continue;
+        if (body->fem->element_count && brunt_fem_removed(body->fem, n)) continue;
         const real *node = brunt_fem_node(body->fem, n);
         bound((const double[3]){(double)node[0], (double)node[1], (double)node[2]}, sums);
     }
@@ -210,7 +210,7 @@ void brunt_body_totals(brunt_world *world, int32_t index, brunt_body_sums *sums)
     bound_body(world, &world->all[index], sums);
 }
 
-static void fill_force(const brunt_action *last, const brunt_action *all, double kick, brunt_force *force) {
+static void fill_force(const brunt_impulse_account *last, const brunt_impulse_account *all, double kick, brunt_force *force) {
     for (int k = 0; k < 3; k++) {
         force->force[k] = kick > 0 ? last->impulse[k] / kick : 0;
         force->impulse[k] = all->impulse[k];

@@ -24,7 +24,7 @@ static double triple(const double a[3], const double b[3], const double c[3]) {
     return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
 }
 
-double brunt_gas_volume(const brunt_world *world, const brunt_hold *hold, const brunt_group_def *def) {
+double brunt_gas_volume(const brunt_world *world, const brunt_node_set *hold, const brunt_group_def *def) {
     const brunt_fem_body *fem = &world->fems[hold->fem];
     double volume = 0;
     for (int32_t f = 0; f < hold->face_count; f++) {
@@ -61,7 +61,7 @@ static bool on_plane_of_symmetry(const brunt_fem_body *fem, const edge *e) {
 
 // An edge that an odd number of the faces has, and that is on no plane of symmetry through the origin: 1 and its
 // middle, 0 when there is none, -1: out of memory.
-static int find_opening(const brunt_fem_body *fem, const brunt_hold *hold, double at[3]) {
+static int find_opening(const brunt_fem_body *fem, const brunt_node_set *hold, double at[3]) {
     edge *edges = brunt_alloc(((size_t)hold->face_count * 4 + 1) * sizeof *edges);
     size_t count = 0;
     if (!edges) return -1;
@@ -84,7 +84,7 @@ static int find_opening(const brunt_fem_body *fem, const brunt_hold *hold, doubl
     return open;
 }
 
-int brunt_gas_start(brunt_world *world, brunt_hold *hold, const brunt_group_def *def, brunt_error *error) {
+int brunt_gas_start(brunt_world *world, brunt_node_set *hold, const brunt_group_def *def, brunt_error *error) {
     const char *name = world->walls[hold->wall].name;
     const brunt_gas_def *gas = &def->gas;
     if (world->dimension != 3)
@@ -112,7 +112,7 @@ int brunt_gas_start(brunt_world *world, brunt_hold *hold, const brunt_group_def 
         name, hold->gas_volume);
 }
 
-double brunt_gas_push(brunt_world *world, brunt_hold *hold, const brunt_group_def *def, double time, double dt) {
+double brunt_gas_push(brunt_world *world, brunt_node_set *hold, const brunt_group_def *def, double time, double dt) {
     const double volume = brunt_gas_volume(world, hold, def), gamma = def->gas.gamma;
     if (!(volume > 0)) {
         hold->gas_volume = volume;
@@ -132,7 +132,7 @@ double brunt_gas_push(brunt_world *world, brunt_hold *hold, const brunt_group_de
 
 // ------------------------------------------------------------------------------------------ to be read, and kept
 
-static const brunt_hold *gas_number(const brunt_world *world, int32_t index) {
+static const brunt_node_set *gas_number(const brunt_world *world, int32_t index) {
     for (int k = 0; k < world->hold_count; k++)
         if (world->groups[k].action == BRUNT_GROUP_GAS && index-- == 0) return &world->holds[k];
     return NULL;
@@ -144,7 +144,7 @@ int32_t brunt_gas_count(const brunt_world *world) {
     return count;
 }
 
-brunt_gas brunt_gas_now(const brunt_world *world, const brunt_hold *hold, const brunt_group_def *def) {
+brunt_gas brunt_gas_now(const brunt_world *world, const brunt_node_set *hold, const brunt_group_def *def) {
     brunt_gas gas = {.volume = brunt_gas_volume(world, hold, def), .inflow = hold->gas_inflow};
     memcpy(gas.name, world->walls[hold->wall].name, sizeof gas.name);
     gas.energy = hold->gas_energy * pow(hold->gas_volume / gas.volume, def->gas.gamma - 1);
@@ -153,7 +153,7 @@ brunt_gas brunt_gas_now(const brunt_world *world, const brunt_hold *hold, const 
 }
 
 void brunt_world_gas(const brunt_world *world, int32_t index, brunt_gas *gas) {
-    const brunt_hold *hold = gas_number(world, index);
+    const brunt_node_set *hold = gas_number(world, index);
     *gas = brunt_gas_now(world, hold, &world->groups[hold - world->holds]);
 }
 
@@ -161,7 +161,7 @@ int64_t brunt_gas_state_count(const brunt_world *world) { return 3 * (int64_t)br
 
 void brunt_gas_state_get(const brunt_world *world, double *out) {
     for (int k = 0; k < world->hold_count; k++) {
-        const brunt_hold *hold = &world->holds[k];
+        const brunt_node_set *hold = &world->holds[k];
         if (world->groups[k].action != BRUNT_GROUP_GAS) continue;
         *out++ = hold->gas_energy, *out++ = hold->gas_volume, *out++ = hold->gas_inflow;
     }
@@ -169,7 +169,7 @@ void brunt_gas_state_get(const brunt_world *world, double *out) {
 
 void brunt_gas_state_set(brunt_world *world, const double *in) {
     for (int k = 0; k < world->hold_count; k++) {
-        brunt_hold *hold = &world->holds[k];
+        brunt_node_set *hold = &world->holds[k];
         if (world->groups[k].action != BRUNT_GROUP_GAS) continue;
         hold->gas_energy = *in++, hold->gas_volume = *in++, hold->gas_inflow = *in++;
     }

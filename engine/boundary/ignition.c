@@ -20,7 +20,7 @@ static double distance(const brunt_detonation_def *d, int dim, const double x[3]
     return size > 0 ? fabs(along) / sqrt(size) : sqrt(apart);
 }
 
-static real lighting_time(const brunt_world_def *def, const char *body, double speed, const double x[3]) {
+static real ignition_time(const brunt_world_def *def, const char *body, double speed, const double x[3]) {
     double first = INFINITY;
     for (int32_t k = 0; k < def->detonation_count; k++) {
         const brunt_detonation_def *d = &def->detonations[k];
@@ -31,7 +31,7 @@ static real lighting_time(const brunt_world_def *def, const char *body, double s
 
 static int state_index(const brunt_model *model) {
     int s = 0;
-    while (strcmp(model->state[s].name, "lighting_time") != 0) s++;
+    while (strcmp(model->state[s].name, "ignition_time") != 0) s++;
     return s;
 }
 
@@ -43,7 +43,7 @@ static double light_particles(const brunt_world_def *def, brunt_body *body, doub
     real *time = brunt_state_arrays(p, model, state_index(model))[0], *const *x = brunt_field(p, BRUNT_FIELD_position);
     for (int64_t s = 0; s < p->slots; s++) {
         const double at[3] = {(double)x[0][s], (double)x[1][s], p->dim == 3 ? (double)x[2][s] : 0};
-        time[s] = lighting_time(def, body->name, speed, at);
+        time[s] = ignition_time(def, body->name, speed, at);
         first = fmin(first, (double)time[s]);
     }
     return first;
@@ -63,7 +63,7 @@ static double light_elements(const brunt_world_def *def, brunt_fem_body *fem, do
             const real *node = brunt_fem_node(fem, fem->element_node[(int64_t)s * nodes + c]);
             for (int a = 0; a < fem->dim; a++) centre[a] += (double)node[a] / nodes;
         }
-        time[s] = lighting_time(def, fem->name, speed, centre);
+        time[s] = ignition_time(def, fem->name, speed, centre);
         first = fmin(first, (double)time[s]);
     }
     return first;

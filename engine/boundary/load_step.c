@@ -60,7 +60,7 @@ static double face_stiffness(const double (*x)[3], int corners, bool ring) {
 
 // sum_i |a_i|^2 / m_i of the components that are free. `area` has room for the group's nodes and is 0, and so it is
 // left.
-static double mobility(const brunt_fem_body *fem, const brunt_hold *hold, double *area) {
+static double mobility(const brunt_fem_body *fem, const brunt_node_set *hold, double *area) {
     double sum = 0;
     for (int32_t i = 0; i < hold->node_count; i++) {
         const int32_t n = hold->node[i];
@@ -74,7 +74,7 @@ static double mobility(const brunt_fem_body *fem, const brunt_hold *hold, double
 }
 
 // Adds the faces' k_f to the nodes; of gas, gives the eigenvalue of the first part.
-static double look_at_faces(const brunt_world *world, const brunt_hold *hold, const brunt_group_def *def) {
+static double look_at_faces(const brunt_world *world, const brunt_node_set *hold, const brunt_group_def *def) {
     const brunt_fem_body *fem = &world->fems[hold->fem];
     brunt_gas gas = {.pressure = 0};
     double push = fabs(def->value[0] * brunt_curve_at(&def->table, world->now.time));

@@ -32,7 +32,7 @@ static void list_groups(const brunt_fem_body *fem, char *out, size_t size) {
 }
 
 // The faces whose nodes are all in the group.
-static int take_faces(brunt_world *world, brunt_hold *hold, const char *name) {
+static int take_faces(brunt_world *world, brunt_node_set *hold, const char *name) {
     const brunt_fem_body *fem = &world->fems[hold->fem];
     brunt_faces faces;
     if (brunt_fem_faces(fem, &faces)) return brunt_fail(NULL, BRUNT_FAILED, "out of memory");
@@ -66,10 +66,10 @@ static int take_faces(brunt_world *world, brunt_hold *hold, const char *name) {
     return status;
 }
 
-const brunt_hold *brunt_holds_follow(brunt_world *world, int fem, int32_t *element) {
-    const brunt_hold *opened = NULL;
+const brunt_node_set *brunt_node_sets_follow(brunt_world *world, int fem, int32_t *element) {
+    const brunt_node_set *opened = NULL;
     for (int k = 0; k < world->hold_count; k++) {
-        brunt_hold *hold = &world->holds[k];
+        brunt_node_set *hold = &world->holds[k];
         if (hold->fem != fem || !hold->whole_count) continue;
         brunt_fem_ranks(&world->fems[fem]);
         hold->face_count = 0;
@@ -84,7 +84,7 @@ const brunt_hold *brunt_holds_follow(brunt_world *world, int fem, int32_t *eleme
 }
 
 static int make_hold(brunt_world *world, int index, brunt_error *error) {
-    brunt_hold *hold = &world->holds[index];
+    brunt_node_set *hold = &world->holds[index];
     const brunt_group_def *def = &world->groups[index];
     brunt_wall *wall = &world->walls[hold->wall];
     hold->fem = -1;
@@ -129,7 +129,7 @@ static int make_hold(brunt_world *world, int index, brunt_error *error) {
     return BRUNT_OK;
 }
 
-int brunt_holds_make(brunt_world *world, const brunt_world_def *def, brunt_error *error) {
+int brunt_node_sets_make(brunt_world *world, const brunt_world_def *def, brunt_error *error) {
     world->hold_count = world->group_count = def->group_count;
     if (def->group_count > 255) return brunt_fail(error, BRUNT_BAD_INPUT, "boundaries: more than 255 groups");
     world->holds = brunt_alloc((size_t)(def->group_count + 1) * sizeof *world->holds);
@@ -153,7 +153,7 @@ int brunt_holds_make(brunt_world *world, const brunt_world_def *def, brunt_error
     return BRUNT_OK;
 }
 
-void brunt_holds_free(brunt_world *world) {
+void brunt_node_sets_free(brunt_world *world) {
     for (int k = 0; k < world->hold_count && world->holds; k++) {
         brunt_free(world->holds[k].face);
         brunt_free(world->holds[k].whole);
@@ -224,7 +224,7 @@ static void ring_shares(const double (*x)[3], double (*share)[3]) {
     }
 }
 
-static void make_forces(brunt_world *world, brunt_hold *hold, const brunt_group_def *def, double time, double dt) {
+static void make_forces(brunt_world *world, brunt_node_set *hold, const brunt_group_def *def, double time, double dt) {
     brunt_fem_body *fem = &world->fems[hold->fem];
     const bool traction = def->action == BRUNT_GROUP_TRACTION;
     double push = def->action == BRUNT_GROUP_GAS ? brunt_gas_push(world, hold, def, time, dt)
@@ -255,9 +255,9 @@ static void make_forces(brunt_world *world, brunt_hold *hold, const brunt_group_
 }
 
 // Half of the work of the loads, at the velocities as they are; with `impulse`, that too.
-static void book_loads(brunt_world *world, const brunt_hold *hold, double dt, bool impulse) {
+static void book_loads(brunt_world *world, const brunt_node_set *hold, double dt, bool impulse) {
     const brunt_fem_body *fem = &world->fems[hold->fem];
-    brunt_action *last = &world->walls[hold->wall].last;
+    brunt_impulse_account *last = &world->walls[hold->wall].last;
     double work = 0;
     for (int32_t i = 0; i < hold->node_count; i++) {
         const real *node = brunt_fem_node(fem, hold->node[i]);
@@ -294,13 +294,13 @@ void brunt_fem_hold_all(brunt_world *world, const double gravity[3], double time
     for (int k = 0; k < world->hold_count; k++) {
         const brunt_group_def *def = &world->groups[k];
         if (!moves(def)) continue;
-        const brunt_hold *hold = &world->holds[k];
+        const brunt_node_set *hold = &world->holds[k];
         brunt_fem_body *fem = &world->fems[hold->fem];
-        brunt_action *last = &world->walls[hold->wall].last;
+        brunt_impulse_account *last = &world->walls[hold->wall].last;
         double now = brunt_curve_at(&def->table, time + 0.5 * step), then = brunt_curve_at(&def->table, time + step);
         for (int32_t i = 0; i < hold->node_count; i++) {
             const int32_t n = hold->node[i];
-            if (brunt_fem_gone(fem, n)) continue;
+            if (brunt_fem_removed(fem, n)) continue;
             real *node = brunt_fem_node(fem, n), force[3];
             double J[3] = {0}, x[3], old[3] = {0}, v[3] = {0}, mean[3] = {0};
             brunt_fem_internal_force(fem, n, force);
@@ -317,13 +317,13 @@ void brunt_fem_hold_all(brunt_world *world, const double gravity[3], double time
                 mean[a] = 0.5 * (old[a] + v[a]);
                 node[BRUNT_FEM_V + a] = (real)v[a];
             }
-            brunt_action_book(last, &last->normal_loss, J, x, old, v, mean);
+            brunt_impulse_account_book(last, &last->normal_loss, J, x, old, v, mean);
         }
     }
 }
 
 void brunt_fem_hold_contact(brunt_world *world) {
-    const brunt_skin *s = &world->skin;
+    const brunt_contact_surface *s = &world->skin;
     for (int k = 0; k < s->fem_count && world->hold_count; k++) {
         if (!s->active[k] || !world->holder[k]) continue;
         for (int32_t n = s->node_range[k]; n < s->node_end[k]; n++)
@@ -332,8 +332,8 @@ void brunt_fem_hold_contact(brunt_world *world) {
                 if (!holder || s->impulse[n][a] == 0) continue;
                 double J[3] = {0};
                 J[a] = -s->impulse[n][a];
-                brunt_action *last = &world->walls[world->holds[holder - 1].wall].last;
-                brunt_action_book(last, &last->normal_loss, J, s->x[n], s->v[n], s->v[n], s->v[n]);
+                brunt_impulse_account *last = &world->walls[world->holds[holder - 1].wall].last;
+                brunt_impulse_account_book(last, &last->normal_loss, J, s->x[n], s->v[n], s->v[n], s->v[n]);
             }
     }
 }

@@ -257,7 +257,7 @@ static int make(const brunt_body_def *def, const brunt_mesh *mesh, brunt_fem_bod
     measure_lateral_ratio(body, def->temperature);
     soften_hourglass(body);
     reset_state(body, def->temperature, body->slots);
-    brunt_fem_steps(body, def->mass_scaling);
+    brunt_fem_stable_steps(body, def->mass_scaling);
     share_masses(body, mass);
     for (int32_t b = 0; b < body->block_count; b++) body->report[b] = (brunt_fem_report){.bad = -1};
     return BRUNT_OK;

@@ -168,7 +168,7 @@ int brunt_fem_elements_set(brunt_fem_body *body, const int64_t *in);
 // Brings `rank` up to date.
 void brunt_fem_ranks(brunt_fem_body *body);
 // The node has left with its last element.
-static inline bool brunt_fem_gone(const brunt_fem_body *body, int32_t node) {
+static inline bool brunt_fem_removed(const brunt_fem_body *body, int32_t node) {
     return body->bonds && !body->bonds[node] &&
            body->node[(size_t)node * BRUNT_FEM_NODE_REALS + BRUNT_FEM_MASS] == (real)BRUNT_FEM_NO_MASS;
 }
@@ -206,7 +206,7 @@ brunt_points brunt_fem_points(brunt_fem_body *body, brunt_component component, i
 int32_t brunt_fem_folded(const brunt_fem_body *body);
 // Cauchy stress of a membrane's element [Pa] in global axes, XX YY ZZ XY YZ XZ, from where its nodes are now and its stretch and
 // Kirchhoff stress: none across the sheet. The area that stress acts on has `thickness` times the stretch across.
-void brunt_fem_sheet_stress(const brunt_fem_body *body, int32_t slot, double sigma[6]);
+void brunt_membrane_stress(const brunt_fem_body *body, int32_t slot, double sigma[6]);
 // Stored and dissipated energy of all elements [J], without the hourglass modes.
 brunt_point_energy brunt_fem_energy(brunt_fem_body *body);
 // Internal force on a node [N], from the partial forces.

@@ -11,11 +11,11 @@ uint64_t brunt_hilbert_key(int dim, int bits, const uint32_t *coordinate);
 
 // Norm and overlap of the hourglass modes, mass scaling to steps of `mass_scaling` (0: none), least_step; needs start,
 // the fields and lateral_ratio.
-void brunt_fem_steps(brunt_fem_body *body, double mass_scaling);
+void brunt_fem_stable_steps(brunt_fem_body *body, double mass_scaling);
 // Places of an element's nodes at the start.
 void brunt_fem_corners(const brunt_fem_body *body, int32_t slot, double (*x)[3]);
 // Of a sheet: its frame (see membrane.inc) from the places x of its nodes; and x in that frame, from node 0.
-void brunt_fem_sheet_frame(int nodes, const double (*x)[3], double e[3][3]);
+void brunt_membrane_frame(int nodes, const double (*x)[3], double e[3][3]);
 void brunt_fem_flatten(int nodes, double (*x)[3]);
 // Of a ring undeformed, with places x of its nodes: bound of omega^2 over the square of the wave speed [1/m^2], springs not counted;
 // r is lambda / (lambda + 2 mu). See axisymmetric.inc.

@@ -20,7 +20,7 @@ static void tangents(int nodes, const double (*x)[3], double chi[3], double psi[
     }
 }
 
-void brunt_fem_sheet_frame(int nodes, const double (*x)[3], double e[3][3]) {
+void brunt_membrane_frame(int nodes, const double (*x)[3], double e[3][3]) {
     double chi[3], psi[3], alpha[3], beta[3];
     tangents(nodes, x, chi, psi);
     vector_product(chi, psi, e[2]);
@@ -37,7 +37,7 @@ void brunt_fem_sheet_frame(int nodes, const double (*x)[3], double e[3][3]) {
 
 void brunt_fem_flatten(int nodes, double (*x)[3]) {
     double e[3][3], from[3] = {x[0][0], x[0][1], x[0][2]};
-    brunt_fem_sheet_frame(nodes, (const double(*)[3])x, e);
+    brunt_membrane_frame(nodes, (const double(*)[3])x, e);
     for (int a = 0; a < nodes; a++) {
         double d[3] = {x[a][0] - from[0], x[a][1] - from[1], x[a][2] - from[2]};
         for (int i = 0; i < 3; i++) x[a][i] = product(d, e[i]);
@@ -55,7 +55,7 @@ static void tangent_map(const brunt_fem_body *body, int32_t slot, double F[2][3]
     }
     tangents(nodes, (const double(*)[3])X, start[0], start[1]);
     tangents(nodes, (const double(*)[3])x, now[0], now[1]);
-    brunt_fem_sheet_frame(nodes, (const double(*)[3])X, e);
+    brunt_membrane_frame(nodes, (const double(*)[3])X, e);
     for (int k = 0; k < 2; k++)
         for (int b = 0; b < 2; b++) m[k][b] = product(start[k], e[b]);
     double det = m[0][0] * m[1][1] - m[0][1] * m[1][0];
@@ -65,7 +65,7 @@ static void tangent_map(const brunt_fem_body *body, int32_t slot, double F[2][3]
     }
 }
 
-void brunt_fem_sheet_stress(const brunt_fem_body *body, int32_t slot, double sigma[6]) {
+void brunt_membrane_stress(const brunt_fem_body *body, int32_t slot, double sigma[6]) {
     static const int row[6] = {0, 1, 2, 0, 1, 0}, column[6] = {0, 1, 2, 1, 2, 2};
     real *const *U = body->scalar + body->field[BRUNT_ELEMENT_deformation_gradient].first,
                 *const *tau = body->scalar + body->field[BRUNT_ELEMENT_kirchhoff_stress].first;

@@ -169,7 +169,7 @@ static void own_corners(const brunt_fem_body *body, int32_t slot, double (*x)[3]
     if (body->element->sheet) brunt_fem_flatten(body->element->nodes, x);
 }
 
-void brunt_fem_steps(brunt_fem_body *body, double mass_scaling) {
+void brunt_fem_stable_steps(brunt_fem_body *body, double mass_scaling) {
     const real *volume = brunt_element_scalars(body, BRUNT_ELEMENT_reference_volume)[0];
     double x[BRUNT_ELEMENT_NODES][3], norm = 1, overlap = 0;
     for (int32_t s = 0; s < body->slots && body->element->hourglass_modes; s++) {

@@ -4,11 +4,11 @@
 
 #include "base/memory.h"
 
-void brunt_shell_free(brunt_shell *shell) {
+void brunt_topology_free(brunt_surface_topology *shell) {
     void *owned[] = {shell->rank, shell->slot,   shell->open,   shell->across,
                      shell->key,  shell->before, shell->number, shell->number_before};
     for (size_t k = 0; k < sizeof owned / sizeof owned[0]; k++) brunt_free(owned[k]);
-    *shell = (brunt_shell){0};
+    *shell = (brunt_surface_topology){0};
 }
 
 // ------------------------------------------------------------------------------------------ neighbours
@@ -18,7 +18,7 @@ typedef struct face_of {
     int face;
 } face_of;
 
-static face_of read_face(const brunt_shell *shell, const brunt_fem_body *fem, int32_t place, int face) {
+static face_of read_face(const brunt_surface_topology *shell, const brunt_fem_body *fem, int32_t place, int face) {
     const brunt_element *type = fem->element;
     const int32_t *corner = fem->element_node + (size_t)shell->slot[place] * (size_t)type->nodes;
     face_of out = {.place = place, .face = face, .least = INT32_MAX};
@@ -39,7 +39,7 @@ static bool same_nodes(const face_of *a, const face_of *b, int count) {
 }
 
 // Faces are put into a bin by their least node, where the few others that can be equal are.
-static void pair_faces(brunt_shell *shell, const brunt_fem_body *fem, int32_t *first, int32_t *list) {
+static void pair_faces(brunt_surface_topology *shell, const brunt_fem_body *fem, int32_t *first, int32_t *list) {
     const int faces = fem->element->face_count;
     const int32_t count = shell->elements * faces;
     for (int32_t k = 0; k < count; k++) first[read_face(shell, fem, k / faces, k % faces).least + 2]++;
@@ -56,7 +56,7 @@ static void pair_faces(brunt_shell *shell, const brunt_fem_body *fem, int32_t *f
         }
 }
 
-static int find_neighbours(brunt_shell *shell, const brunt_fem_body *fem) {
+static int find_neighbours(brunt_surface_topology *shell, const brunt_fem_body *fem) {
     const size_t faces = (size_t)shell->elements * (size_t)fem->element->face_count;
     int32_t *first = brunt_alloc(((size_t)fem->node_count + 2) * sizeof *first);
     int32_t *list = brunt_alloc((faces + 1) * sizeof *list);
@@ -70,7 +70,7 @@ static int find_neighbours(brunt_shell *shell, const brunt_fem_body *fem) {
 
 // ------------------------------------------------------------------------------------------ the surface
 
-static uint8_t open_faces(const brunt_shell *shell, int32_t place, int faces) {
+static uint8_t open_faces(const brunt_surface_topology *shell, int32_t place, int faces) {
     const int32_t *across = shell->across + (size_t)place * (size_t)faces;
     int open = 0;
     for (int f = 0; f < faces; f++)
@@ -79,7 +79,7 @@ static uint8_t open_faces(const brunt_shell *shell, int32_t place, int faces) {
 }
 
 // An element is gone: what it covered lies open.
-static void open_neighbours(brunt_shell *shell, int32_t place, int faces) {
+static void open_neighbours(brunt_surface_topology *shell, int32_t place, int faces) {
     shell->open[place] = 0;
     for (int f = 0; f < faces; f++) {
         const int32_t beside = shell->across[(size_t)place * (size_t)faces + (size_t)f];
@@ -88,7 +88,7 @@ static void open_neighbours(brunt_shell *shell, int32_t place, int faces) {
 }
 
 // Where the elements are now, and which of their faces are open. Whether others are there than the last time.
-static bool find_elements(brunt_shell *shell, const brunt_fem_body *fem) {
+static bool find_elements(brunt_surface_topology *shell, const brunt_fem_body *fem) {
     enum { WAS = -2 };
     const int faces = fem->element->face_count;
     bool left = false, back = false;
@@ -116,7 +116,7 @@ static bool find_elements(brunt_shell *shell, const brunt_fem_body *fem) {
     return left || back;
 }
 
-static int list_faces(brunt_shell *shell, const brunt_fem_body *fem) {
+static int list_faces(brunt_surface_topology *shell, const brunt_fem_body *fem) {
     const int faces = fem->element->face_count;
     int32_t count = 0;
     for (int32_t r = 0; r < shell->elements; r++) {
@@ -132,14 +132,14 @@ static int list_faces(brunt_shell *shell, const brunt_fem_body *fem) {
 }
 
 static bool flies_on(const brunt_fem_body *fem, int32_t n) {
-    return fem->bonds && !fem->bonds[n] && !brunt_fem_gone(fem, n);
+    return fem->bonds && !fem->bonds[n] && !brunt_fem_removed(fem, n);
 }
 
-static void number_nodes(brunt_shell *shell, const brunt_fem_body *fem) {
+static void number_nodes(brunt_surface_topology *shell, const brunt_fem_body *fem) {
     for (int32_t n = 0; n < fem->node_count; n++) shell->number[n] = flies_on(fem, n) ? 0 : -1;
     for (int32_t k = 0; k < shell->key_count; k++) {
         int32_t node[4];
-        brunt_shell_face(shell, fem, k, node);
+        brunt_topology_face(shell, fem, k, node);
         for (int c = 0; c < 4 && node[c] >= 0; c++) shell->number[node[c]] = 0;
     }
     shell->number_count = 0;
@@ -147,7 +147,7 @@ static void number_nodes(brunt_shell *shell, const brunt_fem_body *fem) {
         if (shell->number[n] == 0) shell->number[n] = shell->number_count++;
 }
 
-void brunt_shell_face(const brunt_shell *shell, const brunt_fem_body *fem, int32_t k, int32_t node[4]) {
+void brunt_topology_face(const brunt_surface_topology *shell, const brunt_fem_body *fem, int32_t k, int32_t node[4]) {
     const brunt_element *type = fem->element;
     const int32_t place = shell->key[k] / type->face_count;
     const int32_t *corner = fem->element_node + (size_t)shell->slot[place] * (size_t)type->nodes;
@@ -155,7 +155,7 @@ void brunt_shell_face(const brunt_shell *shell, const brunt_fem_body *fem, int32
     for (int c = 0; c < 4; c++) node[c] = c < type->face_nodes ? corner[face[c]] : -1;
 }
 
-int brunt_shell_renew(brunt_shell *shell, const brunt_fem_body *fem, bool restored) {
+int brunt_topology_renew(brunt_surface_topology *shell, const brunt_fem_body *fem, bool restored) {
     if (!restored && fem->element_count == shell->live) return 0;
     if (!find_elements(shell, fem) && !restored) return 0;
     int32_t *const key = shell->key, *const number = shell->number;
@@ -168,8 +168,8 @@ int brunt_shell_renew(brunt_shell *shell, const brunt_fem_body *fem, bool restor
     return 1;
 }
 
-int brunt_shell_make(brunt_shell *shell, const brunt_fem_body *fem) {
-    *shell = (brunt_shell){.elements = fem->element_count, .live = fem->element_count};
+int brunt_topology_make(brunt_surface_topology *shell, const brunt_fem_body *fem) {
+    *shell = (brunt_surface_topology){.elements = fem->element_count, .live = fem->element_count};
     const size_t n = (size_t)fem->element_count + 1, nodes = (size_t)fem->node_count + 1;
     shell->rank = brunt_alloc(n * sizeof *shell->rank), shell->slot = brunt_alloc(n * sizeof *shell->slot);
     shell->open = brunt_alloc(n);

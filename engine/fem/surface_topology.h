@@ -8,7 +8,7 @@
 
 #include "fem/fem_body.h"
 
-typedef struct brunt_shell {
+typedef struct brunt_surface_topology {
     int32_t elements;      // at the start
     int32_t *rank;         // of each element by its number in the mesh: its place then
     int32_t *slot;         // of each place: where the element is now, -1: gone
@@ -23,14 +23,14 @@ typedef struct brunt_shell {
     int32_t *number, *number_before;
     int32_t number_count;
     bool changed; // of the caller
-} brunt_shell;
+} brunt_surface_topology;
 
 // Of a body that has all its elements. 0, or -1: out of memory.
-int brunt_shell_make(brunt_shell *shell, const brunt_fem_body *fem);
+int brunt_topology_make(brunt_surface_topology *shell, const brunt_fem_body *fem);
 // The surface as it is now; what it was becomes `before`. 1 when it is made anew, 0 when nothing has changed, -1: out of memory.
 // `restored`: others may be there than before, of a saved state, and other nodes may be loose; else as many as before are the
 // same.
-int brunt_shell_renew(brunt_shell *shell, const brunt_fem_body *fem, bool restored);
+int brunt_topology_renew(brunt_surface_topology *shell, const brunt_fem_body *fem, bool restored);
 // Nodes (of the body) of face `k` of the surface; the 4th is -1 for triangles, 3rd and 4th for segments.
-void brunt_shell_face(const brunt_shell *shell, const brunt_fem_body *fem, int32_t k, int32_t node[4]);
-void brunt_shell_free(brunt_shell *shell);
+void brunt_topology_face(const brunt_surface_topology *shell, const brunt_fem_body *fem, int32_t k, int32_t node[4]);
+void brunt_topology_free(brunt_surface_topology *shell);

@@ -754,34 +754,34 @@ static void update_material(brunt_body *body, const brunt_block *block, real dt,
 // Plane strain, space, rings.
 static int table_row(int dim, bool axisymmetric) { return axisymmetric ? 2 : dim - 2; }
 
-brunt_scatter_fn *brunt_find_scatter(int dim, bool axisymmetric, brunt_kernel kernel, brunt_transfer transfer) {
-    static brunt_scatter_fn *const table[3][3][2] = {SCATTERS(2, 0), SCATTERS(3, 0), SCATTERS(2, 1)};
+brunt_p2g_fn *brunt_find_scatter(int dim, bool axisymmetric, brunt_kernel kernel, brunt_transfer transfer) {
+    static brunt_p2g_fn *const table[3][3][2] = {SCATTERS(2, 0), SCATTERS(3, 0), SCATTERS(2, 1)};
     return table[table_row(dim, axisymmetric)][kernel - 1][transfer == BRUNT_APIC];
 }
 
-brunt_gather_fn *brunt_find_gather(int dim, bool axisymmetric, brunt_kernel kernel, brunt_transfer transfer) {
-    static brunt_gather_fn *const table[3][3][3] = {GATHERS(gather_2), GATHERS(gather_3), GATHERS(gather_axis_2)};
+brunt_g2p_fn *brunt_find_gather(int dim, bool axisymmetric, brunt_kernel kernel, brunt_transfer transfer) {
+    static brunt_g2p_fn *const table[3][3][3] = {GATHERS(gather_2), GATHERS(gather_3), GATHERS(gather_axis_2)};
     return table[table_row(dim, axisymmetric)][kernel - 1][transfer];
 }
 
-brunt_scatter_fn *brunt_find_total_scatter(int dim, brunt_kernel kernel, brunt_transfer transfer) {
-    static brunt_scatter_fn *const table[2][3][2] = {
+brunt_p2g_fn *brunt_find_total_scatter(int dim, brunt_kernel kernel, brunt_transfer transfer) {
+    static brunt_p2g_fn *const table[2][3][2] = {
         {{NULL}, {scatter_total_2_2_0_0, scatter_total_2_2_1_0}, {scatter_total_2_3_0_0, scatter_total_2_3_1_0}},
         {{NULL}, {scatter_total_3_2_0_0, scatter_total_3_2_1_0}, {scatter_total_3_3_0_0, scatter_total_3_3_1_0}}};
     return table[dim - 2][kernel - 1][transfer == BRUNT_APIC];
 }
 
-brunt_gather_fn *brunt_find_total_gather(int dim, brunt_kernel kernel, brunt_transfer transfer) {
+brunt_g2p_fn *brunt_find_total_gather(int dim, brunt_kernel kernel, brunt_transfer transfer) {
 #define TOTALS(d, order)                                                                                               \
     { gather_total_##d##_##order##_0_0, gather_total_##d##_##order##_1_0, gather_total_##d##_##order##_2_0 }
-    static brunt_gather_fn *const table[2][3][3] = {{{NULL}, TOTALS(2, 2), TOTALS(2, 3)},
+    static brunt_g2p_fn *const table[2][3][3] = {{{NULL}, TOTALS(2, 2), TOTALS(2, 3)},
                                                     {{NULL}, TOTALS(3, 2), TOTALS(3, 3)}};
 #undef TOTALS
     return table[dim - 2][kernel - 1][transfer];
 }
 
-brunt_gather_fn *brunt_find_advance(int dim, bool axisymmetric, brunt_kernel kernel, brunt_transfer transfer) {
-    static brunt_gather_fn *const table[3][3] = {{gather_2_1_0_1, gather_2_1_1_1, gather_2_1_2_1},
+brunt_g2p_fn *brunt_find_advance(int dim, bool axisymmetric, brunt_kernel kernel, brunt_transfer transfer) {
+    static brunt_g2p_fn *const table[3][3] = {{gather_2_1_0_1, gather_2_1_1_1, gather_2_1_2_1},
                                                  {gather_3_1_0_1, gather_3_1_1_1, gather_3_1_2_1},
                                                  {gather_axis_2_1_0_1, gather_axis_2_1_1_1, gather_axis_2_1_2_1}};
     return kernel == BRUNT_LINEAR ? table[table_row(dim, axisymmetric)][transfer] : NULL;

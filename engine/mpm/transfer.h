@@ -21,29 +21,29 @@ typedef struct brunt_workspace {
 } brunt_workspace;
 
 // Particles of block `block` to its scatter buffer: mass, momentum, and dt times internal force.
-typedef void brunt_scatter_fn(brunt_body *body, int32_t block, real dt);
+typedef void brunt_p2g_fn(brunt_body *body, int32_t block, real dt);
 
 // Velocity and its gradient from the grid to the particles of `block`, then their update: velocity, position,
 // deformation gradient, material. Fills body->report[block].
-typedef void brunt_gather_fn(brunt_body *body, int32_t block, real dt, real flip, brunt_workspace *work);
+typedef void brunt_g2p_fn(brunt_body *body, int32_t block, real dt, real flip, brunt_workspace *work);
 
 // kernel 1..3, transfer BRUNT_PIC, BRUNT_FLIP, BRUNT_APIC; axisymmetric with dim 2
-brunt_scatter_fn *brunt_find_scatter(int dim, bool axisymmetric, brunt_kernel kernel, brunt_transfer transfer);
-brunt_gather_fn *brunt_find_gather(int dim, bool axisymmetric, brunt_kernel kernel, brunt_transfer transfer);
+brunt_p2g_fn *brunt_find_scatter(int dim, bool axisymmetric, brunt_kernel kernel, brunt_transfer transfer);
+brunt_g2p_fn *brunt_find_gather(int dim, bool axisymmetric, brunt_kernel kernel, brunt_transfer transfer);
 // The same of total-Lagrangian bodies (not axisymmetric). NULL for the linear kernel: the slope of its fields jumps
 // between cells, and particles that never leave their corner of a cell do not average it.
-brunt_scatter_fn *brunt_find_total_scatter(int dim, brunt_kernel kernel, brunt_transfer transfer);
-brunt_gather_fn *brunt_find_total_gather(int dim, brunt_kernel kernel, brunt_transfer transfer);
+brunt_p2g_fn *brunt_find_total_scatter(int dim, brunt_kernel kernel, brunt_transfer transfer);
+brunt_g2p_fn *brunt_find_total_gather(int dim, brunt_kernel kernel, brunt_transfer transfer);
 // The linear kernel gathers in two stages: this one updates the velocities, the one above the rest, after the
 // velocities have been to the grid once more. NULL for the other kernels.
-brunt_gather_fn *brunt_find_advance(int dim, bool axisymmetric, brunt_kernel kernel, brunt_transfer transfer);
+brunt_g2p_fn *brunt_find_advance(int dim, bool axisymmetric, brunt_kernel kernel, brunt_transfer transfer);
 
 // --- leaving.c: particles of a block whose deformation gradient stands still, of bodies that erode or keep what has left
 // Sets the velocity gradient of those that would turn inside out (they are marked in particles.order) and of those freed
 // of stress (volume 0) to 0, before F is updated. `hoop_stretch` takes F[8] of rings. How many are newly marked.
-int32_t brunt_hold_points(brunt_body *body, const brunt_block *block, real dt, real *const *gradient, real *hoop_stretch);
+int32_t brunt_keep_inverted(brunt_body *body, const brunt_block *block, real dt, real *const *gradient, real *hoop_stretch);
 // The same for the hoop of rings, after F is updated: rate to 0, stretch as it was.
-int32_t brunt_hold_hoops(brunt_body *body, const brunt_block *block, real dt, real *hoop, const real *hoop_stretch);
+int32_t brunt_keep_inverted_rings(brunt_body *body, const brunt_block *block, real dt, real *hoop, const real *hoop_stretch);
 // What is freed has no stress.
 void brunt_still_stress(brunt_body *body, const brunt_block *block);
 

@@ -102,14 +102,14 @@ typedef struct body_job {
 static void scatter_blocks(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     const body_job *job = context;
-    brunt_scatter_fn *scatter =
+    brunt_p2g_fn *scatter =
         brunt_total_lagrangian(&job->body->particles) ? job->world->total_scatter : job->world->scatter;
     for (int64_t b = begin; b < end; b++) scatter(job->body, (int32_t)b, (real)job->dt);
 }
 
 static void gather_blocks(void *context, int64_t begin, int64_t end, int worker) {
     const body_job *job = context;
-    brunt_gather_fn *gather =
+    brunt_g2p_fn *gather =
         brunt_total_lagrangian(&job->body->particles) ? job->world->total_gather : job->world->gather;
     for (int64_t b = begin; b < end; b++)
         gather(job->body, (int32_t)b, (real)job->dt, (real)job->world->flip, &job->world->work[worker]);
@@ -143,7 +143,7 @@ static bool acts_on(const brunt_wall *wall, const brunt_body *body) {
     return wall->body < 0 || wall->body == body->index;
 }
 
-static bool mirrors(const brunt_world *world, const brunt_mirror *mirror, const brunt_body *body) {
+static bool mirrors(const brunt_world *world, const brunt_symmetry_plane *mirror, const brunt_body *body) {
     return mirror->wall < 0 || acts_on(&world->walls[mirror->wall], body);
 }
 
@@ -181,11 +181,11 @@ static void make_grid_velocities(brunt_world *world, brunt_body *body, const dou
 
     if (world->mirror_count) {
         brunt_pass_begin(world, BRUNT_PASS_mirror);
-        brunt_action unbooked = {.external_work = 0}; // of the axis: its impulses cancel around the circle
+        brunt_impulse_account unbooked = {.external_work = 0}; // of the axis: its impulses cancel around the circle
         for (int m = 0; m < world->mirror_count; m++) {
-            const brunt_mirror *mirror = &world->mirrors[m];
+            const brunt_symmetry_plane *mirror = &world->mirrors[m];
             if (mirrors(world, mirror, body))
-                brunt_mirror_fold(body, mirror, world->transfer == BRUNT_FLIP ? 1 - world->flip : 1,
+                brunt_symmetry_fold(body, mirror, world->transfer == BRUNT_FLIP ? 1 - world->flip : 1,
                                   mirror->wall < 0 ? &unbooked : &world->walls[mirror->wall].last);
         }
         brunt_pass_end(world, nodes);
@@ -223,7 +223,7 @@ static int constrain_velocities(brunt_world *world, const double gravity[3], dou
     if (status) return status;
     if (world->has_contact) {
         brunt_pass_begin(world, BRUNT_PASS_contact);
-        int failed = brunt_multivelocity_apply(
+        int failed = brunt_grid_velocity_apply(
             world->bodies, world->body_count, world->pairs, world->pair_count, world->mpm_pair_of, world->mirrors,
             world->mirror_count, dt, world->threads, &world->pass[BRUNT_PASS_contact].threads, &world->contact_work);
         if (failed)
@@ -248,7 +248,7 @@ static int constrain_velocities(brunt_world *world, const double gravity[3], dou
     if (world->has_walls && world->body_count) {
         brunt_pass_begin(world, BRUNT_PASS_walls);
         for (int i = 0; i < world->body_count; i++)
-            if (brunt_walls_apply(&world->bodies[i], world->walls, world->wall_count, world->mirrors,
+            if (brunt_planes_apply(&world->bodies[i], world->walls, world->wall_count, world->mirrors,
                                   world->mirror_count, world->now.time, dt, &world->wall_work[i]))
                 return fail(world, &world->bodies[i], error, "out of memory at a wall");
         brunt_pass_end(world, all_grid_nodes(world));
@@ -311,12 +311,12 @@ static void remap_velocities(brunt_world *world, double dt) {
         static const double weightless[3] = {0, 0, 0};
         body_job job = {world, body, dt}, still = {world, body, 0};
         brunt_grid_job grid_job = {.body = body, .gravity = weightless, .sums = world->node_sums};
-        brunt_action unbooked = {.external_work = 0};
+        brunt_impulse_account unbooked = {.external_work = 0};
         brunt_parallel(world->threads, body->grid.block_count, BLOCK_GRAIN, advance_blocks, &job, timer);
         brunt_parallel(world->threads, body->grid.block_count, BLOCK_GRAIN, scatter_blocks, &still, timer);
         brunt_parallel(world->threads, body->grid.slot_count, SLOT_GRAIN, brunt_grid_sum, &grid_job, timer);
         for (int m = 0; m < world->mirror_count; m++)
-            if (mirrors(world, &world->mirrors[m], body)) brunt_mirror_fold(body, &world->mirrors[m], 1, &unbooked);
+            if (mirrors(world, &world->mirrors[m], body)) brunt_symmetry_fold(body, &world->mirrors[m], 1, &unbooked);
         brunt_parallel(world->threads, body->grid.slot_count, SLOT_GRAIN, brunt_grid_update, &grid_job, timer);
         for (int w = 0; w < world->wall_count; w++) {
             brunt_wall wall = world->walls[w];
@@ -532,8 +532,8 @@ static int begin_step(brunt_world *world, step *s, brunt_error *error) {
     brunt_gravity_at(world, world->now.time, s->gravity); // as the forces: of the middle of the kick
     for (int i = 0; i < world->body_count; i++) world->bodies[i].time = (real)(world->now.time + dt);
     for (int k = 0; k < world->fem_count; k++) world->fems[k].time = (real)(world->now.time + dt);
-    for (int w = 0; w < world->wall_count; w++) world->walls[w].last = (brunt_action){.external_work = 0};
-    for (int p = 0; p < world->pair_count; p++) world->pairs[p].last = (brunt_action){.external_work = 0};
+    for (int w = 0; w < world->wall_count; w++) world->walls[w].last = (brunt_impulse_account){.external_work = 0};
+    for (int p = 0; p < world->pair_count; p++) world->pairs[p].last = (brunt_impulse_account){.external_work = 0};
     brunt_pass_end(world, world->all_count);
     return BRUNT_OK;
 }
@@ -549,8 +549,8 @@ static int fail_gas(const brunt_world *world, brunt_error *error) {
 static void advance(brunt_world *world, const step *s) {
     struct brunt_clock *now = &world->now;
     brunt_pass_begin(world, BRUNT_PASS_advance);
-    for (int w = 0; w < world->wall_count; w++) brunt_action_add(&world->walls[w].action, &world->walls[w].last);
-    for (int p = 0; p < world->pair_count; p++) brunt_action_add(&world->pairs[p].action, &world->pairs[p].last);
+    for (int w = 0; w < world->wall_count; w++) brunt_impulse_account_add(&world->walls[w].action, &world->walls[w].last);
+    for (int p = 0; p < world->pair_count; p++) brunt_impulse_account_add(&world->pairs[p].action, &world->pairs[p].last);
     brunt_ledger_remember(world);
     double stop = fmin(s->limit > now->time ? s->limit : INFINITY, world->end);
     now->time = s->dt == stop - now->time ? stop : now->time + s->dt;

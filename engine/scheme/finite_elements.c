@@ -48,7 +48,7 @@ typedef struct job {
 // Nodes that have left their body stay where they were, whatever gravity.
 static void keep_still(brunt_fem_body *fem, int32_t begin, int32_t end) {
     for (int32_t n = begin; n < end; n++)
-        for (int a = 0; brunt_fem_gone(fem, n) && a < 3; a++) brunt_fem_node(fem, n)[BRUNT_FEM_V + a] = 0;
+        for (int a = 0; brunt_fem_removed(fem, n) && a < 3; a++) brunt_fem_node(fem, n)[BRUNT_FEM_V + a] = 0;
 }
 
 static void kick_nodes(void *context, int64_t begin, int64_t end, int worker) {

@@ -187,7 +187,7 @@ brunt_array brunt_world_array(const brunt_world *world, int32_t index) {
     }
     brunt_array array = {.name = "contact of surfaces", .unit = "", .components = 1};
     array.bytes = (size_t)world->skin.node_count * 200 + (size_t)world->skin.face_count * 76 +
-                  brunt_facing_bytes(world->facing) + world->points.point_capacity + world->points.entry_capacity +
+                  brunt_node_to_facet_bytes(world->facing) + world->points.point_capacity + world->points.entry_capacity +
                   world->points.support_capacity;
     return array;
 }

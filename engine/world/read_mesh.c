@@ -51,7 +51,7 @@ static const brunt_field_info contact_fields[] = {
 enum { CONTACT_FIELDS = sizeof contact_fields / sizeof contact_fields[0] };
 
 static void read_contact(const brunt_world *world, const brunt_fem_body *fem, int32_t field, double *out) {
-    const brunt_skin *s = &world->skin;
+    const brunt_contact_surface *s = &world->skin;
     const int components = contact_fields[field].components;
     for (int64_t k = 0; k < (int64_t)fem->node_count * components; k++) out[k] = field == 0 ? NAN : 0;
     const int32_t body = (int32_t)(fem - world->fems);
@@ -86,7 +86,7 @@ static void read_point(const brunt_fem_body *fem, int32_t s, element_point *p) {
     p->J = F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) + F[2] * (F[3] * F[7] - F[4] * F[6]);
     for (int c = 0; c < BRUNT_SYMMETRIC(dim); c++)
         p->stress[c] = scalar(fem, BRUNT_ELEMENT_kirchhoff_stress, c, s) / p->J;
-    if (sheet) brunt_fem_sheet_stress(fem, s, p->stress);
+    if (sheet) brunt_membrane_stress(fem, s, p->stress);
     p->volume = scalar(fem, BRUNT_ELEMENT_reference_volume, 0, s) * p->J;
     p->density = (double)fem->material.density / p->J;
 }

@@ -60,7 +60,7 @@ int32_t brunt_state_count(brunt_world *world) {
 }
 
 // An action is a run of doubles.
-enum { ACTION_DOUBLES = sizeof(brunt_action) / sizeof(double) };
+enum { ACTION_DOUBLES = sizeof(brunt_impulse_account) / sizeof(double) };
 enum { CLOCK_DOUBLES = sizeof(struct brunt_clock) / sizeof(double) };
 
 brunt_state_block brunt_state_info(brunt_world *world, int32_t index) {
@@ -94,8 +94,8 @@ brunt_state_block brunt_state_info(brunt_world *world, int32_t index) {
     const int64_t counts[] = {CLOCK_DOUBLES + world->body_count,
                               2 * (int64_t)world->wall_count * ACTION_DOUBLES + brunt_gas_state_count(world),
                               2 * (int64_t)world->pair_count * ACTION_DOUBLES,
-                              brunt_facing_state_count(&world->skin),
-                              brunt_skin_affine_count(&world->skin),
+                              brunt_node_to_facet_state_count(&world->skin),
+                              brunt_surface_affine_count(&world->skin),
                               brunt_erosion_state_count(world)};
     snprintf(block.name, sizeof block.name, "%s", names[at.field]);
     block.count = counts[at.field];
@@ -130,18 +130,18 @@ void brunt_state_get(brunt_world *world, int32_t index, void *out) {
     }
     double *to = out;
     if (at.field == EROSION_BLOCK) brunt_erosion_state_get(world, to);
-    if (at.field == 3) brunt_facing_state_get(world->facing, &world->skin, to);
-    if (at.field == 4) brunt_skin_affine_get(&world->skin, to);
+    if (at.field == 3) brunt_node_to_facet_state_get(world->facing, &world->skin, to);
+    if (at.field == 4) brunt_surface_affine_get(&world->skin, to);
     if (at.field == 0) memcpy(to, &world->now, sizeof world->now);
     for (int i = 0; at.field == 0 && i < world->body_count; i++) to[CLOCK_DOUBLES + i] = (double)world->bodies[i].speed;
     for (int w = 0; at.field == 1 && w < world->wall_count; w++, to += 2 * ACTION_DOUBLES) {
-        memcpy(to, &world->walls[w].action, sizeof(brunt_action));
-        memcpy(to + ACTION_DOUBLES, &world->walls[w].last, sizeof(brunt_action));
+        memcpy(to, &world->walls[w].action, sizeof(brunt_impulse_account));
+        memcpy(to + ACTION_DOUBLES, &world->walls[w].last, sizeof(brunt_impulse_account));
     }
     if (at.field == 1) brunt_gas_state_get(world, to);
     for (int p = 0; at.field == 2 && p < world->pair_count; p++, to += 2 * ACTION_DOUBLES) {
-        memcpy(to, &world->pairs[p].action, sizeof(brunt_action));
-        memcpy(to + ACTION_DOUBLES, &world->pairs[p].last, sizeof(brunt_action));
+        memcpy(to, &world->pairs[p].action, sizeof(brunt_impulse_account));
+        memcpy(to + ACTION_DOUBLES, &world->pairs[p].last, sizeof(brunt_impulse_account));
     }
 }
 
@@ -151,7 +151,7 @@ static int set_elements(brunt_world *world, brunt_fem_body *fem, const int64_t *
     if (brunt_fem_elements_set(fem, in))
         return brunt_fail(error, BRUNT_BAD_INPUT, "the state block 'bodies/%s/elements' is not of this mesh",
                           fem->name);
-    brunt_holds_follow(world, (int)(fem - world->fems), &element);
+    brunt_node_sets_follow(world, (int)(fem - world->fems), &element);
     return world->has_surfaces ? brunt_surfaces_renew(world, error) : BRUNT_OK;
 }
 
@@ -227,19 +227,19 @@ int brunt_state_set(brunt_world *world, int32_t index, const void *in, int64_t c
     }
     const double *from = in;
     if (at.field == EROSION_BLOCK) brunt_erosion_state_set(world, from);
-    if (at.field == 3 && brunt_facing_state_set(&world->facing, &world->skin, world->body_count, from))
+    if (at.field == 3 && brunt_node_to_facet_state_set(&world->facing, &world->skin, world->body_count, from))
         return brunt_fail(error, BRUNT_FAILED, "out of memory");
-    if (at.field == 4) brunt_skin_affine_set(&world->skin, from);
+    if (at.field == 4) brunt_surface_affine_set(&world->skin, from);
     if (at.field == 0) memcpy(&world->now, from, sizeof world->now);
     for (int i = 0; at.field == 0 && i < world->body_count; i++) world->bodies[i].speed = (real)from[CLOCK_DOUBLES + i];
     for (int w = 0; at.field == 1 && w < world->wall_count; w++, from += 2 * ACTION_DOUBLES) {
-        memcpy(&world->walls[w].action, from, sizeof(brunt_action));
-        memcpy(&world->walls[w].last, from + ACTION_DOUBLES, sizeof(brunt_action));
+        memcpy(&world->walls[w].action, from, sizeof(brunt_impulse_account));
+        memcpy(&world->walls[w].last, from + ACTION_DOUBLES, sizeof(brunt_impulse_account));
     }
     if (at.field == 1) brunt_gas_state_set(world, from);
     for (int p = 0; at.field == 2 && p < world->pair_count; p++, from += 2 * ACTION_DOUBLES) {
-        memcpy(&world->pairs[p].action, from, sizeof(brunt_action));
-        memcpy(&world->pairs[p].last, from + ACTION_DOUBLES, sizeof(brunt_action));
+        memcpy(&world->pairs[p].action, from, sizeof(brunt_impulse_account));
+        memcpy(&world->pairs[p].last, from + ACTION_DOUBLES, sizeof(brunt_impulse_account));
     }
     return BRUNT_OK;
 }

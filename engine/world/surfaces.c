@@ -82,7 +82,7 @@ static int make_sheets(brunt_world *world, brunt_error *error) {
     if (!self) return brunt_fail(error, BRUNT_FAILED, "out of memory");
     int status = check_sheets(world, self, error);
     for (int k = 0; k < world->fem_count; k++) any = any || self[k];
-    if (!status && any && brunt_skin_rings(&world->skin, self))
+    if (!status && any && brunt_surface_patches(&world->skin, self))
         status = brunt_fail(error, BRUNT_FAILED, "out of memory for the bodies' surfaces");
     brunt_free(self);
     return status;
@@ -102,7 +102,7 @@ int brunt_surfaces_make(brunt_world *world, const brunt_world_def *def, brunt_er
     brunt_fem_body **fems = brunt_alloc((size_t)(world->fem_count + 1) * sizeof *fems);
     if (!fems) return brunt_fail(error, BRUNT_FAILED, "out of memory");
     for (int k = 0; k < world->fem_count; k++) fems[k] = &world->fems[k];
-    int failed = brunt_skin_make(&world->skin, fems, world->fem_count, world->has_augury && form == BRUNT_AUGURY_PAPER);
+    int failed = brunt_surface_make(&world->skin, fems, world->fem_count, world->has_augury && form == BRUNT_AUGURY_PAPER);
     brunt_free(fems);
     if (failed) return brunt_fail(error, BRUNT_FAILED, "out of memory for the bodies' surfaces");
     if (world->skin.side) {
@@ -136,12 +136,12 @@ int brunt_surfaces_make(brunt_world *world, const brunt_world_def *def, brunt_er
 // Bodies that lie in each other, or behind a plane, at the start. The skin is taken for it, and forgets that it was.
 int brunt_surfaces_overlap(brunt_world *world, brunt_error *error) {
     const double none[3] = {0};
-    brunt_skin *s = &world->skin;
-    brunt_meeting m = {.skin = s, .pair_of = world->pair_of, .body_count = world->all_count, .walls = world->walls};
+    brunt_contact_surface *s = &world->skin;
+    brunt_contact_context m = {.skin = s, .pair_of = world->pair_of, .body_count = world->all_count, .walls = world->walls};
     if (s->fem_count) {
-        brunt_skin_bounds(s, world->threads, NULL);
+        brunt_surface_bounds(s, world->threads, NULL);
         for (int k = 0; k < s->fem_count; k++) s->active[k] = true;
-        brunt_skin_take(s, 0, none, world->threads, NULL);
+        brunt_surface_gather_state(s, 0, none, world->threads, NULL);
         for (int k = 0; k < s->fem_count; k++) s->active[k] = s->was_active[k] = false;
     }
     brunt_overlap o;
@@ -161,28 +161,28 @@ int brunt_surfaces_overlap(brunt_world *world, brunt_error *error) {
 
 int brunt_surfaces_renew(brunt_world *world, brunt_error *error) {
     if (!world->has_surfaces) return BRUNT_OK;
-    if (brunt_skin_renew(&world->skin, false) || brunt_facing_renew(world->facing, &world->skin))
+    if (brunt_surface_renew(&world->skin, false) || brunt_node_to_facet_renew(world->facing, &world->skin))
         return brunt_fail(error, BRUNT_FAILED, "out of memory for the bodies' surfaces");
     return BRUNT_OK;
 }
 
-static int meet_by_facets(brunt_world *world, const brunt_meeting *m) {
-    brunt_contact_points *points = &world->points;
-    brunt_points_clear(points);
-    int failed = brunt_facing_walls(m, world->walls, world->wall_count, world->now.time, world->facing, points);
+static int meet_by_facets(brunt_world *world, const brunt_contact_context *m) {
+    brunt_constraint_set *points = &world->points;
+    brunt_constraints_clear(points);
+    int failed = brunt_node_to_facet_walls(m, world->walls, world->wall_count, world->now.time, world->facing, points);
     if (!failed && world->has_augury && world->contact.form == BRUNT_AUGURY_AFFINE)
-        failed = brunt_facing_find(m, world->bodies, world->body_count, world->facing, points);
+        failed = brunt_node_to_facet_find(m, world->bodies, world->body_count, world->facing, points);
     int sweeps = world->contact.form == BRUNT_AUGURY_AFFINE ? world->contact.iterations : SWEEPS;
-    if (!failed && brunt_points_solve(points, sweeps, world->contact.tolerance, m->threads, m->timer) < 0) failed = -1;
+    if (!failed && brunt_constraints_solve(points, sweeps, world->contact.tolerance, m->threads, m->timer) < 0) failed = -1;
     if (failed) return failed;
-    brunt_facing_book_holds(m, world->walls, world->wall_count, world->now.time, world->facing, points);
-    brunt_facing_finish(m, world->bodies, world->facing, points);
+    brunt_node_to_facet_book_holds(m, world->walls, world->wall_count, world->now.time, world->facing, points);
+    brunt_node_to_facet_finish(m, world->bodies, world->facing, points);
     return 0;
 }
 
 // Names the mesh that is fastest, or farthest away: contact cannot look that far.
 static int fail_far(const brunt_world *world, brunt_error *error) {
-    const brunt_skin *s = &world->skin;
+    const brunt_contact_surface *s = &world->skin;
     int worst = -1;
     double most = -1;
     for (int k = 0; k < s->fem_count; k++) {
@@ -200,7 +200,7 @@ static int fail_far(const brunt_world *world, brunt_error *error) {
 
 int brunt_surfaces_meet(brunt_world *world, const double gravity[3], double kick, double dt, brunt_error *error) {
     brunt_timer *timer = &world->pass[BRUNT_PASS_surfaces].threads;
-    brunt_meeting m = {
+    brunt_contact_context m = {
         .skin = &world->skin,
         .pairs = world->pairs,
         .pair_of = world->pair_of,
@@ -216,15 +216,15 @@ int brunt_surfaces_meet(brunt_world *world, const double gravity[3], double kick
         .threads = world->threads,
         .timer = timer};
     memcpy(world->skin.frame, world->now.contact_frame, sizeof world->skin.frame);
-    brunt_skin_bounds(&world->skin, world->threads, timer);
-    int failed = brunt_facing_near(&m, world->bodies, world->body_count, world->walls, world->wall_count,
+    brunt_surface_bounds(&world->skin, world->threads, timer);
+    int failed = brunt_broad_phase(&m, world->bodies, world->body_count, world->walls, world->wall_count,
                                    world->now.time, &world->facing);
     if (failed == -2) return fail_far(world, error);
     if (!failed) {
         if (world->has_grid_surfaces) brunt_grid_surfaces_near(&m, world->bodies, world->body_count);
         if (world->has_augury && world->contact.form == BRUNT_AUGURY_PAPER) // acts on every surface, touched or not
             for (int k = 0; k < world->fem_count; k++) world->skin.active[k] = true;
-        brunt_skin_take(&world->skin, kick, gravity, world->threads, timer);
+        brunt_surface_gather_state(&world->skin, kick, gravity, world->threads, timer);
         if (world->has_augury && world->contact.form == BRUNT_AUGURY_PAPER)
             failed = brunt_augury_paper(&m, world->contact.transfer, &world->augury);
         else if (world->has_augury && world->contact.form != BRUNT_AUGURY_AFFINE)
@@ -238,7 +238,7 @@ int brunt_surfaces_meet(brunt_world *world, const double gravity[3], double kick
         brunt_grid_surfaces_finish(&m, world->bodies, world->mirrors, world->mirror_count, world->walls,
                                    world->grid_surfaces);
     if (failed) return brunt_fail(error, BRUNT_FAILED, "out of memory in the contact of surfaces");
-    brunt_skin_give(&world->skin, dt, world->threads, timer);
+    brunt_surface_scatter_velocity(&world->skin, dt, world->threads, timer);
     memcpy(world->now.contact_frame, world->skin.frame, sizeof world->skin.frame);
     brunt_fem_hold_contact(world);
     return BRUNT_OK;

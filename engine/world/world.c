@@ -361,7 +361,7 @@ static int make_plane(brunt_world *world, const brunt_world_def *def, int index,
         if (world->mirror_count == (int)(sizeof world->mirrors / sizeof world->mirrors[0]))
             REFUSE("boundaries: more than 16 symmetry and slip planes");
         for (int m = 0; m < world->mirror_count; m++) {
-            const brunt_mirror *other = &world->mirrors[m];
+            const brunt_symmetry_plane *other = &world->mirrors[m];
             int32_t apart = (int32_t)round(at) - other->node;
             if (other->wall >= 0 && other->axis == axis && apart != 0 && abs(apart) <= (int)def->kernel &&
                 has_fluid(def))
@@ -372,7 +372,7 @@ static int make_plane(brunt_world *world, const brunt_world_def *def, int index,
                     index, wall->name, world->walls[other->wall].name, abs(apart), (int)def->kernel + 1);
         }
         wall->mirror = world->mirror_count;
-        world->mirrors[world->mirror_count++] = (brunt_mirror){.axis = axis, .node = (int32_t)round(at), .wall = index};
+        world->mirrors[world->mirror_count++] = (brunt_symmetry_plane){.axis = axis, .node = (int32_t)round(at), .wall = index};
     } else if (plane->condition == BRUNT_SEPARATE) {
         world->has_walls = true;
         if (has_fluid(def))
@@ -402,7 +402,7 @@ static int make_walls(brunt_world *world, const brunt_world_def *def, const brun
     if (!world->walls || !world->wall_work) return brunt_fail(error, BRUNT_FAILED, "out of memory");
     if (def->axisymmetric && world->has_particles)
         world->mirrors[world->mirror_count++] =
-            (brunt_mirror){.axis = 0, .node = (int32_t)round(-def->origin[0] / def->cell), .wall = -1};
+            (brunt_symmetry_plane){.axis = 0, .node = (int32_t)round(-def->origin[0] / def->cell), .wall = -1};
     for (int w = 0; w < world->wall_count; w++) {
         brunt_wall *wall = &world->walls[w];
         wall->region = w >= def->plane_count;
@@ -700,7 +700,7 @@ brunt_world *brunt_world_create(const brunt_world_def *def, brunt_error *error) 
     if (!status) status = brunt_detonation_make(world, def, error);
     if (!status) status = map_grid_pairs(world, error);
     if (!status) status = brunt_erosion_make(world, def, error);
-    if (!status) status = brunt_holds_make(world, def, error);
+    if (!status) status = brunt_node_sets_make(world, def, error);
     if (!status) status = brunt_surfaces_make(world, def, error);
     if (!status && brunt_fem_tasks(world)) status = brunt_fail(error, BRUNT_FAILED, "out of memory");
     if (!status) status = brunt_damping_make(world, error);
@@ -726,12 +726,12 @@ void brunt_world_destroy(brunt_world *world) {
     }
     for (size_t t = 0; t < sizeof world->work / sizeof world->work[0]; t++) brunt_workspace_free(&world->work[t]);
     brunt_contact_workspace_free(world->contact_work);
-    brunt_skin_free(&world->skin);
-    brunt_points_free(&world->points);
-    brunt_facing_free(world->facing);
+    brunt_surface_free(&world->skin);
+    brunt_constraints_free(&world->points);
+    brunt_node_to_facet_free(world->facing);
     brunt_augury_workspace_free(world->augury);
     brunt_grid_surfaces_free(world->grid_surfaces);
-    brunt_holds_free(world);
+    brunt_node_sets_free(world);
     brunt_damping_free(world);
     brunt_load_step_free(world);
     brunt_erosion_free(world);

@@ -48,7 +48,7 @@ typedef struct brunt_node_sums {
 } brunt_node_sums;
 
 // A named group of nodes that is held, moved or loaded.
-typedef struct brunt_hold {
+typedef struct brunt_node_set {
     int wall, fem; // its place among the walls; its body among the finite-element bodies
     const int32_t *node;
     int32_t node_count;
@@ -61,7 +61,7 @@ typedef struct brunt_hold {
     int32_t *place; // of each node of the body: its place in the group + 1; for loads
     double gas_energy, gas_volume, gas_inflow; // [J], [m^3], [J] so far: of enclosed gas
     double *area;                              // node_count x 3: room for the stable step of gas; NULL of others
-} brunt_hold;
+} brunt_node_set;
 
 // A run of nodes or a block of elements of one of the finite-element bodies: a task.
 typedef struct brunt_fem_task {
@@ -78,10 +78,10 @@ struct brunt_world {
     brunt_kernel kernel;
     brunt_transfer transfer;
     double flip, cfl, fixed_step, end, energy_limit, gravity[3], gravity_ramp, cell;
-    brunt_scatter_fn *scatter;
-    brunt_gather_fn *gather, *advance;
-    brunt_scatter_fn *total_scatter; // of total-Lagrangian bodies
-    brunt_gather_fn *total_gather;
+    brunt_p2g_fn *scatter;
+    brunt_g2p_fn *gather, *advance;
+    brunt_p2g_fn *total_scatter; // of total-Lagrangian bodies
+    brunt_g2p_fn *total_gather;
 
     brunt_body_ref *all; // in order of name
     int all_count;
@@ -98,13 +98,13 @@ struct brunt_world {
     brunt_damping_sums *damping_sums; // a node task each
     double **load_rate;       // of each body with loads that follow its surface: node_count, room for its stable step
     uint8_t (**holder)[3];    // of each body, node and component: the hold that prescribes it + 1
-    brunt_hold *holds;
+    brunt_node_set *holds;
     int hold_count;
     brunt_group_def *groups; // copies, with their curves
     int group_count;
-    brunt_skin skin;
-    brunt_contact_points points;
-    brunt_facing *facing;
+    brunt_contact_surface skin;
+    brunt_constraint_set points;
+    brunt_node_to_facet *facing;
     brunt_augury_workspace *augury;
     brunt_grid_surfaces *grid_surfaces;
     int grid_sweeps;
@@ -114,14 +114,14 @@ struct brunt_world {
     int warning_count;
     brunt_wall *walls;
     int wall_count;
-    brunt_mirror mirrors[16];
+    brunt_symmetry_plane mirrors[16];
     int mirror_count;
     brunt_pair *pairs;
     int pair_count;
     int32_t *pair_of;
     int32_t *mpm_pair_of; // pairs that meet at grid nodes, by place in `bodies`
     bool has_particles, has_conditions, has_contact, has_walls, has_friction, has_gravity;
-    const brunt_hold *gas_lost; // gas whose volume is no longer positive
+    const brunt_node_set *gas_lost; // gas whose volume is no longer positive
     bool axisymmetric;
     brunt_eroded *eroded; // of each body of `all`; NULL without erosion. Saved with the state
     brunt_erosion_def *erosion; // of each body of `all`; NULL without erosion
@@ -273,17 +273,17 @@ double brunt_rounding_energy(brunt_world *world);
 
 // --- gas.c: gas in enclosed volumes
 // Volume that the faces of a hold enclose, with that beside it [m^3].
-double brunt_gas_volume(const brunt_world *world, const brunt_hold *hold, const brunt_group_def *def);
+double brunt_gas_volume(const brunt_world *world, const brunt_node_set *hold, const brunt_group_def *def);
 // Energy of the gas at the start. BRUNT_BAD_INPUT when the faces enclose nothing.
-int brunt_gas_start(brunt_world *world, brunt_hold *hold, const brunt_group_def *def, brunt_error *error);
+int brunt_gas_start(brunt_world *world, brunt_node_set *hold, const brunt_group_def *def, brunt_error *error);
 // Pressure [Pa] above that outside for the step from `time` on, over `dt`, by the volume as it is now.
-double brunt_gas_push(brunt_world *world, brunt_hold *hold, const brunt_group_def *def, double time, double dt);
+double brunt_gas_push(brunt_world *world, brunt_node_set *hold, const brunt_group_def *def, double time, double dt);
 int64_t brunt_gas_state_count(const brunt_world *world);
 void brunt_gas_state_get(const brunt_world *world, double *out);
 void brunt_gas_state_set(brunt_world *world, const double *in);
 
 // What is there now.
-brunt_gas brunt_gas_now(const brunt_world *world, const brunt_hold *hold, const brunt_group_def *def);
+brunt_gas brunt_gas_now(const brunt_world *world, const brunt_node_set *hold, const brunt_group_def *def);
 
 // --- load_step.c: the stable step of gas and of pressure that follows
 // After the groups are made.
@@ -293,18 +293,18 @@ void brunt_load_step_free(brunt_world *world);
 double brunt_load_frequency(const brunt_world *world, int fem);
 
 // --- holds.c: named groups
-int brunt_holds_make(brunt_world *world, const brunt_world_def *def, brunt_error *error);
+int brunt_node_sets_make(brunt_world *world, const brunt_world_def *def, brunt_error *error);
 double brunt_curve_at(const brunt_curve *curve, double time);
 // Loads of a body's groups from now on act on the faces of those elements alone that it still has. The group whose faces
 // enclose gas and one of its elements (by number in the mesh) that has gone, or NULL.
-const brunt_hold *brunt_holds_follow(brunt_world *world, int fem, int32_t *element);
+const brunt_node_set *brunt_node_sets_follow(brunt_world *world, int fem, int32_t *element);
 // Loads of this step, made before the kick of `dt` and with half their work booked; the other half once velocities are
 // final.
 void brunt_loads_begin(brunt_world *world, double time, double dt);
 void brunt_loads_end(brunt_world *world, double dt);
 // Vectors of the shares that the corners of a face have of its area [m^2], outward: int N_a n dA.
 void brunt_face_shares(const double (*x)[3], int corners, double (*share)[3]);
-void brunt_holds_free(brunt_world *world);
+void brunt_node_sets_free(brunt_world *world);
 // A warning for the user, kept with the world.
 void brunt_warn(brunt_world *world, const char *format, ...) __attribute__((format(printf, 2, 3)));
 

@@ -166,7 +166,7 @@ static double deepest_node(const brunt_world *world, double limit, int *count) {
         for (int32_t n = 0; n < me->node_count; n++) {
             const real *at = brunt_fem_node(me, n);
             const double x[3] = {(double)at[0], (double)at[1], (double)at[2]};
-            if (brunt_fem_gone(me, n)) continue;
+            if (brunt_fem_removed(me, n)) continue;
             for (int32_t s = 0; s < other->slots; s++) {
                 if (other->element_id[s] < 0 || !in_element(other, s, x)) continue;
                 const double depth = surface_distance(other, &faces, x);
@@ -188,7 +188,7 @@ static double deep(brunt_element_kind kind) { return brunt_element_dimension(kin
 static int by_nodes(const void *a, const void *b) { return memcmp(a, b, 4 * sizeof(int32_t)); }
 
 // Faces of the skin's body k as sorted numbers of the body's nodes.
-static int32_t (*skin_faces(const brunt_skin *s, int k))[4] {
+static int32_t (*skin_faces(const brunt_contact_surface *s, int k))[4] {
     const int32_t count = s->face_end[k] - s->face_range[k];
     int32_t(*list)[4] = malloc(((size_t)count + 1) * sizeof *list);
     for (int32_t f = 0; f < count; f++)
@@ -217,7 +217,7 @@ START_TEST(surface_is_that_of_the_elements) {
                 if (world->fems[k].element_id[s] >= 0 && random_number(&seed) < (round == 11 ? 2 : 0.15))
                     mark(&world->fems[k], s);
         erode(world);
-        const brunt_skin *s = &world->skin;
+        const brunt_contact_surface *s = &world->skin;
         for (int k = 0; k < 2; k++) {
             const brunt_fem_body *fem = &world->fems[k];
             brunt_faces faces;
@@ -692,7 +692,7 @@ START_TEST(torn_sheet) {
                 erode(w);
             }
             hash[run] = brunt_world_hash(w);
-            const brunt_skin *skin = &w->skin;
+            const brunt_contact_surface *skin = &w->skin;
             ck_assert_int_eq(skin->face_end[0] - skin->face_range[0], fem_elements(w));
             ck_assert_int_eq(skin->face_range[1] - skin->face_end[0], fem_elements(w));
             for (int32_t n = skin->node_end[0]; n < skin->node_range[1]; n++)

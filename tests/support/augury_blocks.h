@@ -22,7 +22,7 @@ typedef struct blocks {
     uint8_t *held;                     // bits of components with prescribed velocity
     int32_t *body, *number, (*tet)[4]; // number in the skin, -1 inside
     double (*inverse)[9], *volume, (*lame)[2];
-    brunt_skin skin;
+    brunt_contact_surface skin;
     brunt_pair *pairs;
     int32_t *pair_of;
     double elastic; // [J] of the last forces
@@ -88,7 +88,7 @@ static inline void blocks_add_tets(blocks *b, const block_def *d, const int32_t 
 }
 
 static inline void blocks_add_face(blocks *b, const int32_t *node, int corners) {
-    brunt_skin *s = &b->skin;
+    brunt_contact_surface *s = &b->skin;
     int32_t f = s->face_count++;
     BLOCKS_PUSH(s->face, f);
     for (int k = 0; k < 4; k++) s->face[f][k] = k < corners ? node[k] : -1;
@@ -190,7 +190,7 @@ static inline void blocks_add(blocks *b, const block_def *d) {
         blocks_add_tet_faces(b, first_tet);
     else
         blocks_add_sides(b, n, first);
-    brunt_skin *s = &b->skin;
+    brunt_contact_surface *s = &b->skin;
     BLOCKS_GROW(s->face_body, s->face_count);
     for (int32_t f = first_face; f < s->face_count; f++) {
         s->face_body[f] = b->count;
@@ -201,7 +201,7 @@ static inline void blocks_add(blocks *b, const block_def *d) {
 
 // The skin of all blocks, and a pair of each two.
 static inline void blocks_finish(blocks *b, double friction) {
-    brunt_skin *s = &b->skin;
+    brunt_contact_surface *s = &b->skin;
     s->dim = b->kind == BLOCKS_PLANE ? 2 : 3;
     s->fem_count = b->count;
     s->node_range = calloc((size_t)b->count + 2, sizeof(int32_t));
@@ -244,7 +244,7 @@ static inline void blocks_finish(blocks *b, double friction) {
 
 // Places and velocities to the skin, normals.
 static inline void blocks_take(blocks *b) {
-    brunt_skin *s = &b->skin;
+    brunt_contact_surface *s = &b->skin;
     for (int k = 0; k < b->count; k++)
         for (int a = 0; a < 3; a++) s->low[k][a] = INFINITY, s->high[k][a] = -INFINITY;
     for (int32_t i = 0; i < b->node_count; i++) {
@@ -293,9 +293,9 @@ static inline void blocks_give(blocks *b) {
         if (b->number[i] >= 0) memcpy(b->v[i], b->skin.v[b->number[i]], sizeof b->v[i]);
 }
 
-static inline brunt_meeting blocks_meeting(blocks *b, double dt, double cell, int iterations, int threads) {
-    for (int k = 0; k < b->count * b->count; k++) b->pairs[k].last = (brunt_action){.area = 0};
-    return (brunt_meeting){.skin = &b->skin,
+static inline brunt_contact_context blocks_meeting(blocks *b, double dt, double cell, int iterations, int threads) {
+    for (int k = 0; k < b->count * b->count; k++) b->pairs[k].last = (brunt_impulse_account){.area = 0};
+    return (brunt_contact_context){.skin = &b->skin,
                            .pairs = b->pairs,
                            .pair_of = b->pair_of,
                            .body_count = b->count,
@@ -307,7 +307,7 @@ static inline brunt_meeting blocks_meeting(blocks *b, double dt, double cell, in
 }
 
 static inline void blocks_free(blocks *b) {
-    brunt_skin *s = &b->skin;
+    brunt_contact_surface *s = &b->skin;
     void *owned[] = {b->x,           b->v,         b->old,        b->force,      b->mass,    b->held,  b->body,
                      b->number,      b->tet,       b->inverse,    b->volume,     b->lame,    b->pairs, b->pair_of,
                      s->face,        s->face_body, s->node_range, s->face_range, s->low,     s->high,  s->active,

@@ -12,14 +12,14 @@
 
 typedef enum form { SURFACE, SMOOTH, PAPER_APIC, PAPER_PIC, FORMS } form;
 
-static brunt_augury_workspace *apply(const brunt_meeting *m, form f, brunt_augury_workspace *work) {
+static brunt_augury_workspace *apply(const brunt_contact_context *m, form f, brunt_augury_workspace *work) {
     int status = f >= PAPER_APIC ? brunt_augury_paper(m, f == PAPER_APIC ? BRUNT_APIC : BRUNT_PIC, &work)
                                  : brunt_augury_surface(m, f == SMOOTH, &work);
     ck_assert_int_eq(status, 0);
     return work;
 }
 
-static void apply_once(const brunt_meeting *m, form f) { brunt_augury_workspace_free(apply(m, f, NULL)); }
+static void apply_once(const brunt_contact_context *m, form f) { brunt_augury_workspace_free(apply(m, f, NULL)); }
 
 static double uniform(uint64_t *state) {
     *state = *state * 6364136223846793005u + 1442695040888963407u;
@@ -143,7 +143,7 @@ START_TEST(rows_that_meet) {
                     memset(b.skin.affine[n], 0, sizeof b.skin.affine[n]);
                     b.skin.affine[n][4] = s.B[side];
                 }
-        brunt_meeting m = blocks_meeting(&b, 1, cell, 0, 1);
+        brunt_contact_context m = blocks_meeting(&b, 1, cell, 0, 1);
         apply_once(&m, affine ? PAPER_APIC : PAPER_PIC);
         transfer_rows(&s, cell, affine);
         for (int32_t n = 0; n < b.skin.node_count; n++)
@@ -192,7 +192,7 @@ static blocks two_blocks(blocks_kind kind, double tilt, double gap, double appro
 
 // G of the paper with dense arrays and no cleverness, for nodes near the origin.
 enum { WIDE = 40 };
-static void reference_G(const brunt_skin *s, double cell, double (*v)[3], double (*B)[9], double (*dv)[3],
+static void reference_G(const brunt_contact_surface *s, double cell, double (*v)[3], double (*B)[9], double (*dv)[3],
                         double (*dB)[9]) {
     static double mass[WIDE][WIDE][WIDE], p[WIDE][WIDE][WIDE][3];
     memset(mass, 0, sizeof mass);
@@ -229,7 +229,7 @@ START_TEST(paper_against_definitions) {
     const double friction = 0.3, cell = 0.41;
     blocks b = two_blocks(BLOCKS_TETS, 0.3, 0.02, 2, friction, 0.5);
     blocks_take(&b);
-    brunt_skin *s = &b.skin;
+    brunt_contact_surface *s = &b.skin;
     size_t n = (size_t)s->node_count;
     double(*v)[3] = malloc(n * sizeof *v), (*B)[9] = malloc(n * sizeof *B), (*dv)[3] = calloc(n, sizeof *dv),
     (*dB)[9] = calloc(n, sizeof *dB);
@@ -249,7 +249,7 @@ START_TEST(paper_against_definitions) {
     double(*WB)[9] = malloc(n * sizeof *WB);
     memcpy(WB, dB, n * sizeof *WB);
     reference_G(s, cell, W, WB, dv, dB);
-    brunt_meeting m = blocks_meeting(&b, 1e-3, cell, 1, 1);
+    brunt_contact_context m = blocks_meeting(&b, 1e-3, cell, 1, 1);
     apply_once(&m, PAPER_APIC);
     for (size_t i = 0; i < n; i++) {
         for (int a = 0; a < 3; a++) ck_assert_double_eq_tol(s->v[i][a], v[i][a] + dv[i][a], 1e-12);
@@ -273,7 +273,7 @@ START_TEST(paper_keeps_affine_fields) {
                 b.skin.affine[n][3 * a + c] = L[3 * a + c] * cell * cell / 2;
             }
         }
-    brunt_meeting m = blocks_meeting(&b, 1e-3, cell, 1, 1);
+    brunt_contact_context m = blocks_meeting(&b, 1e-3, cell, 1, 1);
     apply_once(&m, PAPER_APIC);
     for (int32_t n = 0; n < b.skin.node_count; n++)
         for (int a = 0; a < 3; a++) {
@@ -294,7 +294,7 @@ typedef struct momenta {
     double linear[3], angular[3], scale, scale_angular;
 } momenta;
 
-static momenta measure(const brunt_skin *s, bool spin) {
+static momenta measure(const brunt_contact_surface *s, bool spin) {
     momenta sum = {.scale = 0};
     for (int32_t n = 0; n < s->node_count; n++) {
         double speed = 0, far = 0;
@@ -326,10 +326,10 @@ START_TEST(momenta_are_kept) {
     blocks b = two_blocks(kind, 0.3, 0.004, 4, 0.3, 0.8);
     blocks_take(&b);
     const momenta before = measure(&b.skin, f == PAPER_APIC), before_still = measure(&b.skin, false);
-    brunt_meeting m = blocks_meeting(&b, 5e-3, f >= PAPER_APIC ? 0.5 : 0.25, f >= PAPER_APIC ? 1 : 4, 1);
+    brunt_contact_context m = blocks_meeting(&b, 5e-3, f >= PAPER_APIC ? 0.5 : 0.25, f >= PAPER_APIC ? 1 : 4, 1);
     apply_once(&m, f);
     momenta after = measure(&b.skin, f == PAPER_APIC);
-    const brunt_action *done = &b.pairs[0].last;
+    const brunt_impulse_account *done = &b.pairs[0].last;
     double moved[3] = {0}, turned[3] = {0};
     for (int32_t i = 0; i < b.node_count; i++) {
         const int32_t n = b.number[i];
@@ -391,11 +391,11 @@ START_TEST(energy_is_accounted_for) {
         if (b.body[i] == 2 && b.x[i][1] < 1.3) b.held[i] = i % 7 ? 7 : 2;
     }
     blocks_take(&b);
-    brunt_meeting m = blocks_meeting(&b, 5e-3, f >= PAPER_APIC ? 0.5 : 0.25, f >= PAPER_APIC ? 1 : 4, 1);
+    brunt_contact_context m = blocks_meeting(&b, 5e-3, f >= PAPER_APIC ? 0.5 : 0.25, f >= PAPER_APIC ? 1 : 4, 1);
     apply_once(&m, f);
     double work = work_done(&b), booked = 0, external = 0, friction = 0, net[3] = {0}, scale = 0;
     for (int k = 0; k < 3; k++) {
-        const brunt_action *p = &b.pairs[k].last;
+        const brunt_impulse_account *p = &b.pairs[k].last;
         booked += p->external_work - p->normal_loss - p->friction_loss;
         external += fabs(p->external_work), friction += p->friction_loss;
     }
@@ -428,7 +428,7 @@ START_TEST(approach_ends_at_the_gap) {
         b.held[i] = 7, b.x[i][0] *= 1.5, b.x[i][2] *= 1.5; // wider, so that all of the other's face meets it
     }
     blocks_take(&b);
-    brunt_meeting m = blocks_meeting(&b, dt, held ? 0.375 : 0.25, 4, 1);
+    brunt_contact_context m = blocks_meeting(&b, dt, held ? 0.375 : 0.25, 4, 1);
     apply_once(&m, _i % 2 ? SMOOTH : SURFACE);
     double closing[2] = {0}, count[2] = {0};
     for (int32_t n = 0; n < b.skin.node_count; n++) {
@@ -455,7 +455,7 @@ START_TEST(nothing_without_approach) {
     const bool parting = _i / 2;
     blocks b = two_blocks(BLOCKS_TETS, parting ? 0.2 : 0, 0.01, parting ? -3 : 0.5, 0.5, 0);
     blocks_take(&b);
-    brunt_meeting m = blocks_meeting(&b, 1e-2, 0.25, 4, 1);
+    brunt_contact_context m = blocks_meeting(&b, 1e-2, 0.25, 4, 1);
     apply_once(&m, f);
     for (int32_t n = 0; n < b.skin.node_count; n++) ck_assert(!memcmp(b.skin.v[n], b.v[b.skin.node[n]], sizeof b.v[0]));
     ck_assert(b.pairs[0].last.impulse[1] == 0 && b.pairs[0].last.normal_loss == 0 && b.pairs[0].last.area == 0);
@@ -474,7 +474,7 @@ START_TEST(far_bodies_are_left_alone) {
     blocks_add(&b, &d);
     blocks_finish(&b, 0.5);
     blocks_take(&b);
-    brunt_meeting m = blocks_meeting(&b, 1e-2, 0.25, 4, 1);
+    brunt_contact_context m = blocks_meeting(&b, 1e-2, 0.25, 4, 1);
     apply_once(&m, _i ? SMOOTH : SURFACE);
     bool some = false;
     for (int32_t n = 0; n < b.skin.node_count; n++) {
@@ -499,9 +499,9 @@ START_TEST(friction_has_coulombs_limit) {
     for (int32_t i = 0; i < b.node_count; i++)
         if (!b.body[i]) b.held[i] = 7;
     blocks_take(&b);
-    brunt_meeting m = blocks_meeting(&b, 1e-2, 0.25, 4, 1);
+    brunt_contact_context m = blocks_meeting(&b, 1e-2, 0.25, 4, 1);
     apply_once(&m, f);
-    const brunt_action *done = &b.pairs[0].last;
+    const brunt_impulse_account *done = &b.pairs[0].last;
     double drag = hypot(done->impulse[0], done->impulse[2]), push = done->impulse[1];
     ck_assert_double_gt(push, 0);
     ck_assert_double_lt(done->impulse[0], 0);
@@ -533,7 +533,7 @@ START_TEST(turned_set_up_turned_result) {
             }
         }
         blocks_take(&b);
-        brunt_meeting m = blocks_meeting(&b, 5e-3, f >= PAPER_APIC ? 0.5 : 0.25, f >= PAPER_APIC ? 1 : 4, 1);
+        brunt_contact_context m = blocks_meeting(&b, 5e-3, f >= PAPER_APIC ? 0.5 : 0.25, f >= PAPER_APIC ? 1 : 4, 1);
         apply_once(&m, f);
         if (!turned) {
             v = malloc((size_t)b.skin.node_count * sizeof *v);
@@ -571,7 +571,7 @@ START_TEST(same_bits_for_any_threads) {
     const form f = (form)_i;
     blocks one = two_plates(), three = two_plates();
     ck_assert_int_gt(one.skin.node_range[1], BRUNT_AUGURY_PARALLEL);
-    brunt_meeting m = blocks_meeting(&one, 1e-3, f >= PAPER_APIC ? 0.5 : 0.25, f >= PAPER_APIC ? 1 : 4, 1);
+    brunt_contact_context m = blocks_meeting(&one, 1e-3, f >= PAPER_APIC ? 0.5 : 0.25, f >= PAPER_APIC ? 1 : 4, 1);
     apply_once(&m, f);
     m = blocks_meeting(&three, 1e-3, f >= PAPER_APIC ? 0.5 : 0.25, f >= PAPER_APIC ? 1 : 4, 3);
     apply_once(&m, f);
@@ -597,7 +597,7 @@ START_TEST(no_allocation_after_the_first_step) {
         int64_t calls = brunt_memory_calls();
         memset(b.skin.affine, 0, (size_t)b.skin.node_count * sizeof *b.skin.affine);
         blocks_take(&b);
-        brunt_meeting m = blocks_meeting(&b, 1e-3, f >= PAPER_APIC ? 0.5 : 0.25, f >= PAPER_APIC ? 1 : 4, 1);
+        brunt_contact_context m = blocks_meeting(&b, 1e-3, f >= PAPER_APIC ? 0.5 : 0.25, f >= PAPER_APIC ? 1 : 4, 1);
         work = apply(&m, f, work);
         if (pass) {
             ck_assert_int_eq(brunt_memory_calls(), calls);
@@ -648,7 +648,7 @@ START_TEST(oblique_cubes) {
                 b.v[i][a] += (step ? dt : dt / 2) * b.force[i][a] / b.mass[i];
             }
         blocks_take(&b);
-        brunt_meeting m = blocks_meeting(&b, dt, f == PAPER_APIC ? 2 : 1, f == PAPER_APIC ? 1 : 4, 1);
+        brunt_contact_context m = blocks_meeting(&b, dt, f == PAPER_APIC ? 2 : 1, f == PAPER_APIC ? 1 : 4, 1);
         m.step = step + 1;
         work = apply(&m, f, work);
         blocks_give(&b);

@@ -9,39 +9,39 @@ enum { CHAIN = 24 };
 
 // A row of beads that touch, the first against a wall, all on their way towards it: an impulse must travel through all
 // of them, and every sweep takes it one bead on.
-static void make_chain(brunt_contact_points *p, brunt_action *action) {
+static void make_chain(brunt_constraint_set *p, brunt_impulse_account *action) {
     memset(p, 0, sizeof *p);
     memset(action, 0, sizeof *action);
     for (int i = 0; i < CHAIN; i++) {
-        ck_assert_int_eq(brunt_points_support(p), i);
-        brunt_support *s = &p->support[i];
+        ck_assert_int_eq(brunt_constraints_dof_node(p), i);
+        brunt_dof_node *s = &p->support[i];
         s->v[0] = s->old[0] = -1;
         for (int a = 0; a < 3; a++) s->inverse[a] = 1;
     }
     for (int i = 0; i < CHAIN; i++) {
-        ck_assert_int_eq(brunt_points_add(p), i);
-        brunt_contact_point *point = &p->point[i];
+        ck_assert_int_eq(brunt_constraints_add(p), i);
+        brunt_constraint *point = &p->point[i];
         point->n[0] = point->facet[0] = 1;
         point->action = action, point->sign = 1;
-        brunt_points_entry(p, i, 1);
-        if (i > 0) brunt_points_entry(p, i - 1, -1);
+        brunt_constraints_entry(p, i, 1);
+        if (i > 0) brunt_constraints_entry(p, i - 1, -1);
     }
 }
 
 // Fastest approach that is left [m/s], after sweeps that took `*sweeps` of them.
 static double approach_left(int most, double tolerance, int *sweeps) {
-    brunt_contact_points p;
-    brunt_action action;
+    brunt_constraint_set p;
+    brunt_impulse_account action;
     brunt_timer timer = {0};
     make_chain(&p, &action);
-    *sweeps = brunt_points_solve(&p, most, tolerance, 1, &timer);
+    *sweeps = brunt_constraints_solve(&p, most, tolerance, 1, &timer);
     double left = 0;
     for (int k = 0; k < p.point_count; k++) {
         double u[3];
-        brunt_point_velocity(&p, &p.point[k], false, u);
+        brunt_constraint_velocity(&p, &p.point[k], false, u);
         left = fmax(left, -u[0]);
     }
-    brunt_points_free(&p);
+    brunt_constraints_free(&p);
     return left;
 }
 

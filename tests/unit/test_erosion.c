@@ -275,7 +275,7 @@ START_TEST(bar_tears_in_two) {
     const brunt_fem_body *fem = &world->fems[0];
     for (int32_t n = 0; n < fem->node_count; n++) {
         const real *node = brunt_fem_node(fem, n);
-        if (brunt_fem_gone(fem, n)) continue;
+        if (brunt_fem_removed(fem, n)) continue;
         half[node[0] > 0] += (double)(node[BRUNT_FEM_MASS] * node[BRUNT_FEM_V]);
         if (node[0] > 0)
             high = fmin(high, (double)node[0]);

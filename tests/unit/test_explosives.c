@@ -85,7 +85,7 @@ static real *point_state(point *p, const char *name) {
     return NULL;
 }
 static void point_light(point *p, double time) {
-    for (int l = 0; l < BRUNT_LANES; l++) point_state(p, "lighting_time")[l] = (real)time;
+    for (int l = 0; l < BRUNT_LANES; l++) point_state(p, "ignition_time")[l] = (real)time;
 }
 
 // Every length times `factor`.
@@ -667,7 +667,7 @@ START_TEST(lighting_times) {
         brunt_world *world = world_take(&def);
         for (int32_t k = 0; k < brunt_warning_count(world); k++) // of what is far away, and of having no viscosity
             ck_assert_ptr_null(strstr(brunt_world_warning(world, k), "never lit"));
-        double *time = world_field(world, 0, "lighting_time"), *x = world_field(world, 0, "position"), worst = 0;
+        double *time = world_field(world, 0, "ignition_time"), *x = world_field(world, 0, "position"), worst = 0;
         const int64_t n = brunt_body_size(world, 0, mesh ? BRUNT_AT_ELEMENTS : BRUNT_AT_PARTICLES);
         int32_t *corner = malloc((size_t)n * 8 * sizeof *corner);
         if (mesh) brunt_body_connectivity(world, 0, corner);
@@ -682,7 +682,7 @@ START_TEST(lighting_times) {
         }
         ck_assert_double_le(worst, TOLERANCE(1e-18, 1e-11));
         free(time), free(x), free(corner);
-        double *far = world_field(world, 1, "lighting_time"); // by the first alone: the second is the charge's
+        double *far = world_field(world, 1, "ignition_time"); // by the first alone: the second is the charge's
         ck_assert_double_gt(far[0], 0.9 / D);
         free(far);
         brunt_world_destroy(world);

@@ -122,7 +122,7 @@ static sample sample_create(const brunt_model *model, const double *parameters, 
             real *a = s.points.state[s.state_scalars++] = reals(count);
             for (int i = 0; i < count; i++) a[i] = field->initial ? field->initial(s.constants, c) : 0;
             // An explosive that is lit long ago: products, from the first step on.
-            for (int i = 0; i < count && !strcmp(field->name, "lighting_time"); i++) a[i] = -1;
+            for (int i = 0; i < count && !strcmp(field->name, "ignition_time"); i++) a[i] = -1;
         }
     }
     s.points.plastic_increment = reals(count);

@@ -19,7 +19,7 @@ static void scatter(brunt_fem_body *body, double size) {
 static double greatest_sheet_stress(const brunt_fem_body *body) {
     double most = 0, sigma[6];
     for (int32_t s = 0; s < body->slots; s++) {
-        brunt_fem_sheet_stress(body, s, sigma);
+        brunt_membrane_stress(body, s, sigma);
         for (int c = 0; c < 6; c++) most = fmax(most, fabs(sigma[c]));
     }
     return most;
@@ -154,7 +154,7 @@ static void stress_of(double A[3][3], sheet_options o, double sigma[6], double *
     double shift[3] = {0};
     move_affine(&body, A, shift);
     forces(&body, 1e-3);
-    brunt_fem_sheet_stress(&body, 0, sigma);
+    brunt_membrane_stress(&body, 0, sigma);
     *across = (double)brunt_element_scalars(&body, BRUNT_ELEMENT_thickness_stretch)[0][0];
     brunt_fem_free(&body);
 }
@@ -180,7 +180,7 @@ START_TEST(patch_test) {
         ck_assert_int_eq(report.bad, -1);
         for (int32_t s = 0; s < body.slots; s++) {
             double at[6];
-            brunt_fem_sheet_stress(&body, s, at);
+            brunt_membrane_stress(&body, s, at);
             for (int c = 0; c < 6; c++) ck_assert_double_eq_tol(at[c], sigma[c], 100 * tolerance * E);
             ck_assert_double_eq_tol((double)brunt_element_scalars(&body, BRUNT_ELEMENT_thickness_stretch)[0][s], across,
                                     100 * tolerance);
@@ -214,7 +214,7 @@ START_TEST(uniaxial_tension_is_exact) {
         forces(&body, 1e-3);
         for (int32_t s = 0; s < body.slots; s++) {
             double sigma[6];
-            brunt_fem_sheet_stress(&body, s, sigma);
+            brunt_membrane_stress(&body, s, sigma);
             ck_assert_double_eq_tol(sigma[0], l * E * green / (l2 * l3), 100 * tolerance * E);
             for (int c = 1; c < 6; c++) ck_assert_double_eq_tol(sigma[c], 0, 100 * tolerance * E);
             ck_assert_double_eq_tol((double)brunt_element_scalars(&body, BRUNT_ELEMENT_thickness_stretch)[0][s], l3,
@@ -543,7 +543,7 @@ static double string_frequency(int n) {
     double A[3][3] = {{l, 0, 0}, {0, 1, 0}, {0, 0, 1}}, shift[3] = {0}, sigma[6], pi = acos(-1);
     move_affine(&body, A, shift);
     double dt = dt_share * forces(&body, 1e-9).stable_step / n * 8, time = 0, mode = 0;
-    brunt_fem_sheet_stress(&body, 0, sigma);
+    brunt_membrane_stress(&body, 0, sigma);
     double c = sqrt(sigma[0] / (density / l)), expected = pi * c / l;
     for (int32_t k = 0; k < body.node_count; k++)
         brunt_fem_node(&body, k)[BRUNT_FEM_V + 2] = (real)(1e-4 * sin(pi * (double)start_of(&body, k)[0]));
@@ -635,7 +635,7 @@ static hencky hencky_membrane(int m, int rings, double slope, double t) {
     }
     double sigma[6];
     for (int32_t s = 0; s < body.slots; s++)
-        if (body.element_id[s] == 0) brunt_fem_sheet_stress(&body, s, sigma);
+        if (body.element_id[s] == 0) brunt_membrane_stress(&body, s, sigma);
     result.deflection = (double)brunt_fem_node(&body, centre)[2] / slope;
     result.stress = 0.5 * (sigma[0] + sigma[1]) / stress;
     result.hourglass = report.hourglass_stored / brunt_fem_energy(&body).internal;
