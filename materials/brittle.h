@@ -1,30 +1,31 @@
-// What brittle and frictional materials share: Cauchy flow stresses that depend on the pressure, flow stresses that damage
-// lowers within the step, a pressure of their own that bears a limited tension, and the books of it. The deviator is that of
-// j2.h with kappa = 0.
+// What brittle and frictional materials share: Cauchy flow stresses that depend on the pressure, flow stresses that
+// damage lowers within the step, a pressure of their own that bears a limited tension, and the books of it. The
+// deviator is that of j2.h with kappa = 0.
 //
-// Volume. mu = 1/J - 1, eta = 1 - J = mu / (1 + mu). The pressure does the work p d(eta) per reference volume, so that an energy
+// Volume. mu = 1/J - 1, eta = 1 - J = mu / (1 + mu). The pressure does the work p d(eta) per reference volume, so that
+// an energy
 //   W(eta, s),  p = dW/d(eta)   with internal variables s (damage, compaction, bulking)
 // is stored, and what a change of s takes from it is dissipated. Over a step from 0 to 1 that is booked as
 //   loss = 1/2 [W(eta1, s0) - W(eta1, s1) + W(eta0, s0) - W(eta0, s1)],
-// which is 0 where s stays, of second order with the trapezoid of the pressure, and right also where s jumps (damage from 0 to
-// 1 in a step): the rest is 1/4 d2p d(eta) ds, not dp ds.
+// which is 0 where s stays, of second order with the trapezoid of the pressure, and right also where s jumps (damage
+// from 0 to 1 in a step): the rest is 1/4 d2p d(eta) ds, not dp ds.
 //
-// Torn. Where the law gives less than -tension the pressure stays there, the gap being open; it closes at the volume where it
-// opened. The stored energy has the part tension x gap; damage that lowers the tension dissipates it.
+// Torn. Where the law gives less than -tension the pressure stays there, the gap being open; it closes at the volume
+// where it opened. The stored energy has the part tension x gap; damage that lowers the tension dissipates it.
 //
-// Wave speed. With U(J) per reference volume, rho0 c^2 = J^2 U'' = dp/dmu in the deformed body. It bounds elastic changes. A point
-// that flows while it is relieved along a flow stress rising with pressure by b = dq/dp has up to dp/dmu (1 + 2/3 b), which for b
-// above 2 G / K is more; it lasts as long as that stress.
+// Wave speed. With U(J) per reference volume, rho0 c^2 = J^2 U'' = dp/dmu in the deformed body. It bounds elastic
+// changes. A point that flows while it is relieved along a flow stress rising with pressure by b = dq/dp has up to
+// dp/dmu (1 + 2/3 b), which for b above 2 G / K is more; it lasts as long as that stress.
 #pragma once
 
 #include "materials/j2.h"
 
-// Damage of 1 says that a point has failed and may be taken away (material.h). Material that is but fractured keeps its residual
-// strength: its damage stays this far below.
+// Damage of 1 says that a point has failed and may be taken away (material.h). Material that is but fractured keeps its
+// residual strength: its damage stays this far below.
 #define BRITTLE_FRACTURED (1 - LANES_REAL_EPSILON)
 
-// Deviators below this part of the shear modulus are rounding: where tension has taken all strength they neither flow nor
-// fracture.
+// Deviators below this part of the shear modulus are rounding: where tension has taken all strength they neither flow
+// nor fracture.
 #define BRITTLE_ROUNDING (8 * LANES_REAL_EPSILON)
 
 // K1 x + K2 x^2 + K3 x^3 with the three moduli at `modulus`, its slope, and int_0^x (that) / (1 + y)^2 dy for x > -1.
@@ -40,8 +41,8 @@ BRUNT_INLINE lanes cubic_energy(const real *modulus, lanes x) {
     return modulus[0] * (l - eta) + modulus[1] * square + modulus[2] * cube;
 }
 
-// 1 + C log(rate / rate0), 1 below rate0. The rate is sqrt(2/3 e':e') / dt with Green's strain e of the step, 1/2 (f^T f - I): a
-// frame that turns, however fast, sees the same. `inverse_rate_step`: 1 / (dt rate0).
+// 1 + C log(rate / rate0), 1 below rate0. The rate is sqrt(2/3 e':e') / dt with Green's strain e of the step, 1/2 (f^T
+// f - I): a frame that turns, however fast, sees the same. `inverse_rate_step`: 1 / (dt rate0).
 BRUNT_INLINE lanes rate_factor(int dim, const brunt_points *points, int32_t i, real C, lanes inverse_rate_step) {
     if (!(C > 0)) return lanes_set(1);
     lanes H[9], e[6] = {lanes_set(0), lanes_set(0), lanes_set(0), lanes_set(0), lanes_set(0), lanes_set(0)};
@@ -72,22 +73,23 @@ BRUNT_INLINE lanes volume_change_before(int dim, const brunt_points *points, int
     return change - (1 + change) * (v / (1 + v));
 }
 
-// --------------------------------------------------------------------------------- return to a flow stress that softens
+// --------------------------------------------------------------------------------- return to a flow stress that
+// softens
 
-// Flow stress with damage D, which grows by plastic strain / `strain`: limit - drop (D - D0), not below `lower` and not above
-// `upper`. All at the pressure of the end of the step.
+// Flow stress with damage D, which grows by plastic strain / `strain`: limit - drop (D - D0), not below `lower` and not
+// above `upper`. All at the pressure of the end of the step.
 typedef struct softening {
-    lanes damage;         // D0
-    lanes limit, drop;    // [Pa] at D0; from D = 0 to D = 1
-    lanes lower, upper;   // [Pa] lower >= 0
-    lanes strain;         // plastic strain from D = 0 to D = 1, >= 0
+    lanes damage;       // D0
+    lanes limit, drop;  // [Pa] at D0; from D = 0 to D = 1
+    lanes lower, upper; // [Pa] lower >= 0
+    lanes strain;       // plastic strain from D = 0 to D = 1, >= 0
 } softening;
 
 BRUNT_INLINE lanes softening_begin(const softening *s) { return lanes_min(lanes_max(s->limit, s->lower), s->upper); }
 
-// Plastic strain delta with trial - stiffness delta = flow stress, in closed form, for trial > softening_begin. Where the flow
-// stress falls faster than the elastic stress there is no way back on the slope (all elastic energy goes at once): the root is
-// then on `lower`.
+// Plastic strain delta with trial - stiffness delta = flow stress, in closed form, for trial > softening_begin. Where
+// the flow stress falls faster than the elastic stress there is no way back on the slope (all elastic energy goes at
+// once): the root is then on `lower`.
 BRUNT_INLINE lanes softening_root(const softening *s, lanes trial, lanes stiffness) {
     lanes spread = stiffness * s->strain - s->drop;
     lanes slope = (trial - s->limit) * s->strain / spread;
@@ -108,9 +110,9 @@ BRUNT_INLINE lanes distortion(const j2_point *p) {
     return ((real)0.5 * p->dd * p->m - p->det_d) / (1 + p->m * (1 + p->m));
 }
 
-// Returns the deviator from the trial to q where `plastic` and gives the plastic strain, 0 elsewhere: that which makes the energy
-// set free the trapezoid 1/2 (q_trial + q) delta. Fracture may take all stress in one step, and mu_bar in the middle of so long a
-// return is not its mean: with it that energy is wrong by 1e-4, whatever the step.
+// Returns the deviator from the trial to q where `plastic` and gives the plastic strain, 0 elsewhere: that which makes
+// the energy set free the trapezoid 1/2 (q_trial + q) delta. Fracture may take all stress in one step, and mu_bar in
+// the middle of so long a return is not its mean: with it that energy is wrong by 1e-4, whatever the step.
 BRUNT_INLINE lanes return_deviator(int dim, const real *k, j2_point *p, lane_mask plastic, lanes q) {
     lanes trial = p->q, before = distortion(p);
     j2_return(dim, p, plastic, q);
@@ -119,7 +121,8 @@ BRUNT_INLINE lanes return_deviator(int dim, const real *k, j2_point *p, lane_mas
 }
 
 // The increment and the stress q it ends at, where `plastic`; 0 and the trial's elsewhere.
-BRUNT_INLINE lanes softening_return(int dim, const real *k, j2_point *p, const softening *s, lane_mask plastic, lanes *q) {
+BRUNT_INLINE lanes softening_return(int dim, const real *k, j2_point *p, const softening *s, lane_mask plastic,
+                                    lanes *q) {
     j2_set_stiffness(k, p);
     lanes end = lanes_max(p->q - p->stiffness * softening_root(s, p->q, p->stiffness), lanes_set(0));
     *q = lanes_select(plastic, end, p->q);
@@ -128,9 +131,10 @@ BRUNT_INLINE lanes softening_return(int dim, const real *k, j2_point *p, const s
 
 // --------------------------------------------------------------------------------- storing
 
-// Adds the pressure, Kirchhoff [Pa], to the deviator that j2_store has written; `stiffness` = dp/dmu for the wave speed.
-BRUNT_INLINE void store_pressure(const real *k, const brunt_points *points, int32_t i, const j2_point *p, lanes pressure,
-                                 lanes stiffness, update_record *record) {
+// Adds the pressure, Kirchhoff [Pa], to the deviator that j2_store has written; `stiffness` = dp/dmu for the wave
+// speed.
+BRUNT_INLINE void store_pressure(const real *k, const brunt_points *points, int32_t i, const j2_point *p,
+                                 lanes pressure, lanes stiffness, update_record *record) {
     for (int c = 0; c < 3; c++) lanes_store(points->stress[c] + i, lanes_load(points->stress[c] + i) - pressure);
     lanes shear = k[J2_MU] * ((real)(4.0 / 3) * p->m + (real)(1.0 / 3) * lanes_sqrt((real)(2.0 / 3) * p->dd));
     note_speed(record, k[J2_INVERSE_DENSITY] * (stiffness + shear));
@@ -159,13 +163,16 @@ static inline real brittle_wave_speed(const real *constants, real bulk) {
     return (real)sqrt(((double)bulk + 4 * (double)constants[J2_MU] / 3) * (double)constants[J2_INVERSE_DENSITY]);
 }
 
-#define PARAMETER_G {"G", "Pa", NAN, 0, INFINITY, true, true, "shear modulus"}
+#define PARAMETER_G                                                                                                    \
+    { "G", "Pa", NAN, 0, INFINITY, true, true, "shear modulus" }
 #define PARAMETER_FAILURE_STRAIN                                                                                       \
-    {"failure_strain", "1", INFINITY, 0, INFINITY, true, false,                                                        \
-     "equivalent plastic strain at which the material fails and may erode; default: never"}
+    {                                                                                                                  \
+        "failure_strain", "1", INFINITY, 0, INFINITY, true, false,                                                     \
+            "equivalent plastic strain at which the material fails and may erode; default: never"                      \
+    }
 
-// Stored energy of the volume of a range, the deviator's beside it: stored(k, J - 1, the model's own variable, damage), the last two
-// by their places behind J2_MODEL_STATE.
+// Stored energy of the volume of a range, the deviator's beside it: stored(k, J - 1, the model's own variable, damage),
+// the last two by their places behind J2_MODEL_STATE.
 typedef lanes brittle_stored_fn(const real *k, lanes change, lanes variable, lanes damage);
 BRUNT_INLINE void brittle_energy_dim(int dim, const real *k, const brunt_points *points, int variable, int damage,
                                      brittle_stored_fn *stored, brunt_point_energy *energy) {
@@ -179,9 +186,11 @@ BRUNT_INLINE void brittle_energy_dim(int dim, const real *k, const brunt_points 
     }
     energy->internal += total_end(&sum);
 }
-BRUNT_INLINE void brittle_energy(const real *k, const brunt_points *points, int variable, int damage, brittle_stored_fn *stored,
-                                 brunt_point_energy *energy) {
+BRUNT_INLINE void brittle_energy(const real *k, const brunt_points *points, int variable, int damage,
+                                 brittle_stored_fn *stored, brunt_point_energy *energy) {
     j2_energy(k, points, energy);
-    if (points->dim == 2) brittle_energy_dim(2, k, points, variable, damage, stored, energy);
-    else brittle_energy_dim(3, k, points, variable, damage, stored, energy);
+    if (points->dim == 2)
+        brittle_energy_dim(2, k, points, variable, damage, stored, energy);
+    else
+        brittle_energy_dim(3, k, points, variable, damage, stored, energy);
 }

@@ -18,8 +18,8 @@
 //     closes to second order in the step; where the Lode angle of d changes under flow a first-order rest of about Y/mu
 //     times a tenth stays (measured: 4e-8 of the work at strain steps of 3e-6).
 //
-// Where a failure model softens, the flow stress is multiplied by the point's integrity: the stress then falls back to it in
-// one step, and what was stored becomes plastic work by the same trapezoid. Models take `softens` as a literal.
+// Where a failure model softens, the flow stress is multiplied by the point's integrity: the stress then falls back to
+// it in one step, and what was stored becomes plastic work by the same trapezoid. Models take `softens` as a literal.
 //
 //   notation  m = tr b/3   d = dev b   q = sqrt(3/2) |s|, s = mu d   delta: increment of equivalent plastic strain
 #pragma once
@@ -225,8 +225,10 @@ BRUNT_INLINE void j2_energy_dim(int dim, const real *k, const brunt_points *poin
 }
 
 static inline void j2_energy(const real *constants, const brunt_points *points, brunt_point_energy *energy) {
-    if (points->dim == 2) j2_energy_dim(2, constants, points, energy);
-    else j2_energy_dim(3, constants, points, energy);
+    if (points->dim == 2)
+        j2_energy_dim(2, constants, points, energy);
+    else
+        j2_energy_dim(3, constants, points, energy);
 }
 
 // --------------------------------------------------------------------------------- implicit plastic increment
@@ -234,7 +236,10 @@ static inline void j2_energy(const real *constants, const brunt_points *points, 
 // Newton's method for q_trial - stiffness delta = flow(delta), kept inside a bracket that shrinks with every
 // evaluation: 0 (where the trial is above the flow stress) to q_trial / stiffness (where no stress is left). Any step
 // that leaves the bracket is replaced by halving it, so steep rate and power laws cannot throw it out.
-typedef struct j2_root { lanes delta, low, high; lane_mask active; } j2_root;
+typedef struct j2_root {
+    lanes delta, low, high;
+    lane_mask active;
+} j2_root;
 
 enum { J2_ROOT_STEPS = 60 };
 #ifdef BRUNT_FLOAT
@@ -266,7 +271,8 @@ BRUNT_INLINE void j2_root_step(const j2_point *p, j2_root *root, lanes flow, lan
     root->low = lanes_select(root->active & (rest > 0), root->delta, root->low);
     root->high = lanes_select(root->active & ~(rest > 0), root->delta, root->high);
     lanes next = root->delta + rest / (p->stiffness + slope);
-    // The root may lie many decades below its upper bound (a point that hardly yields): halve the exponent, not the interval.
+    // The root may lie many decades below its upper bound (a point that hardly yields): halve the exponent, not the
+    // interval.
     lanes middle = lanes_select(root->low > 0, lanes_sqrt(root->low * root->high), (real)1e-3 * root->high);
     next = lanes_select((next > root->low) & (next < root->high), next, middle);
     root->delta = lanes_select(root->active, next, root->delta);

@@ -1,7 +1,7 @@
 // Equivalent logarithmic strain of a deformation gradient: sqrt(2/3 e:e) with e the deviator of ln sqrt(F^T F).
 //
-// Its principal values e_i sum to 0, so that with F scaled to volume 1 tr C + tr C^-1 - 6 = sum 2 (cosh 2 e_i - 1), which
-// is at least 4 e:e: (tr C + tr C^-1 - 6) / 6 is a bound of the square, close for small strains, that needs no
+// Its principal values e_i sum to 0, so that with F scaled to volume 1 tr C + tr C^-1 - 6 = sum 2 (cosh 2 e_i - 1),
+// which is at least 4 e:e: (tr C + tr C^-1 - 6) / 6 is a bound of the square, close for small strains, that needs no
 // eigenvalues. Only points past the bound are worth those.
 #pragma once
 
@@ -18,8 +18,8 @@ BRUNT_INLINE lanes log_strain_bound(const lanes F[9]) {
         int r = row[k], c = column[k];
         C[k] = F[r] * F[c] + F[3 + r] * F[3 + c] + F[6 + r] * F[6 + c];
     }
-    lanes first = C[0] + C[1] + C[2], second = C[0] * C[1] + C[1] * C[2] + C[2] * C[0] - C[3] * C[3] - C[4] * C[4] -
-                                               C[5] * C[5];
+    lanes first = C[0] + C[1] + C[2],
+          second = C[0] * C[1] + C[1] * C[2] + C[2] * C[0] - C[3] * C[3] - C[4] * C[4] - C[5] * C[5];
     lanes scale = lanes_inverse_cbrt(J);
     scale *= scale;
     return (first * scale + second * scale * scale - 6) * (real)(1.0 / 6);

@@ -9,9 +9,9 @@
 //   viscosity  (optional)  artificial bulk viscosity: adds q to the pressure while the material is being compressed
 //   eos        (optional)  pressure from density and internal energy
 //   failure    (optional)  damage from stress, plastic strain, rate and temperature of the strength model
-// What damage does to strength and tension acts from the next step on, by `integrity`; whether a failed point then leaves
-// its body is not the material's business.
-// Each update gets brunt_points with its own state arrays. With an eos the strength writes the deviatoric stress alone.
+// What damage does to strength and tension acts from the next step on, by `integrity`; whether a failed point then
+// leaves its body is not the material's business. Each update gets brunt_points with its own state arrays. With an eos
+// the strength writes the deviatoric stress alone.
 //
 // Work and dissipation are trapezoidal in time: the mean of the stresses at both ends of a step, times its rate. That
 // is what central differences do (summed over a run, force at t_n times the mean of the velocities about it is the same
@@ -31,81 +31,85 @@ enum { BRUNT_MAX_PARAMETERS = 24, BRUNT_MAX_CONSTANTS = 48, BRUNT_MAX_STATE = 24
 // A range of `count` points (a multiple of BRUNT_LANES). Arrays are one per scalar component, aligned to a vector.
 typedef struct brunt_points {
     int32_t count;
-    int dim;                  // 2 (plane strain) or 3
-    real dt;                  // [s]
-    real time;                // [s] at the end of the step
-    real cell;                // [m] length scale of the discretisation (for the artificial viscosity)
-    real wave_speed;          // [m/s] of the undeformed body (for the artificial viscosity)
-    const real *L[9];         // velocity gradient over the step [1/s], BRUNT_MATRIX(dim) components
-    real *F[9];               // deformation gradient at the end of the step [-] (already updated: F = (I + dt L) F_old)
-    real *stress[6];          // Kirchhoff stress [Pa]; in: of the last step, out: of this step; BRUNT_SYMMETRIC(dim) components
-    bool may_reshape;         // F is the points' own memory (material points): a fluid may replace it by one of the same J
-    bool slack;               // of a sheet: it bears no compression
-    real *thickness;          // of a sheet: stretch across it at the end of the step [-], written; else NULL
-    const real *volume;       // reference volume [m^3]; 0 for padding
-    real *state[BRUNT_MAX_STATE];  // this component's own state arrays, in the order of its state table
+    int dim;          // 2 (plane strain) or 3
+    real dt;          // [s]
+    real time;        // [s] at the end of the step
+    real cell;        // [m] length scale of the discretisation (for the artificial viscosity)
+    real wave_speed;  // [m/s] of the undeformed body (for the artificial viscosity)
+    const real *L[9]; // velocity gradient over the step [1/s], BRUNT_MATRIX(dim) components
+    real *F[9];       // deformation gradient at the end of the step [-] (already updated: F = (I + dt L) F_old)
+    real *stress[6];  // Kirchhoff stress [Pa]; in: of the last step, out: of this step; BRUNT_SYMMETRIC(dim) components
+    bool may_reshape; // F is the points' own memory (material points): a fluid may replace it by one of the same J
+    bool slack;       // of a sheet: it bears no compression
+    real *thickness;  // of a sheet: stretch across it at the end of the step [-], written; else NULL
+    const real *volume;           // reference volume [m^3]; 0 for padding
+    real *state[BRUNT_MAX_STATE]; // this component's own state arrays, in the order of its state table
     // What one component leaves for the next, within one update (never stored): dissipation and viscous pressure.
-    real *plastic_increment;  // [J/m^3 of reference volume] what the strength model dissipated in this step; NULL when
-                              // nobody reads it (no eos), or when it is neither plastic nor viscous
-    real *strain_increment;   // [-] equivalent plastic strain of this step, from the strength model; NULL when nobody reads it
+    real *plastic_increment; // [J/m^3 of reference volume] what the strength model dissipated in this step; NULL when
+                             // nobody reads it (no eos), or when it is neither plastic nor viscous
+    real *strain_increment;  // [-] equivalent plastic strain of this step, from the strength model; NULL when nobody
+                             // reads it
     // What failure says to the others, and they to it.
-    const real *integrity;    // [-] 1 sound .. 0 failed, as the last step left it: a factor on the flow stress; at 0 there is no
-                              // tension either. NULL when nothing softens
-    const real *integrity_before;  // [-] the same as the step before left it: that of the stress at the start of this step
-    const real *temperature;  // [K] of the strength model at the end of the step, for failure; NULL when it has none
-    real *viscous_pressure;   // [Pa] q > 0 in compression, mean of the last step's and this one's: its work in the step
-                              // is -viscous_pressure dJ per reference volume; NULL when nobody reads it
+    const real *integrity; // [-] 1 sound .. 0 failed, as the last step left it: a factor on the flow stress; at 0 there
+                           // is no tension either. NULL when nothing softens
+    const real
+        *integrity_before;   // [-] the same as the step before left it: that of the stress at the start of this step
+    const real *temperature; // [K] of the strength model at the end of the step, for failure; NULL when it has none
+    real *viscous_pressure;  // [Pa] q > 0 in compression, mean of the last step's and this one's: its work in the step
+                             // is -viscous_pressure dJ per reference volume; NULL when nobody reads it
 } brunt_points;
 
 // What an update tells its caller.
 typedef struct brunt_update_result {
-    real wave_speed;          // [m/s] greatest among the points; of a body: brunt_wave_speed of its components' results
-    int32_t bad;              // index of the first point that failed, -1 when none did
-    const char *reason;       // why, e.g. "the deformation gradient has turned inside out (J <= 0)"
-    real viscosity;           // [m/s] of a strength model with shear_viscous: what it adds to Q of brunt_wave_speed
-    bool failed;              // a point with volume has failed: its first state component named "damage" is at least 1
+    real wave_speed;    // [m/s] greatest among the points; of a body: brunt_wave_speed of its components' results
+    int32_t bad;        // index of the first point that failed, -1 when none did
+    const char *reason; // why, e.g. "the deformation gradient has turned inside out (J <= 0)"
+    real viscosity;     // [m/s] of a strength model with shear_viscous: what it adds to Q of brunt_wave_speed
+    bool failed;        // a point with volume has failed: its first state component named "damage" is at least 1
 } brunt_update_result;
 
 // Energies of a range, per kind [J]. A component adds its own share.
 typedef struct brunt_point_energy {
-    double internal;          // stored (recoverable) energy, and heat of an equation of state
-    double plastic;           // dissipated by plastic flow
-    double viscosity;         // dissipated by the artificial viscosity
-    double heat;              // of `plastic`, what has warmed the points adiabatically: part of it, no term of the sum
+    double internal;  // stored (recoverable) energy, and heat of an equation of state
+    double plastic;   // dissipated by plastic flow
+    double viscosity; // dissipated by the artificial viscosity
+    double heat;      // of `plastic`, what has warmed the points adiabatically: part of it, no term of the sum
 } brunt_point_energy;
 
 typedef struct brunt_parameter {
-    const char *key;          // as typed in a scene
-    const char *unit;         // "Pa", "1", "K", "J/kg/K"
-    double initial;           // the default; NAN when it must be given
-    double min, max;          // allowed range ...
-    bool min_open, max_open;  // ... without its ends
-    const char *doc;          // one line
+    const char *key;         // as typed in a scene
+    const char *unit;        // "Pa", "1", "K", "J/kg/K"
+    double initial;          // the default; NAN when it must be given
+    double min, max;         // allowed range ...
+    bool min_open, max_open; // ... without its ends
+    const char *doc;         // one line
 } brunt_parameter;
 
 typedef struct brunt_state_field {
-    const char *name;         // the field's standard term: "plastic_strain"
+    const char *name; // the field's standard term: "plastic_strain"
     const char *unit;
-    int components3, components2;  // scalars in 3D, in 2D
+    int components3, components2; // scalars in 3D, in 2D
     // Value a new point starts with: NULL for 0, else computed from the prepared constants, per component.
     real (*initial)(const real *constants, int component);
 } brunt_state_field;
 
 typedef struct brunt_model {
-    const char *name;         // as typed in a scene: "neo-hookean"
-    const char *doc;          // one line, with its source
-    bool plastic, thermal, eos, viscous, damage;  // the effects it brings: the plan and the summary list them
-    bool burns;               // an explosive: has a state "ignition_time" [s], set from the detonators when a body is made, and
-                              // its first parameter "detonation_speed" [m/s]
-    bool fluid;               // remembers no shape: the history of F but for J is nothing to it
-    bool shear_viscous;       // a strength model whose stress follows the rate of shear, and dissipates
-    bool needs_eos;           // has no pressure of its own
-    bool accepts_eos;         // a strength model whose pressure an equation of state may replace
-    bool small_strain;        // by definition not rotation invariant: exempt from what holds for finite rotations
-    const brunt_parameter *parameters; int parameter_count;   // density is common to all and not listed here
-    const brunt_state_field *state; int state_count;
-    int flops[3];             // arithmetic of an update of a point that does not flow, in 2D, in 3D, of a sheet, as executed (divisions
-                              // and roots 1); 0: not counted
+    const char *name;                            // as typed in a scene: "neo-hookean"
+    const char *doc;                             // one line, with its source
+    bool plastic, thermal, eos, viscous, damage; // the effects it brings: the plan and the summary list them
+    bool burns; // an explosive: has a state "ignition_time" [s], set from the detonators when a body is made, and
+                // its first parameter "detonation_speed" [m/s]
+    bool fluid; // remembers no shape: the history of F but for J is nothing to it
+    bool shear_viscous; // a strength model whose stress follows the rate of shear, and dissipates
+    bool needs_eos;     // has no pressure of its own
+    bool accepts_eos;   // a strength model whose pressure an equation of state may replace
+    bool small_strain;  // by definition not rotation invariant: exempt from what holds for finite rotations
+    const brunt_parameter *parameters;
+    int parameter_count; // density is common to all and not listed here
+    const brunt_state_field *state;
+    int state_count;
+    int flops[3]; // arithmetic of an update of a point that does not flow, in 2D, in 3D, of a sheet, as executed
+                  // (divisions and roots 1); 0: not counted
     // Fills `constants` (at most BRUNT_MAX_CONSTANTS reals, laid out as the model likes) from the parameters.
     // `density` [kg/m^3]; `with_eos`: the pressure comes from an equation of state. Returns NULL, or what is wrong, in
     // a few words.
@@ -120,20 +124,23 @@ typedef struct brunt_model {
     // The same measure as the update's wave_speed, of the undeformed material at rest [m/s]: the first time step, and
     // the plan.
     real (*wave_speed)(const real *constants);
-    // The same of a sheet (plane stress), NULL when there is no such form. Points then have dim 2; F is the symmetric stretch U in
-    // the plane (F^T F = U U), L is not given; stress is the Kirchhoff stress R^T tau R in the same axes, its ZZ 0; `thickness` is
-    // written. With `slack` the stress is that of the relaxed energy (tension field theory): 0 when both principal stresses would
-    // be compressive, uniaxial tension when one would.
+    // The same of a sheet (plane stress), NULL when there is no such form. Points then have dim 2; F is the symmetric
+    // stretch U in the plane (F^T F = U U), L is not given; stress is the Kirchhoff stress R^T tau R in the same axes,
+    // its ZZ 0; `thickness` is written. With `slack` the stress is that of the relaxed energy (tension field theory): 0
+    // when both principal stresses would be compressive, uniaxial tension when one would.
     brunt_update_result (*update_sheet)(const real *constants, const brunt_points *points);
     void (*energy_sheet)(const real *constants, const brunt_points *points, brunt_point_energy *energy);
     real (*wave_speed_sheet)(const real *constants);
 } brunt_model;
 
 // The lists. Order is the order of `brunt keys`.
-extern const brunt_model *const brunt_strength_models[];  extern const int brunt_strength_model_count;
-extern const brunt_model *const brunt_eos_models[];       extern const int brunt_eos_model_count;
-extern const brunt_model *const brunt_failure_models[];  extern const int brunt_failure_model_count;
-extern const brunt_model brunt_bulk_viscosity;            // there is one
+extern const brunt_model *const brunt_strength_models[];
+extern const int brunt_strength_model_count;
+extern const brunt_model *const brunt_eos_models[];
+extern const int brunt_eos_model_count;
+extern const brunt_model *const brunt_failure_models[];
+extern const int brunt_failure_model_count;
+extern const brunt_model brunt_bulk_viscosity; // there is one
 
 // Wave speed that limits the time step [m/s]. A strength model gives the longitudinal speed, or with an eos its shear
 // share sqrt(4/3 mu / rho); an eos the bulk sound speed; their squares add. A viscosity gives Q = linear c + quadratic

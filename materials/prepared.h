@@ -4,19 +4,25 @@
 #include "brunt.h"
 #include "materials/material.h"
 
-typedef enum brunt_component { BRUNT_STRENGTH, BRUNT_VISCOSITY, BRUNT_EOS, BRUNT_FAILURE, BRUNT_COMPONENTS } brunt_component;
+typedef enum brunt_component {
+    BRUNT_STRENGTH,
+    BRUNT_VISCOSITY,
+    BRUNT_EOS,
+    BRUNT_FAILURE,
+    BRUNT_COMPONENTS
+} brunt_component;
 
 typedef struct brunt_material {
     char name[BRUNT_NAME_LENGTH];
     real density;                               // [kg/m^3]
     const brunt_model *model[BRUNT_COMPONENTS]; // NULL where there is none
     real constants[BRUNT_COMPONENTS][BRUNT_MAX_CONSTANTS];
-    real wave_speed; // [m/s] undeformed
-    real rest_stress; // [Pa] what every normal stress is while undeformed: less the pressure of the equation of state
+    real wave_speed;   // [m/s] undeformed
+    real rest_stress;  // [Pa] what every normal stress is while undeformed: less the pressure of the equation of state
     bool sheet, slack; // in plane stress; bears no compression
     brunt_failure_action failure_action;
-    // Of models in 2D and 3D: the first of their state arrays that holds this, -1 where there is none. `integrity` is followed by
-    // `integrity_before`.
+    // Of models in 2D and 3D: the first of their state arrays that holds this, -1 where there is none. `integrity` is
+    // followed by `integrity_before`.
     int8_t temperature[2], integrity[2];
 } brunt_material;
 
@@ -28,10 +34,10 @@ int brunt_material_make_sheet(const brunt_material_def *def, bool slack, brunt_m
 void brunt_material_energy(const brunt_material *material, brunt_component k, const brunt_points *points,
                            brunt_point_energy *energy);
 
-// One step of a material over a range: strength, viscosity, equation of state and failure, in this order. points[k] is the
-// range as component k sees it, with L, dt, time and its state; `plastic`, `viscous` and `strain` have room for points->count
-// reals each, for what one component leaves for the next (strain: [-] plastic, for failure; may be NULL without). Gives the
-// wave speed of all components together, the first point whose update is bad in the first component that has one, and
-// whether points have failed.
+// One step of a material over a range: strength, viscosity, equation of state and failure, in this order. points[k] is
+// the range as component k sees it, with L, dt, time and its state; `plastic`, `viscous` and `strain` have room for
+// points->count reals each, for what one component leaves for the next (strain: [-] plastic, for failure; may be NULL
+// without). Gives the wave speed of all components together, the first point whose update is bad in the first component
+// that has one, and whether points have failed.
 brunt_update_result brunt_material_update(const brunt_material *material, brunt_points points[BRUNT_COMPONENTS],
                                           real *plastic, real *viscous, real *strain);

@@ -87,7 +87,7 @@ BRUNT_INLINE lanes stretch_squared_bound(int dim, const lanes B[6]) {
 // Failures are recorded without branching: per lane, the first vector that failed.
 typedef struct update_record {
     lanes speed_squared;
-    lane_mask deformation, model;  // first bad vector for either reason, -1 while there is none
+    lane_mask deformation, model; // first bad vector for either reason, -1 while there is none
 } update_record;
 
 BRUNT_INLINE update_record update_begin(void) {
@@ -136,7 +136,11 @@ static inline brunt_update_result update_end(const update_record *record, const 
 // --------------------------------------------------------------------------------- energies
 
 // Sum over many vectors: in lanes for speed, carried into a double often enough that a float build keeps its digits.
-typedef struct lane_total { lanes part; int count; double sum; } lane_total;
+typedef struct lane_total {
+    lanes part;
+    int count;
+    double sum;
+} lane_total;
 
 BRUNT_INLINE double total_end(lane_total *total) {
     for (int l = 0; l < BRUNT_LANES; l++) total->sum += (double)total->part[l];
@@ -156,6 +160,8 @@ static inline double shear_modulus(double E, double nu) { return E / (2 * (1 + n
 static inline double bulk_modulus(double E, double nu) { return E / (3 * (1 - 2 * nu)); }
 static inline double lame_lambda(double E, double nu) { return E * nu / ((1 + nu) * (1 - 2 * nu)); }
 
-#define PARAMETER_E {"E", "Pa", NAN, 0, INFINITY, true, true, "Young's modulus"}
-#define PARAMETER_NU {"nu", "1", NAN, -1, 0.5, true, true, "Poisson's ratio"}
+#define PARAMETER_E                                                                                                    \
+    { "E", "Pa", NAN, 0, INFINITY, true, true, "Young's modulus" }
+#define PARAMETER_NU                                                                                                   \
+    { "nu", "1", NAN, -1, 0.5, true, true, "Poisson's ratio" }
 #define COUNT_OF(table) ((int)(sizeof(table) / sizeof *(table)))

@@ -210,7 +210,8 @@ void brunt_body_totals(brunt_world *world, int32_t index, brunt_body_sums *sums)
     bound_body(world, &world->all[index], sums);
 }
 
-static void fill_force(const brunt_impulse_account *last, const brunt_impulse_account *all, double kick, brunt_force *force) {
+static void fill_force(const brunt_impulse_account *last, const brunt_impulse_account *all, double kick,
+                       brunt_force *force) {
     for (int k = 0; k < 3; k++) {
         force->force[k] = kick > 0 ? last->impulse[k] / kick : 0;
         force->impulse[k] = all->impulse[k];

@@ -69,7 +69,8 @@ int main(int argc, char **argv) {
             int status = commands[c].run(argc - 1, argv + 1);
             return commands[c].writes_files ? status : printed(status);
         }
-    fprintf(stderr, "brunt: there is no command '%s'; run, check, study, keys and info are known (brunt --help says more)\n",
+    fprintf(stderr,
+            "brunt: there is no command '%s'; run, check, study, keys and info are known (brunt --help says more)\n",
             argv[1]);
     return BRUNT_BAD_USAGE;
 }

@@ -18,8 +18,8 @@ typedef struct brunt_timer {
     int32_t pass;                       // what the observer knows the phases by
 } brunt_timer;
 
-// Runs all tasks [0, count) in pieces of `grain`, on at most `threads` threads (1 .. BRUNT_THREADS_MOST). `timer`: NULL when
-// nobody wants the time; else two readings of the clock a worker.
+// Runs all tasks [0, count) in pieces of `grain`, on at most `threads` threads (1 .. BRUNT_THREADS_MOST). `timer`: NULL
+// when nobody wants the time; else two readings of the clock a worker.
 void brunt_parallel(int threads, int64_t count, int64_t grain, brunt_task_fn *task, void *context, brunt_timer *timer);
 
 int brunt_threads_available(void);

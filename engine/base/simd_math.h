@@ -16,15 +16,15 @@
 enum { LANES_MANTISSA_BITS = 23, LANES_EXPONENT_BIAS = 127 };
 #define LANES_REAL_MIN FLT_MIN
 #define LANES_REAL_EPSILON FLT_EPSILON
-#define LANES_LN2_HIGH 0x1.62ep-1f              // 12 bits: exact times any exponent
+#define LANES_LN2_HIGH 0x1.62ep-1f // 12 bits: exact times any exponent
 #define LANES_LN2_LOW 0x1.0bfbe8e7bcd5ep-15f
-#define LANES_EXP_LIMIT 160                     // beyond it exp is 0 or inf with room to spare
-#define LANES_HALF_MASK (~(lane_int)0xfff)      // keeps the upper half of a mantissa
+#define LANES_EXP_LIMIT 160                // beyond it exp is 0 or inf with room to spare
+#define LANES_HALF_MASK (~(lane_int)0xfff) // keeps the upper half of a mantissa
 #else
 enum { LANES_MANTISSA_BITS = 52, LANES_EXPONENT_BIAS = 1023 };
 #define LANES_REAL_MIN DBL_MIN
 #define LANES_REAL_EPSILON DBL_EPSILON
-#define LANES_LN2_HIGH 0x1.62e42fefa2p-1        // 40 bits
+#define LANES_LN2_HIGH 0x1.62e42fefa2p-1 // 40 bits
 #define LANES_LN2_LOW 0x1.9ef35793c7673p-41
 #define LANES_EXP_LIMIT 1100
 #define LANES_HALF_MASK (~(lane_int)0x7ffffff)
@@ -35,9 +35,7 @@ enum { LANES_MANTISSA_BITS = 52, LANES_EXPONENT_BIAS = 1023 };
 #define LANES_ROUND ((real)((lane_int)3 << (LANES_MANTISSA_BITS - 1)))
 
 // The vector of a small integer vector; and the integers of a vector rounded by adding LANES_ROUND.
-BRUNT_INLINE lanes lanes_of_int(lane_mask n) {
-    return (lanes)(n + (lane_mask)lanes_set(LANES_ROUND)) - LANES_ROUND;
-}
+BRUNT_INLINE lanes lanes_of_int(lane_mask n) { return (lanes)(n + (lane_mask)lanes_set(LANES_ROUND)) - LANES_ROUND; }
 BRUNT_INLINE lane_mask lanes_int_of_rounded(lanes shifted) {
     return (lane_mask)shifted - (lane_mask)lanes_set(LANES_ROUND);
 }
@@ -47,7 +45,7 @@ BRUNT_INLINE lane_mask lanes_int_of_rounded(lanes shifted) {
 BRUNT_INLINE void lanes_log_parts(lanes x, lanes *high, lanes *low) {
     lane_mask bits = (lane_mask)x;
 #ifdef BRUNT_FLOAT
-    const lane_int root_half = 0x3f3504f3;      // bits of sqrt(1/2), so that 1 + f starts there
+    const lane_int root_half = 0x3f3504f3; // bits of sqrt(1/2), so that 1 + f starts there
 #else
     const lane_int root_half = 0x3fe6a09e667f3bcd;
 #endif

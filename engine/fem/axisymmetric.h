@@ -10,16 +10,18 @@ static const int ring_place[4] = {0, 1, 3, 4};
 
 // Of a vector of elements at the start; without the factor 2 pi of the circle.
 typedef struct ring_section {
-    lanes volume, area;           // int R dA, int dA
-    lanes G[3][2];                // of each mode: int R grad N_a dA is sum_k M_ka G_k
-    lanes hoop[RING_NODES];       // int N_a dA
-    lanes share[RING_NODES];      // int N_a R dA
-    lanes off_axis[RING_NODES];   // R_a: 0 on the axis
+    lanes volume, area;         // int R dA, int dA
+    lanes G[3][2];              // of each mode: int R grad N_a dA is sum_k M_ka G_k
+    lanes hoop[RING_NODES];     // int N_a dA
+    lanes share[RING_NODES];    // int N_a R dA
+    lanes off_axis[RING_NODES]; // R_a: 0 on the axis
 } ring_section;
 
-// Sums over the nodes, B = int R grad N_a dA, H = int N_a dA, each with its 1/share: of radial motion B B, B H, H H (rr rz zz, r z),
-// of axial motion B B.
-typedef struct ring_sums { lanes radial[3], cross[2], hoop, axial[3]; } ring_sums;
+// Sums over the nodes, B = int R grad N_a dA, H = int N_a dA, each with its 1/share: of radial motion B B, B H, H H (rr
+// rz zz, r z), of axial motion B B.
+typedef struct ring_sums {
+    lanes radial[3], cross[2], hoop, axial[3];
+} ring_sums;
 
 BRUNT_INLINE void add_ring_sums(const lanes B[2], lanes H, lanes axial, lanes radial, ring_sums *sums) {
     lanes rr = B[0] * B[0], rz = B[0] * B[1], zz = B[1] * B[1], h = H * radial;
@@ -50,8 +52,7 @@ BRUNT_INLINE void ring_bounds(const ring_sums *sums, const lanes inverse[4], lan
     lanes S[3], A[3], s[2], t = sums->hoop * inverse_hoop * inverse_hoop;
     ring_carry(sums->radial, inverse, S);
     ring_carry(sums->axial, inverse, A);
-    for (int i = 0; i < 2; i++)
-        s[i] = (inverse[i] * sums->cross[0] + inverse[2 + i] * sums->cross[1]) * inverse_hoop;
+    for (int i = 0; i < 2; i++) s[i] = (inverse[i] * sums->cross[0] + inverse[2 + i] * sums->cross[1]) * inverse_hoop;
     *divergence = S[0] + 2 * s[0] + t + A[2];
     lanes radial = ring_greatest(ring_greatest(S[0], S[2], S[1] * S[1]), t, dot(2, s, s));
     *greatest = lanes_max(radial, ring_greatest(A[0], A[2], A[1] * A[1]));

@@ -72,7 +72,7 @@ typedef struct fem_pass {
     lanes stored, lost; // hourglass work so far
     // Of bodies whose elements may turn inside out, else NULL.
     uint8_t *mark;
-    real *kept; // scalar_count x FEM_TILE
+    real *kept;     // scalar_count x FEM_TILE
     int32_t turned; // in this tile
 } fem_pass;
 
@@ -121,7 +121,8 @@ BRUNT_INLINE lane_mask inside_out(int dim, const lanes *F) {
     lanes J = F[0] * F[3] - F[1] * F[2], size = lanes_set(0);
     for (int c = 0; c < dim * dim; c++) size += F[c] * F[c];
     if (dim == 3)
-        J = F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) + F[2] * (F[3] * F[7] - F[4] * F[6]);
+        J = F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) +
+            F[2] * (F[3] * F[7] - F[4] * F[6]);
     return J <= 64 * LANES_REAL_EPSILON * (dim == 3 ? size * lanes_sqrt(size) : size);
 }
 

@@ -1,13 +1,23 @@
-// What quadrilaterals and triangles in the plane and those revolved about the axis share: topology, area, and the nodes'
-// combinations. Of a quadrilateral xi, eta and the hourglass xi eta, each the sum of the nodes' values times the mode's
+// What quadrilaterals and triangles in the plane and those revolved about the axis share: topology, area, and the
+// nodes' combinations. Of a quadrilateral xi, eta and the hourglass xi eta, each the sum of the nodes' values times the
+// mode's
 // +-1 there; of a triangle its edges from node 0.
 #pragma once
 
 #include "fem/kernel.h"
 
-#define QUAD4_FACES {{0, 1, 0, 0}, {1, 2, 0, 0}, {2, 3, 0, 0}, {3, 0, 0, 0}}
-#define QUAD4_HOURGLASS {{1, -1, 1, -1}}
-#define TRI3_FACES {{0, 1, 0, 0}, {1, 2, 0, 0}, {2, 0, 0, 0}}
+#define QUAD4_FACES                                                                                                    \
+    {                                                                                                                  \
+        {0, 1, 0, 0}, {1, 2, 0, 0}, {2, 3, 0, 0}, { 3, 0, 0, 0 }                                                       \
+    }
+#define QUAD4_HOURGLASS                                                                                                \
+    {                                                                                                                  \
+        { 1, -1, 1, -1 }                                                                                               \
+    }
+#define TRI3_FACES                                                                                                     \
+    {                                                                                                                  \
+        {0, 1, 0, 0}, {1, 2, 0, 0}, { 2, 0, 0, 0 }                                                                     \
+    }
 
 static inline double quad4_area(const double (*x)[3]) {
     return 0.5 * ((x[2][0] - x[0][0]) * (x[3][1] - x[1][1]) - (x[2][1] - x[0][1]) * (x[3][0] - x[1][0]));

@@ -4,10 +4,10 @@
 // s_i/w_i (dim lambda + 2 G) e / rho and gets back the mean with weights s_i: an oscillator of
 //   omega^2 = S (dim lambda + 2 G) / rho,  S = greatest of sum s_i^2 / w_i an axis (6/h^2 of the quadratic kernel),
 // while the step is a share of h/c with rho c^2 = lambda + 2 G: omega dt < 2 is cfl < sqrt(2/3 (1 - nu) / (1 + nu)) in
-// three dimensions, 0.60 for nu = 0.3, 0.47 for a fluid. The table is measured (tests/stability/test_point_steps.c), at nu = 0.3
-// and 11 places in a cell, to a tenth; for nu = 0.49 about a fifth less holds. Rings are no worse than plane strain
-// down to 0.5. With the linear kernel s_i/w_i has no bound, so that no step is stable for sure; it is left at the 0.5
-// that pairs bear at any such place, and with APIC makes energy at every step.
+// three dimensions, 0.60 for nu = 0.3, 0.47 for a fluid. The table is measured (tests/stability/test_point_steps.c), at
+// nu = 0.3 and 11 places in a cell, to a tenth; for nu = 0.49 about a fifth less holds. Rings are no worse than plane
+// strain down to 0.5. With the linear kernel s_i/w_i has no bound, so that no step is stable for sure; it is left at
+// the 0.5 that pairs bear at any such place, and with APIC makes energy at every step.
 #include "mpm/courant.h"
 
 #include <math.h>

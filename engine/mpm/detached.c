@@ -31,7 +31,7 @@ static lanes volume_factor(real *const *gradient, int64_t i, brunt_particles *p,
 }
 
 int32_t brunt_keep_inverted(brunt_body *body, const brunt_block *block, real dt, real *const *gradient,
-                          real *hoop_stretch) {
+                            real *hoop_stretch) {
     brunt_particles *p = &body->particles;
     const int dim = p->dim;
     const real *volume = brunt_field(p, BRUNT_FIELD_reference_volume)[0];
@@ -52,7 +52,8 @@ int32_t brunt_keep_inverted(brunt_body *body, const brunt_block *block, real dt,
     return turned;
 }
 
-int32_t brunt_keep_inverted_rings(brunt_body *body, const brunt_block *block, real dt, real *hoop, const real *hoop_stretch) {
+int32_t brunt_keep_inverted_rings(brunt_body *body, const brunt_block *block, real dt, real *hoop,
+                                  const real *hoop_stretch) {
     brunt_particles *p = &body->particles;
     const real *volume = brunt_field(p, BRUNT_FIELD_reference_volume)[0];
     real *stretch = brunt_field(p, BRUNT_FIELD_deformation_gradient)[8];

@@ -13,10 +13,10 @@ typedef struct brunt_block_report {
     double remap_power;  // [W] linear kernel: old stress times what the velocities' second way to the grid does to the
                          // gradient
     double old_power;    // [W] where the step changes: old stress times the grid's new velocity gradient; else 0
-    real speed, wave_speed; // [m/s] greatest
-    bool failed;            // the material of one has failed
+    real speed, wave_speed;  // [m/s] greatest
+    bool failed;             // the material of one has failed
     int32_t turned, leaving; // of bodies that erode: how many would have turned inside out; how many are to leave
-    int32_t bad;            // slot of a particle whose update failed, -1
+    int32_t bad;             // slot of a particle whose update failed, -1
     const char *reason;
 } brunt_block_report;
 

@@ -13,7 +13,8 @@
 #include "materials/material.h"
 #include "base/real.h"
 
-// name, unit, components as a function of the dimension, which one: that of space or that of the material points, kept only when
+// name, unit, components as a function of the dimension, which one: that of space or that of the material points, kept
+// only when
 #define BRUNT_PARTICLE_FIELDS(X)                                                                                       \
     X(position, "m", BRUNT_VECTOR, dim, true)                                                                          \
     X(velocity, "m/s", BRUNT_VECTOR, dim, true)                                                                        \
@@ -23,7 +24,7 @@
     X(mass, "kg", BRUNT_SCALAR, dim, true)                                                                             \
     X(reference_volume, "m^3", BRUNT_SCALAR, dim, true)                                                                \
     X(reach, "m", BRUNT_SCALAR, dim, needs->reach)                   /* distance to the body's surface, undeformed */  \
-    X(undeformed_position, "m", BRUNT_VECTOR, dim, needs->total) /* total Lagrangian: where kernels see it */           \
+    X(undeformed_position, "m", BRUNT_VECTOR, dim, needs->total)     /* total Lagrangian: where kernels see it */      \
     X(grid_velocity, "m/s", BRUNT_VECTOR, dim, needs->grid_velocity) /* linear FLIP: what the particle moves with */
 
 #define BRUNT_SCALAR(dim) 1
@@ -53,22 +54,27 @@ typedef struct brunt_particle_field {
 typedef struct brunt_sort_room brunt_sort_room;
 
 // Why a particle is to leave its body.
-typedef enum brunt_leaving { BRUNT_STAYS, BRUNT_LEAVES_FAILED, BRUNT_LEAVES_STRAINED, BRUNT_LEAVES_INVERTED } brunt_leaving;
+typedef enum brunt_leaving {
+    BRUNT_STAYS,
+    BRUNT_LEAVES_FAILED,
+    BRUNT_LEAVES_STRAINED,
+    BRUNT_LEAVES_INVERTED
+} brunt_leaving;
 
 typedef struct brunt_particles {
     int dim;       // of space: 2 or 3
-    int point_dim; // of the material points; 3 with dim 2: rings about the axis x = 0, whose third direction is the hoop's. Their
-                   // masses and volumes are those of the full circle
+    int point_dim; // of the material points; 3 with dim 2: rings about the axis x = 0, whose third direction is the
+                   // hoop's. Their masses and volumes are those of the full circle
     int64_t count, slots, capacity;
-    int64_t made; // how many there were at the start: ids are below it
+    int64_t made;         // how many there were at the start: ids are below it
     int64_t sorts, moves; // sorts so far in this process, and those in which the arrays moved
-    bool holes;   // some have left since the last sort: their slots have id -1, no mass and no volume
+    bool holes;           // some have left since the last sort: their slots have id -1, no mass and no volume
     int field_count;
     brunt_particle_field field[BRUNT_MAX_FIELDS];
     int scalar_count;
     real *scalar[BRUNT_MAX_SCALARS + BRUNT_SORT_GROUP]; // the last ones in use are the spare arrays of the sort
-    int64_t *id, *spare_id; // spare: between sorts a list of slots, of whoever needs one
-    uint8_t *bin;   // of each slot, inside its block
+    int64_t *id, *spare_id;                             // spare: between sorts a list of slots, of whoever needs one
+    uint8_t *bin;                                       // of each slot, inside its block
     int32_t *order; // sort: where each slot's particle was before; between sorts why it is to leave (brunt_leaving)
     uint64_t *key;  // sort: block key of each slot
     void *slab;
@@ -98,7 +104,8 @@ static inline real *const *brunt_kernel_place(const brunt_particles *particles) 
 static inline bool brunt_total_lagrangian(const brunt_particles *particles) {
     return particles->field[BRUNT_FIELD_undeformed_position].components > 0;
 }
-// Volume that particle `s` stands for in the present configuration [m^3]; in 2D, of rings too, its area in the plane [m^2].
+// Volume that particle `s` stands for in the present configuration [m^3]; in 2D, of rings too, its area in the plane
+// [m^2].
 real brunt_plane_volume(brunt_particles *particles, int64_t s);
 // First scalar of state `state` of `model`, NULL when there is none.
 real **brunt_state_arrays(brunt_particles *particles, const brunt_model *model, int state);

@@ -775,15 +775,15 @@ brunt_g2p_fn *brunt_find_total_gather(int dim, brunt_kernel kernel, brunt_transf
 #define TOTALS(d, order)                                                                                               \
     { gather_total_##d##_##order##_0_0, gather_total_##d##_##order##_1_0, gather_total_##d##_##order##_2_0 }
     static brunt_g2p_fn *const table[2][3][3] = {{{NULL}, TOTALS(2, 2), TOTALS(2, 3)},
-                                                    {{NULL}, TOTALS(3, 2), TOTALS(3, 3)}};
+                                                 {{NULL}, TOTALS(3, 2), TOTALS(3, 3)}};
 #undef TOTALS
     return table[dim - 2][kernel - 1][transfer];
 }
 
 brunt_g2p_fn *brunt_find_advance(int dim, bool axisymmetric, brunt_kernel kernel, brunt_transfer transfer) {
     static brunt_g2p_fn *const table[3][3] = {{gather_2_1_0_1, gather_2_1_1_1, gather_2_1_2_1},
-                                                 {gather_3_1_0_1, gather_3_1_1_1, gather_3_1_2_1},
-                                                 {gather_axis_2_1_0_1, gather_axis_2_1_1_1, gather_axis_2_1_2_1}};
+                                              {gather_3_1_0_1, gather_3_1_1_1, gather_3_1_2_1},
+                                              {gather_axis_2_1_0_1, gather_axis_2_1_1_1, gather_axis_2_1_2_1}};
     return kernel == BRUNT_LINEAR ? table[table_row(dim, axisymmetric)][transfer] : NULL;
 }
 

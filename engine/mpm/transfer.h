@@ -13,10 +13,10 @@ enum { BRUNT_OUT_STRETCH = 21, BRUNT_OUT_HOOP = 22, BRUNT_OUT_ZERO = 23 };
 typedef struct brunt_workspace {
     void *memory;
     size_t capacity;
-    int64_t stride;          // reals an array of particles takes
-    real *window;            // nodes a block's bins touch
-    real *planes;            // polynomial coefficients of the planes of bins in use
-    real *out[24];           // particle arrays: velocity, gradient, affine, old velocity; of rings the hoop rate, and zeros
+    int64_t stride; // reals an array of particles takes
+    real *window;   // nodes a block's bins touch
+    real *planes;   // polynomial coefficients of the planes of bins in use
+    real *out[24];  // particle arrays: velocity, gradient, affine, old velocity; of rings the hoop rate, and zeros
     real *plastic, *viscous, *strain; // what material components leave for the next
 } brunt_workspace;
 
@@ -38,12 +38,14 @@ brunt_g2p_fn *brunt_find_total_gather(int dim, brunt_kernel kernel, brunt_transf
 // velocities have been to the grid once more. NULL for the other kernels.
 brunt_g2p_fn *brunt_find_advance(int dim, bool axisymmetric, brunt_kernel kernel, brunt_transfer transfer);
 
-// --- leaving.c: particles of a block whose deformation gradient stands still, of bodies that erode or keep what has left
-// Sets the velocity gradient of those that would turn inside out (they are marked in particles.order) and of those freed
-// of stress (volume 0) to 0, before F is updated. `hoop_stretch` takes F[8] of rings. How many are newly marked.
-int32_t brunt_keep_inverted(brunt_body *body, const brunt_block *block, real dt, real *const *gradient, real *hoop_stretch);
+// --- leaving.c: particles of a block whose deformation gradient stands still, of bodies that erode or keep what has
+// left Sets the velocity gradient of those that would turn inside out (they are marked in particles.order) and of those
+// freed of stress (volume 0) to 0, before F is updated. `hoop_stretch` takes F[8] of rings. How many are newly marked.
+int32_t brunt_keep_inverted(brunt_body *body, const brunt_block *block, real dt, real *const *gradient,
+                            real *hoop_stretch);
 // The same for the hoop of rings, after F is updated: rate to 0, stretch as it was.
-int32_t brunt_keep_inverted_rings(brunt_body *body, const brunt_block *block, real dt, real *hoop, const real *hoop_stretch);
+int32_t brunt_keep_inverted_rings(brunt_body *body, const brunt_block *block, real dt, real *hoop,
+                                  const real *hoop_stretch);
 // What is freed has no stress.
 void brunt_still_stress(brunt_body *body, const brunt_block *block);
 
@@ -62,7 +64,8 @@ void brunt_kernel_slopes(int order, double u, double slope[4]);
 void brunt_kernel_levers(int order, double u, const double weight[4], double lever[4]);
 
 // Kinetic energy of a body's particles with the affine part [J], its momentum, and angular momentum about the origin
-// with spin; of total-Lagrangian bodies as if their motion were affine within a kernel. Of rings what the whole circle has: no radial momentum, no angular momentum, a centre on the axis.
+// with spin; of total-Lagrangian bodies as if their motion were affine within a kernel. Of rings what the whole circle
+// has: no radial momentum, no angular momentum, a centre on the axis.
 typedef struct brunt_audit {
     double mass, kinetic, linear[3], angular[3], centre[3], scale_linear, scale_angular;
 } brunt_audit;

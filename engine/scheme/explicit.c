@@ -186,7 +186,7 @@ static void make_grid_velocities(brunt_world *world, brunt_body *body, const dou
             const brunt_symmetry_plane *mirror = &world->mirrors[m];
             if (mirrors(world, mirror, body))
                 brunt_symmetry_fold(body, mirror, world->transfer == BRUNT_FLIP ? 1 - world->flip : 1,
-                                  mirror->wall < 0 ? &unbooked : &world->walls[mirror->wall].last);
+                                    mirror->wall < 0 ? &unbooked : &world->walls[mirror->wall].last);
         }
         brunt_pass_end(world, nodes);
     }
@@ -249,7 +249,7 @@ static int constrain_velocities(brunt_world *world, const double gravity[3], dou
         brunt_pass_begin(world, BRUNT_PASS_walls);
         for (int i = 0; i < world->body_count; i++)
             if (brunt_planes_apply(&world->bodies[i], world->walls, world->wall_count, world->mirrors,
-                                  world->mirror_count, world->now.time, dt, &world->wall_work[i]))
+                                   world->mirror_count, world->now.time, dt, &world->wall_work[i]))
                 return fail(world, &world->bodies[i], error, "out of memory at a wall");
         brunt_pass_end(world, all_grid_nodes(world));
     }
@@ -549,8 +549,10 @@ static int fail_gas(const brunt_world *world, brunt_error *error) {
 static void advance(brunt_world *world, const step *s) {
     struct brunt_clock *now = &world->now;
     brunt_pass_begin(world, BRUNT_PASS_advance);
-    for (int w = 0; w < world->wall_count; w++) brunt_impulse_account_add(&world->walls[w].action, &world->walls[w].last);
-    for (int p = 0; p < world->pair_count; p++) brunt_impulse_account_add(&world->pairs[p].action, &world->pairs[p].last);
+    for (int w = 0; w < world->wall_count; w++)
+        brunt_impulse_account_add(&world->walls[w].action, &world->walls[w].last);
+    for (int p = 0; p < world->pair_count; p++)
+        brunt_impulse_account_add(&world->pairs[p].action, &world->pairs[p].last);
     brunt_ledger_remember(world);
     double stop = fmin(s->limit > now->time ? s->limit : INFINITY, world->end);
     now->time = s->dt == stop - now->time ? stop : now->time + s->dt;

@@ -60,8 +60,8 @@ static bool has_mirrors(const brunt_world *world) {
 #define BRUNT_MODEL_EFFECTS(X)                                                                                         \
     X(plasticity, plastic)                                                                                             \
     X(thermal, thermal)                                                                                                \
-    X(equation_of_state, eos) X(bulk_viscosity, viscous) X(fluid, fluid) X(shear_viscosity, shear_viscous)             \
-        X(damage, damage)
+    X(equation_of_state, eos)                                                                                          \
+    X(bulk_viscosity, viscous) X(fluid, fluid) X(shear_viscosity, shear_viscous) X(damage, damage)
 
 enum {
 #define COUNT(name, ...) EFFECT_##name,
@@ -187,7 +187,7 @@ brunt_array brunt_world_array(const brunt_world *world, int32_t index) {
     }
     brunt_array array = {.name = "contact of surfaces", .unit = "", .components = 1};
     array.bytes = (size_t)world->skin.node_count * 200 + (size_t)world->skin.face_count * 76 +
-                  brunt_node_to_facet_bytes(world->facing) + world->points.point_capacity + world->points.entry_capacity +
-                  world->points.support_capacity;
+                  brunt_node_to_facet_bytes(world->facing) + world->points.point_capacity +
+                  world->points.entry_capacity + world->points.support_capacity;
     return array;
 }

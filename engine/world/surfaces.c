@@ -102,7 +102,8 @@ int brunt_surfaces_make(brunt_world *world, const brunt_world_def *def, brunt_er
     brunt_fem_body **fems = brunt_alloc((size_t)(world->fem_count + 1) * sizeof *fems);
     if (!fems) return brunt_fail(error, BRUNT_FAILED, "out of memory");
     for (int k = 0; k < world->fem_count; k++) fems[k] = &world->fems[k];
-    int failed = brunt_surface_make(&world->skin, fems, world->fem_count, world->has_augury && form == BRUNT_AUGURY_PAPER);
+    int failed =
+        brunt_surface_make(&world->skin, fems, world->fem_count, world->has_augury && form == BRUNT_AUGURY_PAPER);
     brunt_free(fems);
     if (failed) return brunt_fail(error, BRUNT_FAILED, "out of memory for the bodies' surfaces");
     if (world->skin.side) {
@@ -137,7 +138,8 @@ int brunt_surfaces_make(brunt_world *world, const brunt_world_def *def, brunt_er
 int brunt_surfaces_overlap(brunt_world *world, brunt_error *error) {
     const double none[3] = {0};
     brunt_contact_surface *s = &world->skin;
-    brunt_contact_context m = {.skin = s, .pair_of = world->pair_of, .body_count = world->all_count, .walls = world->walls};
+    brunt_contact_context m = {
+        .skin = s, .pair_of = world->pair_of, .body_count = world->all_count, .walls = world->walls};
     if (s->fem_count) {
         brunt_surface_bounds(s, world->threads, NULL);
         for (int k = 0; k < s->fem_count; k++) s->active[k] = true;
@@ -173,7 +175,8 @@ static int meet_by_facets(brunt_world *world, const brunt_contact_context *m) {
     if (!failed && world->has_augury && world->contact.form == BRUNT_AUGURY_AFFINE)
         failed = brunt_node_to_facet_find(m, world->bodies, world->body_count, world->facing, points);
     int sweeps = world->contact.form == BRUNT_AUGURY_AFFINE ? world->contact.iterations : SWEEPS;
-    if (!failed && brunt_constraints_solve(points, sweeps, world->contact.tolerance, m->threads, m->timer) < 0) failed = -1;
+    if (!failed && brunt_constraints_solve(points, sweeps, world->contact.tolerance, m->threads, m->timer) < 0)
+        failed = -1;
     if (failed) return failed;
     brunt_node_to_facet_book_holds(m, world->walls, world->wall_count, world->now.time, world->facing, points);
     brunt_node_to_facet_finish(m, world->bodies, world->facing, points);

@@ -372,7 +372,8 @@ static int make_plane(brunt_world *world, const brunt_world_def *def, int index,
                     index, wall->name, world->walls[other->wall].name, abs(apart), (int)def->kernel + 1);
         }
         wall->mirror = world->mirror_count;
-        world->mirrors[world->mirror_count++] = (brunt_symmetry_plane){.axis = axis, .node = (int32_t)round(at), .wall = index};
+        world->mirrors[world->mirror_count++] =
+            (brunt_symmetry_plane){.axis = axis, .node = (int32_t)round(at), .wall = index};
     } else if (plane->condition == BRUNT_SEPARATE) {
         world->has_walls = true;
         if (has_fluid(def))

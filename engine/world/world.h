@@ -54,11 +54,12 @@ typedef struct brunt_node_set {
     int32_t node_count;
     int32_t (*face)[4]; // traction and pressure: the surface's faces that are all in the group
     int32_t face_count;
-    // Of bodies that erode, the faces at the start and the elements they are of, by their numbers in the mesh; else NULL.
+    // Of bodies that erode, the faces at the start and the elements they are of, by their numbers in the mesh; else
+    // NULL.
     int32_t (*whole)[4], *owner;
     int32_t whole_count;
-    double *force;  // node_count x 3 [N] of this step, for loads
-    int32_t *place; // of each node of the body: its place in the group + 1; for loads
+    double *force;                             // node_count x 3 [N] of this step, for loads
+    int32_t *place;                            // of each node of the body: its place in the group + 1; for loads
     double gas_energy, gas_volume, gas_inflow; // [J], [m^3], [J] so far: of enclosed gas
     double *area;                              // node_count x 3: room for the stable step of gas; NULL of others
 } brunt_node_set;
@@ -93,11 +94,11 @@ struct brunt_world {
     brunt_fem_workspace fem_work[256];
     brunt_fem_task *node_tasks, *element_tasks;
     int64_t node_task_count, element_task_count;
-    brunt_fem_sums *fem_sums; // a node task each
-    real **drag;              // of each body with damping: node_count x 4 [m/s], velocities before the kick
+    brunt_fem_sums *fem_sums;         // a node task each
+    real **drag;                      // of each body with damping: node_count x 4 [m/s], velocities before the kick
     brunt_damping_sums *damping_sums; // a node task each
-    double **load_rate;       // of each body with loads that follow its surface: node_count, room for its stable step
-    uint8_t (**holder)[3];    // of each body, node and component: the hold that prescribes it + 1
+    double **load_rate;    // of each body with loads that follow its surface: node_count, room for its stable step
+    uint8_t (**holder)[3]; // of each body, node and component: the hold that prescribes it + 1
     brunt_node_set *holds;
     int hold_count;
     brunt_group_def *groups; // copies, with their curves
@@ -123,13 +124,13 @@ struct brunt_world {
     bool has_particles, has_conditions, has_contact, has_walls, has_friction, has_gravity;
     const brunt_node_set *gas_lost; // gas whose volume is no longer positive
     bool axisymmetric;
-    brunt_eroded *eroded; // of each body of `all`; NULL without erosion. Saved with the state
-    brunt_erosion_def *erosion; // of each body of `all`; NULL without erosion
-    bool has_erosion; // elements or material points may leave their bodies
+    brunt_eroded *eroded;                    // of each body of `all`; NULL without erosion. Saved with the state
+    brunt_erosion_def *erosion;              // of each body of `all`; NULL without erosion
+    bool has_erosion;                        // elements or material points may leave their bodies
     struct brunt_erosion_work *erosion_work; // of meshes that erode; NULL without erosion
     double least_step;
     double rounding_energy; // [J] a step: what rounding may do, follows from the bodies at the start
-    bool creep_told; // that steps have become short
+    bool creep_told;        // that steps have become short
     bool has_damping, has_gas, has_fluid;
     bool has_grid_surfaces;        // multi-velocity contact of meshes with material points
     bool has_augury, has_surfaces; // surfaces of meshes meet something: each other, particles, planes
@@ -142,16 +143,16 @@ struct brunt_world {
 
     // Everything a run needs to go on besides the particles, and nothing else: saved as one block of doubles.
     struct brunt_clock {
-        double time, steps, dt, kick, next_dt, dt_min, dt_max;                 // kick: what the last forces acted over
-        double longest; // [s] of the steps that were not cut short
-        double kinetic;                                                        // of the particles [J]
+        double time, steps, dt, kick, next_dt, dt_min, dt_max; // kick: what the last forces acted over
+        double longest;                                        // [s] of the steps that were not cut short
+        double kinetic;                                        // of the particles [J]
         double fem_kinetic, fem_stress_work, hourglass_stored, hourglass_lost; // [J] of the meshes
         double stress_work;            // [J] dt times the stress power at the end of the last step
         double transfer, gravity_work; // [J]
         double contact_frame[3];       // [m/s] what contact measures motion against
         double gravity_impulse[3], gravity_angular[3];
         double damped, damping_impulse[3], damping_angular[3]; // [J], [N s], [N m s]
-        double initial_energy, initial_kinetic; // [J]
+        double initial_energy, initial_kinetic;                // [J]
         double linear_initial[3], angular_initial[3], scale_linear, scale_angular;
         double energy_scale; // [J] the most that the run has been given so far: what its energy error is relative to
         double eroded_plastic, eroded_viscosity, eroded_heat; // [J] dissipated by what has been eroded since
@@ -171,8 +172,8 @@ struct brunt_world {
     } timing;
 };
 
-// --- timing.c: what the step and its passes take. A pass begins where the one before ended, so that no moment of a step is
-// left out and the clock is read once a pass.
+// --- timing.c: what the step and its passes take. A pass begins where the one before ended, so that no moment of a
+// step is left out and the clock is read once a pass.
 void brunt_step_begin(brunt_world *world);
 void brunt_step_end(brunt_world *world); // ends a pass that was left by an error as well
 void brunt_pass_begin(brunt_world *world, int pass);
@@ -243,7 +244,8 @@ int brunt_surfaces_renew(brunt_world *world, brunt_error *error);
 // The accounts and lists of bodies that erode; world->has_erosion. Before the first step.
 int brunt_erosion_make(brunt_world *world, const brunt_world_def *def, brunt_error *error);
 void brunt_erosion_free(brunt_world *world);
-// Takes out what has failed, is strained, short of step or inside out, and books it. BRUNT_OK, or BRUNT_FAILED with the reason.
+// Takes out what has failed, is strained, short of step or inside out, and books it. BRUNT_OK, or BRUNT_FAILED with the
+// reason.
 int brunt_erode_meshes(brunt_world *world, double dt, brunt_error *error);
 int brunt_erode_particles(brunt_world *world, double dt, brunt_error *error);
 // Of brunt_erode_meshes, the taking out of elements that have a mark, counted in the reports of their blocks.
@@ -295,8 +297,8 @@ double brunt_load_frequency(const brunt_world *world, int fem);
 // --- holds.c: named groups
 int brunt_node_sets_make(brunt_world *world, const brunt_world_def *def, brunt_error *error);
 double brunt_curve_at(const brunt_curve *curve, double time);
-// Loads of a body's groups from now on act on the faces of those elements alone that it still has. The group whose faces
-// enclose gas and one of its elements (by number in the mesh) that has gone, or NULL.
+// Loads of a body's groups from now on act on the faces of those elements alone that it still has. The group whose
+// faces enclose gas and one of its elements (by number in the mesh) that has gone, or NULL.
 const brunt_node_set *brunt_node_sets_follow(brunt_world *world, int fem, int32_t *element);
 // Loads of this step, made before the kick of `dt` and with half their work booked; the other half once velocities are
 // final.
