@@ -1,8 +1,8 @@
 // What acts on grid velocities between the transfers: mirror planes, node conditions, contact between bodies, walls.
 //
 // Every method gets the bodies after the grid update (new and old velocities at the nodes) and changes the new ones.
-// What it does is booked in a brunt_impulse_account: impulse, work and dissipation, taken at the mean of the old and the new
-// velocity, which makes the work of an impulse equal to the change of kinetic energy it causes.
+// What it does is booked in a brunt_impulse_account: impulse, work and dissipation, taken at the mean of the old and
+// the new velocity, which makes the work of an impulse equal to the change of kinetic energy it causes.
 #pragma once
 
 #include "mpm/mpm_body.h"
@@ -21,8 +21,8 @@ typedef struct brunt_impulse_account {
 void brunt_impulse_account_add(brunt_impulse_account *sum, const brunt_impulse_account *part);
 // Books impulse J acting at x while its material moves with `old` before and `now` after, against a support that moves
 // with `support`. What it dissipates is added to `loss`: the action's normal_loss or its friction_loss.
-void brunt_impulse_account_book(brunt_impulse_account *action, double *loss, const double J[3], const double x[3], const double old[3],
-                       const double now[3], const double support[3]);
+void brunt_impulse_account_book(brunt_impulse_account *action, double *loss, const double J[3], const double x[3],
+                                const double old[3], const double now[3], const double support[3]);
 
 // A mirror plane through grid nodes `node` along `axis`: symmetry, and slip walls that lie on a grid line.
 typedef struct brunt_symmetry_plane {
@@ -33,25 +33,26 @@ typedef struct brunt_symmetry_plane {
 
 typedef struct brunt_wall {
     char name[BRUNT_NAME_LENGTH];
-    bool region;            // else a plane; a group counts as a region without grid nodes
+    bool region;                         // else a plane; a group counts as a region without grid nodes
     const struct brunt_group_def *group; // of finite-element bodies, NULL for the others
-    brunt_plane_def plane;  // normal of unit length
-    brunt_region_def where; // of a region; shares the world's definition
-    int body;               // the one it acts on, -1: all
-    int mirror;             // index of the mirror plane it has become, -1
-    brunt_impulse_account action;    // since the start
-    brunt_impulse_account last;      // of the last step
+    brunt_plane_def plane;               // normal of unit length
+    brunt_region_def where;              // of a region; shares the world's definition
+    int body;                            // the one it acts on, -1: all
+    int mirror;                          // index of the mirror plane it has become, -1
+    brunt_impulse_account action;        // since the start
+    brunt_impulse_account last;          // of the last step
 } brunt_wall;
 
 // --- mirror planes (mirror.c): symmetry by adding each node's mirror image to it, before velocities are made
 // `taken`: the share of the grid's velocity that particles take over, 1 but for FLIP; the rest of what the mirror does
 // to the old velocity never reaches them.
-void brunt_symmetry_fold(brunt_body *body, const brunt_symmetry_plane *mirror, double taken, brunt_impulse_account *action);
+void brunt_symmetry_fold(brunt_body *body, const brunt_symmetry_plane *mirror, double taken,
+                         brunt_impulse_account *action);
 // Images of a node coordinate under the mirrors it is near to (within the kernel), itself first; `sign` of each
 // velocity component.
 enum { BRUNT_MAX_IMAGES = 8 };
 int brunt_symmetry_images(const brunt_symmetry_plane *mirrors, int mirror_count, const int32_t node[3], int near,
-                        int32_t image[BRUNT_MAX_IMAGES][3], real sign[BRUNT_MAX_IMAGES][3]);
+                          int32_t image[BRUNT_MAX_IMAGES][3], real sign[BRUNT_MAX_IMAGES][3]);
 
 // --- node conditions (conditions.c): stick and slip planes at the nodes behind them, prescribed velocities in regions
 // Each marks the components of nodes that it gives (brunt_grid.held); cleared before the first of them. 0, or -1: out
@@ -65,7 +66,8 @@ void brunt_condition_apply(brunt_body *body, brunt_wall *wall, double time);
 void brunt_extent_gradient(brunt_body *body, int32_t slot, int node, double gradient[3], double centre[3]);
 // The particles near a node, as ellipsoids of material: gathered once, since contact asks for many directions.
 typedef struct brunt_extent_cloud {
-    double *data; // rows of `stride` numbers: place relative to the node, deformation gradient, reach, and one to work in
+    double
+        *data; // rows of `stride` numbers: place relative to the node, deformation gradient, reach, and one to work in
     size_t stride, bytes;
     int count;
 } brunt_extent_cloud;
@@ -88,18 +90,18 @@ double brunt_extent_along(brunt_body *body, int64_t slot, const double n[3]);
 // Where what the particle in a slot has around it meets something `distance` [m] away against unit vector n, once they
 // touch: from its centre, and the same where its kernel lives. Friction acts there.
 void brunt_extent_arm(brunt_body *body, int64_t slot, const double n[3], double distance, double arm[3],
-                     double kernel_arm[3]);
+                      double kernel_arm[3]);
 
 // --- separation (separation.c)
 // Distance between what two bodies have near a node [m], 0 when that overlaps, and its direction from a to b (unit;
 // left alone when 0). `start`: where to look first, any length but 0. `h`: edge of a cell.
 double brunt_gjk_distance(const brunt_extent_cloud *a, const brunt_extent_cloud *b, double h, double share,
-                        const double start[3], double n[3]);
+                          const double start[3], double n[3]);
 
 // --- walls (walls.c): planes that push and let go, with Coulomb friction, at zero gap
 typedef struct brunt_wall_workspace brunt_wall_workspace;
 int brunt_planes_apply(brunt_body *body, brunt_wall *walls, int wall_count, const brunt_symmetry_plane *mirrors,
-                      int mirror_count, double time, double dt, brunt_wall_workspace **workspace);
+                       int mirror_count, double time, double dt, brunt_wall_workspace **workspace);
 void brunt_wall_workspace_free(brunt_wall_workspace *workspace);
 
 // --- contact between bodies (multivelocity.c)
@@ -111,8 +113,8 @@ typedef struct brunt_pair {
 } brunt_pair;
 
 typedef struct brunt_contact_workspace brunt_contact_workspace;
-// `pair_of[a * body_count + b]`, by place in `bodies`: index of the pair, -1 for none. 0, or -1: out of memory, -2: more than 16 bodies at a
-// node.
+// `pair_of[a * body_count + b]`, by place in `bodies`: index of the pair, -1 for none. 0, or -1: out of memory, -2:
+// more than 16 bodies at a node.
 int brunt_grid_velocity_apply(brunt_body *bodies, int body_count, brunt_pair *pairs, int pair_count,
                               const int32_t *pair_of, const brunt_symmetry_plane *mirrors, int mirror_count, double dt,
                               int threads, brunt_timer *timer, brunt_contact_workspace **workspace);

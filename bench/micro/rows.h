@@ -73,8 +73,8 @@ static inline void write_heading(FILE *out) {
     write_caches(out);
     fprintf(out, "# memory: %.1f GB\n", 1e-9 * (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE));
     fprintf(out, "# compiler: %s\n# flags: %s\n", compiler, BRUNT_BENCH_FLAGS);
-    fprintf(out, "# precision: %s\n# lanes: %d\n# version: %s\n# date: %s\n", BRUNT_REAL_NAME, BRUNT_LANES, BRUNT_VERSION,
-            date);
+    fprintf(out, "# precision: %s\n# lanes: %d\n# version: %s\n# date: %s\n", BRUNT_REAL_NAME, BRUNT_LANES,
+            BRUNT_VERSION, date);
     fprintf(out, "kind,name,units,threads,figure,unit,median,least,rounds\n");
 }
 
@@ -106,8 +106,8 @@ typedef struct row_key {
 static inline void write_row(FILE *out, row_key key, const char *figure, const char *unit, double median, double least,
                              int rounds) {
     if (out)
-        fprintf(out, "%s,%s,%.0f,%d,%s,%s,%.6g,%.6g,%d\n", key.kind, key.name, key.units, key.threads, figure, unit, median,
-                least, rounds);
+        fprintf(out, "%s,%s,%.0f,%d,%s,%s,%.6g,%.6g,%d\n", key.kind, key.name, key.units, key.threads, figure, unit,
+                median, least, rounds);
 }
 
 // Median and least of the samples, which are sorted. Returns the median.

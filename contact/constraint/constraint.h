@@ -33,7 +33,7 @@ typedef struct brunt_dof_node {
 typedef struct brunt_constraint_entry {
     int32_t support;
     double weight[3]; // w_s of a slave, -beta_k of a master, by component: mirrors turn some of them
-    double turn[3]; // 0 of a slave; height grad beta_k of a master
+    double turn[3];   // 0 of a slave; height grad beta_k of a master
 } brunt_constraint_entry;
 
 typedef struct brunt_constraint {
@@ -44,11 +44,11 @@ typedef struct brunt_constraint {
     double gap;           // [m] before the step
     double target;        // [m/s] least u_n
     double friction;
-    double plane[3];      // [m/s] velocity of the master when it is a plane; 0 for facets
+    double plane[3];               // [m/s] velocity of the master when it is a plane; 0 for facets
     brunt_impulse_account *action; // where the point is booked: impulse on the slave times `sign`
     double sign;
-    double area; // [m^2] it stands for in the action's area
-    int32_t tag; // the caller's
+    double area;   // [m^2] it stands for in the action's area
+    int32_t tag;   // the caller's
     int32_t lever; // number + 1 of its own for friction, whose `count` entries follow the others; 0: it rubs where it
                    // pushes
     // solution
@@ -101,7 +101,9 @@ int32_t brunt_constraints_friction_point(brunt_constraint_set *points, const dou
 // Makes room for so many points and entries in all, which the caller then fills. 0, or -1.
 int brunt_constraints_reserve(brunt_constraint_set *points, int32_t point_count, int32_t entry_count);
 // Relative velocity of a point, with the supports' v (old: as they were before the forces).
-void brunt_constraint_velocity(const brunt_constraint_set *points, const brunt_constraint *point, bool old, double u[3]);
+void brunt_constraint_velocity(const brunt_constraint_set *points, const brunt_constraint *point, bool old,
+                               double u[3]);
 // Solves with at most `sweeps` sweeps, until the greatest correction of one is no more than `tolerance` of that of the
 // first; what is left is met in the next step. Books every point. The number of sweeps, or -1: out of memory.
-int brunt_constraints_solve(brunt_constraint_set *points, int sweeps, double tolerance, int threads, brunt_timer *timer);
+int brunt_constraints_solve(brunt_constraint_set *points, int sweeps, double tolerance, int threads,
+                            brunt_timer *timer);

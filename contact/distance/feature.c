@@ -65,7 +65,8 @@ static void normal_at(const brunt_contact_surface *s, const brunt_feature *f, in
         for (int a = 0; a < 3; a++) out[a] = length > 0 ? size * c[a] / length : 0;
 }
 
-bool brunt_feature_normal(const brunt_contact_surface *s, const brunt_feature *f, const int32_t *face, int count, double n[3]) {
+bool brunt_feature_normal(const brunt_contact_surface *s, const brunt_feature *f, const int32_t *face, int count,
+                          double n[3]) {
     double sum[3] = {0};
     for (int k = 0; k < count; k++) {
         double one[3];
@@ -123,7 +124,8 @@ static void add_segment(const brunt_contact_surface *s, const int32_t node[4], c
 }
 
 // The triangle of a face at the feature, as it is seen along n: twice its area times the gradients of its weights.
-static void add_triangle(const brunt_contact_surface *s, const brunt_feature *f, int32_t face, const double n[3], about *to) {
+static void add_triangle(const brunt_contact_surface *s, const brunt_feature *f, int32_t face, const double n[3],
+                         about *to) {
     const int32_t *node = s->face[face];
     const int count = corners(node), first = corner_of(node, f->end[0]);
     int i = first, j = (first + 1) % count, k = (first + count - 1) % count;

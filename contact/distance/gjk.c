@@ -84,15 +84,14 @@ static void nearest(double points[MAX_POINTS][3], int *count, double v[3]) {
 }
 
 double brunt_gjk_distance(const brunt_extent_cloud *a, const brunt_extent_cloud *b, double h, double share,
-                        const double start[3], double n[3]) {
+                          const double start[3], double n[3]) {
     double points[MAX_POINTS][3], v[3] = {start[0], start[1], start[2]}, bound = 0;
     int count = 0;
     for (int round = 0; round < MAX_ROUNDS; round++) {
         double size = sqrt(dot(v, v)), along[3], back[3], pa[3], pb[3], w[3];
         if (!(size > OVERLAP * h) || !isfinite(size)) return 0;
         for (int k = 0; k < 3; k++) along[k] = v[k] / size, back[k] = -along[k];
-        if (!isfinite(brunt_extent_of(a, share, along, pa)) || !isfinite(brunt_extent_of(b, share, back, pb)))
-            return 0;
+        if (!isfinite(brunt_extent_of(a, share, along, pa)) || !isfinite(brunt_extent_of(b, share, back, pb))) return 0;
         for (int k = 0; k < 3; k++) w[k] = pb[k] - pa[k];
         double reached = dot(w, along);
         if (reached > bound) {

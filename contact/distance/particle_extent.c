@@ -135,7 +135,7 @@ double brunt_extent_along(brunt_body *body, int64_t s, const double n[3]) {
 
 // The farthest point of the ellipsoid is x - r F t / |t|, t = F^T n: X - r t / |t| of the undeformed ball.
 void brunt_extent_arm(brunt_body *body, int64_t s, const double n[3], double distance, double arm[3],
-                     double kernel_arm[3]) {
+                      double kernel_arm[3]) {
     const brunt_particles *p = &body->particles;
     const double extent = brunt_extent_along(body, s, n), length = fmin(extent, distance);
     for (int a = 0; a < 3; a++) arm[a] = kernel_arm[a] = -length * n[a];

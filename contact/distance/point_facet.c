@@ -168,7 +168,8 @@ static void spread(const int32_t node[4], int triangle, double w0, double w1, do
     weight[i] += w0, weight[j] += w1;
 }
 
-void brunt_face_values(const brunt_contact_surface *s, int32_t face, int triangle, const double x[3], double weight[4]) {
+void brunt_face_values(const brunt_contact_surface *s, int32_t face, int triangle, const double x[3],
+                       double weight[4]) {
     const int32_t *node = s->face[face];
     if (node[2] < 0) {
         const double *a = s->x[node[0]], *b = s->x[node[1]];

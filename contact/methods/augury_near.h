@@ -23,7 +23,9 @@ typedef struct brunt_augury_near {
 } brunt_augury_near;
 
 // Index among all bodies of the skin's body k, which has nodes.
-static inline int brunt_augury_body(const brunt_contact_surface *skin, int k) { return skin->body[skin->node_range[k]]; }
+static inline int brunt_augury_body(const brunt_contact_surface *skin, int k) {
+    return skin->body[skin->node_range[k]];
+}
 
 // Active bodies with a pair of method augury that come closer than `margin` [m] by their boxes. 0, or -1: out of
 // memory.

@@ -17,7 +17,8 @@ void brunt_augury_workspace_free(brunt_augury_workspace *work) {
     brunt_free(work);
 }
 
-double brunt_augury_book(brunt_contact_surface *s, brunt_impulse_account *action, const brunt_augury_impulse *impulse, bool second) {
+double brunt_augury_book(brunt_contact_surface *s, brunt_impulse_account *action, const brunt_augury_impulse *impulse,
+                         bool second) {
     const int32_t n = impulse->node;
     double loss = 0;
     for (int a = 0; a < 3; a++) {

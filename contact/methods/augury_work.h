@@ -30,4 +30,5 @@ typedef struct brunt_augury_impulse {
 // Adds an impulse to a pair's account and to the skin's contact state, once velocities are final. `second`: the node
 // belongs to the pair's second body, whose impulses are the pair's. Returns the loss [J], which the caller divides
 // between normal_loss and friction_loss.
-double brunt_augury_book(brunt_contact_surface *skin, brunt_impulse_account *action, const brunt_augury_impulse *impulse, bool second);
+double brunt_augury_book(brunt_contact_surface *skin, brunt_impulse_account *action,
+                         const brunt_augury_impulse *impulse, bool second);

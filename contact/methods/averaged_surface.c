@@ -646,7 +646,8 @@ static void send_pressing(void *context, int32_t begin, int32_t end) {
 }
 
 // What an impulse of 1 along a unit vector does to the relative velocity, others pressing too [1/kg].
-static double compliance(const brunt_contact_surface *skin, const party *p, const double yield[3], const double along[3]) {
+static double compliance(const brunt_contact_surface *skin, const party *p, const double yield[3],
+                         const double along[3]) {
     double sum = 0;
     for (int a = 0; a < 3; a++)
         sum += along[a] * along[a] * (skin->inverse[p->node][a] + yield[a] / skin->mass[p->node]);

@@ -152,13 +152,13 @@ static int find_groups(job *j) {
 // ------------------------------------------------------------------------------------------ one node
 
 typedef struct meeting {
-    int a, b;                 // members
-    int action;               // index among the group's pairs
-    double n[3], target;      // normal from a to b; least relative velocity along it [m/s]
-    double friction;          // [-]
-    double inverse, slide;    // [1/kg] along n; the greatest across
-    double push, drag[3];     // [N s] on b
-    bool tied;                // `drag` takes all of the relative velocity
+    int a, b;              // members
+    int action;            // index among the group's pairs
+    double n[3], target;   // normal from a to b; least relative velocity along it [m/s]
+    double friction;       // [-]
+    double inverse, slide; // [1/kg] along n; the greatest across
+    double push, drag[3];  // [N s] on b
+    bool tied;             // `drag` takes all of the relative velocity
 } meeting;
 
 typedef struct member {
@@ -205,7 +205,8 @@ static int make_normal(const job *j, const member *a, const member *b, int node,
     brunt_extent_gradient(b->body, b->slot, node, gb, cb);
     for (int k = 0; k < 3; k++) n[k] = gb[k] - ga[k], between[k] = cb[k] - ca[k];
     if (!make_unit(j, a, node, n)) return 0;
-    if (brunt_extent_gather(a->body, a->slot, node, &cloud[0]) || brunt_extent_gather(b->body, b->slot, node, &cloud[1]))
+    if (brunt_extent_gather(a->body, a->slot, node, &cloud[0]) ||
+        brunt_extent_gather(b->body, b->slot, node, &cloud[1]))
         return -1;
     for (int k = 0; k < 3; k++) approach += (b->v[k] - a->v[k]) * n[k];
     *gap = gap_along(&cloud[0], &cloud[1], n);
@@ -410,7 +411,8 @@ static void meet_at_node(const job *j, group *g, int node, brunt_extent_cloud cl
             old[k] = (double)(members[m->b].node[BRUNT_NODE_OLD + k] - members[m->a].node[BRUNT_NODE_OLD + k]);
         brunt_impulse_account *action = &j->w->actions[g->action + m->action];
         brunt_impulse_account_book(action, &action->normal_loss, m->tied ? drag : push, x, old, now, rest);
-        if (m->friction > 0 && !m->tied) brunt_impulse_account_book(action, &action->friction_loss, drag, x, old, now, rest);
+        if (m->friction > 0 && !m->tied)
+            brunt_impulse_account_book(action, &action->friction_loss, drag, x, old, now, rest);
     }
     for (int i = 0; i < n; i++) leave_node(&members[i]);
     for (int i = 0; j->axis && i < n; i++) follow_axis(j, &members[i], node);

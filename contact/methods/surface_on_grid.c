@@ -768,8 +768,9 @@ static double sweep(job *j) {
     return most;
 }
 
-int brunt_grid_surfaces_meet(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, const brunt_symmetry_plane *mirrors,
-                             int mirror_count, int sweeps, brunt_grid_surfaces **work) {
+int brunt_grid_surfaces_meet(const brunt_contact_context *m, brunt_body *mpm, int mpm_count,
+                             const brunt_symmetry_plane *mirrors, int mirror_count, int sweeps,
+                             brunt_grid_surfaces **work) {
     if (!*work) *work = brunt_alloc(sizeof **work);
     if (!*work) return -1;
     brunt_grid_surfaces *w = *work;
@@ -845,8 +846,8 @@ static void book_mirror(const job *j, const contact *c, brunt_wall *walls) {
     }
 }
 
-void brunt_grid_surfaces_finish(const brunt_contact_context *m, brunt_body *mpm, const brunt_symmetry_plane *mirrors, int mirror_count,
-                                brunt_wall *walls, const brunt_grid_surfaces *work) {
+void brunt_grid_surfaces_finish(const brunt_contact_context *m, brunt_body *mpm, const brunt_symmetry_plane *mirrors,
+                                int mirror_count, brunt_wall *walls, const brunt_grid_surfaces *work) {
     if (!work) return;
     job j = {.m = m, .w = (brunt_grid_surfaces *)work, .mpm = mpm, .mirrors = mirrors, .mirror_count = mirror_count};
     for (int32_t i = 0; i < work->contact_count; i++) {

@@ -1,11 +1,13 @@
 // Multi-velocity contact of meshes with material points, on the grid that moves the points (Y. P. Lian, Y. Liu and X.
 // Zhang, "Coupling of membrane element with material point method for fluid-membrane interaction problems", section 5).
 //
-// The surface nodes K of a mesh r give mass and momentum to the nodes I of the grid of body s, by the body's own kernel:
+// The surface nodes K of a mesh r give mass and momentum to the nodes I of the grid of body s, by the body's own
+// kernel:
 //   m_I^r = sum_K N_I(x_K) m_K,   v_I^r = sum_K N_I(x_K) m_K v_K / m_I^r
 // Where both have mass, impulses end the approach (multivelocity.c): the grid velocity of s changes by J/m_I^s, and
 // what the mesh gets goes back to its nodes by
-//   v_K += sum_I N_I(x_K) J_I / m_I^r                                                                      (their eq. 59)
+//   v_K += sum_I N_I(x_K) J_I / m_I^r                                                                      (their eq.
+//   59)
 // which is the transpose of the way there: linear momentum is exact. Angular momentum is not: the mesh gets J_I where
 // the mass is that it gave to the node, on the average, and s at the node, up to a kernel's half width away.
 //
@@ -34,10 +36,11 @@ typedef struct brunt_grid_surfaces brunt_grid_surfaces;
 void brunt_grid_surfaces_near(const brunt_contact_context *m, const brunt_body *mpm, int mpm_count);
 // Changes the velocities of grid nodes and of the skin, with `sweeps` sweeps; four times as many where two bodies meet
 // one place of a mesh. 0, or -1: out of memory.
-int brunt_grid_surfaces_meet(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, const brunt_symmetry_plane *mirrors,
-                             int mirror_count, int sweeps, brunt_grid_surfaces **work);
+int brunt_grid_surfaces_meet(const brunt_contact_context *m, brunt_body *mpm, int mpm_count,
+                             const brunt_symmetry_plane *mirrors, int mirror_count, int sweeps,
+                             brunt_grid_surfaces **work);
 // Accounts and contact state, once all else has acted on the skin's velocities.
-void brunt_grid_surfaces_finish(const brunt_contact_context *m, brunt_body *mpm, const brunt_symmetry_plane *mirrors, int mirror_count,
-                                brunt_wall *walls, const brunt_grid_surfaces *work);
+void brunt_grid_surfaces_finish(const brunt_contact_context *m, brunt_body *mpm, const brunt_symmetry_plane *mirrors,
+                                int mirror_count, brunt_wall *walls, const brunt_grid_surfaces *work);
 void brunt_grid_surfaces_free(brunt_grid_surfaces *work);
 size_t brunt_grid_surfaces_bytes(const brunt_grid_surfaces *work);

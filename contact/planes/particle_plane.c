@@ -157,8 +157,8 @@ static void add_images(brunt_wall_workspace *w, const brunt_grid *grid, int32_t 
 }
 
 // Nodes and weights under particle `s` of block `b`. 0, or -1: out of memory.
-static int add_entries(brunt_wall_workspace *w, brunt_body *body, int32_t b, int64_t s, const brunt_symmetry_plane *mirrors,
-                       int mirror_count) {
+static int add_entries(brunt_wall_workspace *w, brunt_body *body, int32_t b, int64_t s,
+                       const brunt_symmetry_plane *mirrors, int mirror_count) {
     const brunt_grid *grid = &body->grid;
     const int dim = grid->dim, n = grid->order + 1;
     const size_t room = 64 * BRUNT_MAX_IMAGES;
@@ -456,7 +456,7 @@ static void book(const brunt_wall_workspace *w, brunt_body *body, brunt_wall *wa
 }
 
 int brunt_planes_apply(brunt_body *body, brunt_wall *walls, int wall_count, const brunt_symmetry_plane *mirrors,
-                      int mirror_count, double time, double dt, brunt_wall_workspace **workspace) {
+                       int mirror_count, double time, double dt, brunt_wall_workspace **workspace) {
     if (!*workspace) *workspace = brunt_alloc(sizeof **workspace);
     brunt_wall_workspace *w = *workspace;
     if (!w || brunt_reserve((void **)&w->index, &w->index_capacity,

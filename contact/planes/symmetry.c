@@ -24,7 +24,8 @@ static void sum_momentum(const real *n, const double x[3], int dim, double facto
     }
 }
 
-void brunt_symmetry_fold(brunt_body *body, const brunt_symmetry_plane *mirror, double taken, brunt_impulse_account *action) {
+void brunt_symmetry_fold(brunt_body *body, const brunt_symmetry_plane *mirror, double taken,
+                         brunt_impulse_account *action) {
     const brunt_grid *grid = &body->grid;
     const int dim = grid->dim, axis = mirror->axis;
     double before[3] = {0}, after[3] = {0}, turn_before[3] = {0}, turn_after[3] = {0};
@@ -75,7 +76,7 @@ void brunt_symmetry_fold(brunt_body *body, const brunt_symmetry_plane *mirror, d
 }
 
 int brunt_symmetry_images(const brunt_symmetry_plane *mirrors, int mirror_count, const int32_t node[3], int near,
-                        int32_t image[BRUNT_MAX_IMAGES][3], real sign[BRUNT_MAX_IMAGES][3]) {
+                          int32_t image[BRUNT_MAX_IMAGES][3], real sign[BRUNT_MAX_IMAGES][3]) {
     int count = 1;
     memcpy(image[0], node, sizeof image[0]);
     for (int a = 0; a < 3; a++) sign[0][a] = 1;

@@ -183,7 +183,9 @@ int brunt_node_to_facet_renew(brunt_node_to_facet *f, const brunt_contact_surfac
     return 0;
 }
 
-int64_t brunt_node_to_facet_state_count(const brunt_contact_surface *s) { return 7 * brunt_surface_slots(s) + s->fem_count + 1; }
+int64_t brunt_node_to_facet_state_count(const brunt_contact_surface *s) {
+    return 7 * brunt_surface_slots(s) + s->fem_count + 1;
+}
 
 void brunt_node_to_facet_state_get(const brunt_node_to_facet *f, const brunt_contact_surface *s, double *out) {
     memset(out, 0, (size_t)brunt_node_to_facet_state_count(s) * sizeof *out);
@@ -199,7 +201,8 @@ void brunt_node_to_facet_state_get(const brunt_node_to_facet *f, const brunt_con
         }
 }
 
-int brunt_node_to_facet_state_set(brunt_node_to_facet **facing, brunt_contact_surface *s, int mpm_count, const double *in) {
+int brunt_node_to_facet_state_set(brunt_node_to_facet **facing, brunt_contact_surface *s, int mpm_count,
+                                  const double *in) {
     if (brunt_surface_renew(s, true) || make_facing(facing, mpm_count, s->node_count)) return -1;
     brunt_node_to_facet *f = *facing;
     if (fit_nodes(f, s->node_count, 0)) return -1;
@@ -228,8 +231,8 @@ static bool all_finite(const brunt_node_to_facet *f) {
     return true;
 }
 
-int brunt_broad_phase(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, const brunt_wall *walls, int wall_count,
-                      double time, brunt_node_to_facet **facing) {
+int brunt_broad_phase(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, const brunt_wall *walls,
+                      int wall_count, double time, brunt_node_to_facet **facing) {
     brunt_contact_surface *s = m->skin;
     if (make_facing(facing, mpm_count, s->node_count)) return -1;
     brunt_node_to_facet *f = *facing;

@@ -9,11 +9,11 @@
 
 static const double DEEP =
     0.2; // shorter mean edges of two: what is no deeper is met, and may be the facets of round bodies
-static const double BEHIND = 1e-3; // edges or spacings: how far behind a plane a body is behind it
-static const double CUT = 1e-3;    // edges on either side from which on an edge goes through a facet ...
-static const double RIM = 1e-6;    // ... and share of a triangle that is its rim
-static const double NEXT = 1.25;   // edges: nodes so near to a sheet tell on which sides of it a body is
-static const double SPACING = 0.5; // of the other body's elements: how close a long facet is looked at
+static const double BEHIND = 1e-3;    // edges or spacings: how far behind a plane a body is behind it
+static const double CUT = 1e-3;       // edges on either side from which on an edge goes through a facet ...
+static const double RIM = 1e-6;       // ... and share of a triangle that is its rim
+static const double NEXT = 1.25;      // edges: nodes so near to a sheet tell on which sides of it a body is
+static const double SPACING = 0.5;    // of the other body's elements: how close a long facet is looked at
 static const double FARTHEST = 1e150; // [m] squares of distances are still numbers
 enum { MOST_PIECES = 64 };
 
@@ -522,7 +522,8 @@ static int find_in_meshes(job *j, brunt_body *mpm, int mpm_count) {
     return status;
 }
 
-int brunt_overlap_find(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, int wall_count, brunt_overlap *found) {
+int brunt_overlap_find(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, int wall_count,
+                       brunt_overlap *found) {
     job j = {.m = m, .found = found};
     int status = find_in_meshes(&j, mpm, mpm_count);
     cells *made[] = {&j.elements, &j.facets};

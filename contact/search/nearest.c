@@ -15,11 +15,12 @@ static const double SLACK = 0.125;    // mean edges: facets so much further than
 static const double BEHIND = 0.05; // mean edges: how far behind a facet of a ragged surface someone is still before it
 static const double STRAIGHT = 0.01; // [rad] within it of their mean normal, ways to edges and corners are along it
 static const double TOUCH = 1e-6;    // mean edges: facets that are nearer by less than this are equally near
-static const double VALLEY = 0.05; // mean edges: how far before one slope the middle of the other is, in a valley
+static const double VALLEY = 0.05;   // mean edges: how far before one slope the middle of the other is, in a valley
 
 // ------------------------------------------------------------------------------------------ cells of facets
 
-bool brunt_node_to_facet_in_reach(const brunt_node_to_facet *f, int32_t box, const double low[3], const double high[3], double by) {
+bool brunt_node_to_facet_in_reach(const brunt_node_to_facet *f, int32_t box, const double low[3], const double high[3],
+                                  double by) {
     for (int32_t q = f->near_first[box]; q < f->near_first[box + 1]; q++) {
         const bounds *other = &f->box[f->near_list[q]];
         bool apart = false;
@@ -38,8 +39,8 @@ static void face_bounds(const brunt_contact_surface *s, int32_t face, double low
         }
 }
 
-static void cell_range(const brunt_node_to_facet *f, const double low[3], const double high[3], double by, int32_t from[3],
-                       int32_t to[3]) {
+static void cell_range(const brunt_node_to_facet *f, const double low[3], const double high[3], double by,
+                       int32_t from[3], int32_t to[3]) {
     for (int a = 0; a < 3; a++) {
         double l = floor((low[a] - by - f->origin[a]) / f->cell), h = floor((high[a] + by - f->origin[a]) / f->cell);
         from[a] = (int32_t)fmax(0, fmin(l, f->n[a] - 1.0));
@@ -213,7 +214,9 @@ typedef struct nearest {
 } nearest;
 
 // What counts as near as the nearest, whose distance has this square.
-static double tie(const brunt_contact_surface *s, double square) { return sqrt(square) * (1 + 1e-8) + TOUCH * s->mean_edge; }
+static double tie(const brunt_contact_surface *s, double square) {
+    return sqrt(square) * (1 + 1e-8) + TOUCH * s->mean_edge;
+}
 
 static void keep(const brunt_contact_surface *s, nearest *best, const brunt_closest *at, int32_t face) {
     if (at->square > best->root * best->root) return;
@@ -247,7 +250,8 @@ static bool bear_together(const brunt_contact_surface *s, const tied *a, const t
 
 // The edge or corner that the chosen facet has in common with those that tie with it, their mean normal and the mean
 // height above them; `way`: the sum of their ways to the slave.
-static void find_feature(const brunt_contact_surface *s, const nearest *best, const tied *chosen, hit *out, double way[3]) {
+static void find_feature(const brunt_contact_surface *s, const nearest *best, const tied *chosen, hit *out,
+                         double way[3]) {
     int32_t face[MAX_TIED];
     int count = 1;
     double height = out->gap;
@@ -335,7 +339,8 @@ static void add_valley(const brunt_contact_surface *s, nearest *best, const doub
 }
 
 // A hit on whatever facet is nearest, when the slave is behind it; `least`: the least cosine with its normal.
-static bool hit_behind(const brunt_contact_surface *s, const nearest *best, const double *normal, double least, hit *out) {
+static bool hit_behind(const brunt_contact_surface *s, const nearest *best, const double *normal, double least,
+                       hit *out) {
     double way[3];
     take_nearest(s, best, out, way);
     return out->gap < 0 && -dot(out->n, normal) > least;
@@ -417,11 +422,10 @@ static bool in_ring(const looker *l, int32_t face) {
 // bodies. `guess`: a face that may well be the nearest, -1; it saves looking closely at most others. `all`: also notes
 // the two nearest facets of any direction, as far as `slack` beyond the nearest; may be NULL. `sheets`: whether
 // there are any; the cells have their fronts, for both sides.
-static inline __attribute__((always_inline)) int find_nearest(const brunt_contact_context *m, const brunt_node_to_facet *f,
-                                                              const looker *l, const double *normal, double least,
-                                                              const int32_t *list, int32_t count, int32_t guess,
-                                                              double slack, two_nearest *all, bool sheets,
-                                                              nearest best[BRUNT_MAX_HITS]) {
+static inline __attribute__((always_inline)) int
+find_nearest(const brunt_contact_context *m, const brunt_node_to_facet *f, const looker *l, const double *normal,
+             double least, const int32_t *list, int32_t count, int32_t guess, double slack, two_nearest *all,
+             bool sheets, nearest best[BRUNT_MAX_HITS]) {
     const brunt_contact_surface *s = m->skin;
     const double range2 = f->range * f->range;
     double bound = INFINITY; // of the one body that the guess belongs to
@@ -464,7 +468,8 @@ static inline __attribute__((always_inline)) int find_nearest(const brunt_contac
 
 // Whether a body, behind whose facet someone with a normal is, has one that he would sooner leave it through the other
 // way: then he is before that one, or on the far side of a body thinner than the range, or the other side of a sheet.
-static bool other_way_out(const brunt_contact_context *m, const brunt_node_to_facet *f, const looker *l, int32_t body, double square) {
+static bool other_way_out(const brunt_contact_context *m, const brunt_node_to_facet *f, const looker *l, int32_t body,
+                          double square) {
     const brunt_contact_surface *s = m->skin;
     for (int32_t q = f->cell_first[l->cell]; q < f->cell_first[l->cell + 1]; q++) {
         const int32_t face = f->cell_face[q];
@@ -547,9 +552,10 @@ static void thicken(const brunt_contact_surface *s, double half, slave_hits *out
 // meets its underside, not the wall it came through. Only a slave that has none of those close by, and is inside, is
 // sent out through the nearest facet there is. Tells how far the nearest facet is, or how far was looked, and how far
 // the nearest but the one hit.
-static inline __attribute__((always_inline)) void look_around(const brunt_contact_context *m, const brunt_node_to_facet *f,
-                                                              const looker *l, int32_t guess, slave_hits *out,
-                                                              double *distance, double *second, bool sheets) {
+static inline __attribute__((always_inline)) void look_around(const brunt_contact_context *m,
+                                                              const brunt_node_to_facet *f, const looker *l,
+                                                              int32_t guess, slave_hits *out, double *distance,
+                                                              double *second, bool sheets) {
     const brunt_contact_surface *s = m->skin;
     nearest facing[BRUNT_MAX_HITS], any[BRUNT_MAX_HITS];
     two_nearest two;
@@ -608,8 +614,8 @@ static inline __attribute__((always_inline)) void look_around(const brunt_contac
     if (sheets) thicken(s, l->half, out);
 }
 
-void brunt_node_to_facet_look_around(const brunt_contact_context *m, const brunt_node_to_facet *f, const looker *l, int32_t guess,
-                              slave_hits *out, double *distance, double *second) {
+void brunt_node_to_facet_look_around(const brunt_contact_context *m, const brunt_node_to_facet *f, const looker *l,
+                                     int32_t guess, slave_hits *out, double *distance, double *second) {
     if (m->skin->side)
         look_around(m, f, l, guess, out, distance, second, true);
     else
@@ -618,8 +624,8 @@ void brunt_node_to_facet_look_around(const brunt_contact_context *m, const brunt
 
 // The facet that was the nearest, when it is certain that it still is: it is nearer than `least`, which no other one
 // is.
-bool brunt_node_to_facet_still_nearest(const brunt_contact_context *m, const brunt_node_to_facet *f, int32_t n, const double *normal,
-                                double least, slave_hits *out) {
+bool brunt_node_to_facet_still_nearest(const brunt_contact_context *m, const brunt_node_to_facet *f, int32_t n,
+                                       const double *normal, double least, slave_hits *out) {
     const brunt_contact_surface *s = m->skin;
     const int32_t face = f->last[n];
     if (face < 0 || (normal && -dot(s->face_normal[face], normal) <= OPPOSED)) return false;

@@ -23,14 +23,16 @@ typedef struct job {
 // faster than half as fast as it came, by which no impact gains energy. What rests comes anew each step, as the load
 // brings it: pushing that out does work, and is only done over the small depths that unfinished sweeps leave; deeper
 // ones wait until they part by themselves.
-double brunt_node_to_facet_target(const brunt_contact_surface *s, double gap, double approach, double before, double dt) {
+double brunt_node_to_facet_target(const brunt_contact_surface *s, double gap, double approach, double before,
+                                  double dt) {
     if (gap >= 0) return -gap / dt;
     double came = gap > -SHALLOW * s->mean_edge ? approach : before;
     return fmin(PUSH * -gap / dt, BOUNCE * fmax(0, -came));
 }
 
 // Velocity of x relative to the facet under it, along n.
-double brunt_node_to_facet_approach(const brunt_contact_surface *s, const hit *h, const double x[3], const double v[3], double (*of)[3]) {
+double brunt_node_to_facet_approach(const brunt_contact_surface *s, const hit *h, const double x[3], const double v[3],
+                                    double (*of)[3]) {
     double weight[4], along = dot(v, h->n);
     if (h->feature.triangles) {
         brunt_master m;
@@ -99,7 +101,8 @@ static void find_node(const job *j, int k, int32_t n, int worker) {
         s->gap[n] = fmin(s->gap[n], h->gap);
         double approach = brunt_node_to_facet_approach(s, h, s->x[n], s->v[n], s->v);
         h->target = brunt_node_to_facet_target(
-            s, h->gap, approach, h->gap < 0 ? brunt_node_to_facet_approach(s, h, s->x[n], s->old[n], s->old) : 0, m->dt);
+            s, h->gap, approach, h->gap < 0 ? brunt_node_to_facet_approach(s, h, s->x[n], s->old[n], s->old) : 0,
+            m->dt);
         if (!(approach < h->target + 1e-6 * s->mean_edge / m->dt)) continue;
         if (h->feature.any) keep_master(f, s, h, s->x[n], worker);
         f->hits[BRUNT_MAX_HITS * n + kept++] = *h;
@@ -119,7 +122,8 @@ static void find_nodes(void *context, int64_t begin, int64_t end, int worker) {
     }
 }
 
-void brunt_node_to_facet_point(const brunt_contact_context *m, const hit *h, const double x[3], int body, brunt_constraint *point) {
+void brunt_node_to_facet_point(const brunt_contact_context *m, const hit *h, const double x[3], int body,
+                               brunt_constraint *point) {
     brunt_pair *pair = &m->pairs[m->pair_of[body * m->body_count + h->body]];
     memcpy(point->x, x, sizeof point->x);
     memcpy(point->n, h->n, sizeof point->n);
@@ -140,7 +144,7 @@ int brunt_node_to_facet_master(const brunt_contact_surface *s, const hit *h, con
 }
 
 void brunt_node_to_facet_entries(const brunt_node_to_facet *f, const brunt_master *m, brunt_constraint *point,
-                          brunt_constraint_entry *entry) {
+                                 brunt_constraint_entry *entry) {
     memcpy(point->facet, m->facet, sizeof point->facet);
     for (int c = 0; c < m->count; c++) {
         entry[c].support = f->support_of[m->node[c]];
@@ -190,7 +194,8 @@ static void fill_nodes(void *context, int64_t begin, int64_t end, int worker) {
 }
 
 // The support of a skin node, made when it is first asked for. -1: out of memory.
-int32_t brunt_node_to_facet_support(brunt_node_to_facet *f, const brunt_contact_surface *s, int32_t n, brunt_constraint_set *points) {
+int32_t brunt_node_to_facet_support(brunt_node_to_facet *f, const brunt_contact_surface *s, int32_t n,
+                                    brunt_constraint_set *points) {
     if (f->support_of[n] >= 0) return f->support_of[n];
     if (s->front && s->front[n] != n) return f->support_of[n] = brunt_node_to_facet_support(f, s, s->front[n], points);
     int32_t at = brunt_constraints_dof_node(points);
@@ -239,7 +244,7 @@ static int look_from_nodes(job *j) {
 }
 
 int brunt_node_to_facet_find(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, brunt_node_to_facet *f,
-                      brunt_constraint_set *points) {
+                             brunt_constraint_set *points) {
     const brunt_contact_surface *s = m->skin;
     f->travelled += 2 * s->moved;
     if (!(f->travelled < 1e300)) { // somebody new: nothing is known of distances
@@ -281,7 +286,8 @@ static void note_gaps(brunt_contact_surface *s) {
             s->gap[s->front[n]] = fmin(s->gap[s->front[n]], s->gap[n]);
 }
 
-void brunt_node_to_facet_finish(const brunt_contact_context *m, brunt_body *mpm, brunt_node_to_facet *f, const brunt_constraint_set *points) {
+void brunt_node_to_facet_finish(const brunt_contact_context *m, brunt_body *mpm, brunt_node_to_facet *f,
+                                const brunt_constraint_set *points) {
     brunt_contact_surface *s = m->skin;
     for (int32_t n = 0; n < s->node_count; n++) {
         int32_t at = f->support_of[n];

@@ -15,30 +15,31 @@
 typedef struct brunt_node_to_facet brunt_node_to_facet;
 
 // Marks in skin->active which bodies have another one, or a wall (planes of brunt_walls with condition separate and
-// others), near; call after brunt_surface_bounds, before brunt_surface_gather_state. 0, or -1: out of memory, -2: a place or a way of
-// a step is not a number that can be worked with.
-int brunt_broad_phase(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, const brunt_wall *walls, int wall_count,
-                      double time, brunt_node_to_facet **facing);
+// others), near; call after brunt_surface_bounds, before brunt_surface_gather_state. 0, or -1: out of memory, -2: a
+// place or a way of a step is not a number that can be worked with.
+int brunt_broad_phase(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, const brunt_wall *walls,
+                      int wall_count, double time, brunt_node_to_facet **facing);
 // Adds the contact points of this step.
-int brunt_node_to_facet_find(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, brunt_node_to_facet *facing,
-                      brunt_constraint_set *points);
+int brunt_node_to_facet_find(const brunt_contact_context *m, brunt_body *mpm, int mpm_count,
+                             brunt_node_to_facet *facing, brunt_constraint_set *points);
 // Adds what walls that push (condition separate) do to boundary nodes, and applies those that hold (stick, slip,
 // symmetry).
-int brunt_node_to_facet_walls(const brunt_contact_context *m, brunt_wall *walls, int wall_count, double time, brunt_node_to_facet *facing,
-                       brunt_constraint_set *points);
+int brunt_node_to_facet_walls(const brunt_contact_context *m, brunt_wall *walls, int wall_count, double time,
+                              brunt_node_to_facet *facing, brunt_constraint_set *points);
 // After the solution: what contact gave to nodes that planes hold is those planes' reaction.
 void brunt_node_to_facet_book_holds(const brunt_contact_context *m, brunt_wall *walls, int wall_count, double time,
-                             const brunt_node_to_facet *facing, const brunt_constraint_set *points);
+                                    const brunt_node_to_facet *facing, const brunt_constraint_set *points);
 // After brunt_surface_renew: what is remembered follows its nodes, and all look anew. 0, or -1: out of memory.
 int brunt_node_to_facet_renew(brunt_node_to_facet *facing, const brunt_contact_surface *skin);
 // After the solution: velocities back to the skin and to the grids' nodes, contact state to the skin.
 void brunt_node_to_facet_finish(const brunt_contact_context *m, brunt_body *mpm, brunt_node_to_facet *facing,
-                         const brunt_constraint_set *points);
+                                const brunt_constraint_set *points);
 // What is remembered from step to step only saves work; but where two facets are equally near it may settle which one
 // is taken, so that a run that goes on needs it. So many doubles, however many elements have left; copied out; and in,
 // before the first step and after the bodies, from which the skin is renewed (0, or -1: out of memory).
 int64_t brunt_node_to_facet_state_count(const brunt_contact_surface *skin);
 void brunt_node_to_facet_state_get(const brunt_node_to_facet *facing, const brunt_contact_surface *skin, double *out);
-int brunt_node_to_facet_state_set(brunt_node_to_facet **facing, brunt_contact_surface *skin, int mpm_count, const double *in);
+int brunt_node_to_facet_state_set(brunt_node_to_facet **facing, brunt_contact_surface *skin, int mpm_count,
+                                  const double *in);
 void brunt_node_to_facet_free(brunt_node_to_facet *facing);
 size_t brunt_node_to_facet_bytes(const brunt_node_to_facet *facing);

@@ -162,28 +162,34 @@ bool brunt_broad_phase_plane(const brunt_contact_surface *s, int k, const brunt_
 // Makes the cells anew when they no longer hold all that may be near. 0, or -1: out of memory.
 int brunt_search_cells(const brunt_contact_context *m, brunt_node_to_facet *f);
 // Whether anything reaches, within `by`, a box near box `box`.
-bool brunt_node_to_facet_in_reach(const brunt_node_to_facet *f, int32_t box, const double low[3], const double high[3], double by);
+bool brunt_node_to_facet_in_reach(const brunt_node_to_facet *f, int32_t box, const double low[3], const double high[3],
+                                  double by);
 // Fills the bodies a looker may touch or have entered; whether there are facets to look at.
 bool brunt_node_to_facet_look(const brunt_node_to_facet *f, looker *l);
-void brunt_node_to_facet_look_around(const brunt_contact_context *m, const brunt_node_to_facet *f, const looker *l, int32_t guess,
-                              slave_hits *out, double *distance, double *second);
-bool brunt_node_to_facet_still_nearest(const brunt_contact_context *m, const brunt_node_to_facet *f, int32_t n, const double *normal,
-                                double least, slave_hits *out);
+void brunt_node_to_facet_look_around(const brunt_contact_context *m, const brunt_node_to_facet *f, const looker *l,
+                                     int32_t guess, slave_hits *out, double *distance, double *second);
+bool brunt_node_to_facet_still_nearest(const brunt_contact_context *m, const brunt_node_to_facet *f, int32_t n,
+                                       const double *normal, double least, slave_hits *out);
 
 // --- facing.c
-double brunt_node_to_facet_target(const brunt_contact_surface *s, double gap, double approach, double before, double dt);
+double brunt_node_to_facet_target(const brunt_contact_surface *s, double gap, double approach, double before,
+                                  double dt);
 double brunt_node_to_facet_area(const brunt_contact_surface *s, int32_t n, const double direction[3]);
-int32_t brunt_node_to_facet_support(brunt_node_to_facet *f, const brunt_contact_surface *s, int32_t n, brunt_constraint_set *points);
-double brunt_node_to_facet_approach(const brunt_contact_surface *s, const hit *h, const double x[3], const double v[3], double (*of)[3]);
-void brunt_node_to_facet_point(const brunt_contact_context *m, const hit *h, const double x[3], int body, brunt_constraint *point);
+int32_t brunt_node_to_facet_support(brunt_node_to_facet *f, const brunt_contact_surface *s, int32_t n,
+                                    brunt_constraint_set *points);
+double brunt_node_to_facet_approach(const brunt_contact_surface *s, const hit *h, const double x[3], const double v[3],
+                                    double (*of)[3]);
+void brunt_node_to_facet_point(const brunt_contact_context *m, const hit *h, const double x[3], int body,
+                               brunt_constraint *point);
 int brunt_node_to_facet_master(const brunt_contact_surface *s, const hit *h, const double x[3], brunt_master *master);
 // The master's entries, whose supports there are; sets the point's facet.
 void brunt_node_to_facet_entries(const brunt_node_to_facet *f, const brunt_master *master, brunt_constraint *point,
-                          brunt_constraint_entry *entry);
+                                 brunt_constraint_entry *entry);
 
 // --- facing_particles.c
 // Contact points of the particles of body k of the mpm bodies. 0, or -1: out of memory.
-int brunt_node_to_facet_particles(const brunt_contact_context *m, brunt_node_to_facet *f, brunt_body *body, int k, int32_t box,
-                           brunt_constraint_set *points);
+int brunt_node_to_facet_particles(const brunt_contact_context *m, brunt_node_to_facet *f, brunt_body *body, int k,
+                                  int32_t box, brunt_constraint_set *points);
 // After the solution: velocities back to the grids' nodes.
-void brunt_node_to_facet_give_grids(const brunt_contact_context *m, brunt_body *mpm, brunt_node_to_facet *f, const brunt_constraint_set *points);
+void brunt_node_to_facet_give_grids(const brunt_contact_context *m, brunt_body *mpm, brunt_node_to_facet *f,
+                                    const brunt_constraint_set *points);

@@ -161,8 +161,8 @@ static int mirrors_of(const brunt_contact_context *m, const brunt_body *body, br
 }
 
 // Makes the support of a node and of its images. 0, or -1: out of memory.
-static int make_support(brunt_node_to_facet *f, const brunt_body *body, int k, const brunt_symmetry_plane *mirrors, int mirror_count,
-                        const int32_t at[3], brunt_constraint_set *points) {
+static int make_support(brunt_node_to_facet *f, const brunt_body *body, int k, const brunt_symmetry_plane *mirrors,
+                        int mirror_count, const int32_t at[3], brunt_constraint_set *points) {
     int32_t image[BRUNT_MAX_IMAGES][3];
     real sign[BRUNT_MAX_IMAGES][3];
     int images = brunt_symmetry_images(mirrors, mirror_count, at, IMAGE_LAYERS, image, sign);
@@ -189,8 +189,8 @@ static int make_support(brunt_node_to_facet *f, const brunt_body *body, int k, c
 }
 
 // Entries of the slave: of each support the weights of all its nodes, turned over as they are.
-static int add_slave(brunt_node_to_facet *f, const brunt_body *body, int k, const brunt_symmetry_plane *mirrors, int mirror_count,
-                     const nodes *under, brunt_constraint_set *points) {
+static int add_slave(brunt_node_to_facet *f, const brunt_body *body, int k, const brunt_symmetry_plane *mirrors,
+                     int mirror_count, const nodes *under, brunt_constraint_set *points) {
     const int32_t first = points->entry_count;
     for (int e = 0; e < under->count; e++) {
         const int64_t number = (under->node[e] - body->grid.nodes) / BRUNT_NODE_REALS;
@@ -206,8 +206,8 @@ static int add_slave(brunt_node_to_facet *f, const brunt_body *body, int k, cons
 }
 
 // What the last point rubs with: the same supports, at the particle's surface.
-static int add_lever(const brunt_contact_context *m, const brunt_node_to_facet *f, brunt_body *body, int k, const struct seen *seen,
-                     brunt_constraint_set *points) {
+static int add_lever(const brunt_contact_context *m, const brunt_node_to_facet *f, brunt_body *body, int k,
+                     const struct seen *seen, brunt_constraint_set *points) {
     const int32_t number = points->point_count - 1;
     double arm[3], kernel_arm[3], x[3];
     const double extent = brunt_extent_along(body, seen->particle, seen->h.n);
@@ -231,8 +231,9 @@ static int add_lever(const brunt_contact_context *m, const brunt_node_to_facet *
     return 0;
 }
 
-static int add_point(const brunt_contact_context *m, brunt_node_to_facet *f, brunt_body *body, int k, const brunt_symmetry_plane *mirrors,
-                     int mirror_count, const struct seen *seen, brunt_constraint_set *points) {
+static int add_point(const brunt_contact_context *m, brunt_node_to_facet *f, brunt_body *body, int k,
+                     const brunt_symmetry_plane *mirrors, int mirror_count, const struct seen *seen,
+                     brunt_constraint_set *points) {
     const brunt_contact_surface *skin = m->skin;
     brunt_master master;
     nodes under;
@@ -269,8 +270,8 @@ static int fit_room(brunt_node_to_facet *f, const brunt_body *body, int k, int t
     return 0;
 }
 
-int brunt_node_to_facet_particles(const brunt_contact_context *m, brunt_node_to_facet *f, brunt_body *body, int k, int32_t box,
-                           brunt_constraint_set *points) {
+int brunt_node_to_facet_particles(const brunt_contact_context *m, brunt_node_to_facet *f, brunt_body *body, int k,
+                                  int32_t box, brunt_constraint_set *points) {
     job j = {m, f, body, box};
     if (fit_room(f, body, k, m->threads)) return -1;
     brunt_parallel(m->threads, body->grid.block_count, 1, look_from_blocks, &j, m->timer);
@@ -298,8 +299,8 @@ static void add_moment(const double x[3], const double P[3], double factor, doub
 }
 
 // What the body's own share of the nodes has got, less what the points gave it, is the mirrors'.
-static void book_mirrors(const brunt_contact_context *m, const brunt_body *body, int k, double linear[3], double angular[3],
-                         const brunt_constraint_set *points) {
+static void book_mirrors(const brunt_contact_context *m, const brunt_body *body, int k, double linear[3],
+                         double angular[3], const brunt_constraint_set *points) {
     brunt_symmetry_plane mirrors[MAX_MIRRORS];
     const int count = mirrors_of(m, body, mirrors);
     for (int32_t p = 0; p < points->point_count; p++) {
@@ -319,7 +320,7 @@ static void book_mirrors(const brunt_contact_context *m, const brunt_body *body,
 }
 
 void brunt_node_to_facet_give_grids(const brunt_contact_context *m, brunt_body *mpm, brunt_node_to_facet *f,
-                             const brunt_constraint_set *points) {
+                                    const brunt_constraint_set *points) {
     for (int32_t g = 0; g < f->grid_count;) {
         const int k = f->grid[g].mpm;
         brunt_body *body = &mpm[k];

@@ -3,7 +3,8 @@
 
 // Holds a node on a plane: stick takes all components, slip and symmetry the normal one. `back`: how much further its
 // twin is, of a sheet; else 0.
-static void hold(brunt_contact_surface *s, int32_t n, int32_t back, brunt_wall *wall, double normal_velocity, bool stick) {
+static void hold(brunt_contact_surface *s, int32_t n, int32_t back, brunt_wall *wall, double normal_velocity,
+                 bool stick) {
     const brunt_plane_def *plane = &wall->plane;
     double now[3], J[3], old[3], along = 0;
     for (int a = 0; a < 3; a++) along += plane->normal[a] * (s->v[n][a] - plane->velocity[a]);
@@ -24,8 +25,8 @@ static void hold(brunt_contact_surface *s, int32_t n, int32_t back, brunt_wall *
     memcpy(s->inverse[n + back], s->inverse[n], sizeof *s->inverse);
 }
 
-static int push_off(const brunt_contact_context *m, brunt_node_to_facet *f, int32_t n, int32_t back, brunt_wall *wall, double gap,
-                    brunt_constraint_set *points) {
+static int push_off(const brunt_contact_context *m, brunt_node_to_facet *f, int32_t n, int32_t back, brunt_wall *wall,
+                    double gap, brunt_constraint_set *points) {
     const brunt_contact_surface *s = m->skin;
     const brunt_plane_def *plane = &wall->plane;
     double approach = 0, before = 0;
@@ -42,13 +43,14 @@ static int push_off(const brunt_contact_context *m, brunt_node_to_facet *f, int3
     memcpy(point->n, plane->normal, sizeof point->n);
     memcpy(point->plane, plane->velocity, sizeof point->plane);
     point->gap = gap, point->target = target, point->friction = plane->friction;
-    point->action = &wall->last, point->sign = 1, point->tag = n, point->area = brunt_node_to_facet_area(s, n, plane->normal);
+    point->action = &wall->last, point->sign = 1, point->tag = n,
+    point->area = brunt_node_to_facet_area(s, n, plane->normal);
     if (back) point->area += brunt_node_to_facet_area(s, n + back, plane->normal);
     return brunt_constraints_entry(points, support, 1) < 0 ? -1 : 0;
 }
 
-int brunt_node_to_facet_walls(const brunt_contact_context *m, brunt_wall *walls, int wall_count, double time, brunt_node_to_facet *f,
-                       brunt_constraint_set *points) {
+int brunt_node_to_facet_walls(const brunt_contact_context *m, brunt_wall *walls, int wall_count, double time,
+                              brunt_node_to_facet *f, brunt_constraint_set *points) {
     brunt_contact_surface *s = m->skin;
     const double on = 1e-6 * s->mean_edge;
     for (int w = 0; w < wall_count; w++) {
@@ -80,7 +82,8 @@ int brunt_node_to_facet_walls(const brunt_contact_context *m, brunt_wall *walls,
 }
 
 // The plane that keeps component a of a node from moving: of those that hold it, the nearest. -1: none.
-static int holding_plane(const brunt_contact_surface *s, int32_t n, int a, const brunt_wall *walls, int wall_count, double time) {
+static int holding_plane(const brunt_contact_surface *s, int32_t n, int a, const brunt_wall *walls, int wall_count,
+                         double time) {
     int nearest = -1;
     double least = INFINITY;
     for (int w = 0; w < wall_count; w++) {
@@ -95,7 +98,7 @@ static int holding_plane(const brunt_contact_surface *s, int32_t n, int a, const
 }
 
 void brunt_node_to_facet_book_holds(const brunt_contact_context *m, brunt_wall *walls, int wall_count, double time,
-                             const brunt_node_to_facet *f, const brunt_constraint_set *points) {
+                                    const brunt_node_to_facet *f, const brunt_constraint_set *points) {
     const brunt_contact_surface *s = m->skin;
     int k = 0;
     for (int32_t n = 0; n < s->node_count; n++) {
@@ -109,7 +112,8 @@ void brunt_node_to_facet_book_holds(const brunt_contact_context *m, brunt_wall *
             if (w < 0) continue;
             double J[3] = {0};
             J[a] = -given;
-            brunt_impulse_account_book(&walls[w].last, &walls[w].last.normal_loss, J, s->x[n], s->v[n], s->v[n], s->v[n]);
+            brunt_impulse_account_book(&walls[w].last, &walls[w].last.normal_loss, J, s->x[n], s->v[n], s->v[n],
+                                       s->v[n]);
         }
     }
 }

@@ -668,7 +668,8 @@ static void make_normals(void *context, int64_t begin, int64_t end, int worker) 
     }
 }
 
-void brunt_surface_gather_state(brunt_contact_surface *s, double dt, const double gravity[3], int threads, brunt_timer *timer) {
+void brunt_surface_gather_state(brunt_contact_surface *s, double dt, const double gravity[3], int threads,
+                                brunt_timer *timer) {
     job j = {s, dt, gravity};
     brunt_parallel(threads, (s->node_count + GRAIN - 1) / GRAIN, 1, take_chunks, &j, timer);
     s->moved = 0;

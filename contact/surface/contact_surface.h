@@ -58,18 +58,19 @@ typedef struct brunt_contact_surface {
     int32_t *node_range, *face_range;
     int32_t *node_end, *face_end; // of each body: end of what counts once; of a sheet, of its front
     // Of sheets; NULL where there are none.
-    int32_t *front;           // of each node: its twin of the front, or itself
-    brunt_side *side;  // of each body by its index among all, to the last of the meshes
-    double thickest;          // [m] of all sheets, 0 where there are none
+    int32_t *front;   // of each node: its twin of the front, or itself
+    brunt_side *side; // of each body by its index among all, to the last of the meshes
+    double thickest;  // [m] of all sheets, 0 where there are none
     // Elements within two rings of the nodes of sheets that may touch themselves, as faces of the front, ascending:
     // ring_face[ring_first[n] .. ring_first[n + 1]) of node n of the front.
     int32_t *ring_first, *ring_face;
     bool *self; // of each body: it has rings
-    // Of bodies that may lose elements, else NULL: of each body the bookkeeping of its surface (elements 0: it loses none).
+    // Of bodies that may lose elements, else NULL: of each body the bookkeeping of its surface (elements 0: it loses
+    // none).
     brunt_surface_topology *shell;
     brunt_surface_change change; // of the last time
-    bool *ragged;             // of each body by its index among all, to the last of the meshes: its surface may be ragged, since
-                              // it may lose elements; NULL where none do
+    bool *ragged; // of each body by its index among all, to the last of the meshes: its surface may be ragged, since
+                  // it may lose elements; NULL where none do
     int32_t *next_node, (*next_face)[4];
     void *spare;
     size_t node_room, face_room, node_capacity, body_capacity, face_capacity, next_node_capacity, next_face_capacity,
@@ -96,16 +97,16 @@ int brunt_surface_make(brunt_contact_surface *skin, brunt_fem_body **fem, int co
 // Lists the elements near each node of the bodies marked in `self`, which are sheets in contact with themselves: those
 // are no obstacles to it. 0, or -1: out of memory.
 int brunt_surface_patches(brunt_contact_surface *skin, const bool *self);
-// The surfaces anew after elements have left bodies, or (`restored`) of a saved state. What is kept of a node from step to step stays with it, and
-// skin->change tells who has gone where. The order of nodes and faces follows from which elements there are. 0, or -1: out of
-// memory.
+// The surfaces anew after elements have left bodies, or (`restored`) of a saved state. What is kept of a node from step
+// to step stays with it, and skin->change tells who has gone where. The order of nodes and faces follows from which
+// elements there are. 0, or -1: out of memory.
 int brunt_surface_renew(brunt_contact_surface *skin, bool restored);
 // The affine velocities as they are saved: so many doubles, of all nodes that may ever be of the skin.
 int64_t brunt_surface_affine_count(const brunt_contact_surface *skin);
 void brunt_surface_affine_get(const brunt_contact_surface *skin, double *out);
 void brunt_surface_affine_set(brunt_contact_surface *skin, const double *in);
-// Where node `n` of the skin is among all nodes that may ever be of it, and how many those are: what a saved state is in the
-// order of, since its size must not depend on what has left.
+// Where node `n` of the skin is among all nodes that may ever be of it, and how many those are: what a saved state is
+// in the order of, since its size must not depend on what has left.
 int64_t brunt_surface_slot(const brunt_contact_surface *skin, int k, int32_t n);
 int64_t brunt_surface_slots(const brunt_contact_surface *skin);
 void brunt_surface_free(brunt_contact_surface *skin);
@@ -113,7 +114,8 @@ void brunt_surface_free(brunt_contact_surface *skin);
 void brunt_surface_bounds(brunt_contact_surface *skin, int threads, brunt_timer *timer);
 // Places, velocities, masses and normals of the active bodies. `gravity` [m/s^2] and `dt` are those of this step's
 // kick.
-void brunt_surface_gather_state(brunt_contact_surface *skin, double dt, const double gravity[3], int threads, brunt_timer *timer);
+void brunt_surface_gather_state(brunt_contact_surface *skin, double dt, const double gravity[3], int threads,
+                                brunt_timer *timer);
 // Velocities of the active bodies back to them, which then move for `dt`.
 void brunt_surface_scatter_velocity(brunt_contact_surface *skin, double dt, int threads, brunt_timer *timer);
 

@@ -9,6 +9,6 @@ int brunt_places_read(brunt_world *world, int32_t body, brunt_place at, double *
 int32_t brunt_find_body(const brunt_world *world, const char *name);
 // Where positions and velocities of a body are: its particles or its nodes.
 brunt_place brunt_place_of_motion(const brunt_world *world, int32_t body);
-// The field with the numbers, ascending, of a body's particles or elements as they were at the start: of what erodes some are
-// missing. -1 at nodes, which keep theirs.
+// The field with the numbers, ascending, of a body's particles or elements as they were at the start: of what erodes
+// some are missing. -1 at nodes, which keep theirs.
 int32_t brunt_place_ids(const brunt_world *world, int32_t body, brunt_place at);

@@ -1,8 +1,8 @@
-// What the processor counts while passes run, where the system lets a program ask: cycles, instructions and misses in user
-// mode, of all threads that are started after the counters are opened.
+// What the processor counts while passes run, where the system lets a program ask: cycles, instructions and misses in
+// user mode, of all threads that are started after the counters are opened.
 //
-// Linux (perf_event_open). Elsewhere, or where it is not permitted (perf_event_paranoid, containers), nothing is counted; of a
-// machine that counts nothing of a kind, as virtual ones do, that kind is left out.
+// Linux (perf_event_open). Elsewhere, or where it is not permitted (perf_event_paranoid, containers), nothing is
+// counted; of a machine that counts nothing of a kind, as virtual ones do, that kind is left out.
 #pragma once
 
 #include <stdbool.h>

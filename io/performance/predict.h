@@ -18,23 +18,23 @@ typedef struct brunt_prediction_pass {
 } brunt_prediction_pass;
 
 typedef struct brunt_prediction {
-    double first_step;        // [s] of the world's time
-    double steps;             // of the whole run
-    double step_seconds;      // [s] of the clock in them
-    double output_seconds;    // [s] pictures, history, checkpoints
-    double pictures, lines;   // of bodies together, and of the history
+    double first_step;      // [s] of the world's time
+    double steps;           // of the whole run
+    double step_seconds;    // [s] of the clock in them
+    double output_seconds;  // [s] pictures, history, checkpoints
+    double pictures, lines; // of bodies together, and of the history
     double picture_bytes, line_bytes,
-        checkpoint_bytes;     // [B] of all of them on the disk; pictures before they are compressed
-    double array_bytes;       // [B] of the world's arrays at the start
-    double peak_bytes;        // [B] of the process: program, arrays as they grow, history, buffers of a picture
+        checkpoint_bytes; // [B] of all of them on the disk; pictures before they are compressed
+    double array_bytes;   // [B] of the world's arrays at the start
+    double peak_bytes;    // [B] of the process: program, arrays as they grow, history, buffers of a picture
     brunt_prediction_pass passes[BRUNT_PREDICTION_PASSES]; // the plan's, in its order, then "other" between them
     int32_t pass_count;
     double sampled_steps, sampled_seconds; // taken of the world itself, and [s] of the clock in them
-    double factor;            // how much coarser the rehearsal was; 1: the run itself, 0: there was none
-    double rehearsed;         // [-] share of the run's time that was seen so
-    double growth;            // [-] of the arrays, from the start to the end
-    double rehearsal_seconds; // [s] of the clock, sampling included
-    char note[512];           // what the prediction does not see, or ""; one sentence
+    double factor;                         // how much coarser the rehearsal was; 1: the run itself, 0: there was none
+    double rehearsed;                      // [-] share of the run's time that was seen so
+    double growth;                         // [-] of the arrays, from the start to the end
+    double rehearsal_seconds;              // [s] of the clock, sampling included
+    char note[512];                        // what the prediction does not see, or ""; one sentence
 } brunt_prediction;
 
 // Predicts the run of a scene. `world` and `history` are as made of it, and are stepped and written to; nothing goes to
@@ -44,5 +44,5 @@ int brunt_predict(const brunt_scene *scene, brunt_world *world, brunt_history *h
                   brunt_prediction *prediction, brunt_error *error);
 
 // --- predict_output.c: fills output_seconds, for `steps` as predicted. `buffer_bytes`: [B] that output takes at most.
-int brunt_predict_output(const brunt_scene *scene, brunt_world *world, brunt_history *history, brunt_prediction *prediction,
-                         double *buffer_bytes, brunt_error *error);
+int brunt_predict_output(const brunt_scene *scene, brunt_world *world, brunt_history *history,
+                         brunt_prediction *prediction, double *buffer_bytes, brunt_error *error);

@@ -25,12 +25,15 @@ typedef struct brunt_trace_count {
 int brunt_trace_refuse(const char *path, brunt_error *error);
 // Whether a file can be written there; what is there stays. BRUNT_OK, BRUNT_IO_ERROR.
 int brunt_trace_check(const char *path, brunt_error *error);
-// Times count from `origin` [s of brunt_clock]. `scene`: its name; the world outlives the trace. NULL: cannot be written, or no memory.
-brunt_trace *brunt_trace_open(const char *path, const char *scene, brunt_world *world, double origin, brunt_error *error);
+// Times count from `origin` [s of brunt_clock]. `scene`: its name; the world outlives the trace. NULL: cannot be
+// written, or no memory.
+brunt_trace *brunt_trace_open(const char *path, const char *scene, brunt_world *world, double origin,
+                              brunt_error *error);
 brunt_observer brunt_trace_observer(brunt_trace *trace);
 // What was written from `begin` to `end` [s of brunt_clock], by its name: "history", "picture", "checkpoint".
 void brunt_trace_output(brunt_trace *trace, const char *name, double begin, double end);
-// A step that has been taken, or has failed, from `begin` to `end` [s of brunt_clock]. Closes the account of the one before with its output.
+// A step that has been taken, or has failed, from `begin` to `end` [s of brunt_clock]. Closes the account of the one
+// before with its output.
 void brunt_trace_step(brunt_trace *trace, double begin, double end);
 // Ends the file and gives it its name. Frees the trace whatever the outcome: BRUNT_OK, or BRUNT_IO_ERROR.
 int brunt_trace_close(brunt_trace *trace, brunt_trace_count *count, brunt_error *error);

@@ -14,23 +14,23 @@ typedef enum scene_type {
     SCENE_REAL,     // number with unit
     SCENE_ANY_UNIT, // number with any unit, taken to SI base units
     SCENE_INTEGER,
-    SCENE_VECTOR,    // as many numbers as there are dimensions
-    SCENE_PARTIAL,   // a vector whose components may be `free`
-    SCENE_TURN,      // a number or, in three dimensions, a vector
-    SCENE_POLYGON,   // list of [x, y]
-    SCENE_TABLE,     // list of [time, factor], ascending
-    SCENE_PROFILE,   // list of [coordinate, number with any unit], not descending
-    SCENE_CURVE,     // list of [time, number with any unit], ascending
-    SCENE_AXES,      // list of x, y, z, or the word `all`
-    SCENE_TEXT,      // free text
-    SCENE_NAME,      // a name of the user's own, or of a field
-    SCENE_NAMES,     // list of names
-    SCENE_WORD,      // one of `words`
-    SCENE_SHAPE,     // a shape: the rows at "<shape>"
-    SCENE_SHAPES,    // a list of shapes
+    SCENE_VECTOR,     // as many numbers as there are dimensions
+    SCENE_PARTIAL,    // a vector whose components may be `free`
+    SCENE_TURN,       // a number or, in three dimensions, a vector
+    SCENE_POLYGON,    // list of [x, y]
+    SCENE_TABLE,      // list of [time, factor], ascending
+    SCENE_PROFILE,    // list of [coordinate, number with any unit], not descending
+    SCENE_CURVE,      // list of [time, number with any unit], ascending
+    SCENE_AXES,       // list of x, y, z, or the word `all`
+    SCENE_TEXT,       // free text
+    SCENE_NAME,       // a name of the user's own, or of a field
+    SCENE_NAMES,      // list of names
+    SCENE_WORD,       // one of `words`
+    SCENE_SHAPE,      // a shape: the rows at "<shape>"
+    SCENE_SHAPES,     // a list of shapes
     SCENE_PARAMETERS, // stands for the parameters of the chosen model
-    SCENE_REALS,     // list of numbers with unit
-    SCENE_ANY        // anything: whoever reads it checks it
+    SCENE_REALS,      // list of numbers with unit
+    SCENE_ANY         // anything: whoever reads it checks it
 } scene_type;
 
 typedef struct scene_key {

@@ -58,8 +58,8 @@ typedef struct scene_tree {
     scene_message *messages;
     int message_count;
     const struct scene_format *format; // what it is to be
-    const char *name;   // of the file, for messages
-    const char *source; // its text; valid while it is read
+    const char *name;                  // of the file, for messages
+    const char *source;                // its text; valid while it is read
     size_t length;
 } scene_tree;
 

@@ -18,8 +18,8 @@ typedef struct brunt_child_end {
     double seconds; // [s] of the clock, start and end included
 } brunt_child_end;
 
-// Runs arguments[0] with the arguments (NULL ends them) and waits. What it prints is dropped, what it says of errors goes to the file `messages`.
-// `limit`: [s], INFINITY for none. `stop` (may be NULL): as soon as it is not 0 the child gets SIGTERM and ten seconds. A child does not outlive this
-// program. BRUNT_IO_ERROR when it cannot be started.
+// Runs arguments[0] with the arguments (NULL ends them) and waits. What it prints is dropped, what it says of errors
+// goes to the file `messages`. `limit`: [s], INFINITY for none. `stop` (may be NULL): as soon as it is not 0 the child
+// gets SIGTERM and ten seconds. A child does not outlive this program. BRUNT_IO_ERROR when it cannot be started.
 int brunt_child_run(char *const *arguments, const char *messages, double limit, const volatile sig_atomic_t *stop,
                     brunt_child_end *end, brunt_error *error);

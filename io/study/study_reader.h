@@ -18,14 +18,14 @@ typedef struct study_job {
     int32_t set_count;
 } study_job;
 
-// On BRUNT_BAD_INPUT a scaled path is not there or no number, and `culprit` is what asked for it. The job is to be freed
-// in any case.
+// On BRUNT_BAD_INPUT a scaled path is not there or no number, and `culprit` is what asked for it. The job is to be
+// freed in any case.
 int brunt_study_job(const brunt_study *study, const brunt_study_case *c, study_job *job, study_origin *culprit,
                     brunt_error *error);
 void brunt_study_job_free(study_job *job);
 
-// The axis of a placeholder {NAME}, {NAME*2}, {NAME/2} that begins at `text`, its factor and what is behind it; -1: it is
-// none. *unknown: it is written like one, of an axis there is not.
+// The axis of a placeholder {NAME}, {NAME*2}, {NAME/2} that begins at `text`, its factor and what is behind it; -1: it
+// is none. *unknown: it is written like one, of an axis there is not.
 int32_t brunt_study_placeholder(const brunt_study *study, const char *text, double *factor, const char **rest,
                                 bool *unknown);
 

@@ -1,6 +1,7 @@
 // Labels: stability
 // Contact of finite-element bodies by the facing facets of each other (augury, all its forms), through the public
-// interface: what is kept, what does not get through, what is left alone, and hard cases. tests/README.md has the table.
+// interface: what is kept, what does not get through, what is left alone, and hard cases. tests/README.md has the
+// table.
 #include "../bench/studies/penetration.h"
 #include "tests/support/hard_case.h"
 #include "tests/support/hard_world.h"
@@ -169,7 +170,8 @@ END_TEST
 
 static uint64_t run_threads(form f, int kind, int threads, bool restart) {
     brunt_world_def def = kind ? oblique_cubes(f, BRUNT_TET4, 0.3) : block_on_slab(f, BRUNT_HEX8, 0.5, 2);
-    if (kind) for (int b = 0; b < 2; b++) def.bodies[b].place.translation[1] *= 0.92;
+    if (kind)
+        for (int b = 0; b < 2; b++) def.bodies[b].place.translation[1] *= 0.92;
     def.threads = threads;
     brunt_world *world = world_from(&def);
     world_steps(world, 150);
@@ -201,8 +203,8 @@ START_TEST(same_bits_for_threads_and_restart) {
 }
 END_TEST
 
-// `count` cubes about a corner or an edge that all share, each thrown at it, named in the order given; the velocity and centre
-// of the cube at each place, and the momentum drift.
+// `count` cubes about a corner or an edge that all share, each thrown at it, named in the order given; the velocity and
+// centre of the cube at each place, and the momentum drift.
 static double cubes_about(form f, int count, bool backwards, double (*out)[6]) {
     brunt_world_def def = begin(3, f, 0.2);
     def_material(&def, "neo-hookean", 1000, 1e6, 0.3);
@@ -250,7 +252,7 @@ START_TEST(order_of_bodies_does_not_matter) {
         for (int a = 0; a < 6; a++) far = fmax(far, fabs(one[k][a] - two[k][a]));
     printf("%s, %d cubes about a point: other order %.1e, drift %.1e\n", form_name[f], count, far, drift);
     ck_assert_double_lt(drift, 100 * ROUNDING);
-    ck_assert_double_gt(fabs(one[0][0] - 2), 0.1); // they met
+    ck_assert_double_gt(fabs(one[0][0] - 2), 0.1);     // they met
     const bool in_order = f == SMOOTH || f == SURFACE; // they take pair after pair
     ck_assert_double_lt(far, in_order ? 0.2 : 1e3 * ROUNDING);
 }
@@ -272,8 +274,9 @@ START_TEST(friction_at_its_limits) {
     // Gravity that grows over T: way of a body that slides freely.
     double T = 0.1, after = end - T, way = along * (T * T / 6 + T / 2 * after + after * after / 2);
     double went = now.centre[0] - start.centre[0];
-    printf("%s, friction %s: went %.5f of %.5f m, tangential over normal impulse %.1e, friction work %.1e\n", form_name[f],
-           sticks ? "1e6" : "0", went, way, fabs(force.impulse[0] / force.impulse[1]), force.friction_work);
+    printf("%s, friction %s: went %.5f of %.5f m, tangential over normal impulse %.1e, friction work %.1e\n",
+           form_name[f], sticks ? "1e6" : "0", went, way, fabs(force.impulse[0] / force.impulse[1]),
+           force.friction_work);
     if (sticks) {
         ck_assert_double_lt(fabs(went), 0.02); // its own shear
     } else {
@@ -302,7 +305,8 @@ START_TEST(plane_without_friction) {
 }
 END_TEST
 
-// The threshold of sliding on a slope of 30 degrees, as far as an elastic block that rings lets it be seen: a hundredth.
+// The threshold of sliding on a slope of 30 degrees, as far as an elastic block that rings lets it be seen: a
+// hundredth.
 START_TEST(threshold_of_sliding) {
     const bool slides = !_i;
     const double slope = PI / 6, mu = tan(slope) * (slides ? 0.99 : 1.01), g = 10, T = 1, end = 2;
@@ -321,15 +325,18 @@ START_TEST(threshold_of_sliding) {
     brunt_body_sums now = world_sums(world, 1);
     double t = end - T, a = g * fmax(0, sin(slope) - mu * cos(slope)), way = a * (T / 2 * t + t * t / 2);
     double went = now.centre[0] - start.centre[0];
-    printf("friction %s the threshold by a hundredth: went %.4f m, %.4f by Coulomb's law\n", slides ? "below" : "above", went,
-           way);
-    if (slides) ck_assert_double_eq_tol(went / way, 1, 0.2);
-    else ck_assert_double_lt(fabs(went), 0.15 * g * 0.01 * sin(slope) * (T / 2 * t + t * t / 2));
+    printf("friction %s the threshold by a hundredth: went %.4f m, %.4f by Coulomb's law\n", slides ? "below" : "above",
+           went, way);
+    if (slides)
+        ck_assert_double_eq_tol(went / way, 1, 0.2);
+    else
+        ck_assert_double_lt(fabs(went), 0.15 * g * 0.01 * sin(slope) * (T / 2 * t + t * t / 2));
     brunt_world_destroy(world);
 }
 END_TEST
 
-// ------------------------------------------------------------------------------------------ touching, overlapping, fast
+// ------------------------------------------------------------------------------------------ touching, overlapping,
+// fast
 
 // Two equal meshes of cubes, one on the other: nodes coincide, or lie in each other by `overlap` [m].
 static brunt_world_def touching(form f, brunt_element_kind kind, double overlap) {
@@ -354,7 +361,8 @@ START_TEST(touching_at_the_start_stays_quiet) {
 }
 END_TEST
 
-// Overlapping meshes make no more energy than it would take to press them that far into each other, at rest and when they meet.
+// Overlapping meshes make no more energy than it would take to press them that far into each other, at rest and when
+// they meet.
 START_TEST(overlap_makes_no_energy) {
     static const double overlaps[] = {0.01, 0.1};
     const form f = (form)(_i % FORMS);
@@ -382,8 +390,9 @@ START_TEST(overlap_makes_no_energy) {
 }
 END_TEST
 
-// A block thrown at another so fast that it covers half an edge, 0.9 or 2.5 edges in a step: wherever it is when the step that
-// meets begins, its nodes do not come through. From one edge on its own elements cannot follow, which must be said.
+// A block thrown at another so fast that it covers half an edge, 0.9 or 2.5 edges in a step: wherever it is when the
+// step that meets begins, its nodes do not come through. From one edge on its own elements cannot follow, which must be
+// said.
 START_TEST(fast_bodies_do_not_pass) {
     static const double ways[] = {0.5, 0.9, 2.5};
     const form f = (form)(_i % PAPER);
@@ -451,7 +460,8 @@ START_TEST(bodies_that_part_meet_again) {
 }
 END_TEST
 
-// A long slanted plate whose box holds two blocks that meet, without being near them, must not keep contact from seeing them.
+// A long slanted plate whose box holds two blocks that meet, without being near them, must not keep contact from seeing
+// them.
 START_TEST(a_box_around_changes_nothing) {
     double depth[2] = {0};
     for (int with = 0; with < 2; with++) {
@@ -485,8 +495,9 @@ END_TEST
 
 // ------------------------------------------------------------------------------------------ loads through contact
 
-// A uniform pressure through an interface with edges of 0.5 m on one side and 0.05 m on the other (quadrilaterals, Poisson's ratio
-// 0, so that the exact stress is uniform): greatest error of the mean stress of a row of elements, and of one element.
+// A uniform pressure through an interface with edges of 0.5 m on one side and 0.05 m on the other (quadrilaterals,
+// Poisson's ratio 0, so that the exact stress is uniform): greatest error of the mean stress of a row of elements, and
+// of one element.
 static void press(form f, bool fine_below, double *row, double *one, double *force_error) {
     const double p = 1e4;
     brunt_world_def def = begin(2, f, 0);
@@ -557,7 +568,8 @@ START_TEST(weight_of_a_block) {
 }
 END_TEST
 
-// A plate moved by a prescribed velocity pushes a block: it does not slow down, and its work is the energy the block has.
+// A plate moved by a prescribed velocity pushes a block: it does not slow down, and its work is the energy the block
+// has.
 START_TEST(a_plate_pushes) {
     const form f = (form)_i;
     brunt_world_def def = begin(3, f, 0.3);
@@ -573,7 +585,8 @@ START_TEST(a_plate_pushes) {
     brunt_body_sums after = world_sums(world, 0);
     brunt_force work = world_wall(world, 0), pair = world_pair(world, 0);
     brunt_energy e = world_energy(world);
-    double gained = e.kinetic + e.internal + e.hourglass - e.initial + e.contact + e.friction + e.transfer + e.viscosity;
+    double gained =
+        e.kinetic + e.internal + e.hourglass - e.initial + e.contact + e.friction + e.transfer + e.viscosity;
     double *v = node_field(world, 1, "velocity");
     for (int64_t n = 0; n < brunt_body_nodes(world, 1); n++) ck_assert_double_eq_tol(v[3 * n + 1], 2, 4e-7);
     free(v);
@@ -610,7 +623,8 @@ START_TEST(mesh_meets_particles) {
     brunt_energy e = world_energy(world);
     brunt_body_sums a = world_sums(world, 0), b = world_sums(world, 1);
     printf("%dD particles on a mesh: drift %.1e %.1e, E/E0 %.3f, most %.6f, error %.1e, apart at %.2f m/s\n", dim,
-           p.linear_drift, p.angular_drift, stored(&e) / e.initial, most, e.error_relative, a.velocity[1] - b.velocity[1]);
+           p.linear_drift, p.angular_drift, stored(&e) / e.initial, most, e.error_relative,
+           a.velocity[1] - b.velocity[1]);
     ck_assert_double_lt(p.linear_drift, 10 * ROUNDING);
     ck_assert_double_lt(p.angular_drift, 1e-3);
     ck_assert_double_lt(fabs(e.error_relative), 2e-3);

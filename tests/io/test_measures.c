@@ -425,8 +425,8 @@ START_TEST(radius_about_an_axis) {
     // Only a slab without particles.
     m.slab_min = 2;
     ck_assert_double_nan(evaluate(&m, NAN).value);
-    // About the diagonal from the corner, particles i, j are (i + j + 1) 0.05 / sqrt 2 along it and (i - j) 0.05 / sqrt 2
-    // beside it: in a slab that ends after i + j = 5, or begins before 15.
+    // About the diagonal from the corner, particles i, j are (i + j + 1) 0.05 / sqrt 2 along it and (i - j) 0.05 / sqrt
+    // 2 beside it: in a slab that ends after i + j = 5, or begins before 15.
     m = blank(BRUNT_MEASURE_RADIUS);
     m.axis[0] = m.axis[1] = 1, m.center[1] = 0.1;
     m.slab_max = 0.31 / sqrt(2);

@@ -23,8 +23,9 @@ __attribute__((format(printf, 2, 3))) static const char *shell(int code, const c
     va_start(arguments, format);
     vsnprintf(command, sizeof command, format, arguments);
     va_end(arguments);
-    snprintf(line, sizeof line, "cd '%s' && P='%s' && R='/usr/bin/python3 %s/tests/support/read_vtu.py' && { %s; } 2>&1",
-             small_folder, program, source, command);
+    snprintf(line, sizeof line,
+             "cd '%s' && P='%s' && R='/usr/bin/python3 %s/tests/support/read_vtu.py' && { %s; } 2>&1", small_folder,
+             program, source, command);
     FILE *pipe = popen(line, "r");
     ck_assert_ptr_nonnull(pipe);
     output[fread(output, 1, sizeof output - 1, pipe)] = 0;

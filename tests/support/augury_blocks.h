@@ -296,14 +296,14 @@ static inline void blocks_give(blocks *b) {
 static inline brunt_contact_context blocks_meeting(blocks *b, double dt, double cell, int iterations, int threads) {
     for (int k = 0; k < b->count * b->count; k++) b->pairs[k].last = (brunt_impulse_account){.area = 0};
     return (brunt_contact_context){.skin = &b->skin,
-                           .pairs = b->pairs,
-                           .pair_of = b->pair_of,
-                           .body_count = b->count,
-                           .dt = dt,
-                           .cell = cell,
-                           .iterations = iterations,
-                           .step = 1,
-                           .threads = threads};
+                                   .pairs = b->pairs,
+                                   .pair_of = b->pair_of,
+                                   .body_count = b->count,
+                                   .dt = dt,
+                                   .cell = cell,
+                                   .iterations = iterations,
+                                   .step = 1,
+                                   .threads = threads};
 }
 
 static inline void blocks_free(blocks *b) {

@@ -1,5 +1,5 @@
-// Fuzzing of the scene reader. With clang's libFuzzer: `sh tests/support/fuzz.sh SECONDS`. With -DSTANDALONE a mutating main of
-// its own:
+// Fuzzing of the scene reader. With clang's libFuzzer: `sh tests/support/fuzz.sh SECONDS`. With -DSTANDALONE a mutating
+// main of its own:
 //     fuzz_scene SECONDS SEED FILE...
 // A scene that is accepted must be written, read back and written again to the same text; nothing may stay allocated.
 #include <stdint.h>

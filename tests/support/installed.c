@@ -1,5 +1,5 @@
-// A user's program: built by tests/support/install.sh against the installed library, with what pkg-config says and nothing
-// else. A block flies freely; momentum, time and energy must be as they were given.
+// A user's program: built by tests/support/install.sh against the installed library, with what pkg-config says and
+// nothing else. A block flies freely; momentum, time and energy must be as they were given.
 #include <brunt.h>
 #include <math.h>
 #include <stdio.h>

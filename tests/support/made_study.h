@@ -10,7 +10,8 @@
 #include "base/memory.h"
 #include "io/study/study.h"
 
-static inline void made_axis(brunt_study *study, const char *name, const char *unit, brunt_study_role role, int32_t count) {
+static inline void made_axis(brunt_study *study, const char *name, const char *unit, brunt_study_role role,
+                             int32_t count) {
     brunt_study_axis *axis = &study->axes[study->axis_count];
     snprintf(axis->name, sizeof axis->name, "%s", name);
     snprintf(axis->unit, sizeof axis->unit, "%s", unit);
@@ -36,8 +37,8 @@ static inline void made_case(brunt_study *study, int32_t line, int32_t value, in
 }
 
 // Axis 0: `methods` labels; axis 1: `h` [m] (none: 0). One measure, "length", without order, compared with `exact`.
-static inline void made_study(brunt_study *study, const char *const *methods, int32_t method_count, const double *h, int32_t h_count,
-                              double exact) {
+static inline void made_study(brunt_study *study, const char *const *methods, int32_t method_count, const double *h,
+                              int32_t h_count, double exact) {
     memset(study, 0, sizeof *study);
     strcpy(study->name, "made"), strcpy(study->title, "A made-up study"), strcpy(study->scene, "/scenes/rod.yaml");
     study->resolution = -1;

@@ -615,8 +615,8 @@ END_TEST
 
 // ------------------------------------------------------------------------------------------ a collision
 
-// The paper's oblique cubes (section 3.2) at h = 1: energy left after the rebound. Expected from an earlier program for the
-// same laws (.841, .869) and of the paper's (.42): the laws are what they were found to be.
+// The paper's oblique cubes (section 3.2) at h = 1: energy left after the rebound. Expected from an earlier program for
+// the same laws (.841, .869) and of the paper's (.42): the laws are what they were found to be.
 START_TEST(oblique_cubes) {
     static const double expected[] = {0.841, 0.869, 0.42};
     const form f = (form)_i;

@@ -94,7 +94,7 @@ START_TEST(exponential) {
     const double beyond[] = {limit * 1.001, limit * 1.5, 1e4, 1e30, INFINITY};
     for (unsigned i = 0; i < sizeof beyond / sizeof *beyond; i++) {
         ck_assert(lanes_exp(lanes_set((real)beyond[i]))[0] == (real)INFINITY);
-        ck_assert(lanes_exp(lanes_set((real)-(beyond[i] * 1.25)))[0] == 0);
+        ck_assert(lanes_exp(lanes_set((real) - (beyond[i] * 1.25)))[0] == 0);
     }
     // Gradual underflow: within two units of the last subnormal place.
     real gradual = (real)(lowest - 5);
@@ -146,8 +146,10 @@ START_TEST(power) {
         lanes p = lanes_pow(x, y);
         for (int l = 0; l < BRUNT_LANES; l++) {
             double error = ulps(p[l], powl((long double)x[l], (long double)y[l]));
-            if (i % 2) worst_large = fmax(worst_large, error);
-            else worst = fmax(worst, error);
+            if (i % 2)
+                worst_large = fmax(worst_large, error);
+            else
+                worst = fmax(worst, error);
         }
     }
     printf("pow %.3f ulp for |y| <= 4, %.3f ulp for |y| <= 30\n", worst, worst_large);

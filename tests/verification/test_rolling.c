@@ -176,10 +176,10 @@ static brunt_world *bounced(const roll *r, double tangential, double normal) {
     return w;
 }
 
-// B16. Friction that takes v from its speed gives it the spin v / k: it acts at a radius from the centre. Where it sticks
-// the disk, being soft, leaves with more spin than a rigid one (Maw, Barber and Fawcett 1976), so it slides here. What
-// is left is the pressure, which friction moves off the middle of the contact: at 8 cells a radius 3 %, at 4 cells,
-// where it stands on two particles, 13 %.
+// B16. Friction that takes v from its speed gives it the spin v / k: it acts at a radius from the centre. Where it
+// sticks the disk, being soft, leaves with more spin than a rigid one (Maw, Barber and Fawcett 1976), so it slides
+// here. What is left is the pressure, which friction moves off the middle of the contact: at 8 cells a radius 3 %, at 4
+// cells, where it stands on two particles, 13 %.
 START_TEST(bounces_off_with_the_spin_of_its_radius) {
     for (int on = PLANE; on <= MESH; on++) {
         roll r = plain;

@@ -438,7 +438,8 @@ START_TEST(turning_the_scene_by_right_angles) {
         outcome turned = collide(2 + _i, 0.1, turn, XYZ(0, 0, 0), XYZ(0, 0, 0));
         double off = difference(&turned, &straight);
         printf("  turned by %d deg, %dD: %.1e\n", 90 * turn, 2 + _i, off);
-        // In three dimensions the distance of two bodies is found by iteration, whose path rounding decides: 5e-10 was seen.
+        // In three dimensions the distance of two bodies is found by iteration, whose path rounding decides: 5e-10 was
+        // seen.
         ck_assert_double_le(off, _i ? 1e4 * ROUNDING : sizeof(real) == sizeof(double) ? ROUNDING : 10 * ROUNDING);
     }
 }
