@@ -19,7 +19,7 @@ ORDER = [
     ["include"], ["base"], ["geometry"], ["materials"], ["grid"], ["mpm", "fem"], ["body"],
     ["contact"], ["contact/surface"], ["contact/distance"], ["contact/constraint"], ["contact/planes"],
     ["contact/search"], ["contact/methods"],
-    ["boundary"], ["world"], ["account"], ["scheme"],
+    ["boundary"], ["account"], ["world"], ["scheme"],
     ["io/file"], ["io/mesh"], ["io/scene"], ["io/output"], ["io/performance"], ["io/run"], ["io/study"], ["app"],
 ]
 RANK = {folder: rank for rank, row in enumerate(ORDER) for folder in row}

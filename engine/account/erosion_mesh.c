@@ -62,29 +62,30 @@ static int check(const brunt_body_def *def, brunt_error *error) {
 }
 
 static int find_body(const brunt_world *world, const char *name) {
-    for (int i = 0; i < world->all_count; i++)
+    for (int i = 0; i < world->bodies.count; i++)
         if (!strcmp(brunt_body_name(world, i), name)) return i;
     return -1;
 }
 
 static int make_mesh(brunt_world *world, brunt_fem_body *fem, bool by_failure, brunt_error *error) {
-    struct brunt_erosion_work *work = world->erosion_work;
-    const int k = (int)(fem - world->fems);
-    if (brunt_fem_erodes(fem, world->erosion[fem->index].inverted) || !(work->single[k] = brunt_fem_single_make(fem)))
+    struct brunt_erosion_work *work = world->erosion.work;
+    const int k = (int)(fem - world->bodies.fem);
+    if (brunt_fem_erodes(fem, world->erosion.rule[fem->index].inverted) ||
+        !(work->single[k] = brunt_fem_single_make(fem)))
         return brunt_fail(error, BRUNT_FAILED, "bodies.%s: out of memory", fem->name);
     if (by_failure) work->damage[k] = find_damage(fem);
     return BRUNT_OK;
 }
 
 static int allocate(brunt_world *world) {
-    const size_t all = (size_t)world->all_count, fems = (size_t)world->fem_count + 1;
-    struct brunt_erosion_work *work = world->erosion_work = brunt_alloc(sizeof *work);
-    world->eroded = brunt_alloc(all * sizeof *world->eroded);
-    world->erosion = brunt_alloc(all * sizeof *world->erosion);
-    if (!work || !world->eroded || !world->erosion) return -1;
+    const size_t all = (size_t)world->bodies.count, fems = (size_t)world->bodies.fem_count + 1;
+    struct brunt_erosion_work *work = world->erosion.work = brunt_alloc(sizeof *work);
+    world->erosion.account = brunt_alloc(all * sizeof *world->erosion.account);
+    world->erosion.rule = brunt_alloc(all * sizeof *world->erosion.rule);
+    if (!work || !world->erosion.account || !world->erosion.rule) return -1;
     size_t most = 1;
-    for (int k = 0; k < world->fem_count; k++)
-        most = (size_t)world->fems[k].slots > most ? (size_t)world->fems[k].slots : most;
+    for (int k = 0; k < world->bodies.fem_count; k++)
+        most = (size_t)world->bodies.fem[k].slots > most ? (size_t)world->bodies.fem[k].slots : most;
     work->single = brunt_alloc(fems * sizeof *work->single);
     work->damage = brunt_alloc(fems * sizeof *work->damage);
     work->slots = brunt_alloc(most * sizeof *work->slots);
@@ -98,22 +99,22 @@ int brunt_erosion_make(brunt_world *world, const brunt_world_def *def, brunt_err
         int status = check(body, error);
         if (status) return status;
         const int i = find_body(world, body->name);
-        const brunt_body *mpm = world->all[i].mpm; // has its part since it was made
-        const bool by_failure = !mpm && fails(&world->all[i].fem->material, &def->materials[body->material]);
+        const brunt_body *mpm = world->bodies.all[i].mpm; // has its part since it was made
+        const bool by_failure = !mpm && fails(&world->bodies.all[i].fem->material, &def->materials[body->material]);
         if (mpm ? !mpm->erodes : !by_failure && isinf(erosion->strain) && !(erosion->step > 0) && !erosion->inverted)
             continue;
-        if (!world->has_erosion && allocate(world)) return brunt_fail(error, BRUNT_FAILED, "out of memory");
-        world->has_erosion = true;
-        world->erosion[i] = *erosion;
-        if (!mpm) status = make_mesh(world, world->all[i].fem, by_failure, error);
+        if (!world->erosion.active && allocate(world)) return brunt_fail(error, BRUNT_FAILED, "out of memory");
+        world->erosion.active = true;
+        world->erosion.rule[i] = *erosion;
+        if (!mpm) status = make_mesh(world, world->bodies.all[i].fem, by_failure, error);
         if (status) return status;
     }
     return BRUNT_OK;
 }
 
 void brunt_erosion_free(brunt_world *world) {
-    struct brunt_erosion_work *work = world->erosion_work;
-    for (int k = 0; work && work->single && k < world->fem_count; k++) brunt_fem_single_free(work->single[k]);
+    struct brunt_erosion_work *work = world->erosion.work;
+    for (int k = 0; work && work->single && k < world->bodies.fem_count; k++) brunt_fem_single_free(work->single[k]);
     if (work) {
         brunt_free(work->single);
         brunt_free(work->damage);
@@ -121,12 +122,12 @@ void brunt_erosion_free(brunt_world *world) {
         brunt_free(work->corner);
     }
     brunt_free(work);
-    brunt_free(world->eroded);
-    brunt_free(world->erosion);
+    brunt_free(world->erosion.account);
+    brunt_free(world->erosion.rule);
 }
 
 void brunt_body_eroded(const brunt_world *world, int32_t body, brunt_eroded *eroded) {
-    *eroded = world->eroded ? world->eroded[body] : (brunt_eroded){0};
+    *eroded = world->erosion.account ? world->erosion.account[body] : (brunt_eroded){0};
 }
 
 // ------------------------------------------------------------------------------------------ which go
@@ -144,25 +145,25 @@ static void mark_blocks(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     const brunt_world *world = context;
     for (int64_t t = begin; t < end; t++) {
-        const brunt_fem_task *task = &world->element_tasks[t];
-        brunt_fem_body *fem = &world->fems[task->fem];
+        const brunt_fem_task *task = &world->bodies.tasks.element[t];
+        brunt_fem_body *fem = &world->bodies.fem[task->fem];
         if (!fem->bonds || !fem->block[task->begin].count) continue;
-        const real *damage = world->erosion_work->damage[task->fem];
+        const real *damage = world->erosion.work->damage[task->fem];
         if (damage && fem->report[task->begin].failed) mark_failed(fem, task->begin, damage);
-        const double limit = world->erosion[fem->index].strain;
+        const double limit = world->erosion.rule[fem->index].strain;
         if (isfinite(limit)) brunt_fem_mark_strained(fem, task->begin, limit);
     }
 }
 
 // Elements below the least step of a block that has such.
 static void mark_short(brunt_world *world, int k, int32_t b) {
-    brunt_fem_body *fem = &world->fems[k];
-    const double least = world->erosion[fem->index].step;
+    brunt_fem_body *fem = &world->bodies.fem[k];
+    const double least = world->erosion.rule[fem->index].step;
     const brunt_fem_block *block = &fem->block[b];
     for (int32_t s = block->first; s < block->first + block->count; s++) {
         if (fem->mark[s] != BRUNT_MARK_NONE) continue;
         brunt_fem_share share =
-            brunt_fem_single_look(world->erosion_work->single[k], fem, s, 0, 0, &world->fem_work[0]);
+            brunt_fem_single_look(world->erosion.work->single[k], fem, s, 0, 0, &world->scratch.meshes[0]);
         if (!(share.stable_step < least)) continue;
         fem->mark[s] = BRUNT_MARK_SHORT;
         fem->report[b].marked++;
@@ -170,12 +171,12 @@ static void mark_short(brunt_world *world, int k, int32_t b) {
 }
 
 static int32_t list_marked(brunt_world *world, int k) {
-    brunt_fem_body *fem = &world->fems[k];
+    brunt_fem_body *fem = &world->bodies.fem[k];
     int32_t count = 0;
     for (int32_t b = 0; b < fem->block_count; b++) {
         const brunt_fem_block *block = &fem->block[b];
         for (int32_t s = block->first; fem->report[b].marked && s < block->first + block->count; s++)
-            if (fem->mark[s] != BRUNT_MARK_NONE) world->erosion_work->slots[count++] = s;
+            if (fem->mark[s] != BRUNT_MARK_NONE) world->erosion.work->slots[count++] = s;
     }
     return count;
 }
@@ -183,19 +184,19 @@ static int32_t list_marked(brunt_world *world, int k) {
 // ------------------------------------------------------------------------------------------ what goes with them
 
 static void book_elements(brunt_world *world, int k, int32_t count, double dt) {
-    brunt_fem_body *fem = &world->fems[k];
-    brunt_eroded *account = &world->eroded[fem->index];
+    brunt_fem_body *fem = &world->bodies.fem[k];
+    brunt_eroded *account = &world->erosion.account[fem->index];
     for (int32_t i = 0; i < count; i++) {
-        const int32_t slot = world->erosion_work->slots[i];
+        const int32_t slot = world->erosion.work->slots[i];
         const uint8_t mark = fem->mark[slot];
         const bool turned = mark == BRUNT_MARK_INVERTED;
-        brunt_fem_share share =
-            brunt_fem_single_look(world->erosion_work->single[k], fem, slot, turned ? dt : 0, dt, &world->fem_work[0]);
+        brunt_fem_share share = brunt_fem_single_look(world->erosion.work->single[k], fem, slot, turned ? dt : 0, dt,
+                                                      &world->scratch.meshes[0]);
         account->energy +=
             share.energy.internal + share.hourglass_stored + (turned ? share.half_work : -share.half_work);
-        world->now.eroded_plastic += share.energy.plastic;
-        world->now.eroded_viscosity += share.energy.viscosity;
-        world->now.eroded_heat += share.energy.heat;
+        world->ledger.eroded_plastic += share.energy.plastic;
+        world->ledger.eroded_viscosity += share.energy.viscosity;
+        world->ledger.eroded_heat += share.energy.heat;
         account->elements++;
         account->inverted += turned;
         account->failed += mark == BRUNT_MARK_FAILED;
@@ -206,7 +207,7 @@ static void book_elements(brunt_world *world, int k, int32_t count, double dt) {
 }
 
 static void book_node(brunt_world *world, brunt_fem_body *fem, int32_t n) {
-    brunt_eroded *account = &world->eroded[fem->index];
+    brunt_eroded *account = &world->erosion.account[fem->index];
     real *node = brunt_fem_node(fem, n);
     const double mass = (double)node[BRUNT_FEM_MASS];
     double x[3], p[3], kinetic = 0;
@@ -216,15 +217,15 @@ static void book_node(brunt_world *world, brunt_fem_body *fem, int32_t n) {
         kinetic += 0.5 * mass * v * v;
         node[BRUNT_FEM_V + a] = 0;
     }
-    if (world->axisymmetric) p[0] = 0; // of a whole ring
+    if (world->settings.axisymmetric) p[0] = 0; // of a whole ring
     for (int a = 0; a < 3; a++) {
         const int b = (a + 1) % 3, c = (a + 2) % 3;
         account->momentum[a] += p[a];
-        if (!world->axisymmetric) account->angular[a] += x[b] * p[c] - x[c] * p[b];
+        if (!world->settings.axisymmetric) account->angular[a] += x[b] * p[c] - x[c] * p[b];
     }
     account->mass += mass;
     account->energy += kinetic;
-    world->now.fem_kinetic -= kinetic;
+    world->ledger.fem_kinetic -= kinetic;
     node[BRUNT_FEM_MASS] = (real)BRUNT_FEM_NO_MASS;
 }
 
@@ -235,7 +236,7 @@ static int ascending(const void *left, const void *right) {
 
 // Nodes of the elements that go, each once, ascending. Their count, or -1: out of memory.
 static int32_t list_corners(brunt_world *world, const brunt_fem_body *fem, int32_t count) {
-    struct brunt_erosion_work *work = world->erosion_work;
+    struct brunt_erosion_work *work = world->erosion.work;
     const int nodes = fem->element->nodes;
     const size_t bytes = (size_t)count * (size_t)nodes * sizeof *work->corner;
     if (brunt_reserve((void **)&work->corner, &work->corner_capacity, bytes, 0)) return -1;
@@ -254,9 +255,9 @@ static int gas_escapes(brunt_world *world, const brunt_fem_body *fem, const brun
     brunt_fail(error, BRUNT_FAILED,
                "boundaries (%s): the envelope of the gas has lost element %d of body '%s', time %.9g s, step %.0f: "
                "gas does not flow out through holes",
-               world->walls[hold->wall].name, element + 1, fem->name, world->now.time, world->now.steps);
+               world->boundaries.walls[hold->wall].name, element + 1, fem->name, world->clock.time, world->clock.steps);
     if (error) {
-        error->time = world->now.time;
+        error->time = world->clock.time;
         error->id = element;
         memcpy(error->body, fem->name, sizeof error->body < sizeof fem->name ? sizeof error->body : sizeof fem->name);
     }
@@ -264,16 +265,16 @@ static int gas_escapes(brunt_world *world, const brunt_fem_body *fem, const brun
 }
 
 static int erode(brunt_world *world, int k, int32_t count, double dt, brunt_error *error) {
-    brunt_fem_body *fem = &world->fems[k];
-    struct brunt_erosion_work *work = world->erosion_work;
+    brunt_fem_body *fem = &world->bodies.fem[k];
+    struct brunt_erosion_work *work = world->erosion.work;
     const int32_t corners = list_corners(world, fem, count);
     if (corners < 0) return brunt_fail(error, BRUNT_FAILED, "bodies.%s: out of memory", fem->name);
     book_elements(world, k, count, dt);
-    brunt_fem_remove(fem, work->slots, count, &world->fem_work[0]);
+    brunt_fem_remove(fem, work->slots, count, &world->scratch.meshes[0]);
     for (int32_t i = 0; i < corners; i++) {
         if (fem->bonds[work->corner[i]]) continue;
-        world->eroded[fem->index].nodes++;
-        if (!world->erosion[fem->index].keep) book_node(world, fem, work->corner[i]);
+        world->erosion.account[fem->index].nodes++;
+        if (!world->erosion.rule[fem->index].keep) book_node(world, fem, work->corner[i]);
     }
     int32_t element;
     const brunt_node_set *gas = brunt_node_sets_follow(world, k, &element);
@@ -283,22 +284,22 @@ static int erode(brunt_world *world, int k, int32_t count, double dt, brunt_erro
 // The half steps of the ledger, of what is left.
 static void renew_sums(brunt_world *world, double dt) {
     double work = 0, stored = 0;
-    for (int k = 0; k < world->fem_count; k++)
-        for (int32_t b = 0; b < world->fems[k].block_count; b++) {
-            brunt_fem_report *report = &world->fems[k].report[b];
-            if (report->marked) report->stress_work = brunt_fem_stress_work(&world->fems[k], b, dt);
+    for (int k = 0; k < world->bodies.fem_count; k++)
+        for (int32_t b = 0; b < world->bodies.fem[k].block_count; b++) {
+            brunt_fem_report *report = &world->bodies.fem[k].report[b];
+            if (report->marked) report->stress_work = brunt_fem_stress_work(&world->bodies.fem[k], b, dt);
             report->marked = 0;
             work += report->stress_work;
             stored += report->hourglass_stored;
         }
-    world->now.fem_stress_work = work;
-    world->now.hourglass_stored = stored;
+    world->ledger.fem_stress_work = work;
+    world->ledger.hourglass_stored = stored;
 }
 
 int brunt_erode_marked(brunt_world *world, double dt, brunt_error *error) {
     bool any = false;
-    for (int k = 0; k < world->fem_count; k++) {
-        const int32_t count = world->fems[k].bonds ? list_marked(world, k) : 0;
+    for (int k = 0; k < world->bodies.fem_count; k++) {
+        const int32_t count = world->bodies.fem[k].bonds ? list_marked(world, k) : 0;
         if (!count) continue;
         any = true;
         int status = erode(world, k, count, dt, error);
@@ -306,15 +307,15 @@ int brunt_erode_marked(brunt_world *world, double dt, brunt_error *error) {
     }
     if (!any) return BRUNT_OK;
     renew_sums(world, dt);
-    return world->has_surfaces ? brunt_surfaces_renew(world, error) : BRUNT_OK;
+    return world->contact.has_surfaces ? brunt_surfaces_renew(world, error) : BRUNT_OK;
 }
 
 int brunt_erode_meshes(brunt_world *world, double dt, brunt_error *error) {
-    brunt_parallel(world->threads, world->element_task_count, 1, mark_blocks, world,
+    brunt_parallel(world->settings.threads, world->bodies.tasks.element_count, 1, mark_blocks, world,
                    &world->pass[BRUNT_PASS_erosion].threads);
-    for (int k = 0; k < world->fem_count; k++) {
-        const brunt_fem_body *fem = &world->fems[k];
-        const double least = fem->bonds ? world->erosion[fem->index].step : 0;
+    for (int k = 0; k < world->bodies.fem_count; k++) {
+        const brunt_fem_body *fem = &world->bodies.fem[k];
+        const double least = fem->bonds ? world->erosion.rule[fem->index].step : 0;
         for (int32_t b = 0; least > 0 && b < fem->block_count; b++)
             if (fem->block[b].count && fem->report[b].stable_step < least) mark_short(world, k, b);
     }
@@ -326,12 +327,12 @@ int brunt_erode_meshes(brunt_world *world, double dt, brunt_error *error) {
 enum { ACCOUNT_DOUBLES = 15 };
 
 int64_t brunt_erosion_state_count(const brunt_world *world) {
-    return world->has_erosion ? (int64_t)world->all_count * ACCOUNT_DOUBLES : 0;
+    return world->erosion.active ? (int64_t)world->bodies.count * ACCOUNT_DOUBLES : 0;
 }
 
 void brunt_erosion_state_get(const brunt_world *world, double *out) {
-    for (int i = 0; i < world->all_count; i++) {
-        const brunt_eroded *e = &world->eroded[i];
+    for (int i = 0; i < world->bodies.count; i++) {
+        const brunt_eroded *e = &world->erosion.account[i];
         const double counts[] = {(double)e->elements, (double)e->particles,  (double)e->nodes,   (double)e->failed,
                                  (double)e->strained, (double)e->short_step, (double)e->inverted};
         for (int c = 0; c < 7; c++) *out++ = counts[c];
@@ -341,8 +342,8 @@ void brunt_erosion_state_get(const brunt_world *world, double *out) {
 }
 
 void brunt_erosion_state_set(brunt_world *world, const double *in) {
-    for (int i = 0; i < world->all_count; i++) {
-        brunt_eroded *e = &world->eroded[i];
+    for (int i = 0; i < world->bodies.count; i++) {
+        brunt_eroded *e = &world->erosion.account[i];
         int64_t *const counts[] = {&e->elements, &e->particles,  &e->nodes,   &e->failed,
                                    &e->strained, &e->short_step, &e->inverted};
         for (int c = 0; c < 7; c++) *counts[c] = (int64_t)*in++;

@@ -124,7 +124,7 @@ static void book_loss(brunt_world *world, brunt_body *body, const int64_t *slots
     brunt_audit lost = brunt_slots_audit(body, slots, count);
     account->mass += lost.mass;
     account->energy += lost.kinetic;
-    world->now.kinetic -= lost.kinetic;
+    world->ledger.kinetic -= lost.kinetic;
     for (int k = 0; k < 3; k++) account->momentum[k] += lost.linear[k], account->angular[k] += lost.angular[k];
 }
 
@@ -145,26 +145,26 @@ static void take_out(brunt_body *body, const int64_t *slots, int64_t count) {
 }
 
 static void erode(brunt_world *world, brunt_body *body) {
-    job j = {body, body->fails ? find_damage(body) : NULL, world->erosion[body->index].strain};
+    job j = {body, body->fails ? find_damage(body) : NULL, world->erosion.rule[body->index].strain};
     int64_t *slots = body->particles.spare_id; // free until the next sort
-    brunt_eroded *account = &world->eroded[body->index];
-    brunt_parallel(world->threads, body->grid.block_count, BLOCK_GRAIN, mark_blocks, &j,
+    brunt_eroded *account = &world->erosion.account[body->index];
+    brunt_parallel(world->settings.threads, body->grid.block_count, BLOCK_GRAIN, mark_blocks, &j,
                    &world->pass[BRUNT_PASS_erosion].threads);
     const int64_t count = list_leaving(body, slots, account);
     if (!count) return;
     brunt_point_energy energy = energy_of(body, slots, count);
     account->particles += count;
     account->energy += energy.internal;
-    world->now.eroded_plastic += energy.plastic;
-    world->now.eroded_viscosity += energy.viscosity;
-    world->now.eroded_heat += energy.heat;
+    world->ledger.eroded_plastic += energy.plastic;
+    world->ledger.eroded_viscosity += energy.viscosity;
+    world->ledger.eroded_heat += energy.heat;
     if (!body->keeps) book_loss(world, body, slots, count, account);
     take_out(body, slots, count);
 }
 
 int brunt_erode_particles(brunt_world *world, double dt, brunt_error *error) {
     (void)dt, (void)error;
-    for (int i = 0; i < world->body_count; i++)
-        if (world->bodies[i].erodes) erode(world, &world->bodies[i]);
+    for (int i = 0; i < world->bodies.mpm_count; i++)
+        if (world->bodies.mpm[i].erodes) erode(world, &world->bodies.mpm[i]);
     return BRUNT_OK;
 }

@@ -12,17 +12,17 @@ static const double REAL_EPSILON = sizeof(real) == sizeof(float) ? FLT_EPSILON :
 // What the run has been given by now [J]: the energy at the start, with the work done on it, and that work itself, each
 // cause by its amount, since what one wall puts in another may take out.
 static double given_energy(const brunt_world *world) {
-    double work = world->now.gravity_work, turned_over = fabs(work);
-    for (int w = 0; w < world->wall_count; w++) {
-        work += world->walls[w].action.external_work;
-        turned_over += fabs(world->walls[w].action.external_work);
+    double work = world->ledger.gravity_work, turned_over = fabs(work);
+    for (int w = 0; w < world->boundaries.wall_count; w++) {
+        work += world->boundaries.walls[w].action.external_work;
+        turned_over += fabs(world->boundaries.walls[w].action.external_work);
     }
-    const double initial = world->now.initial_energy;
+    const double initial = world->ledger.initial_energy;
     return fmax(fmax(fabs(initial), fabs(initial + work)), turned_over);
 }
 
 void brunt_ledger_remember(brunt_world *world) {
-    world->now.energy_scale = fmax(world->now.energy_scale, given_energy(world));
+    world->ledger.energy_scale = fmax(world->ledger.energy_scale, given_energy(world));
 }
 
 static void bound_body(const brunt_world *world, const brunt_body_ref *body, brunt_body_sums *sums);
@@ -31,12 +31,13 @@ static void bound_body(const brunt_world *world, const brunt_body_ref *body, bru
 // up now down: m c^2 (10 eps |x| / h)^2 for each step.
 double brunt_rounding_energy(brunt_world *world) {
     double energy = 0;
-    for (int i = 0; i < world->all_count; i++) {
-        const brunt_body_ref *body = &world->all[i];
+    for (int i = 0; i < world->bodies.count; i++) {
+        const brunt_body_ref *body = &world->bodies.all[i];
         brunt_body_sums sums;
         double far = 0;
         bound_body(world, body, &sums);
-        for (int a = 0; a < world->dimension; a++) far = fmax(far, fmax(fabs(sums.low[a]), fabs(sums.high[a])));
+        for (int a = 0; a < world->settings.dimension; a++)
+            far = fmax(far, fmax(fabs(sums.low[a]), fabs(sums.high[a])));
         const double mass = body->fem ? brunt_fem_audit(body->fem).mass : brunt_body_audit(body->mpm).mass;
         const double size = body->fem ? body->fem->mean_edge : body->mpm->spacing;
         const brunt_material *material = body->fem ? &body->fem->material : &body->mpm->material;
@@ -47,23 +48,23 @@ double brunt_rounding_energy(brunt_world *world) {
 }
 
 void brunt_world_energy(brunt_world *world, brunt_energy *energy) {
-    const struct brunt_clock *now = &world->now;
+    const brunt_ledger *now = &world->ledger;
     // Velocities are those of the middle of the last step, stress that of its end: what it does to them in that half
     // step is booked with the transfer.
     *energy = (brunt_energy){.kinetic = now->kinetic + now->fem_kinetic,
                              .initial = now->initial_energy,
                              .transfer = now->transfer - 0.5 * (now->stress_work + now->fem_stress_work),
                              .external_work = now->gravity_work};
-    for (int i = 0; i < world->body_count; i++) {
-        brunt_point_energy e = brunt_body_energy(&world->bodies[i]);
+    for (int i = 0; i < world->bodies.mpm_count; i++) {
+        brunt_point_energy e = brunt_body_energy(&world->bodies.mpm[i]);
         energy->internal += e.internal;
         energy->plastic += e.plastic;
         energy->viscosity += e.viscosity;
         energy->heat += e.heat;
     }
     energy->hourglass = now->hourglass_stored + now->hourglass_lost;
-    for (int k = 0; k < world->fem_count; k++) {
-        brunt_point_energy e = brunt_fem_energy(&world->fems[k]);
+    for (int k = 0; k < world->bodies.fem_count; k++) {
+        brunt_point_energy e = brunt_fem_energy(&world->bodies.fem[k]);
         energy->internal += e.internal;
         energy->plastic += e.plastic;
         energy->viscosity += e.viscosity;
@@ -72,15 +73,16 @@ void brunt_world_energy(brunt_world *world, brunt_energy *energy) {
     energy->viscosity += now->damped + now->eroded_viscosity;
     energy->plastic += now->eroded_plastic;
     energy->heat += now->eroded_heat;
-    for (int i = 0; i < world->all_count && world->has_erosion; i++) energy->eroded += world->eroded[i].energy;
-    for (int w = 0; w < world->wall_count; w++) {
-        energy->contact += world->walls[w].action.normal_loss;
-        energy->friction += world->walls[w].action.friction_loss;
-        energy->external_work += world->walls[w].action.external_work;
+    for (int i = 0; i < world->bodies.count && world->erosion.active; i++)
+        energy->eroded += world->erosion.account[i].energy;
+    for (int w = 0; w < world->boundaries.wall_count; w++) {
+        energy->contact += world->boundaries.walls[w].action.normal_loss;
+        energy->friction += world->boundaries.walls[w].action.friction_loss;
+        energy->external_work += world->boundaries.walls[w].action.external_work;
     }
-    for (int p = 0; p < world->pair_count; p++) {
-        energy->contact += world->pairs[p].action.normal_loss;
-        energy->friction += world->pairs[p].action.friction_loss;
+    for (int p = 0; p < world->pairs.count; p++) {
+        energy->contact += world->pairs.pair[p].action.normal_loss;
+        energy->friction += world->pairs.pair[p].action.friction_loss;
     }
     energy->total = energy->kinetic + energy->internal + energy->plastic + energy->hourglass + energy->contact +
                     energy->friction + energy->viscosity + energy->transfer + energy->eroded;
@@ -92,13 +94,13 @@ void brunt_world_energy(brunt_world *world, brunt_energy *energy) {
     const double given = fmax(now->energy_scale, given_energy(world));
     const double has = energy->kinetic + fabs(energy->internal);
     const double scale = fmax(given, given > 0 ? fmin(has, MOST_GROWTH * given) : has);
-    energy->reference = fmax(scale, world->rounding_energy * fmax(now->steps, 1));
+    energy->reference = fmax(scale, world->ledger.rounding_energy * fmax(world->clock.steps, 1));
     energy->error_relative = energy->reference > 0 ? energy->error / energy->reference : 0;
 }
 
 // The paper's form of augury parks angular momentum in the affine velocity of boundary nodes.
 static void add_contact_spin(const brunt_world *world, double angular[3]) {
-    const brunt_contact_surface *s = &world->skin;
+    const brunt_contact_surface *s = &world->contact.surface;
     for (int32_t n = 0; s->affine && n < s->node_count; n++)
         for (int k = 0; k < 3; k++) {
             int i = (k + 1) % 3, j = (k + 2) % 3;
@@ -114,17 +116,17 @@ static void keep_axial(int component, brunt_momentum *momentum) {
 }
 
 void brunt_world_momentum(brunt_world *world, brunt_momentum *momentum) {
-    const struct brunt_clock *now = &world->now;
+    const brunt_ledger *now = &world->ledger;
     memset(momentum, 0, sizeof *momentum);
     double linear_scale = now->scale_linear, angular_scale = now->scale_angular, linear_here = 0, angular_here = 0;
-    for (int i = 0; i < world->body_count; i++) {
-        brunt_audit a = brunt_body_audit(&world->bodies[i]);
+    for (int i = 0; i < world->bodies.mpm_count; i++) {
+        brunt_audit a = brunt_body_audit(&world->bodies.mpm[i]);
         for (int k = 0; k < 3; k++) momentum->linear[k] += a.linear[k], momentum->angular[k] += a.angular[k];
         linear_here += a.scale_linear;
         angular_here += a.scale_angular;
     }
-    for (int i = 0; i < world->fem_count; i++) {
-        brunt_fem_sums a = brunt_fem_audit(&world->fems[i]);
+    for (int i = 0; i < world->bodies.fem_count; i++) {
+        brunt_fem_sums a = brunt_fem_audit(&world->bodies.fem[i]);
         for (int k = 0; k < 3; k++) momentum->linear[k] += a.momentum[k], momentum->angular[k] += a.angular[k];
         linear_here += a.scale_linear;
         angular_here += a.scale_angular;
@@ -139,16 +141,16 @@ void brunt_world_momentum(brunt_world *world, brunt_momentum *momentum) {
         momentum->angular_impulse[k] = now->gravity_angular[k] + now->damping_angular[k];
         impulse += fabs(now->gravity_impulse[k]) + fabs(now->damping_impulse[k]);
         turn += fabs(now->gravity_angular[k]) + fabs(now->damping_angular[k]);
-        for (int w = 0; w < world->wall_count; w++) {
-            const brunt_impulse_account *action = &world->walls[w].action;
+        for (int w = 0; w < world->boundaries.wall_count; w++) {
+            const brunt_impulse_account *action = &world->boundaries.walls[w].action;
             momentum->linear_impulse[k] += action->impulse[k];
             momentum->angular_impulse[k] += action->angular[k];
             impulse += fabs(action->impulse[k]);
             turn += fabs(action->angular[k]);
         }
-        if (world->axisymmetric) keep_axial(k, momentum);
-        for (int i = 0; i < world->all_count && world->has_erosion; i++) {
-            const brunt_eroded *eroded = &world->eroded[i];
+        if (world->settings.axisymmetric) keep_axial(k, momentum);
+        for (int i = 0; i < world->bodies.count && world->erosion.active; i++) {
+            const brunt_eroded *eroded = &world->erosion.account[i];
             momentum->linear_impulse[k] -= eroded->momentum[k];
             momentum->angular_impulse[k] -= eroded->angular[k];
             impulse += fabs(eroded->momentum[k]);
@@ -170,7 +172,7 @@ static void bound(const double x[3], brunt_body_sums *sums) {
 
 static void bound_body(const brunt_world *world, const brunt_body_ref *body, brunt_body_sums *sums) {
     for (int a = 0; a < 3; a++) {
-        bool there = a < world->dimension;
+        bool there = a < world->settings.dimension;
         sums->low[a] = there ? INFINITY : 0, sums->high[a] = there ? -INFINITY : 0;
     }
     for (int32_t n = 0; body->fem && n < body->fem->node_count; n++) {
@@ -181,12 +183,13 @@ static void bound_body(const brunt_world *world, const brunt_body_ref *body, bru
     for (int64_t s = 0; body->mpm && s < body->mpm->particles.slots; s++) {
         real *const *x = brunt_field(&body->mpm->particles, BRUNT_FIELD_position);
         if (body->mpm->particles.id[s] < 0) continue; // padding, or left in the last step
-        bound((const double[3]){(double)x[0][s], (double)x[1][s], world->dimension == 3 ? (double)x[2][s] : 0}, sums);
+        bound((const double[3]){(double)x[0][s], (double)x[1][s], world->settings.dimension == 3 ? (double)x[2][s] : 0},
+              sums);
     }
 }
 
 void brunt_body_totals(brunt_world *world, int32_t index, brunt_body_sums *sums) {
-    const brunt_body_ref body = world->all[index];
+    const brunt_body_ref body = world->bodies.all[index];
     if (body.fem) {
         brunt_fem_sums a = brunt_fem_audit(body.fem);
         brunt_point_energy e = brunt_fem_energy(body.fem);
@@ -196,7 +199,7 @@ void brunt_body_totals(brunt_world *world, int32_t index, brunt_body_sums *sums)
             sums->centre[k] = a.first_moment[k] / a.mass;
             sums->velocity[k] = a.momentum[k] / a.mass;
         }
-        bound_body(world, &world->all[index], sums);
+        bound_body(world, &world->bodies.all[index], sums);
         return;
     }
     brunt_audit a = brunt_body_audit(body.mpm);
@@ -207,7 +210,7 @@ void brunt_body_totals(brunt_world *world, int32_t index, brunt_body_sums *sums)
         sums->centre[k] = a.centre[k];
         sums->velocity[k] = a.mass > 0 ? a.linear[k] / a.mass : 0;
     }
-    bound_body(world, &world->all[index], sums);
+    bound_body(world, &world->bodies.all[index], sums);
 }
 
 static void fill_force(const brunt_impulse_account *last, const brunt_impulse_account *all, double kick,
@@ -221,60 +224,66 @@ static void fill_force(const brunt_impulse_account *last, const brunt_impulse_ac
     force->area = last->area;
 }
 
-int32_t brunt_pair_count(const brunt_world *world) { return world->pair_count; }
+int32_t brunt_pair_count(const brunt_world *world) { return world->pairs.count; }
 void brunt_pair_force(const brunt_world *world, int32_t index, brunt_force *force) {
-    const brunt_pair *pair = &world->pairs[index];
+    const brunt_pair *pair = &world->pairs.pair[index];
     if (pair->a < 0)
         snprintf(force->name, sizeof force->name, index ? "all%d" : "all", index + 1);
     else
         snprintf(force->name, sizeof force->name, "%s-%s", brunt_body_name(world, pair->a),
                  brunt_body_name(world, pair->b));
-    fill_force(&pair->last, &pair->action, world->now.kick, force);
+    fill_force(&pair->last, &pair->action, world->clock.kick, force);
 }
-int32_t brunt_wall_count(const brunt_world *world) { return world->wall_count; }
+int32_t brunt_wall_count(const brunt_world *world) { return world->boundaries.wall_count; }
 void brunt_wall_force(const brunt_world *world, int32_t index, brunt_force *force) {
-    const brunt_wall *wall = &world->walls[index];
+    const brunt_wall *wall = &world->boundaries.walls[index];
     snprintf(force->name, sizeof force->name, "%s", wall->name);
-    fill_force(&wall->last, &wall->action, world->now.kick, force);
+    fill_force(&wall->last, &wall->action, world->clock.kick, force);
 }
 
-double brunt_world_time(const brunt_world *world) { return world->now.time; }
-double brunt_world_end(const brunt_world *world) { return world->end; }
-int64_t brunt_world_steps(const brunt_world *world) { return (int64_t)world->now.steps; }
-double brunt_world_dt(const brunt_world *world) { return world->now.dt; }
-double brunt_world_dt_min(const brunt_world *world) { return world->now.steps > 0 ? world->now.dt_min : world->now.dt; }
-double brunt_world_dt_max(const brunt_world *world) { return world->now.steps > 0 ? world->now.dt_max : world->now.dt; }
-int brunt_world_dimension(const brunt_world *world) { return world->dimension; }
-int brunt_world_threads(const brunt_world *world) { return world->threads; }
+double brunt_world_time(const brunt_world *world) { return world->clock.time; }
+double brunt_world_end(const brunt_world *world) { return world->settings.end; }
+int64_t brunt_world_steps(const brunt_world *world) { return (int64_t)world->clock.steps; }
+double brunt_world_dt(const brunt_world *world) { return world->clock.dt; }
+double brunt_world_dt_min(const brunt_world *world) {
+    return world->clock.steps > 0 ? world->clock.dt_min : world->clock.dt;
+}
+double brunt_world_dt_max(const brunt_world *world) {
+    return world->clock.steps > 0 ? world->clock.dt_max : world->clock.dt;
+}
+int brunt_world_dimension(const brunt_world *world) { return world->settings.dimension; }
+int brunt_world_threads(const brunt_world *world) { return world->settings.threads; }
 int64_t brunt_world_particles(const brunt_world *world) {
     int64_t n = 0;
-    for (int i = 0; i < world->body_count; i++) n += world->bodies[i].particles.count;
+    for (int i = 0; i < world->bodies.mpm_count; i++) n += world->bodies.mpm[i].particles.count;
     return n;
 }
 int64_t brunt_world_nodes(const brunt_world *world) {
     int64_t n = 0;
-    for (int i = 0; i < world->body_count; i++) n += (int64_t)world->bodies[i].grid.slot_count * BRUNT_BLOCK_NODES;
-    for (int i = 0; i < world->fem_count; i++) n += world->fems[i].node_count;
+    for (int i = 0; i < world->bodies.mpm_count; i++)
+        n += (int64_t)world->bodies.mpm[i].grid.slot_count * BRUNT_BLOCK_NODES;
+    for (int i = 0; i < world->bodies.fem_count; i++) n += world->bodies.fem[i].node_count;
     return n;
 }
 int64_t brunt_world_elements(const brunt_world *world) {
     int64_t n = 0;
-    for (int i = 0; i < world->fem_count; i++) n += world->fems[i].element_count;
+    for (int i = 0; i < world->bodies.fem_count; i++) n += world->bodies.fem[i].element_count;
     return n;
 }
-int32_t brunt_body_count(const brunt_world *world) { return world->all_count; }
+int32_t brunt_body_count(const brunt_world *world) { return world->bodies.count; }
 const char *brunt_body_name(const brunt_world *world, int32_t body) {
-    return world->all[body].fem ? world->all[body].fem->name : world->all[body].mpm->name;
+    return world->bodies.all[body].fem ? world->bodies.all[body].fem->name : world->bodies.all[body].mpm->name;
 }
 const char *brunt_body_material(const brunt_world *world, int32_t body) {
-    return world->all[body].fem ? world->all[body].fem->material.name : world->all[body].mpm->material.name;
+    return world->bodies.all[body].fem ? world->bodies.all[body].fem->material.name
+                                       : world->bodies.all[body].mpm->material.name;
 }
 brunt_method brunt_body_method(const brunt_world *world, int32_t body) {
-    const brunt_fem_body *fem = world->all[body].fem;
+    const brunt_fem_body *fem = world->bodies.all[body].fem;
     return !fem ? BRUNT_MPM : fem->element->sheet ? BRUNT_MEMBRANE : BRUNT_FEM;
 }
 int64_t brunt_body_size(const brunt_world *world, int32_t body, brunt_place at) {
-    const brunt_body_ref ref = world->all[body];
+    const brunt_body_ref ref = world->bodies.all[body];
     if (ref.mpm) return at == BRUNT_AT_PARTICLES ? ref.mpm->particles.count : 0;
     return at == BRUNT_AT_NODES ? ref.fem->node_count : at == BRUNT_AT_ELEMENTS ? ref.fem->element_count : 0;
 }
@@ -287,7 +296,9 @@ int64_t brunt_body_nodes(const brunt_world *world, int32_t body) {
 int64_t brunt_body_elements(const brunt_world *world, int32_t body) {
     return brunt_body_size(world, body, BRUNT_AT_ELEMENTS);
 }
-brunt_element_kind brunt_body_element(const brunt_world *world, int32_t body) { return world->all[body].fem->kind; }
+brunt_element_kind brunt_body_element(const brunt_world *world, int32_t body) {
+    return world->bodies.all[body].fem->kind;
+}
 void brunt_body_mesh(const brunt_world *world, int32_t body, brunt_mesh_report *report) {
-    *report = world->mesh_reports[world->all[body].fem - world->fems];
+    *report = world->bodies.mesh_reports[world->bodies.all[body].fem - world->bodies.fem];
 }

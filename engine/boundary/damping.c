@@ -21,32 +21,36 @@ typedef struct job {
 } job;
 
 int brunt_damping_make(brunt_world *world, brunt_error *error) {
-    world->drag = brunt_alloc((size_t)(world->fem_count + 1) * sizeof *world->drag);
-    if (!world->drag) return brunt_fail(error, BRUNT_FAILED, "out of memory");
-    for (int k = 0; k < world->fem_count; k++) {
-        brunt_fem_body *fem = &world->fems[k];
+    world->boundaries.damping.drag =
+        brunt_alloc((size_t)(world->bodies.fem_count + 1) * sizeof *world->boundaries.damping.drag);
+    if (!world->boundaries.damping.drag) return brunt_fail(error, BRUNT_FAILED, "out of memory");
+    for (int k = 0; k < world->bodies.fem_count; k++) {
+        brunt_fem_body *fem = &world->bodies.fem[k];
         if (!(fem->damping > 0)) continue;
-        world->has_damping = true;
+        world->boundaries.damping.active = true;
         size_t bytes = (size_t)(fem->node_count + 1) * 4 * sizeof(real);
-        if (!(world->drag[k] = brunt_alloc(bytes)) || (!fem->load && !(fem->load = brunt_alloc(bytes))))
+        if (!(world->boundaries.damping.drag[k] = brunt_alloc(bytes)) ||
+            (!fem->load && !(fem->load = brunt_alloc(bytes))))
             return brunt_fail(error, BRUNT_FAILED, "bodies.%s: out of memory", fem->name);
     }
-    if (!world->has_damping) return BRUNT_OK;
-    world->damping_sums = brunt_alloc((size_t)(world->node_task_count + 1) * sizeof *world->damping_sums);
-    return world->damping_sums ? BRUNT_OK : brunt_fail(error, BRUNT_FAILED, "out of memory");
+    if (!world->boundaries.damping.active) return BRUNT_OK;
+    world->boundaries.damping.sums =
+        brunt_alloc((size_t)(world->bodies.tasks.node_count + 1) * sizeof *world->boundaries.damping.sums);
+    return world->boundaries.damping.sums ? BRUNT_OK : brunt_fail(error, BRUNT_FAILED, "out of memory");
 }
 
 void brunt_damping_free(brunt_world *world) {
-    for (int k = 0; world->drag && k < world->fem_count; k++) brunt_free(world->drag[k]);
-    brunt_free(world->drag);
-    brunt_free(world->damping_sums);
+    for (int k = 0; world->boundaries.damping.drag && k < world->bodies.fem_count; k++)
+        brunt_free(world->boundaries.damping.drag[k]);
+    brunt_free(world->boundaries.damping.drag);
+    brunt_free(world->boundaries.damping.sums);
 }
 
 // The drag on what is known of the force, as a load; the velocities from before it are kept.
 static void drag_nodes(const job *j, const brunt_fem_task *task) {
-    const brunt_fem_body *fem = &j->world->fems[task->fem];
+    const brunt_fem_body *fem = &j->world->bodies.fem[task->fem];
     const double loss = -expm1(-fem->damping * j->dt) / j->dt, share = 1 - 1 / fem->drag_mass;
-    real *kept = j->world->drag[task->fem];
+    real *kept = j->world->boundaries.damping.drag[task->fem];
     for (int32_t n = task->begin; kept && n < task->end; n++) {
         const real *node = brunt_fem_node(fem, n);
         const double mass = (double)node[BRUNT_FEM_MASS];
@@ -63,9 +67,9 @@ static void drag_nodes(const job *j, const brunt_fem_task *task) {
 
 // What the drag of the kick did.
 static void book_nodes(const job *j, const brunt_fem_task *task, brunt_damping_sums *sums) {
-    const brunt_fem_body *fem = &j->world->fems[task->fem];
+    const brunt_fem_body *fem = &j->world->bodies.fem[task->fem];
     const double left = exp(-fem->damping * j->dt);
-    const real *kept = j->world->drag[task->fem];
+    const real *kept = j->world->boundaries.damping.drag[task->fem];
     memset(sums, 0, sizeof *sums);
     for (int32_t n = task->begin; kept && n < task->end; n++) {
         const real *node = brunt_fem_node(fem, n);
@@ -86,31 +90,34 @@ static void book_nodes(const job *j, const brunt_fem_task *task, brunt_damping_s
 static void drag_tasks(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     const job *j = context;
-    for (int64_t t = begin; t < end; t++) drag_nodes(j, &j->world->node_tasks[t]);
+    for (int64_t t = begin; t < end; t++) drag_nodes(j, &j->world->bodies.tasks.node[t]);
 }
 
 static void book_tasks(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     const job *j = context;
-    for (int64_t t = begin; t < end; t++) book_nodes(j, &j->world->node_tasks[t], &j->world->damping_sums[t]);
+    for (int64_t t = begin; t < end; t++)
+        book_nodes(j, &j->world->bodies.tasks.node[t], &j->world->boundaries.damping.sums[t]);
 }
 
 void brunt_damping_begin(brunt_world *world, const double gravity[3], double dt) {
     job j = {world, dt, gravity};
-    for (int k = 0; k < world->fem_count; k++) {
-        brunt_fem_body *fem = &world->fems[k];
-        if (world->drag[k]) fem->drag_mass = fem->damping * dt / -expm1(-fem->damping * dt);
+    for (int k = 0; k < world->bodies.fem_count; k++) {
+        brunt_fem_body *fem = &world->bodies.fem[k];
+        if (world->boundaries.damping.drag[k]) fem->drag_mass = fem->damping * dt / -expm1(-fem->damping * dt);
     }
-    brunt_parallel(world->threads, world->node_task_count, 1, drag_tasks, &j, &world->pass[BRUNT_PASS_kick].threads);
+    brunt_parallel(world->settings.threads, world->bodies.tasks.node_count, 1, drag_tasks, &j,
+                   &world->pass[BRUNT_PASS_kick].threads);
 }
 
 void brunt_damping_end(brunt_world *world, double dt) {
     job j = {.world = world, .dt = dt};
-    brunt_parallel(world->threads, world->node_task_count, 1, book_tasks, &j, &world->pass[BRUNT_PASS_kick].threads);
-    for (int64_t t = 0; t < world->node_task_count; t++) {
-        const brunt_damping_sums *s = &world->damping_sums[t];
-        world->now.damped -= s->work;
+    brunt_parallel(world->settings.threads, world->bodies.tasks.node_count, 1, book_tasks, &j,
+                   &world->pass[BRUNT_PASS_kick].threads);
+    for (int64_t t = 0; t < world->bodies.tasks.node_count; t++) {
+        const brunt_damping_sums *s = &world->boundaries.damping.sums[t];
+        world->ledger.damped -= s->work;
         for (int a = 0; a < 3; a++)
-            world->now.damping_impulse[a] += s->impulse[a], world->now.damping_angular[a] += s->angular[a];
+            world->ledger.damping_impulse[a] += s->impulse[a], world->ledger.damping_angular[a] += s->angular[a];
     }
 }

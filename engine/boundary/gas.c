@@ -25,7 +25,7 @@ static double triple(const double a[3], const double b[3], const double c[3]) {
 }
 
 double brunt_gas_volume(const brunt_world *world, const brunt_node_set *hold, const brunt_group_def *def) {
-    const brunt_fem_body *fem = &world->fems[hold->fem];
+    const brunt_fem_body *fem = &world->bodies.fem[hold->fem];
     double volume = 0;
     for (int32_t f = 0; f < hold->face_count; f++) {
         double x[4][3];
@@ -85,15 +85,15 @@ static int find_opening(const brunt_fem_body *fem, const brunt_node_set *hold, d
 }
 
 int brunt_gas_start(brunt_world *world, brunt_node_set *hold, const brunt_group_def *def, brunt_error *error) {
-    const char *name = world->walls[hold->wall].name;
+    const char *name = world->boundaries.walls[hold->wall].name;
     const brunt_gas_def *gas = &def->gas;
-    if (world->dimension != 3)
+    if (world->settings.dimension != 3)
         return brunt_fail(error, BRUNT_BAD_INPUT, "boundaries (%s).gas: enclosed gas is for three dimensions", name);
     if (!(gas->gamma > 1) || !(gas->pressure >= 0) || !(gas->outside >= 0) || !(gas->volume >= 0))
         return brunt_fail(error, BRUNT_BAD_INPUT,
                           "boundaries (%s).gas: gamma > 1 and pressures and volume >= 0 are wanted", name);
     double at[3];
-    int open = find_opening(&world->fems[hold->fem], hold, at);
+    int open = find_opening(&world->bodies.fem[hold->fem], hold, at);
     if (open < 0) return brunt_fail(error, BRUNT_FAILED, "out of memory");
     if (open)
         return brunt_fail(
@@ -103,7 +103,7 @@ int brunt_gas_start(brunt_world *world, brunt_node_set *hold, const brunt_group_
             name, at[0], at[1], at[2]);
     hold->gas_volume = brunt_gas_volume(world, hold, def);
     hold->gas_energy = gas->pressure * hold->gas_volume / (gas->gamma - 1);
-    world->has_gas = true;
+    world->boundaries.sets.has_gas = true;
     if (hold->gas_volume > 0) return BRUNT_OK;
     return brunt_fail(
         error, BRUNT_BAD_INPUT,
@@ -116,7 +116,7 @@ double brunt_gas_push(brunt_world *world, brunt_node_set *hold, const brunt_grou
     const double volume = brunt_gas_volume(world, hold, def), gamma = def->gas.gamma;
     if (!(volume > 0)) {
         hold->gas_volume = volume;
-        world->gas_lost = hold;
+        world->boundaries.sets.gas_lost = hold;
         return 0;
     }
     hold->gas_energy *= pow(hold->gas_volume / volume, gamma - 1);
@@ -133,20 +133,21 @@ double brunt_gas_push(brunt_world *world, brunt_node_set *hold, const brunt_grou
 // ------------------------------------------------------------------------------------------ to be read, and kept
 
 static const brunt_node_set *gas_number(const brunt_world *world, int32_t index) {
-    for (int k = 0; k < world->hold_count; k++)
-        if (world->groups[k].action == BRUNT_GROUP_GAS && index-- == 0) return &world->holds[k];
+    for (int k = 0; k < world->boundaries.sets.count; k++)
+        if (world->boundaries.sets.def[k].action == BRUNT_GROUP_GAS && index-- == 0)
+            return &world->boundaries.sets.set[k];
     return NULL;
 }
 
 int32_t brunt_gas_count(const brunt_world *world) {
     int32_t count = 0;
-    while (world->has_gas && gas_number(world, count)) count++;
+    while (world->boundaries.sets.has_gas && gas_number(world, count)) count++;
     return count;
 }
 
 brunt_gas brunt_gas_now(const brunt_world *world, const brunt_node_set *hold, const brunt_group_def *def) {
     brunt_gas gas = {.volume = brunt_gas_volume(world, hold, def), .inflow = hold->gas_inflow};
-    memcpy(gas.name, world->walls[hold->wall].name, sizeof gas.name);
+    memcpy(gas.name, world->boundaries.walls[hold->wall].name, sizeof gas.name);
     gas.energy = hold->gas_energy * pow(hold->gas_volume / gas.volume, def->gas.gamma - 1);
     gas.pressure = (def->gas.gamma - 1) * gas.energy / gas.volume;
     return gas;
@@ -154,23 +155,23 @@ brunt_gas brunt_gas_now(const brunt_world *world, const brunt_node_set *hold, co
 
 void brunt_world_gas(const brunt_world *world, int32_t index, brunt_gas *gas) {
     const brunt_node_set *hold = gas_number(world, index);
-    *gas = brunt_gas_now(world, hold, &world->groups[hold - world->holds]);
+    *gas = brunt_gas_now(world, hold, &world->boundaries.sets.def[hold - world->boundaries.sets.set]);
 }
 
 int64_t brunt_gas_state_count(const brunt_world *world) { return 3 * (int64_t)brunt_gas_count(world); }
 
 void brunt_gas_state_get(const brunt_world *world, double *out) {
-    for (int k = 0; k < world->hold_count; k++) {
-        const brunt_node_set *hold = &world->holds[k];
-        if (world->groups[k].action != BRUNT_GROUP_GAS) continue;
+    for (int k = 0; k < world->boundaries.sets.count; k++) {
+        const brunt_node_set *hold = &world->boundaries.sets.set[k];
+        if (world->boundaries.sets.def[k].action != BRUNT_GROUP_GAS) continue;
         *out++ = hold->gas_energy, *out++ = hold->gas_volume, *out++ = hold->gas_inflow;
     }
 }
 
 void brunt_gas_state_set(brunt_world *world, const double *in) {
-    for (int k = 0; k < world->hold_count; k++) {
-        brunt_node_set *hold = &world->holds[k];
-        if (world->groups[k].action != BRUNT_GROUP_GAS) continue;
+    for (int k = 0; k < world->boundaries.sets.count; k++) {
+        brunt_node_set *hold = &world->boundaries.sets.set[k];
+        if (world->boundaries.sets.def[k].action != BRUNT_GROUP_GAS) continue;
         hold->gas_energy = *in++, hold->gas_volume = *in++, hold->gas_inflow = *in++;
     }
 }

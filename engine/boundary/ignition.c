@@ -88,10 +88,10 @@ static int check(const brunt_world *world, const brunt_detonation_def *d, int in
     if (!finite)
         return brunt_fail(error, BRUNT_BAD_INPUT, "detonations[%d]: point, normal or time is not a finite number",
                           index);
-    for (int i = 0; i < world->all_count; i++) {
+    for (int i = 0; i < world->bodies.count; i++) {
         if (!lights(d, brunt_body_name(world, i))) continue;
         known = true;
-        something = something || burns(&world->all[i]);
+        something = something || burns(&world->bodies.all[i]);
     }
     if (!known)
         return brunt_fail(error, BRUNT_BAD_INPUT, "detonations[%d].body: there is no body '%s'", index, d->body);
@@ -129,8 +129,8 @@ int brunt_detonation_make(brunt_world *world, const brunt_world_def *def, brunt_
         int status = check(world, &def->detonations[k], k, error);
         if (status) return status;
     }
-    for (int i = 0; i < world->all_count; i++) {
-        const brunt_body_ref *ref = &world->all[i];
+    for (int i = 0; i < world->bodies.count; i++) {
+        const brunt_body_ref *ref = &world->bodies.all[i];
         if (!burns(ref)) continue;
         const char *name = brunt_body_name(world, i);
         const double speed = detonation_speed(def, name);

@@ -23,20 +23,23 @@ static bool follows(const brunt_group_def *group) {
 }
 
 int brunt_load_step_make(brunt_world *world, brunt_error *error) {
-    world->load_rate = brunt_alloc((size_t)(world->fem_count + 1) * sizeof *world->load_rate);
-    if (!world->load_rate) return brunt_fail(error, BRUNT_FAILED, "out of memory");
-    for (int k = 0; k < world->hold_count; k++) {
-        const int fem = world->holds[k].fem;
-        if (!follows(&world->groups[k]) || world->load_rate[fem]) continue;
-        world->load_rate[fem] = brunt_alloc((size_t)(world->fems[fem].node_count + 1) * sizeof **world->load_rate);
-        if (!world->load_rate[fem]) return brunt_fail(error, BRUNT_FAILED, "out of memory");
+    world->boundaries.load_rate =
+        brunt_alloc((size_t)(world->bodies.fem_count + 1) * sizeof *world->boundaries.load_rate);
+    if (!world->boundaries.load_rate) return brunt_fail(error, BRUNT_FAILED, "out of memory");
+    for (int k = 0; k < world->boundaries.sets.count; k++) {
+        const int fem = world->boundaries.sets.set[k].fem;
+        if (!follows(&world->boundaries.sets.def[k]) || world->boundaries.load_rate[fem]) continue;
+        world->boundaries.load_rate[fem] =
+            brunt_alloc((size_t)(world->bodies.fem[fem].node_count + 1) * sizeof **world->boundaries.load_rate);
+        if (!world->boundaries.load_rate[fem]) return brunt_fail(error, BRUNT_FAILED, "out of memory");
     }
     return BRUNT_OK;
 }
 
 void brunt_load_step_free(brunt_world *world) {
-    for (int k = 0; world->load_rate && k < world->fem_count; k++) brunt_free(world->load_rate[k]);
-    brunt_free(world->load_rate);
+    for (int k = 0; world->boundaries.load_rate && k < world->bodies.fem_count; k++)
+        brunt_free(world->boundaries.load_rate[k]);
+    brunt_free(world->boundaries.load_rate);
 }
 
 static double length2(const double a[3]) { return a[0] * a[0] + a[1] * a[1] + a[2] * a[2]; }
@@ -75,9 +78,9 @@ static double mobility(const brunt_fem_body *fem, const brunt_node_set *hold, do
 
 // Adds the faces' k_f to the nodes; of gas, gives the eigenvalue of the first part.
 static double look_at_faces(const brunt_world *world, const brunt_node_set *hold, const brunt_group_def *def) {
-    const brunt_fem_body *fem = &world->fems[hold->fem];
+    const brunt_fem_body *fem = &world->bodies.fem[hold->fem];
     brunt_gas gas = {.pressure = 0};
-    double push = fabs(def->value[0] * brunt_curve_at(&def->table, world->now.time));
+    double push = fabs(def->value[0] * brunt_curve_at(&def->table, world->clock.time));
     if (def->action == BRUNT_GROUP_GAS) {
         gas = brunt_gas_now(world, hold, def);
         push = fabs(gas.pressure - def->gas.outside);
@@ -88,8 +91,8 @@ static double look_at_faces(const brunt_world *world, const brunt_node_set *hold
         double x[4][3], shares[4][3];
         for (int c = 0; c < corners; c++)
             for (int a = 0; a < 3; a++) x[c][a] = (double)brunt_fem_node(fem, node[c])[a];
-        const double stiffness = push * face_stiffness((const double(*)[3])x, corners, world->axisymmetric);
-        for (int c = 0; c < corners; c++) world->load_rate[hold->fem][node[c]] += stiffness;
+        const double stiffness = push * face_stiffness((const double(*)[3])x, corners, world->settings.axisymmetric);
+        for (int c = 0; c < corners; c++) world->boundaries.load_rate[hold->fem][node[c]] += stiffness;
         if (def->action != BRUNT_GROUP_GAS) continue;
         brunt_face_shares((const double(*)[3])x, corners, shares);
         for (int c = 0; c < corners; c++)
@@ -100,14 +103,14 @@ static double look_at_faces(const brunt_world *world, const brunt_node_set *hold
 }
 
 double brunt_load_frequency(const brunt_world *world, int fem) {
-    if (!world->load_rate || !world->load_rate[fem]) return 0;
-    const brunt_fem_body *body = &world->fems[fem];
-    double *rate = world->load_rate[fem], greatest = 0, gas = 0;
-    const uint8_t all = (uint8_t)((1 << world->dimension) - 1);
+    if (!world->boundaries.load_rate || !world->boundaries.load_rate[fem]) return 0;
+    const brunt_fem_body *body = &world->bodies.fem[fem];
+    double *rate = world->boundaries.load_rate[fem], greatest = 0, gas = 0;
+    const uint8_t all = (uint8_t)((1 << world->settings.dimension) - 1);
     memset(rate, 0, (size_t)body->node_count * sizeof *rate);
-    for (int k = 0; k < world->hold_count; k++)
-        if (world->holds[k].fem == fem && follows(&world->groups[k]))
-            gas += look_at_faces(world, &world->holds[k], &world->groups[k]);
+    for (int k = 0; k < world->boundaries.sets.count; k++)
+        if (world->boundaries.sets.set[k].fem == fem && follows(&world->boundaries.sets.def[k]))
+            gas += look_at_faces(world, &world->boundaries.sets.set[k], &world->boundaries.sets.def[k]);
     for (int32_t n = 0; n < body->node_count; n++)
         if (!body->held || (body->held[n] & all) != all)
             greatest = fmax(greatest, rate[n] / (double)brunt_fem_node(body, n)[BRUNT_FEM_MASS]);

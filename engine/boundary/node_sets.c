@@ -33,14 +33,14 @@ static void list_groups(const brunt_fem_body *fem, char *out, size_t size) {
 
 // The faces whose nodes are all in the group.
 static int take_faces(brunt_world *world, brunt_node_set *hold, const char *name) {
-    const brunt_fem_body *fem = &world->fems[hold->fem];
+    const brunt_fem_body *fem = &world->bodies.fem[hold->fem];
     brunt_faces faces;
     if (brunt_fem_faces(fem, &faces)) return brunt_fail(NULL, BRUNT_FAILED, "out of memory");
     hold->place = brunt_alloc((size_t)(fem->node_count + 1) * sizeof *hold->place);
     hold->force = brunt_alloc((size_t)(hold->node_count + 1) * 3 * sizeof *hold->force);
     hold->face = brunt_alloc((size_t)(faces.count + 1) * sizeof *hold->face);
     int status = hold->place && hold->force && hold->face ? BRUNT_OK : BRUNT_FAILED;
-    if (world->groups[hold - world->holds].action == BRUNT_GROUP_GAS) {
+    if (world->boundaries.sets.def[hold - world->boundaries.sets.set].action == BRUNT_GROUP_GAS) {
         hold->area = brunt_alloc((size_t)(hold->node_count + 1) * 3 * sizeof *hold->area);
         status = hold->area ? status : BRUNT_FAILED;
     }
@@ -68,15 +68,15 @@ static int take_faces(brunt_world *world, brunt_node_set *hold, const char *name
 
 const brunt_node_set *brunt_node_sets_follow(brunt_world *world, int fem, int32_t *element) {
     const brunt_node_set *opened = NULL;
-    for (int k = 0; k < world->hold_count; k++) {
-        brunt_node_set *hold = &world->holds[k];
+    for (int k = 0; k < world->boundaries.sets.count; k++) {
+        brunt_node_set *hold = &world->boundaries.sets.set[k];
         if (hold->fem != fem || !hold->whole_count) continue;
-        brunt_fem_ranks(&world->fems[fem]);
+        brunt_fem_ranks(&world->bodies.fem[fem]);
         hold->face_count = 0;
         for (int32_t f = 0; f < hold->whole_count; f++) {
-            if (world->fems[fem].rank[hold->owner[f]] >= 0)
+            if (world->bodies.fem[fem].rank[hold->owner[f]] >= 0)
                 memcpy(hold->face[hold->face_count++], hold->whole[f], sizeof *hold->face);
-            else if (world->groups[k].action == BRUNT_GROUP_GAS && !opened)
+            else if (world->boundaries.sets.def[k].action == BRUNT_GROUP_GAS && !opened)
                 opened = hold, *element = hold->owner[f];
         }
     }
@@ -84,16 +84,16 @@ const brunt_node_set *brunt_node_sets_follow(brunt_world *world, int fem, int32_
 }
 
 static int make_hold(brunt_world *world, int index, brunt_error *error) {
-    brunt_node_set *hold = &world->holds[index];
-    const brunt_group_def *def = &world->groups[index];
-    brunt_wall *wall = &world->walls[hold->wall];
+    brunt_node_set *hold = &world->boundaries.sets.set[index];
+    const brunt_group_def *def = &world->boundaries.sets.def[index];
+    brunt_wall *wall = &world->boundaries.walls[hold->wall];
     hold->fem = -1;
-    for (int k = 0; k < world->fem_count; k++)
-        if (!strcmp(world->fems[k].name, def->body)) hold->fem = k;
+    for (int k = 0; k < world->bodies.fem_count; k++)
+        if (!strcmp(world->bodies.fem[k].name, def->body)) hold->fem = k;
     if (hold->fem < 0)
         return brunt_fail(error, BRUNT_BAD_INPUT, "boundaries (%s).body: there is no finite-element body '%s'",
                           wall->name, def->body);
-    brunt_fem_body *fem = &world->fems[hold->fem];
+    brunt_fem_body *fem = &world->bodies.fem[hold->fem];
     wall->body = fem->index;
     const brunt_group *group = NULL;
     for (int32_t g = 0; g < fem->group_count; g++)
@@ -117,27 +117,30 @@ static int make_hold(brunt_world *world, int index, brunt_error *error) {
     }
     if (!fem->held && !(fem->held = brunt_alloc((size_t)fem->node_count + 1)))
         return brunt_fail(error, BRUNT_FAILED, "out of memory");
-    if (!world->holder[hold->fem] &&
-        !(world->holder[hold->fem] = brunt_alloc(((size_t)fem->node_count + 1) * sizeof **world->holder)))
+    if (!world->boundaries.sets.holder[hold->fem] &&
+        !(world->boundaries.sets.holder[hold->fem] =
+              brunt_alloc(((size_t)fem->node_count + 1) * sizeof **world->boundaries.sets.holder)))
         return brunt_fail(error, BRUNT_FAILED, "out of memory");
     for (int32_t i = 0; i < hold->node_count; i++)
-        for (int a = 0; a < world->dimension; a++) {
-            if (!def->component[a] || world->holder[hold->fem][hold->node[i]][a]) continue;
+        for (int a = 0; a < world->settings.dimension; a++) {
+            if (!def->component[a] || world->boundaries.sets.holder[hold->fem][hold->node[i]][a]) continue;
             fem->held[hold->node[i]] |= (uint8_t)(1 << a);
-            world->holder[hold->fem][hold->node[i]][a] = (uint8_t)(index + 1);
+            world->boundaries.sets.holder[hold->fem][hold->node[i]][a] = (uint8_t)(index + 1);
         }
     return BRUNT_OK;
 }
 
 int brunt_node_sets_make(brunt_world *world, const brunt_world_def *def, brunt_error *error) {
-    world->hold_count = world->group_count = def->group_count;
+    world->boundaries.sets.count = def->group_count;
     if (def->group_count > 255) return brunt_fail(error, BRUNT_BAD_INPUT, "boundaries: more than 255 groups");
-    world->holds = brunt_alloc((size_t)(def->group_count + 1) * sizeof *world->holds);
-    world->groups = brunt_alloc((size_t)(def->group_count + 1) * sizeof *world->groups);
-    world->holder = brunt_alloc((size_t)(world->fem_count + 1) * sizeof *world->holder);
-    if (!world->holds || !world->groups || !world->holder) return brunt_fail(error, BRUNT_FAILED, "out of memory");
+    world->boundaries.sets.set = brunt_alloc((size_t)(def->group_count + 1) * sizeof *world->boundaries.sets.set);
+    world->boundaries.sets.def = brunt_alloc((size_t)(def->group_count + 1) * sizeof *world->boundaries.sets.def);
+    world->boundaries.sets.holder =
+        brunt_alloc((size_t)(world->bodies.fem_count + 1) * sizeof *world->boundaries.sets.holder);
+    if (!world->boundaries.sets.set || !world->boundaries.sets.def || !world->boundaries.sets.holder)
+        return brunt_fail(error, BRUNT_FAILED, "out of memory");
     for (int k = 0; k < def->group_count; k++) {
-        brunt_group_def *group = &world->groups[k];
+        brunt_group_def *group = &world->boundaries.sets.def[k];
         *group = def->groups[k];
         group->table.points = NULL;
         if (group->table.count) {
@@ -145,8 +148,8 @@ int brunt_node_sets_make(brunt_world *world, const brunt_world_def *def, brunt_e
             if (!(group->table.points = brunt_alloc(bytes))) return brunt_fail(error, BRUNT_FAILED, "out of memory");
             memcpy(group->table.points, def->groups[k].table.points, bytes);
         }
-        world->holds[k].wall = world->wall_count - def->group_count + k;
-        world->walls[world->holds[k].wall].group = group;
+        world->boundaries.sets.set[k].wall = world->boundaries.wall_count - def->group_count + k;
+        world->boundaries.walls[world->boundaries.sets.set[k].wall].group = group;
         int status = make_hold(world, k, error);
         if (status) return status;
     }
@@ -154,19 +157,21 @@ int brunt_node_sets_make(brunt_world *world, const brunt_world_def *def, brunt_e
 }
 
 void brunt_node_sets_free(brunt_world *world) {
-    for (int k = 0; k < world->hold_count && world->holds; k++) {
-        brunt_free(world->holds[k].face);
-        brunt_free(world->holds[k].whole);
-        brunt_free(world->holds[k].owner);
-        brunt_free(world->holds[k].force);
-        brunt_free(world->holds[k].place);
-        brunt_free(world->holds[k].area);
+    for (int k = 0; k < world->boundaries.sets.count && world->boundaries.sets.set; k++) {
+        brunt_free(world->boundaries.sets.set[k].face);
+        brunt_free(world->boundaries.sets.set[k].whole);
+        brunt_free(world->boundaries.sets.set[k].owner);
+        brunt_free(world->boundaries.sets.set[k].force);
+        brunt_free(world->boundaries.sets.set[k].place);
+        brunt_free(world->boundaries.sets.set[k].area);
     }
-    for (int k = 0; k < world->group_count && world->groups; k++) brunt_free(world->groups[k].table.points);
-    for (int k = 0; k < world->fem_count && world->holder; k++) brunt_free(world->holder[k]);
-    brunt_free(world->holds);
-    brunt_free(world->groups);
-    brunt_free(world->holder);
+    for (int k = 0; k < world->boundaries.sets.count && world->boundaries.sets.def; k++)
+        brunt_free(world->boundaries.sets.def[k].table.points);
+    for (int k = 0; k < world->bodies.fem_count && world->boundaries.sets.holder; k++)
+        brunt_free(world->boundaries.sets.holder[k]);
+    brunt_free(world->boundaries.sets.set);
+    brunt_free(world->boundaries.sets.def);
+    brunt_free(world->boundaries.sets.holder);
 }
 
 // ------------------------------------------------------------------------------------------ loads
@@ -225,7 +230,7 @@ static void ring_shares(const double (*x)[3], double (*share)[3]) {
 }
 
 static void make_forces(brunt_world *world, brunt_node_set *hold, const brunt_group_def *def, double time, double dt) {
-    brunt_fem_body *fem = &world->fems[hold->fem];
+    brunt_fem_body *fem = &world->bodies.fem[hold->fem];
     const bool traction = def->action == BRUNT_GROUP_TRACTION;
     double push = def->action == BRUNT_GROUP_GAS ? brunt_gas_push(world, hold, def, time, dt)
                                                  : -def->value[0] * brunt_curve_at(&def->table, time);
@@ -236,7 +241,7 @@ static void make_forces(brunt_world *world, brunt_node_set *hold, const brunt_gr
         const int corners = node[2] < 0 ? 2 : node[3] < 0 ? 3 : 4;
         double x[4][3], shares[4][3];
         face_corners(fem, node, traction, x);
-        if (world->axisymmetric)
+        if (world->settings.axisymmetric)
             ring_shares((const double(*)[3])x, shares);
         else
             brunt_face_shares((const double(*)[3])x, corners, shares);
@@ -244,11 +249,11 @@ static void make_forces(brunt_world *world, brunt_node_set *hold, const brunt_gr
             const double *share = shares[c];
             double *force = hold->force + 3 * (hold->place[node[c]] - 1);
             double size = sqrt(share[0] * share[0] + share[1] * share[1] + share[2] * share[2]);
-            for (int a = 0; a < world->dimension; a++)
+            for (int a = 0; a < world->settings.dimension; a++)
                 force[a] += traction ? factor * def->value[a] * size : push * share[a];
         }
     }
-    for (int32_t i = 0; world->axisymmetric && i < hold->node_count; i++)
+    for (int32_t i = 0; world->settings.axisymmetric && i < hold->node_count; i++)
         if (fem->start[4 * (size_t)hold->node[i]] == 0) hold->force[3 * i] = 0; // the axis bears it
     for (int32_t i = 0; i < hold->node_count; i++)
         for (int a = 0; a < 3; a++) fem->load[4 * (size_t)hold->node[i] + (size_t)a] += (real)hold->force[3 * i + a];
@@ -256,8 +261,8 @@ static void make_forces(brunt_world *world, brunt_node_set *hold, const brunt_gr
 
 // Half of the work of the loads, at the velocities as they are; with `impulse`, that too.
 static void book_loads(brunt_world *world, const brunt_node_set *hold, double dt, bool impulse) {
-    const brunt_fem_body *fem = &world->fems[hold->fem];
-    brunt_impulse_account *last = &world->walls[hold->wall].last;
+    const brunt_fem_body *fem = &world->bodies.fem[hold->fem];
+    brunt_impulse_account *last = &world->boundaries.walls[hold->wall].last;
     double work = 0;
     for (int32_t i = 0; i < hold->node_count; i++) {
         const real *node = brunt_fem_node(fem, hold->node[i]);
@@ -274,29 +279,30 @@ static void book_loads(brunt_world *world, const brunt_node_set *hold, double dt
 }
 
 void brunt_loads_begin(brunt_world *world, double time, double dt) {
-    for (int k = 0; k < world->fem_count; k++)
-        if (world->fems[k].load) memset(world->fems[k].load, 0, (size_t)world->fems[k].node_count * 4 * sizeof(real));
-    for (int k = 0; k < world->hold_count; k++) {
-        if (moves(&world->groups[k])) continue;
-        make_forces(world, &world->holds[k], &world->groups[k], time, dt);
-        book_loads(world, &world->holds[k], dt, true);
+    for (int k = 0; k < world->bodies.fem_count; k++)
+        if (world->bodies.fem[k].load)
+            memset(world->bodies.fem[k].load, 0, (size_t)world->bodies.fem[k].node_count * 4 * sizeof(real));
+    for (int k = 0; k < world->boundaries.sets.count; k++) {
+        if (moves(&world->boundaries.sets.def[k])) continue;
+        make_forces(world, &world->boundaries.sets.set[k], &world->boundaries.sets.def[k], time, dt);
+        book_loads(world, &world->boundaries.sets.set[k], dt, true);
     }
 }
 
 void brunt_loads_end(brunt_world *world, double dt) {
-    for (int k = 0; k < world->hold_count; k++)
-        if (!moves(&world->groups[k])) book_loads(world, &world->holds[k], dt, false);
+    for (int k = 0; k < world->boundaries.sets.count; k++)
+        if (!moves(&world->boundaries.sets.def[k])) book_loads(world, &world->boundaries.sets.set[k], dt, false);
 }
 
 // ------------------------------------------------------------------------------------------ prescribed motion
 
 void brunt_fem_hold_all(brunt_world *world, const double gravity[3], double time, double dt, double step) {
-    for (int k = 0; k < world->hold_count; k++) {
-        const brunt_group_def *def = &world->groups[k];
+    for (int k = 0; k < world->boundaries.sets.count; k++) {
+        const brunt_group_def *def = &world->boundaries.sets.def[k];
         if (!moves(def)) continue;
-        const brunt_node_set *hold = &world->holds[k];
-        brunt_fem_body *fem = &world->fems[hold->fem];
-        brunt_impulse_account *last = &world->walls[hold->wall].last;
+        const brunt_node_set *hold = &world->boundaries.sets.set[k];
+        brunt_fem_body *fem = &world->bodies.fem[hold->fem];
+        brunt_impulse_account *last = &world->boundaries.walls[hold->wall].last;
         double now = brunt_curve_at(&def->table, time + 0.5 * step), then = brunt_curve_at(&def->table, time + step);
         for (int32_t i = 0; i < hold->node_count; i++) {
             const int32_t n = hold->node[i];
@@ -305,8 +311,8 @@ void brunt_fem_hold_all(brunt_world *world, const double gravity[3], double time
             double J[3] = {0}, x[3], old[3] = {0}, v[3] = {0}, mean[3] = {0};
             brunt_fem_internal_force(fem, n, force);
             for (int a = 0; a < 3; a++) x[a] = (double)node[a];
-            for (int a = 0; a < world->dimension; a++) {
-                if (world->holder[hold->fem][n][a] != k + 1) continue;
+            for (int a = 0; a < world->settings.dimension; a++) {
+                if (world->boundaries.sets.holder[hold->fem][n][a] != k + 1) continue;
                 double mass = (double)node[BRUNT_FEM_MASS], trial = (double)node[BRUNT_FEM_V + a];
                 double load = fem->load ? (double)fem->load[4 * (size_t)n + (size_t)a] : 0;
                 old[a] = trial - dt * (((double)force[a] + load) / mass + gravity[a]);
@@ -323,16 +329,17 @@ void brunt_fem_hold_all(brunt_world *world, const double gravity[3], double time
 }
 
 void brunt_fem_hold_contact(brunt_world *world) {
-    const brunt_contact_surface *s = &world->skin;
-    for (int k = 0; k < s->fem_count && world->hold_count; k++) {
-        if (!s->active[k] || !world->holder[k]) continue;
+    const brunt_contact_surface *s = &world->contact.surface;
+    for (int k = 0; k < s->fem_count && world->boundaries.sets.count; k++) {
+        if (!s->active[k] || !world->boundaries.sets.holder[k]) continue;
         for (int32_t n = s->node_range[k]; n < s->node_end[k]; n++)
-            for (int a = 0; a < world->dimension; a++) {
-                int holder = world->holder[k][s->node[n]][a];
+            for (int a = 0; a < world->settings.dimension; a++) {
+                int holder = world->boundaries.sets.holder[k][s->node[n]][a];
                 if (!holder || s->impulse[n][a] == 0) continue;
                 double J[3] = {0};
                 J[a] = -s->impulse[n][a];
-                brunt_impulse_account *last = &world->walls[world->holds[holder - 1].wall].last;
+                brunt_impulse_account *last =
+                    &world->boundaries.walls[world->boundaries.sets.set[holder - 1].wall].last;
                 brunt_impulse_account_book(last, &last->normal_loss, J, s->x[n], s->v[n], s->v[n], s->v[n]);
             }
     }

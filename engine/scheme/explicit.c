@@ -13,19 +13,22 @@
 enum { SLOT_GRAIN = 8, BLOCK_GRAIN = 2, ENERGY_CHECK = 32, SPREAD_CHECK = 32 };
 
 void brunt_gravity_at(const brunt_world *world, double time, double gravity[3]) {
-    double share = world->gravity_ramp > 0 && time < world->gravity_ramp ? time / world->gravity_ramp : 1;
-    for (int a = 0; a < 3; a++) gravity[a] = a < world->dimension ? share * world->gravity[a] : 0;
+    double share = world->settings.gravity_ramp > 0 && time < world->settings.gravity_ramp
+                       ? time / world->settings.gravity_ramp
+                       : 1;
+    for (int a = 0; a < 3; a++) gravity[a] = a < world->settings.dimension ? share * world->settings.gravity[a] : 0;
 }
 
 double brunt_stable_step(const brunt_world *world) {
     double inverse = 0, wall_speed = 0;
-    for (int w = 0; w < world->wall_count; w++) {
-        const double *v = world->walls[w].region ? world->walls[w].where.velocity : world->walls[w].plane.velocity;
+    for (int w = 0; w < world->boundaries.wall_count; w++) {
+        const double *v = world->boundaries.walls[w].region ? world->boundaries.walls[w].where.velocity
+                                                            : world->boundaries.walls[w].plane.velocity;
         wall_speed = fmax(wall_speed, sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
     }
     // Greatest over the whole body, so that the step does not depend on how blocks cut it.
-    for (int i = 0; i < world->body_count; i++) {
-        const brunt_body *body = &world->bodies[i];
+    for (int i = 0; i < world->bodies.mpm_count; i++) {
+        const brunt_body *body = &world->bodies.mpm[i];
         double wave = 0, speed = wall_speed;
         for (int32_t b = 0; b < body->grid.block_count; b++) {
             wave = fmax(wave, (double)body->report[b].wave_speed);
@@ -34,18 +37,19 @@ double brunt_stable_step(const brunt_world *world) {
         }
         inverse = fmax(inverse, wave + speed);
     }
-    double grid = inverse > 0 ? world->cell / inverse : INFINITY, least = fmin(grid, brunt_fem_stable_step(world));
+    double grid = inverse > 0 ? world->settings.cell / inverse : INFINITY,
+           least = fmin(grid, brunt_fem_stable_step(world));
     if (isinf(least)) { // all has eroded: steps as of what there was
-        for (int i = 0; i < world->body_count; i++)
-            least = fmin(least, world->cell / (double)world->bodies[i].material.wave_speed);
-        for (int k = 0; k < world->fem_count; k++) least = fmin(least, world->fems[k].least_step);
+        for (int i = 0; i < world->bodies.mpm_count; i++)
+            least = fmin(least, world->settings.cell / (double)world->bodies.mpm[i].material.wave_speed);
+        for (int k = 0; k < world->bodies.fem_count; k++) least = fmin(least, world->bodies.fem[k].least_step);
     }
-    return world->cfl * least;
+    return world->settings.cfl * least;
 }
 
 static int fail(const brunt_world *world, const brunt_body *body, brunt_error *error, const char *reason) {
     if (!error) return BRUNT_FAILED;
-    error->time = world->now.time;
+    error->time = world->clock.time;
     if (body)
         memcpy(error->body, body->name,
                sizeof error->body < sizeof body->name ? sizeof error->body : sizeof body->name);
@@ -55,7 +59,7 @@ static int fail(const brunt_world *world, const brunt_body *body, brunt_error *e
                  (long long)error->id, error->place[0], error->place[1], error->place[2]);
     else if (body)
         snprintf(where, sizeof where, "body '%s', ", body->name);
-    return brunt_fail(error, BRUNT_FAILED, "%stime %.9g s, step %.0f: %s", where, world->now.time, world->now.steps,
+    return brunt_fail(error, BRUNT_FAILED, "%stime %.9g s, step %.0f: %s", where, world->clock.time, world->clock.steps,
                       reason);
 }
 
@@ -66,7 +70,7 @@ static int fail_particle(const brunt_world *world, brunt_body *body, int64_t slo
         error->id = body->particles.id[slot];
         for (int64_t s = slot; error->id < 0 && s >= 0; s--)
             error->id = body->particles.id[s]; // padding copies the last one
-        for (int a = 0; a < 3; a++) error->place[a] = a < world->dimension ? (double)x[a][slot] : 0;
+        for (int a = 0; a < 3; a++) error->place[a] = a < world->settings.dimension ? (double)x[a][slot] : 0;
     }
     return fail(world, body, error, reason);
 }
@@ -75,7 +79,7 @@ static int fail_element(const brunt_world *world, const brunt_fem_body *fem, int
                         const char *reason) {
     if (!error) return BRUNT_FAILED;
     const int nodes = fem->element->nodes;
-    error->time = world->now.time;
+    error->time = world->clock.time;
     memcpy(error->body, fem->name, sizeof error->body < sizeof fem->name ? sizeof error->body : sizeof fem->name);
     for (int32_t s = slot; s >= 0 && (error->id = fem->element_id[s]) < 0; s--) {} // padding copies the last one
     for (int a = 0; a < 3; a++) {
@@ -87,8 +91,8 @@ static int fail_element(const brunt_world *world, const brunt_fem_body *fem, int
     const char *hint = strstr(reason, "inside out") ? "; erosion.inverted takes such elements out instead" : "";
     return brunt_fail(error, BRUNT_FAILED,
                       "body '%s', element %lld at (%.6g, %.6g, %.6g) m, time %.9g s, step %.0f: %s%s", fem->name,
-                      (long long)error->id + 1, error->place[0], error->place[1], error->place[2], world->now.time,
-                      world->now.steps, reason, hint);
+                      (long long)error->id + 1, error->place[0], error->place[1], error->place[2], world->clock.time,
+                      world->clock.steps, reason, hint);
 }
 
 // ------------------------------------------------------------------------------------------ passes
@@ -102,24 +106,26 @@ typedef struct body_job {
 static void scatter_blocks(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     const body_job *job = context;
-    brunt_p2g_fn *scatter =
-        brunt_total_lagrangian(&job->body->particles) ? job->world->total_scatter : job->world->scatter;
+    brunt_p2g_fn *scatter = brunt_total_lagrangian(&job->body->particles) ? job->world->transfers.total_scatter
+                                                                          : job->world->transfers.scatter;
     for (int64_t b = begin; b < end; b++) scatter(job->body, (int32_t)b, (real)job->dt);
 }
 
 static void gather_blocks(void *context, int64_t begin, int64_t end, int worker) {
     const body_job *job = context;
-    brunt_g2p_fn *gather =
-        brunt_total_lagrangian(&job->body->particles) ? job->world->total_gather : job->world->gather;
+    brunt_g2p_fn *gather = brunt_total_lagrangian(&job->body->particles) ? job->world->transfers.total_gather
+                                                                         : job->world->transfers.gather;
     for (int64_t b = begin; b < end; b++)
-        gather(job->body, (int32_t)b, (real)job->dt, (real)job->world->flip, &job->world->work[worker]);
+        gather(job->body, (int32_t)b, (real)job->dt, (real)job->world->settings.flip,
+               &job->world->scratch.points[worker]);
 }
 
 static int sort_bodies(brunt_world *world, brunt_error *error) {
-    for (int i = 0; i < world->body_count; i++) {
-        brunt_body *body = &world->bodies[i];
+    for (int i = 0; i < world->bodies.mpm_count; i++) {
+        brunt_body *body = &world->bodies.mpm[i];
         if (error) error->id = -1;
-        if (brunt_sort(&body->grid, &body->particles, world->threads, &world->pass[BRUNT_PASS_sort].threads, error)) {
+        if (brunt_sort(&body->grid, &body->particles, world->settings.threads, &world->pass[BRUNT_PASS_sort].threads,
+                       error)) {
             char reason[256];
             snprintf(reason, sizeof reason, "%.250s", error ? error->message : "");
             return fail(world, body, error, reason);
@@ -129,12 +135,13 @@ static int sort_bodies(brunt_world *world, brunt_error *error) {
         for (int32_t b = 0; b < grid->block_count; b++)
             if (grid->blocks[b].count > most) most = grid->blocks[b].count;
         size_t reports = (size_t)grid->block_count * sizeof *body->report,
-               sums = (size_t)grid->slot_count * sizeof *world->node_sums;
+               sums = (size_t)grid->slot_count * sizeof *world->scratch.node_sums;
         if (brunt_reserve((void **)&body->report, &body->report_capacity, reports, 0) ||
-            brunt_reserve((void **)&world->node_sums, &world->node_sums_capacity, sums, 0))
+            brunt_reserve((void **)&world->scratch.node_sums, &world->scratch.node_sums_capacity, sums, 0))
             return fail(world, body, error, "out of memory");
-        for (int t = 0; t < world->threads; t++)
-            if (brunt_workspace_fit(&world->work[t], grid, most)) return fail(world, body, error, "out of memory");
+        for (int t = 0; t < world->settings.threads; t++)
+            if (brunt_workspace_fit(&world->scratch.points[t], grid, most))
+                return fail(world, body, error, "out of memory");
     }
     return BRUNT_OK;
 }
@@ -144,7 +151,7 @@ static bool acts_on(const brunt_wall *wall, const brunt_body *body) {
 }
 
 static bool mirrors(const brunt_world *world, const brunt_symmetry_plane *mirror, const brunt_body *body) {
-    return mirror->wall < 0 || acts_on(&world->walls[mirror->wall], body);
+    return mirror->wall < 0 || acts_on(&world->boundaries.walls[mirror->wall], body);
 }
 
 static double grid_nodes(const brunt_body *body) { return (double)body->grid.slot_count * BRUNT_BLOCK_NODES; }
@@ -153,13 +160,13 @@ static double all_particles(const brunt_world *world) { return (double)brunt_wor
 
 static double all_grid_nodes(const brunt_world *world) {
     double nodes = 0;
-    for (int i = 0; i < world->body_count; i++) nodes += grid_nodes(&world->bodies[i]);
+    for (int i = 0; i < world->bodies.mpm_count; i++) nodes += grid_nodes(&world->bodies.mpm[i]);
     return nodes;
 }
 
 static double all_mesh_nodes(const brunt_world *world) {
     double nodes = 0;
-    for (int k = 0; k < world->fem_count; k++) nodes += world->fems[k].node_count;
+    for (int k = 0; k < world->bodies.fem_count; k++) nodes += world->bodies.fem[k].node_count;
     return nodes;
 }
 
@@ -167,50 +174,55 @@ static double all_mesh_nodes(const brunt_world *world) {
 static void make_grid_velocities(brunt_world *world, brunt_body *body, const double gravity[3], double kick) {
     const double nodes = grid_nodes(body);
     body_job job = {world, body, kick};
-    brunt_grid_job grid_job = {
-        .body = body, .gravity = gravity, .dt = kick, .has_gravity = world->has_gravity, .sums = world->node_sums};
+    brunt_grid_job grid_job = {.body = body,
+                               .gravity = gravity,
+                               .dt = kick,
+                               .has_gravity = world->settings.has_gravity,
+                               .sums = world->scratch.node_sums};
     brunt_pass_begin(world, BRUNT_PASS_scatter);
-    brunt_parallel(world->threads, body->grid.block_count, BLOCK_GRAIN, scatter_blocks, &job,
+    brunt_parallel(world->settings.threads, body->grid.block_count, BLOCK_GRAIN, scatter_blocks, &job,
                    &world->pass[BRUNT_PASS_scatter].threads);
     brunt_pass_end(world, (double)body->particles.count);
 
     brunt_pass_begin(world, BRUNT_PASS_grid);
-    brunt_parallel(world->threads, body->grid.slot_count, SLOT_GRAIN, brunt_grid_sum, &grid_job,
+    brunt_parallel(world->settings.threads, body->grid.slot_count, SLOT_GRAIN, brunt_grid_sum, &grid_job,
                    &world->pass[BRUNT_PASS_grid].threads);
     brunt_pass_end(world, nodes);
 
-    if (world->mirror_count) {
+    if (world->boundaries.mirror_count) {
         brunt_pass_begin(world, BRUNT_PASS_mirror);
         brunt_impulse_account unbooked = {.external_work = 0}; // of the axis: its impulses cancel around the circle
-        for (int m = 0; m < world->mirror_count; m++) {
-            const brunt_symmetry_plane *mirror = &world->mirrors[m];
+        for (int m = 0; m < world->boundaries.mirror_count; m++) {
+            const brunt_symmetry_plane *mirror = &world->boundaries.mirrors[m];
             if (mirrors(world, mirror, body))
-                brunt_symmetry_fold(body, mirror, world->transfer == BRUNT_FLIP ? 1 - world->flip : 1,
-                                    mirror->wall < 0 ? &unbooked : &world->walls[mirror->wall].last);
+                brunt_symmetry_fold(body, mirror, world->settings.transfer == BRUNT_FLIP ? 1 - world->settings.flip : 1,
+                                    mirror->wall < 0 ? &unbooked : &world->boundaries.walls[mirror->wall].last);
         }
         brunt_pass_end(world, nodes);
     }
 
     brunt_pass_begin(world, BRUNT_PASS_update);
-    brunt_parallel(world->threads, body->grid.slot_count, SLOT_GRAIN, brunt_grid_update, &grid_job,
+    brunt_parallel(world->settings.threads, body->grid.slot_count, SLOT_GRAIN, brunt_grid_update, &grid_job,
                    &world->pass[BRUNT_PASS_update].threads);
     // Between two steps the transfers change the velocities that the stress works on, without any change of strain: the
     // work at the new velocities less that at the last ones is theirs.
-    for (int32_t n = 0; n < body->grid.slot_count; n++) world->now.transfer -= 0.5 * world->node_sums[n].stress_work;
+    for (int32_t n = 0; n < body->grid.slot_count; n++)
+        world->ledger.transfer -= 0.5 * world->scratch.node_sums[n].stress_work;
     brunt_pass_end(world, nodes);
 }
 
 // Planes that stick or slip and regions, at the nodes of the grids.
 static int apply_conditions(brunt_world *world, brunt_error *error) {
     brunt_pass_begin(world, BRUNT_PASS_conditions);
-    for (int i = 0; i < world->body_count; i++)
-        if (brunt_condition_clear(&world->bodies[i]))
-            return fail(world, &world->bodies[i], error, "out of memory at a condition");
-    for (int w = 0; w < world->wall_count; w++) {
-        brunt_wall *wall = &world->walls[w];
+    for (int i = 0; i < world->bodies.mpm_count; i++)
+        if (brunt_condition_clear(&world->bodies.mpm[i]))
+            return fail(world, &world->bodies.mpm[i], error, "out of memory at a condition");
+    for (int w = 0; w < world->boundaries.wall_count; w++) {
+        brunt_wall *wall = &world->boundaries.walls[w];
         bool at_nodes = wall->region || (wall->mirror < 0 && wall->plane.condition != BRUNT_SEPARATE);
-        for (int i = 0; at_nodes && i < world->body_count; i++)
-            if (acts_on(wall, &world->bodies[i])) brunt_condition_apply(&world->bodies[i], wall, world->now.time);
+        for (int i = 0; at_nodes && i < world->bodies.mpm_count; i++)
+            if (acts_on(wall, &world->bodies.mpm[i]))
+                brunt_condition_apply(&world->bodies.mpm[i], wall, world->clock.time);
     }
     brunt_pass_end(world, all_grid_nodes(world));
     return BRUNT_OK;
@@ -218,14 +230,15 @@ static int apply_conditions(brunt_world *world, brunt_error *error) {
 
 static int constrain_velocities(brunt_world *world, const double gravity[3], double kick, double dt,
                                 brunt_error *error) {
-    const bool conditions = world->has_conditions && world->body_count;
+    const bool conditions = world->boundaries.has_conditions && world->bodies.mpm_count;
     int status = conditions ? apply_conditions(world, error) : BRUNT_OK;
     if (status) return status;
-    if (world->has_contact) {
+    if (world->contact.has_grid) {
         brunt_pass_begin(world, BRUNT_PASS_contact);
-        int failed = brunt_grid_velocity_apply(
-            world->bodies, world->body_count, world->pairs, world->pair_count, world->mpm_pair_of, world->mirrors,
-            world->mirror_count, dt, world->threads, &world->pass[BRUNT_PASS_contact].threads, &world->contact_work);
+        int failed = brunt_grid_velocity_apply(world->bodies.mpm, world->bodies.mpm_count, world->pairs.pair,
+                                               world->pairs.count, world->pairs.of_mpm, world->boundaries.mirrors,
+                                               world->boundaries.mirror_count, dt, world->settings.threads,
+                                               &world->pass[BRUNT_PASS_contact].threads, &world->scratch.grid_velocity);
         if (failed)
             return fail(world, NULL, error,
                         failed == -1 ? "out of memory in the contact search"
@@ -234,23 +247,24 @@ static int constrain_velocities(brunt_world *world, const double gravity[3], dou
         // What contact gave to nodes that are held.
         if (conditions && (status = apply_conditions(world, error))) return status;
     }
-    if (world->has_surfaces) {
+    if (world->contact.has_surfaces) {
         brunt_pass_begin(world, BRUNT_PASS_surfaces);
         status = brunt_surfaces_meet(world, gravity, kick, dt, error);
-        brunt_pass_end(world, world->skin.node_count);
+        brunt_pass_end(world, world->contact.surface.node_count);
         if (status) {
             char reason[256];
             snprintf(reason, sizeof reason, "%.250s", error ? error->message : "");
             return fail(world, NULL, error, reason);
         }
     }
-    if (conditions && world->has_surfaces && (status = apply_conditions(world, error))) return status;
-    if (world->has_walls && world->body_count) {
+    if (conditions && world->contact.has_surfaces && (status = apply_conditions(world, error))) return status;
+    if (world->boundaries.has_walls && world->bodies.mpm_count) {
         brunt_pass_begin(world, BRUNT_PASS_walls);
-        for (int i = 0; i < world->body_count; i++)
-            if (brunt_planes_apply(&world->bodies[i], world->walls, world->wall_count, world->mirrors,
-                                   world->mirror_count, world->now.time, dt, &world->wall_work[i]))
-                return fail(world, &world->bodies[i], error, "out of memory at a wall");
+        for (int i = 0; i < world->bodies.mpm_count; i++)
+            if (brunt_planes_apply(&world->bodies.mpm[i], world->boundaries.walls, world->boundaries.wall_count,
+                                   world->boundaries.mirrors, world->boundaries.mirror_count, world->clock.time, dt,
+                                   &world->scratch.planes[i]))
+                return fail(world, &world->bodies.mpm[i], error, "out of memory at a wall");
         brunt_pass_end(world, all_grid_nodes(world));
     }
     return BRUNT_OK;
@@ -261,7 +275,7 @@ static void book_gravity_moment(brunt_world *world, brunt_body *body, const doub
     const brunt_audit audit = brunt_body_audit(body);
     for (int a = 0; a < 3; a++) {
         const int k = (a + 1) % 3, l = (a + 2) % 3;
-        world->now.gravity_angular[a] +=
+        world->ledger.gravity_angular[a] +=
             dt * audit.mass * (audit.centre[k] * gravity[l] - audit.centre[l] * gravity[k]);
     }
 }
@@ -271,26 +285,26 @@ static void keep_ledger(brunt_world *world, const double gravity[3], double dt, 
                         double *new_kinetic) {
     brunt_pass_begin(world, BRUNT_PASS_ledger);
     *old_kinetic = *new_kinetic = 0;
-    for (int i = 0; i < world->body_count; i++) {
-        brunt_body *body = &world->bodies[i];
+    for (int i = 0; i < world->bodies.mpm_count; i++) {
+        brunt_body *body = &world->bodies.mpm[i];
         const bool total = brunt_total_lagrangian(&body->particles);
-        brunt_grid_job job = {body, gravity, dt, world->has_gravity, world->node_sums};
-        brunt_parallel(world->threads, body->grid.slot_count, SLOT_GRAIN, brunt_grid_ledger, &job,
+        brunt_grid_job job = {body, gravity, dt, world->settings.has_gravity, world->scratch.node_sums};
+        brunt_parallel(world->settings.threads, body->grid.slot_count, SLOT_GRAIN, brunt_grid_ledger, &job,
                        &world->pass[BRUNT_PASS_ledger].threads);
         for (int32_t s = 0; s < body->grid.slot_count; s++) {
-            const brunt_node_sums *n = &world->node_sums[s];
+            const brunt_node_sums *n = &world->scratch.node_sums[s];
             *old_kinetic += n->old_kinetic;
             *new_kinetic += n->new_kinetic;
-            world->now.gravity_work += n->gravity_work;
+            world->ledger.gravity_work += n->gravity_work;
             for (int a = 0; a < 3; a++) {
                 int k = (a + 1) % 3, l = (a + 2) % 3;
-                world->now.gravity_impulse[a] += dt * n->mass * gravity[a];
+                world->ledger.gravity_impulse[a] += dt * n->mass * gravity[a];
                 if (total) continue;
-                world->now.gravity_angular[a] +=
+                world->ledger.gravity_angular[a] +=
                     dt * (n->first_moment[k] * gravity[l] - n->first_moment[l] * gravity[k]);
             }
         }
-        if (total && world->has_gravity) book_gravity_moment(world, body, gravity, dt);
+        if (total && world->settings.has_gravity) book_gravity_moment(world, body, gravity, dt);
     }
     brunt_pass_end(world, all_grid_nodes(world));
 }
@@ -298,7 +312,8 @@ static void keep_ledger(brunt_world *world, const double gravity[3], double dt, 
 static void advance_blocks(void *context, int64_t begin, int64_t end, int worker) {
     const body_job *job = context;
     for (int64_t b = begin; b < end; b++)
-        job->world->advance(job->body, (int32_t)b, (real)job->dt, (real)job->world->flip, &job->world->work[worker]);
+        job->world->transfers.advance(job->body, (int32_t)b, (real)job->dt, (real)job->world->settings.flip,
+                                      &job->world->scratch.points[worker]);
 }
 
 // Linear kernel: the particles' new velocities once more to the grid, without forces, for the gradient. What conditions
@@ -306,22 +321,23 @@ static void advance_blocks(void *context, int64_t begin, int64_t end, int worker
 static void remap_velocities(brunt_world *world, double dt) {
     brunt_timer *timer = &world->pass[BRUNT_PASS_remap].threads;
     brunt_pass_begin(world, BRUNT_PASS_remap);
-    for (int i = 0; i < world->body_count; i++) {
-        brunt_body *body = &world->bodies[i];
+    for (int i = 0; i < world->bodies.mpm_count; i++) {
+        brunt_body *body = &world->bodies.mpm[i];
         static const double weightless[3] = {0, 0, 0};
         body_job job = {world, body, dt}, still = {world, body, 0};
-        brunt_grid_job grid_job = {.body = body, .gravity = weightless, .sums = world->node_sums};
+        brunt_grid_job grid_job = {.body = body, .gravity = weightless, .sums = world->scratch.node_sums};
         brunt_impulse_account unbooked = {.external_work = 0};
-        brunt_parallel(world->threads, body->grid.block_count, BLOCK_GRAIN, advance_blocks, &job, timer);
-        brunt_parallel(world->threads, body->grid.block_count, BLOCK_GRAIN, scatter_blocks, &still, timer);
-        brunt_parallel(world->threads, body->grid.slot_count, SLOT_GRAIN, brunt_grid_sum, &grid_job, timer);
-        for (int m = 0; m < world->mirror_count; m++)
-            if (mirrors(world, &world->mirrors[m], body)) brunt_symmetry_fold(body, &world->mirrors[m], 1, &unbooked);
-        brunt_parallel(world->threads, body->grid.slot_count, SLOT_GRAIN, brunt_grid_update, &grid_job, timer);
-        for (int w = 0; w < world->wall_count; w++) {
-            brunt_wall wall = world->walls[w];
+        brunt_parallel(world->settings.threads, body->grid.block_count, BLOCK_GRAIN, advance_blocks, &job, timer);
+        brunt_parallel(world->settings.threads, body->grid.block_count, BLOCK_GRAIN, scatter_blocks, &still, timer);
+        brunt_parallel(world->settings.threads, body->grid.slot_count, SLOT_GRAIN, brunt_grid_sum, &grid_job, timer);
+        for (int m = 0; m < world->boundaries.mirror_count; m++)
+            if (mirrors(world, &world->boundaries.mirrors[m], body))
+                brunt_symmetry_fold(body, &world->boundaries.mirrors[m], 1, &unbooked);
+        brunt_parallel(world->settings.threads, body->grid.slot_count, SLOT_GRAIN, brunt_grid_update, &grid_job, timer);
+        for (int w = 0; w < world->boundaries.wall_count; w++) {
+            brunt_wall wall = world->boundaries.walls[w];
             bool at_nodes = wall.region || (wall.mirror < 0 && wall.plane.condition != BRUNT_SEPARATE);
-            if (at_nodes && acts_on(&wall, body)) brunt_condition_apply(body, &wall, world->now.time);
+            if (at_nodes && acts_on(&wall, body)) brunt_condition_apply(body, &wall, world->clock.time);
         }
     }
     brunt_pass_end(world, all_particles(world));
@@ -336,12 +352,12 @@ static int gather_bodies(brunt_world *world, double kick, double dt, double *kin
     brunt_body *bad_body = NULL;
     int64_t bad = -1;
     const char *reason = NULL;
-    for (int i = 0; i < world->body_count; i++) {
-        brunt_body *body = &world->bodies[i];
+    for (int i = 0; i < world->bodies.mpm_count; i++) {
+        brunt_body *body = &world->bodies.mpm[i];
         body_job job = {world, body, dt};
         body->uneven = kick != dt;
         body->speed = 0;
-        brunt_parallel(world->threads, body->grid.block_count, BLOCK_GRAIN, gather_blocks, &job,
+        brunt_parallel(world->settings.threads, body->grid.block_count, BLOCK_GRAIN, gather_blocks, &job,
                        &world->pass[BRUNT_PASS_gather].threads);
         for (int32_t b = 0; b < body->grid.block_count; b++) {
             body->speed = body->report[b].speed > body->speed ? body->report[b].speed : body->speed;
@@ -353,31 +369,32 @@ static int gather_bodies(brunt_world *world, double kick, double dt, double *kin
                 bad_body = body, bad = body->report[b].bad, reason = body->report[b].reason;
         }
     }
-    world->now.transfer -= 0.5 * (world->now.stress_work + dt * remap + (dt - kick) * before);
-    world->now.stress_work = dt * power;
+    world->ledger.transfer -= 0.5 * (world->ledger.stress_work + dt * remap + (dt - kick) * before);
+    world->ledger.stress_work = dt * power;
     brunt_pass_end(world, all_particles(world));
     return bad_body ? fail_particle(world, bad_body, bad, error, reason) : BRUNT_OK;
 }
 
 static void kick_meshes(brunt_world *world, const double gravity[3], double kick, double dt) {
     brunt_pass_begin(world, BRUNT_PASS_kick);
-    if (world->hold_count || world->has_damping) brunt_loads_begin(world, world->now.time, kick);
-    if (world->has_damping) brunt_damping_begin(world, gravity, kick);
+    if (world->boundaries.sets.count || world->boundaries.damping.active)
+        brunt_loads_begin(world, world->clock.time, kick);
+    if (world->boundaries.damping.active) brunt_damping_begin(world, gravity, kick);
     brunt_fem_kick_all(world, gravity, kick);
     brunt_pass_end(world, all_mesh_nodes(world));
-    if (!world->hold_count) return;
+    if (!world->boundaries.sets.count) return;
     double held = 0;
     brunt_pass_begin(world, BRUNT_PASS_groups);
-    brunt_fem_hold_all(world, gravity, world->now.time, kick, dt);
-    for (int h = 0; h < world->hold_count; h++) held += world->holds[h].node_count;
+    brunt_fem_hold_all(world, gravity, world->clock.time, kick, dt);
+    for (int h = 0; h < world->boundaries.sets.count; h++) held += world->boundaries.sets.set[h].node_count;
     brunt_pass_end(world, held);
 }
 
 // The other half of what loads and drag do: velocities are final now.
 static void finish_kick(brunt_world *world, double kick) {
     brunt_pass_begin(world, BRUNT_PASS_kick);
-    if (world->hold_count) brunt_loads_end(world, kick);
-    if (world->has_damping) brunt_damping_end(world, kick);
+    if (world->boundaries.sets.count) brunt_loads_end(world, kick);
+    if (world->boundaries.damping.active) brunt_damping_end(world, kick);
     brunt_pass_end(world, 0);
 }
 
@@ -398,10 +415,11 @@ static int move_meshes(brunt_world *world, const double gravity[3], double kick,
 // differences with steps that vary are stable for no share of the limit in general (R. D. Skeel, BIT 33 (1993) 172). At
 // cfl 0.9 and 18 steps between outputs, a rod without viscosity gained 10^5 times its energy within 500 steps.
 static double choose_step(const brunt_world *world, double limit) {
-    double dt = world->fixed_step > 0 ? world->fixed_step : world->now.next_dt;
-    double stop = fmin(limit > world->now.time ? limit : INFINITY, world->end), left = stop - world->now.time;
+    double dt = world->settings.fixed_step > 0 ? world->settings.fixed_step : world->clock.next_dt;
+    double stop = fmin(limit > world->clock.time ? limit : INFINITY, world->settings.end),
+           left = stop - world->clock.time;
     if (dt >= left * (1 - 1e-9)) return left;
-    if (world->fixed_step > 0 || !(left < 1e6 * dt)) return dt;
+    if (world->settings.fixed_step > 0 || !(left < 1e6 * dt)) return dt;
     return left / ceil(left / dt * (1 - 1e-9));
 }
 
@@ -410,15 +428,15 @@ static int make_grids(brunt_world *world, const double gravity[3], double kick, 
     int status = sort_bodies(world, error);
     brunt_pass_end(world, all_particles(world));
     if (status) return status;
-    for (int i = 0; i < world->body_count; i++) make_grid_velocities(world, &world->bodies[i], gravity, kick);
+    for (int i = 0; i < world->bodies.mpm_count; i++) make_grid_velocities(world, &world->bodies.mpm[i], gravity, kick);
     return BRUNT_OK;
 }
 
 // A fluid spreads until there are cells between its particles that none of them reaches: there pressure and contact act
 // on single particles.
 static void watch_spread(brunt_world *world) {
-    for (int i = 0; i < world->body_count; i++) {
-        brunt_body *body = &world->bodies[i];
+    for (int i = 0; i < world->bodies.mpm_count; i++) {
+        brunt_body *body = &world->bodies.mpm[i];
         if (!body->material.model[BRUNT_STRENGTH]->fluid || body->spread_told) continue;
         double spread = brunt_body_spread(body);
         if (!(spread > 1)) continue;
@@ -428,15 +446,15 @@ static void watch_spread(brunt_world *world) {
             "bodies.%s: at t = %.4g s the fluid has spread: particles stand for volumes %.2g cells wide, so that "
             "there are cells with none; pressure there is as coarse as that (more particles_per_cell, or a "
             "coarser grid, helps)",
-            body->name, world->now.time, spread);
+            body->name, world->clock.time, spread);
     }
 }
 
 static int erode(brunt_world *world, double dt, brunt_error *error) {
     const double looked_at = (double)brunt_world_elements(world) + all_particles(world);
     brunt_pass_begin(world, BRUNT_PASS_erosion);
-    int status = world->fem_count ? brunt_erode_meshes(world, dt, error) : BRUNT_OK;
-    if (!status && world->body_count) status = brunt_erode_particles(world, dt, error);
+    int status = world->bodies.fem_count ? brunt_erode_meshes(world, dt, error) : BRUNT_OK;
+    if (!status && world->bodies.mpm_count) status = brunt_erode_particles(world, dt, error);
     brunt_pass_end(world, looked_at);
     return status;
 }
@@ -447,17 +465,17 @@ static brunt_body *shortest_points(brunt_world *world, int64_t *slot, double *wa
     brunt_body *shortest = NULL;
     int32_t block = 0;
     double most = 0, speed = 0;
-    for (int i = 0; i < world->body_count; i++) {
-        const brunt_block_report *report = world->bodies[i].report;
+    for (int i = 0; i < world->bodies.mpm_count; i++) {
+        const brunt_block_report *report = world->bodies.mpm[i].report;
         int32_t w = 0, v = 0;
-        for (int32_t b = 1; b < world->bodies[i].grid.block_count; b++) {
+        for (int32_t b = 1; b < world->bodies.mpm[i].grid.block_count; b++) {
             if (report[b].wave_speed > report[w].wave_speed) w = b;
             if (report[b].speed > report[v].speed) v = b;
         }
-        if (!world->bodies[i].grid.block_count || !((double)report[w].wave_speed + (double)report[v].speed > most))
+        if (!world->bodies.mpm[i].grid.block_count || !((double)report[w].wave_speed + (double)report[v].speed > most))
             continue;
         *wave = (double)report[w].wave_speed, speed = (double)report[v].speed, most = *wave + speed;
-        shortest = &world->bodies[i], block = *wave > speed ? w : v;
+        shortest = &world->bodies.mpm[i], block = *wave > speed ? w : v;
     }
     if (!shortest) return NULL;
     brunt_particles *p = &shortest->particles;
@@ -480,18 +498,18 @@ static int fail_short_points(brunt_world *world, brunt_error *error, const char 
     double wave;
     brunt_body *body = shortest_points(world, &slot, &wave);
     if (!body) return fail(world, NULL, error, why);
-    snprintf(reason, sizeof reason, "%s: waves run at %.4g m/s in cells of %.4g m", why, wave, world->cell);
+    snprintf(reason, sizeof reason, "%s: waves run at %.4g m/s in cells of %.4g m", why, wave, world->settings.cell);
     return fail_particle(world, body, slot, error, reason);
 }
 
 // For what has the stable step that is too short: an element, with the loads on its body, or a body of material points.
 static int fail_short(brunt_world *world, double stable, brunt_error *error, const char *why) {
     int32_t slot;
-    const bool by_element = !world->body_count || brunt_fem_stable_step(world) <= stable * (1 + 1e-9);
+    const bool by_element = !world->bodies.mpm_count || brunt_fem_stable_step(world) <= stable * (1 + 1e-9);
     brunt_fem_body *fem = by_element ? brunt_fem_shortest(world, &slot) : NULL;
     if (!fem) return fail_short_points(world, error, why);
     char reason[240];
-    const bool by_load = brunt_load_frequency(world, (int)(fem - world->fems)) * stable * stable > 2; // half of 4
+    const bool by_load = brunt_load_frequency(world, (int)(fem - world->bodies.fem)) * stable * stable > 2; // half of 4
     snprintf(reason, sizeof reason, "%s%s", why,
              by_load ? ", most of it by gas or pressure on the body's surface" : "");
     return fail_element(world, fem, slot, error, reason);
@@ -503,19 +521,19 @@ typedef struct step {
 } step;
 
 static int refuse_step(brunt_world *world, double dt, brunt_error *error) {
-    const double stable = world->now.next_dt / world->cfl;
-    if (world->now.time >= world->end)
+    const double stable = world->clock.next_dt / world->settings.cfl;
+    if (world->clock.time >= world->settings.end)
         return fail(world, NULL, error, "the end has been reached, there is no step to take");
     char reason[160];
     snprintf(reason, sizeof reason,
              "the stable step is %.4g s: something moves, or its waves run, too fast to be computed with", stable);
     if (!(dt > 0)) return fail(world, NULL, error, reason);
     snprintf(reason, sizeof reason, "the stable step has become %.4g s, time.least_step is %.4g s", stable,
-             world->least_step);
-    if (stable < world->least_step) return fail_short(world, stable, error, reason);
+             world->settings.least_step);
+    if (stable < world->settings.least_step) return fail_short(world, stable, error, reason);
     snprintf(reason, sizeof reason, "the fixed step of %.6g s is larger than the stable one, %.6g s", dt, stable);
-    if (world->fixed_step > 0 && dt > stable) return fail_short(world, stable, error, reason);
-    if (world->now.time + dt == world->now.time)
+    if (world->settings.fixed_step > 0 && dt > stable) return fail_short(world, stable, error, reason);
+    if (world->clock.time + dt == world->clock.time)
         return fail(world, NULL, error, "the stable step has become too small to advance the time");
     return BRUNT_OK;
 }
@@ -528,33 +546,36 @@ static int begin_step(brunt_world *world, step *s, brunt_error *error) {
     if (status) return status;
     // Central differences: velocities are those of the middle of a step, so that forces act over the mean of the steps
     // before and after, and over half a step at the start.
-    s->kick = world->now.steps > 0 ? 0.5 * (world->now.dt + dt) : 0.5 * dt;
-    brunt_gravity_at(world, world->now.time, s->gravity); // as the forces: of the middle of the kick
-    for (int i = 0; i < world->body_count; i++) world->bodies[i].time = (real)(world->now.time + dt);
-    for (int k = 0; k < world->fem_count; k++) world->fems[k].time = (real)(world->now.time + dt);
-    for (int w = 0; w < world->wall_count; w++) world->walls[w].last = (brunt_impulse_account){.external_work = 0};
-    for (int p = 0; p < world->pair_count; p++) world->pairs[p].last = (brunt_impulse_account){.external_work = 0};
-    brunt_pass_end(world, world->all_count);
+    s->kick = world->clock.steps > 0 ? 0.5 * (world->clock.dt + dt) : 0.5 * dt;
+    brunt_gravity_at(world, world->clock.time, s->gravity); // as the forces: of the middle of the kick
+    for (int i = 0; i < world->bodies.mpm_count; i++) world->bodies.mpm[i].time = (real)(world->clock.time + dt);
+    for (int k = 0; k < world->bodies.fem_count; k++) world->bodies.fem[k].time = (real)(world->clock.time + dt);
+    for (int w = 0; w < world->boundaries.wall_count; w++)
+        world->boundaries.walls[w].last = (brunt_impulse_account){.external_work = 0};
+    for (int p = 0; p < world->pairs.count; p++)
+        world->pairs.pair[p].last = (brunt_impulse_account){.external_work = 0};
+    brunt_pass_end(world, world->bodies.count);
     return BRUNT_OK;
 }
 
 static int fail_gas(const brunt_world *world, brunt_error *error) {
     char reason[200];
     snprintf(reason, sizeof reason, "boundaries (%s): the gas's volume has become %.4g m^3",
-             world->walls[world->gas_lost->wall].name, world->gas_lost->gas_volume);
+             world->boundaries.walls[world->boundaries.sets.gas_lost->wall].name,
+             world->boundaries.sets.gas_lost->gas_volume);
     return fail(world, NULL, error, reason);
 }
 
 // The clock, and the accounts of what acts from outside and between bodies.
 static void advance(brunt_world *world, const step *s) {
-    struct brunt_clock *now = &world->now;
+    struct brunt_clock *now = &world->clock;
     brunt_pass_begin(world, BRUNT_PASS_advance);
-    for (int w = 0; w < world->wall_count; w++)
-        brunt_impulse_account_add(&world->walls[w].action, &world->walls[w].last);
-    for (int p = 0; p < world->pair_count; p++)
-        brunt_impulse_account_add(&world->pairs[p].action, &world->pairs[p].last);
+    for (int w = 0; w < world->boundaries.wall_count; w++)
+        brunt_impulse_account_add(&world->boundaries.walls[w].action, &world->boundaries.walls[w].last);
+    for (int p = 0; p < world->pairs.count; p++)
+        brunt_impulse_account_add(&world->pairs.pair[p].action, &world->pairs.pair[p].last);
     brunt_ledger_remember(world);
-    double stop = fmin(s->limit > now->time ? s->limit : INFINITY, world->end);
+    double stop = fmin(s->limit > now->time ? s->limit : INFINITY, world->settings.end);
     now->time = s->dt == stop - now->time ? stop : now->time + s->dt;
     now->steps += 1;
     now->dt = s->dt;
@@ -569,44 +590,47 @@ static int check_energy(brunt_world *world, brunt_error *error) {
     brunt_energy energy;
     brunt_world_energy(world, &energy);
     // Energy that the transfers make is as wrong as energy that is not accounted for.
-    const double made = world->body_count && energy.reference > 0 ? -world->now.transfer / energy.reference : 0;
-    if (!(fabs(energy.error_relative) > world->energy_limit || made > world->energy_limit)) return BRUNT_OK;
+    const double made =
+        world->bodies.mpm_count && energy.reference > 0 ? -world->ledger.transfer / energy.reference : 0;
+    if (!(fabs(energy.error_relative) > world->settings.energy_limit || made > world->settings.energy_limit))
+        return BRUNT_OK;
     char reason[240], transfers[80] = "";
-    if (world->body_count)
+    if (world->bodies.mpm_count)
         snprintf(transfers, sizeof transfers, ", and the transfers have made %.3g %%", 100 * fmax(made, 0));
     snprintf(reason, sizeof reason, "the energy error is %.3g %% of %.3g J%s; time.energy_limit allows %.3g %%",
-             100 * energy.error_relative, energy.reference, transfers, 100 * world->energy_limit);
+             100 * energy.error_relative, energy.reference, transfers, 100 * world->settings.energy_limit);
     return fail(world, NULL, error, reason);
 }
 
 // Steps that shorten without end never get there: told at a thousandth of the longest so far that was not cut short,
 // and the end at a millionth, unless the scene says where. It is looked at while it is known what was fast in the step.
 static int watch_creep(brunt_world *world, brunt_error *error) {
-    const struct brunt_clock *now = &world->now;
+    const struct brunt_clock *now = &world->clock;
     const double share = now->next_dt / now->longest;
-    if (world->fixed_step > 0 || now->time >= world->end || !(share < 1e-3)) return BRUNT_OK;
-    const bool ends = share < 1e-6 && !(world->least_step > 0);
-    if (world->creep_told && !ends) return BRUNT_OK;
+    if (world->settings.fixed_step > 0 || now->time >= world->settings.end || !(share < 1e-3)) return BRUNT_OK;
+    const bool ends = share < 1e-6 && !(world->settings.least_step > 0);
+    if (world->clock.creep_told && !ends) return BRUNT_OK;
     char why[160];
     snprintf(why, sizeof why, "the step has become %.4g s, %s of the longest so far%s", now->next_dt,
              ends ? "less than a millionth" : "less than a thousandth", ends ? " (time.least_step allows less)" : "");
     brunt_error told = {.id = -1};
-    fail_short(world, now->next_dt / world->cfl, ends ? error : &told, why);
+    fail_short(world, now->next_dt / world->settings.cfl, ends ? error : &told, why);
     if (!ends) brunt_warn(world, "%s", told.message);
-    world->creep_told = true;
+    world->clock.creep_told = true;
     return ends ? BRUNT_FAILED : BRUNT_OK;
 }
 
 // The stable step that follows, and whether all is as it should be.
 static int look_over(brunt_world *world, brunt_error *error) {
-    struct brunt_clock *now = &world->now;
+    struct brunt_clock *now = &world->clock;
     brunt_pass_begin(world, BRUNT_PASS_advance);
     now->next_dt = brunt_stable_step(world);
-    if (!isfinite(now->kinetic) || !isfinite(now->fem_kinetic) || !isfinite(now->next_dt))
+    if (!isfinite(world->ledger.kinetic) || !isfinite(world->ledger.fem_kinetic) || !isfinite(now->next_dt))
         return fail(world, NULL, error, "the kinetic energy is not a finite number");
-    if (world->has_fluid && (int64_t)now->steps % SPREAD_CHECK == 0) watch_spread(world);
-    int status = (int64_t)now->steps % ENERGY_CHECK == 0 && isfinite(world->energy_limit) ? check_energy(world, error)
-                                                                                          : BRUNT_OK;
+    if (world->bodies.has_fluid && (int64_t)now->steps % SPREAD_CHECK == 0) watch_spread(world);
+    int status = (int64_t)now->steps % ENERGY_CHECK == 0 && isfinite(world->settings.energy_limit)
+                     ? check_energy(world, error)
+                     : BRUNT_OK;
     if (!status) status = watch_creep(world, error);
     brunt_pass_end(world, 0);
     return status;
@@ -617,25 +641,25 @@ static int take_step(brunt_world *world, double limit, brunt_error *error) {
     double old_kinetic, new_kinetic, kinetic = 0;
     int status = begin_step(world, &s, error);
     if (status) return status;
-    if (world->fem_count) kick_meshes(world, s.gravity, s.kick, s.dt);
-    if (world->gas_lost) return fail_gas(world, error);
-    if (world->body_count && (status = make_grids(world, s.gravity, s.kick, error))) return status;
+    if (world->bodies.fem_count) kick_meshes(world, s.gravity, s.kick, s.dt);
+    if (world->boundaries.sets.gas_lost) return fail_gas(world, error);
+    if (world->bodies.mpm_count && (status = make_grids(world, s.gravity, s.kick, error))) return status;
     if ((status = constrain_velocities(world, s.gravity, s.kick, s.dt, error))) return status;
-    old_kinetic = new_kinetic = world->now.kinetic;
-    if (world->body_count) {
+    old_kinetic = new_kinetic = world->ledger.kinetic;
+    if (world->bodies.mpm_count) {
         keep_ledger(world, s.gravity, s.kick, &old_kinetic, &new_kinetic);
-        if (world->advance) remap_velocities(world, s.dt);
+        if (world->transfers.advance) remap_velocities(world, s.dt);
         status = gather_bodies(world, s.kick, s.dt, &kinetic, error);
     }
-    if (world->hold_count || world->has_damping) finish_kick(world, s.kick);
-    if (world->fem_count) {
+    if (world->boundaries.sets.count || world->boundaries.damping.active) finish_kick(world, s.kick);
+    if (world->bodies.fem_count) {
         int moved = move_meshes(world, s.gravity, s.kick, s.dt, status ? NULL : error);
         status = status ? status : moved;
     }
-    world->now.transfer += world->now.kinetic - old_kinetic + new_kinetic - kinetic;
-    world->now.kinetic = kinetic;
+    world->ledger.transfer += world->ledger.kinetic - old_kinetic + new_kinetic - kinetic;
+    world->ledger.kinetic = kinetic;
     advance(world, &s);
-    if (!status && world->has_erosion) status = erode(world, s.dt, error);
+    if (!status && world->erosion.active) status = erode(world, s.dt, error);
     return status ? status : look_over(world, error);
 }
 

@@ -13,8 +13,8 @@ enum { NODES_A_TASK = 1024 };
 
 static int64_t list_tasks(const brunt_world *world, brunt_fem_task *nodes, brunt_fem_task *elements) {
     int64_t n = 0, e = 0;
-    for (int k = 0; k < world->fem_count; k++) {
-        const brunt_fem_body *fem = &world->fems[k];
+    for (int k = 0; k < world->bodies.fem_count; k++) {
+        const brunt_fem_body *fem = &world->bodies.fem[k];
         for (int32_t i = 0; i < fem->node_count; i += NODES_A_TASK, n++)
             if (nodes)
                 nodes[n] =
@@ -25,17 +25,21 @@ static int64_t list_tasks(const brunt_world *world, brunt_fem_task *nodes, brunt
     return nodes || !elements ? n : e;
 }
 
-int brunt_fem_tasks(brunt_world *world) {
-    world->node_task_count = list_tasks(world, NULL, NULL);
-    for (int k = 0; k < world->fem_count; k++) world->element_task_count += world->fems[k].block_count;
-    world->node_tasks = brunt_alloc((size_t)(world->node_task_count + 1) * sizeof *world->node_tasks);
-    world->element_tasks = brunt_alloc((size_t)(world->element_task_count + 1) * sizeof *world->element_tasks);
-    world->fem_sums = brunt_alloc((size_t)(world->node_task_count + 1) * sizeof *world->fem_sums);
-    if (!world->node_tasks || !world->element_tasks || !world->fem_sums) return -1;
-    list_tasks(world, world->node_tasks, world->element_tasks);
-    for (int t = 0; t < world->threads; t++)
-        for (int k = 0; k < world->fem_count; k++)
-            if (brunt_fem_workspace_fit(&world->fem_work[t], &world->fems[k])) return -1;
+int brunt_fem_tasks_make(brunt_world *world) {
+    world->bodies.tasks.node_count = list_tasks(world, NULL, NULL);
+    for (int k = 0; k < world->bodies.fem_count; k++)
+        world->bodies.tasks.element_count += world->bodies.fem[k].block_count;
+    world->bodies.tasks.node =
+        brunt_alloc((size_t)(world->bodies.tasks.node_count + 1) * sizeof *world->bodies.tasks.node);
+    world->bodies.tasks.element =
+        brunt_alloc((size_t)(world->bodies.tasks.element_count + 1) * sizeof *world->bodies.tasks.element);
+    world->bodies.tasks.sums =
+        brunt_alloc((size_t)(world->bodies.tasks.node_count + 1) * sizeof *world->bodies.tasks.sums);
+    if (!world->bodies.tasks.node || !world->bodies.tasks.element || !world->bodies.tasks.sums) return -1;
+    list_tasks(world, world->bodies.tasks.node, world->bodies.tasks.element);
+    for (int t = 0; t < world->settings.threads; t++)
+        for (int k = 0; k < world->bodies.fem_count; k++)
+            if (brunt_fem_workspace_fit(&world->scratch.meshes[t], &world->bodies.fem[k])) return -1;
     return 0;
 }
 
@@ -55,9 +59,9 @@ static void kick_nodes(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     const job *j = context;
     for (int64_t t = begin; t < end; t++) {
-        const brunt_fem_task *task = &j->world->node_tasks[t];
-        brunt_fem_body *fem = &j->world->fems[task->fem];
-        brunt_fem_kick(fem, task->begin, task->end, j->dt, j->gravity, &j->world->fem_sums[t]);
+        const brunt_fem_task *task = &j->world->bodies.tasks.node[t];
+        brunt_fem_body *fem = &j->world->bodies.fem[task->fem];
+        brunt_fem_kick(fem, task->begin, task->end, j->dt, j->gravity, &j->world->bodies.tasks.sums[t]);
         if (fem->bonds) keep_still(fem, task->begin, task->end);
     }
 }
@@ -77,9 +81,9 @@ static void drift_nodes(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     const job *j = context;
     for (int64_t t = begin; t < end; t++) {
-        const brunt_fem_task *task = &j->world->node_tasks[t];
-        brunt_fem_body *fem = &j->world->fems[task->fem];
-        brunt_fem_drift(fem, task->begin, task->end, j->dt, &j->world->fem_sums[t]);
+        const brunt_fem_task *task = &j->world->bodies.tasks.node[t];
+        brunt_fem_body *fem = &j->world->bodies.fem[task->fem];
+        brunt_fem_drift(fem, task->begin, task->end, j->dt, &j->world->bodies.tasks.sums[t]);
         if (fem->bonds && fem->element->axisymmetric) pass_axis(fem, task);
     }
 }
@@ -87,55 +91,60 @@ static void drift_nodes(void *context, int64_t begin, int64_t end, int worker) {
 static void strain_elements(void *context, int64_t begin, int64_t end, int worker) {
     const job *j = context;
     for (int64_t t = begin; t < end; t++) {
-        const brunt_fem_task *task = &j->world->element_tasks[t];
-        brunt_fem_body *fem = &j->world->fems[task->fem];
+        const brunt_fem_task *task = &j->world->bodies.tasks.element[t];
+        brunt_fem_body *fem = &j->world->bodies.fem[task->fem];
         if (fem->block[task->begin].count) // all of them may have eroded
-            fem->element->forces(fem, task->begin, (real)j->dt, &j->world->fem_work[worker], &fem->report[task->begin]);
+            fem->element->forces(fem, task->begin, (real)j->dt, &j->world->scratch.meshes[worker],
+                                 &fem->report[task->begin]);
     }
 }
 
 // Gravity's work is taken at the mean of the velocities before the kick and after all impulses.
 static void book_gravity(brunt_world *world, const double gravity[3], double dt) {
-    for (int64_t t = 0; t < world->node_task_count; t++) {
-        const brunt_fem_sums *s = &world->fem_sums[t];
+    for (int64_t t = 0; t < world->bodies.tasks.node_count; t++) {
+        const brunt_fem_sums *s = &world->bodies.tasks.sums[t];
         for (int a = 0; a < 3; a++) {
             int k = (a + 1) % 3, l = (a + 2) % 3;
-            world->now.gravity_work += 0.5 * dt * gravity[a] * (s->momentum_old[a] + s->momentum[a]);
-            world->now.gravity_impulse[a] += dt * s->mass * gravity[a];
-            world->now.gravity_angular[a] += dt * (s->first_moment[k] * gravity[l] - s->first_moment[l] * gravity[k]);
+            world->ledger.gravity_work += 0.5 * dt * gravity[a] * (s->momentum_old[a] + s->momentum[a]);
+            world->ledger.gravity_impulse[a] += dt * s->mass * gravity[a];
+            world->ledger.gravity_angular[a] +=
+                dt * (s->first_moment[k] * gravity[l] - s->first_moment[l] * gravity[k]);
         }
     }
 }
 
 void brunt_fem_kick_all(brunt_world *world, const double gravity[3], double dt) {
     job j = {world, gravity, dt};
-    brunt_parallel(world->threads, world->node_task_count, 1, kick_nodes, &j, &world->pass[BRUNT_PASS_kick].threads);
+    brunt_parallel(world->settings.threads, world->bodies.tasks.node_count, 1, kick_nodes, &j,
+                   &world->pass[BRUNT_PASS_kick].threads);
 }
 
 void brunt_fem_drift_all(brunt_world *world, const double gravity[3], double kick, double dt) {
     job j = {world, gravity, dt};
-    brunt_parallel(world->threads, world->node_task_count, 1, drift_nodes, &j, &world->pass[BRUNT_PASS_drift].threads);
-    if (world->has_gravity) book_gravity(world, gravity, kick);
-    world->now.fem_kinetic = 0;
-    for (int64_t t = 0; t < world->node_task_count; t++) world->now.fem_kinetic += world->fem_sums[t].kinetic;
+    brunt_parallel(world->settings.threads, world->bodies.tasks.node_count, 1, drift_nodes, &j,
+                   &world->pass[BRUNT_PASS_drift].threads);
+    if (world->settings.has_gravity) book_gravity(world, gravity, kick);
+    world->ledger.fem_kinetic = 0;
+    for (int64_t t = 0; t < world->bodies.tasks.node_count; t++)
+        world->ledger.fem_kinetic += world->bodies.tasks.sums[t].kinetic;
 }
 
 brunt_fem_body *brunt_fem_elements_all(brunt_world *world, double dt, int32_t *bad, const char **reason) {
     job j = {.world = world, .dt = dt};
-    brunt_parallel(world->threads, world->element_task_count, 1, strain_elements, &j,
+    brunt_parallel(world->settings.threads, world->bodies.tasks.element_count, 1, strain_elements, &j,
                    dt > 0 ? &world->pass[BRUNT_PASS_elements].threads : NULL); // no step: no time of one
     brunt_fem_body *failed = NULL;
     double work = 0, stored = 0;
-    for (int k = 0; k < world->fem_count; k++)
-        for (int32_t b = 0; b < world->fems[k].block_count; b++) {
-            const brunt_fem_report *r = &world->fems[k].report[b];
+    for (int k = 0; k < world->bodies.fem_count; k++)
+        for (int32_t b = 0; b < world->bodies.fem[k].block_count; b++) {
+            const brunt_fem_report *r = &world->bodies.fem[k].report[b];
             work += r->stress_work;
             stored += r->hourglass_stored;
-            if (dt > 0) world->now.hourglass_lost += r->hourglass_lost;
-            if (r->bad >= 0 && !failed) failed = &world->fems[k], *bad = r->bad, *reason = r->reason;
+            if (dt > 0) world->ledger.hourglass_lost += r->hourglass_lost;
+            if (r->bad >= 0 && !failed) failed = &world->bodies.fem[k], *bad = r->bad, *reason = r->reason;
         }
-    world->now.hourglass_stored = stored;
-    if (dt > 0) world->now.fem_stress_work = work;
+    world->ledger.hourglass_stored = stored;
+    if (dt > 0) world->ledger.fem_stress_work = work;
     return failed;
 }
 
@@ -157,13 +166,13 @@ static double blocks_step(const brunt_fem_body *fem) {
 // Elements alone are stable up to dt_e. That is dt^2 omega^2 <= 4 of springs, but with dampers, of rates half a step
 // behind, dt^2 omega^2 + 2 c dt <= 4, which at a share s of dt_e is at most 4 s: with loads 4 dt / dt_e + dt^2 q <= 4.
 double brunt_fem_body_step(const brunt_world *world, int fem) {
-    const double inverse = 1 / blocks_step(&world->fems[fem]), q = brunt_load_frequency(world, fem);
+    const double inverse = 1 / blocks_step(&world->bodies.fem[fem]), q = brunt_load_frequency(world, fem);
     return q > 0 ? 2 / (inverse + sqrt(inverse * inverse + q)) : 1 / inverse;
 }
 
 double brunt_fem_stable_step(const brunt_world *world) {
     double least = INFINITY;
-    for (int k = 0; k < world->fem_count; k++) {
+    for (int k = 0; k < world->bodies.fem_count; k++) {
         double step = brunt_fem_body_step(world, k);
         if (isnan(step)) return NAN;
         least = fmin(least, step);
@@ -181,7 +190,7 @@ static int32_t shortest_element(brunt_world *world, const brunt_fem_body *fem) {
         const brunt_fem_block *block = &fem->block[b];
         if (!block->count || fem->report[b].stable_step > block_least) continue;
         for (int32_t s = block->first; s < block->first + block->count; s++) {
-            double step = brunt_fem_single_look(single, fem, s, 0, 0, &world->fem_work[0]).stable_step;
+            double step = brunt_fem_single_look(single, fem, s, 0, 0, &world->scratch.meshes[0]).stable_step;
             if (step < shortest) shortest = step, slot = s;
         }
     }
@@ -191,21 +200,21 @@ static int32_t shortest_element(brunt_world *world, const brunt_fem_body *fem) {
 
 brunt_fem_body *brunt_fem_shortest(brunt_world *world, int32_t *slot) {
     const double least = brunt_fem_stable_step(world);
-    for (int k = 0; k < world->fem_count; k++)
+    for (int k = 0; k < world->bodies.fem_count; k++)
         if (brunt_fem_body_step(world, k) <= least)
-            return (*slot = shortest_element(world, &world->fems[k])) < 0 ? NULL : &world->fems[k];
+            return (*slot = shortest_element(world, &world->bodies.fem[k])) < 0 ? NULL : &world->bodies.fem[k];
     return NULL;
 }
 
 void brunt_warn(brunt_world *world, const char *format, ...) {
     enum { MOST = 64 };
-    if (!world->warnings && !(world->warnings = brunt_alloc(MOST * sizeof *world->warnings))) return;
-    if (world->warning_count == MOST) return;
+    if (!world->messages.text && !(world->messages.text = brunt_alloc(MOST * sizeof *world->messages.text))) return;
+    if (world->messages.count == MOST) return;
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(world->warnings[world->warning_count++], sizeof *world->warnings, format, arguments);
+    vsnprintf(world->messages.text[world->messages.count++], sizeof *world->messages.text, format, arguments);
     va_end(arguments);
 }
 
-int32_t brunt_warning_count(const brunt_world *world) { return world->warning_count; }
-const char *brunt_world_warning(const brunt_world *world, int32_t warning) { return world->warnings[warning]; }
+int32_t brunt_warning_count(const brunt_world *world) { return world->messages.count; }
+const char *brunt_world_warning(const brunt_world *world, int32_t warning) { return world->messages.text[warning]; }

@@ -6,9 +6,9 @@
 
 // The first model that brings an effect, NULL when none does; `flag`: where brunt_model says so.
 static const brunt_model *find_model(const brunt_world *world, size_t flag) {
-    for (int i = 0; i < world->all_count; i++)
+    for (int i = 0; i < world->bodies.count; i++)
         for (int k = 0; k < BRUNT_COMPONENTS; k++) {
-            const brunt_body_ref body = world->all[i];
+            const brunt_body_ref body = world->bodies.all[i];
             const brunt_model *model = body.fem ? body.fem->material.model[k] : body.mpm->material.model[k];
             if (model && *(const bool *)((const char *)model + flag)) return model;
         }
@@ -16,46 +16,48 @@ static const brunt_model *find_model(const brunt_world *world, size_t flag) {
 }
 
 static bool has_hourglass(const brunt_world *world) {
-    for (int k = 0; k < world->fem_count; k++)
-        if (world->fems[k].element->hourglass_modes) return true;
+    for (int k = 0; k < world->bodies.fem_count; k++)
+        if (world->bodies.fem[k].element->hourglass_modes) return true;
     return false;
 }
 
 static bool has_sheets(const brunt_world *world) {
-    for (int k = 0; k < world->fem_count; k++)
-        if (world->fems[k].element->sheet) return true;
+    for (int k = 0; k < world->bodies.fem_count; k++)
+        if (world->bodies.fem[k].element->sheet) return true;
     return false;
 }
 
 static bool has_mass_scaling(const brunt_world *world) {
-    for (int k = 0; k < world->fem_count; k++)
-        if (world->fems[k].field[BRUNT_ELEMENT_density_scale].components) return true;
+    for (int k = 0; k < world->bodies.fem_count; k++)
+        if (world->bodies.fem[k].field[BRUNT_ELEMENT_density_scale].components) return true;
     return false;
 }
 
 // Besides the axis of rings.
 static bool has_mirrors(const brunt_world *world) {
-    return world->mirror_count > 0 && world->mirrors[world->mirror_count - 1].wall >= 0;
+    return world->boundaries.mirror_count > 0 &&
+           world->boundaries.mirrors[world->boundaries.mirror_count - 1].wall >= 0;
 }
 
 #define BRUNT_EFFECTS(X)                                                                                               \
-    X(elements, world->fem_count > 0, "bodies: method fem or membrane")                                                \
-    X(affine, world->transfer == BRUNT_APIC && world->body_count > 0, "grid.transfer")                                 \
-    X(contact, world->has_contact || world->has_augury || world->has_grid_surfaces, "contact.method")                  \
-    X(friction, world->has_friction, "friction of contact or boundaries")                                              \
-    X(surfaces, world->has_surfaces, "contact of meshes, or planes they may meet")                                     \
+    X(elements, world->bodies.fem_count > 0, "bodies: method fem or membrane")                                         \
+    X(affine, world->settings.transfer == BRUNT_APIC && world->bodies.mpm_count > 0, "grid.transfer")                  \
+    X(contact, world->contact.has_grid || world->contact.has_augury || world->contact.has_grid_surfaces,               \
+      "contact.method")                                                                                                \
+    X(friction, world->contact.has_friction || world->boundaries.has_friction, "friction of contact or boundaries")    \
+    X(surfaces, world->contact.has_surfaces, "contact of meshes, or planes they may meet")                             \
     X(hourglass, has_hourglass(world), "bodies: elements with hourglass modes")                                        \
     X(mass_scaling, has_mass_scaling(world), "bodies: mass_scaling")                                                   \
-    X(groups, world->hold_count > 0, "boundaries: group")                                                              \
-    X(gas, world->has_gas, "boundaries: gas")                                                                          \
-    X(damping, world->has_damping, "bodies: damping")                                                                  \
+    X(groups, world->boundaries.sets.count > 0, "boundaries: group")                                                   \
+    X(gas, world->boundaries.sets.has_gas, "boundaries: gas")                                                          \
+    X(damping, world->boundaries.damping.active, "bodies: damping")                                                    \
     X(membranes, has_sheets(world), "bodies: method membrane")                                                         \
-    X(walls, world->has_walls, "boundaries: condition separate")                                                       \
-    X(axisymmetric, world->axisymmetric, "axisymmetric")                                                               \
+    X(walls, world->boundaries.has_walls, "boundaries: condition separate")                                            \
+    X(axisymmetric, world->settings.axisymmetric, "axisymmetric")                                                      \
     X(mirrors, has_mirrors(world), "boundaries: condition symmetry or slip")                                           \
-    X(conditions, world->has_conditions, "boundaries: stick, oblique slip, region")                                    \
-    X(erosion, world->has_erosion, "bodies: erosion, materials: failure")                                              \
-    X(gravity, world->has_gravity, "loads.gravity")
+    X(conditions, world->boundaries.has_conditions, "boundaries: stick, oblique slip, region")                         \
+    X(erosion, world->erosion.active, "bodies: erosion, materials: failure")                                           \
+    X(gravity, world->settings.has_gravity, "loads.gravity")
 
 #define BRUNT_MODEL_EFFECTS(X)                                                                                         \
     X(plasticity, plastic)                                                                                             \
@@ -131,14 +133,14 @@ enum { EXTRA = 2 };
 
 int32_t brunt_array_count(const brunt_world *world) {
     int32_t n = 0;
-    for (int i = 0; i < world->all_count; i++) {
-        const brunt_body *mpm = world->all[i].mpm;
-        const brunt_fem_body *fem = world->all[i].fem;
+    for (int i = 0; i < world->bodies.count; i++) {
+        const brunt_body *mpm = world->bodies.all[i].mpm;
+        const brunt_fem_body *fem = world->bodies.all[i].fem;
         for (int f = 0; mpm && f < mpm->particles.field_count; f++) n += mpm->particles.field[f].components > 0;
         for (int f = 0; fem && f < fem->field_count; f++) n += fem->field[f].components > 0;
         n += EXTRA;
     }
-    return n + (world->has_surfaces ? 1 : 0);
+    return n + (world->contact.has_surfaces ? 1 : 0);
 }
 
 static brunt_array particle_array(const brunt_body *body, int32_t index) {
@@ -176,9 +178,9 @@ static brunt_array element_array(const brunt_fem_body *body, int32_t index) {
 }
 
 brunt_array brunt_world_array(const brunt_world *world, int32_t index) {
-    for (int i = 0; i < world->all_count; i++) {
-        const brunt_body *mpm = world->all[i].mpm;
-        const brunt_fem_body *fem = world->all[i].fem;
+    for (int i = 0; i < world->bodies.count; i++) {
+        const brunt_body *mpm = world->bodies.all[i].mpm;
+        const brunt_fem_body *fem = world->bodies.all[i].fem;
         int32_t n = EXTRA;
         for (int f = 0; mpm && f < mpm->particles.field_count; f++) n += mpm->particles.field[f].components > 0;
         for (int f = 0; fem && f < fem->field_count; f++) n += fem->field[f].components > 0;
@@ -186,8 +188,8 @@ brunt_array brunt_world_array(const brunt_world *world, int32_t index) {
         index -= n;
     }
     brunt_array array = {.name = "contact of surfaces", .unit = "", .components = 1};
-    array.bytes = (size_t)world->skin.node_count * 200 + (size_t)world->skin.face_count * 76 +
-                  brunt_node_to_facet_bytes(world->facing) + world->points.point_capacity +
-                  world->points.entry_capacity + world->points.support_capacity;
+    array.bytes = (size_t)world->contact.surface.node_count * 200 + (size_t)world->contact.surface.face_count * 76 +
+                  brunt_node_to_facet_bytes(world->contact.node_to_facet) + world->contact.constraints.point_capacity +
+                  world->contact.constraints.entry_capacity + world->contact.constraints.support_capacity;
     return array;
 }

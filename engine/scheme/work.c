@@ -153,16 +153,16 @@ static double model_flops(const brunt_material *material, int dim) {
 static amount scatter_work(const brunt_world *world, const brunt_body *body) {
     const crowd per = crowd_of(body);
     return (amount){particle_bytes(&body->particles, SCATTER) + 2 * per.blocks * buffer_bytes(&body->grid),
-                    scatter_flops(body, world->transfer == BRUNT_APIC, per)};
+                    scatter_flops(body, world->settings.transfer == BRUNT_APIC, per)};
 }
 
 // With nodes as velocities where `pass` takes them from the grid.
 static amount gather_work(const brunt_world *world, const brunt_body *body, transfer_pass pass) {
     const crowd per = crowd_of(body);
-    const bool old = world->transfer == BRUNT_FLIP && pass != GATHER_REST;
-    const bool affine = world->transfer == BRUNT_APIC && pass != ADVANCE;
+    const bool old = world->settings.transfer == BRUNT_FLIP && pass != GATHER_REST;
+    const bool affine = world->settings.transfer == BRUNT_APIC && pass != ADVANCE;
     amount work = {particle_bytes(&body->particles, pass) + per.slots * slot_bytes(),
-                   interpolation_flops(body, old, affine, per) + update_flops(body, world->transfer, pass)};
+                   interpolation_flops(body, old, affine, per) + update_flops(body, world->settings.transfer, pass)};
     if (pass != ADVANCE) work.flops += model_flops(&body->material, body->particles.point_dim);
     return work;
 }
@@ -187,7 +187,8 @@ static amount grid_sum_work(const brunt_world *world, const brunt_body *body) {
     const brunt_grid *grid = &body->grid;
     const double nodes = fmax(1, (double)grid->slot_count * BRUNT_BLOCK_NODES);
     const double sources = (double)grid->block_count * grid->span_nodes / nodes; // of a node: blocks that reach it
-    return (amount){BRUNT_NODE_REALS * sizeof(real) * (2 + sources), 8 * sources + (world->has_gravity ? 6 : 0)};
+    return (amount){BRUNT_NODE_REALS * sizeof(real) * (2 + sources),
+                    8 * sources + (world->settings.has_gravity ? 6 : 0)};
 }
 
 // 1 / m and the part of it that is the body's own; of each component v, work, v + impulse / m.
@@ -195,7 +196,7 @@ static amount grid_update_work(void) { return (amount){2 * BRUNT_NODE_REALS * si
 
 // Squares of both velocities and their sum by mass, of each component; both energies; with gravity the place and m x.
 static amount ledger_work(const brunt_world *world) {
-    return (amount){BRUNT_NODE_REALS * sizeof(real), 3 * 7 + 4 + (world->has_gravity ? 13 : 0)};
+    return (amount){BRUNT_NODE_REALS * sizeof(real), 3 * 7 + 4 + (world->settings.has_gravity ? 13 : 0)};
 }
 
 // ------------------------------------------------------------------------------------------ meshes
@@ -303,7 +304,7 @@ static amount points_pass(const brunt_world *world, const brunt_body *body, int 
     switch (pass) {
     case BRUNT_PASS_sort: return sort_work(body);
     case BRUNT_PASS_scatter: return scatter_work(world, body);
-    case BRUNT_PASS_gather: return gather_work(world, body, world->advance ? GATHER_REST : GATHER);
+    case BRUNT_PASS_gather: return gather_work(world, body, world->transfers.advance ? GATHER_REST : GATHER);
     case BRUNT_PASS_grid: return grid_sum_work(world, body);
     case BRUNT_PASS_update: return grid_update_work();
     case BRUNT_PASS_ledger: return ledger_work(world);
@@ -333,7 +334,8 @@ static const char *unit_of(const brunt_world *world, int pass) {
     case BRUNT_PASS_remap:
     case BRUNT_PASS_gather: return "particle";
     case BRUNT_PASS_elements: return "element";
-    case BRUNT_PASS_erosion: return !world->fem_count ? "particle" : !world->body_count ? "element" : "point";
+    case BRUNT_PASS_erosion:
+        return !world->bodies.fem_count ? "particle" : !world->bodies.mpm_count ? "element" : "point";
     case BRUNT_PASS_advance: return "body";
     default: return "node";
     }
@@ -347,15 +349,15 @@ static double units_of(const brunt_body *body, int pass) {
 brunt_work brunt_pass_work(const brunt_world *world, int pass) {
     amount all = {0, 0};
     double units = 0;
-    for (int i = 0; i < world->body_count; i++) {
-        const amount each = points_pass(world, &world->bodies[i], pass);
-        const double count = units_of(&world->bodies[i], pass);
+    for (int i = 0; i < world->bodies.mpm_count; i++) {
+        const amount each = points_pass(world, &world->bodies.mpm[i], pass);
+        const double count = units_of(&world->bodies.mpm[i], pass);
         if (!(each.bytes > 0)) continue;
         units += count;
         all = sum_of(all, (amount){count * each.bytes, count * each.flops});
     }
-    for (int k = 0; k < world->fem_count; k++) {
-        const brunt_fem_body *body = &world->fems[k];
+    for (int k = 0; k < world->bodies.fem_count; k++) {
+        const brunt_fem_body *body = &world->bodies.fem[k];
         const amount each = mesh_pass(body, pass);
         const double count = pass == BRUNT_PASS_elements ? body->element_count : body->node_count;
         if (!(each.bytes > 0)) continue;

@@ -4,12 +4,12 @@
 #include "world/world.h"
 
 int32_t brunt_body_field_count(const brunt_world *world, int32_t body) {
-    const brunt_body_ref ref = world->all[body];
+    const brunt_body_ref ref = world->bodies.all[body];
     return ref.mpm ? brunt_read_particle_fields(ref.mpm) : brunt_read_mesh_fields(world, ref.fem);
 }
 
 brunt_field_info brunt_body_field(const brunt_world *world, int32_t body, int32_t field) {
-    const brunt_body_ref ref = world->all[body];
+    const brunt_body_ref ref = world->bodies.all[body];
     return ref.mpm ? brunt_read_particle_field(ref.mpm, field) : brunt_read_mesh_field(world, ref.fem, field);
 }
 
@@ -20,7 +20,7 @@ int32_t brunt_body_find_field(const brunt_world *world, int32_t body, const char
 }
 
 void brunt_body_read(brunt_world *world, int32_t body, int32_t field, double *out) {
-    const brunt_body_ref ref = world->all[body];
+    const brunt_body_ref ref = world->bodies.all[body];
     if (ref.mpm)
         brunt_read_particles(ref.mpm, field, out);
     else

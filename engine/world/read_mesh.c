@@ -51,17 +51,17 @@ static const brunt_field_info contact_fields[] = {
 enum { CONTACT_FIELDS = sizeof contact_fields / sizeof contact_fields[0] };
 
 static void read_contact(const brunt_world *world, const brunt_fem_body *fem, int32_t field, double *out) {
-    const brunt_contact_surface *s = &world->skin;
+    const brunt_contact_surface *s = &world->contact.surface;
     const int components = contact_fields[field].components;
     for (int64_t k = 0; k < (int64_t)fem->node_count * components; k++) out[k] = field == 0 ? NAN : 0;
-    const int32_t body = (int32_t)(fem - world->fems);
-    if (world->now.steps == 0 || !s->active[body]) return;
+    const int32_t body = (int32_t)(fem - world->bodies.fem);
+    if (world->clock.steps == 0 || !s->active[body]) return;
     for (int32_t n = s->node_range[body]; n < s->node_end[body]; n++) {
         double *to = out + (int64_t)fem->node_id[s->node[n]] * components;
         if (field == 0) *to = isinf(s->gap[n]) ? NAN : s->gap[n];
         if (field == 2) *to = s->state[n];
         for (int a = 0; field == 1 && a < 3; a++)
-            to[a] = s->area[n] > 0 && world->now.kick > 0 ? s->impulse[n][a] / (s->area[n] * world->now.kick) : 0;
+            to[a] = s->area[n] > 0 && world->clock.kick > 0 ? s->impulse[n][a] / (s->area[n] * world->clock.kick) : 0;
     }
 }
 
@@ -153,7 +153,7 @@ static int element_count(const brunt_fem_body *fem) {
 
 // ------------------------------------------------------------------------------------------ all together
 
-static int contact_count(const brunt_world *world) { return world->has_surfaces ? CONTACT_FIELDS : 0; }
+static int contact_count(const brunt_world *world) { return world->contact.has_surfaces ? CONTACT_FIELDS : 0; }
 
 // Fields at nodes, those of contact, those at elements, and after them the states of the material.
 int32_t brunt_read_mesh_fields(const brunt_world *world, const brunt_fem_body *fem) {
@@ -204,7 +204,7 @@ void brunt_read_mesh(brunt_world *world, brunt_fem_body *fem, int32_t field, dou
 }
 
 void brunt_body_connectivity(const brunt_world *world, int32_t body, int32_t *out) {
-    brunt_fem_body *fem = world->all[body].fem;
+    brunt_fem_body *fem = world->bodies.all[body].fem;
     const int nodes = fem->element->nodes;
     for (int32_t s = 0; s < fem->slots; s++) {
         if (fem->element_id[s] < 0) continue;

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "base/saved.h"
 #include "base/simd.h"
 #include "base/memory.h"
 #include "mpm/sort.h"
@@ -19,8 +20,10 @@ static const char REAL_TYPE = sizeof(real) == 8 ? 'd' : 'f';
 // World blocks: clock (with the speeds of bodies of particles), walls (with the gas that groups of them enclose),
 // pairs; where surfaces meet what their search remembers; and where contact keeps them the affine velocities of
 // boundary nodes. Last the accounts of erosion, if there is any.
-static int plain_blocks(const brunt_world *world) { return world->skin.affine ? 5 : world->has_surfaces ? 4 : 3; }
-static int world_blocks(const brunt_world *world) { return plain_blocks(world) + (world->has_erosion ? 1 : 0); }
+static int plain_blocks(const brunt_world *world) {
+    return world->contact.surface.affine ? 5 : world->contact.has_surfaces ? 4 : 3;
+}
+static int world_blocks(const brunt_world *world) { return plain_blocks(world) + (world->erosion.active ? 1 : 0); }
 
 enum { EROSION_BLOCK = 5, ELEMENTS_FIELD = -2 };
 
@@ -33,9 +36,9 @@ typedef struct place {
 } place;
 
 static place find(brunt_world *world, int32_t index) {
-    for (int i = 0; i < world->all_count; i++) {
-        brunt_body *mpm = world->all[i].mpm;
-        brunt_fem_body *fem = world->all[i].fem;
+    for (int i = 0; i < world->bodies.count; i++) {
+        brunt_body *mpm = world->bodies.all[i].mpm;
+        brunt_fem_body *fem = world->bodies.all[i].fem;
         if (index-- == 0) return (place){mpm, fem, -1};
         if (fem && fem->bonds && index-- == 0) return (place){NULL, fem, ELEMENTS_FIELD};
         for (int f = 0; mpm && f < mpm->particles.field_count; f++)
@@ -49,9 +52,9 @@ static place find(brunt_world *world, int32_t index) {
 int32_t brunt_state_count(brunt_world *world) {
     if (!world) return 0;
     int32_t n = world_blocks(world);
-    for (int i = 0; i < world->all_count; i++) {
-        const brunt_body *mpm = world->all[i].mpm;
-        const brunt_fem_body *fem = world->all[i].fem;
+    for (int i = 0; i < world->bodies.count; i++) {
+        const brunt_body *mpm = world->bodies.all[i].mpm;
+        const brunt_fem_body *fem = world->bodies.all[i].fem;
         n += fem && fem->bonds ? 2 : 1;
         for (int f = 0; mpm && f < mpm->particles.field_count; f++) n += mpm->particles.field[f].components > 0;
         for (int f = 0; fem && f < fem->field_count; f++) n += fem->field[f].components > 0;
@@ -59,9 +62,53 @@ int32_t brunt_state_count(brunt_world *world) {
     return n;
 }
 
-// An action is a run of doubles.
-enum { ACTION_DOUBLES = sizeof(brunt_impulse_account) / sizeof(double) };
-enum { CLOCK_DOUBLES = sizeof(struct brunt_clock) / sizeof(double) };
+#define CLOCK(member) BRUNT_SAVED(brunt_world, clock.member)
+#define LEDGER(member) BRUNT_SAVED(brunt_world, ledger.member)
+static const brunt_saved clock_table[] = {
+    CLOCK(time),
+    CLOCK(steps),
+    CLOCK(dt),
+    CLOCK(kick),
+    CLOCK(next_dt),
+    CLOCK(dt_min),
+    CLOCK(dt_max),
+    CLOCK(longest),
+    LEDGER(kinetic),
+    LEDGER(fem_kinetic),
+    LEDGER(fem_stress_work),
+    LEDGER(hourglass_stored),
+    LEDGER(hourglass_lost),
+    LEDGER(stress_work),
+    LEDGER(transfer),
+    LEDGER(gravity_work),
+    BRUNT_SAVED(brunt_world, contact.frame),
+    LEDGER(gravity_impulse),
+    LEDGER(gravity_angular),
+    LEDGER(damped),
+    LEDGER(damping_impulse),
+    LEDGER(damping_angular),
+    LEDGER(initial_energy),
+    LEDGER(initial_kinetic),
+    LEDGER(linear_initial),
+    LEDGER(angular_initial),
+    LEDGER(scale_linear),
+    LEDGER(scale_angular),
+    LEDGER(energy_scale),
+    LEDGER(eroded_plastic),
+    LEDGER(eroded_viscosity),
+    LEDGER(eroded_heat),
+};
+#define ACCOUNT(member) BRUNT_SAVED(brunt_impulse_account, member)
+static const brunt_saved account_table[] = {ACCOUNT(impulse),     ACCOUNT(angular),       ACCOUNT(external_work),
+                                            ACCOUNT(normal_loss), ACCOUNT(friction_loss), ACCOUNT(area)};
+enum { CLOCK_ROWS = BRUNT_SAVED_ROWS(clock_table), ACCOUNT_ROWS = BRUNT_SAVED_ROWS(account_table) };
+
+static double *get_account(const brunt_impulse_account *account, double *out) {
+    return brunt_saved_get(account_table, ACCOUNT_ROWS, account, out);
+}
+static const double *set_account(brunt_impulse_account *account, const double *in) {
+    return brunt_saved_set(account_table, ACCOUNT_ROWS, account, in);
+}
 
 brunt_state_block brunt_state_info(brunt_world *world, int32_t index) {
     brunt_state_block block = {.type = 'd'};
@@ -91,11 +138,12 @@ brunt_state_block brunt_state_info(brunt_world *world, int32_t index) {
     }
     static const char *const names[] = {"world/clock",          "world/walls",          "world/pairs",
                                         "world/contact_search", "world/contact_affine", "world/erosion"};
-    const int64_t counts[] = {CLOCK_DOUBLES + world->body_count,
-                              2 * (int64_t)world->wall_count * ACTION_DOUBLES + brunt_gas_state_count(world),
-                              2 * (int64_t)world->pair_count * ACTION_DOUBLES,
-                              brunt_node_to_facet_state_count(&world->skin),
-                              brunt_surface_affine_count(&world->skin),
+    const int64_t account = 2 * brunt_saved_count(account_table, ACCOUNT_ROWS); // since the start, and of the last step
+    const int64_t counts[] = {brunt_saved_count(clock_table, CLOCK_ROWS) + world->bodies.mpm_count,
+                              world->boundaries.wall_count * account + brunt_gas_state_count(world),
+                              world->pairs.count * account,
+                              brunt_node_to_facet_state_count(&world->contact.surface),
+                              brunt_surface_affine_count(&world->contact.surface),
                               brunt_erosion_state_count(world)};
     snprintf(block.name, sizeof block.name, "%s", names[at.field]);
     block.count = counts[at.field];
@@ -130,19 +178,15 @@ void brunt_state_get(brunt_world *world, int32_t index, void *out) {
     }
     double *to = out;
     if (at.field == EROSION_BLOCK) brunt_erosion_state_get(world, to);
-    if (at.field == 3) brunt_node_to_facet_state_get(world->facing, &world->skin, to);
-    if (at.field == 4) brunt_surface_affine_get(&world->skin, to);
-    if (at.field == 0) memcpy(to, &world->now, sizeof world->now);
-    for (int i = 0; at.field == 0 && i < world->body_count; i++) to[CLOCK_DOUBLES + i] = (double)world->bodies[i].speed;
-    for (int w = 0; at.field == 1 && w < world->wall_count; w++, to += 2 * ACTION_DOUBLES) {
-        memcpy(to, &world->walls[w].action, sizeof(brunt_impulse_account));
-        memcpy(to + ACTION_DOUBLES, &world->walls[w].last, sizeof(brunt_impulse_account));
-    }
+    if (at.field == 3) brunt_node_to_facet_state_get(world->contact.node_to_facet, &world->contact.surface, to);
+    if (at.field == 4) brunt_surface_affine_get(&world->contact.surface, to);
+    if (at.field == 0) to = brunt_saved_get(clock_table, CLOCK_ROWS, world, to);
+    for (int i = 0; at.field == 0 && i < world->bodies.mpm_count; i++) *to++ = (double)world->bodies.mpm[i].speed;
+    for (int w = 0; at.field == 1 && w < world->boundaries.wall_count; w++)
+        to = get_account(&world->boundaries.walls[w].last, get_account(&world->boundaries.walls[w].action, to));
     if (at.field == 1) brunt_gas_state_get(world, to);
-    for (int p = 0; at.field == 2 && p < world->pair_count; p++, to += 2 * ACTION_DOUBLES) {
-        memcpy(to, &world->pairs[p].action, sizeof(brunt_impulse_account));
-        memcpy(to + ACTION_DOUBLES, &world->pairs[p].last, sizeof(brunt_impulse_account));
-    }
+    for (int p = 0; at.field == 2 && p < world->pairs.count; p++)
+        to = get_account(&world->pairs.pair[p].last, get_account(&world->pairs.pair[p].action, to));
 }
 
 // What follows from the elements there are: loads, and the surfaces, whose numbers the blocks of the world are in.
@@ -151,8 +195,8 @@ static int set_elements(brunt_world *world, brunt_fem_body *fem, const int64_t *
     if (brunt_fem_elements_set(fem, in))
         return brunt_fail(error, BRUNT_BAD_INPUT, "the state block 'bodies/%s/elements' is not of this mesh",
                           fem->name);
-    brunt_node_sets_follow(world, (int)(fem - world->fems), &element);
-    return world->has_surfaces ? brunt_surfaces_renew(world, error) : BRUNT_OK;
+    brunt_node_sets_follow(world, (int)(fem - world->bodies.fem), &element);
+    return world->contact.has_surfaces ? brunt_surfaces_renew(world, error) : BRUNT_OK;
 }
 
 // Particles without gaps between them, in their order; new ones at the end are all 0. Their grid is out of date then.
@@ -227,39 +271,36 @@ int brunt_state_set(brunt_world *world, int32_t index, const void *in, int64_t c
     }
     const double *from = in;
     if (at.field == EROSION_BLOCK) brunt_erosion_state_set(world, from);
-    if (at.field == 3 && brunt_node_to_facet_state_set(&world->facing, &world->skin, world->body_count, from))
+    if (at.field == 3 && brunt_node_to_facet_state_set(&world->contact.node_to_facet, &world->contact.surface,
+                                                       world->bodies.mpm_count, from))
         return brunt_fail(error, BRUNT_FAILED, "out of memory");
-    if (at.field == 4) brunt_surface_affine_set(&world->skin, from);
-    if (at.field == 0) memcpy(&world->now, from, sizeof world->now);
-    for (int i = 0; at.field == 0 && i < world->body_count; i++) world->bodies[i].speed = (real)from[CLOCK_DOUBLES + i];
-    for (int w = 0; at.field == 1 && w < world->wall_count; w++, from += 2 * ACTION_DOUBLES) {
-        memcpy(&world->walls[w].action, from, sizeof(brunt_impulse_account));
-        memcpy(&world->walls[w].last, from + ACTION_DOUBLES, sizeof(brunt_impulse_account));
-    }
+    if (at.field == 4) brunt_surface_affine_set(&world->contact.surface, from);
+    if (at.field == 0) from = brunt_saved_set(clock_table, CLOCK_ROWS, world, from);
+    for (int i = 0; at.field == 0 && i < world->bodies.mpm_count; i++) world->bodies.mpm[i].speed = (real)*from++;
+    for (int w = 0; at.field == 1 && w < world->boundaries.wall_count; w++)
+        from = set_account(&world->boundaries.walls[w].last, set_account(&world->boundaries.walls[w].action, from));
     if (at.field == 1) brunt_gas_state_set(world, from);
-    for (int p = 0; at.field == 2 && p < world->pair_count; p++, from += 2 * ACTION_DOUBLES) {
-        memcpy(&world->pairs[p].action, from, sizeof(brunt_impulse_account));
-        memcpy(&world->pairs[p].last, from + ACTION_DOUBLES, sizeof(brunt_impulse_account));
-    }
+    for (int p = 0; at.field == 2 && p < world->pairs.count; p++)
+        from = set_account(&world->pairs.pair[p].last, set_account(&world->pairs.pair[p].action, from));
     return BRUNT_OK;
 }
 
 int brunt_state_done(brunt_world *world, brunt_error *error) {
     if (!world) return brunt_fail(error, BRUNT_BAD_INPUT, "there is no world");
-    for (int i = 0; i < world->body_count; i++) {
-        brunt_body *body = &world->bodies[i];
+    for (int i = 0; i < world->bodies.mpm_count; i++) {
+        brunt_body *body = &world->bodies.mpm[i];
         close_ranks(&body->particles, body->particles.count);
         body->grid.block_count = 0;
         body->grid.block_table.capacity = 0;
         brunt_free(body->grid.block_table.key);
         brunt_free(body->grid.block_table.value);
         body->grid.block_table = (brunt_table){0};
-        int status = brunt_sort(&body->grid, &body->particles, world->threads, NULL, error);
+        int status = brunt_sort(&body->grid, &body->particles, world->settings.threads, NULL, error);
         if (status) return BRUNT_BAD_INPUT;
     }
     int status = brunt_reports_make(world, error);
     if (status) return status;
-    for (int a = 0; a < 3; a++) world->skin.frame_step[a] = world->now.contact_frame[a] * world->now.dt;
+    for (int a = 0; a < 3; a++) world->contact.surface.frame_step[a] = world->contact.frame[a] * world->clock.dt;
     int32_t bad;
     const char *reason;
     const brunt_fem_body *failed = brunt_fem_elements_all(world, 0, &bad, &reason);
@@ -287,11 +328,11 @@ static uint64_t hash_mesh(const brunt_fem_body *fem) {
 
 uint64_t brunt_world_hash(const brunt_world *world) {
     uint64_t sum = 0;
-    for (int i = 0; i < world->body_count; i++) {
-        const brunt_particles *p = &world->bodies[i].particles;
+    for (int i = 0; i < world->bodies.mpm_count; i++) {
+        const brunt_particles *p = &world->bodies.mpm[i].particles;
         for (int64_t s = 0; s < p->slots; s++) {
             if (p->id[s] < 0) continue;
-            uint64_t h = brunt_hash_add((uint64_t)world->bodies[i].index, (uint64_t)p->id[s]);
+            uint64_t h = brunt_hash_add((uint64_t)world->bodies.mpm[i].index, (uint64_t)p->id[s]);
             for (int k = 0; k < p->scalar_count; k++) {
                 uint64_t bits = 0;
                 memcpy(&bits, &p->scalar[k][s], sizeof(real));
@@ -300,8 +341,8 @@ uint64_t brunt_world_hash(const brunt_world *world) {
             sum += h;
         }
     }
-    for (int i = 0; i < world->fem_count; i++) sum += hash_mesh(&world->fems[i]);
+    for (int i = 0; i < world->bodies.fem_count; i++) sum += hash_mesh(&world->bodies.fem[i]);
     uint64_t bits;
-    memcpy(&bits, &world->now.time, sizeof bits);
+    memcpy(&bits, &world->clock.time, sizeof bits);
     return brunt_hash_add(sum, bits);
 }

@@ -16,17 +16,17 @@ static const double THIN = 0.01; // mean edges
 
 static bool acts_on_fem(const brunt_world *world, const brunt_wall *wall) {
     if (wall->region) return false;
-    for (int k = 0; k < world->fem_count; k++)
-        if (wall->body < 0 || wall->body == world->fems[k].index) return true;
+    for (int k = 0; k < world->bodies.fem_count; k++)
+        if (wall->body < 0 || wall->body == world->bodies.fem[k].index) return true;
     return false;
 }
 
 // Smallest and largest mean edge among the bodies, for the choice of the contact grid.
 static void look_at_edges(const brunt_world *world, double *fine, double *coarse) {
     *fine = INFINITY, *coarse = 0;
-    for (int k = 0; k < world->fem_count; k++) {
-        *fine = fmin(*fine, world->fems[k].mean_edge);
-        *coarse = fmax(*coarse, world->fems[k].mean_edge);
+    for (int k = 0; k < world->bodies.fem_count; k++) {
+        *fine = fmin(*fine, world->bodies.fem[k].mean_edge);
+        *coarse = fmax(*coarse, world->bodies.fem[k].mean_edge);
     }
 }
 
@@ -34,9 +34,9 @@ static void look_at_edges(const brunt_world *world, double *fine, double *coarse
 static void warn_of_thickness(brunt_world *world, const brunt_fem_body *fem, bool self) {
     const double thick = (double)fem->contact_thickness;
     bool other = self;
-    for (int k = 0; k < world->fem_count; k++)
-        other = other || (world->fems[k].element->sheet &&
-                          world->pair_of[fem->index * world->all_count + world->fems[k].index] >= 0);
+    for (int k = 0; k < world->bodies.fem_count; k++)
+        other = other || (world->bodies.fem[k].element->sheet &&
+                          world->pairs.of[fem->index * world->bodies.count + world->bodies.fem[k].index] >= 0);
     if (self && thick > fem->mean_edge)
         brunt_warn(world,
                    "bodies.%s: its thickness in contact, %.4g m, is more than its mean edge, %.4g m: elements that are "
@@ -52,15 +52,15 @@ static void warn_of_thickness(brunt_world *world, const brunt_fem_body *fem, boo
 // What membranes ask of contact: a form that knows their two sides, elements that particles do not fit through, and
 // elements longer than they are thick.
 static int check_sheets(brunt_world *world, bool *self, brunt_error *error) {
-    const brunt_augury_form form = world->contact.form;
-    const int n = world->all_count;
-    for (int k = 0; k < world->fem_count; k++) {
-        const brunt_fem_body *fem = &world->fems[k];
+    const brunt_augury_form form = world->contact.def.form;
+    const int n = world->bodies.count;
+    for (int k = 0; k < world->bodies.fem_count; k++) {
+        const brunt_fem_body *fem = &world->bodies.fem[k];
         bool meets = form == BRUNT_AUGURY_PAPER; // which acts on all
         if (!fem->element->sheet) continue;
         for (int i = 0; i < n; i++) {
-            const bool pair = world->pair_of[fem->index * n + i] >= 0;
-            const brunt_body *mpm = world->all[i].mpm;
+            const bool pair = world->pairs.of[fem->index * n + i] >= 0;
+            const brunt_body *mpm = world->bodies.all[i].mpm;
             meets = meets || pair;
             if (pair && mpm && fem->mean_edge < (1 - 1e-6) * mpm->spacing)
                 brunt_warn(world,
@@ -68,124 +68,130 @@ static int check_sheets(brunt_world *world, bool *self, brunt_error *error) {
                            "m: nodes can pass between them",
                            fem->name, fem->mean_edge, mpm->name, mpm->spacing);
         }
-        if (world->has_augury && meets && form != BRUNT_AUGURY_AFFINE)
+        if (world->contact.has_augury && meets && form != BRUNT_AUGURY_AFFINE)
             return brunt_fail(error, BRUNT_BAD_INPUT,
                               "contact.form: affine is wanted where a membrane is in contact, here '%s'", fem->name);
-        self[k] = world->pair_of[fem->index * n + fem->index] >= 0;
+        self[k] = world->pairs.of[fem->index * n + fem->index] >= 0;
         warn_of_thickness(world, fem, self[k]);
     }
     return BRUNT_OK;
 }
 
 static int make_sheets(brunt_world *world, brunt_error *error) {
-    bool any = false, *self = brunt_alloc((size_t)world->fem_count + 1);
+    bool any = false, *self = brunt_alloc((size_t)world->bodies.fem_count + 1);
     if (!self) return brunt_fail(error, BRUNT_FAILED, "out of memory");
     int status = check_sheets(world, self, error);
-    for (int k = 0; k < world->fem_count; k++) any = any || self[k];
-    if (!status && any && brunt_surface_patches(&world->skin, self))
+    for (int k = 0; k < world->bodies.fem_count; k++) any = any || self[k];
+    if (!status && any && brunt_surface_patches(&world->contact.surface, self))
         status = brunt_fail(error, BRUNT_FAILED, "out of memory for the bodies' surfaces");
     brunt_free(self);
     return status;
 }
 
 int brunt_surfaces_make(brunt_world *world, const brunt_world_def *def, brunt_error *error) {
-    for (int w = 0; w < world->wall_count; w++)
-        world->has_surfaces = world->has_surfaces || acts_on_fem(world, &world->walls[w]);
-    world->has_surfaces = world->has_surfaces || world->has_augury || world->has_grid_surfaces;
-    if (!world->has_surfaces) return BRUNT_OK;
-    world->contact = def->contact;
-    world->contact.pairs = NULL, world->contact.pair_count = 0;
-    world->grid_sweeps = def->contact.iterations > 0 ? def->contact.iterations : GRID_SWEEPS;
+    for (int w = 0; w < world->boundaries.wall_count; w++)
+        world->contact.has_surfaces = world->contact.has_surfaces || acts_on_fem(world, &world->boundaries.walls[w]);
+    world->contact.has_surfaces =
+        world->contact.has_surfaces || world->contact.has_augury || world->contact.has_grid_surfaces;
+    if (!world->contact.has_surfaces) return BRUNT_OK;
+    world->contact.def = def->contact;
+    world->contact.def.pairs = NULL, world->contact.def.pair_count = 0;
+    world->contact.grid_sweeps = def->contact.iterations > 0 ? def->contact.iterations : GRID_SWEEPS;
     const brunt_augury_form form = def->contact.form;
-    if (world->contact.iterations < 0)
-        world->contact.iterations = form == BRUNT_AUGURY_PAPER ? 1 : form == BRUNT_AUGURY_AFFINE ? SWEEPS : 4;
-    brunt_fem_body **fems = brunt_alloc((size_t)(world->fem_count + 1) * sizeof *fems);
+    if (world->contact.def.iterations < 0)
+        world->contact.def.iterations = form == BRUNT_AUGURY_PAPER ? 1 : form == BRUNT_AUGURY_AFFINE ? SWEEPS : 4;
+    brunt_fem_body **fems = brunt_alloc((size_t)(world->bodies.fem_count + 1) * sizeof *fems);
     if (!fems) return brunt_fail(error, BRUNT_FAILED, "out of memory");
-    for (int k = 0; k < world->fem_count; k++) fems[k] = &world->fems[k];
-    int failed =
-        brunt_surface_make(&world->skin, fems, world->fem_count, world->has_augury && form == BRUNT_AUGURY_PAPER);
+    for (int k = 0; k < world->bodies.fem_count; k++) fems[k] = &world->bodies.fem[k];
+    int failed = brunt_surface_make(&world->contact.surface, fems, world->bodies.fem_count,
+                                    world->contact.has_augury && form == BRUNT_AUGURY_PAPER);
     brunt_free(fems);
     if (failed) return brunt_fail(error, BRUNT_FAILED, "out of memory for the bodies' surfaces");
-    if (world->skin.side) {
+    if (world->contact.surface.side) {
         int status = make_sheets(world, error);
         if (status) return status;
-        if (def->contact.iterations < 0 && form == BRUNT_AUGURY_AFFINE) world->contact.iterations = SHEET_SWEEPS;
+        if (def->contact.iterations < 0 && form == BRUNT_AUGURY_AFFINE) world->contact.def.iterations = SHEET_SWEEPS;
     }
     double fine, coarse;
     look_at_edges(world, &fine, &coarse);
-    world->contact_cell = def->contact.cell > 0 ? def->contact.cell : form == BRUNT_AUGURY_PAPER ? 2 * coarse : coarse;
-    if (world->has_grid_surfaces && coarse > COARSE * world->cell)
+    world->contact.cell = def->contact.cell > 0 ? def->contact.cell : form == BRUNT_AUGURY_PAPER ? 2 * coarse : coarse;
+    if (world->contact.has_grid_surfaces && coarse > COARSE * world->settings.cell)
         brunt_warn(
             world,
             "grid.cell %g m is much less than the longest mean edge of a mesh, %g m: multi-velocity contact may not "
             "see particles between its nodes",
-            world->cell, coarse);
-    if (!world->has_augury || form == BRUNT_AUGURY_AFFINE) return BRUNT_OK;
-    if (world->contact_cell < 0.7 * coarse)
+            world->settings.cell, coarse);
+    if (!world->contact.has_augury || form == BRUNT_AUGURY_AFFINE) return BRUNT_OK;
+    if (world->contact.cell < 0.7 * coarse)
         brunt_warn(world,
                    "contact.cell %g m is less than 0.7 of the longest mean edge, %g m: nodes may pass between those of "
                    "the other body unseen",
-                   world->contact_cell, coarse);
-    if (world->contact_cell > 4 * fine)
+                   world->contact.cell, coarse);
+    if (world->contact.cell > 4 * fine)
         brunt_warn(world,
                    "contact.cell %g m is more than 4 of the shortest mean edge, %g m: edges and corners are rounded by "
                    "as much",
-                   world->contact_cell, fine);
+                   world->contact.cell, fine);
     return BRUNT_OK;
 }
 
 // Bodies that lie in each other, or behind a plane, at the start. The skin is taken for it, and forgets that it was.
 int brunt_surfaces_overlap(brunt_world *world, brunt_error *error) {
     const double none[3] = {0};
-    brunt_contact_surface *s = &world->skin;
+    brunt_contact_surface *s = &world->contact.surface;
     brunt_contact_context m = {
-        .skin = s, .pair_of = world->pair_of, .body_count = world->all_count, .walls = world->walls};
+        .skin = s, .pair_of = world->pairs.of, .body_count = world->bodies.count, .walls = world->boundaries.walls};
     if (s->fem_count) {
-        brunt_surface_bounds(s, world->threads, NULL);
+        brunt_surface_bounds(s, world->settings.threads, NULL);
         for (int k = 0; k < s->fem_count; k++) s->active[k] = true;
-        brunt_surface_gather_state(s, 0, none, world->threads, NULL);
+        brunt_surface_gather_state(s, 0, none, world->settings.threads, NULL);
         for (int k = 0; k < s->fem_count; k++) s->active[k] = s->was_active[k] = false;
     }
     brunt_overlap o;
-    const int status = brunt_overlap_find(&m, world->bodies, world->body_count, world->wall_count, &o);
+    const int status =
+        brunt_overlap_find(&m, world->bodies.mpm, world->bodies.mpm_count, world->boundaries.wall_count, &o);
     if (status < 0) return brunt_fail(error, BRUNT_FAILED, "out of memory for the bodies' surfaces");
     if (!status) return BRUNT_OK;
     static const char way_out[] = "move one of them, or write contact.initial_overlap: allow";
     if (o.b < 0)
         return brunt_fail(error, BRUNT_BAD_INPUT,
                           "bodies.%s is %.4g m behind the plane '%s' at the start, at (%.6g, %.6g, %.6g) m; %s",
-                          brunt_body_name(world, o.a), o.depth, world->walls[o.wall].name, o.x[0], o.x[1], o.x[2],
-                          way_out);
+                          brunt_body_name(world, o.a), o.depth, world->boundaries.walls[o.wall].name, o.x[0], o.x[1],
+                          o.x[2], way_out);
     return brunt_fail(
         error, BRUNT_BAD_INPUT, "bodies.%s overlaps bodies.%s by %.4g m at the start, at (%.6g, %.6g, %.6g) m; %s",
         brunt_body_name(world, o.a), brunt_body_name(world, o.b), o.depth, o.x[0], o.x[1], o.x[2], way_out);
 }
 
 int brunt_surfaces_renew(brunt_world *world, brunt_error *error) {
-    if (!world->has_surfaces) return BRUNT_OK;
-    if (brunt_surface_renew(&world->skin, false) || brunt_node_to_facet_renew(world->facing, &world->skin))
+    if (!world->contact.has_surfaces) return BRUNT_OK;
+    if (brunt_surface_renew(&world->contact.surface, false) ||
+        brunt_node_to_facet_renew(world->contact.node_to_facet, &world->contact.surface))
         return brunt_fail(error, BRUNT_FAILED, "out of memory for the bodies' surfaces");
     return BRUNT_OK;
 }
 
 static int meet_by_facets(brunt_world *world, const brunt_contact_context *m) {
-    brunt_constraint_set *points = &world->points;
+    brunt_constraint_set *points = &world->contact.constraints;
     brunt_constraints_clear(points);
-    int failed = brunt_node_to_facet_walls(m, world->walls, world->wall_count, world->now.time, world->facing, points);
-    if (!failed && world->has_augury && world->contact.form == BRUNT_AUGURY_AFFINE)
-        failed = brunt_node_to_facet_find(m, world->bodies, world->body_count, world->facing, points);
-    int sweeps = world->contact.form == BRUNT_AUGURY_AFFINE ? world->contact.iterations : SWEEPS;
-    if (!failed && brunt_constraints_solve(points, sweeps, world->contact.tolerance, m->threads, m->timer) < 0)
+    int failed = brunt_node_to_facet_walls(m, world->boundaries.walls, world->boundaries.wall_count, world->clock.time,
+                                           world->contact.node_to_facet, points);
+    if (!failed && world->contact.has_augury && world->contact.def.form == BRUNT_AUGURY_AFFINE)
+        failed = brunt_node_to_facet_find(m, world->bodies.mpm, world->bodies.mpm_count, world->contact.node_to_facet,
+                                          points);
+    int sweeps = world->contact.def.form == BRUNT_AUGURY_AFFINE ? world->contact.def.iterations : SWEEPS;
+    if (!failed && brunt_constraints_solve(points, sweeps, world->contact.def.tolerance, m->threads, m->timer) < 0)
         failed = -1;
     if (failed) return failed;
-    brunt_node_to_facet_book_holds(m, world->walls, world->wall_count, world->now.time, world->facing, points);
-    brunt_node_to_facet_finish(m, world->bodies, world->facing, points);
+    brunt_node_to_facet_book_holds(m, world->boundaries.walls, world->boundaries.wall_count, world->clock.time,
+                                   world->contact.node_to_facet, points);
+    brunt_node_to_facet_finish(m, world->bodies.mpm, world->contact.node_to_facet, points);
     return 0;
 }
 
 // Names the mesh that is fastest, or farthest away: contact cannot look that far.
 static int fail_far(const brunt_world *world, brunt_error *error) {
-    const brunt_contact_surface *s = &world->skin;
+    const brunt_contact_surface *s = &world->contact.surface;
     int worst = -1;
     double most = -1;
     for (int k = 0; k < s->fem_count; k++) {
@@ -203,46 +209,49 @@ static int fail_far(const brunt_world *world, brunt_error *error) {
 
 int brunt_surfaces_meet(brunt_world *world, const double gravity[3], double kick, double dt, brunt_error *error) {
     brunt_timer *timer = &world->pass[BRUNT_PASS_surfaces].threads;
-    brunt_contact_context m = {
-        .skin = &world->skin,
-        .pairs = world->pairs,
-        .pair_of = world->pair_of,
-        .body_count = world->all_count,
-        .dt = dt,
-        .cell = world->contact_cell,
-        .iterations = world->contact.iterations,
-        .look = world->has_augury && world->contact.form != BRUNT_AUGURY_AFFINE ? 1.6 * world->contact_cell : 0,
-        .step = (int64_t)world->now.steps,
-        .mirrors = world->mirrors,
-        .mirror_count = world->mirror_count,
-        .walls = world->walls,
-        .threads = world->threads,
-        .timer = timer};
-    memcpy(world->skin.frame, world->now.contact_frame, sizeof world->skin.frame);
-    brunt_surface_bounds(&world->skin, world->threads, timer);
-    int failed = brunt_broad_phase(&m, world->bodies, world->body_count, world->walls, world->wall_count,
-                                   world->now.time, &world->facing);
+    brunt_contact_context m = {.skin = &world->contact.surface,
+                               .pairs = world->pairs.pair,
+                               .pair_of = world->pairs.of,
+                               .body_count = world->bodies.count,
+                               .dt = dt,
+                               .cell = world->contact.cell,
+                               .iterations = world->contact.def.iterations,
+                               .look = world->contact.has_augury && world->contact.def.form != BRUNT_AUGURY_AFFINE
+                                           ? 1.6 * world->contact.cell
+                                           : 0,
+                               .step = (int64_t)world->clock.steps,
+                               .mirrors = world->boundaries.mirrors,
+                               .mirror_count = world->boundaries.mirror_count,
+                               .walls = world->boundaries.walls,
+                               .threads = world->settings.threads,
+                               .timer = timer};
+    memcpy(world->contact.surface.frame, world->contact.frame, sizeof world->contact.surface.frame);
+    brunt_surface_bounds(&world->contact.surface, world->settings.threads, timer);
+    int failed = brunt_broad_phase(&m, world->bodies.mpm, world->bodies.mpm_count, world->boundaries.walls,
+                                   world->boundaries.wall_count, world->clock.time, &world->contact.node_to_facet);
     if (failed == -2) return fail_far(world, error);
     if (!failed) {
-        if (world->has_grid_surfaces) brunt_grid_surfaces_near(&m, world->bodies, world->body_count);
-        if (world->has_augury && world->contact.form == BRUNT_AUGURY_PAPER) // acts on every surface, touched or not
-            for (int k = 0; k < world->fem_count; k++) world->skin.active[k] = true;
-        brunt_surface_gather_state(&world->skin, kick, gravity, world->threads, timer);
-        if (world->has_augury && world->contact.form == BRUNT_AUGURY_PAPER)
-            failed = brunt_augury_paper(&m, world->contact.transfer, &world->augury);
-        else if (world->has_augury && world->contact.form != BRUNT_AUGURY_AFFINE)
-            failed = brunt_augury_surface(&m, world->contact.form == BRUNT_AUGURY_SMOOTH, &world->augury);
+        if (world->contact.has_grid_surfaces) brunt_grid_surfaces_near(&m, world->bodies.mpm, world->bodies.mpm_count);
+        if (world->contact.has_augury &&
+            world->contact.def.form == BRUNT_AUGURY_PAPER) // acts on every surface, touched or not
+            for (int k = 0; k < world->bodies.fem_count; k++) world->contact.surface.active[k] = true;
+        brunt_surface_gather_state(&world->contact.surface, kick, gravity, world->settings.threads, timer);
+        if (world->contact.has_augury && world->contact.def.form == BRUNT_AUGURY_PAPER)
+            failed = brunt_augury_paper(&m, world->contact.def.transfer, &world->contact.augury);
+        else if (world->contact.has_augury && world->contact.def.form != BRUNT_AUGURY_AFFINE)
+            failed = brunt_augury_surface(&m, world->contact.def.form == BRUNT_AUGURY_SMOOTH, &world->contact.augury);
     }
-    if (!failed && world->has_grid_surfaces)
-        failed = brunt_grid_surfaces_meet(&m, world->bodies, world->body_count, world->mirrors, world->mirror_count,
-                                          world->grid_sweeps, &world->grid_surfaces);
+    if (!failed && world->contact.has_grid_surfaces)
+        failed = brunt_grid_surfaces_meet(&m, world->bodies.mpm, world->bodies.mpm_count, world->boundaries.mirrors,
+                                          world->boundaries.mirror_count, world->contact.grid_sweeps,
+                                          &world->contact.grid_surfaces);
     if (!failed) failed = meet_by_facets(world, &m);
-    if (!failed && world->has_grid_surfaces)
-        brunt_grid_surfaces_finish(&m, world->bodies, world->mirrors, world->mirror_count, world->walls,
-                                   world->grid_surfaces);
+    if (!failed && world->contact.has_grid_surfaces)
+        brunt_grid_surfaces_finish(&m, world->bodies.mpm, world->boundaries.mirrors, world->boundaries.mirror_count,
+                                   world->boundaries.walls, world->contact.grid_surfaces);
     if (failed) return brunt_fail(error, BRUNT_FAILED, "out of memory in the contact of surfaces");
-    brunt_surface_scatter_velocity(&world->skin, dt, world->threads, timer);
-    memcpy(world->now.contact_frame, world->skin.frame, sizeof world->skin.frame);
+    brunt_surface_scatter_velocity(&world->contact.surface, dt, world->settings.threads, timer);
+    memcpy(world->contact.frame, world->contact.surface.frame, sizeof world->contact.surface.frame);
     brunt_fem_hold_contact(world);
     return BRUNT_OK;
 }

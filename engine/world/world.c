@@ -131,7 +131,7 @@ static int fill_shapes(brunt_world *world, const brunt_world_def *def, const bru
     }
     for (int i = 0; i < n && !status && !def->contact.allow_overlap; i++)
         for (int k = 0; k < n && !status; k++) {
-            if (i == k || world->pair_of[i * n + k] < 0 || order[k]->mesh.node_count ||
+            if (i == k || world->pairs.of[i * n + k] < 0 || order[k]->mesh.node_count ||
                 order[k]->method == BRUNT_MEMBRANE) // of a membrane the shape is only what it is wrapped around
                 continue;
             double depth = overlap_depth(&filled[i], order[k], dim);
@@ -148,7 +148,7 @@ static int fill_shapes(brunt_world *world, const brunt_world_def *def, const bru
 static int check_total_lagrangian(const brunt_world *world, const brunt_world_def *def, const brunt_body_def *from,
                                   const brunt_body *body, brunt_error *error) {
     if (def->axisymmetric) REFUSE("bodies.%s.lagrangian: total: not in axisymmetric scenes", from->name);
-    if (!world->total_gather)
+    if (!world->transfers.total_gather)
         REFUSE(
             "bodies.%s.lagrangian: total: kernel linear has gradients that jump between cells; use quadratic or cubic",
             from->name);
@@ -159,14 +159,14 @@ static int check_total_lagrangian(const brunt_world *world, const brunt_world_de
         const brunt_body_def *other = &def->bodies[k];
         int32_t n = 0; // its place in order of name
         for (int q = 0; q < def->body_count; q++) n += strcmp(def->bodies[q].name, other->name) < 0;
-        const int32_t pair = other == from ? -1 : world->pair_of[body->index * def->body_count + n];
+        const int32_t pair = other == from ? -1 : world->pairs.of[body->index * def->body_count + n];
         if (pair < 0) continue;
         if (other->method == BRUNT_MPM)
             REFUSE("contact of '%s' and '%s': bodies of material points meet at the nodes of their grids, and that of "
                    "'%s' "
                    "is undeformed (lagrangian: total); let one of them be a mesh, or switch contact off between them",
                    from->name, other->name, from->name);
-        if (world->pairs[pair].method == BRUNT_CONTACT_MULTI_VELOCITY)
+        if (world->pairs.pair[pair].method == BRUNT_CONTACT_MULTI_VELOCITY)
             REFUSE("contact of '%s' and '%s': the grid of '%s' is undeformed (lagrangian: total): use augury, not "
                    "multi-velocity",
                    from->name, other->name, from->name);
@@ -189,8 +189,8 @@ static int set_erosion(const brunt_world_def *def, const brunt_body_def *from, i
 
 static int make_particles(brunt_world *world, const brunt_world_def *def, const brunt_body_def *from,
                           const brunt_filled *filled, const double origin[3], int index, brunt_error *error) {
-    brunt_body *body = &world->bodies[world->body_count++];
-    world->all[index].mpm = body;
+    brunt_body *body = &world->bodies.mpm[world->bodies.mpm_count++];
+    world->bodies.all[index].mpm = body;
     memcpy(body->name, from->name, sizeof body->name);
     body->index = index;
     body->spacing = lattice_spacing(def, from);
@@ -198,11 +198,11 @@ static int make_particles(brunt_world *world, const brunt_world_def *def, const 
     if (status) return status;
     if (from->total_lagrangian && (status = check_total_lagrangian(world, def, from, body, error))) return status;
     if ((status = set_erosion(def, from, filled->count, body, error))) return status;
-    world->has_fluid = world->has_fluid || body->material.model[BRUNT_STRENGTH]->fluid;
+    world->bodies.has_fluid = world->bodies.has_fluid || body->material.model[BRUNT_STRENGTH]->fluid;
     brunt_particle_needs needs = {.affine = def->transfer == BRUNT_APIC,
-                                  .reach = world->has_contact || world->has_augury || world->has_grid_surfaces ||
-                                           world->has_walls,
-                                  .grid_velocity = world->advance && def->transfer == BRUNT_FLIP,
+                                  .reach = world->contact.has_grid || world->contact.has_augury ||
+                                           world->contact.has_grid_surfaces || world->boundaries.has_walls,
+                                  .grid_velocity = world->transfers.advance && def->transfer == BRUNT_FLIP,
                                   .total = from->total_lagrangian};
     memcpy(needs.models, body->material.model, sizeof needs.models);
     brunt_particles_init(&body->particles, def->dimension, def->axisymmetric ? 3 : def->dimension, &needs);
@@ -225,9 +225,9 @@ static int close_ranks(brunt_fem_body *fem, int32_t mesh_nodes) {
 
 static int make_elements(brunt_world *world, const brunt_world_def *def, const brunt_body_def *from, int index,
                          brunt_error *error) {
-    brunt_fem_body *fem = &world->fems[world->fem_count];
-    brunt_mesh_report *report = &world->mesh_reports[world->fem_count++];
-    world->all[index].fem = fem;
+    brunt_fem_body *fem = &world->bodies.fem[world->bodies.fem_count];
+    brunt_mesh_report *report = &world->bodies.mesh_reports[world->bodies.fem_count++];
+    world->bodies.all[index].fem = fem;
     brunt_mesh made = {0};
     brunt_material material;
     const bool sheet = from->method == BRUNT_MEMBRANE;
@@ -338,7 +338,7 @@ static bool has_fluid(const brunt_world_def *def) {
 }
 
 static int make_plane(brunt_world *world, const brunt_world_def *def, int index, brunt_error *error) {
-    brunt_wall *wall = &world->walls[index];
+    brunt_wall *wall = &world->boundaries.walls[index];
     brunt_plane_def *plane = &wall->plane;
     double size = 0;
     for (int a = 0; a < def->dimension; a++) size += plane->normal[a] * plane->normal[a];
@@ -349,8 +349,8 @@ static int make_plane(brunt_world *world, const brunt_world_def *def, int index,
     int axis = plane_axis(plane, def->dimension);
     double at = axis < 0 ? 0 : (plane->point[axis] - def->origin[axis]) / def->cell;
     bool on_line = axis >= 0 && !moves && fabs(at - round(at)) < ON_GRID_LINE;
-    if (!world->has_particles) { // meshes hold their nodes on any plane themselves
-        world->has_friction = world->has_friction || plane->friction > 0;
+    if (!world->bodies.has_particles) { // meshes hold their nodes on any plane themselves
+        world->boundaries.has_friction = world->boundaries.has_friction || plane->friction > 0;
         return BRUNT_OK;
     }
     if (plane->condition == BRUNT_SYMMETRY && !on_line)
@@ -358,10 +358,11 @@ static int make_plane(brunt_world *world, const brunt_world_def *def, int index,
                "(cell %g m)",
                index, wall->name, def->cell);
     if (on_line && (plane->condition == BRUNT_SYMMETRY || plane->condition == BRUNT_SLIP)) {
-        if (world->mirror_count == (int)(sizeof world->mirrors / sizeof world->mirrors[0]))
+        if (world->boundaries.mirror_count ==
+            (int)(sizeof world->boundaries.mirrors / sizeof world->boundaries.mirrors[0]))
             REFUSE("boundaries: more than 16 symmetry and slip planes");
-        for (int m = 0; m < world->mirror_count; m++) {
-            const brunt_symmetry_plane *other = &world->mirrors[m];
+        for (int m = 0; m < world->boundaries.mirror_count; m++) {
+            const brunt_symmetry_plane *other = &world->boundaries.mirrors[m];
             int32_t apart = (int32_t)round(at) - other->node;
             if (other->wall >= 0 && other->axis == axis && apart != 0 && abs(apart) <= (int)def->kernel &&
                 has_fluid(def))
@@ -369,22 +370,22 @@ static int make_plane(brunt_world *world, const brunt_world_def *def, int index,
                     world,
                     "boundaries[%d] (%s): this plane of symmetry or slip and '%s' are %d cells apart; the kernel "
                     "reaches over both, and fluids leak: at least %d are wanted",
-                    index, wall->name, world->walls[other->wall].name, abs(apart), (int)def->kernel + 1);
+                    index, wall->name, world->boundaries.walls[other->wall].name, abs(apart), (int)def->kernel + 1);
         }
-        wall->mirror = world->mirror_count;
-        world->mirrors[world->mirror_count++] =
+        wall->mirror = world->boundaries.mirror_count;
+        world->boundaries.mirrors[world->boundaries.mirror_count++] =
             (brunt_symmetry_plane){.axis = axis, .node = (int32_t)round(at), .wall = index};
     } else if (plane->condition == BRUNT_SEPARATE) {
-        world->has_walls = true;
+        world->boundaries.has_walls = true;
         if (has_fluid(def))
             brunt_warn(
                 world,
                 "boundaries[%d] (%s): beside a plane of condition separate the pressure of fluids is wrong in the "
                 "two nearest rows of particles, and gas at rest tears there; slip on a line of the grid is exact",
                 index, wall->name);
-        world->has_friction = world->has_friction || plane->friction > 0;
+        world->boundaries.has_friction = world->boundaries.has_friction || plane->friction > 0;
     } else {
-        world->has_conditions = true;
+        world->boundaries.has_conditions = true;
         if (plane->condition == BRUNT_SLIP && has_fluid(def))
             brunt_warn(
                 world,
@@ -397,15 +398,15 @@ static int make_plane(brunt_world *world, const brunt_world_def *def, int index,
 
 static int make_walls(brunt_world *world, const brunt_world_def *def, const brunt_body_def **order,
                       brunt_error *error) {
-    world->wall_count = def->plane_count + def->region_count + def->group_count;
-    world->walls = brunt_alloc((size_t)(world->wall_count + 1) * sizeof *world->walls);
-    world->wall_work = brunt_alloc((size_t)def->body_count * sizeof(void *));
-    if (!world->walls || !world->wall_work) return brunt_fail(error, BRUNT_FAILED, "out of memory");
-    if (def->axisymmetric && world->has_particles)
-        world->mirrors[world->mirror_count++] =
+    world->boundaries.wall_count = def->plane_count + def->region_count + def->group_count;
+    world->boundaries.walls = brunt_alloc((size_t)(world->boundaries.wall_count + 1) * sizeof *world->boundaries.walls);
+    world->scratch.planes = brunt_alloc((size_t)def->body_count * sizeof(void *));
+    if (!world->boundaries.walls || !world->scratch.planes) return brunt_fail(error, BRUNT_FAILED, "out of memory");
+    if (def->axisymmetric && world->bodies.has_particles)
+        world->boundaries.mirrors[world->boundaries.mirror_count++] =
             (brunt_symmetry_plane){.axis = 0, .node = (int32_t)round(-def->origin[0] / def->cell), .wall = -1};
-    for (int w = 0; w < world->wall_count; w++) {
-        brunt_wall *wall = &world->walls[w];
+    for (int w = 0; w < world->boundaries.wall_count; w++) {
+        brunt_wall *wall = &world->boundaries.walls[w];
         wall->region = w >= def->plane_count;
         wall->mirror = wall->body = -1;
         if (w >= def->plane_count + def->region_count) { // the rest follows with the bodies (holds.c)
@@ -429,7 +430,7 @@ static int make_walls(brunt_world *world, const brunt_world_def *def, const brun
         if (body[0] && (wall->body = find_body(order, def->body_count, body)) < 0)
             REFUSE("boundaries (%s).body: there is no body '%s'", wall->name, body);
         if (wall->region)
-            world->has_conditions = true;
+            world->boundaries.has_conditions = true;
         else {
             int status = make_plane(world, def, w, error);
             if (status) return status;
@@ -440,8 +441,8 @@ static int make_walls(brunt_world *world, const brunt_world_def *def, const brun
 
 // In a crowded scene all pairs of one method and friction are one.
 static int find_alike(const brunt_world *world, const brunt_pair *pair) {
-    for (int p = 0; p < world->pair_count; p++)
-        if (world->pairs[p].method == pair->method && world->pairs[p].friction == pair->friction) return p;
+    for (int p = 0; p < world->pairs.count; p++)
+        if (world->pairs.pair[p].method == pair->method && world->pairs.pair[p].friction == pair->friction) return p;
     return -1;
 }
 
@@ -458,11 +459,11 @@ static int make_self_pair(brunt_world *world, const brunt_pair_def *def, int q, 
     if (def->method != BRUNT_CONTACT_AUGURY)
         REFUSE("contact.pairs[%d].method: contact of '%s' with itself is by augury", q, def->a);
     if (!(def->friction >= 0)) REFUSE("contact.pairs[%d].friction: %g is negative", q, def->friction);
-    if (world->pair_of[a * n + a] >= 0) REFUSE("contact.pairs[%d].between: '%s' is listed twice", q, def->a);
-    world->has_augury = true;
-    world->has_friction = world->has_friction || def->friction > 0;
-    world->pair_of[a * n + a] = world->pair_count;
-    world->pairs[world->pair_count++] =
+    if (world->pairs.of[a * n + a] >= 0) REFUSE("contact.pairs[%d].between: '%s' is listed twice", q, def->a);
+    world->contact.has_augury = true;
+    world->contact.has_friction = world->contact.has_friction || def->friction > 0;
+    world->pairs.of[a * n + a] = world->pairs.count;
+    world->pairs.pair[world->pairs.count++] =
         (brunt_pair){.a = a, .b = a, .method = BRUNT_CONTACT_AUGURY, .friction = def->friction};
     return BRUNT_OK;
 }
@@ -470,14 +471,14 @@ static int make_self_pair(brunt_world *world, const brunt_pair_def *def, int q, 
 static int make_pairs(brunt_world *world, const brunt_world_def *def, const brunt_body_def **order,
                       brunt_error *error) {
     const int n = def->body_count;
-    world->pair_of = brunt_alloc((size_t)n * (size_t)n * sizeof *world->pair_of);
+    world->pairs.of = brunt_alloc((size_t)n * (size_t)n * sizeof *world->pairs.of);
     const bool crowded = n * (n - 1) / 2 > BRUNT_MOST_PAIRS;
     size_t room = crowded ? BRUNT_MOST_PAIRS : (size_t)n * (size_t)n / 2;
     for (int q = 0; q < def->contact.pair_count; q++) room += !strcmp(def->contact.pairs[q].a, def->contact.pairs[q].b);
-    world->pairs = brunt_alloc((room + 1) * sizeof *world->pairs);
-    if (!world->pair_of || !world->pairs) return brunt_fail(error, BRUNT_FAILED, "out of memory");
+    world->pairs.pair = brunt_alloc((room + 1) * sizeof *world->pairs.pair);
+    if (!world->pairs.of || !world->pairs.pair) return brunt_fail(error, BRUNT_FAILED, "out of memory");
     for (int i = 0; i < n; i++)
-        for (int k = 0; k < n; k++) world->pair_of[i * n + k] = -1;
+        for (int k = 0; k < n; k++) world->pairs.of[i * n + k] = -1;
     for (int q = 0; q < def->contact.pair_count; q++) {
         int status = make_self_pair(world, &def->contact.pairs[q], q, order, n, error);
         if (status) return status;
@@ -503,40 +504,41 @@ static int make_pairs(brunt_world *world, const brunt_world_def *def, const brun
                        order[k]->name);
             if (!meshes) {
                 if (pair.method != BRUNT_CONTACT_TIED) pair.method = BRUNT_CONTACT_MULTI_VELOCITY;
-                world->has_contact = true;
+                world->contact.has_grid = true;
             } else if (on_grid)
-                world->has_grid_surfaces = true;
+                world->contact.has_grid_surfaces = true;
             else
-                world->has_augury = true;
+                world->contact.has_augury = true;
             if (!(pair.friction >= 0)) REFUSE("contact.friction: %g is negative", pair.friction);
-            world->has_friction = world->has_friction || pair.friction > 0;
+            world->contact.has_friction = world->contact.has_friction || pair.friction > 0;
             int index = crowded ? find_alike(world, &pair) : -1;
             if (index < 0) {
                 if (crowded) pair.a = pair.b = -1;
-                world->pairs[index = world->pair_count++] = pair;
+                world->pairs.pair[index = world->pairs.count++] = pair;
             }
-            world->pair_of[i * n + k] = world->pair_of[k * n + i] = index;
+            world->pairs.of[i * n + k] = world->pairs.of[k * n + i] = index;
         }
     return BRUNT_OK;
 }
 
 // Pairs that meet at grid nodes, by place among the bodies of material points.
 static int map_grid_pairs(brunt_world *world, brunt_error *error) {
-    const int n = world->body_count;
-    world->mpm_pair_of = brunt_alloc(((size_t)n * (size_t)n + 1) * sizeof *world->mpm_pair_of);
-    if (!world->mpm_pair_of) return brunt_fail(error, BRUNT_FAILED, "out of memory");
+    const int n = world->bodies.mpm_count;
+    world->pairs.of_mpm = brunt_alloc(((size_t)n * (size_t)n + 1) * sizeof *world->pairs.of_mpm);
+    if (!world->pairs.of_mpm) return brunt_fail(error, BRUNT_FAILED, "out of memory");
     for (int i = 0; i < n; i++)
         for (int k = 0; k < n; k++)
-            world->mpm_pair_of[i * n + k] =
-                i == k ? -1 : world->pair_of[world->bodies[i].index * world->all_count + world->bodies[k].index];
+            world->pairs.of_mpm[i * n + k] =
+                i == k ? -1
+                       : world->pairs.of[world->bodies.mpm[i].index * world->bodies.count + world->bodies.mpm[k].index];
     return BRUNT_OK;
 }
 
 // ------------------------------------------------------------------------------------------ start
 
 int brunt_reports_make(brunt_world *world, brunt_error *error) {
-    for (int i = 0; i < world->body_count; i++) {
-        brunt_body *body = &world->bodies[i];
+    for (int i = 0; i < world->bodies.mpm_count; i++) {
+        brunt_body *body = &world->bodies.mpm[i];
         if (brunt_reserve((void **)&body->report, &body->report_capacity,
                           (size_t)body->grid.block_count * sizeof *body->report, 0))
             return brunt_fail(error, BRUNT_FAILED, "out of memory");
@@ -546,7 +548,7 @@ int brunt_reports_make(brunt_world *world, brunt_error *error) {
             double fastest = 0;
             for (int64_t s = block->first; s < block->first + block->count; s++) {
                 double square = 0;
-                for (int a = 0; a < world->dimension; a++) square += (double)(v[a][s] * v[a][s]);
+                for (int a = 0; a < world->settings.dimension; a++) square += (double)(v[a][s] * v[a][s]);
                 fastest = fmax(fastest, square);
             }
             body->report[b] =
@@ -558,20 +560,20 @@ int brunt_reports_make(brunt_world *world, brunt_error *error) {
 
 // A plane of symmetry stands for what is behind it: what a body has there would be there twice.
 static int check_symmetry(const brunt_world *world, brunt_error *error) {
-    for (int w = 0; w < world->wall_count; w++) {
-        const brunt_wall *wall = &world->walls[w];
+    for (int w = 0; w < world->boundaries.wall_count; w++) {
+        const brunt_wall *wall = &world->boundaries.walls[w];
         const double *n = wall->plane.normal, *at = wall->plane.point;
         if (wall->region || wall->plane.condition != BRUNT_SYMMETRY) continue;
-        for (int i = 0; i < world->all_count; i++) {
+        for (int i = 0; i < world->bodies.count; i++) {
             if (wall->body >= 0 && wall->body != i) continue;
-            brunt_body *mpm = world->all[i].mpm;
-            const brunt_fem_body *fem = world->all[i].fem;
+            brunt_body *mpm = world->bodies.all[i].mpm;
+            const brunt_fem_body *fem = world->bodies.all[i].fem;
             const int64_t count = mpm ? mpm->particles.slots : fem->node_count;
             real *const *x = mpm ? brunt_field(&mpm->particles, BRUNT_FIELD_position) : NULL;
             double least = 0, size = mpm ? mpm->spacing : fem->mean_edge, far = 0;
             for (int64_t s = 0; s < count; s++) {
                 double distance = 0;
-                for (int a = 0; a < world->dimension; a++) {
+                for (int a = 0; a < world->settings.dimension; a++) {
                     const double place = (double)(mpm ? x[a][s] : brunt_fem_node(fem, (int32_t)s)[a]);
                     distance += n[a] * (place - at[a]);
                     far = fmax(far, fabs(place));
@@ -589,46 +591,47 @@ static int check_symmetry(const brunt_world *world, brunt_error *error) {
 }
 
 static int start(brunt_world *world, brunt_error *error) {
-    for (int i = 0; i < world->body_count; i++) {
-        brunt_body *body = &world->bodies[i];
-        int status = brunt_sort(&body->grid, &body->particles, world->threads, NULL, error);
+    for (int i = 0; i < world->bodies.mpm_count; i++) {
+        brunt_body *body = &world->bodies.mpm[i];
+        int status = brunt_sort(&body->grid, &body->particles, world->settings.threads, NULL, error);
         if (status) return status;
     }
     int status = brunt_reports_make(world, error);
     if (status) return status;
-    for (int i = 0; i < world->body_count; i++)
-        for (int32_t b = 0; b < world->bodies[i].grid.block_count; b++)
-            world->bodies[i].speed =
-                (real)fmax((double)world->bodies[i].speed, (double)world->bodies[i].report[b].speed);
+    for (int i = 0; i < world->bodies.mpm_count; i++)
+        for (int32_t b = 0; b < world->bodies.mpm[i].grid.block_count; b++)
+            world->bodies.mpm[i].speed =
+                (real)fmax((double)world->bodies.mpm[i].speed, (double)world->bodies.mpm[i].report[b].speed);
     int32_t bad;
     const char *reason;
     if (brunt_fem_elements_all(world, 0, &bad, &reason))
         return brunt_fail(error, BRUNT_BAD_INPUT, "a mesh: %s", reason);
-    struct brunt_clock *now = &world->now;
-    now->next_dt = now->dt = brunt_stable_step(world);
-    if (world->fixed_step > 0) now->dt = world->fixed_step;
-    now->dt_min = INFINITY;
-    for (int i = 0; i < world->body_count; i++) {
-        brunt_audit a = brunt_body_audit(&world->bodies[i]);
-        now->initial_energy += a.kinetic + brunt_body_energy(&world->bodies[i]).internal;
+    struct brunt_clock *clock = &world->clock;
+    brunt_ledger *now = &world->ledger;
+    clock->next_dt = clock->dt = brunt_stable_step(world);
+    if (world->settings.fixed_step > 0) clock->dt = world->settings.fixed_step;
+    clock->dt_min = INFINITY;
+    for (int i = 0; i < world->bodies.mpm_count; i++) {
+        brunt_audit a = brunt_body_audit(&world->bodies.mpm[i]);
+        now->initial_energy += a.kinetic + brunt_body_energy(&world->bodies.mpm[i]).internal;
         now->initial_kinetic += a.kinetic;
         now->scale_linear += a.scale_linear;
         now->scale_angular += a.scale_angular;
         for (int k = 0; k < 3; k++) now->linear_initial[k] += a.linear[k], now->angular_initial[k] += a.angular[k];
     }
     now->kinetic = now->initial_kinetic;
-    for (int k = 0; k < world->fem_count; k++) {
-        brunt_fem_sums a = brunt_fem_audit(&world->fems[k]);
+    for (int k = 0; k < world->bodies.fem_count; k++) {
+        brunt_fem_sums a = brunt_fem_audit(&world->bodies.fem[k]);
         now->fem_kinetic += a.kinetic;
         now->initial_kinetic += a.kinetic;
-        now->initial_energy += a.kinetic + brunt_fem_energy(&world->fems[k]).internal;
+        now->initial_energy += a.kinetic + brunt_fem_energy(&world->bodies.fem[k]).internal;
         now->scale_linear += a.scale_linear;
         now->scale_angular += a.scale_angular;
         for (int c = 0; c < 3; c++) now->linear_initial[c] += a.momentum[c], now->angular_initial[c] += a.angular[c];
     }
     now->initial_energy += now->hourglass_stored;
     brunt_ledger_remember(world);
-    world->rounding_energy = brunt_rounding_energy(world);
+    world->ledger.rounding_energy = brunt_rounding_energy(world);
     return BRUNT_OK;
 }
 
@@ -640,16 +643,17 @@ static double cfl_of(const brunt_world_def *def, bool particles) {
 // Points that fail and stay, or that are a fluid's, fly on alone, and bear pressure there. (What erosion keeps has no
 // stress, and nothing to be unstable with.)
 static void warn_of_lone_points(brunt_world *world) {
-    const double limit = brunt_lone_points_cfl(world->dimension, world->kernel, world->transfer);
-    if (world->fixed_step > 0 || world->cfl <= limit * (1 + 1e-9)) return;
-    for (int i = 0; i < world->body_count; i++) {
-        const brunt_body *body = &world->bodies[i];
+    const double limit =
+        brunt_lone_points_cfl(world->settings.dimension, world->settings.kernel, world->settings.transfer);
+    if (world->settings.fixed_step > 0 || world->settings.cfl <= limit * (1 + 1e-9)) return;
+    for (int i = 0; i < world->bodies.mpm_count; i++) {
+        const brunt_body *body = &world->bodies.mpm[i];
         const bool softens = body->material.model[BRUNT_FAILURE] && !body->fails;
         if (!softens && !body->material.model[BRUNT_STRENGTH]->fluid) continue;
         brunt_warn(world,
                    "bodies.%s: material points that come away from others bear pressure alone, which with this kernel "
                    "and transfer is stable up to cfl %.2g; time.cfl is %.2g",
-                   body->name, limit, world->cfl);
+                   body->name, limit, world->settings.cfl);
     }
 }
 
@@ -667,31 +671,33 @@ brunt_world *brunt_world_create(const brunt_world_def *def, brunt_error *error) 
     for (int i = 0; i < def->body_count; i++) order[i] = &def->bodies[i];
     qsort(order, (size_t)def->body_count, sizeof *order, compare_names);
 
-    world->dimension = def->dimension;
-    world->threads = def->threads > 0 ? def->threads : brunt_threads_available();
-    if (world->threads > 256) world->threads = 256;
-    world->kernel = def->kernel, world->transfer = def->transfer;
-    world->flip = def->flip, world->fixed_step = def->step, world->end = def->end;
-    world->axisymmetric = def->axisymmetric;
-    world->least_step = def->least_step;
-    world->energy_limit = def->energy_limit, world->cell = def->cell, world->gravity_ramp = def->gravity_ramp;
-    memcpy(world->gravity, def->gravity, sizeof world->gravity);
-    for (int a = 0; a < def->dimension; a++) world->has_gravity = world->has_gravity || def->gravity[a] != 0;
-    world->scatter = brunt_find_scatter(def->dimension, def->axisymmetric, def->kernel, def->transfer);
-    world->total_scatter = brunt_find_total_scatter(def->dimension, def->kernel, def->transfer);
-    world->total_gather = brunt_find_total_gather(def->dimension, def->kernel, def->transfer);
-    world->gather = brunt_find_gather(def->dimension, def->axisymmetric, def->kernel, def->transfer);
-    world->advance = brunt_find_advance(def->dimension, def->axisymmetric, def->kernel, def->transfer);
-    world->all_count = def->body_count;
-    world->all = brunt_alloc((size_t)def->body_count * sizeof *world->all);
-    world->bodies = brunt_alloc((size_t)def->body_count * sizeof *world->bodies);
-    world->fems = brunt_alloc((size_t)def->body_count * sizeof *world->fems);
-    world->mesh_reports = brunt_alloc((size_t)def->body_count * sizeof *world->mesh_reports);
+    world->settings.dimension = def->dimension;
+    world->settings.threads = def->threads > 0 ? def->threads : brunt_threads_available();
+    if (world->settings.threads > 256) world->settings.threads = 256;
+    world->settings.kernel = def->kernel, world->settings.transfer = def->transfer;
+    world->settings.flip = def->flip, world->settings.fixed_step = def->step, world->settings.end = def->end;
+    world->settings.axisymmetric = def->axisymmetric;
+    world->settings.least_step = def->least_step;
+    world->settings.energy_limit = def->energy_limit, world->settings.cell = def->cell,
+    world->settings.gravity_ramp = def->gravity_ramp;
+    memcpy(world->settings.gravity, def->gravity, sizeof world->settings.gravity);
+    for (int a = 0; a < def->dimension; a++)
+        world->settings.has_gravity = world->settings.has_gravity || def->gravity[a] != 0;
+    world->transfers.scatter = brunt_find_scatter(def->dimension, def->axisymmetric, def->kernel, def->transfer);
+    world->transfers.total_scatter = brunt_find_total_scatter(def->dimension, def->kernel, def->transfer);
+    world->transfers.total_gather = brunt_find_total_gather(def->dimension, def->kernel, def->transfer);
+    world->transfers.gather = brunt_find_gather(def->dimension, def->axisymmetric, def->kernel, def->transfer);
+    world->transfers.advance = brunt_find_advance(def->dimension, def->axisymmetric, def->kernel, def->transfer);
+    world->bodies.count = def->body_count;
+    world->bodies.all = brunt_alloc((size_t)def->body_count * sizeof *world->bodies.all);
+    world->bodies.mpm = brunt_alloc((size_t)def->body_count * sizeof *world->bodies.mpm);
+    world->bodies.fem = brunt_alloc((size_t)def->body_count * sizeof *world->bodies.fem);
+    world->bodies.mesh_reports = brunt_alloc((size_t)def->body_count * sizeof *world->bodies.mesh_reports);
     for (int i = 0; i < def->body_count; i++)
-        world->has_particles = world->has_particles || order[i]->method == BRUNT_MPM;
-    world->cfl = cfl_of(def, world->has_particles);
+        world->bodies.has_particles = world->bodies.has_particles || order[i]->method == BRUNT_MPM;
+    world->settings.cfl = cfl_of(def, world->bodies.has_particles);
 
-    int status = world->bodies && world->all && world->fems && world->mesh_reports
+    int status = world->bodies.mpm && world->bodies.all && world->bodies.fem && world->bodies.mesh_reports
                      ? BRUNT_OK
                      : brunt_fail(error, BRUNT_FAILED, "out of memory");
     if (!status) status = make_walls(world, def, order, error);
@@ -703,12 +709,14 @@ brunt_world *brunt_world_create(const brunt_world_def *def, brunt_error *error) 
     if (!status) status = brunt_erosion_make(world, def, error);
     if (!status) status = brunt_node_sets_make(world, def, error);
     if (!status) status = brunt_surfaces_make(world, def, error);
-    if (!status && brunt_fem_tasks(world)) status = brunt_fail(error, BRUNT_FAILED, "out of memory");
+    if (!status && brunt_fem_tasks_make(world)) status = brunt_fail(error, BRUNT_FAILED, "out of memory");
     if (!status) status = brunt_damping_make(world, error);
     if (!status) status = brunt_load_step_make(world, error);
-    for (int m = 0; !status && m < world->mirror_count; m++) { // node numbers count from where the grid starts
-        int axis = world->mirrors[m].axis;
-        world->mirrors[m].node -= (int32_t)round((world->bodies[0].grid.origin[axis] - def->origin[axis]) / def->cell);
+    for (int m = 0; !status && m < world->boundaries.mirror_count;
+         m++) { // node numbers count from where the grid starts
+        int axis = world->boundaries.mirrors[m].axis;
+        world->boundaries.mirrors[m].node -=
+            (int32_t)round((world->bodies.mpm[0].grid.origin[axis] - def->origin[axis]) / def->cell);
     }
     if (!status) status = start(world, error);
     if (!status && !def->contact.allow_overlap) status = brunt_surfaces_overlap(world, error);
@@ -721,37 +729,38 @@ brunt_world *brunt_world_create(const brunt_world_def *def, brunt_error *error) 
 
 void brunt_world_destroy(brunt_world *world) {
     if (!world) return;
-    for (int i = 0; world->bodies && i < world->body_count; i++) {
-        brunt_body_free(&world->bodies[i]);
-        if (world->wall_work) brunt_wall_workspace_free(world->wall_work[i]);
+    for (int i = 0; world->bodies.mpm && i < world->bodies.mpm_count; i++) {
+        brunt_body_free(&world->bodies.mpm[i]);
+        if (world->scratch.planes) brunt_wall_workspace_free(world->scratch.planes[i]);
     }
-    for (size_t t = 0; t < sizeof world->work / sizeof world->work[0]; t++) brunt_workspace_free(&world->work[t]);
-    brunt_contact_workspace_free(world->contact_work);
-    brunt_surface_free(&world->skin);
-    brunt_constraints_free(&world->points);
-    brunt_node_to_facet_free(world->facing);
-    brunt_augury_workspace_free(world->augury);
-    brunt_grid_surfaces_free(world->grid_surfaces);
+    for (size_t t = 0; t < sizeof world->scratch.points / sizeof world->scratch.points[0]; t++)
+        brunt_workspace_free(&world->scratch.points[t]);
+    brunt_contact_workspace_free(world->scratch.grid_velocity);
+    brunt_surface_free(&world->contact.surface);
+    brunt_constraints_free(&world->contact.constraints);
+    brunt_node_to_facet_free(world->contact.node_to_facet);
+    brunt_augury_workspace_free(world->contact.augury);
+    brunt_grid_surfaces_free(world->contact.grid_surfaces);
     brunt_node_sets_free(world);
     brunt_damping_free(world);
     brunt_load_step_free(world);
     brunt_erosion_free(world);
-    for (int k = 0; world->fems && k < world->fem_count; k++) brunt_fem_free(&world->fems[k]);
-    for (size_t t = 0; t < sizeof world->fem_work / sizeof world->fem_work[0]; t++)
-        brunt_fem_workspace_free(&world->fem_work[t]);
-    brunt_free(world->all);
-    brunt_free(world->fems);
-    brunt_free(world->mesh_reports);
-    brunt_free(world->node_tasks);
-    brunt_free(world->element_tasks);
-    brunt_free(world->fem_sums);
-    brunt_free(world->mpm_pair_of);
-    brunt_free(world->warnings);
-    brunt_free(world->wall_work);
-    brunt_free(world->bodies);
-    brunt_free(world->walls);
-    brunt_free(world->pairs);
-    brunt_free(world->pair_of);
-    brunt_free(world->node_sums);
+    for (int k = 0; world->bodies.fem && k < world->bodies.fem_count; k++) brunt_fem_free(&world->bodies.fem[k]);
+    for (size_t t = 0; t < sizeof world->scratch.meshes / sizeof world->scratch.meshes[0]; t++)
+        brunt_fem_workspace_free(&world->scratch.meshes[t]);
+    brunt_free(world->bodies.all);
+    brunt_free(world->bodies.fem);
+    brunt_free(world->bodies.mesh_reports);
+    brunt_free(world->bodies.tasks.node);
+    brunt_free(world->bodies.tasks.element);
+    brunt_free(world->bodies.tasks.sums);
+    brunt_free(world->pairs.of_mpm);
+    brunt_free(world->messages.text);
+    brunt_free(world->scratch.planes);
+    brunt_free(world->bodies.mpm);
+    brunt_free(world->boundaries.walls);
+    brunt_free(world->pairs.pair);
+    brunt_free(world->pairs.of);
+    brunt_free(world->scratch.node_sums);
     brunt_free(world);
 }

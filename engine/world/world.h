@@ -1,35 +1,39 @@
 // The inside of a world: bodies, conditions, the plan, the ledgers.
 #pragma once
 
-#include "contact/methods/augury.h"
-#include "mpm/mpm_body.h"
-#include "brunt.h"
-#include "contact/contact.h"
-#include "contact/search/node_to_facet.h"
-#include "fem/fem_body.h"
-#include "contact/methods/surface_on_grid.h"
+#include "account/erosion.h"
+#include "account/ledger.h"
 #include "base/parallel.h"
+#include "body/bodies.h"
+#include "body/settings.h"
+#include "boundary/boundaries.h"
+#include "brunt.h"
 #include "mpm/transfer.h"
+#include "world/clock.h"
+#include "world/contact.h"
+#include "world/messages.h"
+#include "world/pairs.h"
+#include "world/scratch.h"
 
 // The passes of a step, in their order. A pass nobody asked for is not in the plan and does not run.
 #define BRUNT_PASSES(X)                                                                                                \
-    X(kick, world->fem_count > 0)                                                                                      \
-    X(groups, world->hold_count > 0)                                                                                   \
-    X(sort, world->body_count > 0)                                                                                     \
-    X(scatter, world->body_count > 0)                                                                                  \
-    X(grid, world->body_count > 0)                                                                                     \
-    X(mirror, world->mirror_count > 0 && world->body_count > 0)                                                        \
-    X(update, world->body_count > 0)                                                                                   \
-    X(conditions, world->has_conditions)                                                                               \
-    X(contact, world->has_contact)                                                                                     \
-    X(surfaces, world->has_surfaces)                                                                                   \
-    X(walls, world->has_walls && world->body_count > 0)                                                                \
-    X(ledger, world->body_count > 0)                                                                                   \
-    X(remap, world->advance != NULL && world->body_count > 0)                                                          \
-    X(gather, world->body_count > 0)                                                                                   \
-    X(drift, world->fem_count > 0)                                                                                     \
-    X(elements, world->fem_count > 0)                                                                                  \
-    X(erosion, world->has_erosion)                                                                                     \
+    X(kick, world->bodies.fem_count > 0)                                                                               \
+    X(groups, world->boundaries.sets.count > 0)                                                                        \
+    X(sort, world->bodies.mpm_count > 0)                                                                               \
+    X(scatter, world->bodies.mpm_count > 0)                                                                            \
+    X(grid, world->bodies.mpm_count > 0)                                                                               \
+    X(mirror, world->boundaries.mirror_count > 0 && world->bodies.mpm_count > 0)                                       \
+    X(update, world->bodies.mpm_count > 0)                                                                             \
+    X(conditions, world->boundaries.has_conditions)                                                                    \
+    X(contact, world->contact.has_grid)                                                                                \
+    X(surfaces, world->contact.has_surfaces)                                                                           \
+    X(walls, world->boundaries.has_walls && world->bodies.mpm_count > 0)                                               \
+    X(ledger, world->bodies.mpm_count > 0)                                                                             \
+    X(remap, world->transfers.advance != NULL && world->bodies.mpm_count > 0)                                          \
+    X(gather, world->bodies.mpm_count > 0)                                                                             \
+    X(drift, world->bodies.fem_count > 0)                                                                              \
+    X(elements, world->bodies.fem_count > 0)                                                                           \
+    X(erosion, world->erosion.active)                                                                                  \
     X(advance, true) // which step is due, the clock, accounts, what is watched: in parts, around the others
 
 enum {
@@ -39,137 +43,39 @@ enum {
         BRUNT_PASS_COUNT
 };
 
-typedef struct brunt_damping_sums {
-    double work, impulse[3], angular[3]; // [J], [N s], [N m s] of a node task
-} brunt_damping_sums;
+typedef struct brunt_transfers { // of points to and from their grids, as the scene chose them; NULL: there is none
+    brunt_p2g_fn *scatter, *total_scatter; // total: of total-Lagrangian bodies
+    brunt_g2p_fn *gather, *advance, *total_gather;
+} brunt_transfers;
 
-typedef struct brunt_node_sums {
-    double old_kinetic, new_kinetic, mass, first_moment[3], gravity_work, stress_work;
-} brunt_node_sums;
+struct brunt_pass_time {
+    int64_t calls;
+    double seconds, units; // units: particles, nodes or elements gone over
+    brunt_timer threads;
+};
 
-// A named group of nodes that is held, moved or loaded.
-typedef struct brunt_node_set {
-    int wall, fem; // its place among the walls; its body among the finite-element bodies
-    const int32_t *node;
-    int32_t node_count;
-    int32_t (*face)[4]; // traction and pressure: the surface's faces that are all in the group
-    int32_t face_count;
-    // Of bodies that erode, the faces at the start and the elements they are of, by their numbers in the mesh; else
-    // NULL.
-    int32_t (*whole)[4], *owner;
-    int32_t whole_count;
-    double *force;                             // node_count x 3 [N] of this step, for loads
-    int32_t *place;                            // of each node of the body: its place in the group + 1; for loads
-    double gas_energy, gas_volume, gas_inflow; // [J], [m^3], [J] so far: of enclosed gas
-    double *area;                              // node_count x 3: room for the stable step of gas; NULL of others
-} brunt_node_set;
-
-// A run of nodes or a block of elements of one of the finite-element bodies: a task.
-typedef struct brunt_fem_task {
-    int32_t fem, begin, end;
-} brunt_fem_task;
-
-typedef struct brunt_body_ref {
-    brunt_body *mpm; // one of the two, the other is NULL
-    brunt_fem_body *fem;
-} brunt_body_ref;
+struct brunt_timing {
+    double seconds;     // [s] of all steps, without what the observer took
+    double begin, mark; // [s] of the clock: where the step began (later by what the observer took), and the pass
+    int pass;           // that runs; -1: none
+    bool observed;
+    brunt_observer observer;
+};
 
 struct brunt_world {
-    int dimension, threads;
-    brunt_kernel kernel;
-    brunt_transfer transfer;
-    double flip, cfl, fixed_step, end, energy_limit, gravity[3], gravity_ramp, cell;
-    brunt_p2g_fn *scatter;
-    brunt_g2p_fn *gather, *advance;
-    brunt_p2g_fn *total_scatter; // of total-Lagrangian bodies
-    brunt_g2p_fn *total_gather;
-
-    brunt_body_ref *all; // in order of name
-    int all_count;
-    brunt_body *bodies; // of material points
-    int body_count;
-    brunt_fem_body *fems;
-    int fem_count;
-    brunt_mesh_report *mesh_reports; // a finite-element body each
-    brunt_fem_workspace fem_work[256];
-    brunt_fem_task *node_tasks, *element_tasks;
-    int64_t node_task_count, element_task_count;
-    brunt_fem_sums *fem_sums;         // a node task each
-    real **drag;                      // of each body with damping: node_count x 4 [m/s], velocities before the kick
-    brunt_damping_sums *damping_sums; // a node task each
-    double **load_rate;    // of each body with loads that follow its surface: node_count, room for its stable step
-    uint8_t (**holder)[3]; // of each body, node and component: the hold that prescribes it + 1
-    brunt_node_set *holds;
-    int hold_count;
-    brunt_group_def *groups; // copies, with their curves
-    int group_count;
-    brunt_contact_surface skin;
-    brunt_constraint_set points;
-    brunt_node_to_facet *facing;
-    brunt_augury_workspace *augury;
-    brunt_grid_surfaces *grid_surfaces;
-    int grid_sweeps;
-    brunt_contact_def contact; // without its pairs
-    double contact_cell;
-    char (*warnings)[256];
-    int warning_count;
-    brunt_wall *walls;
-    int wall_count;
-    brunt_symmetry_plane mirrors[16];
-    int mirror_count;
-    brunt_pair *pairs;
-    int pair_count;
-    int32_t *pair_of;
-    int32_t *mpm_pair_of; // pairs that meet at grid nodes, by place in `bodies`
-    bool has_particles, has_conditions, has_contact, has_walls, has_friction, has_gravity;
-    const brunt_node_set *gas_lost; // gas whose volume is no longer positive
-    bool axisymmetric;
-    brunt_eroded *eroded;                    // of each body of `all`; NULL without erosion. Saved with the state
-    brunt_erosion_def *erosion;              // of each body of `all`; NULL without erosion
-    bool has_erosion;                        // elements or material points may leave their bodies
-    struct brunt_erosion_work *erosion_work; // of meshes that erode; NULL without erosion
-    double least_step;
-    double rounding_energy; // [J] a step: what rounding may do, follows from the bodies at the start
-    bool creep_told;        // that steps have become short
-    bool has_damping, has_gas, has_fluid;
-    bool has_grid_surfaces;        // multi-velocity contact of meshes with material points
-    bool has_augury, has_surfaces; // surfaces of meshes meet something: each other, particles, planes
-
-    brunt_workspace work[256];
-    brunt_wall_workspace **wall_work; // a body each
-    brunt_contact_workspace *contact_work;
-    brunt_node_sums *node_sums;
-    size_t node_sums_capacity;
-
-    // Everything a run needs to go on besides the particles, and nothing else: saved as one block of doubles.
-    struct brunt_clock {
-        double time, steps, dt, kick, next_dt, dt_min, dt_max; // kick: what the last forces acted over
-        double longest;                                        // [s] of the steps that were not cut short
-        double kinetic;                                        // of the particles [J]
-        double fem_kinetic, fem_stress_work, hourglass_stored, hourglass_lost; // [J] of the meshes
-        double stress_work;            // [J] dt times the stress power at the end of the last step
-        double transfer, gravity_work; // [J]
-        double contact_frame[3];       // [m/s] what contact measures motion against
-        double gravity_impulse[3], gravity_angular[3];
-        double damped, damping_impulse[3], damping_angular[3]; // [J], [N s], [N m s]
-        double initial_energy, initial_kinetic;                // [J]
-        double linear_initial[3], angular_initial[3], scale_linear, scale_angular;
-        double energy_scale; // [J] the most that the run has been given so far: what its energy error is relative to
-        double eroded_plastic, eroded_viscosity, eroded_heat; // [J] dissipated by what has been eroded since
-    } now;
-
-    struct brunt_pass_time {
-        int64_t calls;
-        double seconds, units; // units: particles, nodes or elements gone over
-        brunt_timer threads;
-    } pass[BRUNT_PASS_COUNT];
-    struct brunt_timing {
-        double seconds;     // [s] of all steps, without what the observer took
-        double begin, mark; // [s] of the clock: where the step began (later by what the observer took), and the pass
-        int pass;           // that runs; -1: none
-        bool observed;
-        brunt_observer observer;
-    } timing;
+    brunt_settings settings;
+    brunt_bodies bodies;
+    brunt_boundaries boundaries;
+    brunt_pairs pairs;
+    brunt_contact contact;
+    brunt_erosion erosion;
+    brunt_ledger ledger;
+    struct brunt_clock clock;
+    brunt_transfers transfers;
+    brunt_scratch scratch;
+    brunt_messages messages;
+    struct brunt_pass_time pass[BRUNT_PASS_COUNT];
+    struct brunt_timing timing;
 };
 
 // --- timing.c: what the step and its passes take. A pass begins where the one before ended, so that no moment of a
@@ -202,7 +108,7 @@ void brunt_grid_ledger(void *job, int64_t begin, int64_t end, int worker); // no
 
 // --- finite_elements.c: the meshes' passes
 // Blocks and runs of nodes of all bodies, as tasks. 0, or -1: out of memory.
-int brunt_fem_tasks(brunt_world *world);
+int brunt_fem_tasks_make(brunt_world *world);
 // Velocities by the internal forces, loads and gravity, over `dt`.
 void brunt_fem_kick_all(brunt_world *world, const double gravity[3], double dt);
 // Prescribed motion of named groups, and their account; `step` is how far the nodes then move.
@@ -241,7 +147,7 @@ int brunt_surfaces_overlap(brunt_world *world, brunt_error *error);
 int brunt_surfaces_renew(brunt_world *world, brunt_error *error);
 
 // --- erosion.c, erosion_particles.c: elements and material points that leave their bodies, at the end of a step
-// The accounts and lists of bodies that erode; world->has_erosion. Before the first step.
+// The accounts and lists of bodies that erode; world->erosion.active. Before the first step.
 int brunt_erosion_make(brunt_world *world, const brunt_world_def *def, brunt_error *error);
 void brunt_erosion_free(brunt_world *world);
 // Takes out what has failed, is strained, short of step or inside out, and books it. BRUNT_OK, or BRUNT_FAILED with the

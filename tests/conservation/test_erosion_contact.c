@@ -65,7 +65,7 @@ static void mark(brunt_fem_body *fem, int32_t slot) {
 
 static void erode(brunt_world *world) {
     brunt_error error = {0};
-    ck_assert_msg(brunt_erode_marked(world, world->now.dt, &error) == BRUNT_OK, "%s", error.message);
+    ck_assert_msg(brunt_erode_marked(world, world->clock.dt, &error) == BRUNT_OK, "%s", error.message);
 }
 
 static double stored(const brunt_energy *e) { return e->kinetic + e->internal + e->hourglass; }
@@ -160,7 +160,7 @@ static double deepest_node(const brunt_world *world, double limit, int *count) {
     double deepest = 0;
     *count = 0;
     for (int k = 0; k < 2; k++) {
-        const brunt_fem_body *me = &world->fems[k], *other = &world->fems[!k];
+        const brunt_fem_body *me = &world->bodies.fem[k], *other = &world->bodies.fem[!k];
         brunt_faces faces;
         ck_assert_int_eq(brunt_fem_faces(other, &faces), 0);
         for (int32_t n = 0; n < me->node_count; n++) {
@@ -213,13 +213,13 @@ START_TEST(surface_is_that_of_the_elements) {
     uint64_t seed = 7;
     for (int round = 0; round < 12; round++) {
         for (int k = 0; k < 2; k++)
-            for (int32_t s = 0; s < world->fems[k].slots; s++)
-                if (world->fems[k].element_id[s] >= 0 && random_number(&seed) < (round == 11 ? 2 : 0.15))
-                    mark(&world->fems[k], s);
+            for (int32_t s = 0; s < world->bodies.fem[k].slots; s++)
+                if (world->bodies.fem[k].element_id[s] >= 0 && random_number(&seed) < (round == 11 ? 2 : 0.15))
+                    mark(&world->bodies.fem[k], s);
         erode(world);
-        const brunt_contact_surface *s = &world->skin;
+        const brunt_contact_surface *s = &world->contact.surface;
         for (int k = 0; k < 2; k++) {
-            const brunt_fem_body *fem = &world->fems[k];
+            const brunt_fem_body *fem = &world->bodies.fem[k];
             brunt_faces faces;
             ck_assert_int_eq(brunt_fem_faces(fem, &faces), 0);
             ck_assert_int_eq(faces.count, s->face_end[k] - s->face_range[k]);
@@ -247,7 +247,7 @@ START_TEST(surface_is_that_of_the_elements) {
             }
         world_steps(world, 2);
     }
-    ck_assert_int_eq(world->fems[0].element_count, 0); // bodies without elements go on
+    ck_assert_int_eq(world->bodies.fem[0].element_count, 0); // bodies without elements go on
     brunt_world_destroy(world);
 }
 END_TEST
@@ -275,8 +275,9 @@ static pressed press(brunt_element_kind kind, int which, bool keep, double speed
         *most = fmax(*most, fabs(world_pair(world, 0).force[1]));
         if (gone || brunt_world_time(world) < 0.5 / wave_speed) continue;
         gone = true;
-        if (which & 1) mark(&world->fems[0], element_at(&world->fems[0], XYZ(0.02, -0.3 * h, 0.02 * z)));
-        if (which & 2) mark(&world->fems[1], element_at(&world->fems[1], XYZ(-0.1, -0.03 + 0.5 * h, 0.02 * z)));
+        if (which & 1) mark(&world->bodies.fem[0], element_at(&world->bodies.fem[0], XYZ(0.02, -0.3 * h, 0.02 * z)));
+        if (which & 2)
+            mark(&world->bodies.fem[1], element_at(&world->bodies.fem[1], XYZ(-0.1, -0.03 + 0.5 * h, 0.02 * z)));
         erode(world);
     }
     p.error = world_energy(world).error_relative, p.drift = world_momentum(world).linear_drift;
@@ -315,7 +316,7 @@ START_TEST(overlap_at_birth) {
     def_velocity(mesh_box(&def, "tool", XYZ(-0.31, -1.2 * h, -0.31 * z), XYZ(0.31, 0.4, 0.31 * z), kind, h, false), 0,
                  -v, 0);
     brunt_world *world = world_take(&def);
-    brunt_fem_body *plate = &world->fems[0];
+    brunt_fem_body *plate = &world->bodies.fem[0];
     world_steps(world, 1);
     for (int32_t s = 0; s < plate->slots; s++) { // the first layer
         double x[3];
@@ -376,7 +377,7 @@ static brunt_world *drill_world(const drill *o) {
 // Marks what is crushed or torn, and ahead of the tool one in five by chance each time it has come 0.3 elements
 // further.
 static void mark_ahead(brunt_world *world, double size, uint64_t *seed, bool due) {
-    brunt_fem_body *plate = &world->fems[0];
+    brunt_fem_body *plate = &world->bodies.fem[0];
     const brunt_body_sums tool = world_sums(world, 1);
     const int dim = plate->dim;
     real *const *F = brunt_element_scalars(plate, BRUNT_ELEMENT_deformation_gradient);
@@ -473,8 +474,8 @@ END_TEST
 
 // Particles in live elements of the plate, deeper than `limit`, and the deepest [m].
 static double deepest_particle(brunt_world *world, double limit, int *count) {
-    const brunt_fem_body *plate = &world->fems[0];
-    const int body = world->bodies[0].index;
+    const brunt_fem_body *plate = &world->bodies.fem[0];
+    const int body = world->bodies.mpm[0].index;
     double *x = world_field(world, body, "position"), deepest = 0;
     brunt_faces faces;
     ck_assert_int_eq(brunt_fem_faces(plate, &faces), 0);
@@ -626,7 +627,7 @@ START_TEST(loose_nodes) {
         -v, 0);
     brunt_world *world = world_take(&def);
     world_steps(world, 1);
-    brunt_fem_body *cube = &world->fems[1];
+    brunt_fem_body *cube = &world->bodies.fem[1];
     for (int32_t s = 0; s < cube->slots; s++)
         if (cube->element_id[s] >= 0) mark(cube, s);
     erode(world);
@@ -666,7 +667,7 @@ static brunt_world *torn_world(brunt_element_kind kind) {
     return world_take(&def);
 }
 
-static int fem_elements(const brunt_world *world) { return world->fems[0].element_count; }
+static int fem_elements(const brunt_world *world) { return world->bodies.fem[0].element_count; }
 
 START_TEST(torn_sheet) {
     const brunt_element_kind kind = _i ? BRUNT_MEMBRANE_TRI3 : BRUNT_MEMBRANE_QUAD4;
@@ -686,13 +687,13 @@ START_TEST(torn_sheet) {
             seed = from;
             for (steps = first; steps < first + 40; steps++) {
                 world_steps(w, 1);
-                brunt_fem_body *fem = &w->fems[0];
+                brunt_fem_body *fem = &w->bodies.fem[0];
                 for (int32_t s = 0; s < fem->slots && steps % 5 == 4; s++)
                     if (fem->element_id[s] >= 0 && random_number(&seed) < 0.06) mark(fem, s);
                 erode(w);
             }
             hash[run] = brunt_world_hash(w);
-            const brunt_contact_surface *skin = &w->skin;
+            const brunt_contact_surface *skin = &w->contact.surface;
             ck_assert_int_eq(skin->face_end[0] - skin->face_range[0], fem_elements(w));
             ck_assert_int_eq(skin->face_range[1] - skin->face_end[0], fem_elements(w));
             for (int32_t n = skin->node_end[0]; n < skin->node_range[1]; n++)
@@ -729,9 +730,9 @@ START_TEST(no_growth) {
         world_steps(world, 1);
         for (int q = 0; q < 3; q++) {
             int32_t s;
-            do s = (int32_t)(random_number(&seed) * world->fems[0].slots);
-            while (world->fems[0].element_id[s] < 0);
-            mark(&world->fems[0], s);
+            do s = (int32_t)(random_number(&seed) * world->bodies.fem[0].slots);
+            while (world->bodies.fem[0].element_id[s] < 0);
+            mark(&world->bodies.fem[0], s);
         }
         erode(world);
     }

@@ -92,9 +92,9 @@ START_TEST(account_is_what_left) {
         brunt_energy energy = world_energy(world);
         brunt_momentum momentum = world_momentum(world);
         brunt_body_sums sums = world_sums(world, 0);
-        world->erosion[0].strain = quantile(world, 0.02);
+        world->erosion.rule[0].strain = quantile(world, 0.02);
         ck_assert_int_eq(brunt_erode_particles(world, 0, NULL), BRUNT_OK);
-        world->erosion[0].strain = 1e3;
+        world->erosion.rule[0].strain = 1e3;
         brunt_eroded now;
         brunt_body_eroded(world, 0, &now);
         brunt_energy energy_now = world_energy(world);
@@ -213,7 +213,7 @@ static brunt_world_def crushed(int dimension, bool inverted, bool keep) {
 static brunt_world *crushed_world(int dimension, bool inverted, bool keep) {
     brunt_world_def def = crushed(dimension, inverted, keep);
     brunt_world *world = world_take(&def);
-    brunt_particles *p = &world->bodies[0].particles;
+    brunt_particles *p = &world->bodies.mpm[0].particles;
     for (int64_t s = 0; s < p->slots; s++) brunt_field(p, BRUNT_FIELD_velocity)[0][s] *= 10;
     return world;
 }
@@ -257,7 +257,7 @@ START_TEST(rings_that_cross_the_axis) {
     brunt_body_def *b = def_box(&def, "pipe", XYZ(0.5 * h, 0, 0), XYZ(2 * h, 5 * h, 0));
     b->erosion.inverted = true, b->erosion.keep = keep;
     brunt_world *world = world_take(&def);
-    brunt_particles *p = &world->bodies[0].particles;
+    brunt_particles *p = &world->bodies.mpm[0].particles;
     const int64_t columns = 3, count = brunt_body_particles(world, 0);
     for (int64_t s = 0; s < p->slots; s++)
         brunt_field(p, BRUNT_FIELD_velocity)[0][s] = (real)(-1.2 * h / brunt_world_dt(world));
@@ -428,7 +428,7 @@ START_TEST(costs_nothing_unasked) {
     brunt_world_def def = shaken(2, BRUNT_APIC, BRUNT_QUADRATIC, 4);
     def.bodies[0].erosion = brunt_body_def_default().erosion;
     brunt_world *world = world_take(&def);
-    ck_assert(!world->has_erosion && !world->bodies[0].erodes && !world->bodies[0].rank);
+    ck_assert(!world->erosion.active && !world->bodies.mpm[0].erodes && !world->bodies.mpm[0].rank);
     world_steps(world, 2);
     for (int32_t p = 0; p < brunt_pass_count(world); p++) ck_assert_str_ne(brunt_world_pass(world, p).name, "erosion");
     brunt_world_destroy(world);

@@ -96,7 +96,7 @@ typedef struct audit {
 } audit;
 
 static audit audit_of(brunt_world *world) {
-    brunt_fem_body *fem = &world->fems[0];
+    brunt_fem_body *fem = &world->bodies.fem[0];
     audit a = {.energy = brunt_fem_energy(fem).internal};
     for (int32_t b = 0; b < fem->block_count; b++) a.energy += fem->report[b].hourglass_stored;
     for (int32_t n = 0; n < fem->node_count; n++) {
@@ -114,7 +114,7 @@ static audit audit_of(brunt_world *world) {
                 m * ((double)node[j] * (double)node[BRUNT_FEM_V + k] - (double)node[k] * (double)node[BRUNT_FEM_V + j]);
         }
     }
-    if (world->axisymmetric) a.p[0] = a.h[2] = 0; // of whole rings
+    if (world->settings.axisymmetric) a.p[0] = a.h[2] = 0; // of whole rings
     return a;
 }
 
@@ -147,7 +147,7 @@ START_TEST(random_erosions_are_booked) {
     const int k = _i % KINDS;
     brunt_world_def def = thrown(k, _i < KINDS ? BRUNT_HOURGLASS_STIFFNESS : BRUNT_HOURGLASS_VISCOUS);
     brunt_world *world = world_take(&def);
-    brunt_fem_body *fem = &world->fems[0];
+    brunt_fem_body *fem = &world->bodies.fem[0];
     random_state = (uint32_t)_i + 1;
     const int64_t start = brunt_body_elements(world, 0);
     double worst = 0;
@@ -213,7 +213,7 @@ static void check_order(const brunt_fem_body *fem) {
 START_TEST(order_is_kept) {
     brunt_world_def def = thrown(_i, BRUNT_HOURGLASS_STIFFNESS);
     brunt_world *world = world_take(&def);
-    brunt_fem_body *fem = &world->fems[0];
+    brunt_fem_body *fem = &world->bodies.fem[0];
     while (fem->element_count > 0) {
         mark_random(fem, 1 + fem->element_count / 3);
         erode(world);
@@ -227,7 +227,7 @@ END_TEST
 START_TEST(readers_see_what_is_left) {
     brunt_world_def def = thrown(_i, BRUNT_HOURGLASS_STIFFNESS);
     brunt_world *world = world_take(&def);
-    brunt_fem_body *fem = &world->fems[0];
+    brunt_fem_body *fem = &world->bodies.fem[0];
     const int nodes = fem->element->nodes;
     const int64_t start = brunt_body_elements(world, 0);
     int32_t *before = malloc((size_t)(start * nodes) * sizeof *before),
@@ -272,7 +272,7 @@ START_TEST(bar_tears_in_two) {
     const brunt_eroded c = eroded_of(world);
     const brunt_momentum m = world_momentum(world);
     double half[2] = {0}, low = -INFINITY, high = INFINITY;
-    const brunt_fem_body *fem = &world->fems[0];
+    const brunt_fem_body *fem = &world->bodies.fem[0];
     for (int32_t n = 0; n < fem->node_count; n++) {
         const real *node = brunt_fem_node(fem, n);
         if (brunt_fem_removed(fem, n)) continue;
@@ -301,7 +301,7 @@ END_TEST
 START_TEST(kept_nodes_fly_on) {
     brunt_world_def def = torn(_i, true);
     brunt_world *world = world_take(&def);
-    brunt_fem_body *fem = &world->fems[0];
+    brunt_fem_body *fem = &world->bodies.fem[0];
     const double mass = world_sums(world, 0).mass;
     mark_random(fem, 1 + fem->element_count / 2);
     erode(world);
@@ -328,7 +328,7 @@ START_TEST(strain_is_the_equivalent_logarithmic_one) {
             brunt_world_def def = thrown(_i, BRUNT_HOURGLASS_STIFFNESS);
             def.bodies[0].erosion.strain = 0.3;
             brunt_world *world = world_take(&def);
-            brunt_fem_body *fem = &world->fems[0];
+            brunt_fem_body *fem = &world->bodies.fem[0];
             // ln of the stretches: (a, -a, 0) has 2 a / sqrt 3; (a, 0, 0) has 2 a / 3.
             const double eps = sizeof(real) == 4 ? 1e-4 : 1e-9;
             const double a = 0.3 * (1 + side * eps) * (shear ? sqrt(3) / 2 : 1.5);
@@ -377,7 +377,7 @@ START_TEST(failed_elements_go) {
         ck_assert_msg(error.code == BRUNT_OK, "%s", error.message);
         def.bodies[0].erosion.strain = INFINITY;
         brunt_world *world = world_take(&def);
-        ck_assert_int_eq(world->has_erosion, !soften);
+        ck_assert_int_eq(world->erosion.active, !soften);
         while (brunt_world_time(world) < 0.01) {
             const brunt_eroded c = eroded_of(world);
             const brunt_energy e = world_energy(world);
@@ -563,18 +563,18 @@ START_TEST(inverted_elements_are_booked) {
         for (int a = 0; a < 3; a++) def.bodies[0].wave_velocity[a] *= 10;
     }
     brunt_world *world = world_take(&def);
-    brunt_fem_body *fem = &world->fems[0];
+    brunt_fem_body *fem = &world->bodies.fem[0];
     world_steps(world, 4);
     if (fem->element->sheet)
         flatten(fem, dt);
     else
         shoot(fem, dt);
-    world->now.fem_kinetic = brunt_fem_audit(fem).kinetic;
-    world->now.fem_stress_work = 0;
-    for (int32_t b = 0; b < fem->block_count; b++) world->now.fem_stress_work += brunt_fem_stress_work(fem, b, dt);
+    world->ledger.fem_kinetic = brunt_fem_audit(fem).kinetic;
+    world->ledger.fem_stress_work = 0;
+    for (int32_t b = 0; b < fem->block_count; b++) world->ledger.fem_stress_work += brunt_fem_stress_work(fem, b, dt);
     const brunt_energy before = world_energy(world);
     const brunt_momentum m = world_momentum(world);
-    const double stored = before.internal, half = 0.5 * world->now.fem_stress_work;
+    const double stored = before.internal, half = 0.5 * world->ledger.fem_stress_work;
     world_steps(world, 1);
     const brunt_energy after = world_energy(world);
     const brunt_momentum n = world_momentum(world);
@@ -620,8 +620,8 @@ START_TEST(short_elements_go_or_the_run_stops) {
     for (error.code = BRUNT_OK; brunt_world_time(world) < 0.005;) {
         int status = brunt_world_step(world, 0.005, &error);
         ck_assert_msg(status == BRUNT_OK, "%s", error.message);
-        for (int32_t b = 0; b < world->fems[0].block_count; b++)
-            ck_assert_double_ge(world->fems[0].report[b].stable_step, 0.6 * start);
+        for (int32_t b = 0; b < world->bodies.fem[0].block_count; b++)
+            ck_assert_double_ge(world->bodies.fem[0].report[b].stable_step, 0.6 * start);
     }
     const brunt_eroded c = eroded_of(world);
     printf("short, %s: %lld elements, %lld left, energy error %.2e\n", brunt_element_name(kinds[_i].kind),
@@ -644,7 +644,7 @@ START_TEST(faces_of_gone_elements_bear_no_load) {
     snprintf(g->group, sizeof g->group, "xmax");
     g->action = BRUNT_GROUP_PRESSURE, g->value[0] = 1000;
     brunt_world *world = world_take(&def);
-    brunt_fem_body *fem = &world->fems[0];
+    brunt_fem_body *fem = &world->bodies.fem[0];
     world_steps(world, 2);
     const double whole = world_wall(world, 0).force[0];
     ck_assert_double_eq_tol(whole, -1000 * 0.04, 0.01);
@@ -695,7 +695,7 @@ START_TEST(body_without_elements_runs_on) {
     def.bodies[0].damping = 10;
     def.gravity[1] = -9.81;
     brunt_world *world = world_take(&def);
-    brunt_fem_body *fem = &world->fems[0];
+    brunt_fem_body *fem = &world->bodies.fem[0];
     world_steps(world, 5);
     const double dt = brunt_world_dt(world), initial = world_energy(world).initial;
     for (int32_t s = 0; s < fem->slots; s++)
@@ -724,7 +724,7 @@ END_TEST
 START_TEST(steps_allocate_nothing) {
     brunt_world_def def = torn(3, false);
     brunt_world *world = world_take(&def);
-    brunt_fem_body *fem = &world->fems[0];
+    brunt_fem_body *fem = &world->bodies.fem[0];
     mark_random(fem, 12);
     erode(world);
     const int64_t calls = brunt_memory_calls();
@@ -742,8 +742,8 @@ START_TEST(without_erosion_there_is_nothing) {
     brunt_world_def def = torn(3, false);
     def.bodies[0].erosion.strain = INFINITY;
     brunt_world *world = world_take(&def);
-    ck_assert(!world->has_erosion && !world->eroded && !world->erosion && !world->erosion_work);
-    ck_assert(!world->fems[0].bonds && !world->fems[0].mark && !world->fems[0].rank);
+    ck_assert(!world->erosion.active && !world->erosion.account && !world->erosion.rule && !world->erosion.work);
+    ck_assert(!world->bodies.fem[0].bonds && !world->bodies.fem[0].mark && !world->bodies.fem[0].rank);
     for (int32_t p = 0; p < brunt_pass_count(world); p++) ck_assert_str_ne(brunt_world_pass(world, p).name, "erosion");
     for (int32_t f = 0; f < brunt_effect_count(world); f++)
         if (!strcmp(brunt_world_effect(world, f).name, "erosion")) ck_assert(!brunt_world_effect(world, f).on);

@@ -51,8 +51,8 @@ END_TEST
 
 // Greatest |eigenvalue| of M^-1 df/dx of the loads as they are, by powers of it; differences of the loads themselves.
 static double true_frequency(brunt_world *world) {
-    brunt_fem_body *fem = &world->fems[0];
-    const int32_t n = fem->node_count, span = world->dimension;
+    brunt_fem_body *fem = &world->bodies.fem[0];
+    const int32_t n = fem->node_count, span = world->settings.dimension;
     const double step = sizeof(real) == 4 ? 1e-3 : 1e-5;
     double *v = calloc((size_t)n * 3, sizeof *v), *plus = calloc((size_t)n * 3, sizeof *plus), greatest = 0;
     real *start = malloc((size_t)n * BRUNT_FEM_NODE_REALS * sizeof *start);
@@ -85,9 +85,10 @@ static double true_frequency(brunt_world *world) {
 }
 
 static void warp(brunt_world *world) {
-    brunt_fem_body *fem = &world->fems[0];
+    brunt_fem_body *fem = &world->bodies.fem[0];
     for (int32_t n = 0; n < fem->node_count; n++)
-        for (int a = 0; a < world->dimension; a++) brunt_fem_node(fem, n)[a] += (real)(0.012 * sin(11.0 * n + 3 * a));
+        for (int a = 0; a < world->settings.dimension; a++)
+            brunt_fem_node(fem, n)[a] += (real)(0.012 * sin(11.0 * n + 3 * a));
 }
 
 // The bound is one; of gas that has the pressure outside it is exact. Faces that push are looked at one by one, which
@@ -100,7 +101,8 @@ START_TEST(bound_is_one_and_a_close_one) {
         brunt_world *world = world_take(&def);
         warp(world);
         if (with_gas == 2) // equal pressures as it is now
-            world->groups[0].gas.outside = brunt_gas_now(world, &world->holds[0], &world->groups[0]).pressure;
+            world->boundaries.sets.def[0].gas.outside =
+                brunt_gas_now(world, &world->boundaries.sets.set[0], &world->boundaries.sets.def[0]).pressure;
         const double truth = true_frequency(world), bound = brunt_load_frequency(world, 0);
         printf("%d %s: %.4g of %.4g, %.3f\n", _i, with_gas ? "gas" : "pressure", truth, bound, bound / truth);
         ck_assert_double_ge(bound, truth * (1 - 1e-3));
@@ -124,7 +126,7 @@ START_TEST(gas_at_rest_stays_so) {
     double most = 0;
     for (int k = 0; k < 1500; k++) {
         world_steps(world, 1);
-        most = fmax(most, world->now.fem_kinetic);
+        most = fmax(most, world->ledger.fem_kinetic);
     }
     printf("gas of %g Pa: %.3f times the kinetic energy\n", pressure, most / start);
     ck_assert_double_lt(most, 1.5 * start);
@@ -164,7 +166,7 @@ START_TEST(frequency_of_a_ring) {
     brunt_world_def def = box(RING_QUAD, 1e5, 1);
     load(&def, BRUNT_GROUP_PRESSURE, 1e5, 0);
     brunt_world *world = world_take(&def);
-    const brunt_fem_body *fem = &world->fems[0];
+    const brunt_fem_body *fem = &world->bodies.fem[0];
     ck_assert_int_eq(fem->node_count, 4);
     const double level = 0.4 + sqrt(2 * (0.7 * 0.7 + 1.1 * 1.1)) / 3;
     double most = 0;

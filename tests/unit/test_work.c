@@ -78,7 +78,7 @@ START_TEST(bytes_are_those_of_the_arrays) {
         body_of b = usual;
         b.transfer = (brunt_transfer)transfer, b.model = "von-mises";
         brunt_world *world = points_of(b);
-        const brunt_grid *grid = &world->bodies[0].grid;
+        const brunt_grid *grid = &world->bodies.mpm[0].grid;
         const double particles = (double)brunt_world_particles(world), node = 8 * sizeof(real);
         double read_once = 0, updated = 0, state = 0;
         static const char *const moving[] = {"position", "velocity", "affine", "kirchhoff_stress"};
@@ -104,7 +104,7 @@ END_TEST
 START_TEST(bytes_of_elements_are_those_of_the_arrays) {
     for (int hourglass = 0; hourglass < 2; hourglass++) {
         brunt_world *world = mesh_of(3, BRUNT_HEX8, (brunt_hourglass)hourglass, false);
-        const brunt_fem_body *body = &world->fems[0];
+        const brunt_fem_body *body = &world->bodies.fem[0];
         const double updated = components(world, "deformation_gradient") + components(world, "kirchhoff_stress") +
                                components(world, "hourglass_rate");
         ck_assert_double_eq(updated, hourglass ? 27 : 15);
@@ -125,7 +125,7 @@ START_TEST(sort_moves_what_changes_its_bin) {
     brunt_pass pass[2];
     for (int k = 0; k < 2; k++) {
         brunt_world *world = points_of(k ? fast : still);
-        const brunt_particles *p = &world->bodies[0].particles;
+        const brunt_particles *p = &world->bodies.mpm[0].particles;
         world_steps(world, 30);
         pass[k] = pass_of(world, "sort");
         if (k) ck_assert_int_gt(p->moves, 5);

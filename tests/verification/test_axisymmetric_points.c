@@ -490,7 +490,7 @@ START_TEST(no_surface_inside) {
     def_material(&def, "neo-hookean", 1000, 1e5, 0.3);
     def_box(&def, "rod", XYZ(0, 0, 0), XYZ(10 * h, 10 * h, 0));
     brunt_world *world = world_take(&def);
-    brunt_body *body = &world->bodies[0];
+    brunt_body *body = &world->bodies.mpm[0];
     int inside = 0, outer = 0;
     for (int32_t s = 0; s < body->grid.slot_count; s++)
         for (int node = 0; node < BRUNT_BLOCK_NODES; node++) {

@@ -13,7 +13,7 @@ static brunt_world_def bar_begin(int dimension, double cell) {
 
 // Velocities A x, and the affine part of APIC to match.
 static void set_motion(brunt_world *world, double A[2][2]) {
-    brunt_particles *p = &world->bodies[0].particles;
+    brunt_particles *p = &world->bodies.mpm[0].particles;
     real **x = brunt_field(p, BRUNT_FIELD_position), **v = brunt_field(p, BRUNT_FIELD_velocity),
          **C = brunt_field(p, BRUNT_FIELD_affine);
     for (int64_t s = 0; s < p->slots; s++)
@@ -72,7 +72,7 @@ static void pull(bool total, double until, double *force, double *wanted, double
     def_plane(&def, XYZ(0.4, 0, 0), XYZ(1, 0, 0), BRUNT_STICK, 0);
     def_plane(&def, XYZ(1.6, 0, 0), XYZ(-1, 0, 0), BRUNT_STICK, 0)->velocity[0] = speed;
     brunt_world *world = world_take(&def);
-    brunt_particles *p = &world->bodies[0].particles;
+    brunt_particles *p = &world->bodies.mpm[0].particles;
     for (int64_t s = 0; s < p->slots; s++)
         brunt_field(p, BRUNT_FIELD_velocity)[0][s] =
             (real)(speed * fmin(fmax(((double)brunt_field(p, BRUNT_FIELD_position)[0][s] - 0.4) / gauge, 0), 1));

@@ -1,0 +1,15 @@
+// What a scene says once for all of a run: read everywhere, written only while the world is made.
+#pragma once
+
+#include "brunt.h"
+
+typedef struct brunt_settings {
+    int dimension, threads;
+    bool axisymmetric, has_gravity;
+    brunt_kernel kernel;
+    brunt_transfer transfer;
+    double flip, cell;                  // [-], [m] of the grids
+    double cfl, fixed_step, least_step; // [-], [s] 0: the stable one, [s]
+    double end, energy_limit;           // [s], [-]
+    double gravity[3], gravity_ramp;    // [m/s^2], [s]
+} brunt_settings;

@@ -1,0 +1,10 @@
+// The time of a world and its steps.
+#pragma once
+
+#include <stdbool.h>
+
+struct brunt_clock {
+    double time, steps, dt, kick, next_dt, dt_min, dt_max; // kick: what the last forces acted over
+    double longest;                                        // [s] of the steps that were not cut short
+    bool creep_told;                                       // that steps have become short; not of the state
+};

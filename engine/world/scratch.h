@@ -1,0 +1,19 @@
+// Room that passes work in: nothing in it lasts from one to the next.
+#pragma once
+
+#include "contact/contact.h"
+#include "fem/fem_body.h"
+#include "mpm/transfer.h"
+
+typedef struct brunt_node_sums {
+    double old_kinetic, new_kinetic, mass, first_moment[3], gravity_work, stress_work;
+} brunt_node_sums;
+
+typedef struct brunt_scratch {
+    brunt_workspace points[256];     // a thread each
+    brunt_fem_workspace meshes[256]; // a thread each
+    brunt_wall_workspace **planes;   // a body of material points each
+    brunt_contact_workspace *grid_velocity;
+    brunt_node_sums *node_sums; // of the slots of one grid
+    size_t node_sums_capacity;
+} brunt_scratch;
