@@ -1,4 +1,4 @@
-// Which bodies are near each other and near walls, and what a search remembers from step to step.
+// Which bodies are near each other, and near planes: boxes by their low ends.
 #include "contact/search/node_to_facet_parts.h"
 
 #include <stdlib.h>
@@ -8,45 +8,6 @@
 
 static const double RANGE = 0.25;     // mean edges: how far a body looks for others, if nothing moves faster
 static const double FARTHEST = 1e150; // [m] squares of distances are still numbers
-
-void brunt_node_to_facet_free(brunt_node_to_facet *f) {
-    if (!f) return;
-    for (int k = 0; k < f->mpm_count; k++) brunt_free(f->node_support[k]);
-    for (int t = 0; t < f->sight_count; t++) brunt_free(f->sight[t].seen);
-    for (int t = 0; t < f->masters_count; t++) brunt_free(f->masters[t].master);
-    void *owned[] = {f->box,
-                     f->near,
-                     f->box_of,
-                     f->near_first,
-                     f->near_list,
-                     f->cell_first,
-                     f->cell_face,
-                     f->made_x,
-                     f->made_box,
-                     f->found,
-                     f->hits,
-                     f->last,
-                     f->quiet,
-                     f->support_of,
-                     f->first_point,
-                     f->node_support,
-                     f->node_support_capacity,
-                     f->grid,
-                     f->sight,
-                     f->masters,
-                     f->run,
-                     f->last_spare,
-                     f};
-    for (size_t k = 0; k < sizeof owned / sizeof owned[0]; k++) brunt_free(owned[k]);
-}
-
-size_t brunt_node_to_facet_bytes(const brunt_node_to_facet *f) {
-    return f ? f->box_capacity + f->near_capacity + f->cell_first_capacity + f->cell_face_capacity +
-                   f->made_x_capacity + f->quiet_capacity + f->found_capacity + f->support_of_capacity
-             : 0;
-}
-
-// ------------------------------------------------------------------------------------------ which bodies are near
 
 static void bound_grid(const brunt_body *body, bounds *box) {
     const brunt_grid *grid = &body->grid;
@@ -145,80 +106,6 @@ bool brunt_broad_phase_plane(const brunt_contact_surface *s, int k, const brunt_
     return brunt_node_to_facet_plane_distance(&wall->plane, time, corner) < range;
 }
 
-// Room for what is remembered of so many nodes.
-static int fit_nodes(brunt_node_to_facet *f, int32_t nodes, int32_t kept) {
-    return RESERVE(f, found, nodes + 1) || RESERVE(f, hits, BRUNT_MAX_HITS * (nodes + 1)) ||
-                   brunt_reserve((void **)&f->last, &f->last_capacity, ((size_t)nodes + 1) * sizeof *f->last,
-                                 (size_t)kept * sizeof *f->last) ||
-                   RESERVE(f, quiet, nodes + 1)
-               ? -1
-               : 0;
-}
-
-static int make_facing(brunt_node_to_facet **facing, int mpm_count, int32_t nodes) {
-    if (*facing) return 0;
-    brunt_node_to_facet *f = *facing = brunt_alloc(sizeof *f);
-    if (!f) return -1;
-    f->mpm_count = mpm_count;
-    f->node_support = brunt_alloc(((size_t)mpm_count + 1) * sizeof(void *));
-    f->node_support_capacity = brunt_alloc(((size_t)mpm_count + 1) * sizeof(size_t));
-    if (!f->node_support || !f->node_support_capacity || fit_nodes(f, nodes, 0)) return -1;
-    for (int32_t n = 0; n < nodes; n++) f->last[n] = -1;
-    return 0;
-}
-
-// Distances are to facets that may be gone, so that everyone looks anew. A face that was the nearest and is still there
-// is looked at first as before.
-int brunt_node_to_facet_renew(brunt_node_to_facet *f, const brunt_contact_surface *s) {
-    const brunt_surface_change *c = &s->change;
-    if (!f || !c->any) return 0;
-    if (fit_nodes(f, s->node_count, c->node_count) || RESERVE(f, last_spare, s->node_count + 1)) return -1;
-    for (int32_t n = 0; n < s->node_count; n++) {
-        const int32_t face = c->node_was[n] < 0 ? -1 : f->last[c->node_was[n]];
-        f->last_spare[n] = face < 0 ? -1 : c->face_now[face];
-        f->quiet[n] = (struct quiet){.travelled = f->travelled};
-    }
-    memcpy(f->last, f->last_spare, (size_t)s->node_count * sizeof *f->last);
-    f->made = false;
-    return 0;
-}
-
-int64_t brunt_node_to_facet_state_count(const brunt_contact_surface *s) {
-    return 7 * brunt_surface_slots(s) + s->fem_count + 1;
-}
-
-void brunt_node_to_facet_state_get(const brunt_node_to_facet *f, const brunt_contact_surface *s, double *out) {
-    memset(out, 0, (size_t)brunt_node_to_facet_state_count(s) * sizeof *out);
-    *out++ = f ? f->travelled : 0;
-    for (int k = 0; k < s->fem_count; k++) *out++ = s->was_active[k];
-    for (int k = 0; k < s->fem_count; k++)
-        for (int32_t n = s->node_range[k]; n < s->node_range[k + 1]; n++) {
-            double *to = out + 7 * brunt_surface_slot(s, k, n);
-            to[0] = f ? f->last[n] : -1;
-            to[1] = f ? f->quiet[n].distance : 0, to[2] = f ? f->quiet[n].travelled : 0;
-            to[3] = f ? f->quiet[n].second : 0;
-            for (int a = 0; a < 3; a++) to[4 + a] = s->x[n][a];
-        }
-}
-
-int brunt_node_to_facet_state_set(brunt_node_to_facet **facing, brunt_contact_surface *s, int mpm_count,
-                                  const double *in) {
-    if (brunt_surface_renew(s, true) || make_facing(facing, mpm_count, s->node_count)) return -1;
-    brunt_node_to_facet *f = *facing;
-    if (fit_nodes(f, s->node_count, 0)) return -1;
-    f->made = f->made && !s->change.any;
-    f->travelled = *in++;
-    for (int k = 0; k < s->fem_count; k++) s->was_active[k] = *in++ != 0;
-    for (int k = 0; k < s->fem_count; k++)
-        for (int32_t n = s->node_range[k]; n < s->node_range[k + 1]; n++) {
-            const double *from = in + 7 * brunt_surface_slot(s, k, n);
-            f->last[n] = (int32_t)from[0];
-            f->quiet[n] = (struct quiet){from[1], from[2], from[3]};
-            for (int a = 0; a < 3; a++) s->x[n][a] = from[4 + a];
-        }
-    return 0;
-}
-
 // Whether there is a place for everything: else no cells could be laid.
 static bool all_finite(const brunt_node_to_facet *f) {
     if (!(f->range < FARTHEST) || !(f->wall_reach < FARTHEST)) return false;
@@ -234,7 +121,7 @@ static bool all_finite(const brunt_node_to_facet *f) {
 int brunt_broad_phase(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, const brunt_wall *walls,
                       int wall_count, double time, brunt_node_to_facet **facing) {
     brunt_contact_surface *s = m->skin;
-    if (make_facing(facing, mpm_count, s->node_count)) return -1;
+    if (brunt_node_to_facet_make(facing, mpm_count, s->node_count)) return -1;
     brunt_node_to_facet *f = *facing;
     // Nothing may pass anything unseen: the reach covers twice the fastest motion of a step, against the frame of all.
     double fastest = 0, spacing = 0;

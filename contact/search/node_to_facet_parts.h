@@ -154,16 +154,25 @@ static inline int face_corners(const brunt_contact_surface *s, int32_t face) {
     return s->face[face][2] < 0 ? 2 : s->face[face][3] < 0 ? 3 : 4;
 }
 
-// --- facing_near.c
+// --- node_to_facet.c
+// Makes what is kept between steps, when there is none. 0, or -1: out of memory.
+int brunt_node_to_facet_make(brunt_node_to_facet **facing, int mpm_count, int32_t nodes);
+
+// --- distance_cache.c
+// Room for what is remembered of so many nodes. 0, or -1: out of memory.
+int brunt_distance_cache_fit(brunt_node_to_facet *f, int32_t nodes, int32_t kept);
+
+// --- broad_phase.c
 double brunt_node_to_facet_plane_distance(const brunt_plane_def *plane, double time, const double x[3]);
 bool brunt_broad_phase_plane(const brunt_contact_surface *s, int k, const brunt_wall *wall, double time, double range);
 
-// --- facing_search.c
+// --- facet_cells.c
 // Makes the cells anew when they no longer hold all that may be near. 0, or -1: out of memory.
 int brunt_search_cells(const brunt_contact_context *m, brunt_node_to_facet *f);
 // Whether anything reaches, within `by`, a box near box `box`.
 bool brunt_node_to_facet_in_reach(const brunt_node_to_facet *f, int32_t box, const double low[3], const double high[3],
                                   double by);
+// --- candidates.c
 // Fills the bodies a looker may touch or have entered; whether there are facets to look at.
 bool brunt_node_to_facet_look(const brunt_node_to_facet *f, looker *l);
 void brunt_node_to_facet_look_around(const brunt_contact_context *m, const brunt_node_to_facet *f, const looker *l,
@@ -171,7 +180,7 @@ void brunt_node_to_facet_look_around(const brunt_contact_context *m, const brunt
 bool brunt_node_to_facet_still_nearest(const brunt_contact_context *m, const brunt_node_to_facet *f, int32_t n,
                                        const double *normal, double least, slave_hits *out);
 
-// --- facing.c
+// --- node_facet.c
 double brunt_node_to_facet_target(const brunt_contact_surface *s, double gap, double approach, double before,
                                   double dt);
 double brunt_node_to_facet_area(const brunt_contact_surface *s, int32_t n, const double direction[3]);
@@ -186,7 +195,7 @@ int brunt_node_to_facet_master(const brunt_contact_surface *s, const hit *h, con
 void brunt_node_to_facet_entries(const brunt_node_to_facet *f, const brunt_master *master, brunt_constraint *point,
                                  brunt_constraint_entry *entry);
 
-// --- facing_particles.c
+// --- particle_facet.c
 // Contact points of the particles of body k of the mpm bodies. 0, or -1: out of memory.
 int brunt_node_to_facet_particles(const brunt_contact_context *m, brunt_node_to_facet *f, brunt_body *body, int k,
                                   int32_t box, brunt_constraint_set *points);

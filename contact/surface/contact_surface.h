@@ -119,6 +119,9 @@ void brunt_surface_gather_state(brunt_contact_surface *skin, double dt, const do
 // Velocities of the active bodies back to them, which then move for `dt`.
 void brunt_surface_scatter_velocity(brunt_contact_surface *skin, double dt, int threads, brunt_timer *timer);
 
+// How many nodes a face has.
+static inline int brunt_face_corners(const int32_t face[4]) { return face[2] < 0 ? 2 : face[3] < 0 ? 3 : 4; }
+
 // Area of face f that is its node n's [m^2], 2D [m]; of a ring that of the whole circle, 2 pi int N_n r ds [m^2].
 static inline double brunt_surface_nodal_area(const brunt_contact_surface *skin, int32_t f, int32_t n) {
     const int32_t *node = skin->face[f];

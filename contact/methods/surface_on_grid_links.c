@@ -1,0 +1,208 @@
+// Which nodes of a mesh and of the grid of a body have to do with each other.
+#include "contact/methods/surface_on_grid_parts.h"
+
+static const double CUT = 1e-6; // cells: how near a mirror plane what it cuts is
+
+static brunt_pair *pair_of(const brunt_contact_context *m, const brunt_body *body, const brunt_fem_body *fem) {
+    int32_t pair = m->pair_of[body->index * m->body_count + fem->index];
+    return pair >= 0 && m->pairs[pair].method == BRUNT_CONTACT_MULTI_VELOCITY ? &m->pairs[pair] : NULL;
+}
+
+static int32_t floor_divide(int32_t a, int32_t b) { return a >= 0 ? a / b : -((-a + b - 1) / b); }
+
+bool brunt_surface_on_grid_place(const brunt_grid *grid, const int32_t at[3], seen_slot *seen, int32_t *slot,
+                                 int *node) {
+    int32_t coord[3] = {0, 0, 0}, local[3] = {0, 0, 0};
+    for (int a = 0; a < grid->dim; a++) {
+        coord[a] = floor_divide(at[a], grid->side);
+        local[a] = at[a] - coord[a] * grid->side;
+    }
+    if (!seen->is || memcmp(seen->coord, coord, sizeof coord)) {
+        memcpy(seen->coord, coord, sizeof coord);
+        seen->slot = brunt_grid_slot(grid, brunt_key(coord)), seen->is = true;
+    }
+    *slot = seen->slot;
+    *node = brunt_node_index(grid, local[0], local[1], local[2]);
+    return *slot >= 0;
+}
+
+// Bounds of the points whose kernel reaches nodes of the grid [m].
+static void bound_grid(const brunt_grid *grid, double low[3], double high[3]) {
+    const double reach = 0.5 * (grid->order + 1) * (double)grid->h;
+    for (int a = 0; a < 3; a++) low[a] = a < grid->dim ? INFINITY : -INFINITY, high[a] = -low[a];
+    for (int32_t s = 0; s < grid->slot_count; s++)
+        for (int a = 0; a < grid->dim; a++) {
+            double first = grid->origin[a] + (double)grid->h * grid->slots[s].coord[a] * grid->side,
+                   last = first + (double)grid->h * (grid->side - 1);
+            low[a] = fmin(low[a], first - reach), high[a] = fmax(high[a], last + reach);
+        }
+}
+
+void brunt_grid_surfaces_near(const brunt_contact_context *m, const brunt_body *mpm, int mpm_count) {
+    brunt_contact_surface *s = m->skin;
+    for (int b = 0; b < mpm_count; b++) {
+        double low[3], high[3];
+        bound_grid(&mpm[b].grid, low, high);
+        for (int k = 0; k < s->fem_count; k++)
+            if (!s->active[k] && pair_of(m, &mpm[b], s->fem[k]))
+                s->active[k] = overlap(low, high, s->low[k], s->high[k]);
+    }
+}
+
+// The contact of mesh k with body b at a node, made when it is first asked for; -1: the body has no mass there, -2: out
+// of memory.
+static int32_t find_contact(job *j, int b, int k, brunt_pair *pair, int32_t slot, int node) {
+    brunt_grid_surfaces *w = j->w;
+    const int32_t number = slot * BRUNT_BLOCK_NODES + node;
+    int32_t last = -1, leader = -1;
+    for (int32_t c = w->place[number] - 1; c >= 0; c = w->contact[c].next) {
+        if (w->contact[c].fem == k) return c;
+        leader = leader < 0 ? c : leader, last = c;
+    }
+    real *at = j->mpm[b].grid.nodes + (size_t)number * BRUNT_NODE_REALS;
+    if (!(at[BRUNT_NODE_MASS] > 0)) return -1;
+    if (GROW(w, contact)) return -2;
+    const int32_t made = w->contact_count++;
+    contact *c = &w->contact[made];
+    *c = (contact){.mpm = b,
+                   .fem = k,
+                   .slot = slot,
+                   .node = node,
+                   .number = number,
+                   .leader = leader < 0 ? made : leader,
+                   .next = -1,
+                   .across = {1, 1, 1},
+                   .pair = pair,
+                   .at = at,
+                   .inverse_s = 1 / (double)at[BRUNT_NODE_MASS]};
+    brunt_node_position(&j->mpm[b].grid, j->mpm[b].grid.slots[slot].coord, node, c->x);
+    for (int a = 0; a < j->mpm[b].grid.dim; a++) c->v[a] = (double)at[BRUNT_NODE_VELOCITY + a];
+    if (last >= 0)
+        w->contact[last].next = made;
+    else
+        w->place[number] = made + 1;
+    return made;
+}
+
+static int add_link(job *j, int b, int k, brunt_pair *pair, int32_t n, const int32_t at[3], double weight,
+                    const real *sign, seen_slot *seen) {
+    brunt_grid_surfaces *w = j->w;
+    int32_t slot;
+    int node;
+    if (!brunt_surface_on_grid_place(&j->mpm[b].grid, at, seen, &slot, &node)) return 0;
+    int32_t c = find_contact(j, b, k, pair, slot, node);
+    if (c < 0) return c == -1 ? 0 : -1;
+    if (GROW(w, link)) return -1;
+    link *l = &w->link[w->link_count++];
+    *l = (link){.skin = n, .contact = c, .weight = weight, .sign = {1, 1, 1}, .own = !sign};
+    for (int a = 0; a < 3 && sign; a++) l->sign[a] = (int8_t)sign[a];
+    w->contact[c].count++;
+    return 0;
+}
+
+// Links of skin node n with the nodes of body b, and, near mirrors, with their images: the same as the particles'
+// shares get from brunt_symmetry_fold.
+static int add_item(job *j, int b, int k, brunt_pair *pair, int32_t n) {
+    brunt_grid_surfaces *w = j->w;
+    const brunt_grid *grid = &j->mpm[b].grid;
+    const double *x = j->m->skin->x[n];
+    const int dim = grid->dim, nodes = grid->order + 1;
+    int32_t base[3] = {0, 0, 0};
+    double weight[3][4] = {{1}, {1}, {1}};
+    for (int a = 0; a < dim; a++) {
+        double u = (x[a] - grid->origin[a]) / (double)grid->h;
+        base[a] = (int32_t)floor(u - 0.5 * (grid->order - 1));
+        brunt_kernel_weights(grid->order, u - base[a], weight[a]);
+    }
+    seen_slot seen = {.is = false}, seen_image = {.is = false};
+    const int32_t first = w->link_count;
+    for (int p = 0; p < nodes; p++)
+        for (int q = 0; q < nodes; q++)
+            for (int r = 0; r < (dim == 3 ? nodes : 1); r++) {
+                const double share = weight[0][p] * weight[1][q] * weight[2][r];
+                const int32_t at[3] = {base[0] + p, base[1] + q, base[2] + r};
+                if (!(share > 0)) continue;
+                if (!j->mirror_count) {
+                    if (add_link(j, b, k, pair, n, at, share, NULL, &seen)) return -1;
+                    continue;
+                }
+                int32_t image[BRUNT_MAX_IMAGES][3];
+                real sign[BRUNT_MAX_IMAGES][3];
+                int images = brunt_symmetry_images(j->mirrors, j->mirror_count, at, 2, image, sign);
+                for (int i = 0; i < images; i++) {
+                    const int32_t before = w->link_count;
+                    if (add_link(j, b, k, pair, n, image[i], share, sign[i], i ? &seen_image : &seen)) return -1;
+                    if (w->link_count == before) continue;
+                    w->link[before].own = i == 0;
+                    for (int a = 0; a < 3; a++)
+                        if (sign[i][a] == 0) w->contact[w->link[before].contact].across[a] = 0;
+                }
+            }
+    if (w->link_count == first) return 0;
+    if (GROW(w, item)) return -1;
+    w->item[w->item_count++] = (item){n, first, w->link_count - first};
+    return 0;
+}
+
+// Whether a skin node is on what mirror planes have cut open, and on no other surface.
+static bool on_cut(const job *j, const brunt_grid *grid, int32_t n) {
+    const brunt_contact_surface *s = j->m->skin;
+    double normal[3] = {s->normal[n][0], s->normal[n][1], s->normal[n][2]};
+    bool cut = false;
+    for (int m = 0; m < j->mirror_count; m++) {
+        const int axis = j->mirrors[m].axis;
+        const double plane = grid->origin[axis] + (double)grid->h * j->mirrors[m].node;
+        if (fabs(s->x[n][axis] - plane) < CUT * (double)grid->h) normal[axis] = 0, cut = true;
+    }
+    return cut && dot(normal, normal) < CUT * CUT;
+}
+
+static bool inside(const double x[3], const double low[3], const double high[3]) {
+    for (int a = 0; a < 3; a++)
+        if (x[a] < low[a] || x[a] > high[a]) return false;
+    return true;
+}
+
+// Contacts, links and items of body b.
+int brunt_surface_on_grid_link(job *j, int b) {
+    brunt_grid_surfaces *w = j->w;
+    const brunt_contact_surface *s = j->m->skin;
+    const brunt_grid *grid = &j->mpm[b].grid;
+    range *r = &w->range[w->range_count++];
+    *r = (range){w->contact_count, w->contact_count, w->item_count, w->item_count};
+    double low[3], high[3];
+    bool any = false;
+    bound_grid(grid, low, high);
+    for (int k = 0; k < s->fem_count; k++) {
+        brunt_pair *pair = pair_of(j->m, &j->mpm[b], s->fem[k]);
+        if (!pair || !s->active[k] || !overlap(low, high, s->low[k], s->high[k])) continue;
+        if (!any) {
+            const size_t nodes = (size_t)grid->slot_count * BRUNT_BLOCK_NODES;
+            if (RESERVE(w, place, nodes + 1)) return -1;
+            memset(w->place, 0, nodes * sizeof *w->place);
+            any = true;
+        }
+        for (int32_t n = s->node_range[k]; n < s->node_end[k]; n++) {
+            if (s->face_first[n + 1] == s->face_first[n]) continue; // a loose node: there is no surface to press with
+            if (inside(s->x[n], low, high) && !on_cut(j, grid, n) && add_item(j, b, k, pair, n)) return -1;
+        }
+    }
+    r->contact_end = w->contact_count, r->item_end = w->item_count;
+    return 0;
+}
+
+// Links by contact, in their order.
+int brunt_surface_on_grid_sort(brunt_grid_surfaces *w) {
+    if (RESERVE(w, by_contact, w->link_count + 1) || RESERVE(w, changed, w->contact_count + 1)) return -1;
+    int32_t first = 0;
+    for (int32_t c = 0; c < w->contact_count; c++) {
+        w->contact[c].first = first;
+        first += w->contact[c].count;
+        w->contact[c].count = 0;
+    }
+    for (int32_t l = 0; l < w->link_count; l++) {
+        contact *c = &w->contact[w->link[l].contact];
+        w->by_contact[c->first + c->count++] = l;
+    }
+    return 0;
+}

@@ -1,0 +1,188 @@
+// The surfaces as a step sees them: bounds, positions, velocities, normals; and velocities back to the bodies.
+#include "contact/surface/surface_parts.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/parallel.h"
+
+enum { GRAIN = BRUNT_SURFACE_GRAIN };
+// Share of a node's faces, by area, that must be left of their sum for it to have a normal, where elements have left:
+// that of a cube's corner is 0.58, of four faces of a wall and two at its end 0.33. Below, faces look every way, and
+// the little that is left of them points anywhere.
+static const double CLEAR = 0.3;
+
+typedef struct job {
+    brunt_contact_surface *skin;
+    double dt;
+    const double *gravity;
+} job;
+
+static void bound_bodies(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    brunt_contact_surface *s = ((const job *)context)->skin;
+    for (int64_t k = begin; k < end; k++) {
+        double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+        double sum[3] = {0}, fastest = 0;
+        const int32_t count = s->node_end[k] - s->node_range[k];
+        for (int32_t n = s->node_range[k]; n < s->node_end[k]; n++) {
+            const real *at = brunt_fem_node(s->fem[k], s->node[n]);
+            double square = 0;
+            for (int a = 0; a < 3; a++) {
+                double x = (double)at[a], v = (double)at[BRUNT_FEM_V + a], own = v - s->frame[a];
+                low[a] = x < low[a] ? x : low[a], high[a] = x > high[a] ? x : high[a];
+                sum[a] += v;
+                square += own * own;
+            }
+            fastest = square > fastest ? square : fastest;
+        }
+        for (int a = 0; a < 3; a++)
+            s->low[k][a] = low[a], s->high[k][a] = high[a], s->mean[k][a] = count ? sum[a] / count : 0;
+        s->speed[k] = sqrt(fastest);
+    }
+}
+
+void brunt_surface_bounds(brunt_contact_surface *s, int threads, brunt_timer *timer) {
+    job j = {.skin = s};
+    brunt_parallel(threads, s->fem_count, 1, bound_bodies, &j, timer);
+}
+
+// The first node or face from `item` on, by their `range`, that an active body has; `k` becomes that body.
+static int32_t next_active(const brunt_contact_surface *s, const int32_t *range, int32_t item, int *k) {
+    for (; *k < s->fem_count && (range[*k + 1] <= item || !s->active[*k]); ++*k)
+        if (item < range[*k + 1]) item = range[*k + 1];
+    return item;
+}
+
+static void take_nodes(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    const job *j = context;
+    brunt_contact_surface *s = j->skin;
+    int k = 0;
+    double furthest = 0;
+    for (int32_t n = (int32_t)begin; (n = next_active(s, s->node_range, n, &k)) < end; n++) {
+        const brunt_fem_body *fem = s->fem[k];
+        const int32_t node = s->node[n];
+        const real *at = brunt_fem_node(fem, node);
+        real force[3];
+        brunt_fem_internal_force(fem, node, force);
+        double inverse = 1 / (double)at[BRUNT_FEM_MASS], moved = 0;
+        s->mass[n] = fem->drag_mass * (double)at[BRUNT_FEM_MASS]; // drag takes its share of impulses
+        for (int a = 0; a < 3; a++) {
+            bool held = (fem->held && fem->held[node] >> a & 1) || a >= s->dim;
+            double load = (double)force[a] + (fem->load ? (double)fem->load[4 * (size_t)node + (size_t)a] : 0);
+            double step = (double)at[a] - s->x[n][a] - s->frame_step[a];
+            moved += step * step;
+            s->x[n][a] = (double)at[a];
+            s->v[n][a] = (double)at[BRUNT_FEM_V + a];
+            s->old[n][a] = held ? s->v[n][a] : s->v[n][a] - j->dt * (load * inverse + j->gravity[a]);
+            s->inverse[n][a] = held ? 0 : inverse / fem->drag_mass;
+            s->impulse[n][a] = 0;
+        }
+        s->gap[n] = INFINITY;
+        s->state[n] = 0;
+        furthest = moved > furthest ? moved : furthest;
+    }
+    s->chunk_moved[begin / GRAIN] = furthest;
+}
+
+static void take_chunks(void *context, int64_t begin, int64_t end, int worker) {
+    const int32_t count = ((const job *)context)->skin->node_count;
+    for (int64_t c = begin; c < end; c++)
+        take_nodes(context, c * GRAIN, (c + 1) * GRAIN < count ? (c + 1) * GRAIN : count, worker);
+}
+
+static void make_faces(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    brunt_contact_surface *s = ((const job *)context)->skin;
+    int k = 0;
+    for (int32_t f = (int32_t)begin; (f = next_active(s, s->face_range, f, &k)) < end; f++) {
+        const int32_t *node = s->face[f];
+        const int n = brunt_face_corners(node);
+        double normal[3] = {0}, size = 0;
+        const double *p = s->x[node[0]], *q = s->x[node[1]], *r = n > 2 ? s->x[node[2]] : p,
+                     *t = n > 3 ? s->x[node[3]] : p;
+        double e[3], g[3];
+        for (int a = 0; a < 3; a++) {
+            e[a] = n > 3 ? r[a] - p[a] : q[a] - p[a];
+            g[a] = n > 3 ? t[a] - q[a] : n > 2 ? r[a] - p[a] : 0;
+            s->face_centre[f][a] = (p[a] + q[a] + (n > 2 ? r[a] : 0) + (n > 3 ? t[a] : 0)) / n;
+        }
+        if (n == 2) {
+            normal[0] = e[1], normal[1] = -e[0];
+        } else {
+            for (int a = 0; a < 3; a++) {
+                int i = (a + 1) % 3, l = (a + 2) % 3;
+                normal[a] = 0.5 * (e[i] * g[l] - e[l] * g[i]);
+            }
+        }
+        for (int a = 0; a < 3; a++) size += normal[a] * normal[a];
+        size = sqrt(size);
+        s->face_area[f] = size;
+        for (int a = 0; a < 3; a++) {
+            double low = p[a] < q[a] ? p[a] : q[a], high = p[a] < q[a] ? q[a] : p[a];
+            if (n > 2) low = r[a] < low ? r[a] : low, high = r[a] > high ? r[a] : high;
+            if (n > 3) low = t[a] < low ? t[a] : low, high = t[a] > high ? t[a] : high;
+            s->face_box[f][a] = low, s->face_box[f][3 + a] = high;
+        }
+        for (int a = 0; a < 3; a++) s->face_normal[f][a] = size > 0 ? normal[a] / size : 0;
+    }
+}
+
+static void make_normals(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    brunt_contact_surface *s = ((const job *)context)->skin;
+    int k = 0;
+    for (int32_t n = (int32_t)begin; (n = next_active(s, s->node_range, n, &k)) < end; n++) {
+        double sum[3] = {0}, area = 0, whole = 0, size = 0;
+        for (int32_t q = s->face_first[n]; q < s->face_first[n + 1]; q++) {
+            int32_t f = s->face_of[q];
+            double share = s->face_area[f] / brunt_face_corners(s->face[f]);
+            area += share;
+            whole += brunt_surface_nodal_area(s, f, n);
+            for (int a = 0; a < 3; a++) sum[a] += share * s->face_normal[f][a];
+        }
+        if (s->axisymmetric && s->x[n][0] == 0) sum[0] = 0; // the other side of the axis
+        for (int a = 0; a < 3; a++) size += sum[a] * sum[a];
+        size = sqrt(size);
+        s->area[n] = whole;
+        const bool ragged = s->ragged && s->ragged[s->body[n]] && !s->fem[k]->element->sheet;
+        for (int a = 0; a < 3; a++) s->normal[n][a] = size > (ragged ? CLEAR : 1e-9) * area ? sum[a] / size : 0;
+    }
+}
+
+void brunt_surface_gather_state(brunt_contact_surface *s, double dt, const double gravity[3], int threads,
+                                brunt_timer *timer) {
+    job j = {s, dt, gravity};
+    brunt_parallel(threads, (s->node_count + GRAIN - 1) / GRAIN, 1, take_chunks, &j, timer);
+    s->moved = 0;
+    for (int32_t c = 0; c < (s->node_count + GRAIN - 1) / GRAIN; c++) s->moved = fmax(s->moved, s->chunk_moved[c]);
+    s->moved = sqrt(s->moved);
+    for (int k = 0; k < s->fem_count; k++) {
+        if (s->active[k] && !s->was_active[k]) s->moved = INFINITY; // where it was before is not known
+        s->was_active[k] = s->active[k];
+    }
+    brunt_parallel(threads, s->face_count, GRAIN, make_faces, &j, timer);
+    brunt_parallel(threads, s->node_count, GRAIN, make_normals, &j, timer);
+}
+
+static void give_nodes(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    const brunt_contact_surface *s = ((const job *)context)->skin;
+    int k = 0;
+    for (int32_t n = (int32_t)begin; (n = next_active(s, s->node_range, n, &k)) < end; n++) {
+        if (n >= s->node_end[k]) continue;
+        real *at = brunt_fem_node(s->fem[k], s->node[n]);
+        for (int a = 0; a < 3; a++) at[BRUNT_FEM_V + a] = (real)s->v[n][a];
+    }
+}
+
+void brunt_surface_scatter_velocity(brunt_contact_surface *s, double dt, int threads, brunt_timer *timer) {
+    job j = {.skin = s};
+    brunt_parallel(threads, s->node_count, GRAIN, give_nodes, &j, timer);
+    for (int a = 0; a < 3; a++) {
+        s->frame[a] = 0;
+        for (int k = 0; k < s->fem_count; k++) s->frame[a] += s->mean[k][a] / s->fem_count;
+        s->frame_step[a] = s->frame[a] * dt;
+    }
+}

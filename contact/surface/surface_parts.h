@@ -1,0 +1,21 @@
+// What the files of the contact surface share. Private to them.
+#pragma once
+
+#include "contact/surface/contact_surface.h"
+
+enum { BRUNT_SURFACE_GRAIN = 256 };
+
+// --- contact_surface.c
+// Room for so many nodes and faces, with what is there kept: exactly that at the start, later half as much again, so
+// that surfaces that grow seldom ask for it. 0, or -1: out of memory.
+int brunt_surface_reserve(brunt_contact_surface *s, int32_t node_count, int32_t face_count);
+// Owners of nodes and faces, and what follows from the lists of them. 0, or -1: out of memory.
+int brunt_surface_relate(brunt_contact_surface *s);
+
+// --- membrane_sides.c
+// The other side of a sheet: `nodes` nodes and `faces` faces once more, behind them, facing the other way.
+void brunt_membrane_add_back(int32_t *node, int32_t nodes, int32_t (*face)[4], int32_t faces);
+// What sheets need besides, when there are any. 0, or -1: out of memory.
+int brunt_membrane_sides_make(brunt_contact_surface *s);
+// Elements within two rings of the nodes of sheets that touch themselves. 0, or -1: out of memory.
+int brunt_membrane_patches_make(brunt_contact_surface *s);
