@@ -1,4 +1,4 @@
-#include "io/output/history.h"
+#include "io/output/history_lines.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -10,48 +10,8 @@
 
 #include "io/file/atomic_file.h"
 #include "base/error.h"
-#include "base/hash.h"
-#include "io/file/hdf5_file.h"
-#include "io/file/input_file.h"
 #include "base/memory.h"
 #include "io/output/places.h"
-
-enum { FORMAT = 2, COLUMN_NAME = 200, BLOCK = 1 << 17 }; // BLOCK: numbers at a time
-
-typedef struct column {
-    char name[COLUMN_NAME], unit[16];
-    double now, last; // of the line that is being made, of the one before
-    double *values;   // all lines, when they have been asked for
-} column;
-
-typedef struct probe {
-    char name[64];
-    int32_t body, field;
-    int64_t id;    // particle, node or element
-    int64_t count; // how many of them there were at the start
-    brunt_field_info info;
-} probe;
-
-struct brunt_history {
-    column *columns;
-    size_t columns_capacity; // [bytes]
-    int32_t column_count, cursor;
-    bool declaring; // the first traversal names the columns, later ones fill them
-    bool out_of_memory;
-    int64_t rows;
-    uint64_t hash; // of all lines but their probes, which may change from leg to leg
-    double *lines; // one after the other, as long as they go to no file
-    size_t lines_capacity;
-    bool resumed; // lines are in a file that is to be gone on with
-    probe *probes;
-    int32_t probe_count;
-    double *scratch; // a field of a probe's body
-    size_t scratch_capacity;
-    FILE *csv;
-    char csv_path[BRUNT_PATH_LENGTH];
-    char title[256];
-    uint64_t run; // brunt_checkpoint_identity
-};
 
 // ---------------------------------------------------------------------------------------------------- columns
 
@@ -338,128 +298,6 @@ const char *brunt_history_column_unit(const brunt_history *history, int32_t c) {
 uint64_t brunt_history_hash(const brunt_history *history) { return history->hash; }
 double brunt_history_time(const brunt_history *history) { return history->rows ? history->columns[0].last : NAN; }
 
-// ---------------------------------------------------------------------------------------------------- lines
-
-static bool counts(const char *name) { return strncmp(name, "probe.", 6) != 0; }
-
-static uint64_t hash_value(uint64_t hash, double value) {
-    uint64_t bits;
-    if (isnan(value)) value = NAN; // there are many, and a text knows one
-    memcpy(&bits, &value, sizeof bits);
-    return brunt_hash_add(hash, bits);
-}
-
-static void print_line(const brunt_history *h, const double *values, FILE *out) {
-    for (int32_t c = 0; c < h->column_count; c++) {
-        if (isnan(values[c]))
-            fputs(",nan", out);
-        else if (c == 1)
-            fprintf(out, ",%.0f", values[c]);
-        else
-            fprintf(out, c ? ",%.17g" : "%.17g", values[c]);
-    }
-    fputc('\n', out);
-}
-
-// Lines as they were sampled, from memory or from history.csv. 17 digits give every bit of a double back.
-typedef struct line_reader {
-    const brunt_history *history;
-    const char *path; // NULL: from memory
-    FILE *file;
-    char *text; // of the C library, as the next one
-    size_t capacity;
-    int32_t *column; // of each of the file's: the history's, -1: it has no such
-    bool *counted;
-    int32_t column_count; // of the file
-    int64_t row;
-    uint64_t hash; // of the lines so far
-} line_reader;
-
-static void close_lines(line_reader *r) {
-    if (r->file) fclose(r->file);
-    free(r->text);
-    brunt_free(r->column);
-    brunt_free(r->counted);
-}
-
-static int bad_line(const line_reader *r, brunt_error *error) {
-    return brunt_fail(error, BRUNT_BAD_INPUT, "%s: line %lld is no line of a history of %d columns", r->path,
-                      (long long)r->row + 1, (int)r->column_count);
-}
-
-static int next_text(line_reader *r, brunt_error *error) {
-    errno = 0;
-    ssize_t length = getline(&r->text, &r->capacity, r->file);
-    if (length < 0 && errno)
-        return brunt_fail(error, BRUNT_IO_ERROR, "%s: cannot read the file: %s", r->path, strerror(errno));
-    if (length < 1 || r->text[length - 1] != '\n' || strlen(r->text) != (size_t)length) return bad_line(r, error);
-    return BRUNT_OK;
-}
-
-// "time [s],step [1],..."
-static int read_heading(line_reader *r, brunt_error *error) {
-    const brunt_history *h = r->history;
-    int status = next_text(r, error);
-    if (status) return status;
-    int32_t count = 1;
-    for (const char *c = r->text; *c; c++) count += *c == ',';
-    r->column_count = count;
-    r->column = brunt_alloc(sizeof *r->column * (size_t)count);
-    r->counted = brunt_alloc(sizeof *r->counted * (size_t)count);
-    if (!r->column || !r->counted) return brunt_fail(error, BRUNT_FAILED, "out of memory while reading %s", r->path);
-    const char *at = r->text;
-    for (int32_t f = 0; f < count; f++, at += strcspn(at, ",\n") + 1) {
-        char wanted[COLUMN_NAME + 32];
-        const size_t length = strcspn(at, ",\n");
-        r->column[f] = -1;
-        r->counted[f] = counts(at);
-        for (int32_t c = 0; c < h->column_count && r->column[f] < 0; c++) {
-            snprintf(wanted, sizeof wanted, "%s [%s]", h->columns[c].name, h->columns[c].unit);
-            if (strlen(wanted) == length && !strncmp(wanted, at, length)) r->column[f] = c;
-        }
-    }
-    return BRUNT_OK;
-}
-
-static int open_lines(line_reader *r, const brunt_history *h, const char *path, brunt_error *error) {
-    *r = (line_reader){.history = h, .path = path};
-    if (!path) return BRUNT_OK;
-    const char *why;
-    r->file = brunt_input_open(path, &why);
-    if (!r->file) return brunt_fail(error, BRUNT_IO_ERROR, "%s: cannot open the file: %s", path, why);
-    return read_heading(r, error);
-}
-
-// The next line into `values`, one a column of the history, NAN where the file has none; of one column alone with
-// `only` >= 0.
-static int next_line(line_reader *r, int32_t only, double *values, brunt_error *error) {
-    const int32_t columns = r->history->column_count;
-    if (!r->path) {
-        memcpy(values, r->history->lines + columns * r->row++, sizeof *values * (size_t)columns);
-        return BRUNT_OK;
-    }
-    r->row++;
-    int status = next_text(r, error);
-    for (int32_t c = 0; c < columns && only < 0; c++) values[c] = NAN;
-    char *at = r->text;
-    for (int32_t f = 0; f < r->column_count && !status; f++) {
-        char *end = at;
-        if (only < 0 || r->column[f] == only) {
-            double value = strtod(at, &end);
-            if (end == at) return bad_line(r, error);
-            if (r->column[f] >= 0) values[r->column[f]] = value;
-            if (r->counted[f]) r->hash = hash_value(r->hash, value);
-        } else {
-            end += strcspn(at, ",\n");
-        }
-        if (*end != (f + 1 < r->column_count ? ',' : '\n')) status = bad_line(r, error);
-        at = end + 1;
-    }
-    return status;
-}
-
-static const char *lines_path(const brunt_history *h) { return h->csv ? h->csv_path : NULL; }
-
 // ---------------------------------------------------------------------------------------------------- sampling
 
 static int keep_in_memory(brunt_history *h, brunt_error *error) {
@@ -478,7 +316,7 @@ static int append_to_file(brunt_history *h, brunt_error *error) {
         return brunt_fail(error, BRUNT_FAILED, "out of memory after %lld history lines", (long long)h->rows);
     h->scratch = memory;
     for (int32_t c = 0; c < h->column_count; c++) h->scratch[c] = h->columns[c].now;
-    print_line(h, h->scratch, h->csv);
+    brunt_history_print_line(h, h->scratch, h->csv);
     if (fflush(h->csv) || ferror(h->csv))
         return brunt_fail(error, BRUNT_IO_ERROR, "%s: cannot write the file: %s", h->csv_path, strerror(errno));
     return BRUNT_OK;
@@ -492,7 +330,7 @@ int brunt_history_sample(brunt_history *history, brunt_world *world, brunt_error
     if (status) return status;
     for (int32_t c = 0; c < history->column_count; c++) {
         column *at = &history->columns[c];
-        if (counts(at->name)) history->hash = hash_value(history->hash, at->now);
+        if (brunt_history_counts(at->name)) history->hash = brunt_history_hash_value(history->hash, at->now);
         at->last = at->now;
     }
     history->rows++;
@@ -509,13 +347,13 @@ int brunt_history_read(const brunt_history *history, const char *name, const dou
     double *all = brunt_alloc(sizeof *all * (size_t)history->rows),
            *line = brunt_alloc(sizeof *line * (size_t)history->column_count);
     line_reader r = {0};
-    int status = all && line ? open_lines(&r, history, lines_path(history), error)
+    int status = all && line ? brunt_history_open_lines(&r, history, brunt_history_lines_path(history), error)
                              : brunt_fail(error, BRUNT_FAILED, "out of memory for the history's column '%s'", name);
     for (int64_t row = 0; row < history->rows && !status; row++) {
-        status = next_line(&r, c, line, error);
+        status = brunt_history_next_line(&r, c, line, error);
         all[row] = line[c];
     }
-    close_lines(&r);
+    brunt_history_close_lines(&r);
     brunt_free(line);
     if (status) {
         brunt_free(all);
@@ -535,9 +373,9 @@ const double *brunt_history_column(const brunt_history *history, const char *nam
 int brunt_history_resume(brunt_history *history, const char *path, int64_t lines, uint64_t hash, brunt_error *error) {
     double *line = brunt_alloc(sizeof *line * (size_t)history->column_count);
     line_reader r = {0};
-    int status = line ? open_lines(&r, history, path, error)
+    int status = line ? brunt_history_open_lines(&r, history, path, error)
                       : brunt_fail(error, BRUNT_FAILED, "out of memory while reading %s", path);
-    for (int64_t row = 0; row < lines && !status; row++) status = next_line(&r, -1, line, error);
+    for (int64_t row = 0; row < lines && !status; row++) status = brunt_history_next_line(&r, -1, line, error);
     if (!status && r.hash != hash)
         status =
             brunt_fail(error, BRUNT_BAD_INPUT,
@@ -545,7 +383,7 @@ int brunt_history_resume(brunt_history *history, const char *path, int64_t lines
                        path, (long long)lines);
     for (int32_t c = 0; c < history->column_count && !status && lines; c++) history->columns[c].last = line[c];
     if (!status) history->rows = lines, history->hash = hash, history->resumed = true;
-    close_lines(&r);
+    brunt_history_close_lines(&r);
     brunt_free(line);
     return status;
 }
@@ -557,13 +395,13 @@ static int print_all(const brunt_history *h, const char *path, FILE *out, brunt_
     if (!h->rows) return BRUNT_OK;
     double *line = brunt_alloc(sizeof *line * (size_t)h->column_count);
     line_reader r = {0};
-    int status = line ? open_lines(&r, h, h->resumed ? path : NULL, error)
+    int status = line ? brunt_history_open_lines(&r, h, h->resumed ? path : NULL, error)
                       : brunt_fail(error, BRUNT_FAILED, "out of memory while writing %s", path);
     for (int64_t row = 0; row < h->rows && !status; row++) {
-        status = next_line(&r, -1, line, error);
-        if (!status) print_line(h, line, out);
+        status = brunt_history_next_line(&r, -1, line, error);
+        if (!status) brunt_history_print_line(h, line, out);
     }
-    close_lines(&r);
+    brunt_history_close_lines(&r);
     brunt_free(line);
     return status;
 }
@@ -603,141 +441,4 @@ double brunt_history_line_bytes(const brunt_history *history) {
     for (int32_t c = 0; c < history->column_count; c++)
         bytes += 1 + snprintf(NULL, 0, "%.17g", history->columns[c].last);
     return bytes;
-}
-
-// "body.rod.mass" -> "/body/rod/mass"
-static void dataset_name(const char *column_name, char out[COLUMN_NAME + 1]) {
-    snprintf(out, COLUMN_NAME + 1, "/%s", column_name);
-    for (char *c = out; *c; c++)
-        if (*c == '.') *c = '/';
-}
-
-static bool make_columns(const brunt_history *h, hid_t file, int64_t chunk) {
-    bool ok = brunt_hdf5_put_text(file, "title", h->title) && brunt_hdf5_put_text(file, "version", BRUNT_VERSION) &&
-              brunt_hdf5_put_integer(file, "run", (long long)h->run) &&
-              brunt_hdf5_put_text(file, "force", "mean over the interval since the line before");
-    for (int32_t c = 0; c < h->column_count && ok; c++) {
-        char name[COLUMN_NAME + 1];
-        dataset_name(h->columns[c].name, name);
-        hid_t set = brunt_hdf5_make(file, name, H5T_IEEE_F64LE, (hsize_t)h->rows, (hsize_t)chunk);
-        ok = set >= 0 && brunt_hdf5_put_text(set, "unit", h->columns[c].unit);
-        if (set >= 0) H5Dclose(set);
-    }
-    return ok;
-}
-
-// Lines [first, first + count), which lie one after the other in `lines`, to their columns.
-static bool put_lines(const brunt_history *h, hid_t file, int64_t first, int64_t count, const double *lines,
-                      double *values) {
-    bool ok = true;
-    for (int32_t c = 0; c < h->column_count && ok; c++) {
-        char name[COLUMN_NAME + 1];
-        dataset_name(h->columns[c].name, name);
-        for (int64_t row = 0; row < count; row++) values[row] = lines[h->column_count * row + c];
-        hid_t set = H5Dopen2(file, name, H5P_DEFAULT);
-        ok = set >= 0 && brunt_hdf5_write_part(set, H5T_NATIVE_DOUBLE, first, count, values);
-        if (set >= 0) H5Dclose(set);
-    }
-    return ok;
-}
-
-// A block of lines at a time: no more of them is in memory.
-static int put_all(const brunt_history *h, hid_t file, const char *path, brunt_error *error) {
-    const int64_t most = BLOCK / h->column_count > 0 ? BLOCK / h->column_count : 1, block = h->rows < 1      ? 1
-                                                                                            : h->rows < most ? h->rows
-                                                                                                             : most;
-    double *lines = brunt_alloc(sizeof *lines * (size_t)(block * (h->column_count + 1)));
-    line_reader r = {0};
-    int status = lines ? open_lines(&r, h, lines_path(h), error)
-                       : brunt_fail(error, BRUNT_FAILED, "out of memory while writing %s", path);
-    if (!status && !make_columns(h, file, block))
-        status = brunt_fail(error, BRUNT_IO_ERROR, "%s: HDF5 could not write the file", path);
-    for (int64_t first = 0; first < h->rows && !status; first += block) {
-        const int64_t count = h->rows - first < block ? h->rows - first : block;
-        for (int64_t row = 0; row < count && !status; row++)
-            status = next_line(&r, -1, lines + h->column_count * row, error);
-        if (!status && !put_lines(h, file, first, count, lines, lines + block * h->column_count))
-            status = brunt_fail(error, BRUNT_IO_ERROR, "%s: HDF5 could not write the file", path);
-    }
-    close_lines(&r);
-    brunt_free(lines);
-    return status;
-}
-
-int brunt_history_write(const brunt_history *history, const char *path, brunt_error *error) {
-    const double room = 65536 + (double)history->column_count * (4096 + 8.1 * (double)history->rows);
-    brunt_atomic_file out;
-    hid_t file;
-    int status = brunt_hdf5_create_aside(path, (size_t)room, &out, &file, error);
-    if (status) return status;
-    status = put_all(history, file, path, error);
-    status = brunt_hdf5_seal(file, "history", FORMAT, status, &out, error);
-    return status ? status : brunt_atomic_rename(&out, error);
-}
-
-// Opens a column of a file; negative when there is none.
-static hid_t open_column(hid_t file, const char *name, int64_t *count) {
-    char path[COLUMN_NAME + 1];
-    dataset_name(name, path);
-    return brunt_hdf5_dataset(file, path, H5T_FLOAT, sizeof(double), count);
-}
-
-int brunt_history_check_file(const brunt_history *history, const char *path, brunt_error *error) {
-    hid_t file;
-    long long run = 0;
-    int status = brunt_hdf5_open(path, "history", FORMAT, &file, error);
-    if (status) return status;
-    if (!brunt_hdf5_get_integer(file, "run", &run) || (uint64_t)run != history->run)
-        status = brunt_fail(error, BRUNT_BAD_INPUT, "%s: the history of another run than this scene's", path);
-    H5Fclose(file);
-    return status;
-}
-
-typedef struct description {
-    FILE *out;
-    hid_t file;
-} description;
-
-static herr_t describe_dataset(hid_t root, const char *name, const H5O_info_t *info, void *context) {
-    const description *d = context;
-    (void)root;
-    if (info->type != H5O_TYPE_DATASET) return 0;
-    char unit[32] = "", column_name[COLUMN_NAME];
-    double first = NAN, last = NAN;
-    int64_t count;
-    snprintf(column_name, sizeof column_name, "%s", name);
-    for (char *c = column_name; *c; c++)
-        if (*c == '/') *c = '.';
-    hid_t set = open_column(d->file, column_name, &count);
-    if (set >= 0) {
-        brunt_hdf5_get_text(set, "unit", unit, sizeof unit);
-        if (count > 0) brunt_hdf5_read(set, H5T_NATIVE_DOUBLE, 0, 1, &first);
-        if (count > 0) brunt_hdf5_read(set, H5T_NATIVE_DOUBLE, count - 1, 1, &last);
-        H5Dclose(set);
-    }
-    brunt_hdf5_printable(column_name);
-    fprintf(d->out, "%-44s [%-8s] first %15.8g  last %15.8g\n", column_name, unit, first, last);
-    return 0;
-}
-
-int brunt_history_describe(const char *path, FILE *out, brunt_error *error) {
-    hid_t file;
-    int status = brunt_hdf5_open(path, "history", FORMAT, &file, error);
-    if (status) return status;
-    char title[256] = "", version[64] = "";
-    brunt_hdf5_get_text(file, "title", title, sizeof title);
-    brunt_hdf5_get_text(file, "version", version, sizeof version);
-    int64_t lines;
-    hid_t time = open_column(file, "time", &lines);
-    if (time >= 0) {
-        H5Dclose(time);
-        fprintf(out, "history of '%s', written by brunt %s: %lld lines\n", title, version, (long long)lines);
-    } else {
-        status = brunt_fail(error, BRUNT_BAD_INPUT, "%s: the history has no column 'time'", path);
-    }
-    description d = {out, file};
-    if (!status && H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_NATIVE, describe_dataset, &d, H5O_INFO_BASIC) < 0)
-        status = brunt_fail(error, BRUNT_BAD_INPUT, "%s: HDF5 cannot read the file", path);
-    H5Fclose(file);
-    return status;
 }

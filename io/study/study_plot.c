@@ -5,29 +5,23 @@
 // All text is drawn as it is ("noenhanced"); the powers of ten are characters.
 #include "io/study/study.h"
 
-#include <errno.h>
-#include <fcntl.h>
 #include <math.h>
-#include <spawn.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include "io/file/atomic_file.h"
 #include "base/error.h"
 #include "base/memory.h"
+#include "io/study/gnuplot.h"
+#include "io/study/plot_axis.h"
 #include "io/study/study_view.h"
-
-extern char **environ;
 
 // M. Okabe and K. Ito's colours, which people who see few colours still tell apart (jfly.uni-koeln.de/color, 2008);
 // their yellow is too light for lines on white.
 static const char *const colours[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000"};
 static const int symbols[] = {7, 5, 9, 13, 11, 15, 6, 4, 8, 12, 10, 14}; // filled ones first
 static const int dashes[] = {1, 2, 4, 5, 3};
-enum { COLOURS = 7, SYMBOLS = 12, DASHES = 5, MOST_TICS = 64 };
+enum { COLOURS = 7, SYMBOLS = 12, DASHES = 5 };
 
 typedef struct look {
     int colour, symbol, dash;
@@ -55,112 +49,6 @@ static look look_of(const brunt_study *study, int32_t line) {
     if (first < 0 || study->axes[first].value_count > COLOURS || study->axes[first].value_count == study->line_count)
         return own;
     return (look){method_value(study, line, first), rest % SYMBOLS, rest % DASHES};
-}
-
-// --- axes
-
-typedef struct axis {
-    double from, to; // as drawn: data times `factor`
-    double factor;
-} axis;
-
-static void widen(axis *a, double value) {
-    if (!(value > 0) || !isfinite(value)) return;
-    a->from = fmin(a->from, a->factor * value), a->to = fmax(a->to, a->factor * value);
-}
-
-static bool empty(const axis *a) { return !(a->to >= a->from); }
-
-// Air around the data; what is all at one place gets a factor of two to both sides.
-static void pad(axis *a) {
-    const double decades = log10(a->to / a->from), air = decades < 0.05 ? 0.3 : 0.04 + 0.06 * decades;
-    a->from *= pow(10, -air), a->to *= pow(10, air);
-}
-
-static void number_label(double value, char out[48]) {
-    static const char *const raised[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
-    if (value >= 0.99e-4 && value < 0.99e6) {
-        snprintf(out, 48, "%.10g", value);
-        return;
-    }
-    char text[32];
-    snprintf(text, sizeof text, "%.9e", value);
-    const double mantissa = strtod(text, NULL) / pow(10, atoi(strchr(text, 'e') + 1));
-    const int exponent = atoi(strchr(text, 'e') + 1), size = abs(exponent);
-    int length = fabs(mantissa - 1) < 1e-6 ? snprintf(out, 48, "10") : snprintf(out, 48, "%.4g·10", mantissa);
-    length += snprintf(out + length, 48 - (size_t)length, "%s", exponent < 0 ? "⁻" : "");
-    if (size >= 100) length += snprintf(out + length, 48 - (size_t)length, "%s", raised[size / 100]);
-    if (size >= 10) length += snprintf(out + length, 48 - (size_t)length, "%s", raised[size / 10 % 10]);
-    snprintf(out + length, 48 - (size_t)length, "%s", raised[size % 10]);
-}
-
-static void tic(FILE *out, const axis *a, double value, bool major, bool *first) {
-    if (value < a->from * (1 - 1e-9) || value > a->to * (1 + 1e-9)) return;
-    char label[48] = "";
-    if (major) number_label(value, label);
-    fprintf(out, "%s'%s' %.10g %d", *first ? "" : ", ", label, value, !major);
-    *first = false;
-}
-
-// Less than a decade: round steps. More: decades, with 2 and 5 between them or every second, third, ... alone.
-static void write_tics(FILE *out, char name, const axis *a) {
-    const double decades = log10(a->to / a->from);
-    bool first = true;
-    fprintf(out, "set %ctics (", name);
-    if (decades < 0.8) {
-        const double rough = (a->to - a->from) / 5, power = pow(10, floor(log10(rough))), m = rough / power;
-        const double step = power * (m < 1.5 ? 1 : m < 3.5 ? 2 : m < 7.5 ? 5 : 10);
-        const double start = ceil(a->from / step - 1e-9);
-        for (int k = 0; k < MOST_TICS && (start + k) * step <= a->to * (1 + 1e-9); k++)
-            tic(out, a, (start + k) * step, true, &first);
-    } else {
-        const int low = (int)floor(log10(a->from)), high = (int)ceil(log10(a->to)), every = (high - low + 7) / 8;
-        for (int e = low; e <= high; e++)
-            for (int m = 1; m <= (every == 1 ? 9 : 1); m++) {
-                bool major = m == 1 ? e % every == 0 : (m == 2 || m == 5) && decades < 3;
-                tic(out, a, m * pow(10, e), major, &first);
-            }
-    }
-    fprintf(out, ")\nset %crange [%.10g:%.10g]\n", name, a->from, a->to);
-}
-
-// --- text
-
-// As gnuplot takes it between single quotes.
-static void write_text(FILE *out, const char *text) {
-    fputc('\'', out);
-    for (const char *t = text; *t; t++) {
-        if (*t == '\'') fputc('\'', out);
-        fputc((unsigned char)*t < ' ' ? ' ' : *t, out);
-    }
-    fputc('\'', out);
-}
-
-static void write_label(FILE *out, const char *what, const char *format, ...) __attribute__((format(printf, 3, 4)));
-static void write_label(FILE *out, const char *what, const char *format, ...) {
-    char text[512];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
-    // Where the margin is given, gnuplot puts the label of the ordinate outside of the picture: it is placed by hand.
-    const bool upright = !strcmp(what, "ylabel");
-    fprintf(out, "set %s ", upright ? "label" : what);
-    write_text(out, text);
-    fputs(upright ? " at screen 0.025, graph 0.5 center rotate by 90\n" : "\n", out);
-}
-
-// Parts of a unit that read better as thousands or thousandths: factor of the numbers, and the unit with its prefix.
-static double prefixed(const char *unit, double most, char out[48]) {
-    static const char *const plain[] = {"m", "s", "Pa", "N", "J", "Hz", "V", "W"};
-    static const char *const prefix[] = {"n", "u", "m", "", "k", "M", "G"};
-    bool known = false;
-    for (size_t u = 0; u < sizeof plain / sizeof *plain; u++) known = known || !strcmp(unit, plain[u]);
-    int p = 3;
-    if (known && most > 0) p += (int)floor(log10(most) / 3 + 1e-9);
-    p = p < 0 ? 0 : p > 6 ? 6 : p;
-    snprintf(out, 48, "%s%s", prefix[p], unit[0] ? unit : "1");
-    return pow(1000, 3 - p);
 }
 
 // --- a picture
@@ -222,12 +110,12 @@ static void write_layout(picture *p, int32_t entries, size_t longest, bool accur
     char title[320];
     snprintf(title, sizeof title, "%s%s", study->title[0] ? study->title : study->name, suffix);
     fprintf(p->out, "set label ");
-    write_text(p->out, title);
+    plot_write_text(p->out, title);
     fprintf(p->out, " at screen 0.5, screen %.4f center noenhanced\n", 1 - 20.0 / height);
     for (int n = 0; note && n < NOTES; n++) {
         if (!(*note)[n][0]) continue;
         fprintf(p->out, "set label ");
-        write_text(p->out, (*note)[n]);
+        plot_write_text(p->out, (*note)[n]);
         fprintf(p->out, " at screen 0.03, screen %.4f left textcolor '#444444'\n", (16.0 + ROW * --noted) / height);
     }
 }
@@ -272,7 +160,7 @@ static void plot_line(picture *p, int32_t line, bool connected, const char *titl
             colours[l.colour]);
     if (connected) fprintf(p->out, "dashtype %d ", dashes[l.dash]);
     fprintf(p->out, "pointtype %d linewidth 1.8 title ", symbols[l.symbol]);
-    write_text(p->out, title);
+    plot_write_text(p->out, title);
 }
 
 // --- error against time, or against resolution
@@ -281,7 +169,7 @@ typedef struct errors {
     picture p;
     int32_t measure;
     bool over_resolution;
-    axis x, y;
+    plot_axis x, y;
     bool percent;
     double floor;  // where errors of zero are drawn, as drawn
     int32_t zeros; // how many there are
@@ -303,7 +191,7 @@ static double ordinate(const errors *e, const brunt_study_case *c) {
 static void find_ranges(errors *e) {
     const brunt_study *study = e->p.study;
     double least = INFINITY, most_x = 0;
-    e->x = (axis){INFINITY, -INFINITY, 1}, e->y = (axis){INFINITY, -INFINITY, 1};
+    e->x = (plot_axis){INFINITY, -INFINITY, 1}, e->y = (plot_axis){INFINITY, -INFINITY, 1};
     for (int32_t i = 0; i < study->case_count; i++) {
         const brunt_study_case *c = &study->cases[i];
         if (!shown(e, c)) continue;
@@ -313,26 +201,26 @@ static void find_ranges(errors *e) {
     }
     e->percent = !(least < 1e-6);
     e->y.factor = e->percent ? 100 : 1;
-    if (e->over_resolution) e->x.factor = prefixed(study->axes[study->resolution].unit, most_x, e->unit_x);
+    if (e->over_resolution) e->x.factor = plot_prefixed(study->axes[study->resolution].unit, most_x, e->unit_x);
     for (int32_t i = 0; i < study->case_count; i++) {
         const brunt_study_case *c = &study->cases[i];
         if (!shown(e, c)) continue;
-        widen(&e->x, abscissa(e, c)), widen(&e->y, c->error[e->measure]);
-        if (!e->over_resolution) widen(&e->x, c->wall_least), widen(&e->x, c->wall_most);
+        plot_axis_widen(&e->x, abscissa(e, c)), plot_axis_widen(&e->y, c->error[e->measure]);
+        if (!e->over_resolution) plot_axis_widen(&e->x, c->wall_least), plot_axis_widen(&e->x, c->wall_most);
     }
-    if (empty(&e->x)) return;
+    if (plot_axis_empty(&e->x)) return;
     if (e->over_resolution)
         for (int32_t i = 0; i < study->case_count; i++)
-            if (failed(&study->cases[i])) widen(&e->x, brunt_study_resolution(study, &study->cases[i]));
+            if (failed(&study->cases[i])) plot_axis_widen(&e->x, brunt_study_resolution(study, &study->cases[i]));
     // What is asked for belongs into the picture, unless it is far from what there is.
-    const axis data = e->y;
-    for (int32_t a = 0; a < study->accuracy_count && !empty(&data); a++) {
+    const plot_axis data = e->y;
+    for (int32_t a = 0; a < study->accuracy_count && !plot_axis_empty(&data); a++) {
         const double wanted = e->y.factor * study->accuracies[a];
-        if (wanted > data.from / 10 && wanted < data.to * 10) widen(&e->y, study->accuracies[a]);
+        if (wanted > data.from / 10 && wanted < data.to * 10) plot_axis_widen(&e->y, study->accuracies[a]);
     }
-    if (empty(&e->y)) e->percent = false, e->y = (axis){1e-16, 1e-15, 1}; // all errors are zero
+    if (plot_axis_empty(&e->y)) e->percent = false, e->y = (plot_axis){1e-16, 1e-15, 1}; // all errors are zero
     if (e->zeros) e->floor = e->y.from = e->y.from / 4;
-    pad(&e->x), pad(&e->y);
+    plot_axis_pad(&e->x), plot_axis_pad(&e->y);
 }
 
 static void write_points(errors *e, int32_t line, int32_t *points) {
@@ -485,10 +373,10 @@ static bool threads_differ(const brunt_study *study) {
 static void write_time_label(FILE *out, char axis_name, const brunt_study *study) {
     const char what[] = {axis_name, 'l', 'a', 'b', 'e', 'l', 0};
     if (threads_differ(study) || study->threads < 1)
-        write_label(out, what, "time of the steps [s]");
+        plot_write_label(out, what, "time of the steps [s]");
     else
-        write_label(out, what, "time of the steps on %d %s [s]", (int)study->threads,
-                    study->threads == 1 ? "thread" : "threads");
+        plot_write_label(out, what, "time of the steps on %d %s [s]", (int)study->threads,
+                         study->threads == 1 ? "thread" : "threads");
 }
 
 static void write_axes(errors *e) {
@@ -496,14 +384,14 @@ static void write_axes(errors *e) {
     const brunt_study_measure *m = &study->measures[e->measure];
     char words[128];
     scale_words(e, words);
-    write_label(e->p.out, "ylabel", "%s%s [%s]", m->title[0] ? "" : "error of ", m->title[0] ? m->title : m->name,
-                words);
+    plot_write_label(e->p.out, "ylabel", "%s%s [%s]", m->title[0] ? "" : "error of ", m->title[0] ? m->title : m->name,
+                     words);
     if (e->over_resolution)
-        write_label(e->p.out, "xlabel", "%s [%s]", study->axes[study->resolution].name, e->unit_x);
+        plot_write_label(e->p.out, "xlabel", "%s [%s]", study->axes[study->resolution].name, e->unit_x);
     else
         write_time_label(e->p.out, 'x', study);
-    write_tics(e->p.out, 'x', &e->x);
-    write_tics(e->p.out, 'y', &e->y);
+    plot_write_tics(e->p.out, 'x', &e->x);
+    plot_write_tics(e->p.out, 'y', &e->y);
 }
 
 // Theory's slope, half a decade's third below the lowest point, so that it crosses no line that keeps to it.
@@ -557,7 +445,7 @@ static void plot_errors(errors *e, const int32_t *points, bool front, bool theor
 static int draw_errors(errors *e, const char *folder, int32_t *points, bool *wanted, brunt_error *error) {
     const brunt_study *study = e->p.study;
     find_ranges(e);
-    *wanted = !empty(&e->x);
+    *wanted = !plot_axis_empty(&e->x);
     if (!*wanted) return BRUNT_OK;
     int status = begin(&e->p, folder, error);
     if (status) return status;
@@ -591,14 +479,15 @@ static bool sized(const brunt_study_case *c) {
 
 static int draw_cost(picture *p, const char *folder, bool *wanted, brunt_error *error) {
     const brunt_study *study = p->study;
-    axis x = {INFINITY, -INFINITY, 1}, y = x;
+    plot_axis x = {INFINITY, -INFINITY, 1}, y = x;
     for (int32_t i = 0; i < study->case_count; i++)
-        if (sized(&study->cases[i])) widen(&x, study->cases[i].units), widen(&y, study->cases[i].wall_median);
-    *wanted = !empty(&x) && !empty(&y);
+        if (sized(&study->cases[i]))
+            plot_axis_widen(&x, study->cases[i].units), plot_axis_widen(&y, study->cases[i].wall_median);
+    *wanted = !plot_axis_empty(&x) && !plot_axis_empty(&y);
     if (!*wanted) return BRUNT_OK;
     int status = begin(p, folder, error);
     if (status) return status;
-    pad(&x), pad(&y);
+    plot_axis_pad(&x), plot_axis_pad(&y);
     bool fitted = false; // in the key
     size_t longest = 0;
     int32_t entries = 0;
@@ -616,9 +505,9 @@ static int draw_cost(picture *p, const char *folder, bool *wanted, brunt_error *
         longest = characters(title) > longest ? characters(title) : longest, entries++;
     }
     write_layout(p, entries, longest, false, fitted ? " (fitted exponents)" : "", NULL);
-    write_label(p->out, "xlabel", "particles and elements [1]");
+    plot_write_label(p->out, "xlabel", "particles and elements [1]");
     write_time_label(p->out, 'y', study);
-    write_tics(p->out, 'x', &x), write_tics(p->out, 'y', &y);
+    plot_write_tics(p->out, 'x', &x), plot_write_tics(p->out, 'y', &y);
     for (int32_t l = 0; l < study->line_count; l++) {
         int32_t points = 0;
         for (int32_t i = 0; i < study->case_count; i++) points += study->cases[i].line == l && sized(&study->cases[i]);
@@ -628,72 +517,13 @@ static int draw_cost(picture *p, const char *folder, bool *wanted, brunt_error *
     return commit(p, error);
 }
 
-// --- gnuplot
-
-static int remove_file(const char *folder, const char *name, const char *ending, brunt_error *error) {
-    char path[BRUNT_PATH_LENGTH], file[176];
-    snprintf(file, sizeof file, "%s%s", name, ending);
-    int status = brunt_join_path(path, folder, file, error);
-    if (!status && unlink(path) && errno != ENOENT)
-        status =
-            brunt_fail(error, BRUNT_IO_ERROR, "%s: cannot remove what was there before: %s", path, strerror(errno));
-    return status;
-}
-
-static int remove_pictures(const char *folder, const char *name, brunt_error *error) {
-    int status = remove_file(folder, name, ".svg", error);
-    return status ? status : remove_file(folder, name, ".png", error);
-}
-
-// All that gnuplot says, as far as there is room; the rest is read and dropped, so that it is not held up.
-static void listen(int descriptor, char *said, size_t size) {
-    size_t length = 0;
-    char part[512];
-    for (;;) {
-        ssize_t got = read(descriptor, part, sizeof part);
-        if (got < 0 && errno == EINTR) continue;
-        if (got <= 0) break;
-        for (ssize_t i = 0; i < got && length + 1 < size; i++) said[length++] = part[i] == '\n' ? ' ' : part[i];
-    }
-    said[length] = 0;
-}
-
-// In the folder, so that the script names no place. `*there` is false when there is no gnuplot.
-static int run_gnuplot(const char *folder, const char *name, bool *there, brunt_error *error) {
-    char script[176], said[400] = "";
-    snprintf(script, sizeof script, "%s.gp", name);
-    char *const arguments[] = {"gnuplot", "-d", script, NULL}; // -d: nobody's own settings
-    int ends[2], result = 0;
-    pid_t child;
-    if (pipe2(ends, O_CLOEXEC)) return brunt_fail(error, BRUNT_IO_ERROR, "no pipe for gnuplot: %s", strerror(errno));
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_adddup2(&actions, ends[1], 1);
-    posix_spawn_file_actions_adddup2(&actions, ends[1], 2);
-    posix_spawn_file_actions_addchdir_np(&actions, folder);
-    int spawned = posix_spawnp(&child, "gnuplot", &actions, NULL, arguments, environ);
-    posix_spawn_file_actions_destroy(&actions);
-    close(ends[1]);
-    *there = spawned != ENOENT;
-    if (!spawned) {
-        listen(ends[0], said, sizeof said);
-        while (waitpid(child, &result, 0) < 0 && errno == EINTR) {}
-    }
-    close(ends[0]);
-    if (spawned && *there) return brunt_fail(error, BRUNT_IO_ERROR, "gnuplot cannot be started: %s", strerror(spawned));
-    if (!spawned && result)
-        return brunt_fail(error, BRUNT_IO_ERROR, "%s/%s: gnuplot refused it: %s", folder, script, said);
-    return BRUNT_OK;
-}
-
 static int finish(const char *folder, const char *name, bool wanted, bool *drawn, brunt_error *error) {
-    int status = remove_pictures(folder, name, error);
-    if (!status && !wanted) status = remove_file(folder, name, ".gp", error); // of an earlier study here
+    int status = gnuplot_remove_pictures(folder, name, error);
+    if (!status && !wanted) status = gnuplot_remove_file(folder, name, ".gp", error); // of an earlier study here
     if (status || !wanted || !*drawn) return status;
     bool there;
-    status = run_gnuplot(folder, name, &there, error);
-    if (status) remove_pictures(folder, name, NULL);
+    status = gnuplot_run(folder, name, &there, error);
+    if (status) gnuplot_remove_pictures(folder, name, NULL);
     *drawn = *drawn && there;
     return status;
 }

@@ -11,70 +11,11 @@
 #include "io/performance/machine.h"
 #include "base/memory.h"
 #include "base/real.h"
+#include "io/study/report_text.h"
+#include "io/study/study_answers.h"
 #include "io/study/study_view.h"
 
-static bool finished(const brunt_study_case *c) { return c->status == BRUNT_STUDY_DONE; }
-static bool judged(const brunt_study_case *c, int32_t m) {
-    return finished(c) && isfinite(c->error[m]) && isfinite(c->wall_median);
-}
-
-// --- words
-
-// What Markdown would take for its own.
-static void put(FILE *out, const char *text) {
-    for (const char *t = text; *t; t++) {
-        if (strchr("\\`*_|<>[]", *t)) fputc('\\', out);
-        fputc((unsigned char)*t < ' ' ? ' ' : *t, out);
-    }
-}
-
-static void put_case(FILE *out, const brunt_study *study, const brunt_study_case *c) {
-    char label[320];
-    brunt_study_case_label(study, c, label);
-    put(out, label);
-}
-
-// " [mm]"; nothing where no run has said the unit.
-static void put_unit(FILE *out, const brunt_study *study, int32_t m) {
-    const char *unit = brunt_study_unit(study, m);
-    if (!unit[0]) return;
-    fprintf(out, " [");
-    put(out, unit);
-    fprintf(out, "]");
-}
-
-// A number in words, for one use in an argument.
-typedef struct words {
-    char text[32];
-} words;
-
-static words percent(double ratio) {
-    words w;
-    brunt_study_format_percent(ratio, w.text);
-    return w;
-}
-
-static words seconds(double value) {
-    words w;
-    brunt_study_format_seconds(value, w.text);
-    return w;
-}
-
-static words factor(double value) {
-    words w;
-    brunt_study_format_factor(value, w.text);
-    return w;
-}
-
-static const char *title_of(const brunt_study_measure *m) { return m->title[0] ? m->title : m->name; }
-
 // --- what was run
-
-static int32_t count_of(const brunt_study *study, brunt_study_status status) {
-    int32_t count = 0;
-    for (int32_t i = 0; i < study->case_count; i++) count += study->cases[i].status == status;
-    return count;
-}
 
 static bool other_programs(const brunt_study *study) {
     for (int32_t a = 0; a < study->axis_count; a++)
@@ -99,7 +40,7 @@ static void write_noise(FILE *out, const brunt_study *study) {
     const brunt_study_case *of = NULL;
     for (int32_t i = 0; i < study->case_count; i++) {
         const brunt_study_case *c = &study->cases[i];
-        if (!finished(c) || c->runs < 2 || !isfinite(noise(c))) continue;
+        if (!report_finished(c) || c->runs < 2 || !isfinite(noise(c))) continue;
         sum += noise(c), count++;
         if (noise(c) > worst) worst = noise(c), of = c;
     }
@@ -108,8 +49,8 @@ static void write_noise(FILE *out, const brunt_study *study) {
         return;
     }
     fprintf(out, "Between the slowest and the fastest repeat of a run are %s of its median on average, %s at most (",
-            percent(sum / count).text, percent(worst).text);
-    put_case(out, study, of);
+            report_percent(sum / count).text, report_percent(worst).text);
+    report_put_case(out, study, of);
     fprintf(out, ").\n");
 }
 
@@ -118,22 +59,23 @@ static void write_setting(FILE *out, const brunt_study *study) {
     brunt_machine_processor(processor);
     const char *file = strrchr(study->scene, '/');
     fprintf(out, "Scene ");
-    put(out, file ? file + 1 : study->scene);
+    report_put(out, file ? file + 1 : study->scene);
     if (other_scenes(study)) fprintf(out, " and those that values of the axes name");
     fprintf(out, ", %d combinations of", (int)study->case_count);
     for (int32_t a = 0; a < study->axis_count; a++) {
         fprintf(out, "%s ", a ? "," : "");
-        put(out, study->axes[a].name);
+        report_put(out, study->axes[a].name);
         fprintf(out, " (%d)", (int)study->axes[a].value_count);
     }
-    const int32_t waiting = count_of(study, BRUNT_STUDY_WAITING), failures = count_of(study, BRUNT_STUDY_FAILED);
-    fprintf(out, ": %d finished", (int)count_of(study, BRUNT_STUDY_DONE));
+    const int32_t waiting = report_count(study, BRUNT_STUDY_WAITING),
+                  failures = report_count(study, BRUNT_STUDY_FAILED);
+    fprintf(out, ": %d finished", (int)report_count(study, BRUNT_STUDY_DONE));
     if (failures) fprintf(out, ", %d failed", (int)failures);
     if (waiting) fprintf(out, ", %d not run yet", (int)waiting);
     fprintf(out, ".\nOn %d %s of %s (%ld cores), brunt " BRUNT_VERSION " in " BRUNT_REAL_NAME " precision%s. ",
             (int)study->threads, study->threads == 1 ? "thread" : "threads", processor, sysconf(_SC_NPROCESSORS_ONLN),
             other_programs(study) ? " unless a value of an axis says otherwise" : "");
-    if (!count_of(study, BRUNT_STUDY_DONE)) {
+    if (!report_count(study, BRUNT_STUDY_DONE)) {
         fprintf(out, "No run has come to its end.\n");
         return;
     }
@@ -146,174 +88,6 @@ static void write_setting(FILE *out, const brunt_study *study) {
     write_noise(out, study);
 }
 
-// --- which setting reaches what
-
-// An error that was meant to be 10 % is, to the bit, a little more or less.
-static bool reaches(double error, double accuracy) { return error <= accuracy * (1 + 1e-9); }
-
-static int by_falling(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x < y) - (x > y);
-}
-
-// A case whose line goes beyond the accuracy again when it is refined has hit it by accident: an error that changes its
-// sign.
-static const brunt_study_case *spoiler(const brunt_study *study, const brunt_study_case *c, int32_t m,
-                                       double accuracy) {
-    const double h = brunt_study_resolution(study, c);
-    for (int32_t i = 0; i < study->case_count; i++) {
-        const brunt_study_case *o = &study->cases[i];
-        if (o->line == c->line && judged(o, m) && brunt_study_resolution(study, o) < h &&
-            !reaches(o->error[m], accuracy))
-            return o;
-    }
-    return NULL;
-}
-
-// The cheapest that reaches it and stays there when refined; `accidental`: the cheapest of those that only seem to,
-// when it is cheaper.
-static const brunt_study_case *cheapest(const brunt_study *study, int32_t m, double accuracy, int32_t not_line,
-                                        const brunt_study_case **accidental) {
-    const brunt_study_case *best = NULL, *lucky = NULL;
-    for (int32_t i = 0; i < study->case_count; i++) {
-        const brunt_study_case *c = &study->cases[i];
-        if (!judged(c, m) || !reaches(c->error[m], accuracy) || c->line == not_line) continue;
-        const brunt_study_case **place = spoiler(study, c, m, accuracy) ? &lucky : &best;
-        if (!*place || c->wall_median < (*place)->wall_median ||
-            (c->wall_median == (*place)->wall_median && c->error[m] < (*place)->error[m]))
-            *place = c;
-    }
-    if (accidental) *accidental = lucky && (!best || lucky->wall_median < best->wall_median) ? lucky : NULL;
-    return best;
-}
-
-static const brunt_study_case *most_accurate(const brunt_study *study, int32_t m) {
-    const brunt_study_case *best = NULL;
-    for (int32_t i = 0; i < study->case_count; i++) {
-        const brunt_study_case *c = &study->cases[i];
-        if (!judged(c, m)) continue;
-        if (!best || c->error[m] < best->error[m] ||
-            (c->error[m] == best->error[m] && c->wall_median < best->wall_median))
-            best = c;
-    }
-    return best;
-}
-
-static bool coarsest_of_line(const brunt_study *study, const brunt_study_case *c) {
-    if (study->resolution < 0) return false;
-    const double h = brunt_study_resolution(study, c);
-    for (int32_t i = 0; i < study->case_count; i++)
-        if (study->cases[i].line == c->line && brunt_study_resolution(study, &study->cases[i]) > h) return false;
-    return true;
-}
-
-static bool overlap(const brunt_study_case *a, const brunt_study_case *b) {
-    return a->wall_least <= b->wall_most && b->wall_least <= a->wall_most;
-}
-
-static void write_error(FILE *out, const brunt_study *study, const brunt_study_case *c, int32_t m) {
-    fprintf(out, "error %s", percent(c->error[m]).text);
-    const double least = brunt_study_resolvable(study, c, m);
-    if (brunt_study_doubtful(study, c, m))
-        fprintf(out, ", %s the %s that the reference can tell",
-                c->error[m] < least * (1 - 1e-9) ? "below" : "no more than", percent(least).text);
-}
-
-// The next best of another method, for whom the first is out of the question.
-static void write_second(FILE *out, const brunt_study *study, int32_t m, double accuracy,
-                         const brunt_study_case *first) {
-    const brunt_study_case *second = cheapest(study, m, accuracy, first->line, NULL);
-    if (study->line_count < 2) return;
-    if (!second) {
-        fprintf(out, brunt_study_reference_case(study, m) >= 0 ? " Beside the reference, no other method reaches it."
-                                                               : " No other method reaches it.");
-        return;
-    }
-    fprintf(out, " Next best: ");
-    put_case(out, study, second);
-    fprintf(out, ", %s%s.", seconds(second->wall_median).text,
-            first->runs > 1 && overlap(first, second) ? ", which the scatter of the times does not tell apart" : "");
-}
-
-static void write_accident(FILE *out, const brunt_study *study, int32_t m, double accuracy,
-                           const brunt_study_case *lucky) {
-    const brunt_study_case *why = spoiler(study, lucky, m, accuracy);
-    fprintf(out, " (");
-    put_case(out, study, lucky);
-    fprintf(out, " shows %s after %s, but by accident: ", percent(lucky->error[m]).text,
-            seconds(lucky->wall_median).text);
-    put_case(out, study, why);
-    fprintf(out, " of the same method is off by %s.)", percent(why->error[m]).text);
-}
-
-static void write_not_reached(FILE *out, const brunt_study *study, int32_t m, double accuracy,
-                              const brunt_study_case *lucky) {
-    const brunt_study_case *best = most_accurate(study, m);
-    fprintf(out, "not reached%s%s", lucky ? " reliably" : "",
-            brunt_study_reference_case(study, m) >= 0 ? " beside the reference" : "");
-    if (best && !lucky) {
-        words error = percent(best->error[m]);
-        if (atof(error.text) <= 100 * accuracy) // rounded, it would look reached
-            snprintf(error.text, sizeof error.text, "%.6g %%", 100 * best->error[m]);
-        fprintf(out, "; the nearest is %s, by ", error.text);
-        put_case(out, study, best);
-        fprintf(out, " in %s", seconds(best->wall_median).text);
-    }
-    fprintf(out, ".");
-}
-
-static void write_answers(FILE *out, const brunt_study *study, int32_t m) {
-    double accuracies[BRUNT_STUDY_ACCURACIES];
-    memcpy(accuracies, study->accuracies, sizeof accuracies);
-    qsort(accuracies, (size_t)study->accuracy_count, sizeof *accuracies, by_falling);
-    const brunt_study_case *before = NULL;
-    double accuracy_before = 0;
-    for (int32_t a = 0; a < study->accuracy_count; a++) {
-        const brunt_study_case *lucky, *best = cheapest(study, m, accuracies[a], -1, &lucky);
-        fprintf(out, "- **%.4g %%**: ", 100 * accuracies[a]);
-        if (!best) {
-            write_not_reached(out, study, m, accuracies[a], lucky);
-        } else if (best == before) {
-            fprintf(out, "the same run (");
-            write_error(out, study, best, m);
-            fprintf(out, ").");
-            write_second(out, study, m, accuracies[a], best);
-        } else {
-            put_case(out, study, best);
-            fprintf(out, ": %s%s (", seconds(best->wall_median).text,
-                    coarsest_of_line(study, best) ? ", already the coarsest of this method" : "");
-            write_error(out, study, best, m);
-            fprintf(out, ")");
-            if (before)
-                fprintf(out, ", %s times the time of %.4g %%", factor(best->wall_median / before->wall_median).text,
-                        100 * accuracy_before);
-            fprintf(out, ".");
-            write_second(out, study, m, accuracies[a], best);
-        }
-        if (lucky) write_accident(out, study, m, accuracies[a], lucky);
-        fprintf(out, "\n");
-        if (best) before = best, accuracy_before = accuracies[a];
-    }
-}
-
-// What the answers above leave out: the run that is the reference, and methods that have none.
-static void write_left_out(FILE *out, const brunt_study *study, int32_t m) {
-    const int32_t reference = brunt_study_reference_case(study, m);
-    if (reference >= 0) {
-        fprintf(out, "\nThe reference is ");
-        put_case(out, study, &study->cases[reference]);
-        fprintf(out, " (%s) itself.\n", seconds(study->cases[reference].wall_median).text);
-    }
-    if (!count_of(study, BRUNT_STUDY_DONE)) return;
-    for (int32_t l = 0; l < study->line_count; l++) {
-        char why[160];
-        if (!brunt_study_lacks_limit(study, l, m, why)) continue;
-        fprintf(out, "\n");
-        put(out, brunt_study_line_label(study, l));
-        fprintf(out, " has no limit: %s%s.\n", why, most_accurate(study, m) ? "; it is not among these" : "");
-    }
-}
-
 // --- what the next digit costs
 
 // time ~ error^-q: a digit costs 10^q.
@@ -324,12 +98,13 @@ static void write_price(FILE *out, const brunt_study_fit *fit) {
     fprintf(out, "time grows as error^-q with q = %s", slope);
     if (isnan(fit->uncertainty)) {
         fprintf(out, " (by two runs: no interval), so that a ten times smaller error takes %s times the time",
-                factor(pow(10, q)).text);
+                report_factor(pow(10, q)).text);
     } else {
-        fprintf(out, " (95 %%), so that a ten times smaller error takes %s times the time", factor(pow(10, q)).text);
+        fprintf(out, " (95 %%), so that a ten times smaller error takes %s times the time",
+                report_factor(pow(10, q)).text);
         if (fit->uncertainty < 1.5)
-            fprintf(out, " (%s to %s)", factor(pow(10, q - fit->uncertainty)).text,
-                    factor(pow(10, q + fit->uncertainty)).text);
+            fprintf(out, " (%s to %s)", report_factor(pow(10, q - fit->uncertainty)).text,
+                    report_factor(pow(10, q + fit->uncertainty)).text);
         else
             fprintf(out, ", which %d points so far from a line do not say well", (int)fit->points);
     }
@@ -344,13 +119,13 @@ static void write_next_digit(FILE *out, const brunt_study *study, int32_t m) {
         fprintf(out, ".\n");
         return;
     }
-    const brunt_study_case *best = most_accurate(study, m);
+    const brunt_study_case *best = report_most_accurate(study, m);
     const brunt_study_fit own = best ? brunt_study_price(study, best->line, m) : front;
     if (!best) {
         fprintf(out, " is not known.\n");
     } else if (isfinite(own.slope) && own.slope < 0) {
         fprintf(out, ": the front is one run; along ");
-        put(out, brunt_study_line_label(study, best->line));
+        report_put(out, brunt_study_line_label(study, best->line));
         fprintf(out, " ");
         write_price(out, &own);
         fprintf(out, ".\n");
@@ -373,8 +148,8 @@ static void write_front(FILE *out, const brunt_study *study, int32_t m, int32_t 
     for (int32_t i = 0; i < count; i++) {
         const brunt_study_case *c = &study->cases[cases[i]];
         fprintf(out, "%s", i ? "; " : "");
-        put_case(out, study, c);
-        fprintf(out, " (%s, %s)", seconds(c->wall_median).text, percent(c->error[m]).text);
+        report_put_case(out, study, c);
+        fprintf(out, " (%s, %s)", report_seconds(c->wall_median).text, report_percent(c->error[m]).text);
     }
     fprintf(out, ".\n");
 }
@@ -391,7 +166,7 @@ static const brunt_study_case *best_of_line(const brunt_study *study, int32_t li
     const brunt_study_case *best = NULL;
     for (int32_t i = 0; i < study->case_count; i++) {
         const brunt_study_case *c = &study->cases[i];
-        if (c->line == line && judged(c, m) && (!best || c->error[m] < best->error[m])) best = c;
+        if (c->line == line && report_judged(c, m) && (!best || c->error[m] < best->error[m])) best = c;
     }
     return best;
 }
@@ -399,7 +174,7 @@ static const brunt_study_case *best_of_line(const brunt_study *study, int32_t li
 static void write_methods(FILE *out, const brunt_study *study, int32_t m) {
     fprintf(out, "\n| method | runs | least error | order of the error | order of theory | order without reference | "
                  "limit");
-    put_unit(out, study, m);
+    report_put_unit(out, study, m);
     fprintf(out, " | time over size | time over accuracy |\n"
                  "| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
     for (int32_t l = 0; l < study->line_count; l++) {
@@ -408,10 +183,10 @@ static void write_methods(FILE *out, const brunt_study *study, int32_t m) {
         const brunt_study_fit price = brunt_study_price(study, l, m);
         int32_t runs = 0, all = 0;
         for (int32_t i = 0; i < study->case_count; i++)
-            if (study->cases[i].line == l) all++, runs += finished(&study->cases[i]);
+            if (study->cases[i].line == l) all++, runs += report_finished(&study->cases[i]);
         fprintf(out, "| ");
-        put(out, brunt_study_line_label(study, l));
-        fprintf(out, " | %d of %d | %s |", (int)runs, (int)all, best ? percent(best->error[m]).text : "-");
+        report_put(out, brunt_study_line_label(study, l));
+        fprintf(out, " | %d of %d | %s |", (int)runs, (int)all, best ? report_percent(best->error[m]).text : "-");
         write_slope_cell(out, &line->order[m], 1);
         if (isfinite(study->measures[m].order))
             fprintf(out, " %.3g |", study->measures[m].order);
@@ -444,7 +219,7 @@ static void write_settled(FILE *out, const brunt_study *study, int32_t m) {
     for (int32_t l = 0; l < study->line_count; l++) {
         if (!study->lines[l].settled[m]) continue;
         fprintf(out, "%s", count++ ? "; " : "\nSettled, not extrapolated, are the limits of ");
-        put(out, brunt_study_line_label(study, l));
+        report_put(out, brunt_study_line_label(study, l));
     }
     if (count)
         fprintf(out, ": their finest values show no order, but the last change is smaller than the one before. The "
@@ -455,7 +230,7 @@ static void write_reference(FILE *out, const brunt_study *study, int32_t m) {
     const brunt_study_measure *measure = &study->measures[m];
     const brunt_study_case *any = NULL;
     for (int32_t i = 0; i < study->case_count && !any; i++)
-        if (judged(&study->cases[i], m)) any = &study->cases[i];
+        if (report_judged(&study->cases[i], m)) any = &study->cases[i];
     fprintf(out, "The errors are relative to ");
     brunt_study_truth truth = any ? brunt_study_truth_of(study, any, m) : (brunt_study_truth){NAN, NAN, -1, -1};
     char value[64];
@@ -470,13 +245,13 @@ static void write_reference(FILE *out, const brunt_study *study, int32_t m) {
         break;
     case BRUNT_REFERENCE_TABLE:
         fprintf(out, "a value for each ");
-        put(out, study->axes[measure->table_axis].name);
+        report_put(out, study->axes[measure->table_axis].name);
         break;
     case BRUNT_REFERENCE_FINEST:
         fprintf(out, "the finest run");
         if (truth.finest >= 0) {
             fprintf(out, ", ");
-            put_case(out, study, &study->cases[truth.finest]);
+            report_put_case(out, study, &study->cases[truth.finest]);
             fprintf(out,
                     " (%s%s%s), which therefore has none itself; those of runs near it in resolution come out too "
                     "small, and the order too high",
@@ -486,7 +261,7 @@ static void write_reference(FILE *out, const brunt_study *study, int32_t m) {
     case BRUNT_REFERENCE_RICHARDSON:
         if (measure->of[0] && truth.line >= 0) {
             fprintf(out, "the limit of ");
-            put(out, brunt_study_line_label(study, truth.line));
+            report_put(out, brunt_study_line_label(study, truth.line));
             fprintf(out, ", %s%s%s, %s", value, unit[0] ? " " : "", unit,
                     study->lines[truth.line].settled[m]
                         ? "its finest result: the values have settled, and are not extrapolated"
@@ -508,11 +283,11 @@ static void write_plateaus(FILE *out, const brunt_study *study, int32_t m) {
         const double h = brunt_study_plateau(study, l, m);
         if (isnan(h)) continue;
         fprintf(out, "\nThe error of ");
-        put(out, brunt_study_line_label(study, l));
+        report_put(out, brunt_study_line_label(study, l));
         fprintf(out, " no longer falls below ");
-        put(out, study->axes[study->resolution].name);
+        report_put(out, study->axes[study->resolution].name);
         fprintf(out, " = ");
-        put(out, brunt_study_resolution_label(study, h));
+        report_put(out, brunt_study_resolution_label(study, h));
         fprintf(out,
                 ": something else than the resolution bounds it, and the order above is that of the whole line.\n");
     }
@@ -522,10 +297,10 @@ static void write_doubts(FILE *out, const brunt_study *study, int32_t m) {
     int32_t below = 0, zero = 0, without = 0;
     for (int32_t i = 0; i < study->case_count; i++) {
         const brunt_study_case *c = &study->cases[i];
-        const bool reference = finished(c) && brunt_study_truth_of(study, c, m).finest == i;
-        zero += judged(c, m) && c->error[m] == 0;
-        below += judged(c, m) && brunt_study_doubtful(study, c, m);
-        without += finished(c) && !isfinite(c->error[m]) && !reference;
+        const bool reference = report_finished(c) && brunt_study_truth_of(study, c, m).finest == i;
+        zero += report_judged(c, m) && c->error[m] == 0;
+        below += report_judged(c, m) && brunt_study_doubtful(study, c, m);
+        without += report_finished(c) && !isfinite(c->error[m]) && !reference;
     }
     if (below)
         fprintf(
@@ -545,16 +320,16 @@ static void write_doubts(FILE *out, const brunt_study *study, int32_t m) {
 
 static void write_measure(FILE *out, const brunt_study *study, int32_t m, int32_t *cases) {
     fprintf(out, "\n## ");
-    put(out, title_of(&study->measures[m]));
+    report_put(out, report_title(&study->measures[m]));
     fprintf(out, "\n\n");
-    if (!most_accurate(study, m)) {
+    if (!report_most_accurate(study, m)) {
         fprintf(out, "No finished run has an error to speak of.\n");
-        write_left_out(out, study, m);
+        report_write_left_out(out, study, m);
         write_doubts(out, study, m);
         return;
     }
-    write_answers(out, study, m);
-    write_left_out(out, study, m);
+    report_write_answers(out, study, m);
+    report_write_left_out(out, study, m);
     fprintf(out, "\n");
     write_next_digit(out, study, m);
     write_front(out, study, m, cases);
@@ -568,14 +343,14 @@ static void write_measure(FILE *out, const brunt_study *study, int32_t m, int32_
 // --- failures, pictures, all runs
 
 static void write_failures(FILE *out, const brunt_study *study) {
-    if (!count_of(study, BRUNT_STUDY_FAILED)) return;
+    if (!report_count(study, BRUNT_STUDY_FAILED)) return;
     fprintf(out, "\n## What failed\n\n");
     for (int32_t i = 0; i < study->case_count; i++) {
         if (study->cases[i].status != BRUNT_STUDY_FAILED) continue;
         fprintf(out, "- ");
-        put_case(out, study, &study->cases[i]);
+        report_put_case(out, study, &study->cases[i]);
         fprintf(out, ": ");
-        put(out, study->cases[i].reason[0] ? study->cases[i].reason : "no reason is known");
+        report_put(out, study->cases[i].reason[0] ? study->cases[i].reason : "no reason is known");
         fprintf(out, "\n");
     }
 }
@@ -585,7 +360,7 @@ static int write_picture(FILE *out, const char *folder, const char *name, const 
     snprintf(file, sizeof file, "%s.png", name);
     if (brunt_join_path(path, folder, file, NULL) || !brunt_file_exists(path)) return 0;
     fprintf(out, "\n![");
-    put(out, title);
+    report_put(out, title);
     fprintf(out, " over %s](%s)\n", over, file);
     return 1;
 }
@@ -613,10 +388,10 @@ static void write_pictures(FILE *out, const brunt_study *study, const char *fold
     for (int32_t m = 0; m < study->measure_count; m++) {
         char name[160];
         brunt_study_picture_name(study, m, name);
-        drawn += write_picture(out, folder, name, title_of(&study->measures[m]), "time");
+        drawn += write_picture(out, folder, name, report_title(&study->measures[m]), "time");
     }
     if (study->resolution >= 0)
-        drawn += write_picture(out, folder, "study_order", title_of(&study->measures[0]), "resolution");
+        drawn += write_picture(out, folder, "study_order", report_title(&study->measures[0]), "resolution");
     drawn += write_picture(out, folder, "study_cost", "time", "size");
     fprintf(out, "\n%s drawn by the script of its name (`gnuplot study.gp`), which holds its data.\n",
             drawn ? "Each is" : "There are none here; each would be");
@@ -636,16 +411,16 @@ static void write_result(FILE *out, const brunt_study *study, const brunt_study_
     if (reference)
         fprintf(out, " reference |");
     else
-        fprintf(out, " %s%s%s |", percent(c->error[m]).text,
-                judged(c, m) && brunt_study_doubtful(study, c, m) ? " ?" : "", c->front[m] ? " ★" : "");
+        fprintf(out, " %s%s%s |", report_percent(c->error[m]).text,
+                report_judged(c, m) && brunt_study_doubtful(study, c, m) ? " ?" : "", c->front[m] ? " ★" : "");
 }
 
 static void write_runs(FILE *out, const brunt_study *study, int32_t *cases) {
     fprintf(out, "\n## All runs\n\n| run | particles + elements | steps | time | least to most | memory [MB] |");
     for (int32_t m = 0; m < study->measure_count; m++) {
         fprintf(out, " ");
-        put(out, study->measures[m].name);
-        put_unit(out, study, m);
+        report_put(out, study->measures[m].name);
+        report_put_unit(out, study, m);
         fprintf(out, " | error |");
     }
     fprintf(out, "\n| --- | --- | --- | --- | --- | --- |");
@@ -656,16 +431,16 @@ static void write_runs(FILE *out, const brunt_study *study, int32_t *cases) {
         for (int32_t i = 0; i < count; i++) {
             const brunt_study_case *c = &study->cases[cases[i]];
             fprintf(out, "| ");
-            put_case(out, study, c);
-            if (!finished(c)) {
+            report_put_case(out, study, c);
+            if (!report_finished(c)) {
                 fprintf(out, " | - | - | %s | - | - |", c->status == BRUNT_STUDY_FAILED ? "failed" : "not run yet");
                 for (int32_t m = 0; m < study->measure_count; m++) fprintf(out, " - | - |");
             } else {
                 fprintf(out, " |");
                 put_number(out, "%.0f", c->units), put_number(out, "%.0f", c->steps);
-                fprintf(out, " %s |", seconds(c->wall_median).text);
+                fprintf(out, " %s |", report_seconds(c->wall_median).text);
                 if (c->runs > 1)
-                    fprintf(out, " %s to %s |", seconds(c->wall_least).text, seconds(c->wall_most).text);
+                    fprintf(out, " %s to %s |", report_seconds(c->wall_least).text, report_seconds(c->wall_most).text);
                 else
                     fprintf(out, " - |");
                 put_number(out, "%.3g", c->peak_bytes / 1e6);
@@ -674,7 +449,7 @@ static void write_runs(FILE *out, const brunt_study *study, int32_t *cases) {
             fprintf(out, "\n");
         }
     }
-    if (count_of(study, BRUNT_STUDY_DONE)) fprintf(out, "\n★ on the front.\n");
+    if (report_count(study, BRUNT_STUDY_DONE)) fprintf(out, "\n★ on the front.\n");
 }
 
 int brunt_study_write_report(const brunt_study *study, const char *folder, brunt_error *error) {
@@ -687,7 +462,7 @@ int brunt_study_write_report(const brunt_study *study, const char *folder, brunt
     if (!status) {
         FILE *out = file.stream;
         fprintf(out, "# ");
-        put(out, study->title[0] ? study->title : study->name);
+        report_put(out, study->title[0] ? study->title : study->name);
         fprintf(out, "\n\n");
         write_setting(out, study);
         for (int32_t m = 0; m < study->measure_count; m++) write_measure(out, study, m, cases);

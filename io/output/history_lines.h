@@ -1,0 +1,71 @@
+// What a history is made of, and its lines as they were sampled: from memory or from history.csv. Private to
+// history*.c.
+#pragma once
+
+#include "io/file/atomic_file.h"
+#include "io/output/history.h"
+
+enum { COLUMN_NAME = 200 };
+
+typedef struct column {
+    char name[COLUMN_NAME], unit[16];
+    double now, last; // of the line that is being made, of the one before
+    double *values;   // all lines, when they have been asked for
+} column;
+
+typedef struct probe {
+    char name[64];
+    int32_t body, field;
+    int64_t id;    // particle, node or element
+    int64_t count; // how many of them there were at the start
+    brunt_field_info info;
+} probe;
+
+struct brunt_history {
+    column *columns;
+    size_t columns_capacity; // [bytes]
+    int32_t column_count, cursor;
+    bool declaring; // the first traversal names the columns, later ones fill them
+    bool out_of_memory;
+    int64_t rows;
+    uint64_t hash; // of all lines but their probes, which may change from leg to leg
+    double *lines; // one after the other, as long as they go to no file
+    size_t lines_capacity;
+    bool resumed; // lines are in a file that is to be gone on with
+    probe *probes;
+    int32_t probe_count;
+    double *scratch; // a field of a probe's body
+    size_t scratch_capacity;
+    FILE *csv;
+    char csv_path[BRUNT_PATH_LENGTH];
+    char title[256];
+    uint64_t run; // brunt_checkpoint_identity
+};
+
+// 17 digits give every bit of a double back.
+typedef struct line_reader {
+    const brunt_history *history;
+    const char *path; // NULL: from memory
+    FILE *file;
+    char *text; // of the C library, as the next one
+    size_t capacity;
+    int32_t *column; // of each of the file's: the history's, -1: it has no such
+    bool *counted;
+    int32_t column_count; // of the file
+    int64_t row;
+    uint64_t hash; // of the lines so far
+} line_reader;
+
+// False: of a probe, which may change between the legs of a run.
+bool brunt_history_counts(const char *column_name);
+uint64_t brunt_history_hash_value(uint64_t hash, double value);
+void brunt_history_print_line(const brunt_history *h, const double *values, FILE *out);
+
+// Starts with the first line; `path` NULL: from memory. To be closed in any case.
+int brunt_history_open_lines(line_reader *r, const brunt_history *h, const char *path, brunt_error *error);
+// The next line into `values`, one a column of the history, NAN where the file has none; of one column alone with
+// `only` >= 0.
+int brunt_history_next_line(line_reader *r, int32_t only, double *values, brunt_error *error);
+void brunt_history_close_lines(line_reader *r);
+// Of history.csv; NULL: lines are in memory.
+const char *brunt_history_lines_path(const brunt_history *h);
