@@ -47,6 +47,20 @@ double brunt_stable_step(const brunt_world *world) {
     return world->settings.cfl * least;
 }
 
+// The step that follows stable ones, of this state and of those before. A mesh that swings has a stable step that
+// swings with it, and a step that follows it pumps: central differences gain energy by steps that vary (choose_step) at
+// a share of the limit where equal ones gain none. Of one oscillator, omega = omega_0 (1 + a sin(omega t)), that is a
+// share of order a (omega dt)^2 in each period. So a step is that of the stiffest shape of the last 128 to 256 steps:
+// steps are equal over all periods that are shorter, and of those that are longer (omega dt)^2 is no more than 0.0024.
+// One that has more than twice that again is not held: what has been crushed and springs back does not swing.
+static double held_step(struct brunt_clock *now, double stable) {
+    enum { STRETCH = 128 };
+    if ((int64_t)now->steps % STRETCH == 0) now->earlier_step = now->recent_step, now->recent_step = INFINITY;
+    now->recent_step = fmin(now->recent_step, stable);
+    const double held = fmin(now->recent_step, now->earlier_step);
+    return fmax(held, stable / 2);
+}
+
 static int fail(const brunt_world *world, const brunt_body *body, brunt_error *error, const char *reason) {
     if (!error) return BRUNT_FAILED;
     error->time = world->clock.time;
@@ -450,11 +464,21 @@ static void watch_spread(brunt_world *world) {
     }
 }
 
+static int64_t all_eroded(const brunt_world *world) {
+    int64_t n = 0;
+    for (int i = 0; i < world->bodies.count; i++)
+        n += world->erosion.account[i].elements + world->erosion.account[i].particles;
+    return n;
+}
+
 static int erode(brunt_world *world, double dt, brunt_error *error) {
+    const int64_t before = all_eroded(world);
     const double looked_at = (double)brunt_world_elements(world) + all_particles(world);
     brunt_pass_begin(world, BRUNT_PASS_erosion);
     int status = world->bodies.fem_count ? brunt_erode_meshes(world, dt, error) : BRUNT_OK;
     if (!status && world->bodies.mpm_count) status = brunt_erode_particles(world, dt, error);
+    if (all_eroded(world) > before)
+        world->clock.recent_step = world->clock.earlier_step = INFINITY; // what left swings no more
     brunt_pass_end(world, looked_at);
     return status;
 }
@@ -625,6 +649,7 @@ static int look_over(brunt_world *world, brunt_error *error) {
     struct brunt_clock *now = &world->clock;
     brunt_pass_begin(world, BRUNT_PASS_advance);
     now->next_dt = brunt_stable_step(world);
+    if (world->bodies.fem_count && isfinite(now->next_dt)) now->next_dt = held_step(now, now->next_dt);
     if (!isfinite(world->ledger.kinetic) || !isfinite(world->ledger.fem_kinetic) || !isfinite(now->next_dt))
         return fail(world, NULL, error, "the kinetic energy is not a finite number");
     if (world->bodies.has_fluid && (int64_t)now->steps % SPREAD_CHECK == 0) watch_spread(world);

@@ -73,6 +73,8 @@ static const brunt_saved clock_table[] = {
     CLOCK(dt_min),
     CLOCK(dt_max),
     CLOCK(longest),
+    CLOCK(recent_step),
+    CLOCK(earlier_step),
     LEDGER(kinetic),
     LEDGER(fem_kinetic),
     LEDGER(fem_stress_work),

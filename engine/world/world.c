@@ -608,7 +608,7 @@ static int start(brunt_world *world, brunt_error *error) {
         return brunt_fail(error, BRUNT_BAD_INPUT, "a mesh: %s", reason);
     struct brunt_clock *clock = &world->clock;
     brunt_ledger *now = &world->ledger;
-    clock->next_dt = clock->dt = brunt_stable_step(world);
+    clock->next_dt = clock->dt = clock->recent_step = clock->earlier_step = brunt_stable_step(world);
     if (world->settings.fixed_step > 0) clock->dt = world->settings.fixed_step;
     clock->dt_min = INFINITY;
     for (int i = 0; i < world->bodies.mpm_count; i++) {
