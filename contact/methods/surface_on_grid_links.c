@@ -112,7 +112,7 @@ static int add_item(job *j, int b, int k, brunt_pair *pair, int32_t n) {
     for (int a = 0; a < dim; a++) {
         double u = (x[a] - grid->origin[a]) / (double)grid->h;
         base[a] = (int32_t)floor(u - 0.5 * (grid->order - 1));
-        brunt_kernel_weights(grid->order, u - base[a], weight[a]);
+        brunt_bspline_weights(grid->order, u - base[a], weight[a]);
     }
     seen_slot seen = {.is = false}, seen_image = {.is = false};
     const int32_t first = w->link_count;

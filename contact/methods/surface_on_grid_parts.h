@@ -8,7 +8,8 @@
 #include "base/parallel.h"
 #include "contact/distance/point_facet.h"
 #include "contact/methods/surface_on_grid.h"
-#include "mpm/transfer.h"
+#include "grid/bspline.h"
+#include "mpm/mpm_body.h"
 
 // What a skin node gives to a node of the grid, itself or, by a mirror, its image.
 typedef struct link {

@@ -24,7 +24,8 @@
 
 #include "contact/contact.h"
 #include "base/memory.h"
-#include "mpm/transfer.h"
+#include "mpm/mpm_body.h"
+#include "grid/bspline.h"
 
 enum { MAX_SWEEPS = 16 };
 static const double SWEEP_TOLERANCE =
@@ -137,7 +138,7 @@ static void place_kernel(const brunt_body *body, int32_t b, int64_t s, int32_t b
     for (int a = 0; a < grid->dim; a++) {
         base[a] = grid->blocks[b].coord[a] * grid->side + local[a];
         u[a] = ((double)x[a][s] - grid->origin[a]) / (double)grid->h - base[a];
-        brunt_kernel_weights(grid->order, u[a], weight[a]);
+        brunt_bspline_weights(grid->order, u[a], weight[a]);
     }
 }
 
@@ -222,7 +223,7 @@ static int add_levers(brunt_wall_workspace *w, const brunt_body *body, int32_t b
     double u[3], weight[3][4], slope[3][4] = {{0}}, N[64] = {0};
     place_kernel(body, b, t->slot, base, u, weight);
     for (int a = 0; a < dim; a++) {
-        brunt_kernel_levers(grid->order, u[a], weight[a], slope[a]);
+        brunt_bspline_levers(grid->order, u[a], weight[a], slope[a]);
         for (int i = 0; i < n; i++) slope[a][i] *= arm[a] / (double)grid->h;
     }
     for (int i = 0; i < n; i++)

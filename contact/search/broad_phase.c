@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 #include "mpm/particles.h"
-#include "mpm/transfer.h"
+#include "mpm/mpm_body.h"
 
 static const double RANGE = 0.25;     // mean edges: how far a body looks for others, if nothing moves faster
 static const double FARTHEST = 1e150; // [m] squares of distances are still numbers

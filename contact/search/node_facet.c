@@ -3,7 +3,7 @@
 #include "contact/distance/point_facet.h"
 #include "mpm/particles.h"
 #include "base/parallel.h"
-#include "mpm/transfer.h"
+#include "mpm/mpm_body.h"
 
 enum { GRAIN = 64 };
 static const double SHALLOW = 0.02; // mean edges: depths that may be pushed out against a load

@@ -12,9 +12,9 @@
 #include "contact/search/node_to_facet_parts.h"
 
 #include "mpm/mpm_body.h"
+#include "grid/bspline.h"
 #include "mpm/particles.h"
 #include "base/parallel.h"
-#include "mpm/transfer.h"
 
 enum { MAX_NODES = 64, IMAGE_LAYERS = 2, MAX_MIRRORS = 16 };
 
@@ -51,9 +51,9 @@ static void particle_nodes(const brunt_body *body, int32_t b, int64_t s, const d
     for (int a = 0; a < dim; a++) {
         base[a] = grid->blocks[b].coord[a] * grid->side + local[a];
         const double u = ((double)x[a][s] - grid->origin[a]) / (double)grid->h - base[a];
-        brunt_kernel_weights(grid->order, u, w[a]);
+        brunt_bspline_weights(grid->order, u, w[a]);
         if (!arm) continue;
-        brunt_kernel_levers(grid->order, u, w[a], lever[a]);
+        brunt_bspline_levers(grid->order, u, w[a], lever[a]);
         for (int i = 0; i < n; i++) lever[a][i] *= arm[a] / (double)grid->h;
     }
     for (int i = 0; i < n; i++)

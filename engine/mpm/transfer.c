@@ -5,51 +5,12 @@
 
 #include "base/simd.h"
 #include "base/memory.h"
+#include "grid/bspline.h"
 #include "grid/node.h"
 
 // ------------------------------------------------------------------------------------------ shared by all instances
 
 #define SYMMETRIC_INDEX(dim, r, c) ((r) == (c) ? (r) : (dim) == 2 ? 3 : (r) + (c) == 1 ? 3 : (r) + (c) == 3 ? 4 : 5)
-
-// B-spline weights (Steffen, Kirby and Berzins 2008) of the nodes from the base on, u cells past the base node:
-// u in [0,1) linear, [1/2,3/2) quadratic, [1,2) cubic.
-BRUNT_INLINE void kernel_weights(int order, lanes u, lanes *w) {
-    if (order == 1) {
-        w[0] = 1 - u, w[1] = u;
-    } else if (order == 2) {
-        lanes a = (real)1.5 - u, b = u - 1, c = u - (real)0.5;
-        w[0] = (real)0.5 * a * a, w[1] = (real)0.75 - b * b, w[2] = (real)0.5 * c * c;
-    } else {
-        lanes f = u - 1, e = 1 - f;
-        w[0] = e * e * e * (real)(1.0 / 6);
-        w[1] = (real)(2.0 / 3) + f * f * ((real)0.5 * f - 1);
-        w[2] = (real)(2.0 / 3) + e * e * ((real)0.5 * e - 1);
-        w[3] = f * f * f * (real)(1.0 / 6);
-    }
-}
-
-BRUNT_INLINE void kernel_slopes(int order, lanes u, real inv_h, lanes *g) {
-    if (order == 1) {
-        g[0] = lanes_set(-inv_h), g[1] = lanes_set(inv_h);
-    } else if (order == 2) {
-        g[0] = inv_h * (u - (real)1.5), g[1] = inv_h * -2 * (u - 1), g[2] = inv_h * (u - (real)0.5);
-    } else {
-        lanes f = u - 1, e = 1 - f;
-        g[0] = inv_h * (real)-0.5 * e * e;
-        g[1] = inv_h * f * ((real)1.5 * f - 2);
-        g[2] = inv_h * -e * ((real)1.5 * e - 2);
-        g[3] = inv_h * (real)0.5 * f * f;
-    }
-}
-
-// D = sum w (x_i - x)^2 of the kernel along one axis [m^2]; x relative to a node.
-BRUNT_INLINE lanes kernel_spread(int order, lanes x, real h, real inv_h) {
-    if (order == 2) return lanes_set(h * h * (real)0.25);
-    if (order == 3) return lanes_set(h * h * (real)(1.0 / 3));
-    lanes u = x * inv_h;
-    for (int l = 0; l < BRUNT_LANES; l++) u[l] -= (real)floor((double)u[l]);
-    return u * (1 - u) * h * h;
-}
 
 typedef struct scatter_arrays {
     const real *x[3], *v[3], *C[9], *tau[6], *F[9], *mass, *volume;
@@ -171,11 +132,11 @@ static void add_light_nodes(const brunt_body *body, const brunt_block *block, co
                     const real corner = (real)(grid->origin[a] + (double)grid->h * (block->coord[a] * grid->side));
                     lanes at = lanes_set(x[a][block->first + s]);
                     lanes u = local_coordinate(at, corner, grid->inv_h, lanes_set((real)bin[a])), weight[4], slope[4];
-                    kernel_weights(order, u, weight);
-                    kernel_slopes(order, u, grid->inv_h, slope);
+                    bspline_weights(order, u, weight);
+                    bspline_slopes(order, u, grid->inv_h, slope);
                     w[a] = weight[number[a]][0], g[a] = slope[number[a]][0];
                     d[a] = ((real)number[a] - u[0]) * grid->h;
-                    spread[a] = kernel_spread(order, at - (real)grid->origin[a], grid->h, grid->inv_h)[0];
+                    spread[a] = bspline_moment(order, at - (real)grid->origin[a], grid->h, grid->inv_h)[0];
                 }
                 real weight = w[0] * w[1] * w[2];
                 const real slope[3] = {g[0] * w[1] * w[2], w[0] * g[1] * w[2], w[0] * w[1] * g[2]};
@@ -813,23 +774,7 @@ void brunt_workspace_free(brunt_workspace *work) {
     *work = (brunt_workspace){0};
 }
 
-// ------------------------------------------------------------------------------------------ point by point
-
-void brunt_kernel_weights(int order, double u, double weight[4]) {
-    lanes w[4] = {0};
-    kernel_weights(order, lanes_set((real)u), w);
-    for (int i = 0; i < 4; i++) weight[i] = i <= order ? (double)w[i][0] : 0.0;
-}
-
-void brunt_kernel_slopes(int order, double u, double slope[4]) {
-    lanes g[4] = {0};
-    kernel_slopes(order, lanes_set((real)u), 1, g);
-    for (int i = 0; i < 4; i++) slope[i] = i <= order ? (double)g[i][0] : 0.0;
-}
-
-void brunt_kernel_levers(int order, double u, const double weight[4], double lever[4]) {
-    for (int i = 0; i <= order; i++) lever[i] = order == 1 ? 2 * i - 1 : (order == 2 ? 4 : 3) * weight[i] * (i - u);
-}
+// ------------------------------------------------------------------------------------------ audit
 
 // One serial pass in the order of the particles, summed in extended precision: the drift it measures is near rounding
 // itself.
@@ -863,8 +808,8 @@ brunt_audit brunt_slots_audit(brunt_body *body, const int64_t *slots, int64_t co
         double m = (double)mass[s], X[3] = {0}, V[3] = {0}, spin[3] = {0}, square = 0, B[3][3] = {{0}};
         for (int k = 0; k < dim; k++) X[k] = (double)x[k][s], V[k] = (double)v[k][s], square += V[k] * V[k];
         for (int k = 0; affine && k < dim; k++) {
-            double D = (double)kernel_spread(grid->order, lanes_set(place[k][s] - (real)grid->origin[k]), grid->h,
-                                             grid->inv_h)[0];
+            double D = (double)bspline_moment(grid->order, lanes_set(place[k][s] - (real)grid->origin[k]), grid->h,
+                                              grid->inv_h)[0];
             for (int r = 0; r < dim; r++) {
                 double c = (double)C[r * dim + k][s];
                 B[r][k] = c * D;

@@ -53,16 +53,6 @@ void brunt_still_stress(brunt_body *body, const brunt_block *block);
 int brunt_workspace_fit(brunt_workspace *work, const brunt_grid *grid, int32_t most);
 void brunt_workspace_free(brunt_workspace *work);
 
-// Kernel along one axis: weights of the order+1 nodes from the base node on, for a point u cells past it. For the few
-// places that work point by point.
-void brunt_kernel_weights(int order, double u, double weight[4]);
-// And their derivatives [1/cell].
-void brunt_kernel_slopes(int order, double u, double slope[4]);
-// And what the gradient of the affine field is made of, w (x_i - x) / D with the kernel's second moment D [1/cell]: the
-// nodes' velocities summed with weight + arm * lever are the velocity at an arm's length [cells], exactly so where that
-// field is affine, and an impulse given to them by the same numbers acts there.
-void brunt_kernel_levers(int order, double u, const double weight[4], double lever[4]);
-
 // Kinetic energy of a body's particles with the affine part [J], its momentum, and angular momentum about the origin
 // with spin; of total-Lagrangian bodies as if their motion were affine within a kernel. Of rings what the whole circle
 // has: no radial momentum, no angular momentum, a centre on the axis.

@@ -77,7 +77,7 @@ static crowd crowd_of(const brunt_body *body) {
 static double slot_bytes(void) { return BRUNT_BLOCK_NODES * BRUNT_NODE_REALS * sizeof(real); }
 static double buffer_bytes(const brunt_grid *grid) { return grid->span_nodes * 8.0 * sizeof(real); }
 
-// Along an axis: u, kernel_weights, kernel_slopes.
+// Along an axis: u, bspline_weights, bspline_slopes.
 static double kernel_flops(int order) {
     static const int weights[] = {0, 1, 9, 18}, slopes[] = {0, 0, 4, 12};
     return 3 + weights[order] + slopes[order];
