@@ -255,7 +255,7 @@ static int gas_escapes(brunt_world *world, const brunt_fem_body *fem, const brun
     brunt_fail(error, BRUNT_FAILED,
                "boundaries (%s): the envelope of the gas has lost element %d of body '%s', time %.9g s, step %.0f: "
                "gas does not flow out through holes",
-               world->boundaries.walls[hold->wall].name, element + 1, fem->name, world->clock.time, world->clock.steps);
+               hold->wall->name, element + 1, fem->name, world->clock.time, world->clock.steps);
     if (error) {
         error->time = world->clock.time;
         error->id = element;
@@ -277,7 +277,7 @@ static int erode(brunt_world *world, int k, int32_t count, double dt, brunt_erro
         if (!world->erosion.rule[fem->index].keep) book_node(world, fem, work->corner[i]);
     }
     int32_t element;
-    const brunt_node_set *gas = brunt_node_sets_follow(world, k, &element);
+    const brunt_node_set *gas = brunt_node_sets_follow(&world->boundaries.sets, fem, &element);
     return gas ? gas_escapes(world, fem, gas, element, error) : BRUNT_OK;
 }
 

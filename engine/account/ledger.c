@@ -70,7 +70,7 @@ void brunt_world_energy(brunt_world *world, brunt_energy *energy) {
         energy->viscosity += e.viscosity;
         energy->heat += e.heat;
     }
-    energy->viscosity += now->damped + now->eroded_viscosity;
+    energy->viscosity += now->damping.loss + now->eroded_viscosity;
     energy->plastic += now->eroded_plastic;
     energy->heat += now->eroded_heat;
     for (int i = 0; i < world->bodies.count && world->erosion.active; i++)
@@ -137,10 +137,10 @@ void brunt_world_momentum(brunt_world *world, brunt_momentum *momentum) {
     for (int k = 0; k < 3; k++) {
         momentum->linear_initial[k] = now->linear_initial[k];
         momentum->angular_initial[k] = now->angular_initial[k];
-        momentum->linear_impulse[k] = now->gravity_impulse[k] + now->damping_impulse[k];
-        momentum->angular_impulse[k] = now->gravity_angular[k] + now->damping_angular[k];
-        impulse += fabs(now->gravity_impulse[k]) + fabs(now->damping_impulse[k]);
-        turn += fabs(now->gravity_angular[k]) + fabs(now->damping_angular[k]);
+        momentum->linear_impulse[k] = now->gravity_impulse[k] + now->damping.impulse[k];
+        momentum->angular_impulse[k] = now->gravity_angular[k] + now->damping.angular[k];
+        impulse += fabs(now->gravity_impulse[k]) + fabs(now->damping.impulse[k]);
+        turn += fabs(now->gravity_angular[k]) + fabs(now->damping.angular[k]);
         for (int w = 0; w < world->boundaries.wall_count; w++) {
             const brunt_impulse_account *action = &world->boundaries.walls[w].action;
             momentum->linear_impulse[k] += action->impulse[k];
@@ -211,94 +211,4 @@ void brunt_body_totals(brunt_world *world, int32_t index, brunt_body_sums *sums)
         sums->velocity[k] = a.mass > 0 ? a.linear[k] / a.mass : 0;
     }
     bound_body(world, &world->bodies.all[index], sums);
-}
-
-static void fill_force(const brunt_impulse_account *last, const brunt_impulse_account *all, double kick,
-                       brunt_force *force) {
-    for (int k = 0; k < 3; k++) {
-        force->force[k] = kick > 0 ? last->impulse[k] / kick : 0;
-        force->impulse[k] = all->impulse[k];
-    }
-    force->normal_work = all->normal_loss;
-    force->friction_work = all->friction_loss;
-    force->area = last->area;
-}
-
-int32_t brunt_pair_count(const brunt_world *world) { return world->pairs.count; }
-void brunt_pair_force(const brunt_world *world, int32_t index, brunt_force *force) {
-    const brunt_pair *pair = &world->pairs.pair[index];
-    if (pair->a < 0)
-        snprintf(force->name, sizeof force->name, index ? "all%d" : "all", index + 1);
-    else
-        snprintf(force->name, sizeof force->name, "%s-%s", brunt_body_name(world, pair->a),
-                 brunt_body_name(world, pair->b));
-    fill_force(&pair->last, &pair->action, world->clock.kick, force);
-}
-int32_t brunt_wall_count(const brunt_world *world) { return world->boundaries.wall_count; }
-void brunt_wall_force(const brunt_world *world, int32_t index, brunt_force *force) {
-    const brunt_wall *wall = &world->boundaries.walls[index];
-    snprintf(force->name, sizeof force->name, "%s", wall->name);
-    fill_force(&wall->last, &wall->action, world->clock.kick, force);
-}
-
-double brunt_world_time(const brunt_world *world) { return world->clock.time; }
-double brunt_world_end(const brunt_world *world) { return world->settings.end; }
-int64_t brunt_world_steps(const brunt_world *world) { return (int64_t)world->clock.steps; }
-double brunt_world_dt(const brunt_world *world) { return world->clock.dt; }
-double brunt_world_dt_min(const brunt_world *world) {
-    return world->clock.steps > 0 ? world->clock.dt_min : world->clock.dt;
-}
-double brunt_world_dt_max(const brunt_world *world) {
-    return world->clock.steps > 0 ? world->clock.dt_max : world->clock.dt;
-}
-int brunt_world_dimension(const brunt_world *world) { return world->settings.dimension; }
-int brunt_world_threads(const brunt_world *world) { return world->settings.threads; }
-int64_t brunt_world_particles(const brunt_world *world) {
-    int64_t n = 0;
-    for (int i = 0; i < world->bodies.mpm_count; i++) n += world->bodies.mpm[i].particles.count;
-    return n;
-}
-int64_t brunt_world_nodes(const brunt_world *world) {
-    int64_t n = 0;
-    for (int i = 0; i < world->bodies.mpm_count; i++)
-        n += (int64_t)world->bodies.mpm[i].grid.slot_count * BRUNT_BLOCK_NODES;
-    for (int i = 0; i < world->bodies.fem_count; i++) n += world->bodies.fem[i].node_count;
-    return n;
-}
-int64_t brunt_world_elements(const brunt_world *world) {
-    int64_t n = 0;
-    for (int i = 0; i < world->bodies.fem_count; i++) n += world->bodies.fem[i].element_count;
-    return n;
-}
-int32_t brunt_body_count(const brunt_world *world) { return world->bodies.count; }
-const char *brunt_body_name(const brunt_world *world, int32_t body) {
-    return world->bodies.all[body].fem ? world->bodies.all[body].fem->name : world->bodies.all[body].mpm->name;
-}
-const char *brunt_body_material(const brunt_world *world, int32_t body) {
-    return world->bodies.all[body].fem ? world->bodies.all[body].fem->material.name
-                                       : world->bodies.all[body].mpm->material.name;
-}
-brunt_method brunt_body_method(const brunt_world *world, int32_t body) {
-    const brunt_fem_body *fem = world->bodies.all[body].fem;
-    return !fem ? BRUNT_MPM : fem->element->sheet ? BRUNT_MEMBRANE : BRUNT_FEM;
-}
-int64_t brunt_body_size(const brunt_world *world, int32_t body, brunt_place at) {
-    const brunt_body_ref ref = world->bodies.all[body];
-    if (ref.mpm) return at == BRUNT_AT_PARTICLES ? ref.mpm->particles.count : 0;
-    return at == BRUNT_AT_NODES ? ref.fem->node_count : at == BRUNT_AT_ELEMENTS ? ref.fem->element_count : 0;
-}
-int64_t brunt_body_particles(const brunt_world *world, int32_t body) {
-    return brunt_body_size(world, body, BRUNT_AT_PARTICLES);
-}
-int64_t brunt_body_nodes(const brunt_world *world, int32_t body) {
-    return brunt_body_size(world, body, BRUNT_AT_NODES);
-}
-int64_t brunt_body_elements(const brunt_world *world, int32_t body) {
-    return brunt_body_size(world, body, BRUNT_AT_ELEMENTS);
-}
-brunt_element_kind brunt_body_element(const brunt_world *world, int32_t body) {
-    return world->bodies.all[body].fem->kind;
-}
-void brunt_body_mesh(const brunt_world *world, int32_t body, brunt_mesh_report *report) {
-    *report = world->bodies.mesh_reports[world->bodies.all[body].fem - world->bodies.fem];
 }

@@ -1,14 +1,16 @@
 // Energy and momentum of a run, booked as it goes. All but the last member is of the state.
 #pragma once
 
+#include "boundary/damping.h"
+
 typedef struct brunt_ledger {
     double kinetic;                                                        // of the particles [J]
     double fem_kinetic, fem_stress_work, hourglass_stored, hourglass_lost; // [J] of the meshes
     double stress_work;            // [J] dt times the stress power at the end of the last step
     double transfer, gravity_work; // [J]
     double gravity_impulse[3], gravity_angular[3];
-    double damped, damping_impulse[3], damping_angular[3]; // [J], [N s], [N m s]
-    double initial_energy, initial_kinetic;                // [J]
+    brunt_damping_sums damping;
+    double initial_energy, initial_kinetic; // [J]
     double linear_initial[3], angular_initial[3], scale_linear, scale_angular;
     double energy_scale; // [J] the most that the run has been given so far: what its energy error is relative to
     double eroded_plastic, eroded_viscosity, eroded_heat; // [J] dissipated by what has been eroded since

@@ -31,3 +31,5 @@ typedef struct brunt_bodies {
     brunt_fem_tasks tasks;
     bool has_particles, has_fluid;
 } brunt_bodies;
+
+const char *brunt_bodies_name(const brunt_bodies *bodies, int body);

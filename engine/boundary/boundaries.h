@@ -2,6 +2,8 @@
 #pragma once
 
 #include "boundary/damping.h"
+#include "boundary/gas.h"
+#include "boundary/load_step.h"
 #include "boundary/node_sets.h"
 
 typedef struct brunt_boundaries {
@@ -12,5 +14,4 @@ typedef struct brunt_boundaries {
     bool has_walls, has_conditions, has_friction; // planes that push, conditions at grid nodes
     brunt_node_sets sets;
     brunt_damping damping;
-    double **load_rate; // of each body with loads that follow its surface: node_count, room for its stable step
 } brunt_boundaries;

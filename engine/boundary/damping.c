@@ -12,45 +12,42 @@
 #include "base/error.h"
 #include "base/memory.h"
 #include "base/parallel.h"
-#include "world/world.h"
+#include "boundary/damping.h"
 
 typedef struct job {
-    brunt_world *world;
-    double dt;
-    const double *gravity;
+    const brunt_damping *damping;
+    const brunt_bodies *bodies;
+    const brunt_kick *kick;
 } job;
 
-int brunt_damping_make(brunt_world *world, brunt_error *error) {
-    world->boundaries.damping.drag =
-        brunt_alloc((size_t)(world->bodies.fem_count + 1) * sizeof *world->boundaries.damping.drag);
-    if (!world->boundaries.damping.drag) return brunt_fail(error, BRUNT_FAILED, "out of memory");
-    for (int k = 0; k < world->bodies.fem_count; k++) {
-        brunt_fem_body *fem = &world->bodies.fem[k];
+int brunt_damping_make(brunt_damping *damping, const brunt_bodies *bodies, brunt_error *error) {
+    damping->drag = brunt_alloc((size_t)(bodies->fem_count + 1) * sizeof *damping->drag);
+    if (!damping->drag) return brunt_fail(error, BRUNT_FAILED, "out of memory");
+    damping->fem_count = bodies->fem_count;
+    for (int k = 0; k < bodies->fem_count; k++) {
+        brunt_fem_body *fem = &bodies->fem[k];
         if (!(fem->damping > 0)) continue;
-        world->boundaries.damping.active = true;
+        damping->active = true;
         size_t bytes = (size_t)(fem->node_count + 1) * 4 * sizeof(real);
-        if (!(world->boundaries.damping.drag[k] = brunt_alloc(bytes)) ||
-            (!fem->load && !(fem->load = brunt_alloc(bytes))))
+        if (!(damping->drag[k] = brunt_alloc(bytes)) || (!fem->load && !(fem->load = brunt_alloc(bytes))))
             return brunt_fail(error, BRUNT_FAILED, "bodies.%s: out of memory", fem->name);
     }
-    if (!world->boundaries.damping.active) return BRUNT_OK;
-    world->boundaries.damping.sums =
-        brunt_alloc((size_t)(world->bodies.tasks.node_count + 1) * sizeof *world->boundaries.damping.sums);
-    return world->boundaries.damping.sums ? BRUNT_OK : brunt_fail(error, BRUNT_FAILED, "out of memory");
+    if (!damping->active) return BRUNT_OK;
+    damping->sums = brunt_alloc((size_t)(bodies->tasks.node_count + 1) * sizeof *damping->sums);
+    return damping->sums ? BRUNT_OK : brunt_fail(error, BRUNT_FAILED, "out of memory");
 }
 
-void brunt_damping_free(brunt_world *world) {
-    for (int k = 0; world->boundaries.damping.drag && k < world->bodies.fem_count; k++)
-        brunt_free(world->boundaries.damping.drag[k]);
-    brunt_free(world->boundaries.damping.drag);
-    brunt_free(world->boundaries.damping.sums);
+void brunt_damping_free(brunt_damping *damping) {
+    for (int k = 0; k < damping->fem_count; k++) brunt_free(damping->drag[k]);
+    brunt_free(damping->drag);
+    brunt_free(damping->sums);
 }
 
 // The drag on what is known of the force, as a load; the velocities from before it are kept.
 static void drag_nodes(const job *j, const brunt_fem_task *task) {
-    const brunt_fem_body *fem = &j->world->bodies.fem[task->fem];
-    const double loss = -expm1(-fem->damping * j->dt) / j->dt, share = 1 - 1 / fem->drag_mass;
-    real *kept = j->world->boundaries.damping.drag[task->fem];
+    const brunt_fem_body *fem = &j->bodies->fem[task->fem];
+    const double loss = -expm1(-fem->damping * j->kick->dt) / j->kick->dt, share = 1 - 1 / fem->drag_mass;
+    real *kept = j->damping->drag[task->fem];
     for (int32_t n = task->begin; kept && n < task->end; n++) {
         const real *node = brunt_fem_node(fem, n);
         const double mass = (double)node[BRUNT_FEM_MASS];
@@ -59,7 +56,7 @@ static void drag_nodes(const job *j, const brunt_fem_task *task) {
         for (int a = 0; a < 3; a++) {
             const double v = (double)node[BRUNT_FEM_V + a];
             real *load = &fem->load[4 * (size_t)n + (size_t)a];
-            *load -= (real)(mass * loss * v + share * ((double)force[a] + (double)*load + mass * j->gravity[a]));
+            *load -= (real)(mass * loss * v + share * ((double)force[a] + (double)*load + mass * j->kick->gravity[a]));
             kept[4 * (size_t)n + (size_t)a] = (real)v;
         }
     }
@@ -67,9 +64,9 @@ static void drag_nodes(const job *j, const brunt_fem_task *task) {
 
 // What the drag of the kick did.
 static void book_nodes(const job *j, const brunt_fem_task *task, brunt_damping_sums *sums) {
-    const brunt_fem_body *fem = &j->world->bodies.fem[task->fem];
-    const double left = exp(-fem->damping * j->dt);
-    const real *kept = j->world->boundaries.damping.drag[task->fem];
+    const brunt_fem_body *fem = &j->bodies->fem[task->fem];
+    const double left = exp(-fem->damping * j->kick->dt);
+    const real *kept = j->damping->drag[task->fem];
     memset(sums, 0, sizeof *sums);
     for (int32_t n = task->begin; kept && n < task->end; n++) {
         const real *node = brunt_fem_node(fem, n);
@@ -77,7 +74,7 @@ static void book_nodes(const job *j, const brunt_fem_task *task, brunt_damping_s
         for (int a = 0; a < 3; a++) {
             const double v = (double)node[BRUNT_FEM_V + a], old = (double)kept[4 * (size_t)n + (size_t)a];
             J[a] = (double)node[BRUNT_FEM_MASS] * ((v - old) - fem->drag_mass * (v - left * old));
-            sums->work += 0.5 * J[a] * (old + v);
+            sums->loss -= 0.5 * J[a] * (old + v);
             sums->impulse[a] += J[a];
         }
         for (int a = 0; a < 3; a++) {
@@ -90,34 +87,31 @@ static void book_nodes(const job *j, const brunt_fem_task *task, brunt_damping_s
 static void drag_tasks(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     const job *j = context;
-    for (int64_t t = begin; t < end; t++) drag_nodes(j, &j->world->bodies.tasks.node[t]);
+    for (int64_t t = begin; t < end; t++) drag_nodes(j, &j->bodies->tasks.node[t]);
 }
 
 static void book_tasks(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     const job *j = context;
-    for (int64_t t = begin; t < end; t++)
-        book_nodes(j, &j->world->bodies.tasks.node[t], &j->world->boundaries.damping.sums[t]);
+    for (int64_t t = begin; t < end; t++) book_nodes(j, &j->bodies->tasks.node[t], &j->damping->sums[t]);
 }
 
-void brunt_damping_begin(brunt_world *world, const double gravity[3], double dt) {
-    job j = {world, dt, gravity};
-    for (int k = 0; k < world->bodies.fem_count; k++) {
-        brunt_fem_body *fem = &world->bodies.fem[k];
-        if (world->boundaries.damping.drag[k]) fem->drag_mass = fem->damping * dt / -expm1(-fem->damping * dt);
+void brunt_damping_begin(const brunt_damping *damping, const brunt_bodies *bodies, const brunt_kick *kick) {
+    job j = {damping, bodies, kick};
+    for (int k = 0; k < bodies->fem_count; k++) {
+        brunt_fem_body *fem = &bodies->fem[k];
+        if (damping->drag[k]) fem->drag_mass = fem->damping * kick->dt / -expm1(-fem->damping * kick->dt);
     }
-    brunt_parallel(world->settings.threads, world->bodies.tasks.node_count, 1, drag_tasks, &j,
-                   &world->pass[BRUNT_PASS_kick].threads);
+    brunt_parallel(kick->threads, bodies->tasks.node_count, 1, drag_tasks, &j, kick->timer);
 }
 
-void brunt_damping_end(brunt_world *world, double dt) {
-    job j = {.world = world, .dt = dt};
-    brunt_parallel(world->settings.threads, world->bodies.tasks.node_count, 1, book_tasks, &j,
-                   &world->pass[BRUNT_PASS_kick].threads);
-    for (int64_t t = 0; t < world->bodies.tasks.node_count; t++) {
-        const brunt_damping_sums *s = &world->boundaries.damping.sums[t];
-        world->ledger.damped -= s->work;
-        for (int a = 0; a < 3; a++)
-            world->ledger.damping_impulse[a] += s->impulse[a], world->ledger.damping_angular[a] += s->angular[a];
+void brunt_damping_end(const brunt_damping *damping, const brunt_bodies *bodies, const brunt_kick *kick,
+                       brunt_damping_sums *done) {
+    job j = {damping, bodies, kick};
+    brunt_parallel(kick->threads, bodies->tasks.node_count, 1, book_tasks, &j, kick->timer);
+    for (int64_t t = 0; t < bodies->tasks.node_count; t++) {
+        const brunt_damping_sums *s = &damping->sums[t];
+        done->loss += s->loss;
+        for (int a = 0; a < 3; a++) done->impulse[a] += s->impulse[a], done->angular[a] += s->angular[a];
     }
 }

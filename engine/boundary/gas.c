@@ -11,7 +11,9 @@
 
 #include "base/error.h"
 #include "base/memory.h"
-#include "world/world.h"
+#include "base/saved.h"
+#include "boundary/curve.h"
+#include "boundary/gas.h"
 
 static int corners_of(const int32_t node[4]) { return node[3] < 0 ? 3 : 4; }
 
@@ -24,13 +26,13 @@ static double triple(const double a[3], const double b[3], const double c[3]) {
     return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
 }
 
-double brunt_gas_volume(const brunt_world *world, const brunt_node_set *hold, const brunt_group_def *def) {
-    const brunt_fem_body *fem = &world->bodies.fem[hold->fem];
+double brunt_gas_volume(const brunt_node_set *set) {
+    const brunt_fem_body *fem = set->fem;
     double volume = 0;
-    for (int32_t f = 0; f < hold->face_count; f++) {
+    for (int32_t f = 0; f < set->face_count; f++) {
         double x[4][3];
-        const int n = corners_of(hold->face[f]);
-        places(fem, hold->face[f], x);
+        const int n = corners_of(set->face[f]);
+        places(fem, set->face[f], x);
         if (n == 3)
             volume += triple(x[0], x[1], x[2]) / 6;
         else // the mean of the two ways to cut a quadrilateral is its bilinear surface
@@ -38,7 +40,7 @@ double brunt_gas_volume(const brunt_world *world, const brunt_node_set *hold, co
                        triple(x[1], x[2], x[3])) /
                       12;
     }
-    return volume + def->gas.volume;
+    return volume + set->def.gas.volume;
 }
 
 typedef struct edge {
@@ -61,14 +63,15 @@ static bool on_plane_of_symmetry(const brunt_fem_body *fem, const edge *e) {
 
 // An edge that an odd number of the faces has, and that is on no plane of symmetry through the origin: 1 and its
 // middle, 0 when there is none, -1: out of memory.
-static int find_opening(const brunt_fem_body *fem, const brunt_node_set *hold, double at[3]) {
-    edge *edges = brunt_alloc(((size_t)hold->face_count * 4 + 1) * sizeof *edges);
+static int find_opening(const brunt_node_set *set, double at[3]) {
+    const brunt_fem_body *fem = set->fem;
+    edge *edges = brunt_alloc(((size_t)set->face_count * 4 + 1) * sizeof *edges);
     size_t count = 0;
     if (!edges) return -1;
-    for (int32_t f = 0; f < hold->face_count; f++) {
-        const int n = corners_of(hold->face[f]);
+    for (int32_t f = 0; f < set->face_count; f++) {
+        const int n = corners_of(set->face[f]);
         for (int c = 0; c < n; c++) {
-            const int32_t p = hold->face[f][c], q = hold->face[f][(c + 1) % n];
+            const int32_t p = set->face[f][c], q = set->face[f][(c + 1) % n];
             edges[count++] = (edge){p < q ? p : q, p < q ? q : p};
         }
     }
@@ -84,16 +87,16 @@ static int find_opening(const brunt_fem_body *fem, const brunt_node_set *hold, d
     return open;
 }
 
-int brunt_gas_start(brunt_world *world, brunt_node_set *hold, const brunt_group_def *def, brunt_error *error) {
-    const char *name = world->boundaries.walls[hold->wall].name;
-    const brunt_gas_def *gas = &def->gas;
-    if (world->settings.dimension != 3)
+int brunt_gas_start(brunt_node_set *set, brunt_error *error) {
+    const char *name = set->wall->name;
+    const brunt_gas_def *gas = &set->def.gas;
+    if (set->fem->dim != 3)
         return brunt_fail(error, BRUNT_BAD_INPUT, "boundaries (%s).gas: enclosed gas is for three dimensions", name);
     if (!(gas->gamma > 1) || !(gas->pressure >= 0) || !(gas->outside >= 0) || !(gas->volume >= 0))
         return brunt_fail(error, BRUNT_BAD_INPUT,
                           "boundaries (%s).gas: gamma > 1 and pressures and volume >= 0 are wanted", name);
     double at[3];
-    int open = find_opening(&world->bodies.fem[hold->fem], hold, at);
+    int open = find_opening(set, at);
     if (open < 0) return brunt_fail(error, BRUNT_FAILED, "out of memory");
     if (open)
         return brunt_fail(
@@ -101,77 +104,71 @@ int brunt_gas_start(brunt_world *world, brunt_node_set *hold, const brunt_group_
             "boundaries (%s).gas: the faces are open at (%.4g, %.4g, %.4g) m: they must close, by themselves "
             "or with planes of symmetry x = 0, y = 0, z = 0",
             name, at[0], at[1], at[2]);
-    hold->gas_volume = brunt_gas_volume(world, hold, def);
-    hold->gas_energy = gas->pressure * hold->gas_volume / (gas->gamma - 1);
-    world->boundaries.sets.has_gas = true;
-    if (hold->gas_volume > 0) return BRUNT_OK;
+    set->gas_volume = brunt_gas_volume(set);
+    set->gas_energy = gas->pressure * set->gas_volume / (gas->gamma - 1);
+    if (set->gas_volume > 0) return BRUNT_OK;
     return brunt_fail(
         error, BRUNT_BAD_INPUT,
         "boundaries (%s).gas: the faces enclose %.4g m^3: they must be turned outward and enclose some, or "
         "give gas.volume",
-        name, hold->gas_volume);
+        name, set->gas_volume);
 }
 
-double brunt_gas_push(brunt_world *world, brunt_node_set *hold, const brunt_group_def *def, double time, double dt) {
-    const double volume = brunt_gas_volume(world, hold, def), gamma = def->gas.gamma;
+double brunt_gas_push(brunt_node_set *set, double time, double dt) {
+    const brunt_group_def *def = &set->def;
+    const double volume = brunt_gas_volume(set), gamma = def->gas.gamma;
     if (!(volume > 0)) {
-        hold->gas_volume = volume;
-        world->boundaries.sets.gas_lost = hold;
+        set->gas_volume = volume;
         return 0;
     }
-    hold->gas_energy *= pow(hold->gas_volume / volume, gamma - 1);
-    hold->gas_volume = volume;
+    set->gas_energy *= pow(set->gas_volume / volume, gamma - 1);
+    set->gas_volume = volume;
     const double inflow = def->gas.inflow * brunt_curve_at(&def->table, time) * dt;
     // dt reaches from the middle of the last step to that of the next one: half of its inflow is there by now. With all
     // of it the work would be first order in the step.
-    const double energy = hold->gas_energy + 0.5 * inflow;
-    hold->gas_energy += inflow;
-    hold->gas_inflow += inflow;
+    const double energy = set->gas_energy + 0.5 * inflow;
+    set->gas_energy += inflow;
+    set->gas_inflow += inflow;
     return (gamma - 1) * energy / volume - def->gas.outside;
 }
 
 // ------------------------------------------------------------------------------------------ to be read, and kept
 
-static const brunt_node_set *gas_number(const brunt_world *world, int32_t index) {
-    for (int k = 0; k < world->boundaries.sets.count; k++)
-        if (world->boundaries.sets.def[k].action == BRUNT_GROUP_GAS && index-- == 0)
-            return &world->boundaries.sets.set[k];
+const brunt_node_set *brunt_gas_number(const brunt_node_sets *sets, int32_t index) {
+    for (int k = 0; k < sets->count; k++)
+        if (sets->set[k].def.action == BRUNT_GROUP_GAS && index-- == 0) return &sets->set[k];
     return NULL;
 }
 
-int32_t brunt_gas_count(const brunt_world *world) {
+int32_t brunt_gas_sets(const brunt_node_sets *sets) {
     int32_t count = 0;
-    while (world->boundaries.sets.has_gas && gas_number(world, count)) count++;
+    for (int k = 0; k < sets->count; k++) count += sets->set[k].def.action == BRUNT_GROUP_GAS;
     return count;
 }
 
-brunt_gas brunt_gas_now(const brunt_world *world, const brunt_node_set *hold, const brunt_group_def *def) {
-    brunt_gas gas = {.volume = brunt_gas_volume(world, hold, def), .inflow = hold->gas_inflow};
-    memcpy(gas.name, world->boundaries.walls[hold->wall].name, sizeof gas.name);
-    gas.energy = hold->gas_energy * pow(hold->gas_volume / gas.volume, def->gas.gamma - 1);
-    gas.pressure = (def->gas.gamma - 1) * gas.energy / gas.volume;
+brunt_gas brunt_gas_now(const brunt_node_set *set) {
+    const double gamma = set->def.gas.gamma;
+    brunt_gas gas = {.volume = brunt_gas_volume(set), .inflow = set->gas_inflow};
+    memcpy(gas.name, set->wall->name, sizeof gas.name);
+    gas.energy = set->gas_energy * pow(set->gas_volume / gas.volume, gamma - 1);
+    gas.pressure = (gamma - 1) * gas.energy / gas.volume;
     return gas;
 }
 
-void brunt_world_gas(const brunt_world *world, int32_t index, brunt_gas *gas) {
-    const brunt_node_set *hold = gas_number(world, index);
-    *gas = brunt_gas_now(world, hold, &world->boundaries.sets.def[hold - world->boundaries.sets.set]);
+#define SET(member) BRUNT_SAVED(brunt_node_set, member)
+static const brunt_saved saved[] = {SET(gas_energy), SET(gas_volume), SET(gas_inflow)};
+enum { ROWS = BRUNT_SAVED_ROWS(saved) };
+
+int64_t brunt_gas_state_count(const brunt_node_sets *sets) {
+    return brunt_gas_sets(sets) * brunt_saved_count(saved, ROWS);
 }
 
-int64_t brunt_gas_state_count(const brunt_world *world) { return 3 * (int64_t)brunt_gas_count(world); }
-
-void brunt_gas_state_get(const brunt_world *world, double *out) {
-    for (int k = 0; k < world->boundaries.sets.count; k++) {
-        const brunt_node_set *hold = &world->boundaries.sets.set[k];
-        if (world->boundaries.sets.def[k].action != BRUNT_GROUP_GAS) continue;
-        *out++ = hold->gas_energy, *out++ = hold->gas_volume, *out++ = hold->gas_inflow;
-    }
+void brunt_gas_state_get(const brunt_node_sets *sets, double *out) {
+    for (int k = 0; k < sets->count; k++)
+        if (sets->set[k].def.action == BRUNT_GROUP_GAS) out = brunt_saved_get(saved, ROWS, &sets->set[k], out);
 }
 
-void brunt_gas_state_set(brunt_world *world, const double *in) {
-    for (int k = 0; k < world->boundaries.sets.count; k++) {
-        brunt_node_set *hold = &world->boundaries.sets.set[k];
-        if (world->boundaries.sets.def[k].action != BRUNT_GROUP_GAS) continue;
-        hold->gas_energy = *in++, hold->gas_volume = *in++, hold->gas_inflow = *in++;
-    }
+void brunt_gas_state_set(brunt_node_sets *sets, const double *in) {
+    for (int k = 0; k < sets->count; k++)
+        if (sets->set[k].def.action == BRUNT_GROUP_GAS) in = brunt_saved_set(saved, ROWS, &sets->set[k], in);
 }

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/error.h"
-#include "world/world.h"
+#include "boundary/ignition.h"
 
 static bool lights(const brunt_detonation_def *d, const char *body) { return !d->body[0] || !strcmp(d->body, body); }
 
@@ -82,16 +82,16 @@ static double detonation_speed(const brunt_world_def *def, const char *body) {
 }
 
 // A detonator lights something, somewhere, at some time.
-static int check(const brunt_world *world, const brunt_detonation_def *d, int index, brunt_error *error) {
+static int check(const brunt_bodies *bodies, const brunt_detonation_def *d, int index, brunt_error *error) {
     bool finite = isfinite(d->time), something = false, known = !d->body[0];
     for (int a = 0; a < 3; a++) finite = finite && isfinite(d->point[a]) && isfinite(d->normal[a]);
     if (!finite)
         return brunt_fail(error, BRUNT_BAD_INPUT, "detonations[%d]: point, normal or time is not a finite number",
                           index);
-    for (int i = 0; i < world->bodies.count; i++) {
-        if (!lights(d, brunt_body_name(world, i))) continue;
+    for (int i = 0; i < bodies->count; i++) {
+        if (!lights(d, brunt_bodies_name(bodies, i))) continue;
         known = true;
-        something = something || burns(&world->bodies.all[i]);
+        something = something || burns(&bodies->all[i]);
     }
     if (!known)
         return brunt_fail(error, BRUNT_BAD_INPUT, "detonations[%d].body: there is no body '%s'", index, d->body);
@@ -102,40 +102,41 @@ static int check(const brunt_world *world, const brunt_detonation_def *d, int in
 }
 
 // What is odd about an explosive that first burns at `first` [s].
-static void warn(brunt_world *world, const brunt_world_def *def, const brunt_body_ref *ref, const char *name,
+static void warn(brunt_messages *messages, const brunt_world_def *def, const brunt_body_ref *ref, const char *name,
                  double speed, double first) {
     double earliest = INFINITY;
     for (int32_t k = 0; k < def->detonation_count; k++)
         if (lights(&def->detonations[k], name)) earliest = fmin(earliest, def->detonations[k].time);
     if (!(earliest < INFINITY)) {
-        brunt_warn(world, "bodies.%s: this explosive is never lit, no detonation reaches it", name);
+        brunt_warn(messages, "bodies.%s: this explosive is never lit, no detonation reaches it", name);
         return;
     }
     const double gap = (first - earliest) * speed, near = ref->mpm ? ref->mpm->spacing : ref->fem->mean_edge;
     if (gap > 2 * near)
-        brunt_warn(world,
+        brunt_warn(messages,
                    "bodies.%s: the first detonation is %.3g m outside of this explosive, its front runs through "
                    "what is between as through explosive",
                    name, gap);
     const brunt_material *material = ref->mpm ? &ref->mpm->material : &ref->fem->material;
     if (!material->model[BRUNT_VISCOSITY])
-        brunt_warn(world,
+        brunt_warn(messages,
                    "bodies.%s: an explosive without bulk viscosity rings behind its front (materials: viscosity: {})",
                    name);
 }
 
-int brunt_detonation_make(brunt_world *world, const brunt_world_def *def, brunt_error *error) {
+int brunt_ignition_make(const brunt_bodies *bodies, const brunt_world_def *def, brunt_messages *messages,
+                        brunt_error *error) {
     for (int32_t k = 0; k < def->detonation_count; k++) {
-        int status = check(world, &def->detonations[k], k, error);
+        int status = check(bodies, &def->detonations[k], k, error);
         if (status) return status;
     }
-    for (int i = 0; i < world->bodies.count; i++) {
-        const brunt_body_ref *ref = &world->bodies.all[i];
+    for (int i = 0; i < bodies->count; i++) {
+        const brunt_body_ref *ref = &bodies->all[i];
         if (!burns(ref)) continue;
-        const char *name = brunt_body_name(world, i);
+        const char *name = brunt_bodies_name(bodies, i);
         const double speed = detonation_speed(def, name);
         const double first = ref->mpm ? light_particles(def, ref->mpm, speed) : light_elements(def, ref->fem, speed);
-        warn(world, def, ref, name, speed, first);
+        warn(messages, def, ref, name, speed, first);
     }
     return BRUNT_OK;
 }

@@ -16,30 +16,29 @@
 
 #include "base/error.h"
 #include "base/memory.h"
-#include "world/world.h"
+#include "boundary/curve.h"
+#include "boundary/gas.h"
+#include "boundary/load_step.h"
 
 static bool follows(const brunt_group_def *group) {
     return group->action == BRUNT_GROUP_GAS || group->action == BRUNT_GROUP_PRESSURE;
 }
 
-int brunt_load_step_make(brunt_world *world, brunt_error *error) {
-    world->boundaries.load_rate =
-        brunt_alloc((size_t)(world->bodies.fem_count + 1) * sizeof *world->boundaries.load_rate);
-    if (!world->boundaries.load_rate) return brunt_fail(error, BRUNT_FAILED, "out of memory");
-    for (int k = 0; k < world->boundaries.sets.count; k++) {
-        const int fem = world->boundaries.sets.set[k].fem;
-        if (!follows(&world->boundaries.sets.def[k]) || world->boundaries.load_rate[fem]) continue;
-        world->boundaries.load_rate[fem] =
-            brunt_alloc((size_t)(world->bodies.fem[fem].node_count + 1) * sizeof **world->boundaries.load_rate);
-        if (!world->boundaries.load_rate[fem]) return brunt_fail(error, BRUNT_FAILED, "out of memory");
+int brunt_load_step_make(brunt_node_sets *sets, brunt_error *error) {
+    sets->load_rate = brunt_alloc((size_t)(sets->fem_count + 1) * sizeof *sets->load_rate);
+    if (!sets->load_rate) return brunt_fail(error, BRUNT_FAILED, "out of memory");
+    for (int k = 0; k < sets->count; k++) {
+        double **rate = &sets->load_rate[sets->set[k].fem_index];
+        if (!follows(&sets->set[k].def) || *rate) continue;
+        *rate = brunt_alloc((size_t)(sets->set[k].fem->node_count + 1) * sizeof **rate);
+        if (!*rate) return brunt_fail(error, BRUNT_FAILED, "out of memory");
     }
     return BRUNT_OK;
 }
 
-void brunt_load_step_free(brunt_world *world) {
-    for (int k = 0; world->boundaries.load_rate && k < world->bodies.fem_count; k++)
-        brunt_free(world->boundaries.load_rate[k]);
-    brunt_free(world->boundaries.load_rate);
+void brunt_load_step_free(brunt_node_sets *sets) {
+    for (int k = 0; sets->load_rate && k < sets->fem_count; k++) brunt_free(sets->load_rate[k]);
+    brunt_free(sets->load_rate);
 }
 
 static double length2(const double a[3]) { return a[0] * a[0] + a[1] * a[1] + a[2] * a[2]; }
@@ -63,54 +62,57 @@ static double face_stiffness(const double (*x)[3], int corners, bool ring) {
 
 // sum_i |a_i|^2 / m_i of the components that are free. `area` has room for the group's nodes and is 0, and so it is
 // left.
-static double mobility(const brunt_fem_body *fem, const brunt_node_set *hold, double *area) {
+static double mobility(const brunt_node_set *set) {
+    const brunt_fem_body *fem = set->fem;
+    double *area = set->area;
     double sum = 0;
-    for (int32_t i = 0; i < hold->node_count; i++) {
-        const int32_t n = hold->node[i];
+    for (int32_t i = 0; i < set->node_count; i++) {
+        const int32_t n = set->node[i];
         for (int a = 0; a < 3; a++) {
             const bool free = !fem->held || !(fem->held[n] >> a & 1);
             if (free) sum += area[3 * i + a] * area[3 * i + a] / (double)brunt_fem_node(fem, n)[BRUNT_FEM_MASS];
         }
     }
-    memset(area, 0, (size_t)hold->node_count * 3 * sizeof *area);
+    memset(area, 0, (size_t)set->node_count * 3 * sizeof *area);
     return sum;
 }
 
 // Adds the faces' k_f to the nodes; of gas, gives the eigenvalue of the first part.
-static double look_at_faces(const brunt_world *world, const brunt_node_set *hold, const brunt_group_def *def) {
-    const brunt_fem_body *fem = &world->bodies.fem[hold->fem];
+static double look_at_faces(const brunt_node_set *set, double time, double *rate) {
+    const brunt_fem_body *fem = set->fem;
+    const brunt_group_def *def = &set->def;
     brunt_gas gas = {.pressure = 0};
-    double push = fabs(def->value[0] * brunt_curve_at(&def->table, world->clock.time));
+    double push = fabs(def->value[0] * brunt_curve_at(&def->table, time));
     if (def->action == BRUNT_GROUP_GAS) {
-        gas = brunt_gas_now(world, hold, def);
+        gas = brunt_gas_now(set);
         push = fabs(gas.pressure - def->gas.outside);
     }
-    for (int32_t f = 0; f < hold->face_count; f++) {
-        const int32_t *node = hold->face[f];
+    for (int32_t f = 0; f < set->face_count; f++) {
+        const int32_t *node = set->face[f];
         const int corners = node[2] < 0 ? 2 : node[3] < 0 ? 3 : 4;
         double x[4][3], shares[4][3];
         for (int c = 0; c < corners; c++)
             for (int a = 0; a < 3; a++) x[c][a] = (double)brunt_fem_node(fem, node[c])[a];
-        const double stiffness = push * face_stiffness((const double(*)[3])x, corners, world->settings.axisymmetric);
-        for (int c = 0; c < corners; c++) world->boundaries.load_rate[hold->fem][node[c]] += stiffness;
+        const double stiffness = push * face_stiffness((const double(*)[3])x, corners, fem->element->axisymmetric);
+        for (int c = 0; c < corners; c++) rate[node[c]] += stiffness;
         if (def->action != BRUNT_GROUP_GAS) continue;
         brunt_face_shares((const double(*)[3])x, corners, shares);
         for (int c = 0; c < corners; c++)
-            for (int a = 0; a < 3; a++) hold->area[3 * (hold->place[node[c]] - 1) + a] += shares[c][a];
+            for (int a = 0; a < 3; a++) set->area[3 * (set->place[node[c]] - 1) + a] += shares[c][a];
     }
     if (def->action != BRUNT_GROUP_GAS || !(gas.volume > 0)) return 0;
-    return def->gas.gamma * gas.pressure / gas.volume * mobility(fem, hold, hold->area);
+    return def->gas.gamma * gas.pressure / gas.volume * mobility(set);
 }
 
-double brunt_load_frequency(const brunt_world *world, int fem) {
-    if (!world->boundaries.load_rate || !world->boundaries.load_rate[fem]) return 0;
-    const brunt_fem_body *body = &world->bodies.fem[fem];
-    double *rate = world->boundaries.load_rate[fem], greatest = 0, gas = 0;
-    const uint8_t all = (uint8_t)((1 << world->settings.dimension) - 1);
+double brunt_load_frequency(const brunt_node_sets *sets, const brunt_bodies *bodies, int fem, double time) {
+    if (!sets->load_rate || !sets->load_rate[fem]) return 0;
+    const brunt_fem_body *body = &bodies->fem[fem];
+    double *rate = sets->load_rate[fem], greatest = 0, gas = 0;
+    const uint8_t all = (uint8_t)((1 << body->dim) - 1);
     memset(rate, 0, (size_t)body->node_count * sizeof *rate);
-    for (int k = 0; k < world->boundaries.sets.count; k++)
-        if (world->boundaries.sets.set[k].fem == fem && follows(&world->boundaries.sets.def[k]))
-            gas += look_at_faces(world, &world->boundaries.sets.set[k], &world->boundaries.sets.def[k]);
+    for (int k = 0; k < sets->count; k++)
+        if (sets->set[k].fem_index == fem && follows(&sets->set[k].def))
+            gas += look_at_faces(&sets->set[k], time, rate);
     for (int32_t n = 0; n < body->node_count; n++)
         if (!body->held || (body->held[n] & all) != all)
             greatest = fmax(greatest, rate[n] / (double)brunt_fem_node(body, n)[BRUNT_FEM_MASS]);

@@ -5,17 +5,9 @@
 
 #include "base/error.h"
 #include "base/memory.h"
-#include "world/world.h"
-
-double brunt_curve_at(const brunt_curve *curve, double time) {
-    if (!curve->count) return 1;
-    const double(*p)[2] = (const double(*)[2])curve->points;
-    if (time <= p[0][0]) return p[0][1];
-    for (int32_t k = 1; k < curve->count; k++)
-        if (time < p[k][0])
-            return p[k - 1][1] + (p[k][1] - p[k - 1][1]) * (time - p[k - 1][0]) / (p[k][0] - p[k - 1][0]);
-    return p[curve->count - 1][1];
-}
+#include "boundary/curve.h"
+#include "boundary/gas.h"
+#include "boundary/node_sets.h"
 
 static bool moves(const brunt_group_def *group) {
     return group->action == BRUNT_GROUP_VELOCITY || group->action == BRUNT_GROUP_DISPLACEMENT;
@@ -31,147 +23,176 @@ static void list_groups(const brunt_fem_body *fem, char *out, size_t size) {
     if (!fem->group_count) snprintf(out, size, "none");
 }
 
-// The faces whose nodes are all in the group.
-static int take_faces(brunt_world *world, brunt_node_set *hold, const char *name) {
-    const brunt_fem_body *fem = &world->bodies.fem[hold->fem];
-    brunt_faces faces;
-    if (brunt_fem_faces(fem, &faces)) return brunt_fail(NULL, BRUNT_FAILED, "out of memory");
-    hold->place = brunt_alloc((size_t)(fem->node_count + 1) * sizeof *hold->place);
-    hold->force = brunt_alloc((size_t)(hold->node_count + 1) * 3 * sizeof *hold->force);
-    hold->face = brunt_alloc((size_t)(faces.count + 1) * sizeof *hold->face);
-    int status = hold->place && hold->force && hold->face ? BRUNT_OK : BRUNT_FAILED;
-    if (world->boundaries.sets.def[hold - world->boundaries.sets.set].action == BRUNT_GROUP_GAS) {
-        hold->area = brunt_alloc((size_t)(hold->node_count + 1) * 3 * sizeof *hold->area);
-        status = hold->area ? status : BRUNT_FAILED;
+static int out_of_memory(brunt_error *error) { return brunt_fail(error, BRUNT_FAILED, "out of memory"); }
+
+// Room for the faces, and for what acts on their nodes.
+static int make_room(brunt_node_set *set, int32_t faces) {
+    set->place = brunt_alloc((size_t)(set->fem->node_count + 1) * sizeof *set->place);
+    set->force = brunt_alloc((size_t)(set->node_count + 1) * 3 * sizeof *set->force);
+    set->face = brunt_alloc((size_t)(faces + 1) * sizeof *set->face);
+    bool made = set->place && set->force && set->face;
+    if (set->def.action == BRUNT_GROUP_GAS) {
+        set->area = brunt_alloc((size_t)(set->node_count + 1) * 3 * sizeof *set->area);
+        made = made && set->area;
     }
-    if (fem->bonds) {
-        hold->whole = brunt_alloc((size_t)(faces.count + 1) * sizeof *hold->whole);
-        hold->owner = brunt_alloc((size_t)(faces.count + 1) * sizeof *hold->owner);
-        status = hold->whole && hold->owner ? status : BRUNT_FAILED;
+    if (set->fem->bonds) {
+        set->whole = brunt_alloc((size_t)(faces + 1) * sizeof *set->whole);
+        set->owner = brunt_alloc((size_t)(faces + 1) * sizeof *set->owner);
+        made = made && set->whole && set->owner;
     }
-    for (int32_t i = 0; !status && i < hold->node_count; i++) hold->place[hold->node[i]] = i + 1;
-    for (int32_t f = 0; !status && f < faces.count; f++) {
-        bool all = true;
-        for (int c = 0; c < 4; c++) all = all && (faces.node[f][c] < 0 || hold->place[faces.node[f][c]]);
-        if (!all) continue;
-        memcpy(hold->face[hold->face_count++], faces.node[f], sizeof *hold->face);
-        if (!hold->whole) continue;
-        memcpy(hold->whole[hold->whole_count], faces.node[f], sizeof *hold->face);
-        hold->owner[hold->whole_count++] = fem->element_id[faces.element[f]];
-    }
-    brunt_faces_free(&faces);
-    if (!status && !hold->face_count)
-        brunt_warn(world, "boundaries (%s): no face of the body has all its nodes in the group: nothing is loaded",
-                   name);
-    return status;
+    return made ? BRUNT_OK : BRUNT_FAILED;
 }
 
-const brunt_node_set *brunt_node_sets_follow(brunt_world *world, int fem, int32_t *element) {
+// The faces whose nodes are all in the group.
+static int take_faces(brunt_node_set *set, brunt_messages *messages, brunt_error *error) {
+    const brunt_fem_body *fem = set->fem;
+    brunt_faces faces;
+    if (brunt_fem_faces(fem, &faces)) return out_of_memory(error);
+    const int status = make_room(set, faces.count);
+    for (int32_t i = 0; !status && i < set->node_count; i++) set->place[set->node[i]] = i + 1;
+    for (int32_t f = 0; !status && f < faces.count; f++) {
+        bool all = true;
+        for (int c = 0; c < 4; c++) all = all && (faces.node[f][c] < 0 || set->place[faces.node[f][c]]);
+        if (!all) continue;
+        memcpy(set->face[set->face_count++], faces.node[f], sizeof *set->face);
+        if (!set->whole) continue;
+        memcpy(set->whole[set->whole_count], faces.node[f], sizeof *set->face);
+        set->owner[set->whole_count++] = fem->element_id[faces.element[f]];
+    }
+    brunt_faces_free(&faces);
+    if (status) return out_of_memory(error);
+    if (!set->face_count)
+        brunt_warn(messages, "boundaries (%s): no face of the body has all its nodes in the group: nothing is loaded",
+                   set->wall->name);
+    return BRUNT_OK;
+}
+
+const brunt_node_set *brunt_node_sets_follow(brunt_node_sets *sets, brunt_fem_body *fem, int32_t *element) {
     const brunt_node_set *opened = NULL;
-    for (int k = 0; k < world->boundaries.sets.count; k++) {
-        brunt_node_set *hold = &world->boundaries.sets.set[k];
-        if (hold->fem != fem || !hold->whole_count) continue;
-        brunt_fem_ranks(&world->bodies.fem[fem]);
-        hold->face_count = 0;
-        for (int32_t f = 0; f < hold->whole_count; f++) {
-            if (world->bodies.fem[fem].rank[hold->owner[f]] >= 0)
-                memcpy(hold->face[hold->face_count++], hold->whole[f], sizeof *hold->face);
-            else if (world->boundaries.sets.def[k].action == BRUNT_GROUP_GAS && !opened)
-                opened = hold, *element = hold->owner[f];
+    for (int k = 0; k < sets->count; k++) {
+        brunt_node_set *set = &sets->set[k];
+        if (set->fem != fem || !set->whole_count) continue;
+        brunt_fem_ranks(fem);
+        set->face_count = 0;
+        for (int32_t f = 0; f < set->whole_count; f++) {
+            if (fem->rank[set->owner[f]] >= 0)
+                memcpy(set->face[set->face_count++], set->whole[f], sizeof *set->face);
+            else if (set->def.action == BRUNT_GROUP_GAS && !opened)
+                opened = set, *element = set->owner[f];
         }
     }
     return opened;
 }
 
-static int make_hold(brunt_world *world, int index, brunt_error *error) {
-    brunt_node_set *hold = &world->boundaries.sets.set[index];
-    const brunt_group_def *def = &world->boundaries.sets.def[index];
-    brunt_wall *wall = &world->boundaries.walls[hold->wall];
-    hold->fem = -1;
-    for (int k = 0; k < world->bodies.fem_count; k++)
-        if (!strcmp(world->bodies.fem[k].name, def->body)) hold->fem = k;
-    if (hold->fem < 0)
+static int make_load(brunt_node_set *set, brunt_messages *messages, brunt_error *error) {
+    brunt_fem_body *fem = set->fem;
+    if (!fem->load && !(fem->load = brunt_alloc((size_t)(fem->node_count + 1) * 4 * sizeof(real))))
+        return out_of_memory(error);
+    int status = take_faces(set, messages, error);
+    if (status) return status;
+    return set->def.action == BRUNT_GROUP_GAS ? brunt_gas_start(set, error) : BRUNT_OK;
+}
+
+// Marks the components that a set prescribes: the first that does has them.
+static int make_prescribed(brunt_node_sets *sets, int index, brunt_error *error) {
+    const brunt_node_set *set = &sets->set[index];
+    brunt_fem_body *fem = set->fem;
+    if (!fem->held && !(fem->held = brunt_alloc((size_t)fem->node_count + 1))) return out_of_memory(error);
+    uint8_t(**holder)[3] = &sets->holder[set->fem_index];
+    if (!*holder && !(*holder = brunt_alloc(((size_t)fem->node_count + 1) * sizeof **holder)))
+        return out_of_memory(error);
+    for (int32_t i = 0; i < set->node_count; i++)
+        for (int a = 0; a < fem->dim; a++) {
+            if (!set->def.component[a] || (*holder)[set->node[i]][a]) continue;
+            fem->held[set->node[i]] |= (uint8_t)(1 << a);
+            (*holder)[set->node[i]][a] = (uint8_t)(index + 1);
+        }
+    return BRUNT_OK;
+}
+
+// The body and the group of its mesh that a set is of.
+static int find_nodes(brunt_node_set *set, const brunt_bodies *bodies, brunt_error *error) {
+    const brunt_group_def *def = &set->def;
+    for (int k = 0; k < bodies->fem_count; k++)
+        if (!strcmp(bodies->fem[k].name, def->body)) set->fem = &bodies->fem[k], set->fem_index = k;
+    if (!set->fem)
         return brunt_fail(error, BRUNT_BAD_INPUT, "boundaries (%s).body: there is no finite-element body '%s'",
-                          wall->name, def->body);
-    brunt_fem_body *fem = &world->bodies.fem[hold->fem];
-    wall->body = fem->index;
+                          set->wall->name, def->body);
+    const brunt_fem_body *fem = set->fem;
+    set->wall->body = fem->index;
     const brunt_group *group = NULL;
     for (int32_t g = 0; g < fem->group_count; g++)
         if (!strcmp(fem->groups[g].name, def->group)) group = &fem->groups[g];
-    if (!group) {
-        char names[600];
-        list_groups(fem, names, sizeof names);
-        return brunt_fail(error, BRUNT_BAD_INPUT, "boundaries (%s).group: body '%s' has no group '%s'; it has: %s",
-                          wall->name, def->body, def->group, names);
+    if (group) {
+        set->node = group->nodes, set->node_count = group->count;
+        return BRUNT_OK;
     }
-    for (int32_t k = 1; k < def->table.count; k++)
-        if (!(def->table.points[k][0] > def->table.points[k - 1][0]))
-            return brunt_fail(error, BRUNT_BAD_INPUT, "boundaries (%s).table: times must grow from point to point",
-                              wall->name);
-    hold->node = group->nodes, hold->node_count = group->count;
-    if (!moves(def)) {
-        if (!fem->load && !(fem->load = brunt_alloc((size_t)(fem->node_count + 1) * 4 * sizeof(real))))
-            return brunt_fail(error, BRUNT_FAILED, "out of memory");
-        if (take_faces(world, hold, wall->name)) return brunt_fail(error, BRUNT_FAILED, "out of memory");
-        return def->action == BRUNT_GROUP_GAS ? brunt_gas_start(world, hold, def, error) : BRUNT_OK;
-    }
-    if (!fem->held && !(fem->held = brunt_alloc((size_t)fem->node_count + 1)))
-        return brunt_fail(error, BRUNT_FAILED, "out of memory");
-    if (!world->boundaries.sets.holder[hold->fem] &&
-        !(world->boundaries.sets.holder[hold->fem] =
-              brunt_alloc(((size_t)fem->node_count + 1) * sizeof **world->boundaries.sets.holder)))
-        return brunt_fail(error, BRUNT_FAILED, "out of memory");
-    for (int32_t i = 0; i < hold->node_count; i++)
-        for (int a = 0; a < world->settings.dimension; a++) {
-            if (!def->component[a] || world->boundaries.sets.holder[hold->fem][hold->node[i]][a]) continue;
-            fem->held[hold->node[i]] |= (uint8_t)(1 << a);
-            world->boundaries.sets.holder[hold->fem][hold->node[i]][a] = (uint8_t)(index + 1);
-        }
-    return BRUNT_OK;
+    char names[600];
+    list_groups(fem, names, sizeof names);
+    return brunt_fail(error, BRUNT_BAD_INPUT, "boundaries (%s).group: body '%s' has no group '%s'; it has: %s",
+                      set->wall->name, def->body, def->group, names);
 }
 
-int brunt_node_sets_make(brunt_world *world, const brunt_world_def *def, brunt_error *error) {
-    world->boundaries.sets.count = def->group_count;
+// A definition, with a curve of its own.
+static int copy_definition(brunt_group_def *copy, const brunt_group_def *def) {
+    *copy = *def;
+    copy->table.points = NULL;
+    if (!def->table.count) return 0;
+    const size_t bytes = (size_t)def->table.count * sizeof *def->table.points;
+    if (!(copy->table.points = brunt_alloc(bytes))) return -1;
+    memcpy(copy->table.points, def->table.points, bytes);
+    return 0;
+}
+
+int brunt_node_sets_make(brunt_node_sets *sets, const brunt_world_def *def, const brunt_bodies *bodies,
+                         brunt_wall *walls, brunt_messages *messages, brunt_error *error) {
     if (def->group_count > 255) return brunt_fail(error, BRUNT_BAD_INPUT, "boundaries: more than 255 groups");
-    world->boundaries.sets.set = brunt_alloc((size_t)(def->group_count + 1) * sizeof *world->boundaries.sets.set);
-    world->boundaries.sets.def = brunt_alloc((size_t)(def->group_count + 1) * sizeof *world->boundaries.sets.def);
-    world->boundaries.sets.holder =
-        brunt_alloc((size_t)(world->bodies.fem_count + 1) * sizeof *world->boundaries.sets.holder);
-    if (!world->boundaries.sets.set || !world->boundaries.sets.def || !world->boundaries.sets.holder)
-        return brunt_fail(error, BRUNT_FAILED, "out of memory");
-    for (int k = 0; k < def->group_count; k++) {
-        brunt_group_def *group = &world->boundaries.sets.def[k];
-        *group = def->groups[k];
-        group->table.points = NULL;
-        if (group->table.count) {
-            size_t bytes = (size_t)group->table.count * sizeof *group->table.points;
-            if (!(group->table.points = brunt_alloc(bytes))) return brunt_fail(error, BRUNT_FAILED, "out of memory");
-            memcpy(group->table.points, def->groups[k].table.points, bytes);
-        }
-        world->boundaries.sets.set[k].wall = world->boundaries.wall_count - def->group_count + k;
-        world->boundaries.walls[world->boundaries.sets.set[k].wall].group = group;
-        int status = make_hold(world, k, error);
+    sets->set = brunt_alloc((size_t)(def->group_count + 1) * sizeof *sets->set);
+    sets->holder = brunt_alloc((size_t)(bodies->fem_count + 1) * sizeof *sets->holder);
+    if (!sets->set || !sets->holder) return out_of_memory(error);
+    sets->count = def->group_count, sets->fem_count = bodies->fem_count;
+    for (int k = 0; k < sets->count; k++) {
+        brunt_node_set *set = &sets->set[k];
+        set->wall = &walls[k];
+        if (copy_definition(&set->def, &def->groups[k])) return out_of_memory(error);
+        set->wall->group = &set->def;
+        int status = find_nodes(set, bodies, error);
         if (status) return status;
+        for (int32_t i = 1; i < set->def.table.count; i++)
+            if (!(set->def.table.points[i][0] > set->def.table.points[i - 1][0]))
+                return brunt_fail(error, BRUNT_BAD_INPUT, "boundaries (%s).table: times must grow from point to point",
+                                  set->wall->name);
+        status = moves(&set->def) ? make_prescribed(sets, k, error) : make_load(set, messages, error);
+        if (status) return status;
+        sets->has_gas = sets->has_gas || set->def.action == BRUNT_GROUP_GAS;
     }
     return BRUNT_OK;
 }
 
-void brunt_node_sets_free(brunt_world *world) {
-    for (int k = 0; k < world->boundaries.sets.count && world->boundaries.sets.set; k++) {
-        brunt_free(world->boundaries.sets.set[k].face);
-        brunt_free(world->boundaries.sets.set[k].whole);
-        brunt_free(world->boundaries.sets.set[k].owner);
-        brunt_free(world->boundaries.sets.set[k].force);
-        brunt_free(world->boundaries.sets.set[k].place);
-        brunt_free(world->boundaries.sets.set[k].area);
+void brunt_node_sets_free(brunt_node_sets *sets) {
+    for (int k = 0; k < sets->count; k++) {
+        brunt_node_set *set = &sets->set[k];
+        brunt_free(set->face);
+        brunt_free(set->whole);
+        brunt_free(set->owner);
+        brunt_free(set->force);
+        brunt_free(set->place);
+        brunt_free(set->area);
+        brunt_free(set->def.table.points);
     }
-    for (int k = 0; k < world->boundaries.sets.count && world->boundaries.sets.def; k++)
-        brunt_free(world->boundaries.sets.def[k].table.points);
-    for (int k = 0; k < world->bodies.fem_count && world->boundaries.sets.holder; k++)
-        brunt_free(world->boundaries.sets.holder[k]);
-    brunt_free(world->boundaries.sets.set);
-    brunt_free(world->boundaries.sets.def);
-    brunt_free(world->boundaries.sets.holder);
+    for (int k = 0; k < sets->fem_count; k++) brunt_free(sets->holder[k]);
+    brunt_free(sets->set);
+    brunt_free(sets->holder);
+}
+
+void brunt_node_sets_validate(const brunt_node_sets *sets) {
+    for (int k = 0; k < sets->count; k++) {
+        const brunt_node_set *set = &sets->set[k];
+        BRUNT_ASSERT(set->fem && set->wall && set->wall->group == &set->def);
+        BRUNT_ASSERT(moves(&set->def) ? sets->holder[set->fem_index] && set->fem->held : set->force && set->fem->load);
+        BRUNT_ASSERT(set->face_count >= 0 && (!set->whole || set->face_count <= set->whole_count));
+        BRUNT_ASSERT(set->def.action != BRUNT_GROUP_GAS || set->gas_energy >= 0);
+    }
 }
 
 // ------------------------------------------------------------------------------------------ loads
@@ -229,44 +250,45 @@ static void ring_shares(const double (*x)[3], double (*share)[3]) {
     }
 }
 
-static void make_forces(brunt_world *world, brunt_node_set *hold, const brunt_group_def *def, double time, double dt) {
-    brunt_fem_body *fem = &world->bodies.fem[hold->fem];
+static void make_forces(brunt_node_set *set, double time, double dt) {
+    brunt_fem_body *fem = set->fem;
+    const brunt_group_def *def = &set->def;
+    const bool rings = fem->element->axisymmetric;
     const bool traction = def->action == BRUNT_GROUP_TRACTION;
-    double push = def->action == BRUNT_GROUP_GAS ? brunt_gas_push(world, hold, def, time, dt)
+    double push = def->action == BRUNT_GROUP_GAS ? brunt_gas_push(set, time, dt)
                                                  : -def->value[0] * brunt_curve_at(&def->table, time);
     double factor = traction ? brunt_curve_at(&def->table, time) : 0;
-    memset(hold->force, 0, (size_t)hold->node_count * 3 * sizeof *hold->force);
-    for (int32_t f = 0; f < hold->face_count; f++) {
-        const int32_t *node = hold->face[f];
+    memset(set->force, 0, (size_t)set->node_count * 3 * sizeof *set->force);
+    for (int32_t f = 0; f < set->face_count; f++) {
+        const int32_t *node = set->face[f];
         const int corners = node[2] < 0 ? 2 : node[3] < 0 ? 3 : 4;
         double x[4][3], shares[4][3];
         face_corners(fem, node, traction, x);
-        if (world->settings.axisymmetric)
+        if (rings)
             ring_shares((const double(*)[3])x, shares);
         else
             brunt_face_shares((const double(*)[3])x, corners, shares);
         for (int c = 0; c < corners; c++) {
             const double *share = shares[c];
-            double *force = hold->force + 3 * (hold->place[node[c]] - 1);
+            double *force = set->force + 3 * (set->place[node[c]] - 1);
             double size = sqrt(share[0] * share[0] + share[1] * share[1] + share[2] * share[2]);
-            for (int a = 0; a < world->settings.dimension; a++)
-                force[a] += traction ? factor * def->value[a] * size : push * share[a];
+            for (int a = 0; a < fem->dim; a++) force[a] += traction ? factor * def->value[a] * size : push * share[a];
         }
     }
-    for (int32_t i = 0; world->settings.axisymmetric && i < hold->node_count; i++)
-        if (fem->start[4 * (size_t)hold->node[i]] == 0) hold->force[3 * i] = 0; // the axis bears it
-    for (int32_t i = 0; i < hold->node_count; i++)
-        for (int a = 0; a < 3; a++) fem->load[4 * (size_t)hold->node[i] + (size_t)a] += (real)hold->force[3 * i + a];
+    for (int32_t i = 0; rings && i < set->node_count; i++)
+        if (fem->start[4 * (size_t)set->node[i]] == 0) set->force[3 * i] = 0; // the axis bears it
+    for (int32_t i = 0; i < set->node_count; i++)
+        for (int a = 0; a < 3; a++) fem->load[4 * (size_t)set->node[i] + (size_t)a] += (real)set->force[3 * i + a];
 }
 
 // Half of the work of the loads, at the velocities as they are; with `impulse`, that too.
-static void book_loads(brunt_world *world, const brunt_node_set *hold, double dt, bool impulse) {
-    const brunt_fem_body *fem = &world->bodies.fem[hold->fem];
-    brunt_impulse_account *last = &world->boundaries.walls[hold->wall].last;
+static void book_loads(const brunt_node_set *set, double dt, bool impulse) {
+    const brunt_fem_body *fem = set->fem;
+    brunt_impulse_account *last = &set->wall->last;
     double work = 0;
-    for (int32_t i = 0; i < hold->node_count; i++) {
-        const real *node = brunt_fem_node(fem, hold->node[i]);
-        const double *F = hold->force + 3 * i;
+    for (int32_t i = 0; i < set->node_count; i++) {
+        const real *node = brunt_fem_node(fem, set->node[i]);
+        const double *F = set->force + 3 * i;
         for (int a = 0; a < 3; a++) {
             int k = (a + 1) % 3, l = (a + 2) % 3;
             work += 0.5 * dt * F[a] * (double)node[BRUNT_FEM_V + a];
@@ -278,68 +300,73 @@ static void book_loads(brunt_world *world, const brunt_node_set *hold, double dt
     last->external_work += work;
 }
 
-void brunt_loads_begin(brunt_world *world, double time, double dt) {
-    for (int k = 0; k < world->bodies.fem_count; k++)
-        if (world->bodies.fem[k].load)
-            memset(world->bodies.fem[k].load, 0, (size_t)world->bodies.fem[k].node_count * 4 * sizeof(real));
-    for (int k = 0; k < world->boundaries.sets.count; k++) {
-        if (moves(&world->boundaries.sets.def[k])) continue;
-        make_forces(world, &world->boundaries.sets.set[k], &world->boundaries.sets.def[k], time, dt);
-        book_loads(world, &world->boundaries.sets.set[k], dt, true);
+void brunt_loads_begin(brunt_node_sets *sets, const brunt_bodies *bodies, double time, double dt) {
+    for (int k = 0; k < bodies->fem_count; k++) {
+        const brunt_fem_body *fem = &bodies->fem[k];
+        if (fem->load) memset(fem->load, 0, (size_t)fem->node_count * 4 * sizeof(real));
+    }
+    for (int k = 0; k < sets->count; k++) {
+        brunt_node_set *set = &sets->set[k];
+        if (moves(&set->def)) continue;
+        make_forces(set, time, dt);
+        if (set->def.action == BRUNT_GROUP_GAS && !(set->gas_volume > 0)) sets->gas_lost = set;
+        book_loads(set, dt, true);
     }
 }
 
-void brunt_loads_end(brunt_world *world, double dt) {
-    for (int k = 0; k < world->boundaries.sets.count; k++)
-        if (!moves(&world->boundaries.sets.def[k])) book_loads(world, &world->boundaries.sets.set[k], dt, false);
+void brunt_loads_end(const brunt_node_sets *sets, double dt) {
+    for (int k = 0; k < sets->count; k++)
+        if (!moves(&sets->set[k].def)) book_loads(&sets->set[k], dt, false);
 }
 
 // ------------------------------------------------------------------------------------------ prescribed motion
 
-void brunt_fem_hold_all(brunt_world *world, const double gravity[3], double time, double dt, double step) {
-    for (int k = 0; k < world->boundaries.sets.count; k++) {
-        const brunt_group_def *def = &world->boundaries.sets.def[k];
-        if (!moves(def)) continue;
-        const brunt_node_set *hold = &world->boundaries.sets.set[k];
-        brunt_fem_body *fem = &world->bodies.fem[hold->fem];
-        brunt_impulse_account *last = &world->boundaries.walls[hold->wall].last;
-        double now = brunt_curve_at(&def->table, time + 0.5 * step), then = brunt_curve_at(&def->table, time + step);
-        for (int32_t i = 0; i < hold->node_count; i++) {
-            const int32_t n = hold->node[i];
-            if (brunt_fem_removed(fem, n)) continue;
-            real *node = brunt_fem_node(fem, n), force[3];
-            double J[3] = {0}, x[3], old[3] = {0}, v[3] = {0}, mean[3] = {0};
-            brunt_fem_internal_force(fem, n, force);
-            for (int a = 0; a < 3; a++) x[a] = (double)node[a];
-            for (int a = 0; a < world->settings.dimension; a++) {
-                if (world->boundaries.sets.holder[hold->fem][n][a] != k + 1) continue;
-                double mass = (double)node[BRUNT_FEM_MASS], trial = (double)node[BRUNT_FEM_V + a];
-                double load = fem->load ? (double)fem->load[4 * (size_t)n + (size_t)a] : 0;
-                old[a] = trial - dt * (((double)force[a] + load) / mass + gravity[a]);
-                v[a] = def->action == BRUNT_GROUP_VELOCITY
-                           ? now * def->value[a]
-                           : ((double)fem->start[4 * (size_t)n + (size_t)a] + then * def->value[a] - x[a]) / step;
-                J[a] = mass * fem->drag_mass * (v[a] - trial);
-                mean[a] = 0.5 * (old[a] + v[a]);
-                node[BRUNT_FEM_V + a] = (real)v[a];
-            }
-            brunt_impulse_account_book(last, &last->normal_loss, J, x, old, v, mean);
+static void prescribe(const brunt_node_sets *sets, int k, const double gravity[3], double time, double dt,
+                      double step) {
+    const brunt_node_set *set = &sets->set[k];
+    const brunt_group_def *def = &set->def;
+    brunt_fem_body *fem = set->fem;
+    brunt_impulse_account *last = &set->wall->last;
+    double now = brunt_curve_at(&def->table, time + 0.5 * step), then = brunt_curve_at(&def->table, time + step);
+    for (int32_t i = 0; i < set->node_count; i++) {
+        const int32_t n = set->node[i];
+        if (brunt_fem_removed(fem, n)) continue;
+        real *node = brunt_fem_node(fem, n), force[3];
+        double J[3] = {0}, x[3], old[3] = {0}, v[3] = {0}, mean[3] = {0};
+        brunt_fem_internal_force(fem, n, force);
+        for (int a = 0; a < 3; a++) x[a] = (double)node[a];
+        for (int a = 0; a < fem->dim; a++) {
+            if (sets->holder[set->fem_index][n][a] != k + 1) continue;
+            double mass = (double)node[BRUNT_FEM_MASS], trial = (double)node[BRUNT_FEM_V + a];
+            double load = fem->load ? (double)fem->load[4 * (size_t)n + (size_t)a] : 0;
+            old[a] = trial - dt * (((double)force[a] + load) / mass + gravity[a]);
+            v[a] = def->action == BRUNT_GROUP_VELOCITY
+                       ? now * def->value[a]
+                       : ((double)fem->start[4 * (size_t)n + (size_t)a] + then * def->value[a] - x[a]) / step;
+            J[a] = mass * fem->drag_mass * (v[a] - trial);
+            mean[a] = 0.5 * (old[a] + v[a]);
+            node[BRUNT_FEM_V + a] = (real)v[a];
         }
+        brunt_impulse_account_book(last, &last->normal_loss, J, x, old, v, mean);
     }
 }
 
-void brunt_fem_hold_contact(brunt_world *world) {
-    const brunt_contact_surface *s = &world->contact.surface;
-    for (int k = 0; k < s->fem_count && world->boundaries.sets.count; k++) {
-        if (!s->active[k] || !world->boundaries.sets.holder[k]) continue;
+void brunt_node_sets_prescribe(const brunt_node_sets *sets, const double gravity[3], double time, double dt,
+                               double step) {
+    for (int k = 0; k < sets->count; k++)
+        if (moves(&sets->set[k].def)) prescribe(sets, k, gravity, time, dt, step);
+}
+
+void brunt_node_sets_book_contact(const brunt_node_sets *sets, const brunt_contact_surface *s) {
+    for (int k = 0; k < s->fem_count && sets->count; k++) {
+        if (!s->active[k] || !sets->holder[k]) continue;
         for (int32_t n = s->node_range[k]; n < s->node_end[k]; n++)
-            for (int a = 0; a < world->settings.dimension; a++) {
-                int holder = world->boundaries.sets.holder[k][s->node[n]][a];
+            for (int a = 0; a < s->dim; a++) {
+                int holder = sets->holder[k][s->node[n]][a];
                 if (!holder || s->impulse[n][a] == 0) continue;
                 double J[3] = {0};
                 J[a] = -s->impulse[n][a];
-                brunt_impulse_account *last =
-                    &world->boundaries.walls[world->boundaries.sets.set[holder - 1].wall].last;
+                brunt_impulse_account *last = &sets->set[holder - 1].wall->last;
                 brunt_impulse_account_book(last, &last->normal_loss, J, s->x[n], s->v[n], s->v[n], s->v[n]);
             }
     }

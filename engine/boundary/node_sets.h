@@ -2,10 +2,15 @@
 #pragma once
 
 #include "body/bodies.h"
+#include "base/messages.h"
 #include "contact/contact.h"
+#include "contact/surface/contact_surface.h"
 
 typedef struct brunt_node_set {
-    int wall, fem; // its place among the walls; its body among the finite-element bodies
+    brunt_group_def def; // a copy, with its curve
+    brunt_wall *wall;    // its name, and where its impulses are booked
+    brunt_fem_body *fem;
+    int fem_index; // of the body, among those of elements
     const int32_t *node;
     int32_t node_count;
     int32_t (*face)[4]; // traction and pressure: the surface's faces that are all in the group
@@ -22,9 +27,30 @@ typedef struct brunt_node_set {
 
 typedef struct brunt_node_sets {
     brunt_node_set *set;
-    brunt_group_def *def; // of each: a copy, with its curve
-    int count;
+    int count, fem_count;
     uint8_t (**holder)[3]; // of each body, node and component: the set that prescribes it + 1
+    double **load_rate;    // of each body with loads that follow its surface: node_count, see load_step.c
     bool has_gas;
     const brunt_node_set *gas_lost; // gas whose volume is no longer positive
 } brunt_node_sets;
+
+// After the bodies are made. `walls`: those of the sets.
+int brunt_node_sets_make(brunt_node_sets *sets, const brunt_world_def *def, const brunt_bodies *bodies,
+                         brunt_wall *walls, brunt_messages *messages, brunt_error *error);
+void brunt_node_sets_free(brunt_node_sets *sets);
+void brunt_node_sets_validate(const brunt_node_sets *sets);
+// Loads of a body's sets from now on act on the faces of those elements alone that it still has. The set whose faces
+// enclose gas and one of its elements (by number in the mesh) that has left, or NULL.
+const brunt_node_set *brunt_node_sets_follow(brunt_node_sets *sets, brunt_fem_body *fem, int32_t *element);
+
+// Loads of this step, made before the kick of `dt` and with half their work booked; the other half once velocities are
+// final.
+void brunt_loads_begin(brunt_node_sets *sets, const brunt_bodies *bodies, double time, double dt);
+void brunt_loads_end(const brunt_node_sets *sets, double dt);
+// Prescribed motion, and its account; `step` is how far the nodes then move.
+void brunt_node_sets_prescribe(const brunt_node_sets *sets, const double gravity[3], double time, double dt,
+                               double step);
+// Reaction of what contact gave to held nodes.
+void brunt_node_sets_book_contact(const brunt_node_sets *sets, const brunt_contact_surface *surface);
+// Vectors of the shares that the corners of a face have of its area [m^2], outward: int N_a n dA.
+void brunt_face_shares(const double (*x)[3], int corners, double (*share)[3]);

@@ -389,26 +389,40 @@ static int gather_bodies(brunt_world *world, double kick, double dt, double *kin
     return bad_body ? fail_particle(world, bad_body, bad, error, reason) : BRUNT_OK;
 }
 
+static brunt_kick kick_of(brunt_world *world, const double gravity[3], double dt) {
+    return (brunt_kick){.dt = dt,
+                        .gravity = {gravity[0], gravity[1], gravity[2]},
+                        .threads = world->settings.threads,
+                        .timer = &world->pass[BRUNT_PASS_kick].threads};
+}
+
 static void kick_meshes(brunt_world *world, const double gravity[3], double kick, double dt) {
     brunt_pass_begin(world, BRUNT_PASS_kick);
     if (world->boundaries.sets.count || world->boundaries.damping.active)
-        brunt_loads_begin(world, world->clock.time, kick);
-    if (world->boundaries.damping.active) brunt_damping_begin(world, gravity, kick);
+        brunt_loads_begin(&world->boundaries.sets, &world->bodies, world->clock.time, kick);
+    if (world->boundaries.damping.active) {
+        const brunt_kick drag = kick_of(world, gravity, kick);
+        brunt_damping_begin(&world->boundaries.damping, &world->bodies, &drag);
+    }
     brunt_fem_kick_all(world, gravity, kick);
     brunt_pass_end(world, all_mesh_nodes(world));
     if (!world->boundaries.sets.count) return;
     double held = 0;
     brunt_pass_begin(world, BRUNT_PASS_groups);
-    brunt_fem_hold_all(world, gravity, world->clock.time, kick, dt);
+    brunt_node_sets_prescribe(&world->boundaries.sets, gravity, world->clock.time, kick, dt);
     for (int h = 0; h < world->boundaries.sets.count; h++) held += world->boundaries.sets.set[h].node_count;
     brunt_pass_end(world, held);
 }
 
 // The other half of what loads and drag do: velocities are final now.
 static void finish_kick(brunt_world *world, double kick) {
+    static const double none[3] = {0};
     brunt_pass_begin(world, BRUNT_PASS_kick);
-    if (world->boundaries.sets.count) brunt_loads_end(world, kick);
-    if (world->boundaries.damping.active) brunt_damping_end(world, kick);
+    if (world->boundaries.sets.count) brunt_loads_end(&world->boundaries.sets, kick);
+    if (world->boundaries.damping.active) {
+        const brunt_kick drag = kick_of(world, none, kick);
+        brunt_damping_end(&world->boundaries.damping, &world->bodies, &drag, &world->ledger.damping);
+    }
     brunt_pass_end(world, 0);
 }
 
@@ -456,7 +470,7 @@ static void watch_spread(brunt_world *world) {
         if (!(spread > 1)) continue;
         body->spread_told = true;
         brunt_warn(
-            world,
+            &world->messages,
             "bodies.%s: at t = %.4g s the fluid has spread: particles stand for volumes %.2g cells wide, so that "
             "there are cells with none; pressure there is as coarse as that (more particles_per_cell, or a "
             "coarser grid, helps)",
@@ -533,7 +547,10 @@ static int fail_short(brunt_world *world, double stable, brunt_error *error, con
     brunt_fem_body *fem = by_element ? brunt_fem_shortest(world, &slot) : NULL;
     if (!fem) return fail_short_points(world, error, why);
     char reason[240];
-    const bool by_load = brunt_load_frequency(world, (int)(fem - world->bodies.fem)) * stable * stable > 2; // half of 4
+    const bool by_load = brunt_load_frequency(&world->boundaries.sets, &world->bodies, (int)(fem - world->bodies.fem),
+                                              world->clock.time) *
+                             stable * stable >
+                         2; // half of 4
     snprintf(reason, sizeof reason, "%s%s", why,
              by_load ? ", most of it by gas or pressure on the body's surface" : "");
     return fail_element(world, fem, slot, error, reason);
@@ -585,8 +602,7 @@ static int begin_step(brunt_world *world, step *s, brunt_error *error) {
 static int fail_gas(const brunt_world *world, brunt_error *error) {
     char reason[200];
     snprintf(reason, sizeof reason, "boundaries (%s): the gas's volume has become %.4g m^3",
-             world->boundaries.walls[world->boundaries.sets.gas_lost->wall].name,
-             world->boundaries.sets.gas_lost->gas_volume);
+             world->boundaries.sets.gas_lost->wall->name, world->boundaries.sets.gas_lost->gas_volume);
     return fail(world, NULL, error, reason);
 }
 
@@ -639,7 +655,7 @@ static int watch_creep(brunt_world *world, brunt_error *error) {
              ends ? "less than a millionth" : "less than a thousandth", ends ? " (time.least_step allows less)" : "");
     brunt_error told = {.id = -1};
     fail_short(world, now->next_dt / world->settings.cfl, ends ? error : &told, why);
-    if (!ends) brunt_warn(world, "%s", told.message);
+    if (!ends) brunt_warn(&world->messages, "%s", told.message);
     world->clock.creep_told = true;
     return ends ? BRUNT_FAILED : BRUNT_OK;
 }

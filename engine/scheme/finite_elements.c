@@ -1,8 +1,6 @@
 // The passes over finite-element bodies. Tasks are runs of nodes and blocks of elements of all bodies together, so that
 // many small bodies keep all threads busy as well as one large one does.
 #include <math.h>
-#include <stdarg.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "base/memory.h"
@@ -166,7 +164,8 @@ static double blocks_step(const brunt_fem_body *fem) {
 // Elements alone are stable up to dt_e. That is dt^2 omega^2 <= 4 of springs, but with dampers, of rates half a step
 // behind, dt^2 omega^2 + 2 c dt <= 4, which at a share s of dt_e is at most 4 s: with loads 4 dt / dt_e + dt^2 q <= 4.
 double brunt_fem_body_step(const brunt_world *world, int fem) {
-    const double inverse = 1 / blocks_step(&world->bodies.fem[fem]), q = brunt_load_frequency(world, fem);
+    const double inverse = 1 / blocks_step(&world->bodies.fem[fem]),
+                 q = brunt_load_frequency(&world->boundaries.sets, &world->bodies, fem, world->clock.time);
     return q > 0 ? 2 / (inverse + sqrt(inverse * inverse + q)) : 1 / inverse;
 }
 
@@ -205,16 +204,3 @@ brunt_fem_body *brunt_fem_shortest(brunt_world *world, int32_t *slot) {
             return (*slot = shortest_element(world, &world->bodies.fem[k])) < 0 ? NULL : &world->bodies.fem[k];
     return NULL;
 }
-
-void brunt_warn(brunt_world *world, const char *format, ...) {
-    enum { MOST = 64 };
-    if (!world->messages.text && !(world->messages.text = brunt_alloc(MOST * sizeof *world->messages.text))) return;
-    if (world->messages.count == MOST) return;
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(world->messages.text[world->messages.count++], sizeof *world->messages.text, format, arguments);
-    va_end(arguments);
-}
-
-int32_t brunt_warning_count(const brunt_world *world) { return world->messages.count; }
-const char *brunt_world_warning(const brunt_world *world, int32_t warning) { return world->messages.text[warning]; }

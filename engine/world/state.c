@@ -86,9 +86,9 @@ static const brunt_saved clock_table[] = {
     BRUNT_SAVED(brunt_world, contact.frame),
     LEDGER(gravity_impulse),
     LEDGER(gravity_angular),
-    LEDGER(damped),
-    LEDGER(damping_impulse),
-    LEDGER(damping_angular),
+    LEDGER(damping.loss),
+    LEDGER(damping.impulse),
+    LEDGER(damping.angular),
     LEDGER(initial_energy),
     LEDGER(initial_kinetic),
     LEDGER(linear_initial),
@@ -142,7 +142,7 @@ brunt_state_block brunt_state_info(brunt_world *world, int32_t index) {
                                         "world/contact_search", "world/contact_affine", "world/erosion"};
     const int64_t account = 2 * brunt_saved_count(account_table, ACCOUNT_ROWS); // since the start, and of the last step
     const int64_t counts[] = {brunt_saved_count(clock_table, CLOCK_ROWS) + world->bodies.mpm_count,
-                              world->boundaries.wall_count * account + brunt_gas_state_count(world),
+                              world->boundaries.wall_count * account + brunt_gas_state_count(&world->boundaries.sets),
                               world->pairs.count * account,
                               brunt_node_to_facet_state_count(&world->contact.surface),
                               brunt_surface_affine_count(&world->contact.surface),
@@ -186,7 +186,7 @@ void brunt_state_get(brunt_world *world, int32_t index, void *out) {
     for (int i = 0; at.field == 0 && i < world->bodies.mpm_count; i++) *to++ = (double)world->bodies.mpm[i].speed;
     for (int w = 0; at.field == 1 && w < world->boundaries.wall_count; w++)
         to = get_account(&world->boundaries.walls[w].last, get_account(&world->boundaries.walls[w].action, to));
-    if (at.field == 1) brunt_gas_state_get(world, to);
+    if (at.field == 1) brunt_gas_state_get(&world->boundaries.sets, to);
     for (int p = 0; at.field == 2 && p < world->pairs.count; p++)
         to = get_account(&world->pairs.pair[p].last, get_account(&world->pairs.pair[p].action, to));
 }
@@ -197,7 +197,7 @@ static int set_elements(brunt_world *world, brunt_fem_body *fem, const int64_t *
     if (brunt_fem_elements_set(fem, in))
         return brunt_fail(error, BRUNT_BAD_INPUT, "the state block 'bodies/%s/elements' is not of this mesh",
                           fem->name);
-    brunt_node_sets_follow(world, (int)(fem - world->bodies.fem), &element);
+    brunt_node_sets_follow(&world->boundaries.sets, fem, &element);
     return world->contact.has_surfaces ? brunt_surfaces_renew(world, error) : BRUNT_OK;
 }
 
@@ -281,7 +281,7 @@ int brunt_state_set(brunt_world *world, int32_t index, const void *in, int64_t c
     for (int i = 0; at.field == 0 && i < world->bodies.mpm_count; i++) world->bodies.mpm[i].speed = (real)*from++;
     for (int w = 0; at.field == 1 && w < world->boundaries.wall_count; w++)
         from = set_account(&world->boundaries.walls[w].last, set_account(&world->boundaries.walls[w].action, from));
-    if (at.field == 1) brunt_gas_state_set(world, from);
+    if (at.field == 1) brunt_gas_state_set(&world->boundaries.sets, from);
     for (int p = 0; at.field == 2 && p < world->pairs.count; p++)
         from = set_account(&world->pairs.pair[p].last, set_account(&world->pairs.pair[p].action, from));
     return BRUNT_OK;

@@ -38,12 +38,12 @@ static void warn_of_thickness(brunt_world *world, const brunt_fem_body *fem, boo
         other = other || (world->bodies.fem[k].element->sheet &&
                           world->pairs.of[fem->index * world->bodies.count + world->bodies.fem[k].index] >= 0);
     if (self && thick > fem->mean_edge)
-        brunt_warn(world,
+        brunt_warn(&world->messages,
                    "bodies.%s: its thickness in contact, %.4g m, is more than its mean edge, %.4g m: elements that are "
                    "neighbours across a fold push each other apart",
                    fem->name, thick, fem->mean_edge);
     if (other && thick < THIN * fem->mean_edge)
-        brunt_warn(world,
+        brunt_warn(&world->messages,
                    "bodies.%s: its thickness in contact, %.4g m, is less than a hundredth of its mean edge, %.4g m: "
                    "layers that are pressed may pass through each other; contact_thickness takes a greater one",
                    fem->name, thick, fem->mean_edge);
@@ -63,7 +63,7 @@ static int check_sheets(brunt_world *world, bool *self, brunt_error *error) {
             const brunt_body *mpm = world->bodies.all[i].mpm;
             meets = meets || pair;
             if (pair && mpm && fem->mean_edge < (1 - 1e-6) * mpm->spacing)
-                brunt_warn(world,
+                brunt_warn(&world->messages,
                            "bodies.%s: its mean edge, %.4g m, is less than the spacing of the particles of '%s', %.4g "
                            "m: nodes can pass between them",
                            fem->name, fem->mean_edge, mpm->name, mpm->spacing);
@@ -117,18 +117,18 @@ int brunt_surfaces_make(brunt_world *world, const brunt_world_def *def, brunt_er
     world->contact.cell = def->contact.cell > 0 ? def->contact.cell : form == BRUNT_AUGURY_PAPER ? 2 * coarse : coarse;
     if (world->contact.has_grid_surfaces && coarse > COARSE * world->settings.cell)
         brunt_warn(
-            world,
+            &world->messages,
             "grid.cell %g m is much less than the longest mean edge of a mesh, %g m: multi-velocity contact may not "
             "see particles between its nodes",
             world->settings.cell, coarse);
     if (!world->contact.has_augury || form == BRUNT_AUGURY_AFFINE) return BRUNT_OK;
     if (world->contact.cell < 0.7 * coarse)
-        brunt_warn(world,
+        brunt_warn(&world->messages,
                    "contact.cell %g m is less than 0.7 of the longest mean edge, %g m: nodes may pass between those of "
                    "the other body unseen",
                    world->contact.cell, coarse);
     if (world->contact.cell > 4 * fine)
-        brunt_warn(world,
+        brunt_warn(&world->messages,
                    "contact.cell %g m is more than 4 of the shortest mean edge, %g m: edges and corners are rounded by "
                    "as much",
                    world->contact.cell, fine);
@@ -252,6 +252,6 @@ int brunt_surfaces_meet(brunt_world *world, const double gravity[3], double kick
     if (failed) return brunt_fail(error, BRUNT_FAILED, "out of memory in the contact of surfaces");
     brunt_surface_scatter_velocity(&world->contact.surface, dt, world->settings.threads, timer);
     memcpy(world->contact.frame, world->contact.surface.frame, sizeof world->contact.surface.frame);
-    brunt_fem_hold_contact(world);
+    brunt_node_sets_book_contact(&world->boundaries.sets, &world->contact.surface);
     return BRUNT_OK;
 }

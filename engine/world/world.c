@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "world/definitions.h"
+#include "boundary/ignition.h"
 #include "base/error.h"
 #include "geometry/axis.h"
 #include "geometry/fill.h"
@@ -274,10 +275,10 @@ static int make_elements(brunt_world *world, const brunt_world_def *def, const b
         report->least_step = fem->least_step;
         report->added_mass = fem->added_mass, report->scaled_elements = fem->scaled_elements;
         if (report->quality.duplicate_nodes)
-            brunt_warn(world, "bodies.%s: %d nodes of the mesh lie on others: the body is not joined there", from->name,
-                       report->quality.duplicate_nodes);
+            brunt_warn(&world->messages, "bodies.%s: %d nodes of the mesh lie on others: the body is not joined there",
+                       from->name, report->quality.duplicate_nodes);
         if (report->quality.worst_shape < 0.1)
-            brunt_warn(world, "bodies.%s: element %d is nearly flat (shape %.2g, 1 is regular)", from->name,
+            brunt_warn(&world->messages, "bodies.%s: element %d is nearly flat (shape %.2g, 1 is regular)", from->name,
                        report->quality.worst + 1, report->quality.worst_shape);
     }
     for (int32_t n = 0; !status && n < fem->node_count; n++) {
@@ -367,7 +368,7 @@ static int make_plane(brunt_world *world, const brunt_world_def *def, int index,
             if (other->wall >= 0 && other->axis == axis && apart != 0 && abs(apart) <= (int)def->kernel &&
                 has_fluid(def))
                 brunt_warn(
-                    world,
+                    &world->messages,
                     "boundaries[%d] (%s): this plane of symmetry or slip and '%s' are %d cells apart; the kernel "
                     "reaches over both, and fluids leak: at least %d are wanted",
                     index, wall->name, world->boundaries.walls[other->wall].name, abs(apart), (int)def->kernel + 1);
@@ -379,7 +380,7 @@ static int make_plane(brunt_world *world, const brunt_world_def *def, int index,
         world->boundaries.has_walls = true;
         if (has_fluid(def))
             brunt_warn(
-                world,
+                &world->messages,
                 "boundaries[%d] (%s): beside a plane of condition separate the pressure of fluids is wrong in the "
                 "two nearest rows of particles, and gas at rest tears there; slip on a line of the grid is exact",
                 index, wall->name);
@@ -388,7 +389,7 @@ static int make_plane(brunt_world *world, const brunt_world_def *def, int index,
         world->boundaries.has_conditions = true;
         if (plane->condition == BRUNT_SLIP && has_fluid(def))
             brunt_warn(
-                world,
+                &world->messages,
                 "boundaries[%d] (%s): a slip plane that is not on a line of the grid lets fluids in by half a cell; "
                 "move it, or grid.origin",
                 index, wall->name);
@@ -650,7 +651,7 @@ static void warn_of_lone_points(brunt_world *world) {
         const brunt_body *body = &world->bodies.mpm[i];
         const bool softens = body->material.model[BRUNT_FAILURE] && !body->fails;
         if (!softens && !body->material.model[BRUNT_STRENGTH]->fluid) continue;
-        brunt_warn(world,
+        brunt_warn(&world->messages,
                    "bodies.%s: material points that come away from others bear pressure alone, which with this kernel "
                    "and transfer is stable up to cfl %.2g; time.cfl is %.2g",
                    body->name, limit, world->settings.cfl);
@@ -704,14 +705,17 @@ brunt_world *brunt_world_create(const brunt_world_def *def, brunt_error *error) 
     if (!status) status = make_pairs(world, def, order, error);
     if (!status) status = make_bodies(world, def, order, error);
     if (!status) status = check_symmetry(world, error);
-    if (!status) status = brunt_detonation_make(world, def, error);
+    if (!status) status = brunt_ignition_make(&world->bodies, def, &world->messages, error);
     if (!status) status = map_grid_pairs(world, error);
     if (!status) status = brunt_erosion_make(world, def, error);
-    if (!status) status = brunt_node_sets_make(world, def, error);
+    if (!status)
+        status = brunt_node_sets_make(&world->boundaries.sets, def, &world->bodies,
+                                      world->boundaries.walls + def->plane_count + def->region_count, &world->messages,
+                                      error);
     if (!status) status = brunt_surfaces_make(world, def, error);
     if (!status && brunt_fem_tasks_make(world)) status = brunt_fail(error, BRUNT_FAILED, "out of memory");
-    if (!status) status = brunt_damping_make(world, error);
-    if (!status) status = brunt_load_step_make(world, error);
+    if (!status) status = brunt_damping_make(&world->boundaries.damping, &world->bodies, error);
+    if (!status) status = brunt_load_step_make(&world->boundaries.sets, error);
     for (int m = 0; !status && m < world->boundaries.mirror_count;
          m++) { // node numbers count from where the grid starts
         int axis = world->boundaries.mirrors[m].axis;
@@ -741,9 +745,9 @@ void brunt_world_destroy(brunt_world *world) {
     brunt_node_to_facet_free(world->contact.node_to_facet);
     brunt_augury_workspace_free(world->contact.augury);
     brunt_grid_surfaces_free(world->contact.grid_surfaces);
-    brunt_node_sets_free(world);
-    brunt_damping_free(world);
-    brunt_load_step_free(world);
+    brunt_load_step_free(&world->boundaries.sets);
+    brunt_node_sets_free(&world->boundaries.sets);
+    brunt_damping_free(&world->boundaries.damping);
     brunt_erosion_free(world);
     for (int k = 0; world->bodies.fem && k < world->bodies.fem_count; k++) brunt_fem_free(&world->bodies.fem[k]);
     for (size_t t = 0; t < sizeof world->scratch.meshes / sizeof world->scratch.meshes[0]; t++)
@@ -755,7 +759,7 @@ void brunt_world_destroy(brunt_world *world) {
     brunt_free(world->bodies.tasks.element);
     brunt_free(world->bodies.tasks.sums);
     brunt_free(world->pairs.of_mpm);
-    brunt_free(world->messages.text);
+    brunt_messages_free(&world->messages);
     brunt_free(world->scratch.planes);
     brunt_free(world->bodies.mpm);
     brunt_free(world->boundaries.walls);

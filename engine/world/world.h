@@ -3,6 +3,7 @@
 
 #include "account/erosion.h"
 #include "account/ledger.h"
+#include "base/messages.h"
 #include "base/parallel.h"
 #include "body/bodies.h"
 #include "body/settings.h"
@@ -11,7 +12,6 @@
 #include "mpm/transfer.h"
 #include "world/clock.h"
 #include "world/contact.h"
-#include "world/messages.h"
 #include "world/pairs.h"
 #include "world/scratch.h"
 
@@ -111,10 +111,6 @@ void brunt_grid_ledger(void *job, int64_t begin, int64_t end, int worker); // no
 int brunt_fem_tasks_make(brunt_world *world);
 // Velocities by the internal forces, loads and gravity, over `dt`.
 void brunt_fem_kick_all(brunt_world *world, const double gravity[3], double dt);
-// Prescribed motion of named groups, and their account; `step` is how far the nodes then move.
-void brunt_fem_hold_all(brunt_world *world, const double gravity[3], double time, double dt, double step);
-// Reaction of what contact gave to held nodes.
-void brunt_fem_hold_contact(brunt_world *world);
 // Nodes to their new places.
 void brunt_fem_drift_all(brunt_world *world, const double gravity[3], double kick, double dt);
 // Strain, stress and forces there. The failed body and slot when the update of an element failed.
@@ -161,60 +157,11 @@ int64_t brunt_erosion_state_count(const brunt_world *world);
 void brunt_erosion_state_get(const brunt_world *world, double *out);
 void brunt_erosion_state_set(brunt_world *world, const double *in);
 
-// --- detonation.c: when explosives are lit
-// After the bodies are made, before their particles are sorted. BRUNT_BAD_INPUT for detonations that light nothing.
-int brunt_detonation_make(brunt_world *world, const brunt_world_def *def, brunt_error *error);
-
-// --- damping.c: drag on the nodes of bodies with damping
-// After the node tasks are made.
-int brunt_damping_make(brunt_world *world, brunt_error *error);
-void brunt_damping_free(brunt_world *world);
-// Adds the drag to the loads of this step; what it did is booked once velocities are final.
-void brunt_damping_begin(brunt_world *world, const double gravity[3], double dt);
-void brunt_damping_end(brunt_world *world, double dt);
-
 // --- ledger.c: what the energy error is relative to
 // Keeps the most that the run has been given so far; once a step.
 void brunt_ledger_remember(brunt_world *world);
 // Energy that rounding may make in a step, or lose [J].
 double brunt_rounding_energy(brunt_world *world);
-
-// --- gas.c: gas in enclosed volumes
-// Volume that the faces of a hold enclose, with that beside it [m^3].
-double brunt_gas_volume(const brunt_world *world, const brunt_node_set *hold, const brunt_group_def *def);
-// Energy of the gas at the start. BRUNT_BAD_INPUT when the faces enclose nothing.
-int brunt_gas_start(brunt_world *world, brunt_node_set *hold, const brunt_group_def *def, brunt_error *error);
-// Pressure [Pa] above that outside for the step from `time` on, over `dt`, by the volume as it is now.
-double brunt_gas_push(brunt_world *world, brunt_node_set *hold, const brunt_group_def *def, double time, double dt);
-int64_t brunt_gas_state_count(const brunt_world *world);
-void brunt_gas_state_get(const brunt_world *world, double *out);
-void brunt_gas_state_set(brunt_world *world, const double *in);
-
-// What is there now.
-brunt_gas brunt_gas_now(const brunt_world *world, const brunt_node_set *hold, const brunt_group_def *def);
-
-// --- load_step.c: the stable step of gas and of pressure that follows
-// After the groups are made.
-int brunt_load_step_make(brunt_world *world, brunt_error *error);
-void brunt_load_step_free(brunt_world *world);
-// Bound of the squared frequency that they add to a body's [1/s^2], as everything is now; 0 without them.
-double brunt_load_frequency(const brunt_world *world, int fem);
-
-// --- holds.c: named groups
-int brunt_node_sets_make(brunt_world *world, const brunt_world_def *def, brunt_error *error);
-double brunt_curve_at(const brunt_curve *curve, double time);
-// Loads of a body's groups from now on act on the faces of those elements alone that it still has. The group whose
-// faces enclose gas and one of its elements (by number in the mesh) that has gone, or NULL.
-const brunt_node_set *brunt_node_sets_follow(brunt_world *world, int fem, int32_t *element);
-// Loads of this step, made before the kick of `dt` and with half their work booked; the other half once velocities are
-// final.
-void brunt_loads_begin(brunt_world *world, double time, double dt);
-void brunt_loads_end(brunt_world *world, double dt);
-// Vectors of the shares that the corners of a face have of its area [m^2], outward: int N_a n dA.
-void brunt_face_shares(const double (*x)[3], int corners, double (*share)[3]);
-void brunt_node_sets_free(brunt_world *world);
-// A warning for the user, kept with the world.
-void brunt_warn(brunt_world *world, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 // --- read_particles.c, read_mesh.c
 int32_t brunt_read_particle_fields(const brunt_body *body);

@@ -69,7 +69,7 @@ static double true_frequency(brunt_world *world) {
             for (int32_t i = 0; i < n * 3; i++)
                 brunt_fem_node(fem, i / 3)[i % 3] =
                     start[(size_t)(i / 3) * BRUNT_FEM_NODE_REALS + (size_t)(i % 3)] + (real)(side * step * v[i]);
-            brunt_loads_begin(world, 0, 1e-9);
+            brunt_loads_begin(&world->boundaries.sets, &world->bodies, 0, 1e-9);
             for (int32_t i = 0; i < n * 3; i++) {
                 const double F = (double)fem->load[4 * (i / 3) + i % 3];
                 if (side > 0) plus[i] = F;
@@ -101,9 +101,9 @@ START_TEST(bound_is_one_and_a_close_one) {
         brunt_world *world = world_take(&def);
         warp(world);
         if (with_gas == 2) // equal pressures as it is now
-            world->boundaries.sets.def[0].gas.outside =
-                brunt_gas_now(world, &world->boundaries.sets.set[0], &world->boundaries.sets.def[0]).pressure;
-        const double truth = true_frequency(world), bound = brunt_load_frequency(world, 0);
+            world->boundaries.sets.set[0].def.gas.outside = brunt_gas_now(&world->boundaries.sets.set[0]).pressure;
+        const double truth = true_frequency(world),
+                     bound = brunt_load_frequency(&world->boundaries.sets, &world->bodies, 0, world->clock.time);
         printf("%d %s: %.4g of %.4g, %.3f\n", _i, with_gas ? "gas" : "pressure", truth, bound, bound / truth);
         ck_assert_double_ge(bound, truth * (1 - 1e-3));
         ck_assert_double_le(bound, (with_gas == 2 ? 1 + 1e-3 : 8) * truth);
@@ -150,7 +150,8 @@ START_TEST(frequency_of_a_cube) {
             snprintf(held->body, sizeof held->body, "box"), snprintf(held->group, sizeof held->group, "xmin");
         }
         brunt_world *world = world_take(&def);
-        const double faces = (k % 2 ? 2 * sqrt(3) : 4 * sqrt(5) / 3) * unit, now = brunt_load_frequency(world, 0);
+        const double faces = (k % 2 ? 2 * sqrt(3) : 4 * sqrt(5) / 3) * unit,
+                     now = brunt_load_frequency(&world->boundaries.sets, &world->bodies, 0, world->clock.time);
         if (k < 2) ck_assert_double_eq_tol(now, faces, 100 * ROUNDING * faces);
         if (k == 2) ck_assert_double_eq_tol(now, faces + 2 * GAMMA * unit, 100 * ROUNDING * faces);
         if (k == 4) ck_assert_double_eq_tol(now, faces + GAMMA * unit, 100 * ROUNDING * faces);
@@ -174,7 +175,8 @@ START_TEST(frequency_of_a_ring) {
         const double r = (double)brunt_fem_node(fem, n)[0], m = (double)brunt_fem_node(fem, n)[BRUNT_FEM_MASS];
         most = fmax(most, 1e5 * PI * (level + 0.3 + 2 * r) / m);
     }
-    ck_assert_double_eq_tol(brunt_load_frequency(world, 0), most, 100 * ROUNDING * most);
+    ck_assert_double_eq_tol(brunt_load_frequency(&world->boundaries.sets, &world->bodies, 0, world->clock.time), most,
+                            100 * ROUNDING * most);
     brunt_world_destroy(world);
 }
 END_TEST

@@ -1,0 +1,19 @@
+#include "base/messages.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+
+#include "base/memory.h"
+
+enum { MOST = 64 };
+
+void brunt_warn(brunt_messages *messages, const char *format, ...) {
+    if (!messages->text && !(messages->text = brunt_alloc(MOST * sizeof *messages->text))) return;
+    if (messages->count == MOST) return;
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(messages->text[messages->count++], sizeof *messages->text, format, arguments);
+    va_end(arguments);
+}
+
+void brunt_messages_free(brunt_messages *messages) { brunt_free(messages->text); }
