@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 
@@ -25,10 +26,7 @@ void brunt_constraints_free(brunt_constraint_set *p) {
 }
 
 #define ADD(p, what)                                                                                                   \
-    (brunt_reserve((void **)&(p)->what, &(p)->what##_capacity, ((size_t)(p)->what##_count + 1) * sizeof *(p)->what,    \
-                   (size_t)(p)->what##_count * sizeof *(p)->what)                                                      \
-         ? -1                                                                                                          \
-         : (memset(&(p)->what[(p)->what##_count], 0, sizeof *(p)->what), (p)->what##_count++))
+    (BRUNT_GROW((p)->what) ? -1 : (memset(&(p)->what[(p)->what##_count], 0, sizeof *(p)->what), (p)->what##_count++))
 
 int32_t brunt_constraints_dof_node(brunt_constraint_set *p) { return ADD(p, support); }
 
@@ -62,10 +60,8 @@ int32_t brunt_constraints_friction_point(brunt_constraint_set *p, const double x
 }
 
 int brunt_constraints_reserve(brunt_constraint_set *p, int32_t points, int32_t entries) {
-    return brunt_reserve((void **)&p->point, &p->point_capacity, ((size_t)points + 1) * sizeof *p->point,
-                         (size_t)p->point_count * sizeof *p->point) ||
-                   brunt_reserve((void **)&p->entry, &p->entry_capacity, ((size_t)entries + 1) * sizeof *p->entry,
-                                 (size_t)p->entry_count * sizeof *p->entry)
+    return BRUNT_RESERVE(p->point, (size_t)points + 1, (size_t)p->point_count) ||
+                   BRUNT_RESERVE(p->entry, (size_t)entries + 1, (size_t)p->entry_count)
                ? -1
                : 0;
 }
@@ -102,10 +98,8 @@ static struct brunt_pressing pressing_of(int32_t point, const brunt_constraint_e
 static int transpose(brunt_constraint_set *p) {
     size_t entries = (size_t)p->entry_count + 1, supports = (size_t)p->support_count + 1,
            points = (size_t)p->point_count + (size_t)p->lever_count + 1;
-    if (brunt_reserve((void **)&p->pressing, &p->pressing_capacity, entries * sizeof *p->pressing, 0) ||
-        brunt_reserve((void **)&p->pressing_first, &p->pressing_first_capacity, (supports + 1) * sizeof(int32_t), 0) ||
-        brunt_reserve((void **)&p->given, &p->given_capacity, points * sizeof *p->given, 0) ||
-        brunt_reserve((void **)&p->changed, &p->changed_capacity, (points / GRAIN + 2) * sizeof(double), 0))
+    if (BRUNT_RESERVE(p->pressing, entries, 0) || BRUNT_RESERVE(p->pressing_first, supports + 1, 0) ||
+        BRUNT_RESERVE(p->given, points, 0) || BRUNT_RESERVE(p->changed, points / GRAIN + 2, 0))
         return -1;
     int32_t *first = p->pressing_first;
     memset(first, 0, (supports + 1) * sizeof(int32_t));

@@ -8,6 +8,7 @@
 
 #include <math.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 
 // Weight and slope [1/cell] of one node along one axis; u: cells from the base node, k: the node, counted from the
@@ -185,7 +186,7 @@ int brunt_extent_gather(brunt_body *body, int32_t slot, int node, brunt_extent_c
     brunt_extent_visit(body, slot, node, count_particle, &count);
     cloud->stride = ((size_t)count + CLOUD_LANES - 1) / CLOUD_LANES * CLOUD_LANES;
     cloud->count = 0;
-    if (brunt_reserve((void **)&cloud->data, &cloud->bytes, CLOUD_ROWS * cloud->stride * sizeof(double), 0)) return -1;
+    if (BRUNT_RESERVE_IN(cloud->data, cloud->bytes, CLOUD_ROWS * cloud->stride, 0)) return -1;
     cloud_fill fill = {.cloud = cloud};
     brunt_node_position(&body->grid, body->grid.slots[slot].coord, node, fill.node);
     brunt_extent_visit(body, slot, node, add_particle, &fill);

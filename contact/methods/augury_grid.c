@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/hash.h"
+#include "base/array.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 
@@ -54,7 +55,7 @@ static brunt_augury_slot *probe(const brunt_augury_grid *grid, uint64_t key) {
 static int widen(brunt_augury_grid *grid) {
     if (grid->slot_count >= 2 * (grid->block_count + 1)) return 0;
     int32_t count = grid->slot_count ? 2 * grid->slot_count : FIRST_SLOTS;
-    if (brunt_reserve((void **)&grid->slot, &grid->slot_capacity, (size_t)count * sizeof *grid->slot, 0)) return -1;
+    if (BRUNT_RESERVE(grid->slot, (size_t)count, 0)) return -1;
     memset(grid->slot, 0, (size_t)count * sizeof *grid->slot);
     grid->slot_count = count;
     for (int32_t b = 0; b < grid->block_count; b++) {
@@ -71,10 +72,7 @@ static int32_t block_at(brunt_augury_grid *grid, const int32_t coord[3]) {
     brunt_augury_slot *s = probe(grid, key);
     if (s->epoch == grid->epoch) return s->block;
     size_t n = (size_t)grid->block_count;
-    if (brunt_reserve((void **)&grid->coord, &grid->coord_capacity, (n + 1) * sizeof *grid->coord,
-                      n * sizeof *grid->coord) ||
-        brunt_reserve((void **)&grid->reached, &grid->reached_capacity, n + 1, n))
-        return -1;
+    if (BRUNT_RESERVE(grid->coord, n + 1, n) || BRUNT_RESERVE(grid->reached, n + 1, n)) return -1;
     memcpy(grid->coord[n], coord, sizeof grid->coord[n]);
     grid->reached[n] = 0;
     *s = (brunt_augury_slot){key, grid->epoch, grid->block_count};
@@ -86,11 +84,7 @@ int brunt_augury_cloud_add(brunt_augury_grid *grid, brunt_augury_cloud *cloud, i
     // combinations.
     static const uint8_t reaches[8] = {0x01, 0x03, 0x05, 0x0f, 0x11, 0x33, 0x55, 0xff};
     size_t n = (size_t)cloud->count;
-    if (brunt_reserve((void **)&cloud->unsorted, &cloud->unsorted_capacity, (n + 1) * sizeof *cloud->unsorted,
-                      n * sizeof *cloud->unsorted) ||
-        brunt_reserve((void **)&cloud->unsorted_item, &cloud->unsorted_item_capacity, (n + 1) * sizeof(int32_t),
-                      n * sizeof(int32_t)))
-        return -1;
+    if (BRUNT_RESERVE(cloud->unsorted, n + 1, n) || BRUNT_RESERVE(cloud->unsorted_item, n + 1, n)) return -1;
     brunt_augury_point *p = &cloud->unsorted[n];
     int32_t coord[3];
     int past = 0;
@@ -122,7 +116,7 @@ int brunt_augury_cloud_add(brunt_augury_grid *grid, brunt_augury_cloud *cloud, i
 static int link_blocks(brunt_augury_grid *grid) {
     const int32_t with_points = grid->block_count;
     size_t n = (size_t)with_points;
-    if (brunt_reserve((void **)&grid->next, &grid->next_capacity, (n + 1) * sizeof *grid->next, 0)) return -1;
+    if (BRUNT_RESERVE(grid->next, n + 1, 0)) return -1;
     for (int32_t b = 0; b < with_points; b++)
         for (int k = 0; k < 8; k++) {
             int32_t c[3] = {grid->coord[b][0] + (k & 1), grid->coord[b][1] + (k >> 1 & 1),
@@ -131,7 +125,7 @@ static int link_blocks(brunt_augury_grid *grid) {
             if (grid->next[b][k] < 0) return -1;
         }
     // Only blocks with points have anything to do.
-    if (brunt_reserve((void **)&grid->coloured, &grid->coloured_capacity, (n + 1) * sizeof(int32_t), 0)) return -1;
+    if (BRUNT_RESERVE(grid->coloured, n + 1, 0)) return -1;
     int32_t at = 0;
     for (int colour = 0; colour < BRUNT_AUGURY_COLOURS; colour++) {
         grid->colour_first[colour] = at;
@@ -146,9 +140,8 @@ static int link_blocks(brunt_augury_grid *grid) {
 
 static int sort_cloud(const brunt_augury_grid *grid, brunt_augury_cloud *cloud) {
     size_t n = (size_t)cloud->count, blocks = (size_t)grid->block_count;
-    if (brunt_reserve((void **)&cloud->point, &cloud->point_capacity, (n + 1) * sizeof *cloud->point, 0) ||
-        brunt_reserve((void **)&cloud->item, &cloud->item_capacity, (n + 1) * sizeof(int32_t), 0) ||
-        brunt_reserve((void **)&cloud->block_first, &cloud->block_first_capacity, (blocks + 2) * sizeof(int32_t), 0))
+    if (BRUNT_RESERVE(cloud->point, n + 1, 0) || BRUNT_RESERVE(cloud->item, n + 1, 0) ||
+        BRUNT_RESERVE(cloud->block_first, blocks + 2, 0))
         return -1;
     int32_t *first = cloud->block_first;
     memset(first, 0, (blocks + 2) * sizeof(int32_t));

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 
@@ -36,8 +37,7 @@ static int sweep_axis(const brunt_contact_surface *s) {
 static int sort_bodies(brunt_augury_near *near, const brunt_contact_surface *s, int axis) {
     const int32_t n = s->fem_count;
     if (near->order_count != n) {
-        if (brunt_reserve((void **)&near->order, &near->order_capacity, (size_t)(n + 1) * sizeof(int32_t), 0))
-            return -1;
+        if (BRUNT_RESERVE(near->order, (size_t)(n + 1), 0)) return -1;
         for (int32_t k = 0; k < n; k++) near->order[k] = k;
         near->order_count = n;
     }
@@ -79,9 +79,7 @@ int brunt_augury_near_find(brunt_augury_near *near, const brunt_contact_context 
             const int32_t pair = m->pair_of[p * m->body_count + q];
             if (pair < 0 || m->pairs[pair].method != BRUNT_CONTACT_AUGURY) continue;
             size_t n = (size_t)near->count;
-            if (brunt_reserve((void **)&near->found, &near->found_capacity, (n + 1) * sizeof *near->found,
-                              n * sizeof *near->found))
-                return -1;
+            if (BRUNT_RESERVE(near->found, n + 1, n)) return -1;
             near->found[near->count++] = (brunt_augury_neighbours){pair, p < q ? i : o, p < q ? o : i};
         }
     }
@@ -122,9 +120,7 @@ static void bound_runs(void *context, int64_t begin, int64_t end, int worker) {
 int brunt_augury_near_runs(brunt_augury_near *near, const brunt_contact_surface *s, int threads, brunt_timer *timer) {
     size_t nodes = (size_t)(s->node_count / RUN + s->fem_count + 1),
            faces = (size_t)(s->face_count / RUN + s->fem_count + 1);
-    if (brunt_reserve((void **)&near->node_run, &near->node_run_capacity, nodes * sizeof *near->node_run, 0) ||
-        brunt_reserve((void **)&near->face_run, &near->face_run_capacity, faces * sizeof *near->face_run, 0))
-        return -1;
+    if (BRUNT_RESERVE(near->node_run, nodes, 0) || BRUNT_RESERVE(near->face_run, faces, 0)) return -1;
     bound_job node = {s->x, s->node_range, s, near->node_run};
     bound_job face = {s->face_centre, s->face_range, s, near->face_run};
     brunt_parallel(threads, s->fem_count, GRAIN, bound_runs, &node, timer);

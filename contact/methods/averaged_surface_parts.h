@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "contact/methods/augury_work.h"
@@ -114,9 +115,7 @@ typedef struct job {
     int master; // this sweep
 } job;
 
-#define NEED(meet, name, count, keep)                                                                                  \
-    brunt_reserve((void **)&(meet)->name, &(meet)->name##_capacity, ((size_t)(count) + 1) * sizeof *(meet)->name,      \
-                  (size_t)(keep) * sizeof *(meet)->name)
+#define NEED(meet, name, count, keep) BRUNT_RESERVE((meet)->name, (size_t)(count) + 1, (size_t)(keep))
 
 static inline double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 static inline double normalise(double a[3]) {

@@ -15,6 +15,7 @@
 #include <string.h>
 
 #include "contact/contact.h"
+#include "base/array.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 
@@ -112,7 +113,7 @@ static int compare_shared(const void *a, const void *b) {
 static int find_groups(job *j) {
     brunt_contact_workspace *w = j->w;
     const int n = j->body_count;
-    if (brunt_reserve((void **)&w->bounds, &w->bounds_capacity, (size_t)n * sizeof *w->bounds, 0)) return -1;
+    if (BRUNT_RESERVE(w->bounds, (size_t)n, 0)) return -1;
     box *bounds = w->bounds;
     for (int b = 0; b < n; b++) bounds[b] = slot_bounds(&j->bodies[b].grid);
     w->shared_count = w->group_count = w->action_count = 0;
@@ -120,9 +121,7 @@ static int find_groups(job *j) {
         const brunt_grid *grid = &j->bodies[b].grid;
         for (int o = 0; o < n; o++) {
             if (o == b || j->pair_of[b * n + o] < 0 || !overlap(&bounds[b], &bounds[o])) continue;
-            if (brunt_reserve((void **)&w->shared, &w->shared_capacity,
-                              (size_t)(w->shared_count + grid->slot_count) * sizeof(shared_slot),
-                              (size_t)w->shared_count * sizeof(shared_slot)))
+            if (BRUNT_RESERVE(w->shared, (size_t)(w->shared_count + grid->slot_count), (size_t)w->shared_count))
                 return -1;
             for (int32_t s = 0; s < grid->slot_count; s++)
                 if (inside(&bounds[o], grid->slots[s].coord))
@@ -135,7 +134,7 @@ static int find_groups(job *j) {
     for (int32_t i = 0; i < w->shared_count; i++)
         if (!unique || compare_shared(&w->shared[i], &w->shared[unique - 1])) w->shared[unique++] = w->shared[i];
     w->shared_count = unique;
-    if (brunt_reserve((void **)&w->groups, &w->groups_capacity, (size_t)unique * sizeof(group), 0)) return -1;
+    if (BRUNT_RESERVE(w->groups, (size_t)unique, 0)) return -1;
     for (int32_t i = 0, next; i < unique; i = next) {
         for (next = i + 1; next < unique && w->shared[next].key == w->shared[i].key; next++) {}
         int32_t count = next - i;
@@ -143,9 +142,9 @@ static int find_groups(job *j) {
         w->groups[w->group_count++] = (group){i, count, w->action_count, false, false};
         w->action_count += count * (count - 1) / 2;
     }
-    size_t bytes = (size_t)(w->action_count + 1) * sizeof *w->actions;
-    if (brunt_reserve((void **)&w->actions, &w->actions_capacity, bytes, 0)) return -1;
-    memset(w->actions, 0, bytes);
+    const size_t actions = (size_t)(w->action_count + 1);
+    if (BRUNT_RESERVE(w->actions, actions, 0)) return -1;
+    memset(w->actions, 0, actions * sizeof *w->actions);
     return 0;
 }
 

@@ -15,6 +15,7 @@
 #include <string.h>
 
 #include "contact/methods/augury_work.h"
+#include "base/array.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 
@@ -237,8 +238,7 @@ static int find_pairs(job *j) {
     const brunt_contact_context *m = j->m;
     const brunt_contact_surface *s = j->skin;
     brunt_augury_filter *f = j->filter;
-    if (brunt_reserve((void **)&f->pair, &f->pair_capacity, ((size_t)s->fem_count + 1) * sizeof(int32_t), 0) ||
-        brunt_augury_near_find(&j->w->near, m, WIDTH * m->cell))
+    if (BRUNT_RESERVE(f->pair, (size_t)s->fem_count + 1, 0) || brunt_augury_near_find(&j->w->near, m, WIDTH * m->cell))
         return -1;
     for (int k = 0; k < s->fem_count; k++) f->pair[k] = -1;
     for (int32_t q = j->w->near.count - 1; q >= 0; q--) {
@@ -271,9 +271,7 @@ static int make_grid(job *j) {
     brunt_augury_filter *f = j->filter;
     size_t nodes = (size_t)w->grid.block_count * (size_t)w->grid.block_nodes + 1,
            points = (size_t)w->cloud[0].count + 1;
-    if (brunt_reserve((void **)&f->blend, &f->blend_capacity, nodes * sizeof *f->blend, 0) ||
-        brunt_reserve((void **)&f->in, &f->in_capacity, points * sizeof *f->in, 0) ||
-        brunt_reserve((void **)&f->delta, &f->delta_capacity, points * sizeof *f->delta, 0))
+    if (BRUNT_RESERVE(f->blend, nodes, 0) || BRUNT_RESERVE(f->in, points, 0) || BRUNT_RESERVE(f->delta, points, 0))
         return -1;
     memset(f->blend, 0, nodes * sizeof *f->blend);
     return 0;

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "contact/distance/point_facet.h"
@@ -98,11 +99,8 @@ static inline bool make_unit(double n[3]) {
 }
 
 // Room for one more, keeping what is there.
-#define GROW(w, what)                                                                                                  \
-    brunt_reserve((void **)&(w)->what, &(w)->what##_capacity, ((size_t)(w)->what##_count + 1) * sizeof *(w)->what,     \
-                  (size_t)(w)->what##_count * sizeof *(w)->what)
-#define RESERVE(w, what, count)                                                                                        \
-    brunt_reserve((void **)&(w)->what, &(w)->what##_capacity, (size_t)(count) * sizeof *(w)->what, 0)
+#define GROW(w, what) BRUNT_GROW((w)->what)
+#define RESERVE(w, what, count) BRUNT_RESERVE((w)->what, (size_t)(count), 0)
 
 static inline bool overlap(const double low[3], const double high[3], const double low2[3], const double high2[3]) {
     for (int a = 0; a < 3; a++)

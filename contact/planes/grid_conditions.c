@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/memory.h"
+#include "base/array.h"
 
 // Nodes beyond the axis of rings are the images of those before it: they get what those get, mirrored. On the axis
 // there is no radial velocity.
@@ -114,7 +114,7 @@ static void apply_plane(brunt_body *body, bool rings, brunt_wall *wall, double t
 
 int brunt_condition_clear(brunt_body *body) {
     const size_t bytes = (size_t)body->grid.slot_count * BRUNT_BLOCK_NODES;
-    if (brunt_reserve((void **)&body->grid.held, &body->grid.held_capacity, bytes, 0)) return -1;
+    if (BRUNT_RESERVE(body->grid.held, bytes, 0)) return -1;
     memset(body->grid.held, 0, bytes);
     return 0;
 }

@@ -23,6 +23,7 @@
 #include <string.h>
 
 #include "contact/contact.h"
+#include "base/array.h"
 #include "base/memory.h"
 #include "mpm/mpm_body.h"
 #include "grid/bspline.h"
@@ -163,10 +164,8 @@ static int add_entries(brunt_wall_workspace *w, brunt_body *body, int32_t b, int
     const brunt_grid *grid = &body->grid;
     const int dim = grid->dim, n = grid->order + 1;
     const size_t room = 64 * BRUNT_MAX_IMAGES;
-    if (brunt_reserve((void **)&w->entries, &w->entries_capacity, ((size_t)w->entry_count + room) * sizeof(entry),
-                      (size_t)w->entry_count * sizeof(entry)) ||
-        brunt_reserve((void **)&w->supports, &w->supports_capacity, ((size_t)w->support_count + room) * sizeof(support),
-                      (size_t)w->support_count * sizeof(support)))
+    if (BRUNT_RESERVE(w->entries, (size_t)w->entry_count + room, (size_t)w->entry_count) ||
+        BRUNT_RESERVE(w->supports, (size_t)w->support_count + room, (size_t)w->support_count))
         return -1;
     int32_t base[3], first = w->entry_count;
     double u[3], weight[3][4];
@@ -213,9 +212,7 @@ static int add_levers(brunt_wall_workspace *w, const brunt_body *body, int32_t b
     const brunt_grid *grid = &body->grid;
     const int dim = grid->dim, n = grid->order + 1;
     const size_t used = (size_t)w->lever_count;
-    if (brunt_reserve((void **)&w->levers, &w->levers_capacity, (used + (size_t)t->count) * sizeof(lever),
-                      used * sizeof(lever)))
-        return -1;
+    if (BRUNT_RESERVE(w->levers, used + (size_t)t->count, used)) return -1;
     t->levers = w->lever_count, w->lever_count += t->count;
     lever *levers = w->levers + t->levers;
     memset(levers, 0, (size_t)t->count * sizeof *levers);
@@ -296,9 +293,7 @@ static int find_touches(brunt_wall_workspace *w, brunt_body *body, const brunt_w
             }
             double gap = distance - (double)reach[s] * sqrt(square);
             if (gap > near) continue;
-            if (brunt_reserve((void **)&w->touches, &w->touches_capacity, (size_t)(w->touch_count + 1) * sizeof(touch),
-                              (size_t)w->touch_count * sizeof(touch)))
-                return -1;
+            if (BRUNT_RESERVE(w->touches, (size_t)(w->touch_count + 1), (size_t)w->touch_count)) return -1;
             touch *t = &w->touches[w->touch_count];
             *t = (touch){.slot = s,
                          .wall = index,
@@ -460,9 +455,7 @@ int brunt_planes_apply(brunt_body *body, brunt_wall *walls, int wall_count, cons
                        int mirror_count, double time, double dt, brunt_wall_workspace **workspace) {
     if (!*workspace) *workspace = brunt_alloc(sizeof **workspace);
     brunt_wall_workspace *w = *workspace;
-    if (!w || brunt_reserve((void **)&w->index, &w->index_capacity,
-                            (size_t)body->grid.slot_count * BRUNT_BLOCK_NODES * sizeof *w->index, 0))
-        return -1;
+    if (!w || BRUNT_RESERVE(w->index, (size_t)body->grid.slot_count * BRUNT_BLOCK_NODES, 0)) return -1;
     w->touch_count = w->entry_count = w->lever_count = w->support_count = 0;
     int failed = 0;
     for (int k = 0; k < wall_count && !failed; k++) {

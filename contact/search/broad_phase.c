@@ -74,9 +74,7 @@ static int find_pairs(const brunt_contact_context *m, brunt_node_to_facet *f) {
         for (int32_t k = f->box[i].sheet ? i : i + 1;
              k < f->box_count && f->box[k].low[0] - 2 * f->range <= f->box[i].high[0]; k++) {
             if (!overlap(&f->box[i], &f->box[k], 2 * f->range) || !meets(m, &f->box[i], &f->box[k])) continue;
-            if (brunt_reserve((void **)&f->near, &f->near_capacity, ((size_t)f->near_count + 1) * sizeof *f->near,
-                              (size_t)f->near_count * sizeof *f->near))
-                return -1;
+            if (BRUNT_GROW(f->near)) return -1;
             f->near[f->near_count++] = (near_pair){i, k};
         }
     if (RESERVE(f, near_first, f->box_count + 2) || RESERVE(f, near_list, 2 * f->near_count + 1)) return -1;

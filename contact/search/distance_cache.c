@@ -4,9 +4,7 @@
 // Room for what is remembered of so many nodes.
 int brunt_distance_cache_fit(brunt_node_to_facet *f, int32_t nodes, int32_t kept) {
     return RESERVE(f, found, nodes + 1) || RESERVE(f, hits, BRUNT_MAX_HITS * (nodes + 1)) ||
-                   brunt_reserve((void **)&f->last, &f->last_capacity, ((size_t)nodes + 1) * sizeof *f->last,
-                                 (size_t)kept * sizeof *f->last) ||
-                   RESERVE(f, quiet, nodes + 1)
+                   BRUNT_RESERVE(f->last, (size_t)nodes + 1, (size_t)kept) || RESERVE(f, quiet, nodes + 1)
                ? -1
                : 0;
 }

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "contact/distance/point_facet.h"
+#include "base/array.h"
 #include "base/memory.h"
 #include "mpm/particles.h"
 
@@ -106,14 +107,13 @@ typedef bool box_fn(const void *context, int32_t i, box *out); // false: it is n
 
 static int fill_cells(cells *c, const box *room, double edge, int32_t items, box_fn *box_of, const void *context) {
     lay_cells(c, room, edge, items);
-    if (brunt_reserve((void **)&c->first, &c->first_capacity, ((size_t)c->count + 3) * sizeof *c->first, 0)) return -1;
+    if (BRUNT_RESERVE(c->first, (size_t)c->count + 3, 0)) return -1;
     memset(c->first, 0, ((size_t)c->count + 3) * sizeof *c->first);
     box b;
     for (int32_t i = 0; i < items; i++)
         if (box_of(context, i, &b)) visit_cells(c, &b, i, false);
     for (int32_t k = 2; k <= c->count + 1; k++) c->first[k] += c->first[k - 1];
-    if (brunt_reserve((void **)&c->item, &c->item_capacity, ((size_t)c->first[c->count + 1] + 1) * sizeof *c->item, 0))
-        return -1;
+    if (BRUNT_RESERVE(c->item, (size_t)c->first[c->count + 1] + 1, 0)) return -1;
     for (int32_t i = 0; i < items; i++)
         if (box_of(context, i, &b)) visit_cells(c, &b, i, true);
     return 0;

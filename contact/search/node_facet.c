@@ -62,8 +62,8 @@ static void look_at_sheets(const brunt_contact_surface *s, int32_t n, looker *l)
 // Keeps what a feature bears with, which is made once.
 static void keep_master(brunt_node_to_facet *f, const brunt_contact_surface *s, hit *h, const double x[3], int worker) {
     struct masters *of = &f->masters[worker];
-    const size_t used = (size_t)of->count * sizeof *of->master;
-    of->failed = of->failed || brunt_reserve((void **)&of->master, &of->capacity, used + sizeof *of->master, used);
+    const size_t used = (size_t)of->count;
+    of->failed = of->failed || BRUNT_RESERVE_IN(of->master, of->capacity, used + 1, used);
     if (of->failed) return;
     h->worker = worker, h->master = of->count;
     brunt_node_to_facet_master(s, h, x, &of->master[of->count++]);

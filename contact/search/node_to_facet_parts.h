@@ -6,6 +6,7 @@
 
 #include "contact/search/node_to_facet.h"
 #include "contact/distance/feature.h"
+#include "base/array.h"
 #include "base/memory.h"
 
 enum { BRUNT_MAX_HITS = 7, BRUNT_MAX_NEAR = 32 };
@@ -133,8 +134,7 @@ struct brunt_node_to_facet {
     size_t run_capacity;
 };
 
-#define RESERVE(f, what, count)                                                                                        \
-    brunt_reserve((void **)&(f)->what, &(f)->what##_capacity, (size_t)(count) * sizeof *(f)->what, 0)
+#define RESERVE(f, what, count) BRUNT_RESERVE((f)->what, (size_t)(count), 0)
 
 // Someone who looks around: which bodies may be touched (their boxes are that near), and which may have been entered.
 typedef struct looker {

@@ -89,8 +89,8 @@ static int note_sight(const job *j, struct sight *sight, int32_t b, int64_t s, c
     const double before = brunt_node_to_facet_approach(skin, h, x, old, skin->old);
     const double target = brunt_node_to_facet_target(skin, h->gap, fmin(before, LIFT * approach), before, j->m->dt);
     if (!(approach < target + 1e-6 * skin->mean_edge / j->m->dt)) return 0;
-    size_t used = (size_t)sight->count * sizeof *sight->seen;
-    if (brunt_reserve((void **)&sight->seen, &sight->capacity, used + sizeof *sight->seen, used)) return -1;
+    const size_t used = (size_t)sight->count;
+    if (BRUNT_RESERVE_IN(sight->seen, sight->capacity, used + 1, used)) return -1;
     struct seen *seen = &sight->seen[sight->count++];
     *seen = (struct seen){.block = b, .particle = s, .h = *h};
     memcpy(seen->x, x, sizeof seen->x);
@@ -172,8 +172,7 @@ static int make_support(brunt_node_to_facet *f, const brunt_body *body, int k, c
         real *node = brunt_grid_node(&body->grid, image[i]);
         if (!node || !(node[BRUNT_NODE_MASS] > 0)) continue;
         int64_t number = (node - body->grid.nodes) / BRUNT_NODE_REALS;
-        size_t used = (size_t)f->grid_count * sizeof *f->grid;
-        if (brunt_reserve((void **)&f->grid, &f->grid_capacity, used + sizeof *f->grid, used)) return -1;
+        if (BRUNT_GROW(f->grid)) return -1;
         struct grid_support *entry = &f->grid[f->grid_count];
         *entry = (struct grid_support){.mpm = k, .node = number, .support = support};
         for (int a = 0; a < 3; a++) entry->sign[a] = (double)sign[i][a];
@@ -257,11 +256,11 @@ static int add_point(const brunt_contact_context *m, brunt_node_to_facet *f, bru
 }
 
 static int fit_room(brunt_node_to_facet *f, const brunt_body *body, int k, int threads) {
-    const size_t bytes = (size_t)body->grid.slot_count * BRUNT_BLOCK_NODES * sizeof(int32_t);
-    if (brunt_reserve((void **)&f->node_support[k], &f->node_support_capacity[k], bytes, 0) ||
+    const size_t held = (size_t)body->grid.slot_count * BRUNT_BLOCK_NODES;
+    if (BRUNT_RESERVE_IN(f->node_support[k], f->node_support_capacity[k], held, 0) ||
         RESERVE(f, run, body->grid.block_count + 1))
         return -1;
-    memset(f->node_support[k], 0, bytes);
+    memset(f->node_support[k], 0, held * sizeof *f->node_support[k]);
     if (!f->sight) {
         if (!(f->sight = brunt_alloc((size_t)threads * sizeof *f->sight))) return -1;
         f->sight_count = threads;

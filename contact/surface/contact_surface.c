@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 
 enum { GRAIN = BRUNT_SURFACE_GRAIN };
@@ -104,11 +105,8 @@ static int add_body(brunt_contact_surface *s, int k) {
     int32_t count = number ? number_nodes(fem, &found, s->node_count, number) : -1;
     const int32_t had = s->node_count, faces = s->face_count, n = had + (count > 0 ? count : 0) * sides,
                   f = faces + found.count * sides;
-    bool failed = count < 0 ||
-                  brunt_reserve((void **)&s->node, &s->node_capacity, ((size_t)n + 1) * sizeof *s->node,
-                                (size_t)had * sizeof *s->node) ||
-                  brunt_reserve((void **)&s->face, &s->face_capacity, ((size_t)f + 1) * sizeof *s->face,
-                                (size_t)faces * sizeof *s->face);
+    bool failed = count < 0 || BRUNT_RESERVE(s->node, (size_t)n + 1, (size_t)had) ||
+                  BRUNT_RESERVE(s->face, (size_t)f + 1, (size_t)faces);
     for (int32_t i = 0; !failed && i < fem->node_count; i++)
         if (number[i] >= 0) s->node[number[i]] = i;
     for (int32_t i = 0; !failed && i < found.count; i++)
@@ -124,8 +122,7 @@ static int add_body(brunt_contact_surface *s, int k) {
 
 // Owners of nodes and faces, and what follows from the lists of them.
 int brunt_surface_relate(brunt_contact_surface *s) {
-    if (brunt_reserve((void **)&s->body, &s->body_capacity, ((size_t)s->node_count + 1) * sizeof *s->body, 0))
-        return -1;
+    if (BRUNT_RESERVE(s->body, (size_t)s->node_count + 1, 0)) return -1;
     for (int k = 0; k < s->fem_count; k++) {
         const int32_t index = s->fem[k]->index, nodes = s->node_end[k] - s->node_range[k];
         for (int32_t n = s->node_range[k]; n < s->node_range[k + 1]; n++) s->body[n] = index;

@@ -72,7 +72,7 @@ typedef struct brunt_contact_surface {
     bool *ragged; // of each body by its index among all, to the last of the meshes: its surface may be ragged, since
                   // it may lose elements; NULL where none do
     int32_t *next_node, (*next_face)[4];
-    void *spare;
+    char *spare;
     size_t node_room, face_room, node_capacity, body_capacity, face_capacity, next_node_capacity, next_face_capacity,
         spare_capacity, ring_first_capacity, ring_face_capacity;
     double (*low)[3], (*high)[3]; // [m] bounds of each body's surface

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 
 // The other side of a sheet: `nodes` nodes and `faces` faces once more, behind them, facing the other way.
@@ -98,18 +99,15 @@ int brunt_membrane_patches_make(brunt_contact_surface *s) {
         const size_t at = (size_t)(s->face_first[n + 1] - s->face_first[n]);
         most = at > most ? at : most;
     }
-    if (brunt_reserve(&s->spare, &s->spare_capacity, (4 * most * most + 1) * sizeof(int32_t), 0) ||
-        brunt_reserve((void **)&s->ring_first, &s->ring_first_capacity,
-                      ((size_t)s->node_count + 2) * sizeof *s->ring_first, 0))
+    if (BRUNT_RESERVE(s->spare, (4 * most * most + 1) * sizeof(int32_t), 0) ||
+        BRUNT_RESERVE(s->ring_first, (size_t)s->node_count + 2, 0))
         return -1;
-    int32_t *list = s->spare;
+    int32_t *list = (void *)s->spare;
     s->ring_first[0] = 0;
     for (int k = 0; k < s->fem_count; k++)
         for (int32_t n = s->node_range[k]; n < s->node_range[k + 1]; n++) {
             const int32_t count = s->self[k] && n < s->node_end[k] ? list_rings(s, n, list) : 0;
-            if (brunt_reserve((void **)&s->ring_face, &s->ring_face_capacity, (used + (size_t)count + 1) * sizeof *list,
-                              used * sizeof *list))
-                return -1;
+            if (BRUNT_RESERVE(s->ring_face, used + (size_t)count + 1, used)) return -1;
             memcpy(s->ring_face + used, list, (size_t)count * sizeof *list);
             used += (size_t)count;
             s->ring_first[n + 1] = (int32_t)used;

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 
 // Numbers of nodes and faces of a body, of one side: first and count.
@@ -55,9 +56,9 @@ static void renew_body(brunt_contact_surface *s, int k, int32_t sides, const ext
 // An array by nodes in their new order; those that are new get zeros.
 static int reorder(brunt_contact_surface *s, void *array, size_t bytes) {
     if (!array) return 0;
-    if (brunt_reserve(&s->spare, &s->spare_capacity, (size_t)s->node_count * bytes + 1, 0)) return -1;
+    if (BRUNT_RESERVE(s->spare, (size_t)s->node_count * bytes + 1, 0)) return -1;
     for (int32_t n = 0; n < s->node_count; n++) {
-        char *to = (char *)s->spare + (size_t)n * bytes;
+        char *to = s->spare + (size_t)n * bytes;
         if (s->change.node_was[n] < 0)
             memset(to, 0, bytes);
         else
@@ -99,10 +100,8 @@ static int list_anew(brunt_contact_surface *s) {
         faces += sides * (int64_t)(s->shell[k].changed ? s->shell[k].key_count : was.faces);
     }
     brunt_surface_change *c = &s->change;
-    if (brunt_reserve((void **)&s->next_node, &s->next_node_capacity, ((size_t)nodes + 1) * sizeof *s->node, 0) ||
-        brunt_reserve((void **)&s->next_face, &s->next_face_capacity, ((size_t)faces + 1) * sizeof *s->face, 0) ||
-        brunt_reserve((void **)&c->node_was, &c->node_was_capacity, ((size_t)nodes + 1) * sizeof(int32_t), 0) ||
-        brunt_reserve((void **)&c->face_now, &c->face_now_capacity, ((size_t)s->face_count + 1) * sizeof(int32_t), 0) ||
+    if (BRUNT_RESERVE(s->next_node, (size_t)nodes + 1, 0) || BRUNT_RESERVE(s->next_face, (size_t)faces + 1, 0) ||
+        BRUNT_RESERVE(c->node_was, (size_t)nodes + 1, 0) || BRUNT_RESERVE(c->face_now, (size_t)s->face_count + 1, 0) ||
         brunt_surface_reserve(s, (int32_t)nodes, (int32_t)faces))
         return -1;
     c->node_count = s->node_count, c->face_count = s->face_count;

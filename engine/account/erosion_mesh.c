@@ -14,6 +14,7 @@
 #include <string.h>
 
 #include "base/error.h"
+#include "base/array.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "world/world.h"
@@ -238,8 +239,7 @@ static int ascending(const void *left, const void *right) {
 static int32_t list_corners(brunt_world *world, const brunt_fem_body *fem, int32_t count) {
     struct brunt_erosion_work *work = world->erosion.work;
     const int nodes = fem->element->nodes;
-    const size_t bytes = (size_t)count * (size_t)nodes * sizeof *work->corner;
-    if (brunt_reserve((void **)&work->corner, &work->corner_capacity, bytes, 0)) return -1;
+    if (BRUNT_RESERVE(work->corner, (size_t)count * (size_t)nodes, 0)) return -1;
     int32_t found = 0;
     for (int32_t i = 0; i < count; i++)
         for (int a = 0; a < nodes; a++) work->corner[found++] = fem->element_node[(int64_t)work->slots[i] * nodes + a];

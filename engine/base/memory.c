@@ -37,18 +37,6 @@ void brunt_free(void *memory) {
     free(block);
 }
 
-int brunt_reserve(void **memory, size_t *capacity, size_t bytes, size_t keep) {
-    if (*capacity >= bytes && *memory) return 0;
-    size_t grown = bytes + bytes / 2;
-    void *larger = brunt_alloc(grown);
-    if (!larger) return -1;
-    if (keep) memcpy(larger, *memory, keep);
-    brunt_free(*memory);
-    *memory = larger;
-    *capacity = grown;
-    return 0;
-}
-
 size_t brunt_memory_live(void) { return atomic_load(&live); }
 size_t brunt_memory_peak(void) { return atomic_load(&peak); }
 int64_t brunt_memory_calls(void) { return atomic_load(&calls); }

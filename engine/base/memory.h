@@ -8,10 +8,6 @@
 void *brunt_alloc(size_t bytes);
 void brunt_free(void *memory);
 
-// Makes `*memory` hold at least `bytes`, keeping its first `keep` bytes; grows by half to stay rare. Returns 0, or -1
-// when out of memory.
-int brunt_reserve(void **memory, size_t *capacity, size_t bytes, size_t keep);
-
 size_t brunt_memory_live(void);   // [bytes] handed out and not given back
 size_t brunt_memory_peak(void);   // [bytes] the most that was ever live
 int64_t brunt_memory_calls(void); // allocations made so far: a step after warm-up must not change it

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/simd.h"
 #include "fem/layout.h"
+#include "base/array.h"
 #include "base/memory.h"
 
 typedef struct element_needs {
@@ -350,7 +351,7 @@ size_t brunt_fem_tile_reals(const brunt_fem_body *body) {
 int brunt_fem_workspace_fit(brunt_fem_workspace *work, const brunt_fem_body *body) {
     size_t reals = brunt_fem_tile_reals(body);
     if (body->erodes_inverted) reals += (size_t)body->scalar_count * BRUNT_FEM_TILE;
-    return brunt_reserve(&work->memory, &work->capacity, reals * sizeof(real), 0);
+    return BRUNT_RESERVE_IN(work->memory, work->capacity, reals, 0);
 }
 
 void brunt_fem_workspace_free(brunt_fem_workspace *work) {

@@ -202,7 +202,7 @@ brunt_fem_share brunt_fem_single_look(brunt_fem_single *single, const brunt_fem_
                                       double dt, brunt_fem_workspace *work);
 
 struct brunt_fem_workspace {
-    void *memory;
+    real *memory;
     size_t capacity;
 };                                                                                  // of a thread, for any body
 int brunt_fem_workspace_fit(brunt_fem_workspace *work, const brunt_fem_body *body); // 0, or -1: out of memory

@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 
 void brunt_topology_free(brunt_surface_topology *shell) {
@@ -121,9 +122,7 @@ static int list_faces(brunt_surface_topology *shell, const brunt_fem_body *fem) 
     int32_t count = 0;
     for (int32_t r = 0; r < shell->elements; r++) {
         if (!shell->open[r]) continue;
-        if (brunt_reserve((void **)&shell->key, &shell->key_capacity,
-                          ((size_t)count + (size_t)faces) * sizeof *shell->key, (size_t)count * sizeof *shell->key))
-            return -1;
+        if (BRUNT_RESERVE(shell->key, (size_t)count + (size_t)faces, (size_t)count)) return -1;
         for (int f = 0; f < faces; f++)
             if (shell->open[r] >> f & 1) shell->key[count++] = r * faces + f;
     }

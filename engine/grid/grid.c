@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/hash.h"
+#include "base/array.h"
 #include "base/memory.h"
 
 void brunt_grid_init(brunt_grid *grid, int dim, int order, double h, const double origin[3]) {
@@ -107,14 +108,10 @@ static uint64_t corner_shift(const brunt_grid *grid, int corner) {
 
 int brunt_grid_set_blocks(brunt_grid *grid, const uint64_t *keys, int32_t count) {
     size_t n = (size_t)count, most = n * (size_t)grid->corners;
-    if (brunt_reserve((void **)&grid->block_key, &grid->block_key_capacity, n * sizeof *grid->block_key, 0) ||
-        brunt_reserve((void **)&grid->blocks, &grid->blocks_capacity, n * sizeof *grid->blocks, 0) ||
-        brunt_reserve((void **)&grid->bin_start, &grid->bin_start_capacity,
-                      n * BRUNT_BIN_STARTS * sizeof *grid->bin_start, 0) ||
-        brunt_reserve((void **)&grid->scatter, &grid->scatter_capacity,
-                      n * (size_t)grid->span_nodes * BRUNT_NODE_REALS * sizeof(real), 0) ||
-        brunt_reserve((void **)&grid->slot_key, &grid->slot_key_capacity, (most + 1) * sizeof *grid->slot_key, 0) ||
-        brunt_reserve((void **)&grid->spare_key, &grid->spare_key_capacity, (most + 1) * sizeof *grid->spare_key, 0))
+    if (BRUNT_RESERVE(grid->block_key, n, 0) || BRUNT_RESERVE(grid->blocks, n, 0) ||
+        BRUNT_RESERVE(grid->bin_start, n * BRUNT_BIN_STARTS, 0) ||
+        BRUNT_RESERVE(grid->scatter, n * (size_t)grid->span_nodes * BRUNT_NODE_REALS, 0) ||
+        BRUNT_RESERVE(grid->slot_key, most + 1, 0) || BRUNT_RESERVE(grid->spare_key, most + 1, 0))
         return -1;
     memmove(grid->block_key, keys, n * sizeof *keys);
     grid->block_count = count;
@@ -131,9 +128,8 @@ int brunt_grid_set_blocks(brunt_grid *grid, const uint64_t *keys, int32_t count)
     }
     if (from != grid->slot_key) memcpy(grid->slot_key, from, (size_t)slots * sizeof *from);
     grid->slot_count = slots;
-    if (brunt_reserve((void **)&grid->slots, &grid->slots_capacity, (size_t)slots * sizeof *grid->slots, 0) ||
-        brunt_reserve((void **)&grid->nodes, &grid->nodes_capacity,
-                      (size_t)slots * BRUNT_BLOCK_NODES * BRUNT_NODE_REALS * sizeof(real), 0) ||
+    if (BRUNT_RESERVE(grid->slots, (size_t)slots, 0) ||
+        BRUNT_RESERVE(grid->nodes, (size_t)slots * BRUNT_BLOCK_NODES * BRUNT_NODE_REALS, 0) ||
         table_build(&grid->slot_table, grid->slot_key, slots))
         return -1;
 

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/simd.h"
+#include "base/array.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 
@@ -58,9 +59,7 @@ typedef struct job {
 
 static bool range_miss(range *r, uint64_t key) {
     if (r->missing_count && r->missing[r->missing_count - 1] == key) return true;
-    if (brunt_reserve((void **)&r->missing, &r->missing_capacity, (size_t)(r->missing_count + 1) * sizeof key,
-                      (size_t)r->missing_count * sizeof key))
-        return false;
+    if (BRUNT_RESERVE(r->missing, (size_t)(r->missing_count + 1), (size_t)r->missing_count)) return false;
     r->missing[r->missing_count++] = key;
     return true;
 }
@@ -222,8 +221,7 @@ static int renew_blocks(job *j, int ranges, bool first) {
     brunt_grid *grid = j->grid;
     int64_t most = first ? 0 : grid->block_count;
     for (int q = 0; q < ranges; q++) most += j->ranges[q].missing_count;
-    if (brunt_reserve((void **)&j->room->keys, &j->room->keys_capacity, (size_t)(most + 1) * sizeof(uint64_t), 0))
-        return -1;
+    if (BRUNT_RESERVE(j->room->keys, (size_t)(most + 1), 0)) return -1;
     uint64_t *keys = j->room->keys;
     int64_t n = 0;
     if (!first)
@@ -266,12 +264,10 @@ static int sort_ranges(job *j, int ranges, int threads, brunt_timer *timer, brun
             continue;
         }
         for (int q = 0; q < ranges; q++)
-            if (brunt_reserve((void **)&j->ranges[q].count, &j->ranges[q].count_capacity,
-                              (size_t)grid->block_count * sizeof(int32_t), 0))
+            if (BRUNT_RESERVE(j->ranges[q].count, (size_t)grid->block_count, 0))
                 return brunt_fail(error, BRUNT_FAILED, "out of memory while sorting particles");
         brunt_parallel(threads, ranges, 1, count_blocks, j, timer);
-        if (brunt_reserve((void **)&j->room->total, &j->room->total_capacity, (size_t)grid->block_count * sizeof *total,
-                          0))
+        if (BRUNT_RESERVE(j->room->total, (size_t)grid->block_count, 0))
             return brunt_fail(error, BRUNT_FAILED, "out of memory while sorting particles");
         total = j->room->total;
         bool empty = false;

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/simd.h"
+#include "base/array.h"
 #include "base/memory.h"
 #include "grid/bspline.h"
 #include "grid/node.h"
@@ -755,9 +756,9 @@ int brunt_workspace_fit(brunt_workspace *work, const brunt_grid *grid, int32_t m
     int n = grid->order + 1, arrays = (int)(sizeof work->out / sizeof work->out[0]) + 3;
     int64_t window = ((int64_t)grid->span_nodes + 1) * 8;
     int64_t planes = (int64_t)n * (grid->dim == 3 ? 16 * n * n : 8 * n) * 8;
-    size_t bytes = (size_t)(window + planes + arrays * stride + 64) * sizeof(real);
-    if (work->memory && work->capacity >= bytes && work->stride >= stride) return 0;
-    if (brunt_reserve(&work->memory, &work->capacity, bytes, 0)) return -1;
+    size_t reals = (size_t)(window + planes + arrays * stride + 64);
+    if (work->memory && work->capacity / sizeof(real) >= reals && work->stride >= stride) return 0;
+    if (BRUNT_RESERVE_IN(work->memory, work->capacity, reals, 0)) return -1;
     work->stride = stride;
     work->window = work->memory;
     work->planes = work->window + window;

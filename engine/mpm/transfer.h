@@ -11,7 +11,7 @@
 enum { BRUNT_OUT_STRETCH = 21, BRUNT_OUT_HOOP = 22, BRUNT_OUT_ZERO = 23 };
 
 typedef struct brunt_workspace {
-    void *memory;
+    real *memory;
     size_t capacity;
     int64_t stride; // reals an array of particles takes
     real *window;   // nodes a block's bins touch

@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 #include "base/simd.h"
-#include "base/memory.h"
+#include "base/array.h"
 #include "mpm/sort.h"
 #include "base/parallel.h"
 #include "world/world.h"
@@ -148,10 +148,8 @@ static int sort_bodies(brunt_world *world, brunt_error *error) {
         int32_t most = 0;
         for (int32_t b = 0; b < grid->block_count; b++)
             if (grid->blocks[b].count > most) most = grid->blocks[b].count;
-        size_t reports = (size_t)grid->block_count * sizeof *body->report,
-               sums = (size_t)grid->slot_count * sizeof *world->scratch.node_sums;
-        if (brunt_reserve((void **)&body->report, &body->report_capacity, reports, 0) ||
-            brunt_reserve((void **)&world->scratch.node_sums, &world->scratch.node_sums_capacity, sums, 0))
+        if (BRUNT_RESERVE(body->report, (size_t)grid->block_count, 0) ||
+            BRUNT_RESERVE(world->scratch.node_sums, (size_t)grid->slot_count, 0))
             return fail(world, body, error, "out of memory");
         for (int t = 0; t < world->settings.threads; t++)
             if (brunt_workspace_fit(&world->scratch.points[t], grid, most))

@@ -10,6 +10,7 @@
 #include "geometry/axis.h"
 #include "geometry/fill.h"
 #include "base/simd.h"
+#include "base/array.h"
 #include "base/memory.h"
 #include "mpm/sort.h"
 #include "mpm/courant.h"
@@ -540,8 +541,7 @@ static int map_grid_pairs(brunt_world *world, brunt_error *error) {
 int brunt_reports_make(brunt_world *world, brunt_error *error) {
     for (int i = 0; i < world->bodies.mpm_count; i++) {
         brunt_body *body = &world->bodies.mpm[i];
-        if (brunt_reserve((void **)&body->report, &body->report_capacity,
-                          (size_t)body->grid.block_count * sizeof *body->report, 0))
+        if (BRUNT_RESERVE(body->report, (size_t)body->grid.block_count, 0))
             return brunt_fail(error, BRUNT_FAILED, "out of memory");
         real *const *v = brunt_field(&body->particles, BRUNT_FIELD_velocity);
         for (int32_t b = 0; b < body->grid.block_count; b++) {

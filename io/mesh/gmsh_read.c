@@ -11,6 +11,7 @@
 #include "io/mesh/gmsh_cursor.h"
 #include "io/mesh/gmsh_file.h"
 #include "io/mesh/gmsh_nodes.h"
+#include "base/array.h"
 #include "base/memory.h"
 
 const gmsh_type gmsh_types[GMSH_TYPE_LIMIT] = {
@@ -30,14 +31,12 @@ const gmsh_type gmsh_types[GMSH_TYPE_LIMIT] = {
 // Physical groups are searched one by one, for every run of elements.
 enum { PHYSICAL_LIMIT = 4096 };
 
-// Room in `*array` for `more` things of `bytes` each after `used`. False, with the status set: out of memory.
-static bool grow(gmsh_cursor *c, void *array, size_t *capacity, size_t used, size_t more, size_t bytes) {
-    if (c->status) return false;
-    void *memory;
-    memcpy(&memory, array, sizeof memory);
-    if (brunt_reserve(&memory, capacity, (used + more) * bytes, used * bytes)) gmsh_out_of_memory(c);
-    memcpy(array, &memory, sizeof memory);
-    return !c->status;
+// Whether `array` has room for `more` elements after the `used` it keeps. False, with the status set: out of memory.
+#define ROOM(c, array, capacity, used, more)                                                                           \
+    (!(c)->status && has_room((c), BRUNT_RESERVE_IN(array, capacity, (size_t)(used) + (more), (size_t)(used))))
+static bool has_room(gmsh_cursor *c, int status) {
+    if (status) gmsh_out_of_memory(c);
+    return !status;
 }
 
 // ---------------------------------------------------------------------------------------------------- physical groups
@@ -55,8 +54,7 @@ static int32_t physical_index(gmsh_cursor *c, int dimension, int32_t tag) {
         if (file->physicals[p].tag == tag && file->physicals[p].dimension == dimension) return p;
     if (file->physical_count == PHYSICAL_LIMIT)
         gmsh_complain(c, c->at, "more than %d physical groups", (int)PHYSICAL_LIMIT);
-    if (!grow(c, &file->physicals, &file->physical_capacity, (size_t)file->physical_count, 1, sizeof *file->physicals))
-        return -1;
+    if (!ROOM(c, file->physicals, file->physical_capacity, file->physical_count, 1)) return -1;
     char number[16];
     int length = snprintf(number, sizeof number, "%d", (int)tag);
     gmsh_physical physical = {.dimension = dimension, .tag = tag, .name = copy_text(number, (size_t)length)};
@@ -70,9 +68,7 @@ static int32_t physical_index(gmsh_cursor *c, int dimension, int32_t tag) {
 
 static void add_membership(gmsh_cursor *c, int32_t physical) {
     gmsh_file *file = c->file;
-    if (physical < 0 ||
-        !grow(c, &file->memberships, &file->membership_capacity, (size_t)file->membership_count, 1, sizeof(int32_t)))
-        return;
+    if (physical < 0 || !ROOM(c, file->memberships, file->membership_capacity, file->membership_count, 1)) return;
     file->memberships[file->membership_count++] = physical;
 }
 
@@ -145,7 +141,7 @@ static void read_entity(gmsh_cursor *c, int dimension) {
         gmsh_begin_line(c);
         gmsh_tag(c, "the tag of an entity");
     }
-    if (!grow(c, &file->entities, &file->entity_capacity, (size_t)file->entity_count, 1, sizeof entity)) return;
+    if (!ROOM(c, file->entities, file->entity_capacity, file->entity_count, 1)) return;
     file->entities[file->entity_count++] = entity;
 }
 
@@ -174,7 +170,7 @@ static const gmsh_type *element_type(gmsh_cursor *c, const char *at, int64_t typ
 
 static gmsh_run *add_run(gmsh_cursor *c, int32_t type, int32_t physical_first, int32_t physical_count) {
     gmsh_file *file = c->file;
-    if (!grow(c, &file->runs, &file->run_capacity, (size_t)file->run_count, 1, sizeof *file->runs)) return NULL;
+    if (!ROOM(c, file->runs, file->run_capacity, file->run_count, 1)) return NULL;
     gmsh_run *run = &file->runs[file->run_count++];
     *run = (gmsh_run){.type = type,
                       .first = file->element_node_count,
@@ -200,8 +196,8 @@ static void read_element_nodes(gmsh_cursor *c, int nodes, int bytes) {
 
 static bool room_for_elements(gmsh_cursor *c, int64_t count, int nodes) {
     gmsh_file *file = c->file;
-    return grow(c, &file->element_nodes, &file->element_node_capacity, file->element_node_count,
-                (size_t)count * (size_t)nodes, sizeof *file->element_nodes);
+    return ROOM(c, file->element_nodes, file->element_node_capacity, file->element_node_count,
+                (size_t)count * (size_t)nodes);
 }
 
 // The tags of one element: the first is its physical group, 0 for none.

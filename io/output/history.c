@@ -10,6 +10,7 @@
 
 #include "io/file/atomic_file.h"
 #include "base/error.h"
+#include "base/array.h"
 #include "base/memory.h"
 #include "io/output/places.h"
 
@@ -17,13 +18,11 @@
 
 static void add(brunt_history *h, const char *name, const char *unit, double value) {
     if (h->declaring) {
-        void *memory = h->columns;
-        size_t used = sizeof(column) * (size_t)h->column_count;
-        if (brunt_reserve(&memory, &h->columns_capacity, used + sizeof(column), used)) {
+        const size_t used = (size_t)h->column_count;
+        if (BRUNT_RESERVE(h->columns, used + 1, used)) {
             h->out_of_memory = true;
             return;
         }
-        h->columns = memory;
         column *c = &h->columns[h->column_count++];
         memset(c, 0, sizeof *c);
         snprintf(c->name, sizeof c->name, "%s", name);
@@ -156,13 +155,11 @@ static void add_probe(brunt_history *h, brunt_world *world, const probe *p) {
     const char *const *names = n == 3 ? names3 : n == 6 ? names6 : n == 9 ? names9 : NULL;
     const double *values = NULL;
     if (!h->declaring) {
-        void *memory = h->scratch;
-        size_t bytes = sizeof(double) * (size_t)n * (size_t)brunt_body_size(world, p->body, p->info.at);
-        if (brunt_reserve(&memory, &h->scratch_capacity, bytes, 0)) {
+        const size_t count = (size_t)n * (size_t)brunt_body_size(world, p->body, p->info.at);
+        if (BRUNT_RESERVE(h->scratch, count, 0)) {
             h->out_of_memory = true;
             return;
         }
-        h->scratch = memory;
         const int64_t place = probe_place(h, world, p);
         brunt_body_read(world, p->body, p->field, h->scratch);
         if (place >= 0) values = h->scratch + (size_t)n * (size_t)place;
@@ -301,20 +298,16 @@ double brunt_history_time(const brunt_history *history) { return history->rows ?
 // ---------------------------------------------------------------------------------------------------- sampling
 
 static int keep_in_memory(brunt_history *h, brunt_error *error) {
-    void *memory = h->lines;
-    const size_t bytes = sizeof(double) * (size_t)h->column_count, used = bytes * (size_t)h->rows;
-    if (brunt_reserve(&memory, &h->lines_capacity, used + bytes, used))
+    const size_t columns = (size_t)h->column_count, used = columns * (size_t)h->rows;
+    if (BRUNT_RESERVE(h->lines, used + columns, used))
         return brunt_fail(error, BRUNT_FAILED, "out of memory after %lld history lines", (long long)h->rows);
-    h->lines = memory;
     for (int32_t c = 0; c < h->column_count; c++) h->lines[h->column_count * h->rows + c] = h->columns[c].now;
     return BRUNT_OK;
 }
 
 static int append_to_file(brunt_history *h, brunt_error *error) {
-    void *memory = h->scratch;
-    if (brunt_reserve(&memory, &h->scratch_capacity, sizeof(double) * (size_t)h->column_count, 0))
+    if (BRUNT_RESERVE(h->scratch, (size_t)h->column_count, 0))
         return brunt_fail(error, BRUNT_FAILED, "out of memory after %lld history lines", (long long)h->rows);
-    h->scratch = memory;
     for (int32_t c = 0; c < h->column_count; c++) h->scratch[c] = h->columns[c].now;
     brunt_history_print_line(h, h->scratch, h->csv);
     if (fflush(h->csv) || ferror(h->csv))

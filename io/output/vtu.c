@@ -8,6 +8,7 @@
 #include "fem/element.h"
 #include "base/error.h"
 #include "io/file/input_file.h"
+#include "base/array.h"
 #include "base/memory.h"
 #include "io/output/places.h"
 
@@ -20,10 +21,9 @@ typedef struct byte_buffer {
 } byte_buffer;
 
 static int reserve(byte_buffer *buffer, size_t more, brunt_error *error) {
-    void *memory = buffer->data;
-    int status = brunt_reserve(&memory, &buffer->capacity, buffer->size + more, buffer->size);
-    buffer->data = memory;
-    return status ? brunt_fail(error, BRUNT_FAILED, "out of memory while writing a picture") : BRUNT_OK;
+    return BRUNT_RESERVE_IN(buffer->data, buffer->capacity, buffer->size + more, buffer->size)
+               ? brunt_fail(error, BRUNT_FAILED, "out of memory while writing a picture")
+               : BRUNT_OK;
 }
 
 static void put_word(unsigned char *at, uint64_t word) {
@@ -352,20 +352,19 @@ int brunt_vtu_describe(const char *path, FILE *out, brunt_error *error) {
     // All that describes the file comes before the appended data; a collection of a million entries still fits.
     enum { LIMIT = 64 << 20 };
     size_t capacity = 0, size = 0;
-    void *memory = NULL;
+    char *text = NULL;
     int status = BRUNT_OK;
     for (;;) {
-        if (brunt_reserve(&memory, &capacity, size + 65537, size)) {
+        if (BRUNT_RESERVE_IN(text, capacity, size + 65537, size)) {
             status = brunt_fail(error, BRUNT_FAILED, "out of memory while reading %s", path);
             break;
         }
-        size_t got = fread((char *)memory + size, 1, 65536, file);
+        size_t got = fread(text + size, 1, 65536, file);
         size += got;
-        ((char *)memory)[size] = 0;
-        if (got == 0 || size > LIMIT || strstr((char *)memory, "<AppendedData")) break;
+        text[size] = 0;
+        if (got == 0 || size > LIMIT || strstr(text, "<AppendedData")) break;
     }
     fclose(file);
-    const char *text = memory;
     bool elements = !status && strstr(text, "<CellData");
     if (!status && !strstr(text, "<VTKFile"))
         status = brunt_fail(error, BRUNT_BAD_INPUT, "%s: not a VTK XML file", path);
@@ -394,6 +393,6 @@ int brunt_vtu_describe(const char *path, FILE *out, brunt_error *error) {
             fprintf(out, "picture    t = %s s  %s  %s\n", a, b, c);
         if (!strncmp(at, "<AppendedData", 13)) break;
     }
-    brunt_free(memory);
+    brunt_free(text);
     return status;
 }

@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "io/file/input_file.h"
+#include "base/array.h"
 #include "base/memory.h"
 
 static const char header[] = "kind,name,units,threads,figure,unit,median,least,rounds";
@@ -145,8 +146,8 @@ static int read_row(reader *r, char *text) {
     if (status) return status;
     for (int32_t k = 0; k < r->machine->row_count; k++)
         if (same_figure(&r->machine->rows[k], &row)) return bad(r, "a figure for the second time:", row.name);
-    const size_t used = (size_t)r->machine->row_count * sizeof row;
-    if (brunt_reserve((void **)&r->machine->rows, &r->capacity, used + sizeof row, used))
+    const size_t used = (size_t)r->machine->row_count;
+    if (BRUNT_RESERVE_IN(r->machine->rows, r->capacity, used + 1, used))
         return brunt_fail(r->error, BRUNT_FAILED, "out of memory while reading %.500s", r->machine->path);
     r->machine->rows[r->machine->row_count++] = row;
     return BRUNT_OK;

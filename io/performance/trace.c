@@ -14,6 +14,7 @@
 
 #include "io/file/atomic_file.h"
 #include "base/error.h"
+#include "base/array.h"
 #include "base/memory.h"
 
 enum { FIRST_EVENTS = 300000, MORE_EVENTS = 10000, MOST_EVENTS = 400000 };
@@ -47,13 +48,11 @@ struct brunt_trace {
 // ---------------------------------------------------------------------------------------------------- what happens
 
 static void keep(brunt_trace *trace, record r) {
-    void *memory = trace->records;
-    const size_t used = (size_t)trace->record_count * sizeof r;
-    if (brunt_reserve(&memory, &trace->record_capacity, used + sizeof r, used)) {
+    const size_t used = (size_t)trace->record_count;
+    if (BRUNT_RESERVE_IN(trace->records, trace->record_capacity, used + 1, used)) {
         trace->lost++;
         return;
     }
-    trace->records = memory;
     trace->records[trace->record_count++] = r;
 }
 

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "io/output/measures.h"
+#include "base/array.h"
 #include "base/memory.h"
 #include "io/performance/observers.h"
 #include "io/performance/progress.h"
@@ -103,11 +104,8 @@ static int write_picture(run *r, brunt_error *error) {
                                           output->float32, error);
     }
     if (status) return status;
-    void *memory = r->state.picture_times;
-    if (brunt_reserve(&memory, &r->picture_capacity, sizeof(double) * (size_t)(number + 1),
-                      sizeof(double) * (size_t)number))
+    if (BRUNT_RESERVE_IN(r->state.picture_times, r->picture_capacity, (size_t)(number + 1), (size_t)number))
         return brunt_fail(error, BRUNT_FAILED, "out of memory after %lld pictures", (long long)number);
-    r->state.picture_times = memory;
     r->state.picture_times[r->state.picture_count++] = time;
     status = path_in(r, "brunt.pvd", path, error);
     if (!status) status = brunt_pvd_write(path, r->world, r->state.picture_times, r->state.picture_count, error);

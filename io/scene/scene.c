@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "io/file/input_file.h"
 
@@ -108,18 +109,18 @@ int brunt_read_text(const char *path, char **out, size_t *size, FILE *messages) 
     const char *why;
     FILE *file = brunt_input_open(path, &why);
     size_t length = 0, capacity = 0;
-    void *text = NULL;
+    char *text = NULL;
     *out = NULL;
     *size = 0;
     bool failed = !file;
     while (!failed) {
         // One byte more than is accepted: the parser then says that the file is too large.
-        if (brunt_reserve(&text, &capacity, length + 65536, length) != 0) {
+        if (BRUNT_RESERVE_IN(text, capacity, length + 65536, length)) {
             failed = true;
             why = strerror(ENOMEM);
             break;
         }
-        size_t got = fread((char *)text + length, 1, capacity - length, file);
+        size_t got = fread(text + length, 1, capacity - length, file);
         length += got;
         if (ferror(file)) failed = true, why = strerror(errno);
         if (got == 0 || length > SCENE_TEXT_LIMIT) break;
