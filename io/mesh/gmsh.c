@@ -305,23 +305,34 @@ static void warn(FILE *warnings, const gmsh_file *file, const char *format, ...)
     va_end(arguments);
 }
 
+// What making the groups of a mesh needs, beside the group.
+typedef struct group_maker {
+    const gmsh_file *file;
+    const int32_t *number; // of the mesh, of each node of the file
+    brunt_mesh *mesh;
+    bool *wanted, *marked; // physical groups of one name; nodes of it
+    FILE *warnings;
+} group_maker;
+
 // One group of the mesh from all physical groups of a dimension with the name of `physical`.
-static int add_group(const gmsh_file *file, int32_t physical, const int32_t *number, brunt_mesh *mesh, bool *wanted,
-                     bool *marked, FILE *warnings, brunt_error *error) {
+static int add_group(group_maker *m, int32_t physical, brunt_error *error) {
+    const gmsh_file *file = m->file;
+    brunt_mesh *mesh = m->mesh;
+    bool *wanted = m->wanted, *marked = m->marked;
     const gmsh_physical *group = &file->physicals[physical];
     for (int32_t p = 0; p < file->physical_count; p++)
         wanted[p] = file->physicals[p].dimension == group->dimension && !strcmp(file->physicals[p].name, group->name);
     for (int32_t p = 0; p < physical; p++)
         if (wanted[p]) return BRUNT_OK; // made with that one
-    int32_t count = mark_group(file, wanted, number, mesh->node_count, marked);
+    int32_t count = mark_group(file, wanted, m->number, mesh->node_count, marked);
     if (!count) return BRUNT_OK;
     if (strlen(group->name) >= BRUNT_NAME_LENGTH) {
-        warn(warnings, file, "physical group '%.60s' is left out: its name is longer than %d bytes", group->name,
+        warn(m->warnings, file, "physical group '%.60s' is left out: its name is longer than %d bytes", group->name,
              BRUNT_NAME_LENGTH - 1);
         return BRUNT_OK;
     }
     if (known_group(mesh, group->name)) {
-        warn(warnings, file,
+        warn(m->warnings, file,
              "physical group '%s' of dimension %d is left out: there is one of a higher dimension with that name",
              group->name, (int)group->dimension);
         return BRUNT_OK;
@@ -352,16 +363,17 @@ static int add_surface(const gmsh_file *file, brunt_mesh *mesh, brunt_error *err
 // From physical groups of lower dimension; of a sheet those of its own as well: what loads it acts on its elements.
 static int add_groups(const selection *s, const int32_t *number, brunt_mesh *mesh, FILE *warnings, brunt_error *error) {
     const gmsh_file *file = s->file;
-    bool *wanted = brunt_alloc((size_t)file->physical_count + 1), *marked = brunt_alloc((size_t)mesh->node_count);
+    group_maker m = {.file = file, .number = number, .mesh = mesh, .warnings = warnings};
+    m.wanted = brunt_alloc((size_t)file->physical_count + 1);
+    m.marked = brunt_alloc((size_t)mesh->node_count);
     mesh->groups = brunt_alloc((size_t)(file->physical_count + 1) * sizeof *mesh->groups);
-    int status = wanted && marked && mesh->groups ? BRUNT_OK : fail_memory(file, error);
+    int status = m.wanted && m.marked && mesh->groups ? BRUNT_OK : fail_memory(file, error);
     for (int d = s->sheet ? s->dimension : s->dimension - 1; d >= 0; d--)
         for (int32_t p = 0; p < file->physical_count && !status; p++)
-            if (file->physicals[p].dimension == d)
-                status = add_group(file, p, number, mesh, wanted, marked, warnings, error);
+            if (file->physicals[p].dimension == d) status = add_group(&m, p, error);
     if (s->sheet && !status) status = add_surface(file, mesh, error);
-    brunt_free(wanted);
-    brunt_free(marked);
+    brunt_free(m.wanted);
+    brunt_free(m.marked);
     return status;
 }
 

@@ -20,6 +20,14 @@ typedef struct byte_buffer {
     size_t size, capacity;
 } byte_buffer;
 
+// A file while it is put together: its XML, and the data that follow it.
+typedef struct vtu_writer {
+    FILE *header;
+    byte_buffer appended, scratch;
+    bool float32;
+    brunt_error *error;
+} vtu_writer;
+
 static int reserve(byte_buffer *buffer, size_t more, brunt_error *error) {
     return BRUNT_RESERVE_IN(buffer->data, buffer->capacity, buffer->size + more, buffer->size)
                ? brunt_fail(error, BRUNT_FAILED, "out of memory while writing a picture")
@@ -76,8 +84,10 @@ static void put_name(FILE *out, const char *name) {
 }
 
 // Starts the element of an array in the header and its data in the appended part.
-static int append_array(FILE *header, byte_buffer *appended, byte_buffer *scratch, const brunt_vtu_array *array,
-                        int64_t count, bool float32, brunt_error *error) {
+static int append_array(vtu_writer *w, const brunt_vtu_array *array, int64_t count) {
+    FILE *header = w->header;
+    byte_buffer *scratch = &w->scratch;
+    const bool float32 = w->float32;
     static const char *const components3[] = {"X", "Y", "Z"};
     static const char *const components6[] = {"XX", "YY", "ZZ", "XY", "YZ", "XZ"};
     static const char *const components9[] = {"XX", "XY", "XZ", "YX", "YY", "YZ", "ZX", "ZY", "ZZ"};
@@ -92,45 +102,45 @@ static int append_array(FILE *header, byte_buffer *appended, byte_buffer *scratc
     put_name(header, array->name);
     fprintf(header, "\" NumberOfComponents=\"%d\"", array->components);
     for (int c = 0; names && c < array->components; c++) fprintf(header, " ComponentName%d=\"%s\"", c, names[c]);
-    fprintf(header, " format=\"appended\" offset=\"%zu\"/>\n", appended->size);
+    fprintf(header, " format=\"appended\" offset=\"%zu\"/>\n", w->appended.size);
 
     scratch->size = 0;
-    int status = reserve(scratch, values * width, error);
+    int status = reserve(scratch, values * width, w->error);
     if (status) return status;
     for (size_t i = 0; i < values; i++)
         if (array->integers)
             put_word(scratch->data + 8 * i, (uint64_t)array->integers[i]);
         else
             put_double(scratch->data + width * i, array->values[i], float32);
-    return append_compressed(appended, scratch->data, values * width, error);
+    return append_compressed(&w->appended, scratch->data, values * width, w->error);
 }
 
 // Starts an integer array of the cells. Its data are in `scratch`.
-static int append_integers(FILE *header, byte_buffer *appended, const char *type, const char *name,
-                           const byte_buffer *scratch, brunt_error *error) {
-    fprintf(header, "        <DataArray type=\"%s\" Name=\"%s\" format=\"appended\" offset=\"%zu\"/>\n", type, name,
-            appended->size);
-    return append_compressed(appended, scratch->data, scratch->size, error);
+static int append_integers(vtu_writer *w, const char *type, const char *name) {
+    fprintf(w->header, "        <DataArray type=\"%s\" Name=\"%s\" format=\"appended\" offset=\"%zu\"/>\n", type, name,
+            w->appended.size);
+    return append_compressed(&w->appended, w->scratch.data, w->scratch.size, w->error);
 }
 
-static int append_cells(FILE *header, byte_buffer *appended, byte_buffer *scratch, const brunt_vtu_grid *grid,
-                        brunt_error *error) {
+static int append_cells(vtu_writer *w, const brunt_vtu_grid *grid) {
+    FILE *header = w->header;
+    byte_buffer *scratch = &w->scratch;
     enum { VTK_VERTEX = 1 };
     int64_t count = grid->cells ? grid->cell_count : grid->point_count, nodes = grid->cells ? grid->cell_nodes : 1;
     fputs("      <Cells>\n", header);
     scratch->size = 0;
-    int status = reserve(scratch, 8 * (size_t)(count * nodes), error);
+    int status = reserve(scratch, 8 * (size_t)(count * nodes), w->error);
     if (status) return status;
     for (int64_t i = 0; i < count * nodes; i++)
         put_word(scratch->data + 8 * i, (uint64_t)(grid->cells ? grid->cells[i] : i));
     scratch->size = 8 * (size_t)(count * nodes);
-    status = append_integers(header, appended, "Int64", "connectivity", scratch, error);
+    status = append_integers(w, "Int64", "connectivity");
     for (int64_t i = 0; i < count; i++) put_word(scratch->data + 8 * i, (uint64_t)((i + 1) * nodes));
     scratch->size = 8 * (size_t)count;
-    if (!status) status = append_integers(header, appended, "Int64", "offsets", scratch, error);
+    if (!status) status = append_integers(w, "Int64", "offsets");
     memset(scratch->data, grid->cells ? grid->cell_type : VTK_VERTEX, (size_t)count);
     scratch->size = (size_t)count;
-    if (!status) status = append_integers(header, appended, "UInt8", "types", scratch, error);
+    if (!status) status = append_integers(w, "UInt8", "types");
     fputs("      </Cells>\n", header);
     return status;
 }
@@ -147,9 +157,9 @@ static void put_active(FILE *header, const char *kind, int components, const bru
 }
 
 // The arrays at the points, or at the cells.
-static int append_data(FILE *header, byte_buffer *appended, byte_buffer *scratch, const brunt_vtu_grid *grid,
-                       const brunt_vtu_array *arrays, int array_count, bool at_cells, bool float32,
-                       brunt_error *error) {
+static int append_data(vtu_writer *w, const brunt_vtu_grid *grid, const brunt_vtu_array *arrays, int array_count,
+                       bool at_cells) {
+    FILE *header = w->header;
     const char *element = at_cells ? "CellData" : "PointData";
     int status = BRUNT_OK;
     fprintf(header, "      <%s", element);
@@ -158,15 +168,14 @@ static int append_data(FILE *header, byte_buffer *appended, byte_buffer *scratch
     fputs(">\n", header);
     for (int a = 0; a < array_count && !status; a++)
         if (arrays[a].at_cells == at_cells)
-            status = append_array(header, appended, scratch, &arrays[a],
-                                  at_cells ? grid->cell_count : grid->point_count, float32, error);
+            status = append_array(w, &arrays[a], at_cells ? grid->cell_count : grid->point_count);
     fprintf(header, "      </%s>\n", element);
     return status;
 }
 
-static int write_header(FILE *header, byte_buffer *appended, byte_buffer *scratch, double time,
-                        const brunt_vtu_grid *grid, const brunt_vtu_array *arrays, int array_count, bool float32,
-                        brunt_error *error) {
+static int write_header(vtu_writer *w, double time, const brunt_vtu_grid *grid, const brunt_vtu_array *arrays,
+                        int array_count) {
+    FILE *header = w->header;
     fputs("<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
           "header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n  <UnstructuredGrid>\n",
           header);
@@ -176,17 +185,16 @@ static int write_header(FILE *header, byte_buffer *appended, byte_buffer *scratc
             time);
     fprintf(header, "    <Piece NumberOfPoints=\"%lld\" NumberOfCells=\"%lld\">\n", (long long)grid->point_count,
             (long long)(grid->cells ? grid->cell_count : grid->point_count));
-    int status = append_data(header, appended, scratch, grid, arrays, array_count, false, float32, error);
+    int status = append_data(w, grid, arrays, array_count, false);
     // Only elements have data of cells: that tells their files from those of particles.
-    if (!status && grid->cells)
-        status = append_data(header, appended, scratch, grid, arrays, array_count, true, float32, error);
+    if (!status && grid->cells) status = append_data(w, grid, arrays, array_count, true);
     if (status) return status;
     fputs("      <Points>\n", header);
     const brunt_vtu_array place = {.name = "Points", .components = 3, .values = grid->points};
-    status = append_array(header, appended, scratch, &place, grid->point_count, float32, error);
+    status = append_array(w, &place, grid->point_count);
     if (status) return status;
     fputs("      </Points>\n", header);
-    status = append_cells(header, appended, scratch, grid, error);
+    status = append_cells(w, grid);
     fputs("    </Piece>\n  </UnstructuredGrid>\n  <AppendedData encoding=\"raw\">\n   _", header);
     return status;
 }
@@ -196,20 +204,19 @@ int brunt_vtu_write(const char *path, double time, const brunt_vtu_grid *grid, c
     brunt_atomic_file file;
     int status = brunt_atomic_open(&file, path, error);
     if (status) return status;
-    byte_buffer appended = {0}, scratch = {0};
+    vtu_writer w = {.header = file.stream, .float32 = float32, .error = error};
     // Space for one byte at least, so that an empty array has an address.
-    status = reserve(&scratch, 1, error);
-    if (!status)
-        status = write_header(file.stream, &appended, &scratch, time, grid, arrays, array_count, float32, error);
-    if (!status) status = brunt_atomic_write(&file, appended.data, appended.size, error);
+    status = reserve(&w.scratch, 1, error);
+    if (!status) status = write_header(&w, time, grid, arrays, array_count);
+    if (!status) status = brunt_atomic_write(&file, w.appended.data, w.appended.size, error);
     if (!status) {
         fputs("\n  </AppendedData>\n</VTKFile>\n", file.stream);
         status = brunt_atomic_commit(&file, error);
     } else {
         brunt_atomic_abandon(&file);
     }
-    brunt_free(appended.data);
-    brunt_free(scratch.data);
+    brunt_free(w.appended.data);
+    brunt_free(w.scratch.data);
     return status;
 }
 

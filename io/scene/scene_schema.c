@@ -99,49 +99,60 @@ static void schema_words(FILE *out, const scene_key *row) {
     fputc(']', out);
 }
 
-static void schema_value(FILE *out, const scene_key *row) {
-    char pattern[128];
-    fputs("{\"description\": ", out);
-    char doc[512];
-    if (row->unit && strcmp(row->unit, "1") != 0)
-        snprintf(doc, sizeof doc, "%s [%s]", row->doc, row->unit);
+// The default of a key, where it has one.
+static void schema_default(FILE *out, const scene_key *row) {
+    if (!row->initial || !*row->initial) return;
+    fputs(", \"default\": ", out);
+    const char *rest;
+    double value;
+    if (strcmp(row->initial, "{}") == 0)
+        fputs("{}", out);
+    else if (row->type == SCENE_VECTOR || row->type == SCENE_PARTIAL)
+        fputs("[0, 0, 0]", out);
+    else if (row->type == SCENE_NAMES)
+        fprintf(out, "[\"%.*s\"]", (int)strlen(row->initial) - 2, row->initial + 1);
+    else if (!brunt_read_number(row->initial, &value, &rest) && !*rest)
+        fputs(row->initial, out);
+    else if (is_truth(row->initial))
+        fputs(row->initial, out);
     else
-        snprintf(doc, sizeof doc, "%s", row->doc);
-    json_text(out, doc);
-    if (row->initial && *row->initial) {
-        fputs(", \"default\": ", out);
-        const char *rest;
-        double value;
-        if (strcmp(row->initial, "{}") == 0)
-            fputs("{}", out);
-        else if (row->type == SCENE_VECTOR || row->type == SCENE_PARTIAL)
-            fputs("[0, 0, 0]", out);
-        else if (row->type == SCENE_NAMES)
-            fprintf(out, "[\"%.*s\"]", (int)strlen(row->initial) - 2, row->initial + 1);
-        else if (!brunt_read_number(row->initial, &value, &rest) && !*rest)
-            fputs(row->initial, out);
-        else if (is_truth(row->initial))
-            fputs(row->initial, out);
-        else
-            json_text(out, strcmp(row->initial, "''") == 0 ? "" : row->initial);
-    }
-    fputs(", ", out);
+        json_text(out, strcmp(row->initial, "''") == 0 ? "" : row->initial);
+}
+
+static void schema_names(FILE *out, const scene_key *row) {
+    char pattern[128];
+    snprintf(pattern, sizeof pattern, "%s.*", row->path);
+    fputs("\"type\": \"object\", \"propertyNames\": {\"pattern\": \"^[A-Za-z0-9_-]{1,47}$\"}, "
+          "\"additionalProperties\": {",
+          out);
+    schema_group(out, pattern);
+    fputc('}', out);
+}
+
+static void schema_entries(FILE *out, const scene_key *row) {
+    char pattern[128];
+    snprintf(pattern, sizeof pattern, "%s[]", row->path);
+    fputs("\"type\": \"array\", \"items\": {", out);
+    schema_group(out, pattern);
+    fputc('}', out);
+}
+
+// A word, or where a word may be a map with a number of its own, either.
+static void schema_choice(FILE *out, const scene_key *row) {
+    const bool map = strcmp(row->path, "grid.transfer") == 0;
+    if (map) fputs("\"anyOf\": [{", out);
+    schema_words(out, row);
+    if (!map) return;
+    fputs("}, {", out);
+    schema_group(out, row->path);
+    fputs("}]", out);
+}
+
+static void schema_type(FILE *out, const scene_key *row) {
     switch (row->type) {
     case SCENE_GROUP: schema_group(out, row->path); break;
-    case SCENE_NAMED:
-        snprintf(pattern, sizeof pattern, "%s.*", row->path);
-        fputs("\"type\": \"object\", \"propertyNames\": {\"pattern\": \"^[A-Za-z0-9_-]{1,47}$\"}, "
-              "\"additionalProperties\": {",
-              out);
-        schema_group(out, pattern);
-        fputc('}', out);
-        break;
-    case SCENE_ENTRIES:
-        snprintf(pattern, sizeof pattern, "%s[]", row->path);
-        fputs("\"type\": \"array\", \"items\": {", out);
-        schema_group(out, pattern);
-        fputc('}', out);
-        break;
+    case SCENE_NAMED: schema_names(out, row); break;
+    case SCENE_ENTRIES: schema_entries(out, row); break;
     case SCENE_REAL:
     case SCENE_ANY_UNIT: fputs("\"$ref\": \"#/$defs/number\"", out); break;
     case SCENE_INTEGER:
@@ -171,17 +182,7 @@ static void schema_value(FILE *out, const scene_key *row) {
     case SCENE_NAMES:
         fputs("\"type\": \"array\", \"uniqueItems\": true, \"items\": {\"type\": \"string\"}", out);
         break;
-    case SCENE_WORD:
-        if (strcmp(row->path, "grid.transfer") == 0) {
-            fputs("\"anyOf\": [{", out);
-            schema_words(out, row);
-            fputs("}, {", out);
-            schema_group(out, row->path);
-            fputs("}]", out);
-        } else {
-            schema_words(out, row);
-        }
-        break;
+    case SCENE_WORD: schema_choice(out, row); break;
     case SCENE_SHAPE: fputs("\"$ref\": \"#/$defs/shape\"", out); break;
     case SCENE_SHAPES:
         fputs("\"type\": \"array\", \"minItems\": 1, \"items\": {\"$ref\": \"#/$defs/shape\"}", out);
@@ -190,6 +191,19 @@ static void schema_value(FILE *out, const scene_key *row) {
     case SCENE_ANY: fputs("\"type\": [\"object\", \"array\", \"string\", \"number\"]", out); break;
     case SCENE_PARAMETERS: break;
     }
+}
+
+static void schema_value(FILE *out, const scene_key *row) {
+    fputs("{\"description\": ", out);
+    char doc[512];
+    if (row->unit && strcmp(row->unit, "1") != 0)
+        snprintf(doc, sizeof doc, "%s [%s]", row->doc, row->unit);
+    else
+        snprintf(doc, sizeof doc, "%s", row->doc);
+    json_text(out, doc);
+    schema_default(out, row);
+    fputs(", ", out);
+    schema_type(out, row);
     fputc('}', out);
 }
 

@@ -70,66 +70,87 @@ static void wanted(scene_reader *reader, const scene_key *row, char *out, size_t
         brunt_units_describe(reader->units, row->unit, out, size);
 }
 
-// One number with its unit. Writes to value[0] of the node.
-static bool check_number(scene_reader *reader, scene_node *node, const scene_key *row) {
-    scene_tree *tree = reader->tree;
-    char want[128], why[320];
-    node->row = row;
-    node->good = false;
-    if (node->kind != SCENE_SCALAR || (node->plain && !*node->text)) {
-        wanted(reader, row, want, sizeof want);
-        brunt_tree_complain(tree, node, "%s is given, %s is wanted", brunt_kind_name(node), want);
-        return false;
-    }
-    if (row->words && row->type != SCENE_WORD && strcmp(node->text, row->words) == 0) {
-        node->value[0] = INFINITY;
-        return node->good = true;
-    }
-    const char *text = node->text, *rest;
+// Whether a node holds a single value that is not empty; says so when it does not.
+static bool check_scalar(scene_reader *reader, const scene_node *node, const scene_key *row) {
+    if (node->kind == SCENE_SCALAR && (!node->plain || *node->text)) return true;
+    char want[128];
+    wanted(reader, row, want, sizeof want);
+    brunt_tree_complain(reader->tree, node, "%s is given, %s is wanted", brunt_kind_name(node), want);
+    return false;
+}
+
+// The number that the text begins with, and where its unit begins.
+static bool read_value(scene_reader *reader, const scene_node *node, const scene_key *row, double *value,
+                       const char **rest) {
+    const char *text = node->text;
     while (*text == ' ') text++;
-    double value;
-    const char *wrong = brunt_read_number(text, &value, &rest);
+    const char *wrong = brunt_read_number(text, value, rest);
     if (wrong) {
+        char want[128];
         wanted(reader, row, want, sizeof want);
-        brunt_tree_complain(tree, node, "'%.60s' is %s, %s is wanted%s%s%s", node->text, wrong, want,
+        brunt_tree_complain(reader->tree, node, "'%.60s' is %s, %s is wanted%s%s%s", node->text, wrong, want,
                             row->words ? " (or the word '" : "", row->words ? row->words : "", row->words ? "')" : "");
         return false;
     }
-    while (*rest == ' ' || *rest == '\t') rest++;
+    while (**rest == ' ' || **rest == '\t') (*rest)++;
+    return true;
+}
+
+// Takes `value` from the unit that `rest` names, if any, to that of the row.
+static bool convert_unit(scene_reader *reader, scene_node *node, const scene_key *row, const char *rest,
+                         double *value) {
     size_t length = strlen(rest);
     while (length && (rest[length - 1] == ' ' || rest[length - 1] == '\n')) length--;
-    char unit[160];
+    char unit[160], why[320];
     snprintf(unit, sizeof unit, "%.*s", (int)length, rest);
     node->base = "1";
-    if (*unit) {
-        bool converted = false;
-        if (row->type == SCENE_INTEGER) {
-            snprintf(why, sizeof why, "'%.60s' is not a whole number without unit", node->text);
-        } else if (row->type == SCENE_ANY_UNIT) {
-            char base[BRUNT_UNIT_LENGTH];
-            converted = brunt_units_to_si(reader->units, unit, &value, base, why, sizeof why);
-            if (converted && !(node->base = brunt_tree_text(tree, base, strlen(base)))) return false;
-        } else {
-            converted = brunt_units_convert(reader->units, unit, row->unit ? row->unit : "1", &value, why, sizeof why);
-        }
-        if (!converted) {
-            brunt_tree_complain(tree, node, "%s", why);
-            return false;
-        }
+    if (!*unit) return true;
+    bool converted = false;
+    if (row->type == SCENE_INTEGER) {
+        snprintf(why, sizeof why, "'%.60s' is not a whole number without unit", node->text);
+    } else if (row->type == SCENE_ANY_UNIT) {
+        char base[BRUNT_UNIT_LENGTH];
+        converted = brunt_units_to_si(reader->units, unit, value, base, why, sizeof why);
+        if (converted && !(node->base = brunt_tree_text(reader->tree, base, strlen(base)))) return false;
+    } else {
+        converted = brunt_units_convert(reader->units, unit, row->unit ? row->unit : "1", value, why, sizeof why);
     }
+    if (!converted) brunt_tree_complain(reader->tree, node, "%s", why);
+    return converted;
+}
+
+static bool check_range(scene_reader *reader, const scene_node *node, const scene_key *row, double value) {
+    char want[128], why[320];
     if (row->type == SCENE_INTEGER && (value != floor(value) || fabs(value) > 9007199254740992.0)) {
-        brunt_tree_complain(tree, node, "'%.60s' is not a whole number", node->text);
+        brunt_tree_complain(reader->tree, node, "'%.60s' is not a whole number", node->text);
         return false;
     }
     if (!within(row, value)) {
         describe_range(row, want, sizeof want);
-        brunt_tree_complain(tree, node, "'%.60s' is out of range, %s is wanted", node->text, want);
+        brunt_tree_complain(reader->tree, node, "'%.60s' is out of range, %s is wanted", node->text, want);
         return false;
     }
     if (!brunt_usable_number(value, row->min == 0 && row->min_open, why, sizeof why)) {
-        brunt_tree_complain(tree, node, "'%.60s' is %s", node->text, why);
+        brunt_tree_complain(reader->tree, node, "'%.60s' is %s", node->text, why);
         return false;
     }
+    return true;
+}
+
+// One number with its unit. Writes to value[0] of the node.
+static bool check_number(scene_reader *reader, scene_node *node, const scene_key *row) {
+    node->row = row;
+    node->good = false;
+    if (!check_scalar(reader, node, row)) return false;
+    if (row->words && row->type != SCENE_WORD && strcmp(node->text, row->words) == 0) {
+        node->value[0] = INFINITY;
+        return node->good = true;
+    }
+    double value;
+    const char *rest;
+    if (!read_value(reader, node, row, &value, &rest) || !convert_unit(reader, node, row, rest, &value) ||
+        !check_range(reader, node, row, value))
+        return false;
     node->value[0] = value;
     node->number = true;
     return node->good = true;

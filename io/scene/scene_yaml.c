@@ -63,77 +63,96 @@ static void complain_empty(builder *b) {
     complain(b, message);
 }
 
+// Text as far as it has been looked through.
+typedef struct text_scan {
+    const unsigned char *p, *end;
+    bool indentation, tab; // in it; one was met there
+    bool content;          // something that is no comment was met
+    int nesting;           // an upper bound of the flow depth
+} text_scan;
+
+static void next_line(builder *b, text_scan *s) {
+    b->line++;
+    b->column = 1;
+    s->indentation = true;
+    s->tab = false;
+    s->p++;
+}
+
+// Whether something other than a comment follows a tab in the indentation.
+static bool indented_by_tab(const text_scan *s) {
+    const unsigned char *q = s->p;
+    while (q < s->end && (*q == ' ' || *q == '\t' || *q == '\r')) q++;
+    return q < s->end && *q != '\n' && *q != '#';
+}
+
+// Brackets in a comment count for nothing.
+static void pass_comment(builder *b, text_scan *s) {
+    for (int bytes; s->p < s->end && *s->p != '\n' && (bytes = character(s->p, s->end)) != 0; s->p += bytes)
+        b->column++;
+}
+
+// One character of a line, of so many bytes. False after a message.
+static bool pass_character(builder *b, text_scan *s, int bytes) {
+    const unsigned char c = *s->p;
+    if (s->indentation && c == '\t' && !s->tab) {
+        s->tab = true;
+        if (indented_by_tab(s)) {
+            complain(b, "a tab in the indentation: YAML is indented with spaces");
+            return false;
+        }
+    }
+    if (s->indentation && c == '#') {
+        pass_comment(b, s);
+        return true;
+    }
+    if (c != ' ' && c != '\t' && c != '\r') {
+        s->indentation = false;
+        s->content = true;
+    }
+    // The scanner keeps a record for each open bracket, and its time grows with them.
+    if (c == '[' || c == '{') s->nesting++;
+    if ((c == ']' || c == '}') && s->nesting > 0) s->nesting--;
+    if (s->nesting > 4 * SCENE_DEPTH_LIMIT) {
+        complain(b, "nested too deeply");
+        return false;
+    }
+    s->p += bytes;
+    b->column++;
+    return true;
+}
+
 // False after one message when the text cannot be handed to the scanner.
 static bool readable(builder *b, const char *text, size_t length) {
     const scene_format *format = b->tree->format;
     char message[96];
-    const unsigned char *p = (const unsigned char *)text, *end = p + length;
-    bool indentation = true, tab = false, content = false;
-    int nesting = 0;
+    text_scan s = {.p = (const unsigned char *)text, .end = (const unsigned char *)text + length, .indentation = true};
     b->line = b->column = 1;
     if (length > SCENE_TEXT_LIMIT) {
         snprintf(message, sizeof message, "the file is larger than 4 MiB, too large for a %s", format->name);
         complain(b, message);
         return false;
     }
-    while (p < end) {
-        int bytes = character(p, end);
-        if (*p == '\r' && p + 1 < end && p[1] != '\n') bytes = 0; // old Macintosh line ends
+    while (s.p < s.end) {
+        int bytes = character(s.p, s.end);
+        if (*s.p == '\r' && s.p + 1 < s.end && s.p[1] != '\n') bytes = 0; // old Macintosh line ends
         if (!bytes) {
-            snprintf(message, sizeof message, "byte 0x%02X is not text: a %s is YAML in UTF-8", *p, format->name);
+            snprintf(message, sizeof message, "byte 0x%02X is not text: a %s is YAML in UTF-8", *s.p, format->name);
             complain(b, message);
             return false;
         }
-        if (*p == '\n') {
-            b->line++;
-            b->column = 1;
-            indentation = true;
-            tab = false;
-            p++;
-            continue;
-        }
-        if (indentation && *p == '\t' && !tab) {
-            tab = true;
-            const unsigned char *q = p;
-            while (q < end && (*q == ' ' || *q == '\t' || *q == '\r')) q++;
-            if (q < end && *q != '\n' && *q != '#') {
-                complain(b, "a tab in the indentation: YAML is indented with spaces");
-                return false;
-            }
-        }
-        if (indentation && *p == '#') { // a comment line: brackets in it count for nothing
-            while (p < end && *p != '\n') {
-                bytes = character(p, end);
-                if (!bytes) break;
-                p += bytes;
-                b->column++;
-            }
-            continue;
-        }
-        if (*p != ' ' && *p != '\t' && *p != '\r') {
-            indentation = false;
-            content = true;
-        }
-        // An upper bound of the flow depth: the scanner keeps a record for each open bracket, and its time grows with
-        // them.
-        if (*p == '[' || *p == '{') nesting++;
-        if ((*p == ']' || *p == '}') && nesting > 0) nesting--;
-        if (nesting > 4 * SCENE_DEPTH_LIMIT) {
-            complain(b, "nested too deeply");
+        if (*s.p == '\n')
+            next_line(b, &s);
+        else if (!pass_character(b, &s, bytes))
             return false;
-        }
-        p += bytes;
-        b->column++;
     }
-    if (!content) {
-        b->line = b->column = 1;
-        if (b->option)
-            complain(b, "a value is wanted behind the '='");
-        else
-            complain_empty(b);
-        return false;
-    }
-    return true;
+    if (s.content) return true;
+    b->line = b->column = 1;
+    if (b->option)
+        complain(b, "a value is wanted behind the '='");
+    else
+        complain_empty(b);
+    return false;
 }
 
 // ---------------------------------------------------------------------------------------------------- events

@@ -539,16 +539,16 @@ void brunt_study_picture_name(const brunt_study *study, int32_t m, char out[160]
         if (strchr("/\\'\"` ", out[i]) || (unsigned char)out[i] < ' ') out[i] = '_';
 }
 
-static int write_errors(const brunt_study *study, const char *folder, int32_t m, bool over_resolution, int32_t *cases,
-                        int32_t *points, bool *drawn, brunt_error *error) {
-    errors e = {.p = {.study = study, .cases = cases}, .measure = m, .over_resolution = over_resolution};
+static int write_errors(errors *e, const char *folder, int32_t *points, bool *drawn, brunt_error *error) {
+    const brunt_study *study = e->p.study;
     bool wanted = false;
-    if (over_resolution)
-        snprintf(e.p.name, sizeof e.p.name, "study_order");
+    if (e->over_resolution)
+        snprintf(e->p.name, sizeof e->p.name, "study_order");
     else
-        brunt_study_picture_name(study, m, e.p.name);
-    int status = over_resolution && study->resolution < 0 ? BRUNT_OK : draw_errors(&e, folder, points, &wanted, error);
-    return status ? status : finish(folder, e.p.name, wanted, drawn, error);
+        brunt_study_picture_name(study, e->measure, e->p.name);
+    int status = BRUNT_OK;
+    if (!e->over_resolution || study->resolution >= 0) status = draw_errors(e, folder, points, &wanted, error);
+    return status ? status : finish(folder, e->p.name, wanted, drawn, error);
 }
 
 int brunt_study_write_plots(const brunt_study *study, const char *folder, bool *drawn, brunt_error *error) {
@@ -557,9 +557,11 @@ int brunt_study_write_plots(const brunt_study *study, const char *folder, bool *
     int32_t *points = brunt_alloc((size_t)study->line_count * sizeof *points);
     int status =
         cases && points ? BRUNT_OK : brunt_fail(error, BRUNT_IO_ERROR, "no memory for the pictures of the study");
-    for (int32_t m = 0; m < study->measure_count && !status; m++)
-        status = write_errors(study, folder, m, false, cases, points, drawn, error);
-    if (!status && study->measure_count) status = write_errors(study, folder, 0, true, cases, points, drawn, error);
+    for (int32_t m = 0; m <= study->measure_count && study->measure_count && !status; m++) { // last the order
+        const bool order = m == study->measure_count;
+        errors e = {.p = {.study = study, .cases = cases}, .measure = order ? 0 : m, .over_resolution = order};
+        status = write_errors(&e, folder, points, drawn, error);
+    }
     if (!status) {
         picture p = {.study = study, .cases = cases, .name = "study_cost"};
         bool wanted;
