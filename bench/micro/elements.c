@@ -44,7 +44,9 @@ static void forces_task(void *context, int64_t begin, int64_t end, int worker) {
         b->body.element->forces(&b->body, (int32_t)k, (real)b->dt, &b->work[worker], &b->body.report[k]);
 }
 
-static bool flat(brunt_element_kind kind) { return brunt_element_is_sheet(kind) || brunt_element_dimension(kind) == 2; }
+static bool flat(brunt_element_kind kind) {
+    return brunt_element_is_membrane(kind) || brunt_element_dimension(kind) == 2;
+}
 
 // n cells along each axis (of a flat one, two of them), nodes moved by up to 0.05 cells, but for those at x = 0.
 static int make_mesh(brunt_element_kind kind, int n, brunt_mesh *mesh) {
@@ -64,7 +66,7 @@ static int make_mesh(brunt_element_kind kind, int n, brunt_mesh *mesh) {
         for (int a = 0; a < 3; a++) {
             seed = seed * 6364136223846793005u + 1442695040888963407u;
             const double aside = a == 0 && at[0] == 0 ? 0 : 0.05 * ((double)(seed >> 11) / 4503599627370496.0 - 1);
-            if (a < 2 || levels > 1 || brunt_element_is_sheet(kind)) mesh->nodes[k][a] = 1e-3 * (at[a] + aside);
+            if (a < 2 || levels > 1 || brunt_element_is_membrane(kind)) mesh->nodes[k][a] = 1e-3 * (at[a] + aside);
         }
     }
     int32_t *out = mesh->elements;
@@ -85,14 +87,14 @@ static int make(brunt_element_kind kind, bool rings, int cells, bench *b) {
     if (make_mesh(kind, cells, &mesh)) return BRUNT_FAILED;
     brunt_body_def def = {
         .name = "block", .hourglass_coefficient = NAN, .thickness = 1e-4, .place = brunt_placement_identity()};
-    def.method = brunt_element_is_sheet(kind) ? BRUNT_MEMBRANE : BRUNT_FEM;
+    def.method = brunt_element_is_membrane(kind) ? BRUNT_MEMBRANE : BRUNT_FEM;
     brunt_material_def rubber = brunt_material_def_default("rubber", "neo-hookean");
     brunt_material material;
     rubber.density = 1100;
     brunt_material_set(&rubber, "E", 1e6, NULL, &error);
     brunt_material_set(&rubber, "nu", 0.4, NULL, &error);
-    int status = brunt_element_is_sheet(kind) ? brunt_material_make_sheet(&rubber, false, &material, &error)
-                                              : brunt_material_make(&rubber, &material, &error);
+    int status = brunt_element_is_membrane(kind) ? brunt_material_make_sheet(&rubber, false, &material, &error)
+                                                 : brunt_material_make(&rubber, &material, &error);
     if (status == BRUNT_OK)
         status = rings ? brunt_fem_make_axisymmetric(&def, &material, &mesh, &b->body, &error)
                        : brunt_fem_make(&def, &material, brunt_element_dimension(kind), &mesh, &b->body, &error);

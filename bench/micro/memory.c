@@ -41,7 +41,7 @@ static brunt_world *create(const memory_case *c, double wanted, brunt_error *err
     brunt_material_set(&rubber, "nu", 0.4, NULL, error);
     brunt_body_def body = brunt_body_def_default();
     snprintf(body.name, sizeof body.name, "block");
-    const bool sheet = !c->kernel && brunt_element_is_sheet(c->element);
+    const bool sheet = !c->kernel && brunt_element_is_membrane(c->element);
     const int flat = c->dimension == 2 || sheet, corners = c->kernel ? 0 : brunt_element_nodes(c->element);
     const double cell = 1e-3, units_of_cell = c->kernel                  ? (c->dimension == 3 ? 8 : 4)
                                               : corners == 3             ? 2

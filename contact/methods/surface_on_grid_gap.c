@@ -106,7 +106,7 @@ static bool find_nearest(const job *j, const faces *near, const double x[3], bru
 static void touch_particle(const job *j, int64_t s, const faces *near) {
     touch *t = &j->w->touch[s];
     brunt_body *body = &j->mpm[j->range_mpm];
-    const bool sheet = j->m->skin->fem[j->range_fem]->element->sheet;
+    const bool sheet = j->m->skin->fem[j->range_fem]->traits->membrane;
     real *const *place = brunt_field(&body->particles, BRUNT_FIELD_position);
     double x[3] = {0};
     brunt_closest c = {.square = 0};
@@ -195,10 +195,10 @@ static void find_gap(const job *j, contact *c) {
     const brunt_fem_body *fem = s->fem[c->fem];
     view v = {.w = j->w, .x = c->x, .front = INFINITY, .back = INFINITY};
     v.band = BAND * body->spacing, v.support = 0.5 * (body->grid.order + 1) * (double)body->grid.h;
-    v.half = fem->element->sheet && s->side ? s->side[fem->index].half : 0;
+    v.half = fem->traits->membrane && s->side ? s->side[fem->index].half : 0;
     c->gap = INFINITY;
     brunt_extent_visit(body, c->slot, c->node, find_least, &v);
-    v.side = fem->element->sheet && v.side < 0 ? -1 : 1;
+    v.side = fem->traits->membrane && v.side < 0 ? -1 : 1;
     v.least = v.side > 0 ? v.front : v.back;
     if (!isfinite(v.least)) return;
     brunt_extent_visit(body, c->slot, c->node, add_normal, &v);

@@ -53,7 +53,7 @@ static int find_boxes(const brunt_contact_context *m, brunt_body *mpm, int mpm_c
     if (RESERVE(f, box, f->box_count + 1) || RESERVE(f, box_of, s->fem_count + 1)) return -1;
     for (int k = 0; k < s->fem_count; k++) {
         bounds *box = &f->box[k];
-        *box = (bounds){.body = s->fem[k]->index, .fem = k, .mpm = -1, .sheet = s->fem[k]->element->sheet};
+        *box = (bounds){.body = s->fem[k]->index, .fem = k, .mpm = -1, .sheet = s->fem[k]->traits->membrane};
         memcpy(box->low, s->low[k], sizeof box->low), memcpy(box->high, s->high[k], sizeof box->high);
     }
     for (int k = 0; k < mpm_count; k++) {

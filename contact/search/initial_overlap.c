@@ -132,7 +132,7 @@ typedef struct job {
 } job;
 
 static const double *corner(const brunt_fem_body *fem, int32_t slot, int c, double out[3]) {
-    const real *at = brunt_fem_node(fem, fem->element_node[(size_t)slot * (size_t)fem->element->nodes + (size_t)c]);
+    const real *at = brunt_fem_node(fem, fem->element_node[(size_t)slot * (size_t)fem->traits->nodes + (size_t)c]);
     for (int a = 0; a < 3; a++) out[a] = (double)at[a];
     return out;
 }
@@ -143,7 +143,7 @@ static bool element_box(const void *context, int32_t slot, box *out) {
     if (fem->element_id[slot] < 0) return false; // padding
     double x[3];
     *out = empty_box();
-    for (int c = 0; c < fem->element->nodes; c++) widen(out, corner(fem, slot, c, x));
+    for (int c = 0; c < fem->traits->nodes; c++) widen(out, corner(fem, slot, c, x));
     return true;
 }
 
@@ -178,7 +178,7 @@ static bool in_element(const brunt_fem_body *fem, int32_t slot, const double x[3
     static const int triangle[2][4] = {{0, 1, 2, 0}, {0, 2, 3, 0}};
     static const int tetrahedron[6][4] = {{0, 1, 2, 6}, {0, 2, 3, 6}, {0, 3, 7, 6},
                                           {0, 7, 4, 6}, {0, 4, 5, 6}, {0, 5, 1, 6}};
-    const int nodes = fem->element->nodes, dim = fem->element->dim;
+    const int nodes = fem->traits->nodes, dim = fem->traits->dimension;
     const int parts = dim == 2 ? nodes - 2 : nodes == 8 ? 6 : 1;
     for (int q = 0; q < parts; q++) {
         const int *of = dim == 2 ? triangle[q] : tetrahedron[q];
@@ -275,12 +275,12 @@ static bool facet_is_deep(job *j, int32_t f) {
 
 // Bodies in one place, or with sides in common, have no node in each other: the middles of their elements have.
 static bool element_is_deep(job *j, const brunt_fem_body *fem) {
-    for (int32_t slot = 0; slot < fem->slots && !fem->element->sheet; slot++) {
+    for (int32_t slot = 0; slot < fem->slots && !fem->traits->membrane; slot++) {
         if (fem->element_id[slot] < 0) continue;
         double x[3] = {0}, at[3];
-        for (int c = 0; c < fem->element->nodes; c++) {
+        for (int c = 0; c < fem->traits->nodes; c++) {
             corner(fem, slot, c, at);
-            for (int a = 0; a < 3; a++) x[a] += at[a] / fem->element->nodes;
+            for (int a = 0; a < 3; a++) x[a] += at[a] / fem->traits->nodes;
         }
         if (is_deep(j, x, 0)) return true;
     }
@@ -370,7 +370,7 @@ static bool is_cut(job *j, int other) {
 // A mesh's mean edge, or how thin all of it is [m].
 static double size_of_body(const brunt_contact_surface *s, int k) {
     double size = s->fem[k]->mean_edge;
-    for (int a = 0; a < s->dim && !s->fem[k]->element->sheet; a++) size = fmin(size, s->high[k][a] - s->low[k][a]);
+    for (int a = 0; a < s->dim && !s->fem[k]->traits->membrane; a++) size = fmin(size, s->high[k][a] - s->low[k][a]);
     return size;
 }
 
@@ -378,12 +378,12 @@ static double size_of_body(const brunt_contact_surface *s, int k) {
 static int look_at(job *j, int k, const box *other, double limit, double by) {
     const brunt_contact_surface *s = j->m->skin;
     const brunt_fem_body *fem = s->fem[k];
-    const box own = grown(skin_box(s, k), s->dim, fem->element->sheet ? by : -limit);
+    const box own = grown(skin_box(s, k), s->dim, fem->traits->membrane ? by : -limit);
     box room;
     if (!common(&own, other, &room)) return 0;
     j->k = k, j->limit = limit, j->by = by, j->size = size_of_body(s, k);
     if (fill_cells(&j->facets, &room, fem->mean_edge, s->face_end[k] - s->face_range[k], facet_box, j)) return -1;
-    if (fem->element->sheet) return 1;
+    if (fem->traits->membrane) return 1;
     return fill_cells(&j->elements, &room, fem->mean_edge, fem->slots, element_box, j) ? -1 : 1;
 }
 
@@ -392,7 +392,7 @@ static int meshes_overlap(job *j, int other, int k) {
     const brunt_contact_surface *s = j->m->skin;
     const double edge = s->fem[other]->mean_edge, limit = DEEP * fmin(size_of_body(s, other), size_of_body(s, k));
     const box of_other = skin_box(s, other);
-    const bool sheet = s->fem[k]->element->sheet;
+    const bool sheet = s->fem[k]->traits->membrane;
     int status = look_at(j, k, &of_other, limit, sheet ? NEXT * edge : limit);
     if (status <= 0) return status;
     return sheet ? is_cut(j, other) : mesh_is_deep(j, other);
@@ -449,7 +449,7 @@ static bool sheet_cuts_points(job *j, brunt_body *body) {
 // Whether material points are in mesh or sheet k.
 static int points_overlap(job *j, brunt_body *body, int k) {
     const brunt_contact_surface *s = j->m->skin;
-    const bool sheet = s->fem[k]->element->sheet;
+    const bool sheet = s->fem[k]->traits->membrane;
     box of_points = empty_box();
     double x[3];
     if (!body->particles.field[BRUNT_FIELD_reach].components) return 0;

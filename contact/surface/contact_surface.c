@@ -100,7 +100,7 @@ static int add_body(brunt_contact_surface *s, int k) {
     brunt_fem_body *fem = s->fem[k];
     brunt_faces found;
     if (brunt_fem_faces(fem, &found)) return -1;
-    const int32_t sides = fem->element->sheet ? 2 : 1;
+    const int32_t sides = fem->traits->membrane ? 2 : 1;
     int32_t *number = brunt_alloc((size_t)(fem->node_count + 1) * sizeof *number);
     int32_t count = number ? number_nodes(fem, &found, s->node_count, number) : -1;
     const int32_t had = s->node_count, faces = s->face_count, n = had + (count > 0 ? count : 0) * sides,
@@ -129,7 +129,7 @@ int brunt_surface_relate(brunt_contact_surface *s) {
         for (int32_t f = s->face_range[k]; f < s->face_range[k + 1]; f++) s->face_body[f] = index;
         for (int32_t n = s->node_range[k]; s->front && n < s->node_range[k + 1]; n++)
             s->front[n] = n < s->node_end[k] ? n : n - nodes;
-        if (s->side && s->fem[k]->element->sheet) s->side[index].faces = s->face_end[k] - s->face_range[k];
+        if (s->side && s->fem[k]->traits->membrane) s->side[index].faces = s->face_end[k] - s->face_range[k];
     }
     link_faces(s);
     return 0;

@@ -29,9 +29,9 @@ static int least_height(const brunt_fem_body *fem, double *least) {
     for (int32_t f = 0; f < found.count; f++) {
         double x[BRUNT_ELEMENT_NODES][3], e[3], g[3], square = 0;
         const int32_t *node = found.node[f];
-        for (int c = 0; c < fem->element->nodes; c++) {
+        for (int c = 0; c < fem->traits->nodes; c++) {
             const real *at = brunt_fem_node(
-                fem, fem->element_node[(size_t)found.element[f] * (size_t)fem->element->nodes + (size_t)c]);
+                fem, fem->element_node[(size_t)found.element[f] * (size_t)fem->traits->nodes + (size_t)c]);
             for (int a = 0; a < 3; a++) x[c][a] = (double)at[a];
         }
         const bool quad = brunt_face_corners(node) == 4;
@@ -54,7 +54,7 @@ int brunt_membrane_sides_make(brunt_contact_surface *s) {
     int32_t last = 0;
     bool any = false;
     for (int k = 0; k < s->fem_count; k++) {
-        any = any || s->fem[k]->element->sheet;
+        any = any || s->fem[k]->traits->membrane;
         last = s->fem[k]->index > last ? s->fem[k]->index : last;
     }
     if (!any) return 0;
@@ -64,7 +64,7 @@ int brunt_membrane_sides_make(brunt_contact_surface *s) {
     for (int k = 0; k < s->fem_count; k++) {
         const brunt_fem_body *fem = s->fem[k];
         brunt_side *side = &s->side[fem->index];
-        if (!fem->element->sheet) {
+        if (!fem->traits->membrane) {
             if (least_height(fem, &side->shallow)) return -1;
             side->shallow *= 0.5;
             continue;

@@ -146,7 +146,7 @@ static void make_normals(void *context, int64_t begin, int64_t end, int worker) 
         for (int a = 0; a < 3; a++) size += sum[a] * sum[a];
         size = sqrt(size);
         s->area[n] = whole;
-        const bool ragged = s->ragged && s->ragged[s->body[n]] && !s->fem[k]->element->sheet;
+        const bool ragged = s->ragged && s->ragged[s->body[n]] && !s->fem[k]->traits->membrane;
         for (int a = 0; a < 3; a++) s->normal[n][a] = size > (ragged ? CLEAR : 1e-9) * area ? sum[a] / size : 0;
     }
 }

@@ -95,7 +95,7 @@ static int list_anew(brunt_contact_surface *s) {
     int64_t nodes = 0, faces = 0;
     for (int k = 0; k < s->fem_count; k++) {
         const extent was = extent_of(s, k);
-        const int sides = s->fem[k]->element->sheet ? 2 : 1;
+        const int sides = s->fem[k]->traits->membrane ? 2 : 1;
         nodes += sides * (int64_t)(s->shell[k].changed ? s->shell[k].number_count : was.nodes);
         faces += sides * (int64_t)(s->shell[k].changed ? s->shell[k].key_count : was.faces);
     }
@@ -107,7 +107,7 @@ static int list_anew(brunt_contact_surface *s) {
     c->node_count = s->node_count, c->face_count = s->face_count;
     extent is = {0}, was = s->fem_count ? extent_of(s, 0) : is;
     for (int k = 0; k < s->fem_count; k++) {
-        const int32_t sides = s->fem[k]->element->sheet ? 2 : 1;
+        const int32_t sides = s->fem[k]->traits->membrane ? 2 : 1;
         is.nodes = s->shell[k].changed ? s->shell[k].number_count : was.nodes;
         is.faces = s->shell[k].changed ? s->shell[k].key_count : was.faces;
         if (s->shell[k].changed)
@@ -152,14 +152,15 @@ int brunt_surface_renew(brunt_contact_surface *s, bool restored) {
 int64_t brunt_surface_slots(const brunt_contact_surface *s) {
     if (!s->shell) return s->node_count;
     int64_t sum = 0;
-    for (int k = 0; k < s->fem_count; k++) sum += (s->fem[k]->element->sheet ? 2 : 1) * (int64_t)s->fem[k]->node_count;
+    for (int k = 0; k < s->fem_count; k++)
+        sum += (s->fem[k]->traits->membrane ? 2 : 1) * (int64_t)s->fem[k]->node_count;
     return sum;
 }
 
 int64_t brunt_surface_slot(const brunt_contact_surface *s, int k, int32_t n) {
     if (!s->shell) return n;
     int64_t first = n < s->node_end[k] ? 0 : s->fem[k]->node_count;
-    for (int i = 0; i < k; i++) first += (s->fem[i]->element->sheet ? 2 : 1) * (int64_t)s->fem[i]->node_count;
+    for (int i = 0; i < k; i++) first += (s->fem[i]->traits->membrane ? 2 : 1) * (int64_t)s->fem[i]->node_count;
     return first + s->node[n];
 }
 

@@ -238,7 +238,7 @@ static int ascending(const void *left, const void *right) {
 // Nodes of the elements that go, each once, ascending. Their count, or -1: out of memory.
 static int32_t list_corners(brunt_world *world, const brunt_fem_body *fem, int32_t count) {
     struct brunt_erosion_work *work = world->erosion.work;
-    const int nodes = fem->element->nodes;
+    const int nodes = fem->traits->nodes;
     if (BRUNT_RESERVE(work->corner, (size_t)count * (size_t)nodes, 0)) return -1;
     int32_t found = 0;
     for (int32_t i = 0; i < count; i++)

@@ -52,7 +52,7 @@ static double light_particles(const brunt_world_def *def, brunt_body *body, doub
 // Padding repeats real elements, so it is treated like them.
 static double light_elements(const brunt_world_def *def, brunt_fem_body *fem, double speed) {
     const brunt_model *model = fem->material.model[BRUNT_EOS];
-    const int nodes = fem->element->nodes;
+    const int nodes = fem->traits->nodes;
     double first = INFINITY;
     int f = BRUNT_ELEMENT_BASE_FIELDS;
     while (fem->field[f].model != model || fem->field[f].state != state_index(model)) f++;

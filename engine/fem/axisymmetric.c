@@ -13,8 +13,8 @@ double brunt_fem_ring_bound(const brunt_element *type, const double (*x)[3], dou
     lanes divergence, greatest;
     type->gradient(x, b);
     type->shares(x, share);
-    for (int a = 0; a < type->nodes; a++) volume += share[a];
-    for (int a = 0; a < type->nodes; a++) {
+    for (int a = 0; a < type->traits->nodes; a++) volume += share[a];
+    for (int a = 0; a < type->traits->nodes; a++) {
         const lanes B[2] = {lanes_set(b[a][0]), lanes_set(b[a][1])}, axial = lanes_set((real)(volume / share[a]));
         add_ring_sums(B, lanes_set(b[a][2]), axial, x[a][0] > 0 ? axial : lanes_set(0), &sums);
     }

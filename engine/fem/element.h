@@ -1,25 +1,31 @@
-// What an element is: a table of its topology and the kernel that makes forces of motion for one block of elements.
+// What an element does: the kernel that makes forces of motion for one block of elements, and what it says of itself.
+// Its name, nodes and faces are its row of geometry/element_traits.h.
 //
-// Adding one: a new file with its kinematics, which instantiates element.inc, and one line in list.c.
+// Adding one: a new file with its kinematics, which instantiates element.inc, one line in list.c, the kind and its row.
 #pragma once
 
-#include "brunt.h"
 #include "base/real.h"
+#include "geometry/element_traits.h"
 
 typedef struct brunt_fem_body brunt_fem_body;
 typedef struct brunt_fem_workspace brunt_fem_workspace;
 typedef struct brunt_fem_report brunt_fem_report;
 
+// Floating-point operations of an element's own part of element.inc; of other kernels all there are, counted once.
+typedef struct brunt_element_flops {
+    int strain_modes;              // modes that strain
+    double combine, spread, slope; // of the nodes' modes, their transpose, the slope of the volume
+    double whole[2];               // of a kernel that is not element.inc: stiffness and viscous hourglass control
+} brunt_element_flops;
+
 typedef struct brunt_element {
-    const char *name, *doc;
-    int dim, nodes, face_count, face_nodes;
-    bool sheet;          // of a membrane: dim is 3, its material points are of dimension 2
-    bool axisymmetric;   // a ring about the axis x = 0: dim is 2, its material points are of dimension 3 (r, z, hoop)
-    int vtk_cell;        // cell type of the VTK formats
-    int block;           // elements of a block of a large body: 8^3 hexahedra, 4^3 cubes of 6 tetrahedra, ...
-    int hourglass_modes; // zero-energy modes per direction ...
+    const brunt_element_traits *traits;
+    const char *doc;
+    bool axisymmetric; // a ring about the axis x = 0: dim is 2, its material points are of dimension 3 (r, z, hoop)
+    int block;         // elements of a block of a large body: 8^3 hexahedra, 4^3 cubes of 6 tetrahedra, ...
+    brunt_element_flops flops;
+    int hourglass_modes;                            // zero-energy modes per direction ...
     const int8_t (*hourglass)[BRUNT_ELEMENT_NODES]; // ... and each node's share in them
-    const uint8_t (*face)[4]; // nodes of each face, counter-clockwise seen from outside (2D: outside on the right)
     double (*volume)(
         const double (*x)[3]); // [m^3] exact, of corners x; 2D [m^2]; negative when inside out; sheets: area [m^2]
     // Of an axisymmetric element, the share int N_a dV of its volume that each node has [m^3], of corners x; NULL:

@@ -27,7 +27,7 @@ static int32_t block_of(const brunt_fem_body *body, int32_t slot) {
 }
 
 static void count_bonds(brunt_fem_body *body) {
-    const int nodes = body->element->nodes;
+    const int nodes = body->traits->nodes;
     memset(body->bonds, 0, (size_t)body->node_count * sizeof *body->bonds);
     for (int32_t s = 0; s < body->slots; s++)
         for (int a = 0; body->element_id[s] >= 0 && a < nodes; a++)
@@ -57,7 +57,7 @@ void brunt_fem_ranks(brunt_fem_body *body) {
 // ------------------------------------------------------------------------------------------ taking out
 
 static void copy_slot(brunt_fem_body *body, int32_t to, int32_t from) {
-    const size_t nodes = (size_t)body->element->nodes;
+    const size_t nodes = (size_t)body->traits->nodes;
     for (int c = 0; c < body->scalar_count; c++) body->scalar[c][to] = body->scalar[c][from];
     memcpy(body->element_node + (size_t)to * nodes, body->element_node + (size_t)from * nodes,
            nodes * sizeof *body->element_node);
@@ -83,7 +83,7 @@ static void pad(brunt_fem_body *body, int32_t b) {
 
 // From the last of a block to the first, so that what moves into a gap stays.
 void brunt_fem_remove(brunt_fem_body *body, const int32_t *slots, int32_t count, brunt_fem_workspace *work) {
-    const int nodes = body->element->nodes;
+    const int nodes = body->traits->nodes;
     for (int32_t k = count - 1; k >= 0;) {
         const int32_t b = block_of(body, slots[k]);
         brunt_fem_block *block = &body->block[b];
@@ -113,7 +113,8 @@ static void deformation(brunt_fem_body *body, int32_t slot, lanes F[9]) {
     real *const *field = brunt_element_scalars(body, BRUNT_ELEMENT_deformation_gradient);
     const int dim = body->point_dim;
     for (int c = 0; c < 9; c++) F[c] = lanes_set(c == 8);
-    if (body->element->sheet) F[8] = lanes_load(brunt_element_scalars(body, BRUNT_ELEMENT_thickness_stretch)[0] + slot);
+    if (body->traits->membrane)
+        F[8] = lanes_load(brunt_element_scalars(body, BRUNT_ELEMENT_thickness_stretch)[0] + slot);
     for (int r = 0; r < dim; r++)
         for (int c = 0; c < dim; c++) F[3 * r + c] = lanes_load(field[r * dim + c] + slot);
 }
@@ -139,11 +140,11 @@ void brunt_fem_mark_strained(brunt_fem_body *body, int32_t b, double limit) {
 // ------------------------------------------------------------------------------------------ elements of a state
 
 int64_t brunt_fem_elements_count(const brunt_fem_body *body) {
-    return (int64_t)body->slots * (1 + body->element->nodes);
+    return (int64_t)body->slots * (1 + body->traits->nodes);
 }
 
 void brunt_fem_elements_get(const brunt_fem_body *body, int64_t *out) {
-    const int64_t corners = (int64_t)body->slots * body->element->nodes;
+    const int64_t corners = (int64_t)body->slots * body->traits->nodes;
     for (int32_t s = 0; s < body->slots; s++) *out++ = body->element_id[s];
     for (int64_t k = 0; k < corners; k++) *out++ = body->element_node[k];
 }
@@ -163,7 +164,7 @@ static int32_t place_in_block(const brunt_fem_body *body, const brunt_fem_block 
 }
 
 static int check_elements(brunt_fem_body *body, const int64_t *id, const int64_t *corner) {
-    const int nodes = body->element->nodes;
+    const int nodes = body->traits->nodes;
     memset(body->rank, 0, (size_t)body->mesh_elements * sizeof *body->rank);
     body->ranked = false;
     for (int32_t b = 0; b < body->block_count; b++) {
@@ -180,7 +181,7 @@ static int check_elements(brunt_fem_body *body, const int64_t *id, const int64_t
 }
 
 int brunt_fem_elements_set(brunt_fem_body *body, const int64_t *in) {
-    const int nodes = body->element->nodes;
+    const int nodes = body->traits->nodes;
     const int64_t *corner = in + body->slots;
     if (check_elements(body, in, corner)) return -1;
     body->element_count = 0;
@@ -224,7 +225,7 @@ brunt_fem_single *brunt_fem_single_make(const brunt_fem_body *body) {
         brunt_free(slab);
         return NULL;
     }
-    const int nodes = body->element->nodes;
+    const int nodes = body->traits->nodes;
     one->slab = slab;
     one->body = *body;
     brunt_fem_body *own = &one->body;
@@ -251,7 +252,7 @@ void brunt_fem_single_free(brunt_fem_single *single) {
 }
 
 static void load_single(brunt_fem_single *one, const brunt_fem_body *body, int32_t slot, double back) {
-    const int nodes = body->element->nodes;
+    const int nodes = body->traits->nodes;
     for (int c = 0; c < body->scalar_count; c++)
         for (int l = 0; l < BRUNT_LANES; l++) one->body.scalar[c][l] = body->scalar[c][slot];
     real *volume = brunt_element_scalars(&one->body, BRUNT_ELEMENT_reference_volume)[0];
@@ -269,7 +270,7 @@ brunt_fem_share brunt_fem_single_look(brunt_fem_single *one, const brunt_fem_bod
                                       double dt, brunt_fem_workspace *work) {
     const int32_t b = block_of(body, slot);
     load_single(one, body, slot, back);
-    one->block = (brunt_fem_block){.count = 1, .node_count = body->element->nodes, .length = body->block[b].length};
+    one->block = (brunt_fem_block){.count = 1, .node_count = body->traits->nodes, .length = body->block[b].length};
     one->report = (brunt_fem_report){.bad = -1, .wave_speed = body->report[b].wave_speed};
     body->element->forces(&one->body, 0, 0, work, &one->report);
     return (brunt_fem_share){.energy = brunt_fem_energy(&one->body),

@@ -5,14 +5,14 @@
 #include "base/memory.h"
 
 static int32_t face_node(const brunt_fem_body *body, int64_t face, int k) {
-    const brunt_element *type = body->element;
+    const brunt_element_traits *type = body->traits;
     int64_t slot = face / type->face_count;
     return body->element_node[slot * type->nodes + type->face[face % type->face_count][k]];
 }
 
 static int32_t least_node(const brunt_fem_body *body, int64_t face) {
     int32_t least = face_node(body, face, 0);
-    for (int k = 1; k < body->element->face_nodes; k++) {
+    for (int k = 1; k < body->traits->face_nodes; k++) {
         int32_t node = face_node(body, face, k);
         if (node < least) least = node;
     }
@@ -20,7 +20,7 @@ static int32_t least_node(const brunt_fem_body *body, int64_t face) {
 }
 
 static bool same_nodes(const brunt_fem_body *body, int64_t a, int64_t b) {
-    const int count = body->element->face_nodes;
+    const int count = body->traits->face_nodes;
     for (int i = 0; i < count; i++) {
         bool found = false;
         for (int j = 0; j < count; j++) found = found || face_node(body, a, i) == face_node(body, b, j);
@@ -37,7 +37,7 @@ static bool on_axis(const brunt_fem_body *body, int64_t face) {
 
 // Faces are put into a bin by their least node, where the few others that can be equal are.
 int brunt_fem_faces(const brunt_fem_body *body, brunt_faces *faces) {
-    const brunt_element *type = body->element;
+    const brunt_element_traits *type = body->traits;
     *faces = (brunt_faces){0};
     int64_t count = (int64_t)body->slots * type->face_count;
     int64_t *first = brunt_alloc(((size_t)body->node_count + 2) * sizeof *first);
@@ -54,7 +54,7 @@ int brunt_fem_faces(const brunt_fem_body *body, brunt_faces *faces) {
         for (int32_t n = 0; n < body->node_count; n++)
             for (int64_t i = first[n]; i < first[n + 1]; i++) {
                 bool alone = !on_axis(body, list[i]); // a sheet's element is its one face
-                for (int64_t j = first[n]; alone && !type->sheet && j < first[n + 1]; j++)
+                for (int64_t j = first[n]; alone && !type->membrane && j < first[n + 1]; j++)
                     alone = i == j || !same_nodes(body, list[i], list[j]);
                 outside[list[i]] = alone;
                 found += alone;
@@ -85,30 +85,21 @@ void brunt_faces_free(brunt_faces *faces) {
     *faces = (brunt_faces){0};
 }
 
-// The corner's three edges (2D: two) in the order of a right-handed system.
-static bool corner_folded(int dim, const double (*x)[3], int corner) {
+static bool corner_folded(const brunt_element_traits *type, const double (*x)[3], int corner) {
     double e[3][3] = {{0}};
-    int next[3] = {0};
-    if (dim == 2) {
-        next[0] = (corner + 1) % 4, next[1] = (corner + 3) % 4;
-    } else {
-        int level = corner / 4 * 4, round = corner % 4;
-        next[0] = level + (round + (level ? 3 : 1)) % 4, next[1] = level + (round + (level ? 1 : 3)) % 4;
-        next[2] = (corner + 4) % 8;
-    }
-    for (int k = 0; k < dim; k++)
-        for (int i = 0; i < 3; i++) e[k][i] = x[next[k]][i] - x[corner][i];
+    for (int k = 0; k < type->span; k++)
+        for (int i = 0; i < 3; i++) e[k][i] = x[type->corner[corner][k]][i] - x[corner][i];
     double in_plane = e[0][0] * e[1][1] - e[0][1] * e[1][0];
-    if (dim == 2) return in_plane <= 0;
+    if (type->span == 2) return in_plane <= 0;
     return in_plane * e[2][2] + (e[0][1] * e[1][2] - e[0][2] * e[1][1]) * e[2][0] +
                (e[0][2] * e[1][0] - e[0][0] * e[1][2]) * e[2][1] <=
            0;
 }
 
 int32_t brunt_fem_folded(const brunt_fem_body *body) {
-    const brunt_element *type = body->element;
+    const brunt_element_traits *type = body->traits;
     int32_t folded = 0;
-    for (int32_t s = 0; s < body->slots && type->hourglass_modes; s++) {
+    for (int32_t s = 0; s < body->slots && body->element->hourglass_modes; s++) {
         if (body->element_id[s] < 0) continue;
         double x[BRUNT_ELEMENT_NODES][3];
         for (int a = 0; a < type->nodes; a++) {
@@ -116,9 +107,8 @@ int32_t brunt_fem_folded(const brunt_fem_body *body) {
             for (int i = 0; i < 3; i++) x[a][i] = (double)node[i];
         }
         bool any = false;
-        if (type->sheet) brunt_fem_flatten(type->nodes, x);
-        const int span = brunt_element_span(type);
-        for (int a = 0; a < type->nodes; a++) any = any || corner_folded(span, (const double(*)[3])x, a);
+        if (type->membrane) brunt_fem_flatten(type->nodes, x);
+        for (int a = 0; a < type->nodes; a++) any = any || corner_folded(type, (const double(*)[3])x, a);
         folded += any;
     }
     return folded;

@@ -141,9 +141,10 @@ static int put_on_axis(brunt_fem_body *body, brunt_error *error) {
 
 static double element_volume(const brunt_fem_body *body, const double (*x)[3]) {
     double share[BRUNT_ELEMENT_NODES], volume = 0;
-    if (!body->element->shares) return body->element->volume(x) * (body->element->sheet ? (double)body->thickness : 1);
+    if (!body->element->shares)
+        return body->element->volume(x) * (body->traits->membrane ? (double)body->thickness : 1);
     body->element->shares(x, share);
-    for (int a = 0; a < body->element->nodes; a++) volume += share[a] > 0 ? share[a] : NAN;
+    for (int a = 0; a < body->traits->nodes; a++) volume += share[a] > 0 ? share[a] : NAN;
     return volume;
 }
 
@@ -163,14 +164,14 @@ static int measure_volumes(brunt_fem_body *body, brunt_error *error) {
             volume[s] = (real)V;
             sum += body->element->volume((const double(*)[3])x);
         }
-        block->length = (real)pow(sum / block->count, 1.0 / brunt_element_span(body->element));
+        block->length = (real)pow(sum / block->count, 1.0 / body->traits->span);
     }
     return BRUNT_OK;
 }
 
 void brunt_fem_shares(const brunt_fem_body *body, int32_t slot, double *share) {
     const real volume = body->scalar[body->field[BRUNT_ELEMENT_reference_volume].first][slot];
-    const int nodes = body->element->nodes;
+    const int nodes = body->traits->nodes;
     double x[BRUNT_ELEMENT_NODES][3];
     for (int a = 0; a < nodes; a++) share[a] = (double)volume / nodes;
     if (!body->element->shares || !(volume > 0)) return;
@@ -181,7 +182,7 @@ void brunt_fem_shares(const brunt_fem_body *body, int32_t slot, double *share) {
 // Each node gets an equal share of its elements' masses: the sum of a row of the consistent matrix for simplices and
 // parallelograms. The bound of the stable step is for equal shares. Nodes of a ring get that row itself.
 static void share_masses(brunt_fem_body *body, double *mass) {
-    const int nodes = body->element->nodes;
+    const int nodes = body->traits->nodes;
     const brunt_element_field *scale = &body->field[BRUNT_ELEMENT_density_scale];
     for (int32_t s = 0; s < body->slots; s++) {
         double factor = scale->components ? (double)body->scalar[scale->first][s] : 1;
@@ -220,7 +221,7 @@ static int number_groups(brunt_fem_body *body, const brunt_mesh *mesh, int32_t *
 static int measure_surface(brunt_fem_body *body) {
     brunt_faces faces;
     if (brunt_fem_faces(body, &faces)) return -1;
-    const int corners = body->element->face_nodes, edges = body->dim == 3 ? corners : 1;
+    const int corners = body->traits->face_nodes, edges = body->dim == 3 ? corners : 1;
     double sum = 0;
     for (int32_t f = 0; f < faces.count; f++)
         for (int k = 0; k < edges; k++) {
@@ -267,16 +268,17 @@ static int make(const brunt_body_def *def, const brunt_mesh *mesh, brunt_fem_bod
 static int make_body(const brunt_body_def *def, const brunt_material *material, int dim, bool axisymmetric,
                      const brunt_mesh *mesh, brunt_fem_body *body, brunt_error *error) {
     *body = (brunt_fem_body){.dim = dim,
-                             .point_dim = brunt_element_is_sheet(mesh->kind) ? 2
-                                          : axisymmetric                     ? 3
-                                                                             : dim,
-                             .thickness = brunt_element_is_sheet(mesh->kind) ? (real)def->thickness : 0,
-                             .contact_thickness = !brunt_element_is_sheet(mesh->kind) ? 0
-                                                  : isnan(def->contact_thickness)     ? (real)def->thickness
-                                                                                      : (real)def->contact_thickness,
+                             .point_dim = brunt_element_is_membrane(mesh->kind) ? 2
+                                          : axisymmetric                        ? 3
+                                                                                : dim,
+                             .thickness = brunt_element_is_membrane(mesh->kind) ? (real)def->thickness : 0,
+                             .contact_thickness = !brunt_element_is_membrane(mesh->kind) ? 0
+                                                  : isnan(def->contact_thickness)        ? (real)def->thickness
+                                                                                         : (real)def->contact_thickness,
                              .damping = def->damping,
                              .drag_mass = 1,
                              .kind = mesh->kind,
+                             .traits = brunt_element_traits_of(mesh->kind),
                              .element = (axisymmetric ? brunt_axisymmetric_elements : brunt_elements)[mesh->kind],
                              .material = *material,
                              .hourglass = def->hourglass};
@@ -286,20 +288,20 @@ static int make_body(const brunt_body_def *def, const brunt_material *material, 
     if (!body->element)
         return brunt_fail(error, BRUNT_BAD_INPUT, "bodies.%s: %s elements do not turn about an axis: tri3 and quad4 do",
                           def->name, brunt_element_name(mesh->kind));
-    if (body->element->dim != dim)
+    if (body->traits->dimension != dim)
         return brunt_fail(error, BRUNT_BAD_INPUT,
                           "bodies.%s: %s elements are %d-dimensional, the scene is %d-dimensional", def->name,
-                          body->element->name, body->element->dim, dim);
+                          body->traits->name, body->traits->dimension, dim);
     if (mesh->element_count < 1)
         return brunt_fail(error, BRUNT_BAD_INPUT, "bodies.%s: the mesh has no elements", def->name);
-    if (body->element->sheet && !(def->thickness > 0 && isfinite(def->thickness)))
+    if (body->traits->membrane && !(def->thickness > 0 && isfinite(def->thickness)))
         return brunt_fail(error, BRUNT_BAD_INPUT, "bodies.%s.thickness: %g m is no thickness of a membrane", def->name,
                           def->thickness);
-    if (body->element->sheet && body->element->hourglass_modes && def->hourglass == BRUNT_HOURGLASS_VISCOUS)
+    if (body->traits->membrane && body->element->hourglass_modes && def->hourglass == BRUNT_HOURGLASS_VISCOUS)
         return brunt_fail(error, BRUNT_BAD_INPUT, "bodies.%s.hourglass: membranes have the stiffness form only",
                           def->name);
     const element_needs needs = {.mass_scaling = def->mass_scaling > 0,
-                                 .sheet = body->element->sheet,
+                                 .sheet = body->traits->membrane,
                                  .viscous_hourglass =
                                      body->element->hourglass_modes && def->hourglass == BRUNT_HOURGLASS_VISCOUS};
     list_fields(body, &needs);
@@ -333,7 +335,7 @@ void brunt_fem_free(brunt_fem_body *body) {
 }
 
 size_t brunt_fem_bytes(const brunt_fem_body *body) {
-    size_t nodes = (size_t)body->node_count, corners = (size_t)body->slots * (size_t)body->element->nodes;
+    size_t nodes = (size_t)body->node_count, corners = (size_t)body->slots * (size_t)body->traits->nodes;
     size_t bytes = nodes * ((BRUNT_FEM_NODE_REALS + 4) * sizeof(real) + 2 * sizeof(int32_t));
     bytes += body->held ? nodes : 0;
     bytes += body->load ? nodes * 4 * sizeof(real) : 0;
@@ -366,7 +368,7 @@ brunt_points brunt_fem_points(brunt_fem_body *body, brunt_component component, i
          **stress = brunt_element_scalars(body, BRUNT_ELEMENT_kirchhoff_stress);
     for (int c = 0; c < BRUNT_MATRIX(body->point_dim); c++) points.F[c] = F[c] + first;
     for (int c = 0; c < BRUNT_SYMMETRIC(body->point_dim); c++) points.stress[c] = stress[c] + first;
-    if (body->element->sheet)
+    if (body->traits->membrane)
         points.thickness = brunt_element_scalars(body, BRUNT_ELEMENT_thickness_stretch)[0] + first;
     points.volume = brunt_element_scalars(body, BRUNT_ELEMENT_reference_volume)[0] + first;
     const brunt_model *model = body->material.model[component];

@@ -93,6 +93,7 @@ struct brunt_fem_body {
     double drag_mass; // [-] of a kick: mass that impulses of contact and holders meet, over that of the node; 1 without
                       // damping
     const brunt_element *element;
+    const brunt_element_traits *traits; // the element's
     brunt_element_kind kind;
     brunt_material material;
     brunt_hourglass hourglass;
@@ -114,8 +115,8 @@ struct brunt_fem_body {
     int32_t element_count, slots; // real elements (of now), places with padding: each block is filled to whole vectors
                                   // with copies of its last element that have volume 0 and exert no force
     int32_t *element_id;          // of each slot: its number in the mesh, -1 for padding
-    int32_t *element_node;        // slots x element->nodes: node numbers (of this body)
-    uint16_t *local;              // slots x element->nodes: place among the nodes of the block
+    int32_t *element_node;        // slots x traits->nodes: node numbers (of this body)
+    uint16_t *local;              // slots x traits->nodes: place among the nodes of the block
     int field_count;
     brunt_element_field field[BRUNT_ELEMENT_MAX_FIELDS];
     int scalar_count;

@@ -54,33 +54,33 @@ static void sort_elements(const brunt_element *type, const brunt_mesh *mesh, pla
     double low[3] = {INFINITY, INFINITY, INFINITY}, extent = 0, volume = 0, x[BRUNT_ELEMENT_NODES][3];
     for (int pass = 0; pass < 2; pass++)
         for (int32_t n = 0; n < mesh->node_count; n++)
-            for (int a = 0; a < type->dim; a++) {
+            for (int a = 0; a < type->traits->dimension; a++) {
                 if (pass == 0)
                     low[a] = fmin(low[a], mesh->nodes[n][a]);
                 else
                     extent = fmax(extent, mesh->nodes[n][a] - low[a]);
             }
     for (int32_t e = 0; e < mesh->element_count; e++) {
-        corners_of(mesh, type->nodes, e, x);
+        corners_of(mesh, type->traits->nodes, e, x);
         volume += fabs(type->volume((const double(*)[3])x));
     }
-    const int span = brunt_element_span(type);
-    bool simplex = type->nodes == span + 1;
+    const int span = type->traits->span;
+    bool simplex = type->traits->nodes == span + 1;
     double share = volume / mesh->element_count * (simplex ? span == 3 ? 6 : 2 : 1);
     double unit = pow(share, 1.0 / span);
-    const int bits = type->dim == 3 ? 21 : 31;
+    const int bits = type->traits->dimension == 3 ? 21 : 31;
     // 2^-fraction units are one step of the grid; the whole extent must fit.
     int fraction = bits - 1 - (int)ceil(log2(extent / unit + 1));
     double scale = ldexp(1 / unit, fraction), most = ldexp(1, bits) - 1;
     for (int32_t e = 0; e < mesh->element_count; e++) {
         uint32_t at[3] = {0};
-        corners_of(mesh, type->nodes, e, x);
-        for (int a = 0; a < type->dim; a++) {
+        corners_of(mesh, type->traits->nodes, e, x);
+        for (int a = 0; a < type->traits->dimension; a++) {
             double sum = 0;
-            for (int k = 0; k < type->nodes; k++) sum += x[k][a];
-            at[a] = (uint32_t)fmin(fmax((sum / type->nodes - low[a]) * scale, 0), most);
+            for (int k = 0; k < type->traits->nodes; k++) sum += x[k][a];
+            at[a] = (uint32_t)fmin(fmax((sum / type->traits->nodes - low[a]) * scale, 0), most);
         }
-        order[e] = (placed_element){brunt_hilbert_key(type->dim, bits, at), e};
+        order[e] = (placed_element){brunt_hilbert_key(type->traits->dimension, bits, at), e};
     }
     qsort(order, (size_t)mesh->element_count, sizeof *order, by_key);
 }
@@ -88,7 +88,7 @@ static void sort_elements(const brunt_element *type, const brunt_mesh *mesh, pla
 // Small bodies get small blocks, so that there are enough of them for some threads.
 static int block_size(const brunt_element *type, int32_t elements) {
     int size = type->block;
-    const int span = brunt_element_span(type);
+    const int span = type->traits->span;
     for (int k = 0; k < (span == 3 ? 1 : 2) && elements < 16 * size; k++) size /= span == 3 ? 8 : 4;
     return size;
 }
@@ -96,7 +96,7 @@ static int block_size(const brunt_element *type, int32_t elements) {
 // Elements into blocks and slots, nodes numbered by first use.
 static void place_elements(brunt_fem_body *body, const brunt_mesh *mesh, const placed_element *order, int size,
                            int32_t *number) {
-    const int nodes = body->element->nodes;
+    const int nodes = body->traits->nodes;
     memset(number, -1, (size_t)mesh->node_count * sizeof *number);
     int32_t slot = 0, used = 0;
     for (int32_t b = 0; b < body->block_count; b++) {
@@ -127,7 +127,7 @@ static int ascending(const void *left, const void *right) {
 // Nodes of each block in ascending order, and the elements' nodes as places among them. `number`: of each node, its
 // place in the block at hand, else -1.
 static void place_nodes(brunt_fem_body *body, int32_t *number) {
-    const int nodes = body->element->nodes;
+    const int nodes = body->traits->nodes;
     memset(number, -1, (size_t)body->node_count * sizeof *number);
     int32_t at = 0, most = 0;
     for (int32_t b = 0; b < body->block_count; b++) {
@@ -170,7 +170,7 @@ int brunt_fem_layout(brunt_fem_body *body, const brunt_mesh *mesh) {
     body->slots = (body->block_count - 1) * ((size + BRUNT_LANES - 1) / BRUNT_LANES * BRUNT_LANES);
     int32_t rest = mesh->element_count - (body->block_count - 1) * size;
     body->slots += (rest + BRUNT_LANES - 1) / BRUNT_LANES * BRUNT_LANES;
-    size_t corners = (size_t)body->slots * (size_t)type->nodes, nodes = (size_t)mesh->node_count;
+    size_t corners = (size_t)body->slots * (size_t)type->traits->nodes, nodes = (size_t)mesh->node_count;
     placed_element *order = brunt_alloc((size_t)mesh->element_count * sizeof *order);
     int32_t *number = brunt_alloc(nodes * sizeof *number);
     body->block = brunt_alloc((size_t)body->block_count * sizeof *body->block);

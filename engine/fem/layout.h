@@ -20,5 +20,3 @@ void brunt_fem_flatten(int nodes, double (*x)[3]);
 // Of a ring undeformed, with places x of its nodes: bound of omega^2 over the square of the wave speed [1/m^2], springs
 // not counted; r is lambda / (lambda + 2 mu). See axisymmetric.inc.
 double brunt_fem_ring_bound(const brunt_element *type, const double (*x)[3], double r);
-// Dimension of the elements, which for a sheet is less than that of the room.
-static inline int brunt_element_span(const brunt_element *type) { return type->sheet ? 2 : type->dim; }

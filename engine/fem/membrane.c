@@ -46,7 +46,7 @@ void brunt_fem_flatten(int nodes, double (*x)[3]) {
 
 // F_alpha = dx/dX_alpha of the mean plane: the duals of the reference tangents times those of now.
 static void tangent_map(const brunt_fem_body *body, int32_t slot, double F[2][3]) {
-    const int nodes = body->element->nodes;
+    const int nodes = body->traits->nodes;
     double X[BRUNT_ELEMENT_NODES][3], x[BRUNT_ELEMENT_NODES][3], e[3][3], start[2][3], now[2][3], m[2][2];
     brunt_fem_corners(body, slot, X);
     for (int a = 0; a < nodes; a++) {

@@ -1,22 +1,13 @@
 // What quadrilaterals and triangles in the plane and those revolved about the axis share: topology, area, and the
 // nodes' combinations. Of a quadrilateral xi, eta and the hourglass xi eta, each the sum of the nodes' values times the
-// mode's
-// +-1 there; of a triangle its edges from node 0.
+// mode's +-1 there; of a triangle its edges from node 0.
 #pragma once
 
 #include "fem/kernel.h"
 
-#define QUAD4_FACES                                                                                                    \
-    {                                                                                                                  \
-        {0, 1, 0, 0}, {1, 2, 0, 0}, {2, 3, 0, 0}, { 3, 0, 0, 0 }                                                       \
-    }
 #define QUAD4_HOURGLASS                                                                                                \
     {                                                                                                                  \
         { 1, -1, 1, -1 }                                                                                               \
-    }
-#define TRI3_FACES                                                                                                     \
-    {                                                                                                                  \
-        {0, 1, 0, 0}, {1, 2, 0, 0}, { 2, 0, 0, 0 }                                                                     \
     }
 
 static inline double quad4_area(const double (*x)[3]) {

@@ -6,7 +6,7 @@
 #include <string.h>
 
 void brunt_fem_corners(const brunt_fem_body *body, int32_t slot, double (*x)[3]) {
-    const int nodes = body->element->nodes;
+    const int nodes = body->traits->nodes;
     for (int a = 0; a < nodes; a++)
         for (int i = 0; i < 3; i++)
             x[a][i] = (double)body->start[(size_t)body->element_node[(int64_t)slot * nodes + a] * 4 + (size_t)i];
@@ -34,12 +34,12 @@ static void orthonormalise(int n, int count, double (*v)[BRUNT_ELEMENT_NODES]) {
 // share of the mass, for motions along any axis, and for radial ones, which nodes on the axis of rings do not make.
 static void node_weights(const brunt_element *type, const double (*x)[3], double *weight, double *radial) {
     double share[BRUNT_ELEMENT_NODES], sum = 0;
-    for (int a = 0; a < type->nodes; a++) weight[a] = radial[a] = 1;
+    for (int a = 0; a < type->traits->nodes; a++) weight[a] = radial[a] = 1;
     if (!type->shares) return;
     type->shares(x, share);
-    for (int a = 0; a < type->nodes; a++) sum += share[a];
-    for (int a = 0; a < type->nodes; a++) {
-        weight[a] = sum / (type->nodes * share[a]);
+    for (int a = 0; a < type->traits->nodes; a++) sum += share[a];
+    for (int a = 0; a < type->traits->nodes; a++) {
+        weight[a] = sum / (type->traits->nodes * share[a]);
         radial[a] = x[a][0] > 0 ? weight[a] : 0;
     }
 }
@@ -64,7 +64,7 @@ static double greatest_cosine(int n, const double *weight, int count, double (*b
 // Gershgorin's circles, over that of the undistorted element; and a bound of the squared cosine between them and b (of
 // rings, in radial motion, b and the hoop).
 static void hourglass_shape(const brunt_element *type, const double (*x)[3], double *norm, double *overlap) {
-    const int n = type->nodes, modes = type->hourglass_modes, dim = brunt_element_span(type);
+    const int n = type->traits->nodes, modes = type->hourglass_modes, dim = type->traits->span;
     real gradient[BRUNT_ELEMENT_NODES][3];
     double b[3][BRUNT_ELEMENT_NODES], gamma[4][BRUNT_ELEMENT_NODES] = {{0}}, other[4][BRUNT_ELEMENT_NODES];
     double weight[BRUNT_ELEMENT_NODES], radial[BRUNT_ELEMENT_NODES];
@@ -103,7 +103,7 @@ static void hourglass_shape(const brunt_element *type, const double (*x)[3], dou
 static void element_frequencies(const brunt_fem_body *body, const double (*x)[3], double *strain, double *hourglass,
                                 double warp[2]) {
     const brunt_element *type = body->element;
-    const int n = type->nodes, dim = brunt_element_span(type);
+    const int n = type->traits->nodes, dim = type->traits->span;
     const double c0 = (double)body->material.wave_speed, r = (double)body->lateral_ratio;
     real b[BRUNT_ELEMENT_NODES][3];
     double S[3][3] = {{0}}, trace = 0, deviator = 0;
@@ -124,7 +124,7 @@ static void element_frequencies(const brunt_fem_body *body, const double (*x)[3]
         *hourglass = share * c0 * c0 * n * trace / dim;
     else
         *hourglass = 16 * share * c0 / pow(type->volume(x), 1.0 / dim);
-    if (!type->sheet) return;
+    if (!type->traits->membrane) return;
     double w = 0, cosine = sqrt((double)body->hourglass_overlap);
     for (int a = 0; a < n; a++) w += type->hourglass[0][a] * (x[a][2] - x[0][2]);
     double D = (double)body->hourglass_norm * *strain * w * w * trace / 36;
@@ -166,7 +166,7 @@ static double stable_step(const brunt_fem_body *body, const double (*x)[3], doub
 // An element's corners as its bounds see them: of a sheet, in its own frame.
 static void own_corners(const brunt_fem_body *body, int32_t slot, double (*x)[3]) {
     brunt_fem_corners(body, slot, x);
-    if (body->element->sheet) brunt_fem_flatten(body->element->nodes, x);
+    if (body->traits->membrane) brunt_fem_flatten(body->traits->nodes, x);
 }
 
 void brunt_fem_stable_steps(brunt_fem_body *body, double mass_scaling) {

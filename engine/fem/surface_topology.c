@@ -20,7 +20,7 @@ typedef struct face_of {
 } face_of;
 
 static face_of read_face(const brunt_surface_topology *shell, const brunt_fem_body *fem, int32_t place, int face) {
-    const brunt_element *type = fem->element;
+    const brunt_element_traits *type = fem->traits;
     const int32_t *corner = fem->element_node + (size_t)shell->slot[place] * (size_t)type->nodes;
     face_of out = {.place = place, .face = face, .least = INT32_MAX};
     for (int k = 0; k < type->face_nodes; k++) {
@@ -41,7 +41,7 @@ static bool same_nodes(const face_of *a, const face_of *b, int count) {
 
 // Faces are put into a bin by their least node, where the few others that can be equal are.
 static void pair_faces(brunt_surface_topology *shell, const brunt_fem_body *fem, int32_t *first, int32_t *list) {
-    const int faces = fem->element->face_count;
+    const int faces = fem->traits->face_count;
     const int32_t count = shell->elements * faces;
     for (int32_t k = 0; k < count; k++) first[read_face(shell, fem, k / faces, k % faces).least + 2]++;
     for (int32_t n = 0; n < fem->node_count; n++) first[n + 2] += first[n + 1];
@@ -51,19 +51,19 @@ static void pair_faces(brunt_surface_topology *shell, const brunt_fem_body *fem,
             const face_of a = read_face(shell, fem, list[i] / faces, list[i] % faces);
             for (int32_t j = i + 1; j < first[n + 1] && shell->across[list[i]] < 0; j++) {
                 const face_of b = read_face(shell, fem, list[j] / faces, list[j] % faces);
-                if (!same_nodes(&a, &b, fem->element->face_nodes)) continue;
+                if (!same_nodes(&a, &b, fem->traits->face_nodes)) continue;
                 shell->across[list[i]] = b.place, shell->across[list[j]] = a.place;
             }
         }
 }
 
 static int find_neighbours(brunt_surface_topology *shell, const brunt_fem_body *fem) {
-    const size_t faces = (size_t)shell->elements * (size_t)fem->element->face_count;
+    const size_t faces = (size_t)shell->elements * (size_t)fem->traits->face_count;
     int32_t *first = brunt_alloc(((size_t)fem->node_count + 2) * sizeof *first);
     int32_t *list = brunt_alloc((faces + 1) * sizeof *list);
     const bool made = first && list;
     for (size_t k = 0; k < faces; k++) shell->across[k] = -1;
-    if (made && !fem->element->sheet) pair_faces(shell, fem, first, list); // a sheet's element is its one face
+    if (made && !fem->traits->membrane) pair_faces(shell, fem, first, list); // a sheet's element is its one face
     brunt_free(first);
     brunt_free(list);
     return made ? 0 : -1;
@@ -91,7 +91,7 @@ static void open_neighbours(brunt_surface_topology *shell, int32_t place, int fa
 // Where the elements are now, and which of their faces are open. Whether others are there than the last time.
 static bool find_elements(brunt_surface_topology *shell, const brunt_fem_body *fem) {
     enum { WAS = -2 };
-    const int faces = fem->element->face_count;
+    const int faces = fem->traits->face_count;
     bool left = false, back = false;
     for (int32_t r = 0; r < shell->elements; r++) shell->slot[r] = shell->slot[r] >= 0 ? WAS : -1;
     for (int32_t s = 0; s < fem->slots; s++) {
@@ -118,7 +118,7 @@ static bool find_elements(brunt_surface_topology *shell, const brunt_fem_body *f
 }
 
 static int list_faces(brunt_surface_topology *shell, const brunt_fem_body *fem) {
-    const int faces = fem->element->face_count;
+    const int faces = fem->traits->face_count;
     int32_t count = 0;
     for (int32_t r = 0; r < shell->elements; r++) {
         if (!shell->open[r]) continue;
@@ -147,7 +147,7 @@ static void number_nodes(brunt_surface_topology *shell, const brunt_fem_body *fe
 }
 
 void brunt_topology_face(const brunt_surface_topology *shell, const brunt_fem_body *fem, int32_t k, int32_t node[4]) {
-    const brunt_element *type = fem->element;
+    const brunt_element_traits *type = fem->traits;
     const int32_t place = shell->key[k] / type->face_count;
     const int32_t *corner = fem->element_node + (size_t)shell->slot[place] * (size_t)type->nodes;
     const uint8_t *face = type->face[shell->key[k] % type->face_count];
@@ -172,7 +172,7 @@ int brunt_topology_make(brunt_surface_topology *shell, const brunt_fem_body *fem
     const size_t n = (size_t)fem->element_count + 1, nodes = (size_t)fem->node_count + 1;
     shell->rank = brunt_alloc(n * sizeof *shell->rank), shell->slot = brunt_alloc(n * sizeof *shell->slot);
     shell->open = brunt_alloc(n);
-    shell->across = brunt_alloc(n * (size_t)fem->element->face_count * sizeof *shell->across);
+    shell->across = brunt_alloc(n * (size_t)fem->traits->face_count * sizeof *shell->across);
     shell->number = brunt_alloc(nodes * sizeof *shell->number);
     shell->number_before = brunt_alloc(nodes * sizeof *shell->number_before);
     if (!shell->rank || !shell->slot || !shell->open || !shell->across || !shell->number || !shell->number_before)
@@ -181,7 +181,7 @@ int brunt_topology_make(brunt_surface_topology *shell, const brunt_fem_body *fem
     for (int32_t s = 0; s < fem->slots; s++)
         if (fem->element_id[s] >= 0) shell->rank[fem->element_id[s]] = place, shell->slot[place++] = s;
     if (find_neighbours(shell, fem)) return -1;
-    for (int32_t r = 0; r < shell->elements; r++) shell->open[r] = open_faces(shell, r, fem->element->face_count);
+    for (int32_t r = 0; r < shell->elements; r++) shell->open[r] = open_faces(shell, r, fem->traits->face_count);
     if (list_faces(shell, fem)) return -1;
     number_nodes(shell, fem);
     return 0;

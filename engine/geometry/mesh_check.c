@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/memory.h"
+#include "geometry/element_traits.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -103,13 +104,8 @@ static double triple(const double *a, const double *b, const double *c) {
     return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
 }
 
-// Of each corner: the nodes its edges lead to, so that the determinant is positive in an element of VTK's order.
-static const int8_t hex_corner[8][3] = {{1, 3, 4}, {2, 0, 5}, {3, 1, 6}, {0, 2, 7},
-                                        {7, 5, 0}, {4, 6, 1}, {5, 7, 2}, {6, 4, 3}};
-static const int8_t tet_corner[4][3] = {{1, 2, 3}, {2, 0, 3}, {0, 1, 3}, {2, 1, 0}};
-
 typedef struct element_look {
-    double volume;            // [m^3], 2D and sheets [m^2]
+    double volume;            // [m^3], 2D and membranes [m^2]
     double least, shape;      // [m^3] least determinant at a corner; [-] least scaled one
     double shortest, longest; // [m] edges
 } element_look;
@@ -130,32 +126,11 @@ static void look_at_corner(const double *x, const double *const to[3], int dimen
     if (!(scaled >= look->shape)) look->shape = scaled; // one that is not a number stays
 }
 
-// Exact volume of a trilinear hexahedron: det(dx/dxi) is at most quadratic in each coordinate, for which two Gauss
-// points a direction are exact.
-static double hex_volume(const double (*x)[3]) {
-    static const double sign[8][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1},
-                                      {-1, -1, 1},  {1, -1, 1},  {1, 1, 1},  {-1, 1, 1}};
-    double sum = 0, g = 1 / sqrt(3.0);
-    for (int p = 0; p < 8; p++) {
-        double J[3][3] = {{0}};
-        for (int a = 0; a < 8; a++) {
-            double f[3], dN[3];
-            for (int d = 0; d < 3; d++) f[d] = 1 + sign[a][d] * sign[p][d] * g;
-            for (int d = 0; d < 3; d++) dN[d] = sign[a][d] * f[(d + 1) % 3] * f[(d + 2) % 3] / 8;
-            // from the first node: coordinates far from the origin cancel before they are multiplied
-            for (int d = 0; d < 3; d++)
-                for (int i = 0; i < 3; i++) J[d][i] += dN[d] * (x[a][i] - x[0][i]);
-        }
-        sum += triple(J[0], J[1], J[2]);
-    }
-    return sum;
-}
-
 static void cross(const double *a, const double *b, double *c) {
     for (int d = 0; d < 3; d++) c[d] = a[(d + 1) % 3] * b[(d + 2) % 3] - a[(d + 2) % 3] * b[(d + 1) % 3];
 }
 
-// Corners of a sheet's element as seen along its normal, that of its diagonals: area and shape are what they make in
+// Corners of a membrane's element as seen along its normal, that of its diagonals: area and shape are what they make in
 // that plane. One that is folded upon itself is flat there, one whose sides cross has corners that turn back.
 static void view_along_normal(int nodes, const double (*x)[3], double (*plane)[3]) {
     double first[3], second[3], normal[3], across[3];
@@ -173,56 +148,29 @@ static void view_along_normal(int nodes, const double (*x)[3], double (*plane)[3
     }
 }
 
-static element_look look_at(brunt_element_kind kind, const double (*x)[3]);
+// Of a membrane, x are in its plane.
+static element_look look_at_corners(const brunt_element_traits *element, const double (*x)[3]) {
+    element_look look = {.least = INFINITY, .shape = INFINITY, .shortest = INFINITY};
+    for (int a = 0; a < element->nodes; a++) {
+        const double *to[3] = {0};
+        for (int i = 0; i < element->span; i++) to[i] = x[element->corner[a][i]];
+        look_at_corner(x[a], to, element->span, element->shape->regular, &look);
+    }
+    look.volume = brunt_element_volume(element, x);
+    return look;
+}
 
-static element_look look_at_sheet(brunt_element_kind kind, const double (*x)[3]) {
-    const int nodes = brunt_element_nodes(kind);
+static element_look look_at(const brunt_element_traits *element, const double (*x)[3]) {
+    if (!element->membrane) return look_at_corners(element, x);
+    const int nodes = element->nodes;
     double plane[4][3];
     view_along_normal(nodes, x, plane);
-    element_look look = look_at(nodes == 4 ? BRUNT_QUAD4 : BRUNT_TRI3, (const double(*)[3])plane);
+    element_look look = look_at_corners(element, (const double(*)[3])plane);
     look.shortest = INFINITY, look.longest = 0;
     for (int a = 0; a < nodes; a++) {
         double e[3];
         edge(x[a], x[(a + 1) % nodes], e);
         look.shortest = fmin(look.shortest, length(e)), look.longest = fmax(look.longest, length(e));
-    }
-    return look;
-}
-
-static element_look look_at(brunt_element_kind kind, const double (*x)[3]) {
-    if (brunt_element_is_sheet(kind)) return look_at_sheet(kind, x);
-    element_look look = {.least = INFINITY, .shape = INFINITY, .shortest = INFINITY};
-    int nodes = brunt_element_nodes(kind);
-    for (int a = 0; a < nodes; a++) {
-        const double *to[3] = {0};
-        switch (kind) {
-        case BRUNT_HEX8:
-        case BRUNT_TET4:
-            for (int i = 0; i < 3; i++) to[i] = x[kind == BRUNT_HEX8 ? hex_corner[a][i] : tet_corner[a][i]];
-            look_at_corner(x[a], to, 3, kind == BRUNT_HEX8 ? 1 : sqrt(2.0), &look);
-            break;
-        case BRUNT_TRI3:
-        case BRUNT_QUAD4:
-            to[0] = x[(a + 1) % nodes], to[1] = x[(a + nodes - 1) % nodes];
-            look_at_corner(x[a], to, 2, kind == BRUNT_QUAD4 ? 1 : 2 / sqrt(3.0), &look);
-            break;
-        case BRUNT_MEMBRANE_QUAD4:
-        case BRUNT_MEMBRANE_TRI3: break; // above
-        }
-    }
-    switch (kind) {
-    case BRUNT_HEX8: look.volume = hex_volume(x); break;
-    case BRUNT_TET4: look.volume = look.least / 6; break;
-    case BRUNT_TRI3: look.volume = look.least / 2; break;
-    case BRUNT_QUAD4: {
-        double a[3], b[3];
-        edge(x[0], x[2], a);
-        edge(x[1], x[3], b);
-        look.volume = (a[0] * b[1] - a[1] * b[0]) / 2;
-        break;
-    }
-    case BRUNT_MEMBRANE_QUAD4:
-    case BRUNT_MEMBRANE_TRI3: break;
     }
     return look;
 }
@@ -245,7 +193,7 @@ static void look_at_elements(const brunt_mesh *mesh, brunt_mesh_quality *quality
     for (int32_t e = 0; e < mesh->element_count; e++) {
         double x[BRUNT_ELEMENT_NODES][3];
         bool twice = gather(mesh, e, x);
-        element_look look = look_at(mesh->kind, x);
+        element_look look = look_at(brunt_element_traits_of(mesh->kind), (const double(*)[3])x);
         if (twice || !(fabs(look.shape) > flat) || !isfinite(look.volume))
             note(&found[DEGENERATE], e);
         else if (look.shape < 0)
@@ -469,5 +417,5 @@ int brunt_mesh_check(const brunt_mesh *mesh, brunt_mesh_quality *quality, brunt_
     for (int k = 0; k < 5; k++)
         if (found[k].count) quality->first[k] = found[k].first[0];
     status = judge(found, error);
-    return status || !brunt_element_is_sheet(mesh->kind) ? status : check_sides(mesh, error);
+    return status || !brunt_element_is_membrane(mesh->kind) ? status : check_sides(mesh, error);
 }

@@ -6,6 +6,7 @@
 #include "brunt.h"
 #include "base/error.h"
 #include "base/memory.h"
+#include "geometry/element_traits.h"
 #include "geometry/mesh_shape.h"
 
 #include <math.h>
@@ -223,7 +224,7 @@ static bool add_groups(const brunt_mesh_grid *grid, const char *const names[BRUN
 }
 
 static bool take_elements(const brunt_mesh_grid *grid, brunt_element_kind kind, brunt_mesh *mesh) {
-    int nodes = brunt_element_nodes(kind), pieces = kind == BRUNT_TET4 ? 6 : kind == BRUNT_TRI3 ? 2 : 1;
+    int nodes = brunt_element_nodes(kind), pieces = brunt_element_traits_of(kind)->shape->pieces;
     mesh->kind = kind;
     mesh->element_count = grid->cell_count * pieces;
     mesh->elements = brunt_alloc((size_t)mesh->element_count * (size_t)nodes * sizeof *mesh->elements);
@@ -242,7 +243,7 @@ int brunt_mesh_shape(const brunt_shape *shape, int dimension, brunt_element_kind
     if (brunt_element_dimension(kind) != dimension)
         return brunt_fail(error, BRUNT_BAD_INPUT, "elements of kind %s are of %d dimensions, the shape is of %d",
                           brunt_element_name(kind), brunt_element_dimension(kind), dimension);
-    if (brunt_element_is_sheet(kind))
+    if (brunt_element_is_membrane(kind))
         return brunt_fail(error, BRUNT_BAD_INPUT, "elements of kind %s are sheets: a shape's surface is made of them",
                           brunt_element_name(kind));
     if (!(size > 0) || !isfinite(size))
@@ -253,7 +254,7 @@ int brunt_mesh_shape(const brunt_shape *shape, int dimension, brunt_element_kind
     if (status) return status;
     const char *names[BRUNT_GRID_GROUPS] = {0};
     brunt_mesh_grid grid = {0};
-    const bool even = brunt_mesh_is_cut(&cut) || kind == BRUNT_TET4 || kind == BRUNT_TRI3;
+    const bool even = brunt_mesh_is_cut(&cut) || brunt_element_traits_of(kind)->shape->pieces > 1;
     int made = make_grid(&cut.whole, dimension, size, even, &grid, names, &status, error);
     if (!made && !status) made = brunt_mesh_grid_cut(&cut, names, &grid);
     if (!status && made == BRUNT_GRID_TOO_MANY)

@@ -8,31 +8,22 @@
 #include "brunt.h"
 #include "base/error.h"
 #include "base/memory.h"
-
-// Faces of an element in VTK's order, counter-clockwise seen from outside.
-typedef struct solid {
-    brunt_element_kind kind;
-    int faces, corners;
-    uint8_t face[6][4];
-} solid;
-static const solid hexahedron = {
-    BRUNT_HEX8, 6, 4, {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}}};
-static const solid tetrahedron = {BRUNT_TET4, 4, 3, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+#include "geometry/element_traits.h"
 
 // What of the volume's mesh becomes sheets.
 typedef struct surface {
-    const solid *of;
+    const brunt_element_traits *of; // the element of the volume
     const brunt_mesh *volume;
-    int32_t (*face)[4]; // the first of->corners are used
+    int32_t (*face)[4]; // the first of->face_nodes are used
     int32_t count;
 } surface;
 
 // ---------------------------------------------------------------------------------------------------- outer faces
 
 static void face_nodes(const surface *s, int64_t face, int32_t node[4]) {
-    const int nodes = brunt_element_nodes(s->of->kind);
-    const int32_t *element = s->volume->elements + face / s->of->faces * nodes;
-    for (int c = 0; c < s->of->corners; c++) node[c] = element[s->of->face[face % s->of->faces][c]];
+    const int nodes = s->of->nodes;
+    const int32_t *element = s->volume->elements + face / s->of->face_count * nodes;
+    for (int c = 0; c < s->of->face_nodes; c++) node[c] = element[s->of->face[face % s->of->face_count][c]];
 }
 
 static int32_t least(const int32_t *node, int corners) {
@@ -51,19 +42,19 @@ static bool same(const int32_t *a, const int32_t *b, int corners) {
 
 // Numbers of all faces by their least node: those of node n are list[first[n]] to list[first[n + 1] - 1].
 static bool sort_faces(const surface *s, int64_t **first, int64_t **list) {
-    const int64_t faces = (int64_t)s->volume->element_count * s->of->faces;
+    const int64_t faces = (int64_t)s->volume->element_count * s->of->face_count;
     *first = brunt_alloc(((size_t)s->volume->node_count + 2) * sizeof **first);
     *list = brunt_alloc((size_t)faces * sizeof **list);
     if (!*first || !*list) return false;
     int32_t node[4] = {0};
     for (int64_t f = 0; f < faces; f++) {
         face_nodes(s, f, node);
-        (*first)[least(node, s->of->corners) + 2]++;
+        (*first)[least(node, s->of->face_nodes) + 2]++;
     }
     for (int32_t n = 0; n < s->volume->node_count; n++) (*first)[n + 2] += (*first)[n + 1];
     for (int64_t f = 0; f < faces; f++) {
         face_nodes(s, f, node);
-        (*list)[(*first)[least(node, s->of->corners) + 1]++] = f;
+        (*list)[(*first)[least(node, s->of->face_nodes) + 1]++] = f;
     }
     return true;
 }
@@ -72,17 +63,17 @@ static bool sort_faces(const surface *s, int64_t **first, int64_t **list) {
 static bool is_outer(const surface *s, int64_t face, const int64_t *first, const int64_t *list) {
     int32_t node[4] = {0}, other[4] = {0};
     face_nodes(s, face, node);
-    const int32_t bin = least(node, s->of->corners);
+    const int32_t bin = least(node, s->of->face_nodes);
     for (int64_t k = first[bin]; k < first[bin + 1]; k++) {
         if (list[k] == face) continue;
         face_nodes(s, list[k], other);
-        if (same(node, other, s->of->corners)) return false;
+        if (same(node, other, s->of->face_nodes)) return false;
     }
     return true;
 }
 
 static bool find_surface(surface *s) {
-    const int64_t faces = (int64_t)s->volume->element_count * s->of->faces;
+    const int64_t faces = (int64_t)s->volume->element_count * s->of->face_count;
     int64_t *first = NULL, *list = NULL;
     bool done = sort_faces(s, &first, &list);
     int32_t count = 0;
@@ -126,8 +117,8 @@ static int keep_faces(surface *s, const char (*names)[BRUNT_NAME_LENGTH], int32_
         for (int32_t i = 0; i < group->count; i++) marked[group->nodes[i]] = 1;
         for (int32_t f = 0; f < s->count; f++) {
             int in = 0;
-            for (int c = 0; c < s->of->corners; c++) in += marked[s->face[f][c]];
-            kept[f] |= in == s->of->corners;
+            for (int c = 0; c < s->of->face_nodes; c++) in += marked[s->face[f][c]];
+            kept[f] |= in == s->of->face_nodes;
         }
     }
     int32_t count = 0;
@@ -207,7 +198,7 @@ static bool add_groups(const brunt_mesh *volume, const int32_t *number, brunt_me
 // Nodes keep the order they have in the volume. False: out of memory.
 static bool make_sheets(const surface *s, brunt_element_kind kind, brunt_mesh *mesh) {
     const brunt_mesh *volume = s->volume;
-    const int corners = s->of->corners;
+    const int corners = s->of->face_nodes;
     int32_t *number = brunt_alloc((size_t)volume->node_count * sizeof *number);
     mesh->kind = kind;
     mesh->elements = brunt_alloc((size_t)s->count * (size_t)corners * sizeof *mesh->elements);
@@ -230,11 +221,12 @@ int brunt_mesh_surface(const brunt_shape *shape, brunt_element_kind kind, double
                        const char (*faces)[BRUNT_NAME_LENGTH], int32_t face_count, brunt_mesh *mesh,
                        brunt_error *error) {
     *mesh = (brunt_mesh){0};
-    if (!brunt_element_is_sheet(kind))
+    if (!brunt_element_is_membrane(kind))
         return brunt_fail(error, BRUNT_BAD_INPUT, "elements of kind %s are not sheets", brunt_element_name(kind));
     brunt_mesh volume;
-    surface s = {.of = kind == BRUNT_MEMBRANE_TRI3 ? &tetrahedron : &hexahedron, .volume = &volume};
-    int status = brunt_mesh_shape(shape, 3, s.of->kind, size, &volume, error);
+    const brunt_element_kind solid = brunt_element_below_membrane(kind);
+    surface s = {.of = brunt_element_traits_of(solid), .volume = &volume};
+    int status = brunt_mesh_shape(shape, 3, solid, size, &volume, error);
     if (status) return status;
     bool done = find_surface(&s);
     if (done && face_count) status = keep_faces(&s, faces, face_count, error);

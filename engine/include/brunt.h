@@ -112,14 +112,14 @@ typedef enum brunt_element_kind {
     BRUNT_TRI3,
     BRUNT_QUAD4,
     BRUNT_MEMBRANE_QUAD4,
-    BRUNT_MEMBRANE_TRI3
+    BRUNT_MEMBRANE_TRI3,
+    BRUNT_ELEMENT_KINDS // how many
 } brunt_element_kind;
-enum { BRUNT_ELEMENT_KINDS = 6, BRUNT_ELEMENT_NODES = 8 };
-const char *brunt_element_name(
-    brunt_element_kind kind); // "tet4", "hex8", "tri3", "quad4", "membrane_quad4", "membrane_tri3"; "unknown"
-int brunt_element_nodes(brunt_element_kind kind);     // this and the next are 0 of what is no kind
-int brunt_element_dimension(brunt_element_kind kind); // of the room its nodes are in: 3 for membranes
-bool brunt_element_is_sheet(brunt_element_kind kind); // of membranes
+enum { BRUNT_ELEMENT_NODES = 8 };                        // that an element has at most
+const char *brunt_element_name(brunt_element_kind kind); // "tet4", "membrane_quad4", ...; "unknown"
+int brunt_element_nodes(brunt_element_kind kind);        // this and the next are 0 of what is no kind
+int brunt_element_dimension(brunt_element_kind kind);    // of the room its nodes are in: 3 for membranes
+bool brunt_element_is_membrane(brunt_element_kind kind); // of membranes
 
 // Nodes with a name: a boundary acts on them, and on the faces whose nodes are all among them.
 typedef struct brunt_group {

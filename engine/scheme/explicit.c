@@ -92,7 +92,7 @@ static int fail_particle(const brunt_world *world, brunt_body *body, int64_t slo
 static int fail_element(const brunt_world *world, const brunt_fem_body *fem, int32_t slot, brunt_error *error,
                         const char *reason) {
     if (!error) return BRUNT_FAILED;
-    const int nodes = fem->element->nodes;
+    const int nodes = fem->traits->nodes;
     error->time = world->clock.time;
     memcpy(error->body, fem->name, sizeof error->body < sizeof fem->name ? sizeof error->body : sizeof fem->name);
     for (int32_t s = slot; s >= 0 && (error->id = fem->element_id[s]) < 0; s--) {} // padding copies the last one

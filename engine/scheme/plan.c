@@ -23,7 +23,7 @@ static bool has_hourglass(const brunt_world *world) {
 
 static bool has_sheets(const brunt_world *world) {
     for (int k = 0; k < world->bodies.fem_count; k++)
-        if (world->bodies.fem[k].element->sheet) return true;
+        if (world->bodies.fem[k].traits->membrane) return true;
     return false;
 }
 

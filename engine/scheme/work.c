@@ -218,36 +218,7 @@ static amount drift_work(const brunt_fem_body *body) {
     return work;
 }
 
-// Arithmetic of an element: of its nodes' modes, their transpose, the slope of the volume (the element's file).
-typedef struct element_count {
-    const char *name;
-    bool axisymmetric;
-    int modes, strain_modes;
-    double combine, spread, slope;
-    double whole[2]; // of kernels that are not element.inc: counted once, stiffness and viscous hourglass control
-} element_count;
-
-// clang-format off
-static const element_count element_counts[] = {
-    {"tet4",  false, 3, 3,  9,  6,  41, {0, 0}},
-    {"hex8",  false, 7, 6, 69, 66, 164, {0, 0}}, // modes by sums of pairs; six products of two crosses: three of 27, three of 24
-    {"tri3",  false, 2, 2,  4,  2,   7, {0, 0}},
-    {"quad4", false, 3, 2, 14, 12,   7, {0, 0}},
-    {"tri3",  true,  2, 2,  0,  0,   0, {309, 309}},
-    {"quad4", true,  3, 2,  0,  0,   0, {524, 579}},
-    {"membrane_quad4", false, 3, 2, 0, 0, 0, {636, 636}},
-    {"membrane_tri3",  false, 2, 2, 0, 0, 0, {338, 338}},
-};
-// clang-format on
-
-static const element_count *find_count(const brunt_element *type) {
-    for (size_t k = 0; k < sizeof element_counts / sizeof *element_counts; k++)
-        if (strcmp(element_counts[k].name, type->name) == 0 && element_counts[k].axisymmetric == type->axisymmetric)
-            return &element_counts[k];
-    return NULL;
-}
-
-static double hourglass_flops(const element_count *c, int d, int H, bool viscous) {
+static double hourglass_flops(const brunt_element_flops *c, int d, int H, bool viscous) {
     const double S = c->strain_modes, carry = 2.0 * d * d * H + d * d; // couple, times 1 / V
     if (!viscous)                                                      // k; of each mode bend, q, carried, Q, energy
         return S * 2 * d - 1 + 4 + H * (d * (2.0 * d - 1) + 3 * d + 2 * d + 2) + carry;
@@ -257,7 +228,7 @@ static double hourglass_flops(const element_count *c, int d, int H, bool viscous
 }
 
 // The bound of omega^2.
-static double frequency_flops(const element_count *c, int d, int H, bool viscous) {
+static double frequency_flops(const brunt_element_flops *c, int d, int H, bool viscous) {
     const double S = c->strain_modes;
     double flops = (H ? 0 : (S - 1) * d) + 2 + pairs_of(d) * (2 * S - 1 + (H ? 1 : 2) + 1); // sum, 1 / V^2, S0
     flops += product_flops(d) + pairs_of(d) * (2.0 * d - 1);                                // F^-T S0 F^-1
@@ -265,8 +236,8 @@ static double frequency_flops(const element_count *c, int d, int H, bool viscous
     return flops + (!H ? 0 : viscous ? (d == 3 ? 20 : 2) + 16 : d - 1 + 2 + 9);
 }
 
-static double kernel_element_flops(const brunt_fem_body *body, const element_count *c) {
-    const int d = body->dim, n = body->element->nodes, H = body->element->hourglass_modes;
+static double kernel_element_flops(const brunt_fem_body *body, const brunt_element_flops *c) {
+    const int d = body->dim, n = body->traits->nodes, H = body->element->hourglass_modes;
     const bool viscous = H && body->hourglass == BRUNT_HOURGLASS_VISCOUS;
     const double S = c->strain_modes;
     double flops = 2 * c->combine + c->slope + 1;             // modes of X and u, V and G, 1 / V
@@ -281,17 +252,16 @@ static double kernel_element_flops(const brunt_fem_body *body, const element_cou
 static amount element_work(const brunt_fem_body *body) {
     const double elements = fmax(1, body->element_count), nodes = body->node_count / elements;
     const double copies = body->partial_count / elements; // nodes of blocks
-    const element_count *c = find_count(body->element);
+    const brunt_element_flops *c = &body->element->flops;
     const bool viscous = body->element->hourglass_modes && body->hourglass == BRUNT_HOURGLASS_VISCOUS;
     double reals = 0;
     for (int f = 0; f < body->field_count; f++) {
         const bool read_only = f == BRUNT_ELEMENT_reference_volume || f == BRUNT_ELEMENT_density_scale;
         reals += (read_only ? 1 : 2) * body->field[f].components;
     }
-    double bytes = reals * sizeof(real) + body->element->nodes * sizeof *body->local;
+    double bytes = reals * sizeof(real) + body->traits->nodes * sizeof *body->local;
     bytes += nodes * (BRUNT_FEM_NODE_REALS + 4) * sizeof(real);          // record and start
     bytes += copies * (sizeof *body->block_node + 2 * 4 * sizeof(real)); // number, partial force
-    if (!c) return (amount){bytes, 0};
     double flops = c->whole[0] > 0 ? c->whole[viscous] : kernel_element_flops(body, c);
     flops += copies * (4 + 8); // u = x - X, work of the forces
     return (amount){bytes, flops + model_flops(&body->material, body->point_dim)};

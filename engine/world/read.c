@@ -102,7 +102,7 @@ const char *brunt_body_material(const brunt_world *world, int32_t body) {
 }
 brunt_method brunt_body_method(const brunt_world *world, int32_t body) {
     const brunt_fem_body *fem = world->bodies.all[body].fem;
-    return !fem ? BRUNT_MPM : fem->element->sheet ? BRUNT_MEMBRANE : BRUNT_FEM;
+    return !fem ? BRUNT_MPM : fem->traits->membrane ? BRUNT_MEMBRANE : BRUNT_FEM;
 }
 int64_t brunt_body_size(const brunt_world *world, int32_t body, brunt_place at) {
     const brunt_body_ref ref = world->bodies.all[body];

@@ -77,7 +77,7 @@ static double scalar(const brunt_fem_body *fem, int field, int c, int32_t s) {
 
 static void read_point(const brunt_fem_body *fem, int32_t s, element_point *p) {
     const int dim = fem->point_dim;
-    const bool sheet = fem->element->sheet;
+    const bool sheet = fem->traits->membrane;
     memset(p, 0, sizeof *p);
     p->F[8] = sheet ? scalar(fem, BRUNT_ELEMENT_thickness_stretch, 0, s) : 1;
     for (int r = 0; r < dim; r++)
@@ -148,7 +148,7 @@ static const struct element_field {
     {{"thickness", "m", 1, false, BRUNT_AT_ELEMENTS}, element_thickness}, // the last: of sheets alone
 };
 static int element_count(const brunt_fem_body *fem) {
-    return (int)(sizeof element_fields / sizeof element_fields[0]) - (fem->element->sheet ? 0 : 1);
+    return (int)(sizeof element_fields / sizeof element_fields[0]) - (fem->traits->membrane ? 0 : 1);
 }
 
 // ------------------------------------------------------------------------------------------ all together
@@ -205,7 +205,7 @@ void brunt_read_mesh(brunt_world *world, brunt_fem_body *fem, int32_t field, dou
 
 void brunt_body_connectivity(const brunt_world *world, int32_t body, int32_t *out) {
     brunt_fem_body *fem = world->bodies.all[body].fem;
-    const int nodes = fem->element->nodes;
+    const int nodes = fem->traits->nodes;
     for (int32_t s = 0; s < fem->slots; s++) {
         if (fem->element_id[s] < 0) continue;
         for (int c = 0; c < nodes; c++)

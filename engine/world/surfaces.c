@@ -35,7 +35,7 @@ static void warn_of_thickness(brunt_world *world, const brunt_fem_body *fem, boo
     const double thick = (double)fem->contact_thickness;
     bool other = self;
     for (int k = 0; k < world->bodies.fem_count; k++)
-        other = other || (world->bodies.fem[k].element->sheet &&
+        other = other || (world->bodies.fem[k].traits->membrane &&
                           world->pairs.of[fem->index * world->bodies.count + world->bodies.fem[k].index] >= 0);
     if (self && thick > fem->mean_edge)
         brunt_warn(&world->messages,
@@ -57,7 +57,7 @@ static int check_sheets(brunt_world *world, bool *self, brunt_error *error) {
     for (int k = 0; k < world->bodies.fem_count; k++) {
         const brunt_fem_body *fem = &world->bodies.fem[k];
         bool meets = form == BRUNT_AUGURY_PAPER; // which acts on all
-        if (!fem->element->sheet) continue;
+        if (!fem->traits->membrane) continue;
         for (int i = 0; i < n; i++) {
             const bool pair = world->pairs.of[fem->index * n + i] >= 0;
             const brunt_body *mpm = world->bodies.all[i].mpm;

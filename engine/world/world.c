@@ -260,7 +260,7 @@ static int make_elements(brunt_world *world, const brunt_world_def *def, const b
         memcpy(reason, error->message, sizeof reason);
         brunt_fail(error, error->code, "bodies.%s: %.900s", from->name, reason);
     }
-    if (!status && brunt_element_is_sheet(mesh->kind) != sheet)
+    if (!status && brunt_element_is_membrane(mesh->kind) != sheet)
         REFUSE("bodies.%s: elements of kind %s are not for method %s", from->name, brunt_element_name(mesh->kind),
                sheet ? "membrane" : "fem");
     const brunt_material_def *law = &def->materials[from->material];

@@ -10,10 +10,7 @@
 #include "io/mesh/gmsh_file.h"
 #include "base/memory.h"
 #include "base/text.h"
-
-// Of each kind of brunt_element_kind: the type of gmsh. Both have the nodes in the same order.
-static const int32_t type_of_kind[BRUNT_ELEMENT_KINDS] = {
-    [BRUNT_TET4] = 4, [BRUNT_HEX8] = 5, [BRUNT_TRI3] = 2, [BRUNT_QUAD4] = 3};
+#include "geometry/element_traits.h"
 
 // A mesh of two dimensions may be out of the plane by this share of its extent: rounding of the program that made it.
 static const double plane_tolerance = 1e-9;
@@ -144,8 +141,8 @@ static int find_kind(const selection *s, brunt_element_kind *kind, int64_t *coun
         if (!counts[t]) continue;
         types++, last = t;
         *count += counts[t];
-        for (int k = 0; k < BRUNT_ELEMENT_KINDS; k++)
-            if (type_of_kind[k] == t) *kind = (brunt_element_kind)k, fitting++;
+        const brunt_element_kind found = brunt_element_of_gmsh(t); // both have the nodes in the same order
+        if (found < BRUNT_ELEMENT_KINDS) *kind = found, fitting++;
     }
     const char *path = s->file->path;
     if (!types && s->all)
@@ -213,36 +210,20 @@ static int fill_mesh(const selection *s, const int32_t *number, int32_t nodes, i
     return BRUNT_OK;
 }
 
-enum { SOLID_KINDS = BRUNT_MEMBRANE_QUAD4 }; // those before it have an inside
-
-// Twice the area, or a multiple of the volume: exact in sign for straight elements and enough to tell how a body is
-// turned.
-static double turn_of(const brunt_mesh *mesh, int32_t element) {
-    static const int8_t corners[SOLID_KINDS][3] = {{1, 2, 3}, {1, 3, 4}, {1, 2, 0}, {1, 2, 3}};
-    const int32_t *node = mesh->elements + (size_t)element * (size_t)brunt_element_nodes(mesh->kind);
-    double e[3][3];
-    if (mesh->kind == BRUNT_QUAD4) { // by the diagonals
-        const double *x0 = mesh->nodes[node[0]], *x1 = mesh->nodes[node[1]], *x2 = mesh->nodes[node[2]],
-                     *x3 = mesh->nodes[node[3]];
-        return (x2[0] - x0[0]) * (x3[1] - x1[1]) - (x2[1] - x0[1]) * (x3[0] - x1[0]);
-    }
-    for (int i = 0; i < 3; i++)
-        for (int d = 0; d < 3; d++) e[i][d] = mesh->nodes[node[corners[mesh->kind][i]]][d] - mesh->nodes[node[0]][d];
-    if (mesh->kind == BRUNT_TRI3) return e[0][0] * e[1][1] - e[0][1] * e[1][0];
-    return e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) + e[0][1] * (e[1][2] * e[2][0] - e[1][0] * e[2][2]) +
-           e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0]);
-}
-
 // Turns a body over whose every element is inside out.
 static bool turn_over(brunt_mesh *mesh) {
-    static const int8_t swaps[SOLID_KINDS][2][2] = {{{1, 2}}, {{1, 3}, {5, 7}}, {{1, 2}}, {{1, 3}}};
-    int nodes = brunt_element_nodes(mesh->kind);
-    for (int32_t e = 0; e < mesh->element_count; e++)
-        if (!(turn_of(mesh, e) < 0)) return false;
+    const brunt_element_traits *element = brunt_element_traits_of(mesh->kind);
+    const int nodes = element->nodes;
+    for (int32_t e = 0; e < mesh->element_count; e++) {
+        double x[BRUNT_ELEMENT_NODES][3];
+        for (int a = 0; a < nodes; a++)
+            memcpy(x[a], mesh->nodes[mesh->elements[(size_t)e * (size_t)nodes + (size_t)a]], sizeof x[a]);
+        if (!(brunt_element_volume(element, (const double(*)[3])x) < 0)) return false;
+    }
     for (int32_t e = 0; e < mesh->element_count; e++) {
         int32_t *node = mesh->elements + (size_t)e * (size_t)nodes;
         for (int i = 0; i < 2; i++) {
-            int a = swaps[mesh->kind][i][0], b = swaps[mesh->kind][i][1];
+            int a = element->shape->swap[i][0], b = element->shape->swap[i][1];
             int32_t keep = node[a];
             node[a] = node[b];
             node[b] = keep;
@@ -416,7 +397,7 @@ static int make_body(selection *s, brunt_mesh *mesh, FILE *warnings, brunt_error
     if (!status && !s->sheet && turn_over(mesh))
         warn(warnings, file, "all %lld elements were inside out and have been turned over", (long long)elements);
     if (!status) status = add_groups(s, number, mesh, warnings, error);
-    if (s->sheet) mesh->kind = mesh->kind == BRUNT_QUAD4 ? BRUNT_MEMBRANE_QUAD4 : BRUNT_MEMBRANE_TRI3;
+    if (s->sheet) mesh->kind = brunt_element_as_membrane(mesh->kind);
     brunt_free(number);
     brunt_free(s->wanted);
     if (status) brunt_mesh_free(mesh);

@@ -5,7 +5,7 @@
 #include <zlib.h>
 
 #include "io/file/atomic_file.h"
-#include "fem/element.h"
+#include "geometry/element_traits.h"
 #include "base/error.h"
 #include "io/file/input_file.h"
 #include "base/array.h"
@@ -276,10 +276,10 @@ static int add_grid(picture *p, brunt_error *error) {
     p->grid.points = points;
     int status = add_ids(p, p->grid.point_count, false, error);
     if (status || !p->elements) return status;
-    const brunt_element *element = brunt_elements[brunt_body_element(world, p->body)];
+    const brunt_element_traits *element = brunt_element_traits_of(brunt_body_element(world, p->body));
     p->grid.cell_count = brunt_body_size(world, p->body, BRUNT_AT_ELEMENTS);
     p->grid.cell_nodes = element->nodes;
-    p->grid.cell_type = element->vtk_cell;
+    p->grid.cell_type = element->shape->vtk_cell;
     int32_t *cells = picture_alloc(p, sizeof *cells * (size_t)element->nodes * (size_t)p->grid.cell_count, error);
     if (!cells) return BRUNT_FAILED;
     brunt_body_connectivity(world, p->body, cells);

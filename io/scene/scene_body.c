@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 
 #include "io/mesh/gmsh.h"
+#include "geometry/element_traits.h"
 #include "geometry/mesh_shape.h"
 #include "materials/prepared.h"
 
@@ -101,7 +102,7 @@ static void check_meshing(scene_reader *reader, const scene_node *node, const br
     }
     extents size;
     if (!measure_shape(reader, shape, body, &size)) return;
-    if (body->face_count && reader->dimension == 3 && brunt_element_is_sheet(body->element))
+    if (body->face_count && reader->dimension == 3 && brunt_element_is_membrane(body->element))
         check_faces(reader, node, body, size.largest);
     if (!(body->size > 0)) return;
     char a[32], b[32];
@@ -110,12 +111,9 @@ static void check_meshing(scene_reader *reader, const scene_node *node, const br
     if (body->size > size.largest * (1 + DECIMALS))
         brunt_tree_complain(reader->tree, edge, "the elements (%s m) are larger than the body (%s m)", a, b);
     // As many as cubes, or six times that of tetrahedra and twice of triangles.
-    static const int pieces[BRUNT_ELEMENT_KINDS] = {
-        [BRUNT_TET4] = 6,  [BRUNT_HEX8] = 1,           [BRUNT_TRI3] = 2,
-        [BRUNT_QUAD4] = 1, [BRUNT_MEMBRANE_QUAD4] = 1, [BRUNT_MEMBRANE_TRI3] = 2};
     double cells = body->method == BRUNT_MEMBRANE ? size.surface / (body->size * body->size)
                                                   : size.volume / pow(body->size, reader->dimension);
-    double elements = cells * pieces[body->element];
+    double elements = cells * brunt_element_traits_of(body->element)->shape->pieces;
     if (!brunt_tree_child(node, "grading") && !(elements < ELEMENT_LIMIT))
         brunt_tree_complain(reader->tree, edge, "about %.3g elements fill the shape, at most %.0f can be held",
                             elements, ELEMENT_LIMIT - 1);
@@ -234,29 +232,32 @@ static bool read_mesh(scene_reader *reader, scene_node *node, brunt_body_def *bo
 }
 
 static bool fill_elements(scene_reader *reader, scene_node *node, brunt_body_def *body) {
-    static const int dimensions[] = {3, 3, 2, 2}; // by element
     const scene_node *kind = brunt_tree_child(node, "element");
     int dimension = reader->dimension;
     const bool sheet = body->method == BRUNT_MEMBRANE;
     brunt_refuse_key(reader, node, "group", "this belongs to a mesh file, none is given");
     if (!kind && dimension)
         kind = brunt_add_default(reader, node, "element", dimension == 2 || sheet ? "quad4" : "hex8");
-    body->element = (brunt_element_kind)(int)brunt_real_of(node, "element", BRUNT_HEX8);
+    const brunt_element_kind solid = kind && kind->good ? brunt_element_named(kind->text) : BRUNT_HEX8;
+    body->element = solid;
     if (!brunt_tree_child(node, "size"))
         brunt_tree_complain_key(reader->tree, node, "'size' is missing: a length (m), edge of the elements");
     body->size = brunt_real_of(node, "size", 0);
     bool known = kind && kind->good && dimension;
-    if (known && sheet && dimensions[body->element] == 3) {
-        brunt_tree_complain(reader->tree, kind, "a membrane has elements quad4 or tri3, not %s", kind->text);
+    char wanted[128];
+    if (known && sheet && brunt_element_dimension(solid) == 3) {
+        brunt_element_choice(2, wanted, sizeof wanted);
+        brunt_tree_complain(reader->tree, kind, "a membrane has elements %s, not %s", wanted, kind->text);
         return false;
     }
     if (known && sheet) {
-        body->element = body->element == BRUNT_QUAD4 ? BRUNT_MEMBRANE_QUAD4 : BRUNT_MEMBRANE_TRI3;
+        body->element = brunt_element_as_membrane(solid);
         return true;
     }
-    if (known && dimensions[body->element] != dimension) {
+    if (known && brunt_element_dimension(solid) != dimension) {
+        brunt_element_choice(dimension, wanted, sizeof wanted);
         brunt_tree_complain(reader->tree, kind, "%s is for %d dimensions, %s is wanted", kind->text,
-                            dimensions[body->element], dimension == 2 ? "tri3 or quad4" : "tet4 or hex8");
+                            brunt_element_dimension(solid), wanted);
         return false;
     }
     return known;
@@ -289,7 +290,7 @@ static void fill_grading(scene_reader *reader, const scene_node *node, brunt_bod
 
 static void fill_hourglass(scene_reader *reader, scene_node *node, brunt_body_def *body) {
     const scene_node *map = brunt_tree_child(node, "hourglass");
-    bool simplex = body->element == BRUNT_TET4 || body->element == BRUNT_TRI3 || body->element == BRUNT_MEMBRANE_TRI3;
+    const bool simplex = brunt_element_is_simplex(body->element);
     if (map && simplex) {
         brunt_tree_complain_key(reader->tree, map, "triangles and tetrahedra have no zero-energy modes to control");
         return;

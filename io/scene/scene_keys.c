@@ -5,6 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "geometry/element_traits.h"
+
 #define ANY -INFINITY, INFINITY, true, true
 #define POSITIVE 0, INFINITY, true, true
 #define NOT_NEGATIVE 0, INFINITY, false, true
@@ -64,7 +66,7 @@ const scene_key brunt_scene_table[] = {
     {"bodies.*.shape", SCENE_SHAPE, NULL, OPTIONAL, NONE, "what is filled with particles or elements; not with mesh"},
     {"bodies.*.mesh", SCENE_TEXT, NULL, OPTIONAL, NONE, "fem, membrane: a gmsh file (.msh 2.2 or 4.1) instead of a shape; its path counts from the scene's folder"},
     {"bodies.*.group", SCENE_TEXT, NULL, OPTIONAL, NONE, "fem, membrane: the physical group of the mesh file that is the body (default: the only one)"},
-    {"bodies.*.element", SCENE_WORD, NULL, "hex8", ANY, "tet4|hex8|tri3|quad4", 0, true, "fem, membrane, with a shape: kind of element (default in 2D and of membranes: quad4; membranes: quad4 or tri3)"},
+    {"bodies.*.element", SCENE_WORD, NULL, "hex8", ANY, BRUNT_ELEMENT_WORDS, 0, true, "fem, membrane, with a shape: kind of element (default in 2D and of membranes: quad4; membranes: quad4 or tri3)"},
     {"bodies.*.size", SCENE_REAL, "m", OPTIONAL, POSITIVE, NULL, 0, false, "fem, membrane, with a shape (must be given): edge length of the elements; as long as the body at most (to a millionth, for decimals)"},
     {"bodies.*.grading", SCENE_GROUP, NULL, OPTIONAL, NONE, "fem, of a box: a factor on size along its axes, so that the mesh is fine where something happens"},
     {"bodies.*.grading.x", SCENE_PROFILE, "any", OPTIONAL, NONE, "[[15 mm, 1], [250 mm, 40]]: factor over the coordinate of the shape (before place), linear between, constant beyond"},

@@ -34,7 +34,7 @@ static brunt_world_def begin(int dimension, double friction) {
 static const double wave_speed = 36.7; // of the first material
 
 static void middle_of(const brunt_fem_body *fem, int32_t slot, double x[3]) {
-    const int n = fem->element->nodes;
+    const int n = fem->traits->nodes;
     for (int a = 0; a < 3; a++) {
         x[a] = 0;
         for (int c = 0; c < n; c++)
@@ -89,7 +89,7 @@ static bool in_tet(const double *const p[4], const double x[3]) {
 }
 
 static bool in_element(const brunt_fem_body *fem, int32_t slot, const double x[3]) {
-    const int n = fem->element->nodes;
+    const int n = fem->traits->nodes;
     double p[8][3], centre[3] = {0};
     for (int c = 0; c < n; c++)
         for (int a = 0; a < 3; a++) {

@@ -141,7 +141,7 @@ static gmsh_model model_of(const brunt_mesh *mesh, const int64_t *tags) {
     gmsh_model m = {.node_count = mesh->node_count, .x = mesh->nodes, .tags = tags, .part_count = 1, .name_count = 1};
     m.part[0] = (gmsh_part){types[mesh->kind],
                             brunt_element_nodes(mesh->kind),
-                            brunt_element_is_sheet(mesh->kind) ? 2 : brunt_element_dimension(mesh->kind),
+                            brunt_element_is_membrane(mesh->kind) ? 2 : brunt_element_dimension(mesh->kind),
                             7,
                             mesh->element_count,
                             mesh->elements};
@@ -158,7 +158,7 @@ START_TEST(every_kind_in_every_format) {
     brunt_shape ring = {.kind = BRUNT_RING, .axis = {0, 0, 1}, .radius = 1, .inner_radius = 0.5, .length = 1};
     for (int k = 0; k < BRUNT_ELEMENT_KINDS; k++) {
         brunt_mesh mesh;
-        const bool sheet = brunt_element_is_sheet(k);
+        const bool sheet = brunt_element_is_membrane(k);
         ck_assert_int_eq(sheet ? brunt_mesh_surface(&ring, k, 0.4, NULL, 0, &mesh, NULL)
                                : brunt_mesh_shape(&ring, brunt_element_dimension(k), k, 0.4, &mesh, NULL),
                          0);

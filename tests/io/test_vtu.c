@@ -159,7 +159,7 @@ static const struct {
 enum { SHAPES = sizeof shapes / sizeof *shapes };
 
 static void write_elements(const char *path, int shape, int64_t count, bool float32) {
-    const brunt_element *element = brunt_elements[shapes[shape].kind];
+    const brunt_element_traits *element = brunt_element_traits_of(shapes[shape].kind);
     int64_t n = element->nodes, points = n * count;
     double *x = brunt_alloc(sizeof *x * 3 * (size_t)points);
     int32_t *cells = brunt_alloc(sizeof *cells * (size_t)points);
@@ -178,7 +178,7 @@ static void write_elements(const char *path, int shape, int64_t count, bool floa
                                       {.name = "plastic_strain", .components = 1, .values = scalar, .at_cells = true},
                                       {.name = "id", .components = 1, .integers = ids, .at_cells = true},
                                       {.name = "stress", .components = 6, .values = tensor, .at_cells = true}};
-    const brunt_vtu_grid grid = {points, count, x, cells, element->nodes, element->vtk_cell};
+    const brunt_vtu_grid grid = {points, count, x, cells, element->nodes, element->shape->vtk_cell};
     brunt_error error = {0};
     ck_assert_msg(brunt_vtu_write(path, 0.5, &grid, arrays, 5, float32, &error) == BRUNT_OK, "%s", error.message);
     brunt_free(x);

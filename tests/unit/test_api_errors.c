@@ -184,7 +184,7 @@ START_TEST(enumerators) {
     REFUSED(held->action = (brunt_group_action)5, "action: there is no choice 5");
     ck_assert_str_eq(brunt_element_name((brunt_element_kind)6), "unknown");
     ck_assert_int_eq(brunt_element_nodes((brunt_element_kind)-1) + brunt_element_dimension((brunt_element_kind)6), 0);
-    ck_assert(!brunt_element_is_sheet((brunt_element_kind)100));
+    ck_assert(!brunt_element_is_membrane((brunt_element_kind)100));
     brunt_mesh mesh;
     brunt_error error = {0};
     brunt_shape box = {.kind = BRUNT_BOX, .max = {1, 1, 1}}, none = {.kind = (brunt_shape_kind)20};

@@ -84,11 +84,11 @@ START_TEST(integrals_over_the_ring_are_exact) {
         const brunt_element *type = brunt_axisymmetric_elements[kind];
         double x[4][3], mass[4], gradient[4][2], hoop[4], volume, share[4], sum = 0, round_ = 0;
         random_section(kind, t % 4 == 0 ? 0 : t % 4 == 1 ? 0.3 : 3, 0.25, x);
-        integrate(type->nodes, (const double(*)[3])x, mass, gradient, hoop, &volume);
+        integrate(type->traits->nodes, (const double(*)[3])x, mass, gradient, hoop, &volume);
         real b[BRUNT_ELEMENT_NODES][3];
         type->gradient((const double(*)[3])x, b);
         type->shares((const double(*)[3])x, share);
-        for (int a = 0; a < type->nodes; a++) {
+        for (int a = 0; a < type->traits->nodes; a++) {
             ck_assert_double_eq_tol(share[a], mass[a], tolerance * volume);
             ck_assert_double_eq_tol((double)b[a][2] * volume, hoop[a], tolerance * volume);
             for (int i = 0; i < 2; i++)
@@ -101,7 +101,7 @@ START_TEST(integrals_over_the_ring_are_exact) {
         for (int i = 0; i < 2; i++)
             for (int j = 0; j < 2; j++) {
                 double unit = 0;
-                for (int a = 0; a < type->nodes; a++) unit += x[a][i] * (double)b[a][j];
+                for (int a = 0; a < type->traits->nodes; a++) unit += x[a][i] * (double)b[a][j];
                 ck_assert_double_eq_tol(unit, i == j, 20 * tolerance);
             }
     }
@@ -201,7 +201,7 @@ START_TEST(patch_test) {
                     ck_assert_double_lt(fabs(axial), near * outer);
                     if (!sheared)
                         ck_assert_msg(inner < near * outer, "%s %s: force %g on inner nodes, %g on outer ones",
-                                      body.element->name, models[m], inner, outer);
+                                      body.traits->name, models[m], inner, outer);
                     brunt_fem_free(&body);
                 }
 }
@@ -269,7 +269,7 @@ START_TEST(forces_are_the_slope_of_the_energy) {
                     }
                     *x = at;
                     ck_assert_msg(fabs((energy[1] - energy[0]) / (2 * h) + (double)f[i]) < 1e-7 * E,
-                                  "%s %s: node %d: %g, slope %g", body.element->name, models[m], n, (double)f[i],
+                                  "%s %s: node %d: %g, slope %g", body.traits->name, models[m], n, (double)f[i],
                                   (energy[1] - energy[0]) / (2 * h));
                 }
             brunt_fem_free(&body);
@@ -359,8 +359,7 @@ START_TEST(stable_step_is_a_bound_and_a_close_one) {
         const double omega2 = greatest_frequency(&body), bound = 4 / pow(body.least_step, 2);
         const int k = kind == BRUNT_QUAD4;
         closest[k] = fmax(closest[k], omega2 / bound), farthest[k] = fmin(farthest[k], omega2 / bound);
-        ck_assert_msg(omega2 <= bound * (1 + 1e-4), "%s %d: omega^2 %g, bound %g", body.element->name, t, omega2,
-                      bound);
+        ck_assert_msg(omega2 <= bound * (1 + 1e-4), "%s %d: omega^2 %g, bound %g", body.traits->name, t, omega2, bound);
         brunt_fem_free(&body);
     }
     for (int k = 0; k < 2; k++) {
@@ -395,9 +394,9 @@ START_TEST(meshes_are_stable_at_their_step) {
                     &mesh, (options){.hourglass = (brunt_hourglass)(form % 2), .coefficient = form < 2 ? 0 : 1});
                 double grown = growth(&body, (fast ? 2 : 0.98) * body.least_step, 2000);
                 if (fast)
-                    ck_assert_msg(grown > 1e2, "%s %d: only grows by %g", body.element->name, form, grown);
+                    ck_assert_msg(grown > 1e2, "%s %d: only grows by %g", body.traits->name, form, grown);
                 else
-                    ck_assert_msg(grown < 50, "%s %d far %d: grows by %g", body.element->name, form, far, grown);
+                    ck_assert_msg(grown < 50, "%s %d far %d: grows by %g", body.traits->name, form, far, grown);
                 brunt_fem_free(&body);
             }
 }

@@ -89,16 +89,16 @@ START_TEST(mean_gradient_is_the_slope_of_the_volume) {
             random_corners(kind, 0.2, x);
             type->gradient((const double(*)[3])x, b);
             double V = type->volume((const double(*)[3])x);
-            for (int i = 0; i < type->dim; i++) {
+            for (int i = 0; i < type->traits->dimension; i++) {
                 double sum = 0;
-                for (int a = 0; a < type->nodes; a++) sum += (double)b[a][i];
+                for (int a = 0; a < type->traits->nodes; a++) sum += (double)b[a][i];
                 ck_assert_double_eq_tol(sum, 0, 10 * tolerance);
-                for (int j = 0; j < type->dim; j++) {
+                for (int j = 0; j < type->traits->dimension; j++) {
                     double identity = 0;
-                    for (int a = 0; a < type->nodes; a++) identity += x[a][i] * (double)b[a][j];
+                    for (int a = 0; a < type->traits->nodes; a++) identity += x[a][i] * (double)b[a][j];
                     ck_assert_double_eq_tol(identity, i == j, 10 * tolerance);
                 }
-                for (int a = 0; a < type->nodes; a++) {
+                for (int a = 0; a < type->traits->nodes; a++) {
                     double at = x[a][i], h = 1e-3, up, down;
                     x[a][i] = at + h, up = type->volume((const double(*)[3])x);
                     x[a][i] = at - h, down = type->volume((const double(*)[3])x);
@@ -131,7 +131,7 @@ START_TEST(faces_are_the_surface_and_point_outward) {
                 volume += 0.5 * ((double)a[0] * (double)b[1] - (double)a[1] * (double)b[0]);
                 continue;
             }
-            for (int k = 2; k < body.element->face_nodes; k++) {
+            for (int k = 2; k < body.traits->face_nodes; k++) {
                 const real *p = start_of(&body, node[k - 1]), *q = start_of(&body, node[k]);
                 for (int i = 0; i < 3; i++)
                     volume += (double)a[i] *
@@ -153,16 +153,17 @@ START_TEST(every_face_points_outward) {
         const brunt_element *type = brunt_elements[kind];
         double x[8][3], middle[3] = {0};
         random_corners(kind, 0.1, x);
-        for (int a = 0; a < type->nodes; a++)
-            for (int i = 0; i < 3; i++) middle[i] += x[a][i] / type->nodes;
-        for (int f = 0; f < type->face_count; f++) {
-            const double *a = x[type->face[f][0]], *b = x[type->face[f][1]], *c = x[type->face[f][2]];
+        for (int a = 0; a < type->traits->nodes; a++)
+            for (int i = 0; i < 3; i++) middle[i] += x[a][i] / type->traits->nodes;
+        for (int f = 0; f < type->traits->face_count; f++) {
+            const double *a = x[type->traits->face[f][0]], *b = x[type->traits->face[f][1]],
+                         *c = x[type->traits->face[f][2]];
             double u[3], v[3] = {0, 0, 1}, out = 0;
             for (int i = 0; i < 3; i++) u[i] = b[i] - a[i];
-            for (int i = 0; i < 3 && type->dim == 3; i++) v[i] = c[i] - a[i];
+            for (int i = 0; i < 3 && type->traits->dimension == 3; i++) v[i] = c[i] - a[i];
             for (int i = 0; i < 3; i++)
                 out += (u[(i + 1) % 3] * v[(i + 2) % 3] - u[(i + 2) % 3] * v[(i + 1) % 3]) * (a[i] - middle[i]);
-            ck_assert_msg(out > 0, "%s face %d", type->name, f);
+            ck_assert_msg(out > 0, "%s face %d", type->traits->name, f);
         }
     }
 }
@@ -185,7 +186,7 @@ START_TEST(rigid_motion_makes_no_stress) {
             ck_assert_int_eq(report.bad, -1);
         }
         double limit = sizeof(real) == 4 ? 2e-3 : 1e-9;
-        ck_assert_msg(greatest_stress(&body) < limit * E, "%s %s: stress %g E after %d turns", body.element->name,
+        ck_assert_msg(greatest_stress(&body) < limit * E, "%s %s: stress %g E after %d turns", body.traits->name,
                       models[m], greatest_stress(&body) / E, turns);
         double R[3][3], shift[3] = {0};
         rotation(body.dim, 3, R);
@@ -252,7 +253,7 @@ START_TEST(patch_test) {
                 for (int32_t s = 0; s < body.slots; s++)
                     most = fmax(most, fabs((double)(brunt_element_scalars(&body, BRUNT_ELEMENT_kirchhoff_stress)[c][s] -
                                                     stress[c][0])));
-            ck_assert_msg(most < near * E, "%s %s: stress off by %g E", body.element->name, models[m], most / E);
+            ck_assert_msg(most < near * E, "%s %s: stress off by %g E", body.traits->name, models[m], most / E);
             double inner = 0, outer = 0;
             for (int32_t n = 0; n < body.node_count; n++) {
                 bool inside = true;
@@ -266,7 +267,7 @@ START_TEST(patch_test) {
                 }
             }
             ck_assert_double_gt(outer, 0);
-            ck_assert_msg(inner < near * outer, "%s %s: force %g on inner nodes, %g on outer ones", body.element->name,
+            ck_assert_msg(inner < near * outer, "%s %s: force %g on inner nodes, %g on outer ones", body.traits->name,
                           models[m], inner, outer);
             brunt_fem_free(&body);
         }
@@ -309,7 +310,7 @@ START_TEST(forces_are_the_slope_of_the_energy) {
                 }
                 *x = at;
                 ck_assert_msg(fabs((energy[1] - energy[0]) / (2 * h) + (double)f[i]) < 1e-7 * E,
-                              "%s %s: node %d: %g, slope %g", body.element->name, models[m], n, (double)f[i],
+                              "%s %s: node %d: %g, slope %g", body.traits->name, models[m], n, (double)f[i],
                               (energy[1] - energy[0]) / (2 * h));
             }
         brunt_fem_free(&body);
@@ -343,8 +344,8 @@ START_TEST(internal_forces_keep_momentum) {
             }
         }
         for (int i = 0; i < 3; i++) {
-            ck_assert_msg(fabs(sum[i]) < tolerance * scale, "%s: sum %g of %g", body.element->name, sum[i], scale);
-            ck_assert_msg(fabs(moment[i]) < tolerance * scale, "%s %s: moment %g of %g", body.element->name,
+            ck_assert_msg(fabs(sum[i]) < tolerance * scale, "%s: sum %g of %g", body.traits->name, sum[i], scale);
+            ck_assert_msg(fabs(moment[i]) < tolerance * scale, "%s %s: moment %g of %g", body.traits->name,
                           viscous ? "viscous" : "stiffness", moment[i], scale);
         }
         brunt_fem_free(&body);
@@ -359,7 +360,7 @@ START_TEST(hourglass_modes_are_resisted) {
         const brunt_element *type = brunt_elements[kind];
         for (int mode = 0; mode < type->hourglass_modes; mode++)
             for (int viscous = 0; viscous < 2; viscous++)
-                for (int i = 0; i < type->dim; i++) {
+                for (int i = 0; i < type->traits->dimension; i++) {
                     double x[8][3];
                     random_corners(kind, 0, x);
                     brunt_mesh mesh = single_mesh(kind, (const double(*)[3])x);
@@ -374,7 +375,8 @@ START_TEST(hourglass_modes_are_resisted) {
                     ck_assert_double_lt(greatest_stress(&body), 1e-6 * E); // the point sees nothing of it
                     // E.g. the cube's spring, one unit of mode amplitude q = 8 size: k = coefficient M V (24 / 16) / (8
                     // 3).
-                    double M = density * pow((double)body.material.wave_speed, 2), n = type->nodes, dim = type->dim;
+                    double M = density * pow((double)body.material.wave_speed, 2), n = type->traits->nodes,
+                           dim = type->traits->dimension;
                     double k = 0.05 * M * n * dim / pow(2, 2 * (dim - 1)) / (n * dim);
                     double c = 0.1 * density * (double)body.material.wave_speed * (dim == 3 ? 0.25 : 1);
                     for (int32_t a = 0; a < body.node_count; a++) {
@@ -572,10 +574,10 @@ START_TEST(stable_step_is_a_bound_and_a_close_one) {
                 ck_assert_double_eq_tol(report.stable_step, body.least_step, 1e-3 * body.least_step);
                 double grown = growth(&body, (fast ? 1.1 : 0.98) * body.least_step, fast ? 3000 : 4000);
                 if (!fast)
-                    ck_assert_msg(grown < 50, "%s %d shape %d: grows by %g", body.element->name, form, shape, grown);
+                    ck_assert_msg(grown < 50, "%s %d shape %d: grows by %g", body.traits->name, form, shape, grown);
                 // The bound is sharp where the element is regular.
                 else if (shape == 0 && kind != BRUNT_TET4 && kind != BRUNT_TRI3 && o.coefficient < 1)
-                    ck_assert_msg(grown > 1e2, "%s %d: only grows by %g", body.element->name, form, grown);
+                    ck_assert_msg(grown > 1e2, "%s %d: only grows by %g", body.traits->name, form, grown);
                 brunt_fem_free(&body);
             }
         }
@@ -777,7 +779,7 @@ START_TEST(inversion_is_found_where_it_is) {
         brunt_mesh mesh = box_mesh(kind, 5, 1, 0.1, true);
         brunt_fem_body body = body_of(&mesh, (options){0});
         int32_t slot = body.block[body.block_count - 1].first + 3;
-        const int nodes = body.element->nodes;
+        const int nodes = body.traits->nodes;
         // All nodes through the centroid's plane: that element is inside out.
         double centre = 0;
         for (int a = 0; a < nodes; a++)

@@ -183,7 +183,7 @@ END_TEST
 // The order of what is left: ids once each, padding copies without volume, bonds and places in blocks as they would be
 // counted anew.
 static void check_order(const brunt_fem_body *fem) {
-    const int nodes = fem->element->nodes;
+    const int nodes = fem->traits->nodes;
     int32_t *bonds = calloc((size_t)fem->node_count, sizeof *bonds), live = 0;
     uint8_t *seen = calloc((size_t)fem->mesh_elements, 1);
     const real *volume = fem->scalar[fem->field[BRUNT_ELEMENT_reference_volume].first];
@@ -228,7 +228,7 @@ START_TEST(readers_see_what_is_left) {
     brunt_world_def def = thrown(_i, BRUNT_HOURGLASS_STIFFNESS);
     brunt_world *world = world_take(&def);
     brunt_fem_body *fem = &world->bodies.fem[0];
-    const int nodes = fem->element->nodes;
+    const int nodes = fem->traits->nodes;
     const int64_t start = brunt_body_elements(world, 0);
     int32_t *before = malloc((size_t)(start * nodes) * sizeof *before),
             *after = malloc((size_t)(start * nodes) * sizeof *after);
@@ -335,7 +335,7 @@ START_TEST(strain_is_the_equivalent_logarithmic_one) {
             real *const *F = brunt_element_scalars(fem, BRUNT_ELEMENT_deformation_gradient);
             const int dim = fem->point_dim;
             const int32_t slot = fem->block[0].first;
-            const double turn = fem->element->sheet ? 0 : 0.7, c = cos(turn), s = sin(turn);
+            const double turn = fem->traits->membrane ? 0 : 0.7, c = cos(turn), s = sin(turn);
             const double l1 = exp(a), l2 = shear ? exp(-a) : 1; // the third, F_33 or across a sheet, is 1
             F[0][slot] = (real)(c * l1), F[1][slot] = (real)(-s * l2);
             F[dim][slot] = (real)(s * l1), F[dim + 1][slot] = (real)(c * l2);
@@ -565,7 +565,7 @@ START_TEST(inverted_elements_are_booked) {
     brunt_world *world = world_take(&def);
     brunt_fem_body *fem = &world->bodies.fem[0];
     world_steps(world, 4);
-    if (fem->element->sheet)
+    if (fem->traits->membrane)
         flatten(fem, dt);
     else
         shoot(fem, dt);

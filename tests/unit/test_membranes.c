@@ -73,8 +73,8 @@ START_TEST(geometry_is_that_of_the_plane) {
         for (int32_t f = 0; f < faces.count; f++)
             for (int k = 0; k < 4; k++)
                 ck_assert_int_eq(faces.node[f][k],
-                                 k < body.element->nodes
-                                     ? body.element_node[(int64_t)faces.element[f] * body.element->nodes + k]
+                                 k < body.traits->nodes
+                                     ? body.element_node[(int64_t)faces.element[f] * body.traits->nodes + k]
                                      : -1);
         brunt_faces_free(&faces);
         ck_assert_double_gt(body.mean_edge, 0.4);
@@ -138,7 +138,7 @@ START_TEST(rigid_motion_makes_no_stress) {
         }
         brunt_fem_report report = forces(&body, 1e-3);
         double limit = sizeof(real) == 4 ? 1e-3 : 1e-12;
-        ck_assert_msg(greatest_sheet_stress(&body) < limit * E, "%s %s: stress %g E", body.element->name, models[m],
+        ck_assert_msg(greatest_sheet_stress(&body) < limit * E, "%s %s: stress %g E", body.traits->name, models[m],
                       greatest_sheet_stress(&body) / E);
         ck_assert_double_lt(energy_of(&body, &report), limit * limit * E);
         brunt_fem_free(&body);
@@ -255,7 +255,7 @@ START_TEST(forces_are_the_slope_of_the_energy) {
                 }
                 *x = at;
                 ck_assert_msg(fabs((energy[0] - energy[1]) / (2 * h) - f[n][i]) < 1e-6 * scale,
-                              "%s %s %d: node %d, %d: %g, force %g", body.element->name, o.model, m, n, i,
+                              "%s %s %d: node %d, %d: %g, force %g", body.traits->name, o.model, m, n, i,
                               (energy[0] - energy[1]) / (2 * h), f[n][i]);
             }
         if (kind == BRUNT_MEMBRANE_QUAD4) ck_assert_double_gt(report.hourglass_stored, 0);
@@ -396,7 +396,7 @@ START_TEST(stable_step_is_a_bound_and_a_close_one) {
             brunt_fem_report report = forces(&body, 1e-3);
             if (report.bad < 0) {
                 double bound = 4 / (report.stable_step * report.stable_step), ratio = bound / true_frequency(&body);
-                ck_assert_msg(ratio > 1 - 1e-4, "%s %d: bound over frequency squared %g", body.element->name, k, ratio);
+                ck_assert_msg(ratio > 1 - 1e-4, "%s %d: bound over frequency squared %g", body.traits->name, k, ratio);
                 worst = fmin(worst, ratio);
                 // How close: not of slack ones, which may have no stiffness at all, nor where strain itself stiffens
                 // the material along one axis and the bound takes it along both.

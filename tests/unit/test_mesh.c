@@ -183,7 +183,7 @@ START_TEST(shapes_give_conforming_good_meshes) {
     size_t before = brunt_memory_live();
     for (int i = 0; i < MESHED; i++) {
         for (int k = 0; k < SOLID_KINDS; k++) {
-            if (brunt_element_dimension(k) != list[i].dimension || brunt_element_is_sheet(k)) continue;
+            if (brunt_element_dimension(k) != list[i].dimension || brunt_element_is_membrane(k)) continue;
             bool cut = k == BRUNT_TET4 || k == BRUNT_TRI3;
             double worst = 1;
             const double sizes[] = {3, 0.5, 0.31, 0.2, 0.13};
@@ -216,7 +216,7 @@ START_TEST(volume_converges) {
     all_meshed(list);
     for (int i = 0; i < MESHED; i++) {
         for (int k = 0; k < SOLID_KINDS; k++) {
-            if (brunt_element_dimension(k) != list[i].dimension || brunt_element_is_sheet(k)) continue;
+            if (brunt_element_dimension(k) != list[i].dimension || brunt_element_is_membrane(k)) continue;
             double error[2];
             if (list[i].shape.kind == BRUNT_RING) { // 20 edges of a quarter around at half the width, then 40
                 double inner = list[i].shape.inner_radius = 5 / pi - 1;
@@ -386,8 +386,8 @@ START_TEST(meshes_are_as_symmetric_as_their_shapes) {
     for (size_t i = 0; i < sizeof list / sizeof *list; i++) {
         for (int k = 0; k < BRUNT_ELEMENT_KINDS; k++) {
             for (double size = 0.5; size > 0.15 && brunt_element_dimension(k) == list[i].dimension; size /= 2) {
-                brunt_mesh mesh = brunt_element_is_sheet(k) ? wrap(&list[i].shape, k, size, NULL)
-                                                            : make(&list[i].shape, list[i].dimension, k, size);
+                brunt_mesh mesh = brunt_element_is_membrane(k) ? wrap(&list[i].shape, k, size, NULL)
+                                                               : make(&list[i].shape, list[i].dimension, k, size);
                 expect_symmetric(&mesh, list[i].name, turn);
                 expect_symmetric(&mesh, list[i].name, mirror_x);
                 expect_symmetric(&mesh, list[i].name, mirror_y);

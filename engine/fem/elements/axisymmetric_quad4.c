@@ -3,8 +3,6 @@
 #include "fem/plane_strain.h"
 #include "fem/axisymmetric.h"
 
-static const uint8_t faces[][4] = QUAD4_FACES;
-
 static const int8_t hourglass_mode[][BRUNT_ELEMENT_NODES] = QUAD4_HOURGLASS;
 
 #define axisymmetric_quad4_modes quad4_modes
@@ -57,18 +55,13 @@ BRUNT_INLINE void axisymmetric_quad4_ring(const lanes X[4][2], const lanes m[3][
 #include "fem/axisymmetric.inc"
 
 const brunt_element brunt_axisymmetric_quad4 = {
-    .name = "quad4",
+    .traits = &brunt_element_table[BRUNT_QUAD4],
     .doc = "bilinear quadrilateral about an axis, one point with hourglass control (Flanagan and Belytschko 1981)",
-    .dim = 2,
-    .nodes = 4,
-    .face_count = 4,
-    .face_nodes = 2,
     .axisymmetric = true,
     .block = 1024,
-    .vtk_cell = 9,
+    .flops = {.whole = {524, 579}},
     .hourglass_modes = 1,
     .hourglass = hourglass_mode,
-    .face = faces,
     .volume = quad4_area,
     .shares = shares,
     .gradient = mean_gradient,

@@ -2,8 +2,6 @@
 #include "fem/plane_strain.h"
 #include "fem/axisymmetric.h"
 
-static const uint8_t faces[][4] = TRI3_FACES;
-
 #define axisymmetric_tri3_modes tri3_modes
 #define axisymmetric_tri3_nodal tri3_nodal
 
@@ -31,16 +29,11 @@ BRUNT_INLINE void axisymmetric_tri3_ring(const lanes X[3][2], const lanes m[2][2
 #include "fem/axisymmetric.inc"
 
 const brunt_element brunt_axisymmetric_tri3 = {
-    .name = "tri3",
+    .traits = &brunt_element_table[BRUNT_TRI3],
     .doc = "linear triangle about an axis: constant gradient, mean hoop strain, no zero-energy modes",
-    .dim = 2,
-    .nodes = 3,
-    .face_count = 3,
-    .face_nodes = 2,
     .axisymmetric = true,
     .block = 512,
-    .vtk_cell = 5,
-    .face = faces,
+    .flops = {.whole = {309, 309}},
     .volume = tri3_area,
     .shares = shares,
     .gradient = mean_gradient,

@@ -1,18 +1,22 @@
-// The elements there are, in the order of brunt_element_kind.
+// The elements there are, by their kind; and those about an axis, by the kind that a section is of.
 #include "fem/element.h"
 
-#define ELEMENTS(X) X(tet4) X(hex8) X(tri3) X(quad4) X(membrane_quad4) X(membrane_tri3)
+#define ELEMENTS(X)                                                                                                    \
+    X(BRUNT_TET4, tet4)                                                                                                \
+    X(BRUNT_HEX8, hex8)                                                                                                \
+    X(BRUNT_TRI3, tri3)                                                                                                \
+    X(BRUNT_QUAD4, quad4)                                                                                              \
+    X(BRUNT_MEMBRANE_QUAD4, membrane_quad4)                                                                            \
+    X(BRUNT_MEMBRANE_TRI3, membrane_tri3)
 
-#define DECLARE(element) extern const brunt_element brunt_##element;
+#define AXISYMMETRIC(X)                                                                                                \
+    X(BRUNT_TRI3, axisymmetric_tri3)                                                                                   \
+    X(BRUNT_QUAD4, axisymmetric_quad4)
+
+#define DECLARE(kind, element) extern const brunt_element brunt_##element;
 ELEMENTS(DECLARE)
-
-#define ADDRESS(element) &brunt_##element,
-const brunt_element *const brunt_elements[BRUNT_ELEMENT_KINDS] = {ELEMENTS(ADDRESS)};
-
-#define AXISYMMETRIC(X) X(BRUNT_TRI3, axisymmetric_tri3) X(BRUNT_QUAD4, axisymmetric_quad4)
-
-#define DECLARE_KIND(kind, element) DECLARE(element)
-AXISYMMETRIC(DECLARE_KIND)
+AXISYMMETRIC(DECLARE)
 
 #define BY_KIND(kind, element) [kind] = &brunt_##element,
+const brunt_element *const brunt_elements[BRUNT_ELEMENT_KINDS] = {ELEMENTS(BY_KIND)};
 const brunt_element *const brunt_axisymmetric_elements[BRUNT_ELEMENT_KINDS] = {AXISYMMETRIC(BY_KIND)};

@@ -2,8 +2,6 @@
 // hourglass xi eta, each the sum of the nodes' values times the mode's +-1 there.
 #include "fem/kernel.h"
 
-static const uint8_t faces[][4] = {{0, 1, 2, 3}};
-
 static const int8_t hourglass_mode[][BRUNT_ELEMENT_NODES] = {{1, -1, 1, -1}};
 
 BRUNT_INLINE void membrane_quad4_modes(const lanes x[4][3], lanes m[3][3]) {
@@ -34,20 +32,14 @@ BRUNT_INLINE void membrane_quad4_nodal(const lanes p[3][3], lanes f[4][3]) {
 #include "fem/membrane.inc"
 
 const brunt_element brunt_membrane_quad4 = {
-    .name = "membrane_quad4",
+    .traits = &brunt_element_table[BRUNT_MEMBRANE_QUAD4],
     .doc =
         "bilinear membrane quadrilateral, one point with hourglass control of in-plane and warping modes (Belytschko; "
         "Flanagan and Belytschko 1981)",
-    .dim = 3,
-    .sheet = true,
-    .nodes = 4,
-    .face_count = 1,
-    .face_nodes = 4,
     .block = 1024,
-    .vtk_cell = 9,
+    .flops = {.whole = {636, 636}},
     .hourglass_modes = 1,
     .hourglass = hourglass_mode,
-    .face = faces,
     .volume = area,
     .gradient = mean_gradient,
     .forces = membrane_quad4_forces,

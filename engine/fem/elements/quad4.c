@@ -2,8 +2,6 @@
 // nodes' values times the mode's +-1 there.
 #include "fem/plane_strain.h"
 
-static const uint8_t faces[][4] = QUAD4_FACES;
-
 static const int8_t hourglass[][BRUNT_ELEMENT_NODES] = QUAD4_HOURGLASS;
 
 // The area is a quarter of the cross product of the xi and eta modes; the hourglass mode has no share in it.
@@ -23,17 +21,12 @@ BRUNT_INLINE lanes quad4_gradient(const lanes m[3][2], lanes G[2][2]) {
 #include "fem/element.inc"
 
 const brunt_element brunt_quad4 = {
-    .name = "quad4",
+    .traits = &brunt_element_table[BRUNT_QUAD4],
     .doc = "bilinear quadrilateral in plane strain, one point with hourglass control (Flanagan and Belytschko 1981)",
-    .dim = 2,
-    .nodes = 4,
-    .face_count = 4,
-    .face_nodes = 2,
     .block = 1024,
-    .vtk_cell = 9,
+    .flops = {.strain_modes = 2, .combine = 14, .spread = 12, .slope = 7},
     .hourglass_modes = 1,
     .hourglass = hourglass,
-    .face = faces,
     .volume = quad4_area,
     .gradient = quad4_mean_gradient,
     .forces = quad4_forces,

@@ -1,8 +1,6 @@
 // Linear tetrahedron. Modes: the edges from node 0.
 #include "fem/kernel.h"
 
-static const uint8_t faces[][4] = {{0, 2, 1, 0}, {0, 1, 3, 0}, {1, 2, 3, 0}, {0, 3, 2, 0}};
-
 static double volume(const double (*x)[3]) {
     double e[3][3];
     for (int k = 0; k < 3; k++)
@@ -41,15 +39,10 @@ BRUNT_INLINE lanes tet4_gradient(const lanes m[3][3], lanes G[3][3]) {
 #include "fem/element.inc"
 
 const brunt_element brunt_tet4 = {
-    .name = "tet4",
+    .traits = &brunt_element_table[BRUNT_TET4],
     .doc = "linear tetrahedron: constant strain, no zero-energy modes; stiff where volume is kept",
-    .dim = 3,
-    .nodes = 4,
-    .face_count = 4,
-    .face_nodes = 3,
     .block = 384,
-    .vtk_cell = 10,
-    .face = faces,
+    .flops = {.strain_modes = 3, .combine = 9, .spread = 6, .slope = 41},
     .volume = volume,
     .gradient = tet4_mean_gradient,
     .forces = tet4_forces,

@@ -1,8 +1,6 @@
 // Linear triangle in plane strain. Modes: the edges from node 0.
 #include "fem/plane_strain.h"
 
-static const uint8_t faces[][4] = TRI3_FACES;
-
 BRUNT_INLINE lanes tri3_gradient(const lanes m[2][2], lanes G[2][2]) {
     G[0][0] = (real)0.5 * m[1][1], G[0][1] = (real)-0.5 * m[1][0];
     G[1][0] = (real)-0.5 * m[0][1], G[1][1] = (real)0.5 * m[0][0];
@@ -19,15 +17,10 @@ BRUNT_INLINE lanes tri3_gradient(const lanes m[2][2], lanes G[2][2]) {
 #include "fem/element.inc"
 
 const brunt_element brunt_tri3 = {
-    .name = "tri3",
+    .traits = &brunt_element_table[BRUNT_TRI3],
     .doc = "linear triangle in plane strain: constant strain, no zero-energy modes; stiff where volume is kept",
-    .dim = 2,
-    .nodes = 3,
-    .face_count = 3,
-    .face_nodes = 2,
     .block = 512,
-    .vtk_cell = 5,
-    .face = faces,
+    .flops = {.strain_modes = 2, .combine = 4, .spread = 2, .slope = 7},
     .volume = tri3_area,
     .gradient = tri3_mean_gradient,
     .forces = tri3_forces,
