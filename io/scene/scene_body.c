@@ -94,7 +94,7 @@ static void check_meshing(scene_reader *reader, const scene_node *node, const br
     if ((kind >= BRUNT_HALF_SPACE && kind != BRUNT_INTERSECTION) ||
         (kind == BRUNT_PRISM && body->shape.point_count != 4)) {
         brunt_tree_complain_key(reader->tree, shape,
-                                "%s has no mesh of its own: box, sphere, cylinder, ring and polygons with four corners "
+                                "%s has no mesh of its own: box, sphere, cylinder, tube and polygons with four corners "
                                 "have, and halves and quarters of them as intersections with boxes; a mesh file (mesh: "
                                 "FILE.msh) can be anything",
                                 kind == BRUNT_PRISM ? "this polygon" : shape->first->key);
@@ -120,7 +120,7 @@ static void check_meshing(scene_reader *reader, const scene_node *node, const br
 }
 
 static void refuse_sheet_keys(scene_reader *reader, const scene_node *node) {
-    static const char *const keys[] = {"thickness", "contact_thickness", "slack", "faces"};
+    static const char *const keys[] = {"thickness", "contact_thickness", "tension_only", "faces"};
     for (size_t i = 0; i < sizeof keys / sizeof *keys; i++)
         brunt_refuse_key(reader, node, keys[i], "this belongs to method: membrane");
 }
@@ -317,10 +317,10 @@ static void fill_sheet(scene_reader *reader, scene_node *node, brunt_body_def *b
     if (reader->dimension == 2) brunt_tree_complain(reader->tree, method, "membranes are for three dimensions");
     if (!brunt_tree_child(node, "thickness"))
         brunt_tree_complain_key(reader->tree, node, "'thickness' is missing: a length (m), of the sheet");
-    if (!brunt_tree_child(node, "slack")) brunt_add_default(reader, node, "slack", "false");
+    if (!brunt_tree_child(node, "tension_only")) brunt_add_default(reader, node, "tension_only", "false");
     body->thickness = brunt_real_of(node, "thickness", 0);
     body->contact_thickness = brunt_real_of(node, "contact_thickness", NAN);
-    body->slack = brunt_real_of(node, "slack", 0) == 1;
+    body->slack = brunt_real_of(node, "tension_only", 0) == 1;
     check_sheet_material(reader, node, body);
     if (brunt_tree_child(node, "mesh"))
         brunt_refuse_key(reader, node, "faces", "a mesh file is the sheet as it is: group chooses a part of it");

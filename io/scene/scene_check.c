@@ -140,7 +140,8 @@ static void complain_unknown(scene_reader *reader, scene_node *child, const char
                     return;
                 }
     }
-    if (nearest) {
+    // Shapes are few, and a cube is no tube: all are said.
+    if (nearest && strcmp(pattern, "<shape>") != 0) {
         brunt_tree_complain_key(tree, child, "unknown key, did you mean '%s'?", nearest);
         return;
     }
@@ -229,6 +230,25 @@ static void add_missing(scene_reader *reader, scene_node *node, const group_rows
     child->order = rows->order[r];
 }
 
+// A key in its former spelling becomes that of today, with a warning; in both it is a mistake.
+static void rename_former(scene_reader *reader, scene_node *node, const group_rows *rows) {
+    for (int r = 0; r < rows->count; r++) {
+        const char *former = rows->row[r]->former;
+        scene_node *child = former ? brunt_tree_child(node, former) : NULL;
+        if (!child) continue;
+        if (brunt_tree_child(node, rows->key[r])) {
+            brunt_tree_complain_key(reader->tree, child, "this is the former name of '%s', one of them is wanted",
+                                    rows->key[r]);
+            brunt_tree_remove(child);
+            continue;
+        }
+        brunt_scene_warn_at(reader, child, true, "the name is now '%s', this one goes with the next version",
+                            rows->key[r]);
+        char *key = brunt_tree_text(reader->tree, rows->key[r], strlen(rows->key[r]));
+        if (key) child->key = key;
+    }
+}
+
 static void check_group(scene_reader *reader, scene_node *node, const char *pattern) {
     group_rows rows;
     if (node->kind != SCENE_MAP) {
@@ -241,6 +261,7 @@ static void check_group(scene_reader *reader, scene_node *node, const char *patt
     }
     node->good = true;
     collect_rows(reader, node, pattern, &rows);
+    rename_former(reader, node, &rows);
     bool found[NAMES_LIMIT] = {false};
     for (scene_node *child = node->first; child; child = child->next) {
         int r = 0;

@@ -130,7 +130,7 @@ static void fill_augury(scene_reader *reader, scene_node *node) {
         if (!meshes || !at_nodes) brunt_refuse_key(reader, node, "iterations", "this belongs to method: augury");
         return;
     }
-    if (!brunt_tree_child(node, "form")) brunt_add_default(reader, node, "form", "affine");
+    if (!brunt_tree_child(node, "form")) brunt_add_default(reader, node, "form", "node_to_facet");
     const scene_node *form = brunt_tree_child(node, "form");
     contact->form = (brunt_augury_form)(int)brunt_real_of(node, "form", BRUNT_AUGURY_AFFINE);
     contact->cell = brunt_real_of(node, "cell", 0);
@@ -138,12 +138,12 @@ static void fill_augury(scene_reader *reader, scene_node *node) {
         if (!brunt_tree_child(node, "tolerance")) brunt_add_default(reader, node, "tolerance", "0.01");
         contact->tolerance = brunt_real_of(node, "tolerance", contact->tolerance);
     } else if (form && form->good) {
-        brunt_refuse_key(reader, node, "tolerance", "this belongs to form: affine");
+        brunt_refuse_key(reader, node, "tolerance", "this belongs to form: node_to_facet");
     }
     if (contact->form == BRUNT_AUGURY_PAPER) {
         if (!brunt_tree_child(node, "transfer")) brunt_add_default(reader, node, "transfer", "apic");
     } else if (form && form->good) {
-        brunt_refuse_key(reader, node, "transfer", "this belongs to form: paper");
+        brunt_refuse_key(reader, node, "transfer", "this belongs to form: published");
     }
     contact->transfer = brunt_real_of(node, "transfer", 1) == 0 ? BRUNT_PIC : BRUNT_APIC;
 }

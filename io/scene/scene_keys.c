@@ -16,6 +16,9 @@
 
 #define SIGNALS "end|initial|min|max|mean|slope|first_nonzero|last_nonzero|max_abs|period|rise"
 
+// Rows leave out the columns that most have no use for.
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
+
 // clang-format off
 const scene_key brunt_scene_table[] = {
     {"brunt", SCENE_INTEGER, NULL, REQUIRED, 1, 1, false, false, NULL, 0, false, "version of the scene format: 1"},
@@ -77,7 +80,7 @@ const scene_key brunt_scene_table[] = {
     {"bodies.*.hourglass.coefficient", SCENE_REAL, "1", OPTIONAL, 0, 1, false, false, NULL, 0, false, "default 0.05 of stiffness (of lambda + 2 mu, at most of 7 mu), 0.1 of viscous"},
     {"bodies.*.thickness", SCENE_REAL, "m", OPTIONAL, POSITIVE, NULL, 0, false, "membrane (must be given): of the sheet at the start"},
     {"bodies.*.contact_thickness", SCENE_REAL, "m", OPTIONAL, NOT_NEGATIVE, NULL, 0, false, "membrane: contact keeps half of it between the middle surface and others (default: thickness)"},
-    {"bodies.*.slack", SCENE_WORD, NULL, "false", ANY, "false|true", 0, true, "membrane: true: it bears no compression but wrinkles (tension field)"},
+    {"bodies.*.tension_only", SCENE_WORD, NULL, "false", ANY, "false|true", 0, true, "membrane: true: it bears no compression but wrinkles (tension field)", .former = "slack"},
     {"bodies.*.faces", SCENE_NAMES, NULL, OPTIONAL, NONE, "membrane, with a shape: groups of the shape's boundary that are the sheet, as [zmin] of a box (default: all of it); where it is open its edge is the group border"},
     {"bodies.*.lagrangian", SCENE_WORD, NULL, "updated", ANY, "updated|total", 0, true, "mpm: configuration of the grid; total: the undeformed one, so that the body does not come apart however far it is stretched; it meets meshes and planes only"},
     {"bodies.*.erosion", SCENE_GROUP, NULL, OPTIONAL, NONE, "what takes elements or material points out of the body, beside failure of its material"},
@@ -124,12 +127,12 @@ const scene_key brunt_scene_table[] = {
     {"<shape>.cylinder.axis", SCENE_VECTOR, "1", REQUIRED, ANY, NULL, 3, false, "direction to its other end"},
     {"<shape>.cylinder.radius", SCENE_REAL, "m", REQUIRED, POSITIVE, NULL, 3, false, "its radius"},
     {"<shape>.cylinder.length", SCENE_REAL, "m", REQUIRED, POSITIVE, NULL, 3, false, "its length"},
-    {"<shape>.ring", SCENE_GROUP, NULL, OPTIONAL, NONE, "a tube (an annulus in 2D)"},
-    {"<shape>.ring.center", SCENE_VECTOR, "m", REQUIRED, NONE, "centre of the end it starts from (2D: its centre)"},
-    {"<shape>.ring.axis", SCENE_VECTOR, "1", REQUIRED, ANY, NULL, 3, false, "direction to its other end"},
-    {"<shape>.ring.inner_radius", SCENE_REAL, "m", REQUIRED, POSITIVE, NULL, 0, false, "of the hole"},
-    {"<shape>.ring.radius", SCENE_REAL, "m", REQUIRED, POSITIVE, NULL, 0, false, "its outer radius"},
-    {"<shape>.ring.length", SCENE_REAL, "m", REQUIRED, POSITIVE, NULL, 3, false, "its length"},
+    {"<shape>.tube", SCENE_GROUP, NULL, OPTIONAL, NONE, "a hollow circular cylinder (an annulus in 2D)", .former = "ring"},
+    {"<shape>.tube.center", SCENE_VECTOR, "m", REQUIRED, NONE, "centre of the end it starts from (2D: its centre)"},
+    {"<shape>.tube.axis", SCENE_VECTOR, "1", REQUIRED, ANY, NULL, 3, false, "direction to its other end"},
+    {"<shape>.tube.inner_radius", SCENE_REAL, "m", REQUIRED, POSITIVE, NULL, 0, false, "of the hole"},
+    {"<shape>.tube.radius", SCENE_REAL, "m", REQUIRED, POSITIVE, NULL, 0, false, "its outer radius"},
+    {"<shape>.tube.length", SCENE_REAL, "m", REQUIRED, POSITIVE, NULL, 3, false, "its length"},
     {"<shape>.polygon", SCENE_GROUP, NULL, OPTIONAL, NONE, "a polygon in the x-y plane (3D: the prism above it)"},
     {"<shape>.polygon.points", SCENE_POLYGON, "m", REQUIRED, NONE, "its corners in turn, [[x, y], ...]; the last joins the first"},
     {"<shape>.polygon.min", SCENE_REAL, "m", REQUIRED, ANY, NULL, 3, false, "z of the prism's lower end"},
@@ -144,11 +147,11 @@ const scene_key brunt_scene_table[] = {
     {"contact", SCENE_GROUP, NULL, "{}", NONE, "contact between bodies"},
     {"contact.method", SCENE_WORD, NULL, "multi-velocity", ANY, "none|multi-velocity|augury|tied", 0, true, "augury is for all pairs with a fem or membrane body, two mpm bodies then meet by multi-velocity; multi-velocity also takes one of them with an mpm body; the default is augury when a body is of method fem or membrane; none: they pass through each other; tied: mpm bodies share one velocity where they share grid nodes, they neither part nor slide"},
     {"contact.friction", SCENE_REAL, "1", "0", NOT_NEGATIVE, NULL, 0, false, "Coulomb coefficient"},
-    {"contact.form", SCENE_WORD, NULL, "affine", ANY, "affine|smooth|surface|paper", 0, true, "of augury: velocity and gap from facing facets, from facets averaged on a grid, from averaged velocities and surfaces, or as published"},
-    {"contact.iterations", SCENE_INTEGER, NULL, OPTIONAL, 0, 1000, false, false, NULL, 0, false, "most sweeps of a step, see tolerance (default: augury 16, with membranes 64, forms smooth and surface 4; multi-velocity of a mesh with material points 8); of form paper its augury iterations (default 1)"},
-    {"contact.tolerance", SCENE_REAL, "1", "0.01", 0, 1, false, true, NULL, 0, true, "of augury, form affine: sweeps end before iterations when the greatest correction of one is no more than this share of the first one's; what is left is met in the next step; 0: when nothing changes any more"},
-    {"contact.cell", SCENE_REAL, "m", OPTIONAL, POSITIVE, NULL, 0, false, "of augury: edge of the contact grid (default: the mean edge of the surfaces; form paper: twice that)"},
-    {"contact.transfer", SCENE_WORD, NULL, "apic", ANY, "pic|apic", 0, true, "of augury, form paper: velocity transfer to the contact grid"},
+    {"contact.form", SCENE_WORD, NULL, "node_to_facet", ANY, "node_to_facet|averaged_facets|averaged_surface|published", 0, true, "of augury: velocity and gap from facing facets, from facets averaged on a grid, from averaged velocities and surfaces, or as published", .former_words = "affine|smooth|surface|paper"},
+    {"contact.iterations", SCENE_INTEGER, NULL, OPTIONAL, 0, 1000, false, false, NULL, 0, false, "most sweeps of a step, see tolerance (default: augury 16, with membranes 64, forms averaged_facets and averaged_surface 4; multi-velocity of a mesh with material points 8); of form published its augury iterations (default 1)"},
+    {"contact.tolerance", SCENE_REAL, "1", "0.01", 0, 1, false, true, NULL, 0, true, "of augury, form node_to_facet: sweeps end before iterations when the greatest correction of one is no more than this share of the first one's; what is left is met in the next step; 0: when nothing changes any more"},
+    {"contact.cell", SCENE_REAL, "m", OPTIONAL, POSITIVE, NULL, 0, false, "of augury: edge of the contact grid (default: the mean edge of the surfaces; form published: twice that)"},
+    {"contact.transfer", SCENE_WORD, NULL, "apic", ANY, "pic|apic", 0, true, "of augury, form published: velocity transfer to the contact grid"},
     {"contact.initial_overlap", SCENE_WORD, NULL, "error", ANY, "error|allow", 0, false, "bodies that overlap at the start, or lie behind a plane of condition separate: contact ends an approach, and what is in each other already may pass. Of meshes a fifth of an edge is let be"},
     {"contact.pairs", SCENE_ENTRIES, NULL, OPTIONAL, NONE, "pairs of bodies that differ from the above"},
     {"contact.pairs[].between", SCENE_NAMES, NULL, REQUIRED, NONE, "the two bodies, [a, b]; [a, a]: a membrane with itself, which it is not in contact with otherwise"},
@@ -172,7 +175,7 @@ const scene_key brunt_scene_table[] = {
     {"boundaries[].velocity", SCENE_PARTIAL, "m/s", "0", ANY, NULL, 0, true, "of the wall, of the region (must be given) or of the group; of the last two a component may be `free`"},
     {"boundaries[].from", SCENE_REAL, "s", "0", ANY, NULL, 0, true, "a region acts from then ..."},
     {"boundaries[].until", SCENE_REAL, "s", OPTIONAL, ANY, "none", 0, false, "... until then (default: for ever)"},
-    {"boundaries[].group", SCENE_TEXT, NULL, OPTIONAL, NONE, "nodes of a body of method fem or membrane, with exactly one of fix, velocity, displacement, traction, pressure and gas: a physical group of its mesh file, or a part of its shape's surface (box: xmin ... zmax; cylinder, ring: start, end, side, inner, outer; all: surface; open edge of a membrane: border)"},
+    {"boundaries[].group", SCENE_TEXT, NULL, OPTIONAL, NONE, "nodes of a body of method fem or membrane, with exactly one of fix, velocity, displacement, traction, pressure and gas: a physical group of its mesh file, or a part of its shape's surface (box: xmin ... zmax; cylinder, tube: start, end, side, inner, outer; all: surface; open edge of a membrane: border)"},
     {"boundaries[].fix", SCENE_AXES, NULL, OPTIONAL, NONE, "components of the group that do not move: [x, y, z], or `all`"},
     {"boundaries[].displacement", SCENE_PARTIAL, "m", OPTIONAL, NONE, "of the group, since the start; a component may be `free`"},
     {"boundaries[].traction", SCENE_VECTOR, "Pa", OPTIONAL, NONE, "on the undeformed area of the group's faces"},
@@ -298,6 +301,12 @@ const brunt_model *brunt_scene_model(const char *path, const char *name) {
     if (strncmp(path, "materials.*.eos.", 16) == 0) return brunt_find_eos(name);
     if (strncmp(path, "materials.*.failure.", 20) == 0) return brunt_find_failure(name);
     return brunt_find_strength(name);
+}
+
+int brunt_scene_word_count(const char *words) {
+    int count = words != NULL;
+    for (const char *c = words; c && *c; c++) count += *c == '|';
+    return count;
 }
 
 bool brunt_scene_word_at(const char *words, int index, char *out, size_t size) {

@@ -44,6 +44,9 @@ typedef struct scene_key {
     int dimension;     // 2 or 3: exists in that one only; 0: in both
     bool depends;      // its default holds only where other keys let it
     const char *doc;
+    // Columns that most rows leave out:
+    const char *former;       // spelling of the key one version ago ...
+    const char *former_words; // ... and of its words, "a|b|c", as many as `words`
 } scene_key;
 
 extern const scene_key brunt_scene_table[];
@@ -77,5 +80,7 @@ const brunt_model *const *brunt_scene_models(const char *path, int *count);
 const brunt_model *brunt_scene_model(const char *path, const char *name);
 // True when the word is among "a|b|c", with - and _ counting as the same; `index` its place there, `length` its length.
 bool brunt_scene_word(const char *words, const char *word, int *index);
+// How many words "a|b|c" has; 0 of NULL.
+int brunt_scene_word_count(const char *words);
 // Copies word number `index` of "a|b|c"; false past the end.
 bool brunt_scene_word_at(const char *words, int index, char *out, size_t size);

@@ -38,6 +38,22 @@ void brunt_scene_warn(scene_reader *reader, const char *format, ...) {
     fputc('\n', reader->warnings);
 }
 
+void brunt_scene_warn_at(scene_reader *reader, const scene_node *node, bool at_key, const char *format, ...) {
+    if (!reader->warnings) return;
+    char path[512];
+    brunt_tree_path(node, path, sizeof path);
+    if (node->option)
+        fprintf(reader->warnings, "--set %s: ", node->option);
+    else
+        fprintf(reader->warnings, "%s:%d:%d: %s: ", reader->tree->name, at_key ? node->key_line : node->line,
+                at_key ? node->key_column : node->column, path);
+    va_list arguments;
+    va_start(arguments, format);
+    vfprintf(reader->warnings, format, arguments);
+    va_end(arguments);
+    fputc('\n', reader->warnings);
+}
+
 // ---------------------------------------------------------------------------------------------------- names
 
 const brunt_body_def *brunt_body_named(const scene_reader *reader, const char *name) {

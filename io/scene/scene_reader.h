@@ -58,5 +58,8 @@ bool brunt_nonzero(const double v[3]);
 void brunt_complain_name(scene_reader *reader, const scene_node *node, const char *what, const char *parent);
 // Says `why` at a key that is there but must not be.
 void brunt_refuse_key(scene_reader *reader, const scene_node *node, const char *key, const char *why);
-// A doubt about an acceptable scene.
+// A doubt about an acceptable scene, of the place of a key or a value: "file:line:column: path: ...".
+void brunt_scene_warn_at(scene_reader *reader, const scene_node *node, bool at_key, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+// One about the scene as a whole.
 void brunt_scene_warn(scene_reader *reader, const char *format, ...) __attribute__((format(printf, 2, 3)));

@@ -128,7 +128,7 @@ static void write_row(FILE *out, const char *path, const char *kind, const char 
 }
 
 static void write_key(FILE *out, const scene_key *row) {
-    char kind[64], initial[48], doc[768], bounds[96];
+    char kind[64], initial[48], doc[768], bounds[96], word[64];
     describe_kind(row, kind, sizeof kind);
     if (!row->initial)
         snprintf(initial, sizeof initial, "required");
@@ -140,12 +140,14 @@ static void write_key(FILE *out, const scene_key *row) {
     size_t used = (size_t)snprintf(doc, sizeof doc, "%s", row->doc);
     if (row->type == SCENE_WORD && row->words) {
         used += (size_t)snprintf(doc + used, sizeof doc - used, ":");
-        char word[64];
         for (int i = 0; brunt_scene_word_at(row->words, i, word, sizeof word); i++)
             used += (size_t)snprintf(doc + used, sizeof doc - used, " %s%s", i ? "| " : "", word);
     } else if (row->words && !strstr(row->doc, row->words)) {
         used += (size_t)snprintf(doc + used, sizeof doc - used, "; or the word %s", row->words);
     }
+    if (row->former) used += (size_t)snprintf(doc + used, sizeof doc - used, "; formerly %s", row->former);
+    for (int i = 0; brunt_scene_word_at(row->former_words, i, word, sizeof word); i++)
+        used += (size_t)snprintf(doc + used, sizeof doc - used, "%s%s", i ? ", " : "; formerly ", word);
     if (*bounds) used += (size_t)snprintf(doc + used, sizeof doc - used, " (%s)", bounds);
     if (row->dimension) snprintf(doc + used, sizeof doc - used, " [%dD only]", row->dimension);
     write_row(out, row->path, kind, initial, doc, INDENT);

@@ -12,7 +12,7 @@ static void json_text(FILE *out, const char *text) {
     fputc('"', out);
 }
 
-static void schema_value(FILE *out, const scene_key *row);
+static void schema_value(FILE *out, const scene_key *row, const char *now);
 
 typedef struct listing {
     FILE *out;
@@ -42,7 +42,11 @@ static void schema_group(FILE *out, const char *pattern) {
         if (!key) continue;
         if (row->type != SCENE_PARAMETERS) {
             schema_key(&list, key);
-            schema_value(out, row);
+            schema_value(out, row, NULL);
+            if (row->former) {
+                schema_key(&list, row->former);
+                schema_value(out, row, key);
+            }
             continue;
         }
         int count;
@@ -86,6 +90,10 @@ static void schema_words(FILE *out, const scene_key *row) {
                 fputs(word, out);
             else
                 json_text(out, word);
+        }
+        for (int i = 0; brunt_scene_word_at(row->former_words, i, word, sizeof word); i++) {
+            fputs(", ", out);
+            json_text(out, word);
         }
     } else {
         int count;
@@ -193,14 +201,18 @@ static void schema_type(FILE *out, const scene_key *row) {
     }
 }
 
-static void schema_value(FILE *out, const scene_key *row) {
+// `now`: the row in its former spelling, and what it is called today.
+static void schema_value(FILE *out, const scene_key *row, const char *now) {
     fputs("{\"description\": ", out);
     char doc[512];
-    if (row->unit && strcmp(row->unit, "1") != 0)
+    if (now)
+        snprintf(doc, sizeof doc, "now %s", now);
+    else if (row->unit && strcmp(row->unit, "1") != 0)
         snprintf(doc, sizeof doc, "%s [%s]", row->doc, row->unit);
     else
         snprintf(doc, sizeof doc, "%s", row->doc);
     json_text(out, doc);
+    if (now) fputs(", \"deprecated\": true", out);
     schema_default(out, row);
     fputs(", ", out);
     schema_type(out, row);

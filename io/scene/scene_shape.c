@@ -127,7 +127,7 @@ void brunt_fill_shape_def(scene_reader *reader, const scene_node *node, brunt_sh
                  {"sphere", BRUNT_SPHERE},
                  {"disk", BRUNT_SPHERE},
                  {"cylinder", BRUNT_CYLINDER},
-                 {"ring", BRUNT_RING},
+                 {"tube", BRUNT_RING},
                  {"polygon", BRUNT_PRISM},
                  {"half-space", BRUNT_HALF_SPACE},
                  {"union", BRUNT_UNION},

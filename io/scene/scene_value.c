@@ -299,6 +299,11 @@ static void check_word(scene_reader *reader, scene_node *node, const scene_key *
     }
     if (row->words) {
         node->good = brunt_scene_word(row->words, node->text, &index);
+        if (!node->good && row->former_words && brunt_scene_word(row->former_words, node->text, &index)) {
+            brunt_scene_warn_at(reader, node, false, "'%s' is now '%s', this name goes with the next version",
+                                node->text, names[index]);
+            node->good = true;
+        }
         if (node->good) {
             node->text = brunt_tree_text(reader->tree, names[index], strlen(names[index]));
             node->value[0] = index;

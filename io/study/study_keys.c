@@ -9,6 +9,9 @@
 #define OPTIONAL ""
 #define REQUIRED NULL
 
+// Rows leave out the columns that most have no use for.
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
+
 // clang-format off
 static const scene_key rows[] = {
     {"brunt_study", SCENE_INTEGER, NULL, REQUIRED, 1, 1, false, false, NULL, 0, false, "version of the study format: 1"},

@@ -41,7 +41,7 @@ static const char rich_text[] =
     "    method: mpm\n"
     "    material: tnt\n"
     "    spacing: 1 mm\n"
-    "    shape: {union: [{ring: {center: [0.2, 0, 0], axis: [0, 0, 1], inner_radius: 2 mm, radius: 8 mm, length: 9 "
+    "    shape: {union: [{tube: {center: [0.2, 0, 0], axis: [0, 0, 1], inner_radius: 2 mm, radius: 8 mm, length: 9 "
     "mm}},\n"
     "      {polygon: {points: [[0.3, 0], [0.32, 0], [0.32, 0.02]], min: 0, max: 0.01}}]}\n"
     "  cut:\n"

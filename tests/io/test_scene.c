@@ -84,7 +84,7 @@ static const char elements[] =
     "    element: tet4, spin: {rate: [0, 0, 2]}}\n"
     "  sand: {method: mpm, material: gum, shape: {sphere: {center: [20 mm, 0, 40 mm], radius: 5 mm}}}\n"
     "contact:\n"
-    "  {friction: 0.3, form: paper, iterations: 0, cell: 3 mm, transfer: pic, pairs: [{between: [tets, beam], method: "
+    "  {friction: 0.3, form: published, iterations: 0, cell: 3 mm, transfer: pic, pairs: [{between: [tets, beam], method: "
     "none}]}\n"
     "boundaries:\n"
     "  - {group: xmin, body: beam, fix: [x, z]}\n"
@@ -108,7 +108,7 @@ static const char sheets[] =
     "  water: {model: newtonian, density: 1000, dynamic_viscosity: 1 mPa s, eos: {model: tait, c0: 10 m/s}}\n"
     "bodies:\n"
     "  bag: {method: membrane, material: gum, shape: {sphere: {center: [0, 0, 0], radius: 20 mm}}, size: 3 mm,\n"
-    "    thickness: 0.2 mm, slack: true, contact_thickness: 1 mm, damping: 50 1/s}\n"
+    "    thickness: 0.2 mm, tension_only: true, contact_thickness: 1 mm, damping: 50 1/s}\n"
     "  flag: {method: membrane, material: gum, shape: {box: {min: [-20 mm, -20 mm, 30 mm], max: [20 mm, 20 mm, 31 "
     "mm]}},\n"
     "    size: 4 mm, thickness: 0.2 mm, faces: [zmin, xmin], element: tri3, mass_scaling: 10 ns}\n"
@@ -377,7 +377,7 @@ START_TEST(augury) {
     // Multi-velocity for all, but not where a body of elements is.
     const char *bridged[] = {
         "contact={method: multi-velocity, pairs: [{between: [sand, tets], method: augury}, {between: "
-        "[beam, tets], method: none}, {between: [sand, beam], method: none}], form: smooth}"};
+        "[beam, tets], method: none}, {between: [sand, beam], method: none}], form: averaged_facets}"};
     ck_assert_msg(parse(elements, bridged, 1, &s) == BRUNT_OK, "%s", messages);
     ck_assert_int_eq(s.world.contact.form, BRUNT_AUGURY_SMOOTH);
     brunt_scene_free(&s);
