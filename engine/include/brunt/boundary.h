@@ -1,0 +1,80 @@
+// What acts on bodies from outside: planes, regions of the grid, groups of mesh nodes, gas, detonations. The names of
+// planes, regions and groups differ.
+#pragma once
+
+#include <stdbool.h>
+#include "brunt/mesh.h"
+#include "brunt/shape.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum brunt_condition {
+    BRUNT_STICK,    // all components follow the plane
+    BRUNT_SLIP,     // normal component follows the plane, tangential free, never lets go
+    BRUNT_SEPARATE, // like slip in compression, lets go in tension; with friction > 0 a Coulomb wall
+    BRUNT_SYMMETRY  // mirror plane: axis-aligned and on a grid line
+} brunt_condition;
+
+typedef struct brunt_plane_def {
+    char name[BRUNT_NAME_LENGTH]; // of its column in the history; "" = "plane1", ...
+    double point[3], normal[3];   // [m], [-] pointing into the room the bodies are in
+    brunt_condition condition;    // default BRUNT_SEPARATE
+    double friction;              // [-] Coulomb coefficient >= 0, for BRUNT_SEPARATE; default 0
+    double velocity[3];           // [m/s] of a moving wall; default 0
+    char body[BRUNT_NAME_LENGTH]; // the one body it acts on; "" = all
+} brunt_plane_def;
+
+// Grid nodes inside a region are given a velocity.
+typedef struct brunt_region_def {
+    char name[BRUNT_NAME_LENGTH]; // of its column in the history; "" = "region1", ...
+    brunt_shape shape;            // owned by the definition
+    brunt_placement place;        // default: the identity
+    bool component[3];            // which components are prescribed; default all
+    double velocity[3];           // [m/s]
+    double start, end;            // [s] active in start <= t < end; default 0, INFINITY
+    char body[BRUNT_NAME_LENGTH]; // "" = all
+} brunt_region_def;
+
+// Nodes of a finite-element body that are held, moved or loaded.
+typedef enum brunt_group_action {
+    BRUNT_GROUP_VELOCITY,     // components of `value` times the table are the velocity [m/s]; fixed: value 0
+    BRUNT_GROUP_DISPLACEMENT, // ... are the displacement since the start [m]
+    BRUNT_GROUP_TRACTION,     // value [Pa] times the table acts on the undeformed area of the group's faces
+    BRUNT_GROUP_PRESSURE,     // value[0] [Pa] times the table acts against the outward normal of the deformed faces
+    BRUNT_GROUP_GAS // the pressure of gas that the group's faces enclose, less that outside, acts along their normal
+} brunt_group_action;
+// Ideal gas of one pressure and temperature in an enclosed volume V: p = (gamma - 1) E / V, dE = -p dV + inflow dt.
+typedef struct brunt_gas_def {
+    double gamma;    // [-] > 1, ratio of specific heats; default 1.4
+    double pressure; // [Pa] >= 0 at the start, absolute
+    double outside;  // [Pa] >= 0, default 0
+    double volume;   // [m^3] >= 0 of gas beside what the faces enclose (pipes, a vessel); default 0
+    double inflow;   // [W] times the table: enthalpy that flows in; default 0
+} brunt_gas_def;
+typedef struct brunt_group_def {
+    char name[BRUNT_NAME_LENGTH];                           // of its column in the history; "" = "group1", ...
+    char body[BRUNT_NAME_LENGTH], group[BRUNT_NAME_LENGTH]; // both must be there
+    brunt_group_action action;
+    bool component[3]; // velocity, displacement: which are prescribed; default all
+    double value[3];   // [m/s], [m] or [Pa], see the action; default 0
+    brunt_curve table; // over time [s]; default 1 always; owned by the definition
+    brunt_gas_def gas; // of BRUNT_GROUP_GAS
+} brunt_group_def;
+
+// Where and when explosives are lit: at a point, or on a plane. Material at distance d burns from time + d / detonation
+// speed on.
+typedef struct brunt_detonation_def {
+    double point[3], normal[3];   // [m]; [-] of a plane, 0: a point
+    double time;                  // [s] when it is lit
+    char body[BRUNT_NAME_LENGTH]; // "" = all explosives
+} brunt_detonation_def;
+
+brunt_plane_def brunt_plane_def_default(void);
+brunt_region_def brunt_region_def_default(void);
+brunt_group_def brunt_group_def_default(void);
+
+#ifdef __cplusplus
+}
+#endif

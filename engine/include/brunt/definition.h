@@ -1,0 +1,106 @@
+// The definition of a world: plain structures. brunt_world_def_default fills one first, so that a field added later
+// keeps a sensible value.
+#pragma once
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include "brunt/body.h"
+#include "brunt/boundary.h"
+#include "brunt/material.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+// B-splines of the grid, by order.
+typedef enum brunt_kernel { BRUNT_LINEAR = 1, BRUNT_QUADRATIC = 2, BRUNT_CUBIC = 3 } brunt_kernel;
+// Harlow 1964; Brackbill and Ruppel 1986; Jiang, Schroeder, Selle, Teran and Stomakhin 2015.
+typedef enum brunt_transfer { BRUNT_PIC, BRUNT_FLIP, BRUNT_APIC } brunt_transfer;
+
+// Tied: bodies of material points share one velocity field at the grid nodes that both reach, in both directions: they
+// neither part nor slide (what material-point codes without contact do).
+typedef enum brunt_contact_method {
+    BRUNT_CONTACT_NONE,
+    BRUNT_CONTACT_MULTI_VELOCITY, // at nodes that two bodies reach (Bardenhagen, Brackbill and Sulsky 2000)
+    BRUNT_CONTACT_AUGURY,
+    BRUNT_CONTACT_TIED
+} brunt_contact_method;
+// How augury makes the velocity that opposing bodies are to have where they meet.
+typedef enum brunt_augury_form {
+    BRUNT_AUGURY_AFFINE,  // velocity and gap from the same facing facet, extended affinely; reaction by the transpose
+    BRUNT_AUGURY_SMOOTH,  // the same from facets averaged on the grid
+    BRUNT_AUGURY_SURFACE, // velocities averaged on the grid, gap to the averaged facing surface
+    BRUNT_AUGURY_PAPER    // grid transfers and augury iterations as published
+} brunt_augury_form;
+
+// Of two bodies; with both names the same, of a membrane with itself, which is not in contact unless it is asked for.
+typedef struct brunt_pair_def {
+    char a[BRUNT_NAME_LENGTH], b[BRUNT_NAME_LENGTH];
+    brunt_contact_method method;
+    double friction; // [-] >= 0
+} brunt_pair_def;
+
+typedef struct brunt_contact_def {
+    brunt_contact_method method; // default: multi-velocity
+    double friction;             // [-] >= 0, Coulomb; default 0
+    brunt_augury_form form;      // of augury; default affine
+    int iterations;   // most sweeps of a step, or N of the paper form; -1 = the method's own: augury 16 (64 where
+                      // there are membranes), 4, 4, 1 by form; multi-velocity of a mesh with material points 8
+    double tolerance; // [-] 0..1 (not 1): sweeps end when the greatest correction of one is no more than this share of
+                      // the first one's; 0: when nothing changes, or by `iterations`; of form affine; default 0.01
+    double cell;      // [m] of the contact grid; 0 = the mean surface edge (paper: twice that)
+    brunt_transfer transfer; // of the paper form: BRUNT_PIC or BRUNT_APIC (default)
+    bool allow_overlap; // accept bodies that overlap at the start (meshes: by more than a fifth of an edge), or lie
+                        // behind a plane of condition separate; default false: an error
+    brunt_pair_def *pairs;
+    int32_t pair_count; // owned; overrides
+} brunt_contact_def;
+
+typedef struct brunt_world_def {
+    int cookie;        // set by brunt_world_def_default
+    int dimension;     // 3 (default), or 2 = plane strain of unit thickness
+    bool axisymmetric; // with dimension 2: x is the distance r >= 0 from the axis of revolution, y along it; bodies are
+                       // whole rings: masses, forces and energies are those of the full circle; default false
+    double cell;       // [m] > 0 of the grid; 0 where no body is of material points
+    double origin[3];  // [m] where a grid node lies; default 0
+    brunt_kernel kernel;     // default quadratic
+    brunt_transfer transfer; // default APIC
+    double flip;             // [-] for FLIP: share of the particle's own velocity kept, 0..1; default 0.99
+    double cfl;          // [-] 0..1, of the stable step; default 0: with material points brunt_default_cfl, without 0.5
+    double step;         // [s] fixed time step, 0 = from cfl
+    double least_step;   // [s] the run stops, with the reason, when the stable step falls below it; default 0:
+                         // when steps that follow it fall below a millionth of the greatest so far
+    double end;          // [s] > 0; the step that would pass it is cut to end on it
+    double energy_limit; // [-] of the energy `reference` (see brunt_energy); default 0.1; INFINITY = none
+    int threads;         // 0 = all there are; at most BRUNT_THREAD_LIMIT
+    brunt_material_def *materials;
+    int32_t material_count; // owned
+    brunt_body_def *bodies;
+    int32_t body_count; // owned
+    brunt_plane_def *planes;
+    int32_t plane_count; // owned
+    brunt_region_def *regions;
+    int32_t region_count; // owned
+    brunt_group_def *groups;
+    int32_t group_count; // owned
+    brunt_detonation_def *detonations;
+    int32_t detonation_count; // owned
+    brunt_contact_def contact;
+    double gravity[3];   // [m/s^2] default 0
+    double gravity_ramp; // [s] gravity grows linearly from 0 over this time; default 0
+} brunt_world_def;
+
+brunt_world_def brunt_world_def_default(void);
+// The share of the stable step that is taken when none is given: 0.5, or less where material points alone in their
+// cells would gain energy: 0.4 in three dimensions with the quadratic kernel and PIC or FLIP.
+double brunt_default_cfl(int dimension, brunt_kernel kernel, brunt_transfer transfer);
+
+// Zeroed memory for the arrays and shapes a definition owns, so that brunt_world_def_free can free them. NULL: out of
+// memory.
+void *brunt_def_alloc(size_t bytes);
+void brunt_world_def_free(brunt_world_def *def); // frees all that the definition owns
+
+#ifdef __cplusplus
+}
+#endif

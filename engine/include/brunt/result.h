@@ -1,0 +1,124 @@
+// What is read of a world: energy and momentum, bodies and their fields, forces, gas. Indices want to be there: 0 <=
+// index < count.
+#pragma once
+
+#include <stdbool.h>
+#include <stdint.h>
+#include "brunt/world.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct brunt_energy { // [J]; in 2D per metre of thickness
+    double kinetic;           // with the affine part of APIC; as velocities, of the middle of the last step
+    double internal;          // stored
+    double plastic, hourglass, contact, friction, viscosity, transfer,
+        eroded;           // taken out, each by its cause; damping is viscosity;
+                          // eroded: kinetic and stored energy that left with elements, nodes and material points
+    double heat;          // of plastic: what has warmed the material; a part, no term of the sum
+    double external_work; // done on the bodies by gravity, walls and prescribed motion
+    double initial;       // kinetic + internal at the start
+    double total;         // kinetic + internal + all that was taken out
+    double error;         // total - initial - external_work
+    double reference; // the most by now of: initial; initial + external_work; the work of each cause, summed by amount.
+                      // What the run has (kinetic + internal) where that is more, up to ten times it. At least what
+                      // rounding does
+    double error_relative; // error / reference
+} brunt_energy;
+
+typedef struct brunt_momentum {
+    double linear[3];  // [kg m/s]
+    double angular[3]; // [kg m^2/s] about the origin, with the spin of APIC; 2D: the third component
+    double linear_impulse[3], angular_impulse[3]; // external, so far, with what erosion took away (negative)
+    double linear_drift, angular_drift;           // relative change since the start, external impulses taken off
+    double linear_initial[3], angular_initial[3];
+} brunt_momentum;
+
+void brunt_world_energy(brunt_world *world, brunt_energy *energy);
+void brunt_world_momentum(brunt_world *world, brunt_momentum *momentum);
+// Hash of every state bit of every particle, independent of the order they lie in memory.
+uint64_t brunt_world_hash(const brunt_world *world);
+
+// Bodies, in order of name.
+int32_t brunt_body_count(const brunt_world *world);
+const char *brunt_body_name(const brunt_world *world, int32_t body);
+const char *brunt_body_material(const brunt_world *world, int32_t body);
+brunt_method brunt_body_method(const brunt_world *world, int32_t body);
+int64_t brunt_body_particles(const brunt_world *world, int32_t body); // 0 of a finite-element body
+int64_t brunt_body_nodes(const brunt_world *world, int32_t body);     // 0 of material points
+int64_t brunt_body_elements(const brunt_world *world, int32_t body);
+brunt_element_kind brunt_body_element(const brunt_world *world, int32_t body);
+// brunt_element_nodes(kind) node numbers of every element, nodes numbered as in the mesh, elements in its order. Of a
+// body that erodes, of the elements that are left: the field "element" says which those are. Nodes stay, with those
+// that have left.
+void brunt_body_connectivity(const brunt_world *world, int32_t body, int32_t *out);
+typedef struct brunt_mesh_report {
+    brunt_mesh_quality quality;
+    double least_step, added_mass; // [s] stable step of its elements; [kg] that mass scaling added
+    int32_t scaled_elements;
+} brunt_mesh_report;
+// How good the mesh of a finite-element body is, and what mass scaling added [kg].
+void brunt_body_mesh(const brunt_world *world, int32_t body, brunt_mesh_report *report);
+typedef struct brunt_body_sums {
+    double mass, momentum[3], centre[3], velocity[3]; // [kg], [kg m/s], [m], [m/s] of the centre of mass
+    double kinetic, internal, plastic;                // [J]
+    double low[3], high[3];                           // [m] bounds of its nodes, or of its particles' centres
+} brunt_body_sums;
+void brunt_body_totals(brunt_world *world, int32_t body, brunt_body_sums *sums);
+
+// What has left a body, or been freed of stress, since the start.
+typedef struct brunt_eroded {
+    int64_t elements, particles,
+        nodes; // eroded elements and material points, nodes that left (or went on free, with `keep`)
+    double mass, momentum[3], angular[3],
+        energy; // that left the world [kg], [kg m/s], [kg m^2/s] about the origin, [J]
+    int64_t failed, strained, short_step, inverted; // elements and points by cause
+} brunt_eroded;
+void brunt_body_eroded(const brunt_world *world, int32_t body, brunt_eroded *eroded);
+
+// What can be read of a body, at its particles, or at its nodes and its elements: stored and derived fields alike
+// ("velocity", "stress" = Cauchy, "pressure", "von_mises", "density", "plastic_strain", "temperature", "J", "volume",
+// "id", ...).
+typedef enum brunt_place { BRUNT_AT_PARTICLES, BRUNT_AT_NODES, BRUNT_AT_ELEMENTS } brunt_place;
+typedef struct brunt_field_info {
+    const char *name, *unit;
+    int components; // 1, 3, 6 (symmetric) or 9
+    bool symmetric;
+    brunt_place at;
+} brunt_field_info;
+int32_t brunt_body_field_count(const brunt_world *world, int32_t body);
+brunt_field_info brunt_body_field(const brunt_world *world, int32_t body, int32_t field);
+// -1 when the body has no such field.
+int32_t brunt_body_find_field(const brunt_world *world, int32_t body, const char *name);
+int64_t brunt_body_size(const brunt_world *world, int32_t body, brunt_place at); // particles, nodes or elements
+// Writes brunt_body_size(at) x components doubles in the order of the ids (0 .. count-1 within the body). Vectors
+// always have 3 components, symmetric tensors 6 (XX YY ZZ XY YZ XZ), matrices 9, whatever the dimension.
+void brunt_body_read(brunt_world *world, int32_t body, int32_t field, double *out);
+
+// Contact pairs and walls: force averaged over the last step [N] and impulse since the start [N s], on `b` / on the
+// bodies.
+typedef struct brunt_force {
+    char name[2 * BRUNT_NAME_LENGTH + 2];
+    double force[3], impulse[3];
+    double normal_work, friction_work; // [J] so far
+    double area;                       // [m^2] that touched in the last step; in plane strain [m]
+} brunt_force;
+// Scenes with more than 64 pairs have them all in one, named "all".
+int32_t brunt_pair_count(const brunt_world *world);
+void brunt_pair_force(const brunt_world *world, int32_t pair, brunt_force *force); // name "a-b", force on b
+int32_t brunt_wall_count(const brunt_world *world);                                // planes, regions, then groups
+void brunt_wall_force(const brunt_world *world, int32_t wall, brunt_force *force); // force on the bodies
+
+// Gas in enclosed volumes.
+typedef struct brunt_gas {
+    char name[BRUNT_NAME_LENGTH];    // of its boundary
+    double volume, pressure, energy; // [m^3], [Pa] absolute, [J]
+    double inflow;                   // [J] so far
+} brunt_gas;
+int32_t brunt_gas_count(const brunt_world *world);
+void brunt_world_gas(const brunt_world *world, int32_t index, brunt_gas *gas);
+
+#ifdef __cplusplus
+}
+#endif
