@@ -7,8 +7,6 @@
 
 #include "app/app.h"
 
-enum { THREAD_LIMIT = 256 };
-
 static const struct {
     app_option option;
     struct option form;
@@ -35,7 +33,7 @@ static bool parse_threads(const char *text, int *threads) {
     char *end;
     errno = 0;
     long value = strtol(text, &end, 10);
-    if (errno || end == text || *end || value < 1 || value > THREAD_LIMIT) return false;
+    if (errno || end == text || *end || value < 1 || value > BRUNT_THREAD_LIMIT) return false;
     *threads = (int)value;
     return true;
 }
@@ -72,7 +70,7 @@ int app_parse(int argc, char **argv, const char *usage, int allowed, bool operan
         case 'o': arguments->folder = optarg; break;
         case 't':
             if (!parse_threads(optarg, &arguments->threads))
-                return bad_usage(usage, "'%s' is no number of threads; 1 to %d are wanted", optarg, THREAD_LIMIT);
+                return bad_usage(usage, "'%s' is no number of threads; 1 to %d are wanted", optarg, BRUNT_THREAD_LIMIT);
             break;
         case 's':
             if (!strchr(optarg, '=')) return bad_usage(usage, "--set %s: PATH=VALUE is wanted", optarg);

@@ -23,7 +23,7 @@ void brunt_parallel(int threads, int64_t count, int64_t grain, brunt_task_fn *ta
     if (count <= 0) return;
     int64_t pieces = (count + grain - 1) / grain;
     int workers = 1; // may be fewer than asked for
-    span spans[BRUNT_THREADS_MOST];
+    span spans[BRUNT_THREAD_LIMIT];
     // A thread that gets less than a few pieces costs more to wake and wait for than it saves.
     if (threads > pieces / LEAST_PIECES) threads = (int)(pieces / LEAST_PIECES);
     if (threads <= 1) {

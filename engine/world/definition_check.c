@@ -381,7 +381,8 @@ static int check_time_and_grid(const brunt_world_def *def, bool particles, brunt
                   {"time.step", &def->step, 1, ANY}, {"time.least_step", &def->least_step, 1, ANY},
                   {"time.end", &def->end, 1, POSITIVE}, {"loads.gravity", def->gravity, def->dimension, ANY},
                   {"loads.gravity_ramp", &def->gravity_ramp, 1, NOT_NEGATIVE});
-    if (def->threads < 0 || def->threads > 256) REFUSE("threads: %d is not between 0 (all) and 256", def->threads);
+    if (def->threads < 0 || def->threads > BRUNT_THREAD_LIMIT)
+        REFUSE("threads: %d is not between 0 (all) and %d", def->threads, BRUNT_THREAD_LIMIT);
     return BRUNT_OK;
 }
 

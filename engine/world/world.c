@@ -674,7 +674,7 @@ brunt_world *brunt_world_create(const brunt_world_def *def, brunt_error *error) 
 
     world->settings.dimension = def->dimension;
     world->settings.threads = def->threads > 0 ? def->threads : brunt_threads_available();
-    if (world->settings.threads > 256) world->settings.threads = 256;
+    if (world->settings.threads > BRUNT_THREAD_LIMIT) world->settings.threads = BRUNT_THREAD_LIMIT;
     world->settings.kernel = def->kernel, world->settings.transfer = def->transfer;
     world->settings.flip = def->flip, world->settings.fixed_step = def->step, world->settings.end = def->end;
     world->settings.axisymmetric = def->axisymmetric;

@@ -117,7 +117,7 @@ static void count_busy(const brunt_world *world, int32_t passes, double busy[PAS
         if (p == passes) break;
         brunt_pass pass = brunt_world_pass(world, p);
         double sum = 0;
-        for (int t = 0; t < threads && t < 64; t++) sum += pass.thread_seconds[t];
+        for (int t = 0; t < threads; t++) sum += pass.thread_seconds[t];
         if (pass.seconds > 0) busy[p] = fmin(fmax(sum / pass.seconds, 1), threads);
     }
 }

@@ -41,7 +41,6 @@ void brunt_profile_make(const brunt_world *world, const brunt_counters *counters
                         brunt_profile *profile) {
     *profile = (brunt_profile){.steps = steps, .output_seconds = output_seconds};
     profile->threads = brunt_world_threads(world);
-    const int shown = profile->threads < BRUNT_PROFILE_THREADS ? profile->threads : BRUNT_PROFILE_THREADS;
     if (brunt_roofline_measure(profile->threads, &profile->bandwidth, &profile->peak))
         profile->bandwidth = profile->peak = NAN;
     profile->step_seconds = brunt_world_step_seconds(world);
@@ -52,7 +51,7 @@ void brunt_profile_make(const brunt_world *world, const brunt_counters *counters
         row->pass = brunt_world_pass(world, p);
         row->share = profile->step_seconds > 0 ? row->pass.seconds / profile->step_seconds : 0;
         profile->pass_seconds += row->pass.seconds;
-        take_threads(row, shown);
+        take_threads(row, profile->threads);
         take_work(row, profile->bandwidth, profile->peak);
         for (int k = 0; k < BRUNT_COUNTERS; k++)
             row->counted[k] = profile->counted[k] ? ratio(counters->total[k][p], row->pass.units) : NAN;
@@ -173,8 +172,7 @@ static json_t *row_object(const brunt_profile *profile, const brunt_profile_row 
     for (size_t n = 0; n < sizeof numbers / sizeof *numbers; n++)
         json_object_set_new(o, numbers[n].name, number(numbers[n].value));
     json_object_set_new(o, "bound", !bound ? json_null() : json_string(row->memory_bound ? "memory" : "compute"));
-    for (int t = 0; t < profile->threads && t < BRUNT_PROFILE_THREADS; t++)
-        json_array_append_new(threads, number(pass->thread_seconds[t]));
+    for (int t = 0; t < profile->threads; t++) json_array_append_new(threads, number(pass->thread_seconds[t]));
     json_object_set_new(o, "thread_s", threads);
     for (int k = 0; k < BRUNT_COUNTERS; k++) {
         char name[64];

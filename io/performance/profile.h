@@ -8,7 +8,7 @@
 #include "io/performance/counters.h"
 #include "io/performance/progress.h"
 
-enum { BRUNT_PROFILE_PASSES = 32, BRUNT_PROFILE_THREADS = 64 };
+enum { BRUNT_PROFILE_PASSES = 32 };
 
 typedef struct brunt_profile_row {
     brunt_pass pass;

@@ -1,5 +1,6 @@
 // Every key of a study file, one row each.
 #include "io/scene/scene_keys.h"
+#include "brunt/error.h"
 
 #include <math.h>
 
@@ -18,7 +19,7 @@ static const scene_key rows[] = {
     {"title", SCENE_TEXT, NULL, "''", NONE, "one line on what is studied"},
     {"scene", SCENE_TEXT, NULL, OPTIONAL, NONE, "the scene file; its path counts from the study's folder. May be left out where the values of an axis give one each"},
     {"set", SCENE_ANY, NULL, OPTIONAL, NONE, "a map from paths of the scene to values, for every run"},
-    {"threads", SCENE_INTEGER, NULL, "1", 1, 256, false, false, NULL, 0, false, "of each run; runs are taken one at a time"},
+    {"threads", SCENE_INTEGER, NULL, "1", 1, BRUNT_THREAD_LIMIT, false, false, NULL, 0, false, "of each run; runs are taken one at a time"},
     {"repeats", SCENE_INTEGER, NULL, "3", 1, 1000, false, false, NULL, 0, false, "runs of each case: the median of their times counts; their results must be the same bits"},
     {"time_limit", SCENE_REAL, "s", "1 h", 0, INFINITY, true, true, "none", 0, false, "of the clock for one run: past it the case counts as failed"},
 

@@ -222,9 +222,9 @@ static void take_special(study_reader *r, const char *what, const scene_node *no
     } else {
         char *end;
         long threads = strtol(node->text, &end, 10);
-        if (*end || threads < 1 || threads > 256)
-            brunt_tree_complain(study_tree(r), node, "'%.60s' is no number of threads; 1 to 256 are wanted",
-                                node->text);
+        if (*end || threads < 1 || threads > BRUNT_THREAD_LIMIT)
+            brunt_tree_complain(study_tree(r), node, "'%.60s' is no number of threads; 1 to %d are wanted", node->text,
+                                BRUNT_THREAD_LIMIT);
         else
             value->threads = (int32_t)threads;
     }

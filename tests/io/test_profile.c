@@ -91,6 +91,22 @@ START_TEST(parts_are_the_steps) {
 }
 END_TEST
 
+// More threads than a machine has cores: each has its time, those of one pass are as many as there are threads, and the
+// imbalance is over all of them.
+START_TEST(each_of_many_threads_is_told) {
+    json_t *profile = profile_of(small_scene_text, 100, true);
+    check(profile, 100);
+    const json_t *row = row_of(profile, "gather"), *threads = json_object_get(row, "thread_s");
+    double sum = 0, most = 0;
+    for (size_t t = 0; t < json_array_size(threads); t++) {
+        const double busy = json_number_value(json_array_get(threads, t));
+        sum += busy, most = fmax(most, busy);
+    }
+    ck_assert_double_eq_tol(number(row, "imbalance"), most / (sum / 100), 1e-9 * 100);
+    json_decref(profile);
+}
+END_TEST
+
 // Every pass there is has a row, and what a scene does not ask for has none.
 START_TEST(rows_are_those_of_the_scene) {
     json_t *points = profile_of(small_scene_text, 1, true);
@@ -132,7 +148,7 @@ START_TEST(page_fits) {
     small_steps(world, 5);
     brunt_profile_make(world, NULL, 5, 0.1, &profile);
     for (int k = 0; k < BRUNT_COUNTERS; k++) profile.counted[k] = true;
-    static const int threads[] = {1, 4, 64};
+    static const int threads[] = {1, 4, BRUNT_THREAD_LIMIT};
     for (int t = 0; t < 3; t++) {
         char *text = NULL;
         size_t size;
@@ -141,7 +157,7 @@ START_TEST(page_fits) {
         profile.threads = threads[t];
         for (int32_t p = 0; p < profile.row_count; p++) {
             profile.rows[p].pass.seconds = 1234.5678, profile.rows[p].ns_per_unit = 12345.67;
-            for (int n = 0; n < 64; n++) profile.rows[p].pass.thread_seconds[n] = 123.456;
+            for (int n = 0; n < BRUNT_THREAD_LIMIT; n++) profile.rows[p].pass.thread_seconds[n] = 123.456;
             profile.rows[p].busy_least = profile.rows[p].busy_mean = profile.rows[p].busy_most = 1234.567;
         }
         brunt_profile_print(&profile, &console);
@@ -206,6 +222,7 @@ int main(void) {
     tcase_add_checked_fixture(tests, set_up, tear_down);
     tcase_set_timeout(tests, 0);
     tcase_add_test(tests, parts_are_the_steps);
+    tcase_add_test(tests, each_of_many_threads_is_told);
     tcase_add_test(tests, rows_are_those_of_the_scene);
     tcase_add_test(tests, without_the_option_there_is_none);
     tcase_add_test(tests, page_fits);

@@ -157,7 +157,7 @@ static int count_of(const trace_file *trace, const char *category) {
 static void expect_sums(const trace_file *trace, const brunt_world *world) {
     for (int32_t p = 0; p < brunt_pass_count(world); p++) {
         const brunt_pass pass = brunt_world_pass(world, p);
-        double seconds = 0, units = 0, busy[64] = {0};
+        double seconds = 0, units = 0, busy[BRUNT_THREAD_LIMIT] = {0};
         int64_t calls = 0;
         for (int i = 0; i < trace->count; i++) {
             const event *e = &trace->events[i];
@@ -169,7 +169,7 @@ static void expect_sums(const trace_file *trace, const brunt_world *world) {
         ck_assert_int_eq(calls, pass.calls);
         ck_assert_double_eq_tol(seconds, pass.seconds, 0.02 * pass.seconds + 1e-9);
         ck_assert_double_eq_tol(units, pass.units, 1e-9 * pass.units + 1e-9);
-        for (int t = 0; t < 64; t++)
+        for (int t = 0; t < BRUNT_THREAD_LIMIT; t++)
             ck_assert_double_eq_tol(busy[t], pass.thread_seconds[t], 0.02 * pass.thread_seconds[t] + 1e-9);
     }
 }

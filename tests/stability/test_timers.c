@@ -104,7 +104,7 @@ START_TEST(passes_are_all_of_the_step) {
     }
     for (int32_t k = 0; k < brunt_pass_count(world); k++) { // no thread works longer than its pass
         brunt_pass pass = brunt_world_pass(world, k);
-        for (int t = 0; t < 64; t++) ck_assert_double_le(pass.thread_seconds[t], pass.seconds);
+        for (int t = 0; t < BRUNT_THREAD_LIMIT; t++) ck_assert_double_le(pass.thread_seconds[t], pass.seconds);
     }
     brunt_world_destroy(world);
     brunt_scene_free(&scene);
@@ -152,7 +152,7 @@ START_TEST(observers_see_what_is_booked) {
     for (int32_t k = 0; k < brunt_pass_count(world); k++) {
         brunt_pass pass = brunt_world_pass(world, k);
         double busy = 0;
-        for (int t = 0; t < 64; t++) busy += pass.thread_seconds[t];
+        for (int t = 0; t < BRUNT_THREAD_LIMIT; t++) busy += pass.thread_seconds[t];
         ck_assert_int_eq(w.calls[k], pass.calls);
         ck_assert_double_eq(w.seconds[k], pass.seconds);
         ck_assert_double_eq(w.busy[k], busy);
