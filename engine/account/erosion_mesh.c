@@ -312,7 +312,7 @@ int brunt_erode_marked(brunt_world *world, double dt, brunt_error *error) {
 
 int brunt_erode_meshes(brunt_world *world, double dt, brunt_error *error) {
     brunt_parallel(world->settings.threads, world->bodies.tasks.element_count, 1, mark_blocks, world,
-                   &world->pass[BRUNT_PASS_erosion].threads);
+                   brunt_pass_timer(world));
     for (int k = 0; k < world->bodies.fem_count; k++) {
         const brunt_fem_body *fem = &world->bodies.fem[k];
         const double least = fem->bonds ? world->erosion.rule[fem->index].step : 0;

@@ -149,7 +149,7 @@ static void erode(brunt_world *world, brunt_body *body) {
     int64_t *slots = body->particles.spare_id; // free until the next sort
     brunt_eroded *account = &world->erosion.account[body->index];
     brunt_parallel(world->settings.threads, body->grid.block_count, BLOCK_GRAIN, mark_blocks, &j,
-                   &world->pass[BRUNT_PASS_erosion].threads);
+                   brunt_pass_timer(world));
     const int64_t count = list_leaving(body, slots, account);
     if (!count) return;
     brunt_point_energy energy = energy_of(body, slots, count);

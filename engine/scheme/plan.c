@@ -2,7 +2,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "world/world.h"
+#include "base/error.h"
+#include "scheme/scheme.h"
 
 // The first model that brings an effect, NULL when none does; `flag`: where brunt_model says so.
 static const brunt_model *find_model(const brunt_world *world, size_t flag) {
@@ -93,39 +94,49 @@ brunt_effect brunt_world_effect(const brunt_world *world, int32_t effect) {
     }
 }
 
-bool brunt_pass_planned(const brunt_world *world, int pass) {
-    switch (pass) {
-#define ROW(name, when)                                                                                                \
-    case BRUNT_PASS_##name: return when;
-        BRUNT_PASSES(ROW)
-#undef ROW
-    default: return false;
-    }
+// The pass that a further part of it belongs to.
+static int find_pass(const brunt_plan *plan, const char *name) {
+    for (int p = 0; p < plan->pass_count; p++)
+        if (!strcmp(plan->pass[p]->name, name)) return p;
+    BRUNT_ASSERT(!"a part of a pass that is not in the table, or not wanted");
+    return 0;
 }
 
-int32_t brunt_pass_count(const brunt_world *world) {
-    int32_t n = 0;
-    for (int p = 0; p < BRUNT_PASS_COUNT; p++) n += brunt_pass_planned(world, p);
-    return n;
+void brunt_plan_make(brunt_world *world) {
+    brunt_plan *plan = &world->plan;
+    *plan = (brunt_plan){.row_count = 0};
+    world->timing.pass = -1;
+    for (int i = 0; i < brunt_explicit_pass_count; i++) {
+        const brunt_pass_row *row = &brunt_explicit_passes[i];
+        if (!row->wanted(world)) continue;
+        plan->row[plan->row_count++] = row;
+        if (row->kind != BRUNT_PASS_PART) plan->pass[plan->pass_count++] = row;
+    }
+    for (int i = 0; i < plan->row_count; i++) plan->pass_of[i] = find_pass(plan, plan->row[i]->name);
+}
+
+int32_t brunt_pass_count(const brunt_world *world) { return world->plan.pass_count; }
+
+static const char *unit_of(const brunt_world *world, const brunt_pass_row *row) {
+    if (strcmp(row->unit, "point") != 0) return row->unit;
+    return !world->bodies.fem_count ? "particle" : !world->bodies.mpm_count ? "element" : row->unit;
 }
 
 brunt_pass brunt_world_pass(const brunt_world *world, int32_t index) {
-    static const char *const names[] = {
-#define ROW(name, when) #name,
-        BRUNT_PASSES(ROW)
-#undef ROW
-    };
-    for (int p = 0; p < BRUNT_PASS_COUNT; p++) {
-        if (!brunt_pass_planned(world, p) || index-- > 0) continue;
-        brunt_pass pass = {.name = names[p], .calls = world->pass[p].calls, .seconds = world->pass[p].seconds};
-        for (size_t t = 0; t < sizeof pass.thread_seconds / sizeof pass.thread_seconds[0]; t++)
-            pass.thread_seconds[t] = world->pass[p].threads.seconds[t];
-        const brunt_work work = brunt_pass_work(world, p);
-        pass.unit = work.unit, pass.units = world->pass[p].units;
-        pass.bytes_per_unit = work.bytes, pass.flops_per_unit = work.flops;
-        return pass;
-    }
-    return (brunt_pass){.name = "", .unit = ""};
+    if (index < 0 || index >= world->plan.pass_count) return (brunt_pass){.name = "", .unit = ""};
+    const brunt_pass_row *row = world->plan.pass[index];
+    const struct brunt_pass_time *time = &world->pass[index];
+    const brunt_amount work = brunt_pass_work(world, row);
+    brunt_pass pass = {.name = row->name,
+                       .calls = time->calls,
+                       .seconds = time->seconds,
+                       .unit = unit_of(world, row),
+                       .units = time->units,
+                       .bytes_per_unit = work.bytes,
+                       .flops_per_unit = work.flops};
+    for (size_t t = 0; t < sizeof pass.thread_seconds / sizeof pass.thread_seconds[0]; t++)
+        pass.thread_seconds[t] = time->threads.seconds[t];
+    return pass;
 }
 
 // Arrays: of each body its fields, and what else it has.

@@ -6,21 +6,15 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "world/world.h"
-
-static int32_t planned_index(const brunt_world *world, int pass) {
-    int32_t index = 0;
-    for (int p = 0; p < pass; p++) index += brunt_pass_planned(world, p);
-    return index;
-}
+#include "scheme/scheme.h"
 
 void brunt_world_observe(brunt_world *world, const brunt_observer *observer) {
     struct brunt_timing *timing = &world->timing;
     timing->observed = observer != NULL;
     timing->observer = observer ? *observer : (brunt_observer){.context = NULL};
-    for (int p = 0; p < BRUNT_PASS_COUNT; p++) {
+    for (int p = 0; p < world->plan.pass_count; p++) {
         world->pass[p].threads.observer = timing->observer.thread ? &timing->observer : NULL;
-        world->pass[p].threads.pass = planned_index(world, p);
+        world->pass[p].threads.pass = p;
     }
 }
 
@@ -35,15 +29,13 @@ static void leave_out(struct brunt_timing *timing) {
 
 static void tell_begin(brunt_world *world) {
     struct brunt_timing *timing = &world->timing;
-    if (timing->observer.begin)
-        timing->observer.begin(timing->observer.context, world->pass[timing->pass].threads.pass, timing->mark);
+    if (timing->observer.begin) timing->observer.begin(timing->observer.context, timing->pass, timing->mark);
     leave_out(timing);
 }
 
 static void tell_end(brunt_world *world, double begin) {
     struct brunt_timing *timing = &world->timing;
-    if (timing->observer.end)
-        timing->observer.end(timing->observer.context, world->pass[timing->pass].threads.pass, begin, timing->mark);
+    if (timing->observer.end) timing->observer.end(timing->observer.context, timing->pass, begin, timing->mark);
     leave_out(timing);
 }
 

@@ -12,18 +12,17 @@
 //
 // Checked against the floating-point instructions that valgrind counts in a build with one lane: README.md of this
 // folder.
-#include "world/world.h"
-
 #include <math.h>
 #include <string.h>
 
 #include "base/simd.h"
+#include "scheme/scheme.h"
 
-typedef struct amount {
-    double bytes, flops;
-} amount;
+static const brunt_amount NOTHING = {0, 0};
 
-static amount sum_of(amount a, amount b) { return (amount){a.bytes + b.bytes, a.flops + b.flops}; }
+static brunt_amount sum_of(brunt_amount a, brunt_amount b) {
+    return (brunt_amount){a.bytes + b.bytes, a.flops + b.flops};
+}
 
 // ------------------------------------------------------------------------------------------ material points
 
@@ -150,25 +149,26 @@ static double model_flops(const brunt_material *material, int dim) {
     return flops;
 }
 
-static amount scatter_work(const brunt_world *world, const brunt_body *body) {
+static brunt_amount scatter_work(const brunt_world *world, const brunt_body *body) {
     const crowd per = crowd_of(body);
-    return (amount){particle_bytes(&body->particles, SCATTER) + 2 * per.blocks * buffer_bytes(&body->grid),
-                    scatter_flops(body, world->settings.transfer == BRUNT_APIC, per)};
+    return (brunt_amount){particle_bytes(&body->particles, SCATTER) + 2 * per.blocks * buffer_bytes(&body->grid),
+                          scatter_flops(body, world->settings.transfer == BRUNT_APIC, per)};
 }
 
 // With nodes as velocities where `pass` takes them from the grid.
-static amount gather_work(const brunt_world *world, const brunt_body *body, transfer_pass pass) {
+static brunt_amount gather_work(const brunt_world *world, const brunt_body *body, transfer_pass pass) {
     const crowd per = crowd_of(body);
     const bool old = world->settings.transfer == BRUNT_FLIP && pass != GATHER_REST;
     const bool affine = world->settings.transfer == BRUNT_APIC && pass != ADVANCE;
-    amount work = {particle_bytes(&body->particles, pass) + per.slots * slot_bytes(),
-                   interpolation_flops(body, old, affine, per) + update_flops(body, world->settings.transfer, pass)};
+    brunt_amount work = {particle_bytes(&body->particles, pass) + per.slots * slot_bytes(),
+                         interpolation_flops(body, old, affine, per) +
+                             update_flops(body, world->settings.transfer, pass)};
     if (pass != ADVANCE) work.flops += model_flops(&body->material, body->particles.point_dim);
     return work;
 }
 
 // Each step looks where particles are; in those where one has changed its bin, all arrays move.
-static amount sort_work(const brunt_body *body) {
+static brunt_amount sort_work(const brunt_body *body) {
     const brunt_particles *p = &body->particles;
     const double scalars = p->scalar_count, groups = ceil(scalars / BRUNT_SORT_GROUP);
     const double id = sizeof *p->id, key = sizeof *p->key, order = sizeof *p->order, bin = sizeof *p->bin;
@@ -178,43 +178,43 @@ static amount sort_work(const brunt_body *body) {
     move += scalars * 3 * sizeof(real) + groups * order; // move_scalars: read, written elsewhere
     move += order + 3 * id + bin + 2 * key;              // move_ids, set_keys
     const double share = p->sorts > 0 ? (double)p->moves / (double)p->sorts : 0;
-    return (amount){look + share * move, 3 * p->dim};
+    return (brunt_amount){look + share * move, 3 * p->dim};
 }
 
 // ------------------------------------------------------------------------------------------ nodes of grids
 
-static amount grid_sum_work(const brunt_world *world, const brunt_body *body) {
+static brunt_amount grid_sum_work(const brunt_world *world, const brunt_body *body) {
     const brunt_grid *grid = &body->grid;
     const double nodes = fmax(1, (double)grid->slot_count * BRUNT_BLOCK_NODES);
     const double sources = (double)grid->block_count * grid->span_nodes / nodes; // of a node: blocks that reach it
-    return (amount){BRUNT_NODE_REALS * sizeof(real) * (2 + sources),
-                    8 * sources + (world->settings.has_gravity ? 6 : 0)};
+    return (brunt_amount){BRUNT_NODE_REALS * sizeof(real) * (2 + sources),
+                          8 * sources + (world->settings.has_gravity ? 6 : 0)};
 }
 
 // 1 / m and the part of it that is the body's own; of each component v, work, v + impulse / m.
-static amount grid_update_work(void) { return (amount){2 * BRUNT_NODE_REALS * sizeof(real), 2 + 3 * 8}; }
+static brunt_amount grid_update_work(void) { return (brunt_amount){2 * BRUNT_NODE_REALS * sizeof(real), 2 + 3 * 8}; }
 
 // Squares of both velocities and their sum by mass, of each component; both energies; with gravity the place and m x.
-static amount ledger_work(const brunt_world *world) {
-    return (amount){BRUNT_NODE_REALS * sizeof(real), 3 * 7 + 4 + (world->settings.has_gravity ? 13 : 0)};
+static brunt_amount ledger_work(const brunt_world *world) {
+    return (brunt_amount){BRUNT_NODE_REALS * sizeof(real), 3 * 7 + 4 + (world->settings.has_gravity ? 13 : 0)};
 }
 
 // ------------------------------------------------------------------------------------------ meshes
 
 // Records of four reals count whole. Force, momentum, v + dt f / m + dt g.
-static amount kick_work(const brunt_fem_body *body) {
+static brunt_amount kick_work(const brunt_fem_body *body) {
     const double partials = body->node_count ? (double)body->partial_count / body->node_count : 0;
-    amount work = {2 * BRUNT_FEM_NODE_REALS * sizeof(real) + sizeof *body->partial_first +
-                       partials * (sizeof *body->partial_of + 4 * sizeof(real)),
-                   4 * partials + 8 + 12 + 1};
-    if (body->load) work = sum_of(work, (amount){4 * sizeof(real), 8 + 4});
+    brunt_amount work = {2 * BRUNT_FEM_NODE_REALS * sizeof(real) + sizeof *body->partial_first +
+                             partials * (sizeof *body->partial_of + 4 * sizeof(real)),
+                         4 * partials + 8 + 12 + 1};
+    if (body->load) work = sum_of(work, (brunt_amount){4 * sizeof(real), 8 + 4});
     return work;
 }
 
 // x + dt v, m v, and the sums: m x 8, m v 4, m v^2 4 + 8, x x m v 16, m 1, |v| |x| 4 + 4 + 7; with loads 28 more.
-static amount drift_work(const brunt_fem_body *body) {
-    amount work = {2 * BRUNT_FEM_NODE_REALS * sizeof(real), 8 + 4 + 56};
-    if (body->load) work = sum_of(work, (amount){4 * sizeof(real), 28});
+static brunt_amount drift_work(const brunt_fem_body *body) {
+    brunt_amount work = {2 * BRUNT_FEM_NODE_REALS * sizeof(real), 8 + 4 + 56};
+    if (body->load) work = sum_of(work, (brunt_amount){4 * sizeof(real), 28});
     return work;
 }
 
@@ -249,7 +249,7 @@ static double kernel_element_flops(const brunt_fem_body *body, const brunt_eleme
     return flops + frequency_flops(c, d, H, viscous);
 }
 
-static amount element_work(const brunt_fem_body *body) {
+static brunt_amount element_work(const brunt_fem_body *body) {
     const double elements = fmax(1, body->element_count), nodes = body->node_count / elements;
     const double copies = body->partial_count / elements; // nodes of blocks
     const brunt_element_flops *c = &body->element->flops;
@@ -264,76 +264,84 @@ static amount element_work(const brunt_fem_body *body) {
     bytes += copies * (sizeof *body->block_node + 2 * 4 * sizeof(real)); // number, partial force
     double flops = c->whole[0] > 0 ? c->whole[viscous] : kernel_element_flops(body, c);
     flops += copies * (4 + 8); // u = x - X, work of the forces
-    return (amount){bytes, flops + model_flops(&body->material, body->point_dim)};
+    return (brunt_amount){bytes, flops + model_flops(&body->material, body->point_dim)};
 }
 
 // ------------------------------------------------------------------------------------------ passes
 
-static amount points_pass(const brunt_world *world, const brunt_body *body, int pass) {
-    const crowd per = crowd_of(body);
-    switch (pass) {
-    case BRUNT_PASS_sort: return sort_work(body);
-    case BRUNT_PASS_scatter: return scatter_work(world, body);
-    case BRUNT_PASS_gather: return gather_work(world, body, world->transfers.advance ? GATHER_REST : GATHER);
-    case BRUNT_PASS_grid: return grid_sum_work(world, body);
-    case BRUNT_PASS_update: return grid_update_work();
-    case BRUNT_PASS_ledger: return ledger_work(world);
-    case BRUNT_PASS_remap: { // once more to the grid and back, of the nodes that there are for a particle
-        const amount nodes = sum_of(grid_sum_work(world, body), grid_update_work());
-        const double share = per.slots * BRUNT_BLOCK_NODES;
-        const amount points = sum_of(gather_work(world, body, ADVANCE), scatter_work(world, body));
-        return sum_of(points, (amount){share * nodes.bytes, share * nodes.flops});
-    }
-    default: return (amount){0, 0};
-    }
+brunt_amount brunt_work_sort(const brunt_world *world, brunt_body_ref body) {
+    (void)world;
+    return body.mpm ? sort_work(body.mpm) : NOTHING;
 }
 
-static amount mesh_pass(const brunt_fem_body *body, int pass) {
-    switch (pass) {
-    case BRUNT_PASS_kick: return kick_work(body);
-    case BRUNT_PASS_drift: return drift_work(body);
-    case BRUNT_PASS_elements: return element_work(body);
-    default: return (amount){0, 0};
-    }
+brunt_amount brunt_work_scatter(const brunt_world *world, brunt_body_ref body) {
+    return body.mpm ? scatter_work(world, body.mpm) : NOTHING;
 }
 
-static const char *unit_of(const brunt_world *world, int pass) {
-    switch (pass) {
-    case BRUNT_PASS_sort:
-    case BRUNT_PASS_scatter:
-    case BRUNT_PASS_remap:
-    case BRUNT_PASS_gather: return "particle";
-    case BRUNT_PASS_elements: return "element";
-    case BRUNT_PASS_erosion:
-        return !world->bodies.fem_count ? "particle" : !world->bodies.mpm_count ? "element" : "point";
-    case BRUNT_PASS_advance: return "body";
-    default: return "node";
-    }
+brunt_amount brunt_work_grid(const brunt_world *world, brunt_body_ref body) {
+    return body.mpm ? grid_sum_work(world, body.mpm) : NOTHING;
 }
 
-static double units_of(const brunt_body *body, int pass) {
-    const bool of_nodes = pass == BRUNT_PASS_grid || pass == BRUNT_PASS_update || pass == BRUNT_PASS_ledger;
-    return of_nodes ? (double)body->grid.slot_count * BRUNT_BLOCK_NODES : (double)body->particles.count;
+brunt_amount brunt_work_update(const brunt_world *world, brunt_body_ref body) {
+    (void)world;
+    return body.mpm ? grid_update_work() : NOTHING;
 }
 
-brunt_work brunt_pass_work(const brunt_world *world, int pass) {
-    amount all = {0, 0};
+brunt_amount brunt_work_ledger(const brunt_world *world, brunt_body_ref body) {
+    return body.mpm ? ledger_work(world) : NOTHING;
+}
+
+// Once more to the grid and back, of the nodes that there are for a particle.
+brunt_amount brunt_work_remap(const brunt_world *world, brunt_body_ref body) {
+    if (!body.mpm) return NOTHING;
+    const brunt_amount nodes = sum_of(grid_sum_work(world, body.mpm), grid_update_work());
+    const double share = crowd_of(body.mpm).slots * BRUNT_BLOCK_NODES;
+    const brunt_amount points = sum_of(gather_work(world, body.mpm, ADVANCE), scatter_work(world, body.mpm));
+    return sum_of(points, (brunt_amount){share * nodes.bytes, share * nodes.flops});
+}
+
+brunt_amount brunt_work_gather(const brunt_world *world, brunt_body_ref body) {
+    return body.mpm ? gather_work(world, body.mpm, world->transfers.advance ? GATHER_REST : GATHER) : NOTHING;
+}
+
+brunt_amount brunt_work_kick(const brunt_world *world, brunt_body_ref body) {
+    (void)world;
+    return body.fem ? kick_work(body.fem) : NOTHING;
+}
+
+brunt_amount brunt_work_drift(const brunt_world *world, brunt_body_ref body) {
+    (void)world;
+    return body.fem ? drift_work(body.fem) : NOTHING;
+}
+
+brunt_amount brunt_work_elements(const brunt_world *world, brunt_body_ref body) {
+    (void)world;
+    return body.fem ? element_work(body.fem) : NOTHING;
+}
+
+// How many units of a pass a body has.
+static double units_of(brunt_body_ref body, const char *unit) {
+    const bool nodes = strcmp(unit, "node") == 0;
+    if (body.mpm)
+        return nodes ? (double)body.mpm->grid.slot_count * BRUNT_BLOCK_NODES : (double)body.mpm->particles.count;
+    return nodes ? body.fem->node_count : body.fem->element_count;
+}
+
+static void add_work(const brunt_world *world, const brunt_pass_row *row, brunt_body_ref body, brunt_amount *all,
+                     double *units) {
+    const brunt_amount each = row->work(world, body);
+    const double count = units_of(body, row->unit);
+    if (!(each.bytes > 0)) return;
+    *units += count;
+    *all = sum_of(*all, (brunt_amount){count * each.bytes, count * each.flops});
+}
+
+brunt_amount brunt_pass_work(const brunt_world *world, const brunt_pass_row *row) {
+    brunt_amount all = NOTHING;
     double units = 0;
-    for (int i = 0; i < world->bodies.mpm_count; i++) {
-        const amount each = points_pass(world, &world->bodies.mpm[i], pass);
-        const double count = units_of(&world->bodies.mpm[i], pass);
-        if (!(each.bytes > 0)) continue;
-        units += count;
-        all = sum_of(all, (amount){count * each.bytes, count * each.flops});
-    }
-    for (int k = 0; k < world->bodies.fem_count; k++) {
-        const brunt_fem_body *body = &world->bodies.fem[k];
-        const amount each = mesh_pass(body, pass);
-        const double count = pass == BRUNT_PASS_elements ? body->element_count : body->node_count;
-        if (!(each.bytes > 0)) continue;
-        units += count;
-        all = sum_of(all, (amount){count * each.bytes, count * each.flops});
-    }
-    if (!(units > 0)) return (brunt_work){unit_of(world, pass), 0, 0};
-    return (brunt_work){unit_of(world, pass), all.bytes / units, all.flops / units};
+    for (int i = 0; row->work && i < world->bodies.mpm_count; i++)
+        add_work(world, row, (brunt_body_ref){.mpm = &world->bodies.mpm[i]}, &all, &units);
+    for (int k = 0; row->work && k < world->bodies.fem_count; k++)
+        add_work(world, row, (brunt_body_ref){.fem = &world->bodies.fem[k]}, &all, &units);
+    return units > 0 ? (brunt_amount){all.bytes / units, all.flops / units} : NOTHING;
 }

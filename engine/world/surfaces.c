@@ -208,7 +208,7 @@ static int fail_far(const brunt_world *world, brunt_error *error) {
 }
 
 int brunt_surfaces_meet(brunt_world *world, const double gravity[3], double kick, double dt, brunt_error *error) {
-    brunt_timer *timer = &world->pass[BRUNT_PASS_surfaces].threads;
+    brunt_timer *timer = brunt_pass_timer(world);
     brunt_contact_context m = {.skin = &world->contact.surface,
                                .pairs = world->pairs.pair,
                                .pair_of = world->pairs.of,

@@ -722,6 +722,7 @@ brunt_world *brunt_world_create(const brunt_world_def *def, brunt_error *error) 
         world->boundaries.mirrors[m].node -=
             (int32_t)round((world->bodies.mpm[0].grid.origin[axis] - def->origin[axis]) / def->cell);
     }
+    brunt_plan_make(world);
     if (!status) status = start(world, error);
     if (!status && !def->contact.allow_overlap) status = brunt_surfaces_overlap(world, error);
     if (!status) warn_of_lone_points(world);

@@ -15,33 +15,13 @@
 #include "world/pairs.h"
 #include "world/scratch.h"
 
-// The passes of a step, in their order. A pass nobody asked for is not in the plan and does not run.
-#define BRUNT_PASSES(X)                                                                                                \
-    X(kick, world->bodies.fem_count > 0)                                                                               \
-    X(groups, world->boundaries.sets.count > 0)                                                                        \
-    X(sort, world->bodies.mpm_count > 0)                                                                               \
-    X(scatter, world->bodies.mpm_count > 0)                                                                            \
-    X(grid, world->bodies.mpm_count > 0)                                                                               \
-    X(mirror, world->boundaries.mirror_count > 0 && world->bodies.mpm_count > 0)                                       \
-    X(update, world->bodies.mpm_count > 0)                                                                             \
-    X(conditions, world->boundaries.has_conditions)                                                                    \
-    X(contact, world->contact.has_grid)                                                                                \
-    X(surfaces, world->contact.has_surfaces)                                                                           \
-    X(walls, world->boundaries.has_walls && world->bodies.mpm_count > 0)                                               \
-    X(ledger, world->bodies.mpm_count > 0)                                                                             \
-    X(remap, world->transfers.advance != NULL && world->bodies.mpm_count > 0)                                          \
-    X(gather, world->bodies.mpm_count > 0)                                                                             \
-    X(drift, world->bodies.fem_count > 0)                                                                              \
-    X(elements, world->bodies.fem_count > 0)                                                                           \
-    X(erosion, world->erosion.active)                                                                                  \
-    X(advance, true) // which step is due, the clock, accounts, what is watched: in parts, around the others
-
-enum {
-#define BRUNT_PASS_INDEX(name, when) BRUNT_PASS_##name,
-    BRUNT_PASSES(BRUNT_PASS_INDEX)
-#undef BRUNT_PASS_INDEX
-        BRUNT_PASS_COUNT
-};
+// The rows of the scheme's table that the scene calls for, in their order (scheme/scheme.h), and the passes that they
+// are parts of, as they are listed: pass_of[i] is that of row[i].
+enum { BRUNT_PASS_LIMIT = 32 };
+typedef struct brunt_plan {
+    const struct brunt_pass_row *row[BRUNT_PASS_LIMIT], *pass[BRUNT_PASS_LIMIT];
+    int pass_of[BRUNT_PASS_LIMIT], row_count, pass_count;
+} brunt_plan;
 
 typedef struct brunt_transfers { // of points to and from their grids, as the scene chose them; NULL: there is none
     brunt_p2g_fn *scatter, *total_scatter; // total: of total-Lagrangian bodies
@@ -74,24 +54,15 @@ struct brunt_world {
     brunt_transfers transfers;
     brunt_scratch scratch;
     brunt_messages messages;
-    struct brunt_pass_time pass[BRUNT_PASS_COUNT];
+    brunt_plan plan;
+    struct brunt_pass_time pass[BRUNT_PASS_LIMIT];
     struct brunt_timing timing;
 };
 
-// --- timing.c: what the step and its passes take. A pass begins where the one before ended, so that no moment of a
-// step is left out and the clock is read once a pass.
-void brunt_step_begin(brunt_world *world);
-void brunt_step_end(brunt_world *world); // ends a pass that was left by an error as well
-void brunt_pass_begin(brunt_world *world, int pass);
-// `units`: how many particles, nodes or elements the pass has gone over.
-void brunt_pass_end(brunt_world *world, double units);
-
-// --- work.c: what a pass moves and computes, counted
-typedef struct brunt_work {
-    const char *unit;    // what it goes over: "particle", "node", "element"; of erosion with both "point"; "body"
-    double bytes, flops; // for one of them, as the world is now; 0: not counted, since it depends on what meets what
-} brunt_work;
-brunt_work brunt_pass_work(const brunt_world *world, int pass);
+// Where the time of parallel phases goes: to the pass that runs. NULL outside a step.
+static inline brunt_timer *brunt_pass_timer(brunt_world *world) {
+    return world->timing.pass < 0 ? NULL : &world->pass[world->timing.pass].threads;
+}
 
 // --- grid_update.c
 typedef struct brunt_grid_job {
@@ -106,13 +77,9 @@ void brunt_grid_sum(void *job, int64_t begin, int64_t end,
 void brunt_grid_update(void *job, int64_t begin, int64_t end, int worker); // momenta to velocities
 void brunt_grid_ledger(void *job, int64_t begin, int64_t end, int worker); // node_sums of each slot
 
-// --- finite_elements.c: the meshes' passes
+// --- mesh_passes.c
 // Blocks and runs of nodes of all bodies, as tasks. 0, or -1: out of memory.
 int brunt_fem_tasks_make(brunt_world *world);
-// Velocities by the internal forces, loads and gravity, over `dt`.
-void brunt_fem_kick_all(brunt_world *world, const double gravity[3], double dt);
-// Nodes to their new places.
-void brunt_fem_drift_all(brunt_world *world, const double gravity[3], double kick, double dt);
 // Strain, stress and forces there. The failed body and slot when the update of an element failed.
 brunt_fem_body *brunt_fem_elements_all(brunt_world *world, double dt, int32_t *bad, const char **reason);
 // Mass, momenta and kinetic energy of a body as it is.
@@ -171,8 +138,7 @@ int32_t brunt_read_mesh_fields(const brunt_world *world, const brunt_fem_body *f
 brunt_field_info brunt_read_mesh_field(const brunt_world *world, const brunt_fem_body *fem, int32_t field);
 void brunt_read_mesh(brunt_world *world, brunt_fem_body *fem, int32_t field, double *out);
 
-// Acceleration of gravity at a time [m/s^2].
-void brunt_gravity_at(const brunt_world *world, double time, double gravity[3]);
 // Largest stable step from the bodies' reports times cfl [s].
 double brunt_stable_step(const brunt_world *world);
-bool brunt_pass_planned(const brunt_world *world, int pass);
+// The plan of a world that is made: which rows of its scheme's table run.
+void brunt_plan_make(brunt_world *world);

@@ -1,11 +1,12 @@
 // The passes over finite-element bodies. Tasks are runs of nodes and blocks of elements of all bodies together, so that
 // many small bodies keep all threads busy as well as one large one does.
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "base/memory.h"
 #include "base/parallel.h"
-#include "world/world.h"
+#include "scheme/scheme.h"
 
 enum { NODES_A_TASK = 1024 };
 
@@ -111,26 +112,69 @@ static void book_gravity(brunt_world *world, const double gravity[3], double dt)
     }
 }
 
-void brunt_fem_kick_all(brunt_world *world, const double gravity[3], double dt) {
-    job j = {world, gravity, dt};
-    brunt_parallel(world->settings.threads, world->bodies.tasks.node_count, 1, kick_nodes, &j,
-                   &world->pass[BRUNT_PASS_kick].threads);
+static brunt_kick drag_of(brunt_world *world, const brunt_step *step) {
+    const double *gravity = step->gravity;
+    return (brunt_kick){.dt = step->kick,
+                        .gravity = {gravity[0], gravity[1], gravity[2]},
+                        .threads = world->settings.threads,
+                        .timer = brunt_pass_timer(world)};
 }
 
-void brunt_fem_drift_all(brunt_world *world, const double gravity[3], double kick, double dt) {
-    job j = {world, gravity, dt};
+int brunt_pass_kick(brunt_world *world, brunt_step *step, brunt_error *error) {
+    (void)error;
+    const brunt_kick drag = drag_of(world, step);
+    job j = {world, step->gravity, step->kick};
+    if (world->boundaries.sets.count || world->boundaries.damping.active)
+        brunt_loads_begin(&world->boundaries.sets, &world->bodies, world->clock.time, step->kick);
+    if (world->boundaries.damping.active) brunt_damping_begin(&world->boundaries.damping, &world->bodies, &drag);
+    brunt_parallel(world->settings.threads, world->bodies.tasks.node_count, 1, kick_nodes, &j, brunt_pass_timer(world));
+    return BRUNT_OK;
+}
+
+int brunt_pass_groups(brunt_world *world, brunt_step *step, brunt_error *error) {
+    brunt_node_sets_prescribe(&world->boundaries.sets, step->gravity, world->clock.time, step->kick, step->dt);
+    const brunt_node_set *lost = world->boundaries.sets.gas_lost;
+    if (!lost) return BRUNT_OK;
+    char reason[200];
+    snprintf(reason, sizeof reason, "boundaries (%s): the gas's volume has become %.4g m^3", lost->wall->name,
+             lost->gas_volume);
+    return brunt_fail_step(world, NULL, error, reason);
+}
+
+// The other half of what loads and drag do: velocities are final now.
+int brunt_pass_finish_kick(brunt_world *world, brunt_step *step, brunt_error *error) {
+    (void)error;
+    const brunt_kick drag = drag_of(world, step);
+    if (world->boundaries.sets.count) brunt_loads_end(&world->boundaries.sets, step->kick);
+    if (world->boundaries.damping.active)
+        brunt_damping_end(&world->boundaries.damping, &world->bodies, &drag, &world->ledger.damping);
+    return BRUNT_OK;
+}
+
+int brunt_pass_drift(brunt_world *world, brunt_step *step, brunt_error *error) {
+    (void)error;
+    job j = {world, step->gravity, step->dt};
     brunt_parallel(world->settings.threads, world->bodies.tasks.node_count, 1, drift_nodes, &j,
-                   &world->pass[BRUNT_PASS_drift].threads);
-    if (world->settings.has_gravity) book_gravity(world, gravity, kick);
+                   brunt_pass_timer(world));
+    if (world->settings.has_gravity) book_gravity(world, step->gravity, step->kick);
     world->ledger.fem_kinetic = 0;
     for (int64_t t = 0; t < world->bodies.tasks.node_count; t++)
         world->ledger.fem_kinetic += world->bodies.tasks.sums[t].kinetic;
+    return BRUNT_OK;
+}
+
+int brunt_pass_elements(brunt_world *world, brunt_step *step, brunt_error *error) {
+    int32_t bad = -1;
+    const char *reason = "";
+    const brunt_fem_body *failed = brunt_fem_elements_all(world, step->dt, &bad, &reason);
+    if (failed && !step->status) step->status = brunt_fail_element(world, failed, bad, error, reason);
+    return BRUNT_OK;
 }
 
 brunt_fem_body *brunt_fem_elements_all(brunt_world *world, double dt, int32_t *bad, const char **reason) {
     job j = {.world = world, .dt = dt};
     brunt_parallel(world->settings.threads, world->bodies.tasks.element_count, 1, strain_elements, &j,
-                   dt > 0 ? &world->pass[BRUNT_PASS_elements].threads : NULL); // no step: no time of one
+                   brunt_pass_timer(world));
     brunt_fem_body *failed = NULL;
     double work = 0, stored = 0;
     for (int k = 0; k < world->bodies.fem_count; k++)

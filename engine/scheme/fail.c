@@ -1,0 +1,60 @@
+// Computations that fail: which body, where, when and why.
+#include <stdio.h>
+#include <string.h>
+
+#include "base/error.h"
+#include "scheme/scheme.h"
+
+int brunt_fail_step(const brunt_world *world, const brunt_body *body, brunt_error *error, const char *reason) {
+    if (!error) return BRUNT_FAILED;
+    error->time = world->clock.time;
+    if (body)
+        memcpy(error->body, body->name,
+               sizeof error->body < sizeof body->name ? sizeof error->body : sizeof body->name);
+    char where[256] = "";
+    if (body && error->id >= 0)
+        snprintf(where, sizeof where, "body '%s', particle %lld at (%.6g, %.6g, %.6g) m, ", body->name,
+                 (long long)error->id, error->place[0], error->place[1], error->place[2]);
+    else if (body)
+        snprintf(where, sizeof where, "body '%s', ", body->name);
+    return brunt_fail(error, BRUNT_FAILED, "%stime %.9g s, step %.0f: %s", where, world->clock.time, world->clock.steps,
+                      reason);
+}
+
+int brunt_fail_inner(const brunt_world *world, const brunt_body *body, brunt_error *error) {
+    char reason[256];
+    snprintf(reason, sizeof reason, "%.250s", error ? error->message : "");
+    return brunt_fail_step(world, body, error, reason);
+}
+
+int brunt_fail_particle(const brunt_world *world, brunt_body *body, int64_t slot, brunt_error *error,
+                        const char *reason) {
+    if (error) {
+        real *const *x = brunt_field(&body->particles, BRUNT_FIELD_position);
+        error->id = body->particles.id[slot];
+        for (int64_t s = slot; error->id < 0 && s >= 0; s--)
+            error->id = body->particles.id[s]; // padding copies the last one
+        for (int a = 0; a < 3; a++) error->place[a] = a < world->settings.dimension ? (double)x[a][slot] : 0;
+    }
+    return brunt_fail_step(world, body, error, reason);
+}
+
+int brunt_fail_element(const brunt_world *world, const brunt_fem_body *fem, int32_t slot, brunt_error *error,
+                       const char *reason) {
+    if (!error) return BRUNT_FAILED;
+    const int nodes = fem->traits->nodes;
+    error->time = world->clock.time;
+    memcpy(error->body, fem->name, sizeof error->body < sizeof fem->name ? sizeof error->body : sizeof fem->name);
+    for (int32_t s = slot; s >= 0 && (error->id = fem->element_id[s]) < 0; s--) {} // padding copies the last one
+    for (int a = 0; a < 3; a++) {
+        error->place[a] = 0;
+        for (int c = 0; c < nodes; c++)
+            error->place[a] +=
+                (double)brunt_fem_node(fem, fem->element_node[(size_t)slot * (size_t)nodes + (size_t)c])[a] / nodes;
+    }
+    const char *hint = strstr(reason, "inside out") ? "; erosion.inverted takes such elements out instead" : "";
+    return brunt_fail(error, BRUNT_FAILED,
+                      "body '%s', element %lld at (%.6g, %.6g, %.6g) m, time %.9g s, step %.0f: %s%s", fem->name,
+                      (long long)error->id + 1, error->place[0], error->place[1], error->place[2], world->clock.time,
+                      world->clock.steps, reason, hint);
+}

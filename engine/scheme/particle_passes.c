@@ -1,0 +1,264 @@
+// The passes over material points and their grids.
+#include <math.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "base/parallel.h"
+#include "mpm/sort.h"
+#include "scheme/scheme.h"
+
+enum { SLOT_GRAIN = 8, BLOCK_GRAIN = 2 };
+
+typedef struct body_job {
+    brunt_world *world;
+    brunt_body *body;
+    double dt;
+} body_job;
+
+static void scatter_blocks(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    const body_job *job = context;
+    brunt_p2g_fn *scatter = brunt_total_lagrangian(&job->body->particles) ? job->world->transfers.total_scatter
+                                                                          : job->world->transfers.scatter;
+    for (int64_t b = begin; b < end; b++) scatter(job->body, (int32_t)b, (real)job->dt);
+}
+
+static void gather_blocks(void *context, int64_t begin, int64_t end, int worker) {
+    const body_job *job = context;
+    brunt_g2p_fn *gather = brunt_total_lagrangian(&job->body->particles) ? job->world->transfers.total_gather
+                                                                         : job->world->transfers.gather;
+    for (int64_t b = begin; b < end; b++)
+        gather(job->body, (int32_t)b, (real)job->dt, (real)job->world->settings.flip,
+               &job->world->scratch.points[worker]);
+}
+
+int brunt_pass_sort(brunt_world *world, brunt_step *step, brunt_error *error) {
+    (void)step;
+    for (int i = 0; i < world->bodies.mpm_count; i++) {
+        brunt_body *body = &world->bodies.mpm[i];
+        if (error) error->id = -1;
+        if (brunt_sort(&body->grid, &body->particles, world->settings.threads, brunt_pass_timer(world), error))
+            return brunt_fail_inner(world, body, error);
+        const brunt_grid *grid = &body->grid;
+        int32_t most = 0;
+        for (int32_t b = 0; b < grid->block_count; b++)
+            if (grid->blocks[b].count > most) most = grid->blocks[b].count;
+        if (BRUNT_RESERVE(body->report, (size_t)grid->block_count, 0) ||
+            BRUNT_RESERVE(world->scratch.node_sums, (size_t)grid->slot_count, 0))
+            return brunt_fail_step(world, body, error, "out of memory");
+        for (int t = 0; t < world->settings.threads; t++)
+            if (brunt_workspace_fit(&world->scratch.points[t], grid, most))
+                return brunt_fail_step(world, body, error, "out of memory");
+    }
+    return BRUNT_OK;
+}
+
+static bool acts_on(const brunt_wall *wall, const brunt_body *body) {
+    return wall->body < 0 || wall->body == body->index;
+}
+
+static bool mirrors(const brunt_world *world, const brunt_symmetry_plane *mirror, const brunt_body *body) {
+    return mirror->wall < 0 || acts_on(&world->boundaries.walls[mirror->wall], body);
+}
+
+static brunt_grid_job grid_job(brunt_world *world, const brunt_step *step, brunt_body *body) {
+    return (brunt_grid_job){.body = body,
+                            .gravity = step->gravity,
+                            .dt = step->kick,
+                            .has_gravity = world->settings.has_gravity,
+                            .sums = world->scratch.node_sums};
+}
+
+int brunt_pass_scatter(brunt_world *world, brunt_step *step, brunt_error *error) {
+    (void)error;
+    body_job job = {world, step->body, step->kick};
+    brunt_parallel(world->settings.threads, step->body->grid.block_count, BLOCK_GRAIN, scatter_blocks, &job,
+                   brunt_pass_timer(world));
+    return BRUNT_OK;
+}
+
+int brunt_pass_grid(brunt_world *world, brunt_step *step, brunt_error *error) {
+    (void)error;
+    brunt_grid_job job = grid_job(world, step, step->body);
+    brunt_parallel(world->settings.threads, step->body->grid.slot_count, SLOT_GRAIN, brunt_grid_sum, &job,
+                   brunt_pass_timer(world));
+    return BRUNT_OK;
+}
+
+int brunt_pass_mirror(brunt_world *world, brunt_step *step, brunt_error *error) {
+    (void)error;
+    brunt_impulse_account unbooked = {.external_work = 0}; // of the axis: its impulses cancel around the circle
+    for (int m = 0; m < world->boundaries.mirror_count; m++) {
+        const brunt_symmetry_plane *mirror = &world->boundaries.mirrors[m];
+        if (mirrors(world, mirror, step->body))
+            brunt_symmetry_fold(step->body, mirror,
+                                world->settings.transfer == BRUNT_FLIP ? 1 - world->settings.flip : 1,
+                                mirror->wall < 0 ? &unbooked : &world->boundaries.walls[mirror->wall].last);
+    }
+    return BRUNT_OK;
+}
+
+// The velocities on the grid before anything else acts. Between two steps the transfers change the velocities that the
+// stress works on, without any change of strain: the work at the new velocities less that at the last ones is theirs.
+int brunt_pass_update(brunt_world *world, brunt_step *step, brunt_error *error) {
+    (void)error;
+    brunt_grid_job job = grid_job(world, step, step->body);
+    const int32_t slots = step->body->grid.slot_count;
+    brunt_parallel(world->settings.threads, slots, SLOT_GRAIN, brunt_grid_update, &job, brunt_pass_timer(world));
+    for (int32_t n = 0; n < slots; n++) world->ledger.transfer -= 0.5 * world->scratch.node_sums[n].stress_work;
+    return BRUNT_OK;
+}
+
+static bool at_nodes(const brunt_wall *wall) {
+    return wall->region || (wall->mirror < 0 && wall->plane.condition != BRUNT_SEPARATE);
+}
+
+// Planes that stick or slip and regions, at the nodes of the grids; once more after what gives impulses to nodes that
+// are held.
+int brunt_pass_conditions(brunt_world *world, brunt_step *step, brunt_error *error) {
+    (void)step;
+    for (int i = 0; i < world->bodies.mpm_count; i++)
+        if (brunt_condition_clear(&world->bodies.mpm[i]))
+            return brunt_fail_step(world, &world->bodies.mpm[i], error, "out of memory at a condition");
+    for (int w = 0; w < world->boundaries.wall_count; w++)
+        for (int i = 0; at_nodes(&world->boundaries.walls[w]) && i < world->bodies.mpm_count; i++)
+            if (acts_on(&world->boundaries.walls[w], &world->bodies.mpm[i]))
+                brunt_condition_apply(&world->bodies.mpm[i], &world->boundaries.walls[w], world->clock.time);
+    return BRUNT_OK;
+}
+
+int brunt_pass_contact(brunt_world *world, brunt_step *step, brunt_error *error) {
+    int failed = brunt_grid_velocity_apply(world->bodies.mpm, world->bodies.mpm_count, world->pairs.pair,
+                                           world->pairs.count, world->pairs.of_mpm, world->boundaries.mirrors,
+                                           world->boundaries.mirror_count, step->dt, world->settings.threads,
+                                           brunt_pass_timer(world), &world->scratch.grid_velocity);
+    return failed ? brunt_fail_step(world, NULL, error,
+                                    failed == -1 ? "out of memory in the contact search"
+                                                 : "more than 16 bodies meet at one grid node")
+                  : BRUNT_OK;
+}
+
+int brunt_pass_walls(brunt_world *world, brunt_step *step, brunt_error *error) {
+    for (int i = 0; i < world->bodies.mpm_count; i++)
+        if (brunt_planes_apply(&world->bodies.mpm[i], world->boundaries.walls, world->boundaries.wall_count,
+                               world->boundaries.mirrors, world->boundaries.mirror_count, world->clock.time, step->dt,
+                               &world->scratch.planes[i]))
+            return brunt_fail_step(world, &world->bodies.mpm[i], error, "out of memory at a wall");
+    return BRUNT_OK;
+}
+
+// The grid of a total-Lagrangian body is not where its weight acts.
+static void book_gravity_moment(brunt_world *world, brunt_body *body, const double gravity[3], double dt) {
+    const brunt_audit audit = brunt_body_audit(body);
+    for (int a = 0; a < 3; a++) {
+        const int k = (a + 1) % 3, l = (a + 2) % 3;
+        world->ledger.gravity_angular[a] +=
+            dt * audit.mass * (audit.centre[k] * gravity[l] - audit.centre[l] * gravity[k]);
+    }
+}
+
+static void book_gravity(brunt_world *world, const brunt_step *step, const brunt_node_sums *n, bool total) {
+    const double *gravity = step->gravity, dt = step->kick;
+    world->ledger.gravity_work += n->gravity_work;
+    for (int a = 0; a < 3; a++) {
+        int k = (a + 1) % 3, l = (a + 2) % 3;
+        world->ledger.gravity_impulse[a] += dt * n->mass * gravity[a];
+        if (total) continue;
+        world->ledger.gravity_angular[a] += dt * (n->first_moment[k] * gravity[l] - n->first_moment[l] * gravity[k]);
+    }
+}
+
+// Kinetic energy that the grid has before and after the forces, and what gravity did.
+int brunt_pass_ledger(brunt_world *world, brunt_step *step, brunt_error *error) {
+    (void)error;
+    step->old_kinetic = step->new_kinetic = 0;
+    for (int i = 0; i < world->bodies.mpm_count; i++) {
+        brunt_body *body = &world->bodies.mpm[i];
+        const bool total = brunt_total_lagrangian(&body->particles);
+        brunt_grid_job job = grid_job(world, step, body);
+        brunt_parallel(world->settings.threads, body->grid.slot_count, SLOT_GRAIN, brunt_grid_ledger, &job,
+                       brunt_pass_timer(world));
+        for (int32_t s = 0; s < body->grid.slot_count; s++) {
+            const brunt_node_sums *n = &world->scratch.node_sums[s];
+            step->old_kinetic += n->old_kinetic;
+            step->new_kinetic += n->new_kinetic;
+            if (world->settings.has_gravity) book_gravity(world, step, n, total);
+        }
+        if (total && world->settings.has_gravity) book_gravity_moment(world, body, step->gravity, step->kick);
+    }
+    return BRUNT_OK;
+}
+
+static void advance_blocks(void *context, int64_t begin, int64_t end, int worker) {
+    const body_job *job = context;
+    for (int64_t b = begin; b < end; b++)
+        job->world->transfers.advance(job->body, (int32_t)b, (real)job->dt, (real)job->world->settings.flip,
+                                      &job->world->scratch.points[worker]);
+}
+
+static void remap_body(brunt_world *world, brunt_body *body, double dt) {
+    static const double weightless[3] = {0, 0, 0};
+    brunt_timer *timer = brunt_pass_timer(world);
+    body_job job = {world, body, dt}, still = {world, body, 0};
+    brunt_grid_job nodes = {.body = body, .gravity = weightless, .sums = world->scratch.node_sums};
+    brunt_impulse_account unbooked = {.external_work = 0};
+    brunt_parallel(world->settings.threads, body->grid.block_count, BLOCK_GRAIN, advance_blocks, &job, timer);
+    brunt_parallel(world->settings.threads, body->grid.block_count, BLOCK_GRAIN, scatter_blocks, &still, timer);
+    brunt_parallel(world->settings.threads, body->grid.slot_count, SLOT_GRAIN, brunt_grid_sum, &nodes, timer);
+    for (int m = 0; m < world->boundaries.mirror_count; m++)
+        if (mirrors(world, &world->boundaries.mirrors[m], body))
+            brunt_symmetry_fold(body, &world->boundaries.mirrors[m], 1, &unbooked);
+    brunt_parallel(world->settings.threads, body->grid.slot_count, SLOT_GRAIN, brunt_grid_update, &nodes, timer);
+    for (int w = 0; w < world->boundaries.wall_count; w++) {
+        brunt_wall wall = world->boundaries.walls[w];
+        if (at_nodes(&wall) && acts_on(&wall, body)) brunt_condition_apply(body, &wall, world->clock.time);
+    }
+}
+
+// Linear kernel: the particles' new velocities once more to the grid, without forces, for the gradient. What conditions
+// do to that field is no impulse: it is not booked.
+int brunt_pass_remap(brunt_world *world, brunt_step *step, brunt_error *error) {
+    (void)error;
+    for (int i = 0; i < world->bodies.mpm_count; i++) remap_body(world, &world->bodies.mpm[i], step->dt);
+    return BRUNT_OK;
+}
+
+typedef struct gather_sums {
+    double power, remap, before; // [W] of the stress: after the step, of what remapping changed, before the step
+} gather_sums;
+
+// The slot of the first particle whose update failed, -1: none.
+static int64_t sum_reports(brunt_body *body, brunt_step *step, gather_sums *sums, const char **reason) {
+    int64_t bad = -1;
+    for (int32_t b = 0; b < body->grid.block_count; b++) {
+        const brunt_block_report *report = &body->report[b];
+        body->speed = report->speed > body->speed ? report->speed : body->speed;
+        step->kinetic += report->kinetic;
+        sums->power += report->stress_power;
+        sums->remap += report->remap_power;
+        sums->before += report->old_power;
+        if (report->bad >= 0 && bad < 0) bad = report->bad, *reason = report->reason;
+    }
+    return bad;
+}
+
+// Where the step changes, the two halves of the kick are not alike: velocities are further behind the stress, or less,
+// by which central differences gain or lose (dt_old^2 - dt^2) / 8 f^2 / m. That is booked with the transfers, too.
+int brunt_pass_gather(brunt_world *world, brunt_step *step, brunt_error *error) {
+    const double dt = step->dt, kick = step->kick;
+    gather_sums sums = {0, 0, 0};
+    for (int i = 0; i < world->bodies.mpm_count; i++) {
+        brunt_body *body = &world->bodies.mpm[i];
+        const char *reason = NULL;
+        body_job job = {world, body, dt};
+        body->uneven = kick != dt;
+        body->speed = 0;
+        brunt_parallel(world->settings.threads, body->grid.block_count, BLOCK_GRAIN, gather_blocks, &job,
+                       brunt_pass_timer(world));
+        const int64_t bad = sum_reports(body, step, &sums, &reason);
+        if (bad >= 0 && !step->status) step->status = brunt_fail_particle(world, body, bad, error, reason);
+    }
+    world->ledger.transfer -= 0.5 * (world->ledger.stress_work + dt * sums.remap + (dt - kick) * sums.before);
+    world->ledger.stress_work = dt * sums.power;
+    return BRUNT_OK;
+}

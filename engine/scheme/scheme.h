@@ -1,0 +1,102 @@
+// A scheme of time stepping is a table of passes. The plan of a world keeps the rows that are wanted, and the step runs
+// those, in their order: what is not in the table does not run.
+#pragma once
+
+#include "world/world.h"
+
+// The step that is taken, and what its passes hand on.
+typedef struct brunt_step {
+    double limit, dt, kick, gravity[3]; // [s], [s], [s], [m/s^2]; kick: what the forces act over
+    double old_kinetic, new_kinetic;    // [J] of the grids, before and after what acts on them
+    double kinetic;                     // [J] of the particles, after the step
+    int status;                         // what failed in a pass that the others of the step still follow
+    brunt_body *body;                   // the one it is about in passes that go body by body, else NULL
+} brunt_step;
+
+typedef struct brunt_amount {
+    double bytes, flops; // for one unit
+} brunt_amount;
+
+typedef enum brunt_pass_kind {
+    BRUNT_PASS_WHOLE,
+    BRUNT_PASS_BODY, // goes body by body of material points, with those of this kind beside it: all of one, then the
+                     // next, while its grid is in the cache
+    BRUNT_PASS_PART, // a further part of the pass of this name, whose time and units it adds to
+} brunt_pass_kind;
+
+typedef struct brunt_pass_row {
+    brunt_pass_kind kind;
+    const char *name;
+    const char *unit; // what it goes over: "particle", "node", "element", "body"; "point": particles and elements
+    bool (*wanted)(const brunt_world *world); // whether the plan keeps it; does not change after the start
+    int (*run)(brunt_world *world, brunt_step *step, brunt_error *error); // BRUNT_OK, or the code of a failure
+    double (*units)(const brunt_world *world, const brunt_body *body);    // how many it goes over; NULL: none
+    // What it moves and computes for a unit of a body, as it is now; NULL: not counted, it depends on what meets what.
+    brunt_amount (*work)(const brunt_world *world, brunt_body_ref body);
+} brunt_pass_row;
+
+// --- explicit.c
+extern const brunt_pass_row brunt_explicit_passes[];
+extern const int brunt_explicit_pass_count;
+
+// --- particle_passes.c: material points and their grids
+int brunt_pass_sort(brunt_world *world, brunt_step *step, brunt_error *error);
+int brunt_pass_scatter(brunt_world *world, brunt_step *step, brunt_error *error);
+int brunt_pass_grid(brunt_world *world, brunt_step *step, brunt_error *error);
+int brunt_pass_mirror(brunt_world *world, brunt_step *step, brunt_error *error);
+int brunt_pass_update(brunt_world *world, brunt_step *step, brunt_error *error);
+int brunt_pass_conditions(brunt_world *world, brunt_step *step, brunt_error *error);
+int brunt_pass_contact(brunt_world *world, brunt_step *step, brunt_error *error);
+int brunt_pass_walls(brunt_world *world, brunt_step *step, brunt_error *error);
+int brunt_pass_ledger(brunt_world *world, brunt_step *step, brunt_error *error);
+int brunt_pass_remap(brunt_world *world, brunt_step *step, brunt_error *error);
+int brunt_pass_gather(brunt_world *world, brunt_step *step, brunt_error *error);
+
+// --- mesh_passes.c: finite-element bodies
+int brunt_pass_kick(brunt_world *world, brunt_step *step, brunt_error *error);
+int brunt_pass_groups(brunt_world *world, brunt_step *step, brunt_error *error);
+int brunt_pass_finish_kick(brunt_world *world, brunt_step *step, brunt_error *error);
+int brunt_pass_drift(brunt_world *world, brunt_step *step, brunt_error *error);
+int brunt_pass_elements(brunt_world *world, brunt_step *step, brunt_error *error);
+
+// --- stable_step.c: how long the step is
+// The step that is due and what acts in it. BRUNT_FAILED when there is none to take.
+int brunt_pass_choose(brunt_world *world, brunt_step *step, brunt_error *error);
+// The step that follows stable ones, of this state and of those before.
+double brunt_held_step(struct brunt_clock *clock, double stable);
+// For what has the stable step that is too short: an element, with the loads on its body, or a body of material points.
+int brunt_fail_short(brunt_world *world, double stable, brunt_error *error, const char *why);
+
+// --- watch.c: whether all is as it should be
+int brunt_pass_watch(brunt_world *world, brunt_step *step, brunt_error *error);
+
+// --- fail.c: computations that fail. All give BRUNT_FAILED and say body, place and time in front of the reason.
+int brunt_fail_step(const brunt_world *world, const brunt_body *body, brunt_error *error, const char *reason);
+// With the reason that `error` has.
+int brunt_fail_inner(const brunt_world *world, const brunt_body *body, brunt_error *error);
+int brunt_fail_particle(const brunt_world *world, brunt_body *body, int64_t slot, brunt_error *error,
+                        const char *reason);
+int brunt_fail_element(const brunt_world *world, const brunt_fem_body *fem, int32_t slot, brunt_error *error,
+                       const char *reason);
+
+// --- timing.c: what the step and its passes take. A pass begins where the one before ended, so that no moment of a
+// step is left out and the clock is read once a pass.
+void brunt_step_begin(brunt_world *world);
+void brunt_step_end(brunt_world *world); // ends a pass that was left by an error as well
+void brunt_pass_begin(brunt_world *world, int pass);
+// `units`: how many particles, nodes or elements the pass has gone over.
+void brunt_pass_end(brunt_world *world, double units);
+
+// --- work.c: what a pass moves and computes, counted
+brunt_amount brunt_work_sort(const brunt_world *world, brunt_body_ref body);
+brunt_amount brunt_work_scatter(const brunt_world *world, brunt_body_ref body);
+brunt_amount brunt_work_grid(const brunt_world *world, brunt_body_ref body);
+brunt_amount brunt_work_update(const brunt_world *world, brunt_body_ref body);
+brunt_amount brunt_work_ledger(const brunt_world *world, brunt_body_ref body);
+brunt_amount brunt_work_remap(const brunt_world *world, brunt_body_ref body);
+brunt_amount brunt_work_gather(const brunt_world *world, brunt_body_ref body);
+brunt_amount brunt_work_kick(const brunt_world *world, brunt_body_ref body);
+brunt_amount brunt_work_drift(const brunt_world *world, brunt_body_ref body);
+brunt_amount brunt_work_elements(const brunt_world *world, brunt_body_ref body);
+// Mean over all bodies for a unit of the pass; 0: not counted.
+brunt_amount brunt_pass_work(const brunt_world *world, const brunt_pass_row *row);

@@ -1,0 +1,75 @@
+// What is watched from step to step: energy, fluids that spread, steps that shorten without end.
+#include <math.h>
+#include <stdio.h>
+
+#include "base/error.h"
+#include "scheme/scheme.h"
+
+enum { ENERGY_CHECK = 32, SPREAD_CHECK = 32 }; // steps
+
+// A fluid spreads until there are cells between its particles that none of them reaches: there pressure and contact act
+// on single particles.
+static void watch_spread(brunt_world *world) {
+    for (int i = 0; i < world->bodies.mpm_count; i++) {
+        brunt_body *body = &world->bodies.mpm[i];
+        if (!body->material.model[BRUNT_STRENGTH]->fluid || body->spread_told) continue;
+        double spread = brunt_body_spread(body);
+        if (!(spread > 1)) continue;
+        body->spread_told = true;
+        brunt_warn(
+            &world->messages,
+            "bodies.%s: at t = %.4g s the fluid has spread: particles stand for volumes %.2g cells wide, so that "
+            "there are cells with none; pressure there is as coarse as that (more particles_per_cell, or a "
+            "coarser grid, helps)",
+            body->name, world->clock.time, spread);
+    }
+}
+
+static int check_energy(brunt_world *world, brunt_error *error) {
+    brunt_energy energy;
+    brunt_world_energy(world, &energy);
+    // Energy that the transfers make is as wrong as energy that is not accounted for.
+    const double made =
+        world->bodies.mpm_count && energy.reference > 0 ? -world->ledger.transfer / energy.reference : 0;
+    if (!(fabs(energy.error_relative) > world->settings.energy_limit || made > world->settings.energy_limit))
+        return BRUNT_OK;
+    char reason[240], transfers[80] = "";
+    if (world->bodies.mpm_count)
+        snprintf(transfers, sizeof transfers, ", and the transfers have made %.3g %%", 100 * fmax(made, 0));
+    snprintf(reason, sizeof reason, "the energy error is %.3g %% of %.3g J%s; time.energy_limit allows %.3g %%",
+             100 * energy.error_relative, energy.reference, transfers, 100 * world->settings.energy_limit);
+    return brunt_fail_step(world, NULL, error, reason);
+}
+
+// Steps that shorten without end never get there: told at a thousandth of the longest so far that was not cut short,
+// and the end at a millionth, unless the scene says where. It is looked at while it is known what was fast in the step.
+static int watch_creep(brunt_world *world, brunt_error *error) {
+    const struct brunt_clock *now = &world->clock;
+    const double share = now->next_dt / now->longest;
+    if (world->settings.fixed_step > 0 || now->time >= world->settings.end || !(share < 1e-3)) return BRUNT_OK;
+    const bool ends = share < 1e-6 && !(world->settings.least_step > 0);
+    if (world->clock.creep_told && !ends) return BRUNT_OK;
+    char why[160];
+    snprintf(why, sizeof why, "the step has become %.4g s, %s of the longest so far%s", now->next_dt,
+             ends ? "less than a millionth" : "less than a thousandth", ends ? " (time.least_step allows less)" : "");
+    brunt_error told = {.id = -1};
+    brunt_fail_short(world, now->next_dt / world->settings.cfl, ends ? error : &told, why);
+    if (!ends) brunt_warn(&world->messages, "%s", told.message);
+    world->clock.creep_told = true;
+    return ends ? BRUNT_FAILED : BRUNT_OK;
+}
+
+// The stable step that follows, and whether all is as it should be.
+int brunt_pass_watch(brunt_world *world, brunt_step *step, brunt_error *error) {
+    (void)step;
+    struct brunt_clock *now = &world->clock;
+    now->next_dt = brunt_stable_step(world);
+    if (world->bodies.fem_count && isfinite(now->next_dt)) now->next_dt = brunt_held_step(now, now->next_dt);
+    if (!isfinite(world->ledger.kinetic) || !isfinite(world->ledger.fem_kinetic) || !isfinite(now->next_dt))
+        return brunt_fail_step(world, NULL, error, "the kinetic energy is not a finite number");
+    if (world->bodies.has_fluid && (int64_t)now->steps % SPREAD_CHECK == 0) watch_spread(world);
+    int status = (int64_t)now->steps % ENERGY_CHECK == 0 && isfinite(world->settings.energy_limit)
+                     ? check_energy(world, error)
+                     : BRUNT_OK;
+    return status ? status : watch_creep(world, error);
+}
