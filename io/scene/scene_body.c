@@ -119,12 +119,6 @@ static void check_meshing(scene_reader *reader, const scene_node *node, const br
                             elements, ELEMENT_LIMIT - 1);
 }
 
-static void refuse_sheet_keys(scene_reader *reader, const scene_node *node) {
-    static const char *const keys[] = {"thickness", "contact_thickness", "tension_only", "faces"};
-    for (size_t i = 0; i < sizeof keys / sizeof *keys; i++)
-        brunt_refuse_key(reader, node, keys[i], "this belongs to method: membrane");
-}
-
 // ---------------------------------------------------------------------------------------------------- material points
 
 static void fill_count(scene_reader *reader, scene_node *node, brunt_body_def *body) {
@@ -136,8 +130,7 @@ static void fill_count(scene_reader *reader, scene_node *node, brunt_body_def *b
         brunt_tree_complain_key(tree, spacing, "spacing and particles_per_cell are both given, one of them is wanted");
     if (!count && !spacing && dimension)
         count = brunt_add_default(reader, node, "particles_per_cell", dimension == 2 ? "4" : "8");
-    body->spacing = brunt_real_of(node, "spacing", 0);
-    body->particles_per_cell = (int32_t)brunt_real_of(node, "particles_per_cell", 0);
+    if (count && count->good) body->particles_per_cell = (int32_t)count->value[0];
     if (!count || !count->good || !dimension) return;
     int n = body->particles_per_cell, root = (int)lround(dimension == 2 ? sqrt(n) : cbrt(n));
     if ((dimension == 2 ? root * root : root * root * root) == n) return;
@@ -150,8 +143,6 @@ static void fill_count(scene_reader *reader, scene_node *node, brunt_body_def *b
 }
 
 static void fill_jitter(scene_reader *reader, scene_node *node, brunt_body_def *body) {
-    if (!brunt_tree_child(node, "fill")) brunt_add_default(reader, node, "fill", "regular");
-    body->fill = (brunt_fill)(int)brunt_real_of(node, "fill", 0);
     static const char *const keys[2] = {"jitter", "seed"}, *const initial[2] = {"0.25", "1"};
     for (int i = 0; i < 2; i++) {
         const scene_node *given = brunt_tree_child(node, keys[i]);
@@ -164,11 +155,6 @@ static void fill_jitter(scene_reader *reader, scene_node *node, brunt_body_def *
 }
 
 static void fill_particles(scene_reader *reader, scene_node *node, brunt_body_def *body, bool measurable) {
-    static const char *const elsewhere[] = {"mesh",      "group",        "element", "size",
-                                            "hourglass", "mass_scaling", "damping", "grading"};
-    for (size_t i = 0; i < sizeof elsewhere / sizeof *elsewhere; i++)
-        brunt_refuse_key(reader, node, elsewhere[i], "this belongs to method: fem or membrane");
-    refuse_sheet_keys(reader, node);
     if (!brunt_tree_child(node, "shape"))
         brunt_tree_complain_key(reader->tree, node, "'shape' is missing: what is filled with particles");
     int mistakes = reader->tree->message_count;
@@ -176,8 +162,6 @@ static void fill_particles(scene_reader *reader, scene_node *node, brunt_body_de
     if (measurable && mistakes == reader->tree->message_count)
         check_filling(reader, brunt_tree_child(node, "shape"), body);
     fill_jitter(reader, node, body);
-    if (!brunt_tree_child(node, "lagrangian")) brunt_add_default(reader, node, "lagrangian", "updated");
-    body->total_lagrangian = brunt_real_of(node, "lagrangian", 0) == 1;
 }
 
 // ---------------------------------------------------------------------------------------------------- finite elements
@@ -242,7 +226,6 @@ static bool fill_elements(scene_reader *reader, scene_node *node, brunt_body_def
     body->element = solid;
     if (!brunt_tree_child(node, "size"))
         brunt_tree_complain_key(reader->tree, node, "'size' is missing: a length (m), edge of the elements");
-    body->size = brunt_real_of(node, "size", 0);
     bool known = kind && kind->good && dimension;
     char wanted[128];
     if (known && sheet && brunt_element_dimension(solid) == 3) {
@@ -317,10 +300,6 @@ static void fill_sheet(scene_reader *reader, scene_node *node, brunt_body_def *b
     if (reader->dimension == 2) brunt_tree_complain(reader->tree, method, "membranes are for three dimensions");
     if (!brunt_tree_child(node, "thickness"))
         brunt_tree_complain_key(reader->tree, node, "'thickness' is missing: a length (m), of the sheet");
-    if (!brunt_tree_child(node, "tension_only")) brunt_add_default(reader, node, "tension_only", "false");
-    body->thickness = brunt_real_of(node, "thickness", 0);
-    body->contact_thickness = brunt_real_of(node, "contact_thickness", NAN);
-    body->slack = brunt_real_of(node, "tension_only", 0) == 1;
     check_sheet_material(reader, node, body);
     if (brunt_tree_child(node, "mesh"))
         brunt_refuse_key(reader, node, "faces", "a mesh file is the sheet as it is: group chooses a part of it");
@@ -331,17 +310,8 @@ static void fill_sheet(scene_reader *reader, scene_node *node, brunt_body_def *b
 }
 
 static void fill_fem(scene_reader *reader, scene_node *node, brunt_body_def *body, bool measurable) {
-    static const char *const elsewhere[] = {"particles_per_cell", "spacing", "fill", "jitter", "seed", "lagrangian"};
-    for (size_t i = 0; i < sizeof elsewhere / sizeof *elsewhere; i++)
-        brunt_refuse_key(reader, node, elsewhere[i], "this belongs to method: mpm");
     bool shape = brunt_tree_child(node, "shape"), mesh = brunt_tree_child(node, "mesh"), known = false;
-    if (body->method == BRUNT_MEMBRANE)
-        fill_sheet(reader, node, body);
-    else
-        refuse_sheet_keys(reader, node);
-    if (!brunt_tree_child(node, "damping")) brunt_add_default(reader, node, "damping", "0");
-    body->damping = brunt_real_of(node, "damping", 0);
-    body->mass_scaling = brunt_real_of(node, "mass_scaling", 0);
+    if (body->method == BRUNT_MEMBRANE) fill_sheet(reader, node, body);
     if (shape == mesh) {
         brunt_tree_complain_key(reader->tree, node, "exactly one of shape and mesh is wanted, %s given",
                                 shape ? "both are" : "none is");
@@ -360,7 +330,6 @@ static void fill_fem(scene_reader *reader, scene_node *node, brunt_body_def *bod
 static void fill_spin(scene_reader *reader, const scene_node *spin, brunt_body_def *body) {
     if (!spin || spin->kind != SCENE_MAP) return;
     const scene_node *rate = brunt_tree_child(spin, "rate"), *axis = brunt_tree_child(spin, "axis");
-    brunt_vector_of(spin, "about", body->spin_about);
     if (!rate || !rate->good) return;
     if (rate->components == 3) {
         if (axis) brunt_tree_complain_key(reader->tree, axis, "the rate is a vector and has its axis already");
@@ -380,23 +349,10 @@ static void fill_spin(scene_reader *reader, const scene_node *spin, brunt_body_d
     }
 }
 
-static void fill_wave(scene_reader *reader, const scene_node *wave, brunt_body_def *body) {
-    if (!wave || wave->kind != SCENE_MAP) return;
-    brunt_vector_of(wave, "velocity", body->wave_velocity);
-    body->wave_phase = brunt_real_of(wave, "phase", 0);
-    if (brunt_vector_of(wave, "wave_vector", body->wave_vector) && !brunt_nonzero(body->wave_vector))
-        brunt_tree_complain(reader->tree, brunt_tree_child(wave, "wave_vector"), "the wave vector has zero length");
-}
-
-static void fill_erosion(scene_reader *reader, const scene_node *node, brunt_body_def *body) {
-    const scene_node *erosion = brunt_tree_child(node, "erosion");
-    if (!erosion || erosion->kind != SCENE_MAP) return;
-    body->erosion.strain = brunt_real_of(erosion, "strain", INFINITY);
-    body->erosion.step = brunt_real_of(erosion, "step", 0);
-    body->erosion.inverted = brunt_real_of(erosion, "inverted", 0) == 1;
-    body->erosion.keep = brunt_real_of(erosion, "debris", 0) == 1;
-    if (body->method == BRUNT_MPM)
-        brunt_refuse_key(reader, erosion, "step", "material points have no stable step of their own");
+static void check_wave(scene_reader *reader, const scene_node *wave, const brunt_body_def *body) {
+    const scene_node *vector = wave ? brunt_tree_child(wave, "wave_vector") : NULL;
+    if (vector && vector->good && !brunt_nonzero(body->wave_vector))
+        brunt_tree_complain(reader->tree, vector, "the wave vector has zero length");
 }
 
 // ---------------------------------------------------------------------------------------------------- bodies
@@ -416,14 +372,15 @@ static void fill_body(scene_reader *reader, scene_node *node, brunt_body_def *bo
     body->place = brunt_fill_place(reader, brunt_tree_child(node, "place"));
     bool measurable = shape && shape->good && reader->dimension && mistakes == reader->tree->message_count;
     body->method = (brunt_method)(int)brunt_real_of(node, "method", BRUNT_MPM);
-    // Without a method nobody knows which keys are wanted.
+    // Without a method it is not known which keys are wanted.
+    if (method && method->good) brunt_fill_fields(reader, node, "bodies.*", 1u << body->method, body);
     if (method && method->good && body->method == BRUNT_MPM) fill_particles(reader, node, body, measurable);
     if (method && method->good && body->method != BRUNT_MPM) fill_fem(reader, node, body, measurable);
-    fill_erosion(reader, node, body);
-    brunt_vector_of(node, "velocity", body->velocity);
+    const scene_node *erosion = brunt_tree_child(node, "erosion");
+    if (erosion && body->method == BRUNT_MPM)
+        brunt_refuse_key(reader, erosion, "step", "material points have no stable step of their own");
     fill_spin(reader, brunt_tree_child(node, "spin"), body);
-    fill_wave(reader, brunt_tree_child(node, "wave"), body);
-    body->temperature = brunt_real_of(node, "temperature", body->temperature);
+    check_wave(reader, brunt_tree_child(node, "wave"), body);
 }
 
 static int by_name(const void *a, const void *b) {

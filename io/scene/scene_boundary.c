@@ -14,11 +14,7 @@ static const struct {
     {"traction", BRUNT_GROUP_TRACTION}, {"pressure", BRUNT_GROUP_PRESSURE}, {"gas", BRUNT_GROUP_GAS}};
 
 static const char *const methods[] = {"mpm", "fem", "membrane"}; // by brunt_method
-
-static void refuse_group_keys(scene_reader *reader, const scene_node *node) {
-    static const char *const keys[] = {"fix", "displacement", "traction", "pressure", "gas", "table"};
-    for (int i = 0; i < 6; i++) brunt_refuse_key(reader, node, keys[i], "this belongs to a group of nodes");
-}
+_Static_assert(sizeof methods / sizeof *methods == BRUNT_MEMBRANE + 1, "a name for each method");
 
 static void fill_body_of(scene_reader *reader, const scene_node *node, char name[BRUNT_NAME_LENGTH]) {
     const scene_node *body = brunt_tree_child(node, "body");
@@ -87,9 +83,6 @@ static void fill_plane(scene_reader *reader, scene_node *node, brunt_plane_def *
     else if (!brunt_tree_child(node, "friction"))
         brunt_add_default(reader, node, "friction", "0");
     plane->friction = brunt_real_of(node, "friction", 0);
-    static const char *const regional[] = {"from", "until", "place"};
-    for (int i = 0; i < 3; i++) brunt_refuse_key(reader, node, regional[i], "this belongs to a region, not to a plane");
-    refuse_group_keys(reader, node);
     scene_node *velocity = brunt_tree_child(node, "velocity");
     if (plane->condition == BRUNT_SYMMETRY)
         brunt_refuse_key(reader, node, "velocity", "a symmetry plane does not move");
@@ -109,9 +102,6 @@ static void fill_region(scene_reader *reader, scene_node *node, brunt_region_def
     const scene_node *velocity = brunt_tree_child(node, "velocity"), *until = brunt_tree_child(node, "until");
     brunt_fill_shape_def(reader, brunt_tree_child(node, "region"), &region->shape);
     region->place = brunt_fill_place(reader, brunt_tree_child(node, "place"));
-    brunt_refuse_key(reader, node, "condition", "this belongs to a plane, not to a region");
-    brunt_refuse_key(reader, node, "friction", "this belongs to a plane, not to a region");
-    refuse_group_keys(reader, node);
     if (!velocity)
         brunt_tree_complain(reader->tree, node, "'velocity' is missing: a list of numbers or `free`, in m/s");
     fill_partial(reader, velocity, region->component, region->velocity);
@@ -157,16 +147,11 @@ static scene_node *find_action(scene_reader *reader, scene_node *node) {
 }
 
 // Gas is kept between the steps, and its pressure is what comes of it: only the inflow follows a table.
-static void fill_gas(scene_reader *reader, const scene_node *node, brunt_gas_def *gas) {
+static void check_gas(scene_reader *reader, const scene_node *node) {
     const scene_node *inflow = brunt_tree_child(node, "inflow");
     if (node->kind != SCENE_MAP) return;
     if (inflow && inflow->good && inflow->value[0] == 0)
         brunt_refuse_key(reader, node->parent, "table", "a table is the factor of gas.inflow, there is none");
-    gas->gamma = brunt_real_of(node, "gamma", 1.4);
-    gas->pressure = brunt_real_of(node, "pressure", 0);
-    gas->outside = brunt_real_of(node, "outside", 0);
-    gas->volume = brunt_real_of(node, "volume", 0);
-    gas->inflow = brunt_real_of(node, "inflow", 0);
     if (reader->dimension == 2) brunt_tree_complain_key(reader->tree, node, "enclosed gas is for three dimensions");
 }
 
@@ -186,16 +171,11 @@ static void fill_action(scene_reader *reader, scene_node *node, brunt_group_def 
         break;
     case BRUNT_GROUP_TRACTION: brunt_vector_of(node, "traction", group->value); break;
     case BRUNT_GROUP_PRESSURE: group->value[0] = action->value[0]; break;
-    case BRUNT_GROUP_GAS: fill_gas(reader, action, &group->gas); break;
+    case BRUNT_GROUP_GAS: check_gas(reader, action); break;
     }
 }
 
 static void fill_group(scene_reader *reader, scene_node *node, brunt_group_def *group) {
-    static const char *const elsewhere[] = {"condition", "friction", "from", "until", "place"};
-    for (int i = 0; i < 5; i++)
-        brunt_refuse_key(reader, node, elsewhere[i],
-                         i < 2 ? "this belongs to a plane, not to a group"
-                               : "this belongs to a region, not to a group");
     brunt_copy_text(reader, brunt_tree_child(node, "group"), group->group, sizeof group->group);
     const scene_node *body = brunt_tree_child(node, "body");
     if (!body) brunt_tree_complain(reader->tree, node, "'body' is missing: the body whose nodes they are");
@@ -236,16 +216,19 @@ static void fill_boundary(scene_reader *reader, scene_node *node) {
         brunt_plane_def *def = &world->planes[world->plane_count++];
         *def = brunt_plane_def_default();
         fill_named(reader, node, "plane", world->plane_count, def->name);
+        brunt_fill_fields(reader, node, "boundaries[]", SCENE_PLANE, def);
         fill_plane(reader, node, def);
     } else if (region) {
         brunt_region_def *def = &world->regions[world->region_count++];
         *def = brunt_region_def_default();
         fill_named(reader, node, "region", world->region_count, def->name);
+        brunt_fill_fields(reader, node, "boundaries[]", SCENE_REGION, def);
         fill_region(reader, node, def);
     } else {
         brunt_group_def *def = &world->groups[world->group_count++];
         *def = brunt_group_def_default();
         fill_named(reader, node, "group", world->group_count, def->name);
+        brunt_fill_fields(reader, node, "boundaries[]", SCENE_GROUP_OF_NODES, def);
         fill_group(reader, node, def);
     }
 }

@@ -217,7 +217,7 @@ static void add_missing(scene_reader *reader, scene_node *node, const group_rows
         }
         return;
     }
-    if (!*row->initial || row->depends) return;
+    if (!*row->initial || row->depends || row->only) return;
     if (brunt_format_row(reader->tree->format, row->path) == row) {
         brunt_add_default(reader, node, rows->key[r], row->initial);
         return;

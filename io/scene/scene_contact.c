@@ -6,6 +6,7 @@
 #include "world/definitions.h"
 
 static const char *const methods[] = {"none", "multi-velocity", "augury", "tied"}; // by brunt_contact_method
+_Static_assert(sizeof methods / sizeof *methods == BRUNT_CONTACT_TIED + 1, "a name for each method");
 
 static bool has_mesh(const scene_reader *reader, const char *name) {
     const brunt_body_def *body = brunt_body_named(reader, name);

@@ -5,6 +5,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "brunt.h"
 #include "materials/material.h"
 
 typedef enum scene_type {
@@ -33,6 +34,33 @@ typedef enum scene_type {
     SCENE_ANY         // anything: whoever reads it checks it
 } scene_type;
 
+// How a key's value is stored in the one field that it fills.
+typedef enum scene_store {
+    STORE_NOT, // whoever reads it does more than to store it
+    STORE_REAL,
+    STORE_INTEGER,
+    STORE_CHOICE, // an enumeration in the order of `words`
+    STORE_FLAG,   // false: the first word
+    STORE_VECTOR
+} scene_store;
+
+typedef struct scene_field {
+    scene_store store;
+    size_t offset;
+} scene_field;
+
+// The field `member` of a structure; the way it is stored comes of its type, any other does not compile.
+#define SCENE_FIELD(type, member)                                                                                        \
+    {                                                                                                                    \
+        _Generic(((type *)0)->member,                                                                                  \
+            double: STORE_REAL,                                                                                        \
+            int32_t: STORE_INTEGER,                                                                                    \
+            uint32_t: STORE_CHOICE,                                                                                    \
+            bool: STORE_FLAG,                                                                                          \
+            double *: STORE_VECTOR),                                                                                   \
+            offsetof(type, member) \
+    }
+
 typedef struct scene_key {
     const char *path; // "time.end", "bodies.*.velocity", "boundaries[].plane.point", "<shape>.box.min"
     scene_type type;
@@ -47,10 +75,25 @@ typedef struct scene_key {
     // Columns that most rows leave out:
     const char *former;       // spelling of the key one version ago ...
     const char *former_words; // ... and of its words, "a|b|c", as many as `words`
+    unsigned only;     // the kinds that it is for (SCENE_MPM ..., SCENE_PLANE ...), which also its default waits for;
+                       // 0: all
+    scene_field field; // that it fills
 } scene_key;
 
 extern const scene_key brunt_scene_table[];
 extern const int brunt_scene_table_count;
+
+// Kinds of entries: bodies by their method, boundaries by what they act at.
+enum {
+    SCENE_MPM = 1 << BRUNT_MPM,
+    SCENE_FEM = 1 << BRUNT_FEM,
+    SCENE_MEMBRANE = 1 << BRUNT_MEMBRANE,
+    SCENE_MESHES = SCENE_FEM | SCENE_MEMBRANE,
+    SCENE_PLANE = 8,
+    SCENE_REGION = 16,
+    SCENE_GROUP_OF_NODES = 32
+};
+_Static_assert(SCENE_MEMBRANE < SCENE_PLANE, "one bit a kind");
 
 // A kind of file: what it is called, how it begins, and its rows.
 typedef struct scene_format {

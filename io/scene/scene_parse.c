@@ -106,15 +106,12 @@ static void fill_time(scene_reader *reader) {
     brunt_world_def *world = &reader->scene->world;
     scene_node *time = brunt_tree_child(reader->tree->root, "time");
     if (!time || time->kind != SCENE_MAP) return;
-    world->end = brunt_real_of(time, "end", 0);
-    world->step = brunt_real_of(time, "step", 0);
+    brunt_fill_fields(reader, time, "time", 0, world);
     const scene_node *step = brunt_tree_child(time, "step"), *cfl = brunt_tree_child(time, "cfl");
     if (step && cfl) brunt_tree_complain_key(reader->tree, step, "step and cfl are both given, one of them is wanted");
     if (step && world->step > world->end && world->end > 0)
         brunt_tree_complain(reader->tree, step, "the step is longer than the run");
     world->cfl = brunt_real_of(time, "cfl", world->cfl);
-    world->least_step = brunt_real_of(time, "least_step", 0);
-    world->energy_limit = brunt_real_of(time, "energy_limit", world->energy_limit);
 }
 
 // Only material points need the grid; one beside finite elements alone is accepted, so that a method can be changed by
@@ -128,8 +125,7 @@ static void fill_grid(scene_reader *reader) {
                                 brunt_scene_row("grid")->doc);
     if (grid && only_fem) brunt_scene_warn(reader, "grid: no body is of method mpm, it is not used");
     if (!grid || grid->kind != SCENE_MAP) return;
-    world->cell = brunt_real_of(grid, "cell", 0);
-    brunt_vector_of(grid, "origin", world->origin);
+    brunt_fill_fields(reader, grid, "grid", 0, world);
     world->kernel = (brunt_kernel)(BRUNT_LINEAR + (int)brunt_real_of(grid, "kernel", 1));
     scene_node *transfer = brunt_tree_child(grid, "transfer");
     if (!transfer) return;
@@ -263,7 +259,7 @@ static void fill_detonations(scene_reader *reader) {
 
 void brunt_fill_world(scene_reader *reader) {
     brunt_world_def *world = &reader->scene->world;
-    const scene_node *root = reader->tree->root, *loads = brunt_tree_child(root, "loads");
+    scene_node *root = reader->tree->root, *loads = brunt_tree_child(root, "loads");
     *world = brunt_world_def_default();
     if (reader->dimension) world->dimension = reader->dimension;
     brunt_copy_text(reader, brunt_tree_child(root, "title"), reader->scene->title, sizeof reader->scene->title);
@@ -276,19 +272,16 @@ void brunt_fill_world(scene_reader *reader) {
     fill_detonations(reader);
     brunt_fill_contact(reader);
     brunt_fill_boundaries(reader);
-    brunt_vector_of(loads, "gravity", world->gravity);
-    world->gravity_ramp = brunt_real_of(loads, "gravity_ramp", 0);
+    if (loads) brunt_fill_fields(reader, loads, "loads", 0, world);
 }
 
 // ---------------------------------------------------------------------------------------------------- output
 
 void brunt_fill_output(scene_reader *reader) {
     brunt_output_def *output = &reader->scene->output;
-    const scene_node *node = brunt_tree_child(reader->tree->root, "output");
+    scene_node *node = brunt_tree_child(reader->tree->root, "output");
     if (!node || node->kind != SCENE_MAP) return;
-    output->every = brunt_real_of(node, "every", 0);
-    output->history = brunt_real_of(node, "history", 0);
-    output->checkpoint = brunt_real_of(node, "checkpoint", 600);
+    brunt_fill_fields(reader, node, "output", 0, output);
     output->float32 = brunt_real_of(node, "precision", 0) == 0;
     const scene_node *fields = brunt_tree_child(node, "fields"), *probes = brunt_tree_child(node, "probes");
     output->fields = brunt_entries_for(reader, brunt_children_of(fields, SCENE_LIST), sizeof *output->fields);

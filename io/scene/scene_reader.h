@@ -36,6 +36,10 @@ double brunt_real_of(const scene_node *map, const char *key, double fallback);
 const char *brunt_text_of(const scene_node *map, const char *key, const char *fallback);
 bool brunt_vector_of(const scene_node *map, const char *key, double out[3]); // false: not there, `out` is left
 
+// Fills the fields of `object` that the keys below a path ("bodies.*") say they fill, from a map of theirs; keys for
+// other kinds are refused, and keys for this one get their defaults. 0: there are no kinds.
+void brunt_fill_fields(scene_reader *reader, scene_node *map, const char *path, unsigned kind, void *object);
+
 // Stage 4. World and output are filled in this order.
 void brunt_fill_shape_def(scene_reader *reader, const scene_node *node, brunt_shape *shape);
 brunt_placement brunt_fill_place(scene_reader *reader, const scene_node *list);

@@ -1,6 +1,6 @@
 // Labels: io
-// Keys and words in their spelling of one version ago: the same scene, a warning at the place that names the new one;
-// both spellings at once are a mistake.
+// The table of keys: fields hold what their rows store in them. Keys and words in their spelling of one version ago
+// mean the same scene, with a warning at the place that names the new one; both spellings at once are a mistake.
 #include <check.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -100,6 +100,28 @@ START_TEST(both_at_once_are_a_mistake) {
 }
 END_TEST
 
+// A value is stored in a field that can hold it.
+START_TEST(fields_hold_their_values) {
+    int fields = 0;
+    for (int i = 0; i < brunt_scene_table_count; i++) {
+        const scene_key *row = &brunt_scene_table[i];
+        const int words = row->type == SCENE_WORD ? brunt_scene_word_count(row->words) : 0;
+        bool fits = true;
+        switch (row->field.store) {
+        case STORE_NOT: continue;
+        case STORE_REAL: fits = row->type == SCENE_REAL; break;
+        case STORE_INTEGER: fits = row->type == SCENE_INTEGER && row->min >= INT32_MIN && row->max <= INT32_MAX; break;
+        case STORE_CHOICE: fits = words > 1; break;
+        case STORE_FLAG: fits = words == 2; break;
+        case STORE_VECTOR: fits = row->type == SCENE_VECTOR; break;
+        }
+        ck_assert_msg(fits && !strchr(row->path, '<'), "%s", row->path);
+        fields++;
+    }
+    ck_assert_int_gt(fields, 30);
+}
+END_TEST
+
 // Former words stand in for those of today one by one, and no former key is one of today's beside it.
 START_TEST(the_table_keeps_its_promises) {
     for (int i = 0; i < brunt_scene_table_count; i++) {
@@ -117,11 +139,12 @@ START_TEST(the_table_keeps_its_promises) {
 END_TEST
 
 int main(void) {
-    Suite *suite = suite_create("former_names");
+    Suite *suite = suite_create("scene_keys");
     TCase *tcase = tcase_create("names");
     tcase_add_test(tcase, old_files_mean_the_same);
     tcase_add_test(tcase, every_word_has_its_own);
     tcase_add_test(tcase, both_at_once_are_a_mistake);
+    tcase_add_test(tcase, fields_hold_their_values);
     tcase_add_test(tcase, the_table_keeps_its_promises);
     suite_add_tcase(suite, tcase);
     SRunner *runner = srunner_create(suite);
