@@ -43,7 +43,7 @@ typedef struct brunt_wall {
     brunt_impulse_account last;          // of the last step
 } brunt_wall;
 
-// --- mirror planes (mirror.c): symmetry by adding each node's mirror image to it, before velocities are made
+// --- mirror planes (symmetry.c): symmetry by adding each node's mirror image to it, before velocities are made
 // `taken`: the share of the grid's velocity that particles take over, 1 but for FLIP; the rest of what the mirror does
 // to the old velocity never reaches them.
 void brunt_symmetry_fold(brunt_body *body, const brunt_symmetry_plane *mirror, double taken,
@@ -54,13 +54,13 @@ enum { BRUNT_MAX_IMAGES = 8 };
 int brunt_symmetry_images(const brunt_symmetry_plane *mirrors, int mirror_count, const int32_t node[3], int near,
                           int32_t image[BRUNT_MAX_IMAGES][3], real sign[BRUNT_MAX_IMAGES][3]);
 
-// --- node conditions (conditions.c): stick and slip planes at the nodes behind them, prescribed velocities in regions
-// Each marks the components of nodes that it gives (brunt_grid.held); cleared before the first of them. 0, or -1: out
-// of memory.
+// --- node conditions (grid_conditions.c): stick and slip planes at the nodes behind them, prescribed velocities in
+// regions Each marks the components of nodes that it gives (brunt_grid.held); cleared before the first of them. 0, or
+// -1: out of memory.
 int brunt_condition_clear(brunt_body *body);
 void brunt_condition_apply(brunt_body *body, brunt_wall *wall, double time);
 
-// --- reach (reach.c): where a body's surface really is
+// --- reach (particle_extent.c): where a body's surface really is
 // Gradient of the body's volume fraction at a node [1/m], which points into the body, and the centre of the volume that
 // the node feels, relative to the node [m].
 void brunt_extent_gradient(brunt_body *body, int32_t slot, int node, double gradient[3], double centre[3]);
@@ -92,19 +92,19 @@ double brunt_extent_along(brunt_body *body, int64_t slot, const double n[3]);
 void brunt_extent_arm(brunt_body *body, int64_t slot, const double n[3], double distance, double arm[3],
                       double kernel_arm[3]);
 
-// --- separation (separation.c)
+// --- separation (gjk.c)
 // Distance between what two bodies have near a node [m], 0 when that overlaps, and its direction from a to b (unit;
 // left alone when 0). `start`: where to look first, any length but 0. `h`: edge of a cell.
 double brunt_gjk_distance(const brunt_extent_cloud *a, const brunt_extent_cloud *b, double h, double share,
                           const double start[3], double n[3]);
 
-// --- walls (walls.c): planes that push and let go, with Coulomb friction, at zero gap
+// --- walls (particle_plane.c): planes that push and let go, with Coulomb friction, at zero gap
 typedef struct brunt_wall_workspace brunt_wall_workspace;
 int brunt_planes_apply(brunt_body *body, brunt_wall *walls, int wall_count, const brunt_symmetry_plane *mirrors,
                        int mirror_count, double time, double dt, brunt_wall_workspace **workspace);
 void brunt_wall_workspace_free(brunt_wall_workspace *workspace);
 
-// --- contact between bodies (multivelocity.c)
+// --- contact between bodies (grid_velocity.c)
 typedef struct brunt_pair {
     int a, b; // bodies, a < b; -1: all pairs of a crowded scene together
     brunt_contact_method method;

@@ -1,7 +1,8 @@
 // Contact points: places where something must not move closer, with Coulomb friction, whatever moves them.
 //
-// A support is a velocity that impulses change: a node of a mesh, or of a grid. A point ties a slave, a weighted sum of
-// supports, to a master: a plane that moves as it likes, or a facet of a body, extended affinely:
+// A degree-of-freedom node is a velocity that impulses change: a node of a mesh, or of a grid. A point ties a slave, a
+// weighted sum of degree-of-freedom nodes, to a master: a plane that moves as it likes, or a facet of a body, extended
+// affinely:
 //   u = sum_s w_s v_s - sum_k [ beta_k v_k - height (n_f . v_k) grad beta_k ]
 // beta_k are the facet's weights where the slave projects onto its plane, height its distance from the plane, n_f the
 // facet's normal: the velocity of the material plane as it moves, turns and stretches, seen at the slave. The reaction
@@ -9,8 +10,8 @@
 // alone, to round-off.
 //
 // Material points are balls: their centres, whose velocity is weighed, stand off the surface. Where one rubs, friction
-// acts at its surface: with a lever, u of slip has entries of its own, on the same supports, and drag goes back by
-// their transpose, so that it acts there.
+// acts at its surface: with a friction point, u of slip has entries of its own, on the same degree-of-freedom nodes,
+// and drag goes back by their transpose, so that it acts there.
 //
 // All points of a step together must satisfy: u_n >= target, push >= 0, one of them 0; drag within the Coulomb cone and
 // against what is left of slip. Solved by projected Jacobi sweeps: a point's correction is scaled by its row sum of the
@@ -31,9 +32,9 @@ typedef struct brunt_dof_node {
 } brunt_dof_node;
 
 typedef struct brunt_constraint_entry {
-    int32_t support;
-    double weight[3]; // w_s of a slave, -beta_k of a master, by component: mirrors turn some of them
-    double turn[3];   // 0 of a slave; height grad beta_k of a master
+    int32_t dof_node;
+    double weight[3];          // w_s of a slave, -beta_k of a master, by component: mirrors turn some of them
+    double height_gradient[3]; // 0 of a slave; height grad beta_k of a master
 } brunt_constraint_entry;
 
 typedef struct brunt_constraint {
@@ -47,63 +48,62 @@ typedef struct brunt_constraint {
     double plane[3];               // [m/s] velocity of the master when it is a plane; 0 for facets
     brunt_impulse_account *action; // where the point is booked: impulse on the slave times `sign`
     double sign;
-    double area;   // [m^2] it stands for in the action's area
-    int32_t tag;   // the caller's
-    int32_t lever; // number + 1 of its own for friction, whose `count` entries follow the others; 0: it rubs where it
-                   // pushes
+    double area;            // [m^2] it stands for in the action's area
+    int32_t tag;            // the caller's
+    int32_t friction_point; // number + 1 of its own for friction, whose `count` entries follow the others; 0: it rubs
+                            // where it pushes
     // solution
-    double scale, response, response_t; // [kg] effective mass alone; [-] row sums in units of it
-    double push, drag[3];               // [N s]
+    double scale, row_sum, row_sum_t;           // [kg] effective mass alone; [-] row sums in units of it
+    double normal_impulse, friction_impulse[3]; // [N s]
     bool slips;
 } brunt_constraint;
 
 typedef struct brunt_constraint_set {
-    brunt_constraint *point;
-    size_t point_capacity;
-    int32_t point_count;
+    brunt_constraint *constraint;
+    size_t constraint_capacity;
+    int32_t constraint_count;
     brunt_constraint_entry *entry;
     size_t entry_capacity;
     int32_t entry_count;
-    struct brunt_lever {
+    struct brunt_friction_point {
         double x[3]; // [m] where friction acts
-    } * lever;
-    size_t lever_capacity;
-    int32_t lever_count;
-    brunt_dof_node *support;
-    size_t support_capacity;
-    int32_t support_count;
-    // Which points press on a support: copies of their entries by support, in the order of the points, with what the
-    // sweep gives beside the facet it turns with, so that a sweep reads little more than it uses.
-    struct brunt_pressing {
-        int32_t point; // from the number of points on: levers
-        double weight[3], turn[3];
-    } * pressing;
-    size_t pressing_capacity;
-    int32_t *pressing_first;
-    size_t pressing_first_capacity;
-    struct brunt_given {
+    } * friction_point;
+    size_t friction_point_capacity;
+    int32_t friction_point_count;
+    brunt_dof_node *dof_node;
+    size_t dof_node_capacity;
+    int32_t dof_node_count;
+    // Which points press on a degree-of-freedom node: copies of their entries by support, in the order of the points,
+    // with what the sweep gives beside the facet it turns with, so that a sweep reads little more than it uses.
+    struct brunt_constraint_column {
+        int32_t constraint; // from the number of points on: friction point
+        double weight[3], height_gradient[3];
+    } * column;
+    size_t column_capacity;
+    int32_t *column_first;
+    size_t column_first_capacity;
+    struct brunt_constraint_impulse {
         double impulse[3], facet[3];
-    } * given; // of each point, then of each lever
-    size_t given_capacity;
+    } * applied; // of each point, then of each friction point
+    size_t applied_capacity;
     double *changed; // [m/s] of each chunk of points: greatest correction of the sweep
     size_t changed_capacity;
 } brunt_constraint_set;
 
-void brunt_constraints_clear(brunt_constraint_set *points);
-void brunt_constraints_free(brunt_constraint_set *points);
-// New support, point, and entry of the last point. The index, or -1: out of memory.
-int32_t brunt_constraints_dof_node(brunt_constraint_set *points);
-int32_t brunt_constraints_add(brunt_constraint_set *points);
-int32_t brunt_constraints_entry(brunt_constraint_set *points, int32_t support, double weight); // all components alike
-// Gives the last point, when its entries are complete, a lever to x: entries without weights, for the caller to fill.
-// The index of the first, or -1.
-int32_t brunt_constraints_friction_point(brunt_constraint_set *points, const double x[3]);
+void brunt_constraints_clear(brunt_constraint_set *set);
+void brunt_constraints_free(brunt_constraint_set *set);
+// New degree-of-freedom node, point, and entry of the last point. The index, or -1: out of memory.
+int32_t brunt_constraints_dof_node(brunt_constraint_set *set);
+int32_t brunt_constraints_add(brunt_constraint_set *set);
+int32_t brunt_constraints_entry(brunt_constraint_set *set, int32_t dof_node, double weight); // all components alike
+// Gives the last point, when its entries are complete, a friction point to x: entries without weights, for the caller
+// to fill. The index of the first, or -1.
+int32_t brunt_constraints_friction_point(brunt_constraint_set *set, const double x[3]);
 // Makes room for so many points and entries in all, which the caller then fills. 0, or -1.
-int brunt_constraints_reserve(brunt_constraint_set *points, int32_t point_count, int32_t entry_count);
-// Relative velocity of a point, with the supports' v (old: as they were before the forces).
-void brunt_constraint_velocity(const brunt_constraint_set *points, const brunt_constraint *point, bool old,
+int brunt_constraints_reserve(brunt_constraint_set *set, int32_t point_count, int32_t entry_count);
+// Relative velocity of a point, with the degree-of-freedom nodes' v (old: as they were before the forces).
+void brunt_constraint_velocity(const brunt_constraint_set *set, const brunt_constraint *constraint, bool old,
                                double u[3]);
 // Solves with at most `sweeps` sweeps, until the greatest correction of one is no more than `tolerance` of that of the
 // first; what is left is met in the next step. Books every point. The number of sweeps, or -1: out of memory.
-int brunt_constraints_solve(brunt_constraint_set *points, int sweeps, double tolerance, int threads,
-                            brunt_timer *timer);
+int brunt_constraints_solve(brunt_constraint_set *set, int sweeps, double tolerance, int threads, brunt_timer *timer);

@@ -9,12 +9,12 @@ void brunt_impulse_account_add(brunt_impulse_account *sum, const brunt_impulse_a
 }
 
 void brunt_impulse_account_book(brunt_impulse_account *action, double *loss, const double J[3], const double x[3],
-                                const double old[3], const double now[3], const double support[3]) {
+                                const double old[3], const double now[3], const double carrier[3]) {
     for (int a = 0; a < 3; a++) {
         int i = (a + 1) % 3, j = (a + 2) % 3;
         action->impulse[a] += J[a];
         action->angular[a] += x[i] * J[j] - x[j] * J[i];
-        action->external_work += J[a] * support[a];
-        *loss -= J[a] * (0.5 * (old[a] + now[a]) - support[a]);
+        action->external_work += J[a] * carrier[a];
+        *loss -= J[a] * (0.5 * (old[a] + now[a]) - carrier[a]);
     }
 }

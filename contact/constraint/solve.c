@@ -10,17 +10,17 @@
 enum { GRAIN = 128 };
 
 void brunt_constraints_clear(brunt_constraint_set *p) {
-    p->point_count = p->entry_count = p->lever_count = p->support_count = 0;
+    p->constraint_count = p->entry_count = p->friction_point_count = p->dof_node_count = 0;
 }
 
 void brunt_constraints_free(brunt_constraint_set *p) {
-    brunt_free(p->point);
+    brunt_free(p->constraint);
     brunt_free(p->entry);
-    brunt_free(p->lever);
-    brunt_free(p->support);
-    brunt_free(p->pressing);
-    brunt_free(p->pressing_first);
-    brunt_free(p->given);
+    brunt_free(p->friction_point);
+    brunt_free(p->dof_node);
+    brunt_free(p->column);
+    brunt_free(p->column_first);
+    brunt_free(p->applied);
     brunt_free(p->changed);
     memset(p, 0, sizeof *p);
 }
@@ -28,128 +28,137 @@ void brunt_constraints_free(brunt_constraint_set *p) {
 #define ADD(p, what)                                                                                                   \
     (BRUNT_GROW((p)->what) ? -1 : (memset(&(p)->what[(p)->what##_count], 0, sizeof *(p)->what), (p)->what##_count++))
 
-int32_t brunt_constraints_dof_node(brunt_constraint_set *p) { return ADD(p, support); }
+int32_t brunt_constraints_dof_node(brunt_constraint_set *p) { return ADD(p, dof_node); }
 
 int32_t brunt_constraints_add(brunt_constraint_set *p) {
-    int32_t at = ADD(p, point);
-    if (at >= 0) p->point[at].first = p->entry_count;
+    int32_t at = ADD(p, constraint);
+    if (at >= 0) p->constraint[at].first = p->entry_count;
     return at;
 }
 
-int32_t brunt_constraints_entry(brunt_constraint_set *p, int32_t support, double weight) {
+int32_t brunt_constraints_entry(brunt_constraint_set *p, int32_t dof_node, double weight) {
     int32_t at = ADD(p, entry);
     if (at < 0) return -1;
-    p->entry[at].support = support;
+    p->entry[at].dof_node = dof_node;
     for (int a = 0; a < 3; a++) p->entry[at].weight[a] = weight;
-    p->point[p->point_count - 1].count++;
+    p->constraint[p->constraint_count - 1].count++;
     return at;
 }
 
 int32_t brunt_constraints_friction_point(brunt_constraint_set *p, const double x[3]) {
-    const int32_t at = ADD(p, lever), first = p->entry_count;
-    brunt_constraint *point = &p->point[p->point_count - 1];
+    const int32_t at = ADD(p, friction_point), first = p->entry_count;
+    brunt_constraint *constraint = &p->constraint[p->constraint_count - 1];
     if (at < 0) return -1;
-    memcpy(p->lever[at].x, x, sizeof p->lever[at].x);
-    for (int32_t e = 0; e < point->count; e++) {
+    memcpy(p->friction_point[at].x, x, sizeof p->friction_point[at].x);
+    for (int32_t e = 0; e < constraint->count; e++) {
         const int32_t entry = ADD(p, entry);
         if (entry < 0) return -1;
-        p->entry[entry].support = p->entry[point->first + e].support;
+        p->entry[entry].dof_node = p->entry[constraint->first + e].dof_node;
     }
-    point->lever = at + 1;
+    constraint->friction_point = at + 1;
     return first;
 }
 
 int brunt_constraints_reserve(brunt_constraint_set *p, int32_t points, int32_t entries) {
-    return BRUNT_RESERVE(p->point, (size_t)points + 1, (size_t)p->point_count) ||
+    return BRUNT_RESERVE(p->constraint, (size_t)points + 1, (size_t)p->constraint_count) ||
                    BRUNT_RESERVE(p->entry, (size_t)entries + 1, (size_t)p->entry_count)
                ? -1
                : 0;
 }
 
 // `first`: of the entries that are weighed.
-static void velocity(const brunt_constraint_set *p, const brunt_constraint *point, int32_t first, bool old,
+static void velocity(const brunt_constraint_set *p, const brunt_constraint *constraint, int32_t first, bool old,
                      double u[3]) {
-    for (int a = 0; a < 3; a++) u[a] = -point->plane[a];
-    for (int32_t e = first; e < first + point->count; e++) {
+    for (int a = 0; a < 3; a++) u[a] = -constraint->plane[a];
+    for (int32_t e = first; e < first + constraint->count; e++) {
         const brunt_constraint_entry *entry = &p->entry[e];
-        const double *v = old ? p->support[entry->support].old : p->support[entry->support].v;
-        double rise = point->facet[0] * v[0] + point->facet[1] * v[1] + point->facet[2] * v[2];
-        for (int a = 0; a < 3; a++) u[a] += entry->weight[a] * v[a] + rise * entry->turn[a];
+        const double *v = old ? p->dof_node[entry->dof_node].old : p->dof_node[entry->dof_node].v;
+        double rise = constraint->facet[0] * v[0] + constraint->facet[1] * v[1] + constraint->facet[2] * v[2];
+        for (int a = 0; a < 3; a++) u[a] += entry->weight[a] * v[a] + rise * entry->height_gradient[a];
     }
 }
 
-void brunt_constraint_velocity(const brunt_constraint_set *p, const brunt_constraint *point, bool old, double u[3]) {
-    velocity(p, point, point->first, old, u);
+void brunt_constraint_velocity(const brunt_constraint_set *p, const brunt_constraint *constraint, bool old,
+                               double u[3]) {
+    velocity(p, constraint, constraint->first, old, u);
 }
 
-// What an entry gives its support of the point's impulse: the transpose of the above.
-static void give(const brunt_constraint *point, const brunt_constraint_entry *entry, const double J[3], double out[3]) {
-    double turn = entry->turn[0] * J[0] + entry->turn[1] * J[1] + entry->turn[2] * J[2];
-    for (int a = 0; a < 3; a++) out[a] = entry->weight[a] * J[a] + turn * point->facet[a];
+// What an entry gives its degree-of-freedom node of the point's impulse: the transpose of the above.
+static void apply_transpose(const brunt_constraint *constraint, const brunt_constraint_entry *entry, const double J[3],
+                            double out[3]) {
+    const double *gradient = entry->height_gradient,
+                 rise = gradient[0] * J[0] + gradient[1] * J[1] + gradient[2] * J[2];
+    for (int a = 0; a < 3; a++) out[a] = entry->weight[a] * J[a] + rise * constraint->facet[a];
 }
 
-static struct brunt_pressing pressing_of(int32_t point, const brunt_constraint_entry *entry) {
-    return (struct brunt_pressing){point,
-                                   {entry->weight[0], entry->weight[1], entry->weight[2]},
-                                   {entry->turn[0], entry->turn[1], entry->turn[2]}};
+static struct brunt_constraint_column column_of(int32_t constraint, const brunt_constraint_entry *entry) {
+    return (struct brunt_constraint_column){
+        constraint,
+        {entry->weight[0], entry->weight[1], entry->weight[2]},
+        {entry->height_gradient[0], entry->height_gradient[1], entry->height_gradient[2]}};
 }
 
-// Entries by support, in the order of the points, each with that of its lever.
+// Entries by support, in the order of the points, each with that of its friction point.
 static int transpose(brunt_constraint_set *p) {
-    size_t entries = (size_t)p->entry_count + 1, supports = (size_t)p->support_count + 1,
-           points = (size_t)p->point_count + (size_t)p->lever_count + 1;
-    if (BRUNT_RESERVE(p->pressing, entries, 0) || BRUNT_RESERVE(p->pressing_first, supports + 1, 0) ||
-        BRUNT_RESERVE(p->given, points, 0) || BRUNT_RESERVE(p->changed, points / GRAIN + 2, 0))
+    size_t entries = (size_t)p->entry_count + 1, dof_nodes = (size_t)p->dof_node_count + 1,
+           points = (size_t)p->constraint_count + (size_t)p->friction_point_count + 1;
+    if (BRUNT_RESERVE(p->column, entries, 0) || BRUNT_RESERVE(p->column_first, dof_nodes + 1, 0) ||
+        BRUNT_RESERVE(p->applied, points, 0) || BRUNT_RESERVE(p->changed, points / GRAIN + 2, 0))
         return -1;
-    int32_t *first = p->pressing_first;
-    memset(first, 0, (supports + 1) * sizeof(int32_t));
-    for (int32_t e = 0; e < p->entry_count; e++) first[p->entry[e].support + 2]++;
-    for (size_t s = 2; s <= supports; s++) first[s] += first[s - 1];
-    for (int32_t k = 0; k < p->point_count; k++) {
-        const brunt_constraint *point = &p->point[k];
-        const int32_t lever = p->point_count + point->lever - 1;
-        memcpy(p->given[k].facet, point->facet, sizeof point->facet);
-        if (point->lever) memcpy(p->given[lever].facet, point->facet, sizeof point->facet);
-        for (int32_t e = point->first; e < point->first + point->count; e++) {
-            int32_t *at = &first[p->entry[e].support + 1];
-            p->pressing[(*at)++] = pressing_of(k, &p->entry[e]);
-            if (point->lever) p->pressing[(*at)++] = pressing_of(lever, &p->entry[e + point->count]);
+    int32_t *first = p->column_first;
+    memset(first, 0, (dof_nodes + 1) * sizeof(int32_t));
+    for (int32_t e = 0; e < p->entry_count; e++) first[p->entry[e].dof_node + 2]++;
+    for (size_t s = 2; s <= dof_nodes; s++) first[s] += first[s - 1];
+    for (int32_t k = 0; k < p->constraint_count; k++) {
+        const brunt_constraint *constraint = &p->constraint[k];
+        const int32_t friction_point = p->constraint_count + constraint->friction_point - 1;
+        memcpy(p->applied[k].facet, constraint->facet, sizeof constraint->facet);
+        if (constraint->friction_point)
+            memcpy(p->applied[friction_point].facet, constraint->facet, sizeof constraint->facet);
+        for (int32_t e = constraint->first; e < constraint->first + constraint->count; e++) {
+            int32_t *at = &first[p->entry[e].dof_node + 1];
+            p->column[(*at)++] = column_of(k, &p->entry[e]);
+            if (constraint->friction_point)
+                p->column[(*at)++] = column_of(friction_point, &p->entry[e + constraint->count]);
         }
     }
     return 0;
 }
 
 // Effective mass of each point alone. Points that nothing can move (all masses infinite) get 0.
-static void weigh_points(void *context, int64_t begin, int64_t end, int worker) {
+static void weigh_constraints(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     brunt_constraint_set *p = context;
-    for (int64_t k = begin * GRAIN; k < end * GRAIN && k < p->point_count; k++) {
-        brunt_constraint *point = &p->point[k];
+    for (int64_t k = begin * GRAIN; k < end * GRAIN && k < p->constraint_count; k++) {
+        brunt_constraint *constraint = &p->constraint[k];
         double alone = 0;
-        for (int32_t e = point->first; e < point->first + point->count; e++) {
+        for (int32_t e = constraint->first; e < constraint->first + constraint->count; e++) {
             double J[3];
-            give(point, &p->entry[e], point->n, J);
-            const double *inverse = p->support[p->entry[e].support].inverse;
+            apply_transpose(constraint, &p->entry[e], constraint->n, J);
+            const double *inverse = p->dof_node[p->entry[e].dof_node].inverse;
             for (int a = 0; a < 3; a++) alone += J[a] * J[a] * inverse[a];
         }
-        point->scale = alone > 0 ? 1 / alone : 0;
+        constraint->scale = alone > 0 ? 1 / alone : 0;
     }
 }
 
-static double greatest(const double weight[3]) { return fmax(fabs(weight[0]), fmax(fabs(weight[1]), fabs(weight[2]))); }
+static double greatest_component(const double weight[3]) {
+    return fmax(fabs(weight[0]), fmax(fabs(weight[1]), fabs(weight[2])));
+}
 
-static void load_supports(void *context, int64_t begin, int64_t end, int worker) {
+static void load_dof_nodes(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     brunt_constraint_set *p = context;
-    for (int64_t s = begin * GRAIN; s < end * GRAIN && s < p->support_count; s++) {
+    for (int64_t s = begin * GRAIN; s < end * GRAIN && s < p->dof_node_count; s++) {
         double load = 0;
-        for (int32_t q = p->pressing_first[s]; q < p->pressing_first[s + 1]; q++) {
-            const struct brunt_pressing *by = &p->pressing[q];
-            double most = greatest(by->weight);
-            if (p->point[by->point].lever) most = fmax(most, greatest(p->pressing[++q].weight));
-            load += most * p->point[by->point].scale;
+        for (int32_t q = p->column_first[s]; q < p->column_first[s + 1]; q++) {
+            const struct brunt_constraint_column *by = &p->column[q];
+            double greatest = greatest_component(by->weight);
+            if (p->constraint[by->constraint].friction_point)
+                greatest = fmax(greatest, greatest_component(p->column[++q].weight));
+            load += greatest * p->constraint[by->constraint].scale;
         }
-        p->support[s].load = load;
+        p->dof_node[s].load = load;
     }
 }
 
@@ -157,141 +166,151 @@ static void load_supports(void *context, int64_t begin, int64_t end, int worker)
 static void sum_rows(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     brunt_constraint_set *p = context;
-    for (int64_t k = begin * GRAIN; k < end * GRAIN && k < p->point_count; k++) {
-        brunt_constraint *point = &p->point[k];
+    for (int64_t k = begin * GRAIN; k < end * GRAIN && k < p->constraint_count; k++) {
+        brunt_constraint *constraint = &p->constraint[k];
         double along[3] = {0};
-        for (int32_t e = point->first; e < point->first + point->count; e++) {
-            const brunt_dof_node *s = &p->support[p->entry[e].support];
-            const double *weight = p->entry[e].weight, *other = p->entry[e + (point->lever ? point->count : 0)].weight;
+        for (int32_t e = constraint->first; e < constraint->first + constraint->count; e++) {
+            const brunt_dof_node *s = &p->dof_node[p->entry[e].dof_node];
+            const double *weight = p->entry[e].weight,
+                         *other = p->entry[e + (constraint->friction_point ? constraint->count : 0)].weight;
             for (int a = 0; a < 3; a++) along[a] += fmax(fabs(weight[a]), fabs(other[a])) * s->load * s->inverse[a];
         }
         for (int a = 0; a < 3; a++) {
-            point->response += point->n[a] * point->n[a] * along[a];
-            point->response_t = fmax(point->response_t, along[a]);
+            constraint->row_sum += constraint->n[a] * constraint->n[a] * along[a];
+            constraint->row_sum_t = fmax(constraint->row_sum_t, along[a]);
         }
-        point->response = fmax(point->response, 1);
-        point->response_t = fmax(point->response_t, 1);
+        constraint->row_sum = fmax(constraint->row_sum, 1);
+        constraint->row_sum_t = fmax(constraint->row_sum_t, 1);
     }
 }
 
 // Brings one point to its condition, as far as it is concerned; the impulse goes to `J`, that of friction to `rub`,
-// which is the same without a lever. Returns the velocity it is worth [m/s].
-static double visit(const brunt_constraint_set *p, brunt_constraint *point, double J[3], double rub[3]) {
+// which is the same without a friction point. Returns the velocity it is worth [m/s].
+static double solve_constraint(const brunt_constraint_set *p, brunt_constraint *constraint, double J[3],
+                               double rub[3]) {
     for (int a = 0; a < 3; a++) J[a] = rub[a] = 0;
-    if (!(point->scale > 0)) return 0;
+    if (!(constraint->scale > 0)) return 0;
     double u[3], along = 0;
-    brunt_constraint_velocity(p, point, false, u);
-    for (int a = 0; a < 3; a++) along += u[a] * point->n[a];
-    double unit = point->scale / point->response;
-    double push = fmax(0, point->push + (point->target - along) * unit), step = push - point->push;
-    point->push = push;
+    brunt_constraint_velocity(p, constraint, false, u);
+    for (int a = 0; a < 3; a++) along += u[a] * constraint->n[a];
+    double unit = constraint->scale / constraint->row_sum;
+    double normal_impulse = fmax(0, constraint->normal_impulse + (constraint->target - along) * unit),
+           step = normal_impulse - constraint->normal_impulse;
+    constraint->normal_impulse = normal_impulse;
     double changed = fabs(step) / unit;
-    for (int a = 0; a < 3; a++) J[a] = step * point->n[a];
-    if (point->friction > 0) {
-        double drag[3], size = 0, moved = 0, unit_t = point->scale / point->response_t;
-        if (point->lever) {
-            velocity(p, point, point->first + point->count, false, u);
-            along = u[0] * point->n[0] + u[1] * point->n[1] + u[2] * point->n[2];
+    for (int a = 0; a < 3; a++) J[a] = step * constraint->n[a];
+    if (constraint->friction > 0) {
+        double friction_impulse[3], size = 0, moved = 0, unit_t = constraint->scale / constraint->row_sum_t;
+        if (constraint->friction_point) {
+            velocity(p, constraint, constraint->first + constraint->count, false, u);
+            along = u[0] * constraint->n[0] + u[1] * constraint->n[1] + u[2] * constraint->n[2];
         }
         for (int a = 0; a < 3; a++) {
-            drag[a] = point->drag[a] - (u[a] - along * point->n[a]) * unit_t;
-            size += drag[a] * drag[a];
+            friction_impulse[a] = constraint->friction_impulse[a] - (u[a] - along * constraint->n[a]) * unit_t;
+            size += friction_impulse[a] * friction_impulse[a];
         }
         size = sqrt(size);
-        double most = point->friction * push;
-        point->slips = size > most;
-        double share = point->slips ? most / size : 1;
+        double limit = constraint->friction * normal_impulse;
+        constraint->slips = size > limit;
+        double share = constraint->slips ? limit / size : 1;
         for (int a = 0; a < 3; a++) {
-            double now = share * drag[a], add = now - point->drag[a];
+            double now = share * friction_impulse[a], add = now - constraint->friction_impulse[a];
             rub[a] += add;
             moved += add * add;
-            point->drag[a] = now;
+            constraint->friction_impulse[a] = now;
         }
         changed = fmax(changed, sqrt(moved) / unit_t);
     }
     return changed;
 }
 
-static void visit_points(void *context, int64_t begin, int64_t end, int worker) {
+static void solve_chunks(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     brunt_constraint_set *p = context;
     for (int64_t c = begin; c < end; c++) {
-        double most = 0;
-        for (int32_t k = (int32_t)c * GRAIN; k < (c + 1) * GRAIN && k < p->point_count; k++) {
-            const int32_t lever = p->point[k].lever;
-            double *J = p->given[k].impulse, *rub = lever ? p->given[p->point_count + lever - 1].impulse : J;
-            double changed = visit(p, &p->point[k], J, rub);
-            most = changed > most ? changed : most;
+        double greatest = 0;
+        for (int32_t k = (int32_t)c * GRAIN; k < (c + 1) * GRAIN && k < p->constraint_count; k++) {
+            const int32_t friction_point = p->constraint[k].friction_point;
+            double *J = p->applied[k].impulse,
+                   *rub = friction_point ? p->applied[p->constraint_count + friction_point - 1].impulse : J;
+            double changed = solve_constraint(p, &p->constraint[k], J, rub);
+            greatest = changed > greatest ? changed : greatest;
         }
-        p->changed[c] = most;
+        p->changed[c] = greatest;
     }
 }
 
-static void move_supports(void *context, int64_t begin, int64_t end, int worker) {
+static void move_dof_nodes(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     brunt_constraint_set *p = context;
-    for (int64_t s = begin * GRAIN; s < end * GRAIN && s < p->support_count; s++) {
+    for (int64_t s = begin * GRAIN; s < end * GRAIN && s < p->dof_node_count; s++) {
         double sum[3] = {0};
-        for (int32_t q = p->pressing_first[s]; q < p->pressing_first[s + 1]; q++) {
-            const struct brunt_pressing *by = &p->pressing[q];
-            const struct brunt_given *given = &p->given[by->point];
-            const double *J = given->impulse, turn = by->turn[0] * J[0] + by->turn[1] * J[1] + by->turn[2] * J[2];
-            for (int a = 0; a < 3; a++) sum[a] += by->weight[a] * J[a] + turn * given->facet[a];
+        for (int32_t q = p->column_first[s]; q < p->column_first[s + 1]; q++) {
+            const struct brunt_constraint_column *by = &p->column[q];
+            const struct brunt_constraint_impulse *applied = &p->applied[by->constraint];
+            const double *J = applied->impulse, *gradient = by->height_gradient,
+                         rise = gradient[0] * J[0] + gradient[1] * J[1] + gradient[2] * J[2];
+            for (int a = 0; a < 3; a++) sum[a] += by->weight[a] * J[a] + rise * applied->facet[a];
         }
-        brunt_dof_node *support = &p->support[s];
+        brunt_dof_node *dof_node = &p->dof_node[s];
         for (int a = 0; a < 3; a++) {
-            support->impulse[a] += sum[a];
-            support->v[a] += sum[a] * support->inverse[a];
+            dof_node->impulse[a] += sum[a];
+            dof_node->v[a] += sum[a] * dof_node->inverse[a];
         }
     }
 }
 
-static void book(brunt_constraint_set *p) {
-    for (int32_t k = 0; k < p->point_count; k++) {
-        const brunt_constraint *point = &p->point[k];
-        if (!(point->push > 0)) continue;
-        point->action->area += point->area;
-        double old[3], now[3], push[3], drag[3], x[3];
-        brunt_constraint_velocity(p, point, true, old);
-        brunt_constraint_velocity(p, point, false, now);
+static void account_constraints(brunt_constraint_set *p) {
+    for (int32_t k = 0; k < p->constraint_count; k++) {
+        const brunt_constraint *constraint = &p->constraint[k];
+        if (!(constraint->normal_impulse > 0)) continue;
+        constraint->action->area += constraint->area;
+        double old[3], now[3], normal_impulse[3], friction_impulse[3], x[3];
+        brunt_constraint_velocity(p, constraint, true, old);
+        brunt_constraint_velocity(p, constraint, false, now);
         for (int a = 0; a < 3; a++) {
             // The account is of the second body: the slave's impulse, or the reaction to it.
-            push[a] = point->sign * point->push * point->n[a], drag[a] = point->sign * point->drag[a];
-            old[a] = point->sign * (old[a] + point->plane[a]), now[a] = point->sign * (now[a] + point->plane[a]);
-            x[a] = point->x[a];
+            normal_impulse[a] = constraint->sign * constraint->normal_impulse * constraint->n[a],
+            friction_impulse[a] = constraint->sign * constraint->friction_impulse[a];
+            old[a] = constraint->sign * (old[a] + constraint->plane[a]),
+            now[a] = constraint->sign * (now[a] + constraint->plane[a]);
+            x[a] = constraint->x[a];
         }
-        brunt_impulse_account_book(point->action, &point->action->normal_loss, push, x, old, now, point->plane);
-        if (point->lever) {
-            velocity(p, point, point->first + point->count, true, old);
-            velocity(p, point, point->first + point->count, false, now);
+        brunt_impulse_account_book(constraint->action, &constraint->action->normal_loss, normal_impulse, x, old, now,
+                                   constraint->plane);
+        if (constraint->friction_point) {
+            velocity(p, constraint, constraint->first + constraint->count, true, old);
+            velocity(p, constraint, constraint->first + constraint->count, false, now);
             for (int a = 0; a < 3; a++) {
-                old[a] = point->sign * (old[a] + point->plane[a]), now[a] = point->sign * (now[a] + point->plane[a]);
-                x[a] = p->lever[point->lever - 1].x[a];
+                old[a] = constraint->sign * (old[a] + constraint->plane[a]),
+                now[a] = constraint->sign * (now[a] + constraint->plane[a]);
+                x[a] = p->friction_point[constraint->friction_point - 1].x[a];
             }
         }
-        if (point->friction > 0)
-            brunt_impulse_account_book(point->action, &point->action->friction_loss, drag, x, old, now, point->plane);
+        if (constraint->friction > 0)
+            brunt_impulse_account_book(constraint->action, &constraint->action->friction_loss, friction_impulse, x, old,
+                                       now, constraint->plane);
     }
 }
 
 int brunt_constraints_solve(brunt_constraint_set *p, int sweeps, double tolerance, int threads, brunt_timer *timer) {
-    if (!p->point_count) return 0;
+    if (!p->constraint_count) return 0;
     if (transpose(p)) return -1;
-    const int64_t chunks = (p->point_count + GRAIN - 1) / GRAIN, groups = (p->support_count + GRAIN - 1) / GRAIN;
-    brunt_parallel(threads, chunks, 1, weigh_points, p, timer);
-    brunt_parallel(threads, groups, 1, load_supports, p, timer);
+    const int64_t chunks = (p->constraint_count + GRAIN - 1) / GRAIN, groups = (p->dof_node_count + GRAIN - 1) / GRAIN;
+    brunt_parallel(threads, chunks, 1, weigh_constraints, p, timer);
+    brunt_parallel(threads, groups, 1, load_dof_nodes, p, timer);
     brunt_parallel(threads, chunks, 1, sum_rows, p, timer);
     double first = 0;
     int sweep = 0;
     while (sweep < sweeps) {
-        brunt_parallel(threads, chunks, 1, visit_points, p, timer);
-        brunt_parallel(threads, groups, 1, move_supports, p, timer);
+        brunt_parallel(threads, chunks, 1, solve_chunks, p, timer);
+        brunt_parallel(threads, groups, 1, move_dof_nodes, p, timer);
         sweep++;
-        double most = 0;
-        for (int64_t c = 0; c < chunks; c++) most = fmax(most, p->changed[c]);
-        first = fmax(first, most);
-        if (most <= tolerance * first) break;
+        double greatest = 0;
+        for (int64_t c = 0; c < chunks; c++) greatest = fmax(greatest, p->changed[c]);
+        first = fmax(first, greatest);
+        if (greatest <= tolerance * first) break;
     }
-    book(p);
+    account_constraints(p);
     return sweep;
 }

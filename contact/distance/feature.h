@@ -22,19 +22,19 @@ typedef struct brunt_shared {
     int32_t node[4], count;
 } brunt_shared;
 // Leaves those that `face` has, too; of none before it, all its own. Whether there are any; else `shared` stays.
-bool brunt_feature_share(const brunt_contact_surface *skin, int32_t face, brunt_shared *shared);
+bool brunt_feature_share(const brunt_contact_surface *surface, int32_t face, brunt_shared *shared);
 
 // Unit mean of the faces' normals at the feature: at a corner each by its angle there, so that it does not depend on
 // how a surface is cut into faces.
-bool brunt_feature_normal(const brunt_contact_surface *skin, const brunt_feature *feature, const int32_t *face,
+bool brunt_feature_normal(const brunt_contact_surface *surface, const brunt_feature *feature, const int32_t *face,
                           int count, double n[3]);
 // Shares of the ends of an edge or corner in the point of it that is nearest to x.
-void brunt_feature_values(const brunt_contact_surface *skin, const brunt_feature *feature, const double x[3],
+void brunt_feature_values(const brunt_contact_surface *surface, const brunt_feature *feature, const double x[3],
                           double weight[2]);
 
 // A feature as master: its nodes and those of the faces about it that are seen along n, with their weights where x is
 // and the gradients of those across n; `height` of x above the feature along n. The motion is that of the feature's
 // nodes, and turns as its faces do on the mean: exact for every rigid motion. How many nodes.
-int brunt_feature_weights(const brunt_contact_surface *skin, const brunt_feature *feature, const double n[3],
+int brunt_feature_weights(const brunt_contact_surface *surface, const brunt_feature *feature, const double n[3],
                           const double x[3], int32_t node[BRUNT_FEATURE_NODES], double weight[BRUNT_FEATURE_NODES],
                           double gradient[BRUNT_FEATURE_NODES][3], double *height);

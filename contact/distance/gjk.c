@@ -1,10 +1,10 @@
 // Distance between two bodies near a node: the algorithm of Gilbert, Johnson and Keerthi (1988).
 //
-// What a body has near a node is the convex hull of its particles, each an ellipsoid of material (reach.c); only the
-// farthest point along a direction is ever asked for. The difference of two hulls holds the origin when they overlap;
-// else its point nearest the origin gives distance and direction. That point is approached by simplices of at most four
-// support points. Every direction tried bounds the distance from below, and the best bound is what is returned: a
-// direction that does separate the bodies, however early the search ends.
+// What a body has near a node is the convex hull of its particles, each an ellipsoid of material (particle_extent.c);
+// only the farthest point along a direction is ever asked for. The difference of two hulls holds the origin when they
+// overlap; else its point nearest the origin gives distance and direction. That point is approached by simplices of at
+// most four support points. Every direction tried bounds the distance from below, and the best bound is what is
+// returned: a direction that does separate the bodies, however early the search ends.
 #include <math.h>
 #include <string.h>
 

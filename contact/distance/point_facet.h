@@ -15,11 +15,11 @@ typedef struct brunt_closest {
 // What is as near as this share of a facet's width is equally near.
 #define BRUNT_TIE 1e-6
 
-brunt_closest brunt_closest_on_face(const brunt_contact_surface *skin, int32_t face, const double x[3]);
+brunt_closest brunt_closest_on_face(const brunt_contact_surface *surface, int32_t face, const double x[3]);
 // Weights of the facet's nodes where x projects onto its plane, alone.
-void brunt_face_values(const brunt_contact_surface *skin, int32_t face, int triangle, const double x[3],
+void brunt_face_values(const brunt_contact_surface *surface, int32_t face, int triangle, const double x[3],
                        double weight[4]);
 // Weights of the facet's nodes where x projects onto its plane (they may be outside 0..1), their gradients along the
 // plane, and the distance of x from it. Of a quadrilateral: of the triangle found.
-void brunt_face_weights(const brunt_contact_surface *skin, int32_t face, int triangle, const double x[3],
+void brunt_face_weights(const brunt_contact_surface *surface, int32_t face, int triangle, const double x[3],
                         double weight[4], double gradient[4][3], double normal[3], double *height);

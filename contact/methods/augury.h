@@ -6,9 +6,10 @@
 //   surface  boundary nodes against the other body's surface as the grid averages it: impulses along its normal
 //   smooth   the same with velocities extended affinely from the faces, and reactions by the transpose
 //
-// All of them change the velocities of the skin, fill its contact state (gap, impulse, state), and add what they did to
-// `last` of the pairs, impulses being those on the second body. The change of kinetic energy that the velocities of the
-// nodes mean, from `old` to what they are now, is external_work - normal_loss - friction_loss plus what the forces did.
+// All of them change the velocities of the surface, fill its contact state (gap, impulse, state), and add what they did
+// to `last` of the pairs, impulses being those on the second body. The change of kinetic energy that the velocities of
+// the nodes mean, from `old` to what they are now, is external_work - normal_loss - friction_loss plus what the forces
+// did.
 #pragma once
 
 #include "contact/contact.h"
@@ -18,7 +19,7 @@ typedef struct brunt_augury_workspace brunt_augury_workspace;
 
 // The published form: spline over four nodes a direction, time scale tau = dt, N = m->iterations. It acts on all
 // boundary nodes of active bodies that have a pair, in contact or not. `transfer`: BRUNT_PIC, or BRUNT_APIC, which
-// keeps B in skin->affine (0 at the start of a run). 0, or -1: out of memory.
+// keeps B in surface->affine (0 at the start of a run). 0, or -1: out of memory.
 int brunt_augury_paper(const brunt_contact_context *m, brunt_transfer transfer, brunt_augury_workspace **work);
 
 // Nodes against averaged surfaces, m->iterations sweeps, each with one of the two bodies as the one whose nodes are

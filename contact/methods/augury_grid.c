@@ -91,7 +91,7 @@ int brunt_augury_cloud_add(brunt_augury_grid *grid, brunt_augury_cloud *cloud, i
     for (int a = 0; a < 3; a++) {
         double first = 0;
         if (a < grid->dim) {
-            brunt_augury_weights(grid->width, x[a] / grid->cell, &first, p->weight[a]);
+            brunt_bspline_about(grid->width, x[a] / grid->cell, &first, p->weight[a]);
         } else {
             p->weight[a][0] = 1, p->weight[a][1] = p->weight[a][2] = p->weight[a][3] = 0;
         }

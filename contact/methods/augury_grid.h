@@ -13,6 +13,7 @@
 #include <stdint.h>
 
 #include "base/parallel.h"
+#include "grid/bspline.h"
 
 enum { BRUNT_AUGURY_EDGE = 4, BRUNT_AUGURY_STENCIL = 64, BRUNT_AUGURY_COLOURS = 8 };
 // Points from which on a phase is worth more than one thread: a pair goes through some hundred phases a step, and on a
@@ -44,7 +45,8 @@ typedef struct brunt_augury_slot {
 } brunt_augury_slot;
 
 typedef struct brunt_augury_grid {
-    int dim, width;  // width: 3, quadratic B-spline, D = cell^2/4; 4, the paper's spline, D = cell^2/2
+    int dim, width;  // width: 3, quadratic B-spline, D = cell^2/4; 4, the paper's spline, D = cell^2/2 (its eq. (62)
+                     // prints two of the factors as 1/8, which sums to less than one)
     double cell;     // [m]
     int block_nodes; // 64, 2D 16
     int32_t block_count;
@@ -57,21 +59,6 @@ typedef struct brunt_augury_grid {
     int64_t epoch;
     size_t coord_capacity, next_capacity, reached_capacity, coloured_capacity, slot_capacity;
 } brunt_augury_grid;
-
-// Weights of `width` nodes from `first` on, for a point at xi [cells].
-static inline void brunt_augury_weights(int width, double xi, double *first, double w[4]) {
-    if (width == 3) {
-        double centre = floor(xi + 0.5), t = xi - centre;
-        *first = centre - 1;
-        w[0] = 0.5 * (0.5 - t) * (0.5 - t), w[1] = 0.75 - t * t, w[2] = 0.5 * (0.5 + t) * (0.5 + t), w[3] = 0;
-        return;
-    }
-    // The mean of two quadratic B-splines half a cell to either side; the paper's eq. (62) prints two of the factors as
-    // 1/8, which sums to less than one.
-    double below = floor(xi), t = xi - below, a = (1 - t) * (1 - t), b = 1 + 2 * t - 2 * t * t, c = t * t;
-    *first = below - 1;
-    w[0] = a / 4, w[1] = (a + b) / 4, w[2] = (b + c) / 4, w[3] = c / 4;
-}
 
 // Second moment of the weights, the same wherever the point lies [m^2].
 static inline double brunt_augury_moment(const brunt_augury_grid *grid) {

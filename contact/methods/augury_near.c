@@ -60,7 +60,7 @@ static int compare(const void *p, const void *q) {
 }
 
 int brunt_augury_near_find(brunt_augury_near *near, const brunt_contact_context *m, double margin) {
-    const brunt_contact_surface *s = m->skin;
+    const brunt_contact_surface *s = m->surface;
     const int axis = sweep_axis(s);
     near->count = 0;
     if (sort_bodies(near, s, axis)) return -1;
@@ -92,7 +92,7 @@ int brunt_augury_near_find(brunt_augury_near *near, const brunt_contact_context 
 typedef struct bound_job {
     const double (*x)[3];
     const int32_t *range;
-    const brunt_contact_surface *skin;
+    const brunt_contact_surface *surface;
     brunt_augury_box *run;
 } bound_job;
 
@@ -104,7 +104,7 @@ static void bound_runs(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     const bound_job *j = context;
     for (int k = (int)begin; k < end; k++) {
-        if (!j->skin->active[k]) continue;
+        if (!j->surface->active[k]) continue;
         brunt_augury_box *box = j->run + run_of(j->range, k);
         for (int32_t i = j->range[k]; i < j->range[k + 1]; i += RUN, box++) {
             for (int a = 0; a < 3; a++) box->low[a] = INFINITY, box->high[a] = -INFINITY;

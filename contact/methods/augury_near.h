@@ -3,7 +3,7 @@
 
 #include "contact/surface/contact_surface.h"
 
-// Two bodies with a pair whose boxes come close: numbers in the skin, a's index among all bodies below b's.
+// Two bodies with a pair whose boxes come close: numbers in the surface, a's index among all bodies below b's.
 typedef struct brunt_augury_neighbours {
     int32_t pair, a, b;
 } brunt_augury_neighbours;
@@ -22,21 +22,22 @@ typedef struct brunt_augury_near {
     size_t found_capacity, order_capacity, node_run_capacity, face_run_capacity;
 } brunt_augury_near;
 
-// Index among all bodies of the skin's body k, which has nodes.
-static inline int brunt_augury_body(const brunt_contact_surface *skin, int k) {
-    return skin->body[skin->node_range[k]];
+// Index among all bodies of the surface's body k, which has nodes.
+static inline int brunt_augury_body(const brunt_contact_surface *surface, int k) {
+    return surface->body[surface->node_range[k]];
 }
 
 // Active bodies with a pair of method augury that come closer than `margin` [m] by their boxes. 0, or -1: out of
 // memory.
 int brunt_augury_near_find(brunt_augury_near *near, const brunt_contact_context *m, double margin);
 // Boxes of runs, once a step, before the next.
-int brunt_augury_near_runs(brunt_augury_near *near, const brunt_contact_surface *skin, int threads, brunt_timer *timer);
+int brunt_augury_near_runs(brunt_augury_near *near, const brunt_contact_surface *surface, int threads,
+                           brunt_timer *timer);
 
 // Called with each point of a body's surface inside a box; returns 0 to go on.
 typedef int brunt_augury_visit_fn(void *context, int32_t item, const double x[3]);
-// Nodes (faces: their centres) of the skin's body k in the box, in order. What `visit` returned.
-int brunt_augury_near_visit(const brunt_augury_near *near, const brunt_contact_surface *skin, int k, bool faces,
+// Nodes (faces: their centres) of the surface's body k in the box, in order. What `visit` returned.
+int brunt_augury_near_visit(const brunt_augury_near *near, const brunt_contact_surface *surface, int k, bool faces,
                             const brunt_augury_box *box, brunt_augury_visit_fn *visit, void *context);
 
 void brunt_augury_near_free(brunt_augury_near *near);

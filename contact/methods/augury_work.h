@@ -5,30 +5,30 @@
 #include "contact/methods/augury_grid.h"
 #include "contact/methods/augury_near.h"
 
-typedef struct brunt_augury_meet brunt_augury_meet;     // surface and smooth (augury_surface.c)
-typedef struct brunt_augury_filter brunt_augury_filter; // paper (augury_paper.c)
+typedef struct brunt_averaged_work brunt_averaged_work;   // surface and smooth (averaged_surface.c)
+typedef struct brunt_published_work brunt_published_work; // paper (published.c)
 
 struct brunt_augury_workspace {
     brunt_augury_near near;
     brunt_augury_grid grid;
     brunt_augury_cloud cloud[4]; // surface: nodes of a, of b, faces of a, of b; paper: all nodes
-    brunt_augury_meet *meet;
-    brunt_augury_filter *filter;
+    brunt_averaged_work *averaged;
+    brunt_published_work *published;
 };
 
 // The workspace, made when there is none. NULL: out of memory.
 brunt_augury_workspace *brunt_augury_work(brunt_augury_workspace **work);
-void brunt_augury_meet_free(brunt_augury_meet *meet);
-void brunt_augury_filter_free(brunt_augury_filter *filter);
+void brunt_averaged_work_free(brunt_averaged_work *averaged);
+void brunt_published_work_free(brunt_published_work *published);
 
-// An impulse on a node of the skin [N s]: on components with prescribed motion what their support takes.
+// An impulse on a node of the surface [N s]: on components with prescribed motion what their support takes.
 typedef struct brunt_augury_impulse {
     int32_t node;
     double J[3];
 } brunt_augury_impulse;
 
-// Adds an impulse to a pair's account and to the skin's contact state, once velocities are final. `second`: the node
+// Adds an impulse to a pair's account and to the surface's contact state, once velocities are final. `second`: the node
 // belongs to the pair's second body, whose impulses are the pair's. Returns the loss [J], which the caller divides
 // between normal_loss and friction_loss.
-double brunt_augury_book(brunt_contact_surface *skin, brunt_impulse_account *action,
-                         const brunt_augury_impulse *impulse, bool second);
+double brunt_impulse_account_node(brunt_contact_surface *surface, brunt_impulse_account *action,
+                                  const brunt_augury_impulse *impulse, bool second);

@@ -19,9 +19,9 @@ static int add_point(void *context, int32_t item, const double x[3]) {
 }
 
 // Points of each body within reach of the other's box. 1 when there are some of each, 0, or -1: out of memory.
-int brunt_averaged_collect(job *j, int a, int b) {
+int brunt_averaged_collect(averaged_job *j, int a, int b) {
     brunt_augury_workspace *w = j->w;
-    const brunt_contact_surface *s = j->skin;
+    const brunt_contact_surface *s = j->surface;
     const double reach = REACH * j->m->cell;
     brunt_augury_grid_start(&w->grid, s->dim, WIDTH, j->m->cell);
     for (int c = 0; c < 4; c++) w->cloud[c].count = 0;
@@ -38,10 +38,10 @@ int brunt_averaged_collect(job *j, int a, int b) {
 
 // Most points near a box are not near the body in it: blocks from which no node is reached that faces of both reach are
 // left out throughout.
-static int mark_blocks(job *j) {
+static int mark_blocks(averaged_job *j) {
     const brunt_augury_grid *grid = &j->w->grid;
-    if (NEED(j->meet, visitors, grid->block_count, 0)) return -1;
-    uint8_t *mark = j->meet->visitors;
+    if (NEED(j->work, visitors, grid->block_count, 0)) return -1;
+    uint8_t *mark = j->work->visitors;
     memset(mark, 0, (size_t)grid->block_count);
     for (int round = 0; round < 2; round++)
         for (int32_t c = 0; c < grid->colour_first[BRUNT_AUGURY_COLOURS]; c++) {
@@ -59,21 +59,21 @@ static int mark_blocks(job *j) {
     return 0;
 }
 
-static bool worth(const job *j, const brunt_augury_point *p) { return j->meet->visitors[p->block] & 4; }
+static bool is_near(const averaged_job *j, const brunt_augury_point *p) { return j->work->visitors[p->block] & 4; }
 
 static void add_faces(void *context, int32_t begin, int32_t end) {
-    const job *j = context;
+    const averaged_job *j = context;
     const brunt_augury_cloud *cloud = &j->w->cloud[2 + j->of];
-    if (!worth(j, &cloud->point[begin])) return;
+    if (!is_near(j, &cloud->point[begin])) return;
     for (int32_t k = begin; k < end; k++) {
         const int32_t f = cloud->item[k];
-        const double *n = j->skin->face_normal[f], area = j->skin->face_area[f];
+        const double *n = j->surface->face_normal[f], area = j->surface->face_area[f];
         const double add[4] = {area, area * n[0], area * n[1], area * n[2]};
         int32_t at[BRUNT_AUGURY_STENCIL];
         double w[BRUNT_AUGURY_STENCIL];
         int count = brunt_augury_stencil(&j->w->grid, &cloud->point[k], at, w);
         for (int e = 0; e < count; e++) {
-            double *s = j->meet->sums[2 * at[e] + j->of].of;
+            double *s = j->work->sums[2 * at[e] + j->of].of;
             for (int a = 0; a < 4; a++) s[a] += w[e] * add[a];
         }
     }
@@ -97,27 +97,28 @@ static bool direction(const surface_sums s[2], double d[3]) {
 }
 
 // Second round of the sums, and the facing surfaces: faces that look along d by more than `least`.
-static void add_looking_faces(const job *j, int32_t begin, int32_t end, double least, bool facing) {
+static void add_looking_faces(const averaged_job *j, int32_t begin, int32_t end, double least, bool facing) {
     const brunt_augury_cloud *cloud = &j->w->cloud[2 + j->of];
     const double sign = j->of ? -1 : 1;
-    if (!worth(j, &cloud->point[begin])) return;
+    if (!is_near(j, &cloud->point[begin])) return;
     for (int32_t k = begin; k < end; k++) {
         const int32_t f = cloud->item[k];
-        const double *n = j->skin->face_normal[f], *x = j->skin->face_centre[f], area_f = j->skin->face_area[f];
+        const double *n = j->surface->face_normal[f], *x = j->surface->face_centre[f],
+                     area_f = j->surface->face_area[f];
         const double add[4] = {area_f, area_f * n[0], area_f * n[1], area_f * n[2]};
         int32_t at[BRUNT_AUGURY_STENCIL];
         double w[BRUNT_AUGURY_STENCIL];
         int count = brunt_augury_stencil(&j->w->grid, &cloud->point[k], at, w);
         for (int e = 0; e < count; e++) {
-            const int32_t i = j->meet->shared_of[at[e]];
-            if (i < 0 || sign * dot(j->meet->heading[i].d, n) <= least) continue;
+            const int32_t i = j->work->shared_of[at[e]];
+            if (i < 0 || sign * dot(j->work->heading[i].d, n) <= least) continue;
             if (facing) {
-                side *s = &j->meet->shared[i].side[j->of];
+                side *s = &j->work->shared[i].side[j->of];
                 const double area = w[e] * add[0];
                 s->area += area;
                 for (int a = 0; a < 3; a++) s->X[a] += area * x[a], s->n[a] += area * n[a];
             } else {
-                double *s = j->meet->sums[2 * at[e] + j->of].of;
+                double *s = j->work->sums[2 * at[e] + j->of].of;
                 for (int a = 0; a < 4; a++) s[a] += w[e] * add[a];
             }
         }
@@ -132,118 +133,118 @@ static void face_faces(void *context, int32_t begin, int32_t end) {
 }
 
 static void add_masses(void *context, int32_t begin, int32_t end) {
-    const job *j = context;
+    const averaged_job *j = context;
     const brunt_augury_cloud *cloud = &j->w->cloud[j->of];
     const double sign = j->of ? -1 : 1;
-    if (!worth(j, &cloud->point[begin])) return;
+    if (!is_near(j, &cloud->point[begin])) return;
     for (int32_t k = begin; k < end; k++) {
         const int32_t p = cloud->item[k];
         int32_t at[BRUNT_AUGURY_STENCIL];
         double w[BRUNT_AUGURY_STENCIL];
         int count = brunt_augury_stencil(&j->w->grid, &cloud->point[k], at, w);
         for (int e = 0; e < count; e++) {
-            const int32_t i = j->meet->shared_of[at[e]];
-            if (i < 0 || sign * dot(j->meet->heading[i].d, j->skin->normal[p]) <= FACING_NODE) continue;
-            side *s = &j->meet->shared[i].side[j->of];
-            s->mass += w[e] * j->skin->mass[p];
+            const int32_t i = j->work->shared_of[at[e]];
+            if (i < 0 || sign * dot(j->work->heading[i].d, j->surface->normal[p]) <= FACING_NODE) continue;
+            side *s = &j->work->shared[i].side[j->of];
+            s->mass += w[e] * j->surface->mass[p];
             for (int a = 0; a < 3; a++)
-                if (!(j->skin->inverse[p][a] > 0)) s->held[a] += w[e] * j->skin->mass[p], s->rigid = true;
+                if (!(j->surface->inverse[p][a] > 0)) s->fixed[a] += w[e] * j->surface->mass[p], s->rigid = true;
         }
     }
 }
 
-void brunt_averaged_scatter(job *j, int cloud, brunt_augury_scatter_fn *each) {
+void brunt_averaged_scatter(averaged_job *j, int cloud, brunt_augury_scatter_fn *each) {
     j->of = cloud % 2;
     brunt_augury_scatter(&j->w->grid, &j->w->cloud[cloud], each, j, j->m->threads, j->m->timer);
 }
 
 // The grid nodes where the two meet, and the direction there. 1 when there are any, 0, or -1: out of memory.
-int brunt_averaged_orient(job *j) {
-    brunt_augury_meet *meet = j->meet;
+int brunt_averaged_orient(averaged_job *j) {
+    brunt_averaged_work *work = j->work;
     const int32_t nodes = j->w->grid.block_count * j->w->grid.block_nodes;
-    if (NEED(meet, sums, 2 * nodes, 0) || NEED(meet, shared_of, nodes, 0) || mark_blocks(j)) return -1;
-    memset(meet->sums, 0, 2 * (size_t)nodes * sizeof *meet->sums);
+    if (NEED(work, sums, 2 * nodes, 0) || NEED(work, shared_of, nodes, 0) || mark_blocks(j)) return -1;
+    memset(work->sums, 0, 2 * (size_t)nodes * sizeof *work->sums);
     for (int b = 0; b < 2; b++) brunt_averaged_scatter(j, 2 + b, add_faces);
-    meet->shared_count = 0;
+    work->shared_count = 0;
     for (int32_t i = 0; i < nodes; i++) {
-        surface_sums *s = &meet->sums[2 * i];
+        surface_sums *s = &work->sums[2 * i];
         double d[3];
-        meet->shared_of[i] = -1;
+        work->shared_of[i] = -1;
         if (s[0].of[0] == 0 || s[1].of[0] == 0 || !direction(s, d)) continue;
-        if (NEED(meet, shared, meet->shared_count + 1, meet->shared_count) ||
-            NEED(meet, heading, meet->shared_count + 1, meet->shared_count))
+        if (NEED(work, shared, work->shared_count + 1, work->shared_count) ||
+            NEED(work, heading, work->shared_count + 1, work->shared_count))
             return -1;
-        shared_node *n = &meet->shared[meet->shared_count];
+        shared_node *n = &work->shared[work->shared_count];
         *n = (shared_node){.x = {0}};
-        meet->heading[meet->shared_count] = (heading){{d[0], d[1], d[2]}};
+        work->heading[work->shared_count] = (heading){{d[0], d[1], d[2]}};
         brunt_augury_position(&j->w->grid, i, n->x);
-        meet->shared_of[i] = meet->shared_count++;
+        work->shared_of[i] = work->shared_count++;
         s[0] = s[1] = (surface_sums){0};
     }
-    if (!meet->shared_count) return 0;
+    if (!work->shared_count) return 0;
     for (int b = 0; b < 2; b++) brunt_averaged_scatter(j, 2 + b, refine_faces);
     bool any = false;
     for (int32_t i = 0; i < nodes; i++)
-        if (meet->shared_of[i] >= 0) any |= direction(&meet->sums[2 * i], meet->heading[meet->shared_of[i]].d);
+        if (work->shared_of[i] >= 0) any |= direction(&work->sums[2 * i], work->heading[work->shared_of[i]].d);
     return any;
 }
 
 // Facing surfaces and masses.
-void brunt_averaged_face(job *j) {
-    brunt_augury_meet *meet = j->meet;
+void brunt_averaged_face(averaged_job *j) {
+    brunt_averaged_work *work = j->work;
     for (int b = 0; b < 2; b++) brunt_averaged_scatter(j, 2 + b, face_faces), brunt_averaged_scatter(j, b, add_masses);
-    for (int32_t i = 0; i < meet->shared_count; i++)
+    for (int32_t i = 0; i < work->shared_count; i++)
         for (int b = 0; b < 2; b++) {
-            side *s = &meet->shared[i].side[b];
+            side *s = &work->shared[i].side[b];
             s->master = s->mass > 0 && s->area > 0;
             if (!s->master) continue;
             normalise(s->n);
             for (int a = 0; a < 3; a++) {
                 s->X[a] /= s->area;
-                s->share[a] = 1 / (s->held[a] > 0 ? s->held[a] : s->mass);
-                s->inverse[a] = s->held[a] > 0 ? 0 : 1 / s->mass;
+                s->share[a] = 1 / (s->fixed[a] > 0 ? s->fixed[a] : s->mass);
+                s->inverse[a] = s->fixed[a] > 0 ? 0 : 1 / s->mass;
             }
         }
 }
 
 // Where the surface of the other body is, as the slave sees it.
-static void find_surface(const job *j, party *p, double sum) {
+static void find_surface(const averaged_job *j, averaged_node *p, double sum) {
     entry *e = entries_of(j, p, false);
-    const int other = p - j->meet->party < j->party_first[1];
-    const double *x = j->skin->x[p->node];
+    const int other = p - j->work->averaged_node < j->node_first[1];
+    const double *x = j->surface->x[p->node];
     p->meets = false;
     p->gap = 0;
     p->n[0] = p->n[1] = p->n[2] = 0;
     if (sum < LEAST_WEIGHT) return;
     for (int k = 0; k < p->slave_count; k++) {
-        const side *s = &j->meet->shared[e[k].at].side[other];
+        const side *s = &j->work->shared[e[k].at].side[other];
         e[k].w /= sum;
         for (int a = 0; a < 3; a++) p->n[a] += e[k].w * s->n[a], p->gap += e[k].w * s->n[a] * (x[a] - s->X[a]);
     }
-    p->meets = normalise(p->n) >= LEAST_NORMAL && -dot(p->n, j->skin->normal[p->node]) > SLAVE &&
+    p->meets = normalise(p->n) >= LEAST_NORMAL && -dot(p->n, j->surface->normal[p->node]) > SLAVE &&
                p->gap >= -DEEPEST * j->m->cell;
-    if (p->meets && p->gap < j->skin->gap[p->node]) j->skin->gap[p->node] = p->gap;
+    if (p->meets && p->gap < j->surface->output.gap[p->node]) j->surface->output.gap[p->node] = p->gap;
 }
 
 void brunt_averaged_list_entries(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
-    const job *j = context;
+    const averaged_job *j = context;
     for (int64_t k = begin; k < end; k++) {
-        party *p = &j->meet->party[k];
-        const int of = k >= j->party_first[1];
-        const int32_t in_cloud = (int32_t)k - j->party_first[of];
+        averaged_node *p = &j->work->averaged_node[k];
+        const int of = k >= j->node_first[1];
+        const int32_t in_cloud = (int32_t)k - j->node_first[of];
         const brunt_augury_cloud *cloud = &j->w->cloud[of];
-        *p = (party){.node = cloud->item[in_cloud], .touched = -1};
-        if (!worth(j, &cloud->point[in_cloud])) continue;
+        *p = (averaged_node){.node = cloud->item[in_cloud], .touched = -1};
+        if (!is_near(j, &cloud->point[in_cloud])) continue;
         entry *master = entries_of(j, p, true), *slave = entries_of(j, p, false);
         int32_t at[BRUNT_AUGURY_STENCIL];
         double w[BRUNT_AUGURY_STENCIL], sum = 0;
         int count = brunt_augury_stencil(&j->w->grid, &cloud->point[in_cloud], at, w);
         for (int e = 0; e < count; e++) {
-            const int32_t i = j->meet->shared_of[at[e]];
+            const int32_t i = j->work->shared_of[at[e]];
             if (i < 0) continue;
-            const shared_node *n = &j->meet->shared[i];
-            double looks = (of ? -1 : 1) * dot(j->meet->heading[i].d, j->skin->normal[p->node]);
+            const shared_node *n = &j->work->shared[i];
+            double looks = (of ? -1 : 1) * dot(j->work->heading[i].d, j->surface->normal[p->node]);
             if (looks > FACING_NODE && n->side[of].master) master[p->master_count++] = (entry){w[e], i};
             if (looks > SLAVE && n->side[!of].master) slave[p->slave_count++] = (entry){w[e], i}, sum += w[e];
         }

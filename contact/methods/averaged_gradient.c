@@ -54,15 +54,15 @@ void brunt_averaged_make_facets(const brunt_contact_surface *s, used_face *f) {
 // which is exact for rigid motions.
 void brunt_averaged_measure_faces(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
-    const job *j = context;
+    const averaged_job *j = context;
     for (int64_t i = begin; i < end; i++) {
-        used_face *f = &j->meet->face[j->face_first[j->master] + i];
-        const int32_t *node = j->skin->face[f->face];
+        used_face *f = &j->work->face[j->face_first[j->master] + i];
+        const int32_t *node = j->surface->face[f->face];
         memset(f->L, 0, sizeof f->L);
         for (int t = 0; t < f->facet_count; t++) {
             const facet *c = &f->facet[t];
             for (int k = 0; k < c->count; k++) {
-                const double *v = j->skin->v[node[c->corner[k]]], *g = c->g[k], rise = dot(c->n, v);
+                const double *v = j->surface->v[node[c->corner[k]]], *g = c->g[k], rise = dot(c->n, v);
                 for (int a = 0; a < 3; a++)
                     for (int b = 0; b < 3; b++) f->L[3 * a + b] += c->weight * (v[a] * g[b] - rise * g[a] * c->n[b]);
             }
@@ -72,14 +72,14 @@ void brunt_averaged_measure_faces(void *context, int64_t begin, int64_t end, int
 
 void brunt_averaged_measure_nodes(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
-    const job *j = context;
+    const averaged_job *j = context;
     for (int64_t i = begin; i < end; i++) {
-        touched_node *t = &j->meet->touched[j->touched_first[j->master] + i];
+        changed_node *t = &j->work->touched[j->touched_first[j->master] + i];
         if (!t->master) continue;
         memset(t->C, 0, sizeof t->C);
         memset(t->D, 0, sizeof t->D);
-        for (int32_t q = j->skin->face_first[t->node]; q < j->skin->face_first[t->node + 1]; q++) {
-            const double *L = j->meet->face[j->meet->face_of[j->skin->face_of[q]]].L;
+        for (int32_t q = j->surface->face_first[t->node]; q < j->surface->face_first[t->node + 1]; q++) {
+            const double *L = j->work->face[j->work->face_of[j->surface->face_of[q]]].L;
             for (int a = 0; a < 9 && t->area > 0; a++) t->C[a] += L[a] / t->area;
         }
     }
@@ -89,12 +89,12 @@ void brunt_averaged_measure_nodes(void *context, int64_t begin, int64_t end, int
 //   F_k = weight (E g_k - n (g_k . E n)).
 void brunt_averaged_load_faces(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
-    const job *j = context;
+    const averaged_job *j = context;
     for (int64_t i = begin; i < end; i++) {
-        used_face *f = &j->meet->face[j->face_first[j->master] + i];
+        used_face *f = &j->work->face[j->face_first[j->master] + i];
         memset(f->E, 0, sizeof f->E);
-        for (int k = 0; k < 4 && j->skin->face[f->face][k] >= 0; k++) {
-            const touched_node *t = &j->meet->touched[j->meet->touched_of[j->skin->face[f->face][k]]];
+        for (int k = 0; k < 4 && j->surface->face[f->face][k] >= 0; k++) {
+            const changed_node *t = &j->work->touched[j->work->touched_of[j->surface->face[f->face][k]]];
             for (int a = 0; a < 9 && t->master && t->area > 0; a++) f->E[a] += t->D[a] / t->area;
         }
     }
@@ -102,24 +102,24 @@ void brunt_averaged_load_faces(void *context, int64_t begin, int64_t end, int wo
 
 void brunt_averaged_give_dipoles(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
-    const job *j = context;
+    const averaged_job *j = context;
     for (int64_t i = begin; i < end; i++) {
-        touched_node *t = &j->meet->touched[j->touched_first[j->master] + i];
+        changed_node *t = &j->work->touched[j->touched_first[j->master] + i];
         double F[3] = {0};
-        for (int32_t q = j->skin->face_first[t->node]; q < j->skin->face_first[t->node + 1]; q++) {
-            const int32_t used = j->meet->face_of[j->skin->face_of[q]];
+        for (int32_t q = j->surface->face_first[t->node]; q < j->surface->face_first[t->node + 1]; q++) {
+            const int32_t used = j->work->face_of[j->surface->face_of[q]];
             if (used < 0) continue;
-            const used_face *f = &j->meet->face[used];
+            const used_face *f = &j->work->face[used];
             for (int c = 0; c < f->facet_count; c++)
                 for (int k = 0; k < f->facet[c].count; k++) {
                     const facet *p = &f->facet[c];
-                    if (j->skin->face[f->face][p->corner[k]] != t->node) continue;
+                    if (j->surface->face[f->face][p->corner[k]] != t->node) continue;
                     double Eg[3], En[3];
                     for (int a = 0; a < 3; a++) Eg[a] = dot(f->E + 3 * a, p->g[k]), En[a] = dot(f->E + 3 * a, p->n);
                     double bend = dot(p->g[k], En);
                     for (int a = 0; a < 3; a++) F[a] += p->weight * (Eg[a] - bend * p->n[a]);
                 }
         }
-        give(j, t, F);
+        give_impulse(j, t, F);
     }
 }

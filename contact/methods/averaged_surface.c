@@ -26,69 +26,69 @@
 #include <string.h>
 #include "contact/methods/averaged_surface_parts.h"
 
-void brunt_augury_meet_free(brunt_augury_meet *meet) {
-    if (!meet) return;
-#define FREE(type, name) brunt_free(meet->name);
+void brunt_averaged_work_free(brunt_averaged_work *work) {
+    if (!work) return;
+#define FREE(type, name) brunt_free(work->name);
     ROOM(FREE)
 #undef FREE
-    brunt_free(meet);
+    brunt_free(work);
 }
 
 // Slot of a node that may change.
-static int32_t touch(job *j, int32_t node) {
-    brunt_augury_meet *meet = j->meet;
-    if (meet->touched_of[node] >= 0) return meet->touched_of[node];
-    if (NEED(meet, touched, meet->touched_count + 1, meet->touched_count)) return -1;
-    touched_node *t = &meet->touched[meet->touched_count];
-    *t = (touched_node){.node = node};
-    memcpy(t->before, j->skin->v[node], sizeof t->before);
-    return meet->touched_of[node] = meet->touched_count++;
+static int32_t touch(averaged_job *j, int32_t node) {
+    brunt_averaged_work *work = j->work;
+    if (work->touched_of[node] >= 0) return work->touched_of[node];
+    if (NEED(work, touched, work->touched_count + 1, work->touched_count)) return -1;
+    changed_node *t = &work->touched[work->touched_count];
+    *t = (changed_node){.node = node};
+    memcpy(t->before, j->surface->v[node], sizeof t->before);
+    return work->touched_of[node] = work->touched_count++;
 }
 
-static int touch_face(job *j, int32_t face) {
-    brunt_augury_meet *meet = j->meet;
-    if (meet->face_of[face] >= 0) return 0;
-    if (NEED(meet, face, meet->face_count + 1, meet->face_count)) return -1;
-    meet->face[meet->face_count].face = face;
-    brunt_averaged_make_facets(j->skin, &meet->face[meet->face_count]);
-    meet->face_of[face] = meet->face_count++;
-    for (int k = 0; k < 4 && j->skin->face[face][k] >= 0; k++)
-        if (touch(j, j->skin->face[face][k]) < 0) return -1;
+static int touch_face(averaged_job *j, int32_t face) {
+    brunt_averaged_work *work = j->work;
+    if (work->face_of[face] >= 0) return 0;
+    if (NEED(work, face, work->face_count + 1, work->face_count)) return -1;
+    work->face[work->face_count].face = face;
+    brunt_averaged_make_facets(j->surface, &work->face[work->face_count]);
+    work->face_of[face] = work->face_count++;
+    for (int k = 0; k < 4 && j->surface->face[face][k] >= 0; k++)
+        if (touch(j, j->surface->face[face][k]) < 0) return -1;
     return 0;
 }
 
 // Everything that may change, body by body. 0, or -1: out of memory.
-static int touch_all(job *j) {
-    brunt_augury_meet *meet = j->meet;
-    const brunt_contact_surface *s = j->skin;
-    meet->touched_count = meet->face_count = 0;
+static int touch_all(averaged_job *j) {
+    brunt_averaged_work *work = j->work;
+    const brunt_contact_surface *s = j->surface;
+    work->touched_count = work->face_count = 0;
     for (int b = 0; b < 2; b++) {
-        j->touched_first[b] = meet->touched_count, j->face_first[b] = meet->face_count;
-        for (int32_t k = j->party_first[b]; k < j->party_first[b + 1]; k++) {
-            party *p = &meet->party[k];
+        j->touched_first[b] = work->touched_count, j->face_first[b] = work->face_count;
+        for (int32_t k = j->node_first[b]; k < j->node_first[b + 1]; k++) {
+            averaged_node *p = &work->averaged_node[k];
             if (!p->master_count && !p->meets) continue;
             if ((p->touched = touch(j, p->node)) < 0) return -1;
-            meet->touched[p->touched].master = p->master_count > 0;
+            work->touched[p->touched].master = p->master_count > 0;
             if (!j->affine || !p->master_count) continue;
             for (int32_t q = s->face_first[p->node]; q < s->face_first[p->node + 1]; q++) {
                 if (touch_face(j, s->face_of[q])) return -1;
-                const used_face *f = &meet->face[meet->face_of[s->face_of[q]]];
-                for (int c = 0; c < f->facet_count; c++) meet->touched[p->touched].area += f->facet[c].weight;
+                const used_face *f = &work->face[work->face_of[s->face_of[q]]];
+                for (int c = 0; c < f->facet_count; c++) work->touched[p->touched].area += f->facet[c].weight;
             }
         }
     }
-    j->touched_first[2] = meet->touched_count, j->face_first[2] = meet->face_count;
+    j->touched_first[2] = work->touched_count, j->face_first[2] = work->face_count;
     return 0;
 }
 
-static void untouch_all(brunt_augury_meet *meet) {
-    for (int32_t k = 0; k < meet->touched_count; k++) meet->touched_of[meet->touched[k].node] = -1;
-    for (int32_t k = 0; k < meet->face_count; k++) meet->face_of[meet->face[k].face] = -1;
-    meet->touched_count = meet->face_count = 0;
+static void untouch_all(brunt_averaged_work *work) {
+    for (int32_t k = 0; k < work->touched_count; k++) work->touched_of[work->touched[k].node] = -1;
+    for (int32_t k = 0; k < work->face_count; k++) work->face_of[work->face[k].face] = -1;
+    work->touched_count = work->face_count = 0;
 }
 
-static bool changed(const job *j, const touched_node *t) {
-    return memcmp(t->before, j->skin->v[t->node], sizeof t->before) != 0;
+static bool changed(const averaged_job *j, const changed_node *t) {
+    return memcmp(t->before, j->surface->v[t->node], sizeof t->before) != 0;
 }
 
 // Solves I w = T for a symmetric I (xx yy zz xy xz yz) that may be nearly singular. False: nothing to turn.
@@ -113,20 +113,20 @@ static bool spin_of(const double I[6], const double T[3], double w[3]) {
 }
 
 // Gives the nodes that changed the rigid spin that takes back the moment of their impulses.
-static void repair_moment(job *j) {
-    const brunt_augury_meet *meet = j->meet;
-    brunt_contact_surface *s = j->skin;
+static void repair_moment(averaged_job *j) {
+    const brunt_averaged_work *work = j->work;
+    brunt_contact_surface *s = j->surface;
     double mass = 0, centre[3] = {0}, T[3] = {0}, I[6] = {0}, w[3];
-    for (int32_t k = 0; k < meet->touched_count; k++) {
-        const touched_node *t = &meet->touched[k];
+    for (int32_t k = 0; k < work->touched_count; k++) {
+        const changed_node *t = &work->touched[k];
         if (!changed(j, t)) continue;
         mass += s->mass[t->node];
         for (int a = 0; a < 3; a++) centre[a] += s->mass[t->node] * s->x[t->node][a];
     }
     if (!(mass > 0)) return;
     for (int a = 0; a < 3; a++) centre[a] /= mass;
-    for (int32_t k = 0; k < meet->touched_count; k++) {
-        const touched_node *t = &meet->touched[k];
+    for (int32_t k = 0; k < work->touched_count; k++) {
+        const changed_node *t = &work->touched[k];
         if (!changed(j, t)) continue;
         const double m = s->mass[t->node];
         double r[3], dv[3], moment[3];
@@ -136,8 +136,8 @@ static void repair_moment(job *j) {
         I[3] -= m * r[0] * r[1], I[4] -= m * r[0] * r[2], I[5] -= m * r[1] * r[2];
     }
     if (!spin_of(I, T, w)) return;
-    for (int32_t k = 0; k < meet->touched_count; k++) {
-        const touched_node *t = &meet->touched[k];
+    for (int32_t k = 0; k < work->touched_count; k++) {
+        const changed_node *t = &work->touched[k];
         if (!changed(j, t)) continue;
         double r[3], turn[3];
         for (int a = 0; a < 3; a++) r[a] = s->x[t->node][a] - centre[a];
@@ -147,96 +147,97 @@ static void repair_moment(job *j) {
 }
 
 // Notes what was done. 0, or -1: out of memory.
-static int note(job *j, const brunt_augury_neighbours *who) {
-    brunt_augury_meet *meet = j->meet;
-    const brunt_contact_surface *s = j->skin;
-    if (NEED(meet, impulse, meet->impulse_count + meet->touched_count, meet->impulse_count) ||
-        NEED(meet, deed, meet->deed_count + 1, meet->deed_count))
+static int remember_pair(averaged_job *j, const brunt_augury_neighbours *near) {
+    brunt_averaged_work *work = j->work;
+    const brunt_contact_surface *s = j->surface;
+    if (NEED(work, impulse, work->impulse_count + work->touched_count, work->impulse_count) ||
+        NEED(work, pair_account, work->pair_account_count + 1, work->pair_account_count))
         return -1;
-    deed *d = &meet->deed[meet->deed_count];
-    *d = (deed){.pair = who->pair, .first = meet->impulse_count, .body_b = brunt_augury_body(s, who->b)};
-    for (int32_t k = 0; k < meet->touched_count; k++) {
-        const touched_node *t = &meet->touched[k];
-        brunt_augury_impulse *J = &meet->impulse[meet->impulse_count];
+    pair_account *d = &work->pair_account[work->pair_account_count];
+    *d = (pair_account){.pair = near->pair, .first = work->impulse_count, .body_b = brunt_augury_body(s, near->b)};
+    for (int32_t k = 0; k < work->touched_count; k++) {
+        const changed_node *t = &work->touched[k];
+        brunt_augury_impulse *J = &work->impulse[work->impulse_count];
         bool any = false;
         J->node = t->node;
         for (int a = 0; a < 3; a++) {
             double inverse = s->inverse[t->node][a];
-            J->J[a] = inverse > 0 ? (s->v[t->node][a] - t->before[a]) / inverse : t->hold[a];
+            J->J[a] = inverse > 0 ? (s->v[t->node][a] - t->before[a]) / inverse : t->fixed_impulse[a];
             any |= J->J[a] != 0;
         }
-        meet->impulse_count += any;
+        work->impulse_count += any;
     }
     double area[2] = {0};
-    for (int32_t k = 0; k < j->party_first[2]; k++) {
-        const party *p = &meet->party[k];
+    for (int32_t k = 0; k < j->node_first[2]; k++) {
+        const averaged_node *p = &work->averaged_node[k];
         d->friction_loss += p->friction_loss;
-        if (p->pressed) area[k >= j->party_first[1]] += s->area[p->node];
+        if (p->pressed) area[k >= j->node_first[1]] += s->area[p->node];
     }
     d->area = fmax(area[0], area[1]);
-    d->end = meet->impulse_count;
-    meet->deed_count += d->end > d->first;
+    d->end = work->impulse_count;
+    work->pair_account_count += d->end > d->first;
     return 0;
 }
 
-static int meet_pair(job *j, const brunt_augury_neighbours *who) {
-    brunt_augury_meet *meet = j->meet;
-    j->friction = j->m->pairs[who->pair].friction;
-    int some = brunt_averaged_collect(j, who->a, who->b);
+static int meet_pair(averaged_job *j, const brunt_augury_neighbours *near) {
+    brunt_averaged_work *work = j->work;
+    j->friction = j->m->pairs[near->pair].friction;
+    int some = brunt_averaged_collect(j, near->a, near->b);
     if (some > 0) some = brunt_averaged_orient(j);
     if (some <= 0) return some;
     brunt_averaged_face(j);
-    j->party_first[0] = 0;
-    j->party_first[1] = j->w->cloud[0].count;
-    j->party_first[2] = j->party_first[1] + j->w->cloud[1].count;
-    if (NEED(meet, party, j->party_first[2], 0) || NEED(meet, entries, 2 * STENCIL * (size_t)j->party_first[2], 0))
+    j->node_first[0] = 0;
+    j->node_first[1] = j->w->cloud[0].count;
+    j->node_first[2] = j->node_first[1] + j->w->cloud[1].count;
+    if (NEED(work, averaged_node, j->node_first[2], 0) ||
+        NEED(work, entries, 2 * STENCIL * (size_t)j->node_first[2], 0))
         return -1;
-    brunt_averaged_run(j, j->party_first[2], brunt_averaged_list_entries);
+    brunt_averaged_run(j, j->node_first[2], brunt_averaged_list_entries);
     int status = touch_all(j);
     // Two sweeps in a row without work: nothing will change any more.
     for (int k = 0, idle = 0; !status && k < j->m->iterations && idle < 2; k++) {
         j->master = (k + j->m->step) % 2 != 0;
         idle = brunt_averaged_sweep(j) ? 0 : idle + 1;
     }
-    if (!status && !j->affine && !meet->held[who->a] && !meet->held[who->b]) repair_moment(j);
-    if (!status) status = note(j, who);
-    untouch_all(meet);
+    if (!status && !j->affine && !work->fixed[near->a] && !work->fixed[near->b]) repair_moment(j);
+    if (!status) status = remember_pair(j, near);
+    untouch_all(work);
     return status;
 }
 
-static void find_held(void *context, int64_t begin, int64_t end, int worker) {
+static void find_fixed(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
-    const job *j = context;
-    const brunt_contact_surface *s = j->skin;
+    const averaged_job *j = context;
+    const brunt_contact_surface *s = j->surface;
     for (int64_t k = begin; k < end; k++) {
-        j->meet->held[k] = false;
+        j->work->fixed[k] = false;
         if (!s->active[k]) continue;
         for (int32_t n = s->node_range[k]; n < s->node_range[k + 1]; n++)
-            for (int a = 0; a < s->dim; a++) j->meet->held[k] |= !(s->inverse[n][a] > 0);
+            for (int a = 0; a < s->dim; a++) j->work->fixed[k] |= !(s->inverse[n][a] > 0);
     }
 }
 
-static int prepare(job *j) {
-    brunt_augury_meet *meet = j->meet;
-    const brunt_contact_surface *s = j->skin;
-    if (NEED(meet, touched_of, s->node_count, meet->marked_nodes) ||
-        NEED(meet, face_of, s->face_count, meet->marked_faces) || NEED(meet, held, s->fem_count, 0))
+static int prepare(averaged_job *j) {
+    brunt_averaged_work *work = j->work;
+    const brunt_contact_surface *s = j->surface;
+    if (NEED(work, touched_of, s->node_count, work->marked_nodes) ||
+        NEED(work, face_of, s->face_count, work->marked_faces) || NEED(work, fixed, s->fem_count, 0))
         return -1;
-    for (; meet->marked_nodes < s->node_count; meet->marked_nodes++) meet->touched_of[meet->marked_nodes] = -1;
-    for (; meet->marked_faces < s->face_count; meet->marked_faces++) meet->face_of[meet->marked_faces] = -1;
-    meet->impulse_count = meet->deed_count = 0;
-    brunt_parallel(j->m->threads, s->fem_count, 1, find_held, j, j->m->timer);
+    for (; work->marked_nodes < s->node_count; work->marked_nodes++) work->touched_of[work->marked_nodes] = -1;
+    for (; work->marked_faces < s->face_count; work->marked_faces++) work->face_of[work->marked_faces] = -1;
+    work->impulse_count = work->pair_account_count = 0;
+    brunt_parallel(j->m->threads, s->fem_count, 1, find_fixed, j, j->m->timer);
     return brunt_augury_near_runs(&j->w->near, s, j->m->threads, j->m->timer);
 }
 
-static void book(const job *j) {
-    for (int32_t k = 0; k < j->meet->deed_count; k++) {
-        const deed *d = &j->meet->deed[k];
+static void account_pairs(const averaged_job *j) {
+    for (int32_t k = 0; k < j->work->pair_account_count; k++) {
+        const pair_account *d = &j->work->pair_account[k];
         brunt_impulse_account *action = &j->m->pairs[d->pair].last;
         double loss = 0;
         for (int32_t i = d->first; i < d->end; i++) {
-            const brunt_augury_impulse *J = &j->meet->impulse[i];
-            loss += brunt_augury_book(j->skin, action, J, j->skin->body[J->node] == d->body_b);
+            const brunt_augury_impulse *J = &j->work->impulse[i];
+            loss += brunt_impulse_account_node(j->surface, action, J, j->surface->body[J->node] == d->body_b);
         }
         action->friction_loss += d->friction_loss;
         action->normal_loss += loss - d->friction_loss;
@@ -247,13 +248,13 @@ static void book(const job *j) {
 int brunt_augury_surface(const brunt_contact_context *m, bool affine, brunt_augury_workspace **work) {
     brunt_augury_workspace *w = brunt_augury_work(work);
     if (!w) return -1;
-    if (!w->meet && !(w->meet = brunt_alloc(sizeof *w->meet))) return -1;
+    if (!w->averaged && !(w->averaged = brunt_alloc(sizeof *w->averaged))) return -1;
     if (brunt_augury_near_find(&w->near, m, REACH * m->cell)) return -1;
     if (!w->near.count) return 0;
-    job j = {.m = m, .skin = m->skin, .w = w, .meet = w->meet, .affine = affine};
+    averaged_job j = {.m = m, .surface = m->surface, .w = w, .work = w->averaged, .affine = affine};
     if (prepare(&j)) return -1;
     for (int32_t k = 0; k < w->near.count; k++)
         if (meet_pair(&j, &w->near.found[k])) return -1;
-    book(&j);
+    account_pairs(&j);
     return 0;
 }

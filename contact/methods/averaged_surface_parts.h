@@ -19,7 +19,7 @@ typedef struct surface_sums {
 // One body's part of a grid node where both are.
 typedef struct side {
     double area, X[3], n[3];     // W, [m], unit
-    double mass, held[3];        // M [kg], and of the nodes with prescribed component
+    double mass, fixed[3];       // M [kg], and of the nodes with prescribed component
     double share[3], inverse[3]; // 1 over the mass that counts; 0 where it is infinite
     bool master, rigid;          // has surface and mass; has held components
     double v[3], plain[3], C[9]; // [m/s], [1/s]
@@ -38,25 +38,25 @@ typedef struct entry {
     int32_t at; // shared node
 } entry;
 
-// A node of the skin that is near the other body.
-typedef struct party {
+// A node of the surface that is near the other body.
+typedef struct averaged_node {
     int32_t node, touched;
     int16_t master_count, slave_count; // of its entries, STENCIL places each
     bool meets, pressed;               // has a master surface; was held back in some sweep
     double n[3], gap;                  // of the master surface, outward
     double u[3], along, target;        // [m/s] this sweep: relative velocity, its normal part, least allowed
     double J[3];                       // [N s] this sweep
-    double push, drag, friction_loss;  // [N s], [J] in all: sums of sizes
+    double normal_impulse, friction_impulse, friction_loss; // [N s], [J] in all: sums of sizes
     bool presses;
-} party;
+} averaged_node;
 
 // A node whose velocity this pair may change.
-typedef struct touched_node {
+typedef struct changed_node {
     int32_t node;
     bool master;
-    double before[3], hold[3]; // [m/s], [N s] on prescribed components
-    double area, C[9], D[9];   // "smooth": of its facets; grad v; the dipole it takes
-} touched_node;
+    double before[3], fixed_impulse[3]; // [m/s], [N s] on prescribed components
+    double area, C[9], D[9];            // "smooth": of its facets; grad v; the dipole it takes
+} changed_node;
 
 // A flat piece of a face: triangle, or segment in 2D. A quadrilateral is its four triangles with half weights, so that
 // no diagonal is preferred.
@@ -72,10 +72,10 @@ typedef struct used_face {
 } used_face;
 
 // What was done for one pair, booked when all pairs are through: losses need the final velocities.
-typedef struct deed {
+typedef struct pair_account {
     int32_t pair, first, end, body_b; // impulses first .. end - 1
     double friction_loss, area;
-} deed;
+} pair_account;
 
 #define ROOM(X)                                                                                                        \
     X(surface_sums, sums) /* by grid node, 2 each */                                                                   \
@@ -83,39 +83,39 @@ typedef struct deed {
     X(uint8_t, visitors)  /* by block: bit b, faces of b reach it; bit 2, points in it may reach what both do */       \
     X(heading, heading)   /* d, by shared node */                                                                      \
     X(shared_node, shared)                                                                                             \
-    X(entry, entries) /* by party: STENCIL as master, STENCIL as slave */                                              \
-    X(party, party)   /* nodes of a's cloud, then of b's */                                                            \
-    X(touched_node, touched)                                                                                           \
+    X(entry, entries)               /* by party: STENCIL as master, STENCIL as slave */                                \
+    X(averaged_node, averaged_node) /* nodes of a's cloud, then of b's */                                              \
+    X(changed_node, touched)                                                                                           \
     X(used_face, face)                                                                                                 \
-    X(int32_t, touched_of) /* by node of the skin, -1 between pairs */                                                 \
-    X(int32_t, face_of)    /* by face of the skin, likewise */                                                         \
-    X(bool, held)          /* by body of the skin: has prescribed nodes */                                             \
+    X(int32_t, touched_of) /* by node of the surface, -1 between pairs */                                              \
+    X(int32_t, face_of)    /* by face of the surface, likewise */                                                      \
+    X(bool, fixed)         /* by body of the surface: has prescribed nodes */                                          \
     X(brunt_augury_impulse, impulse)                                                                                   \
-    X(deed, deed)
+    X(pair_account, pair_account)
 
-struct brunt_augury_meet {
+struct brunt_averaged_work {
 #define DECLARE(type, name)                                                                                            \
     type *name;                                                                                                        \
     size_t name##_capacity;
     ROOM(DECLARE)
 #undef DECLARE
-    int32_t shared_count, touched_count, face_count, impulse_count, deed_count;
+    int32_t shared_count, touched_count, face_count, impulse_count, pair_account_count;
     int32_t marked_nodes, marked_faces; // entries of touched_of and face_of that are -1
 };
 
-typedef struct job {
+typedef struct averaged_job {
     const brunt_contact_context *m;
-    brunt_contact_surface *skin;
+    brunt_contact_surface *surface;
     brunt_augury_workspace *w;
-    brunt_augury_meet *meet;
+    brunt_averaged_work *work;
     bool affine;
     double friction;
-    int32_t party_first[3], touched_first[3], face_first[3];
+    int32_t node_first[3], touched_first[3], face_first[3];
     int of;     // body whose cloud is at work, 0 or 1
     int master; // this sweep
-} job;
+} averaged_job;
 
-#define NEED(meet, name, count, keep) BRUNT_RESERVE((meet)->name, (size_t)(count) + 1, (size_t)(keep))
+#define NEED(work, name, count, keep) BRUNT_RESERVE((work)->name, (size_t)(count) + 1, (size_t)(keep))
 
 static inline double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 static inline double normalise(double a[3]) {
@@ -131,31 +131,31 @@ static inline void cross(const double a[3], const double b[3], double c[3]) {
     }
 }
 
-static inline entry *entries_of(const job *j, const party *p, bool as_master) {
-    return j->meet->entries + ((p - j->meet->party) * 2 + !as_master) * STENCIL;
+static inline entry *entries_of(const averaged_job *j, const averaged_node *p, bool as_master) {
+    return j->work->entries + ((p - j->work->averaged_node) * 2 + !as_master) * STENCIL;
 }
 
-static inline void give(const job *j, touched_node *t, const double F[3]) {
+static inline void give_impulse(const averaged_job *j, changed_node *t, const double F[3]) {
     for (int a = 0; a < 3; a++) {
-        double inverse = j->skin->inverse[t->node][a];
+        double inverse = j->surface->inverse[t->node][a];
         if (inverse > 0)
-            j->skin->v[t->node][a] += F[a] * inverse;
+            j->surface->v[t->node][a] += F[a] * inverse;
         else
-            t->hold[a] += F[a];
+            t->fixed_impulse[a] += F[a];
     }
 }
 
 // --- averaged_geometry.c: where the two bodies of a pair meet, and their surfaces there
 // Points of each body within reach of the other's box. 1 when there are some of each, 0, or -1: out of memory.
-int brunt_averaged_collect(job *j, int a, int b);
+int brunt_averaged_collect(averaged_job *j, int a, int b);
 // The grid nodes where the two meet, and the direction there. 1 when there are any, 0, or -1: out of memory.
-int brunt_averaged_orient(job *j);
+int brunt_averaged_orient(averaged_job *j);
 // Facing surfaces and masses.
-void brunt_averaged_face(job *j);
+void brunt_averaged_face(averaged_job *j);
 // What each node of the two has of the grid, as master and as slave, and where it meets a surface.
 void brunt_averaged_list_entries(void *context, int64_t begin, int64_t end, int worker);
 // To the grid, from the points of a cloud.
-void brunt_averaged_scatter(job *j, int cloud, brunt_augury_scatter_fn *each);
+void brunt_averaged_scatter(averaged_job *j, int cloud, brunt_augury_scatter_fn *each);
 
 // --- averaged_gradient.c: velocity gradients of a surface by its facets, and the transpose
 void brunt_averaged_make_facets(const brunt_contact_surface *s, used_face *f);
@@ -165,6 +165,6 @@ void brunt_averaged_load_faces(void *context, int64_t begin, int64_t end, int wo
 void brunt_averaged_give_dipoles(void *context, int64_t begin, int64_t end, int worker);
 
 // --- averaged_sweep.c
-void brunt_averaged_run(job *j, int64_t count, brunt_task_fn *task);
+void brunt_averaged_run(averaged_job *j, int64_t count, brunt_task_fn *task);
 // One sweep, with nodes of the body other than j->master as slaves. Whether any of them was held back.
-bool brunt_averaged_sweep(job *j);
+bool brunt_averaged_sweep(averaged_job *j);

@@ -2,8 +2,9 @@
 //
 // Only slots that two or more bodies have alive are looked at, and only nodes where two have mass. There, per pair:
 //   normal   from a to b, along -grad phi_a + grad phi_b of the volume fractions: n_ba = -n_ab to the bit
-//   gap      between the surfaces as the particles near the node have them (reach.c), not as the kernels feel them
-//   approach the relative velocity along n may not exceed gap/dt, so the gap closes to zero and not past it; bodies not
+//   gap      between the surfaces as the particles near the node have them (particle_extent.c), not as the kernels feel
+//   them approach the relative velocity along n may not exceed gap/dt, so the gap closes to zero and not past it;
+//   bodies not
 //            yet within reach are left alone
 //   friction the tangential impulse that would stop the slip, at most mu times the normal one
 // Tied pairs share one velocity instead, whatever the normal and the gap.
@@ -30,7 +31,7 @@ typedef struct shared_slot {
 // Slots with the same coordinate: entries first .. first+count-1, and where their pairs' actions are collected.
 typedef struct group {
     int32_t first, count, action;
-    bool crowded, starved; // too many bodies, too little memory at one of its nodes
+    bool over_limit, out_of_memory; // too many bodies, too little memory at one of its nodes
 } group;
 
 typedef struct box {
@@ -77,7 +78,7 @@ void brunt_contact_workspace_free(brunt_contact_workspace *workspace) {
     brunt_free(workspace);
 }
 
-// ------------------------------------------------------------------------------------------ who meets whom
+// ------------------------------------------------------------------------------------------ what meets what
 
 static box slot_bounds(const brunt_grid *grid) {
     box b = {{INT32_MAX, INT32_MAX, INT32_MAX}, {INT32_MIN, INT32_MIN, INT32_MIN}};
@@ -150,23 +151,23 @@ static int find_groups(job *j) {
 
 // ------------------------------------------------------------------------------------------ one node
 
-typedef struct meeting {
-    int a, b;              // members
-    int action;            // index among the group's pairs
-    double n[3], target;   // normal from a to b; least relative velocity along it [m/s]
-    double friction;       // [-]
-    double inverse, slide; // [1/kg] along n; the greatest across
-    double push, drag[3];  // [N s] on b
-    bool tied;             // `drag` takes all of the relative velocity
-} meeting;
+typedef struct node_contact {
+    int a, b;                                   // members
+    int action;                                 // index among the group's pairs
+    double n[3], target;                        // normal from a to b; least relative velocity along it [m/s]
+    double friction;                            // [-]
+    double inverse, slide;                      // [1/kg] along n; the greatest across
+    double normal_impulse, friction_impulse[3]; // [N s] on b
+    bool tied;                                  // `drag` takes all of the relative velocity
+} node_contact;
 
 typedef struct member {
     brunt_body *body;
     int32_t slot;
     real *node;
     int entry;
-    bool held;
-    double v[3], inverse[3], given[3]; // [m/s], [1/kg] by component: 0 where a condition gives v; [N s]
+    bool fixed;
+    double v[3], inverse[3], applied[3]; // [m/s], [1/kg] by component: 0 where a condition gives v; [N s]
 } member;
 
 // Unit vector along n with the parts taken out that a body cut by mirror planes cannot know: its image has no
@@ -221,7 +222,7 @@ static int make_normal(const job *j, const member *a, const member *b, int node,
     return 1;
 }
 
-static double relative(const member *members, const meeting *m, double v[3]) {
+static double relative(const member *members, const node_contact *m, double v[3]) {
     double along = 0;
     for (int k = 0; k < 3; k++) {
         v[k] = members[m->b].v[k] - members[m->a].v[k];
@@ -231,14 +232,14 @@ static double relative(const member *members, const meeting *m, double v[3]) {
 }
 
 // Gives a tied pair one velocity; returns the change of velocity [m/s].
-static double tie(member *members, meeting *m) {
+static double tie_contact(member *members, node_contact *m) {
     double v[3], changed = 0;
     relative(members, m, v);
     for (int k = 0; k < 3; k++) {
         const double inverse = members[m->a].inverse[k] + members[m->b].inverse[k];
         if (!(inverse > 0)) continue;
         const double J = -v[k] / inverse;
-        m->drag[k] += J;
+        m->friction_impulse[k] += J;
         members[m->a].v[k] -= J * members[m->a].inverse[k];
         members[m->b].v[k] += J * members[m->b].inverse[k];
         changed = fmax(changed, fabs(v[k]));
@@ -247,26 +248,27 @@ static double tie(member *members, meeting *m) {
 }
 
 // Brings one pair to its complementarity condition; returns the change of velocity [m/s].
-static double visit(member *members, meeting *m) {
-    if (m->tied) return tie(members, m);
+static double solve_contact(member *members, node_contact *m) {
+    if (m->tied) return tie_contact(members, m);
     double v[3], J[3], along = relative(members, m, v);
-    double push = fmax(0, m->push + (m->target - along) / m->inverse), step = push - m->push;
-    m->push = push;
+    double normal_impulse = fmax(0, m->normal_impulse + (m->target - along) / m->inverse),
+           step = normal_impulse - m->normal_impulse;
+    m->normal_impulse = normal_impulse;
     double changed = fabs(step) * m->inverse;
     for (int k = 0; k < 3; k++) J[k] = step * m->n[k];
     if (m->friction > 0) {
-        double drag[3], size = 0, moved = 0;
+        double friction_impulse[3], size = 0, moved = 0;
         for (int k = 0; k < 3; k++) {
-            drag[k] = m->drag[k] - (v[k] - along * m->n[k]) / m->slide;
-            size += drag[k] * drag[k];
+            friction_impulse[k] = m->friction_impulse[k] - (v[k] - along * m->n[k]) / m->slide;
+            size += friction_impulse[k] * friction_impulse[k];
         }
         size = sqrt(size);
-        double most = m->friction * push, scale = size > most ? most / size : 1;
+        double limit = m->friction * normal_impulse, scale = size > limit ? limit / size : 1;
         for (int k = 0; k < 3; k++) {
-            double now = scale * drag[k];
-            J[k] += now - m->drag[k];
-            moved += (now - m->drag[k]) * (now - m->drag[k]);
-            m->drag[k] = now;
+            double now = scale * friction_impulse[k];
+            J[k] += now - m->friction_impulse[k];
+            moved += (now - m->friction_impulse[k]) * (now - m->friction_impulse[k]);
+            m->friction_impulse[k] = now;
         }
         changed = fmax(changed, sqrt(moved) * m->slide);
     }
@@ -278,9 +280,9 @@ static double visit(member *members, meeting *m) {
 }
 
 // What two members yield along the normal, and at most across it.
-static void make_inverse(const member *a, const member *b, meeting *m) {
+static void weigh_contact(const member *a, const member *b, node_contact *m) {
     m->inverse = m->slide = a->inverse[0] + b->inverse[0];
-    if (!a->held && !b->held) return;
+    if (!a->fixed && !b->fixed) return;
     m->inverse = 0;
     for (int k = 0; k < 3; k++) {
         const double inverse = a->inverse[k] + b->inverse[k];
@@ -292,19 +294,19 @@ static void make_inverse(const member *a, const member *b, meeting *m) {
 static member make_member(brunt_body *body, const shared_slot *s, int node, real *at, int entry) {
     member m = {.body = body, .slot = s->slot, .node = at, .entry = entry};
     for (int a = 0; a < body->grid.dim; a++) {
-        const bool held = brunt_node_held(&body->grid, (int64_t)s->slot * BRUNT_BLOCK_NODES + node, a);
+        const bool fixed = brunt_node_held(&body->grid, (int64_t)s->slot * BRUNT_BLOCK_NODES + node, a);
         m.v[a] = (double)at[BRUNT_NODE_VELOCITY + a];
-        m.inverse[a] = held ? 0 : 1 / (double)at[0];
-        m.held |= held;
+        m.inverse[a] = fixed ? 0 : 1 / (double)at[0];
+        m.fixed |= fixed;
     }
     return m;
 }
 
 // The node has what it was given even where it is held: the condition then takes it, and books it.
-static void leave_node(const member *m) {
+static void scatter_node(const member *m) {
     for (int a = 0; a < m->body->grid.dim; a++)
         m->node[BRUNT_NODE_VELOCITY + a] =
-            (real)(m->inverse[a] > 0 ? m->v[a] : m->v[a] + m->given[a] / (double)m->node[0]);
+            (real)(m->inverse[a] > 0 ? m->v[a] : m->v[a] + m->applied[a] / (double)m->node[0]);
 }
 
 // How many nodes from the axis of rings a node is, negative beyond it.
@@ -348,76 +350,77 @@ static double own_share(const job *j, const member *m, int node) {
 static void meet_at_node(const job *j, group *g, int node, brunt_extent_cloud cloud[2]) {
     if (j->axis && from_axis(j, &j->w->shared[g->first], node) < 0) return;
     member members[MAX_TOGETHER];
-    meeting meetings[MAX_TOGETHER * (MAX_TOGETHER - 1) / 2];
-    bool held = false;
-    int n = 0, met = 0, dim = j->bodies[0].grid.dim;
+    node_contact contacts[MAX_TOGETHER * (MAX_TOGETHER - 1) / 2];
+    bool fixed = false;
+    int n = 0, contact_count = 0, dim = j->bodies[0].grid.dim;
     for (int32_t i = 0; i < g->count; i++) {
         const shared_slot *s = &j->w->shared[g->first + i];
         real *at = brunt_slot_nodes(&j->bodies[s->body].grid, s->slot) + node * BRUNT_NODE_REALS;
         if (!(at[0] > 0)) continue;
         if (n == MAX_TOGETHER) {
-            g->crowded = true;
+            g->over_limit = true;
             return;
         }
         members[n++] = make_member(&j->bodies[s->body], s, node, at, i);
     }
     if (n < 2) return;
-    double fastest = 0;
+    double scale = 0;
     for (int i = 0; i < n; i++) {
-        for (int a = 0; a < dim; a++) fastest = fmax(fastest, fabs(members[i].v[a]));
+        for (int a = 0; a < dim; a++) scale = fmax(scale, fabs(members[i].v[a]));
         for (int k = i + 1; k < n; k++) {
             int32_t pair = j->pair_of[(members[i].body - j->bodies) * j->body_count + (members[k].body - j->bodies)];
             if (pair < 0) continue;
-            meeting *m = &meetings[met];
+            node_contact *m = &contacts[contact_count];
             int low = members[i].entry, high = members[k].entry;
-            *m = (meeting){.a = i,
-                           .b = k,
-                           .action = low * g->count - low * (low + 1) / 2 + high - low - 1,
-                           .friction = j->pairs[pair].friction,
-                           .tied = j->pairs[pair].method == BRUNT_CONTACT_TIED};
+            *m = (node_contact){.a = i,
+                                .b = k,
+                                .action = low * g->count - low * (low + 1) / 2 + high - low - 1,
+                                .friction = j->pairs[pair].friction,
+                                .tied = j->pairs[pair].method == BRUNT_CONTACT_TIED};
             double gap = 0;
-            const int told = m->tied ? 1 : make_normal(j, &members[i], &members[k], node, cloud, m->n, &gap);
-            if (told < 0) g->starved = true;
-            if (told <= 0) continue;
+            const int known = m->tied ? 1 : make_normal(j, &members[i], &members[k], node, cloud, m->n, &gap);
+            if (known < 0) g->out_of_memory = true;
+            if (known <= 0) continue;
             m->target = -fmax(gap, 0) / j->dt;
-            make_inverse(&members[i], &members[k], m);
-            held |= members[i].held || members[k].held;
-            met += m->tied || m->inverse > 0;
+            weigh_contact(&members[i], &members[k], m);
+            fixed |= members[i].fixed || members[k].fixed;
+            contact_count += m->tied || m->inverse > 0;
         }
     }
-    if (!met) return;
+    if (!contact_count) return;
     for (int sweep = 0; sweep < MAX_SWEEPS; sweep++) {
         double changed = 0;
-        for (int q = 0; q < met; q++) changed = fmax(changed, visit(members, &meetings[q]));
-        if ((met == 1 && !held) || changed <= SWEEP_TOLERANCE * fastest) break;
+        for (int q = 0; q < contact_count; q++) changed = fmax(changed, solve_contact(members, &contacts[q]));
+        if ((contact_count == 1 && !fixed) || changed <= SWEEP_TOLERANCE * scale) break;
     }
     const int32_t *coord = members[0].body->grid.slots[members[0].slot].coord;
     double x[3];
     brunt_node_position(&members[0].body->grid, coord, node, x);
     static const double rest[3] = {0, 0, 0};
-    for (int q = 0; q < met; q++) {
-        const meeting *m = &meetings[q];
-        if (!(m->push > 0) && !m->tied) continue;
-        double push[3], drag[3], old[3] = {0}, now[3];
+    for (int q = 0; q < contact_count; q++) {
+        const node_contact *m = &contacts[q];
+        if (!(m->normal_impulse > 0) && !m->tied) continue;
+        double normal_impulse[3], friction_impulse[3], old[3] = {0}, now[3];
         double own = own_share(j, &members[m->b], node);
         relative(members, m, now);
         for (int k = 0; k < 3; k++) {
-            push[k] = own * m->push * m->n[k], drag[k] = own * m->drag[k];
-            members[m->a].given[k] -= m->push * m->n[k] + m->drag[k];
-            members[m->b].given[k] += m->push * m->n[k] + m->drag[k];
+            normal_impulse[k] = own * m->normal_impulse * m->n[k], friction_impulse[k] = own * m->friction_impulse[k];
+            members[m->a].applied[k] -= m->normal_impulse * m->n[k] + m->friction_impulse[k];
+            members[m->b].applied[k] += m->normal_impulse * m->n[k] + m->friction_impulse[k];
         }
         for (int k = 0; k < dim; k++)
             old[k] = (double)(members[m->b].node[BRUNT_NODE_OLD + k] - members[m->a].node[BRUNT_NODE_OLD + k]);
         brunt_impulse_account *action = &j->w->actions[g->action + m->action];
-        brunt_impulse_account_book(action, &action->normal_loss, m->tied ? drag : push, x, old, now, rest);
+        brunt_impulse_account_book(action, &action->normal_loss, m->tied ? friction_impulse : normal_impulse, x, old,
+                                   now, rest);
         if (m->friction > 0 && !m->tied)
-            brunt_impulse_account_book(action, &action->friction_loss, drag, x, old, now, rest);
+            brunt_impulse_account_book(action, &action->friction_loss, friction_impulse, x, old, now, rest);
     }
-    for (int i = 0; i < n; i++) leave_node(&members[i]);
+    for (int i = 0; i < n; i++) scatter_node(&members[i]);
     for (int i = 0; j->axis && i < n; i++) follow_axis(j, &members[i], node);
 }
 
-static void meet(void *context, int64_t begin, int64_t end, int worker) {
+static void meet_blocks(void *context, int64_t begin, int64_t end, int worker) {
     const job *j = context;
     for (int64_t q = begin; q < end; q++)
         for (int node = 0; node < BRUNT_BLOCK_NODES; node++)
@@ -441,10 +444,10 @@ int brunt_grid_velocity_apply(brunt_body *bodies, int body_count, brunt_pair *pa
     for (int m = 0; m < mirror_count; m++)
         if (mirrors[m].wall < 0) j.axis = &mirrors[m];
     if (find_groups(&j)) return -1;
-    brunt_parallel(threads, j.w->group_count, 1, meet, &j, timer);
+    brunt_parallel(threads, j.w->group_count, 1, meet_blocks, &j, timer);
     for (int32_t q = 0; q < j.w->group_count; q++) {
         const group *g = &j.w->groups[q];
-        if (g->crowded || g->starved) return g->crowded ? -2 : -1;
+        if (g->over_limit || g->out_of_memory) return g->over_limit ? -2 : -1;
         int at = g->action;
         for (int32_t i = 0; i < g->count; i++)
             for (int32_t k = i + 1; k < g->count; k++, at++) {

@@ -31,23 +31,23 @@ typedef struct state {
     double v[3], B[9];
 } state;
 
-struct brunt_augury_filter {
+struct brunt_published_work {
     blend *blend;      // by grid node
     state *in, *delta; // by point of the cloud
-    int32_t *pair;     // by body of the skin: where it is booked, -1: it takes no part
+    int32_t *pair;     // by body of the surface: where it is booked, -1: it takes no part
     size_t blend_capacity, in_capacity, delta_capacity, pair_capacity;
 };
 
 typedef struct job {
     const brunt_contact_context *m;
-    brunt_contact_surface *skin;
+    brunt_contact_surface *surface;
     brunt_augury_workspace *w;
-    brunt_augury_filter *filter;
+    brunt_published_work *filter;
     bool affine;
     double moment; // D [m^2]
 } job;
 
-void brunt_augury_filter_free(brunt_augury_filter *filter) {
+void brunt_published_work_free(brunt_published_work *filter) {
     if (!filter) return;
     brunt_free(filter->blend);
     brunt_free(filter->in);
@@ -64,7 +64,7 @@ static void add_mass(void *context, int32_t begin, int32_t end) {
         int32_t at[BRUNT_AUGURY_STENCIL];
         double w[BRUNT_AUGURY_STENCIL];
         int count = brunt_augury_stencil(&j->w->grid, &j->w->cloud[0].point[k], at, w);
-        for (int e = 0; e < count; e++) j->filter->blend[at[e]].mass += w[e] * j->skin->mass[j->w->cloud[0].item[k]];
+        for (int e = 0; e < count; e++) j->filter->blend[at[e]].mass += w[e] * j->surface->mass[j->w->cloud[0].item[k]];
     }
 }
 
@@ -88,7 +88,7 @@ static void add_momentum(void *context, int32_t begin, int32_t end) {
     for (int32_t k = begin; k < end; k++) {
         const brunt_augury_point *p = &j->w->cloud[0].point[k];
         const state *V = &j->filter->in[k];
-        const double mass = j->skin->mass[j->w->cloud[0].item[k]];
+        const double mass = j->surface->mass[j->w->cloud[0].item[k]];
         int32_t at[BRUNT_AUGURY_STENCIL];
         double w[BRUNT_AUGURY_STENCIL], r[BRUNT_AUGURY_STENCIL][3], C[9];
         int count = brunt_augury_stencil(&j->w->grid, p, at, w);
@@ -172,12 +172,12 @@ static int owner(const brunt_contact_surface *s, int32_t node) {
 }
 
 static double friction_of(const job *j, int32_t node) {
-    return j->m->pairs[j->filter->pair[owner(j->skin, node)]].friction;
+    return j->m->pairs[j->filter->pair[owner(j->surface, node)]].friction;
 }
 
 // The part of a change along the outward normal, and the tangential one with its size. Their allowed size is returned.
 static double split(const job *j, int32_t node, const double dv[3], double *along, double tangential[3], double *size) {
-    const double *n = j->skin->normal[node];
+    const double *n = j->surface->normal[node];
     *along = dv[0] * n[0] + dv[1] * n[1] + dv[2] * n[2];
     double square = 0;
     for (int a = 0; a < 3; a++) tangential[a] = dv[a] - *along * n[a], square += tangential[a] * tangential[a];
@@ -211,9 +211,9 @@ static void start_points(void *context, int64_t begin, int64_t end, int worker) 
         const int32_t n = j->w->cloud[0].item[k];
         state *in = &j->filter->in[k];
         j->filter->delta[k] = (state){{0}, {0}};
-        memcpy(in->v, j->skin->v[n], sizeof in->v);
+        memcpy(in->v, j->surface->v[n], sizeof in->v);
         if (j->affine)
-            memcpy(in->B, j->skin->affine[n], sizeof in->B);
+            memcpy(in->B, j->surface->affine[n], sizeof in->B);
         else
             memset(in->B, 0, sizeof in->B);
     }
@@ -222,7 +222,7 @@ static void start_points(void *context, int64_t begin, int64_t end, int worker) 
 static void finish_points(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     const job *j = context;
-    brunt_contact_surface *s = j->skin;
+    brunt_contact_surface *s = j->surface;
     for (int64_t k = begin; k < end; k++) {
         const int32_t n = j->w->cloud[0].item[k];
         const state *delta = &j->filter->delta[k];
@@ -233,11 +233,11 @@ static void finish_points(void *context, int64_t begin, int64_t end, int worker)
 }
 
 // The account of each body: the first pair of it whose other body is near, else its first. Where more than two bodies
-// share nodes, whom an impulse comes from is not known: the sums are exact, their division among pairs is nominal.
+// share nodes, where an impulse comes from is not known: the sums are exact, their division among pairs is nominal.
 static int find_pairs(job *j) {
     const brunt_contact_context *m = j->m;
-    const brunt_contact_surface *s = j->skin;
-    brunt_augury_filter *f = j->filter;
+    const brunt_contact_surface *s = j->surface;
+    brunt_published_work *f = j->filter;
     if (BRUNT_RESERVE(f->pair, (size_t)s->fem_count + 1, 0) || brunt_augury_near_find(&j->w->near, m, WIDTH * m->cell))
         return -1;
     for (int k = 0; k < s->fem_count; k++) f->pair[k] = -1;
@@ -260,7 +260,7 @@ static int find_pairs(job *j) {
 // The grid under all nodes that take part. 0, or -1: out of memory.
 static int make_grid(job *j) {
     brunt_augury_workspace *w = j->w;
-    const brunt_contact_surface *s = j->skin;
+    const brunt_contact_surface *s = j->surface;
     brunt_augury_grid_start(&w->grid, s->dim, WIDTH, j->m->cell);
     j->moment = brunt_augury_moment(&w->grid);
     w->cloud[0].count = 0;
@@ -268,7 +268,7 @@ static int make_grid(job *j) {
         for (int32_t n = s->node_range[k]; n < s->node_range[k + 1] && j->filter->pair[k] >= 0; n++)
             if (brunt_augury_cloud_add(&w->grid, &w->cloud[0], n, s->x[n])) return -1;
     if (brunt_augury_grid_finish(&w->grid, w->cloud, 1)) return -1;
-    brunt_augury_filter *f = j->filter;
+    brunt_published_work *f = j->filter;
     size_t nodes = (size_t)w->grid.block_count * (size_t)w->grid.block_nodes + 1,
            points = (size_t)w->cloud[0].count + 1;
     if (BRUNT_RESERVE(f->blend, nodes, 0) || BRUNT_RESERVE(f->in, points, 0) || BRUNT_RESERVE(f->delta, points, 0))
@@ -279,7 +279,7 @@ static int make_grid(job *j) {
 
 // Friction is what the tangential changes cost that Coulomb allows, where a surface is pushed in.
 static void book(job *j) {
-    brunt_contact_surface *s = j->skin;
+    brunt_contact_surface *s = j->surface;
     const brunt_augury_cloud *cloud = &j->w->cloud[0];
     for (int32_t k = 0; k < cloud->count; k++) {
         const int32_t n = cloud->item[k];
@@ -294,7 +294,7 @@ static void book(job *j) {
             double part = size > 0 ? tangential[a] * allowed / size : 0;
             drag -= s->mass[n] * part * 0.5 * (s->old[n][a] + s->v[n][a]);
         }
-        double loss = brunt_augury_book(s, &pair->last, &J, s->body[n] == pair->b);
+        double loss = brunt_impulse_account_node(s, &pair->last, &J, s->body[n] == pair->b);
         pair->last.friction_loss += drag;
         pair->last.normal_loss += loss - drag;
     }
@@ -303,8 +303,12 @@ static void book(job *j) {
 int brunt_augury_paper(const brunt_contact_context *m, brunt_transfer transfer, brunt_augury_workspace **work) {
     brunt_augury_workspace *w = brunt_augury_work(work);
     if (!w) return -1;
-    if (!w->filter && !(w->filter = brunt_alloc(sizeof *w->filter))) return -1;
-    job j = {.m = m, .skin = m->skin, .w = w, .filter = w->filter, .affine = transfer == BRUNT_APIC && m->skin->affine};
+    if (!w->published && !(w->published = brunt_alloc(sizeof *w->published))) return -1;
+    job j = {.m = m,
+             .surface = m->surface,
+             .w = w,
+             .filter = w->published,
+             .affine = transfer == BRUNT_APIC && m->surface->affine};
     if (find_pairs(&j) || make_grid(&j)) return -1;
     const int64_t count = w->cloud[0].count;
     brunt_augury_scatter(&w->grid, &w->cloud[0], add_mass, &j, m->threads, m->timer);

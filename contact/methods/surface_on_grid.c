@@ -2,38 +2,38 @@
 
 enum { GRAIN = 16, MORE_SWEEPS = 4 };
 
-void brunt_grid_surfaces_free(brunt_grid_surfaces *w) {
+void brunt_surface_on_grid_free(brunt_surface_on_grid *w) {
     if (!w) return;
     void *owned[] = {w->range, w->link,        w->item,       w->contact, w->by_contact, w->place, w->changed,
                      w->near,  w->block_first, w->block_face, w->touch,   w->met,        w};
     for (size_t k = 0; k < sizeof owned / sizeof owned[0]; k++) brunt_free(owned[k]);
 }
 
-size_t brunt_grid_surfaces_bytes(const brunt_grid_surfaces *w) {
+size_t brunt_surface_on_grid_bytes(const brunt_surface_on_grid *w) {
     return w ? w->range_capacity + w->link_capacity + w->item_capacity + w->contact_capacity + w->by_contact_capacity +
                    w->place_capacity + w->changed_capacity + w->near_capacity + w->block_first_capacity +
                    w->block_face_capacity + w->touch_capacity + w->met_capacity
              : 0;
 }
 
-// Velocity of the mesh at a contact, of the skin's `of`.
+// Velocity of the mesh at a contact, of the surface's `of`.
 static void map_velocity(const job *j, const contact *c, double (*of)[3], double v[3]) {
-    const brunt_grid_surfaces *w = j->w;
+    const brunt_surface_on_grid *w = j->w;
     v[0] = v[1] = v[2] = 0;
     for (int32_t i = c->first; i < c->first + c->count; i++) {
         const link *l = &w->link[w->by_contact[i]];
-        const double m = l->weight * j->m->skin->mass[l->skin] / c->mass;
-        for (int a = 0; a < 3; a++) v[a] += m * l->sign[a] * of[l->skin][a];
+        const double m = l->weight * j->m->surface->mass[l->surface] / c->mass;
+        for (int a = 0; a < 3; a++) v[a] += m * l->sign[a] * of[l->surface][a];
     }
 }
 
 // Brings one contact to its complementarity condition, as far as mesh and body are concerned there; returns the change
 // of velocity [m/s].
-static double visit(const job *j, contact *c, double vs[3]) {
+static double solve_contact(const job *j, contact *c, double vs[3]) {
     double v[3], slip[3], along, push_inverse = c->inverse_s, drag_inverse = c->inverse_s;
-    memset(c->given, 0, sizeof c->given);
+    memset(c->applied, 0, sizeof c->applied);
     if (!isfinite(c->target)) return 0;
-    map_velocity(j, c, j->m->skin->v, v);
+    map_velocity(j, c, j->m->surface->v, v);
     for (int a = 0; a < 3; a++) slip[a] = vs[a] - v[a];
     along = dot(slip, c->n);
     for (int a = 0; a < 3; a++) {
@@ -41,102 +41,103 @@ static double visit(const job *j, contact *c, double vs[3]) {
         push_inverse += c->n[a] * c->n[a] * c->inverse[a];
         drag_inverse = fmax(drag_inverse, c->inverse_s + c->inverse[a]);
     }
-    const double push = fmax(0, c->push + c->relax * (c->target - along) / push_inverse), step = push - c->push;
+    const double normal_impulse = fmax(0, c->normal_impulse + c->relax * (c->target - along) / push_inverse),
+                 step = normal_impulse - c->normal_impulse;
     double changed = fabs(step) * push_inverse;
-    c->push = push;
-    for (int a = 0; a < 3; a++) c->given[a] = step * c->n[a];
+    c->normal_impulse = normal_impulse;
+    for (int a = 0; a < 3; a++) c->applied[a] = step * c->n[a];
     if (c->pair->friction > 0) {
-        double drag[3], size = 0, moved = 0;
+        double friction_impulse[3], size = 0, moved = 0;
         for (int a = 0; a < 3; a++) {
-            drag[a] = c->drag[a] - c->relax * slip[a] / drag_inverse;
-            size += drag[a] * drag[a];
+            friction_impulse[a] = c->friction_impulse[a] - c->relax * slip[a] / drag_inverse;
+            size += friction_impulse[a] * friction_impulse[a];
         }
         size = sqrt(size);
-        const double most = c->pair->friction * push, scale = size > most ? most / size : 1;
+        const double limit = c->pair->friction * normal_impulse, scale = size > limit ? limit / size : 1;
         for (int a = 0; a < 3; a++) {
-            const double now = scale * drag[a], add = now - c->drag[a];
-            c->given[a] += add;
+            const double now = scale * friction_impulse[a], add = now - c->friction_impulse[a];
+            c->applied[a] += add;
             moved += add * add;
-            c->drag[a] = now;
+            c->friction_impulse[a] = now;
         }
         changed = fmax(changed, sqrt(moved) * drag_inverse);
     }
-    for (int a = 0; a < 3; a++) vs[a] += c->given[a] * c->inverse_s;
+    for (int a = 0; a < 3; a++) vs[a] += c->applied[a] * c->inverse_s;
     return changed;
 }
 
-static void visit_all(void *context, int64_t begin, int64_t end, int worker) {
+static void solve_contacts(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     const job *j = context;
-    brunt_grid_surfaces *w = j->w;
+    brunt_surface_on_grid *w = j->w;
     for (int64_t i = j->range->contact + begin; i < j->range->contact + end; i++) {
         w->changed[i] = 0;
         if (w->contact[i].leader != i) continue;
         for (int32_t c = (int32_t)i; c >= 0; c = w->contact[c].next)
-            w->changed[i] = fmax(w->changed[i], visit(j, &w->contact[c], w->contact[i].v));
+            w->changed[i] = fmax(w->changed[i], solve_contact(j, &w->contact[c], w->contact[i].v));
     }
 }
 
 // What the mesh's nodes get of what the contacts gave in this sweep (eq. 59).
-static void give_all(void *context, int64_t begin, int64_t end, int worker) {
+static void scatter_impulses(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     const job *j = context;
-    const brunt_grid_surfaces *w = j->w;
-    brunt_contact_surface *s = j->m->skin;
+    const brunt_surface_on_grid *w = j->w;
+    brunt_contact_surface *s = j->m->surface;
     for (int64_t i = j->range->item + begin; i < j->range->item + end; i++) {
-        const int32_t n = w->item[i].skin;
+        const int32_t n = w->item[i].surface;
         double change[3] = {0};
         for (int32_t l = w->item[i].first; l < w->item[i].first + w->item[i].count; l++) {
             if (!w->link[l].own) continue;
             const contact *c = &w->contact[w->link[l].contact];
-            for (int a = 0; a < 3; a++) change[a] -= w->link[l].weight * c->given[a] / c->mass;
+            for (int a = 0; a < 3; a++) change[a] -= w->link[l].weight * c->applied[a] / c->mass;
         }
         for (int a = 0; a < 3; a++) {
-            s->impulse[n][a] += s->mass[n] * change[a];
+            s->output.impulse[n][a] += s->mass[n] * change[a];
             if (s->inverse[n][a] > 0) s->v[n][a] += change[a];
         }
     }
 }
 
-// The back of a sheet moves with its front.
+// The back of a membrane moves with its front.
 static void follow_front(brunt_contact_surface *s) {
     for (int k = 0; k < s->fem_count; k++)
         for (int32_t n = s->node_end[k]; s->active[k] && n < s->node_range[k + 1]; n++)
-            memcpy(s->v[n], s->v[s->front[n]], sizeof s->v[n]);
+            memcpy(s->v[n], s->v[s->membrane.front[n]], sizeof s->v[n]);
 }
 
 // Whether some node of a mesh is met by two bodies. What they squeeze between them passes on in a sweep no more than a
 // share of what its own mass can carry.
-static bool squeezed(brunt_grid_surfaces *w, const brunt_contact_surface *s, bool *found) {
+static bool squeezed(brunt_surface_on_grid *w, const brunt_contact_surface *s, bool *found) {
     int32_t met = 0;
     *found = false;
     for (int32_t b = 0; b < w->range_count; b++) met += w->range[b].item_end > w->range[b].item;
     if (met < 2) return true;
     if (RESERVE(w, met, s->node_count + 1)) return false;
     memset(w->met, 0, (size_t)s->node_count * sizeof *w->met);
-    for (int32_t i = 0; i < w->item_count && !*found; i++) *found = w->met[w->item[i].skin]++ > 0;
+    for (int32_t i = 0; i < w->item_count && !*found; i++) *found = w->met[w->item[i].surface]++ > 0;
     return true;
 }
 
 static double sweep(job *j) {
     const brunt_contact_context *m = j->m;
-    double most = 0;
+    double greatest = 0;
     for (int32_t k = 0; k < j->w->range_count; k++) {
         // What two bodies squeeze between them should not know which of them has the first name.
         const range *r = j->range = &j->w->range[m->step % 2 ? j->w->range_count - 1 - k : k];
-        brunt_parallel(m->threads, r->contact_end - r->contact, GRAIN, visit_all, j, m->timer);
-        brunt_parallel(m->threads, r->item_end - r->item, GRAIN, give_all, j, m->timer);
-        for (int32_t c = r->contact; c < r->contact_end; c++) most = fmax(most, j->w->changed[c]);
+        brunt_parallel(m->threads, r->contact_end - r->contact, GRAIN, solve_contacts, j, m->timer);
+        brunt_parallel(m->threads, r->item_end - r->item, GRAIN, scatter_impulses, j, m->timer);
+        for (int32_t c = r->contact; c < r->contact_end; c++) greatest = fmax(greatest, j->w->changed[c]);
     }
-    return most;
+    return greatest;
 }
 
-int brunt_grid_surfaces_meet(const brunt_contact_context *m, brunt_body *mpm, int mpm_count,
-                             const brunt_symmetry_plane *mirrors, int mirror_count, int sweeps,
-                             brunt_grid_surfaces **work) {
+int brunt_surface_on_grid_meet(const brunt_contact_context *m, brunt_body *mpm, int mpm_count,
+                               const brunt_symmetry_plane *mirrors, int mirror_count, int sweeps,
+                               brunt_surface_on_grid **work) {
     if (!*work) *work = brunt_alloc(sizeof **work);
     if (!*work) return -1;
-    brunt_grid_surfaces *w = *work;
+    brunt_surface_on_grid *w = *work;
     job j = {.m = m, .w = w, .mpm = mpm, .mirrors = mirrors, .mirror_count = mirror_count};
     w->range_count = w->link_count = w->item_count = w->contact_count = 0;
     if (RESERVE(w, range, mpm_count + 1)) return -1;
@@ -149,73 +150,77 @@ int brunt_grid_surfaces_meet(const brunt_contact_context *m, brunt_body *mpm, in
         if (mirror_count) brunt_surface_on_grid_reflect(&j);
     }
     bool two;
-    if (!squeezed(w, m->skin, &two)) return -1;
+    if (!squeezed(w, m->surface, &two)) return -1;
     for (int k = 0; k < (two ? MORE_SWEEPS : 1) * sweeps; k++)
         if (!(sweep(&j) > 0)) break;
     for (int32_t i = 0; i < w->contact_count; i++) {
         const contact *c = &w->contact[i];
         for (int a = 0; c->leader == i && a < mpm[c->mpm].grid.dim; a++) c->at[BRUNT_NODE_VELOCITY + a] = (real)c->v[a];
     }
-    follow_front(m->skin);
+    follow_front(m->surface);
     return 0;
 }
 
-static void book(const job *j, const contact *c) {
+static void account_contact(const job *j, const contact *c) {
     const int dim = j->mpm[c->mpm].grid.dim;
-    const double sign = j->mpm[c->mpm].index > j->m->skin->fem[c->fem]->index ? 1 : -1,
+    const double sign = j->mpm[c->mpm].index > j->m->surface->fem[c->fem]->index ? 1 : -1,
                  own = (double)(c->at[BRUNT_NODE_SPARE] / c->at[BRUNT_NODE_MASS]);
     static const double rest[3] = {0, 0, 0};
-    double push[3], drag[3], old[3], now[3];
-    map_velocity(j, c, j->m->skin->old, old);
-    map_velocity(j, c, j->m->skin->v, now);
+    double normal_impulse[3], friction_impulse[3], old[3], now[3];
+    map_velocity(j, c, j->m->surface->old, old);
+    map_velocity(j, c, j->m->surface->v, now);
     for (int a = 0; a < 3; a++) {
-        push[a] = sign * own * c->push * c->n[a], drag[a] = sign * own * c->drag[a];
+        normal_impulse[a] = sign * own * c->normal_impulse * c->n[a],
+        friction_impulse[a] = sign * own * c->friction_impulse[a];
         old[a] = sign * ((a < dim ? (double)c->at[BRUNT_NODE_OLD + a] : 0) - old[a]);
         now[a] = sign * ((a < dim ? (double)c->at[BRUNT_NODE_VELOCITY + a] : 0) - now[a]);
     }
     brunt_impulse_account *last = &c->pair->last;
-    brunt_impulse_account_book(last, &last->normal_loss, push, c->x, old, now, rest);
-    if (c->pair->friction > 0) brunt_impulse_account_book(last, &last->friction_loss, drag, c->x, old, now, rest);
+    brunt_impulse_account_book(last, &last->normal_loss, normal_impulse, c->x, old, now, rest);
+    if (c->pair->friction > 0)
+        brunt_impulse_account_book(last, &last->friction_loss, friction_impulse, c->x, old, now, rest);
     last->area += own * c->area;
 }
 
-static void note_state(const job *j, const contact *c) {
-    brunt_contact_surface *s = j->m->skin;
-    const bool slips = !(dot(c->drag, c->drag) < (1 - 1e-9) * pow(c->pair->friction * c->push, 2));
+static void mark_state(const job *j, const contact *c) {
+    brunt_contact_surface *s = j->m->surface;
+    const bool slips =
+        !(dot(c->friction_impulse, c->friction_impulse) < (1 - 1e-9) * pow(c->pair->friction * c->normal_impulse, 2));
     for (int32_t i = c->first; i < c->first + c->count; i++) {
         const link *l = &j->w->link[j->w->by_contact[i]];
         if (!l->own) continue;
-        s->gap[l->skin] = fmin(s->gap[l->skin], c->gap);
-        if (slips || !s->state[l->skin]) s->state[l->skin] = slips ? 2 : 1;
+        s->output.gap[l->surface] = fmin(s->output.gap[l->surface], c->gap);
+        if (slips || !s->output.state[l->surface]) s->output.state[l->surface] = slips ? 2 : 1;
     }
 }
 
 // Across a mirror plane the two do not get the same, each being the half of a whole: the rest is the plane's.
-static void book_mirror(const job *j, const contact *c, brunt_wall *walls) {
+static void account_symmetry(const job *j, const contact *c, brunt_wall *walls) {
     const brunt_grid *grid = &j->mpm[c->mpm].grid;
     const double own = (double)(c->at[BRUNT_NODE_SPARE] / c->at[BRUNT_NODE_MASS]);
-    double given = 0;
+    double applied = 0;
     for (int32_t i = c->first; i < c->first + c->count; i++) {
         const link *l = &j->w->link[j->w->by_contact[i]];
-        given += l->own ? l->weight * j->m->skin->mass[l->skin] / c->mass : 0;
+        applied += l->own ? l->weight * j->m->surface->mass[l->surface] / c->mass : 0;
     }
     for (int m = 0; m < j->mirror_count; m++) {
         const int axis = j->mirrors[m].axis;
         const double plane = grid->origin[axis] + (double)grid->h * j->mirrors[m].node;
         if (j->mirrors[m].wall < 0 || fabs(c->x[axis] - plane) > 2.5 * (double)grid->h) continue;
-        walls[j->mirrors[m].wall].last.impulse[axis] += (own - given) * (c->push * c->n[axis] + c->drag[axis]);
+        walls[j->mirrors[m].wall].last.impulse[axis] +=
+            (own - applied) * (c->normal_impulse * c->n[axis] + c->friction_impulse[axis]);
     }
 }
 
-void brunt_grid_surfaces_finish(const brunt_contact_context *m, brunt_body *mpm, const brunt_symmetry_plane *mirrors,
-                                int mirror_count, brunt_wall *walls, const brunt_grid_surfaces *work) {
+void brunt_surface_on_grid_finish(const brunt_contact_context *m, brunt_body *mpm, const brunt_symmetry_plane *mirrors,
+                                  int mirror_count, brunt_wall *walls, const brunt_surface_on_grid *work) {
     if (!work) return;
-    job j = {.m = m, .w = (brunt_grid_surfaces *)work, .mpm = mpm, .mirrors = mirrors, .mirror_count = mirror_count};
+    job j = {.m = m, .w = (brunt_surface_on_grid *)work, .mpm = mpm, .mirrors = mirrors, .mirror_count = mirror_count};
     for (int32_t i = 0; i < work->contact_count; i++) {
         const contact *c = &work->contact[i];
-        if (!(c->push > 0)) continue;
-        book(&j, c);
-        note_state(&j, c);
-        if (mirror_count) book_mirror(&j, c, walls);
+        if (!(c->normal_impulse > 0)) continue;
+        account_contact(&j, c);
+        mark_state(&j, c);
+        if (mirror_count) account_symmetry(&j, c, walls);
     }
 }

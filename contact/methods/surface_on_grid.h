@@ -4,7 +4,7 @@
 // The surface nodes K of a mesh r give mass and momentum to the nodes I of the grid of body s, by the body's own
 // kernel:
 //   m_I^r = sum_K N_I(x_K) m_K,   v_I^r = sum_K N_I(x_K) m_K v_K / m_I^r
-// Where both have mass, impulses end the approach (multivelocity.c): the grid velocity of s changes by J/m_I^s, and
+// Where both have mass, impulses end the approach (grid_velocity.c): the grid velocity of s changes by J/m_I^s, and
 // what the mesh gets goes back to its nodes by
 //   v_K += sum_I N_I(x_K) J_I / m_I^r                                                                      (their eq.
 //   59)
@@ -13,9 +13,10 @@
 //
 // Where this differs from the paper:
 //   - eq. 55 there has the sign of the force on the other body, and in eq. 58 the friction's direction is f_tan/|f_tan|
-//   - bodies touch where the reach of the particles (reach.c) meets the facets, half a thickness in front of a sheet,
+//   - bodies touch where the reach of the particles (particle_extent.c) meets the facets, half a thickness in front of
+//   a membrane,
 //     and not where both are felt by one node: the approach is limited to gap/dt
-//   - of a sheet the normal points to where the particles are, so that bodies may be on either side of it
+//   - of a membrane the normal points to where the particles are, so that bodies may be on either side of it
 //   - the normal is that of the facets nearest to the particles that touch, not of all that the node feels: it is not
 //     tilted near edges
 //   - a mesh follows what its nodes feel only in part at a time, since what it gets is averaged over the kernel: a few
@@ -29,18 +30,18 @@
 #include "contact/contact.h"
 #include "contact/surface/contact_surface.h"
 
-typedef struct brunt_grid_surfaces brunt_grid_surfaces;
+typedef struct brunt_surface_on_grid brunt_surface_on_grid;
 
-// Marks in skin->active the meshes that the grid of a body they meet in this way reaches; call between
-// brunt_surface_bounds and brunt_surface_gather_state, after whoever sets it.
-void brunt_grid_surfaces_near(const brunt_contact_context *m, const brunt_body *mpm, int mpm_count);
-// Changes the velocities of grid nodes and of the skin, with `sweeps` sweeps; four times as many where two bodies meet
-// one place of a mesh. 0, or -1: out of memory.
-int brunt_grid_surfaces_meet(const brunt_contact_context *m, brunt_body *mpm, int mpm_count,
-                             const brunt_symmetry_plane *mirrors, int mirror_count, int sweeps,
-                             brunt_grid_surfaces **work);
-// Accounts and contact state, once all else has acted on the skin's velocities.
-void brunt_grid_surfaces_finish(const brunt_contact_context *m, brunt_body *mpm, const brunt_symmetry_plane *mirrors,
-                                int mirror_count, brunt_wall *walls, const brunt_grid_surfaces *work);
-void brunt_grid_surfaces_free(brunt_grid_surfaces *work);
-size_t brunt_grid_surfaces_bytes(const brunt_grid_surfaces *work);
+// Marks in surface->active the meshes that the grid of a body they meet in this way reaches; call between
+// brunt_surface_bounds and brunt_surface_gather_state, after what sets it.
+void brunt_surface_on_grid_near(const brunt_contact_context *m, const brunt_body *mpm, int mpm_count);
+// Changes the velocities of grid nodes and of the surface, with `sweeps` sweeps; four times as many where two bodies
+// meet one place of a mesh. 0, or -1: out of memory.
+int brunt_surface_on_grid_meet(const brunt_contact_context *m, brunt_body *mpm, int mpm_count,
+                               const brunt_symmetry_plane *mirrors, int mirror_count, int sweeps,
+                               brunt_surface_on_grid **work);
+// Accounts and contact state, once all else has acted on the surface's velocities.
+void brunt_surface_on_grid_finish(const brunt_contact_context *m, brunt_body *mpm, const brunt_symmetry_plane *mirrors,
+                                  int mirror_count, brunt_wall *walls, const brunt_surface_on_grid *work);
+void brunt_surface_on_grid_free(brunt_surface_on_grid *work);
+size_t brunt_surface_on_grid_bytes(const brunt_surface_on_grid *work);

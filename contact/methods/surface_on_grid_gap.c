@@ -2,10 +2,10 @@
 #include "contact/methods/surface_on_grid_parts.h"
 
 enum { GRAIN = 16, MOST_FACES = 128 };
-static const double SIGHT = 1.5;  // spacings: how far a particle's reach may go; it starts with 0.87 at most
+static const double SEARCH = 1.5; // spacings: how far a particle's reach may go; it starts with 0.87 at most
 static const double BAND = 0.5;   // spacings: particles up to so much farther than the nearest have a say in the normal
 static const double MARGIN = 2;   // times the way of a step that it looks further
-static const double BESIDE = 0.5; // of the distance: a particle less than this above a sheet is beside its border
+static const double BESIDE = 0.5; // of the distance: a particle less than this above a membrane is beside its border
 
 static double box_distance(const double box[6], const double x[3]) {
     double square = 0;
@@ -18,8 +18,8 @@ static double box_distance(const double box[6], const double x[3]) {
 
 // Lists, for each block of the body, the faces of mesh k that come near its particles. 0, or -1: out of memory.
 static int list_faces(job *j, int b, int k) {
-    brunt_grid_surfaces *w = j->w;
-    const brunt_contact_surface *s = j->m->skin;
+    brunt_surface_on_grid *w = j->w;
+    const brunt_contact_surface *s = j->m->surface;
     const brunt_body *body = &j->mpm[b];
     const brunt_grid *grid = &body->grid;
     const double width = (double)grid->h * grid->side;
@@ -29,8 +29,8 @@ static int list_faces(job *j, int b, int k) {
     for (int32_t f = s->face_range[k]; f < s->face_end[k]; f++) {
         int32_t low[3] = {0}, high[3] = {0};
         for (int a = 0; a < grid->dim; a++) {
-            const double from = s->face_box[f][a] - w->range_of_sight - grid->origin[a] - shift,
-                         to = s->face_box[f][3 + a] + w->range_of_sight - grid->origin[a] - shift;
+            const double from = s->face_box[f][a] - w->search_range - grid->origin[a] - shift,
+                         to = s->face_box[f][3 + a] + w->search_range - grid->origin[a] - shift;
             low[a] = (int32_t)floor(from / width), high[a] = (int32_t)floor(to / width);
         }
         for (int32_t x = low[0]; x <= high[0]; x++)
@@ -60,8 +60,8 @@ typedef struct faces {
 } faces;
 
 static void faces_of_bin(const job *j, int32_t block, int bin, faces *near) {
-    const brunt_grid_surfaces *w = j->w;
-    const brunt_contact_surface *s = j->m->skin;
+    const brunt_surface_on_grid *w = j->w;
+    const brunt_contact_surface *s = j->m->surface;
     const brunt_grid *grid = &j->mpm[j->range_mpm].grid;
     double low[3] = {0}, high[3] = {0};
     int local[3];
@@ -69,8 +69,8 @@ static void faces_of_bin(const job *j, int32_t block, int bin, faces *near) {
     for (int a = 0; a < grid->dim; a++) {
         low[a] = grid->origin[a] +
                  (double)grid->h * (grid->blocks[block].coord[a] * grid->side + local[a] + 0.5 * (grid->order - 1)) -
-                 w->range_of_sight;
-        high[a] = low[a] + (double)grid->h + 2 * w->range_of_sight;
+                 w->search_range;
+        high[a] = low[a] + (double)grid->h + 2 * w->search_range;
     }
     near->count = 0, near->face = near->some;
     for (int32_t q = w->block_first[block]; q < w->block_first[block + 1]; q++) {
@@ -86,8 +86,8 @@ static void faces_of_bin(const job *j, int32_t block, int bin, faces *near) {
 }
 
 static bool find_nearest(const job *j, const faces *near, const double x[3], brunt_closest *best) {
-    const brunt_contact_surface *s = j->m->skin;
-    best->square = j->w->range_of_sight * j->w->range_of_sight;
+    const brunt_contact_surface *s = j->m->surface;
+    best->square = j->w->search_range * j->w->search_range;
     bool found = false;
     for (int32_t q = 0; q < near->count; q++) {
         const int32_t f = near->face[q];
@@ -106,7 +106,7 @@ static bool find_nearest(const job *j, const faces *near, const double x[3], bru
 static void touch_particle(const job *j, int64_t s, const faces *near) {
     touch *t = &j->w->touch[s];
     brunt_body *body = &j->mpm[j->range_mpm];
-    const bool sheet = j->m->skin->fem[j->range_fem]->traits->membrane;
+    const bool membrane = j->m->surface->fem[j->range_fem]->traits->membrane;
     real *const *place = brunt_field(&body->particles, BRUNT_FIELD_position);
     double x[3] = {0};
     brunt_closest c = {.square = 0};
@@ -114,16 +114,16 @@ static void touch_particle(const job *j, int64_t s, const faces *near) {
     t->near = find_nearest(j, near, x, &c);
     if (!t->near) return;
     const double size = sqrt(c.square), above = dot(c.d, c.normal);
-    t->beside = sheet && !c.inside && fabs(above) < BESIDE * size;
+    t->beside = membrane && !c.inside && fabs(above) < BESIDE * size;
     t->height = c.inside ? above : t->beside || above >= 0 ? size : -size;
     // Where the nearest point is an edge or a corner, the way from there; behind a solid's, out of the facet.
-    const double along = c.inside || !(size > 0) || (above < 0 && !sheet) ? 0 : above >= 0 || t->beside ? 1 : -1;
+    const double along = c.inside || !(size > 0) || (above < 0 && !membrane) ? 0 : above >= 0 || t->beside ? 1 : -1;
     for (int a = 0; a < 3; a++) t->n[a] = along != 0 ? along * c.d[a] / size : c.normal[a];
     t->radius = brunt_extent_along(body, s, t->n);
 }
 
 static void touch_block(const job *j, int32_t b) {
-    const brunt_grid_surfaces *w = j->w;
+    const brunt_surface_on_grid *w = j->w;
     const brunt_grid *grid = &j->mpm[j->range_mpm].grid;
     const brunt_block *block = &grid->blocks[b];
     const int32_t *start = grid->bin_start + (int64_t)b * BRUNT_BIN_STARTS;
@@ -146,10 +146,10 @@ static void touch_blocks(void *context, int64_t begin, int64_t end, int worker) 
 
 // What particles near a grid node know of the distance.
 typedef struct view {
-    const brunt_grid_surfaces *w;
+    const brunt_surface_on_grid *w;
     const double *x;            // of the node
-    double support, half, band; // [m]; half of a sheet's thickness
-    double side, front, back;   // of a sheet: sum over its particles; least gap if they are in front of it, or behind
+    double support, half, band; // [m]; half of a membrane's thickness
+    double side, front, back; // of a membrane: sum over its particles; least gap if they are in front of it, or behind
     double least, sum[3];
 } view;
 
@@ -191,11 +191,11 @@ static void add_normal(void *context, brunt_body *body, int64_t s, const int bas
 // Gap between the facets and what the particles near a node reach, and the mean direction to those that are nearest.
 static void find_gap(const job *j, contact *c) {
     brunt_body *body = &j->mpm[c->mpm];
-    const brunt_contact_surface *s = j->m->skin;
+    const brunt_contact_surface *s = j->m->surface;
     const brunt_fem_body *fem = s->fem[c->fem];
     view v = {.w = j->w, .x = c->x, .front = INFINITY, .back = INFINITY};
     v.band = BAND * body->spacing, v.support = 0.5 * (body->grid.order + 1) * (double)body->grid.h;
-    v.half = fem->traits->membrane && s->side ? s->side[fem->index].half : 0;
+    v.half = fem->traits->membrane && s->membrane.side ? s->membrane.side[fem->index].half : 0;
     c->gap = INFINITY;
     brunt_extent_visit(body, c->slot, c->node, find_least, &v);
     v.side = fem->traits->membrane && v.side < 0 ? -1 : 1;
@@ -206,7 +206,7 @@ static void find_gap(const job *j, contact *c) {
     if (make_unit(c->n)) c->gap = v.least;
 }
 
-// What is a skin node's of the surface, as a vector [m^2].
+// What is a surface node's of the surface, as a vector [m^2].
 static void area_vector(const brunt_contact_surface *s, int32_t n, double area[3]) {
     area[0] = area[1] = area[2] = 0;
     for (int32_t q = s->face_first[n]; q < s->face_first[n + 1]; q++) {
@@ -220,27 +220,27 @@ static void area_vector(const brunt_contact_surface *s, int32_t n, double area[3
 // whole kernel: a sweep then takes what the surface's share of the node is, so that nodes a cell away are not held
 // fast.
 static void prepare(const job *j, contact *c) {
-    const brunt_grid_surfaces *w = j->w;
-    const brunt_contact_surface *s = j->m->skin;
+    const brunt_surface_on_grid *w = j->w;
+    const brunt_contact_surface *s = j->m->surface;
     const brunt_grid *grid = &j->mpm[c->mpm].grid;
-    double area[3] = {0}, free[3] = {0}, held = 0;
+    double area[3] = {0}, free[3] = {0}, fixed = 0;
     for (int32_t i = c->first; i < c->first + c->count; i++) {
         const link *l = &w->link[w->by_contact[i]];
-        const double m = l->weight * s->mass[l->skin];
+        const double m = l->weight * s->mass[l->surface];
         double node_area[3];
-        area_vector(s, l->skin, node_area);
+        area_vector(s, l->surface, node_area);
         c->mass += m;
         for (int a = 0; a < 3; a++) {
             area[a] += l->weight * l->sign[a] * node_area[a];
-            free[a] += s->inverse[l->skin][a] > 0 ? m : 0;
+            free[a] += s->inverse[l->surface][a] > 0 ? m : 0;
         }
     }
     c->area = sqrt(dot(area, area));
     for (int a = 0; a < 3; a++) c->inverse[a] = free[a] / (c->mass * c->mass);
     find_gap(j, c);
     c->target = -fmax(c->gap, 0) / j->m->dt;
-    for (int a = 0; a < 3; a++) held += c->n[a] * c->n[a] * (1 - free[a] / c->mass);
-    c->relax = (1 - held) + held * fmin(1, 2 * c->area / pow((double)grid->h, grid->dim - 1));
+    for (int a = 0; a < 3; a++) fixed += c->n[a] * c->n[a] * (1 - free[a] / c->mass);
+    c->relax = (1 - fixed) + fixed * fmin(1, 2 * c->area / pow((double)grid->h, grid->dim - 1));
 }
 
 static void prepare_all(void *context, int64_t begin, int64_t end, int worker) {
@@ -251,19 +251,20 @@ static void prepare_all(void *context, int64_t begin, int64_t end, int worker) {
 
 // Greatest speed of the body and the mesh looked at against each other, at most [m/s].
 static double fastest(const job *j) {
-    const brunt_contact_surface *s = j->m->skin;
-    return (double)j->mpm[j->range_mpm].speed + s->speed[j->range_fem] + sqrt(dot(s->frame, s->frame));
+    const brunt_contact_surface *s = j->m->surface;
+    return (double)j->mpm[j->range_mpm].speed + s->motion.speed[j->range_fem] +
+           sqrt(dot(s->motion.frame, s->motion.frame));
 }
 
 // Normals and gaps of all contacts of body b, mesh after mesh.
 int brunt_surface_on_grid_look(job *j, int b) {
-    brunt_grid_surfaces *w = j->w;
+    brunt_surface_on_grid *w = j->w;
     const range whole = w->range[b];
     j->range_mpm = b;
     for (int32_t c = whole.contact, next; c < whole.contact_end; c = next) {
         j->range_fem = w->contact[c].fem;
         for (next = c + 1; next < whole.contact_end && w->contact[next].fem == j->range_fem; next++) {}
-        w->range_of_sight = SIGHT * j->mpm[b].spacing + MARGIN * fastest(j) * j->m->dt;
+        w->search_range = SEARCH * j->mpm[b].spacing + MARGIN * fastest(j) * j->m->dt;
         if (list_faces(j, b, j->range_fem)) return -1;
         brunt_parallel(j->m->threads, j->mpm[b].grid.block_count, 1, touch_blocks, j, j->m->timer);
         const range run = {.contact = c, .contact_end = next};
@@ -277,7 +278,7 @@ int brunt_surface_on_grid_look(job *j, int b) {
 // A node behind a mirror plane sees few particles, or none: it has what its image has, reflected. The one that sees
 // more of the mesh counts.
 void brunt_surface_on_grid_reflect(const job *j) {
-    brunt_grid_surfaces *w = j->w;
+    brunt_surface_on_grid *w = j->w;
     const int32_t first = j->range->contact, end = j->range->contact_end;
     if (first == end) return;
     memset(w->place, 0, (size_t)j->mpm[w->contact[first].mpm].grid.slot_count * BRUNT_BLOCK_NODES * sizeof *w->place);
@@ -289,15 +290,15 @@ void brunt_surface_on_grid_reflect(const job *j) {
         int local[3];
         int32_t at[3] = {0}, image[BRUNT_MAX_IMAGES][3];
         real sign[BRUNT_MAX_IMAGES][3];
-        double most = 0;
+        double greatest = 0;
         brunt_node_local(grid, c->node, local);
         for (int a = 0; a < grid->dim; a++) at[a] = grid->slots[c->slot].coord[a] * grid->side + local[a];
         const int images = brunt_symmetry_images(j->mirrors, j->mirror_count, at, 2, image, sign);
         for (int q = 0; q < images; q++) {
-            seen_slot seen = {.is = false};
+            slot_cache cached = {.is = false};
             int32_t slot;
             int node;
-            if (!brunt_surface_on_grid_place(grid, image[q], &seen, &slot, &node)) continue;
+            if (!brunt_surface_on_grid_place(grid, image[q], &cached, &slot, &node)) continue;
             int32_t o = w->place[slot * BRUNT_BLOCK_NODES + node] - 1;
             while (o >= 0 && w->contact[o].fem != c->fem) o = w->contact[o].next;
             if (o < 0) continue;
@@ -305,10 +306,10 @@ void brunt_surface_on_grid_reflect(const job *j) {
             double own = 0;
             for (int32_t l = other->first; l < other->first + other->count; l++) {
                 const link *by = &w->link[w->by_contact[l]];
-                own += by->own ? by->weight * j->m->skin->mass[by->skin] : 0;
+                own += by->own ? by->weight * j->m->surface->mass[by->surface] : 0;
             }
-            if (!(own > most)) continue;
-            most = own;
+            if (!(own > greatest)) continue;
+            greatest = own;
             if (!q) continue;
             c->gap = other->gap, c->target = other->target, c->relax = other->relax;
             for (int a = 0; a < 3; a++) c->n[a] = (double)sign[q][a] * other->n[a];

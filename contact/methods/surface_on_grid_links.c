@@ -10,18 +10,18 @@ static brunt_pair *pair_of(const brunt_contact_context *m, const brunt_body *bod
 
 static int32_t floor_divide(int32_t a, int32_t b) { return a >= 0 ? a / b : -((-a + b - 1) / b); }
 
-bool brunt_surface_on_grid_place(const brunt_grid *grid, const int32_t at[3], seen_slot *seen, int32_t *slot,
+bool brunt_surface_on_grid_place(const brunt_grid *grid, const int32_t at[3], slot_cache *cached, int32_t *slot,
                                  int *node) {
     int32_t coord[3] = {0, 0, 0}, local[3] = {0, 0, 0};
     for (int a = 0; a < grid->dim; a++) {
         coord[a] = floor_divide(at[a], grid->side);
         local[a] = at[a] - coord[a] * grid->side;
     }
-    if (!seen->is || memcmp(seen->coord, coord, sizeof coord)) {
-        memcpy(seen->coord, coord, sizeof coord);
-        seen->slot = brunt_grid_slot(grid, brunt_key(coord)), seen->is = true;
+    if (!cached->is || memcmp(cached->coord, coord, sizeof coord)) {
+        memcpy(cached->coord, coord, sizeof coord);
+        cached->slot = brunt_grid_slot(grid, brunt_key(coord)), cached->is = true;
     }
-    *slot = seen->slot;
+    *slot = cached->slot;
     *node = brunt_node_index(grid, local[0], local[1], local[2]);
     return *slot >= 0;
 }
@@ -38,8 +38,8 @@ static void bound_grid(const brunt_grid *grid, double low[3], double high[3]) {
         }
 }
 
-void brunt_grid_surfaces_near(const brunt_contact_context *m, const brunt_body *mpm, int mpm_count) {
-    brunt_contact_surface *s = m->skin;
+void brunt_surface_on_grid_near(const brunt_contact_context *m, const brunt_body *mpm, int mpm_count) {
+    brunt_contact_surface *s = m->surface;
     for (int b = 0; b < mpm_count; b++) {
         double low[3], high[3];
         bound_grid(&mpm[b].grid, low, high);
@@ -52,7 +52,7 @@ void brunt_grid_surfaces_near(const brunt_contact_context *m, const brunt_body *
 // The contact of mesh k with body b at a node, made when it is first asked for; -1: the body has no mass there, -2: out
 // of memory.
 static int32_t find_contact(job *j, int b, int k, brunt_pair *pair, int32_t slot, int node) {
-    brunt_grid_surfaces *w = j->w;
+    brunt_surface_on_grid *w = j->w;
     const int32_t number = slot * BRUNT_BLOCK_NODES + node;
     int32_t last = -1, leader = -1;
     for (int32_t c = w->place[number] - 1; c >= 0; c = w->contact[c].next) {
@@ -85,27 +85,27 @@ static int32_t find_contact(job *j, int b, int k, brunt_pair *pair, int32_t slot
 }
 
 static int add_link(job *j, int b, int k, brunt_pair *pair, int32_t n, const int32_t at[3], double weight,
-                    const real *sign, seen_slot *seen) {
-    brunt_grid_surfaces *w = j->w;
+                    const real *sign, slot_cache *cached) {
+    brunt_surface_on_grid *w = j->w;
     int32_t slot;
     int node;
-    if (!brunt_surface_on_grid_place(&j->mpm[b].grid, at, seen, &slot, &node)) return 0;
+    if (!brunt_surface_on_grid_place(&j->mpm[b].grid, at, cached, &slot, &node)) return 0;
     int32_t c = find_contact(j, b, k, pair, slot, node);
     if (c < 0) return c == -1 ? 0 : -1;
     if (GROW(w, link)) return -1;
     link *l = &w->link[w->link_count++];
-    *l = (link){.skin = n, .contact = c, .weight = weight, .sign = {1, 1, 1}, .own = !sign};
+    *l = (link){.surface = n, .contact = c, .weight = weight, .sign = {1, 1, 1}, .own = !sign};
     for (int a = 0; a < 3 && sign; a++) l->sign[a] = (int8_t)sign[a];
     w->contact[c].count++;
     return 0;
 }
 
-// Links of skin node n with the nodes of body b, and, near mirrors, with their images: the same as the particles'
+// Links of surface node n with the nodes of body b, and, near mirrors, with their images: the same as the particles'
 // shares get from brunt_symmetry_fold.
 static int add_item(job *j, int b, int k, brunt_pair *pair, int32_t n) {
-    brunt_grid_surfaces *w = j->w;
+    brunt_surface_on_grid *w = j->w;
     const brunt_grid *grid = &j->mpm[b].grid;
-    const double *x = j->m->skin->x[n];
+    const double *x = j->m->surface->x[n];
     const int dim = grid->dim, nodes = grid->order + 1;
     int32_t base[3] = {0, 0, 0};
     double weight[3][4] = {{1}, {1}, {1}};
@@ -114,7 +114,7 @@ static int add_item(job *j, int b, int k, brunt_pair *pair, int32_t n) {
         base[a] = (int32_t)floor(u - 0.5 * (grid->order - 1));
         brunt_bspline_weights(grid->order, u - base[a], weight[a]);
     }
-    seen_slot seen = {.is = false}, seen_image = {.is = false};
+    slot_cache cached = {.is = false}, cached_image = {.is = false};
     const int32_t first = w->link_count;
     for (int p = 0; p < nodes; p++)
         for (int q = 0; q < nodes; q++)
@@ -123,7 +123,7 @@ static int add_item(job *j, int b, int k, brunt_pair *pair, int32_t n) {
                 const int32_t at[3] = {base[0] + p, base[1] + q, base[2] + r};
                 if (!(share > 0)) continue;
                 if (!j->mirror_count) {
-                    if (add_link(j, b, k, pair, n, at, share, NULL, &seen)) return -1;
+                    if (add_link(j, b, k, pair, n, at, share, NULL, &cached)) return -1;
                     continue;
                 }
                 int32_t image[BRUNT_MAX_IMAGES][3];
@@ -131,7 +131,7 @@ static int add_item(job *j, int b, int k, brunt_pair *pair, int32_t n) {
                 int images = brunt_symmetry_images(j->mirrors, j->mirror_count, at, 2, image, sign);
                 for (int i = 0; i < images; i++) {
                     const int32_t before = w->link_count;
-                    if (add_link(j, b, k, pair, n, image[i], share, sign[i], i ? &seen_image : &seen)) return -1;
+                    if (add_link(j, b, k, pair, n, image[i], share, sign[i], i ? &cached_image : &cached)) return -1;
                     if (w->link_count == before) continue;
                     w->link[before].own = i == 0;
                     for (int a = 0; a < 3; a++)
@@ -144,9 +144,9 @@ static int add_item(job *j, int b, int k, brunt_pair *pair, int32_t n) {
     return 0;
 }
 
-// Whether a skin node is on what mirror planes have cut open, and on no other surface.
+// Whether a surface node is on what mirror planes have cut open, and on no other surface.
 static bool on_cut(const job *j, const brunt_grid *grid, int32_t n) {
-    const brunt_contact_surface *s = j->m->skin;
+    const brunt_contact_surface *s = j->m->surface;
     double normal[3] = {s->normal[n][0], s->normal[n][1], s->normal[n][2]};
     bool cut = false;
     for (int m = 0; m < j->mirror_count; m++) {
@@ -165,8 +165,8 @@ static bool inside(const double x[3], const double low[3], const double high[3])
 
 // Contacts, links and items of body b.
 int brunt_surface_on_grid_link(job *j, int b) {
-    brunt_grid_surfaces *w = j->w;
-    const brunt_contact_surface *s = j->m->skin;
+    brunt_surface_on_grid *w = j->w;
+    const brunt_contact_surface *s = j->m->surface;
     const brunt_grid *grid = &j->mpm[b].grid;
     range *r = &w->range[w->range_count++];
     *r = (range){w->contact_count, w->contact_count, w->item_count, w->item_count};
@@ -183,7 +183,8 @@ int brunt_surface_on_grid_link(job *j, int b) {
             any = true;
         }
         for (int32_t n = s->node_range[k]; n < s->node_end[k]; n++) {
-            if (s->face_first[n + 1] == s->face_first[n]) continue; // a loose node: there is no surface to press with
+            if (s->face_first[n + 1] == s->face_first[n])
+                continue; // a detached nodes: there is no surface to press with
             if (inside(s->x[n], low, high) && !on_cut(j, grid, n) && add_item(j, b, k, pair, n)) return -1;
         }
     }
@@ -192,7 +193,7 @@ int brunt_surface_on_grid_link(job *j, int b) {
 }
 
 // Links by contact, in their order.
-int brunt_surface_on_grid_sort(brunt_grid_surfaces *w) {
+int brunt_surface_on_grid_sort(brunt_surface_on_grid *w) {
     if (RESERVE(w, by_contact, w->link_count + 1) || RESERVE(w, changed, w->contact_count + 1)) return -1;
     int32_t first = 0;
     for (int32_t c = 0; c < w->contact_count; c++) {

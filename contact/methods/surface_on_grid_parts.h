@@ -12,17 +12,17 @@
 #include "grid/bspline.h"
 #include "mpm/mpm_body.h"
 
-// What a skin node gives to a node of the grid, itself or, by a mirror, its image.
+// What a surface node gives to a node of the grid, itself or, by a mirror, its image.
 typedef struct link {
-    int32_t skin, contact;
+    int32_t surface, contact;
     double weight;
     int8_t sign[3]; // of each component of its velocity
     bool own;       // not of an image
 } link;
 
-// A skin node at the grid of a body: its links.
+// A surface node at the grid of a body: its links.
 typedef struct item {
-    int32_t skin, first, count;
+    int32_t surface, first, count;
 } item;
 
 // A mesh and a body at a grid node.
@@ -38,7 +38,7 @@ typedef struct contact {
     double inverse[3];       // [1/kg] of the mesh, by component
     double relax;            // share of what is asked for that a sweep gives
     double n[3], gap, target;
-    double push, drag[3], given[3];
+    double normal_impulse, friction_impulse[3], applied[3];
 } contact;
 
 // Contacts and items of one body of material points.
@@ -51,13 +51,13 @@ typedef struct near_face {
     int32_t block, face;
 } near_face;
 
-// What a particle knows of the nearest facet. Of a sheet, its front is meant.
+// What a particle knows of the nearest facet. Of a membrane, its front is meant.
 typedef struct touch {
     double height, radius, n[3]; // [m] in front of it, [m] reach along n; unit, to where it is in front
-    bool near, beside;           // beside: of the border of a sheet, with n from there
+    bool near, beside;           // beside: of the border of a membrane, with n from there
 } touch;
 
-struct brunt_grid_surfaces {
+struct brunt_surface_on_grid {
     near_face *near;
     size_t near_capacity;
     int32_t near_count;
@@ -65,13 +65,13 @@ struct brunt_grid_surfaces {
     size_t block_first_capacity, block_face_capacity;
     touch *touch; // of each particle slot
     size_t touch_capacity;
-    double range_of_sight;
+    double search_range;
     range *range;
     link *link;
     item *item;
     contact *contact;
     int32_t *by_contact, *place;
-    uint8_t *met; // of each skin node, how many bodies
+    uint8_t *met; // of each surface node, how many bodies
     size_t met_capacity;
     double *changed;
     size_t range_capacity, link_capacity, item_capacity, contact_capacity, by_contact_capacity, place_capacity,
@@ -81,7 +81,7 @@ struct brunt_grid_surfaces {
 
 typedef struct job {
     const brunt_contact_context *m;
-    brunt_grid_surfaces *w;
+    brunt_surface_on_grid *w;
     brunt_body *mpm;
     const brunt_symmetry_plane *mirrors;
     int mirror_count;
@@ -112,13 +112,13 @@ static inline bool overlap(const double low[3], const double high[3], const doub
 // Contacts, links and items of body b. 0, or -1: out of memory.
 int brunt_surface_on_grid_link(job *j, int b);
 // Links by contact, in their order. 0, or -1: out of memory.
-int brunt_surface_on_grid_sort(brunt_grid_surfaces *w);
+int brunt_surface_on_grid_sort(brunt_surface_on_grid *w);
 // Slot and node with global coordinates `at`; false when it is not alive. `seen` remembers the last slot.
-typedef struct seen_slot {
+typedef struct slot_cache {
     int32_t coord[3], slot;
     bool is;
-} seen_slot;
-bool brunt_surface_on_grid_place(const brunt_grid *grid, const int32_t at[3], seen_slot *seen, int32_t *slot,
+} slot_cache;
+bool brunt_surface_on_grid_place(const brunt_grid *grid, const int32_t at[3], slot_cache *cached, int32_t *slot,
                                  int *node);
 
 // --- surface_on_grid_gap.c: normal and gap at each of them

@@ -17,8 +17,8 @@
 // that of its outermost particles.
 //
 // Tried and left: conditions on the nodes behind the plane (the surface then depends on where the plane cuts the cells,
-// by up to half a cell); Gauss-Seidel (the first particle visited takes the load of its neighbours, who need 50 to 200
-// sweeps to take it back, against about 10 here).
+// by up to half a cell); Gauss-Seidel (the first particle visited takes the load of its neighbours, which need 50 to
+// 200 sweeps to take it back, against about 10 here).
 #include <math.h>
 #include <string.h>
 
@@ -66,8 +66,8 @@ typedef struct touch {
     int32_t levers;              // the first of as many, -1 without friction
     double target;               // [m/s] least velocity along the normal
     double response, response_t; // [1/kg] row sums: along the normal, tangential
-    double push;                 // [N s] along the normal
-    double drag[3];              // [N s] tangential
+    double normal_impulse;       // [N s] along the normal
+    double friction_impulse[3];  // [N s] tangential
 } touch;
 
 struct brunt_wall_workspace {
@@ -321,12 +321,12 @@ static int find_touches(brunt_wall_workspace *w, brunt_body *body, const brunt_w
 // push.
 static void load_levers(brunt_wall_workspace *w, const touch *t, int dim, bool crossed) {
     for (int32_t e = 0; e < t->count; e++) {
-        const entry *push = &w->entries[t->first + e];
+        const entry *normal_impulse = &w->entries[t->first + e];
         const quad rub = w->levers[t->levers + e].apply;
-        support *s = &w->supports[push->support];
+        support *s = &w->supports[normal_impulse->support];
         for (int a = 0; a < dim; a++) {
             s->lever[a] += fabs(rub[a]);
-            if (crossed) s->weight[a] += fmax(fabs(rub[a]) - push->apply[a], 0);
+            if (crossed) s->weight[a] += fmax(fabs(rub[a]) - normal_impulse->apply[a], 0);
         }
     }
 }
@@ -363,26 +363,27 @@ static double visit(brunt_wall_workspace *w, touch *t, const brunt_plane_def *pl
     quad u = {0}, v = t->levers < 0 ? particle_velocity(w, t) : surface_velocity(w, t, &u), J = {0}, rub = {0};
     for (int a = 0; a < dim; a++)
         normal_velocity += plane->normal[a] * v[a], wall_normal += plane->normal[a] * plane->velocity[a];
-    double push = fmax(0, t->push + (t->target - normal_velocity) / t->response), step = push - t->push;
-    t->push = push;
+    double normal_impulse = fmax(0, t->normal_impulse + (t->target - normal_velocity) / t->response),
+           step = normal_impulse - t->normal_impulse;
+    t->normal_impulse = normal_impulse;
     double changed = fabs(step) * t->response;
     for (int a = 0; a < dim; a++) J[a] = step * plane->normal[a];
     if (plane->friction > 0) {
-        double drag[3], size = 0, moved = 0;
+        double friction_impulse[3], size = 0, moved = 0;
         normal_velocity = 0;
         for (int a = 0; a < dim; a++) normal_velocity += plane->normal[a] * u[a];
         for (int a = 0; a < dim; a++) {
             double slip = u[a] - plane->velocity[a] - (normal_velocity - wall_normal) * plane->normal[a];
-            drag[a] = t->drag[a] - slip / t->response_t;
-            size += drag[a] * drag[a];
+            friction_impulse[a] = t->friction_impulse[a] - slip / t->response_t;
+            size += friction_impulse[a] * friction_impulse[a];
         }
         size = sqrt(size);
-        double most = plane->friction * push, scale = size > most ? most / size : 1;
+        double limit = plane->friction * normal_impulse, scale = size > limit ? limit / size : 1;
         for (int a = 0; a < dim; a++) {
-            double now = scale * drag[a];
-            rub[a] = now - t->drag[a];
+            double now = scale * friction_impulse[a];
+            rub[a] = now - t->friction_impulse[a];
             moved += rub[a] * rub[a];
-            t->drag[a] = now;
+            t->friction_impulse[a] = now;
         }
         changed = fmax(changed, sqrt(moved) * t->response_t);
     }
@@ -429,24 +430,26 @@ static void book(const brunt_wall_workspace *w, brunt_body *body, brunt_wall *wa
     for (int32_t k = 0; k < w->touch_count; k++) {
         const touch *t = &w->touches[k];
         brunt_wall *wall = &walls[t->wall];
-        if (!(t->push > 0)) continue;
+        if (!(t->normal_impulse > 0)) continue;
         for (int32_t e = t->first; e < t->first + t->count; e++) {
             const real *n = w->supports[w->entries[e].support].node;
             int64_t number = (n - grid->nodes) / BRUNT_NODE_REALS;
-            double push[3] = {0}, drag[3] = {0}, x[3], old[3] = {0}, now[3] = {0};
+            double normal_impulse[3] = {0}, friction_impulse[3] = {0}, x[3], old[3] = {0}, now[3] = {0};
             double own = (double)(n[BRUNT_NODE_SPARE] / n[BRUNT_NODE_MASS]);
             brunt_node_position(grid, grid->slots[number / BRUNT_BLOCK_NODES].coord, (int)(number % BRUNT_BLOCK_NODES),
                                 x);
             if (brunt_total_lagrangian(&body->particles)) deformed_place(body, t->slot, x);
             for (int a = 0; a < grid->dim; a++) {
-                push[a] = own * w->entries[e].apply[a] * t->push * wall->plane.normal[a];
-                if (t->levers >= 0) drag[a] = own * w->levers[t->levers + e - t->first].apply[a] * t->drag[a];
+                normal_impulse[a] = own * w->entries[e].apply[a] * t->normal_impulse * wall->plane.normal[a];
+                if (t->levers >= 0)
+                    friction_impulse[a] = own * w->levers[t->levers + e - t->first].apply[a] * t->friction_impulse[a];
                 old[a] = (double)n[BRUNT_NODE_OLD + a], now[a] = (double)n[BRUNT_NODE_VELOCITY + a];
             }
             brunt_impulse_account *last = &wall->last;
-            brunt_impulse_account_book(last, &last->normal_loss, push, x, old, now, wall->plane.velocity);
+            brunt_impulse_account_book(last, &last->normal_loss, normal_impulse, x, old, now, wall->plane.velocity);
             if (wall->plane.friction > 0)
-                brunt_impulse_account_book(last, &last->friction_loss, drag, x, old, now, wall->plane.velocity);
+                brunt_impulse_account_book(last, &last->friction_loss, friction_impulse, x, old, now,
+                                           wall->plane.velocity);
         }
     }
 }
@@ -467,12 +470,12 @@ int brunt_planes_apply(brunt_body *body, brunt_wall *walls, int wall_count, cons
         double first = 0;
         prepare(w, walls, body->grid.dim);
         for (int sweep = 0; sweep < MAX_SWEEPS; sweep++) {
-            double most = 0;
+            double greatest = 0;
             for (int32_t k = 0; k < w->touch_count; k++)
-                most = fmax(most, visit(w, &w->touches[k], &walls[w->touches[k].wall].plane, body->grid.dim));
+                greatest = fmax(greatest, visit(w, &w->touches[k], &walls[w->touches[k].wall].plane, body->grid.dim));
             give_impulses(w, body->grid.dim);
-            first = fmax(first, most);
-            if (most <= SWEEP_TOLERANCE * first) break;
+            first = fmax(first, greatest);
+            if (greatest <= SWEEP_TOLERANCE * first) break;
         }
         book(w, body, walls);
     }

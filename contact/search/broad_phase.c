@@ -9,7 +9,7 @@
 static const double RANGE = 0.25;     // mean edges: how far a body looks for others, if nothing moves faster
 static const double FARTHEST = 1e150; // [m] squares of distances are still numbers
 
-static void bound_grid(const brunt_body *body, bounds *box) {
+static void bound_grid(const brunt_body *body, body_box *box) {
     const brunt_grid *grid = &body->grid;
     for (int a = 0; a < 3; a++)
         box->low[a] = a < grid->dim ? INFINITY : 0, box->high[a] = a < grid->dim ? -INFINITY : 0;
@@ -31,67 +31,73 @@ static void bound_grid(const brunt_body *body, bounds *box) {
 }
 
 static int by_low(const void *a, const void *b) {
-    const bounds *p = a, *q = b;
+    const body_box *p = a, *q = b;
     return p->low[0] < q->low[0] ? -1 : p->low[0] > q->low[0] ? 1 : p->body - q->body;
 }
 
-static bool overlap(const bounds *a, const bounds *b, double by) {
+static bool overlap(const body_box *a, const body_box *b, double by) {
     for (int k = 0; k < 3; k++)
         if (a->low[k] - by > b->high[k] || b->low[k] - by > a->high[k]) return false;
     return true;
 }
 
-static bool meets(const brunt_contact_context *m, const bounds *a, const bounds *b) {
+static bool meets(const brunt_contact_context *m, const body_box *a, const body_box *b) {
     if (a->fem < 0 && b->fem < 0) return false; // particles have no facets: those meet at grid nodes
     int32_t pair = m->pair_of[a->body * m->body_count + b->body];
     return pair >= 0 && m->pairs[pair].method == BRUNT_CONTACT_AUGURY;
 }
 
 static int find_boxes(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, brunt_node_to_facet *f) {
-    const brunt_contact_surface *s = m->skin;
-    f->box_count = s->fem_count + mpm_count;
-    if (RESERVE(f, box, f->box_count + 1) || RESERVE(f, box_of, s->fem_count + 1)) return -1;
+    const brunt_contact_surface *s = m->surface;
+    f->bodies.box_count = s->fem_count + mpm_count;
+    if (RESERVE(&f->bodies, box, f->bodies.box_count + 1) || RESERVE(&f->bodies, box_of, s->fem_count + 1)) return -1;
     for (int k = 0; k < s->fem_count; k++) {
-        bounds *box = &f->box[k];
-        *box = (bounds){.body = s->fem[k]->index, .fem = k, .mpm = -1, .sheet = s->fem[k]->traits->membrane};
+        body_box *box = &f->bodies.box[k];
+        *box = (body_box){.body = s->fem[k]->index, .fem = k, .mpm = -1, .membrane = s->fem[k]->traits->membrane};
         memcpy(box->low, s->low[k], sizeof box->low), memcpy(box->high, s->high[k], sizeof box->high);
     }
     for (int k = 0; k < mpm_count; k++) {
-        bounds *box = &f->box[s->fem_count + k];
-        *box = (bounds){.body = mpm[k].index, .fem = -1, .mpm = k};
+        body_box *box = &f->bodies.box[s->fem_count + k];
+        *box = (body_box){.body = mpm[k].index, .fem = -1, .mpm = k};
         bound_grid(&mpm[k], box);
     }
-    qsort(f->box, (size_t)f->box_count, sizeof *f->box, by_low);
-    for (int32_t k = 0; k < f->box_count; k++)
-        if (f->box[k].fem >= 0) f->box_of[f->box[k].fem] = k;
+    qsort(f->bodies.box, (size_t)f->bodies.box_count, sizeof *f->bodies.box, by_low);
+    for (int32_t k = 0; k < f->bodies.box_count; k++)
+        if (f->bodies.box[k].fem >= 0) f->bodies.box_of[f->bodies.box[k].fem] = k;
     return 0;
 }
 
 static int find_pairs(const brunt_contact_context *m, brunt_node_to_facet *f) {
-    f->near_count = 0;
-    for (int32_t i = 0; i < f->box_count; i++)
-        // A sheet may be near itself.
-        for (int32_t k = f->box[i].sheet ? i : i + 1;
-             k < f->box_count && f->box[k].low[0] - 2 * f->range <= f->box[i].high[0]; k++) {
-            if (!overlap(&f->box[i], &f->box[k], 2 * f->range) || !meets(m, &f->box[i], &f->box[k])) continue;
-            if (BRUNT_GROW(f->near)) return -1;
-            f->near[f->near_count++] = (near_pair){i, k};
+    f->bodies.pair_count = 0;
+    for (int32_t i = 0; i < f->bodies.box_count; i++)
+        // A membrane may be near itself.
+        for (int32_t k = f->bodies.box[i].membrane ? i : i + 1;
+             k < f->bodies.box_count && f->bodies.box[k].low[0] - 2 * f->bodies.range <= f->bodies.box[i].high[0];
+             k++) {
+            if (!overlap(&f->bodies.box[i], &f->bodies.box[k], 2 * f->bodies.range) ||
+                !meets(m, &f->bodies.box[i], &f->bodies.box[k]))
+                continue;
+            if (BRUNT_RESERVE(f->bodies.pair, (size_t)f->bodies.pair_count + 1, (size_t)f->bodies.pair_count))
+                return -1;
+            f->bodies.pair[f->bodies.pair_count++] = (near_pair){i, k};
         }
-    if (RESERVE(f, near_first, f->box_count + 2) || RESERVE(f, near_list, 2 * f->near_count + 1)) return -1;
-    memset(f->near_first, 0, ((size_t)f->box_count + 2) * sizeof *f->near_first);
-    for (int32_t p = 0; p < f->near_count; p++) {
-        f->near_first[f->near[p].a + 2]++;
-        if (f->near[p].b != f->near[p].a) f->near_first[f->near[p].b + 2]++;
+    if (RESERVE(&f->bodies, first, f->bodies.box_count + 2) || RESERVE(&f->bodies, list, 2 * f->bodies.pair_count + 1))
+        return -1;
+    memset(f->bodies.first, 0, ((size_t)f->bodies.box_count + 2) * sizeof *f->bodies.first);
+    for (int32_t p = 0; p < f->bodies.pair_count; p++) {
+        f->bodies.first[f->bodies.pair[p].a + 2]++;
+        if (f->bodies.pair[p].b != f->bodies.pair[p].a) f->bodies.first[f->bodies.pair[p].b + 2]++;
     }
-    for (int32_t k = 2; k <= f->box_count + 1; k++) f->near_first[k] += f->near_first[k - 1];
-    for (int32_t p = 0; p < f->near_count; p++) {
-        f->near_list[f->near_first[f->near[p].a + 1]++] = f->near[p].b;
-        if (f->near[p].b != f->near[p].a) f->near_list[f->near_first[f->near[p].b + 1]++] = f->near[p].a;
+    for (int32_t k = 2; k <= f->bodies.box_count + 1; k++) f->bodies.first[k] += f->bodies.first[k - 1];
+    for (int32_t p = 0; p < f->bodies.pair_count; p++) {
+        f->bodies.list[f->bodies.first[f->bodies.pair[p].a + 1]++] = f->bodies.pair[p].b;
+        if (f->bodies.pair[p].b != f->bodies.pair[p].a)
+            f->bodies.list[f->bodies.first[f->bodies.pair[p].b + 1]++] = f->bodies.pair[p].a;
     }
     return 0;
 }
 
-double brunt_node_to_facet_plane_distance(const brunt_plane_def *plane, double time, const double x[3]) {
+double brunt_plane_distance(const brunt_plane_def *plane, double time, const double x[3]) {
     double d = 0;
     for (int a = 0; a < 3; a++) d += plane->normal[a] * (x[a] - plane->point[a] - plane->velocity[a] * time);
     return d;
@@ -101,15 +107,15 @@ bool brunt_broad_phase_plane(const brunt_contact_surface *s, int k, const brunt_
     if (wall->region || (wall->body >= 0 && wall->body != s->fem[k]->index)) return false;
     double corner[3]; // of the box, deepest behind the plane
     for (int a = 0; a < 3; a++) corner[a] = wall->plane.normal[a] > 0 ? s->low[k][a] : s->high[k][a];
-    return brunt_node_to_facet_plane_distance(&wall->plane, time, corner) < range;
+    return brunt_plane_distance(&wall->plane, time, corner) < range;
 }
 
 // Whether there is a place for everything: else no cells could be laid.
 static bool all_finite(const brunt_node_to_facet *f) {
-    if (!(f->range < FARTHEST) || !(f->wall_reach < FARTHEST)) return false;
-    for (int32_t b = 0; b < f->box_count; b++)
+    if (!(f->bodies.range < FARTHEST) || !(f->bodies.plane_travel < FARTHEST)) return false;
+    for (int32_t b = 0; b < f->bodies.box_count; b++)
         for (int a = 0; a < 3; a++) {
-            const double low = f->box[b].low[a], high = f->box[b].high[a];
+            const double low = f->bodies.box[b].low[a], high = f->bodies.box[b].high[a];
             if (low == INFINITY && high == -INFINITY) continue; // of nothing
             if (!(fabs(low) < FARTHEST) || !(fabs(high) < FARTHEST)) return false;
         }
@@ -118,13 +124,13 @@ static bool all_finite(const brunt_node_to_facet *f) {
 
 int brunt_broad_phase(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, const brunt_wall *walls,
                       int wall_count, double time, brunt_node_to_facet **facing) {
-    brunt_contact_surface *s = m->skin;
+    brunt_contact_surface *s = m->surface;
     if (brunt_node_to_facet_make(facing, mpm_count, s->node_count)) return -1;
     brunt_node_to_facet *f = *facing;
     // Nothing may pass anything unseen: the reach covers twice the fastest motion of a step, against the frame of all.
     double fastest = 0, spacing = 0;
-    for (int k = 0; k < s->fem_count; k++) fastest = fmax(fastest, s->speed[k]);
-    const double frame = sqrt(dot(s->frame, s->frame));
+    for (int k = 0; k < s->fem_count; k++) fastest = fmax(fastest, s->motion.speed[k]);
+    const double frame = sqrt(dot(s->motion.frame, s->motion.frame));
     for (int k = 0; k < mpm_count; k++) {
         spacing = fmax(spacing, mpm[k].spacing);
         fastest = fmax(fastest, (double)mpm[k].speed + frame);
@@ -133,20 +139,20 @@ int brunt_broad_phase(const brunt_contact_context *m, brunt_body *mpm, int mpm_c
     for (int w = 0; w < wall_count; w++)
         if (!walls[w].region)
             walls_speed = fmax(walls_speed, sqrt(dot(walls[w].plane.velocity, walls[w].plane.velocity)));
-    f->wall_reach = (fastest + frame + walls_speed) * m->dt + 0.5 * s->thickest;
-    f->reach = 2 * fastest * m->dt + spacing + s->thickest;
-    f->range = fmax(fmax(RANGE * s->mean_edge + spacing + s->thickest, f->reach), m->look);
+    f->bodies.plane_travel = (fastest + frame + walls_speed) * m->dt + 0.5 * s->membrane.thickest;
+    f->bodies.travel = 2 * fastest * m->dt + spacing + s->membrane.thickest;
+    f->bodies.range = fmax(fmax(RANGE * s->mean_edge + spacing + s->membrane.thickest, f->bodies.travel), m->look);
     if (find_boxes(m, mpm, mpm_count, f)) return -1;
     if (!all_finite(f)) return -2;
     if (find_pairs(m, f)) return -1;
     for (int k = 0; k < s->fem_count; k++) {
-        int32_t box = f->box_of[k];
-        s->active[k] = f->near_first[box + 1] > f->near_first[box];
+        int32_t box = f->bodies.box_of[k];
+        s->active[k] = f->bodies.first[box + 1] > f->bodies.first[box];
         for (int w = 0; w < wall_count && !s->active[k]; w++)
-            s->active[k] = brunt_broad_phase_plane(s, k, &walls[w], time, f->wall_reach + 1e-6 * s->mean_edge);
+            s->active[k] = brunt_broad_phase_plane(s, k, &walls[w], time, f->bodies.plane_travel + 1e-6 * s->mean_edge);
     }
-    f->grid_count = 0;
-    if (RESERVE(f, support_of, s->node_count + 1)) return -1;
-    for (int32_t n = 0; n < s->node_count; n++) f->support_of[n] = -1;
+    f->particles.grid_count = 0;
+    if (RESERVE(&f->nodes, dof_of, s->node_count + 1)) return -1;
+    for (int32_t n = 0; n < s->node_count; n++) f->nodes.dof_of[n] = -1;
     return 0;
 }

@@ -4,16 +4,16 @@
 
 static const double ASKEW = -0.3;     // ... or, where nothing opposed is within ...
 static const double CLOSE = 0.25;     // ... so many mean edges, the least one with the normal of a facet
-static const double SAME_SLOPE = 0.7; // cosine of normals from which on two facets of a sheet are one slope
+static const double SAME_SLOPE = 0.7; // cosine of normals from which on two facets of a membrane are one slope
 static const double SLACK = 0.125;    // mean edges: facets so much further than the nearest are looked at closely, too
-static const double BEHIND = 0.05; // mean edges: how far behind a facet of a ragged surface someone is still before it
+static const double BEHIND = 0.05; // mean edges: how far behind a facet of a eroded surface a place is still before it
 static const double VALLEY = 0.05; // mean edges: how far before one slope the middle of the other is, in a valley
 
-// Of either side of a sheet: the same numbers for both.
+// Of either side of a membrane: the same numbers for both.
 static brunt_closest closest_on(const brunt_contact_surface *s, int32_t face, const double x[3]) {
     const int32_t node = s->face[face][0];
-    if (!s->front || s->front[node] == node) return brunt_closest_on_face(s, face, x);
-    int32_t front = face - s->side[s->face_body[face]].faces;
+    if (!s->membrane.front || s->membrane.front[node] == node) return brunt_closest_on_face(s, face, x);
+    int32_t front = face - s->membrane.side[s->face_body[face]].faces;
     brunt_closest at = brunt_closest_on_face(s, front, x);
     turn_over(s, &front, &at);
     return at;
@@ -22,9 +22,9 @@ static brunt_closest closest_on(const brunt_contact_surface *s, int32_t face, co
 static int64_t cell_of(const brunt_node_to_facet *f, const double x[3]) {
     int64_t cell = 0;
     for (int a = 0; a < 3; a++) {
-        double c = floor((x[a] - f->origin[a]) / f->cell);
-        if (!(c >= 0) || c >= f->n[a]) return -1;
-        cell = cell * f->n[a] + (int64_t)c;
+        double c = floor((x[a] - f->cells.origin[a]) / f->cells.cell);
+        if (!(c >= 0) || c >= f->cells.n[a]) return -1;
+        cell = cell * f->cells.n[a] + (int64_t)c;
     }
     return cell;
 }
@@ -34,19 +34,19 @@ static bool near_box(const double box[6], const double x[3], double by) {
            x[2] >= box[2] - by && x[2] <= box[5] + by;
 }
 
-static bool within(const bounds *box, const double x[3], double by) {
+static bool within(const body_box *box, const double x[3], double by) {
     for (int a = 0; a < 3; a++)
         if (x[a] < box->low[a] - by || x[a] > box->high[a] + by) return false;
     return true;
 }
 
-bool brunt_node_to_facet_look(const brunt_node_to_facet *f, looker *l) {
+bool brunt_candidates_bodies(const brunt_node_to_facet *f, search_query *l) {
     l->touches = l->enters = 0;
-    for (int32_t q = f->near_first[l->box]; q < f->near_first[l->box + 1] && l->touches < BRUNT_MAX_NEAR; q++) {
-        const bounds *other = &f->box[f->near_list[q]];
-        if (other->fem < 0 || !within(other, l->x, f->range)) continue;
+    for (int32_t q = f->bodies.first[l->box]; q < f->bodies.first[l->box + 1] && l->touches < BRUNT_MAX_NEAR; q++) {
+        const body_box *other = &f->bodies.box[f->bodies.list[q]];
+        if (other->fem < 0 || !within(other, l->x, f->bodies.range)) continue;
         l->touch[l->touches++] = other->body;
-        if (!other->sheet && within(other, l->x, 0)) l->enter[l->enters++] = other->body;
+        if (!other->membrane && within(other, l->x, 0)) l->enter[l->enters++] = other->body;
     }
     l->cell = l->touches ? cell_of(f, l->x) : -1;
     return l->cell >= 0;
@@ -67,7 +67,7 @@ typedef struct two_nearest {
 
 // Notes a facet. Of those that are equally near, as at an edge or a corner, the one that most faces the place tells on
 // which side of the surface that is, whatever their order.
-static void note(two_nearest *two, const brunt_closest *at, int32_t face) {
+static void add_nearest(two_nearest *two, const brunt_closest *at, int32_t face) {
     const double facing = fabs(dot(at->normal, at->d)), same = two->face < 0 ? 0 : 1e-9 * two->first;
     if (at->square >= two->first + same) {
         two->second = fmin(two->second, at->square);
@@ -79,59 +79,59 @@ static void note(two_nearest *two, const brunt_closest *at, int32_t face) {
     if (nearer || facing > two->facing) two->face = face, two->facing = facing;
 }
 
-static bool in_ring(const looker *l, int32_t face) {
-    int32_t low = 0, high = l->ring_count;
+static bool in_patch(const search_query *l, int32_t face) {
+    int32_t low = 0, high = l->patch_count;
     while (low < high) {
         int32_t middle = (low + high) / 2;
-        if (l->ring[middle] < face)
+        if (l->patch[middle] < face)
             low = middle + 1;
         else
             high = middle;
     }
-    return low < l->ring_count && l->ring[low] == face;
+    return low < l->patch_count && l->patch[low] == face;
 }
 
 // The nearest facets in a cell of each body in `list`, among those that face `normal` by more than `least`. How many
 // bodies. `guess`: a face that may well be the nearest, -1; it saves looking closely at most others. `all`: also notes
-// the two nearest facets of any direction, as far as `slack` beyond the nearest; may be NULL. `sheets`: whether
+// the two nearest facets of any direction, as far as `slack` beyond the nearest; may be NULL. `membranes`: whether
 // there are any; the cells have their fronts, for both sides.
 static inline __attribute__((always_inline)) int
-find_nearest(const brunt_contact_context *m, const brunt_node_to_facet *f, const looker *l, const double *normal,
+find_nearest(const brunt_contact_context *m, const brunt_node_to_facet *f, const search_query *l, const double *normal,
              double least, const int32_t *list, int32_t count, int32_t guess, double slack, two_nearest *all,
-             bool sheets, nearest best[BRUNT_MAX_HITS]) {
-    const brunt_contact_surface *s = m->skin;
-    const double range2 = f->range * f->range;
+             bool membranes, nearest best[BRUNT_MAX_CANDIDATES]) {
+    const brunt_contact_surface *s = m->surface;
+    const double range2 = f->bodies.range * f->bodies.range;
     double bound = INFINITY; // of the one body that the guess belongs to
     brunt_closest guessed;
     if (guess >= 0) guessed = brunt_closest_on_face(s, guess, l->x), bound = tie(s, guessed.square);
     int bodies = 0;
     if (all) *all = (two_nearest){-1, range2, range2, 0};
-    for (int32_t q = f->cell_first[l->cell]; q < f->cell_first[l->cell + 1]; q++) {
-        int32_t face = f->cell_face[q];
+    for (int32_t q = f->cells.first[l->cell]; q < f->cells.first[l->cell + 1]; q++) {
+        int32_t face = f->cells.face[q];
         const int32_t other = s->face_body[face];
-        if (other == l->body && !(sheets && l->ring_count)) continue;
-        const bool sheet = sheets && s->side[other].faces;
+        if (other == l->body && !(membranes && l->patch_count)) continue;
+        const bool membrane = membranes && s->membrane.side[other].faces;
         int b = 0;
         while (b < bodies && best[b].body != other) b++;
-        double reach = b < bodies ? best[b].root : f->range;
+        double reach = b < bodies ? best[b].root : f->bodies.range;
         if (guess >= 0 && bound < reach && s->face_body[guess] == other) reach = bound;
         if (!near_box(s->face_box[face], l->x, reach + slack)) continue;
         const double cosine = normal ? -dot(s->face_normal[face], normal) : 1;
-        bool faces = !normal || cosine > least || (sheet && -cosine > least);
+        bool faces = !normal || cosine > least || (membrane && -cosine > least);
         if ((!faces && !all) || !is_among(other, list, count)) continue;
-        if (sheets && other == l->body && in_ring(l, face)) continue;
+        if (membranes && other == l->body && in_patch(l, face)) continue;
         brunt_closest at = face == guess ? guessed : brunt_closest_on_face(s, face, l->x);
         if (at.square > range2) continue;
-        const bool behind = sheet && dot(at.normal, at.d) < 0;
-        if (all) note(all, &at, behind ? face + s->side[other].faces : face);
+        const bool behind = membrane && dot(at.normal, at.d) < 0;
+        if (all) add_nearest(all, &at, behind ? face + s->membrane.side[other].faces : face);
         if (!faces) continue;
-        if (sheet) {
+        if (membrane) {
             if (normal ? cosine < 0 : behind) turn_over(s, &face, &at);
             if (!on_side(l, &at)) continue;
         }
         if (b == bodies) {
-            if (b == BRUNT_MAX_HITS) continue;
-            best[b].body = other, best[b].count = 0, best[b].square = range2, best[b].root = f->range;
+            if (b == BRUNT_MAX_CANDIDATES) continue;
+            best[b].body = other, best[b].count = 0, best[b].square = range2, best[b].root = f->bodies.range;
             bodies++;
         }
         keep(s, &best[b], &at, face);
@@ -139,13 +139,14 @@ find_nearest(const brunt_contact_context *m, const brunt_node_to_facet *f, const
     return bodies;
 }
 
-// Whether a body, behind whose facet someone with a normal is, has one that he would sooner leave it through the other
-// way: then he is before that one, or on the far side of a body thinner than the range, or the other side of a sheet.
-static bool other_way_out(const brunt_contact_context *m, const brunt_node_to_facet *f, const looker *l, int32_t body,
-                          double square) {
-    const brunt_contact_surface *s = m->skin;
-    for (int32_t q = f->cell_first[l->cell]; q < f->cell_first[l->cell + 1]; q++) {
-        const int32_t face = f->cell_face[q];
+// Whether a body, behind whose facet a node with a normal is, has one that it would rather leave through the other
+// way: then it is before that one, or on the far side of a body thinner than the range, or the other side of a
+// membrane.
+static bool other_way_out(const brunt_contact_context *m, const brunt_node_to_facet *f, const search_query *l,
+                          int32_t body, double square) {
+    const brunt_contact_surface *s = m->surface;
+    for (int32_t q = f->cells.first[l->cell]; q < f->cells.first[l->cell + 1]; q++) {
+        const int32_t face = f->cells.face[q];
         if (s->face_body[face] != body || dot(s->face_normal[face], l->normal) <= OPPOSED) continue;
         if (near_box(s->face_box[face], l->x, sqrt(square)) && brunt_closest_on_face(s, face, l->x).square < square)
             return true;
@@ -153,56 +154,62 @@ static bool other_way_out(const brunt_contact_context *m, const brunt_node_to_fa
     return false;
 }
 
-// Facets of sheets that someone is right above, beside the nearest one and on another slope: in a valley all of them
-// bear. Else what moves along one wall of a corner would be let through the other in the steps in which that is the
-// further one.
-static void add_slopes(const brunt_contact_context *m, const brunt_node_to_facet *f, const looker *l, slave_hits *out) {
-    const brunt_contact_surface *s = m->skin;
+// Facets of membranes that the place is right above, beside the nearest one and on another slope: in a valley all of
+// them bear. Else what moves along one wall of a corner would be let through the other in the steps in which that is
+// the further one.
+static void add_slopes(const brunt_contact_context *m, const brunt_node_to_facet *f, const search_query *l,
+                       candidate_list *out) {
+    const brunt_contact_surface *s = m->surface;
     bool any = false;
-    for (int32_t k = 0; k < out->count; k++) any = any || is_sheet(s, out->hits[k].body);
-    for (int32_t q = f->cell_first[l->cell]; any && q < f->cell_first[l->cell + 1]; q++) {
-        int32_t face = f->cell_face[q];
+    for (int32_t k = 0; k < out->count; k++) any = any || is_membrane(s, out->candidate[k].body);
+    for (int32_t q = f->cells.first[l->cell]; any && q < f->cells.first[l->cell + 1]; q++) {
+        int32_t face = f->cells.face[q];
         const int32_t body = s->face_body[face];
-        if (!is_sheet(s, body) || !near_box(s->face_box[face], l->x, f->range)) continue;
+        if (!is_membrane(s, body) || !near_box(s->face_box[face], l->x, f->bodies.range)) continue;
         const double *normal = s->face_normal[face], *centre = s->face_centre[face];
         double towards = 0;
         for (int a = 0; a < 3; a++) towards += normal[a] * (l->normal ? -l->normal[a] : l->x[a] - centre[a]);
         if (l->normal && fabs(towards) <= OPPOSED) continue;
         bool met = false, same = false;
         for (int32_t k = 0; k < out->count; k++) {
-            if (out->hits[k].body != body) continue;
+            if (out->candidate[k].body != body) continue;
             met = true;
-            same = same || (towards < 0 ? -1 : 1) * dot(out->hits[k].n, normal) > SAME_SLOPE;
+            same = same || (towards < 0 ? -1 : 1) * dot(out->candidate[k].n, normal) > SAME_SLOPE;
         }
-        if (!met || same || (body == l->body && in_ring(l, face)) || out->count == BRUNT_MAX_HITS) continue;
+        if (!met || same || (body == l->body && in_patch(l, face)) || out->count == BRUNT_MAX_CANDIDATES) continue;
         brunt_closest at = brunt_closest_on_face(s, face, l->x);
         if (towards < 0) turn_over(s, &face, &at);
-        if (!at.inside || at.square > f->range * f->range || !on_side(l, &at)) continue;
-        hit *h = &out->hits[out->count++];
-        *h = (hit){.face = face, .triangle = at.triangle, .body = body, .gap = dot(at.normal, at.d)};
+        if (!at.inside || at.square > f->bodies.range * f->bodies.range || !on_side(l, &at)) continue;
+        facet_candidate *h = &out->candidate[out->count++];
+        *h = (facet_candidate){.face = face, .triangle = at.triangle, .body = body, .gap = dot(at.normal, at.d)};
         memcpy(h->n, at.normal, sizeof h->n);
     }
 }
 
-static bool is_ragged(const brunt_contact_surface *s, int32_t body) { return s->ragged && s->ragged[body]; }
+static bool is_eroded(const brunt_contact_surface *s, int32_t body) {
+    return s->renewal.eroded && s->renewal.eroded[body];
+}
 
 // Where elements have left, surfaces have steps, pits and spikes of the size of an element, and edges cut into edges: a
 // node has its own body on the very side of a facet that it comes through, so that its normal tells nothing of it. All
-// facets that someone is right before bear, whichever way they look, but for those beyond a ridge: who slides in under
-// a block, a little too high, meets its underside and not the wall it came past.
-static void add_ragged(const brunt_contact_context *m, const brunt_node_to_facet *f, const looker *l, slave_hits *out) {
-    const brunt_contact_surface *s = m->skin;
+// facets that the place is right before bear, whichever way they look, but for those beyond a ridge: what slides in
+// under a block, a little too high, meets its underside and not the wall it came past.
+static void add_eroded(const brunt_contact_context *m, const brunt_node_to_facet *f, const search_query *l,
+                       candidate_list *out) {
+    const brunt_contact_surface *s = m->surface;
     const double edge = s->mean_edge;
-    for (int32_t q = f->cell_first[l->cell]; q < f->cell_first[l->cell + 1]; q++) {
-        const int32_t face = f->cell_face[q], body = s->face_body[face];
-        if (body == l->body || is_sheet(s, body) || !(is_ragged(s, body) || is_ragged(s, l->body))) continue;
-        if (out->count == BRUNT_MAX_HITS || !near_box(s->face_box[face], l->x, fmin(f->range, f->reach))) continue;
+    for (int32_t q = f->cells.first[l->cell]; q < f->cells.first[l->cell + 1]; q++) {
+        const int32_t face = f->cells.face[q], body = s->face_body[face];
+        if (body == l->body || is_membrane(s, body) || !(is_eroded(s, body) || is_eroded(s, l->body))) continue;
+        if (out->count == BRUNT_MAX_CANDIDATES ||
+            !near_box(s->face_box[face], l->x, fmin(f->bodies.range, f->bodies.travel)))
+            continue;
         if (!is_among(body, l->touch, l->touches)) continue;
         const double *centre = s->face_centre[face];
         const double to[3] = {centre[0] - l->x[0], centre[1] - l->x[1], centre[2] - l->x[2]};
         bool known = false;
         for (int32_t k = 0; k < out->count; k++) {
-            const hit *h = &out->hits[k];
+            const facet_candidate *h = &out->candidate[k];
             known = known || (h->body == body &&
                               (dot(h->n, s->face_normal[face]) > SAME_SLOPE || dot(h->n, to) + h->gap < VALLEY * edge));
         }
@@ -210,35 +217,36 @@ static void add_ragged(const brunt_contact_context *m, const brunt_node_to_facet
         const brunt_closest at = brunt_closest_on_face(s, face, l->x);
         const double height = dot(at.normal, at.d);
         if (!at.inside || height < -BEHIND * edge) continue;
-        hit *h = &out->hits[out->count++];
-        *h = (hit){.face = face, .triangle = at.triangle, .body = body, .gap = height};
+        facet_candidate *h = &out->candidate[out->count++];
+        *h = (facet_candidate){.face = face, .triangle = at.triangle, .body = body, .gap = height};
         memcpy(h->n, at.normal, sizeof h->n);
     }
 }
 
-// Middle surfaces of sheets stay half their thickness away from what they meet.
-static void thicken(const brunt_contact_surface *s, double half, slave_hits *out) {
-    for (int32_t q = 0; q < out->count; q++) out->hits[q].gap -= half + s->side[out->hits[q].body].half;
+// Middle surfaces of membranes stay half their thickness away from what they meet.
+static void thicken(const brunt_contact_surface *s, double half, candidate_list *out) {
+    for (int32_t q = 0; q < out->count; q++)
+        out->candidate[q].gap -= half + s->membrane.side[out->candidate[q].body].half;
 }
 
-// What someone meets of each other body. Facets that face the slave come first: a node that slides in under a block
+// What a query meets of each other body. Facets that face the slave come first: a node that slides in under a block
 // meets its underside, not the wall it came through. Only a slave that has none of those close by, and is inside, is
 // sent out through the nearest facet there is. Tells how far the nearest facet is, or how far was looked, and how far
 // the nearest but the one hit.
-static inline __attribute__((always_inline)) void look_around(const brunt_contact_context *m,
-                                                              const brunt_node_to_facet *f, const looker *l,
-                                                              int32_t guess, slave_hits *out, double *distance,
-                                                              double *second, bool sheets) {
-    const brunt_contact_surface *s = m->skin;
-    nearest facing[BRUNT_MAX_HITS], any[BRUNT_MAX_HITS];
+static inline __attribute__((always_inline)) void find_candidates(const brunt_contact_context *m,
+                                                                  const brunt_node_to_facet *f, const search_query *l,
+                                                                  int32_t guess, candidate_list *out, double *distance,
+                                                                  double *second, bool membranes) {
+    const brunt_contact_surface *s = m->surface;
+    nearest facing[BRUNT_MAX_CANDIDATES], any[BRUNT_MAX_CANDIDATES];
     two_nearest two;
     const double close = CLOSE * s->mean_edge, slack = SLACK * s->mean_edge;
     out->count = 0;
     if (guess >= 0 && (!is_among(s->face_body[guess], l->touch, l->touches) ||
                        (l->normal && -dot(s->face_normal[guess], l->normal) <= OPPOSED)))
         guess = -1;
-    if (sheets && guess >= 0 && is_sheet(s, s->face_body[guess])) guess = -1; // it may be on the other side now
-    int bodies = find_nearest(m, f, l, l->normal, OPPOSED, l->touch, l->touches, guess, slack, &two, sheets, facing),
+    if (membranes && guess >= 0 && is_membrane(s, s->face_body[guess])) guess = -1; // it may be on the other side now
+    int bodies = find_nearest(m, f, l, l->normal, OPPOSED, l->touch, l->touches, guess, slack, &two, membranes, facing),
         unresolved = 0;
     int32_t entered[BRUNT_MAX_NEAR];
     for (int32_t k = 0; l->normal && k < l->enters; k++) {
@@ -250,64 +258,64 @@ static inline __attribute__((always_inline)) void look_around(const brunt_contac
     }
     int all = unresolved ? find_nearest(m, f, l, NULL, 0, entered, unresolved, -1, 0, NULL, false, any) : 0;
     for (int b = 0; b < all; b++) {
-        const double least = is_ragged(s, l->body) || is_ragged(s, any[b].body) ? -INFINITY : ASKEW;
-        if (!any[b].count || !brunt_nearest_behind(s, &any[b], l->normal, least, &out->hits[out->count])) continue;
+        const double least = is_eroded(s, l->body) || is_eroded(s, any[b].body) ? -INFINITY : ASKEW;
+        if (!any[b].count || !brunt_nearest_behind(s, &any[b], l->normal, least, &out->candidate[out->count])) continue;
         out->count++;
         for (int k = 0; k < bodies; k++)
             if (facing[k].body == any[b].body) facing[k].count = 0;
     }
-    // Whoever is before the nearest facet of all is outside, even if the nearest facet that faces him is seen from
-    // behind. A sheet has no inside: it tells nothing of the others.
-    const bool by_sheet = sheets && two.face >= 0 && is_sheet(s, s->face_body[two.face]);
+    // What is before the nearest facet of all is outside, even if the nearest facet that faces it is seen from
+    // behind. A membrane has no inside: it tells nothing of the others.
+    const bool by_membrane = membranes && two.face >= 0 && is_membrane(s, s->face_body[two.face]);
     bool outside = false;
-    if (two.face >= 0 && !by_sheet) {
+    if (two.face >= 0 && !by_membrane) {
         brunt_closest at = brunt_closest_on_face(s, two.face, l->x);
         double height = dot(at.normal, at.d);
         outside = height > 1e-6 * s->mean_edge && height > 0.1 * sqrt(at.square);
     }
     const bool plain = out->count == 0 && l->enters <= 1;
     bool inside = out->count > 0;
-    for (int b = 0; b < bodies && out->count < BRUNT_MAX_HITS; b++) {
-        hit *h = &out->hits[out->count];
+    for (int b = 0; b < bodies && out->count < BRUNT_MAX_CANDIDATES; b++) {
+        facet_candidate *h = &out->candidate[out->count];
         if (!facing[b].count || !brunt_nearest_facing(s, &facing[b], l->normal, h)) continue;
         if (h->gap < 0 && outside && h->body == s->face_body[two.face]) continue;
-        if (sheets && h->gap < 0 && l->normal && (by_sheet || l->sheet) && !is_sheet(s, h->body) &&
+        if (membranes && h->gap < 0 && l->normal && (by_membrane || l->membrane) && !is_membrane(s, h->body) &&
             other_way_out(m, f, l, h->body, facing[b].square))
             continue;
         inside = inside || h->gap < 0;
         out->count++;
-        if (!is_ragged(s, h->body)) brunt_nearest_valley(s, &facing[b], l->normal, out);
+        if (!is_eroded(s, h->body)) brunt_nearest_valley(s, &facing[b], l->normal, out);
     }
-    if (sheets) add_slopes(m, f, l, out);
-    if (s->ragged) add_ragged(m, f, l, out);
-    *distance = outside || two.face < 0 || (by_sheet && !inside) ? fmin(f->range, sqrt(two.first)) : 0;
+    if (membranes) add_slopes(m, f, l, out);
+    if (s->renewal.eroded) add_eroded(m, f, l, out);
+    *distance = outside || two.face < 0 || (by_membrane && !inside) ? fmin(f->bodies.range, sqrt(two.first)) : 0;
     *second = 0;
-    if (plain && out->count == 1 && two.face == out->hits[0].face && !s->ragged)
-        *second = fmin(fmin(f->range, sqrt(two.second)), *distance + slack) * (1 - 1e-8) - TOUCH * s->mean_edge;
-    if (sheets) thicken(s, l->half, out);
+    if (plain && out->count == 1 && two.face == out->candidate[0].face && !s->renewal.eroded)
+        *second = fmin(fmin(f->bodies.range, sqrt(two.second)), *distance + slack) * (1 - 1e-8) - TOUCH * s->mean_edge;
+    if (membranes) thicken(s, l->half, out);
 }
 
-void brunt_node_to_facet_look_around(const brunt_contact_context *m, const brunt_node_to_facet *f, const looker *l,
-                                     int32_t guess, slave_hits *out, double *distance, double *second) {
-    if (m->skin->side)
-        look_around(m, f, l, guess, out, distance, second, true);
+void brunt_candidates_find(const brunt_contact_context *m, const brunt_node_to_facet *f, const search_query *l,
+                           int32_t guess, candidate_list *out, double *distance, double *second) {
+    if (m->surface->membrane.side)
+        find_candidates(m, f, l, guess, out, distance, second, true);
     else
-        look_around(m, f, l, guess, out, distance, second, false);
+        find_candidates(m, f, l, guess, out, distance, second, false);
 }
 
 // The facet that was the nearest, when it is certain that it still is: it is nearer than `least`, which no other one
 // is.
-bool brunt_node_to_facet_still_nearest(const brunt_contact_context *m, const brunt_node_to_facet *f, int32_t n,
-                                       const double *normal, double least, slave_hits *out) {
-    const brunt_contact_surface *s = m->skin;
-    const int32_t face = f->last[n];
+bool brunt_candidates_still_nearest(const brunt_contact_context *m, const brunt_node_to_facet *f, int32_t n,
+                                    const double *normal, double least, candidate_list *out) {
+    const brunt_contact_surface *s = m->surface;
+    const int32_t face = f->cache.nearest[n];
     if (face < 0 || (normal && -dot(s->face_normal[face], normal) <= OPPOSED)) return false;
     const brunt_closest at = closest_on(s, face, s->x[n]);
     nearest one = {.body = s->face_body[face], .count = 1, .square = at.square, .root = INFINITY, .tied = {{at, face}}};
-    if (is_sheet(s, one.body) && !(dot(at.normal, at.d) > 0)) return false;
+    if (is_membrane(s, one.body) && !(dot(at.normal, at.d) > 0)) return false;
     const double square = at.square, close = CLOSE * s->mean_edge;
-    if (square >= least * least || square > close * close || square > f->range * f->range) return false;
-    out->count = brunt_nearest_facing(s, &one, normal, &out->hits[0]) ? 1 : 0;
-    if (s->side) thicken(s, s->side[s->body[n]].half, out);
+    if (square >= least * least || square > close * close || square > f->bodies.range * f->bodies.range) return false;
+    out->count = brunt_nearest_facing(s, &one, normal, &out->candidate[0]) ? 1 : 0;
+    if (s->membrane.side) thicken(s, s->membrane.side[s->body[n]].half, out);
     return true;
 }

@@ -5,10 +5,10 @@ static const double MARGIN = 0.125; // mean edges: how far facets may move befor
 static const double CELL = 0.5;     // mean edges: of the cells that facets are found in ...
 static const double COARSE = 0.25;  // ... of how far they are looked for, where all is fast
 
-bool brunt_node_to_facet_in_reach(const brunt_node_to_facet *f, int32_t box, const double low[3], const double high[3],
-                                  double by) {
-    for (int32_t q = f->near_first[box]; q < f->near_first[box + 1]; q++) {
-        const bounds *other = &f->box[f->near_list[q]];
+bool brunt_broad_phase_in_reach(const brunt_node_to_facet *f, int32_t box, const double low[3], const double high[3],
+                                double by) {
+    for (int32_t q = f->bodies.first[box]; q < f->bodies.first[box + 1]; q++) {
+        const body_box *other = &f->bodies.box[f->bodies.list[q]];
         bool apart = false;
         for (int a = 0; a < 3; a++) apart = apart || low[a] - by > other->high[a] || other->low[a] - by > high[a];
         if (!apart) return true;
@@ -28,96 +28,98 @@ static void face_bounds(const brunt_contact_surface *s, int32_t face, double low
 static void cell_range(const brunt_node_to_facet *f, const double low[3], const double high[3], double by,
                        int32_t from[3], int32_t to[3]) {
     for (int a = 0; a < 3; a++) {
-        double l = floor((low[a] - by - f->origin[a]) / f->cell), h = floor((high[a] + by - f->origin[a]) / f->cell);
-        from[a] = (int32_t)fmax(0, fmin(l, f->n[a] - 1.0));
-        to[a] = (int32_t)fmax(0, fmin(h, f->n[a] - 1.0));
+        double l = floor((low[a] - by - f->cells.origin[a]) / f->cells.cell),
+               h = floor((high[a] + by - f->cells.origin[a]) / f->cells.cell);
+        from[a] = (int32_t)fmax(0, fmin(l, f->cells.n[a] - 1.0));
+        to[a] = (int32_t)fmax(0, fmin(h, f->cells.n[a] - 1.0));
     }
 }
 
 // Counts, or lists, the facets of every cell.
-static void visit_cells(const brunt_contact_context *m, brunt_node_to_facet *f, bool list) {
-    const brunt_contact_surface *s = m->skin;
-    const double by = f->made_range + MARGIN * s->mean_edge;
+static void list_facets(const brunt_contact_context *m, brunt_node_to_facet *f, bool list) {
+    const brunt_contact_surface *s = m->surface;
+    const double by = f->cells.range + MARGIN * s->mean_edge;
     for (int k = 0; k < s->fem_count; k++) {
-        if (f->near_first[f->box_of[k] + 1] == f->near_first[f->box_of[k]]) continue;
-        for (int32_t face = s->face_range[k]; face < s->face_end[k]; face++) { // of a sheet, for both its sides
+        if (f->bodies.first[f->bodies.box_of[k] + 1] == f->bodies.first[f->bodies.box_of[k]]) continue;
+        for (int32_t face = s->face_range[k]; face < s->face_end[k]; face++) { // of a membrane, for both its sides
             double low[3], high[3];
             int32_t from[3], to[3];
             face_bounds(s, face, low, high);
-            if (!brunt_node_to_facet_in_reach(f, f->box_of[k], low, high, 2 * by)) continue;
+            if (!brunt_broad_phase_in_reach(f, f->bodies.box_of[k], low, high, 2 * by)) continue;
             cell_range(f, low, high, by, from, to);
             for (int32_t x = from[0]; x <= to[0]; x++)
                 for (int32_t y = from[1]; y <= to[1]; y++)
                     for (int32_t z = from[2]; z <= to[2]; z++) {
-                        size_t cell = ((size_t)x * (size_t)f->n[1] + (size_t)y) * (size_t)f->n[2] + (size_t)z;
+                        size_t cell =
+                            ((size_t)x * (size_t)f->cells.n[1] + (size_t)y) * (size_t)f->cells.n[2] + (size_t)z;
                         if (list)
-                            f->cell_face[f->cell_first[cell + 1]++] = face;
+                            f->cells.face[f->cells.first[cell + 1]++] = face;
                         else
-                            f->cell_first[cell + 2]++;
+                            f->cells.first[cell + 2]++;
                     }
         }
     }
 }
 
 // The room that pairs share, cut into cells; few enough that making them costs no more than the facets do.
-static void lay_cells(const brunt_contact_context *m, brunt_node_to_facet *f) {
+static void size_cells(const brunt_contact_context *m, brunt_node_to_facet *f) {
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-    for (int32_t p = 0; p < f->near_count; p++) {
-        const bounds *a = &f->box[f->near[p].a], *b = &f->box[f->near[p].b];
+    for (int32_t p = 0; p < f->bodies.pair_count; p++) {
+        const body_box *a = &f->bodies.box[f->bodies.pair[p].a], *b = &f->bodies.box[f->bodies.pair[p].b];
         for (int k = 0; k < 3; k++) {
-            low[k] = fmin(low[k], fmax(a->low[k], b->low[k]) - 3 * f->made_range);
-            high[k] = fmax(high[k], fmin(a->high[k], b->high[k]) + 3 * f->made_range);
+            low[k] = fmin(low[k], fmax(a->low[k], b->low[k]) - 3 * f->cells.range);
+            high[k] = fmax(high[k], fmin(a->high[k], b->high[k]) + 3 * f->cells.range);
         }
     }
-    const double most = 32.0 * m->skin->face_count + 4096;
-    f->cell = fmax(CELL * m->skin->mean_edge, COARSE * f->made_range);
-    for (;; f->cell *= 1.25) {
+    const double greatest = 32.0 * m->surface->face_count + 4096;
+    f->cells.cell = fmax(CELL * m->surface->mean_edge, COARSE * f->cells.range);
+    for (;; f->cells.cell *= 1.25) {
         double cells = 1;
-        for (int k = 0; k < 3; k++) cells *= floor((high[k] - low[k]) / f->cell) + 1;
-        if (cells <= most) break;
+        for (int k = 0; k < 3; k++) cells *= floor((high[k] - low[k]) / f->cells.cell) + 1;
+        if (cells <= greatest) break;
     }
     for (int k = 0; k < 3; k++) {
-        f->origin[k] = low[k];
-        f->n[k] = (int32_t)(floor((high[k] - low[k]) / f->cell) + 1);
+        f->cells.origin[k] = low[k];
+        f->cells.n[k] = (int32_t)(floor((high[k] - low[k]) / f->cells.cell) + 1);
     }
 }
 
 // Where a body's box is kept: bodies with facets, then bodies of material points.
-static int32_t box_number(const brunt_contact_surface *s, const bounds *box) {
+static int32_t box_number(const brunt_contact_surface *s, const body_box *box) {
     return box->fem >= 0 ? box->fem : s->fem_count + box->mpm;
 }
 
 static int make_cells(const brunt_contact_context *m, brunt_node_to_facet *f) {
-    const brunt_contact_surface *s = m->skin;
-    f->made_range = 1.25 * f->range;
-    lay_cells(m, f);
-    size_t cells = (size_t)f->n[0] * (size_t)f->n[1] * (size_t)f->n[2];
-    if (RESERVE(f, cell_first, cells + 3) || RESERVE(f, made_x, s->node_count + 1) ||
-        RESERVE(f, made_box, f->box_count + 1))
+    const brunt_contact_surface *s = m->surface;
+    f->cells.range = 1.25 * f->bodies.range;
+    size_cells(m, f);
+    size_t cells = (size_t)f->cells.n[0] * (size_t)f->cells.n[1] * (size_t)f->cells.n[2];
+    if (RESERVE(&f->cells, first, cells + 3) || RESERVE(&f->cells, x, s->node_count + 1) ||
+        RESERVE(&f->cells, box, f->bodies.box_count + 1))
         return -1;
-    memset(f->cell_first, 0, (cells + 3) * sizeof *f->cell_first);
-    visit_cells(m, f, false);
-    for (size_t c = 2; c <= cells + 1; c++) f->cell_first[c] += f->cell_first[c - 1];
-    if (RESERVE(f, cell_face, f->cell_first[cells + 1] + 1)) return -1;
-    visit_cells(m, f, true);
+    memset(f->cells.first, 0, (cells + 3) * sizeof *f->cells.first);
+    list_facets(m, f, false);
+    for (size_t c = 2; c <= cells + 1; c++) f->cells.first[c] += f->cells.first[c - 1];
+    if (RESERVE(&f->cells, face, f->cells.first[cells + 1] + 1)) return -1;
+    list_facets(m, f, true);
     for (int k = 0; k < s->fem_count; k++) {
         if (!s->active[k]) continue;
-        memcpy(f->made_x + s->node_range[k], s->x + s->node_range[k],
+        memcpy(f->cells.x + s->node_range[k], s->x + s->node_range[k],
                (size_t)(s->node_range[k + 1] - s->node_range[k]) * sizeof *s->x);
     }
-    for (int32_t b = 0; b < f->box_count; b++) f->made_box[box_number(s, &f->box[b])] = f->box[b];
-    f->made = true;
+    for (int32_t b = 0; b < f->bodies.box_count; b++) f->cells.box[box_number(s, &f->bodies.box[b])] = f->bodies.box[b];
+    f->cells.made = true;
     return 0;
 }
 
 // Whether all that look in are where the cells were made for: what they share then is within the room (three ranges, of
 // which looking takes one), and the facets in their range are listed (two ranges from where they were).
 static bool boxes_hold(const brunt_contact_context *m, const brunt_node_to_facet *f) {
-    for (int32_t b = 0; b < f->box_count; b++) {
-        const bounds *now = &f->box[b], *then = &f->made_box[box_number(m->skin, now)];
-        if (f->near_first[b + 1] == f->near_first[b]) continue;
+    for (int32_t b = 0; b < f->bodies.box_count; b++) {
+        const body_box *now = &f->bodies.box[b], *then = &f->cells.box[box_number(m->surface, now)];
+        if (f->bodies.first[b + 1] == f->bodies.first[b]) continue;
         for (int a = 0; a < 3; a++)
-            if (now->low[a] < then->low[a] - f->made_range || now->high[a] > then->high[a] + f->made_range)
+            if (now->low[a] < then->low[a] - f->cells.range || now->high[a] > then->high[a] + f->cells.range)
                 return false;
     }
     return true;
@@ -126,14 +128,16 @@ static bool boxes_hold(const brunt_contact_context *m, const brunt_node_to_facet
 // Whether the cells still hold all that may be near: nothing has moved further than they allow, and the same bodies are
 // near.
 static bool cells_hold(const brunt_contact_context *m, const brunt_node_to_facet *f, uint64_t pairs) {
-    const brunt_contact_surface *s = m->skin;
-    if (!f->made || f->made_near != f->near_count || f->made_pairs != pairs || f->range > f->made_range) return false;
-    const double most = MARGIN * s->mean_edge, square = most * most;
+    const brunt_contact_surface *s = m->surface;
+    if (!f->cells.made || f->cells.pair_count != f->bodies.pair_count || f->cells.pairs_key != pairs ||
+        f->bodies.range > f->cells.range)
+        return false;
+    const double greatest = MARGIN * s->mean_edge, square = greatest * greatest;
     for (int k = 0; k < s->fem_count; k++) {
         if (!s->active[k]) continue;
         for (int32_t n = s->node_range[k]; n < s->node_range[k + 1]; n++) {
             double d2 = 0;
-            for (int a = 0; a < 3; a++) d2 += (s->x[n][a] - f->made_x[n][a]) * (s->x[n][a] - f->made_x[n][a]);
+            for (int a = 0; a < 3; a++) d2 += (s->x[n][a] - f->cells.x[n][a]) * (s->x[n][a] - f->cells.x[n][a]);
             if (d2 > square) return false;
         }
     }
@@ -143,19 +147,21 @@ static bool cells_hold(const brunt_contact_context *m, const brunt_node_to_facet
 // A number that differs when other bodies are near or active.
 static uint64_t pairs_key(const brunt_contact_context *m, const brunt_node_to_facet *f) {
     uint64_t key = 1469598103934665603ull;
-    for (int32_t p = 0; p < f->near_count; p++) {
-        uint64_t a = (uint64_t)f->box[f->near[p].a].body, b = (uint64_t)f->box[f->near[p].b].body;
+    for (int32_t p = 0; p < f->bodies.pair_count; p++) {
+        uint64_t a = (uint64_t)f->bodies.box[f->bodies.pair[p].a].body,
+                 b = (uint64_t)f->bodies.box[f->bodies.pair[p].b].body;
         uint64_t low = a < b ? a : b, high = a < b ? b : a;
         key += (low * 1000003u + high + 1) * 0x9E3779B97F4A7C15ull;
     }
-    for (int k = 0; k < m->skin->fem_count; k++) key += m->skin->active[k] ? (uint64_t)(k + 1) * 1099511628211ull : 0;
+    for (int k = 0; k < m->surface->fem_count; k++)
+        key += m->surface->active[k] ? (uint64_t)(k + 1) * 1099511628211ull : 0;
     return key;
 }
 
-int brunt_search_cells(const brunt_contact_context *m, brunt_node_to_facet *f) {
+int brunt_facet_cells_make(const brunt_contact_context *m, brunt_node_to_facet *f) {
     uint64_t key = pairs_key(m, f);
     if (cells_hold(m, f, key)) return 0;
     if (make_cells(m, f)) return -1;
-    f->made_near = f->near_count, f->made_pairs = key;
+    f->cells.pair_count = f->bodies.pair_count, f->cells.pairs_key = key;
     return 0;
 }

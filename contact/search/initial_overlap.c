@@ -13,7 +13,7 @@ static const double DEEP =
 static const double BEHIND = 1e-3;    // edges or spacings: how far behind a plane a body is behind it
 static const double CUT = 1e-3;       // edges on either side from which on an edge goes through a facet ...
 static const double RIM = 1e-6;       // ... and share of a triangle that is its rim
-static const double NEXT = 1.25;      // edges: nodes so near to a sheet tell on which sides of it a body is
+static const double NEXT = 1.25;      // edges: nodes so near to a membrane tell on which sides of it a body is
 static const double SPACING = 0.5;    // of the other body's elements: how close a long facet is looked at
 static const double FARTHEST = 1e150; // [m] squares of distances are still numbers
 enum { MOST_PIECES = 64 };
@@ -61,7 +61,7 @@ typedef struct cells {
     size_t first_capacity, item_capacity;
 } cells;
 
-static void lay_cells(cells *c, const box *room, double edge, int32_t items) {
+static void size_cells(cells *c, const box *room, double edge, int32_t items) {
     c->room = *room;
     double widest = 0;
     for (int a = 0; a < 3; a++) widest = fmax(widest, room->high[a] - room->low[a]);
@@ -87,7 +87,7 @@ static int32_t cell_at(const cells *c, const double x[3]) {
 }
 
 // Counts, or lists, item `i` in the cells that its box reaches.
-static void visit_cells(cells *c, const box *b, int32_t i, bool list) {
+static void list_facets(cells *c, const box *b, int32_t i, bool list) {
     box in;
     if (!common(b, &c->room, &in)) return;
     int32_t from[3], to[3];
@@ -106,30 +106,30 @@ static void visit_cells(cells *c, const box *b, int32_t i, bool list) {
 typedef bool box_fn(const void *context, int32_t i, box *out); // false: it is nowhere
 
 static int fill_cells(cells *c, const box *room, double edge, int32_t items, box_fn *box_of, const void *context) {
-    lay_cells(c, room, edge, items);
+    size_cells(c, room, edge, items);
     if (BRUNT_RESERVE(c->first, (size_t)c->count + 3, 0)) return -1;
     memset(c->first, 0, ((size_t)c->count + 3) * sizeof *c->first);
     box b;
     for (int32_t i = 0; i < items; i++)
-        if (box_of(context, i, &b)) visit_cells(c, &b, i, false);
+        if (box_of(context, i, &b)) list_facets(c, &b, i, false);
     for (int32_t k = 2; k <= c->count + 1; k++) c->first[k] += c->first[k - 1];
     if (BRUNT_RESERVE(c->item, (size_t)c->first[c->count + 1] + 1, 0)) return -1;
     for (int32_t i = 0; i < items; i++)
-        if (box_of(context, i, &b)) visit_cells(c, &b, i, true);
+        if (box_of(context, i, &b)) list_facets(c, &b, i, true);
     return 0;
 }
 
 // ------------------------------------------------------------------------------------------ one body in another
 
-typedef struct job {
+typedef struct search_job {
     const brunt_contact_context *m;
-    int k;        // the other body, of the skin
+    int k;        // the other body, of the surface
     double by;    // its facets reach so much further than they are [m]
     double size;  // of what it is made of: its elements, or all of it [m]
     double limit; // [m] what is no deeper is no overlap
     cells elements, facets;
     brunt_overlap *found;
-} job;
+} search_job;
 
 static const double *corner(const brunt_fem_body *fem, int32_t slot, int c, double out[3]) {
     const real *at = brunt_fem_node(fem, fem->element_node[(size_t)slot * (size_t)fem->traits->nodes + (size_t)c]);
@@ -138,8 +138,8 @@ static const double *corner(const brunt_fem_body *fem, int32_t slot, int c, doub
 }
 
 static bool element_box(const void *context, int32_t slot, box *out) {
-    const job *j = context;
-    const brunt_fem_body *fem = j->m->skin->fem[j->k];
+    const search_job *j = context;
+    const brunt_fem_body *fem = j->m->surface->fem[j->k];
     if (fem->element_id[slot] < 0) return false; // padding
     double x[3];
     *out = empty_box();
@@ -148,8 +148,8 @@ static bool element_box(const void *context, int32_t slot, box *out) {
 }
 
 static bool facet_box(const void *context, int32_t i, box *out) {
-    const job *j = context;
-    const brunt_contact_surface *s = j->m->skin;
+    const search_job *j = context;
+    const brunt_contact_surface *s = j->m->surface;
     const double *b = s->face_box[s->face_range[j->k] + i];
     memcpy(out->low, b, sizeof out->low), memcpy(out->high, b + 3, sizeof out->high);
     *out = grown(*out, s->dim, j->by);
@@ -191,8 +191,8 @@ static bool in_element(const brunt_fem_body *fem, int32_t slot, const double x[3
 }
 
 // Distance of x from the facets listed near it [m], and how far before the nearest it is; INFINITY when there are none.
-static double distance(const job *j, const double x[3], double *height) {
-    const brunt_contact_surface *s = j->m->skin;
+static double distance(const search_job *j, const double x[3], double *height) {
+    const brunt_contact_surface *s = j->m->surface;
     const int32_t cell = cell_at(&j->facets, x);
     double least = INFINITY;
     for (int32_t q = j->facets.first[cell]; q < j->facets.first[cell + 1]; q++) {
@@ -203,17 +203,17 @@ static double distance(const job *j, const double x[3], double *height) {
     return sqrt(least);
 }
 
-static bool in_elements(const job *j, const double x[3]) {
+static bool in_elements(const search_job *j, const double x[3]) {
     if (!holds(&j->elements.room, x)) return false;
     const int32_t cell = cell_at(&j->elements, x);
     for (int32_t q = j->elements.first[cell]; q < j->elements.first[cell + 1]; q++)
-        if (in_element(j->m->skin->fem[j->k], j->elements.item[q], x)) return true;
+        if (in_element(j->m->surface->fem[j->k], j->elements.item[q], x)) return true;
     return false;
 }
 
 // Whether x is in an element of the other body, and with its `reach` deeper than the limit.
-static bool is_deep(job *j, const double x[3], double reach) {
-    const brunt_contact_surface *s = j->m->skin;
+static bool is_deep(search_job *j, const double x[3], double reach) {
+    const brunt_contact_surface *s = j->m->surface;
     double height, least = INFINITY;
     if (!in_elements(j, x) || !(reach + distance(j, x, &height) > j->limit)) return false;
     for (int32_t f = s->face_range[j->k]; f < s->face_end[j->k]; f++)
@@ -225,7 +225,7 @@ static bool is_deep(job *j, const double x[3], double reach) {
 
 // ------------------------------------------------------------------------------------------ meshes
 
-static box skin_box(const brunt_contact_surface *s, int k) {
+static box surface_box(const brunt_contact_surface *s, int k) {
     box b;
     memcpy(b.low, s->low[k], sizeof b.low), memcpy(b.high, s->high[k], sizeof b.high);
     return b;
@@ -234,9 +234,9 @@ static box skin_box(const brunt_contact_surface *s, int k) {
 static int corners(const int32_t face[4]) { return face[2] < 0 ? 2 : face[3] < 0 ? 3 : 4; }
 
 // Calls for the edges of a body's facets; those of two facets twice. Whether any call said true.
-typedef bool edge_fn(job *j, const double p[3], const double q[3]);
-static bool any_edge(job *j, int other, edge_fn *visit) {
-    const brunt_contact_surface *s = j->m->skin;
+typedef bool edge_fn(search_job *j, const double p[3], const double q[3]);
+static bool any_edge(search_job *j, int other, edge_fn *visit) {
+    const brunt_contact_surface *s = j->m->surface;
     for (int32_t f = s->face_range[other]; f < s->face_end[other]; f++) {
         const int n = corners(s->face[f]);
         for (int c = 0; c < (n == 2 ? 1 : n); c++)
@@ -252,8 +252,8 @@ static double pieces_of(const double p[3], const double q[3], double size) {
 
 // A facet that is long for the other body may go through it between its nodes: places on it, of a triangle as of a
 // quadrilateral with two corners in one place.
-static bool facet_is_deep(job *j, int32_t f) {
-    const brunt_contact_surface *s = j->m->skin;
+static bool facet_is_deep(search_job *j, int32_t f) {
+    const brunt_contact_surface *s = j->m->surface;
     const int32_t *node = s->face[f];
     const int n = corners(node);
     const double *p = s->x[node[0]], *q = s->x[node[1]], *r = n == 2 ? q : s->x[node[2]],
@@ -274,7 +274,7 @@ static bool facet_is_deep(job *j, int32_t f) {
 }
 
 // Bodies in one place, or with sides in common, have no node in each other: the middles of their elements have.
-static bool element_is_deep(job *j, const brunt_fem_body *fem) {
+static bool element_is_deep(search_job *j, const brunt_fem_body *fem) {
     for (int32_t slot = 0; slot < fem->slots && !fem->traits->membrane; slot++) {
         if (fem->element_id[slot] < 0) continue;
         double x[3] = {0}, at[3];
@@ -288,8 +288,8 @@ static bool element_is_deep(job *j, const brunt_fem_body *fem) {
 }
 
 // Whether the surface of body `other`, or an element of it, is in the solid body k.
-static bool mesh_is_deep(job *j, int other) {
-    const brunt_contact_surface *s = j->m->skin;
+static bool mesh_is_deep(search_job *j, int other) {
+    const brunt_contact_surface *s = j->m->surface;
     if (element_is_deep(j, s->fem[other])) return true;
     for (int32_t n = s->node_range[other]; n < s->node_end[other]; n++)
         if (is_deep(j, s->x[n], 0)) return true;
@@ -331,9 +331,9 @@ static double angle_about(const double *const t[3], const double p[3], const dou
     return acos(fmax(-1, fmin(1, dot(e, g) / sqrt(dot(e, e) * dot(g, g)))));
 }
 
-// Whether an edge goes through the sheet k: there are facets all around the place, else it passes along the border.
-static bool edge_cuts(job *j, const double p[3], const double q[3]) {
-    const brunt_contact_surface *s = j->m->skin;
+// Whether an edge goes through the membrane k: there are facets all around the place, else it passes along the border.
+static bool edge_cuts(search_job *j, const double p[3], const double q[3]) {
+    const brunt_contact_surface *s = j->m->surface;
     const double least = CUT * s->fem[j->k]->mean_edge;
     double angle = 0;
     for (int32_t f = s->face_range[j->k]; f < s->face_end[j->k]; f++) {
@@ -352,9 +352,9 @@ static bool edge_cuts(job *j, const double p[3], const double q[3]) {
     return true;
 }
 
-// Whether the sheet k cuts body `other`: edges go through it, and there are nodes well on either side.
-static bool is_cut(job *j, int other) {
-    const brunt_contact_surface *s = j->m->skin;
+// Whether the membrane k cuts body `other`: edges go through it, and there are nodes well on either side.
+static bool is_cut(search_job *j, int other) {
+    const brunt_contact_surface *s = j->m->surface;
     double side[2] = {0};
     for (int32_t n = s->node_range[other]; n < s->node_end[other]; n++) {
         double height = 0;
@@ -375,10 +375,10 @@ static double size_of_body(const brunt_contact_surface *s, int k) {
 }
 
 // Facets, and elements of a solid, near what the other body's box shares with its own. 1, or 0: that is nothing.
-static int look_at(job *j, int k, const box *other, double limit, double by) {
-    const brunt_contact_surface *s = j->m->skin;
+static int look_at(search_job *j, int k, const box *other, double limit, double by) {
+    const brunt_contact_surface *s = j->m->surface;
     const brunt_fem_body *fem = s->fem[k];
-    const box own = grown(skin_box(s, k), s->dim, fem->traits->membrane ? by : -limit);
+    const box own = grown(surface_box(s, k), s->dim, fem->traits->membrane ? by : -limit);
     box room;
     if (!common(&own, other, &room)) return 0;
     j->k = k, j->limit = limit, j->by = by, j->size = size_of_body(s, k);
@@ -387,15 +387,15 @@ static int look_at(job *j, int k, const box *other, double limit, double by) {
     return fill_cells(&j->elements, &room, fem->mean_edge, fem->slots, element_box, j) ? -1 : 1;
 }
 
-// Whether mesh `other` is in mesh or sheet `k`.
-static int meshes_overlap(job *j, int other, int k) {
-    const brunt_contact_surface *s = j->m->skin;
+// Whether mesh `other` is in mesh or membrane `k`.
+static int meshes_overlap(search_job *j, int other, int k) {
+    const brunt_contact_surface *s = j->m->surface;
     const double edge = s->fem[other]->mean_edge, limit = DEEP * fmin(size_of_body(s, other), size_of_body(s, k));
-    const box of_other = skin_box(s, other);
-    const bool sheet = s->fem[k]->traits->membrane;
-    int status = look_at(j, k, &of_other, limit, sheet ? NEXT * edge : limit);
+    const box of_other = surface_box(s, other);
+    const bool membrane = s->fem[k]->traits->membrane;
+    int status = look_at(j, k, &of_other, limit, membrane ? NEXT * edge : limit);
     if (status <= 0) return status;
-    return sheet ? is_cut(j, other) : mesh_is_deep(j, other);
+    return membrane ? is_cut(j, other) : mesh_is_deep(j, other);
 }
 
 // ------------------------------------------------------------------------------------------ material points
@@ -410,7 +410,7 @@ static double reach_of(brunt_body *body, int64_t i) {
 }
 
 // Whether a particle's centre is in the solid, or so near its surface that its reach is.
-static bool point_is_deep(job *j, const double x[3], double reach) {
+static bool point_is_deep(search_job *j, const double x[3], double reach) {
     double height;
     if (is_deep(j, x, reach)) return true;
     const double d = holds(&j->facets.room, x) ? distance(j, x, &height) : INFINITY;
@@ -420,7 +420,7 @@ static bool point_is_deep(job *j, const double x[3], double reach) {
     return true;
 }
 
-static bool solid_holds_points(job *j, brunt_body *body) {
+static bool solid_holds_points(search_job *j, brunt_body *body) {
     double x[3];
     for (int64_t i = 0; i < body->particles.slots; i++) {
         particle_at(body, i, x);
@@ -429,8 +429,8 @@ static bool solid_holds_points(job *j, brunt_body *body) {
     return false;
 }
 
-// Whether a sheet lies in particles of a body that is on both its sides.
-static bool sheet_cuts_points(job *j, brunt_body *body) {
+// Whether a membrane lies in particles of a body that is on both its sides.
+static bool sheet_cuts_points(search_job *j, brunt_body *body) {
     bool side[2] = {false, false};
     for (int64_t i = 0; i < body->particles.slots; i++) {
         double x[3], height = 0;
@@ -446,28 +446,28 @@ static bool sheet_cuts_points(job *j, brunt_body *body) {
     return side[0] && side[1] && j->found->depth > j->limit;
 }
 
-// Whether material points are in mesh or sheet k.
-static int points_overlap(job *j, brunt_body *body, int k) {
-    const brunt_contact_surface *s = j->m->skin;
-    const bool sheet = s->fem[k]->traits->membrane;
+// Whether material points are in mesh or membrane k.
+static int points_overlap(search_job *j, brunt_body *body, int k) {
+    const brunt_contact_surface *s = j->m->surface;
+    const bool membrane = s->fem[k]->traits->membrane;
     box of_points = empty_box();
     double x[3];
     if (!body->particles.field[BRUNT_FIELD_reach].components) return 0;
     for (int64_t i = 0; i < body->particles.slots; i++) particle_at(body, i, x), widen(&of_points, x);
-    const double by = (sheet ? NEXT : 1) * body->spacing;
+    const double by = (membrane ? NEXT : 1) * body->spacing;
     int status = look_at(j, k, &of_points, -by, by);
     if (status <= 0) return status;
     j->limit = DEEP * fmin(body->spacing, size_of_body(s, k));
-    return sheet ? sheet_cuts_points(j, body) : solid_holds_points(j, body);
+    return membrane ? sheet_cuts_points(j, body) : solid_holds_points(j, body);
 }
 
 // ------------------------------------------------------------------------------------------ planes
 
-static bool keep_behind(const brunt_plane_def *plane, const double x[3], double reach, double most,
+static bool keep_behind(const brunt_plane_def *plane, const double x[3], double reach, double greatest,
                         brunt_overlap *found) {
     double d = -reach, far = 0;
     for (int a = 0; a < 3; a++) d += plane->normal[a] * (x[a] - plane->point[a]), far = fmax(far, fabs(x[a]));
-    if (!(-d > most + 1e-6 * far) || !(-d > found->depth)) return false;
+    if (!(-d > greatest + 1e-6 * far) || !(-d > found->depth)) return false;
     found->depth = -d;
     memcpy(found->x, x, sizeof found->x);
     return true;
@@ -480,7 +480,7 @@ static bool is_held(const brunt_contact_surface *s, int32_t n) {
 
 // The deepest place of a body behind a plane that pushes it.
 static bool find_behind(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, int w, brunt_overlap *found) {
-    const brunt_contact_surface *s = m->skin;
+    const brunt_contact_surface *s = m->surface;
     const brunt_wall *wall = &m->walls[w];
     bool any = false;
     if (wall->region || wall->plane.condition != BRUNT_SEPARATE) return false;
@@ -506,9 +506,9 @@ static bool find_behind(const brunt_contact_context *m, brunt_body *mpm, int mpm
 
 // ------------------------------------------------------------------------------------------ all
 
-static int find_in_meshes(job *j, brunt_body *mpm, int mpm_count) {
+static int find_in_meshes(search_job *j, brunt_body *mpm, int mpm_count) {
     const brunt_contact_context *m = j->m;
-    const brunt_contact_surface *s = m->skin;
+    const brunt_contact_surface *s = m->surface;
     int status = 0;
     for (int k = 0; k < s->fem_count && !status; k++) {
         const int b = s->fem[k]->index;
@@ -524,7 +524,7 @@ static int find_in_meshes(job *j, brunt_body *mpm, int mpm_count) {
 
 int brunt_overlap_find(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, int wall_count,
                        brunt_overlap *found) {
-    job j = {.m = m, .found = found};
+    search_job j = {.m = m, .found = found};
     int status = find_in_meshes(&j, mpm, mpm_count);
     cells *made[] = {&j.elements, &j.facets};
     for (int k = 0; k < 2; k++) brunt_free(made[k]->first), brunt_free(made[k]->item);

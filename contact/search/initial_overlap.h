@@ -12,6 +12,6 @@ typedef struct brunt_overlap {
 } brunt_overlap;
 
 // The first overlap of a mesh or membrane with another body that it has a pair with, or of any body with a plane of
-// condition separate. Call with the skin of all bodies taken. 1, or 0: there is none, -1: out of memory.
+// condition separate. Call with the surface of all bodies taken. 1, or 0: there is none, -1: out of memory.
 int brunt_overlap_find(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, int wall_count,
                        brunt_overlap *found);

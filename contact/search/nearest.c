@@ -1,17 +1,17 @@
 // Of the facets that are nearest, the one that is met, or the edge or corner where several are as near.
 #include "contact/search/nearest.h"
 
-static const double SAME_SLOPE = 0.7; // cosine of normals from which on two facets of a sheet are one slope
+static const double SAME_SLOPE = 0.7; // cosine of normals from which on two facets of a membrane are one slope
 static const double STRAIGHT = 0.01;  // [rad] within it of their mean normal, ways to edges and corners are along it
 
 static const tied *most_facing(const nearest *best) {
     const tied *chosen = NULL;
-    double most = -1;
+    double greatest = -1;
     for (int32_t k = 0; k < best->count; k++) {
         if (best->tied[k].at.square > best->root * best->root) continue;
         double facing = best->tied[k].at.inside ? INFINITY : fabs(dot(best->tied[k].at.normal, best->tied[k].at.d));
-        if (facing > most || (facing == most && best->tied[k].face < chosen->face))
-            most = facing, chosen = &best->tied[k];
+        if (facing > greatest || (facing == greatest && best->tied[k].face < chosen->face))
+            greatest = facing, chosen = &best->tied[k];
     }
     return chosen;
 }
@@ -26,7 +26,7 @@ static bool bear_together(const brunt_contact_surface *s, const tied *a, const t
 
 // The edge or corner that the chosen facet has in common with those that tie with it, their mean normal and the mean
 // height above them; `way`: the sum of their ways to the slave.
-static void find_feature(const brunt_contact_surface *s, const nearest *best, const tied *chosen, hit *out,
+static void find_feature(const brunt_contact_surface *s, const nearest *best, const tied *chosen, facet_candidate *out,
                          double way[3]) {
     int32_t face[MAX_TIED];
     int count = 1;
@@ -53,13 +53,15 @@ static void find_feature(const brunt_contact_surface *s, const nearest *best, co
     memcpy(out->n, chosen->at.normal, sizeof out->n);
 }
 
-static const tied *take_nearest(const brunt_contact_surface *s, const nearest *best, hit *out, double way[3]) {
+static const tied *take_nearest(const brunt_contact_surface *s, const nearest *best, facet_candidate *out,
+                                double way[3]) {
     const tied *chosen = most_facing(best);
     const brunt_closest *at = &chosen->at;
-    *out = (hit){.face = chosen->face, .triangle = at->triangle, .body = best->body, .gap = dot(at->normal, at->d)};
+    *out = (facet_candidate){
+        .face = chosen->face, .triangle = at->triangle, .body = best->body, .gap = dot(at->normal, at->d)};
     memcpy(out->n, at->normal, sizeof out->n);
     memcpy(way, at->d, sizeof at->d);
-    if (is_sheet(s, best->body)) return chosen; // faces of a crumpled sheet have no turn in common at a node
+    if (is_membrane(s, best->body)) return chosen; // faces of a crumpled membrane have no turn in common at a node
     if (at->triangles) out->feature = (brunt_feature){true, {-1, -1}, chosen->face, at->triangles};
     if (best->count > 1) find_feature(s, best, chosen, out, way);
     return chosen;
@@ -75,7 +77,8 @@ static bool aside(const double n[3], const double d[3]) {
 }
 
 // A hit on facets that face the slave; beside an edge or a corner it must also face the way to them.
-bool brunt_nearest_facing(const brunt_contact_surface *s, const nearest *best, const double *normal, hit *out) {
+bool brunt_nearest_facing(const brunt_contact_surface *s, const nearest *best, const double *normal,
+                          facet_candidate *out) {
     double way[3];
     const brunt_closest *at = &take_nearest(s, best, out, way)->at;
     const double distance = sqrt(best->square), length = sqrt(dot(way, way));
@@ -105,10 +108,10 @@ static bool next_slope(const brunt_contact_surface *s, nearest *best) {
 
 // The other slopes of a valley, in which all bear: with the first of two, an inside corner and its mirror image bore
 // differently.
-void brunt_nearest_valley(const brunt_contact_surface *s, nearest *best, const double *normal, slave_hits *out) {
-    bool more = out->hits[out->count - 1].valley;
-    while (more && out->count < BRUNT_MAX_HITS && next_slope(s, best)) {
-        hit *h = &out->hits[out->count];
+void brunt_nearest_valley(const brunt_contact_surface *s, nearest *best, const double *normal, candidate_list *out) {
+    bool more = out->candidate[out->count - 1].valley;
+    while (more && out->count < BRUNT_MAX_CANDIDATES && next_slope(s, best)) {
+        facet_candidate *h = &out->candidate[out->count];
         if (brunt_nearest_facing(s, best, normal, h)) out->count++;
         more = h->valley;
     }
@@ -116,7 +119,7 @@ void brunt_nearest_valley(const brunt_contact_surface *s, nearest *best, const d
 
 // A hit on whatever facet is nearest, when the slave is behind it; `least`: the least cosine with its normal.
 bool brunt_nearest_behind(const brunt_contact_surface *s, const nearest *best, const double *normal, double least,
-                          hit *out) {
+                          facet_candidate *out) {
     double way[3];
     take_nearest(s, best, out, way);
     return out->gap < 0 && -dot(out->n, normal) > least;

@@ -22,22 +22,24 @@ typedef struct nearest {
     tied tied[MAX_TIED];
 } nearest;
 
-static inline bool is_sheet(const brunt_contact_surface *s, int32_t body) { return s->side && s->side[body].faces > 0; }
+static inline bool is_membrane(const brunt_contact_surface *s, int32_t body) {
+    return s->membrane.side && s->membrane.side[body].faces > 0;
+}
 
-// The nearest point of the front of a sheet as one of its back: nodes there are in reversed order.
+// The nearest point of the front of a membrane as one of its back: nodes there are in reversed order.
 static inline void turn_over(const brunt_contact_surface *s, int32_t *face, brunt_closest *at) {
     if (s->face[*face][3] >= 0) {
         at->triangle = (6 - at->triangle) % 4;
         at->triangles = (at->triangles & 10) | (at->triangles & 1) << 2 | (at->triangles & 4) >> 2;
     }
-    *face += s->side[s->face_body[*face]].faces;
+    *face += s->membrane.side[s->face_body[*face]].faces;
     for (int a = 0; a < 3; a++) at->normal[a] = -at->normal[a];
 }
 
-// Whether someone is on the side of a sheet that facet is of, and not beyond its edge when a little behind it. There is
-// no inside that it could have entered: who is further behind belongs to the other side, or to the far side of a body
-// that is on this one.
-static inline bool on_side(const looker *l, const brunt_closest *at) {
+// Whether a place is on the side of a membrane that facet is of, and not beyond its edge when a little behind it. There
+// is no inside that it could have entered: what is further behind belongs to the other side, or to the far side of a
+// body that is on this one.
+static inline bool on_side(const search_query *l, const brunt_closest *at) {
     const double height = dot(at->normal, at->d);
     if (height > 0) return true;
     if (!l->normal) return height == 0;
@@ -60,10 +62,11 @@ static inline void keep(const brunt_contact_surface *s, nearest *best, const bru
 }
 
 // A hit on facets that face the slave; beside an edge or a corner it must also face the way to them.
-bool brunt_nearest_facing(const brunt_contact_surface *s, const nearest *best, const double *normal, hit *out);
+bool brunt_nearest_facing(const brunt_contact_surface *s, const nearest *best, const double *normal,
+                          facet_candidate *out);
 // The other slopes of a valley, in which all bear: with the first of two, an inside corner and its mirror image bore
 // differently.
-void brunt_nearest_valley(const brunt_contact_surface *s, nearest *best, const double *normal, slave_hits *out);
+void brunt_nearest_valley(const brunt_contact_surface *s, nearest *best, const double *normal, candidate_list *out);
 // A hit on whatever facet is nearest, when the slave is behind it; `least`: the least cosine with its normal.
 bool brunt_nearest_behind(const brunt_contact_surface *s, const nearest *best, const double *normal, double least,
-                          hit *out);
+                          facet_candidate *out);

@@ -1,8 +1,8 @@
-// Augury, affine form: who faces whom. Every boundary node of a finite-element body, and every particle near one, looks
-// into the cell of the contact grid it is in, finds the nearest point of the facets opposite, and becomes a contact
-// point there when it would pass it within the step. Gap, velocity and reaction come from the same facet (points.h), so
-// nothing is smeared over a cell: contact closes at zero gap, edges and corners keep their place, and nothing acts on
-// what does not touch.
+// Augury, affine form: what faces what. Every boundary node of a finite-element body, and every particle near one,
+// looks into the cell of the contact grid it is in, finds the nearest point of the facets opposite, and becomes a
+// contact point there when it would pass it within the step. Gap, velocity and reaction come from the same facet
+// (constraint.h), so nothing is smeared over a cell: contact closes at zero gap, edges and corners keep their place,
+// and nothing acts on what does not touch.
 //
 // The grid only finds: cells hold the facets within reach of them. It is made anew when the facets, or the
 // bodies that look for them, have moved by the margin it was made with; what is found does not depend on it, so its
@@ -14,32 +14,33 @@
 
 typedef struct brunt_node_to_facet brunt_node_to_facet;
 
-// Marks in skin->active which bodies have another one, or a wall (planes of brunt_walls with condition separate and
+// Marks in surface->active which bodies have another one, or a wall (planes of brunt_walls with condition separate and
 // others), near; call after brunt_surface_bounds, before brunt_surface_gather_state. 0, or -1: out of memory, -2: a
 // place or a way of a step is not a number that can be worked with.
 int brunt_broad_phase(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, const brunt_wall *walls,
                       int wall_count, double time, brunt_node_to_facet **facing);
 // Adds the contact points of this step.
 int brunt_node_to_facet_find(const brunt_contact_context *m, brunt_body *mpm, int mpm_count,
-                             brunt_node_to_facet *facing, brunt_constraint_set *points);
+                             brunt_node_to_facet *facing, brunt_constraint_set *constraints);
 // Adds what walls that push (condition separate) do to boundary nodes, and applies those that hold (stick, slip,
 // symmetry).
-int brunt_node_to_facet_walls(const brunt_contact_context *m, brunt_wall *walls, int wall_count, double time,
-                              brunt_node_to_facet *facing, brunt_constraint_set *points);
+int brunt_node_to_facet_planes(const brunt_contact_context *m, brunt_wall *walls, int wall_count, double time,
+                               brunt_node_to_facet *facing, brunt_constraint_set *constraints);
 // After the solution: what contact gave to nodes that planes hold is those planes' reaction.
-void brunt_node_to_facet_book_holds(const brunt_contact_context *m, brunt_wall *walls, int wall_count, double time,
-                                    const brunt_node_to_facet *facing, const brunt_constraint_set *points);
+void brunt_node_to_facet_account_fixed(const brunt_contact_context *m, brunt_wall *walls, int wall_count, double time,
+                                       const brunt_node_to_facet *facing, const brunt_constraint_set *constraints);
 // After brunt_surface_renew: what is remembered follows its nodes, and all look anew. 0, or -1: out of memory.
-int brunt_node_to_facet_renew(brunt_node_to_facet *facing, const brunt_contact_surface *skin);
-// After the solution: velocities back to the skin and to the grids' nodes, contact state to the skin.
+int brunt_node_to_facet_renew(brunt_node_to_facet *facing, const brunt_contact_surface *surface);
+// After the solution: velocities back to the surface and to the grids' nodes, contact state to the surface.
 void brunt_node_to_facet_finish(const brunt_contact_context *m, brunt_body *mpm, brunt_node_to_facet *facing,
-                                const brunt_constraint_set *points);
+                                const brunt_constraint_set *constraints);
 // What is remembered from step to step only saves work; but where two facets are equally near it may settle which one
 // is taken, so that a run that goes on needs it. So many doubles, however many elements have left; copied out; and in,
-// before the first step and after the bodies, from which the skin is renewed (0, or -1: out of memory).
-int64_t brunt_node_to_facet_state_count(const brunt_contact_surface *skin);
-void brunt_node_to_facet_state_get(const brunt_node_to_facet *facing, const brunt_contact_surface *skin, double *out);
-int brunt_node_to_facet_state_set(brunt_node_to_facet **facing, brunt_contact_surface *skin, int mpm_count,
+// before the first step and after the bodies, from which the surface is renewed (0, or -1: out of memory).
+int64_t brunt_node_to_facet_state_count(const brunt_contact_surface *surface);
+void brunt_node_to_facet_state_get(const brunt_node_to_facet *facing, const brunt_contact_surface *surface,
+                                   double *out);
+int brunt_node_to_facet_state_set(brunt_node_to_facet **facing, brunt_contact_surface *surface, int mpm_count,
                                   const double *in);
 void brunt_node_to_facet_free(brunt_node_to_facet *facing);
 size_t brunt_node_to_facet_bytes(const brunt_node_to_facet *facing);

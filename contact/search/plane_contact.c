@@ -2,9 +2,9 @@
 #include "contact/search/node_to_facet_parts.h"
 
 // Holds a node on a plane: stick takes all components, slip and symmetry the normal one. `back`: how much further its
-// twin is, of a sheet; else 0.
-static void hold(brunt_contact_surface *s, int32_t n, int32_t back, brunt_wall *wall, double normal_velocity,
-                 bool stick) {
+// twin is, of a membrane; else 0.
+static void fix_node(brunt_contact_surface *s, int32_t n, int32_t back, brunt_wall *wall, double normal_velocity,
+                     bool stick) {
     const brunt_plane_def *plane = &wall->plane;
     double now[3], J[3], old[3], along = 0;
     for (int a = 0; a < 3; a++) along += plane->normal[a] * (s->v[n][a] - plane->velocity[a]);
@@ -25,9 +25,9 @@ static void hold(brunt_contact_surface *s, int32_t n, int32_t back, brunt_wall *
     memcpy(s->inverse[n + back], s->inverse[n], sizeof *s->inverse);
 }
 
-static int push_off(const brunt_contact_context *m, brunt_node_to_facet *f, int32_t n, int32_t back, brunt_wall *wall,
-                    double gap, brunt_constraint_set *points) {
-    const brunt_contact_surface *s = m->skin;
+static int add_plane_constraint(const brunt_contact_context *m, brunt_node_to_facet *f, int32_t n, int32_t back,
+                                brunt_wall *wall, double gap, brunt_constraint_set *constraints) {
+    const brunt_contact_surface *s = m->surface;
     const brunt_plane_def *plane = &wall->plane;
     double approach = 0, before = 0;
     for (int a = 0; a < 3; a++) {
@@ -36,45 +36,45 @@ static int push_off(const brunt_contact_context *m, brunt_node_to_facet *f, int3
     }
     double target = brunt_node_to_facet_target(s, gap, approach, before, m->dt);
     if (!(approach < target + 1e-6 * s->mean_edge / m->dt)) return 0;
-    int32_t at = brunt_constraints_add(points), support = brunt_node_to_facet_support(f, s, n, points);
-    if (at < 0 || support < 0) return -1;
-    brunt_constraint *point = &points->point[at];
-    memcpy(point->x, s->x[n], sizeof point->x);
-    memcpy(point->n, plane->normal, sizeof point->n);
-    memcpy(point->plane, plane->velocity, sizeof point->plane);
-    point->gap = gap, point->target = target, point->friction = plane->friction;
-    point->action = &wall->last, point->sign = 1, point->tag = n,
-    point->area = brunt_node_to_facet_area(s, n, plane->normal);
-    if (back) point->area += brunt_node_to_facet_area(s, n + back, plane->normal);
-    return brunt_constraints_entry(points, support, 1) < 0 ? -1 : 0;
+    int32_t at = brunt_constraints_add(constraints), dof_node = brunt_node_to_facet_dof_node(f, s, n, constraints);
+    if (at < 0 || dof_node < 0) return -1;
+    brunt_constraint *constraint = &constraints->constraint[at];
+    memcpy(constraint->x, s->x[n], sizeof constraint->x);
+    memcpy(constraint->n, plane->normal, sizeof constraint->n);
+    memcpy(constraint->plane, plane->velocity, sizeof constraint->plane);
+    constraint->gap = gap, constraint->target = target, constraint->friction = plane->friction;
+    constraint->action = &wall->last, constraint->sign = 1, constraint->tag = n,
+    constraint->area = brunt_node_to_facet_area(s, n, plane->normal);
+    if (back) constraint->area += brunt_node_to_facet_area(s, n + back, plane->normal);
+    return brunt_constraints_entry(constraints, dof_node, 1) < 0 ? -1 : 0;
 }
 
-int brunt_node_to_facet_walls(const brunt_contact_context *m, brunt_wall *walls, int wall_count, double time,
-                              brunt_node_to_facet *f, brunt_constraint_set *points) {
-    brunt_contact_surface *s = m->skin;
+int brunt_node_to_facet_planes(const brunt_contact_context *m, brunt_wall *walls, int wall_count, double time,
+                               brunt_node_to_facet *f, brunt_constraint_set *constraints) {
+    brunt_contact_surface *s = m->surface;
     const double on = 1e-6 * s->mean_edge;
     for (int w = 0; w < wall_count; w++) {
         brunt_wall *wall = &walls[w];
         const brunt_condition condition = wall->plane.condition;
         if (wall->region) continue;
         for (int k = 0; k < s->fem_count; k++) {
-            if (!s->active[k] || !brunt_broad_phase_plane(s, k, wall, time, f->wall_reach + on)) continue;
+            if (!s->active[k] || !brunt_broad_phase_plane(s, k, wall, time, f->bodies.plane_travel + on)) continue;
             const int32_t back = s->node_range[k + 1] - s->node_end[k];
-            const double half = s->side ? s->side[s->fem[k]->index].half : 0;
+            const double half = s->membrane.side ? s->membrane.side[s->fem[k]->index].half : 0;
             for (int32_t n = s->node_range[k]; n < s->node_end[k]; n++) {
-                double gap = brunt_node_to_facet_plane_distance(&wall->plane, time, s->x[n]);
-                if (gap > f->wall_reach + on) continue;
+                double gap = brunt_plane_distance(&wall->plane, time, s->x[n]);
+                if (gap > f->bodies.plane_travel + on) continue;
                 if (condition == BRUNT_SEPARATE) {
-                    s->gap[n] = fmin(s->gap[n], gap - half);
-                    if (push_off(m, f, n, back, wall, gap - half, points)) return -1;
+                    s->output.gap[n] = fmin(s->output.gap[n], gap - half);
+                    if (add_plane_constraint(m, f, n, back, wall, gap - half, constraints)) return -1;
                     continue;
                 }
                 double along = 0;
                 for (int a = 0; a < 3; a++) along += wall->plane.normal[a] * (s->v[n][a] - wall->plane.velocity[a]);
                 if (gap <= on)
-                    hold(s, n, back, wall, 0, condition == BRUNT_STICK);
+                    fix_node(s, n, back, wall, 0, condition == BRUNT_STICK);
                 else if (gap + along * m->dt < 0)
-                    hold(s, n, back, wall, -gap / m->dt, condition == BRUNT_STICK);
+                    fix_node(s, n, back, wall, -gap / m->dt, condition == BRUNT_STICK);
             }
         }
     }
@@ -82,8 +82,8 @@ int brunt_node_to_facet_walls(const brunt_contact_context *m, brunt_wall *walls,
 }
 
 // The plane that keeps component a of a node from moving: of those that hold it, the nearest. -1: none.
-static int holding_plane(const brunt_contact_surface *s, int32_t n, int a, const brunt_wall *walls, int wall_count,
-                         double time) {
+static int fixing_plane(const brunt_contact_surface *s, int32_t n, int a, const brunt_wall *walls, int wall_count,
+                        double time) {
     int nearest = -1;
     double least = INFINITY;
     for (int w = 0; w < wall_count; w++) {
@@ -91,24 +91,24 @@ static int holding_plane(const brunt_contact_surface *s, int32_t n, int a, const
         if (walls[w].region || plane->condition == BRUNT_SEPARATE) continue;
         if (walls[w].body >= 0 && walls[w].body != s->body[n]) continue;
         if (plane->condition != BRUNT_STICK && !(fabs(plane->normal[a]) > 1 - 1e-12)) continue;
-        double gap = brunt_node_to_facet_plane_distance(plane, time, s->x[n]);
+        double gap = brunt_plane_distance(plane, time, s->x[n]);
         if (gap < least) least = gap, nearest = w;
     }
     return nearest;
 }
 
-void brunt_node_to_facet_book_holds(const brunt_contact_context *m, brunt_wall *walls, int wall_count, double time,
-                                    const brunt_node_to_facet *f, const brunt_constraint_set *points) {
-    const brunt_contact_surface *s = m->skin;
+void brunt_node_to_facet_account_fixed(const brunt_contact_context *m, brunt_wall *walls, int wall_count, double time,
+                                       const brunt_node_to_facet *f, const brunt_constraint_set *constraints) {
+    const brunt_contact_surface *s = m->surface;
     int k = 0;
     for (int32_t n = 0; n < s->node_count; n++) {
         while (s->node_range[k + 1] <= n) k++;
-        if (f->support_of[n] < 0 || (s->front && s->front[n] != n)) continue;
+        if (f->nodes.dof_of[n] < 0 || (s->membrane.front && s->membrane.front[n] != n)) continue;
         for (int a = 0; a < s->dim; a++) {
-            const double given = points->support[f->support_of[n]].impulse[a];
+            const double given = constraints->dof_node[f->nodes.dof_of[n]].impulse[a];
             if (s->inverse[n][a] > 0 || given == 0) continue;
             if (s->fem[k]->held && s->fem[k]->held[s->node[n]] >> a & 1) continue; // by a group, which has its account
-            int w = holding_plane(s, n, a, walls, wall_count, time);
+            int w = fixing_plane(s, n, a, walls, wall_count, time);
             if (w < 0) continue;
             double J[3] = {0};
             J[a] = -given;

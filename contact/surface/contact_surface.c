@@ -10,9 +10,10 @@
 
 enum { GRAIN = BRUNT_SURFACE_GRAIN };
 static const double SHALLOW =
-    0.25; // mean edges: how far a node may get behind a sheet, at most, and still be sent back
+    0.25; // mean edges: how far a node may get behind a membrane, at most, and still be sent back
 
-// Nodes that have a face, ascending; `number` gets their skin numbers, from `first`. Their count, or -1: out of memory.
+// Nodes that have a face, ascending; `number` gets their surface numbers, from `first`. Their count, or -1: out of
+// memory.
 static int32_t number_nodes(const brunt_fem_body *fem, const brunt_faces *faces, int32_t first, int32_t *number) {
     for (int32_t n = 0; n < fem->node_count; n++) number[n] = -1;
     for (int32_t f = 0; f < faces->count; f++)
@@ -26,8 +27,8 @@ static int32_t number_nodes(const brunt_fem_body *fem, const brunt_faces *faces,
 // What there is one of for each node, and for each face, beside the lists themselves.
 // clang-format off
 #define NODE_ARRAYS(X) \
-    X(x, 1) X(v, 1) X(old, 1) X(mass, 1) X(inverse, 1) X(normal, 1) X(area, 1) X(gap, 1) X(impulse, 1) X(state, 1) \
-    X(face_first, 1) X(affine, s->affine) X(front, s->front)
+    X(x, 1) X(v, 1) X(old, 1) X(mass, 1) X(inverse, 1) X(normal, 1) X(area, 1) X(face_first, 1) X(output.gap, 1) \
+    X(output.impulse, 1) X(output.state, 1) X(affine, s->affine) X(membrane.front, s->membrane.front)
 #define FACE_ARRAYS(X) X(face_normal) X(face_centre) X(face_area) X(face_box) X(face_body)
 // clang-format on
 
@@ -45,25 +46,25 @@ static int enlarge(void *array, size_t keep, size_t bytes) {
 // that surfaces that grow seldom ask for it.
 int brunt_surface_reserve(brunt_contact_surface *s, int32_t node_count, int32_t face_count) {
     const size_t nodes = (size_t)node_count + 2, faces = (size_t)face_count + 1;
-    if (nodes > s->node_room) {
-        const size_t room = s->node_room ? nodes + nodes / 2 : nodes, had = s->node_room;
-        int failed = enlarge(&s->chunk_moved, 0, (room / GRAIN + 1) * sizeof *s->chunk_moved);
+    if (nodes > s->node_array_capacity) {
+        const size_t room = s->node_array_capacity ? nodes + nodes / 2 : nodes, had = s->node_array_capacity;
+        int failed = enlarge(&s->motion.chunk, 0, (room / GRAIN + 1) * sizeof *s->motion.chunk);
 #define ENLARGE(what, when)                                                                                            \
     if (!failed && (when)) failed = enlarge(&s->what, had * sizeof *s->what, room * sizeof *s->what);
         NODE_ARRAYS(ENLARGE)
 #undef ENLARGE
         if (failed) return -1;
-        s->node_room = room;
+        s->node_array_capacity = room;
     }
-    if (faces > s->face_room) {
-        const size_t room = s->face_room ? faces + faces / 2 : faces, had = s->face_room;
+    if (faces > s->face_array_capacity) {
+        const size_t room = s->face_array_capacity ? faces + faces / 2 : faces, had = s->face_array_capacity;
         int failed = enlarge(&s->face_of, 0, 4 * room * sizeof *s->face_of);
 #define ENLARGE(what)                                                                                                  \
     if (!failed) failed = enlarge(&s->what, had * sizeof *s->what, room * sizeof *s->what);
         FACE_ARRAYS(ENLARGE)
 #undef ENLARGE
         if (failed) return -1;
-        s->face_room = room;
+        s->face_array_capacity = room;
     }
     return 0;
 }
@@ -127,23 +128,26 @@ int brunt_surface_relate(brunt_contact_surface *s) {
         const int32_t index = s->fem[k]->index, nodes = s->node_end[k] - s->node_range[k];
         for (int32_t n = s->node_range[k]; n < s->node_range[k + 1]; n++) s->body[n] = index;
         for (int32_t f = s->face_range[k]; f < s->face_range[k + 1]; f++) s->face_body[f] = index;
-        for (int32_t n = s->node_range[k]; s->front && n < s->node_range[k + 1]; n++)
-            s->front[n] = n < s->node_end[k] ? n : n - nodes;
-        if (s->side && s->fem[k]->traits->membrane) s->side[index].faces = s->face_end[k] - s->face_range[k];
+        for (int32_t n = s->node_range[k]; s->membrane.front && n < s->node_range[k + 1]; n++)
+            s->membrane.front[n] = n < s->node_end[k] ? n : n - nodes;
+        if (s->membrane.side && s->fem[k]->traits->membrane)
+            s->membrane.side[index].faces = s->face_end[k] - s->face_range[k];
     }
     link_faces(s);
     return 0;
 }
 
-static int add_shells(brunt_contact_surface *s) {
+static int add_topologies(brunt_contact_surface *s) {
     int32_t last = 0;
     for (int k = 0; k < s->fem_count; k++) last = s->fem[k]->index > last ? s->fem[k]->index : last;
     for (int k = 0; k < s->fem_count; k++) {
         if (!s->fem[k]->bonds) continue;
-        if (!s->shell && !(s->shell = brunt_alloc(((size_t)s->fem_count + 1) * sizeof *s->shell))) return -1;
-        if (!s->ragged && !(s->ragged = brunt_alloc((size_t)last + 1))) return -1;
-        if (brunt_topology_make(&s->shell[k], s->fem[k])) return -1;
-        s->ragged[s->fem[k]->index] = true;
+        if (!s->renewal.topology &&
+            !(s->renewal.topology = brunt_alloc(((size_t)s->fem_count + 1) * sizeof *s->renewal.topology)))
+            return -1;
+        if (!s->renewal.eroded && !(s->renewal.eroded = brunt_alloc((size_t)last + 1))) return -1;
+        if (brunt_topology_make(&s->renewal.topology[k], s->fem[k])) return -1;
+        s->renewal.eroded[s->fem[k]->index] = true;
     }
     return 0;
 }
@@ -155,26 +159,27 @@ int brunt_surface_make(brunt_contact_surface *s, brunt_fem_body **fem, int count
     s->fem = brunt_alloc(k1 * sizeof *s->fem);
     s->node_range = brunt_alloc(k1 * sizeof *s->node_range), s->face_range = brunt_alloc(k1 * sizeof *s->face_range);
     s->low = brunt_alloc(k1 * sizeof *s->low), s->high = brunt_alloc(k1 * sizeof *s->high);
-    s->mean = brunt_alloc(k1 * sizeof *s->mean), s->speed = brunt_alloc(k1 * sizeof *s->speed);
-    s->active = brunt_alloc(k1), s->was_active = brunt_alloc(k1);
+    s->motion.mean = brunt_alloc(k1 * sizeof *s->motion.mean),
+    s->motion.speed = brunt_alloc(k1 * sizeof *s->motion.speed);
+    s->active = brunt_alloc(k1), s->motion.was_active = brunt_alloc(k1);
     s->node_end = brunt_alloc(k1 * sizeof *s->node_end), s->face_end = brunt_alloc(k1 * sizeof *s->face_end);
     if (!s->node_end || !s->face_end || !s->fem || !s->node_range || !s->face_range || !s->low || !s->high ||
-        !s->active || !s->was_active || !s->mean || !s->speed)
+        !s->active || !s->motion.was_active || !s->motion.mean || !s->motion.speed)
         return -1;
     for (int k = 0; k < count; k++) {
         s->fem[k] = fem[k];
         if (add_body(s, k)) return -1;
     }
     if (brunt_surface_reserve(s, s->node_count, s->face_count) || brunt_membrane_sides_make(s) ||
-        brunt_surface_relate(s) || add_shells(s))
+        brunt_surface_relate(s) || add_topologies(s))
         return -1;
-    for (int32_t n = 0; n < s->node_count; n++) s->gap[n] = INFINITY;
+    for (int32_t n = 0; n < s->node_count; n++) s->output.gap[n] = INFINITY;
     int32_t edges = 0;
     double sum = edge_sum(s, &edges);
     s->mean_edge = edges ? sum / edges : 0;
-    for (int k = 0; s->side && k < count; k++)
-        s->side[fem[k]->index].shallow = fmin(s->side[fem[k]->index].shallow, SHALLOW * s->mean_edge);
-    if (affine && !(s->affine = brunt_alloc(s->node_room * sizeof *s->affine))) return -1;
+    for (int k = 0; s->membrane.side && k < count; k++)
+        s->membrane.side[fem[k]->index].shallow = fmin(s->membrane.side[fem[k]->index].shallow, SHALLOW * s->mean_edge);
+    if (affine && !(s->affine = brunt_alloc(s->node_array_capacity * sizeof *s->affine))) return -1;
     return 0;
 }
 
@@ -196,35 +201,35 @@ void brunt_surface_free(brunt_contact_surface *s) {
                      s->inverse,
                      s->normal,
                      s->area,
-                     s->gap,
-                     s->impulse,
-                     s->state,
+                     s->output.gap,
+                     s->output.impulse,
+                     s->output.state,
                      s->face_normal,
                      s->face_centre,
                      s->face_area,
                      s->face_box,
-                     s->was_active,
-                     s->chunk_moved,
-                     s->mean,
-                     s->speed,
+                     s->motion.was_active,
+                     s->motion.chunk,
+                     s->motion.mean,
+                     s->motion.speed,
                      s->face_first,
                      s->face_of,
                      s->affine,
                      s->node_end,
                      s->face_end,
-                     s->front,
-                     s->side,
-                     s->ring_first,
-                     s->ring_face,
-                     s->self,
-                     s->next_node,
-                     s->next_face,
-                     s->spare,
-                     s->change.node_was,
-                     s->change.face_now,
-                     s->ragged};
-    for (int k = 0; s->shell && k < s->fem_count; k++) brunt_topology_free(&s->shell[k]);
-    brunt_free(s->shell);
+                     s->membrane.front,
+                     s->membrane.side,
+                     s->membrane.patch_first,
+                     s->membrane.patch_face,
+                     s->membrane.self,
+                     s->renewal.next_node,
+                     s->renewal.next_face,
+                     s->renewal.spare,
+                     s->renewal.change.node_was,
+                     s->renewal.change.face_now,
+                     s->renewal.eroded};
+    for (int k = 0; s->renewal.topology && k < s->fem_count; k++) brunt_topology_free(&s->renewal.topology[k]);
+    brunt_free(s->renewal.topology);
     for (size_t k = 0; k < sizeof owned / sizeof owned[0]; k++) brunt_free(owned[k]);
     *s = (brunt_contact_surface){0};
 }

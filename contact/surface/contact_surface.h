@@ -3,7 +3,7 @@
 //
 // The methods change `v`, never the bodies: the velocities are taken from the bodies before and given back after.
 //
-// A sheet (the elements of a membrane) has two sides: its nodes and faces are there twice, first the front as the
+// A membrane (the elements of a membrane) has two sides: its nodes and faces are there twice, first the front as the
 // elements are oriented, then the back, with the order of the nodes reversed, on the same nodes of the body. What acts
 // on a node of the back is gathered at its twin of the front, which alone gives a velocity back.
 #pragma once
@@ -14,27 +14,74 @@
 #include "fem/fem_body.h"
 #include "fem/surface_topology.h"
 
-// What a body is to sheets.
+// What a body is to membranes.
 typedef struct brunt_side {
-    int32_t faces;  // of one side of a sheet; 0: no sheet
+    int32_t faces;  // of one side of a membrane; 0: no membrane
     double half;    // [m] half its thickness
-    double shallow; // [m] a node of another body that is behind a sheet, but no further than this, has come through it;
-                    // one that is further is on the far side of its own body
+    double shallow; // [m] a node of another body that is behind a membrane, but no further than this, has come through
+                    // it; one that is further is on the far side of its own body
 } brunt_side;
 
-// Where the nodes and faces of a skin have gone when it was made anew.
+// Where the nodes and faces of a surface have gone when it was made anew.
 typedef struct brunt_surface_change {
     bool any;
     int32_t node_count, face_count; // that there were
     int32_t *node_was;              // of each node: its number before; -1: it is new
-    int32_t *face_now;              // of each face that there was: its number now; -1: it is gone
+    int32_t *face_now;              // of each face that there was: its number now; -1: removed
     size_t node_was_capacity, face_now_capacity;
 } brunt_surface_change;
 
+// The two sides of membranes; all NULL where there are none.
+typedef struct brunt_membrane_sides {
+    int32_t *front;   // of each node: its twin of the front, or itself
+    brunt_side *side; // of each body by its index among all, to the last of the meshes
+    double thickest;  // [m] of all membranes, 0 where there are none
+    // Elements about the nodes of membranes that may touch themselves, two deep, as faces of the front, ascending:
+    // patch_face[patch_first[n] .. patch_first[n + 1]) of node n of the front.
+    int32_t *patch_first, *patch_face;
+    bool *self; // of each body: it has patches
+    size_t patch_first_capacity, patch_face_capacity;
+} brunt_membrane_sides;
+
+// Surfaces of bodies that may lose elements; all NULL where none do.
+typedef struct brunt_surface_renewal {
+    brunt_surface_topology *topology; // of each body (elements 0: it loses none)
+    bool *eroded;                // of each body by its index among all, to the last of the meshes: it may lose elements
+    brunt_surface_change change; // of the last time
+    int32_t *next_node, (*next_face)[4];
+    char *spare;
+    size_t next_node_capacity, next_face_capacity, spare_capacity;
+} brunt_surface_renewal;
+
+// Motion is measured against a frame that moves along with the bodies, which leaves what counts: theirs against each
+// other.
+typedef struct brunt_surface_motion {
+    double frame[3];           // [m/s] mean velocity of all surfaces, a step ago
+    double frame_step[3];      // [m] how far it went in the last step
+    double (*mean)[3], *speed; // [m/s] of each body: mean velocity, greatest against the frame
+    double furthest; // [m] any node has moved against it since it was gathered last; INFINITY when bodies became active
+    bool *was_active;
+    double *chunk; // [m^2] the same of each chunk of nodes, squared
+} brunt_surface_motion;
+
+// Contact state of the step, of each node, for output. Zeroed each step.
+typedef struct brunt_contact_output {
+    double *gap;          // [m] of the nearest contact; INFINITY where none is near
+    double (*impulse)[3]; // [N s] on the node
+    uint8_t *state;       // 0 free, 1 sticks, 2 slips
+} brunt_contact_output;
+
 typedef struct brunt_contact_surface {
     int dim;
-    bool axisymmetric; // rings: masses and impulses are those of the whole circle
-    int32_t node_count, face_count;
+    bool axisymmetric; // masses and impulses are those of the whole circle
+    int fem_count;
+    brunt_fem_body **fem;             // the bodies, in their order; body k has ...
+    int32_t *node_range, *face_range; // ... nodes node_range[k] .. node_range[k + 1], faces likewise
+    int32_t *node_end, *face_end;     // of each body: end of what counts once; of a membrane, of its front
+    double (*low)[3], (*high)[3];     // [m] bounds of each body's surface
+    bool *active;                     // of each body: something is near it; x, v, normals are only made for these
+    // Nodes.
+    int32_t node_count;
     int32_t *body, *node; // of each node: index of its body (brunt_fem_body.index), node number there
     double (*x)[3];       // [m] at the start of the step
     double (*v)[3];       // [m/s] after all forces; what contact changes
@@ -42,97 +89,66 @@ typedef struct brunt_contact_surface {
     double *mass;         // [kg]
     double (*inverse)[3]; // [1/kg] by component: 0 where the motion is prescribed, which is infinite mass
     double (*normal)[3];  // outward, of unit length: mean of its faces by area; 0 where they cancel
-    double *area;         // [m^2] of the surface that is the node's; 0 of loose nodes, which have no faces
+    double *area;         // [m^2] of the surface that is the node's; 0 of detached nodes, which have no faces
     double (*affine)[9];  // [m^2/s] B of the paper's form, kept from step to step; NULL for the others
-    int32_t (*face)[4];   // nodes; the 4th is -1 for triangles, 3rd and 4th for segments (2D)
-    int32_t *face_body;
-    double (*face_normal)[3];      // outward unit normal ...
-    double (*face_centre)[3];      // ... and centre, at the start of the step
-    double *face_area;             // [m^2]; 2D [m]
-    double (*face_box)[6];         // [m] bounds: low, then high
-    double mean_edge;              // [m] of all faces at the start of the run
     int32_t *face_first, *face_of; // faces of node n: face_of[face_first[n] .. face_first[n + 1])
-    int fem_count;
-    brunt_fem_body *
-        *fem; // the bodies, in their order; body k has nodes node_range[k] .. node_range[k + 1], faces likewise
-    int32_t *node_range, *face_range;
-    int32_t *node_end, *face_end; // of each body: end of what counts once; of a sheet, of its front
-    // Of sheets; NULL where there are none.
-    int32_t *front;   // of each node: its twin of the front, or itself
-    brunt_side *side; // of each body by its index among all, to the last of the meshes
-    double thickest;  // [m] of all sheets, 0 where there are none
-    // Elements within two rings of the nodes of sheets that may touch themselves, as faces of the front, ascending:
-    // ring_face[ring_first[n] .. ring_first[n + 1]) of node n of the front.
-    int32_t *ring_first, *ring_face;
-    bool *self; // of each body: it has rings
-    // Of bodies that may lose elements, else NULL: of each body the bookkeeping of its surface (elements 0: it loses
-    // none).
-    brunt_surface_topology *shell;
-    brunt_surface_change change; // of the last time
-    bool *ragged; // of each body by its index among all, to the last of the meshes: its surface may be ragged, since
-                  // it may lose elements; NULL where none do
-    int32_t *next_node, (*next_face)[4];
-    char *spare;
-    size_t node_room, face_room, node_capacity, body_capacity, face_capacity, next_node_capacity, next_face_capacity,
-        spare_capacity, ring_first_capacity, ring_face_capacity;
-    double (*low)[3], (*high)[3]; // [m] bounds of each body's surface
-    // Motion is measured against a frame that moves along with the bodies, which leaves what counts: theirs against
-    // each other.
-    double frame[3];           // [m/s] mean velocity of all surfaces, a step ago
-    double frame_step[3];      // [m] how far it went in the last step
-    double (*mean)[3], *speed; // [m/s] of each body: mean velocity, greatest against the frame
-    double moved; // [m] furthest any node has moved against it since it was taken last; INFINITY when bodies
-                  // became active
-    bool *was_active;
-    double *chunk_moved;
-    bool *active; // of each body: something is near it; x, v, normals are only made for these
-    // Contact state of the step, for output: greatest gap below which something acted, impulse, slip. Zeroed each step.
-    double *gap;          // [m] of the nearest contact; INFINITY where none is near
-    double (*impulse)[3]; // [N s] on the node
-    uint8_t *state;       // 0 free, 1 sticks, 2 slips
+    // Faces.
+    int32_t face_count;
+    int32_t (*face)[4]; // nodes; the 4th is -1 for triangles, 3rd and 4th for segments (2D)
+    int32_t *face_body;
+    double (*face_normal)[3]; // outward unit normal ...
+    double (*face_centre)[3]; // ... and centre, at the start of the step
+    double *face_area;        // [m^2]; 2D [m]
+    double (*face_box)[6];    // [m] bounds: low, then high
+    double mean_edge;         // [m] of all faces at the start of the run
+    size_t node_array_capacity, face_array_capacity, node_capacity, body_capacity, face_capacity;
+    brunt_membrane_sides membrane;
+    brunt_surface_renewal renewal;
+    brunt_surface_motion motion;
+    brunt_contact_output output;
 } brunt_contact_surface;
 
 // The surfaces of `count` bodies. `affine`: keep B. 0, or -1: out of memory.
-int brunt_surface_make(brunt_contact_surface *skin, brunt_fem_body **fem, int count, bool affine);
-// Lists the elements near each node of the bodies marked in `self`, which are sheets in contact with themselves: those
-// are no obstacles to it. 0, or -1: out of memory.
-int brunt_surface_patches(brunt_contact_surface *skin, const bool *self);
+int brunt_surface_make(brunt_contact_surface *surface, brunt_fem_body **fem, int count, bool affine);
+// Lists the elements near each node of the bodies marked in `self`, which are membranes in contact with themselves:
+// those are no obstacles to it. 0, or -1: out of memory.
+int brunt_surface_patches(brunt_contact_surface *surface, const bool *self);
 // The surfaces anew after elements have left bodies, or (`restored`) of a saved state. What is kept of a node from step
-// to step stays with it, and skin->change tells who has gone where. The order of nodes and faces follows from which
-// elements there are. 0, or -1: out of memory.
-int brunt_surface_renew(brunt_contact_surface *skin, bool restored);
-// The affine velocities as they are saved: so many doubles, of all nodes that may ever be of the skin.
-int64_t brunt_surface_affine_count(const brunt_contact_surface *skin);
-void brunt_surface_affine_get(const brunt_contact_surface *skin, double *out);
-void brunt_surface_affine_set(brunt_contact_surface *skin, const double *in);
-// Where node `n` of the skin is among all nodes that may ever be of it, and how many those are: what a saved state is
-// in the order of, since its size must not depend on what has left.
-int64_t brunt_surface_slot(const brunt_contact_surface *skin, int k, int32_t n);
-int64_t brunt_surface_slots(const brunt_contact_surface *skin);
-void brunt_surface_free(brunt_contact_surface *skin);
+// to step stays with it, and surface->change tells what has become of each. The order of nodes and faces follows from
+// which elements there are. 0, or -1: out of memory.
+int brunt_surface_renew(brunt_contact_surface *surface, bool restored);
+// The affine velocities as they are saved: so many doubles, of all nodes that may ever be of the surface.
+int64_t brunt_surface_affine_count(const brunt_contact_surface *surface);
+void brunt_surface_affine_get(const brunt_contact_surface *surface, double *out);
+void brunt_surface_affine_set(brunt_contact_surface *surface, const double *in);
+// Where node `n` of the surface is among all nodes that may ever be of it, and how many those are: what a saved state
+// is in the order of, since its size must not depend on what has left.
+int64_t brunt_surface_slot(const brunt_contact_surface *surface, int k, int32_t n);
+int64_t brunt_surface_slots(const brunt_contact_surface *surface);
+void brunt_surface_free(brunt_contact_surface *surface);
 // Bounds and speeds of every body's surface as it is now.
-void brunt_surface_bounds(brunt_contact_surface *skin, int threads, brunt_timer *timer);
+void brunt_surface_bounds(brunt_contact_surface *surface, int threads, brunt_timer *timer);
 // Places, velocities, masses and normals of the active bodies. `gravity` [m/s^2] and `dt` are those of this step's
 // kick.
-void brunt_surface_gather_state(brunt_contact_surface *skin, double dt, const double gravity[3], int threads,
+void brunt_surface_gather_state(brunt_contact_surface *surface, double dt, const double gravity[3], int threads,
                                 brunt_timer *timer);
 // Velocities of the active bodies back to them, which then move for `dt`.
-void brunt_surface_scatter_velocity(brunt_contact_surface *skin, double dt, int threads, brunt_timer *timer);
+void brunt_surface_scatter_velocity(brunt_contact_surface *surface, double dt, int threads, brunt_timer *timer);
 
 // How many nodes a face has.
 static inline int brunt_face_corners(const int32_t face[4]) { return face[2] < 0 ? 2 : face[3] < 0 ? 3 : 4; }
 
 // Area of face f that is its node n's [m^2], 2D [m]; of a ring that of the whole circle, 2 pi int N_n r ds [m^2].
-static inline double brunt_surface_nodal_area(const brunt_contact_surface *skin, int32_t f, int32_t n) {
-    const int32_t *node = skin->face[f];
-    if (skin->axisymmetric)
-        return M_PI / 3 * skin->face_area[f] * (skin->x[n][0] + skin->x[node[0]][0] + skin->x[node[1]][0]);
-    return skin->face_area[f] / (node[2] < 0 ? 2 : node[3] < 0 ? 3 : 4);
+static inline double brunt_surface_nodal_area(const brunt_contact_surface *surface, int32_t f, int32_t n) {
+    const int32_t *node = surface->face[f];
+    if (surface->axisymmetric)
+        return M_PI / 3 * surface->face_area[f] * (surface->x[n][0] + surface->x[node[0]][0] + surface->x[node[1]][0]);
+    return surface->face_area[f] / (node[2] < 0 ? 2 : node[3] < 0 ? 3 : 4);
 }
 
 // What all forms of augury are given.
 typedef struct brunt_contact_context {
-    brunt_contact_surface *skin;
+    brunt_contact_surface *surface;
     brunt_pair *pairs;
     const int32_t *pair_of; // [a * body_count + b], -1: the two do not meet
     int body_count;

@@ -9,7 +9,7 @@
 #include "base/array.h"
 #include "base/memory.h"
 
-// The other side of a sheet: `nodes` nodes and `faces` faces once more, behind them, facing the other way.
+// The other side of a membrane: `nodes` nodes and `faces` faces once more, behind them, facing the other way.
 void brunt_membrane_add_back(int32_t *node, int32_t nodes, int32_t (*face)[4], int32_t faces) {
     for (int32_t n = 0; n < nodes; n++) node[n + nodes] = node[n];
     for (int32_t f = 0; f < faces; f++) {
@@ -49,7 +49,7 @@ static int least_height(const brunt_fem_body *fem, double *least) {
     return 0;
 }
 
-// What sheets need besides, when there are any.
+// What membranes need besides, when there are any.
 int brunt_membrane_sides_make(brunt_contact_surface *s) {
     int32_t last = 0;
     bool any = false;
@@ -58,19 +58,19 @@ int brunt_membrane_sides_make(brunt_contact_surface *s) {
         last = s->fem[k]->index > last ? s->fem[k]->index : last;
     }
     if (!any) return 0;
-    s->front = brunt_alloc(s->node_room * sizeof *s->front);
-    s->side = brunt_alloc(((size_t)last + 1) * sizeof *s->side);
-    if (!s->front || !s->side) return -1;
+    s->membrane.front = brunt_alloc(s->node_array_capacity * sizeof *s->membrane.front);
+    s->membrane.side = brunt_alloc(((size_t)last + 1) * sizeof *s->membrane.side);
+    if (!s->membrane.front || !s->membrane.side) return -1;
     for (int k = 0; k < s->fem_count; k++) {
         const brunt_fem_body *fem = s->fem[k];
-        brunt_side *side = &s->side[fem->index];
+        brunt_side *side = &s->membrane.side[fem->index];
         if (!fem->traits->membrane) {
             if (least_height(fem, &side->shallow)) return -1;
             side->shallow *= 0.5;
             continue;
         }
         side->half = 0.5 * (double)fem->contact_thickness;
-        s->thickest = fmax(s->thickest, (double)fem->contact_thickness);
+        s->membrane.thickest = fmax(s->membrane.thickest, (double)fem->contact_thickness);
     }
     return 0;
 }
@@ -80,7 +80,7 @@ static int ascending(const void *a, const void *b) {
 }
 
 // Faces of the front within two rings of node n, each once, into `list`, which has room for them. Their count.
-static int32_t list_rings(const brunt_contact_surface *s, int32_t n, int32_t *list) {
+static int32_t list_patch(const brunt_contact_surface *s, int32_t n, int32_t *list) {
     int32_t count = 0, kept = 0;
     for (int32_t p = s->face_first[n]; p < s->face_first[n + 1]; p++)
         for (int c = 0; c < brunt_face_corners(s->face[s->face_of[p]]); c++) {
@@ -99,24 +99,24 @@ int brunt_membrane_patches_make(brunt_contact_surface *s) {
         const size_t at = (size_t)(s->face_first[n + 1] - s->face_first[n]);
         most = at > most ? at : most;
     }
-    if (BRUNT_RESERVE(s->spare, (4 * most * most + 1) * sizeof(int32_t), 0) ||
-        BRUNT_RESERVE(s->ring_first, (size_t)s->node_count + 2, 0))
+    if (BRUNT_RESERVE(s->renewal.spare, (4 * most * most + 1) * sizeof(int32_t), 0) ||
+        BRUNT_RESERVE(s->membrane.patch_first, (size_t)s->node_count + 2, 0))
         return -1;
-    int32_t *list = (void *)s->spare;
-    s->ring_first[0] = 0;
+    int32_t *list = (void *)s->renewal.spare;
+    s->membrane.patch_first[0] = 0;
     for (int k = 0; k < s->fem_count; k++)
         for (int32_t n = s->node_range[k]; n < s->node_range[k + 1]; n++) {
-            const int32_t count = s->self[k] && n < s->node_end[k] ? list_rings(s, n, list) : 0;
-            if (BRUNT_RESERVE(s->ring_face, used + (size_t)count + 1, used)) return -1;
-            memcpy(s->ring_face + used, list, (size_t)count * sizeof *list);
+            const int32_t count = s->membrane.self[k] && n < s->node_end[k] ? list_patch(s, n, list) : 0;
+            if (BRUNT_RESERVE(s->membrane.patch_face, used + (size_t)count + 1, used)) return -1;
+            memcpy(s->membrane.patch_face + used, list, (size_t)count * sizeof *list);
             used += (size_t)count;
-            s->ring_first[n + 1] = (int32_t)used;
+            s->membrane.patch_first[n + 1] = (int32_t)used;
         }
     return 0;
 }
 
 int brunt_surface_patches(brunt_contact_surface *s, const bool *self) {
-    if (!(s->self = brunt_alloc((size_t)s->fem_count + 1))) return -1;
-    memcpy(s->self, self, (size_t)s->fem_count);
+    if (!(s->membrane.self = brunt_alloc((size_t)s->fem_count + 1))) return -1;
+    memcpy(s->membrane.self, self, (size_t)s->fem_count);
     return brunt_membrane_patches_make(s);
 }

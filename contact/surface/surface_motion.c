@@ -13,14 +13,14 @@ enum { GRAIN = BRUNT_SURFACE_GRAIN };
 static const double CLEAR = 0.3;
 
 typedef struct job {
-    brunt_contact_surface *skin;
+    brunt_contact_surface *surface;
     double dt;
     const double *gravity;
 } job;
 
 static void bound_bodies(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
-    brunt_contact_surface *s = ((const job *)context)->skin;
+    brunt_contact_surface *s = ((const job *)context)->surface;
     for (int64_t k = begin; k < end; k++) {
         double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
         double sum[3] = {0}, fastest = 0;
@@ -29,7 +29,7 @@ static void bound_bodies(void *context, int64_t begin, int64_t end, int worker) 
             const real *at = brunt_fem_node(s->fem[k], s->node[n]);
             double square = 0;
             for (int a = 0; a < 3; a++) {
-                double x = (double)at[a], v = (double)at[BRUNT_FEM_V + a], own = v - s->frame[a];
+                double x = (double)at[a], v = (double)at[BRUNT_FEM_V + a], own = v - s->motion.frame[a];
                 low[a] = x < low[a] ? x : low[a], high[a] = x > high[a] ? x : high[a];
                 sum[a] += v;
                 square += own * own;
@@ -37,13 +37,13 @@ static void bound_bodies(void *context, int64_t begin, int64_t end, int worker) 
             fastest = square > fastest ? square : fastest;
         }
         for (int a = 0; a < 3; a++)
-            s->low[k][a] = low[a], s->high[k][a] = high[a], s->mean[k][a] = count ? sum[a] / count : 0;
-        s->speed[k] = sqrt(fastest);
+            s->low[k][a] = low[a], s->high[k][a] = high[a], s->motion.mean[k][a] = count ? sum[a] / count : 0;
+        s->motion.speed[k] = sqrt(fastest);
     }
 }
 
 void brunt_surface_bounds(brunt_contact_surface *s, int threads, brunt_timer *timer) {
-    job j = {.skin = s};
+    job j = {.surface = s};
     brunt_parallel(threads, s->fem_count, 1, bound_bodies, &j, timer);
 }
 
@@ -54,10 +54,10 @@ static int32_t next_active(const brunt_contact_surface *s, const int32_t *range,
     return item;
 }
 
-static void take_nodes(void *context, int64_t begin, int64_t end, int worker) {
+static void gather_nodes(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     const job *j = context;
-    brunt_contact_surface *s = j->skin;
+    brunt_contact_surface *s = j->surface;
     int k = 0;
     double furthest = 0;
     for (int32_t n = (int32_t)begin; (n = next_active(s, s->node_range, n, &k)) < end; n++) {
@@ -71,30 +71,30 @@ static void take_nodes(void *context, int64_t begin, int64_t end, int worker) {
         for (int a = 0; a < 3; a++) {
             bool held = (fem->held && fem->held[node] >> a & 1) || a >= s->dim;
             double load = (double)force[a] + (fem->load ? (double)fem->load[4 * (size_t)node + (size_t)a] : 0);
-            double step = (double)at[a] - s->x[n][a] - s->frame_step[a];
+            double step = (double)at[a] - s->x[n][a] - s->motion.frame_step[a];
             moved += step * step;
             s->x[n][a] = (double)at[a];
             s->v[n][a] = (double)at[BRUNT_FEM_V + a];
             s->old[n][a] = held ? s->v[n][a] : s->v[n][a] - j->dt * (load * inverse + j->gravity[a]);
             s->inverse[n][a] = held ? 0 : inverse / fem->drag_mass;
-            s->impulse[n][a] = 0;
+            s->output.impulse[n][a] = 0;
         }
-        s->gap[n] = INFINITY;
-        s->state[n] = 0;
+        s->output.gap[n] = INFINITY;
+        s->output.state[n] = 0;
         furthest = moved > furthest ? moved : furthest;
     }
-    s->chunk_moved[begin / GRAIN] = furthest;
+    s->motion.chunk[begin / GRAIN] = furthest;
 }
 
-static void take_chunks(void *context, int64_t begin, int64_t end, int worker) {
-    const int32_t count = ((const job *)context)->skin->node_count;
+static void gather_chunks(void *context, int64_t begin, int64_t end, int worker) {
+    const int32_t count = ((const job *)context)->surface->node_count;
     for (int64_t c = begin; c < end; c++)
-        take_nodes(context, c * GRAIN, (c + 1) * GRAIN < count ? (c + 1) * GRAIN : count, worker);
+        gather_nodes(context, c * GRAIN, (c + 1) * GRAIN < count ? (c + 1) * GRAIN : count, worker);
 }
 
 static void make_faces(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
-    brunt_contact_surface *s = ((const job *)context)->skin;
+    brunt_contact_surface *s = ((const job *)context)->surface;
     int k = 0;
     for (int32_t f = (int32_t)begin; (f = next_active(s, s->face_range, f, &k)) < end; f++) {
         const int32_t *node = s->face[f];
@@ -131,7 +131,7 @@ static void make_faces(void *context, int64_t begin, int64_t end, int worker) {
 
 static void make_normals(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
-    brunt_contact_surface *s = ((const job *)context)->skin;
+    brunt_contact_surface *s = ((const job *)context)->surface;
     int k = 0;
     for (int32_t n = (int32_t)begin; (n = next_active(s, s->node_range, n, &k)) < end; n++) {
         double sum[3] = {0}, area = 0, whole = 0, size = 0;
@@ -146,29 +146,30 @@ static void make_normals(void *context, int64_t begin, int64_t end, int worker) 
         for (int a = 0; a < 3; a++) size += sum[a] * sum[a];
         size = sqrt(size);
         s->area[n] = whole;
-        const bool ragged = s->ragged && s->ragged[s->body[n]] && !s->fem[k]->traits->membrane;
-        for (int a = 0; a < 3; a++) s->normal[n][a] = size > (ragged ? CLEAR : 1e-9) * area ? sum[a] / size : 0;
+        const bool eroded = s->renewal.eroded && s->renewal.eroded[s->body[n]] && !s->fem[k]->traits->membrane;
+        for (int a = 0; a < 3; a++) s->normal[n][a] = size > (eroded ? CLEAR : 1e-9) * area ? sum[a] / size : 0;
     }
 }
 
 void brunt_surface_gather_state(brunt_contact_surface *s, double dt, const double gravity[3], int threads,
                                 brunt_timer *timer) {
     job j = {s, dt, gravity};
-    brunt_parallel(threads, (s->node_count + GRAIN - 1) / GRAIN, 1, take_chunks, &j, timer);
-    s->moved = 0;
-    for (int32_t c = 0; c < (s->node_count + GRAIN - 1) / GRAIN; c++) s->moved = fmax(s->moved, s->chunk_moved[c]);
-    s->moved = sqrt(s->moved);
+    brunt_parallel(threads, (s->node_count + GRAIN - 1) / GRAIN, 1, gather_chunks, &j, timer);
+    s->motion.furthest = 0;
+    for (int32_t c = 0; c < (s->node_count + GRAIN - 1) / GRAIN; c++)
+        s->motion.furthest = fmax(s->motion.furthest, s->motion.chunk[c]);
+    s->motion.furthest = sqrt(s->motion.furthest);
     for (int k = 0; k < s->fem_count; k++) {
-        if (s->active[k] && !s->was_active[k]) s->moved = INFINITY; // where it was before is not known
-        s->was_active[k] = s->active[k];
+        if (s->active[k] && !s->motion.was_active[k]) s->motion.furthest = INFINITY; // where it was before is not known
+        s->motion.was_active[k] = s->active[k];
     }
     brunt_parallel(threads, s->face_count, GRAIN, make_faces, &j, timer);
     brunt_parallel(threads, s->node_count, GRAIN, make_normals, &j, timer);
 }
 
-static void give_nodes(void *context, int64_t begin, int64_t end, int worker) {
+static void scatter_nodes(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
-    const brunt_contact_surface *s = ((const job *)context)->skin;
+    const brunt_contact_surface *s = ((const job *)context)->surface;
     int k = 0;
     for (int32_t n = (int32_t)begin; (n = next_active(s, s->node_range, n, &k)) < end; n++) {
         if (n >= s->node_end[k]) continue;
@@ -178,11 +179,11 @@ static void give_nodes(void *context, int64_t begin, int64_t end, int worker) {
 }
 
 void brunt_surface_scatter_velocity(brunt_contact_surface *s, double dt, int threads, brunt_timer *timer) {
-    job j = {.skin = s};
-    brunt_parallel(threads, s->node_count, GRAIN, give_nodes, &j, timer);
+    job j = {.surface = s};
+    brunt_parallel(threads, s->node_count, GRAIN, scatter_nodes, &j, timer);
     for (int a = 0; a < 3; a++) {
-        s->frame[a] = 0;
-        for (int k = 0; k < s->fem_count; k++) s->frame[a] += s->mean[k][a] / s->fem_count;
-        s->frame_step[a] = s->frame[a] * dt;
+        s->motion.frame[a] = 0;
+        for (int k = 0; k < s->fem_count; k++) s->motion.frame[a] += s->motion.mean[k][a] / s->fem_count;
+        s->motion.frame_step[a] = s->motion.frame[a] * dt;
     }
 }

@@ -13,9 +13,9 @@ int brunt_surface_reserve(brunt_contact_surface *s, int32_t node_count, int32_t 
 int brunt_surface_relate(brunt_contact_surface *s);
 
 // --- membrane_sides.c
-// The other side of a sheet: `nodes` nodes and `faces` faces once more, behind them, facing the other way.
+// The other side of a membrane: `nodes` nodes and `faces` faces once more, behind them, facing the other way.
 void brunt_membrane_add_back(int32_t *node, int32_t nodes, int32_t (*face)[4], int32_t faces);
-// What sheets need besides, when there are any. 0, or -1: out of memory.
+// What membranes need besides, when there are any. 0, or -1: out of memory.
 int brunt_membrane_sides_make(brunt_contact_surface *s);
-// Elements within two rings of the nodes of sheets that touch themselves. 0, or -1: out of memory.
+// Elements within two rings of the nodes of membranes that touch themselves. 0, or -1: out of memory.
 int brunt_membrane_patches_make(brunt_contact_surface *s);

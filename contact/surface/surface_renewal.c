@@ -9,62 +9,64 @@
 #include "base/memory.h"
 
 // Numbers of nodes and faces of a body, of one side: first and count.
-typedef struct extent {
+typedef struct body_range {
     int32_t node, nodes, face, faces;
-} extent;
+} body_range;
 
-static void keep_body(brunt_contact_surface *s, int32_t sides, const extent *was, const extent *is) {
+static void keep_body(brunt_contact_surface *s, int32_t sides, const body_range *was, const body_range *is) {
     for (int32_t n = 0; n < sides * was->nodes; n++) {
-        s->next_node[is->node + n] = s->node[was->node + n];
-        s->change.node_was[is->node + n] = was->node + n;
+        s->renewal.next_node[is->node + n] = s->node[was->node + n];
+        s->renewal.change.node_was[is->node + n] = was->node + n;
     }
     for (int32_t f = 0; f < sides * was->faces; f++) {
         for (int c = 0; c < 4; c++) {
             const int32_t node = s->face[was->face + f][c];
-            s->next_face[is->face + f][c] = node < 0 ? -1 : node - was->node + is->node;
+            s->renewal.next_face[is->face + f][c] = node < 0 ? -1 : node - was->node + is->node;
         }
-        s->change.face_now[was->face + f] = is->face + f;
+        s->renewal.change.face_now[was->face + f] = is->face + f;
     }
 }
 
-static void renew_body(brunt_contact_surface *s, int k, int32_t sides, const extent *was, const extent *is) {
-    const brunt_surface_topology *shell = &s->shell[k];
+static void renew_body(brunt_contact_surface *s, int k, int32_t sides, const body_range *was, const body_range *is) {
+    const brunt_surface_topology *topology = &s->renewal.topology[k];
     const brunt_fem_body *fem = s->fem[k];
     for (int32_t n = 0; n < fem->node_count; n++) {
-        if (shell->number[n] < 0) continue;
-        const int32_t at = shell->number[n], before = shell->number_before[n];
-        s->next_node[is->node + at] = n;
+        if (topology->number[n] < 0) continue;
+        const int32_t at = topology->number[n], before = topology->number_before[n];
+        s->renewal.next_node[is->node + at] = n;
         for (int32_t side = 0; side < sides; side++)
-            s->change.node_was[is->node + side * is->nodes + at] =
+            s->renewal.change.node_was[is->node + side * is->nodes + at] =
                 before < 0 ? -1 : was->node + side * was->nodes + before;
     }
     for (int32_t f = 0; f < is->faces; f++) {
         int32_t node[4];
-        brunt_topology_face(shell, fem, f, node);
+        brunt_topology_face(topology, fem, f, node);
         for (int c = 0; c < 4; c++)
-            s->next_face[is->face + f][c] = node[c] < 0 ? -1 : is->node + shell->number[node[c]];
+            s->renewal.next_face[is->face + f][c] = node[c] < 0 ? -1 : is->node + topology->number[node[c]];
     }
-    if (sides == 2) brunt_membrane_add_back(s->next_node + is->node, is->nodes, s->next_face + is->face, is->faces);
+    if (sides == 2)
+        brunt_membrane_add_back(s->renewal.next_node + is->node, is->nodes, s->renewal.next_face + is->face, is->faces);
     for (int32_t f = 0, now = 0; f < was->faces; f++) { // both lists ascend
-        while (now < is->faces && shell->key[now] < shell->before[f]) now++;
-        const bool stays = now < is->faces && shell->key[now] == shell->before[f];
+        while (now < is->faces && topology->key[now] < topology->before[f]) now++;
+        const bool stays = now < is->faces && topology->key[now] == topology->before[f];
         for (int32_t side = 0; side < sides; side++)
-            s->change.face_now[was->face + side * was->faces + f] = stays ? is->face + side * is->faces + now : -1;
+            s->renewal.change.face_now[was->face + side * was->faces + f] =
+                stays ? is->face + side * is->faces + now : -1;
     }
 }
 
 // An array by nodes in their new order; those that are new get zeros.
 static int reorder(brunt_contact_surface *s, void *array, size_t bytes) {
     if (!array) return 0;
-    if (BRUNT_RESERVE(s->spare, (size_t)s->node_count * bytes + 1, 0)) return -1;
+    if (BRUNT_RESERVE(s->renewal.spare, (size_t)s->node_count * bytes + 1, 0)) return -1;
     for (int32_t n = 0; n < s->node_count; n++) {
-        char *to = s->spare + (size_t)n * bytes;
-        if (s->change.node_was[n] < 0)
+        char *to = s->renewal.spare + (size_t)n * bytes;
+        if (s->renewal.change.node_was[n] < 0)
             memset(to, 0, bytes);
         else
-            memcpy(to, (char *)array + (size_t)s->change.node_was[n] * bytes, bytes);
+            memcpy(to, (char *)array + (size_t)s->renewal.change.node_was[n] * bytes, bytes);
     }
-    memcpy(array, s->spare, (size_t)s->node_count * bytes);
+    memcpy(array, s->renewal.spare, (size_t)s->node_count * bytes);
     return 0;
 }
 
@@ -72,49 +74,50 @@ static int reorder(brunt_contact_surface *s, void *array, size_t bytes) {
 // the frame since the step began.
 static int keep_nodes(brunt_contact_surface *s) {
     if (reorder(s, s->x, sizeof *s->x) || reorder(s, s->affine, sizeof *s->affine) ||
-        reorder(s, s->gap, sizeof *s->gap) || reorder(s, s->impulse, sizeof *s->impulse) ||
-        reorder(s, s->state, sizeof *s->state) || reorder(s, s->area, sizeof *s->area) ||
+        reorder(s, s->output.gap, sizeof *s->output.gap) || reorder(s, s->output.impulse, sizeof *s->output.impulse) ||
+        reorder(s, s->output.state, sizeof *s->output.state) || reorder(s, s->area, sizeof *s->area) ||
         reorder(s, s->mass, sizeof *s->mass))
         return -1;
     for (int k = 0; k < s->fem_count; k++)
         for (int32_t n = s->node_range[k]; n < s->node_range[k + 1]; n++) {
-            if (s->change.node_was[n] >= 0) continue;
-            s->gap[n] = INFINITY;
+            if (s->renewal.change.node_was[n] >= 0) continue;
+            s->output.gap[n] = INFINITY;
             for (int a = 0; a < 3; a++)
-                s->x[n][a] = (double)brunt_fem_node(s->fem[k], s->node[n])[a] - s->frame_step[a];
+                s->x[n][a] = (double)brunt_fem_node(s->fem[k], s->node[n])[a] - s->motion.frame_step[a];
         }
     return 0;
 }
 
-static extent extent_of(const brunt_contact_surface *s, int k) {
-    return (extent){s->node_range[k], s->node_end[k] - s->node_range[k], s->face_range[k],
-                    s->face_end[k] - s->face_range[k]};
+static body_range range_of_body(const brunt_contact_surface *s, int k) {
+    return (body_range){s->node_range[k], s->node_end[k] - s->node_range[k], s->face_range[k],
+                        s->face_end[k] - s->face_range[k]};
 }
 
 static int list_anew(brunt_contact_surface *s) {
     int64_t nodes = 0, faces = 0;
     for (int k = 0; k < s->fem_count; k++) {
-        const extent was = extent_of(s, k);
+        const body_range was = range_of_body(s, k);
         const int sides = s->fem[k]->traits->membrane ? 2 : 1;
-        nodes += sides * (int64_t)(s->shell[k].changed ? s->shell[k].number_count : was.nodes);
-        faces += sides * (int64_t)(s->shell[k].changed ? s->shell[k].key_count : was.faces);
+        nodes += sides * (int64_t)(s->renewal.topology[k].changed ? s->renewal.topology[k].number_count : was.nodes);
+        faces += sides * (int64_t)(s->renewal.topology[k].changed ? s->renewal.topology[k].key_count : was.faces);
     }
-    brunt_surface_change *c = &s->change;
-    if (BRUNT_RESERVE(s->next_node, (size_t)nodes + 1, 0) || BRUNT_RESERVE(s->next_face, (size_t)faces + 1, 0) ||
-        BRUNT_RESERVE(c->node_was, (size_t)nodes + 1, 0) || BRUNT_RESERVE(c->face_now, (size_t)s->face_count + 1, 0) ||
+    brunt_surface_change *c = &s->renewal.change;
+    if (BRUNT_RESERVE(s->renewal.next_node, (size_t)nodes + 1, 0) ||
+        BRUNT_RESERVE(s->renewal.next_face, (size_t)faces + 1, 0) || BRUNT_RESERVE(c->node_was, (size_t)nodes + 1, 0) ||
+        BRUNT_RESERVE(c->face_now, (size_t)s->face_count + 1, 0) ||
         brunt_surface_reserve(s, (int32_t)nodes, (int32_t)faces))
         return -1;
     c->node_count = s->node_count, c->face_count = s->face_count;
-    extent is = {0}, was = s->fem_count ? extent_of(s, 0) : is;
+    body_range is = {0}, was = s->fem_count ? range_of_body(s, 0) : is;
     for (int k = 0; k < s->fem_count; k++) {
         const int32_t sides = s->fem[k]->traits->membrane ? 2 : 1;
-        is.nodes = s->shell[k].changed ? s->shell[k].number_count : was.nodes;
-        is.faces = s->shell[k].changed ? s->shell[k].key_count : was.faces;
-        if (s->shell[k].changed)
+        is.nodes = s->renewal.topology[k].changed ? s->renewal.topology[k].number_count : was.nodes;
+        is.faces = s->renewal.topology[k].changed ? s->renewal.topology[k].key_count : was.faces;
+        if (s->renewal.topology[k].changed)
             renew_body(s, k, sides, &was, &is);
         else
             keep_body(s, sides, &was, &is);
-        if (k + 1 < s->fem_count) was = extent_of(s, k + 1);
+        if (k + 1 < s->fem_count) was = range_of_body(s, k + 1);
         s->node_range[k] = is.node, s->node_end[k] = is.node + is.nodes;
         s->face_range[k] = is.face, s->face_end[k] = is.face + is.faces;
         is.node += sides * is.nodes, is.face += sides * is.faces;
@@ -127,30 +130,31 @@ static int list_anew(brunt_contact_surface *s) {
 static void swap_lists(brunt_contact_surface *s) {
     int32_t *const node = s->node, (*const face)[4] = s->face;
     const size_t nodes = s->node_capacity, faces = s->face_capacity;
-    s->node = s->next_node, s->node_capacity = s->next_node_capacity;
-    s->face = s->next_face, s->face_capacity = s->next_face_capacity;
-    s->next_node = node, s->next_node_capacity = nodes;
-    s->next_face = face, s->next_face_capacity = faces;
+    s->node = s->renewal.next_node, s->node_capacity = s->renewal.next_node_capacity;
+    s->face = s->renewal.next_face, s->face_capacity = s->renewal.next_face_capacity;
+    s->renewal.next_node = node, s->renewal.next_node_capacity = nodes;
+    s->renewal.next_face = face, s->renewal.next_face_capacity = faces;
 }
 
 int brunt_surface_renew(brunt_contact_surface *s, bool restored) {
-    s->change.any = false;
-    if (!s->shell) return 0;
+    s->renewal.change.any = false;
+    if (!s->renewal.topology) return 0;
     int failed = 0;
     for (int k = 0; !failed && k < s->fem_count; k++) {
-        const int renewed = s->shell[k].elements ? brunt_topology_renew(&s->shell[k], s->fem[k], restored) : 0;
+        const int renewed =
+            s->renewal.topology[k].elements ? brunt_topology_renew(&s->renewal.topology[k], s->fem[k], restored) : 0;
         if (renewed < 0) failed = -1;
-        s->shell[k].changed = renewed > 0;
-        s->change.any = s->change.any || renewed > 0;
+        s->renewal.topology[k].changed = renewed > 0;
+        s->renewal.change.any = s->renewal.change.any || renewed > 0;
     }
-    if (failed || !s->change.any) return failed;
+    if (failed || !s->renewal.change.any) return failed;
     if (list_anew(s)) return -1;
     swap_lists(s);
-    return keep_nodes(s) || brunt_surface_relate(s) || (s->self && brunt_membrane_patches_make(s)) ? -1 : 0;
+    return keep_nodes(s) || brunt_surface_relate(s) || (s->membrane.self && brunt_membrane_patches_make(s)) ? -1 : 0;
 }
 
 int64_t brunt_surface_slots(const brunt_contact_surface *s) {
-    if (!s->shell) return s->node_count;
+    if (!s->renewal.topology) return s->node_count;
     int64_t sum = 0;
     for (int k = 0; k < s->fem_count; k++)
         sum += (s->fem[k]->traits->membrane ? 2 : 1) * (int64_t)s->fem[k]->node_count;
@@ -158,7 +162,7 @@ int64_t brunt_surface_slots(const brunt_contact_surface *s) {
 }
 
 int64_t brunt_surface_slot(const brunt_contact_surface *s, int k, int32_t n) {
-    if (!s->shell) return n;
+    if (!s->renewal.topology) return n;
     int64_t first = n < s->node_end[k] ? 0 : s->fem[k]->node_count;
     for (int i = 0; i < k; i++) first += (s->fem[i]->traits->membrane ? 2 : 1) * (int64_t)s->fem[i]->node_count;
     return first + s->node[n];

@@ -363,9 +363,9 @@ void brunt_node_sets_book_contact(const brunt_node_sets *sets, const brunt_conta
         for (int32_t n = s->node_range[k]; n < s->node_end[k]; n++)
             for (int a = 0; a < s->dim; a++) {
                 int holder = sets->holder[k][s->node[n]][a];
-                if (!holder || s->impulse[n][a] == 0) continue;
+                if (!holder || s->output.impulse[n][a] == 0) continue;
                 double J[3] = {0};
-                J[a] = -s->impulse[n][a];
+                J[a] = -s->output.impulse[n][a];
                 brunt_impulse_account *last = &sets->set[holder - 1].wall->last;
                 brunt_impulse_account_book(last, &last->normal_loss, J, s->x[n], s->v[n], s->v[n], s->v[n]);
             }

@@ -200,7 +200,8 @@ brunt_array brunt_world_array(const brunt_world *world, int32_t index) {
     }
     brunt_array array = {.name = "contact of surfaces", .unit = "", .components = 1};
     array.bytes = (size_t)world->contact.surface.node_count * 200 + (size_t)world->contact.surface.face_count * 76 +
-                  brunt_node_to_facet_bytes(world->contact.node_to_facet) + world->contact.constraints.point_capacity +
-                  world->contact.constraints.entry_capacity + world->contact.constraints.support_capacity;
+                  brunt_node_to_facet_bytes(world->contact.node_to_facet) +
+                  world->contact.constraints.constraint_capacity + world->contact.constraints.entry_capacity +
+                  world->contact.constraints.dof_node_capacity;
     return array;
 }

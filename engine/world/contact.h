@@ -19,6 +19,6 @@ typedef struct brunt_contact {
     brunt_constraint_set constraints;
     brunt_node_to_facet *node_to_facet;
     brunt_augury_workspace *augury;
-    brunt_grid_surfaces *grid_surfaces;
+    brunt_surface_on_grid *grid_surfaces;
     double frame[3]; // [m/s] what contact measures motion against; of the state
 } brunt_contact;

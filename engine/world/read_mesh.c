@@ -58,10 +58,11 @@ static void read_contact(const brunt_world *world, const brunt_fem_body *fem, in
     if (world->clock.steps == 0 || !s->active[body]) return;
     for (int32_t n = s->node_range[body]; n < s->node_end[body]; n++) {
         double *to = out + (int64_t)fem->node_id[s->node[n]] * components;
-        if (field == 0) *to = isinf(s->gap[n]) ? NAN : s->gap[n];
-        if (field == 2) *to = s->state[n];
+        if (field == 0) *to = isinf(s->output.gap[n]) ? NAN : s->output.gap[n];
+        if (field == 2) *to = s->output.state[n];
         for (int a = 0; field == 1 && a < 3; a++)
-            to[a] = s->area[n] > 0 && world->clock.kick > 0 ? s->impulse[n][a] / (s->area[n] * world->clock.kick) : 0;
+            to[a] = s->area[n] > 0 && world->clock.kick > 0 ? s->output.impulse[n][a] / (s->area[n] * world->clock.kick)
+                                                            : 0;
     }
 }
 

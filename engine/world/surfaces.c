@@ -107,7 +107,7 @@ int brunt_surfaces_make(brunt_world *world, const brunt_world_def *def, brunt_er
                                     world->contact.has_augury && form == BRUNT_AUGURY_PAPER);
     brunt_free(fems);
     if (failed) return brunt_fail(error, BRUNT_FAILED, "out of memory for the bodies' surfaces");
-    if (world->contact.surface.side) {
+    if (world->contact.surface.membrane.side) {
         int status = make_sheets(world, error);
         if (status) return status;
         if (def->contact.iterations < 0 && form == BRUNT_AUGURY_AFFINE) world->contact.def.iterations = SHEET_SWEEPS;
@@ -140,12 +140,12 @@ int brunt_surfaces_overlap(brunt_world *world, brunt_error *error) {
     const double none[3] = {0};
     brunt_contact_surface *s = &world->contact.surface;
     brunt_contact_context m = {
-        .skin = s, .pair_of = world->pairs.of, .body_count = world->bodies.count, .walls = world->boundaries.walls};
+        .surface = s, .pair_of = world->pairs.of, .body_count = world->bodies.count, .walls = world->boundaries.walls};
     if (s->fem_count) {
         brunt_surface_bounds(s, world->settings.threads, NULL);
         for (int k = 0; k < s->fem_count; k++) s->active[k] = true;
         brunt_surface_gather_state(s, 0, none, world->settings.threads, NULL);
-        for (int k = 0; k < s->fem_count; k++) s->active[k] = s->was_active[k] = false;
+        for (int k = 0; k < s->fem_count; k++) s->active[k] = s->motion.was_active[k] = false;
     }
     brunt_overlap o;
     const int status =
@@ -174,8 +174,8 @@ int brunt_surfaces_renew(brunt_world *world, brunt_error *error) {
 static int meet_by_facets(brunt_world *world, const brunt_contact_context *m) {
     brunt_constraint_set *points = &world->contact.constraints;
     brunt_constraints_clear(points);
-    int failed = brunt_node_to_facet_walls(m, world->boundaries.walls, world->boundaries.wall_count, world->clock.time,
-                                           world->contact.node_to_facet, points);
+    int failed = brunt_node_to_facet_planes(m, world->boundaries.walls, world->boundaries.wall_count, world->clock.time,
+                                            world->contact.node_to_facet, points);
     if (!failed && world->contact.has_augury && world->contact.def.form == BRUNT_AUGURY_AFFINE)
         failed = brunt_node_to_facet_find(m, world->bodies.mpm, world->bodies.mpm_count, world->contact.node_to_facet,
                                           points);
@@ -183,8 +183,8 @@ static int meet_by_facets(brunt_world *world, const brunt_contact_context *m) {
     if (!failed && brunt_constraints_solve(points, sweeps, world->contact.def.tolerance, m->threads, m->timer) < 0)
         failed = -1;
     if (failed) return failed;
-    brunt_node_to_facet_book_holds(m, world->boundaries.walls, world->boundaries.wall_count, world->clock.time,
-                                   world->contact.node_to_facet, points);
+    brunt_node_to_facet_account_fixed(m, world->boundaries.walls, world->boundaries.wall_count, world->clock.time,
+                                      world->contact.node_to_facet, points);
     brunt_node_to_facet_finish(m, world->bodies.mpm, world->contact.node_to_facet, points);
     return 0;
 }
@@ -195,9 +195,9 @@ static int fail_far(const brunt_world *world, brunt_error *error) {
     int worst = -1;
     double most = -1;
     for (int k = 0; k < s->fem_count; k++) {
-        double size = s->speed[k];
+        double size = s->motion.speed[k];
         for (int a = 0; a < s->dim; a++) size = fmax(size, fmax(fabs(s->low[k][a]), fabs(s->high[k][a])));
-        if (isnan(s->speed[k]) || size > most) worst = k, most = isnan(s->speed[k]) ? INFINITY : size;
+        if (isnan(s->motion.speed[k]) || size > most) worst = k, most = isnan(s->motion.speed[k]) ? INFINITY : size;
     }
     if (worst < 0 || most < 1e150)
         return brunt_fail(error, BRUNT_FAILED, "a plane goes too far in a step for contact to be looked for");
@@ -209,7 +209,7 @@ static int fail_far(const brunt_world *world, brunt_error *error) {
 
 int brunt_surfaces_meet(brunt_world *world, const double gravity[3], double kick, double dt, brunt_error *error) {
     brunt_timer *timer = brunt_pass_timer(world);
-    brunt_contact_context m = {.skin = &world->contact.surface,
+    brunt_contact_context m = {.surface = &world->contact.surface,
                                .pairs = world->pairs.pair,
                                .pair_of = world->pairs.of,
                                .body_count = world->bodies.count,
@@ -225,13 +225,14 @@ int brunt_surfaces_meet(brunt_world *world, const double gravity[3], double kick
                                .walls = world->boundaries.walls,
                                .threads = world->settings.threads,
                                .timer = timer};
-    memcpy(world->contact.surface.frame, world->contact.frame, sizeof world->contact.surface.frame);
+    memcpy(world->contact.surface.motion.frame, world->contact.frame, sizeof world->contact.surface.motion.frame);
     brunt_surface_bounds(&world->contact.surface, world->settings.threads, timer);
     int failed = brunt_broad_phase(&m, world->bodies.mpm, world->bodies.mpm_count, world->boundaries.walls,
                                    world->boundaries.wall_count, world->clock.time, &world->contact.node_to_facet);
     if (failed == -2) return fail_far(world, error);
     if (!failed) {
-        if (world->contact.has_grid_surfaces) brunt_grid_surfaces_near(&m, world->bodies.mpm, world->bodies.mpm_count);
+        if (world->contact.has_grid_surfaces)
+            brunt_surface_on_grid_near(&m, world->bodies.mpm, world->bodies.mpm_count);
         if (world->contact.has_augury &&
             world->contact.def.form == BRUNT_AUGURY_PAPER) // acts on every surface, touched or not
             for (int k = 0; k < world->bodies.fem_count; k++) world->contact.surface.active[k] = true;
@@ -242,16 +243,16 @@ int brunt_surfaces_meet(brunt_world *world, const double gravity[3], double kick
             failed = brunt_augury_surface(&m, world->contact.def.form == BRUNT_AUGURY_SMOOTH, &world->contact.augury);
     }
     if (!failed && world->contact.has_grid_surfaces)
-        failed = brunt_grid_surfaces_meet(&m, world->bodies.mpm, world->bodies.mpm_count, world->boundaries.mirrors,
-                                          world->boundaries.mirror_count, world->contact.grid_sweeps,
-                                          &world->contact.grid_surfaces);
+        failed = brunt_surface_on_grid_meet(&m, world->bodies.mpm, world->bodies.mpm_count, world->boundaries.mirrors,
+                                            world->boundaries.mirror_count, world->contact.grid_sweeps,
+                                            &world->contact.grid_surfaces);
     if (!failed) failed = meet_by_facets(world, &m);
     if (!failed && world->contact.has_grid_surfaces)
-        brunt_grid_surfaces_finish(&m, world->bodies.mpm, world->boundaries.mirrors, world->boundaries.mirror_count,
-                                   world->boundaries.walls, world->contact.grid_surfaces);
+        brunt_surface_on_grid_finish(&m, world->bodies.mpm, world->boundaries.mirrors, world->boundaries.mirror_count,
+                                     world->boundaries.walls, world->contact.grid_surfaces);
     if (failed) return brunt_fail(error, BRUNT_FAILED, "out of memory in the contact of surfaces");
     brunt_surface_scatter_velocity(&world->contact.surface, dt, world->settings.threads, timer);
-    memcpy(world->contact.frame, world->contact.surface.frame, sizeof world->contact.surface.frame);
+    memcpy(world->contact.frame, world->contact.surface.motion.frame, sizeof world->contact.surface.motion.frame);
     brunt_node_sets_book_contact(&world->boundaries.sets, &world->contact.surface);
     return BRUNT_OK;
 }

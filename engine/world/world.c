@@ -745,7 +745,7 @@ void brunt_world_destroy(brunt_world *world) {
     brunt_constraints_free(&world->contact.constraints);
     brunt_node_to_facet_free(world->contact.node_to_facet);
     brunt_augury_workspace_free(world->contact.augury);
-    brunt_grid_surfaces_free(world->contact.grid_surfaces);
+    brunt_surface_on_grid_free(world->contact.grid_surfaces);
     brunt_load_step_free(&world->boundaries.sets);
     brunt_node_sets_free(&world->boundaries.sets);
     brunt_damping_free(&world->boundaries.damping);

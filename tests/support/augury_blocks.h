@@ -22,7 +22,7 @@ typedef struct blocks {
     uint8_t *held;                     // bits of components with prescribed velocity
     int32_t *body, *number, (*tet)[4]; // number in the skin, -1 inside
     double (*inverse)[9], *volume, (*lame)[2];
-    brunt_contact_surface skin;
+    brunt_contact_surface surface;
     brunt_pair *pairs;
     int32_t *pair_of;
     double elastic; // [J] of the last forces
@@ -88,7 +88,7 @@ static inline void blocks_add_tets(blocks *b, const block_def *d, const int32_t 
 }
 
 static inline void blocks_add_face(blocks *b, const int32_t *node, int corners) {
-    brunt_contact_surface *s = &b->skin;
+    brunt_contact_surface *s = &b->surface;
     int32_t f = s->face_count++;
     BLOCKS_PUSH(s->face, f);
     for (int k = 0; k < 4; k++) s->face[f][k] = k < corners ? node[k] : -1;
@@ -158,7 +158,7 @@ static inline void blocks_add_tet_faces(blocks *b, int32_t first_tet) {
 static inline void blocks_add(blocks *b, const block_def *d) {
     const bool plane = b->kind == BLOCKS_PLANE;
     const int n[3] = {d->cells[0], d->cells[1], plane ? 0 : d->cells[2]};
-    const int32_t first = b->node_count, first_tet = b->tet_count, first_face = b->skin.face_count;
+    const int32_t first = b->node_count, first_tet = b->tet_count, first_face = b->surface.face_count;
     const int32_t added = (n[0] + 1) * (n[1] + 1) * (n[2] + 1);
     blocks_grow_nodes(b, first + added);
     for (int32_t i = 0; i < added; i++, b->node_count++) {
@@ -190,7 +190,7 @@ static inline void blocks_add(blocks *b, const block_def *d) {
         blocks_add_tet_faces(b, first_tet);
     else
         blocks_add_sides(b, n, first);
-    brunt_contact_surface *s = &b->skin;
+    brunt_contact_surface *s = &b->surface;
     BLOCKS_GROW(s->face_body, s->face_count);
     for (int32_t f = first_face; f < s->face_count; f++) {
         s->face_body[f] = b->count;
@@ -201,7 +201,7 @@ static inline void blocks_add(blocks *b, const block_def *d) {
 
 // The skin of all blocks, and a pair of each two.
 static inline void blocks_finish(blocks *b, double friction) {
-    brunt_contact_surface *s = &b->skin;
+    brunt_contact_surface *s = &b->surface;
     s->dim = b->kind == BLOCKS_PLANE ? 2 : 3;
     s->fem_count = b->count;
     s->node_range = calloc((size_t)b->count + 2, sizeof(int32_t));
@@ -220,8 +220,8 @@ static inline void blocks_finish(blocks *b, double friction) {
     s->x = calloc(n, sizeof *s->x), s->v = calloc(n, sizeof *s->v), s->old = calloc(n, sizeof *s->old);
     s->mass = calloc(n, sizeof *s->mass), s->inverse = calloc(n, sizeof *s->inverse);
     s->normal = calloc(n, sizeof *s->normal), s->area = calloc(n, sizeof *s->area);
-    s->affine = calloc(n, sizeof *s->affine), s->gap = calloc(n, sizeof *s->gap);
-    s->impulse = calloc(n, sizeof *s->impulse), s->state = calloc(n, 1);
+    s->affine = calloc(n, sizeof *s->affine), s->output.gap = calloc(n, sizeof *s->output.gap);
+    s->output.impulse = calloc(n, sizeof *s->output.impulse), s->output.state = calloc(n, 1);
     s->face_normal = calloc(m, sizeof *s->face_normal), s->face_centre = calloc(m, sizeof *s->face_centre);
     s->face_area = calloc(m, sizeof *s->face_area);
     s->face_first = calloc(n + 2, sizeof(int32_t)), s->face_of = calloc(4 * m, sizeof(int32_t));
@@ -244,18 +244,18 @@ static inline void blocks_finish(blocks *b, double friction) {
 
 // Places and velocities to the skin, normals.
 static inline void blocks_take(blocks *b) {
-    brunt_contact_surface *s = &b->skin;
+    brunt_contact_surface *s = &b->surface;
     for (int k = 0; k < b->count; k++)
         for (int a = 0; a < 3; a++) s->low[k][a] = INFINITY, s->high[k][a] = -INFINITY;
     for (int32_t i = 0; i < b->node_count; i++) {
         int32_t n = b->number[i];
         if (n < 0) continue;
         s->body[n] = b->body[i], s->node[n] = i, s->mass[n] = b->mass[i], s->area[n] = 0;
-        s->gap[n] = INFINITY, s->state[n] = 0;
+        s->output.gap[n] = INFINITY, s->output.state[n] = 0;
         for (int a = 0; a < 3; a++) {
             s->x[n][a] = b->x[i][a], s->v[n][a] = b->v[i][a], s->old[n][a] = b->old[i][a];
             s->inverse[n][a] = b->held[i] >> a & 1 || a >= s->dim ? 0 : 1 / b->mass[i];
-            s->normal[n][a] = s->impulse[n][a] = 0;
+            s->normal[n][a] = s->output.impulse[n][a] = 0;
             s->low[b->body[i]][a] = fmin(s->low[b->body[i]][a], b->x[i][a]);
             s->high[b->body[i]][a] = fmax(s->high[b->body[i]][a], b->x[i][a]);
         }
@@ -290,12 +290,12 @@ static inline void blocks_take(blocks *b) {
 
 static inline void blocks_give(blocks *b) {
     for (int32_t i = 0; i < b->node_count; i++)
-        if (b->number[i] >= 0) memcpy(b->v[i], b->skin.v[b->number[i]], sizeof b->v[i]);
+        if (b->number[i] >= 0) memcpy(b->v[i], b->surface.v[b->number[i]], sizeof b->v[i]);
 }
 
 static inline brunt_contact_context blocks_meeting(blocks *b, double dt, double cell, int iterations, int threads) {
     for (int k = 0; k < b->count * b->count; k++) b->pairs[k].last = (brunt_impulse_account){.area = 0};
-    return (brunt_contact_context){.skin = &b->skin,
+    return (brunt_contact_context){.surface = &b->surface,
                                    .pairs = b->pairs,
                                    .pair_of = b->pair_of,
                                    .body_count = b->count,
@@ -307,13 +307,46 @@ static inline brunt_contact_context blocks_meeting(blocks *b, double dt, double 
 }
 
 static inline void blocks_free(blocks *b) {
-    brunt_contact_surface *s = &b->skin;
-    void *owned[] = {b->x,           b->v,         b->old,        b->force,      b->mass,    b->held,  b->body,
-                     b->number,      b->tet,       b->inverse,    b->volume,     b->lame,    b->pairs, b->pair_of,
-                     s->face,        s->face_body, s->node_range, s->face_range, s->low,     s->high,  s->active,
-                     s->body,        s->node,      s->x,          s->v,          s->old,     s->mass,  s->inverse,
-                     s->normal,      s->area,      s->affine,     s->gap,        s->impulse, s->state, s->face_normal,
-                     s->face_centre, s->face_area, s->face_first, s->face_of};
+    brunt_contact_surface *s = &b->surface;
+    void *owned[] = {b->x,
+                     b->v,
+                     b->old,
+                     b->force,
+                     b->mass,
+                     b->held,
+                     b->body,
+                     b->number,
+                     b->tet,
+                     b->inverse,
+                     b->volume,
+                     b->lame,
+                     b->pairs,
+                     b->pair_of,
+                     s->face,
+                     s->face_body,
+                     s->node_range,
+                     s->face_range,
+                     s->low,
+                     s->high,
+                     s->active,
+                     s->body,
+                     s->node,
+                     s->x,
+                     s->v,
+                     s->old,
+                     s->mass,
+                     s->inverse,
+                     s->normal,
+                     s->area,
+                     s->affine,
+                     s->output.gap,
+                     s->output.impulse,
+                     s->output.state,
+                     s->face_normal,
+                     s->face_centre,
+                     s->face_area,
+                     s->face_first,
+                     s->face_of};
     for (size_t k = 0; k < sizeof owned / sizeof owned[0]; k++) free(owned[k]);
     *b = (blocks){.kind = b->kind};
 }

@@ -32,7 +32,7 @@ START_TEST(kernel_weights) {
     const int width = _i ? 4 : 3;
     for (int k = -40; k <= 40; k++) {
         double xi = k * 0.0713, first, w[4], sum = 0, mean = 0, moment = 0;
-        brunt_augury_weights(width, xi, &first, w);
+        brunt_bspline_about(width, xi, &first, w);
         for (int c = 0; c < width; c++) {
             ck_assert_double_ge(w[c], 0);
             sum += w[c], mean += w[c] * (first + c);
@@ -94,7 +94,7 @@ static void transfer_rows(two_rows *s, double cell, bool affine) {
     enum { LINES = 64 };
     double mass[LINES] = {0}, momentum[LINES] = {0}, first[2], w[2][4];
     for (int p = 0; p < 2; p++) {
-        brunt_augury_weights(4, s->x[p] / cell, &first[p], w[p]);
+        brunt_bspline_about(4, s->x[p] / cell, &first[p], w[p]);
         for (int c = 0; c < 4; c++) {
             int i = (int)first[p] + c + LINES / 2;
             double slope = affine ? s->B[p] / (cell * cell / 2) : 0;
@@ -136,21 +136,21 @@ START_TEST(rows_that_meet) {
         for (int p = 0; p < 2; p++) s.x[p] += step * s.v[p];
         move_rows(&b, &s);
         blocks_take(&b);
-        for (int32_t n = 0; n < b.skin.node_count; n++)
+        for (int32_t n = 0; n < b.surface.node_count; n++)
             for (int side = 0; side < 2; side++)
-                if (b.skin.x[n][1] == s.x[side]) {
-                    b.skin.v[n][1] = s.v[side];
-                    memset(b.skin.affine[n], 0, sizeof b.skin.affine[n]);
-                    b.skin.affine[n][4] = s.B[side];
+                if (b.surface.x[n][1] == s.x[side]) {
+                    b.surface.v[n][1] = s.v[side];
+                    memset(b.surface.affine[n], 0, sizeof b.surface.affine[n]);
+                    b.surface.affine[n][4] = s.B[side];
                 }
         brunt_contact_context m = blocks_meeting(&b, 1, cell, 0, 1);
         apply_once(&m, affine ? PAPER_APIC : PAPER_PIC);
         transfer_rows(&s, cell, affine);
-        for (int32_t n = 0; n < b.skin.node_count; n++)
+        for (int32_t n = 0; n < b.surface.node_count; n++)
             for (int side = 0; side < 2; side++)
-                if (b.skin.x[n][1] == s.x[side]) {
-                    ck_assert_double_eq_tol(b.skin.v[n][1], s.v[side], 1e-13);
-                    if (affine) ck_assert_double_eq_tol(b.skin.affine[n][4], s.B[side], 1e-13 * cell);
+                if (b.surface.x[n][1] == s.x[side]) {
+                    ck_assert_double_eq_tol(b.surface.v[n][1], s.v[side], 1e-13);
+                    if (affine) ck_assert_double_eq_tol(b.surface.affine[n][4], s.B[side], 1e-13 * cell);
                 }
     }
     const double gap = (s.x[1] - s.x[0]) / cell;
@@ -200,7 +200,7 @@ static void reference_G(const brunt_contact_surface *s, double cell, double (*v)
     for (int back = 0; back < 2; back++)
         for (int32_t n = 0; n < s->node_count; n++) {
             double first[3], w[3][4], out[3] = {0}, outB[9] = {0};
-            for (int a = 0; a < 3; a++) brunt_augury_weights(4, s->x[n][a] / cell, &first[a], w[a]);
+            for (int a = 0; a < 3; a++) brunt_bspline_about(4, s->x[n][a] / cell, &first[a], w[a]);
             for (int k = 0; k < 64; k++) {
                 int c[3] = {k & 3, k >> 2 & 3, k >> 4}, i[3];
                 double r[3], N = 1;
@@ -229,7 +229,7 @@ START_TEST(paper_against_definitions) {
     const double friction = 0.3, cell = 0.41;
     blocks b = two_blocks(BLOCKS_TETS, 0.3, 0.02, 2, friction, 0.5);
     blocks_take(&b);
-    brunt_contact_surface *s = &b.skin;
+    brunt_contact_surface *s = &b.surface;
     size_t n = (size_t)s->node_count;
     double(*v)[3] = malloc(n * sizeof *v), (*B)[9] = malloc(n * sizeof *B), (*dv)[3] = calloc(n, sizeof *dv),
     (*dB)[9] = calloc(n, sizeof *dB);
@@ -265,23 +265,23 @@ START_TEST(paper_keeps_affine_fields) {
     const double cell = 0.37;
     blocks b = two_blocks(BLOCKS_TETS, 0.2, 0.05, 0, 0.3, 0);
     blocks_take(&b);
-    for (int32_t n = 0; n < b.skin.node_count; n++)
+    for (int32_t n = 0; n < b.surface.node_count; n++)
         for (int a = 0; a < 3; a++) {
-            b.skin.v[n][a] = 1 + a;
+            b.surface.v[n][a] = 1 + a;
             for (int c = 0; c < 3; c++) {
-                b.skin.v[n][a] += L[3 * a + c] * b.skin.x[n][c];
-                b.skin.affine[n][3 * a + c] = L[3 * a + c] * cell * cell / 2;
+                b.surface.v[n][a] += L[3 * a + c] * b.surface.x[n][c];
+                b.surface.affine[n][3 * a + c] = L[3 * a + c] * cell * cell / 2;
             }
         }
     brunt_contact_context m = blocks_meeting(&b, 1e-3, cell, 1, 1);
     apply_once(&m, PAPER_APIC);
-    for (int32_t n = 0; n < b.skin.node_count; n++)
+    for (int32_t n = 0; n < b.surface.node_count; n++)
         for (int a = 0; a < 3; a++) {
             double v = 1 + a;
-            for (int c = 0; c < 3; c++) v += L[3 * a + c] * b.skin.x[n][c];
-            ck_assert_double_eq_tol(b.skin.v[n][a], v, 1e-13);
+            for (int c = 0; c < 3; c++) v += L[3 * a + c] * b.surface.x[n][c];
+            ck_assert_double_eq_tol(b.surface.v[n][a], v, 1e-13);
             for (int c = 0; c < 3; c++)
-                ck_assert_double_eq_tol(b.skin.affine[n][3 * a + c], L[3 * a + c] * cell * cell / 2, 1e-13);
+                ck_assert_double_eq_tol(b.surface.affine[n][3 * a + c], L[3 * a + c] * cell * cell / 2, 1e-13);
         }
     blocks_free(&b);
 }
@@ -325,10 +325,10 @@ START_TEST(momenta_are_kept) {
     const form f = (form)(_i % FORMS);
     blocks b = two_blocks(kind, 0.3, 0.004, 4, 0.3, 0.8);
     blocks_take(&b);
-    const momenta before = measure(&b.skin, f == PAPER_APIC), before_still = measure(&b.skin, false);
+    const momenta before = measure(&b.surface, f == PAPER_APIC), before_still = measure(&b.surface, false);
     brunt_contact_context m = blocks_meeting(&b, 5e-3, f >= PAPER_APIC ? 0.5 : 0.25, f >= PAPER_APIC ? 1 : 4, 1);
     apply_once(&m, f);
-    momenta after = measure(&b.skin, f == PAPER_APIC);
+    momenta after = measure(&b.surface, f == PAPER_APIC);
     const brunt_impulse_account *done = &b.pairs[0].last;
     double moved[3] = {0}, turned[3] = {0};
     for (int32_t i = 0; i < b.node_count; i++) {
@@ -336,15 +336,15 @@ START_TEST(momenta_are_kept) {
         if (n < 0 || b.body[i] != 1) continue;
         for (int a = 0; a < 3; a++) {
             const int p = (a + 1) % 3, q = (a + 2) % 3;
-            moved[a] += b.mass[i] * (b.skin.v[n][a] - b.v[i][a]);
+            moved[a] += b.mass[i] * (b.surface.v[n][a] - b.v[i][a]);
             turned[a] +=
-                b.mass[i] * (b.x[i][p] * (b.skin.v[n][q] - b.v[i][q]) - b.x[i][q] * (b.skin.v[n][p] - b.v[i][p]));
+                b.mass[i] * (b.x[i][p] * (b.surface.v[n][q] - b.v[i][q]) - b.x[i][q] * (b.surface.v[n][p] - b.v[i][p]));
         }
     }
     ck_assert_double_gt(moved[1], 0.01 * before.scale); // it pushes the upper block up
     const double turn = drift(&before, &after);
     if (f == PAPER_APIC) {
-        const momenta still = measure(&b.skin, false);
+        const momenta still = measure(&b.surface, false);
         hard_case("C31", turn, 1e-14, 1e-14, "published form, blocks %d: with the spin", (int)kind);
         ck_assert_double_gt(drift(&before_still, &still), 1e-6); // which it is that makes the difference
     } else if (f == SURFACE) {
@@ -365,8 +365,8 @@ static double work_done(const blocks *b) {
     for (int32_t i = 0; i < b->node_count; i++)
         for (int a = 0; a < 3 && b->number[i] >= 0; a++) {
             const int32_t n = b->number[i];
-            if (b->skin.inverse[n][a] > 0)
-                work += b->mass[i] * (b->skin.v[n][a] - b->v[i][a]) * 0.5 * (b->old[i][a] + b->skin.v[n][a]);
+            if (b->surface.inverse[n][a] > 0)
+                work += b->mass[i] * (b->surface.v[n][a] - b->v[i][a]) * 0.5 * (b->old[i][a] + b->surface.v[n][a]);
         }
     return work;
 }
@@ -399,10 +399,10 @@ START_TEST(energy_is_accounted_for) {
         booked += p->external_work - p->normal_loss - p->friction_loss;
         external += fabs(p->external_work), friction += p->friction_loss;
     }
-    for (int32_t n = 0; n < b.skin.node_count; n++)
+    for (int32_t n = 0; n < b.surface.node_count; n++)
         for (int a = 0; a < 3; a++) {
-            net[a] += b.skin.impulse[n][a], scale += fabs(b.skin.impulse[n][a]);
-            if (!(b.skin.inverse[n][a] > 0)) ck_assert(b.skin.v[n][a] == b.v[b.skin.node[n]][a]);
+            net[a] += b.surface.output.impulse[n][a], scale += fabs(b.surface.output.impulse[n][a]);
+            if (!(b.surface.inverse[n][a] > 0)) ck_assert(b.surface.v[n][a] == b.v[b.surface.node[n]][a]);
         }
     ck_assert_double_gt(fabs(external), 1);
     ck_assert_double_gt(friction, 0);
@@ -431,12 +431,13 @@ START_TEST(approach_ends_at_the_gap) {
     brunt_contact_context m = blocks_meeting(&b, dt, held ? 0.375 : 0.25, 4, 1);
     apply_once(&m, _i % 2 ? SMOOTH : SURFACE);
     double closing[2] = {0}, count[2] = {0};
-    for (int32_t n = 0; n < b.skin.node_count; n++) {
-        double inside = fabs(b.skin.x[n][0] - 0.15) + fabs(b.skin.x[n][2]);
-        if (fabs(b.skin.normal[n][1]) < 0.99 || inside > 0.5 || fabs(b.skin.x[n][1] - 0.57) > 0.1) continue;
-        ck_assert_double_eq_tol(b.skin.gap[n], gap, held ? 0.02 * gap : 1e-12);
-        closing[b.skin.body[n]] += b.skin.v[n][1], count[b.skin.body[n]]++;
-        if (b.skin.body[n] && held) ck_assert_double_eq_tol(b.skin.v[n][1], speed / 2 - gap / dt, 0.02 * gap / dt);
+    for (int32_t n = 0; n < b.surface.node_count; n++) {
+        double inside = fabs(b.surface.x[n][0] - 0.15) + fabs(b.surface.x[n][2]);
+        if (fabs(b.surface.normal[n][1]) < 0.99 || inside > 0.5 || fabs(b.surface.x[n][1] - 0.57) > 0.1) continue;
+        ck_assert_double_eq_tol(b.surface.output.gap[n], gap, held ? 0.02 * gap : 1e-12);
+        closing[b.surface.body[n]] += b.surface.v[n][1], count[b.surface.body[n]]++;
+        if (b.surface.body[n] && held)
+            ck_assert_double_eq_tol(b.surface.v[n][1], speed / 2 - gap / dt, 0.02 * gap / dt);
     }
     double rate = closing[0] / count[0] - closing[1] / count[1];
     ck_assert_double_gt(count[0], 1);
@@ -457,7 +458,8 @@ START_TEST(nothing_without_approach) {
     blocks_take(&b);
     brunt_contact_context m = blocks_meeting(&b, 1e-2, 0.25, 4, 1);
     apply_once(&m, f);
-    for (int32_t n = 0; n < b.skin.node_count; n++) ck_assert(!memcmp(b.skin.v[n], b.v[b.skin.node[n]], sizeof b.v[0]));
+    for (int32_t n = 0; n < b.surface.node_count; n++)
+        ck_assert(!memcmp(b.surface.v[n], b.v[b.surface.node[n]], sizeof b.v[0]));
     ck_assert(b.pairs[0].last.impulse[1] == 0 && b.pairs[0].last.normal_loss == 0 && b.pairs[0].last.area == 0);
     blocks_free(&b);
 }
@@ -477,9 +479,9 @@ START_TEST(far_bodies_are_left_alone) {
     brunt_contact_context m = blocks_meeting(&b, 1e-2, 0.25, 4, 1);
     apply_once(&m, _i ? SMOOTH : SURFACE);
     bool some = false;
-    for (int32_t n = 0; n < b.skin.node_count; n++) {
-        bool same = !memcmp(b.skin.v[n], b.v[b.skin.node[n]], sizeof b.v[0]);
-        ck_assert(same || b.skin.body[n] < 2);
+    for (int32_t n = 0; n < b.surface.node_count; n++) {
+        bool same = !memcmp(b.surface.v[n], b.v[b.surface.node[n]], sizeof b.v[0]);
+        ck_assert(same || b.surface.body[n] < 2);
         some |= !same;
     }
     ck_assert(some);
@@ -510,9 +512,9 @@ START_TEST(friction_has_coulombs_limit) {
     else
         ck_assert_double_lt(drag, 0.9 * mu * push);
     ck_assert_double_gt(done->friction_loss, 0);
-    for (int32_t n = 0; n < b.skin.node_count; n++) {
-        if (b.skin.body[n] == 0) ck_assert(!memcmp(b.skin.v[n], b.v[b.skin.node[n]], sizeof b.v[0]));
-        if (b.skin.state[n] && b.skin.body[n]) ck_assert_int_eq(b.skin.state[n], fast ? 2 : 1);
+    for (int32_t n = 0; n < b.surface.node_count; n++) {
+        if (b.surface.body[n] == 0) ck_assert(!memcmp(b.surface.v[n], b.v[b.surface.node[n]], sizeof b.v[0]));
+        if (b.surface.output.state[n] && b.surface.body[n]) ck_assert_int_eq(b.surface.output.state[n], fast ? 2 : 1);
     }
     blocks_free(&b);
 }
@@ -536,13 +538,13 @@ START_TEST(turned_set_up_turned_result) {
         brunt_contact_context m = blocks_meeting(&b, 5e-3, f >= PAPER_APIC ? 0.5 : 0.25, f >= PAPER_APIC ? 1 : 4, 1);
         apply_once(&m, f);
         if (!turned) {
-            v = malloc((size_t)b.skin.node_count * sizeof *v);
-            memcpy(v, b.skin.v, (size_t)b.skin.node_count * sizeof *v);
+            v = malloc((size_t)b.surface.node_count * sizeof *v);
+            memcpy(v, b.surface.v, (size_t)b.surface.node_count * sizeof *v);
         } else {
-            for (int32_t n = 0; n < b.skin.node_count; n++) {
-                ck_assert_double_eq_tol(b.skin.v[n][0], -v[n][1], 1e-12);
-                ck_assert_double_eq_tol(b.skin.v[n][1], v[n][0], 1e-12);
-                ck_assert_double_eq_tol(b.skin.v[n][2], v[n][2], 1e-12);
+            for (int32_t n = 0; n < b.surface.node_count; n++) {
+                ck_assert_double_eq_tol(b.surface.v[n][0], -v[n][1], 1e-12);
+                ck_assert_double_eq_tol(b.surface.v[n][1], v[n][0], 1e-12);
+                ck_assert_double_eq_tol(b.surface.v[n][2], v[n][2], 1e-12);
             }
         }
         blocks_free(&b);
@@ -570,16 +572,17 @@ static blocks two_plates(void) {
 START_TEST(same_bits_for_any_threads) {
     const form f = (form)_i;
     blocks one = two_plates(), three = two_plates();
-    ck_assert_int_gt(one.skin.node_range[1], BRUNT_AUGURY_PARALLEL);
+    ck_assert_int_gt(one.surface.node_range[1], BRUNT_AUGURY_PARALLEL);
     brunt_contact_context m = blocks_meeting(&one, 1e-3, f >= PAPER_APIC ? 0.5 : 0.25, f >= PAPER_APIC ? 1 : 4, 1);
     apply_once(&m, f);
     m = blocks_meeting(&three, 1e-3, f >= PAPER_APIC ? 0.5 : 0.25, f >= PAPER_APIC ? 1 : 4, 3);
     apply_once(&m, f);
-    const size_t n = (size_t)one.skin.node_count;
+    const size_t n = (size_t)one.surface.node_count;
     ck_assert(one.pairs[0].last.impulse[1] > 0);
-    ck_assert(!memcmp(one.skin.v, three.skin.v, n * sizeof *one.skin.v));
-    ck_assert(!memcmp(one.skin.affine, three.skin.affine, n * sizeof *one.skin.affine));
-    ck_assert(!memcmp(one.skin.impulse, three.skin.impulse, n * sizeof *one.skin.impulse));
+    ck_assert(!memcmp(one.surface.v, three.surface.v, n * sizeof *one.surface.v));
+    ck_assert(!memcmp(one.surface.affine, three.surface.affine, n * sizeof *one.surface.affine));
+    ck_assert(
+        !memcmp(one.surface.output.impulse, three.surface.output.impulse, n * sizeof *one.surface.output.impulse));
     ck_assert(!memcmp(&one.pairs[0].last, &three.pairs[0].last, sizeof one.pairs[0].last));
     blocks_free(&one);
     blocks_free(&three);
@@ -592,18 +595,18 @@ START_TEST(no_allocation_after_the_first_step) {
     size_t live = brunt_memory_live();
     blocks b = two_plates();
     brunt_augury_workspace *work = NULL;
-    double(*first)[3] = malloc((size_t)b.skin.node_count * sizeof *first);
+    double(*first)[3] = malloc((size_t)b.surface.node_count * sizeof *first);
     for (int pass = 0; pass < 2; pass++) {
         int64_t calls = brunt_memory_calls();
-        memset(b.skin.affine, 0, (size_t)b.skin.node_count * sizeof *b.skin.affine);
+        memset(b.surface.affine, 0, (size_t)b.surface.node_count * sizeof *b.surface.affine);
         blocks_take(&b);
         brunt_contact_context m = blocks_meeting(&b, 1e-3, f >= PAPER_APIC ? 0.5 : 0.25, f >= PAPER_APIC ? 1 : 4, 1);
         work = apply(&m, f, work);
         if (pass) {
             ck_assert_int_eq(brunt_memory_calls(), calls);
-            ck_assert(!memcmp(first, b.skin.v, (size_t)b.skin.node_count * sizeof *first));
+            ck_assert(!memcmp(first, b.surface.v, (size_t)b.surface.node_count * sizeof *first));
         } else {
-            memcpy(first, b.skin.v, (size_t)b.skin.node_count * sizeof *first);
+            memcpy(first, b.surface.v, (size_t)b.surface.node_count * sizeof *first);
         }
     }
     free(first);

@@ -14,13 +14,13 @@ static void make_chain(brunt_constraint_set *p, brunt_impulse_account *action) {
     memset(action, 0, sizeof *action);
     for (int i = 0; i < CHAIN; i++) {
         ck_assert_int_eq(brunt_constraints_dof_node(p), i);
-        brunt_dof_node *s = &p->support[i];
+        brunt_dof_node *s = &p->dof_node[i];
         s->v[0] = s->old[0] = -1;
         for (int a = 0; a < 3; a++) s->inverse[a] = 1;
     }
     for (int i = 0; i < CHAIN; i++) {
         ck_assert_int_eq(brunt_constraints_add(p), i);
-        brunt_constraint *point = &p->point[i];
+        brunt_constraint *point = &p->constraint[i];
         point->n[0] = point->facet[0] = 1;
         point->action = action, point->sign = 1;
         brunt_constraints_entry(p, i, 1);
@@ -36,9 +36,9 @@ static double approach_left(int most, double tolerance, int *sweeps) {
     make_chain(&p, &action);
     *sweeps = brunt_constraints_solve(&p, most, tolerance, 1, &timer);
     double left = 0;
-    for (int k = 0; k < p.point_count; k++) {
+    for (int k = 0; k < p.constraint_count; k++) {
         double u[3];
-        brunt_constraint_velocity(&p, &p.point[k], false, u);
+        brunt_constraint_velocity(&p, &p.constraint[k], false, u);
         left = fmax(left, -u[0]);
     }
     brunt_constraints_free(&p);

@@ -1,0 +1,102 @@
+// What a place, of a node or of a particle, may touch in a step. Private to the search.
+#pragma once
+
+#include "contact/distance/feature.h"
+
+enum { BRUNT_MAX_CANDIDATES = 7, BRUNT_MAX_NEAR = 32 };
+
+// The nearest facet of one other body, or the edge or corner of it (`feature`).
+typedef struct facet_candidate {
+    int32_t face, triangle, body;
+    brunt_feature feature;
+    bool valley; // another slope of it is as near
+    double gap, n[3], target;
+    int32_t worker, master; // of a feature that is met: the worker that looked, and which of its masters
+} facet_candidate;
+
+typedef struct candidate_list {
+    facet_candidate candidate[BRUNT_MAX_CANDIDATES];
+    int32_t count;
+} candidate_list;
+
+// A place that looks around: which bodies it may touch (their boxes are that near), and which it may have entered.
+typedef struct search_query {
+    int32_t box, body;
+    const double *x, *normal; // outward; NULL when it has none
+    int64_t cell;
+    int32_t touch[BRUNT_MAX_NEAR], touches, enter[BRUNT_MAX_NEAR], enters;
+    // Where there are membranes: half its own thickness, how far behind one it may be found, and the elements of its
+    // own body that are no obstacle; without those the body does not meet itself.
+    bool membrane;
+    double half, shallow;
+    const int32_t *patch;
+    int32_t patch_count;
+} search_query;
+
+// What a slave meets: an edge or corner with the faces about it, or a facet.
+typedef struct brunt_master {
+    int32_t node[BRUNT_FEATURE_NODES];
+    double weight[BRUNT_FEATURE_NODES], gradient[BRUNT_FEATURE_NODES][3], facet[3], height;
+    int count;
+} brunt_master;
+
+// The edges and corners that are met, by the worker that looked; none where nothing meets one.
+typedef struct master_list {
+    brunt_master *master;
+    size_t capacity;
+    int32_t count;
+    bool failed;
+} master_list;
+
+// Of the nodes of a surface.
+typedef struct node_candidates {
+    uint8_t *count;             // of each node ...
+    facet_candidate *candidate; // ... in its BRUNT_MAX_CANDIDATES places
+    master_list *masters;
+    int masters_count;
+    int32_t *dof_of; // of each node: its degree-of-freedom node, -1
+    int32_t *first;  // of each node: its first constraint and first entry
+    size_t count_capacity, candidate_capacity, dof_of_capacity, first_capacity;
+} node_candidates;
+
+typedef struct particle_candidate {
+    int32_t block;
+    int64_t particle;
+    double x[3];
+    facet_candidate h;
+} particle_candidate;
+
+typedef struct particle_list {
+    particle_candidate *candidate;
+    size_t capacity;
+    int32_t count;
+    bool failed;
+} particle_list;
+
+typedef struct particle_run {
+    int worker;
+    int32_t first, count;
+} particle_run;
+
+// A grid node by its degree-of-freedom node.
+typedef struct grid_dof {
+    int32_t mpm;
+    int64_t node;
+    int32_t dof_node;
+    double
+        sign[3]; // v of the node is that of the degree-of-freedom node, turned over by mirrors; 0 across one it lies on
+} grid_dof;
+
+// Of particles, by the worker that looked; and of each block of a body where it is there.
+typedef struct particle_candidates {
+    particle_list *list;
+    int list_count;
+    particle_run *run;
+    size_t run_capacity;
+    int32_t **node_dof; // of each mpm body: of each grid node its place in `grid` + 1
+    size_t *node_dof_capacity;
+    int mpm_count;
+    grid_dof *grid;
+    size_t grid_capacity;
+    int32_t grid_count;
+} particle_candidates;
