@@ -6,13 +6,19 @@
 
 #include "brunt.h"
 
+// Kinds of measures, one line each: the key that chooses it. The rest of a kind is in io/output/measure_NAME.c.
+#define BRUNT_MEASURE_KINDS(X)                                                                                         \
+    X(HISTORY, history) /* a column of the history (`history: energy.kinetic`), reduced over time */                   \
+    X(EXTENT, extent)   /* size of a body along an axis, from particle surfaces or nodes, at the end */                \
+    X(RADIUS, radius)   /* greatest distance of a body's surface from an axis line within a slab, at the end */        \
+    X(FIELD, field)     /* a field of a body reduced over its particles, nodes or elements, at the end */              \
+    X(PROFILE, profile) /* distance of a field of one body or all from a reference along an axis, at the end */
+
 // A named result, judged against an expectation where one is given.
 typedef enum brunt_measure_kind {
-    BRUNT_MEASURE_HISTORY, // a column of the history (`history: energy.kinetic`), reduced over time
-    BRUNT_MEASURE_EXTENT,  // size of a body along an axis, from particle surfaces or nodes, at the end
-    BRUNT_MEASURE_RADIUS,  // greatest distance of a body's surface from an axis line within a slab, at the end
-    BRUNT_MEASURE_FIELD,   // a field of a body reduced over its particles, nodes or elements, at the end
-    BRUNT_MEASURE_PROFILE  // distance of a field of one body or all from a reference along an axis, at the end
+#define X(NAME, name) BRUNT_MEASURE_##NAME,
+    BRUNT_MEASURE_KINDS(X)
+#undef X
 } brunt_measure_kind;
 
 typedef enum brunt_take {

@@ -156,7 +156,11 @@ static void fill_profile(scene_reader *reader, scene_node *where, brunt_measure 
 }
 
 static void fill_kind(scene_reader *reader, scene_node *node, brunt_measure *measure) {
-    static const char *const kinds[] = {"history", "extent", "radius", "field", "profile"};
+    static const char *const kinds[] = {
+#define X(NAME, name) #name,
+        BRUNT_MEASURE_KINDS(X)
+#undef X
+    };
     scene_tree *tree = reader->tree;
     scene_node *where = NULL;
     int count = 0;
@@ -168,10 +172,13 @@ static void fill_kind(scene_reader *reader, scene_node *node, brunt_measure *mea
         count++;
     }
     if (count != 1) {
-        brunt_tree_complain_key(tree, node,
-                                "%s of history (or energy), extent, radius, field and profile is given, exactly one is "
-                                "wanted",
-                                count ? "more than one" : "none");
+        char names[200] = "";
+        const size_t kind_count = sizeof kinds / sizeof *kinds;
+        for (size_t k = 1, used = 0; k < kind_count && used < sizeof names; k++)
+            used += (size_t)snprintf(names + used, sizeof names - used, "%s%s", k + 1 < kind_count ? ", " : " and ",
+                                     kinds[k]);
+        brunt_tree_complain_key(tree, node, "%s of history (or energy)%s is given, exactly one is wanted",
+                                count ? "more than one" : "none", names);
         return;
     }
     if (measure->kind == BRUNT_MEASURE_HISTORY) {

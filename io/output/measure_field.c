@@ -1,0 +1,47 @@
+// Measure `field`: a field reduced over the particles, nodes or elements of a body.
+#include "io/output/measure.h"
+
+#include <math.h>
+
+#include "base/error.h"
+
+static double reduce_field(const brunt_measure *m, const point_set *set) {
+    double axis[3], least = INFINITY, most = -INFINITY, sum = 0;
+    bool sliced = measure_unit_axis(m, axis);
+    int64_t count = 0;
+    for (int64_t p = 0; p < set->count; p++) {
+        double along = 0;
+        for (int c = 0; c < 3; c++) along += (set->position[3 * p + c] - m->center[c]) * axis[c];
+        if (sliced && (along < m->slab_min || along > m->slab_max)) continue;
+        const double value = measure_value(m, set, p);
+        // A world that goes on holds no such values but where there is nothing to say: the gap to a body out of reach.
+        if (isnan(value)) continue;
+        least = fmin(least, value);
+        most = fmax(most, value);
+        sum += value;
+        count++;
+    }
+    if (!count) return NAN;
+    switch (m->take) {
+    case BRUNT_TAKE_MIN: return least;
+    case BRUNT_TAKE_MAX: return most;
+    case BRUNT_TAKE_MAX_ABS: return fmax(fabs(least), fabs(most));
+    case BRUNT_TAKE_MEAN: return sum / (double)count;
+    default: return NAN; // `check` refuses the rest
+    }
+}
+
+static int check(const brunt_measure *m, const measure_source *from, brunt_error *error) {
+    (void)from;
+    if (m->take == BRUNT_TAKE_MIN || m->take == BRUNT_TAKE_MAX || m->take == BRUNT_TAKE_MAX_ABS ||
+        m->take == BRUNT_TAKE_MEAN)
+        return BRUNT_OK;
+    return brunt_fail(error, BRUNT_BAD_INPUT,
+                      "measures.%s: a field is reduced over the body by take: min, max, mean or max_abs", m->name);
+}
+
+static int take(const brunt_measure *m, measure_source *from, double *value, brunt_error *error) {
+    return measure_take_points(m, from->world, reduce_field, value, error);
+}
+
+const measure_kind measure_field = {.check = check, .take = take};

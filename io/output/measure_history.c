@@ -1,0 +1,168 @@
+// Measure `history`: a column reduced over time, or its distance from a curve.
+#include "io/output/measure.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/error.h"
+#include "base/memory.h"
+
+// Mean time between the rises through the middle between least and most. A rise counts once the quarter of the range
+// below the middle was left since the last one: higher modes may make the middle be passed several times.
+static double period(const double *time, const double *value, int64_t count, double least, double most) {
+    const double middle = 0.5 * (least + most), low = middle - 0.25 * (most - least);
+    double first = NAN, last = NAN;
+    int64_t rises = 0;
+    bool was_low = false;
+    for (int64_t r = 1; r < count; r++) {
+        was_low = was_low || value[r - 1] < low;
+        if (!was_low || !(value[r] >= middle)) continue;
+        double share = (middle - value[r - 1]) / (value[r] - value[r - 1]);
+        last = time[r - 1] + share * (time[r] - time[r - 1]);
+        if (!rises++) first = last;
+        was_low = false;
+    }
+    return rises > 1 ? (last - first) / (double)(rises - 1) : NAN;
+}
+
+// Reduces the samples of a column within [from, to]. Times at the ends of the window count: output times carry
+// rounding.
+static double reduce_history(const brunt_measure *m, const double *time, const double *value, int64_t rows) {
+    double slack = 1e-9 * fmax(isfinite(m->from) ? fabs(m->from) : 0, isfinite(m->to) ? fabs(m->to) : 0);
+    int64_t first = 0, last = rows - 1;
+    while (first < rows && time[first] < m->from - slack) first++;
+    while (last >= 0 && time[last] > m->to + slack) last--;
+    if (first > last) return NAN;
+    int64_t count = last - first + 1;
+    double least = value[first], most = value[first];
+    for (int64_t r = first; r <= last; r++) {
+        if (isnan(value[r])) return NAN;
+        least = fmin(least, value[r]);
+        most = fmax(most, value[r]);
+    }
+    switch (m->take) {
+    case BRUNT_TAKE_END: return value[last];
+    case BRUNT_TAKE_INITIAL: return value[first];
+    case BRUNT_TAKE_MIN: return least;
+    case BRUNT_TAKE_MAX: return most;
+    case BRUNT_TAKE_MAX_ABS: return fmax(fabs(least), fabs(most));
+    case BRUNT_TAKE_MEAN: {
+        // Over time, by trapezoids: lines need not be evenly spaced.
+        if (time[last] == time[first]) return value[first];
+        double area = 0;
+        for (int64_t r = first; r < last; r++) area += 0.5 * (value[r] + value[r + 1]) * (time[r + 1] - time[r]);
+        return area / (time[last] - time[first]);
+    }
+    case BRUNT_TAKE_SLOPE: {
+        double t0 = 0, v0 = 0, tt = 0, tv = 0;
+        for (int64_t r = first; r <= last; r++) t0 += time[r] / (double)count, v0 += value[r] / (double)count;
+        for (int64_t r = first; r <= last; r++) {
+            tt += (time[r] - t0) * (time[r] - t0);
+            tv += (time[r] - t0) * (value[r] - v0);
+        }
+        return count > 1 ? tv / tt : NAN;
+    }
+    case BRUNT_TAKE_FIRST_NONZERO:
+        for (int64_t r = first; r <= last; r++)
+            if (value[r] != 0) return time[r];
+        return NAN;
+    case BRUNT_TAKE_LAST_NONZERO:
+        for (int64_t r = last; r >= first; r--)
+            if (value[r] != 0) return time[r];
+        return NAN;
+    case BRUNT_TAKE_RISE:
+        for (int64_t r = first; most > 0 && r <= last; r++) {
+            if (!(value[r] >= 0.5 * most)) continue;
+            double share = r > first ? (0.5 * most - value[r - 1]) / (value[r] - value[r - 1]) : 1;
+            return r > first ? time[r - 1] + share * (time[r] - time[r - 1]) : time[r];
+        }
+        return NAN;
+    case BRUNT_TAKE_PERIOD: return period(time + first, value + first, count, least, most);
+    }
+    return NAN;
+}
+
+// Linear between the points x[i * stride], y[i * stride], which ascend and reach over `at`. `*near` is where the last
+// search ended: calls with ascending `at` walk through the points once.
+static double between(const double *x, const double *y, int stride, int64_t count, double at, int64_t *near) {
+    while (*near + 2 < count && x[(*near + 1) * stride] < at) ++*near;
+    const double *a = x + *near * stride, *b = a + stride, *ya = y + *near * stride;
+    if (count < 2 || at <= a[0]) return ya[0];
+    return at >= b[0] ? ya[stride] : ya[0] + (ya[stride] - ya[0]) * ((at - a[0]) / (b[0] - a[0]));
+}
+
+// The distance of the history, less `minus` over `divisor`, from the curve, over the curve's range. Both are linear
+// between their points, so that the greatest is at a point of either or at an end of the window. NAN where the history
+// has none: a run that ended before the window did.
+static int reduce_distance(const brunt_measure *m, const double *time, const double *value, int64_t rows,
+                           double divisor, double *out, brunt_error *error) {
+    const double(*points)[2] = (const double(*)[2])m->curve.points;
+    const int64_t count = m->curve.count;
+    const double slack = 1e-9 * fmax(fabs(m->from), fabs(m->to));
+    *out = NAN;
+    if (!rows || time[0] > m->from + slack || time[rows - 1] < m->to - slack) return BRUNT_OK;
+    double *at = brunt_alloc(2 * sizeof(double) * (size_t)(rows + count + 2)), least = INFINITY, most = -INFINITY;
+    if (!at) return brunt_fail(error, BRUNT_FAILED, "out of memory for measure '%s'", m->name);
+    double *distance = at + rows + count + 2;
+    int64_t used = 0, r = 0, c = 0;
+    at[used++] = m->from;
+    while (r < rows || c < count) {
+        double t = c >= count || (r < rows && time[r] <= points[c][0]) ? time[r++] : points[c++][0];
+        if (t > at[used - 1] && t < m->to) at[used++] = t;
+    }
+    at[used++] = m->to;
+    for (c = 0; c < count; c++) least = fmin(least, points[c][1]), most = fmax(most, points[c][1]);
+    int64_t row = 0, point = 0;
+    for (int64_t i = 0; i < used; i++) {
+        double h = (between(time, value, 1, rows, at[i], &row) - m->minus) / divisor;
+        distance[i] = (h - between(points[0], points[0] + 1, 2, count, at[i], &point)) / (most - least);
+    }
+    *out = reduce_history(m, at, distance, used);
+    brunt_free(at);
+    return BRUNT_OK;
+}
+
+static int take(const brunt_measure *m, measure_source *from, double *value, brunt_error *error) {
+    const double *column, *time;
+    int status = brunt_history_read(from->history, m->column, &column, error);
+    if (!status) status = brunt_history_read(from->history, "time", &time, error);
+    if (status) return status;
+    const int64_t rows = brunt_history_rows(from->history);
+    from->initial = rows ? column[0] : NAN;
+    if (!m->curve.count) {
+        *value = reduce_history(m, time, column, rows);
+        return BRUNT_OK;
+    }
+    const double divisor = (m->relative_to_initial ? from->initial : 1) * (isnan(m->relative_to) ? 1 : m->relative_to);
+    return reduce_distance(m, time, column, rows, divisor, value, error);
+}
+
+static int check(const brunt_measure *m, const measure_source *from, brunt_error *error) {
+    const brunt_history *history = from->history;
+    for (int32_t c = 0; c < brunt_history_column_count(history); c++) {
+        const char *unit = brunt_history_column_unit(history, c);
+        if (strcmp(brunt_history_column_name(history, c), m->column) != 0) continue;
+        if (!*m->curve_unit || measure_same_unit(unit, m->curve_unit)) return BRUNT_OK;
+        return brunt_fail(error, BRUNT_BAD_INPUT, "measures.%s: the curve is in %s, the history's column '%s' in %s",
+                          m->name, m->curve_unit, m->column, unit);
+    }
+    // Name the columns that begin alike ("body."), or the beginnings there are.
+    char names[700] = "";
+    size_t used = 0, group = strcspn(m->column, ".");
+    for (int pass = 0; pass < 2 && used == 0; pass++)
+        for (int32_t c = 0; c < brunt_history_column_count(history); c++) {
+            const char *name = brunt_history_column_name(history, c);
+            int length = (int)strcspn(name, ".");
+            bool alike = (size_t)length == group && !strncmp(name, m->column, group);
+            if (pass == 0 ? !alike
+                          : c > 0 && !strncmp(name, brunt_history_column_name(history, c - 1), (size_t)length + 1))
+                continue;
+            int wrote = snprintf(names + used, sizeof names - used, " %.*s", pass == 0 ? 200 : length, name);
+            if ((size_t)wrote >= sizeof names - used) break;
+            used += (size_t)wrote;
+        }
+    return brunt_fail(error, BRUNT_BAD_INPUT, "measures.%s: the history has no column '%s'; there are:%s", m->name,
+                      m->column, names);
+}
+
+const measure_kind measure_history = {.check = check, .take = take};

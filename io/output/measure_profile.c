@@ -1,0 +1,70 @@
+// Measure `profile`: distance of a field from a reference along an axis, by volume.
+#include "io/output/measure.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/error.h"
+#include "io/output/places.h"
+
+// The reference at a coordinate. Of a jump, its upper end at the coordinate itself.
+static double reference_at(const brunt_curve *reference, double at) {
+    const double(*p)[2] = (const double(*)[2])reference->points;
+    int32_t k = 0;
+    if (at < p[0][0]) return p[0][1];
+    while (k + 1 < reference->count && p[k + 1][0] <= at) k++;
+    if (k + 1 == reference->count) return p[k][1];
+    return p[k][1] + (p[k + 1][1] - p[k][1]) * ((at - p[k][0]) / (p[k + 1][0] - p[k][0]));
+}
+
+// Adds a body's share of the volume integrals of |field - reference| and |reference|.
+static void add_profile(const brunt_measure *m, const point_set *set, double *difference, double *whole) {
+    double axis[3];
+    measure_unit_axis(m, axis);
+    for (int64_t p = 0; p < set->count; p++) {
+        double along = 0;
+        for (int c = 0; c < 3; c++) along += (set->position[3 * p + c] - m->center[c]) * axis[c];
+        const double wanted = reference_at(&m->curve, along);
+        *difference += set->volume[p] * fabs(measure_value(m, set, p) - wanted);
+        *whole += set->volume[p] * fabs(wanted);
+    }
+}
+
+static int take(const brunt_measure *m, measure_source *from, double *value, brunt_error *error) {
+    brunt_world *world = from->world;
+    double difference = 0, whole = 0;
+    int found = 0;
+    for (int32_t body = 0; body < brunt_body_count(world); body++) {
+        if (*m->body && strcmp(brunt_body_name(world, body), m->body) != 0) continue;
+        if (!*m->body && brunt_body_find_field(world, body, m->field) < 0) continue;
+        point_set set;
+        int status = measure_read_points(m, world, body, &set, error);
+        if (status) return status;
+        add_profile(m, &set, &difference, &whole);
+        measure_free_points(&set);
+        found++;
+    }
+    if (!found) return brunt_fail(error, BRUNT_BAD_INPUT, "measures.%s: no body has a field '%s'", m->name, m->field);
+    *value = difference / whole;
+    return BRUNT_OK;
+}
+
+static int check(const brunt_measure *m, const measure_source *from, brunt_error *error) {
+    brunt_world *world = from->world;
+    if (m->take != BRUNT_TAKE_END)
+        return brunt_fail(error, BRUNT_BAD_INPUT, "measures.%s: a profile is measured at the end only", m->name);
+    if (!m->curve.count) return brunt_fail(error, BRUNT_BAD_INPUT, "measures.%s: a profile wants a reference", m->name);
+    if (*m->body && brunt_find_body(world, m->body) < 0)
+        return brunt_fail(error, BRUNT_BAD_INPUT, "measures.%s: there is no body '%s'", m->name, m->body);
+    for (int32_t body = 0; *m->curve_unit && body < brunt_body_count(world); body++) {
+        const int32_t field = brunt_body_find_field(world, body, m->field);
+        if (field < 0 || (*m->body && strcmp(brunt_body_name(world, body), m->body) != 0)) continue;
+        const char *unit = brunt_body_field(world, body, field).unit;
+        if (!measure_same_unit(unit, m->curve_unit))
+            return brunt_fail(error, BRUNT_BAD_INPUT, "measures.%s: the reference is in %s, the field '%s' in %s",
+                              m->name, m->curve_unit, m->field, unit);
+    }
+    return BRUNT_OK;
+}
+
+const measure_kind measure_profile = {.check = check, .take = take};
