@@ -17,9 +17,11 @@
 #include "base/array.h"
 #include "base/memory.h"
 #include "base/parallel.h"
-#include "world/world.h"
+#include "base/saved.h"
+#include "account/erosion.h"
 
 struct brunt_erosion_work {
+    int mesh_count;
     brunt_fem_single **single; // of each mesh that erodes
     const real **damage;       // of each mesh whose elements go when their material has failed, by slot
     int32_t *slots;            // room for those of one body
@@ -62,60 +64,55 @@ static int check(const brunt_body_def *def, brunt_error *error) {
     return BRUNT_OK;
 }
 
-static int find_body(const brunt_world *world, const char *name) {
-    for (int i = 0; i < world->bodies.count; i++)
-        if (!strcmp(brunt_body_name(world, i), name)) return i;
-    return -1;
-}
-
-static int make_mesh(brunt_world *world, brunt_fem_body *fem, bool by_failure, brunt_error *error) {
-    struct brunt_erosion_work *work = world->erosion.work;
-    const int k = (int)(fem - world->bodies.fem);
-    if (brunt_fem_erodes(fem, world->erosion.rule[fem->index].inverted) ||
-        !(work->single[k] = brunt_fem_single_make(fem)))
+static int make_mesh(brunt_erosion *erosion, const brunt_bodies *bodies, brunt_fem_body *fem, bool by_failure,
+                     brunt_error *error) {
+    struct brunt_erosion_work *work = erosion->work;
+    const int k = (int)(fem - bodies->fem);
+    if (brunt_fem_erodes(fem, erosion->rule[fem->index].inverted) || !(work->single[k] = brunt_fem_single_make(fem)))
         return brunt_fail(error, BRUNT_FAILED, "bodies.%s: out of memory", fem->name);
     if (by_failure) work->damage[k] = find_damage(fem);
     return BRUNT_OK;
 }
 
-static int allocate(brunt_world *world) {
-    const size_t all = (size_t)world->bodies.count, fems = (size_t)world->bodies.fem_count + 1;
-    struct brunt_erosion_work *work = world->erosion.work = brunt_alloc(sizeof *work);
-    world->erosion.account = brunt_alloc(all * sizeof *world->erosion.account);
-    world->erosion.rule = brunt_alloc(all * sizeof *world->erosion.rule);
-    if (!work || !world->erosion.account || !world->erosion.rule) return -1;
+static int allocate(brunt_erosion *erosion, const brunt_bodies *bodies, brunt_error *error) {
+    const size_t all = (size_t)bodies->count, fems = (size_t)bodies->fem_count + 1;
+    struct brunt_erosion_work *work = erosion->work = brunt_alloc(sizeof *work);
+    erosion->account = brunt_alloc(all * sizeof *erosion->account);
+    erosion->rule = brunt_alloc(all * sizeof *erosion->rule);
+    erosion->count = bodies->count;
+    erosion->active = true;
+    if (!work || !erosion->account || !erosion->rule) return brunt_fail(error, BRUNT_FAILED, "out of memory");
     size_t most = 1;
-    for (int k = 0; k < world->bodies.fem_count; k++)
-        most = (size_t)world->bodies.fem[k].slots > most ? (size_t)world->bodies.fem[k].slots : most;
+    for (int k = 0; k < bodies->fem_count; k++)
+        most = (size_t)bodies->fem[k].slots > most ? (size_t)bodies->fem[k].slots : most;
+    work->mesh_count = bodies->fem_count;
     work->single = brunt_alloc(fems * sizeof *work->single);
     work->damage = brunt_alloc(fems * sizeof *work->damage);
     work->slots = brunt_alloc(most * sizeof *work->slots);
-    return work->single && work->damage && work->slots ? 0 : -1;
+    return work->single && work->damage && work->slots ? BRUNT_OK : brunt_fail(error, BRUNT_FAILED, "out of memory");
 }
 
-int brunt_erosion_make(brunt_world *world, const brunt_world_def *def, brunt_error *error) {
+int brunt_erosion_make(brunt_erosion *erosion, const brunt_bodies *bodies, const brunt_world_def *def,
+                       brunt_error *error) {
     for (int q = 0; q < def->body_count; q++) {
         const brunt_body_def *body = &def->bodies[q];
-        const brunt_erosion_def *erosion = &body->erosion;
+        const brunt_erosion_def *rule = &body->erosion;
         int status = check(body, error);
         if (status) return status;
-        const int i = find_body(world, body->name);
-        const brunt_body *mpm = world->bodies.all[i].mpm; // has its part since it was made
-        const bool by_failure = !mpm && fails(&world->bodies.all[i].fem->material, &def->materials[body->material]);
-        if (mpm ? !mpm->erodes : !by_failure && isinf(erosion->strain) && !(erosion->step > 0) && !erosion->inverted)
-            continue;
-        if (!world->erosion.active && allocate(world)) return brunt_fail(error, BRUNT_FAILED, "out of memory");
-        world->erosion.active = true;
-        world->erosion.rule[i] = *erosion;
-        if (!mpm) status = make_mesh(world, world->bodies.all[i].fem, by_failure, error);
-        if (status) return status;
+        const int i = brunt_bodies_find(bodies, body->name);
+        const brunt_body *mpm = bodies->all[i].mpm; // has its part since it was made
+        const bool by_failure = !mpm && fails(&bodies->all[i].fem->material, &def->materials[body->material]);
+        if (mpm ? !mpm->erodes : !by_failure && isinf(rule->strain) && !(rule->step > 0) && !rule->inverted) continue;
+        if (!erosion->active && (status = allocate(erosion, bodies, error))) return status;
+        erosion->rule[i] = *rule;
+        if (!mpm && (status = make_mesh(erosion, bodies, bodies->all[i].fem, by_failure, error))) return status;
     }
     return BRUNT_OK;
 }
 
-void brunt_erosion_free(brunt_world *world) {
-    struct brunt_erosion_work *work = world->erosion.work;
-    for (int k = 0; work && work->single && k < world->bodies.fem_count; k++) brunt_fem_single_free(work->single[k]);
+void brunt_erosion_free(brunt_erosion *erosion) {
+    struct brunt_erosion_work *work = erosion->work;
+    for (int k = 0; work && work->single && k < work->mesh_count; k++) brunt_fem_single_free(work->single[k]);
     if (work) {
         brunt_free(work->single);
         brunt_free(work->damage);
@@ -123,12 +120,16 @@ void brunt_erosion_free(brunt_world *world) {
         brunt_free(work->corner);
     }
     brunt_free(work);
-    brunt_free(world->erosion.account);
-    brunt_free(world->erosion.rule);
+    brunt_free(erosion->account);
+    brunt_free(erosion->rule);
 }
 
-void brunt_body_eroded(const brunt_world *world, int32_t body, brunt_eroded *eroded) {
-    *eroded = world->erosion.account ? world->erosion.account[body] : (brunt_eroded){0};
+void brunt_erosion_validate(const brunt_erosion *erosion) {
+    BRUNT_ASSERT(erosion->active ? erosion->account && erosion->rule && erosion->work : !erosion->account);
+    for (int i = 0; erosion->active && i < erosion->count; i++) {
+        const brunt_eroded *e = &erosion->account[i];
+        BRUNT_ASSERT(e->elements >= 0 && e->particles >= 0 && e->nodes >= 0 && e->mass >= 0);
+    }
 }
 
 // ------------------------------------------------------------------------------------------ which go
@@ -142,62 +143,76 @@ static void mark_failed(brunt_fem_body *fem, int32_t b, const real *damage) {
     }
 }
 
+typedef struct mark_job {
+    const brunt_erosion *erosion;
+    const brunt_bodies *bodies;
+} mark_job;
+
 static void mark_blocks(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
-    const brunt_world *world = context;
+    const mark_job *j = context;
     for (int64_t t = begin; t < end; t++) {
-        const brunt_fem_task *task = &world->bodies.tasks.element[t];
-        brunt_fem_body *fem = &world->bodies.fem[task->fem];
+        const brunt_fem_task *task = &j->bodies->tasks.element[t];
+        brunt_fem_body *fem = &j->bodies->fem[task->fem];
         if (!fem->bonds || !fem->block[task->begin].count) continue;
-        const real *damage = world->erosion.work->damage[task->fem];
+        const real *damage = j->erosion->work->damage[task->fem];
         if (damage && fem->report[task->begin].failed) mark_failed(fem, task->begin, damage);
-        const double limit = world->erosion.rule[fem->index].strain;
+        const double limit = j->erosion->rule[fem->index].strain;
         if (isfinite(limit)) brunt_fem_mark_strained(fem, task->begin, limit);
     }
 }
 
 // Elements below the least step of a block that has such.
-static void mark_short(brunt_world *world, int k, int32_t b) {
-    brunt_fem_body *fem = &world->bodies.fem[k];
-    const double least = world->erosion.rule[fem->index].step;
+static void mark_short(const brunt_erosion *erosion, const brunt_erosion_step *step, int k, int32_t b) {
+    brunt_fem_body *fem = &step->bodies->fem[k];
+    const double least = erosion->rule[fem->index].step;
     const brunt_fem_block *block = &fem->block[b];
     for (int32_t s = block->first; s < block->first + block->count; s++) {
         if (fem->mark[s] != BRUNT_MARK_NONE) continue;
-        brunt_fem_share share =
-            brunt_fem_single_look(world->erosion.work->single[k], fem, s, 0, 0, &world->scratch.meshes[0]);
+        brunt_fem_share share = brunt_fem_single_look(erosion->work->single[k], fem, s, 0, 0, step->room);
         if (!(share.stable_step < least)) continue;
         fem->mark[s] = BRUNT_MARK_SHORT;
         fem->report[b].marked++;
     }
 }
 
-static int32_t list_marked(brunt_world *world, int k) {
-    brunt_fem_body *fem = &world->bodies.fem[k];
+void brunt_erosion_mark_elements(const brunt_erosion *erosion, const brunt_erosion_step *step) {
+    mark_job j = {erosion, step->bodies};
+    brunt_parallel(step->threads, step->bodies->tasks.element_count, 1, mark_blocks, &j, step->timer);
+    for (int k = 0; k < step->bodies->fem_count; k++) {
+        const brunt_fem_body *fem = &step->bodies->fem[k];
+        const double least = fem->bonds ? erosion->rule[fem->index].step : 0;
+        for (int32_t b = 0; least > 0 && b < fem->block_count; b++)
+            if (fem->block[b].count && fem->report[b].stable_step < least) mark_short(erosion, step, k, b);
+    }
+}
+
+static int32_t list_marked(struct brunt_erosion_work *work, const brunt_fem_body *fem) {
     int32_t count = 0;
     for (int32_t b = 0; b < fem->block_count; b++) {
         const brunt_fem_block *block = &fem->block[b];
         for (int32_t s = block->first; fem->report[b].marked && s < block->first + block->count; s++)
-            if (fem->mark[s] != BRUNT_MARK_NONE) world->erosion.work->slots[count++] = s;
+            if (fem->mark[s] != BRUNT_MARK_NONE) work->slots[count++] = s;
     }
     return count;
 }
 
 // ------------------------------------------------------------------------------------------ what goes with them
 
-static void book_elements(brunt_world *world, int k, int32_t count, double dt) {
-    brunt_fem_body *fem = &world->bodies.fem[k];
-    brunt_eroded *account = &world->erosion.account[fem->index];
+static void book_elements(brunt_erosion *erosion, const brunt_erosion_step *step, int k, int32_t count) {
+    brunt_fem_body *fem = &step->bodies->fem[k];
+    brunt_eroded *account = &erosion->account[fem->index];
     for (int32_t i = 0; i < count; i++) {
-        const int32_t slot = world->erosion.work->slots[i];
+        const int32_t slot = erosion->work->slots[i];
         const uint8_t mark = fem->mark[slot];
         const bool turned = mark == BRUNT_MARK_INVERTED;
-        brunt_fem_share share = brunt_fem_single_look(world->erosion.work->single[k], fem, slot, turned ? dt : 0, dt,
-                                                      &world->scratch.meshes[0]);
+        brunt_fem_share share =
+            brunt_fem_single_look(erosion->work->single[k], fem, slot, turned ? step->dt : 0, step->dt, step->room);
         account->energy +=
             share.energy.internal + share.hourglass_stored + (turned ? share.half_work : -share.half_work);
-        world->ledger.eroded_plastic += share.energy.plastic;
-        world->ledger.eroded_viscosity += share.energy.viscosity;
-        world->ledger.eroded_heat += share.energy.heat;
+        step->ledger->eroded_plastic += share.energy.plastic;
+        step->ledger->eroded_viscosity += share.energy.viscosity;
+        step->ledger->eroded_heat += share.energy.heat;
         account->elements++;
         account->inverted += turned;
         account->failed += mark == BRUNT_MARK_FAILED;
@@ -207,8 +222,8 @@ static void book_elements(brunt_world *world, int k, int32_t count, double dt) {
     }
 }
 
-static void book_node(brunt_world *world, brunt_fem_body *fem, int32_t n) {
-    brunt_eroded *account = &world->erosion.account[fem->index];
+static void book_node(brunt_eroded *account, brunt_ledger *ledger, brunt_fem_body *fem, int32_t n) {
+    const bool rings = fem->element->axisymmetric;
     real *node = brunt_fem_node(fem, n);
     const double mass = (double)node[BRUNT_FEM_MASS];
     double x[3], p[3], kinetic = 0;
@@ -218,15 +233,15 @@ static void book_node(brunt_world *world, brunt_fem_body *fem, int32_t n) {
         kinetic += 0.5 * mass * v * v;
         node[BRUNT_FEM_V + a] = 0;
     }
-    if (world->settings.axisymmetric) p[0] = 0; // of a whole ring
+    if (rings) p[0] = 0; // of a whole ring
     for (int a = 0; a < 3; a++) {
         const int b = (a + 1) % 3, c = (a + 2) % 3;
         account->momentum[a] += p[a];
-        if (!world->settings.axisymmetric) account->angular[a] += x[b] * p[c] - x[c] * p[b];
+        if (!rings) account->angular[a] += x[b] * p[c] - x[c] * p[b];
     }
     account->mass += mass;
     account->energy += kinetic;
-    world->ledger.fem_kinetic -= kinetic;
+    ledger->fem_kinetic -= kinetic;
     node[BRUNT_FEM_MASS] = (real)BRUNT_FEM_NO_MASS;
 }
 
@@ -236,8 +251,7 @@ static int ascending(const void *left, const void *right) {
 }
 
 // Nodes of the elements that go, each once, ascending. Their count, or -1: out of memory.
-static int32_t list_corners(brunt_world *world, const brunt_fem_body *fem, int32_t count) {
-    struct brunt_erosion_work *work = world->erosion.work;
+static int32_t list_corners(struct brunt_erosion_work *work, const brunt_fem_body *fem, int32_t count) {
     const int nodes = fem->traits->nodes;
     if (BRUNT_RESERVE(work->corner, (size_t)count * (size_t)nodes, 0)) return -1;
     int32_t found = 0;
@@ -250,104 +264,90 @@ static int32_t list_corners(brunt_world *world, const brunt_fem_body *fem, int32
     return once;
 }
 
-static int gas_escapes(brunt_world *world, const brunt_fem_body *fem, const brunt_node_set *hold, int32_t element,
-                       brunt_error *error) {
+static int gas_escapes(const brunt_node_set *set, const brunt_erosion_step *step, int32_t element, brunt_error *error) {
+    const char *body = set->fem->name;
     brunt_fail(error, BRUNT_FAILED,
                "boundaries (%s): the envelope of the gas has lost element %d of body '%s', time %.9g s, step %.0f: "
                "gas does not flow out through holes",
-               hold->wall->name, element + 1, fem->name, world->clock.time, world->clock.steps);
+               set->wall->name, element + 1, body, step->time, step->steps);
     if (error) {
-        error->time = world->clock.time;
+        error->time = step->time;
         error->id = element;
-        memcpy(error->body, fem->name, sizeof error->body < sizeof fem->name ? sizeof error->body : sizeof fem->name);
+        const size_t room = sizeof error->body < sizeof set->fem->name ? sizeof error->body : sizeof set->fem->name;
+        memcpy(error->body, body, room);
     }
     return BRUNT_FAILED;
 }
 
-static int erode(brunt_world *world, int k, int32_t count, double dt, brunt_error *error) {
-    brunt_fem_body *fem = &world->bodies.fem[k];
-    struct brunt_erosion_work *work = world->erosion.work;
-    const int32_t corners = list_corners(world, fem, count);
+static int take_out(brunt_erosion *erosion, const brunt_erosion_step *step, int k, int32_t count, brunt_error *error) {
+    brunt_fem_body *fem = &step->bodies->fem[k];
+    struct brunt_erosion_work *work = erosion->work;
+    brunt_eroded *account = &erosion->account[fem->index];
+    const int32_t corners = list_corners(work, fem, count);
     if (corners < 0) return brunt_fail(error, BRUNT_FAILED, "bodies.%s: out of memory", fem->name);
-    book_elements(world, k, count, dt);
-    brunt_fem_remove(fem, work->slots, count, &world->scratch.meshes[0]);
+    book_elements(erosion, step, k, count);
+    brunt_fem_remove(fem, work->slots, count, step->room);
     for (int32_t i = 0; i < corners; i++) {
         if (fem->bonds[work->corner[i]]) continue;
-        world->erosion.account[fem->index].nodes++;
-        if (!world->erosion.rule[fem->index].keep) book_node(world, fem, work->corner[i]);
+        account->nodes++;
+        if (!erosion->rule[fem->index].keep) book_node(account, step->ledger, fem, work->corner[i]);
     }
     int32_t element;
-    const brunt_node_set *gas = brunt_node_sets_follow(&world->boundaries.sets, fem, &element);
-    return gas ? gas_escapes(world, fem, gas, element, error) : BRUNT_OK;
+    const brunt_node_set *gas = brunt_node_sets_follow(step->sets, fem, &element);
+    return gas ? gas_escapes(gas, step, element, error) : BRUNT_OK;
 }
 
 // The half steps of the ledger, of what is left.
-static void renew_sums(brunt_world *world, double dt) {
+static void renew_sums(const brunt_erosion_step *step) {
     double work = 0, stored = 0;
-    for (int k = 0; k < world->bodies.fem_count; k++)
-        for (int32_t b = 0; b < world->bodies.fem[k].block_count; b++) {
-            brunt_fem_report *report = &world->bodies.fem[k].report[b];
-            if (report->marked) report->stress_work = brunt_fem_stress_work(&world->bodies.fem[k], b, dt);
+    for (int k = 0; k < step->bodies->fem_count; k++) {
+        brunt_fem_body *fem = &step->bodies->fem[k];
+        for (int32_t b = 0; b < fem->block_count; b++) {
+            brunt_fem_report *report = &fem->report[b];
+            if (report->marked) report->stress_work = brunt_fem_stress_work(fem, b, step->dt);
             report->marked = 0;
             work += report->stress_work;
             stored += report->hourglass_stored;
         }
-    world->ledger.fem_stress_work = work;
-    world->ledger.hourglass_stored = stored;
+    }
+    step->ledger->fem_stress_work = work;
+    step->ledger->hourglass_stored = stored;
 }
 
-int brunt_erode_marked(brunt_world *world, double dt, brunt_error *error) {
-    bool any = false;
-    for (int k = 0; k < world->bodies.fem_count; k++) {
-        const int32_t count = world->bodies.fem[k].bonds ? list_marked(world, k) : 0;
+int brunt_erosion_take_elements(brunt_erosion *erosion, const brunt_erosion_step *step, bool *any, brunt_error *error) {
+    *any = false;
+    for (int k = 0; k < step->bodies->fem_count; k++) {
+        const brunt_fem_body *fem = &step->bodies->fem[k];
+        const int32_t count = fem->bonds ? list_marked(erosion->work, fem) : 0;
         if (!count) continue;
-        any = true;
-        int status = erode(world, k, count, dt, error);
+        *any = true;
+        int status = take_out(erosion, step, k, count, error);
         if (status) return status;
     }
-    if (!any) return BRUNT_OK;
-    renew_sums(world, dt);
-    return world->contact.has_surfaces ? brunt_surfaces_renew(world, error) : BRUNT_OK;
-}
-
-int brunt_erode_meshes(brunt_world *world, double dt, brunt_error *error) {
-    brunt_parallel(world->settings.threads, world->bodies.tasks.element_count, 1, mark_blocks, world,
-                   brunt_pass_timer(world));
-    for (int k = 0; k < world->bodies.fem_count; k++) {
-        const brunt_fem_body *fem = &world->bodies.fem[k];
-        const double least = fem->bonds ? world->erosion.rule[fem->index].step : 0;
-        for (int32_t b = 0; least > 0 && b < fem->block_count; b++)
-            if (fem->block[b].count && fem->report[b].stable_step < least) mark_short(world, k, b);
-    }
-    return brunt_erode_marked(world, dt, error);
+    if (*any) renew_sums(step);
+    return BRUNT_OK;
 }
 
 // ------------------------------------------------------------------------------------------ to be kept
 
-enum { ACCOUNT_DOUBLES = 15 };
+#define EACH(member) BRUNT_SAVED(brunt_eroded, member)
+#define AXIS(member, a)                                                                                                \
+    { #member, offsetof(brunt_eroded, member[a]), 1, false }
+static const brunt_saved saved[] = {
+    EACH(elements),   EACH(particles),   EACH(nodes),      EACH(failed),      EACH(strained),
+    EACH(short_step), EACH(inverted),    EACH(mass),       EACH(energy),      AXIS(momentum, 0),
+    AXIS(angular, 0), AXIS(momentum, 1), AXIS(angular, 1), AXIS(momentum, 2), AXIS(angular, 2),
+};
+enum { ROWS = BRUNT_SAVED_ROWS(saved) };
 
-int64_t brunt_erosion_state_count(const brunt_world *world) {
-    return world->erosion.active ? (int64_t)world->bodies.count * ACCOUNT_DOUBLES : 0;
+int64_t brunt_erosion_state_count(const brunt_erosion *erosion) {
+    return erosion->active ? erosion->count * brunt_saved_count(saved, ROWS) : 0;
 }
 
-void brunt_erosion_state_get(const brunt_world *world, double *out) {
-    for (int i = 0; i < world->bodies.count; i++) {
-        const brunt_eroded *e = &world->erosion.account[i];
-        const double counts[] = {(double)e->elements, (double)e->particles,  (double)e->nodes,   (double)e->failed,
-                                 (double)e->strained, (double)e->short_step, (double)e->inverted};
-        for (int c = 0; c < 7; c++) *out++ = counts[c];
-        *out++ = e->mass, *out++ = e->energy;
-        for (int a = 0; a < 3; a++) *out++ = e->momentum[a], *out++ = e->angular[a];
-    }
+void brunt_erosion_state_get(const brunt_erosion *erosion, double *out) {
+    for (int i = 0; i < erosion->count; i++) out = brunt_saved_get(saved, ROWS, &erosion->account[i], out);
 }
 
-void brunt_erosion_state_set(brunt_world *world, const double *in) {
-    for (int i = 0; i < world->bodies.count; i++) {
-        brunt_eroded *e = &world->erosion.account[i];
-        int64_t *const counts[] = {&e->elements, &e->particles,  &e->nodes,   &e->failed,
-                                   &e->strained, &e->short_step, &e->inverted};
-        for (int c = 0; c < 7; c++) *counts[c] = (int64_t)*in++;
-        e->mass = *in++, e->energy = *in++;
-        for (int a = 0; a < 3; a++) e->momentum[a] = *in++, e->angular[a] = *in++;
-    }
+void brunt_erosion_state_set(brunt_erosion *erosion, const double *in) {
+    for (int i = 0; i < erosion->count; i++) in = brunt_saved_set(saved, ROWS, &erosion->account[i], in);
 }

@@ -14,7 +14,8 @@
 #include "base/simd.h"
 #include "materials/log_strain.h"
 #include "base/parallel.h"
-#include "world/world.h"
+#include "account/erosion.h"
+#include "mpm/transfer.h"
 
 enum { BLOCK_GRAIN = 4 };
 
@@ -119,12 +120,12 @@ static brunt_point_energy energy_of(brunt_body *body, const int64_t *slots, int6
     return energy;
 }
 
-static void book_loss(brunt_world *world, brunt_body *body, const int64_t *slots, int64_t count,
-                      brunt_eroded *account) {
+static void book_loss(brunt_body *body, const int64_t *slots, int64_t count, brunt_eroded *account,
+                      brunt_ledger *ledger) {
     brunt_audit lost = brunt_slots_audit(body, slots, count);
     account->mass += lost.mass;
     account->energy += lost.kinetic;
-    world->ledger.kinetic -= lost.kinetic;
+    ledger->kinetic -= lost.kinetic;
     for (int k = 0; k < 3; k++) account->momentum[k] += lost.linear[k], account->angular[k] += lost.angular[k];
 }
 
@@ -144,27 +145,25 @@ static void take_out(brunt_body *body, const int64_t *slots, int64_t count) {
     p->holes = true;
 }
 
-static void erode(brunt_world *world, brunt_body *body) {
-    job j = {body, body->fails ? find_damage(body) : NULL, world->erosion.rule[body->index].strain};
+static void erode(brunt_erosion *erosion, const brunt_erosion_step *step, brunt_body *body) {
+    job j = {body, body->fails ? find_damage(body) : NULL, erosion->rule[body->index].strain};
     int64_t *slots = body->particles.spare_id; // free until the next sort
-    brunt_eroded *account = &world->erosion.account[body->index];
-    brunt_parallel(world->settings.threads, body->grid.block_count, BLOCK_GRAIN, mark_blocks, &j,
-                   brunt_pass_timer(world));
+    brunt_eroded *account = &erosion->account[body->index];
+    brunt_ledger *ledger = step->ledger;
+    brunt_parallel(step->threads, body->grid.block_count, BLOCK_GRAIN, mark_blocks, &j, step->timer);
     const int64_t count = list_leaving(body, slots, account);
     if (!count) return;
     brunt_point_energy energy = energy_of(body, slots, count);
     account->particles += count;
     account->energy += energy.internal;
-    world->ledger.eroded_plastic += energy.plastic;
-    world->ledger.eroded_viscosity += energy.viscosity;
-    world->ledger.eroded_heat += energy.heat;
-    if (!body->keeps) book_loss(world, body, slots, count, account);
+    ledger->eroded_plastic += energy.plastic;
+    ledger->eroded_viscosity += energy.viscosity;
+    ledger->eroded_heat += energy.heat;
+    if (!body->keeps) book_loss(body, slots, count, account, ledger);
     take_out(body, slots, count);
 }
 
-int brunt_erode_particles(brunt_world *world, double dt, brunt_error *error) {
-    (void)dt, (void)error;
-    for (int i = 0; i < world->bodies.mpm_count; i++)
-        if (world->bodies.mpm[i].erodes) erode(world, &world->bodies.mpm[i]);
-    return BRUNT_OK;
+void brunt_erosion_take_points(brunt_erosion *erosion, const brunt_erosion_step *step) {
+    for (int i = 0; i < step->bodies->mpm_count; i++)
+        if (step->bodies->mpm[i].erodes) erode(erosion, step, &step->bodies->mpm[i]);
 }

@@ -2,6 +2,8 @@
 #pragma once
 
 #include "boundary/damping.h"
+#include "contact/contact.h"
+#include "contact/surface/contact_surface.h"
 
 typedef struct brunt_ledger {
     double kinetic;                                                        // of the particles [J]
@@ -16,3 +18,23 @@ typedef struct brunt_ledger {
     double eroded_plastic, eroded_viscosity, eroded_heat; // [J] dissipated by what has been eroded since
     double rounding_energy; // [J] a step: what rounding may do, follows from the bodies at the start
 } brunt_ledger;
+
+// What the balance goes over besides the ledger.
+typedef struct brunt_books {
+    const brunt_bodies *bodies;
+    const brunt_wall *walls;
+    int wall_count;
+    const brunt_pair *pairs;
+    int pair_count;
+    const brunt_eroded *eroded;           // a body each; NULL without erosion
+    const brunt_contact_surface *surface; // of meshes
+    double steps;                         // so far
+    bool axisymmetric;
+} brunt_books;
+
+// Energy and momenta as the bodies are at the start. Takes `hourglass_stored` as it is.
+void brunt_ledger_open(brunt_ledger *ledger, const brunt_books *books);
+// Keeps the most that the run has been given so far; once a step.
+void brunt_ledger_remember(brunt_ledger *ledger, const brunt_books *books);
+void brunt_ledger_energy(const brunt_ledger *ledger, const brunt_books *books, brunt_energy *energy);
+void brunt_ledger_momentum(const brunt_ledger *ledger, const brunt_books *books, brunt_momentum *momentum);

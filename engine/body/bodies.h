@@ -3,11 +3,30 @@
 
 #include "fem/fem_body.h"
 #include "mpm/mpm_body.h"
+#include "mpm/transfer.h"
+
+typedef struct brunt_body_ops brunt_body_ops;
 
 typedef struct brunt_body_ref {
+    const brunt_body_ops *ops;
     brunt_body *mpm; // one of the two, the other is NULL
     brunt_fem_body *fem;
 } brunt_body_ref;
+
+// What can be asked of a body, whatever it is made of: a table each for points and meshes.
+struct brunt_body_ops {
+    brunt_audit (*sums)(const brunt_body_ref *body); // mass, momenta, kinetic energy; centre, NAN without mass
+    brunt_point_energy (*energy)(const brunt_body_ref *body);
+    void (*bounds)(const brunt_body_ref *body, double low[3],
+                   double high[3]);               // [m]; INFINITY and less: nothing is left
+    uint64_t (*hash)(const brunt_body_ref *body); // to be added to that of the others
+    // Blocks of its state, in their order: how many; what they are; out, and in. What follows from them is made later.
+    int (*block_count)(const brunt_body_ref *body);
+    brunt_state_block (*block_info)(const brunt_body_ref *body, int block);
+    void (*block_get)(const brunt_body_ref *body, int block, void *out);
+    int (*block_set)(const brunt_body_ref *body, int block, const void *in, int64_t count, brunt_error *error);
+};
+extern const brunt_body_ops brunt_points_ops, brunt_mesh_ops;
 
 // A run of nodes or a block of elements of one of the finite-element bodies: a task.
 typedef struct brunt_fem_task {
@@ -33,3 +52,11 @@ typedef struct brunt_bodies {
 } brunt_bodies;
 
 const char *brunt_bodies_name(const brunt_bodies *bodies, int body);
+// The body of a name, -1: there is none.
+int brunt_bodies_find(const brunt_bodies *bodies, const char *name);
+const brunt_material *brunt_body_ref_material(const brunt_body_ref *body);
+// How fine it is [m]: the spacing of its points, the mean edge of its surface.
+double brunt_body_ref_size(const brunt_body_ref *body);
+// Body `i` in the order that sums are taken in: points, then meshes, each by name.
+brunt_body_ref *brunt_bodies_summed(const brunt_bodies *bodies, int i);
+void brunt_bodies_validate(const brunt_bodies *bodies);

@@ -260,6 +260,8 @@ void brunt_fem_kick(brunt_fem_body *body, int32_t begin, int32_t end, double dt,
                     brunt_fem_sums *sums);
 // Moves nodes [begin, end) by dt v. Fills its part of `sums`, leaves the rest.
 void brunt_fem_drift(brunt_fem_body *body, int32_t begin, int32_t end, double dt, brunt_fem_sums *sums);
+// The sums of a whole body as it is: mass, momenta, kinetic energy.
+brunt_fem_sums brunt_fem_audit(brunt_fem_body *body);
 
 // The faces of a body's surface: those that only one element has. Nodes (of this body) as in brunt_element.face, the
 // 4th is -1 for triangles, 3rd and 4th for 2D; `element` is a slot. Ordered by slot and face. Of a sheet, each of its

@@ -74,3 +74,9 @@ void brunt_fem_drift(brunt_fem_body *body, int32_t begin, int32_t end, double dt
     sums->scale_angular = turning;
     sums->speed = sqrt(fastest);
 }
+
+brunt_fem_sums brunt_fem_audit(brunt_fem_body *fem) {
+    brunt_fem_sums sums = {0};
+    brunt_fem_drift(fem, 0, fem->node_count, 0, &sums);
+    return sums;
+}

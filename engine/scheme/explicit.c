@@ -84,7 +84,7 @@ static int64_t all_eroded(const brunt_world *world) {
 static int erode(brunt_world *world, brunt_step *step, brunt_error *error) {
     const int64_t before = all_eroded(world);
     int status = world->bodies.fem_count ? brunt_erode_meshes(world, step->dt, error) : BRUNT_OK;
-    if (!status && world->bodies.mpm_count) status = brunt_erode_particles(world, step->dt, error);
+    if (!status && world->bodies.mpm_count) brunt_erode_particles(world);
     if (all_eroded(world) > before)
         world->clock.recent_step = world->clock.earlier_step = INFINITY; // what left swings no more
     return status;
@@ -101,7 +101,8 @@ static int account(brunt_world *world, brunt_step *s, brunt_error *error) {
         brunt_impulse_account_add(&world->boundaries.walls[w].action, &world->boundaries.walls[w].last);
     for (int p = 0; p < world->pairs.count; p++)
         brunt_impulse_account_add(&world->pairs.pair[p].action, &world->pairs.pair[p].last);
-    brunt_ledger_remember(world);
+    const brunt_books books = brunt_books_of(world);
+    brunt_ledger_remember(&world->ledger, &books);
     double stop = fmin(s->limit > now->time ? s->limit : INFINITY, world->settings.end);
     now->time = s->dt == stop - now->time ? stop : now->time + s->dt;
     now->steps += 1;

@@ -190,12 +190,6 @@ brunt_fem_body *brunt_fem_elements_all(brunt_world *world, double dt, int32_t *b
     return failed;
 }
 
-brunt_fem_sums brunt_fem_audit(brunt_fem_body *fem) {
-    brunt_fem_sums sums = {0};
-    brunt_fem_drift(fem, 0, fem->node_count, 0, &sums);
-    return sums;
-}
-
 static double blocks_step(const brunt_fem_body *fem) {
     double least = INFINITY;
     for (int32_t b = 0; b < fem->block_count; b++) {

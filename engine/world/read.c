@@ -1,4 +1,5 @@
 // Reading a body's fields, whatever it is made of.
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -123,4 +124,43 @@ brunt_element_kind brunt_body_element(const brunt_world *world, int32_t body) {
 }
 void brunt_body_mesh(const brunt_world *world, int32_t body, brunt_mesh_report *report) {
     *report = world->bodies.mesh_reports[world->bodies.all[body].fem - world->bodies.fem];
+}
+
+// ------------------------------------------------------------------------------------------ the balance
+
+brunt_books brunt_books_of(const brunt_world *world) {
+    return (brunt_books){.bodies = &world->bodies,
+                         .walls = world->boundaries.walls,
+                         .wall_count = world->boundaries.wall_count,
+                         .pairs = world->pairs.pair,
+                         .pair_count = world->pairs.count,
+                         .eroded = world->erosion.account,
+                         .surface = &world->contact.surface,
+                         .steps = world->clock.steps,
+                         .axisymmetric = world->settings.axisymmetric};
+}
+
+void brunt_world_energy(brunt_world *world, brunt_energy *energy) {
+    const brunt_books books = brunt_books_of(world);
+    brunt_ledger_energy(&world->ledger, &books, energy);
+}
+
+void brunt_world_momentum(brunt_world *world, brunt_momentum *momentum) {
+    const brunt_books books = brunt_books_of(world);
+    brunt_ledger_momentum(&world->ledger, &books, momentum);
+}
+
+void brunt_body_totals(brunt_world *world, int32_t index, brunt_body_sums *sums) {
+    const brunt_body_ref *body = &world->bodies.all[index];
+    const brunt_audit a = body->ops->sums(body);
+    const brunt_point_energy e = body->ops->energy(body);
+    *sums = (brunt_body_sums){.mass = a.mass, .kinetic = a.kinetic, .internal = e.internal, .plastic = e.plastic};
+    for (int k = 0; k < 3; k++) {
+        const bool there = k < world->settings.dimension;
+        sums->momentum[k] = a.linear[k];
+        sums->centre[k] = a.centre[k];
+        sums->velocity[k] = a.mass > 0 ? a.linear[k] / a.mass : 0;
+        sums->low[k] = there ? INFINITY : 0, sums->high[k] = there ? -INFINITY : 0;
+    }
+    body->ops->bounds(body, sums->low, sums->high);
 }

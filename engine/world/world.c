@@ -192,7 +192,7 @@ static int set_erosion(const brunt_world_def *def, const brunt_body_def *from, i
 static int make_particles(brunt_world *world, const brunt_world_def *def, const brunt_body_def *from,
                           const brunt_filled *filled, const double origin[3], int index, brunt_error *error) {
     brunt_body *body = &world->bodies.mpm[world->bodies.mpm_count++];
-    world->bodies.all[index].mpm = body;
+    world->bodies.all[index] = (brunt_body_ref){.ops = &brunt_points_ops, .mpm = body};
     memcpy(body->name, from->name, sizeof body->name);
     body->index = index;
     body->spacing = lattice_spacing(def, from);
@@ -229,7 +229,7 @@ static int make_elements(brunt_world *world, const brunt_world_def *def, const b
                          brunt_error *error) {
     brunt_fem_body *fem = &world->bodies.fem[world->bodies.fem_count];
     brunt_mesh_report *report = &world->bodies.mesh_reports[world->bodies.fem_count++];
-    world->bodies.all[index].fem = fem;
+    world->bodies.all[index] = (brunt_body_ref){.ops = &brunt_mesh_ops, .fem = fem};
     brunt_mesh made = {0};
     brunt_material material;
     const bool sheet = from->method == BRUNT_MEMBRANE;
@@ -608,31 +608,11 @@ static int start(brunt_world *world, brunt_error *error) {
     if (brunt_fem_elements_all(world, 0, &bad, &reason))
         return brunt_fail(error, BRUNT_BAD_INPUT, "a mesh: %s", reason);
     struct brunt_clock *clock = &world->clock;
-    brunt_ledger *now = &world->ledger;
     clock->next_dt = clock->dt = clock->recent_step = clock->earlier_step = brunt_stable_step(world);
     if (world->settings.fixed_step > 0) clock->dt = world->settings.fixed_step;
     clock->dt_min = INFINITY;
-    for (int i = 0; i < world->bodies.mpm_count; i++) {
-        brunt_audit a = brunt_body_audit(&world->bodies.mpm[i]);
-        now->initial_energy += a.kinetic + brunt_body_energy(&world->bodies.mpm[i]).internal;
-        now->initial_kinetic += a.kinetic;
-        now->scale_linear += a.scale_linear;
-        now->scale_angular += a.scale_angular;
-        for (int k = 0; k < 3; k++) now->linear_initial[k] += a.linear[k], now->angular_initial[k] += a.angular[k];
-    }
-    now->kinetic = now->initial_kinetic;
-    for (int k = 0; k < world->bodies.fem_count; k++) {
-        brunt_fem_sums a = brunt_fem_audit(&world->bodies.fem[k]);
-        now->fem_kinetic += a.kinetic;
-        now->initial_kinetic += a.kinetic;
-        now->initial_energy += a.kinetic + brunt_fem_energy(&world->bodies.fem[k]).internal;
-        now->scale_linear += a.scale_linear;
-        now->scale_angular += a.scale_angular;
-        for (int c = 0; c < 3; c++) now->linear_initial[c] += a.momentum[c], now->angular_initial[c] += a.angular[c];
-    }
-    now->initial_energy += now->hourglass_stored;
-    brunt_ledger_remember(world);
-    world->ledger.rounding_energy = brunt_rounding_energy(world);
+    const brunt_books books = brunt_books_of(world);
+    brunt_ledger_open(&world->ledger, &books);
     return BRUNT_OK;
 }
 
@@ -707,7 +687,7 @@ brunt_world *brunt_world_create(const brunt_world_def *def, brunt_error *error) 
     if (!status) status = check_symmetry(world, error);
     if (!status) status = brunt_ignition_make(&world->bodies, def, &world->messages, error);
     if (!status) status = map_grid_pairs(world, error);
-    if (!status) status = brunt_erosion_make(world, def, error);
+    if (!status) status = brunt_erosion_make(&world->erosion, &world->bodies, def, error);
     if (!status)
         status = brunt_node_sets_make(&world->boundaries.sets, def, &world->bodies,
                                       world->boundaries.walls + def->plane_count + def->region_count, &world->messages,
@@ -749,7 +729,7 @@ void brunt_world_destroy(brunt_world *world) {
     brunt_load_step_free(&world->boundaries.sets);
     brunt_node_sets_free(&world->boundaries.sets);
     brunt_damping_free(&world->boundaries.damping);
-    brunt_erosion_free(world);
+    brunt_erosion_free(&world->erosion);
     for (int k = 0; world->bodies.fem && k < world->bodies.fem_count; k++) brunt_fem_free(&world->bodies.fem[k]);
     for (size_t t = 0; t < sizeof world->scratch.meshes / sizeof world->scratch.meshes[0]; t++)
         brunt_fem_workspace_free(&world->scratch.meshes[t]);

@@ -12,7 +12,7 @@
 #include "mpm/transfer.h"
 #include "world/clock.h"
 #include "world/contact.h"
-#include "world/pairs.h"
+#include "contact/pairs.h"
 #include "world/scratch.h"
 
 // The rows of the scheme's table that the scene calls for, in their order (scheme/scheme.h), and the passes that they
@@ -82,8 +82,6 @@ void brunt_grid_ledger(void *job, int64_t begin, int64_t end, int worker); // no
 int brunt_fem_tasks_make(brunt_world *world);
 // Strain, stress and forces there. The failed body and slot when the update of an element failed.
 brunt_fem_body *brunt_fem_elements_all(brunt_world *world, double dt, int32_t *bad, const char **reason);
-// Mass, momenta and kinetic energy of a body as it is.
-brunt_fem_sums brunt_fem_audit(brunt_fem_body *fem);
 // Stable step of a body [s]: that of its blocks as they last reported, and of the loads that follow its surface.
 double brunt_fem_body_step(const brunt_world *world, int fem);
 // Least of the bodies [s].
@@ -109,26 +107,16 @@ int brunt_surfaces_overlap(brunt_world *world, brunt_error *error);
 // The surfaces anew, after elements have left meshes.
 int brunt_surfaces_renew(brunt_world *world, brunt_error *error);
 
-// --- erosion.c, erosion_particles.c: elements and material points that leave their bodies, at the end of a step
-// The accounts and lists of bodies that erode; world->erosion.active. Before the first step.
-int brunt_erosion_make(brunt_world *world, const brunt_world_def *def, brunt_error *error);
-void brunt_erosion_free(brunt_world *world);
+// --- erosion.c: elements and material points that leave their bodies, at the end of a step
 // Takes out what has failed, is strained, short of step or inside out, and books it. BRUNT_OK, or BRUNT_FAILED with the
 // reason.
 int brunt_erode_meshes(brunt_world *world, double dt, brunt_error *error);
-int brunt_erode_particles(brunt_world *world, double dt, brunt_error *error);
+void brunt_erode_particles(brunt_world *world);
 // Of brunt_erode_meshes, the taking out of elements that have a mark, counted in the reports of their blocks.
 int brunt_erode_marked(brunt_world *world, double dt, brunt_error *error);
-// The accounts, as doubles.
-int64_t brunt_erosion_state_count(const brunt_world *world);
-void brunt_erosion_state_get(const brunt_world *world, double *out);
-void brunt_erosion_state_set(brunt_world *world, const double *in);
 
-// --- ledger.c: what the energy error is relative to
-// Keeps the most that the run has been given so far; once a step.
-void brunt_ledger_remember(brunt_world *world);
-// Energy that rounding may make in a step, or lose [J].
-double brunt_rounding_energy(brunt_world *world);
+// --- read.c
+brunt_books brunt_books_of(const brunt_world *world);
 
 // --- read_particles.c, read_mesh.c
 int32_t brunt_read_particle_fields(const brunt_body *body);

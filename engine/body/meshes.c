@@ -1,0 +1,113 @@
+// Bodies of finite elements, as bodies.
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/error.h"
+#include "base/hash.h"
+#include "body/bodies.h"
+
+static const char REAL_TYPE = sizeof(real) == 8 ? 'd' : 'f';
+
+static brunt_audit sums(const brunt_body_ref *ref) {
+    const brunt_fem_sums of = brunt_fem_audit(ref->fem);
+    brunt_audit a = {
+        .mass = of.mass, .kinetic = of.kinetic, .scale_linear = of.scale_linear, .scale_angular = of.scale_angular};
+    for (int k = 0; k < 3; k++) {
+        a.linear[k] = of.momentum[k], a.angular[k] = of.angular[k];
+        a.centre[k] = of.first_moment[k] / of.mass;
+    }
+    return a;
+}
+
+static brunt_point_energy energy(const brunt_body_ref *ref) { return brunt_fem_energy(ref->fem); }
+
+static void bounds(const brunt_body_ref *ref, double low[3], double high[3]) {
+    const brunt_fem_body *fem = ref->fem;
+    for (int32_t n = 0; n < fem->node_count; n++) {
+        const real *x = brunt_fem_node(fem, n);
+        const bool left = fem->element_count && brunt_fem_removed(fem, n);
+        for (int a = 0; !left && a < fem->dim; a++)
+            low[a] = fmin(low[a], (double)x[a]), high[a] = fmax(high[a], (double)x[a]);
+    }
+}
+
+static uint64_t hash(const brunt_body_ref *ref) {
+    const brunt_fem_body *fem = ref->fem;
+    uint64_t h = (uint64_t)fem->index + 0x51ed27;
+    for (size_t k = 0; k < (size_t)fem->node_count * BRUNT_FEM_NODE_REALS; k++) {
+        uint64_t bits = 0;
+        memcpy(&bits, &fem->node[k], sizeof(real));
+        h = brunt_hash_add(h, bits);
+    }
+    for (int c = 0; c < fem->scalar_count; c++)
+        for (int32_t s = 0; s < fem->slots; s++) {
+            if (fem->element_id[s] < 0) continue;
+            uint64_t bits = 0;
+            memcpy(&bits, &fem->scalar[c][s], sizeof(real));
+            h = brunt_hash_add(h, bits);
+        }
+    for (int32_t s = 0; fem->bonds && s < fem->slots; s++) h = brunt_hash_add(h, (uint64_t)(int64_t)fem->element_id[s]);
+    return h;
+}
+
+// ------------------------------------------------------------------------------------------ state
+
+// Nodes; of bodies that erode the elements that there still are; fields.
+enum { NODES = -1, ELEMENTS = -2 };
+
+static int block_count(const brunt_body_ref *ref) {
+    const brunt_fem_body *fem = ref->fem;
+    int n = fem->bonds ? 2 : 1;
+    for (int f = 0; f < fem->field_count; f++) n += fem->field[f].components > 0;
+    return n;
+}
+
+// The field of a block, or what else it is.
+static int field_of(const brunt_fem_body *fem, int block) {
+    if (block-- == 0) return NODES;
+    if (fem->bonds && block-- == 0) return ELEMENTS;
+    int f = 0;
+    while (!fem->field[f].components || block-- > 0) f++;
+    return f;
+}
+
+static brunt_state_block block_info(const brunt_body_ref *ref, int index) {
+    const brunt_fem_body *fem = ref->fem;
+    const int f = field_of(fem, index);
+    brunt_state_block block = {.type = f == ELEMENTS ? 'i' : REAL_TYPE};
+    block.count = f == NODES      ? (int64_t)fem->node_count * BRUNT_FEM_NODE_REALS
+                  : f == ELEMENTS ? brunt_fem_elements_count(fem)
+                                  : (int64_t)fem->slots * fem->field[f].components;
+    snprintf(block.name, sizeof block.name, "bodies/%s/%s", fem->name,
+             f == NODES      ? "nodes"
+             : f == ELEMENTS ? "elements"
+                             : fem->field[f].name);
+    return block;
+}
+
+static void block_get(const brunt_body_ref *ref, int block, void *out) {
+    const brunt_fem_body *fem = ref->fem;
+    const int f = field_of(fem, block);
+    if (f == ELEMENTS) brunt_fem_elements_get(fem, out);
+    if (f == NODES) memcpy(out, fem->node, (size_t)fem->node_count * BRUNT_FEM_NODE_REALS * sizeof(real));
+    for (int c = 0; f >= 0 && c < fem->field[f].components; c++)
+        memcpy((real *)out + (size_t)c * (size_t)fem->slots, fem->scalar[fem->field[f].first + c],
+               (size_t)fem->slots * sizeof(real));
+}
+
+static int block_set(const brunt_body_ref *ref, int block, const void *in, int64_t count, brunt_error *error) {
+    (void)count;
+    brunt_fem_body *fem = ref->fem;
+    const int f = field_of(fem, block);
+    if (f == ELEMENTS && brunt_fem_elements_set(fem, in))
+        return brunt_fail(error, BRUNT_BAD_INPUT, "the state block 'bodies/%s/elements' is not of this mesh",
+                          fem->name);
+    if (f == NODES) memcpy(fem->node, in, (size_t)fem->node_count * BRUNT_FEM_NODE_REALS * sizeof(real));
+    for (int c = 0; f >= 0 && c < fem->field[f].components; c++)
+        memcpy(fem->scalar[fem->field[f].first + c], (const real *)in + (size_t)c * (size_t)fem->slots,
+               (size_t)fem->slots * sizeof(real));
+    return BRUNT_OK;
+}
+
+const brunt_body_ops brunt_mesh_ops = {sums, energy, bounds, hash, block_count, block_info, block_get, block_set};

@@ -1,0 +1,124 @@
+// Bodies of material points, as bodies.
+//
+// Particles are saved without padding in the order they lie in memory. That order is part of the state: sorting is
+// stable, so a restored world sorts them into the same places and every later sum has the same bits.
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/error.h"
+#include "base/hash.h"
+#include "base/memory.h"
+#include "body/bodies.h"
+#include "body/points.h"
+
+static const char REAL_TYPE = sizeof(real) == 8 ? 'd' : 'f';
+
+static brunt_audit sums(const brunt_body_ref *ref) { return brunt_body_audit(ref->mpm); }
+
+static brunt_point_energy energy(const brunt_body_ref *ref) { return brunt_body_energy(ref->mpm); }
+
+static void bounds(const brunt_body_ref *ref, double low[3], double high[3]) {
+    brunt_particles *p = &ref->mpm->particles;
+    real *const *x = brunt_field(p, BRUNT_FIELD_position);
+    for (int64_t s = 0; s < p->slots; s++)
+        for (int a = 0; p->id[s] >= 0 && a < p->dim; a++) // else padding, or left in the last step
+            low[a] = fmin(low[a], (double)x[a][s]), high[a] = fmax(high[a], (double)x[a][s]);
+}
+
+static uint64_t hash(const brunt_body_ref *ref) {
+    const brunt_particles *p = &ref->mpm->particles;
+    uint64_t sum = 0;
+    for (int64_t s = 0; s < p->slots; s++) {
+        if (p->id[s] < 0) continue;
+        uint64_t h = brunt_hash_add((uint64_t)ref->mpm->index, (uint64_t)p->id[s]);
+        for (int k = 0; k < p->scalar_count; k++) {
+            uint64_t bits = 0;
+            memcpy(&bits, &p->scalar[k][s], sizeof(real));
+            h = brunt_hash_add(h, bits);
+        }
+        sum += h;
+    }
+    return sum;
+}
+
+// ------------------------------------------------------------------------------------------ state: ids, then fields
+
+static int block_count(const brunt_body_ref *ref) {
+    const brunt_particles *p = &ref->mpm->particles;
+    int n = 1;
+    for (int f = 0; f < p->field_count; f++) n += p->field[f].components > 0;
+    return n;
+}
+
+// The field of a block, NULL: the ids.
+static const brunt_particle_field *field_of(const brunt_particles *p, int block) {
+    for (int f = 0; block && f < p->field_count; f++)
+        if (p->field[f].components && --block == 0) return &p->field[f];
+    return NULL;
+}
+
+static brunt_state_block block_info(const brunt_body_ref *ref, int index) {
+    const brunt_particles *p = &ref->mpm->particles;
+    const brunt_particle_field *field = field_of(p, index);
+    brunt_state_block block = {.type = field ? REAL_TYPE : 'i', .count = p->count * (field ? field->components : 1)};
+    snprintf(block.name, sizeof block.name, "bodies/%s/%s", ref->mpm->name, field ? field->name : "id");
+    return block;
+}
+
+static void block_get(const brunt_body_ref *ref, int block, void *out) {
+    const brunt_particles *p = &ref->mpm->particles;
+    const brunt_particle_field *field = field_of(p, block);
+    int64_t n = 0;
+    for (int c = 0; c < (field ? field->components : 1); c++)
+        for (int64_t s = 0; s < p->slots; s++) {
+            if (p->id[s] < 0) continue;
+            if (field)
+                ((real *)out)[n++] = p->scalar[field->first + c][s];
+            else
+                ((int64_t *)out)[n++] = p->id[s];
+        }
+}
+
+// Particles without gaps between them, in their order; new ones at the end are all 0. Their grid is out of date then.
+void brunt_points_close_ranks(brunt_particles *p, int64_t count) {
+    int64_t n = 0;
+    for (int64_t s = 0; s < p->slots; s++) {
+        if (p->id[s] < 0) continue;
+        for (int k = 0; k < p->scalar_count && n < s; k++) p->scalar[k][n] = p->scalar[k][s];
+        p->id[n++] = p->id[s];
+    }
+    for (int k = 0; k < p->scalar_count; k++)
+        for (int64_t s = n; s < count; s++) p->scalar[k][s] = 0;
+    p->count = p->slots = count;
+    p->holes = false;
+}
+
+static int set_ids(brunt_particles *p, const char *name, const int64_t *id, int64_t count, brunt_error *error) {
+    bool *there = brunt_alloc((size_t)p->made + 1);
+    if (!there) return brunt_fail(error, BRUNT_FAILED, "out of memory");
+    int64_t s = 0;
+    for (; s < count && id[s] >= 0 && id[s] < p->made && !there[id[s]]; s++) there[id[s]] = true;
+    brunt_free(there);
+    if (s < count)
+        return brunt_fail(error, BRUNT_BAD_INPUT, "the state block '%s' holds the id %lld, which is %s", name,
+                          (long long)id[s], id[s] >= 0 && id[s] < p->made ? "there twice" : "out of range");
+    brunt_points_close_ranks(p, count);
+    memcpy(p->id, id, (size_t)count * sizeof *id);
+    return BRUNT_OK;
+}
+
+static void set_field(brunt_particles *p, const brunt_particle_field *field, const real *in) {
+    for (int c = 0; c < field->components; c++)
+        for (int64_t s = 0; s < p->slots; s++)
+            if (p->id[s] >= 0) p->scalar[field->first + c][s] = *in++;
+}
+
+static int block_set(const brunt_body_ref *ref, int block, const void *in, int64_t count, brunt_error *error) {
+    brunt_particles *p = &ref->mpm->particles;
+    if (!block) return set_ids(p, block_info(ref, block).name, in, count, error);
+    set_field(p, field_of(p, block), in);
+    return BRUNT_OK;
+}
+
+const brunt_body_ops brunt_points_ops = {sums, energy, bounds, hash, block_count, block_info, block_get, block_set};
