@@ -7,5 +7,5 @@ struct brunt_clock {
     double time, steps, dt, kick, next_dt, dt_min, dt_max; // kick: what the last forces acted over
     double longest;                                        // [s] of the steps that were not cut short
     double recent_step, earlier_step; // [s] least stable one of this stretch of steps, and of the one before
-    bool creep_told;                                       // that steps have become short; not of the state
+    bool creep_told;                  // that steps have become short; not of the state
 };

@@ -12,7 +12,7 @@ typedef struct brunt_node_sums {
 typedef struct brunt_scratch {
     brunt_workspace points[BRUNT_THREAD_LIMIT];     // a thread each
     brunt_fem_workspace meshes[BRUNT_THREAD_LIMIT]; // a thread each
-    brunt_wall_workspace **planes;   // a body of material points each
+    brunt_wall_workspace **planes;                  // a body of material points each
     brunt_contact_workspace *grid_velocity;
     brunt_node_sums *node_sums; // of the slots of one grid
     size_t node_sums_capacity;
