@@ -80,7 +80,7 @@ static void apply_plane(brunt_body *body, bool rings, brunt_wall *wall, double t
     double offset = 0, reach = ON_PLANE * (double)grid->h;
     unsigned held = 0; // what an oblique plane lets slip along itself has no component that it holds
     for (int a = 0; a < grid->dim; a++) {
-        held |= (unsigned)(plane->condition == BRUNT_STICK || fabs(plane->normal[a]) > 1 - 1e-12) << a;
+        if (plane->condition == BRUNT_STICK || fabs(plane->normal[a]) > 1 - 1e-12) held |= 1u << a;
         offset += plane->normal[a] * (plane->point[a] + plane->velocity[a] * time);
         reach += fabs(plane->normal[a]) * 0.5 * grid->side * (double)grid->h;
     }
