@@ -18,7 +18,7 @@
 // dp/dmu (1 + 2/3 b), which for b above 2 G / K is more; it lasts as long as that stress.
 #pragma once
 
-#include "materials/j2.h"
+#include "materials/return_mapping.h"
 
 // Damage of 1 says that a point has failed and may be taken away (material.h). Material that is but fractured keeps its
 // residual strength: its damage stays this far below.
@@ -43,7 +43,8 @@ BRUNT_INLINE lanes cubic_energy(const real *modulus, lanes x) {
 
 // 1 + C log(rate / rate0), 1 below rate0. The rate is sqrt(2/3 e':e') / dt with Green's strain e of the step, 1/2 (f^T
 // f - I): a frame that turns, however fast, sees the same. `inverse_rate_step`: 1 / (dt rate0).
-BRUNT_INLINE lanes rate_factor(int dim, const brunt_points *points, int32_t i, real C, lanes inverse_rate_step) {
+BRUNT_INLINE lanes rate_factor(int dim, const brunt_material_points *points, int32_t i, real C,
+                               lanes inverse_rate_step) {
     if (!(C > 0)) return lanes_set(1);
     lanes H[9], e[6] = {lanes_set(0), lanes_set(0), lanes_set(0), lanes_set(0), lanes_set(0), lanes_set(0)};
     static const int row[6] = {0, 1, 2, 0, 1, 0}, column[6] = {0, 1, 2, 1, 2, 2};
@@ -61,12 +62,12 @@ BRUNT_INLINE lanes rate_factor(int dim, const brunt_points *points, int32_t i, r
     return 1 + C * lanes_log(lanes_max(rate, lanes_set(1)));
 }
 
-BRUNT_INLINE lanes inverse_rate_step(const brunt_points *points, real rate0) {
+BRUNT_INLINE lanes inverse_rate_step(const brunt_material_points *points, real rate0) {
     return lanes_set(points->dt > 0 ? 1 / (points->dt * rate0) : 0);
 }
 
 // J - 1 at the beginning of the step: J_old = J / (1 + v), v of the step's own gradient.
-BRUNT_INLINE lanes volume_change_before(int dim, const brunt_points *points, int32_t i, lanes change) {
+BRUNT_INLINE lanes volume_change_before(int dim, const brunt_material_points *points, int32_t i, lanes change) {
     lanes H[9];
     load_step_gradient(dim, points, i, H);
     lanes v = volume_change(dim, H);
@@ -133,20 +134,20 @@ BRUNT_INLINE lanes softening_return(int dim, const real *k, j2_point *p, const s
 
 // Adds the pressure, Kirchhoff [Pa], to the deviator that j2_store has written; `stiffness` = dp/dmu for the wave
 // speed.
-BRUNT_INLINE void store_pressure(const real *k, const brunt_points *points, int32_t i, const j2_point *p,
+BRUNT_INLINE void store_pressure(const real *k, const brunt_material_points *points, int32_t i, const j2_point *p,
                                  lanes pressure, lanes stiffness, update_record *record) {
     for (int c = 0; c < 3; c++) lanes_store(points->stress[c] + i, lanes_load(points->stress[c] + i) - pressure);
     lanes shear = k[J2_MU] * ((real)(4.0 / 3) * p->m + (real)(1.0 / 3) * lanes_sqrt((real)(2.0 / 3) * p->dd));
     note_speed(record, k[J2_INVERSE_DENSITY] * (stiffness + shear));
 }
 
-BRUNT_INLINE void add_plastic_work(int dim, const brunt_points *points, int32_t i, lanes work) {
+BRUNT_INLINE void add_plastic_work(int dim, const brunt_material_points *points, int32_t i, lanes work) {
     real *sum = points->state[j2_slot(dim, J2_PLASTIC_WORK)] + i;
     lanes_store(sum, lanes_load(sum) + work);
 }
 
 // Damage of 1 where the plastic strain has passed `limit`. Returns whether a point with volume is among them.
-BRUNT_INLINE bool fail_beyond(int dim, const brunt_points *points, int32_t i, real limit, real *damage) {
+BRUNT_INLINE bool fail_beyond(int dim, const brunt_material_points *points, int32_t i, real limit, real *damage) {
     if (!(limit < (real)INFINITY)) return false;
     lane_mask failed = lanes_load(points->state[j2_slot(dim, J2_PLASTIC_STRAIN)] + i) > limit;
     lanes_store(damage, lanes_select(failed, lanes_set(1), lanes_load(damage)));
@@ -174,8 +175,8 @@ static inline real brittle_wave_speed(const real *constants, real bulk) {
 // Stored energy of the volume of a range, the deviator's beside it: stored(k, J - 1, the model's own variable, damage),
 // the last two by their places behind J2_MODEL_STATE.
 typedef lanes brittle_stored_fn(const real *k, lanes change, lanes variable, lanes damage);
-BRUNT_INLINE void brittle_energy_dim(int dim, const real *k, const brunt_points *points, int variable, int damage,
-                                     brittle_stored_fn *stored, brunt_point_energy *energy) {
+BRUNT_INLINE void brittle_energy_dim(int dim, const real *k, const brunt_material_points *points, int variable,
+                                     int damage, brittle_stored_fn *stored, brunt_point_energy *energy) {
     lane_total sum = {0};
     for (int32_t i = 0; i < points->count; i += BRUNT_LANES) {
         lanes H[9];
@@ -186,7 +187,7 @@ BRUNT_INLINE void brittle_energy_dim(int dim, const real *k, const brunt_points 
     }
     energy->internal += total_end(&sum);
 }
-BRUNT_INLINE void brittle_energy(const real *k, const brunt_points *points, int variable, int damage,
+BRUNT_INLINE void brittle_energy(const real *k, const brunt_material_points *points, int variable, int damage,
                                  brittle_stored_fn *stored, brunt_point_energy *energy) {
     j2_energy(k, points, energy);
     if (points->dim == 2)

@@ -36,7 +36,7 @@ static const char *prepare(const double *p, double density, bool with_eos, real 
     return NULL;
 }
 
-BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_points *points) {
+BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_material_points *points) {
     update_record record = update_begin();
     const real linear = k[LINEAR] * points->wave_speed, quadratic = k[QUADRATIC] * points->cell;
     lanes fastest = lanes_set(0), zero = fastest;
@@ -61,11 +61,11 @@ BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_
     return update_end(&record, points, NULL);
 }
 
-static brunt_update_result update(const real *constants, const brunt_points *points) {
+static brunt_update_result update(const real *constants, const brunt_material_points *points) {
     return points->dim == 2 ? update_dim(2, constants, points) : update_dim(3, constants, points);
 }
 
-static void add_energy(const real *constants, const brunt_points *points, brunt_point_energy *energy) {
+static void add_energy(const real *constants, const brunt_material_points *points, brunt_point_energy *energy) {
     (void)constants;
     lane_total dissipated = {0};
     for (int32_t i = 0; i < points->count; i += BRUNT_LANES)

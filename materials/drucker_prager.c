@@ -67,7 +67,7 @@ BRUNT_INLINE lanes flow(const real *k, bool dilates, const j2_point *p, lanes a,
     return k[FRICTION] > 0 && k[TENSION] < (real)INFINITY ? lanes_min(together, apart) : together;
 }
 
-BRUNT_INLINE brunt_update_result update_dim(int dim, bool dilates, const real *k, const brunt_points *points) {
+BRUNT_INLINE brunt_update_result update_dim(int dim, bool dilates, const real *k, const brunt_material_points *points) {
     update_record record = update_begin();
     const lanes zero = lanes_set(0);
     for (int32_t i = 0; i < points->count; i += BRUNT_LANES) {
@@ -102,14 +102,14 @@ BRUNT_INLINE brunt_update_result update_dim(int dim, bool dilates, const real *k
     return update_end(&record, points, NULL);
 }
 
-static brunt_update_result update(const real *constants, const brunt_points *points) {
+static brunt_update_result update(const real *constants, const brunt_material_points *points) {
     return points->dim == 2 ? update_dim(2, true, constants, points) : update_dim(3, true, constants, points);
 }
-static brunt_update_result update_isochoric(const real *constants, const brunt_points *points) {
+static brunt_update_result update_isochoric(const real *constants, const brunt_material_points *points) {
     return points->dim == 2 ? update_dim(2, false, constants, points) : update_dim(3, false, constants, points);
 }
 
-BRUNT_INLINE void volume_energy(int dim, bool dilates, const real *k, const brunt_points *points,
+BRUNT_INLINE void volume_energy(int dim, bool dilates, const real *k, const brunt_material_points *points,
                                 brunt_point_energy *energy) {
     lane_total stored = {0};
     for (int32_t i = 0; i < points->count; i += BRUNT_LANES) {
@@ -122,14 +122,15 @@ BRUNT_INLINE void volume_energy(int dim, bool dilates, const real *k, const brun
     energy->internal += total_end(&stored);
 }
 
-static void add_energy(const real *constants, const brunt_points *points, brunt_point_energy *energy) {
+static void add_energy(const real *constants, const brunt_material_points *points, brunt_point_energy *energy) {
     j2_energy(constants, points, energy);
     if (points->dim == 2)
         volume_energy(2, true, constants, points, energy);
     else
         volume_energy(3, true, constants, points, energy);
 }
-static void add_energy_isochoric(const real *constants, const brunt_points *points, brunt_point_energy *energy) {
+static void add_energy_isochoric(const real *constants, const brunt_material_points *points,
+                                 brunt_point_energy *energy) {
     j2_energy(constants, points, energy);
     if (points->dim == 2)
         volume_energy(2, false, constants, points, energy);

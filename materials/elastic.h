@@ -3,7 +3,7 @@
 
 #include "materials/tensor.h"
 
-// PLANE: E / (1 - nu^2), the longitudinal modulus of a sheet in plane stress.
+// PLANE: E / (1 - nu^2), the longitudinal modulus of a membrane in plane stress.
 enum { ELASTIC_LAMBDA, ELASTIC_MU, ELASTIC_INVERSE_DENSITY, ELASTIC_NU, ELASTIC_PLANE };
 
 static const brunt_parameter elastic_parameters[] = {PARAMETER_E, PARAMETER_NU};
@@ -23,6 +23,6 @@ static inline real elastic_wave_speed(const real *constants) {
     return (real)sqrt(modulus * (double)constants[ELASTIC_INVERSE_DENSITY]);
 }
 
-BRUNT_INLINE void store_stress(int dim, const brunt_points *points, int32_t i, const lanes tau[6]) {
+BRUNT_INLINE void store_stress(int dim, const brunt_material_points *points, int32_t i, const lanes tau[6]) {
     for (int k = 0; k < BRUNT_SYMMETRIC(dim); k++) lanes_store(points->stress[k] + i, tau[k]);
 }

@@ -6,7 +6,7 @@
 //
 // Strain, rate and temperature are all taken at the end of the step, in one equation for the plastic increment: the
 // flow stress at the end is the formula's to the solver's tolerance (1e-10), whatever the step.
-#include "materials/j2.h"
+#include "materials/return_mapping.h"
 
 enum {
     STATIC = J2_CONSTANTS,
@@ -98,7 +98,7 @@ BRUNT_INLINE lanes flow_stress(const real *k, const j2_point *p, lanes start, la
     return hard * rate * soft;
 }
 
-BRUNT_INLINE brunt_update_result update_dim(int dim, bool softens, const real *k, const brunt_points *points) {
+BRUNT_INLINE brunt_update_result update_dim(int dim, bool softens, const real *k, const brunt_material_points *points) {
     update_record record = update_begin();
     const lanes inverse_rate_step = lanes_set(points->dt > 0 ? 1 / (points->dt * k[RATE_ZERO]) : 0);
     for (int32_t i = 0; i < points->count; i += BRUNT_LANES) {
@@ -138,13 +138,13 @@ BRUNT_INLINE brunt_update_result update_dim(int dim, bool softens, const real *k
     return update_end(&record, points, "the plastic increment of the Johnson-Cook law was not found");
 }
 
-static brunt_update_result update(const real *constants, const brunt_points *points) {
+static brunt_update_result update(const real *constants, const brunt_material_points *points) {
     if (points->integrity)
         return points->dim == 2 ? update_dim(2, true, constants, points) : update_dim(3, true, constants, points);
     return points->dim == 2 ? update_dim(2, false, constants, points) : update_dim(3, false, constants, points);
 }
 
-static void add_energy(const real *constants, const brunt_points *points, brunt_point_energy *energy) {
+static void add_energy(const real *constants, const brunt_material_points *points, brunt_point_energy *energy) {
     brunt_point_energy own = {0};
     j2_energy(constants, points, &own);
     energy->internal += own.internal;

@@ -71,7 +71,8 @@ BRUNT_INLINE lanes triaxiality(int dim, const lanes tau[6], lanes mean) {
     return mean / lanes_max(q, lanes_set(LANES_REAL_MIN));
 }
 
-BRUNT_INLINE lanes fracture_strain(const real *k, const brunt_points *points, int32_t i, lanes triaxial, lanes rate) {
+BRUNT_INLINE lanes fracture_strain(const real *k, const brunt_material_points *points, int32_t i, lanes triaxial,
+                                   lanes rate) {
     lanes one = lanes_set(1), strain = lanes_set(k[D1]);
     if (k[D2] != 0) strain += k[D2] * lanes_exp(k[D3] * triaxial);
     if (k[D4] != 0) strain *= 1 + k[D4] * lanes_log(lanes_max(rate * k[INVERSE_RATE_ZERO], one));
@@ -83,7 +84,8 @@ BRUNT_INLINE lanes fracture_strain(const real *k, const brunt_points *points, in
 }
 
 // Damage after the step of a vector of points, not yet bounded.
-BRUNT_INLINE lanes grow(int dim, const real *k, const brunt_points *points, int32_t i, lanes damage, lanes delta) {
+BRUNT_INLINE lanes grow(int dim, const real *k, const brunt_material_points *points, int32_t i, lanes damage,
+                        lanes delta) {
     lanes tau[6];
     for (int c = 0; c < BRUNT_SYMMETRIC(dim); c++) tau[c] = lanes_load(points->stress[c] + i);
     lanes mean = (tau[XX] + tau[YY] + tau[ZZ]) * (real)(1.0 / 3), one = lanes_set(1);
@@ -104,7 +106,7 @@ BRUNT_INLINE lanes grow(int dim, const real *k, const brunt_points *points, int3
     return damage;
 }
 
-BRUNT_INLINE brunt_update_result update_dim(int dim, bool softens, const real *k, const brunt_points *points) {
+BRUNT_INLINE brunt_update_result update_dim(int dim, bool softens, const real *k, const brunt_material_points *points) {
     update_record record = update_begin();
     lane_mask failed = {0};
     const bool spalls = k[SPALL] < (real)INFINITY;
@@ -128,11 +130,11 @@ BRUNT_INLINE brunt_update_result update_dim(int dim, bool softens, const real *k
     return result;
 }
 
-static brunt_update_result update(const real *constants, const brunt_points *points) {
+static brunt_update_result update(const real *constants, const brunt_material_points *points) {
     return points->dim == 2 ? update_dim(2, true, constants, points) : update_dim(3, true, constants, points);
 }
 
-static brunt_update_result update_sudden(const real *constants, const brunt_points *points) {
+static brunt_update_result update_sudden(const real *constants, const brunt_material_points *points) {
     return points->dim == 2 ? update_dim(2, false, constants, points) : update_dim(3, false, constants, points);
 }
 

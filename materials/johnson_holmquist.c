@@ -125,7 +125,7 @@ BRUNT_INLINE lanes bulked(const real *k, lanes bulking, lanes U, lanes change, l
     return bulking + lanes_select((net >= 0) & (U > 0), gain / sum, lanes_set(0));
 }
 
-BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_points *points) {
+BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_material_points *points) {
     update_record record = update_begin();
     const lanes per_step = inverse_rate_step(points, k[RATE_ZERO]), zero = lanes_set(0);
     bool failed = false;
@@ -167,11 +167,11 @@ BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_
     return result;
 }
 
-static brunt_update_result update(const real *constants, const brunt_points *points) {
+static brunt_update_result update(const real *constants, const brunt_material_points *points) {
     return points->dim == 2 ? update_dim(2, constants, points) : update_dim(3, constants, points);
 }
 
-static void add_energy(const real *constants, const brunt_points *points, brunt_point_energy *energy) {
+static void add_energy(const real *constants, const brunt_material_points *points, brunt_point_energy *energy) {
     brittle_energy(constants, points, BULKING, DAMAGE, stored_energy, energy);
 }
 

@@ -7,7 +7,7 @@
 //   t1 = (t0 m + Q) m,  m = (V1/V0)^(-w/2),   the heat Q in the middle: exact without it whatever the step (see
 //   ideal_gas.c).
 //
-// Programmed burn: a point burns from its lighting time on, when the front that runs from the detonators at the
+// Programmed burn: a point burns from its ignition time on, when the front that runs from the detonators at the
 // detonation speed D gets there (Wilkins, Calculation of Elastic-Plastic Flow, UCRL-7322 (1964); LS-DYNA
 // *MAT_HIGH_EXPLOSIVE_BURN),
 //   p = F p_products + (1 - F) K mu,   F = max(F1, F2) within 0 .. 1, never falling,
@@ -45,7 +45,7 @@ enum {
     WIDTH,
     BETA
 };
-enum { LIGHTING_TIME = COMPRESSION_WORK + 1, BURN_FRACTION };
+enum { IGNITION_TIME = COMPRESSION_WORK + 1, BURN_FRACTION };
 
 static const brunt_parameter parameters[] = {
     {"detonation_speed", "m/s", NAN, 0, INFINITY, true, true, "speed of the front, from where and when it is lit"},
@@ -126,7 +126,7 @@ BRUNT_INLINE cold_products cold(const real *k, lanes V) {
                            .stiffness = k[RATE_1] * first + k[RATE_2] * second};
 }
 
-BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_points *points) {
+BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_material_points *points) {
     update_record record = update_begin();
     const real half = (real)0.5, w = k[OMEGA], K = k[BULK_MODULUS];
     const real rate = k[DETONATION_SPEED] / (k[WIDTH] * points->cell);
@@ -141,7 +141,7 @@ BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_
         note_deformation(&record, lanes_select(1 + step > 0, V, zero), i);
 
         real *burnt = points->state[BURN_FRACTION] + i;
-        lanes F_old = lanes_load(burnt), lit = lanes_load(points->state[LIGHTING_TIME] + i);
+        lanes F_old = lanes_load(burnt), lit = lanes_load(points->state[IGNITION_TIME] + i);
         lanes F = (points->time - lit) * rate;
         F = lanes_select(F > -1, lanes_max(F, -k[BETA] * change), F);
         F = lanes_max(lanes_min(lanes_max(F, zero), one), F_old);
@@ -181,11 +181,11 @@ BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_
     return update_end(&record, points, "the internal energy of the explosive is not positive and finite");
 }
 
-static brunt_update_result update(const real *constants, const brunt_points *points) {
+static brunt_update_result update(const real *constants, const brunt_material_points *points) {
     return points->dim == 2 ? update_dim(2, constants, points) : update_dim(3, constants, points);
 }
 
-static void add_energy(const real *constants, const brunt_points *points, brunt_point_energy *energy) {
+static void add_energy(const real *constants, const brunt_material_points *points, brunt_point_energy *energy) {
     lane_total stored = {0};
     for (int32_t i = 0; i < points->count; i += BRUNT_LANES)
         total_add(&stored, lanes_load(points->volume + i) *
@@ -200,7 +200,7 @@ const brunt_model brunt_jwl = {
     .doc =
         "explosive: products by Jones, Wilkins and Lee (1968), burnt by a front from the detonators (programmed burn)",
     .eos = true,
-    .burns = true,
+    .explosive = true,
     .parameters = parameters,
     .parameter_count = COUNT_OF(parameters),
     .state = state,

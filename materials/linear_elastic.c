@@ -9,9 +9,10 @@
 // order, is what a model that is not objective does to angular momentum; it is left out, so the stress is symmetric and
 // the power is exact for every motion whose velocity gradient is symmetric.
 //
-// A sheet is seen from a frame that turns with it, where the small strain is Biot's, e_i = l_i - 1: in plane stress W =
-// E'/2 (e1^2 + e2^2 + 2 nu e1 e2) with E' = E / (1 - nu^2). That is invariant under rotation, and tau_i = l_i dW/de_i.
-#include "materials/sheet.h"
+// A membrane is seen from a frame that turns with it, where the small strain is Biot's, e_i = l_i - 1: in plane stress
+// W = E'/2 (e1^2 + e2^2 + 2 nu e1 e2) with E' = E / (1 - nu^2). That is invariant under rotation, and tau_i = l_i
+// dW/de_i.
+#include "materials/plane_stress.h"
 
 BRUNT_INLINE void small_strain(int dim, const lanes H[9], lanes eps[6]) {
     const real half = (real)0.5;
@@ -27,7 +28,7 @@ BRUNT_INLINE void small_strain(int dim, const lanes H[9], lanes eps[6]) {
     eps[XZ] = half * (H[2] + H[6]);
 }
 
-BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_points *points) {
+BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_material_points *points) {
     update_record record = update_begin();
     const real lambda = k[ELASTIC_LAMBDA], mu = k[ELASTIC_MU], half = (real)0.5;
     for (int32_t i = 0; i < points->count; i += BRUNT_LANES) {
@@ -71,7 +72,7 @@ BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_
     return update_end(&record, points, NULL);
 }
 
-BRUNT_INLINE void energy_dim(int dim, const real *k, const brunt_points *points, brunt_point_energy *energy) {
+BRUNT_INLINE void energy_dim(int dim, const real *k, const brunt_material_points *points, brunt_point_energy *energy) {
     lane_total stored = {0};
     for (int32_t i = 0; i < points->count; i += BRUNT_LANES) {
         lanes H[9], eps[6];
@@ -85,21 +86,22 @@ BRUNT_INLINE void energy_dim(int dim, const real *k, const brunt_points *points,
     energy->internal += total_end(&stored);
 }
 
-static brunt_update_result update(const real *constants, const brunt_points *points) {
+static brunt_update_result update(const real *constants, const brunt_material_points *points) {
     return points->dim == 2 ? update_dim(2, constants, points) : update_dim(3, constants, points);
 }
 
-static void add_energy(const real *constants, const brunt_points *points, brunt_point_energy *energy) {
+static void add_energy(const real *constants, const brunt_material_points *points, brunt_point_energy *energy) {
     if (points->dim == 2)
         energy_dim(2, constants, points, energy);
     else
         energy_dim(3, constants, points, energy);
 }
 
-BRUNT_INLINE void sheet_response_of(const real *k, bool slack, const lanes strain[2], sheet_response *r) {
+BRUNT_INLINE void plane_stress_response_of(const real *k, bool tension_only, const lanes strain[2],
+                                           plane_stress_response *r) {
     const real nu = k[ELASTIC_NU], mu = k[ELASTIC_MU], plane = k[ELASTIC_PLANE], half = (real)0.5;
     lanes e[2] = {strain[0], strain[1]};
-    if (slack) r->taut = relax_linear(nu, e);
+    if (tension_only) r->taut = relax_linear(nu, e);
     lanes biot[2] = {plane * (e[0] + nu * e[1]), plane * (e[1] + nu * e[0])}; // dW/de_i
     lanes l[2] = {1 + e[0], 1 + e[1]};
     for (int i = 0; i < 2; i++) {
@@ -111,16 +113,17 @@ BRUNT_INLINE void sheet_response_of(const real *k, bool slack, const lanes strai
     r->shear = mu + half * (biot[0] + biot[1]) / (l[0] + l[1]);
 }
 
-static brunt_update_result update_sheet(const real *constants, const brunt_points *points) {
-    return points->slack ? sheet_update(sheet_response_of, true, constants, points)
-                         : sheet_update(sheet_response_of, false, constants, points);
+static brunt_update_result update_plane_stress(const real *constants, const brunt_material_points *points) {
+    return points->tension_only ? plane_stress_update(plane_stress_response_of, true, constants, points)
+                                : plane_stress_update(plane_stress_response_of, false, constants, points);
 }
 
-static void add_energy_sheet(const real *constants, const brunt_points *points, brunt_point_energy *energy) {
-    if (points->slack)
-        sheet_energy(sheet_response_of, true, constants, points, energy);
+static void add_energy_plane_stress(const real *constants, const brunt_material_points *points,
+                                    brunt_point_energy *energy) {
+    if (points->tension_only)
+        plane_stress_energy(plane_stress_response_of, true, constants, points, energy);
     else
-        sheet_energy(sheet_response_of, false, constants, points, energy);
+        plane_stress_energy(plane_stress_response_of, false, constants, points, energy);
 }
 
 const brunt_model brunt_linear_elastic = {
@@ -134,7 +137,7 @@ const brunt_model brunt_linear_elastic = {
     .update = update,
     .energy = add_energy,
     .wave_speed = elastic_wave_speed,
-    .update_sheet = update_sheet,
-    .energy_sheet = add_energy_sheet,
-    .wave_speed_sheet = sheet_wave_speed,
+    .update_plane_stress = update_plane_stress,
+    .energy_plane_stress = add_energy_plane_stress,
+    .wave_speed_plane_stress = plane_stress_wave_speed,
 };

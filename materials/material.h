@@ -10,8 +10,8 @@
 //   eos        (optional)  pressure from density and internal energy
 //   failure    (optional)  damage from stress, plastic strain, rate and temperature of the strength model
 // What damage does to strength and tension acts from the next step on, by `integrity`; whether a failed point then
-// leaves its body is not the material's business. Each update gets brunt_points with its own state arrays. With an eos
-// the strength writes the deviatoric stress alone.
+// leaves its body is not the material's business. Each update gets brunt_material_points with its own state arrays.
+// With an eos the strength writes the deviatoric stress alone.
 //
 // Work and dissipation are trapezoidal in time: the mean of the stresses at both ends of a step, times its rate. That
 // is what central differences do (summed over a run, force at t_n times the mean of the velocities about it is the same
@@ -29,7 +29,7 @@
 enum { BRUNT_MAX_PARAMETERS = 24, BRUNT_MAX_CONSTANTS = 48, BRUNT_MAX_STATE = 24 };
 
 // A range of `count` points (a multiple of BRUNT_LANES). Arrays are one per scalar component, aligned to a vector.
-typedef struct brunt_points {
+typedef struct brunt_material_points {
     int32_t count;
     int dim;          // 2 (plane strain) or 3
     real dt;          // [s]
@@ -40,8 +40,8 @@ typedef struct brunt_points {
     real *F[9];       // deformation gradient at the end of the step [-] (already updated: F = (I + dt L) F_old)
     real *stress[6];  // Kirchhoff stress [Pa]; in: of the last step, out: of this step; BRUNT_SYMMETRIC(dim) components
     bool may_reshape; // F is the points' own memory (material points): a fluid may replace it by one of the same J
-    bool slack;       // of a sheet: it bears no compression
-    real *thickness;  // of a sheet: stretch across it at the end of the step [-], written; else NULL
+    bool tension_only;            // of a membrane: it bears no compression
+    real *thickness;              // of a membrane: stretch across it at the end of the step [-], written; else NULL
     const real *volume;           // reference volume [m^3]; 0 for padding
     real *state[BRUNT_MAX_STATE]; // this component's own state arrays, in the order of its state table
     // What one component leaves for the next, within one update (never stored): dissipation and viscous pressure.
@@ -57,7 +57,7 @@ typedef struct brunt_points {
     const real *temperature; // [K] of the strength model at the end of the step, for failure; NULL when it has none
     real *viscous_pressure;  // [Pa] q > 0 in compression, mean of the last step's and this one's: its work in the step
                              // is -viscous_pressure dJ per reference volume; NULL when nobody reads it
-} brunt_points;
+} brunt_material_points;
 
 // What an update tells its caller.
 typedef struct brunt_update_result {
@@ -97,9 +97,9 @@ typedef struct brunt_model {
     const char *name;                            // as typed in a scene: "neo-hookean"
     const char *doc;                             // one line, with its source
     bool plastic, thermal, eos, viscous, damage; // the effects it brings: the plan and the summary list them
-    bool burns; // an explosive: has a state "ignition_time" [s], set from the detonators when a body is made, and
-                // its first parameter "detonation_speed" [m/s]
-    bool fluid; // remembers no shape: the history of F but for J is nothing to it
+    bool explosive;     // burns: has a state "ignition_time" [s], set from the detonators when a body is made, and
+                        // its first parameter "detonation_speed" [m/s]
+    bool fluid;         // remembers no shape: the history of F but for J is nothing to it
     bool shear_viscous; // a strength model whose stress follows the rate of shear, and dissipates
     bool needs_eos;     // has no pressure of its own
     bool accepts_eos;   // a strength model whose pressure an equation of state may replace
@@ -108,7 +108,7 @@ typedef struct brunt_model {
     int parameter_count; // density is common to all and not listed here
     const brunt_state_field *state;
     int state_count;
-    int flops[3]; // arithmetic of an update of a point that does not flow, in 2D, in 3D, of a sheet, as executed
+    int flops[3]; // arithmetic of an update of a point that does not flow, in 2D, in 3D, of a membrane, as executed
                   // (divisions and roots 1); 0: not counted
     // Fills `constants` (at most BRUNT_MAX_CONSTANTS reals, laid out as the model likes) from the parameters.
     // `density` [kg/m^3]; `with_eos`: the pressure comes from an equation of state. Returns NULL, or what is wrong, in
@@ -118,19 +118,19 @@ typedef struct brunt_model {
     // NULL where there is no such form. Constants are the same.
     const struct brunt_model *(*reduced)(const double *parameters);
     // One step for a range. Writes stress and state; a strength model overwrites the stress, the others add to it.
-    brunt_update_result (*update)(const real *constants, const brunt_points *points);
+    brunt_update_result (*update)(const real *constants, const brunt_material_points *points);
     // Adds the range's energies to `energy`.
-    void (*energy)(const real *constants, const brunt_points *points, brunt_point_energy *energy);
+    void (*energy)(const real *constants, const brunt_material_points *points, brunt_point_energy *energy);
     // The same measure as the update's wave_speed, of the undeformed material at rest [m/s]: the first time step, and
     // the plan.
     real (*wave_speed)(const real *constants);
-    // The same of a sheet (plane stress), NULL when there is no such form. Points then have dim 2; F is the symmetric
-    // stretch U in the plane (F^T F = U U), L is not given; stress is the Kirchhoff stress R^T tau R in the same axes,
-    // its ZZ 0; `thickness` is written. With `slack` the stress is that of the relaxed energy (tension field theory): 0
-    // when both principal stresses would be compressive, uniaxial tension when one would.
-    brunt_update_result (*update_sheet)(const real *constants, const brunt_points *points);
-    void (*energy_sheet)(const real *constants, const brunt_points *points, brunt_point_energy *energy);
-    real (*wave_speed_sheet)(const real *constants);
+    // The same of a membrane (plane stress), NULL when there is no such form. Points then have dim 2; F is the
+    // symmetric stretch U in the plane (F^T F = U U), L is not given; stress is the Kirchhoff stress R^T tau R in the
+    // same axes, its ZZ 0; `thickness` is written. With `tension_only` the stress is that of the relaxed energy
+    // (tension field theory): 0 when both principal stresses would be compressive, uniaxial tension when one would.
+    brunt_update_result (*update_plane_stress)(const real *constants, const brunt_material_points *points);
+    void (*energy_plane_stress)(const real *constants, const brunt_material_points *points, brunt_point_energy *energy);
+    real (*wave_speed_plane_stress)(const real *constants);
 } brunt_model;
 
 // The lists. Order is the order of `brunt keys`.

@@ -64,7 +64,7 @@ BRUNT_INLINE lanes tear_pressure(const real *k, const real *integrity, int32_t i
     return integrity ? lanes_select(lanes_load(integrity + i) > 0, sound, lanes_set(0)) : sound;
 }
 
-BRUNT_INLINE brunt_update_result update_dim(int dim, bool tears, const real *k, const brunt_points *points) {
+BRUNT_INLINE brunt_update_result update_dim(int dim, bool tears, const real *k, const brunt_material_points *points) {
     update_record record = update_begin();
     const real half = (real)0.5;
     for (int32_t i = 0; i < points->count; i += BRUNT_LANES) {
@@ -113,13 +113,13 @@ BRUNT_INLINE brunt_update_result update_dim(int dim, bool tears, const real *k, 
     return update_end(&record, points, "compressed beyond the Mie-Gruneisen equation of state (1 - s (1 - J) <= 0)");
 }
 
-static brunt_update_result update(const real *constants, const brunt_points *points) {
+static brunt_update_result update(const real *constants, const brunt_material_points *points) {
     if (constants[TENSION] < (real)INFINITY || points->integrity)
         return points->dim == 2 ? update_dim(2, true, constants, points) : update_dim(3, true, constants, points);
     return points->dim == 2 ? update_dim(2, false, constants, points) : update_dim(3, false, constants, points);
 }
 
-static void add_energy(const real *constants, const brunt_points *points, brunt_point_energy *energy) {
+static void add_energy(const real *constants, const brunt_material_points *points, brunt_point_energy *energy) {
     (void)constants;
     lane_total stored = {0};
     for (int32_t i = 0; i < points->count; i += BRUNT_LANES)

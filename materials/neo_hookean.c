@@ -3,9 +3,9 @@
 //   psi = mu/2 (tr b - 3) - mu ln J + lambda/2 (ln J)^2,   tau = mu (b - I) + lambda ln(J) I.
 //
 // In plane stress l3 makes tau_33 = mu (l3^2 - 1) + lambda ln(l1 l2 l3) vanish; then tau_i = mu (l_i^2 - l3^2).
-#include "materials/sheet.h"
+#include "materials/plane_stress.h"
 
-BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_points *points) {
+BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_material_points *points) {
     update_record record = update_begin();
     const real lambda = k[ELASTIC_LAMBDA], mu = k[ELASTIC_MU];
     for (int32_t i = 0; i < points->count; i += BRUNT_LANES) {
@@ -33,7 +33,7 @@ BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_
     return update_end(&record, points, NULL);
 }
 
-BRUNT_INLINE void energy_dim(int dim, const real *k, const brunt_points *points, brunt_point_energy *energy) {
+BRUNT_INLINE void energy_dim(int dim, const real *k, const brunt_material_points *points, brunt_point_energy *energy) {
     lane_total stored = {0};
     for (int32_t i = 0; i < points->count; i += BRUNT_LANES) {
         lanes H[9], B[6];
@@ -47,11 +47,11 @@ BRUNT_INLINE void energy_dim(int dim, const real *k, const brunt_points *points,
     energy->internal += total_end(&stored);
 }
 
-static brunt_update_result update(const real *constants, const brunt_points *points) {
+static brunt_update_result update(const real *constants, const brunt_material_points *points) {
     return points->dim == 2 ? update_dim(2, constants, points) : update_dim(3, constants, points);
 }
 
-static void add_energy(const real *constants, const brunt_points *points, brunt_point_energy *energy) {
+static void add_energy(const real *constants, const brunt_material_points *points, brunt_point_energy *energy) {
     if (points->dim == 2)
         energy_dim(2, constants, points, energy);
     else
@@ -67,7 +67,7 @@ static void add_energy(const real *constants, const brunt_points *points, brunt_
 //   step = (f / f') (1 + bend),   error left about (2 curvature^2 - 2/3 curvature) step^3,   curvature <= 1,
 // take one step at strains up to 0.005 and two up to 0.5 (Newton alone: two, and up to five). With lambda < 0
 // (nu < 0) it is Newton alone, which leaves curvature step^2; there is no root in strong compression of both stretches
-// (the law lets the sheet shrink to nothing), and s is nan.
+// (the law lets the membrane shrink to nothing), and s is nan.
 //
 // A lane stops when the error left is below rounding, and keeps its value whatever the others do.
 BRUNT_INLINE lanes natural_logarithm(real lambda, real mu, real m, lanes c, lane_mask wanted, lanes *growth) {
@@ -104,12 +104,13 @@ BRUNT_INLINE lanes above_logarithm(lanes x) {
     return lanes_select(lanes_abs(x) < (real)0.4, small, x - lanes_log1p(x));
 }
 
-BRUNT_INLINE void sheet_response_of(const real *k, bool slack, const lanes strain[2], sheet_response *r) {
+BRUNT_INLINE void plane_stress_response_of(const real *k, bool tension_only, const lanes strain[2],
+                                           plane_stress_response *r) {
     const real lambda = k[ELASTIC_LAMBDA], mu = k[ELASTIC_MU], half = (real)0.5;
     const lane_mask every = (lane_mask){0} - 1;
     lanes e[2] = {strain[0], strain[1]};
     lanes growth, log_l3, log_area;
-    if (slack) {
+    if (tension_only) {
         // Taut when uniaxial tension wants no more width; for nu < 0 it wants more than the undeformed one.
         lanes zero = lanes_set(0), log_1, log_2 = lanes_log1p(e[1]);
         e[0] = lanes_max(e[0], zero);
@@ -145,16 +146,17 @@ BRUNT_INLINE void sheet_response_of(const real *k, bool slack, const lanes strai
     r->energy = mu * shape + half * lambda * log_J * log_J;
 }
 
-static brunt_update_result update_sheet(const real *constants, const brunt_points *points) {
-    return points->slack ? sheet_update(sheet_response_of, true, constants, points)
-                         : sheet_update(sheet_response_of, false, constants, points);
+static brunt_update_result update_plane_stress(const real *constants, const brunt_material_points *points) {
+    return points->tension_only ? plane_stress_update(plane_stress_response_of, true, constants, points)
+                                : plane_stress_update(plane_stress_response_of, false, constants, points);
 }
 
-static void add_energy_sheet(const real *constants, const brunt_points *points, brunt_point_energy *energy) {
-    if (points->slack)
-        sheet_energy(sheet_response_of, true, constants, points, energy);
+static void add_energy_plane_stress(const real *constants, const brunt_material_points *points,
+                                    brunt_point_energy *energy) {
+    if (points->tension_only)
+        plane_stress_energy(plane_stress_response_of, true, constants, points, energy);
     else
-        sheet_energy(sheet_response_of, false, constants, points, energy);
+        plane_stress_energy(plane_stress_response_of, false, constants, points, energy);
 }
 
 const brunt_model brunt_neo_hookean = {
@@ -167,7 +169,7 @@ const brunt_model brunt_neo_hookean = {
     .update = update,
     .energy = add_energy,
     .wave_speed = elastic_wave_speed,
-    .update_sheet = update_sheet,
-    .energy_sheet = add_energy_sheet,
-    .wave_speed_sheet = sheet_wave_speed,
+    .update_plane_stress = update_plane_stress,
+    .energy_plane_stress = add_energy_plane_stress,
+    .wave_speed_plane_stress = plane_stress_wave_speed,
 };

@@ -41,7 +41,7 @@ BRUNT_INLINE lanes isotropic_change(int dim, lanes h) { return dim == 3 ? h * (3
 // F = s I with det F = J. From a guess m, (1 + r)^(1/dim) by Halley's method, with 1 + r = J / m^dim; its error is
 // r^3/40 or less. F_00 is the guess where it is close (a fluid's step deforms little), so that a fluid at rest keeps
 // its bits and rounding does not lean to one side; else the root.
-BRUNT_INLINE void reshape(int dim, const brunt_points *points, int32_t i, lanes change) {
+BRUNT_INLINE void reshape(int dim, const brunt_material_points *points, int32_t i, lanes change) {
     lanes J = 1 + change, m = lanes_load(points->F[0] + i);
     lane_mask good = (J > 0) & (J <= MATERIAL_REAL_MAX);
     lanes r = change - isotropic_change(dim, m - 1);
@@ -67,7 +67,8 @@ BRUNT_INLINE void reshape(int dim, const brunt_points *points, int32_t i, lanes 
 }
 
 // a and b = sym(a a), the first made symmetric; off the plane 0.
-BRUNT_INLINE void rate_and_square(int dim, const brunt_points *points, int32_t i, lanes rate[6], lanes square[6]) {
+BRUNT_INLINE void rate_and_square(int dim, const brunt_material_points *points, int32_t i, lanes rate[6],
+                                  lanes square[6]) {
     static const int row[6] = {0, 1, 2, 0, 1, 0}, column[6] = {0, 1, 2, 1, 2, 2};
     lanes L[3][3];
     for (int r = 0; r < 3; r++)
@@ -93,7 +94,7 @@ BRUNT_INLINE void take_mean(lanes a[6]) {
     for (int k = 0; k < 3; k++) a[k] -= mean;
 }
 
-BRUNT_INLINE brunt_update_result update_dim(int dim, bool viscous, const real *k, const brunt_points *points) {
+BRUNT_INLINE brunt_update_result update_dim(int dim, bool viscous, const real *k, const brunt_material_points *points) {
     update_record record = update_begin();
     lanes thinnest = lanes_set(0);
     for (int32_t i = 0; i < points->count; i += BRUNT_LANES) {
@@ -130,15 +131,15 @@ BRUNT_INLINE brunt_update_result update_dim(int dim, bool viscous, const real *k
     return result;
 }
 
-static brunt_update_result update(const real *constants, const brunt_points *points) {
+static brunt_update_result update(const real *constants, const brunt_material_points *points) {
     return points->dim == 2 ? update_dim(2, true, constants, points) : update_dim(3, true, constants, points);
 }
 
-static brunt_update_result update_inviscid(const real *constants, const brunt_points *points) {
+static brunt_update_result update_inviscid(const real *constants, const brunt_material_points *points) {
     return points->dim == 2 ? update_dim(2, false, constants, points) : update_dim(3, false, constants, points);
 }
 
-static void add_energy(const real *constants, const brunt_points *points, brunt_point_energy *energy) {
+static void add_energy(const real *constants, const brunt_material_points *points, brunt_point_energy *energy) {
     (void)constants;
     lane_total dissipated = {0};
     for (int32_t i = 0; i < points->count; i += BRUNT_LANES)

@@ -29,7 +29,7 @@ static int prepare(const brunt_material_def *def, brunt_component component, con
 static void probe(const brunt_model *model, const real *constants, const double H[9], bool failed, double stress[6]) {
     real F[9][BRUNT_LANES], L[9][BRUNT_LANES], tau[6][BRUNT_LANES] = {{0}}, zero[BRUNT_LANES] = {0},
                                                state[BRUNT_MAX_STATE][BRUNT_LANES];
-    brunt_points points = {.count = BRUNT_LANES, .dim = 3, .dt = 1, .volume = zero};
+    brunt_material_points points = {.count = BRUNT_LANES, .dim = 3, .dt = 1, .volume = zero};
     if (failed) points.integrity = points.integrity_before = zero;
     for (int c = 0; c < 9; c++) {
         for (int l = 0; l < BRUNT_LANES; l++) L[c][l] = (real)H[c], F[c][l] = (real)H[c] + (c % 4 == 0);
@@ -182,14 +182,15 @@ int brunt_material_make(const brunt_material_def *def, brunt_material *material,
     return BRUNT_OK;
 }
 
-int brunt_material_make_sheet(const brunt_material_def *def, bool slack, brunt_material *material, brunt_error *error) {
+int brunt_material_make_membrane(const brunt_material_def *def, bool tension_only, brunt_material *material,
+                                 brunt_error *error) {
     int status = brunt_material_make(def, material, error);
     if (status) return status;
     const brunt_model *strength = material->model[BRUNT_STRENGTH];
-    if (!strength->update_sheet) {
+    if (!strength->update_plane_stress) {
         char names[400] = "";
         for (int k = 0; k < brunt_strength_model_count; k++)
-            if (brunt_strength_models[k]->update_sheet)
+            if (brunt_strength_models[k]->update_plane_stress)
                 snprintf(names + strlen(names), sizeof names - strlen(names), "%s%s", names[0] ? ", " : "",
                          brunt_strength_models[k]->name);
         return brunt_fail(error, BRUNT_BAD_INPUT,
@@ -200,20 +201,20 @@ int brunt_material_make_sheet(const brunt_material_def *def, bool slack, brunt_m
         return brunt_fail(error, BRUNT_BAD_INPUT,
                           "materials.%s: a membrane takes neither equation of state nor bulk viscosity nor failure",
                           def->name);
-    material->sheet = true;
-    material->slack = slack;
-    material->wave_speed = strength->wave_speed_sheet(material->constants[BRUNT_STRENGTH]);
+    material->membrane = true;
+    material->tension_only = tension_only;
+    material->wave_speed = strength->wave_speed_plane_stress(material->constants[BRUNT_STRENGTH]);
     return BRUNT_OK;
 }
 
-void brunt_material_energy(const brunt_material *material, brunt_component k, const brunt_points *points,
+void brunt_material_energy(const brunt_material *material, brunt_component k, const brunt_material_points *points,
                            brunt_point_energy *energy) {
     const brunt_model *model = material->model[k];
     if (!model) return;
-    if (material->sheet) {
-        brunt_points sheet = *points;
-        sheet.slack = material->slack;
-        model->energy_sheet(material->constants[k], &sheet, energy);
+    if (material->membrane) {
+        brunt_material_points own = *points;
+        own.tension_only = material->tension_only;
+        model->energy_plane_stress(material->constants[k], &own, energy);
     } else if (model->energy)
         model->energy(material->constants[k], points, energy);
 }
@@ -289,8 +290,9 @@ int brunt_material_set(brunt_material_def *def, const char *key, double value, c
 }
 
 // What failure reads of the strength model, and the others of it.
-static void connect_failure(const brunt_material *material, brunt_points points[BRUNT_COMPONENTS], real *strain) {
-    brunt_points *failure = &points[BRUNT_FAILURE];
+static void connect_failure(const brunt_material *material, brunt_material_points points[BRUNT_COMPONENTS],
+                            real *strain) {
+    brunt_material_points *failure = &points[BRUNT_FAILURE];
     const int dim = failure->dim, temperature = material->temperature[dim - 2],
               integrity = material->integrity[dim - 2];
     points[BRUNT_STRENGTH].strain_increment = failure->strain_increment = strain;
@@ -301,8 +303,9 @@ static void connect_failure(const brunt_material *material, brunt_points points[
     }
 }
 
-brunt_update_result brunt_material_update(const brunt_material *material, brunt_points points[BRUNT_COMPONENTS],
-                                          real *plastic, real *viscous, real *strain) {
+brunt_update_result brunt_material_update(const brunt_material *material,
+                                          brunt_material_points points[BRUNT_COMPONENTS], real *plastic, real *viscous,
+                                          real *strain) {
     const brunt_model *const *model = material->model;
     brunt_update_result total = {.bad = -1};
     const bool dissipates = model[BRUNT_STRENGTH]->plastic || model[BRUNT_STRENGTH]->shear_viscous;
@@ -312,9 +315,9 @@ brunt_update_result brunt_material_update(const brunt_material *material, brunt_
         if (!model[k]) continue;
         points[k].plastic_increment = model[BRUNT_EOS] && dissipates ? plastic : NULL;
         points[k].viscous_pressure = model[BRUNT_EOS] && model[BRUNT_VISCOSITY] ? viscous : NULL;
-        points[k].slack = material->slack;
+        points[k].tension_only = material->tension_only;
         brunt_update_result result =
-            (material->sheet ? model[k]->update_sheet : model[k]->update)(material->constants[k], &points[k]);
+            (material->membrane ? model[k]->update_plane_stress : model[k]->update)(material->constants[k], &points[k]);
         speed[k] = result.wave_speed;
         viscosity += result.viscosity;
         total.failed = total.failed || result.failed;

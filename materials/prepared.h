@@ -17,9 +17,9 @@ typedef struct brunt_material {
     real density;                               // [kg/m^3]
     const brunt_model *model[BRUNT_COMPONENTS]; // NULL where there is none
     real constants[BRUNT_COMPONENTS][BRUNT_MAX_CONSTANTS];
-    real wave_speed;   // [m/s] undeformed
-    real rest_stress;  // [Pa] what every normal stress is while undeformed: less the pressure of the equation of state
-    bool sheet, slack; // in plane stress; bears no compression
+    real wave_speed;  // [m/s] undeformed
+    real rest_stress; // [Pa] what every normal stress is while undeformed: less the pressure of the equation of state
+    bool membrane, tension_only; // in plane stress; bears no compression
     brunt_failure_action failure_action;
     // Of models in 2D and 3D: the first of their state arrays that holds this, -1 where there is none. `integrity` is
     // followed by `integrity_before`.
@@ -28,10 +28,11 @@ typedef struct brunt_material {
 
 // Checks the definition and prepares the constants. BRUNT_BAD_INPUT with the offending key.
 int brunt_material_make(const brunt_material_def *def, brunt_material *material, brunt_error *error);
-// The same of a sheet: of a model that has a plane-stress form, without equation of state, viscosity and failure.
-int brunt_material_make_sheet(const brunt_material_def *def, bool slack, brunt_material *material, brunt_error *error);
-// Stored and dissipated energy of a range [J], of component k; as a sheet when the material is one.
-void brunt_material_energy(const brunt_material *material, brunt_component k, const brunt_points *points,
+// The same of a membrane: of a model that has a plane-stress form, without equation of state, viscosity and failure.
+int brunt_material_make_membrane(const brunt_material_def *def, bool tension_only, brunt_material *material,
+                                 brunt_error *error);
+// Stored and dissipated energy of a range [J], of component k; as a membrane when the material is one.
+void brunt_material_energy(const brunt_material *material, brunt_component k, const brunt_material_points *points,
                            brunt_point_energy *energy);
 
 // One step of a material over a range: strength, viscosity, equation of state and failure, in this order. points[k] is
@@ -39,5 +40,6 @@ void brunt_material_energy(const brunt_material *material, brunt_component k, co
 // points->count reals each, for what one component leaves for the next (strain: [-] plastic, for failure; may be NULL
 // without). Gives the wave speed of all components together, the first point whose update is bad in the first component
 // that has one, and whether points have failed.
-brunt_update_result brunt_material_update(const brunt_material *material, brunt_points points[BRUNT_COMPONENTS],
-                                          real *plastic, real *viscous, real *strain);
+brunt_update_result brunt_material_update(const brunt_material *material,
+                                          brunt_material_points points[BRUNT_COMPONENTS], real *plastic, real *viscous,
+                                          real *strain);

@@ -7,9 +7,9 @@
 //
 // In plane stress W = E'/2 (E1^2 + E2^2 + 2 nu E1 E2) with E' = E / (1 - nu^2) and the principal Green strains of the
 // plane, tau_i = l_i^2 S_i.
-#include "materials/sheet.h"
+#include "materials/plane_stress.h"
 
-BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_points *points) {
+BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_material_points *points) {
     update_record record = update_begin();
     const real lambda = k[ELASTIC_LAMBDA], mu = k[ELASTIC_MU];
     for (int32_t i = 0; i < points->count; i += BRUNT_LANES) {
@@ -41,7 +41,7 @@ BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_
     return update_end(&record, points, NULL);
 }
 
-BRUNT_INLINE void energy_dim(int dim, const real *k, const brunt_points *points, brunt_point_energy *energy) {
+BRUNT_INLINE void energy_dim(int dim, const real *k, const brunt_material_points *points, brunt_point_energy *energy) {
     lane_total stored = {0};
     for (int32_t i = 0; i < points->count; i += BRUNT_LANES) {
         lanes H[9], B[6];
@@ -56,21 +56,22 @@ BRUNT_INLINE void energy_dim(int dim, const real *k, const brunt_points *points,
     energy->internal += total_end(&stored);
 }
 
-static brunt_update_result update(const real *constants, const brunt_points *points) {
+static brunt_update_result update(const real *constants, const brunt_material_points *points) {
     return points->dim == 2 ? update_dim(2, constants, points) : update_dim(3, constants, points);
 }
 
-static void add_energy(const real *constants, const brunt_points *points, brunt_point_energy *energy) {
+static void add_energy(const real *constants, const brunt_material_points *points, brunt_point_energy *energy) {
     if (points->dim == 2)
         energy_dim(2, constants, points, energy);
     else
         energy_dim(3, constants, points, energy);
 }
 
-BRUNT_INLINE void sheet_response_of(const real *k, bool slack, const lanes e[2], sheet_response *r) {
+BRUNT_INLINE void plane_stress_response_of(const real *k, bool tension_only, const lanes e[2],
+                                           plane_stress_response *r) {
     const real nu = k[ELASTIC_NU], mu = k[ELASTIC_MU], plane = k[ELASTIC_PLANE], half = (real)0.5;
     lanes E[2] = {e[0] + half * (e[0] * e[0]), e[1] + half * (e[1] * e[1])};
-    if (slack) r->taut = relax_linear(nu, E);
+    if (tension_only) r->taut = relax_linear(nu, E);
     lanes S[2] = {plane * (E[0] + nu * E[1]), plane * (E[1] + nu * E[0])};
     lanes square[2] = {1 + 2 * E[0], 1 + 2 * E[1]}; // l_i^2
     for (int i = 0; i < 2; i++) {
@@ -82,16 +83,17 @@ BRUNT_INLINE void sheet_response_of(const real *k, bool slack, const lanes e[2],
     r->shear = half * ((S[0] + S[1]) + mu * (square[0] + square[1]));
 }
 
-static brunt_update_result update_sheet(const real *constants, const brunt_points *points) {
-    return points->slack ? sheet_update(sheet_response_of, true, constants, points)
-                         : sheet_update(sheet_response_of, false, constants, points);
+static brunt_update_result update_plane_stress(const real *constants, const brunt_material_points *points) {
+    return points->tension_only ? plane_stress_update(plane_stress_response_of, true, constants, points)
+                                : plane_stress_update(plane_stress_response_of, false, constants, points);
 }
 
-static void add_energy_sheet(const real *constants, const brunt_points *points, brunt_point_energy *energy) {
-    if (points->slack)
-        sheet_energy(sheet_response_of, true, constants, points, energy);
+static void add_energy_plane_stress(const real *constants, const brunt_material_points *points,
+                                    brunt_point_energy *energy) {
+    if (points->tension_only)
+        plane_stress_energy(plane_stress_response_of, true, constants, points, energy);
     else
-        sheet_energy(sheet_response_of, false, constants, points, energy);
+        plane_stress_energy(plane_stress_response_of, false, constants, points, energy);
 }
 
 const brunt_model brunt_st_venant_kirchhoff = {
@@ -104,7 +106,7 @@ const brunt_model brunt_st_venant_kirchhoff = {
     .update = update,
     .energy = add_energy,
     .wave_speed = elastic_wave_speed,
-    .update_sheet = update_sheet,
-    .energy_sheet = add_energy_sheet,
-    .wave_speed_sheet = sheet_wave_speed,
+    .update_plane_stress = update_plane_stress,
+    .energy_plane_stress = add_energy_plane_stress,
+    .wave_speed_plane_stress = plane_stress_wave_speed,
 };

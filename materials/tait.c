@@ -46,16 +46,16 @@ BRUNT_INLINE lanes exponential_excess(lanes z) {
     return value;
 }
 
-BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_points *points) {
+BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_material_points *points) {
     update_record record = update_begin();
-    const lanes slack = lanes_set(-k[TENSION]);
+    const lanes limit = lanes_set(-k[TENSION]);
     for (int32_t i = 0; i < points->count; i += BRUNT_LANES) {
         lanes H[9];
         load_displacement_gradient(dim, points, i, H);
         lanes change = volume_change(dim, H), J = 1 + change;
         note_deformation(&record, J, i);
         lanes z = -k[GAMMA] * lanes_log1p(change), power = z + exponential_excess(z); // J^-gamma - 1
-        lanes Jp = J * lanes_max(k[MODULUS] * power, slack);
+        lanes Jp = J * lanes_max(k[MODULUS] * power, limit);
         for (int c = 0; c < 3; c++) lanes_store(points->stress[c] + i, lanes_load(points->stress[c] + i) - Jp);
         // c^2 = dp/drho = c0^2 J^(1 - gamma). A liquid that has expanded, or torn, closes again at c0.
         lanes faster = lanes_max(J * (1 + power), lanes_set(1));
@@ -64,11 +64,11 @@ BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_
     return update_end(&record, points, NULL);
 }
 
-static brunt_update_result update(const real *constants, const brunt_points *points) {
+static brunt_update_result update(const real *constants, const brunt_material_points *points) {
     return points->dim == 2 ? update_dim(2, constants, points) : update_dim(3, constants, points);
 }
 
-BRUNT_INLINE void energy_dim(int dim, const real *k, const brunt_points *points, brunt_point_energy *energy) {
+BRUNT_INLINE void energy_dim(int dim, const real *k, const brunt_material_points *points, brunt_point_energy *energy) {
     lane_total stored = {0};
     const real rest = k[GAMMA] - 1, inverse = rest > 0 ? 1 / rest : 0;
     for (int32_t i = 0; i < points->count; i += BRUNT_LANES) {
@@ -83,7 +83,7 @@ BRUNT_INLINE void energy_dim(int dim, const real *k, const brunt_points *points,
     energy->internal += total_end(&stored);
 }
 
-static void add_energy(const real *constants, const brunt_points *points, brunt_point_energy *energy) {
+static void add_energy(const real *constants, const brunt_material_points *points, brunt_point_energy *energy) {
     if (points->dim == 2)
         energy_dim(2, constants, points, energy);
     else

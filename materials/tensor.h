@@ -18,17 +18,17 @@
 
 enum { XX, YY, ZZ, XY, YZ, XZ };
 
-BRUNT_INLINE void load_displacement_gradient(int dim, const brunt_points *points, int32_t i, lanes H[9]) {
+BRUNT_INLINE void load_displacement_gradient(int dim, const brunt_material_points *points, int32_t i, lanes H[9]) {
     for (int k = 0; k < dim * dim; k++) H[k] = lanes_load(points->F[k] + i);
     for (int k = 0; k < dim; k++) H[k * (dim + 1)] -= 1;
 }
 
 // dt L, the displacement gradient of the step.
-BRUNT_INLINE void load_step_gradient(int dim, const brunt_points *points, int32_t i, lanes H[9]) {
+BRUNT_INLINE void load_step_gradient(int dim, const brunt_material_points *points, int32_t i, lanes H[9]) {
     for (int k = 0; k < dim * dim; k++) H[k] = lanes_load(points->L[k] + i) * points->dt;
 }
 
-BRUNT_INLINE lanes load_divergence(int dim, const brunt_points *points, int32_t i) {
+BRUNT_INLINE lanes load_divergence(int dim, const brunt_material_points *points, int32_t i) {
     lanes d = lanes_load(points->L[0] + i) + lanes_load(points->L[dim + 1] + i);
     return dim == 3 ? d + lanes_load(points->L[8] + i) : d;
 }
@@ -116,7 +116,7 @@ static inline int32_t first_index(lane_mask first) {
 }
 
 // `model_reason`: what record.model stands for.
-static inline brunt_update_result update_end(const update_record *record, const brunt_points *points,
+static inline brunt_update_result update_end(const update_record *record, const brunt_material_points *points,
                                              const char *model_reason) {
     brunt_update_result result = {.wave_speed = (real)sqrt((double)lanes_max_of(record->speed_squared)), .bad = -1};
     int32_t deformation = first_index(record->deformation), model = first_index(record->model);

@@ -1,7 +1,7 @@
 // Von Mises plasticity with isotropic hardening, finite strain (kinematics and return: j2.h):
 //   Y = yield + hardening eps_p + (saturation_stress - yield) (1 - exp(-saturation_rate eps_p)),
 // the last term (Voce) only when a saturation stress is given. Linear hardening returns in closed form.
-#include "materials/j2.h"
+#include "materials/return_mapping.h"
 
 enum { YIELD = J2_CONSTANTS, HARDENING, RISE, RATE };
 
@@ -33,7 +33,7 @@ BRUNT_INLINE lanes flow_stress(const real *k, lanes plastic_strain, lanes *slope
 }
 
 BRUNT_INLINE brunt_update_result update_dim(int dim, bool saturates, bool softens, const real *k,
-                                            const brunt_points *points) {
+                                            const brunt_material_points *points) {
     update_record record = update_begin();
     for (int32_t i = 0; i < points->count; i += BRUNT_LANES) {
         j2_point p = j2_trial(dim, k, points, i, &record);
@@ -71,14 +71,14 @@ BRUNT_INLINE brunt_update_result update_dim(int dim, bool saturates, bool soften
     return update_end(&record, points, "the plastic increment of the hardening law was not found");
 }
 
-BRUNT_INLINE brunt_update_result update_of(int dim, const real *k, const brunt_points *points) {
+BRUNT_INLINE brunt_update_result update_of(int dim, const real *k, const brunt_material_points *points) {
     const bool saturates = k[RISE] > 0;
     if (points->integrity)
         return saturates ? update_dim(dim, true, true, k, points) : update_dim(dim, false, true, k, points);
     return saturates ? update_dim(dim, true, false, k, points) : update_dim(dim, false, false, k, points);
 }
 
-static brunt_update_result update(const real *constants, const brunt_points *points) {
+static brunt_update_result update(const real *constants, const brunt_material_points *points) {
     return points->dim == 2 ? update_of(2, constants, points) : update_of(3, constants, points);
 }
 

@@ -93,7 +93,7 @@ static int make(brunt_element_kind kind, bool rings, int cells, bench *b) {
     rubber.density = 1100;
     brunt_material_set(&rubber, "E", 1e6, NULL, &error);
     brunt_material_set(&rubber, "nu", 0.4, NULL, &error);
-    int status = brunt_element_is_membrane(kind) ? brunt_material_make_sheet(&rubber, false, &material, &error)
+    int status = brunt_element_is_membrane(kind) ? brunt_material_make_membrane(&rubber, false, &material, &error)
                                                  : brunt_material_make(&rubber, &material, &error);
     if (status == BRUNT_OK)
         status = rings ? brunt_fem_make_axisymmetric(&def, &material, &mesh, &b->body, &error)

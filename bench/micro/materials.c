@@ -65,7 +65,7 @@ static bool measure(bench_case *c, int updates) {
     real constants[BRUNT_MAX_CONSTANTS] = {0};
     const double density = typical_parameters(c->model, parameters), dt = 1e-7;
     const char *wrong = c->model->prepare(parameters, density, c->with_eos, constants);
-    brunt_points points = {
+    brunt_material_points points = {
         .count = POINTS, .dim = c->dim, .dt = (real)dt, .time = 1, .cell = (real)1e-3, .wave_speed = 4000};
     real *F[2][9] = {{0}}, *L[2][9] = {{0}}, *volume = reals(1);
     uint64_t seed = 1;

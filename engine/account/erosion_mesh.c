@@ -68,7 +68,8 @@ static int make_mesh(brunt_erosion *erosion, const brunt_bodies *bodies, brunt_f
                      brunt_error *error) {
     struct brunt_erosion_work *work = erosion->work;
     const int k = (int)(fem - bodies->fem);
-    if (brunt_fem_erodes(fem, erosion->rule[fem->index].inverted) || !(work->single[k] = brunt_fem_single_make(fem)))
+    if (brunt_fem_prepare_erosion(fem, erosion->rule[fem->index].inverted) ||
+        !(work->single[k] = brunt_fem_single_make(fem)))
         return brunt_fail(error, BRUNT_FAILED, "bodies.%s: out of memory", fem->name);
     if (by_failure) work->damage[k] = find_damage(fem);
     return BRUNT_OK;

@@ -112,7 +112,7 @@ static brunt_point_energy energy_of(brunt_body *body, const int64_t *slots, int6
         for (; i < count && slots[i] < first + BRUNT_LANES; i++) share[slots[i] - first] = volume[slots[i]];
         for (int k = 0; k < BRUNT_COMPONENTS; k++) {
             if (!body->material.model[k]) continue;
-            brunt_points points = brunt_body_points(body, (brunt_component)k, first, BRUNT_LANES);
+            brunt_material_points points = brunt_body_points(body, (brunt_component)k, first, BRUNT_LANES);
             points.volume = share;
             brunt_material_energy(&body->material, (brunt_component)k, &points, &energy);
         }

@@ -71,7 +71,7 @@ static double light_elements(const brunt_world_def *def, brunt_fem_body *fem, do
 
 static bool burns(const brunt_body_ref *ref) {
     const brunt_model *eos = ref->mpm ? ref->mpm->material.model[BRUNT_EOS] : ref->fem->material.model[BRUNT_EOS];
-    return eos && eos->burns;
+    return eos && eos->explosive;
 }
 
 // D [m/s]: the first parameter of all that burns.

@@ -27,7 +27,7 @@ typedef struct brunt_element {
     int hourglass_modes;                            // zero-energy modes per direction ...
     const int8_t (*hourglass)[BRUNT_ELEMENT_NODES]; // ... and each node's share in them
     double (*volume)(
-        const double (*x)[3]); // [m^3] exact, of corners x; 2D [m^2]; negative when inside out; sheets: area [m^2]
+        const double (*x)[3]); // [m^3] exact, of corners x; 2D [m^2]; negative when inside out; membranes: area [m^2]
     // Of an axisymmetric element, the share int N_a dV of its volume that each node has [m^3], of corners x; NULL:
     // equal shares.
     void (*shares)(const double (*x)[3], double *share);

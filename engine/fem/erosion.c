@@ -34,7 +34,7 @@ static void count_bonds(brunt_fem_body *body) {
             body->bonds[body->element_node[(int64_t)s * nodes + a]]++;
 }
 
-int brunt_fem_erodes(brunt_fem_body *body, bool inverted) {
+int brunt_fem_prepare_erosion(brunt_fem_body *body, bool inverted) {
     body->mesh_elements = body->element_count;
     body->erodes_inverted = inverted;
     body->bonds = brunt_alloc((size_t)body->node_count * sizeof *body->bonds);
@@ -108,7 +108,7 @@ double brunt_fem_stress_work(const brunt_fem_body *body, int32_t block, double d
 
 // ------------------------------------------------------------------------------------------ strain
 
-// F of the elements from `slot` on in three dimensions; of a sheet, its stretch.
+// F of the elements from `slot` on in three dimensions; of a membrane, its stretch.
 static void deformation(brunt_fem_body *body, int32_t slot, lanes F[9]) {
     real *const *field = brunt_element_scalars(body, BRUNT_ELEMENT_deformation_gradient);
     const int dim = body->point_dim;

@@ -53,7 +53,7 @@ int brunt_fem_faces(const brunt_fem_body *body, brunt_faces *faces) {
         int32_t found = 0;
         for (int32_t n = 0; n < body->node_count; n++)
             for (int64_t i = first[n]; i < first[n + 1]; i++) {
-                bool alone = !on_axis(body, list[i]); // a sheet's element is its one face
+                bool alone = !on_axis(body, list[i]); // a membrane's element is its one face
                 for (int64_t j = first[n]; alone && !type->membrane && j < first[n + 1]; j++)
                     alone = i == j || !same_nodes(body, list[i], list[j]);
                 outside[list[i]] = alone;

@@ -13,7 +13,7 @@
 #include "base/memory.h"
 
 typedef struct element_needs {
-    bool mass_scaling, viscous_hourglass, sheet;
+    bool mass_scaling, viscous_hourglass, membrane;
 } element_needs;
 
 static void list_fields(brunt_fem_body *body, const element_needs *needs) {
@@ -77,7 +77,7 @@ static void measure_lateral_ratio(brunt_fem_body *body, double temperature) {
     enum { AXIAL, LATERAL };
     real L[9][BRUNT_LANES] = {{0}}, plastic[BRUNT_LANES] = {0}, viscous[BRUNT_LANES] = {0}, strain[BRUNT_LANES] = {0};
     double before[2], stress[2];
-    brunt_points points[BRUNT_COMPONENTS];
+    brunt_material_points points[BRUNT_COMPONENTS];
     for (int step = 0; step < 2; step++) { // an equation of state may have stress at rest
         reset_state(body, temperature, BRUNT_LANES);
         for (int l = 0; l < BRUNT_LANES && step; l++) {
@@ -301,7 +301,7 @@ static int make_body(const brunt_body_def *def, const brunt_material *material, 
         return brunt_fail(error, BRUNT_BAD_INPUT, "bodies.%s.hourglass: membranes have the stiffness form only",
                           def->name);
     const element_needs needs = {.mass_scaling = def->mass_scaling > 0,
-                                 .sheet = body->traits->membrane,
+                                 .membrane = body->traits->membrane,
                                  .viscous_hourglass =
                                      body->element->hourglass_modes && def->hourglass == BRUNT_HOURGLASS_VISCOUS};
     list_fields(body, &needs);
@@ -361,8 +361,8 @@ void brunt_fem_workspace_free(brunt_fem_workspace *work) {
     *work = (brunt_fem_workspace){0};
 }
 
-brunt_points brunt_fem_points(brunt_fem_body *body, brunt_component component, int64_t first, int32_t count) {
-    brunt_points points = {
+brunt_material_points brunt_fem_points(brunt_fem_body *body, brunt_component component, int64_t first, int32_t count) {
+    brunt_material_points points = {
         .count = count, .dim = body->point_dim, .wave_speed = body->material.wave_speed, .time = body->time};
     real **F = brunt_element_scalars(body, BRUNT_ELEMENT_deformation_gradient),
          **stress = brunt_element_scalars(body, BRUNT_ELEMENT_kirchhoff_stress);
@@ -388,7 +388,7 @@ brunt_point_energy brunt_fem_energy(brunt_fem_body *body) {
         int32_t padded = (block->count + BRUNT_LANES - 1) / BRUNT_LANES * BRUNT_LANES;
         for (int k = 0; k < BRUNT_COMPONENTS; k++) {
             if (!body->material.model[k]) continue;
-            brunt_points points = brunt_fem_points(body, (brunt_component)k, block->first, padded);
+            brunt_material_points points = brunt_fem_points(body, (brunt_component)k, block->first, padded);
             brunt_material_energy(&body->material, (brunt_component)k, &points, &energy);
         }
     }

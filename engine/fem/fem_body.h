@@ -21,7 +21,7 @@ enum { BRUNT_FEM_TILE = 64 }; // elements that go through kinematics, material a
     X(deformation_gradient, "1", BRUNT_MATRIX, true)                                                                   \
     X(kirchhoff_stress, "Pa", BRUNT_SYMMETRIC, true)                                                                   \
     X(reference_volume, "m^3", BRUNT_ONE, true)                                                                        \
-    X(thickness_stretch, "1", BRUNT_ONE, needs->sheet)    /* of membranes, across the sheet */                         \
+    X(thickness_stretch, "1", BRUNT_ONE, needs->membrane) /* of membranes, across the membrane */                      \
     X(density_scale, "1", BRUNT_ONE, needs->mass_scaling) /* factor of mass scaling on the density */                  \
     X(hourglass_rate, "1/s", BRUNT_HOURGLASS_RATES, needs->viscous_hourglass) /* of the last step, for its work */
 #define BRUNT_ONE(dim) 1
@@ -162,9 +162,9 @@ void brunt_fem_shares(const brunt_fem_body *body, int32_t slot, double *share);
 void brunt_fem_free(brunt_fem_body *body);
 size_t brunt_fem_bytes(const brunt_fem_body *body);
 
-// --- erode.c
+// --- erosion.c
 // What a body needs to lose elements: bonds, marks, ranks. 0, or -1: out of memory.
-int brunt_fem_erodes(brunt_fem_body *body, bool inverted);
+int brunt_fem_prepare_erosion(brunt_fem_body *body, bool inverted);
 // Takes `count` elements out, given by ascending slots: the last element of a block moves into the gap, so that others
 // change their slots; element_count, bonds, marks and the padding follow. Forces and reports of their blocks are made
 // anew (dt 0). Nodes are left alone.
@@ -218,14 +218,14 @@ static inline real *brunt_fem_node(const brunt_fem_body *body, int32_t node) {
 }
 
 // Views element slots `first` .. `first + count - 1` (count a multiple of BRUNT_LANES) as the points of a component.
-brunt_points brunt_fem_points(brunt_fem_body *body, brunt_component component, int64_t first, int32_t count);
+brunt_material_points brunt_fem_points(brunt_fem_body *body, brunt_component component, int64_t first, int32_t count);
 // How many elements have a corner that is turned inside out now, the mean Jacobian still being positive. One-point
 // elements go on with that, since the mean is all they see; it says that the mesh is too coarse for what happens. For
 // output, not for each step.
 int32_t brunt_fem_folded(const brunt_fem_body *body);
 // Cauchy stress of a membrane's element [Pa] in global axes, XX YY ZZ XY YZ XZ, from where its nodes are now and its
-// stretch and Kirchhoff stress: none across the sheet. The area that stress acts on has `thickness` times the stretch
-// across.
+// stretch and Kirchhoff stress: none across the membrane. The area that stress acts on has `thickness` times the
+// stretch across.
 void brunt_membrane_stress(const brunt_fem_body *body, int32_t slot, double sigma[6]);
 // Stored and dissipated energy of all elements [J], without the hourglass modes.
 brunt_point_energy brunt_fem_energy(brunt_fem_body *body);
@@ -264,8 +264,8 @@ void brunt_fem_drift(brunt_fem_body *body, int32_t begin, int32_t end, double dt
 brunt_fem_sums brunt_fem_audit(brunt_fem_body *body);
 
 // The faces of a body's surface: those that only one element has. Nodes (of this body) as in brunt_element.face, the
-// 4th is -1 for triangles, 3rd and 4th for 2D; `element` is a slot. Ordered by slot and face. Of a sheet, each of its
-// elements is one face, with its own order of nodes.
+// 4th is -1 for triangles, 3rd and 4th for 2D; `element` is a slot. Ordered by slot and face. Of a membrane, each of
+// its elements is one face, with its own order of nodes.
 typedef struct brunt_faces {
     int32_t count;
     int32_t (*node)[4];

@@ -64,7 +64,7 @@ typedef struct fem_pass {
     const real *scale, *volume; // scale: NULL without mass scaling
     real *L[9];                 // of a tile
     real dt;
-    bool viscous, slack;
+    bool viscous, tension_only;
     real spring, damper;   // what is common to all elements of the hourglass coefficients
     real lateral, c0, rho; // see brunt_fem_body
     real norm, overlap, cosine;
@@ -103,8 +103,8 @@ static inline double fem_stress_work(const brunt_fem_body *body, const brunt_fem
 }
 
 // The range from `offset` on of `whole`.
-static inline brunt_points fem_points_from(const brunt_points *whole, int32_t offset, int32_t count) {
-    brunt_points points = *whole;
+static inline brunt_material_points fem_points_from(const brunt_material_points *whole, int32_t offset, int32_t count) {
+    brunt_material_points points = *whole;
     points.count = count;
     for (int c = 0; c < BRUNT_MATRIX(points.dim); c++) points.F[c] += offset;
     for (int c = 0; c < BRUNT_SYMMETRIC(points.dim); c++) points.stress[c] += offset;
@@ -143,11 +143,11 @@ static inline void fem_restore_state(const brunt_fem_body *body, const fem_pass 
             body->scalar[c][slot + k] = pass->kept[c * FEM_TILE + k];
 }
 
-static inline fem_pass fem_pass_begin(brunt_fem_body *body, const brunt_fem_block *block, real dt, real *room) {
+static inline fem_pass fem_pass_begin(brunt_fem_body *body, const brunt_fem_block *block, real dt, real *memory) {
     const bool viscous = body->element->hourglass_modes && body->hourglass == BRUNT_HOURGLASS_VISCOUS;
     const brunt_element_field *rate = &body->field[BRUNT_ELEMENT_hourglass_rate],
                               *scale = &body->field[BRUNT_ELEMENT_density_scale];
-    real *copy = room, *velocity = copy + (size_t)body->block_nodes * 8;
+    real *copy = memory, *velocity = copy + (size_t)body->block_nodes * 8;
     const bool keeps = body->erodes_inverted && dt > 0;
     fem_load_block(body, block, copy, viscous ? velocity : NULL);
     const real c0 = body->material.wave_speed, density = body->material.density;
@@ -160,7 +160,7 @@ static inline fem_pass fem_pass_begin(brunt_fem_body *body, const brunt_fem_bloc
                       .volume = brunt_element_scalars(body, BRUNT_ELEMENT_reference_volume)[0],
                       .dt = dt,
                       .viscous = viscous,
-                      .slack = body->material.slack,
+                      .tension_only = body->material.tension_only,
                       .spring = body->hourglass_coefficient * density * c0 * c0,
                       .damper = body->hourglass_coefficient * density * c0 * (body->dim == 3 ? (real)0.25 : 1),
                       .lateral = body->lateral_ratio,
@@ -171,5 +171,5 @@ static inline fem_pass fem_pass_begin(brunt_fem_body *body, const brunt_fem_bloc
                       .cosine = (real)sqrt((double)body->hourglass_overlap),
                       .thickness = body->thickness,
                       .mark = keeps ? body->mark : NULL,
-                      .kept = keeps ? room + brunt_fem_tile_reals(body) : NULL};
+                      .kept = keeps ? memory + brunt_fem_tile_reals(body) : NULL};
 }

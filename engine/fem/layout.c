@@ -71,14 +71,14 @@ static void sort_elements(const brunt_element *type, const brunt_mesh *mesh, pla
     const int bits = type->traits->dimension == 3 ? 21 : 31;
     // 2^-fraction units are one step of the grid; the whole extent must fit.
     int fraction = bits - 1 - (int)ceil(log2(extent / unit + 1));
-    double scale = ldexp(1 / unit, fraction), most = ldexp(1, bits) - 1;
+    double scale = ldexp(1 / unit, fraction), limit = ldexp(1, bits) - 1;
     for (int32_t e = 0; e < mesh->element_count; e++) {
         uint32_t at[3] = {0};
         corners_of(mesh, type->traits->nodes, e, x);
         for (int a = 0; a < type->traits->dimension; a++) {
             double sum = 0;
             for (int k = 0; k < type->traits->nodes; k++) sum += x[k][a];
-            at[a] = (uint32_t)fmin(fmax((sum / type->traits->nodes - low[a]) * scale, 0), most);
+            at[a] = (uint32_t)fmin(fmax((sum / type->traits->nodes - low[a]) * scale, 0), limit);
         }
         order[e] = (placed_element){brunt_hilbert_key(type->traits->dimension, bits, at), e};
     }
@@ -129,7 +129,7 @@ static int ascending(const void *left, const void *right) {
 static void place_nodes(brunt_fem_body *body, int32_t *number) {
     const int nodes = body->traits->nodes;
     memset(number, -1, (size_t)body->node_count * sizeof *number);
-    int32_t at = 0, most = 0;
+    int32_t at = 0, greatest = 0;
     for (int32_t b = 0; b < body->block_count; b++) {
         brunt_fem_block *block = &body->block[b];
         int64_t begin = (int64_t)block->first * nodes, end = begin + (int64_t)block->count * nodes;
@@ -142,7 +142,7 @@ static void place_nodes(brunt_fem_body *body, int32_t *number) {
             body->block_node[at++] = node;
         }
         block->node_count = at - block->node_first;
-        if (block->node_count > most) most = block->node_count;
+        if (block->node_count > greatest) greatest = block->node_count;
         int32_t *list = body->block_node + block->node_first;
         qsort(list, (size_t)block->node_count, sizeof *list, ascending);
         for (int32_t k = 0; k < block->node_count; k++) number[list[k]] = k;
@@ -150,7 +150,7 @@ static void place_nodes(brunt_fem_body *body, int32_t *number) {
         for (int32_t k = 0; k < block->node_count; k++) number[list[k]] = -1;
     }
     body->partial_count = at;
-    body->block_nodes = (most + 3) / 4 * 4;
+    body->block_nodes = (greatest + 3) / 4 * 4;
 }
 
 static void invert_blocks(brunt_fem_body *body) {

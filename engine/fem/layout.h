@@ -14,9 +14,9 @@ uint64_t brunt_hilbert_key(int dim, int bits, const uint32_t *coordinate);
 void brunt_fem_stable_steps(brunt_fem_body *body, double mass_scaling);
 // Places of an element's nodes at the start.
 void brunt_fem_corners(const brunt_fem_body *body, int32_t slot, double (*x)[3]);
-// Of a sheet: its frame (see membrane.inc) from the places x of its nodes; and x in that frame, from node 0.
+// Of a membrane: its frame (see membrane.inc) from the places x of its nodes; and x in that frame, from node 0.
 void brunt_membrane_frame(int nodes, const double (*x)[3], double e[3][3]);
 void brunt_fem_flatten(int nodes, double (*x)[3]);
 // Of a ring undeformed, with places x of its nodes: bound of omega^2 over the square of the wave speed [1/m^2], springs
 // not counted; r is lambda / (lambda + 2 mu). See axisymmetric.inc.
-double brunt_fem_ring_bound(const brunt_element *type, const double (*x)[3], double r);
+double brunt_fem_axisymmetric_bound(const brunt_element *type, const double (*x)[3], double r);

@@ -99,7 +99,7 @@ static void hourglass_shape(const brunt_element *type, const double (*x)[3], dou
 }
 
 // omega^2 of strain, and of the hourglass springs [1/s^2] or dampers [1/s], of an undeformed element. `warp`: what the
-// warp of a sheet adds to their joint bound (membrane.inc), inside its root and after it.
+// warp of a membrane adds to their joint bound (membrane.inc), inside its root and after it.
 static void element_frequencies(const brunt_fem_body *body, const double (*x)[3], double *strain, double *hourglass,
                                 double warp[2]) {
     const brunt_element *type = body->element;
@@ -116,7 +116,7 @@ static void element_frequencies(const brunt_fem_body *body, const double (*x)[3]
         for (int j = 0; j < dim; j++) deviator += pow(S[i][j] - (i == j ? trace / dim : 0), 2);
     double greatest = trace / dim + sqrt((dim - 1.0) / dim * deviator);
     *strain = n * c0 * c0 * (fmax(r, 0) * trace + (1 - r) * greatest);
-    if (type->axisymmetric) *strain = c0 * c0 * brunt_fem_ring_bound(type, x, r);
+    if (type->axisymmetric) *strain = c0 * c0 * brunt_fem_axisymmetric_bound(type, x, r);
     *hourglass = warp[0] = warp[1] = 0;
     if (!type->hourglass_modes) return;
     double share = (double)body->hourglass_coefficient * (double)body->hourglass_norm;
@@ -163,7 +163,7 @@ static double stable_step(const brunt_fem_body *body, const double (*x)[3], doub
     return low;
 }
 
-// An element's corners as its bounds see them: of a sheet, in its own frame.
+// An element's corners as its bounds see them: of a membrane, in its own frame.
 static void own_corners(const brunt_fem_body *body, int32_t slot, double (*x)[3]) {
     brunt_fem_corners(body, slot, x);
     if (body->traits->membrane) brunt_fem_flatten(body->traits->nodes, x);

@@ -27,11 +27,11 @@ typedef struct brunt_surface_topology {
 } brunt_surface_topology;
 
 // Of a body that has all its elements. 0, or -1: out of memory.
-int brunt_topology_make(brunt_surface_topology *shell, const brunt_fem_body *fem);
+int brunt_topology_make(brunt_surface_topology *topology, const brunt_fem_body *fem);
 // The surface as it is now; what it was becomes `before`. 1 when it is made anew, 0 when nothing has changed, -1: out
 // of memory. `restored`: others may be there than before, of a saved state, and other nodes may be loose; else as many
 // as before are the same.
-int brunt_topology_renew(brunt_surface_topology *shell, const brunt_fem_body *fem, bool restored);
+int brunt_topology_renew(brunt_surface_topology *topology, const brunt_fem_body *fem, bool restored);
 // Nodes (of the body) of face `k` of the surface; the 4th is -1 for triangles, 3rd and 4th for segments.
-void brunt_topology_face(const brunt_surface_topology *shell, const brunt_fem_body *fem, int32_t k, int32_t node[4]);
-void brunt_topology_free(brunt_surface_topology *shell);
+void brunt_topology_face(const brunt_surface_topology *topology, const brunt_fem_body *fem, int32_t k, int32_t node[4]);
+void brunt_topology_free(brunt_surface_topology *topology);

@@ -323,18 +323,18 @@ static bool find_unreferenced(const brunt_mesh *mesh, list *found) {
     return true;
 }
 
-// ---------------------------------------------------------------------------------------------------- sides of sheets
+// ------------------------------------------------------------------------------------------------- sides of membranes
 
 // An edge of an element that runs from its lesser to its greater node, or back.
 typedef struct border {
-    int32_t least, most, element;
+    int32_t least, greatest, element;
     bool back;
 } border;
 
 static int by_border(const void *a, const void *b) {
     const border *p = a, *q = b;
     if (p->least != q->least) return p->least < q->least ? -1 : 1;
-    if (p->most != q->most) return p->most < q->most ? -1 : 1;
+    if (p->greatest != q->greatest) return p->greatest < q->greatest ? -1 : 1;
     return (p->element > q->element) - (p->element < q->element);
 }
 
@@ -356,8 +356,8 @@ static bool find_turned(const brunt_mesh *mesh, turned *found) {
     }
     qsort(edges, count, sizeof *edges, by_border);
     for (size_t i = 0, same; i < count; i += same) {
-        for (same = 1;
-             i + same < count && edges[i + same].least == edges[i].least && edges[i + same].most == edges[i].most;)
+        for (same = 1; i + same < count && edges[i + same].least == edges[i].least &&
+                       edges[i + same].greatest == edges[i].greatest;)
             same++;
         if (same != 2 || edges[i].back != edges[i + 1].back) continue;
         if (!found->count++ || edges[i].element < found->first)
@@ -376,7 +376,7 @@ static int check_sides(const brunt_mesh *mesh, brunt_error *error) {
     if (found.count > 1) snprintf(more, sizeof more, ", as are %d more pairs", (int)(found.count - 1));
     return brunt_fail(
         error, BRUNT_BAD_INPUT,
-        "elements %lld and %lld are turned to opposite sides%s: neighbours in a sheet have their nodes in "
+        "elements %lld and %lld are turned to opposite sides%s: neighbours in a membrane have their nodes in "
         "the same sense, counter-clockwise seen from the front",
         found.first + 1LL, found.second + 1LL, more);
 }

@@ -73,14 +73,14 @@ static int grid_of_annulus(double inner, double outer, double size, brunt_mesh_g
 // gives the coordinate axes in cyclic order.
 static void set_upright(const double *axis, const double *center, brunt_mesh_grid *grid) {
     double frame[3][3], length = sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
-    int most = 0;
+    int steepest = 0;
     for (int d = 0; d < 3; d++) {
         frame[2][d] = axis[d] / length;
-        if (fabs(axis[d]) >= fabs(axis[most])) most = d;
+        if (fabs(axis[d]) >= fabs(axis[steepest])) steepest = d;
     }
-    double along = frame[2][(most + 1) % 3], square = 0;
+    double along = frame[2][(steepest + 1) % 3], square = 0;
     for (int d = 0; d < 3; d++) {
-        frame[0][d] = (d == (most + 1) % 3) - along * frame[2][d];
+        frame[0][d] = (d == (steepest + 1) % 3) - along * frame[2][d];
         square += frame[0][d] * frame[0][d];
     }
     for (int d = 0; d < 3; d++) frame[0][d] /= sqrt(square);
@@ -244,7 +244,8 @@ int brunt_mesh_shape(const brunt_shape *shape, int dimension, brunt_element_kind
         return brunt_fail(error, BRUNT_BAD_INPUT, "elements of kind %s are of %d dimensions, the shape is of %d",
                           brunt_element_name(kind), brunt_element_dimension(kind), dimension);
     if (brunt_element_is_membrane(kind))
-        return brunt_fail(error, BRUNT_BAD_INPUT, "elements of kind %s are sheets: a shape's surface is made of them",
+        return brunt_fail(error, BRUNT_BAD_INPUT,
+                          "elements of kind %s are membranes: a shape's surface is made of them",
                           brunt_element_name(kind));
     if (!(size > 0) || !isfinite(size))
         return brunt_fail(error, BRUNT_BAD_INPUT, "an edge length of %g m, a positive length is wanted", size);

@@ -1,4 +1,4 @@
-// The surface of a structured mesh as a mesh of sheets: membranes wrapped around a shape, or one face of it.
+// The surface of a structured mesh as a mesh of membranes: membranes wrapped around a shape, or one face of it.
 //
 // Quadrilaterals are the outer faces of the shape's hexahedra, triangles those of its tetrahedra: these are cut so that
 // a mesh keeps the mirror symmetry of its shape (see mesh_shape_split.c), which one diagonal for all would not.
@@ -10,7 +10,7 @@
 #include "base/memory.h"
 #include "geometry/element_traits.h"
 
-// What of the volume's mesh becomes sheets.
+// What of the volume's mesh becomes membranes.
 typedef struct surface {
     const brunt_element_traits *of; // the element of the volume
     const brunt_mesh *volume;
@@ -196,7 +196,7 @@ static bool add_groups(const brunt_mesh *volume, const int32_t *number, brunt_me
 }
 
 // Nodes keep the order they have in the volume. False: out of memory.
-static bool make_sheets(const surface *s, brunt_element_kind kind, brunt_mesh *mesh) {
+static bool make_membranes(const surface *s, brunt_element_kind kind, brunt_mesh *mesh) {
     const brunt_mesh *volume = s->volume;
     const int corners = s->of->face_nodes;
     int32_t *number = brunt_alloc((size_t)volume->node_count * sizeof *number);
@@ -222,7 +222,7 @@ int brunt_mesh_surface(const brunt_shape *shape, brunt_element_kind kind, double
                        brunt_error *error) {
     *mesh = (brunt_mesh){0};
     if (!brunt_element_is_membrane(kind))
-        return brunt_fail(error, BRUNT_BAD_INPUT, "elements of kind %s are not sheets", brunt_element_name(kind));
+        return brunt_fail(error, BRUNT_BAD_INPUT, "elements of kind %s are not membranes", brunt_element_name(kind));
     brunt_mesh volume;
     const brunt_element_kind solid = brunt_element_below_membrane(kind);
     surface s = {.of = brunt_element_traits_of(solid), .volume = &volume};
@@ -230,7 +230,7 @@ int brunt_mesh_surface(const brunt_shape *shape, brunt_element_kind kind, double
     if (status) return status;
     bool done = find_surface(&s);
     if (done && face_count) status = keep_faces(&s, faces, face_count, error);
-    if (!status && (!done || !make_sheets(&s, kind, mesh)))
+    if (!status && (!done || !make_membranes(&s, kind, mesh)))
         status = brunt_fail(error, BRUNT_FAILED, "no memory for a surface with edges of %g m", size);
     if (status) brunt_mesh_free(mesh);
     brunt_free(s.face);

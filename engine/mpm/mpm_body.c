@@ -15,15 +15,15 @@ void brunt_body_free(brunt_body *body) {
     *body = (brunt_body){0};
 }
 
-brunt_points brunt_body_points(brunt_body *body, brunt_component component, int64_t first, int32_t count) {
+brunt_material_points brunt_body_points(brunt_body *body, brunt_component component, int64_t first, int32_t count) {
     brunt_particles *p = &body->particles;
     const int dim = p->point_dim;
-    brunt_points points = {.count = count,
-                           .dim = dim,
-                           .cell = body->grid.h,
-                           .wave_speed = body->material.wave_speed,
-                           .may_reshape = true,
-                           .time = body->time};
+    brunt_material_points points = {.count = count,
+                                    .dim = dim,
+                                    .cell = body->grid.h,
+                                    .wave_speed = body->material.wave_speed,
+                                    .may_reshape = true,
+                                    .time = body->time};
     real **F = brunt_field(p, BRUNT_FIELD_deformation_gradient),
          **stress = brunt_field(p, BRUNT_FIELD_kirchhoff_stress);
     for (int c = 0; c < BRUNT_MATRIX(dim); c++) points.F[c] = F[c] + first;
@@ -46,7 +46,7 @@ brunt_point_energy brunt_body_energy(brunt_body *body) {
         int32_t padded = (block->count + BRUNT_LANES - 1) / BRUNT_LANES * BRUNT_LANES;
         for (int k = 0; k < BRUNT_COMPONENTS; k++) {
             if (!body->material.model[k]) continue;
-            brunt_points points = brunt_body_points(body, (brunt_component)k, block->first, padded);
+            brunt_material_points points = brunt_body_points(body, (brunt_component)k, block->first, padded);
             brunt_material_energy(&body->material, (brunt_component)k, &points, &energy);
         }
     }

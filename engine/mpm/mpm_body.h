@@ -45,7 +45,7 @@ typedef struct brunt_body {
 void brunt_body_free(brunt_body *body);
 
 // Views particles `first` .. `first + count - 1` (count a multiple of BRUNT_LANES) as the points of a component.
-brunt_points brunt_body_points(brunt_body *body, brunt_component component, int64_t first, int32_t count);
+brunt_material_points brunt_body_points(brunt_body *body, brunt_component component, int64_t first, int32_t count);
 // Stored and dissipated energy of all particles [J].
 brunt_point_energy brunt_body_energy(brunt_body *body);
 // Bounds of the particles of block b [m]; of total-Lagrangian bodies they are not where the block is.

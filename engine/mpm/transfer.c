@@ -238,7 +238,7 @@ static void ring_rates(const brunt_workspace *work, int32_t padded, real *rates[
 static void update_material(brunt_body *body, const brunt_block *block, real dt, brunt_workspace *work,
                             real *const *gradient, brunt_block_report *report) {
     int32_t padded = (block->count + BRUNT_LANES - 1) / BRUNT_LANES * BRUNT_LANES;
-    brunt_points points[BRUNT_COMPONENTS];
+    brunt_material_points points[BRUNT_COMPONENTS];
     for (int k = 0; k < BRUNT_COMPONENTS; k++) {
         points[k] = brunt_body_points(body, (brunt_component)k, block->first, padded);
         points[k].dt = dt;

@@ -145,7 +145,7 @@ static double update_flops(const brunt_body *body, brunt_transfer transfer, tran
 static double model_flops(const brunt_material *material, int dim) {
     double flops = 0;
     for (int k = 0; k < BRUNT_COMPONENTS; k++)
-        if (material->model[k]) flops += material->model[k]->flops[material->sheet ? 2 : dim - 2];
+        if (material->model[k]) flops += material->model[k]->flops[material->membrane ? 2 : dim - 2];
     return flops;
 }
 

@@ -265,7 +265,7 @@ static int make_elements(brunt_world *world, const brunt_world_def *def, const b
                sheet ? "membrane" : "fem");
     const brunt_material_def *law = &def->materials[from->material];
     if (!status)
-        status = sheet ? brunt_material_make_sheet(law, from->slack, &material, error)
+        status = sheet ? brunt_material_make_membrane(law, from->tension_only, &material, error)
                        : brunt_material_make(law, &material, error);
     if (!status)
         status = def->axisymmetric ? brunt_fem_make_axisymmetric(from, &material, mesh, fem, error)

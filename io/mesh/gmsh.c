@@ -421,7 +421,8 @@ int brunt_gmsh_read(const char *path, const char *group, int dimension, brunt_me
     return read_body(path, group, dimension, false, mesh, warnings, error);
 }
 
-int brunt_gmsh_read_sheet(const char *path, const char *group, brunt_mesh *mesh, FILE *warnings, brunt_error *error) {
+int brunt_gmsh_read_membrane(const char *path, const char *group, brunt_mesh *mesh, FILE *warnings,
+                             brunt_error *error) {
     return read_body(path, group, 2, true, mesh, warnings, error);
 }
 

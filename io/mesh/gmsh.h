@@ -21,7 +21,7 @@ int brunt_gmsh_read(const char *path, const char *group, int dimension, brunt_me
 // The same of a surface in three dimensions, as sheets: its triangles or quadrangles become elements of a membrane
 // kind, turned as they are in the file. Physical groups of surfaces, too, become groups of the mesh, and all nodes are
 // its group `surface`. A file that has solid elements as well needs the name of the physical surface.
-int brunt_gmsh_read_sheet(const char *path, const char *group, brunt_mesh *mesh, FILE *warnings, brunt_error *error);
+int brunt_gmsh_read_membrane(const char *path, const char *group, brunt_mesh *mesh, FILE *warnings, brunt_error *error);
 
 // Says what is in a file: format, nodes and elements by kind, bounds, physical groups, and of each that can be a body
 // its quality. Errors as above.

@@ -205,7 +205,7 @@ static bool read_mesh(scene_reader *reader, scene_node *node, brunt_body_def *bo
     if (!mesh->good || !reader->dimension || (group && !*name) || !find_mesh(reader, mesh, path)) return false;
     brunt_error error = {0};
     int status = body->method == BRUNT_MEMBRANE
-                     ? brunt_gmsh_read_sheet(path, name, &body->mesh, reader->warnings, &error)
+                     ? brunt_gmsh_read_membrane(path, name, &body->mesh, reader->warnings, &error)
                      : brunt_gmsh_read(path, name, reader->dimension, &body->mesh, reader->warnings, &error);
     if (status) {
         brunt_tree_complain(reader->tree, mesh, "%s", error.message);
@@ -291,7 +291,7 @@ static void check_sheet_material(scene_reader *reader, const scene_node *node, c
     if (body->material < 0) return;
     const brunt_material_def *def = &reader->scene->world.materials[body->material];
     if (brunt_material_make(def, &material, NULL) == BRUNT_OK &&
-        brunt_material_make_sheet(def, body->slack, &material, &error) != BRUNT_OK)
+        brunt_material_make_membrane(def, body->tension_only, &material, &error) != BRUNT_OK)
         brunt_tree_complain(reader->tree, brunt_tree_child(node, "material"), "%s", error.message);
 }
 

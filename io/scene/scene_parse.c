@@ -230,7 +230,7 @@ static void fill_materials(scene_reader *reader) {
 static bool has_explosive(const brunt_world_def *world) {
     for (int i = 0; i < world->material_count; i++) {
         const brunt_model *eos = brunt_find_eos(world->materials[i].eos);
-        if (eos && eos->burns) return true;
+        if (eos && eos->explosive) return true;
     }
     return false;
 }

@@ -604,7 +604,7 @@ START_TEST(a_buckled_strip) {
     brunt_world_def def = begin(1, 0.1);
     def_material(&def, "neo-hookean", 1000, 1e6, 0.3);
     brunt_body_def *m = sheet(&def, "m", 40, 4, wavy, false);
-    m->damping = 20, m->slack = true;
+    m->damping = 20, m->tension_only = true;
     for (int k = 0; k < 2; k++) {
         brunt_group_def *g = hold(&def, "m", k ? "right" : "left");
         g->action = BRUNT_GROUP_VELOCITY, g->value[0] = k ? -1.5 : 1.5;

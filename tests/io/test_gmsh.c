@@ -45,7 +45,7 @@ static brunt_mesh read_sheet(const char *file, const char *group, char *warnings
     brunt_mesh mesh;
     brunt_error error = {0};
     FILE *stream = warnings ? fmemopen(warnings, 1024, "w") : NULL;
-    ck_assert_msg(!brunt_gmsh_read_sheet(file, group, &mesh, stream, &error), "%s", error.message);
+    ck_assert_msg(!brunt_gmsh_read_membrane(file, group, &mesh, stream, &error), "%s", error.message);
     if (stream) fclose(stream);
     return mesh;
 }
@@ -354,14 +354,14 @@ START_TEST(sheets_are_surfaces_in_space) {
         m.part[1] = (gmsh_part){4, 4, 3, 0, 1, tet}; // beside a solid the sheet must be named
         m.node_count = 7, m.name_count = 1;
         gmsh_write(path, &m, version, binary);
-        ck_assert_int_eq(brunt_gmsh_read_sheet(path, "", &mesh, NULL, &error), BRUNT_BAD_INPUT);
+        ck_assert_int_eq(brunt_gmsh_read_membrane(path, "", &mesh, NULL, &error), BRUNT_BAD_INPUT);
         ck_assert_msg(strstr(error.message, "which physical group of dimension 2 is the sheet?") != NULL, "'%s'",
                       error.message);
         mesh = read_sheet(path, "west", warnings);
         ck_assert_int_eq(mesh.element_count, 1);
         ck_assert_msg(strstr(warnings, "1 of its nodes belong to no element") != NULL, "'%s'", warnings); // the sixth
         brunt_mesh_free(&mesh);
-        ck_assert_int_eq(brunt_gmsh_read_sheet(path, "east", &mesh, NULL, &error), BRUNT_BAD_INPUT);
+        ck_assert_int_eq(brunt_gmsh_read_membrane(path, "east", &mesh, NULL, &error), BRUNT_BAD_INPUT);
         ck_assert_msg(strstr(error.message, "no physical group 'east' of dimension 2") != NULL, "'%s'", error.message);
     }
     char text[2048] = "";

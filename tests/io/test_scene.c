@@ -320,7 +320,7 @@ START_TEST(membranes) {
     NEAR(bag->contact_thickness, 1e-3);
     NEAR(bag->damping, 50);
     ck_assert(isnan(flag->contact_thickness) && flag->damping == 0 && block->damping == 0 && block->thickness == 0);
-    ck_assert(bag->slack && !flag->slack && bag->face_count == 0);
+    ck_assert(bag->tension_only && !flag->tension_only && bag->face_count == 0);
     ck_assert_int_eq(flag->face_count, 2);
     ck_assert_str_eq(flag->faces[1], "xmin");
     NEAR(flag->mass_scaling, 1e-8);

@@ -6,7 +6,7 @@
 
 typedef struct sheet_options {
     const char *model; // neo-hookean when NULL
-    bool slack;
+    bool tension_only;
     double nu, thickness, coefficient, mass_scaling; // 0: standard
 } sheet_options;
 
@@ -17,7 +17,8 @@ static inline brunt_material sheet_material(sheet_options o) {
     brunt_material_set(&def, "density", density, NULL, &error);
     brunt_material_set(&def, "E", E, NULL, &error);
     brunt_material_set(&def, "nu", o.nu < 0 ? 0 : o.nu > 0 ? o.nu : nu, NULL, &error);
-    ck_assert_msg(brunt_material_make_sheet(&def, o.slack, &material, &error) == BRUNT_OK, "%s", error.message);
+    ck_assert_msg(brunt_material_make_membrane(&def, o.tension_only, &material, &error) == BRUNT_OK, "%s",
+                  error.message);
     return material;
 }
 

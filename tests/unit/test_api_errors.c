@@ -176,8 +176,8 @@ START_TEST(enumerators) {
     REFUSED(mesh->element = (brunt_element_kind)6, "bodies.mesh.element: there is no choice 6");
     REFUSED(mesh->hourglass = (brunt_hourglass)2, "bodies.mesh.hourglass: there is no choice 2");
     REFUSED(mesh->element = BRUNT_QUAD4, "of 2 dimensions");
-    REFUSED(mesh->element = BRUNT_MEMBRANE_QUAD4, "are sheets");
-    REFUSED(bag->element = BRUNT_HEX8, "are not sheets");
+    REFUSED(mesh->element = BRUNT_MEMBRANE_QUAD4, "are membranes");
+    REFUSED(bag->element = BRUNT_HEX8, "are not membranes");
     REFUSED(given->mesh.kind = (brunt_element_kind)99, "bodies.given.mesh: kind: there is no choice 99");
     REFUSED(def.materials[0].failure_action = (brunt_failure_action)2, "failure.action: there is no choice 2");
     REFUSED(def.planes[0].condition = (brunt_condition)4, "condition: there is no choice 4");

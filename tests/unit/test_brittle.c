@@ -70,8 +70,8 @@ static point make(const char *name, double density, const value *base, const val
     return p;
 }
 
-static brunt_points points_of(point *p) {
-    brunt_points points = {
+static brunt_material_points points_of(point *p) {
+    brunt_material_points points = {
         .count = BRUNT_LANES, .dim = 3, .dt = (real)p->dt, .cell = 1, .wave_speed = 1, .volume = p->volume};
     for (int k = 0; k < 9; k++) points.F[k] = p->F[k], points.L[k] = p->L[k];
     for (int k = 0; k < 6; k++) points.stress[k] = p->stress[k];
@@ -99,7 +99,7 @@ static double mises_of(const point *p) {
 }
 static brunt_point_energy energy_of(point *p) {
     brunt_point_energy energy = {0};
-    brunt_points points = points_of(p);
+    brunt_material_points points = points_of(p);
     p->model->energy(p->constants, &points, &energy);
     energy.internal /= BRUNT_LANES, energy.plastic /= BRUNT_LANES;
     return energy;
@@ -114,7 +114,7 @@ static void stretch(point *p, const double e[3]) {
         for (int l = 0; l < BRUNT_LANES; l++)
             p->L[4 * a][l] = (real)(e[a] / p->dt), p->F[4 * a][l] = (real)p->length[a];
     }
-    brunt_points points = points_of(p);
+    brunt_material_points points = points_of(p);
     p->result = p->model->update(p->constants, &points);
     ck_assert_msg(p->result.bad < 0, "%s: %s", p->model->name, p->result.reason);
     for (int a = 0; a < 3; a++) p->work += 0.5 * (before[a] * e[a] + (double)p->stress[a][0] * e[a] / (1 + e[a]));

@@ -226,8 +226,8 @@ START_TEST(patch_test) {
             // The same in one vector of points of the material itself.
             real F[9][BRUNT_LANES], L[9][BRUNT_LANES], stress[6][BRUNT_LANES] = {{0}}, state[24][BRUNT_LANES] = {{0}};
             real volume[BRUNT_LANES], plastic[BRUNT_LANES], q[BRUNT_LANES];
-            brunt_points points[BRUNT_COMPONENTS] = {{0}}, *p = &points[BRUNT_STRENGTH];
-            *p = (brunt_points){.count = BRUNT_LANES, .dim = dim, .dt = (real)dt, .cell = 1, .volume = volume};
+            brunt_material_points points[BRUNT_COMPONENTS] = {{0}}, *p = &points[BRUNT_STRENGTH];
+            *p = (brunt_material_points){.count = BRUNT_LANES, .dim = dim, .dt = (real)dt, .cell = 1, .volume = volume};
             const brunt_model *model = body.material.model[BRUNT_STRENGTH];
             int at = 0;
             for (int s = 0; s < model->state_count; s++)

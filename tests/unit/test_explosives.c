@@ -23,7 +23,7 @@ enum { SCALARS = 8 };
 typedef struct point {
     const brunt_model *eos;
     brunt_material material;
-    brunt_points points[BRUNT_COMPONENTS];
+    brunt_material_points points[BRUNT_COMPONENTS];
     brunt_update_result last;
     real F[9][BRUNT_LANES], L[9][BRUNT_LANES], stress[6][BRUNT_LANES], volume[BRUNT_LANES];
     real state[SCALARS][BRUNT_LANES], scratch[3][BRUNT_LANES], integrity[BRUNT_LANES], before[BRUNT_LANES];
@@ -65,8 +65,9 @@ static void point_begin(point *p, const brunt_material_def *def, int dim, double
         for (int c = 0; c < 3; c++) p->stress[c][l] = p->material.rest_stress;
     }
     for (int k = 0; k < BRUNT_COMPONENTS; k++) {
-        brunt_points *q = &p->points[k];
-        *q = (brunt_points){.count = BRUNT_LANES, .dim = dim, .dt = (real)dt, .cell = (real)1e-3, .volume = p->volume};
+        brunt_material_points *q = &p->points[k];
+        *q = (brunt_material_points){
+            .count = BRUNT_LANES, .dim = dim, .dt = (real)dt, .cell = (real)1e-3, .volume = p->volume};
         q->wave_speed = p->material.wave_speed;
         for (int c = 0; c < 9; c++) q->F[c] = p->F[c], q->L[c] = p->L[c];
         for (int c = 0; c < 6; c++) q->stress[c] = p->stress[c];

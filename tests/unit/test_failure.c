@@ -59,7 +59,7 @@ static brunt_material_def weldox(void) {
 enum { ROOM = 12 };
 typedef struct sample {
     brunt_material material;
-    brunt_points points[BRUNT_COMPONENTS];
+    brunt_material_points points[BRUNT_COMPONENTS];
     brunt_update_result last;
     real F[9][BRUNT_LANES], L[9][BRUNT_LANES], stress[6][BRUNT_LANES], volume[BRUNT_LANES];
     real state[BRUNT_COMPONENTS][ROOM][BRUNT_LANES], plastic[BRUNT_LANES], viscous[BRUNT_LANES], strain[BRUNT_LANES];
@@ -69,8 +69,8 @@ typedef struct sample {
 
 static void attach(sample *s, double dt) {
     for (int k = 0; k < BRUNT_COMPONENTS; k++) {
-        brunt_points *p = &s->points[k];
-        *p = (brunt_points){.count = BRUNT_LANES, .dim = s->dim, .dt = (real)dt, .cell = (real)1e-3};
+        brunt_material_points *p = &s->points[k];
+        *p = (brunt_material_points){.count = BRUNT_LANES, .dim = s->dim, .dt = (real)dt, .cell = (real)1e-3};
         p->wave_speed = s->material.wave_speed;
         p->volume = s->volume;
         for (int c = 0; c < 9; c++) p->F[c] = s->F[c], p->L[c] = s->L[c];
@@ -313,7 +313,7 @@ static double damage_step(const brunt_material_def *def, double triaxial, double
         s.stress[1][l] = s.stress[2][l] = (real)(1e8 * (-1 + 3 * triaxial));
         s.strain[l] = (real)strain, T[l] = (real)temperature;
     }
-    brunt_points *p = &s.points[BRUNT_FAILURE];
+    brunt_material_points *p = &s.points[BRUNT_FAILURE];
     p->strain_increment = s.strain;
     p->temperature = s.material.temperature[dim - 2] >= 0 ? T : NULL;
     brunt_update_result result = s.material.model[BRUNT_FAILURE]->update(s.material.constants[BRUNT_FAILURE], p);
@@ -553,7 +553,7 @@ START_TEST(what_is_refused) {
     brunt_material_def def = ductile(0.1, 0, 0);
     ck_assert_int_eq(brunt_material_make(&def, &material, &error), BRUNT_OK);
     ck_assert_int_eq(material.model[BRUNT_FAILURE]->state_count, 1); // damage alone, where nothing softens
-    ck_assert_int_eq(brunt_material_make_sheet(&def, false, &material, &error), BRUNT_BAD_INPUT);
+    ck_assert_int_eq(brunt_material_make_membrane(&def, false, &material, &error), BRUNT_BAD_INPUT);
     name(&def, "failure.action", "soften");
     expect_refused(&def, "soften wants an equation of state");
     give_eos(&def);

@@ -18,7 +18,7 @@
 enum { SCALARS = 8 };
 typedef struct drop {
     brunt_material material;
-    brunt_points points[BRUNT_COMPONENTS];
+    brunt_material_points points[BRUNT_COMPONENTS];
     brunt_update_result last;
     real F[9][BRUNT_LANES], L[9][BRUNT_LANES], stress[6][BRUNT_LANES], volume[BRUNT_LANES];
     real state[BRUNT_COMPONENTS][SCALARS][BRUNT_LANES], plastic[BRUNT_LANES], viscous[BRUNT_LANES];
@@ -61,8 +61,8 @@ static void drop_begin(drop *d, const brunt_material_def *def, int dim, double d
         for (int c = 0; c < 3; c++) d->stress[c][l] = d->material.rest_stress;
     }
     for (int k = 0; k < BRUNT_COMPONENTS; k++) {
-        brunt_points *p = &d->points[k];
-        *p = (brunt_points){.count = BRUNT_LANES, .dim = dim, .dt = (real)dt, .cell = 1, .may_reshape = true};
+        brunt_material_points *p = &d->points[k];
+        *p = (brunt_material_points){.count = BRUNT_LANES, .dim = dim, .dt = (real)dt, .cell = 1, .may_reshape = true};
         p->wave_speed = d->material.wave_speed;
         p->volume = d->volume;
         for (int c = 0; c < 9; c++) p->F[c] = d->F[c], p->L[c] = d->L[c];

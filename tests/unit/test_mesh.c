@@ -425,7 +425,7 @@ START_TEST(what_cannot_be_meshed_is_refused) {
          BRUNT_HEX8,
          1,
          "elements of kind hex8 are of 3 dimensions, the shape is of 2"},
-        {{.kind = BRUNT_BOX, .max = {1, 1, 1}}, 3, BRUNT_MEMBRANE_TRI3, 1, "elements of kind membrane_tri3 are sheets"},
+        {{.kind = BRUNT_BOX, .max = {1, 1, 1}}, 3, BRUNT_MEMBRANE_TRI3, 1, "elements of kind membrane_tri3 are membranes"},
         {{.kind = BRUNT_BOX, .max = {1, 1, 1}}, 3, BRUNT_HEX8, 0, "an edge length of 0 m"},
         {{.kind = BRUNT_BOX, .max = {1, 1, 1}}, 3, BRUNT_HEX8, NAN, "an edge length of nan m"},
         {{.kind = BRUNT_BOX, .max = {1, 1, 1}}, 3, BRUNT_TET4, 1e-4, "more than 100 million nodes"},

@@ -208,7 +208,7 @@ START_TEST(what_cannot_be_graded_is_refused) {
         {&box, BRUNT_TET4, 1e-3, {fine, 1}, "0.001 m makes more than 100 million nodes"},
         {&box, BRUNT_HEX8, 1e-300, {NULL, 0}, "more than 100 million nodes"},
         {&box, BRUNT_QUAD4, 0.5, {NULL, 0}, "elements of kind quad4 are of 2 dimensions"},
-        {&box, BRUNT_MEMBRANE_QUAD4, 0.5, {NULL, 0}, "are sheets"},
+        {&box, BRUNT_MEMBRANE_QUAD4, 0.5, {NULL, 0}, "are membranes"},
     };
     const size_t before = brunt_memory_live();
     for (size_t i = 0; i < sizeof list / sizeof *list; i++) {

@@ -388,8 +388,8 @@ START_TEST(what_has_no_surface_is_refused) {
          2,
          "the shape has no face 'top'; there are: xmin, xmax, ymin, ymax, zmin, zmax, surface"},
         {{.kind = BRUNT_SPHERE, .radius = 1}, BRUNT_MEMBRANE_TRI3, 0.5, 1, "no face 'zmax'; there are: surface"},
-        {{.kind = BRUNT_BOX, .max = {1, 1, 1}}, BRUNT_QUAD4, 0.5, 0, "elements of kind quad4 are not sheets"},
-        {{.kind = BRUNT_BOX, .max = {1, 1, 1}}, BRUNT_HEX8, 0.5, 0, "elements of kind hex8 are not sheets"},
+        {{.kind = BRUNT_BOX, .max = {1, 1, 1}}, BRUNT_QUAD4, 0.5, 0, "elements of kind quad4 are not membranes"},
+        {{.kind = BRUNT_BOX, .max = {1, 1, 1}}, BRUNT_HEX8, 0.5, 0, "elements of kind hex8 are not membranes"},
         {{.kind = BRUNT_UNION}, BRUNT_MEMBRANE_QUAD4, 0.5, 0, "not of a union"},
         {{.kind = BRUNT_BOX, .max = {1, 1, 0}}, BRUNT_MEMBRANE_QUAD4, 0.5, 0, "the extent of a shape"},
         {{.kind = BRUNT_BOX, .max = {1, 1, 1}}, BRUNT_MEMBRANE_QUAD4, 0, 0, "an edge length of 0 m"},
@@ -500,7 +500,7 @@ START_TEST(neighbours_are_turned_alike) {
         look(&mesh);
         turn(&mesh, inner);
         char message[128];
-        snprintf(message, sizeof message, ", as are %d more pairs: neighbours in a sheet", k ? 2 : 3);
+        snprintf(message, sizeof message, ", as are %d more pairs: neighbours in a membrane", k ? 2 : 3);
         expect_bad(&mesh, message);
         snprintf(message, sizeof message, "%d", (int)inner + 1);
         expect_bad(&mesh, message);

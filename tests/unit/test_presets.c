@@ -90,7 +90,7 @@ START_TEST(copper_hugoniot) {
         const double u = speeds[k], shock = c0 + s * u, J = 1 - u / shock;
         real F[9][BRUNT_LANES] = {{0}}, L[9][BRUNT_LANES] = {{0}}, stress[6][BRUNT_LANES] = {{0}}, volume[BRUNT_LANES],
              state[2][BRUNT_LANES] = {{0}};
-        brunt_points points = {.count = BRUNT_LANES, .dim = 3, .dt = 1, .cell = 1, .volume = volume};
+        brunt_material_points points = {.count = BRUNT_LANES, .dim = 3, .dt = 1, .cell = 1, .volume = volume};
         for (int c = 0; c < 9; c++) points.F[c] = F[c], points.L[c] = L[c];
         for (int c = 0; c < 6; c++) points.stress[c] = stress[c];
         for (int c = 0; c < 2; c++) points.state[c] = state[c];

@@ -29,19 +29,20 @@ typedef struct sheet {
     const brunt_model *model;
     double E, nu, plane, mu, lambda; // plane: E / (1 - nu^2)
     real constants[BRUNT_MAX_CONSTANTS];
-    brunt_points points;
+    brunt_material_points points;
     real F[4][ROOM], stress[4][ROOM], thickness[ROOM], volume[ROOM];
 } sheet;
 
 static void sheet_make(sheet *s, int law, double nu, bool slack) {
     memset(s, 0, sizeof *s);
     s->model = brunt_find_strength(law_name[law]);
-    ck_assert(s->model && s->model->update_sheet && s->model->energy_sheet && s->model->wave_speed_sheet);
+    ck_assert(s->model && s->model->update_plane_stress && s->model->energy_plane_stress &&
+              s->model->wave_speed_plane_stress);
     s->E = young, s->nu = nu, s->plane = young / (1 - nu * nu), s->mu = young / (2 * (1 + nu));
     s->lambda = young * nu / ((1 + nu) * (1 - 2 * nu));
     double parameters[BRUNT_MAX_PARAMETERS] = {young, nu};
     ck_assert_ptr_null(s->model->prepare(parameters, density, false, s->constants));
-    s->points = (brunt_points){.count = BRUNT_LANES, .dim = 2, .dt = 1, .slack = slack};
+    s->points = (brunt_material_points){.count = BRUNT_LANES, .dim = 2, .dt = 1, .tension_only = slack};
     for (int k = 0; k < 4; k++) s->points.F[k] = s->F[k], s->points.stress[k] = s->stress[k];
     s->points.thickness = s->thickness, s->points.volume = s->volume;
     for (int i = 0; i < ROOM; i++) s->F[0][i] = s->F[3][i] = s->volume[i] = 1;
@@ -76,7 +77,7 @@ static sym minus(sym a, sym b) { return (sym){a.xx - b.xx, a.yy - b.yy, a.xy - b
 // The response of all points to one stretch; the speed, or a failed test.
 static double respond(sheet *s, sym U) {
     for (int i = 0; i < s->points.count; i++) set_stretch(s, i, U);
-    brunt_update_result result = s->model->update_sheet(s->constants, &s->points);
+    brunt_update_result result = s->model->update_plane_stress(s->constants, &s->points);
     ck_assert_msg(result.bad < 0, "%s nu %g: %s at %g %g %g", s->model->name, s->nu, result.reason, U.xx, U.yy, U.xy);
     ck_assert(s->stress[2][0] == 0);
     return (double)result.wave_speed;
@@ -88,7 +89,7 @@ static sym stress_at(sheet *s, sym U) {
 static double energy_at(sheet *s, sym U) {
     brunt_point_energy energy = {0};
     for (int i = 0; i < s->points.count; i++) set_stretch(s, i, U);
-    s->model->energy_sheet(s->constants, &s->points, &energy);
+    s->model->energy_plane_stress(s->constants, &s->points, &energy);
     ck_assert(energy.plastic == 0 && energy.viscosity == 0);
     return energy.internal / s->points.count;
 }
@@ -111,7 +112,7 @@ START_TEST(rest) {
     double speed = respond(&s, (sym){1, 1, 0}), expect = sqrt(s.plane / density);
     ck_assert(size_of(get_stress(&s, 0)) == 0 && s.thickness[0] == 1 && energy_at(&s, (sym){1, 1, 0}) == 0);
     ck_assert_double_eq_tol(speed, expect, 10 * epsilon * expect);
-    ck_assert_double_eq_tol((double)s.model->wave_speed_sheet(s.constants), expect, 10 * epsilon * expect);
+    ck_assert_double_eq_tol((double)s.model->wave_speed_plane_stress(s.constants), expect, 10 * epsilon * expect);
 }
 END_TEST
 
@@ -192,7 +193,7 @@ START_TEST(batch_equals_point) {
     const double strains[] = {1e-6, 1e-2, 0.2, 0.3};
     uint64_t seed = 6;
     for (int i = 0; i < ROOM; i++) set_stretch(&batch, i, random_stretch(&seed, strains[i % 4]));
-    ck_assert(batch.model->update_sheet(batch.constants, &batch.points).bad < 0);
+    ck_assert(batch.model->update_plane_stress(batch.constants, &batch.points).bad < 0);
     for (int i = 0; i < ROOM; i++) {
         respond(&alone, get_stretch(&batch, i));
         ck_assert_msg(same_bits(&batch, i, &alone, 0), "%s nu %g: point %d", batch.model->name, batch.nu, i);
@@ -341,7 +342,7 @@ START_TEST(neo_hookean_is_the_solid) {
     sheet s;
     sheet_make(&s, NEO_HOOKEAN, poisson[_i], false);
     real F[9][BRUNT_LANES] = {{0}}, L[9][BRUNT_LANES] = {{0}}, stress[6][BRUNT_LANES] = {{0}};
-    brunt_points solid = {.count = BRUNT_LANES, .dim = 3, .dt = 1, .volume = s.volume};
+    brunt_material_points solid = {.count = BRUNT_LANES, .dim = 3, .dt = 1, .volume = s.volume};
     for (int k = 0; k < 9; k++) solid.F[k] = F[k], solid.L[k] = L[k];
     for (int k = 0; k < 6; k++) solid.stress[k] = stress[k];
     uint64_t seed = 10;
@@ -498,7 +499,7 @@ static void expect_bad(sheet *s, sym U, const char *word) {
     s->points.count = ROOM;
     const int where = ROOM - 2 > 0 ? ROOM - 2 : 0;
     set_stretch(s, where, U);
-    brunt_update_result result = s->model->update_sheet(s->constants, &s->points);
+    brunt_update_result result = s->model->update_plane_stress(s->constants, &s->points);
     ck_assert_msg(result.bad == where, "%s %g %g %g: bad %d", s->model->name, U.xx, U.yy, U.xy, (int)result.bad);
     ck_assert_msg(strstr(result.reason, word) != NULL, "%s: %s", s->model->name, result.reason);
 }
@@ -551,12 +552,12 @@ START_TEST(material_of_a_body) {
     brunt_material_def def = brunt_material_def_default("cloth", "neo-hookean");
     def.density = density, def.strength_parameters[0] = young, def.strength_parameters[1] = 0.3;
     for (int slack = 0; slack < 2; slack++) {
-        ck_assert_int_eq(brunt_material_make_sheet(&def, slack, &material, &error), BRUNT_OK);
+        ck_assert_int_eq(brunt_material_make_membrane(&def, slack, &material, &error), BRUNT_OK);
         ck_assert_double_eq_tol((double)material.wave_speed, sqrt(young / 0.91 / density), 1e-4);
         sheet s;
         sheet_make(&s, NEO_HOOKEAN, 0.3, false);
         for (int i = 0; i < BRUNT_LANES; i++) set_stretch(&s, i, (sym){0.9, 0.95, 0.01});
-        brunt_points points[BRUNT_COMPONENTS] = {[BRUNT_STRENGTH] = s.points};
+        brunt_material_points points[BRUNT_COMPONENTS] = {[BRUNT_STRENGTH] = s.points};
         ck_assert_int_lt(brunt_material_update(&material, points, NULL, NULL, NULL).bad, 0);
         brunt_point_energy energy = {0};
         brunt_material_energy(&material, BRUNT_STRENGTH, &s.points, &energy);
@@ -565,7 +566,7 @@ START_TEST(material_of_a_body) {
     def = brunt_material_def_default("steel", "von-mises");
     def.density = density, def.strength_parameters[0] = young, def.strength_parameters[1] = 0.3;
     def.strength_parameters[2] = 1e5;
-    ck_assert_int_eq(brunt_material_make_sheet(&def, true, &material, &error), BRUNT_BAD_INPUT);
+    ck_assert_int_eq(brunt_material_make_membrane(&def, true, &material, &error), BRUNT_BAD_INPUT);
     ck_assert_msg(strstr(error.message, "neo-hookean") && strstr(error.message, "steel"), "%s", error.message);
 }
 END_TEST

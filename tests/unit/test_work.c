@@ -237,7 +237,7 @@ END_TEST
 static void check_model(const brunt_model *model) {
     ck_assert_msg(model->flops[1] >= model->flops[0] && model->flops[0] >= 0, "%s", model->name);
     ck_assert_msg((model->flops[0] > 0) == (model->flops[1] > 0), "%s", model->name);
-    ck_assert_msg(model->flops[2] == 0 || model->update_sheet, "%s", model->name);
+    ck_assert_msg(model->flops[2] == 0 || model->update_plane_stress, "%s", model->name);
     if (!model->flops[0]) printf("  %s is not counted\n", model->name);
 }
 

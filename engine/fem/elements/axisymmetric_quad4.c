@@ -20,7 +20,7 @@ BRUNT_INLINE void spread(lanes c, lanes xi, lanes eta, lanes both, lanes out[4])
 // eta_a eta + xi_a eta_a xi eta) / 4: integrals of products over [-1, 1]^2, where xi^2 has the mean 1/3. For G,
 // int R dX/deta = R0 m1 + R1 m2 / 12, int R dX/dxi = R0 m0 + R2 m2 / 12, and their difference with weights eta and xi
 // (R2 m1 - R1 m0) / 12, turned by 90 degrees.
-BRUNT_INLINE void axisymmetric_quad4_ring(const lanes X[4][2], const lanes m[3][2], ring_section *out) {
+BRUNT_INLINE void axisymmetric_quad4_section(const lanes X[4][2], const lanes m[3][2], axisymmetric_section *out) {
     const real third = (real)(1.0 / 3), twelfth = (real)(1.0 / 12);
     lanes R0 = (real)0.25 * ((X[0][0] + X[2][0]) + (X[1][0] + X[3][0]));
     lanes R1 = m[0][0], R2 = m[1][0], R3 = m[2][0];

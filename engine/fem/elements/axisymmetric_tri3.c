@@ -7,7 +7,7 @@
 
 // Gradients are constant: int R grad N = mean R times that of tri3.c; int N_a = A / 3, int N_a N_b = A (1 + [a = b])
 // / 12.
-BRUNT_INLINE void axisymmetric_tri3_ring(const lanes X[3][2], const lanes m[2][2], ring_section *out) {
+BRUNT_INLINE void axisymmetric_tri3_section(const lanes X[3][2], const lanes m[2][2], axisymmetric_section *out) {
     lanes sum = X[0][0] + X[1][0] + X[2][0], R = (real)(1.0 / 3) * sum;
     lanes A = out->area = (real)0.5 * (m[0][0] * m[1][1] - m[0][1] * m[1][0]);
     out->volume = R * A;

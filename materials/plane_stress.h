@@ -1,6 +1,6 @@
-// Sheets: hyperelastic laws in plane stress, and the same without resistance to compression. What every law shares; a
-// law brings its energy W(l1, l2) per reference volume of the principal stretches in the plane, with the stretch l3
-// across the sheet already such that no stress acts there.
+// Membranes: hyperelastic laws in plane stress, and the same without resistance to compression. What every law shares;
+// a law brings its energy W(l1, l2) per reference volume of the principal stretches in the plane, with the stretch l3
+// across the membrane already such that no stress acts there.
 //
 // A point's deformation is the symmetric stretch U. With l = 1 + mean +- d, d the radius of Mohr's circle of U - I, and
 // principal Kirchhoff stresses tau_i = l_i dW/dl_i, tau has the axes of U, so its deviator is that of U times
@@ -8,12 +8,12 @@
 // where every law has `shear` in closed form: no angle, and nothing special about equal stretches.
 //
 // Slack (tension field theory: Reissner, Proc. 5th Int. Congr. Appl. Mech. (1938) 88; Pipkin, IMA J. Appl. Math. 36
-// (1986) 85; Steigmann, Proc. R. Soc. A 429 (1990) 141): a sheet without bending stiffness folds rather than bear
+// (1986) 85; Steigmann, Proc. R. Soc. A 429 (1990) 141): a membrane without bending stiffness folds rather than bear
 // compression, which replaces W by its relaxation. With l1 >= l2 and w(l1) the natural width, the l2 at which uniaxial
-// tension stretches the sheet by l1 (tau_2 = 0), the relaxed energy is
+// tension stretches the membrane by l1 (tau_2 = 0), the relaxed energy is
 //   W(l1, l2)     taut      l1 > 1, l2 >= w(l1)
 //   W(l1, w(l1))  wrinkled  l1 > 1, l2 < w(l1): tau_2 = 0
-//   0             slack     l1 <= 1:            tau = 0
+//   0             tension_only     l1 <= 1:            tau = 0
 // or W of the stretches it is relaxed to, max(l1, 1) and max(l2, w(max(l1, 1))). Both are continuous with their first
 // derivatives, since W_2 = 0 at w; folds need no room, so the true stretches enter the deviator alone.
 //
@@ -24,34 +24,34 @@
 // With n1 n2 m1 m2 as (n1 m2)(n2 m1) and |n| |m| = 1 that is at most A = max(A1, A2) where
 //   (A - shear l1^2) (A - shear l2^2) >= coupling^2
 // with positive factors, and the laws here have it so whenever A > 0: the fastest wave is the longitudinal one along a
-// principal axis. Out of the plane rho0 c^2 = tau_nn, which is less. In a wrinkled sheet A is that of the taut one at
-// its natural width: there the two tangents differ by a positive one of rank 1 (W_22), and with less width the tangent
-// of the wrinkled sheet only falls. Never less than at rest: compression slows the wave, and a slack sheet has none,
-// but either may be gone within the step.
+// principal axis. Out of the plane rho0 c^2 = tau_nn, which is less. In a wrinkled membrane A is that of the taut one
+// at its natural width: there the two tangents differ by a positive one of rank 1 (W_22), and with less width the
+// tangent of the wrinkled membrane only falls. Never less than at rest: compression slows the wave, and a tension-only
+// membrane has none, but either may be gone within the step.
 #pragma once
 
 #include "materials/elastic.h"
 
-typedef struct sheet_response {
+typedef struct plane_stress_response {
     lanes tau[2];    // principal Kirchhoff stresses [Pa]
     lanes energy;    // W [Pa]
     lanes thickness; // l3; where it is not a positive number, there is none
     lanes along[2];  // A_i [Pa]
     lanes shear;     // [Pa]
-    lane_mask taut;  // with slack only
-} sheet_response;
+    lane_mask taut;  // with tension_only only
+} plane_stress_response;
 
-// To the principal strains l_i - 1, strain[0] >= strain[1]; when `slack`, to those they are relaxed to.
-typedef void sheet_law(const real *k, bool slack, const lanes strain[2], sheet_response *response);
+// To the principal strains l_i - 1, strain[0] >= strain[1]; when `tension_only`, to those they are relaxed to.
+typedef void plane_stress_law(const real *k, bool tension_only, const lanes strain[2], plane_stress_response *response);
 
-typedef struct sheet_stretch {
+typedef struct plane_stress_stretch {
     lanes mean, half, off; // of U - I: (11 + 22) / 2, (11 - 22) / 2, 12
     lanes radius;          // d
     lanes principal[2];    // strains l_i - 1
-} sheet_stretch;
+} plane_stress_stretch;
 
-BRUNT_INLINE sheet_stretch load_sheet_stretch(const brunt_points *points, int32_t i) {
-    sheet_stretch u;
+BRUNT_INLINE plane_stress_stretch load_plane_stretch(const brunt_material_points *points, int32_t i) {
+    plane_stress_stretch u;
     lanes e11 = lanes_load(points->F[0] + i) - 1, e22 = lanes_load(points->F[3] + i) - 1;
     u.mean = (real)0.5 * (e11 + e22);
     u.half = (real)0.5 * (e11 - e22);
@@ -71,18 +71,19 @@ BRUNT_INLINE lane_mask relax_linear(real contraction, lanes strain[2]) {
     return taut;
 }
 
-BRUNT_INLINE brunt_update_result sheet_update(sheet_law *law, bool slack, const real *k, const brunt_points *points) {
+BRUNT_INLINE brunt_update_result plane_stress_update(plane_stress_law *law, bool tension_only, const real *k,
+                                                     const brunt_material_points *points) {
     update_record record = update_begin();
     const real half = (real)0.5;
     const lanes zero = lanes_set(0), rest = lanes_set(k[ELASTIC_PLANE]);
     for (int32_t i = 0; i < points->count; i += BRUNT_LANES) {
-        sheet_stretch u = load_sheet_stretch(points, i);
+        plane_stress_stretch u = load_plane_stretch(points, i);
         note_deformation(&record, 1 + u.principal[1], i); // the lesser stretch: a number, and positive, when both are
-        sheet_response r;
-        law(k, slack, u.principal, &r);
+        plane_stress_response r;
+        law(k, tension_only, u.principal, &r);
         note_first(&record.model, ~((r.thickness > 0) & (r.thickness <= MATERIAL_REAL_MAX)), i);
         lanes mean = half * (r.tau[0] + r.tau[1]), deviator = 2 * (1 + u.mean) * r.shear;
-        if (slack) {
+        if (tension_only) {
             lanes wrinkled = lanes_select(u.radius > 0, half * r.tau[0] / u.radius, zero);
             mean = lanes_select(r.taut, mean, half * r.tau[0]);
             deviator = lanes_select(r.taut, deviator, wrinkled);
@@ -94,21 +95,22 @@ BRUNT_INLINE brunt_update_result sheet_update(sheet_law *law, bool slack, const 
         lanes_store(points->thickness + i, r.thickness);
         note_speed(&record, k[ELASTIC_INVERSE_DENSITY] * lanes_max(rest, lanes_max(r.along[0], r.along[1])));
     }
-    return update_end(&record, points, "the sheet has no thickness left (its strains are beyond what the law is for)");
+    return update_end(&record, points,
+                      "the membrane has no thickness left (its strains are beyond what the law is for)");
 }
 
-BRUNT_INLINE void sheet_energy(sheet_law *law, bool slack, const real *k, const brunt_points *points,
-                               brunt_point_energy *energy) {
+BRUNT_INLINE void plane_stress_energy(plane_stress_law *law, bool tension_only, const real *k,
+                                      const brunt_material_points *points, brunt_point_energy *energy) {
     lane_total stored = {0};
     for (int32_t i = 0; i < points->count; i += BRUNT_LANES) {
-        sheet_stretch u = load_sheet_stretch(points, i);
-        sheet_response r;
-        law(k, slack, u.principal, &r);
+        plane_stress_stretch u = load_plane_stretch(points, i);
+        plane_stress_response r;
+        law(k, tension_only, u.principal, &r);
         total_add(&stored, lanes_load(points->volume + i) * r.energy);
     }
     energy->internal += total_end(&stored);
 }
 
-static inline real sheet_wave_speed(const real *constants) {
+static inline real plane_stress_wave_speed(const real *constants) {
     return (real)sqrt((double)constants[ELASTIC_PLANE] * (double)constants[ELASTIC_INVERSE_DENSITY]);
 }

@@ -108,7 +108,8 @@ BRUNT_INLINE void j2_push(int dim, const lanes H[9], const lanes b[6], lanes out
 }
 
 // The elastic trial of a vector of points.
-BRUNT_INLINE j2_point j2_trial(int dim, const real *k, const brunt_points *points, int32_t i, update_record *record) {
+BRUNT_INLINE j2_point j2_trial(int dim, const real *k, const brunt_material_points *points, int32_t i,
+                               update_record *record) {
     j2_point p;
     lanes H[9], b[6], d[6];
     for (int c = 0; c < BRUNT_SYMMETRIC(dim); c++) b[c] = lanes_load(points->state[c] + i);
@@ -146,10 +147,11 @@ BRUNT_INLINE void j2_set_stiffness(const real *k, j2_point *p) {
 // What is left of the flow stress, 1 to 0; and the stiffness of a return that may end much lower for it: where the area
 // under q over the return has its centroid, with which the trapezoid of the plastic work is that area (at the middle
 // Y/mu times a sixth of what was stored would be missed).
-BRUNT_INLINE lanes j2_integrity(bool softens, const brunt_points *points, int32_t i) {
+BRUNT_INLINE lanes j2_integrity(bool softens, const brunt_material_points *points, int32_t i) {
     return softens ? lanes_load(points->integrity + i) : lanes_set(1);
 }
-BRUNT_INLINE void j2_set_softened_stiffness(const real *k, const brunt_points *points, int32_t i, j2_point *p) {
+BRUNT_INLINE void j2_set_softened_stiffness(const real *k, const brunt_material_points *points, int32_t i,
+                                            j2_point *p) {
     lanes before = lanes_load(points->integrity_before + i), now = lanes_load(points->integrity + i);
     lanes end = p->q_old * lanes_select(before > 0, now / before, lanes_set(0));
     lanes r = lanes_min(end / p->q, lanes_set(1));
@@ -183,7 +185,7 @@ BRUNT_INLINE void j2_return(int dim, j2_point *p, lane_mask plastic, lanes q_new
 
 // Writes stress and state; `delta` is 0 and `q` any finite number where nothing flowed. Returns the plastic work of the
 // step: the trapezoid of stress over plastic strain, as everywhere (material.h).
-BRUNT_INLINE lanes j2_store(int dim, const real *k, const brunt_points *points, int32_t i, const j2_point *p,
+BRUNT_INLINE lanes j2_store(int dim, const real *k, const brunt_material_points *points, int32_t i, const j2_point *p,
                             lanes delta, lanes q, update_record *record) {
     lanes pressure = (real)0.5 * k[J2_KAPPA] * p->volume_change * (2 + p->volume_change);
     for (int c = 0; c < BRUNT_SYMMETRIC(dim); c++) {
@@ -205,7 +207,8 @@ BRUNT_INLINE lanes j2_store(int dim, const real *k, const brunt_points *points, 
 }
 
 // psi_dev from d alone: m^3 - 1 = (d:d/2) m - det d keeps the digits that tr b - 3 loses.
-BRUNT_INLINE void j2_energy_dim(int dim, const real *k, const brunt_points *points, brunt_point_energy *energy) {
+BRUNT_INLINE void j2_energy_dim(int dim, const real *k, const brunt_material_points *points,
+                                brunt_point_energy *energy) {
     lane_total stored = {0}, plastic = {0};
     for (int32_t i = 0; i < points->count; i += BRUNT_LANES) {
         lanes H[9], b[6], d[6];
@@ -224,7 +227,7 @@ BRUNT_INLINE void j2_energy_dim(int dim, const real *k, const brunt_points *poin
     energy->plastic += total_end(&plastic);
 }
 
-static inline void j2_energy(const real *constants, const brunt_points *points, brunt_point_energy *energy) {
+static inline void j2_energy(const real *constants, const brunt_material_points *points, brunt_point_energy *energy) {
     if (points->dim == 2)
         j2_energy_dim(2, constants, points, energy);
     else
