@@ -20,7 +20,7 @@
 # Exit codes as those of brunt: 64 bad usage, 65 bad input, 74 file system.
 set -eu
 
-# Okabe and Ito's colours, which people who see few colours still tell apart; each curve has a dash of its own besides.
+# Okabe and Ito's colours, which colour-blind readers tell apart, too; each curve has a dash of its own besides.
 colours='#0072B2 #D55E00 #009E73 #CC79A7 #56B4E9 #E69F00'
 dashes='1 2 4 5 3 6'
 

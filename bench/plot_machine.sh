@@ -44,7 +44,7 @@ draw() {
         {
             echo "set terminal $terminal"
             echo "set output '$work/picture.$format'"
-            # Okabe and Ito's colours, which people who see few colours still tell apart.
+            # Okabe and Ito's colours, which colour-blind readers tell apart, too.
             echo "set linetype 1 linecolor '#0072B2'; set linetype 2 linecolor '#D55E00'; set linetype 3 linecolor '#009E73'"
             echo "set linetype 4 linecolor '#CC79A7'; set linetype 5 linecolor '#E69F00'"
             echo "set border 3; set tics nomirror out; set grid back linecolor '#cccccc' linewidth 1 dashtype 1"

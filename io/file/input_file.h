@@ -1,4 +1,4 @@
-// Files to be read: regular ones. A pipe would wait for ever for somebody to write, a device may never end.
+// Files to be read: regular ones. A pipe would wait for ever for a writer, a device may never end.
 #pragma once
 
 #include <stdio.h>

@@ -30,6 +30,6 @@ void brunt_observers_add(brunt_observers *observers, brunt_observer observer) {
 void brunt_observers_watch(brunt_observers *observers, brunt_world *world) {
     brunt_observer one = {.context = observers, .begin = begin, .end = end};
     for (int i = 0; i < observers->count; i++)
-        if (observers->list[i].thread) one.thread = thread; // phases are told only to those who want to know
+        if (observers->list[i].thread) one.thread = thread; // phases are told only to observers of threads
     brunt_world_observe(world, observers->count ? &one : NULL);
 }

@@ -5,14 +5,6 @@
 #include <math.h>
 #include <string.h>
 
-// What can be done to a group of nodes.
-static const struct {
-    const char *key;
-    brunt_group_action action;
-} actions[] = {
-    {"fix", BRUNT_GROUP_VELOCITY},      {"velocity", BRUNT_GROUP_VELOCITY}, {"displacement", BRUNT_GROUP_DISPLACEMENT},
-    {"traction", BRUNT_GROUP_TRACTION}, {"pressure", BRUNT_GROUP_PRESSURE}, {"gas", BRUNT_GROUP_GAS}};
-
 static const char *const methods[] = {"mpm", "fem", "membrane"}; // by brunt_method
 _Static_assert(sizeof methods / sizeof *methods == BRUNT_MEMBRANE + 1, "a name for each method");
 
@@ -131,48 +123,62 @@ static void fill_table(scene_reader *reader, const scene_node *node, brunt_curve
     }
 }
 
-// The one key that says what is done to the group; NULL after a message when there is not exactly one.
-static scene_node *find_action(scene_reader *reader, scene_node *node) {
-    scene_node *found = NULL;
-    int count = 0;
-    for (size_t i = 0; i < sizeof actions / sizeof *actions; i++) {
-        scene_node *child = brunt_tree_child(node, actions[i].key);
-        if (child) found = child, count++;
-    }
-    if (count == 1) return found;
-    brunt_tree_complain(
-        reader->tree, node,
-        "exactly one of fix, velocity, displacement, traction, pressure and gas is wanted, %d are given", count);
-    return NULL;
-}
-
 // Gas is kept between the steps, and its pressure is what comes of it: only the inflow follows a table.
-static void check_gas(scene_reader *reader, const scene_node *node) {
+static void check_gas(scene_reader *reader, const scene_node *node, brunt_group_def *group) {
     const scene_node *inflow = brunt_tree_child(node, "inflow");
     if (node->kind != SCENE_MAP) return;
-    if (inflow && inflow->good && inflow->value[0] == 0)
+    if (inflow && inflow->good && group->gas.inflow == 0)
         brunt_refuse_key(reader, node->parent, "table", "a table is the factor of gas.inflow, there is none");
     if (reader->dimension == 2) brunt_tree_complain_key(reader->tree, node, "enclosed gas is for three dimensions");
 }
 
-static void fill_action(scene_reader *reader, scene_node *node, brunt_group_def *group) {
-    const scene_node *action = find_action(reader, node);
-    if (!action) return;
-    bool fixed = strcmp(action->key, "fix") == 0;
-    for (size_t i = 0; i < sizeof actions / sizeof *actions; i++)
-        if (strcmp(actions[i].key, action->key) == 0) group->action = actions[i].action;
-    if (fixed) brunt_refuse_key(reader, node, "table", "what is fixed does not change with time");
-    if (!action->good) return;
-    switch (group->action) {
-    case BRUNT_GROUP_VELOCITY:
-    case BRUNT_GROUP_DISPLACEMENT:
-        if (!fixed) fill_partial(reader, action, group->component, group->value);
-        for (int c = 0; fixed && c < 3; c++) group->component[c] = action->value[c] != 0;
-        break;
-    case BRUNT_GROUP_TRACTION: brunt_vector_of(node, "traction", group->value); break;
-    case BRUNT_GROUP_PRESSURE: group->value[0] = action->value[0]; break;
-    case BRUNT_GROUP_GAS: check_gas(reader, action); break;
+static void fill_motion(scene_reader *reader, const scene_node *motion, brunt_group_def *group) {
+    fill_partial(reader, motion, group->component, group->value);
+}
+
+static void fill_fixed(scene_reader *reader, const scene_node *axes, brunt_group_def *group) {
+    brunt_refuse_key(reader, axes->parent, "table", "what is fixed does not change with time");
+    for (int c = 0; c < 3 && axes->good; c++) group->component[c] = axes->value[c] != 0;
+}
+
+static void fill_value(scene_reader *reader, const scene_node *value, brunt_group_def *group) {
+    (void)reader;
+    for (int c = 0; c < (value->components ? 3 : 1); c++) group->value[c] = value->value[c];
+}
+
+// What can be done to a group of nodes: the key that says so, and what it means.
+static const struct group_action {
+    const char *key;
+    brunt_group_action action;
+    void (*fill)(scene_reader *reader, const scene_node *value, brunt_group_def *group);
+} actions[] = {{"fix", BRUNT_GROUP_VELOCITY, fill_fixed},
+               {"velocity", BRUNT_GROUP_VELOCITY, fill_motion},
+               {"displacement", BRUNT_GROUP_DISPLACEMENT, fill_motion},
+               {"traction", BRUNT_GROUP_TRACTION, fill_value},
+               {"pressure", BRUNT_GROUP_PRESSURE, fill_value},
+               {"gas", BRUNT_GROUP_GAS, check_gas}};
+enum { ACTIONS = sizeof actions / sizeof *actions };
+_Static_assert(ACTIONS > (int)BRUNT_GROUP_GAS, "a key for each action");
+
+static void fill_action(scene_reader *reader, const scene_node *node, brunt_group_def *group) {
+    const struct group_action *action = NULL;
+    int count = 0;
+    char names[200] = "";
+    for (size_t i = 0, used = 0; i < ACTIONS && used < sizeof names; i++) {
+        used += (size_t)snprintf(names + used, sizeof names - used, "%s%s",
+                                 i == 0            ? ""
+                                 : i + 1 < ACTIONS ? ", "
+                                                   : " and ",
+                                 actions[i].key);
+        if (brunt_tree_child(node, actions[i].key)) action = &actions[i], count++;
     }
+    if (count != 1) {
+        brunt_tree_complain(reader->tree, node, "exactly one of %s is wanted, %d are given", names, count);
+        return;
+    }
+    const scene_node *value = brunt_tree_child(node, action->key);
+    group->action = action->action;
+    if (value->good || action->fill == fill_fixed) action->fill(reader, value, group);
 }
 
 static void fill_group(scene_reader *reader, scene_node *node, brunt_group_def *group) {

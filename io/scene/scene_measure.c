@@ -96,7 +96,7 @@ static void unfold(scene_reader *reader, scene_node *node) {
         snprintf(column, sizeof column, "energy.%.60s", energy->text);
         scene_node *history = brunt_add_default(reader, node, "history", column);
         if (!history) return;
-        // Mistakes in it are the user's, at the place of what he typed.
+        // Mistakes in it are the user's, at the place of what was typed.
         history->line = energy->line, history->column = energy->column, history->option = energy->option;
         brunt_tree_remove(energy);
     }

@@ -45,7 +45,7 @@ static void listen(int descriptor, char *said, size_t size) {
 int gnuplot_run(const char *folder, const char *name, bool *there, brunt_error *error) {
     char script[176], said[400] = "";
     snprintf(script, sizeof script, "%s.gp", name);
-    char *const arguments[] = {"gnuplot", "-d", script, NULL}; // -d: nobody's own settings
+    char *const arguments[] = {"gnuplot", "-d", script, NULL}; // -d: without settings of the user
     int ends[2], result = 0;
     pid_t child;
     if (pipe2(ends, O_CLOEXEC)) return brunt_fail(error, BRUNT_IO_ERROR, "no pipe for gnuplot: %s", strerror(errno));

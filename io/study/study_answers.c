@@ -79,7 +79,7 @@ static void write_error(FILE *out, const brunt_study *study, const brunt_study_c
                 c->error[m] < least * (1 - 1e-9) ? "below" : "no more than", report_percent(least).text);
 }
 
-// The next best of another method, for whom the first is out of the question.
+// The next best of another method, where the first is out of the question.
 static void write_second(FILE *out, const brunt_study *study, int32_t m, double accuracy,
                          const brunt_study_case *first) {
     const brunt_study_case *second = cheapest(study, m, accuracy, first->line, NULL);

@@ -16,7 +16,7 @@
 #include "io/study/plot_axis.h"
 #include "io/study/study_view.h"
 
-// M. Okabe and K. Ito's colours, which people who see few colours still tell apart (jfly.uni-koeln.de/color, 2008);
+// M. Okabe and K. Ito's colours, which colour-blind readers tell apart, too (jfly.uni-koeln.de/color, 2008);
 // their yellow is too light for lines on white.
 static const char *const colours[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000"};
 static const int symbols[] = {7, 5, 9, 13, 11, 15, 6, 4, 8, 12, 10, 14}; // filled ones first

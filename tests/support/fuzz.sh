@@ -23,6 +23,7 @@ cp "$root"/bench/scenes/*.yaml "$root"/tests/bad_scenes/*.yaml "$work/corpus/"
 flags="-std=gnu17 -D_GNU_SOURCE -g -O1 -fno-math-errno -fno-omit-frame-pointer -Wno-psabi
   -I$root -I$root/engine -I$root/engine/include -I/usr/include/udunits2"
 sources="$root/tests/support/fuzz_scene.c $root/io/scene/units.c $root/engine/base/memory.c $root/engine/base/error.c $root/engine/base/text.c
+  $root/engine/base/array.c $root/engine/mpm/courant.c
   $root/engine/world/definitions.c $root/io/file/input_file.c $root/io/study/study_keys.c"
 # A scene may name mesh files; the table of elements comes with the kernels.
 for file in "$root"/io/scene/scene*.c "$root"/io/mesh/*.c "$root"/engine/geometry/[!f]*.c "$root"/engine/fem/*.c "$root"/engine/fem/elements/*.c "$root"/materials/*.c; do
