@@ -1,6 +1,6 @@
 #!/bin/sh
 # Installs the build in the folder named as argument under a prefix of its own, builds tests/support/installed.c against it with
-# what pkg-config says, and runs that and the installed program.
+# what pkg-config says, and runs that and the installed program; each public header is compiled by itself, in C and C++.
 #
 #   sh tests/support/install.sh BUILD [COMPILER]      default: cc
 set -eu
@@ -16,6 +16,14 @@ flags=$(pkg-config --cflags --libs brunt)
 # shellcheck disable=SC2086
 ${2:-cc} -std=c17 -Wall -Wextra -Werror tests/support/installed.c -o "$prefix/installed" $flags -lm
 "$prefix/installed"
+# Each part of brunt.h is whole by itself, in C and in C++.
+for header in "$prefix"/include/brunt.h "$prefix"/include/brunt/*.h; do
+    name=${header#"$prefix"/include/}
+    echo "#include \"$name\"" >"$prefix/part.c"
+    ${2:-cc} -std=c17 -Wall -Wextra -Werror -fsyntax-only -I"$prefix/include" "$prefix/part.c"
+    command -v clang >/dev/null || continue
+    clang -x c++ -std=c++17 -Wall -Wextra -Werror -fsyntax-only -I"$prefix/include" "$prefix/part.c"
+done
 [ "$(pkg-config --modversion brunt)" = "$("$prefix/bin/brunt" --version | awk '{print $2}')" ] || {
     echo "brunt.pc and the program give different versions"
     exit 1
