@@ -1,3 +1,4 @@
+#include "contact/constraint/coulomb.h"
 #include "contact/constraint/constraint.h"
 
 #include <math.h>
@@ -200,26 +201,18 @@ static double solve_constraint(const brunt_constraint_set *p, brunt_constraint *
     double changed = fabs(step) / unit;
     for (int a = 0; a < 3; a++) J[a] = step * constraint->n[a];
     if (constraint->friction > 0) {
-        double friction_impulse[3], size = 0, moved = 0, unit_t = constraint->scale / constraint->row_sum_t;
+        const double unit_t = constraint->scale / constraint->row_sum_t;
         if (constraint->friction_point) {
             velocity(p, constraint, constraint->first + constraint->count, false, u);
             along = u[0] * constraint->n[0] + u[1] * constraint->n[1] + u[2] * constraint->n[2];
         }
-        for (int a = 0; a < 3; a++) {
-            friction_impulse[a] = constraint->friction_impulse[a] - (u[a] - along * constraint->n[a]) * unit_t;
-            size += friction_impulse[a] * friction_impulse[a];
-        }
-        size = sqrt(size);
-        double limit = constraint->friction * normal_impulse;
-        constraint->slips = size > limit;
-        double share = constraint->slips ? limit / size : 1;
-        for (int a = 0; a < 3; a++) {
-            double now = share * friction_impulse[a], add = now - constraint->friction_impulse[a];
-            rub[a] += add;
-            moved += add * add;
-            constraint->friction_impulse[a] = now;
-        }
-        changed = fmax(changed, sqrt(moved) / unit_t);
+        double wanted[3], change[3];
+        for (int a = 0; a < 3; a++)
+            wanted[a] = constraint->friction_impulse[a] - (u[a] - along * constraint->n[a]) * unit_t;
+        constraint->slips =
+            brunt_coulomb_project(constraint->friction, normal_impulse, wanted, constraint->friction_impulse, change);
+        for (int a = 0; a < 3; a++) rub[a] += change[a];
+        changed = fmax(changed, brunt_coulomb_norm(change) / unit_t);
     }
     return changed;
 }

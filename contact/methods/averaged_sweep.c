@@ -1,4 +1,5 @@
 // The sweeps over a pair: what the masters' surface does on the grid, which slaves it holds back, and the reaction.
+#include "contact/constraint/coulomb.h"
 #include "contact/methods/averaged_surface_parts.h"
 
 enum { NODE_GRAIN = 64 };
@@ -123,7 +124,7 @@ static void press(void *context, int64_t begin, int64_t end, int worker) {
                t[3] = {p->u[0], p->u[1], p->u[2]};
         double slip = normalise(t), tangential = compliance(surface, p, yield, t);
         if (j->friction > 0 && slip > 0 && tangential > 0) {
-            friction_impulse = fmin(slip / tangential, j->friction * normal_impulse);
+            friction_impulse = brunt_coulomb_size(j->friction, normal_impulse, slip / tangential);
             p->friction_loss += friction_impulse * (slip - 0.5 * friction_impulse * tangential);
         }
         p->normal_impulse += normal_impulse, p->friction_impulse += friction_impulse;

@@ -15,6 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "contact/constraint/coulomb.h"
 #include "contact/contact.h"
 #include "base/array.h"
 #include "base/memory.h"
@@ -257,20 +258,11 @@ static double solve_contact(member *members, node_contact *m) {
     double changed = fabs(step) * m->inverse;
     for (int k = 0; k < 3; k++) J[k] = step * m->n[k];
     if (m->friction > 0) {
-        double friction_impulse[3], size = 0, moved = 0;
-        for (int k = 0; k < 3; k++) {
-            friction_impulse[k] = m->friction_impulse[k] - (v[k] - along * m->n[k]) / m->slide;
-            size += friction_impulse[k] * friction_impulse[k];
-        }
-        size = sqrt(size);
-        double limit = m->friction * normal_impulse, scale = size > limit ? limit / size : 1;
-        for (int k = 0; k < 3; k++) {
-            double now = scale * friction_impulse[k];
-            J[k] += now - m->friction_impulse[k];
-            moved += (now - m->friction_impulse[k]) * (now - m->friction_impulse[k]);
-            m->friction_impulse[k] = now;
-        }
-        changed = fmax(changed, sqrt(moved) * m->slide);
+        double wanted[3], change[3];
+        for (int k = 0; k < 3; k++) wanted[k] = m->friction_impulse[k] - (v[k] - along * m->n[k]) / m->slide;
+        brunt_coulomb_project(m->friction, normal_impulse, wanted, m->friction_impulse, change);
+        for (int k = 0; k < 3; k++) J[k] += change[k];
+        changed = fmax(changed, brunt_coulomb_norm(change) * m->slide);
     }
     for (int k = 0; k < 3; k++) {
         members[m->a].v[k] -= J[k] * members[m->a].inverse[k];

@@ -14,6 +14,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "contact/constraint/coulomb.h"
 #include "contact/methods/augury_work.h"
 #include "base/array.h"
 #include "base/memory.h"
@@ -182,7 +183,7 @@ static double split(const job *j, int32_t node, const double dv[3], double *alon
     double square = 0;
     for (int a = 0; a < 3; a++) tangential[a] = dv[a] - *along * n[a], square += tangential[a] * tangential[a];
     *size = sqrt(square);
-    return fmin(*size, friction_of(j, node) * fmax(0, -*along));
+    return brunt_coulomb_size(friction_of(j, node), fmax(0, -*along), *size);
 }
 
 // W of (44)-(46)

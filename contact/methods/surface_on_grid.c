@@ -47,20 +47,11 @@ static double solve_contact(const job *j, contact *c, double vs[3]) {
     c->normal_impulse = normal_impulse;
     for (int a = 0; a < 3; a++) c->applied[a] = step * c->n[a];
     if (c->pair->friction > 0) {
-        double friction_impulse[3], size = 0, moved = 0;
-        for (int a = 0; a < 3; a++) {
-            friction_impulse[a] = c->friction_impulse[a] - c->relax * slip[a] / drag_inverse;
-            size += friction_impulse[a] * friction_impulse[a];
-        }
-        size = sqrt(size);
-        const double limit = c->pair->friction * normal_impulse, scale = size > limit ? limit / size : 1;
-        for (int a = 0; a < 3; a++) {
-            const double now = scale * friction_impulse[a], add = now - c->friction_impulse[a];
-            c->applied[a] += add;
-            moved += add * add;
-            c->friction_impulse[a] = now;
-        }
-        changed = fmax(changed, sqrt(moved) * drag_inverse);
+        double wanted[3], change[3];
+        for (int a = 0; a < 3; a++) wanted[a] = c->friction_impulse[a] - c->relax * slip[a] / drag_inverse;
+        brunt_coulomb_project(c->pair->friction, normal_impulse, wanted, c->friction_impulse, change);
+        for (int a = 0; a < 3; a++) c->applied[a] += change[a];
+        changed = fmax(changed, brunt_coulomb_norm(change) * drag_inverse);
     }
     for (int a = 0; a < 3; a++) vs[a] += c->applied[a] * c->inverse_s;
     return changed;

@@ -7,6 +7,7 @@
 #include "base/array.h"
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "contact/constraint/coulomb.h"
 #include "contact/distance/point_facet.h"
 #include "contact/methods/surface_on_grid.h"
 #include "grid/bspline.h"

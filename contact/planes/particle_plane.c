@@ -22,6 +22,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "contact/constraint/coulomb.h"
 #include "contact/contact.h"
 #include "base/array.h"
 #include "base/memory.h"
@@ -321,12 +322,12 @@ static int find_touches(brunt_wall_workspace *w, brunt_body *body, const brunt_w
 // push.
 static void load_levers(brunt_wall_workspace *w, const touch *t, int dim, bool crossed) {
     for (int32_t e = 0; e < t->count; e++) {
-        const entry *normal_impulse = &w->entries[t->first + e];
+        const entry *along = &w->entries[t->first + e];
         const quad rub = w->levers[t->levers + e].apply;
-        support *s = &w->supports[normal_impulse->support];
+        support *s = &w->supports[along->support];
         for (int a = 0; a < dim; a++) {
             s->lever[a] += fabs(rub[a]);
-            if (crossed) s->weight[a] += fmax(fabs(rub[a]) - normal_impulse->apply[a], 0);
+            if (crossed) s->weight[a] += fmax(fabs(rub[a]) - along->apply[a], 0);
         }
     }
 }
@@ -369,23 +370,16 @@ static double visit(brunt_wall_workspace *w, touch *t, const brunt_plane_def *pl
     double changed = fabs(step) * t->response;
     for (int a = 0; a < dim; a++) J[a] = step * plane->normal[a];
     if (plane->friction > 0) {
-        double friction_impulse[3], size = 0, moved = 0;
+        double wanted[3] = {0}, change[3];
         normal_velocity = 0;
         for (int a = 0; a < dim; a++) normal_velocity += plane->normal[a] * u[a];
         for (int a = 0; a < dim; a++) {
             double slip = u[a] - plane->velocity[a] - (normal_velocity - wall_normal) * plane->normal[a];
-            friction_impulse[a] = t->friction_impulse[a] - slip / t->response_t;
-            size += friction_impulse[a] * friction_impulse[a];
+            wanted[a] = t->friction_impulse[a] - slip / t->response_t;
         }
-        size = sqrt(size);
-        double limit = plane->friction * normal_impulse, scale = size > limit ? limit / size : 1;
-        for (int a = 0; a < dim; a++) {
-            double now = scale * friction_impulse[a];
-            rub[a] = now - t->friction_impulse[a];
-            moved += rub[a] * rub[a];
-            t->friction_impulse[a] = now;
-        }
-        changed = fmax(changed, sqrt(moved) * t->response_t);
+        brunt_coulomb_project(plane->friction, normal_impulse, wanted, t->friction_impulse, change);
+        for (int a = 0; a < dim; a++) rub[a] = change[a];
+        changed = fmax(changed, brunt_coulomb_norm(change) * t->response_t);
     }
     if (!(changed > 0)) return changed;
     const entry *e = &w->entries[t->first], *const end = e + t->count;

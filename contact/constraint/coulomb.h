@@ -1,0 +1,36 @@
+// Coulomb's friction cone: the impulse across the normal is at most the coefficient of friction times the one along it.
+// Every law of contact here has its friction from this file.
+#pragma once
+
+#include <math.h>
+#include <stdbool.h>
+
+// The size of an impulse of `size` across the normal that the cone lets through [N s].
+static inline double brunt_coulomb_size(double friction, double normal_impulse, double size) {
+    return fmin(size, friction * normal_impulse);
+}
+
+// Takes the friction impulse in all to `wanted`, which would end the slip, or to the point of the cone that is nearest
+// to it; `change` is what that adds. Whether it slips.
+static inline bool brunt_coulomb_project(double friction, double normal_impulse, const double wanted[3],
+                                         double friction_impulse[3], double change[3]) {
+    double size = 0;
+    for (int a = 0; a < 3; a++) size += wanted[a] * wanted[a];
+    size = sqrt(size);
+    const double limit = friction * normal_impulse;
+    const bool slips = size > limit;
+    const double share = slips ? limit / size : 1;
+    for (int a = 0; a < 3; a++) {
+        const double now = share * wanted[a];
+        change[a] = now - friction_impulse[a];
+        friction_impulse[a] = now;
+    }
+    return slips;
+}
+
+// Size of a change of impulse [N s].
+static inline double brunt_coulomb_norm(const double change[3]) {
+    double square = 0;
+    for (int a = 0; a < 3; a++) square += change[a] * change[a];
+    return sqrt(square);
+}
