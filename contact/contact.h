@@ -100,8 +100,6 @@ double brunt_gjk_distance(const brunt_extent_cloud *a, const brunt_extent_cloud 
 
 // --- walls (particle_plane.c): planes that push and let go, with Coulomb friction, at zero gap
 typedef struct brunt_wall_workspace brunt_wall_workspace;
-int brunt_planes_apply(brunt_body *body, brunt_wall *walls, int wall_count, const brunt_symmetry_plane *mirrors,
-                       int mirror_count, double time, double dt, brunt_wall_workspace **workspace);
 void brunt_wall_workspace_free(brunt_wall_workspace *workspace);
 
 // --- contact between bodies (grid_velocity.c)
@@ -113,9 +111,4 @@ typedef struct brunt_pair {
 } brunt_pair;
 
 typedef struct brunt_contact_workspace brunt_contact_workspace;
-// `pair_of[a * body_count + b]`, by place in `bodies`: index of the pair, -1 for none. 0, or -1: out of memory, -2:
-// more than 16 bodies at a node.
-int brunt_grid_velocity_apply(brunt_body *bodies, int body_count, brunt_pair *pairs, int pair_count,
-                              const int32_t *pair_of, const brunt_symmetry_plane *mirrors, int mirror_count, double dt,
-                              int threads, brunt_timer *timer, brunt_contact_workspace **workspace);
 void brunt_contact_workspace_free(brunt_contact_workspace *workspace);

@@ -6,6 +6,5 @@
 typedef struct brunt_pairs {
     brunt_pair *pair;
     int count;
-    int32_t *of;     // [a * body_count + b]: index of the pair, -1
-    int32_t *of_mpm; // pairs that meet at grid nodes, by place among the bodies of material points
+    int32_t *of; // [a * body_count + b]: index of the pair, -1
 } brunt_pairs;

@@ -12,15 +12,15 @@ static inline double brunt_coulomb_size(double friction, double normal_impulse, 
 
 // Takes the friction impulse in all to `wanted`, which would end the slip, or to the point of the cone that is nearest
 // to it; `change` is what that adds. Whether it slips.
-static inline bool brunt_coulomb_project(double friction, double normal_impulse, const double wanted[3],
-                                         double friction_impulse[3], double change[3]) {
+static inline bool brunt_coulomb_project(int dim, double friction, double normal_impulse, const double *wanted,
+                                         double *friction_impulse, double *change) {
     double size = 0;
-    for (int a = 0; a < 3; a++) size += wanted[a] * wanted[a];
+    for (int a = 0; a < dim; a++) size += wanted[a] * wanted[a];
     size = sqrt(size);
     const double limit = friction * normal_impulse;
     const bool slips = size > limit;
     const double share = slips ? limit / size : 1;
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < dim; a++) {
         const double now = share * wanted[a];
         change[a] = now - friction_impulse[a];
         friction_impulse[a] = now;
@@ -29,8 +29,8 @@ static inline bool brunt_coulomb_project(double friction, double normal_impulse,
 }
 
 // Size of a change of impulse [N s].
-static inline double brunt_coulomb_norm(const double change[3]) {
+static inline double brunt_coulomb_norm(int dim, const double *change) {
     double square = 0;
-    for (int a = 0; a < 3; a++) square += change[a] * change[a];
+    for (int a = 0; a < dim; a++) square += change[a] * change[a];
     return sqrt(square);
 }

@@ -209,10 +209,10 @@ static double solve_constraint(const brunt_constraint_set *p, brunt_constraint *
         double wanted[3], change[3];
         for (int a = 0; a < 3; a++)
             wanted[a] = constraint->friction_impulse[a] - (u[a] - along * constraint->n[a]) * unit_t;
-        constraint->slips =
-            brunt_coulomb_project(constraint->friction, normal_impulse, wanted, constraint->friction_impulse, change);
+        constraint->slips = brunt_coulomb_project(3, constraint->friction, normal_impulse, wanted,
+                                                  constraint->friction_impulse, change);
         for (int a = 0; a < 3; a++) rub[a] += change[a];
-        changed = fmax(changed, brunt_coulomb_norm(change) / unit_t);
+        changed = fmax(changed, brunt_coulomb_norm(3, change) / unit_t);
     }
     return changed;
 }

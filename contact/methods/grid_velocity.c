@@ -16,7 +16,7 @@
 #include <string.h>
 
 #include "contact/constraint/coulomb.h"
-#include "contact/contact.h"
+#include "contact/surface/contact_surface.h"
 #include "base/array.h"
 #include "base/memory.h"
 #include "base/parallel.h"
@@ -56,13 +56,8 @@ struct brunt_contact_workspace {
 };
 
 typedef struct job {
-    brunt_body *bodies;
-    int body_count;
-    const brunt_pair *pairs;
-    const int32_t *pair_of;
-    const brunt_symmetry_plane *mirrors;
-    int mirror_count;
-    double dt;
+    const brunt_contact_context *m;
+    brunt_body *bodies; // of material points
     brunt_contact_workspace *w;
     const brunt_symmetry_plane *axis; // of rings; NULL
 } job;
@@ -110,11 +105,16 @@ static int compare_shared(const void *a, const void *b) {
     return (u->body > v->body) - (u->body < v->body);
 }
 
+// The pair of two bodies by their places among those of material points; -1: none.
+static int32_t pair_between(const job *j, int a, int b) {
+    return j->m->pair_of[j->bodies[a].index * j->m->body_count + j->bodies[b].index];
+}
+
 // Slots inside the box of another body that it may touch, sorted; then those that really coincide. 0, or -1: out of
 // memory.
 static int find_groups(job *j) {
     brunt_contact_workspace *w = j->w;
-    const int n = j->body_count;
+    const int n = j->m->mpm_count;
     if (BRUNT_RESERVE(w->bounds, (size_t)n, 0)) return -1;
     box *bounds = w->bounds;
     for (int b = 0; b < n; b++) bounds[b] = slot_bounds(&j->bodies[b].grid);
@@ -122,7 +122,7 @@ static int find_groups(job *j) {
     for (int b = 0; b < n; b++) {
         const brunt_grid *grid = &j->bodies[b].grid;
         for (int o = 0; o < n; o++) {
-            if (o == b || j->pair_of[b * n + o] < 0 || !overlap(&bounds[b], &bounds[o])) continue;
+            if (o == b || pair_between(j, b, o) < 0 || !overlap(&bounds[b], &bounds[o])) continue;
             if (BRUNT_RESERVE(w->shared, (size_t)(w->shared_count + grid->slot_count), (size_t)w->shared_count))
                 return -1;
             for (int32_t s = 0; s < grid->slot_count; s++)
@@ -177,9 +177,9 @@ static bool make_unit(const job *j, const member *a, int node, double n[3]) {
     int local[3];
     const brunt_grid *grid = &a->body->grid;
     brunt_node_local(grid, node, local);
-    for (int m = 0; m < j->mirror_count; m++) {
-        int axis = j->mirrors[m].axis;
-        int32_t away = grid->slots[a->slot].coord[axis] * grid->side + local[axis] - j->mirrors[m].node;
+    for (int m = 0; m < j->m->mirror_count; m++) {
+        int axis = j->m->mirrors[m].axis;
+        int32_t away = grid->slots[a->slot].coord[axis] * grid->side + local[axis] - j->m->mirrors[m].node;
         if (away >= -1 && away <= 1) n[axis] = 0;
     }
     double size = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
@@ -211,7 +211,7 @@ static int make_normal(const job *j, const member *a, const member *b, int node,
         return -1;
     for (int k = 0; k < 3; k++) approach += (b->v[k] - a->v[k]) * n[k];
     *gap = gap_along(&cloud[0], &cloud[1], n);
-    if (approach * j->dt >= -fmax(*gap, 0) || !make_unit(j, a, node, between)) return 1;
+    if (approach * j->m->dt >= -fmax(*gap, 0) || !make_unit(j, a, node, between)) return 1;
     for (int centres = 0; centres <= 1; centres++) {
         double direct[3], found, h = (double)a->body->grid.h;
         if (!(brunt_gjk_distance(&cloud[0], &cloud[1], h, 1 - centres, between, direct) > 0)) continue;
@@ -260,9 +260,9 @@ static double solve_contact(member *members, node_contact *m) {
     if (m->friction > 0) {
         double wanted[3], change[3];
         for (int k = 0; k < 3; k++) wanted[k] = m->friction_impulse[k] - (v[k] - along * m->n[k]) / m->slide;
-        brunt_coulomb_project(m->friction, normal_impulse, wanted, m->friction_impulse, change);
+        brunt_coulomb_project(3, m->friction, normal_impulse, wanted, m->friction_impulse, change);
         for (int k = 0; k < 3; k++) J[k] += change[k];
-        changed = fmax(changed, brunt_coulomb_norm(change) * m->slide);
+        changed = fmax(changed, brunt_coulomb_norm(3, change) * m->slide);
     }
     for (int k = 0; k < 3; k++) {
         members[m->a].v[k] -= J[k] * members[m->a].inverse[k];
@@ -360,20 +360,20 @@ static void meet_at_node(const job *j, group *g, int node, brunt_extent_cloud cl
     for (int i = 0; i < n; i++) {
         for (int a = 0; a < dim; a++) scale = fmax(scale, fabs(members[i].v[a]));
         for (int k = i + 1; k < n; k++) {
-            int32_t pair = j->pair_of[(members[i].body - j->bodies) * j->body_count + (members[k].body - j->bodies)];
+            int32_t pair = pair_between(j, (int)(members[i].body - j->bodies), (int)(members[k].body - j->bodies));
             if (pair < 0) continue;
             node_contact *m = &contacts[contact_count];
             int low = members[i].entry, high = members[k].entry;
             *m = (node_contact){.a = i,
                                 .b = k,
                                 .action = low * g->count - low * (low + 1) / 2 + high - low - 1,
-                                .friction = j->pairs[pair].friction,
-                                .tied = j->pairs[pair].method == BRUNT_CONTACT_TIED};
+                                .friction = j->m->pairs[pair].friction,
+                                .tied = j->m->pairs[pair].method == BRUNT_CONTACT_TIED};
             double gap = 0;
             const int known = m->tied ? 1 : make_normal(j, &members[i], &members[k], node, cloud, m->n, &gap);
             if (known < 0) g->out_of_memory = true;
             if (known <= 0) continue;
-            m->target = -fmax(gap, 0) / j->dt;
+            m->target = -fmax(gap, 0) / j->m->dt;
             weigh_contact(&members[i], &members[k], m);
             fixed |= members[i].fixed || members[k].fixed;
             contact_count += m->tied || m->inverse > 0;
@@ -426,25 +426,22 @@ static int make_clouds(brunt_contact_workspace *w, int threads) {
     return w->clouds ? 0 : -1;
 }
 
-int brunt_grid_velocity_apply(brunt_body *bodies, int body_count, brunt_pair *pairs, int pair_count,
-                              const int32_t *pair_of, const brunt_symmetry_plane *mirrors, int mirror_count, double dt,
-                              int threads, brunt_timer *timer, brunt_contact_workspace **workspace) {
-    (void)pair_count;
+int brunt_grid_velocity_apply(const brunt_contact_context *m, brunt_contact_workspace **workspace) {
     if (!*workspace) *workspace = brunt_alloc(sizeof **workspace);
-    if (!*workspace || make_clouds(*workspace, threads)) return -1;
-    job j = {bodies, body_count, pairs, pair_of, mirrors, mirror_count, dt, *workspace, NULL};
-    for (int m = 0; m < mirror_count; m++)
-        if (mirrors[m].wall < 0) j.axis = &mirrors[m];
+    if (!*workspace || make_clouds(*workspace, m->threads)) return -1;
+    job j = {.m = m, .bodies = m->mpm, .w = *workspace};
+    for (int k = 0; k < m->mirror_count; k++)
+        if (m->mirrors[k].wall < 0) j.axis = &m->mirrors[k];
     if (find_groups(&j)) return -1;
-    brunt_parallel(threads, j.w->group_count, 1, meet_blocks, &j, timer);
+    brunt_parallel(m->threads, j.w->group_count, 1, meet_blocks, &j, m->timer);
     for (int32_t q = 0; q < j.w->group_count; q++) {
         const group *g = &j.w->groups[q];
         if (g->over_limit || g->out_of_memory) return g->over_limit ? -2 : -1;
         int at = g->action;
         for (int32_t i = 0; i < g->count; i++)
             for (int32_t k = i + 1; k < g->count; k++, at++) {
-                int32_t pair = pair_of[j.w->shared[g->first + i].body * body_count + j.w->shared[g->first + k].body];
-                if (pair >= 0) brunt_impulse_account_add(&pairs[pair].last, &j.w->actions[at]);
+                int32_t pair = pair_between(&j, j.w->shared[g->first + i].body, j.w->shared[g->first + k].body);
+                if (pair >= 0) brunt_impulse_account_add(&m->pairs[pair].last, &j.w->actions[at]);
             }
     }
     return 0;

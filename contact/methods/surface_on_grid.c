@@ -49,9 +49,9 @@ static double solve_contact(const job *j, contact *c, double vs[3]) {
     if (c->pair->friction > 0) {
         double wanted[3], change[3];
         for (int a = 0; a < 3; a++) wanted[a] = c->friction_impulse[a] - c->relax * slip[a] / drag_inverse;
-        brunt_coulomb_project(c->pair->friction, normal_impulse, wanted, c->friction_impulse, change);
+        brunt_coulomb_project(3, c->pair->friction, normal_impulse, wanted, c->friction_impulse, change);
         for (int a = 0; a < 3; a++) c->applied[a] += change[a];
-        changed = fmax(changed, brunt_coulomb_norm(change) * drag_inverse);
+        changed = fmax(changed, brunt_coulomb_norm(3, change) * drag_inverse);
     }
     for (int a = 0; a < 3; a++) vs[a] += c->applied[a] * c->inverse_s;
     return changed;
@@ -123,22 +123,20 @@ static double sweep(job *j) {
     return greatest;
 }
 
-int brunt_surface_on_grid_meet(const brunt_contact_context *m, brunt_body *mpm, int mpm_count,
-                               const brunt_symmetry_plane *mirrors, int mirror_count, int sweeps,
-                               brunt_surface_on_grid **work) {
+int brunt_surface_on_grid_meet(const brunt_contact_context *m, int sweeps, brunt_surface_on_grid **work) {
     if (!*work) *work = brunt_alloc(sizeof **work);
     if (!*work) return -1;
     brunt_surface_on_grid *w = *work;
-    job j = {.m = m, .w = w, .mpm = mpm, .mirrors = mirrors, .mirror_count = mirror_count};
+    job j = {.m = m, .w = w};
     w->range_count = w->link_count = w->item_count = w->contact_count = 0;
-    if (RESERVE(w, range, mpm_count + 1)) return -1;
-    for (int b = 0; b < mpm_count; b++)
+    if (RESERVE(w, range, m->mpm_count + 1)) return -1;
+    for (int b = 0; b < m->mpm_count; b++)
         if (brunt_surface_on_grid_link(&j, b)) return -1;
     if (!w->contact_count) return 0;
     if (brunt_surface_on_grid_sort(w)) return -1;
     for (int32_t b = 0; b < w->range_count; b++) {
         if (brunt_surface_on_grid_look(&j, b)) return -1;
-        if (mirror_count) brunt_surface_on_grid_reflect(&j);
+        if (m->mirror_count) brunt_surface_on_grid_reflect(&j);
     }
     bool two;
     if (!squeezed(w, m->surface, &two)) return -1;
@@ -146,15 +144,16 @@ int brunt_surface_on_grid_meet(const brunt_contact_context *m, brunt_body *mpm, 
         if (!(sweep(&j) > 0)) break;
     for (int32_t i = 0; i < w->contact_count; i++) {
         const contact *c = &w->contact[i];
-        for (int a = 0; c->leader == i && a < mpm[c->mpm].grid.dim; a++) c->at[BRUNT_NODE_VELOCITY + a] = (real)c->v[a];
+        for (int a = 0; c->leader == i && a < m->mpm[c->mpm].grid.dim; a++)
+            c->at[BRUNT_NODE_VELOCITY + a] = (real)c->v[a];
     }
     follow_front(m->surface);
     return 0;
 }
 
 static void account_contact(const job *j, const contact *c) {
-    const int dim = j->mpm[c->mpm].grid.dim;
-    const double sign = j->mpm[c->mpm].index > j->m->surface->fem[c->fem]->index ? 1 : -1,
+    const int dim = j->m->mpm[c->mpm].grid.dim;
+    const double sign = j->m->mpm[c->mpm].index > j->m->surface->fem[c->fem]->index ? 1 : -1,
                  own = (double)(c->at[BRUNT_NODE_SPARE] / c->at[BRUNT_NODE_MASS]);
     static const double rest[3] = {0, 0, 0};
     double normal_impulse[3], friction_impulse[3], old[3], now[3];
@@ -187,31 +186,30 @@ static void mark_state(const job *j, const contact *c) {
 
 // Across a mirror plane the two do not get the same, each being the half of a whole: the rest is the plane's.
 static void account_symmetry(const job *j, const contact *c, brunt_wall *walls) {
-    const brunt_grid *grid = &j->mpm[c->mpm].grid;
+    const brunt_grid *grid = &j->m->mpm[c->mpm].grid;
     const double own = (double)(c->at[BRUNT_NODE_SPARE] / c->at[BRUNT_NODE_MASS]);
     double applied = 0;
     for (int32_t i = c->first; i < c->first + c->count; i++) {
         const link *l = &j->w->link[j->w->by_contact[i]];
         applied += l->own ? l->weight * j->m->surface->mass[l->surface] / c->mass : 0;
     }
-    for (int m = 0; m < j->mirror_count; m++) {
-        const int axis = j->mirrors[m].axis;
-        const double plane = grid->origin[axis] + (double)grid->h * j->mirrors[m].node;
-        if (j->mirrors[m].wall < 0 || fabs(c->x[axis] - plane) > 2.5 * (double)grid->h) continue;
-        walls[j->mirrors[m].wall].last.impulse[axis] +=
+    for (int m = 0; m < j->m->mirror_count; m++) {
+        const int axis = j->m->mirrors[m].axis;
+        const double plane = grid->origin[axis] + (double)grid->h * j->m->mirrors[m].node;
+        if (j->m->mirrors[m].wall < 0 || fabs(c->x[axis] - plane) > 2.5 * (double)grid->h) continue;
+        walls[j->m->mirrors[m].wall].last.impulse[axis] +=
             (own - applied) * (c->normal_impulse * c->n[axis] + c->friction_impulse[axis]);
     }
 }
 
-void brunt_surface_on_grid_finish(const brunt_contact_context *m, brunt_body *mpm, const brunt_symmetry_plane *mirrors,
-                                  int mirror_count, brunt_wall *walls, const brunt_surface_on_grid *work) {
+void brunt_surface_on_grid_finish(const brunt_contact_context *m, const brunt_surface_on_grid *work) {
     if (!work) return;
-    job j = {.m = m, .w = (brunt_surface_on_grid *)work, .mpm = mpm, .mirrors = mirrors, .mirror_count = mirror_count};
+    job j = {.m = m, .w = (brunt_surface_on_grid *)work};
     for (int32_t i = 0; i < work->contact_count; i++) {
         const contact *c = &work->contact[i];
         if (!(c->normal_impulse > 0)) continue;
         account_contact(&j, c);
         mark_state(&j, c);
-        if (mirror_count) account_symmetry(&j, c, walls);
+        if (m->mirror_count) account_symmetry(&j, c, m->walls);
     }
 }

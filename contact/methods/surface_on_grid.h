@@ -34,14 +34,11 @@ typedef struct brunt_surface_on_grid brunt_surface_on_grid;
 
 // Marks in surface->active the meshes that the grid of a body they meet in this way reaches; call between
 // brunt_surface_bounds and brunt_surface_gather_state, after what sets it.
-void brunt_surface_on_grid_near(const brunt_contact_context *m, const brunt_body *mpm, int mpm_count);
+void brunt_surface_on_grid_near(const brunt_contact_context *m);
 // Changes the velocities of grid nodes and of the surface, with `sweeps` sweeps; four times as many where two bodies
 // meet one place of a mesh. 0, or -1: out of memory.
-int brunt_surface_on_grid_meet(const brunt_contact_context *m, brunt_body *mpm, int mpm_count,
-                               const brunt_symmetry_plane *mirrors, int mirror_count, int sweeps,
-                               brunt_surface_on_grid **work);
+int brunt_surface_on_grid_meet(const brunt_contact_context *m, int sweeps, brunt_surface_on_grid **work);
 // Accounts and contact state, once all else has acted on the surface's velocities.
-void brunt_surface_on_grid_finish(const brunt_contact_context *m, brunt_body *mpm, const brunt_symmetry_plane *mirrors,
-                                  int mirror_count, brunt_wall *walls, const brunt_surface_on_grid *work);
+void brunt_surface_on_grid_finish(const brunt_contact_context *m, const brunt_surface_on_grid *work);
 void brunt_surface_on_grid_free(brunt_surface_on_grid *work);
 size_t brunt_surface_on_grid_bytes(const brunt_surface_on_grid *work);

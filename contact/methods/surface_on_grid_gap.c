@@ -20,7 +20,7 @@ static double box_distance(const double box[6], const double x[3]) {
 static int list_faces(job *j, int b, int k) {
     brunt_surface_on_grid *w = j->w;
     const brunt_contact_surface *s = j->m->surface;
-    const brunt_body *body = &j->mpm[b];
+    const brunt_body *body = &j->m->mpm[b];
     const brunt_grid *grid = &body->grid;
     const double width = (double)grid->h * grid->side;
     w->near_count = 0;
@@ -62,7 +62,7 @@ typedef struct faces {
 static void faces_of_bin(const job *j, int32_t block, int bin, faces *near) {
     const brunt_surface_on_grid *w = j->w;
     const brunt_contact_surface *s = j->m->surface;
-    const brunt_grid *grid = &j->mpm[j->range_mpm].grid;
+    const brunt_grid *grid = &j->m->mpm[j->range_mpm].grid;
     double low[3] = {0}, high[3] = {0};
     int local[3];
     brunt_node_local(grid, bin, local);
@@ -105,7 +105,7 @@ static bool find_nearest(const job *j, const faces *near, const double x[3], bru
 
 static void touch_particle(const job *j, int64_t s, const faces *near) {
     touch *t = &j->w->touch[s];
-    brunt_body *body = &j->mpm[j->range_mpm];
+    brunt_body *body = &j->m->mpm[j->range_mpm];
     const bool membrane = j->m->surface->fem[j->range_fem]->traits->membrane;
     real *const *place = brunt_field(&body->particles, BRUNT_FIELD_position);
     double x[3] = {0};
@@ -124,7 +124,7 @@ static void touch_particle(const job *j, int64_t s, const faces *near) {
 
 static void touch_block(const job *j, int32_t b) {
     const brunt_surface_on_grid *w = j->w;
-    const brunt_grid *grid = &j->mpm[j->range_mpm].grid;
+    const brunt_grid *grid = &j->m->mpm[j->range_mpm].grid;
     const brunt_block *block = &grid->blocks[b];
     const int32_t *start = grid->bin_start + (int64_t)b * BRUNT_BIN_STARTS;
     for (int64_t s = block->first; s < block->first + block->count; s++) w->touch[s].near = false;
@@ -190,7 +190,7 @@ static void add_normal(void *context, brunt_body *body, int64_t s, const int bas
 
 // Gap between the facets and what the particles near a node reach, and the mean direction to those that are nearest.
 static void find_gap(const job *j, contact *c) {
-    brunt_body *body = &j->mpm[c->mpm];
+    brunt_body *body = &j->m->mpm[c->mpm];
     const brunt_contact_surface *s = j->m->surface;
     const brunt_fem_body *fem = s->fem[c->fem];
     view v = {.w = j->w, .x = c->x, .front = INFINITY, .back = INFINITY};
@@ -222,7 +222,7 @@ static void area_vector(const brunt_contact_surface *s, int32_t n, double area[3
 static void prepare(const job *j, contact *c) {
     const brunt_surface_on_grid *w = j->w;
     const brunt_contact_surface *s = j->m->surface;
-    const brunt_grid *grid = &j->mpm[c->mpm].grid;
+    const brunt_grid *grid = &j->m->mpm[c->mpm].grid;
     double area[3] = {0}, free[3] = {0}, fixed = 0;
     for (int32_t i = c->first; i < c->first + c->count; i++) {
         const link *l = &w->link[w->by_contact[i]];
@@ -252,7 +252,7 @@ static void prepare_all(void *context, int64_t begin, int64_t end, int worker) {
 // Greatest speed of the body and the mesh looked at against each other, at most [m/s].
 static double fastest(const job *j) {
     const brunt_contact_surface *s = j->m->surface;
-    return (double)j->mpm[j->range_mpm].speed + s->motion.speed[j->range_fem] +
+    return (double)j->m->mpm[j->range_mpm].speed + s->motion.speed[j->range_fem] +
            sqrt(dot(s->motion.frame, s->motion.frame));
 }
 
@@ -264,9 +264,9 @@ int brunt_surface_on_grid_look(job *j, int b) {
     for (int32_t c = whole.contact, next; c < whole.contact_end; c = next) {
         j->range_fem = w->contact[c].fem;
         for (next = c + 1; next < whole.contact_end && w->contact[next].fem == j->range_fem; next++) {}
-        w->search_range = SEARCH * j->mpm[b].spacing + MARGIN * fastest(j) * j->m->dt;
+        w->search_range = SEARCH * j->m->mpm[b].spacing + MARGIN * fastest(j) * j->m->dt;
         if (list_faces(j, b, j->range_fem)) return -1;
-        brunt_parallel(j->m->threads, j->mpm[b].grid.block_count, 1, touch_blocks, j, j->m->timer);
+        brunt_parallel(j->m->threads, j->m->mpm[b].grid.block_count, 1, touch_blocks, j, j->m->timer);
         const range run = {.contact = c, .contact_end = next};
         j->range = &run;
         brunt_parallel(j->m->threads, next - c, GRAIN, prepare_all, j, j->m->timer);
@@ -281,19 +281,20 @@ void brunt_surface_on_grid_reflect(const job *j) {
     brunt_surface_on_grid *w = j->w;
     const int32_t first = j->range->contact, end = j->range->contact_end;
     if (first == end) return;
-    memset(w->place, 0, (size_t)j->mpm[w->contact[first].mpm].grid.slot_count * BRUNT_BLOCK_NODES * sizeof *w->place);
+    memset(w->place, 0,
+           (size_t)j->m->mpm[w->contact[first].mpm].grid.slot_count * BRUNT_BLOCK_NODES * sizeof *w->place);
     for (int32_t i = first; i < end; i++)
         if (w->contact[i].leader == i) w->place[w->contact[i].number] = i + 1;
     for (int32_t i = first; i < end; i++) {
         contact *c = &w->contact[i];
-        const brunt_grid *grid = &j->mpm[c->mpm].grid;
+        const brunt_grid *grid = &j->m->mpm[c->mpm].grid;
         int local[3];
         int32_t at[3] = {0}, image[BRUNT_MAX_IMAGES][3];
         real sign[BRUNT_MAX_IMAGES][3];
         double greatest = 0;
         brunt_node_local(grid, c->node, local);
         for (int a = 0; a < grid->dim; a++) at[a] = grid->slots[c->slot].coord[a] * grid->side + local[a];
-        const int images = brunt_symmetry_images(j->mirrors, j->mirror_count, at, 2, image, sign);
+        const int images = brunt_symmetry_images(j->m->mirrors, j->m->mirror_count, at, 2, image, sign);
         for (int q = 0; q < images; q++) {
             slot_cache cached = {.is = false};
             int32_t slot;

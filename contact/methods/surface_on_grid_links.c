@@ -38,9 +38,10 @@ static void bound_grid(const brunt_grid *grid, double low[3], double high[3]) {
         }
 }
 
-void brunt_surface_on_grid_near(const brunt_contact_context *m, const brunt_body *mpm, int mpm_count) {
+void brunt_surface_on_grid_near(const brunt_contact_context *m) {
+    const brunt_body *mpm = m->mpm;
     brunt_contact_surface *s = m->surface;
-    for (int b = 0; b < mpm_count; b++) {
+    for (int b = 0; b < m->mpm_count; b++) {
         double low[3], high[3];
         bound_grid(&mpm[b].grid, low, high);
         for (int k = 0; k < s->fem_count; k++)
@@ -59,7 +60,7 @@ static int32_t find_contact(job *j, int b, int k, brunt_pair *pair, int32_t slot
         if (w->contact[c].fem == k) return c;
         leader = leader < 0 ? c : leader, last = c;
     }
-    real *at = j->mpm[b].grid.nodes + (size_t)number * BRUNT_NODE_REALS;
+    real *at = j->m->mpm[b].grid.nodes + (size_t)number * BRUNT_NODE_REALS;
     if (!(at[BRUNT_NODE_MASS] > 0)) return -1;
     if (GROW(w, contact)) return -2;
     const int32_t made = w->contact_count++;
@@ -75,8 +76,8 @@ static int32_t find_contact(job *j, int b, int k, brunt_pair *pair, int32_t slot
                    .pair = pair,
                    .at = at,
                    .inverse_s = 1 / (double)at[BRUNT_NODE_MASS]};
-    brunt_node_position(&j->mpm[b].grid, j->mpm[b].grid.slots[slot].coord, node, c->x);
-    for (int a = 0; a < j->mpm[b].grid.dim; a++) c->v[a] = (double)at[BRUNT_NODE_VELOCITY + a];
+    brunt_node_position(&j->m->mpm[b].grid, j->m->mpm[b].grid.slots[slot].coord, node, c->x);
+    for (int a = 0; a < j->m->mpm[b].grid.dim; a++) c->v[a] = (double)at[BRUNT_NODE_VELOCITY + a];
     if (last >= 0)
         w->contact[last].next = made;
     else
@@ -89,7 +90,7 @@ static int add_link(job *j, int b, int k, brunt_pair *pair, int32_t n, const int
     brunt_surface_on_grid *w = j->w;
     int32_t slot;
     int node;
-    if (!brunt_surface_on_grid_place(&j->mpm[b].grid, at, cached, &slot, &node)) return 0;
+    if (!brunt_surface_on_grid_place(&j->m->mpm[b].grid, at, cached, &slot, &node)) return 0;
     int32_t c = find_contact(j, b, k, pair, slot, node);
     if (c < 0) return c == -1 ? 0 : -1;
     if (GROW(w, link)) return -1;
@@ -104,7 +105,7 @@ static int add_link(job *j, int b, int k, brunt_pair *pair, int32_t n, const int
 // shares get from brunt_symmetry_fold.
 static int add_item(job *j, int b, int k, brunt_pair *pair, int32_t n) {
     brunt_surface_on_grid *w = j->w;
-    const brunt_grid *grid = &j->mpm[b].grid;
+    const brunt_grid *grid = &j->m->mpm[b].grid;
     const double *x = j->m->surface->x[n];
     const int dim = grid->dim, nodes = grid->order + 1;
     int32_t base[3] = {0, 0, 0};
@@ -122,13 +123,13 @@ static int add_item(job *j, int b, int k, brunt_pair *pair, int32_t n) {
                 const double share = weight[0][p] * weight[1][q] * weight[2][r];
                 const int32_t at[3] = {base[0] + p, base[1] + q, base[2] + r};
                 if (!(share > 0)) continue;
-                if (!j->mirror_count) {
+                if (!j->m->mirror_count) {
                     if (add_link(j, b, k, pair, n, at, share, NULL, &cached)) return -1;
                     continue;
                 }
                 int32_t image[BRUNT_MAX_IMAGES][3];
                 real sign[BRUNT_MAX_IMAGES][3];
-                int images = brunt_symmetry_images(j->mirrors, j->mirror_count, at, 2, image, sign);
+                int images = brunt_symmetry_images(j->m->mirrors, j->m->mirror_count, at, 2, image, sign);
                 for (int i = 0; i < images; i++) {
                     const int32_t before = w->link_count;
                     if (add_link(j, b, k, pair, n, image[i], share, sign[i], i ? &cached_image : &cached)) return -1;
@@ -149,9 +150,9 @@ static bool on_cut(const job *j, const brunt_grid *grid, int32_t n) {
     const brunt_contact_surface *s = j->m->surface;
     double normal[3] = {s->normal[n][0], s->normal[n][1], s->normal[n][2]};
     bool cut = false;
-    for (int m = 0; m < j->mirror_count; m++) {
-        const int axis = j->mirrors[m].axis;
-        const double plane = grid->origin[axis] + (double)grid->h * j->mirrors[m].node;
+    for (int m = 0; m < j->m->mirror_count; m++) {
+        const int axis = j->m->mirrors[m].axis;
+        const double plane = grid->origin[axis] + (double)grid->h * j->m->mirrors[m].node;
         if (fabs(s->x[n][axis] - plane) < CUT * (double)grid->h) normal[axis] = 0, cut = true;
     }
     return cut && dot(normal, normal) < CUT * CUT;
@@ -167,14 +168,14 @@ static bool inside(const double x[3], const double low[3], const double high[3])
 int brunt_surface_on_grid_link(job *j, int b) {
     brunt_surface_on_grid *w = j->w;
     const brunt_contact_surface *s = j->m->surface;
-    const brunt_grid *grid = &j->mpm[b].grid;
+    const brunt_grid *grid = &j->m->mpm[b].grid;
     range *r = &w->range[w->range_count++];
     *r = (range){w->contact_count, w->contact_count, w->item_count, w->item_count};
     double low[3], high[3];
     bool any = false;
     bound_grid(grid, low, high);
     for (int k = 0; k < s->fem_count; k++) {
-        brunt_pair *pair = pair_of(j->m, &j->mpm[b], s->fem[k]);
+        brunt_pair *pair = pair_of(j->m, &j->m->mpm[b], s->fem[k]);
         if (!pair || !s->active[k] || !overlap(low, high, s->low[k], s->high[k])) continue;
         if (!any) {
             const size_t nodes = (size_t)grid->slot_count * BRUNT_BLOCK_NODES;

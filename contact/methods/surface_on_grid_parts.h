@@ -83,9 +83,6 @@ struct brunt_surface_on_grid {
 typedef struct job {
     const brunt_contact_context *m;
     brunt_surface_on_grid *w;
-    brunt_body *mpm;
-    const brunt_symmetry_plane *mirrors;
-    int mirror_count;
     const range *range;       // contacts and items that are worked on ...
     int range_mpm, range_fem; // ... of these two
 } job;

@@ -23,7 +23,7 @@
 #include <string.h>
 
 #include "contact/constraint/coulomb.h"
-#include "contact/contact.h"
+#include "contact/surface/contact_surface.h"
 #include "base/array.h"
 #include "base/memory.h"
 #include "mpm/mpm_body.h"
@@ -261,10 +261,10 @@ static quad surface_velocity(const brunt_wall_workspace *w, const touch *t, quad
 }
 
 // Particles that the plane would catch in this step.
-static int find_touches(brunt_wall_workspace *w, brunt_body *body, const brunt_wall *walls, int index,
-                        const brunt_symmetry_plane *mirrors, int mirror_count, double time, double dt) {
+static int find_touches(const brunt_contact_context *m, brunt_wall_workspace *w, brunt_body *body, int index) {
+    const double time = m->time, dt = m->dt;
     const brunt_grid *grid = &body->grid;
-    const brunt_plane_def *plane = &walls[index].plane;
+    const brunt_plane_def *plane = &m->walls[index].plane;
     brunt_particles *p = &body->particles;
     const int dim = grid->dim, stride = p->point_dim;
     const double h = (double)grid->h;
@@ -301,7 +301,7 @@ static int find_touches(brunt_wall_workspace *w, brunt_body *body, const brunt_w
                          .first = w->entry_count,
                          .levers = -1,
                          .target = wall_speed - fmax(gap, 0) / dt};
-            if (add_entries(w, body, b, s, mirrors, mirror_count)) return -1;
+            if (add_entries(w, body, b, s, m->mirrors, m->mirror_count)) return -1;
             t->count = w->entry_count - t->first;
             const quad v = particle_velocity(w, t);
             double approach = 0;
@@ -311,7 +311,7 @@ static int find_touches(brunt_wall_workspace *w, brunt_body *body, const brunt_w
             else if (w->touch_count++, plane->friction > 0) {
                 double arm[3], kernel_arm[3];
                 brunt_extent_arm(body, s, plane->normal, distance, arm, kernel_arm);
-                if (add_levers(w, body, b, t, kernel_arm, mirrors, mirror_count)) return -1;
+                if (add_levers(w, body, b, t, kernel_arm, m->mirrors, m->mirror_count)) return -1;
             }
         }
     }
@@ -370,16 +370,16 @@ static double visit(brunt_wall_workspace *w, touch *t, const brunt_plane_def *pl
     double changed = fabs(step) * t->response;
     for (int a = 0; a < dim; a++) J[a] = step * plane->normal[a];
     if (plane->friction > 0) {
-        double wanted[3] = {0}, change[3];
+        double wanted[3], change[3];
         normal_velocity = 0;
         for (int a = 0; a < dim; a++) normal_velocity += plane->normal[a] * u[a];
         for (int a = 0; a < dim; a++) {
             double slip = u[a] - plane->velocity[a] - (normal_velocity - wall_normal) * plane->normal[a];
             wanted[a] = t->friction_impulse[a] - slip / t->response_t;
         }
-        brunt_coulomb_project(plane->friction, normal_impulse, wanted, t->friction_impulse, change);
+        brunt_coulomb_project(dim, plane->friction, normal_impulse, wanted, t->friction_impulse, change);
         for (int a = 0; a < dim; a++) rub[a] = change[a];
-        changed = fmax(changed, brunt_coulomb_norm(change) * t->response_t);
+        changed = fmax(changed, brunt_coulomb_norm(dim, change) * t->response_t);
     }
     if (!(changed > 0)) return changed;
     const entry *e = &w->entries[t->first], *const end = e + t->count;
@@ -448,17 +448,17 @@ static void book(const brunt_wall_workspace *w, brunt_body *body, brunt_wall *wa
     }
 }
 
-int brunt_planes_apply(brunt_body *body, brunt_wall *walls, int wall_count, const brunt_symmetry_plane *mirrors,
-                       int mirror_count, double time, double dt, brunt_wall_workspace **workspace) {
+int brunt_planes_apply(const brunt_contact_context *m, brunt_body *body, brunt_wall_workspace **workspace) {
+    brunt_wall *walls = m->walls;
     if (!*workspace) *workspace = brunt_alloc(sizeof **workspace);
     brunt_wall_workspace *w = *workspace;
     if (!w || BRUNT_RESERVE(w->index, (size_t)body->grid.slot_count * BRUNT_BLOCK_NODES, 0)) return -1;
     w->touch_count = w->entry_count = w->lever_count = w->support_count = 0;
     int failed = 0;
-    for (int k = 0; k < wall_count && !failed; k++) {
+    for (int k = 0; k < m->wall_count && !failed; k++) {
         if (walls[k].region || walls[k].plane.condition != BRUNT_SEPARATE) continue;
         if (walls[k].body >= 0 && walls[k].body != body->index) continue;
-        failed = find_touches(w, body, walls, k, mirrors, mirror_count, time, dt);
+        failed = find_touches(m, w, body, k);
     }
     if (!failed && w->touch_count) {
         double first = 0;

@@ -158,7 +158,18 @@ typedef struct brunt_contact_context {
     int64_t step;
     const brunt_symmetry_plane *mirrors; // of the grids
     int mirror_count;
-    brunt_wall *walls; // what the mirrors are
+    brunt_wall *walls; // planes, regions and groups: what the mirrors are, and planes that push
+    int wall_count;
+    double time;     // [s] at the start of the step
+    brunt_body *mpm; // the bodies of material points
+    int mpm_count;
     int threads;
     brunt_timer *timer; // of the pass
 } brunt_contact_context;
+
+// --- methods/grid_velocity.c: the bodies of material points that have pairs, at the nodes of their grids. 0, or -1:
+// out of memory, -2: more than 16 bodies at a node.
+int brunt_grid_velocity_apply(const brunt_contact_context *m, brunt_contact_workspace **workspace);
+
+// --- planes/particle_plane.c: the particles of a body at planes that push. 0, or -1: out of memory.
+int brunt_planes_apply(const brunt_contact_context *m, brunt_body *body, brunt_wall_workspace **workspace);

@@ -128,10 +128,8 @@ int brunt_pass_conditions(brunt_world *world, brunt_step *step, brunt_error *err
 }
 
 int brunt_pass_contact(brunt_world *world, brunt_step *step, brunt_error *error) {
-    int failed = brunt_grid_velocity_apply(world->bodies.mpm, world->bodies.mpm_count, world->pairs.pair,
-                                           world->pairs.count, world->pairs.of_mpm, world->boundaries.mirrors,
-                                           world->boundaries.mirror_count, step->dt, world->settings.threads,
-                                           brunt_pass_timer(world), &world->scratch.grid_velocity);
+    const brunt_contact_context m = brunt_contact_context_of(world, step->dt, brunt_pass_timer(world));
+    const int failed = brunt_grid_velocity_apply(&m, &world->scratch.grid_velocity);
     return failed ? brunt_fail_step(world, NULL, error,
                                     failed == -1 ? "out of memory in the contact search"
                                                  : "more than 16 bodies meet at one grid node")
@@ -139,10 +137,9 @@ int brunt_pass_contact(brunt_world *world, brunt_step *step, brunt_error *error)
 }
 
 int brunt_pass_walls(brunt_world *world, brunt_step *step, brunt_error *error) {
+    const brunt_contact_context m = brunt_contact_context_of(world, step->dt, NULL);
     for (int i = 0; i < world->bodies.mpm_count; i++)
-        if (brunt_planes_apply(&world->bodies.mpm[i], world->boundaries.walls, world->boundaries.wall_count,
-                               world->boundaries.mirrors, world->boundaries.mirror_count, world->clock.time, step->dt,
-                               &world->scratch.planes[i]))
+        if (brunt_planes_apply(&m, &world->bodies.mpm[i], &world->scratch.planes[i]))
             return brunt_fail_step(world, &world->bodies.mpm[i], error, "out of memory at a wall");
     return BRUNT_OK;
 }

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/memory.h"
+#include "contact/methods/method.h"
 #include "contact/search/initial_overlap.h"
 #include "world/world.h"
 
@@ -171,22 +172,23 @@ int brunt_surfaces_renew(brunt_world *world, brunt_error *error) {
     return BRUNT_OK;
 }
 
-static int meet_by_facets(brunt_world *world, const brunt_contact_context *m) {
-    brunt_constraint_set *points = &world->contact.constraints;
-    brunt_constraints_clear(points);
-    int failed = brunt_node_to_facet_planes(m, world->boundaries.walls, world->boundaries.wall_count, world->clock.time,
-                                            world->contact.node_to_facet, points);
-    if (!failed && world->contact.has_augury && world->contact.def.form == BRUNT_AUGURY_AFFINE)
-        failed = brunt_node_to_facet_find(m, world->bodies.mpm, world->bodies.mpm_count, world->contact.node_to_facet,
-                                          points);
-    int sweeps = world->contact.def.form == BRUNT_AUGURY_AFFINE ? world->contact.def.iterations : SWEEPS;
-    if (!failed && brunt_constraints_solve(points, sweeps, world->contact.def.tolerance, m->threads, m->timer) < 0)
-        failed = -1;
-    if (failed) return failed;
-    brunt_node_to_facet_account_fixed(m, world->boundaries.walls, world->boundaries.wall_count, world->clock.time,
-                                      world->contact.node_to_facet, points);
-    brunt_node_to_facet_finish(m, world->bodies.mpm, world->contact.node_to_facet, points);
-    return 0;
+// Whether a world has something for a row to do; planes are met where facets are.
+static bool is_used(const brunt_contact *contact, const brunt_contact_row *row) {
+    if (!row->act) return false;
+    if (!row->forms) return contact->has_grid_surfaces;
+    return row->forms >> BRUNT_AUGURY_AFFINE & 1 || (contact->has_augury && row->forms >> contact->def.form & 1);
+}
+
+static brunt_contact_work contact_work(brunt_contact *contact) {
+    const bool affine = contact->def.form == BRUNT_AUGURY_AFFINE;
+    return (brunt_contact_work){.def = &contact->def,
+                                .grid_sweeps = contact->grid_sweeps,
+                                .sweeps = affine ? contact->def.iterations : SWEEPS,
+                                .facets = contact->has_augury && affine,
+                                .constraints = &contact->constraints,
+                                .node_to_facet = &contact->node_to_facet,
+                                .augury = &contact->augury,
+                                .surface_on_grid = &contact->grid_surfaces};
 }
 
 // Names the mesh that is fastest, or farthest away: contact cannot look that far.
@@ -207,49 +209,46 @@ static int fail_far(const brunt_world *world, brunt_error *error) {
         s->fem[worst]->name, most);
 }
 
+brunt_contact_context brunt_contact_context_of(brunt_world *world, double dt, brunt_timer *timer) {
+    const bool averaged = world->contact.has_augury && world->contact.def.form != BRUNT_AUGURY_AFFINE;
+    return (brunt_contact_context){.surface = &world->contact.surface,
+                                   .pairs = world->pairs.pair,
+                                   .pair_of = world->pairs.of,
+                                   .body_count = world->bodies.count,
+                                   .dt = dt,
+                                   .cell = world->contact.cell,
+                                   .iterations = world->contact.def.iterations,
+                                   .look = averaged ? 1.6 * world->contact.cell : 0,
+                                   .step = (int64_t)world->clock.steps,
+                                   .mirrors = world->boundaries.mirrors,
+                                   .mirror_count = world->boundaries.mirror_count,
+                                   .walls = world->boundaries.walls,
+                                   .wall_count = world->boundaries.wall_count,
+                                   .time = world->clock.time,
+                                   .mpm = world->bodies.mpm,
+                                   .mpm_count = world->bodies.mpm_count,
+                                   .threads = world->settings.threads,
+                                   .timer = timer};
+}
+
 int brunt_surfaces_meet(brunt_world *world, const double gravity[3], double kick, double dt, brunt_error *error) {
     brunt_timer *timer = brunt_pass_timer(world);
-    brunt_contact_context m = {.surface = &world->contact.surface,
-                               .pairs = world->pairs.pair,
-                               .pair_of = world->pairs.of,
-                               .body_count = world->bodies.count,
-                               .dt = dt,
-                               .cell = world->contact.cell,
-                               .iterations = world->contact.def.iterations,
-                               .look = world->contact.has_augury && world->contact.def.form != BRUNT_AUGURY_AFFINE
-                                           ? 1.6 * world->contact.cell
-                                           : 0,
-                               .step = (int64_t)world->clock.steps,
-                               .mirrors = world->boundaries.mirrors,
-                               .mirror_count = world->boundaries.mirror_count,
-                               .walls = world->boundaries.walls,
-                               .threads = world->settings.threads,
-                               .timer = timer};
+    const brunt_contact_context m = brunt_contact_context_of(world, dt, timer);
     memcpy(world->contact.surface.motion.frame, world->contact.frame, sizeof world->contact.surface.motion.frame);
     brunt_surface_bounds(&world->contact.surface, world->settings.threads, timer);
     int failed = brunt_broad_phase(&m, world->bodies.mpm, world->bodies.mpm_count, world->boundaries.walls,
                                    world->boundaries.wall_count, world->clock.time, &world->contact.node_to_facet);
     if (failed == -2) return fail_far(world, error);
-    if (!failed) {
-        if (world->contact.has_grid_surfaces)
-            brunt_surface_on_grid_near(&m, world->bodies.mpm, world->bodies.mpm_count);
-        if (world->contact.has_augury &&
-            world->contact.def.form == BRUNT_AUGURY_PAPER) // acts on every surface, touched or not
-            for (int k = 0; k < world->bodies.fem_count; k++) world->contact.surface.active[k] = true;
-        brunt_surface_gather_state(&world->contact.surface, kick, gravity, world->settings.threads, timer);
-        if (world->contact.has_augury && world->contact.def.form == BRUNT_AUGURY_PAPER)
-            failed = brunt_augury_paper(&m, world->contact.def.transfer, &world->contact.augury);
-        else if (world->contact.has_augury && world->contact.def.form != BRUNT_AUGURY_AFFINE)
-            failed = brunt_augury_surface(&m, world->contact.def.form == BRUNT_AUGURY_SMOOTH, &world->contact.augury);
-    }
-    if (!failed && world->contact.has_grid_surfaces)
-        failed = brunt_surface_on_grid_meet(&m, world->bodies.mpm, world->bodies.mpm_count, world->boundaries.mirrors,
-                                            world->boundaries.mirror_count, world->contact.grid_sweeps,
-                                            &world->contact.grid_surfaces);
-    if (!failed) failed = meet_by_facets(world, &m);
-    if (!failed && world->contact.has_grid_surfaces)
-        brunt_surface_on_grid_finish(&m, world->bodies.mpm, world->boundaries.mirrors, world->boundaries.mirror_count,
-                                     world->boundaries.walls, world->contact.grid_surfaces);
+    brunt_contact *contact = &world->contact;
+    const brunt_contact_work work = contact_work(contact);
+    const brunt_contact_row *const end = brunt_contact_rows + BRUNT_CONTACT_ROWS;
+    for (const brunt_contact_row *row = brunt_contact_rows; !failed && row < end; row++)
+        if (row->near && is_used(contact, row)) row->near(&m);
+    if (!failed) brunt_surface_gather_state(&contact->surface, kick, gravity, world->settings.threads, timer);
+    for (const brunt_contact_row *row = brunt_contact_rows; !failed && row < end; row++)
+        if (is_used(contact, row)) failed = row->act(&m, &work);
+    for (const brunt_contact_row *row = brunt_contact_rows; !failed && row < end; row++)
+        if (row->account && is_used(contact, row)) row->account(&m, &work);
     if (failed) return brunt_fail(error, BRUNT_FAILED, "out of memory in the contact of surfaces");
     brunt_surface_scatter_velocity(&world->contact.surface, dt, world->settings.threads, timer);
     memcpy(world->contact.frame, world->contact.surface.motion.frame, sizeof world->contact.surface.motion.frame);

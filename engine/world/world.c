@@ -15,6 +15,7 @@
 #include "mpm/sort.h"
 #include "mpm/courant.h"
 #include "base/parallel.h"
+#include "contact/methods/method.h"
 #include "world/world.h"
 
 static const double ON_GRID_LINE = 1e-6; // cells: how far off a mirror plane may be and still count as on the line
@@ -496,12 +497,14 @@ static int make_pairs(brunt_world *world, const brunt_world_def *def, const brun
             bool meshes = order[i]->method != BRUNT_MPM || order[k]->method != BRUNT_MPM;
             if (pair.method == BRUNT_CONTACT_NONE) continue;
             const bool on_grid = pair.method == BRUNT_CONTACT_MULTI_VELOCITY;
-            if (order[i]->method != BRUNT_MPM && order[k]->method != BRUNT_MPM && on_grid)
+            // Bodies of material points meet at the nodes of the grid that moves them, whatever the method is called.
+            const bool accepted = !meshes || brunt_contact_accepts(pair.method, order[i]->method != BRUNT_MPM,
+                                                                   order[k]->method != BRUNT_MPM);
+            if (!accepted && on_grid)
                 REFUSE("contact of '%s' and '%s': multi-velocity needs the grid of a body of material points; use "
                        "augury between meshes",
                        order[i]->name, order[k]->name);
-            // Bodies of material points meet at the nodes of the grid that moves them, whatever the method is called.
-            if (meshes && pair.method == BRUNT_CONTACT_TIED)
+            if (!accepted)
                 REFUSE("contact of '%s' and '%s': only bodies of material points can be tied", order[i]->name,
                        order[k]->name);
             if (!meshes) {
@@ -520,19 +523,6 @@ static int make_pairs(brunt_world *world, const brunt_world_def *def, const brun
             }
             world->pairs.of[i * n + k] = world->pairs.of[k * n + i] = index;
         }
-    return BRUNT_OK;
-}
-
-// Pairs that meet at grid nodes, by place among the bodies of material points.
-static int map_grid_pairs(brunt_world *world, brunt_error *error) {
-    const int n = world->bodies.mpm_count;
-    world->pairs.of_mpm = brunt_alloc(((size_t)n * (size_t)n + 1) * sizeof *world->pairs.of_mpm);
-    if (!world->pairs.of_mpm) return brunt_fail(error, BRUNT_FAILED, "out of memory");
-    for (int i = 0; i < n; i++)
-        for (int k = 0; k < n; k++)
-            world->pairs.of_mpm[i * n + k] =
-                i == k ? -1
-                       : world->pairs.of[world->bodies.mpm[i].index * world->bodies.count + world->bodies.mpm[k].index];
     return BRUNT_OK;
 }
 
@@ -686,7 +676,6 @@ brunt_world *brunt_world_create(const brunt_world_def *def, brunt_error *error) 
     if (!status) status = make_bodies(world, def, order, error);
     if (!status) status = check_symmetry(world, error);
     if (!status) status = brunt_ignition_make(&world->bodies, def, &world->messages, error);
-    if (!status) status = map_grid_pairs(world, error);
     if (!status) status = brunt_erosion_make(&world->erosion, &world->bodies, def, error);
     if (!status)
         status = brunt_node_sets_make(&world->boundaries.sets, def, &world->bodies,
@@ -739,7 +728,6 @@ void brunt_world_destroy(brunt_world *world) {
     brunt_free(world->bodies.tasks.node);
     brunt_free(world->bodies.tasks.element);
     brunt_free(world->bodies.tasks.sums);
-    brunt_free(world->pairs.of_mpm);
     brunt_messages_free(&world->messages);
     brunt_free(world->scratch.planes);
     brunt_free(world->bodies.mpm);

@@ -99,6 +99,8 @@ int brunt_definition_check(const brunt_world_def *def, brunt_error *error);
 int brunt_reports_make(brunt_world *world, brunt_error *error);
 
 // --- surfaces.c: the meshes' surfaces and what they meet
+// What contact is given of a world for a step of `dt`; `timer`: of the pass.
+brunt_contact_context brunt_contact_context_of(brunt_world *world, double dt, brunt_timer *timer);
 // 0, or BRUNT_FAILED with the reason in `error`.
 int brunt_surfaces_meet(brunt_world *world, const double gravity[3], double kick, double dt, brunt_error *error);
 int brunt_surfaces_make(brunt_world *world, const brunt_world_def *def, brunt_error *error);

@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "contact/methods/method.h"
 #include "world/definitions.h"
 
 static const char *const methods[] = {"none", "multi-velocity", "augury", "tied"}; // by brunt_contact_method
@@ -18,15 +19,16 @@ static bool same_pair(const brunt_pair_def *pair, const char *a, const char *b) 
 }
 
 static void check_pair_method(scene_reader *reader, const scene_node *method, const brunt_pair_def *pair) {
-    bool known = brunt_body_named(reader, pair->a) && brunt_body_named(reader, pair->b), a = has_mesh(reader, pair->a),
-         b = has_mesh(reader, pair->b);
-    if (pair->method == BRUNT_CONTACT_MULTI_VELOCITY && a && b)
+    const bool known = brunt_body_named(reader, pair->a) && brunt_body_named(reader, pair->b),
+               a = has_mesh(reader, pair->a), b = has_mesh(reader, pair->b);
+    if (brunt_contact_accepts(pair->method, a, b) || (!known && pair->method == BRUNT_CONTACT_AUGURY)) return;
+    if (pair->method == BRUNT_CONTACT_MULTI_VELOCITY)
         brunt_tree_complain(reader->tree, method, "multi-velocity wants a body of method mpm, neither '%s' nor '%s' is",
                             pair->a, pair->b);
-    if (pair->method == BRUNT_CONTACT_TIED && (a || b))
+    if (pair->method == BRUNT_CONTACT_TIED)
         brunt_tree_complain(reader->tree, method, "only bodies of method mpm can be tied, '%s' is none",
                             a ? pair->a : pair->b);
-    if (pair->method == BRUNT_CONTACT_AUGURY && known && !a && !b)
+    if (pair->method == BRUNT_CONTACT_AUGURY)
         brunt_tree_complain(reader->tree, method,
                             "augury wants a body of method fem or membrane, both are of method mpm");
 }
@@ -105,7 +107,8 @@ static void check_multi_velocity(scene_reader *reader, const scene_node *method)
     for (int a = 0; a < world->body_count; a++)
         for (int b = a + 1; b < world->body_count; b++) {
             const brunt_body_def *one = &world->bodies[a], *other = &world->bodies[b];
-            if (one->method == BRUNT_MPM || other->method == BRUNT_MPM) continue;
+            if (brunt_contact_accepts(world->contact.method, one->method != BRUNT_MPM, other->method != BRUNT_MPM))
+                continue;
             if (overridden(&world->contact, one->name, other->name)) continue;
             brunt_tree_complain(
                 reader->tree, method,
