@@ -19,7 +19,7 @@ SAMPLES = {
     "material": (r"drucker[-_]prager", r"materials/drucker_prager\.c", 2),
     "contact method": (r"multi[-_]velocity|MULTI_VELOCITY", r"contact/methods/grid_velocity", None),
     "boundary kind": (r"SYMMETRY|\"symmetry\"", r"contact/planes/|symmetry", None),
-    "measure": (r"brunt_measure_extent|measure_extent", r"io/output/measure_extent\.c", None),
+    "measure": (r"measures\.\*\.extent|\bEXTENT\b|MEASURE_EXTENT", r"io/output/measure_extent\.c", None),
     "body key": (r"contact_thickness", r"^$", None),
     "output field": (r"thickness_stretch", r"^$", None),
 }
