@@ -7,6 +7,7 @@
 
 #include "mpm/mpm_body.h"
 #include "base/parallel.h"
+#include "contact/pairs.h"
 
 // A condition that is imposed from outside, and what it has done so far.
 typedef struct brunt_impulse_account {

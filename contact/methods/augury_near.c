@@ -76,7 +76,7 @@ int brunt_augury_near_find(brunt_augury_near *near, const brunt_contact_context 
                 apart |= s->low[o][a] > s->high[i][a] + margin || s->low[i][a] > s->high[o][a] + margin;
             if (apart) continue;
             const int p = brunt_augury_body(s, i), q = brunt_augury_body(s, o);
-            const int32_t pair = m->pair_of[p * m->body_count + q];
+            const int32_t pair = brunt_pair_of(m->pair_map, p, q);
             if (pair < 0 || m->pairs[pair].method != BRUNT_CONTACT_AUGURY) continue;
             size_t n = (size_t)near->count;
             if (BRUNT_RESERVE(near->found, n + 1, n)) return -1;

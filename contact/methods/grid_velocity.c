@@ -107,7 +107,7 @@ static int compare_shared(const void *a, const void *b) {
 
 // The pair of two bodies by their places among those of material points; -1: none.
 static int32_t pair_between(const job *j, int a, int b) {
-    return j->m->pair_of[j->bodies[a].index * j->m->body_count + j->bodies[b].index];
+    return brunt_pair_of(j->m->pair_map, j->bodies[a].index, j->bodies[b].index);
 }
 
 // Slots inside the box of another body that it may touch, sorted; then those that really coincide. 0, or -1: out of

@@ -251,7 +251,7 @@ static int find_pairs(job *j) {
             f->pair[k] = -1;
         else
             for (int o = 0; o < m->body_count && f->pair[k] < 0; o++) {
-                int32_t pair = m->pair_of[brunt_augury_body(s, k) * m->body_count + o];
+                int32_t pair = brunt_pair_of(m->pair_map, brunt_augury_body(s, k), o);
                 if (pair >= 0 && m->pairs[pair].method == BRUNT_CONTACT_AUGURY) f->pair[k] = pair;
             }
     }

@@ -4,7 +4,7 @@
 static const double CUT = 1e-6; // cells: how near a mirror plane what it cuts is
 
 static brunt_pair *pair_of(const brunt_contact_context *m, const brunt_body *body, const brunt_fem_body *fem) {
-    int32_t pair = m->pair_of[body->index * m->body_count + fem->index];
+    int32_t pair = brunt_pair_of(m->pair_map, body->index, fem->index);
     return pair >= 0 && m->pairs[pair].method == BRUNT_CONTACT_MULTI_VELOCITY ? &m->pairs[pair] : NULL;
 }
 

@@ -1,11 +1,13 @@
 #include "contact/search/initial_overlap.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "contact/distance/point_facet.h"
 #include "base/array.h"
 #include "base/memory.h"
+#include "base/sweep.h"
 #include "mpm/particles.h"
 
 static const double DEEP =
@@ -506,19 +508,66 @@ static bool find_behind(const brunt_contact_context *m, brunt_body *mpm, int mpm
 
 // ------------------------------------------------------------------------------------------ all
 
-static int find_in_meshes(search_job *j, brunt_body *mpm, int mpm_count) {
-    const brunt_contact_context *m = j->m;
-    const brunt_contact_surface *s = m->surface;
-    int status = 0;
-    for (int k = 0; k < s->fem_count && !status; k++) {
-        const int b = s->fem[k]->index;
-        for (int i = 0; i < s->fem_count + mpm_count && !status; i++) {
-            const int a = i < s->fem_count ? s->fem[i]->index : mpm[i - s->fem_count].index;
-            if (a == b || m->pair_of[a * m->body_count + b] < 0) continue;
-            *j->found = (brunt_overlap){.a = a, .b = b, .wall = -1};
-            status = i < s->fem_count ? meshes_overlap(j, i, k) : points_overlap(j, &mpm[i - s->fem_count], k);
-        }
+// Bounds of each mesh and then of each body of points, so wide that what is apart is not even looked at.
+static void bound_bodies(const brunt_contact_surface *s, brunt_body *mpm, int mpm_count, brunt_box *out) {
+    for (int k = 0; k < s->fem_count + mpm_count; k++) {
+        brunt_body *points = k < s->fem_count ? NULL : &mpm[k - s->fem_count];
+        box b = points ? empty_box() : surface_box(s, k);
+        double x[3];
+        for (int64_t i = 0; points && i < points->particles.slots; i++) particle_at(points, i, x), widen(&b, x);
+        b = grown(b, s->dim, NEXT * (points ? points->spacing : (double)s->fem[k]->mean_edge));
+        memcpy(out[k].low, b.low, sizeof b.low), memcpy(out[k].high, b.high, sizeof b.high);
     }
+}
+
+// One of the bodies in the other mesh.
+typedef struct meeting {
+    int32_t mesh, other; // by place among the boxes
+} meeting;
+
+static int compare_meetings(const void *left, const void *right) {
+    const meeting *p = left, *q = right;
+    if (p->mesh != q->mesh) return p->mesh < q->mesh ? -1 : 1;
+    return (p->other > q->other) - (p->other < q->other);
+}
+
+// Which bodies are near which meshes, ascending. Their count, or -1: out of memory.
+static int64_t list_meetings(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, meeting **list) {
+    const brunt_contact_surface *s = m->surface;
+    const int32_t count = s->fem_count + mpm_count;
+    brunt_box *boxes = brunt_alloc(((size_t)count + 1) * sizeof *boxes);
+    brunt_box_pair *near = NULL;
+    int64_t pairs = -1, found = 0;
+    if (boxes) {
+        bound_bodies(s, mpm, mpm_count, boxes);
+        pairs = brunt_sweep(boxes, s->fem_count, count, &near);
+    }
+    brunt_free(boxes);
+    *list = pairs < 0 ? NULL : brunt_alloc(2 * (size_t)(pairs + 1) * sizeof **list);
+    for (int64_t q = 0; *list && q < pairs; q++) {
+        (*list)[found++] = (meeting){near[q].a, near[q].b};
+        if (near[q].b < s->fem_count) (*list)[found++] = (meeting){near[q].b, near[q].a};
+    }
+    brunt_free(near);
+    if (!*list) return -1;
+    qsort(*list, (size_t)found, sizeof **list, compare_meetings);
+    return found;
+}
+
+static int find_in_meshes(search_job *j, brunt_body *mpm, int mpm_count) {
+    const brunt_contact_surface *s = j->m->surface;
+    if (!s->fem_count) return 0;
+    meeting *list;
+    const int64_t count = list_meetings(j->m, mpm, mpm_count, &list);
+    int status = count < 0 ? -1 : 0;
+    for (int64_t q = 0; q < count && !status; q++) {
+        const int k = list[q].mesh, i = list[q].other;
+        const int b = s->fem[k]->index, a = i < s->fem_count ? s->fem[i]->index : mpm[i - s->fem_count].index;
+        if (brunt_pair_of(j->m->pair_map, a, b) < 0) continue;
+        *j->found = (brunt_overlap){.a = a, .b = b, .wall = -1};
+        status = i < s->fem_count ? meshes_overlap(j, i, k) : points_overlap(j, &mpm[i - s->fem_count], k);
+    }
+    brunt_free(list);
     return status;
 }
 

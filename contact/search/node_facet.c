@@ -129,7 +129,7 @@ static void find_nodes(void *context, int64_t begin, int64_t end, int worker) {
 
 void brunt_node_to_facet_constraint(const brunt_contact_context *m, const facet_candidate *h, const double x[3],
                                     int body, brunt_constraint *constraint) {
-    brunt_pair *pair = &m->pairs[m->pair_of[body * m->body_count + h->body]];
+    brunt_pair *pair = &m->pairs[brunt_pair_of(m->pair_map, body, h->body)];
     memcpy(constraint->x, x, sizeof constraint->x);
     memcpy(constraint->n, h->n, sizeof constraint->n);
     constraint->gap = h->gap;

@@ -150,7 +150,7 @@ static inline double brunt_surface_nodal_area(const brunt_contact_surface *surfa
 typedef struct brunt_contact_context {
     brunt_contact_surface *surface;
     brunt_pair *pairs;
-    const int32_t *pair_of; // [a * body_count + b], -1: the two do not meet
+    const brunt_pair_map *pair_map;
     int body_count;
     double dt, cell; // [s], [m] of the contact grid
     int iterations;  // sweeps, or augury iterations of the paper's form

@@ -37,7 +37,7 @@ static void warn_of_thickness(brunt_world *world, const brunt_fem_body *fem, boo
     bool other = self;
     for (int k = 0; k < world->bodies.fem_count; k++)
         other = other || (world->bodies.fem[k].traits->membrane &&
-                          world->pairs.of[fem->index * world->bodies.count + world->bodies.fem[k].index] >= 0);
+                          brunt_pair_of(&world->pairs.map, fem->index, world->bodies.fem[k].index) >= 0);
     if (self && thick > fem->mean_edge)
         brunt_warn(&world->messages,
                    "bodies.%s: its thickness in contact, %.4g m, is more than its mean edge, %.4g m: elements that are "
@@ -60,7 +60,7 @@ static int check_sheets(brunt_world *world, bool *self, brunt_error *error) {
         bool meets = form == BRUNT_AUGURY_PAPER; // which acts on all
         if (!fem->traits->membrane) continue;
         for (int i = 0; i < n; i++) {
-            const bool pair = world->pairs.of[fem->index * n + i] >= 0;
+            const bool pair = brunt_pair_of(&world->pairs.map, fem->index, i) >= 0;
             const brunt_body *mpm = world->bodies.all[i].mpm;
             meets = meets || pair;
             if (pair && mpm && fem->mean_edge < (1 - 1e-6) * mpm->spacing)
@@ -72,7 +72,7 @@ static int check_sheets(brunt_world *world, bool *self, brunt_error *error) {
         if (world->contact.has_augury && meets && form != BRUNT_AUGURY_AFFINE)
             return brunt_fail(error, BRUNT_BAD_INPUT,
                               "contact.form: affine is wanted where a membrane is in contact, here '%s'", fem->name);
-        self[k] = world->pairs.of[fem->index * n + fem->index] >= 0;
+        self[k] = brunt_pair_of(&world->pairs.map, fem->index, fem->index) >= 0;
         warn_of_thickness(world, fem, self[k]);
     }
     return BRUNT_OK;
@@ -140,8 +140,10 @@ int brunt_surfaces_make(brunt_world *world, const brunt_world_def *def, brunt_er
 int brunt_surfaces_overlap(brunt_world *world, brunt_error *error) {
     const double none[3] = {0};
     brunt_contact_surface *s = &world->contact.surface;
-    brunt_contact_context m = {
-        .surface = s, .pair_of = world->pairs.of, .body_count = world->bodies.count, .walls = world->boundaries.walls};
+    brunt_contact_context m = {.surface = s,
+                               .pair_map = &world->pairs.map,
+                               .body_count = world->bodies.count,
+                               .walls = world->boundaries.walls};
     if (s->fem_count) {
         brunt_surface_bounds(s, world->settings.threads, NULL);
         for (int k = 0; k < s->fem_count; k++) s->active[k] = true;
@@ -213,7 +215,7 @@ brunt_contact_context brunt_contact_context_of(brunt_world *world, double dt, br
     const bool averaged = world->contact.has_augury && world->contact.def.form != BRUNT_AUGURY_AFFINE;
     return (brunt_contact_context){.surface = &world->contact.surface,
                                    .pairs = world->pairs.pair,
-                                   .pair_of = world->pairs.of,
+                                   .pair_map = &world->pairs.map,
                                    .body_count = world->bodies.count,
                                    .dt = dt,
                                    .cell = world->contact.cell,

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "contact/methods/augury.h"
 
 typedef enum blocks_kind { BLOCKS_TETS, BLOCKS_HEXES, BLOCKS_PLANE } blocks_kind;
@@ -24,7 +25,7 @@ typedef struct blocks {
     double (*inverse)[9], *volume, (*lame)[2];
     brunt_contact_surface surface;
     brunt_pair *pairs;
-    int32_t *pair_of;
+    brunt_pair_map pair_map;
     double elastic; // [J] of the last forces
 } blocks;
 
@@ -231,15 +232,13 @@ static inline void blocks_finish(blocks *b, double friction) {
     for (size_t f = 0; f < m; f++)
         for (int k = 0; k < 4 && s->face[f][k] >= 0; k++) s->face_of[s->face_first[s->face[f][k] + 1]++] = (int32_t)f;
     b->pairs = calloc((size_t)(b->count * b->count), sizeof *b->pairs);
-    b->pair_of = calloc((size_t)(b->count * b->count), sizeof *b->pair_of);
     int32_t pair = 0;
-    for (int p = 0; p < b->count; p++)
-        for (int q = 0; q < b->count; q++) b->pair_of[p * b->count + q] = -1;
     for (int p = 0; p < b->count; p++)
         for (int q = p + 1; q < b->count; q++, pair++) {
             b->pairs[pair] = (brunt_pair){.a = p, .b = q, .method = BRUNT_CONTACT_AUGURY, .friction = friction};
-            b->pair_of[p * b->count + q] = b->pair_of[q * b->count + p] = pair;
+            ck_assert_int_eq(brunt_pair_map_add(&b->pair_map, p, q, pair), 0);
         }
+    brunt_pair_map_sort(&b->pair_map);
 }
 
 // Places and velocities to the skin, normals.
@@ -297,7 +296,7 @@ static inline brunt_contact_context blocks_meeting(blocks *b, double dt, double 
     for (int k = 0; k < b->count * b->count; k++) b->pairs[k].last = (brunt_impulse_account){.area = 0};
     return (brunt_contact_context){.surface = &b->surface,
                                    .pairs = b->pairs,
-                                   .pair_of = b->pair_of,
+                                   .pair_map = &b->pair_map,
                                    .body_count = b->count,
                                    .dt = dt,
                                    .cell = cell,
@@ -307,6 +306,7 @@ static inline brunt_contact_context blocks_meeting(blocks *b, double dt, double 
 }
 
 static inline void blocks_free(blocks *b) {
+    brunt_free(b->pair_map.entry);
     brunt_contact_surface *s = &b->surface;
     void *owned[] = {b->x,
                      b->v,
@@ -321,7 +321,6 @@ static inline void blocks_free(blocks *b) {
                      b->volume,
                      b->lame,
                      b->pairs,
-                     b->pair_of,
                      s->face,
                      s->face_body,
                      s->node_range,

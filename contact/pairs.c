@@ -1,0 +1,52 @@
+#include "contact/pairs.h"
+
+#include <stdbool.h>
+#include <stdlib.h>
+
+#include "base/array.h"
+
+static int compare(const brunt_pair_entry *p, int32_t a, int32_t b) {
+    if (p->a != a) return p->a < a ? -1 : 1;
+    return (p->b > b) - (p->b < b);
+}
+
+int32_t brunt_pair_of(const brunt_pair_map *map, int32_t a, int32_t b) {
+    const int32_t first = a < b ? a : b, second = a < b ? b : a;
+    int32_t low = 0, high = map->count;
+    while (low < high) {
+        const int32_t middle = low + (high - low) / 2;
+        const int order = compare(&map->entry[middle], first, second);
+        if (order == 0) return map->entry[middle].pair;
+        if (order < 0)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return a == b || !map->mesh ? -1 : map->usual[map->mesh[a] + map->mesh[b]];
+}
+
+int brunt_pair_map_add(brunt_pair_map *map, int32_t a, int32_t b, int32_t pair) {
+    const size_t count = (size_t)map->count;
+    if (BRUNT_RESERVE(map->entry, count + 1, count)) return -1;
+    const bool turned = a > b;
+    map->entry[count] = (brunt_pair_entry){turned ? b : a, turned ? a : b, pair, map->count};
+    map->count++;
+    return 0;
+}
+
+static int compare_entries(const void *left, const void *right) {
+    const brunt_pair_entry *p = left, *q = right;
+    const int order = compare(p, q->a, q->b);
+    return order ? order : (p->added > q->added) - (p->added < q->added);
+}
+
+void brunt_pair_map_sort(brunt_pair_map *map) {
+    if (!map->count) return;
+    qsort(map->entry, (size_t)map->count, sizeof *map->entry, compare_entries);
+    int32_t kept = 0;
+    for (int32_t i = 0; i < map->count; i++) {
+        const bool last = i + 1 == map->count || compare(&map->entry[i], map->entry[i + 1].a, map->entry[i + 1].b);
+        if (last) map->entry[kept++] = map->entry[i];
+    }
+    map->count = kept;
+}

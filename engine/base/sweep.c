@@ -1,0 +1,69 @@
+#include "base/sweep.h"
+
+#include <stdbool.h>
+#include <stdlib.h>
+
+#include "base/array.h"
+#include "base/memory.h"
+
+typedef struct start {
+    double low;
+    int32_t box;
+} start;
+
+static int compare_starts(const void *left, const void *right) {
+    const start *a = left, *b = right;
+    if (a->low != b->low) return a->low < b->low ? -1 : 1;
+    return (a->box > b->box) - (a->box < b->box);
+}
+
+static int compare_pairs(const void *left, const void *right) {
+    const brunt_box_pair *a = left, *b = right;
+    if (a->a != b->a) return a->a < b->a ? -1 : 1;
+    return (a->b > b->b) - (a->b < b->b);
+}
+
+static bool share(const brunt_box *a, const brunt_box *b) {
+    for (int k = 0; k < 3; k++)
+        if (!(a->low[k] <= b->high[k] && b->low[k] <= a->high[k])) return false;
+    return true;
+}
+
+// The axis along which most boxes are apart: the one with the greatest extent of their lower ends.
+static int widest_axis(const brunt_box *boxes, int32_t count) {
+    int widest = 0;
+    double most = -1;
+    for (int k = 0; k < 3; k++) {
+        double low = 1e300, high = -1e300;
+        for (int32_t i = 0; i < count; i++) {
+            if (boxes[i].low[k] < low && boxes[i].low[k] > -1e300) low = boxes[i].low[k];
+            if (boxes[i].low[k] > high && boxes[i].low[k] < 1e300) high = boxes[i].low[k];
+        }
+        if (high - low > most) most = high - low, widest = k;
+    }
+    return widest;
+}
+
+int64_t brunt_sweep(const brunt_box *boxes, int32_t first, int32_t count, brunt_box_pair **pairs) {
+    start *order = brunt_alloc(((size_t)count + 1) * sizeof *order);
+    brunt_box_pair *list = NULL;
+    size_t capacity = 0;
+    int64_t found = 0;
+    *pairs = NULL;
+    if (!order) return -1;
+    const int axis = widest_axis(boxes, count);
+    for (int32_t i = 0; i < count; i++) order[i] = (start){boxes[i].low[axis], i};
+    qsort(order, (size_t)count, sizeof *order, compare_starts);
+    bool failed = false;
+    for (int32_t i = 0; i < count && !failed; i++)
+        for (int32_t k = i + 1; k < count && !failed && order[k].low <= boxes[order[i].box].high[axis]; k++) {
+            const int32_t p = order[i].box, q = order[k].box;
+            if ((p >= first && q >= first) || !share(&boxes[p], &boxes[q])) continue;
+            failed = BRUNT_RESERVE_IN(list, capacity, (size_t)found + 1, (size_t)found);
+            if (!failed) list[found++] = p < q ? (brunt_box_pair){p, q} : (brunt_box_pair){q, p};
+        }
+    brunt_free(order);
+    *pairs = list;
+    if (found) qsort(list, (size_t)found, sizeof *list, compare_pairs);
+    return failed ? -1 : found;
+}

@@ -1,0 +1,16 @@
+// Which boxes share something, by sorting them along an axis and sweeping over it.
+#pragma once
+
+#include <stdint.h>
+
+typedef struct brunt_box {
+    double low[3], high[3]; // closed; infinite where there is no end
+} brunt_box;
+
+typedef struct brunt_box_pair {
+    int32_t a, b; // a < b
+} brunt_box_pair;
+
+// Pairs of boxes that share a point, of which at least one is among the first `first`, ascending. `pairs` is the
+// caller's to free. Their count, or -1: out of memory.
+int64_t brunt_sweep(const brunt_box *boxes, int32_t first, int32_t count, brunt_box_pair **pairs);

@@ -1,0 +1,89 @@
+// Bodies of finite elements from their definitions.
+#include <math.h>
+#include <string.h>
+
+#include "base/error.h"
+#include "base/memory.h"
+#include "world/create.h"
+
+// Nodes that no element uses are left out: the others are numbered without gaps, in the mesh's order.
+static int close_ranks(brunt_fem_body *fem, int32_t mesh_nodes) {
+    if (fem->node_count == mesh_nodes) return 0;
+    int32_t *rank = brunt_alloc((size_t)(mesh_nodes + 1) * sizeof *rank), next = 0;
+    if (!rank) return -1;
+    for (int32_t n = 0; n < fem->node_count; n++) rank[fem->node_id[n]] = 1;
+    for (int32_t i = 0; i < mesh_nodes; i++)
+        if (rank[i]) rank[i] = next++;
+    for (int32_t n = 0; n < fem->node_count; n++) fem->node_id[n] = rank[fem->node_id[n]];
+    brunt_free(rank);
+    return 0;
+}
+
+int brunt_make_elements(brunt_world *world, const brunt_world_def *def, const brunt_body_def *from, int index,
+                        brunt_error *error) {
+    brunt_fem_body *fem = &world->bodies.fem[world->bodies.fem_count];
+    brunt_mesh_report *report = &world->bodies.mesh_reports[world->bodies.fem_count++];
+    world->bodies.all[index] = (brunt_body_ref){.ops = &brunt_mesh_ops, .fem = fem};
+    brunt_mesh made = {0};
+    brunt_material material;
+    const bool sheet = from->method == BRUNT_MEMBRANE;
+    int status = BRUNT_OK;
+    if (sheet && !(from->thickness > 0 && isfinite(from->thickness)))
+        REFUSE("bodies.%s.thickness: %g m is not a positive length", from->name, from->thickness);
+    if (sheet &&
+        !(isnan(from->contact_thickness) || (from->contact_thickness >= 0 && isfinite(from->contact_thickness))))
+        REFUSE("bodies.%s.contact_thickness: %g m is negative", from->name, from->contact_thickness);
+    if (!(from->damping >= 0) || !isfinite(from->damping))
+        REFUSE("bodies.%s.damping: %g 1/s is not a rate", from->name, from->damping);
+    const bool graded = from->grading[0].count || from->grading[1].count || from->grading[2].count;
+    if (graded && (sheet || from->mesh.node_count || from->shape.kind != BRUNT_BOX))
+        REFUSE("bodies.%s.grading: only the mesh of a box of method fem is graded", from->name);
+    if (!from->mesh.node_count) {
+        if (!(from->size > 0)) REFUSE("bodies.%s.size: %g m is not a positive length", from->name, from->size);
+        status = sheet
+                     ? brunt_mesh_surface(&from->shape, from->element, from->size,
+                                          (const char(*)[BRUNT_NAME_LENGTH])from->faces, from->face_count, &made, error)
+                 : graded ? brunt_mesh_graded(&from->shape, def->dimension, from->element, from->size, from->grading,
+                                              &made, error)
+                          : brunt_mesh_shape(&from->shape, def->dimension, from->element, from->size, &made, error);
+    }
+    const brunt_mesh *mesh = from->mesh.node_count ? &from->mesh : &made;
+    if (!status) status = brunt_mesh_check(mesh, &report->quality, error);
+    if (status && error) {
+        char reason[sizeof error->message];
+        memcpy(reason, error->message, sizeof reason);
+        brunt_fail(error, error->code, "bodies.%s: %.900s", from->name, reason);
+    }
+    if (!status && brunt_element_is_membrane(mesh->kind) != sheet)
+        REFUSE("bodies.%s: elements of kind %s are not for method %s", from->name, brunt_element_name(mesh->kind),
+               sheet ? "membrane" : "fem");
+    const brunt_material_def *law = &def->materials[from->material];
+    if (!status)
+        status = sheet ? brunt_material_make_membrane(law, from->tension_only, &material, error)
+                       : brunt_material_make(law, &material, error);
+    if (!status)
+        status = def->axisymmetric ? brunt_fem_make_axisymmetric(from, &material, mesh, fem, error)
+                                   : brunt_fem_make(from, &material, def->dimension, mesh, fem, error);
+    if (!status && close_ranks(fem, mesh->node_count)) status = brunt_fail(error, BRUNT_FAILED, "out of memory");
+    if (!status) {
+        fem->index = index;
+        report->least_step = fem->least_step;
+        report->added_mass = fem->added_mass, report->scaled_elements = fem->scaled_elements;
+        if (report->quality.duplicate_nodes)
+            brunt_warn(&world->messages, "bodies.%s: %d nodes of the mesh lie on others: the body is not joined there",
+                       from->name, report->quality.duplicate_nodes);
+        if (report->quality.worst_shape < 0.1)
+            brunt_warn(&world->messages, "bodies.%s: element %d is nearly flat (shape %.2g, 1 is regular)", from->name,
+                       report->quality.worst + 1, report->quality.worst_shape);
+    }
+    for (int32_t n = 0; !status && n < fem->node_count; n++) {
+        real *node = brunt_fem_node(fem, n);
+        double x[3], v[3], gradient[3][3];
+        for (int a = 0; a < 3; a++) x[a] = (double)node[a];
+        brunt_start_motion(from, def->dimension, x, v, gradient);
+        for (int a = 0; a < def->dimension; a++) node[BRUNT_FEM_V + a] = (real)v[a];
+        if (def->axisymmetric && fem->held[n]) node[BRUNT_FEM_V] = 0; // on the axis
+    }
+    brunt_mesh_free(&made);
+    return status;
+}

@@ -1,0 +1,20 @@
+// What the files that make a world of its definition share. Private to them.
+#pragma once
+
+#include "world/definitions.h"
+#include "world/world.h"
+
+#define REFUSE(...) return brunt_fail(error, BRUNT_BAD_INPUT, __VA_ARGS__)
+
+// The body of a name among those in order of name, -1: there is none.
+int brunt_find_ordered(const brunt_body_def **order, int count, const char *name);
+int brunt_pairs_make(brunt_world *world, const brunt_world_def *def, const brunt_body_def **order, brunt_error *error);
+void brunt_pairs_free(brunt_pairs *pairs);
+// Planes, regions and the names of groups, before the bodies.
+int brunt_boundaries_make(brunt_world *world, const brunt_world_def *def, const brunt_body_def **order,
+                          brunt_error *error);
+int brunt_bodies_make(brunt_world *world, const brunt_world_def *def, const brunt_body_def **order, brunt_error *error);
+int brunt_make_elements(brunt_world *world, const brunt_world_def *def, const brunt_body_def *from, int index,
+                        brunt_error *error);
+// Velocity at x at the start, and its gradient.
+void brunt_start_motion(const brunt_body_def *def, int dim, const double x[3], double v[3], double gradient[3][3]);

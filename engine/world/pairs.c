@@ -1,0 +1,199 @@
+// Which bodies of a definition may meet, and how.
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/error.h"
+#include "base/memory.h"
+#include "contact/methods/method.h"
+#include "world/create.h"
+
+// Two bodies that a pair is made of: those that a definition names, all where there are few; of many the first two of
+// each kind that none names, which stand for all others.
+typedef struct candidate {
+    int32_t a, b;  // a < b
+    int32_t named; // pair of the definition, -1
+    bool usual;    // stands for all of its kind
+} candidate;
+
+typedef struct maker {
+    brunt_world *world;
+    const brunt_world_def *def;
+    const brunt_body_def **order;
+    bool crowded; // all pairs of one method and friction are one
+    candidate *list;
+    int32_t count;
+} maker;
+
+static int out_of_memory(brunt_error *error) { return brunt_fail(error, BRUNT_FAILED, "out of memory"); }
+
+// In a crowded scene all pairs of one method and friction are one.
+static int find_alike(const brunt_pairs *pairs, const brunt_pair *pair) {
+    for (int p = 0; p < pairs->count; p++)
+        if (pairs->pair[p].method == pair->method && pairs->pair[p].friction == pair->friction) return p;
+    return -1;
+}
+
+// Checks the names of a pair, and makes that of a membrane with itself.
+static int make_self_pair(const maker *m, int q, brunt_error *error) {
+    const brunt_pair_def *def = &m->def->contact.pairs[q];
+    brunt_pairs *pairs = &m->world->pairs;
+    const int n = m->def->body_count, a = brunt_find_ordered(m->order, n, def->a),
+              b = brunt_find_ordered(m->order, n, def->b);
+    if (a < 0 || b < 0) REFUSE("contact.pairs[%d].between: '%s' and '%s' are not two bodies", q, def->a, def->b);
+    if (a != b) return BRUNT_OK;
+    if (m->order[a]->method != BRUNT_MEMBRANE)
+        REFUSE("contact.pairs[%d].between: '%s' is no membrane: no other body can be in contact with itself", q,
+               def->a);
+    if (def->method == BRUNT_CONTACT_NONE) return BRUNT_OK;
+    if (def->method != BRUNT_CONTACT_AUGURY)
+        REFUSE("contact.pairs[%d].method: contact of '%s' with itself is by augury", q, def->a);
+    if (!(def->friction >= 0)) REFUSE("contact.pairs[%d].friction: %g is negative", q, def->friction);
+    for (int p = 0; p < pairs->count; p++)
+        if (pairs->pair[p].a == a) REFUSE("contact.pairs[%d].between: '%s' is listed twice", q, def->a);
+    m->world->contact.has_augury = true;
+    m->world->contact.has_friction = m->world->contact.has_friction || def->friction > 0;
+    if (brunt_pair_map_add(&pairs->map, a, a, pairs->count)) return out_of_memory(error);
+    pairs->pair[pairs->count++] =
+        (brunt_pair){.a = a, .b = a, .method = BRUNT_CONTACT_AUGURY, .friction = def->friction};
+    return BRUNT_OK;
+}
+
+// ------------------------------------------------------------------------------------------ which pairs there are
+
+static int compare_candidates(const void *left, const void *right) {
+    const candidate *p = left, *q = right;
+    if (p->a != q->a) return p->a < q->a ? -1 : 1;
+    if (p->b != q->b) return p->b < q->b ? -1 : 1;
+    return (p->named > q->named) - (p->named < q->named);
+}
+
+static bool is_named(const maker *m, int32_t named, int32_t a, int32_t b) {
+    int32_t low = 0, high = named;
+    while (low < high) {
+        const int32_t middle = low + (high - low) / 2;
+        const candidate *at = &m->list[middle];
+        if (at->a < a || (at->a == a && at->b < b))
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < named && m->list[low].a == a && m->list[low].b == b;
+}
+
+// The first two bodies, in their order, of which `meshes` are meshes and that no pair of the definition names.
+static bool find_usual(const maker *m, int32_t named, int meshes, candidate *found) {
+    const int32_t n = m->def->body_count;
+    const uint8_t *mesh = m->world->pairs.mesh;
+    int32_t last[2] = {-1, -1};
+    for (int32_t i = 0; i < n; i++) last[mesh[i]] = i;
+    for (int32_t i = 0; i < n; i++) {
+        const int other = meshes - mesh[i];
+        if (other < 0 || other > 1) continue;
+        for (int32_t k = i + 1; k <= last[other]; k++) {
+            if (mesh[k] != other || is_named(m, named, i, k)) continue;
+            *found = (candidate){i, k, -1, true};
+            return true;
+        }
+    }
+    return false;
+}
+
+// Pairs that the definition names, the last that does where several name two bodies.
+static int32_t list_named(maker *m) {
+    const int n = m->def->body_count;
+    int32_t kept = 0;
+    for (int32_t q = 0; q < m->def->contact.pair_count; q++) {
+        const int32_t a = brunt_find_ordered(m->order, n, m->def->contact.pairs[q].a),
+                      b = brunt_find_ordered(m->order, n, m->def->contact.pairs[q].b);
+        if (a != b) m->list[m->count++] = (candidate){a < b ? a : b, a < b ? b : a, q, false};
+    }
+    qsort(m->list, (size_t)m->count, sizeof *m->list, compare_candidates);
+    for (int32_t i = 0; i < m->count; i++)
+        if (i + 1 == m->count || m->list[i].a != m->list[i + 1].a || m->list[i].b != m->list[i + 1].b)
+            m->list[kept++] = m->list[i];
+    return m->count = kept;
+}
+
+static void list_candidates(maker *m) {
+    const int32_t named = list_named(m), n = m->def->body_count;
+    if (m->crowded)
+        for (int meshes = 0; meshes <= 2; meshes++) m->count += find_usual(m, named, meshes, &m->list[m->count]);
+    for (int32_t i = 0; !m->crowded && i < n; i++)
+        for (int32_t k = i + 1; k < n; k++)
+            if (!is_named(m, named, i, k)) m->list[m->count++] = (candidate){i, k, -1, false};
+    qsort(m->list, (size_t)m->count, sizeof *m->list, compare_candidates);
+}
+
+// ------------------------------------------------------------------------------------------ what they are
+
+// The method of two bodies as they are made, and what the world has by it.
+static int settle_method(const maker *m, const candidate *c, brunt_pair *pair, brunt_error *error) {
+    const brunt_body_def *a = m->order[c->a], *b = m->order[c->b];
+    brunt_contact *contact = &m->world->contact;
+    const int meshes = (a->method != BRUNT_MPM) + (b->method != BRUNT_MPM);
+    const bool on_grid = pair->method == BRUNT_CONTACT_MULTI_VELOCITY;
+    // Bodies of material points meet at the nodes of the grid that moves them, whatever the method is called.
+    const bool accepted =
+        !meshes || brunt_contact_accepts(pair->method, a->method != BRUNT_MPM, b->method != BRUNT_MPM);
+    if (!accepted && on_grid)
+        REFUSE("contact of '%s' and '%s': multi-velocity needs the grid of a body of material points; use augury "
+               "between meshes",
+               a->name, b->name);
+    if (!accepted)
+        REFUSE("contact of '%s' and '%s': only bodies of material points can be tied", a->name, b->name);
+    if (!meshes) {
+        if (pair->method != BRUNT_CONTACT_TIED) pair->method = BRUNT_CONTACT_MULTI_VELOCITY;
+        contact->has_grid = true;
+    } else if (on_grid)
+        contact->has_grid_surfaces = true;
+    else
+        contact->has_augury = true;
+    if (!(pair->friction >= 0)) REFUSE("contact.friction: %g is negative", pair->friction);
+    contact->has_friction = contact->has_friction || pair->friction > 0;
+    return BRUNT_OK;
+}
+
+static int make_pair(const maker *m, const candidate *c, brunt_error *error) {
+    const brunt_contact_def *def = &m->def->contact;
+    brunt_pairs *pairs = &m->world->pairs;
+    brunt_pair pair = {.a = c->a, .b = c->b, .method = def->method, .friction = def->friction};
+    if (c->named >= 0) pair.method = def->pairs[c->named].method, pair.friction = def->pairs[c->named].friction;
+    int index = -1;
+    if (pair.method != BRUNT_CONTACT_NONE) {
+        int status = settle_method(m, c, &pair, error);
+        if (status) return status;
+        if (m->crowded) pair.a = pair.b = -1;
+        index = m->crowded ? find_alike(pairs, &pair) : -1;
+        if (index < 0) pairs->pair[index = pairs->count++] = pair;
+    }
+    if (c->usual)
+        pairs->map.usual[pairs->mesh[c->a] + pairs->mesh[c->b]] = index;
+    else if (brunt_pair_map_add(&pairs->map, c->a, c->b, index))
+        return out_of_memory(error);
+    return BRUNT_OK;
+}
+
+int brunt_pairs_make(brunt_world *world, const brunt_world_def *def, const brunt_body_def **order, brunt_error *error) {
+    const int64_t n = def->body_count, named = def->contact.pair_count;
+    maker m = {.world = world, .def = def, .order = order, .crowded = n * (n - 1) / 2 > BRUNT_MOST_PAIRS};
+    const size_t most = (size_t)(named + (m.crowded ? 3 : n * (n - 1) / 2) + 1);
+    world->pairs.mesh = brunt_alloc((size_t)n);
+    world->pairs.pair = brunt_alloc((most + (size_t)named) * sizeof *world->pairs.pair);
+    m.list = brunt_alloc(most * sizeof *m.list);
+    int status = world->pairs.mesh && world->pairs.pair && m.list ? BRUNT_OK : out_of_memory(error);
+    for (int i = 0; !status && i < n; i++) world->pairs.mesh[i] = order[i]->method != BRUNT_MPM;
+    world->pairs.map.mesh = world->pairs.mesh;
+    for (int k = 0; k < 3; k++) world->pairs.map.usual[k] = -1;
+    for (int q = 0; !status && q < named; q++) status = make_self_pair(&m, q, error);
+    if (!status) list_candidates(&m);
+    for (int32_t c = 0; !status && c < m.count; c++) status = make_pair(&m, &m.list[c], error);
+    brunt_pair_map_sort(&world->pairs.map);
+    brunt_free(m.list);
+    return status;
+}
+
+void brunt_pairs_free(brunt_pairs *pairs) {
+    brunt_free(pairs->pair);
+    brunt_free(pairs->mesh);
+    brunt_free(pairs->map.entry);
+}

@@ -1,0 +1,136 @@
+// Labels: unit
+//
+// Scenes of thousands of bodies: what is kept of their pairs grows with the bodies, not with their pairs, and those
+// that lie in each other are found among them.
+#include "../support/def_world.h"
+#include "base/sweep.h"
+#include "contact/contact.h"
+#include "world/definitions.h"
+
+// Bodies of a few points and of one element, in turns, side by side and apart.
+static brunt_world_def many(int count) {
+    brunt_world_def def = def_begin(2, 1);
+    brunt_free(def.bodies);
+    def.bodies = brunt_alloc((size_t)count * sizeof *def.bodies);
+    def_material(&def, "neo-hookean", 1000, 1e6, 0.3);
+    def.contact.method = BRUNT_CONTACT_AUGURY;
+    for (int i = 0; i < count; i++) {
+        const double x = 2 * (i % 50), y = 2 * (i / 50);
+        char name[24];
+        snprintf(name, sizeof name, "b%05d", i);
+        brunt_body_def *b = def_box(&def, name, XYZ(x, y), XYZ(x + 1, y + 1));
+        b->method = i % 2 ? BRUNT_FEM : BRUNT_MPM;
+        b->element = BRUNT_QUAD4, b->size = 1;
+    }
+    return def;
+}
+
+// [bytes] that a world of so many bodies takes.
+static double bytes_of(int count) {
+    brunt_world_def def = many(count);
+    const size_t before = brunt_memory_live();
+    brunt_error error;
+    brunt_world *world = brunt_world_create(&def, &error);
+    ck_assert_msg(world != NULL, "%s", error.message);
+    ck_assert_int_eq(brunt_body_count(world), count);
+    ck_assert_int_eq(brunt_pair_count(world), 2); // points with points, and all others
+    const double bytes = (double)(brunt_memory_live() - before);
+    brunt_world_destroy(world);
+    ck_assert_uint_eq(brunt_memory_live(), before);
+    brunt_world_def_free(&def);
+    return bytes;
+}
+
+START_TEST(memory_grows_with_the_bodies) {
+    const double small = bytes_of(500), middle = bytes_of(1000), large = bytes_of(2000);
+    ck_assert_msg(large - middle <= 1.1 * 2 * (middle - small), "500: %g, 1000: %g, 2000: %g bytes", small, middle,
+                  large);
+}
+END_TEST
+
+// Two of two thousand lie in each other: points in a mesh, a mesh in points' shape, points in points, a mesh in a mesh.
+START_TEST(two_that_overlap_are_found) {
+    static const int pair[][2] = {{1230, 1271}, {1271, 1230}, {1230, 1702}, {331, 1801}};
+    brunt_world_def def = many(2000);
+    const int a = pair[_i][0], b = pair[_i][1];
+    memcpy(def.bodies[a].shape.min, def.bodies[b].shape.min, sizeof def.bodies[a].shape.min);
+    memcpy(def.bodies[a].shape.max, def.bodies[b].shape.max, sizeof def.bodies[a].shape.max);
+    for (int k = 0; k < 2; k++) def.bodies[a].shape.min[k] += 0.5, def.bodies[a].shape.max[k] += 0.5;
+    brunt_error error;
+    brunt_world *world = brunt_world_create(&def, &error);
+    ck_assert_ptr_null(world);
+    ck_assert_int_eq(error.code, BRUNT_BAD_INPUT);
+    ck_assert_msg(strstr(error.message, def.bodies[a].name) && strstr(error.message, def.bodies[b].name), "%s",
+                  error.message);
+    def.contact.allow_overlap = true;
+    world = brunt_world_create(&def, &error);
+    ck_assert_msg(world != NULL, "%s", error.message);
+    brunt_world_destroy(world);
+    brunt_world_def_free(&def);
+}
+END_TEST
+
+START_TEST(pairs_are_those_of_their_kind_or_their_own) {
+    const uint8_t mesh[] = {0, 1, 0, 1, 1};
+    brunt_pair_map map = {.mesh = mesh, .usual = {7, 8, -1}};
+    ck_assert_int_eq(brunt_pair_map_add(&map, 3, 1, 5), 0);
+    ck_assert_int_eq(brunt_pair_map_add(&map, 0, 2, 4), 0);
+    ck_assert_int_eq(brunt_pair_map_add(&map, 2, 0, -1), 0); // the last counts
+    ck_assert_int_eq(brunt_pair_map_add(&map, 4, 4, 6), 0);
+    brunt_pair_map_sort(&map);
+    static const int32_t expected[5][5] = {
+        {-1, 8, -1, 8, 8}, {8, -1, 8, 5, -1}, {-1, 8, -1, 8, 8}, {8, 5, 8, -1, -1}, {8, -1, 8, -1, 6}};
+    for (int a = 0; a < 5; a++)
+        for (int b = 0; b < 5; b++)
+            ck_assert_msg(brunt_pair_of(&map, a, b) == expected[a][b], "%d, %d: %d", a, b, brunt_pair_of(&map, a, b));
+    brunt_free(map.entry);
+}
+END_TEST
+
+static double random_number(uint64_t *seed) {
+    *seed = *seed * 6364136223846793005u + 1442695040888963407u;
+    return (double)(*seed >> 33) / 2147483648.0;
+}
+
+// Boxes in a plane or in space, some without end, some that only touch, against all by all.
+START_TEST(a_sweep_finds_what_all_by_all_finds) {
+    enum { COUNT = 120 };
+    uint64_t seed = 11 + (uint64_t)_i;
+    brunt_box box[COUNT];
+    for (int i = 0; i < COUNT; i++)
+        for (int k = 0; k < 3; k++) {
+            const double low = k == 2 && _i % 2 ? 0 : floor(20 * random_number(&seed));
+            box[i].low[k] = low, box[i].high[k] = low + floor(3 * random_number(&seed));
+            if (random_number(&seed) < 0.02) box[i].low[k] = -INFINITY;
+            if (random_number(&seed) < 0.02) box[i].high[k] = INFINITY;
+        }
+    const int first = _i < 4 ? COUNT : COUNT / 3;
+    brunt_box_pair *pairs;
+    const int64_t count = brunt_sweep(box, first, COUNT, &pairs);
+    int64_t found = 0;
+    for (int a = 0; a < first; a++)
+        for (int b = a + 1; b < COUNT; b++) {
+            bool apart = false;
+            for (int k = 0; k < 3; k++)
+                apart = apart || box[a].low[k] > box[b].high[k] || box[b].low[k] > box[a].high[k];
+            if (apart) continue;
+            ck_assert_int_lt(found, count);
+            ck_assert_int_eq(pairs[found].a, a);
+            ck_assert_int_eq(pairs[found++].b, b);
+        }
+    ck_assert_int_eq(found, count);
+    brunt_free(pairs);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("many bodies");
+    TCase *all = tcase_create("all");
+    tcase_set_timeout(all, 120);
+    tcase_add_test(all, memory_grows_with_the_bodies);
+    tcase_add_loop_test(all, two_that_overlap_are_found, 0, 4);
+    tcase_add_test(all, pairs_are_those_of_their_kind_or_their_own);
+    tcase_add_loop_test(all, a_sweep_finds_what_all_by_all_finds, 0, 8);
+    suite_add_tcase(suite, all);
+    return suite_main(suite);
+}
