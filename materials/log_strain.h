@@ -3,13 +3,33 @@
 // Its principal values e_i sum to 0, so that with F scaled to volume 1 tr C + tr C^-1 - 6 = sum 2 (cosh 2 e_i - 1),
 // which is at least 4 e:e: (tr C + tr C^-1 - 6) / 6 is a bound of the square, close for small strains, that needs no
 // eigenvalues. Only points past the bound are worth those.
+//
+// As tr C^-1 is at most (tr C)^2 / 3, with x = tr C at volume 1 the bound is at most (x + x^2 / 3 - 6) / 6. So the
+// strain is below a limit where |F|^6 < X^3 J^2, X = 3/2 (sqrt(9 + 8 limit^2) - 1): no root, a fraction of the work of
+// the bound, and nearly all points of nearly all steps are that far from their limit.
 #pragma once
 
 #include <math.h>
 
 #include "base/simd_math.h"
 
-// F with rows one after the other, 3 x 3. Upper bound of the square of the strain; J > 0 is wanted.
+// X^3 of a limit, less what rounding may do.
+static inline real log_strain_cube(double limit) {
+    const double X = 1.5 * (sqrt(9 + 8 * limit * limit) - 1);
+    return (real)(X * X * X * (1 - (sizeof(real) == 4 ? 1e-5 : 1e-13)));
+}
+
+// F with rows one after the other, 3 x 3. Negative where the strain is below the limit that `cube` is of; not where it
+// may not be.
+BRUNT_INLINE lanes log_strain_excess(const lanes F[9], real cube) {
+    const lanes J =
+        F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) + F[2] * (F[3] * F[7] - F[4] * F[6]);
+    lanes square = F[0] * F[0];
+    for (int c = 1; c < 9; c++) square += F[c] * F[c];
+    return square * square * square - J * J * cube;
+}
+
+// Upper bound of the square of the strain; J > 0 is wanted.
 BRUNT_INLINE lanes log_strain_bound(const lanes F[9]) {
     lanes C[6], J = F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) +
                     F[2] * (F[3] * F[7] - F[4] * F[6]);

@@ -58,16 +58,29 @@ static void mark_strained(const job *j, int64_t s) {
     }
 }
 
+// Whether any point from `begin` to `end` may be strained to the limit.
+static bool may_be_strained(const job *j, int64_t begin, int64_t end) {
+    const real cube = log_strain_cube(j->strain);
+    lane_mask far = lanes_set(-1) < 0;
+    for (int64_t s = begin; s < end; s += BRUNT_LANES) {
+        lanes F[9];
+        deformation(&j->body->particles, s, F);
+        far &= log_strain_excess(F, cube) < 0; // not of what is no number
+    }
+    return lanes_any(~far);
+}
+
 static void mark_block(const job *j, int32_t b) {
     brunt_body *body = j->body;
     brunt_particles *p = &body->particles;
     const brunt_block *block = &body->grid.blocks[b];
     brunt_block_report *report = &body->report[b];
-    const bool failed = j->damage && report->failed, strained = isfinite(j->strain);
+    const int64_t end = block->first + (block->count + BRUNT_LANES - 1) / BRUNT_LANES * BRUNT_LANES;
+    const bool failed = j->damage && report->failed;
+    const bool strained = isfinite(j->strain) && may_be_strained(j, block->first, end);
     const real *volume = brunt_field(p, BRUNT_FIELD_reference_volume)[0];
     report->leaving = 0;
     if (!failed && !strained && !report->turned) return;
-    const int64_t end = block->first + (block->count + BRUNT_LANES - 1) / BRUNT_LANES * BRUNT_LANES;
     for (int64_t s = block->first; s < end; s++) {
         if (!report->turned) p->order[s] = BRUNT_STAYS; // else the gather has marked them
         if (failed && p->order[s] == BRUNT_STAYS && j->damage[s] >= 1) p->order[s] = BRUNT_LEAVES_FAILED;

@@ -12,6 +12,7 @@ typedef struct brunt_boundaries {
     brunt_symmetry_plane mirrors[16];
     int mirror_count;
     bool has_walls, has_conditions, has_friction; // planes that push, conditions at grid nodes
+    bool has_detonations;                         // explosives are lit
     brunt_node_sets sets;
     brunt_damping damping;
 } brunt_boundaries;

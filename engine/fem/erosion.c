@@ -119,9 +119,22 @@ static void deformation(brunt_fem_body *body, int32_t slot, lanes F[9]) {
         for (int c = 0; c < dim; c++) F[3 * r + c] = lanes_load(field[r * dim + c] + slot);
 }
 
+// Whether any element from `begin` to `end` may be strained to the limit.
+static bool may_be_strained(brunt_fem_body *body, int32_t begin, int32_t end, double limit) {
+    const real cube = log_strain_cube(limit);
+    lane_mask far = lanes_set(-1) < 0;
+    for (int32_t s = begin; s < end; s += BRUNT_LANES) {
+        lanes F[9];
+        deformation(body, s, F);
+        far &= log_strain_excess(F, cube) < 0; // not of what is no number
+    }
+    return lanes_any(~far);
+}
+
 void brunt_fem_mark_strained(brunt_fem_body *body, int32_t b, double limit) {
     const brunt_fem_block *block = &body->block[b];
     const int32_t end = block->first + block->count;
+    if (!may_be_strained(body, block->first, end, limit)) return;
     for (int32_t s = block->first; s < end; s += BRUNT_LANES) {
         lanes F[9];
         deformation(body, s, F);

@@ -285,6 +285,7 @@ static int make_body(const brunt_body_def *def, const brunt_material *material, 
     memcpy(body->name, def->name, sizeof body->name);
     const double standard = def->hourglass == BRUNT_HOURGLASS_VISCOUS ? 0.1 : 0.05;
     body->hourglass_coefficient = (real)(isnan(def->hourglass_coefficient) ? standard : def->hourglass_coefficient);
+    if (!(body->hourglass_coefficient > 0)) body->hourglass = BRUNT_HOURGLASS_STIFFNESS; // no dampers, nor their rates
     if (!body->element)
         return brunt_fail(error, BRUNT_BAD_INPUT, "bodies.%s: %s elements do not turn about an axis: tri3 and quad4 do",
                           def->name, brunt_element_name(mesh->kind));
@@ -303,7 +304,7 @@ static int make_body(const brunt_body_def *def, const brunt_material *material, 
     const element_needs needs = {.mass_scaling = def->mass_scaling > 0,
                                  .membrane = body->traits->membrane,
                                  .viscous_hourglass =
-                                     body->element->hourglass_modes && def->hourglass == BRUNT_HOURGLASS_VISCOUS};
+                                     brunt_fem_has_hourglass(body) && body->hourglass == BRUNT_HOURGLASS_VISCOUS};
     list_fields(body, &needs);
     double *mass = brunt_alloc((size_t)mesh->node_count * sizeof *mass);
     int32_t *number = brunt_alloc((size_t)mesh->node_count * sizeof *number);

@@ -177,6 +177,10 @@ void brunt_fem_elements_get(const brunt_fem_body *body, int64_t *out);
 int brunt_fem_elements_set(brunt_fem_body *body, const int64_t *in);
 // Brings `rank` up to date.
 void brunt_fem_ranks(brunt_fem_body *body);
+// Something resists the zero-energy modes of the body's elements.
+static inline bool brunt_fem_has_hourglass(const brunt_fem_body *body) {
+    return body->element->hourglass_modes && body->hourglass_coefficient > 0;
+}
 // The node has left with its last element.
 static inline bool brunt_fem_removed(const brunt_fem_body *body, int32_t node) {
     return body->bonds && !body->bonds[node] &&

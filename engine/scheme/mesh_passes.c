@@ -61,7 +61,7 @@ static void kick_nodes(void *context, int64_t begin, int64_t end, int worker) {
         const brunt_fem_task *task = &j->world->bodies.tasks.node[t];
         brunt_fem_body *fem = &j->world->bodies.fem[task->fem];
         brunt_fem_kick(fem, task->begin, task->end, j->dt, j->gravity, &j->world->bodies.tasks.sums[t]);
-        if (fem->bonds) keep_still(fem, task->begin, task->end);
+        if (fem->bonds && fem->element_count < fem->mesh_elements) keep_still(fem, task->begin, task->end);
     }
 }
 

@@ -18,7 +18,34 @@ static const brunt_model *find_model(const brunt_world *world, size_t flag) {
 
 static bool has_hourglass(const brunt_world *world) {
     for (int k = 0; k < world->bodies.fem_count; k++)
-        if (world->bodies.fem[k].element->hourglass_modes) return true;
+        if (brunt_fem_has_hourglass(&world->bodies.fem[k])) return true;
+    return false;
+}
+
+static bool has_total_lagrangian(const brunt_world *world) {
+    for (int i = 0; i < world->bodies.mpm_count; i++)
+        if (brunt_total_lagrangian(&world->bodies.mpm[i].particles)) return true;
+    return false;
+}
+
+static bool has_tension_only(const brunt_world *world) {
+    for (int k = 0; k < world->bodies.fem_count; k++)
+        if (world->bodies.fem[k].material.tension_only) return true;
+    return false;
+}
+
+static bool has_softening(const brunt_world *world) {
+    for (int i = 0; i < world->bodies.count; i++) {
+        const brunt_body_ref body = world->bodies.all[i];
+        const brunt_material *material = body.fem ? &body.fem->material : &body.mpm->material;
+        if (material->model[BRUNT_FAILURE] && material->failure_action == BRUNT_FAILURE_SOFTEN) return true;
+    }
+    return false;
+}
+
+static bool has_tied(const brunt_world *world) {
+    for (int p = 0; p < world->pairs.count; p++)
+        if (world->pairs.pair[p].method == BRUNT_CONTACT_TIED) return true;
     return false;
 }
 
@@ -45,6 +72,8 @@ static bool has_mirrors(const brunt_world *world) {
     X(affine, world->settings.transfer == BRUNT_APIC && world->bodies.mpm_count > 0, "grid.transfer")                  \
     X(contact, world->contact.has_grid || world->contact.has_augury || world->contact.has_grid_surfaces,               \
       "contact.method")                                                                                                \
+    X(tied, has_tied(world), "contact.pairs: method tied")                                                             \
+    X(self_contact, world->contact.has_self, "contact.pairs: a body with itself")                                      \
     X(friction, world->contact.has_friction || world->boundaries.has_friction, "friction of contact or boundaries")    \
     X(surfaces, world->contact.has_surfaces, "contact of meshes, or planes they may meet")                             \
     X(hourglass, has_hourglass(world), "bodies: elements with hourglass modes")                                        \
@@ -53,11 +82,15 @@ static bool has_mirrors(const brunt_world *world) {
     X(gas, world->boundaries.sets.has_gas, "boundaries: gas")                                                          \
     X(damping, world->boundaries.damping.active, "bodies: damping")                                                    \
     X(membranes, has_sheets(world), "bodies: method membrane")                                                         \
+    X(tension_only, has_tension_only(world), "bodies: tension_only")                                                   \
+    X(total_lagrangian, has_total_lagrangian(world), "bodies: lagrangian total")                                       \
     X(walls, world->boundaries.has_walls, "boundaries: condition separate")                                            \
     X(axisymmetric, world->settings.axisymmetric, "axisymmetric")                                                      \
     X(mirrors, has_mirrors(world), "boundaries: condition symmetry or slip")                                           \
     X(conditions, world->boundaries.has_conditions, "boundaries: stick, oblique slip, region")                         \
     X(erosion, world->erosion.active, "bodies: erosion, materials: failure")                                           \
+    X(softening, has_softening(world), "materials: failure.action soften")                                             \
+    X(detonation, world->boundaries.has_detonations, "detonations")                                                    \
     X(gravity, world->settings.has_gravity, "loads.gravity")
 
 #define BRUNT_MODEL_EFFECTS(X)                                                                                         \

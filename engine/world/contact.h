@@ -14,6 +14,7 @@ typedef struct brunt_contact {
     bool has_grid_surfaces; // multi-velocity contact of meshes with material points
     bool has_augury;        // meshes meet each other, or particles, by their facets
     bool has_surfaces;      // surfaces of meshes meet something: each other, particles, planes
+    bool has_self;          // a membrane meets itself
     bool has_friction;
     brunt_contact_surface surface;
     brunt_constraint_set constraints;

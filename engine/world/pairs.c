@@ -50,7 +50,7 @@ static int make_self_pair(const maker *m, int q, brunt_error *error) {
     if (!(def->friction >= 0)) REFUSE("contact.pairs[%d].friction: %g is negative", q, def->friction);
     for (int p = 0; p < pairs->count; p++)
         if (pairs->pair[p].a == a) REFUSE("contact.pairs[%d].between: '%s' is listed twice", q, def->a);
-    m->world->contact.has_augury = true;
+    m->world->contact.has_augury = m->world->contact.has_self = true;
     m->world->contact.has_friction = m->world->contact.has_friction || def->friction > 0;
     if (brunt_pair_map_add(&pairs->map, a, a, pairs->count)) return out_of_memory(error);
     pairs->pair[pairs->count++] =

@@ -182,6 +182,7 @@ brunt_world *brunt_world_create(const brunt_world_def *def, brunt_error *error) 
     if (!status) status = brunt_pairs_make(world, def, order, error);
     if (!status) status = brunt_bodies_make(world, def, order, error);
     if (!status) status = check_symmetry(world, error);
+    world->boundaries.has_detonations = def->detonation_count > 0;
     if (!status) status = brunt_ignition_make(&world->bodies, def, &world->messages, error);
     if (!status) status = brunt_erosion_make(&world->erosion, &world->bodies, def, error);
     if (!status)

@@ -10,7 +10,7 @@ typedef struct cost {
     double instructions;
 } cost;
 
-static cost costs[16];
+static cost costs[32];
 static int cost_count;
 
 static double of(const char *dress) {
@@ -27,7 +27,7 @@ START_TEST(effects_that_are_off_cost_nothing) {
     FILE *pipe = popen(command, "r");
     ck_assert_ptr_nonnull(pipe);
     cost c;
-    while (cost_count < 16 && fscanf(pipe, "%15s %lf", c.dress, &c.instructions) == 2) {
+    while (cost_count < 32 && fscanf(pipe, "%15s %lf", c.dress, &c.instructions) == 2) {
         printf("  %-8s %.0f instructions a step\n", c.dress, c.instructions);
         costs[cost_count++] = c;
     }
@@ -46,6 +46,19 @@ START_TEST(effects_that_are_off_cost_nothing) {
     ck_assert_double_ge(of("options") / plain, 0.995);
     // A wall out of reach is asked about once a block.
     ck_assert_double_le(of("wall") / plain, 1.005);
+    // Bodies that are too far away to meet: points, and points and a mesh.
+    ck_assert_double_le(of("far") / of("apart"), 1.005);
+    ck_assert_double_le(of("hex8_mixed_far") / of("hex8_mixed"), 1.005);
+    // Of meshes, whose step is a seventh of that of points, what asks once a step whether anything is near.
+    ck_assert_double_le(of("hex8_wall") / of("hex8"), 1.025);
+    ck_assert_double_le(of("hex8_far") / of("hex8_apart"), 1.025);
+    // An erosion limit that is never reached: nine numbers a point and a determinant.
+    ck_assert_double_le(of("erode") / plain, 1.02);
+    ck_assert_double_le(of("hex8_erode") / of("hex8"), 1.032);
+    // A coefficient of 0: no dampers of hourglass modes.
+    ck_assert_double_le(of("hex8_soft") / of("hex8"), 1.002);
+    ck_assert_double_le(of("hex8_inviscid") / of("hex8"), 1.002);
+    ck_assert_double_ge(of("hex8_viscous") / of("hex8"), 1.1);
     // What is on is seen: or else the counts would show nothing.
     ck_assert_double_ge(of("gravity") / plain, 1.005);
     ck_assert_double_ge(of("plastic") / plain, 1.01);

@@ -69,6 +69,36 @@ int main(int count, char **words) {
     } else if (!strcmp(dress, "met")) {
         def.body_count = 2;
         def.contact.method = BRUNT_CONTACT_MULTI_VELOCITY;
+    } else if (!strcmp(dress, "apart") || !strcmp(dress, "far")) { // two that never meet, and may or may not
+        bodies[1] = cube("b", 50);
+        def.body_count = 2;
+        if (!strcmp(dress, "far")) def.contact.method = BRUNT_CONTACT_MULTI_VELOCITY;
+    } else if (!strcmp(dress, "erode")) { // a limit that is never reached
+        bodies[0].erosion.strain = 1e9;
+    } else if (!strncmp(dress, "hex8_", 5)) { // the same of meshes
+        for (int b = 0; b < 2; b++) bodies[b].method = BRUNT_FEM, bodies[b].size = 0.08;
+        const char *what = dress + 5;
+        if (!strcmp(what, "wall")) {
+            def.planes = &plane, def.plane_count = 1;
+        } else if (!strcmp(what, "apart") || !strcmp(what, "far")) {
+            bodies[1] = cube("b", 50);
+            bodies[1].method = BRUNT_FEM, bodies[1].size = 0.08;
+            def.body_count = 2;
+            if (!strcmp(what, "far")) def.contact.method = BRUNT_CONTACT_AUGURY;
+        } else if (!strcmp(what, "mixed") || !strcmp(what, "mixed_far")) { // a mesh and points
+            bodies[1] = cube("b", 50);
+            def.body_count = 2;
+            if (!strcmp(what, "mixed_far")) def.contact.method = BRUNT_CONTACT_AUGURY;
+        } else if (!strcmp(what, "erode")) {
+            bodies[0].erosion.strain = 1e9;
+        } else if (!strcmp(what, "soft")) { // no springs against hourglass modes
+            bodies[0].hourglass_coefficient = 0;
+        } else if (!strcmp(what, "viscous") || !strcmp(what, "inviscid")) {
+            bodies[0].hourglass = BRUNT_HOURGLASS_VISCOUS;
+            if (!strcmp(what, "inviscid")) bodies[0].hourglass_coefficient = 0;
+        } else {
+            return 64;
+        }
     } else {
         return 64;
     }

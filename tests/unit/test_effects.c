@@ -1,0 +1,213 @@
+// Labels: unit
+// Every effect that a scene can ask for is said by the plan: by a scene that asks for it, by no other; with a
+// coefficient of 0 it is off. And the table of passes is one: names, units, parts.
+#include <check.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "brunt.h"
+#include "scheme/scheme.h"
+
+// What a scene is made of: two bodies apart, of material points, or of meshes, one of them a membrane.
+typedef struct scene {
+    brunt_material_def materials[2];
+    brunt_body_def bodies[2];
+    brunt_plane_def plane;
+    brunt_pair_def pair;
+    brunt_detonation_def detonation;
+    brunt_world_def def;
+} scene;
+
+static void make_points(scene *s) {
+    *s = (scene){.plane = brunt_plane_def_default(), .def = brunt_world_def_default()};
+    for (int i = 0; i < 2; i++) {
+        s->materials[i] = (brunt_material_def){
+            .name = "rubber", .density = 1000, .strength = "neo-hookean", .strength_parameters = {1e6, 0.3}};
+        brunt_body_def *b = &s->bodies[i];
+        *b = brunt_body_def_default();
+        snprintf(b->name, sizeof b->name, "%c", 'a' + i);
+        b->shape.kind = BRUNT_BOX;
+        for (int a = 0; a < 3; a++) b->shape.min[a] = a ? 0 : 2 * i, b->shape.max[a] = b->shape.min[a] + 0.4;
+        b->size = 0.2;
+    }
+    snprintf(s->materials[1].name, sizeof s->materials[1].name, "other");
+    s->def.cell = 0.1, s->def.end = 1;
+    s->def.contact.method = BRUNT_CONTACT_NONE;
+    s->def.transfer = BRUNT_PIC;
+    s->def.materials = s->materials, s->def.material_count = 2;
+    s->def.bodies = s->bodies, s->def.body_count = 2;
+    s->plane.normal[1] = 1, s->plane.point[1] = -1;
+    snprintf(s->pair.a, sizeof s->pair.a, "a");
+    snprintf(s->pair.b, sizeof s->pair.b, "b");
+}
+
+static void make_mesh(scene *s) {
+    make_points(s);
+    for (int i = 0; i < 2; i++) s->bodies[i].method = BRUNT_FEM, s->bodies[i].element = BRUNT_TET4;
+}
+
+static void make_membrane(scene *s) {
+    make_mesh(s);
+    s->bodies[0].method = BRUNT_MEMBRANE, s->bodies[0].element = BRUNT_MEMBRANE_TRI3;
+    s->bodies[0].thickness = 1e-3;
+}
+
+static void none(scene *s) { (void)s; }
+static void apic(scene *s) { s->def.transfer = BRUNT_APIC; }
+static void gravity(scene *s) { s->def.gravity[1] = -1; }
+static void no_gravity(scene *s) { s->def.gravity_ramp = 1; }
+static void total(scene *s) { s->bodies[0].total_lagrangian = true; }
+static void on_grid(scene *s) { s->def.contact.method = BRUNT_CONTACT_MULTI_VELOCITY; }
+static void rub(scene *s) { on_grid(s), s->def.contact.friction = 0.3; }
+static void no_friction(scene *s) { on_grid(s), s->def.contact.friction = 0; }
+static void augury(scene *s) { s->def.contact.method = BRUNT_CONTACT_AUGURY; }
+static void add_pair(scene *s) { s->def.contact.pairs = &s->pair, s->def.contact.pair_count = 1; }
+static void tie(scene *s) { add_pair(s), s->pair.method = BRUNT_CONTACT_TIED; }
+static void apart(scene *s) { add_pair(s), s->pair.method = BRUNT_CONTACT_NONE; }
+static void self(scene *s) {
+    add_pair(s);
+    s->pair.method = BRUNT_CONTACT_AUGURY;
+    snprintf(s->pair.b, sizeof s->pair.b, "a");
+}
+static void add_plane(scene *s) { s->def.planes = &s->plane, s->def.plane_count = 1; }
+static void stick(scene *s) { add_plane(s), s->plane.condition = BRUNT_STICK; }
+static void mirror(scene *s) { add_plane(s), s->plane.condition = BRUNT_SYMMETRY; }
+static void rough(scene *s) { add_plane(s), s->plane.friction = 0.3; }
+static void hexes(scene *s) { s->bodies[0].element = BRUNT_HEX8; }
+static void no_springs(scene *s) { hexes(s), s->bodies[0].hourglass_coefficient = 0; }
+static void no_dampers(scene *s) { no_springs(s), s->bodies[0].hourglass = BRUNT_HOURGLASS_VISCOUS; }
+static void drag(scene *s) { s->bodies[0].damping = 3; }
+static void tension_only(scene *s) { s->bodies[0].tension_only = true; }
+static void strain(scene *s) { s->bodies[0].erosion.strain = 1; }
+static void plastic(scene *s) {
+    snprintf(s->materials[0].strength, sizeof s->materials[0].strength, "von-mises");
+    s->materials[0].strength_parameters[2] = 1e5;
+}
+static void break_off(scene *s) {
+    plastic(s);
+    snprintf(s->materials[0].failure, sizeof s->materials[0].failure, "johnson-cook-damage");
+    const double parameters[] = {0.5, 0, 0, 0, 0, 1, INFINITY, 293.15, 1, INFINITY};
+    memcpy(s->materials[0].failure_parameters, parameters, sizeof parameters);
+    s->materials[0].failure_action = BRUNT_FAILURE_ERODE;
+}
+static void soften(scene *s) {
+    break_off(s);
+    s->materials[0].failure_action = BRUNT_FAILURE_SOFTEN;
+    snprintf(s->materials[0].eos, sizeof s->materials[0].eos, "polynomial");
+    s->materials[0].eos_parameters[1] = 1e6, s->materials[0].eos_parameters[8] = INFINITY;
+}
+
+typedef struct asked {
+    const char *name;
+    void (*make)(scene *s), (*ask)(scene *s);
+    const char *effects; // in their order
+} asked;
+
+static const asked list[] = {
+    {"points", make_points, none, ""},
+    {"affine", make_points, apic, "affine "},
+    {"gravity", make_points, gravity, "gravity "},
+    {"gravity of 0", make_points, no_gravity, ""},
+    {"total Lagrangian", make_points, total, "total_lagrangian "},
+    {"contact of points", make_points, on_grid, "contact "},
+    {"friction", make_points, rub, "contact friction "},
+    {"friction of 0", make_points, no_friction, "contact "},
+    {"tied", make_points, tie, "contact tied "},
+    {"a pair without contact", make_points, apart, ""},
+    {"plane", make_points, add_plane, "walls "},
+    {"rough plane", make_points, rough, "friction walls "},
+    {"stick", make_points, stick, "conditions "},
+    {"symmetry", make_points, mirror, "mirrors "},
+    {"strain", make_points, strain, "erosion "},
+    {"plasticity", make_points, plastic, "plasticity "},
+    {"failure", make_points, break_off, "erosion plasticity damage "},
+    {"softening", make_points, soften, "softening plasticity equation_of_state damage "},
+    {"mesh", make_mesh, none, "elements "},
+    {"contact of meshes", make_mesh, augury, "elements contact surfaces "},
+    {"hourglass", make_mesh, hexes, "elements hourglass "},
+    {"hourglass of 0", make_mesh, no_springs, "elements "},
+    {"viscous hourglass of 0", make_mesh, no_dampers, "elements "},
+    {"damping", make_mesh, drag, "elements damping "},
+    {"strain of meshes", make_mesh, strain, "elements erosion "},
+    {"softening of meshes", make_mesh, soften, "elements softening plasticity equation_of_state damage "},
+    {"membrane", make_membrane, none, "elements membranes "},
+    {"tension only", make_membrane, tension_only, "elements membranes tension_only "},
+    {"self-contact", make_membrane, self, "elements contact self_contact surfaces membranes "},
+};
+
+START_TEST(plan_says_what_was_asked_for) {
+    const asked *a = &list[_i];
+    scene *s = calloc(1, sizeof *s);
+    ck_assert_ptr_nonnull(s);
+    a->make(s);
+    a->ask(s);
+    brunt_error error;
+    brunt_world *world = brunt_world_create(&s->def, &error);
+    ck_assert_msg(world != NULL, "%s: %s", a->name, error.message);
+    char said[512] = "";
+    for (int32_t e = 0; e < brunt_effect_count(world); e++) {
+        const brunt_effect effect = brunt_world_effect(world, e);
+        ck_assert_int_eq(effect.on, effect.because[0] != 0);
+        if (effect.on) strcat(strcat(said, effect.name), " ");
+    }
+    ck_assert_msg(!strcmp(said, a->effects), "%s: %s", a->name, said);
+    for (int32_t k = 0; k < brunt_array_count(world); k++) // an effect that is off has no array
+        ck_assert(strstr(a->effects, "hourglass") || !strstr(brunt_world_array(world, k).name, "hourglass"));
+    ck_assert_msg(!brunt_world_step(world, INFINITY, &error), "%s: %s", a->name, error.message);
+    for (int32_t p = 0; p < brunt_pass_count(world); p++) ck_assert_int_gt(brunt_world_pass(world, p).calls, 0);
+    brunt_world_destroy(world);
+    free(s);
+}
+END_TEST
+
+START_TEST(detonations_are_said) {
+    scene *s = calloc(1, sizeof *s);
+    ck_assert_ptr_nonnull(s);
+    for (int lit = 0; lit < 2; lit++) {
+        make_points(s);
+        brunt_error error;
+        ck_assert_int_eq(brunt_material_preset("tnt", "tnt", &s->materials[0], &error), BRUNT_OK);
+        s->detonation = (brunt_detonation_def){.time = 0};
+        s->def.detonations = &s->detonation, s->def.detonation_count = lit;
+        brunt_world *world = brunt_world_create(&s->def, &error);
+        ck_assert_msg(world != NULL, "%s", error.message);
+        int found = 0;
+        for (int32_t e = 0; e < brunt_effect_count(world); e++) {
+            const brunt_effect effect = brunt_world_effect(world, e);
+            found += !strcmp(effect.name, "detonation") && effect.on == lit;
+        }
+        ck_assert_int_eq(found, 1);
+        brunt_world_destroy(world);
+    }
+    free(s);
+}
+END_TEST
+
+START_TEST(table_of_passes) {
+    for (int i = 0; i < brunt_explicit_pass_count; i++) {
+        const brunt_pass_row *row = &brunt_explicit_passes[i];
+        ck_assert(row->name && row->name[0] && row->unit && row->unit[0] && row->wanted && row->run);
+        int whole = 0;
+        for (int k = 0; k < brunt_explicit_pass_count; k++)
+            whole +=
+                brunt_explicit_passes[k].kind != BRUNT_PASS_PART && !strcmp(brunt_explicit_passes[k].name, row->name);
+        ck_assert_msg(whole == 1, "%s stands %d times", row->name, whole);
+    }
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("effects");
+    TCase *tests = tcase_create("effects");
+    tcase_add_loop_test(tests, plan_says_what_was_asked_for, 0, sizeof list / sizeof *list);
+    tcase_add_test(tests, detonations_are_said);
+    tcase_add_test(tests, table_of_passes);
+    suite_add_tcase(suite, tests);
+    SRunner *runner = srunner_create(suite);
+    srunner_run_all(runner, CK_ENV);
+    int failed = srunner_ntests_failed(runner), run = srunner_ntests_run(runner);
+    srunner_free(runner);
+    return failed || !run;
+}
