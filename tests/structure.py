@@ -18,7 +18,7 @@ ROOT = Path(__file__).resolve().parent.parent
 # A folder sees those before it; folders of one row do not see each other.
 ORDER = [
     ["include"], ["base"], ["geometry"], ["materials"], ["grid"], ["mpm", "fem"], ["body"],
-    ["contact"], ["contact/surface"], ["contact/distance"], ["contact/constraint"], ["contact/planes"],
+    ["contact/surface"], ["contact/distance"], ["contact/constraint"], ["contact"], ["contact/planes"],
     ["contact/search"], ["contact/methods"],
     ["boundary"], ["account"], ["world"], ["scheme"],
     ["io/file"], ["io/mesh"], ["io/scene"], ["io/output"], ["io/performance"], ["io/run"], ["io/study"], ["app"],

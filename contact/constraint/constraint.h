@@ -22,7 +22,8 @@
 // taken back only as far as the sweeps go, and a stack of hexahedra at rest gained energy until it fell.
 #pragma once
 
-#include "contact/contact.h"
+#include "base/parallel.h"
+#include "contact/constraint/impulse_account.h"
 
 typedef struct brunt_dof_node {
     double v[3], old[3]; // [m/s] now; before the forces of this step

@@ -1,4 +1,4 @@
-#include "contact/contact.h"
+#include "contact/constraint/impulse_account.h"
 
 void brunt_impulse_account_add(brunt_impulse_account *sum, const brunt_impulse_account *part) {
     for (int a = 0; a < 3; a++) sum->impulse[a] += part->impulse[a], sum->angular[a] += part->angular[a];

@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "contact/contact.h"
+#include "contact/distance/gjk.h"
 
 enum { MAX_POINTS = 4, MAX_ROUNDS = 24 };
 static const double CLOSE_ENOUGH = 1e-13; // relative gap between bound and distance

@@ -4,7 +4,7 @@
 // each carries how far it was from the body's surface at the start (its reach). The ball of that radius is material, so
 // the surface along a direction n is the farthest point x.n + r any particle near the node has, with r = reach |F^T n|:
 // the deformed distance of a material plane whose deformed normal is n.
-#include "contact/contact.h"
+#include "contact/distance/particle_extent.h"
 
 #include <math.h>
 

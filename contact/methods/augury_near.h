@@ -1,7 +1,7 @@
 // Which surfaces are near to each other, and which of their points: boxes of bodies, then boxes of runs of points.
 #pragma once
 
-#include "contact/surface/contact_surface.h"
+#include "contact/contact.h"
 
 // Two bodies with a pair whose boxes come close: numbers in the surface, a's index among all bodies below b's.
 typedef struct brunt_augury_neighbours {

@@ -16,7 +16,9 @@
 #include <string.h>
 
 #include "contact/constraint/coulomb.h"
-#include "contact/surface/contact_surface.h"
+#include "contact/methods/grid_velocity.h"
+#include "contact/distance/gjk.h"
+#include "contact/planes/symmetry.h"
 #include "base/array.h"
 #include "base/memory.h"
 #include "base/parallel.h"

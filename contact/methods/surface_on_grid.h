@@ -28,6 +28,8 @@
 #pragma once
 
 #include "contact/contact.h"
+#include "contact/planes/boundary.h"
+#include "contact/planes/symmetry.h"
 #include "contact/surface/contact_surface.h"
 
 typedef struct brunt_surface_on_grid brunt_surface_on_grid;

@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "contact/constraint/coulomb.h"
+#include "contact/distance/particle_extent.h"
 #include "contact/distance/point_facet.h"
 #include "contact/methods/surface_on_grid.h"
 #include "grid/bspline.h"

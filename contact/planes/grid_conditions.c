@@ -1,5 +1,6 @@
 // Conditions imposed at nodes: stick and slip on the nodes at and behind a plane, given velocities inside a region.
-#include "contact/contact.h"
+#include "contact/planes/grid_conditions.h"
+#include "contact/distance/particle_extent.h"
 
 #include <math.h>
 #include <string.h>

@@ -23,7 +23,10 @@
 #include <string.h>
 
 #include "contact/constraint/coulomb.h"
-#include "contact/surface/contact_surface.h"
+#include "contact/planes/particle_plane.h"
+#include "contact/distance/particle_extent.h"
+#include "contact/planes/boundary.h"
+#include "contact/planes/symmetry.h"
 #include "base/array.h"
 #include "base/memory.h"
 #include "mpm/mpm_body.h"

@@ -2,7 +2,7 @@
 // mirror image's particles would give the nodes exactly what the body gives to the mirrored nodes. So each node gets
 // its own sums plus the reflected sums of its partner, and node pairs stay each other's reflection from then on. The
 // spare real of a node keeps the mass that the body itself has there, for the energy and momentum ledgers.
-#include "contact/contact.h"
+#include "contact/planes/symmetry.h"
 
 #include <string.h>
 

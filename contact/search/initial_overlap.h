@@ -2,7 +2,8 @@
 // quarter of an edge behind a facet, and what is deeper is never met.
 #pragma once
 
-#include "contact/surface/contact_surface.h"
+#include "contact/contact.h"
+#include "contact/planes/boundary.h"
 
 typedef struct brunt_overlap {
     int a, b;     // bodies by their index among all; b: -1 where it is a plane

@@ -10,7 +10,9 @@
 #pragma once
 
 #include "contact/constraint/constraint.h"
-#include "contact/surface/contact_surface.h"
+#include "contact/contact.h"
+#include "contact/planes/boundary.h"
+#include "contact/planes/symmetry.h"
 
 typedef struct brunt_node_to_facet brunt_node_to_facet;
 

@@ -10,6 +10,7 @@
 // on the plane moves along it only. Tangentially the body then gets all of the impulse; what is missing across the
 // plane is what the mirror bears.
 #include "contact/search/node_to_facet_parts.h"
+#include "contact/distance/particle_extent.h"
 
 #include "mpm/mpm_body.h"
 #include "grid/bspline.h"

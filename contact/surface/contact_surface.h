@@ -10,7 +10,7 @@
 
 #include <math.h>
 
-#include "contact/contact.h"
+#include "base/parallel.h"
 #include "fem/fem_body.h"
 #include "fem/surface_topology.h"
 
@@ -145,31 +145,3 @@ static inline double brunt_surface_nodal_area(const brunt_contact_surface *surfa
         return M_PI / 3 * surface->face_area[f] * (surface->x[n][0] + surface->x[node[0]][0] + surface->x[node[1]][0]);
     return surface->face_area[f] / (node[2] < 0 ? 2 : node[3] < 0 ? 3 : 4);
 }
-
-// What all forms of augury are given.
-typedef struct brunt_contact_context {
-    brunt_contact_surface *surface;
-    brunt_pair *pairs;
-    const brunt_pair_map *pair_map;
-    int body_count;
-    double dt, cell; // [s], [m] of the contact grid
-    int iterations;  // sweeps, or augury iterations of the paper's form
-    double look;     // [m] bodies are near from twice this distance on, at least
-    int64_t step;
-    const brunt_symmetry_plane *mirrors; // of the grids
-    int mirror_count;
-    brunt_wall *walls; // planes, regions and groups: what the mirrors are, and planes that push
-    int wall_count;
-    double time;     // [s] at the start of the step
-    brunt_body *mpm; // the bodies of material points
-    int mpm_count;
-    int threads;
-    brunt_timer *timer; // of the pass
-} brunt_contact_context;
-
-// --- methods/grid_velocity.c: the bodies of material points that have pairs, at the nodes of their grids. 0, or -1:
-// out of memory, -2: more than 16 bodies at a node.
-int brunt_grid_velocity_apply(const brunt_contact_context *m, brunt_contact_workspace **workspace);
-
-// --- planes/particle_plane.c: the particles of a body at planes that push. 0, or -1: out of memory.
-int brunt_planes_apply(const brunt_contact_context *m, brunt_body *body, brunt_wall_workspace **workspace);

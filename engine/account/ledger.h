@@ -3,6 +3,7 @@
 
 #include "boundary/damping.h"
 #include "contact/contact.h"
+#include "contact/planes/boundary.h"
 #include "contact/surface/contact_surface.h"
 
 typedef struct brunt_ledger {

@@ -5,6 +5,7 @@
 #include "boundary/gas.h"
 #include "boundary/load_step.h"
 #include "boundary/node_sets.h"
+#include "contact/planes/symmetry.h"
 
 typedef struct brunt_boundaries {
     brunt_wall *walls; // planes, then regions, then groups

@@ -4,6 +4,7 @@
 #include "body/bodies.h"
 #include "base/messages.h"
 #include "contact/contact.h"
+#include "contact/planes/boundary.h"
 #include "contact/surface/contact_surface.h"
 
 typedef struct brunt_node_set {

@@ -4,6 +4,7 @@
 
 #include "base/array.h"
 #include "base/parallel.h"
+#include "contact/planes/grid_conditions.h"
 #include "mpm/sort.h"
 #include "scheme/scheme.h"
 

@@ -1,7 +1,8 @@
 // Room that passes work in: nothing in it lasts from one to the next.
 #pragma once
 
-#include "contact/contact.h"
+#include "contact/methods/grid_velocity.h"
+#include "contact/planes/particle_plane.h"
 #include "fem/fem_body.h"
 #include "mpm/transfer.h"
 

@@ -1,0 +1,20 @@
+// What a condition or a pair has done: impulse, work and dissipation, taken at the mean of the old and the new
+// velocity, which makes the work of an impulse equal to the change of kinetic energy it causes. Everything is booked
+// here.
+#pragma once
+
+// A condition that is imposed from outside, and what it has done so far.
+typedef struct brunt_impulse_account {
+    double impulse[3];    // [N s] on the bodies (a pair: on its second body)
+    double angular[3];    // [N m s] about the origin, on the bodies
+    double external_work; // [J] done on the bodies by prescribed motion
+    double normal_loss;   // [J] dissipated by the normal impulse
+    double friction_loss; // [J] dissipated by the tangential impulse
+    double area;          // [m^2] that touched in the last step
+} brunt_impulse_account;
+
+void brunt_impulse_account_add(brunt_impulse_account *sum, const brunt_impulse_account *part);
+// Books impulse J acting at x while its material moves with `old` before and `now` after, against a carrier that moves
+// with `carrier`. What it dissipates is added to `loss`: the action's normal_loss or its friction_loss.
+void brunt_impulse_account_book(brunt_impulse_account *action, double *loss, const double J[3], const double x[3],
+                                const double old[3], const double now[3], const double carrier[3]);

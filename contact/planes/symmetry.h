@@ -1,0 +1,22 @@
+// Symmetry planes: each node's mirror image is added to it, before velocities are made.
+#pragma once
+
+#include "contact/constraint/impulse_account.h"
+#include "mpm/mpm_body.h"
+
+// A mirror plane through grid nodes `node` along `axis`: symmetry, and slip walls that lie on a grid line.
+typedef struct brunt_symmetry_plane {
+    int axis;
+    int32_t node;
+    int wall; // -1: the axis of revolution of rings, which is there for every body and gives no impulse
+} brunt_symmetry_plane;
+
+// `taken`: the share of the grid's velocity that particles take over, 1 but for FLIP; the rest of what the mirror does
+// to the old velocity never reaches them.
+void brunt_symmetry_fold(brunt_body *body, const brunt_symmetry_plane *mirror, double taken,
+                         brunt_impulse_account *action);
+// Images of a node coordinate under the mirrors it is near to (within the kernel), itself first; `sign` of each
+// velocity component.
+enum { BRUNT_MAX_IMAGES = 8 };
+int brunt_symmetry_images(const brunt_symmetry_plane *mirrors, int mirror_count, const int32_t node[3], int near,
+                          int32_t image[BRUNT_MAX_IMAGES][3], real sign[BRUNT_MAX_IMAGES][3]);
