@@ -183,5 +183,6 @@ int brunt_world_step(brunt_world *world, double limit, brunt_error *error) {
     brunt_step_begin(world);
     int status = run_plan(world, limit, error);
     brunt_step_end(world);
+    if (!status) BRUNT_VALIDATE(world);
     return status;
 }

@@ -19,6 +19,24 @@ static int close_ranks(brunt_fem_body *fem, int32_t mesh_nodes) {
     return 0;
 }
 
+static bool is_graded(const brunt_body_def *def) {
+    return def->grading[0].count || def->grading[1].count || def->grading[2].count;
+}
+
+static int check_numbers(const brunt_body_def *from, brunt_error *error) {
+    const bool sheet = from->method == BRUNT_MEMBRANE;
+    if (sheet && !(from->thickness > 0 && isfinite(from->thickness)))
+        REFUSE("bodies.%s.thickness: %g m is not a positive length", from->name, from->thickness);
+    if (sheet &&
+        !(isnan(from->contact_thickness) || (from->contact_thickness >= 0 && isfinite(from->contact_thickness))))
+        REFUSE("bodies.%s.contact_thickness: %g m is negative", from->name, from->contact_thickness);
+    if (!(from->damping >= 0) || !isfinite(from->damping))
+        REFUSE("bodies.%s.damping: %g 1/s is not a rate", from->name, from->damping);
+    if (is_graded(from) && (sheet || from->mesh.node_count || from->shape.kind != BRUNT_BOX))
+        REFUSE("bodies.%s.grading: only the mesh of a box of method fem is graded", from->name);
+    return BRUNT_OK;
+}
+
 int brunt_make_elements(brunt_world *world, const brunt_world_def *def, const brunt_body_def *from, int index,
                         brunt_error *error) {
     brunt_fem_body *fem = &world->bodies.fem[world->bodies.fem_count];
@@ -28,16 +46,8 @@ int brunt_make_elements(brunt_world *world, const brunt_world_def *def, const br
     brunt_material material;
     const bool sheet = from->method == BRUNT_MEMBRANE;
     int status = BRUNT_OK;
-    if (sheet && !(from->thickness > 0 && isfinite(from->thickness)))
-        REFUSE("bodies.%s.thickness: %g m is not a positive length", from->name, from->thickness);
-    if (sheet &&
-        !(isnan(from->contact_thickness) || (from->contact_thickness >= 0 && isfinite(from->contact_thickness))))
-        REFUSE("bodies.%s.contact_thickness: %g m is negative", from->name, from->contact_thickness);
-    if (!(from->damping >= 0) || !isfinite(from->damping))
-        REFUSE("bodies.%s.damping: %g 1/s is not a rate", from->name, from->damping);
-    const bool graded = from->grading[0].count || from->grading[1].count || from->grading[2].count;
-    if (graded && (sheet || from->mesh.node_count || from->shape.kind != BRUNT_BOX))
-        REFUSE("bodies.%s.grading: only the mesh of a box of method fem is graded", from->name);
+    if ((status = check_numbers(from, error))) return status;
+    const bool graded = is_graded(from);
     if (!from->mesh.node_count) {
         if (!(from->size > 0)) REFUSE("bodies.%s.size: %g m is not a positive length", from->name, from->size);
         status = sheet

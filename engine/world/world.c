@@ -135,6 +135,27 @@ static void warn_of_lone_points(brunt_world *world) {
     }
 }
 
+static void copy_settings(brunt_settings *s, const brunt_world_def *def) {
+    s->dimension = def->dimension;
+    s->threads = def->threads > 0 ? def->threads : brunt_threads_available();
+    if (s->threads > BRUNT_THREAD_LIMIT) s->threads = BRUNT_THREAD_LIMIT;
+    s->kernel = def->kernel, s->transfer = def->transfer;
+    s->flip = def->flip, s->fixed_step = def->step, s->end = def->end;
+    s->axisymmetric = def->axisymmetric;
+    s->least_step = def->least_step;
+    s->energy_limit = def->energy_limit, s->cell = def->cell, s->gravity_ramp = def->gravity_ramp;
+    memcpy(s->gravity, def->gravity, sizeof s->gravity);
+    for (int a = 0; a < def->dimension; a++) s->has_gravity = s->has_gravity || def->gravity[a] != 0;
+}
+
+static void find_transfers(brunt_transfers *t, const brunt_world_def *def) {
+    t->scatter = brunt_find_scatter(def->dimension, def->axisymmetric, def->kernel, def->transfer);
+    t->total_scatter = brunt_find_total_scatter(def->dimension, def->kernel, def->transfer);
+    t->total_gather = brunt_find_total_gather(def->dimension, def->kernel, def->transfer);
+    t->gather = brunt_find_gather(def->dimension, def->axisymmetric, def->kernel, def->transfer);
+    t->advance = brunt_find_advance(def->dimension, def->axisymmetric, def->kernel, def->transfer);
+}
+
 brunt_world *brunt_world_create(const brunt_world_def *def, brunt_error *error) {
     if (error) *error = (brunt_error){.id = -1};
     if (brunt_definition_check(def, error)) return NULL;
@@ -149,23 +170,8 @@ brunt_world *brunt_world_create(const brunt_world_def *def, brunt_error *error) 
     for (int i = 0; i < def->body_count; i++) order[i] = &def->bodies[i];
     qsort(order, (size_t)def->body_count, sizeof *order, compare_names);
 
-    world->settings.dimension = def->dimension;
-    world->settings.threads = def->threads > 0 ? def->threads : brunt_threads_available();
-    if (world->settings.threads > BRUNT_THREAD_LIMIT) world->settings.threads = BRUNT_THREAD_LIMIT;
-    world->settings.kernel = def->kernel, world->settings.transfer = def->transfer;
-    world->settings.flip = def->flip, world->settings.fixed_step = def->step, world->settings.end = def->end;
-    world->settings.axisymmetric = def->axisymmetric;
-    world->settings.least_step = def->least_step;
-    world->settings.energy_limit = def->energy_limit, world->settings.cell = def->cell,
-    world->settings.gravity_ramp = def->gravity_ramp;
-    memcpy(world->settings.gravity, def->gravity, sizeof world->settings.gravity);
-    for (int a = 0; a < def->dimension; a++)
-        world->settings.has_gravity = world->settings.has_gravity || def->gravity[a] != 0;
-    world->transfers.scatter = brunt_find_scatter(def->dimension, def->axisymmetric, def->kernel, def->transfer);
-    world->transfers.total_scatter = brunt_find_total_scatter(def->dimension, def->kernel, def->transfer);
-    world->transfers.total_gather = brunt_find_total_gather(def->dimension, def->kernel, def->transfer);
-    world->transfers.gather = brunt_find_gather(def->dimension, def->axisymmetric, def->kernel, def->transfer);
-    world->transfers.advance = brunt_find_advance(def->dimension, def->axisymmetric, def->kernel, def->transfer);
+    copy_settings(&world->settings, def);
+    find_transfers(&world->transfers, def);
     world->bodies.count = def->body_count;
     world->bodies.all = brunt_alloc((size_t)def->body_count * sizeof *world->bodies.all);
     world->bodies.mpm = brunt_alloc((size_t)def->body_count * sizeof *world->bodies.mpm);
@@ -204,7 +210,10 @@ brunt_world *brunt_world_create(const brunt_world_def *def, brunt_error *error) 
     if (!status && !def->contact.allow_overlap) status = brunt_surfaces_overlap(world, error);
     if (!status) warn_of_lone_points(world);
     brunt_free(order);
-    if (!status) return world;
+    if (!status) {
+        BRUNT_VALIDATE(world);
+        return world;
+    }
     brunt_world_destroy(world);
     return NULL;
 }

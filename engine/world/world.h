@@ -117,6 +117,15 @@ void brunt_erode_particles(brunt_world *world);
 // Of brunt_erode_meshes, the taking out of elements that have a mark, counted in the reports of their blocks.
 int brunt_erode_marked(brunt_world *world, double dt, brunt_error *error);
 
+// --- validate.c
+// Aborts where a part of the world is not as it must be between two steps.
+void brunt_world_validate(const brunt_world *world);
+#ifdef NDEBUG
+#define BRUNT_VALIDATE(world) ((void)0)
+#else
+#define BRUNT_VALIDATE(world) brunt_world_validate(world)
+#endif
+
 // --- read.c
 brunt_books brunt_books_of(const brunt_world *world);
 
