@@ -135,6 +135,15 @@ static void warn_of_lone_points(brunt_world *world) {
     }
 }
 
+// Node numbers count from where the grid starts.
+static void number_symmetry_planes(brunt_world *world, const brunt_world_def *def) {
+    for (int m = 0; m < world->boundaries.mirror_count; m++) {
+        brunt_symmetry_plane *plane = &world->boundaries.mirrors[m];
+        const double start = world->bodies.mpm[0].grid.origin[plane->axis];
+        plane->node -= (int32_t)round((start - def->origin[plane->axis]) / def->cell);
+    }
+}
+
 static void copy_settings(brunt_settings *s, const brunt_world_def *def) {
     s->dimension = def->dimension;
     s->threads = def->threads > 0 ? def->threads : brunt_threads_available();
@@ -199,12 +208,7 @@ brunt_world *brunt_world_create(const brunt_world_def *def, brunt_error *error) 
     if (!status && brunt_fem_tasks_make(world)) status = brunt_fail(error, BRUNT_FAILED, "out of memory");
     if (!status) status = brunt_damping_make(&world->boundaries.damping, &world->bodies, error);
     if (!status) status = brunt_load_step_make(&world->boundaries.sets, error);
-    for (int m = 0; !status && m < world->boundaries.mirror_count;
-         m++) { // node numbers count from where the grid starts
-        int axis = world->boundaries.mirrors[m].axis;
-        world->boundaries.mirrors[m].node -=
-            (int32_t)round((world->bodies.mpm[0].grid.origin[axis] - def->origin[axis]) / def->cell);
-    }
+    if (!status) number_symmetry_planes(world, def);
     brunt_plan_make(world);
     if (!status) status = start(world, error);
     if (!status && !def->contact.allow_overlap) status = brunt_surfaces_overlap(world, error);
