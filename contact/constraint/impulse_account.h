@@ -3,6 +3,8 @@
 // here.
 #pragma once
 
+#include "contact/surface/contact_surface.h"
+
 // A condition that is imposed from outside, and what it has done so far.
 typedef struct brunt_impulse_account {
     double impulse[3];    // [N s] on the bodies (a pair: on its second body)
@@ -18,3 +20,15 @@ void brunt_impulse_account_add(brunt_impulse_account *sum, const brunt_impulse_a
 // with `carrier`. What it dissipates is added to `loss`: the action's normal_loss or its friction_loss.
 void brunt_impulse_account_book(brunt_impulse_account *action, double *loss, const double J[3], const double x[3],
                                 const double old[3], const double now[3], const double carrier[3]);
+
+// An impulse on a node of the surface [N s]: on components with prescribed motion what their support takes.
+typedef struct brunt_node_impulse {
+    int32_t node;
+    double J[3];
+} brunt_node_impulse;
+
+// Adds an impulse to a pair's account and to the surface's contact state, once velocities are final. `second`: the node
+// belongs to the pair's second body, whose impulses are the pair's. Returns the loss [J], which the caller divides
+// between normal_loss and friction_loss.
+double brunt_impulse_account_node(brunt_contact_surface *surface, brunt_impulse_account *action,
+                                  const brunt_node_impulse *impulse, bool second);

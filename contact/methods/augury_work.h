@@ -20,15 +20,3 @@ struct brunt_augury_workspace {
 brunt_augury_workspace *brunt_augury_work(brunt_augury_workspace **work);
 void brunt_averaged_work_free(brunt_averaged_work *averaged);
 void brunt_published_work_free(brunt_published_work *published);
-
-// An impulse on a node of the surface [N s]: on components with prescribed motion what their support takes.
-typedef struct brunt_augury_impulse {
-    int32_t node;
-    double J[3];
-} brunt_augury_impulse;
-
-// Adds an impulse to a pair's account and to the surface's contact state, once velocities are final. `second`: the node
-// belongs to the pair's second body, whose impulses are the pair's. Returns the loss [J], which the caller divides
-// between normal_loss and friction_loss.
-double brunt_impulse_account_node(brunt_contact_surface *surface, brunt_impulse_account *action,
-                                  const brunt_augury_impulse *impulse, bool second);

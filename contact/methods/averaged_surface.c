@@ -157,7 +157,7 @@ static int remember_pair(averaged_job *j, const brunt_augury_neighbours *near) {
     *d = (pair_account){.pair = near->pair, .first = work->impulse_count, .body_b = brunt_augury_body(s, near->b)};
     for (int32_t k = 0; k < work->touched_count; k++) {
         const changed_node *t = &work->touched[k];
-        brunt_augury_impulse *J = &work->impulse[work->impulse_count];
+        brunt_node_impulse *J = &work->impulse[work->impulse_count];
         bool any = false;
         J->node = t->node;
         for (int a = 0; a < 3; a++) {
@@ -236,7 +236,7 @@ static void account_pairs(const averaged_job *j) {
         brunt_impulse_account *action = &j->m->pairs[d->pair].last;
         double loss = 0;
         for (int32_t i = d->first; i < d->end; i++) {
-            const brunt_augury_impulse *J = &j->work->impulse[i];
+            const brunt_node_impulse *J = &j->work->impulse[i];
             loss += brunt_impulse_account_node(j->surface, action, J, j->surface->body[J->node] == d->body_b);
         }
         action->friction_loss += d->friction_loss;

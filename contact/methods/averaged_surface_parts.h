@@ -90,7 +90,7 @@ typedef struct pair_account {
     X(int32_t, touched_of) /* by node of the surface, -1 between pairs */                                              \
     X(int32_t, face_of)    /* by face of the surface, likewise */                                                      \
     X(bool, fixed)         /* by body of the surface: has prescribed nodes */                                          \
-    X(brunt_augury_impulse, impulse)                                                                                   \
+    X(brunt_node_impulse, impulse)                                                                                     \
     X(pair_account, pair_account)
 
 struct brunt_averaged_work {

@@ -287,7 +287,7 @@ static void book(job *j) {
         const int body = owner(s, n);
         brunt_pair *pair = &j->m->pairs[j->filter->pair[body]];
         const double *dv = j->filter->delta[k].v;
-        brunt_augury_impulse J = {n, {0}};
+        brunt_node_impulse J = {n, {0}};
         double along, tangential[3], size, drag = 0;
         double allowed = split(j, n, dv, &along, tangential, &size);
         for (int a = 0; a < s->dim; a++) {
