@@ -5,7 +5,8 @@
 static const double H = 0.1; // [m] cells and edges
 static const double END = 0.3;
 
-static brunt_world *block_on_held_points(bool mesh) {
+// The caller frees the definition after the world, which shares the region's shape.
+static brunt_world *block_on_held_points(bool mesh, brunt_world_def *kept) {
     brunt_world_def def = def_begin(2, H);
     def.regions = brunt_alloc(DEF_ROOM * sizeof *def.regions);
     def.contact.method = mesh ? BRUNT_CONTACT_AUGURY : BRUNT_CONTACT_MULTI_VELOCITY;
@@ -19,7 +20,8 @@ static brunt_world *block_on_held_points(bool mesh) {
     r->shape.kind = BRUNT_BOX;
     for (int a = 0; a < 2; a++) r->component[a] = true, r->shape.min[a] = -100 * H, r->shape.max[a] = 100 * H;
     def.gravity[1] = -1;
-    return world_take(&def);
+    *kept = def;
+    return world_take(kept);
 }
 
 // [m] furthest that any of a body's particles or nodes has gone up or down since `from`
@@ -32,7 +34,8 @@ static double gone(brunt_world *world, int body, const double *from) {
 }
 
 START_TEST(bears_a_block) {
-    brunt_world *world = block_on_held_points(_i == 1);
+    brunt_world_def def;
+    brunt_world *world = block_on_held_points(_i == 1, &def);
     double *from[2] = {world_field(world, 0, "position"), world_field(world, 1, "position")};
     world_until(world, END);
     const int slab = !strcmp(brunt_body_name(world, 1), "slab");
@@ -42,6 +45,7 @@ START_TEST(bears_a_block) {
     ck_assert(sunk < 1e-3 * H); // twice rho g h^2 / 2 E is 4e-4 edges, and the height they begin at
     free(from[0]), free(from[1]);
     brunt_world_destroy(world);
+    brunt_world_def_free(&def);
 }
 END_TEST
 
