@@ -139,8 +139,7 @@ static int settle_method(const maker *m, const candidate *c, brunt_pair *pair, b
         REFUSE("contact of '%s' and '%s': multi-velocity needs the grid of a body of material points; use augury "
                "between meshes",
                a->name, b->name);
-    if (!accepted)
-        REFUSE("contact of '%s' and '%s': only bodies of material points can be tied", a->name, b->name);
+    if (!accepted) REFUSE("contact of '%s' and '%s': only bodies of material points can be tied", a->name, b->name);
     if (!meshes) {
         if (pair->method != BRUNT_CONTACT_TIED) pair->method = BRUNT_CONTACT_MULTI_VELOCITY;
         contact->has_grid = true;
