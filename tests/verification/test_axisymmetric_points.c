@@ -2,6 +2,7 @@
 // Material points that are rings about an axis: closed forms of rings, cylinders, tubes, bars and spheres, the axis
 // itself, contact, the ledgers, and the bits.
 #include "tests/support/def_world.h"
+#include "contact/distance/particle_extent.h"
 #include "world/world.h"
 
 #ifdef BRUNT_FLOAT
