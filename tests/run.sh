@@ -4,8 +4,8 @@
 #   sh tests/run.sh         all but the long ones; unit, io and what loses particles and elements once more under the
 #                           sanitizers; unit and some more in single precision; the kernels without vectors; the other
 #                           compiler; the installed library; the benchmarks run at all; sources are formatted, and pass
-#                           the checks of .clang-tidy; no races where numbers of threads are compared
-#   sh tests/run.sh long    the long ones
+#                           the checks of .clang-tidy
+#   sh tests/run.sh long    the long ones; no races where numbers of threads are compared (thread sanitizer)
 #
 # The last line is "N passed, N failed". Exit code 0 only when tests ran and none failed.
 set -u
@@ -91,6 +91,10 @@ sh cmake/install.sh build test || {
 check "build" build release || finish
 if [ "$label" = long ]; then
     run build -L long
+    if command -v clang >/dev/null; then
+        check "build under the thread sanitizer" build tsan --target test_determinism test_surfaces test_erosion_contact &&
+            check "races" sh tests/support/races.sh build-tsan
+    fi
     finish
 fi
 rm -rf build/hard_cases && mkdir build/hard_cases
@@ -112,7 +116,5 @@ check "build under the sanitizers" build asan && run build-asan -L '^(unit|io)$'
     run build-asan -R '^test_(erosion_contact|point_erosion|total_lagrangian)$'
 if command -v clang >/dev/null; then
     check "build with clang" build clang
-    check "build under the thread sanitizer" build tsan --target test_determinism test_surfaces test_erosion_contact &&
-        check "races" sh tests/support/races.sh build-tsan
 fi
 finish
