@@ -2,6 +2,7 @@
 """Makes the mistakes of mutations.txt, one at a time in a copy of the sources, and tells which of them the tests notice.
 
     python3 tests/mutations.py [PART ...]    all of them, or those whose file's path holds one of the parts
+    python3 tests/mutations.py check         makes none; tells whether each text is there just once
 
 Each is three lines: the file and the suites that are to notice, the text that is there once, what stands there instead
 (with \\n where a line ends).
@@ -73,13 +74,26 @@ def noticed(file, suites, old, new):
             lines.write(sound)
 
 
-def main():
-    mistakes = [m for m in read(os.path.join(SOURCE, "tests", "mutations.txt"))
-                if not sys.argv[1:] or any(part in m[0] for part in sys.argv[1:])]
+def misplaced(mistakes):
+    """How many texts are not there just once; says which."""
+    count = 0
     for file, _, old, _ in mistakes:
-        with open(os.path.join(SOURCE, file), encoding="utf-8") as lines:
-            if (times := lines.read().count(old)) != 1:
-                print("%s: %d times: %s" % (file, times, old))
+        path, times = os.path.join(SOURCE, file), 0
+        if os.path.exists(path):
+            with open(path, encoding="utf-8") as lines:
+                times = lines.read().count(old)
+        if times != 1:
+            count += 1
+            print("%s: %d times: %s" % (file, times, old))
+    return count
+
+
+def main():
+    every = list(read(os.path.join(SOURCE, "tests", "mutations.txt")))
+    if sys.argv[1:] == ["check"]:
+        sys.exit(1 if misplaced(every) else 0)
+    mistakes = [m for m in every if not sys.argv[1:] or any(part in m[0] for part in sys.argv[1:])]
+    misplaced(mistakes)
     suites = sorted({name for m in mistakes for name in m[1]})
     copy_sources()
     subprocess.run(["cmake", "--preset", "release", "-DBRUNT_BENCH=OFF"], cwd=COPY, check=True, stdout=subprocess.DEVNULL)
