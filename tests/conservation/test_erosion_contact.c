@@ -745,12 +745,6 @@ END_TEST
 
 int main(void) {
     Suite *suite = suite_create("erosion_contact");
-#define ADD_LOOP(test, count)                                                                                          \
-    do {                                                                                                               \
-        TCase *tests = tcase_create(#test);                                                                            \
-        tcase_add_loop_test(tests, test, 0, count);                                                                    \
-        suite_add_tcase(suite, tests);                                                                                 \
-    } while (0)
     ADD_LOOP(surface_is_that_of_the_elements, 4);
     ADD_LOOP(no_spike, 8);
     ADD_LOOP(overlap_at_birth, 4);

@@ -815,13 +815,6 @@ END_TEST
 int main(void) {
     setvbuf(stdout, NULL, _IOLBF, 0);
     Suite *suite = suite_create("sheet contact");
-#define ADD_LOOP(test, count)                                                                                          \
-    do {                                                                                                               \
-        TCase *tests = tcase_create(#test);                                                                            \
-        tcase_set_timeout(tests, 0);                                                                                   \
-        tcase_add_loop_test(tests, test, 0, count);                                                                    \
-        suite_add_tcase(suite, tests);                                                                                 \
-    } while (0)
     ADD_LOOP(between_two_blocks, 2);
     ADD(both_sides_are_alike);
     ADD(particles_on_either_side);

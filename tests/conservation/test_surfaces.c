@@ -664,12 +664,6 @@ END_TEST
 
 int main(void) {
     Suite *suite = suite_create("surfaces");
-#define ADD_LOOP(test, count)                                                                                          \
-    do {                                                                                                               \
-        TCase *tests = tcase_create(#test);                                                                            \
-        tcase_add_loop_test(tests, test, 0, count);                                                                    \
-        suite_add_tcase(suite, tests);                                                                                 \
-    } while (0)
     ADD_LOOP(oblique_impact, 2 * FORMS);
     ADD_LOOP(untouched_bodies_keep_every_bit, FORMS);
     ADD_LOOP(same_bits_for_threads_and_restart, 2 * FORMS);

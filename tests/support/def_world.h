@@ -20,6 +20,14 @@
 #define PI 3.14159265358979323846
 #define XYZ(...) ((const double[3]){__VA_ARGS__})
 
+// Adds to `suite` a test, once for each number below `count`, as a case of its name: CK_RUN_CASE picks it.
+#define ADD_LOOP(test, count)                                                                                          \
+    do {                                                                                                               \
+        TCase *tests = tcase_create(#test);                                                                            \
+        tcase_add_loop_test(tests, test, 0, count);                                                                    \
+        suite_add_tcase(suite, tests);                                                                                 \
+    } while (0)
+
 enum { DEF_ROOM = 12 };
 
 // A definition with room for a dozen bodies, planes and materials, one thread and no limit on the time.

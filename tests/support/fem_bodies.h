@@ -167,5 +167,21 @@ static inline double energy_of(brunt_fem_body *body, const brunt_fem_report *rep
     return brunt_fem_energy(body).internal + report->hourglass_stored;
 }
 
+// The force on component i of node n is what the energy falls by along it, by central differences.
+static inline void check_force_is_slope(brunt_fem_body *body, const char *model, int32_t n, int i) {
+    forces(body, 1);
+    real f[3], *x = brunt_fem_node(body, n) + i, at = *x;
+    brunt_fem_internal_force(body, n, f);
+    double energy[2], h = 1e-5;
+    for (int side = 0; side < 2; side++) {
+        *x = at + (real)(side ? h : -h);
+        brunt_fem_report report = forces(body, 1);
+        energy[side] = energy_of(body, &report);
+    }
+    *x = at;
+    ck_assert_msg(fabs((energy[1] - energy[0]) / (2 * h) + (double)f[i]) < 1e-7 * E, "%s %s: node %d: %g, slope %g",
+                  body->traits->name, model, n, (double)f[i], (energy[1] - energy[0]) / (2 * h));
+}
+
 // Of bodies that fill the room; those of membranes follow in the list and have tests of their own.
 #define FOR_KINDS(kind) for (brunt_element_kind kind = 0; (int)kind < BRUNT_MEMBRANE_QUAD4; kind++)

@@ -298,21 +298,7 @@ START_TEST(forces_are_the_slope_of_the_energy) {
         shake(&body, 0.08);
         forces(&body, 1);
         for (int32_t n = 0; n < body.node_count; n++)
-            for (int i = 0; i < body.dim; i++) {
-                forces(&body, 1);
-                real f[3], *x = brunt_fem_node(&body, n) + i, at = *x;
-                brunt_fem_internal_force(&body, n, f);
-                double energy[2], h = 1e-5;
-                for (int side = 0; side < 2; side++) {
-                    *x = at + (real)(side ? h : -h);
-                    brunt_fem_report report = forces(&body, 1);
-                    energy[side] = energy_of(&body, &report);
-                }
-                *x = at;
-                ck_assert_msg(fabs((energy[1] - energy[0]) / (2 * h) + (double)f[i]) < 1e-7 * E,
-                              "%s %s: node %d: %g, slope %g", body.traits->name, models[m], n, (double)f[i],
-                              (energy[1] - energy[0]) / (2 * h));
-            }
+            for (int i = 0; i < body.dim; i++) { check_force_is_slope(&body, models[m], n, i); }
         brunt_fem_free(&body);
     }
 }

@@ -5,6 +5,7 @@
 
 #include "base/simd.h"
 #include "materials/prepared.h"
+#include "tests/support/matrix.h"
 
 #ifdef BRUNT_FLOAT
 #define TOLERANCE(in_double, in_float) (in_float)
@@ -112,23 +113,6 @@ static real *state_of(sample *s, brunt_component k, const char *field) {
 }
 static double damage_of(sample *s) { return (double)state_of(s, BRUNT_FAILURE, "damage")[0]; }
 static double plastic_strain_of(sample *s) { return (double)state_of(s, BRUNT_STRENGTH, "plastic_strain")[0]; }
-
-typedef struct mat {
-    double a[3][3];
-} mat;
-static mat product(mat a, mat b) {
-    mat c = {{{0}}};
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            for (int k = 0; k < 3; k++) c.a[i][j] += a.a[i][k] * b.a[k][j];
-    return c;
-}
-static mat transpose(mat a) {
-    mat t;
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++) t.a[i][j] = a.a[j][i];
-    return t;
-}
 static double dot(mat a, mat b) {
     double sum = 0;
     for (int i = 0; i < 3; i++)

@@ -9,6 +9,7 @@
 #include "base/simd.h"
 #include "materials/material.h"
 #include "base/memory.h"
+#include "tests/support/matrix.h"
 
 // A tolerance for either precision of the engine.
 #ifdef BRUNT_FLOAT
@@ -159,24 +160,8 @@ static void copy_points(const sample *from, sample *to) {
 }
 
 // Plain 3 by 3 algebra of the tests, in double.
-typedef struct mat {
-    double a[3][3];
-} mat;
 static const mat identity = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 
-static mat mul(mat a, mat b) {
-    mat c = {{{0}}};
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            for (int k = 0; k < 3; k++) c.a[i][j] += a.a[i][k] * b.a[k][j];
-    return c;
-}
-static mat transpose(mat a) {
-    mat t;
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++) t.a[i][j] = a.a[j][i];
-    return t;
-}
 static mat combine(double x, mat a, double y, mat b) {
     for (int i = 0; i < 9; i++) ((double *)a.a)[i] = x * ((double *)a.a)[i] + y * ((double *)b.a)[i];
     return a;
@@ -253,7 +238,7 @@ static void set_step(sample *s, int i, mat H) {
     int dim = s->points.dim;
     for (int r = 0; r < dim; r++)
         for (int c = 0; c < dim; c++) s->L[r * dim + c][i] = (real)(H.a[r][c] / (double)s->points.dt);
-    set_F(s, i, mul(combine(1, identity, 1, H), get_F(s, i)));
+    set_F(s, i, product(combine(1, identity, 1, H), get_F(s, i)));
 }
 
 // A step as the engine takes it: what an eos adds to starts from 0.
@@ -400,11 +385,11 @@ START_TEST(rotation_changes_nothing) {
         bool moving = (step < STEPS / 2) != f.model->fluid;
         mat next = rotation(f.dim, 0.07 * (step + 1));
         step_all(&s, moving ? H : (mat){{{0}}});
-        mat both = mul(next, moving ? mul(f_step, transpose(R)) : transpose(R));
+        mat both = product(next, moving ? product(f_step, transpose(R)) : transpose(R));
         step_all(&turned, combine(1, both, -1, identity));
         R = next;
     }
-    mat expect = mul(R, mul(get_stress(&s, 0), transpose(R))), got = get_stress(&turned, 0);
+    mat expect = product(R, product(get_stress(&s, 0), transpose(R))), got = get_stress(&turned, 0);
     mat difference = combine(1, expect, -1, got);
     double error = sqrt(inner(difference, difference) / inner(expect, expect));
     double allowed = f.model->fluid ? 0.07 : TOLERANCE(1e-9, 5e-2), kept = total_of(&s),
@@ -498,7 +483,7 @@ START_TEST(extremes_are_admissible) {
             mat U = identity;
             for (int k = 0; k < (shape ? 1 : f.dim); k++) U.a[k][k] = pow(volumes[v], shape ? 1 : 1.0 / f.dim);
             mat R = rotation(f.dim, 1);
-            mat H = combine(1, mul(R, mul(U, transpose(R))), -1, identity);
+            mat H = combine(1, product(R, product(U, transpose(R))), -1, identity);
             if (f.model->explosive) step_all(&s, (mat){{{0}}});
             for (int i = 0; i < s.points.count; i++) set_step(&s, i, H);
             brunt_update_result result = try_update(&s);
@@ -602,7 +587,7 @@ static double ledger_error(form f, int steps, double size, double *flowed) {
         mat old = get_F(&s, 0);
         step_all(&s, H);
         mat dF = combine(1, get_F(&s, 0), -1, old), now = get_stress(&s, 0);
-        work += 0.5 * (inner(before, mul(dF, inverse(old))) + inner(now, mul(dF, inverse(get_F(&s, 0)))));
+        work += 0.5 * (inner(before, product(dF, inverse(old))) + inner(now, product(dF, inverse(get_F(&s, 0)))));
         before = now;
     }
     *flowed = (energy_of(&s).plastic + energy_of(&s).viscosity) / fabs(work);
