@@ -55,7 +55,7 @@ build() {
     preset=$1
     shift
     log=$(mktemp)
-    cmake --preset "$preset" >"$log" 2>&1 && cmake --build --preset "$preset" -j "$jobs" "$@" >>"$log" 2>&1
+    cmake --preset "$preset" -DBRUNT_WERROR=ON >"$log" 2>&1 && cmake --build --preset "$preset" -j "$jobs" "$@" >>"$log" 2>&1
     code=$?
     [ "$code" -eq 0 ] || cat "$log"
     rm -f "$log"
