@@ -17,7 +17,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 # A folder sees those before it; folders of one row do not see each other.
 ORDER = [
-    ["include"], ["base"], ["geometry"], ["materials"], ["grid"], ["mpm", "fem"], ["body"],
+    ["include"], ["base"], ["linear"], ["geometry"], ["materials"], ["grid"], ["mpm", "fem"], ["body"],
     ["contact/surface"], ["contact/distance"], ["contact/constraint"], ["contact"], ["contact/planes"],
     ["contact/search"], ["contact/methods"],
     ["boundary"], ["account"], ["world"], ["scheme"],

@@ -1,0 +1,60 @@
+// What an implicit step minimises is a sum of terms: inertia, what bodies store, barriers, friction, loads. A term is a
+// function of the unknowns, and says what couples what; it knows nothing of the other terms, of Newton's method or of
+// the solver. New physics of implicit and static steps is a new term.
+//
+// Unknowns: the displacement u [m] over the step of each node of `dim` components, nodes of meshes first and active
+// nodes of the grids after them; component c of node n is u[n * dim + c]. A displacement, not a position: energies keep
+// their digits far from the origin. Energies are in J (of plane strain J for a metre of depth), so that a gradient is
+// a force [N] with its sign turned.
+#pragma once
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "base/parallel.h"
+#include "brunt.h"
+
+struct brunt_block_matrix;
+
+// Threads, and where their time goes (NULL: nowhere). Results are the same for any number of threads.
+typedef struct brunt_team {
+    int threads;
+    brunt_timer *timer;
+} brunt_team;
+
+// A sum, and the sum of the sizes of what was added: the sum is known to some 1e-16 of the latter.
+typedef struct brunt_energy_sum {
+    double value;     // [J]; INFINITY outside the term's domain (J <= 0, a gap that is closed)
+    double magnitude; // [J]
+} brunt_energy_sum;
+
+// Sets of nodes that couple with each other: those of set s are node[first[s]] .. node[first[s + 1] - 1], each once.
+typedef struct brunt_stencils {
+    int64_t count;
+    const int64_t *first; // count + 1
+    const int32_t *node;
+} brunt_stencils;
+
+// Functions that a term has not are NULL. `u` and `p` are of all unknowns, read by the term's own nodes.
+typedef struct brunt_term_ops {
+    const char *name; // in messages: "barrier"
+    // Finds what the term depends on at u + t p for all 0 <= t <= 1 (p NULL: at u), before the others are asked about
+    // places between: candidates of contact. BRUNT_OK, or BRUNT_FAILED with the reason.
+    int (*look)(void *term, const brunt_team *team, const double *u, const double *p, brunt_error *error);
+    brunt_energy_sum (*energy)(void *term, const brunt_team *team, const double *u);
+    // Adds the gradient at u to g [J/m].
+    void (*gradient)(void *term, const brunt_team *team, const double *u, double *g);
+    // What its Hessian couples, until the next `look`; NULL: nothing but each node with itself.
+    brunt_stencils (*stencils)(void *term);
+    // Adds the Hessian at u [J/m^2] to blocks that the matrix has. `project`: without its negative eigenvalues, of each
+    // point or stencil.
+    void (*hessian)(void *term, const brunt_team *team, const double *u, bool project, struct brunt_block_matrix *h);
+    // Greatest t in [0, largest] for which u + t p stays within the domain, with what is left of it for the next step;
+    // NULL: any.
+    double (*limit)(void *term, const brunt_team *team, const double *u, const double *p, double largest);
+} brunt_term_ops;
+
+typedef struct brunt_term {
+    const brunt_term_ops *ops;
+    void *self;
+} brunt_term;
