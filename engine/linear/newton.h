@@ -1,0 +1,86 @@
+// Minimises a sum of terms (term.h) by Newton's method. The matrix is taken as it is, since only then do iterations
+// converge quadratically; where it is not positive definite, or the step leads uphill, each term takes its negative
+// eigenvalues away, and where even that is not enough the diagonal is raised. Steps keep within the domain of every
+// term and never raise the energy by more than its rounding.
+//
+// A term is asked, at each iterate u: look (at u), gradient, stencils, hessian; then look (along p), limit, energies
+// between.
+#pragma once
+
+#include "linear/linear.h"
+
+// What the method is at; from the call on, time is that of the phase.
+typedef enum brunt_newton_phase {
+    BRUNT_NEWTON_EVALUATE, // look, gradient
+    BRUNT_NEWTON_MATRIX,   // pattern, Hessian
+    BRUNT_NEWTON_SOLVE,    // analysis, factor, solution
+    BRUNT_NEWTON_LIMIT,    // look along the step, limits of terms
+    BRUNT_NEWTON_SEARCH,   // energies along the step
+    BRUNT_NEWTON_PHASES
+} brunt_newton_phase;
+
+typedef struct brunt_newton_options {
+    double tolerance;               // of `measure`: [m/s]
+    int32_t iterations;             // at most
+    double accuracy;                // pcg: of each iteration's solution; 1e-3
+    const brunt_linear_ops *solver; // direct or pcg
+    brunt_preconditioner preconditioner;
+    int32_t linear_iterations; // pcg: at most
+    bool fallback;             // where pcg stalls, the direct solver goes on (`auto`)
+    bool early;                // a step after which the next would be below tolerance/10 is the last
+    int64_t memory;            // [bytes] direct; 0: what the machine has
+    // The size of a step p [m/s]: of particles and mesh nodes, never of grid nodes. *where: which has it (the caller's
+    // numbering; -1: none). NULL: the greatest component of p, where = its unknown.
+    double (*measure)(void *context, const brunt_team *team, const double *p, int64_t *where);
+    void (*phase)(void *context, brunt_newton_phase phase); // NULL: nobody wants to know
+    void *context;
+} brunt_newton_options;
+
+typedef enum brunt_newton_result {
+    BRUNT_NEWTON_CONVERGED,
+    BRUNT_NEWTON_BAD_START,  // the energy is not finite where it begins
+    BRUNT_NEWTON_ITERATIONS, // tolerance not reached within as many
+    BRUNT_NEWTON_INDEFINITE, // no positive definite matrix, projected and shifted
+    BRUNT_NEWTON_BLOCKED,    // a term lets no step be taken
+    BRUNT_NEWTON_UPHILL,     // no step, however short, lowers the energy
+    BRUNT_NEWTON_BROKEN      // memory, the solver, or a number that is not finite
+} brunt_newton_result;
+
+typedef struct brunt_newton_report {
+    brunt_newton_result result;
+    int32_t iterations, halvings;
+    int32_t projections, shifts; // matrices made anew with projected blocks; raised diagonals
+    int32_t linear_iterations, factorisations, analyses;
+    double step;             // measure of the last step [m/s]
+    int64_t step_where;      // what had it
+    double least_share;      // smallest part of a step that was taken
+    double residual;         // greatest component of the gradient [J/m], the last time it was taken
+    int64_t residual_dof;    // which it is: node * dim + component; -1: none
+    brunt_energy_sum energy; // at u
+} brunt_newton_report;
+
+// What is to be minimised.
+typedef struct brunt_problem {
+    int dim;
+    int32_t nodes;
+    const brunt_term *terms;
+    int count;
+    const uint8_t *held; // unknowns that stay as they are, nodes * dim; NULL: none
+} brunt_problem;
+
+// Memory that lasts from one minimisation to the next; starts as all zero. What it remembers does not change results.
+typedef struct brunt_newton {
+    brunt_block_matrix matrix;
+    brunt_linear linear;
+    int64_t analysed; // the matrix's pattern when it was analysed
+    double *gradient, *step, *trial, *right;
+    brunt_stencils *stencils;
+    size_t gradient_capacity, step_capacity, trial_capacity, right_capacity, stencils_capacity;
+} brunt_newton;
+
+// From u to a minimum near it. BRUNT_OK: u is it. BRUNT_FAILED: error and report->result say why it is not; u is then
+// the last place reached, of no use but to look at.
+int brunt_newton_minimise(brunt_newton *newton, const brunt_team *team, const brunt_problem *problem,
+                          const brunt_newton_options *options, double *u, brunt_newton_report *report,
+                          brunt_error *error);
+void brunt_newton_free(brunt_newton *newton);
