@@ -19,7 +19,7 @@ ROOT = Path(__file__).resolve().parent.parent
 ORDER = [
     ["include"], ["base"], ["linear"], ["geometry"], ["materials"], ["grid"], ["mpm", "fem"], ["body"],
     ["contact/surface"], ["contact/distance"], ["contact/constraint"], ["contact"], ["contact/planes"],
-    ["contact/search"], ["contact/methods"],
+    ["contact/search"], ["contact/methods"], ["contact/barrier"],
     ["boundary"], ["account"], ["world"], ["scheme"],
     ["io/file"], ["io/mesh"], ["io/scene"], ["io/output"], ["io/performance"], ["io/run"], ["io/study"], ["app"],
 ]

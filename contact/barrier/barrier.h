@@ -1,0 +1,120 @@
+// Contact of an implicit step: surfaces keep a gap by a barrier, and rub by Coulomb's law with what it was at the last
+// update (lagged), so that both are energies that a step can minimise (Li et al. 2020; Li, Kaufman and Jiang 2021 for
+// the limit of a step; Li et al. 2022 for material points against meshes).
+//
+// What meets: points (vertices of the surfaces of meshes, and material points) at facets and planes, and in three
+// dimensions edges at edges. All facets within reach count, whichever way they look. Sums have the multiplicities that
+// let a point feel a surface once: over a vertex or an edge that facets share, what each of them adds is taken back but
+// for one. Nothing here knows of the world: it is made from arrays.
+//
+// Order: make; mesh (at the start, and when the surface has changed); pairs; step (of every step); then the terms.
+// `lag` before the first iteration, and whenever friction is to follow. Arrays that are given are read until they are
+// given anew. Memory is kept from step to step: none is taken once it suffices.
+#pragma once
+
+#include "linear/term.h"
+
+typedef struct brunt_barrier brunt_barrier;
+
+// The surfaces of all meshes in one numbering. In two dimensions z is 0.
+typedef struct brunt_barrier_mesh {
+    int dim;
+    int32_t vertex_count, facet_count;
+    const double (*rest)[3]; // [m] of vertices in the reference configuration: areas and lengths of edges are from it
+    const int32_t *body;     // of vertices
+    // Vertices: 2, -1, -1 (2D); 3, -1; or 4: a quadrilateral is the two triangles about its shorter diagonal in the
+    // reference configuration (the one with the smallest vertex where both are as long).
+    const int32_t (*facet)[4];
+} brunt_barrier_mesh;
+
+// Two bodies that may meet. Only those do: a body meets itself by a pair (a, a).
+typedef struct brunt_barrier_pair {
+    int32_t a, b;
+    double distance;   // [m] dhat
+    double stiffness;  // [Pa] kappa
+    double friction;   // Coulomb's coefficient; INFINITY: it sticks where it touches
+    double slip_speed; // [m/s] eps_v, below which it creeps instead of sticking; > 0 where there is friction
+    // What part of the integral over the surface is taken by points of a at facets of b, points of b at facets of a,
+    // edges at edges (3D). Of a pair (a, a) the first and third. brunt_barrier_shares has the usual ones.
+    double share[3];
+} brunt_barrier_pair;
+
+// Both meshes: 1/2, 1/2, 1/2 (edges add where points are not); b a body of material points: 0, 1, 0; a: 1, 0, 0.
+void brunt_barrier_shares(brunt_barrier_pair *pair, bool a_has_facets, bool b_has_facets);
+
+// A half space that points of some bodies stay in front of.
+typedef struct brunt_barrier_plane {
+    double origin[3], normal[3]; // [m] at the start of the step; of unit length, towards the points
+    int32_t node;                // block node whose displacement moves it (held unknowns); -1: it does not move
+    const bool *meets;           // of each body; NULL: all
+    double distance, stiffness, friction, slip_speed; // as of a pair; friction 0: slips, INFINITY: sticks
+} brunt_barrier_plane;
+
+// Material points of all bodies. Nodes that count for point i, with weights: node[first[i]] .. node[first[i + 1] - 1],
+// each once.
+typedef struct brunt_barrier_particles {
+    int32_t count;
+    const double (*x)[3]; // [m] at the start of the step
+    const double *area;   // [m^2] (2D [m]) that it stands for, brunt_barrier_particle_area; 0: it meets nothing
+    const int32_t *body;
+    const int64_t *first;
+    const int32_t *node; // block nodes
+    const double *weight;
+} brunt_barrier_particles;
+
+typedef struct brunt_barrier_step {
+    const double (*x)[3]; // [m] of vertices at the start of the step
+    const int32_t *node;  // their block nodes
+    brunt_barrier_particles particles;
+    const brunt_barrier_plane *planes;
+    int32_t plane_count;
+    double dt; // [s]
+    // What friction takes for the slip: dt v = factor u + (1 - factor) before, of all unknowns, before = dt v_n [m].
+    // Backward Euler and static steps: 1 and NULL; Newmark: 2.
+    double factor;
+    const double *before;
+} brunt_barrier_step;
+
+// The disc or sphere of a volume's greatest section: 2 sqrt(V / pi) [m], pi (3 V / 4 pi)^(2/3) [m^2].
+double brunt_barrier_particle_area(int dim, double volume);
+
+brunt_barrier *brunt_barrier_make(brunt_error *error); // NULL: out of memory
+void brunt_barrier_free(brunt_barrier *barrier);
+// BRUNT_OK, or BRUNT_FAILED: out of memory; a facet without area, of two bodies or with one vertex twice.
+int brunt_barrier_set_mesh(brunt_barrier *barrier, const brunt_barrier_mesh *mesh, brunt_error *error);
+// Copied. BRUNT_OK, or BRUNT_FAILED: out of memory, a pair that is there twice.
+int brunt_barrier_set_pairs(brunt_barrier *barrier, const brunt_barrier_pair *pairs, int32_t count, brunt_error *error);
+int brunt_barrier_set_step(brunt_barrier *barrier, const brunt_barrier_step *step, brunt_error *error);
+// [m^2] (2D [m]) of the surface in the reference configuration that is a vertex's.
+double brunt_barrier_vertex_area(const brunt_barrier *barrier, int32_t vertex);
+
+// What the step minimises: the barrier, and the potential of friction with normal forces and directions of the last
+// lag.
+brunt_term brunt_barrier_term(brunt_barrier *barrier);
+brunt_term brunt_barrier_friction_term(brunt_barrier *barrier);
+// Takes normal forces and directions of friction at u.
+int brunt_barrier_lag(brunt_barrier *barrier, const brunt_team *team, const double *u, brunt_error *error);
+bool brunt_barrier_has_friction(const brunt_barrier *barrier); // some pair or plane has
+
+// ------------------------------------------------------------------------------------------------- what it was
+
+typedef struct brunt_barrier_force {
+    double normal[3], friction[3]; // [N] on body a; on b the same with the other sign. Of a plane: on the points
+    int64_t contacts;
+} brunt_barrier_force;
+
+typedef struct brunt_barrier_report {
+    double least_gap;    // [m] of all that is near; INFINITY: nothing is
+    double least_part;   // of its distance dhat
+    int32_t body, other; // that are that near; other -1: a plane
+    int32_t point;       // vertex (below vertex_count) or material point (vertex_count and on); -1: two edges
+    int32_t plane;       // -1: none
+    double place[3];     // [m] of the point, or on the edge
+    int64_t contacts;    // places with a force
+    double energy;       // [J] in the barrier
+    double heat;         // [J] of friction over the step
+} brunt_barrier_report;
+
+// At u, the end of the step. `force` (NULL: not wanted) has room for the pairs in their order, then the planes.
+int brunt_barrier_look_back(brunt_barrier *barrier, const brunt_team *team, const double *u,
+                            brunt_barrier_report *report, brunt_barrier_force *force, brunt_error *error);
