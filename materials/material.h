@@ -76,6 +76,45 @@ typedef struct brunt_point_energy {
     double heat;      // of `plastic`, what has warmed the points adiabatically: part of it, no term of the sum
 } brunt_point_energy;
 
+// --- implicit steps
+
+// Upper half of the matrix of a tangent, row by row; its rows and columns are pairs (component i of the displacement,
+// direction a of its gradient), in the order of BRUNT_MATRIX.
+#define BRUNT_TANGENT(dim) ((dim) == 3 ? 45 : 10)
+
+// The end of a step as it is tried: nothing of it is kept. F and f are of the end; state is that of the start of the
+// step, as the others' arrays are. Of `density`, `stress`, `tangent` those are written that are not NULL: by a strength
+// model, and an equation of state adds its own.
+typedef struct brunt_trial_points {
+    int32_t count;                      // a multiple of BRUNT_LANES
+    int dim;                            // 2 (plane strain) or 3
+    real dt;                            // [s]; INFINITY when there is no time: nothing is viscous
+    const real *F[9];                   // deformation gradient [-]
+    const real *f[9];                   // of the step [-]: F = f F_old
+    const real *state[BRUNT_MAX_STATE]; // this component's own
+    // Incremental potential W per reference volume [J/m^3]: what is stored at the end, and what the step dissipates.
+    // INFINITY where J is not positive.
+    real *density;
+    // tau = P F^T, P = dW/dF [Pa], BRUNT_MATRIX(dim) components (not symmetric where the model is not objective).
+    real *stress[9];
+    // a = F F d2W/dFdF [Pa], BRUNT_TANGENT(dim) components: with spatial gradients g_A, g_B of two shape functions, the
+    // reference volume V0 and component i at A, j at B: d2(V0 W)/du_Ai du_Bj = V0 sum_ab g_Aa a_iajb g_Bb.
+    real *tangent[45];
+} brunt_trial_points;
+
+// What a model gives to implicit steps.
+typedef struct brunt_model_potential {
+    // Why there is no potential with these constants, in a few words, NULL: there is. NULL: always.
+    const char *(*refuses)(const real *constants);
+    void (*respond)(const real *constants, const brunt_trial_points *trial);
+    // The trial becomes the step: writes state; a strength model overwrites the stress, an equation of state adds to
+    // it. points->L is not given. NULL: the model's `update` does it, which then reads neither L nor dt.
+    brunt_update_result (*commit)(const real *constants, const brunt_trial_points *trial,
+                                  const brunt_material_points *points);
+    // As the model's own, NULL: that.
+    void (*energy)(const real *constants, const brunt_material_points *points, brunt_point_energy *energy);
+} brunt_model_potential;
+
 typedef struct brunt_parameter {
     const char *key;         // as typed in a scene
     const char *unit;        // "Pa", "1", "K", "J/kg/K"
@@ -131,6 +170,8 @@ typedef struct brunt_model {
     brunt_update_result (*update_plane_stress)(const real *constants, const brunt_material_points *points);
     void (*energy_plane_stress)(const real *constants, const brunt_material_points *points, brunt_point_energy *energy);
     real (*wave_speed_plane_stress)(const real *constants);
+    const brunt_model_potential *potential; // for implicit steps; NULL: it has none ...
+    const char *no_potential;               // ... because, after "the model's name ": "depends on the rate of strain"
 } brunt_model;
 
 // The lists. Order is the order of `brunt keys`.

@@ -20,6 +20,7 @@ typedef struct brunt_material {
     real wave_speed;  // [m/s] undeformed
     real rest_stress; // [Pa] what every normal stress is while undeformed: less the pressure of the equation of state
     bool membrane, tension_only; // in plane stress; bears no compression
+    bool implicit; // its steps are implicit: energies are those of the potentials; set by whom makes the world
     brunt_failure_action failure_action;
     // Of models in 2D and 3D: the first of their state arrays that holds this, -1 where there is none. `integrity` is
     // followed by `integrity_before`.
@@ -43,3 +44,17 @@ void brunt_material_energy(const brunt_material *material, brunt_component k, co
 brunt_update_result brunt_material_update(const brunt_material *material,
                                           brunt_material_points points[BRUNT_COMPONENTS], real *plastic, real *viscous,
                                           real *strain);
+
+// --- implicit steps
+// NULL when implicit steps can have the material, else why not, in one line.
+const char *brunt_material_implicit(const brunt_material *material);
+// Potential, stress and tangent of all components together, as far as they are wanted (material.h). trial[k] is the
+// range as component k sees it; they differ in state alone.
+void brunt_material_respond(const brunt_material *material, const brunt_trial_points trial[BRUNT_COMPONENTS]);
+// Takes the negative eigenvalues out of tangents: those of a as a symmetric matrix, made 0.
+void brunt_material_project(int dim, int32_t count, real *const tangent[45]);
+// The trial becomes the step: stress and state of points[k], which has F as in the trial. Result as of
+// brunt_material_update.
+brunt_update_result brunt_material_commit(const brunt_material *material,
+                                          const brunt_trial_points trial[BRUNT_COMPONENTS],
+                                          brunt_material_points points[BRUNT_COMPONENTS]);

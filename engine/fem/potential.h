@@ -1,0 +1,26 @@
+// What a finite-element body adds to what an implicit step minimises: the incremental potential of its material at the
+// elements' points, and of elements with one point the energy of their hourglass modes,
+//   V0 W(F) + sum_m k/2 |gamma_m . x|^2   (stiffness form, element.inc).
+// Nothing of the body changes before brunt_fem_commit.
+#pragma once
+
+#include "fem/fem_body.h"
+#include "linear/term.h"
+
+// NULL when implicit steps can have the body, else why not, in one line.
+const char *brunt_fem_implicit(const brunt_fem_body *body);
+
+typedef struct brunt_fem_potential brunt_fem_potential;
+// Node i of the body is block node `base + i` of the unknowns. NULL with the reason.
+brunt_fem_potential *brunt_fem_potential_make(brunt_fem_body *body, int32_t base, brunt_error *error);
+void brunt_fem_potential_free(brunt_fem_potential *potential);
+size_t brunt_fem_potential_bytes(const brunt_fem_potential *potential);
+// Begins a step of `dt` [s]; INFINITY: static, nothing is viscous.
+void brunt_fem_potential_step(brunt_fem_potential *potential, double dt);
+// The term; valid as long as the potential. Its `limit` leaves an element a tenth of the way to J = 0.
+brunt_term brunt_fem_potential_term(brunt_fem_potential *potential);
+// The step is that of displacements u [m], and nodes have velocities v [m/s] at its end (v NULL: those they have), both
+// of all unknowns: places, velocities, deformation gradients, stress, state, partial forces and the blocks' reports
+// follow. BRUNT_OK, or BRUNT_FAILED with body, element, place and reason.
+int brunt_fem_commit(brunt_fem_potential *potential, const brunt_team *team, const double *u, const double *v,
+                     brunt_error *error);
