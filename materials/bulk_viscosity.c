@@ -79,6 +79,8 @@ static real wave_speed(const real *constants) {
     return 0;
 }
 
+static bool off(const double *p) { return p[0] == 0 && p[1] == 0; }
+
 const brunt_model brunt_bulk_viscosity = {
     .name = "bulk-viscosity",
     .doc = "artificial bulk viscosity, linear and quadratic (von Neumann and Richtmyer 1950, Landshoff 1955)",
@@ -88,6 +90,7 @@ const brunt_model brunt_bulk_viscosity = {
     .state = state,
     .state_count = COUNT_OF(state),
     .prepare = prepare,
+    .off = off,
     .flops = {34, 83},
     .update = update,
     .energy = add_energy,

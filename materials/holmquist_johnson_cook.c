@@ -234,18 +234,15 @@ static void add_energy(const real *constants, const brunt_material_points *point
 
 static real wave_speed(const real *constants) { return brittle_wave_speed(constants, constants[ELASTIC]); }
 
-const brunt_model brunt_holmquist_johnson_cook = {
-    .name = "holmquist-johnson-cook",
-    .doc = "concrete: strength by pressure and rate, damage, compaction of pores (Holmquist, Johnson and Cook 1993)",
-    .plastic = true,
-    .damage = true,
-    .parameters = parameters,
-    .parameter_count = COUNT_OF(parameters),
-    .state = state,
-    .state_count = COUNT_OF(state),
-    .prepare = prepare,
-    .flops = {598, 736},
-    .update = update,
-    .energy = add_energy,
-    .wave_speed = wave_speed,
-};
+#define HOLMQUIST_JOHNSON_COOK                                                                                         \
+    .name = "holmquist-johnson-cook",                                                                                  \
+    .doc = "concrete: strength by pressure and rate, damage, compaction of pores (Holmquist, Johnson and Cook 1993)",  \
+    .plastic = true, .damage = true, .parameters = parameters, .parameter_count = COUNT_OF(parameters),                \
+    .state = state, .state_count = COUNT_OF(state), .prepare = prepare, .flops = {598, 736}, .update = update,         \
+    .energy = add_energy, .wave_speed = wave_speed
+
+static const brunt_model static_form = {HOLMQUIST_JOHNSON_COOK};
+
+static const brunt_model *reduced(const double *p) { return p[5] > 0 ? NULL : &static_form; }
+
+const brunt_model brunt_holmquist_johnson_cook = {HOLMQUIST_JOHNSON_COOK, .rate_dependent = true, .reduced = reduced};

@@ -6,6 +6,9 @@
 //
 // Strain, rate and temperature are all taken at the end of the step, in one equation for the plastic increment: the
 // flow stress at the end is the formula's to the solver's tolerance (1e-10), whatever the step.
+//
+// Each of B, C and taylor_quinney may be 0, and is then not computed: no power, no logarithm, and a temperature that
+// stays is one constant and no state.
 #include "materials/return_mapping.h"
 
 enum {
@@ -19,9 +22,11 @@ enum {
     MELT,
     INVERSE_RANGE,
     HEATING,
-    HEAT_SHARE
+    HEAT_SHARE,
+    COLD_SOFTENING
 };
 enum { TEMPERATURE = J2_MODEL_STATE };
+enum { P_A = 2, P_B, P_N, P_C, P_M, P_RATE_ZERO, P_MELT, P_REFERENCE, P_HEAT_CAPACITY, P_TAYLOR_QUINNEY };
 
 static const brunt_parameter parameters[] = {
     PARAMETER_E,
@@ -46,19 +51,20 @@ static real initial_temperature(const real *constants, int component) {
 static const brunt_state_field state[] = {J2_STATE, {"temperature", "K", 1, 1, initial_temperature}};
 
 static const char *prepare(const double *p, double density, bool with_eos, real *constants) {
-    if (!(p[8] > p[9])) return "melt is not above reference_temperature";
+    if (!(p[P_MELT] > p[P_REFERENCE])) return "melt is not above reference_temperature";
     j2_prepare(p[0], p[1], density, with_eos, constants);
-    constants[STATIC] = (real)p[2];
-    constants[POWER] = (real)p[3];
-    constants[EXPONENT] = (real)p[4];
-    constants[RATE] = (real)p[5];
-    constants[SOFTENING] = (real)p[6];
-    constants[RATE_ZERO] = (real)p[7];
-    constants[MELT] = (real)p[8];
-    constants[REFERENCE] = (real)p[9];
-    constants[INVERSE_RANGE] = (real)(1 / (p[8] - p[9]));
-    constants[HEATING] = (real)(p[11] / (density * p[10]));
-    constants[HEAT_SHARE] = (real)p[11];
+    constants[STATIC] = (real)p[P_A];
+    constants[POWER] = (real)p[P_B];
+    constants[EXPONENT] = (real)p[P_N];
+    constants[RATE] = (real)p[P_C];
+    constants[SOFTENING] = (real)p[P_M];
+    constants[RATE_ZERO] = (real)p[P_RATE_ZERO];
+    constants[MELT] = (real)p[P_MELT];
+    constants[REFERENCE] = (real)p[P_REFERENCE];
+    constants[INVERSE_RANGE] = (real)(1 / (p[P_MELT] - p[P_REFERENCE]));
+    constants[HEATING] = (real)(p[P_TAYLOR_QUINNEY] / (density * p[P_HEAT_CAPACITY]));
+    constants[HEAT_SHARE] = (real)p[P_TAYLOR_QUINNEY];
+    constants[COLD_SOFTENING] = 1; // T* = 0 until a body says otherwise
     return NULL;
 }
 
@@ -75,73 +81,120 @@ BRUNT_INLINE lanes softening(const real *k, lanes temperature, lanes *slope) {
     return 1 - tm;
 }
 
+// What of the law there is, as literals but for the last; softens: there is damage.
+typedef struct form {
+    int dim;
+    bool softens, rated, heats, hardens;
+} form;
+
 // Flow stress at the end of a step with the plastic increment delta, and its slope with delta. The temperature rise is
 // the step's own trapezoid of work, 1/2 delta (q_old + q), q = trial - stiffness delta.
-BRUNT_INLINE lanes flow_stress(const real *k, const j2_point *p, lanes start, lanes inverse_rate_step, lanes delta,
-                               lanes *slope) {
+BRUNT_INLINE lanes flow_stress(form f, const real *k, const j2_point *p, lanes start, lanes inverse_rate_step,
+                               lanes delta, lanes *slope) {
     lanes one = lanes_set(1), zero = lanes_set(0), tiny = lanes_set(LANES_REAL_MIN);
-    lanes strain = p->plastic_strain + delta;
-    lanes hardening = k[POWER] * power(strain, k[EXPONENT]);
-    lanes hard = k[STATIC] + hardening, hard_slope = k[EXPONENT] * hardening / lanes_max(strain, tiny);
+    lanes hard = lanes_set(k[STATIC]), hard_slope = zero;
+    if (f.hardens) {
+        lanes strain = p->plastic_strain + delta, hardening = k[POWER] * power(strain, k[EXPONENT]);
+        hard = k[STATIC] + hardening, hard_slope = k[EXPONENT] * hardening / lanes_max(strain, tiny);
+    }
     lanes rate = one, rate_slope = zero;
-    if (k[RATE] > 0) {
+    if (f.rated) {
         lanes ratio = delta * inverse_rate_step;
         lane_mask fast = ratio > 1;
         rate = 1 + k[RATE] * lanes_log(lanes_select(fast, ratio, one));
         rate_slope = lanes_select(fast, k[RATE] / lanes_max(delta, tiny), zero);
     }
-    lanes q = p->q - p->stiffness * delta, soft_slope;
-    lanes temperature = start + (real)0.5 * k[HEATING] * delta * (p->q_old + q);
-    lanes heating = (real)0.5 * k[HEATING] * (p->q_old + q - p->stiffness * delta);
-    lanes soft = softening(k, temperature, &soft_slope);
+    lanes soft = lanes_set(k[COLD_SOFTENING]), soft_slope = zero, heating = zero;
+    if (f.heats) {
+        lanes q = p->q - p->stiffness * delta;
+        lanes temperature = start + (real)0.5 * k[HEATING] * delta * (p->q_old + q);
+        heating = (real)0.5 * k[HEATING] * (p->q_old + q - p->stiffness * delta);
+        soft = softening(k, temperature, &soft_slope);
+    }
     *slope = hard_slope * rate * soft + hard * rate_slope * soft + hard * rate * soft_slope * heating;
     return hard * rate * soft;
 }
 
-BRUNT_INLINE brunt_update_result update_dim(int dim, bool softens, const real *k, const brunt_material_points *points) {
+// What softens the flow stress at the start of a step.
+BRUNT_INLINE lanes start_softening(form f, const real *k, lanes start) {
+    lanes slope;
+    return f.heats ? softening(k, start, &slope) : lanes_set(k[COLD_SOFTENING]);
+}
+
+BRUNT_INLINE lanes start_strength(form f, const real *k, lanes plastic_strain) {
+    return f.hardens ? k[STATIC] + k[POWER] * power(plastic_strain, k[EXPONENT]) : lanes_set(k[STATIC]);
+}
+
+BRUNT_INLINE brunt_update_result update_form(form f, const real *k, const brunt_material_points *points) {
     update_record record = update_begin();
-    const lanes inverse_rate_step = lanes_set(points->dt > 0 ? 1 / (points->dt * k[RATE_ZERO]) : 0);
+    const lanes zero = lanes_set(0);
+    const lanes inverse_rate_step = lanes_set(f.rated && points->dt > 0 ? 1 / (points->dt * k[RATE_ZERO]) : 0);
     for (int32_t i = 0; i < points->count; i += BRUNT_LANES) {
-        j2_point p = j2_trial(dim, k, points, i, &record);
-        real *temperature = points->state[j2_slot(dim, TEMPERATURE)] + i;
-        lanes zero = lanes_set(0), delta = zero, q = p.q, start = lanes_load(temperature), slope;
+        j2_point p = j2_trial(f.dim, k, points, i, &record);
+        real *temperature = f.heats ? points->state[j2_slot(f.dim, TEMPERATURE)] + i : NULL;
+        lanes delta = zero, q = p.q, start = f.heats ? lanes_load(temperature) : zero, slope;
         // Below the static strength without any hardening nothing flows: most vectors of most runs stop here.
-        const lanes integrity = j2_integrity(softens, points, i);
-        lanes lowest = k[STATIC] * softening(k, start, &slope);
-        if (softens) lowest *= integrity;
+        const lanes integrity = j2_integrity(f.softens, points, i);
+        lanes lowest = k[STATIC] * start_softening(f, k, start);
+        if (f.softens) lowest *= integrity;
         lane_mask plastic = p.q > lowest;
         if (lanes_any(plastic)) {
-            lanes yield = (k[STATIC] + k[POWER] * power(p.plastic_strain, k[EXPONENT])) * softening(k, start, &slope);
-            if (softens) yield *= integrity;
+            lanes yield = start_strength(f, k, p.plastic_strain) * start_softening(f, k, start);
+            if (f.softens) yield *= integrity;
             plastic = p.q > yield;
-            if (softens)
+            if (f.softens)
                 j2_set_softened_stiffness(k, points, i, &p);
             else
                 j2_set_stiffness(k, &p);
             j2_root root = j2_root_begin(&p, plastic);
             lane_mask gone = {0};
-            if (softens) gone = j2_root_collapse(&root, integrity);
+            if (f.softens) gone = j2_root_collapse(&root, integrity);
             for (int step = 0; step < J2_ROOT_STEPS && lanes_any(root.active); step++) {
-                q = flow_stress(k, &p, start, inverse_rate_step, root.delta, &slope);
-                if (softens) q *= integrity, slope *= integrity;
+                q = flow_stress(f, k, &p, start, inverse_rate_step, root.delta, &slope);
+                if (f.softens) q *= integrity, slope *= integrity;
                 j2_root_step(&p, &root, q, slope);
             }
             note_first(&record.model, root.active, i);
             delta = lanes_select(plastic, root.delta, zero);
             q = lanes_select(plastic, q, p.q);
-            if (softens) q = lanes_select(gone, zero, q);
-            j2_return(dim, &p, plastic, q);
+            if (f.softens) q = lanes_select(gone, zero, q);
+            j2_return(f.dim, &p, plastic, q);
         }
-        lanes work = j2_store(dim, k, points, i, &p, delta, q, &record);
-        lanes_store(temperature, start + k[HEATING] * work);
+        lanes work = j2_store(f.dim, k, points, i, &p, delta, q, &record);
+        if (f.heats) lanes_store(temperature, start + k[HEATING] * work);
     }
     return update_end(&record, points, "the plastic increment of the Johnson-Cook law was not found");
 }
 
-static brunt_update_result update(const real *constants, const brunt_material_points *points) {
+BRUNT_INLINE brunt_update_result update_of(bool rated, bool heats, const real *k, const brunt_material_points *points) {
+    const bool hardens = k[POWER] > 0;
     if (points->integrity)
-        return points->dim == 2 ? update_dim(2, true, constants, points) : update_dim(3, true, constants, points);
-    return points->dim == 2 ? update_dim(2, false, constants, points) : update_dim(3, false, constants, points);
+        return points->dim == 2 ? update_form((form){2, true, rated, heats, hardens}, k, points)
+                                : update_form((form){3, true, rated, heats, hardens}, k, points);
+    return points->dim == 2 ? update_form((form){2, false, rated, heats, hardens}, k, points)
+                            : update_form((form){3, false, rated, heats, hardens}, k, points);
+}
+
+static brunt_update_result update(const real *constants, const brunt_material_points *points) {
+    return update_of(true, true, constants, points);
+}
+
+static brunt_update_result update_static(const real *constants, const brunt_material_points *points) {
+    return update_of(false, true, constants, points);
+}
+
+static brunt_update_result update_cold(const real *constants, const brunt_material_points *points) {
+    return update_of(true, false, constants, points);
+}
+
+static brunt_update_result update_plain(const real *constants, const brunt_material_points *points) {
+    return update_of(false, false, constants, points);
+}
+
+// A temperature that stays: one vector as the heated form has it, for the same bits.
+static void set_temperature(real *constants, double temperature) {
+    lanes slope, soft = softening(constants, lanes_set((real)temperature), &slope);
+    constants[COLD_SOFTENING] = lanes_max_of(soft);
 }
 
 static void add_energy(const real *constants, const brunt_material_points *points, brunt_point_energy *energy) {
@@ -152,19 +205,23 @@ static void add_energy(const real *constants, const brunt_material_points *point
     energy->heat += (double)constants[HEAT_SHARE] * own.plastic;
 }
 
+#define JOHNSON_COOK                                                                                                   \
+    .name = "johnson-cook",                                                                                            \
+    .doc = "J2 plasticity with strain, rate and temperature dependence (Johnson and Cook 1983)", .plastic = true,      \
+    .accepts_eos = true, .parameters = parameters, .parameter_count = COUNT_OF(parameters), .state = state,            \
+    .prepare = prepare, .flops = {231, 334}, .wave_speed = j2_wave_speed
+#define HOT .thermal = true, .state_count = COUNT_OF(state), .energy = add_energy
+#define COLD .state_count = COUNT_OF(state) - 1, .energy = j2_energy, .set_temperature = set_temperature
+
+static const brunt_model static_form = {JOHNSON_COOK, HOT, .update = update_static};
+static const brunt_model cold_form = {JOHNSON_COOK, COLD, .rate_dependent = true, .update = update_cold};
+static const brunt_model plain_form = {JOHNSON_COOK, COLD, .update = update_plain};
+
+static const brunt_model *reduced(const double *p) {
+    if (p[P_TAYLOR_QUINNEY] > 0) return p[P_C] > 0 ? NULL : &static_form;
+    return p[P_C] > 0 ? &cold_form : &plain_form;
+}
+
 const brunt_model brunt_johnson_cook = {
-    .name = "johnson-cook",
-    .doc = "J2 plasticity with strain, rate and temperature dependence (Johnson and Cook 1983)",
-    .plastic = true,
-    .thermal = true,
-    .accepts_eos = true,
-    .parameters = parameters,
-    .parameter_count = COUNT_OF(parameters),
-    .state = state,
-    .state_count = COUNT_OF(state),
-    .prepare = prepare,
-    .flops = {231, 334},
-    .update = update,
-    .energy = add_energy,
-    .wave_speed = j2_wave_speed,
+    JOHNSON_COOK, HOT, .rate_dependent = true, .update = update, .reduced = reduced,
 };

@@ -15,7 +15,7 @@
 //           pressure may lie there, so that it belongs to a set and not to the law.
 #include "materials/tensor.h"
 
-enum { D1, D2, D3, D4, D5, INVERSE_RATE_ZERO, REFERENCE, INVERSE_RANGE, ONSET_SLOPE, SPALL, CUTOFF };
+enum { D1, D2, D3, D4, D5, INVERSE_RATE_ZERO, REFERENCE, INVERSE_RANGE, ONSET_SLOPE, SPALL, CUTOFF, COLD_FACTOR };
 enum { DAMAGE, INTEGRITY, INTEGRITY_BEFORE };
 
 // clang-format off
@@ -60,6 +60,7 @@ static const char *prepare(const double *p, double density, bool with_eos, real 
     constants[ONSET_SLOPE] = p[P_ONSET] < 1 ? (real)(1 / (1 - p[P_ONSET])) : MATERIAL_REAL_MAX;
     constants[SPALL] = (real)p[P_SPALL];
     constants[CUTOFF] = (real)p[P_CUTOFF];
+    constants[COLD_FACTOR] = 1; // T* = 0 until a body says otherwise
     return NULL;
 }
 
@@ -71,15 +72,24 @@ BRUNT_INLINE lanes triaxiality(int dim, const lanes tau[6], lanes mean) {
     return mean / lanes_max(q, lanes_set(LANES_REAL_MIN));
 }
 
+// 1 + D5 T*
+BRUNT_INLINE lanes heat_factor(const real *k, lanes temperature) {
+    lanes t = (temperature - k[REFERENCE]) * k[INVERSE_RANGE];
+    return 1 + k[D5] * lanes_min(lanes_max(t, lanes_set(0)), lanes_set(1));
+}
+
+// Of a strength model whose temperature stays.
+static void set_temperature(real *constants, double temperature) {
+    constants[COLD_FACTOR] = lanes_max_of(heat_factor(constants, lanes_set((real)temperature)));
+}
+
 BRUNT_INLINE lanes fracture_strain(const real *k, const brunt_material_points *points, int32_t i, lanes triaxial,
                                    lanes rate) {
     lanes one = lanes_set(1), strain = lanes_set(k[D1]);
     if (k[D2] != 0) strain += k[D2] * lanes_exp(k[D3] * triaxial);
     if (k[D4] != 0) strain *= 1 + k[D4] * lanes_log(lanes_max(rate * k[INVERSE_RATE_ZERO], one));
-    if (k[D5] != 0 && points->temperature) {
-        lanes t = (lanes_load(points->temperature + i) - k[REFERENCE]) * k[INVERSE_RANGE];
-        strain *= 1 + k[D5] * lanes_min(lanes_max(t, lanes_set(0)), one);
-    }
+    if (k[D5] != 0)
+        strain *= points->temperature ? heat_factor(k, lanes_load(points->temperature + i)) : lanes_set(k[COLD_FACTOR]);
     return strain;
 }
 
@@ -148,6 +158,7 @@ static const brunt_model sudden = {
     .state = state,
     .state_count = 1,
     .prepare = prepare,
+    .set_temperature = set_temperature,
     .update = update_sudden,
 };
 
@@ -162,6 +173,7 @@ const brunt_model brunt_johnson_cook_damage = {
     .state = state,
     .state_count = COUNT_OF(state),
     .prepare = prepare,
+    .set_temperature = set_temperature,
     .reduced = reduced,
     .update = update,
 };

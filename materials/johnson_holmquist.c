@@ -125,14 +125,18 @@ BRUNT_INLINE lanes bulked(const real *k, lanes bulking, lanes U, lanes change, l
     return bulking + lanes_select((net >= 0) & (U > 0), gain / sum, lanes_set(0));
 }
 
-BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_material_points *points) {
+// Without `bulks` beta is 0: no pressure of bulking is kept then.
+BRUNT_INLINE brunt_update_result update_dim(int dim, bool bulks, const real *k, const brunt_material_points *points) {
     update_record record = update_begin();
     const lanes per_step = inverse_rate_step(points, k[RATE_ZERO]), zero = lanes_set(0);
     bool failed = false;
     for (int32_t i = 0; i < points->count; i += BRUNT_LANES) {
         j2_point p = j2_trial(dim, k, points, i, &record);
-        real *damage = points->state[j2_slot(dim, DAMAGE)] + i, *bulking = points->state[j2_slot(dim, BULKING)] + i;
-        lanes change = p.volume_change, J = 1 + change, D = lanes_load(damage), dP = lanes_load(bulking);
+        real *damage = points->state[j2_slot(dim, DAMAGE)] + i;
+        real *bulking = bulks ? points->state[j2_slot(dim, BULKING)] + i : NULL;
+        lanes change = p.volume_change, J = 1 + change, D = lanes_load(damage);
+        const lanes dP = bulks ? lanes_load(bulking) : zero;
+        lanes pushed = dP;
         lanes elastic = elastic_pressure(k, change), pressure = lanes_max(elastic + dP, -k[TENSION] * (1 - D));
         lanes delta = zero, q = p.q, loss = zero;
         lane_mask plastic = p.q > 0;
@@ -144,19 +148,21 @@ BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_
                 delta = softening_return(dim, k, &p, &s, plastic, &q);
                 lanes grown = lanes_select(plastic, softening_damage(&s, delta), D);
                 lanes before = volume_change_before(dim, points, i, change);
-                lanes U = lanes_select(plastic, (begin * begin - q * q) * (1 / (6 * k[J2_MU])), zero);
-                lanes pushed = bulked(k, dP, U, change, before);
+                if (bulks) {
+                    lanes U = lanes_select(plastic, (begin * begin - q * q) * (1 / (6 * k[J2_MU])), zero);
+                    pushed = bulked(k, dP, U, change, before);
+                }
                 loss = stored_energy(k, change, dP, D) - stored_energy(k, change, pushed, grown);
                 loss += stored_energy(k, before, dP, D) - stored_energy(k, before, pushed, grown);
                 loss = lanes_select(plastic, (real)0.5 * loss, zero);
                 pressure = lanes_max(elastic + pushed, -k[TENSION] * (1 - grown));
                 lanes_store(damage, grown);
-                lanes_store(bulking, pushed);
+                if (bulks) lanes_store(bulking, pushed);
             }
         }
         j2_store(dim, k, points, i, &p, delta, q, &record);
         add_plastic_work(dim, points, i, loss);
-        lanes stiffness = pressure_slope(k, change, lanes_load(bulking), lanes_load(damage));
+        lanes stiffness = pressure_slope(k, change, pushed, lanes_load(damage));
         note_first(&record.model, ~(stiffness > 0), i);
         store_pressure(k, points, i, &p, J * pressure, stiffness, &record);
         failed |= fail_beyond(dim, points, i, k[FAILURE_STRAIN], damage);
@@ -168,27 +174,44 @@ BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_
 }
 
 static brunt_update_result update(const real *constants, const brunt_material_points *points) {
-    return points->dim == 2 ? update_dim(2, constants, points) : update_dim(3, constants, points);
+    return points->dim == 2 ? update_dim(2, true, constants, points) : update_dim(3, true, constants, points);
+}
+
+static brunt_update_result update_flat(const real *constants, const brunt_material_points *points) {
+    return points->dim == 2 ? update_dim(2, false, constants, points) : update_dim(3, false, constants, points);
 }
 
 static void add_energy(const real *constants, const brunt_material_points *points, brunt_point_energy *energy) {
     brittle_energy(constants, points, BULKING, DAMAGE, stored_energy, energy);
 }
 
+static lanes stored_without_bulking(const real *k, lanes change, lanes variable, lanes damage) {
+    (void)variable;
+    return stored_energy(k, change, lanes_set(0), damage);
+}
+
+static void add_energy_without_bulking(const real *constants, const brunt_material_points *points,
+                                       brunt_point_energy *energy) {
+    brittle_energy(constants, points, DAMAGE, DAMAGE, stored_without_bulking, energy);
+}
+
 static real wave_speed(const real *constants) { return brittle_wave_speed(constants, constants[K1]); }
 
-const brunt_model brunt_johnson_holmquist = {
-    .name = "johnson-holmquist-2",
-    .doc = "brittle ceramics and glass: intact and fractured strength, damage, bulking (Johnson and Holmquist 1994)",
-    .plastic = true,
-    .damage = true,
-    .parameters = parameters,
-    .parameter_count = COUNT_OF(parameters),
-    .state = state,
-    .state_count = COUNT_OF(state),
-    .prepare = prepare,
-    .flops = {538, 648},
-    .update = update,
-    .energy = add_energy,
-    .wave_speed = wave_speed,
-};
+#define JOHNSON_HOLMQUIST                                                                                              \
+    .name = "johnson-holmquist-2",                                                                                     \
+    .doc = "brittle ceramics and glass: intact and fractured strength, damage, bulking (Johnson and Holmquist 1994)",  \
+    .plastic = true, .damage = true, .parameters = parameters, .parameter_count = COUNT_OF(parameters),                \
+    .state = state, .prepare = prepare, .flops = {538, 648}, .wave_speed = wave_speed
+#define BULKS .state_count = COUNT_OF(state), .update = update, .energy = add_energy
+#define FLAT .state_count = COUNT_OF(state) - 1, .update = update_flat, .energy = add_energy_without_bulking
+
+static const brunt_model static_form = {JOHNSON_HOLMQUIST, BULKS};
+static const brunt_model flat_form = {JOHNSON_HOLMQUIST, FLAT, .rate_dependent = true};
+static const brunt_model static_flat_form = {JOHNSON_HOLMQUIST, FLAT};
+
+static const brunt_model *reduced(const double *p) {
+    if (p[16] > 0) return p[8] > 0 ? NULL : &static_form;
+    return p[8] > 0 ? &flat_form : &static_flat_form;
+}
+
+const brunt_model brunt_johnson_holmquist = {JOHNSON_HOLMQUIST, BULKS, .rate_dependent = true, .reduced = reduced};

@@ -120,7 +120,8 @@ typedef struct cold_products {
 } cold_products;
 
 BRUNT_INLINE cold_products cold(const real *k, lanes V) {
-    lanes first = k[FACTOR_1] * lanes_exp(-k[RATE_1] * V), second = k[FACTOR_2] * lanes_exp(-k[RATE_2] * V);
+    lanes first = k[FACTOR_1] * lanes_exp(-k[RATE_1] * V), second = lanes_set(0);
+    if (k[FACTOR_2] > 0) second = k[FACTOR_2] * lanes_exp(-k[RATE_2] * V);
     return (cold_products){.pressure = first + second,
                            .energy = first * (1 / k[RATE_1]) + second * (1 / k[RATE_2]),
                            .stiffness = k[RATE_1] * first + k[RATE_2] * second};

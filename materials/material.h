@@ -133,9 +133,11 @@ typedef struct brunt_state_field {
 } brunt_state_field;
 
 typedef struct brunt_model {
-    const char *name;                            // as typed in a scene: "neo-hookean"
-    const char *doc;                             // one line, with its source
-    bool plastic, thermal, eos, viscous, damage; // the effects it brings: the plan and the summary list them
+    const char *name; // as typed in a scene: "neo-hookean"
+    const char *doc;  // one line, with its source
+    // The effects it brings: the plan and the summary list them. A model whose parameters switch one off has a reduced
+    // form that does not bring it.
+    bool plastic, rate_dependent, thermal, eos, viscous, damage;
     bool explosive;     // burns: has a state "ignition_time" [s], set from the detonators when a body is made, and
                         // its first parameter "detonation_speed" [m/s]
     bool fluid;         // remembers no shape: the history of F but for J is nothing to it
@@ -156,6 +158,11 @@ typedef struct brunt_model {
     // What is left of the model when `parameters` switch effects off, with less state to keep; NULL: the model itself.
     // NULL where there is no such form. Constants are the same.
     const struct brunt_model *(*reduced)(const double *parameters);
+    // Whether nothing at all is left of a model that is optional; NULL: something always is.
+    bool (*off)(const double *parameters);
+    // Of a form whose points keep no temperature: what its constants are at `temperature` [K], which stays. NULL: they
+    // do not depend on it.
+    void (*set_temperature)(real *constants, double temperature);
     // One step for a range. Writes stress and state; a strength model overwrites the stress, the others add to it.
     brunt_update_result (*update)(const real *constants, const brunt_material_points *points);
     // Adds the range's energies to `energy`.

@@ -123,6 +123,14 @@ static int8_t state_place(const brunt_model *model, const char *name, int dim) {
     return -1;
 }
 
+// Of a failure model by its action, of a strength model with damage of its own where a failure strain is given.
+static bool erodes(const brunt_material *material, const brunt_material_def *def) {
+    const brunt_model *strength = material->model[BRUNT_STRENGTH];
+    if (material->model[BRUNT_FAILURE]) return material->failure_action == BRUNT_FAILURE_ERODE;
+    const int limit = strength->damage ? parameter_index(strength, "failure_strain") : -1;
+    return limit >= 0 && isfinite(def->strength_parameters[limit]);
+}
+
 int brunt_material_make(const brunt_material_def *def, brunt_material *material, brunt_error *error) {
     *material = (brunt_material){.density = (real)def->density};
     memcpy(material->name, def->name, sizeof material->name);
@@ -162,7 +170,9 @@ int brunt_material_make(const brunt_material_def *def, brunt_material *material,
         const bool whole = k == BRUNT_FAILURE && def->failure_action == BRUNT_FAILURE_SOFTEN;
         const brunt_model *reduced = model->reduced && !whole ? model->reduced(given[k]) : NULL;
         if (reduced) material->model[k] = reduced;
+        if (model->off && model->off(given[k])) material->model[k] = NULL;
     }
+    material->erodes = erodes(material, def);
     for (int dim = 2; dim <= 3; dim++) {
         material->temperature[dim - 2] = state_place(material->model[BRUNT_STRENGTH], "temperature", dim);
         material->integrity[dim - 2] = state_place(material->model[BRUNT_FAILURE], "integrity", dim);
@@ -180,6 +190,12 @@ int brunt_material_make(const brunt_material_def *def, brunt_material *material,
                           "materials.%s.eos: model '%s' has no pressure of its own, an equation of state is wanted",
                           def->name, strength->name);
     return BRUNT_OK;
+}
+
+void brunt_material_set_temperature(brunt_material *material, double temperature) {
+    for (int k = 0; k < BRUNT_COMPONENTS && temperature > 0; k++)
+        if (material->model[k] && material->model[k]->set_temperature)
+            material->model[k]->set_temperature(material->constants[k], temperature);
 }
 
 int brunt_material_make_membrane(const brunt_material_def *def, bool tension_only, brunt_material *material,

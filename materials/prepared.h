@@ -21,17 +21,21 @@ typedef struct brunt_material {
     real rest_stress; // [Pa] what every normal stress is while undeformed: less the pressure of the equation of state
     bool membrane, tension_only; // in plane stress; bears no compression
     bool implicit; // its steps are implicit: energies are those of the potentials; set by whom makes the world
+    bool erodes;   // points of it may fail, and leave when they do
     brunt_failure_action failure_action;
     // Of models in 2D and 3D: the first of their state arrays that holds this, -1 where there is none. `integrity` is
     // followed by `integrity_before`.
     int8_t temperature[2], integrity[2];
 } brunt_material;
 
-// Checks the definition and prepares the constants. BRUNT_BAD_INPUT with the offending key.
+// Checks the definition and prepares the constants, leaving out what its parameters switch off. BRUNT_BAD_INPUT with
+// the offending key.
 int brunt_material_make(const brunt_material_def *def, brunt_material *material, brunt_error *error);
 // The same of a membrane: of a model that has a plane-stress form, without equation of state, viscosity and failure.
 int brunt_material_make_membrane(const brunt_material_def *def, bool tension_only, brunt_material *material,
                                  brunt_error *error);
+// Of a body at `temperature` [K] at the start; 0: that of the models. For those that keep none of their own.
+void brunt_material_set_temperature(brunt_material *material, double temperature);
 // Stored and dissipated energy of a range [J], of component k; as a membrane when the material is one.
 void brunt_material_energy(const brunt_material *material, brunt_component k, const brunt_material_points *points,
                            brunt_point_energy *energy);

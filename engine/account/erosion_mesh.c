@@ -31,15 +31,6 @@ struct brunt_erosion_work {
 
 // ------------------------------------------------------------------------------------------ making
 
-// Whether points of the material may fail, and leave when they do.
-static bool fails(const brunt_material *material, const brunt_material_def *def) {
-    const brunt_model *strength = material->model[BRUNT_STRENGTH];
-    if (material->model[BRUNT_FAILURE]) return material->failure_action == BRUNT_FAILURE_ERODE;
-    for (int k = 0; strength->damage && k < strength->parameter_count; k++)
-        if (!strcmp(strength->parameters[k].key, "failure_strain")) return isfinite(def->strength_parameters[k]);
-    return false;
-}
-
 static const real *find_damage(const brunt_fem_body *fem) {
     const brunt_model *failure = fem->material.model[BRUNT_FAILURE],
                       *model = failure ? failure : fem->material.model[BRUNT_STRENGTH];
@@ -102,7 +93,7 @@ int brunt_erosion_make(brunt_erosion *erosion, const brunt_bodies *bodies, const
         if (status) return status;
         const int i = brunt_bodies_find(bodies, body->name);
         const brunt_body *mpm = bodies->all[i].mpm; // has its part since it was made
-        const bool by_failure = !mpm && fails(&bodies->all[i].fem->material, &def->materials[body->material]);
+        const bool by_failure = !mpm && bodies->all[i].fem->material.erodes;
         if (mpm ? !mpm->erodes : !by_failure && isinf(rule->strain) && !(rule->step > 0) && !rule->inverted) continue;
         if (!erosion->active && (status = allocate(erosion, bodies, error))) return status;
         erosion->rule[i] = *rule;

@@ -13,6 +13,14 @@ static bool moves(const brunt_group_def *group) {
     return group->action == BRUNT_GROUP_VELOCITY || group->action == BRUNT_GROUP_DISPLACEMENT;
 }
 
+// A load of 0, whatever its table says, is none: no forces are kept and nothing is gone over.
+static bool is_idle(const brunt_group_def *group) {
+    if (group->action == BRUNT_GROUP_PRESSURE) return group->value[0] == 0;
+    return group->action == BRUNT_GROUP_TRACTION && !(group->value[0] || group->value[1] || group->value[2]);
+}
+
+static bool loads(const brunt_node_set *set) { return !moves(&set->def) && !is_idle(&set->def); }
+
 // ------------------------------------------------------------------------------------------ making
 
 static void list_groups(const brunt_fem_body *fem, char *out, size_t size) {
@@ -162,8 +170,10 @@ int brunt_node_sets_make(brunt_node_sets *sets, const brunt_world_def *def, cons
             if (!(set->def.table.points[i][0] > set->def.table.points[i - 1][0]))
                 return brunt_fail(error, BRUNT_BAD_INPUT, "boundaries (%s).table: times must grow from point to point",
                                   set->wall->name);
+        if (is_idle(&set->def)) continue;
         status = moves(&set->def) ? make_prescribed(sets, k, error) : make_load(set, messages, error);
         if (status) return status;
+        sets->act = true;
         sets->has_gas = sets->has_gas || set->def.action == BRUNT_GROUP_GAS;
     }
     return BRUNT_OK;
@@ -189,7 +199,8 @@ void brunt_node_sets_validate(const brunt_node_sets *sets) {
     for (int k = 0; k < sets->count; k++) {
         const brunt_node_set *set = &sets->set[k];
         BRUNT_ASSERT(set->fem && set->wall && set->wall->group == &set->def);
-        BRUNT_ASSERT(moves(&set->def) ? sets->holder[set->fem_index] && set->fem->held : set->force && set->fem->load);
+        BRUNT_ASSERT(moves(&set->def) ? sets->holder[set->fem_index] && set->fem->held
+                                      : is_idle(&set->def) || (set->force && set->fem->load));
         BRUNT_ASSERT(set->face_count >= 0 && (!set->whole || set->face_count <= set->whole_count));
         BRUNT_ASSERT(set->def.action != BRUNT_GROUP_GAS || set->gas_energy >= 0);
     }
@@ -307,7 +318,7 @@ void brunt_loads_begin(brunt_node_sets *sets, const brunt_bodies *bodies, double
     }
     for (int k = 0; k < sets->count; k++) {
         brunt_node_set *set = &sets->set[k];
-        if (moves(&set->def)) continue;
+        if (!loads(set)) continue;
         make_forces(set, time, dt);
         if (set->def.action == BRUNT_GROUP_GAS && !(set->gas_volume > 0)) sets->gas_lost = set;
         book_loads(set, dt, true);
@@ -316,7 +327,7 @@ void brunt_loads_begin(brunt_node_sets *sets, const brunt_bodies *bodies, double
 
 void brunt_loads_end(const brunt_node_sets *sets, double dt) {
     for (int k = 0; k < sets->count; k++)
-        if (!moves(&sets->set[k].def)) book_loads(&sets->set[k], dt, false);
+        if (loads(&sets->set[k])) book_loads(&sets->set[k], dt, false);
 }
 
 // ------------------------------------------------------------------------------------------ prescribed motion

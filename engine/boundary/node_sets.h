@@ -29,9 +29,9 @@ typedef struct brunt_node_set {
 typedef struct brunt_node_sets {
     brunt_node_set *set;
     int count, fem_count;
-    uint8_t (**holder)[3]; // of each body, node and component: the set that prescribes it + 1
-    double **load_rate;    // of each body with loads that follow its surface: node_count, see load_step.c
-    bool has_gas;
+    uint8_t (**holder)[3];          // of each body, node and component: the set that prescribes it + 1
+    double **load_rate;             // of each body with loads that follow its surface: node_count, see load_step.c
+    bool has_gas, act;              // act: one of them does something
     const brunt_node_set *gas_lost; // gas whose volume is no longer positive
 } brunt_node_sets;
 

@@ -9,7 +9,7 @@
 
 static bool always(const brunt_world *world) { return world != NULL; }
 static bool meshes(const brunt_world *world) { return world->bodies.fem_count > 0; }
-static bool groups(const brunt_world *world) { return world->boundaries.sets.count > 0; }
+static bool groups(const brunt_world *world) { return world->boundaries.sets.act; }
 static bool loads_or_drag(const brunt_world *world) { return groups(world) || world->boundaries.damping.active; }
 static bool particles(const brunt_world *world) { return world->bodies.mpm_count > 0; }
 static bool mirrors(const brunt_world *world) { return particles(world) && world->boundaries.mirror_count > 0; }

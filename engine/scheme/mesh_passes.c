@@ -124,7 +124,7 @@ int brunt_pass_kick(brunt_world *world, brunt_step *step, brunt_error *error) {
     (void)error;
     const brunt_kick drag = drag_of(world, step);
     job j = {world, step->gravity, step->kick};
-    if (world->boundaries.sets.count || world->boundaries.damping.active)
+    if (world->boundaries.sets.act || world->boundaries.damping.active)
         brunt_loads_begin(&world->boundaries.sets, &world->bodies, world->clock.time, step->kick);
     if (world->boundaries.damping.active) brunt_damping_begin(&world->boundaries.damping, &world->bodies, &drag);
     brunt_parallel(world->settings.threads, world->bodies.tasks.node_count, 1, kick_nodes, &j, brunt_pass_timer(world));
@@ -145,7 +145,7 @@ int brunt_pass_groups(brunt_world *world, brunt_step *step, brunt_error *error) 
 int brunt_pass_finish_kick(brunt_world *world, brunt_step *step, brunt_error *error) {
     (void)error;
     const brunt_kick drag = drag_of(world, step);
-    if (world->boundaries.sets.count) brunt_loads_end(&world->boundaries.sets, step->kick);
+    if (world->boundaries.sets.act) brunt_loads_end(&world->boundaries.sets, step->kick);
     if (world->boundaries.damping.active)
         brunt_damping_end(&world->boundaries.damping, &world->bodies, &drag, &world->ledger.damping);
     return BRUNT_OK;

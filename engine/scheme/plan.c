@@ -78,7 +78,7 @@ static bool has_mirrors(const brunt_world *world) {
     X(surfaces, world->contact.has_surfaces, "contact of meshes, or planes they may meet")                             \
     X(hourglass, has_hourglass(world), "bodies: elements with hourglass modes")                                        \
     X(mass_scaling, has_mass_scaling(world), "bodies: mass_scaling")                                                   \
-    X(groups, world->boundaries.sets.count > 0, "boundaries: group")                                                   \
+    X(groups, world->boundaries.sets.act, "boundaries: group")                                                         \
     X(gas, world->boundaries.sets.has_gas, "boundaries: gas")                                                          \
     X(damping, world->boundaries.damping.active, "bodies: damping")                                                    \
     X(membranes, has_sheets(world), "bodies: method membrane")                                                         \
@@ -95,6 +95,7 @@ static bool has_mirrors(const brunt_world *world) {
 
 #define BRUNT_MODEL_EFFECTS(X)                                                                                         \
     X(plasticity, plastic)                                                                                             \
+    X(rate_dependence, rate_dependent)                                                                                 \
     X(thermal, thermal)                                                                                                \
     X(equation_of_state, eos)                                                                                          \
     X(bulk_viscosity, viscous) X(fluid, fluid) X(shear_viscosity, shear_viscous) X(damage, damage)

@@ -209,11 +209,8 @@ static int check_total_lagrangian(const brunt_world *world, const brunt_world_de
     return BRUNT_OK;
 }
 
-static int set_erosion(const brunt_world_def *def, const brunt_body_def *from, int32_t count, brunt_body *body,
-                       brunt_error *error) {
-    for (int k = 0; k < BRUNT_COMPONENTS; k++)
-        body->fails = body->fails || (body->material.model[k] && body->material.model[k]->damage);
-    body->fails = body->fails && def->materials[from->material].failure_action == BRUNT_FAILURE_ERODE;
+static int set_erosion(const brunt_body_def *from, int32_t count, brunt_body *body, brunt_error *error) {
+    body->fails = body->material.erodes;
     body->erodes_inverted = from->erosion.inverted;
     body->erodes = body->fails || body->erodes_inverted || isfinite(from->erosion.strain);
     body->keeps = body->erodes && from->erosion.keep;
@@ -232,8 +229,9 @@ static int make_particles(brunt_world *world, const brunt_world_def *def, const 
     body->spacing = lattice_spacing(def, from);
     int status = brunt_material_make(&def->materials[from->material], &body->material, error);
     if (status) return status;
+    brunt_material_set_temperature(&body->material, from->temperature);
     if (from->total_lagrangian && (status = check_total_lagrangian(world, def, order, body, error))) return status;
-    if ((status = set_erosion(def, from, filled->count, body, error))) return status;
+    if ((status = set_erosion(from, filled->count, body, error))) return status;
     world->bodies.has_fluid = world->bodies.has_fluid || body->material.model[BRUNT_STRENGTH]->fluid;
     brunt_particle_needs needs = {.affine = def->transfer == BRUNT_APIC,
                                   .reach = world->contact.has_grid || world->contact.has_augury ||

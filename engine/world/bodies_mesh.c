@@ -71,6 +71,7 @@ int brunt_make_elements(brunt_world *world, const brunt_world_def *def, const br
     if (!status)
         status = sheet ? brunt_material_make_membrane(law, from->tension_only, &material, error)
                        : brunt_material_make(law, &material, error);
+    if (!status) brunt_material_set_temperature(&material, from->temperature);
     if (!status)
         status = def->axisymmetric ? brunt_fem_make_axisymmetric(from, &material, mesh, fem, error)
                                    : brunt_fem_make(from, &material, def->dimension, mesh, fem, error);

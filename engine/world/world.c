@@ -165,9 +165,12 @@ static void find_transfers(brunt_transfers *t, const brunt_world_def *def) {
     t->advance = brunt_find_advance(def->dimension, def->axisymmetric, def->kernel, def->transfer);
 }
 
-brunt_world *brunt_world_create(const brunt_world_def *def, brunt_error *error) {
+brunt_world *brunt_world_create(const brunt_world_def *given, brunt_error *error) {
     if (error) *error = (brunt_error){.id = -1};
-    if (brunt_definition_check(def, error)) return NULL;
+    if (brunt_definition_check(given, error)) return NULL;
+    brunt_world_def own = *given;
+    if (own.transfer == BRUNT_FLIP && own.flip == 0) own.transfer = BRUNT_PIC; // nothing of their own velocity is kept
+    const brunt_world_def *def = &own;
     brunt_world *world = brunt_alloc(sizeof *world);
     const brunt_body_def **order = brunt_alloc((size_t)def->body_count * sizeof *order);
     if (!world || !order) {

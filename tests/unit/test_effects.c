@@ -56,6 +56,7 @@ static void make_membrane(scene *s) {
 
 static void none(scene *s) { (void)s; }
 static void apic(scene *s) { s->def.transfer = BRUNT_APIC; }
+static void flip_of_0(scene *s) { s->def.transfer = BRUNT_FLIP, s->def.flip = 0; }
 static void gravity(scene *s) { s->def.gravity[1] = -1; }
 static void no_gravity(scene *s) { s->def.gravity_ramp = 1; }
 static void total(scene *s) { s->bodies[0].total_lagrangian = true; }
@@ -85,6 +86,34 @@ static void plastic(scene *s) {
     snprintf(s->materials[0].strength, sizeof s->materials[0].strength, "von-mises");
     s->materials[0].strength_parameters[2] = 1e5;
 }
+static void thin(scene *s) { // bulk viscosity of 0
+    s->materials[0].bulk_viscosity = true;
+}
+static void viscous(scene *s) { thin(s), s->materials[0].viscosity_parameters[1] = 1.5; }
+static void hot(scene *s) {
+    const double parameters[] = {1e6, 0.3, 1e5, 0, 1, 0.1, 1, 1, 1000, 293.15, 400, 0.9};
+    snprintf(s->materials[0].strength, sizeof s->materials[0].strength, "johnson-cook");
+    memcpy(s->materials[0].strength_parameters, parameters, sizeof parameters);
+}
+static void hot_static(scene *s) { hot(s), s->materials[0].strength_parameters[5] = 0; }
+static void cold(scene *s) { hot(s), s->materials[0].strength_parameters[11] = 0; }
+static void cold_static(scene *s) { cold(s), s->materials[0].strength_parameters[5] = 0; }
+static void glass(scene *s) {
+    const double parameters[] = {1e6, 2e6, 0,   0,   0.93, 0.77, 0.088, 0.35, 0.003,
+                                 1,   0.5, 1e5, 1e6, 5e5,  0.05, 0.85,  1,    INFINITY};
+    snprintf(s->materials[0].strength, sizeof s->materials[0].strength, "johnson-holmquist-2");
+    memcpy(s->materials[0].strength_parameters, parameters, sizeof parameters);
+}
+static void glass_static(scene *s) { glass(s), s->materials[0].strength_parameters[8] = 0; }
+static void load(scene *s) {
+    static brunt_group_def group;
+    group = brunt_group_def_default();
+    snprintf(group.body, sizeof group.body, "a");
+    snprintf(group.group, sizeof group.group, "xmax");
+    group.action = BRUNT_GROUP_PRESSURE, group.value[0] = 1;
+    s->def.groups = &group, s->def.group_count = 1;
+}
+static void load_of_0(scene *s) { load(s), s->def.groups[0].value[0] = 0; }
 static void break_off(scene *s) {
     plastic(s);
     snprintf(s->materials[0].failure, sizeof s->materials[0].failure, "johnson-cook-damage");
@@ -110,6 +139,7 @@ static const asked list[] = {
     {"affine", make_points, apic, "affine "},
     {"gravity", make_points, gravity, "gravity "},
     {"gravity of 0", make_points, no_gravity, ""},
+    {"share of FLIP of 0", make_points, flip_of_0, ""},
     {"total Lagrangian", make_points, total, "total_lagrangian "},
     {"contact of points", make_points, on_grid, "contact "},
     {"friction", make_points, rub, "contact friction "},
@@ -124,6 +154,16 @@ static const asked list[] = {
     {"plasticity", make_points, plastic, "plasticity "},
     {"failure", make_points, break_off, "erosion plasticity damage "},
     {"softening", make_points, soften, "softening plasticity equation_of_state damage "},
+    {"bulk viscosity of 0", make_points, thin, ""},
+    {"bulk viscosity", make_points, viscous, "bulk_viscosity "},
+    {"rate and heat", make_points, hot, "plasticity rate_dependence thermal "},
+    {"rate of 0", make_points, hot_static, "plasticity thermal "},
+    {"heat of 0", make_points, cold, "plasticity rate_dependence "},
+    {"rate and heat of 0", make_points, cold_static, "plasticity "},
+    {"ceramics", make_points, glass, "plasticity rate_dependence damage "},
+    {"ceramics, rate of 0", make_points, glass_static, "plasticity damage "},
+    {"load", make_mesh, load, "elements groups "},
+    {"load of 0", make_mesh, load_of_0, "elements "},
     {"mesh", make_mesh, none, "elements "},
     {"contact of meshes", make_mesh, augury, "elements contact surfaces "},
     {"hourglass", make_mesh, hexes, "elements hourglass "},
@@ -153,8 +193,16 @@ START_TEST(plan_says_what_was_asked_for) {
         if (effect.on) strcat(strcat(said, effect.name), " ");
     }
     ck_assert_msg(!strcmp(said, a->effects), "%s: %s", a->name, said);
-    for (int32_t k = 0; k < brunt_array_count(world); k++) // an effect that is off has no array
-        ck_assert(strstr(a->effects, "hourglass") || !strstr(brunt_world_array(world, k).name, "hourglass"));
+    // An effect that is off has no array.
+    static const char *const arrays[][2] = {{"hourglass", "hourglass"},
+                                            {"thermal", "temperature"},
+                                            {"bulk_viscosity", "visc"},
+                                            {"damage", "damage"},
+                                            {"flip", "grid_velocity"}};
+    for (int32_t k = 0; k < brunt_array_count(world); k++)
+        for (size_t e = 0; e < sizeof arrays / sizeof *arrays; e++)
+            ck_assert_msg(strstr(a->effects, arrays[e][0]) || !strstr(brunt_world_array(world, k).name, arrays[e][1]),
+                          "%s: %s", a->name, brunt_world_array(world, k).name);
     ck_assert_msg(!brunt_world_step(world, INFINITY, &error), "%s: %s", a->name, error.message);
     for (int32_t p = 0; p < brunt_pass_count(world); p++) ck_assert_int_gt(brunt_world_pass(world, p).calls, 0);
     brunt_world_destroy(world);

@@ -859,6 +859,52 @@ START_TEST(viscosity_only_in_compression) {
 }
 END_TEST
 
+// ---------------------------------------------------------------------------------------------------- coefficients of
+// 0
+
+// What is left of a law where coefficients are 0 gives the stress, the plastic strain and the energy of the whole law,
+// in a body that is hot from the start as well.
+START_TEST(reduced_forms_are_the_law) {
+    static const struct {
+        const char *model, *off[3]; // coefficients of 0
+        int states;                 // fewer than the model has
+    } cases[] = {{"johnson-cook", {"C"}, 0},
+                 {"johnson-cook", {"taylor_quinney"}, 1},
+                 {"johnson-cook", {"C", "taylor_quinney", "B"}, 1},
+                 {"johnson-holmquist-2", {"C", "beta"}, 1},
+                 {"johnson-holmquist-2", {"beta"}, 1}};
+    const double temperature = 600;
+    const brunt_model *model = brunt_find_strength(cases[_i].model);
+    double parameters[BRUNT_MAX_PARAMETERS];
+    typical_parameters(model, 1, parameters);
+    for (int k = 0; k < 3 && cases[_i].off[k]; k++) parameters[parameter_index(model, cases[_i].off[k])] = 0;
+    const brunt_model *reduced = model->reduced(parameters);
+    ck_assert_ptr_nonnull(reduced);
+    ck_assert_int_eq(reduced->state_count, model->state_count - cases[_i].states);
+    for (int dim = 2; dim <= 3; dim++) {
+        sample whole = sample_create(model, parameters, false, dim, BRUNT_LANES),
+               less = sample_create(reduced, parameters, false, dim, BRUNT_LANES);
+        for (int l = 0; l < BRUNT_LANES && model->thermal; l++) {
+            state_of(&whole, "temperature")[l] = (real)temperature;
+            if (reduced->thermal) state_of(&less, "temperature")[l] = (real)temperature;
+        }
+        if (reduced->set_temperature) reduced->set_temperature(less.constants, temperature);
+        uint64_t seed = 5;
+        for (int step = 0; step < 20; step++) {
+            const mat H = random_matrix(&seed, dim, model->damage ? 2e-3 : 1e-2);
+            step_all(&whole, H), step_all(&less, H);
+            const mat a = get_stress(&whole, 0), b = get_stress(&less, 0), off = combine(1, a, -1, b);
+            ck_assert_double_le(sqrt(inner(off, off)), TOLERANCE(1e-9, 1e-2) * sqrt(inner(a, a)));
+        }
+        ck_assert_double_gt((double)state_of(&whole, "plastic_strain")[0], 0.01);
+        ck_assert_double_eq_tol((double)state_of(&less, "plastic_strain")[0],
+                                (double)state_of(&whole, "plastic_strain")[0], TOLERANCE(1e-10, 1e-3));
+        ck_assert_double_eq_tol(total_of(&less), total_of(&whole), TOLERANCE(1e-9, 1e-2) * total_of(&whole));
+        sample_destroy(&whole), sample_destroy(&less);
+    }
+}
+END_TEST
+
 static void nothing_is_leaked(void) { ck_assert_uint_eq(brunt_memory_live(), 0); }
 
 int main(void) {
@@ -887,6 +933,7 @@ int main(void) {
     tcase_add_test(closed, mie_gruneisen_hugoniot);
     tcase_add_test(closed, mie_gruneisen_heat_and_sound);
     tcase_add_test(closed, viscosity_only_in_compression);
+    tcase_add_loop_test(closed, reduced_forms_are_the_law, 0, 5);
     suite_add_tcase(suite, closed);
     SRunner *runner = srunner_create(suite);
     srunner_run_all(runner, CK_ENV);
