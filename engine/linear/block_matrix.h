@@ -43,6 +43,8 @@ static inline double *brunt_block_matrix_diagonal(brunt_block_matrix *m, int32_t
     return m->value + m->diagonal[node] * m->dim * m->dim;
 }
 
+enum { BRUNT_STENCIL_LIMIT = 1024 }; // nodes of a stencil
+
 // Adds the dense matrix of `count` nodes, each once, that the pattern couples: entry (node[a], i; node[b], j) is
 // dense[(a * dim + i) * count * dim + b * dim + j]. Quickest where nodes ascend. Not for two threads at rows of the
 // same node: brunt_assemble sees to that.

@@ -80,21 +80,3 @@ brunt_linear_status brunt_linear_factor(brunt_linear *s, const brunt_team *team,
                                         brunt_error *error);
 brunt_linear_status brunt_linear_solve(brunt_linear *s, const brunt_team *team, const double *b, double *x,
                                        brunt_error *error);
-
-// What a choice goes by.
-typedef struct brunt_linear_size {
-    int dim;
-    int64_t nodes;
-    double blocks;  // a node, about: 9 or 25 of grids in two dimensions, 15 of tetrahedra, 27 of bricks, 125 of grids
-    double courant; // c dt / h; INFINITY: static
-} brunt_linear_size;
-
-typedef struct brunt_linear_choice {
-    const brunt_linear_ops *solver;
-    brunt_preconditioner preconditioner;
-    double direct_seconds, pcg_seconds; // [s] estimated of one solution with either, on the machine of the table
-    char why[200];                      // a sentence
-} brunt_linear_choice;
-
-// The quicker one by estimate, the direct one when it takes less than twice as long: it cannot stall.
-brunt_linear_choice brunt_linear_choose(const brunt_linear_size *size);

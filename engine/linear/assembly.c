@@ -1,0 +1,98 @@
+#include "linear/assembly.h"
+
+#include <string.h>
+
+#include "base/array.h"
+#include "base/error.h"
+#include "base/memory.h"
+
+enum { COLOURS_A_ROUND = 64, GRAIN = 4 };
+
+// Gives colours base .. base + 63 to stencils that have none; how many are left without. A node remembers the colours
+// of this round by one bit each.
+static int64_t colour_round(brunt_colours *c, const brunt_stencils *list, int32_t nodes, int64_t base) {
+    int64_t left = 0;
+    memset(c->used, 0, (size_t)nodes * sizeof *c->used);
+    for (int64_t s = 0; s < list->count; s++) {
+        if (c->order[s] >= 0) continue;
+        uint64_t used = 0;
+        for (int64_t k = list->first[s]; k < list->first[s + 1]; k++) used |= c->used[list->node[k]];
+        if (used == UINT64_MAX) {
+            left++;
+            continue;
+        }
+        const int bit = __builtin_ctzll(~used);
+        c->order[s] = base + bit;
+        if (base + bit >= c->colours) c->colours = (int32_t)(base + bit + 1);
+        for (int64_t k = list->first[s]; k < list->first[s + 1]; k++) c->used[list->node[k]] |= (uint64_t)1 << bit;
+    }
+    return left;
+}
+
+static int sort_by_colour(brunt_colours *c) {
+    if (BRUNT_RESERVE(c->first, (size_t)c->colours + 2, 0)) return -1;
+    int64_t *next = c->first + 1;
+    memset(c->first, 0, ((size_t)c->colours + 2) * sizeof *c->first);
+    for (int64_t s = 0; s < c->count; s++) next[c->order[s] + 1]++;
+    for (int32_t k = 0; k < c->colours; k++) next[k + 1] += next[k];
+    for (int64_t s = 0; s < c->count; s++) c->stencil[next[c->order[s]]++] = s;
+    return 0;
+}
+
+static int make_colours(brunt_colours *c, const brunt_team *team, int dim, int32_t nodes, const brunt_stencils *list) {
+    int64_t largest = 0;
+    if (BRUNT_RESERVE(c->used, (size_t)nodes, 0) || BRUNT_RESERVE(c->order, (size_t)list->count, 0) ||
+        BRUNT_RESERVE(c->stencil, (size_t)list->count, 0))
+        return -1;
+    for (int64_t s = 0; s < list->count; s++) {
+        const int64_t size = list->first[s + 1] - list->first[s];
+        if (size > largest) largest = size;
+        c->order[s] = -1;
+    }
+    c->count = list->count, c->colours = 0, c->threads = team->threads, c->room = largest * largest * dim * dim;
+    for (int64_t base = 0, left = list->count; left; base += COLOURS_A_ROUND) left = colour_round(c, list, nodes, base);
+    return sort_by_colour(c) || BRUNT_RESERVE(c->dense, (size_t)(c->room * c->threads), 0) ? -1 : 0;
+}
+
+int brunt_colours_make(brunt_colours *c, const brunt_team *team, int dim, int32_t nodes, const brunt_stencils *stencils,
+                       brunt_error *error) {
+    if (!make_colours(c, team, dim, nodes, stencils)) return BRUNT_OK;
+    return brunt_fail(error, BRUNT_FAILED, "Out of memory for the order in which %lld stencils are assembled.",
+                      (long long)stencils->count);
+}
+
+void brunt_colours_free(brunt_colours *c) {
+    brunt_free(c->stencil), brunt_free(c->first), brunt_free(c->used), brunt_free(c->order), brunt_free(c->dense);
+    *c = (brunt_colours){0};
+}
+
+typedef struct colour_work {
+    brunt_block_matrix *m;
+    const brunt_stencils *stencils;
+    const brunt_colours *colours;
+    const int64_t *stencil; // of the colour
+    brunt_stencil_fn *fill;
+    void *context;
+} colour_work;
+
+static void add_stencils(void *context, int64_t begin, int64_t end, int worker) {
+    const colour_work *w = context;
+    double *dense = w->colours->dense + worker * w->colours->room;
+    for (int64_t i = begin; i < end; i++) {
+        const int64_t s = w->stencil[i], from = w->stencils->first[s];
+        const int count = (int)(w->stencils->first[s + 1] - from);
+        memset(dense, 0, (size_t)count * (size_t)count * (size_t)(w->m->dim * w->m->dim) * sizeof *dense);
+        w->fill(w->context, s, dense, worker);
+        brunt_block_matrix_add(w->m, w->stencils->node + from, count, dense);
+    }
+}
+
+void brunt_assemble(brunt_block_matrix *m, const brunt_team *team, const brunt_stencils *stencils,
+                    const brunt_colours *c, brunt_stencil_fn *fill, void *context) {
+    BRUNT_ASSERT(c->count == stencils->count && team->threads <= c->threads);
+    colour_work work = {m, stencils, c, NULL, fill, context};
+    for (int32_t k = 0; k < c->colours; k++) {
+        work.stencil = c->stencil + c->first[k];
+        brunt_parallel(team->threads, c->first[k + 1] - c->first[k], GRAIN, add_stencils, &work, team->timer);
+    }
+}

@@ -1,0 +1,133 @@
+#include "linear/block_matrix.h"
+
+#include <string.h>
+
+#include "base/error.h"
+#include "base/simd.h"
+
+enum { ROW_GRAIN = 64 };
+
+typedef struct row_work {
+    brunt_block_matrix *m;
+    const double *x;
+    double *y;
+    const uint8_t *held;
+    double diagonal;
+} row_work;
+
+static void zero_rows(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    const row_work *w = context;
+    const int64_t *first = w->m->first, size = w->m->dim * w->m->dim;
+    memset(w->m->value + first[begin] * size, 0, (size_t)((first[end] - first[begin]) * size) * sizeof(double));
+}
+
+void brunt_block_matrix_zero(brunt_block_matrix *m, const brunt_team *team) {
+    row_work work = {.m = m};
+    brunt_parallel(team->threads, m->nodes, ROW_GRAIN, zero_rows, &work, team->timer);
+}
+
+// The order of a stencil's nodes; almost always they ascend as they are.
+static void ascending(const int32_t *node, int count, int *order) {
+    for (int i = 0; i < count; i++) {
+        int k = i;
+        for (; k > 0 && node[order[k - 1]] > node[i]; k--) order[k] = order[k - 1];
+        order[k] = i;
+    }
+}
+
+BRUNT_INLINE void add_rows(brunt_block_matrix *m, const int32_t *node, const int *order, int count, const double *dense,
+                           int dim) {
+    for (int a = 0; a < count; a++) {
+        const int64_t end = m->first[node[a] + 1];
+        int64_t k = m->first[node[a]];
+        for (int o = 0; o < count; o++, k++) {
+            const int b = order[o];
+            while (k < end && m->column[k] < node[b]) k++;
+            BRUNT_ASSERT(k < end && m->column[k] == node[b]);
+            double *to = m->value + k * dim * dim;
+            for (int i = 0; i < dim; i++)
+                for (int j = 0; j < dim; j++) to[i * dim + j] += dense[((a * dim + i) * count + b) * dim + j];
+        }
+    }
+}
+
+void brunt_block_matrix_add(brunt_block_matrix *m, const int32_t *node, int count, const double *dense) {
+    int order[BRUNT_STENCIL_LIMIT];
+    BRUNT_ASSERT(count <= BRUNT_STENCIL_LIMIT);
+    ascending(node, count, order);
+    if (m->dim == 2)
+        add_rows(m, node, order, count, dense, 2);
+    else
+        add_rows(m, node, order, count, dense, 3);
+}
+
+static void multiply_2(const brunt_block_matrix *m, const double *x, double *y, int64_t row) {
+    double a = 0, b = 0;
+    for (int64_t k = m->first[row]; k < m->first[row + 1]; k++) {
+        const double *v = m->value + 4 * k, *p = x + 2 * (int64_t)m->column[k];
+        a += v[0] * p[0] + v[1] * p[1];
+        b += v[2] * p[0] + v[3] * p[1];
+    }
+    y[2 * row] = a, y[2 * row + 1] = b;
+}
+
+static void multiply_3(const brunt_block_matrix *m, const double *x, double *y, int64_t row) {
+    double a = 0, b = 0, c = 0;
+    for (int64_t k = m->first[row]; k < m->first[row + 1]; k++) {
+        const double *v = m->value + 9 * k, *p = x + 3 * (int64_t)m->column[k];
+        a += v[0] * p[0] + v[1] * p[1] + v[2] * p[2];
+        b += v[3] * p[0] + v[4] * p[1] + v[5] * p[2];
+        c += v[6] * p[0] + v[7] * p[1] + v[8] * p[2];
+    }
+    y[3 * row] = a, y[3 * row + 1] = b, y[3 * row + 2] = c;
+}
+
+static void multiply_rows(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    const row_work *w = context;
+    if (w->m->dim == 2)
+        for (int64_t r = begin; r < end; r++) multiply_2(w->m, w->x, w->y, r);
+    else
+        for (int64_t r = begin; r < end; r++) multiply_3(w->m, w->x, w->y, r);
+}
+
+void brunt_block_matrix_product(const brunt_block_matrix *m, const brunt_team *team, const double *x, double *y) {
+    row_work work = {.m = (brunt_block_matrix *)m, .x = x, .y = y};
+    brunt_parallel(team->threads, m->nodes, ROW_GRAIN, multiply_rows, &work, team->timer);
+}
+
+static void hold_rows(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    const row_work *w = context;
+    const int dim = w->m->dim;
+    for (int64_t r = begin; r < end; r++)
+        for (int64_t k = w->m->first[r]; k < w->m->first[r + 1]; k++) {
+            const uint8_t *row = w->held + r * dim, *column = w->held + (int64_t)w->m->column[k] * dim;
+            double *v = w->m->value + k * dim * dim;
+            for (int i = 0; i < dim; i++)
+                for (int j = 0; j < dim; j++)
+                    if (row[i] || column[j]) v[i * dim + j] = w->m->column[k] == r && i == j ? w->diagonal : 0;
+        }
+}
+
+void brunt_block_matrix_hold(brunt_block_matrix *m, const brunt_team *team, const uint8_t *held, double diagonal) {
+    row_work work = {.m = m, .held = held, .diagonal = diagonal};
+    brunt_parallel(team->threads, m->nodes, ROW_GRAIN, hold_rows, &work, team->timer);
+}
+
+double brunt_block_matrix_mean_diagonal(const brunt_block_matrix *m, const uint8_t *held) {
+    const int dim = m->dim;
+    double sum = 0;
+    int64_t count = 0;
+    for (int64_t n = 0; n < m->nodes; n++)
+        for (int c = 0; c < dim; c++)
+            if (!held || !held[n * dim + c]) sum += m->value[(m->diagonal[n] * dim + c) * dim + c], count++;
+    return count && sum > 0 ? sum / (double)count : 1;
+}
+
+void brunt_block_matrix_scale_diagonal(brunt_block_matrix *m, double factor) {
+    const int dim = m->dim;
+    for (int64_t n = 0; n < m->nodes; n++)
+        for (int c = 0; c < dim; c++) m->value[(m->diagonal[n] * dim + c) * dim + c] *= factor;
+}

@@ -1,0 +1,206 @@
+// The direct solver: MUMPS, sequential, with Cholesky's factors and the order of METIS. It goes on past negative pivots
+// and counts them: that count says whether the matrix is positive definite.
+#include <dlfcn.h>
+#include <dmumps_c.h>
+#include <math.h>
+#include <pthread.h>
+#include <stdint.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/array.h"
+#include "base/error.h"
+#include "base/memory.h"
+#include "linear/linear.h"
+#include "linear/order.h"
+
+enum { JOB_BEGIN = -1, JOB_END = -2, JOB_ANALYSE = 1, JOB_FACTOR = 2, JOB_SOLVE = 3 };
+enum { COMM_WORLD = -987654, SYMMETRIC_DEFINITE = 1 };
+// INFOG(1)
+enum { NO_INTEGERS = -8, NO_REALS = -9, SINGULAR = -10, NO_MEMORY = -13, OVER_LIMIT = -19, SINGULAR_PATTERN = -6 };
+enum { RELAXED = 30, RELAXED_MOST = 1000 }; // ICNTL(14) [%]: room beyond what the analysis asks for
+
+typedef struct direct {
+    DMUMPS_STRUC_C id;
+    const brunt_block_matrix *a;
+    int *row, *column, *order; // of the upper triangle, from 1; when each unknown is eliminated, from 1
+    int32_t *position;
+    double *value;
+    size_t row_capacity, column_capacity, order_capacity, position_capacity, value_capacity;
+    bool begun;
+} direct;
+
+// MUMPS numbers its arrays from 1 in what is written of it.
+#define ICNTL(d, i) ((d)->id.icntl[(i)-1])
+#define INFOG(d, i) ((d)->id.infog[(i)-1])
+#define RINFOG(d, i) ((d)->id.rinfog[(i)-1])
+
+// It has global variables: one call at a time.
+static pthread_mutex_t one_at_a_time = PTHREAD_MUTEX_INITIALIZER;
+
+static void call(direct *d, int job) {
+    d->id.job = job;
+    pthread_mutex_lock(&one_at_a_time);
+    dmumps_c(&d->id);
+    pthread_mutex_unlock(&one_at_a_time);
+}
+
+// OpenBLAS with threads of its own changes sums with their number, and is slower on the small blocks that are most.
+static void one_thread_for_blas(void) {
+    void (*set_threads)(int);
+    void *found = dlsym(RTLD_DEFAULT, "openblas_set_num_threads");
+    if (!found) return;
+    memcpy(&set_threads, &found, sizeof found);
+    set_threads(1);
+}
+
+static void *direct_make(void) {
+    direct *d = brunt_alloc(sizeof *d);
+    if (!d) return NULL;
+    one_thread_for_blas();
+    d->id.par = 1, d->id.sym = SYMMETRIC_DEFINITE, d->id.comm_fortran = COMM_WORLD;
+    call(d, JOB_BEGIN);
+    d->begun = INFOG(d, 1) >= 0;
+    if (!d->begun) {
+        brunt_free(d);
+        return NULL;
+    }
+    for (int i = 1; i <= 4; i++) ICNTL(d, i) = i == 4 ? 0 : -1; // prints nothing
+    ICNTL(d, 6) = 0;                                            // no permutation of columns
+    ICNTL(d, 7) = 1;                                            // the order is given
+    ICNTL(d, 8) = 0;  // no scaling: Cholesky's factors scale with the matrix, and there are no pivots to choose
+    ICNTL(d, 10) = 0; // no refinement: residuals are 1e-14 of b without (Newton's next iteration is one)
+    ICNTL(d, 13) = 1; // the last front as the others: its negative pivots count
+    ICNTL(d, 14) = RELAXED;
+    ICNTL(d, 28) = 1; // the analysis by one process
+    return d;
+}
+
+static void direct_free(void *self) {
+    direct *d = self;
+    if (d->begun) call(d, JOB_END);
+    brunt_free(d->row), brunt_free(d->column), brunt_free(d->order), brunt_free(d->position), brunt_free(d->value);
+    brunt_free(d);
+}
+
+static brunt_linear_status out_of_memory(const brunt_block_matrix *a, brunt_error *error) {
+    brunt_fail(error, BRUNT_FAILED, "Out of memory for the factors of a matrix of %lld unknowns.",
+               (long long)a->nodes * a->dim);
+    return BRUNT_LINEAR_FAILED;
+}
+
+// What INFOG says went wrong in `job`.
+static brunt_linear_status explain(const direct *d, const char *job, brunt_error *error) {
+    const int code = INFOG(d, 1), more = INFOG(d, 2);
+    if (code == SINGULAR || code == SINGULAR_PATTERN) {
+        brunt_fail(error, BRUNT_FAILED, "The matrix is not positive definite: it is singular, of rank %d of %d.", more,
+                   d->id.n);
+        return BRUNT_LINEAR_INDEFINITE;
+    }
+    if (code == NO_MEMORY || code == OVER_LIMIT || code == NO_REALS || code == NO_INTEGERS)
+        return out_of_memory(d->a, error);
+    brunt_fail(error, BRUNT_FAILED, "MUMPS failed to %s a matrix of %d unknowns: INFOG(1) = %d, INFOG(2) = %d.", job,
+               d->id.n, code, more);
+    return BRUNT_LINEAR_FAILED;
+}
+
+// Entries of the upper triangle in the order of blocks: where they are, or (places false) their values.
+static int64_t upper_triangle(direct *d, const brunt_block_matrix *a, bool places) {
+    const int dim = a->dim;
+    int64_t e = 0;
+    for (int32_t r = 0; r < a->nodes; r++)
+        for (int64_t k = a->diagonal[r]; k < a->first[r + 1]; k++)
+            for (int i = 0; i < dim; i++)
+                for (int j = k == a->diagonal[r] ? i : 0; j < dim; j++, e++) {
+                    if (places)
+                        d->row[e] = r * dim + i + 1, d->column[e] = a->column[k] * dim + j + 1;
+                    else
+                        d->value[e] = a->value[(k * dim + i) * dim + j];
+                }
+    return e;
+}
+
+static int64_t memory_of_machine(void) {
+    const int64_t bytes = (int64_t)sysconf(_SC_PHYS_PAGES) * sysconf(_SC_PAGESIZE) - (int64_t)brunt_memory_live();
+    return bytes > 0 ? bytes : 0;
+}
+
+static brunt_linear_status check_memory(brunt_linear *s, brunt_error *error) {
+    const direct *d = s->self;
+    const int64_t limit = s->options.memory ? s->options.memory : memory_of_machine();
+    const double entries = INFOG(d, 20);
+    s->report.entries = entries < 0 ? -1e6 * entries : entries;
+    s->report.memory = (int64_t)fmax(1e6 * INFOG(d, 17), 8 * s->report.entries); // it counts whole megabytes
+    s->report.flops = RINFOG(d, 1);
+    if (s->report.memory <= limit) return BRUNT_LINEAR_DONE;
+    brunt_fail(error, BRUNT_FAILED,
+               "The direct solver would take %.3g GB for %d unknowns, and there are %.3g GB: pcg takes less.",
+               (double)s->report.memory * 1e-9, d->id.n, (double)limit * 1e-9);
+    return BRUNT_LINEAR_FAILED;
+}
+
+static brunt_linear_status direct_analyse(brunt_linear *s, const brunt_team *team, const brunt_block_matrix *a,
+                                          brunt_error *error) {
+    (void)team;
+    direct *d = s->self;
+    const int64_t unknowns = (int64_t)a->nodes * a->dim, size = a->dim * a->dim,
+                  entries = (brunt_block_matrix_blocks(a) - a->nodes) / 2 * size + a->nodes * (size + a->dim) / 2;
+    d->a = a;
+    if (unknowns > INT32_MAX) {
+        brunt_fail(error, BRUNT_FAILED, "The direct solver takes up to %d unknowns; these are %lld.", INT32_MAX,
+                   (long long)unknowns);
+        return BRUNT_LINEAR_FAILED;
+    }
+    if (BRUNT_RESERVE(d->row, (size_t)entries, 0) || BRUNT_RESERVE(d->column, (size_t)entries, 0) ||
+        BRUNT_RESERVE(d->value, (size_t)entries, 0) || BRUNT_RESERVE(d->order, (size_t)unknowns, 0) ||
+        BRUNT_RESERVE(d->position, (size_t)a->nodes, 0))
+        return out_of_memory(a, error);
+    if (brunt_elimination_order(a, d->position, error)) return BRUNT_LINEAR_FAILED;
+    for (int32_t n = 0; n < a->nodes; n++)
+        for (int c = 0; c < a->dim; c++) d->order[n * a->dim + c] = d->position[n] * a->dim + c + 1;
+    d->id.n = (int)unknowns, d->id.nnz = upper_triangle(d, a, true);
+    BRUNT_ASSERT(d->id.nnz == entries);
+    d->id.irn = d->row, d->id.jcn = d->column, d->id.a = d->value, d->id.perm_in = d->order;
+    ICNTL(d, 14) = RELAXED;
+    call(d, JOB_ANALYSE);
+    return INFOG(d, 1) < 0 ? explain(d, "analyse", error) : check_memory(s, error);
+}
+
+static brunt_linear_status direct_factor(brunt_linear *s, const brunt_team *team, const brunt_block_matrix *a,
+                                         brunt_error *error) {
+    (void)team;
+    direct *d = s->self;
+    d->a = a;
+    upper_triangle(d, a, false);
+    call(d, JOB_FACTOR);
+    while ((INFOG(d, 1) == NO_REALS || INFOG(d, 1) == NO_INTEGERS) && ICNTL(d, 14) < RELAXED_MOST) {
+        ICNTL(d, 14) *= 2; // its estimate was short
+        call(d, JOB_FACTOR);
+    }
+    if (INFOG(d, 1) < 0) return explain(d, "factorise", error);
+    s->report.negative = INFOG(d, 12);
+    if (s->report.negative == 0) return BRUNT_LINEAR_DONE;
+    brunt_fail(error, BRUNT_FAILED, "The matrix is not positive definite: %d of %d pivots are negative.",
+               s->report.negative, d->id.n);
+    return BRUNT_LINEAR_INDEFINITE;
+}
+
+static brunt_linear_status direct_solve(brunt_linear *s, const brunt_team *team, const double *b, double *x,
+                                        brunt_error *error) {
+    (void)team;
+    direct *d = s->self;
+    memcpy(x, b, (size_t)d->id.n * sizeof *x);
+    d->id.rhs = x, d->id.nrhs = 1, d->id.lrhs = d->id.n;
+    call(d, JOB_SOLVE);
+    if (INFOG(d, 1) < 0) return explain(d, "solve with", error);
+    for (int i = 0; i < d->id.n; i++)
+        if (!isfinite(x[i])) {
+            brunt_fail(error, BRUNT_FAILED, "The matrix is not positive definite: unknown %d has no finite solution.",
+                       i);
+            return BRUNT_LINEAR_INDEFINITE;
+        }
+    return BRUNT_LINEAR_DONE;
+}
+
+const brunt_linear_ops brunt_linear_direct = {"direct",      direct_make,  direct_analyse,
+                                              direct_factor, direct_solve, direct_free};

@@ -1,0 +1,51 @@
+#include "linear/linear.h"
+
+#include <string.h>
+
+#include "base/error.h"
+
+static const brunt_linear_ops *const solvers[] = {&brunt_linear_direct, &brunt_linear_pcg, NULL};
+
+const brunt_linear_ops *const *brunt_linear_list(void) { return solvers; }
+
+const brunt_linear_ops *brunt_linear_find(const char *name) {
+    for (int i = 0; solvers[i]; i++)
+        if (!strcmp(solvers[i]->name, name)) return solvers[i];
+    return NULL;
+}
+
+int brunt_linear_open(brunt_linear *s, const brunt_linear_ops *ops, const brunt_linear_options *options,
+                      brunt_error *error) {
+    if (s->ops != ops) {
+        brunt_linear_close(s);
+        s->self = ops->make();
+        if (!s->self) return brunt_fail(error, BRUNT_FAILED, "The solver %s could not be set up.", ops->name);
+        s->ops = ops;
+    }
+    s->options = *options;
+    s->report = (brunt_linear_report){0};
+    return BRUNT_OK;
+}
+
+void brunt_linear_close(brunt_linear *s) {
+    if (s->ops) s->ops->free(s->self);
+    *s = (brunt_linear){0};
+}
+
+brunt_linear_status brunt_linear_analyse(brunt_linear *s, const brunt_team *team, const brunt_block_matrix *a,
+                                         brunt_error *error) {
+    BRUNT_ASSERT(s->ops && a->pattern);
+    return s->ops->analyse(s, team, a, error);
+}
+
+brunt_linear_status brunt_linear_factor(brunt_linear *s, const brunt_team *team, const brunt_block_matrix *a,
+                                        brunt_error *error) {
+    BRUNT_ASSERT(s->ops && a->pattern);
+    return s->ops->factor(s, team, a, error);
+}
+
+brunt_linear_status brunt_linear_solve(brunt_linear *s, const brunt_team *team, const double *b, double *x,
+                                       brunt_error *error) {
+    BRUNT_ASSERT(s->ops);
+    return s->ops->solve(s, team, b, x, error);
+}

@@ -1,0 +1,231 @@
+// The pattern of a matrix from lists of stencils. First which stencils hold each node, then row by row the union of
+// these, by a marker for each node; each thread keeps the rows that it has made until all rows have their place.
+#include "linear/block_matrix.h"
+
+#include <string.h>
+
+#include "base/array.h"
+#include "base/error.h"
+#include "base/memory.h"
+
+enum { LIST_SHIFT = 56, ROW_GRAIN = 64, FEW = 24 };
+
+typedef struct row_maker {
+    int32_t *mark;   // of each node: the row + 1 that has it
+    int32_t *column; // rows made by this thread, one after the other
+    int64_t made;
+    size_t mark_capacity, column_capacity;
+    bool failed;
+} row_maker;
+
+typedef struct row_place {
+    int64_t at;
+    int32_t count, worker;
+} row_place;
+
+struct brunt_pattern_scratch {
+    int64_t *first;   // nodes + 1: of each node, where its stencils are listed
+    int64_t *stencil; // list << LIST_SHIFT | number
+    row_place *row;   // where a new row is until it has its place
+    int64_t *new_first;
+    int32_t *new_column;
+    size_t first_capacity, stencil_capacity, row_capacity, new_first_capacity, new_column_capacity;
+    row_maker maker[BRUNT_THREAD_LIMIT];
+};
+
+typedef struct pattern_work {
+    brunt_block_matrix *m;
+    const brunt_pattern *pattern;
+    struct brunt_pattern_scratch *s;
+    bool keep;
+} pattern_work;
+
+// Which stencils hold each node, in the order of lists and of stencils.
+static int list_holders(struct brunt_pattern_scratch *s, const brunt_pattern *p) {
+    int64_t entries = 0;
+    for (int l = 0; l < p->lists; l++)
+        if (p->stencils[l].count) entries += p->stencils[l].first[p->stencils[l].count] - p->stencils[l].first[0];
+    if (BRUNT_RESERVE(s->first, (size_t)p->nodes + 2, 0) || BRUNT_RESERVE(s->stencil, (size_t)entries, 0)) return -1;
+    int64_t *next = s->first + 1; // shifted by one: filling moves each to where the next one begins
+    memset(s->first, 0, ((size_t)p->nodes + 2) * sizeof *s->first);
+    for (int l = 0; l < p->lists; l++) {
+        const brunt_stencils *list = p->stencils + l;
+        for (int64_t k = list->count ? list->first[0] : 0; list->count && k < list->first[list->count]; k++) {
+            BRUNT_ASSERT(list->node[k] >= 0 && list->node[k] < p->nodes);
+            next[list->node[k] + 1]++;
+        }
+    }
+    for (int32_t n = 0; n < p->nodes; n++) next[n + 1] += next[n];
+    for (int l = 0; l < p->lists; l++) {
+        const brunt_stencils *list = p->stencils + l;
+        for (int64_t i = 0; i < list->count; i++)
+            for (int64_t k = list->first[i]; k < list->first[i + 1]; k++)
+                s->stencil[next[list->node[k]]++] = (int64_t)l << LIST_SHIFT | i;
+    }
+    return 0;
+}
+
+static void sort_few(int32_t *a, int64_t count) {
+    for (int64_t i = 1; i < count; i++) {
+        const int32_t x = a[i];
+        int64_t k = i;
+        for (; k > 0 && a[k - 1] > x; k--) a[k] = a[k - 1];
+        a[k] = x;
+    }
+}
+
+// By merging; `room` for as many.
+static void sort_columns(int32_t *a, int64_t count, int32_t *room) {
+    if (count <= FEW) {
+        sort_few(a, count);
+        return;
+    }
+    const int64_t half = count / 2;
+    sort_columns(a, half, room);
+    sort_columns(a + half, count - half, room);
+    if (a[half - 1] < a[half]) return;
+    memcpy(room, a, (size_t)half * sizeof *a);
+    int64_t i = 0, j = half, k = 0;
+    while (i < half && j < count) a[k++] = room[i] < a[j] ? room[i++] : a[j++];
+    while (i < half) a[k++] = room[i++];
+}
+
+// Puts columns that the row has not yet behind `count` others; there is room for all.
+static int64_t mark_columns(row_maker *w, int32_t row, const int32_t *column, int64_t columns, int64_t count) {
+    int32_t *to = w->column + w->made;
+    for (int64_t k = 0; k < columns; k++)
+        if (w->mark[column[k]] != row + 1) w->mark[column[k]] = row + 1, to[count++] = column[k];
+    return count;
+}
+
+// Room for `more` columns of the row under way, which has `count`, and as much again to sort them in.
+static int row_room(row_maker *w, int64_t count, int64_t more) {
+    return BRUNT_RESERVE(w->column, (size_t)(w->made + 2 * (count + more)), (size_t)(w->made + count));
+}
+
+static int64_t make_row(const pattern_work *work, row_maker *w, int32_t row) {
+    const struct brunt_pattern_scratch *s = work->s;
+    const brunt_block_matrix *m = work->m;
+    const int64_t kept = work->keep ? m->first[row + 1] - m->first[row] : 0;
+    if (row_room(w, 0, kept + 1)) return -1;
+    int64_t count = mark_columns(w, row, &row, 1, 0);
+    if (kept) count = mark_columns(w, row, m->column + m->first[row], kept, count);
+    for (int64_t k = s->first[row]; k < s->first[row + 1]; k++) {
+        const brunt_stencils *list = work->pattern->stencils + (s->stencil[k] >> LIST_SHIFT);
+        const int64_t i = s->stencil[k] & (((int64_t)1 << LIST_SHIFT) - 1), size = list->first[i + 1] - list->first[i];
+        if (row_room(w, count, size)) return -1;
+        count = mark_columns(w, row, list->node + list->first[i], size, count);
+    }
+    sort_columns(w->column + w->made, count, w->column + w->made + count);
+    return count;
+}
+
+static void make_rows(void *context, int64_t begin, int64_t end, int worker) {
+    const pattern_work *work = context;
+    row_maker *w = work->s->maker + worker;
+    for (int64_t r = begin; r < end && !w->failed; r++) {
+        const int64_t count = make_row(work, w, (int32_t)r);
+        w->failed = count < 0;
+        work->s->row[r] = (row_place){w->made, (int32_t)count, worker};
+        if (count > 0) w->made += count;
+    }
+}
+
+static void place_rows(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    const pattern_work *work = context;
+    struct brunt_pattern_scratch *s = work->s;
+    for (int64_t r = begin; r < end; r++) {
+        const row_place *p = s->row + r;
+        memcpy(s->new_column + s->new_first[r], s->maker[p->worker].column + p->at, (size_t)p->count * sizeof(int32_t));
+    }
+}
+
+static void find_diagonals(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    brunt_block_matrix *m = context;
+    for (int64_t r = begin; r < end; r++) {
+        int64_t low = m->first[r], high = m->first[r + 1] - 1;
+        while (low < high) {
+            const int64_t middle = (low + high) / 2;
+            if (m->column[middle] < r)
+                low = middle + 1;
+            else
+                high = middle;
+        }
+        m->diagonal[r] = low;
+    }
+}
+
+// The rows, into new_first and new_column.
+static int new_rows(pattern_work *work, const brunt_team *team) {
+    struct brunt_pattern_scratch *s = work->s;
+    const int32_t nodes = work->pattern->nodes;
+    if (list_holders(s, work->pattern) || BRUNT_RESERVE(s->row, (size_t)nodes, 0)) return -1;
+    for (int t = 0; t < team->threads; t++) {
+        row_maker *w = s->maker + t;
+        if (BRUNT_RESERVE(w->mark, (size_t)nodes, 0)) return -1;
+        memset(w->mark, 0, (size_t)nodes * sizeof *w->mark);
+        w->made = 0, w->failed = false;
+    }
+    brunt_parallel(team->threads, nodes, ROW_GRAIN, make_rows, work, team->timer);
+    for (int t = 0; t < team->threads; t++)
+        if (s->maker[t].failed) return -1;
+    if (BRUNT_RESERVE(s->new_first, (size_t)nodes + 1, 0)) return -1;
+    s->new_first[0] = 0;
+    for (int32_t r = 0; r < nodes; r++) s->new_first[r + 1] = s->new_first[r] + s->row[r].count;
+    if (BRUNT_RESERVE(s->new_column, (size_t)s->new_first[nodes], 0)) return -1;
+    brunt_parallel(team->threads, nodes, ROW_GRAIN, place_rows, work, team->timer);
+    return 0;
+}
+
+static bool same_pattern(const brunt_block_matrix *m, const brunt_pattern *p) {
+    const struct brunt_pattern_scratch *s = m->scratch;
+    return m->pattern && m->dim == p->dim && m->nodes == p->nodes && m->first[m->nodes] == s->new_first[m->nodes] &&
+           !memcmp(m->first, s->new_first, ((size_t)m->nodes + 1) * sizeof *m->first) &&
+           !memcmp(m->column, s->new_column, (size_t)m->first[m->nodes] * sizeof *m->column);
+}
+
+// Takes the rows that have been made for its own.
+static int take_rows(brunt_block_matrix *m, const brunt_team *team, const brunt_pattern *p) {
+    struct brunt_pattern_scratch *s = m->scratch;
+    const size_t values = (size_t)s->new_first[p->nodes] * (size_t)(p->dim * p->dim);
+    if (BRUNT_RESERVE(m->diagonal, (size_t)p->nodes, 0) || BRUNT_RESERVE(m->value, values, 0)) return -1;
+    int64_t *first = m->first;
+    int32_t *column = m->column;
+    const size_t first_capacity = m->first_capacity, column_capacity = m->column_capacity;
+    m->first = s->new_first, m->first_capacity = s->new_first_capacity;
+    m->column = s->new_column, m->column_capacity = s->new_column_capacity;
+    s->new_first = first, s->new_first_capacity = first_capacity;
+    s->new_column = column, s->new_column_capacity = column_capacity;
+    m->dim = p->dim, m->nodes = p->nodes, m->pattern++;
+    brunt_parallel(team->threads, m->nodes, ROW_GRAIN, find_diagonals, m, team->timer);
+    return 0;
+}
+
+int brunt_block_matrix_pattern(brunt_block_matrix *m, const brunt_team *team, const brunt_pattern *p,
+                               brunt_error *error) {
+    BRUNT_ASSERT((p->dim == 2 || p->dim == 3) && p->lists <= 255 && p->nodes >= 0);
+    if (!m->scratch) m->scratch = brunt_alloc(sizeof *m->scratch);
+    bool made = m->scratch;
+    if (made) {
+        pattern_work work = {m, p, m->scratch, p->keep && m->pattern && m->nodes == p->nodes && m->dim == p->dim};
+        made = !new_rows(&work, team) && (same_pattern(m, p) || !take_rows(m, team, p));
+    }
+    if (!made)
+        return brunt_fail(error, BRUNT_FAILED, "Out of memory for the matrix of %lld unknowns.",
+                          (long long)p->nodes * p->dim);
+    brunt_block_matrix_zero(m, team);
+    return BRUNT_OK;
+}
+
+void brunt_block_matrix_free(brunt_block_matrix *m) {
+    struct brunt_pattern_scratch *s = m->scratch;
+    if (s) {
+        for (int t = 0; t < BRUNT_THREAD_LIMIT; t++) brunt_free(s->maker[t].mark), brunt_free(s->maker[t].column);
+        brunt_free(s->first), brunt_free(s->stencil), brunt_free(s->row);
+        brunt_free(s->new_first), brunt_free(s->new_column), brunt_free(s);
+    }
+    brunt_free(m->first), brunt_free(m->column), brunt_free(m->diagonal), brunt_free(m->value);
+    *m = (brunt_block_matrix){0};
+}
