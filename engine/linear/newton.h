@@ -36,6 +36,10 @@ typedef struct brunt_newton_options {
     void *context;
 } brunt_newton_options;
 
+// What is usual: 100 iterations, pcg to 1e-3, at most 5,000 of its iterations, an early end. Tolerance and solver are
+// the caller's to choose.
+brunt_newton_options brunt_newton_defaults(void);
+
 typedef enum brunt_newton_result {
     BRUNT_NEWTON_CONVERGED,
     BRUNT_NEWTON_BAD_START,  // the energy is not finite where it begins
@@ -72,10 +76,10 @@ typedef struct brunt_problem {
 typedef struct brunt_newton {
     brunt_block_matrix matrix;
     brunt_linear linear;
-    int64_t analysed; // the matrix's pattern when it was analysed
-    double *gradient, *step, *trial, *right;
+    int64_t analysed;                // the matrix's pattern when it was analysed
+    double *gradient, *step, *trial; // *trial: places tried, and minus the gradient before
     brunt_stencils *stencils;
-    size_t gradient_capacity, step_capacity, trial_capacity, right_capacity, stencils_capacity;
+    size_t gradient_capacity, step_capacity, trial_capacity, stencils_capacity;
 } brunt_newton;
 
 // From u to a minimum near it. BRUNT_OK: u is it. BRUNT_FAILED: error and report->result say why it is not; u is then

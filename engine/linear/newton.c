@@ -1,0 +1,309 @@
+#include "linear/newton.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "base/error.h"
+#include "base/memory.h"
+
+enum { HALVINGS = 60 };
+#define ROUNDING 4e-16 // of a sum, over the sizes of what was added
+#define CLOSE 1e3      // a decrease within so many roundings is not judged by the energy
+#define LEAST_GAIN 2   // roundings
+#define LEAST_SHIFT 1e-13
+#define MORE_SHIFT 100.0
+#define MOST_SHIFT 1e-2
+#define EARLY 0.1 // of the tolerance, that the next step would be; of the last step, that this one is
+
+typedef struct newton_run {
+    brunt_newton *n;
+    const brunt_team *team;
+    const brunt_problem *problem;
+    const brunt_newton_options *options;
+    brunt_newton_report *report;
+    brunt_error *error;
+    double *u;
+    brunt_energy_sum energy; // at u
+    double slope;            // gradient . step
+    double before;           // measure of the step before; 0: not of a full, unprojected one
+    bool plain;              // the matrix was taken as it is
+} newton_run;
+
+brunt_newton_options brunt_newton_defaults(void) {
+    return (brunt_newton_options){
+        .iterations = 100, .accuracy = 1e-3, .linear_iterations = 5000, .early = true, .solver = &brunt_linear_direct};
+}
+
+static void phase(const newton_run *r, brunt_newton_phase now) {
+    if (r->options->phase) r->options->phase(r->options->context, now);
+}
+
+static int64_t unknowns(const newton_run *r) { return (int64_t)r->problem->nodes * r->problem->dim; }
+
+// What there is instead of a minimum; the error has been said.
+static int broken(newton_run *r, brunt_newton_result result) {
+    r->report->result = result;
+    return BRUNT_FAILED;
+}
+
+static int look(newton_run *r, const double *p) {
+    for (int t = 0; t < r->problem->count; t++) {
+        const brunt_term *term = r->problem->terms + t;
+        if (term->ops->look && term->ops->look(term->self, r->team, r->u, p, r->error))
+            return broken(r, BRUNT_NEWTON_BROKEN);
+    }
+    return BRUNT_OK;
+}
+
+// Sum over the terms; *outside: which of them is not finite, -1: none.
+static brunt_energy_sum energy_at(const newton_run *r, const double *u, int *outside) {
+    brunt_energy_sum sum = {0};
+    *outside = -1;
+    for (int t = 0; t < r->problem->count && *outside < 0; t++) {
+        const brunt_term *term = r->problem->terms + t;
+        const brunt_energy_sum e = term->ops->energy(term->self, r->team, u);
+        sum.value += e.value, sum.magnitude += e.magnitude;
+        if (!isfinite(e.value)) *outside = t;
+    }
+    return sum;
+}
+
+static int take_gradient(newton_run *r) {
+    double *g = r->n->gradient;
+    memset(g, 0, (size_t)unknowns(r) * sizeof *g);
+    for (int t = 0; t < r->problem->count; t++)
+        r->problem->terms[t].ops->gradient(r->problem->terms[t].self, r->team, r->u, g);
+    r->report->residual = 0, r->report->residual_dof = -1;
+    for (int64_t i = 0; i < unknowns(r); i++) {
+        if (r->problem->held && r->problem->held[i]) g[i] = 0;
+        if (!isfinite(g[i])) {
+            r->report->residual = g[i], r->report->residual_dof = i;
+            brunt_fail(r->error, BRUNT_FAILED, "Newton's method: component %d of the gradient at node %lld is %g.",
+                       (int)(i % r->problem->dim), (long long)(i / r->problem->dim), g[i]);
+            return broken(r, BRUNT_NEWTON_BROKEN);
+        }
+        if (fabs(g[i]) > r->report->residual) r->report->residual = fabs(g[i]), r->report->residual_dof = i;
+    }
+    return BRUNT_OK;
+}
+
+static int make_pattern(newton_run *r) {
+    brunt_newton *n = r->n;
+    int lists = 0;
+    for (int t = 0; t < r->problem->count; t++)
+        if (r->problem->terms[t].ops->stencils)
+            n->stencils[lists++] = r->problem->terms[t].ops->stencils(r->problem->terms[t].self);
+    const brunt_pattern pattern = {r->problem->dim, r->problem->nodes, n->stencils, lists, r->report->iterations > 0};
+    if (brunt_block_matrix_pattern(&n->matrix, r->team, &pattern, r->error)) return broken(r, BRUNT_NEWTON_BROKEN);
+    return BRUNT_OK;
+}
+
+static void fill_matrix(newton_run *r, bool project) {
+    brunt_block_matrix *m = &r->n->matrix;
+    if (project) brunt_block_matrix_zero(m, r->team);
+    for (int t = 0; t < r->problem->count; t++)
+        if (r->problem->terms[t].ops->hessian)
+            r->problem->terms[t].ops->hessian(r->problem->terms[t].self, r->team, r->u, project, m);
+    if (r->problem->held) brunt_block_matrix_hold(m, r->team, r->problem->held, 1);
+}
+
+static int open_solver(newton_run *r, const brunt_linear_ops *solver) {
+    const brunt_linear_options options = {.accuracy = r->options->accuracy,
+                                          .iterations = r->options->linear_iterations,
+                                          .preconditioner = r->options->preconditioner,
+                                          .memory = r->options->memory};
+    brunt_linear *l = &r->n->linear;
+    if (l->ops != solver || l->options.preconditioner != options.preconditioner) r->n->analysed = 0;
+    return brunt_linear_open(l, solver, &options, r->error) ? broken(r, BRUNT_NEWTON_BROKEN) : BRUNT_OK;
+}
+
+// The step of the matrix as it stands.
+static brunt_linear_status solve(newton_run *r) {
+    brunt_newton *n = r->n;
+    brunt_linear_status status = BRUNT_LINEAR_DONE;
+    if (n->analysed != n->matrix.pattern) {
+        n->analysed = 0;
+        status = brunt_linear_analyse(&n->linear, r->team, &n->matrix, r->error);
+        if (status != BRUNT_LINEAR_DONE) return status;
+        n->analysed = n->matrix.pattern, r->report->analyses++;
+    }
+    status = brunt_linear_factor(&n->linear, r->team, &n->matrix, r->error);
+    r->report->factorisations++;
+    if (status != BRUNT_LINEAR_DONE) return status;
+    for (int64_t i = 0; i < unknowns(r); i++) n->trial[i] = -n->gradient[i];
+    n->linear.report.iterations = 0;
+    status = brunt_linear_solve(&n->linear, r->team, n->trial, n->step, r->error);
+    r->report->linear_iterations += n->linear.report.iterations;
+    return status;
+}
+
+static double measure_step(newton_run *r) {
+    brunt_newton_report *report = r->report;
+    if (r->options->measure) {
+        report->step = r->options->measure(r->options->context, r->team, r->n->step, &report->step_where);
+        return report->step;
+    }
+    report->step = 0, report->step_where = -1;
+    for (int64_t i = 0; i < unknowns(r); i++)
+        if (fabs(r->n->step[i]) > report->step) report->step = fabs(r->n->step[i]), report->step_where = i;
+    return report->step;
+}
+
+// Whether the step may be taken: it leads downhill, or is so small that rounding has the say.
+static brunt_linear_status try_matrix(newton_run *r) {
+    brunt_linear_status status = solve(r);
+    if (status == BRUNT_LINEAR_STALLED && r->options->fallback && r->n->linear.ops != &brunt_linear_direct) {
+        if (open_solver(r, &brunt_linear_direct)) return BRUNT_LINEAR_FAILED;
+        status = solve(r);
+    }
+    if (status != BRUNT_LINEAR_DONE) return status;
+    r->slope = 0;
+    for (int64_t i = 0; i < unknowns(r); i++) r->slope += r->n->gradient[i] * r->n->step[i];
+    if (r->slope < 0 || measure_step(r) <= r->options->tolerance) return BRUNT_LINEAR_DONE;
+    brunt_fail(r->error, BRUNT_FAILED, "The matrix is not positive definite: its step leads uphill, g.p = %.3g J.",
+               r->slope);
+    return BRUNT_LINEAR_INDEFINITE;
+}
+
+// The matrix as it is; then projected; then its diagonal raised, ever more.
+static int find_step(newton_run *r) {
+    phase(r, BRUNT_NEWTON_MATRIX);
+    if (make_pattern(r)) return BRUNT_FAILED;
+    double shift = 0;
+    for (int attempt = 0;; attempt++) {
+        if (attempt > 0) phase(r, BRUNT_NEWTON_MATRIX);
+        r->plain = attempt == 0;
+        if (attempt <= 1) fill_matrix(r, !r->plain);
+        if (attempt == 1) r->report->projections++;
+        if (attempt > 1) {
+            const double next = shift > 0 ? MORE_SHIFT * shift : LEAST_SHIFT;
+            brunt_block_matrix_scale_diagonal(&r->n->matrix, (1 + next) / (1 + shift));
+            shift = next, r->report->shifts++;
+        }
+        phase(r, BRUNT_NEWTON_SOLVE);
+        const brunt_linear_status status = try_matrix(r);
+        if (status == BRUNT_LINEAR_DONE) return BRUNT_OK;
+        if (status != BRUNT_LINEAR_INDEFINITE) return broken(r, BRUNT_NEWTON_BROKEN);
+        if (MORE_SHIFT * shift > MOST_SHIFT) return broken(r, BRUNT_NEWTON_INDEFINITE);
+    }
+}
+
+// The part of the step that stays within the domains of all terms; 0: none.
+static double within_domain(newton_run *r) {
+    double t = 1;
+    for (int k = 0; k < r->problem->count; k++) {
+        const brunt_term *term = r->problem->terms + k;
+        if (!term->ops->limit) continue;
+        t = term->ops->limit(term->self, r->team, r->u, r->n->step, t);
+        if (t > 0) continue;
+        brunt_fail(r->error, BRUNT_FAILED, "Newton's method: %s lets no step be taken in iteration %d.",
+                   term->ops->name, r->report->iterations + 1);
+        broken(r, BRUNT_NEWTON_BLOCKED);
+        return 0;
+    }
+    return t;
+}
+
+// Whether u + share * step, of energy e, may be gone to: it is not higher, or so near that rounding has the say. A step
+// below tolerance is taken as it is.
+static bool acceptable(const newton_run *r, brunt_energy_sum e, double noise, bool whole) {
+    if (whole && (r->report->step <= r->options->tolerance || -r->slope < CLOSE * noise)) return true;
+    return e.value <= r->energy.value + noise;
+}
+
+// Halves the step until it is acceptable; in vain once what is to be gained is lost in rounding.
+static int search(newton_run *r, double *share) {
+    brunt_newton *n = r->n;
+    for (int half = 0; half <= HALVINGS; half++, *share *= 0.5) {
+        for (int64_t i = 0; i < unknowns(r); i++) n->trial[i] = r->u[i] + *share * n->step[i];
+        int outside;
+        const brunt_energy_sum e = energy_at(r, n->trial, &outside);
+        const double noise = ROUNDING * fmax(e.magnitude, r->energy.magnitude);
+        if (half > 0 && outside < 0 && -*share * r->slope <= LEAST_GAIN * noise) break;
+        if (outside < 0 && acceptable(r, e, noise, half == 0)) {
+            r->energy = r->report->energy = e;
+            r->report->halvings += half;
+            r->report->least_share = fmin(r->report->least_share, *share);
+            memcpy(r->u, n->trial, (size_t)unknowns(r) * sizeof *r->u);
+            return BRUNT_OK;
+        }
+    }
+    brunt_fail(
+        r->error, BRUNT_FAILED,
+        "Newton's method: no part of the step of iteration %d, of %.3g m/s, lowers the energy of %.6g J, though its "
+        "slope is %.3g J.",
+        r->report->iterations + 1, r->report->step, r->energy.value, r->slope);
+    return broken(r, BRUNT_NEWTON_UPHILL);
+}
+
+// Whether the step that was taken is the last. Of quadratic convergence the next one is known: this one squared over
+// the one before, or as inexact as the linear solution.
+static bool last_step(newton_run *r, double share) {
+    const double step = r->report->step, before = r->before;
+    const bool full = r->plain && share == 1;
+    r->before = full ? step : 0;
+    if (step <= r->options->tolerance) return true;
+    if (!r->options->early || !full || before <= 0 || step >= EARLY * before) return false;
+    const double inexact = r->n->linear.ops == &brunt_linear_direct ? 0 : r->options->accuracy;
+    return fmax(step / before, inexact) * step <= EARLY * r->options->tolerance;
+}
+
+static int iterate(newton_run *r, bool *last) {
+    phase(r, BRUNT_NEWTON_EVALUATE);
+    if (r->report->iterations > 0 && look(r, NULL)) return BRUNT_FAILED;
+    if (take_gradient(r) || find_step(r)) return BRUNT_FAILED;
+    measure_step(r);
+    phase(r, BRUNT_NEWTON_LIMIT);
+    if (look(r, r->n->step)) return BRUNT_FAILED;
+    double share = within_domain(r);
+    if (!(share > 0)) return BRUNT_FAILED;
+    phase(r, BRUNT_NEWTON_SEARCH);
+    if (search(r, &share)) return BRUNT_FAILED;
+    r->report->iterations++;
+    *last = last_step(r, share);
+    return BRUNT_OK;
+}
+
+static int begin(newton_run *r) {
+    brunt_newton *n = r->n;
+    const size_t count = (size_t)unknowns(r);
+    if (BRUNT_RESERVE(n->gradient, count, 0) || BRUNT_RESERVE(n->step, count, 0) || BRUNT_RESERVE(n->trial, count, 0) ||
+        BRUNT_RESERVE(n->stencils, (size_t)r->problem->count, 0)) {
+        brunt_fail(r->error, BRUNT_FAILED, "Out of memory for Newton's method with %zu unknowns.", count);
+        return broken(r, BRUNT_NEWTON_BROKEN);
+    }
+    phase(r, BRUNT_NEWTON_EVALUATE);
+    if (open_solver(r, r->options->solver) || look(r, NULL)) return BRUNT_FAILED;
+    int outside;
+    r->energy = r->report->energy = energy_at(r, r->u, &outside);
+    if (outside < 0) return BRUNT_OK;
+    brunt_fail(r->error, BRUNT_FAILED, "Newton's method: the energy of %s is not finite where it begins.",
+               r->problem->terms[outside].ops->name);
+    return broken(r, BRUNT_NEWTON_BAD_START);
+}
+
+int brunt_newton_minimise(brunt_newton *newton, const brunt_team *team, const brunt_problem *problem,
+                          const brunt_newton_options *options, double *u, brunt_newton_report *report,
+                          brunt_error *error) {
+    *report = (brunt_newton_report){.residual_dof = -1, .step_where = -1, .least_share = 1};
+    newton_run run = {
+        .n = newton, .team = team, .problem = problem, .options = options, .report = report, .error = error, .u = u};
+    bool last = false;
+    if (begin(&run)) return BRUNT_FAILED;
+    while (!last && report->iterations < options->iterations)
+        if (iterate(&run, &last)) return BRUNT_FAILED;
+    if (last) return BRUNT_OK;
+    report->result = BRUNT_NEWTON_ITERATIONS;
+    return brunt_fail(error, BRUNT_FAILED,
+                      "Newton's method did not converge: after %d iterations a step is %.3g m/s, and %.3g m/s is the "
+                      "tolerance.",
+                      report->iterations, report->step, options->tolerance);
+}
+
+void brunt_newton_free(brunt_newton *n) {
+    brunt_block_matrix_free(&n->matrix);
+    brunt_linear_close(&n->linear);
+    brunt_free(n->gradient), brunt_free(n->step), brunt_free(n->trial), brunt_free(n->stencils);
+    *n = (brunt_newton){0};
+}
