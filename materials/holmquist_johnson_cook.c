@@ -239,7 +239,8 @@ static real wave_speed(const real *constants) { return brittle_wave_speed(consta
     .doc = "concrete: strength by pressure and rate, damage, compaction of pores (Holmquist, Johnson and Cook 1993)",  \
     .plastic = true, .damage = true, .parameters = parameters, .parameter_count = COUNT_OF(parameters),                \
     .state = state, .state_count = COUNT_OF(state), .prepare = prepare, .flops = {598, 736}, .update = update,         \
-    .energy = add_energy, .wave_speed = wave_speed
+    .energy = add_energy, .wave_speed = wave_speed,                                                                    \
+    .no_potential = "'holmquist-johnson-cook' has no potential for implicit steps: its strength falls with damage"
 
 static const brunt_model static_form = {HOLMQUIST_JOHNSON_COOK};
 

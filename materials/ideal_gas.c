@@ -82,4 +82,6 @@ const brunt_model brunt_ideal_gas = {
     .update = update,
     .energy = add_energy,
     .wave_speed = wave_speed,
+    .no_potential =
+        "'ideal-gas' has no potential for implicit steps: its pressure depends on the energy that it has at their end",
 };

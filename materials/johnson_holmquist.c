@@ -201,7 +201,8 @@ static real wave_speed(const real *constants) { return brittle_wave_speed(consta
     .name = "johnson-holmquist-2",                                                                                     \
     .doc = "brittle ceramics and glass: intact and fractured strength, damage, bulking (Johnson and Holmquist 1994)",  \
     .plastic = true, .damage = true, .parameters = parameters, .parameter_count = COUNT_OF(parameters),                \
-    .state = state, .prepare = prepare, .flops = {538, 648}, .wave_speed = wave_speed
+    .state = state, .prepare = prepare, .flops = {538, 648}, .wave_speed = wave_speed,                                 \
+    .no_potential = "'johnson-holmquist-2' has no potential for implicit steps: its strength falls with damage"
 #define BULKS .state_count = COUNT_OF(state), .update = update, .energy = add_energy
 #define FLAT .state_count = COUNT_OF(state) - 1, .update = update_flat, .energy = add_energy_without_bulking
 

@@ -211,4 +211,6 @@ const brunt_model brunt_jwl = {
     .update = update,
     .energy = add_energy,
     .wave_speed = wave_speed,
+    .no_potential =
+        "'jwl' has no potential for implicit steps: its pressure depends on the energy that it has at their end",
 };

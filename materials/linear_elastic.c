@@ -13,6 +13,7 @@
 // W = E'/2 (e1^2 + e2^2 + 2 nu e1 e2) with E' = E / (1 - nu^2). That is invariant under rotation, and tau_i = l_i
 // dW/de_i.
 #include "materials/plane_stress.h"
+#include "materials/trial.h"
 
 BRUNT_INLINE void small_strain(int dim, const lanes H[9], lanes eps[6]) {
     const real half = (real)0.5;
@@ -126,6 +127,43 @@ static void add_energy_plane_stress(const real *constants, const brunt_material_
         plane_stress_energy(plane_stress_response_of, false, constants, points, energy);
 }
 
+// --------------------------------------------------------------------------------- implicit steps
+
+// tau = P F^T as it is, with its skew part. P is linear in F: with A_iAjB its slopes,
+//   a_iajb = A_iAjB F_aA F_bB = lambda F_ai F_bj + mu (delta_ij b_ab + F_bi F_aj).
+BRUNT_INLINE void respond_dim(int dim, const real *k, const brunt_trial_points *trial) {
+    static const int place[3][3] = {{XX, XY, XZ}, {XY, YY, YZ}, {XZ, YZ, ZZ}};
+    const real lambda = k[ELASTIC_LAMBDA], mu = k[ELASTIC_MU];
+    for (int32_t i = 0; i < trial->count; i += BRUNT_LANES) {
+        lanes H[9], F[9], eps[6];
+        load_trial_gradient(dim, trial->F, i, H);
+        for (int c = 0; c < dim * dim; c++) F[c] = H[c] + (real)(c % (dim + 1) == 0);
+        eps[ZZ] = lanes_set(0);
+        small_strain(dim, H, eps);
+        lanes trace = plane_trace(dim, eps);
+        if (trial->density)
+            put_density(trial, i, 1 + volume_change(dim, H),
+                        (real)0.5 * lambda * trace * trace + mu * contraction(dim, eps), false);
+        for (int r = 0; r < dim && trial->stress[0]; r++)
+            for (int a = 0; a < dim; a++) {
+                lanes tau = lambda * trace * F[a * dim + r];
+                for (int c = 0; c < dim; c++) tau += 2 * mu * eps[place[r][c]] * F[a * dim + c];
+                lanes_store(trial->stress[r * dim + a] + i, tau);
+            }
+        for (int m = 0; m < dim * dim && trial->tangent[0]; m++)
+            for (int n = m; n < dim * dim; n++) {
+                const int r = m / dim, a = m % dim, s = n / dim, b = n % dim;
+                lanes sum = lambda * F[a * dim + r] * F[b * dim + s] + mu * F[b * dim + r] * F[a * dim + s];
+                for (int c = 0; c < dim && r == s; c++) sum += mu * F[a * dim + c] * F[b * dim + c];
+                lanes_store(trial->tangent[tangent_place(dim, m, n)] + i, sum);
+            }
+    }
+}
+
+TRIAL_RESPOND
+
+static const brunt_model_potential potential = {.respond = respond};
+
 const brunt_model brunt_linear_elastic = {
     .name = "linear-elastic",
     .doc = "Hooke's law with small strain: for small rotations only",
@@ -133,6 +171,7 @@ const brunt_model brunt_linear_elastic = {
     .parameters = elastic_parameters,
     .parameter_count = COUNT_OF(elastic_parameters),
     .prepare = elastic_prepare,
+    .potential = &potential,
     .flops = {51, 151, 46},
     .update = update,
     .energy = add_energy,

@@ -145,4 +145,6 @@ const brunt_model brunt_mie_gruneisen = {
     .update = update,
     .energy = add_energy,
     .wave_speed = wave_speed,
+    .no_potential = "'mie-gruneisen' has no potential for implicit steps: its pressure depends on the energy that it "
+                    "has at their end",
 };

@@ -4,6 +4,7 @@
 //
 // In plane stress l3 makes tau_33 = mu (l3^2 - 1) + lambda ln(l1 l2 l3) vanish; then tau_i = mu (l_i^2 - l3^2).
 #include "materials/plane_stress.h"
+#include "materials/trial.h"
 
 BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_material_points *points) {
     update_record record = update_begin();
@@ -159,12 +160,49 @@ static void add_energy_plane_stress(const real *constants, const brunt_material_
         plane_stress_energy(plane_stress_response_of, false, constants, points, energy);
 }
 
+// --------------------------------------------------------------------------------- implicit steps
+
+// a(G, G) = mu G b : G + lambda (tr G)^2 + (mu - lambda ln J) tr(G G)
+BRUNT_INLINE void respond_dim(int dim, const real *k, const brunt_trial_points *trial) {
+    const real lambda = k[ELASTIC_LAMBDA], mu = k[ELASTIC_MU], half = (real)0.5;
+    for (int32_t i = 0; i < trial->count; i += BRUNT_LANES) {
+        lanes H[9], B[6];
+        load_trial_gradient(dim, trial->F, i, H);
+        lanes change = volume_change(dim, H), log_J = lanes_log1p(change);
+        finger_strain(dim, H, B);
+        if (trial->density) {
+            lanes density = mu * (half * plane_trace(dim, B) - log_J) + half * lambda * log_J * log_J;
+            put_density(trial, i, 1 + change, density, false);
+        }
+        if (trial->stress[0]) {
+            lanes tau[6];
+            for (int c = 0; c < BRUNT_SYMMETRIC(dim); c++)
+                tau[c] = c == ZZ && dim == 2 ? lambda * log_J : mu * B[c] + (c < 3 ? lambda * log_J : lanes_set(0));
+            put_stress(dim, trial, i, tau);
+        }
+        if (trial->tangent[0]) {
+            lanes a[45], b[6];
+            clear_tangent(dim, a);
+            for (int c = 0; c < BRUNT_SYMMETRIC(dim); c++)
+                b[c] = c == ZZ && dim == 2 ? lanes_set(mu) : mu * B[c] + (c < 3 ? mu : 0);
+            add_geometric(dim, b, a);
+            add_volumetric(dim, lanes_set(lambda), mu - lambda * log_J, a);
+            put_tangent(dim, trial, i, a, false);
+        }
+    }
+}
+
+TRIAL_RESPOND
+
+static const brunt_model_potential potential = {.respond = respond};
+
 const brunt_model brunt_neo_hookean = {
     .name = "neo-hookean",
     .doc = "compressible neo-Hookean solid with ln J volumetric term (Bonet and Wood): large elastic strains",
     .parameters = elastic_parameters,
     .parameter_count = COUNT_OF(elastic_parameters),
     .prepare = elastic_prepare,
+    .potential = &potential,
     .flops = {78, 136, 169},
     .update = update,
     .energy = add_energy,

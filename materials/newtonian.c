@@ -17,7 +17,7 @@
 // quadratic kernels' ends alone has (dN/dx)^2 / N = 2 / h^2 of its own: 5.3 / h^2 with its neighbours, over all places
 // of an edge and up to one particle a cell, along one axis, and less than half of that from each of the others. With Q
 // for 4 / h^2 a lump of material points came apart at cfl 0.7.
-#include "materials/tensor.h"
+#include "materials/principal.h"
 
 enum { VISCOSITY, DIFFUSION }; // 2 nu_l
 enum { VISCOUS_WORK };
@@ -152,17 +152,108 @@ static real wave_speed(const real *constants) {
     return 0;
 }
 
+// --------------------------------------------------------------------------------- implicit steps
+
+// The rate of an implicit step is that of its logarithmic strain, D = ln(f f^T) / 2 dt: a turn is none, however large,
+// and to second order in the step it is the explicit one. The fluid's potential is that of Rayleigh,
+//   dt mu J_old |dev D|^2 = (mu J_old / dt) |dev e|^2,   e_i = ln(x_i) / 2 of the eigenvalues x_i of f f^T,
+// whose stress is 2 mu J_old dev D. The step dissipates twice as much: stress times strain.
+typedef struct viscous_step {
+    principal_axes axes;
+    lanes e[3], modulus; // [-]; mu J_old / dt [Pa]
+} viscous_step;
+
+BRUNT_INLINE viscous_step viscous_step_at(int dim, const real *k, const brunt_trial_points *trial, int32_t i) {
+    viscous_step s;
+    lanes H[9], B[6];
+    load_trial_gradient(dim, trial->F, i, H);
+    lanes J = 1 + volume_change(dim, H);
+    load_trial_gradient(dim, trial->f, i, H);
+    s.modulus = k[VISCOSITY] / trial->dt * J / (1 + volume_change(dim, H));
+    B[ZZ] = lanes_set(0);
+    finger_strain(dim, H, B);
+    s.axes = principal_of(dim, B);
+    for (int a = 0; a < 3; a++) s.e[a] = (real)0.5 * lanes_log1p(s.axes.strain[a]);
+    lanes mean = (s.e[0] + s.e[1] + s.e[2]) * (real)(1.0 / 3);
+    for (int a = 0; a < 3; a++) s.e[a] -= mean;
+    return s;
+}
+
+BRUNT_INLINE lanes viscous_potential(const viscous_step *s) {
+    return s->modulus * (s->e[0] * s->e[0] + s->e[1] * s->e[1] + s->e[2] * s->e[2]);
+}
+
+BRUNT_INLINE void respond_dim(int dim, const real *k, const brunt_trial_points *trial) {
+    for (int32_t i = 0; i < trial->count; i += BRUNT_LANES) {
+        const viscous_step s = viscous_step_at(dim, k, trial, i);
+        principal_moduli m;
+        for (int a = 0; a < 3; a++) m.tau[a] = 2 * s.modulus * s.e[a];
+        if (trial->density) lanes_store(trial->density + i, viscous_potential(&s));
+        if (trial->stress[0]) {
+            lanes tau[6];
+            principal_tensor(dim, &s.axes, m.tau, tau);
+            put_stress(dim, trial, i, tau);
+        }
+        if (!trial->tangent[0]) continue;
+        lanes a[45];
+        clear_tangent(dim, a);
+        for (int r = 0; r < 3; r++)
+            for (int c = 0; c < 3; c++) m.c[r][c] = 2 * s.modulus * (real)((r == c) - 1.0 / 3);
+        for (int r = 0, pair = 0; r < 3; r++)
+            for (int c = r + 1; c < 3; c++, pair++)
+                m.slope[pair] = 2 * s.modulus * principal_slope(s.axes.strain[r], s.axes.strain[c], s.e[r], s.e[c]);
+        principal_tangent(dim, &s.axes, &m, a);
+        put_tangent(dim, trial, i, a, false);
+    }
+}
+
+TRIAL_RESPOND
+
+static void respond_inviscid(const real *constants, const brunt_trial_points *trial) {
+    const size_t bytes = (size_t)trial->count * sizeof(real);
+    (void)constants;
+    if (trial->density) memset(trial->density, 0, bytes);
+    for (int c = 0; c < BRUNT_MATRIX(trial->dim) && trial->stress[0]; c++) memset(trial->stress[c], 0, bytes);
+    for (int c = 0; c < BRUNT_TANGENT(trial->dim) && trial->tangent[0]; c++) memset(trial->tangent[c], 0, bytes);
+}
+
+BRUNT_INLINE brunt_update_result commit_dim(int dim, const real *k, const brunt_trial_points *trial,
+                                            const brunt_material_points *points) {
+    update_record record = update_begin();
+    for (int32_t i = 0; i < points->count; i += BRUNT_LANES) {
+        lanes H[9], tau[6], value[3];
+        const viscous_step s = viscous_step_at(dim, k, trial, i);
+        load_trial_gradient(dim, trial->F, i, H);
+        lanes change = volume_change(dim, H), work = 2 * viscous_potential(&s);
+        note_deformation(&record, 1 + change, i);
+        for (int a = 0; a < 3; a++) value[a] = 2 * s.modulus * s.e[a];
+        principal_tensor(dim, &s.axes, value, tau);
+        for (int c = 0; c < BRUNT_SYMMETRIC(dim); c++) lanes_store(points->stress[c] + i, tau[c]);
+        real *sum = points->state[VISCOUS_WORK] + i;
+        lanes_store(sum, lanes_load(sum) + work);
+        if (points->plastic_increment) lanes_store(points->plastic_increment + i, work);
+        if (points->may_reshape) reshape(dim, points, i, change);
+    }
+    return update_end(&record, points, NULL);
+}
+
+TRIAL_COMMIT
+
+static const brunt_model_potential viscous_potentials = {.respond = respond, .commit = commit};
+static const brunt_model_potential inviscid_potentials = {.respond = respond_inviscid};
+
 #define NEWTONIAN                                                                                                      \
     .name = "newtonian",                                                                                               \
     .doc = "fluid of constant viscosity, which bears no other shear stress; an equation of state gives its pressure",  \
     .fluid = true, .needs_eos = true, .accepts_eos = true, .parameters = parameters,                                   \
     .parameter_count = COUNT_OF(parameters), .prepare = prepare, .wave_speed = wave_speed
 
-static const brunt_model inviscid = {NEWTONIAN, .flops = {8, 30}, .update = update_inviscid};
+static const brunt_model inviscid = {NEWTONIAN, .flops = {8, 30}, .update = update_inviscid,
+                                     .potential = &inviscid_potentials};
 
 static const brunt_model *reduced(const double *p) { return p[0] > 0 ? NULL : &inviscid; }
 
 const brunt_model brunt_newtonian = {
-    NEWTONIAN,          .shear_viscous = true, .state = state,       .state_count = COUNT_OF(state),
-    .flops = {96, 188}, .update = update,      .energy = add_energy, .reduced = reduced,
+    NEWTONIAN,        .shear_viscous = true, .state = state,     .state_count = COUNT_OF(state),   .flops = {96, 188},
+    .update = update, .energy = add_energy,  .reduced = reduced, .potential = &viscous_potentials,
 };

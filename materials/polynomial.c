@@ -16,8 +16,10 @@
 // c^2 = (a' + b' e + b p J^2) / rho0, slopes with mu. Where a set of coefficients has no real speed of sound (in
 // expansion past its use) it limits no step.
 #include "materials/energy_state.h"
+#include "materials/exponential.h"
+#include "materials/trial.h"
 
-enum { DENSITY = ENERGY_CONSTANTS, C0, C1, C2, C3, C4, C5, C6, TENSION };
+enum { DENSITY = ENERGY_CONSTANTS, C0, C1, C2, C3, C4, C5, C6, TENSION, TEAR };
 
 static const brunt_parameter parameters[] = {
     {"C0", "Pa", 0, -INFINITY, INFINITY, true, true, "pressure at the reference volume without energy"},
@@ -37,12 +39,29 @@ static double speed_squared_at_start(const double *p, double density) {
     return (p[1] + p[5] * p[7] + p[4] * fmax(pressure, -p[8])) / density;
 }
 
+// ln J at which it tears without energy, where p = C0 + C1 mu + C3 mu^3 falls to -tension, in expansion; infinite where
+// it does not come to that. Pressures that fall all the way have one such place (potential_refuses).
+static double tear(const double *p) {
+    double low = -1, high = 0; // of mu
+    if (!(p[0] - p[1] - p[3] < -p[8])) return INFINITY;
+    for (int k = 0; k < 200 && high - low > 0; k++) {
+        const double middle = 0.5 * (low + high);
+        if (middle == low || middle == high) break;
+        if (p[0] + middle * (p[1] + p[3] * middle * middle) < -p[8])
+            low = middle;
+        else
+            high = middle;
+    }
+    return -log1p(high);
+}
+
 static const char *prepare(const double *p, double density, bool with_eos, real *constants) {
     (void)with_eos;
     constants[DENSITY] = (real)density;
     for (int k = 0; k < 7; k++) constants[C0 + k] = (real)p[k];
     constants[INITIAL_ENERGY] = (real)p[7];
     constants[TENSION] = (real)p[8];
+    constants[TEAR] = (real)tear(p);
     return speed_squared_at_start(p, density) > 0
                ? NULL
                : "the polynomial has no speed of sound at rest: C1 + C5 e + C4 p is not positive";
@@ -136,6 +155,68 @@ static real wave_speed(const real *k) {
     return (real)sqrt(speed_squared_at_start(p, density));
 }
 
+// --------------------------------------------------------------------------------- implicit steps
+
+static const char *potential_refuses(const real *k) {
+    if (k[C4] != 0 || k[C5] != 0 || k[C6] != 0)
+        return "'polynomial' with C4, C5 or C6 has no potential for implicit steps: its pressure depends on the energy "
+               "that it has at their end";
+    if (k[TENSION] < (real)INFINITY && !(k[C0] > -k[TENSION] && k[C1] + 3 * (k[C3] < 0 ? k[C3] : 0) > 0))
+        return "'polynomial' has no potential for implicit steps where its pressure does not fall in expansion from "
+               "above -tension";
+    return NULL;
+}
+
+// U = -int p dJ from J = 1 on. With L = ln J and phi(z) = e^z - 1 - z the integrals of 1, mu, mu^2, mu^3 over J are
+//   phi(L) + L,  -phi(L),  phi(L) - phi(-L),  3 phi(-L) - phi(-2 L) / 2 - phi(L).
+BRUNT_INLINE lanes stored_density(const real *k, lanes log_J) {
+    const lanes L = lanes_min(log_J, lanes_set(k[TEAR]));
+    lanes up = exponential_excess(L), down = exponential_excess(-L), twice = exponential_excess(-2 * L);
+    lanes squares = lanes_select(L < 0, up - down, lanes_set(0));
+    lanes density = k[C1] * up - k[C0] * (up + L) - k[C2] * squares - k[C3] * (3 * down - (real)0.5 * twice - up);
+    if (k[TEAR] < (real)INFINITY) density += k[TENSION] * (lanes_exp(log_J) - lanes_exp(L));
+    return density;
+}
+
+// J^2 U'' = dp/dmu, 0 where it is torn.
+BRUNT_INLINE volume_response response_at(const real *k, lanes change, lanes log_J) {
+    const lanes J = 1 + change;
+    const line now = pressure_line(k, -change / J);
+    const lane_mask torn = log_J > k[TEAR];
+    const lanes p = lanes_select(torn, lanes_set(-k[TENSION]), now.a);
+    return (volume_response){stored_density(k, log_J), -J * p, lanes_select(torn, lanes_set(0), now.a_slope)};
+}
+
+BRUNT_INLINE void respond_dim(int dim, const real *k, const brunt_trial_points *trial) {
+    volume_respond(dim, response_at, k, trial);
+}
+
+TRIAL_RESPOND
+
+BRUNT_INLINE brunt_update_result commit_dim(int dim, const real *k, const brunt_trial_points *trial,
+                                            const brunt_material_points *points) {
+    update_record record = update_begin();
+    for (int32_t i = 0; i < points->count; i += BRUNT_LANES) {
+        lanes H[9];
+        load_trial_gradient(dim, trial->F, i, H);
+        const lanes change = volume_change(dim, H), log_J = lanes_log1p(change);
+        const volume_response r = response_at(k, change, log_J);
+        note_deformation(&record, 1 + change, i);
+        for (int c = 0; c < 3; c++) lanes_store(points->stress[c] + i, lanes_load(points->stress[c] + i) + r.first);
+        note_speed(&record, lanes_select(log_J > k[TEAR], lanes_set(k[C1]), r.second) / k[DENSITY]);
+        real *work = points->state[COMPRESSION_WORK] + i, *energy = points->state[INTERNAL_ENERGY] + i;
+        lanes e = lanes_load(energy) + (r.density - lanes_load(work));
+        if (points->plastic_increment) e += lanes_load(points->plastic_increment + i);
+        lanes_store(energy, e);
+        lanes_store(work, r.density);
+    }
+    return update_end(&record, points, NULL);
+}
+
+TRIAL_COMMIT
+
+static const brunt_model_potential potential = {.refuses = potential_refuses, .respond = respond, .commit = commit};
+
 const brunt_model brunt_polynomial = {
     .name = "polynomial",
     .doc =
@@ -146,6 +227,7 @@ const brunt_model brunt_polynomial = {
     .state = energy_state,
     .state_count = COUNT_OF(energy_state),
     .prepare = prepare,
+    .potential = &potential,
     .flops = {91, 139},
     .update = update,
     .energy = add_energy,

@@ -231,7 +231,9 @@ void brunt_material_energy(const brunt_material *material, brunt_component k, co
         brunt_material_points own = *points;
         own.tension_only = material->tension_only;
         model->energy_plane_stress(material->constants[k], &own, energy);
-    } else if (model->energy)
+    } else if (material->implicit && model->potential->energy)
+        model->potential->energy(material->constants[k], points, energy);
+    else if (model->energy)
         model->energy(material->constants[k], points, energy);
 }
 

@@ -58,7 +58,7 @@ void brunt_material_respond(const brunt_material *material, const brunt_trial_po
 // Takes the negative eigenvalues out of tangents: those of a as a symmetric matrix, made 0.
 void brunt_material_project(int dim, int32_t count, real *const tangent[45]);
 // The trial becomes the step: stress and state of points[k], which has F as in the trial. Result as of
-// brunt_material_update.
+// brunt_material_update, as is `plastic`.
 brunt_update_result brunt_material_commit(const brunt_material *material,
                                           const brunt_trial_points trial[BRUNT_COMPONENTS],
-                                          brunt_material_points points[BRUNT_COMPONENTS]);
+                                          brunt_material_points points[BRUNT_COMPONENTS], real *plastic);

@@ -8,6 +8,27 @@
 // In plane stress W = E'/2 (E1^2 + E2^2 + 2 nu E1 E2) with E' = E / (1 - nu^2) and the principal Green strains of the
 // plane, tau_i = l_i^2 S_i.
 #include "materials/plane_stress.h"
+#include "materials/trial.h"
+
+// tau; gives lambda tr E.
+BRUNT_INLINE lanes stress_of(int dim, const real *k, const lanes B[6], lanes tau[6]) {
+    const real lambda = k[ELASTIC_LAMBDA], mu = k[ELASTIC_MU];
+    lanes pressure = (real)0.5 * lambda * plane_trace(dim, B), scale = pressure + mu;
+    if (dim == 2) {
+        tau[XX] = pressure + scale * B[XX] + mu * (B[XX] * B[XX] + B[XY] * B[XY]);
+        tau[YY] = pressure + scale * B[YY] + mu * (B[XY] * B[XY] + B[YY] * B[YY]);
+        tau[ZZ] = pressure;
+        tau[XY] = scale * B[XY] + mu * (B[XY] * (B[XX] + B[YY]));
+    } else {
+        tau[XX] = pressure + scale * B[XX] + mu * (B[XX] * B[XX] + B[XY] * B[XY] + B[XZ] * B[XZ]);
+        tau[YY] = pressure + scale * B[YY] + mu * (B[XY] * B[XY] + B[YY] * B[YY] + B[YZ] * B[YZ]);
+        tau[ZZ] = pressure + scale * B[ZZ] + mu * (B[XZ] * B[XZ] + B[YZ] * B[YZ] + B[ZZ] * B[ZZ]);
+        tau[XY] = scale * B[XY] + mu * (B[XY] * (B[XX] + B[YY]) + B[XZ] * B[YZ]);
+        tau[YZ] = scale * B[YZ] + mu * (B[YZ] * (B[YY] + B[ZZ]) + B[XY] * B[XZ]);
+        tau[XZ] = scale * B[XZ] + mu * (B[XZ] * (B[XX] + B[ZZ]) + B[XY] * B[YZ]);
+    }
+    return pressure;
+}
 
 BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_material_points *points) {
     update_record record = update_begin();
@@ -17,20 +38,7 @@ BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_
         load_displacement_gradient(dim, points, i, H);
         note_deformation(&record, 1 + volume_change(dim, H), i);
         finger_strain(dim, H, B);
-        lanes pressure = (real)0.5 * lambda * plane_trace(dim, B), scale = pressure + mu;
-        if (dim == 2) {
-            tau[XX] = pressure + scale * B[XX] + mu * (B[XX] * B[XX] + B[XY] * B[XY]);
-            tau[YY] = pressure + scale * B[YY] + mu * (B[XY] * B[XY] + B[YY] * B[YY]);
-            tau[ZZ] = pressure;
-            tau[XY] = scale * B[XY] + mu * (B[XY] * (B[XX] + B[YY]));
-        } else {
-            tau[XX] = pressure + scale * B[XX] + mu * (B[XX] * B[XX] + B[XY] * B[XY] + B[XZ] * B[XZ]);
-            tau[YY] = pressure + scale * B[YY] + mu * (B[XY] * B[XY] + B[YY] * B[YY] + B[YZ] * B[YZ]);
-            tau[ZZ] = pressure + scale * B[ZZ] + mu * (B[XZ] * B[XZ] + B[YZ] * B[YZ] + B[ZZ] * B[ZZ]);
-            tau[XY] = scale * B[XY] + mu * (B[XY] * (B[XX] + B[YY]) + B[XZ] * B[YZ]);
-            tau[YZ] = scale * B[YZ] + mu * (B[YZ] * (B[YY] + B[ZZ]) + B[XY] * B[XZ]);
-            tau[XZ] = scale * B[XZ] + mu * (B[XZ] * (B[XX] + B[ZZ]) + B[XY] * B[YZ]);
-        }
+        lanes pressure = stress_of(dim, k, B, tau);
         store_stress(dim, points, i, tau);
         // rho0 c^2 = (lambda + 2 mu) b_nn^2 + tau_nn along n; tension is kept, compression (which slows the wave) is
         // not.
@@ -96,12 +104,55 @@ static void add_energy_plane_stress(const real *constants, const brunt_material_
         plane_stress_energy(plane_stress_response_of, false, constants, points, energy);
 }
 
+// --------------------------------------------------------------------------------- implicit steps
+
+// a(G, G) = lambda (b : G)^2 + tau : G^T G + mu (tr(G b G b) + G b : b G)
+BRUNT_INLINE void tangent_at(int dim, const real *k, const lanes B[6], const lanes tau[6], lanes a[45]) {
+    static const int place[3][3] = {{XX, XY, XZ}, {XY, YY, YZ}, {XZ, YZ, ZZ}};
+    lanes b[3][3];
+    for (int r = 0; r < dim; r++)
+        for (int c = 0; c < dim; c++) b[r][c] = B[place[r][c]] + (real)(r == c);
+    clear_tangent(dim, a);
+    add_geometric(dim, tau, a);
+    for (int m = 0; m < dim * dim; m++)
+        for (int n = m; n < dim * dim; n++) {
+            const int r = m / dim, p = m % dim, s = n / dim, q = n % dim;
+            a[tangent_place(dim, m, n)] +=
+                k[ELASTIC_LAMBDA] * b[r][p] * b[s][q] + k[ELASTIC_MU] * (b[r][s] * b[p][q] + b[r][q] * b[p][s]);
+        }
+}
+
+BRUNT_INLINE void respond_dim(int dim, const real *k, const brunt_trial_points *trial) {
+    const real lambda = k[ELASTIC_LAMBDA], mu = k[ELASTIC_MU];
+    for (int32_t i = 0; i < trial->count; i += BRUNT_LANES) {
+        lanes H[9], B[6], tau[6], a[45];
+        load_trial_gradient(dim, trial->F, i, H);
+        B[ZZ] = lanes_set(0);
+        finger_strain(dim, H, B);
+        lanes trace = (real)0.5 * plane_trace(dim, B);
+        if (trial->density)
+            put_density(trial, i, 1 + volume_change(dim, H),
+                        (real)0.5 * lambda * trace * trace + (real)0.25 * mu * contraction(dim, B), false);
+        if (!trial->stress[0] && !trial->tangent[0]) continue;
+        stress_of(dim, k, B, tau);
+        if (trial->stress[0]) put_stress(dim, trial, i, tau);
+        if (!trial->tangent[0]) continue;
+        tangent_at(dim, k, B, tau, a);
+        put_tangent(dim, trial, i, a, false);
+    }
+}
+
+TRIAL_RESPOND
+
+static const brunt_model_potential potential = {.respond = respond};
+
 const brunt_model brunt_st_venant_kirchhoff = {
     .name = "st-venant-kirchhoff",
     .doc = "Hooke's law for Green's strain: large rotations, moderate strains",
     .parameters = elastic_parameters,
     .parameter_count = COUNT_OF(elastic_parameters),
     .prepare = elastic_prepare,
+    .potential = &potential,
     .flops = {54, 136, 59},
     .update = update,
     .energy = add_energy,

@@ -7,7 +7,8 @@
 // which keeps the digits of small compressions, and of which each term is positive.
 //
 // Beyond `tension` the liquid tears: p stays at -tension however far it expands, and U grows by tension dJ.
-#include "materials/tensor.h"
+#include "materials/exponential.h"
+#include "materials/trial.h"
 
 enum { DENSITY, SOUND_SPEED, GAMMA, MODULUS, TENSION, TEAR };
 
@@ -29,21 +30,6 @@ static const char *prepare(const double *p, double density, bool with_eos, real 
     // ln J at which it tears. Tension stays below the modulus in any expansion.
     constants[TEAR] = (real)(share < 1 ? -log1p(-share) / p[1] : INFINITY);
     return NULL;
-}
-
-// phi(z) = e^z - 1 - z: its series up to 1/2, beyond which little is lost to the subtraction.
-BRUNT_INLINE lanes exponential_excess(lanes z) {
-#ifdef BRUNT_FLOAT
-    enum { TERMS = 9 };
-#else
-    enum { TERMS = 15 };
-#endif
-    lanes series = lanes_set(1);
-    for (int k = TERMS; k > 2; k--) series = 1 + z * series * (real)(1.0 / k);
-    lanes value = (real)0.5 * z * z * series;
-    lane_mask far = lanes_abs(z) > (real)0.5;
-    if (lanes_any(far)) value = lanes_select(far, lanes_exp(z) - 1 - z, value);
-    return value;
 }
 
 BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_material_points *points) {
@@ -68,16 +54,22 @@ static brunt_update_result update(const real *constants, const brunt_material_po
     return points->dim == 2 ? update_dim(2, constants, points) : update_dim(3, constants, points);
 }
 
+// U(J) of log J.
+BRUNT_INLINE lanes stored_density(const real *k, lanes log_J) {
+    const real rest = k[GAMMA] - 1, inverse = rest > 0 ? 1 / rest : 0;
+    lanes liquid = lanes_min(log_J, lanes_set(k[TEAR]));
+    lanes density = exponential_excess(-rest * liquid) * inverse + exponential_excess(liquid);
+    density *= k[MODULUS];
+    if (k[TEAR] < (real)INFINITY) density += k[TENSION] * (lanes_exp(log_J) - lanes_exp(liquid));
+    return density;
+}
+
 BRUNT_INLINE void energy_dim(int dim, const real *k, const brunt_material_points *points, brunt_point_energy *energy) {
     lane_total stored = {0};
-    const real rest = k[GAMMA] - 1, inverse = rest > 0 ? 1 / rest : 0;
     for (int32_t i = 0; i < points->count; i += BRUNT_LANES) {
         lanes H[9];
         load_displacement_gradient(dim, points, i, H);
-        lanes log_J = lanes_log1p(volume_change(dim, H)), liquid = lanes_min(log_J, lanes_set(k[TEAR]));
-        lanes density = exponential_excess(-rest * liquid) * inverse + exponential_excess(liquid);
-        density *= k[MODULUS];
-        if (k[TEAR] < (real)INFINITY) density += k[TENSION] * (lanes_exp(log_J) - lanes_exp(liquid));
+        lanes density = stored_density(k, lanes_log1p(volume_change(dim, H)));
         total_add(&stored, lanes_load(points->volume + i) * density);
     }
     energy->internal += total_end(&stored);
@@ -92,6 +84,25 @@ static void add_energy(const real *constants, const brunt_material_points *point
 
 static real wave_speed(const real *constants) { return constants[SOUND_SPEED]; }
 
+// --------------------------------------------------------------------------------- implicit steps
+
+// J^2 U'' = gamma B J^(1 - gamma), 0 where it is torn.
+BRUNT_INLINE volume_response response_at(const real *k, lanes change, lanes log_J) {
+    const lanes limit = lanes_set(-k[TENSION]), J = 1 + change;
+    lanes z = -k[GAMMA] * log_J, power = z + exponential_excess(z), p = k[MODULUS] * power;
+    lanes stiff = k[GAMMA] * k[MODULUS] * J * (1 + power);
+    return (volume_response){stored_density(k, log_J), -J * lanes_max(p, limit),
+                             lanes_select(p < limit, lanes_set(0), stiff)};
+}
+
+BRUNT_INLINE void respond_dim(int dim, const real *k, const brunt_trial_points *trial) {
+    volume_respond(dim, response_at, k, trial);
+}
+
+TRIAL_RESPOND
+
+static const brunt_model_potential potential = {.respond = respond};
+
 const brunt_model brunt_tait = {
     .name = "tait",
     .doc = "liquid, weakly compressible, pressure by density alone (Cole 1948, Monaghan 1994)",
@@ -99,6 +110,7 @@ const brunt_model brunt_tait = {
     .parameters = parameters,
     .parameter_count = COUNT_OF(parameters),
     .prepare = prepare,
+    .potential = &potential,
     .flops = {102, 124},
     .update = update,
     .energy = add_energy,
