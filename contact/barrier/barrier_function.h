@@ -3,6 +3,8 @@
 // for the weights). kappa is a pressure [Pa]: b is in J/m^2, -b' is the pressure across the gap.
 #pragma once
 
+#include <stdbool.h>
+
 typedef struct brunt_barrier_value {
     double b, db, ddb; // [J/m^2, Pa, Pa/m]; INFINITY at d <= 0
 } brunt_barrier_value;
@@ -17,6 +19,6 @@ double brunt_barrier_default_stiffness(double young_a, double young_b);
 
 // Whether gaps chatter: contact of stiffness `ddb` [Pa/m] over `area` [m^2] on a mass [kg] that a step `dt` [s] of
 // Newmark's rule does not resolve, dt^2 area ddb > 4 m. Backward Euler damps it.
-int brunt_barrier_chatters(double dt, double area, double ddb, double mass);
+bool brunt_barrier_chatters(double dt, double area, double ddb, double mass);
 // Whether a gap at the end of a step is so small a part of `distance` that the stiffness should be raised.
-int brunt_barrier_gap_is_small(double gap, double distance);
+bool brunt_barrier_gap_is_small(double gap, double distance);

@@ -1,0 +1,176 @@
+#include "contact/barrier/near.h"
+
+#include "base/array.h"
+#include "base/error.h"
+#include "base/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { ENTRIES = 32, CELLS = 8, SPARE = 4096, QUERIES = 64 };
+
+static int32_t cell_of(const brunt_near_cells *c, double x, int k) {
+    const double i = floor((x - c->low[k]) / c->cell);
+    return i < 0 ? 0 : i >= c->n[k] ? c->n[k] - 1 : (int32_t)i;
+}
+
+typedef struct cell_range {
+    int32_t low[3], high[3];
+} cell_range;
+
+static cell_range range_of(const brunt_near_cells *c, const brunt_near_box *box) {
+    cell_range r = {0};
+    for (int k = 0; k < c->dim; k++) r.low[k] = cell_of(c, box->low[k], k), r.high[k] = cell_of(c, box->high[k], k);
+    return r;
+}
+
+static int64_t cells_in(const cell_range *r) {
+    int64_t n = 1;
+    for (int k = 0; k < 3; k++) n *= r->high[k] - r->low[k] + 1;
+    return n;
+}
+
+// Cells of the mean box's size: larger ones where they, or the entries in them, would be many more than the items.
+static int64_t choose_cells(brunt_near_cells *c) {
+    double *high = c->high, mean = 0, span = 0;
+    for (int k = 0; k < 3; k++) c->n[k] = 1, c->low[k] = high[k] = 0;
+    for (int k = 0; k < c->dim; k++) {
+        c->low[k] = INFINITY, high[k] = -INFINITY;
+        for (int32_t i = 0; i < c->count; i++) {
+            c->low[k] = fmin(c->low[k], c->box[i].low[k]), high[k] = fmax(high[k], c->box[i].high[k]);
+            mean += (c->box[i].high[k] - c->box[i].low[k]) / c->dim / c->count;
+        }
+        span = fmax(span, high[k] - c->low[k]);
+    }
+    c->cell = fmax(fmax(mean, span / 1024), 1e-300);
+    for (;; c->cell *= 2) {
+        int64_t cells = 1, entries = 0;
+        for (int k = 0; k < c->dim; k++) cells *= c->n[k] = (int32_t)((high[k] - c->low[k]) / c->cell) + 1;
+        if (cells > CELLS * (int64_t)c->count + SPARE) continue;
+        for (int32_t i = 0; i < c->count; i++) {
+            const cell_range r = range_of(c, &c->box[i]);
+            entries += cells_in(&r);
+        }
+        if (entries <= ENTRIES * (int64_t)c->count + SPARE || cells == 1) return entries;
+    }
+}
+
+static int64_t cell_index(const brunt_near_cells *c, int32_t i, int32_t j, int32_t k) {
+    return ((int64_t)k * c->n[1] + j) * c->n[0] + i;
+}
+
+int brunt_near_cells_make(brunt_near_cells *c, const brunt_near_box *box, int32_t count, int dim) {
+    c->dim = dim, c->count = count, c->box = box;
+    if (count == 0) return 0;
+    const int64_t entries = choose_cells(c), cells = (int64_t)c->n[0] * c->n[1] * c->n[2];
+    if (BRUNT_RESERVE(c->first, (size_t)cells + 1, 0) || BRUNT_RESERVE(c->item, (size_t)entries, 0)) return -1;
+    memset(c->first, 0, ((size_t)cells + 1) * sizeof *c->first);
+    for (int fill = 0; fill < 2; fill++) {
+        for (int32_t b = count - 1; b >= 0; b--) { // downwards, since entries are filled from their ends
+            const cell_range r = range_of(c, &box[b]);
+            for (int32_t k = r.low[2]; k <= r.high[2]; k++)
+                for (int32_t j = r.low[1]; j <= r.high[1]; j++)
+                    for (int32_t i = r.low[0]; i <= r.high[0]; i++) {
+                        int64_t *at = &c->first[cell_index(c, i, j, k)];
+                        if (fill)
+                            c->item[--*at] = b;
+                        else
+                            ++*at;
+                    }
+        }
+        if (!fill)
+            for (int64_t i = 1; i <= cells; i++) c->first[i] += c->first[i - 1];
+    }
+    return 0;
+}
+
+void brunt_near_cells_free(brunt_near_cells *c) {
+    brunt_free(c->first), brunt_free(c->item);
+    *c = (brunt_near_cells){0};
+}
+
+static bool boxes_meet(const brunt_near_box *a, const brunt_near_box *b, int dim) {
+    for (int k = 0; k < dim; k++)
+        if (a->high[k] < b->low[k] || b->high[k] < a->low[k]) return false;
+    return true;
+}
+
+// A pair of boxes counts in the first cell that both reach, and in no other.
+static bool first_shared(const brunt_near_cells *c, const cell_range *query, const brunt_near_box *item,
+                         const int32_t cell[3]) {
+    for (int k = 0; k < c->dim; k++) {
+        const int32_t low = cell_of(c, item->low[k], k);
+        if (cell[k] != (low > query->low[k] ? low : query->low[k])) return false;
+    }
+    return true;
+}
+
+int64_t brunt_near_find(const brunt_near_cells *c, const brunt_near_box *box, brunt_near_wanted *wanted,
+                        const void *context, int32_t query, int32_t *out) {
+    if (c->count == 0) return 0;
+    for (int k = 0; k < c->dim; k++)
+        if (box->high[k] < c->low[k] || box->low[k] > c->high[k]) return 0;
+    const cell_range r = range_of(c, box);
+    int64_t found = 0;
+    for (int32_t k = r.low[2]; k <= r.high[2]; k++)
+        for (int32_t j = r.low[1]; j <= r.high[1]; j++)
+            for (int32_t i = r.low[0]; i <= r.high[0]; i++) {
+                const int64_t cell = cell_index(c, i, j, k);
+                for (int64_t e = c->first[cell]; e < c->first[cell + 1]; e++) {
+                    const int32_t item = c->item[e];
+                    if (!boxes_meet(box, &c->box[item], c->dim)) continue;
+                    if (!first_shared(c, &r, &c->box[item], (int32_t[]){i, j, k})) continue;
+                    if (!wanted(context, query, item)) continue;
+                    if (out) out[found] = item;
+                    found++;
+                }
+            }
+    return found;
+}
+
+typedef struct list_work {
+    brunt_near_list *list;
+    brunt_near_fn *find;
+    const void *context;
+} list_work;
+
+static void list_count(void *context, int64_t begin, int64_t end, int worker) {
+    list_work *w = context;
+    (void)worker;
+    for (int64_t q = begin; q < end; q++) w->list->first[q + 1] = w->find(w->context, (int32_t)q, NULL);
+}
+
+static int ascending(const void *a, const void *b) {
+    const int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
+    return (x > y) - (x < y);
+}
+
+static void list_fill(void *context, int64_t begin, int64_t end, int worker) {
+    list_work *w = context;
+    (void)worker;
+    for (int64_t q = begin; q < end; q++) {
+        const int64_t first = w->list->first[q], count = w->list->first[q + 1] - first;
+        if (count == 0) continue;
+        const int64_t found = w->find(w->context, (int32_t)q, w->list->item + first);
+        BRUNT_ASSERT(found == count);
+        qsort(w->list->item + first, (size_t)count, sizeof *w->list->item, ascending);
+    }
+}
+
+int brunt_near_list_make(brunt_near_list *list, const brunt_team *team, int32_t queries, brunt_near_fn *find,
+                         const void *context) {
+    list_work work = {list, find, context};
+    if (BRUNT_RESERVE(list->first, (size_t)queries + 1, 0)) return -1;
+    list->count = queries, list->first[0] = 0;
+    brunt_parallel(team->threads, queries, QUERIES, list_count, &work, team->timer);
+    for (int32_t q = 0; q < queries; q++) list->first[q + 1] += list->first[q];
+    if (BRUNT_RESERVE(list->item, (size_t)list->first[queries] + 1, 0)) return -1;
+    brunt_parallel(team->threads, queries, QUERIES, list_fill, &work, team->timer);
+    return 0;
+}
+
+void brunt_near_list_free(brunt_near_list *list) {
+    brunt_free(list->first), brunt_free(list->item);
+    *list = (brunt_near_list){0};
+}
