@@ -1,0 +1,128 @@
+// Energy, force and stiffness of one contact, by its places.
+#include "contact/barrier/barrier_parts.h"
+
+typedef struct mollifier {
+    double m, dm, ddm; // and by |ea x eb|^2
+    double gradient[12], second[36];
+} mollifier;
+
+// c^2 smooth between 0 where edges are parallel and 1 from the threshold on (Li et al. 2020).
+static double mollify(double cross2, double threshold, double *slope, double *curvature) {
+    const double x = cross2 / threshold;
+    const bool less = x < 1;
+    *slope = less ? 2 * (1 - x) / threshold : 0;
+    *curvature = less ? -2 / (threshold * threshold) : 0;
+    return less ? x * (2 - x) : 1;
+}
+
+// By places: ea = a1 - a0, eb = b1 - b0.
+static mollifier mollifier_of(const barrier_contact *c) {
+    mollifier m = {.m = 1};
+    double g[6];
+    if (c->threshold == 0) return m;
+    const double cross2 = brunt_edge_cross(c->edge[0], c->edge[1], g, m.second);
+    m.m = mollify(cross2, c->threshold, &m.dm, &m.ddm);
+    for (int k = 0; k < 3; k++) {
+        m.gradient[k] = -g[k], m.gradient[3 + k] = g[k];
+        m.gradient[6 + k] = -g[3 + k], m.gradient[9 + k] = g[3 + k];
+    }
+    return m;
+}
+
+// The barrier at a contact's gap, and its weight there.
+static double weighted(const brunt_barrier *b, const barrier_contact *c, brunt_barrier_value *v) {
+    const barrier_law law = barrier_law_of(b, c->law);
+    double unused, g[6], second[36];
+    *v = brunt_barrier_at(c->at.d, law.distance, law.stiffness);
+    return c->threshold == 0 ? c->weight
+                             : c->weight * mollify(brunt_edge_cross(c->edge[0], c->edge[1], g, second), c->threshold,
+                                                   &unused, &unused);
+}
+
+double barrier_contact_energy(const brunt_barrier *b, const barrier_contact *c) {
+    brunt_barrier_value v;
+    const double weight = weighted(b, c, &v);
+    return weight == 0 ? (v.b < INFINITY ? 0 : INFINITY) : weight * v.b;
+}
+
+double barrier_contact_force(const brunt_barrier *b, const barrier_contact *c) {
+    brunt_barrier_value v;
+    return -weighted(b, c, &v) * v.db;
+}
+
+void barrier_contact_gradient(const brunt_barrier *b, const barrier_contact *c, double *gradient) {
+    brunt_barrier_value v;
+    const double weight = weighted(b, c, &v);
+    for (int i = 0; i < c->at.places; i++)
+        for (int k = 0; k < b->dim; k++) gradient[i * b->dim + k] = weight * v.db * c->at.w[i] * c->at.n[k];
+    if (c->threshold == 0) return;
+    const mollifier m = mollifier_of(c);
+    if (m.dm == 0) return;
+    for (int i = 0; i < 12; i++) gradient[i] += c->weight * v.b * m.dm * m.gradient[i];
+}
+
+// b (m'' grad c grad c^T + m' grad^2 c) + b' m' (grad d grad c^T + grad c grad d^T).
+static void mollified(const barrier_contact *c, const mollifier *m, brunt_barrier_value v, double *h) {
+    for (int i = 0; i < 12; i++)
+        for (int j = 0; j < 12; j++) {
+            const double sign = (i / 3 % 2 ? 1 : -1) * (j / 3 % 2 ? 1 : -1);
+            const double second = sign * m->second[(i / 6 * 3 + i % 3) * 6 + j / 6 * 3 + j % 3];
+            const double di = c->at.w[i / 3] * c->at.n[i % 3], dj = c->at.w[j / 3] * c->at.n[j % 3];
+            h[i * 12 + j] += c->weight * (v.b * (m->ddm * m->gradient[i] * m->gradient[j] + m->dm * second) +
+                                          v.db * m->dm * (di * m->gradient[j] + m->gradient[i] * dj));
+        }
+}
+
+void barrier_contact_hessian(const brunt_barrier *b, const barrier_contact *c, bool project, double *h) {
+    const int rows = c->at.places * b->dim;
+    brunt_barrier_value v;
+    const double weight = weighted(b, c, &v);
+    memset(h, 0, (size_t)rows * (size_t)rows * sizeof *h);
+    brunt_closest_hessian(&c->at, b->dim, weight * v.ddb, weight * v.db, h);
+    if (c->threshold > 0) {
+        const mollifier m = mollifier_of(c);
+        if (m.dm != 0) mollified(c, &m, v, h);
+    }
+    if (project) barrier_project(rows, h);
+}
+
+// Sets h[p][q] to 0 by a turn of rows and columns p and q; eigenvectors in v turn along.
+static void turn(int n, double *h, double *v, int p, int q) {
+    const double off = h[p * n + q];
+    if (off == 0) return;
+    const double theta = (h[q * n + q] - h[p * n + p]) / (2 * off);
+    const double t = (theta >= 0 ? 1 : -1) / (fabs(theta) + sqrt(theta * theta + 1));
+    const double c = 1 / sqrt(t * t + 1), s = t * c;
+    for (int k = 0; k < n; k++) {
+        const double x = h[k * n + p], y = h[k * n + q];
+        h[k * n + p] = c * x - s * y, h[k * n + q] = s * x + c * y;
+    }
+    for (int k = 0; k < n; k++) {
+        const double x = h[p * n + k], y = h[q * n + k], a = v[k * n + p], b = v[k * n + q];
+        h[p * n + k] = c * x - s * y, h[q * n + k] = s * x + c * y;
+        v[k * n + p] = c * a - s * b, v[k * n + q] = s * a + c * b;
+    }
+}
+
+// Jacobi's method: it takes small eigenvalues beside large ones as they are.
+void barrier_project(int n, double *h) {
+    enum { SWEEPS = 30 };
+    double d[BARRIER_DOFS * BARRIER_DOFS], v[BARRIER_DOFS * BARRIER_DOFS] = {0}, all = 0;
+    BRUNT_ASSERT(n <= BARRIER_DOFS);
+    for (int i = 0; i < n * n; i++) d[i] = h[i], all += h[i] * h[i];
+    for (int i = 0; i < n; i++) v[i * n + i] = 1;
+    for (int sweep = 0; sweep < SWEEPS; sweep++) {
+        double off = 0;
+        for (int p = 0; p < n; p++)
+            for (int q = p + 1; q < n; q++) off += d[p * n + q] * d[p * n + q];
+        if (!(off > 1e-32 * all)) break;
+        for (int p = 0; p < n; p++)
+            for (int q = p + 1; q < n; q++) turn(n, d, v, p, q);
+    }
+    for (int k = 0; k < n; k++) {
+        const double negative = d[k * n + k];
+        if (negative >= 0) continue;
+        for (int i = 0; i < n; i++)
+            for (int j = 0; j < n; j++) h[i * n + j] -= negative * v[i * n + k] * v[j * n + k];
+    }
+}

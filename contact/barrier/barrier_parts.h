@@ -1,0 +1,180 @@
+// Private to the barrier: what it is made of. Points are vertices, then material points; places are points, then
+// planes.
+#pragma once
+
+#include "base/array.h"
+#include "base/error.h"
+#include "base/memory.h"
+#include "contact/barrier/barrier.h"
+#include "contact/barrier/barrier_function.h"
+#include "contact/barrier/closest.h"
+#include "contact/barrier/near.h"
+#include "linear/assembly.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { BARRIER_DOFS = 3 * BRUNT_CLOSEST_PLACES, BARRIER_GRAIN = 64 };
+
+// Of a pair or plane: what a contact needs to know.
+typedef struct barrier_law {
+    double distance, stiffness, friction, slip_speed;
+} barrier_law;
+
+typedef struct barrier_contact {
+    int32_t place[BRUNT_CLOSEST_PLACES];
+    int32_t law;       // pair, or pair_count + plane
+    int8_t side;       // 1: the first feature is of the law's body a (a plane's points), -1: of b
+    double weight;     // [m^2] (2D [m]) share of the surface, times the multiplicity: negative in concave corners
+    double threshold;  // [m^4] |ea x eb|^2 from which two edges count in full; 0: not edges
+    double edge[2][3]; // [m] of two edges
+    brunt_closest at;
+    double normal_force; // [N] when friction was updated; stays 0 where there is none
+} barrier_contact;
+
+typedef struct barrier_contacts {
+    barrier_contact *contact;
+    int64_t count;
+    size_t contact_capacity;
+} barrier_contacts;
+
+// A feature that a point is near: vertices ascending, -1 where there are fewer.
+typedef struct barrier_feature {
+    int32_t vertex[3];
+    int32_t law;
+    int8_t side;
+    double share;
+    int32_t times; // multiplicity
+} barrier_feature;
+
+// What facets that a point is near have in common: edges (b -1: vertices), how many facets (edges) hold them.
+typedef struct barrier_shared {
+    int32_t a, b, facets, law;
+    int8_t side;
+    double share;
+    int32_t more; // of vertices: sum of (facets - 1) of the edges there
+} barrier_shared;
+
+// Room that a thread works in.
+typedef struct barrier_room {
+    barrier_feature *feature;
+    barrier_shared *edge, *vertex;
+    int64_t feature_count, edge_count, vertex_count;
+    size_t feature_capacity, edge_capacity, vertex_capacity;
+} barrier_room;
+
+typedef struct barrier_sets {
+    int64_t *first, count;
+    int32_t *node;
+    size_t first_capacity, node_capacity;
+} barrier_sets;
+
+// A pair's bodies, the lesser first, as one number.
+typedef struct barrier_key {
+    uint64_t bodies;
+    int32_t pair;
+} barrier_key;
+
+struct brunt_barrier {
+    int dim;
+    // Surface. Facets are simplices, vertices of each ascending (2D: the third -1).
+    int32_t vertex_count, facet_count, edge_count;
+    int32_t (*facet)[3], *body, (*edge)[2];
+    double *vertex_area, *edge_area, *edge_length2; // [m^2] (2D [m]), [m^2], [m^2]
+    size_t facet_capacity, body_capacity, edge_capacity, vertex_area_capacity, edge_area_capacity,
+        edge_length2_capacity;
+    // Pairs as they were given, and where each stands, by its bodies.
+    brunt_barrier_pair *pair;
+    barrier_key *key;
+    int32_t pair_count;
+    size_t pair_capacity, key_capacity;
+    double reach; // [m] greatest distance of all pairs
+    brunt_barrier_step step;
+    // What was found last.
+    double origin[3]; // boxes are measured from it
+    brunt_near_box *point_box, *facet_box, *edge_box;
+    size_t point_box_capacity, facet_box_capacity, edge_box_capacity;
+    brunt_near_cells facet_cells, edge_cells;
+    brunt_near_list facets, planes, edges; // of points, points, edges
+    bool swept, stale;                     // found along a way; `sets` are not those of `contacts`
+    bool broken;                           // memory ran out where no function could say so: the next look does
+    int32_t *task;                         // points that are near something; edges as -1 - edge
+    int64_t task_count;
+    double (*task_energy)[2];
+    int64_t *task_first;
+    size_t task_capacity, task_energy_capacity, task_first_capacity;
+    barrier_room *room;
+    int32_t room_count;
+    size_t room_capacity;
+    barrier_contacts contacts, lagged;
+    barrier_sets sets, lagged_sets;
+    brunt_colours colours, lagged_colours;
+};
+
+// --- places (barrier_place.c)
+static inline int32_t barrier_points(const brunt_barrier *b) { return b->vertex_count + b->step.particles.count; }
+static inline int barrier_plane_of(const brunt_barrier *b, int32_t place) { return place - barrier_points(b); }
+int32_t barrier_body_of(const brunt_barrier *b, int32_t point);
+const double *barrier_start(const brunt_barrier *b, int32_t place);
+double barrier_area_of(const brunt_barrier *b, int32_t point);
+// What a place has moved by block vector u (NULL: nothing), in three components.
+void barrier_move(const brunt_barrier *b, int32_t place, const double *u, double out[3]);
+// Places as they are at u, measured from where `from` is then.
+void barrier_relative(const brunt_barrier *b, const double *u, int32_t from, const int32_t *place, int count,
+                      double (*out)[3]);
+// Block nodes of a place and their weights: how many; 0: a plane that does not move.
+int64_t barrier_nodes(const brunt_barrier *b, int32_t place, const int32_t **node, const double **weight);
+
+// --- pairs (barrier_pairs.c)
+// The law between two bodies; -1: they do not meet. `side`: 1 where `own` is the pair's a.
+int32_t barrier_law_between(const brunt_barrier *b, int32_t own, int32_t other, int8_t *side);
+barrier_law barrier_law_of(const brunt_barrier *b, int32_t law);
+double barrier_share_of(const brunt_barrier *b, int32_t law, int8_t side, bool edges);
+
+// --- candidates (barrier_near.c)
+int barrier_find_near(brunt_barrier *b, const brunt_team *team, const double *u, const double *p, brunt_error *error);
+
+// --- contacts (barrier_contacts.c)
+// The contacts of a task at u, in the order of what it is near, handed to `take`.
+typedef void barrier_take(void *context, const barrier_contact *contact);
+void barrier_each_contact(const brunt_barrier *b, int64_t task, const double *u, int worker, barrier_take *take,
+                          void *context);
+// All of them into a list. 0, or -1: out of memory.
+int barrier_list_contacts(brunt_barrier *b, const brunt_team *team, const double *u, barrier_contacts *list);
+brunt_energy_sum barrier_sum_energy(brunt_barrier *b, const brunt_team *team, const double *u);
+
+// --- one contact (barrier_contact.c)
+double barrier_contact_energy(const brunt_barrier *b, const barrier_contact *c);
+void barrier_contact_gradient(const brunt_barrier *b, const barrier_contact *c, double *gradient);
+void barrier_contact_hessian(const brunt_barrier *b, const barrier_contact *c, bool project, double *hessian);
+// [N] with which the features push each other apart; of contacts of negative weight negative.
+double barrier_contact_force(const brunt_barrier *b, const barrier_contact *c);
+// Takes the negative eigenvalues of a symmetric matrix of n rows away.
+void barrier_project(int n, double *h);
+
+// --- friction of one contact (barrier_slip.c)
+// How far the features slip along each other by block vector u [m].
+void barrier_slip_of(const brunt_barrier *b, const barrier_contact *c, const double *u, double slip[3]);
+double barrier_slip_energy(const brunt_barrier *b, const barrier_contact *c, const double *u);
+// [N] on the first feature; the other gets the opposite.
+void barrier_slip_force(const brunt_barrier *b, const barrier_contact *c, const double *u, double force[3]);
+void barrier_slip_gradient(const brunt_barrier *b, const barrier_contact *c, const double *u, double *gradient);
+void barrier_slip_hessian(const brunt_barrier *b, const barrier_contact *c, const double *u, double *hessian);
+
+// --- into the unknowns (barrier_sum.c)
+void barrier_add_gradient(const brunt_barrier *b, const barrier_contact *c, const double *local, double *g);
+int barrier_make_sets(const brunt_barrier *b, const barrier_contacts *contacts, barrier_sets *sets);
+// What a Hessian is made of: contacts, their sets of nodes, and the colours of those.
+typedef struct barrier_assembly {
+    const brunt_barrier *b;
+    const barrier_contacts *contacts;
+    const barrier_sets *sets;
+    brunt_colours *colours;
+    bool friction;
+} barrier_assembly;
+// 0, or -1: out of memory.
+int barrier_add_hessian(const barrier_assembly *a, const brunt_team *team, const double *u, bool project,
+                        brunt_block_matrix *m);
+
+// --- limit (barrier_limit.c)
+double barrier_limit(const brunt_barrier *b, const brunt_team *team, const double *u, const double *p, double largest);

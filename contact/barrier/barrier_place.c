@@ -1,0 +1,50 @@
+#include "contact/barrier/barrier_parts.h"
+
+int32_t barrier_body_of(const brunt_barrier *b, int32_t point) {
+    return point < b->vertex_count ? b->body[point] : b->step.particles.body[point - b->vertex_count];
+}
+
+const double *barrier_start(const brunt_barrier *b, int32_t place) {
+    if (place < b->vertex_count) return b->step.x[place];
+    const int32_t particle = place - b->vertex_count, plane = particle - b->step.particles.count;
+    return plane < 0 ? b->step.particles.x[particle] : b->step.planes[plane].origin;
+}
+
+double barrier_area_of(const brunt_barrier *b, int32_t point) {
+    return point < b->vertex_count ? b->vertex_area[point] : b->step.particles.area[point - b->vertex_count];
+}
+
+int64_t barrier_nodes(const brunt_barrier *b, int32_t place, const int32_t **node, const double **weight) {
+    static const double one = 1;
+    *weight = &one;
+    if (place < b->vertex_count) return *node = &b->step.node[place], 1;
+    const brunt_barrier_particles *p = &b->step.particles;
+    const int32_t particle = place - b->vertex_count, plane = particle - p->count;
+    if (plane >= 0) return *node = &b->step.planes[plane].node, **node >= 0;
+    *node = p->node + p->first[particle], *weight = p->weight + p->first[particle];
+    return p->first[particle + 1] - p->first[particle];
+}
+
+void barrier_move(const brunt_barrier *b, int32_t place, const double *u, double out[3]) {
+    const int32_t *node;
+    const double *weight;
+    out[0] = out[1] = out[2] = 0;
+    if (!u) return;
+    const int64_t count = barrier_nodes(b, place, &node, &weight);
+    for (int64_t i = 0; i < count; i++)
+        for (int k = 0; k < b->dim; k++) out[k] += weight[i] * u[(int64_t)node[i] * b->dim + k];
+}
+
+// Differences of places at the start, then of displacements: both keep their digits far from the origin.
+void barrier_relative(const brunt_barrier *b, const double *u, int32_t from, const int32_t *place, int count,
+                      double (*out)[3]) {
+    double base[3];
+    const double *x0 = barrier_start(b, from);
+    barrier_move(b, from, u, base);
+    for (int i = 0; i < count; i++) {
+        const double *x = barrier_start(b, place[i]);
+        double move[3];
+        barrier_move(b, place[i], u, move);
+        for (int k = 0; k < 3; k++) out[i][k] = k < b->dim ? (x[k] - x0[k]) + (move[k] - base[k]) : 0;
+    }
+}

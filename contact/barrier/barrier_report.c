@@ -1,0 +1,55 @@
+// What contact was at the end of a step.
+#include "contact/barrier/barrier_parts.h"
+
+static void note_gap(const brunt_barrier *b, const double *u, const barrier_contact *c, brunt_barrier_report *r) {
+    if (c->weight <= 0 || !(c->at.d < r->least_gap)) return;
+    const bool plane = c->law >= b->pair_count, edges = c->threshold > 0;
+    r->least_gap = c->at.d, r->least_part = c->at.d / barrier_law_of(b, c->law).distance;
+    r->point = edges ? -1 : c->place[0], r->plane = plane ? c->law - b->pair_count : -1;
+    r->body = barrier_body_of(b, c->place[0]);
+    r->other = plane ? -1 : barrier_body_of(b, c->place[edges ? 2 : 1]);
+    for (int k = 0; k < 3; k++) r->place[k] = 0;
+    for (int i = 0; i < (edges ? 2 : 1); i++) {
+        const double *x = barrier_start(b, c->place[i]);
+        double move[3];
+        barrier_move(b, c->place[i], u, move);
+        for (int k = 0; k < b->dim; k++) r->place[k] += c->at.w[i] * (x[k] + move[k]);
+    }
+}
+
+static void add_normal(const brunt_barrier *b, const barrier_contact *c, brunt_barrier_force *force) {
+    const double f = c->side * barrier_contact_force(b, c);
+    for (int k = 0; k < b->dim; k++) force->normal[k] += f * c->at.n[k];
+    force->contacts++;
+}
+
+// Friction at u: its force, and the heat of the slip over the step.
+static void add_friction(const brunt_barrier *b, const double *u, brunt_barrier_report *r, brunt_barrier_force *force) {
+    for (int64_t i = 0; i < b->lagged.count; i++) {
+        const barrier_contact *c = &b->lagged.contact[i];
+        double f[3], slip[3];
+        barrier_slip_force(b, c, u, f), barrier_slip_of(b, c, u, slip);
+        for (int k = 0; k < b->dim; k++) {
+            r->heat -= f[k] * slip[k];
+            if (force) force[c->law].friction[k] += c->side * f[k];
+        }
+    }
+}
+
+int brunt_barrier_look_back(brunt_barrier *b, const brunt_team *team, const double *u, brunt_barrier_report *r,
+                            brunt_barrier_force *force, brunt_error *error) {
+    *r = (brunt_barrier_report){
+        .least_gap = INFINITY, .least_part = INFINITY, .body = -1, .other = -1, .point = -1, .plane = -1};
+    if (force) memset(force, 0, (size_t)(b->pair_count + b->step.plane_count) * sizeof *force);
+    const int code = brunt_barrier_term(b).ops->look(b, team, u, NULL, error);
+    if (code) return code;
+    for (int64_t i = 0; i < b->contacts.count; i++) {
+        const barrier_contact *c = &b->contacts.contact[i];
+        note_gap(b, u, c, r);
+        r->energy += barrier_contact_energy(b, c);
+        if (force) add_normal(b, c, &force[c->law]);
+    }
+    r->contacts = b->contacts.count;
+    add_friction(b, u, r, force);
+    return BRUNT_OK;
+}

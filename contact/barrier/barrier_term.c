@@ -1,0 +1,163 @@
+// The two terms: the barrier, and friction with what it was at the last lag.
+#include "contact/barrier/barrier_parts.h"
+
+static int out_of_memory(brunt_error *error, const char *what) {
+    return brunt_fail(error, BRUNT_FAILED, "out of memory for %s of contact", what);
+}
+
+// ---------------------------------------------------------------------------------------------------- barrier
+
+// All pairs that are near, as if they touched: what may couple on the way.
+static int list_candidates(brunt_barrier *b) {
+    barrier_contacts *list = &b->contacts;
+    const int64_t most =
+        b->facets.first[b->facets.count] + b->planes.first[b->planes.count] + b->edges.first[b->edges.count];
+    if (BRUNT_RESERVE(list->contact, (size_t)most + 1, 0)) return -1;
+    list->count = 0;
+    for (int32_t i = 0; i < b->facets.count; i++) {
+        for (int64_t k = b->facets.first[i]; k < b->facets.first[i + 1]; k++) {
+            const int32_t *f = b->facet[b->facets.item[k]];
+            list->contact[list->count++] = (barrier_contact){.place = {i, f[0], f[1], f[2]}, .at.places = 1 + b->dim};
+        }
+        for (int64_t k = b->planes.first[i]; k < b->planes.first[i + 1]; k++)
+            list->contact[list->count++] =
+                (barrier_contact){.place = {i, barrier_points(b) + b->planes.item[k]}, .at.places = 2};
+    }
+    for (int32_t i = 0; i < b->edges.count; i++)
+        for (int64_t k = b->edges.first[i]; k < b->edges.first[i + 1]; k++) {
+            const int32_t *e = b->edge[i], *f = b->edge[b->edges.item[k]];
+            list->contact[list->count++] = (barrier_contact){.place = {e[0], e[1], f[0], f[1]}, .at.places = 4};
+        }
+    return 0;
+}
+
+static int term_look(void *self, const brunt_team *team, const double *u, const double *p, brunt_error *error) {
+    brunt_barrier *b = self;
+    if (b->broken) return out_of_memory(error, "the stiffness");
+    const int code = barrier_find_near(b, team, u, p, error);
+    if (code) return code;
+    b->contacts.count = b->sets.count = 0;
+    b->stale = true;
+    if (!p && barrier_list_contacts(b, team, u, &b->contacts)) return out_of_memory(error, "the places");
+    return BRUNT_OK;
+}
+
+static brunt_energy_sum term_energy(void *self, const brunt_team *team, const double *u) {
+    return barrier_sum_energy(self, team, u);
+}
+
+static bool list_at(brunt_barrier *b, const brunt_team *team, const double *u) {
+    if (barrier_list_contacts(b, team, u, &b->contacts)) b->broken = true;
+    b->stale = true;
+    return !b->broken;
+}
+
+static void term_gradient(void *self, const brunt_team *team, const double *u, double *g) {
+    brunt_barrier *b = self;
+    if (!list_at(b, team, u)) return;
+    for (int64_t i = 0; i < b->contacts.count; i++) {
+        double local[BARRIER_DOFS];
+        barrier_contact_gradient(b, &b->contacts.contact[i], local);
+        barrier_add_gradient(b, &b->contacts.contact[i], local, g);
+    }
+}
+
+static brunt_stencils term_stencils(void *self) {
+    brunt_barrier *b = self;
+    if (b->stale && ((b->swept && list_candidates(b)) || barrier_make_sets(b, &b->contacts, &b->sets)))
+        b->broken = true, b->sets.count = 0;
+    b->stale = false;
+    return (brunt_stencils){b->sets.count, b->sets.first, b->sets.node};
+}
+
+static void term_hessian(void *self, const brunt_team *team, const double *u, bool project, brunt_block_matrix *m) {
+    brunt_barrier *b = self;
+    const barrier_assembly a = {b, &b->contacts, &b->sets, &b->colours, false};
+    if (!list_at(b, team, u)) return;
+    if (barrier_make_sets(b, &b->contacts, &b->sets) || barrier_add_hessian(&a, team, u, project, m)) b->broken = true;
+}
+
+static double term_limit(void *self, const brunt_team *team, const double *u, const double *p, double largest) {
+    return barrier_limit(self, team, u, p, largest);
+}
+
+brunt_term brunt_barrier_term(brunt_barrier *barrier) {
+    static const brunt_term_ops ops = {
+        .name = "barrier",
+        .look = term_look,
+        .energy = term_energy,
+        .gradient = term_gradient,
+        .stencils = term_stencils,
+        .hessian = term_hessian,
+        .limit = term_limit,
+    };
+    return (brunt_term){&ops, barrier};
+}
+
+// --------------------------------------------------------------------------------------------------- friction
+
+// Contacts that rub at u, with their normal forces.
+int brunt_barrier_lag(brunt_barrier *b, const brunt_team *team, const double *u, brunt_error *error) {
+    const int code = barrier_find_near(b, team, u, NULL, error);
+    if (code) return code;
+    if (barrier_list_contacts(b, team, u, &b->lagged)) return out_of_memory(error, "the places");
+    barrier_contacts *list = &b->lagged;
+    int64_t kept = 0;
+    for (int64_t i = 0; i < list->count; i++) {
+        barrier_contact *c = &list->contact[i];
+        c->normal_force = barrier_contact_force(b, c);
+        if (c->normal_force > 0 && barrier_law_of(b, c->law).friction > 0) list->contact[kept++] = *c;
+    }
+    list->count = kept;
+    if (barrier_make_sets(b, list, &b->lagged_sets)) return out_of_memory(error, "friction");
+    return BRUNT_OK;
+}
+
+static int friction_look(void *self, const brunt_team *team, const double *u, const double *p, brunt_error *error) {
+    const brunt_barrier *b = self;
+    (void)team, (void)u, (void)p;
+    return b->broken ? out_of_memory(error, "the stiffness") : BRUNT_OK;
+}
+
+static brunt_energy_sum friction_energy(void *self, const brunt_team *team, const double *u) {
+    const brunt_barrier *b = self;
+    brunt_energy_sum sum = {0};
+    (void)team;
+    for (int64_t i = 0; i < b->lagged.count; i++) sum.value += barrier_slip_energy(b, &b->lagged.contact[i], u);
+    sum.magnitude = sum.value;
+    return sum;
+}
+
+static void friction_gradient(void *self, const brunt_team *team, const double *u, double *g) {
+    const brunt_barrier *b = self;
+    (void)team;
+    for (int64_t i = 0; i < b->lagged.count; i++) {
+        double local[BARRIER_DOFS];
+        barrier_slip_gradient(b, &b->lagged.contact[i], u, local);
+        barrier_add_gradient(b, &b->lagged.contact[i], local, g);
+    }
+}
+
+static brunt_stencils friction_stencils(void *self) {
+    const brunt_barrier *b = self;
+    return (brunt_stencils){b->lagged.count ? b->lagged_sets.count : 0, b->lagged_sets.first, b->lagged_sets.node};
+}
+
+static void friction_hessian(void *self, const brunt_team *team, const double *u, bool project, brunt_block_matrix *m) {
+    brunt_barrier *b = self;
+    const barrier_assembly a = {b, &b->lagged, &b->lagged_sets, &b->lagged_colours, true};
+    (void)project;
+    if (b->lagged.count && barrier_add_hessian(&a, team, u, false, m)) b->broken = true;
+}
+
+brunt_term brunt_barrier_friction_term(brunt_barrier *barrier) {
+    static const brunt_term_ops ops = {
+        .name = "friction",
+        .look = friction_look,
+        .energy = friction_energy,
+        .gradient = friction_gradient,
+        .stencils = friction_stencils,
+        .hessian = friction_hessian,
+    };
+    return (brunt_term){&ops, barrier};
+}
