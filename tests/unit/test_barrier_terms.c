@@ -1,0 +1,479 @@
+// The terms `barrier` and `friction` whole: derivatives, sums over vertices and edges, momenta, same bits.
+#include "base/memory.h"
+#include "contact/barrier/barrier_function.h"
+#include "linear/block_matrix.h"
+#include "tests/support/barrier_case.h"
+
+// ------------------------------------------------------------------------------------------------- derivatives
+
+// Of all unknowns: gradient of the energy, Hessian of the gradient, by central differences, of their own size.
+static void check_term(barrier_case *c, brunt_term term, double *u, double h) {
+    const int n = c->nodes * c->dim;
+    const brunt_team team = {c->threads, NULL};
+    double *g = case_unknowns(c), *up = case_unknowns(c), *down = case_unknowns(c), slope_size = 0, force_size = 0;
+    brunt_block_matrix m = {0};
+    case_look(c, u, NULL);
+    case_gradient(c, term, u, g);
+    const brunt_stencils stencils = term.ops->stencils(term.self);
+    const brunt_pattern pattern = {c->dim, c->nodes, &stencils, 1, false};
+    ck_assert_int_eq(brunt_block_matrix_pattern(&m, &team, &pattern, NULL), BRUNT_OK);
+    term.ops->hessian(term.self, &team, u, false, &m);
+    double *dense = calloc((size_t)n * (size_t)n, sizeof *dense);
+    for (int32_t r = 0; r < c->nodes; r++)
+        for (int64_t k = m.first[r]; k < m.first[r + 1]; k++)
+            for (int i = 0; i < c->dim; i++)
+                for (int j = 0; j < c->dim; j++)
+                    dense[(r * c->dim + i) * n + m.column[k] * c->dim + j] =
+                        m.value[k * c->dim * c->dim + i * c->dim + j];
+    for (int i = 0; i < n; i++) force_size = fmax(force_size, fabs(g[i]));
+    for (int i = 0; i < n * n; i++) slope_size = fmax(slope_size, fabs(dense[i]));
+    ck_assert_msg(force_size > 0, "nothing touches");
+    double worst = 0, worst_slope = 0;
+    for (int i = 0; i < n; i++) {
+        const double was = u[i];
+        u[i] = was + h;
+        const double more = case_energy(c, term, u);
+        case_gradient(c, term, u, up);
+        u[i] = was - h;
+        const double less = case_energy(c, term, u);
+        case_gradient(c, term, u, down);
+        u[i] = was;
+        worst = fmax(worst, fabs((more - less) / (2 * h) - g[i]) / force_size);
+        for (int j = 0; j < n; j++)
+            worst_slope = fmax(worst_slope, fabs((up[j] - down[j]) / (2 * h) - dense[j * n + i]) / slope_size);
+    }
+    ck_assert_msg(worst < 1e-7 && worst_slope < 1e-7, "gradient off by %g, Hessian by %g", worst, worst_slope);
+    brunt_block_matrix_free(&m);
+    free(dense), free(g), free(up), free(down);
+}
+
+// Two rectangles that nearly touch, leaning, their vertices moved at random.
+static barrier_case *two_in_2d(bool self) {
+    barrier_case *c = case_begin(2);
+    uint64_t state = 11;
+    case_rectangle(c, 0, (double[2]){0, 0}, (double[2]){1, 0.5}, 3);
+    case_rectangle(c, self ? 0 : 1, (double[2]){0.2, 0.52}, (double[2]){0.9, 1}, 4);
+    for (int32_t i = 0; i < c->vertices; i++)
+        for (int k = 0; k < 2; k++) c->x[i][k] += draw_between(&state, -0.004, 0.004);
+    case_pair(c, 0, self ? 0 : 1, 0.05, 1e5)->friction = 0.3;
+    c->pair[0].slip_speed = 0.5;
+    return c;
+}
+
+static barrier_case *two_in_3d(bool triangles) {
+    barrier_case *c = case_begin(3);
+    uint64_t state = 12;
+    case_box(c, 0, (double[3]){0, 0, 0}, (double[3]){1, 1, 0.5}, 2, triangles);
+    case_box(c, 1, (double[3]){0.2, 0.3, 0.53}, (double[3]){0.9, 1.2, 1}, 2, triangles);
+    for (int32_t i = 0; i < c->vertices; i++)
+        for (int k = 0; k < 3; k++) c->x[i][k] += draw_between(&state, -0.006, 0.006);
+    case_pair(c, 0, 1, 0.06, 1e5)->friction = 0.3;
+    c->pair[0].slip_speed = 0.5;
+    return c;
+}
+
+// Material points above, and beside, a body.
+static barrier_case *points_at(int dim, int weights) {
+    barrier_case *c = case_begin(dim);
+    uint64_t state = 13;
+    if (dim == 2)
+        case_rectangle(c, 0, (double[2]){0, 0}, (double[2]){1, 1}, 2);
+    else
+        case_box(c, 0, (double[3]){0, 0, 0}, (double[3]){1, 1, 1}, 2, true);
+    for (int i = 0; i < 8; i++) {
+        const double away = draw_between(&state, 0.01, 0.03), z = dim == 3 ? draw(&state) : 0;
+        const double x[3] = {i < 4 ? 1 + away : draw(&state), i < 4 ? draw(&state) : 1 + away, z};
+        case_particle(c, x, 0.02, 1, weights, &state);
+    }
+    case_pair(c, 0, 1, 0.05, 1e5)->friction = 0.3;
+    c->pair[0].slip_speed = 0.5;
+    return c;
+}
+
+static void draw_unknowns(const barrier_case *c, double *u, double size, uint64_t seed) {
+    for (int i = 0; i < c->nodes * c->dim; i++) u[i] = draw_between(&seed, -size, size);
+}
+
+static barrier_case *make_case(int which) {
+    switch (which) {
+    case 0: return two_in_2d(false);
+    case 1: return two_in_2d(true);
+    case 2: return two_in_3d(true);
+    case 3: return two_in_3d(false);
+    case 4: return points_at(2, 9);
+    case 5: return points_at(3, 8);
+    default: return points_at(3, 1);
+    }
+}
+
+START_TEST(derivatives_of_whole_terms) {
+    for (int which = 0; which < 7; which++)
+        for (int newmark = 0; newmark < 2; newmark++) {
+            barrier_case *c = make_case(which);
+            double *u = case_unknowns(c);
+            if (newmark) c->factor = 2, draw_unknowns(c, c->before, 4e-4, 5);
+            case_ready(c);
+            draw_unknowns(c, u, 1e-3, 21);
+            if (!newmark) check_term(c, brunt_barrier_term(c->barrier), u, 2e-8);
+            case_lag(c, u);
+            draw_unknowns(c, u, 4e-4, 22);
+            check_term(c, brunt_barrier_friction_term(c->barrier), u, 2e-8);
+            free(u), case_end(c);
+        }
+}
+END_TEST
+
+// A point that slides along a surface feels the same everywhere: above faces, edges and vertices, and exactly there.
+static void slide(barrier_case *c, const double (*at)[3], int count, double expected) {
+    double *u = case_unknowns(c);
+    const brunt_term term = brunt_barrier_term(c->barrier);
+    for (int i = 0; i < count; i++) {
+        for (int k = 0; k < c->dim; k++) u[c->particle_node[0] * c->dim + k] = at[i][k] - c->particle_x[0][k];
+        case_look(c, u, NULL);
+        const double energy = case_energy(c, term, u);
+        ck_assert_msg(fabs(energy - expected) < 1e-11 * expected, "%.15g at (%g, %g), not %.15g", energy, at[i][0],
+                      at[i][1], expected);
+    }
+    free(u);
+}
+
+START_TEST(sums_are_constant_along_a_polygon) {
+    enum { PLACES = 400 };
+    barrier_case *c = case_begin(2);
+    // Uneven edges, some shorter than the distance; the ends are far.
+    static const double x[][2] = {{-9, 0}, {0, 0}, {0.1, 0}, {0.13, 0}, {0.4, 0}, {1, 0}, {9, 0}, {0, -9}};
+    case_polygon(c, 0, x, 8);
+    uint64_t state = 1;
+    const double gap = 0.02, dhat = 0.05, kappa = 1e5;
+    case_particle(c, (double[3]){0.3, gap, 0}, 0.02, 1, 1, &state);
+    case_pair(c, 0, 1, dhat, kappa);
+    case_ready(c);
+    static double at[PLACES][3];
+    for (int i = 0; i < PLACES; i++) at[i][0] = i < 5 ? x[1 + i][0] : draw_between(&state, -1, 2), at[i][1] = gap;
+    slide(c, (const double(*)[3])at, PLACES, 0.02 * brunt_barrier_at(gap, dhat, kappa).b);
+    case_end(c);
+}
+END_TEST
+
+START_TEST(sums_are_constant_along_a_triangulation) {
+    enum { N = 7, PLACES = 2000 };
+    static double at[PLACES][3];
+    for (int quadrilaterals = 0; quadrilaterals < 2; quadrilaterals++) {
+        barrier_case *c = case_begin(3);
+        uint64_t state = 3;
+        const double gap = 0.05, dhat = 0.2, kappa = 1e5; // some edges are shorter
+        for (int j = 0; j <= N; j++)
+            for (int i = 0; i <= N; i++)
+                case_vertex(c, i * 0.2 + draw_between(&state, -0.08, 0.08), j * 0.2 + draw_between(&state, -0.08, 0.08),
+                            0, 0);
+        for (int j = 0; j < N; j++)
+            for (int i = 0; i < N; i++) {
+                const int32_t v = j * (N + 1) + i, q[4] = {v, v + 1, v + N + 2, v + N + 1};
+                if (quadrilaterals)
+                    case_facet(c, q[0], q[1], q[2], q[3]);
+                else if (draw(&state) < 0.5)
+                    case_facet(c, q[0], q[1], q[2], -1), case_facet(c, q[0], q[2], q[3], -1);
+                else
+                    case_facet(c, q[0], q[1], q[3], -1), case_facet(c, q[1], q[2], q[3], -1);
+            }
+        case_particle(c, (double[3]){0.7, 0.7, gap}, 0.02, 1, 1, &state);
+        case_pair(c, 0, 1, dhat, kappa);
+        case_ready(c);
+        for (int i = 0; i < PLACES; i++) {
+            const int vertex = (2 + draw_whole(&state, N - 4)) * (N + 1) + 2 + draw_whole(&state, N - 4);
+            const int other = vertex + (i % 3 == 0 ? 1 : i % 3 == 1 ? N + 1 : N + 2);
+            const double t = i % 4 == 0 ? 0 : i % 4 == 1 ? draw(&state) : 0.5, *a = c->x[vertex], *b = c->x[other];
+            for (int k = 0; k < 2; k++) at[i][k] = i % 4 == 3 ? draw_between(&state, 0.4, 1) : a[k] + t * (b[k] - a[k]);
+            at[i][2] = gap;
+        }
+        slide(c, (const double(*)[3])at, PLACES, 0.02 * brunt_barrier_at(gap, dhat, kappa).b);
+        case_end(c);
+    }
+}
+END_TEST
+
+// What a surface's border, corner and valley add up to.
+START_TEST(sums_at_borders_corners_and_valleys) {
+    const double dhat = 0.1, kappa = 1e5, area = 0.02;
+    uint64_t state = 1;
+    barrier_case *c = case_begin(3);
+    // An open sheet of two triangles that rises at x = 0, along y.
+    const double h = 0.5;
+    case_vertex(c, 0, 0, 0, 0), case_vertex(c, 0, 1, 0, 0), case_vertex(c, 1, 0.5, h, 0), case_vertex(c, -1, 0.5, h, 0);
+    case_facet(c, 0, 1, 2, -1), case_facet(c, 0, 1, 3, -1);
+    case_particle(c, (double[3]){0, 0.5, 0.05}, area, 1, 1, &state);
+    case_pair(c, 0, 1, dhat, kappa)->friction = 1;
+    c->pair[0].slip_speed = 1;
+    case_ready(c);
+    double *u = case_unknowns(c);
+    const brunt_term term = brunt_barrier_term(c->barrier);
+    case_look(c, u, NULL);
+    // In the valley both slopes, at cos(slope) of the height, but for one edge.
+    const double slope = 0.05 / sqrt(1 + h * h), both = 2 * brunt_barrier_at(slope, dhat, kappa).b;
+    const double expected = area * (both - brunt_barrier_at(0.05, dhat, kappa).b);
+    ck_assert_double_eq_tol(case_energy(c, term, u), expected, 1e-12 * expected);
+    brunt_barrier_force force;
+    brunt_barrier_report report = case_report(c, u, &force);
+    ck_assert_int_eq(report.contacts, 3);
+    case_lag(c, u);
+    // Friction is of the slopes alone.
+    u[c->particle_node[0] * 3 + 1] = 1e9 * c->dt;
+    double *g = case_unknowns(c);
+    case_gradient(c, brunt_barrier_friction_term(c->barrier), u, g);
+    const double pressed = -2 * area * brunt_barrier_at(slope, dhat, kappa).db;
+    ck_assert_double_eq_tol(g[c->particle_node[0] * 3 + 1], pressed, 1e-9 * pressed);
+    // Beyond an end of the crease, and below it, one contact.
+    const double places[][3] = {{0, -0.05, 0}, {0, 0.5, -0.05}, {0, -0.03, -0.04}};
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3; k++) u[c->particle_node[0] * 3 + k] = places[i][k] - c->particle_x[0][k];
+        case_look(c, u, NULL);
+        const double one = area * brunt_barrier_at(0.05, dhat, kappa).b;
+        ck_assert_double_eq_tol(case_energy(c, term, u), one, 1e-11 * one);
+        ck_assert_int_eq(case_report(c, u, NULL).contacts, 1);
+    }
+    free(u), free(g), case_end(c);
+}
+END_TEST
+
+// ------------------------------------------------------------------------------------------------------ momenta
+
+static void place_now(const barrier_case *c, const double *u, int32_t node, double x[3]) {
+    for (int32_t i = 0; i < c->vertices; i++)
+        if (c->node[i] == node)
+            for (int k = 0; k < 3; k++) x[k] = c->x[i][k] + (k < c->dim ? u[node * c->dim + k] : 0);
+}
+
+START_TEST(forces_are_opposite) {
+    for (int which = 0; which < 4; which++) {
+        barrier_case *c = make_case(which);
+        case_ready(c);
+        double *u = case_unknowns(c), *g = case_unknowns(c), *slip = case_unknowns(c);
+        draw_unknowns(c, u, 1e-3, 31);
+        case_look(c, u, NULL);
+        case_gradient(c, brunt_barrier_term(c->barrier), u, g);
+        double sum[3] = {0}, turn[3] = {0}, on_a[3] = {0}, size = 0;
+        for (int32_t n = 0; n < c->nodes; n++) {
+            double x[3] = {0}, f[3] = {0};
+            place_now(c, u, n, x);
+            for (int k = 0; k < c->dim; k++) f[k] = g[n * c->dim + k], sum[k] += f[k], size += fabs(f[k]);
+            for (int k = 0; k < c->dim && c->body[n] == 0; k++) on_a[k] -= f[k];
+            for (int k = 0; k < 3; k++) turn[k] += x[(k + 1) % 3] * f[(k + 2) % 3] - x[(k + 2) % 3] * f[(k + 1) % 3];
+        }
+        for (int k = 0; k < 3; k++) {
+            ck_assert_double_eq_tol(sum[k], 0, 1e-13 * size);
+            ck_assert_double_eq_tol(turn[k], 0, 1e-12 * size);
+        }
+        case_lag(c, u);
+        draw_unknowns(c, u, 1e-3, 32);
+        case_gradient(c, brunt_barrier_friction_term(c->barrier), u, slip);
+        double rub[3] = {0}, rub_size = 0, rub_a[3] = {0};
+        for (int32_t n = 0; n < c->nodes; n++)
+            for (int k = 0; k < c->dim; k++) {
+                rub[k] += slip[n * c->dim + k], rub_size += fabs(slip[n * c->dim + k]);
+                if (c->body[n] == 0) rub_a[k] -= slip[n * c->dim + k];
+            }
+        for (int k = 0; k < c->dim; k++) ck_assert_double_eq_tol(rub[k], 0, 1e-13 * rub_size);
+        brunt_barrier_force force;
+        const brunt_barrier_report report = case_report(c, u, &force);
+        ck_assert(report.heat > 0 && report.energy > 0);
+        for (int k = 0; k < c->dim && which != 1; k++)
+            ck_assert_double_eq_tol(force.friction[k], rub_a[k], 1e-12 * rub_size);
+        draw_unknowns(c, u, 1e-3, 31);
+        case_report(c, u, &force);
+        // What is not along the normal comes from the mollifier: it only turns.
+        for (int k = 0; k < c->dim && which != 1; k++) ck_assert_double_eq_tol(force.normal[k], on_a[k], 1e-12 * size);
+        free(u), free(g), free(slip), case_end(c);
+    }
+}
+END_TEST
+
+// --------------------------------------------------------------------------------------------------------- same
+
+static double *whole_of(barrier_case *c, const double *u, const double *p, double *energy, double *limit) {
+    double *g = case_unknowns(c);
+    case_look(c, u, p);
+    *energy = case_energy(c, brunt_barrier_term(c->barrier), u);
+    *limit = p ? case_limit(c, u, p, 1) : 0;
+    case_gradient(c, brunt_barrier_term(c->barrier), u, g);
+    return g;
+}
+
+START_TEST(threads_give_the_same_bits) {
+    barrier_case *c = case_begin(3);
+    case_box(c, 0, (double[3]){0, 0, 0}, (double[3]){1, 1, 1}, 8, true);
+    case_box(c, 1, (double[3]){0.05, 0.02, 1.01}, (double[3]){1.1, 0.9, 2}, 8, true);
+    case_pair(c, 0, 1, 0.02, 1e5)->friction = 0.3;
+    c->pair[0].slip_speed = 0.1;
+    case_ready(c);
+    double *u = case_unknowns(c), *p = case_unknowns(c), energy[3], limit[3], *g[3];
+    draw_unknowns(c, u, 2e-3, 41), draw_unknowns(c, p, 0.2, 42);
+    brunt_block_matrix m[3] = {{0}, {0}, {0}};
+    for (int i = 0; i < 3; i++) {
+        c->threads = 1 + i;
+        const brunt_term term = brunt_barrier_term(c->barrier);
+        const brunt_team team = {c->threads, NULL};
+        g[i] = whole_of(c, u, p, &energy[i], &limit[i]);
+        case_look(c, u, NULL);
+        const brunt_stencils stencils = term.ops->stencils(term.self);
+        const brunt_pattern pattern = {c->dim, c->nodes, &stencils, 1, false};
+        ck_assert_int_eq(brunt_block_matrix_pattern(&m[i], &team, &pattern, NULL), BRUNT_OK);
+        term.ops->hessian(term.self, &team, u, true, &m[i]);
+        const int64_t blocks = brunt_block_matrix_blocks(&m[0]);
+        ck_assert(energy[i] == energy[0] && limit[i] == limit[0] && energy[0] > 0 && limit[0] > 0 && limit[0] < 1);
+        ck_assert_int_eq(memcmp(g[i], g[0], (size_t)c->nodes * 3 * sizeof(double)), 0);
+        ck_assert_int_eq(brunt_block_matrix_blocks(&m[i]), blocks);
+        ck_assert_int_eq(memcmp(m[i].value, m[0].value, (size_t)blocks * 9 * sizeof(double)), 0);
+    }
+    for (int i = 0; i < 3; i++) free(g[i]), brunt_block_matrix_free(&m[i]);
+    free(u), free(p), case_end(c);
+}
+END_TEST
+
+// A copy with bodies numbered the other way round, mirrored along x, or shifted.
+static barrier_case *changed(const barrier_case *c, bool swap, bool mirror, double shift) {
+    barrier_case *d = malloc(sizeof *d);
+    memcpy(d, c, sizeof *d);
+    d->barrier = NULL;
+    for (int32_t i = 0; i < c->vertices; i++) {
+        const int32_t from = swap ? c->vertices - 1 - i : i;
+        d->body[i] = swap ? 1 - c->body[from] : c->body[i], d->node[i] = c->node[from];
+        for (int k = 0; k < 3; k++)
+            d->x[i][k] = (mirror && k == 0 ? -c->x[from][k] : c->x[from][k]) + (k < c->dim ? shift : 0);
+    }
+    for (int32_t i = 0; i < c->facets; i++)
+        for (int k = 0; k < 4; k++) {
+            const int32_t v = c->facet[swap ? c->facets - 1 - i : i][k];
+            d->facet[i][k] = v < 0 || !swap ? v : c->vertices - 1 - v;
+        }
+    for (int32_t i = 0; i < c->particles; i++)
+        for (int k = 0; k < c->dim; k++)
+            d->particle_x[i][k] = (mirror && k == 0 ? -1 : 1) * c->particle_x[i][k] + shift;
+    return d;
+}
+
+START_TEST(order_mirror_and_place_do_not_matter) {
+    for (int which = 0; which < 4; which++)
+        for (int way = 0; way < 3; way++) {
+            barrier_case *c = make_case(which);
+            // Places in 2^-30: shifted by 2^20 they are exact.
+            for (int32_t i = 0; i < c->vertices; i++)
+                for (int k = 0; k < 3; k++) c->x[i][k] = round(c->x[i][k] * 0x1p30) * 0x1p-30;
+            barrier_case *d = changed(c, way == 0 && which != 1, way == 1, way == 2 ? 0x1p20 : 0);
+            case_ready(c), case_ready(d);
+            double *u = case_unknowns(c), *p = case_unknowns(c), energy[2], limit[2], size = 0;
+            draw_unknowns(c, u, 1e-3, 51), draw_unknowns(c, p, 0.1, 52);
+            double *g = whole_of(c, u, p, &energy[0], &limit[0]);
+            if (way == 1)
+                for (int i = 0; i < c->nodes; i++) u[i * c->dim] *= -1, p[i * c->dim] *= -1;
+            double *h = whole_of(d, u, p, &energy[1], &limit[1]);
+            for (int i = 0; i < c->nodes * c->dim; i++) size = fmax(size, fabs(g[i]));
+            ck_assert_double_eq_tol(energy[0], energy[1], 1e-12 * energy[0]);
+            // Far away rounding costs more of the gap, which the limit counts as taken.
+            ck_assert_double_eq_tol(limit[0], limit[1], way == 2 ? 1e-6 : 1e-9);
+            for (int i = 0; i < c->nodes * c->dim; i++)
+                ck_assert_double_eq_tol(g[i], way == 1 && i % c->dim == 0 ? -h[i] : h[i], 1e-11 * size);
+            free(u), free(p), free(g), free(h), case_end(c), case_end(d);
+        }
+}
+END_TEST
+
+START_TEST(later_steps_take_no_memory) {
+    barrier_case *c = make_case(2);
+    case_ready(c);
+    double *u = case_unknowns(c), *p = case_unknowns(c), *g = case_unknowns(c);
+    const brunt_term terms[2] = {brunt_barrier_term(c->barrier), brunt_barrier_friction_term(c->barrier)};
+    const brunt_team team = {1, NULL};
+    brunt_block_matrix m = {0};
+    int64_t calls = 0;
+    for (int step = 0; step < 6; step++) {
+        if (step == 2) calls = brunt_memory_calls();
+        draw_unknowns(c, u, 1e-3, 61), draw_unknowns(c, p, 0.1, 62);
+        case_step(c), case_lag(c, u), case_look(c, u, NULL);
+        brunt_stencils stencils[2];
+        for (int i = 0; i < 2; i++) stencils[i] = terms[i].ops->stencils(terms[i].self);
+        const brunt_pattern pattern = {c->dim, c->nodes, stencils, 2, false};
+        if (step == 0) ck_assert_int_eq(brunt_block_matrix_pattern(&m, &team, &pattern, NULL), BRUNT_OK);
+        for (int i = 0; i < 2; i++) {
+            case_gradient(c, terms[i], u, g);
+            terms[i].ops->hessian(terms[i].self, &team, u, true, &m);
+        }
+        case_look(c, u, p), case_limit(c, u, p, 1), case_energy(c, terms[0], p), case_report(c, u, NULL);
+    }
+    ck_assert_int_eq(brunt_memory_calls(), calls);
+    brunt_block_matrix_free(&m);
+    free(u), free(p), free(g), case_end(c);
+}
+END_TEST
+
+// ------------------------------------------------------------------------------------------------------- search
+
+// Candidates of a short way find what those of a way so long that all meet all find.
+START_TEST(candidates_are_all_there_is) {
+    for (int which = 0; which < 7; which++) {
+        barrier_case *c = make_case(which);
+        case_ready(c);
+        double *u = case_unknowns(c), *p = case_unknowns(c), *at = case_unknowns(c), *all = case_unknowns(c);
+        const brunt_term term = brunt_barrier_term(c->barrier);
+        int touched = 0;
+        for (int n = 0; n < 30; n++) {
+            draw_unknowns(c, u, 0.02, 71 + (uint64_t)n), draw_unknowns(c, p, 0.2, 171 + (uint64_t)n);
+            for (int i = 0; i < c->nodes * c->dim; i++) all[i] = i % 2 ? 50 : -50;
+            const double t = n / 29.0;
+            for (int i = 0; i < c->nodes * c->dim; i++) at[i] = u[i] + t * p[i];
+            case_look(c, u, p);
+            const double along = case_energy(c, term, at);
+            case_look(c, at, NULL);
+            const double here = case_energy(c, term, at);
+            draw_unknowns(c, all, 100, 7);
+            case_look(c, at, all);
+            const double every = case_energy(c, term, at);
+            ck_assert_msg(along == every && here == every, "case %d: %.17g and %.17g, of all %.17g", which, along, here,
+                          every);
+            touched += every > 0;
+        }
+        ck_assert_int_ge(touched, 15);
+        free(u), free(p), free(at), free(all), case_end(c);
+    }
+}
+END_TEST
+
+START_TEST(bad_surfaces_are_refused) {
+    static const int32_t facets[3][4] = {{0, 1, 2, -1}, {0, 1, 1, -1}, {0, 1, 3, -1}};
+    static const double x[4][3] = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}};
+    static const int32_t bodies[4] = {0, 0, 0, 1};
+    static const char *const says[3] = {"no area", "no area", "two bodies"};
+    for (int i = 0; i < 3; i++) {
+        brunt_error error = {0};
+        brunt_barrier *b = brunt_barrier_make(&error);
+        const brunt_barrier_mesh mesh = {3, 4, 1, x, bodies, &facets[i]};
+        ck_assert_int_eq(brunt_barrier_set_mesh(b, &mesh, &error), BRUNT_FAILED);
+        ck_assert_msg(strstr(error.message, says[i]), "%s", error.message);
+        const brunt_barrier_pair pairs[2] = {{.a = 0, .b = 1, .distance = 1, .stiffness = 1},
+                                             {.a = 1, .b = 0, .distance = 1, .stiffness = 1}};
+        ck_assert_int_eq(brunt_barrier_set_pairs(b, pairs, 2, &error), BRUNT_FAILED);
+        ck_assert_msg(strstr(error.message, "twice"), "%s", error.message);
+        brunt_barrier_free(b);
+    }
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("barrier terms");
+    TCase *terms = tcase_create("terms");
+    tcase_add_test(terms, derivatives_of_whole_terms);
+    tcase_add_test(terms, sums_are_constant_along_a_polygon);
+    tcase_add_test(terms, sums_are_constant_along_a_triangulation);
+    tcase_add_test(terms, sums_at_borders_corners_and_valleys);
+    tcase_add_test(terms, forces_are_opposite);
+    tcase_add_test(terms, threads_give_the_same_bits);
+    tcase_add_test(terms, order_mirror_and_place_do_not_matter);
+    tcase_add_test(terms, later_steps_take_no_memory);
+    tcase_add_test(terms, candidates_are_all_there_is);
+    tcase_add_test(terms, bad_surfaces_are_refused);
+    suite_add_tcase(suite, terms);
+    SRunner *runner = srunner_create(suite);
+    srunner_run_all(runner, CK_NORMAL);
+    const int failed = srunner_ntests_failed(runner);
+    srunner_free(runner);
+    return failed > 0;
+}
