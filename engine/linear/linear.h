@@ -25,7 +25,8 @@ typedef enum brunt_preconditioner { BRUNT_INCOMPLETE_CHOLESKY, BRUNT_BLOCK_JACOB
 typedef void brunt_product_fn(void *context, const brunt_team *team, const double *x, double *y);
 
 typedef struct brunt_linear_options {
-    double accuracy; // pcg: norm of the residual where it stops, over that at x = 0, both in the preconditioner's norm
+    double
+        accuracy; // pcg: of the residual over that at x = 0, in the norm of the preconditioner, and of x in that of A
     int32_t iterations; // pcg: at most
     brunt_preconditioner preconditioner;
     int64_t memory;            // [bytes] direct: what factors may take; 0: what the machine has
@@ -80,3 +81,21 @@ brunt_linear_status brunt_linear_factor(brunt_linear *s, const brunt_team *team,
                                         brunt_error *error);
 brunt_linear_status brunt_linear_solve(brunt_linear *s, const brunt_team *team, const double *b, double *x,
                                        brunt_error *error);
+// What a choice goes by.
+typedef struct brunt_linear_size {
+    int dim;
+    int64_t nodes;
+    double blocks;  // a node, about: 9 or 25 of grids in two dimensions, 15 of tetrahedra, 27 of bricks, 125 of grids
+    double courant; // c dt / h; INFINITY: static
+} brunt_linear_size;
+
+typedef struct brunt_linear_choice {
+    const brunt_linear_ops *solver;
+    brunt_preconditioner preconditioner;
+    double direct_seconds,
+        pcg_seconds; // [s] estimated of one iteration with either, on one thread of a machine of 2019
+    char why[200];   // for `brunt check`
+} brunt_linear_choice;
+
+// The quicker one by estimate, the direct one when it takes less than twice as long: it cannot stall.
+brunt_linear_choice brunt_linear_choose(const brunt_linear_size *size);

@@ -322,6 +322,62 @@ START_TEST(incomplete_factors_that_break_down) {
 }
 END_TEST
 
+// (I + V)' D (I + V) is the matrix wherever that has a block: what makes an incomplete factor what it is.
+START_TEST(incomplete_factors_are_the_matrix_on_its_pattern) {
+    elastic e = model(_i);
+    const int d = e.dim;
+    const int64_t n = (int64_t)e.nodes * d;
+    brunt_block_matrix m = assembled(&e, &alone, 3);
+    brunt_incomplete f = {0};
+    ck_assert_int_eq(brunt_incomplete_analyse(&f, &m, true), 0);
+    ck_assert_int_eq(brunt_incomplete_factor(&f, &m, 1), -1);
+    double *w = calloc((size_t)(n * n), sizeof *w), *dw = calloc((size_t)(n * n), sizeof *w);
+    for (int64_t i = 0; i < n; i++) w[i * n + i] = 1;
+    for (int64_t r = 0; r < e.nodes; r++)
+        for (int64_t c = 0; c < f.upper[r + 1] - f.upper[r]; c++)
+            for (int k = 0; k < d * d; k++)
+                w[(r * d + k / d) * n + m.column[m.diagonal[r] + 1 + c] * d + k % d] =
+                    f.v[(f.upper[r] + c) * d * d + k];
+    for (int64_t i = 0; i < n; i++)
+        for (int64_t j = 0; j < n; j++)
+            for (int k = 0; k < d; k++) dw[i * n + j] += f.d[(i / d * d + i % d) * d + k] * w[(i / d * d + k) * n + j];
+    for (int64_t i = 0; i < n; i++)
+        for (int64_t k = m.first[i / d]; k < m.first[i / d + 1]; k++)
+            for (int64_t j = (int64_t)m.column[k] * d; j < (m.column[k] + 1) * (int64_t)d; j++) {
+                double sum = 0;
+                for (int64_t l = 0; l < n; l++) sum += w[l * n + i] * dw[l * n + j];
+                ck_assert_double_eq_tol(sum, entry(&m, i, j), 1e-12);
+            }
+    free(w), free(dw), brunt_incomplete_free(&f), brunt_block_matrix_free(&m), elastic_free(&e);
+}
+END_TEST
+
+// A rod that is held at one end and pushed at all of it: the residual is small where iterations have not yet come to.
+START_TEST(accuracy_is_of_the_solution) {
+    enum { NODES = 400 };
+    int64_t first[NODES];
+    int32_t node[2 * NODES];
+    for (int s = 0; s < NODES; s++) first[s] = 2 * s, node[2 * s] = s, node[2 * s + 1] = s + 1;
+    const brunt_stencils list = {NODES - 1, first, node};
+    const brunt_pattern pattern = {2, NODES, &list, 1, false};
+    brunt_block_matrix m = {0};
+    ck_assert_int_eq(brunt_block_matrix_pattern(&m, &alone, &pattern, NULL), BRUNT_OK);
+    for (int s = 0; s < NODES - 1; s++)
+        brunt_block_matrix_add(&m, node + 2 * s, 2, (double[]){1, 0, -1, 0, 0, 1, 0, -1, -1, 0, 1, 0, 0, -1, 0, 1});
+    m.value[m.diagonal[0] * 4] += 1, m.value[m.diagonal[0] * 4 + 3] += 1;
+    double b[2 * NODES], x[2 * NODES];
+    for (int i = 0; i < 2 * NODES; i++) b[i] = 1;
+    brunt_linear_options options = {.accuracy = 0.05, .iterations = 5000, .preconditioner = BRUNT_BLOCK_JACOBI};
+    ck_assert_int_eq(solve_once(&brunt_linear_pcg, &options, &alone, &m, b, x, NULL, NULL), BRUNT_LINEAR_DONE);
+    // u_i = sum over k <= i of the push beyond, NODES - k; squares of the error and of u in the norm of A: b . (u - x),
+    // b . u.
+    double far = 0, size = 0, u = 0;
+    for (int i = 0; i < NODES; i++) u += NODES - i, far += u - x[2 * i], size += u;
+    ck_assert_double_lt(sqrt(far / size), 0.05);
+    brunt_block_matrix_free(&m);
+}
+END_TEST
+
 // Where nothing is left out, the incomplete factor is the factor: one iteration.
 START_TEST(complete_where_nothing_fills_in) {
     enum { NODES = 40 };
@@ -460,6 +516,30 @@ START_TEST(solvers_serve_again) {
 }
 END_TEST
 
+// Measured on one thread by bench/micro/solvers.c, seconds of analysis, factor and solution, and of pcg to 1e-3:
+// estimates are within a factor of 2.5 of them, and the choice is that of the measurement where it is not close.
+START_TEST(the_quicker_one_is_chosen) {
+    const struct {
+        brunt_linear_size size;
+        double direct, pcg;
+    } measured[] = {
+        {{2, 10073, 24.3, 10}, 0.186, 0.007},      {{2, 10073, 24.3, 100}, 0.197, 0.047},
+        {{2, 198874, 24.9, 10}, 9.06, 0.191},      {{2, 198874, 24.9, 100}, 9.02, 1.035},
+        {{2, 10000, 6.9, 100}, 0.059, 0.018},      {{2, 48400, 6.9, 100}, 0.435, 0.159},
+        {{2, 48400, 6.9, INFINITY}, 0.435, 0.733}, {{2, 202500, 7, INFINITY}, 2.43, 7.45},
+        {{3, 830, 77.3, 10}, 0.044, 0.006},        {{3, 6966, 99.3, 10}, 2.60, 0.093},
+        {{3, 6966, 99.3, 100}, 2.59, 0.260},       {{3, 16694, 105, 10}, 16.6, 0.227},
+    };
+    const brunt_linear_choice c = brunt_linear_choose(&measured[_i].size);
+    const double direct = measured[_i].direct, pcg = measured[_i].pcg;
+    ck_assert_msg(fabs(log(c.direct_seconds / direct)) < log(2.5), "direct %g, measured %g", c.direct_seconds, direct);
+    ck_assert_msg(fabs(log(c.pcg_seconds / pcg)) < log(2.5), "pcg %g, measured %g", c.pcg_seconds, pcg);
+    if (direct > 4 * pcg || direct < pcg) ck_assert_str_eq(c.solver->name, direct < pcg ? "direct" : "pcg");
+    ck_assert_int_eq(strncmp(c.why, c.solver->name, strlen(c.solver->name)), 0);
+    ck_assert_ptr_nonnull(strstr(c.why, " nodes, c dt/h "));
+}
+END_TEST
+
 START_TEST(memory_is_given_back) {
     const size_t live = brunt_memory_live();
     elastic e = elastic_splines(2, 5);
@@ -485,12 +565,15 @@ int main(void) {
     tcase_add_loop_test(c, solutions_are_those_of_gauss, 0, 16);
     tcase_add_test(c, products_of_the_caller);
     tcase_add_loop_test(c, incomplete_factors_that_break_down, 0, 4);
+    tcase_add_loop_test(c, incomplete_factors_are_the_matrix_on_its_pattern, 0, 4);
+    tcase_add_test(c, accuracy_is_of_the_solution);
     tcase_add_test(c, complete_where_nothing_fills_in);
     tcase_add_test(c, not_positive_definite);
     tcase_add_test(c, singular);
     tcase_add_test(c, what_cannot_be_done_is_said);
     tcase_add_loop_test(c, any_number_of_threads, 0, 2);
     tcase_add_test(c, solvers_serve_again);
+    tcase_add_loop_test(c, the_quicker_one_is_chosen, 0, 12);
     tcase_add_test(c, memory_is_given_back);
     suite_add_tcase(suite, c);
     SRunner *runner = srunner_create(suite);
