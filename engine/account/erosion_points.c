@@ -15,6 +15,7 @@
 #include "materials/log_strain.h"
 #include "base/parallel.h"
 #include "account/erosion.h"
+#include "mpm/audit.h"
 #include "mpm/transfer.h"
 
 enum { BLOCK_GRAIN = 4 };

@@ -3,7 +3,7 @@
 
 #include "fem/fem_body.h"
 #include "mpm/mpm_body.h"
-#include "mpm/transfer.h"
+#include "mpm/audit.h"
 
 typedef struct brunt_body_ops brunt_body_ops;
 
