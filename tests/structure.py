@@ -27,8 +27,8 @@ RANK = {folder: rank for rank, row in enumerate(ORDER) for folder in row}
 LIMITS = {
     "arrows against the order": 0, "circles of files": 0, "unknown folders": 0, "headers that shadow a system's": 0,
     "includes not from the root": 0, "members of the world": 14, "functions over 60 lines": 7,
-    "functions with over 7 parameters": 10, "lines of the largest file": 635, "files over 600 lines": 2,
-    "lines repeated in blocks of six": 326, "terms not found": 2,
+    "functions with over 7 parameters": 10, "lines of the largest file": 601, "files over 600 lines": 1,
+    "lines repeated in blocks of six": 326, "terms not found": 1,
 }
 TERMS = {  # of the field: what a file or folder is looked for by
     "hourglass control": "hourglass", "return mapping": "return_mapping|j2|von_mises", "friction cone": "coulomb",
@@ -90,11 +90,13 @@ def circles(graph):
 
 
 def code(path):
-    """The text with comments, strings and lines of the preprocessor as blanks: every line and column stays where it is."""
+    """The text with comments, strings, lines of the preprocessor and uses of macros that make functions (in capitals, at the
+    line's start) as blanks: every line and column stays where it is."""
     text = (ROOT / path).read_text()
     blank = lambda match: re.sub(r"[^\n]", " ", match.group(0))
     text = re.sub(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\'', blank, text, flags=re.S)
-    return re.sub(r"^[ \t]*#(?:[^\n]*\\\n)*[^\n]*", blank, text, flags=re.M)
+    text = re.sub(r"^[ \t]*#(?:[^\n]*\\\n)*[^\n]*", blank, text, flags=re.M)
+    return re.sub(r"^[A-Z][A-Z0-9_]*\([^;{}()]*\)$", blank, text, flags=re.M)
 
 
 def parameters(head):

@@ -13,6 +13,27 @@ BRUNT_INLINE void node8_store(real *p, node8 a) { *(node8_unaligned *)p = a; }
 BRUNT_INLINE node4 node4_load(const real *p) { return (node4) * (const node4_unaligned *)p; }
 BRUNT_INLINE void node4_store(real *p, node4 a) { *(node4_unaligned *)p = a; }
 
+// As much of a node's eight reals as a register of this machine holds: compilers keep wider vectors in memory.
+#if defined(__AVX512F__) || (defined(__AVX__) && defined(BRUNT_FLOAT))
+enum { NODE_PARTS = 1 };
+#elif defined(__AVX__) || defined(BRUNT_FLOAT)
+enum { NODE_PARTS = 2 };
+#else
+enum { NODE_PARTS = 4 };
+#endif
+enum { NODE_PART_REALS = 8 / NODE_PARTS };
+typedef real node_part __attribute__((vector_size(NODE_PART_REALS * sizeof(real))));
+typedef real node_part_unaligned
+    __attribute__((vector_size(NODE_PART_REALS * sizeof(real)), aligned(sizeof(real)), may_alias));
+
+// Part `part` of the node at p.
+BRUNT_INLINE node_part node_part_load(const real *p, int part) {
+    return (node_part) * (const node_part_unaligned *)(p + part * NODE_PART_REALS);
+}
+BRUNT_INLINE void node_part_store(real *p, int part, node_part a) {
+    *(node_part_unaligned *)(p + part * NODE_PART_REALS) = a;
+}
+
 #define BRUNT_SHUFFLE8 __builtin_shufflevector
 
 // out[l][c] = component[c][l] for eight components.

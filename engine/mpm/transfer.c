@@ -1,635 +1,193 @@
+// The list of instances: p2g and g2p for every dimension, kernel, transfer and form, and where each is found.
+//
+// Names say what an instance is of: dimension or axisymmetric, kernel, transfer, configuration where it is the
+// undeformed one (total).
 #include "mpm/transfer.h"
 
-#include <math.h>
-#include <string.h>
+#include "mpm/g2p.h"
+#include "mpm/p2g.h"
 
-#include "base/simd.h"
-#include "grid/bspline.h"
-#include "mpm/node_window.h"
-
-// ------------------------------------------------------------------------------------------ shared by all instances
-
-#define SYMMETRIC_INDEX(dim, r, c) ((r) == (c) ? (r) : (dim) == 2 ? 3 : (r) + (c) == 1 ? 3 : (r) + (c) == 3 ? 4 : 5)
-
-typedef struct scatter_arrays {
-    const real *x[3], *v[3], *C[9], *tau[6], *F[9], *mass, *volume;
-    const uint8_t *bin;
-    const real *all[32];
-    int count; // for the prefetches
-} scatter_arrays;
-
-static void scatter_arrays_of(brunt_body *body, scatter_arrays *f) {
-    brunt_particles *p = &body->particles;
-    f->count = 0;
-#define TAKE(to, field, n)                                                                                             \
-    for (int c = 0; c < (n); c++) f->all[f->count++] = (to)[c] = brunt_field(p, BRUNT_FIELD_##field)[c]
-    for (int a = 0; a < p->dim; a++) f->all[f->count++] = f->x[a] = brunt_kernel_place(p)[a];
-    if (brunt_total_lagrangian(p)) TAKE(f->F, deformation_gradient, BRUNT_MATRIX(p->dim));
-    TAKE(f->v, velocity, p->dim);
-    TAKE(f->C, affine, p->field[BRUNT_FIELD_affine].components);
-    TAKE(f->tau, kirchhoff_stress, BRUNT_SYMMETRIC(p->dim)); // of rings, those that are not zero
-    TAKE(&f->mass, mass, 1);
-    TAKE(&f->volume, reference_volume, 1);
-#undef TAKE
-    f->bin = p->bin;
-}
-
-// Bins ahead of the hardware's own prefetching, which follows fewer streams than there are arrays.
-BRUNT_INLINE void prefetch_scatter(const scatter_arrays *f, int64_t s) {
-    for (int k = 0; k < f->count; k++) __builtin_prefetch(f->all[k] + s + 6 * BRUNT_LANES, 0, 2);
-}
-
-// Of total-Lagrangian bodies: the inverse of a matrix with rows one after the other.
-BRUNT_INLINE void inverse_matrix(int dim, const lanes *F, lanes *inverse) {
-    if (dim == 2) {
-        const lanes over = 1 / (F[0] * F[3] - F[1] * F[2]);
-        inverse[0] = over * F[3], inverse[1] = -over * F[1], inverse[2] = -over * F[2], inverse[3] = over * F[0];
-        return;
+#define P2G(name, dimension, kernel, from, configuration)                                                              \
+    static void name(brunt_body *body, int32_t block, real dt) {                                                       \
+        p2g(body, block, dt,                                                                                           \
+            (transfer_kind){.dim = dimension, .order = kernel, .transfer = from, .form = configuration});              \
     }
-    lanes cofactor[9];
-    for (int r = 0; r < 3; r++)
-        for (int c = 0; c < 3; c++) {
-            const int r1 = (r + 1) % 3, r2 = (r + 2) % 3, c1 = (c + 1) % 3, c2 = (c + 2) % 3;
-            cofactor[3 * r + c] = F[3 * r1 + c1] * F[3 * r2 + c2] - F[3 * r1 + c2] * F[3 * r2 + c1];
-        }
-    const lanes over = 1 / (F[0] * cofactor[0] + F[1] * cofactor[1] + F[2] * cofactor[2]);
-    for (int r = 0; r < 3; r++)
-        for (int c = 0; c < 3; c++) inverse[3 * r + c] = over * cofactor[3 * c + r];
-}
-
-// Bound of the square of the greatest 1 / principal stretch of the particles at s: Gershgorin's circles of F^-T F^-1,
-// exact along the axes.
-BRUNT_INLINE lanes inverse_stretch(int dim, real *const *F, int64_t s) {
-    lanes A[9], inverse[9], bound = (lanes){0};
-    for (int c = 0; c < dim * dim; c++) A[c] = lanes_load(F[c] + s);
-    inverse_matrix(dim, A, inverse);
-    for (int r = 0; r < dim; r++) {
-        lanes row = (lanes){0};
-        for (int c = 0; c < dim; c++) {
-            lanes product = (lanes){0};
-            for (int k = 0; k < dim; k++) product += inverse[r * dim + k] * inverse[c * dim + k];
-            row += c == r ? product : lanes_abs(product);
-        }
-        bound = lanes_max(bound, row);
+#define FIELDS(name, dimension, kernel, with_old, with_affine)                                                         \
+    static void name(brunt_body *body, const brunt_block *block, const int32_t *start, brunt_workspace *work) {        \
+        fields(body, block, start, work,                                                                               \
+               (fields_kind){.dim = dimension, .order = kernel, .old = with_old, .affine = with_affine});              \
     }
-    return bound;
-}
-
-// What the stress at the end of the step does over the block's particles [W]. The rate it works on is that of the
-// motion as it stands at the end, Fdot F^-1 = L (I + dt L)^-1 = L - dt L L + O(dt^2).
-static double stress_power(brunt_body *body, const brunt_block *block, real dt, real *const *gradient) {
-    brunt_particles *p = &body->particles; // of rings the part in the plane: its components have the same places
-    const int dim = p->dim;
-    real *const *tau = brunt_field(p, BRUNT_FIELD_kirchhoff_stress);
-    const real *volume = brunt_field(p, BRUNT_FIELD_reference_volume)[0];
-    lanes sum = (lanes){0};
-    for (int64_t i = 0; i < block->count; i += BRUNT_LANES) {
-        int64_t s = block->first + i;
-        lanes power = (lanes){0}, L[9];
-        for (int c = 0; c < dim * dim; c++) L[c] = lanes_load(gradient[c] + i);
-        for (int r = 0; r < dim; r++)
-            for (int c = 0; c < dim; c++) {
-                lanes rate = L[r * dim + c];
-                for (int k = 0; k < dim; k++) rate -= dt * L[r * dim + k] * L[k * dim + c];
-                power += lanes_load(tau[SYMMETRIC_INDEX(dim, r, c)] + s) * rate;
-            }
-        sum += lanes_load(volume + s) * power;
+#define G2P(name, fields_of, dimension, kernel, to, configuration, part)                                               \
+    static void name(brunt_body *body, int32_t block, real dt, real flip, brunt_workspace *work) {                     \
+        g2p(body, block, dt, flip, work, fields_of,                                                                    \
+            (transfer_kind){.dim = dimension, .order = kernel, .transfer = to, .form = configuration, .stage = part}); \
     }
-    return (double)lanes_sum(sum);
-}
-
-// What the hoop stress of rings does, likewise [W].
-static double hoop_power(brunt_body *body, const brunt_block *block, real dt, const real *hoop) {
-    const real *tau = brunt_field(&body->particles, BRUNT_FIELD_kirchhoff_stress)[2];
-    const real *volume = brunt_field(&body->particles, BRUNT_FIELD_reference_volume)[0];
-    lanes sum = (lanes){0};
-    for (int64_t i = 0; i < block->count; i += BRUNT_LANES) {
-        int64_t s = block->first + i;
-        const lanes rate = lanes_load(hoop + i);
-        sum += lanes_load(volume + s) * lanes_load(tau + s) * (rate - dt * rate * rate);
+#define MUSL(name, fields_of, dimension, to, configuration)                                                            \
+    static void name(brunt_body *body, int32_t block, real dt, real flip, brunt_workspace *work) {                     \
+        (void)dt;                                                                                                      \
+        musl_velocity(body, block, flip, work, fields_of,                                                              \
+                      (transfer_kind){.dim = dimension,                                                                \
+                                      .order = BRUNT_LINEAR,                                                           \
+                                      .transfer = to,                                                                  \
+                                      .form = configuration,                                                           \
+                                      .stage = MUSL_VELOCITY});                                                        \
     }
-    return (double)lanes_sum(sum);
-}
 
-// The nine components of a ring's velocity gradient.
-static void ring_rates(const brunt_workspace *work, int32_t padded, real *rates[9]) {
-    real *zero = work->out[BRUNT_OUT_ZERO];
-    memset(zero, 0, (size_t)padded * sizeof *zero);
-    for (int c = 0; c < 9; c++) rates[c] = zero;
-    rates[0] = work->out[2], rates[1] = work->out[3], rates[3] = work->out[4], rates[4] = work->out[5];
-    rates[8] = work->out[BRUNT_OUT_HOOP];
-}
+// --- particles to grid. Without an affine field PIC and FLIP are the same.
+P2G(p2g_2d_linear_pic, 2, BRUNT_LINEAR, BRUNT_PIC, UPDATED)
+P2G(p2g_2d_linear_apic, 2, BRUNT_LINEAR, BRUNT_APIC, UPDATED)
+P2G(p2g_2d_quadratic_pic, 2, BRUNT_QUADRATIC, BRUNT_PIC, UPDATED)
+P2G(p2g_2d_quadratic_apic, 2, BRUNT_QUADRATIC, BRUNT_APIC, UPDATED)
+P2G(p2g_2d_cubic_pic, 2, BRUNT_CUBIC, BRUNT_PIC, UPDATED)
+P2G(p2g_2d_cubic_apic, 2, BRUNT_CUBIC, BRUNT_APIC, UPDATED)
+P2G(p2g_3d_linear_pic, 3, BRUNT_LINEAR, BRUNT_PIC, UPDATED)
+P2G(p2g_3d_linear_apic, 3, BRUNT_LINEAR, BRUNT_APIC, UPDATED)
+P2G(p2g_3d_quadratic_pic, 3, BRUNT_QUADRATIC, BRUNT_PIC, UPDATED)
+P2G(p2g_3d_quadratic_apic, 3, BRUNT_QUADRATIC, BRUNT_APIC, UPDATED)
+P2G(p2g_3d_cubic_pic, 3, BRUNT_CUBIC, BRUNT_PIC, UPDATED)
+P2G(p2g_3d_cubic_apic, 3, BRUNT_CUBIC, BRUNT_APIC, UPDATED)
+P2G(p2g_axisymmetric_linear_pic, 2, BRUNT_LINEAR, BRUNT_PIC, AXISYMMETRIC)
+P2G(p2g_axisymmetric_linear_apic, 2, BRUNT_LINEAR, BRUNT_APIC, AXISYMMETRIC)
+P2G(p2g_axisymmetric_quadratic_pic, 2, BRUNT_QUADRATIC, BRUNT_PIC, AXISYMMETRIC)
+P2G(p2g_axisymmetric_quadratic_apic, 2, BRUNT_QUADRATIC, BRUNT_APIC, AXISYMMETRIC)
+P2G(p2g_axisymmetric_cubic_pic, 2, BRUNT_CUBIC, BRUNT_PIC, AXISYMMETRIC)
+P2G(p2g_axisymmetric_cubic_apic, 2, BRUNT_CUBIC, BRUNT_APIC, AXISYMMETRIC)
+P2G(p2g_2d_quadratic_pic_total, 2, BRUNT_QUADRATIC, BRUNT_PIC, TOTAL)
+P2G(p2g_2d_quadratic_apic_total, 2, BRUNT_QUADRATIC, BRUNT_APIC, TOTAL)
+P2G(p2g_2d_cubic_pic_total, 2, BRUNT_CUBIC, BRUNT_PIC, TOTAL)
+P2G(p2g_2d_cubic_apic_total, 2, BRUNT_CUBIC, BRUNT_APIC, TOTAL)
+P2G(p2g_3d_quadratic_pic_total, 3, BRUNT_QUADRATIC, BRUNT_PIC, TOTAL)
+P2G(p2g_3d_quadratic_apic_total, 3, BRUNT_QUADRATIC, BRUNT_APIC, TOTAL)
+P2G(p2g_3d_cubic_pic_total, 3, BRUNT_CUBIC, BRUNT_PIC, TOTAL)
+P2G(p2g_3d_cubic_apic_total, 3, BRUNT_CUBIC, BRUNT_APIC, TOTAL)
 
-static void update_material(brunt_body *body, const brunt_block *block, real dt, brunt_workspace *work,
-                            real *const *gradient, brunt_block_report *report) {
-    int32_t padded = (block->count + BRUNT_LANES - 1) / BRUNT_LANES * BRUNT_LANES;
-    brunt_material_points points[BRUNT_COMPONENTS];
-    for (int k = 0; k < BRUNT_COMPONENTS; k++) {
-        points[k] = brunt_body_points(body, (brunt_component)k, block->first, padded);
-        points[k].dt = dt;
-        for (int c = 0; c < BRUNT_MATRIX(points[k].dim); c++) points[k].L[c] = gradient[c];
-    }
-    brunt_update_result result =
-        brunt_material_update(&body->material, points, work->plastic, work->viscous, work->strain);
-    if (result.bad >= 0) {
-        report->bad = (int32_t)block->first + result.bad;
-        report->reason = result.reason;
-    }
-    report->wave_speed = result.wave_speed;
-    report->failed = result.failed;
-}
+// --- the grid's fields at particles: velocity and gradient; with the old velocity; with the affine field
+FIELDS(fields_2d_linear, 2, BRUNT_LINEAR, false, false)
+FIELDS(fields_2d_linear_old, 2, BRUNT_LINEAR, true, false)
+FIELDS(fields_2d_linear_affine, 2, BRUNT_LINEAR, false, true)
+FIELDS(fields_2d_quadratic, 2, BRUNT_QUADRATIC, false, false)
+FIELDS(fields_2d_quadratic_old, 2, BRUNT_QUADRATIC, true, false)
+FIELDS(fields_2d_quadratic_affine, 2, BRUNT_QUADRATIC, false, true)
+FIELDS(fields_2d_cubic, 2, BRUNT_CUBIC, false, false)
+FIELDS(fields_2d_cubic_old, 2, BRUNT_CUBIC, true, false)
+FIELDS(fields_2d_cubic_affine, 2, BRUNT_CUBIC, false, true)
+FIELDS(fields_3d_linear, 3, BRUNT_LINEAR, false, false)
+FIELDS(fields_3d_linear_old, 3, BRUNT_LINEAR, true, false)
+FIELDS(fields_3d_linear_affine, 3, BRUNT_LINEAR, false, true)
+FIELDS(fields_3d_quadratic, 3, BRUNT_QUADRATIC, false, false)
+FIELDS(fields_3d_quadratic_old, 3, BRUNT_QUADRATIC, true, false)
+FIELDS(fields_3d_quadratic_affine, 3, BRUNT_QUADRATIC, false, true)
+FIELDS(fields_3d_cubic, 3, BRUNT_CUBIC, false, false)
+FIELDS(fields_3d_cubic_old, 3, BRUNT_CUBIC, true, false)
+FIELDS(fields_3d_cubic_affine, 3, BRUNT_CUBIC, false, true)
 
-// ------------------------------------------------------------------------------------------ instances
+// --- grid to particles
+G2P(g2p_2d_linear_pic, fields_2d_linear, 2, BRUNT_LINEAR, BRUNT_PIC, UPDATED, AFTER_MUSL)
+G2P(g2p_2d_linear_flip, fields_2d_linear, 2, BRUNT_LINEAR, BRUNT_FLIP, UPDATED, AFTER_MUSL)
+G2P(g2p_2d_linear_apic, fields_2d_linear_affine, 2, BRUNT_LINEAR, BRUNT_APIC, UPDATED, AFTER_MUSL)
+G2P(g2p_2d_quadratic_pic, fields_2d_quadratic, 2, BRUNT_QUADRATIC, BRUNT_PIC, UPDATED, WHOLE)
+G2P(g2p_2d_quadratic_flip, fields_2d_quadratic_old, 2, BRUNT_QUADRATIC, BRUNT_FLIP, UPDATED, WHOLE)
+G2P(g2p_2d_quadratic_apic, fields_2d_quadratic_affine, 2, BRUNT_QUADRATIC, BRUNT_APIC, UPDATED, WHOLE)
+G2P(g2p_2d_cubic_pic, fields_2d_cubic, 2, BRUNT_CUBIC, BRUNT_PIC, UPDATED, WHOLE)
+G2P(g2p_2d_cubic_flip, fields_2d_cubic_old, 2, BRUNT_CUBIC, BRUNT_FLIP, UPDATED, WHOLE)
+G2P(g2p_2d_cubic_apic, fields_2d_cubic_affine, 2, BRUNT_CUBIC, BRUNT_APIC, UPDATED, WHOLE)
+G2P(g2p_3d_linear_pic, fields_3d_linear, 3, BRUNT_LINEAR, BRUNT_PIC, UPDATED, AFTER_MUSL)
+G2P(g2p_3d_linear_flip, fields_3d_linear, 3, BRUNT_LINEAR, BRUNT_FLIP, UPDATED, AFTER_MUSL)
+G2P(g2p_3d_linear_apic, fields_3d_linear_affine, 3, BRUNT_LINEAR, BRUNT_APIC, UPDATED, AFTER_MUSL)
+G2P(g2p_3d_quadratic_pic, fields_3d_quadratic, 3, BRUNT_QUADRATIC, BRUNT_PIC, UPDATED, WHOLE)
+G2P(g2p_3d_quadratic_flip, fields_3d_quadratic_old, 3, BRUNT_QUADRATIC, BRUNT_FLIP, UPDATED, WHOLE)
+G2P(g2p_3d_quadratic_apic, fields_3d_quadratic_affine, 3, BRUNT_QUADRATIC, BRUNT_APIC, UPDATED, WHOLE)
+G2P(g2p_3d_cubic_pic, fields_3d_cubic, 3, BRUNT_CUBIC, BRUNT_PIC, UPDATED, WHOLE)
+G2P(g2p_3d_cubic_flip, fields_3d_cubic_old, 3, BRUNT_CUBIC, BRUNT_FLIP, UPDATED, WHOLE)
+G2P(g2p_3d_cubic_apic, fields_3d_cubic_affine, 3, BRUNT_CUBIC, BRUNT_APIC, UPDATED, WHOLE)
+G2P(g2p_axisymmetric_linear_pic, fields_2d_linear, 2, BRUNT_LINEAR, BRUNT_PIC, AXISYMMETRIC, AFTER_MUSL)
+G2P(g2p_axisymmetric_linear_flip, fields_2d_linear, 2, BRUNT_LINEAR, BRUNT_FLIP, AXISYMMETRIC, AFTER_MUSL)
+G2P(g2p_axisymmetric_linear_apic, fields_2d_linear_affine, 2, BRUNT_LINEAR, BRUNT_APIC, AXISYMMETRIC, AFTER_MUSL)
+G2P(g2p_axisymmetric_quadratic_pic, fields_2d_quadratic, 2, BRUNT_QUADRATIC, BRUNT_PIC, AXISYMMETRIC, WHOLE)
+G2P(g2p_axisymmetric_quadratic_flip, fields_2d_quadratic_old, 2, BRUNT_QUADRATIC, BRUNT_FLIP, AXISYMMETRIC, WHOLE)
+G2P(g2p_axisymmetric_quadratic_apic, fields_2d_quadratic_affine, 2, BRUNT_QUADRATIC, BRUNT_APIC, AXISYMMETRIC, WHOLE)
+G2P(g2p_axisymmetric_cubic_pic, fields_2d_cubic, 2, BRUNT_CUBIC, BRUNT_PIC, AXISYMMETRIC, WHOLE)
+G2P(g2p_axisymmetric_cubic_flip, fields_2d_cubic_old, 2, BRUNT_CUBIC, BRUNT_FLIP, AXISYMMETRIC, WHOLE)
+G2P(g2p_axisymmetric_cubic_apic, fields_2d_cubic_affine, 2, BRUNT_CUBIC, BRUNT_APIC, AXISYMMETRIC, WHOLE)
+G2P(g2p_2d_quadratic_pic_total, fields_2d_quadratic, 2, BRUNT_QUADRATIC, BRUNT_PIC, TOTAL, WHOLE)
+G2P(g2p_2d_quadratic_flip_total, fields_2d_quadratic_old, 2, BRUNT_QUADRATIC, BRUNT_FLIP, TOTAL, WHOLE)
+G2P(g2p_2d_quadratic_apic_total, fields_2d_quadratic_affine, 2, BRUNT_QUADRATIC, BRUNT_APIC, TOTAL, WHOLE)
+G2P(g2p_2d_cubic_pic_total, fields_2d_cubic, 2, BRUNT_CUBIC, BRUNT_PIC, TOTAL, WHOLE)
+G2P(g2p_2d_cubic_flip_total, fields_2d_cubic_old, 2, BRUNT_CUBIC, BRUNT_FLIP, TOTAL, WHOLE)
+G2P(g2p_2d_cubic_apic_total, fields_2d_cubic_affine, 2, BRUNT_CUBIC, BRUNT_APIC, TOTAL, WHOLE)
+G2P(g2p_3d_quadratic_pic_total, fields_3d_quadratic, 3, BRUNT_QUADRATIC, BRUNT_PIC, TOTAL, WHOLE)
+G2P(g2p_3d_quadratic_flip_total, fields_3d_quadratic_old, 3, BRUNT_QUADRATIC, BRUNT_FLIP, TOTAL, WHOLE)
+G2P(g2p_3d_quadratic_apic_total, fields_3d_quadratic_affine, 3, BRUNT_QUADRATIC, BRUNT_APIC, TOTAL, WHOLE)
+G2P(g2p_3d_cubic_pic_total, fields_3d_cubic, 3, BRUNT_CUBIC, BRUNT_PIC, TOTAL, WHOLE)
+G2P(g2p_3d_cubic_flip_total, fields_3d_cubic_old, 3, BRUNT_CUBIC, BRUNT_FLIP, TOTAL, WHOLE)
+G2P(g2p_3d_cubic_apic_total, fields_3d_cubic_affine, 3, BRUNT_CUBIC, BRUNT_APIC, TOTAL, WHOLE)
 
-#define DIM 2
-#define ORDER 1
-#define AFFINE 0
-#define AXIS 0
-#include "mpm/p2g.inc"
-#define DIM 2
-#define ORDER 1
-#define AFFINE 1
-#define AXIS 0
-#include "mpm/p2g.inc"
-#define DIM 2
-#define ORDER 2
-#define AFFINE 0
-#define AXIS 0
-#include "mpm/p2g.inc"
-#define DIM 2
-#define ORDER 2
-#define AFFINE 1
-#define AXIS 0
-#include "mpm/p2g.inc"
-#define DIM 2
-#define ORDER 3
-#define AFFINE 0
-#define AXIS 0
-#include "mpm/p2g.inc"
-#define DIM 2
-#define ORDER 3
-#define AFFINE 1
-#define AXIS 0
-#include "mpm/p2g.inc"
-#define DIM 3
-#define ORDER 1
-#define AFFINE 0
-#define AXIS 0
-#include "mpm/p2g.inc"
-#define DIM 3
-#define ORDER 1
-#define AFFINE 1
-#define AXIS 0
-#include "mpm/p2g.inc"
-#define DIM 3
-#define ORDER 2
-#define AFFINE 0
-#define AXIS 0
-#include "mpm/p2g.inc"
-#define DIM 3
-#define ORDER 2
-#define AFFINE 1
-#define AXIS 0
-#include "mpm/p2g.inc"
-#define DIM 3
-#define ORDER 3
-#define AFFINE 0
-#define AXIS 0
-#include "mpm/p2g.inc"
-#define DIM 3
-#define ORDER 3
-#define AFFINE 1
-#define AXIS 0
-#include "mpm/p2g.inc"
+// --- the linear kernel's first stage
+MUSL(musl_2d_linear_pic, fields_2d_linear, 2, BRUNT_PIC, UPDATED)
+MUSL(musl_2d_linear_flip, fields_2d_linear_old, 2, BRUNT_FLIP, UPDATED)
+MUSL(musl_2d_linear_apic, fields_2d_linear, 2, BRUNT_APIC, UPDATED)
+MUSL(musl_3d_linear_pic, fields_3d_linear, 3, BRUNT_PIC, UPDATED)
+MUSL(musl_3d_linear_flip, fields_3d_linear_old, 3, BRUNT_FLIP, UPDATED)
+MUSL(musl_3d_linear_apic, fields_3d_linear, 3, BRUNT_APIC, UPDATED)
+MUSL(musl_axisymmetric_linear_pic, fields_2d_linear, 2, BRUNT_PIC, AXISYMMETRIC)
+MUSL(musl_axisymmetric_linear_flip, fields_2d_linear_old, 2, BRUNT_FLIP, AXISYMMETRIC)
+MUSL(musl_axisymmetric_linear_apic, fields_2d_linear, 2, BRUNT_APIC, AXISYMMETRIC)
 
-#define DIM 2
-#define ORDER 1
-#define TRANSFER 0
-#define STAGE 1
-#define AXIS 0
-#include "mpm/g2p.inc"
-#define DIM 2
-#define ORDER 1
-#define TRANSFER 0
-#define STAGE 2
-#define AXIS 0
-#include "mpm/g2p.inc"
-#define DIM 2
-#define ORDER 1
-#define TRANSFER 1
-#define STAGE 1
-#define AXIS 0
-#include "mpm/g2p.inc"
-#define DIM 2
-#define ORDER 1
-#define TRANSFER 1
-#define STAGE 2
-#define AXIS 0
-#include "mpm/g2p.inc"
-#define DIM 2
-#define ORDER 1
-#define TRANSFER 2
-#define STAGE 1
-#define AXIS 0
-#include "mpm/g2p.inc"
-#define DIM 2
-#define ORDER 1
-#define TRANSFER 2
-#define STAGE 2
-#define AXIS 0
-#include "mpm/g2p.inc"
-#define DIM 2
-#define ORDER 2
-#define TRANSFER 0
-#define STAGE 0
-#define AXIS 0
-#include "mpm/g2p.inc"
-#define DIM 2
-#define ORDER 2
-#define TRANSFER 1
-#define STAGE 0
-#define AXIS 0
-#include "mpm/g2p.inc"
-#define DIM 2
-#define ORDER 2
-#define TRANSFER 2
-#define STAGE 0
-#define AXIS 0
-#include "mpm/g2p.inc"
-#define DIM 2
-#define ORDER 3
-#define TRANSFER 0
-#define STAGE 0
-#define AXIS 0
-#include "mpm/g2p.inc"
-#define DIM 2
-#define ORDER 3
-#define TRANSFER 1
-#define STAGE 0
-#define AXIS 0
-#include "mpm/g2p.inc"
-#define DIM 2
-#define ORDER 3
-#define TRANSFER 2
-#define STAGE 0
-#define AXIS 0
-#include "mpm/g2p.inc"
-#define DIM 3
-#define ORDER 1
-#define TRANSFER 0
-#define STAGE 1
-#define AXIS 0
-#include "mpm/g2p.inc"
-#define DIM 3
-#define ORDER 1
-#define TRANSFER 0
-#define STAGE 2
-#define AXIS 0
-#include "mpm/g2p.inc"
-#define DIM 3
-#define ORDER 1
-#define TRANSFER 1
-#define STAGE 1
-#define AXIS 0
-#include "mpm/g2p.inc"
-#define DIM 3
-#define ORDER 1
-#define TRANSFER 1
-#define STAGE 2
-#define AXIS 0
-#include "mpm/g2p.inc"
-#define DIM 3
-#define ORDER 1
-#define TRANSFER 2
-#define STAGE 1
-#define AXIS 0
-#include "mpm/g2p.inc"
-#define DIM 3
-#define ORDER 1
-#define TRANSFER 2
-#define STAGE 2
-#define AXIS 0
-#include "mpm/g2p.inc"
-#define DIM 3
-#define ORDER 2
-#define TRANSFER 0
-#define STAGE 0
-#define AXIS 0
-#include "mpm/g2p.inc"
-#define DIM 3
-#define ORDER 2
-#define TRANSFER 1
-#define STAGE 0
-#define AXIS 0
-#include "mpm/g2p.inc"
-#define DIM 3
-#define ORDER 2
-#define TRANSFER 2
-#define STAGE 0
-#define AXIS 0
-#include "mpm/g2p.inc"
-#define DIM 3
-#define ORDER 3
-#define TRANSFER 0
-#define STAGE 0
-#define AXIS 0
-#include "mpm/g2p.inc"
-#define DIM 3
-#define ORDER 3
-#define TRANSFER 1
-#define STAGE 0
-#define AXIS 0
-#include "mpm/g2p.inc"
-#define DIM 3
-#define ORDER 3
-#define TRANSFER 2
-#define STAGE 0
-#define AXIS 0
-#include "mpm/g2p.inc"
+// --- where each is found: rows of plane strain, space, rings; columns by kernel
 
-// Rings: their gathers use the bins of plane strain above.
-#define DIM 2
-#define ORDER 1
-#define AFFINE 0
-#define AXIS 1
-#include "mpm/p2g.inc"
-#define DIM 2
-#define ORDER 1
-#define AFFINE 1
-#define AXIS 1
-#include "mpm/p2g.inc"
-#define DIM 2
-#define ORDER 2
-#define AFFINE 0
-#define AXIS 1
-#include "mpm/p2g.inc"
-#define DIM 2
-#define ORDER 2
-#define AFFINE 1
-#define AXIS 1
-#include "mpm/p2g.inc"
-#define DIM 2
-#define ORDER 3
-#define AFFINE 0
-#define AXIS 1
-#include "mpm/p2g.inc"
-#define DIM 2
-#define ORDER 3
-#define AFFINE 1
-#define AXIS 1
-#include "mpm/p2g.inc"
-#define DIM 2
-#define ORDER 1
-#define TRANSFER 0
-#define STAGE 1
-#define AXIS 1
-#include "mpm/g2p.inc"
-#define DIM 2
-#define ORDER 1
-#define TRANSFER 0
-#define STAGE 2
-#define AXIS 1
-#include "mpm/g2p.inc"
-#define DIM 2
-#define ORDER 1
-#define TRANSFER 1
-#define STAGE 1
-#define AXIS 1
-#include "mpm/g2p.inc"
-#define DIM 2
-#define ORDER 1
-#define TRANSFER 1
-#define STAGE 2
-#define AXIS 1
-#include "mpm/g2p.inc"
-#define DIM 2
-#define ORDER 1
-#define TRANSFER 2
-#define STAGE 1
-#define AXIS 1
-#include "mpm/g2p.inc"
-#define DIM 2
-#define ORDER 1
-#define TRANSFER 2
-#define STAGE 2
-#define AXIS 1
-#include "mpm/g2p.inc"
-#define DIM 2
-#define ORDER 2
-#define TRANSFER 0
-#define STAGE 0
-#define AXIS 1
-#include "mpm/g2p.inc"
-#define DIM 2
-#define ORDER 2
-#define TRANSFER 1
-#define STAGE 0
-#define AXIS 1
-#include "mpm/g2p.inc"
-#define DIM 2
-#define ORDER 2
-#define TRANSFER 2
-#define STAGE 0
-#define AXIS 1
-#include "mpm/g2p.inc"
-#define DIM 2
-#define ORDER 3
-#define TRANSFER 0
-#define STAGE 0
-#define AXIS 1
-#include "mpm/g2p.inc"
-#define DIM 2
-#define ORDER 3
-#define TRANSFER 1
-#define STAGE 0
-#define AXIS 1
-#include "mpm/g2p.inc"
-#define DIM 2
-#define ORDER 3
-#define TRANSFER 2
-#define STAGE 0
-#define AXIS 1
-#include "mpm/g2p.inc"
-
-// Total-Lagrangian bodies: their gathers use the bins above.
-#define DIM 2
-#define ORDER 2
-#define AFFINE 0
-#define AXIS 0
-#define TOTAL 1
-#include "mpm/p2g.inc"
-#define DIM 2
-#define ORDER 2
-#define AFFINE 1
-#define AXIS 0
-#define TOTAL 1
-#include "mpm/p2g.inc"
-#define DIM 2
-#define ORDER 2
-#define TRANSFER 0
-#define STAGE 0
-#define AXIS 0
-#define TOTAL 1
-#include "mpm/g2p.inc"
-#define DIM 2
-#define ORDER 2
-#define TRANSFER 1
-#define STAGE 0
-#define AXIS 0
-#define TOTAL 1
-#include "mpm/g2p.inc"
-#define DIM 2
-#define ORDER 2
-#define TRANSFER 2
-#define STAGE 0
-#define AXIS 0
-#define TOTAL 1
-#include "mpm/g2p.inc"
-#define DIM 2
-#define ORDER 3
-#define AFFINE 0
-#define AXIS 0
-#define TOTAL 1
-#include "mpm/p2g.inc"
-#define DIM 2
-#define ORDER 3
-#define AFFINE 1
-#define AXIS 0
-#define TOTAL 1
-#include "mpm/p2g.inc"
-#define DIM 2
-#define ORDER 3
-#define TRANSFER 0
-#define STAGE 0
-#define AXIS 0
-#define TOTAL 1
-#include "mpm/g2p.inc"
-#define DIM 2
-#define ORDER 3
-#define TRANSFER 1
-#define STAGE 0
-#define AXIS 0
-#define TOTAL 1
-#include "mpm/g2p.inc"
-#define DIM 2
-#define ORDER 3
-#define TRANSFER 2
-#define STAGE 0
-#define AXIS 0
-#define TOTAL 1
-#include "mpm/g2p.inc"
-#define DIM 3
-#define ORDER 2
-#define AFFINE 0
-#define AXIS 0
-#define TOTAL 1
-#include "mpm/p2g.inc"
-#define DIM 3
-#define ORDER 2
-#define AFFINE 1
-#define AXIS 0
-#define TOTAL 1
-#include "mpm/p2g.inc"
-#define DIM 3
-#define ORDER 2
-#define TRANSFER 0
-#define STAGE 0
-#define AXIS 0
-#define TOTAL 1
-#include "mpm/g2p.inc"
-#define DIM 3
-#define ORDER 2
-#define TRANSFER 1
-#define STAGE 0
-#define AXIS 0
-#define TOTAL 1
-#include "mpm/g2p.inc"
-#define DIM 3
-#define ORDER 2
-#define TRANSFER 2
-#define STAGE 0
-#define AXIS 0
-#define TOTAL 1
-#include "mpm/g2p.inc"
-#define DIM 3
-#define ORDER 3
-#define AFFINE 0
-#define AXIS 0
-#define TOTAL 1
-#include "mpm/p2g.inc"
-#define DIM 3
-#define ORDER 3
-#define AFFINE 1
-#define AXIS 0
-#define TOTAL 1
-#include "mpm/p2g.inc"
-#define DIM 3
-#define ORDER 3
-#define TRANSFER 0
-#define STAGE 0
-#define AXIS 0
-#define TOTAL 1
-#include "mpm/g2p.inc"
-#define DIM 3
-#define ORDER 3
-#define TRANSFER 1
-#define STAGE 0
-#define AXIS 0
-#define TOTAL 1
-#include "mpm/g2p.inc"
-#define DIM 3
-#define ORDER 3
-#define TRANSFER 2
-#define STAGE 0
-#define AXIS 0
-#define TOTAL 1
-#include "mpm/g2p.inc"
-
-#define SCATTERS(d, axis)                                                                                              \
+#define P2G_ROW(form)                                                                                                  \
     {                                                                                                                  \
-        {scatter_##d##_1_0_##axis, scatter_##d##_1_1_##axis}, {scatter_##d##_2_0_##axis, scatter_##d##_2_1_##axis}, {  \
-            scatter_##d##_3_0_##axis, scatter_##d##_3_1_##axis                                                         \
+        {p2g_##form##_linear_pic, p2g_##form##_linear_apic},                                                           \
+            {p2g_##form##_quadratic_pic, p2g_##form##_quadratic_apic}, {                                               \
+            p2g_##form##_cubic_pic, p2g_##form##_cubic_apic                                                            \
         }                                                                                                              \
     }
-#define GATHERS(name)                                                                                                  \
+#define G2P_ROW(form)                                                                                                  \
     {                                                                                                                  \
-        {name##_1_0_2, name##_1_1_2, name##_1_2_2}, {name##_2_0_0, name##_2_1_0, name##_2_2_0}, {                      \
-            name##_3_0_0, name##_3_1_0, name##_3_2_0                                                                   \
+        {g2p_##form##_linear_pic, g2p_##form##_linear_flip, g2p_##form##_linear_apic},                                 \
+            {g2p_##form##_quadratic_pic, g2p_##form##_quadratic_flip, g2p_##form##_quadratic_apic}, {                  \
+            g2p_##form##_cubic_pic, g2p_##form##_cubic_flip, g2p_##form##_cubic_apic                                   \
+        }                                                                                                              \
+    }
+#define MUSL_ROW(form)                                                                                                 \
+    { musl_##form##_linear_pic, musl_##form##_linear_flip, musl_##form##_linear_apic }
+#define P2G_TOTAL(dim)                                                                                                 \
+    {                                                                                                                  \
+        {NULL}, {p2g_##dim##_quadratic_pic_total, p2g_##dim##_quadratic_apic_total}, {                                 \
+            p2g_##dim##_cubic_pic_total, p2g_##dim##_cubic_apic_total                                                  \
+        }                                                                                                              \
+    }
+#define G2P_TOTAL(dim)                                                                                                 \
+    {                                                                                                                  \
+        {NULL}, {g2p_##dim##_quadratic_pic_total, g2p_##dim##_quadratic_flip_total, g2p_##dim##_quadratic_apic_total}, \
+        {                                                                                                              \
+            g2p_##dim##_cubic_pic_total, g2p_##dim##_cubic_flip_total, g2p_##dim##_cubic_apic_total                    \
         }                                                                                                              \
     }
 
-// Plane strain, space, rings.
 static int table_row(int dim, bool axisymmetric) { return axisymmetric ? 2 : dim - 2; }
 
-brunt_p2g_fn *brunt_find_scatter(int dim, bool axisymmetric, brunt_kernel kernel, brunt_transfer transfer) {
-    static brunt_p2g_fn *const table[3][3][2] = {SCATTERS(2, 0), SCATTERS(3, 0), SCATTERS(2, 1)};
+brunt_p2g_fn *brunt_find_p2g(int dim, bool axisymmetric, brunt_kernel kernel, brunt_transfer transfer) {
+    static brunt_p2g_fn *const table[3][3][2] = {P2G_ROW(2d), P2G_ROW(3d), P2G_ROW(axisymmetric)};
     return table[table_row(dim, axisymmetric)][kernel - 1][transfer == BRUNT_APIC];
 }
 
-brunt_g2p_fn *brunt_find_gather(int dim, bool axisymmetric, brunt_kernel kernel, brunt_transfer transfer) {
-    static brunt_g2p_fn *const table[3][3][3] = {GATHERS(gather_2), GATHERS(gather_3), GATHERS(gather_axis_2)};
+brunt_g2p_fn *brunt_find_g2p(int dim, bool axisymmetric, brunt_kernel kernel, brunt_transfer transfer) {
+    static brunt_g2p_fn *const table[3][3][3] = {G2P_ROW(2d), G2P_ROW(3d), G2P_ROW(axisymmetric)};
     return table[table_row(dim, axisymmetric)][kernel - 1][transfer];
 }
 
-brunt_p2g_fn *brunt_find_total_scatter(int dim, brunt_kernel kernel, brunt_transfer transfer) {
-    static brunt_p2g_fn *const table[2][3][2] = {
-        {{NULL}, {scatter_total_2_2_0_0, scatter_total_2_2_1_0}, {scatter_total_2_3_0_0, scatter_total_2_3_1_0}},
-        {{NULL}, {scatter_total_3_2_0_0, scatter_total_3_2_1_0}, {scatter_total_3_3_0_0, scatter_total_3_3_1_0}}};
+brunt_g2p_fn *brunt_find_musl_velocity(int dim, bool axisymmetric, brunt_kernel kernel, brunt_transfer transfer) {
+    static brunt_g2p_fn *const table[3][3] = {MUSL_ROW(2d), MUSL_ROW(3d), MUSL_ROW(axisymmetric)};
+    return kernel == BRUNT_LINEAR ? table[table_row(dim, axisymmetric)][transfer] : NULL;
+}
+
+brunt_p2g_fn *brunt_find_total_p2g(int dim, brunt_kernel kernel, brunt_transfer transfer) {
+    static brunt_p2g_fn *const table[2][3][2] = {P2G_TOTAL(2d), P2G_TOTAL(3d)};
     return table[dim - 2][kernel - 1][transfer == BRUNT_APIC];
 }
 
-brunt_g2p_fn *brunt_find_total_gather(int dim, brunt_kernel kernel, brunt_transfer transfer) {
-#define TOTALS(d, order)                                                                                               \
-    { gather_total_##d##_##order##_0_0, gather_total_##d##_##order##_1_0, gather_total_##d##_##order##_2_0 }
-    static brunt_g2p_fn *const table[2][3][3] = {{{NULL}, TOTALS(2, 2), TOTALS(2, 3)},
-                                                 {{NULL}, TOTALS(3, 2), TOTALS(3, 3)}};
-#undef TOTALS
+brunt_g2p_fn *brunt_find_total_g2p(int dim, brunt_kernel kernel, brunt_transfer transfer) {
+    static brunt_g2p_fn *const table[2][3][3] = {G2P_TOTAL(2d), G2P_TOTAL(3d)};
     return table[dim - 2][kernel - 1][transfer];
-}
-
-brunt_g2p_fn *brunt_find_advance(int dim, bool axisymmetric, brunt_kernel kernel, brunt_transfer transfer) {
-    static brunt_g2p_fn *const table[3][3] = {{gather_2_1_0_1, gather_2_1_1_1, gather_2_1_2_1},
-                                              {gather_3_1_0_1, gather_3_1_1_1, gather_3_1_2_1},
-                                              {gather_axis_2_1_0_1, gather_axis_2_1_1_1, gather_axis_2_1_2_1}};
-    return kernel == BRUNT_LINEAR ? table[table_row(dim, axisymmetric)][transfer] : NULL;
 }

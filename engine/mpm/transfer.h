@@ -1,7 +1,7 @@
 // Transfers between particles and grid, and the update of the particles: the two passes that cost the time of a step.
 //
-// Both are written once (scatter.inc, gather.inc) and compiled for each dimension, kernel and transfer (transfer.c); a
-// body's functions are looked up once.
+// Both are written once (p2g.h, g2p.h) and compiled for each dimension, kernel, transfer and form, the list of which is
+// transfer.c; a body's functions are looked up once.
 #pragma once
 
 #include "mpm/mpm_body.h"
@@ -28,17 +28,17 @@ typedef void brunt_p2g_fn(brunt_body *body, int32_t block, real dt);
 typedef void brunt_g2p_fn(brunt_body *body, int32_t block, real dt, real flip, brunt_workspace *work);
 
 // kernel 1..3, transfer BRUNT_PIC, BRUNT_FLIP, BRUNT_APIC; axisymmetric with dim 2
-brunt_p2g_fn *brunt_find_scatter(int dim, bool axisymmetric, brunt_kernel kernel, brunt_transfer transfer);
-brunt_g2p_fn *brunt_find_gather(int dim, bool axisymmetric, brunt_kernel kernel, brunt_transfer transfer);
+brunt_p2g_fn *brunt_find_p2g(int dim, bool axisymmetric, brunt_kernel kernel, brunt_transfer transfer);
+brunt_g2p_fn *brunt_find_g2p(int dim, bool axisymmetric, brunt_kernel kernel, brunt_transfer transfer);
 // The same of total-Lagrangian bodies (not axisymmetric). NULL for the linear kernel: the slope of its fields jumps
 // between cells, and particles that never leave their corner of a cell do not average it.
-brunt_p2g_fn *brunt_find_total_scatter(int dim, brunt_kernel kernel, brunt_transfer transfer);
-brunt_g2p_fn *brunt_find_total_gather(int dim, brunt_kernel kernel, brunt_transfer transfer);
-// The linear kernel gathers in two stages: this one updates the velocities, the one above the rest, after the
+brunt_p2g_fn *brunt_find_total_p2g(int dim, brunt_kernel kernel, brunt_transfer transfer);
+brunt_g2p_fn *brunt_find_total_g2p(int dim, brunt_kernel kernel, brunt_transfer transfer);
+// Of the linear kernel g2p has two stages: this one updates the velocities, the one above the rest, after the
 // velocities have been to the grid once more. NULL for the other kernels.
-brunt_g2p_fn *brunt_find_advance(int dim, bool axisymmetric, brunt_kernel kernel, brunt_transfer transfer);
+brunt_g2p_fn *brunt_find_musl_velocity(int dim, bool axisymmetric, brunt_kernel kernel, brunt_transfer transfer);
 
-// --- leaving.c: particles of a block whose deformation gradient stands still, of bodies that erode or keep what has
+// --- detached.c: particles of a block whose deformation gradient stands still, of bodies that erode or keep what has
 // left Sets the velocity gradient of those that would turn inside out (they are marked in particles.order) and of those
 // freed of stress (volume 0) to 0, before F is updated. `hoop_stretch` takes F[8] of rings. How many are newly marked.
 int32_t brunt_keep_inverted(brunt_body *body, const brunt_block *block, real dt, real *const *gradient,

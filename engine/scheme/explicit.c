@@ -19,7 +19,7 @@ static bool surfaces(const brunt_world *world) { return world->contact.has_surfa
 static bool conditions_of_contact(const brunt_world *world) { return conditions(world) && grid_contact(world); }
 static bool conditions_of_surfaces(const brunt_world *world) { return conditions(world) && surfaces(world); }
 static bool walls(const brunt_world *world) { return particles(world) && world->boundaries.has_walls; }
-static bool remapping(const brunt_world *world) { return particles(world) && world->transfers.advance; }
+static bool remapping(const brunt_world *world) { return particles(world) && world->transfers.musl_velocity; }
 static bool erosion(const brunt_world *world) { return world->erosion.active; }
 
 // ------------------------------------------------------------------------------------------ what is gone over

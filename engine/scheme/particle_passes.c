@@ -19,15 +19,15 @@ typedef struct body_job {
 static void scatter_blocks(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     const body_job *job = context;
-    brunt_p2g_fn *scatter = brunt_total_lagrangian(&job->body->particles) ? job->world->transfers.total_scatter
-                                                                          : job->world->transfers.scatter;
+    brunt_p2g_fn *scatter =
+        brunt_total_lagrangian(&job->body->particles) ? job->world->transfers.total_p2g : job->world->transfers.p2g;
     for (int64_t b = begin; b < end; b++) scatter(job->body, (int32_t)b, (real)job->dt);
 }
 
 static void gather_blocks(void *context, int64_t begin, int64_t end, int worker) {
     const body_job *job = context;
-    brunt_g2p_fn *gather = brunt_total_lagrangian(&job->body->particles) ? job->world->transfers.total_gather
-                                                                         : job->world->transfers.gather;
+    brunt_g2p_fn *gather =
+        brunt_total_lagrangian(&job->body->particles) ? job->world->transfers.total_g2p : job->world->transfers.g2p;
     for (int64_t b = begin; b < end; b++)
         gather(job->body, (int32_t)b, (real)job->dt, (real)job->world->settings.flip,
                &job->world->scratch.points[worker]);
@@ -190,8 +190,8 @@ int brunt_pass_ledger(brunt_world *world, brunt_step *step, brunt_error *error) 
 static void advance_blocks(void *context, int64_t begin, int64_t end, int worker) {
     const body_job *job = context;
     for (int64_t b = begin; b < end; b++)
-        job->world->transfers.advance(job->body, (int32_t)b, (real)job->dt, (real)job->world->settings.flip,
-                                      &job->world->scratch.points[worker]);
+        job->world->transfers.musl_velocity(job->body, (int32_t)b, (real)job->dt, (real)job->world->settings.flip,
+                                            &job->world->scratch.points[worker]);
 }
 
 static void remap_body(brunt_world *world, brunt_body *body, double dt) {

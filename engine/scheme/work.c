@@ -301,7 +301,7 @@ brunt_amount brunt_work_remap(const brunt_world *world, brunt_body_ref body) {
 }
 
 brunt_amount brunt_work_gather(const brunt_world *world, brunt_body_ref body) {
-    return body.mpm ? gather_work(world, body.mpm, world->transfers.advance ? GATHER_REST : GATHER) : NOTHING;
+    return body.mpm ? gather_work(world, body.mpm, world->transfers.musl_velocity ? GATHER_REST : GATHER) : NOTHING;
 }
 
 brunt_amount brunt_work_kick(const brunt_world *world, brunt_body_ref body) {

@@ -185,7 +185,7 @@ static int check_total_lagrangian(const brunt_world *world, const brunt_world_de
                                   const brunt_body *body, brunt_error *error) {
     const brunt_body_def *from = order[body->index];
     if (def->axisymmetric) REFUSE("bodies.%s.lagrangian: total: not in axisymmetric scenes", from->name);
-    if (!world->transfers.total_gather)
+    if (!world->transfers.total_g2p)
         REFUSE(
             "bodies.%s.lagrangian: total: kernel linear has gradients that jump between cells; use quadratic or cubic",
             from->name);
@@ -236,7 +236,7 @@ static int make_particles(brunt_world *world, const brunt_world_def *def, const 
     brunt_particle_needs needs = {.affine = def->transfer == BRUNT_APIC,
                                   .reach = world->contact.has_grid || world->contact.has_augury ||
                                            world->contact.has_grid_surfaces || world->boundaries.has_walls,
-                                  .grid_velocity = world->transfers.advance && def->transfer == BRUNT_FLIP,
+                                  .grid_velocity = world->transfers.musl_velocity && def->transfer == BRUNT_FLIP,
                                   .total = from->total_lagrangian};
     memcpy(needs.models, body->material.model, sizeof needs.models);
     brunt_particles_init(&body->particles, def->dimension, def->axisymmetric ? 3 : def->dimension, &needs);

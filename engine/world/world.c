@@ -158,11 +158,11 @@ static void copy_settings(brunt_settings *s, const brunt_world_def *def) {
 }
 
 static void find_transfers(brunt_transfers *t, const brunt_world_def *def) {
-    t->scatter = brunt_find_scatter(def->dimension, def->axisymmetric, def->kernel, def->transfer);
-    t->total_scatter = brunt_find_total_scatter(def->dimension, def->kernel, def->transfer);
-    t->total_gather = brunt_find_total_gather(def->dimension, def->kernel, def->transfer);
-    t->gather = brunt_find_gather(def->dimension, def->axisymmetric, def->kernel, def->transfer);
-    t->advance = brunt_find_advance(def->dimension, def->axisymmetric, def->kernel, def->transfer);
+    t->p2g = brunt_find_p2g(def->dimension, def->axisymmetric, def->kernel, def->transfer);
+    t->total_p2g = brunt_find_total_p2g(def->dimension, def->kernel, def->transfer);
+    t->total_g2p = brunt_find_total_g2p(def->dimension, def->kernel, def->transfer);
+    t->g2p = brunt_find_g2p(def->dimension, def->axisymmetric, def->kernel, def->transfer);
+    t->musl_velocity = brunt_find_musl_velocity(def->dimension, def->axisymmetric, def->kernel, def->transfer);
 }
 
 brunt_world *brunt_world_create(const brunt_world_def *given, brunt_error *error) {

@@ -23,9 +23,9 @@ typedef struct brunt_plan {
     int pass_of[BRUNT_PASS_LIMIT], row_count, pass_count;
 } brunt_plan;
 
-typedef struct brunt_transfers { // of points to and from their grids, as the scene chose them; NULL: there is none
-    brunt_p2g_fn *scatter, *total_scatter; // total: of total-Lagrangian bodies
-    brunt_g2p_fn *gather, *advance, *total_gather;
+typedef struct brunt_transfers {   // of points to and from their grids, as the scene chose them; NULL: there is none
+    brunt_p2g_fn *p2g, *total_p2g; // total: of total-Lagrangian bodies
+    brunt_g2p_fn *g2p, *musl_velocity, *total_g2p;
 } brunt_transfers;
 
 struct brunt_pass_time {

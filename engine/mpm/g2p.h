@@ -1,0 +1,243 @@
+// Grid to the particles of one block, then their update: velocity, deformation, affine field, report.
+//
+// WHOLE does all. The linear kernel does it in two: its slope does not vanish where its weight does, so a node that
+// feels a particle's corner only is thrown far by the particle's stress (1/weight), and the gradient of such a field is
+// useless. MUSL_VELOCITY updates the velocities; these go to the grid once more, without forces; AFTER_MUSL takes the
+// gradient of that field (the modified update of Sulsky, Zhou and Schreyer 1995).
+//
+// AXISYMMETRIC: rings have a hoop rate too, v_r / r with the velocity the particle moves with and r before it moves:
+// where the forces took it (p2g.h), and then hoop stretch and radius grow by the same factor 1 + dt v_r / r, so that
+// the stretch is r / R for good. What gathers velocities is the same for rings and for plane strain.
+//
+// TOTAL: the kernels live in the undeformed configuration. The gradient that is gathered is that of v over the
+// undeformed coordinates, Fdot; the material sees L = Fdot F^-1 of the F at the start, for which F = (I + dt L) F_old
+// is the same update.
+#pragma once
+
+#include <math.h>
+
+#include "grid/bspline.h"
+#include "mpm/g2p_fields.h"
+#include "mpm/points_update.h"
+#include "mpm/tensors.h"
+#include "mpm/transfer_kind.h"
+
+// What the tiles of a block have in common, and their sums.
+typedef struct g2p_pass {
+    const brunt_grid *grid;
+    real *out[3 + 9 + 9]; // of the block: velocity, gradient, affine field or old velocity; from its first particle on
+    real *x[3], *v[3], *F[9], *C[9], *moves[3]; // from slot 0 on
+    const real *mass;
+    real *hoop;
+    real dt, flip, turning;
+    lanes kinetic, fastest, shortest; // sum m |v|^2; greatest |v|^2; greatest 1 / (principal stretch)^2
+} g2p_pass;
+
+BRUNT_INLINE bool with_old(transfer_kind kind) { return kind.transfer == BRUNT_FLIP && kind.stage != AFTER_MUSL; }
+BRUNT_INLINE bool with_affine(transfer_kind kind) { return kind.transfer == BRUNT_APIC && kind.stage != MUSL_VELOCITY; }
+
+static int32_t padded_count(const brunt_block *block) {
+    return (block->count + BRUNT_LANES - 1) / BRUNT_LANES * BRUNT_LANES;
+}
+
+// The fields at the particles; in the gap behind the last one as at it.
+BRUNT_INLINE void g2p_fields(brunt_body *body, int32_t b, brunt_workspace *work, fields_fn *fields_of,
+                             transfer_kind kind) {
+    const brunt_block *block = &body->grid.blocks[b];
+    const int dim = kind.dim, outputs = dim + dim * dim + (with_affine(kind) ? dim * dim : with_old(kind) ? dim : 0);
+    fields_of(body, block, body->grid.bin_start + (size_t)b * BRUNT_BIN_STARTS, work);
+    const int32_t count = block->count, padded = padded_count(block);
+    for (int o = 0; o < outputs; o++)
+        for (int32_t s = count; s < padded; s++) work->out[o][s] = work->out[o][count - 1];
+}
+
+// What the velocity component v, at s, becomes where the grid has grid_v.
+BRUNT_INLINE lanes new_velocity(const g2p_pass *pass, int64_t i, int r, lanes v, lanes grid_v, transfer_kind kind) {
+    if (!with_old(kind)) return grid_v;
+    const int dim = kind.dim;
+    lanes change = grid_v - lanes_load(pass->out[dim + dim * dim + r] + i);
+    return pass->flip * (v + change) + (1 - pass->flip) * grid_v;
+}
+
+// Velocity and place of the particles at s, number i of their block; |v|^2. Rings: hoop rate and stretch as well.
+BRUNT_INLINE lanes update_velocity(const g2p_pass *pass, int64_t i, int64_t s, transfer_kind kind) {
+    lanes speed2 = (lanes){0};
+    for (int r = 0; r < kind.dim; r++) {
+        lanes grid_v, new_v;
+        if (kind.stage == AFTER_MUSL) {
+            grid_v = lanes_load(pass->moves[r] + s), new_v = lanes_load(pass->v[r] + s);
+        } else {
+            grid_v = lanes_load(pass->out[r] + i);
+            new_v = new_velocity(pass, i, r, lanes_load(pass->v[r] + s), grid_v, kind);
+            lanes_store(pass->v[r] + s, new_v);
+        }
+        if (kind.form == AXISYMMETRIC && r == 0) {
+            const lanes rate = grid_v / lanes_load(pass->x[0] + s), stretch = lanes_load(pass->F[8] + s);
+            lanes_store(pass->hoop + i, rate);
+            lanes_store(pass->F[8] + s, stretch + pass->dt * rate * stretch);
+        }
+        lanes_store(pass->x[r] + s, lanes_load(pass->x[r] + s) + pass->dt * grid_v);
+        speed2 += new_v * new_v;
+    }
+    return speed2;
+}
+
+// F of total-Lagrangian particles grows by dt times the gathered Fdot; leaves L in its place.
+BRUNT_INLINE void update_total_deformation(g2p_pass *pass, int64_t i, int64_t s, const lanes *old_F, int dim) {
+    lanes inverse[9], rate[9];
+    for (int c = 0; c < dim * dim; c++) {
+        rate[c] = lanes_load(pass->out[dim + c] + i);
+        lanes_store(pass->F[c] + s, old_F[c] + pass->dt * rate[c]);
+    }
+    inverse_matrix(dim, old_F, inverse);
+    for (int r = 0; r < dim; r++)
+        for (int c = 0; c < dim; c++) {
+            lanes L = rate[r * dim] * inverse[c];
+            for (int k = 1; k < dim; k++) L += rate[r * dim + k] * inverse[k * dim + c];
+            lanes_store(pass->out[dim + r * dim + c] + i, L);
+        }
+    pass->shortest = lanes_max(pass->shortest, inverse_stretch(dim, pass->F, s));
+}
+
+// F = (I + dt L) F_old, in the plane or in space.
+BRUNT_INLINE void update_deformation(g2p_pass *pass, int64_t i, int64_t s, transfer_kind kind) {
+    const int dim = kind.dim, point_dim = kind.form == AXISYMMETRIC ? 3 : dim;
+    lanes old_F[9], L[9];
+    for (int r = 0; r < dim; r++)
+        for (int c = 0; c < dim; c++) old_F[r * dim + c] = lanes_load(pass->F[r * point_dim + c] + s);
+    if (kind.form == TOTAL) {
+        update_total_deformation(pass, i, s, old_F, dim);
+        return;
+    }
+    for (int c = 0; c < dim * dim; c++) L[c] = lanes_load(pass->out[dim + c] + i);
+    for (int r = 0; r < dim; r++)
+        for (int c = 0; c < dim; c++) {
+            lanes change = L[r * dim] * old_F[c];
+            for (int k = 1; k < dim; k++) change += L[r * dim + k] * old_F[k * dim + c];
+            lanes_store(pass->F[r * point_dim + c] + s, old_F[r * dim + c] + pass->dt * change);
+        }
+}
+
+// The affine field of the particles where they are now; sum C:C D, twice its kinetic energy per mass.
+BRUNT_INLINE lanes update_affine_field(const g2p_pass *pass, int64_t i, int64_t s, transfer_kind kind) {
+    const int dim = kind.dim;
+    lanes A[9], C[9], affine2 = (lanes){0};
+    for (int c = 0; c < dim * dim; c++) A[c] = lanes_load(pass->out[dim + dim * dim + c] + i);
+    turn_affine_field(dim, A, pass->turning, C);
+    for (int a = 0; a < dim; a++) {
+        lanes square = (lanes){0};
+        for (int r = 0; r < dim; r++) {
+            lanes_store(pass->C[r * dim + a] + s, C[r * dim + a]);
+            square += C[r * dim + a] * C[r * dim + a];
+        }
+        affine2 += square * bspline_moment(kind.order, lanes_load(pass->x[a] + s) - (real)pass->grid->origin[a],
+                                           pass->grid->h, pass->grid->inv_h);
+    }
+    return affine2;
+}
+
+BRUNT_INLINE void copy_arrays(real **to, real *const *from, int count) {
+    for (int c = 0; c < count; c++) to[c] = from[c];
+}
+
+// The arrays are copied, as what is stored in them might, for all the compiler knows, be their own addresses.
+BRUNT_INLINE g2p_pass g2p_begin(brunt_body *body, real dt, real flip, brunt_workspace *work, transfer_kind kind) {
+    brunt_particles *p = &body->particles;
+    const int dim = kind.dim, matrix = dim * dim;
+    const bool still = kind.form == TOTAL || body->material.model[BRUNT_STRENGTH]->fluid;
+    g2p_pass pass = {.grid = &body->grid,
+                     .mass = brunt_field(p, BRUNT_FIELD_mass)[0],
+                     .hoop = work->out[BRUNT_OUT_HOOP],
+                     .dt = dt,
+                     .flip = flip,
+                     .turning = still ? 0 : (real)0.5 * dt};
+    copy_arrays(pass.out, work->out, dim + matrix + (with_affine(kind) ? matrix : with_old(kind) ? dim : 0));
+    copy_arrays(pass.x, brunt_field(p, BRUNT_FIELD_position), dim);
+    copy_arrays(pass.v, brunt_field(p, BRUNT_FIELD_velocity), dim);
+    copy_arrays(pass.F, brunt_field(p, BRUNT_FIELD_deformation_gradient), kind.form == AXISYMMETRIC ? 9 : matrix);
+    if (with_affine(kind)) copy_arrays(pass.C, brunt_field(p, BRUNT_FIELD_affine), matrix);
+    if (kind.stage != WHOLE) // what particles move with after the first stage: their own velocity, but for FLIP
+        copy_arrays(pass.moves,
+                    brunt_field(p, kind.transfer == BRUNT_FLIP ? BRUNT_FIELD_grid_velocity : BRUNT_FIELD_velocity),
+                    dim);
+    return pass;
+}
+
+// Motion of the block's particles and, of its sums, what the grid's forces did before the material is updated.
+BRUNT_INLINE void report_motion(brunt_body *body, int32_t b, const g2p_pass *pass, brunt_workspace *work,
+                                transfer_kind kind) {
+    const brunt_block *block = &body->grid.blocks[b];
+    const real *hoop = kind.form == AXISYMMETRIC ? pass->hoop : NULL;
+    double remap_power = 0, old_power = 0;
+    if (kind.stage == AFTER_MUSL) { // the forces worked at the gradient of the first stage
+        old_power = -body->report[b].remap_power;
+        remap_power = brunt_stress_power(body, block, 0, work->out + kind.dim, hoop) - old_power;
+    } else if (body->uneven) {
+        old_power = brunt_stress_power(body, block, 0, work->out + kind.dim, hoop);
+    }
+    body->report[b] = (brunt_block_report){.kinetic = 0.5 * (double)lanes_sum(pass->kinetic),
+                                           .remap_power = remap_power,
+                                           .old_power = old_power,
+                                           .speed = (real)sqrt((double)lanes_max_of(pass->fastest)),
+                                           .bad = -1};
+}
+
+// The material of the block's particles, and what it and its stress report.
+BRUNT_INLINE void report_material(brunt_body *body, int32_t b, const g2p_pass *pass, brunt_workspace *work,
+                                  transfer_kind kind) {
+    const brunt_block *block = &body->grid.blocks[b];
+    brunt_block_report *report = &body->report[b];
+    real *rates[9];
+    if (kind.form == AXISYMMETRIC) brunt_ring_rates(work, padded_count(block), rates);
+    brunt_update_points(body, block, pass->dt, work, kind.form == AXISYMMETRIC ? rates : work->out + kind.dim, report);
+    if (kind.form == TOTAL) // waves run through undeformed cells, by as much faster as lengths have shrunk
+        report->wave_speed *= (real)sqrt((double)lanes_max_of(pass->shortest));
+    if (body->keeps) brunt_still_stress(body, block);
+    report->stress_power =
+        brunt_stress_power(body, block, pass->dt, work->out + kind.dim, kind.form == AXISYMMETRIC ? pass->hoop : NULL);
+}
+
+BRUNT_INLINE void g2p(brunt_body *body, int32_t b, real dt, real flip, brunt_workspace *work, fields_fn *fields_of,
+                      transfer_kind kind) {
+    g2p_fields(body, b, work, fields_of, kind);
+    const brunt_block *block = &body->grid.blocks[b];
+    const int32_t padded = padded_count(block);
+    g2p_pass pass = g2p_begin(body, dt, flip, work, kind);
+    const bool keeps = body->erodes_inverted || body->keeps;
+    int32_t kept = keeps ? brunt_keep_inverted(body, block, dt, work->out + kind.dim, work->out[BRUNT_OUT_STRETCH]) : 0;
+    for (int64_t i = 0; i < padded; i += BRUNT_LANES) {
+        const int64_t s = block->first + i;
+        const lanes speed2 = update_velocity(&pass, i, s, kind);
+        update_deformation(&pass, i, s, kind);
+        const lanes affine2 = with_affine(kind) ? update_affine_field(&pass, i, s, kind) : (lanes){0};
+        pass.kinetic += lanes_load(pass.mass + s) * (speed2 + affine2);
+        pass.fastest = lanes_max(pass.fastest, speed2);
+    }
+    report_motion(body, b, &pass, work, kind);
+    if (kind.form == AXISYMMETRIC && keeps)
+        kept += brunt_keep_inverted_rings(body, block, dt, pass.hoop, work->out[BRUNT_OUT_STRETCH]);
+    report_material(body, b, &pass, work, kind);
+    body->report[b].turned = kept;
+}
+
+// The linear kernel's first stage: velocities, and what the stress did before they go to the grid once more.
+BRUNT_INLINE void musl_velocity(brunt_body *body, int32_t b, real flip, brunt_workspace *work, fields_fn *fields_of,
+                                transfer_kind kind) {
+    g2p_fields(body, b, work, fields_of, kind);
+    const brunt_block *block = &body->grid.blocks[b];
+    const int32_t padded = padded_count(block);
+    const g2p_pass pass = g2p_begin(body, 0, flip, work, kind);
+    for (int64_t i = 0; i < padded; i += BRUNT_LANES)
+        for (int r = 0; r < kind.dim; r++) {
+            const int64_t s = block->first + i;
+            lanes grid_v = lanes_load(pass.out[r] + i);
+            lanes new_v = new_velocity(&pass, i, r, lanes_load(pass.v[r] + s), grid_v, kind);
+            if (with_old(kind)) lanes_store(pass.moves[r] + s, grid_v);
+            lanes_store(pass.v[r] + s, new_v);
+        }
+    if (kind.form == AXISYMMETRIC)
+        for (int64_t i = 0; i < padded; i += BRUNT_LANES)
+            lanes_store(pass.hoop + i, lanes_load(pass.out[0] + i) / lanes_load(pass.x[0] + block->first + i));
+    body->report[b].remap_power =
+        -brunt_stress_power(body, block, 0, work->out + kind.dim, kind.form == AXISYMMETRIC ? pass.hoop : NULL);
+}
