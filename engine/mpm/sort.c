@@ -52,8 +52,12 @@ typedef struct job {
     brunt_grid *grid;
     brunt_particles *particles;
     range *ranges;
+    int range_count;
     brunt_sort_room *room;
-    int group; // scalars being moved: BRUNT_SORT_GROUP of them from here
+    int threads;
+    brunt_timer *timer; // may be NULL
+    bool renewed;       // ranks of blocks are not those of the last sort: what it stored no longer compares
+    int group;          // scalars being moved: BRUNT_SORT_GROUP of them from here
     bool out_of_memory;
 } job;
 
@@ -64,49 +68,56 @@ static bool range_miss(range *r, uint64_t key) {
     return true;
 }
 
+// Block coordinates and bin of a particle at x; false when it is not finite or too far away.
+static bool find_bin(const brunt_grid *grid, const real *origin, real *const *x, int64_t s, int32_t block[3],
+                     int *bin) {
+    const int dim = grid->dim, shift = dim == 3 ? 2 : 3, mask = grid->side - 1;
+    const double offset = 0.5 * (grid->order - 1);
+    *bin = 0, block[2] = 0;
+    for (int a = 0; a < dim; a++) {
+        double u = floor((double)((x[a][s] - origin[a]) * grid->inv_h) - offset);
+        if (!(fabs(u) < 4.0 * (BRUNT_COORD_LIMIT - 1))) return false; // NaN too
+        const int32_t base = (int32_t)u;
+        block[a] = base >> shift;
+        *bin = *bin << shift | (base & mask);
+    }
+    return true;
+}
+
+static void find_places_of(job *j, range *r) {
+    const brunt_grid *grid = j->grid;
+    brunt_particles *p = j->particles;
+    real *const *x = brunt_kernel_place(p);
+    const real origin[3] = {(real)grid->origin[0], (real)grid->origin[1], (real)grid->origin[2]};
+    uint64_t last_key = UINT64_MAX;
+    int32_t last = -1;
+    r->bad = -1, r->moved = false, r->missing_count = 0;
+    for (int64_t s = r->begin; s < r->end; s++) {
+        int32_t block[3];
+        int bin;
+        if (p->id[s] < 0) continue;
+        if (!find_bin(grid, origin, x, s, block, &bin)) {
+            if (r->bad < 0) r->bad = s;
+            continue;
+        }
+        uint64_t key = brunt_key(block);
+        if (key != last_key) last_key = key, last = brunt_grid_block(grid, key);
+        if (last < 0) {
+            if (!range_miss(r, key)) j->out_of_memory = true;
+            r->moved = true;
+            continue;
+        }
+        uint64_t place = (uint64_t)last << 6 | (uint64_t)bin;
+        r->moved = r->moved || place != p->key[s];
+        p->key[s] = place;
+    }
+}
+
 // Round one. key[] gets block rank * 64 + bin; of a particle whose block is not alive yet, nothing.
 static void find_places(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     job *j = context;
-    const brunt_grid *grid = j->grid;
-    brunt_particles *p = j->particles;
-    const int dim = grid->dim, shift = dim == 3 ? 2 : 3, mask = grid->side - 1;
-    const double offset = 0.5 * (grid->order - 1);
-    real *const *x = brunt_kernel_place(p);
-    const real o[3] = {(real)grid->origin[0], (real)grid->origin[1], (real)grid->origin[2]};
-    for (int64_t q = begin; q < end; q++) {
-        range *r = &j->ranges[q];
-        uint64_t last_key = UINT64_MAX;
-        int32_t last = -1;
-        r->bad = -1, r->moved = false, r->missing_count = 0;
-        for (int64_t s = r->begin; s < r->end; s++) {
-            if (p->id[s] < 0) continue;
-            int32_t base[3] = {0, 0, 0}, block[3] = {0, 0, 0};
-            int bin = 0;
-            bool good = true;
-            for (int a = 0; a < dim; a++) {
-                double u = floor((double)((x[a][s] - o[a]) * grid->inv_h) - offset);
-                good = good && fabs(u) < 4.0 * (BRUNT_COORD_LIMIT - 1); // false for NaN too
-                base[a] = good ? (int32_t)u : 0;
-                block[a] = base[a] >> shift;
-                bin = bin << shift | (base[a] & mask);
-            }
-            if (!good) {
-                if (r->bad < 0) r->bad = s;
-                continue;
-            }
-            uint64_t key = brunt_key(block);
-            if (key != last_key) last_key = key, last = brunt_grid_block(grid, key);
-            if (last < 0) {
-                if (!range_miss(r, key)) j->out_of_memory = true;
-                r->moved = true;
-                continue;
-            }
-            uint64_t place = (uint64_t)last << 6 | (uint64_t)bin;
-            r->moved = r->moved || place != p->key[s];
-            p->key[s] = place;
-        }
-    }
+    for (int64_t q = begin; q < end; q++) find_places_of(j, &j->ranges[q]);
 }
 
 static int compare_keys(const void *a, const void *b) {
@@ -217,16 +228,16 @@ static int fail_place(const brunt_particles *p, int64_t s, brunt_error *error) {
 }
 
 // United set of the blocks that are alive and needed: those with particles now, and the missing ones.
-static int renew_blocks(job *j, int ranges, bool first) {
+static int renew_blocks(job *j) {
     brunt_grid *grid = j->grid;
-    int64_t most = first ? 0 : grid->block_count;
-    for (int q = 0; q < ranges; q++) most += j->ranges[q].missing_count;
+    int64_t most = j->renewed ? 0 : grid->block_count;
+    for (int q = 0; q < j->range_count; q++) most += j->ranges[q].missing_count;
     if (BRUNT_RESERVE(j->room->keys, (size_t)(most + 1), 0)) return -1;
     uint64_t *keys = j->room->keys;
     int64_t n = 0;
-    if (!first)
+    if (!j->renewed)
         for (int32_t b = 0; b < grid->block_count; b++) keys[n++] = grid->block_key[b];
-    for (int q = 0; q < ranges; q++)
+    for (int q = 0; q < j->range_count; q++)
         for (int64_t i = 0; i < j->ranges[q].missing_count; i++) keys[n++] = j->ranges[q].missing[i];
     qsort(keys, (size_t)n, sizeof *keys, compare_keys);
     int64_t unique = 0;
@@ -243,87 +254,118 @@ static int drop_empty(brunt_grid *grid, const int64_t *total) {
     return brunt_grid_set_blocks(grid, grid->block_key, kept);
 }
 
-static int sort_ranges(job *j, int ranges, int threads, brunt_timer *timer, brunt_error *error) {
-    brunt_grid *grid = j->grid;
-    brunt_particles *p = j->particles;
-    bool first = grid->block_count == 0;
-    int64_t *total = NULL;
-    for (;;) { // until every particle's block is alive and every block has a particle: at most a few rounds
-        brunt_parallel(threads, ranges, 1, find_places, j, timer);
-        bool moved = p->holes, missing = false;
-        for (int q = 0; q < ranges; q++) {
-            if (j->ranges[q].bad >= 0) return fail_place(p, j->ranges[q].bad, error);
-            moved = moved || j->ranges[q].moved;
-            missing = missing || j->ranges[q].missing_count > 0;
-        }
-        if (j->out_of_memory) return brunt_fail(error, BRUNT_FAILED, "out of memory while sorting particles");
-        if (!moved && !first) return BRUNT_OK;
-        if (missing) {
-            if (renew_blocks(j, ranges, first)) return brunt_fail(error, BRUNT_FAILED, "out of memory for the grid");
-            first = true; // ranks have changed: what the last sort stored no longer compares
-            continue;
-        }
-        for (int q = 0; q < ranges; q++)
-            if (BRUNT_RESERVE(j->ranges[q].count, (size_t)grid->block_count, 0))
-                return brunt_fail(error, BRUNT_FAILED, "out of memory while sorting particles");
-        brunt_parallel(threads, ranges, 1, count_blocks, j, timer);
-        if (BRUNT_RESERVE(j->room->total, (size_t)grid->block_count, 0))
-            return brunt_fail(error, BRUNT_FAILED, "out of memory while sorting particles");
-        total = j->room->total;
-        bool empty = false;
-        for (int32_t b = 0; b < grid->block_count; b++) {
-            total[b] = 0;
-            for (int q = 0; q < ranges; q++) total[b] += j->ranges[q].count[b];
-            empty = empty || total[b] == 0;
-        }
-        if (!empty) break;
-        if (drop_empty(grid, total)) return brunt_fail(error, BRUNT_FAILED, "out of memory for the grid");
-        first = true;
-    }
+static int fail_memory(brunt_error *error, const char *of) {
+    return brunt_fail(error, BRUNT_FAILED, "out of memory %s", of);
+}
 
+// Round one, for all ranges: whether some particle is not where the last sort put it, and whether some have no block.
+static int look(job *j, bool *moved, bool *missing, brunt_error *error) {
+    brunt_parallel(j->threads, j->range_count, 1, find_places, j, j->timer);
+    *moved = j->particles->holes || j->renewed, *missing = false;
+    for (int q = 0; q < j->range_count; q++) {
+        if (j->ranges[q].bad >= 0) return fail_place(j->particles, j->ranges[q].bad, error);
+        *moved = *moved || j->ranges[q].moved;
+        *missing = *missing || j->ranges[q].missing_count > 0;
+    }
+    return j->out_of_memory ? fail_memory(error, "while sorting particles") : BRUNT_OK;
+}
+
+// Particles of each block, by range and in all; whether there is one without any.
+static int count_particles(job *j, bool *empty, brunt_error *error) {
+    const int32_t blocks = j->grid->block_count;
+    for (int q = 0; q < j->range_count; q++)
+        if (BRUNT_RESERVE(j->ranges[q].count, (size_t)blocks, 0)) return fail_memory(error, "while sorting particles");
+    if (BRUNT_RESERVE(j->room->total, (size_t)blocks, 0)) return fail_memory(error, "while sorting particles");
+    brunt_parallel(j->threads, j->range_count, 1, count_blocks, j, j->timer);
+    *empty = false;
+    for (int32_t b = 0; b < blocks; b++) {
+        j->room->total[b] = 0;
+        for (int q = 0; q < j->range_count; q++) j->room->total[b] += j->ranges[q].count[b];
+        *empty = *empty || j->room->total[b] == 0;
+    }
+    return BRUNT_OK;
+}
+
+// Until every particle's block is alive and every block has a particle: at most a few looks. *rests: no particle has
+// changed its bin, and nothing is to be done.
+static int settle_blocks(job *j, bool *rests, brunt_error *error) {
+    for (;;) {
+        bool moved, missing, empty;
+        if (look(j, &moved, &missing, error)) return BRUNT_FAILED;
+        *rests = !moved;
+        if (*rests) return BRUNT_OK;
+        if (missing) {
+            if (renew_blocks(j)) return fail_memory(error, "for the grid");
+        } else {
+            if (count_particles(j, &empty, error)) return BRUNT_FAILED;
+            if (!empty) return BRUNT_OK;
+            if (drop_empty(j->grid, j->room->total)) return fail_memory(error, "for the grid");
+        }
+        j->renewed = true;
+    }
+}
+
+// Where each block begins, and each range's part of it; how many slots there are with the gaps.
+static int64_t place_blocks(job *j) {
     int64_t slots = 0;
-    for (int32_t b = 0; b < grid->block_count; b++) {
-        grid->blocks[b].first = (int32_t)slots;
-        grid->blocks[b].count = (int32_t)total[b];
+    for (int32_t b = 0; b < j->grid->block_count; b++) {
+        const int64_t count = j->room->total[b];
+        j->grid->blocks[b].first = (int32_t)slots;
+        j->grid->blocks[b].count = (int32_t)count;
         int32_t at = (int32_t)slots;
-        for (int q = 0; q < ranges; q++) {
+        for (int q = 0; q < j->range_count; q++) {
             int32_t here = j->ranges[q].count[b];
             j->ranges[q].count[b] = at;
             at += here;
         }
-        slots += (total[b] + BRUNT_LANES - 1) / BRUNT_LANES * BRUNT_LANES;
+        slots += (count + BRUNT_LANES - 1) / BRUNT_LANES * BRUNT_LANES;
     }
+    return slots;
+}
 
-    // The slab may grow, which moves the keys; they are still needed by the rounds below.
-    if (slots > p->capacity) {
-        size_t bytes = (size_t)p->slots * sizeof *p->key;
-        uint64_t *keys = brunt_alloc(bytes + 1);
-        if (keys) memcpy(keys, p->key, bytes);
-        if (!keys || brunt_particles_reserve(p, slots)) {
-            brunt_free(keys);
-            return brunt_fail(error, BRUNT_FAILED, "out of memory for particles");
-        }
-        memcpy(p->key, keys, bytes);
-        brunt_free(keys);
-    }
-    brunt_parallel(threads, ranges, 1, fill_blocks, j, timer);
-    brunt_parallel(threads, grid->block_count, BLOCK_GRAIN, sort_blocks, j, timer);
-    for (int first_scalar = 0; first_scalar < p->scalar_count; first_scalar += BRUNT_SORT_GROUP) {
-        j->group = first_scalar;
-        brunt_parallel(threads, slots, 8192, move_scalars, j, timer);
-        for (int k = 0; k < BRUNT_SORT_GROUP && first_scalar + k < p->scalar_count; k++) {
-            real *t = p->scalar[first_scalar + k];
-            p->scalar[first_scalar + k] = p->scalar[p->scalar_count + k];
+// The slab may grow, which moves the keys; they are still needed by the rounds that follow.
+static int make_room(brunt_particles *p, int64_t slots, brunt_error *error) {
+    if (slots <= p->capacity) return BRUNT_OK;
+    size_t bytes = (size_t)p->slots * sizeof *p->key;
+    uint64_t *keys = brunt_alloc(bytes + 1);
+    if (keys) memcpy(keys, p->key, bytes);
+    const bool failed = !keys || brunt_particles_reserve(p, slots);
+    if (!failed) memcpy(p->key, keys, bytes);
+    brunt_free(keys);
+    return failed ? fail_memory(error, "for particles") : BRUNT_OK;
+}
+
+// Every array to its new order, a few at a time through the spare ones.
+static void move_arrays(job *j, int64_t slots) {
+    brunt_particles *p = j->particles;
+    for (int first = 0; first < p->scalar_count; first += BRUNT_SORT_GROUP) {
+        j->group = first;
+        brunt_parallel(j->threads, slots, 8192, move_scalars, j, j->timer);
+        for (int k = 0; k < BRUNT_SORT_GROUP && first + k < p->scalar_count; k++) {
+            real *t = p->scalar[first + k];
+            p->scalar[first + k] = p->scalar[p->scalar_count + k];
             p->scalar[p->scalar_count + k] = t;
         }
     }
-    brunt_parallel(threads, grid->block_count, BLOCK_GRAIN, move_ids, j, timer);
+    brunt_parallel(j->threads, j->grid->block_count, BLOCK_GRAIN, move_ids, j, j->timer);
     int64_t *t = p->id;
     p->id = p->spare_id, p->spare_id = t;
+}
+
+static int sort_ranges(job *j, brunt_error *error) {
+    brunt_particles *p = j->particles;
+    bool rests;
+    if (settle_blocks(j, &rests, error)) return BRUNT_FAILED;
+    if (rests) return BRUNT_OK;
+    const int64_t slots = place_blocks(j);
+    if (make_room(p, slots, error)) return BRUNT_FAILED;
+    brunt_parallel(j->threads, j->range_count, 1, fill_blocks, j, j->timer);
+    brunt_parallel(j->threads, j->grid->block_count, BLOCK_GRAIN, sort_blocks, j, j->timer);
+    move_arrays(j, slots);
     p->slots = slots;
     p->moves++;
     p->holes = false;
-    brunt_parallel(threads, grid->block_count, BLOCK_GRAIN, set_keys, j, timer);
+    brunt_parallel(j->threads, j->grid->block_count, BLOCK_GRAIN, set_keys, j, j->timer);
     return BRUNT_OK;
 }
 
@@ -332,12 +374,18 @@ int brunt_sort(brunt_grid *grid, brunt_particles *particles, int threads, brunt_
     if (ranges > MAX_RANGES) ranges = MAX_RANGES;
     if (!particles->sort_room) particles->sort_room = brunt_alloc(sizeof *particles->sort_room);
     if (!particles->sort_room) return brunt_fail(error, BRUNT_FAILED, "out of memory while sorting particles");
-    job j = {
-        .grid = grid, .particles = particles, .room = particles->sort_room, .ranges = particles->sort_room->ranges};
+    job j = {.grid = grid,
+             .particles = particles,
+             .room = particles->sort_room,
+             .ranges = particles->sort_room->ranges,
+             .range_count = ranges,
+             .threads = threads,
+             .timer = timer,
+             .renewed = grid->block_count == 0};
     for (int q = 0; q < ranges; q++) {
         j.ranges[q].begin = particles->slots * q / ranges;
         j.ranges[q].end = particles->slots * (q + 1) / ranges;
     }
     particles->sorts++;
-    return sort_ranges(&j, ranges, threads, timer, error);
+    return sort_ranges(&j, error);
 }
