@@ -102,6 +102,19 @@ static inline double fem_stress_work(const brunt_fem_body *body, const brunt_fem
     return -(double)dt * ((double)sum[0] + (double)sum[1] + (double)sum[2]);
 }
 
+// The material points of a block, by component; their velocity gradients are to be in the first `gradients` arrays of
+// L.
+static inline void fem_points_of_block(brunt_fem_body *body, const brunt_fem_block *block, real dt, real *const *L,
+                                       int gradients, brunt_material_points whole[BRUNT_COMPONENTS]) {
+    const int32_t padded = (block->count + BRUNT_LANES - 1) / BRUNT_LANES * BRUNT_LANES;
+    for (int k = 0; k < BRUNT_COMPONENTS; k++) {
+        whole[k] = brunt_fem_points(body, (brunt_component)k, block->first, padded);
+        whole[k].dt = dt;
+        whole[k].cell = block->length;
+        for (int c = 0; c < gradients; c++) whole[k].L[c] = L[c];
+    }
+}
+
 // The range from `offset` on of `whole`.
 static inline brunt_material_points fem_points_from(const brunt_material_points *whole, int32_t offset, int32_t count) {
     brunt_material_points points = *whole;
