@@ -42,7 +42,7 @@ void brunt_bodies_validate(const brunt_bodies *bodies) {
         BRUNT_ASSERT(!ref->mpm != !ref->fem && ref->ops == (ref->mpm ? &brunt_points_ops : &brunt_mesh_ops));
         BRUNT_ASSERT((ref->mpm ? ref->mpm->index : ref->fem->index) == i);
         BRUNT_ASSERT(!i || strcmp(brunt_bodies_name(bodies, i - 1), brunt_bodies_name(bodies, i)) < 0);
-        if (ref->mpm) BRUNT_ASSERT(ref->mpm->particles.count <= ref->mpm->particles.slots);
-        if (ref->fem) BRUNT_ASSERT(ref->fem->element_count <= ref->fem->slots);
+        if (ref->mpm) brunt_body_validate(ref->mpm);
+        if (ref->fem) brunt_fem_validate(ref->fem);
     }
 }

@@ -162,6 +162,9 @@ void brunt_fem_shares(const brunt_fem_body *body, int32_t slot, double *share);
 void brunt_fem_free(brunt_fem_body *body);
 size_t brunt_fem_bytes(const brunt_fem_body *body);
 
+// --- validate.c: aborts where elements, blocks and nodes do not belong together. Every step in debug builds.
+void brunt_fem_validate(const brunt_fem_body *body);
+
 // --- erosion.c
 // What a body needs to lose elements: bonds, marks, ranks. 0, or -1: out of memory.
 int brunt_fem_prepare_erosion(brunt_fem_body *body, bool inverted);

@@ -43,6 +43,8 @@ typedef struct brunt_body {
 } brunt_body;
 
 void brunt_body_free(brunt_body *body);
+// --- validate.c: aborts where particles, blocks and bins do not belong together. Every step in debug builds.
+void brunt_body_validate(brunt_body *body);
 
 // Views particles `first` .. `first + count - 1` (count a multiple of BRUNT_LANES) as the points of a component.
 brunt_material_points brunt_body_points(brunt_body *body, brunt_component component, int64_t first, int32_t count);
