@@ -37,6 +37,18 @@ static int check_numbers(const brunt_body_def *from, brunt_error *error) {
     return BRUNT_OK;
 }
 
+// The nodes' velocities at the start.
+static void set_motion(brunt_fem_body *fem, const brunt_world_def *def, const brunt_body_def *from) {
+    for (int32_t n = 0; n < fem->node_count; n++) {
+        real *node = brunt_fem_node(fem, n);
+        double x[3], v[3], gradient[3][3];
+        for (int a = 0; a < 3; a++) x[a] = (double)node[a];
+        brunt_start_motion(from, def->dimension, x, v, gradient);
+        for (int a = 0; a < def->dimension; a++) node[BRUNT_FEM_V + a] = (real)v[a];
+        if (def->axisymmetric && fem->held[n]) node[BRUNT_FEM_V] = 0; // on the axis
+    }
+}
+
 int brunt_make_elements(brunt_world *world, const brunt_world_def *def, const brunt_body_def *from, int index,
                         brunt_error *error) {
     brunt_fem_body *fem = &world->bodies.fem[world->bodies.fem_count];
@@ -87,14 +99,7 @@ int brunt_make_elements(brunt_world *world, const brunt_world_def *def, const br
             brunt_warn(&world->messages, "bodies.%s: element %d is nearly flat (shape %.2g, 1 is regular)", from->name,
                        report->quality.worst + 1, report->quality.worst_shape);
     }
-    for (int32_t n = 0; !status && n < fem->node_count; n++) {
-        real *node = brunt_fem_node(fem, n);
-        double x[3], v[3], gradient[3][3];
-        for (int a = 0; a < 3; a++) x[a] = (double)node[a];
-        brunt_start_motion(from, def->dimension, x, v, gradient);
-        for (int a = 0; a < def->dimension; a++) node[BRUNT_FEM_V + a] = (real)v[a];
-        if (def->axisymmetric && fem->held[n]) node[BRUNT_FEM_V] = 0; // on the axis
-    }
+    if (!status) set_motion(fem, def, from);
     brunt_mesh_free(&made);
     return status;
 }
