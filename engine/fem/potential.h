@@ -11,8 +11,10 @@
 const char *brunt_fem_implicit(const brunt_fem_body *body);
 
 typedef struct brunt_fem_potential brunt_fem_potential;
-// Node i of the body is block node `base + i` of the unknowns. NULL with the reason.
-brunt_fem_potential *brunt_fem_potential_make(brunt_fem_body *body, int32_t base, brunt_error *error);
+// Node i of the body is block node `base + i` of the unknowns; no more threads than `team` has are used on it. NULL
+// with the reason.
+brunt_fem_potential *brunt_fem_potential_make(brunt_fem_body *body, int32_t base, const brunt_team *team,
+                                              brunt_error *error);
 void brunt_fem_potential_free(brunt_fem_potential *potential);
 size_t brunt_fem_potential_bytes(const brunt_fem_potential *potential);
 // Begins a step of `dt` [s]; INFINITY: static, nothing is viscous.

@@ -18,8 +18,9 @@ void brunt_mpm_potential_free(brunt_mpm_potential *potential);
 size_t brunt_mpm_potential_bytes(const brunt_mpm_potential *potential);
 // Begins a step of `dt` [s] (INFINITY: static, nothing is viscous), after the sort. Node n of slot s of the body's grid
 // is block node number[s * BRUNT_BLOCK_NODES + n] of the unknowns, -1: not one of them, at rest; `number` has to last
-// for the step. BRUNT_FAILED: out of memory.
-int brunt_mpm_potential_step(brunt_mpm_potential *potential, const int32_t *number, double dt, brunt_error *error);
+// for the step; the term has no more threads than `team`. BRUNT_FAILED: out of memory.
+int brunt_mpm_potential_step(brunt_mpm_potential *potential, const brunt_team *team, const int32_t *number, double dt,
+                             brunt_error *error);
 // The term of the step; valid as long as the potential. Its stencils are the nodes of bins that have particles. Its
 // `limit` leaves a particle a tenth of the way to J = 0.
 brunt_term brunt_mpm_potential_term(brunt_mpm_potential *potential);

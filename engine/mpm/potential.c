@@ -1,0 +1,368 @@
+#include "mpm/potential_kernel.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "base/error.h"
+#include "base/memory.h"
+#include "base/volume_root.h"
+
+const char *brunt_mpm_implicit(const brunt_body *body) {
+    if (brunt_axisymmetric(&body->particles)) return "rings about an axis have no implicit steps";
+    if (brunt_total_lagrangian(&body->particles)) return "total-Lagrangian bodies have no implicit steps";
+    if (body->erodes || body->keeps) return "bodies whose particles leave have no implicit steps";
+    return brunt_material_implicit(&body->material);
+}
+
+static int out_of_memory(const brunt_body *body, brunt_error *error) {
+    return brunt_fail(error, BRUNT_FAILED, "out of memory for the implicit steps of body '%s'", body->name);
+}
+
+brunt_mpm_potential *brunt_mpm_potential_make(brunt_body *body, brunt_error *error) {
+    const char *reason = brunt_mpm_implicit(body);
+    if (reason) {
+        brunt_fail(error, BRUNT_BAD_INPUT, "body '%s': %s", body->name, reason);
+        return NULL;
+    }
+    brunt_mpm_potential *p = brunt_alloc(sizeof *p);
+    if (!p) {
+        out_of_memory(body, error);
+        return NULL;
+    }
+    const brunt_model *strength = body->material.model[BRUNT_STRENGTH];
+    p->body = body;
+    p->history = strength->plastic || strength->shear_viscous;
+    return p;
+}
+
+void brunt_mpm_potential_free(brunt_mpm_potential *p) {
+    if (!p) return;
+    brunt_colours_free(&p->colours);
+    brunt_free(p->slab), brunt_free(p->force), brunt_free(p->energy), brunt_free(p->limit), brunt_free(p->result);
+    brunt_free(p->first), brunt_free(p->node), brunt_free(p->bin), brunt_free(p->matrix);
+    brunt_free(p);
+}
+
+size_t brunt_mpm_potential_bytes(const brunt_mpm_potential *p) {
+    return sizeof *p + p->slab_capacity + p->force_capacity + p->energy_capacity + p->limit_capacity +
+           p->result_capacity + p->first_capacity + p->node_capacity + p->bin_capacity + p->matrix_capacity +
+           p->colours.stencil_capacity + p->colours.first_capacity + p->colours.used_capacity +
+           p->colours.order_capacity + p->colours.dense_capacity;
+}
+
+static brunt_stencils stencils(void *self) {
+    const brunt_mpm_potential *p = self;
+    return (brunt_stencils){.count = p->stencil_count, .first = p->first, .node = p->node};
+}
+
+// The bins with particles, and the unknowns among their nodes; gives the greatest unknown.
+static int32_t list_bins(brunt_mpm_potential *p) {
+    const brunt_grid *grid = &p->body->grid;
+    const int N = grid->order + 1, n = kernel_nodes(grid->dim, grid->order);
+    int64_t count = 0, nodes = 0;
+    int32_t most = -1;
+    for (int32_t b = 0; b < grid->block_count; b++)
+        for (int bin = 0; bin < BRUNT_BLOCK_NODES; bin++) {
+            const int32_t *start = grid->bin_start + (size_t)b * BRUNT_BIN_STARTS + bin;
+            if (start[0] == start[1]) continue;
+            int at[3];
+            brunt_node_local(grid, bin, at);
+            p->bin[count] = b * BRUNT_BLOCK_NODES + bin;
+            p->first[count++] = nodes;
+            for (int k = 0; k < n; k++) {
+                const bool flat = grid->dim == 2;
+                const int i = flat ? k / N : k / (N * N), j = flat ? k % N : k / N % N, m = flat ? 0 : k % N;
+                const int32_t node = p->number[window_node(grid, &grid->blocks[b], at[0] + i, at[1] + j, at[2] + m)];
+                if (node < 0) continue;
+                p->node[nodes++] = node;
+                if (node > most) most = node;
+            }
+        }
+    p->first[count] = nodes;
+    p->stencil_count = count;
+    return most;
+}
+
+static int make_room(brunt_mpm_potential *p) {
+    const brunt_grid *grid = &p->body->grid;
+    const int64_t blocks = grid->block_count, tangents = BRUNT_TANGENT(grid->dim);
+    const int64_t stride = (p->body->particles.slots + 7) / 8 * 8 + 8 * BRUNT_LANES;
+    const int32_t *start = grid->bin_start;
+    int64_t bins = 0;
+    for (int64_t k = 0; k < blocks * BRUNT_BIN_STARTS; k++) bins += k % BRUNT_BIN_STARTS && start[k] > start[k - 1];
+    if (BRUNT_RESERVE(p->slab, (size_t)(tangents * stride), 0) ||
+        BRUNT_RESERVE(p->force, (size_t)(blocks * grid->span_nodes * grid->dim), 0) ||
+        BRUNT_RESERVE(p->energy, (size_t)blocks, 0) || BRUNT_RESERVE(p->limit, (size_t)blocks, 0) ||
+        BRUNT_RESERVE(p->result, (size_t)blocks, 0) || BRUNT_RESERVE(p->first, (size_t)bins + 1, 0) ||
+        BRUNT_RESERVE(p->bin, (size_t)bins + 1, 0) ||
+        BRUNT_RESERVE(p->node, (size_t)(bins * kernel_nodes(grid->dim, grid->order)) + 1, 0) ||
+        BRUNT_RESERVE(p->matrix, (size_t)(p->threads * brunt_mpm_matrix_room(grid->dim, grid->order)), 0) ||
+        BRUNT_RESERVE_IN(p->body->report, p->body->report_capacity, (size_t)blocks, 0))
+        return -1;
+    for (int64_t k = 0; k < tangents; k++) p->tangent[k] = p->slab + k * stride;
+    return 0;
+}
+
+int brunt_mpm_potential_step(brunt_mpm_potential *p, const brunt_team *team, const int32_t *number, double dt,
+                             brunt_error *error) {
+    p->number = number, p->dt = (real)dt, p->threads = team->threads;
+    if (make_room(p)) return out_of_memory(p->body, error);
+    const int32_t most = list_bins(p);
+    const brunt_stencils list = stencils(p);
+    return brunt_colours_make(&p->colours, team, p->body->grid.dim, most + 1, &list, error);
+}
+
+// --------------------------------------------------------------------------------- a block
+
+typedef enum mpm_wanted { MPM_ENERGY, MPM_GRADIENT, MPM_TANGENT, MPM_LIMIT, MPM_MEAN } mpm_wanted;
+
+typedef struct mpm_call {
+    brunt_mpm_potential *p;
+    mpm_wanted wanted;
+    bool project;
+    const double *u, *way;
+    double *out, largest;
+} mpm_call;
+
+static const real *volume_of(brunt_mpm_potential *p) {
+    return brunt_field(&p->body->particles, BRUNT_FIELD_reference_volume)[0];
+}
+
+// f^-1 of a vector of the tile.
+BRUNT_INLINE void inverse_step(int dim, const mpm_tile *tile, int32_t at, lanes out[9]) {
+    lanes f[9];
+    for (int c = 0; c < dim * dim; c++) f[c] = lanes_load(tile->f[c] + at);
+    if (dim == 2) {
+        const lanes over = 1 / (f[0] * f[3] - f[1] * f[2]);
+        out[0] = over * f[3], out[1] = -over * f[1], out[2] = -over * f[2], out[3] = over * f[0];
+        return;
+    }
+    lanes minors[3];
+    for (int c = 0; c < 3; c++)
+        minors[c] = f[3 + (c + 1) % 3] * f[6 + (c + 2) % 3] - f[3 + (c + 2) % 3] * f[6 + (c + 1) % 3];
+    const lanes over = 1 / (f[0] * minors[0] + f[1] * minors[1] + f[2] * minors[2]);
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++) {
+            const int r1 = (r + 1) % 3 * 3, r2 = (r + 2) % 3 * 3, c1 = (c + 1) % 3, c2 = (c + 2) % 3;
+            out[3 * c + r] = over * (f[r1 + c1] * f[r2 + c2] - f[r1 + c2] * f[r2 + c1]);
+        }
+}
+
+// Adds V tau f^-T slope of a vector to the block's nodes, lane by lane.
+BRUNT_INLINE void add_forces(int dim, int order, brunt_mpm_potential *p, const brunt_block *block, int64_t slot,
+                             const mpm_tile *tile, int32_t at) {
+    double *force = tile->force;
+    lanes inverse[9], P[9];
+    kernel_lanes k;
+    kernel_at(dim, order, p->body, block, slot, &k);
+    inverse_step(dim, tile, at, inverse);
+    const lanes volume = lanes_load(volume_of(p) + slot);
+    for (int i = 0; i < dim; i++)
+        for (int j = 0; j < dim; j++) {
+            lanes sum = lanes_set(0);
+            for (int a = 0; a < dim; a++) sum += lanes_load(tile->stress[i * dim + a] + at) * inverse[j * dim + a];
+            P[i * dim + j] = lanes_select(volume > 0, volume * sum, lanes_set(0));
+        }
+    for (int n = 0; n < kernel_nodes(dim, order); n++) {
+        const kernel_node node = node_of(dim, order, &k, n);
+        for (int i = 0; i < dim; i++) {
+            lanes f = P[i * dim] * node.slope[0];
+            for (int j = 1; j < dim; j++) f += P[i * dim + j] * node.slope[j];
+            for (int l = 0; l < BRUNT_LANES; l++) force[(k.base[l] + node.at) * dim + i] += (double)f[l];
+        }
+    }
+}
+
+// Tangents of a vector times the volume, with f^-1 from both sides: for slopes in the configuration of the grid.
+BRUNT_INLINE void pull_back(int dim, brunt_mpm_potential *p, int64_t slot, const mpm_tile *tile, int32_t at) {
+    const int rows = dim * dim;
+    lanes inverse[9], a[9][9];
+    inverse_step(dim, tile, at, inverse);
+    const lanes volume = lanes_load(volume_of(p) + slot);
+    for (int m = 0, c = 0; m < rows; m++)
+        for (int n = m; n < rows; n++, c++) a[m][n] = a[n][m] = volume * lanes_load(p->tangent[c] + slot);
+    for (int i = 0; i < dim; i++)
+        for (int j = i; j < dim; j++) {
+            lanes half[3][3];
+            for (int A = 0; A < dim; A++)
+                for (int b = 0; b < dim; b++) {
+                    half[A][b] = inverse[A * dim] * a[i * dim][j * dim + b];
+                    for (int k = 1; k < dim; k++) half[A][b] += inverse[A * dim + k] * a[i * dim + k][j * dim + b];
+                }
+            for (int A = 0; A < dim; A++)
+                for (int B = i == j ? A : 0; B < dim; B++) {
+                    lanes sum = half[A][0] * inverse[B * dim];
+                    for (int k = 1; k < dim; k++) sum += half[A][k] * inverse[B * dim + k];
+                    const int m = i * dim + A, n = j * dim + B;
+                    lanes_store(p->tangent[m * (2 * rows - m - 1) / 2 + n] + slot, sum);
+                }
+        }
+}
+
+// What is wanted of a tile of `count` particles from `slot` on.
+BRUNT_INLINE void evaluate_tile(int dim, int order, const mpm_call *call, int32_t b, int64_t slot, int32_t count,
+                                const double *window) {
+    brunt_mpm_potential *p = call->p;
+    const brunt_grid *grid = &p->body->grid;
+    const brunt_block *block = &grid->blocks[b];
+    brunt_energy_sum *sum = &p->energy[b];
+    mpm_tile tile;
+    tile.force = p->force + (size_t)b * (size_t)grid->span_nodes * (size_t)dim;
+    for (int32_t s = 0; s < count; s += BRUNT_LANES) {
+        kernel_lanes k;
+        lanes H[9];
+        kernel_at(dim, order, p->body, block, slot + s, &k);
+        field_at(dim, order, window, &k, NULL, H);
+        deform_points(dim, p->body, slot + s, H, &tile, s);
+    }
+    brunt_trial_points trial[BRUNT_COMPONENTS];
+    trial_tile(p, slot, count, &tile, trial);
+    for (int k = 0; k < BRUNT_COMPONENTS; k++) {
+        if (call->wanted == MPM_ENERGY) trial[k].density = tile.density;
+        for (int c = 0; c < dim * dim && call->wanted == MPM_GRADIENT; c++) trial[k].stress[c] = tile.stress[c];
+        for (int c = 0; c < BRUNT_TANGENT(dim) && call->wanted == MPM_TANGENT; c++)
+            trial[k].tangent[c] = p->tangent[c] + slot;
+    }
+    brunt_material_respond(&p->body->material, trial);
+    if (call->wanted == MPM_TANGENT && call->project) brunt_material_project(dim, count, trial[0].tangent);
+    for (int32_t s = 0; s < count; s += BRUNT_LANES) {
+        if (call->wanted == MPM_GRADIENT) add_forces(dim, order, p, block, slot + s, &tile, s);
+        if (call->wanted == MPM_TANGENT) pull_back(dim, p, slot + s, &tile, s);
+        if (call->wanted != MPM_ENERGY) continue;
+        const lanes volume = lanes_load(volume_of(p) + slot + s);
+        const lanes e = lanes_select(volume > 0, volume * lanes_load(tile.density + s), lanes_set(0));
+        sum->value += (double)lanes_sum(e), sum->magnitude += (double)lanes_sum(lanes_abs(e));
+    }
+}
+
+BRUNT_INLINE void evaluate(int dim, int order, const mpm_call *call, int32_t b) {
+    brunt_mpm_potential *p = call->p;
+    const brunt_grid *grid = &p->body->grid;
+    const brunt_block *block = &grid->blocks[b];
+    const int32_t padded = (block->count + BRUNT_LANES - 1) / BRUNT_LANES * BRUNT_LANES;
+    double window[MOST_WINDOW * 3], way[MOST_WINDOW * 3];
+    double *force = p->force + (size_t)b * (size_t)grid->span_nodes * (size_t)dim;
+    fill_window(p, block, call->u, window);
+    if (call->wanted == MPM_LIMIT) fill_window(p, block, call->way, way);
+    if (call->wanted == MPM_GRADIENT) memset(force, 0, (size_t)grid->span_nodes * (size_t)dim * sizeof *force);
+    p->energy[b] = (brunt_energy_sum){0};
+    p->limit[b] = call->largest;
+    if (call->wanted < MPM_LIMIT) {
+        for (int32_t first = 0; first < padded; first += MOST_TILE)
+            evaluate_tile(dim, order, call, b, (int64_t)block->first + first,
+                          padded - first < MOST_TILE ? padded - first : MOST_TILE, window);
+        return;
+    }
+    for (int64_t slot = block->first; slot < block->first + padded; slot += BRUNT_LANES) {
+        kernel_lanes k;
+        lanes mean[3], F[9], D[9];
+        kernel_at(dim, order, p->body, block, slot, &k);
+        field_at(dim, order, window, &k, mean, F);
+        if (call->wanted == MPM_LIMIT) {
+            for (int c = 0; c < dim; c++) F[c * (dim + 1)] += 1;
+            field_at(dim, order, way, &k, NULL, D);
+            p->limit[b] = least_step_to_volume(dim, F, D, p->limit[b]);
+            continue;
+        }
+        for (int l = 0; l < BRUNT_LANES; l++)
+            for (int i = 0; i < dim; i++) call->out[(slot + l) * dim + i] = (double)mean[i][l];
+    }
+}
+
+static void run_blocks(void *context, int64_t begin, int64_t end, int worker) {
+    const mpm_call *call = context;
+    const brunt_grid *grid = &call->p->body->grid;
+    (void)worker;
+    for (int64_t b = begin; b < end; b++) switch (grid->dim * 10 + grid->order) {
+        case 21: evaluate(2, 1, call, (int32_t)b); break;
+        case 22: evaluate(2, 2, call, (int32_t)b); break;
+        case 23: evaluate(2, 3, call, (int32_t)b); break;
+        case 31: evaluate(3, 1, call, (int32_t)b); break;
+        case 32: evaluate(3, 2, call, (int32_t)b); break;
+        default: evaluate(3, 3, call, (int32_t)b); break;
+        }
+}
+
+static void run(mpm_call *call, const brunt_team *team) {
+    brunt_parallel(team->threads, call->p->body->grid.block_count, 1, run_blocks, call, team->timer);
+}
+
+// --------------------------------------------------------------------------------- the term
+
+// Nodes of slots: what the blocks around give, in their order.
+static void add_gradient(void *context, int64_t begin, int64_t end, int worker) {
+    const mpm_call *call = context;
+    const brunt_mpm_potential *p = call->p;
+    const brunt_grid *grid = &p->body->grid;
+    const int dim = grid->dim, span = grid->span, side = grid->side;
+    (void)worker;
+    for (int64_t s = begin; s < end; s++)
+        for (int n = 0; n < BRUNT_BLOCK_NODES; n++) {
+            const int32_t unknown = p->number[s * BRUNT_BLOCK_NODES + n];
+            int local[3];
+            if (unknown < 0) continue;
+            brunt_node_local(grid, n, local);
+            for (int corner = 0; corner < grid->corners; corner++) {
+                const int32_t source = grid->slots[s].source[corner];
+                int at = 0;
+                bool inside = source >= 0;
+                for (int a = 0; a < dim; a++) {
+                    const int x = local[a] + (corner >> (dim - 1 - a) & 1) * side;
+                    inside = inside && x < span;
+                    at = at * span + x;
+                }
+                if (!inside) continue;
+                const double *f = p->force + ((size_t)source * (size_t)grid->span_nodes + (size_t)at) * (size_t)dim;
+                for (int i = 0; i < dim; i++) call->out[(int64_t)unknown * dim + i] += f[i];
+            }
+        }
+}
+
+static brunt_energy_sum energy(void *self, const brunt_team *team, const double *u) {
+    brunt_mpm_potential *p = self;
+    mpm_call call = {.p = p, .wanted = MPM_ENERGY, .u = u};
+    run(&call, team);
+    brunt_energy_sum sum = {0};
+    for (int32_t b = 0; b < p->body->grid.block_count; b++)
+        sum.value += p->energy[b].value, sum.magnitude += p->energy[b].magnitude;
+    return sum;
+}
+
+static void gradient(void *self, const brunt_team *team, const double *u, double *g) {
+    brunt_mpm_potential *p = self;
+    mpm_call call = {.p = p, .wanted = MPM_GRADIENT, .u = u, .out = g};
+    run(&call, team);
+    brunt_parallel(team->threads, p->body->grid.slot_count, 1, add_gradient, &call, team->timer);
+}
+
+static void hessian(void *self, const brunt_team *team, const double *u, bool project, brunt_block_matrix *h) {
+    brunt_mpm_potential *p = self;
+    mpm_call call = {.p = p, .wanted = MPM_TANGENT, .project = project, .u = u};
+    run(&call, team);
+    const brunt_stencils list = stencils(p);
+    brunt_assemble(h, team, &list, &p->colours, brunt_mpm_bin_matrix, p);
+}
+
+static double limit(void *self, const brunt_team *team, const double *u, const double *way, double largest) {
+    brunt_mpm_potential *p = self;
+    mpm_call call = {.p = p, .wanted = MPM_LIMIT, .u = u, .way = way, .largest = largest};
+    run(&call, team);
+    for (int32_t b = 0; b < p->body->grid.block_count; b++) largest = fmin(largest, p->limit[b]);
+    return largest;
+}
+
+void brunt_mpm_interpolate(brunt_mpm_potential *p, const brunt_team *team, const double *u, double *out) {
+    mpm_call call = {.p = p, .wanted = MPM_MEAN, .u = u, .out = out};
+    run(&call, team);
+}
+
+brunt_term brunt_mpm_potential_term(brunt_mpm_potential *p) {
+    static const brunt_term_ops ops = {.name = "material points",
+                                       .energy = energy,
+                                       .gradient = gradient,
+                                       .stencils = stencils,
+                                       .hessian = hessian,
+                                       .limit = limit};
+    return (brunt_term){.ops = &ops, .self = p};
+}

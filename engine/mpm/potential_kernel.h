@@ -1,0 +1,186 @@
+// What the passes of an implicit step over material points share: a block's window of nodal values, and the weights of
+// a vector of particles there.
+//
+// A window holds the nodes that a block's bins touch, z fastest, `width` doubles each; nodes that are no unknowns are
+// 0.
+#pragma once
+
+#include "base/simd_math.h"
+#include "grid/bspline.h"
+#include "linear/assembly.h"
+#include "mpm/potential.h"
+
+enum { MOST_WINDOW = 7 * 7 * 7, MOST_TILE = 64, MOST_KERNEL = 64 };
+
+typedef struct mpm_block_result {
+    double kinetic, grid_kinetic;
+} mpm_block_result;
+
+struct brunt_mpm_potential {
+    brunt_body *body;
+    const int32_t *number; // of the step
+    bool history;          // the material looks at what the step did
+    real dt;
+    int threads;
+    // Of the last Hessian: V0 a, pulled back to the configuration of the grid; a slot each.
+    real *tangent[45];
+    real *slab;
+    size_t slab_capacity;
+    double *force; // block_count x span_nodes x dim
+    size_t force_capacity;
+    brunt_energy_sum *energy; // a block each, as the two below
+    double *limit;
+    mpm_block_result *result;
+    size_t energy_capacity, limit_capacity, result_capacity;
+    // Stencils: bins with particles, in the order of blocks.
+    int64_t stencil_count, *first;
+    int32_t *node, *bin; // bin: of each stencil, block * 64 + bin
+    size_t first_capacity, node_capacity, bin_capacity;
+    brunt_colours colours;
+    double *matrix; // room for the dense matrices of a bin, a thread each
+    size_t matrix_capacity;
+};
+
+// Nodes of a kernel.
+BRUNT_INLINE int kernel_nodes(int dim, int order) {
+    return dim == 3 ? (order + 1) * (order + 1) * (order + 1) : (order + 1) * (order + 1);
+}
+
+// Place in `number` of the node at x, y, z of a block's window.
+static inline int64_t window_node(const brunt_grid *grid, const brunt_block *block, int x, int y, int z) {
+    const int side = grid->side;
+    if (grid->dim == 2) {
+        const int corner = (x >= side) * 2 + (y >= side);
+        return (int64_t)block->slot[corner] * BRUNT_BLOCK_NODES + (x % side) * 8 + y % side;
+    }
+    const int corner = (x >= side) * 4 + (y >= side) * 2 + (z >= side);
+    return (int64_t)block->slot[corner] * BRUNT_BLOCK_NODES + ((x % side) * 4 + y % side) * 4 + z % side;
+}
+
+static inline void fill_window(const brunt_mpm_potential *p, const brunt_block *block, const double *values,
+                               double *window) {
+    const brunt_grid *grid = &p->body->grid;
+    const int dim = grid->dim, span = grid->span;
+    for (int x = 0; x < span; x++)
+        for (int y = 0; y < span; y++)
+            for (int z = 0; z < (dim == 3 ? span : 1); z++, window += dim) {
+                const int32_t n = p->number[window_node(grid, block, x, y, z)];
+                for (int i = 0; i < dim; i++) window[i] = n >= 0 ? values[(int64_t)n * dim + i] : 0;
+            }
+}
+
+// A vector of particles: local coordinates, weights and slopes along each axis, and where their kernels begin in the
+// window.
+typedef struct kernel_lanes {
+    lanes local[3], w[3][4], g[3][4];
+    int base[BRUNT_LANES];
+} kernel_lanes;
+
+BRUNT_INLINE void kernel_at(int dim, int order, const brunt_body *body, const brunt_block *block, int64_t slot,
+                            kernel_lanes *k) {
+    const brunt_grid *grid = &body->grid;
+    const brunt_particles *particles = &body->particles;
+    const int side = dim == 3 ? 4 : 8, span = side + order;
+    real *const *x = brunt_kernel_place(particles);
+    int bins[3][BRUNT_LANES];
+    for (int l = 0; l < BRUNT_LANES; l++) {
+        const int bin = particles->bin[slot + l];
+        bins[0][l] = dim == 3 ? bin >> 4 : bin >> 3;
+        bins[1][l] = dim == 3 ? bin >> 2 & 3 : bin & 7;
+        bins[2][l] = dim == 3 ? bin & 3 : 0;
+        k->base[l] = bins[0][l] * span + bins[1][l];
+        if (dim == 3) k->base[l] = k->base[l] * span + bins[2][l];
+    }
+    for (int a = 0; a < dim; a++) {
+        const real corner = (real)(grid->origin[a] + (double)grid->h * (block->coord[a] * side));
+        lanes bin;
+        for (int l = 0; l < BRUNT_LANES; l++) bin[l] = (real)bins[a][l];
+        k->local[a] = (lanes_load(x[a] + slot) - corner) * grid->inv_h - bin;
+        bspline_weights(order, k->local[a], k->w[a]);
+        bspline_slopes(order, k->local[a], grid->inv_h, k->g[a]);
+    }
+}
+
+// Weight and slopes of node n of the kernels, z fastest; and how far it is from their first in the window.
+typedef struct kernel_node {
+    lanes weight, slope[3];
+    int at, index[3];
+} kernel_node;
+
+BRUNT_INLINE kernel_node node_of(int dim, int order, const kernel_lanes *k, int n) {
+    const int N = order + 1, side = dim == 3 ? 4 : 8, span = side + order;
+    kernel_node out;
+    if (dim == 2) {
+        const int i = n / N, j = n % N;
+        out.weight = k->w[0][i] * k->w[1][j];
+        out.slope[0] = k->g[0][i] * k->w[1][j], out.slope[1] = k->w[0][i] * k->g[1][j];
+        out.at = i * span + j;
+        out.index[0] = i, out.index[1] = j;
+        return out;
+    }
+    const int i = n / (N * N), j = n / N % N, m = n % N;
+    const lanes xy = k->w[0][i] * k->w[1][j];
+    out.weight = xy * k->w[2][m];
+    out.slope[0] = k->g[0][i] * k->w[1][j] * k->w[2][m];
+    out.slope[1] = k->w[0][i] * k->g[1][j] * k->w[2][m];
+    out.slope[2] = xy * k->g[2][m];
+    out.at = (i * span + j) * span + m;
+    out.index[0] = i, out.index[1] = j, out.index[2] = m;
+    return out;
+}
+
+// The window's values at a node of the kernels.
+BRUNT_INLINE void window_values(int dim, const double *window, const kernel_lanes *k, int at, lanes out[3]) {
+    for (int l = 0; l < BRUNT_LANES; l++)
+        for (int i = 0; i < dim; i++) out[i][l] = (real)window[(k->base[l] + at) * dim + i];
+}
+
+// sum w u (NULL: not wanted) and sum u (x) slope.
+BRUNT_INLINE void field_at(int dim, int order, const double *window, const kernel_lanes *k, lanes *mean, lanes H[9]) {
+    for (int c = 0; c < dim * dim; c++) H[c] = lanes_set(0);
+    for (int i = 0; i < dim && mean; i++) mean[i] = lanes_set(0);
+    for (int n = 0; n < kernel_nodes(dim, order); n++) {
+        const kernel_node node = node_of(dim, order, k, n);
+        lanes u[3] = {lanes_set(0), lanes_set(0), lanes_set(0)};
+        window_values(dim, window, k, node.at, u);
+        for (int i = 0; i < dim; i++) {
+            if (mean) mean[i] += node.weight * u[i];
+            for (int j = 0; j < dim; j++) H[i * dim + j] += u[i] * node.slope[j];
+        }
+    }
+}
+
+// A tile of particles of a block: what they would be.
+typedef struct mpm_tile {
+    real F[9][MOST_TILE], f[9][MOST_TILE], density[MOST_TILE], stress[9][MOST_TILE];
+    double *force; // of the block's nodes, for the gradient
+} __attribute__((aligned(64))) mpm_tile;
+
+// f = I + H and F = f F_old of a vector, number `at` of the tile.
+BRUNT_INLINE void deform_points(int dim, brunt_body *body, int64_t slot, const lanes H[9], mpm_tile *tile, int32_t at) {
+    real *const *was = brunt_field(&body->particles, BRUNT_FIELD_deformation_gradient);
+    for (int i = 0; i < dim; i++)
+        for (int j = 0; j < dim; j++) {
+            lanes old = lanes_load(was[i * dim + j] + slot), change = lanes_set(0);
+            for (int k = 0; k < dim; k++) change += H[i * dim + k] * lanes_load(was[k * dim + j] + slot);
+            lanes_store(tile->F[i * dim + j] + at, old + change);
+            lanes_store(tile->f[i * dim + j] + at, H[i * dim + j] + (real)(i == j));
+        }
+}
+
+// The tile's trial of each component.
+static inline void trial_tile(brunt_mpm_potential *p, int64_t slot, int32_t count, mpm_tile *tile,
+                              brunt_trial_points trial[BRUNT_COMPONENTS]) {
+    const int dim = p->body->particles.dim;
+    for (int k = 0; k < BRUNT_COMPONENTS; k++) {
+        trial[k] = (brunt_trial_points){.count = count, .dim = dim, .dt = p->dt};
+        if (!p->body->material.model[k]) continue;
+        const brunt_material_points points = brunt_body_points(p->body, (brunt_component)k, slot, count);
+        for (int c = 0; c < dim * dim; c++) trial[k].F[c] = tile->F[c], trial[k].f[c] = tile->f[c];
+        for (int s = 0; s < BRUNT_MAX_STATE; s++) trial[k].state[s] = points.state[s];
+    }
+}
+
+// potential_matrix.c: the dense matrix of a bin, a brunt_stencil_fn; and the room it wants, in doubles.
+void brunt_mpm_bin_matrix(void *potential, int64_t stencil, double *dense, int worker);
+int64_t brunt_mpm_matrix_room(int dim, int order);
