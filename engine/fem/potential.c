@@ -224,6 +224,16 @@ BRUNT_INLINE void deform(int dim, const brunt_fem_potential *p, int64_t slot, co
     for (int c = 0; c < dim * dim; c++) lanes_store(tile->f[c] + at, f[c]);
 }
 
+BRUNT_INLINE void deform_tile(int dim, int nodes, const brunt_fem_potential *p, int64_t slot, int32_t count,
+                              fem_tile *tile) {
+    for (int32_t s = 0; s < count; s += BRUNT_LANES) {
+        lanes u[MOST_NODES][3], H[9];
+        nodal_values(dim, nodes, p, p->place, slot + s, u);
+        mean_slope(dim, nodes, p, slot + s, (const lanes(*)[3])u, H);
+        deform(dim, p, slot + s, H, tile, s);
+    }
+}
+
 // The tile's trial of each component: `count` elements from `slot` on.
 static void trial_points(const brunt_fem_potential *p, int64_t slot, int32_t count, fem_tile *tile,
                          brunt_trial_points trial[BRUNT_COMPONENTS]) {
@@ -325,12 +335,7 @@ BRUNT_INLINE void evaluate(int dim, int nodes, const fem_call *call, int32_t b) 
         const int32_t count = padded - first < FEM_TILE ? padded - first : FEM_TILE;
         const int64_t slot = (int64_t)block->first + first;
         tile.elements = block->count - first;
-        for (int32_t s = 0; s < count; s += BRUNT_LANES) {
-            lanes u[MOST_NODES][3], H[9];
-            nodal_values(dim, nodes, p, p->place, slot + s, u);
-            mean_slope(dim, nodes, p, slot + s, (const lanes(*)[3])u, H);
-            deform(dim, p, slot + s, H, &tile, s);
-        }
+        deform_tile(dim, nodes, p, slot, count, &tile);
         brunt_trial_points trial[BRUNT_COMPONENTS];
         trial_points(p, slot, count, &tile, trial);
         for (int k = 0; k < BRUNT_COMPONENTS; k++) {
@@ -545,12 +550,7 @@ BRUNT_INLINE void commit_block(int dim, int nodes, brunt_fem_potential *p, int32
     for (int32_t first = 0; first < padded; first += FEM_TILE) {
         const int32_t count = padded - first < FEM_TILE ? padded - first : FEM_TILE;
         const int64_t slot = (int64_t)block->first + first;
-        for (int32_t s = 0; s < count; s += BRUNT_LANES) {
-            lanes u[MOST_NODES][3], H[9];
-            nodal_values(dim, nodes, p, p->place, slot + s, u);
-            mean_slope(dim, nodes, p, slot + s, (const lanes(*)[3])u, H);
-            deform(dim, p, slot + s, H, &tile, s);
-        }
+        deform_tile(dim, nodes, p, slot, count, &tile);
         brunt_trial_points trial[BRUNT_COMPONENTS];
         brunt_material_points points[BRUNT_COMPONENTS];
         real plastic[FEM_TILE];

@@ -359,10 +359,10 @@ void brunt_mpm_interpolate(brunt_mpm_potential *p, const brunt_team *team, const
 
 brunt_term brunt_mpm_potential_term(brunt_mpm_potential *p) {
     static const brunt_term_ops ops = {.name = "material points",
-                                       .energy = energy,
+                                       .limit = limit,
                                        .gradient = gradient,
                                        .stencils = stencils,
                                        .hessian = hessian,
-                                       .limit = limit};
+                                       .energy = energy};
     return (brunt_term){.ops = &ops, .self = p};
 }
