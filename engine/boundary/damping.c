@@ -100,7 +100,8 @@ void brunt_damping_begin(const brunt_damping *damping, const brunt_bodies *bodie
     job j = {damping, bodies, kick};
     for (int k = 0; k < bodies->fem_count; k++) {
         brunt_fem_body *fem = &bodies->fem[k];
-        if (damping->drag[k]) fem->drag_mass = fem->damping * kick->dt / -expm1(-fem->damping * kick->dt);
+        const double decay = fem->damping * kick->dt;
+        if (damping->drag[k]) fem->drag_mass = decay > 0 ? decay / -expm1(-decay) : 1; // too small a number is 0
     }
     brunt_parallel(kick->threads, bodies->tasks.node_count, 1, drag_tasks, &j, kick->timer);
 }

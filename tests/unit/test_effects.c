@@ -233,6 +233,27 @@ START_TEST(detonations_are_said) {
 }
 END_TEST
 
+// Where damping times step is less than any number there is none: 0 / 0 had come of it.
+START_TEST(least_damping) {
+    scene *s = calloc(1, sizeof *s);
+    ck_assert_ptr_nonnull(s);
+    make_mesh(s);
+    s->bodies[0].damping = 1e-300, s->bodies[0].velocity[0] = 1;
+    s->def.step = 1e-25, s->def.end = 1;
+    brunt_error error;
+    brunt_world *world = brunt_world_create(&s->def, &error);
+    ck_assert_msg(world != NULL, "%s", error.message);
+    brunt_energy before, after;
+    brunt_world_energy(world, &before);
+    for (int k = 0; k < 2; k++) ck_assert_msg(!brunt_world_step(world, INFINITY, &error), "%s", error.message);
+    brunt_world_energy(world, &after);
+    ck_assert_double_gt(before.kinetic, 0);
+    ck_assert_double_eq_tol(after.kinetic, before.kinetic, 1e-6 * before.kinetic);
+    brunt_world_destroy(world);
+    free(s);
+}
+END_TEST
+
 START_TEST(table_of_passes) {
     for (int i = 0; i < brunt_explicit_pass_count; i++) {
         const brunt_pass_row *row = &brunt_explicit_passes[i];
@@ -251,6 +272,7 @@ int main(void) {
     TCase *tests = tcase_create("effects");
     tcase_add_loop_test(tests, plan_says_what_was_asked_for, 0, sizeof list / sizeof *list);
     tcase_add_test(tests, detonations_are_said);
+    tcase_add_test(tests, least_damping);
     tcase_add_test(tests, table_of_passes);
     suite_add_tcase(suite, tests);
     SRunner *runner = srunner_create(suite);
