@@ -41,9 +41,16 @@ typedef struct box {
     int32_t low[3], high[3];
 } box;
 
+// A body by the low end of its box along the first axis.
+typedef struct body_low {
+    int32_t low, body;
+} body_low;
+
 struct brunt_contact_workspace {
     box *bounds;
     size_t bounds_capacity;
+    body_low *lows;
+    size_t lows_capacity;
     shared_slot *shared;
     size_t shared_capacity;
     int32_t shared_count;
@@ -67,6 +74,7 @@ typedef struct job {
 void brunt_contact_workspace_free(brunt_contact_workspace *workspace) {
     if (!workspace) return;
     brunt_free(workspace->bounds);
+    brunt_free(workspace->lows);
     brunt_free(workspace->shared);
     brunt_free(workspace->groups);
     brunt_free(workspace->actions);
@@ -112,26 +120,50 @@ static int32_t pair_between(const job *j, int a, int b) {
     return brunt_pair_of(j->m->pair_map, j->bodies[a].index, j->bodies[b].index);
 }
 
-// Slots inside the box of another body that it may touch, sorted; then those that really coincide. 0, or -1: out of
-// memory.
-static int find_groups(job *j) {
+static int compare_low(const void *a, const void *b) {
+    const body_low *u = a, *v = b;
+    if (u->low != v->low) return u->low < v->low ? -1 : 1;
+    return (u->body > v->body) - (u->body < v->body);
+}
+
+// Slots of a body inside the box of another. 0, or -1: out of memory.
+static int share_slots(const job *j, int body, int other) {
+    brunt_contact_workspace *w = j->w;
+    const brunt_grid *grid = &j->bodies[body].grid;
+    if (BRUNT_RESERVE(w->shared, (size_t)(w->shared_count + grid->slot_count), (size_t)w->shared_count)) return -1;
+    for (int32_t s = 0; s < grid->slot_count; s++)
+        if (inside(&w->bounds[other], grid->slots[s].coord))
+            w->shared[w->shared_count++] = (shared_slot){grid->slot_key[s], body, s};
+    return 0;
+}
+
+// Of each two bodies that may touch and whose boxes overlap, the slots in there: boxes by their low ends, so that of
+// many bodies only those that overlap along the first axis are looked at. 0, or -1: out of memory.
+static int find_shared(job *j) {
     brunt_contact_workspace *w = j->w;
     const int n = j->m->mpm_count;
-    if (BRUNT_RESERVE(w->bounds, (size_t)n, 0)) return -1;
-    box *bounds = w->bounds;
-    for (int b = 0; b < n; b++) bounds[b] = slot_bounds(&j->bodies[b].grid);
-    w->shared_count = w->group_count = w->action_count = 0;
+    if (BRUNT_RESERVE(w->bounds, (size_t)n, 0) || BRUNT_RESERVE(w->lows, (size_t)n, 0)) return -1;
     for (int b = 0; b < n; b++) {
-        const brunt_grid *grid = &j->bodies[b].grid;
-        for (int o = 0; o < n; o++) {
-            if (o == b || pair_between(j, b, o) < 0 || !overlap(&bounds[b], &bounds[o])) continue;
-            if (BRUNT_RESERVE(w->shared, (size_t)(w->shared_count + grid->slot_count), (size_t)w->shared_count))
-                return -1;
-            for (int32_t s = 0; s < grid->slot_count; s++)
-                if (inside(&bounds[o], grid->slots[s].coord))
-                    w->shared[w->shared_count++] = (shared_slot){grid->slot_key[s], b, s};
+        w->bounds[b] = slot_bounds(&j->bodies[b].grid);
+        w->lows[b] = (body_low){w->bounds[b].low[0], b};
+    }
+    qsort(w->lows, (size_t)n, sizeof *w->lows, compare_low);
+    for (int i = 0; i < n; i++) {
+        const int a = w->lows[i].body;
+        for (int k = i + 1; k < n && w->lows[k].low <= w->bounds[a].high[0]; k++) {
+            const int b = w->lows[k].body;
+            if (!overlap(&w->bounds[a], &w->bounds[b]) || pair_between(j, a, b) < 0) continue;
+            if (share_slots(j, a, b) || share_slots(j, b, a)) return -1;
         }
     }
+    return 0;
+}
+
+// Slots that bodies share, sorted; then those that really coincide. 0, or -1: out of memory.
+static int find_groups(job *j) {
+    brunt_contact_workspace *w = j->w;
+    w->shared_count = w->group_count = w->action_count = 0;
+    if (find_shared(j)) return -1;
     if (!w->shared_count) return 0;
     qsort(w->shared, (size_t)w->shared_count, sizeof *w->shared, compare_shared);
     int32_t unique = 0;
