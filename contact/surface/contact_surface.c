@@ -162,9 +162,12 @@ int brunt_surface_make(brunt_contact_surface *s, brunt_fem_body **fem, int count
     s->motion.mean = brunt_alloc(k1 * sizeof *s->motion.mean),
     s->motion.speed = brunt_alloc(k1 * sizeof *s->motion.speed);
     s->active = brunt_alloc(k1), s->motion.was_active = brunt_alloc(k1);
+    s->motion.kept = brunt_alloc(k1 * sizeof *s->motion.kept);
+    s->motion.travel = brunt_alloc(k1 * sizeof *s->motion.travel);
     s->node_end = brunt_alloc(k1 * sizeof *s->node_end), s->face_end = brunt_alloc(k1 * sizeof *s->face_end);
     if (!s->node_end || !s->face_end || !s->fem || !s->node_range || !s->face_range || !s->low || !s->high ||
-        !s->active || !s->motion.was_active || !s->motion.mean || !s->motion.speed)
+        !s->active || !s->motion.was_active || !s->motion.mean || !s->motion.speed || !s->motion.kept ||
+        !s->motion.travel)
         return -1;
     for (int k = 0; k < count; k++) {
         s->fem[k] = fem[k];
@@ -209,6 +212,8 @@ void brunt_surface_free(brunt_contact_surface *s) {
                      s->face_area,
                      s->face_box,
                      s->motion.was_active,
+                     s->motion.kept,
+                     s->motion.travel,
                      s->motion.chunk,
                      s->motion.mean,
                      s->motion.speed,

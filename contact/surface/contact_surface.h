@@ -61,6 +61,10 @@ typedef struct brunt_surface_motion {
     double (*mean)[3], *speed; // [m/s] of each body: mean velocity, greatest against the frame
     double furthest; // [m] any node has moved against it since it was gathered last; INFINITY when bodies became active
     bool *was_active;
+    // While nothing is near: bounds of each body (low, high [m]) as they were looked at last, and how far any of its
+    // nodes may have come since [m].
+    double (*kept)[6], *travel;
+    bool rests;    // `kept` is there
     double *chunk; // [m^2] the same of each chunk of nodes, squared
 } brunt_surface_motion;
 
@@ -128,6 +132,11 @@ int64_t brunt_surface_slots(const brunt_contact_surface *surface);
 void brunt_surface_free(brunt_contact_surface *surface);
 // Bounds and speeds of every body's surface as it is now.
 void brunt_surface_bounds(brunt_contact_surface *surface, int threads, brunt_timer *timer);
+// The same while nothing is near, for a fraction of the work: bounds kept from an earlier step and widened by what the
+// nodes may have moved since, and speeds against space. With `anew` the bounds are looked at.
+void brunt_surface_rest(brunt_contact_surface *surface, bool anew, int threads, brunt_timer *timer);
+// After it: the bodies move for `dt` with the velocities that they have.
+void brunt_surface_rest_moves(brunt_contact_surface *surface, double dt);
 // Places, velocities, masses and normals of the active bodies. `gravity` [m/s^2] and `dt` are those of this step's
 // kick.
 void brunt_surface_gather_state(brunt_contact_surface *surface, double dt, const double gravity[3], int threads,

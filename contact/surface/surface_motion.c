@@ -47,6 +47,45 @@ void brunt_surface_bounds(brunt_contact_surface *s, int threads, brunt_timer *ti
     brunt_parallel(threads, s->fem_count, 1, bound_bodies, &j, timer);
 }
 
+static void find_speeds(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    brunt_contact_surface *s = ((const job *)context)->surface;
+    for (int64_t k = begin; k < end; k++) {
+        const real *v = s->fem[k]->node + BRUNT_FEM_V;
+        double fastest = 0;
+        for (int32_t n = s->node_range[k]; n < s->node_end[k]; n++) {
+            const real *at = v + (size_t)s->node[n] * BRUNT_FEM_NODE_REALS;
+            const double square = (double)(at[0] * at[0] + at[1] * at[1] + at[2] * at[2]);
+            fastest = fastest > square ? fastest : square;
+        }
+        s->motion.speed[k] = sqrt(fastest);
+    }
+}
+
+void brunt_surface_rest(brunt_contact_surface *s, bool anew, int threads, brunt_timer *timer) {
+    job j = {.surface = s};
+    memset(s->motion.frame, 0, sizeof s->motion.frame);
+    memset(s->motion.frame_step, 0, sizeof s->motion.frame_step);
+    if (anew) brunt_surface_bounds(s, threads, timer);
+    brunt_parallel(threads, s->fem_count, 1, find_speeds, &j, timer);
+    for (int k = 0; k < s->fem_count; k++) {
+        double *kept = s->motion.kept[k];
+        if (anew) {
+            memcpy(kept, s->low[k], sizeof s->low[k]), memcpy(kept + 3, s->high[k], sizeof s->high[k]);
+            s->motion.travel[k] = 0;
+        }
+        for (int a = 0; a < s->dim; a++) {
+            s->low[k][a] = kept[a] - s->motion.travel[k];
+            s->high[k][a] = kept[3 + a] + s->motion.travel[k];
+        }
+    }
+    s->motion.rests = true;
+}
+
+void brunt_surface_rest_moves(brunt_contact_surface *s, double dt) {
+    for (int k = 0; k < s->fem_count; k++) s->motion.travel[k] += s->motion.speed[k] * dt * (1 + 1e-6);
+}
+
 // The first node or face from `item` on, by their `range`, that an active body has; `k` becomes that body.
 static int32_t next_active(const brunt_contact_surface *s, const int32_t *range, int32_t item, int *k) {
     for (; *k < s->fem_count && (range[*k + 1] <= item || !s->active[*k]); ++*k)

@@ -137,7 +137,7 @@ static void swap_lists(brunt_contact_surface *s) {
 }
 
 int brunt_surface_renew(brunt_contact_surface *s, bool restored) {
-    s->renewal.change.any = false;
+    s->renewal.change.any = s->motion.rests = false;
     if (!s->renewal.topology) return 0;
     int failed = 0;
     for (int k = 0; !failed && k < s->fem_count; k++) {

@@ -205,6 +205,7 @@ int brunt_state_done(brunt_world *world, brunt_error *error) {
     }
     int status = brunt_reports_make(world, error);
     if (status) return status;
+    world->contact.surface.motion.rests = false;
     for (int a = 0; a < 3; a++) world->contact.surface.motion.frame_step[a] = world->contact.frame[a] * world->clock.dt;
     int32_t bad;
     const char *reason;

@@ -233,9 +233,37 @@ brunt_contact_context brunt_contact_context_of(brunt_world *world, double dt, br
                                    .timer = timer};
 }
 
+static bool any_active(const brunt_contact_surface *s, const bool *active) {
+    for (int k = 0; k < s->fem_count; k++)
+        if (active[k]) return true;
+    return false;
+}
+
+// Whether nothing comes near anything in this step, as in the one before: there is nothing more to do then. Methods
+// with an eye of their own for what is near look themselves.
+static bool is_clear(brunt_world *world, const brunt_contact_context *m) {
+    brunt_contact *contact = &world->contact;
+    brunt_contact_surface *s = &contact->surface;
+    bool clear = !any_active(s, s->motion.was_active);
+    for (int r = 0; r < BRUNT_CONTACT_ROWS; r++)
+        clear = clear && !(brunt_contact_rows[r].near && is_used(contact, &brunt_contact_rows[r]));
+    if (!clear) return s->motion.rests = false;
+    for (int anew = !s->motion.rests; anew <= 1; anew++) { // by the bounds that are kept, then by those of now
+        brunt_surface_rest(s, anew, m->threads, m->timer);
+        if (brunt_broad_phase(m, m->mpm, m->mpm_count, m->walls, m->wall_count, m->time, &contact->node_to_facet))
+            break;
+        if (any_active(s, s->active)) continue;
+        brunt_surface_rest_moves(s, m->dt);
+        memset(contact->frame, 0, sizeof contact->frame); // as of a state that is restored
+        return true;
+    }
+    return s->motion.rests = false;
+}
+
 int brunt_surfaces_meet(brunt_world *world, const double gravity[3], double kick, double dt, brunt_error *error) {
     brunt_timer *timer = brunt_pass_timer(world);
     const brunt_contact_context m = brunt_contact_context_of(world, dt, timer);
+    if (is_clear(world, &m)) return BRUNT_OK;
     memcpy(world->contact.surface.motion.frame, world->contact.frame, sizeof world->contact.surface.motion.frame);
     brunt_surface_bounds(&world->contact.surface, world->settings.threads, timer);
     int failed = brunt_broad_phase(&m, world->bodies.mpm, world->bodies.mpm_count, world->boundaries.walls,
