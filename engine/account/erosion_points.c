@@ -78,7 +78,10 @@ static void mark_block(const job *j, int32_t b) {
     brunt_block_report *report = &body->report[b];
     const int64_t end = block->first + (block->count + BRUNT_LANES - 1) / BRUNT_LANES * BRUNT_LANES;
     const bool failed = j->damage && report->failed;
-    const bool strained = isfinite(j->strain) && may_be_strained(j, block->first, end);
+    const bool strained = isfinite(j->strain) &&
+                          !log_strain_all_near(p->point_dim, brunt_field(p, BRUNT_FIELD_deformation_gradient),
+                                               block->first, end, j->strain) &&
+                          may_be_strained(j, block->first, end);
     const real *volume = brunt_field(p, BRUNT_FIELD_reference_volume)[0];
     report->leaving = 0;
     if (!failed && !strained && !report->turned) return;
