@@ -27,11 +27,6 @@ static int check_numbers(const brunt_body_def *from, brunt_error *error) {
     const bool sheet = from->method == BRUNT_MEMBRANE;
     if (sheet && !(from->thickness > 0 && isfinite(from->thickness)))
         REFUSE("bodies.%s.thickness: %g m is not a positive length", from->name, from->thickness);
-    if (sheet &&
-        !(isnan(from->contact_thickness) || (from->contact_thickness >= 0 && isfinite(from->contact_thickness))))
-        REFUSE("bodies.%s.contact_thickness: %g m is negative", from->name, from->contact_thickness);
-    if (!(from->damping >= 0) || !isfinite(from->damping))
-        REFUSE("bodies.%s.damping: %g 1/s is not a rate", from->name, from->damping);
     if (is_graded(from) && (sheet || from->mesh.node_count || from->shape.kind != BRUNT_BOX))
         REFUSE("bodies.%s.grading: only the mesh of a box of method fem is graded", from->name);
     return BRUNT_OK;

@@ -2,10 +2,12 @@
 // takes the bodies themselves to know (which groups a mesh has, what lies where) is found where they are made.
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "world/definitions.h"
 #include "base/error.h"
+#include "base/memory.h"
 #include "materials/material.h"
 #include "world/world.h"
 
@@ -169,8 +171,9 @@ static int check_body(const brunt_world_def *def, const brunt_body_def *body, br
                   {".hourglass_coefficient", &body->hourglass_coefficient, 1, NOT_NEGATIVE | OR_NAN},
                   {".erosion.strain", &body->erosion.strain, 1, POSITIVE | OR_INFINITE},
                   {".erosion.step", &body->erosion.step, 1, NOT_NEGATIVE},
-                  {".mass_scaling", &body->mass_scaling, 1, NOT_NEGATIVE}, {".damping", &body->damping, 1, ANY},
-                  {".thickness", &body->thickness, 1, ANY}, {".contact_thickness", &body->contact_thickness, 1, OR_NAN},
+                  {".mass_scaling", &body->mass_scaling, 1, NOT_NEGATIVE},
+                  {".damping", &body->damping, 1, NOT_NEGATIVE}, {".thickness", &body->thickness, 1, ANY},
+                  {".contact_thickness", &body->contact_thickness, 1, NOT_NEGATIVE | OR_NAN},
                   {".spacing", &body->spacing, 1, NOT_NEGATIVE}, {".jitter", &body->jitter, 1, NOT_NEGATIVE},
                   {".velocity", body->velocity, 3, ANY}, {".spin", body->spin, 3, ANY},
                   {".spin_about", body->spin_about, 3, ANY}, {".wave_velocity", body->wave_velocity, 3, ANY},
@@ -187,16 +190,33 @@ static int check_body(const brunt_world_def *def, const brunt_body_def *body, br
     return check_shape(owner, &body->shape, def->dimension, 0, error);
 }
 
+static int compare_body_names(const void *a, const void *b) {
+    const brunt_body_def *const *p = a, *const *q = b;
+    return strcmp((*p)->name, (*q)->name);
+}
+
+// Two bodies of one name stand side by side in the order of names.
+static int check_body_names(const brunt_world_def *def, brunt_error *error) {
+    const brunt_body_def **order = brunt_alloc(((size_t)def->body_count + 1) * sizeof *order);
+    if (!order) return brunt_fail(error, BRUNT_FAILED, "out of memory");
+    for (int32_t i = 0; i < def->body_count; i++) order[i] = &def->bodies[i];
+    qsort(order, (size_t)def->body_count, sizeof *order, compare_body_names);
+    const brunt_body_def *twice = NULL;
+    for (int32_t i = 1; i < def->body_count && !twice; i++)
+        if (!strcmp(order[i - 1]->name, order[i]->name)) twice = order[i];
+    brunt_free(order);
+    if (twice) REFUSE("bodies.%s: two bodies have this name", twice->name);
+    return BRUNT_OK;
+}
+
 static int check_bodies(const brunt_world_def *def, brunt_error *error) {
     for (int32_t i = 0; i < def->body_count; i++) {
         const brunt_body_def *body = &def->bodies[i];
         TRY(check_name("bodies", i, body->name, error));
         if (!body->name[0]) REFUSE("bodies: body %d has no name", i + 1);
-        for (int32_t k = 0; k < i; k++)
-            if (!strcmp(body->name, def->bodies[k].name)) REFUSE("bodies.%s: two bodies have this name", body->name);
         TRY(check_body(def, body, error));
     }
-    return BRUNT_OK;
+    return check_body_names(def, error);
 }
 
 // ------------------------------------------------------------------------------------------ materials

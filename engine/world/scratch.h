@@ -11,9 +11,9 @@ typedef struct brunt_node_sums {
 } brunt_node_sums;
 
 typedef struct brunt_scratch {
-    brunt_workspace points[BRUNT_THREAD_LIMIT];     // a thread each
-    brunt_fem_workspace meshes[BRUNT_THREAD_LIMIT]; // a thread each
-    brunt_wall_workspace **planes;                  // a body of material points each
+    brunt_workspace *points;       // a thread each
+    brunt_fem_workspace *meshes;   // a thread each
+    brunt_wall_workspace **planes; // a body of material points each
     brunt_contact_workspace *grid_velocity;
     brunt_node_sums *node_sums; // of the slots of one grid
     size_t node_sums_capacity;

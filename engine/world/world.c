@@ -165,6 +165,21 @@ static void find_transfers(brunt_transfers *t, const brunt_world_def *def) {
     t->musl_velocity = brunt_find_musl_velocity(def->dimension, def->axisymmetric, def->kernel, def->transfer);
 }
 
+// Bodies, and what each thread works in.
+static int make_room(brunt_world *world, int32_t bodies, brunt_error *error) {
+    const size_t threads = (size_t)world->settings.threads;
+    world->scratch.points = brunt_alloc(threads * sizeof *world->scratch.points);
+    world->scratch.meshes = brunt_alloc(threads * sizeof *world->scratch.meshes);
+    world->bodies.count = bodies;
+    world->bodies.all = brunt_alloc((size_t)bodies * sizeof *world->bodies.all);
+    world->bodies.mpm = brunt_alloc((size_t)bodies * sizeof *world->bodies.mpm);
+    world->bodies.fem = brunt_alloc((size_t)bodies * sizeof *world->bodies.fem);
+    world->bodies.mesh_reports = brunt_alloc((size_t)bodies * sizeof *world->bodies.mesh_reports);
+    const bool made = world->scratch.points && world->scratch.meshes && world->bodies.mpm && world->bodies.all &&
+                      world->bodies.fem && world->bodies.mesh_reports;
+    return made ? BRUNT_OK : brunt_fail(error, BRUNT_FAILED, "out of memory");
+}
+
 brunt_world *brunt_world_create(const brunt_world_def *given, brunt_error *error) {
     if (error) *error = (brunt_error){.id = -1};
     if (brunt_definition_check(given, error)) return NULL;
@@ -184,18 +199,11 @@ brunt_world *brunt_world_create(const brunt_world_def *given, brunt_error *error
 
     copy_settings(&world->settings, def);
     find_transfers(&world->transfers, def);
-    world->bodies.count = def->body_count;
-    world->bodies.all = brunt_alloc((size_t)def->body_count * sizeof *world->bodies.all);
-    world->bodies.mpm = brunt_alloc((size_t)def->body_count * sizeof *world->bodies.mpm);
-    world->bodies.fem = brunt_alloc((size_t)def->body_count * sizeof *world->bodies.fem);
-    world->bodies.mesh_reports = brunt_alloc((size_t)def->body_count * sizeof *world->bodies.mesh_reports);
     for (int i = 0; i < def->body_count; i++)
         world->bodies.has_particles = world->bodies.has_particles || order[i]->method == BRUNT_MPM;
     world->settings.cfl = cfl_of(def, world->bodies.has_particles);
 
-    int status = world->bodies.mpm && world->bodies.all && world->bodies.fem && world->bodies.mesh_reports
-                     ? BRUNT_OK
-                     : brunt_fail(error, BRUNT_FAILED, "out of memory");
+    int status = make_room(world, def->body_count, error);
     if (!status) status = brunt_boundaries_make(world, def, order, error);
     if (!status) status = brunt_pairs_make(world, def, order, error);
     if (!status) status = brunt_bodies_make(world, def, order, error);
@@ -231,8 +239,12 @@ void brunt_world_destroy(brunt_world *world) {
         brunt_body_free(&world->bodies.mpm[i]);
         if (world->scratch.planes) brunt_wall_workspace_free(world->scratch.planes[i]);
     }
-    for (size_t t = 0; t < sizeof world->scratch.points / sizeof world->scratch.points[0]; t++)
-        brunt_workspace_free(&world->scratch.points[t]);
+    for (int t = 0; t < world->settings.threads; t++) {
+        if (world->scratch.points) brunt_workspace_free(&world->scratch.points[t]);
+        if (world->scratch.meshes) brunt_fem_workspace_free(&world->scratch.meshes[t]);
+    }
+    brunt_free(world->scratch.points);
+    brunt_free(world->scratch.meshes);
     brunt_contact_workspace_free(world->scratch.grid_velocity);
     brunt_surface_free(&world->contact.surface);
     brunt_constraints_free(&world->contact.constraints);
@@ -244,8 +256,6 @@ void brunt_world_destroy(brunt_world *world) {
     brunt_damping_free(&world->boundaries.damping);
     brunt_erosion_free(&world->erosion);
     for (int k = 0; world->bodies.fem && k < world->bodies.fem_count; k++) brunt_fem_free(&world->bodies.fem[k]);
-    for (size_t t = 0; t < sizeof world->scratch.meshes / sizeof world->scratch.meshes[0]; t++)
-        brunt_fem_workspace_free(&world->scratch.meshes[t]);
     brunt_free(world->bodies.all);
     brunt_free(world->bodies.fem);
     brunt_free(world->bodies.mesh_reports);
