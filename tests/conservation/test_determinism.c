@@ -128,10 +128,10 @@ START_TEST(restored_is_as_good_as_continuous) {
     expect_eventful(whole);
     world_steps(first, 17);
     world_steps(second, 5);
-    copy_state(first, second);
+    world_copy_state(first, second);
     ck_assert_uint_eq(brunt_world_hash(first), brunt_world_hash(second));
     world_steps(second, 20);
-    copy_state(second, third);
+    world_copy_state(second, third);
     world_steps(third, 23);
     ck_assert_int_eq(brunt_world_steps(third), 60);
     ck_assert_double_eq(brunt_world_time(third), brunt_world_time(whole));
@@ -209,7 +209,7 @@ START_TEST(restored_knows_how_fast_bodies_are) {
         while (pushed(whole, (floor_kind)_i) == 0) {
             ck_assert_int_lt(brunt_world_steps(whole), 1000);
             brunt_world *restored = world_from(&def);
-            copy_state(whole, restored);
+            world_copy_state(whole, restored);
             world_steps(whole, 1), world_steps(restored, 1);
             ck_assert_msg(brunt_world_hash(whole) == brunt_world_hash(restored),
                           "restored after step %lld, another one than that from %g cells above",

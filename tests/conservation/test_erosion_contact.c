@@ -406,7 +406,7 @@ static drilling drive(const drill *o) {
     for (int step = 0; brunt_world_time(world) < end; step++) {
         if (o->restart && step == o->restart) {
             brunt_world *fresh = drill_world(o);
-            copy_state(world, fresh);
+            world_copy_state(world, fresh);
             brunt_world_destroy(world);
             world = fresh;
         }
@@ -680,7 +680,7 @@ START_TEST(torn_sheet) {
         const int first = steps;
         if (k) {
             copy = torn_world(kind);
-            copy_state(world, copy);
+            world_copy_state(world, copy);
         }
         for (int run = 0; run <= k; run++) {
             brunt_world *w = run ? copy : world;

@@ -723,7 +723,7 @@ static uint64_t run(int kind, int threads, bool restart) {
     world_steps(world, half);
     if (restart) {
         brunt_world *other = world_from(&def);
-        copy_state(world, other);
+        world_copy_state(world, other);
         brunt_world_destroy(world);
         world = other;
     }

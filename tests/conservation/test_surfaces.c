@@ -177,7 +177,7 @@ static uint64_t run_threads(form f, int kind, int threads, bool restart) {
     world_steps(world, 150);
     if (restart) {
         brunt_world *other = world_take(&def);
-        copy_state(world, other);
+        world_copy_state(world, other);
         brunt_world_destroy(world);
         world = other;
     } else {

@@ -132,7 +132,7 @@ START_TEST(steps_that_shorten_without_end_are_reported) {
         ck_assert_ptr_nonnull(strstr(brunt_world_warning(world, 0), "'block'"));
         while (brunt_world_dt(world) > 1.1e-6 * brunt_world_dt_max(world))
             ck_assert_int_eq(step_on(world, 1, &error), BRUNT_OK);
-        copy_state(world, other);
+        world_copy_state(world, other);
         ck_assert_int_eq(step_on(world, 100000, &error), BRUNT_FAILED);
         printf("  %s\n", error.message);
         ck_assert_int_eq(brunt_warning_count(world), 1);

@@ -567,7 +567,7 @@ START_TEST(threads_and_restart_keep_every_bit) {
         if (i >= 4) { // the other half in another world, with other threads
             def.threads = threads[(i + 1) % 4];
             brunt_world *other = world_from(&def);
-            copy_state(world, other);
+            world_copy_state(world, other);
             brunt_world_destroy(world);
             world = other;
         }

@@ -163,6 +163,20 @@ static inline brunt_force world_wall(const brunt_world *world, int wall) {
     return f;
 }
 
+// The state of a world into another of the same definition.
+static inline void world_copy_state(brunt_world *from, brunt_world *to) {
+    brunt_error error = {0};
+    ck_assert_int_eq(brunt_state_count(from), brunt_state_count(to));
+    for (int32_t b = 0; b < brunt_state_count(from); b++) {
+        const brunt_state_block block = brunt_state_info(from, b);
+        void *bytes = malloc((size_t)block.count * 8 + 8);
+        brunt_state_get(from, b, bytes);
+        ck_assert_msg(brunt_state_set(to, b, bytes, block.count, &error) == BRUNT_OK, "%s", error.message);
+        free(bytes);
+    }
+    ck_assert_msg(brunt_state_done(to, &error) == BRUNT_OK, "%s", error.message);
+}
+
 static inline int suite_main(Suite *suite) {
     SRunner *runner = srunner_create(suite);
     srunner_run_all(runner, CK_ENV);

@@ -63,18 +63,6 @@ static inline void shift_body(brunt_world *world, const char *body, int axis, do
     ck_abort_msg("there is no %s", name);
 }
 
-static inline void copy_state(brunt_world *from, brunt_world *to) {
-    brunt_error error = {0};
-    for (int32_t b = 0; b < brunt_state_count(from); b++) {
-        brunt_state_block block = brunt_state_info(from, b);
-        void *data = malloc((size_t)block.count * 8 + 8);
-        brunt_state_get(from, b, data);
-        ck_assert_msg(brunt_state_set(to, b, data, block.count, &error) == BRUNT_OK, "%s", error.message);
-        free(data);
-    }
-    ck_assert_int_eq(brunt_state_done(to, &error), BRUNT_OK);
-}
-
 // ------------------------------------------------------------------------------------------ free flight
 
 typedef struct flight {

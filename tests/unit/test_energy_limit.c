@@ -63,7 +63,7 @@ START_TEST(restart) {
         most = fmax(most, world_energy(world).external_work);
         world_steps(world, 1);
     }
-    copy_state(world, again);
+    world_copy_state(world, again);
     for (int k = 0; k < 3; k++) {
         const brunt_energy a = world_energy(world), b = world_energy(again);
         ck_assert_msg(a.reference == b.reference && a.error_relative == b.error_relative, "%.17g, %.17g", a.reference,

@@ -407,20 +407,6 @@ END_TEST
 
 // ------------------------------------------------------------------------------------------ same bits
 
-static void copy_state(brunt_world *from, brunt_world *to) {
-    brunt_error error = {0};
-    ck_assert_int_eq(brunt_state_count(from), brunt_state_count(to));
-    for (int32_t b = 0; b < brunt_state_count(from); b++) {
-        brunt_state_block info = brunt_state_info(from, b);
-        void *values = malloc((size_t)(info.count + 1) * 8);
-        brunt_state_get(from, b, values);
-        int status = brunt_state_set(to, b, values, info.count, &error);
-        ck_assert_msg(status == BRUNT_OK, "%s", error.message);
-        free(values);
-    }
-    ck_assert_msg(brunt_state_done(to, &error) == BRUNT_OK, "%s", error.message);
-}
-
 // One and two threads; a new world that takes up the state in the middle; an old one that is wound back to it.
 START_TEST(threads_and_restarts_change_no_bit) {
     brunt_world_def def = torn(_i, false);
@@ -431,7 +417,7 @@ START_TEST(threads_and_restarts_change_no_bit) {
     while (!eroded_of(one).elements) world_steps(one, 1), world_steps(two, 1);
     const int64_t first = eroded_of(one).elements;
     world_steps(third, 3);
-    copy_state(one, third);
+    world_copy_state(one, third);
     ck_assert(brunt_world_hash(third) == brunt_world_hash(one));
     for (int s = 0; s < 60; s++) {
         world_steps(one, 1), world_steps(two, 1), world_steps(third, 1);
@@ -445,7 +431,7 @@ START_TEST(threads_and_restarts_change_no_bit) {
     ck_assert_double_eq(world_energy(one).total, world_energy(third).total);
     brunt_world *fresh = two; // which has gone on since
     world_steps(fresh, 20);
-    copy_state(one, fresh);
+    world_copy_state(one, fresh);
     world_steps(one, 5), world_steps(fresh, 5);
     ck_assert(brunt_world_hash(one) == brunt_world_hash(fresh));
     brunt_world_destroy(one);
@@ -659,7 +645,7 @@ START_TEST(faces_of_gone_elements_bear_no_load) {
     brunt_world *other = world; // and after a restart
     world_steps(world, 1);
     ck_assert_double_eq_tol(world_wall(world, 0).force[0], -1000 * 0.03, 0.01);
-    copy_state(world, other);
+    world_copy_state(world, other);
     world_steps(other, 1);
     ck_assert_double_eq_tol(world_wall(other, 0).force[0], -1000 * 0.03, 0.01);
     brunt_energy e = world_energy(world);

@@ -734,15 +734,7 @@ START_TEST(same_bits) {
         world_steps(world, 40);
         if (k == 2) { // into a new world, which then goes on
             brunt_world *again = world_from(&def);
-            brunt_error error = {0};
-            for (int32_t b = 0; b < brunt_state_count(world); b++) {
-                brunt_state_block block = brunt_state_info(world, b);
-                void *values = malloc((size_t)block.count * 8 + 8);
-                brunt_state_get(world, b, values);
-                ck_assert_msg(brunt_state_set(again, b, values, block.count, &error) == BRUNT_OK, "%s", error.message);
-                free(values);
-            }
-            ck_assert_int_eq(brunt_state_done(again, &error), BRUNT_OK);
+            world_copy_state(world, again);
             brunt_world_destroy(world);
             world = again;
         }

@@ -74,7 +74,7 @@ START_TEST(restart) {
     brunt_world_def def = struck_block(QUAD4, "neo-hookean", 0, 0.1);
     brunt_world *world = world_from(&def), *again = world_take(&def);
     world_steps(world, 100);
-    copy_state(world, again);
+    world_copy_state(world, again);
     for (int s = 0; s < 100; s++) {
         world_steps(world, 1), world_steps(again, 1);
         ck_assert(brunt_world_time(world) == brunt_world_time(again));

@@ -686,18 +686,6 @@ static brunt_world_def impact(choice c, int threads) {
     return def;
 }
 
-static void copy_state(brunt_world *from, brunt_world *to) {
-    brunt_error error = {0};
-    for (int32_t b = 0; b < brunt_state_count(from); b++) {
-        brunt_state_block block = brunt_state_info(from, b);
-        void *bytes = malloc((size_t)block.count * 8 + 1);
-        brunt_state_get(from, b, bytes);
-        ck_assert_msg(brunt_state_set(to, b, bytes, block.count, &error) == BRUNT_OK, "%s", error.message);
-        free(bytes);
-    }
-    ck_assert_msg(brunt_state_done(to, &error) == BRUNT_OK, "%s", error.message);
-}
-
 START_TEST(threads_and_restart_keep_every_bit) {
     const choice c = choose(_i);
     brunt_world_def def = impact(c, 1), more = impact(c, 3);
@@ -705,7 +693,7 @@ START_TEST(threads_and_restart_keep_every_bit) {
     world_steps(whole, 40);
     world_steps(first, 17);
     world_steps(second, 5);
-    copy_state(first, second);
+    world_copy_state(first, second);
     world_steps(second, 23);
     const brunt_energy a = world_energy(whole), b = world_energy(second);
     ck_assert_double_gt(a.plastic, 0);

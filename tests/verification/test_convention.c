@@ -313,7 +313,7 @@ START_TEST(restart_keeps_bits_and_forces) {
         brunt_world *whole = world_from(&def), *first = world_from(&def), *second = world_from(&def);
         brunt_world_def_free(&def);
         world_steps(whole, 20), world_steps(first, before);
-        copy_state(first, second);
+        world_copy_state(first, second);
         world_steps(second, 20 - before);
         ck_assert_uint_eq(brunt_world_hash(whole), brunt_world_hash(second));
         ck_assert_double_eq(world_wall(whole, 0).force[1], world_wall(second, 0).force[1]);

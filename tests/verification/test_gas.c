@@ -239,7 +239,7 @@ START_TEST(goes_on_with_the_same_bits) {
     world_steps(whole, 60);
     world_steps(threads, 60);
     world_steps(first, 25);
-    copy_state(first, second);
+    world_copy_state(first, second);
     world_steps(second, 35);
     ck_assert_uint_eq(brunt_world_hash(whole), brunt_world_hash(second));
     ck_assert_uint_eq(brunt_world_hash(whole), brunt_world_hash(threads));

@@ -313,7 +313,7 @@ START_TEST(restart_on_the_way) {
     motion m = {.dim = 2, .a = POINTS, .b = MESH, .b_moves = _i == 1, .method = BRUNT_CONTACT_AUGURY};
     brunt_world *one = begin(&m), *two = begin(&m);
     world_until(one, 0.37 * travel(&m) / SPEED);
-    copy_state(one, two);
+    world_copy_state(one, two);
     world_until(one, travel(&m) / SPEED), world_until(two, travel(&m) / SPEED);
     for (int b = 0; b < 2; b++) {
         double *p = world_field(one, b, "position"), *q = world_field(two, b, "position");

@@ -230,15 +230,7 @@ START_TEST(same_bits) {
         world_steps(world, 60);
         if (k == 2) {
             brunt_world *other = world_from(&def);
-            brunt_error error;
-            for (int32_t b = 0; b < brunt_state_count(world); b++) {
-                brunt_state_block block = brunt_state_info(world, b);
-                void *bytes = malloc((size_t)block.count * 8 + 1);
-                brunt_state_get(world, b, bytes);
-                ck_assert_int_eq(brunt_state_set(other, b, bytes, block.count, &error), BRUNT_OK);
-                free(bytes);
-            }
-            ck_assert_int_eq(brunt_state_done(other, &error), BRUNT_OK);
+            world_copy_state(world, other);
             brunt_world_destroy(world);
             world = other;
         }
