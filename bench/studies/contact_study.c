@@ -4,7 +4,8 @@
 //
 //   h         edge length of the elements [m]                      grid      contact cell, in h (0: chosen)
 //   h2        of the second cube's [m] (0: h)
-//   form      affine|smooth|surface|paper|none|rigid               transfer  pic|apic, of the paper's form
+//   form      node_to_facet|averaged_facets|averaged_surface|published|none|rigid
+//   transfer  pic|apic, of the published form
 //   n         iterations or sweeps (-1: the form's own)            mu        friction
 //   element   tet4|hex8                                            end       [s]
 //   speed     factor on the velocities                             stiff     factor on E
@@ -74,11 +75,11 @@ static settings read_settings(int argc, char **argv) {
                   .rows = word(argc, argv, "rows", NULL)};
     if (s.rounds < 1) s.rounds = 1;
     if (s.rounds > ROUND_LIMIT) s.rounds = ROUND_LIMIT;
-    const char *form = word(argc, argv, "form", "affine");
+    const char *form = word(argc, argv, "form", "node_to_facet");
     s.none = !strcmp(form, "none"), s.rigid = !strcmp(form, "rigid");
-    s.form = !strcmp(form, "smooth")    ? BRUNT_AUGURY_SMOOTH
-             : !strcmp(form, "surface") ? BRUNT_AUGURY_SURFACE
-             : !strcmp(form, "paper")   ? BRUNT_AUGURY_PAPER
+    s.form = !strcmp(form, "averaged_facets")    ? BRUNT_AUGURY_SMOOTH
+             : !strcmp(form, "averaged_surface") ? BRUNT_AUGURY_SURFACE
+             : !strcmp(form, "published")   ? BRUNT_AUGURY_PAPER
                                         : BRUNT_AUGURY_AFFINE;
     s.transfer = !strcmp(word(argc, argv, "transfer", "apic"), "pic") ? BRUNT_PIC : BRUNT_APIC;
     s.element = !strcmp(word(argc, argv, "element", "tet4"), "hex8") ? BRUNT_HEX8 : BRUNT_TET4;

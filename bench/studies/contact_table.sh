@@ -26,21 +26,21 @@ trap 'rm -rf "$work"' EXIT
 
 # Each line of the plan: SECTION | what is said of the run | arguments. Runs are numbered in this order.
 plan() {
-    paper="form=paper grid=2"
+    published="form=published grid=2"
     for h in 1 .5 .25; do
         for n in 0 1 2; do
-            echo "cubes|paper PIC, N = $n|cubes h=$h $paper transfer=pic n=$n"
-            echo "cubes|paper APIC, N = $n|cubes h=$h $paper transfer=apic n=$n"
+            echo "cubes|published PIC, N = $n|cubes h=$h $published transfer=pic n=$n"
+            echo "cubes|published APIC, N = $n|cubes h=$h $published transfer=apic n=$n"
         done
-        for form in surface smooth affine; do echo "cubes|$form|cubes h=$h form=$form"; done
-        echo "cubes|affine, hex8|cubes h=$h form=affine element=hex8"
+        for form in averaged_surface averaged_facets node_to_facet; do echo "cubes|$form|cubes h=$h form=$form"; done
+        echo "cubes|node_to_facet, hex8|cubes h=$h form=node_to_facet element=hex8"
     done
     if [ $fine = yes ]; then
-        echo "cubes|affine|cubes h=.125 form=affine"
-        echo "cubes|paper APIC, N = 1|cubes h=.125 $paper n=1"
+        echo "cubes|node_to_facet|cubes h=.125 form=node_to_facet"
+        echo "cubes|published APIC, N = 1|cubes h=.125 $published n=1"
     fi
 
-    for form in affine smooth surface "paper n=1"; do
+    for form in node_to_facet averaged_facets averaged_surface "published n=1"; do
         name=${form%% n=1}
         echo "regimes|$name, as it is|cubes form=$form"
         echo "regimes|$name, mu = 0.3|cubes form=$form mu=.3"
@@ -59,26 +59,26 @@ plan() {
     for mu in 0 .1 .2 .4 .6; do
         for h in 1 .5; do
             echo "ramp|exact node by node on a rigid plane|ramp h=$h mu=$mu form=rigid"
-            echo "ramp|affine|ramp h=$h mu=$mu form=affine"
-            for form in smooth surface paper; do
+            echo "ramp|node_to_facet|ramp h=$h mu=$mu form=node_to_facet"
+            for form in averaged_facets averaged_surface published; do
                 case $mu in 0 | .2) cells=".5 1 2" ;; *) cells=1 ;; esac
                 for grid in $cells; do echo "ramp|$form, cell $grid h|ramp h=$h mu=$mu form=$form grid=$grid"; done
             done
         done
         echo "ramp|exact node by node on a rigid plane|ramp h=.25 mu=$mu form=rigid"
-        echo "ramp|affine|ramp h=.25 mu=$mu form=affine"
+        echo "ramp|node_to_facet|ramp h=.25 mu=$mu form=node_to_facet"
     done
-    for grid in .5 2; do echo "ramp|affine, cell $grid h|ramp h=.5 mu=.2 form=affine grid=$grid"; done
-    for form in rigid affine smooth surface paper; do
+    for grid in .5 2; do echo "ramp|node_to_facet, cell $grid h|ramp h=.5 mu=.2 form=node_to_facet grid=$grid"; done
+    for form in rigid node_to_facet averaged_facets averaged_surface published; do
         echo "ramp|$form, turned by 37 degrees|ramp h=.5 mu=.2 form=$form turn=37"
     done
     for mu in 0 .2 .4 .6; do
-        for form in rigid affine smooth surface paper; do
+        for form in rigid node_to_facet averaged_facets averaged_surface published; do
             echo "sudden|$form|ramp h=.5 mu=$mu form=$form ramp=0 end=.25"
         done
     done
 
-    for form in affine smooth surface paper; do
+    for form in node_to_facet averaged_facets averaged_surface published; do
         echo "stack|$form, mu = 0.5|stack h=.333333333333 mu=.5 form=$form end=1e5"
         echo "stack|$form, mu = 0, hex8|stack h=.333333333333 mu=0 element=hex8 form=$form end=1e5"
         echo "stack|$form, mu = 0.5, off centre|stack h=.333333333333 mu=.5 shift=.3 form=$form end=2e4"
@@ -87,10 +87,10 @@ plan() {
         echo "stack|$form, base E x 100|stack h=.333333333333 mu=.5 e1=100 form=$form end=2e4"
         echo "stack|$form, base E / 2|stack h=.333333333333 mu=.5 e1=.5 form=$form end=2e4"
     done
-    echo "stack|affine, 16 sweeps, mu = 0.5|stack h=.333333333333 mu=.5 n=16 form=affine end=1e5"
-    echo "stack|affine, mu = 0.5, hex8|stack h=.333333333333 mu=.5 element=hex8 form=affine end=1e5"
+    echo "stack|node_to_facet, 16 sweeps, mu = 0.5|stack h=.333333333333 mu=.5 n=16 form=node_to_facet end=1e5"
+    echo "stack|node_to_facet, mu = 0.5, hex8|stack h=.333333333333 mu=.5 element=hex8 form=node_to_facet end=1e5"
 
-    for form in affine smooth surface "paper n=1"; do
+    for form in node_to_facet averaged_facets averaged_surface "published n=1"; do
         name=${form%% n=1}
         echo "moved|$name, as it is|cubes form=$form"
         echo "moved|$name, shifted by 0.3 h|cubes form=$form shift=.3"
@@ -98,7 +98,7 @@ plan() {
         echo "moved|$name, turned by 90 degrees|cubes form=$form turn=90"
     done
 
-    for form in affine smooth surface "paper n=1"; do
+    for form in node_to_facet averaged_facets averaged_surface "published n=1"; do
         name=${form%% n=1}
         echo "unequal|$name, edges 1.5 and 0.15 m|cubes h=1.5 h2=.15 dt=4 samples=20 form=$form"
         echo "unequal|$name, edges 0.15 and 1.5 m|cubes h=.15 h2=1.5 dt=4 samples=20 form=$form"
@@ -166,7 +166,7 @@ them in [tests/README.md](../../tests/README.md). E/E0: kinetic, stored and hour
 start, and the most it was at any sample. Depths are of a boundary node inside the other mesh, sampled 60 times a run; nearest:
 the least distance at which a boundary node outside has been; gap: at the end, negative inside. h is the edge. Drifts are relative
 (angular: about the origin, with the spin that the paper's form stores). v: velocity of the second body's centre relative to the
-first's at the end. Cells are the forms' own (paper: 2 h) unless given; affine depends on none. dt is the paper's, 1e-4 h s/m, in the
+first's at the end. Cells are the forms' own (published: 2 h) unless given; node_to_facet depends on none. dt is the paper's, 1e-4 h s/m, in the
 cubes, 2.5e-5 h on the slope, and half the stable step in the stack. The paper's tau is always dt in the engine. One thread; the
 seconds are of a shared machine.
 END

@@ -43,6 +43,16 @@ int main(int count, char **words) {
     } else if (!strcmp(dress, "hex8")) { // 1000 elements
         bodies[0].method = BRUNT_FEM;
         bodies[0].size = 0.08;
+    } else if (!strcmp(dress, "tet4")) { // some 5000
+        bodies[0].method = BRUNT_FEM, bodies[0].element = BRUNT_TET4;
+        bodies[0].size = 0.08;
+    } else if (!strcmp(dress, "flip") || !strcmp(dress, "pic")) {
+        def.transfer = dress[0] == 'f' ? BRUNT_FLIP : BRUNT_PIC;
+    } else if (!strcmp(dress, "cubic")) {
+        def.kernel = BRUNT_CUBIC;
+    } else if (!strcmp(dress, "dim2")) { // 1600 particles
+        def.dimension = 2, def.cell = 0.04;
+        for (int b = 0; b < 2; b++) bodies[b].shape.min[2] = bodies[b].shape.max[2] = bodies[b].wave_velocity[2] = 0;
     } else if (!strcmp(dress, "contact")) { // asked for, but there is nobody to touch
         def.contact.method = BRUNT_CONTACT_MULTI_VELOCITY;
         def.contact.friction = 0.4;
@@ -78,8 +88,14 @@ int main(int count, char **words) {
     } else if (!strncmp(dress, "hex8_", 5)) { // the same of meshes
         for (int b = 0; b < 2; b++) bodies[b].method = BRUNT_FEM, bodies[b].size = 0.08;
         const char *what = dress + 5;
-        if (!strcmp(what, "wall")) {
+        if (!strcmp(what, "wall") || !strcmp(what, "on_plane")) {
+            if (what[0] == 'o') plane.point[1] = 0;
             def.planes = &plane, def.plane_count = 1;
+        } else if (!strcmp(what, "met")) { // a hundredth of an edge apart
+            bodies[1] = cube("b", 0.8008);
+            bodies[1].method = BRUNT_FEM, bodies[1].size = 0.08;
+            def.body_count = 2;
+            def.contact.method = BRUNT_CONTACT_AUGURY;
         } else if (!strcmp(what, "apart") || !strcmp(what, "far")) {
             bodies[1] = cube("b", 50);
             bodies[1].method = BRUNT_FEM, bodies[1].size = 0.08;
