@@ -19,9 +19,12 @@ SAMPLES = {
     "material": (r"drucker[-_]prager", r"materials/drucker_prager\.c", 2),
     "contact method": (r"multi[-_]velocity|MULTI_VELOCITY", r"contact/methods/grid_velocity", None),
     "boundary kind": (r"SYMMETRY|\"symmetry\"", r"contact/planes/|symmetry", None),
-    "measure": (r"measures\.\*\.extent|\bEXTENT\b|MEASURE_EXTENT", r"io/output/measure_extent\.c", None),
-    "body key": (r"contact_thickness", r"^$", None),
-    "output field": (r"thickness_stretch", r"^$", None),
+    # A line in the list of kinds, and a row for each of its keys: three.
+    "measure": (r"measures\.\*\.extent|\bEXTENT\b|MEASURE_EXTENT", r"io/output/measure_extent\.c", 4),
+    # Its row, the member that it fills, what numbers it takes, how a prediction's coarser scene scales it.
+    "body key": (r"(from|def|body)->mass_scaling|double mass_scaling;|\*\.mass_scaling", r"engine/fem/", 4),
+    # Of elements; the row of material points besides.
+    "output field": (r"\"von_mises\"|(derive|element)_von_mises", r"engine/world/read_mesh\.c", 2),
 }
 
 

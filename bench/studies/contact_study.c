@@ -79,8 +79,8 @@ static settings read_settings(int argc, char **argv) {
     s.none = !strcmp(form, "none"), s.rigid = !strcmp(form, "rigid");
     s.form = !strcmp(form, "averaged_facets")    ? BRUNT_AUGURY_SMOOTH
              : !strcmp(form, "averaged_surface") ? BRUNT_AUGURY_SURFACE
-             : !strcmp(form, "published")   ? BRUNT_AUGURY_PAPER
-                                        : BRUNT_AUGURY_AFFINE;
+             : !strcmp(form, "published")        ? BRUNT_AUGURY_PAPER
+                                                 : BRUNT_AUGURY_AFFINE;
     s.transfer = !strcmp(word(argc, argv, "transfer", "apic"), "pic") ? BRUNT_PIC : BRUNT_APIC;
     s.element = !strcmp(word(argc, argv, "element", "tet4"), "hex8") ? BRUNT_HEX8 : BRUNT_TET4;
     return s;

@@ -124,8 +124,7 @@ static void fill_place_of(scene_reader *reader, scene_node *where, brunt_measure
     if (given && measure->axis[0] == 0 && measure->axis[1] == 0 && measure->axis[2] == 0)
         brunt_tree_complain(reader->tree, axis, "the axis has zero length");
     if (!axis && axis_wanted) brunt_tree_complain_key(reader->tree, where, "'axis' is missing: a direction");
-    if (measure->kind != BRUNT_MEASURE_EXTENT && measure->kind != BRUNT_MEASURE_PROFILE)
-        fill_slab(reader, where, measure);
+    fill_slab(reader, where, measure); // what has no rows for from and to has none
     if (measure->kind == BRUNT_MEASURE_FIELD && axis && !brunt_tree_child(where, "center"))
         brunt_add_default(reader, where, "center", "0");
     brunt_vector_of(where, "center", measure->center);
