@@ -30,19 +30,20 @@ static inline real log_strain_near(double limit) {
     return (real)(g * g * (1 - (sizeof(real) == 4 ? 1e-5 : 1e-13)));
 }
 
-// Whether all points from `begin` to `end` are that near to the identity; F: an array for each component, rows one
-// after the other.
+// Whether all points from `begin` to `end` are that near to the identity, or are no numbers, which no limit holds for;
+// F: an array for each component, rows one after the other. Signs are gathered: many machines compare vectors piece by
+// piece.
 BRUNT_INLINE bool log_strain_all_near_dim(int dim, real *const *F, int64_t begin, int64_t end, real near) {
-    lane_mask all = lanes_set(-1) < 0;
+    lane_mask negative = lanes_set(-1) < 0;
     for (int64_t s = begin; s < end; s += BRUNT_LANES) {
-        lanes square = lanes_set(0);
+        lanes excess = lanes_set(-near);
         for (int c = 0; c < dim * dim; c++) {
             const lanes g = lanes_load(F[c] + s) - (real)(c % (dim + 1) == 0);
-            square += g * g;
+            excess += g * g;
         }
-        all &= square < near; // not of what is no number
+        negative &= (lane_mask)excess;
     }
-    return !lanes_any(~all);
+    return !lanes_any(negative >= 0);
 }
 static inline bool log_strain_all_near(int dim, real *const *F, int64_t begin, int64_t end, double limit) {
     const real near = log_strain_near(limit);

@@ -153,6 +153,6 @@ int brunt_broad_phase(const brunt_contact_context *m, brunt_body *mpm, int mpm_c
     }
     f->particles.grid_count = 0;
     if (RESERVE(&f->nodes, dof_of, s->node_count + 1)) return -1;
-    for (int32_t n = 0; n < s->node_count; n++) f->nodes.dof_of[n] = -1;
+    memset(f->nodes.dof_of, 0xff, (size_t)s->node_count * sizeof *f->nodes.dof_of); // -1: none
     return 0;
 }

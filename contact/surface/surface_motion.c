@@ -53,6 +53,7 @@ static void find_speeds(void *context, int64_t begin, int64_t end, int worker) {
     for (int64_t k = begin; k < end; k++) {
         const real *v = s->fem[k]->node + BRUNT_FEM_V;
         double fastest = 0;
+#pragma GCC unroll 4
         for (int32_t n = s->node_range[k]; n < s->node_end[k]; n++) {
             const real *at = v + (size_t)s->node[n] * BRUNT_FEM_NODE_REALS;
             const double square = (double)(at[0] * at[0] + at[1] * at[1] + at[2] * at[2]);
