@@ -17,10 +17,12 @@ brunt_world_def brunt_world_def_default(void) {
         .transfer = BRUNT_APIC,
         .flip = 0.99,
         .energy_limit = 0.1,
+        .newton = {.tolerance = 1e-6, .iterations = 100, .cut = 6, .accuracy = 1e-3},
         .contact = {.method = BRUNT_CONTACT_MULTI_VELOCITY,
                     .iterations = -1,
                     .tolerance = 0.01,
-                    .transfer = BRUNT_APIC},
+                    .transfer = BRUNT_APIC,
+                    .friction_iterations = 1},
     };
 }
 

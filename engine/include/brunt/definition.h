@@ -13,6 +13,23 @@
 extern "C" {
 #endif
 
+// Time integration: central differences, or steps that minimise an energy.
+typedef enum brunt_scheme { BRUNT_EXPLICIT, BRUNT_IMPLICIT } brunt_scheme;
+// Of implicit steps: backward Euler (first order, dissipates), Newmark with gamma 1/2 and beta 1/4 (second order).
+typedef enum brunt_integrator { BRUNT_EULER, BRUNT_NEWMARK } brunt_integrator;
+// Of the linear systems of implicit steps: by size and step, a factorisation, conjugate gradients.
+typedef enum brunt_solver { BRUNT_SOLVER_AUTO, BRUNT_SOLVER_DIRECT, BRUNT_SOLVER_PCG } brunt_solver;
+
+// Newton's method in implicit steps.
+typedef struct brunt_newton_def {
+    double tolerance;    // [-] > 0, of the slowest wave speed: a step has converged when its last correction moves no
+                         // material point and no node of a mesh faster than that; default 1e-6
+    int iterations;      // most of a step; default 100
+    int cut;             // most halvings of a step that does not converge; default 6
+    brunt_solver solver; // default auto
+    double accuracy;     // [-] 0..1, of the residual of a linear system, of conjugate gradients; default 1e-3
+} brunt_newton_def;
+
 // B-splines of the grid, by order.
 typedef enum brunt_kernel { BRUNT_LINEAR = 1, BRUNT_QUADRATIC = 2, BRUNT_CUBIC = 3 } brunt_kernel;
 // Harlow 1964; Brackbill and Ruppel 1986; Jiang, Schroeder, Selle, Teran and Stomakhin 2015.
@@ -24,7 +41,8 @@ typedef enum brunt_contact_method {
     BRUNT_CONTACT_NONE,
     BRUNT_CONTACT_MULTI_VELOCITY, // at nodes that two bodies reach (Bardenhagen, Brackbill and Sulsky 2000)
     BRUNT_CONTACT_AUGURY,
-    BRUNT_CONTACT_TIED
+    BRUNT_CONTACT_TIED,
+    BRUNT_CONTACT_BARRIER // of implicit steps: an energy that grows without end as gaps close (Li and others 2020)
 } brunt_contact_method;
 // How augury makes the velocity that opposing bodies are to have where they meet.
 typedef enum brunt_augury_form {
@@ -51,6 +69,12 @@ typedef struct brunt_contact_def {
                       // the first one's; 0: when nothing changes, or by `iterations`; of form affine; default 0.01
     double cell;      // [m] of the contact grid; 0 = the mean surface edge (paper: twice that)
     brunt_transfer transfer; // of the paper form: BRUNT_PIC or BRUNT_APIC (default)
+    // Of barriers.
+    double distance;         // [m] gaps beyond it know nothing of each other; 0 = a tenth of the shortest edge or
+                             // spacing of particles
+    double stiffness;        // [Pa] of the barrier; 0 = a tenth of Young's modulus of the softer body of a pair
+    double slip_speed;       // [m/s] below it friction grows with the speed; 0 = a thousandth of the slowest wave speed
+    int friction_iterations; // solutions of a step, each with the pressures of the one before; default 1
     bool allow_overlap; // accept bodies that overlap at the start (meshes: by more than a fifth of an edge), or lie
                         // behind a plane of condition separate; default false: an error
     brunt_pair_def *pairs;
@@ -58,8 +82,11 @@ typedef struct brunt_contact_def {
 } brunt_contact_def;
 
 typedef struct brunt_world_def {
-    int cookie;        // set by brunt_world_def_default
-    int dimension;     // 3 (default), or 2 = plane strain of unit thickness
+    int cookie;                  // set by brunt_world_def_default
+    brunt_scheme scheme;         // default explicit
+    brunt_integrator integrator; // of implicit steps; default Euler
+    brunt_newton_def newton;     // of implicit steps
+    int dimension;               // 3 (default), or 2 = plane strain of unit thickness
     bool axisymmetric; // with dimension 2: x is the distance r >= 0 from the axis of revolution, y along it; bodies are
                        // whole rings: masses, forces and energies are those of the full circle; default false
     double cell;       // [m] > 0 of the grid; 0 where no body is of material points
@@ -68,7 +95,7 @@ typedef struct brunt_world_def {
     brunt_transfer transfer; // default APIC
     double flip;             // [-] for FLIP: share of the particle's own velocity kept, 0..1; default 0.99
     double cfl;          // [-] 0..1, of the stable step; default 0: with material points brunt_default_cfl, without 0.5
-    double step;         // [s] fixed time step, 0 = from cfl
+    double step;         // [s] fixed time step, 0 = from cfl; implicit steps: > 0
     double least_step;   // [s] the run stops, with the reason, when the stable step falls below it; default 0:
                          // when steps that follow it fall below a millionth of the greatest so far
     double end;          // [s] > 0; the step that would pass it is cut to end on it

@@ -1,0 +1,418 @@
+// Surfaces, particles and planes that barriers keep apart.
+#include "scheme/implicit_contact.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "base/error.h"
+#include "base/memory.h"
+#include "contact/barrier/barrier_function.h"
+#include "grid/bspline.h"
+#include "materials/material.h"
+
+static int out_of_memory(brunt_error *error) {
+    return brunt_fail(error, BRUNT_FAILED, "out of memory for the contact of bodies");
+}
+
+// ------------------------------------------------------------------------------------------ stiffness and distance
+
+// [Pa] Young's modulus, or of what has none that of its waves.
+static double young(const brunt_world_def *def, const brunt_world *world, int body) {
+    const brunt_material *material = brunt_body_ref_material(&world->bodies.all[body]);
+    for (int32_t m = 0; m < def->material_count; m++) {
+        const brunt_material_def *from = &def->materials[m];
+        const brunt_model *model = brunt_find_strength(from->strength);
+        for (int k = 0; model && !strcmp(from->name, material->name) && k < model->parameter_count; k++)
+            if (!strcmp(model->parameters[k].key, "E") && from->strength_parameters[k] > 0)
+                return from->strength_parameters[k];
+    }
+    return (double)material->density * (double)material->wave_speed * (double)material->wave_speed;
+}
+
+// [m] shortest edge of a mesh at the start, or spacing of particles.
+static double smallest_size(const brunt_world *world, int body) {
+    const brunt_body_ref *ref = &world->bodies.all[body];
+    return ref->mpm ? ref->mpm->spacing
+                    : world->bodies.mesh_reports[ref->fem - world->bodies.fem].quality.shortest_edge;
+}
+
+static double slowest_wave(const brunt_world *world) {
+    double slowest = INFINITY;
+    for (int b = 0; b < world->bodies.count; b++)
+        slowest = fmin(slowest, (double)brunt_body_ref_material(&world->bodies.all[b])->wave_speed);
+    return slowest;
+}
+
+// ------------------------------------------------------------------------------------------ pairs and planes
+
+static bool is_wall(const brunt_wall *wall) { return !wall->region && wall->plane.condition == BRUNT_SEPARATE; }
+static bool plane_meets(const brunt_wall *wall, int body) { return wall->body < 0 || wall->body == body; }
+
+// Pairs of bodies that barriers keep apart; `c->pair` NULL: counts them.
+static void list_pairs(brunt_implicit_contact *c, const brunt_world *world) {
+    c->pair_count = 0;
+    for (int32_t a = 0; a < world->bodies.count; a++)
+        for (int32_t b = a; b < world->bodies.count; b++) {
+            const int32_t p = brunt_pair_of(&world->pairs.map, a, b);
+            if (p < 0 || world->pairs.pair[p].method != BRUNT_CONTACT_BARRIER) continue;
+            if (c->pair) {
+                c->pair[c->pair_count] =
+                    (brunt_barrier_pair){.a = a, .b = b, .friction = world->pairs.pair[p].friction};
+                c->pair_account[c->pair_count] = p;
+            }
+            c->pair_count++;
+        }
+}
+
+static void list_planes(brunt_implicit_contact *c, const brunt_world *world) {
+    c->plane_count = 0;
+    for (int32_t w = 0; w < world->boundaries.wall_count; w++) {
+        if (!is_wall(&world->boundaries.walls[w])) continue;
+        if (c->plane) c->plane_wall[c->plane_count] = w;
+        c->plane_count++;
+    }
+}
+
+static int make_rooms(brunt_implicit_contact *c, const brunt_world *world, brunt_error *error) {
+    list_pairs(c, world);
+    list_planes(c, world);
+    const size_t pairs = (size_t)c->pair_count + 1, planes = (size_t)c->plane_count + 1;
+    c->pair = brunt_alloc(pairs * sizeof *c->pair);
+    c->pair_account = brunt_alloc(pairs * sizeof *c->pair_account);
+    c->plane = brunt_alloc(planes * sizeof *c->plane);
+    c->plane_wall = brunt_alloc(planes * sizeof *c->plane_wall);
+    c->meets = brunt_alloc(planes * sizeof *c->meets);
+    c->force = brunt_alloc((pairs + planes) * sizeof *c->force);
+    c->force_before = brunt_alloc((pairs + planes) * sizeof *c->force_before);
+    c->has_points = brunt_alloc((size_t)world->bodies.mpm_count + 1);
+    bool made = c->pair && c->pair_account && c->plane && c->plane_wall && c->meets && c->force && c->force_before &&
+                c->has_points;
+    for (int32_t q = 0; made && q < c->plane_count; q++)
+        made = (c->meets[q] = brunt_alloc((size_t)world->bodies.count)) != NULL;
+    if (!made) return out_of_memory(error);
+    list_pairs(c, world);
+    list_planes(c, world);
+    return BRUNT_OK;
+}
+
+// A tenth of the finest size among bodies that meet something, unless the definition says.
+static double contact_distance(const brunt_implicit_contact *c, const brunt_world *world,
+                               const brunt_contact_def *def) {
+    double finest = INFINITY;
+    if (def->distance > 0) return def->distance;
+    for (int32_t p = 0; p < c->pair_count; p++)
+        finest = fmin(finest, fmin(smallest_size(world, c->pair[p].a), smallest_size(world, c->pair[p].b)));
+    for (int32_t q = 0; q < c->plane_count; q++)
+        for (int b = 0; b < world->bodies.count; b++)
+            if (c->meets[q][b]) finest = fmin(finest, smallest_size(world, b));
+    return brunt_barrier_default_distance(finest);
+}
+
+static void fill_pairs(brunt_implicit_contact *c, const brunt_world *world, const brunt_world_def *def, double slip) {
+    const brunt_contact_def *contact = &def->contact;
+    for (int32_t p = 0; p < c->pair_count; p++) {
+        brunt_barrier_pair *pair = &c->pair[p];
+        pair->distance = c->distance;
+        pair->slip_speed = slip;
+        pair->stiffness = contact->stiffness > 0
+                              ? contact->stiffness
+                              : brunt_barrier_default_stiffness(young(def, world, pair->a), young(def, world, pair->b));
+        brunt_barrier_shares(pair, world->bodies.all[pair->a].fem != NULL, world->bodies.all[pair->b].fem != NULL);
+        for (int side = 0; side < 2; side++) {
+            const brunt_body *mpm = world->bodies.all[side ? pair->b : pair->a].mpm;
+            if (mpm) c->has_points[mpm - world->bodies.mpm] = true;
+        }
+    }
+}
+
+static void fill_planes(brunt_implicit_contact *c, const brunt_world *world, const brunt_world_def *def, double slip) {
+    for (int32_t q = 0; q < c->plane_count; q++) {
+        const brunt_wall *wall = &world->boundaries.walls[c->plane_wall[q]];
+        double softest = INFINITY;
+        for (int b = 0; b < world->bodies.count; b++) {
+            if (!c->meets[q][b]) continue;
+            softest = fmin(softest, young(def, world, b));
+            const brunt_body *mpm = world->bodies.all[b].mpm;
+            if (mpm) c->has_points[mpm - world->bodies.mpm] = true;
+        }
+        c->plane[q] = (brunt_barrier_plane){.node = -1,
+                                            .meets = c->meets[q],
+                                            .distance = c->distance,
+                                            .stiffness = def->contact.stiffness,
+                                            .friction = wall->plane.friction,
+                                            .slip_speed = slip};
+        if (!(def->contact.stiffness > 0)) c->plane[q].stiffness = brunt_barrier_default_stiffness(softest, INFINITY);
+        memcpy(c->plane[q].normal, wall->plane.normal, sizeof c->plane[q].normal);
+    }
+}
+
+// ------------------------------------------------------------------------------------------ surfaces
+
+// Vertices and facets of one mesh; `number` has room for its nodes. With no room for facets it counts them.
+static void add_surface(brunt_implicit_contact *c, const brunt_fem_body *fem, const brunt_faces *faces, int32_t base,
+                        int32_t *number) {
+    memset(number, 0xff, (size_t)fem->node_count * sizeof *number);
+    for (int32_t f = 0; f < faces->count; f++)
+        for (int k = 0; k < 4; k++)
+            if (faces->node[f][k] >= 0) number[faces->node[f][k]] = 0;
+    for (int32_t n = 0; n < fem->node_count; n++) {
+        if (number[n] < 0) continue;
+        if (c->facet) {
+            for (int a = 0; a < 3; a++)
+                c->rest[c->vertex_count][a] = a < fem->dim ? (double)fem->start[4 * (size_t)n + (size_t)a] : 0;
+            c->body[c->vertex_count] = fem->index;
+            c->node[c->vertex_count] = base + n;
+        }
+        number[n] = c->vertex_count++;
+    }
+    for (int32_t f = 0; c->facet && f < faces->count; f++)
+        for (int k = 0; k < 4; k++)
+            c->facet[c->facet_count + f][k] = faces->node[f][k] < 0 ? -1 : number[faces->node[f][k]];
+    c->facet_count += faces->count;
+}
+
+static int walk_surfaces(brunt_implicit_contact *c, const brunt_world *world) {
+    int32_t base = 0; // block nodes of meshes come first, body by body
+    c->vertex_count = c->facet_count = 0;
+    for (int k = 0; k < world->bodies.fem_count; k++) {
+        const brunt_fem_body *fem = &world->bodies.fem[k];
+        int32_t *number = brunt_alloc(((size_t)fem->node_count + 1) * sizeof *number);
+        brunt_faces faces;
+        if (!number || brunt_fem_faces(fem, &faces)) {
+            brunt_free(number);
+            return -1;
+        }
+        add_surface(c, fem, &faces, base, number);
+        base += fem->node_count;
+        brunt_faces_free(&faces);
+        brunt_free(number);
+    }
+    return 0;
+}
+
+static int make_surfaces(brunt_implicit_contact *c, const brunt_world *world, brunt_error *error) {
+    if (walk_surfaces(c, world)) return out_of_memory(error);
+    const size_t vertices = (size_t)c->vertex_count + 1;
+    c->rest = brunt_alloc(vertices * sizeof *c->rest);
+    c->place = brunt_alloc(vertices * sizeof *c->place);
+    c->body = brunt_alloc(vertices * sizeof *c->body);
+    c->node = brunt_alloc(vertices * sizeof *c->node);
+    c->facet = brunt_alloc(((size_t)c->facet_count + 1) * sizeof *c->facet);
+    if (!c->rest || !c->place || !c->body || !c->node || !c->facet || walk_surfaces(c, world))
+        return out_of_memory(error);
+    const brunt_barrier_mesh mesh = {.dim = world->settings.dimension,
+                                     .vertex_count = c->vertex_count,
+                                     .facet_count = c->facet_count,
+                                     .rest = (const double(*)[3])c->rest,
+                                     .body = c->body,
+                                     .facet = (const int32_t(*)[4])c->facet};
+    return brunt_barrier_set_mesh(c->barrier, &mesh, error);
+}
+
+// ------------------------------------------------------------------------------------------ the start
+
+typedef struct looked_at {
+    const brunt_body_ref *body;
+    const brunt_body_def *other; // whose shape nothing of the body may lie in
+    int dim;
+} looked_at;
+
+// A node or particle of a body in the frame that another's shape is described in; false: past the last.
+static bool local_point(const looked_at *l, int64_t n, double x[3], double local[3]) {
+    brunt_body *mpm = l->body->mpm;
+    if (n >= (mpm ? mpm->particles.slots : l->body->fem->node_count)) return false;
+    for (int a = 0; a < 3; a++)
+        x[a] = a >= l->dim ? 0
+               : mpm       ? (double)brunt_field(&mpm->particles, BRUNT_FIELD_position)[a][n]
+                           : (double)brunt_fem_node(l->body->fem, (int32_t)n)[a];
+    const brunt_placement *place = &l->other->place;
+    for (int a = 0; a < 3; a++) {
+        local[a] = 0;
+        for (int r = 0; r < 3; r++) local[a] += place->rotation[3 * r + a] * (x[r] - place->translation[r]);
+    }
+    return true;
+}
+
+static const brunt_body_def *definition_of(const brunt_world_def *def, const char *name) {
+    for (int32_t i = 0; i < def->body_count; i++)
+        if (!strcmp(def->bodies[i].name, name)) return &def->bodies[i];
+    return NULL;
+}
+
+// Barriers know gaps, not insides: bodies must begin outside each other, as far as shapes can tell.
+static int check_start(const brunt_implicit_contact *c, const brunt_world *world, const brunt_world_def *def,
+                       brunt_error *error) {
+    for (int32_t q = 0; q < 2 * c->pair_count; q++) {
+        const brunt_barrier_pair *pair = &c->pair[q / 2];
+        const int one = q % 2 ? pair->b : pair->a, other = q % 2 ? pair->a : pair->b;
+        const looked_at l = {&world->bodies.all[one], definition_of(def, brunt_body_name(world, other)),
+                             world->settings.dimension};
+        double x[3], local[3];
+        if (one == other || !l.other || l.other->mesh.node_count || l.other->method != BRUNT_FEM) continue;
+        for (int64_t n = 0; local_point(&l, n, x, local); n++)
+            if (!(brunt_shape_distance(&l.other->shape, l.dim, local) > 0))
+                return brunt_fail(error, BRUNT_BAD_INPUT,
+                                  "bodies.%s touches bodies.%s at the start, or lies in it, at (%.6g, %.6g, %.6g) m: "
+                                  "barriers want a gap",
+                                  brunt_body_name(world, one), brunt_body_name(world, other), x[0], x[1], x[2]);
+    }
+    return BRUNT_OK;
+}
+
+// ------------------------------------------------------------------------------------------ making
+
+int brunt_implicit_contact_make(brunt_implicit_contact *c, brunt_world *world, const brunt_world_def *def,
+                                brunt_error *error) {
+    int status = make_rooms(c, world, error);
+    if (status || c->pair_count + c->plane_count == 0) return status;
+    const double slip = def->contact.slip_speed > 0 ? def->contact.slip_speed : 1e-3 * slowest_wave(world);
+    for (int32_t q = 0; q < c->plane_count; q++)
+        for (int b = 0; b < world->bodies.count; b++)
+            c->meets[q][b] = plane_meets(&world->boundaries.walls[c->plane_wall[q]], b);
+    c->distance = contact_distance(c, world, &def->contact);
+    fill_pairs(c, world, def, slip);
+    fill_planes(c, world, def, slip);
+    if ((status = check_start(c, world, def, error))) return status;
+    if (!(c->barrier = brunt_barrier_make(error))) return BRUNT_FAILED;
+    status = make_surfaces(c, world, error);
+    return status ? status : brunt_barrier_set_pairs(c->barrier, c->pair, c->pair_count, error);
+}
+
+void brunt_implicit_contact_free(brunt_implicit_contact *c) {
+    brunt_barrier_free(c->barrier);
+    for (int32_t q = 0; c->meets && q < c->plane_count; q++) brunt_free(c->meets[q]);
+    void *const all[] = {c->rest,  c->place,      c->body,  c->node,  c->facet,        c->has_points, c->x,
+                         c->area,  c->weight,     c->owner, c->first, c->point_node,   c->pair,       c->pair_account,
+                         c->plane, c->plane_wall, c->meets, c->force, c->force_before, c->before};
+    for (size_t k = 0; k < sizeof all / sizeof *all; k++) brunt_free(all[k]);
+    *c = (brunt_implicit_contact){.barrier = NULL};
+}
+
+size_t brunt_implicit_contact_bytes(const brunt_implicit_contact *c) {
+    return (size_t)c->vertex_count * 56 + (size_t)c->facet_count * 16 + c->x_capacity + c->area_capacity +
+           c->weight_capacity + c->owner_capacity + c->point_node_capacity + c->first_capacity + c->before_capacity;
+}
+
+// ------------------------------------------------------------------------------------------ the points of a step
+
+// Nodes and weights of a particle, those alone that are unknowns; returns how many.
+static int weigh(const brunt_grid *grid, const brunt_block *block, int bin, const double x[3], const int32_t *number,
+                 int32_t *node, double *weight) {
+    double w[3][4];
+    int from[3], count = 0;
+    brunt_node_local(grid, bin, from);
+    for (int a = 0; a < grid->dim; a++) {
+        const double corner = grid->origin[a] + (double)grid->h * (block->coord[a] * grid->side + from[a]);
+        brunt_bspline_weights(grid->order, (x[a] - corner) / (double)grid->h, w[a]);
+    }
+    const int deep = grid->dim == 3 ? grid->order : 0;
+    for (int i = 0; i <= grid->order; i++)
+        for (int j = 0; j <= grid->order; j++)
+            for (int k = 0; k <= deep; k++) {
+                const int at[3] = {from[0] + i, from[1] + j, from[2] + k};
+                int corner = 0, local[3] = {0};
+                for (int a = 0; a < grid->dim; a++) {
+                    const int beyond = at[a] >= grid->side;
+                    corner = 2 * corner + beyond, local[a] = at[a] - beyond * grid->side;
+                }
+                const int32_t n = number[(int64_t)block->slot[corner] * BRUNT_BLOCK_NODES +
+                                         brunt_node_index(grid, local[0], local[1], local[2])];
+                if (n < 0) continue;
+                node[count] = n;
+                weight[count++] = w[0][i] * w[1][j] * (grid->dim == 3 ? w[2][k] : 1);
+            }
+    return count;
+}
+
+typedef struct point_job {
+    brunt_implicit_contact *c;
+    brunt_body *body;
+    const int32_t *number;
+} point_job;
+
+// The particles of a block, as points from number `point` on.
+static void add_points(const point_job *job, int32_t block_index, int32_t point) {
+    brunt_implicit_contact *c = job->c;
+    const brunt_grid *grid = &job->body->grid;
+    const brunt_block *block = &grid->blocks[block_index];
+    brunt_particles *p = &job->body->particles;
+    real *const *x = brunt_field(p, BRUNT_FIELD_position);
+    const real *volume = brunt_field(p, BRUNT_FIELD_reference_volume)[0];
+    for (int64_t s = block->first; s < block->first + block->count; s++, point++) {
+        const int64_t at = c->first[point];
+        for (int a = 0; a < 3; a++) c->x[point][a] = a < p->dim ? (double)x[a][s] : 0;
+        c->area[point] = brunt_barrier_particle_area(p->dim, (double)volume[s]);
+        c->owner[point] = job->body->index;
+        const int count = weigh(grid, block, p->bin[s], c->x[point], job->number, c->point_node + at, c->weight + at);
+        c->first[point + 1] = at + count;
+    }
+}
+
+static int32_t count_points(const brunt_implicit_contact *c, const brunt_world *world, int64_t *nodes) {
+    int64_t count = 0;
+    *nodes = 0;
+    for (int i = 0; i < world->bodies.mpm_count; i++) {
+        const brunt_body *body = &world->bodies.mpm[i];
+        if (!c->has_points[i]) continue;
+        count += body->particles.count;
+        *nodes += body->particles.count * (int64_t)pow(body->grid.order + 1, body->grid.dim);
+    }
+    return count < INT32_MAX ? (int32_t)count : -1;
+}
+
+int brunt_implicit_contact_points(brunt_implicit_contact *c, const brunt_world *world, const brunt_unknowns *u,
+                                  brunt_error *error) {
+    if (!c->barrier) return BRUNT_OK;
+    int64_t nodes;
+    const int32_t count = count_points(c, world, &nodes);
+    const size_t n = (size_t)count + 1;
+    if (count < 0 || BRUNT_RESERVE(c->x, n, 0) || BRUNT_RESERVE(c->area, n, 0) || BRUNT_RESERVE(c->owner, n, 0) ||
+        BRUNT_RESERVE(c->first, n + 1, 0) || BRUNT_RESERVE(c->point_node, (size_t)nodes + 1, 0) ||
+        BRUNT_RESERVE(c->weight, (size_t)nodes + 1, 0))
+        return out_of_memory(error);
+    c->first[0] = 0;
+    c->point_count = 0;
+    for (int i = 0; i < world->bodies.mpm_count; i++) {
+        const point_job job = {.c = c, .body = &world->bodies.mpm[i], .number = u->number[i]};
+        for (int32_t b = 0; c->has_points[i] && b < job.body->grid.block_count; b++) {
+            add_points(&job, b, c->point_count);
+            c->point_count += job.body->grid.blocks[b].count;
+        }
+    }
+    for (int32_t v = 0; v < c->vertex_count; v++) {
+        const int32_t unknown = c->node[v];
+        for (int a = 0; a < u->dim; a++) c->place[v][a] = u->place[unknown * (int64_t)u->dim + a];
+    }
+    return BRUNT_OK;
+}
+
+int brunt_implicit_contact_begin(brunt_implicit_contact *c, const brunt_world *world, const brunt_unknowns *u,
+                                 const brunt_team *team, const brunt_contact_rule *rule, brunt_error *error) {
+    if (!c->barrier) return BRUNT_OK;
+    const int64_t all = (int64_t)u->count * u->dim;
+    if (BRUNT_RESERVE(c->before, (size_t)all + 1, 0)) return out_of_memory(error);
+    for (int64_t k = 0; k < all; k++) c->before[k] = rule->dt * u->velocity[k];
+    for (int32_t q = 0; q < c->plane_count; q++) {
+        const brunt_plane_def *plane = &world->boundaries.walls[c->plane_wall[q]].plane;
+        c->plane[q].node = u->plane[c->plane_wall[q]];
+        for (int a = 0; a < 3; a++) c->plane[q].origin[a] = plane->point[a] + plane->velocity[a] * world->clock.time;
+    }
+    const brunt_barrier_step step = {.x = (const double(*)[3])c->place,
+                                     .node = c->node,
+                                     .particles = {.count = c->point_count,
+                                                   .x = (const double(*)[3])c->x,
+                                                   .area = c->area,
+                                                   .body = c->owner,
+                                                   .first = c->first,
+                                                   .node = c->point_node,
+                                                   .weight = c->weight},
+                                     .planes = c->plane,
+                                     .plane_count = c->plane_count,
+                                     .dt = rule->dt,
+                                     .factor = rule->factor,
+                                     .before = rule->factor == 1 ? NULL : c->before};
+    const int status = brunt_barrier_set_step(c->barrier, &step, error);
+    if (status || !brunt_barrier_has_friction(c->barrier)) return status;
+    return brunt_barrier_lag(c->barrier, team, rule->rest, error);
+}

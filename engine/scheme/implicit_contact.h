@@ -1,0 +1,51 @@
+// Contact of implicit steps: which surfaces, particles and planes a barrier keeps apart, and what it has done.
+#pragma once
+
+#include "contact/barrier/barrier.h"
+#include "scheme/unknowns.h"
+
+// Surfaces of all meshes in one numbering, and points of all bodies that meet something.
+typedef struct brunt_implicit_contact {
+    brunt_barrier *barrier; // NULL: nothing meets
+    // Surfaces, by the bodies of elements in their order: made once.
+    int32_t vertex_count, facet_count;
+    double (*rest)[3], (*place)[3]; // [m] at the start of the run, of the step
+    int32_t *body, *node;           // of each vertex: the body among all, its block node
+    int32_t (*facet)[4];
+    // Points, made for each step.
+    bool *has_points; // of each body of points: whether it meets something
+    double (*x)[3], *area, *weight;
+    int32_t *owner, *point_node, point_count;
+    int64_t *first;
+    size_t x_capacity, area_capacity, weight_capacity, owner_capacity, point_node_capacity, first_capacity;
+    // Pairs and planes in their order, with their accounts.
+    brunt_barrier_pair *pair;
+    int32_t *pair_account; // among world->pairs
+    int32_t pair_count;
+    brunt_barrier_plane *plane;
+    int32_t *plane_wall;
+    bool **meets; // of each plane: the bodies it is for
+    int32_t plane_count;
+    brunt_barrier_force *force, *force_before; // pairs, then planes
+    double *before;                            // [m] dt times velocities at the start; of Newmark
+    size_t before_capacity;
+    double distance; // [m]
+    bool told_small; // that a gap has become small
+} brunt_implicit_contact;
+
+// Pairs, planes and surfaces of a world whose bodies are made. BRUNT_OK, or the code of what is wrong.
+int brunt_implicit_contact_make(brunt_implicit_contact *c, brunt_world *world, const brunt_world_def *def,
+                                brunt_error *error);
+void brunt_implicit_contact_free(brunt_implicit_contact *c);
+size_t brunt_implicit_contact_bytes(const brunt_implicit_contact *c);
+// Places and weights of a step, whose unknowns have numbers. BRUNT_OK, or BRUNT_FAILED.
+int brunt_implicit_contact_points(brunt_implicit_contact *c, const brunt_world *world, const brunt_unknowns *u,
+                                  brunt_error *error);
+// How a step is integrated, as far as friction asks.
+typedef struct brunt_contact_rule {
+    double dt, factor;  // [s]; 1 of backward Euler, 2 of Newmark (contact/barrier/barrier.h)
+    const double *rest; // no displacement, of all unknowns
+} brunt_contact_rule;
+// The step begins. Friction is by what presses at its start.
+int brunt_implicit_contact_begin(brunt_implicit_contact *c, const brunt_world *world, const brunt_unknowns *u,
+                                 const brunt_team *team, const brunt_contact_rule *rule, brunt_error *error);

@@ -1,0 +1,25 @@
+// The terms of an implicit step that are of no body and no contact: inertia, and loads that do not follow what they
+// act on.
+#pragma once
+
+#include "linear/term.h"
+#include "scheme/unknowns.h"
+
+// 1/(2c) sum m |u - aim|^2: what moves wants to go on. c = 2 alpha beta dt^2.
+typedef struct brunt_inertia {
+    const brunt_unknowns *unknowns;
+    const double *aim; // [m] displacement without forces
+    double c;          // [s^2]
+} brunt_inertia;
+
+// -sum f . u.
+typedef struct brunt_dead_loads {
+    const brunt_unknowns *unknowns;
+    const double *force; // [N] of each component
+} brunt_dead_loads;
+
+extern const brunt_term_ops brunt_inertia_ops, brunt_dead_load_ops;
+
+// Sums over nodes that are the same for any number of threads: `add` takes the nodes of a stretch.
+typedef brunt_energy_sum brunt_stretch_fn(const void *context, int32_t begin, int32_t end);
+brunt_energy_sum brunt_sum_nodes(const brunt_team *team, int32_t count, brunt_stretch_fn *add, const void *context);

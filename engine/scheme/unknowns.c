@@ -1,0 +1,170 @@
+// Which nodes an implicit step moves: numbers, masses, velocities.
+#include <math.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "base/memory.h"
+#include "scheme/unknowns.h"
+
+// Of the heaviest node of a body: lighter ones have no weight at any particle, and stay at rest.
+static const double LEAST_SHARE = 1e-28;
+
+static bool tied(const brunt_world *world, int i, int k) {
+    const int32_t p = brunt_pair_of(&world->pairs.map, world->bodies.mpm[i].index, world->bodies.mpm[k].index);
+    return p >= 0 && world->pairs.pair[p].method == BRUNT_CONTACT_TIED;
+}
+
+// Bodies that share nodes, by the first of them.
+static void find_ties(const brunt_world *world, int32_t *tie) {
+    for (int i = 0; i < world->bodies.mpm_count; i++) tie[i] = i;
+    for (int i = 0; i < world->bodies.mpm_count; i++)
+        for (int k = 0; k < i; k++) {
+            if (!tied(world, i, k)) continue;
+            const int32_t low = tie[i] < tie[k] ? tie[i] : tie[k], high = tie[i] < tie[k] ? tie[k] : tie[i];
+            for (int q = 0; q <= i; q++)
+                if (tie[q] == high) tie[q] = low;
+        }
+}
+
+int brunt_unknowns_make(brunt_unknowns *u, const brunt_world *world) {
+    const brunt_bodies *bodies = &world->bodies;
+    u->dim = world->settings.dimension;
+    u->plane = brunt_alloc(((size_t)world->boundaries.wall_count + 1) * sizeof *u->plane);
+    u->base = brunt_alloc(((size_t)bodies->fem_count + 1) * sizeof *u->base);
+    u->number = brunt_alloc(((size_t)bodies->mpm_count + 1) * sizeof *u->number);
+    u->number_capacity = brunt_alloc(((size_t)bodies->mpm_count + 1) * sizeof *u->number_capacity);
+    u->tie = brunt_alloc(((size_t)bodies->mpm_count + 1) * sizeof *u->tie);
+    if (u->tie) find_ties(world, u->tie);
+    return u->tie && u->plane && u->base && u->number && u->number_capacity ? 0 : -1;
+}
+
+void brunt_unknowns_free(brunt_unknowns *u, const brunt_bodies *bodies) {
+    for (int i = 0; u->number && i < bodies->mpm_count; i++) brunt_free(u->number[i]);
+    void *const all[] = {u->tie,   u->plane,    u->base, u->number, u->number_capacity, u->mass,
+                         u->place, u->velocity, u->held, u->holder, u->target,          u->end};
+    for (size_t k = 0; k < sizeof all / sizeof *all; k++) brunt_free(all[k]);
+    *u = (brunt_unknowns){.dim = u->dim};
+}
+
+size_t brunt_unknowns_bytes(const brunt_unknowns *u, const brunt_bodies *bodies) {
+    size_t bytes = u->mass_capacity + u->place_capacity + u->velocity_capacity + u->held_capacity + u->holder_capacity +
+                   u->target_capacity + u->end_capacity;
+    for (int i = 0; i < bodies->mpm_count; i++) bytes += u->number_capacity[i];
+    return bytes;
+}
+
+// ------------------------------------------------------------------------------------------ numbers
+
+// The number that a node has already of a body that this one is tied to, -1: none.
+static int32_t shared_number(const brunt_unknowns *u, const brunt_bodies *bodies, int i, int64_t k) {
+    const int32_t *coord = bodies->mpm[i].grid.slots[k / BRUNT_BLOCK_NODES].coord;
+    for (int other = u->tie[i]; other < i; other++) {
+        if (u->tie[other] != u->tie[i]) continue;
+        const int32_t slot = brunt_grid_slot(&bodies->mpm[other].grid, brunt_key(coord));
+        const int64_t at = (int64_t)slot * BRUNT_BLOCK_NODES + k % BRUNT_BLOCK_NODES;
+        if (slot >= 0 && u->number[other][at] >= 0) return u->number[other][at];
+    }
+    return -1;
+}
+
+// Numbers of the nodes that have weight at some particle.
+static int number_grid(brunt_unknowns *u, const brunt_bodies *bodies, int i) {
+    const brunt_grid *grid = &bodies->mpm[i].grid;
+    const int64_t nodes = (int64_t)grid->slot_count * BRUNT_BLOCK_NODES;
+    if (BRUNT_RESERVE_IN(u->number[i], u->number_capacity[i], (size_t)nodes + 1, 0)) return -1;
+    double most = 0;
+    for (int64_t k = 0; k < nodes; k++) most = fmax(most, (double)grid->nodes[k * BRUNT_NODE_REALS + BRUNT_NODE_MASS]);
+    int64_t next = u->count;
+    for (int64_t k = 0; k < nodes; k++) {
+        const bool weighs = (double)grid->nodes[k * BRUNT_NODE_REALS + BRUNT_NODE_MASS] > LEAST_SHARE * most;
+        u->number[i][k] = weighs ? shared_number(u, bodies, i, k) : -1;
+        if (weighs && u->number[i][k] < 0) u->number[i][k] = (int32_t)next++;
+        if (next > INT32_MAX / 3) return -1;
+    }
+    u->count = (int32_t)next;
+    return 0;
+}
+
+static int reserve(brunt_unknowns *u) {
+    const size_t n = (size_t)u->count + 1, all = n * (size_t)u->dim;
+    return BRUNT_RESERVE(u->mass, n, 0) || BRUNT_RESERVE(u->place, all, 0) || BRUNT_RESERVE(u->velocity, all, 0) ||
+                   BRUNT_RESERVE(u->held, all, 0) || BRUNT_RESERVE(u->holder, all, 0) ||
+                   BRUNT_RESERVE(u->target, all, 0) || BRUNT_RESERVE(u->end, all, 0)
+               ? -1
+               : 0;
+}
+
+static void take_mesh(brunt_unknowns *u, const brunt_fem_body *fem, int32_t base) {
+    for (int32_t i = 0; i < fem->node_count; i++) {
+        const real *node = brunt_fem_node(fem, i);
+        const size_t n = (size_t)(base + i);
+        u->mass[n] = (double)node[BRUNT_FEM_MASS];
+        for (int a = 0; a < u->dim; a++) {
+            u->place[n * (size_t)u->dim + (size_t)a] = (double)node[BRUNT_FEM_X + a];
+            u->velocity[n * (size_t)u->dim + (size_t)a] = (double)node[BRUNT_FEM_V + a];
+        }
+    }
+}
+
+static void take_grid(brunt_unknowns *u, const brunt_grid *grid, const int32_t *number) {
+    for (int64_t k = 0; k < (int64_t)grid->slot_count * BRUNT_BLOCK_NODES; k++) {
+        if (number[k] < 0) continue;
+        const real *node = grid->nodes + k * BRUNT_NODE_REALS;
+        const size_t n = (size_t)number[k];
+        double x[3];
+        brunt_node_position(grid, grid->slots[k / BRUNT_BLOCK_NODES].coord, (int)(k % BRUNT_BLOCK_NODES), x);
+        u->mass[n] += (double)node[BRUNT_NODE_MASS];
+        for (int a = 0; a < u->dim; a++) {
+            u->place[n * (size_t)u->dim + (size_t)a] = x[a];
+            u->velocity[n * (size_t)u->dim + (size_t)a] += (double)node[BRUNT_NODE_VELOCITY + a]; // momentum as yet
+        }
+    }
+}
+
+static bool moves(const brunt_wall *wall) {
+    const double *v = wall->plane.velocity;
+    return !wall->region && wall->plane.condition == BRUNT_SEPARATE && (v[0] != 0 || v[1] != 0 || v[2] != 0);
+}
+
+static void take_plane(brunt_unknowns *u, const brunt_plane_def *plane, double time, int32_t n) {
+    u->mass[n] = 0;
+    for (int a = 0; a < u->dim; a++) {
+        u->place[n * (int64_t)u->dim + a] = plane->point[a] + plane->velocity[a] * time;
+        u->velocity[n * (int64_t)u->dim + a] = plane->velocity[a];
+    }
+}
+
+int brunt_unknowns_number(brunt_unknowns *u, const brunt_world *world) {
+    const brunt_bodies *bodies = &world->bodies;
+    const brunt_wall *walls = world->boundaries.walls;
+    u->count = 0;
+    for (int k = 0; k < bodies->fem_count; k++) u->base[k] = u->count, u->count += bodies->fem[k].node_count;
+    u->mesh_count = u->count;
+    for (int i = 0; i < bodies->mpm_count; i++)
+        if (number_grid(u, bodies, i)) return -1;
+    for (int w = 0; w < world->boundaries.wall_count; w++) u->plane[w] = moves(&walls[w]) ? u->count++ : -1;
+    if (reserve(u)) return -1;
+    for (int k = 0; k < bodies->fem_count; k++) take_mesh(u, &bodies->fem[k], u->base[k]);
+    const int32_t grids = u->mesh_count;
+    memset(u->mass + grids, 0, (size_t)(u->count - grids) * sizeof *u->mass);
+    memset(u->velocity + (size_t)grids * (size_t)u->dim, 0,
+           (size_t)(u->count - grids) * (size_t)u->dim * sizeof *u->velocity);
+    for (int i = 0; i < bodies->mpm_count; i++) take_grid(u, &bodies->mpm[i].grid, u->number[i]);
+    for (int64_t k = (int64_t)grids * u->dim; k < (int64_t)u->count * u->dim; k++)
+        if (u->mass[k / u->dim] > 0) u->velocity[k] /= u->mass[k / u->dim];
+    for (int w = 0; w < world->boundaries.wall_count; w++)
+        if (u->plane[w] >= 0) take_plane(u, &walls[w].plane, world->clock.time, u->plane[w]);
+    return 0;
+}
+
+brunt_unknown_place brunt_unknowns_place(const brunt_unknowns *u, const brunt_bodies *bodies, int32_t n) {
+    brunt_unknown_place at = {.body = -1, .node = -1};
+    for (int a = 0; a < u->dim; a++) at.x[a] = u->place[(size_t)n * (size_t)u->dim + (size_t)a];
+    for (int k = 0; k < bodies->fem_count; k++)
+        if (n >= u->base[k] && n < u->base[k] + bodies->fem[k].node_count)
+            at.body = bodies->fem[k].index, at.node = bodies->fem[k].node_id[n - u->base[k]];
+    for (int i = 0; i < bodies->mpm_count && at.body < 0; i++)
+        for (int64_t k = 0; k < (int64_t)bodies->mpm[i].grid.slot_count * BRUNT_BLOCK_NODES && at.body < 0; k++)
+            if (u->number[i][k] == n) at.body = bodies->mpm[i].index, at.node = k;
+    return at;
+}

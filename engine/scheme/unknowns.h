@@ -1,0 +1,50 @@
+// Unknowns of an implicit step: displacements of the nodes of meshes, then of the grid nodes that particles reach, then
+// of planes that move and push, which are given.
+//
+// Numbers are made anew for each step, since the nodes that particles reach change. They follow the order of bodies,
+// nodes and slots, so that they do not depend on threads.
+#pragma once
+
+#include "world/world.h"
+
+// What the nodes bring into a step, `count` of them with `dim` components each.
+typedef struct brunt_unknowns {
+    int dim;
+    int32_t count, mesh_count; // nodes; those of meshes
+    int32_t *plane;            // of each wall: its node if it is a plane that moves and pushes, else -1
+    int32_t *base;             // of each finite-element body: its node 0
+    int32_t **number; // of each body of points: node of slot * BRUNT_BLOCK_NODES + place, -1: without weight, at rest
+    size_t *number_capacity;
+    int32_t *tie; // of each body of points: the first one that it is tied to, itself else; ties of ties hold too
+    double *mass; // [kg]
+    size_t mass_capacity;
+    double *place, *velocity; // [m], [m/s] at the start of the step
+    size_t place_capacity, velocity_capacity;
+    uint8_t *held; // of each component: whether it is given
+    size_t held_capacity;
+    int16_t *holder; // of each component: the wall that holds it + 1; 0: free
+    size_t holder_capacity;
+    double *target, *end; // [m], [m/s] displacement of held components over the step, velocity at its end
+    size_t target_capacity, end_capacity;
+} brunt_unknowns;
+
+// Arrays by body. 0, or -1: out of memory.
+int brunt_unknowns_make(brunt_unknowns *u, const brunt_world *world);
+void brunt_unknowns_free(brunt_unknowns *u, const brunt_bodies *bodies);
+size_t brunt_unknowns_bytes(const brunt_unknowns *u, const brunt_bodies *bodies);
+// Numbers, masses, places and velocities, once masses and momenta are on the grids. 0, or -1: out of memory, or more
+// nodes than there are numbers.
+int brunt_unknowns_number(brunt_unknowns *u, const brunt_world *world);
+// What walls and groups hold over a step of `dt`: components and where they go. Clears what was held.
+void brunt_unknowns_hold(brunt_unknowns *u, const brunt_world *world, double dt);
+// The first node of a mesh that displacements `way` [m] over `dt` take behind a plane that holds what lies on it, and
+// that plane; -1: none.
+int32_t brunt_unknowns_passed(const brunt_unknowns *u, const brunt_world *world, const double *way, double dt,
+                              const brunt_wall **wall);
+// What node `n` is of: a body, and its node or the slot's, for messages.
+typedef struct brunt_unknown_place {
+    int body; // among all, in order of name
+    int64_t node;
+    double x[3]; // [m]
+} brunt_unknown_place;
+brunt_unknown_place brunt_unknowns_place(const brunt_unknowns *u, const brunt_bodies *bodies, int32_t n);
