@@ -47,6 +47,7 @@ const brunt_contact_row brunt_contact_rows[BRUNT_CONTACT_ROWS] = {
     {"published", METHOD(AUGURY), FORM(PAPER), any_mesh, mark_all, act_published, NULL},
     {"averaged surface", METHOD(AUGURY), FORM(SMOOTH) | FORM(SURFACE), any_mesh, NULL, act_averaged, NULL},
     {"surface on grid", METHOD(MULTI_VELOCITY), 0, mesh_and_points, brunt_surface_on_grid_near, act_on_grid, account_on_grid},
+    {"barrier", METHOD(BARRIER), 0, any_mesh, NULL, NULL, NULL},
     {"node to facet", METHOD(AUGURY), FORM(AFFINE), any_mesh, NULL, act_at_facets, NULL},
 };
 // clang-format on

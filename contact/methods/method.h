@@ -33,7 +33,7 @@ typedef struct brunt_contact_row {
     void (*account)(const brunt_contact_context *m, const brunt_contact_work *work);
 } brunt_contact_row;
 
-enum { BRUNT_CONTACT_ROWS = 5 };
+enum { BRUNT_CONTACT_ROWS = 6 };
 extern const brunt_contact_row brunt_contact_rows[BRUNT_CONTACT_ROWS];
 
 // Whether two bodies may meet by a method, whichever of its rows that is.

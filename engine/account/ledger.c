@@ -90,6 +90,9 @@ void brunt_ledger_energy(const brunt_ledger *now, const brunt_books *books, brun
     *energy = (brunt_energy){.kinetic = now->kinetic + now->fem_kinetic,
                              .initial = now->initial_energy,
                              .transfer = now->transfer - 0.5 * (now->stress_work + now->fem_stress_work),
+                             .scheme = now->scheme,
+                             .contact = now->barrier,
+                             .friction = now->friction,
                              .external_work = now->gravity_work};
     add_bodies(books->bodies, energy);
     energy->hourglass = now->hourglass_stored + now->hourglass_lost;
@@ -99,7 +102,7 @@ void brunt_ledger_energy(const brunt_ledger *now, const brunt_books *books, brun
     for (int i = 0; i < books->bodies->count && books->eroded; i++) energy->eroded += books->eroded[i].energy;
     add_actions(books, energy);
     energy->total = energy->kinetic + energy->internal + energy->plastic + energy->hourglass + energy->contact +
-                    energy->friction + energy->viscosity + energy->transfer + energy->eroded;
+                    energy->friction + energy->viscosity + energy->transfer + energy->eroded + energy->scheme;
     energy->error = energy->total - energy->initial - energy->external_work;
     // Relative to the most that the run has been given so far, so that energy that comes and goes does not make the
     // error large where there is little. What it has may be more, when heat of an equation of state that counts from 0

@@ -11,6 +11,8 @@ typedef struct brunt_ledger {
     double fem_kinetic, fem_stress_work, hourglass_stored, hourglass_lost; // [J] of the meshes
     double stress_work;            // [J] dt times the stress power at the end of the last step
     double transfer, gravity_work; // [J]
+    double scheme;                 // [J] taken by the integrator of implicit steps
+    double barrier, friction;      // [J] stored in barriers, heat of their friction
     double gravity_impulse[3], gravity_angular[3];
     brunt_damping_sums damping;
     double initial_energy, initial_kinetic; // [J]

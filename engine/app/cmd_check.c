@@ -1,6 +1,7 @@
 // The plan of a scene, without running it: what is switched on and by what, what it costs in memory and time.
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <sys/statvfs.h>
 
 #include "app/app.h"
@@ -138,6 +139,33 @@ static void print_output(const brunt_prediction *p) {
     }
 }
 
+// [m/s]; 0 of meshes, and where there is no memory to look.
+static double fastest_particle(brunt_world *world, int32_t body) {
+    const int64_t count = brunt_body_particles(world, body);
+    const int32_t field = brunt_body_find_field(world, body, "velocity");
+    double *v = count && field >= 0 ? malloc((size_t)count * 3 * sizeof *v) : NULL, most = 0;
+    if (v) brunt_body_read(world, body, field, v);
+    for (int64_t p = 0; v && p < count; p++)
+        most = fmax(most, v[3 * p] * v[3 * p] + v[3 * p + 1] * v[3 * p + 1] + v[3 * p + 2] * v[3 * p + 2]);
+    free(v);
+    return sqrt(most);
+}
+
+// What implicit steps solve, and whether they are short enough for the grid.
+static void print_newton(const brunt_scene *scene, brunt_world *world) {
+    brunt_newton_systems s;
+    if (!brunt_world_newton_systems(world, &s)) return;
+    printf("implicit steps\n  c dt / h %.3g, %lld unknowns, corrections down to %.3g m/s, ", s.courant,
+           (long long)s.unknowns, s.tolerance);
+    print_size(s.bytes, 0);
+    printf(" beside the bodies\n  solver %s: %s\n", s.solver, s.why);
+    double fastest = 0;
+    for (int32_t b = 0; b < brunt_body_count(world); b++) fastest = fmax(fastest, fastest_particle(world, b));
+    if (fastest * scene->world.step > scene->world.cell)
+        printf("warning: particles move %.2g cells in a step: at most one is wanted\n",
+               fastest * scene->world.step / scene->world.cell);
+}
+
 static int print_cost(const brunt_machine *machine, const brunt_scene *scene, brunt_world *world,
                       brunt_history *history, bool quick, brunt_error *error) {
     brunt_prediction p;
@@ -192,6 +220,7 @@ static int check(const brunt_scene *scene, bool quick, brunt_error *error) {
         brunt_run_warn(scene, world, &console);
         print_bodies(world);
         print_plan(world);
+        print_newton(scene, world);
         print_memory(world);
         status = print_cost(&machine, scene, world, history, quick, error);
         if (status) fprintf(stderr, "brunt: the scene fails in its first steps: %s\n", error->message);

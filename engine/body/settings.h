@@ -8,6 +8,9 @@ typedef struct brunt_settings {
     bool axisymmetric, has_gravity;
     brunt_kernel kernel;
     brunt_transfer transfer;
+    brunt_scheme scheme;
+    brunt_integrator integrator;        // of implicit steps
+    brunt_newton_def newton;            // of implicit steps
     double flip, cell;                  // [-], [m] of the grids
     double cfl, fixed_step, least_step; // [-], [s] 0: the stable one, [s]
     double end, energy_limit;           // [s], [-]

@@ -91,7 +91,7 @@ static int erode(brunt_world *world, brunt_step *step, brunt_error *error) {
 }
 
 // The clock, and the accounts of what acts from outside and between bodies.
-static int account(brunt_world *world, brunt_step *s, brunt_error *error) {
+int brunt_pass_account(brunt_world *world, brunt_step *s, brunt_error *error) {
     (void)error;
     struct brunt_clock *now = &world->clock;
     brunt_ledger *ledger = &world->ledger;
@@ -138,7 +138,7 @@ const brunt_pass_row brunt_explicit_passes[] = {
     {BRUNT_PASS_PART,  "kick",       "node",     loads_or_drag,          brunt_pass_finish_kick, NULL,           NULL},
     {BRUNT_PASS_WHOLE, "drift",      "node",     meshes,                 brunt_pass_drift,       all_mesh_nodes, brunt_work_drift},
     {BRUNT_PASS_WHOLE, "elements",   "element",  meshes,                 brunt_pass_elements,    all_elements,   brunt_work_elements},
-    {BRUNT_PASS_PART,  "advance",    "body",     always,                 account,                NULL,           NULL},
+    {BRUNT_PASS_PART,  "advance",    "body",     always,                 brunt_pass_account,     NULL,           NULL},
     {BRUNT_PASS_WHOLE, "erosion",    "point",    erosion,                erode,                  all_points,     NULL},
     {BRUNT_PASS_WHOLE, "advance",    "body",     always,                 brunt_pass_watch,       NULL,           NULL},
 };
@@ -149,6 +149,7 @@ _Static_assert(sizeof brunt_explicit_passes / sizeof *brunt_explicit_passes <= (
 
 static int run_pass(brunt_world *world, int at, brunt_step *step, brunt_error *error) {
     const brunt_pass_row *row = world->plan.row[at];
+    if (row->kind == BRUNT_PASS_INNER) return BRUNT_OK;
     const double units = row->units ? row->units(world, step->body) : 0;
     brunt_pass_begin(world, world->plan.pass_of[at]);
     int status = row->run(world, step, error);

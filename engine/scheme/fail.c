@@ -39,6 +39,16 @@ int brunt_fail_particle(const brunt_world *world, brunt_body *body, int64_t slot
     return brunt_fail_step(world, body, error, reason);
 }
 
+int brunt_fail_place(const brunt_world *world, int index, const double x[3], brunt_error *error, const char *reason) {
+    if (!error) return BRUNT_FAILED;
+    const char *name = index < 0 ? "" : brunt_bodies_name(&world->bodies, index);
+    error->time = world->clock.time;
+    memcpy(error->place, x, sizeof error->place);
+    snprintf(error->body, sizeof error->body, "%s", name);
+    return brunt_fail(error, BRUNT_FAILED, "body '%s' at (%.6g, %.6g, %.6g) m, time %.9g s, step %.0f: %s", name, x[0],
+                      x[1], x[2], world->clock.time, world->clock.steps, reason);
+}
+
 int brunt_fail_element(const brunt_world *world, const brunt_fem_body *fem, int32_t slot, brunt_error *error,
                        const char *reason) {
     if (!error) return BRUNT_FAILED;

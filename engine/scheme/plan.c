@@ -68,10 +68,12 @@ static bool has_mirrors(const brunt_world *world) {
 }
 
 #define BRUNT_EFFECTS(X)                                                                                               \
+    X(implicit, world->settings.scheme == BRUNT_IMPLICIT, "time.scheme")                                               \
     X(elements, world->bodies.fem_count > 0, "bodies: method fem or membrane")                                         \
     X(affine, world->settings.transfer == BRUNT_APIC && world->bodies.mpm_count > 0, "grid.transfer")                  \
     X(contact, world->contact.has_grid || world->contact.has_augury || world->contact.has_grid_surfaces,               \
       "contact.method")                                                                                                \
+    X(barrier, world->contact.has_barrier, "contact.method: barrier")                                                  \
     X(tied, has_tied(world), "contact.pairs: method tied")                                                             \
     X(self_contact, world->contact.has_self, "contact.pairs: a body with itself")                                      \
     X(friction, world->contact.has_friction || world->boundaries.has_friction, "friction of contact or boundaries")    \
@@ -140,8 +142,10 @@ void brunt_plan_make(brunt_world *world) {
     brunt_plan *plan = &world->plan;
     *plan = (brunt_plan){.row_count = 0};
     world->timing.pass = -1;
-    for (int i = 0; i < brunt_explicit_pass_count; i++) {
-        const brunt_pass_row *row = &brunt_explicit_passes[i];
+    const bool implicit = world->settings.scheme == BRUNT_IMPLICIT;
+    const brunt_pass_row *table = implicit ? brunt_implicit_passes : brunt_explicit_passes;
+    for (int i = 0; i < (implicit ? brunt_implicit_pass_count : brunt_explicit_pass_count); i++) {
+        const brunt_pass_row *row = &table[i];
         if (!row->wanted(world)) continue;
         plan->row[plan->row_count++] = row;
         if (row->kind != BRUNT_PASS_PART) plan->pass[plan->pass_count++] = row;
@@ -185,7 +189,7 @@ int32_t brunt_array_count(const brunt_world *world) {
         for (int f = 0; fem && f < fem->field_count; f++) n += fem->field[f].components > 0;
         n += EXTRA;
     }
-    return n + (world->contact.has_surfaces ? 1 : 0);
+    return n + (world->contact.has_surfaces ? 1 : 0) + (world->plan.implicit ? 2 : 0);
 }
 
 static brunt_array particle_array(const brunt_body *body, int32_t index) {
@@ -231,6 +235,12 @@ brunt_array brunt_world_array(const brunt_world *world, int32_t index) {
         for (int f = 0; fem && f < fem->field_count; f++) n += fem->field[f].components > 0;
         if (index < n) return mpm ? particle_array(mpm, index) : element_array(fem, index);
         index -= n;
+    }
+    if (world->plan.implicit) {
+        brunt_array implicit = {.unit = "", .components = 1};
+        snprintf(implicit.name, sizeof implicit.name, index ? "implicit steps: matrix" : "implicit steps: unknowns");
+        implicit.bytes = index ? brunt_implicit_matrix_bytes(world) : brunt_implicit_bytes(world);
+        return implicit;
     }
     brunt_array array = {.name = "contact of surfaces", .unit = "", .components = 1};
     array.bytes = (size_t)world->contact.surface.node_count * 200 + (size_t)world->contact.surface.face_count * 76 +

@@ -19,9 +19,10 @@ typedef struct brunt_amount {
 
 typedef enum brunt_pass_kind {
     BRUNT_PASS_WHOLE,
-    BRUNT_PASS_BODY, // goes body by body of material points, with those of this kind beside it: all of one, then the
-                     // next, while its grid is in the cache
-    BRUNT_PASS_PART, // a further part of the pass of this name, whose time and units it adds to
+    BRUNT_PASS_BODY,  // goes body by body of material points, with those of this kind beside it: all of one, then the
+                      // next, while its grid is in the cache
+    BRUNT_PASS_PART,  // a further part of the pass of this name, whose time and units it adds to
+    BRUNT_PASS_INNER, // runs within the one before it, which tells when
 } brunt_pass_kind;
 
 typedef struct brunt_pass_row {
@@ -38,6 +39,18 @@ typedef struct brunt_pass_row {
 // --- explicit.c
 extern const brunt_pass_row brunt_explicit_passes[];
 extern const int brunt_explicit_pass_count;
+
+int brunt_pass_account(brunt_world *world, brunt_step *step, brunt_error *error);
+
+// --- implicit.c
+extern const brunt_pass_row brunt_implicit_passes[];
+extern const int brunt_implicit_pass_count;
+
+// --- implicit_world.c, implicit_step.c: steps that minimise an energy
+size_t brunt_implicit_bytes(const brunt_world *world);        // of unknowns, fields and terms
+size_t brunt_implicit_matrix_bytes(const brunt_world *world); // of Newton's matrix, without factors
+int brunt_pass_number(brunt_world *world, brunt_step *step, brunt_error *error);
+int brunt_pass_newton(brunt_world *world, brunt_step *step, brunt_error *error);
 
 // --- particle_passes.c: material points and their grids
 int brunt_pass_sort(brunt_world *world, brunt_step *step, brunt_error *error);
@@ -64,11 +77,14 @@ int brunt_pass_elements(brunt_world *world, brunt_step *step, brunt_error *error
 int brunt_pass_choose(brunt_world *world, brunt_step *step, brunt_error *error);
 // The step that follows stable ones, of this state and of those before.
 double brunt_held_step(struct brunt_clock *clock, double stable);
+// Gives the bodies the time, gravity to the step, and empties the accounts of the last one.
+void brunt_step_open(brunt_world *world, brunt_step *step);
 // For what has the stable step that is too short: an element, with the loads on its body, or a body of material points.
 int brunt_fail_short(brunt_world *world, double stable, brunt_error *error, const char *why);
 
 // --- watch.c: whether all is as it should be
 int brunt_pass_watch(brunt_world *world, brunt_step *step, brunt_error *error);
+int brunt_pass_watch_implicit(brunt_world *world, brunt_step *step, brunt_error *error);
 
 // --- fail.c: computations that fail. All give BRUNT_FAILED and say body, place and time in front of the reason.
 int brunt_fail_step(const brunt_world *world, const brunt_body *body, brunt_error *error, const char *reason);
@@ -76,6 +92,8 @@ int brunt_fail_step(const brunt_world *world, const brunt_body *body, brunt_erro
 int brunt_fail_inner(const brunt_world *world, const brunt_body *body, brunt_error *error);
 int brunt_fail_particle(const brunt_world *world, brunt_body *body, int64_t slot, brunt_error *error,
                         const char *reason);
+// At a place [m] of body `index` (-1: of none).
+int brunt_fail_place(const brunt_world *world, int index, const double x[3], brunt_error *error, const char *reason);
 int brunt_fail_element(const brunt_world *world, const brunt_fem_body *fem, int32_t slot, brunt_error *error,
                        const char *reason);
 

@@ -144,7 +144,13 @@ int brunt_pass_choose(brunt_world *world, brunt_step *s, brunt_error *error) {
     // Central differences: velocities are those of the middle of a step, so that forces act over the mean of the steps
     // before and after, and over half a step at the start.
     s->kick = world->clock.steps > 0 ? 0.5 * (world->clock.dt + dt) : 0.5 * dt;
-    brunt_gravity_at(&world->settings, world->clock.time, s->gravity); // as the forces: of the middle of the kick
+    brunt_step_open(world, s); // gravity as the forces: of the middle of the kick
+    return BRUNT_OK;
+}
+
+void brunt_step_open(brunt_world *world, brunt_step *s) {
+    const double dt = s->dt;
+    brunt_gravity_at(&world->settings, world->clock.time, s->gravity);
     for (int i = 0; i < world->bodies.mpm_count; i++) world->bodies.mpm[i].time = (real)(world->clock.time + dt);
     for (int k = 0; k < world->bodies.fem_count; k++) world->bodies.fem[k].time = (real)(world->clock.time + dt);
     for (int w = 0; w < world->boundaries.wall_count; w++)
@@ -152,5 +158,4 @@ int brunt_pass_choose(brunt_world *world, brunt_step *s, brunt_error *error) {
     for (int p = 0; p < world->pairs.count; p++)
         world->pairs.pair[p].last = (brunt_impulse_account){.external_work = 0};
     s->old_kinetic = s->new_kinetic = world->ledger.kinetic;
-    return BRUNT_OK;
 }

@@ -59,17 +59,29 @@ static int watch_creep(brunt_world *world, brunt_error *error) {
     return ends ? BRUNT_FAILED : BRUNT_OK;
 }
 
+static int watch_energy(brunt_world *world, brunt_error *error) {
+    const struct brunt_clock *now = &world->clock;
+    if (!isfinite(world->ledger.kinetic) || !isfinite(world->ledger.fem_kinetic) || !isfinite(now->next_dt))
+        return brunt_fail_step(world, NULL, error, "the kinetic energy is not a finite number");
+    if (world->bodies.has_fluid && (int64_t)now->steps % SPREAD_CHECK == 0) watch_spread(world);
+    if ((int64_t)now->steps % ENERGY_CHECK != 0 || !isfinite(world->settings.energy_limit)) return BRUNT_OK;
+    return check_energy(world, error);
+}
+
 // The stable step that follows, and whether all is as it should be.
 int brunt_pass_watch(brunt_world *world, brunt_step *step, brunt_error *error) {
     (void)step;
     struct brunt_clock *now = &world->clock;
     now->next_dt = brunt_stable_step(world);
     if (world->bodies.fem_count && isfinite(now->next_dt)) now->next_dt = brunt_held_step(now, now->next_dt);
-    if (!isfinite(world->ledger.kinetic) || !isfinite(world->ledger.fem_kinetic) || !isfinite(now->next_dt))
-        return brunt_fail_step(world, NULL, error, "the kinetic energy is not a finite number");
-    if (world->bodies.has_fluid && (int64_t)now->steps % SPREAD_CHECK == 0) watch_spread(world);
-    int status = (int64_t)now->steps % ENERGY_CHECK == 0 && isfinite(world->settings.energy_limit)
-                     ? check_energy(world, error)
-                     : BRUNT_OK;
+    const int status = watch_energy(world, error);
     return status ? status : watch_creep(world, error);
+}
+
+// A step that was cut is followed by longer ones again, up to what is asked for.
+int brunt_pass_watch_implicit(brunt_world *world, brunt_step *step, brunt_error *error) {
+    struct brunt_clock *now = &world->clock;
+    const double last = now->newton_last.cuts > 0 ? step->dt : now->next_dt;
+    now->next_dt = fmin(world->settings.fixed_step, 2 * last);
+    return watch_energy(world, error);
 }

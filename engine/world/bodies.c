@@ -176,7 +176,9 @@ static int fill_shapes(brunt_world *world, const brunt_world_def *def, const bru
         for (int32_t k = 0; !status && k < filled[i].count; k++)
             for (int a = 0; a < dim; a++) low[a] = fmin(low[a], filled[i].position[a][k]);
     }
-    if (!status && !def->contact.allow_overlap) status = check_overlap(world, def, order, filled, error);
+    // Barriers look at points alone (scheme/implicit_contact.c).
+    if (!status && !def->contact.allow_overlap && def->scheme == BRUNT_EXPLICIT)
+        status = check_overlap(world, def, order, filled, error);
     return status;
 }
 

@@ -13,6 +13,7 @@ typedef struct brunt_contact {
     bool has_grid;          // bodies of material points meet at the nodes of their grids
     bool has_grid_surfaces; // multi-velocity contact of meshes with material points
     bool has_augury;        // meshes meet each other, or particles, by their facets
+    bool has_barrier;       // bodies, or bodies and planes, are kept apart by an energy
     bool has_surfaces;      // surfaces of meshes meet something: each other, particles, planes
     bool has_self;          // a membrane meets itself
     bool has_friction;

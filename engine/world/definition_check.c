@@ -347,21 +347,26 @@ static int check_wall_names(const brunt_world_def *def, brunt_error *error) {
 
 static int check_contact(const brunt_world_def *def, brunt_error *error) {
     const brunt_contact_def *contact = &def->contact;
-    TRY(check_choice("contact", ".method", (unsigned)contact->method, BRUNT_CONTACT_TIED + 1, error));
+    TRY(check_choice("contact", ".method", (unsigned)contact->method, BRUNT_CONTACT_BARRIER + 1, error));
     TRY(check_choice("contact", ".form", (unsigned)contact->form, BRUNT_AUGURY_PAPER + 1, error));
     TRY(check_choice("contact", ".transfer", (unsigned)contact->transfer, BRUNT_APIC + 1, error));
     if (!(contact->friction >= 0)) REFUSE("contact.friction: %g is negative", contact->friction);
     if (contact->iterations < -1) REFUSE("contact.iterations: %d is negative", contact->iterations);
     if (!(contact->tolerance >= 0 && contact->tolerance < 1))
         REFUSE("contact.tolerance: %g is not in [0, 1)", contact->tolerance);
-    CHECK_NUMBERS("contact", {".friction", &contact->friction, 1, ANY}, {".cell", &contact->cell, 1, NOT_NEGATIVE});
+    CHECK_NUMBERS("contact", {".friction", &contact->friction, 1, ANY}, {".cell", &contact->cell, 1, NOT_NEGATIVE},
+                  {".distance", &contact->distance, 1, NOT_NEGATIVE},
+                  {".stiffness", &contact->stiffness, 1, NOT_NEGATIVE},
+                  {".slip_speed", &contact->slip_speed, 1, NOT_NEGATIVE});
+    if (contact->friction_iterations < 1)
+        REFUSE("contact.friction_iterations: %d is less than 1", contact->friction_iterations);
     for (int32_t q = 0; q < contact->pair_count; q++) {
         const brunt_pair_def *pair = &contact->pairs[q];
         char owner[80];
         snprintf(owner, sizeof owner, "contact.pairs[%d]", q);
         TRY(check_name("contact.pairs", q, pair->a, error));
         TRY(check_name("contact.pairs", q, pair->b, error));
-        TRY(check_choice(owner, ".method", (unsigned)pair->method, BRUNT_CONTACT_TIED + 1, error));
+        TRY(check_choice(owner, ".method", (unsigned)pair->method, BRUNT_CONTACT_BARRIER + 1, error));
         CHECK_NUMBERS(owner, {".friction", &pair->friction, 1, ANY});
     }
     int32_t one[2], other[2];
@@ -429,6 +434,35 @@ static int check_axis(const brunt_world_def *def, bool particles, brunt_error *e
     return BRUNT_OK;
 }
 
+// ------------------------------------------------------------------------------------------ the scheme
+
+static void refuse_first(void *context, const char *path, const char *reason) {
+    brunt_error *error = context;
+    if (!error->code) brunt_fail(error, BRUNT_BAD_INPUT, "%s: %s", path, reason);
+}
+
+static int check_newton(const brunt_world_def *def, brunt_error *error) {
+    const brunt_newton_def *newton = &def->newton;
+    TRY(check_choice("time", ".integrator", (unsigned)def->integrator, BRUNT_NEWMARK + 1, error));
+    TRY(check_choice("newton", ".solver", (unsigned)newton->solver, BRUNT_SOLVER_PCG + 1, error));
+    CHECK_NUMBERS("newton", {".tolerance", &newton->tolerance, 1, POSITIVE});
+    if (newton->iterations < 1) REFUSE("newton.iterations: %d is less than 1", newton->iterations);
+    if (newton->cut < 0) REFUSE("newton.cut: %d is negative", newton->cut);
+    if (!(newton->accuracy > 0 && newton->accuracy < 1))
+        REFUSE("newton.accuracy: %g is not between 0 and 1", newton->accuracy);
+    return BRUNT_OK;
+}
+
+// What a scheme cannot do is refused, never left out.
+static int check_scheme(const brunt_world_def *def, brunt_error *error) {
+    TRY(check_choice("time", ".scheme", (unsigned)def->scheme, BRUNT_IMPLICIT + 1, error));
+    if (def->scheme == BRUNT_IMPLICIT) TRY(check_newton(def, error));
+    brunt_error first = {.code = BRUNT_OK};
+    brunt_scheme_refusals(def, refuse_first, &first);
+    if (!first.code) return BRUNT_OK;
+    return brunt_fail(error, BRUNT_BAD_INPUT, "%.*s", (int)sizeof first.message - 1, first.message);
+}
+
 int brunt_definition_check(const brunt_world_def *def, brunt_error *error) {
     if (!def) REFUSE("there is no definition of a world");
     if (def->cookie != BRUNT_WORLD_COOKIE) REFUSE("the world's definition was not made by brunt_world_def_default");
@@ -445,5 +479,6 @@ int brunt_definition_check(const brunt_world_def *def, brunt_error *error) {
     TRY(check_wall_names(def, error));
     TRY(check_detonations(def, error));
     TRY(check_contact(def, error));
-    return def->axisymmetric ? check_axis(def, particles, error) : BRUNT_OK;
+    if (def->axisymmetric) TRY(check_axis(def, particles, error));
+    return check_scheme(def, error);
 }

@@ -41,20 +41,23 @@ static int make_self_pair(const maker *m, int q, brunt_error *error) {
               b = brunt_find_ordered(m->order, n, def->b);
     if (a < 0 || b < 0) REFUSE("contact.pairs[%d].between: '%s' and '%s' are not two bodies", q, def->a, def->b);
     if (a != b) return BRUNT_OK;
-    if (m->order[a]->method != BRUNT_MEMBRANE)
+    const bool barrier = def->method == BRUNT_CONTACT_BARRIER;
+    if (def->method == BRUNT_CONTACT_NONE) return BRUNT_OK;
+    if (barrier && m->order[a]->method == BRUNT_MPM)
+        REFUSE("contact.pairs[%d].between: '%s' has no mesh to be in contact with itself", q, def->a);
+    if (!barrier && m->order[a]->method != BRUNT_MEMBRANE)
         REFUSE("contact.pairs[%d].between: '%s' is no membrane: no other body can be in contact with itself", q,
                def->a);
-    if (def->method == BRUNT_CONTACT_NONE) return BRUNT_OK;
-    if (def->method != BRUNT_CONTACT_AUGURY)
+    if (!barrier && def->method != BRUNT_CONTACT_AUGURY)
         REFUSE("contact.pairs[%d].method: contact of '%s' with itself is by augury", q, def->a);
     if (!(def->friction >= 0)) REFUSE("contact.pairs[%d].friction: %g is negative", q, def->friction);
     for (int p = 0; p < pairs->count; p++)
         if (pairs->pair[p].a == a) REFUSE("contact.pairs[%d].between: '%s' is listed twice", q, def->a);
-    m->world->contact.has_augury = m->world->contact.has_self = true;
+    *(barrier ? &m->world->contact.has_barrier : &m->world->contact.has_augury) = true;
+    m->world->contact.has_self = true;
     m->world->contact.has_friction = m->world->contact.has_friction || def->friction > 0;
     if (brunt_pair_map_add(&pairs->map, a, a, pairs->count)) return out_of_memory(error);
-    pairs->pair[pairs->count++] =
-        (brunt_pair){.a = a, .b = a, .method = BRUNT_CONTACT_AUGURY, .friction = def->friction};
+    pairs->pair[pairs->count++] = (brunt_pair){.a = a, .b = a, .method = def->method, .friction = def->friction};
     return BRUNT_OK;
 }
 
@@ -140,7 +143,9 @@ static int settle_method(const maker *m, const candidate *c, brunt_pair *pair, b
                "between meshes",
                a->name, b->name);
     if (!accepted) REFUSE("contact of '%s' and '%s': only bodies of material points can be tied", a->name, b->name);
-    if (!meshes) {
+    if (pair->method == BRUNT_CONTACT_BARRIER)
+        contact->has_barrier = true;
+    else if (!meshes) {
         if (pair->method != BRUNT_CONTACT_TIED) pair->method = BRUNT_CONTACT_MULTI_VELOCITY;
         contact->has_grid = true;
     } else if (on_grid)

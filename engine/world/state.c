@@ -14,13 +14,16 @@
 
 // World blocks: clock (with the speeds of bodies of particles), walls (with the gas that groups of them enclose),
 // pairs; where surfaces meet what their search remembers; and where contact keeps them the affine velocities of
-// boundary nodes. Last the accounts of erosion, if there is any.
+// boundary nodes. Last the accounts of erosion, if there is any, or those of implicit steps.
 static int plain_blocks(const brunt_world *world) {
     return world->contact.surface.affine ? 5 : world->contact.has_surfaces ? 4 : 3;
 }
-static int world_blocks(const brunt_world *world) { return plain_blocks(world) + (world->erosion.active ? 1 : 0); }
+static bool implicit(const brunt_world *world) { return world->settings.scheme == BRUNT_IMPLICIT; }
+static int world_blocks(const brunt_world *world) {
+    return plain_blocks(world) + (world->erosion.active || implicit(world));
+}
 
-enum { EROSION_BLOCK = 5 };
+enum { EROSION_BLOCK = 5, NEWTON_BLOCK = 6 };
 
 // Where block `index` is: which of a body, or (body NULL) which of the world.
 typedef struct place {
@@ -35,7 +38,8 @@ static place find(const brunt_world *world, int32_t index) {
         if (index < blocks) return (place){body, index};
         index -= blocks;
     }
-    return (place){NULL, index == plain_blocks(world) ? EROSION_BLOCK : index};
+    const int last = implicit(world) ? NEWTON_BLOCK : EROSION_BLOCK;
+    return (place){NULL, index == plain_blocks(world) ? last : index};
 }
 
 int32_t brunt_state_count(brunt_world *world) {
@@ -83,10 +87,22 @@ static const brunt_saved clock_table[] = {
     LEDGER(eroded_viscosity),
     LEDGER(eroded_heat),
 };
+#define NEWTON(member) CLOCK(newton.member), CLOCK(newton_last.member)
+static const brunt_saved newton_table[] = {
+    LEDGER(scheme),         LEDGER(barrier),     LEDGER(friction),
+    NEWTON(steps),          NEWTON(iterations),  NEWTON(iterations_worst),
+    NEWTON(halvings),       NEWTON(projections), NEWTON(linear_iterations),
+    NEWTON(factorisations), NEWTON(cuts),        NEWTON(residual),
+    NEWTON(least_gap),      NEWTON(least_part),
+};
 #define ACCOUNT(member) BRUNT_SAVED(brunt_impulse_account, member)
 static const brunt_saved account_table[] = {ACCOUNT(impulse),     ACCOUNT(angular),       ACCOUNT(external_work),
                                             ACCOUNT(normal_loss), ACCOUNT(friction_loss), ACCOUNT(area)};
-enum { CLOCK_ROWS = BRUNT_SAVED_ROWS(clock_table), ACCOUNT_ROWS = BRUNT_SAVED_ROWS(account_table) };
+enum {
+    NEWTON_ROWS = BRUNT_SAVED_ROWS(newton_table),
+    CLOCK_ROWS = BRUNT_SAVED_ROWS(clock_table),
+    ACCOUNT_ROWS = BRUNT_SAVED_ROWS(account_table)
+};
 
 static double *get_account(const brunt_impulse_account *account, double *out) {
     return brunt_saved_get(account_table, ACCOUNT_ROWS, account, out);
@@ -97,15 +113,16 @@ static const double *set_account(brunt_impulse_account *account, const double *i
 
 static brunt_state_block world_info(const brunt_world *world, int index) {
     brunt_state_block block = {.type = 'd'};
-    static const char *const names[] = {"world/clock",          "world/walls",          "world/pairs",
-                                        "world/contact_search", "world/contact_affine", "world/erosion"};
+    static const char *const names[] = {"world/clock",          "world/walls",   "world/pairs", "world/contact_search",
+                                        "world/contact_affine", "world/erosion", "world/newton"};
     const int64_t account = 2 * brunt_saved_count(account_table, ACCOUNT_ROWS); // since the start, and of the last step
     const int64_t counts[] = {brunt_saved_count(clock_table, CLOCK_ROWS) + world->bodies.mpm_count,
                               world->boundaries.wall_count * account + brunt_gas_state_count(&world->boundaries.sets),
                               world->pairs.count * account,
                               brunt_node_to_facet_state_count(&world->contact.surface),
                               brunt_surface_affine_count(&world->contact.surface),
-                              brunt_erosion_state_count(&world->erosion)};
+                              brunt_erosion_state_count(&world->erosion),
+                              brunt_saved_count(newton_table, NEWTON_ROWS)};
     snprintf(block.name, sizeof block.name, "%s", names[index]);
     block.count = counts[index];
     return block;
@@ -113,6 +130,7 @@ static brunt_state_block world_info(const brunt_world *world, int index) {
 
 static void world_get(brunt_world *world, int block, double *to) {
     if (block == EROSION_BLOCK) brunt_erosion_state_get(&world->erosion, to);
+    if (block == NEWTON_BLOCK) brunt_saved_get(newton_table, NEWTON_ROWS, world, to);
     if (block == 3) brunt_node_to_facet_state_get(world->contact.node_to_facet, &world->contact.surface, to);
     if (block == 4) brunt_surface_affine_get(&world->contact.surface, to);
     if (block == 0) to = brunt_saved_get(clock_table, CLOCK_ROWS, world, to);
@@ -126,6 +144,7 @@ static void world_get(brunt_world *world, int block, double *to) {
 
 static int world_set(brunt_world *world, int block, const double *from, brunt_error *error) {
     if (block == EROSION_BLOCK) brunt_erosion_state_set(&world->erosion, from);
+    if (block == NEWTON_BLOCK) brunt_saved_set(newton_table, NEWTON_ROWS, world, from);
     if (block == 3 && brunt_node_to_facet_state_set(&world->contact.node_to_facet, &world->contact.surface,
                                                     world->bodies.mpm_count, from))
         return brunt_fail(error, BRUNT_FAILED, "out of memory");

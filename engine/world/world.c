@@ -135,6 +135,12 @@ static void warn_of_lone_points(brunt_world *world) {
     }
 }
 
+static int finish_explicit(brunt_world *world, const brunt_world_def *def, brunt_error *error) {
+    const int status = def->contact.allow_overlap ? BRUNT_OK : brunt_surfaces_overlap(world, error);
+    if (!status) warn_of_lone_points(world);
+    return status;
+}
+
 // Node numbers count from where the grid starts.
 static void number_symmetry_planes(brunt_world *world, const brunt_world_def *def) {
     for (int m = 0; m < world->boundaries.mirror_count; m++) {
@@ -150,6 +156,7 @@ static void copy_settings(brunt_settings *s, const brunt_world_def *def) {
     if (s->threads > BRUNT_THREAD_LIMIT) s->threads = BRUNT_THREAD_LIMIT;
     s->kernel = def->kernel, s->transfer = def->transfer;
     s->flip = def->flip, s->fixed_step = def->step, s->end = def->end;
+    s->scheme = def->scheme, s->integrator = def->integrator, s->newton = def->newton;
     s->axisymmetric = def->axisymmetric;
     s->least_step = def->least_step;
     s->energy_limit = def->energy_limit, s->cell = def->cell, s->gravity_ramp = def->gravity_ramp;
@@ -222,8 +229,9 @@ brunt_world *brunt_world_create(const brunt_world_def *given, brunt_error *error
     if (!status) number_symmetry_planes(world, def);
     brunt_plan_make(world);
     if (!status) status = start(world, error);
-    if (!status && !def->contact.allow_overlap) status = brunt_surfaces_overlap(world, error);
-    if (!status) warn_of_lone_points(world);
+    if (!status)
+        status =
+            def->scheme == BRUNT_IMPLICIT ? brunt_implicit_make(world, def, error) : finish_explicit(world, def, error);
     brunt_free(order);
     if (!status) {
         BRUNT_VALIDATE(world);
@@ -235,6 +243,7 @@ brunt_world *brunt_world_create(const brunt_world_def *given, brunt_error *error
 
 void brunt_world_destroy(brunt_world *world) {
     if (!world) return;
+    brunt_implicit_free(world);
     for (int i = 0; world->bodies.mpm && i < world->bodies.mpm_count; i++) {
         brunt_body_free(&world->bodies.mpm[i]);
         if (world->scratch.planes) brunt_wall_workspace_free(world->scratch.planes[i]);

@@ -21,6 +21,7 @@ enum { BRUNT_PASS_LIMIT = 32 };
 typedef struct brunt_plan {
     const struct brunt_pass_row *row[BRUNT_PASS_LIMIT], *pass[BRUNT_PASS_LIMIT];
     int pass_of[BRUNT_PASS_LIMIT], row_count, pass_count;
+    struct brunt_implicit *implicit; // what implicit steps keep, NULL of explicit ones (scheme/implicit.h)
 } brunt_plan;
 
 typedef struct brunt_transfers {   // of points to and from their grids, as the scene chose them; NULL: there is none
@@ -141,3 +142,6 @@ void brunt_read_mesh(brunt_world *world, brunt_fem_body *fem, int32_t field, dou
 double brunt_stable_step(const brunt_world *world);
 // The plan of a world that is made: which rows of its scheme's table run.
 void brunt_plan_make(brunt_world *world);
+// What implicit steps keep beside the world, once its bodies are sorted. BRUNT_OK, or the code of what is wrong.
+int brunt_implicit_make(brunt_world *world, const brunt_world_def *def, brunt_error *error);
+void brunt_implicit_free(brunt_world *world);

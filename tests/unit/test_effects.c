@@ -128,6 +128,13 @@ static void soften(scene *s) {
     s->materials[0].eos_parameters[1] = 1e6, s->materials[0].eos_parameters[8] = INFINITY;
 }
 
+static void implicit(scene *s) {
+    s->def.scheme = BRUNT_IMPLICIT, s->def.step = 1e-3;
+    s->bodies[0].velocity[0] = 1; // at rest there is nothing to look for
+}
+static void barrier(scene *s) { implicit(s), s->def.contact.method = BRUNT_CONTACT_BARRIER; }
+static void implicit_tie(scene *s) { implicit(s), tie(s); }
+
 typedef struct asked {
     const char *name;
     void (*make)(scene *s), (*ask)(scene *s);
@@ -172,6 +179,12 @@ static const asked list[] = {
     {"damping", make_mesh, drag, "elements damping "},
     {"strain of meshes", make_mesh, strain, "elements erosion "},
     {"softening of meshes", make_mesh, soften, "elements softening plasticity equation_of_state damage "},
+#ifndef BRUNT_FLOAT
+    {"implicit", make_mesh, implicit, "implicit elements "},
+    {"barrier", make_mesh, barrier, "implicit elements barrier "},
+    {"implicit, of points", make_points, implicit, "implicit "},
+    {"implicit and tied", make_points, implicit_tie, "implicit contact tied "},
+#endif
     {"membrane", make_membrane, none, "elements membranes "},
     {"tension only", make_membrane, tension_only, "elements membranes tension_only "},
     {"self-contact", make_membrane, self, "elements contact self_contact surfaces membranes "},
@@ -254,16 +267,20 @@ START_TEST(least_damping) {
 }
 END_TEST
 
-START_TEST(table_of_passes) {
-    for (int i = 0; i < brunt_explicit_pass_count; i++) {
-        const brunt_pass_row *row = &brunt_explicit_passes[i];
-        ck_assert(row->name && row->name[0] && row->unit && row->unit[0] && row->wanted && row->run);
+static void check_table(const brunt_pass_row *table, int count) {
+    for (int i = 0; i < count; i++) {
+        const brunt_pass_row *row = &table[i];
+        ck_assert(row->name && row->name[0] && row->unit && row->unit[0] && row->wanted);
+        ck_assert(row->run || row->kind == BRUNT_PASS_INNER);
         int whole = 0;
-        for (int k = 0; k < brunt_explicit_pass_count; k++)
-            whole +=
-                brunt_explicit_passes[k].kind != BRUNT_PASS_PART && !strcmp(brunt_explicit_passes[k].name, row->name);
+        for (int k = 0; k < count; k++) whole += table[k].kind != BRUNT_PASS_PART && !strcmp(table[k].name, row->name);
         ck_assert_msg(whole == 1, "%s stands %d times", row->name, whole);
     }
+}
+
+START_TEST(table_of_passes) {
+    check_table(brunt_explicit_passes, brunt_explicit_pass_count);
+    check_table(brunt_implicit_passes, brunt_implicit_pass_count);
 }
 END_TEST
 

@@ -15,7 +15,9 @@ typedef struct brunt_energy { // [J]; in 2D per metre of thickness
     double internal;          // stored
     double plastic, hourglass, contact, friction, viscosity, transfer,
         eroded;           // taken out, each by its cause; damping is viscosity;
-                          // eroded: kinetic and stored energy that left with elements, nodes and material points
+                          // eroded: kinetic and stored energy that left with elements, nodes and material points;
+                          // contact of implicit steps: what barriers have stored, which comes back
+    double scheme;        // taken out by the integrator of implicit steps: backward Euler damps what is fast
     double heat;          // of plastic: what has warmed the material; a part, no term of the sum
     double external_work; // done on the bodies by gravity, walls and prescribed motion
     double initial;       // kinetic + internal at the start
@@ -109,6 +111,30 @@ int32_t brunt_pair_count(const brunt_world *world);
 void brunt_pair_force(const brunt_world *world, int32_t pair, brunt_force *force); // name "a-b", force on b
 int32_t brunt_wall_count(const brunt_world *world);                                // planes, regions, then groups
 void brunt_wall_force(const brunt_world *world, int32_t wall, brunt_force *force); // force on the bodies
+
+// What Newton's method has done in implicit steps, steps that were cut included.
+typedef struct brunt_newton_counts {
+    double steps, iterations, iterations_worst; // worst: of one step
+    double halvings;                            // of a Newton step, in its line search
+    double projections;                         // matrices without their negative eigenvalues
+    double linear_iterations, factorisations;
+    double cuts;       // steps that were taken anew, half as long
+    double residual;   // [m/s] greatest last correction of a step
+    double least_gap;  // [m] at the end of a step; INFINITY: nothing has been near
+    double least_part; // [-] of the distance at which surfaces know of each other, likewise
+} brunt_newton_counts;
+// So far, and of the last step (NULL: not wanted). False in explicit schemes.
+bool brunt_world_newton(const brunt_world *world, brunt_newton_counts *so_far, brunt_newton_counts *last);
+// The systems that implicit steps solve, as they are at the start.
+typedef struct brunt_newton_systems {
+    int64_t unknowns;   // components of displacements
+    double courant;     // [-] greatest way of waves in a step, over edges and cells
+    const char *solver; // "direct", "pcg"
+    const char *why;    // a sentence
+    double tolerance;   // [m/s] of a correction
+    double bytes;       // that terms and fields take beside the bodies
+} brunt_newton_systems;
+bool brunt_world_newton_systems(const brunt_world *world, brunt_newton_systems *systems); // false: explicit
 
 // Gas in enclosed volumes.
 typedef struct brunt_gas {

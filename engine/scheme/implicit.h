@@ -1,0 +1,109 @@
+// What implicit steps keep beside the world: unknowns, terms, Newton's method. Private to the scheme.
+//
+// A step minimises 1/(2c) |u - aim|^2_M + stored energies + barriers + friction - loads . u over the displacements u of
+// the step: its end is where the gradient is 0, M a = F. With c = 2 alpha beta dt^2,
+//   aim = dt v + alpha (1 - 2 beta) dt^2 a,    a_end = (u - aim) / c,    v_end = v + dt ((1 - gamma) a + gamma a_end)
+// and backward Euler is alpha 1, beta 1/2, gamma 1, Newmark's trapezoidal form alpha 1/2, beta 1/4, gamma 1/2. The
+// acceleration a at the start is that of the forces there, on the grid of this step: it is not carried over.
+#pragma once
+
+#include "fem/potential.h"
+#include "linear/newton.h"
+#include "mpm/potential.h"
+#include "scheme/implicit_contact.h"
+#include "scheme/scheme.h"
+#include "scheme/step_terms.h"
+
+// Inertia and loads come first, then a term for each body, then those of contact.
+enum {
+    BRUNT_FIXED_TERMS = 2,
+    BRUNT_CONTACT_TERMS = 2,
+    BRUNT_MOST_OTHER_TERMS = BRUNT_FIXED_TERMS + BRUNT_CONTACT_TERMS
+};
+
+// Of a time integrator.
+typedef struct brunt_weights {
+    double alpha, beta, gamma;
+    double moment; // where along the step forces act, for their moments: 1 its end, 1/2 its middle
+} brunt_weights;
+
+// Arrays over all components of the unknowns.
+typedef struct brunt_fields {
+    double *u, *v;        // [m] displacement, [m/s] velocity at the end
+    double *aim;          // [m]
+    double *acceleration; // [m/s^2] at the start; 0 of backward Euler
+    double *load;         // [N] at the end of the step
+    double *force_before; // [N] all forces at its start; of Newmark
+    double *gradient;     // [N] of all that is stored, at the end once the step is booked
+    double *contact;      // [N] of barriers and friction, as the integrator weighs both ends of the step
+    double *step, *zero;  // room; 0
+    size_t u_capacity, v_capacity, aim_capacity, acceleration_capacity, load_capacity, force_before_capacity,
+        gradient_capacity, contact_capacity, step_capacity, zero_capacity;
+} brunt_fields;
+
+struct brunt_implicit {
+    brunt_team team;
+    brunt_weights weights;
+    brunt_unknowns unknowns;
+    brunt_fields field;
+    brunt_inertia inertia;
+    brunt_dead_loads loads;
+    brunt_fem_potential **fem; // a body each
+    brunt_mpm_potential **mpm;
+    brunt_term *term;           // inertia, loads, bodies of elements, of points, barrier, friction
+    int term_count, body_terms; // of them, up to the last of a body
+    brunt_implicit_contact contact;
+    bool rubs; // there is friction
+    int friction_iterations;
+    double *moved; // [m] of the particles of a body: a field of the unknowns where they are
+    size_t moved_capacity;
+    brunt_newton newton;
+    brunt_newton_options options;
+    brunt_linear_size size; // of the systems at the start
+    brunt_linear_choice choice;
+    double dt;                      // [s] of the step that is tried
+    brunt_world *world;             // for the phases of Newton's method
+    int phase[BRUNT_NEWTON_PHASES]; // their passes
+    brunt_newton_counts tried;      // of the step that is tried
+};
+
+static inline int64_t brunt_implicit_components(const struct brunt_implicit *m) {
+    return (int64_t)m->unknowns.count * m->unknowns.dim;
+}
+
+// --- implicit.c
+void brunt_newton_counts_add(brunt_newton_counts *sum, const brunt_newton_counts *part);
+
+// --- implicit_world.c
+// The size of a correction: of particles and nodes of meshes [m/s]; of `where`: node of a mesh, or -2 - particle's
+// slot.
+double brunt_implicit_measure(void *context, const brunt_team *team, const double *p, int64_t *where);
+
+// --- implicit_loads.c
+// Loads at a time [N], of all components: gravity, and tractions on groups of nodes, which are left as of that time.
+void brunt_implicit_loads(brunt_world *world, double time, double *load);
+// Gradients of terms [first, end) at u, summed.
+void brunt_implicit_gradient(const struct brunt_implicit *m, int first, int end, const double *u, double *g);
+
+// --- implicit_step.c
+// Finds the passes that Newton's phases are.
+void brunt_implicit_follow(brunt_world *world);
+
+// --- implicit_account.c
+// Velocities at the end; kinetic energy, work and impulses of the step, before it is committed. BRUNT_OK, or
+// BRUNT_FAILED: no memory to look at contact.
+int brunt_implicit_book(brunt_world *world, brunt_step *step, brunt_error *error);
+
+// --- implicit_account_contact.c
+typedef struct brunt_term_sums {
+    double before, after; // [J] energies at the start and the end of the step
+    double work;          // [J] gradient . u, as the integrator weighs both ends
+} brunt_term_sums;
+// Energies of terms [first, end), and the work against them. Their gradient at the end is in `field.step`; it is added,
+// weighed, to `total`.
+int brunt_implicit_sums(const struct brunt_implicit *m, int first, int end, double *total, brunt_term_sums *sums,
+                        brunt_error *error);
+int brunt_implicit_book_contact(brunt_world *world, brunt_error *error);
+// A force on node n over the step, to a wall's account.
+void brunt_implicit_book_force(const struct brunt_implicit *m, brunt_impulse_account *last, int32_t n,
+                               const double F[3]);

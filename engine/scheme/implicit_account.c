@@ -1,0 +1,136 @@
+// What an implicit step did: velocities at its end, work and impulses of all that acts, what the integrator takes.
+//
+// With M dv = dt F + J (F: forces as the integrator weighs them, J: what holders gave) and the mean velocity
+// v_m = (v + v_end) / 2 the kinetic energy grows by M dv . v_m, exactly. Places move by u = dt v_m + w, where Newmark's
+// w is 0 and backward Euler's is dt dv / 2. Hence, exactly,
+//   kinetic energy + stored energies + [ M dv . w / dt + F_stored . u - (change of stored) ] = loads . u + J . u / dt
+// and the bracket is what the integrator has taken: of backward Euler never negative where energies are convex.
+#include <math.h>
+#include <string.h>
+
+#include "boundary/gravity.h"
+#include "scheme/implicit.h"
+
+// ------------------------------------------------------------------------------------------ velocities
+
+static void end_velocities(struct brunt_implicit *m) {
+    const brunt_unknowns *unknowns = &m->unknowns;
+    const brunt_fields *f = &m->field;
+    const double dt = m->dt, gamma = m->weights.gamma, inverse = 1 / m->inertia.c;
+    for (int64_t k = 0; k < brunt_implicit_components(m); k++) {
+        const double before = (1 - gamma) * f->acceleration[k], after = gamma * inverse * (f->u[k] - f->aim[k]);
+        f->v[k] = unknowns->held[k] ? unknowns->end[k] : unknowns->velocity[k] + dt * (before + after);
+    }
+}
+
+// Kinetic energies of the grids, and what backward Euler takes of all.
+static double book_kinetic(const struct brunt_implicit *m, brunt_step *step) {
+    const brunt_unknowns *u = &m->unknowns;
+    double taken = 0;
+    step->old_kinetic = step->new_kinetic = 0;
+    for (int32_t n = 0; n < u->count; n++)
+        for (int64_t k = n * (int64_t)u->dim; k < (n + 1) * (int64_t)u->dim; k++) {
+            const double v = u->velocity[k], end = m->field.v[k];
+            taken += u->mass[n] * (end - v) * (m->field.u[k] / m->dt - 0.5 * (v + end));
+            if (n < u->mesh_count) continue;
+            step->old_kinetic += 0.5 * u->mass[n] * v * v;
+            step->new_kinetic += 0.5 * u->mass[n] * end * end;
+        }
+    return taken;
+}
+
+// ------------------------------------------------------------------------------------------ loads
+
+// Where the forces on a node have their moments.
+static void moment_arm(const struct brunt_implicit *m, int32_t n, double x[3]) {
+    const int dim = m->unknowns.dim;
+    for (int a = 0; a < 3; a++)
+        x[a] = a < dim ? m->unknowns.place[n * (int64_t)dim + a] + m->weights.moment * m->field.u[n * (int64_t)dim + a]
+                       : 0;
+}
+
+static void book_gravity(brunt_world *world) {
+    const struct brunt_implicit *m = world->plan.implicit;
+    const brunt_unknowns *u = &m->unknowns;
+    const double gamma = m->weights.gamma;
+    double before[3], after[3], gravity[3], x[3];
+    brunt_gravity_at(&world->settings, world->clock.time, before);
+    brunt_gravity_at(&world->settings, world->clock.time + m->dt, after);
+    for (int a = 0; a < 3; a++) gravity[a] = (1 - gamma) * before[a] + gamma * after[a];
+    for (int32_t n = 0; n < u->count; n++) {
+        moment_arm(m, n, x);
+        for (int a = 0; a < 3; a++) {
+            const int i = (a + 1) % 3, j = (a + 2) % 3;
+            if (a < u->dim) world->ledger.gravity_work += u->mass[n] * gravity[a] * m->field.u[n * (int64_t)u->dim + a];
+            world->ledger.gravity_impulse[a] += m->dt * u->mass[n] * gravity[a];
+            world->ledger.gravity_angular[a] += m->dt * u->mass[n] * (x[i] * gravity[j] - x[j] * gravity[i]);
+        }
+    }
+}
+
+// A force on a node over the step, of a wall's account.
+void brunt_implicit_book_force(const struct brunt_implicit *m, brunt_impulse_account *last, int32_t n,
+                               const double F[3]) {
+    double x[3];
+    moment_arm(m, n, x);
+    for (int a = 0; a < 3; a++) {
+        const int i = (a + 1) % 3, j = (a + 2) % 3;
+        last->impulse[a] += m->dt * F[a];
+        last->angular[a] += m->dt * (x[i] * F[j] - x[j] * F[i]);
+        if (a < m->unknowns.dim) last->external_work += F[a] * m->field.u[n * (int64_t)m->unknowns.dim + a];
+    }
+}
+
+// Loads on groups of nodes, as they are made for one end of the step.
+static void book_groups(brunt_world *world, double weight) {
+    const struct brunt_implicit *m = world->plan.implicit;
+    for (int k = 0; k < world->boundaries.sets.count; k++) {
+        const brunt_node_set *set = &world->boundaries.sets.set[k];
+        for (int32_t i = 0; set->force && i < set->node_count; i++) {
+            const double *force = set->force + 3 * (size_t)i;
+            const double F[3] = {weight * force[0], weight * force[1], weight * force[2]};
+            brunt_implicit_book_force(m, &set->wall->last, m->unknowns.base[set->fem_index] + set->node[i], F);
+        }
+    }
+}
+
+// ------------------------------------------------------------------------------------------ holders
+
+// What holders gave: what is missing of M dv = dt F. `field.gradient` holds that of all forces but loads at the end.
+static void book_holders(brunt_world *world) {
+    const struct brunt_implicit *m = world->plan.implicit;
+    const brunt_unknowns *u = &m->unknowns;
+    const brunt_fields *f = &m->field;
+    const double gamma = m->weights.gamma;
+    for (int64_t k = 0; k < brunt_implicit_components(m); k++) {
+        if (!u->holder[k]) continue;
+        const int a = (int)(k % u->dim);
+        const double after = f->load[k] - f->gradient[k], before = gamma < 1 ? f->force_before[k] : 0;
+        double F[3] = {0};
+        F[a] = u->mass[k / u->dim] * (f->v[k] - u->velocity[k]) / m->dt - (1 - gamma) * before - gamma * after;
+        brunt_implicit_book_force(m, &world->boundaries.walls[u->holder[k] - 1].last, (int32_t)(k / u->dim), F);
+    }
+}
+
+// ------------------------------------------------------------------------------------------ the step
+
+int brunt_implicit_book(brunt_world *world, brunt_step *step, brunt_error *error) {
+    struct brunt_implicit *m = world->plan.implicit;
+    const brunt_fields *f = &m->field;
+    const double gamma = m->weights.gamma;
+    brunt_term_sums bodies;
+    end_velocities(m);
+    world->ledger.scheme += book_kinetic(m, step);
+    if (brunt_implicit_sums(m, BRUNT_FIXED_TERMS, m->body_terms, NULL, &bodies, error)) return BRUNT_FAILED;
+    world->ledger.scheme += bodies.work - (bodies.after - bodies.before);
+    memcpy(f->gradient, f->step, (size_t)brunt_implicit_components(m) * sizeof *f->gradient);
+    if (m->contact.barrier && brunt_implicit_book_contact(world, error)) return BRUNT_FAILED;
+    if (world->settings.has_gravity) book_gravity(world);
+    book_groups(world, gamma);
+    book_holders(world);
+    if (gamma < 1 && world->boundaries.sets.count) {
+        brunt_loads_begin(&world->boundaries.sets, &world->bodies, world->clock.time, 0);
+        book_groups(world, 1 - gamma);
+    }
+    return BRUNT_OK;
+}

@@ -1,0 +1,166 @@
+// What barriers and friction did in an implicit step: energy stored, heat, forces of pairs and planes, gaps.
+#include <math.h>
+#include <string.h>
+
+#include "base/error.h"
+#include "contact/barrier/barrier_function.h"
+#include "scheme/implicit.h"
+
+static double dot(const struct brunt_implicit *m, const double *a, const double *b) {
+    double sum = 0;
+    for (int64_t k = 0; k < brunt_implicit_components(m); k++) sum += a[k] * b[k];
+    return sum;
+}
+
+// Energy of the terms at u, and their gradient in `field.step`.
+static int evaluate(const struct brunt_implicit *m, int first, int end, const double *u, double *energy,
+                    brunt_error *error) {
+    *energy = 0;
+    for (int t = first; t < end; t++) {
+        const brunt_term *term = &m->term[t];
+        if (term->ops->look && term->ops->look(term->self, &m->team, u, NULL, error)) return BRUNT_FAILED;
+        if (term->ops->energy) *energy += term->ops->energy(term->self, &m->team, u).value;
+    }
+    brunt_implicit_gradient(m, first, end, u, m->field.step);
+    return BRUNT_OK;
+}
+
+static void add_weighed(const struct brunt_implicit *m, double weight, double *total) {
+    for (int64_t k = 0; total && k < brunt_implicit_components(m); k++) total[k] += weight * m->field.step[k];
+}
+
+int brunt_implicit_sums(const struct brunt_implicit *m, int first, int end, double *total, brunt_term_sums *sums,
+                        brunt_error *error) {
+    const brunt_fields *f = &m->field;
+    const double gamma = m->weights.gamma;
+    *sums = (brunt_term_sums){.work = 0};
+    memset(f->zero, 0, (size_t)brunt_implicit_components(m) * sizeof *f->zero);
+    if (evaluate(m, first, end, f->zero, &sums->before, error)) return BRUNT_FAILED;
+    if (gamma < 1) {
+        sums->work = (1 - gamma) * dot(m, f->step, f->u);
+        add_weighed(m, 1 - gamma, total);
+    }
+    if (evaluate(m, first, end, f->u, &sums->after, error)) return BRUNT_FAILED;
+    sums->work += gamma * dot(m, f->step, f->u);
+    add_weighed(m, gamma, total);
+    return BRUNT_OK;
+}
+
+static void add_to_gradient(const struct brunt_implicit *m) {
+    for (int64_t k = 0; k < brunt_implicit_components(m); k++) m->field.gradient[k] += m->field.step[k];
+}
+
+// Energy that the barriers hold; what the integrator takes of it.
+static int book_barrier(brunt_world *world, brunt_error *error) {
+    struct brunt_implicit *m = world->plan.implicit;
+    brunt_term_sums sums;
+    if (brunt_implicit_sums(m, m->body_terms, m->body_terms + 1, m->field.contact, &sums, error)) return BRUNT_FAILED;
+    if (world->clock.steps == 0) world->ledger.initial_energy += sums.before; // bodies that start near each other
+    world->ledger.scheme += sums.work - (sums.after - sums.before);
+    world->ledger.barrier = sums.after;
+    add_to_gradient(m);
+    return BRUNT_OK;
+}
+
+// Heat of friction: its forces at the velocities of both ends of the step, over the way between. `before` is the
+// displacement at which friction takes the velocities at the start for those at the end.
+static int book_friction(brunt_world *world, brunt_error *error) {
+    struct brunt_implicit *m = world->plan.implicit;
+    const double gamma = m->weights.gamma;
+    const int at = m->body_terms + 1;
+    double energy;
+    if (at >= m->term_count) return BRUNT_OK;
+    if (gamma < 1) {
+        if (evaluate(m, at, at + 1, m->contact.before, &energy, error)) return BRUNT_FAILED;
+        world->ledger.friction += (1 - gamma) * dot(m, m->field.step, m->field.u);
+        add_weighed(m, 1 - gamma, m->field.contact);
+    }
+    if (evaluate(m, at, at + 1, m->field.u, &energy, error)) return BRUNT_FAILED;
+    world->ledger.friction += gamma * dot(m, m->field.step, m->field.u);
+    add_weighed(m, gamma, m->field.contact);
+    add_to_gradient(m);
+    return BRUNT_OK;
+}
+
+// ------------------------------------------------------------------------------------------ forces
+
+// Of pairs and planes, weighed as the integrator does.
+static int weigh_forces(struct brunt_implicit *m, brunt_barrier_report *report, brunt_error *error) {
+    brunt_implicit_contact *c = &m->contact;
+    const double gamma = m->weights.gamma;
+    const int32_t count = c->pair_count + c->plane_count;
+    brunt_barrier_report other;
+    memset(c->force_before, 0, (size_t)count * sizeof *c->force_before);
+    for (int friction = 0; friction < 2 && gamma < 1; friction++) {
+        const double *u = friction ? c->before : m->field.zero;
+        if (brunt_barrier_look_back(c->barrier, &m->team, u, &other, c->force, error)) return BRUNT_FAILED;
+        for (int32_t k = 0; k < count; k++)
+            memcpy(friction ? c->force_before[k].friction : c->force_before[k].normal,
+                   friction ? c->force[k].friction : c->force[k].normal, 3 * sizeof(double));
+    }
+    if (brunt_barrier_look_back(c->barrier, &m->team, m->field.u, report, c->force, error)) return BRUNT_FAILED;
+    for (int32_t k = 0; k < count; k++)
+        for (int a = 0; a < 3; a++) {
+            c->force[k].normal[a] = (1 - gamma) * c->force_before[k].normal[a] + gamma * c->force[k].normal[a];
+            c->force[k].friction[a] = (1 - gamma) * c->force_before[k].friction[a] + gamma * c->force[k].friction[a];
+        }
+    return BRUNT_OK;
+}
+
+// Moments of all planes together: pairs have none.
+static void book_moments(const struct brunt_implicit *m, brunt_impulse_account *last) {
+    const brunt_unknowns *u = &m->unknowns;
+    brunt_impulse_account moments = {.area = 0};
+    for (int32_t n = 0; n < u->count; n++) {
+        double F[3] = {0};
+        for (int a = 0; a < u->dim; a++) F[a] = -m->field.contact[n * (int64_t)u->dim + a];
+        if (u->mass[n] > 0) brunt_implicit_book_force(m, &moments, n, F);
+    }
+    for (int a = 0; a < 3; a++) last->angular[a] += moments.angular[a];
+}
+
+static void book_forces(brunt_world *world) {
+    const struct brunt_implicit *m = world->plan.implicit;
+    const brunt_implicit_contact *c = &m->contact;
+    for (int32_t p = 0; p < c->pair_count; p++)
+        for (int a = 0; a < 3; a++)
+            world->pairs.pair[c->pair_account[p]].last.impulse[a] -=
+                m->dt * (c->force[p].normal[a] + c->force[p].friction[a]);
+    for (int32_t q = 0; q < c->plane_count; q++) {
+        brunt_wall *wall = &world->boundaries.walls[c->plane_wall[q]];
+        const brunt_barrier_force *force = &c->force[c->pair_count + q];
+        for (int a = 0; a < 3; a++) {
+            const double F = force->normal[a] + force->friction[a];
+            wall->last.impulse[a] += m->dt * F;
+            wall->last.external_work += m->dt * F * wall->plane.velocity[a];
+        }
+    }
+    if (c->plane_count) book_moments(m, &world->boundaries.walls[c->plane_wall[0]].last);
+}
+
+// A gap that is next to nothing says that the barrier is too soft for what presses.
+static void warn_of_gap(brunt_world *world, const brunt_barrier_report *report) {
+    struct brunt_implicit *m = world->plan.implicit;
+    if (m->contact.told_small || !(report->least_part < INFINITY) || report->body < 0 ||
+        !brunt_barrier_gap_is_small(report->least_gap, report->least_gap / report->least_part))
+        return;
+    m->contact.told_small = true;
+    brunt_warn(&world->messages,
+               "bodies.%s: at t = %.4g s the gap to %s has become %.2g of contact.distance, at (%.4g, %.4g, %.4g) m: "
+               "contact.stiffness is low for what presses there",
+               brunt_body_name(world, report->body), world->clock.time,
+               report->other < 0 ? "a plane" : brunt_body_name(world, report->other), report->least_part,
+               report->place[0], report->place[1], report->place[2]);
+}
+
+int brunt_implicit_book_contact(brunt_world *world, brunt_error *error) {
+    struct brunt_implicit *m = world->plan.implicit;
+    brunt_barrier_report report;
+    memset(m->field.contact, 0, (size_t)brunt_implicit_components(m) * sizeof *m->field.contact);
+    if (book_barrier(world, error) || book_friction(world, error) || weigh_forces(m, &report, error))
+        return BRUNT_FAILED;
+    book_forces(world);
+    m->tried.least_gap = report.least_gap, m->tried.least_part = report.least_part;
+    warn_of_gap(world, &report);
+    return BRUNT_OK;
+}

@@ -1,0 +1,208 @@
+// One implicit step: how it would go on, Newton's method, and shorter steps where that does not converge.
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/error.h"
+#include "scheme/implicit.h"
+
+// ------------------------------------------------------------------------------------------ the aim
+
+// Accelerations at the start, by the forces there. Those of components that are held are their holder's: 0 here.
+static void take_acceleration(brunt_world *world) {
+    struct brunt_implicit *m = world->plan.implicit;
+    const brunt_unknowns *unknowns = &m->unknowns;
+    brunt_fields *f = &m->field;
+    const int64_t all = brunt_implicit_components(m);
+    memset(f->acceleration, 0, (size_t)all * sizeof *f->acceleration);
+    if (m->weights.gamma == 1) return; // backward Euler asks for none
+    brunt_implicit_loads(world, world->clock.time, f->force_before);
+    const int friction = m->term_count - m->rubs; // of the velocities at the start: see barrier.h
+    brunt_implicit_gradient(m, BRUNT_FIXED_TERMS, friction, f->u, f->gradient);
+    brunt_implicit_gradient(m, friction, m->term_count, m->contact.before, f->step);
+    for (int64_t k = 0; k < all; k++) {
+        f->force_before[k] -= f->gradient[k] + f->step[k];
+        if (!unknowns->held[k]) f->acceleration[k] = f->force_before[k] / unknowns->mass[k / unknowns->dim];
+    }
+}
+
+static void take_aim(struct brunt_implicit *m) {
+    const brunt_weights *w = &m->weights;
+    const double dt = m->dt, drift = w->alpha * (1 - 2 * w->beta) * dt * dt;
+    for (int64_t k = 0; k < brunt_implicit_components(m); k++)
+        m->field.aim[k] = dt * m->unknowns.velocity[k] + drift * m->field.acceleration[k];
+    m->inertia.c = 2 * w->alpha * w->beta * dt * dt;
+}
+
+static int begin_try(brunt_world *world, double dt, brunt_error *error) {
+    struct brunt_implicit *m = world->plan.implicit;
+    const size_t bytes = (size_t)brunt_implicit_components(m) * sizeof(double);
+    m->dt = dt;
+    brunt_unknowns_hold(&m->unknowns, world, dt);
+    for (int k = 0; k < world->bodies.fem_count; k++) brunt_fem_potential_step(m->fem[k], dt);
+    for (int i = 0; i < world->bodies.mpm_count; i++)
+        if (brunt_mpm_potential_step(m->mpm[i], &m->team, m->unknowns.number[i], dt, error)) return BRUNT_FAILED;
+    memset(m->field.u, 0, bytes);
+    const double gamma = m->weights.gamma;
+    const brunt_contact_rule rule = {
+        .dt = dt, .factor = gamma / (2 * m->weights.alpha * m->weights.beta), .rest = m->field.u};
+    if (brunt_implicit_contact_begin(&m->contact, world, &m->unknowns, &m->team, &rule, error)) return BRUNT_FAILED;
+    for (int t = 0; t < m->term_count; t++)
+        if (m->term[t].ops->look && m->term[t].ops->look(m->term[t].self, &m->team, m->field.u, NULL, error))
+            return BRUNT_FAILED;
+    take_acceleration(world);
+    brunt_implicit_loads(world, world->clock.time + dt, m->field.load);
+    take_aim(m);
+    return BRUNT_OK;
+}
+
+// ------------------------------------------------------------------------------------------ Newton's method
+
+static void count(struct brunt_implicit *m, const brunt_newton_report *report) {
+    brunt_newton_counts *c = &m->tried;
+    c->iterations += report->iterations;
+    c->halvings += report->halvings;
+    c->projections += report->projections;
+    c->linear_iterations += report->linear_iterations;
+    c->factorisations += report->factorisations;
+    c->residual = report->step;
+}
+
+// From u to a minimum near it, with what is held where it is.
+static int minimise(struct brunt_implicit *m, brunt_newton_report *report, brunt_error *error) {
+    const brunt_problem problem = {.dim = m->unknowns.dim,
+                                   .nodes = m->unknowns.count,
+                                   .terms = m->term,
+                                   .count = m->term_count,
+                                   .held = m->unknowns.held};
+    const int status = brunt_newton_minimise(&m->newton, &m->team, &problem, &m->options, m->field.u, report, error);
+    count(m, report);
+    return status;
+}
+
+// How far of the way to where they are to be the held components can go while all others stay, without that something
+// is turned inside out or touched. -1: the search for what is near has failed.
+static double free_way(struct brunt_implicit *m, brunt_error *error) {
+    const brunt_unknowns *unknowns = &m->unknowns;
+    brunt_fields *f = &m->field;
+    double most = 0, way = 1;
+    for (int64_t k = 0; k < brunt_implicit_components(m); k++) {
+        f->step[k] = unknowns->held[k] ? unknowns->target[k] - f->u[k] : 0;
+        most = fmax(most, fabs(f->step[k]));
+    }
+    if (most == 0) return 1;
+    for (int t = 0; t < m->term_count; t++) {
+        const brunt_term *term = &m->term[t];
+        if (term->ops->look && term->ops->look(term->self, &m->team, f->u, f->step, error)) return -1;
+    }
+    for (int t = 0; t < m->term_count; t++)
+        if (m->term[t].ops->limit)
+            way = fmin(way, m->term[t].ops->limit(m->term[t].self, &m->team, f->u, f->step, way));
+    return way;
+}
+
+// Held components go to their places as far as there is way, then all others follow, until those are there: what
+// prescribed motion pushes has time to give way. Energies are compared with what is held standing still.
+static int go_and_minimise(struct brunt_implicit *m, brunt_newton_report *report, brunt_error *error) {
+    enum { MOST = 60 };
+    for (int k = 0; k < MOST; k++) {
+        const double way = free_way(m, error);
+        if (way < 0) return BRUNT_FAILED;
+        for (int64_t q = 0; q < brunt_implicit_components(m); q++)
+            if (m->unknowns.held[q])
+                m->field.u[q] = way == 1 ? m->unknowns.target[q] : m->field.u[q] + way * m->field.step[q];
+        const int status = minimise(m, report, error);
+        if (status || way == 1) return status;
+    }
+    report->result = BRUNT_NEWTON_BLOCKED;
+    return brunt_fail(error, BRUNT_FAILED, "prescribed motion finds no way");
+}
+
+// The passes of Newton's phases take over from one another.
+static void follow_phase(void *context, brunt_newton_phase phase) {
+    struct brunt_implicit *m = context;
+    if (m->world->timing.pass == m->phase[phase]) return;
+    brunt_pass_end(m->world, 0);
+    brunt_pass_begin(m->world, m->phase[phase]);
+    m->team.timer = brunt_pass_timer(m->world);
+}
+
+void brunt_implicit_follow(brunt_world *world) {
+    static const char *const names[BRUNT_NEWTON_PHASES] = {"evaluate", "matrix", "solve", "limit", "search"};
+    struct brunt_implicit *m = world->plan.implicit;
+    for (int p = 0; p < world->plan.pass_count; p++)
+        for (int k = 0; k < BRUNT_NEWTON_PHASES; k++)
+            if (!strcmp(world->plan.pass[p]->name, names[k])) m->phase[k] = p;
+    m->options.phase = follow_phase;
+    m->options.context = m;
+}
+
+// ------------------------------------------------------------------------------------------ the step
+
+// Body, place and reason of a step that did not converge.
+static int fail_try(brunt_world *world, const brunt_newton_report *report, brunt_error *error) {
+    const struct brunt_implicit *m = world->plan.implicit;
+    char why[256], reason[480];
+    snprintf(why, sizeof why, "%.250s", error ? error->message : "");
+    const int64_t dof = report->residual_dof;
+    if (dof < 0) return brunt_fail_step(world, NULL, error, why);
+    const brunt_unknown_place at = brunt_unknowns_place(&m->unknowns, &world->bodies, (int32_t)(dof / m->unknowns.dim));
+    snprintf(reason, sizeof reason,
+             "a step of %.4g s, halved %d times (newton.cut), does not converge: %s The greatest force left is %.3g N",
+             m->dt, world->settings.newton.cut, why, report->residual);
+    return brunt_fail_place(world, at.body, at.x, error, reason);
+}
+
+static int try_step(brunt_world *world, double dt, brunt_newton_report *report, brunt_error *error) {
+    struct brunt_implicit *m = world->plan.implicit;
+    *report = (brunt_newton_report){.result = BRUNT_NEWTON_BROKEN, .residual_dof = -1};
+    m->tried = (brunt_newton_counts){.least_gap = INFINITY, .least_part = INFINITY};
+    int status = begin_try(world, dt, error);
+    if (!status) status = go_and_minimise(m, report, error);
+    for (int k = 1; !status && m->rubs && k < m->friction_iterations; k++) {
+        if (brunt_barrier_lag(m->contact.barrier, &m->team, m->field.u, error)) return BRUNT_FAILED;
+        status = minimise(m, report, error);
+    }
+    return status;
+}
+
+// Planes that hold what lies on them do not push what comes to them.
+static int check_planes(const brunt_world *world, brunt_error *error) {
+    const struct brunt_implicit *m = world->plan.implicit;
+    const brunt_wall *wall;
+    char reason[160];
+    const int32_t n = brunt_unknowns_passed(&m->unknowns, world, m->field.u, m->dt, &wall);
+    if (n < 0) return BRUNT_OK;
+    const brunt_unknown_place at = brunt_unknowns_place(&m->unknowns, &world->bodies, n);
+    snprintf(reason, sizeof reason,
+             "a node comes to the plane '%s' from afar, which holds what lies on it: condition separate is wanted",
+             wall->name);
+    return brunt_fail_place(world, at.body, at.x, error, reason);
+}
+
+int brunt_pass_newton(brunt_world *world, brunt_step *step, brunt_error *error) {
+    struct brunt_implicit *m = world->plan.implicit;
+    brunt_newton_counts sum = {.least_gap = INFINITY, .least_part = INFINITY};
+    brunt_newton_report report;
+    const int own = world->timing.pass;
+    int status = BRUNT_OK;
+    double dt = step->dt;
+    m->team = (brunt_team){.threads = world->settings.threads, .timer = brunt_pass_timer(world)};
+    for (int cut = 0; cut <= world->settings.newton.cut; cut++, dt *= 0.5) {
+        brunt_error tried = {.id = -1};
+        status = try_step(world, dt, &report, &tried);
+        brunt_newton_counts_add(&sum, &m->tried);
+        if (error && status) *error = tried;
+        if (!status || report.result == BRUNT_NEWTON_BROKEN) break;
+        sum.cuts += 1;
+    }
+    if (world->timing.pass != own) {
+        brunt_pass_end(world, 0);
+        brunt_pass_begin(world, own);
+    }
+    sum.steps = 1, sum.iterations_worst = sum.iterations;
+    m->tried = sum;
+    if (status) return fail_try(world, &report, error);
+    step->dt = step->kick = m->dt;
+    return check_planes(world, error);
+}

@@ -1,0 +1,268 @@
+// Making what implicit steps keep: terms of the bodies, the solver, how small a correction is small.
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "base/error.h"
+#include "base/memory.h"
+#include "scheme/implicit.h"
+
+static int out_of_memory(brunt_error *error) { return brunt_fail(error, BRUNT_FAILED, "out of memory"); }
+
+// ------------------------------------------------------------------------------------------ the solver
+
+// Grid nodes in reach of particles; -1: out of memory.
+static int64_t count_reached(const brunt_grid *grid) {
+    int64_t count = 0;
+    const size_t nodes = (size_t)grid->slot_count * BRUNT_BLOCK_NODES;
+    uint8_t *mark = brunt_alloc(nodes + 1);
+    if (!mark) return -1;
+    const int deep = grid->dim == 3 ? grid->order : 0;
+    for (int32_t b = 0; b < grid->block_count; b++)
+        for (int bin = 0; bin < BRUNT_BLOCK_NODES; bin++) {
+            const int32_t *start = grid->bin_start + (size_t)b * BRUNT_BIN_STARTS;
+            int from[3];
+            if (start[bin + 1] == start[bin]) continue;
+            brunt_node_local(grid, bin, from);
+            for (int x = from[0]; x <= from[0] + grid->order; x++)
+                for (int y = from[1]; y <= from[1] + grid->order; y++)
+                    for (int z = from[2]; z <= from[2] + deep; z++) {
+                        const int at[3] = {x, y, z};
+                        int corner = 0, local[3] = {0};
+                        for (int a = 0; a < grid->dim; a++) {
+                            const int beyond = at[a] >= grid->side;
+                            corner = 2 * corner + beyond, local[a] = at[a] - beyond * grid->side;
+                        }
+                        mark[(size_t)grid->blocks[b].slot[corner] * BRUNT_BLOCK_NODES +
+                             (size_t)brunt_node_index(grid, local[0], local[1], local[2])] = 1;
+                    }
+        }
+    for (size_t n = 0; n < nodes; n++) count += mark[n];
+    brunt_free(mark);
+    return count;
+}
+
+// Blocks of a row: nodes that an inner node of a mesh couples with.
+static double row_of_mesh(brunt_element_kind kind) {
+    return kind == BRUNT_TRI3 ? 7 : kind == BRUNT_QUAD4 ? 9 : kind == BRUNT_TET4 ? 15 : 27;
+}
+
+// How large the systems are. BRUNT_FAILED: out of memory.
+static int measure_systems(const brunt_world *world, brunt_linear_size *size) {
+    const double dt = world->settings.fixed_step;
+    double blocks = 0;
+    *size = (brunt_linear_size){.dim = world->settings.dimension};
+    for (int k = 0; k < world->bodies.fem_count; k++) {
+        const brunt_fem_body *fem = &world->bodies.fem[k];
+        size->nodes += fem->node_count;
+        blocks += row_of_mesh(fem->kind) * fem->node_count;
+        size->courant = fmax(size->courant, (double)fem->material.wave_speed * dt / fem->mean_edge);
+    }
+    for (int i = 0; i < world->bodies.mpm_count; i++) {
+        const brunt_body *body = &world->bodies.mpm[i];
+        const int64_t nodes = count_reached(&body->grid);
+        if (nodes < 0) return BRUNT_FAILED;
+        size->nodes += nodes;
+        blocks += pow(2 * body->grid.order + 1, body->grid.dim) * (double)nodes;
+        size->courant = fmax(size->courant, (double)body->material.wave_speed * dt / (double)body->grid.h);
+    }
+    size->blocks = blocks / fmax((double)size->nodes, 1);
+    return BRUNT_OK;
+}
+
+static void choose_solver(struct brunt_implicit *m, brunt_solver wanted) {
+    enum { MOST_ITERATIONS = 300, MANY_ITERATIONS = 20000 };
+    m->choice = brunt_linear_choose(&m->size);
+    m->options.solver = wanted == BRUNT_SOLVER_AUTO     ? m->choice.solver
+                        : wanted == BRUNT_SOLVER_DIRECT ? &brunt_linear_direct
+                                                        : &brunt_linear_pcg;
+    m->options.preconditioner = m->choice.preconditioner;
+    // What is left of a correction falls as its square only where systems are solved exactly.
+    m->options.early = m->options.solver == &brunt_linear_direct;
+    m->options.fallback = wanted == BRUNT_SOLVER_AUTO;
+    m->options.linear_iterations = m->options.fallback ? MOST_ITERATIONS : MANY_ITERATIONS;
+}
+
+// ------------------------------------------------------------------------------------------ what is small
+
+double brunt_implicit_measure(void *context, const brunt_team *team, const double *p, int64_t *where) {
+    struct brunt_implicit *m = context;
+    const brunt_unknowns *u = &m->unknowns;
+    double most = 0;
+    *where = -1;
+    for (int32_t n = 0; n < u->mesh_count; n++) {
+        double square = 0;
+        for (int a = 0; a < u->dim; a++) square += p[n * (int64_t)u->dim + a] * p[n * (int64_t)u->dim + a];
+        if (!(square <= most)) most = square, *where = n;
+    }
+    for (int i = 0; i < m->world->bodies.mpm_count; i++) {
+        const brunt_particles *particles = &m->world->bodies.mpm[i].particles;
+        brunt_mpm_interpolate(m->mpm[i], team, p, m->moved);
+        for (int64_t s = 0; s < particles->slots; s++) {
+            double square = 0;
+            for (int a = 0; a < u->dim; a++) square += m->moved[s * u->dim + a] * m->moved[s * u->dim + a];
+            if (!(square <= most)) most = square, *where = -2 - s;
+        }
+    }
+    return sqrt(most) / m->dt;
+}
+
+// ------------------------------------------------------------------------------------------ making
+
+static const brunt_weights weights_of[] = {{1, 0.5, 1, 1}, {0.5, 0.25, 0.5, 0.5}}; // by brunt_integrator
+
+static int make_bodies(brunt_world *world, struct brunt_implicit *m, brunt_error *error) {
+    int32_t base = 0;
+    m->term[m->term_count++] = (brunt_term){&brunt_inertia_ops, &m->inertia};
+    m->term[m->term_count++] = (brunt_term){&brunt_dead_load_ops, &m->loads};
+    m->inertia.unknowns = m->loads.unknowns = &m->unknowns;
+    for (int k = 0; k < world->bodies.fem_count; k++) {
+        brunt_fem_body *fem = &world->bodies.fem[k];
+        const char *why = brunt_fem_implicit(fem);
+        if (why) return brunt_fail(error, BRUNT_BAD_INPUT, "bodies.%s: %s", fem->name, why);
+        fem->material.implicit = true;
+        if (!(m->fem[k] = brunt_fem_potential_make(fem, base, &m->team, error))) return BRUNT_FAILED;
+        m->term[m->term_count++] = brunt_fem_potential_term(m->fem[k]);
+        base += fem->node_count;
+    }
+    for (int i = 0; i < world->bodies.mpm_count; i++) {
+        brunt_body *body = &world->bodies.mpm[i];
+        const char *why = brunt_mpm_implicit(body);
+        if (why) return brunt_fail(error, BRUNT_BAD_INPUT, "bodies.%s: %s", body->name, why);
+        body->material.implicit = true;
+        if (!(m->mpm[i] = brunt_mpm_potential_make(body, error))) return BRUNT_FAILED;
+        m->term[m->term_count++] = brunt_mpm_potential_term(m->mpm[i]);
+    }
+    m->body_terms = m->term_count;
+    return BRUNT_OK;
+}
+
+static int make_contact(brunt_world *world, struct brunt_implicit *m, const brunt_world_def *def, brunt_error *error) {
+    const int status = brunt_implicit_contact_make(&m->contact, world, def, error);
+    if (status || !m->contact.barrier) return status;
+    m->friction_iterations = def->contact.friction_iterations;
+    m->term[m->term_count++] = brunt_barrier_term(m->contact.barrier);
+    for (int32_t p = 0; p < m->contact.pair_count; p++) m->rubs = m->rubs || m->contact.pair[p].friction > 0;
+    for (int32_t q = 0; q < m->contact.plane_count; q++) m->rubs = m->rubs || m->contact.plane[q].friction > 0;
+    if (m->rubs) m->term[m->term_count++] = brunt_barrier_friction_term(m->contact.barrier);
+    return BRUNT_OK;
+}
+
+static void set_options(brunt_world *world, struct brunt_implicit *m) {
+    const brunt_newton_def *newton = &world->settings.newton;
+    double slowest = INFINITY;
+    for (int b = 0; b < world->bodies.count; b++)
+        slowest = fmin(slowest, (double)brunt_body_ref_material(&world->bodies.all[b])->wave_speed);
+    m->options = brunt_newton_defaults();
+    m->options.tolerance = newton->tolerance * slowest;
+    m->options.iterations = newton->iterations;
+    m->options.accuracy = newton->accuracy;
+    m->options.measure = brunt_implicit_measure;
+    m->weights = weights_of[world->settings.integrator];
+    world->clock.next_dt = world->settings.fixed_step;
+    world->clock.newton = world->clock.newton_last =
+        (brunt_newton_counts){.least_gap = INFINITY, .least_part = INFINITY};
+}
+
+int brunt_implicit_make(brunt_world *world, const brunt_world_def *def, brunt_error *error) {
+    if (world->settings.scheme != BRUNT_IMPLICIT) return BRUNT_OK;
+    struct brunt_implicit *m = world->plan.implicit = brunt_alloc(sizeof *m);
+    if (!m) return out_of_memory(error);
+    const brunt_bodies *bodies = &world->bodies;
+    m->world = world;
+    m->team.threads = world->settings.threads;
+    m->fem = brunt_alloc(((size_t)bodies->fem_count + 1) * sizeof *m->fem);
+    m->mpm = brunt_alloc(((size_t)bodies->mpm_count + 1) * sizeof *m->mpm);
+    m->term = brunt_alloc(((size_t)bodies->count + BRUNT_MOST_OTHER_TERMS) * sizeof *m->term);
+    if (!m->fem || !m->mpm || !m->term || brunt_unknowns_make(&m->unknowns, world)) return out_of_memory(error);
+    set_options(world, m);
+    if (measure_systems(world, &m->size)) return out_of_memory(error);
+    choose_solver(m, world->settings.newton.solver);
+    brunt_implicit_follow(world);
+    const int status = make_bodies(world, m, error);
+    return status ? status : make_contact(world, m, def, error);
+}
+
+void brunt_implicit_free(brunt_world *world) {
+    struct brunt_implicit *m = world->plan.implicit;
+    if (!m) return;
+    for (int k = 0; m->fem && k < world->bodies.fem_count; k++) brunt_fem_potential_free(m->fem[k]);
+    for (int i = 0; m->mpm && i < world->bodies.mpm_count; i++) brunt_mpm_potential_free(m->mpm[i]);
+    brunt_fields *f = &m->field;
+    double *const fields[] = {f->u,        f->v,       f->aim,  f->acceleration, f->load, f->force_before,
+                              f->gradient, f->contact, f->step, f->zero,         m->moved};
+    for (size_t k = 0; k < sizeof fields / sizeof *fields; k++) brunt_free(fields[k]);
+    brunt_newton_free(&m->newton);
+    brunt_implicit_contact_free(&m->contact);
+    brunt_unknowns_free(&m->unknowns, &world->bodies);
+    brunt_free(m->fem);
+    brunt_free(m->mpm);
+    brunt_free(m->term);
+    brunt_free(m);
+    world->plan.implicit = NULL;
+}
+
+// ------------------------------------------------------------------------------------------ the pass of numbers
+
+static int reserve(const brunt_world *world, struct brunt_implicit *m) {
+    brunt_fields *f = &m->field;
+    const size_t n = (size_t)brunt_implicit_components(m) + 1;
+    size_t most = 1;
+    for (int i = 0; i < world->bodies.mpm_count; i++)
+        if ((size_t)world->bodies.mpm[i].particles.slots > most) most = (size_t)world->bodies.mpm[i].particles.slots;
+    return BRUNT_RESERVE(f->u, n, 0) || BRUNT_RESERVE(f->v, n, 0) || BRUNT_RESERVE(f->aim, n, 0) ||
+           BRUNT_RESERVE(f->acceleration, n, 0) || BRUNT_RESERVE(f->load, n, 0) ||
+           BRUNT_RESERVE(f->force_before, n, 0) || BRUNT_RESERVE(f->gradient, n, 0) ||
+           BRUNT_RESERVE(f->contact, n, 0) || BRUNT_RESERVE(f->step, n, 0) || BRUNT_RESERVE(f->zero, n, 0) ||
+           BRUNT_RESERVE(m->moved, most * (size_t)m->unknowns.dim, 0);
+}
+
+int brunt_pass_number(brunt_world *world, brunt_step *step, brunt_error *error) {
+    (void)step;
+    struct brunt_implicit *m = world->plan.implicit;
+    if (brunt_unknowns_number(&m->unknowns, world) || reserve(world, m))
+        return brunt_fail_step(world, NULL, error, "out of memory for the unknowns");
+    m->loads.force = m->field.load, m->inertia.aim = m->field.aim;
+    return brunt_implicit_contact_points(&m->contact, world, &m->unknowns, error) ? brunt_fail_inner(world, NULL, error)
+                                                                                  : BRUNT_OK;
+}
+
+// ------------------------------------------------------------------------------------------ what is read of it
+
+bool brunt_world_newton(const brunt_world *world, brunt_newton_counts *so_far, brunt_newton_counts *last) {
+    if (so_far) *so_far = world->clock.newton;
+    if (last) *last = world->clock.newton_last;
+    return world->plan.implicit != NULL;
+}
+
+size_t brunt_implicit_bytes(const brunt_world *world) {
+    const struct brunt_implicit *m = world->plan.implicit;
+    const brunt_fields *f = &m->field;
+    size_t bytes = brunt_unknowns_bytes(&m->unknowns, &world->bodies) + m->moved_capacity +
+                   brunt_implicit_contact_bytes(&m->contact) + f->contact_capacity;
+    for (int k = 0; k < world->bodies.fem_count; k++) bytes += brunt_fem_potential_bytes(m->fem[k]);
+    for (int i = 0; i < world->bodies.mpm_count; i++) bytes += brunt_mpm_potential_bytes(m->mpm[i]);
+    return bytes + f->u_capacity + f->v_capacity + f->aim_capacity + f->acceleration_capacity + f->load_capacity +
+           f->force_before_capacity + f->gradient_capacity + f->step_capacity + f->zero_capacity;
+}
+
+size_t brunt_implicit_matrix_bytes(const brunt_world *world) {
+    const brunt_newton *n = &world->plan.implicit->newton;
+    const brunt_block_matrix *a = &n->matrix;
+    return a->first_capacity + a->column_capacity + a->diagonal_capacity + a->value_capacity + n->gradient_capacity +
+           n->step_capacity + n->trial_capacity;
+}
+
+bool brunt_world_newton_systems(const brunt_world *world, brunt_newton_systems *systems) {
+    const struct brunt_implicit *m = world->plan.implicit;
+    if (!m) return false;
+    *systems = (brunt_newton_systems){
+        .unknowns = m->size.nodes * m->size.dim,
+        .courant = m->size.courant,
+        .solver = m->options.solver->name,
+        .why = world->settings.newton.solver == BRUNT_SOLVER_AUTO ? m->choice.why : "newton.solver asks for it",
+        .tolerance = m->options.tolerance,
+        .bytes = (double)brunt_implicit_bytes(world)};
+    return true;
+}

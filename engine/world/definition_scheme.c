@@ -1,0 +1,197 @@
+// What goes with explicit steps alone, and with implicit ones: all that a definition asks for and its scheme has not.
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "materials/material.h"
+#include "world/definitions.h"
+
+typedef struct refusals {
+    brunt_refusal_fn *refuse;
+    void *context;
+    char owner[96]; // what the path begins with
+} refusals;
+
+static void say(const refusals *r, const char *key, const char *format, ...) __attribute__((format(printf, 3, 4)));
+static void say(const refusals *r, const char *key, const char *format, ...) {
+    char path[160], reason[240];
+    snprintf(path, sizeof path, "%s%s", r->owner, key);
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(reason, sizeof reason, format, arguments);
+    va_end(arguments);
+    r->refuse(r->context, path, reason);
+}
+
+static void set_owner(refusals *r, const char *format, ...) __attribute__((format(printf, 2, 3)));
+static void set_owner(refusals *r, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(r->owner, sizeof r->owner, format, arguments);
+    va_end(arguments);
+}
+
+#define EXPLICIT_ONLY "this belongs to time.scheme: explicit"
+
+// ------------------------------------------------------------------------------------------ implicit steps
+
+static void look_at_time(const brunt_world_def *def, refusals *r) {
+    set_owner(r, "time");
+    if (sizeof(real) != sizeof(double))
+        say(r, ".scheme", "implicit: this program computes in single precision, implicit steps want double");
+    if (!(def->step > 0)) say(r, ".step", "implicit steps are of a length that is given: step is missing");
+    if (def->cfl > 0) say(r, ".cfl", EXPLICIT_ONLY);
+    if (def->least_step > 0) say(r, ".least_step", EXPLICIT_ONLY);
+    r->owner[0] = 0;
+    if (def->axisymmetric) say(r, "axisymmetric", EXPLICIT_ONLY ": implicit steps know no rings");
+    if (def->detonation_count) say(r, "detonations", EXPLICIT_ONLY);
+}
+
+static void say_no_potential(const refusals *r, const char *key, const brunt_model *model) {
+    if (model->no_potential)
+        say(r, key, "%s", model->no_potential);
+    else
+        say(r, key, "'%s' has no potential for implicit steps", model->name);
+}
+
+static void look_at_material(const brunt_world_def *def, const brunt_body_def *body, refusals *r) {
+    if (body->material < 0 || body->material >= def->material_count) return; // another mistake
+    const brunt_material_def *material = &def->materials[body->material];
+    set_owner(r, "materials.%s", material->name);
+    const brunt_model *strength = brunt_find_strength(material->strength), *eos = brunt_find_eos(material->eos);
+    if (strength && !strength->potential) say_no_potential(r, ".model", strength);
+    if (eos && !eos->potential) say_no_potential(r, ".eos.model", eos);
+    if (material->bulk_viscosity) say(r, ".viscosity", EXPLICIT_ONLY ": implicit steps need no bulk viscosity");
+    if (material->failure[0]) say(r, ".failure", EXPLICIT_ONLY);
+}
+
+static void look_at_body(const brunt_body_def *body, refusals *r) {
+    set_owner(r, "bodies.%s", body->name);
+    const brunt_erosion_def *erosion = &body->erosion;
+    if (isfinite(erosion->strain) || erosion->step > 0 || erosion->inverted || erosion->keep)
+        say(r, ".erosion", EXPLICIT_ONLY);
+    if (body->mass_scaling > 0) say(r, ".mass_scaling", EXPLICIT_ONLY ": implicit steps need none");
+    if (body->damping > 0) say(r, ".damping", EXPLICIT_ONLY);
+    if (body->total_lagrangian) say(r, ".lagrangian", "total: " EXPLICIT_ONLY);
+    if (body->method == BRUNT_MEMBRANE) say(r, ".method", "membrane: " EXPLICIT_ONLY);
+    if (body->method == BRUNT_FEM && body->hourglass == BRUNT_HOURGLASS_VISCOUS)
+        say(r, ".hourglass.form", "viscous: " EXPLICIT_ONLY ", stiffness is wanted");
+}
+
+// A plane along an axis holds components of nodes; one that is oblique would couple them.
+static bool oblique(const brunt_plane_def *plane) {
+    int along = 0;
+    for (int a = 0; a < 3; a++) along += plane->normal[a] != 0;
+    return along > 1;
+}
+
+// A boundary's name is where it stands in its file; without one it is counted, which is its place if all are planes.
+static void name_boundary(refusals *r, int32_t index, const char *name) {
+    if (name[0])
+        set_owner(r, "boundaries (%s)", name);
+    else
+        set_owner(r, "boundaries[%d]", index);
+}
+
+static void look_at_boundaries(const brunt_world_def *def, refusals *r) {
+    for (int32_t q = 0; q < def->plane_count; q++) {
+        const brunt_plane_def *plane = &def->planes[q];
+        const bool glides = plane->condition == BRUNT_SLIP || plane->condition == BRUNT_SYMMETRY;
+        name_boundary(r, q, plane->name);
+        if (glides && oblique(plane))
+            say(r, ".condition", "implicit steps hold nodes on planes that are normal to an axis");
+    }
+    for (int32_t q = 0; q < def->group_count; q++) {
+        const brunt_group_def *group = &def->groups[q];
+        name_boundary(r, def->plane_count + def->region_count + q, group->name);
+        if (group->action == BRUNT_GROUP_GAS) say(r, ".gas", EXPLICIT_ONLY);
+        if (group->action == BRUNT_GROUP_PRESSURE)
+            say(r, ".pressure", EXPLICIT_ONLY ": it follows the surface, traction does not");
+    }
+}
+
+static const char *method_name(brunt_contact_method method) {
+    return method == BRUNT_CONTACT_AUGURY ? "augury" : "multi-velocity";
+}
+
+static bool belongs(brunt_contact_method method) {
+    return method == BRUNT_CONTACT_NONE || method == BRUNT_CONTACT_BARRIER || method == BRUNT_CONTACT_TIED;
+}
+
+static brunt_contact_method method_of(const brunt_contact_def *contact, const brunt_body_def *a,
+                                      const brunt_body_def *b) {
+    brunt_contact_method method = contact->method;
+    for (int32_t p = 0; p < contact->pair_count; p++) {
+        const brunt_pair_def *pair = &contact->pairs[p];
+        if ((!strcmp(pair->a, a->name) && !strcmp(pair->b, b->name)) ||
+            (!strcmp(pair->a, b->name) && !strcmp(pair->b, a->name)))
+            method = pair->method;
+    }
+    return method;
+}
+
+// Bodies of material points have no surface that particles of others could be kept from.
+static void look_at_points(const brunt_world_def *def, const refusals *r) {
+    for (int32_t i = 0; i < def->body_count; i++)
+        for (int32_t k = i + 1; k < def->body_count; k++) {
+            const brunt_body_def *a = &def->bodies[i], *b = &def->bodies[k];
+            if (a->method != BRUNT_MPM || b->method != BRUNT_MPM ||
+                method_of(&def->contact, a, b) != BRUNT_CONTACT_BARRIER)
+                continue;
+            say(r, ".method",
+                "barriers want a body of method fem, neither '%s' nor '%s' is: tied or none is wanted, for all or in "
+                "pairs",
+                a->name, b->name);
+            return;
+        }
+}
+
+static void look_at_contact(const brunt_world_def *def, refusals *r) {
+    const brunt_contact_def *contact = &def->contact;
+    const bool some = def->body_count > 1;
+    set_owner(r, "contact");
+    if (some && !belongs(contact->method))
+        say(r, ".method", "%s: " EXPLICIT_ONLY ", barrier, tied or none is wanted", method_name(contact->method));
+    if (contact->allow_overlap) say(r, ".initial_overlap", "allow: " EXPLICIT_ONLY ", barriers keep gaps open");
+    for (int32_t q = 0; q < contact->pair_count; q++) {
+        set_owner(r, "contact.pairs[%d]", q);
+        if (!belongs(contact->pairs[q].method))
+            say(r, ".method", "%s: " EXPLICIT_ONLY ", barrier, tied or none is wanted",
+                method_name(contact->pairs[q].method));
+    }
+    set_owner(r, "contact");
+    look_at_points(def, r);
+}
+
+static void look_at_implicit(const brunt_world_def *def, refusals *r) {
+    look_at_time(def, r);
+    for (int32_t i = 0; i < def->body_count; i++) {
+        look_at_material(def, &def->bodies[i], r);
+        look_at_body(&def->bodies[i], r);
+    }
+    look_at_boundaries(def, r);
+    look_at_contact(def, r);
+}
+
+// ------------------------------------------------------------------------------------------ explicit steps
+
+#define IMPLICIT_ONLY "this belongs to time.scheme: implicit"
+
+static void look_at_explicit(const brunt_world_def *def, refusals *r) {
+    const brunt_contact_def *contact = &def->contact;
+    set_owner(r, "contact");
+    if (contact->method == BRUNT_CONTACT_BARRIER) say(r, ".method", "barrier: " IMPLICIT_ONLY);
+    for (int32_t q = 0; q < contact->pair_count; q++) {
+        set_owner(r, "contact.pairs[%d]", q);
+        if (contact->pairs[q].method == BRUNT_CONTACT_BARRIER) say(r, ".method", "barrier: " IMPLICIT_ONLY);
+    }
+}
+
+void brunt_scheme_refusals(const brunt_world_def *def, brunt_refusal_fn *refuse, void *context) {
+    refusals r = {.refuse = refuse, .context = context, .owner = ""};
+    if (def->scheme == BRUNT_IMPLICIT)
+        look_at_implicit(def, &r);
+    else
+        look_at_explicit(def, &r);
+}
