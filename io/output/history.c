@@ -84,12 +84,26 @@ static void add_energy(brunt_history *h, brunt_world *world) {
     add(h, "energy.viscosity", "J", e.viscosity);
     add(h, "energy.transfer", "J", e.transfer);
     add(h, "energy.eroded", "J", e.eroded);
+    if (brunt_world_newton(world, NULL, NULL)) add(h, "energy.scheme", "J", e.scheme);
     add(h, "energy.heat", "J", e.heat);
     add(h, "energy.external_work", "J", e.external_work);
     add(h, "energy.initial", "J", e.initial);
     add(h, "energy.total", "J", e.total);
     add(h, "energy.error", "J", e.error);
     add(h, "energy.error_relative", "1", e.error_relative);
+}
+
+// Of the last step; no number where nothing is near.
+static void add_newton(brunt_history *h, const brunt_world *world) {
+    brunt_newton_counts last;
+    if (!brunt_world_newton(world, NULL, &last)) return;
+    add(h, "newton.iterations", "1", last.iterations);
+    add(h, "newton.halvings", "1", last.halvings);
+    add(h, "newton.linear_iterations", "1", last.linear_iterations);
+    add(h, "newton.cuts", "1", last.cuts);
+    add(h, "newton.residual", "m/s", last.residual);
+    add(h, "newton.least_gap", "m", isfinite(last.least_gap) ? last.least_gap : NAN);
+    add(h, "newton.least_part", "1", isfinite(last.least_part) ? last.least_part : NAN);
 }
 
 static void add_momentum(brunt_history *h, brunt_world *world) {
@@ -185,6 +199,7 @@ static void traverse(brunt_history *h, brunt_world *world) {
     add(h, "dt", "s", brunt_world_dt(world));
     add_energy(h, world);
     add_momentum(h, world);
+    add_newton(h, world);
     for (int32_t b = 0; b < brunt_body_count(world); b++) add_body(h, world, b);
     const bool flat = brunt_world_dimension(world) == 2 && !has_effect(world, "axisymmetric");
     for (int32_t p = 0; p < brunt_pair_count(world); p++) {

@@ -71,12 +71,21 @@ brunt_progress brunt_progress_start(brunt_console *console, const brunt_world *w
                             .rate_steps = brunt_world_steps(world)};
 }
 
+// Newton's method in the last step of implicit schemes.
+static void format_newton(const brunt_world *world, char *text, size_t room) {
+    brunt_newton_counts last;
+    text[0] = 0;
+    if (!brunt_world_newton(world, NULL, &last)) return;
+    const int used = snprintf(text, room, "  newton %.0f to %.2g m/s", last.iterations, last.residual);
+    if (isfinite(last.least_part)) snprintf(text + used, room - (size_t)used, "  gap %.2g", last.least_part);
+}
+
 static void format_line(const brunt_progress *p, brunt_world *world, char *line, size_t room) {
     brunt_energy energy;
     brunt_world_energy(world, &energy);
     double time = brunt_world_time(world), end = brunt_world_end(world);
     double particles = (double)brunt_world_particles(world), elements = (double)brunt_world_elements(world);
-    char left[32], rates[96] = "";
+    char left[32], rates[96] = "", newton[64];
     int used = 0;
     if (particles > 0)
         used = snprintf(rates, sizeof rates, "  %.3g M particle-steps/s", 1e-6 * p->steps_per_second * particles);
@@ -84,9 +93,10 @@ static void format_line(const brunt_progress *p, brunt_world *world, char *line,
         snprintf(rates + used, sizeof rates - (size_t)used, "  %.3g M element-steps/s",
                  1e-6 * p->steps_per_second * elements);
     brunt_duration((end - time) / p->time_per_second, left);
-    snprintf(line, room, "step %lld  t %.4g s  dt %.3g s  energy error %.3g %%%s  %.1f %%  %s left",
-             (long long)brunt_world_steps(world), time, brunt_world_dt(world), 100 * energy.error_relative, rates,
-             100 * time / end, left);
+    format_newton(world, newton, sizeof newton);
+    snprintf(line, room, "step %lld  t %.4g s  dt %.3g s%s  energy error %.3g %%%s  %.1f %%  %s left",
+             (long long)brunt_world_steps(world), time, brunt_world_dt(world), newton, 100 * energy.error_relative,
+             rates, 100 * time / end, left);
 }
 
 static void show(brunt_console *console, const char *line, double share) {

@@ -69,6 +69,7 @@ static json_t *energy_of(brunt_world *world) {
     json_t *energy = json_object();
     for (size_t r = 0; r < sizeof rows / sizeof *rows; r++)
         json_object_set_new(energy, rows[r].name, number(rows[r].value));
+    if (brunt_world_newton(world, NULL, NULL)) json_object_set_new(energy, "scheme", number(e.scheme));
     return energy;
 }
 
@@ -107,6 +108,35 @@ static json_t *momentum_of(brunt_world *world) {
     json_object_set_new(momentum, "angular_final", vector(m.angular));
     json_object_set_new(momentum, "angular_drift", number(m.angular_drift));
     return momentum;
+}
+
+// Of implicit steps, NULL of others.
+static json_t *newton_of(const brunt_world *world) {
+    brunt_newton_counts n;
+    if (!brunt_world_newton(world, &n, NULL)) return NULL;
+    const struct {
+        const char *name;
+        double count;
+    } rows[] = {{"steps", n.steps},
+                {"iterations", n.iterations},
+                {"iterations_worst", n.iterations_worst},
+                {"halvings", n.halvings},
+                {"projections", n.projections},
+                {"linear_iterations", n.linear_iterations},
+                {"factorisations", n.factorisations},
+                {"cuts", n.cuts}};
+    json_t *newton = json_object();
+    for (size_t r = 0; r < sizeof rows / sizeof *rows; r++)
+        json_object_set_new(newton, rows[r].name, json_integer((json_int_t)rows[r].count));
+    json_object_set_new(newton, "residual", number(n.residual));
+    return newton;
+}
+
+static void set_newton(json_t *object, const brunt_world *world) {
+    brunt_newton_counts n;
+    if (!brunt_world_newton(world, &n, NULL)) return;
+    json_object_set_new(object, "newton", newton_of(world));
+    json_object_set_new(object, "least_gap", number(n.least_gap));
 }
 
 static json_t *measures_of(const brunt_summary *summary, const brunt_scene *scene) {
@@ -165,6 +195,7 @@ static json_t *summary_object(const brunt_summary *s, const brunt_scene *scene, 
     json_object_set_new(o, "energy", energy_of(world));
     json_object_set_new(o, "momentum", momentum_of(world));
     json_object_set_new(o, "eroded", eroded_of(world));
+    set_newton(o, world);
     json_object_set_new(o, "measures", measures_of(s, scene));
     if (s->profile) json_object_set_new(o, "profile", brunt_profile_json(s->profile));
     return o;
@@ -202,13 +233,13 @@ static void print_energy(brunt_world *world, brunt_console *console) {
     const struct {
         const char *name;
         double value;
-    } rows[] = {{"initial", e.initial},      {"external work", e.external_work},
-                {"kinetic", e.kinetic},      {"internal", e.internal},
-                {"plastic", e.plastic},      {"hourglass", e.hourglass},
-                {"contact", e.contact},      {"friction", e.friction},
-                {"viscosity", e.viscosity},  {"transfer", e.transfer},
-                {"eroded", e.eroded},        {"error", e.error},
-                {"of plastic, heat", e.heat}};
+    } rows[] = {{"initial", e.initial},     {"external work", e.external_work},
+                {"kinetic", e.kinetic},     {"internal", e.internal},
+                {"plastic", e.plastic},     {"hourglass", e.hourglass},
+                {"contact", e.contact},     {"friction", e.friction},
+                {"viscosity", e.viscosity}, {"transfer", e.transfer},
+                {"eroded", e.eroded},       {"scheme", e.scheme},
+                {"error", e.error},         {"of plastic, heat", e.heat}};
     brunt_console_print(console, "energy [J]\n");
     for (size_t r = 0; r < sizeof rows / sizeof *rows; r++)
         // Rows of effects the scene does not have are no more than noise; the four that always matter are always there.
@@ -229,6 +260,20 @@ static void print_eroded(brunt_world *world, brunt_console *console) {
         if (e.nodes) brunt_console_print(console, ", %lld nodes", (long long)e.nodes);
         brunt_console_print(console, "; %.4g kg and %.4g J left\n", e.mass, e.energy);
     }
+}
+
+static void print_newton(brunt_world *world, brunt_console *console) {
+    brunt_newton_counts n;
+    if (!brunt_world_newton(world, &n, NULL)) return;
+    brunt_console_print(console,
+                        "newton: %.0f iterations in %.0f steps (%.1f each, at most %.0f), %.0f halvings, %.0f "
+                        "projections, %.0f steps cut, last corrections up to %.3g m/s\n",
+                        n.iterations, n.steps, n.iterations / fmax(n.steps, 1), n.iterations_worst, n.halvings,
+                        n.projections, n.cuts, n.residual);
+    brunt_console_print(console, "linear systems: %.0f factorised, %.0f iterations\n", n.factorisations,
+                        n.linear_iterations);
+    if (isfinite(n.least_gap))
+        brunt_console_print(console, "least gap %.4g m, %.3g of contact.distance\n", n.least_gap, n.least_part);
 }
 
 static void print_measures(const brunt_summary *summary, const brunt_scene *scene, brunt_console *console) {
@@ -271,6 +316,7 @@ void brunt_summary_print(const brunt_summary *s, const brunt_scene *scene, brunt
     print_rate(console, (double)brunt_world_elements(world), steps, s->step_seconds, "element");
     print_energy(world, console);
     print_eroded(world, console);
+    print_newton(world, console);
     brunt_console_print(console, "momentum drift: linear %.2e, angular %.2e\n", m.linear_drift, m.angular_drift);
     brunt_console_print(console, "state hash 0x%016llx\n", (unsigned long long)brunt_world_hash(world));
     print_measures(s, scene, console);

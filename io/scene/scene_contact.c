@@ -6,8 +6,8 @@
 #include "contact/methods/method.h"
 #include "world/definitions.h"
 
-static const char *const methods[] = {"none", "multi-velocity", "augury", "tied"}; // by brunt_contact_method
-_Static_assert(sizeof methods / sizeof *methods == BRUNT_CONTACT_TIED + 1, "a name for each method");
+static const char *const methods[] = {"none", "multi-velocity", "augury", "tied", "barrier"}; // by brunt_contact_method
+_Static_assert(sizeof methods / sizeof *methods == BRUNT_CONTACT_BARRIER + 1, "a name for each method");
 
 static bool has_mesh(const scene_reader *reader, const char *name) {
     const brunt_body_def *body = brunt_body_named(reader, name);
@@ -28,6 +28,9 @@ static void check_pair_method(scene_reader *reader, const scene_node *method, co
     if (pair->method == BRUNT_CONTACT_TIED)
         brunt_tree_complain(reader->tree, method, "only bodies of method mpm can be tied, '%s' is none",
                             a ? pair->a : pair->b);
+    if (pair->method == BRUNT_CONTACT_BARRIER && known)
+        brunt_tree_complain(reader->tree, method, "barriers want a body of method fem, neither '%s' nor '%s' is",
+                            pair->a, pair->b);
     if (pair->method == BRUNT_CONTACT_AUGURY)
         brunt_tree_complain(reader->tree, method,
                             "augury wants a body of method fem or membrane, both are of method mpm");
@@ -38,6 +41,12 @@ static void check_self(scene_reader *reader, const scene_node *between, const sc
                        const brunt_pair_def *pair) {
     const brunt_body_def *body = brunt_body_named(reader, pair->a);
     if (!body || pair->method == BRUNT_CONTACT_NONE) return;
+    if (pair->method == BRUNT_CONTACT_BARRIER) {
+        if (body->method == BRUNT_MPM)
+            brunt_tree_complain(reader->tree, between,
+                                "contact of a body with itself wants its mesh, '%s' is of method mpm", pair->a);
+        return;
+    }
     if (body->method != BRUNT_MEMBRANE)
         brunt_tree_complain(reader->tree, between, "contact of a body with itself is for membranes, '%s' is none",
                             pair->a);
@@ -119,12 +128,17 @@ static void check_multi_velocity(scene_reader *reader, const scene_node *method)
         }
 }
 
+// Whether all pairs but some, or some pairs, meet by a method.
+static bool uses(const brunt_contact_def *contact, brunt_contact_method method) {
+    bool used = contact->method == method;
+    for (int i = 0; i < contact->pair_count; i++) used |= contact->pairs[i].method == method;
+    return used;
+}
+
 static void fill_augury(scene_reader *reader, scene_node *node) {
     brunt_contact_def *contact = &reader->scene->world.contact;
-    bool used = contact->method == BRUNT_CONTACT_AUGURY;
-    for (int i = 0; i < contact->pair_count; i++) used |= contact->pairs[i].method == BRUNT_CONTACT_AUGURY;
-    bool meshes = false, at_nodes = contact->method == BRUNT_CONTACT_MULTI_VELOCITY;
-    for (int i = 0; i < contact->pair_count; i++) at_nodes |= contact->pairs[i].method == BRUNT_CONTACT_MULTI_VELOCITY;
+    const bool used = uses(contact, BRUNT_CONTACT_AUGURY), at_nodes = uses(contact, BRUNT_CONTACT_MULTI_VELOCITY);
+    bool meshes = false;
     for (int i = 0; i < reader->scene->world.body_count; i++)
         meshes |= reader->scene->world.bodies[i].method != BRUNT_MPM;
     contact->iterations = (int)brunt_real_of(node, "iterations", -1);
@@ -152,6 +166,20 @@ static void fill_augury(scene_reader *reader, scene_node *node) {
     contact->transfer = brunt_real_of(node, "transfer", 1) == 0 ? BRUNT_PIC : BRUNT_APIC;
 }
 
+static void fill_barrier(scene_reader *reader, scene_node *node) {
+    brunt_contact_def *contact = &reader->scene->world.contact;
+    static const char *const keys[] = {"distance", "stiffness", "slip_speed", "friction_iterations"};
+    if (!uses(contact, BRUNT_CONTACT_BARRIER)) {
+        for (int i = 0; i < 4; i++) brunt_refuse_key(reader, node, keys[i], "this belongs to method: barrier");
+        return;
+    }
+    if (!brunt_tree_child(node, "friction_iterations")) brunt_add_default(reader, node, "friction_iterations", "1");
+    contact->distance = brunt_real_of(node, "distance", 0);
+    contact->stiffness = brunt_real_of(node, "stiffness", 0);
+    contact->slip_speed = brunt_real_of(node, "slip_speed", 0);
+    contact->friction_iterations = (int)brunt_real_of(node, "friction_iterations", 1);
+}
+
 // Names may hold the hyphen that columns of pairs are joined by.
 static void check_pair_columns(scene_reader *reader) {
     const brunt_world_def *world = &reader->scene->world;
@@ -174,7 +202,9 @@ void brunt_fill_contact(scene_reader *reader) {
     bool fem = false;
     for (int i = 0; i < world->body_count; i++) fem |= world->bodies[i].method != BRUNT_MPM;
     const scene_node *method = brunt_tree_child(node, "method");
-    contact->method = fem ? BRUNT_CONTACT_AUGURY : BRUNT_CONTACT_MULTI_VELOCITY;
+    contact->method = world->scheme == BRUNT_IMPLICIT ? BRUNT_CONTACT_BARRIER
+                      : fem                           ? BRUNT_CONTACT_AUGURY
+                                                      : BRUNT_CONTACT_MULTI_VELOCITY;
     if (!method) method = brunt_add_default(reader, node, "method", methods[contact->method]);
     contact->method = (brunt_contact_method)(int)brunt_real_of(node, "method", contact->method);
     if (contact->method == BRUNT_CONTACT_AUGURY && !fem && world->body_count)
@@ -188,5 +218,6 @@ void brunt_fill_contact(scene_reader *reader) {
     fill_pairs(reader, brunt_tree_child(node, "pairs"));
     if (contact->method == BRUNT_CONTACT_MULTI_VELOCITY && method && method->good) check_multi_velocity(reader, method);
     fill_augury(reader, node);
+    fill_barrier(reader, node);
     check_pair_columns(reader);
 }

@@ -41,16 +41,27 @@ static const char *gas_mistake(const brunt_world_def *world, const char *rest) {
     return "there is no boundary of that name with gas";
 }
 
+static const char *newton_mistake(const brunt_world_def *world, const char *rest) {
+    static const char *const counts[] = {"iterations", "halvings",  "linear_iterations", "cuts",
+                                         "residual",   "least_gap", "least_part"};
+    if (world->scheme != BRUNT_IMPLICIT) return "Newton's method belongs to time.scheme: implicit";
+    return one_of(rest, counts, sizeof counts / sizeof *counts)
+               ? NULL
+               : "of Newton's method there are iterations, halvings, linear_iterations, cuts, residual, least_gap and "
+                 "least_part";
+}
+
 // What of a column can be known before the engine runs: its family, and the names of bodies, walls and probes in it.
 static const char *column_mistake(const scene_reader *reader, const char *column) {
     static const char *const plain[] = {"time", "step", "dt"};
-    static const char *const energies[] = {
-        "kinetic",  "internal", "mechanical", "plastic",       "hourglass", "contact", "friction", "viscosity",
-        "transfer", "eroded",   "heat",       "external_work", "initial",   "total",   "error",    "error_relative"};
+    static const char *const energies[] = {"kinetic",        "internal",      "mechanical", "plastic",  "hourglass",
+                                           "contact",        "friction",      "viscosity",  "transfer", "eroded",
+                                           "heat",           "external_work", "initial",    "total",    "error",
+                                           "error_relative", "scheme"};
     const brunt_world_def *world = &reader->scene->world;
     static const char families[] =
-        "columns are time, step, dt, energy.*, momentum.*, body.NAME.*, contact.A-B.*, wall.NAME.*, gas.NAME.* "
-        "and probe.NAME";
+        "columns are time, step, dt, energy.*, momentum.*, newton.*, body.NAME.*, contact.A-B.*, wall.NAME.*, "
+        "gas.NAME.* and probe.NAME";
     const char *dot = strchr(column, '.');
     if (!dot) return one_of(column, plain, 3) ? NULL : families;
     const char *rest = dot + 1;
@@ -60,9 +71,9 @@ static const char *column_mistake(const scene_reader *reader, const char *column
         return one_of(rest, energies, sizeof energies / sizeof *energies)
                    ? NULL
                    : "energies are kinetic, internal, plastic, hourglass, contact, friction, viscosity, transfer, "
-                     "eroded, heat, "
-                     "external_work, initial, total, error, error_relative";
+                     "eroded, heat, scheme, external_work, initial, total, error, error_relative";
     if (family == 8 && strncmp(column, "momentum", 8) == 0) return NULL;
+    if (family == 6 && strncmp(column, "newton", 6) == 0) return newton_mistake(world, rest);
     if (family == 4 && strncmp(column, "body", 4) == 0) {
         for (int i = 0; i < world->body_count; i++)
             if (names_part(rest, world->bodies[i].name)) return NULL;

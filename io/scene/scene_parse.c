@@ -266,13 +266,15 @@ void brunt_fill_world(scene_reader *reader) {
     world->axisymmetric = brunt_real_of(root, "axisymmetric", 0) == 1;
     fill_time(reader);
     fill_grid(reader);
-    fill_cfl(reader);
+    if (world->scheme == BRUNT_EXPLICIT) fill_cfl(reader);
+    brunt_fill_scheme(reader);
     fill_materials(reader);
     brunt_fill_bodies(reader);
     fill_detonations(reader);
     brunt_fill_contact(reader);
     brunt_fill_boundaries(reader);
     if (loads) brunt_fill_fields(reader, loads, "loads", 0, world);
+    brunt_check_scheme(reader);
 }
 
 // ---------------------------------------------------------------------------------------------------- output

@@ -2,8 +2,8 @@
 //
 // 1. scene_yaml.c   text to tree          2. scene_tree.c   overrides
 // 3. scene_check.c  tree against the table of keys: kinds, words, units, ranges, unknown and missing keys, defaults
-// 4. scene_parse.c, scene_shape.c, scene_body.c, scene_contact.c, scene_boundary.c, scene_measure.c  meaning:
-// structures are filled, and what two keys say together is checked
+// 4. scene_parse.c, scene_shape.c, scene_body.c, scene_contact.c, scene_boundary.c, scene_scheme.c, scene_measure.c
+// meaning: structures are filled, and what two keys say together is checked
 #pragma once
 
 #include "io/scene/scene.h"
@@ -46,7 +46,9 @@ brunt_placement brunt_fill_place(scene_reader *reader, const scene_node *list);
 void brunt_fill_bodies(scene_reader *reader);
 void brunt_fill_contact(scene_reader *reader);
 void brunt_fill_boundaries(scene_reader *reader);
-void brunt_fill_world(scene_reader *reader); // calls the three above
+void brunt_fill_scheme(scene_reader *reader);
+void brunt_check_scheme(scene_reader *reader);
+void brunt_fill_world(scene_reader *reader); // calls the five above
 void brunt_fill_output(scene_reader *reader);
 void brunt_fill_measures(scene_reader *reader);
 const brunt_body_def *brunt_body_named(const scene_reader *reader, const char *name);

@@ -1,0 +1,48 @@
+// Explicit and implicit steps: the keys that are one's alone, and what the other cannot do.
+#include "io/scene/scene_reader.h"
+
+#include <string.h>
+
+#include "world/definitions.h"
+
+// Keys of Newton's method, with their defaults.
+static void fill_newton(scene_reader *reader) {
+    scene_node *root = reader->tree->root, *newton = brunt_tree_child(root, "newton");
+    if (!newton) newton = brunt_add_default(reader, root, "newton", "{}");
+    if (!newton || newton->kind != SCENE_MAP) return;
+    static const char *const keys[] = {"tolerance", "iterations", "cut", "solver", "accuracy"};
+    for (size_t k = 0; k < sizeof keys / sizeof *keys; k++) {
+        char path[64];
+        snprintf(path, sizeof path, "newton.%s", keys[k]);
+        if (!brunt_tree_child(newton, keys[k]))
+            brunt_add_default(reader, newton, keys[k], brunt_scene_row(path)->initial);
+    }
+    brunt_fill_fields(reader, newton, "newton", 0, &reader->scene->world);
+}
+
+void brunt_fill_scheme(scene_reader *reader) {
+    brunt_world_def *world = &reader->scene->world;
+    scene_node *root = reader->tree->root, *time = brunt_tree_child(root, "time");
+    if (!time || time->kind != SCENE_MAP) return;
+    if (world->scheme == BRUNT_IMPLICIT) {
+        if (!brunt_tree_child(time, "integrator")) brunt_add_default(reader, time, "integrator", "euler");
+        world->integrator = (brunt_integrator)(int)brunt_real_of(time, "integrator", BRUNT_EULER);
+        fill_newton(reader);
+        return;
+    }
+    static const char why[] = "this belongs to time.scheme: implicit";
+    brunt_refuse_key(reader, time, "integrator", why);
+    brunt_refuse_key(reader, root, "newton", why);
+}
+
+// At the value that asks for it, else at the key of what it is missing in.
+static void refuse_at(void *context, const char *path, const char *reason) {
+    scene_tree *tree = ((scene_reader *)context)->tree;
+    const scene_node *node = brunt_tree_find(tree, path);
+    if (node->kind == SCENE_SCALAR)
+        brunt_tree_complain(tree, node, "%s", reason);
+    else
+        brunt_tree_complain_key(tree, node, "%s", reason);
+}
+
+void brunt_check_scheme(scene_reader *reader) { brunt_scheme_refusals(&reader->scene->world, refuse_at, reader); }

@@ -1,0 +1,107 @@
+// Labels: io
+// Implicit steps through the program: what check, summary and history say of them, explicit steps of the same scene, a
+// run in two legs, and a step that does not converge.
+#include "tests/support/small_program.h"
+
+#include <jansson.h>
+
+#ifdef BRUNT_FLOAT
+int main(void) { return 0; } // implicit steps want double
+#else
+
+static const char scene[] =
+    "brunt: 1\n"
+    "title: Points fall on a block of elements\n"
+    "dimension: 2\n"
+    "time: {end: 0.2 s, scheme: implicit, step: 2 ms}\n"
+    "grid: {cell: 0.1 m}\n"
+    "materials:\n"
+    "  rubber: {model: neo-hookean, density: 1000 kg/m^3, E: 1 MPa, nu: 0.3}\n"
+    "bodies:\n"
+    "  lower: {method: fem, material: rubber, size: 0.1 m, shape: {box: {min: [-0.5, -0.3], max: [1, 0]}}}\n"
+    "  upper: {method: mpm, material: rubber, shape: {box: {min: [0, 0.05], max: [0.5, 0.55]}}, velocity: [1, -2]}\n"
+    "contact: {friction: 0.2}\n"
+    "boundaries:\n"
+    "  - {name: ground, group: ymin, body: lower, fix: all}\n"
+    "loads: {gravity: [0, -10]}\n"
+    "output: {every: 20 ms, history: 2 ms, checkpoint: 0 s}\n";
+
+static void set_up(void) {
+    small_folder_make();
+    small_put("small.yaml", scene);
+}
+
+static json_t *summary_of(const char *folder) {
+    char path[160];
+    snprintf(path, sizeof path, "%s/%s/summary.json", small_folder, folder);
+    json_t *object = json_load_file(path, 0, NULL);
+    ck_assert_msg(object != NULL, "%s", path);
+    return object;
+}
+
+static double number_at(const json_t *object, const char *group, const char *key) {
+    const json_t *value = json_object_get(group ? json_object_get(object, group) : object, key);
+    ck_assert_msg(json_is_number(value), "%s is no number", key);
+    return json_number_value(value);
+}
+
+START_TEST(says_what_it_does) {
+    small_expect("check small.yaml --quick", 0, "implicit steps\n  c dt / h 0.73");
+    small_expect("check small.yaml --quick", 0, "solver pcg: ");
+    small_expect("check small.yaml --quick --set time.step=0.1", 0, "warning: particles move 2.2 cells in a step");
+    small_expect("run small.yaml -o out", 0, "newton: ");
+    json_t *s = summary_of("out");
+    ck_assert_double_eq(number_at(s, "newton", "steps"), 100);
+    ck_assert_double_ge(number_at(s, "newton", "iterations"), 100);
+    ck_assert_double_gt(number_at(s, "newton", "linear_iterations"), 0);
+    ck_assert_double_gt(number_at(s, NULL, "least_gap"), 0);
+    ck_assert_double_lt(fabs(number_at(s, "energy", "error_relative")), 1e-3);
+    ck_assert_double_gt(number_at(s, "energy", "scheme"), 0);
+    ck_assert_double_gt(number_at(s, "phases", "solve"), 0);
+    json_decref(s);
+    ck_assert_int_eq(small_shell("head -1 out/history.csv | grep -q newton.least_part"), 0);
+}
+END_TEST
+
+START_TEST(is_the_scheme_that_is_set) {
+    small_expect("run small.yaml -o out --set time.scheme=explicit --set time.step=0.2ms", 0, "done");
+    json_t *s = summary_of("out");
+    ck_assert_ptr_null(json_object_get(s, "newton"));
+    json_decref(s);
+}
+END_TEST
+
+START_TEST(in_two_legs) {
+    small_expect("run small.yaml -o whole -q -t 2", 0, NULL);
+    pid_t child = small_begin("legs", "legs/vtu/upper_000002.vtu", NULL, 0);
+    ck_assert_int_eq(small_end(child, SIGTERM), 75);
+    small_expect("run small.yaml -o legs -q --resume", 0, NULL);
+    json_t *whole = summary_of("whole"), *legs = summary_of("legs");
+    ck_assert_str_eq(json_string_value(json_object_get(whole, "state_hash")),
+                     json_string_value(json_object_get(legs, "state_hash")));
+    ck_assert_double_eq(number_at(whole, "newton", "iterations"), number_at(legs, "newton", "iterations"));
+    ck_assert_double_eq(number_at(whole, NULL, "least_gap"), number_at(legs, NULL, "least_gap"));
+    json_decref(whole), json_decref(legs);
+}
+END_TEST
+
+START_TEST(that_does_not_converge_is_70) {
+    small_expect("run small.yaml -o out --set newton.iterations=1 --set newton.cut=1", 70, "does not converge");
+    small_expect("info out/checkpoint.h5", 0, "FAILED");
+    ck_assert(small_exists("out/vtu/upper_000000.vtu"));
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("program_implicit");
+    TCase *tests = tcase_create("program_implicit");
+    tcase_add_checked_fixture(tests, set_up, small_folder_remove);
+    tcase_set_timeout(tests, 0);
+    tcase_add_test(tests, says_what_it_does);
+    tcase_add_test(tests, is_the_scheme_that_is_set);
+    tcase_add_test(tests, in_two_legs);
+    tcase_add_test(tests, that_does_not_converge_is_70);
+    suite_add_tcase(suite, tests);
+    return small_main(suite);
+}
+#endif
