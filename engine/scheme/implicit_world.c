@@ -44,8 +44,9 @@ static int64_t count_reached(const brunt_grid *grid) {
 }
 
 // Blocks of a row: nodes that an inner node of a mesh couples with.
-static double row_of_mesh(brunt_element_kind kind) {
-    return kind == BRUNT_TRI3 ? 7 : kind == BRUNT_QUAD4 ? 9 : kind == BRUNT_TET4 ? 15 : 27;
+static double row_of_mesh(const brunt_fem_body *fem) {
+    const bool simplex = brunt_element_is_simplex(fem->kind);
+    return fem->dim == 2 ? (simplex ? 7 : 9) : (simplex ? 15 : 27);
 }
 
 // How large the systems are. BRUNT_FAILED: out of memory.
@@ -56,7 +57,7 @@ static int measure_systems(const brunt_world *world, brunt_linear_size *size) {
     for (int k = 0; k < world->bodies.fem_count; k++) {
         const brunt_fem_body *fem = &world->bodies.fem[k];
         size->nodes += fem->node_count;
-        blocks += row_of_mesh(fem->kind) * fem->node_count;
+        blocks += row_of_mesh(fem) * fem->node_count;
         size->courant = fmax(size->courant, (double)fem->material.wave_speed * dt / fem->mean_edge);
     }
     for (int i = 0; i < world->bodies.mpm_count; i++) {
