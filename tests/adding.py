@@ -21,8 +21,9 @@ SAMPLES = {
     "boundary kind": (r"SYMMETRY|\"symmetry\"", r"contact/planes/|symmetry", None),
     # A line in the list of kinds, and a row for each of its keys: three.
     "measure": (r"measures\.\*\.extent|\bEXTENT\b|MEASURE_EXTENT", r"io/output/measure_extent\.c", 4),
-    # Its row, the member that it fills, what numbers it takes, how a prediction's coarser scene scales it.
-    "body key": (r"(from|def|body)->mass_scaling|double mass_scaling;|\*\.mass_scaling", r"engine/fem/", 4),
+    # Its row, the member that it fills, what numbers it takes, how a prediction's coarser scene scales it, that implicit
+    # steps refuse it.
+    "body key": (r"(from|def|body)->mass_scaling|double mass_scaling;|\*\.mass_scaling", r"engine/fem/", 5),
     # Of elements; the row of material points besides.
     "output field": (r"\"von_mises\"|(derive|element)_von_mises", r"engine/world/read_mesh\.c", 2),
 }

@@ -35,6 +35,11 @@ struct brunt_fem_potential {
     int threads;
 };
 
+// Dimensions and nodes that elements have, as literals of the functions that go over them.
+#define SIZES(X) X(2, 3) X(2, 4) X(3, 4) X(3, 8)
+#define SIZE(dim, nodes) ((dim)*16 + (nodes))
+static int size_of(const brunt_fem_body *body) { return SIZE(body->dim, body->traits->nodes); }
+
 const char *brunt_fem_implicit(const brunt_fem_body *body) {
     if (body->traits->membrane) return "membranes have no implicit steps";
     if (body->element->axisymmetric) return "elements about an axis have no implicit steps";
@@ -382,15 +387,14 @@ static void run_blocks(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     for (int64_t b = begin; b < end; b++) {
         const bool limit = call->wanted == FEM_LIMIT;
-        switch (call->p->body->kind) {
-#define RUN(kind, dim, nodes)                                                                                          \
-    case kind: limit ? limit_of(dim, nodes, call, (int32_t)b) : evaluate(dim, nodes, call, (int32_t)b); break;
-            RUN(BRUNT_TRI3, 2, 3)
-            RUN(BRUNT_QUAD4, 2, 4)
-            RUN(BRUNT_TET4, 3, 4)
-            RUN(BRUNT_HEX8, 3, 8)
+        switch (size_of(call->p->body)) {
+#define RUN(dim, nodes)                                                                                                \
+    case SIZE(dim, nodes):                                                                                             \
+        limit ? limit_of(dim, nodes, call, (int32_t)b) : evaluate(dim, nodes, call, (int32_t)b);                       \
+        break;
+            SIZES(RUN)
 #undef RUN
-        default: break;
+        default: BRUNT_ASSERT(!"elements of this size");
         }
     }
 }
@@ -483,12 +487,12 @@ BRUNT_INLINE void element_hessian(int dim, int nodes, const brunt_fem_potential 
 static void fill(void *context, int64_t s, double *dense, int worker) {
     const brunt_fem_potential *p = context;
     (void)worker;
-    switch (p->body->kind) {
-    case BRUNT_TRI3: element_hessian(2, 3, p, p->slot[s], dense); break;
-    case BRUNT_QUAD4: element_hessian(2, 4, p, p->slot[s], dense); break;
-    case BRUNT_TET4: element_hessian(3, 4, p, p->slot[s], dense); break;
-    case BRUNT_HEX8: element_hessian(3, 8, p, p->slot[s], dense); break;
-    default: break;
+    switch (size_of(p->body)) {
+#define FILL(dim, nodes)                                                                                               \
+    case SIZE(dim, nodes): element_hessian(dim, nodes, p, p->slot[s], dense); break;
+        SIZES(FILL)
+#undef FILL
+    default: BRUNT_ASSERT(!"elements of this size");
     }
 }
 
@@ -572,12 +576,12 @@ BRUNT_INLINE void commit_block(int dim, int nodes, brunt_fem_potential *p, int32
 
 static void commit_blocks(void *context, int64_t begin, int64_t end, int worker) {
     brunt_fem_potential *p = context;
-    for (int64_t b = begin; b < end; b++) switch (p->body->kind) {
-        case BRUNT_TRI3: commit_block(2, 3, p, (int32_t)b, &p->work[worker]); break;
-        case BRUNT_QUAD4: commit_block(2, 4, p, (int32_t)b, &p->work[worker]); break;
-        case BRUNT_TET4: commit_block(3, 4, p, (int32_t)b, &p->work[worker]); break;
-        case BRUNT_HEX8: commit_block(3, 8, p, (int32_t)b, &p->work[worker]); break;
-        default: break;
+    for (int64_t b = begin; b < end; b++) switch (size_of(p->body)) {
+#define COMMIT(dim, nodes)                                                                                             \
+    case SIZE(dim, nodes): commit_block(dim, nodes, p, (int32_t)b, &p->work[worker]); break;
+            SIZES(COMMIT)
+#undef COMMIT
+        default: BRUNT_ASSERT(!"elements of this size");
         }
 }
 
