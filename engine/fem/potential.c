@@ -35,10 +35,16 @@ struct brunt_fem_potential {
     int threads;
 };
 
-// Dimensions and nodes that elements have, as literals of the functions that go over them.
-#define SIZES(X) X(2, 3) X(2, 4) X(3, 4) X(3, 8)
+// CALL(dimensions, nodes) with those of a body's elements as literals, for functions that go over them.
 #define SIZE(dim, nodes) ((dim)*16 + (nodes))
-static int size_of(const brunt_fem_body *body) { return SIZE(body->dim, body->traits->nodes); }
+#define BY_SIZE(body, CALL)                                                                                            \
+    switch (SIZE((body)->dim, (body)->traits->nodes)) {                                                                \
+    case SIZE(2, 3): CALL(2, 3); break;                                                                                \
+    case SIZE(2, 4): CALL(2, 4); break;                                                                                \
+    case SIZE(3, 4): CALL(3, 4); break;                                                                                \
+    case SIZE(3, 8): CALL(3, 8); break;                                                                                \
+    default: BRUNT_ASSERT(!"elements of this size");                                                                   \
+    }
 
 const char *brunt_fem_implicit(const brunt_fem_body *body) {
     if (body->traits->membrane) return "membranes have no implicit steps";
@@ -385,17 +391,13 @@ BRUNT_INLINE void limit_of(int dim, int nodes, const fem_call *call, int32_t b) 
 static void run_blocks(void *context, int64_t begin, int64_t end, int worker) {
     const fem_call *call = context;
     (void)worker;
+#define LIMIT(dim, nodes) limit_of(dim, nodes, call, (int32_t)b)
+#define EVALUATE(dim, nodes) evaluate(dim, nodes, call, (int32_t)b)
     for (int64_t b = begin; b < end; b++) {
-        const bool limit = call->wanted == FEM_LIMIT;
-        switch (size_of(call->p->body)) {
-#define RUN(dim, nodes)                                                                                                \
-    case SIZE(dim, nodes):                                                                                             \
-        limit ? limit_of(dim, nodes, call, (int32_t)b) : evaluate(dim, nodes, call, (int32_t)b);                       \
-        break;
-            SIZES(RUN)
-#undef RUN
-        default: BRUNT_ASSERT(!"elements of this size");
-        }
+        if (call->wanted == FEM_LIMIT)
+            BY_SIZE(call->p->body, LIMIT)
+        else
+            BY_SIZE(call->p->body, EVALUATE)
     }
 }
 
@@ -487,13 +489,8 @@ BRUNT_INLINE void element_hessian(int dim, int nodes, const brunt_fem_potential 
 static void fill(void *context, int64_t s, double *dense, int worker) {
     const brunt_fem_potential *p = context;
     (void)worker;
-    switch (size_of(p->body)) {
-#define FILL(dim, nodes)                                                                                               \
-    case SIZE(dim, nodes): element_hessian(dim, nodes, p, p->slot[s], dense); break;
-        SIZES(FILL)
-#undef FILL
-    default: BRUNT_ASSERT(!"elements of this size");
-    }
+#define FILL(dim, nodes) element_hessian(dim, nodes, p, p->slot[s], dense)
+    BY_SIZE(p->body, FILL)
 }
 
 static void hessian(void *self, const brunt_team *team, const double *u, bool project, brunt_block_matrix *h) {
@@ -576,13 +573,8 @@ BRUNT_INLINE void commit_block(int dim, int nodes, brunt_fem_potential *p, int32
 
 static void commit_blocks(void *context, int64_t begin, int64_t end, int worker) {
     brunt_fem_potential *p = context;
-    for (int64_t b = begin; b < end; b++) switch (size_of(p->body)) {
-#define COMMIT(dim, nodes)                                                                                             \
-    case SIZE(dim, nodes): commit_block(dim, nodes, p, (int32_t)b, &p->work[worker]); break;
-            SIZES(COMMIT)
-#undef COMMIT
-        default: BRUNT_ASSERT(!"elements of this size");
-        }
+#define COMMIT(dim, nodes) commit_block(dim, nodes, p, (int32_t)b, &p->work[worker])
+    for (int64_t b = begin; b < end; b++) BY_SIZE(p->body, COMMIT)
 }
 
 int brunt_fem_commit(brunt_fem_potential *p, const brunt_team *team, const double *u, const double *v,
