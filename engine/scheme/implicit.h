@@ -14,9 +14,9 @@
 #include "scheme/scheme.h"
 #include "scheme/step_terms.h"
 
-// Inertia and loads come first, then a term for each body, then those of contact.
+// Inertia, loads and the pull of prescribed motion come first, then a term for each body, then those of contact.
 enum {
-    BRUNT_FIXED_TERMS = 2,
+    BRUNT_FIXED_TERMS = 3,
     BRUNT_CONTACT_TERMS = 2,
     BRUNT_MOST_OTHER_TERMS = BRUNT_FIXED_TERMS + BRUNT_CONTACT_TERMS
 };
@@ -37,8 +37,9 @@ typedef struct brunt_fields {
     double *gradient;     // [N] of all that is stored, at the end once the step is booked
     double *contact;      // [N] of barriers and friction, as the integrator weighs both ends of the step
     double *step, *zero;  // room; 0
+    double *pull;         // [N/m] of components on their way to where they are to be, while they are
     size_t u_capacity, v_capacity, aim_capacity, acceleration_capacity, load_capacity, force_before_capacity,
-        gradient_capacity, contact_capacity, step_capacity, zero_capacity;
+        gradient_capacity, contact_capacity, step_capacity, zero_capacity, pull_capacity;
 } brunt_fields;
 
 struct brunt_implicit {
@@ -48,6 +49,7 @@ struct brunt_implicit {
     brunt_fields field;
     brunt_inertia inertia;
     brunt_dead_loads loads;
+    brunt_pull pull;
     brunt_fem_potential **fem; // a body each
     brunt_mpm_potential **mpm;
     brunt_term *term;           // inertia, loads, bodies of elements, of points, barrier, friction

@@ -101,18 +101,44 @@ static double free_way(struct brunt_implicit *m, brunt_error *error) {
     return way;
 }
 
-// Held components go to their places as far as there is way, then all others follow, until those are there: what
-// prescribed motion pushes has time to give way. Energies are compared with what is held standing still.
+// Weights of held components that are not where they are to be: `heavy` times their inertia, or of what has no mass
+// that of the heaviest node. Those are free until they are let go.
+static void pull(struct brunt_implicit *m, double heavy) {
+    const brunt_unknowns *unknowns = &m->unknowns;
+    double heaviest = 0;
+    for (int32_t n = 0; n < unknowns->count; n++) heaviest = fmax(heaviest, unknowns->mass[n]);
+    for (int64_t k = 0; k < brunt_implicit_components(m); k++) {
+        const double mass = unknowns->mass[k / unknowns->dim];
+        const bool on_its_way = unknowns->held[k] && unknowns->target[k] != m->field.u[k];
+        m->field.pull[k] = on_its_way ? heavy * (mass > 0 ? mass : heaviest) / m->inertia.c : 0;
+        if (on_its_way) unknowns->held[k] = 0;
+    }
+    m->pull.weight = m->field.pull;
+}
+
+static void let_go(struct brunt_implicit *m) {
+    for (int64_t k = 0; k < brunt_implicit_components(m); k++)
+        if (m->field.pull[k] > 0) m->unknowns.held[k] = 1;
+    m->pull.weight = NULL;
+}
+
+// Held components go to their places if nothing is in the way. Otherwise heavy weights draw them there, together with
+// what they push, so that the energy of all that moves can be compared; what little is left then is gone as it is.
 static int go_and_minimise(struct brunt_implicit *m, brunt_newton_report *report, brunt_error *error) {
-    enum { MOST = 60 };
-    for (int k = 0; k < MOST; k++) {
+    enum { MOST = 6 };
+    double heavy = 1e7;
+    for (int k = 0; k < MOST; k++, heavy *= 10) {
         const double way = free_way(m, error);
         if (way < 0) return BRUNT_FAILED;
-        for (int64_t q = 0; q < brunt_implicit_components(m); q++)
-            if (m->unknowns.held[q])
-                m->field.u[q] = way == 1 ? m->unknowns.target[q] : m->field.u[q] + way * m->field.step[q];
+        if (way == 1) {
+            for (int64_t q = 0; q < brunt_implicit_components(m); q++)
+                if (m->unknowns.held[q]) m->field.u[q] = m->unknowns.target[q];
+            return minimise(m, report, error);
+        }
+        pull(m, heavy);
         const int status = minimise(m, report, error);
-        if (status || way == 1) return status;
+        let_go(m);
+        if (status) return status;
     }
     report->result = BRUNT_NEWTON_BLOCKED;
     return brunt_fail(error, BRUNT_FAILED, "prescribed motion finds no way");

@@ -117,7 +117,8 @@ static int make_bodies(brunt_world *world, struct brunt_implicit *m, brunt_error
     int32_t base = 0;
     m->term[m->term_count++] = (brunt_term){&brunt_inertia_ops, &m->inertia};
     m->term[m->term_count++] = (brunt_term){&brunt_dead_load_ops, &m->loads};
-    m->inertia.unknowns = m->loads.unknowns = &m->unknowns;
+    m->term[m->term_count++] = (brunt_term){&brunt_pull_ops, &m->pull};
+    m->inertia.unknowns = m->loads.unknowns = m->pull.unknowns = &m->unknowns;
     for (int k = 0; k < world->bodies.fem_count; k++) {
         brunt_fem_body *fem = &world->bodies.fem[k];
         const char *why = brunt_fem_implicit(fem);
@@ -191,8 +192,8 @@ void brunt_implicit_free(brunt_world *world) {
     for (int k = 0; m->fem && k < world->bodies.fem_count; k++) brunt_fem_potential_free(m->fem[k]);
     for (int i = 0; m->mpm && i < world->bodies.mpm_count; i++) brunt_mpm_potential_free(m->mpm[i]);
     brunt_fields *f = &m->field;
-    double *const fields[] = {f->u,        f->v,       f->aim,  f->acceleration, f->load, f->force_before,
-                              f->gradient, f->contact, f->step, f->zero,         m->moved};
+    double *const fields[] = {f->u,        f->v,       f->aim,  f->acceleration, f->load,  f->force_before,
+                              f->gradient, f->contact, f->step, f->zero,         m->moved, f->pull};
     for (size_t k = 0; k < sizeof fields / sizeof *fields; k++) brunt_free(fields[k]);
     brunt_newton_free(&m->newton);
     brunt_implicit_contact_free(&m->contact);
@@ -216,7 +217,7 @@ static int reserve(const brunt_world *world, struct brunt_implicit *m) {
            BRUNT_RESERVE(f->acceleration, n, 0) || BRUNT_RESERVE(f->load, n, 0) ||
            BRUNT_RESERVE(f->force_before, n, 0) || BRUNT_RESERVE(f->gradient, n, 0) ||
            BRUNT_RESERVE(f->contact, n, 0) || BRUNT_RESERVE(f->step, n, 0) || BRUNT_RESERVE(f->zero, n, 0) ||
-           BRUNT_RESERVE(m->moved, most * (size_t)m->unknowns.dim, 0);
+           BRUNT_RESERVE(f->pull, n, 0) || BRUNT_RESERVE(m->moved, most * (size_t)m->unknowns.dim, 0);
 }
 
 int brunt_pass_number(brunt_world *world, brunt_step *step, brunt_error *error) {
@@ -245,7 +246,7 @@ size_t brunt_implicit_bytes(const brunt_world *world) {
     for (int k = 0; k < world->bodies.fem_count; k++) bytes += brunt_fem_potential_bytes(m->fem[k]);
     for (int i = 0; i < world->bodies.mpm_count; i++) bytes += brunt_mpm_potential_bytes(m->mpm[i]);
     return bytes + f->u_capacity + f->v_capacity + f->aim_capacity + f->acceleration_capacity + f->load_capacity +
-           f->force_before_capacity + f->gradient_capacity + f->step_capacity + f->zero_capacity;
+           f->force_before_capacity + f->gradient_capacity + f->step_capacity + f->zero_capacity + f->pull_capacity;
 }
 
 size_t brunt_implicit_matrix_bytes(const brunt_world *world) {

@@ -1,4 +1,4 @@
-// Inertia and dead loads of an implicit step.
+// Inertia, dead loads and prescribed motion of an implicit step.
 #include "scheme/step_terms.h"
 
 #include <math.h>
@@ -151,3 +151,64 @@ static void load_gradient(void *term, const brunt_team *team, const double *u, d
 }
 
 const brunt_term_ops brunt_dead_load_ops = {.name = "loads", .energy = load_energy, .gradient = load_gradient};
+
+// ------------------------------------------------------------------------------------------ prescribed motion
+
+typedef struct pull_sum {
+    const brunt_pull *pull;
+    const double *u;
+} pull_sum;
+
+static brunt_energy_sum pull_stretch(const void *context, int32_t begin, int32_t end) {
+    const pull_sum *job = context;
+    const brunt_unknowns *unknowns = job->pull->unknowns;
+    brunt_energy_sum sum = {0, 0};
+    for (int64_t dof = (int64_t)begin * unknowns->dim; dof < (int64_t)end * unknowns->dim; dof++) {
+        const double off = job->u[dof] - unknowns->target[dof];
+        if (job->pull->weight[dof] > 0) sum.value += 0.5 * job->pull->weight[dof] * off * off;
+    }
+    sum.magnitude = sum.value;
+    return sum;
+}
+
+static brunt_energy_sum pull_energy(void *term, const brunt_team *team, const double *u) {
+    const pull_sum job = {term, u};
+    if (!job.pull->weight) return (brunt_energy_sum){0, 0};
+    return brunt_sum_nodes(team, job.pull->unknowns->count, pull_stretch, &job);
+}
+
+static void pull_add(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    const add_job *job = context;
+    const brunt_pull *pull = job->term;
+    const int dim = pull->unknowns->dim;
+    for (int64_t dof = begin * dim; dof < end * dim; dof++)
+        if (pull->weight[dof] > 0) job->g[dof] += pull->weight[dof] * (job->u[dof] - pull->unknowns->target[dof]);
+}
+
+static void pull_gradient(void *term, const brunt_team *team, const double *u, double *g) {
+    const brunt_pull *pull = term;
+    add_job job = {.term = pull, .u = u, .g = g};
+    if (pull->weight) brunt_parallel(team->threads, pull->unknowns->count, STRETCH, pull_add, &job, team->timer);
+}
+
+static void pull_add_hessian(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    const add_job *job = context;
+    const brunt_pull *pull = job->term;
+    for (int64_t n = begin; n < end; n++)
+        for (int a = 0; a < job->h->dim; a++)
+            brunt_block_matrix_diagonal(job->h, (int32_t)n)[a * (job->h->dim + 1)] += pull->weight[n * job->h->dim + a];
+}
+
+static void pull_hessian(void *term, const brunt_team *team, const double *u, bool project,
+                         struct brunt_block_matrix *h) {
+    (void)u, (void)project; // it has no negative eigenvalues
+    const brunt_pull *pull = term;
+    add_job job = {.term = pull, .h = h};
+    if (pull->weight)
+        brunt_parallel(team->threads, pull->unknowns->count, STRETCH, pull_add_hessian, &job, team->timer);
+}
+
+const brunt_term_ops brunt_pull_ops = {
+    .name = "prescribed motion", .energy = pull_energy, .gradient = pull_gradient, .hessian = pull_hessian};

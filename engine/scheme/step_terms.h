@@ -1,5 +1,5 @@
-// The terms of an implicit step that are of no body and no contact: inertia, and loads that do not follow what they
-// act on.
+// The terms of an implicit step that are of no body and no contact: inertia, loads that do not follow what they
+// act on, and what draws prescribed motion to its end.
 #pragma once
 
 #include "linear/term.h"
@@ -18,7 +18,13 @@ typedef struct brunt_dead_loads {
     const double *force; // [N] of each component
 } brunt_dead_loads;
 
-extern const brunt_term_ops brunt_inertia_ops, brunt_dead_load_ops;
+// 1/2 sum w (u - target)^2 over components of weight: what is on its way to a place that is given.
+typedef struct brunt_pull {
+    const brunt_unknowns *unknowns;
+    const double *weight; // [N/m] of each component; NULL: nothing is pulled
+} brunt_pull;
+
+extern const brunt_term_ops brunt_inertia_ops, brunt_dead_load_ops, brunt_pull_ops;
 
 // Sums over nodes that are the same for any number of threads: `add` takes the nodes of a stretch.
 typedef brunt_energy_sum brunt_stretch_fn(const void *context, int32_t begin, int32_t end);
