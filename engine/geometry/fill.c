@@ -140,8 +140,44 @@ static int64_t visit(const lattice *l, const brunt_body_def *body, brunt_filled 
     return found;
 }
 
+static int out_of_memory(const brunt_body_def *body, brunt_filled *out, int64_t count, brunt_error *error) {
+    brunt_filled_free(out);
+    return brunt_fail(error, BRUNT_FAILED, "body '%s': no memory for %lld particles", body->name, (long long)count);
+}
+
+// Ring j of a disk, inmost first, has 4 (2 j + 1) particles, one of them below the centre: all rings are as wide and
+// all particles as large, 2 / sqrt(pi) of the spacing across and sqrt(pi) / 2 of it along.
+static int fill_rings(const brunt_body_def *body, int dimension, double spacing, brunt_filled *out,
+                      brunt_error *error) {
+    const double pi = 3.14159265358979323846;
+    const brunt_shape *disk = &body->shape;
+    if (dimension != 2 || disk->kind != BRUNT_SPHERE)
+        return brunt_fail(error, BRUNT_BAD_INPUT, "body '%s': fill: rings is for a disk in two dimensions", body->name);
+    const double rings = floor(disk->radius / spacing * sqrt(pi) / 2 + 0.5);
+    if (!(rings >= 1 && 4 * rings * rings <= INT32_MAX))
+        return brunt_fail(error, BRUNT_BAD_INPUT, "body '%s': %g rings in a disk, 1 to 23170 are possible", body->name,
+                          rings);
+    const int64_t count = (int64_t)(4 * rings * rings);
+    const double width = disk->radius / rings;
+    out->volume = pi * width * width / 4;
+    out->reach = brunt_alloc((size_t)count * sizeof *out->reach);
+    for (int i = 0; i < 2; i++) out->position[i] = brunt_alloc((size_t)count * sizeof *out->position[i]);
+    if (!out->reach || !out->position[0] || !out->position[1]) return out_of_memory(body, out, count, error);
+    for (int64_t j = 0; j < (int64_t)rings; j++)
+        for (int64_t k = 0; k < 4 * (2 * j + 1); k++) {
+            const double r = ((double)j + 0.5) * width, angle = 2 * pi * (double)k / (double)(4 * (2 * j + 1)) - pi / 2;
+            const double x[3] = {disk->center[0] + r * cos(angle), disk->center[1] + r * sin(angle), 0};
+            double placed[3];
+            place(&body->place, x, placed);
+            for (int i = 0; i < 2; i++) out->position[i][out->count] = placed[i];
+            out->reach[out->count++] = fmin(disk->radius - r, 0.5 * sqrt(2) * spacing);
+        }
+    return BRUNT_OK;
+}
+
 int brunt_fill_shape(const brunt_body_def *body, int dimension, double spacing, brunt_filled *out, brunt_error *error) {
     *out = (brunt_filled){0};
+    if (body->fill == BRUNT_FILL_RINGS) return fill_rings(body, dimension, spacing, out, error);
     lattice l;
     int code = make_lattice(body, dimension, spacing, &l, error);
     if (code) return code;
@@ -166,10 +202,7 @@ int brunt_fill_shape(const brunt_body_def *body, int dimension, double spacing, 
         out->position[i] = brunt_alloc((size_t)count * sizeof *out->position[i]);
         complete = complete && out->position[i];
     }
-    if (!complete) {
-        brunt_filled_free(out);
-        return brunt_fail(error, BRUNT_FAILED, "body '%s': no memory for %lld particles", body->name, (long long)count);
-    }
+    if (!complete) return out_of_memory(body, out, count, error);
     out->count = (int32_t)visit(&l, body, out);
     return BRUNT_OK;
 }

@@ -166,7 +166,7 @@ static int check_body(const brunt_world_def *def, const brunt_body_def *body, br
         REFUSE("%s.material: there is no material %d", owner, body->material);
     TRY(check_choice(owner, ".method", (unsigned)body->method, BRUNT_MEMBRANE + 1, error));
     TRY(check_choice(owner, ".hourglass", (unsigned)body->hourglass, BRUNT_HOURGLASS_VISCOUS + 1, error));
-    TRY(check_choice(owner, ".fill", (unsigned)body->fill, BRUNT_FILL_JITTERED + 1, error));
+    TRY(check_choice(owner, ".fill", (unsigned)body->fill, BRUNT_FILL_RINGS + 1, error));
     CHECK_NUMBERS(owner, {".size", &body->size, 1, ANY},
                   {".hourglass_coefficient", &body->hourglass_coefficient, 1, NOT_NEGATIVE | OR_NAN},
                   {".erosion.strain", &body->erosion.strain, 1, POSITIVE | OR_INFINITE},

@@ -108,7 +108,7 @@ const scene_key brunt_scene_table[] = {
     {"bodies.*.place[].rotate.about", SCENE_VECTOR, "m", "0", NONE, "a point of its axis"},
     {"bodies.*.particles_per_cell", SCENE_INTEGER, NULL, OPTIONAL, 1, 4096, false, false, NULL, 0, false, "mpm: a square in 2D (default 4), a cube in 3D (default 8); not with spacing", .only = SCENE_MPM, .field = SCENE_FIELD(brunt_body_def, particles_per_cell)},
     {"bodies.*.spacing", SCENE_REAL, "m", OPTIONAL, POSITIVE, NULL, 0, false, "mpm: distance of particles; not with particles_per_cell", .only = SCENE_MPM, .field = SCENE_FIELD(brunt_body_def, spacing)},
-    {"bodies.*.fill", SCENE_WORD, NULL, "regular", ANY, "regular|jittered", 0, false, "mpm: lattice of particles, or one with random shifts", .only = SCENE_MPM, .field = SCENE_FIELD(brunt_body_def, fill)},
+    {"bodies.*.fill", SCENE_WORD, NULL, "regular", ANY, "regular|jittered|rings", 0, false, "mpm: lattice of particles, or one with random shifts; of a disk: rings about its centre, so that it is round", .only = SCENE_MPM, .field = SCENE_FIELD(brunt_body_def, fill)},
     {"bodies.*.jitter", SCENE_REAL, "1", "0.25", 0, 0.5, false, false, NULL, 0, true, "mpm: greatest shift, of the spacing; with fill: jittered", .only = SCENE_MPM},
     {"bodies.*.seed", SCENE_INTEGER, NULL, "1", 0, 9007199254740992.0, false, false, NULL, 0, true, "mpm: of the random shifts; with fill: jittered", .only = SCENE_MPM},
     {"bodies.*.velocity", SCENE_VECTOR, "m/s", "0", NONE, "at the start", .field = SCENE_FIELD(brunt_body_def, velocity)},

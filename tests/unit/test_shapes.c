@@ -347,6 +347,32 @@ START_TEST(lattice_moves_with_the_placement) {
 }
 END_TEST
 
+// As many particles below the centre as rings, all as large, and together the disk; in nothing else there are rings.
+START_TEST(rings_fill_a_disk) {
+    brunt_body_def body = brunt_body_def_default();
+    body.shape = (brunt_shape){.kind = BRUNT_SPHERE, .center = {3, 2, 0}, .radius = 1};
+    body.fill = BRUNT_FILL_RINGS;
+    brunt_filled filled;
+    ck_assert_int_eq(brunt_fill_shape(&body, 2, 0.1, &filled, NULL), BRUNT_OK);
+    ck_assert_int_eq(filled.count, 4 * 9 * 9);
+    ck_assert_double_eq_tol(filled.count * filled.volume, pi, 1e-14);
+    double farthest = 0, middle[2] = {0, 0};
+    int below = 0;
+    for (int n = 0; n < filled.count; n++) {
+        const double x = filled.position[0][n] - 3, y = filled.position[1][n] - 2;
+        middle[0] += x, middle[1] += y;
+        farthest = fmax(farthest, hypot(x, y));
+        below += fabs(x) < 1e-12 && y < 0;
+    }
+    ck_assert_int_eq(below, 9);
+    ck_assert_double_eq_tol(farthest, 1 - 0.5 / 9, 1e-14);
+    for (int a = 0; a < 2; a++) ck_assert_double_eq_tol(middle[a], 0, 1e-11);
+    brunt_filled_free(&filled);
+    body.shape = box(0, 0, 0, 1, 1, 1);
+    ck_assert_int_eq(brunt_fill_shape(&body, 2, 0.1, &filled, NULL), BRUNT_BAD_INPUT);
+}
+END_TEST
+
 START_TEST(impossible_fills_are_errors) {
     size_t before = brunt_memory_live();
     brunt_body_def body = brunt_body_def_default();
@@ -428,6 +454,7 @@ int main(void) {
     tcase_add_test(tests, reach_never_exceeds_the_distance);
     tcase_add_test(tests, jitter_is_deterministic);
     tcase_add_test(tests, lattice_moves_with_the_placement);
+    tcase_add_test(tests, rings_fill_a_disk);
     tcase_add_test(tests, impossible_fills_are_errors);
     tcase_add_test(tests, definitions_start_sensible_and_leave_nothing);
     suite_add_tcase(suite, tests);

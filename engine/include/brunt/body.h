@@ -29,7 +29,7 @@ typedef struct brunt_erosion_def {
 } brunt_erosion_def;
 
 // Particles on the lattice, or moved off it at random (by `seed`, the same on every machine).
-typedef enum brunt_fill { BRUNT_FILL_REGULAR, BRUNT_FILL_JITTERED } brunt_fill;
+typedef enum brunt_fill { BRUNT_FILL_REGULAR, BRUNT_FILL_JITTERED, BRUNT_FILL_RINGS } brunt_fill;
 
 typedef struct brunt_body_def {
     char name[BRUNT_NAME_LENGTH]; // unique; bodies are ordered by name, so the order in a file changes nothing
