@@ -94,6 +94,8 @@ brunt_term brunt_barrier_term(brunt_barrier *barrier);
 brunt_term brunt_barrier_friction_term(brunt_barrier *barrier);
 // Takes normal forces and directions of friction at u.
 int brunt_barrier_lag(brunt_barrier *barrier, const brunt_team *team, const double *u, brunt_error *error);
+// [m] of all that is in contact where the barrier was last looked at; INFINITY: nothing is.
+double brunt_barrier_least_gap(const brunt_barrier *barrier);
 bool brunt_barrier_has_friction(const brunt_barrier *barrier); // some pair or plane has
 
 // ------------------------------------------------------------------------------------------------- what it was

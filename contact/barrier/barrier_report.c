@@ -17,6 +17,13 @@ static void note_gap(const brunt_barrier *b, const double *u, const barrier_cont
     }
 }
 
+double brunt_barrier_least_gap(const brunt_barrier *b) {
+    double least = INFINITY;
+    for (int64_t i = 0; i < b->contacts.count; i++)
+        if (b->contacts.contact[i].weight > 0) least = fmin(least, b->contacts.contact[i].at.d);
+    return least;
+}
+
 static void add_normal(const brunt_barrier *b, const barrier_contact *c, brunt_barrier_force *force) {
     const double f = c->side * barrier_contact_force(b, c);
     for (int k = 0; k < b->dim; k++) force->normal[k] += f * c->at.n[k];

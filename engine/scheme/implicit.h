@@ -61,6 +61,7 @@ struct brunt_implicit {
     size_t moved_capacity;
     brunt_newton newton;
     brunt_newton_options options;
+    double tolerance;       // [m/s] that is asked for; that of the options is less where gaps are narrow
     brunt_linear_size size; // of the systems at the start
     brunt_linear_choice choice;
     double dt;                      // [s] of the step that is tried
@@ -78,7 +79,8 @@ void brunt_newton_counts_add(brunt_newton_counts *sum, const brunt_newton_counts
 
 // --- implicit_world.c
 // The size of a correction: of particles and nodes of meshes [m/s]; of `where`: node of a mesh, or -2 - particle's
-// slot.
+// slot. Sets the tolerance, below which it is small beside the least gap too: close to a wall a barrier's force goes by
+// 1 / gap, and Newton's corrections are as small as the gap.
 double brunt_implicit_measure(void *context, const brunt_team *team, const double *p, int64_t *where);
 
 // --- implicit_loads.c

@@ -87,11 +87,16 @@ static void choose_solver(struct brunt_implicit *m, brunt_solver wanted) {
 
 // ------------------------------------------------------------------------------------------ what is small
 
+static const double SMALL_PART = 1e-2; // of the least gap
+
 double brunt_implicit_measure(void *context, const brunt_team *team, const double *p, int64_t *where) {
     struct brunt_implicit *m = context;
     const brunt_unknowns *u = &m->unknowns;
     double most = 0;
     *where = -1;
+    m->options.tolerance = m->tolerance;
+    if (m->contact.barrier)
+        m->options.tolerance = fmin(m->tolerance, SMALL_PART * brunt_barrier_least_gap(m->contact.barrier) / m->dt);
     for (int32_t n = 0; n < u->mesh_count; n++) {
         double square = 0;
         for (int a = 0; a < u->dim; a++) square += p[n * (int64_t)u->dim + a] * p[n * (int64_t)u->dim + a];
@@ -157,7 +162,7 @@ static void set_options(brunt_world *world, struct brunt_implicit *m) {
     for (int b = 0; b < world->bodies.count; b++)
         slowest = fmin(slowest, (double)brunt_body_ref_material(&world->bodies.all[b])->wave_speed);
     m->options = brunt_newton_defaults();
-    m->options.tolerance = newton->tolerance * slowest;
+    m->options.tolerance = m->tolerance = newton->tolerance * slowest;
     m->options.iterations = newton->iterations;
     m->options.accuracy = newton->accuracy;
     m->options.measure = brunt_implicit_measure;
