@@ -96,7 +96,20 @@ static const char rich_text[] =
     "[1, 2]]}}\n"
     "  f: {extent: {body: rod, axis: [0, 0, 1]}}\n";
 
-static const char *const texts[] = {small_scene_text, small_elements_text, rich_text};
+static const char implicit_text[] =
+    "brunt: 1\n"
+    "dimension: 3\n"
+    "time: {scheme: implicit, end: 1 ms, step: 1 us}\n"
+    "newton: {tolerance: 1e-7, iterations: 50, cut: 3, accuracy: 1e-4}\n"
+    "materials: {gum: {model: neo-hookean, density: 1000, E: 1e6, nu: 0.4}}\n"
+    "bodies:\n"
+    "  low: {method: fem, material: gum, shape: {box: {min: [0, 0, 0], max: [1, 1, 1]}}, size: 1}\n"
+    "  high: {method: fem, material: gum, shape: {box: {min: [0, 0, 1.1], max: [1, 1, 2.1]}}, size: 1}\n"
+    "contact: {method: barrier, friction: 0.2, distance: 1 mm, stiffness: 1 MPa, slip_speed: 1e-4, "
+    "friction_iterations: "
+    "2}\n";
+
+static const char *const texts[] = {small_scene_text, small_elements_text, rich_text, implicit_text};
 enum { TEXTS = sizeof texts / sizeof *texts };
 
 static int parse(const char *text, char **messages) {
