@@ -172,7 +172,7 @@ START_TEST(enumerators) {
     REFUSED(def.contact.transfer = (brunt_transfer)77, "contact.transfer: there is no choice 77");
     REFUSED(def.contact.pairs[0].method = (brunt_contact_method)9, "contact.pairs[0].method: there is no choice 9");
     REFUSED(points->method = (brunt_method)3, "bodies.points.method: there is no choice 3");
-    REFUSED(points->fill = (brunt_fill)2, "bodies.points.fill: there is no choice 2");
+    REFUSED(points->fill = (brunt_fill)3, "bodies.points.fill: there is no choice 3");
     REFUSED(points->shape.kind = (brunt_shape_kind)9, "bodies.points.shape: there is no choice 9");
     REFUSED(mesh->element = (brunt_element_kind)6, "bodies.mesh.element: there is no choice 6");
     REFUSED(mesh->hourglass = (brunt_hourglass)2, "bodies.mesh.hourglass: there is no choice 2");
