@@ -310,10 +310,10 @@ END_TEST
 
 int main(void) {
     Suite *suite = suite_create("body terms");
-#ifndef BRUNT_FLOAT // implicit steps are of double precision
-    ADD_LOOP(elements, 8);
-    ADD_LOOP(points, 18);
-#endif
+    if (sizeof(real) == sizeof(double)) { // what implicit steps are of
+        ADD_LOOP(elements, 8);
+        ADD_LOOP(points, 18);
+    }
     SRunner *runner = srunner_create(suite);
     srunner_run_all(runner, CK_ENV);
     const int failed = srunner_ntests_failed(runner);

@@ -128,12 +128,14 @@ static void soften(scene *s) {
     s->materials[0].eos_parameters[1] = 1e6, s->materials[0].eos_parameters[8] = INFINITY;
 }
 
+#ifndef BRUNT_FLOAT // implicit steps are of double precision
 static void implicit(scene *s) {
     s->def.scheme = BRUNT_IMPLICIT, s->def.step = 1e-3;
     s->bodies[0].velocity[0] = 1; // at rest there is nothing to look for
 }
 static void barrier(scene *s) { implicit(s), s->def.contact.method = BRUNT_CONTACT_BARRIER; }
 static void implicit_tie(scene *s) { implicit(s), tie(s); }
+#endif
 
 typedef struct asked {
     const char *name;
@@ -251,7 +253,7 @@ START_TEST(least_damping) {
     scene *s = calloc(1, sizeof *s);
     ck_assert_ptr_nonnull(s);
     make_mesh(s);
-    s->bodies[0].damping = 1e-300, s->bodies[0].velocity[0] = 1;
+    s->bodies[0].damping = sizeof(real) == sizeof(double) ? 1e-300 : 1e-30, s->bodies[0].velocity[0] = 1;
     s->def.step = 1e-25, s->def.end = 1;
     brunt_error error;
     brunt_world *world = brunt_world_create(&s->def, &error);

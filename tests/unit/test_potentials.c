@@ -475,13 +475,13 @@ END_TEST
 int main(void) {
     Suite *suite = suite_create("potentials");
     TCase *all = tcase_create("all");
-#ifndef BRUNT_FLOAT // implicit steps are of double precision
-    tcase_add_loop_test(all, stress_and_tangent, 0, 2 * MATERIALS);
-    tcase_add_loop_test(all, turns_are_free, 0, 2 * MATERIALS);
-    tcase_add_loop_test(all, commits, 0, 2 * MATERIALS);
-    tcase_add_test(all, hencky_agrees_with_the_explicit_return);
-    tcase_add_loop_test(all, projection, 0, 2);
-#endif
+    if (sizeof(real) == sizeof(double)) { // what implicit steps are of
+        tcase_add_loop_test(all, stress_and_tangent, 0, 2 * MATERIALS);
+        tcase_add_loop_test(all, turns_are_free, 0, 2 * MATERIALS);
+        tcase_add_loop_test(all, commits, 0, 2 * MATERIALS);
+        tcase_add_test(all, hencky_agrees_with_the_explicit_return);
+        tcase_add_loop_test(all, projection, 0, 2);
+    }
     tcase_add_loop_test(all, inside_out, 0, 2 * MATERIALS);
     tcase_add_test(all, the_rest_says_why);
     suite_add_tcase(suite, all);
