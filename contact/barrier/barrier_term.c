@@ -52,14 +52,22 @@ static bool list_at(brunt_barrier *b, const brunt_team *team, const double *u) {
     return !b->broken;
 }
 
+// Adds to g the forces of a list: of friction, which follow the slips at u, or of the barrier as it was listed.
+static void add_forces(const brunt_barrier *b, const barrier_contacts *list, bool friction, const double *u,
+                       double *g) {
+    for (int64_t i = 0; i < list->count; i++) {
+        double local[BARRIER_DOFS];
+        if (friction)
+            barrier_slip_gradient(b, &list->contact[i], u, local);
+        else
+            barrier_contact_gradient(b, &list->contact[i], local);
+        barrier_add_gradient(b, &list->contact[i], local, g);
+    }
+}
+
 static void term_gradient(void *self, const brunt_team *team, const double *u, double *g) {
     brunt_barrier *b = self;
-    if (!list_at(b, team, u)) return;
-    for (int64_t i = 0; i < b->contacts.count; i++) {
-        double local[BARRIER_DOFS];
-        barrier_contact_gradient(b, &b->contacts.contact[i], local);
-        barrier_add_gradient(b, &b->contacts.contact[i], local, g);
-    }
+    if (list_at(b, team, u)) add_forces(b, &b->contacts, false, u, g);
 }
 
 static brunt_stencils term_stencils(void *self) {
@@ -131,11 +139,7 @@ static brunt_energy_sum friction_energy(void *self, const brunt_team *team, cons
 static void friction_gradient(void *self, const brunt_team *team, const double *u, double *g) {
     const brunt_barrier *b = self;
     (void)team;
-    for (int64_t i = 0; i < b->lagged.count; i++) {
-        double local[BARRIER_DOFS];
-        barrier_slip_gradient(b, &b->lagged.contact[i], u, local);
-        barrier_add_gradient(b, &b->lagged.contact[i], local, g);
-    }
+    add_forces(b, &b->lagged, true, u, g);
 }
 
 static brunt_stencils friction_stencils(void *self) {

@@ -48,31 +48,16 @@ static bool invert_3(const double *a, double *b) {
 
 static bool invert(int dim, const double *a, double *b) { return dim == 2 ? invert_2(a, b) : invert_3(a, b); }
 
-// c = a b, c = a' b and c -= a b of blocks.
-BRUNT_INLINE void times(int dim, const double *restrict a, const double *restrict b, double *restrict c) {
-    for (int i = 0; i < dim; i++)
-        for (int j = 0; j < dim; j++) {
-            double s = 0;
-            for (int k = 0; k < dim; k++) s += a[i * dim + k] * b[k * dim + j];
-            c[i * dim + j] = s;
-        }
-}
+typedef enum product_form { TIMES, TRANSPOSED_TIMES, MINUS_TIMES } product_form;
 
-BRUNT_INLINE void transposed_times(int dim, const double *restrict a, const double *restrict b, double *restrict c) {
+// c = a b, c = a' b or c -= a b of blocks; dim and form are literals where it is called.
+BRUNT_INLINE void multiply(int dim, product_form form, const double *restrict a, const double *restrict b,
+                           double *restrict c) {
     for (int i = 0; i < dim; i++)
         for (int j = 0; j < dim; j++) {
             double s = 0;
-            for (int k = 0; k < dim; k++) s += a[k * dim + i] * b[k * dim + j];
-            c[i * dim + j] = s;
-        }
-}
-
-BRUNT_INLINE void minus_times(int dim, const double *restrict a, const double *restrict b, double *restrict c) {
-    for (int i = 0; i < dim; i++)
-        for (int j = 0; j < dim; j++) {
-            double s = 0;
-            for (int k = 0; k < dim; k++) s += a[i * dim + k] * b[k * dim + j];
-            c[i * dim + j] -= s;
+            for (int k = 0; k < dim; k++) s += a[form == TRANSPOSED_TIMES ? k * dim + i : i * dim + k] * b[k * dim + j];
+            c[i * dim + j] = form == MINUS_TIMES ? c[i * dim + j] - s : s;
         }
 }
 
@@ -94,11 +79,11 @@ BRUNT_INLINE bool factor_row(brunt_incomplete *f, const brunt_block_matrix *a, i
         int64_t c = f->next[above]++;
         BRUNT_ASSERT(column[c] == i);
         double t[9];
-        transposed_times(dim, v + c * size, f->d + (int64_t)above * size, t);
-        minus_times(dim, t, v + c * size, pivot);
+        multiply(dim, TRANSPOSED_TIMES, v + c * size, f->d + (int64_t)above * size, t);
+        multiply(dim, MINUS_TIMES, t, v + c * size, pivot);
         for (c++; c < end; c++) {
             const int32_t slot = f->slot[column[c]];
-            if (slot >= 0) minus_times(dim, t, v + c * size, row + (int64_t)slot * size);
+            if (slot >= 0) multiply(dim, MINUS_TIMES, t, v + c * size, row + (int64_t)slot * size);
         }
     }
     for (int64_t c = 0; c < columns; c++) f->slot[a->column[after + c]] = -1;
@@ -106,7 +91,7 @@ BRUNT_INLINE bool factor_row(brunt_incomplete *f, const brunt_block_matrix *a, i
     for (int64_t c = 0; c < columns; c++) {
         double w[9];
         memcpy(w, row + c * size, (size_t)size * sizeof *w);
-        times(dim, inverse, w, row + c * size);
+        multiply(dim, TIMES, inverse, w, row + c * size);
     }
     return true;
 }

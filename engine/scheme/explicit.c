@@ -143,9 +143,7 @@ const brunt_pass_row brunt_explicit_passes[] = {
     {BRUNT_PASS_WHOLE, "advance",    "body",     always,                 brunt_pass_watch,       NULL,           NULL},
 };
 // clang-format on
-const int brunt_explicit_pass_count = sizeof brunt_explicit_passes / sizeof *brunt_explicit_passes;
-_Static_assert(sizeof brunt_explicit_passes / sizeof *brunt_explicit_passes <= (size_t)BRUNT_PASS_LIMIT,
-               "more passes than a plan has room for");
+BRUNT_COUNT_PASSES(brunt_explicit_passes, brunt_explicit_pass_count);
 
 static int run_pass(brunt_world *world, int at, brunt_step *step, brunt_error *error) {
     const brunt_pass_row *row = world->plan.row[at];

@@ -129,6 +129,4 @@ const brunt_pass_row brunt_implicit_passes[] = {
     {BRUNT_PASS_WHOLE, "advance",  "body",     always,    brunt_pass_watch_implicit, NULL,          NULL},
 };
 // clang-format on
-const int brunt_implicit_pass_count = sizeof brunt_implicit_passes / sizeof *brunt_implicit_passes;
-_Static_assert(sizeof brunt_implicit_passes / sizeof *brunt_implicit_passes <= (size_t)BRUNT_PASS_LIMIT,
-               "more passes than a plan has room for");
+BRUNT_COUNT_PASSES(brunt_implicit_passes, brunt_implicit_pass_count);

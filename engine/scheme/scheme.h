@@ -36,6 +36,12 @@ typedef struct brunt_pass_row {
     brunt_amount (*work)(const brunt_world *world, brunt_body_ref body);
 } brunt_pass_row;
 
+// Defines how many rows the table of a scheme's passes has; no more than a plan has room for.
+#define BRUNT_COUNT_PASSES(table, count)                                                                               \
+    const int count = sizeof(table) / sizeof *(table);                                                                 \
+    _Static_assert(sizeof(table) / sizeof *(table) <= (size_t)BRUNT_PASS_LIMIT, "more passes than a plan has room "    \
+                                                                                "for")
+
 // --- explicit.c
 extern const brunt_pass_row brunt_explicit_passes[];
 extern const int brunt_explicit_pass_count;

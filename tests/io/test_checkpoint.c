@@ -252,5 +252,5 @@ int main(void) {
     tcase_add_test(files, a_write_that_fails_loses_nothing);
     tcase_add_test(files, describes_what_it_wrote);
     suite_add_tcase(suite, files);
-    return small_main(suite);
+    return suite_main(suite);
 }

@@ -12,6 +12,7 @@
 #include "io/mesh/gmsh.h"
 #include "tests/support/gmsh_writer.h"
 #include "base/memory.h"
+#include "tests/support/suite.h"
 
 static char path[64];
 static size_t live;
@@ -708,9 +709,5 @@ int main(void) {
     tcase_add_test(tests, damaged_files_do_no_harm);
     tcase_add_test(tests, unreadable_files_are_io_errors);
     suite_add_tcase(suite, tests);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_ENV);
-    int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+    return suite_main(suite);
 }

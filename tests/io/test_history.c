@@ -562,5 +562,5 @@ int main(void) {
     tcase_add_test(gas, gases_have_columns);
     tcase_add_test(gas, file_gives_the_same_lines_and_drops_later_ones);
     suite_add_tcase(suite, gas);
-    return small_main(suite);
+    return suite_main(suite);
 }

@@ -346,5 +346,5 @@ int main(void) {
     tcase_add_checked_fixture(pipes, set_up, small_folder_remove);
     tcase_add_test(pipes, pipes_and_devices_are_no_files);
     suite_add_tcase(suite, pipes);
-    return small_main(suite);
+    return suite_main(suite);
 }

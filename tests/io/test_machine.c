@@ -213,5 +213,5 @@ int main(void) {
     tcase_add_test(all, name_of_this_machine);
     tcase_add_test(all, without_a_name_the_stored_one);
     suite_add_tcase(suite, all);
-    return small_main(suite);
+    return suite_main(suite);
 }

@@ -720,5 +720,5 @@ int main(void) {
     tcase_add_test(values, profiles_that_cannot_be_are_refused);
     tcase_add_test(values, unknown_names_are_refused);
     suite_add_tcase(suite, values);
-    return small_main(suite);
+    return suite_main(suite);
 }

@@ -163,5 +163,5 @@ int main(void) {
     tcase_add_test(tests, pairs_of_one_name_are_refused);
     tcase_add_test(tests, other_columns_differ);
     suite_add_tcase(suite, tests);
-    return small_main(suite);
+    return suite_main(suite);
 }

@@ -290,5 +290,5 @@ int main(void) {
     tcase_add_test(tests, all_are_said_in_one_go);
     tcase_add_test(tests, a_speed_and_a_wave_are_not_mistaken);
     suite_add_tcase(suite, tests);
-    return small_main(suite);
+    return suite_main(suite);
 }

@@ -306,5 +306,5 @@ int main(void) {
     tcase_add_test(tcase, check_leaves_no_trace);
     tcase_add_test(tcase, check_says_what_the_disk_will_hold);
     suite_add_tcase(suite, tcase);
-    return small_main(suite);
+    return suite_main(suite);
 }

@@ -61,5 +61,5 @@ int main(void) {
     tcase_add_test(tests, overlaps_have_places);
     tcase_add_test(tests, decimals_are_taken_as_written);
     suite_add_tcase(suite, tests);
-    return small_main(suite);
+    return suite_main(suite);
 }

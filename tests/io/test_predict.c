@@ -6,6 +6,7 @@
 #include "tests/support/fake_clock.h"
 #include "io/output/history.h"
 #include "io/performance/predict.h"
+#include "tests/support/suite.h"
 
 // Two soft blocks of material points that meet after an eighth of the time: contact costs nothing until then.
 static const char touching[] =
@@ -257,9 +258,5 @@ int main(void) {
     tcase_add_test(tests, worlds_that_cannot_be_made_are_passed_over);
     tcase_add_test(tests, the_scene_is_left_as_it_was);
     suite_add_tcase(suite, tests);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed > 0;
+    return suite_main(suite);
 }

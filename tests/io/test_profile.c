@@ -229,5 +229,5 @@ int main(void) {
     tcase_add_test(tests, counters_may_be_absent);
     tcase_add_test(tests, roofline_counts_what_it_does);
     suite_add_tcase(suite, tests);
-    return small_main(suite);
+    return suite_main(suite);
 }

@@ -537,5 +537,5 @@ int main(void) {
     tcase_add_test(commands, a_full_disk_is_74_and_leaves_a_whole_checkpoint);
     tcase_add_test(commands, a_damaged_checkpoint_is_65);
     suite_add_tcase(suite, commands);
-    return small_main(suite);
+    return suite_main(suite);
 }

@@ -249,5 +249,5 @@ int main(void) {
     tcase_add_test(runs, check_and_warnings);
     tcase_add_test(runs, mesh_files);
     suite_add_tcase(suite, runs);
-    return small_main(suite);
+    return suite_main(suite);
 }

@@ -102,6 +102,6 @@ int main(void) {
     tcase_add_test(tests, in_two_legs);
     tcase_add_test(tests, that_does_not_converge_is_70);
     suite_add_tcase(suite, tests);
-    return small_main(suite);
+    return suite_main(suite);
 }
 #endif

@@ -18,6 +18,7 @@
 #include "io/scene/scene.h"
 #include "io/scene/scene_keys.h"
 #include "io/scene/units.h"
+#include "tests/support/suite.h"
 
 static const char good[] =
     "brunt: 1\n"
@@ -805,10 +806,5 @@ int main(void) {
     tcase_add_test(tcase, broken);
     tcase_add_test(tcase, files);
     suite_add_tcase(suite, tcase);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    int failed = srunner_ntests_failed(runner);
-    int run = srunner_ntests_run(runner);
-    srunner_free(runner);
-    return failed == 0 && run > 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+    return suite_main(suite);
 }

@@ -463,5 +463,5 @@ int main(void) {
     tcase_add_test(tests, explosives_that_are_doubtful);
     tcase_add_test(tests, reference_has_presets_and_failure);
     suite_add_tcase(suite, tests);
-    return small_main(suite);
+    return suite_main(suite);
 }

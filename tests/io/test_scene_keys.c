@@ -9,6 +9,7 @@
 #include "base/memory.h"
 #include "io/scene/scene.h"
 #include "io/scene/scene_keys.h"
+#include "tests/support/suite.h"
 
 #define HEAD                                                                                                           \
     "brunt: 1\ntime: {end: 1 ms}\nmaterials: {m: {model: neo-hookean, density: 1, E: 1 MPa, nu: 0.3}}\nbodies:\n"
@@ -147,9 +148,5 @@ int main(void) {
     tcase_add_test(tcase, fields_hold_their_values);
     tcase_add_test(tcase, the_table_keeps_its_promises);
     suite_add_tcase(suite, tcase);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_ENV);
-    const int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed != 0;
+    return suite_main(suite);
 }

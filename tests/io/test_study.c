@@ -687,5 +687,5 @@ int main(void) {
     tcase_add_test(tcase, from_the_command_line);
     tcase_add_test(tcase, interrupted);
     suite_add_tcase(suite, tcase);
-    return small_main(suite);
+    return suite_main(suite);
 }

@@ -366,5 +366,5 @@ int main(void) {
     tcase_add_test(tests, runs_however_they_end);
     tcase_add_test(tests, files_that_cannot_be_written);
     suite_add_tcase(suite, tests);
-    return small_main(suite);
+    return suite_main(suite);
 }

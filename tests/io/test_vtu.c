@@ -10,6 +10,7 @@
 #include "fem/element.h"
 #include "base/memory.h"
 #include "io/output/vtu.h"
+#include "tests/support/suite.h"
 
 static char folder[64];
 
@@ -289,9 +290,5 @@ int main(void) {
     tcase_add_test(files, describes_what_it_wrote);
     tcase_add_test(files, leaves_nothing_behind_when_it_cannot_write);
     suite_add_tcase(suite, files);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    int failed = srunner_ntests_failed(runner), run = srunner_ntests_run(runner);
-    srunner_free(runner);
-    return failed || !run;
+    return suite_main(suite);
 }

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include "tests/support/suite.h"
 
 typedef struct cost {
     char dress[16];
@@ -72,9 +73,5 @@ int main(void) {
     tcase_set_timeout(tests, 0);
     tcase_add_test(tests, effects_that_are_off_cost_nothing);
     suite_add_tcase(suite, tests);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_ENV);
-    int failed = srunner_ntests_failed(runner), run = srunner_ntests_run(runner);
-    srunner_free(runner);
-    return failed || !run;
+    return suite_main(suite);
 }

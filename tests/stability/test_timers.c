@@ -230,5 +230,5 @@ int main(void) {
     tcase_add_test(cost, timers_cost_next_to_nothing);
     suite_add_tcase(suite, sums);
     suite_add_tcase(suite, cost);
-    return small_main(suite);
+    return suite_main(suite);
 }

@@ -10,6 +10,7 @@
 #include "brunt.h"
 #include "base/memory.h"
 #include "base/real.h"
+#include "tests/support/suite.h"
 
 // What rounding may leave of a conserved quantity after some hundred steps, relative.
 #ifdef BRUNT_FLOAT
@@ -175,12 +176,4 @@ static inline void world_copy_state(brunt_world *from, brunt_world *to) {
         free(bytes);
     }
     ck_assert_msg(brunt_state_done(to, &error) == BRUNT_OK, "%s", error.message);
-}
-
-static inline int suite_main(Suite *suite) {
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_ENV);
-    int failed = srunner_ntests_failed(runner), run = srunner_ntests_run(runner);
-    srunner_free(runner);
-    return failed || !run;
 }

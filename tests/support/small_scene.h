@@ -9,6 +9,7 @@
 
 #include "base/memory.h"
 #include "io/scene/scene.h"
+#include "tests/support/suite.h"
 
 static const char small_scene_text[] =
     "brunt: 1\n"
@@ -139,14 +140,6 @@ static inline void small_write(const char *path, const char *bytes, long size) {
     ck_assert_msg(file != NULL, "%s", path);
     ck_assert_int_eq((int)(fwrite(bytes, 1, (size_t)size, file) == (size_t)size), 1);
     fclose(file);
-}
-
-static inline int small_main(Suite *suite) {
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    int failed = srunner_ntests_failed(runner), run = srunner_ntests_run(runner);
-    srunner_free(runner);
-    return failed || !run;
 }
 
 // A file that must be refused begins with lines "# expect: LINE:COLUMN: SUBSTRING", one for each mistake in order; no

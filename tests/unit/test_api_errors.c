@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "tests/support/hard_world.h"
+#include "tests/support/suite.h"
 
 // ------------------------------------------------------------------------------------------ definitions
 
@@ -486,9 +487,5 @@ int main(void) {
     ADD(a_field_alone_is_set);
     ADD(bad_sets_change_nothing);
     ADD(steps_past_the_end);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    const int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed > 0;
+    return suite_main(suite);
 }

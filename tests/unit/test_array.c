@@ -6,6 +6,7 @@
 
 #include "base/array.h"
 #include "base/memory.h"
+#include "tests/support/suite.h"
 
 typedef struct item {
     double x[3];
@@ -71,9 +72,5 @@ int main(void) {
     tcase_add_test(c, nothing_asked_for_is_an_array);
     tcase_add_test(c, refused_as_it_was);
     suite_add_tcase(suite, c);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+    return suite_main(suite);
 }

@@ -9,6 +9,7 @@
 #include "contact/methods/augury_grid.h"
 #include "tests/support/hard_case.h"
 #include "base/memory.h"
+#include "tests/support/suite.h"
 
 typedef enum form { SURFACE, SMOOTH, PAPER_APIC, PAPER_PIC, FORMS } form;
 
@@ -692,9 +693,5 @@ int main(void) {
     tcase_add_loop_test(unit, oblique_cubes, 0, 3);
     tcase_set_timeout(unit, 0);
     suite_add_tcase(suite, unit);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_ENV);
-    int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed ? 1 : 0;
+    return suite_main(suite);
 }

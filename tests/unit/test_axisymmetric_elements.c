@@ -4,6 +4,7 @@
 
 #include "tests/support/fem_bodies.h"
 #include "fem/layout.h"
+#include "tests/support/suite.h"
 
 static const double tolerance = sizeof(real) == 4 ? 2e-5 : 1e-11;
 static const brunt_element_kind kinds[] = {BRUNT_TRI3, BRUNT_QUAD4};
@@ -498,10 +499,7 @@ int main(void) {
                                  places_beyond_the_axis_are_refused};
     for (size_t k = 0; k < sizeof list / sizeof *list; k++) tcase_add_test(tests, list[k]);
     suite_add_tcase(suite, tests);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_ENV);
-    int failed = srunner_ntests_failed(runner), run = srunner_ntests_run(runner);
-    srunner_free(runner);
+    const int code = suite_main(suite);
     brunt_fem_workspace_free(&workspace);
-    return failed || !run;
+    return code;
 }

@@ -9,6 +9,7 @@
 #include "contact/barrier/closest.h"
 #include "contact/barrier/near.h"
 #include "tests/support/numbers.h"
+#include "tests/support/suite.h"
 
 // ----------------------------------------------------------------------------------------------------- function
 
@@ -376,9 +377,5 @@ int main(void) {
     tcase_add_test(parts, cross_products_of_edges);
     tcase_add_test(parts, search_finds_what_all_pairs_show);
     suite_add_tcase(suite, parts);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    const int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed > 0;
+    return suite_main(suite);
 }

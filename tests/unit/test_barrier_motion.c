@@ -1,6 +1,7 @@
 // How far a step may go, planes, and friction by closed forms.
 #include "contact/barrier/barrier_function.h"
 #include "tests/support/barrier_case.h"
+#include "tests/support/suite.h"
 
 // -------------------------------------------------------------------------------------------------------- limit
 
@@ -304,9 +305,5 @@ int main(void) {
     tcase_add_test(motion, friction_is_of_the_velocity);
     tcase_add_test(motion, the_pressure_is_that_of_the_barrier);
     suite_add_tcase(suite, motion);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    const int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed > 0;
+    return suite_main(suite);
 }

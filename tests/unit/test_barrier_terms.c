@@ -3,6 +3,7 @@
 #include "contact/barrier/barrier_function.h"
 #include "linear/block_matrix.h"
 #include "tests/support/barrier_case.h"
+#include "tests/support/suite.h"
 
 // ------------------------------------------------------------------------------------------------- derivatives
 
@@ -471,9 +472,5 @@ int main(void) {
     tcase_add_test(terms, candidates_are_all_there_is);
     tcase_add_test(terms, bad_surfaces_are_refused);
     suite_add_tcase(suite, terms);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    const int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed > 0;
+    return suite_main(suite);
 }

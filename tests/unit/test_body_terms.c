@@ -314,9 +314,5 @@ int main(void) {
         ADD_LOOP(elements, 8);
         ADD_LOOP(points, 18);
     }
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_ENV);
-    const int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+    return suite_main(suite);
 }

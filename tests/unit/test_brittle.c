@@ -10,6 +10,7 @@
 
 #include "base/simd.h"
 #include "materials/material.h"
+#include "tests/support/suite.h"
 
 #ifdef BRUNT_FLOAT
 #define TOLERANCE(in_double, in_float) (in_float)
@@ -647,9 +648,5 @@ int main(void) {
     tcase_add_test(all, bad_parameters_are_refused);
     suite_add_tcase(suite, ceramic), suite_add_tcase(suite, porous), suite_add_tcase(suite, soil),
         suite_add_tcase(suite, all);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_ENV);
-    int failed = srunner_ntests_failed(runner), run = srunner_ntests_run(runner);
-    srunner_free(runner);
-    return failed || !run ? EXIT_FAILURE : EXIT_SUCCESS;
+    return suite_main(suite);
 }

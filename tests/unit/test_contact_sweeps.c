@@ -2,6 +2,7 @@
 // (contact.tolerance). Both must tell, alone, on what is left of the approach.
 #include "tests/support/hard_world.h"
 #include "contact/constraint/constraint.h"
+#include "tests/support/suite.h"
 
 // ------------------------------------------------------------------------------------------ points alone
 
@@ -158,9 +159,5 @@ int main(void) {
     ADD(whichever_comes_first_ends_them);
     ADD(a_world_takes_both);
     ADD(a_tolerance_out_of_range_is_refused);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    const int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed > 0;
+    return suite_main(suite);
 }

@@ -9,6 +9,7 @@
 
 #include "brunt.h"
 #include "scheme/scheme.h"
+#include "tests/support/suite.h"
 
 // What a scene is made of: two bodies apart, of material points, or of meshes, one of them a membrane.
 typedef struct scene {
@@ -294,9 +295,5 @@ int main(void) {
     tcase_add_test(tests, least_damping);
     tcase_add_test(tests, table_of_passes);
     suite_add_tcase(suite, tests);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_ENV);
-    int failed = srunner_ntests_failed(runner), run = srunner_ntests_run(runner);
-    srunner_free(runner);
-    return failed || !run;
+    return suite_main(suite);
 }

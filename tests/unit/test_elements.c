@@ -13,6 +13,7 @@
 #include "fem/layout.h"
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "tests/support/suite.h"
 
 static const double tolerance = sizeof(real) == 4 ? 2e-5 : 1e-11;
 
@@ -860,9 +861,5 @@ int main(void) {
     ADD(time);
     ADD(order);
     ADD(wrong);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_ENV);
-    int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed != 0;
+    return suite_main(suite);
 }

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "contact/distance/feature.h"
+#include "tests/support/suite.h"
 
 // A box of unequal sides at the origin, of quadrilaterals or of triangles.
 typedef struct box {
@@ -103,9 +104,5 @@ int main(void) {
     tcase_add_loop_test(tests, corner_of_unequal_faces, 0, 3);
     tcase_add_loop_test(tests, edge_of_unequal_faces, 0, 3);
     suite_add_tcase(suite, tests);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_ENV);
-    int failed = srunner_ntests_failed(runner), run = srunner_ntests_run(runner);
-    srunner_free(runner);
-    return failed || !run;
+    return suite_main(suite);
 }

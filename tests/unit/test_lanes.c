@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "base/simd_math.h"
+#include "tests/support/suite.h"
 
 #ifdef BRUNT_FLOAT
 #define REAL_MAX FLT_MAX
@@ -224,9 +225,5 @@ int main(void) {
     tcase_add_test(tests, lanes_are_independent);
     tcase_add_test(tests, selects_and_reductions);
     suite_add_tcase(suite, tests);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_ENV);
-    int failed = srunner_ntests_failed(runner), run = srunner_ntests_run(runner);
-    srunner_free(runner);
-    return failed || !run ? EXIT_FAILURE : EXIT_SUCCESS;
+    return suite_main(suite);
 }

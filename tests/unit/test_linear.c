@@ -9,6 +9,7 @@
 #include "linear/incomplete.h"
 #include "linear/linear.h"
 #include "tests/support/elastic_matrix.h"
+#include "tests/support/suite.h"
 
 static const brunt_team alone = {1, NULL};
 static const brunt_linear_options exact = {.accuracy = 1e-12, .iterations = 5000};
@@ -352,18 +353,27 @@ START_TEST(incomplete_factors_are_the_matrix_on_its_pattern) {
 }
 END_TEST
 
+// The matrix of a chain of nodes, each coupled to the next, all 0.
+static brunt_block_matrix rod_matrix(int dim, int nodes) {
+    enum { LONGEST = 400 };
+    int64_t first[LONGEST];
+    int32_t node[2 * LONGEST];
+    ck_assert_int_le(nodes, LONGEST);
+    for (int s = 0; s < nodes; s++) first[s] = 2 * s, node[2 * s] = s, node[2 * s + 1] = s + 1;
+    const brunt_stencils list = {nodes - 1, first, node};
+    const brunt_pattern pattern = {dim, nodes, &list, 1, false};
+    brunt_block_matrix m = {0};
+    ck_assert_int_eq(brunt_block_matrix_pattern(&m, &alone, &pattern, NULL), BRUNT_OK);
+    return m;
+}
+
 // A rod that is held at one end and pushed at all of it: the residual is small where iterations have not yet come to.
 START_TEST(accuracy_is_of_the_solution) {
     enum { NODES = 400 };
-    int64_t first[NODES];
-    int32_t node[2 * NODES];
-    for (int s = 0; s < NODES; s++) first[s] = 2 * s, node[2 * s] = s, node[2 * s + 1] = s + 1;
-    const brunt_stencils list = {NODES - 1, first, node};
-    const brunt_pattern pattern = {2, NODES, &list, 1, false};
-    brunt_block_matrix m = {0};
-    ck_assert_int_eq(brunt_block_matrix_pattern(&m, &alone, &pattern, NULL), BRUNT_OK);
+    brunt_block_matrix m = rod_matrix(2, NODES);
     for (int s = 0; s < NODES - 1; s++)
-        brunt_block_matrix_add(&m, node + 2 * s, 2, (double[]){1, 0, -1, 0, 0, 1, 0, -1, -1, 0, 1, 0, 0, -1, 0, 1});
+        brunt_block_matrix_add(&m, (int32_t[]){s, s + 1}, 2,
+                               (double[]){1, 0, -1, 0, 0, 1, 0, -1, -1, 0, 1, 0, 0, -1, 0, 1});
     m.value[m.diagonal[0] * 4] += 1, m.value[m.diagonal[0] * 4 + 3] += 1;
     double b[2 * NODES], x[2 * NODES];
     for (int i = 0; i < 2 * NODES; i++) b[i] = 1;
@@ -381,18 +391,12 @@ END_TEST
 // Where nothing is left out, the incomplete factor is the factor: one iteration.
 START_TEST(complete_where_nothing_fills_in) {
     enum { NODES = 40 };
-    int64_t first[NODES];
-    int32_t node[2 * NODES];
-    for (int s = 0; s < NODES; s++) first[s] = 2 * s, node[2 * s] = s, node[2 * s + 1] = s + 1;
-    const brunt_stencils list = {NODES - 1, first, node};
-    const brunt_pattern pattern = {3, NODES, &list, 1, false};
-    brunt_block_matrix m = {0};
-    ck_assert_int_eq(brunt_block_matrix_pattern(&m, &alone, &pattern, NULL), BRUNT_OK);
+    brunt_block_matrix m = rod_matrix(3, NODES);
     for (int s = 0; s < NODES - 1; s++) {
         double dense[36] = {0};
         for (int i = 0; i < 6; i++)
             for (int j = 0; j < 6; j++) dense[i * 6 + j] = (i == j ? 8 : 0) + cos(i + j + s);
-        brunt_block_matrix_add(&m, node + 2 * s, 2, dense);
+        brunt_block_matrix_add(&m, (int32_t[]){s, s + 1}, 2, dense);
     }
     double *b = wave(3 * NODES), x[3 * NODES], y[3 * NODES];
     brunt_linear_report report;
@@ -576,9 +580,5 @@ int main(void) {
     tcase_add_loop_test(c, the_quicker_one_is_chosen, 0, 12);
     tcase_add_test(c, memory_is_given_back);
     suite_add_tcase(suite, c);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+    return suite_main(suite);
 }

@@ -10,6 +10,7 @@
 #include "materials/material.h"
 #include "base/memory.h"
 #include "tests/support/matrix.h"
+#include "tests/support/suite.h"
 
 // A tolerance for either precision of the engine.
 #ifdef BRUNT_FLOAT
@@ -935,9 +936,5 @@ int main(void) {
     tcase_add_test(closed, viscosity_only_in_compression);
     tcase_add_loop_test(closed, reduced_forms_are_the_law, 0, 5);
     suite_add_tcase(suite, closed);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_ENV);
-    int failed = srunner_ntests_failed(runner), run = srunner_ntests_run(runner);
-    srunner_free(runner);
-    return failed || !run ? EXIT_FAILURE : EXIT_SUCCESS;
+    return suite_main(suite);
 }

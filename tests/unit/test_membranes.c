@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "tests/support/sheet_bodies.h"
+#include "tests/support/suite.h"
 
 static const double tolerance = sizeof(real) == 4 ? 2e-5 : 1e-11;
 static const char *const models[] = {"neo-hookean", "st-venant-kirchhoff", "linear-elastic"};
@@ -687,9 +688,5 @@ int main(void) {
     ADD(force);
     ADD(time);
     ADD(closed_form);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_ENV);
-    int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed != 0;
+    return suite_main(suite);
 }

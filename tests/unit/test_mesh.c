@@ -9,6 +9,7 @@
 #include "brunt.h"
 #include "base/memory.h"
 #include "tests/support/mesh_order.h"
+#include "tests/support/suite.h"
 
 static const double pi = 3.14159265358979323846;
 enum { SOLID_KINDS = BRUNT_MEMBRANE_QUAD4 }; // those that fill their room; sheets follow in the list
@@ -676,9 +677,5 @@ int main(void) {
     tcase_add_test(tests, duplicate_and_unreferenced_nodes_are_counted);
     tcase_add_test(tests, distance_from_the_origin_does_no_harm);
     suite_add_tcase(suite, tests);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_ENV);
-    int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+    return suite_main(suite);
 }

@@ -1,6 +1,7 @@
 // Meshes of halves, quarters and eighths of round shapes, and of boxes cut by boxes: parts of the whole, with nodes
 // exactly on the cuts; and bodies of rings that end on the axis of revolution, of elements and of points.
 #include "tests/support/hard_world.h"
+#include "tests/support/suite.h"
 
 static brunt_shape box(double x0, double y0, double z0, double x1, double y1, double z1) {
     return (brunt_shape){.kind = BRUNT_BOX, .min = {x0, y0, z0}, .max = {x1, y1, z1}};
@@ -262,9 +263,5 @@ int main(void) {
     ADD(other_intersections_are_refused);
     ADD(membranes_of_parts);
     ADD(one_rule_on_the_axis);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    const int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed > 0;
+    return suite_main(suite);
 }

@@ -9,6 +9,7 @@
 #include "brunt.h"
 #include "base/memory.h"
 #include "tests/support/mesh_order.h"
+#include "tests/support/suite.h"
 
 static const double pi = 3.14159265358979323846;
 static const brunt_element_kind kinds[] = {BRUNT_MEMBRANE_QUAD4, BRUNT_MEMBRANE_TRI3};
@@ -579,9 +580,5 @@ int main(void) {
     tcase_add_test(tests, seams_join_sheets_of_any_side);
     tcase_add_test(tests, one_sided_strips_are_refused);
     suite_add_tcase(suite, tests);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_ENV);
-    int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+    return suite_main(suite);
 }

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/memory.h"
 #include "linear/newton.h"
+#include "tests/support/suite.h"
 
 static const brunt_team alone = {1, NULL};
 
@@ -461,9 +462,5 @@ int main(void) {
     tcase_add_test(c, fallback_and_phases);
     tcase_add_test(c, any_number_of_threads);
     suite_add_tcase(suite, c);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+    return suite_main(suite);
 }

@@ -10,6 +10,7 @@
 #include "base/memory.h"
 #include "base/simd.h"
 #include "materials/prepared.h"
+#include "tests/support/suite.h"
 
 typedef struct named_material {
     const char *name, *strength, *eos;
@@ -485,9 +486,5 @@ int main(void) {
     tcase_add_loop_test(all, inside_out, 0, 2 * MATERIALS);
     tcase_add_test(all, the_rest_says_why);
     suite_add_tcase(suite, all);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_ENV);
-    const int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+    return suite_main(suite);
 }

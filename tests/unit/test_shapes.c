@@ -7,6 +7,7 @@
 #include "brunt.h"
 #include "geometry/fill.h"
 #include "base/memory.h"
+#include "tests/support/suite.h"
 
 static const double pi = 3.14159265358979323846;
 
@@ -458,9 +459,5 @@ int main(void) {
     tcase_add_test(tests, impossible_fills_are_errors);
     tcase_add_test(tests, definitions_start_sensible_and_leave_nothing);
     suite_add_tcase(suite, tests);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_ENV);
-    int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+    return suite_main(suite);
 }

@@ -9,6 +9,7 @@
 #include "base/simd.h"
 #include "base/memory.h"
 #include "materials/prepared.h"
+#include "tests/support/suite.h"
 
 #ifdef BRUNT_FLOAT
 #define TOLERANCE(in_double, in_float) (in_float)
@@ -600,9 +601,5 @@ int main(void) {
     tcase_add_loop_test(slack, slack_is_continuous, 0, LAWS * RATIOS);
     tcase_add_test(slack, material_of_a_body);
     suite_add_tcase(suite, slack);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_ENV);
-    int failed = srunner_ntests_failed(runner), run = srunner_ntests_run(runner);
-    srunner_free(runner);
-    return failed || !run ? EXIT_FAILURE : EXIT_SUCCESS;
+    return suite_main(suite);
 }

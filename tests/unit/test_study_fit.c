@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "io/study/study_view.h"
+#include "tests/support/suite.h"
 
 static const double cells[] = {8e-3, 4e-3, 2e-3, 1e-3, 0.5e-3};
 static const char *const methods[] = {"APIC, quadratic", "FEM", "FLIP | 'x'_y"};
@@ -738,9 +739,5 @@ int main(void) {
     tcase_add_test(files, without_gnuplot_the_scripts_are_there);
     tcase_add_test(files, what_gnuplot_says_is_returned);
     suite_add_tcase(suite, files);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    int failed = srunner_ntests_failed(runner), run = srunner_ntests_run(runner);
-    srunner_free(runner);
-    return failed || !run;
+    return suite_main(suite);
 }

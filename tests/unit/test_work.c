@@ -300,9 +300,5 @@ int main(void) {
     tcase_add_test(tests, units_are_those_gone_over);
     tcase_add_test(tests, what_is_not_fixed_is_not_counted);
     suite_add_tcase(suite, tests);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    int failed = srunner_ntests_failed(runner), run = srunner_ntests_run(runner);
-    srunner_free(runner);
-    return failed || !run;
+    return suite_main(suite);
 }

@@ -4,6 +4,7 @@
 #include "contact/barrier/barrier_function.h"
 #include "linear/newton.h"
 #include "tests/support/barrier_case.h"
+#include "tests/support/suite.h"
 
 // Inertia and load of each unknown: m / (2 c) (u - start)^2 - f u.
 typedef struct masses {
@@ -179,9 +180,5 @@ int main(void) {
     tcase_add_test(contact, a_body_on_a_slope);
     tcase_add_test(contact, an_impact_stops_at_the_surface);
     suite_add_tcase(suite, contact);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    const int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed > 0;
+    return suite_main(suite);
 }

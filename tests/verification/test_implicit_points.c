@@ -3,7 +3,7 @@
 // transfers; ties; against explicit steps.
 #include <math.h>
 
-#include "tests/support/def_world.h"
+#include "tests/support/implicit_world.h"
 
 #ifdef BRUNT_FLOAT
 int main(void) { return 0; } // implicit steps want double
@@ -23,9 +23,7 @@ static brunt_world_def points(int dim, int way, brunt_integrator integrator, dou
     brunt_world_def def = def_begin(dim, 0.125);
     def_material(&def, "neo-hookean", 1000, 1e6, 0.3);
     def.kernel = ways[way].kernel, def.transfer = ways[way].transfer;
-    def.scheme = BRUNT_IMPLICIT, def.integrator = integrator, def.step = step;
-    def.contact.method = BRUNT_CONTACT_NONE;
-    def.newton.tolerance = 1e-11; // momentum is kept as far as forces balance
+    go_implicit(&def, integrator, step);
     return def;
 }
 
@@ -144,38 +142,10 @@ static brunt_world *shaken(int way, int threads) {
 }
 
 START_TEST(threads) {
-    uint64_t hash[3];
-    for (int t = 0; t < 3; t++) {
-        brunt_world *world = shaken(_i, t + 1);
-        world_steps(world, 3);
-        hash[t] = brunt_world_hash(world);
-        brunt_world_destroy(world);
-    }
-    ck_assert_uint_eq(hash[0], hash[1]);
-    ck_assert_uint_eq(hash[0], hash[2]);
+    brunt_world *world[] = {shaken(_i, 1), shaken(_i, 2), shaken(_i, 3)};
+    check_threads(world, 3, 3);
 }
 END_TEST
-
-// Whether a world that takes up the state of another after three steps is the same after two more.
-static void check_restart(brunt_world *world, brunt_world *fresh) {
-    brunt_error error = {0};
-    world_steps(world, 3);
-    for (int32_t k = 0; k < brunt_state_count(world); k++) {
-        const brunt_state_block block = brunt_state_info(world, k);
-        void *bytes = malloc((size_t)block.count * 8 + 8);
-        brunt_state_get(world, k, bytes);
-        ck_assert_msg(!brunt_state_set(fresh, k, bytes, block.count, &error), "%s", error.message);
-        free(bytes);
-    }
-    ck_assert_msg(!brunt_state_done(fresh, &error), "%s", error.message);
-    world_steps(world, 2), world_steps(fresh, 2);
-    ck_assert_uint_eq(brunt_world_hash(world), brunt_world_hash(fresh));
-    brunt_newton_counts a, b;
-    brunt_world_newton(world, &a, NULL), brunt_world_newton(fresh, &b, NULL);
-    ck_assert_double_eq(a.iterations, b.iterations);
-    ck_assert_double_eq(world_energy(world).scheme, world_energy(fresh).scheme);
-    brunt_world_destroy(world), brunt_world_destroy(fresh);
-}
 
 START_TEST(restart) { check_restart(shaken(_i, 1), shaken(_i, 2)); }
 END_TEST
