@@ -85,7 +85,7 @@ static void fill_contact(void *context, int64_t s, double *dense, int worker) {
 int barrier_add_hessian(const barrier_assembly *a, const brunt_team *team, const double *u, bool project,
                         brunt_block_matrix *m) {
     fill_work work = {a->b, a->contacts, u, project, a->friction};
-    const brunt_stencils sets = {a->sets->count, a->sets->first, a->sets->node};
+    const brunt_stencils sets = {.count = a->sets->count, .first = a->sets->first, .node = a->sets->node};
     if (brunt_colours_make(a->colours, team, a->b->dim, m->nodes, &sets, NULL)) return -1;
     brunt_assemble(m, team, &sets, a->colours, fill_contact, &work);
     return 0;

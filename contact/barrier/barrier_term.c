@@ -75,7 +75,7 @@ static brunt_stencils term_stencils(void *self) {
     if (b->stale && ((b->swept && list_candidates(b)) || barrier_make_sets(b, &b->contacts, &b->sets)))
         b->broken = true, b->sets.count = 0;
     b->stale = false;
-    return (brunt_stencils){b->sets.count, b->sets.first, b->sets.node};
+    return (brunt_stencils){.count = b->sets.count, .first = b->sets.first, .node = b->sets.node};
 }
 
 static void term_hessian(void *self, const brunt_team *team, const double *u, bool project, brunt_block_matrix *m) {
@@ -144,7 +144,9 @@ static void friction_gradient(void *self, const brunt_team *team, const double *
 
 static brunt_stencils friction_stencils(void *self) {
     const brunt_barrier *b = self;
-    return (brunt_stencils){b->lagged.count ? b->lagged_sets.count : 0, b->lagged_sets.first, b->lagged_sets.node};
+    return (brunt_stencils){.count = b->lagged.count ? b->lagged_sets.count : 0,
+                            .first = b->lagged_sets.first,
+                            .node = b->lagged_sets.node};
 }
 
 static void friction_hessian(void *self, const brunt_team *team, const double *u, bool project, brunt_block_matrix *m) {

@@ -131,7 +131,7 @@ static void make_stencils(brunt_fem_potential *p) {
 
 static brunt_stencils stencils(void *self) {
     const brunt_fem_potential *p = self;
-    return (brunt_stencils){.count = p->body->element_count, .first = p->first, .node = p->node};
+    return (brunt_stencils){.count = p->body->element_count, .first = p->first, .node = p->node, .version = 1};
 }
 
 brunt_fem_potential *brunt_fem_potential_make(brunt_fem_body *body, int32_t base, const brunt_team *team,

@@ -26,7 +26,7 @@ typedef struct brunt_pattern {
     int32_t nodes;
     const brunt_stencils *stencils; // `lists` lists, nodes within [0, nodes)
     int lists;                      // at most 255
-    bool keep;                      // what the matrix has stays in it, when it has as many nodes
+    bool keep; // what the matrix has stays in it, when it has as many nodes: versions of lists are then of one problem
 } brunt_pattern;
 
 // Makes room for a pattern, and sets all values to zero. BRUNT_OK, or BRUNT_FAILED: out of memory.
@@ -49,6 +49,10 @@ enum { BRUNT_STENCIL_LIMIT = 1024 }; // nodes of a stencil
 // dense[(a * dim + i) * count * dim + b * dim + j]. Quickest where nodes ascend. Not for two threads at rows of the
 // same node: brunt_assemble sees to that.
 void brunt_block_matrix_add(brunt_block_matrix *m, const int32_t *node, int count, const double *dense);
+
+// A number for each node, of no value before and after, for whoever fills the matrix: of worker 0 .. threads - 1 of the
+// team that made the pattern.
+int32_t *brunt_block_matrix_marks(const brunt_block_matrix *m, int worker);
 
 // y = A x; of nodes * dim.
 void brunt_block_matrix_product(const brunt_block_matrix *m, const brunt_team *team, const double *x, double *y);

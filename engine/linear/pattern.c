@@ -8,7 +8,7 @@
 #include "base/error.h"
 #include "base/memory.h"
 
-enum { LIST_SHIFT = 56, ROW_GRAIN = 64, FEW = 24 };
+enum { LIST_SHIFT = 56, LISTS = 255, ROW_GRAIN = 64, FEW = 24 };
 
 typedef struct row_maker {
     int32_t *mark;   // of each node: the row + 1 that has it
@@ -30,6 +30,8 @@ struct brunt_pattern_scratch {
     int64_t *new_first;
     int32_t *new_column;
     size_t first_capacity, stencil_capacity, row_capacity, new_first_capacity, new_column_capacity;
+    int64_t version[LISTS]; // of the lists that the pattern has been made of; 0: not known
+    bool known[LISTS];      // lists that the pattern has already
     row_maker maker[BRUNT_THREAD_LIMIT];
 };
 
@@ -40,16 +42,18 @@ typedef struct pattern_work {
     bool keep;
 } pattern_work;
 
-// Which stencils hold each node, in the order of lists and of stencils.
+// Which stencils of lists that the pattern has not hold each node, in the order of lists and of stencils.
 static int list_holders(struct brunt_pattern_scratch *s, const brunt_pattern *p) {
     int64_t entries = 0;
     for (int l = 0; l < p->lists; l++)
-        if (p->stencils[l].count) entries += p->stencils[l].first[p->stencils[l].count] - p->stencils[l].first[0];
+        if (p->stencils[l].count && !s->known[l])
+            entries += p->stencils[l].first[p->stencils[l].count] - p->stencils[l].first[0];
     if (BRUNT_RESERVE(s->first, (size_t)p->nodes + 2, 0) || BRUNT_RESERVE(s->stencil, (size_t)entries, 0)) return -1;
     int64_t *next = s->first + 1; // shifted by one: filling moves each to where the next one begins
     memset(s->first, 0, ((size_t)p->nodes + 2) * sizeof *s->first);
     for (int l = 0; l < p->lists; l++) {
         const brunt_stencils *list = p->stencils + l;
+        if (s->known[l]) continue;
         for (int64_t k = list->count ? list->first[0] : 0; list->count && k < list->first[list->count]; k++) {
             BRUNT_ASSERT(list->node[k] >= 0 && list->node[k] < p->nodes);
             next[list->node[k] + 1]++;
@@ -58,7 +62,7 @@ static int list_holders(struct brunt_pattern_scratch *s, const brunt_pattern *p)
     for (int32_t n = 0; n < p->nodes; n++) next[n + 1] += next[n];
     for (int l = 0; l < p->lists; l++) {
         const brunt_stencils *list = p->stencils + l;
-        for (int64_t i = 0; i < list->count; i++)
+        for (int64_t i = 0; i < list->count && !s->known[l]; i++)
             for (int64_t k = list->first[i]; k < list->first[i + 1]; k++)
                 s->stencil[next[list->node[k]]++] = (int64_t)l << LIST_SHIFT | i;
     }
@@ -108,6 +112,10 @@ static int64_t make_row(const pattern_work *work, row_maker *w, int32_t row) {
     const brunt_block_matrix *m = work->m;
     const int64_t kept = work->keep ? m->first[row + 1] - m->first[row] : 0;
     if (row_room(w, 0, kept + 1)) return -1;
+    if (kept && s->first[row] == s->first[row + 1]) {
+        memcpy(w->column + w->made, m->column + m->first[row], (size_t)kept * sizeof(int32_t));
+        return kept;
+    }
     int64_t count = mark_columns(w, row, &row, 1, 0);
     if (kept) count = mark_columns(w, row, m->column + m->first[row], kept, count);
     for (int64_t k = s->first[row]; k < s->first[row + 1]; k++) {
@@ -157,6 +165,45 @@ static void find_diagonals(void *context, int64_t begin, int64_t end, int worker
     }
 }
 
+static bool couples(const brunt_block_matrix *m, int32_t row, int32_t column) {
+    int64_t low = m->first[row], high = m->first[row + 1];
+    while (low < high) {
+        const int64_t middle = (low + high) / 2;
+        if (m->column[middle] < column)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < m->first[row + 1] && m->column[low] == column;
+}
+
+static bool has_stencils(const brunt_block_matrix *m, const brunt_stencils *list) {
+    for (int64_t s = 0; s < list->count; s++)
+        for (int64_t i = list->first[s]; i < list->first[s + 1]; i++)
+            for (int64_t j = list->first[s]; j < list->first[s + 1]; j++)
+                if (!couples(m, list->node[i], list->node[j])) return false;
+    return true;
+}
+
+// Whether a pattern that is kept has all of the stencils, and which lists it has.
+static bool complete(const brunt_block_matrix *m, const brunt_pattern *p, bool keep) {
+    struct brunt_pattern_scratch *s = m->scratch;
+    bool all = keep;
+    for (int l = 0; l < p->lists; l++) {
+        s->known[l] = keep && p->stencils[l].version && p->stencils[l].version == s->version[l];
+        all = all && (s->known[l] || has_stencils(m, &p->stencils[l]));
+        s->version[l] = p->stencils[l].version;
+    }
+    for (int l = p->lists; l < LISTS; l++) s->version[l] = 0;
+    return all;
+}
+
+static int make_marks(const brunt_block_matrix *m, const brunt_team *team, int32_t nodes) {
+    for (int t = 0; t < team->threads; t++)
+        if (BRUNT_RESERVE(m->scratch->maker[t].mark, (size_t)nodes, 0)) return -1;
+    return 0;
+}
+
 // The rows, into new_first and new_column.
 static int new_rows(pattern_work *work, const brunt_team *team) {
     struct brunt_pattern_scratch *s = work->s;
@@ -164,7 +211,6 @@ static int new_rows(pattern_work *work, const brunt_team *team) {
     if (list_holders(s, work->pattern) || BRUNT_RESERVE(s->row, (size_t)nodes, 0)) return -1;
     for (int t = 0; t < team->threads; t++) {
         row_maker *w = s->maker + t;
-        if (BRUNT_RESERVE(w->mark, (size_t)nodes, 0)) return -1;
         memset(w->mark, 0, (size_t)nodes * sizeof *w->mark);
         w->made = 0, w->failed = false;
     }
@@ -205,18 +251,26 @@ static int take_rows(brunt_block_matrix *m, const brunt_team *team, const brunt_
 
 int brunt_block_matrix_pattern(brunt_block_matrix *m, const brunt_team *team, const brunt_pattern *p,
                                brunt_error *error) {
-    BRUNT_ASSERT((p->dim == 2 || p->dim == 3) && p->lists <= 255 && p->nodes >= 0);
+    BRUNT_ASSERT((p->dim == 2 || p->dim == 3) && p->lists <= LISTS && p->nodes >= 0);
     if (!m->scratch) m->scratch = brunt_alloc(sizeof *m->scratch);
     bool made = m->scratch;
     if (made) {
-        pattern_work work = {m, p, m->scratch, p->keep && m->pattern && m->nodes == p->nodes && m->dim == p->dim};
-        made = !new_rows(&work, team) && (same_pattern(m, p) || !take_rows(m, team, p));
+        const bool keep = p->keep && m->pattern && m->nodes == p->nodes && m->dim == p->dim;
+        pattern_work work = {m, p, m->scratch, keep};
+        made = !make_marks(m, team, p->nodes);
+        if (made && !complete(m, p, keep))
+            made = !new_rows(&work, team) && (same_pattern(m, p) || !take_rows(m, team, p));
     }
     if (!made)
         return brunt_fail(error, BRUNT_FAILED, "Out of memory for the matrix of %lld unknowns.",
                           (long long)p->nodes * p->dim);
     brunt_block_matrix_zero(m, team);
     return BRUNT_OK;
+}
+
+int32_t *brunt_block_matrix_marks(const brunt_block_matrix *m, int worker) {
+    BRUNT_ASSERT(m->scratch && m->scratch->maker[worker].mark);
+    return m->scratch->maker[worker].mark;
 }
 
 void brunt_block_matrix_free(brunt_block_matrix *m) {

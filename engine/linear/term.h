@@ -33,6 +33,7 @@ typedef struct brunt_stencils {
     int64_t count;
     const int64_t *first; // count + 1
     const int32_t *node;
+    int64_t version; // of a term: a number that changes whenever its sets do; 0: they may have changed
 } brunt_stencils;
 
 // Functions that a term has not are NULL. `u` and `p` are of all unknowns, read by the term's own nodes.

@@ -38,37 +38,34 @@ brunt_mpm_potential *brunt_mpm_potential_make(brunt_body *body, brunt_error *err
 
 void brunt_mpm_potential_free(brunt_mpm_potential *p) {
     if (!p) return;
-    brunt_colours_free(&p->colours);
     brunt_free(p->slab), brunt_free(p->force), brunt_free(p->energy), brunt_free(p->limit), brunt_free(p->result);
-    brunt_free(p->first), brunt_free(p->node), brunt_free(p->bin), brunt_free(p->matrix);
+    brunt_free(p->first), brunt_free(p->node), brunt_free(p->matrix);
+    brunt_free(p->coloured), brunt_free(p->place);
     brunt_free(p);
 }
 
 size_t brunt_mpm_potential_bytes(const brunt_mpm_potential *p) {
     return sizeof *p + p->slab_capacity + p->force_capacity + p->energy_capacity + p->limit_capacity +
-           p->result_capacity + p->first_capacity + p->node_capacity + p->bin_capacity + p->matrix_capacity +
-           p->colours.stencil_capacity + p->colours.first_capacity + p->colours.used_capacity +
-           p->colours.order_capacity + p->colours.dense_capacity;
+           p->result_capacity + p->first_capacity + p->node_capacity + p->matrix_capacity + p->coloured_capacity +
+           p->place_capacity;
 }
 
 static brunt_stencils stencils(void *self) {
     const brunt_mpm_potential *p = self;
-    return (brunt_stencils){.count = p->stencil_count, .first = p->first, .node = p->node};
+    return (brunt_stencils){.count = p->stencil_count, .first = p->first, .node = p->node, .version = p->step};
 }
 
-// The bins with particles, and the unknowns among their nodes; gives the greatest unknown.
-static int32_t list_bins(brunt_mpm_potential *p) {
+// The bins with particles, and the unknowns among their nodes.
+static void list_bins(brunt_mpm_potential *p) {
     const brunt_grid *grid = &p->body->grid;
     const int N = grid->order + 1, n = kernel_nodes(grid->dim, grid->order);
     int64_t count = 0, nodes = 0;
-    int32_t most = -1;
     for (int32_t b = 0; b < grid->block_count; b++)
         for (int bin = 0; bin < BRUNT_BLOCK_NODES; bin++) {
             const int32_t *start = grid->bin_start + (size_t)b * BRUNT_BIN_STARTS + bin;
             if (start[0] == start[1]) continue;
             int at[3];
             brunt_node_local(grid, bin, at);
-            p->bin[count] = b * BRUNT_BLOCK_NODES + bin;
             p->first[count++] = nodes;
             for (int k = 0; k < n; k++) {
                 const bool flat = grid->dim == 2;
@@ -76,12 +73,10 @@ static int32_t list_bins(brunt_mpm_potential *p) {
                 const int32_t node = p->number[window_node(grid, &grid->blocks[b], at[0] + i, at[1] + j, at[2] + m)];
                 if (node < 0) continue;
                 p->node[nodes++] = node;
-                if (node > most) most = node;
             }
         }
     p->first[count] = nodes;
     p->stencil_count = count;
-    return most;
 }
 
 static int make_room(brunt_mpm_potential *p) {
@@ -95,10 +90,8 @@ static int make_room(brunt_mpm_potential *p) {
         BRUNT_RESERVE(p->force, (size_t)(blocks * grid->span_nodes * grid->dim), 0) ||
         BRUNT_RESERVE(p->energy, (size_t)blocks, 0) || BRUNT_RESERVE(p->limit, (size_t)blocks, 0) ||
         BRUNT_RESERVE(p->result, (size_t)blocks, 0) || BRUNT_RESERVE(p->first, (size_t)bins + 1, 0) ||
-        BRUNT_RESERVE(p->bin, (size_t)bins + 1, 0) ||
         BRUNT_RESERVE(p->node, (size_t)(bins * kernel_nodes(grid->dim, grid->order)) + 1, 0) ||
-        BRUNT_RESERVE(p->matrix, (size_t)(p->threads * brunt_mpm_matrix_room(grid->dim, grid->order)), 0) ||
-        BRUNT_RESERVE_IN(p->body->report, p->body->report_capacity, (size_t)blocks, 0))
+        brunt_mpm_matrix_room(p) || BRUNT_RESERVE_IN(p->body->report, p->body->report_capacity, (size_t)blocks, 0))
         return -1;
     for (int64_t k = 0; k < tangents; k++) p->tangent[k] = p->slab + k * stride;
     return 0;
@@ -106,11 +99,10 @@ static int make_room(brunt_mpm_potential *p) {
 
 int brunt_mpm_potential_step(brunt_mpm_potential *p, const brunt_team *team, const int32_t *number, double dt,
                              brunt_error *error) {
-    p->number = number, p->dt = (real)dt, p->threads = team->threads;
+    p->number = number, p->dt = (real)dt, p->threads = team->threads, p->step++;
     if (make_room(p)) return out_of_memory(p->body, error);
-    const int32_t most = list_bins(p);
-    const brunt_stencils list = stencils(p);
-    return brunt_colours_make(&p->colours, team, p->body->grid.dim, most + 1, &list, error);
+    list_bins(p);
+    return BRUNT_OK;
 }
 
 // --------------------------------------------------------------------------------- a block
@@ -340,8 +332,7 @@ static void hessian(void *self, const brunt_team *team, const double *u, bool pr
     brunt_mpm_potential *p = self;
     mpm_call call = {.p = p, .wanted = MPM_TANGENT, .project = project, .u = u};
     run(&call, team);
-    const brunt_stencils list = stencils(p);
-    brunt_assemble(h, team, &list, &p->colours, brunt_mpm_bin_matrix, p);
+    brunt_mpm_add_matrix(p, team, h);
 }
 
 static double limit(void *self, const brunt_team *team, const double *u, const double *way, double largest) {

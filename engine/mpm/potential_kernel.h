@@ -7,7 +7,7 @@
 
 #include "base/simd_math.h"
 #include "grid/bspline.h"
-#include "linear/assembly.h"
+#include "linear/block_matrix.h"
 #include "mpm/potential.h"
 
 enum { MOST_WINDOW = 7 * 7 * 7, MOST_TILE = 64, MOST_KERNEL = 64 };
@@ -32,13 +32,15 @@ struct brunt_mpm_potential {
     double *limit;
     mpm_block_result *result;
     size_t energy_capacity, limit_capacity, result_capacity;
-    // Stencils: bins with particles, in the order of blocks.
-    int64_t stencil_count, *first;
-    int32_t *node, *bin; // bin: of each stencil, block * 64 + bin
-    size_t first_capacity, node_capacity, bin_capacity;
-    brunt_colours colours;
-    double *matrix; // room for the dense matrices of a bin, a thread each
-    size_t matrix_capacity;
+    // Stencils of step number `step`: bins with particles, in the order of blocks.
+    int64_t step, stencil_count, *first;
+    int32_t *node;
+    size_t first_capacity, node_capacity;
+    // Assembly (potential_matrix.c): blocks by colour; room for the sums of a bin, places in rows, a thread each.
+    int32_t *coloured, colour_first[9], *place;
+    double *matrix;
+    int64_t matrix_room, place_room;
+    size_t coloured_capacity, place_capacity, matrix_capacity;
 };
 
 // Nodes of a kernel.
@@ -181,6 +183,6 @@ static inline void trial_tile(brunt_mpm_potential *p, int64_t slot, int32_t coun
     }
 }
 
-// potential_matrix.c: the dense matrix of a bin, a brunt_stencil_fn; and the room it wants, in doubles.
-void brunt_mpm_bin_matrix(void *potential, int64_t stencil, double *dense, int worker);
-int64_t brunt_mpm_matrix_room(int dim, int order);
+// potential_matrix.c: room and colours of a step, 0, or -1: out of memory; and the Hessian, once tangents are there.
+int brunt_mpm_matrix_room(brunt_mpm_potential *p);
+void brunt_mpm_add_matrix(brunt_mpm_potential *p, const brunt_team *team, brunt_block_matrix *m);

@@ -1,11 +1,18 @@
-// The Hessian of a bin: its particles share their kernels' nodes, so that the blocks of pairs of nodes are sums over
+// The Hessian, bin by bin: its particles share their kernels' nodes, so that the blocks of pairs of nodes are sums over
 // the particles before they go to the matrix,
 //   K_ij = sum_p sum_ab g_a (x) (a_iajb g_b) = G^T S_ij,
 // G the slopes of all nodes by particle and direction (padded to whole vectors), S_ij = a_ij G, for i <= j. With P
 // particles a product of N x dim P by dim P x N: 2 dim N^2 dim (dim + 1) / 2 operations a particle, 26,000 of the
-// quadratic kernel in 3D, from registers of 3 or 4 rows by 4 vectors.
+// quadratic kernel in 3D, from registers of 3 or 4 rows by 4 vectors. Of K_ii, which is symmetric, the vectors from the
+// diagonal on.
+//
+// Blocks of the grid whose coordinates are all of the same parity share no node, since kernels reach less far than a
+// block: these 2^dim colours follow one another, the blocks of one side by side, the bins of a block in their order.
+// What an entry is the sum of does not depend on the number of threads, and a block's rows stay in the cache.
 #include <string.h>
 
+#include "base/array.h"
+#include "base/error.h"
 #include "mpm/potential_kernel.h"
 
 enum { CHUNK = 8, COLUMNS = 4 }; // particles at a time; vectors of a row in registers
@@ -15,10 +22,34 @@ BRUNT_INLINE int padded_nodes(int dim, int order) {
     return (kernel_nodes(dim, order) + BRUNT_LANES - 1) / BRUNT_LANES * BRUNT_LANES;
 }
 
-int64_t brunt_mpm_matrix_room(int dim, int order) {
+// Nodes within reach of a node.
+BRUNT_INLINE int reach(int dim, int order) {
+    const int wide = 2 * order + 1;
+    return dim == 3 ? wide * wide * wide : wide * wide;
+}
+
+int brunt_mpm_matrix_room(brunt_mpm_potential *p) {
+    const brunt_grid *grid = &p->body->grid;
+    const int dim = grid->dim, order = grid->order;
     const int64_t n = padded_nodes(dim, order), pairs = dim * (dim + 1) / 2,
                   chunk = CHUNK > BRUNT_LANES ? CHUNK : BRUNT_LANES;
-    return (pairs * n + 2 * chunk * dim) * n + BRUNT_LANES * n;
+    p->matrix_room = (pairs * n + 2 * chunk * dim) * n + BRUNT_LANES * n;
+    p->place_room = (int64_t)grid->span_nodes * reach(dim, order);
+    if (BRUNT_RESERVE(p->matrix, (size_t)(p->threads * p->matrix_room), 0) ||
+        BRUNT_RESERVE(p->place, (size_t)(p->threads * p->place_room), 0) ||
+        BRUNT_RESERVE(p->coloured, (size_t)grid->block_count, 0))
+        return -1;
+    int32_t count = 0;
+    for (int colour = 0; colour < grid->corners; colour++) {
+        p->colour_first[colour] = count;
+        for (int32_t b = 0; b < grid->block_count; b++) {
+            int parity = 0;
+            for (int a = 0; a < dim; a++) parity = 2 * parity + (grid->blocks[b].coord[a] & 1);
+            if (parity == colour) p->coloured[count++] = b;
+        }
+    }
+    p->colour_first[grid->corners] = count;
+    return 0;
 }
 
 // K += G^T S of `rows` rows from A on and `columns` vectors from B on; `count` rows of G and S.
@@ -33,11 +64,12 @@ BRUNT_INLINE void tile_product(int rows, int columns, int stride, int count, con
         for (int c = 0; c < columns; c++) lanes_store(K + r * stride + c * BRUNT_LANES, sum[r][c]);
 }
 
-BRUNT_INLINE void product(int dim, int order, int count, const real *G, const real *S, real *K) {
+// `symmetric`: not what lies before the diagonal.
+BRUNT_INLINE void product(int dim, int order, bool symmetric, int count, const real *G, const real *S, real *K) {
     const int n = kernel_nodes(dim, order), stride = padded_nodes(dim, order), vectors = stride / BRUNT_LANES;
     const int rows = n % 4 == 0 ? 4 : 3;
     for (int A = 0; A < n; A += rows)
-        for (int v = 0; v < vectors; v += COLUMNS) {
+        for (int v = symmetric ? A / BRUNT_LANES : 0; v < vectors; v += COLUMNS) {
             const real *s = S + v * BRUNT_LANES;
             real *to = K + A * stride + v * BRUNT_LANES;
             if (vectors - v >= 4)
@@ -82,34 +114,15 @@ BRUNT_INLINE void stretch(int dim, int stride, const brunt_mpm_potential *p, int
     }
 }
 
-// K_ij of i <= j into the dense matrix of those nodes that are unknowns.
-BRUNT_INLINE void spread(int dim, int order, const int *place, int count, const real *K, double *dense) {
-    const int stride = padded_nodes(dim, order), n = kernel_nodes(dim, order), size = count * dim;
-    for (int i = 0, pair = 0; i < dim; i++)
-        for (int j = i; j < dim; j++, pair++) {
-            const real *from = K + (size_t)pair * (size_t)n * (size_t)stride;
-            for (int A = 0; A < count; A++)
-                for (int B = i == j ? A : 0; B < count; B++) {
-                    const double value = (double)from[place[A] * stride + place[B]];
-                    dense[(A * dim + i) * size + B * dim + j] = value;
-                    dense[(B * dim + j) * size + A * dim + i] = value;
-                }
-        }
-}
-
-BRUNT_INLINE void bin_matrix(int dim, int order, brunt_mpm_potential *p, int64_t s, double *dense, int worker) {
-    const brunt_grid *grid = &p->body->grid;
-    const int32_t b = p->bin[s] / BRUNT_BLOCK_NODES, bin = p->bin[s] % BRUNT_BLOCK_NODES;
-    const brunt_block *block = &grid->blocks[b];
-    const int32_t *start = grid->bin_start + (size_t)b * BRUNT_BIN_STARTS + bin;
-    const int n = kernel_nodes(dim, order), stride = padded_nodes(dim, order), pairs = dim * (dim + 1) / 2;
+// The sums K_ij, i <= j, of the particles first .. end - 1 of a block.
+BRUNT_INLINE void bin_sums(int dim, int order, const brunt_mpm_potential *p, const brunt_block *block,
+                           const int32_t particles[2], real *K) {
     enum { MOST = CHUNK > BRUNT_LANES ? CHUNK : BRUNT_LANES };
-    real *K = (real *)(p->matrix + (size_t)worker * (size_t)brunt_mpm_matrix_room(dim, order));
+    const int n = kernel_nodes(dim, order), stride = padded_nodes(dim, order), pairs = dim * (dim + 1) / 2;
     real *G = K + (size_t)pairs * (size_t)n * (size_t)stride, *S = G + MOST * dim * stride;
     memset(K, 0, (size_t)pairs * (size_t)n * (size_t)stride * sizeof *K);
-    memset(G, 0, (size_t)(MOST * dim * stride) * sizeof *G);
-    for (int32_t first = start[0]; first < start[1]; first += MOST) {
-        const int32_t some = start[1] - first < MOST ? start[1] - first : MOST;
+    for (int32_t first = particles[0]; first < particles[1]; first += MOST) {
+        const int32_t some = particles[1] - first < MOST ? particles[1] - first : MOST;
         const int64_t slot = (int64_t)block->first + first;
         for (int32_t q = 0; q < some; q += BRUNT_LANES)
             slopes(dim, order, p, block, slot + q, some - q < BRUNT_LANES ? some - q : BRUNT_LANES,
@@ -118,26 +131,123 @@ BRUNT_INLINE void bin_matrix(int dim, int order, brunt_mpm_potential *p, int64_t
             for (int j = i; j < dim; j++, pair++) {
                 for (int32_t q = 0; q < some; q++)
                     stretch(dim, stride, p, slot + q, i * dim + j, G + q * dim * stride, S + q * dim * stride);
-                product(dim, order, some * dim, G, S, K + (size_t)pair * (size_t)n * (size_t)stride);
+                product(dim, order, i == j, some * dim, G, S, K + (size_t)pair * (size_t)n * (size_t)stride);
             }
     }
-    int place[MOST_KERNEL], count = 0;
-    const int x = dim == 3 ? bin >> 4 : bin >> 3, y = dim == 3 ? bin >> 2 & 3 : bin & 7, z = dim == 3 ? bin & 3 : 0;
-    for (int k = 0; k < n; k++) {
-        const int N = order + 1, i = dim == 3 ? k / (N * N) : k / N, j = dim == 3 ? k / N % N : k % N;
-        if (p->number[window_node(grid, block, x + i, y + j, dim == 3 ? z + k % N : 0)] >= 0) place[count++] = k;
-    }
-    spread(dim, order, place, count, K, dense);
 }
 
-void brunt_mpm_bin_matrix(void *potential, int64_t stencil, double *dense, int worker) {
-    brunt_mpm_potential *p = potential;
-    switch (p->body->grid.dim * 10 + p->body->grid.order) {
-    case 21: bin_matrix(2, 1, p, stencil, dense, worker); break;
-    case 22: bin_matrix(2, 2, p, stencil, dense, worker); break;
-    case 23: bin_matrix(2, 3, p, stencil, dense, worker); break;
-    case 31: bin_matrix(3, 1, p, stencil, dense, worker); break;
-    case 32: bin_matrix(3, 2, p, stencil, dense, worker); break;
-    default: bin_matrix(3, 3, p, stencil, dense, worker); break;
+// A block's nodes in the matrix.
+typedef struct block_rows {
+    int32_t number[MOST_WINDOW]; // of the window's nodes; -1: no unknown
+    double *row[MOST_WINDOW];    // where their rows begin
+    int32_t *place;              // of each node: how many blocks along its row the nodes within reach are
+} block_rows;
+
+// `mark`: a number for each node, of no value before and after. Places of nodes that no bin couples say nothing.
+BRUNT_INLINE void find_rows(int dim, int order, const brunt_mpm_potential *p, const brunt_block *block,
+                            const brunt_block_matrix *m, int32_t *mark, block_rows *rows) {
+    const brunt_grid *grid = &p->body->grid;
+    const int side = dim == 3 ? 4 : 8, span = side + order, wide = 2 * order + 1, deep = dim == 3 ? span : 1;
+    for (int w = 0; w < span * span * deep; w++)
+        rows->number[w] = p->number[window_node(grid, block, w / (span * deep), w / deep % span, w % deep)];
+    for (int w = 0; w < span * span * deep; w++) {
+        if (rows->number[w] < 0) continue;
+        const int at[3] = {w / (span * deep), w / deep % span, w % deep};
+        const int64_t from = m->first[rows->number[w]], to = m->first[rows->number[w] + 1];
+        int low[3], high[3];
+        for (int a = 0; a < 3; a++) {
+            const int last = a < dim ? span - 1 : 0;
+            low[a] = at[a] < order ? 0 : at[a] - order, high[a] = at[a] + order < last ? at[a] + order : last;
+        }
+        rows->row[w] = m->value + from * dim * dim;
+        for (int64_t k = from; k < to; k++) mark[m->column[k]] = (int32_t)(k - from);
+        for (int x = low[0]; x <= high[0]; x++)
+            for (int y = low[1]; y <= high[1]; y++)
+                for (int z = low[2]; z <= high[2]; z++) {
+                    const int32_t other = rows->number[(x * span + y) * deep + z];
+                    int off = (x - at[0] + order) * wide + y - at[1] + order;
+                    if (dim == 3) off = off * wide + z - at[2] + order;
+                    if (other >= 0) rows->place[w * reach(dim, order) + off] = mark[other];
+                }
+    }
+}
+
+// Adds the sums of the bin whose kernels begin at node `base` of the window.
+BRUNT_INLINE void add_bin(int dim, int order, const block_rows *rows, int base, const real *K) {
+    const int side = dim == 3 ? 4 : 8, span = side + order, N = order + 1, wide = 2 * order + 1, size = dim * dim,
+              all = reach(dim, order);
+    const int n = kernel_nodes(dim, order), stride = padded_nodes(dim, order), plane = n * stride;
+    int window[MOST_KERNEL], off[MOST_KERNEL];
+    for (int k = 0; k < n; k++) {
+        const int x = dim == 3 ? k / (N * N) : k / N, y = dim == 3 ? k / N % N : k % N, z = k % N;
+        window[k] = base + (dim == 3 ? (x * span + y) * span + z : x * span + y);
+        off[k] = dim == 3 ? (x * wide + y) * wide + z : x * wide + y;
+    }
+    for (int A = 0; A < n; A++) {
+        const int w = window[A];
+        if (rows->number[w] < 0) continue;
+        for (int B = A; B < n; B++) {
+            const int v = window[B], way = off[B] - off[A];
+            if (rows->number[v] < 0) continue;
+            double *there = rows->row[w] + rows->place[w * all + all / 2 + way] * size,
+                   *back = rows->row[v] + rows->place[v * all + all / 2 - way] * size;
+            for (int i = 0, pair = 0; i < dim; i++)
+                for (int j = i; j < dim; j++, pair++) {
+                    const double ij = (double)K[pair * plane + A * stride + B],
+                                 ji = i == j ? ij : (double)K[pair * plane + B * stride + A];
+                    there[i * dim + j] += ij;
+                    if (i != j) there[j * dim + i] += ji;
+                    if (A == B) continue;
+                    back[j * dim + i] += ij;
+                    if (i != j) back[i * dim + j] += ji;
+                }
+        }
+    }
+}
+
+typedef struct matrix_work {
+    brunt_mpm_potential *p;
+    brunt_block_matrix *m;
+    const int32_t *block; // of the colour
+} matrix_work;
+
+BRUNT_INLINE void add_block(int dim, int order, const matrix_work *work, int32_t b, int worker) {
+    const brunt_mpm_potential *p = work->p;
+    const brunt_grid *grid = &p->body->grid;
+    const brunt_block *block = &grid->blocks[b];
+    const int side = dim == 3 ? 4 : 8, span = side + order;
+    real *K = (real *)(p->matrix + worker * p->matrix_room);
+    block_rows rows;
+    rows.place = p->place + worker * p->place_room;
+    find_rows(dim, order, p, block, work->m, brunt_block_matrix_marks(work->m, worker), &rows);
+    for (int bin = 0; bin < BRUNT_BLOCK_NODES; bin++) {
+        const int32_t *start = grid->bin_start + (size_t)b * BRUNT_BIN_STARTS + bin;
+        if (start[0] == start[1]) continue;
+        const int x = dim == 3 ? bin >> 4 : bin >> 3, y = dim == 3 ? bin >> 2 & 3 : bin & 7, z = bin & 3;
+        bin_sums(dim, order, p, block, start, K);
+        add_bin(dim, order, &rows, dim == 3 ? (x * span + y) * span + z : x * span + y, K);
+    }
+}
+
+static void add_blocks(void *context, int64_t begin, int64_t end, int worker) {
+    const matrix_work *work = context;
+    const brunt_grid *grid = &work->p->body->grid;
+    for (int64_t k = begin; k < end; k++) switch (grid->dim * 10 + grid->order) {
+        case 21: add_block(2, 1, work, work->block[k], worker); break;
+        case 22: add_block(2, 2, work, work->block[k], worker); break;
+        case 23: add_block(2, 3, work, work->block[k], worker); break;
+        case 31: add_block(3, 1, work, work->block[k], worker); break;
+        case 32: add_block(3, 2, work, work->block[k], worker); break;
+        default: add_block(3, 3, work, work->block[k], worker); break;
+        }
+}
+
+void brunt_mpm_add_matrix(brunt_mpm_potential *p, const brunt_team *team, brunt_block_matrix *m) {
+    const brunt_grid *grid = &p->body->grid;
+    BRUNT_ASSERT(team->threads <= p->threads);
+    for (int colour = 0; colour < grid->corners; colour++) {
+        matrix_work work = {p, m, p->coloured + p->colour_first[colour]};
+        brunt_parallel(team->threads, p->colour_first[colour + 1] - p->colour_first[colour], 1, add_blocks, &work,
+                       team->timer);
     }
 }

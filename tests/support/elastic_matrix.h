@@ -164,7 +164,7 @@ static inline elastic elastic_simplices(int dim, int side) {
         }
         e.first[s + 1] = (s + 1) * corners, e.point_first[s + 1] = s + 1;
     }
-    e.stencils = (brunt_stencils){all, e.first, e.node};
+    e.stencils = (brunt_stencils){.count = all, .first = e.first, .node = e.node};
     return e;
 }
 

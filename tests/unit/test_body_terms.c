@@ -212,6 +212,38 @@ static brunt_world *points_world(int dim, int order, brunt_transfer transfer) {
     return w;
 }
 
+static const double *block_of(const brunt_block_matrix *m, int64_t row, int64_t column) {
+    for (int64_t k = m->first[row]; k < m->first[row + 1]; k++)
+        if (m->column[k] == column) return m->value + k * m->dim * m->dim;
+    ck_abort_msg("no block (%ld, %ld)", (long)row, (long)column);
+}
+
+// The Hessian is symmetric to the last bit, and the same to the last bit with numbers of nodes that descend.
+static void any_numbers(const subject *s, brunt_mpm_potential *p, int32_t *number, int64_t slots) {
+    const int dim = s->dim;
+    const int64_t last = s->nodes + 1;
+    double *u = numbers(s), *turned = numbers(s);
+    uint64_t seed = 5;
+    brunt_block_matrix m = {0}, other = {0};
+    for (int64_t k = 0; k < s->nodes * dim; k++) u[k] = s->size * between(&seed);
+    hessian_of(s, &one, u, false, &m);
+    for (int64_t k = 0; k < slots; k++) number[k] = (int32_t)(last - number[k]);
+    for (int64_t n = 2; n < s->nodes; n++) memcpy(turned + (last - n) * dim, u + n * dim, (size_t)dim * sizeof *u);
+    ck_assert_int_eq(brunt_mpm_potential_step(p, &three, number, 1e-3, NULL), BRUNT_OK);
+    hessian_of(s, &three, turned, false, &other);
+    ck_assert_int_eq(brunt_block_matrix_blocks(&m), brunt_block_matrix_blocks(&other));
+    for (int64_t n = 2; n < s->nodes; n++)
+        for (int64_t k = m.first[n]; k < m.first[n + 1]; k++) {
+            const double *here = m.value + k * dim * dim, *there = block_of(&other, last - n, last - m.column[k]),
+                         *across = block_of(&m, m.column[k], n);
+            for (int i = 0; i < dim * dim; i++)
+                ck_assert(here[i] == there[i] && here[i] == across[i % dim * dim + i / dim]);
+        }
+    for (int64_t k = 0; k < slots; k++) number[k] = (int32_t)(last - number[k]);
+    ck_assert_int_eq(brunt_mpm_potential_step(p, &three, number, 1e-3, NULL), BRUNT_OK);
+    brunt_block_matrix_free(&m), brunt_block_matrix_free(&other), brunt_free(u), brunt_free(turned);
+}
+
 START_TEST(points) {
     const int dim = _i % 2 + 2, order = _i / 2 % 3 + 1;
     const brunt_transfer transfers[] = {BRUNT_APIC, BRUNT_FLIP, BRUNT_PIC};
@@ -239,6 +271,7 @@ START_TEST(points) {
         derivatives(&s);
         free_motions(&s);
         volume_limit(&s);
+        any_numbers(&s, p, number, (int64_t)grid->slot_count * BRUNT_BLOCK_NODES);
         // Some nodes that are no unknowns.
         for (int32_t k = 0; k < grid->slot_count * BRUNT_BLOCK_NODES; k += 7) number[k] = -1;
         ck_assert_int_eq(brunt_mpm_potential_step(p, &three, number, 1e-3, &error), BRUNT_OK);

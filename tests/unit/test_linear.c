@@ -123,7 +123,7 @@ END_TEST
 START_TEST(patterns_grow_and_are_known_again) {
     const int64_t first[] = {0, 2, 5};
     const int32_t node[] = {4, 1, 1, 2, 0};
-    const brunt_stencils both = {2, first, node}, one = {1, first, node};
+    const brunt_stencils both = {2, first, node, 0}, one = {1, first, node, 0};
     brunt_block_matrix m = {0};
     brunt_pattern pattern = {2, 6, &both, 1, false};
     ck_assert_int_eq(brunt_block_matrix_pattern(&m, &alone, &pattern, NULL), BRUNT_OK);
@@ -144,6 +144,40 @@ START_TEST(patterns_grow_and_are_known_again) {
     ck_assert_int_eq(brunt_block_matrix_pattern(&m, &alone, &pattern, NULL), BRUNT_OK);
     ck_assert_int_eq(brunt_block_matrix_blocks(&m), 6);
     brunt_block_matrix_free(&m);
+}
+END_TEST
+
+// Of a pattern that is kept only lists are read whose version is another one, or not given.
+START_TEST(lists_that_are_known_are_not_read_again) {
+    const int64_t first[] = {0, 2, 5};
+    const int32_t node[] = {4, 1, 1, 2, 0}, contact[] = {5, 3, 0}, others[] = {4, 2, 5};
+    const int64_t three[] = {0, 3};
+    brunt_stencils list[] = {{2, first, node, 7}, {0, three, contact, 0}};
+    brunt_block_matrix m = {0}, fresh = {0};
+    brunt_pattern pattern = {2, 6, list, 2, false};
+    ck_assert_int_eq(brunt_block_matrix_pattern(&m, &alone, &pattern, NULL), BRUNT_OK);
+    const int64_t number = m.pattern;
+    list[1].count = 1;
+    ck_assert_int_eq(brunt_block_matrix_pattern(&fresh, &alone, &pattern, NULL), BRUNT_OK);
+    pattern.keep = true;
+    ck_assert_int_eq(brunt_block_matrix_pattern(&m, &alone, &pattern, NULL), BRUNT_OK);
+    ck_assert_int_ne(m.pattern, number);
+    ck_assert_int_eq(brunt_block_matrix_blocks(&m), 6 + 2 + 6 + 6);
+    ck_assert(!memcmp(m.first, fresh.first, 7 * sizeof *m.first));
+    ck_assert(!memcmp(m.column, fresh.column, 20 * sizeof *m.column));
+    ck_assert(!memcmp(m.diagonal, fresh.diagonal, 6 * sizeof *m.diagonal));
+    m.value[0] = 3;
+    list[0] = (brunt_stencils){1, three, others, 7};
+    ck_assert_int_eq(brunt_block_matrix_pattern(&m, &alone, &pattern, NULL), BRUNT_OK);
+    ck_assert_int_eq(brunt_block_matrix_blocks(&m), 20);
+    ck_assert_double_eq(m.value[0], 0);
+    list[0].version = 8;
+    ck_assert_int_eq(brunt_block_matrix_pattern(&m, &alone, &pattern, NULL), BRUNT_OK);
+    ck_assert_int_eq(brunt_block_matrix_blocks(&m), 20 + 6);
+    pattern.keep = false;
+    ck_assert_int_eq(brunt_block_matrix_pattern(&m, &alone, &pattern, NULL), BRUNT_OK);
+    ck_assert_int_eq(brunt_block_matrix_blocks(&m), 6 + 6 + 6);
+    brunt_block_matrix_free(&m), brunt_block_matrix_free(&fresh);
 }
 END_TEST
 
@@ -182,7 +216,7 @@ END_TEST
 START_TEST(stencils_need_not_be_sorted) {
     const int64_t first[] = {0, 3};
     const int32_t node[] = {2, 0, 1};
-    const brunt_stencils list = {1, first, node};
+    const brunt_stencils list = {1, first, node, 0};
     const brunt_pattern pattern = {2, 3, &list, 1, false};
     brunt_block_matrix m = {0};
     ck_assert_int_eq(brunt_block_matrix_pattern(&m, &alone, &pattern, NULL), BRUNT_OK);
@@ -203,7 +237,7 @@ START_TEST(many_stencils_at_a_node) {
     int32_t node[2 * SPOKES];
     for (int s = 0; s <= SPOKES; s++) first[s] = 2 * s;
     for (int s = 0; s < SPOKES; s++) node[2 * s] = 0, node[2 * s + 1] = s + 1;
-    const brunt_stencils list = {SPOKES, first, node};
+    const brunt_stencils list = {SPOKES, first, node, 0};
     brunt_colours colours = {0};
     ck_assert_int_eq(brunt_colours_make(&colours, &alone, 2, SPOKES + 1, &list, NULL), BRUNT_OK);
     ck_assert_int_eq(colours.colours, SPOKES);
@@ -289,7 +323,7 @@ END_TEST
 static brunt_block_matrix ring(double diagonal, double beside) {
     static const int64_t first[] = {0, 2, 4, 6, 8};
     static const int32_t node[] = {0, 1, 1, 2, 2, 3, 0, 3};
-    static const brunt_stencils list = {4, first, node};
+    static const brunt_stencils list = {4, first, node, 0};
     const brunt_pattern pattern = {2, 4, &list, 1, false};
     brunt_block_matrix m = {0};
     ck_assert_int_eq(brunt_block_matrix_pattern(&m, &alone, &pattern, NULL), BRUNT_OK);
@@ -360,7 +394,7 @@ static brunt_block_matrix rod_matrix(int dim, int nodes) {
     int32_t node[2 * LONGEST];
     ck_assert_int_le(nodes, LONGEST);
     for (int s = 0; s < nodes; s++) first[s] = 2 * s, node[2 * s] = s, node[2 * s + 1] = s + 1;
-    const brunt_stencils list = {nodes - 1, first, node};
+    const brunt_stencils list = {nodes - 1, first, node, 0};
     const brunt_pattern pattern = {dim, nodes, &list, 1, false};
     brunt_block_matrix m = {0};
     ck_assert_int_eq(brunt_block_matrix_pattern(&m, &alone, &pattern, NULL), BRUNT_OK);
@@ -562,6 +596,7 @@ int main(void) {
     TCase *c = tcase_create("linear");
     tcase_add_loop_test(c, the_pattern_is_the_union_of_stencils, 0, 4);
     tcase_add_test(c, patterns_grow_and_are_known_again);
+    tcase_add_test(c, lists_that_are_known_are_not_read_again);
     tcase_add_loop_test(c, matrices_are_the_sums_of_their_stencils, 0, 4);
     tcase_add_test(c, stencils_need_not_be_sorted);
     tcase_add_test(c, many_stencils_at_a_node);

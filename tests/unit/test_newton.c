@@ -130,7 +130,7 @@ static void springs_gradient(void *self, const brunt_team *team, const double *u
 
 static brunt_stencils springs_stencils(void *self) {
     const springs *t = self;
-    return (brunt_stencils){t->nodes - 1, t->first, t->node};
+    return (brunt_stencils){.count = t->nodes - 1, .first = t->first, .node = t->node};
 }
 
 static void springs_hessian(void *self, const brunt_team *team, const double *u, bool project, brunt_block_matrix *h) {
