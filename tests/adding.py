@@ -19,11 +19,11 @@ SAMPLES = {
     "material": (r"drucker[-_]prager", r"materials/drucker_prager\.c", 2),
     "contact method": (r"multi[-_]velocity|MULTI_VELOCITY", r"contact/methods/grid_velocity", None),
     "boundary kind": (r"SYMMETRY|\"symmetry\"", r"contact/planes/|symmetry", None),
-    # A line in the list of kinds, and a row for each of its keys: three.
-    "measure": (r"measures\.\*\.extent|\bEXTENT\b|MEASURE_EXTENT", r"io/output/measure_extent\.c", 4),
-    # Its row, the member that it fills, what numbers it takes, how a prediction's coarser scene scales it, that implicit
-    # steps refuse it.
-    "body key": (r"(from|def|body)->mass_scaling|double mass_scaling;|\*\.mass_scaling", r"engine/fem/", 5),
+    # A line in the list of kinds, the rows of a measure of one body, and a row for each key of its own.
+    "measure": (r"measures\.\*\.extent|OF_BODY\(\"extent|\bEXTENT\b|MEASURE_EXTENT", r"io/output/measure_extent\.c", 3),
+    # Its row of a scene, the member that it fills, its row among a body's numbers: what it may be, how a prediction's
+    # coarser scene scales it, that implicit steps refuse it.
+    "body key": (r"(from|def|body)->mass_scaling|double mass_scaling;|[.*\"]\.mass_scaling", r"engine/fem/", 3),
     # Of elements; the row of material points besides.
     "output field": (r"\"von_mises\"|(derive|element)_von_mises", r"engine/world/read_mesh\.c", 2),
 }

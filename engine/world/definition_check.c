@@ -25,8 +25,13 @@ enum { SHAPES_DEEP = 64 };
 
 // ------------------------------------------------------------------------------------------ what all have
 
-// What a number may be besides finite and of a size that can be computed with.
-enum { ANY = 0, NOT_NEGATIVE = 1, POSITIVE = 2, OR_INFINITE = 4, OR_NAN = 8 };
+enum {
+    ANY = BRUNT_ANY_NUMBER,
+    NOT_NEGATIVE = BRUNT_NOT_NEGATIVE,
+    POSITIVE = BRUNT_POSITIVE,
+    OR_INFINITE = BRUNT_OR_INFINITE,
+    OR_NAN = BRUNT_OR_NAN
+};
 
 static int check_number(const char *owner, const char *key, double v, int rule, brunt_error *error) {
     const bool positive = rule & POSITIVE;
@@ -167,18 +172,10 @@ static int check_body(const brunt_world_def *def, const brunt_body_def *body, br
     TRY(check_choice(owner, ".method", (unsigned)body->method, BRUNT_MEMBRANE + 1, error));
     TRY(check_choice(owner, ".hourglass", (unsigned)body->hourglass, BRUNT_HOURGLASS_VISCOUS + 1, error));
     TRY(check_choice(owner, ".fill", (unsigned)body->fill, BRUNT_FILL_RINGS + 1, error));
-    CHECK_NUMBERS(owner, {".size", &body->size, 1, ANY},
-                  {".hourglass_coefficient", &body->hourglass_coefficient, 1, NOT_NEGATIVE | OR_NAN},
-                  {".erosion.strain", &body->erosion.strain, 1, POSITIVE | OR_INFINITE},
-                  {".erosion.step", &body->erosion.step, 1, NOT_NEGATIVE},
-                  {".mass_scaling", &body->mass_scaling, 1, NOT_NEGATIVE},
-                  {".damping", &body->damping, 1, NOT_NEGATIVE}, {".thickness", &body->thickness, 1, ANY},
-                  {".contact_thickness", &body->contact_thickness, 1, NOT_NEGATIVE | OR_NAN},
-                  {".spacing", &body->spacing, 1, NOT_NEGATIVE}, {".jitter", &body->jitter, 1, NOT_NEGATIVE},
-                  {".velocity", body->velocity, 3, ANY}, {".spin", body->spin, 3, ANY},
-                  {".spin_about", body->spin_about, 3, ANY}, {".wave_velocity", body->wave_velocity, 3, ANY},
-                  {".wave_vector", body->wave_vector, 3, ANY}, {".wave_phase", &body->wave_phase, 1, ANY},
-                  {".temperature", &body->temperature, 1, NOT_NEGATIVE});
+    for (int k = 0; k < brunt_body_number_count; k++) {
+        const brunt_body_number *row = &brunt_body_numbers[k];
+        CHECK_NUMBERS(owner, {row->key, brunt_body_number_in(body, row), row->count, row->rule});
+    }
     if (body->particles_per_cell < 0) REFUSE("%s.particles_per_cell: %d is negative", owner, body->particles_per_cell);
     TRY(check_array(owner, body->face_count, body->faces, error));
     for (int32_t f = 0; f < body->face_count; f++) TRY(check_name("faces", f, body->faces[f], error));

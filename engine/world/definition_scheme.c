@@ -71,8 +71,11 @@ static void look_at_body(const brunt_body_def *body, refusals *r) {
     const brunt_erosion_def *erosion = &body->erosion;
     if (isfinite(erosion->strain) || erosion->step > 0 || erosion->inverted || erosion->keep)
         say(r, ".erosion", EXPLICIT_ONLY);
-    if (body->mass_scaling > 0) say(r, ".mass_scaling", EXPLICIT_ONLY ": implicit steps need none");
-    if (body->damping > 0) say(r, ".damping", EXPLICIT_ONLY);
+    for (int k = 0; k < brunt_body_number_count; k++) {
+        const brunt_body_number *row = &brunt_body_numbers[k];
+        if (row->explicit_only && *brunt_body_number_in(body, row) > 0)
+            say(r, row->key, EXPLICIT_ONLY "%s", row->explicit_only);
+    }
     if (body->total_lagrangian) say(r, ".lagrangian", "total: " EXPLICIT_ONLY);
     if (body->method == BRUNT_MEMBRANE) say(r, ".method", "membrane: " EXPLICIT_ONLY);
     if (body->method == BRUNT_FEM && body->hourglass == BRUNT_HOURGLASS_VISCOUS)

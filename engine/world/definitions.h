@@ -1,6 +1,9 @@
 // What definitions have in common beside the public interface.
 #pragma once
 
+#include <stdbool.h>
+#include <stddef.h>
+
 #include "brunt.h"
 
 enum { BRUNT_WORLD_COOKIE = 0x6272756e }; // the mark of a definition that was filled by its default function
@@ -9,6 +12,29 @@ enum { BRUNT_MOST_PAIRS = 64 };           // of bodies in contact, with an accou
 // Two pairs of bodies in contact that have one name, "a-b", which columns of the history are called by: of 'a-b' with
 // 'c' and 'a' with 'b-c'. Bodies by index, each pair in order of name. False: there are none.
 bool brunt_pairs_of_one_name(const brunt_world_def *def, int32_t first[2], int32_t second[2]);
+
+// What a number of a definition may be besides finite and of a size that can be computed with.
+enum { BRUNT_ANY_NUMBER = 0, BRUNT_NOT_NEGATIVE = 1, BRUNT_POSITIVE = 2, BRUNT_OR_INFINITE = 4, BRUNT_OR_NAN = 8 };
+
+// Numbers of a body, a row each: what the check of definitions, the schemes and coarser worlds know of them.
+typedef struct brunt_body_number {
+    const char *key; // ".mass_scaling"
+    size_t offset;   // of doubles in brunt_body_def
+    int count;       // components
+    int rule;        // BRUNT_NOT_NEGATIVE, ...
+    bool length;     // a length, or a time that goes with it: a discretisation that is coarser has as much more of it
+    const char *explicit_only; // implicit steps refuse what is above 0, and say this behind; NULL: they do not
+} brunt_body_number;
+extern const brunt_body_number brunt_body_numbers[];
+extern const int brunt_body_number_count;
+
+// All lengths of a body's discretisation times `factor`, and what goes with them.
+void brunt_body_coarsen(brunt_body_def *body, double factor);
+
+// Where a body has it.
+static inline const double *brunt_body_number_in(const brunt_body_def *body, const brunt_body_number *row) {
+    return (const double *)((const char *)body + row->offset);
+}
 
 // Tells of all that the scheme of a definition cannot do, by the path of what asks for it ("bodies.rod.damping") and
 // why. The definition is sound otherwise.

@@ -7,6 +7,7 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "world/definitions.h"
 
 // The plan's passes, and what a step takes between them.
 enum { PASSES = BRUNT_PREDICTION_PASSES };
@@ -180,10 +181,7 @@ static bool coarsen(const brunt_world_def *fine, double f, brunt_world_def *def,
         *body = fine->bodies[b];
         if (body->method != BRUNT_MPM && body->mesh.node_count) continue;
         coarser = true;
-        body->size *= f;
-        body->spacing *= f;
-        body->mass_scaling *= f;
-        body->erosion.step *= f;
+        brunt_body_coarsen(body, f);
     }
     return coarser;
 }

@@ -18,6 +18,12 @@
 
 #define SIGNALS "end|initial|min|max|mean|slope|first_nonzero|last_nonzero|max_abs|period|rise"
 
+// Rows that every measure of one body has: the kind's group and whose it is.
+#define MEASURE_OF_BODY(kind, doc)                                                                                     \
+    {"measures.*." kind, SCENE_GROUP, NULL, OPTIONAL, NONE, doc}, {                                                    \
+        "measures.*." kind ".body", SCENE_NAME, NULL, REQUIRED, NONE, "the body"                                       \
+    }
+
 // Rows leave out the columns that most have no use for.
 #pragma GCC diagnostic ignored "-Wmissing-field-initializers"
 
@@ -221,17 +227,14 @@ const scene_key brunt_scene_table[] = {
     {"measures", SCENE_NAMED, NULL, OPTIONAL, NONE, "results by name, judged where a value is expected"},
     {"measures.*.history", SCENE_TEXT, NULL, OPTIONAL, NONE, "a column of the history, as energy.kinetic, body.rod.velocity_x or gas.bag.pressure (velocities and kinetic energy are of the middle of the step that ends at its time)"},
     {"measures.*.energy", SCENE_NAME, NULL, OPTIONAL, NONE, "short for history: energy.NAME"},
-    {"measures.*.extent", SCENE_GROUP, NULL, OPTIONAL, NONE, "size of a body along an axis, at the end"},
-    {"measures.*.extent.body", SCENE_NAME, NULL, REQUIRED, NONE, "the body"},
+    MEASURE_OF_BODY("extent", "size of a body along an axis, at the end"),
     {"measures.*.extent.axis", SCENE_VECTOR, "1", REQUIRED, NONE, "direction"},
-    {"measures.*.radius", SCENE_GROUP, NULL, OPTIONAL, NONE, "greatest distance of a body's surface from an axis, at the end"},
-    {"measures.*.radius.body", SCENE_NAME, NULL, REQUIRED, NONE, "the body"},
+    MEASURE_OF_BODY("radius", "greatest distance of a body's surface from an axis, at the end"),
     {"measures.*.radius.axis", SCENE_VECTOR, "1", OPTIONAL, NONE, "direction of the axis (2D: may be left out, then it is out of the plane)"},
     {"measures.*.radius.center", SCENE_VECTOR, "m", "0", NONE, "a point of the axis"},
     {"measures.*.radius.from", SCENE_REAL, "m", OPTIONAL, NONE, "only what has a coordinate along the axis above ..."},
     {"measures.*.radius.to", SCENE_REAL, "m", OPTIONAL, NONE, "... and below this"},
-    {"measures.*.field", SCENE_GROUP, NULL, OPTIONAL, NONE, "a field reduced over the particles, nodes or elements of a body, at the end"},
-    {"measures.*.field.body", SCENE_NAME, NULL, REQUIRED, NONE, "the body"},
+    MEASURE_OF_BODY("field", "a field reduced over the particles, nodes or elements of a body, at the end"),
     {"measures.*.field.name", SCENE_NAME, NULL, REQUIRED, NONE, "the field"},
     {"measures.*.field.component", SCENE_WORD, NULL, "magnitude", ANY, "magnitude|x|y|z|xx|yy|zz|xy|yz|xz", 0, false, "of a vector or symmetric tensor; magnitude: also a scalar's value"},
     {"measures.*.field.axis", SCENE_VECTOR, "1", OPTIONAL, NONE, "direction of a slab, for from and to"},
