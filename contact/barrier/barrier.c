@@ -27,7 +27,7 @@ void brunt_barrier_free(brunt_barrier *b) {
     brunt_free(b->task), brunt_free(b->task_energy), brunt_free(b->task_first);
     for (size_t i = 0; i < b->room_capacity / sizeof *b->room; i++)
         brunt_free(b->room[i].feature), brunt_free(b->room[i].edge), brunt_free(b->room[i].vertex);
-    brunt_free(b->room), brunt_free(b->contacts.contact), brunt_free(b->lagged.contact);
+    brunt_free(b->room), brunt_free(b->contacts.contact), brunt_free(b->lagged.contact), brunt_free(b->rub);
     sets_free(&b->sets), sets_free(&b->lagged_sets);
     brunt_colours_free(&b->colours), brunt_colours_free(&b->lagged_colours);
     brunt_free(b);

@@ -102,6 +102,7 @@ bool brunt_barrier_has_friction(const brunt_barrier *barrier); // some pair or p
 
 typedef struct brunt_barrier_force {
     double normal[3], friction[3]; // [N] on body a; on b the same with the other sign. Of a plane: on the points
+    double heat;                   // [J] of friction along the way that was given
     int64_t contacts;
 } brunt_barrier_force;
 
@@ -114,9 +115,9 @@ typedef struct brunt_barrier_report {
     double place[3];     // [m] of the point, or on the edge
     int64_t contacts;    // places with a force
     double energy;       // [J] in the barrier
-    double heat;         // [J] of friction over the step
 } brunt_barrier_report;
 
-// At u, the end of the step. `force` (NULL: not wanted) has room for the pairs in their order, then the planes.
-int brunt_barrier_look_back(brunt_barrier *barrier, const brunt_team *team, const double *u,
+// At u, the end of the step; friction there works along the displacements `way` [m]. `force` (NULL: not wanted) has
+// room for the pairs in their order, then the planes.
+int brunt_barrier_look_back(brunt_barrier *barrier, const brunt_team *team, const double *u, const double *way,
                             brunt_barrier_report *report, brunt_barrier_force *force, brunt_error *error);

@@ -32,6 +32,13 @@ typedef struct barrier_contact {
     double normal_force; // [N] when friction was updated; stays 0 where there is none
 } barrier_contact;
 
+// Of a contact that rubs, on the way to the minimum: the slip where that was looked at last, and the part of the
+// greatest force that friction takes, as an unknown of its own (barrier_slip.c).
+typedef struct barrier_rub {
+    double slip[3]; // [m] dt times its velocity
+    double part[3]; // at most of length 1
+} barrier_rub;
+
 typedef struct barrier_contacts {
     barrier_contact *contact;
     int64_t count;
@@ -107,6 +114,8 @@ struct brunt_barrier {
     int32_t room_count;
     size_t room_capacity;
     barrier_contacts contacts, lagged;
+    barrier_rub *rub; // of `lagged`
+    size_t rub_capacity;
     barrier_sets sets, lagged_sets;
     brunt_colours colours, lagged_colours;
 };
@@ -159,7 +168,12 @@ double barrier_slip_energy(const brunt_barrier *b, const barrier_contact *c, con
 // [N] on the first feature; the other gets the opposite.
 void barrier_slip_force(const brunt_barrier *b, const barrier_contact *c, const double *u, double force[3]);
 void barrier_slip_gradient(const brunt_barrier *b, const barrier_contact *c, const double *u, double *gradient);
-void barrier_slip_hessian(const brunt_barrier *b, const barrier_contact *c, const double *u, double *hessian);
+// What there is of a contact that begins to be minimised at u; what it becomes where that goes on to another u.
+barrier_rub barrier_slip_begin(const brunt_barrier *b, const barrier_contact *c, const double *u);
+void barrier_slip_follow(const brunt_barrier *b, const barrier_contact *c, const double *u, barrier_rub *rub);
+// The Hessian where `rub` has the force at u, as it has at the minimum and where the slip stays as it is.
+void barrier_slip_hessian(const brunt_barrier *b, const barrier_contact *c, const barrier_rub *rub, const double *u,
+                          double *hessian);
 
 // --- into the unknowns (barrier_sum.c)
 void barrier_add_gradient(const brunt_barrier *b, const barrier_contact *c, const double *local, double *g);

@@ -30,21 +30,21 @@ static void add_normal(const brunt_barrier *b, const barrier_contact *c, brunt_b
     force->contacts++;
 }
 
-// Friction at u: its force, and the heat of the slip over the step.
-static void add_friction(const brunt_barrier *b, const double *u, brunt_barrier_report *r, brunt_barrier_force *force) {
+// Friction at u: its force, and what it takes along the way.
+static void add_friction(const brunt_barrier *b, const double *u, const double *way, brunt_barrier_force *force) {
     for (int64_t i = 0; i < b->lagged.count; i++) {
         const barrier_contact *c = &b->lagged.contact[i];
         double f[3], slip[3];
-        barrier_slip_force(b, c, u, f), barrier_slip_of(b, c, u, slip);
+        barrier_slip_force(b, c, u, f), barrier_slip_of(b, c, way, slip);
         for (int k = 0; k < b->dim; k++) {
-            r->heat -= f[k] * slip[k];
-            if (force) force[c->law].friction[k] += c->side * f[k];
+            force[c->law].heat -= f[k] * slip[k];
+            force[c->law].friction[k] += c->side * f[k];
         }
     }
 }
 
-int brunt_barrier_look_back(brunt_barrier *b, const brunt_team *team, const double *u, brunt_barrier_report *r,
-                            brunt_barrier_force *force, brunt_error *error) {
+int brunt_barrier_look_back(brunt_barrier *b, const brunt_team *team, const double *u, const double *way,
+                            brunt_barrier_report *r, brunt_barrier_force *force, brunt_error *error) {
     *r = (brunt_barrier_report){
         .least_gap = INFINITY, .least_part = INFINITY, .body = -1, .other = -1, .point = -1, .plane = -1};
     if (force) memset(force, 0, (size_t)(b->pair_count + b->step.plane_count) * sizeof *force);
@@ -57,6 +57,6 @@ int brunt_barrier_look_back(brunt_barrier *b, const brunt_team *team, const doub
         if (force) add_normal(b, c, &force[c->law]);
     }
     r->contacts = b->contacts.count;
-    add_friction(b, u, r, force);
+    if (force) add_friction(b, u, way, force);
     return BRUNT_OK;
 }

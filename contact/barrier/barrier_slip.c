@@ -14,47 +14,53 @@ void barrier_slip_of(const brunt_barrier *b, const barrier_contact *c, const dou
     for (int k = 0; k < 3; k++) slip[k] -= along * c->at.n[k];
 }
 
+// What the law says of a slip: part r(|y|) y of the greatest force.
 typedef struct slip_law {
-    double y[3], size;  // [m] dt times the velocity of the slip, and its length
-    double limit;       // [N] mu times the normal force
-    double width;       // [m] dt eps_v
-    double ratio, drop; // f1 / size; (f1' - f1 / size) / size^2
-    double potential;   // f0 [m]
+    double y[3], size; // [m] dt times the velocity of the slip, and its length
+    double ratio;      // [1/m] r
+    double bend;       // slope of 1 / r by |y|
+    double potential;  // f0 [m]
 } slip_law;
 
-// f1 = 2 y/e - y^2/e^2 below e, then 1; where it sticks 2 y/e without end.
-static slip_law slip_at(const brunt_barrier *b, const barrier_contact *c, const double *u) {
-    const brunt_barrier_step *step = &b->step;
+// f1 = 2 y/e - y^2/e^2 below e = dt eps_v, then 1; where it sticks 2 y/e without end.
+static slip_law law_at(const brunt_barrier *b, const barrier_contact *c, const double y[3]) {
     const barrier_law law = barrier_law_of(b, c->law);
-    const bool sticks = law.friction == INFINITY;
-    slip_law s = {.limit = (sticks ? 1 : law.friction) * c->normal_force, .width = step->dt * law.slip_speed};
-    double before[3] = {0};
-    barrier_slip_of(b, c, u, s.y);
-    if (step->before) barrier_slip_of(b, c, step->before, before);
-    for (int k = 0; k < 3; k++) {
-        s.y[k] = step->factor * s.y[k] + (1 - step->factor) * before[k];
-        s.size += s.y[k] * s.y[k];
+    const double e = b->step.dt * law.slip_speed, size = sqrt(y[0] * y[0] + y[1] * y[1] + y[2] * y[2]);
+    slip_law s = {.y = {y[0], y[1], y[2]}, .size = size};
+    if (law.friction == INFINITY) {
+        s.ratio = 2 / e, s.potential = size * size / e;
+    } else if (size < e) {
+        s.ratio = 2 / e - size / (e * e), s.potential = size * size / e * (1 - size / (3 * e)) + e / 3;
+        s.bend = 1 / ((2 - size / e) * (2 - size / e));
+    } else {
+        s.ratio = 1 / size, s.potential = size, s.bend = 1;
     }
-    s.size = sqrt(s.size);
-    const double e = s.width, y = s.size;
-    if (sticks)
-        s.ratio = 2 / e, s.potential = y * y / e;
-    else if (y < e)
-        s.ratio = 2 / e - y / (e * e), s.potential = y * y / e * (1 - y / (3 * e)) + e / 3;
-    else
-        s.ratio = 1 / y, s.potential = y;
-    if (!sticks && y > 0) s.drop = y < e ? -1 / (e * e * y) : -1 / (y * y * y);
     return s;
 }
 
+static slip_law slip_at(const brunt_barrier *b, const barrier_contact *c, const double *u) {
+    const brunt_barrier_step *step = &b->step;
+    double y[3], before[3] = {0};
+    barrier_slip_of(b, c, u, y);
+    if (step->before) barrier_slip_of(b, c, step->before, before);
+    for (int k = 0; k < 3; k++) y[k] = step->factor * y[k] + (1 - step->factor) * before[k];
+    return law_at(b, c, y);
+}
+
+// [N]
+static double greatest_force(const brunt_barrier *b, const barrier_contact *c) {
+    const double friction = barrier_law_of(b, c->law).friction;
+    return (friction == INFINITY ? 1 : friction) * c->normal_force;
+}
+
 double barrier_slip_energy(const brunt_barrier *b, const barrier_contact *c, const double *u) {
-    const slip_law s = slip_at(b, c, u);
-    return s.limit * s.potential / b->step.factor;
+    return greatest_force(b, c) * slip_at(b, c, u).potential / b->step.factor;
 }
 
 void barrier_slip_force(const brunt_barrier *b, const barrier_contact *c, const double *u, double force[3]) {
     const slip_law s = slip_at(b, c, u);
-    for (int k = 0; k < 3; k++) force[k] = -s.limit * s.ratio * s.y[k];
+    const double scale = greatest_force(b, c) * s.ratio;
+    for (int k = 0; k < 3; k++) force[k] = -scale * s.y[k];
 }
 
 void barrier_slip_gradient(const brunt_barrier *b, const barrier_contact *c, const double *u, double *gradient) {
@@ -64,10 +70,41 @@ void barrier_slip_gradient(const brunt_barrier *b, const barrier_contact *c, con
         for (int k = 0; k < b->dim; k++) gradient[i * b->dim + k] = -c->at.w[i] * force[k];
 }
 
-// Never negative: the force grows with the slip, or stays.
-void barrier_slip_hessian(const brunt_barrier *b, const barrier_contact *c, const double *u, double *h) {
+// ------------------------------------------------------------------------------------------------- the way there
+//
+// The force leaps, on a slip of dt eps_v, from one side to the other, and is constant beyond. Newton's method for it
+// sees either nothing or a wall, and goes to and fro where some slip and others stick. Hence the force is an unknown of
+// its own, and what is linearised is not w = r(|y|) y but the smooth w / r(|y|) = y (Chan, Golub and Mulet, SIAM J.
+// Sci. Comput. 20 (1999), for sums of lengths):
+//   dy - (1/r)' w (y . dy) / |y| = (w + dw) / r - y
+// Put into the balance of forces that gives the gradient as it is, and for the Hessian r (1 - (1/r)' w y^T / |y|),
+// which is positive as long as |w| <= 1, and which is the true one where w = r y. Its symmetric part is taken.
+
+barrier_rub barrier_slip_begin(const brunt_barrier *b, const barrier_contact *c, const double *u) {
     const slip_law s = slip_at(b, c, u);
-    const double scale = b->step.factor * s.limit;
+    barrier_rub rub;
+    for (int k = 0; k < 3; k++) rub.slip[k] = s.y[k], rub.part[k] = s.ratio * s.y[k];
+    return rub;
+}
+
+void barrier_slip_follow(const brunt_barrier *b, const barrier_contact *c, const double *u, barrier_rub *rub) {
+    const slip_law now = slip_at(b, c, u), old = law_at(b, c, rub->slip);
+    double along = 0, square = 0;
+    for (int k = 0; k < 3; k++) along += old.y[k] * (now.y[k] - old.y[k]);
+    if (old.size > 0) along *= old.bend / old.size;
+    for (int k = 0; k < 3; k++) {
+        rub->part[k] = old.ratio * (now.y[k] - along * rub->part[k]);
+        square += rub->part[k] * rub->part[k];
+        rub->slip[k] = now.y[k];
+    }
+    if (square <= 1 || barrier_law_of(b, c->law).friction == INFINITY) return;
+    for (int k = 0; k < 3; k++) rub->part[k] /= sqrt(square);
+}
+
+void barrier_slip_hessian(const brunt_barrier *b, const barrier_contact *c, const barrier_rub *rub, const double *u,
+                          double *h) {
+    const slip_law s = slip_at(b, c, u);
+    const double scale = b->step.factor * greatest_force(b, c) * s.ratio, bend = s.size > 0 ? s.bend / s.size / 2 : 0;
     const int rows = c->at.places * b->dim;
     for (int i = 0; i < c->at.places; i++)
         for (int j = 0; j < c->at.places; j++)
@@ -75,5 +112,5 @@ void barrier_slip_hessian(const brunt_barrier *b, const barrier_contact *c, cons
                 for (int l = 0; l < b->dim; l++)
                     h[(i * b->dim + k) * rows + j * b->dim + l] =
                         scale * c->at.w[i] * c->at.w[j] *
-                        (s.ratio * ((k == l) - c->at.n[k] * c->at.n[l]) + s.drop * s.y[k] * s.y[l]);
+                        ((k == l) - c->at.n[k] * c->at.n[l] - bend * (rub->part[k] * s.y[l] + s.y[k] * rub->part[l]));
 }

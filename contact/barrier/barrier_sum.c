@@ -76,7 +76,7 @@ static void fill_contact(void *context, int64_t s, double *dense, int worker) {
         total += barrier_nodes(w->b, c->place[i], &node, &weight);
     }
     if (w->friction)
-        barrier_slip_hessian(w->b, c, w->u, local);
+        barrier_slip_hessian(w->b, c, &w->b->rub[s], w->u, local);
     else
         barrier_contact_hessian(w->b, c, w->project, local);
     spread(w, c, local, total, dense);

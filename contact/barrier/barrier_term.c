@@ -108,7 +108,8 @@ brunt_term brunt_barrier_term(brunt_barrier *barrier) {
 int brunt_barrier_lag(brunt_barrier *b, const brunt_team *team, const double *u, brunt_error *error) {
     const int code = barrier_find_near(b, team, u, NULL, error);
     if (code) return code;
-    if (barrier_list_contacts(b, team, u, &b->lagged)) return out_of_memory(error, "the places");
+    if (barrier_list_contacts(b, team, u, &b->lagged) || BRUNT_RESERVE(b->rub, (size_t)b->lagged.count + 1, 0))
+        return out_of_memory(error, "the places");
     barrier_contacts *list = &b->lagged;
     int64_t kept = 0;
     for (int64_t i = 0; i < list->count; i++) {
@@ -117,13 +118,15 @@ int brunt_barrier_lag(brunt_barrier *b, const brunt_team *team, const double *u,
         if (c->normal_force > 0 && barrier_law_of(b, c->law).friction > 0) list->contact[kept++] = *c;
     }
     list->count = kept;
+    for (int64_t i = 0; i < kept; i++) b->rub[i] = barrier_slip_begin(b, &list->contact[i], u);
     if (barrier_make_sets(b, list, &b->lagged_sets)) return out_of_memory(error, "friction");
     return BRUNT_OK;
 }
 
 static int friction_look(void *self, const brunt_team *team, const double *u, const double *p, brunt_error *error) {
     const brunt_barrier *b = self;
-    (void)team, (void)u, (void)p;
+    (void)team;
+    for (int64_t i = 0; i < b->lagged.count && !p; i++) barrier_slip_follow(b, &b->lagged.contact[i], u, &b->rub[i]);
     return b->broken ? out_of_memory(error, "the stiffness") : BRUNT_OK;
 }
 

@@ -92,7 +92,6 @@ void brunt_ledger_energy(const brunt_ledger *now, const brunt_books *books, brun
                              .transfer = now->transfer - 0.5 * (now->stress_work + now->fem_stress_work),
                              .scheme = now->scheme,
                              .contact = now->barrier,
-                             .friction = now->friction,
                              .external_work = now->gravity_work};
     add_bodies(books->bodies, energy);
     energy->hourglass = now->hourglass_stored + now->hourglass_lost;

@@ -12,7 +12,7 @@ typedef struct brunt_ledger {
     double stress_work;            // [J] dt times the stress power at the end of the last step
     double transfer, gravity_work; // [J]
     double scheme;                 // [J] taken by the integrator of implicit steps
-    double barrier, friction;      // [J] stored in barriers, heat of their friction
+    double barrier;                // [J] stored in barriers
     double gravity_impulse[3], gravity_angular[3];
     brunt_damping_sums damping;
     double initial_energy, initial_kinetic; // [J]

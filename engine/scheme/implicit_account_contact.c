@@ -62,21 +62,18 @@ static int book_barrier(brunt_world *world, brunt_error *error) {
     return BRUNT_OK;
 }
 
-// Heat of friction: its forces at the velocities of both ends of the step, over the way between. `before` is the
-// displacement at which friction takes the velocities at the start for those at the end.
-static int book_friction(brunt_world *world, brunt_error *error) {
-    struct brunt_implicit *m = world->plan.implicit;
+// Forces of friction at the velocities of both ends of the step. `before` is the displacement at which friction takes
+// the velocities at the start for those at the end.
+static int add_friction(struct brunt_implicit *m, brunt_error *error) {
     const double gamma = m->weights.gamma;
     const int at = m->body_terms + 1;
     double energy;
     if (at >= m->term_count) return BRUNT_OK;
     if (gamma < 1) {
         if (evaluate(m, at, at + 1, m->contact.before, &energy, error)) return BRUNT_FAILED;
-        world->ledger.friction += (1 - gamma) * dot(m, m->field.step, m->field.u);
         add_weighed(m, 1 - gamma, m->field.contact);
     }
     if (evaluate(m, at, at + 1, m->field.u, &energy, error)) return BRUNT_FAILED;
-    world->ledger.friction += gamma * dot(m, m->field.step, m->field.u);
     add_weighed(m, gamma, m->field.contact);
     add_to_gradient(m);
     return BRUNT_OK;
@@ -84,7 +81,7 @@ static int book_friction(brunt_world *world, brunt_error *error) {
 
 // ------------------------------------------------------------------------------------------ forces
 
-// Of pairs and planes, weighed as the integrator does.
+// Of pairs and planes, and the heat of friction over the step's way, weighed as the integrator does.
 static int weigh_forces(struct brunt_implicit *m, brunt_barrier_report *report, brunt_error *error) {
     brunt_implicit_contact *c = &m->contact;
     const double gamma = m->weights.gamma;
@@ -93,17 +90,22 @@ static int weigh_forces(struct brunt_implicit *m, brunt_barrier_report *report, 
     memset(c->force_before, 0, (size_t)count * sizeof *c->force_before);
     for (int friction = 0; friction < 2 && gamma < 1; friction++) {
         const double *u = friction ? c->before : m->field.zero;
-        if (brunt_barrier_look_back(c->barrier, &m->team, u, &other, c->force, error)) return BRUNT_FAILED;
-        for (int32_t k = 0; k < count; k++)
+        if (brunt_barrier_look_back(c->barrier, &m->team, u, m->field.u, &other, c->force, error)) return BRUNT_FAILED;
+        for (int32_t k = 0; k < count; k++) {
+            c->force_before[k].heat = c->force[k].heat; // of the second: friction's
             memcpy(friction ? c->force_before[k].friction : c->force_before[k].normal,
                    friction ? c->force[k].friction : c->force[k].normal, 3 * sizeof(double));
+        }
     }
-    if (brunt_barrier_look_back(c->barrier, &m->team, m->field.u, report, c->force, error)) return BRUNT_FAILED;
-    for (int32_t k = 0; k < count; k++)
+    if (brunt_barrier_look_back(c->barrier, &m->team, m->field.u, m->field.u, report, c->force, error))
+        return BRUNT_FAILED;
+    for (int32_t k = 0; k < count; k++) {
+        c->force[k].heat = (1 - gamma) * c->force_before[k].heat + gamma * c->force[k].heat;
         for (int a = 0; a < 3; a++) {
             c->force[k].normal[a] = (1 - gamma) * c->force_before[k].normal[a] + gamma * c->force[k].normal[a];
             c->force[k].friction[a] = (1 - gamma) * c->force_before[k].friction[a] + gamma * c->force[k].friction[a];
         }
+    }
     return BRUNT_OK;
 }
 
@@ -122,13 +124,15 @@ static void book_moments(const struct brunt_implicit *m, brunt_impulse_account *
 static void book_forces(brunt_world *world) {
     const struct brunt_implicit *m = world->plan.implicit;
     const brunt_implicit_contact *c = &m->contact;
-    for (int32_t p = 0; p < c->pair_count; p++)
-        for (int a = 0; a < 3; a++)
-            world->pairs.pair[c->pair_account[p]].last.impulse[a] -=
-                m->dt * (c->force[p].normal[a] + c->force[p].friction[a]);
+    for (int32_t p = 0; p < c->pair_count; p++) {
+        brunt_impulse_account *last = &world->pairs.pair[c->pair_account[p]].last;
+        for (int a = 0; a < 3; a++) last->impulse[a] -= m->dt * (c->force[p].normal[a] + c->force[p].friction[a]);
+        last->friction_loss += c->force[p].heat;
+    }
     for (int32_t q = 0; q < c->plane_count; q++) {
         brunt_wall *wall = &world->boundaries.walls[c->plane_wall[q]];
         const brunt_barrier_force *force = &c->force[c->pair_count + q];
+        wall->last.friction_loss += force->heat;
         for (int a = 0; a < 3; a++) {
             const double F = force->normal[a] + force->friction[a];
             wall->last.impulse[a] += m->dt * F;
@@ -157,8 +161,7 @@ int brunt_implicit_book_contact(brunt_world *world, brunt_error *error) {
     struct brunt_implicit *m = world->plan.implicit;
     brunt_barrier_report report;
     memset(m->field.contact, 0, (size_t)brunt_implicit_components(m) * sizeof *m->field.contact);
-    if (book_barrier(world, error) || book_friction(world, error) || weigh_forces(m, &report, error))
-        return BRUNT_FAILED;
+    if (book_barrier(world, error) || add_friction(m, error) || weigh_forces(m, &report, error)) return BRUNT_FAILED;
     book_forces(world);
     m->tried.least_gap = report.least_gap, m->tried.least_part = report.least_part;
     warn_of_gap(world, &report);

@@ -89,11 +89,10 @@ static const brunt_saved clock_table[] = {
 };
 #define NEWTON(member) CLOCK(newton.member), CLOCK(newton_last.member)
 static const brunt_saved newton_table[] = {
-    LEDGER(scheme),         LEDGER(barrier),     LEDGER(friction),
-    NEWTON(steps),          NEWTON(iterations),  NEWTON(iterations_worst),
-    NEWTON(halvings),       NEWTON(projections), NEWTON(linear_iterations),
-    NEWTON(factorisations), NEWTON(cuts),        NEWTON(residual),
-    NEWTON(least_gap),      NEWTON(least_part),
+    LEDGER(scheme),           LEDGER(barrier),  NEWTON(steps),       NEWTON(iterations),
+    NEWTON(iterations_worst), NEWTON(halvings), NEWTON(projections), NEWTON(linear_iterations),
+    NEWTON(factorisations),   NEWTON(cuts),     NEWTON(residual),    NEWTON(least_gap),
+    NEWTON(least_part),
 };
 #define ACCOUNT(member) BRUNT_SAVED(brunt_impulse_account, member)
 static const brunt_saved account_table[] = {ACCOUNT(impulse),     ACCOUNT(angular),       ACCOUNT(external_work),

@@ -203,6 +203,6 @@ static inline brunt_barrier_report case_report(barrier_case *c, const double *u,
     const brunt_team team = {c->threads, NULL};
     brunt_barrier_report report;
     brunt_error error = {0};
-    ck_assert_int_eq(brunt_barrier_look_back(c->barrier, &team, u, &report, force, &error), BRUNT_OK);
+    ck_assert_int_eq(brunt_barrier_look_back(c->barrier, &team, u, u, &report, force, &error), BRUNT_OK);
     return report;
 }

@@ -214,7 +214,7 @@ START_TEST(planes_push_and_rub) {
                 ck_assert_double_eq_tol(across, 0, 1e-12 * force);
                 brunt_barrier_force told;
                 const brunt_barrier_report report = case_report(c, u, &told);
-                ck_assert_double_eq_tol(report.heat, share * force * slip, 1e-10 * force * slip);
+                ck_assert_double_eq_tol(told.heat, share * force * slip, 1e-10 * force * slip);
                 ck_assert_int_eq(report.plane, 0);
                 for (int k = 0; k < dim; k++) {
                     ck_assert_double_eq_tol(told.normal[k], force * n[k], 1e-11 * force);
