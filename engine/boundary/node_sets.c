@@ -10,7 +10,8 @@
 #include "boundary/node_sets.h"
 
 static bool moves(const brunt_group_def *group) {
-    return group->action == BRUNT_GROUP_VELOCITY || group->action == BRUNT_GROUP_DISPLACEMENT;
+    return group->action == BRUNT_GROUP_VELOCITY || group->action == BRUNT_GROUP_DISPLACEMENT ||
+           group->action == BRUNT_GROUP_ROTATION;
 }
 
 // A load of 0, whatever its table says, is none: no forces are kept and nothing is gone over.
@@ -332,13 +333,31 @@ void brunt_loads_end(const brunt_node_sets *sets, double dt) {
 
 // ------------------------------------------------------------------------------------------ prescribed motion
 
+brunt_placement brunt_node_set_goal(const brunt_node_set *set, double time) {
+    const brunt_group_def *def = &set->def;
+    const double factor = brunt_curve_at(&def->table, time);
+    brunt_placement goal = brunt_placement_identity();
+    if (def->action == BRUNT_GROUP_ROTATION)
+        return brunt_placement_rotate(goal, def->rotation.axis, factor * def->rotation.angle, def->rotation.about);
+    for (int a = 0; a < 3; a++) goal.translation[a] = factor * def->value[a];
+    return goal;
+}
+
+double brunt_node_set_way(const brunt_node_set *set, const brunt_placement *goal, int32_t node, int a) {
+    const real *start = set->fem->start + 4 * (size_t)node;
+    double x = goal->translation[a];
+    for (int b = 0; b < 3; b++) x += goal->rotation[3 * a + b] * (double)start[b];
+    return x - (double)brunt_fem_node(set->fem, node)[BRUNT_FEM_X + a];
+}
+
 static void prescribe(const brunt_node_sets *sets, int k, const double gravity[3], double time, double dt,
                       double step) {
     const brunt_node_set *set = &sets->set[k];
     const brunt_group_def *def = &set->def;
     brunt_fem_body *fem = set->fem;
     brunt_impulse_account *last = &set->wall->last;
-    double now = brunt_curve_at(&def->table, time + 0.5 * step), then = brunt_curve_at(&def->table, time + step);
+    const double now = brunt_curve_at(&def->table, time + 0.5 * step);
+    const brunt_placement goal = brunt_node_set_goal(set, time + step);
     for (int32_t i = 0; i < set->node_count; i++) {
         const int32_t n = set->node[i];
         if (brunt_fem_removed(fem, n)) continue;
@@ -351,9 +370,8 @@ static void prescribe(const brunt_node_sets *sets, int k, const double gravity[3
             double mass = (double)node[BRUNT_FEM_MASS], trial = (double)node[BRUNT_FEM_V + a];
             double load = fem->load ? (double)fem->load[4 * (size_t)n + (size_t)a] : 0;
             old[a] = trial - dt * (((double)force[a] + load) / mass + gravity[a]);
-            v[a] = def->action == BRUNT_GROUP_VELOCITY
-                       ? now * def->value[a]
-                       : ((double)fem->start[4 * (size_t)n + (size_t)a] + then * def->value[a] - x[a]) / step;
+            v[a] =
+                def->action == BRUNT_GROUP_VELOCITY ? now * def->value[a] : brunt_node_set_way(set, &goal, n, a) / step;
             J[a] = mass * fem->drag_mass * (v[a] - trial);
             mean[a] = 0.5 * (old[a] + v[a]);
             node[BRUNT_FEM_V + a] = (real)v[a];

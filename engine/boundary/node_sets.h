@@ -48,6 +48,10 @@ const brunt_node_set *brunt_node_sets_follow(brunt_node_sets *sets, brunt_fem_bo
 // final.
 void brunt_loads_begin(brunt_node_sets *sets, const brunt_bodies *bodies, double time, double dt);
 void brunt_loads_end(const brunt_node_sets *sets, double dt);
+// Of a set that prescribes displacements, by its table at that time: where the whole body would go from the start.
+brunt_placement brunt_node_set_goal(const brunt_node_set *set, double time);
+// What a node (by its number in the body) has of that to go along axis a [m].
+double brunt_node_set_way(const brunt_node_set *set, const brunt_placement *goal, int32_t node, int a);
 // Prescribed motion, and its account; `step` is how far the nodes then move.
 void brunt_node_sets_prescribe(const brunt_node_sets *sets, const double gravity[3], double time, double dt,
                                double step);

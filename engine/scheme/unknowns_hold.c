@@ -23,20 +23,17 @@ static void hold_group(brunt_unknowns *u, const brunt_world *world, int k, doubl
     const brunt_node_sets *sets = &world->boundaries.sets;
     const brunt_node_set *set = &sets->set[k];
     const brunt_group_def *def = &set->def;
-    const brunt_fem_body *fem = set->fem;
     const bool velocity = def->action == BRUNT_GROUP_VELOCITY;
-    if (!velocity && def->action != BRUNT_GROUP_DISPLACEMENT) return;
+    if (!velocity && def->action != BRUNT_GROUP_DISPLACEMENT && def->action != BRUNT_GROUP_ROTATION) return;
     const double time = world->clock.time, middle = brunt_curve_at(&def->table, time + 0.5 * dt),
                  then = brunt_curve_at(&def->table, time + dt);
+    const brunt_placement goal = brunt_node_set_goal(set, time + dt);
     const int wall = (int)(set->wall - world->boundaries.walls);
     for (int32_t i = 0; i < set->node_count; i++) {
         const int32_t n = set->node[i];
-        const real *node = brunt_fem_node(fem, n);
         for (int a = 0; a < u->dim; a++) {
             if (sets->holder[set->fem_index][n][a] != k + 1) continue;
-            const double start = (double)fem->start[4 * (size_t)n + (size_t)a];
-            const double way =
-                velocity ? dt * middle * def->value[a] : start + then * def->value[a] - (double)node[BRUNT_FEM_X + a];
+            const double way = velocity ? dt * middle * def->value[a] : brunt_node_set_way(set, &goal, n, a);
             hold(u, u->base[set->fem_index] + n, a, wall, way, velocity ? then * def->value[a] : way / dt);
         }
     }

@@ -295,7 +295,15 @@ static int check_groups(const brunt_world_def *def, brunt_error *error) {
         TRY(check_choice(owner, ".action", (unsigned)group->action, BRUNT_GROUP_GAS + 1, error));
         TRY(check_curve(owner, ".table", &group->table, error));
         const brunt_gas_def *gas = &group->gas;
-        const int filled = group->action == BRUNT_GROUP_GAS;
+        const int filled = group->action == BRUNT_GROUP_GAS, turned = group->action == BRUNT_GROUP_ROTATION;
+        const brunt_rotation_def *turn = &group->rotation;
+        CHECK_NUMBERS(owner, {".rotation.angle", &turn->angle, turned, ANY},
+                      {".rotation.axis", turn->axis, 3 * turned, ANY},
+                      {".rotation.about", turn->about, 3 * turned, ANY});
+        if (turned && !(turn->axis[0] || turn->axis[1] || turn->axis[2]))
+            REFUSE("boundaries[%d].rotation.axis: the axis has zero length", index);
+        if (turned && def->dimension == 2 && (turn->axis[0] || turn->axis[1]))
+            REFUSE("boundaries[%d].rotation.axis: in two dimensions what turns does so about z", index);
         CHECK_NUMBERS(owner, {".value", group->value, filled ? 0 : 3, ANY}, {".gas.gamma", &gas->gamma, filled, ANY},
                       {".gas.pressure", &gas->pressure, filled, ANY}, {".gas.outside", &gas->outside, filled, ANY},
                       {".gas.volume", &gas->volume, filled, ANY}, {".gas.inflow", &gas->inflow, filled, ANY});

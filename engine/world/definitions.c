@@ -51,7 +51,7 @@ brunt_region_def brunt_region_def_default(void) {
 }
 
 brunt_group_def brunt_group_def_default(void) {
-    return (brunt_group_def){.component = {true, true, true}, .gas = {.gamma = 1.4}};
+    return (brunt_group_def){.component = {true, true, true}, .rotation = {.axis = {0, 0, 1}}, .gas = {.gamma = 1.4}};
 }
 
 void brunt_world_def_free(brunt_world_def *def) {

@@ -11,6 +11,7 @@
     X(HISTORY, history) /* a column of the history (`history: energy.kinetic`), reduced over time */                   \
     X(EXTENT, extent)   /* size of a body along an axis, from particle surfaces or nodes, at the end */                \
     X(RADIUS, radius)   /* greatest distance of a body's surface from an axis line within a slab, at the end */        \
+    X(TWIST, twist)     /* how far the material of a body about an axis line has turned, at the end */                 \
     X(FIELD, field)     /* a field of a body reduced over its particles, nodes or elements, at the end */              \
     X(PROFILE, profile) /* distance of a field of one body or all from a reference along an axis, at the end */
 
@@ -47,8 +48,9 @@ typedef struct brunt_measure {
     char body[BRUNT_NAME_LENGTH]; // profile: "" = all bodies with the field
     char field[64];
     int component;             // field: name, component (-1: scalar or magnitude)
-    double axis[3], center[3]; // extent: axis; radius: axis line through center
-    double slab_min, slab_max; // [m] radius, field: only what has its coordinate along axis inside; default all
+    double axis[3], center[3]; // extent: axis; radius, twist: axis line through center
+    double within;             // [m] twist: only what is no farther from the axis; default all
+    double slab_min, slab_max; // [m] radius, twist, field: only what has its coordinate along axis inside; default all
     bool relative_to_initial;  // divide by the value at the first sample
     double relative_to;        // divide by this (NAN: no)
     double minus;              // subtract this first (default 0)

@@ -136,6 +136,19 @@ static void fill_motion(scene_reader *reader, const scene_node *motion, brunt_gr
     fill_partial(reader, motion, group->component, group->value);
 }
 
+// In three dimensions the axis must be given; in two there is but one.
+static void fill_rotation(scene_reader *reader, const scene_node *turn, brunt_group_def *group) {
+    brunt_rotation_def *rotation = &group->rotation;
+    if (turn->kind != SCENE_MAP) return;
+    const scene_node *axis = brunt_tree_child(turn, "axis");
+    rotation->angle = brunt_real_of(turn, "angle", 0);
+    brunt_vector_of(turn, "about", rotation->about);
+    if (!axis && reader->dimension == 3)
+        brunt_tree_complain(reader->tree, turn, "'axis' is missing: the direction about which the group turns");
+    if (!axis || !brunt_vector_of(turn, "axis", rotation->axis)) return;
+    if (!brunt_nonzero(rotation->axis)) brunt_tree_complain(reader->tree, axis, "the axis has zero length");
+}
+
 static void fill_fixed(scene_reader *reader, const scene_node *axes, brunt_group_def *group) {
     brunt_refuse_key(reader, axes->parent, "table", "what is fixed does not change with time");
     for (int c = 0; c < 3 && axes->good; c++) group->component[c] = axes->value[c] != 0;
@@ -154,6 +167,7 @@ static const struct group_action {
 } actions[] = {{"fix", BRUNT_GROUP_VELOCITY, fill_fixed},
                {"velocity", BRUNT_GROUP_VELOCITY, fill_motion},
                {"displacement", BRUNT_GROUP_DISPLACEMENT, fill_motion},
+               {"rotation", BRUNT_GROUP_ROTATION, fill_rotation},
                {"traction", BRUNT_GROUP_TRACTION, fill_value},
                {"pressure", BRUNT_GROUP_PRESSURE, fill_value},
                {"gas", BRUNT_GROUP_GAS, check_gas}};

@@ -213,7 +213,9 @@ static void fill_kind(scene_reader *reader, scene_node *node, brunt_measure *mea
             brunt_tree_child(where, "from") || brunt_tree_child(where, "to") || brunt_tree_child(where, "center");
         fill_place_of(reader, where, measure, slab);
     } else {
-        fill_place_of(reader, where, measure, measure->kind == BRUNT_MEASURE_RADIUS && reader->dimension == 3);
+        const bool about = measure->kind == BRUNT_MEASURE_RADIUS || measure->kind == BRUNT_MEASURE_TWIST;
+        measure->within = brunt_real_of(where, "within", INFINITY);
+        fill_place_of(reader, where, measure, about && reader->dimension == 3);
     }
 }
 

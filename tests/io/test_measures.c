@@ -442,6 +442,36 @@ START_TEST(radius_about_an_axis) {
 }
 END_TEST
 
+// The left block is given F: a turn by 2 rad about z of a stretch.
+START_TEST(twist_is_the_turn) {
+    const char *sets[] = {"boundaries=[]"};
+    brunt_scene still;
+    small_scene(&still, sets, 1);
+    brunt_world *other = small_world(&still);
+    const double c = cos(2), s = sin(2), F[4] = {1.3 * c, -0.8 * s, 1.3 * s, 0.8 * c};
+    brunt_measure m = blank(BRUNT_MEASURE_TWIST);
+    double value;
+    m.within = INFINITY;
+    ck_assert_int_eq(brunt_measure_initial(&m, other, &value, NULL), BRUNT_OK);
+    ck_assert_double_eq(value, 0);
+    for (int k = 0; k < 4; k++) set_left(other, "deformation_gradient", 4, k, F[k]);
+    ck_assert_int_eq(brunt_measure_initial(&m, other, &value, NULL), BRUNT_OK);
+    ck_assert_double_eq_tol(value, 2, 10 * rounding);
+    m.axis[2] = -3;
+    ck_assert_int_eq(brunt_measure_initial(&m, other, &value, NULL), BRUNT_OK);
+    ck_assert_double_eq_tol(value, -2, 10 * rounding);
+    // Nothing is that near, or that high.
+    m.within = 1e-3;
+    ck_assert_int_eq(brunt_measure_initial(&m, other, &value, NULL), BRUNT_OK);
+    ck_assert_double_nan(value);
+    m.within = INFINITY, m.slab_min = 1;
+    ck_assert_int_eq(brunt_measure_initial(&m, other, &value, NULL), BRUNT_OK);
+    ck_assert_double_nan(value);
+    brunt_world_destroy(other);
+    brunt_scene_free(&still);
+}
+END_TEST
+
 START_TEST(fields_are_reduced) {
     brunt_measure m = blank(BRUNT_MEASURE_FIELD);
     strcpy(m.body, "right");
@@ -713,6 +743,7 @@ int main(void) {
     tcase_add_test(values, extent_of_what_has_failed);
     tcase_add_test(values, extent_of_rings);
     tcase_add_test(values, radius_about_an_axis);
+    tcase_add_test(values, twist_is_the_turn);
     tcase_add_test(values, fields_are_reduced);
     tcase_add_test(values, elements_are_measured);
     tcase_add_test(values, profiles_are_compared);

@@ -78,6 +78,7 @@ static const char rich_text[] =
     "    place: [{translate: [0, 0, 0]}]}\n"
     "  - {name: grip, group: xmin, body: plate, velocity: [0, free, 1], table: [[0, 0], [1, 2]]}\n"
     "  - {name: shift, group: xmax, body: plate, displacement: [0.1, free, free], table: [[0, 0], [1, 2]]}\n"
+    "  - {name: turn, group: zmax, body: plate, rotation: {angle: 1, axis: [0, 0, 1], about: [0, 0, 0]}}\n"
     "  - {name: pull, group: ymin, body: plate, traction: [0, 5, 0]}\n"
     "  - {name: push, group: ymax, body: plate, pressure: 5}\n"
     "  - {name: gas, group: surface, body: bag, gas: {pressure: 1e5, gamma: 1.3, outside: 1e5, volume: 0.1, inflow: "
@@ -94,7 +95,8 @@ static const char rich_text[] =
     "take: max}\n"
     "  e: {profile: {body: rod, name: velocity, component: z, axis: [0, 0, 1], center: [0, 0, 0], reference: [[0, 1], "
     "[1, 2]]}}\n"
-    "  f: {extent: {body: rod, axis: [0, 0, 1]}}\n";
+    "  f: {extent: {body: rod, axis: [0, 0, 1]}}\n"
+    "  g: {twist: {body: rod, axis: [0, 0, 1], center: [0, 0, 0], within: 0.01, from: 0.01, to: 0.05}}\n";
 
 static const char implicit_text[] =
     "brunt: 1\n"

@@ -157,6 +157,46 @@ START_TEST(displacement_follows_its_table) {
 }
 END_TEST
 
+// One end is fixed, the other is turned about x (in two dimensions about z) and pulled along x by the boundary before,
+// whose component that stays: it is there to the digit, and the work of both is the energy gained.
+START_TEST(rotation_follows_its_table) {
+    const int dim = kinds[_i].dimension;
+    brunt_world_def def = bar(dim, kinds[_i].kind);
+    group(&def, "xmin", BRUNT_GROUP_VELOCITY, 0, 0, 0);
+    brunt_group_def *pull = group(&def, "xmax", BRUNT_GROUP_DISPLACEMENT, 0.05, 0, 0);
+    pull->component[0] = dim == 3, pull->component[1] = pull->component[2] = false;
+    brunt_group_def *turn = group(&def, "xmax", BRUNT_GROUP_ROTATION, 0, 0, 0);
+    turn->rotation = (brunt_rotation_def){.angle = 0.6, .axis = {0, 0, 1}, .about = {0.9, 0.1, 0}};
+    if (dim == 3) turn->rotation = (brunt_rotation_def){.angle = 0.6, .axis = {2, 0, 0}, .about = {7, 0.1, 0.05}};
+    turn->table.points = brunt_alloc(2 * sizeof *turn->table.points), turn->table.count = 2;
+    static const double table[2][2] = {{0, 0}, {0.1, 1}};
+    memcpy(turn->table.points, table, sizeof table);
+    pull->table.points = brunt_alloc(2 * sizeof *pull->table.points), pull->table.count = 2;
+    memcpy(pull->table.points, table, sizeof table);
+    brunt_world *world = world_take(&def);
+    double *x0 = world_field(world, 0, "position");
+    for (int t = 1; t <= 3; t++) {
+        const double angle = fmin(0.24 * t, 0.6);
+        const int i = dim == 3 ? 1 : 0, j = i + 1;
+        world_until(world, 0.04 * t);
+        double *x = world_field(world, 0, "position");
+        for (int64_t k = 0; k < brunt_body_nodes(world, 0); k++) {
+            const double *from = x0 + 3 * k, *about = turn->rotation.about, p = from[i] - about[i],
+                         q = from[j] - about[j];
+            if (from[0] < 1 - 1e-9) continue;
+            ck_assert_double_eq_tol(x[3 * k + i], about[i] + cos(angle) * p - sin(angle) * q, 100 * ROUNDING);
+            ck_assert_double_eq_tol(x[3 * k + j], about[j] + sin(angle) * p + cos(angle) * q, 100 * ROUNDING);
+            if (dim == 3) ck_assert_double_eq_tol(x[3 * k], from[0] + 0.05 * fmin(0.4 * t, 1), 100 * ROUNDING);
+        }
+        free(x);
+    }
+    check_ledger(world, 2e-3);
+    ck_assert_double_gt(world_energy(world).external_work, 0);
+    free(x0);
+    brunt_world_destroy(world);
+}
+END_TEST
+
 // Half a bar with a mirror plane, and a bar that slides along an oblique one, move as the whole and as the free one.
 START_TEST(planes_hold) {
     brunt_world_def half = bar(3, kinds[_i].kind), whole = bar(3, kinds[_i].kind);
@@ -218,6 +258,7 @@ int main(void) {
     tcase_add_loop_test(tcase, a_load_off_the_centre_turns, 0, 4);
     tcase_add_loop_test(tcase, pressure_squeezes, 0, 2);
     tcase_add_loop_test(tcase, displacement_follows_its_table, 0, 4);
+    tcase_add_loop_test(tcase, rotation_follows_its_table, 0, 4);
     tcase_add_loop_test(tcase, planes_hold, 0, 2);
     tcase_add_test(tcase, mistakes_are_said);
     suite_add_tcase(suite, tcase);

@@ -191,6 +191,42 @@ START_TEST(pulled) {
 }
 END_TEST
 
+// The surface of a cube is turned by 144 degrees in four steps about an oblique axis: at the end it and what is inside
+// are where a turn takes them, and nothing is stored.
+START_TEST(turned_round) {
+    brunt_world_def def = def_begin(3, 1);
+    def_material(&def, "neo-hookean", 1000, 1e6, 0.3);
+    cube(&def, BRUNT_TET4, 0.25);
+    brunt_group_def *turn = def_group(&def, "cube", "surface", BRUNT_GROUP_ROTATION);
+    const double angle = 0.8 * 3.14159265358979323846, about[3] = {0.3, -1, 2};
+    turn->rotation = (brunt_rotation_def){.angle = angle, .axis = {1, 1, 1}, .about = {0.3, -1, 2}};
+    turn->table.points = brunt_alloc(2 * sizeof *turn->table.points), turn->table.count = 2;
+    turn->table.points[1][0] = 4, turn->table.points[1][1] = 1;
+    go_implicit(&def, BRUNT_EULER, 1);
+    def.step = 1, def.newton.tolerance = 1e-10;
+    brunt_world *world = world_take(&def);
+    double *x0 = world_field(world, 0, "position"), worst = 0;
+    world_steps(world, 8);
+    double *x = world_field(world, 0, "position");
+    for (int64_t k = 0; k < brunt_body_nodes(world, 0); k++) {
+        double p[3], sum = 0;
+        for (int a = 0; a < 3; a++) p[a] = x0[3 * k + a] - about[a], sum += p[a];
+        for (int a = 0; a < 3; a++) {
+            const double cross = (p[(a + 2) % 3] - p[(a + 1) % 3]) / sqrt(3);
+            const double to = about[a] + cos(angle) * p[a] + sin(angle) * cross + (1 - cos(angle)) * sum / 3;
+            worst = fmax(worst, fabs(x[3 * k + a] - to));
+        }
+    }
+    const brunt_energy e = world_energy(world);
+    printf("  turned: %.2e m off, %.2e J stored, energy error %.1e\n", worst, e.internal, e.error_relative);
+    ck_assert_double_le(worst, 1e-9);
+    ck_assert_double_le(e.internal, 1e-9 * 1e6);
+    ck_assert_double_le(fabs(e.error_relative), 1e-6);
+    free(x0), free(x);
+    brunt_world_destroy(world);
+}
+END_TEST
+
 // ------------------------------------------------------------------------------------------ bits
 
 static brunt_world *shaken(int threads) {
@@ -267,6 +303,7 @@ int main(void) {
     ADD_LOOP(hangs, 1);
     ADD_LOOP(turns, 2);
     ADD_LOOP(pulled, 1);
+    ADD_LOOP(turned_round, 1);
     ADD_LOOP(threads, 1);
     ADD_LOOP(restart, 1);
     ADD_LOOP(does_not_converge, 2);
