@@ -5,7 +5,7 @@
 #include "base/error.h"
 #include "base/simd.h"
 
-enum { ROW_GRAIN = 64 };
+enum { PIECE = 40000 }; // entries that a thread reads at a time: some 20 us
 
 typedef struct row_work {
     brunt_block_matrix *m;
@@ -14,6 +14,12 @@ typedef struct row_work {
     const uint8_t *held;
     double diagonal;
 } row_work;
+
+// Rows of a piece.
+static int64_t row_grain(const brunt_block_matrix *m) {
+    const double entries = (double)brunt_block_matrix_blocks(m) * m->dim * m->dim / (double)(m->nodes + 1);
+    return 1 + (int64_t)(PIECE / (1 + entries));
+}
 
 static void zero_rows(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
@@ -24,7 +30,7 @@ static void zero_rows(void *context, int64_t begin, int64_t end, int worker) {
 
 void brunt_block_matrix_zero(brunt_block_matrix *m, const brunt_team *team) {
     row_work work = {.m = m};
-    brunt_parallel(team->threads, m->nodes, ROW_GRAIN, zero_rows, &work, team->timer);
+    brunt_parallel(team->threads, m->nodes, row_grain(m), zero_rows, &work, team->timer);
 }
 
 // The order of a stencil's nodes; almost always they ascend as they are.
@@ -94,7 +100,7 @@ static void multiply_rows(void *context, int64_t begin, int64_t end, int worker)
 
 void brunt_block_matrix_product(const brunt_block_matrix *m, const brunt_team *team, const double *x, double *y) {
     row_work work = {.m = (brunt_block_matrix *)m, .x = x, .y = y};
-    brunt_parallel(team->threads, m->nodes, ROW_GRAIN, multiply_rows, &work, team->timer);
+    brunt_parallel(team->threads, m->nodes, row_grain(m), multiply_rows, &work, team->timer);
 }
 
 static void hold_rows(void *context, int64_t begin, int64_t end, int worker) {
@@ -113,7 +119,7 @@ static void hold_rows(void *context, int64_t begin, int64_t end, int worker) {
 
 void brunt_block_matrix_hold(brunt_block_matrix *m, const brunt_team *team, const uint8_t *held, double diagonal) {
     row_work work = {.m = m, .held = held, .diagonal = diagonal};
-    brunt_parallel(team->threads, m->nodes, ROW_GRAIN, hold_rows, &work, team->timer);
+    brunt_parallel(team->threads, m->nodes, row_grain(m), hold_rows, &work, team->timer);
 }
 
 double brunt_block_matrix_mean_diagonal(const brunt_block_matrix *m, const uint8_t *held) {

@@ -7,7 +7,7 @@
 #include "base/memory.h"
 #include "base/simd.h"
 
-enum { JACOBI_GRAIN = 512 };
+enum { JACOBI_GRAIN = 2048 };
 
 int brunt_incomplete_analyse(brunt_incomplete *f, const brunt_block_matrix *a, bool whole) {
     const size_t nodes = (size_t)a->nodes, size = (size_t)(a->dim * a->dim);

@@ -97,5 +97,6 @@ typedef struct brunt_linear_choice {
     char why[200];   // for `brunt check`
 } brunt_linear_choice;
 
-// The quicker one by estimate, the direct one when it takes less than twice as long: it cannot stall.
+// The quicker one by estimate, the direct one when it takes less than twice as long, for it cannot stall; and less than
+// eight times as long where steps are so long that inertia is nothing beside stiffness.
 brunt_linear_choice brunt_linear_choose(const brunt_linear_size *size);

@@ -578,6 +578,16 @@ START_TEST(the_quicker_one_is_chosen) {
 }
 END_TEST
 
+// Where inertia is next to nothing the direct one is taken as long as it can be paid for: a block on a slope, a ball.
+START_TEST(very_long_steps_are_solved_directly) {
+    const brunt_linear_size slope = {2, 303, 7, 4.2e4}, shorter = {2, 303, 7, 40}, ball = {3, 50000, 105, 1e6};
+    ck_assert_str_eq(brunt_linear_choose(&slope).solver->name, "direct");
+    ck_assert_str_eq(brunt_linear_choose(&shorter).solver->name, "pcg");
+    ck_assert_str_eq(brunt_linear_choose(&ball).solver->name, "pcg");
+    ck_assert_ptr_nonnull(strstr(brunt_linear_choose(&slope).why, "inertia alone"));
+}
+END_TEST
+
 START_TEST(memory_is_given_back) {
     const size_t live = brunt_memory_live();
     elastic e = elastic_splines(2, 5);
@@ -613,6 +623,7 @@ int main(void) {
     tcase_add_loop_test(c, any_number_of_threads, 0, 2);
     tcase_add_test(c, solvers_serve_again);
     tcase_add_loop_test(c, the_quicker_one_is_chosen, 0, 12);
+    tcase_add_test(c, very_long_steps_are_solved_directly);
     tcase_add_test(c, memory_is_given_back);
     suite_add_tcase(suite, c);
     return suite_main(suite);
