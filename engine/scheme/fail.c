@@ -68,3 +68,36 @@ int brunt_fail_element(const brunt_world *world, const brunt_fem_body *fem, int3
                       (long long)error->id + 1, error->place[0], error->place[1], error->place[2], world->clock.time,
                       world->clock.steps, reason, hint);
 }
+
+static double element_size(const brunt_fem_body *fem, int32_t slot) {
+    double x[8][3] = {{0}};
+    for (int c = 0; c < fem->traits->nodes; c++)
+        for (int a = 0; a < fem->dim; a++)
+            x[c][a] = (double)brunt_fem_node(
+                fem, fem->element_node[(size_t)slot * (size_t)fem->traits->nodes + (size_t)c])[a];
+    return brunt_element_volume(fem->traits, (const double(*)[3])x);
+}
+
+static double point_size(brunt_body *body, int64_t slot) {
+    real *const *F = brunt_field(&body->particles, BRUNT_FIELD_deformation_gradient);
+    double f[9];
+    for (int c = 0; c < body->grid.dim * body->grid.dim; c++) f[c] = (double)F[c][slot];
+    if (body->grid.dim == 2) return f[0] * f[3] - f[1] * f[2];
+    return f[0] * (f[4] * f[8] - f[5] * f[7]) - f[1] * (f[3] * f[8] - f[5] * f[6]) + f[2] * (f[3] * f[7] - f[4] * f[6]);
+}
+
+int brunt_fail_turned(const brunt_world *world, brunt_error *error, const char *reason) {
+    for (int k = 0; k < world->bodies.fem_count; k++) {
+        const brunt_fem_body *fem = &world->bodies.fem[k];
+        for (int32_t s = 0; s < fem->slots; s++)
+            if (fem->element_id[s] >= 0 && element_size(fem, s) <= 0)
+                return brunt_fail_element(world, fem, s, error, reason);
+    }
+    for (int i = 0; i < world->bodies.mpm_count; i++) {
+        brunt_body *body = &world->bodies.mpm[i];
+        for (int64_t s = 0; s < body->particles.slots; s++)
+            if (body->particles.id[s] >= 0 && point_size(body, s) <= 0)
+                return brunt_fail_particle(world, body, s, error, reason);
+    }
+    return BRUNT_OK;
+}

@@ -171,6 +171,10 @@ static int fail_try(brunt_world *world, const brunt_newton_report *report, brunt
     char why[256], reason[480];
     snprintf(why, sizeof why, "%.250s", error ? error->message : "");
     const int64_t dof = report->residual_dof;
+    if (report->result == BRUNT_NEWTON_BAD_START) {
+        snprintf(reason, sizeof reason, "it is flat or turned over where the step begins: %s", why);
+        if (brunt_fail_turned(world, error, reason)) return BRUNT_FAILED;
+    }
     if (dof < 0) return brunt_fail_step(world, NULL, error, why);
     const brunt_unknown_place at = brunt_unknowns_place(&m->unknowns, &world->bodies, (int32_t)(dof / m->unknowns.dim));
     snprintf(reason, sizeof reason,

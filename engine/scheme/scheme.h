@@ -102,6 +102,8 @@ int brunt_fail_particle(const brunt_world *world, brunt_body *body, int64_t slot
 int brunt_fail_place(const brunt_world *world, int index, const double x[3], brunt_error *error, const char *reason);
 int brunt_fail_element(const brunt_world *world, const brunt_fem_body *fem, int32_t slot, brunt_error *error,
                        const char *reason);
+// At the first element or particle without a positive volume. BRUNT_OK: there is none, nothing has been said.
+int brunt_fail_turned(const brunt_world *world, brunt_error *error, const char *reason);
 
 // --- timing.c: what the step and its passes take. A pass begins where the one before ended, so that no moment of a
 // step is left out and the clock is read once a pass.
