@@ -18,13 +18,22 @@ static bool names_part(const char *rest, const char *name) {
     return strncmp(rest, name, length) == 0 && (rest[length] == '.' || rest[length] == 0);
 }
 
+// Whether contact of the body with itself is asked for.
+static bool meets_itself(const brunt_world_def *world, const char *body) {
+    for (int32_t p = 0; p < world->contact.pair_count; p++) {
+        const brunt_pair_def *pair = &world->contact.pairs[p];
+        if (pair->method != BRUNT_CONTACT_NONE && strcmp(pair->a, body) == 0 && strcmp(pair->b, body) == 0) return true;
+    }
+    return false;
+}
+
 static bool pair_exists(const scene_reader *reader, const char *rest) {
     const brunt_world_def *world = &reader->scene->world;
     char pair[2 * BRUNT_NAME_LENGTH];
     for (int i = 0; i < world->body_count; i++)
         for (int j = 0; j < world->body_count; j++) {
             snprintf(pair, sizeof pair, "%s-%s", world->bodies[i].name, world->bodies[j].name);
-            if (i != j && names_part(rest, pair)) return true;
+            if ((i != j || meets_itself(world, world->bodies[i].name)) && names_part(rest, pair)) return true;
         }
     return false;
 }
