@@ -95,7 +95,7 @@ BRUNT_INLINE brunt_update_result update_dim(int dim, bool dilates, const real *k
                 lanes_store(plastic_volume, opened + grown);
             }
         }
-        j2_store(dim, k, points, i, &p, delta, q, &record);
+        j2_store(dim, k, points, i, &p, (j2_flow){delta, q}, &record);
         if (dilates) add_plastic_work(dim, points, i, loss);
         store_pressure(k, points, i, &p, pressure, k[BULK] * (1 + lanes_max(-elastic, zero)), &record);
     }

@@ -212,7 +212,7 @@ BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_
                 lanes_store(compaction, end);
             }
         }
-        j2_store(dim, k, points, i, &p, delta, q, &record);
+        j2_store(dim, k, points, i, &p, (j2_flow){delta, q}, &record);
         add_plastic_work(dim, points, i, loss);
         note_first(&record.model, ~(stiffness > 0), i);
         store_pressure(k, points, i, &p, J * pressure, stiffness, &record);

@@ -160,7 +160,7 @@ BRUNT_INLINE brunt_update_result update_form(form f, const real *k, const brunt_
             if (f.softens) q = lanes_select(gone, zero, q);
             j2_return(f.dim, &p, plastic, q);
         }
-        lanes work = j2_store(f.dim, k, points, i, &p, delta, q, &record);
+        lanes work = j2_store(f.dim, k, points, i, &p, (j2_flow){delta, q}, &record);
         if (f.heats) lanes_store(temperature, start + k[HEATING] * work);
     }
     return update_end(&record, points, "the plastic increment of the Johnson-Cook law was not found");

@@ -160,7 +160,7 @@ BRUNT_INLINE brunt_update_result update_dim(int dim, bool bulks, const real *k, 
                 if (bulks) lanes_store(bulking, pushed);
             }
         }
-        j2_store(dim, k, points, i, &p, delta, q, &record);
+        j2_store(dim, k, points, i, &p, (j2_flow){delta, q}, &record);
         add_plastic_work(dim, points, i, loss);
         lanes stiffness = pressure_slope(k, change, pushed, lanes_load(damage));
         note_first(&record.model, ~(stiffness > 0), i);

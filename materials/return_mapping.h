@@ -183,22 +183,27 @@ BRUNT_INLINE void j2_return(int dim, j2_point *p, lane_mask plastic, lanes q_new
     p->m = lanes_select(plastic, m, p->m);
 }
 
-// Writes stress and state; `delta` is 0 and `q` any finite number where nothing flowed. Returns the plastic work of the
-// step: the trapezoid of stress over plastic strain, as everywhere (material.h).
+// What flowed in a step: plastic increment, and von Mises stress at its end; 0 and any finite number where nothing did.
+typedef struct j2_flow {
+    lanes delta, q;
+} j2_flow;
+
+// Writes stress and state. Returns the plastic work of the step: the trapezoid of stress over plastic strain, as
+// everywhere (material.h).
 BRUNT_INLINE lanes j2_store(int dim, const real *k, const brunt_material_points *points, int32_t i, const j2_point *p,
-                            lanes delta, lanes q, update_record *record) {
+                            j2_flow flow, update_record *record) {
     lanes pressure = (real)0.5 * k[J2_KAPPA] * p->volume_change * (2 + p->volume_change);
     for (int c = 0; c < BRUNT_SYMMETRIC(dim); c++) {
         lanes s = k[J2_MU] * p->d[c];
         lanes_store(points->stress[c] + i, c < 3 ? s + pressure : s);
         lanes_store(points->state[c] + i, c < 3 ? p->d[c] + p->m : p->d[c]);
     }
-    lanes work = (real)0.5 * delta * (p->q_old + q);
+    lanes work = (real)0.5 * flow.delta * (p->q_old + flow.q);
     real *plastic_work = points->state[j2_slot(dim, J2_PLASTIC_WORK)] + i;
-    lanes_store(points->state[j2_slot(dim, J2_PLASTIC_STRAIN)] + i, p->plastic_strain + delta);
+    lanes_store(points->state[j2_slot(dim, J2_PLASTIC_STRAIN)] + i, p->plastic_strain + flow.delta);
     lanes_store(plastic_work, lanes_load(plastic_work) + work);
     if (points->plastic_increment) lanes_store(points->plastic_increment + i, work);
-    if (points->strain_increment) lanes_store(points->strain_increment + i, delta);
+    if (points->strain_increment) lanes_store(points->strain_increment + i, flow.delta);
     // Along n: rho0 c^2 = kappa (J^2 + 1)/2 + 4/3 mu m - s_nn / 3.
     lanes volumetric = k[J2_KAPPA] * (1 + p->volume_change * (1 + (real)0.5 * p->volume_change));
     lanes shear = k[J2_MU] * ((real)(4.0 / 3) * p->m + (real)(1.0 / 3) * lanes_sqrt((real)(2.0 / 3) * p->dd));

@@ -67,7 +67,7 @@ BRUNT_INLINE brunt_update_result update_dim(int dim, bool saturates, bool soften
             }
             j2_return(dim, &p, plastic, q);
         }
-        j2_store(dim, k, points, i, &p, delta, q, &record);
+        j2_store(dim, k, points, i, &p, (j2_flow){delta, q}, &record);
     }
     return update_end(&record, points, "the plastic increment of the hardening law was not found");
 }

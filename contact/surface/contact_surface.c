@@ -100,7 +100,7 @@ static double edge_sum(const brunt_contact_surface *s, int32_t *edges) {
 static int add_body(brunt_contact_surface *s, int k) {
     brunt_fem_body *fem = s->fem[k];
     brunt_faces found;
-    if (brunt_fem_faces(fem, &found)) return -1;
+    if (brunt_fem_faces(fem, &found, NULL)) return -1;
     const int32_t sides = fem->traits->membrane ? 2 : 1;
     int32_t *number = brunt_alloc((size_t)(fem->node_count + 1) * sizeof *number);
     int32_t count = number ? number_nodes(fem, &found, s->node_count, number) : -1;

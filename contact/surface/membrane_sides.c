@@ -24,7 +24,7 @@ void brunt_membrane_add_back(int32_t *node, int32_t nodes, int32_t (*face)[4], i
 // entered by, and still be told from what is behind it.
 static int least_height(const brunt_fem_body *fem, double *least) {
     brunt_faces found;
-    if (brunt_fem_faces(fem, &found)) return -1;
+    if (brunt_fem_faces(fem, &found, NULL)) return -1;
     *least = INFINITY;
     for (int32_t f = 0; f < found.count; f++) {
         double x[BRUNT_ELEMENT_NODES][3], e[3], g[3], square = 0;

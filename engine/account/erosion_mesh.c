@@ -59,9 +59,10 @@ static int make_mesh(brunt_erosion *erosion, const brunt_bodies *bodies, brunt_f
                      brunt_error *error) {
     struct brunt_erosion_work *work = erosion->work;
     const int k = (int)(fem - bodies->fem);
-    if (brunt_fem_prepare_erosion(fem, erosion->rule[fem->index].inverted) ||
-        !(work->single[k] = brunt_fem_single_make(fem)))
-        return brunt_fail(error, BRUNT_FAILED, "bodies.%s: out of memory", fem->name);
+    const int status = brunt_fem_prepare_erosion(fem, erosion->rule[fem->index].inverted, error);
+    if (status) return status;
+    if (!(work->single[k] = brunt_fem_single_make(fem)))
+        return brunt_fail(error, BRUNT_FAILED, "body '%s': out of memory for erosion", fem->name);
     if (by_failure) work->damage[k] = find_damage(fem);
     return BRUNT_OK;
 }

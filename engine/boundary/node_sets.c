@@ -56,8 +56,9 @@ static int make_room(brunt_node_set *set, int32_t faces) {
 static int take_faces(brunt_node_set *set, brunt_messages *messages, brunt_error *error) {
     const brunt_fem_body *fem = set->fem;
     brunt_faces faces;
-    if (brunt_fem_faces(fem, &faces)) return out_of_memory(error);
-    const int status = make_room(set, faces.count);
+    int status = brunt_fem_faces(fem, &faces, error);
+    if (status) return status;
+    status = make_room(set, faces.count);
     for (int32_t i = 0; !status && i < set->node_count; i++) set->place[set->node[i]] = i + 1;
     for (int32_t f = 0; !status && f < faces.count; f++) {
         bool all = true;

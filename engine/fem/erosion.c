@@ -8,6 +8,7 @@
 #include "fem/kernel.h"
 #include "fem/layout.h"
 #include "materials/log_strain.h"
+#include "base/error.h"
 #include "base/memory.h"
 
 static int32_t block_end(const brunt_fem_body *body, int32_t b) {
@@ -34,15 +35,16 @@ static void count_bonds(brunt_fem_body *body) {
             body->bonds[body->element_node[(int64_t)s * nodes + a]]++;
 }
 
-int brunt_fem_prepare_erosion(brunt_fem_body *body, bool inverted) {
+int brunt_fem_prepare_erosion(brunt_fem_body *body, bool inverted, brunt_error *error) {
     body->mesh_elements = body->element_count;
     body->erodes_inverted = inverted;
     body->bonds = brunt_alloc((size_t)body->node_count * sizeof *body->bonds);
     body->mark = brunt_alloc((size_t)body->slots);
     body->rank = brunt_alloc((size_t)body->mesh_elements * sizeof *body->rank);
-    if (!body->bonds || !body->mark || !body->rank) return -1;
+    if (!body->bonds || !body->mark || !body->rank)
+        return brunt_fail(error, BRUNT_FAILED, "body '%s': out of memory for erosion", body->name);
     count_bonds(body);
-    return 0;
+    return BRUNT_OK;
 }
 
 void brunt_fem_ranks(brunt_fem_body *body) {

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "fem/layout.h"
+#include "base/error.h"
 #include "base/memory.h"
 
 static int32_t face_node(const brunt_fem_body *body, int64_t face, int k) {
@@ -36,14 +37,14 @@ static bool on_axis(const brunt_fem_body *body, int64_t face) {
 }
 
 // Faces are put into a bin by their least node, where the few others that can be equal are.
-int brunt_fem_faces(const brunt_fem_body *body, brunt_faces *faces) {
+int brunt_fem_faces(const brunt_fem_body *body, brunt_faces *faces, brunt_error *error) {
     const brunt_element_traits *type = body->traits;
     *faces = (brunt_faces){0};
     int64_t count = (int64_t)body->slots * type->face_count;
     int64_t *first = brunt_alloc(((size_t)body->node_count + 2) * sizeof *first);
     int64_t *list = brunt_alloc((size_t)count * sizeof *list);
     uint8_t *outside = brunt_alloc((size_t)count);
-    int status = -1;
+    bool made = false;
     if (first && list && outside) {
         for (int64_t f = 0; f < count; f++)
             if (body->element_id[f / type->face_count] >= 0) first[least_node(body, f) + 2]++;
@@ -68,7 +69,7 @@ int brunt_fem_faces(const brunt_fem_body *body, brunt_faces *faces) {
                     faces->node[faces->count][k] = k < type->face_nodes ? face_node(body, f, k) : -1;
                 faces->element[faces->count++] = (int32_t)(f / type->face_count);
             }
-            status = 0;
+            made = true;
         } else {
             brunt_faces_free(faces);
         }
@@ -76,7 +77,7 @@ int brunt_fem_faces(const brunt_fem_body *body, brunt_faces *faces) {
     brunt_free(first);
     brunt_free(list);
     brunt_free(outside);
-    return status;
+    return made ? BRUNT_OK : brunt_fail(error, BRUNT_FAILED, "body '%s': out of memory for its surface", body->name);
 }
 
 void brunt_faces_free(brunt_faces *faces) {

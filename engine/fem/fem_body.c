@@ -218,9 +218,10 @@ static int number_groups(brunt_fem_body *body, const brunt_mesh *mesh, int32_t *
     return 0;
 }
 
-static int measure_surface(brunt_fem_body *body) {
+static int measure_surface(brunt_fem_body *body, brunt_error *error) {
     brunt_faces faces;
-    if (brunt_fem_faces(body, &faces)) return -1;
+    const int status = brunt_fem_faces(body, &faces, error);
+    if (status) return status;
     const int corners = body->traits->face_nodes, edges = body->dim == 3 ? corners : 1;
     double sum = 0;
     for (int32_t f = 0; f < faces.count; f++)
@@ -233,7 +234,7 @@ static int measure_surface(brunt_fem_body *body) {
         }
     body->mean_edge = sum / ((double)faces.count * edges);
     brunt_faces_free(&faces);
-    return 0;
+    return BRUNT_OK;
 }
 
 static int allocate_nodes(brunt_fem_body *body) {
@@ -254,8 +255,8 @@ static int make(const brunt_body_def *def, const brunt_mesh *mesh, brunt_fem_bod
     place_nodes(def, mesh, body);
     int status = body->element->axisymmetric ? put_on_axis(body, error) : BRUNT_OK;
     if (!status) status = measure_volumes(body, error);
+    if (!status) status = measure_surface(body, error);
     if (status) return status;
-    if (measure_surface(body)) return brunt_fail(error, BRUNT_FAILED, "bodies.%s: out of memory", def->name);
     measure_lateral_ratio(body, def->temperature);
     soften_hourglass(body);
     reset_state(body, def->temperature, body->slots);

@@ -166,8 +166,8 @@ size_t brunt_fem_bytes(const brunt_fem_body *body);
 void brunt_fem_validate(const brunt_fem_body *body);
 
 // --- erosion.c
-// What a body needs to lose elements: bonds, marks, ranks. 0, or -1: out of memory.
-int brunt_fem_prepare_erosion(brunt_fem_body *body, bool inverted);
+// What a body needs to lose elements: bonds, marks, ranks.
+int brunt_fem_prepare_erosion(brunt_fem_body *body, bool inverted, brunt_error *error);
 // Takes `count` elements out, given by ascending slots: the last element of a block moves into the gap, so that others
 // change their slots; element_count, bonds, marks and the padding follow. Forces and reports of their blocks are made
 // anew (dt 0). Nodes are left alone.
@@ -278,5 +278,5 @@ typedef struct brunt_faces {
     int32_t (*node)[4];
     int32_t *element;
 } brunt_faces;
-int brunt_fem_faces(const brunt_fem_body *body, brunt_faces *faces); // 0, or -1: out of memory
+int brunt_fem_faces(const brunt_fem_body *body, brunt_faces *faces, brunt_error *error);
 void brunt_faces_free(brunt_faces *faces);

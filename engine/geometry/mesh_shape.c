@@ -154,16 +154,24 @@ static void name_groups(const char *names[BRUNT_GRID_GROUPS], int dimension, con
     if (dimension == 3) names[BRUNT_GRID_START] = start, names[BRUNT_GRID_END] = end;
 }
 
+// What a grid that was not made is to the caller of a mesh.
+static int grid_code(int made, double size, brunt_error *error) {
+    if (made == BRUNT_GRID_TOO_MANY)
+        return brunt_fail(error, BRUNT_BAD_INPUT,
+                          "an edge length of %g m makes more than 100 million nodes of this shape", size);
+    return made ? brunt_fail(error, BRUNT_FAILED, "no memory for a mesh with edges of %g m", size) : BRUNT_OK;
+}
+
 // Makes the grid of a checked shape and names the bits of its groups.
 static int make_grid(const brunt_shape *shape, int dimension, double size, bool even, brunt_mesh_grid *grid,
-                     const char *names[BRUNT_GRID_GROUPS], int *status, brunt_error *error) {
+                     const char *names[BRUNT_GRID_GROUPS], brunt_error *error) {
     static const char *const box_sides[4] = {"ymin", "xmax", "ymax", "xmin"};
     static const char *const prism_sides[4] = {"side1", "side2", "side3", "side4"};
     double corner[4][2] = {{shape->min[0], shape->min[1]},
                            {shape->max[0], shape->min[1]},
                            {shape->max[0], shape->max[1]},
                            {shape->min[0], shape->max[1]}};
-    int edge[4] = {0, 1, 2, 3}, made = 0;
+    int edge[4] = {0, 1, 2, 3}, made = 0, status;
     bool is_round = shape->kind == BRUNT_CYLINDER || shape->kind == BRUNT_RING;
     double from = is_round ? 0 : shape->min[2], to = is_round ? shape->length : shape->max[2];
     int32_t layers = cells(to - from, size, 1);
@@ -172,7 +180,7 @@ static int make_grid(const brunt_shape *shape, int dimension, double size, bool 
     case BRUNT_SPHERE:
         made = grid_of_ball(dimension, shape->radius, size, even, grid);
         if (!made) shift(shape->center, dimension, grid);
-        return made;
+        return grid_code(made, size, error);
     case BRUNT_CYLINDER:
         made = grid_of_ball(2, shape->radius, size, even, grid);
         names[0] = "side";
@@ -184,7 +192,7 @@ static int make_grid(const brunt_shape *shape, int dimension, double size, bool 
         name_groups(names, dimension, "start", "end");
         break;
     default:
-        if (shape->kind == BRUNT_PRISM && (*status = take_corners(shape, corner, edge, error))) return 0;
+        if (shape->kind == BRUNT_PRISM && (status = take_corners(shape, corner, edge, error))) return status;
         made = grid_of_corners(corner, size, grid);
         for (int i = 0; i < 4; i++) names[i] = shape->kind == BRUNT_PRISM ? prism_sides[edge[i]] : box_sides[i];
         name_groups(names, dimension, "zmin", "zmax");
@@ -192,7 +200,7 @@ static int make_grid(const brunt_shape *shape, int dimension, double size, bool 
     if (!made && dimension == 3) made = brunt_mesh_grid_extrude(from, to, layers, grid);
     if (!made && is_round && dimension == 3) set_upright(shape->axis, shape->center, grid);
     if (!made && is_round && dimension == 2) shift(shape->center, 2, grid);
-    return made;
+    return grid_code(made, size, error);
 }
 
 // ---------------------------------------------------------------------------------------------------- the mesh
@@ -256,12 +264,9 @@ int brunt_mesh_shape(const brunt_shape *shape, int dimension, brunt_element_kind
     const char *names[BRUNT_GRID_GROUPS] = {0};
     brunt_mesh_grid grid = {0};
     const bool even = brunt_mesh_is_cut(&cut) || brunt_element_traits_of(kind)->shape->pieces > 1;
-    int made = make_grid(&cut.whole, dimension, size, even, &grid, names, &status, error);
-    if (!made && !status) made = brunt_mesh_grid_cut(&cut, names, &grid);
-    if (!status && made == BRUNT_GRID_TOO_MANY)
-        status = brunt_fail(error, BRUNT_BAD_INPUT,
-                            "an edge length of %g m makes more than 100 million nodes of this shape", size);
-    else if (!status && (made || !take_elements(&grid, kind, mesh) || !add_groups(&grid, names, mesh)))
+    status = make_grid(&cut.whole, dimension, size, even, &grid, names, error);
+    if (!status) status = grid_code(brunt_mesh_grid_cut(&cut, names, &grid), size, error);
+    if (!status && (!take_elements(&grid, kind, mesh) || !add_groups(&grid, names, mesh)))
         status = brunt_fail(error, BRUNT_FAILED, "no memory for a mesh with edges of %g m", size);
     if (!status) {
         mesh->node_count = grid.node_count;

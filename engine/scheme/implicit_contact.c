@@ -172,35 +172,37 @@ static void add_surface(brunt_implicit_contact *c, const brunt_fem_body *fem, co
     c->facet_count += faces->count;
 }
 
-static int walk_surfaces(brunt_implicit_contact *c, const brunt_world *world) {
+static int walk_surfaces(brunt_implicit_contact *c, const brunt_world *world, brunt_error *error) {
     int32_t base = 0; // block nodes of meshes come first, body by body
     c->vertex_count = c->facet_count = 0;
     for (int k = 0; k < world->bodies.fem_count; k++) {
         const brunt_fem_body *fem = &world->bodies.fem[k];
         int32_t *number = brunt_alloc(((size_t)fem->node_count + 1) * sizeof *number);
         brunt_faces faces;
-        if (!number || brunt_fem_faces(fem, &faces)) {
+        const int status = number ? brunt_fem_faces(fem, &faces, error) : out_of_memory(error);
+        if (status) {
             brunt_free(number);
-            return -1;
+            return status;
         }
         add_surface(c, fem, &faces, base, number);
         base += fem->node_count;
         brunt_faces_free(&faces);
         brunt_free(number);
     }
-    return 0;
+    return BRUNT_OK;
 }
 
 static int make_surfaces(brunt_implicit_contact *c, const brunt_world *world, brunt_error *error) {
-    if (walk_surfaces(c, world)) return out_of_memory(error);
+    int status = walk_surfaces(c, world, error);
+    if (status) return status;
     const size_t vertices = (size_t)c->vertex_count + 1;
     c->rest = brunt_alloc(vertices * sizeof *c->rest);
     c->place = brunt_alloc(vertices * sizeof *c->place);
     c->body = brunt_alloc(vertices * sizeof *c->body);
     c->node = brunt_alloc(vertices * sizeof *c->node);
     c->facet = brunt_alloc(((size_t)c->facet_count + 1) * sizeof *c->facet);
-    if (!c->rest || !c->place || !c->body || !c->node || !c->facet || walk_surfaces(c, world))
-        return out_of_memory(error);
+    if (!c->rest || !c->place || !c->body || !c->node || !c->facet) return out_of_memory(error);
+    if ((status = walk_surfaces(c, world, error))) return status;
     const brunt_barrier_mesh mesh = {.dim = world->settings.dimension,
                                      .vertex_count = c->vertex_count,
                                      .facet_count = c->facet_count,

@@ -7,16 +7,16 @@
 #include "world/create.h"
 
 // Nodes that no element uses are left out: the others are numbered without gaps, in the mesh's order.
-static int close_ranks(brunt_fem_body *fem, int32_t mesh_nodes) {
-    if (fem->node_count == mesh_nodes) return 0;
+static int close_ranks(brunt_fem_body *fem, int32_t mesh_nodes, brunt_error *error) {
+    if (fem->node_count == mesh_nodes) return BRUNT_OK;
     int32_t *rank = brunt_alloc((size_t)(mesh_nodes + 1) * sizeof *rank), next = 0;
-    if (!rank) return -1;
+    if (!rank) return brunt_fail(error, BRUNT_FAILED, "body '%s': out of memory for its nodes", fem->name);
     for (int32_t n = 0; n < fem->node_count; n++) rank[fem->node_id[n]] = 1;
     for (int32_t i = 0; i < mesh_nodes; i++)
         if (rank[i]) rank[i] = next++;
     for (int32_t n = 0; n < fem->node_count; n++) fem->node_id[n] = rank[fem->node_id[n]];
     brunt_free(rank);
-    return 0;
+    return BRUNT_OK;
 }
 
 static bool is_graded(const brunt_body_def *def) {
@@ -29,7 +29,18 @@ static int check_numbers(const brunt_body_def *from, brunt_error *error) {
         REFUSE("bodies.%s.thickness: %g m is not a positive length", from->name, from->thickness);
     if (is_graded(from) && (sheet || from->mesh.node_count || from->shape.kind != BRUNT_BOX))
         REFUSE("bodies.%s.grading: only the mesh of a box of method fem is graded", from->name);
+    if (!from->mesh.node_count && !(from->size > 0))
+        REFUSE("bodies.%s.size: %g m is not a positive length", from->name, from->size);
     return BRUNT_OK;
+}
+
+static int mesh_of_shape(const brunt_body_def *from, int dimension, brunt_mesh *mesh, brunt_error *error) {
+    if (from->method == BRUNT_MEMBRANE)
+        return brunt_mesh_surface(&from->shape, from->element, from->size,
+                                  (const char(*)[BRUNT_NAME_LENGTH])from->faces, from->face_count, mesh, error);
+    if (is_graded(from))
+        return brunt_mesh_graded(&from->shape, dimension, from->element, from->size, from->grading, mesh, error);
+    return brunt_mesh_shape(&from->shape, dimension, from->element, from->size, mesh, error);
 }
 
 // The nodes' velocities at the start.
@@ -52,18 +63,9 @@ int brunt_make_elements(brunt_world *world, const brunt_world_def *def, const br
     brunt_mesh made = {0};
     brunt_material material;
     const bool sheet = from->method == BRUNT_MEMBRANE;
-    int status = BRUNT_OK;
-    if ((status = check_numbers(from, error))) return status;
-    const bool graded = is_graded(from);
-    if (!from->mesh.node_count) {
-        if (!(from->size > 0)) REFUSE("bodies.%s.size: %g m is not a positive length", from->name, from->size);
-        status = sheet
-                     ? brunt_mesh_surface(&from->shape, from->element, from->size,
-                                          (const char(*)[BRUNT_NAME_LENGTH])from->faces, from->face_count, &made, error)
-                 : graded ? brunt_mesh_graded(&from->shape, def->dimension, from->element, from->size, from->grading,
-                                              &made, error)
-                          : brunt_mesh_shape(&from->shape, def->dimension, from->element, from->size, &made, error);
-    }
+    int status = check_numbers(from, error);
+    if (status) return status;
+    if (!from->mesh.node_count) status = mesh_of_shape(from, def->dimension, &made, error);
     const brunt_mesh *mesh = from->mesh.node_count ? &from->mesh : &made;
     if (!status) status = brunt_mesh_check(mesh, &report->quality, error);
     if (status && error) {
@@ -72,8 +74,8 @@ int brunt_make_elements(brunt_world *world, const brunt_world_def *def, const br
         brunt_fail(error, error->code, "bodies.%s: %.900s", from->name, reason);
     }
     if (!status && brunt_element_is_membrane(mesh->kind) != sheet)
-        REFUSE("bodies.%s: elements of kind %s are not for method %s", from->name, brunt_element_name(mesh->kind),
-               sheet ? "membrane" : "fem");
+        status = brunt_fail(error, BRUNT_BAD_INPUT, "bodies.%s: elements of kind %s are not for method %s", from->name,
+                            brunt_element_name(mesh->kind), sheet ? "membrane" : "fem");
     const brunt_material_def *law = &def->materials[from->material];
     if (!status)
         status = sheet ? brunt_material_make_membrane(law, from->tension_only, &material, error)
@@ -82,7 +84,7 @@ int brunt_make_elements(brunt_world *world, const brunt_world_def *def, const br
     if (!status)
         status = def->axisymmetric ? brunt_fem_make_axisymmetric(from, &material, mesh, fem, error)
                                    : brunt_fem_make(from, &material, def->dimension, mesh, fem, error);
-    if (!status && close_ranks(fem, mesh->node_count)) status = brunt_fail(error, BRUNT_FAILED, "out of memory");
+    if (!status) status = close_ranks(fem, mesh->node_count, error);
     if (!status) {
         fem->index = index;
         report->least_step = fem->least_step;

@@ -20,12 +20,12 @@
 #include "io/study/run_record.h"
 #include "base/error.h"
 #include "base/hash.h"
-#include "io/file/input_file.h"
 #include "io/performance/machine.h"
 #include "base/memory.h"
 #include "io/file/output_folder.h"
 #include "io/performance/progress.h"
 #include "io/scene/scene_reader.h"
+#include "io/study/study_hash.h"
 #include "io/study/study_view.h"
 
 typedef struct case_state {
@@ -61,55 +61,16 @@ static bool stop_asked(const runner *r) { return r->options->stop && *r->options
 
 // ---------------------------------------------------------------------------------------------------- keys
 
-static uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t length) {
-    const unsigned char *p = bytes;
-    uint64_t word;
-    for (; length >= sizeof word; p += sizeof word, length -= sizeof word) {
-        memcpy(&word, p, sizeof word);
-        hash = brunt_hash_add(hash, word);
-    }
-    word = 0;
-    memcpy(&word, p, length);
-    return brunt_hash_add(brunt_hash_add(hash, word), length);
-}
-
-static int hash_file(const char *path, uint64_t *hash, brunt_error *error) {
-    unsigned char block[1 << 14];
-    const char *why;
-    FILE *file = brunt_input_open(path, &why);
-    if (!file) return brunt_fail(error, BRUNT_IO_ERROR, "%s: cannot be read: %s", path, why);
-    for (size_t got; (got = fread(block, 1, sizeof block, file)) > 0;) *hash = hash_bytes(*hash, block, got);
-    bool failed = ferror(file);
-    fclose(file);
-    return failed ? brunt_fail(error, BRUNT_IO_ERROR, "%s: cannot be read", path) : BRUNT_OK;
-}
-
 // Programs are large and mostly the same one.
 static int hash_program(runner *r, const char *path, uint64_t *hash, brunt_error *error) {
     if (strcmp(r->hashed, path) != 0) {
         r->hashed_value = 0;
-        int status = hash_file(path, &r->hashed_value, error);
+        int status = study_hash_file(path, &r->hashed_value, error);
         if (status) return status;
         snprintf(r->hashed, sizeof r->hashed, "%s", path);
     }
     *hash = brunt_hash_add(*hash, r->hashed_value);
     return BRUNT_OK;
-}
-
-static int hash_meshes(const brunt_scene *scene, uint64_t *hash, brunt_error *error) {
-    const scene_tree *tree = scene->resolved;
-    const scene_node *bodies = brunt_tree_child(tree->root, "bodies");
-    const char *slash = strrchr(scene->source, '/');
-    int status = BRUNT_OK;
-    for (const scene_node *body = bodies ? bodies->first : NULL; body && !status; body = body->next) {
-        const char *mesh = brunt_text_of(body, "mesh", NULL);
-        if (!mesh) continue;
-        char path[BRUNT_PATH_LENGTH];
-        int folder = slash && *mesh != '/' ? (int)(slash + 1 - scene->source) : 0;
-        snprintf(path, sizeof path, "%.*s%s", folder, scene->source, mesh);
-        status = hash_file(path, hash, error);
-    }
-    return status;
 }
 
 static const char *program_of(const runner *r, const study_job *job) {
@@ -125,8 +86,8 @@ static int hash_scene(runner *r, const study_job *job, uint64_t *hash, brunt_err
     FILE *out = open_memstream(&text, &length);
     int status = out ? brunt_scene_write(&scene, out) : BRUNT_IO_ERROR;
     if (out) fclose(out);
-    if (!status) *hash = hash_bytes(*hash, text, length);
-    status = status ? brunt_fail(error, status, "out of memory") : hash_meshes(&scene, hash, error);
+    if (!status) *hash = study_hash_bytes(*hash, text, length);
+    status = status ? brunt_fail(error, status, "out of memory") : study_hash_meshes(&scene, hash, error);
     r->dimension = scene.world.dimension;
     free(text);
     brunt_scene_free(&scene);
@@ -141,7 +102,7 @@ static void name_case(const brunt_study *study, const brunt_study_case *c, char 
     for (int32_t a = 0; a < study->axis_count; a++) {
         const char *label = study->axes[a].values[c->value[a]].label;
         snprintf(all + strlen(all), sizeof all - strlen(all), "%s%s", a ? "," : "", label);
-        hash = hash_bytes(hash, label, strlen(label));
+        hash = study_hash_bytes(hash, label, strlen(label));
         changed |= strchr(label, ',') || strchr(label, '_');
     }
     for (char *p = all; *p; p++) {
@@ -169,7 +130,7 @@ static int prepare_case(runner *r, int32_t index, brunt_error *error) {
     state->key = brunt_hash_add(state->key, (uint64_t)job.threads);
     char machine[128]; // times of another one do not go with those of this
     brunt_machine_name(machine);
-    state->key = hash_bytes(state->key, machine, strlen(machine));
+    state->key = study_hash_bytes(state->key, machine, strlen(machine));
     brunt_study_job_free(&job);
     return status;
 }

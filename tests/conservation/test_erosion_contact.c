@@ -162,7 +162,7 @@ static double deepest_node(const brunt_world *world, double limit, int *count) {
     for (int k = 0; k < 2; k++) {
         const brunt_fem_body *me = &world->bodies.fem[k], *other = &world->bodies.fem[!k];
         brunt_faces faces;
-        ck_assert_int_eq(brunt_fem_faces(other, &faces), 0);
+        ck_assert_int_eq(brunt_fem_faces(other, &faces, NULL), 0);
         for (int32_t n = 0; n < me->node_count; n++) {
             const real *at = brunt_fem_node(me, n);
             const double x[3] = {(double)at[0], (double)at[1], (double)at[2]};
@@ -221,7 +221,7 @@ START_TEST(surface_is_that_of_the_elements) {
         for (int k = 0; k < 2; k++) {
             const brunt_fem_body *fem = &world->bodies.fem[k];
             brunt_faces faces;
-            ck_assert_int_eq(brunt_fem_faces(fem, &faces), 0);
+            ck_assert_int_eq(brunt_fem_faces(fem, &faces, NULL), 0);
             ck_assert_int_eq(faces.count, s->face_end[k] - s->face_range[k]);
             int32_t(*list)[4] = skin_faces(s, k);
             qsort(faces.node, (size_t)faces.count, sizeof *faces.node, by_nodes);
@@ -478,7 +478,7 @@ static double deepest_particle(brunt_world *world, double limit, int *count) {
     const int body = world->bodies.mpm[0].index;
     double *x = world_field(world, body, "position"), deepest = 0;
     brunt_faces faces;
-    ck_assert_int_eq(brunt_fem_faces(plate, &faces), 0);
+    ck_assert_int_eq(brunt_fem_faces(plate, &faces, NULL), 0);
     *count = 0;
     for (int64_t i = 0; i < brunt_body_particles(world, body); i++)
         for (int32_t s = 0; s < plate->slots; s++) {

@@ -128,7 +128,7 @@ START_TEST(bodies_have_the_mass_of_the_circle) {
         ck_assert_double_eq_tol(mass, exact, tolerance * exact);
         ck_assert_double_eq_tol(moment, exact / 2, tolerance * exact); // rows of the consistent matrix keep the centre
         brunt_faces faces;
-        ck_assert_int_eq(brunt_fem_faces(&body, &faces), 0);
+        ck_assert_int_eq(brunt_fem_faces(&body, &faces, NULL), 0);
         ck_assert_int_eq(faces.count, far ? 20 : 15);
         brunt_faces_free(&faces);
         brunt_fem_free(&body);

@@ -119,7 +119,7 @@ START_TEST(faces_are_the_surface_and_point_outward) {
         brunt_mesh mesh = box_mesh(kind, n, 1, 0.1, false);
         brunt_fem_body body = body_of(&mesh, (options){0});
         brunt_faces faces;
-        ck_assert_int_eq(brunt_fem_faces(&body, &faces), 0);
+        ck_assert_int_eq(brunt_fem_faces(&body, &faces, NULL), 0);
         ck_assert_int_eq(faces.count, dim == 2 ? 4 * n : kind == BRUNT_HEX8 ? 6 * n * n : 12 * n * n);
         double volume = 0; // by the divergence theorem, of a box with flat sides
         int64_t last = -1;

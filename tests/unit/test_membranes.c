@@ -69,7 +69,7 @@ START_TEST(geometry_is_that_of_the_plane) {
         ck_assert_double_eq_tol(volume, 1.5 * 0.02, tolerance);
         ck_assert_double_eq_tol(mass, 1.5 * 0.02 * density, tolerance * density);
         brunt_faces faces;
-        ck_assert_int_eq(brunt_fem_faces(&body, &faces), 0);
+        ck_assert_int_eq(brunt_fem_faces(&body, &faces, NULL), 0);
         ck_assert_int_eq(faces.count, elements);
         for (int32_t f = 0; f < faces.count; f++)
             for (int k = 0; k < 4; k++)
@@ -96,7 +96,7 @@ START_TEST(layers_of_the_same_nodes_are_two_faces) {
     memcpy(mesh.elements, (int32_t[]){0, 1, 2, 0, 2, 1}, 6 * sizeof *mesh.elements);
     brunt_fem_body body = sheet_of(&mesh, (sheet_options){0});
     brunt_faces faces;
-    ck_assert_int_eq(brunt_fem_faces(&body, &faces), 0);
+    ck_assert_int_eq(brunt_fem_faces(&body, &faces, NULL), 0);
     ck_assert_int_eq(faces.count, 2);
     brunt_faces_free(&faces);
     brunt_fem_free(&body);
