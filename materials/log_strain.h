@@ -30,20 +30,28 @@ static inline real log_strain_near(double limit) {
     return (real)(g * g * (1 - (sizeof(real) == 4 ? 1e-5 : 1e-13)));
 }
 
+// A register's worth of reals: of vectors that take several, the compiler would spill all that nine components leave.
+#define LOG_STRAIN_REGISTER (__BIGGEST_ALIGNMENT__ < BRUNT_LANE_BYTES ? __BIGGEST_ALIGNMENT__ : BRUNT_LANE_BYTES)
+typedef real register_reals __attribute__((vector_size(LOG_STRAIN_REGISTER), aligned(sizeof(real)), may_alias));
+typedef lane_int register_signs __attribute__((vector_size(LOG_STRAIN_REGISTER)));
+enum { LOG_STRAIN_STEP = LOG_STRAIN_REGISTER / sizeof(real) };
+
 // Whether all points from `begin` to `end` are that near to the identity, or are no numbers, which no limit holds for;
 // F: an array for each component, rows one after the other. Signs are gathered: many machines compare vectors piece by
 // piece.
 BRUNT_INLINE bool log_strain_all_near_dim(int dim, real *const *F, int64_t begin, int64_t end, real near) {
-    lane_mask negative = lanes_set(-1) < 0;
-    for (int64_t s = begin; s < end; s += BRUNT_LANES) {
-        lanes excess = lanes_set(-near);
+    register_signs negative = ~(register_signs){0};
+    for (int64_t s = begin; s < end; s += LOG_STRAIN_STEP) {
+        register_reals excess = (register_reals){0} - near;
         for (int c = 0; c < dim * dim; c++) {
-            const lanes g = lanes_load(F[c] + s) - (real)(c % (dim + 1) == 0);
+            const register_reals g = *(const register_reals *)(F[c] + s) - (real)(c % (dim + 1) == 0);
             excess += g * g;
         }
-        negative &= (lane_mask)excess;
+        negative &= (register_signs)excess;
     }
-    return !lanes_any(negative >= 0);
+    bool all = true;
+    for (int l = 0; l < LOG_STRAIN_STEP; l++) all = all && negative[l] < 0;
+    return all;
 }
 static inline bool log_strain_all_near(int dim, real *const *F, int64_t begin, int64_t end, double limit) {
     const real near = log_strain_near(limit);
