@@ -6,7 +6,8 @@
     python3 tests/structure.py terms    where the terms of the field are found among the names of files and folders
 
 Arrows against the order: includes of a folder that stands later in ORDER. Circles: files that include each other, by way of
-headers. Functions are counted by their lines from the name to the closing brace at the line's start. Lines are repeated where six
+headers. Functions are counted by their lines from the name to the closing brace at the line's start
+(or at the end of their one line). Lines are repeated where six
 or more stand in two places.
 """
 import re
@@ -115,15 +116,16 @@ def functions(path):
     """(name, lines, parameters) of each function that is defined in a file. The formatter ends each by a brace at the line's start."""
     text = code(path)
     start = 0
-    for end in re.finditer(r"^\}.*$", text, re.M):
-        part = text[start : end.start()]
+    for end in re.finditer(r"^(?:\}.*|\w.*\) \{.*\})$", text, re.M):  # the latter: of one line
+        close = end.start() if text[end.start()] == "}" else end.end() - 1
+        part = text[start:close]
         brace = re.search(r"\{", part[part.rfind(";", 0, part.find("{") + 1) + 1 :])
         first = part.rfind(";", 0, part.find("{") + 1) + 1
         head = part[first : first + brace.start()] if brace else ""
         found = parameters(head)
         if found:
             begin = start + first + len(head) - len(head.lstrip())
-            yield found[0], text.count("\n", begin, end.start()) + 1, found[1]
+            yield found[0], text.count("\n", begin, close) + 1, found[1]
         start = end.end()
 
 
