@@ -25,19 +25,27 @@ static void watch_spread(brunt_world *world) {
     }
 }
 
+// The share of all energy that has been made, of a sum that should have been lost.
+static double made_share(const brunt_energy *energy, double lost) {
+    return energy->reference > 0 ? fmax(-lost / energy->reference, 0) : 0;
+}
+
 static int check_energy(brunt_world *world, brunt_error *error) {
     brunt_energy energy;
     brunt_world_energy(world, &energy);
-    // Energy that the transfers make is as wrong as energy that is not accounted for.
-    const double made =
-        world->bodies.mpm_count && energy.reference > 0 ? -world->ledger.transfer / energy.reference : 0;
-    if (!(fabs(energy.error_relative) > world->settings.energy_limit || made > world->settings.energy_limit))
-        return BRUNT_OK;
-    char reason[240], transfers[80] = "";
+    // Energy that transfers or an integrator make is as wrong as energy that is not accounted for.
+    const double limit = world->settings.energy_limit;
+    const double transfers = made_share(&energy, world->ledger.transfer), scheme = made_share(&energy, energy.scheme);
+    if (!(fabs(energy.error_relative) > limit || transfers > limit || scheme > limit)) return BRUNT_OK;
+    char reason[320], makers[160] = "";
+    int length = 0;
     if (world->bodies.mpm_count)
-        snprintf(transfers, sizeof transfers, ", and the transfers have made %.3g %%", 100 * fmax(made, 0));
+        length = snprintf(makers, sizeof makers, ", and the transfers have made %.3g %%", 100 * transfers);
+    if (world->plan.implicit)
+        snprintf(makers + length, sizeof makers - (size_t)length,
+                 ", and the integrator has made %.3g %% (shorter steps, or euler, make less)", 100 * scheme);
     snprintf(reason, sizeof reason, "the energy error is %.3g %% of %.3g J%s; time.energy_limit allows %.3g %%",
-             100 * energy.error_relative, energy.reference, transfers, 100 * world->settings.energy_limit);
+             100 * energy.error_relative, energy.reference, makers, 100 * limit);
     return brunt_fail_step(world, NULL, error, reason);
 }
 
@@ -59,12 +67,12 @@ static int watch_creep(brunt_world *world, brunt_error *error) {
     return ends ? BRUNT_FAILED : BRUNT_OK;
 }
 
-static int watch_energy(brunt_world *world, brunt_error *error) {
+static int watch_energy(brunt_world *world, int every, brunt_error *error) {
     const struct brunt_clock *now = &world->clock;
     if (!isfinite(world->ledger.kinetic) || !isfinite(world->ledger.fem_kinetic) || !isfinite(now->next_dt))
         return brunt_fail_step(world, NULL, error, "the kinetic energy is not a finite number");
     if (world->bodies.has_fluid && (int64_t)now->steps % SPREAD_CHECK == 0) watch_spread(world);
-    if ((int64_t)now->steps % ENERGY_CHECK != 0 || !isfinite(world->settings.energy_limit)) return BRUNT_OK;
+    if ((int64_t)now->steps % every != 0 || !isfinite(world->settings.energy_limit)) return BRUNT_OK;
     return check_energy(world, error);
 }
 
@@ -74,7 +82,7 @@ int brunt_pass_watch(brunt_world *world, brunt_step *step, brunt_error *error) {
     struct brunt_clock *now = &world->clock;
     now->next_dt = brunt_stable_step(world);
     if (world->bodies.fem_count && isfinite(now->next_dt)) now->next_dt = brunt_held_step(now, now->next_dt);
-    const int status = watch_energy(world, error);
+    const int status = watch_energy(world, ENERGY_CHECK, error);
     return status ? status : watch_creep(world, error);
 }
 
@@ -83,5 +91,5 @@ int brunt_pass_watch_implicit(brunt_world *world, brunt_step *step, brunt_error 
     struct brunt_clock *now = &world->clock;
     const double last = now->newton_last.cuts > 0 ? step->dt : now->next_dt;
     now->next_dt = fmin(world->settings.fixed_step, 2 * last);
-    return watch_energy(world, error);
+    return watch_energy(world, 1, error); // there may be few steps
 }
