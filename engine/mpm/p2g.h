@@ -37,6 +37,7 @@ typedef struct p2g_tile {
     real term[3][4][BRUNT_LANES][8];
     real weight[3][4][BRUNT_LANES];
     int32_t node[BRUNT_LANES];
+    lanes momentum[3][3]; // along each axis: what does not grow with an offset goes along the first, others have 0
 } __attribute__((aligned(64))) p2g_tile;
 
 static void p2g_arrays_of(brunt_body *body, p2g_arrays *f) {
@@ -84,8 +85,8 @@ BRUNT_INLINE void stage_tile(p2g_tile *tile, const p2g_arrays *f, int64_t s, con
     const int dim = kind.dim, n = kind.order + 1;
     const real h = grid->h, inv_h = grid->inv_h;
     lanes m = lanes_load(f->mass + s), impulse = -dt * lanes_load(f->volume + s);
-    lanes mv[3][3] = {{{0}}}, T[3], hoop = (lanes){0}; // what does not grow with an offset goes along the first axis
-    for (int r = 0; r < dim; r++) mv[0][r] = m * lanes_load(f->v[r] + s);
+    lanes T[3], hoop = (lanes){0};
+    for (int r = 0; r < dim; r++) tile->momentum[0][r] = m * lanes_load(f->v[r] + s);
     if (kind.form == AXISYMMETRIC) hoop = impulse * lanes_load(f->tau[2] + s) / lanes_load(f->x[0] + s);
     for (int l = 0; l < BRUNT_LANES; l++) tile->node[l] = node_of_bin(f->bin[s + l], kind);
     for (int a = 0; a < dim; a++) {
@@ -100,7 +101,7 @@ BRUNT_INLINE void stage_tile(p2g_tile *tile, const p2g_arrays *f, int64_t s, con
             lanes column[8] = {0}, d = ((real)i - u) * h;
             if (a == 0) column[0] = w[i] * m;
             for (int r = 0; r < dim; r++) {
-                lanes q = mv[a][r];
+                lanes q = tile->momentum[a][r];
                 if (kind.transfer == BRUNT_APIC) q += mC[r] * d;
                 column[BRUNT_NODE_VELOCITY + r] = w[i] * q;
                 column[BRUNT_NODE_OLD + r] = g[i] * T[r];
@@ -188,6 +189,7 @@ BRUNT_INLINE void p2g(brunt_body *body, int32_t b, real dt, transfer_kind kind) 
     memset(buffer, 0, (size_t)grid->span_nodes * 8 * sizeof(real));
 
     p2g_tile tile;
+    memset(tile.momentum, 0, sizeof tile.momentum);
     node_part sum[27][NODE_PARTS]; // of the bin's nodes, where they fit the registers
     for (int q = 0; sums_in_registers(kind) && q < nodes_of_bin(kind); q++)
         for (int h = 0; h < NODE_PARTS; h++) sum[q][h] = (node_part){0};
