@@ -2,10 +2,11 @@
 # Where the time of an implicit step goes, by size, length of the step, solver and threads: runs a soft block that sags on a floor,
 # of material points and of elements, and writes bench/studies/implicit_table.md.
 #
-#   python3 bench/studies/implicit_table.py [-o FILE] [-m MOST_NODES] [-p PATTERN] [BRUNT]
+#   python3 bench/studies/implicit_table.py [-o FILE] [-m MOST_NODES] [-l SECONDS] [-p PATTERN] [BRUNT]
 #
-# -m: no sizes beyond that many nodes. -p: only runs whose first columns match. BRUNT: the program; default build/brunt. With all
-# sizes some twenty minutes and 3 GB. A direct solution that is expected to take more than a minute has no row.
+# -m: no sizes beyond that many nodes. -l: no direct solution that is expected to take longer; default 5 s. -p: only runs whose first
+# columns match. BRUNT: the program; default build/brunt. The file is written anew after each run, small sizes first; all of them take
+# some ten minutes and 2 GB.
 import getopt
 import json
 import os
@@ -15,7 +16,7 @@ import sys
 import tempfile
 
 STEPS = 2
-LIMIT = 60  # [s] expected of one direct solution
+SMALL = 5000  # nodes: up to there all lengths of steps and one thread, beyond two of them and two threads
 CELL = 0.05
 WAVE = 36.69  # [m/s] of the material below
 
@@ -94,8 +95,9 @@ HEAD = """# Time of implicit steps, measured
 Written by `python3 bench/studies/implicit_table.py`: a block of neo-Hookean material sags on a floor under its weight, two steps of
 each length; material points with quadratic kernels (4 a cell in 2D, 8 in 3D), or elements as wide as a cell. Milliseconds an iteration
 of Newton's method by pass (wall clock of a shared machine: compare neighbours), `step` the whole step over its iterations; iterations
-a step; iterations of conjugate gradients to 1e-3 for each of Newton's; peak of the process, its checkpoint among it. `auto` is what
-the program chooses by itself. Direct solutions that would take more than a minute were not made.
+a step; iterations of conjugate gradients to 1e-3 for each of Newton's; peak of the process, its checkpoint among it. Two threads:
+of `evaluate` and `matrix` the time that the slower one was at work. Sizes without a row for `direct` would have taken too long (-l). A run that
+is ended early leaves the smaller sizes.
 
 | body | nodes | c dt/h | solver | threads | Newton | CG | """ + " | ".join(PASSES) + """ | step | MB |
 |---|---|---|---|---|---|---|""" + "---|" * len(PASSES) + """---|---|
@@ -104,38 +106,47 @@ the program chooses by itself. Direct solutions that would take more than a minu
 
 def cheapest(rows):
     """By body, size and step: the solver whose pass takes least."""
-    lines = ["", "Cheapest pass `solve` on one thread:", "", "| body | nodes | c dt/h | direct [ms] | pcg [ms] | cheaper |",
-             "|---|---|---|---|---|---|"]
-    keys = dict.fromkeys(tuple(r[:3]) for r in rows)
-    for key in keys:
+    lines = ["", "## The cheaper solver", "", "Pass `solve` on one thread [ms an iteration]:", "",
+             "| body | nodes | c dt/h | direct | pcg | cheaper |", "|---|---|---|---|---|---|"]
+    for key in dict.fromkeys(tuple(r[:3]) for r in rows):
         times = {r[3]: float(r[9]) for r in rows if tuple(r[:3]) == key and r[4] == "1"}
+        if len(times) < 2:
+            continue
         best = min(times, key=times.get)
-        lines.append("| %s | %s | %s |" % (" | ".join(key), " | ".join(
-            "%.3g" % times[s] if s in times else "" for s in ("direct", "pcg")), best))
+        lines.append("| %s | %s | %s | %s by %.2g |" % (" | ".join(key), "%.3g" % times["direct"], "%.3g" % times["pcg"], best,
+                                                       max(times.values()) / times[best]))
     return "\n".join(lines) + "\n"
 
 
+def write(path, rows):
+    order = list(MODELS)
+    rows = sorted(rows, key=lambda r: order.index(r[0]))
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(HEAD + "".join("| " + " | ".join(r) + " |\n" for r in rows) + cheapest(rows))
+
+
+def plan(most, limit):
+    """Model, nodes, c dt/h, solver, threads, scene: sizes from small to large."""
+    for size in range(4):
+        for model, (dim, method, sides) in MODELS.items():
+            nodes = (sides[size] + (3 if "points" in model else 1)) ** dim
+            for courant in (1, 10, 100, 1000) if nodes < SMALL else (10, 100):
+                for solver, threads in (("pcg", 1), ("direct", 1), ("pcg", 2)):
+                    too_long = solver == "direct" and expected(dim, nodes) > limit
+                    if nodes <= most and not too_long and (threads == 1 or nodes > SMALL):
+                        yield model, nodes, courant, solver, threads, scene(dim, method, sides[size], courant, solver)
+
+
 def main():
-    options, rest = getopt.getopt(sys.argv[1:], "o:m:p:")
+    options, rest = getopt.getopt(sys.argv[1:], "o:m:l:p:")
     options = dict(options)
     brunt = os.path.abspath(rest[0] if rest else "build/brunt")
-    most, pattern = float(options.get("-m", 1e9)), options.get("-p", "")
     rows = []
-    for model, (dim, method, sides) in MODELS.items():
-        for side in sides:
-            nodes = (side + (3 if "points" in model else 1)) ** dim
-            if nodes > most:
-                continue
-            for courant in (1, 10, 100, 1000):
-                for solver, threads in (("direct", 1), ("pcg", 1), ("pcg", 2)):
-                    name = "%s %d %g %s %d" % (model, nodes, courant, solver, threads)
-                    if not re.search(pattern, name) or solver == "direct" and expected(dim, nodes) > LIMIT:
-                        continue
-                    summary = run(brunt, scene(dim, method, side, courant, solver), threads)
-                    rows.append(row(model, summary.get("nodes") or nodes, courant, solver, threads, summary))
-                    print(" ".join(rows[-1]), flush=True)
-    with open(options.get("-o", "bench/studies/implicit_table.md"), "w", encoding="utf-8") as file:
-        file.write(HEAD + "".join("| " + " | ".join(r) + " |\n" for r in rows) + cheapest(rows))
+    for *key, text in plan(float(options.get("-m", 1e9)), float(options.get("-l", 5))):
+        if re.search(options.get("-p", ""), "%s %d %g %s %d" % tuple(key)):
+            rows.append(row(*key, run(brunt, text, key[4])))
+            print(" ".join(rows[-1]), flush=True)
+            write(options.get("-o", "bench/studies/implicit_table.md"), rows)
 
 
 main()
