@@ -183,7 +183,7 @@ START_TEST(enumerators) {
     REFUSED(given->mesh.kind = (brunt_element_kind)99, "bodies.given.mesh: kind: there is no choice 99");
     REFUSED(def.materials[0].failure_action = (brunt_failure_action)2, "failure.action: there is no choice 2");
     REFUSED(def.planes[0].condition = (brunt_condition)4, "condition: there is no choice 4");
-    REFUSED(held->action = (brunt_group_action)5, "action: there is no choice 5");
+    REFUSED(held->action = (brunt_group_action)6, "action: there is no choice 6");
     ck_assert_str_eq(brunt_element_name((brunt_element_kind)6), "unknown");
     ck_assert_int_eq(brunt_element_nodes((brunt_element_kind)-1) + brunt_element_dimension((brunt_element_kind)6), 0);
     ck_assert(!brunt_element_is_membrane((brunt_element_kind)100));
