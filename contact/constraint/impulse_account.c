@@ -19,6 +19,10 @@ void brunt_impulse_account_book(brunt_impulse_account *action, double *loss, con
     }
 }
 
+void brunt_impulse_account_reaction(brunt_impulse_account *account, const double linear[3], const double angular[3]) {
+    for (int a = 0; a < 3; a++) account->impulse[a] += linear[a], account->angular[a] += angular[a];
+}
+
 double brunt_impulse_account_node(brunt_contact_surface *s, brunt_impulse_account *action,
                                   const brunt_node_impulse *impulse, bool second) {
     const int32_t n = impulse->node;

@@ -20,6 +20,9 @@ void brunt_impulse_account_add(brunt_impulse_account *sum, const brunt_impulse_a
 // with `carrier`. What it dissipates is added to `loss`: the action's normal_loss or its friction_loss.
 void brunt_impulse_account_book(brunt_impulse_account *action, double *loss, const double J[3], const double x[3],
                                 const double old[3], const double now[3], const double carrier[3]);
+// Books what a symmetry plane bears: an impulse [N s] and its moment about the origin [N m s] on the bodies. Nothing
+// moves across the plane, so that it does no work and loses nothing.
+void brunt_impulse_account_reaction(brunt_impulse_account *account, const double linear[3], const double angular[3]);
 
 // An impulse on a node of the surface [N s]: on components with prescribed motion what their support takes.
 typedef struct brunt_node_impulse {

@@ -4,6 +4,7 @@
 // spare real of a node keeps the mass that the body itself has there, for the energy and momentum ledgers.
 #include "contact/planes/symmetry.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 // Nodes further than the kernel reaches from the plane have no partner with mass on the other side; two layers cover a
@@ -24,8 +25,7 @@ static void sum_momentum(const real *n, const double x[3], int dim, double facto
     }
 }
 
-void brunt_symmetry_fold(brunt_body *body, const brunt_symmetry_plane *mirror, double taken,
-                         brunt_impulse_account *action) {
+static void fold(brunt_body *body, const brunt_symmetry_plane *mirror, double taken, brunt_impulse_account *account) {
     const brunt_grid *grid = &body->grid;
     const int dim = grid->dim, axis = mirror->axis;
     double before[3] = {0}, after[3] = {0}, turn_before[3] = {0}, turn_after[3] = {0};
@@ -69,31 +69,106 @@ void brunt_symmetry_fold(brunt_body *body, const brunt_symmetry_plane *mirror, d
             sum_momentum(m, y, dim, (double)(m[BRUNT_NODE_SPARE] / m[0]), taken, after, turn_after);
         }
     }
-    for (int a = 0; a < 3; a++) {
-        action->impulse[a] += after[a] - before[a];
-        action->angular[a] += turn_after[a] - turn_before[a];
+    for (int a = 0; a < 3; a++) after[a] -= before[a], turn_after[a] -= turn_before[a];
+    brunt_impulse_account_reaction(account, after, turn_after);
+}
+
+// ------------------------------------------------------------------------------------------ between two mirrors
+
+static double own_share(const real *n) { return n[0] > 0 ? (double)(n[BRUNT_NODE_SPARE] / n[0]) : 0; }
+
+// What a mirror has added to a node goes on to the node's images by the other: that with the most mass has it all.
+static void share_sums(const brunt_body *body, const brunt_symmetry_plane mirrors[2], const int32_t at[3], double taken,
+                       double sums[4][3]) {
+    const brunt_grid *grid = &body->grid;
+    const int axis = mirrors[0].axis;
+    int32_t image[BRUNT_MAX_IMAGES][3];
+    real sign[BRUNT_MAX_IMAGES][3], *node[BRUNT_MAX_IMAGES];
+    const int count = brunt_symmetry_images(mirrors, 2, at, LAYERS, image, sign);
+    int from = 0;
+    for (int i = 0; i < count; i++) {
+        node[i] = brunt_grid_node(grid, image[i]);
+        if (node[i] && image[i][axis] < at[axis]) return; // those of that node
+        if (node[i] && node[i][0] > node[from][0]) from = i;
     }
+    for (int i = 0; i < count && node[from][0] > 0; i++) {
+        double x[3] = {0};
+        if (!node[i]) continue;
+        for (int a = 0; a < grid->dim; a++) x[a] = grid->origin[a] + (double)grid->h * image[i][a];
+        sum_momentum(node[i], x, grid->dim, own_share(node[i]), taken, sums[0], sums[1]);
+        for (int r = 0; r < BRUNT_NODE_SPARE && i != from; r++) {
+            const bool across = r == BRUNT_NODE_VELOCITY + axis || r == BRUNT_NODE_OLD + axis;
+            node[i][r] = (across ? sign[i][axis] * sign[from][axis] : 1) * node[from][r];
+        }
+        if (sign[i][axis] == 0) node[i][BRUNT_NODE_VELOCITY + axis] = node[i][BRUNT_NODE_OLD + axis] = 0;
+        sum_momentum(node[i], x, grid->dim, own_share(node[i]), taken, sums[2], sums[3]);
+    }
+}
+
+static void share_between(brunt_body *body, const brunt_symmetry_plane mirrors[2], double taken,
+                          brunt_impulse_account *account) {
+    const brunt_grid *grid = &body->grid;
+    const int axis = mirrors[0].axis;
+    const int32_t least = (mirrors[0].node < mirrors[1].node ? mirrors[0] : mirrors[1]).node - LAYERS,
+                  most = (mirrors[0].node < mirrors[1].node ? mirrors[1] : mirrors[0]).node + LAYERS;
+    double sums[4][3] = {{0}}; // linear and angular, before and after
+    for (int32_t s = 0; s < grid->slot_count; s++) {
+        const int32_t *coord = grid->slots[s].coord;
+        if (coord[axis] * grid->side > most || (coord[axis] + 1) * grid->side <= least) continue;
+        for (int node = 0; node < BRUNT_BLOCK_NODES; node++) {
+            int local[3];
+            int32_t at[3] = {0};
+            brunt_node_local(grid, node, local);
+            for (int a = 0; a < grid->dim; a++) at[a] = coord[a] * grid->side + local[a];
+            if (at[axis] >= least && at[axis] <= most) share_sums(body, mirrors, at, taken, sums);
+        }
+    }
+    for (int a = 0; a < 3; a++) sums[2][a] -= sums[0][a], sums[3][a] -= sums[1][a];
+    brunt_impulse_account_reaction(account, sums[2], sums[3]);
+}
+
+void brunt_symmetry_fold(brunt_body *body, const brunt_symmetry_plane *mirrors, int mirror_count, double taken,
+                         brunt_impulse_account *const *account) {
+    for (int m = 0; m < mirror_count; m++) {
+        fold(body, &mirrors[m], taken, account[m]);
+        for (int k = 0; k < m; k++) {
+            const int32_t apart = mirrors[k].axis == mirrors[m].axis ? abs(mirrors[k].node - mirrors[m].node) : 0;
+            if (apart > 0 && apart <= 2 * LAYERS)
+                share_between(body, (brunt_symmetry_plane[2]){mirrors[k], mirrors[m]}, taken, account[k]);
+        }
+    }
+}
+
+// ------------------------------------------------------------------------------------------ images
+
+// Adds the images of those there are by one mirror; where it goes through one, nothing moves them along its axis.
+static int add_images(const brunt_symmetry_plane *mirror, int near, int32_t image[BRUNT_MAX_IMAGES][3],
+                      real sign[BRUNT_MAX_IMAGES][3], int count) {
+    const int axis = mirror->axis, had = count;
+    for (int k = 0; k < had && count < BRUNT_MAX_IMAGES; k++) {
+        int32_t to[3] = {image[k][0], image[k][1], image[k][2]};
+        to[axis] = 2 * mirror->node - image[k][axis];
+        if (abs(to[axis] - image[k][axis]) > 2 * near) continue;
+        int found = 0;
+        while (found < count && memcmp(image[found], to, sizeof to) != 0) found++;
+        if (found == k)
+            for (int i = 0; i < count; i++) sign[i][axis] = 0;
+        if (found < count) continue;
+        memcpy(image[count], to, sizeof to);
+        memcpy(sign[count], sign[k], sizeof sign[k]);
+        sign[count++][axis] *= -1;
+    }
+    return count;
 }
 
 int brunt_symmetry_images(const brunt_symmetry_plane *mirrors, int mirror_count, const int32_t node[3], int near,
                           int32_t image[BRUNT_MAX_IMAGES][3], real sign[BRUNT_MAX_IMAGES][3]) {
-    int count = 1;
+    int count = 1, before = 0;
     memcpy(image[0], node, sizeof image[0]);
     for (int a = 0; a < 3; a++) sign[0][a] = 1;
-    for (int m = 0; m < mirror_count; m++) {
-        int axis = mirrors[m].axis;
-        int32_t mirrored = 2 * mirrors[m].node - node[axis];
-        if (mirrored - node[axis] > 2 * near || node[axis] - mirrored > 2 * near) continue;
-        if (mirrored == node[axis]) { // its own image: nothing moves it along the axis
-            for (int k = 0; k < count; k++) sign[k][axis] = 0;
-            continue;
-        }
-        for (int k = 0, had = count; k < had && count < BRUNT_MAX_IMAGES; k++, count++) {
-            memcpy(image[count], image[k], sizeof image[k]);
-            memcpy(sign[count], sign[k], sizeof sign[k]);
-            image[count][axis] = mirrored;
-            sign[count][axis] = -sign[k][axis];
-        }
+    while (count > before) {
+        before = count;
+        for (int m = 0; m < mirror_count; m++) count = add_images(&mirrors[m], near, image, sign, count);
     }
     return count;
 }

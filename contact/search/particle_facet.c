@@ -17,7 +17,7 @@
 #include "mpm/particles.h"
 #include "base/parallel.h"
 
-enum { MAX_NODES = 64, IMAGE_LAYERS = 2, MAX_PLANES = 16 };
+enum { MAX_NODES = 64, IMAGE_LAYERS = 2 };
 
 // Share of what the load of a step brings that a shallow depth may be pushed out against it. Particles that flow along
 // a surface are a little behind it all the time: with all of it, as nodes have, a nose that is pushed through a plate
@@ -32,7 +32,7 @@ typedef struct search_job {
     int k; // of the bodies of material points
     int32_t box;
     brunt_constraint_set *constraints;
-    brunt_symmetry_plane symmetry[MAX_PLANES]; // that act on the body
+    brunt_symmetry_plane symmetry[BRUNT_MAX_PLANES]; // that act on the body
     int symmetry_count;
 } search_job;
 
@@ -159,9 +159,10 @@ static void search_from_blocks(void *context, int64_t begin, int64_t end, int wo
 // ------------------------------------------------------------------------------------------ constraints
 
 // The mirrors that act on a body.
-static int symmetry_of(const brunt_contact_context *m, const brunt_body *body, brunt_symmetry_plane out[MAX_PLANES]) {
+static int symmetry_of(const brunt_contact_context *m, const brunt_body *body,
+                       brunt_symmetry_plane out[BRUNT_MAX_PLANES]) {
     int count = 0;
-    for (int k = 0; k < m->mirror_count && count < MAX_PLANES; k++) {
+    for (int k = 0; k < m->mirror_count && count < BRUNT_MAX_PLANES; k++) {
         int on = m->mirrors[k].wall < 0 ? -1 : m->walls[m->mirrors[k].wall].body;
         if (on < 0 || on == body->index) out[count++] = m->mirrors[k];
     }
@@ -314,7 +315,7 @@ static void add_moment(const double x[3], const double P[3], double factor, doub
 // What the body's own share of the nodes has got, less what the points gave it, is the mirrors'.
 static void account_symmetry(const brunt_contact_context *m, const brunt_body *body, int k, double linear[3],
                              double angular[3], const brunt_constraint_set *constraints) {
-    brunt_symmetry_plane mirrors[MAX_PLANES];
+    brunt_symmetry_plane mirrors[BRUNT_MAX_PLANES];
     const int count = symmetry_of(m, body, mirrors);
     for (int32_t p = 0; p < constraints->constraint_count; p++) {
         const brunt_constraint *constraint = &constraints->constraint[p];
@@ -341,7 +342,7 @@ void brunt_node_to_facet_scatter_grids(const brunt_contact_context *m, brunt_bod
         brunt_body *body = &mpm[k];
         const brunt_grid *grid = &body->grid;
         double linear[3] = {0}, angular[3] = {0};
-        brunt_symmetry_plane mirrors[MAX_PLANES];
+        brunt_symmetry_plane mirrors[BRUNT_MAX_PLANES];
         const bool mirrored = symmetry_of(m, body, mirrors) > 0;
         for (; g < f->particles.grid_count && f->particles.grid[g].mpm == k; g++) {
             const grid_dof *entry = &f->particles.grid[g];

@@ -10,7 +10,7 @@
 typedef struct brunt_boundaries {
     brunt_wall *walls; // planes, then regions, then groups
     int wall_count;
-    brunt_symmetry_plane mirrors[16];
+    brunt_symmetry_plane mirrors[BRUNT_MAX_PLANES];
     int mirror_count;
     bool has_walls, has_conditions, has_friction; // planes that push, conditions at grid nodes
     bool has_detonations;                         // explosives are lit

@@ -58,8 +58,20 @@ static bool acts_on(const brunt_wall *wall, const brunt_body *body) {
     return wall->body < 0 || wall->body == body->index;
 }
 
-static bool mirrors(const brunt_world *world, const brunt_symmetry_plane *mirror, const brunt_body *body) {
-    return mirror->wall < 0 || acts_on(&world->boundaries.walls[mirror->wall], body);
+// Sums of the grid's nodes and of their images by the mirrors that act on a body, booked when `booked`. What the axis
+// of rings does never is: its impulses cancel around the circle.
+static void fold_mirrors(brunt_world *world, brunt_body *body, double taken, bool booked) {
+    brunt_symmetry_plane mirrors[BRUNT_MAX_PLANES];
+    brunt_impulse_account unbooked = {.external_work = 0}, *account[BRUNT_MAX_PLANES];
+    int count = 0;
+    for (int m = 0; m < world->boundaries.mirror_count; m++) {
+        const int w = world->boundaries.mirrors[m].wall;
+        brunt_wall *wall = w < 0 ? NULL : &world->boundaries.walls[w];
+        if (wall && !acts_on(wall, body)) continue;
+        account[count] = wall && booked ? &wall->last : &unbooked;
+        mirrors[count++] = world->boundaries.mirrors[m];
+    }
+    brunt_symmetry_fold(body, mirrors, count, taken, account);
 }
 
 static brunt_grid_job grid_job(brunt_world *world, const brunt_step *step, brunt_body *body) {
@@ -88,14 +100,7 @@ int brunt_pass_grid(brunt_world *world, brunt_step *step, brunt_error *error) {
 
 int brunt_pass_mirror(brunt_world *world, brunt_step *step, brunt_error *error) {
     (void)error;
-    brunt_impulse_account unbooked = {.external_work = 0}; // of the axis: its impulses cancel around the circle
-    for (int m = 0; m < world->boundaries.mirror_count; m++) {
-        const brunt_symmetry_plane *mirror = &world->boundaries.mirrors[m];
-        if (mirrors(world, mirror, step->body))
-            brunt_symmetry_fold(step->body, mirror,
-                                world->settings.transfer == BRUNT_FLIP ? 1 - world->settings.flip : 1,
-                                mirror->wall < 0 ? &unbooked : &world->boundaries.walls[mirror->wall].last);
-    }
+    fold_mirrors(world, step->body, world->settings.transfer == BRUNT_FLIP ? 1 - world->settings.flip : 1, true);
     return BRUNT_OK;
 }
 
@@ -199,13 +204,10 @@ static void remap_body(brunt_world *world, brunt_body *body, double dt) {
     brunt_timer *timer = brunt_pass_timer(world);
     body_job job = {world, body, dt}, still = {world, body, 0};
     brunt_grid_job nodes = {.body = body, .gravity = weightless, .sums = world->scratch.node_sums};
-    brunt_impulse_account unbooked = {.external_work = 0};
     brunt_parallel(world->settings.threads, body->grid.block_count, BLOCK_GRAIN, advance_blocks, &job, timer);
     brunt_parallel(world->settings.threads, body->grid.block_count, BLOCK_GRAIN, scatter_blocks, &still, timer);
     brunt_parallel(world->settings.threads, body->grid.slot_count, SLOT_GRAIN, brunt_grid_sum, &nodes, timer);
-    for (int m = 0; m < world->boundaries.mirror_count; m++)
-        if (mirrors(world, &world->boundaries.mirrors[m], body))
-            brunt_symmetry_fold(body, &world->boundaries.mirrors[m], 1, &unbooked);
+    fold_mirrors(world, body, 1, false);
     brunt_parallel(world->settings.threads, body->grid.slot_count, SLOT_GRAIN, brunt_grid_update, &nodes, timer);
     for (int w = 0; w < world->boundaries.wall_count; w++) {
         brunt_wall wall = world->boundaries.walls[w];
