@@ -29,7 +29,10 @@ typedef struct brunt_dof_node {
     double v[3], old[3]; // [m/s] now; before the forces of this step
     double inverse[3];   // [1/kg] by component; 0: infinite mass
     double impulse[3];   // [N s] received in all
-    double load;         // [kg] sum of |weight| effective mass of the points on it
+    // [kg] sum of |weight| effective mass of the constraints on it: what they push with, and what they rub with
+    double load, load_t;
+    bool crossed; // some push along what others rub along: both loads are of the greater weights
+    bool turns;   // some of the constraints on it
 } brunt_dof_node;
 
 typedef struct brunt_constraint_entry {
@@ -53,10 +56,12 @@ typedef struct brunt_constraint {
     int32_t tag;            // the caller's
     int32_t friction_point; // number + 1 of its own for friction, whose `count` entries follow the others; 0: it rubs
                             // where it pushes
+    double image; // [1/kg] of what an impulse along n does to u_n, the share of the image that presses with it
     // solution
     double scale, row_sum, row_sum_t;           // [kg] effective mass alone; [-] row sums in units of it
     double normal_impulse, friction_impulse[3]; // [N s]
     bool slips;
+    bool turns; // with its facet: some entry has a height gradient
 } brunt_constraint;
 
 typedef struct brunt_constraint_set {

@@ -10,6 +10,14 @@
 
 enum { GRAIN = 128 };
 
+// Three components, and one number that does not count: whatever follows them in memory.
+typedef double quad __attribute__((vector_size(32)));
+static inline quad load_quad(const double *from) {
+    quad v;
+    memcpy(&v, from, sizeof v);
+    return v;
+}
+
 void brunt_constraints_clear(brunt_constraint_set *p) {
     p->constraint_count = p->entry_count = p->friction_point_count = p->dof_node_count = 0;
 }
@@ -67,9 +75,19 @@ int brunt_constraints_reserve(brunt_constraint_set *p, int32_t points, int32_t e
                : 0;
 }
 
-// `first`: of the entries that are weighed.
-static void velocity(const brunt_constraint_set *p, const brunt_constraint *constraint, int32_t first, bool old,
-                     double u[3]) {
+// Of what does not turn, with the weights of `entry` and the `count` - 1 after it.
+static inline quad plain_velocity(const brunt_constraint_set *p, const brunt_constraint_entry *entry, int32_t count,
+                                  bool old) {
+    quad u = {0};
+    for (const brunt_constraint_entry *end = entry + count; entry < end; entry++) {
+        const brunt_dof_node *node = &p->dof_node[entry->dof_node];
+        u += load_quad(entry->weight) * load_quad(old ? node->old : node->v);
+    }
+    return u;
+}
+
+static void turning_velocity(const brunt_constraint_set *p, const brunt_constraint *constraint, int32_t first, bool old,
+                             double u[3]) {
     for (int a = 0; a < 3; a++) u[a] = -constraint->plane[a];
     for (int32_t e = first; e < first + constraint->count; e++) {
         const brunt_constraint_entry *entry = &p->entry[e];
@@ -77,6 +95,17 @@ static void velocity(const brunt_constraint_set *p, const brunt_constraint *cons
         double rise = constraint->facet[0] * v[0] + constraint->facet[1] * v[1] + constraint->facet[2] * v[2];
         for (int a = 0; a < 3; a++) u[a] += entry->weight[a] * v[a] + rise * entry->height_gradient[a];
     }
+}
+
+// `first`: of the entries that are weighed.
+static void velocity(const brunt_constraint_set *p, const brunt_constraint *constraint, int32_t first, bool old,
+                     double u[3]) {
+    if (constraint->turns) {
+        turning_velocity(p, constraint, first, old, u);
+        return;
+    }
+    const quad plain = plain_velocity(p, &p->entry[first], constraint->count, old);
+    for (int a = 0; a < 3; a++) u[a] = plain[a] - constraint->plane[a];
 }
 
 void brunt_constraint_velocity(const brunt_constraint_set *p, const brunt_constraint *constraint, bool old,
@@ -126,13 +155,14 @@ static int transpose(brunt_constraint_set *p) {
     return 0;
 }
 
-// Effective mass of each point alone. Points that nothing can move (all masses infinite) get 0.
+// Effective mass of each point alone, without its images: half of a body is then solved as the whole is. Points that
+// nothing can move (all masses infinite) get 0.
 static void weigh_constraints(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     brunt_constraint_set *p = context;
     for (int64_t k = begin * GRAIN; k < end * GRAIN && k < p->constraint_count; k++) {
         brunt_constraint *constraint = &p->constraint[k];
-        double alone = 0;
+        double alone = -constraint->image;
         for (int32_t e = constraint->first; e < constraint->first + constraint->count; e++) {
             double J[3];
             apply_transpose(constraint, &p->entry[e], constraint->n, J);
@@ -147,19 +177,47 @@ static double greatest_component(const double weight[3]) {
     return fmax(fabs(weight[0]), fmax(fabs(weight[1]), fabs(weight[2])));
 }
 
+// Whether diagonal matrix D leaves unit vector n in its direction.
+static bool keeps_direction(const double D[3], const double n[3]) {
+    const int one = n[0] != 0 ? 0 : n[1] != 0 ? 1 : 2;
+    for (int a = one + 1; a < 3; a++)
+        if (n[a] != 0 && D[a] != D[one]) return false;
+    return true;
+}
+
+// Whether what is pushed with along a degree-of-freedom node's `normal` may turn up across it: constraints with other
+// normals, or the turning of a facet.
+static bool is_crossed(const brunt_constraint_set *p, const double normal[3],
+                       const struct brunt_constraint_column *column) {
+    const double *n = p->constraint[column->constraint].n, *gradient = column->height_gradient;
+    return n[0] != normal[0] || n[1] != normal[1] || n[2] != normal[2] || gradient[0] != 0 || gradient[1] != 0 ||
+           gradient[2] != 0 || !keeps_direction(column->weight, normal);
+}
+
+// What constraints with friction points push and rub with are different weights. Where the two do not cross, each has
+// its own load; else both have the greater.
 static void load_dof_nodes(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     brunt_constraint_set *p = context;
     for (int64_t s = begin * GRAIN; s < end * GRAIN && s < p->dof_node_count; s++) {
-        double load = 0;
-        for (int32_t q = p->column_first[s]; q < p->column_first[s + 1]; q++) {
+        brunt_dof_node *node = &p->dof_node[s];
+        const int32_t first = p->column_first[s], last = p->column_first[s + 1];
+        const double *normal = first < last ? p->constraint[p->column[first].constraint].n : NULL;
+        double push = 0, rub = 0, both = 0;
+        node->turns = false;
+        node->crossed = normal && !keeps_direction(node->inverse, normal);
+        for (int32_t q = first; q < last; q++) {
             const struct brunt_constraint_column *by = &p->column[q];
-            double greatest = greatest_component(by->weight);
-            if (p->constraint[by->constraint].friction_point)
-                greatest = fmax(greatest, greatest_component(p->column[++q].weight));
-            load += greatest * p->constraint[by->constraint].scale;
+            const brunt_constraint *constraint = &p->constraint[by->constraint];
+            const double along = greatest_component(by->weight);
+            double across = along;
+            node->turns = node->turns || constraint->turns;
+            node->crossed = node->crossed || is_crossed(p, normal, by);
+            if (constraint->friction_point) across = greatest_component(p->column[++q].weight);
+            push += along * constraint->scale, rub += across * constraint->scale;
+            both += fmax(along, across) * constraint->scale;
         }
-        p->dof_node[s].load = load;
+        node->load = node->crossed ? both : push, node->load_t = node->crossed ? both : rub;
     }
 }
 
@@ -169,16 +227,20 @@ static void sum_rows(void *context, int64_t begin, int64_t end, int worker) {
     brunt_constraint_set *p = context;
     for (int64_t k = begin * GRAIN; k < end * GRAIN && k < p->constraint_count; k++) {
         brunt_constraint *constraint = &p->constraint[k];
-        double along[3] = {0};
+        double along[3] = {0}, across[3] = {0};
         for (int32_t e = constraint->first; e < constraint->first + constraint->count; e++) {
             const brunt_dof_node *s = &p->dof_node[p->entry[e].dof_node];
             const double *weight = p->entry[e].weight,
                          *other = p->entry[e + (constraint->friction_point ? constraint->count : 0)].weight;
-            for (int a = 0; a < 3; a++) along[a] += fmax(fabs(weight[a]), fabs(other[a])) * s->load * s->inverse[a];
+            for (int a = 0; a < 3; a++) {
+                const double push = fabs(weight[a]), rub = fabs(other[a]), both = fmax(push, rub);
+                along[a] += (s->crossed ? both : push) * s->load * s->inverse[a];
+                across[a] += (s->crossed ? both : rub) * s->load_t * s->inverse[a];
+            }
         }
         for (int a = 0; a < 3; a++) {
             constraint->row_sum += constraint->n[a] * constraint->n[a] * along[a];
-            constraint->row_sum_t = fmax(constraint->row_sum_t, along[a]);
+            constraint->row_sum_t = fmax(constraint->row_sum_t, across[a]);
         }
         constraint->row_sum = fmax(constraint->row_sum, 1);
         constraint->row_sum_t = fmax(constraint->row_sum_t, 1);
@@ -233,19 +295,37 @@ static void solve_chunks(void *context, int64_t begin, int64_t end, int worker) 
     }
 }
 
+// Impulse of the sweep on a degree-of-freedom node.
+static quad plain_impulse(const brunt_constraint_set *p, const struct brunt_constraint_column *by,
+                          const struct brunt_constraint_column *end) {
+    quad sum = {0};
+    for (; by < end; by++) sum += load_quad(by->weight) * load_quad(p->applied[by->constraint].impulse);
+    return sum;
+}
+
+static void turning_impulse(const brunt_constraint_set *p, int32_t first, int32_t last, double sum[3]) {
+    for (int32_t q = first; q < last; q++) {
+        const struct brunt_constraint_column *by = &p->column[q];
+        const struct brunt_constraint_impulse *applied = &p->applied[by->constraint];
+        const double *J = applied->impulse, *gradient = by->height_gradient,
+                     rise = gradient[0] * J[0] + gradient[1] * J[1] + gradient[2] * J[2];
+        for (int a = 0; a < 3; a++) sum[a] += by->weight[a] * J[a] + rise * applied->facet[a];
+    }
+}
+
 static void move_dof_nodes(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     brunt_constraint_set *p = context;
     for (int64_t s = begin * GRAIN; s < end * GRAIN && s < p->dof_node_count; s++) {
-        double sum[3] = {0};
-        for (int32_t q = p->column_first[s]; q < p->column_first[s + 1]; q++) {
-            const struct brunt_constraint_column *by = &p->column[q];
-            const struct brunt_constraint_impulse *applied = &p->applied[by->constraint];
-            const double *J = applied->impulse, *gradient = by->height_gradient,
-                         rise = gradient[0] * J[0] + gradient[1] * J[1] + gradient[2] * J[2];
-            for (int a = 0; a < 3; a++) sum[a] += by->weight[a] * J[a] + rise * applied->facet[a];
-        }
         brunt_dof_node *dof_node = &p->dof_node[s];
+        const int32_t first = p->column_first[s], last = p->column_first[s + 1];
+        double sum[3] = {0};
+        if (dof_node->turns) {
+            turning_impulse(p, first, last, sum);
+        } else {
+            const quad plain = plain_impulse(p, p->column + first, p->column + last);
+            for (int a = 0; a < 3; a++) sum[a] = plain[a];
+        }
         for (int a = 0; a < 3; a++) {
             dof_node->impulse[a] += sum[a];
             dof_node->v[a] += sum[a] * dof_node->inverse[a];

@@ -15,9 +15,10 @@ static void reflect(bool rings, const double place[3], double h, double now[3]) 
     if (fabs(place[0]) <= 1e-9 * h) now[0] = 0;
 }
 
-static void set_velocity(brunt_body *body, real *n, const brunt_slot *slot, int node, const double now[3],
+static void set_velocity(brunt_body *body, const brunt_slot *slot, int node, const double now[3],
                          const double support[3], unsigned held, brunt_impulse_account *action) {
     const brunt_grid *grid = &body->grid;
+    real *n = brunt_slot_nodes(grid, (int32_t)(slot - grid->slots)) + node * BRUNT_NODE_REALS;
     double x[3], J[3] = {0}, old[3] = {0};
     grid->held[(slot - grid->slots) * BRUNT_BLOCK_NODES + node] |= (uint8_t)held;
     brunt_node_position(grid, slot->coord, node, x);
@@ -68,7 +69,7 @@ static void apply_region(brunt_body *body, bool rings, brunt_wall *wall) {
                 support[a] = wall->where.component[a] ? wall->where.velocity[a] : 0;
             }
             if (wall->where.component[0]) reflect(rings, place, (double)grid->h, now);
-            set_velocity(body, n, slot, node, now, support, held, &wall->last);
+            set_velocity(body, slot, node, now, support, held, &wall->last);
         }
     }
 }
@@ -108,7 +109,7 @@ static void apply_plane(brunt_body *body, bool rings, brunt_wall *wall, double t
             for (int a = 0; a < grid->dim; a++)
                 now[a] = plane->condition == BRUNT_STICK ? plane->velocity[a] : v[a] - approach * plane->normal[a];
             reflect(rings, x, (double)grid->h, now);
-            set_velocity(body, n, slot, node, now, plane->velocity, held, &wall->last);
+            set_velocity(body, slot, node, now, plane->velocity, held, &wall->last);
         }
     }
 }

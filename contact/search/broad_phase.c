@@ -151,7 +151,6 @@ int brunt_broad_phase(const brunt_contact_context *m, brunt_body *mpm, int mpm_c
         for (int w = 0; w < wall_count && !s->active[k]; w++)
             s->active[k] = brunt_broad_phase_plane(s, k, &walls[w], time, f->bodies.plane_travel + 1e-6 * s->mean_edge);
     }
-    f->particles.grid_count = 0;
     if (RESERVE(&f->nodes, dof_of, s->node_count + 1)) return -1;
     memset(f->nodes.dof_of, 0xff, (size_t)s->node_count * sizeof *f->nodes.dof_of); // -1: none
     return 0;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "contact/distance/feature.h"
+#include "contact/search/particle_dof.h"
 
 enum { BRUNT_MAX_CANDIDATES = 7, BRUNT_MAX_NEAR = 32 };
 
@@ -78,25 +79,12 @@ typedef struct particle_run {
     int32_t first, count;
 } particle_run;
 
-// A grid node by its degree-of-freedom node.
-typedef struct grid_dof {
-    int32_t mpm;
-    int64_t node;
-    int32_t dof_node;
-    double
-        sign[3]; // v of the node is that of the degree-of-freedom node, turned over by mirrors; 0 across one it lies on
-} grid_dof;
-
 // Of particles, by the worker that looked; and of each block of a body where it is there.
 typedef struct particle_candidates {
     particle_list *list;
     int list_count;
     particle_run *run;
     size_t run_capacity;
-    int32_t **node_dof; // of each mpm body: of each grid node its place in `grid` + 1
-    size_t *node_dof_capacity;
+    brunt_particle_dofs *dofs; // of each mpm body
     int mpm_count;
-    grid_dof *grid;
-    size_t grid_capacity;
-    int32_t grid_count;
 } particle_candidates;

@@ -152,6 +152,7 @@ int brunt_node_to_facet_master(const brunt_contact_surface *s, const facet_candi
 void brunt_node_to_facet_entries(const brunt_node_to_facet *f, const brunt_master *m, brunt_constraint *constraint,
                                  brunt_constraint_entry *entry) {
     memcpy(constraint->facet, m->facet, sizeof constraint->facet);
+    constraint->turns = true;
     for (int c = 0; c < m->count; c++) {
         entry[c].dof_node = f->nodes.dof_of[m->node[c]];
         for (int a = 0; a < 3; a++)

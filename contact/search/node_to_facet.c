@@ -3,32 +3,17 @@
 
 void brunt_node_to_facet_free(brunt_node_to_facet *f) {
     if (!f) return;
-    for (int k = 0; k < f->particles.mpm_count; k++) brunt_free(f->particles.node_dof[k]);
+    for (int k = 0; k < f->particles.mpm_count && f->particles.dofs; k++)
+        brunt_particle_dofs_free(&f->particles.dofs[k]);
     for (int t = 0; t < f->particles.list_count; t++) brunt_free(f->particles.list[t].candidate);
     for (int t = 0; t < f->nodes.masters_count; t++) brunt_free(f->nodes.masters[t].master);
-    void *owned[] = {f->bodies.box,
-                     f->bodies.pair,
-                     f->bodies.box_of,
-                     f->bodies.first,
-                     f->bodies.list,
-                     f->cells.first,
-                     f->cells.face,
-                     f->cells.x,
-                     f->cells.box,
-                     f->nodes.count,
-                     f->nodes.candidate,
-                     f->cache.nearest,
-                     f->cache.node,
-                     f->nodes.dof_of,
-                     f->nodes.first,
-                     f->particles.node_dof,
-                     f->particles.node_dof_capacity,
-                     f->particles.grid,
-                     f->particles.list,
-                     f->nodes.masters,
-                     f->particles.run,
-                     f->cache.spare,
-                     f};
+    void *owned[] = {f->bodies.box,     f->bodies.pair,     f->bodies.box_of,
+                     f->bodies.first,   f->bodies.list,     f->cells.first,
+                     f->cells.face,     f->cells.x,         f->cells.box,
+                     f->nodes.count,    f->nodes.candidate, f->cache.nearest,
+                     f->cache.node,     f->nodes.dof_of,    f->nodes.first,
+                     f->particles.dofs, f->particles.list,  f->nodes.masters,
+                     f->particles.run,  f->cache.spare,     f};
     for (size_t k = 0; k < sizeof owned / sizeof owned[0]; k++) brunt_free(owned[k]);
 }
 
@@ -43,9 +28,8 @@ int brunt_node_to_facet_make(brunt_node_to_facet **facing, int mpm_count, int32_
     brunt_node_to_facet *f = *facing = brunt_alloc(sizeof *f);
     if (!f) return -1;
     f->particles.mpm_count = mpm_count;
-    f->particles.node_dof = brunt_alloc(((size_t)mpm_count + 1) * sizeof(void *));
-    f->particles.node_dof_capacity = brunt_alloc(((size_t)mpm_count + 1) * sizeof(size_t));
-    if (!f->particles.node_dof || !f->particles.node_dof_capacity || brunt_distance_cache_fit(f, nodes, 0)) return -1;
+    f->particles.dofs = brunt_alloc(((size_t)mpm_count + 1) * sizeof *f->particles.dofs);
+    if (!f->particles.dofs || brunt_distance_cache_fit(f, nodes, 0)) return -1;
     for (int32_t n = 0; n < nodes; n++) f->cache.nearest[n] = -1;
     return 0;
 }

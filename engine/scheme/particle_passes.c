@@ -5,6 +5,7 @@
 #include "base/array.h"
 #include "base/parallel.h"
 #include "contact/planes/grid_conditions.h"
+#include "contact/search/particle_plane.h"
 #include "mpm/sort.h"
 #include "scheme/scheme.h"
 
@@ -145,7 +146,7 @@ int brunt_pass_contact(brunt_world *world, brunt_step *step, brunt_error *error)
 int brunt_pass_walls(brunt_world *world, brunt_step *step, brunt_error *error) {
     const brunt_contact_context m = brunt_contact_context_of(world, step->dt, NULL);
     for (int i = 0; i < world->bodies.mpm_count; i++)
-        if (brunt_planes_apply(&m, &world->bodies.mpm[i], &world->scratch.planes[i]))
+        if (brunt_planes_apply(&m, &world->bodies.mpm[i], &world->scratch.planes, &world->contact.constraints))
             return brunt_fail_step(world, &world->bodies.mpm[i], error, "out of memory at a wall");
     return BRUNT_OK;
 }

@@ -88,8 +88,7 @@ int brunt_boundaries_make(brunt_world *world, const brunt_world_def *def, const 
                           brunt_error *error) {
     world->boundaries.wall_count = def->plane_count + def->region_count + def->group_count;
     world->boundaries.walls = brunt_alloc((size_t)(world->boundaries.wall_count + 1) * sizeof *world->boundaries.walls);
-    world->scratch.planes = brunt_alloc((size_t)def->body_count * sizeof(void *));
-    if (!world->boundaries.walls || !world->scratch.planes) return brunt_fail(error, BRUNT_FAILED, "out of memory");
+    if (!world->boundaries.walls) return brunt_fail(error, BRUNT_FAILED, "out of memory");
     if (def->axisymmetric && world->bodies.has_particles)
         world->boundaries.mirrors[world->boundaries.mirror_count++] =
             (brunt_symmetry_plane){.axis = 0, .node = (int32_t)round(-def->origin[0] / def->cell), .wall = -1};

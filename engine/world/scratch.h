@@ -2,7 +2,7 @@
 #pragma once
 
 #include "contact/methods/grid_velocity.h"
-#include "contact/planes/particle_plane.h"
+#include "contact/search/particle_dof.h"
 #include "fem/fem_body.h"
 #include "mpm/transfer.h"
 
@@ -11,9 +11,9 @@ typedef struct brunt_node_sums {
 } brunt_node_sums;
 
 typedef struct brunt_scratch {
-    brunt_workspace *points;       // a thread each
-    brunt_fem_workspace *meshes;   // a thread each
-    brunt_wall_workspace **planes; // a body of material points each
+    brunt_workspace *points;     // a thread each
+    brunt_fem_workspace *meshes; // a thread each
+    brunt_particle_dofs planes;  // of a body of material points at planes that push
     brunt_contact_workspace *grid_velocity;
     brunt_node_sums *node_sums; // of the slots of one grid
     size_t node_sums_capacity;

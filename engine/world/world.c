@@ -244,10 +244,7 @@ brunt_world *brunt_world_create(const brunt_world_def *given, brunt_error *error
 void brunt_world_destroy(brunt_world *world) {
     if (!world) return;
     brunt_implicit_free(world);
-    for (int i = 0; world->bodies.mpm && i < world->bodies.mpm_count; i++) {
-        brunt_body_free(&world->bodies.mpm[i]);
-        if (world->scratch.planes) brunt_wall_workspace_free(world->scratch.planes[i]);
-    }
+    for (int i = 0; world->bodies.mpm && i < world->bodies.mpm_count; i++) brunt_body_free(&world->bodies.mpm[i]);
     for (int t = 0; t < world->settings.threads; t++) {
         if (world->scratch.points) brunt_workspace_free(&world->scratch.points[t]);
         if (world->scratch.meshes) brunt_fem_workspace_free(&world->scratch.meshes[t]);
@@ -272,7 +269,7 @@ void brunt_world_destroy(brunt_world *world) {
     brunt_free(world->bodies.tasks.element);
     brunt_free(world->bodies.tasks.sums);
     brunt_messages_free(&world->messages);
-    brunt_free(world->scratch.planes);
+    brunt_particle_dofs_free(&world->scratch.planes);
     brunt_free(world->bodies.mpm);
     brunt_free(world->boundaries.walls);
     brunt_pairs_free(&world->pairs);

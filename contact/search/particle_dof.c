@@ -1,0 +1,240 @@
+#include "contact/search/particle_dof.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "base/memory.h"
+#include "contact/planes/boundary.h"
+#include "grid/bspline.h"
+#include "mpm/particles.h"
+
+enum { IMAGE_LAYERS = 2 };
+
+// A node under the particles of a block, which may be in the next one along an axis.
+static real *block_node(const brunt_grid *grid, const brunt_block *block, const int32_t at[3]) {
+    int corner = 0, in[3] = {0};
+    for (int a = 0; a < grid->dim; a++) {
+        const int local = at[a] - block->coord[a] * grid->side, past = local >= grid->side;
+        corner = 2 * corner + past, in[a] = local - past * grid->side;
+    }
+    return brunt_slot_nodes(grid, block->slot[corner]) +
+           (size_t)brunt_node_index(grid, in[0], in[1], in[2]) * BRUNT_NODE_REALS;
+}
+
+void brunt_particle_nodes_find(const brunt_body *body, int32_t b, int64_t s, const double *arm,
+                               brunt_particle_nodes *out) {
+    const brunt_grid *grid = &body->grid;
+    const brunt_block *block = &grid->blocks[b];
+    const int dim = grid->dim, n = grid->order + 1;
+    int local[3];
+    int32_t base[3] = {0, 0, 0};
+    double w[3][4] = {{1}, {1}, {1}}, slope[3][4] = {{0}};
+    out->count = 0;
+    brunt_node_local(grid, body->particles.bin[s], local);
+    real *const *x = brunt_kernel_place(&body->particles);
+    for (int a = 0; a < dim; a++) {
+        base[a] = block->coord[a] * grid->side + local[a];
+        const double u = ((double)x[a][s] - grid->origin[a]) / (double)grid->h - base[a];
+        brunt_bspline_weights(grid->order, u, w[a]);
+        if (!arm) continue;
+        brunt_bspline_levers(grid->order, u, w[a], slope[a]);
+        for (int i = 0; i < n; i++) slope[a][i] *= arm[a] / (double)grid->h;
+    }
+    for (int i = 0; i < n; i++)
+        for (int k = 0; k < n; k++)
+            for (int l = 0; l < (dim == 3 ? n : 1); l++) {
+                const int32_t at[3] = {base[0] + i, base[1] + k, base[2] + l};
+                real *found = block_node(grid, block, at);
+                if (!(found[BRUNT_NODE_MASS] > 0)) continue;
+                memcpy(out->at[out->count], at, sizeof at);
+                out->node[out->count] = found;
+                double weight = w[0][i] * w[1][k] * w[2][l];
+                if (arm)
+                    weight += slope[0][i] * w[1][k] * w[2][l] + w[0][i] * slope[1][k] * w[2][l] +
+                              w[0][i] * w[1][k] * slope[2][l];
+                out->weight[out->count++] = weight;
+            }
+}
+
+void brunt_particle_nodes_velocity(const brunt_particle_nodes *under, int dim, int which, double v[3]) {
+    v[0] = v[1] = v[2] = 0;
+    for (int e = 0; e < under->count; e++)
+        for (int a = 0; a < dim; a++) v[a] += under->weight[e] * (double)under->node[e][which + a];
+}
+
+// ------------------------------------------------------------------------------------------ degrees of freedom
+
+void brunt_particle_dofs_free(brunt_particle_dofs *dofs) {
+    brunt_free(dofs->of);
+    brunt_free(dofs->dof);
+    memset(dofs, 0, sizeof *dofs);
+}
+
+// The symmetry planes that act on a body.
+static int symmetry_of(const brunt_contact_context *m, const brunt_body *body,
+                       brunt_symmetry_plane out[BRUNT_MAX_PLANES]) {
+    int count = 0;
+    for (int k = 0; k < m->mirror_count && count < BRUNT_MAX_PLANES; k++) {
+        int on = m->mirrors[k].wall < 0 ? -1 : m->walls[m->mirrors[k].wall].body;
+        if (on < 0 || on == body->index) out[count++] = m->mirrors[k];
+    }
+    return count;
+}
+
+int brunt_particle_dofs_begin(const brunt_contact_context *m, const brunt_body *body, brunt_particle_dofs *dofs) {
+    const size_t count = (size_t)body->grid.slot_count * BRUNT_BLOCK_NODES;
+    if (BRUNT_RESERVE(dofs->of, count, 0)) return -1;
+    for (int32_t g = 0; g < dofs->dof_count; g++) dofs->of[dofs->dof[g].node] = 0;
+    dofs->dof_count = 0;
+    dofs->symmetry_count = symmetry_of(m, body, dofs->symmetry);
+    return 0;
+}
+
+// Makes the degree-of-freedom node of a grid node and of its images. 0, or -1: out of memory.
+static int make_dof_node(const brunt_grid *grid, const int32_t at[3], brunt_particle_dofs *dofs,
+                         brunt_constraint_set *set) {
+    int32_t image[BRUNT_MAX_IMAGES][3];
+    real sign[BRUNT_MAX_IMAGES][3];
+    int images = brunt_symmetry_images(dofs->symmetry, dofs->symmetry_count, at, IMAGE_LAYERS, image, sign);
+    int32_t dof_node = brunt_constraints_dof_node(set);
+    if (dof_node < 0) return -1;
+    for (int i = 0; i < images; i++) {
+        real *node = brunt_grid_node(grid, image[i]);
+        if (!node || !(node[BRUNT_NODE_MASS] > 0)) continue;
+        int64_t number = (node - grid->nodes) / BRUNT_NODE_REALS;
+        if (BRUNT_GROW(dofs->dof)) return -1;
+        brunt_grid_dof *entry = &dofs->dof[dofs->dof_count];
+        *entry = (brunt_grid_dof){.node = number, .dof_node = dof_node};
+        for (int a = 0; a < 3; a++) entry->sign[a] = (double)sign[i][a];
+        dofs->of[number] = ++dofs->dof_count;
+        brunt_dof_node *dof = &set->dof_node[dof_node];
+        for (int a = 0; a < grid->dim && i == 0; a++) {
+            dof->v[a] = (double)node[BRUNT_NODE_VELOCITY + a];
+            dof->old[a] = (double)node[BRUNT_NODE_OLD + a];
+            dof->inverse[a] =
+                sign[0][a] != 0 && !brunt_node_held(grid, number, a) ? 1 / (double)node[BRUNT_NODE_MASS] : 0;
+        }
+    }
+    return 0;
+}
+
+// The degree-of-freedom node of node `e` under a particle; NULL: there is none yet.
+static const brunt_grid_dof *dof_under(const brunt_grid *grid, const brunt_particle_dofs *dofs,
+                                       const brunt_particle_nodes *under, int e) {
+    const int32_t place = dofs->of[(under->node[e] - grid->nodes) / BRUNT_NODE_REALS];
+    return place ? &dofs->dof[place - 1] : NULL;
+}
+
+// What the images of a particle add to what it does to its own velocity along n: with them less without [1/kg]. A node
+// on a symmetry plane has half the mass that the whole has there.
+static double image_share(const brunt_grid *grid, const brunt_particle_dofs *dofs, const brunt_particle_nodes *under,
+                          const brunt_constraint_set *set, int32_t first) {
+    const double *n = set->constraint[set->constraint_count - 1].n;
+    double sum = 0;
+    for (int32_t e = first; e < set->entry_count; e++)
+        for (int a = 0; a < grid->dim; a++)
+            sum += pow(n[a] * set->entry[e].weight[a], 2) * set->dof_node[set->entry[e].dof_node].inverse[a];
+    for (int e = 0; e < under->count; e++) {
+        const brunt_grid_dof *g = dof_under(grid, dofs, under, e);
+        double mass = (double)under->node[e][BRUNT_NODE_MASS];
+        for (int a = 0; a < grid->dim; a++) mass *= g->sign[a] == 0 ? 2 : 1;
+        for (int a = 0; a < grid->dim; a++)
+            sum -= brunt_node_held(grid, g->node, a) ? 0 : pow(n[a] * under->weight[e], 2) / mass;
+    }
+    return sum;
+}
+
+// Of each degree-of-freedom node the weights of all its nodes, turned over as they are.
+int brunt_particle_dofs_slave(const brunt_body *body, const brunt_particle_nodes *under, brunt_particle_dofs *dofs,
+                              brunt_constraint_set *set) {
+    const brunt_grid *grid = &body->grid;
+    const int32_t first = set->entry_count;
+    for (int e = 0; e < under->count; e++) {
+        if (!dof_under(grid, dofs, under, e) && make_dof_node(grid, under->at[e], dofs, set)) return -1;
+        const brunt_grid_dof *g = dof_under(grid, dofs, under, e);
+        int32_t entry = dofs->symmetry_count ? first : set->entry_count; // without images each node has its own
+        while (entry < set->entry_count && set->entry[entry].dof_node != g->dof_node) entry++;
+        if (entry == set->entry_count && brunt_constraints_entry(set, g->dof_node, 0) < 0) return -1;
+        for (int a = 0; a < 3; a++) set->entry[entry].weight[a] += under->weight[e] * g->sign[a];
+    }
+    if (dofs->symmetry_count)
+        set->constraint[set->constraint_count - 1].image = image_share(grid, dofs, under, set, first);
+    return 0;
+}
+
+int32_t brunt_particle_dofs_friction_point(const brunt_body *body, const brunt_particle_nodes *at_arm,
+                                           const double x[3], const brunt_particle_dofs *dofs,
+                                           brunt_constraint_set *set) {
+    const int32_t first = brunt_constraints_friction_point(set, x);
+    if (first < 0) return -1;
+    int32_t entry = first;
+    for (int e = 0; e < at_arm->count; e++) {
+        const brunt_grid_dof *g = dof_under(&body->grid, dofs, at_arm, e);
+        if (dofs->symmetry_count) entry = first;
+        while (set->entry[entry].dof_node != g->dof_node) entry++;
+        for (int a = 0; a < 3; a++) set->entry[entry].weight[a] += at_arm->weight[e] * g->sign[a];
+    }
+    return first;
+}
+
+// ------------------------------------------------------------------------------------------ the way back
+
+static void add_moment(const double x[3], const double P[3], double factor, double linear[3], double angular[3]) {
+    for (int a = 0; a < 3; a++) {
+        const int b = (a + 1) % 3, c = (a + 2) % 3;
+        linear[a] += factor * P[a];
+        angular[a] += factor * (x[b] * P[c] - x[c] * P[b]);
+    }
+}
+
+// What the body's own share of the nodes has got, less what the constraints gave it, is the symmetry planes'.
+static void account_symmetry(const brunt_contact_context *m, const brunt_particle_dofs *dofs, double linear[3],
+                             double angular[3], const brunt_constraint_set *set) {
+    const brunt_symmetry_plane *planes = dofs->symmetry;
+    for (int32_t p = 0; p < set->constraint_count; p++) {
+        const brunt_constraint *constraint = &set->constraint[p];
+        double normal_impulse[3];
+        if (constraint->tag != dofs->tag || !(constraint->normal_impulse > 0)) continue;
+        for (int a = 0; a < 3; a++) normal_impulse[a] = constraint->normal_impulse * constraint->n[a];
+        add_moment(constraint->x, normal_impulse, -1, linear, angular);
+        add_moment(constraint->friction_point ? set->friction_point[constraint->friction_point - 1].x : constraint->x,
+                   constraint->friction_impulse, -1, linear, angular);
+    }
+    static const double none[3] = {0};
+    if (planes[0].wall >= 0) brunt_impulse_account_reaction(&m->walls[planes[0].wall].last, none, angular);
+    for (int a = 0; a < 3; a++) {
+        double across[3] = {0};
+        int i = 0;
+        across[a] = linear[a];
+        while (i < dofs->symmetry_count && planes[i].axis != a) i++;
+        if (i < dofs->symmetry_count && planes[i].wall >= 0)
+            brunt_impulse_account_reaction(&m->walls[planes[i].wall].last, across, none);
+    }
+}
+
+void brunt_particle_dofs_scatter(const brunt_contact_context *m, brunt_body *body, brunt_particle_dofs *dofs,
+                                 const brunt_constraint_set *set) {
+    const brunt_grid *grid = &body->grid;
+    double linear[3] = {0}, angular[3] = {0};
+    for (int32_t g = 0; g < dofs->dof_count; g++) {
+        const brunt_grid_dof *entry = &dofs->dof[g];
+        real *node = grid->nodes + entry->node * BRUNT_NODE_REALS;
+        double P[3] = {0}, x[3];
+        dofs->of[entry->node] = 0;
+        for (int a = 0; a < grid->dim; a++) {
+            const brunt_dof_node *dof_node = &set->dof_node[entry->dof_node];
+            double v = entry->sign[a] * dof_node->v[a];
+            if (brunt_node_held(grid, entry->node, a)) // the condition takes it again, and books it
+                v += entry->sign[a] * dof_node->impulse[a] / (double)node[BRUNT_NODE_MASS];
+            P[a] = (double)node[BRUNT_NODE_SPARE] * (v - (double)node[BRUNT_NODE_VELOCITY + a]);
+            node[BRUNT_NODE_VELOCITY + a] = (real)v;
+        }
+        if (!dofs->symmetry_count) continue;
+        brunt_node_position(grid, grid->slots[entry->node / BRUNT_BLOCK_NODES].coord,
+                            (int)(entry->node % BRUNT_BLOCK_NODES), x);
+        add_moment(x, P, 1, linear, angular);
+    }
+    if (dofs->dof_count && dofs->symmetry_count) account_symmetry(m, dofs, linear, angular, set);
+    dofs->dof_count = 0;
+}

@@ -1,0 +1,118 @@
+// Planes that push and let go, at zero gap.
+//
+// A plane acts on particles, not on nodes: a particle whose surface would be past the plane at the end of the step gets
+// an impulse that just prevents it, given to the nodes with the particle's own weights. Planes of any direction and
+// position work alike, and the block of a tilted ramp rests where its surface is. Each such particle is a constraint,
+// with a friction point where the material meets the plane (particle_dof.h).
+//
+// Tried and left: conditions on the nodes behind the plane (the surface then depends on where the plane cuts the cells,
+// by up to half a cell); Gauss-Seidel (the first particle visited takes the load of its neighbours, which need 50 to
+// 200 sweeps to take it back, against about 10 here).
+#include "contact/search/particle_plane.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "contact/distance/particle_extent.h"
+#include "contact/planes/boundary.h"
+#include "mpm/particles.h"
+
+enum { MAX_SWEEPS = 16 };
+static const double SWEEP_TOLERANCE =
+    1e-2; // of the greatest correction of velocity in the first sweep: what is left is met again next step
+static const double NEAR = 0.5; // cells: how far from a plane particles are looked at, if nothing moves faster
+
+typedef struct plane_job {
+    const brunt_contact_context *m;
+    brunt_body *body;
+    brunt_wall *wall;
+    brunt_particle_dofs *dofs;
+    brunt_constraint_set *set;
+    double offset, speed, near; // [m] of the plane along its normal, [m/s] along it, [m] gaps that are looked at
+} plane_job;
+
+static int add_friction_point(const plane_job *j, int32_t b, int64_t s, const double x[3], double distance) {
+    double arm[3], kernel_arm[3], at[3];
+    brunt_particle_nodes at_arm;
+    brunt_extent_arm(j->body, s, j->wall->plane.normal, distance, arm, kernel_arm);
+    for (int a = 0; a < 3; a++) at[a] = x[a] + arm[a];
+    brunt_particle_nodes_find(j->body, b, s, kernel_arm, &at_arm);
+    return brunt_particle_dofs_friction_point(j->body, &at_arm, at, j->dofs, j->set) < 0 ? -1 : 0;
+}
+
+// The constraint of a particle that the plane would catch in this step. 0, or -1: out of memory.
+static int add_particle(const plane_job *j, int32_t b, int64_t s, const double x[3], double distance, double gap) {
+    const brunt_plane_def *plane = &j->wall->plane;
+    const int dim = j->body->grid.dim;
+    const double target = j->speed - fmax(gap, 0) / j->m->dt;
+    brunt_particle_nodes under;
+    double v[3], approach = 0;
+    brunt_particle_nodes_find(j->body, b, s, NULL, &under);
+    brunt_particle_nodes_velocity(&under, dim, BRUNT_NODE_VELOCITY, v);
+    for (int a = 0; a < dim; a++) approach += plane->normal[a] * v[a];
+    if (approach > target + 1e-6 * (double)j->body->grid.h / j->m->dt) return 0;
+    const int32_t at = brunt_constraints_add(j->set);
+    if (at < 0) return -1;
+    brunt_constraint *constraint = &j->set->constraint[at];
+    memcpy(constraint->x, x, sizeof constraint->x);
+    memcpy(constraint->n, plane->normal, sizeof constraint->n);
+    memcpy(constraint->plane, plane->velocity, sizeof constraint->plane);
+    constraint->gap = gap, constraint->target = target - j->speed, constraint->friction = plane->friction;
+    constraint->action = &j->wall->last, constraint->sign = 1, constraint->tag = j->dofs->tag;
+    if (brunt_particle_dofs_slave(j->body, &under, j->dofs, j->set)) return -1;
+    return plane->friction > 0 ? add_friction_point(j, b, s, x, distance) : 0;
+}
+
+static int add_block(const plane_job *j, int32_t b) {
+    brunt_particles *p = &j->body->particles;
+    const brunt_plane_def *plane = &j->wall->plane;
+    const brunt_block *block = &j->body->grid.blocks[b];
+    real *const *place = brunt_field(p, BRUNT_FIELD_position);
+    for (int64_t s = block->first; s < block->first + block->count; s++) {
+        double x[3] = {0}, distance = -j->offset;
+        for (int a = 0; a < p->dim; a++) x[a] = (double)place[a][s], distance += plane->normal[a] * x[a];
+        if (distance > j->near + 4 * (double)j->body->grid.h) continue;
+        const double gap = distance - brunt_extent_along(j->body, s, plane->normal);
+        if (!(gap > j->near) && add_particle(j, b, s, x, distance, gap)) return -1;
+    }
+    return 0;
+}
+
+// Constraints of the particles that a plane would catch. 0, or -1: out of memory.
+static int add_plane(plane_job *j) {
+    const brunt_grid *grid = &j->body->grid;
+    const brunt_plane_def *plane = &j->wall->plane;
+    const double h = (double)grid->h;
+    double half = 0;
+    j->offset = j->speed = 0;
+    for (int a = 0; a < grid->dim; a++) {
+        j->offset += plane->normal[a] * (plane->point[a] + plane->velocity[a] * j->m->time);
+        j->speed += plane->normal[a] * plane->velocity[a];
+        half += fabs(plane->normal[a]) * (0.5 * grid->side + 2) * h;
+    }
+    j->near = fmax(NEAR * h, ((double)j->body->speed + fabs(j->speed)) * j->m->dt);
+    for (int32_t b = 0; b < grid->block_count; b++) {
+        double middle = -j->offset;
+        for (int a = 0; a < grid->dim; a++)
+            middle += plane->normal[a] * (grid->origin[a] + h * (grid->blocks[b].coord[a] + 0.5) * grid->side);
+        if (middle > half + j->near + 4 * h && !brunt_total_lagrangian(&j->body->particles)) continue;
+        if (add_block(j, b)) return -1;
+    }
+    return 0;
+}
+
+int brunt_planes_apply(const brunt_contact_context *m, brunt_body *body, brunt_particle_dofs *dofs,
+                       brunt_constraint_set *set) {
+    if (brunt_particle_dofs_begin(m, body, dofs)) return -1;
+    brunt_constraints_clear(set);
+    for (int k = 0; k < m->wall_count; k++) {
+        brunt_wall *wall = &m->walls[k];
+        if (wall->region || wall->plane.condition != BRUNT_SEPARATE) continue;
+        if (wall->body >= 0 && wall->body != body->index) continue;
+        plane_job j = {.m = m, .body = body, .wall = wall, .dofs = dofs, .set = set};
+        if (add_plane(&j)) return -1;
+    }
+    if (brunt_constraints_solve(set, MAX_SWEEPS, SWEEP_TOLERANCE, m->threads, m->timer) < 0) return -1;
+    brunt_particle_dofs_scatter(m, body, dofs, set);
+    return 0;
+}
