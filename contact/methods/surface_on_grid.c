@@ -30,7 +30,7 @@ static void map_velocity(const job *j, const contact *c, double (*of)[3], double
 // Brings one contact to its complementarity condition, as far as mesh and body are concerned there; returns the change
 // of velocity [m/s].
 static double solve_contact(const job *j, contact *c, double vs[3]) {
-    double v[3], slip[3], along, push_inverse = c->inverse_s, drag_inverse = c->inverse_s;
+    double v[3], slip[3], along, push_inverse = c->held ? 0 : c->inverse_s[0], drag_inverse = push_inverse;
     memset(c->applied, 0, sizeof c->applied);
     if (!isfinite(c->target)) return 0;
     map_velocity(j, c, j->m->surface->v, v);
@@ -38,9 +38,10 @@ static double solve_contact(const job *j, contact *c, double vs[3]) {
     along = dot(slip, c->n);
     for (int a = 0; a < 3; a++) {
         slip[a] -= along * c->n[a];
-        push_inverse += c->n[a] * c->n[a] * c->inverse[a];
-        drag_inverse = fmax(drag_inverse, c->inverse_s + c->inverse[a]);
+        push_inverse += c->n[a] * c->n[a] * (c->held ? c->inverse[a] + c->inverse_s[a] : c->inverse[a]);
+        drag_inverse = fmax(drag_inverse, c->inverse_s[a] + c->inverse[a]);
     }
+    if (!(push_inverse > 0)) return 0; // neither gives way
     const double normal_impulse = fmax(0, c->normal_impulse + c->relax * (c->target - along) / push_inverse),
                  step = normal_impulse - c->normal_impulse;
     double changed = fabs(step) * push_inverse;
@@ -53,7 +54,7 @@ static double solve_contact(const job *j, contact *c, double vs[3]) {
         for (int a = 0; a < 3; a++) c->applied[a] += change[a];
         changed = fmax(changed, brunt_coulomb_norm(3, change) * drag_inverse);
     }
-    for (int a = 0; a < 3; a++) vs[a] += c->applied[a] * c->inverse_s;
+    for (int a = 0; a < 3; a++) vs[a] += c->applied[a] * c->inverse_s[a];
     return changed;
 }
 
@@ -123,6 +124,18 @@ static double sweep(job *j) {
     return greatest;
 }
 
+// The node has what all contacts gave it even where it is held: the condition then takes it, and books it.
+static void scatter_node(const brunt_surface_on_grid *w, int32_t leader, int dim) {
+    const contact *first = &w->contact[leader];
+    for (int a = 0; a < dim; a++) {
+        double v = first->v[a];
+        for (int32_t c = leader; c >= 0 && !(first->inverse_s[a] > 0); c = w->contact[c].next)
+            v += (w->contact[c].normal_impulse * w->contact[c].n[a] + w->contact[c].friction_impulse[a]) /
+                 (double)first->at[BRUNT_NODE_MASS];
+        first->at[BRUNT_NODE_VELOCITY + a] = (real)v;
+    }
+}
+
 int brunt_surface_on_grid_meet(const brunt_contact_context *m, int sweeps, brunt_surface_on_grid **work) {
     if (!*work) *work = brunt_alloc(sizeof **work);
     if (!*work) return -1;
@@ -142,11 +155,8 @@ int brunt_surface_on_grid_meet(const brunt_contact_context *m, int sweeps, brunt
     if (!squeezed(w, m->surface, &two)) return -1;
     for (int k = 0; k < (two ? MORE_SWEEPS : 1) * sweeps; k++)
         if (!(sweep(&j) > 0)) break;
-    for (int32_t i = 0; i < w->contact_count; i++) {
-        const contact *c = &w->contact[i];
-        for (int a = 0; c->leader == i && a < m->mpm[c->mpm].grid.dim; a++)
-            c->at[BRUNT_NODE_VELOCITY + a] = (real)c->v[a];
-    }
+    for (int32_t i = 0; i < w->contact_count; i++)
+        if (w->contact[i].leader == i) scatter_node(w, i, m->mpm[w->contact[i].mpm].grid.dim);
     follow_front(m->surface);
     return 0;
 }
@@ -188,6 +198,7 @@ static void mark_state(const job *j, const contact *c) {
 static void account_symmetry(const job *j, const contact *c, brunt_wall *walls) {
     const brunt_grid *grid = &j->m->mpm[c->mpm].grid;
     const double own = (double)(c->at[BRUNT_NODE_SPARE] / c->at[BRUNT_NODE_MASS]);
+    static const double none[3] = {0};
     double applied = 0;
     for (int32_t i = c->first; i < c->first + c->count; i++) {
         const link *l = &j->w->link[j->w->by_contact[i]];
@@ -197,8 +208,9 @@ static void account_symmetry(const job *j, const contact *c, brunt_wall *walls) 
         const int axis = j->m->mirrors[m].axis;
         const double plane = grid->origin[axis] + (double)grid->h * j->m->mirrors[m].node;
         if (j->m->mirrors[m].wall < 0 || fabs(c->x[axis] - plane) > 2.5 * (double)grid->h) continue;
-        walls[j->m->mirrors[m].wall].last.impulse[axis] +=
-            (own - applied) * (c->normal_impulse * c->n[axis] + c->friction_impulse[axis]);
+        double across[3] = {0};
+        across[axis] = (own - applied) * (c->normal_impulse * c->n[axis] + c->friction_impulse[axis]);
+        brunt_impulse_account_reaction(&walls[j->m->mirrors[m].wall].last, across, none);
     }
 }
 

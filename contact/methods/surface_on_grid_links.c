@@ -74,8 +74,12 @@ static int32_t find_contact(job *j, int b, int k, brunt_pair *pair, int32_t slot
                    .next = -1,
                    .across = {1, 1, 1},
                    .pair = pair,
-                   .at = at,
-                   .inverse_s = 1 / (double)at[BRUNT_NODE_MASS]};
+                   .at = at};
+    for (int a = 0; a < 3; a++) {
+        const bool held = a < j->m->mpm[b].grid.dim && brunt_node_held(&j->m->mpm[b].grid, number, a);
+        c->inverse_s[a] = held ? 0 : 1 / (double)at[BRUNT_NODE_MASS];
+        c->held |= held;
+    }
     brunt_node_position(&j->m->mpm[b].grid, j->m->mpm[b].grid.slots[slot].coord, node, c->x);
     for (int a = 0; a < j->m->mpm[b].grid.dim; a++) c->v[a] = (double)at[BRUNT_NODE_VELOCITY + a];
     if (last >= 0)
@@ -85,17 +89,24 @@ static int32_t find_contact(job *j, int b, int k, brunt_pair *pair, int32_t slot
     return made;
 }
 
-static int add_link(job *j, int b, int k, brunt_pair *pair, int32_t n, const int32_t at[3], double weight,
-                    const real *sign, slot_cache *cached) {
+// A surface node, of mesh `fem`, at the grid of body `mpm`.
+typedef struct grid_place {
+    int mpm, fem;
+    int32_t node;
+    brunt_pair *pair;
+} grid_place;
+
+static int add_link(job *j, const grid_place *of, const int32_t at[3], double weight, const real *sign,
+                    slot_cache *cached) {
     brunt_surface_on_grid *w = j->w;
     int32_t slot;
     int node;
-    if (!brunt_surface_on_grid_place(&j->m->mpm[b].grid, at, cached, &slot, &node)) return 0;
-    int32_t c = find_contact(j, b, k, pair, slot, node);
+    if (!brunt_surface_on_grid_place(&j->m->mpm[of->mpm].grid, at, cached, &slot, &node)) return 0;
+    int32_t c = find_contact(j, of->mpm, of->fem, of->pair, slot, node);
     if (c < 0) return c == -1 ? 0 : -1;
     if (GROW(w, link)) return -1;
     link *l = &w->link[w->link_count++];
-    *l = (link){.surface = n, .contact = c, .weight = weight, .sign = {1, 1, 1}, .own = !sign};
+    *l = (link){.surface = of->node, .contact = c, .weight = weight, .sign = {1, 1, 1}, .own = !sign};
     for (int a = 0; a < 3 && sign; a++) l->sign[a] = (int8_t)sign[a];
     w->contact[c].count++;
     return 0;
@@ -103,10 +114,10 @@ static int add_link(job *j, int b, int k, brunt_pair *pair, int32_t n, const int
 
 // Links of surface node n with the nodes of body b, and, near mirrors, with their images: the same as the particles'
 // shares get from brunt_symmetry_fold.
-static int add_item(job *j, int b, int k, brunt_pair *pair, int32_t n) {
+static int add_item(job *j, const grid_place *of) {
     brunt_surface_on_grid *w = j->w;
-    const brunt_grid *grid = &j->m->mpm[b].grid;
-    const double *x = j->m->surface->x[n];
+    const brunt_grid *grid = &j->m->mpm[of->mpm].grid;
+    const double *x = j->m->surface->x[of->node];
     const int dim = grid->dim, nodes = grid->order + 1;
     int32_t base[3] = {0, 0, 0};
     double weight[3][4] = {{1}, {1}, {1}};
@@ -124,7 +135,7 @@ static int add_item(job *j, int b, int k, brunt_pair *pair, int32_t n) {
                 const int32_t at[3] = {base[0] + p, base[1] + q, base[2] + r};
                 if (!(share > 0)) continue;
                 if (!j->m->mirror_count) {
-                    if (add_link(j, b, k, pair, n, at, share, NULL, &cached)) return -1;
+                    if (add_link(j, of, at, share, NULL, &cached)) return -1;
                     continue;
                 }
                 int32_t image[BRUNT_MAX_IMAGES][3];
@@ -132,7 +143,7 @@ static int add_item(job *j, int b, int k, brunt_pair *pair, int32_t n) {
                 int images = brunt_symmetry_images(j->m->mirrors, j->m->mirror_count, at, 2, image, sign);
                 for (int i = 0; i < images; i++) {
                     const int32_t before = w->link_count;
-                    if (add_link(j, b, k, pair, n, image[i], share, sign[i], i ? &cached_image : &cached)) return -1;
+                    if (add_link(j, of, image[i], share, sign[i], i ? &cached_image : &cached)) return -1;
                     if (w->link_count == before) continue;
                     w->link[before].own = i == 0;
                     for (int a = 0; a < 3; a++)
@@ -141,7 +152,7 @@ static int add_item(job *j, int b, int k, brunt_pair *pair, int32_t n) {
             }
     if (w->link_count == first) return 0;
     if (GROW(w, item)) return -1;
-    w->item[w->item_count++] = (item){n, first, w->link_count - first};
+    w->item[w->item_count++] = (item){of->node, first, w->link_count - first};
     return 0;
 }
 
@@ -185,8 +196,9 @@ int brunt_surface_on_grid_link(job *j, int b) {
         }
         for (int32_t n = s->node_range[k]; n < s->node_end[k]; n++) {
             if (s->face_first[n + 1] == s->face_first[n])
-                continue; // a detached nodes: there is no surface to press with
-            if (inside(s->x[n], low, high) && !on_cut(j, grid, n) && add_item(j, b, k, pair, n)) return -1;
+                continue; // a detached node: there is no surface to press with
+            const grid_place of = {b, k, n, pair};
+            if (inside(s->x[n], low, high) && !on_cut(j, grid, n) && add_item(j, &of)) return -1;
         }
     }
     r->contact_end = w->contact_count, r->item_end = w->item_count;

@@ -36,7 +36,9 @@ typedef struct contact {
     brunt_pair *pair;
     real *at;
     double x[3], mass, area; // of the mesh: [kg], [m^2]
-    double v[3], inverse_s;  // of the body (the leader's counts)
+    double v[3];             // of the body (the leader's counts)
+    double inverse_s[3];     // [1/kg] of the body, by component: 0 where a condition gives v
+    bool held;               // some component
     double inverse[3];       // [1/kg] of the mesh, by component
     double relax;            // share of what is asked for that a sweep gives
     double n[3], gap, target;

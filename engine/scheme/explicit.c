@@ -19,6 +19,7 @@ static bool surfaces(const brunt_world *world) { return world->contact.has_surfa
 static bool conditions_of_contact(const brunt_world *world) { return conditions(world) && grid_contact(world); }
 static bool conditions_of_surfaces(const brunt_world *world) { return conditions(world) && surfaces(world); }
 static bool walls(const brunt_world *world) { return particles(world) && world->boundaries.has_walls; }
+static bool conditions_of_walls(const brunt_world *world) { return conditions(world) && walls(world); }
 static bool remapping(const brunt_world *world) { return particles(world) && world->transfers.musl_velocity; }
 static bool erosion(const brunt_world *world) { return world->erosion.active; }
 
@@ -132,6 +133,7 @@ const brunt_pass_row brunt_explicit_passes[] = {
     {BRUNT_PASS_WHOLE, "surfaces",   "node",     surfaces,               meet_surfaces,          surface_nodes,  NULL},
     {BRUNT_PASS_PART,  "conditions", "node",     conditions_of_surfaces, brunt_pass_conditions,  all_grid_nodes, NULL},
     {BRUNT_PASS_WHOLE, "walls",      "node",     walls,                  brunt_pass_walls,       all_grid_nodes, NULL},
+    {BRUNT_PASS_PART,  "conditions", "node",     conditions_of_walls,    brunt_pass_conditions,  all_grid_nodes, NULL},
     {BRUNT_PASS_WHOLE, "ledger",     "node",     particles,              brunt_pass_ledger,      all_grid_nodes, brunt_work_ledger},
     {BRUNT_PASS_WHOLE, "remap",      "particle", remapping,              brunt_pass_remap,       all_particles,  brunt_work_remap},
     {BRUNT_PASS_WHOLE, "gather",     "particle", particles,              brunt_pass_gather,      all_particles,  brunt_work_gather},
