@@ -10,6 +10,8 @@
 typedef struct brunt_symmetry_plane brunt_symmetry_plane; // planes/symmetry.h
 typedef struct brunt_wall brunt_wall;                     // planes/boundary.h
 
+enum { BRUNT_CONTACT_ROW_LIMIT = 16 }; // methods, methods/list.c
+
 typedef struct brunt_pair {
     int a, b; // bodies, a < b; -1: all pairs of a crowded scene together
     brunt_contact_method method;

@@ -10,20 +10,33 @@ static void mark_all(const brunt_contact_context *m) {
 }
 
 static int act_published(const brunt_contact_context *m, const brunt_contact_work *work) {
-    return brunt_augury_paper(m, work->def->transfer, work->augury);
+    brunt_augury_workspace *kept = *work->memory;
+    const int status = brunt_augury_paper(m, work->def->transfer, &kept);
+    *work->memory = kept;
+    return status;
 }
 
 static int act_averaged(const brunt_contact_context *m, const brunt_contact_work *work) {
-    return brunt_augury_surface(m, work->def->form == BRUNT_AUGURY_SMOOTH, work->augury);
+    brunt_augury_workspace *kept = *work->memory;
+    const int status = brunt_augury_surface(m, work->def->form == BRUNT_AUGURY_SMOOTH, &kept);
+    *work->memory = kept;
+    return status;
 }
 
+static void free_augury(void *memory) { brunt_augury_workspace_free(memory); }
+
 static int act_on_grid(const brunt_contact_context *m, const brunt_contact_work *work) {
-    return brunt_surface_on_grid_meet(m, work->grid_sweeps, work->surface_on_grid);
+    brunt_surface_on_grid *kept = *work->memory;
+    const int status = brunt_surface_on_grid_meet(m, work->grid_sweeps, &kept);
+    *work->memory = kept;
+    return status;
 }
 
 static void account_on_grid(const brunt_contact_context *m, const brunt_contact_work *work) {
-    brunt_surface_on_grid_finish(m, *work->surface_on_grid);
+    brunt_surface_on_grid_finish(m, *work->memory);
 }
+
+static void free_on_grid(void *memory) { brunt_surface_on_grid_free(memory); }
 
 // Constraints at facets, and those at planes, which any surface may meet: solved together.
 static int act_at_facets(const brunt_contact_context *m, const brunt_contact_work *work) {
@@ -42,19 +55,63 @@ static int act_at_facets(const brunt_contact_context *m, const brunt_contact_wor
 #define FORM(name) (1u << BRUNT_AUGURY_##name)
 
 // clang-format off
-const brunt_contact_row brunt_contact_rows[BRUNT_CONTACT_ROWS] = {
-    {"grid velocity", METHOD(MULTI_VELOCITY) | METHOD(TIED), 0, points_alone, NULL, NULL, NULL},
-    {"published", METHOD(AUGURY), FORM(PAPER), any_mesh, mark_all, act_published, NULL},
-    {"averaged surface", METHOD(AUGURY), FORM(SMOOTH) | FORM(SURFACE), any_mesh, NULL, act_averaged, NULL},
-    {"surface on grid", METHOD(MULTI_VELOCITY), 0, mesh_and_points, brunt_surface_on_grid_near, act_on_grid, account_on_grid},
-    {"barrier", METHOD(BARRIER), 0, any_mesh, NULL, NULL, NULL},
-    {"node to facet", METHOD(AUGURY), FORM(AFFINE), any_mesh, NULL, act_at_facets, NULL},
+const brunt_contact_row brunt_contact_rows[] = {
+    {"grid velocity", METHOD(MULTI_VELOCITY), 0, true, "a body of method mpm", points_alone, NULL, NULL, NULL, NULL},
+    {"tied", METHOD(TIED), 0, false, "two bodies of method mpm", points_alone, NULL, NULL, NULL, NULL},
+    {"published", METHOD(AUGURY), FORM(PAPER), false, NULL, any_mesh, mark_all, act_published, NULL, free_augury},
+    {"averaged surface", METHOD(AUGURY), FORM(SMOOTH) | FORM(SURFACE), false, NULL, any_mesh, NULL, act_averaged, NULL, free_augury},
+    {"surface on grid", METHOD(MULTI_VELOCITY), 0, true, NULL, mesh_and_points, brunt_surface_on_grid_near, act_on_grid, account_on_grid, free_on_grid},
+    {"barrier", METHOD(BARRIER), 0, false, "a body of method fem", any_mesh, NULL, NULL, NULL, NULL},
+    {"node to facet", METHOD(AUGURY), FORM(AFFINE), false, "a body of method fem or membrane", any_mesh, NULL, act_at_facets, NULL, NULL},
 };
 // clang-format on
+const int brunt_contact_row_count = sizeof brunt_contact_rows / sizeof *brunt_contact_rows;
+_Static_assert(sizeof brunt_contact_rows / sizeof *brunt_contact_rows <= (size_t)BRUNT_CONTACT_ROW_LIMIT,
+               "more methods than a world keeps memory for");
+
+static bool is_of(const brunt_contact_row *row, brunt_contact_method method) { return row->methods >> method & 1; }
 
 bool brunt_contact_accepts(brunt_contact_method method, bool mesh_a, bool mesh_b) {
-    if (method == BRUNT_CONTACT_NONE) return true;
-    for (int r = 0; r < BRUNT_CONTACT_ROWS; r++)
-        if (brunt_contact_rows[r].methods >> method & 1 && brunt_contact_rows[r].accepts(mesh_a, mesh_b)) return true;
-    return false;
+    bool accepts = method == BRUNT_CONTACT_NONE;
+    for (int r = 0; r < brunt_contact_row_count; r++)
+        accepts |= is_of(&brunt_contact_rows[r], method) && brunt_contact_rows[r].accepts(mesh_a, mesh_b);
+    return accepts;
+}
+
+unsigned brunt_contact_rows_of(brunt_contact_method method, brunt_augury_form form, bool mesh_a, bool mesh_b) {
+    unsigned rows = 0;
+    for (int r = 0; r < brunt_contact_row_count; r++) {
+        const brunt_contact_row *row = &brunt_contact_rows[r];
+        const bool formed = !row->forms || row->forms >> form & 1;
+        if (is_of(row, method) && formed && row->accepts(mesh_a, mesh_b)) rows |= 1u << r;
+    }
+    return rows;
+}
+
+brunt_contact_method brunt_contact_between_points(brunt_contact_method method) {
+    for (int other = 0; !brunt_contact_accepts(method, false, false); other++)
+        if (other != BRUNT_CONTACT_NONE && brunt_contact_accepts((brunt_contact_method)other, false, false))
+            return (brunt_contact_method)other;
+    return method;
+}
+
+bool brunt_contact_at_nodes(brunt_contact_method method) {
+    bool at_nodes = false;
+    for (int r = 0; r < brunt_contact_row_count; r++)
+        at_nodes |= is_of(&brunt_contact_rows[r], method) && brunt_contact_rows[r].at_nodes;
+    return at_nodes;
+}
+
+const char *brunt_contact_word(brunt_contact_method method) {
+#define WORD(name, word) word,
+    static const char *const words[] = {BRUNT_CONTACT_METHODS(WORD)};
+#undef WORD
+    return words[method];
+}
+
+const char *brunt_contact_wants(brunt_contact_method method) {
+    const char *wants = NULL;
+    for (int r = 0; r < brunt_contact_row_count && !wants; r++)
+        if (is_of(&brunt_contact_rows[r], method)) wants = brunt_contact_rows[r].wants;
+    return wants ? wants : "other bodies";
 }

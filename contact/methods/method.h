@@ -15,14 +15,16 @@ typedef struct brunt_contact_work {
     bool facets;     // there are pairs that meet at facets; else planes alone
     brunt_constraint_set *constraints;
     brunt_node_to_facet **node_to_facet;
-    brunt_augury_workspace **augury;
-    brunt_surface_on_grid **surface_on_grid;
+    void **memory; // what the row that acts keeps; NULL before it does so first
 } brunt_contact_work;
 
 typedef struct brunt_contact_row {
     const char *name;
     unsigned methods; // bits of brunt_contact_method by which scenes ask for it
     unsigned forms;   // bits of brunt_augury_form, where that is the method; else 0
+    bool at_nodes;    // of the grid of material points
+    // What it wants of two bodies, after "wants"; NULL: another row of the method says it.
+    const char *wants;
     // Whether two bodies, of elements (else of material points), may meet by it.
     bool (*accepts)(bool mesh_a, bool mesh_b);
     // Marks surfaces as near something beside those that the broad phase marks; NULL: none.
@@ -31,10 +33,21 @@ typedef struct brunt_contact_row {
     int (*act)(const brunt_contact_context *m, const brunt_contact_work *work);
     // Accounts and contact state, once all else has acted; NULL: with act.
     void (*account)(const brunt_contact_context *m, const brunt_contact_work *work);
+    // Frees what it keeps, which may be NULL.
+    void (*free)(void *memory);
 } brunt_contact_row;
 
-enum { BRUNT_CONTACT_ROWS = 6 };
-extern const brunt_contact_row brunt_contact_rows[BRUNT_CONTACT_ROWS];
+extern const brunt_contact_row brunt_contact_rows[];
+extern const int brunt_contact_row_count; // at most BRUNT_CONTACT_ROW_LIMIT
 
 // Whether two bodies may meet by a method, whichever of its rows that is.
 bool brunt_contact_accepts(brunt_contact_method method, bool mesh_a, bool mesh_b);
+// Bits of the rows by which they do.
+unsigned brunt_contact_rows_of(brunt_contact_method method, brunt_augury_form form, bool mesh_a, bool mesh_b);
+// The method by which two bodies of material points meet where that of all is `method`: itself, where it accepts them.
+brunt_contact_method brunt_contact_between_points(brunt_contact_method method);
+// Whether a method acts at the nodes of the grid of material points.
+bool brunt_contact_at_nodes(brunt_contact_method method);
+// What scenes call a method, and what it wants of two bodies.
+const char *brunt_contact_word(brunt_contact_method method);
+const char *brunt_contact_wants(brunt_contact_method method);

@@ -71,8 +71,7 @@ static bool has_mirrors(const brunt_world *world) {
     X(implicit, world->settings.scheme == BRUNT_IMPLICIT, "time.scheme")                                               \
     X(elements, world->bodies.fem_count > 0, "bodies: method fem or membrane")                                         \
     X(affine, world->settings.transfer == BRUNT_APIC && world->bodies.mpm_count > 0, "grid.transfer")                  \
-    X(contact, world->contact.has_grid || world->contact.has_augury || world->contact.has_grid_surfaces,               \
-      "contact.method")                                                                                                \
+    X(contact, world->contact.rows != 0, "contact.method")                                                             \
     X(barrier, world->contact.has_barrier, "contact.method: barrier")                                                  \
     X(tied, has_tied(world), "contact.pairs: method tied")                                                             \
     X(self_contact, world->contact.has_self, "contact.pairs: a body with itself")                                      \

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "contact/methods/method.h"
 #include "base/error.h"
 #include "base/memory.h"
 #include "base/sweep.h"
@@ -203,10 +204,9 @@ static int check_total_lagrangian(const brunt_world *world, const brunt_world_de
                    "'%s' "
                    "is undeformed (lagrangian: total); let one of them be a mesh, or switch contact off between them",
                    from->name, other->name, from->name);
-        if (world->pairs.pair[pair].method == BRUNT_CONTACT_MULTI_VELOCITY)
-            REFUSE("contact of '%s' and '%s': the grid of '%s' is undeformed (lagrangian: total): use augury, not "
-                   "multi-velocity",
-                   from->name, other->name, from->name);
+        if (brunt_contact_at_nodes(world->pairs.pair[pair].method))
+            REFUSE("contact of '%s' and '%s': the grid of '%s' is undeformed (lagrangian: total): use augury, not %s",
+                   from->name, other->name, from->name, brunt_contact_word(world->pairs.pair[pair].method));
     }
     return BRUNT_OK;
 }
@@ -236,8 +236,7 @@ static int make_particles(brunt_world *world, const brunt_world_def *def, const 
     if ((status = set_erosion(from, filled->count, body, error))) return status;
     world->bodies.has_fluid = world->bodies.has_fluid || body->material.model[BRUNT_STRENGTH]->fluid;
     brunt_particle_needs needs = {.affine = def->transfer == BRUNT_APIC,
-                                  .reach = world->contact.has_grid || world->contact.has_augury ||
-                                           world->contact.has_grid_surfaces || world->boundaries.has_walls,
+                                  .reach = world->contact.rows || world->boundaries.has_walls,
                                   .grid_velocity = world->transfers.musl_velocity && def->transfer == BRUNT_FLIP,
                                   .total = from->total_lagrangian};
     memcpy(needs.models, body->material.model, sizeof needs.models);

@@ -2,8 +2,6 @@
 #pragma once
 
 #include "contact/contact.h"
-#include "contact/methods/augury.h"
-#include "contact/methods/surface_on_grid.h"
 #include "contact/search/node_to_facet.h"
 
 typedef struct brunt_contact {
@@ -11,7 +9,7 @@ typedef struct brunt_contact {
     double cell;           // [m]
     int grid_sweeps;
     bool has_grid;          // bodies of material points meet at the nodes of their grids
-    bool has_grid_surfaces; // multi-velocity contact of meshes with material points
+    bool has_grid_surfaces; // meshes meet material points at the nodes of their grids
     bool has_augury;        // meshes meet each other, or particles, by their facets
     bool has_barrier;       // bodies, or bodies and planes, are kept apart by an energy
     bool has_surfaces;      // surfaces of meshes meet something: each other, particles, planes
@@ -20,7 +18,7 @@ typedef struct brunt_contact {
     brunt_contact_surface surface;
     brunt_constraint_set constraints;
     brunt_node_to_facet *node_to_facet;
-    brunt_augury_workspace *augury;
-    brunt_surface_on_grid *grid_surfaces;
-    double frame[3]; // [m/s] what contact measures motion against; of the state
+    unsigned rows;                         // bits of the methods that some pair meets by, but the barrier
+    void *memory[BRUNT_CONTACT_ROW_LIMIT]; // what each of them keeps
+    double frame[3];                       // [m/s] what contact measures motion against; of the state
 } brunt_contact;

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "contact/methods/method.h"
 #include "materials/material.h"
 #include "world/definitions.h"
 
@@ -114,10 +115,6 @@ static void look_at_boundaries(const brunt_world_def *def, refusals *r) {
     }
 }
 
-static const char *method_name(brunt_contact_method method) {
-    return method == BRUNT_CONTACT_AUGURY ? "augury" : "multi-velocity";
-}
-
 static bool belongs(brunt_contact_method method) {
     return method == BRUNT_CONTACT_NONE || method == BRUNT_CONTACT_BARRIER || method == BRUNT_CONTACT_TIED;
 }
@@ -155,13 +152,14 @@ static void look_at_contact(const brunt_world_def *def, refusals *r) {
     const bool some = def->body_count > 1;
     set_owner(r, "contact");
     if (some && !belongs(contact->method))
-        say(r, ".method", "%s: " EXPLICIT_ONLY ", barrier, tied or none is wanted", method_name(contact->method));
+        say(r, ".method", "%s: " EXPLICIT_ONLY ", barrier, tied or none is wanted",
+            brunt_contact_word(contact->method));
     if (contact->allow_overlap) say(r, ".initial_overlap", "allow: " EXPLICIT_ONLY ", barriers keep gaps open");
     for (int32_t q = 0; q < contact->pair_count; q++) {
         set_owner(r, "contact.pairs[%d]", q);
         if (!belongs(contact->pairs[q].method))
             say(r, ".method", "%s: " EXPLICIT_ONLY ", barrier, tied or none is wanted",
-                method_name(contact->pairs[q].method));
+                brunt_contact_word(contact->pairs[q].method));
     }
     set_owner(r, "contact");
     look_at_points(def, r);

@@ -53,8 +53,9 @@ static int make_self_pair(const maker *m, int q, brunt_error *error) {
     if (!(def->friction >= 0)) REFUSE("contact.pairs[%d].friction: %g is negative", q, def->friction);
     for (int p = 0; p < pairs->count; p++)
         if (pairs->pair[p].a == a) REFUSE("contact.pairs[%d].between: '%s' is listed twice", q, def->a);
-    *(barrier ? &m->world->contact.has_barrier : &m->world->contact.has_augury) = true;
-    m->world->contact.has_self = true;
+    brunt_contact *contact = &m->world->contact;
+    *(barrier ? &contact->has_barrier : &contact->has_augury) = contact->has_self = true;
+    if (!barrier) contact->rows |= brunt_contact_rows_of(def->method, m->def->contact.form, true, true);
     m->world->contact.has_friction = m->world->contact.has_friction || def->friction > 0;
     if (brunt_pair_map_add(&pairs->map, a, a, pairs->count)) return out_of_memory(error);
     pairs->pair[pairs->count++] = (brunt_pair){.a = a, .b = a, .method = def->method, .friction = def->friction};
@@ -134,24 +135,18 @@ static int settle_method(const maker *m, const candidate *c, brunt_pair *pair, b
     const brunt_body_def *a = m->order[c->a], *b = m->order[c->b];
     brunt_contact *contact = &m->world->contact;
     const int meshes = (a->method != BRUNT_MPM) + (b->method != BRUNT_MPM);
-    const bool on_grid = pair->method == BRUNT_CONTACT_MULTI_VELOCITY;
     // Bodies of material points meet at the nodes of the grid that moves them, whatever the method is called.
-    const bool accepted =
-        !meshes || brunt_contact_accepts(pair->method, a->method != BRUNT_MPM, b->method != BRUNT_MPM);
-    if (!accepted && on_grid)
-        REFUSE("contact of '%s' and '%s': multi-velocity needs the grid of a body of material points; use augury "
-               "between meshes",
-               a->name, b->name);
-    if (!accepted) REFUSE("contact of '%s' and '%s': only bodies of material points can be tied", a->name, b->name);
-    if (pair->method == BRUNT_CONTACT_BARRIER)
-        contact->has_barrier = true;
-    else if (!meshes) {
-        if (pair->method != BRUNT_CONTACT_TIED) pair->method = BRUNT_CONTACT_MULTI_VELOCITY;
-        contact->has_grid = true;
-    } else if (on_grid)
-        contact->has_grid_surfaces = true;
-    else
-        contact->has_augury = true;
+    const bool mesh_a = a->method != BRUNT_MPM, mesh_b = b->method != BRUNT_MPM;
+    const bool barrier = pair->method == BRUNT_CONTACT_BARRIER;
+    if (!meshes && !barrier) pair->method = brunt_contact_between_points(pair->method);
+    if (!brunt_contact_accepts(pair->method, mesh_a, mesh_b))
+        REFUSE("contact of '%s' and '%s': %s wants %s", a->name, b->name, brunt_contact_word(pair->method),
+               brunt_contact_wants(pair->method));
+    if (!barrier) contact->rows |= brunt_contact_rows_of(pair->method, m->def->contact.form, mesh_a, mesh_b);
+    contact->has_barrier = contact->has_barrier || barrier;
+    contact->has_grid = contact->has_grid || !meshes;
+    contact->has_grid_surfaces = contact->has_grid_surfaces || (meshes && brunt_contact_at_nodes(pair->method));
+    contact->has_augury = contact->has_augury || pair->method == BRUNT_CONTACT_AUGURY;
     if (!(pair->friction >= 0)) REFUSE("contact.friction: %g is negative", pair->friction);
     contact->has_friction = contact->has_friction || pair->friction > 0;
     return BRUNT_OK;

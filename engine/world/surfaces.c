@@ -93,8 +93,8 @@ int brunt_surfaces_make(brunt_world *world, const brunt_world_def *def, brunt_er
     if (def->scheme == BRUNT_IMPLICIT) return BRUNT_OK; // barriers know surfaces of their own
     for (int w = 0; w < world->boundaries.wall_count; w++)
         world->contact.has_surfaces = world->contact.has_surfaces || acts_on_fem(world, &world->boundaries.walls[w]);
-    world->contact.has_surfaces =
-        world->contact.has_surfaces || world->contact.has_augury || world->contact.has_grid_surfaces;
+    for (int r = 0; r < brunt_contact_row_count; r++)
+        world->contact.has_surfaces |= brunt_contact_rows[r].act && world->contact.rows >> r & 1;
     if (!world->contact.has_surfaces) return BRUNT_OK;
     world->contact.def = def->contact;
     world->contact.def.pairs = NULL, world->contact.def.pair_count = 0;
@@ -118,11 +118,11 @@ int brunt_surfaces_make(brunt_world *world, const brunt_world_def *def, brunt_er
     look_at_edges(world, &fine, &coarse);
     world->contact.cell = def->contact.cell > 0 ? def->contact.cell : form == BRUNT_AUGURY_PAPER ? 2 * coarse : coarse;
     if (world->contact.has_grid_surfaces && coarse > COARSE * world->settings.cell)
-        brunt_warn(
-            &world->messages,
-            "grid.cell %g m is much less than the longest mean edge of a mesh, %g m: multi-velocity contact may not "
-            "see particles between its nodes",
-            world->settings.cell, coarse);
+        brunt_warn(&world->messages,
+                   "grid.cell %g m is much less than the longest mean edge of a mesh, %g m: contact at the grid's "
+                   "nodes may not "
+                   "see particles between those of the mesh",
+                   world->settings.cell, coarse);
     if (!world->contact.has_augury || form == BRUNT_AUGURY_AFFINE) return BRUNT_OK;
     if (world->contact.cell < 0.7 * coarse)
         brunt_warn(&world->messages,
@@ -177,9 +177,7 @@ int brunt_surfaces_renew(brunt_world *world, brunt_error *error) {
 
 // Whether a world has something for a row to do; planes are met where facets are.
 static bool is_used(const brunt_contact *contact, const brunt_contact_row *row) {
-    if (!row->act) return false;
-    if (!row->forms) return contact->has_grid_surfaces;
-    return row->forms >> BRUNT_AUGURY_AFFINE & 1 || (contact->has_augury && row->forms >> contact->def.form & 1);
+    return row->act && (contact->rows >> (row - brunt_contact_rows) & 1 || row->forms >> BRUNT_AUGURY_AFFINE & 1);
 }
 
 static brunt_contact_work contact_work(brunt_contact *contact) {
@@ -189,9 +187,7 @@ static brunt_contact_work contact_work(brunt_contact *contact) {
                                 .sweeps = affine ? contact->def.iterations : SWEEPS,
                                 .facets = contact->has_augury && affine,
                                 .constraints = &contact->constraints,
-                                .node_to_facet = &contact->node_to_facet,
-                                .augury = &contact->augury,
-                                .surface_on_grid = &contact->grid_surfaces};
+                                .node_to_facet = &contact->node_to_facet};
 }
 
 // Names the mesh that is fastest, or farthest away: contact cannot look that far.
@@ -246,7 +242,7 @@ static bool is_clear(brunt_world *world, const brunt_contact_context *m) {
     brunt_contact *contact = &world->contact;
     brunt_contact_surface *s = &contact->surface;
     bool clear = !any_active(s, s->motion.was_active);
-    for (int r = 0; r < BRUNT_CONTACT_ROWS; r++)
+    for (int r = 0; r < brunt_contact_row_count; r++)
         clear = clear && !(brunt_contact_rows[r].near && is_used(contact, &brunt_contact_rows[r]));
     if (!clear) return s->motion.rests = false;
     for (int anew = !s->motion.rests; anew <= 1; anew++) { // by the bounds that are kept, then by those of now
@@ -271,15 +267,17 @@ int brunt_surfaces_meet(brunt_world *world, const double gravity[3], double kick
                                    world->boundaries.wall_count, world->clock.time, &world->contact.node_to_facet);
     if (failed == -2) return fail_far(world, error);
     brunt_contact *contact = &world->contact;
-    const brunt_contact_work work = contact_work(contact);
-    const brunt_contact_row *const end = brunt_contact_rows + BRUNT_CONTACT_ROWS;
+    brunt_contact_work work = contact_work(contact);
+    const brunt_contact_row *const end = brunt_contact_rows + brunt_contact_row_count;
     for (const brunt_contact_row *row = brunt_contact_rows; !failed && row < end; row++)
         if (row->near && is_used(contact, row)) row->near(&m);
     if (!failed) brunt_surface_gather_state(&contact->surface, kick, gravity, world->settings.threads, timer);
     for (const brunt_contact_row *row = brunt_contact_rows; !failed && row < end; row++)
-        if (is_used(contact, row)) failed = row->act(&m, &work);
+        if (is_used(contact, row))
+            work.memory = &contact->memory[row - brunt_contact_rows], failed = row->act(&m, &work);
     for (const brunt_contact_row *row = brunt_contact_rows; !failed && row < end; row++)
-        if (row->account && is_used(contact, row)) row->account(&m, &work);
+        if (row->account && is_used(contact, row))
+            work.memory = &contact->memory[row - brunt_contact_rows], row->account(&m, &work);
     if (failed) return brunt_fail(error, BRUNT_FAILED, "out of memory in the contact of surfaces");
     brunt_surface_scatter_velocity(&world->contact.surface, dt, world->settings.threads, timer);
     memcpy(world->contact.frame, world->contact.surface.motion.frame, sizeof world->contact.surface.motion.frame);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "boundary/ignition.h"
+#include "contact/methods/method.h"
 #include "base/error.h"
 #include "geometry/axis.h"
 #include "geometry/fill.h"
@@ -255,8 +256,8 @@ void brunt_world_destroy(brunt_world *world) {
     brunt_surface_free(&world->contact.surface);
     brunt_constraints_free(&world->contact.constraints);
     brunt_node_to_facet_free(world->contact.node_to_facet);
-    brunt_augury_workspace_free(world->contact.augury);
-    brunt_surface_on_grid_free(world->contact.grid_surfaces);
+    for (int r = 0; r < brunt_contact_row_count; r++)
+        if (brunt_contact_rows[r].free) brunt_contact_rows[r].free(world->contact.memory[r]);
     brunt_load_step_free(&world->boundaries.sets);
     brunt_node_sets_free(&world->boundaries.sets);
     brunt_damping_free(&world->boundaries.damping);

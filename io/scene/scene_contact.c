@@ -6,9 +6,6 @@
 #include "contact/methods/method.h"
 #include "world/definitions.h"
 
-static const char *const methods[] = {"none", "multi-velocity", "augury", "tied", "barrier"}; // by brunt_contact_method
-_Static_assert(sizeof methods / sizeof *methods == BRUNT_CONTACT_BARRIER + 1, "a name for each method");
-
 static bool has_mesh(const scene_reader *reader, const char *name) {
     const brunt_body_def *body = brunt_body_named(reader, name);
     return body && body->method != BRUNT_MPM;
@@ -21,19 +18,10 @@ static bool same_pair(const brunt_pair_def *pair, const char *a, const char *b) 
 static void check_pair_method(scene_reader *reader, const scene_node *method, const brunt_pair_def *pair) {
     const bool known = brunt_body_named(reader, pair->a) && brunt_body_named(reader, pair->b),
                a = has_mesh(reader, pair->a), b = has_mesh(reader, pair->b);
-    if (brunt_contact_accepts(pair->method, a, b) || (!known && pair->method == BRUNT_CONTACT_AUGURY)) return;
-    if (pair->method == BRUNT_CONTACT_MULTI_VELOCITY)
-        brunt_tree_complain(reader->tree, method, "multi-velocity wants a body of method mpm, neither '%s' nor '%s' is",
-                            pair->a, pair->b);
-    if (pair->method == BRUNT_CONTACT_TIED)
-        brunt_tree_complain(reader->tree, method, "only bodies of method mpm can be tied, '%s' is none",
-                            a ? pair->a : pair->b);
-    if (pair->method == BRUNT_CONTACT_BARRIER && known)
-        brunt_tree_complain(reader->tree, method, "barriers want a body of method fem, neither '%s' nor '%s' is",
-                            pair->a, pair->b);
-    if (pair->method == BRUNT_CONTACT_AUGURY)
-        brunt_tree_complain(reader->tree, method,
-                            "augury wants a body of method fem or membrane, both are of method mpm");
+    if (brunt_contact_accepts(pair->method, a, b) || (!known && brunt_contact_accepts(pair->method, true, true)))
+        return;
+    brunt_tree_complain(reader->tree, method, "%s wants %s, which '%s' and '%s' are not",
+                        brunt_contact_word(pair->method), brunt_contact_wants(pair->method), pair->a, pair->b);
 }
 
 // A membrane folds onto itself, and meets itself by augury alone: `method` is NULL when it is that of all pairs.
@@ -65,7 +53,7 @@ static void fill_pair(scene_reader *reader, scene_node *node, brunt_pair_def *pa
     char friction[32];
     brunt_format_number(contact->friction, friction);
     const scene_node *method = brunt_tree_child(node, "method");
-    if (!method) brunt_add_default(reader, node, "method", methods[contact->method]);
+    if (!method) brunt_add_default(reader, node, "method", brunt_contact_word(contact->method));
     pair->method = (brunt_contact_method)(int)brunt_real_of(node, "method", contact->method);
     const bool tied = pair->method == BRUNT_CONTACT_TIED;
     scene_node *rubs = brunt_tree_child(node, "friction");
@@ -110,20 +98,23 @@ static bool overridden(const brunt_contact_def *contact, const char *a, const ch
     return false;
 }
 
-// Multi-velocity for all meets two bodies of meshes: said once, with the first two it is wrong for.
-static void check_multi_velocity(scene_reader *reader, const scene_node *method) {
+// A method for all that two bodies cannot meet by: said once, with the first two it is wrong for. Bodies of material
+// points find one of their own.
+static void check_method(scene_reader *reader, const scene_node *method) {
     const brunt_world_def *world = &reader->scene->world;
+    const brunt_contact_method of_all = world->contact.method;
     for (int a = 0; a < world->body_count; a++)
         for (int b = a + 1; b < world->body_count; b++) {
             const brunt_body_def *one = &world->bodies[a], *other = &world->bodies[b];
-            if (brunt_contact_accepts(world->contact.method, one->method != BRUNT_MPM, other->method != BRUNT_MPM))
-                continue;
+            const bool mesh_a = one->method != BRUNT_MPM, mesh_b = other->method != BRUNT_MPM;
+            if ((!mesh_a && !mesh_b) || brunt_contact_accepts(of_all, mesh_a, mesh_b)) continue;
             if (overridden(&world->contact, one->name, other->name)) continue;
             brunt_tree_complain(
                 reader->tree, method,
-                "multi-velocity wants a body of method mpm, neither '%s' nor '%s' is: augury is wanted, "
-                "or pairs with a method of their own",
-                one->name, other->name);
+                "%s wants %s, which '%s' and '%s' are not: %s is wanted, or pairs with a method of "
+                "their own",
+                brunt_contact_word(of_all), brunt_contact_wants(of_all), one->name, other->name,
+                brunt_contact_word(world->scheme == BRUNT_IMPLICIT ? BRUNT_CONTACT_BARRIER : BRUNT_CONTACT_AUGURY));
             return;
         }
 }
@@ -137,8 +128,9 @@ static bool uses(const brunt_contact_def *contact, brunt_contact_method method) 
 
 static void fill_augury(scene_reader *reader, scene_node *node) {
     brunt_contact_def *contact = &reader->scene->world.contact;
-    const bool used = uses(contact, BRUNT_CONTACT_AUGURY), at_nodes = uses(contact, BRUNT_CONTACT_MULTI_VELOCITY);
-    bool meshes = false;
+    const bool used = uses(contact, BRUNT_CONTACT_AUGURY);
+    bool meshes = false, at_nodes = brunt_contact_at_nodes(contact->method);
+    for (int i = 0; i < contact->pair_count; i++) at_nodes |= brunt_contact_at_nodes(contact->pairs[i].method);
     for (int i = 0; i < reader->scene->world.body_count; i++)
         meshes |= reader->scene->world.bodies[i].method != BRUNT_MPM;
     contact->iterations = (int)brunt_real_of(node, "iterations", -1);
@@ -204,19 +196,16 @@ void brunt_fill_contact(scene_reader *reader) {
     const scene_node *method = brunt_tree_child(node, "method");
     contact->method = world->scheme == BRUNT_IMPLICIT ? BRUNT_CONTACT_BARRIER
                       : fem                           ? BRUNT_CONTACT_AUGURY
-                                                      : BRUNT_CONTACT_MULTI_VELOCITY;
-    if (!method) method = brunt_add_default(reader, node, "method", methods[contact->method]);
+                                                      : brunt_contact_between_points(BRUNT_CONTACT_AUGURY);
+    if (!method) method = brunt_add_default(reader, node, "method", brunt_contact_word(contact->method));
     contact->method = (brunt_contact_method)(int)brunt_real_of(node, "method", contact->method);
     if (contact->method == BRUNT_CONTACT_AUGURY && !fem && world->body_count)
         brunt_tree_complain(reader->tree, method,
                             "augury wants a body of method fem or membrane, all are of method mpm");
-    if (contact->method == BRUNT_CONTACT_TIED && fem)
-        brunt_tree_complain(reader->tree, method,
-                            "only bodies of method mpm can be tied, and some are not: tied is for a pair in pairs");
     contact->friction = brunt_real_of(node, "friction", 0);
     contact->allow_overlap = brunt_real_of(node, "initial_overlap", 0) == 1;
     fill_pairs(reader, brunt_tree_child(node, "pairs"));
-    if (contact->method == BRUNT_CONTACT_MULTI_VELOCITY && method && method->good) check_multi_velocity(reader, method);
+    if (method && method->good) check_method(reader, method);
     fill_augury(reader, node);
     fill_barrier(reader, node);
     check_pair_columns(reader);

@@ -9,6 +9,10 @@
 
 #include "geometry/element_traits.h"
 
+// "none|...": each with a bar before it, less the first of these.
+#define BAR(name, word) "|" word
+#define CONTACT_WORDS (&(BRUNT_CONTACT_METHODS(BAR))[1])
+
 #define ANY -INFINITY, INFINITY, true, true
 #define POSITIVE 0, INFINITY, true, true
 #define NOT_NEGATIVE 0, INFINITY, false, true
@@ -161,7 +165,7 @@ const scene_key brunt_scene_table[] = {
     {"<shape>.intersection", SCENE_SHAPES, NULL, OPTIONAL, NONE, "what is in all of a list of shapes"},
 
     {"contact", SCENE_GROUP, NULL, "{}", NONE, "contact between bodies"},
-    {"contact.method", SCENE_WORD, NULL, "multi-velocity", ANY, "none|multi-velocity|augury|tied|barrier", 0, true, "augury is for all pairs with a fem or membrane body, two mpm bodies then meet by multi-velocity; multi-velocity also takes one of them with an mpm body; the default is augury when a body is of method fem or membrane; none: they pass through each other; tied: mpm bodies share one velocity where they share grid nodes, they neither part nor slide; barrier: of scheme implicit and its default, an energy keeps gaps open, with a fem body in each pair"},
+    {"contact.method", SCENE_WORD, NULL, "multi-velocity", ANY, CONTACT_WORDS, 0, true, "augury is for all pairs with a fem or membrane body, two mpm bodies then meet by multi-velocity; multi-velocity also takes one of them with an mpm body; the default is augury when a body is of method fem or membrane; none: they pass through each other; tied: mpm bodies share one velocity where they share grid nodes, they neither part nor slide; barrier: of scheme implicit and its default, an energy keeps gaps open, with a fem body in each pair"},
     {"contact.friction", SCENE_REAL, "1", "0", NOT_NEGATIVE, NULL, 0, false, "Coulomb coefficient"},
     {"contact.form", SCENE_WORD, NULL, "node_to_facet", ANY, "node_to_facet|averaged_facets|averaged_surface|published", 0, true, "of augury: velocity and gap from facing facets, from facets averaged on a grid, from averaged velocities and surfaces, or as published", .former_words = "affine|smooth|surface|paper"},
     {"contact.iterations", SCENE_INTEGER, NULL, OPTIONAL, 0, 1000, false, false, NULL, 0, false, "most sweeps of a step, see tolerance (default: augury 16, with membranes 64, forms averaged_facets and averaged_surface 4; multi-velocity of a mesh with material points 8); of form published its augury iterations (default 1)"},
@@ -175,7 +179,7 @@ const scene_key brunt_scene_table[] = {
     {"contact.initial_overlap", SCENE_WORD, NULL, "error", ANY, "error|allow", 0, false, "bodies that overlap at the start, or lie behind a plane of condition separate: contact ends an approach, and what is in each other already may pass. Of meshes a fifth of an edge is let be"},
     {"contact.pairs", SCENE_ENTRIES, NULL, OPTIONAL, NONE, "pairs of bodies that differ from the above"},
     {"contact.pairs[].between", SCENE_NAMES, NULL, REQUIRED, NONE, "the two bodies, [a, b]; [a, a]: a membrane with itself, which it is not in contact with otherwise"},
-    {"contact.pairs[].method", SCENE_WORD, NULL, OPTIONAL, ANY, "none|multi-velocity|augury|tied|barrier", 0, false, "default: that of contact"},
+    {"contact.pairs[].method", SCENE_WORD, NULL, OPTIONAL, ANY, CONTACT_WORDS, 0, false, "default: that of contact"},
     {"contact.pairs[].friction", SCENE_REAL, "1", OPTIONAL, NOT_NEGATIVE, NULL, 0, false, "default: that of contact"},
 
     {"boundaries", SCENE_ENTRIES, NULL, OPTIONAL, NONE, "walls (plane), places with prescribed motion (region), nodes that are held, moved or loaded (group)"},

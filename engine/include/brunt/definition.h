@@ -37,13 +37,17 @@ typedef enum brunt_transfer { BRUNT_PIC, BRUNT_FLIP, BRUNT_APIC } brunt_transfer
 
 // Tied: bodies of material points share one velocity field at the grid nodes that both reach, in both directions: they
 // neither part nor slide (what material-point codes without contact do).
-typedef enum brunt_contact_method {
-    BRUNT_CONTACT_NONE,
-    BRUNT_CONTACT_MULTI_VELOCITY, // at nodes that two bodies reach (Bardenhagen, Brackbill and Sulsky 2000)
-    BRUNT_CONTACT_AUGURY,
-    BRUNT_CONTACT_TIED,
-    BRUNT_CONTACT_BARRIER // of implicit steps: an energy that grows without end as gaps close (Li and others 2020)
-} brunt_contact_method;
+// Multi-velocity: at nodes that two bodies reach (Bardenhagen, Brackbill and Sulsky 2000). Barrier: of implicit steps,
+// an energy that grows without end as gaps close (Li and others 2020). With the words of scenes.
+#define BRUNT_CONTACT_METHODS(X)                                                                                       \
+    X(NONE, "none")                                                                                                    \
+    X(MULTI_VELOCITY, "multi-velocity")                                                                                \
+    X(AUGURY, "augury")                                                                                                \
+    X(TIED, "tied")                                                                                                    \
+    X(BARRIER, "barrier")
+#define BRUNT_CONTACT_VALUE(name, word) BRUNT_CONTACT_##name,
+typedef enum brunt_contact_method { BRUNT_CONTACT_METHODS(BRUNT_CONTACT_VALUE) } brunt_contact_method;
+#undef BRUNT_CONTACT_VALUE
 // How augury makes the velocity that opposing bodies are to have where they meet.
 typedef enum brunt_augury_form {
     BRUNT_AUGURY_AFFINE,  // velocity and gap from the same facing facet, extended affinely; reaction by the transpose
