@@ -96,6 +96,9 @@ typedef struct brunt_constraint_set {
     size_t changed_capacity;
 } brunt_constraint_set;
 
+// Aborts where a set is not one that can be solved: entries and nodes out of range, masses below 0, normals not of unit
+// length.
+void brunt_constraints_validate(const brunt_constraint_set *set);
 void brunt_constraints_clear(brunt_constraint_set *set);
 void brunt_constraints_free(brunt_constraint_set *set);
 // New degree-of-freedom node, point, and entry of the last point. The index, or -1: out of memory.

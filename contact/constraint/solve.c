@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "base/error.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 
@@ -16,6 +17,21 @@ static inline quad load_quad(const double *from) {
     quad v;
     memcpy(&v, from, sizeof v);
     return v;
+}
+
+void brunt_constraints_validate(const brunt_constraint_set *p) {
+    for (int32_t s = 0; s < p->dof_node_count; s++)
+        for (int a = 0; a < 3; a++) BRUNT_ASSERT(p->dof_node[s].inverse[a] >= 0);
+    for (int32_t e = 0; e < p->entry_count; e++)
+        BRUNT_ASSERT(p->entry[e].dof_node >= 0 && p->entry[e].dof_node < p->dof_node_count);
+    for (int32_t k = 0; k < p->constraint_count; k++) {
+        const brunt_constraint *c = &p->constraint[k];
+        const int32_t end = c->first + (c->friction_point ? 2 : 1) * c->count;
+        BRUNT_ASSERT(c->first >= 0 && c->count > 0 && end <= p->entry_count);
+        BRUNT_ASSERT(c->friction_point >= 0 && c->friction_point <= p->friction_point_count);
+        BRUNT_ASSERT(fabs(c->n[0] * c->n[0] + c->n[1] * c->n[1] + c->n[2] * c->n[2] - 1) < 1e-6);
+        BRUNT_ASSERT(c->action && c->friction >= 0 && c->normal_impulse >= 0);
+    }
 }
 
 void brunt_constraints_clear(brunt_constraint_set *p) {

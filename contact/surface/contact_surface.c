@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/error.h"
 #include "base/array.h"
 #include "base/memory.h"
 
@@ -237,4 +238,17 @@ void brunt_surface_free(brunt_contact_surface *s) {
     brunt_free(s->renewal.topology);
     for (size_t k = 0; k < sizeof owned / sizeof owned[0]; k++) brunt_free(owned[k]);
     *s = (brunt_contact_surface){0};
+}
+
+void brunt_surface_validate(const brunt_contact_surface *s) {
+    for (int k = 0; k < s->fem_count; k++) {
+        BRUNT_ASSERT(s->node_range[k] <= s->node_end[k] && s->node_end[k] <= s->node_range[k + 1]);
+        BRUNT_ASSERT(s->face_range[k] <= s->face_end[k] && s->face_end[k] <= s->face_range[k + 1]);
+        for (int32_t f = s->face_range[k]; f < s->face_range[k + 1]; f++)
+            for (int c = 0; c < 4 && s->face[f][c] >= 0; c++)
+                BRUNT_ASSERT(s->face[f][c] >= s->node_range[k] && s->face[f][c] < s->node_range[k + 1]);
+    }
+    BRUNT_ASSERT(!s->fem_count || s->node_range[s->fem_count] <= s->node_count);
+    for (int32_t n = 0; n < s->node_count; n++)
+        BRUNT_ASSERT(s->face_first[n] <= s->face_first[n + 1] && s->mass[n] >= 0);
 }

@@ -112,6 +112,8 @@ typedef struct brunt_contact_surface {
     brunt_contact_output output;
 } brunt_contact_surface;
 
+// Aborts where bodies, nodes and faces do not belong to each other as they must.
+void brunt_surface_validate(const brunt_contact_surface *surface);
 // The surfaces of `count` bodies. `affine`: keep B. 0, or -1: out of memory.
 int brunt_surface_make(brunt_contact_surface *surface, brunt_fem_body **fem, int count, bool affine);
 // Lists the elements near each node of the bodies marked in `self`, which are membranes in contact with themselves:

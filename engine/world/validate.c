@@ -2,6 +2,7 @@
 #include <math.h>
 
 #include "base/error.h"
+#include "contact/methods/method.h"
 #include "world/world.h"
 
 static void validate_pairs(const brunt_pairs *pairs, int body_count) {
@@ -14,6 +15,14 @@ static void validate_pairs(const brunt_pairs *pairs, int body_count) {
     }
 }
 
+static void validate_contact(const brunt_contact *contact) {
+    BRUNT_ASSERT(contact->rows >> brunt_contact_row_count == 0);
+    for (int r = 0; r < brunt_contact_row_count; r++)
+        BRUNT_ASSERT(!contact->memory[r] || (contact->rows >> r & 1 && brunt_contact_rows[r].free));
+    brunt_constraints_validate(&contact->constraints);
+    if (contact->has_surfaces) brunt_surface_validate(&contact->surface);
+}
+
 void brunt_world_validate(const brunt_world *world) {
     const struct brunt_clock *clock = &world->clock;
     BRUNT_ASSERT(clock->time >= 0 && clock->steps >= 0 && clock->steps == floor(clock->steps));
@@ -23,4 +32,5 @@ void brunt_world_validate(const brunt_world *world) {
     brunt_node_sets_validate(&world->boundaries.sets);
     brunt_erosion_validate(&world->erosion);
     validate_pairs(&world->pairs, world->bodies.count);
+    validate_contact(&world->contact);
 }
