@@ -229,6 +229,13 @@ static void thicken(const brunt_contact_surface *s, double half, candidate_list 
         out->candidate[q].gap -= half + s->membrane.side[out->candidate[q].body].half;
 }
 
+// Whether a place is clearly before a facet.
+static inline bool is_before(const brunt_contact_surface *s, int32_t face, const double x[3]) {
+    const brunt_closest at = brunt_closest_on_face(s, face, x);
+    const double height = dot(at.normal, at.d);
+    return height > 1e-6 * s->mean_edge && height > 0.1 * sqrt(at.square);
+}
+
 // What a query meets of each other body. Facets that face the slave come first: a node that slides in under a block
 // meets its underside, not the wall it came through. Only a slave that has none of those close by, and is inside, is
 // sent out through the nearest facet there is. Tells how far the nearest facet is, or how far was looked, and how far
@@ -267,12 +274,7 @@ static inline __attribute__((always_inline)) void find_candidates(const brunt_co
     // What is before the nearest facet of all is outside, even if the nearest facet that faces it is seen from
     // behind. A membrane has no inside: it tells nothing of the others.
     const bool by_membrane = membranes && two.face >= 0 && is_membrane(s, s->face_body[two.face]);
-    bool outside = false;
-    if (two.face >= 0 && !by_membrane) {
-        brunt_closest at = brunt_closest_on_face(s, two.face, l->x);
-        double height = dot(at.normal, at.d);
-        outside = height > 1e-6 * s->mean_edge && height > 0.1 * sqrt(at.square);
-    }
+    const bool outside = two.face >= 0 && !by_membrane && is_before(s, two.face, l->x);
     const bool plain = out->count == 0 && l->enters <= 1;
     bool inside = out->count > 0;
     for (int b = 0; b < bodies && out->count < BRUNT_MAX_CANDIDATES; b++) {
