@@ -49,10 +49,10 @@ typedef struct brunt_constraint {
     double gap;           // [m] before the step
     double target;        // [m/s] least u_n
     double friction;
-    double plane[3];               // [m/s] velocity of the master when it is a plane; 0 for facets
-    brunt_impulse_account *action; // where the point is booked: impulse on the slave times `sign`
+    double plane[3];                // [m/s] velocity of the master when it is a plane; 0 for facets
+    brunt_impulse_account *account; // where the point is booked: impulse on the slave times `sign`
     double sign;
-    double area;            // [m^2] it stands for in the action's area
+    double area;            // [m^2] it stands for in the account's area
     int32_t tag;            // the caller's
     int32_t friction_point; // number + 1 of its own for friction, whose `count` entries follow the others; 0: it rubs
                             // where it pushes

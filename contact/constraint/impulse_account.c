@@ -8,13 +8,13 @@ void brunt_impulse_account_add(brunt_impulse_account *sum, const brunt_impulse_a
     sum->area = part->area;
 }
 
-void brunt_impulse_account_book(brunt_impulse_account *action, double *loss, const double J[3], const double x[3],
+void brunt_impulse_account_book(brunt_impulse_account *account, double *loss, const double J[3], const double x[3],
                                 const double old[3], const double now[3], const double carrier[3]) {
     for (int a = 0; a < 3; a++) {
         int i = (a + 1) % 3, j = (a + 2) % 3;
-        action->impulse[a] += J[a];
-        action->angular[a] += x[i] * J[j] - x[j] * J[i];
-        action->external_work += J[a] * carrier[a];
+        account->impulse[a] += J[a];
+        account->angular[a] += x[i] * J[j] - x[j] * J[i];
+        account->external_work += J[a] * carrier[a];
         *loss -= J[a] * (0.5 * (old[a] + now[a]) - carrier[a]);
     }
 }
@@ -23,7 +23,7 @@ void brunt_impulse_account_reaction(brunt_impulse_account *account, const double
     for (int a = 0; a < 3; a++) account->impulse[a] += linear[a], account->angular[a] += angular[a];
 }
 
-double brunt_impulse_account_node(brunt_contact_surface *s, brunt_impulse_account *action,
+double brunt_impulse_account_node(brunt_contact_surface *s, brunt_impulse_account *account,
                                   const brunt_node_impulse *impulse, bool second) {
     const int32_t n = impulse->node;
     double loss = 0;
@@ -31,12 +31,12 @@ double brunt_impulse_account_node(brunt_contact_surface *s, brunt_impulse_accoun
         const int i = (a + 1) % 3, l = (a + 2) % 3;
         const double J = impulse->J[a], work = J * 0.5 * (s->old[n][a] + s->v[n][a]);
         if (second) {
-            action->impulse[a] += J;
-            action->angular[a] += s->x[n][i] * impulse->J[l] - s->x[n][l] * impulse->J[i];
+            account->impulse[a] += J;
+            account->angular[a] += s->x[n][i] * impulse->J[l] - s->x[n][l] * impulse->J[i];
         }
         s->output.impulse[n][a] += J;
         // What prescribes a motion pays what the contact does to it.
-        if (!(s->inverse[n][a] > 0)) action->external_work -= work;
+        if (!(s->inverse[n][a] > 0)) account->external_work -= work;
         loss -= work;
     }
     return loss;

@@ -17,8 +17,8 @@ typedef struct brunt_impulse_account {
 
 void brunt_impulse_account_add(brunt_impulse_account *sum, const brunt_impulse_account *part);
 // Books impulse J acting at x while its material moves with `old` before and `now` after, against a carrier that moves
-// with `carrier`. What it dissipates is added to `loss`: the action's normal_loss or its friction_loss.
-void brunt_impulse_account_book(brunt_impulse_account *action, double *loss, const double J[3], const double x[3],
+// with `carrier`. What it dissipates is added to `loss`: the account's normal_loss or its friction_loss.
+void brunt_impulse_account_book(brunt_impulse_account *account, double *loss, const double J[3], const double x[3],
                                 const double old[3], const double now[3], const double carrier[3]);
 // Books what a symmetry plane bears: an impulse [N s] and its moment about the origin [N m s] on the bodies. Nothing
 // moves across the plane, so that it does no work and loses nothing.
@@ -33,5 +33,5 @@ typedef struct brunt_node_impulse {
 // Adds an impulse to a pair's account and to the surface's contact state, once velocities are final. `second`: the node
 // belongs to the pair's second body, whose impulses are the pair's. Returns the loss [J], which the caller divides
 // between normal_loss and friction_loss.
-double brunt_impulse_account_node(brunt_contact_surface *surface, brunt_impulse_account *action,
+double brunt_impulse_account_node(brunt_contact_surface *surface, brunt_impulse_account *account,
                                   const brunt_node_impulse *impulse, bool second);

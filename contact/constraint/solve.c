@@ -30,7 +30,7 @@ void brunt_constraints_validate(const brunt_constraint_set *p) {
         BRUNT_ASSERT(c->first >= 0 && c->count > 0 && end <= p->entry_count);
         BRUNT_ASSERT(c->friction_point >= 0 && c->friction_point <= p->friction_point_count);
         BRUNT_ASSERT(fabs(c->n[0] * c->n[0] + c->n[1] * c->n[1] + c->n[2] * c->n[2] - 1) < 1e-6);
-        BRUNT_ASSERT(c->action && c->friction >= 0 && c->normal_impulse >= 0);
+        BRUNT_ASSERT(c->account && c->friction >= 0 && c->normal_impulse >= 0);
     }
 }
 
@@ -353,7 +353,7 @@ static void account_constraints(brunt_constraint_set *p) {
     for (int32_t k = 0; k < p->constraint_count; k++) {
         const brunt_constraint *constraint = &p->constraint[k];
         if (!(constraint->normal_impulse > 0)) continue;
-        constraint->action->area += constraint->area;
+        constraint->account->area += constraint->area;
         double old[3], now[3], normal_impulse[3], friction_impulse[3], x[3];
         brunt_constraint_velocity(p, constraint, true, old);
         brunt_constraint_velocity(p, constraint, false, now);
@@ -365,7 +365,7 @@ static void account_constraints(brunt_constraint_set *p) {
             now[a] = constraint->sign * (now[a] + constraint->plane[a]);
             x[a] = constraint->x[a];
         }
-        brunt_impulse_account_book(constraint->action, &constraint->action->normal_loss, normal_impulse, x, old, now,
+        brunt_impulse_account_book(constraint->account, &constraint->account->normal_loss, normal_impulse, x, old, now,
                                    constraint->plane);
         if (constraint->friction_point) {
             velocity(p, constraint, constraint->first + constraint->count, true, old);
@@ -377,8 +377,8 @@ static void account_constraints(brunt_constraint_set *p) {
             }
         }
         if (constraint->friction > 0)
-            brunt_impulse_account_book(constraint->action, &constraint->action->friction_loss, friction_impulse, x, old,
-                                       now, constraint->plane);
+            brunt_impulse_account_book(constraint->account, &constraint->account->friction_loss, friction_impulse, x,
+                                       old, now, constraint->plane);
     }
 }
 

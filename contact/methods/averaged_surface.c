@@ -233,15 +233,15 @@ static int prepare(averaged_job *j) {
 static void account_pairs(const averaged_job *j) {
     for (int32_t k = 0; k < j->work->pair_account_count; k++) {
         const pair_account *d = &j->work->pair_account[k];
-        brunt_impulse_account *action = &j->m->pairs[d->pair].last;
+        brunt_impulse_account *account = &j->m->pairs[d->pair].last;
         double loss = 0;
         for (int32_t i = d->first; i < d->end; i++) {
             const brunt_node_impulse *J = &j->work->impulse[i];
-            loss += brunt_impulse_account_node(j->surface, action, J, j->surface->body[J->node] == d->body_b);
+            loss += brunt_impulse_account_node(j->surface, account, J, j->surface->body[J->node] == d->body_b);
         }
-        action->friction_loss += d->friction_loss;
-        action->normal_loss += loss - d->friction_loss;
-        action->area += d->area;
+        account->friction_loss += d->friction_loss;
+        account->normal_loss += loss - d->friction_loss;
+        account->area += d->area;
     }
 }
 

@@ -243,8 +243,8 @@ static int find_pairs(job *j) {
         return -1;
     for (int k = 0; k < s->fem_count; k++) f->pair[k] = -1;
     for (int32_t q = j->w->near.count - 1; q >= 0; q--) {
-        const brunt_augury_neighbours *who = &j->w->near.found[q];
-        f->pair[who->a] = f->pair[who->b] = who->pair;
+        const brunt_augury_neighbours *near = &j->w->near.found[q];
+        f->pair[near->a] = f->pair[near->b] = near->pair;
     }
     for (int k = 0; k < s->fem_count; k++) {
         if (!s->active[k] || s->node_range[k + 1] == s->node_range[k])

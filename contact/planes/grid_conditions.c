@@ -16,7 +16,7 @@ static void reflect(bool rings, const double place[3], double h, double now[3]) 
 }
 
 static void set_velocity(brunt_body *body, const brunt_slot *slot, int node, const double now[3],
-                         const double support[3], unsigned held, brunt_impulse_account *action) {
+                         const double support[3], unsigned held, brunt_impulse_account *account) {
     const brunt_grid *grid = &body->grid;
     real *n = brunt_slot_nodes(grid, (int32_t)(slot - grid->slots)) + node * BRUNT_NODE_REALS;
     double x[3], J[3] = {0}, old[3] = {0};
@@ -28,7 +28,7 @@ static void set_velocity(brunt_body *body, const brunt_slot *slot, int node, con
         old[a] = (double)n[BRUNT_NODE_OLD + a];
         n[BRUNT_NODE_VELOCITY + a] = (real)now[a];
     }
-    brunt_impulse_account_book(action, &action->normal_loss, J, x, old, now, support);
+    brunt_impulse_account_book(account, &account->normal_loss, J, x, old, now, support);
 }
 
 // Of a cell: what a node may stand off a plane or a shape that it is meant to lie in. Places of nodes are rounded by as

@@ -134,7 +134,7 @@ void brunt_node_to_facet_constraint(const brunt_contact_context *m, const facet_
     memcpy(constraint->n, h->n, sizeof constraint->n);
     constraint->gap = h->gap;
     constraint->friction = pair->friction;
-    constraint->action = &pair->last;
+    constraint->account = &pair->last;
     constraint->sign = body > h->body ? 1 : -1;
 }
 

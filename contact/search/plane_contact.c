@@ -43,7 +43,7 @@ static int add_plane_constraint(const brunt_contact_context *m, brunt_node_to_fa
     memcpy(constraint->n, plane->normal, sizeof constraint->n);
     memcpy(constraint->plane, plane->velocity, sizeof constraint->plane);
     constraint->gap = gap, constraint->target = target, constraint->friction = plane->friction;
-    constraint->action = &wall->last, constraint->sign = 1, constraint->tag = n,
+    constraint->account = &wall->last, constraint->sign = 1, constraint->tag = n,
     constraint->area = brunt_node_to_facet_area(s, n, plane->normal);
     if (back) constraint->area += brunt_node_to_facet_area(s, n + back, plane->normal);
     return brunt_constraints_entry(constraints, dof_node, 1) < 0 ? -1 : 0;

@@ -1,4 +1,4 @@
-// What the step and its passes take, and who is told.
+// What the step and its passes take, and what is told of it.
 //
 // The clock is read where a pass ends; the next begins there. With a reading at either side of each pass, what lies
 // between two of them is lost: for a hundred particles that is as much as a short pass.

@@ -10,9 +10,9 @@ enum { CHAIN = 24 };
 
 // A row of beads that touch, the first against a wall, all on their way towards it: an impulse must travel through all
 // of them, and every sweep takes it one bead on.
-static void make_chain(brunt_constraint_set *p, brunt_impulse_account *action) {
+static void make_chain(brunt_constraint_set *p, brunt_impulse_account *account) {
     memset(p, 0, sizeof *p);
-    memset(action, 0, sizeof *action);
+    memset(account, 0, sizeof *account);
     for (int i = 0; i < CHAIN; i++) {
         ck_assert_int_eq(brunt_constraints_dof_node(p), i);
         brunt_dof_node *s = &p->dof_node[i];
@@ -23,7 +23,7 @@ static void make_chain(brunt_constraint_set *p, brunt_impulse_account *action) {
         ck_assert_int_eq(brunt_constraints_add(p), i);
         brunt_constraint *point = &p->constraint[i];
         point->n[0] = point->facet[0] = 1;
-        point->action = action, point->sign = 1;
+        point->account = account, point->sign = 1;
         brunt_constraints_entry(p, i, 1);
         if (i > 0) brunt_constraints_entry(p, i - 1, -1);
     }
@@ -32,9 +32,9 @@ static void make_chain(brunt_constraint_set *p, brunt_impulse_account *action) {
 // Fastest approach that is left [m/s], after sweeps that took `*sweeps` of them.
 static double approach_left(int most, double tolerance, int *sweeps) {
     brunt_constraint_set p;
-    brunt_impulse_account action;
+    brunt_impulse_account account;
     brunt_timer timer = {0};
-    make_chain(&p, &action);
+    make_chain(&p, &account);
     *sweeps = brunt_constraints_solve(&p, most, tolerance, 1, &timer);
     double left = 0;
     for (int k = 0; k < p.constraint_count; k++) {
