@@ -8,7 +8,7 @@
 #include "contact/pairs.h"
 
 typedef struct brunt_symmetry_plane brunt_symmetry_plane; // planes/symmetry.h
-typedef struct brunt_wall brunt_wall;                     // planes/boundary.h
+typedef struct brunt_boundary brunt_boundary;             // planes/boundary.h
 
 enum { BRUNT_CONTACT_ROW_LIMIT = 16 }; // methods, methods/list.c
 
@@ -31,7 +31,7 @@ typedef struct brunt_contact_context {
     int64_t step;
     const brunt_symmetry_plane *mirrors; // of the grids
     int mirror_count;
-    brunt_wall *walls; // planes, regions and groups: what the mirrors are, and planes that push
+    brunt_boundary *walls; // planes, regions and groups: what the mirrors are, and planes that push
     int wall_count;
     double time;     // [s] at the start of the step
     brunt_body *mpm; // the bodies of material points

@@ -195,7 +195,7 @@ static void mark_state(const job *j, const contact *c) {
 }
 
 // Across a mirror plane the two do not get the same, each being the half of a whole: the rest is the plane's.
-static void account_symmetry(const job *j, const contact *c, brunt_wall *walls) {
+static void account_symmetry(const job *j, const contact *c, brunt_boundary *walls) {
     const brunt_grid *grid = &j->m->mpm[c->mpm].grid;
     const double own = (double)(c->at[BRUNT_NODE_SPARE] / c->at[BRUNT_NODE_MASS]);
     static const double none[3] = {0};

@@ -4,7 +4,7 @@
 #include "brunt.h"
 #include "contact/constraint/impulse_account.h"
 
-typedef struct brunt_wall {
+typedef struct brunt_boundary {
     char name[BRUNT_NAME_LENGTH];
     bool region;                         // else a plane; a group counts as a region without grid nodes
     const struct brunt_group_def *group; // of finite-element bodies, NULL for the others
@@ -14,4 +14,4 @@ typedef struct brunt_wall {
     int mirror;                          // index of the mirror plane it has become, -1
     brunt_impulse_account action;        // since the start
     brunt_impulse_account last;          // of the last step
-} brunt_wall;
+} brunt_boundary;

@@ -43,7 +43,7 @@ static void unplace(const brunt_placement *place, const double x[3], double out[
     }
 }
 
-static void apply_region(brunt_body *body, bool rings, brunt_wall *wall) {
+static void apply_region(brunt_body *body, bool rings, brunt_boundary *wall) {
     const brunt_grid *grid = &body->grid;
     unsigned held = 0;
     for (int a = 0; a < grid->dim; a++) held |= (unsigned)wall->where.component[a] << a;
@@ -75,7 +75,7 @@ static void apply_region(brunt_body *body, bool rings, brunt_wall *wall) {
 }
 
 // Of a total-Lagrangian body the plane lies in the undeformed configuration and holds what was behind it at the start.
-static void apply_plane(brunt_body *body, bool rings, brunt_wall *wall, double time) {
+static void apply_plane(brunt_body *body, bool rings, brunt_boundary *wall, double time) {
     const brunt_grid *grid = &body->grid;
     if (brunt_total_lagrangian(&body->particles)) time = 0;
     const brunt_plane_def *plane = &wall->plane;
@@ -121,7 +121,7 @@ int brunt_condition_clear(brunt_body *body) {
     return 0;
 }
 
-void brunt_condition_apply(brunt_body *body, brunt_wall *wall, double time) {
+void brunt_condition_apply(brunt_body *body, brunt_boundary *wall, double time) {
     if (wall->region) {
         if (time >= wall->where.start && time < wall->where.end)
             apply_region(body, brunt_axisymmetric(&body->particles), wall);

@@ -103,7 +103,8 @@ double brunt_plane_distance(const brunt_plane_def *plane, double time, const dou
     return d;
 }
 
-bool brunt_broad_phase_plane(const brunt_contact_surface *s, int k, const brunt_wall *wall, double time, double range) {
+bool brunt_broad_phase_plane(const brunt_contact_surface *s, int k, const brunt_boundary *wall, double time,
+                             double range) {
     if (wall->region || (wall->body >= 0 && wall->body != s->fem[k]->index)) return false;
     double corner[3]; // of the box, deepest behind the plane
     for (int a = 0; a < 3; a++) corner[a] = wall->plane.normal[a] > 0 ? s->low[k][a] : s->high[k][a];
@@ -122,7 +123,7 @@ static bool all_finite(const brunt_node_to_facet *f) {
     return true;
 }
 
-int brunt_broad_phase(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, const brunt_wall *walls,
+int brunt_broad_phase(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, const brunt_boundary *walls,
                       int wall_count, double time, brunt_node_to_facet **facing) {
     brunt_contact_surface *s = m->surface;
     if (brunt_node_to_facet_make(facing, mpm_count, s->node_count)) return -1;

@@ -483,7 +483,7 @@ static bool is_held(const brunt_contact_surface *s, int32_t n) {
 // The deepest place of a body behind a plane that pushes it.
 static bool find_behind(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, int w, brunt_overlap *found) {
     const brunt_contact_surface *s = m->surface;
-    const brunt_wall *wall = &m->walls[w];
+    const brunt_boundary *wall = &m->walls[w];
     bool any = false;
     if (wall->region || wall->plane.condition != BRUNT_SEPARATE) return false;
     *found = (brunt_overlap){.b = -1, .wall = w};

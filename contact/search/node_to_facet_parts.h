@@ -33,7 +33,8 @@ int brunt_distance_cache_fit(brunt_node_to_facet *f, int32_t nodes, int32_t kept
 
 // --- broad_phase.c
 double brunt_plane_distance(const brunt_plane_def *plane, double time, const double x[3]);
-bool brunt_broad_phase_plane(const brunt_contact_surface *s, int k, const brunt_wall *wall, double time, double range);
+bool brunt_broad_phase_plane(const brunt_contact_surface *s, int k, const brunt_boundary *wall, double time,
+                             double range);
 
 // --- facet_cells.c
 // Makes the cells anew when they no longer hold all that may be near. 0, or -1: out of memory.

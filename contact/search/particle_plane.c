@@ -25,7 +25,7 @@ static const double NEAR = 0.5; // cells: how far from a plane particles are loo
 typedef struct plane_job {
     const brunt_contact_context *m;
     brunt_body *body;
-    brunt_wall *wall;
+    brunt_boundary *wall;
     brunt_particle_dofs *dofs;
     brunt_constraint_set *set;
     double offset, speed, near; // [m] of the plane along its normal, [m/s] along it, [m] gaps that are looked at
@@ -106,7 +106,7 @@ int brunt_planes_apply(const brunt_contact_context *m, brunt_body *body, brunt_p
     if (brunt_particle_dofs_begin(m, body, dofs)) return -1;
     brunt_constraints_clear(set);
     for (int k = 0; k < m->wall_count; k++) {
-        brunt_wall *wall = &m->walls[k];
+        brunt_boundary *wall = &m->walls[k];
         if (wall->region || wall->plane.condition != BRUNT_SEPARATE) continue;
         if (wall->body >= 0 && wall->body != body->index) continue;
         plane_job j = {.m = m, .body = body, .wall = wall, .dofs = dofs, .set = set};

@@ -3,7 +3,7 @@
 
 // Holds a node on a plane: stick takes all components, slip and symmetry the normal one. `back`: how much further its
 // twin is, of a membrane; else 0.
-static void fix_node(brunt_contact_surface *s, int32_t n, int32_t back, brunt_wall *wall, double normal_velocity,
+static void fix_node(brunt_contact_surface *s, int32_t n, int32_t back, brunt_boundary *wall, double normal_velocity,
                      bool stick) {
     const brunt_plane_def *plane = &wall->plane;
     double now[3], J[3], old[3], along = 0;
@@ -26,7 +26,7 @@ static void fix_node(brunt_contact_surface *s, int32_t n, int32_t back, brunt_wa
 }
 
 static int add_plane_constraint(const brunt_contact_context *m, brunt_node_to_facet *f, int32_t n, int32_t back,
-                                brunt_wall *wall, double gap, brunt_constraint_set *constraints) {
+                                brunt_boundary *wall, double gap, brunt_constraint_set *constraints) {
     const brunt_contact_surface *s = m->surface;
     const brunt_plane_def *plane = &wall->plane;
     double approach = 0, before = 0;
@@ -49,12 +49,12 @@ static int add_plane_constraint(const brunt_contact_context *m, brunt_node_to_fa
     return brunt_constraints_entry(constraints, dof_node, 1) < 0 ? -1 : 0;
 }
 
-int brunt_node_to_facet_planes(const brunt_contact_context *m, brunt_wall *walls, int wall_count, double time,
+int brunt_node_to_facet_planes(const brunt_contact_context *m, brunt_boundary *walls, int wall_count, double time,
                                brunt_node_to_facet *f, brunt_constraint_set *constraints) {
     brunt_contact_surface *s = m->surface;
     const double on = 1e-6 * s->mean_edge;
     for (int w = 0; w < wall_count; w++) {
-        brunt_wall *wall = &walls[w];
+        brunt_boundary *wall = &walls[w];
         const brunt_condition condition = wall->plane.condition;
         if (wall->region) continue;
         for (int k = 0; k < s->fem_count; k++) {
@@ -82,7 +82,7 @@ int brunt_node_to_facet_planes(const brunt_contact_context *m, brunt_wall *walls
 }
 
 // The plane that keeps component a of a node from moving: of those that hold it, the nearest. -1: none.
-static int fixing_plane(const brunt_contact_surface *s, int32_t n, int a, const brunt_wall *walls, int wall_count,
+static int fixing_plane(const brunt_contact_surface *s, int32_t n, int a, const brunt_boundary *walls, int wall_count,
                         double time) {
     int nearest = -1;
     double least = INFINITY;
@@ -97,8 +97,9 @@ static int fixing_plane(const brunt_contact_surface *s, int32_t n, int a, const 
     return nearest;
 }
 
-void brunt_node_to_facet_account_fixed(const brunt_contact_context *m, brunt_wall *walls, int wall_count, double time,
-                                       const brunt_node_to_facet *f, const brunt_constraint_set *constraints) {
+void brunt_node_to_facet_account_fixed(const brunt_contact_context *m, brunt_boundary *walls, int wall_count,
+                                       double time, const brunt_node_to_facet *f,
+                                       const brunt_constraint_set *constraints) {
     const brunt_contact_surface *s = m->surface;
     int k = 0;
     for (int32_t n = 0; n < s->node_count; n++) {

@@ -25,7 +25,7 @@ typedef struct brunt_ledger {
 // What the balance goes over besides the ledger.
 typedef struct brunt_books {
     const brunt_bodies *bodies;
-    const brunt_wall *walls;
+    const brunt_boundary *walls;
     int wall_count;
     const brunt_pair *pairs;
     int pair_count;

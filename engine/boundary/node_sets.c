@@ -155,7 +155,7 @@ static int copy_definition(brunt_group_def *copy, const brunt_group_def *def) {
 }
 
 int brunt_node_sets_make(brunt_node_sets *sets, const brunt_world_def *def, const brunt_bodies *bodies,
-                         brunt_wall *walls, brunt_messages *messages, brunt_error *error) {
+                         brunt_boundary *walls, brunt_messages *messages, brunt_error *error) {
     if (def->group_count > 255) return brunt_fail(error, BRUNT_BAD_INPUT, "boundaries: more than 255 groups");
     sets->set = brunt_alloc((size_t)(def->group_count + 1) * sizeof *sets->set);
     sets->holder = brunt_alloc((size_t)(bodies->fem_count + 1) * sizeof *sets->holder);

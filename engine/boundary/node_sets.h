@@ -8,8 +8,8 @@
 #include "contact/surface/contact_surface.h"
 
 typedef struct brunt_node_set {
-    brunt_group_def def; // a copy, with its curve
-    brunt_wall *wall;    // its name, and where its impulses are booked
+    brunt_group_def def;  // a copy, with its curve
+    brunt_boundary *wall; // its name, and where its impulses are booked
     brunt_fem_body *fem;
     int fem_index; // of the body, among those of elements
     const int32_t *node;
@@ -37,7 +37,7 @@ typedef struct brunt_node_sets {
 
 // After the bodies are made. `walls`: those of the sets.
 int brunt_node_sets_make(brunt_node_sets *sets, const brunt_world_def *def, const brunt_bodies *bodies,
-                         brunt_wall *walls, brunt_messages *messages, brunt_error *error);
+                         brunt_boundary *walls, brunt_messages *messages, brunt_error *error);
 void brunt_node_sets_free(brunt_node_sets *sets);
 void brunt_node_sets_validate(const brunt_node_sets *sets);
 // Loads of a body's sets from now on act on the faces of those elements alone that it still has. The set whose faces

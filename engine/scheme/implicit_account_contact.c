@@ -130,7 +130,7 @@ static void book_forces(brunt_world *world) {
         last->friction_loss += c->force[p].heat;
     }
     for (int32_t q = 0; q < c->plane_count; q++) {
-        brunt_wall *wall = &world->boundaries.walls[c->plane_wall[q]];
+        brunt_boundary *wall = &world->boundaries.walls[c->plane_wall[q]];
         const brunt_barrier_force *force = &c->force[c->pair_count + q];
         wall->last.friction_loss += force->heat;
         for (int a = 0; a < 3; a++) {

@@ -46,8 +46,8 @@ static double slowest_wave(const brunt_world *world) {
 
 // ------------------------------------------------------------------------------------------ pairs and planes
 
-static bool is_wall(const brunt_wall *wall) { return !wall->region && wall->plane.condition == BRUNT_SEPARATE; }
-static bool plane_meets(const brunt_wall *wall, int body) { return wall->body < 0 || wall->body == body; }
+static bool is_wall(const brunt_boundary *wall) { return !wall->region && wall->plane.condition == BRUNT_SEPARATE; }
+static bool plane_meets(const brunt_boundary *wall, int body) { return wall->body < 0 || wall->body == body; }
 
 // Pairs of bodies that barriers keep apart; `c->pair` NULL: counts them.
 static void list_pairs(brunt_implicit_contact *c, const brunt_world *world) {
@@ -128,7 +128,7 @@ static void fill_pairs(brunt_implicit_contact *c, const brunt_world *world, cons
 
 static void fill_planes(brunt_implicit_contact *c, const brunt_world *world, const brunt_world_def *def, double slip) {
     for (int32_t q = 0; q < c->plane_count; q++) {
-        const brunt_wall *wall = &world->boundaries.walls[c->plane_wall[q]];
+        const brunt_boundary *wall = &world->boundaries.walls[c->plane_wall[q]];
         double softest = INFINITY;
         for (int b = 0; b < world->bodies.count; b++) {
             if (!c->meets[q][b]) continue;

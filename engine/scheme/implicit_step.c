@@ -199,7 +199,7 @@ static int try_step(brunt_world *world, double dt, brunt_newton_report *report, 
 // Planes that hold what lies on them do not push what comes to them.
 static int check_planes(const brunt_world *world, brunt_error *error) {
     const struct brunt_implicit *m = world->plan.implicit;
-    const brunt_wall *wall;
+    const brunt_boundary *wall;
     char reason[160];
     const int32_t n = brunt_unknowns_passed(&m->unknowns, world, m->field.u, m->dt, &wall);
     if (n < 0) return BRUNT_OK;

@@ -55,7 +55,7 @@ int brunt_pass_sort(brunt_world *world, brunt_step *step, brunt_error *error) {
     return BRUNT_OK;
 }
 
-static bool acts_on(const brunt_wall *wall, const brunt_body *body) {
+static bool acts_on(const brunt_boundary *wall, const brunt_body *body) {
     return wall->body < 0 || wall->body == body->index;
 }
 
@@ -67,7 +67,7 @@ static void fold_mirrors(brunt_world *world, brunt_body *body, double taken, boo
     int count = 0;
     for (int m = 0; m < world->boundaries.mirror_count; m++) {
         const int w = world->boundaries.mirrors[m].wall;
-        brunt_wall *wall = w < 0 ? NULL : &world->boundaries.walls[w];
+        brunt_boundary *wall = w < 0 ? NULL : &world->boundaries.walls[w];
         if (wall && !acts_on(wall, body)) continue;
         account[count] = wall && booked ? &wall->last : &unbooked;
         mirrors[count++] = world->boundaries.mirrors[m];
@@ -116,7 +116,7 @@ int brunt_pass_update(brunt_world *world, brunt_step *step, brunt_error *error) 
     return BRUNT_OK;
 }
 
-static bool at_nodes(const brunt_wall *wall) {
+static bool at_nodes(const brunt_boundary *wall) {
     return wall->region || (wall->mirror < 0 && wall->plane.condition != BRUNT_SEPARATE);
 }
 
@@ -211,7 +211,7 @@ static void remap_body(brunt_world *world, brunt_body *body, double dt) {
     fold_mirrors(world, body, 1, false);
     brunt_parallel(world->settings.threads, body->grid.slot_count, SLOT_GRAIN, brunt_grid_update, &nodes, timer);
     for (int w = 0; w < world->boundaries.wall_count; w++) {
-        brunt_wall wall = world->boundaries.walls[w];
+        brunt_boundary wall = world->boundaries.walls[w];
         if (at_nodes(&wall) && acts_on(&wall, body)) brunt_condition_apply(body, &wall, world->clock.time);
     }
 }

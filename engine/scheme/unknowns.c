@@ -121,7 +121,7 @@ static void take_grid(brunt_unknowns *u, const brunt_grid *grid, const int32_t *
     }
 }
 
-static bool moves(const brunt_wall *wall) {
+static bool moves(const brunt_boundary *wall) {
     const double *v = wall->plane.velocity;
     return !wall->region && wall->plane.condition == BRUNT_SEPARATE && (v[0] != 0 || v[1] != 0 || v[2] != 0);
 }
@@ -136,7 +136,7 @@ static void take_plane(brunt_unknowns *u, const brunt_plane_def *plane, double t
 
 int brunt_unknowns_number(brunt_unknowns *u, const brunt_world *world) {
     const brunt_bodies *bodies = &world->bodies;
-    const brunt_wall *walls = world->boundaries.walls;
+    const brunt_boundary *walls = world->boundaries.walls;
     u->count = 0;
     for (int k = 0; k < bodies->fem_count; k++) u->base[k] = u->count, u->count += bodies->fem[k].node_count;
     u->mesh_count = u->count;

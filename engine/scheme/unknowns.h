@@ -40,7 +40,7 @@ void brunt_unknowns_hold(brunt_unknowns *u, const brunt_world *world, double dt)
 // The first node of a mesh that displacements `way` [m] over `dt` take behind a plane that holds what lies on it, and
 // that plane; -1: none.
 int32_t brunt_unknowns_passed(const brunt_unknowns *u, const brunt_world *world, const double *way, double dt,
-                              const brunt_wall **wall);
+                              const brunt_boundary **wall);
 // What node `n` is of: a body, and its node or the slot's, for messages.
 typedef struct brunt_unknown_place {
     int body; // among all, in order of name

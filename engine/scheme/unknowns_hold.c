@@ -41,7 +41,7 @@ static void hold_group(brunt_unknowns *u, const brunt_world *world, int k, doubl
 
 // ------------------------------------------------------------------------------------------ planes
 
-static bool acts_on(const brunt_wall *wall, int body) { return wall->body < 0 || wall->body == body; }
+static bool acts_on(const brunt_boundary *wall, int body) { return wall->body < 0 || wall->body == body; }
 
 // The components that a plane holds: all that stick, the one across it that slips.
 static unsigned components(const brunt_plane_def *plane, int dim) {
@@ -60,7 +60,7 @@ static double distance(const brunt_unknowns *u, const brunt_plane_def *plane, do
     return gap;
 }
 
-static void hold_plane_node(brunt_unknowns *u, const brunt_wall *wall, int w, int32_t n, double dt) {
+static void hold_plane_node(brunt_unknowns *u, const brunt_boundary *wall, int w, int32_t n, double dt) {
     const unsigned held = components(&wall->plane, u->dim);
     for (int a = 0; a < u->dim; a++)
         if (held >> a & 1) hold(u, n, a, w, dt * wall->plane.velocity[a], wall->plane.velocity[a]);
@@ -68,7 +68,7 @@ static void hold_plane_node(brunt_unknowns *u, const brunt_wall *wall, int w, in
 
 // Nodes at a plane and behind it.
 static void hold_plane(brunt_unknowns *u, const brunt_world *world, int w, double dt) {
-    const brunt_wall *wall = &world->boundaries.walls[w];
+    const brunt_boundary *wall = &world->boundaries.walls[w];
     if (wall->plane.condition == BRUNT_SEPARATE) return;
     const brunt_bodies *bodies = &world->bodies;
     for (int k = 0; k < bodies->fem_count; k++)
@@ -95,7 +95,7 @@ static void hold_moving_plane(brunt_unknowns *u, int32_t n, int a, double dt) {
 
 // ------------------------------------------------------------------------------------------ regions
 
-static void hold_region_grid(brunt_unknowns *u, const brunt_wall *wall, int w, const brunt_grid *grid,
+static void hold_region_grid(brunt_unknowns *u, const brunt_boundary *wall, int w, const brunt_grid *grid,
                              const int32_t *number, double dt) {
     const brunt_region_def *where = &wall->where;
     for (int64_t q = 0; q < (int64_t)grid->slot_count * BRUNT_BLOCK_NODES; q++) {
@@ -114,7 +114,7 @@ static void hold_region_grid(brunt_unknowns *u, const brunt_wall *wall, int w, c
 }
 
 static void hold_region(brunt_unknowns *u, const brunt_world *world, int w, double dt) {
-    const brunt_wall *wall = &world->boundaries.walls[w];
+    const brunt_boundary *wall = &world->boundaries.walls[w];
     const double time = world->clock.time;
     if (!(time >= wall->where.start && time < wall->where.end)) return;
     for (int i = 0; i < world->bodies.mpm_count; i++)
@@ -132,7 +132,7 @@ void brunt_unknowns_hold(brunt_unknowns *u, const brunt_world *world, double dt)
         for (int a = 0; u->plane[w] >= 0 && a < u->dim; a++) hold_moving_plane(u, u->plane[w], a, dt);
     for (int k = 0; k < world->boundaries.sets.count; k++) hold_group(u, world, k, dt);
     for (int w = 0; w < world->boundaries.wall_count; w++) {
-        const brunt_wall *wall = &world->boundaries.walls[w];
+        const brunt_boundary *wall = &world->boundaries.walls[w];
         if (wall->group) continue;
         if (wall->region)
             hold_region(u, world, w, dt);
@@ -142,7 +142,7 @@ void brunt_unknowns_hold(brunt_unknowns *u, const brunt_world *world, double dt)
 }
 
 int32_t brunt_unknowns_passed(const brunt_unknowns *u, const brunt_world *world, const double *way, double dt,
-                              const brunt_wall **wall) {
+                              const brunt_boundary **wall) {
     const brunt_bodies *bodies = &world->bodies;
     for (int w = 0; w < world->boundaries.wall_count; w++) {
         *wall = &world->boundaries.walls[w];

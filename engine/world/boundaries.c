@@ -26,7 +26,7 @@ static bool has_fluid(const brunt_world_def *def) {
 }
 
 static int make_plane(brunt_world *world, const brunt_world_def *def, int index, brunt_error *error) {
-    brunt_wall *wall = &world->boundaries.walls[index];
+    brunt_boundary *wall = &world->boundaries.walls[index];
     brunt_plane_def *plane = &wall->plane;
     double size = 0;
     for (int a = 0; a < def->dimension; a++) size += plane->normal[a] * plane->normal[a];
@@ -93,7 +93,7 @@ int brunt_boundaries_make(brunt_world *world, const brunt_world_def *def, const 
         world->boundaries.mirrors[world->boundaries.mirror_count++] =
             (brunt_symmetry_plane){.axis = 0, .node = (int32_t)round(-def->origin[0] / def->cell), .wall = -1};
     for (int w = 0; w < world->boundaries.wall_count; w++) {
-        brunt_wall *wall = &world->boundaries.walls[w];
+        brunt_boundary *wall = &world->boundaries.walls[w];
         wall->region = w >= def->plane_count;
         wall->mirror = wall->body = -1;
         if (w >= def->plane_count + def->region_count) { // the rest follows with the bodies (holds.c)

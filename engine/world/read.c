@@ -61,7 +61,7 @@ void brunt_pair_force(const brunt_world *world, int32_t index, brunt_force *forc
 }
 int32_t brunt_wall_count(const brunt_world *world) { return world->boundaries.wall_count; }
 void brunt_wall_force(const brunt_world *world, int32_t index, brunt_force *force) {
-    const brunt_wall *wall = &world->boundaries.walls[index];
+    const brunt_boundary *wall = &world->boundaries.walls[index];
     snprintf(force->name, sizeof force->name, "%s", wall->name);
     fill_force(&wall->last, &wall->action, world->clock.kick, force);
 }

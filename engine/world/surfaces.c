@@ -15,7 +15,7 @@ static const double COARSE = 1.25; // cells: edges of meshes that meet particles
 enum { GRID_SWEEPS = 8, SWEEPS = 16, SHEET_SWEEPS = 64 };
 static const double THIN = 0.01; // mean edges
 
-static bool acts_on_fem(const brunt_world *world, const brunt_wall *wall) {
+static bool acts_on_fem(const brunt_world *world, const brunt_boundary *wall) {
     if (wall->region) return false;
     for (int k = 0; k < world->bodies.fem_count; k++)
         if (wall->body < 0 || wall->body == world->bodies.fem[k].index) return true;

@@ -60,7 +60,7 @@ int brunt_reports_make(brunt_world *world, brunt_error *error) {
 // A plane of symmetry stands for what is behind it: what a body has there would be there twice.
 static int check_symmetry(const brunt_world *world, brunt_error *error) {
     for (int w = 0; w < world->boundaries.wall_count; w++) {
-        const brunt_wall *wall = &world->boundaries.walls[w];
+        const brunt_boundary *wall = &world->boundaries.walls[w];
         const double *n = wall->plane.normal, *at = wall->plane.point;
         if (wall->region || wall->plane.condition != BRUNT_SYMMETRY) continue;
         for (int i = 0; i < world->bodies.count; i++) {
