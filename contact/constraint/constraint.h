@@ -18,6 +18,10 @@
 // coupling matrix (in units of its own effective mass), so that a uniform approach is met in one sweep and no sweep can
 // add energy. Neither the order of points nor the number of threads changes a bit.
 //
+// Accelerated sweeps (Nesterov 1983, with the restarts of O'Donoghue and Candes 2015; contact: Mazhar, Heyn, Negrut and
+// Tasora 2015) begin with a share of the last correction on top. Where touches are many to a node they need a
+// quarter of the sweeps.
+//
 // Tried and left: starting the sweeps from the last step's impulses. They end sooner, but what is given too much is
 // taken back only as far as the sweeps go, and a stack of hexahedra at rest gained energy until it fell.
 #pragma once
@@ -52,8 +56,10 @@ typedef struct brunt_constraint {
     double plane[3];                // [m/s] velocity of the master when it is a plane; 0 for facets
     brunt_impulse_account *account; // where the point is booked: impulse on the slave times `sign`
     double sign;
-    double area;            // [m^2] it stands for in the account's area
-    int32_t tag;            // the caller's
+    double area; // [m^2] it stands for in the account's area
+    int32_t tag; // the caller's
+    int32_t
+        bearer; // number + 1 of the body of material points that bears the reaction, if that is the caller's; else 0
     int32_t friction_point; // number + 1 of its own for friction, whose `count` entries follow the others; 0: it rubs
                             // where it pushes
     double image; // [1/kg] of what an impulse along n does to u_n, the share of the image that presses with it
@@ -94,6 +100,20 @@ typedef struct brunt_constraint_set {
     size_t applied_capacity;
     double *changed; // [m/s] of each chunk of points: greatest correction of the sweep
     size_t changed_capacity;
+    // Of accelerated sweeps, else unused: what points and nodes had after the sweep before, and of each chunk how much
+    // of its correction goes back on the last one's (see solve.c).
+    bool accelerated;
+    double momentum; // [-] share of the last sweep's correction that the next one begins with
+    struct brunt_constraint_past {
+        double normal_impulse, friction_impulse[3];
+    } * point_past;
+    size_t point_past_capacity;
+    struct brunt_dof_past {
+        double v[3], impulse[3];
+    } * dof_past;
+    size_t dof_past_capacity;
+    double *turned_back;
+    size_t turned_back_capacity;
 } brunt_constraint_set;
 
 // Aborts where a set is not one that can be solved: entries and nodes out of range, masses below 0, normals not of unit

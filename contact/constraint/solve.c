@@ -47,6 +47,9 @@ void brunt_constraints_free(brunt_constraint_set *p) {
     brunt_free(p->column_first);
     brunt_free(p->applied);
     brunt_free(p->changed);
+    brunt_free(p->point_past);
+    brunt_free(p->dof_past);
+    brunt_free(p->turned_back);
     memset(p, 0, sizeof *p);
 }
 
@@ -295,19 +298,62 @@ static double solve_constraint(const brunt_constraint_set *p, brunt_constraint *
     return changed;
 }
 
+// Begins a sweep with a share of the last one's correction on top. What it had before goes to `past`.
+static void extrapolate(double momentum, brunt_constraint *constraint, struct brunt_constraint_past *past) {
+    const struct brunt_constraint_past now = {
+        constraint->normal_impulse,
+        {constraint->friction_impulse[0], constraint->friction_impulse[1], constraint->friction_impulse[2]}};
+    constraint->normal_impulse += momentum * (now.normal_impulse - past->normal_impulse);
+    for (int a = 0; a < 3; a++)
+        constraint->friction_impulse[a] += momentum * (now.friction_impulse[a] - past->friction_impulse[a]);
+    *past = now;
+}
+
+// How much of a sweep's correction, which began from `from`, goes back on that of all since `past` [m^2 kg/s^2].
+static double turned_back(const brunt_constraint *constraint, const struct brunt_constraint_past *from,
+                          const struct brunt_constraint_past *past) {
+    if (!(constraint->scale > 0)) return 0;
+    double friction = 0;
+    for (int a = 0; a < 3; a++)
+        friction += (from->friction_impulse[a] - constraint->friction_impulse[a]) *
+                    (constraint->friction_impulse[a] - past->friction_impulse[a]);
+    return ((from->normal_impulse - constraint->normal_impulse) * (constraint->normal_impulse - past->normal_impulse) *
+                constraint->row_sum +
+            friction * constraint->row_sum_t) /
+           constraint->scale;
+}
+
 static void solve_chunks(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     brunt_constraint_set *p = context;
     for (int64_t c = begin; c < end; c++) {
-        double greatest = 0;
+        double greatest = 0, back = 0;
         for (int32_t k = (int32_t)c * GRAIN; k < (c + 1) * GRAIN && k < p->constraint_count; k++) {
             const int32_t friction_point = p->constraint[k].friction_point;
             double *J = p->applied[k].impulse,
                    *rub = friction_point ? p->applied[p->constraint_count + friction_point - 1].impulse : J;
+            struct brunt_constraint_past from = {0};
+            if (p->accelerated) {
+                extrapolate(p->momentum, &p->constraint[k], &p->point_past[k]);
+                from.normal_impulse = p->constraint[k].normal_impulse;
+                memcpy(from.friction_impulse, p->constraint[k].friction_impulse, sizeof from.friction_impulse);
+            }
             double changed = solve_constraint(p, &p->constraint[k], J, rub);
             greatest = changed > greatest ? changed : greatest;
+            if (p->accelerated) back += turned_back(&p->constraint[k], &from, &p->point_past[k]);
         }
         p->changed[c] = greatest;
+        if (p->accelerated) p->turned_back[c] = back;
+    }
+}
+
+// The velocities that go with the impulses the next sweep begins with.
+static void carry_on(double momentum, brunt_dof_node *dof_node, struct brunt_dof_past *past) {
+    for (int a = 0; a < 3; a++) {
+        const double v = dof_node->v[a], impulse = dof_node->impulse[a];
+        dof_node->v[a] += momentum * (v - past->v[a]);
+        dof_node->impulse[a] += momentum * (impulse - past->impulse[a]);
+        past->v[a] = v, past->impulse[a] = impulse;
     }
 }
 
@@ -346,6 +392,7 @@ static void move_dof_nodes(void *context, int64_t begin, int64_t end, int worker
             dof_node->impulse[a] += sum[a];
             dof_node->v[a] += sum[a] * dof_node->inverse[a];
         }
+        if (p->accelerated) carry_on(p->momentum, dof_node, &p->dof_past[s]);
     }
 }
 
@@ -382,6 +429,33 @@ static void account_constraints(brunt_constraint_set *p) {
     }
 }
 
+static int begin_acceleration(brunt_constraint_set *p) {
+    const size_t points = (size_t)p->constraint_count, dofs = (size_t)p->dof_node_count;
+    if (BRUNT_RESERVE(p->point_past, points, 0) || BRUNT_RESERVE(p->dof_past, dofs + 1, 0) ||
+        BRUNT_RESERVE(p->turned_back, points / GRAIN + 2, 0))
+        return -1;
+    p->momentum = 0;
+    memset(p->point_past, 0, points * sizeof *p->point_past);
+    for (size_t s = 0; s < dofs; s++) {
+        memcpy(p->dof_past[s].v, p->dof_node[s].v, sizeof p->dof_past[s].v);
+        memcpy(p->dof_past[s].impulse, p->dof_node[s].impulse, sizeof p->dof_past[s].impulse);
+    }
+    return 0;
+}
+
+// With how much of its correction the next sweep begins: none where the last one went back. The weight that follows.
+static double accelerate(brunt_constraint_set *p, int64_t chunks, double weight) {
+    double back = 0;
+    for (int64_t c = 0; c < chunks; c++) back += p->turned_back[c];
+    if (back > 0) {
+        p->momentum = 0;
+        return 1;
+    }
+    const double next = 0.5 * (1 + sqrt(1 + 4 * weight * weight));
+    p->momentum = (weight - 1) / next;
+    return next;
+}
+
 int brunt_constraints_solve(brunt_constraint_set *p, int sweeps, double tolerance, int threads, brunt_timer *timer) {
     if (!p->constraint_count) return 0;
     if (transpose(p)) return -1;
@@ -389,16 +463,18 @@ int brunt_constraints_solve(brunt_constraint_set *p, int sweeps, double toleranc
     brunt_parallel(threads, chunks, 1, weigh_constraints, p, timer);
     brunt_parallel(threads, groups, 1, load_dof_nodes, p, timer);
     brunt_parallel(threads, chunks, 1, sum_rows, p, timer);
-    double first = 0;
+    double first = 0, greatest = INFINITY, weight = 1;
     int sweep = 0;
-    while (sweep < sweeps) {
+    if (p->accelerated && begin_acceleration(p)) return -1;
+    while (sweep < sweeps && !(greatest <= tolerance * first)) {
         brunt_parallel(threads, chunks, 1, solve_chunks, p, timer);
-        brunt_parallel(threads, groups, 1, move_dof_nodes, p, timer);
         sweep++;
-        double greatest = 0;
+        greatest = 0;
         for (int64_t c = 0; c < chunks; c++) greatest = fmax(greatest, p->changed[c]);
         first = fmax(first, greatest);
-        if (greatest <= tolerance * first) break;
+        if (p->accelerated) weight = accelerate(p, chunks, weight);
+        if (sweep == sweeps || greatest <= tolerance * first) p->momentum = 0;
+        brunt_parallel(threads, groups, 1, move_dof_nodes, p, timer);
     }
     account_constraints(p);
     return sweep;
