@@ -58,8 +58,8 @@ typedef struct brunt_constraint {
     double sign;
     double area; // [m^2] it stands for in the account's area
     int32_t tag; // the caller's
-    int32_t
-        bearer; // number + 1 of the body of material points that bears the reaction, if that is the caller's; else 0
+    // number + 1 of the body of material points that bears the reaction, if that is the caller's; else 0
+    int32_t bearer;
     int32_t friction_point; // number + 1 of its own for friction, whose `count` entries follow the others; 0: it rubs
                             // where it pushes
     double image; // [1/kg] of what an impulse along n does to u_n, the share of the image that presses with it

@@ -193,6 +193,18 @@ int brunt_extent_gather(brunt_body *body, int32_t slot, int node, brunt_extent_c
     return 0;
 }
 
+int brunt_extent_cloud_points(brunt_extent_cloud *cloud, int count) {
+    cloud->stride = ((size_t)count + CLOUD_LANES - 1) / CLOUD_LANES * CLOUD_LANES;
+    cloud->count = 0;
+    return BRUNT_RESERVE_IN(cloud->data, cloud->bytes, CLOUD_ROWS * cloud->stride, 0) ? -1 : 0;
+}
+
+void brunt_extent_cloud_point(brunt_extent_cloud *cloud, const double x[3]) {
+    double *to = cloud->data + cloud->count++;
+    for (int a = 0; a < 3; a++) to[(size_t)(CLOUD_X + a) * cloud->stride] = x[a];
+    for (int r = CLOUD_F; r < CLOUD_ALONG; r++) to[(size_t)r * cloud->stride] = 0;
+}
+
 void brunt_extent_cloud_free(brunt_extent_cloud *cloud) { brunt_free(cloud->data); }
 
 // x . n + share reach |F^T n| of each particle.

@@ -15,6 +15,9 @@ typedef struct brunt_extent_cloud {
 } brunt_extent_cloud;
 // Refills a cloud, empty at first ({0}). 0, or -1: out of memory.
 int brunt_extent_gather(brunt_body *body, int32_t slot, int node, brunt_extent_cloud *cloud);
+// Empties a cloud, and makes room in it for points without extent, `count` at most. 0, or -1: out of memory.
+int brunt_extent_cloud_points(brunt_extent_cloud *cloud, int count);
+void brunt_extent_cloud_point(brunt_extent_cloud *cloud, const double x[3]);
 void brunt_extent_cloud_free(brunt_extent_cloud *cloud);
 // Greatest distance along unit vector n, from the node, that one of them reaches [m], and the point that does, relative
 // to the node; -INFINITY when there is none. `share` of their reach counts: 1, or 0 for their centres alone.

@@ -117,7 +117,8 @@ static int compare_shared(const void *a, const void *b) {
 
 // The pair of two bodies by their places among those of material points; -1: none.
 static int32_t pair_between(const job *j, int a, int b) {
-    return brunt_pair_of(j->m->pair_map, j->bodies[a].index, j->bodies[b].index);
+    const int32_t pair = brunt_pair_of(j->m->pair_map, j->bodies[a].index, j->bodies[b].index);
+    return pair >= 0 && j->m->pairs[pair].method == BRUNT_CONTACT_AUGURY ? -1 : pair;
 }
 
 static int compare_low(const void *a, const void *b) {

@@ -57,6 +57,7 @@ static int act_at_facets(const brunt_contact_context *m, const brunt_contact_wor
 // clang-format off
 const brunt_contact_row brunt_contact_rows[] = {
     {"grid velocity", METHOD(MULTI_VELOCITY), 0, true, "a body of method mpm", points_alone, NULL, NULL, NULL, NULL},
+    {"point touches", METHOD(AUGURY), FORM(AFFINE), false, NULL, points_alone, NULL, NULL, NULL, NULL},
     {"tied", METHOD(TIED), 0, false, "two bodies of method mpm", points_alone, NULL, NULL, NULL, NULL},
     {"published", METHOD(AUGURY), FORM(PAPER), false, NULL, any_mesh, mark_all, act_published, NULL, free_augury},
     {"averaged surface", METHOD(AUGURY), FORM(SMOOTH) | FORM(SURFACE), false, NULL, any_mesh, NULL, act_averaged, NULL, free_augury},
@@ -88,7 +89,9 @@ unsigned brunt_contact_rows_of(brunt_contact_method method, brunt_augury_form fo
     return rows;
 }
 
-brunt_contact_method brunt_contact_between_points(brunt_contact_method method) {
+brunt_contact_method brunt_contact_between_points(brunt_contact_method method, brunt_augury_form form, bool rings) {
+    if (method == BRUNT_CONTACT_AUGURY && (rings || !brunt_contact_rows_of(method, form, false, false)))
+        return BRUNT_CONTACT_MULTI_VELOCITY;
     for (int other = 0; !brunt_contact_accepts(method, false, false); other++)
         if (other != BRUNT_CONTACT_NONE && brunt_contact_accepts((brunt_contact_method)other, false, false))
             return (brunt_contact_method)other;

@@ -45,7 +45,8 @@ bool brunt_contact_accepts(brunt_contact_method method, bool mesh_a, bool mesh_b
 // Bits of the rows by which they do.
 unsigned brunt_contact_rows_of(brunt_contact_method method, brunt_augury_form form, bool mesh_a, bool mesh_b);
 // The method by which two bodies of material points meet where that of all is `method`: itself, where it accepts them.
-brunt_contact_method brunt_contact_between_points(brunt_contact_method method);
+// Where augury has no form of its own for them, and between rings, it is multi-velocity.
+brunt_contact_method brunt_contact_between_points(brunt_contact_method method, brunt_augury_form form, bool rings);
 // Whether a method acts at the nodes of the grid of material points.
 bool brunt_contact_at_nodes(brunt_contact_method method);
 // What scenes call a method, and what it wants of two bodies.

@@ -57,6 +57,20 @@ void brunt_particle_nodes_find(const brunt_body *body, int32_t b, int64_t s, con
             }
 }
 
+void brunt_particle_nodes_add(const brunt_particle_nodes *more, double factor, brunt_particle_nodes *sum) {
+    const int before = sum->count;
+    for (int e = 0; e < more->count; e++) {
+        int at = 0;
+        while (at < before && sum->node[at] != more->node[e]) at++;
+        if (at == before) {
+            at = sum->count++;
+            sum->node[at] = more->node[e], sum->weight[at] = 0;
+            memcpy(sum->at[at], more->at[e], sizeof sum->at[at]);
+        }
+        sum->weight[at] += factor * more->weight[e];
+    }
+}
+
 void brunt_particle_nodes_velocity(const brunt_particle_nodes *under, int dim, int which, double v[3]) {
     v[0] = v[1] = v[2] = 0;
     for (int e = 0; e < under->count; e++)
@@ -146,8 +160,8 @@ static double image_share(const brunt_grid *grid, const brunt_particle_dofs *dof
 }
 
 // Of each degree-of-freedom node the weights of all its nodes, turned over as they are.
-int brunt_particle_dofs_slave(const brunt_body *body, const brunt_particle_nodes *under, brunt_particle_dofs *dofs,
-                              brunt_constraint_set *set) {
+int brunt_particle_dofs_enter(const brunt_body *body, const brunt_particle_nodes *under, double factor,
+                              brunt_particle_dofs *dofs, brunt_constraint_set *set) {
     const brunt_grid *grid = &body->grid;
     const int32_t first = set->entry_count;
     for (int e = 0; e < under->count; e++) {
@@ -156,10 +170,10 @@ int brunt_particle_dofs_slave(const brunt_body *body, const brunt_particle_nodes
         int32_t entry = dofs->symmetry_count ? first : set->entry_count; // without images each node has its own
         while (entry < set->entry_count && set->entry[entry].dof_node != g->dof_node) entry++;
         if (entry == set->entry_count && brunt_constraints_entry(set, g->dof_node, 0) < 0) return -1;
-        for (int a = 0; a < 3; a++) set->entry[entry].weight[a] += under->weight[e] * g->sign[a];
+        for (int a = 0; a < 3; a++) set->entry[entry].weight[a] += factor * under->weight[e] * g->sign[a];
     }
     if (dofs->symmetry_count)
-        set->constraint[set->constraint_count - 1].image = image_share(grid, dofs, under, set, first);
+        set->constraint[set->constraint_count - 1].image += image_share(grid, dofs, under, set, first);
     return 0;
 }
 
@@ -167,15 +181,19 @@ int32_t brunt_particle_dofs_friction_point(const brunt_body *body, const brunt_p
                                            const double x[3], const brunt_particle_dofs *dofs,
                                            brunt_constraint_set *set) {
     const int32_t first = brunt_constraints_friction_point(set, x);
-    if (first < 0) return -1;
+    if (first >= 0) brunt_particle_dofs_rub(body, at_arm, 1, dofs, first, set);
+    return first;
+}
+
+void brunt_particle_dofs_rub(const brunt_body *body, const brunt_particle_nodes *at_arm, double factor,
+                             const brunt_particle_dofs *dofs, int32_t first, brunt_constraint_set *set) {
     int32_t entry = first;
     for (int e = 0; e < at_arm->count; e++) {
         const brunt_grid_dof *g = dof_under(&body->grid, dofs, at_arm, e);
         if (dofs->symmetry_count) entry = first;
         while (set->entry[entry].dof_node != g->dof_node) entry++;
-        for (int a = 0; a < 3; a++) set->entry[entry].weight[a] += at_arm->weight[e] * g->sign[a];
+        for (int a = 0; a < 3; a++) set->entry[entry].weight[a] += factor * at_arm->weight[e] * g->sign[a];
     }
-    return first;
 }
 
 // ------------------------------------------------------------------------------------------ the way back
@@ -194,12 +212,14 @@ static void account_symmetry(const brunt_contact_context *m, const brunt_particl
     const brunt_symmetry_plane *planes = dofs->symmetry;
     for (int32_t p = 0; p < set->constraint_count; p++) {
         const brunt_constraint *constraint = &set->constraint[p];
+        const bool bears = constraint->bearer > 0 && constraint->bearer == dofs->tag + 1;
+        const double factor = bears ? 1 : -1;
         double normal_impulse[3];
-        if (constraint->tag != dofs->tag || !(constraint->normal_impulse > 0)) continue;
+        if ((constraint->tag != dofs->tag && !bears) || !(constraint->normal_impulse > 0)) continue;
         for (int a = 0; a < 3; a++) normal_impulse[a] = constraint->normal_impulse * constraint->n[a];
-        add_moment(constraint->x, normal_impulse, -1, linear, angular);
+        add_moment(constraint->x, normal_impulse, factor, linear, angular);
         add_moment(constraint->friction_point ? set->friction_point[constraint->friction_point - 1].x : constraint->x,
-                   constraint->friction_impulse, -1, linear, angular);
+                   constraint->friction_impulse, factor, linear, angular);
     }
     static const double none[3] = {0};
     if (planes[0].wall >= 0) brunt_impulse_account_reaction(&m->walls[planes[0].wall].last, none, angular);

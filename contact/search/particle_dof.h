@@ -17,19 +17,22 @@
 #include "contact/contact.h"
 #include "contact/planes/symmetry.h"
 
-enum { BRUNT_PARTICLE_NODES = 64 };
+enum { BRUNT_PARTICLE_NODES = 64, BRUNT_PARTICLES_TOGETHER = 4 };
 
+// Under a particle, or under a few together.
 typedef struct brunt_particle_nodes {
     int count;
-    real *node[BRUNT_PARTICLE_NODES]; // of the grid, with mass
-    int32_t at[BRUNT_PARTICLE_NODES][3];
-    double weight[BRUNT_PARTICLE_NODES];
+    real *node[BRUNT_PARTICLES_TOGETHER * BRUNT_PARTICLE_NODES]; // of the grid, with mass
+    int32_t at[BRUNT_PARTICLES_TOGETHER * BRUNT_PARTICLE_NODES][3];
+    double weight[BRUNT_PARTICLES_TOGETHER * BRUNT_PARTICLE_NODES];
 } brunt_particle_nodes;
 
 // Nodes and weights under particle `s` of block `b`, or at an arm's length from it, where its kernel lives [m]; NULL:
 // none.
 void brunt_particle_nodes_find(const brunt_body *body, int32_t b, int64_t s, const double *arm,
                                brunt_particle_nodes *out);
+// Adds the nodes under one particle more, with `factor` times its weights, to those of the others.
+void brunt_particle_nodes_add(const brunt_particle_nodes *more, double factor, brunt_particle_nodes *sum);
 // The velocity there, of the reals BRUNT_NODE_VELOCITY or BRUNT_NODE_OLD [m/s].
 void brunt_particle_nodes_velocity(const brunt_particle_nodes *under, int dim, int which, double v[3]);
 
@@ -56,14 +59,18 @@ typedef struct brunt_particle_dofs {
 void brunt_particle_dofs_free(brunt_particle_dofs *dofs);
 // Room for the nodes of a body's grid, of which none is in use. 0, or -1: out of memory.
 int brunt_particle_dofs_begin(const brunt_contact_context *m, const brunt_body *body, brunt_particle_dofs *dofs);
-// Entries of the set's last constraint for a particle, its slave. 0, or -1: out of memory.
-int brunt_particle_dofs_slave(const brunt_body *body, const brunt_particle_nodes *under, brunt_particle_dofs *dofs,
-                              brunt_constraint_set *set);
+// Entries of the set's last constraint for a particle, its slave (`factor` 1), or for what bears it (-1). 0, or -1: out
+// of memory.
+int brunt_particle_dofs_enter(const brunt_body *body, const brunt_particle_nodes *under, double factor,
+                              brunt_particle_dofs *dofs, brunt_constraint_set *set);
 // Gives the last constraint, when its entries are complete, a friction point to x [m], with the weights of the particle
 // at an arm's length. The index of its first entry, or -1: out of memory.
 int32_t brunt_particle_dofs_friction_point(const brunt_body *body, const brunt_particle_nodes *at_arm,
                                            const double x[3], const brunt_particle_dofs *dofs,
                                            brunt_constraint_set *set);
+// Adds `factor` times weights to the entries of a friction point, from `first` on, which there are.
+void brunt_particle_dofs_rub(const brunt_body *body, const brunt_particle_nodes *at_arm, double factor,
+                             const brunt_particle_dofs *dofs, int32_t first, brunt_constraint_set *set);
 // After the solution: velocities back to the grid's nodes, and to the symmetry planes what they bear. None is in use
 // then.
 void brunt_particle_dofs_scatter(const brunt_contact_context *m, brunt_body *body, brunt_particle_dofs *dofs,

@@ -127,7 +127,7 @@ static int add_particle_constraint(const search_job *j, const particle_candidate
     set->constraint[at].area = body->spacing * (body->grid.dim == 3     ? body->spacing
                                                 : surface->axisymmetric ? 2 * M_PI * found->x[0]
                                                                         : 1);
-    if (brunt_particle_dofs_slave(body, &under, j->dofs, set)) return -1;
+    if (brunt_particle_dofs_enter(body, &under, 1, j->dofs, set)) return -1;
     const int32_t first = set->entry_count;
     for (int c = 0; c < master.count; c++)
         if (brunt_constraints_entry(set, j->f->nodes.dof_of[master.node[c]], 0) < 0) return -1;

@@ -59,7 +59,7 @@ static int add_particle(const plane_job *j, int32_t b, int64_t s, const double x
     memcpy(constraint->plane, plane->velocity, sizeof constraint->plane);
     constraint->gap = gap, constraint->target = target - j->speed, constraint->friction = plane->friction;
     constraint->account = &j->wall->last, constraint->sign = 1, constraint->tag = j->dofs->tag;
-    if (brunt_particle_dofs_slave(j->body, &under, j->dofs, j->set)) return -1;
+    if (brunt_particle_dofs_enter(j->body, &under, 1, j->dofs, j->set)) return -1;
     return plane->friction > 0 ? add_friction_point(j, b, s, x, distance) : 0;
 }
 

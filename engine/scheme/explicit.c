@@ -14,7 +14,7 @@ static bool loads_or_drag(const brunt_world *world) { return groups(world) || wo
 static bool particles(const brunt_world *world) { return world->bodies.mpm_count > 0; }
 static bool mirrors(const brunt_world *world) { return particles(world) && world->boundaries.mirror_count > 0; }
 static bool conditions(const brunt_world *world) { return particles(world) && world->boundaries.has_conditions; }
-static bool grid_contact(const brunt_world *world) { return world->contact.has_grid; }
+static bool grid_contact(const brunt_world *world) { return world->contact.has_grid || world->contact.has_touches; }
 static bool surfaces(const brunt_world *world) { return world->contact.has_surfaces; }
 static bool conditions_of_contact(const brunt_world *world) { return conditions(world) && grid_contact(world); }
 static bool conditions_of_surfaces(const brunt_world *world) { return conditions(world) && surfaces(world); }

@@ -136,7 +136,11 @@ int brunt_pass_conditions(brunt_world *world, brunt_step *step, brunt_error *err
 
 int brunt_pass_contact(brunt_world *world, brunt_step *step, brunt_error *error) {
     const brunt_contact_context m = brunt_contact_context_of(world, step->dt, brunt_pass_timer(world));
-    const int failed = brunt_grid_velocity_apply(&m, &world->scratch.grid_velocity);
+    const brunt_contact *contact = &world->contact;
+    int failed = contact->has_grid ? brunt_grid_velocity_apply(&m, &world->scratch.grid_velocity) : 0;
+    if (contact->has_touches && !failed)
+        failed = brunt_point_touches_apply(&m, contact->touch_sweeps, 0.1 * contact->def.tolerance,
+                                           &world->scratch.point_touches);
     return failed ? brunt_fail_step(world, NULL, error,
                                     failed == -1 ? "out of memory in the contact search"
                                                  : "more than 16 bodies meet at one grid node")

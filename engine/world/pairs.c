@@ -135,18 +135,24 @@ static int settle_method(const maker *m, const candidate *c, brunt_pair *pair, b
     const brunt_body_def *a = m->order[c->a], *b = m->order[c->b];
     brunt_contact *contact = &m->world->contact;
     const int meshes = (a->method != BRUNT_MPM) + (b->method != BRUNT_MPM);
-    // Bodies of material points meet at the nodes of the grid that moves them, whatever the method is called.
     const bool mesh_a = a->method != BRUNT_MPM, mesh_b = b->method != BRUNT_MPM;
     const bool barrier = pair->method == BRUNT_CONTACT_BARRIER;
-    if (!meshes && !barrier) pair->method = brunt_contact_between_points(pair->method);
+    const brunt_contact_method asked = pair->method;
+    if (!meshes && !barrier)
+        pair->method = brunt_contact_between_points(asked, m->def->contact.form, m->def->axisymmetric);
+    if (c->named >= 0 && pair->method != asked)
+        REFUSE("contact of '%s' and '%s': %s of two bodies of material points wants form node_to_facet, and no rings",
+               a->name, b->name, brunt_contact_word(asked));
+    const bool augury = pair->method == BRUNT_CONTACT_AUGURY;
     if (!brunt_contact_accepts(pair->method, mesh_a, mesh_b))
         REFUSE("contact of '%s' and '%s': %s wants %s", a->name, b->name, brunt_contact_word(pair->method),
                brunt_contact_wants(pair->method));
     if (!barrier) contact->rows |= brunt_contact_rows_of(pair->method, m->def->contact.form, mesh_a, mesh_b);
     contact->has_barrier = contact->has_barrier || barrier;
-    contact->has_grid = contact->has_grid || !meshes;
+    contact->has_grid = contact->has_grid || (!meshes && !augury);
+    contact->has_touches = contact->has_touches || (!meshes && augury);
     contact->has_grid_surfaces = contact->has_grid_surfaces || (meshes && brunt_contact_at_nodes(pair->method));
-    contact->has_augury = contact->has_augury || pair->method == BRUNT_CONTACT_AUGURY;
+    contact->has_augury = contact->has_augury || (meshes && augury);
     if (!(pair->friction >= 0)) REFUSE("contact.friction: %g is negative", pair->friction);
     contact->has_friction = contact->has_friction || pair->friction > 0;
     return BRUNT_OK;

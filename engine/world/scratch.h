@@ -2,7 +2,7 @@
 #pragma once
 
 #include "contact/methods/grid_velocity.h"
-#include "contact/search/particle_dof.h"
+#include "contact/search/point_touch.h"
 #include "fem/fem_body.h"
 #include "mpm/transfer.h"
 
@@ -15,6 +15,7 @@ typedef struct brunt_scratch {
     brunt_fem_workspace *meshes; // a thread each
     brunt_particle_dofs planes;  // of a body of material points at planes that push
     brunt_contact_workspace *grid_velocity;
+    brunt_point_touches *point_touches;
     brunt_node_sums *node_sums; // of the slots of one grid
     size_t node_sums_capacity;
 } brunt_scratch;

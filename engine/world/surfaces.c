@@ -12,7 +12,7 @@
 // twentieth, 16 sweeps let the nodes of blocks that meet at a tenth of their wave speed through its middle; 64 leave a
 // hundredth of its thickness. Sweeps end sooner where there is nothing to do.
 static const double COARSE = 1.25; // cells: edges of meshes that meet particles at grid nodes
-enum { GRID_SWEEPS = 8, SWEEPS = 16, SHEET_SWEEPS = 64 };
+enum { GRID_SWEEPS = 8, SWEEPS = 16, SHEET_SWEEPS = 64, TOUCH_SWEEPS = 64 };
 static const double THIN = 0.01; // mean edges
 
 static bool acts_on_fem(const brunt_world *world, const brunt_boundary *wall) {
@@ -95,9 +95,10 @@ int brunt_surfaces_make(brunt_world *world, const brunt_world_def *def, brunt_er
         world->contact.has_surfaces = world->contact.has_surfaces || acts_on_fem(world, &world->boundaries.walls[w]);
     for (int r = 0; r < brunt_contact_row_count; r++)
         world->contact.has_surfaces |= brunt_contact_rows[r].act && world->contact.rows >> r & 1;
-    if (!world->contact.has_surfaces) return BRUNT_OK;
     world->contact.def = def->contact;
     world->contact.def.pairs = NULL, world->contact.def.pair_count = 0;
+    world->contact.touch_sweeps = def->contact.iterations > 0 ? def->contact.iterations : TOUCH_SWEEPS;
+    if (!world->contact.has_surfaces) return BRUNT_OK;
     world->contact.grid_sweeps = def->contact.iterations > 0 ? def->contact.iterations : GRID_SWEEPS;
     const brunt_augury_form form = def->contact.form;
     if (world->contact.def.iterations < 0)

@@ -253,6 +253,7 @@ void brunt_world_destroy(brunt_world *world) {
     brunt_free(world->scratch.points);
     brunt_free(world->scratch.meshes);
     brunt_contact_workspace_free(world->scratch.grid_velocity);
+    brunt_point_touches_free(world->scratch.point_touches);
     brunt_surface_free(&world->contact.surface);
     brunt_constraints_free(&world->contact.constraints);
     brunt_node_to_facet_free(world->contact.node_to_facet);

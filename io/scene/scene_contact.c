@@ -158,6 +158,30 @@ static void fill_augury(scene_reader *reader, scene_node *node) {
     contact->transfer = brunt_real_of(node, "transfer", 1) == 0 ? BRUNT_PIC : BRUNT_APIC;
 }
 
+// Bodies of material points that are to meet by augury: where their surfaces touch, which not all can.
+static void check_touch(scene_reader *reader, const scene_node *method, brunt_contact_method of_them) {
+    const brunt_world_def *world = &reader->scene->world;
+    if (of_them != BRUNT_CONTACT_AUGURY) return;
+    if (world->axisymmetric)
+        brunt_tree_complain(
+            reader->tree, method,
+            "augury of two bodies of method mpm is not for axisymmetric scenes: multi-velocity is wanted");
+    else if (world->contact.form != BRUNT_AUGURY_AFFINE)
+        brunt_tree_complain(reader->tree, method, "augury of two bodies of method mpm wants form: node_to_facet");
+}
+
+static void check_touches(scene_reader *reader, const scene_node *list) {
+    const brunt_contact_def *contact = &reader->scene->world.contact;
+    int i = 0;
+    for (scene_node *child = contact->pairs ? list->first : NULL; child; child = child->next, i++) {
+        const brunt_pair_def *pair = &contact->pairs[i];
+        const brunt_body_def *a = brunt_body_named(reader, pair->a), *b = brunt_body_named(reader, pair->b);
+        const scene_node *method = child->kind == SCENE_MAP ? brunt_tree_child(child, "method") : NULL;
+        if (a && b && a != b && a->method == BRUNT_MPM && b->method == BRUNT_MPM && method && method->good)
+            check_touch(reader, method, pair->method);
+    }
+}
+
 static void fill_barrier(scene_reader *reader, scene_node *node) {
     brunt_contact_def *contact = &reader->scene->world.contact;
     static const char *const keys[] = {"distance", "stiffness", "slip_speed", "friction_iterations"};
@@ -196,17 +220,16 @@ void brunt_fill_contact(scene_reader *reader) {
     const scene_node *method = brunt_tree_child(node, "method");
     contact->method = world->scheme == BRUNT_IMPLICIT ? BRUNT_CONTACT_BARRIER
                       : fem                           ? BRUNT_CONTACT_AUGURY
-                                                      : brunt_contact_between_points(BRUNT_CONTACT_AUGURY);
+                                                      : BRUNT_CONTACT_MULTI_VELOCITY;
     if (!method) method = brunt_add_default(reader, node, "method", brunt_contact_word(contact->method));
     contact->method = (brunt_contact_method)(int)brunt_real_of(node, "method", contact->method);
-    if (contact->method == BRUNT_CONTACT_AUGURY && !fem && world->body_count)
-        brunt_tree_complain(reader->tree, method,
-                            "augury wants a body of method fem or membrane, all are of method mpm");
     contact->friction = brunt_real_of(node, "friction", 0);
     contact->allow_overlap = brunt_real_of(node, "initial_overlap", 0) == 1;
     fill_pairs(reader, brunt_tree_child(node, "pairs"));
     if (method && method->good) check_method(reader, method);
     fill_augury(reader, node);
+    if (!fem && world->body_count && method && method->good) check_touch(reader, method, contact->method);
+    check_touches(reader, brunt_tree_child(node, "pairs"));
     fill_barrier(reader, node);
     check_pair_columns(reader);
 }
