@@ -90,12 +90,11 @@ unsigned brunt_contact_rows_of(brunt_contact_method method, brunt_augury_form fo
 }
 
 brunt_contact_method brunt_contact_between_points(brunt_contact_method method, brunt_augury_form form, bool rings) {
-    if (method == BRUNT_CONTACT_AUGURY && (rings || !brunt_contact_rows_of(method, form, false, false)))
-        return BRUNT_CONTACT_MULTI_VELOCITY;
-    for (int other = 0; !brunt_contact_accepts(method, false, false); other++)
-        if (other != BRUNT_CONTACT_NONE && brunt_contact_accepts((brunt_contact_method)other, false, false))
+    const bool touch = method != BRUNT_CONTACT_AUGURY || (!rings && brunt_contact_rows_of(method, form, false, false));
+    if (touch && brunt_contact_accepts(method, false, false)) return method;
+    for (int other = BRUNT_CONTACT_NONE + 1;; other++) // one of them always does: at the nodes of their grid
+        if (other != (int)method && brunt_contact_accepts((brunt_contact_method)other, false, false))
             return (brunt_contact_method)other;
-    return method;
 }
 
 bool brunt_contact_at_nodes(brunt_contact_method method) {

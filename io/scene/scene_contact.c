@@ -163,9 +163,9 @@ static void check_touch(scene_reader *reader, const scene_node *method, brunt_co
     const brunt_world_def *world = &reader->scene->world;
     if (of_them != BRUNT_CONTACT_AUGURY) return;
     if (world->axisymmetric)
-        brunt_tree_complain(
-            reader->tree, method,
-            "augury of two bodies of method mpm is not for axisymmetric scenes: multi-velocity is wanted");
+        brunt_tree_complain(reader->tree, method,
+                            "augury of two bodies of method mpm is not for axisymmetric scenes: %s is wanted",
+                            brunt_contact_word(brunt_contact_between_points(of_them, world->contact.form, true)));
     else if (world->contact.form != BRUNT_AUGURY_AFFINE)
         brunt_tree_complain(reader->tree, method, "augury of two bodies of method mpm wants form: node_to_facet");
 }
