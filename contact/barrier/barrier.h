@@ -101,8 +101,12 @@ bool brunt_barrier_has_friction(const brunt_barrier *barrier); // some pair or p
 // ------------------------------------------------------------------------------------------------- what it was
 
 typedef struct brunt_barrier_force {
-    double normal[3], friction[3]; // [N] on body a; on b the same with the other sign. Of a plane: on the points
-    double heat;                   // [J] of friction along the way that was given
+    // [N] on body a; on b the same with the other sign. Of a plane: on the points. Of a body with itself 0: what its
+    // sides do to each other adds up to nothing.
+    double normal[3], friction[3];
+    double area; // [m^2] (2D [m]) of the surfaces that is nearer than dhat, in the reference
+                 // configuration: what points stand for; of two meshes the mean of both
+    double heat; // [J] of friction along the way that was given
     int64_t contacts;
 } brunt_barrier_force;
 

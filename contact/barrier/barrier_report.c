@@ -24,8 +24,14 @@ double brunt_barrier_least_gap(const brunt_barrier *b) {
     return least;
 }
 
+// 1: on the law's body a is what is on the first feature; -1: the reaction. 0: a body with itself has both.
+static int sign_of(const brunt_barrier *b, const barrier_contact *c) {
+    return c->law < b->pair_count && b->pair[c->law].a == b->pair[c->law].b ? 0 : c->side;
+}
+
 static void add_normal(const brunt_barrier *b, const barrier_contact *c, brunt_barrier_force *force) {
-    const double f = c->side * barrier_contact_force(b, c);
+    const double f = sign_of(b, c) * barrier_contact_force(b, c);
+    if (!(c->threshold > 0)) force->area += c->weight; // edges are where points are not, and have none
     for (int k = 0; k < b->dim; k++) force->normal[k] += f * c->at.n[k];
     force->contacts++;
 }
@@ -38,7 +44,7 @@ static void add_friction(const brunt_barrier *b, const double *u, const double *
         barrier_slip_force(b, c, u, f), barrier_slip_of(b, c, way, slip);
         for (int k = 0; k < b->dim; k++) {
             force[c->law].heat -= f[k] * slip[k];
-            force[c->law].friction[k] += c->side * f[k];
+            force[c->law].friction[k] += sign_of(b, c) * f[k];
         }
     }
 }

@@ -55,7 +55,7 @@ typedef struct brunt_constraint {
     double friction;
     double plane[3];                // [m/s] velocity of the master when it is a plane; 0 for facets
     brunt_impulse_account *account; // where the point is booked: impulse on the slave times `sign`
-    double sign;
+    double sign; // of a body with itself 0: it gets both, and the account neither, but what they dissipate
     double area; // [m^2] it stands for in the account's area
     int32_t tag; // the caller's
     // number + 1 of the body of material points that bears the reaction, if that is the caller's; else 0

@@ -7,7 +7,7 @@
 
 // A condition that is imposed from outside, and what it has done so far.
 typedef struct brunt_impulse_account {
-    double impulse[3];    // [N s] on the bodies (a pair: on its second body)
+    double impulse[3];    // [N s] on the bodies (a pair: on its second body; of a body with itself 0)
     double angular[3];    // [N m s] about the origin, on the bodies
     double external_work; // [J] done on the bodies by prescribed motion
     double normal_loss;   // [J] dissipated by the normal impulse

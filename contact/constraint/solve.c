@@ -396,36 +396,43 @@ static void move_dof_nodes(void *context, int64_t begin, int64_t end, int worker
     }
 }
 
+// Velocities of a constraint before and after, against its plane, as the account's sign has them.
+static void account_velocity(const brunt_constraint *constraint, double sign, double old[3], double now[3]) {
+    for (int a = 0; a < 3; a++) {
+        old[a] = sign * (old[a] + constraint->plane[a]);
+        now[a] = sign * (now[a] + constraint->plane[a]);
+    }
+}
+
 static void account_constraints(brunt_constraint_set *p) {
     for (int32_t k = 0; k < p->constraint_count; k++) {
         const brunt_constraint *constraint = &p->constraint[k];
         if (!(constraint->normal_impulse > 0)) continue;
         constraint->account->area += constraint->area;
+        // The account is of the second body: the slave's impulse, or the reaction to it; within one body there are
+        // both.
+        brunt_impulse_account within = {.area = 0}, *account = constraint->sign == 0 ? &within : constraint->account;
+        const double sign = constraint->sign == 0 ? 1 : constraint->sign;
         double old[3], now[3], normal_impulse[3], friction_impulse[3], x[3];
         brunt_constraint_velocity(p, constraint, true, old);
         brunt_constraint_velocity(p, constraint, false, now);
+        account_velocity(constraint, sign, old, now);
         for (int a = 0; a < 3; a++) {
-            // The account is of the second body: the slave's impulse, or the reaction to it.
-            normal_impulse[a] = constraint->sign * constraint->normal_impulse * constraint->n[a],
-            friction_impulse[a] = constraint->sign * constraint->friction_impulse[a];
-            old[a] = constraint->sign * (old[a] + constraint->plane[a]),
-            now[a] = constraint->sign * (now[a] + constraint->plane[a]);
+            normal_impulse[a] = sign * constraint->normal_impulse * constraint->n[a],
+            friction_impulse[a] = sign * constraint->friction_impulse[a];
             x[a] = constraint->x[a];
         }
-        brunt_impulse_account_book(constraint->account, &constraint->account->normal_loss, normal_impulse, x, old, now,
+        brunt_impulse_account_book(account, &constraint->account->normal_loss, normal_impulse, x, old, now,
                                    constraint->plane);
         if (constraint->friction_point) {
             velocity(p, constraint, constraint->first + constraint->count, true, old);
             velocity(p, constraint, constraint->first + constraint->count, false, now);
-            for (int a = 0; a < 3; a++) {
-                old[a] = constraint->sign * (old[a] + constraint->plane[a]),
-                now[a] = constraint->sign * (now[a] + constraint->plane[a]);
-                x[a] = p->friction_point[constraint->friction_point - 1].x[a];
-            }
+            account_velocity(constraint, sign, old, now);
+            for (int a = 0; a < 3; a++) x[a] = p->friction_point[constraint->friction_point - 1].x[a];
         }
         if (constraint->friction > 0)
-            brunt_impulse_account_book(constraint->account, &constraint->account->friction_loss, friction_impulse, x,
-                                       old, now, constraint->plane);
+            brunt_impulse_account_book(account, &constraint->account->friction_loss, friction_impulse, x, old, now,
+                                       constraint->plane);
     }
 }
 

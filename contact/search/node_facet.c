@@ -135,7 +135,7 @@ void brunt_node_to_facet_constraint(const brunt_contact_context *m, const facet_
     constraint->gap = h->gap;
     constraint->friction = pair->friction;
     constraint->account = &pair->last;
-    constraint->sign = body > h->body ? 1 : -1;
+    constraint->sign = (body > h->body) - (body < h->body);
 }
 
 int brunt_node_to_facet_master(const brunt_contact_surface *s, const facet_candidate *h, const double x[3],

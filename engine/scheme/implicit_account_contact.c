@@ -128,11 +128,13 @@ static void book_forces(brunt_world *world) {
         brunt_impulse_account *last = &world->pairs.pair[c->pair_account[p]].last;
         for (int a = 0; a < 3; a++) last->impulse[a] -= m->dt * (c->force[p].normal[a] + c->force[p].friction[a]);
         last->friction_loss += c->force[p].heat;
+        last->area = c->force[p].area;
     }
     for (int32_t q = 0; q < c->plane_count; q++) {
         brunt_boundary *wall = &world->boundaries.walls[c->plane_wall[q]];
         const brunt_barrier_force *force = &c->force[c->pair_count + q];
         wall->last.friction_loss += force->heat;
+        wall->last.area = force->area;
         for (int a = 0; a < 3; a++) {
             const double F = force->normal[a] + force->friction[a];
             wall->last.impulse[a] += m->dt * F;

@@ -178,7 +178,7 @@ const scene_key brunt_scene_table[] = {
     {"contact.friction_iterations", SCENE_INTEGER, NULL, "1", 1, 1000, false, false, NULL, 0, true, "of barrier: solutions of a step, friction being by the pressures of the one before (the first: of the step before)"},
     {"contact.initial_overlap", SCENE_WORD, NULL, "error", ANY, "error|allow", 0, false, "bodies that overlap at the start, or lie behind a plane of condition separate: contact ends an approach, and what is in each other already may pass. Of meshes a fifth of an edge is let be"},
     {"contact.pairs", SCENE_ENTRIES, NULL, OPTIONAL, NONE, "pairs of bodies that differ from the above"},
-    {"contact.pairs[].between", SCENE_NAMES, NULL, REQUIRED, NONE, "the two bodies, [a, b]; [a, a]: a membrane with itself, which it is not in contact with otherwise"},
+    {"contact.pairs[].between", SCENE_NAMES, NULL, REQUIRED, NONE, "the two bodies, [a, b]; [a, a]: a membrane, with barriers any mesh, with itself, which it is not in contact with otherwise; its force in the history is 0, as both sides are of one body, its area is not"},
     {"contact.pairs[].method", SCENE_WORD, NULL, OPTIONAL, ANY, CONTACT_WORDS, 0, false, "default: that of contact"},
     {"contact.pairs[].friction", SCENE_REAL, "1", OPTIONAL, NOT_NEGATIVE, NULL, 0, false, "default: that of contact"},
 
@@ -233,7 +233,7 @@ const scene_key brunt_scene_table[] = {
     {"output.probes.*.field", SCENE_NAME, NULL, REQUIRED, NONE, "what is recorded"},
 
     {"measures", SCENE_NAMED, NULL, OPTIONAL, NONE, "results by name, judged where a value is expected"},
-    {"measures.*.history", SCENE_TEXT, NULL, OPTIONAL, NONE, "a column of the history, as energy.kinetic, body.rod.velocity_x or gas.bag.pressure (velocities and kinetic energy are of the middle of the step that ends at its time)"},
+    {"measures.*.history", SCENE_TEXT, NULL, OPTIONAL, NONE, "a column of the history, as energy.kinetic, body.rod.velocity_x, contact.rod-plate.force or gas.bag.pressure (forces of a pair are on its second body; of a body with itself 0, what its sides do to each other: its contact shows in contact.bag-bag.area; velocities and kinetic energy are of the middle of the step that ends at its time)"},
     {"measures.*.energy", SCENE_NAME, NULL, OPTIONAL, NONE, "short for history: energy.NAME"},
     MEASURE_OF_BODY("extent", "size of a body along an axis, at the end"),
     {"measures.*.extent.axis", SCENE_VECTOR, "1", REQUIRED, NONE, "direction"},

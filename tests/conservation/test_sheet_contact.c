@@ -467,6 +467,15 @@ static void folded(double s, double t, double x[3]) {
     }
 }
 
+// What a body does to itself adds up to nothing, whatever the area of it. Returns that.
+static double checked_self_force(const brunt_world *world) {
+    brunt_force force;
+    brunt_pair_force(world, 0, &force);
+    ck_assert_str_eq(force.name, "m-m");
+    for (int k = 0; k < 3; k++) ck_assert(force.force[k] == 0 && force.impulse[k] == 0);
+    return force.area;
+}
+
 static double fold(bool self, bool turned, double *error, double *drift, double *most_energy) {
     brunt_world_def def = begin(1, 0.3);
     def_material(&def, "neo-hookean", 1000, 1e6, 0.3);
@@ -475,10 +484,11 @@ static double fold(bool self, bool turned, double *error, double *drift, double 
     def.gravity[2] = -20;
     if (self) meets_itself(&def, "m");
     brunt_world *world = world_take(&def);
-    double lowest = INFINITY;
+    double lowest = INFINITY, touched = 0;
     *most_energy = 0;
     for (int k = 0; k < 60; k++) {
         world_until(world, 0.005 * (k + 1));
+        if (self) touched = fmax(touched, checked_self_force(world));
         double(*x)[3] = (void *)world_field(world, 0, "position");
         for (int64_t i = 0; i < brunt_body_nodes(world, 0); i++)
             if (2 * (i / 7) >= 24 + 4) lowest = fmin(lowest, x[i][2]); // past the edge of what is held, by two elements
@@ -489,6 +499,8 @@ static double fold(bool self, bool turned, double *error, double *drift, double 
     brunt_energy e = world_energy(world);
     brunt_momentum p = world_momentum(world);
     *error = e.error_relative, *drift = p.linear_drift;
+    // Layers of 0.5 that lie on each other over less than 1.
+    ck_assert_msg(!self || (touched > 0.05 && touched < 0.5), "%g m^2 touched", touched);
     brunt_world_destroy(world);
     return lowest;
 }

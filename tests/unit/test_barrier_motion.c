@@ -286,6 +286,7 @@ START_TEST(the_pressure_is_that_of_the_barrier) {
     // Corners stand for the half edges around them as well: one edge more than the face has.
     const double expected = brunt_barrier_at(gap, dhat, kappa).db * (1 + 1 / 8.0);
     ck_assert_double_eq_tol(force.normal[1], expected, 1e-10 * fabs(expected));
+    ck_assert_double_eq_tol(force.area, 1 + 1 / 8.0, 1e-12);
     ck_assert_double_eq_tol(report.least_gap, gap, 1e-13);
     ck_assert_double_eq_tol(report.least_part, gap / dhat, 1e-12);
     ck_assert(report.body != report.other && report.point >= 0 && report.plane == -1);

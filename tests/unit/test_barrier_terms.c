@@ -279,12 +279,13 @@ START_TEST(forces_are_opposite) {
         brunt_barrier_force force;
         const brunt_barrier_report report = case_report(c, u, &force);
         ck_assert(force.heat > 0 && report.energy > 0);
-        for (int k = 0; k < c->dim && which != 1; k++)
-            ck_assert_double_eq_tol(force.friction[k], rub_a[k], 1e-12 * rub_size);
+        // Of a body with itself (1) both are what all its nodes get: nothing.
+        for (int k = 0; k < c->dim; k++) ck_assert_double_eq_tol(force.friction[k], rub_a[k], 1e-12 * rub_size);
         draw_unknowns(c, u, 1e-3, 31);
         case_report(c, u, &force);
         // What is not along the normal comes from the mollifier: it only turns.
-        for (int k = 0; k < c->dim && which != 1; k++) ck_assert_double_eq_tol(force.normal[k], on_a[k], 1e-12 * size);
+        ck_assert_double_gt(force.area, 0);
+        for (int k = 0; k < c->dim; k++) ck_assert_double_eq_tol(force.normal[k], on_a[k], 1e-12 * size);
         free(u), free(g), free(slip), case_end(c);
     }
 }

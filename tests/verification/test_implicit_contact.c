@@ -67,6 +67,8 @@ START_TEST(rests) {
            points ? "points" : "elements", plane ? "a plane" : "elements", f.force[1], least_part(world),
            e.error_relative, world_momentum(world).linear_drift);
     ck_assert_double_eq_tol(f.force[1], 5000, 5e-3);
+    // 1 m; corners stand for half an edge beside it, points for the disc of their volume.
+    ck_assert_msg(f.area > 0.95 && f.area < 1.3, "%g m touch", f.area);
     ck_assert_double_gt(least_part(world), 0.1);
     ck_assert_double_le(fabs(e.error_relative), 1e-4);
     ck_assert_double_le(world_momentum(world).linear_drift, 1e-9);

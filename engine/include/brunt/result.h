@@ -99,12 +99,13 @@ int64_t brunt_body_size(const brunt_world *world, int32_t body, brunt_place at);
 void brunt_body_read(brunt_world *world, int32_t body, int32_t field, double *out);
 
 // Contact pairs and walls: force averaged over the last step [N] and impulse since the start [N s], on `b` / on the
-// bodies.
+// bodies. What a body does to itself adds up to nothing: of a pair of one body both are 0.
 typedef struct brunt_force {
     char name[2 * BRUNT_NAME_LENGTH + 2];
     double force[3], impulse[3];
     double normal_work, friction_work; // [J] so far
-    double area;                       // [m^2] that touched in the last step; in plane strain [m]
+    double area; // [m^2] that touched in the last step; in plane strain [m]; of implicit steps what is nearer than
+                 // contact.distance
 } brunt_force;
 // Scenes with more than 64 pairs have them all in one, named "all".
 int32_t brunt_pair_count(const brunt_world *world);
