@@ -152,13 +152,17 @@ static void look_at_contact(const brunt_world_def *def, refusals *r) {
     const bool some = def->body_count > 1;
     set_owner(r, "contact");
     if (some && !belongs(contact->method))
-        say(r, ".method", "%s: " EXPLICIT_ONLY ", barrier, tied or none is wanted",
+        say(r, ".method",
+            "%s: " EXPLICIT_ONLY
+            ", barrier, tied or none is wanted; where no method is given each scheme takes its own",
             brunt_contact_word(contact->method));
     if (contact->allow_overlap) say(r, ".initial_overlap", "allow: " EXPLICIT_ONLY ", barriers keep gaps open");
     for (int32_t q = 0; q < contact->pair_count; q++) {
         set_owner(r, "contact.pairs[%d]", q);
         if (!belongs(contact->pairs[q].method))
-            say(r, ".method", "%s: " EXPLICIT_ONLY ", barrier, tied or none is wanted",
+            say(r, ".method",
+                "%s: " EXPLICIT_ONLY
+                ", barrier, tied or none is wanted; where no method is given each scheme takes its own",
                 brunt_contact_word(contact->pairs[q].method));
     }
     set_owner(r, "contact");
@@ -177,7 +181,7 @@ static void look_at_implicit(const brunt_world_def *def, refusals *r) {
 
 // ------------------------------------------------------------------------------------------ explicit steps
 
-#define IMPLICIT_ONLY "this belongs to time.scheme: implicit"
+#define IMPLICIT_ONLY "this belongs to time.scheme: implicit; where no method is given each scheme takes its own"
 
 static void look_at_explicit(const brunt_world_def *def, refusals *r) {
     const brunt_contact_def *contact = &def->contact;

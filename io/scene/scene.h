@@ -105,7 +105,8 @@ void brunt_scene_free(brunt_scene *scene);
 // its path that is there: "file:line:column: bodies.rod.size: ...".
 void brunt_scene_complain(const brunt_scene *scene, const char *message, FILE *out);
 
-// The scene as resolved: every default filled in, SI units. It reads back to the same scene.
+// The scene as resolved: every default filled in but methods of contact, SI units. It reads back to the same scene. Of
+// methods that are not given each scheme has its own; keys of the other scheme stay, so that it can be run by that.
 int brunt_scene_write(const brunt_scene *scene, FILE *out);
 // The reference of all keys, made from the table that parses them. `section` NULL: all. False when there is no such
 // section.

@@ -53,7 +53,6 @@ static void fill_pair(scene_reader *reader, scene_node *node, brunt_pair_def *pa
     char friction[32];
     brunt_format_number(contact->friction, friction);
     const scene_node *method = brunt_tree_child(node, "method");
-    if (!method) brunt_add_default(reader, node, "method", brunt_contact_word(contact->method));
     pair->method = (brunt_contact_method)(int)brunt_real_of(node, "method", contact->method);
     const bool tied = pair->method == BRUNT_CONTACT_TIED;
     scene_node *rubs = brunt_tree_child(node, "friction");
@@ -129,13 +128,17 @@ static bool uses(const brunt_contact_def *contact, brunt_contact_method method) 
 static void fill_augury(scene_reader *reader, scene_node *node) {
     brunt_contact_def *contact = &reader->scene->world.contact;
     const bool used = uses(contact, BRUNT_CONTACT_AUGURY);
+    static const char *const keys[] = {"form", "cell", "transfer", "tolerance", "iterations"};
+    if (reader->scene->world.scheme == BRUNT_IMPLICIT) {
+        for (int i = 0; i < 5; i++) brunt_note_unused(reader, node, keys[i]);
+        return;
+    }
     bool meshes = false, at_nodes = brunt_contact_at_nodes(contact->method);
     for (int i = 0; i < contact->pair_count; i++) at_nodes |= brunt_contact_at_nodes(contact->pairs[i].method);
     for (int i = 0; i < reader->scene->world.body_count; i++)
         meshes |= reader->scene->world.bodies[i].method != BRUNT_MPM;
     contact->iterations = (int)brunt_real_of(node, "iterations", -1);
     if (!used) {
-        static const char *const keys[] = {"form", "cell", "transfer", "tolerance"};
         for (int i = 0; i < 4; i++) brunt_refuse_key(reader, node, keys[i], "this belongs to method: augury");
         if (!meshes || !at_nodes) brunt_refuse_key(reader, node, "iterations", "this belongs to method: augury");
         return;
@@ -185,6 +188,10 @@ static void check_touches(scene_reader *reader, const scene_node *list) {
 static void fill_barrier(scene_reader *reader, scene_node *node) {
     brunt_contact_def *contact = &reader->scene->world.contact;
     static const char *const keys[] = {"distance", "stiffness", "slip_speed", "friction_iterations"};
+    if (reader->scene->world.scheme == BRUNT_EXPLICIT) {
+        for (int i = 0; i < 4; i++) brunt_note_unused(reader, node, keys[i]);
+        return;
+    }
     if (!uses(contact, BRUNT_CONTACT_BARRIER)) {
         for (int i = 0; i < 4; i++) brunt_refuse_key(reader, node, keys[i], "this belongs to method: barrier");
         return;
@@ -221,7 +228,7 @@ void brunt_fill_contact(scene_reader *reader) {
     contact->method = world->scheme == BRUNT_IMPLICIT ? BRUNT_CONTACT_BARRIER
                       : fem                           ? BRUNT_CONTACT_AUGURY
                                                       : BRUNT_CONTACT_MULTI_VELOCITY;
-    if (!method) method = brunt_add_default(reader, node, "method", brunt_contact_word(contact->method));
+    // A default is not written down: each scheme takes its own, also of a resolved scene.
     contact->method = (brunt_contact_method)(int)brunt_real_of(node, "method", contact->method);
     contact->friction = brunt_real_of(node, "friction", 0);
     contact->allow_overlap = brunt_real_of(node, "initial_overlap", 0) == 1;

@@ -108,7 +108,8 @@ static void fill_time(scene_reader *reader) {
     if (!time || time->kind != SCENE_MAP) return;
     brunt_fill_fields(reader, time, "time", 0, world);
     const scene_node *step = brunt_tree_child(time, "step"), *cfl = brunt_tree_child(time, "cfl");
-    if (step && cfl) brunt_tree_complain_key(reader->tree, step, "step and cfl are both given, one of them is wanted");
+    if (step && cfl && world->scheme == BRUNT_EXPLICIT)
+        brunt_tree_complain_key(reader->tree, step, "step and cfl are both given, one of them is wanted");
     if (step && world->step > world->end && world->end > 0)
         brunt_tree_complain(reader->tree, step, "the step is longer than the run");
     world->cfl = brunt_real_of(time, "cfl", world->cfl);

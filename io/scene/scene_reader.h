@@ -48,6 +48,9 @@ void brunt_fill_contact(scene_reader *reader);
 void brunt_fill_boundaries(scene_reader *reader);
 void brunt_fill_scheme(scene_reader *reader);
 void brunt_check_scheme(scene_reader *reader);
+// Says that a key, if it is there, is of the other scheme: it has been checked, stays in the resolved scene, and does
+// nothing.
+void brunt_note_unused(scene_reader *reader, const scene_node *map, const char *key);
 void brunt_fill_world(scene_reader *reader); // calls the five above
 void brunt_fill_output(scene_reader *reader);
 void brunt_fill_measures(scene_reader *reader);

@@ -1,9 +1,17 @@
-// Explicit and implicit steps: the keys that are one's alone, and what the other cannot do.
+// Explicit and implicit steps: the keys that are one's alone, which the other leaves unused, and what it cannot do.
 #include "io/scene/scene_reader.h"
 
 #include <string.h>
 
 #include "world/definitions.h"
+
+void brunt_note_unused(scene_reader *reader, const scene_node *map, const char *key) {
+    const scene_node *child = brunt_tree_child(map, key);
+    const bool implicit = reader->scene->world.scheme == BRUNT_IMPLICIT;
+    if (child)
+        brunt_scene_warn_at(reader, child, true, "of %s steps, not used by %s ones", implicit ? "explicit" : "implicit",
+                            implicit ? "implicit" : "explicit");
+}
 
 // Keys of Newton's method, with their defaults.
 static void fill_newton(scene_reader *reader) {
@@ -28,11 +36,12 @@ void brunt_fill_scheme(scene_reader *reader) {
         if (!brunt_tree_child(time, "integrator")) brunt_add_default(reader, time, "integrator", "euler");
         world->integrator = (brunt_integrator)(int)brunt_real_of(time, "integrator", BRUNT_EULER);
         fill_newton(reader);
+        brunt_note_unused(reader, time, "cfl"), brunt_note_unused(reader, time, "least_step");
+        world->cfl = world->least_step = 0;
         return;
     }
-    static const char why[] = "this belongs to time.scheme: implicit";
-    brunt_refuse_key(reader, time, "integrator", why);
-    brunt_refuse_key(reader, root, "newton", why);
+    brunt_note_unused(reader, time, "integrator");
+    brunt_note_unused(reader, root, "newton");
 }
 
 // At the value that asks for it, else at the key of what it is missing in.

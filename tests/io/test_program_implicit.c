@@ -71,6 +71,71 @@ START_TEST(is_the_scheme_that_is_set) {
 }
 END_TEST
 
+// A scene with keys of both schemes: nothing but time.scheme is changed, in the file and in what it was resolved to.
+static const char both[] =
+    "brunt: 1\n"
+    "dimension: 2\n"
+    "time: {end: 40 ms, scheme: implicit, step: 0.2 ms, integrator: newmark, least_step: 1 ns}\n"
+    "newton: {tolerance: 1e-8}\n"
+    "materials: {rubber: {model: neo-hookean, density: 1000 kg/m^3, E: 1 MPa, nu: 0.3}}\n"
+    "bodies:\n"
+    "  lower: {method: fem, material: rubber, size: 0.1 m, shape: {box: {min: [0, -0.5], max: [0.5, 0]}}}\n"
+    "  upper: {method: fem, material: rubber, size: 0.1 m, shape: {box: {min: [0, 0.01], max: [0.5, 0.51]}}, "
+    "velocity: [0, -1]}\n"
+    "contact: {friction: 0.1, distance: 5 mm, slip_speed: 1 mm/s, friction_iterations: 2, iterations: 8}\n"
+    "measures: {up: {history: body.upper.velocity_y}}\n"
+    "output: {every: none, checkpoint: none}\n";
+
+static const char *const of_implicit[] = {
+    "3:52: time.integrator: of implicit", "4:1: newton: of implicit", "9:26: contact.distance: of implicit",
+    "9:42: contact.slip_speed: of implicit", "9:62: contact.friction_iterations: of implicit"};
+static const char *const of_explicit[] = {"3:73: time.least_step: of explicit",
+                                          "9:86: contact.iterations: of explicit"};
+
+// What a command says of keys of the other scheme: all of them, and no more.
+static void check_notes(const char *words, const char *const *notes, int count) {
+    char text[160];
+    for (int i = 0; i < count; i++) {
+        snprintf(text, sizeof text, "warning: both.yaml:%s steps, not used by %s ones", notes[i],
+                 strstr(notes[i], "implicit") ? "explicit" : "implicit");
+        small_expect(words, 0, text);
+    }
+    ck_assert_int_eq(small_shell("test `grep -c 'steps, not used by' output` = %d", count), 0);
+}
+
+START_TEST(runs_by_both) {
+    small_put("both.yaml", both);
+    check_notes("check both.yaml --quick", of_explicit, 2);
+    check_notes("check both.yaml --quick --set time.scheme=explicit", of_implicit, 5);
+    check_notes("run both.yaml --fresh -o implicit", of_explicit, 2);
+    check_notes("run both.yaml --fresh -o explicit --set time.scheme=explicit", of_implicit, 5);
+    const char *const folders[] = {"implicit", "explicit"};
+    for (int i = 0; i < 2; i++) {
+        json_t *s = summary_of(folders[i]);
+        ck_assert((json_object_get(s, "newton") != NULL) == !i); // no part of the other scheme is there
+        // Two blocks that are alike exchange their velocities, less what goes on swinging in them.
+        const double up = number_at(json_object_get(json_object_get(s, "measures"), "up"), NULL, "value");
+        ck_assert_msg(up > -0.25 && up < 0.05, "%s: %g m/s", folders[i], up);
+        json_decref(s);
+    }
+    // What was resolved has the keys of both, and goes on being of both.
+    small_expect("run explicit/scene.yaml -o again -q --set time.scheme=implicit", 0, NULL);
+    small_expect("run implicit/scene.yaml -o back -q --set time.scheme=explicit", 0, NULL);
+    const char *const pairs[][2] = {{"implicit", "again"}, {"explicit", "back"}};
+    for (int i = 0; i < 2; i++) {
+        json_t *a = summary_of(pairs[i][0]), *b = summary_of(pairs[i][1]);
+        ck_assert_str_eq(json_string_value(json_object_get(a, "state_hash")),
+                         json_string_value(json_object_get(b, "state_hash")));
+        json_decref(a), json_decref(b);
+    }
+    // What is given by name is kept to.
+    small_expect("check both.yaml --set contact.method=barrier --set time.scheme=explicit", 65,
+                 "where no method is given each scheme takes its own");
+    small_expect("check both.yaml --set contact.method=augury", 65,
+                 "where no method is given each scheme takes its own");
+}
+END_TEST
+
 START_TEST(in_two_legs) {
     small_expect("run small.yaml -o whole -q -t 2", 0, NULL);
     pid_t child = small_begin("legs", "legs/vtu/upper_000002.vtu", NULL, 0);
@@ -99,6 +164,7 @@ int main(void) {
     tcase_set_timeout(tests, 0);
     tcase_add_test(tests, says_what_it_does);
     tcase_add_test(tests, is_the_scheme_that_is_set);
+    tcase_add_test(tests, runs_by_both);
     tcase_add_test(tests, in_two_legs);
     tcase_add_test(tests, that_does_not_converge_is_70);
     suite_add_tcase(suite, tests);
