@@ -1,4 +1,5 @@
 #include "contact/barrier/closest.h"
+#include "contact/distance/line_crossing.h"
 
 #include <math.h>
 #include <string.h>
@@ -128,26 +129,18 @@ int brunt_closest_of_triangle(const double q[3], const double p[3][3], double *d
 
 // Crossing of the lines of two edges between their ends, s along a and t along b. False: it is not there.
 static int crossing(const double a[2][3], const double b[2][3], brunt_closest *c) {
-    double ea[3], eb[3], r[3], n[3], s = 0, t = 0;
-    minus(a[1], a[0], ea), minus(b[1], b[0], eb);
-    cross(ea, eb, n);
-    const double aa = dot(ea, ea), ab = dot(ea, eb), bb = dot(eb, eb), det = dot(n, n);
-    if (!(det > 1e-24 * aa * bb)) return 0;
-    minus(a[0], b[0], r);
-    for (int twice = 0; twice < 2; twice++) { // the second time from near the place
-        const double ra = dot(r, ea), rb = dot(r, eb), ds = (ab * rb - bb * ra) / det, dt = (aa * rb - ab * ra) / det;
-        s += ds, t += dt;
-        for (int k = 0; k < 3; k++) r[k] = a[0][k] - b[0][k] + s * ea[k] - t * eb[k];
-    }
+    brunt_line_crossing at;
+    if (!brunt_lines_cross(a, b, 1e-24, &at)) return 0;
+    const double s = at.s, t = at.t, sine = sqrt(at.sine2);
     if (!(s > BORDER && s < 1 - BORDER && t > BORDER && t < 1 - BORDER)) return 0;
     *c = (brunt_closest){.places = 4, .free = 2, .w = {1 - s, s, t - 1, -t}, .g = {{-1, 1, 0, 0}, {0, 0, 1, -1}}};
-    memcpy(c->turn[0], ea, sizeof ea);
-    for (int k = 0; k < 3; k++) c->turn[1][k] = -eb[k];
-    direction(r, c);
-    const double height = dot(r, n) / sqrt(det);
-    if (det > 1e-12 * aa * bb) { // else r is the better known
+    memcpy(c->turn[0], at.ea, sizeof at.ea);
+    for (int k = 0; k < 3; k++) c->turn[1][k] = -at.eb[k];
+    direction(at.r, c);
+    const double height = dot(at.r, at.n) / sine;
+    if (at.sine2 > 1e-12 * at.aa * at.bb) { // else r is the better known
         c->d = fabs(height);
-        for (int k = 0; k < 3; k++) c->n[k] = (height < 0 ? -1 : 1) * n[k] / sqrt(det);
+        for (int k = 0; k < 3; k++) c->n[k] = (height < 0 ? -1 : 1) * at.n[k] / sine;
     }
     return 1;
 }

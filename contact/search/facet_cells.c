@@ -35,8 +35,8 @@ static void cell_range(const brunt_node_to_facet *f, const double low[3], const 
     }
 }
 
-// Counts, or lists, the facets of every cell.
-static void list_facets(const brunt_contact_context *m, brunt_node_to_facet *f, bool list) {
+// Counts, or lists, the facets of every cell; with them their edges. 0, or -1: out of memory.
+static int list_facets(const brunt_contact_context *m, brunt_node_to_facet *f, bool list) {
     const brunt_contact_surface *s = m->surface;
     const double by = f->cells.range + MARGIN * s->mean_edge;
     for (int k = 0; k < s->fem_count; k++) {
@@ -46,6 +46,7 @@ static void list_facets(const brunt_contact_context *m, brunt_node_to_facet *f, 
             int32_t from[3], to[3];
             face_bounds(s, face, low, high);
             if (!brunt_broad_phase_in_reach(f, f->bodies.box_of[k], low, high, 2 * by)) continue;
+            if (list && s->dim == 3 && brunt_feature_edges_add(f, s, k, face)) return -1;
             cell_range(f, low, high, by, from, to);
             for (int32_t x = from[0]; x <= to[0]; x++)
                 for (int32_t y = from[1]; y <= to[1]; y++)
@@ -59,6 +60,7 @@ static void list_facets(const brunt_contact_context *m, brunt_node_to_facet *f, 
                     }
         }
     }
+    return 0;
 }
 
 // The room that pairs share, cut into cells; few enough that making them costs no more than the facets do.
@@ -101,7 +103,7 @@ static int make_cells(const brunt_contact_context *m, brunt_node_to_facet *f) {
     list_facets(m, f, false);
     for (size_t c = 2; c <= cells + 1; c++) f->cells.first[c] += f->cells.first[c - 1];
     if (RESERVE(&f->cells, face, f->cells.first[cells + 1] + 1)) return -1;
-    list_facets(m, f, true);
+    if (brunt_feature_edges_clear(f, s) || list_facets(m, f, true)) return -1;
     for (int k = 0; k < s->fem_count; k++) {
         if (!s->active[k]) continue;
         memcpy(f->cells.x + s->node_range[k], s->x + s->node_range[k],

@@ -266,7 +266,8 @@ int brunt_node_to_facet_find(const brunt_contact_context *m, brunt_body *mpm, in
     if (!f->bodies.pair_count) return 0;
     if (brunt_facet_cells_make(m, f)) return -1;
     search_job j = {.m = m, .f = f, .constraints = constraints};
-    if (search_from_nodes(&j) || add_node_constraints(m, f, constraints)) return -1;
+    if (search_from_nodes(&j) || add_node_constraints(m, f, constraints) || brunt_edge_edge_find(m, f, constraints))
+        return -1;
     for (int k = 0; k < mpm_count; k++) {
         int32_t box = 0;
         while (f->bodies.box[box].mpm != k) box++;

@@ -7,6 +7,7 @@ void brunt_node_to_facet_free(brunt_node_to_facet *f) {
         brunt_particle_dofs_free(&f->particles.dofs[k]);
     for (int t = 0; t < f->particles.list_count; t++) brunt_free(f->particles.list[t].candidate);
     for (int t = 0; t < f->nodes.masters_count; t++) brunt_free(f->nodes.masters[t].master);
+    brunt_feature_edges_free(&f->edges);
     void *owned[] = {f->bodies.box,     f->bodies.pair,     f->bodies.box_of,
                      f->bodies.first,   f->bodies.list,     f->cells.first,
                      f->cells.face,     f->cells.x,         f->cells.box,
@@ -19,7 +20,8 @@ void brunt_node_to_facet_free(brunt_node_to_facet *f) {
 
 size_t brunt_node_to_facet_bytes(const brunt_node_to_facet *f) {
     return f ? f->bodies.box_capacity + f->bodies.pair_capacity + f->cells.first_capacity + f->cells.face_capacity +
-                   f->cells.x_capacity + f->cache.node_capacity + f->nodes.count_capacity + f->nodes.dof_of_capacity
+                   f->cells.x_capacity + f->cache.node_capacity + f->nodes.count_capacity + f->nodes.dof_of_capacity +
+                   f->edges.near_capacity + f->edges.feature_capacity
              : 0;
 }
 

@@ -9,6 +9,7 @@
 #include "contact/search/broad_phase.h"
 #include "contact/search/candidates.h"
 #include "contact/search/distance_cache.h"
+#include "contact/search/edge_edge.h"
 #include "contact/search/facet_cells.h"
 
 static inline double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
@@ -18,6 +19,7 @@ struct brunt_node_to_facet {
     facet_cells cells;
     distance_cache cache;
     node_candidates nodes;
+    near_edges edges;
     particle_candidates particles;
 };
 
@@ -65,6 +67,19 @@ int brunt_node_to_facet_master(const brunt_contact_surface *s, const facet_candi
 // The master's entries, whose supports there are; sets the point's facet.
 void brunt_node_to_facet_entries(const brunt_node_to_facet *f, const brunt_master *master, brunt_constraint *constraint,
                                  brunt_constraint_entry *entry);
+
+// --- feature_edges.c
+// The edges near other bodies, in the order of the cells' facets: freed; none; and those of one more facet, of body k.
+// 0, or -1: out of memory.
+void brunt_feature_edges_free(near_edges *edges);
+int brunt_feature_edges_clear(brunt_node_to_facet *f, const brunt_contact_surface *s);
+int brunt_feature_edges_add(brunt_node_to_facet *f, const brunt_contact_surface *s, int k, int32_t face);
+// Lists the features among the edges of body k, as they are in this step, unless that is done. 0, or -1: out of memory.
+int brunt_feature_edges_list(brunt_node_to_facet *f, const brunt_contact_surface *s, int k);
+
+// --- edge_edge.c
+// Contact points where edges cross. 0, or -1: out of memory.
+int brunt_edge_edge_find(const brunt_contact_context *m, brunt_node_to_facet *f, brunt_constraint_set *constraints);
 
 // --- particle_facet.c
 // Contact points of the particles of body k of the mpm bodies. 0, or -1: out of memory.

@@ -1,0 +1,100 @@
+// Which edges of the surfaces are features.
+#include "contact/search/node_to_facet_parts.h"
+
+// Cosine of 0.4 rad, the least turn of a feature: what is left unmet between edges that turn less is under a tenth of
+// an edge (0.5 tan 0.2), and surfaces of 16 facets a circle and more have none.
+static const double LEAST_TURN = 0.92106099400288508;
+// Of the way from an edge to the middle of a facet: how deep is still from this side. Nothing is thinner than the way.
+static const double DEPTH = 0.5;
+
+void brunt_feature_edges_free(near_edges *edges) {
+    brunt_free(edges->near), brunt_free(edges->first), brunt_free(edges->span);
+    brunt_free(edges->feature), brunt_free(edges->feature_first);
+}
+
+int brunt_feature_edges_clear(brunt_node_to_facet *f, const brunt_contact_surface *s) {
+    f->edges.near_count = 0;
+    if (RESERVE(&f->edges, first, 2 * (size_t)s->fem_count + 1)) return -1;
+    memset(f->edges.first, 0, 2 * (size_t)s->fem_count * sizeof *f->edges.first);
+    return 0;
+}
+
+// The face beyond the edge of a face from node p to q; -1: none, -2: several, where elements touch along an edge.
+static int32_t face_beyond(const brunt_contact_surface *s, int32_t p, int32_t q) {
+    int32_t found = -1;
+    for (int32_t i = s->face_first[p]; i < s->face_first[p + 1]; i++) {
+        const int32_t *node = s->face[s->face_of[i]];
+        const int n = brunt_face_corners(node);
+        for (int c = 0; c < n; c++)
+            if (node[c] == q && node[c + 1 < n ? c + 1 : 0] == p) found = found == -1 ? s->face_of[i] : -2;
+    }
+    return found;
+}
+
+// Of a solid each edge once, from the face in which it ascends; of a membrane its rims, which one face has.
+int brunt_feature_edges_add(brunt_node_to_facet *f, const brunt_contact_surface *s, int k, int32_t face) {
+    const int32_t *node = s->face[face];
+    const int n = brunt_face_corners(node);
+    const bool membrane = s->fem[k]->traits->membrane;
+    int32_t *range = f->edges.first + 2 * k;
+    if (!range[1]) range[0] = f->edges.near_count;
+    for (int c = 0; c < n; c++) {
+        const int32_t p = node[c], q = node[c + 1 < n ? c + 1 : 0];
+        if (!membrane && p > q) continue;
+        const int32_t other = face_beyond(s, p, q);
+        if (membrane ? other != -1 : other < 0) continue;
+        const size_t used = (size_t)f->edges.near_count;
+        if (BRUNT_RESERVE(f->edges.near, used + 1, used)) return -1;
+        f->edges.near[f->edges.near_count++] = (near_edge){{p, q}, {face, other}};
+    }
+    range[1] = f->edges.near_count;
+    return 0;
+}
+
+// Whether an edge is convex and turns enough.
+static inline bool is_feature(const brunt_contact_surface *s, const near_edge *edge) {
+    if (edge->face[1] < 0) return true;
+    const double *n = s->face_normal[edge->face[0]];
+    if (dot(n, s->face_normal[edge->face[1]]) > LEAST_TURN) return false;
+    const double *a = s->x[edge->node[0]], *centre = s->face_centre[edge->face[1]];
+    return n[0] * (centre[0] - a[0]) + n[1] * (centre[1] - a[1]) + n[2] * (centre[2] - a[2]) < 0;
+}
+
+static feature_edge feature_of(const brunt_contact_surface *s, const near_edge *edge) {
+    feature_edge out = {.node = {edge->node[0], edge->node[1]}, .rim = edge->face[1] < 0, .depth = INFINITY};
+    const double *a = s->x[edge->node[0]], *b = s->x[edge->node[1]];
+    double e[3];
+    for (int k = 0; k < 3; k++) {
+        e[k] = b[k] - a[k];
+        out.low[k] = fmin(a[k], b[k]), out.high[k] = fmax(a[k], b[k]);
+    }
+    const double square = dot(e, e);
+    for (int i = 0; i < 2; i++) {
+        const int32_t face = edge->face[out.rim ? 0 : i];
+        double *into = out.into[i];
+        for (int k = 0; k < 3; k++) into[k] = s->face_centre[face][k] - 0.5 * (a[k] + b[k]);
+        const double along = square > 0 ? dot(into, e) / square : 0;
+        for (int k = 0; k < 3; k++) into[k] -= along * e[k];
+        const double length = sqrt(dot(into, into));
+        out.depth = fmin(out.depth, DEPTH * length);
+        for (int k = 0; k < 3; k++) {
+            into[k] = length > 0 ? into[k] / length : 0;
+            out.out[k] += out.rim ? -into[k] : s->face_normal[face][k];
+        }
+    }
+    return out;
+}
+
+int brunt_feature_edges_list(brunt_node_to_facet *f, const brunt_contact_surface *s, int k) {
+    near_edges *edges = &f->edges;
+    if (edges->feature_first[2 * k] >= 0) return 0;
+    edges->feature_first[2 * k] = edges->feature_count;
+    for (int32_t i = edges->first[2 * k]; i < edges->first[2 * k + 1]; i++) {
+        if (!is_feature(s, &edges->near[i])) continue;
+        const size_t used = (size_t)edges->feature_count;
+        if (BRUNT_RESERVE(edges->feature, used + 1, used)) return -1;
+        edges->feature[edges->feature_count++] = feature_of(s, &edges->near[i]);
+    }
+    edges->feature_first[2 * k + 1] = edges->feature_count;
+    return 0;
+}
