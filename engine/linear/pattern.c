@@ -149,23 +149,8 @@ static void place_rows(void *context, int64_t begin, int64_t end, int worker) {
     }
 }
 
-static void find_diagonals(void *context, int64_t begin, int64_t end, int worker) {
-    (void)worker;
-    brunt_block_matrix *m = context;
-    for (int64_t r = begin; r < end; r++) {
-        int64_t low = m->first[r], high = m->first[r + 1] - 1;
-        while (low < high) {
-            const int64_t middle = (low + high) / 2;
-            if (m->column[middle] < r)
-                low = middle + 1;
-            else
-                high = middle;
-        }
-        m->diagonal[r] = low;
-    }
-}
-
-static bool couples(const brunt_block_matrix *m, int32_t row, int32_t column) {
+// Where a column stands in its row, or would.
+static int64_t place_of(const brunt_block_matrix *m, int64_t row, int64_t column) {
     int64_t low = m->first[row], high = m->first[row + 1];
     while (low < high) {
         const int64_t middle = (low + high) / 2;
@@ -174,7 +159,18 @@ static bool couples(const brunt_block_matrix *m, int32_t row, int32_t column) {
         else
             high = middle;
     }
-    return low < m->first[row + 1] && m->column[low] == column;
+    return low;
+}
+
+static void find_diagonals(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    brunt_block_matrix *m = context;
+    for (int64_t r = begin; r < end; r++) m->diagonal[r] = place_of(m, r, r);
+}
+
+static bool couples(const brunt_block_matrix *m, int32_t row, int32_t column) {
+    const int64_t at = place_of(m, row, column);
+    return at < m->first[row + 1] && m->column[at] == column;
 }
 
 static bool has_stencils(const brunt_block_matrix *m, const brunt_stencils *list) {
