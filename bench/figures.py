@@ -360,7 +360,7 @@ def rows_of(path):
 
 def near(a, b):
     """Texts with the same words and nearly the same numbers: to 1 %, or a digit of the last place printed. 1e-6: rounding."""
-    numbers = [[float(n) for n in re.findall(NUMBER, text)] for text in (a, b)]
+    numbers = [[float(n.replace(",", "")) for n in re.findall(NUMBER, text)] for text in (a, b)]
     places = max([len(m) for m in re.findall(r"\.(\d+)(?![\de])", a)], default=None)
     digit = 1.5 * 10.0**-places if places is not None and "e" not in a else 1e-6
     return (re.sub(NUMBER, "", a) == re.sub(NUMBER, "", b) and len(numbers[0]) == len(numbers[1]) and
