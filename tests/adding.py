@@ -18,7 +18,8 @@ SAMPLES = {
     "element": (r"\b(BRUNT_TET4|brunt_tet4|tet4)\b", r"engine/fem/elements/tet4\.c", 3),
     "material": (r"drucker[-_]prager", r"materials/drucker_prager\.c", 2),
     "contact method": (r"multi[-_]velocity|MULTI_VELOCITY", r"contact/methods/(grid_velocity|surface_on_grid)", 6),
-    "boundary kind": (r"SYMMETRY|\"symmetry\"", r"contact/planes/|symmetry", None),
+    # Its word and its row.
+    "condition of planes": (r"SYMMETRY|\"symmetry\"", r"^$", 2),
     # A line in the list of kinds, the rows of a measure of one body, and a row for each key of its own.
     "measure": (r"measures\.\*\.extent|OF_BODY\(\"extent|\bEXTENT\b|MEASURE_EXTENT", r"io/output/measure_extent\.c", 3),
     # Its row of a scene, the member that it fills, its row among a body's numbers: what it may be, how a prediction's

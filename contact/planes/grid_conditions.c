@@ -1,6 +1,7 @@
 // Conditions imposed at nodes: stick and slip on the nodes at and behind a plane, given velocities inside a region.
 #include "contact/planes/grid_conditions.h"
 #include "contact/distance/particle_extent.h"
+#include "contact/planes/condition.h"
 
 #include <math.h>
 #include <string.h>
@@ -80,9 +81,9 @@ static void apply_plane(brunt_body *body, bool rings, brunt_boundary *wall, doub
     if (brunt_total_lagrangian(&body->particles)) time = 0;
     const brunt_plane_def *plane = &wall->plane;
     double offset = 0, reach = ON_PLANE * (double)grid->h;
-    unsigned held = 0; // what an oblique plane lets slip along itself has no component that it holds
+    const unsigned held = brunt_condition_components(plane, grid->dim);
+    const bool sticks = brunt_conditions[plane->condition].sticks;
     for (int a = 0; a < grid->dim; a++) {
-        if (plane->condition == BRUNT_STICK || fabs(plane->normal[a]) > 1 - 1e-12) held |= 1u << a;
         offset += plane->normal[a] * (plane->point[a] + plane->velocity[a] * time);
         reach += fabs(plane->normal[a]) * 0.5 * grid->side * (double)grid->h;
     }
@@ -107,7 +108,7 @@ static void apply_plane(brunt_body *body, bool rings, brunt_boundary *wall, doub
             }
             if (distance > ON_PLANE * (double)grid->h) continue;
             for (int a = 0; a < grid->dim; a++)
-                now[a] = plane->condition == BRUNT_STICK ? plane->velocity[a] : v[a] - approach * plane->normal[a];
+                now[a] = sticks ? plane->velocity[a] : v[a] - approach * plane->normal[a];
             reflect(rings, x, (double)grid->h, now);
             set_velocity(body, slot, node, now, plane->velocity, held, &wall->last);
         }

@@ -1,3 +1,4 @@
+#include "contact/planes/condition.h"
 #include "contact/search/initial_overlap.h"
 
 #include <math.h>
@@ -485,7 +486,7 @@ static bool find_behind(const brunt_contact_context *m, brunt_body *mpm, int mpm
     const brunt_contact_surface *s = m->surface;
     const brunt_boundary *wall = &m->walls[w];
     bool any = false;
-    if (wall->region || wall->plane.condition != BRUNT_SEPARATE) return false;
+    if (!brunt_boundary_pushes(wall)) return false;
     *found = (brunt_overlap){.b = -1, .wall = w};
     for (int k = 0; k < s->fem_count; k++) {
         if (wall->body >= 0 && wall->body != s->fem[k]->index) continue;

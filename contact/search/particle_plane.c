@@ -14,7 +14,7 @@
 #include <string.h>
 
 #include "contact/distance/particle_extent.h"
-#include "contact/planes/boundary.h"
+#include "contact/planes/condition.h"
 #include "mpm/particles.h"
 
 enum { MAX_SWEEPS = 16 };
@@ -107,7 +107,7 @@ int brunt_planes_apply(const brunt_contact_context *m, brunt_body *body, brunt_p
     brunt_constraints_clear(set);
     for (int k = 0; k < m->wall_count; k++) {
         brunt_boundary *wall = &m->walls[k];
-        if (wall->region || wall->plane.condition != BRUNT_SEPARATE) continue;
+        if (!brunt_boundary_pushes(wall)) continue;
         if (wall->body >= 0 && wall->body != body->index) continue;
         plane_job j = {.m = m, .body = body, .wall = wall, .dofs = dofs, .set = set};
         if (add_plane(&j)) return -1;

@@ -1,4 +1,5 @@
 // Planes and boundary nodes: those that push (condition separate) and those that hold (stick, slip, symmetry).
+#include "contact/planes/condition.h"
 #include "contact/search/node_to_facet_parts.h"
 
 // Holds a node on a plane: stick takes all components, slip and symmetry the normal one. `back`: how much further its
@@ -55,8 +56,8 @@ int brunt_node_to_facet_planes(const brunt_contact_context *m, brunt_boundary *w
     const double on = 1e-6 * s->mean_edge;
     for (int w = 0; w < wall_count; w++) {
         brunt_boundary *wall = &walls[w];
-        const brunt_condition condition = wall->plane.condition;
         if (wall->region) continue;
+        const brunt_condition_row *condition = &brunt_conditions[wall->plane.condition];
         for (int k = 0; k < s->fem_count; k++) {
             if (!s->active[k] || !brunt_broad_phase_plane(s, k, wall, time, f->bodies.plane_travel + on)) continue;
             const int32_t back = s->node_range[k + 1] - s->node_end[k];
@@ -64,7 +65,7 @@ int brunt_node_to_facet_planes(const brunt_contact_context *m, brunt_boundary *w
             for (int32_t n = s->node_range[k]; n < s->node_end[k]; n++) {
                 double gap = brunt_plane_distance(&wall->plane, time, s->x[n]);
                 if (gap > f->bodies.plane_travel + on) continue;
-                if (condition == BRUNT_SEPARATE) {
+                if (condition->pushes) {
                     s->output.gap[n] = fmin(s->output.gap[n], gap - half);
                     if (add_plane_constraint(m, f, n, back, wall, gap - half, constraints)) return -1;
                     continue;
@@ -72,9 +73,9 @@ int brunt_node_to_facet_planes(const brunt_contact_context *m, brunt_boundary *w
                 double along = 0;
                 for (int a = 0; a < 3; a++) along += wall->plane.normal[a] * (s->v[n][a] - wall->plane.velocity[a]);
                 if (gap <= on)
-                    fix_node(s, n, back, wall, 0, condition == BRUNT_STICK);
+                    fix_node(s, n, back, wall, 0, condition->sticks);
                 else if (gap + along * m->dt < 0)
-                    fix_node(s, n, back, wall, -gap / m->dt, condition == BRUNT_STICK);
+                    fix_node(s, n, back, wall, -gap / m->dt, condition->sticks);
             }
         }
     }
@@ -88,9 +89,9 @@ static int fixing_plane(const brunt_contact_surface *s, int32_t n, int a, const 
     double least = INFINITY;
     for (int w = 0; w < wall_count; w++) {
         const brunt_plane_def *plane = &walls[w].plane;
-        if (walls[w].region || plane->condition == BRUNT_SEPARATE) continue;
+        if (!brunt_boundary_holds(&walls[w])) continue;
         if (walls[w].body >= 0 && walls[w].body != s->body[n]) continue;
-        if (plane->condition != BRUNT_STICK && !(fabs(plane->normal[a]) > 1 - 1e-12)) continue;
+        if (!(brunt_condition_components(plane, 3) >> a & 1)) continue;
         double gap = brunt_plane_distance(plane, time, s->x[n]);
         if (gap < least) least = gap, nearest = w;
     }

@@ -1,4 +1,5 @@
 // Surfaces, particles and planes that barriers keep apart.
+#include "contact/planes/condition.h"
 #include "scheme/implicit_contact.h"
 
 #include <math.h>
@@ -46,7 +47,6 @@ static double slowest_wave(const brunt_world *world) {
 
 // ------------------------------------------------------------------------------------------ pairs and planes
 
-static bool is_wall(const brunt_boundary *wall) { return !wall->region && wall->plane.condition == BRUNT_SEPARATE; }
 static bool plane_meets(const brunt_boundary *wall, int body) { return wall->body < 0 || wall->body == body; }
 
 // Pairs of bodies that barriers keep apart; `c->pair` NULL: counts them.
@@ -68,7 +68,7 @@ static void list_pairs(brunt_implicit_contact *c, const brunt_world *world) {
 static void list_planes(brunt_implicit_contact *c, const brunt_world *world) {
     c->plane_count = 0;
     for (int32_t w = 0; w < world->boundaries.wall_count; w++) {
-        if (!is_wall(&world->boundaries.walls[w])) continue;
+        if (!brunt_boundary_pushes(&world->boundaries.walls[w])) continue;
         if (c->plane) c->plane_wall[c->plane_count] = w;
         c->plane_count++;
     }

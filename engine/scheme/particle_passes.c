@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "contact/planes/condition.h"
 #include "base/array.h"
 #include "base/parallel.h"
 #include "contact/planes/grid_conditions.h"
@@ -117,7 +118,7 @@ int brunt_pass_update(brunt_world *world, brunt_step *step, brunt_error *error) 
 }
 
 static bool at_nodes(const brunt_boundary *wall) {
-    return wall->region || (wall->mirror < 0 && wall->plane.condition != BRUNT_SEPARATE);
+    return wall->region || (wall->mirror < 0 && brunt_boundary_holds(wall));
 }
 
 // Planes that stick or slip and regions, at the nodes of the grids; once more after what gives impulses to nodes that

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "contact/planes/condition.h"
 #include "base/array.h"
 #include "base/memory.h"
 #include "scheme/unknowns.h"
@@ -123,7 +124,7 @@ static void take_grid(brunt_unknowns *u, const brunt_grid *grid, const int32_t *
 
 static bool moves(const brunt_boundary *wall) {
     const double *v = wall->plane.velocity;
-    return !wall->region && wall->plane.condition == BRUNT_SEPARATE && (v[0] != 0 || v[1] != 0 || v[2] != 0);
+    return brunt_boundary_pushes(wall) && (v[0] != 0 || v[1] != 0 || v[2] != 0);
 }
 
 static void take_plane(brunt_unknowns *u, const brunt_plane_def *plane, double time, int32_t n) {

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "boundary/curve.h"
-#include "contact/planes/grid_conditions.h"
+#include "contact/planes/condition.h"
 #include "scheme/unknowns.h"
 
 static const double ON_PLANE = 1e-6; // cells, mean edges: how far off a plane a node may be and still lie on it
@@ -43,14 +43,6 @@ static void hold_group(brunt_unknowns *u, const brunt_world *world, int k, doubl
 
 static bool acts_on(const brunt_boundary *wall, int body) { return wall->body < 0 || wall->body == body; }
 
-// The components that a plane holds: all that stick, the one across it that slips.
-static unsigned components(const brunt_plane_def *plane, int dim) {
-    unsigned held = 0;
-    for (int a = 0; a < dim; a++)
-        if (plane->condition == BRUNT_STICK || fabs(plane->normal[a]) > 1 - 1e-12) held |= 1u << a;
-    return held;
-}
-
 // Distance of a node to a plane as it is at the start of the step [m].
 static double distance(const brunt_unknowns *u, const brunt_plane_def *plane, double time, int32_t n) {
     double gap = 0;
@@ -61,7 +53,7 @@ static double distance(const brunt_unknowns *u, const brunt_plane_def *plane, do
 }
 
 static void hold_plane_node(brunt_unknowns *u, const brunt_boundary *wall, int w, int32_t n, double dt) {
-    const unsigned held = components(&wall->plane, u->dim);
+    const unsigned held = brunt_condition_components(&wall->plane, u->dim);
     for (int a = 0; a < u->dim; a++)
         if (held >> a & 1) hold(u, n, a, w, dt * wall->plane.velocity[a], wall->plane.velocity[a]);
 }
@@ -69,7 +61,7 @@ static void hold_plane_node(brunt_unknowns *u, const brunt_boundary *wall, int w
 // Nodes at a plane and behind it.
 static void hold_plane(brunt_unknowns *u, const brunt_world *world, int w, double dt) {
     const brunt_boundary *wall = &world->boundaries.walls[w];
-    if (wall->plane.condition == BRUNT_SEPARATE) return;
+    if (!brunt_boundary_holds(wall)) return;
     const brunt_bodies *bodies = &world->bodies;
     for (int k = 0; k < bodies->fem_count; k++)
         for (int32_t i = 0; acts_on(wall, bodies->fem[k].index) && i < bodies->fem[k].node_count; i++)
@@ -147,7 +139,7 @@ int32_t brunt_unknowns_passed(const brunt_unknowns *u, const brunt_world *world,
     for (int w = 0; w < world->boundaries.wall_count; w++) {
         *wall = &world->boundaries.walls[w];
         const brunt_plane_def *plane = &(*wall)->plane;
-        if ((*wall)->region || plane->condition == BRUNT_SEPARATE) continue;
+        if (!brunt_boundary_holds(*wall)) continue;
         for (int k = 0; k < bodies->fem_count; k++) {
             const double slack = ON_PLANE * bodies->fem[k].mean_edge;
             const int32_t nodes = acts_on(*wall, bodies->fem[k].index) ? bodies->fem[k].node_count : 0;

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "contact/planes/condition.h"
 #include "base/error.h"
 #include "base/memory.h"
 #include "world/create.h"
@@ -41,11 +42,12 @@ static int make_plane(brunt_world *world, const brunt_world_def *def, int index,
         world->boundaries.has_friction = world->boundaries.has_friction || plane->friction > 0;
         return BRUNT_OK;
     }
-    if (plane->condition == BRUNT_SYMMETRY && !on_line)
+    const brunt_condition_row *row = &brunt_conditions[plane->condition];
+    if (row->images && !on_line)
         REFUSE("boundaries[%d] (%s): a symmetry plane must stand still, be normal to an axis and lie on a grid line "
                "(cell %g m)",
                index, wall->name, def->cell);
-    if (on_line && (plane->condition == BRUNT_SYMMETRY || plane->condition == BRUNT_SLIP)) {
+    if (on_line && row->mirrors) {
         if (world->boundaries.mirror_count ==
             (int)(sizeof world->boundaries.mirrors / sizeof world->boundaries.mirrors[0]))
             REFUSE("boundaries: more than 16 symmetry and slip planes");
@@ -63,24 +65,13 @@ static int make_plane(brunt_world *world, const brunt_world_def *def, int index,
         wall->mirror = world->boundaries.mirror_count;
         world->boundaries.mirrors[world->boundaries.mirror_count++] =
             (brunt_symmetry_plane){.axis = axis, .node = (int32_t)round(at), .wall = index};
-    } else if (plane->condition == BRUNT_SEPARATE) {
-        world->boundaries.has_walls = true;
-        if (has_fluid(def))
-            brunt_warn(
-                &world->messages,
-                "boundaries[%d] (%s): beside a plane of condition separate the pressure of fluids is wrong in the "
-                "two nearest rows of particles, and gas at rest tears there; slip on a line of the grid is exact",
-                index, wall->name);
-        world->boundaries.has_friction = world->boundaries.has_friction || plane->friction > 0;
-    } else {
-        world->boundaries.has_conditions = true;
-        if (plane->condition == BRUNT_SLIP && has_fluid(def))
-            brunt_warn(
-                &world->messages,
-                "boundaries[%d] (%s): a slip plane that is not on a line of the grid lets fluids in by half a cell; "
-                "move it, or grid.origin",
-                index, wall->name);
+        return BRUNT_OK;
     }
+    if (row->of_fluids && has_fluid(def))
+        brunt_warn(&world->messages, "boundaries[%d] (%s): %s", index, wall->name, row->of_fluids);
+    world->boundaries.has_walls = world->boundaries.has_walls || row->pushes;
+    world->boundaries.has_conditions = world->boundaries.has_conditions || !row->pushes;
+    world->boundaries.has_friction = world->boundaries.has_friction || (row->pushes && plane->friction > 0);
     return BRUNT_OK;
 }
 

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "contact/planes/condition.h"
 #include "world/definitions.h"
 #include "base/error.h"
 #include "base/memory.h"
@@ -261,7 +262,7 @@ static int check_planes(const brunt_world_def *def, brunt_error *error) {
         snprintf(owner, sizeof owner, "boundaries[%d].plane", q);
         TRY(check_name("boundaries", q, plane->name, error));
         TRY(check_name("boundaries", q, plane->body, error));
-        TRY(check_choice(owner, ".condition", (unsigned)plane->condition, BRUNT_SYMMETRY + 1, error));
+        TRY(check_choice(owner, ".condition", (unsigned)plane->condition, (unsigned)brunt_condition_count, error));
         CHECK_NUMBERS(owner, {".point", plane->point, def->dimension, ANY},
                       {".normal", plane->normal, def->dimension, ANY}, {".friction", &plane->friction, 1, ANY},
                       {".velocity", plane->velocity, def->dimension, ANY});
@@ -431,8 +432,9 @@ static int check_axis(const brunt_world_def *def, bool particles, brunt_error *e
                 REFUSE("bodies.%s.spin: rings do not turn in their plane", def->bodies[i].name);
     for (int q = 0; q < def->plane_count; q++) {
         const brunt_plane_def *plane = &def->planes[q];
-        const bool round_axis = plane->normal[0] != 0 && plane->normal[1] == 0, fixed = plane->condition == BRUNT_SLIP;
-        if (round_axis && (plane->condition == BRUNT_SYMMETRY || (fixed && plane->point[0] == 0)))
+        const brunt_condition_row *row = &brunt_conditions[plane->condition];
+        const bool round_axis = plane->normal[0] != 0 && plane->normal[1] == 0;
+        if (round_axis && (row->images || (row->mirrors && plane->point[0] == 0)))
             REFUSE("boundaries[%d]: a cylinder is no plane of symmetry, and the axis of revolution x = 0 needs none",
                    q);
     }

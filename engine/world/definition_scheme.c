@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "contact/planes/condition.h"
 #include "contact/methods/method.h"
 #include "materials/material.h"
 #include "world/definitions.h"
@@ -101,9 +102,9 @@ static void name_boundary(refusals *r, int32_t index, const char *name) {
 static void look_at_boundaries(const brunt_world_def *def, refusals *r) {
     for (int32_t q = 0; q < def->plane_count; q++) {
         const brunt_plane_def *plane = &def->planes[q];
-        const bool glides = plane->condition == BRUNT_SLIP || plane->condition == BRUNT_SYMMETRY;
+        const brunt_condition_row *row = &brunt_conditions[plane->condition];
         name_boundary(r, q, plane->name);
-        if (glides && oblique(plane))
+        if (!row->pushes && !row->sticks && oblique(plane))
             say(r, ".condition", "implicit steps hold nodes on planes that are normal to an axis");
     }
     for (int32_t q = 0; q < def->group_count; q++) {

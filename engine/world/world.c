@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "contact/planes/condition.h"
 #include "boundary/ignition.h"
 #include "contact/methods/method.h"
 #include "base/error.h"
@@ -62,7 +63,7 @@ static int check_symmetry(const brunt_world *world, brunt_error *error) {
     for (int w = 0; w < world->boundaries.wall_count; w++) {
         const brunt_boundary *wall = &world->boundaries.walls[w];
         const double *n = wall->plane.normal, *at = wall->plane.point;
-        if (wall->region || wall->plane.condition != BRUNT_SYMMETRY) continue;
+        if (wall->region || !brunt_conditions[wall->plane.condition].images) continue;
         for (int i = 0; i < world->bodies.count; i++) {
             if (wall->body >= 0 && wall->body != i) continue;
             brunt_body *mpm = world->bodies.all[i].mpm;

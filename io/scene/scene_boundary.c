@@ -1,5 +1,6 @@
 // Boundaries of a scene: walls, regions of the grid with prescribed motion, groups of nodes that are held, moved or
 // loaded.
+#include "contact/planes/condition.h"
 #include "io/scene/scene_reader.h"
 
 #include <math.h>
@@ -38,7 +39,11 @@ static void fill_partial(scene_reader *reader, const scene_node *node, bool comp
 
 // ---------------------------------------------------------------------------------------------------- planes
 
-static void check_symmetry(scene_reader *reader, const scene_node *node, const brunt_plane_def *plane) {
+// ", stick, slip, ...", less what stands before the first of them.
+#define AFTER_COMMA(name, word) ", " word
+#define CONDITIONS (&(BRUNT_CONDITIONS(AFTER_COMMA))[2])
+
+static void check_image(scene_reader *reader, const scene_node *node, const brunt_plane_def *plane) {
     const brunt_world_def *world = &reader->scene->world;
     const scene_node *where = brunt_tree_child(node, "plane");
     int axis = -1, nonzeros = 0;
@@ -67,16 +72,16 @@ static void fill_plane(scene_reader *reader, scene_node *node, brunt_plane_def *
     bool normal = brunt_vector_of(where, "normal", plane->normal);
     if (normal && !brunt_nonzero(plane->normal))
         brunt_tree_complain(reader->tree, brunt_tree_child(where, "normal"), "the normal has zero length");
-    if (!condition)
-        brunt_tree_complain(reader->tree, node, "'condition' is missing: one of stick, slip, separate, symmetry");
+    if (!condition) brunt_tree_complain(reader->tree, node, "'condition' is missing: one of %s", CONDITIONS);
     plane->condition = (brunt_condition)(int)brunt_real_of(node, "condition", BRUNT_SEPARATE);
-    if (condition && condition->good && plane->condition != BRUNT_SEPARATE)
+    const brunt_condition_row *row = &brunt_conditions[plane->condition];
+    if (condition && condition->good && !row->pushes)
         brunt_refuse_key(reader, node, "friction", "friction acts only with condition: separate");
     else if (!brunt_tree_child(node, "friction"))
         brunt_add_default(reader, node, "friction", "0");
     plane->friction = brunt_real_of(node, "friction", 0);
     scene_node *velocity = brunt_tree_child(node, "velocity");
-    if (plane->condition == BRUNT_SYMMETRY)
+    if (row->images)
         brunt_refuse_key(reader, node, "velocity", "a symmetry plane does not move");
     else if (!velocity)
         brunt_add_default(reader, node, "velocity", "0");
@@ -85,7 +90,7 @@ static void fill_plane(scene_reader *reader, scene_node *node, brunt_plane_def *
     else
         brunt_vector_of(node, "velocity", plane->velocity);
     fill_body_of(reader, node, plane->body);
-    if (plane->condition == BRUNT_SYMMETRY && normal) check_symmetry(reader, node, plane);
+    if (row->images && normal) check_image(reader, node, plane);
 }
 
 // ---------------------------------------------------------------------------------------------------- regions

@@ -12,6 +12,7 @@
 // "none|...": each with a bar before it, less the first of these.
 #define BAR(name, word) "|" word
 #define CONTACT_WORDS (&(BRUNT_CONTACT_METHODS(BAR))[1])
+#define CONDITION_WORDS (&(BRUNT_CONDITIONS(BAR))[1])
 
 #define ANY -INFINITY, INFINITY, true, true
 #define POSITIVE 0, INFINITY, true, true
@@ -187,7 +188,7 @@ const scene_key brunt_scene_table[] = {
     {"boundaries[].plane", SCENE_GROUP, NULL, OPTIONAL, NONE, "a wall: exactly one of plane, region and group is wanted"},
     {"boundaries[].plane.point", SCENE_VECTOR, "m", REQUIRED, NONE, "a point of it"},
     {"boundaries[].plane.normal", SCENE_VECTOR, "1", REQUIRED, NONE, "pointing to the side the bodies are on"},
-    {"boundaries[].condition", SCENE_WORD, NULL, OPTIONAL, ANY, "stick|slip|separate|symmetry", 0, false, "of a plane; symmetry: along the axes, for mpm on a grid line", .only = SCENE_PLANE},
+    {"boundaries[].condition", SCENE_WORD, NULL, OPTIONAL, ANY, CONDITION_WORDS, 0, false, "of a plane; symmetry: along the axes, for mpm on a grid line", .only = SCENE_PLANE},
     {"boundaries[].friction", SCENE_REAL, "1", "0", 0, INFINITY, false, true, NULL, 0, true, "Coulomb coefficient, with condition: separate", .only = SCENE_PLANE},
     {"boundaries[].region", SCENE_SHAPE, NULL, OPTIONAL, NONE, "grid nodes in there are given a velocity; it acts on bodies of method mpm"},
     {"boundaries[].place", SCENE_ENTRIES, NULL, OPTIONAL, NONE, "moves of the region, as for bodies", .only = SCENE_REGION},

@@ -10,12 +10,17 @@
 extern "C" {
 #endif
 
-typedef enum brunt_condition {
-    BRUNT_STICK,    // all components follow the plane
-    BRUNT_SLIP,     // normal component follows the plane, tangential free, never lets go
-    BRUNT_SEPARATE, // like slip in compression, lets go in tension; with friction > 0 a Coulomb wall
-    BRUNT_SYMMETRY  // mirror plane: axis-aligned and on a grid line
-} brunt_condition;
+// What a plane does to nodes and particles, with the words of scenes. Stick: all components follow the plane. Slip: the
+// normal component follows it, the tangential ones are free, and it never lets go. Separate: like slip in compression,
+// lets go in tension; with friction > 0 a Coulomb wall. Symmetry: mirror plane, axis-aligned and on a grid line.
+#define BRUNT_CONDITIONS(X)                                                                                            \
+    X(STICK, "stick")                                                                                                  \
+    X(SLIP, "slip")                                                                                                    \
+    X(SEPARATE, "separate")                                                                                            \
+    X(SYMMETRY, "symmetry")
+#define BRUNT_CONDITION_VALUE(name, word) BRUNT_##name,
+typedef enum brunt_condition { BRUNT_CONDITIONS(BRUNT_CONDITION_VALUE) } brunt_condition;
+#undef BRUNT_CONDITION_VALUE
 
 typedef struct brunt_plane_def {
     char name[BRUNT_NAME_LENGTH]; // of its column in the history; "" = "plane1", ...
