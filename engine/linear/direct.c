@@ -1,5 +1,6 @@
-// The direct solver: MUMPS, sequential, with Cholesky's factors and the order of METIS. It goes on past negative pivots
-// and counts them: that count says whether the matrix is positive definite.
+// The direct solvers: MUMPS, sequential, in the order of METIS. Cholesky's factors of symmetric matrices: it goes on
+// past negative pivots and counts them; that count says whether the matrix is positive definite. LU factors of any
+// other, with rows exchanged within fronts: pivots in which no digit is left are counted, and the matrix is singular.
 #include <dlfcn.h>
 #include <dmumps_c.h>
 #include <math.h>
@@ -15,15 +16,17 @@
 #include "linear/order.h"
 
 enum { JOB_BEGIN = -1, JOB_END = -2, JOB_ANALYSE = 1, JOB_FACTOR = 2, JOB_SOLVE = 3 };
-enum { COMM_WORLD = -987654, SYMMETRIC_DEFINITE = 1 };
+enum { COMM_WORLD = -987654, UNSYMMETRIC = 0, SYMMETRIC_DEFINITE = 1 };
 // INFOG(1)
 enum { NO_INTEGERS = -8, NO_REALS = -9, SINGULAR = -10, NO_MEMORY = -13, OVER_LIMIT = -19, SINGULAR_PATTERN = -6 };
 enum { RELAXED = 30, RELAXED_MOST = 1000 }; // ICNTL(14) [%]: room beyond what the analysis asks for
+enum { ROWS_AND_COLUMNS = 7 };              // ICNTL(8): each is scaled to a greatest entry of about 1
+#define NO_DIGITS 1e-13                     // of a scaled pivot: what is left of the 1 that it was is rounding
 
 typedef struct direct {
     DMUMPS_STRUC_C id;
     const brunt_block_matrix *a;
-    int *row, *column, *order; // of the upper triangle, from 1; when each unknown is eliminated, from 1
+    int *row, *column, *order; // of the entries that it is given, from 1; when each unknown is eliminated, from 1
     int32_t *position;
     double *value;
     size_t row_capacity, column_capacity, order_capacity, position_capacity, value_capacity;
@@ -34,6 +37,7 @@ typedef struct direct {
 #define ICNTL(d, i) ((d)->id.icntl[(i)-1])
 #define INFOG(d, i) ((d)->id.infog[(i)-1])
 #define RINFOG(d, i) ((d)->id.rinfog[(i)-1])
+#define CNTL(d, i) ((d)->id.cntl[(i)-1])
 
 // It has global variables: one call at a time.
 static pthread_mutex_t one_at_a_time = PTHREAD_MUTEX_INITIALIZER;
@@ -54,27 +58,31 @@ static void one_thread_for_blas(void) {
     set_threads(1);
 }
 
-static void *direct_make(void) {
+static void *make(int symmetry) {
     direct *d = brunt_alloc(sizeof *d);
     if (!d) return NULL;
     one_thread_for_blas();
-    d->id.par = 1, d->id.sym = SYMMETRIC_DEFINITE, d->id.comm_fortran = COMM_WORLD;
+    d->id.par = 1, d->id.sym = symmetry, d->id.comm_fortran = COMM_WORLD;
     call(d, JOB_BEGIN);
     d->begun = INFOG(d, 1) >= 0;
     if (!d->begun) {
         brunt_free(d);
         return NULL;
     }
-    for (int i = 1; i <= 4; i++) ICNTL(d, i) = i == 4 ? 0 : -1; // prints nothing
-    ICNTL(d, 6) = 0;                                            // no permutation of columns
-    ICNTL(d, 7) = 1;                                            // the order is given
-    ICNTL(d, 8) = 0;  // no scaling: Cholesky's factors scale with the matrix, and there are no pivots to choose
+    for (int i = 1; i <= 4; i++) ICNTL(d, i) = i == 4 ? 0 : -1;   // prints nothing
+    ICNTL(d, 6) = 0;                                              // no permutation of columns
+    ICNTL(d, 7) = 1;                                              // the order is given
+    ICNTL(d, 8) = symmetry == UNSYMMETRIC ? ROWS_AND_COLUMNS : 0; // Cholesky's factors scale with the matrix
     ICNTL(d, 10) = 0; // no refinement: residuals are 1e-14 of b without (Newton's next iteration is one)
     ICNTL(d, 13) = 1; // the last front as the others: its negative pivots count
     ICNTL(d, 14) = RELAXED;
-    ICNTL(d, 28) = 1; // the analysis by one process
+    ICNTL(d, 28) = 1;                                                      // the analysis by one process
+    if (symmetry == UNSYMMETRIC) ICNTL(d, 24) = 1, CNTL(d, 3) = NO_DIGITS; // pivots that vanish are counted
     return d;
 }
+
+static void *direct_make(void) { return make(SYMMETRIC_DEFINITE); }
+static void *unsymmetric_make(void) { return make(UNSYMMETRIC); }
 
 static void direct_free(void *self) {
     direct *d = self;
@@ -83,20 +91,25 @@ static void direct_free(void *self) {
     brunt_free(d);
 }
 
+static bool is_symmetric(const direct *d) { return d->id.sym == SYMMETRIC_DEFINITE; }
+
 static brunt_linear_status out_of_memory(const brunt_block_matrix *a, brunt_error *error) {
     brunt_fail(error, BRUNT_FAILED, "Out of memory for the factors of a matrix of %lld unknowns.",
                (long long)a->nodes * a->dim);
     return BRUNT_LINEAR_FAILED;
 }
 
+static brunt_linear_status singular(const direct *d, int rank, brunt_error *error) {
+    const bool symmetric = is_symmetric(d);
+    brunt_fail(error, BRUNT_FAILED, "The matrix is %ssingular, of rank %d of %d.",
+               symmetric ? "not positive definite: it is " : "", rank, d->id.n);
+    return symmetric ? BRUNT_LINEAR_INDEFINITE : BRUNT_LINEAR_SINGULAR;
+}
+
 // What INFOG says went wrong in `job`.
 static brunt_linear_status explain(const direct *d, const char *job, brunt_error *error) {
     const int code = INFOG(d, 1), more = INFOG(d, 2);
-    if (code == SINGULAR || code == SINGULAR_PATTERN) {
-        brunt_fail(error, BRUNT_FAILED, "The matrix is not positive definite: it is singular, of rank %d of %d.", more,
-                   d->id.n);
-        return BRUNT_LINEAR_INDEFINITE;
-    }
+    if (code == SINGULAR || code == SINGULAR_PATTERN) return singular(d, more, error);
     if (code == NO_MEMORY || code == OVER_LIMIT || code == NO_REALS || code == NO_INTEGERS)
         return out_of_memory(d->a, error);
     brunt_fail(error, BRUNT_FAILED, "MUMPS failed to %s a matrix of %d unknowns: INFOG(1) = %d, INFOG(2) = %d.", job,
@@ -104,20 +117,27 @@ static brunt_linear_status explain(const direct *d, const char *job, brunt_error
     return BRUNT_LINEAR_FAILED;
 }
 
-// Entries of the upper triangle in the order of blocks: where they are, or (places false) their values.
-static int64_t upper_triangle(direct *d, const brunt_block_matrix *a, bool places) {
+// Entries in the order of blocks, of symmetric matrices those of the upper triangle: where they are, or (places false)
+// their values.
+static int64_t take_entries(direct *d, const brunt_block_matrix *a, bool places) {
     const int dim = a->dim;
+    const bool upper = is_symmetric(d);
     int64_t e = 0;
     for (int32_t r = 0; r < a->nodes; r++)
-        for (int64_t k = a->diagonal[r]; k < a->first[r + 1]; k++)
+        for (int64_t k = upper ? a->diagonal[r] : a->first[r]; k < a->first[r + 1]; k++)
             for (int i = 0; i < dim; i++)
-                for (int j = k == a->diagonal[r] ? i : 0; j < dim; j++, e++) {
+                for (int j = upper && k == a->diagonal[r] ? i : 0; j < dim; j++, e++) {
                     if (places)
                         d->row[e] = r * dim + i + 1, d->column[e] = a->column[k] * dim + j + 1;
                     else
                         d->value[e] = a->value[(k * dim + i) * dim + j];
                 }
     return e;
+}
+
+static int64_t count_entries(const direct *d, const brunt_block_matrix *a) {
+    const int64_t blocks = brunt_block_matrix_blocks(a), size = a->dim * a->dim;
+    return is_symmetric(d) ? (blocks - a->nodes) / 2 * size + a->nodes * (size + a->dim) / 2 : blocks * size;
 }
 
 static int64_t memory_of_machine(void) {
@@ -143,8 +163,7 @@ static brunt_linear_status direct_analyse(brunt_linear *s, const brunt_team *tea
                                           brunt_error *error) {
     (void)team;
     direct *d = s->self;
-    const int64_t unknowns = (int64_t)a->nodes * a->dim, size = a->dim * a->dim,
-                  entries = (brunt_block_matrix_blocks(a) - a->nodes) / 2 * size + a->nodes * (size + a->dim) / 2;
+    const int64_t unknowns = (int64_t)a->nodes * a->dim, entries = count_entries(d, a);
     d->a = a;
     if (unknowns > INT32_MAX) {
         brunt_fail(error, BRUNT_FAILED, "The direct solver takes up to %d unknowns; these are %lld.", INT32_MAX,
@@ -158,7 +177,7 @@ static brunt_linear_status direct_analyse(brunt_linear *s, const brunt_team *tea
     if (brunt_elimination_order(a, d->position, error)) return BRUNT_LINEAR_FAILED;
     for (int32_t n = 0; n < a->nodes; n++)
         for (int c = 0; c < a->dim; c++) d->order[n * a->dim + c] = d->position[n] * a->dim + c + 1;
-    d->id.n = (int)unknowns, d->id.nnz = upper_triangle(d, a, true);
+    d->id.n = (int)unknowns, d->id.nnz = take_entries(d, a, true);
     BRUNT_ASSERT(d->id.nnz == entries);
     d->id.irn = d->row, d->id.jcn = d->column, d->id.a = d->value, d->id.perm_in = d->order;
     ICNTL(d, 14) = RELAXED;
@@ -166,23 +185,39 @@ static brunt_linear_status direct_analyse(brunt_linear *s, const brunt_team *tea
     return INFOG(d, 1) < 0 ? explain(d, "analyse", error) : check_memory(s, error);
 }
 
-static brunt_linear_status direct_factor(brunt_linear *s, const brunt_team *team, const brunt_block_matrix *a,
-                                         brunt_error *error) {
-    (void)team;
+static brunt_linear_status factorise(brunt_linear *s, const brunt_block_matrix *a, brunt_error *error) {
     direct *d = s->self;
     d->a = a;
-    upper_triangle(d, a, false);
+    take_entries(d, a, false);
     call(d, JOB_FACTOR);
     while ((INFOG(d, 1) == NO_REALS || INFOG(d, 1) == NO_INTEGERS) && ICNTL(d, 14) < RELAXED_MOST) {
         ICNTL(d, 14) *= 2; // its estimate was short
         call(d, JOB_FACTOR);
     }
-    if (INFOG(d, 1) < 0) return explain(d, "factorise", error);
+    return INFOG(d, 1) < 0 ? explain(d, "factorise", error) : BRUNT_LINEAR_DONE;
+}
+
+static brunt_linear_status direct_factor(brunt_linear *s, const brunt_team *team, const brunt_block_matrix *a,
+                                         brunt_error *error) {
+    (void)team;
+    const direct *d = s->self;
+    const brunt_linear_status status = factorise(s, a, error);
+    if (status != BRUNT_LINEAR_DONE) return status;
     s->report.negative = INFOG(d, 12);
     if (s->report.negative == 0) return BRUNT_LINEAR_DONE;
     brunt_fail(error, BRUNT_FAILED, "The matrix is not positive definite: %d of %d pivots are negative.",
                s->report.negative, d->id.n);
     return BRUNT_LINEAR_INDEFINITE;
+}
+
+static brunt_linear_status unsymmetric_factor(brunt_linear *s, const brunt_team *team, const brunt_block_matrix *a,
+                                              brunt_error *error) {
+    (void)team;
+    const direct *d = s->self;
+    const brunt_linear_status status = factorise(s, a, error);
+    if (status != BRUNT_LINEAR_DONE) return status;
+    const int vanished = INFOG(d, 28);
+    return vanished ? singular(d, d->id.n - vanished, error) : BRUNT_LINEAR_DONE;
 }
 
 static brunt_linear_status direct_solve(brunt_linear *s, const brunt_team *team, const double *b, double *x,
@@ -195,12 +230,14 @@ static brunt_linear_status direct_solve(brunt_linear *s, const brunt_team *team,
     if (INFOG(d, 1) < 0) return explain(d, "solve with", error);
     for (int i = 0; i < d->id.n; i++)
         if (!isfinite(x[i])) {
-            brunt_fail(error, BRUNT_FAILED, "The matrix is not positive definite: unknown %d has no finite solution.",
-                       i);
-            return BRUNT_LINEAR_INDEFINITE;
+            brunt_fail(error, BRUNT_FAILED, "The matrix is %s: unknown %d has no finite solution.",
+                       is_symmetric(d) ? "not positive definite" : "singular", i);
+            return is_symmetric(d) ? BRUNT_LINEAR_INDEFINITE : BRUNT_LINEAR_SINGULAR;
         }
     return BRUNT_LINEAR_DONE;
 }
 
 const brunt_linear_ops brunt_linear_direct = {"direct",      direct_make,  direct_analyse,
                                               direct_factor, direct_solve, direct_free};
+const brunt_linear_ops brunt_linear_unsymmetric = {"unsymmetric",      unsymmetric_make, direct_analyse,
+                                                   unsymmetric_factor, direct_solve,     direct_free};

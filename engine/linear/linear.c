@@ -4,7 +4,8 @@
 
 #include "base/error.h"
 
-static const brunt_linear_ops *const solvers[] = {&brunt_linear_direct, &brunt_linear_pcg, NULL};
+static const brunt_linear_ops *const solvers[] = {&brunt_linear_direct, &brunt_linear_pcg, &brunt_linear_unsymmetric,
+                                                  NULL};
 
 const brunt_linear_ops *const *brunt_linear_list(void) { return solvers; }
 

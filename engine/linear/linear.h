@@ -1,4 +1,5 @@
-// Solvers of A x = b for symmetric positive definite block matrices: a table of operations, a row for each.
+// Solvers of A x = b for block matrices, symmetric positive definite but for the last one's: a table of operations, a
+// row for each.
 //
 //   direct  Cholesky's factors by MUMPS in the order of METIS; bears any stiffness of contact, tells for certain
 //   whether
@@ -6,6 +7,9 @@
 //   pcg     conjugate gradients with an incomplete block Cholesky or the diagonal blocks; little memory, less time
 //   where
 //           steps are short or space has three dimensions
+//   unsymmetric
+//           LU factors by MUMPS, of matrices whose values are not symmetric though their pattern is; twice the time and
+//           memory of `direct`, and a negative eigenvalue is no mistake
 //
 // A solver is used by one thread at a time; it uses the team's. Bits do not depend on their number.
 #pragma once
@@ -15,6 +19,7 @@
 typedef enum brunt_linear_status {
     BRUNT_LINEAR_DONE,
     BRUNT_LINEAR_INDEFINITE, // the matrix is not positive definite
+    BRUNT_LINEAR_SINGULAR,   // unsymmetric: it has no inverse, to rounding
     BRUNT_LINEAR_STALLED,    // not solved within the iterations that it had
     BRUNT_LINEAR_FAILED      // memory, or the library said no
 } brunt_linear_status;
@@ -29,7 +34,7 @@ typedef struct brunt_linear_options {
         accuracy; // pcg: of the residual over that at x = 0, in the norm of the preconditioner, and of x in that of A
     int32_t iterations; // pcg: at most
     brunt_preconditioner preconditioner;
-    int64_t memory;            // [bytes] direct: what factors may take; 0: what the machine has
+    int64_t memory;            // [bytes] direct, unsymmetric: what factors may take; 0: what the machine has
     brunt_product_fn *product; // pcg: NULL: of the matrix
     void *context;
 } brunt_linear_options;
@@ -40,8 +45,8 @@ typedef struct brunt_linear_report {
     int32_t negative;      // direct: pivots below zero
     int32_t tries;         // pcg: incomplete factors that broke down before one did not
     double shift;          // pcg: diagonal blocks times this in the preconditioner; 0: block Jacobi
-    int64_t memory;        // [bytes] direct: estimated for the factors
-    double entries, flops; // direct: of the factor
+    int64_t memory;        // [bytes] direct, unsymmetric: estimated for the factors
+    double entries, flops; // direct, unsymmetric: of the factor
 } brunt_linear_report;
 
 typedef struct brunt_linear brunt_linear;
@@ -64,7 +69,7 @@ struct brunt_linear {
     brunt_linear_report report;
 };
 
-extern const brunt_linear_ops brunt_linear_direct, brunt_linear_pcg;
+extern const brunt_linear_ops brunt_linear_direct, brunt_linear_pcg, brunt_linear_unsymmetric;
 // By name, or NULL; all of them, ended by NULL.
 const brunt_linear_ops *brunt_linear_find(const char *name);
 const brunt_linear_ops *const *brunt_linear_list(void);
