@@ -172,6 +172,41 @@ static inline real brittle_wave_speed(const real *constants, real bulk) {
             "equivalent plastic strain at which the material fails and may erode; default: never"                      \
     }
 
+// --------------------------------------------------------------------------------- cohesion and friction
+
+// Parameters of Drucker-Prager and Mohr-Coulomb, in this order.
+#define BRITTLE_HALF_PI 1.57079632679489662
+#define FRICTIONAL_PARAMETERS                                                                                          \
+    PARAMETER_E, PARAMETER_NU,                                                                                         \
+        {"cohesion", "Pa",  NAN,  0,                                                                                   \
+         INFINITY,   false, true, "cohesion c of Mohr and Coulomb: shear strength without pressure"},                  \
+        {"friction_angle", "rad", NAN, 0, BRITTLE_HALF_PI, false, true, "angle of internal friction"},                 \
+        {"dilatancy_angle", "rad", 0,    0,                                                                            \
+         BRITTLE_HALF_PI,   false, true, "how shear opens it: 0 keeps the volume, friction_angle is associated flow"}, \
+        {"hardening", "Pa",  0,    0,                                                                                  \
+         INFINITY,    false, true, "linear hardening of the cohesion: per equivalent plastic strain"},                 \
+    {                                                                                                                  \
+        "tension", "Pa", INFINITY, 0, INFINITY, false, false,                                                          \
+            "greatest hydrostatic tension; at most cohesion / tan(friction_angle)"                                     \
+    }
+
+// What is wrong with them, NULL: nothing.
+static inline const char *frictional_parameters(const double *p, bool with_eos) {
+    if (with_eos) return "this model gives its own pressure and takes no equation of state";
+    if (!(p[2] > 0 || p[3] > 0)) return "cohesion and friction_angle are both 0: there is no strength";
+    if (p[4] > p[3]) return "dilatancy_angle is above friction_angle: flow would create energy";
+    return NULL;
+}
+
+// Energy per reference volume of mean stress min(bulk volume, tension), `volume` the logarithm of the elastic one.
+BRUNT_INLINE lanes opening_energy(real bulk, real tension, lanes volume) {
+    lanes opening = lanes_set(tension / bulk), closed = lanes_min(volume, opening);
+    lanes gap = lanes_select(volume > opening, tension * (volume - opening), lanes_set(0));
+    return (real)0.5 * bulk * closed * closed + gap;
+}
+
+// --------------------------------------------------------------------------------- energies
+
 // Stored energy of the volume of a range, the deviator's beside it: stored(k, J - 1, the model's own variable, damage),
 // the last two by their places behind J2_MODEL_STATE.
 typedef lanes brittle_stored_fn(const real *k, lanes change, lanes variable, lanes damage);

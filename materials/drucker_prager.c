@@ -19,27 +19,14 @@
 enum { BULK = J2_CONSTANTS, COHESION, FRICTION, DILATANCY, HARDENING, TENSION };
 enum { PLASTIC_VOLUME = J2_MODEL_STATE };
 
-#define HALF_PI 1.57079632679489662
-static const brunt_parameter parameters[] = {
-    PARAMETER_E,
-    PARAMETER_NU,
-    {"cohesion", "Pa", NAN, 0, INFINITY, false, true,
-     "cohesion c of Mohr and Coulomb: shear strength without pressure"},
-    {"friction_angle", "rad", NAN, 0, HALF_PI, false, true, "angle of internal friction"},
-    {"dilatancy_angle", "rad", 0, 0, HALF_PI, false, true,
-     "how shear opens it: 0 keeps the volume, friction_angle is associated flow"},
-    {"hardening", "Pa", 0, 0, INFINITY, false, true, "linear hardening of the cohesion: per equivalent plastic strain"},
-    {"tension", "Pa", INFINITY, 0, INFINITY, false, false,
-     "greatest hydrostatic tension; at most cohesion / tan(friction_angle)"},
-};
+static const brunt_parameter parameters[] = {FRICTIONAL_PARAMETERS};
 static const brunt_state_field state[] = {J2_STATE, {"plastic_volume", "1", 1, 1, NULL}};
 
 static double slope_of(double angle) { return 6 * sin(angle) / (3 - sin(angle)); }
 
 static const char *prepare(const double *p, double density, bool with_eos, real *constants) {
-    if (with_eos) return "this model gives its own pressure and takes no equation of state";
-    if (!(p[2] > 0 || p[3] > 0)) return "cohesion and friction_angle are both 0: there is no strength";
-    if (p[4] > p[3]) return "dilatancy_angle is above friction_angle: flow would create energy";
+    const char *wrong = frictional_parameters(p, with_eos);
+    if (wrong) return wrong;
     const double b = slope_of(p[3]), share = 6 * cos(p[3]) / (3 - sin(p[3])), a = share * p[2];
     brittle_prepare(shear_modulus(p[0], p[1]), density, constants);
     constants[BULK] = (real)bulk_modulus(p[0], p[1]);
@@ -52,11 +39,7 @@ static const char *prepare(const double *p, double density, bool with_eos, real 
 }
 
 // W per reference volume; `volume` = log(J / J_p).
-BRUNT_INLINE lanes stored_energy(const real *k, lanes volume) {
-    lanes opening = lanes_set(k[TENSION] / k[BULK]), closed = lanes_min(volume, opening);
-    lanes gap = lanes_select(volume > opening, k[TENSION] * (volume - opening), lanes_set(0));
-    return (real)0.5 * k[BULK] * closed * closed + gap;
-}
+BRUNT_INLINE lanes stored_energy(const real *k, lanes volume) { return opening_energy(k[BULK], k[TENSION], volume); }
 
 // Plastic strain with trial - stiffness delta = a + h delta + b max(p + K beta delta, -tension): the lesser root of
 // both branches.

@@ -13,6 +13,7 @@
     X(brunt_von_mises)                                                                                                 \
     X(brunt_johnson_cook)                                                                                              \
     X(brunt_drucker_prager)                                                                                            \
+    X(brunt_mohr_coulomb)                                                                                              \
     X(brunt_johnson_holmquist)                                                                                         \
     X(brunt_holmquist_johnson_cook)                                                                                    \
     X(brunt_newtonian)
