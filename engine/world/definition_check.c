@@ -7,151 +7,34 @@
 
 #include "contact/planes/condition.h"
 #include "world/definitions.h"
+#include "base/check.h"
 #include "base/error.h"
+#include "geometry/shape_check.h"
 #include "base/memory.h"
 #include "materials/material.h"
 #include "world/world.h"
 
 static const double ON_GRID_LINE =
-    1e-6;                         // cells: how far off the axis of revolution may be and still count as on the line
-static const double RIGID = 1e-6; // how far a rotation may be off one
-enum { SHAPES_DEEP = 64 };
+    1e-6; // cells: how far off the axis of revolution may be and still count as on the line
 
 #define REFUSE(...) return brunt_fail(error, BRUNT_BAD_INPUT, __VA_ARGS__)
-#define TRY(...)                                                                                                       \
-    do {                                                                                                               \
-        const int tried = (__VA_ARGS__);                                                                               \
-        if (tried) return tried;                                                                                       \
-    } while (0)
-
-// ------------------------------------------------------------------------------------------ what all have
-
-enum {
-    ANY = BRUNT_ANY_NUMBER,
-    NOT_NEGATIVE = BRUNT_NOT_NEGATIVE,
-    POSITIVE = BRUNT_POSITIVE,
-    OR_INFINITE = BRUNT_OR_INFINITE,
-    OR_NAN = BRUNT_OR_NAN
-};
-
-static int check_number(const char *owner, const char *key, double v, int rule, brunt_error *error) {
-    const bool positive = rule & POSITIVE;
-    if ((isnan(v) && rule & OR_NAN) || (isinf(v) && rule & OR_INFINITE)) return BRUNT_OK;
-    if (!isfinite(v)) REFUSE("%s%s: %g is not a finite number", owner, key, v);
-    if ((positive && !(v > 0)) || (rule & NOT_NEGATIVE && v < 0))
-        REFUSE("%s%s: %g is %s", owner, key, v, positive ? "not above 0" : "negative");
-    if (fabs(v) > BRUNT_GREATEST_NUMBER)
-        REFUSE("%s%s: %g is too large a number, at most %g is wanted", owner, key, v, BRUNT_GREATEST_NUMBER);
-    if (v != 0 && fabs(v) < (positive ? BRUNT_LEAST_NUMBER : BRUNT_LEAST_NORMAL))
-        REFUSE("%s%s: %g is too small a number", owner, key, v);
-    return BRUNT_OK;
-}
-
-typedef struct numbers {
-    const char *key;
-    const double *value;
-    int count, rule;
-} numbers;
-
-static int check_numbers(const char *owner, const numbers *list, size_t count, brunt_error *error) {
-    for (size_t k = 0; k < count; k++)
-        for (int c = 0; c < list[k].count; c++)
-            TRY(check_number(owner, list[k].key, list[k].value[c], list[k].rule, error));
-    return BRUNT_OK;
-}
-#define CHECK_NUMBERS(owner, ...)                                                                                      \
-    TRY(check_numbers(owner, (const numbers[]){__VA_ARGS__}, sizeof((const numbers[]){__VA_ARGS__}) / sizeof(numbers), \
-                      error))
-
-static int check_array(const char *what, int32_t count, const void *array, brunt_error *error) {
-    if (count < 0) REFUSE("%s: there are %d", what, count);
-    if (count > 0 && !array) REFUSE("%s: there are %d, and no array of them", what, count);
-    return BRUNT_OK;
-}
-
-// A name ends within its array.
-static int check_name(const char *what, int index, const char name[BRUNT_NAME_LENGTH], brunt_error *error) {
-    if (!memchr(name, 0, BRUNT_NAME_LENGTH))
-        REFUSE("%s[%d]: a name of more than %d bytes, or without its end", what, index, BRUNT_NAME_LENGTH - 1);
-    return BRUNT_OK;
-}
-
-// An enumerator is one of the first `count` numbers.
-static int check_choice(const char *owner, const char *key, unsigned value, unsigned count, brunt_error *error) {
-    if (value >= count) REFUSE("%s%s: there is no choice %d", owner, key, (int)value);
-    return BRUNT_OK;
-}
-
-static int check_curve(const char *owner, const char *key, const brunt_curve *curve, brunt_error *error) {
-    char what[160];
-    snprintf(what, sizeof what, "%s%s", owner, key);
-    TRY(check_array(what, curve->count, curve->points, error));
-    for (int32_t k = 0; k < curve->count; k++) CHECK_NUMBERS(owner, {key, curve->points[k], 2, ANY});
-    return BRUNT_OK;
-}
-
-// ------------------------------------------------------------------------------------------ shapes and places
-
-static int check_shape(const char *owner, const brunt_shape *shape, int dim, int depth, brunt_error *error) {
-    TRY(check_choice(owner, ".shape", (unsigned)shape->kind, BRUNT_INTERSECTION + 1, error));
-    if (depth > SHAPES_DEEP) REFUSE("%s.shape: shapes of shapes, more than %d deep", owner, SHAPES_DEEP);
-    if (shape->kind >= BRUNT_UNION) {
-        TRY(check_array(owner, shape->child_count, shape->children, error));
-        if (!shape->child_count) REFUSE("%s.shape: a union, difference or intersection of nothing", owner);
-        for (int32_t c = 0; c < shape->child_count; c++)
-            TRY(check_shape(owner, &shape->children[c], dim, depth + 1, error));
-        return BRUNT_OK;
-    }
-    const bool box = shape->kind == BRUNT_BOX, prism = shape->kind == BRUNT_PRISM,
-               plane = shape->kind == BRUNT_HALF_SPACE, ball = shape->kind == BRUNT_SPHERE,
-               ring = shape->kind == BRUNT_RING, axial = plane || shape->kind == BRUNT_CYLINDER || (ring && dim == 3);
-    const int centred = box || prism ? 0 : dim, whole = box ? dim : 0, high = prism && dim == 3;
-    CHECK_NUMBERS(owner, {".shape: min", shape->min, whole, ANY}, {".shape: max", shape->max, whole, ANY},
-                  {".shape: min", shape->min + 2, high, ANY}, {".shape: max", shape->max + 2, high, ANY},
-                  {".shape: center", shape->center, centred, ANY}, {".shape: axis", shape->axis, axial ? dim : 0, ANY},
-                  {".shape: radius", &shape->radius, centred && !plane, POSITIVE},
-                  {".shape: inner_radius", &shape->inner_radius, ring, POSITIVE},
-                  {".shape: length", &shape->length, axial && !plane && !ball, POSITIVE});
-    bool direction = !axial;
-    for (int a = 0; a < dim; a++) direction = direction || shape->axis[a] != 0;
-    if (!direction) REFUSE("%s.shape: the axis has no direction", owner);
-    if (!prism) return BRUNT_OK;
-    TRY(check_array(owner, shape->point_count, shape->points, error));
-    if (shape->point_count < 3) REFUSE("%s.shape: a polygon of %d corners", owner, shape->point_count);
-    for (int32_t k = 0; k < shape->point_count; k++) CHECK_NUMBERS(owner, {".shape: points", shape->points[k], 2, ANY});
-    return BRUNT_OK;
-}
-
-static int check_place(const char *owner, const brunt_placement *place, brunt_error *error) {
-    const double *R = place->rotation;
-    CHECK_NUMBERS(owner, {".place", R, 9, ANY}, {".place", place->translation, 3, ANY});
-    double off = 0;
-    for (int i = 0; i < 3; i++)
-        for (int k = 0; k < 3; k++) {
-            double sum = 0;
-            for (int c = 0; c < 3; c++) sum += R[3 * i + c] * R[3 * k + c];
-            off = fmax(off, fabs(sum - (i == k)));
-        }
-    if (off > RIGID) REFUSE("%s.place: this is no rotation (brunt_placement_identity makes one)", owner);
-    return BRUNT_OK;
-}
 
 // ------------------------------------------------------------------------------------------ bodies
 
 // Node numbers of elements are looked at with the elements (brunt_mesh_check).
 static int check_mesh(const char *owner, const brunt_mesh *mesh, brunt_error *error) {
     char what[160];
-    TRY(check_choice(owner, ".mesh: kind", (unsigned)mesh->kind, BRUNT_ELEMENT_KINDS, error));
+    BRUNT_TRY(brunt_check_choice(owner, ".mesh: kind", (unsigned)mesh->kind, BRUNT_ELEMENT_KINDS, error));
     snprintf(what, sizeof what, "%s.mesh: nodes", owner);
-    TRY(check_array(what, mesh->node_count, mesh->nodes, error));
+    BRUNT_TRY(brunt_check_array(what, mesh->node_count, mesh->nodes, error));
     snprintf(what, sizeof what, "%s.mesh: elements", owner);
-    TRY(check_array(what, mesh->element_count, mesh->elements, error));
+    BRUNT_TRY(brunt_check_array(what, mesh->element_count, mesh->elements, error));
     snprintf(what, sizeof what, "%s.mesh: groups", owner);
-    TRY(check_array(what, mesh->group_count, mesh->groups, error));
+    BRUNT_TRY(brunt_check_array(what, mesh->group_count, mesh->groups, error));
     for (int32_t g = 0; g < mesh->group_count; g++) {
         const brunt_group *group = &mesh->groups[g];
-        TRY(check_name(what, g, group->name, error));
-        TRY(check_array(what, group->count, group->nodes, error));
+        BRUNT_TRY(brunt_check_name_ends(what, g, group->name, error));
+        BRUNT_TRY(brunt_check_array(what, group->count, group->nodes, error));
         for (int32_t i = 0; i < group->count; i++) {
             const int32_t node = group->nodes[i];
             if (node < 0 || node >= mesh->node_count)
@@ -170,22 +53,22 @@ static int check_body(const brunt_world_def *def, const brunt_body_def *body, br
     snprintf(owner, sizeof owner, "bodies.%s", body->name);
     if (body->material < 0 || body->material >= def->material_count)
         REFUSE("%s.material: there is no material %d", owner, body->material);
-    TRY(check_choice(owner, ".method", (unsigned)body->method, BRUNT_MEMBRANE + 1, error));
-    TRY(check_choice(owner, ".hourglass", (unsigned)body->hourglass, BRUNT_HOURGLASS_VISCOUS + 1, error));
-    TRY(check_choice(owner, ".fill", (unsigned)body->fill, BRUNT_FILL_RINGS + 1, error));
+    BRUNT_TRY(brunt_check_choice(owner, ".method", (unsigned)body->method, BRUNT_MEMBRANE + 1, error));
+    BRUNT_TRY(brunt_check_choice(owner, ".hourglass", (unsigned)body->hourglass, BRUNT_HOURGLASS_VISCOUS + 1, error));
+    BRUNT_TRY(brunt_check_choice(owner, ".fill", (unsigned)body->fill, BRUNT_FILL_RINGS + 1, error));
     for (int k = 0; k < brunt_body_number_count; k++) {
         const brunt_body_number *row = &brunt_body_numbers[k];
-        CHECK_NUMBERS(owner, {row->key, brunt_body_number_in(body, row), row->count, row->rule});
+        BRUNT_CHECK_NUMBERS(owner, {row->key, brunt_body_number_in(body, row), row->count, row->rule});
     }
     if (body->particles_per_cell < 0) REFUSE("%s.particles_per_cell: %d is negative", owner, body->particles_per_cell);
-    TRY(check_array(owner, body->face_count, body->faces, error));
-    for (int32_t f = 0; f < body->face_count; f++) TRY(check_name("faces", f, body->faces[f], error));
-    for (int a = 0; a < 3; a++) TRY(check_curve(owner, axes[a], &body->grading[a], error));
-    TRY(check_place(owner, &body->place, error));
+    BRUNT_TRY(brunt_check_array(owner, body->face_count, body->faces, error));
+    for (int32_t f = 0; f < body->face_count; f++) BRUNT_TRY(brunt_check_name_ends("faces", f, body->faces[f], error));
+    for (int a = 0; a < 3; a++) BRUNT_TRY(brunt_check_curve(owner, axes[a], &body->grading[a], error));
+    BRUNT_TRY(brunt_check_place(owner, &body->place, error));
     if (body->method != BRUNT_MPM && body->mesh.node_count) return check_mesh(owner, &body->mesh, error);
     if (body->method != BRUNT_MPM)
-        TRY(check_choice(owner, ".element", (unsigned)body->element, BRUNT_ELEMENT_KINDS, error));
-    return check_shape(owner, &body->shape, def->dimension, 0, error);
+        BRUNT_TRY(brunt_check_choice(owner, ".element", (unsigned)body->element, BRUNT_ELEMENT_KINDS, error));
+    return brunt_check_shape(owner, &body->shape, def->dimension, 0, error);
 }
 
 static int compare_body_names(const void *a, const void *b) {
@@ -210,9 +93,9 @@ static int check_body_names(const brunt_world_def *def, brunt_error *error) {
 static int check_bodies(const brunt_world_def *def, brunt_error *error) {
     for (int32_t i = 0; i < def->body_count; i++) {
         const brunt_body_def *body = &def->bodies[i];
-        TRY(check_name("bodies", i, body->name, error));
+        BRUNT_TRY(brunt_check_name_ends("bodies", i, body->name, error));
         if (!body->name[0]) REFUSE("bodies: body %d has no name", i + 1);
-        TRY(check_body(def, body, error));
+        BRUNT_TRY(check_body(def, body, error));
     }
     return check_body_names(def, error);
 }
@@ -227,7 +110,8 @@ static int check_parameters(const char *owner, const brunt_model *model, const d
         char key[64];
         snprintf(key, sizeof key, ".%s", parameter->key);
         const bool positive = parameter->min == 0 && parameter->min_open;
-        TRY(check_number(owner, key, value[k], OR_NAN | (positive ? POSITIVE : ANY), error));
+        BRUNT_TRY(brunt_check_number(owner, key, value[k],
+                                     BRUNT_OR_NAN | (positive ? BRUNT_POSITIVE : BRUNT_ANY_NUMBER), error));
     }
     return BRUNT_OK;
 }
@@ -236,19 +120,22 @@ static int check_materials(const brunt_world_def *def, brunt_error *error) {
     for (int32_t i = 0; i < def->material_count; i++) {
         const brunt_material_def *material = &def->materials[i];
         const char *const names[] = {material->name, material->strength, material->eos, material->failure};
-        for (int k = 0; k < 4; k++) TRY(check_name("materials", i, names[k], error));
+        for (int k = 0; k < 4; k++) BRUNT_TRY(brunt_check_name_ends("materials", i, names[k], error));
         char owner[80];
         snprintf(owner, sizeof owner, "materials.%s", material->name);
-        TRY(check_choice(owner, ".failure.action", (unsigned)material->failure_action, BRUNT_FAILURE_SOFTEN + 1,
-                         error));
-        if (isfinite(material->density)) TRY(check_number(owner, ".density", material->density, ANY, error));
-        TRY(check_parameters(owner, brunt_find_strength(material->strength), material->strength_parameters, error));
+        BRUNT_TRY(brunt_check_choice(owner, ".failure.action", (unsigned)material->failure_action,
+                                     BRUNT_FAILURE_SOFTEN + 1, error));
+        if (isfinite(material->density))
+            BRUNT_TRY(brunt_check_number(owner, ".density", material->density, BRUNT_ANY_NUMBER, error));
+        BRUNT_TRY(
+            check_parameters(owner, brunt_find_strength(material->strength), material->strength_parameters, error));
         if (material->eos[0])
-            TRY(check_parameters(owner, brunt_find_eos(material->eos), material->eos_parameters, error));
+            BRUNT_TRY(check_parameters(owner, brunt_find_eos(material->eos), material->eos_parameters, error));
         if (material->bulk_viscosity)
-            TRY(check_parameters(owner, &brunt_bulk_viscosity, material->viscosity_parameters, error));
+            BRUNT_TRY(check_parameters(owner, &brunt_bulk_viscosity, material->viscosity_parameters, error));
         if (material->failure[0])
-            TRY(check_parameters(owner, brunt_find_failure(material->failure), material->failure_parameters, error));
+            BRUNT_TRY(
+                check_parameters(owner, brunt_find_failure(material->failure), material->failure_parameters, error));
     }
     return BRUNT_OK;
 }
@@ -260,12 +147,14 @@ static int check_planes(const brunt_world_def *def, brunt_error *error) {
         const brunt_plane_def *plane = &def->planes[q];
         char owner[80];
         snprintf(owner, sizeof owner, "boundaries[%d].plane", q);
-        TRY(check_name("boundaries", q, plane->name, error));
-        TRY(check_name("boundaries", q, plane->body, error));
-        TRY(check_choice(owner, ".condition", (unsigned)plane->condition, (unsigned)brunt_condition_count, error));
-        CHECK_NUMBERS(owner, {".point", plane->point, def->dimension, ANY},
-                      {".normal", plane->normal, def->dimension, ANY}, {".friction", &plane->friction, 1, ANY},
-                      {".velocity", plane->velocity, def->dimension, ANY});
+        BRUNT_TRY(brunt_check_name_ends("boundaries", q, plane->name, error));
+        BRUNT_TRY(brunt_check_name_ends("boundaries", q, plane->body, error));
+        BRUNT_TRY(brunt_check_choice(owner, ".condition", (unsigned)plane->condition, (unsigned)brunt_condition_count,
+                                     error));
+        BRUNT_CHECK_NUMBERS(owner, {".point", plane->point, def->dimension, BRUNT_ANY_NUMBER},
+                            {".normal", plane->normal, def->dimension, BRUNT_ANY_NUMBER},
+                            {".friction", &plane->friction, 1, BRUNT_ANY_NUMBER},
+                            {".velocity", plane->velocity, def->dimension, BRUNT_ANY_NUMBER});
     }
     return BRUNT_OK;
 }
@@ -275,12 +164,13 @@ static int check_regions(const brunt_world_def *def, brunt_error *error) {
         const brunt_region_def *region = &def->regions[q];
         char owner[80];
         snprintf(owner, sizeof owner, "boundaries[%d].region", def->plane_count + q);
-        TRY(check_name("boundaries", def->plane_count + q, region->name, error));
-        TRY(check_name("boundaries", def->plane_count + q, region->body, error));
-        CHECK_NUMBERS(owner, {".velocity", region->velocity, def->dimension, ANY},
-                      {".start", &region->start, 1, OR_INFINITE}, {".end", &region->end, 1, OR_INFINITE});
-        TRY(check_shape(owner, &region->shape, def->dimension, 0, error));
-        TRY(check_place(owner, &region->place, error));
+        BRUNT_TRY(brunt_check_name_ends("boundaries", def->plane_count + q, region->name, error));
+        BRUNT_TRY(brunt_check_name_ends("boundaries", def->plane_count + q, region->body, error));
+        BRUNT_CHECK_NUMBERS(owner, {".velocity", region->velocity, def->dimension, BRUNT_ANY_NUMBER},
+                            {".start", &region->start, 1, BRUNT_OR_INFINITE},
+                            {".end", &region->end, 1, BRUNT_OR_INFINITE});
+        BRUNT_TRY(brunt_check_shape(owner, &region->shape, def->dimension, 0, error));
+        BRUNT_TRY(brunt_check_place(owner, &region->place, error));
     }
     return BRUNT_OK;
 }
@@ -290,24 +180,27 @@ static int check_groups(const brunt_world_def *def, brunt_error *error) {
         const brunt_group_def *group = &def->groups[q];
         const int32_t index = def->plane_count + def->region_count + q;
         const char *const names[] = {group->name, group->body, group->group};
-        for (int k = 0; k < 3; k++) TRY(check_name("boundaries", index, names[k], error));
+        for (int k = 0; k < 3; k++) BRUNT_TRY(brunt_check_name_ends("boundaries", index, names[k], error));
         char owner[80];
         snprintf(owner, sizeof owner, "boundaries[%d].group", index);
-        TRY(check_choice(owner, ".action", (unsigned)group->action, BRUNT_GROUP_GAS + 1, error));
-        TRY(check_curve(owner, ".table", &group->table, error));
+        BRUNT_TRY(brunt_check_choice(owner, ".action", (unsigned)group->action, BRUNT_GROUP_GAS + 1, error));
+        BRUNT_TRY(brunt_check_curve(owner, ".table", &group->table, error));
         const brunt_gas_def *gas = &group->gas;
         const int filled = group->action == BRUNT_GROUP_GAS, turned = group->action == BRUNT_GROUP_ROTATION;
         const brunt_rotation_def *turn = &group->rotation;
-        CHECK_NUMBERS(owner, {".rotation.angle", &turn->angle, turned, ANY},
-                      {".rotation.axis", turn->axis, 3 * turned, ANY},
-                      {".rotation.about", turn->about, 3 * turned, ANY});
+        BRUNT_CHECK_NUMBERS(owner, {".rotation.angle", &turn->angle, turned, BRUNT_ANY_NUMBER},
+                            {".rotation.axis", turn->axis, 3 * turned, BRUNT_ANY_NUMBER},
+                            {".rotation.about", turn->about, 3 * turned, BRUNT_ANY_NUMBER});
         if (turned && !(turn->axis[0] || turn->axis[1] || turn->axis[2]))
             REFUSE("boundaries[%d].rotation.axis: the axis has zero length", index);
         if (turned && def->dimension == 2 && (turn->axis[0] || turn->axis[1]))
             REFUSE("boundaries[%d].rotation.axis: in two dimensions what turns does so about z", index);
-        CHECK_NUMBERS(owner, {".value", group->value, filled ? 0 : 3, ANY}, {".gas.gamma", &gas->gamma, filled, ANY},
-                      {".gas.pressure", &gas->pressure, filled, ANY}, {".gas.outside", &gas->outside, filled, ANY},
-                      {".gas.volume", &gas->volume, filled, ANY}, {".gas.inflow", &gas->inflow, filled, ANY});
+        BRUNT_CHECK_NUMBERS(owner, {".value", group->value, filled ? 0 : 3, BRUNT_ANY_NUMBER},
+                            {".gas.gamma", &gas->gamma, filled, BRUNT_ANY_NUMBER},
+                            {".gas.pressure", &gas->pressure, filled, BRUNT_ANY_NUMBER},
+                            {".gas.outside", &gas->outside, filled, BRUNT_ANY_NUMBER},
+                            {".gas.volume", &gas->volume, filled, BRUNT_ANY_NUMBER},
+                            {".gas.inflow", &gas->inflow, filled, BRUNT_ANY_NUMBER});
     }
     return BRUNT_OK;
 }
@@ -317,8 +210,9 @@ static int check_detonations(const brunt_world_def *def, brunt_error *error) {
         const brunt_detonation_def *d = &def->detonations[q];
         char owner[80];
         snprintf(owner, sizeof owner, "detonations[%d]", q);
-        TRY(check_name("detonations", q, d->body, error));
-        CHECK_NUMBERS(owner, {".point", d->point, 3, ANY}, {".normal", d->normal, 3, ANY}, {".time", &d->time, 1, ANY});
+        BRUNT_TRY(brunt_check_name_ends("detonations", q, d->body, error));
+        BRUNT_CHECK_NUMBERS(owner, {".point", d->point, 3, BRUNT_ANY_NUMBER},
+                            {".normal", d->normal, 3, BRUNT_ANY_NUMBER}, {".time", &d->time, 1, BRUNT_ANY_NUMBER});
     }
     return BRUNT_OK;
 }
@@ -353,27 +247,28 @@ static int check_wall_names(const brunt_world_def *def, brunt_error *error) {
 
 static int check_contact(const brunt_world_def *def, brunt_error *error) {
     const brunt_contact_def *contact = &def->contact;
-    TRY(check_choice("contact", ".method", (unsigned)contact->method, BRUNT_CONTACT_BARRIER + 1, error));
-    TRY(check_choice("contact", ".form", (unsigned)contact->form, BRUNT_AUGURY_PAPER + 1, error));
-    TRY(check_choice("contact", ".transfer", (unsigned)contact->transfer, BRUNT_APIC + 1, error));
+    BRUNT_TRY(brunt_check_choice("contact", ".method", (unsigned)contact->method, BRUNT_CONTACT_BARRIER + 1, error));
+    BRUNT_TRY(brunt_check_choice("contact", ".form", (unsigned)contact->form, BRUNT_AUGURY_PAPER + 1, error));
+    BRUNT_TRY(brunt_check_choice("contact", ".transfer", (unsigned)contact->transfer, BRUNT_APIC + 1, error));
     if (!(contact->friction >= 0)) REFUSE("contact.friction: %g is negative", contact->friction);
     if (contact->iterations < -1) REFUSE("contact.iterations: %d is negative", contact->iterations);
     if (!(contact->tolerance >= 0 && contact->tolerance < 1))
         REFUSE("contact.tolerance: %g is not in [0, 1)", contact->tolerance);
-    CHECK_NUMBERS("contact", {".friction", &contact->friction, 1, ANY}, {".cell", &contact->cell, 1, NOT_NEGATIVE},
-                  {".distance", &contact->distance, 1, NOT_NEGATIVE},
-                  {".stiffness", &contact->stiffness, 1, NOT_NEGATIVE},
-                  {".slip_speed", &contact->slip_speed, 1, NOT_NEGATIVE});
+    BRUNT_CHECK_NUMBERS("contact", {".friction", &contact->friction, 1, BRUNT_ANY_NUMBER},
+                        {".cell", &contact->cell, 1, BRUNT_NOT_NEGATIVE},
+                        {".distance", &contact->distance, 1, BRUNT_NOT_NEGATIVE},
+                        {".stiffness", &contact->stiffness, 1, BRUNT_NOT_NEGATIVE},
+                        {".slip_speed", &contact->slip_speed, 1, BRUNT_NOT_NEGATIVE});
     if (contact->friction_iterations < 1)
         REFUSE("contact.friction_iterations: %d is less than 1", contact->friction_iterations);
     for (int32_t q = 0; q < contact->pair_count; q++) {
         const brunt_pair_def *pair = &contact->pairs[q];
         char owner[80];
         snprintf(owner, sizeof owner, "contact.pairs[%d]", q);
-        TRY(check_name("contact.pairs", q, pair->a, error));
-        TRY(check_name("contact.pairs", q, pair->b, error));
-        TRY(check_choice(owner, ".method", (unsigned)pair->method, BRUNT_CONTACT_BARRIER + 1, error));
-        CHECK_NUMBERS(owner, {".friction", &pair->friction, 1, ANY});
+        BRUNT_TRY(brunt_check_name_ends("contact.pairs", q, pair->a, error));
+        BRUNT_TRY(brunt_check_name_ends("contact.pairs", q, pair->b, error));
+        BRUNT_TRY(brunt_check_choice(owner, ".method", (unsigned)pair->method, BRUNT_CONTACT_BARRIER + 1, error));
+        BRUNT_CHECK_NUMBERS(owner, {".friction", &pair->friction, 1, BRUNT_ANY_NUMBER});
     }
     int32_t one[2], other[2];
     if (brunt_pairs_of_one_name(def, one, other))
@@ -386,13 +281,13 @@ static int check_contact(const brunt_world_def *def, brunt_error *error) {
 
 static int check_arrays(const brunt_world_def *def, brunt_error *error) {
     if (def->body_count == 0) REFUSE("bodies: there is none");
-    TRY(check_array("materials", def->material_count, def->materials, error));
-    TRY(check_array("bodies", def->body_count, def->bodies, error));
-    TRY(check_array("boundaries: planes", def->plane_count, def->planes, error));
-    TRY(check_array("boundaries: regions", def->region_count, def->regions, error));
-    TRY(check_array("boundaries: groups", def->group_count, def->groups, error));
-    TRY(check_array("detonations", def->detonation_count, def->detonations, error));
-    return check_array("contact.pairs", def->contact.pair_count, def->contact.pairs, error);
+    BRUNT_TRY(brunt_check_array("materials", def->material_count, def->materials, error));
+    BRUNT_TRY(brunt_check_array("bodies", def->body_count, def->bodies, error));
+    BRUNT_TRY(brunt_check_array("boundaries: planes", def->plane_count, def->planes, error));
+    BRUNT_TRY(brunt_check_array("boundaries: regions", def->region_count, def->regions, error));
+    BRUNT_TRY(brunt_check_array("boundaries: groups", def->group_count, def->groups, error));
+    BRUNT_TRY(brunt_check_array("detonations", def->detonation_count, def->detonations, error));
+    return brunt_check_array("contact.pairs", def->contact.pair_count, def->contact.pairs, error);
 }
 
 static int check_time_and_grid(const brunt_world_def *def, bool particles, brunt_error *error) {
@@ -408,10 +303,12 @@ static int check_time_and_grid(const brunt_world_def *def, bool particles, brunt
         REFUSE("time.least_step: %g s is not a time", def->least_step);
     if (!(def->end > 0) || !isfinite(def->end)) REFUSE("time.end: %g s is not a positive time", def->end);
     if (!(def->energy_limit > 0)) REFUSE("time.energy_limit: %g is not positive", def->energy_limit);
-    CHECK_NUMBERS("", {"grid.cell", &def->cell, 1, ANY}, {"grid.origin", def->origin, def->dimension, ANY},
-                  {"time.step", &def->step, 1, ANY}, {"time.least_step", &def->least_step, 1, ANY},
-                  {"time.end", &def->end, 1, POSITIVE}, {"loads.gravity", def->gravity, def->dimension, ANY},
-                  {"loads.gravity_ramp", &def->gravity_ramp, 1, NOT_NEGATIVE});
+    BRUNT_CHECK_NUMBERS(
+        "", {"grid.cell", &def->cell, 1, BRUNT_ANY_NUMBER},
+        {"grid.origin", def->origin, def->dimension, BRUNT_ANY_NUMBER}, {"time.step", &def->step, 1, BRUNT_ANY_NUMBER},
+        {"time.least_step", &def->least_step, 1, BRUNT_ANY_NUMBER}, {"time.end", &def->end, 1, BRUNT_POSITIVE},
+        {"loads.gravity", def->gravity, def->dimension, BRUNT_ANY_NUMBER},
+        {"loads.gravity_ramp", &def->gravity_ramp, 1, BRUNT_NOT_NEGATIVE});
     if (def->threads < 0 || def->threads > BRUNT_THREAD_LIMIT)
         REFUSE("threads: %d is not between 0 (all) and %d", def->threads, BRUNT_THREAD_LIMIT);
     return BRUNT_OK;
@@ -450,9 +347,9 @@ static void refuse_first(void *context, const char *path, const char *reason) {
 
 static int check_newton(const brunt_world_def *def, brunt_error *error) {
     const brunt_newton_def *newton = &def->newton;
-    TRY(check_choice("time", ".integrator", (unsigned)def->integrator, BRUNT_NEWMARK + 1, error));
-    TRY(check_choice("newton", ".solver", (unsigned)newton->solver, BRUNT_SOLVER_PCG + 1, error));
-    CHECK_NUMBERS("newton", {".tolerance", &newton->tolerance, 1, POSITIVE});
+    BRUNT_TRY(brunt_check_choice("time", ".integrator", (unsigned)def->integrator, BRUNT_NEWMARK + 1, error));
+    BRUNT_TRY(brunt_check_choice("newton", ".solver", (unsigned)newton->solver, BRUNT_SOLVER_PCG + 1, error));
+    BRUNT_CHECK_NUMBERS("newton", {".tolerance", &newton->tolerance, 1, BRUNT_POSITIVE});
     if (newton->iterations < 1) REFUSE("newton.iterations: %d is less than 1", newton->iterations);
     if (newton->cut < 0) REFUSE("newton.cut: %d is negative", newton->cut);
     if (!(newton->accuracy > 0 && newton->accuracy < 1))
@@ -462,8 +359,8 @@ static int check_newton(const brunt_world_def *def, brunt_error *error) {
 
 // What a scheme cannot do is refused, never left out.
 static int check_scheme(const brunt_world_def *def, brunt_error *error) {
-    TRY(check_choice("time", ".scheme", (unsigned)def->scheme, BRUNT_IMPLICIT + 1, error));
-    if (def->scheme == BRUNT_IMPLICIT) TRY(check_newton(def, error));
+    BRUNT_TRY(brunt_check_choice("time", ".scheme", (unsigned)def->scheme, BRUNT_IMPLICIT + 1, error));
+    if (def->scheme == BRUNT_IMPLICIT) BRUNT_TRY(check_newton(def, error));
     brunt_error first = {.code = BRUNT_OK};
     brunt_scheme_refusals(def, refuse_first, &first);
     if (!first.code) return BRUNT_OK;
@@ -474,18 +371,18 @@ int brunt_definition_check(const brunt_world_def *def, brunt_error *error) {
     if (!def) REFUSE("there is no definition of a world");
     if (def->cookie != BRUNT_WORLD_COOKIE) REFUSE("the world's definition was not made by brunt_world_def_default");
     if (def->dimension != 2 && def->dimension != 3) REFUSE("dimension: %d is neither 2 nor 3", def->dimension);
-    TRY(check_arrays(def, error));
+    BRUNT_TRY(check_arrays(def, error));
     bool particles = false;
     for (int32_t i = 0; i < def->body_count; i++) particles = particles || def->bodies[i].method == BRUNT_MPM;
-    TRY(check_time_and_grid(def, particles, error));
-    TRY(check_bodies(def, error));
-    TRY(check_materials(def, error));
-    TRY(check_planes(def, error));
-    TRY(check_regions(def, error));
-    TRY(check_groups(def, error));
-    TRY(check_wall_names(def, error));
-    TRY(check_detonations(def, error));
-    TRY(check_contact(def, error));
-    if (def->axisymmetric) TRY(check_axis(def, particles, error));
+    BRUNT_TRY(check_time_and_grid(def, particles, error));
+    BRUNT_TRY(check_bodies(def, error));
+    BRUNT_TRY(check_materials(def, error));
+    BRUNT_TRY(check_planes(def, error));
+    BRUNT_TRY(check_regions(def, error));
+    BRUNT_TRY(check_groups(def, error));
+    BRUNT_TRY(check_wall_names(def, error));
+    BRUNT_TRY(check_detonations(def, error));
+    BRUNT_TRY(check_contact(def, error));
+    if (def->axisymmetric) BRUNT_TRY(check_axis(def, particles, error));
     return check_scheme(def, error);
 }

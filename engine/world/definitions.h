@@ -4,6 +4,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "base/check.h"
 #include "brunt.h"
 
 enum { BRUNT_WORLD_COOKIE = 0x6272756e }; // the mark of a definition that was filled by its default function
@@ -12,9 +13,6 @@ enum { BRUNT_MOST_PAIRS = 64 };           // of bodies in contact, with an accou
 // Two pairs of bodies in contact that have one name, "a-b", which columns of the history are called by: of 'a-b' with
 // 'c' and 'a' with 'b-c'. Bodies by index, each pair in order of name. False: there are none.
 bool brunt_pairs_of_one_name(const brunt_world_def *def, int32_t first[2], int32_t second[2]);
-
-// What a number of a definition may be besides finite and of a size that can be computed with.
-enum { BRUNT_ANY_NUMBER = 0, BRUNT_NOT_NEGATIVE = 1, BRUNT_POSITIVE = 2, BRUNT_OR_INFINITE = 4, BRUNT_OR_NAN = 8 };
 
 // Numbers of a body, a row each: what the check of definitions, the schemes and coarser worlds know of them.
 typedef struct brunt_body_number {
