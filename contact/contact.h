@@ -31,7 +31,7 @@ typedef struct brunt_contact_context {
     int64_t step;
     const brunt_symmetry_plane *mirrors; // of the grids
     int mirror_count;
-    brunt_boundary *walls; // planes, regions and groups: what the mirrors are, and planes that push
+    brunt_boundary *walls; // what the mirrors are, and all others
     int wall_count;
     double time;     // [s] at the start of the step
     brunt_body *mpm; // the bodies of material points

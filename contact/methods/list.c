@@ -43,10 +43,11 @@ static int act_at_facets(const brunt_contact_context *m, const brunt_contact_wor
     brunt_constraint_set *set = work->constraints;
     brunt_node_to_facet *facets = *work->node_to_facet;
     brunt_constraints_clear(set);
-    if (brunt_node_to_facet_planes(m, m->walls, m->wall_count, m->time, facets, set)) return -1;
+    for (int w = 0; w < m->wall_count; w++)
+        if (m->walls[w].kind->meet_surface && m->walls[w].kind->meet_surface(m, &m->walls[w], facets, set)) return -1;
     if (work->facets && brunt_node_to_facet_find(m, m->mpm, m->mpm_count, facets, set)) return -1;
     if (brunt_constraints_solve(set, work->sweeps, work->def->tolerance, m->threads, m->timer) < 0) return -1;
-    brunt_node_to_facet_account_fixed(m, m->walls, m->wall_count, m->time, facets, set);
+    brunt_node_to_facet_account_fixed(m, facets, set);
     brunt_node_to_facet_finish(m, m->mpm, facets, set);
     return 0;
 }

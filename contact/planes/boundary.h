@@ -1,17 +1,68 @@
-// What acts from outside: a plane, a region, or a group of nodes of meshes, and what it has done.
+// What acts from outside: a plane, a region, or a group of nodes of meshes, and what it has done; and what a kind of
+// them is asked for.
 #pragma once
 
 #include "brunt.h"
-#include "contact/constraint/impulse_account.h"
+#include "contact/constraint/constraint.h"
+#include "contact/contact.h"
 
-typedef struct brunt_boundary {
+typedef struct brunt_boundary_kind brunt_boundary_kind;
+typedef struct brunt_node_to_facet brunt_node_to_facet; // search/node_to_facet.h
+typedef struct brunt_particle_dofs brunt_particle_dofs; // search/particle_dof.h
+
+struct brunt_boundary {
     char name[BRUNT_NAME_LENGTH];
-    bool region;                         // else a plane; a group counts as a region without grid nodes
-    const struct brunt_group_def *group; // of finite-element bodies, NULL for the others
-    brunt_plane_def plane;               // normal of unit length
-    brunt_region_def where;              // of a region; shares the world's definition
-    int body;                            // the one it acts on, -1: all
-    int mirror;                          // index of the mirror plane it has become, -1
-    brunt_impulse_account action;        // since the start
-    brunt_impulse_account last;          // of the last step
-} brunt_boundary;
+    const brunt_boundary_kind *kind;
+    brunt_plane_def plane;        // of a plane; normal of unit length
+    brunt_region_def where;       // of a region; shares the world's definition
+    const brunt_group_def *group; // of a group, NULL for the others
+    int body;                     // the one it acts on, -1: all, or that of its group
+    int mirror;                   // index of the mirror plane it has become, -1
+    brunt_impulse_account action; // since the start
+    brunt_impulse_account last;   // of the last step
+};
+
+// What makes boundaries of a definition.
+typedef struct brunt_boundary_making {
+    const brunt_world_def *def;
+    struct brunt_boundaries *all; // boundary/boundaries.h
+    struct brunt_messages *messages;
+    bool has_particles;
+} brunt_boundary_making;
+
+// A kind of boundary, a row of boundary/kinds.h. Its functions are in the file of the kind; NULL: nothing of that is
+// its.
+struct brunt_boundary_kind {
+    const char *word; // "plane"
+    bool is_plane;    // brunt_boundary.plane says where it is
+    // Of a definition: how many, the entries, the names of an entry and of the one body it acts on (NULL: that of its
+    // nodes); frees all.
+    int32_t (*count)(const brunt_world_def *def);
+    const void *(*entry)(const brunt_world_def *def, int32_t i);
+    const char *(*name)(const void *entry);
+    const char *(*body)(const void *entry);
+    void (*free)(brunt_world_def *def);
+    // Looks an entry over, which is boundary `w` of all. BRUNT_OK, or BRUNT_BAD_INPUT.
+    int (*check)(const brunt_world_def *def, const void *entry, int32_t w, brunt_error *error);
+    // What implicit steps cannot do of it, and the key that asks for that; NULL: they can do all.
+    const char *(*explicit_only)(const void *entry, const char **key);
+    // Makes boundary `w` of its entry, named, with its body. BRUNT_OK, or what is wrong.
+    int (*make)(const brunt_boundary_making *m, const void *entry, int w, brunt_error *error);
+    // Of what moves by itself [m/s].
+    const double *(*velocity)(const brunt_boundary *b);
+    // Gives velocities to nodes of the grid of a body of material points.
+    void (*hold_grid)(brunt_body *body, brunt_boundary *b, double time);
+    // Implicit steps: the components (bits) of a node at x (within `slack` [m]) that it holds, and their velocity.
+    unsigned (*hold_at)(const brunt_boundary *b, int dim, double time, const double x[3], double slack, double v[3]);
+    bool holds_meshes; // ... of meshes as well
+    // Whether mesh k of the surface is near it, and what it does to the nodes of near ones: 0, or -1: out of memory.
+    bool (*near_surface)(const brunt_contact_surface *s, int k, const brunt_boundary *b, double time, double range);
+    int (*meet_surface)(const brunt_contact_context *m, brunt_boundary *b, brunt_node_to_facet *f,
+                        brunt_constraint_set *set);
+    // Adds the constraints of the particles of a body that it would catch. 0, or -1: out of memory.
+    int (*meet_points)(const brunt_contact_context *m, brunt_boundary *b, brunt_body *body, brunt_particle_dofs *dofs,
+                       brunt_constraint_set *set);
+};
+
+// Whether it acts on a body.
+static inline bool brunt_boundary_acts_on(const brunt_boundary *b, int body) { return b->body < 0 || b->body == body; }

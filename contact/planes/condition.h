@@ -16,10 +16,10 @@ extern const int brunt_condition_count;
 
 // Of a boundary: whether it is a plane that pushes, one that holds.
 static inline bool brunt_boundary_pushes(const brunt_boundary *wall) {
-    return !wall->region && brunt_conditions[wall->plane.condition].pushes;
+    return wall->kind->is_plane && brunt_conditions[wall->plane.condition].pushes;
 }
 static inline bool brunt_boundary_holds(const brunt_boundary *wall) {
-    return !wall->region && !brunt_conditions[wall->plane.condition].pushes;
+    return wall->kind->is_plane && !brunt_conditions[wall->plane.condition].pushes;
 }
 // The components (bits) of a node that a plane which holds it takes: of an oblique one that slips, none.
 unsigned brunt_condition_components(const brunt_plane_def *plane, int dim);

@@ -1,10 +1,19 @@
-// Stick and slip planes at the nodes behind them, and prescribed velocities in regions.
+// Velocities that are imposed at nodes of the grid of material points.
 #pragma once
 
 #include "contact/planes/boundary.h"
 #include "mpm/mpm_body.h"
 
-// Each marks the components of nodes that it gives (brunt_grid.held); cleared before the first of them. 0, or -1: out
-// of memory.
+// Of a cell: what a node may stand off a plane or a shape that it is meant to lie in. Places of nodes are rounded by as
+// much as they are cells away from the origin, in float that of the cell's edge itself.
+#define BRUNT_ON_BOUNDARY (sizeof(real) == 4 ? 1e-4 : 1e-9)
+
+// What is imposed marks the components of nodes that it gives (brunt_grid.held); cleared before the first of it. 0, or
+// -1: out of memory.
 int brunt_condition_clear(brunt_body *body);
-void brunt_condition_apply(brunt_body *body, brunt_boundary *wall, double time);
+// Nodes beyond the axis of rings are the images of those before it: they get what those get, mirrored. On the axis
+// there is no radial velocity.
+void brunt_condition_reflect(bool rings, const double place[3], double h, double now[3]);
+// Gives a node its velocity, holds components of it (bits), and books what moves at `support`.
+void brunt_condition_hold(brunt_body *body, const brunt_slot *slot, int node, const double now[3],
+                          const double support[3], unsigned held, brunt_impulse_account *account);

@@ -97,20 +97,6 @@ static int find_pairs(const brunt_contact_context *m, brunt_node_to_facet *f) {
     return 0;
 }
 
-double brunt_plane_distance(const brunt_plane_def *plane, double time, const double x[3]) {
-    double d = 0;
-    for (int a = 0; a < 3; a++) d += plane->normal[a] * (x[a] - plane->point[a] - plane->velocity[a] * time);
-    return d;
-}
-
-bool brunt_broad_phase_plane(const brunt_contact_surface *s, int k, const brunt_boundary *wall, double time,
-                             double range) {
-    if (wall->region || (wall->body >= 0 && wall->body != s->fem[k]->index)) return false;
-    double corner[3]; // of the box, deepest behind the plane
-    for (int a = 0; a < 3; a++) corner[a] = wall->plane.normal[a] > 0 ? s->low[k][a] : s->high[k][a];
-    return brunt_plane_distance(&wall->plane, time, corner) < range;
-}
-
 // Whether there is a place for everything: else no cells could be laid.
 static bool all_finite(const brunt_node_to_facet *f) {
     if (!(f->bodies.range < FARTHEST) || !(f->bodies.plane_travel < FARTHEST)) return false;
@@ -138,8 +124,10 @@ int brunt_broad_phase(const brunt_contact_context *m, brunt_body *mpm, int mpm_c
     }
     double walls_speed = 0;
     for (int w = 0; w < wall_count; w++)
-        if (!walls[w].region)
-            walls_speed = fmax(walls_speed, sqrt(dot(walls[w].plane.velocity, walls[w].plane.velocity)));
+        if (walls[w].kind->near_surface) {
+            const double *v = walls[w].kind->velocity(&walls[w]);
+            walls_speed = fmax(walls_speed, sqrt(dot(v, v)));
+        }
     f->bodies.plane_travel = (fastest + frame + walls_speed) * m->dt + 0.5 * s->membrane.thickest;
     f->bodies.travel = 2 * fastest * m->dt + spacing + s->membrane.thickest;
     f->bodies.range = fmax(fmax(RANGE * s->mean_edge + spacing + s->membrane.thickest, f->bodies.travel), m->look);
@@ -150,7 +138,9 @@ int brunt_broad_phase(const brunt_contact_context *m, brunt_body *mpm, int mpm_c
         int32_t box = f->bodies.box_of[k];
         s->active[k] = f->bodies.first[box + 1] > f->bodies.first[box];
         for (int w = 0; w < wall_count && !s->active[k]; w++)
-            s->active[k] = brunt_broad_phase_plane(s, k, &walls[w], time, f->bodies.plane_travel + 1e-6 * s->mean_edge);
+            s->active[k] =
+                walls[w].kind->near_surface && brunt_boundary_acts_on(&walls[w], s->fem[k]->index) &&
+                walls[w].kind->near_surface(s, k, &walls[w], time, f->bodies.plane_travel + 1e-6 * s->mean_edge);
     }
     if (RESERVE(&f->nodes, dof_of, s->node_count + 1)) return -1;
     memset(f->nodes.dof_of, 0xff, (size_t)s->node_count * sizeof *f->nodes.dof_of); // -1: none

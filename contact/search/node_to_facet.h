@@ -14,8 +14,6 @@
 #include "contact/planes/boundary.h"
 #include "contact/planes/symmetry.h"
 
-typedef struct brunt_node_to_facet brunt_node_to_facet;
-
 // Marks in surface->active which bodies have another one, or a wall (planes of brunt_walls with condition separate and
 // others), near; call after brunt_surface_bounds, before brunt_surface_gather_state. 0, or -1: out of memory, -2: a
 // place or a way of a step is not a number that can be worked with.
@@ -24,13 +22,8 @@ int brunt_broad_phase(const brunt_contact_context *m, brunt_body *mpm, int mpm_c
 // Adds the contact points of this step.
 int brunt_node_to_facet_find(const brunt_contact_context *m, brunt_body *mpm, int mpm_count,
                              brunt_node_to_facet *facing, brunt_constraint_set *constraints);
-// Adds what walls that push (condition separate) do to boundary nodes, and applies those that hold (stick, slip,
-// symmetry).
-int brunt_node_to_facet_planes(const brunt_contact_context *m, brunt_boundary *walls, int wall_count, double time,
-                               brunt_node_to_facet *facing, brunt_constraint_set *constraints);
 // After the solution: what contact gave to nodes that planes hold is those planes' reaction.
-void brunt_node_to_facet_account_fixed(const brunt_contact_context *m, brunt_boundary *walls, int wall_count,
-                                       double time, const brunt_node_to_facet *facing,
+void brunt_node_to_facet_account_fixed(const brunt_contact_context *m, const brunt_node_to_facet *facing,
                                        const brunt_constraint_set *constraints);
 // After brunt_surface_renew: what is remembered follows its nodes, and all look anew. 0, or -1: out of memory.
 int brunt_node_to_facet_renew(brunt_node_to_facet *facing, const brunt_contact_surface *surface);

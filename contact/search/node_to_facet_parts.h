@@ -33,11 +33,6 @@ int brunt_node_to_facet_make(brunt_node_to_facet **facing, int mpm_count, int32_
 // Room for what is remembered of so many nodes. 0, or -1: out of memory.
 int brunt_distance_cache_fit(brunt_node_to_facet *f, int32_t nodes, int32_t kept);
 
-// --- broad_phase.c
-double brunt_plane_distance(const brunt_plane_def *plane, double time, const double x[3]);
-bool brunt_broad_phase_plane(const brunt_contact_surface *s, int k, const brunt_boundary *wall, double time,
-                             double range);
-
 // --- facet_cells.c
 // Makes the cells anew when they no longer hold all that may be near. 0, or -1: out of memory.
 int brunt_facet_cells_make(const brunt_contact_context *m, brunt_node_to_facet *f);

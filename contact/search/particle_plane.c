@@ -78,7 +78,6 @@ static int add_block(const plane_job *j, int32_t b) {
     return 0;
 }
 
-// Constraints of the particles that a plane would catch. 0, or -1: out of memory.
 static int add_plane(plane_job *j) {
     const brunt_grid *grid = &j->body->grid;
     const brunt_plane_def *plane = &j->wall->plane;
@@ -101,16 +100,20 @@ static int add_plane(plane_job *j) {
     return 0;
 }
 
-int brunt_planes_apply(const brunt_contact_context *m, brunt_body *body, brunt_particle_dofs *dofs,
-                       brunt_constraint_set *set) {
+int brunt_plane_meet_points(const brunt_contact_context *m, brunt_boundary *wall, brunt_body *body,
+                            brunt_particle_dofs *dofs, brunt_constraint_set *set) {
+    plane_job j = {.m = m, .body = body, .wall = wall, .dofs = dofs, .set = set};
+    return brunt_boundary_pushes(wall) ? add_plane(&j) : 0;
+}
+
+int brunt_boundaries_meet_points(const brunt_contact_context *m, brunt_body *body, brunt_particle_dofs *dofs,
+                                 brunt_constraint_set *set) {
     if (brunt_particle_dofs_begin(m, body, dofs)) return -1;
     brunt_constraints_clear(set);
     for (int k = 0; k < m->wall_count; k++) {
         brunt_boundary *wall = &m->walls[k];
-        if (!brunt_boundary_pushes(wall)) continue;
-        if (wall->body >= 0 && wall->body != body->index) continue;
-        plane_job j = {.m = m, .body = body, .wall = wall, .dofs = dofs, .set = set};
-        if (add_plane(&j)) return -1;
+        if (!wall->kind->meet_points || !brunt_boundary_acts_on(wall, body->index)) continue;
+        if (wall->kind->meet_points(m, wall, body, dofs, set)) return -1;
     }
     if (brunt_constraints_solve(set, MAX_SWEEPS, SWEEP_TOLERANCE, m->threads, m->timer) < 0) return -1;
     brunt_particle_dofs_scatter(m, body, dofs, set);

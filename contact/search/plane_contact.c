@@ -1,6 +1,15 @@
 // Planes and boundary nodes: those that push (condition separate) and those that hold (stick, slip, symmetry).
 #include "contact/planes/condition.h"
 #include "contact/search/node_to_facet_parts.h"
+#include "contact/search/plane_contact.h"
+
+static const double ON = 1e-6; // mean edges: how far off a plane a node may be and still lie on it
+
+double brunt_plane_distance(const brunt_plane_def *plane, double time, const double x[3]) {
+    double d = 0;
+    for (int a = 0; a < 3; a++) d += plane->normal[a] * (x[a] - plane->point[a] - plane->velocity[a] * time);
+    return d;
+}
 
 // Holds a node on a plane: stick takes all components, slip and symmetry the normal one. `back`: how much further its
 // twin is, of a membrane; else 0.
@@ -50,56 +59,67 @@ static int add_plane_constraint(const brunt_contact_context *m, brunt_node_to_fa
     return brunt_constraints_entry(constraints, dof_node, 1) < 0 ? -1 : 0;
 }
 
-int brunt_node_to_facet_planes(const brunt_contact_context *m, brunt_boundary *walls, int wall_count, double time,
-                               brunt_node_to_facet *f, brunt_constraint_set *constraints) {
+bool brunt_plane_near_surface(const brunt_contact_surface *s, int k, const brunt_boundary *wall, double time,
+                              double range) {
+    double corner[3]; // of the box, deepest behind the plane
+    for (int a = 0; a < 3; a++) corner[a] = wall->plane.normal[a] > 0 ? s->low[k][a] : s->high[k][a];
+    return brunt_plane_distance(&wall->plane, time, corner) < range;
+}
+
+// What a plane does to a node that it may touch in this step. 0, or -1: out of memory.
+static int meet_node(const brunt_contact_context *m, brunt_boundary *wall, int32_t n, int32_t back, double gap,
+                     brunt_node_to_facet *f, brunt_constraint_set *set) {
     brunt_contact_surface *s = m->surface;
-    const double on = 1e-6 * s->mean_edge;
-    for (int w = 0; w < wall_count; w++) {
-        brunt_boundary *wall = &walls[w];
-        if (wall->region) continue;
-        const brunt_condition_row *condition = &brunt_conditions[wall->plane.condition];
-        for (int k = 0; k < s->fem_count; k++) {
-            if (!s->active[k] || !brunt_broad_phase_plane(s, k, wall, time, f->bodies.plane_travel + on)) continue;
-            const int32_t back = s->node_range[k + 1] - s->node_end[k];
-            const double half = s->membrane.side ? s->membrane.side[s->fem[k]->index].half : 0;
-            for (int32_t n = s->node_range[k]; n < s->node_end[k]; n++) {
-                double gap = brunt_plane_distance(&wall->plane, time, s->x[n]);
-                if (gap > f->bodies.plane_travel + on) continue;
-                if (condition->pushes) {
-                    s->output.gap[n] = fmin(s->output.gap[n], gap - half);
-                    if (add_plane_constraint(m, f, n, back, wall, gap - half, constraints)) return -1;
-                    continue;
-                }
-                double along = 0;
-                for (int a = 0; a < 3; a++) along += wall->plane.normal[a] * (s->v[n][a] - wall->plane.velocity[a]);
-                if (gap <= on)
-                    fix_node(s, n, back, wall, 0, condition->sticks);
-                else if (gap + along * m->dt < 0)
-                    fix_node(s, n, back, wall, -gap / m->dt, condition->sticks);
-            }
+    const brunt_condition_row *condition = &brunt_conditions[wall->plane.condition];
+    if (condition->pushes) {
+        s->output.gap[n] = fmin(s->output.gap[n], gap);
+        return add_plane_constraint(m, f, n, back, wall, gap, set);
+    }
+    double along = 0;
+    for (int a = 0; a < 3; a++) along += wall->plane.normal[a] * (s->v[n][a] - wall->plane.velocity[a]);
+    if (gap <= ON * s->mean_edge)
+        fix_node(s, n, back, wall, 0, condition->sticks);
+    else if (gap + along * m->dt < 0)
+        fix_node(s, n, back, wall, -gap / m->dt, condition->sticks);
+    return 0;
+}
+
+int brunt_plane_meet_surface(const brunt_contact_context *m, brunt_boundary *wall, brunt_node_to_facet *f,
+                             brunt_constraint_set *set) {
+    const brunt_contact_surface *s = m->surface;
+    const double range = f->bodies.plane_travel + ON * s->mean_edge;
+    for (int k = 0; k < s->fem_count; k++) {
+        if (!s->active[k] || !brunt_boundary_acts_on(wall, s->fem[k]->index)) continue;
+        if (!brunt_plane_near_surface(s, k, wall, m->time, range)) continue;
+        const int32_t back = s->node_range[k + 1] - s->node_end[k];
+        const double half =
+            brunt_boundary_pushes(wall) && s->membrane.side ? s->membrane.side[s->fem[k]->index].half : 0;
+        for (int32_t n = s->node_range[k]; n < s->node_end[k]; n++) {
+            const double gap = brunt_plane_distance(&wall->plane, m->time, s->x[n]);
+            if (!(gap > range) && meet_node(m, wall, n, back, gap - half, f, set)) return -1;
         }
     }
     return 0;
 }
 
 // The plane that keeps component a of a node from moving: of those that hold it, the nearest. -1: none.
-static int fixing_plane(const brunt_contact_surface *s, int32_t n, int a, const brunt_boundary *walls, int wall_count,
-                        double time) {
+static int fixing_plane(const brunt_contact_context *m, int32_t n, int a) {
+    const brunt_contact_surface *s = m->surface;
+    const brunt_boundary *walls = m->walls;
     int nearest = -1;
     double least = INFINITY;
-    for (int w = 0; w < wall_count; w++) {
+    for (int w = 0; w < m->wall_count; w++) {
         const brunt_plane_def *plane = &walls[w].plane;
         if (!brunt_boundary_holds(&walls[w])) continue;
         if (walls[w].body >= 0 && walls[w].body != s->body[n]) continue;
         if (!(brunt_condition_components(plane, 3) >> a & 1)) continue;
-        double gap = brunt_plane_distance(plane, time, s->x[n]);
+        double gap = brunt_plane_distance(plane, m->time, s->x[n]);
         if (gap < least) least = gap, nearest = w;
     }
     return nearest;
 }
 
-void brunt_node_to_facet_account_fixed(const brunt_contact_context *m, brunt_boundary *walls, int wall_count,
-                                       double time, const brunt_node_to_facet *f,
+void brunt_node_to_facet_account_fixed(const brunt_contact_context *m, const brunt_node_to_facet *f,
                                        const brunt_constraint_set *constraints) {
     const brunt_contact_surface *s = m->surface;
     int k = 0;
@@ -110,12 +130,12 @@ void brunt_node_to_facet_account_fixed(const brunt_contact_context *m, brunt_bou
             const double given = constraints->dof_node[f->nodes.dof_of[n]].impulse[a];
             if (s->inverse[n][a] > 0 || given == 0) continue;
             if (s->fem[k]->held && s->fem[k]->held[s->node[n]] >> a & 1) continue; // by a group, which has its account
-            int w = fixing_plane(s, n, a, walls, wall_count, time);
+            int w = fixing_plane(m, n, a);
             if (w < 0) continue;
             double J[3] = {0};
             J[a] = -given;
-            brunt_impulse_account_book(&walls[w].last, &walls[w].last.normal_loss, J, s->x[n], s->v[n], s->v[n],
-                                       s->v[n]);
+            brunt_impulse_account *last = &m->walls[w].last;
+            brunt_impulse_account_book(last, &last->normal_loss, J, s->x[n], s->v[n], s->v[n], s->v[n]);
         }
     }
 }

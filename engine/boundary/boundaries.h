@@ -8,7 +8,7 @@
 #include "contact/planes/symmetry.h"
 
 typedef struct brunt_boundaries {
-    brunt_boundary *walls; // planes, then regions, then groups
+    brunt_boundary *walls; // by kind, in their order
     int wall_count;
     brunt_symmetry_plane mirrors[BRUNT_MAX_PLANES];
     int mirror_count;

@@ -2,7 +2,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "contact/planes/condition.h"
 #include "base/array.h"
 #include "base/parallel.h"
 #include "contact/planes/grid_conditions.h"
@@ -117,8 +116,8 @@ int brunt_pass_update(brunt_world *world, brunt_step *step, brunt_error *error) 
     return BRUNT_OK;
 }
 
-static bool at_nodes(const brunt_boundary *wall) {
-    return wall->region || (wall->mirror < 0 && brunt_boundary_holds(wall));
+static void hold_nodes(brunt_boundary *wall, brunt_body *body, double time) {
+    if (wall->kind->hold_grid && acts_on(wall, body)) wall->kind->hold_grid(body, wall, time);
 }
 
 // Planes that stick or slip and regions, at the nodes of the grids; once more after what gives impulses to nodes that
@@ -129,9 +128,8 @@ int brunt_pass_conditions(brunt_world *world, brunt_step *step, brunt_error *err
         if (brunt_condition_clear(&world->bodies.mpm[i]))
             return brunt_fail_step(world, &world->bodies.mpm[i], error, "out of memory at a condition");
     for (int w = 0; w < world->boundaries.wall_count; w++)
-        for (int i = 0; at_nodes(&world->boundaries.walls[w]) && i < world->bodies.mpm_count; i++)
-            if (acts_on(&world->boundaries.walls[w], &world->bodies.mpm[i]))
-                brunt_condition_apply(&world->bodies.mpm[i], &world->boundaries.walls[w], world->clock.time);
+        for (int i = 0; i < world->bodies.mpm_count; i++)
+            hold_nodes(&world->boundaries.walls[w], &world->bodies.mpm[i], world->clock.time);
     return BRUNT_OK;
 }
 
@@ -151,7 +149,8 @@ int brunt_pass_contact(brunt_world *world, brunt_step *step, brunt_error *error)
 int brunt_pass_walls(brunt_world *world, brunt_step *step, brunt_error *error) {
     const brunt_contact_context m = brunt_contact_context_of(world, step->dt, NULL);
     for (int i = 0; i < world->bodies.mpm_count; i++)
-        if (brunt_planes_apply(&m, &world->bodies.mpm[i], &world->scratch.planes, &world->contact.constraints))
+        if (brunt_boundaries_meet_points(&m, &world->bodies.mpm[i], &world->scratch.planes,
+                                         &world->contact.constraints))
             return brunt_fail_step(world, &world->bodies.mpm[i], error, "out of memory at a wall");
     return BRUNT_OK;
 }
@@ -217,7 +216,7 @@ static void remap_body(brunt_world *world, brunt_body *body, double dt) {
     brunt_parallel(world->settings.threads, body->grid.slot_count, SLOT_GRAIN, brunt_grid_update, &nodes, timer);
     for (int w = 0; w < world->boundaries.wall_count; w++) {
         brunt_boundary wall = world->boundaries.walls[w];
-        if (at_nodes(&wall) && acts_on(&wall, body)) brunt_condition_apply(body, &wall, world->clock.time);
+        hold_nodes(&wall, body, world->clock.time);
     }
 }
 

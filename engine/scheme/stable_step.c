@@ -9,8 +9,8 @@
 double brunt_stable_step(const brunt_world *world) {
     double inverse = 0, wall_speed = 0;
     for (int w = 0; w < world->boundaries.wall_count; w++) {
-        const double *v = world->boundaries.walls[w].region ? world->boundaries.walls[w].where.velocity
-                                                            : world->boundaries.walls[w].plane.velocity;
+        const brunt_boundary *wall = &world->boundaries.walls[w];
+        const double *v = wall->kind->velocity ? wall->kind->velocity(wall) : (const double[3]){0};
         wall_speed = fmax(wall_speed, sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
     }
     // Greatest over the whole body, so that the step does not depend on how blocks cut it.

@@ -4,6 +4,7 @@
 
 #include "boundary/curve.h"
 #include "contact/planes/condition.h"
+#include "contact/search/plane_contact.h"
 #include "scheme/unknowns.h"
 
 static const double ON_PLANE = 1e-6; // cells, mean edges: how far off a plane a node may be and still lie on it
@@ -39,43 +40,37 @@ static void hold_group(brunt_unknowns *u, const brunt_world *world, int k, doubl
     }
 }
 
-// ------------------------------------------------------------------------------------------ planes
+// ------------------------------------------------------------------------------------------ planes, regions
 
-static bool acts_on(const brunt_boundary *wall, int body) { return wall->body < 0 || wall->body == body; }
+static void hold_node(brunt_unknowns *u, const brunt_world *world, int w, int32_t n, double slack, double dt) {
+    const brunt_boundary *wall = &world->boundaries.walls[w];
+    double x[3] = {0}, v[3];
+    for (int a = 0; a < u->dim; a++) x[a] = u->place[(size_t)n * (size_t)u->dim + (size_t)a];
+    const unsigned held = wall->kind->hold_at(wall, u->dim, world->clock.time, x, slack, v);
+    for (int a = 0; a < u->dim; a++)
+        if (held >> a & 1) hold(u, n, a, w, dt * v[a], v[a]);
+}
+
+// Nodes in a boundary, or at it and behind it.
+static void hold_nodes(brunt_unknowns *u, const brunt_world *world, int w, double dt) {
+    const brunt_boundary *wall = &world->boundaries.walls[w];
+    const brunt_bodies *bodies = &world->bodies;
+    for (int k = 0; wall->kind->holds_meshes && k < bodies->fem_count; k++)
+        for (int32_t i = 0; brunt_boundary_acts_on(wall, bodies->fem[k].index) && i < bodies->fem[k].node_count; i++)
+            hold_node(u, world, w, u->base[k] + i, ON_PLANE * bodies->fem[k].mean_edge, dt);
+    for (int i = 0; i < bodies->mpm_count; i++) {
+        const brunt_grid *grid = &bodies->mpm[i].grid;
+        const bool acts = brunt_boundary_acts_on(wall, bodies->mpm[i].index);
+        for (int64_t q = 0; acts && q < (int64_t)grid->slot_count * BRUNT_BLOCK_NODES; q++)
+            if (u->number[i][q] >= 0) hold_node(u, world, w, u->number[i][q], ON_PLANE * (double)grid->h, dt);
+    }
+}
 
 // Distance of a node to a plane as it is at the start of the step [m].
 static double distance(const brunt_unknowns *u, const brunt_plane_def *plane, double time, int32_t n) {
-    double gap = 0;
-    for (int a = 0; a < u->dim; a++)
-        gap += plane->normal[a] *
-               (u->place[(size_t)n * (size_t)u->dim + (size_t)a] - plane->point[a] - plane->velocity[a] * time);
-    return gap;
-}
-
-static void hold_plane_node(brunt_unknowns *u, const brunt_boundary *wall, int w, int32_t n, double dt) {
-    const unsigned held = brunt_condition_components(&wall->plane, u->dim);
-    for (int a = 0; a < u->dim; a++)
-        if (held >> a & 1) hold(u, n, a, w, dt * wall->plane.velocity[a], wall->plane.velocity[a]);
-}
-
-// Nodes at a plane and behind it.
-static void hold_plane(brunt_unknowns *u, const brunt_world *world, int w, double dt) {
-    const brunt_boundary *wall = &world->boundaries.walls[w];
-    if (!brunt_boundary_holds(wall)) return;
-    const brunt_bodies *bodies = &world->bodies;
-    for (int k = 0; k < bodies->fem_count; k++)
-        for (int32_t i = 0; acts_on(wall, bodies->fem[k].index) && i < bodies->fem[k].node_count; i++)
-            if (distance(u, &wall->plane, world->clock.time, u->base[k] + i) <= ON_PLANE * bodies->fem[k].mean_edge)
-                hold_plane_node(u, wall, w, u->base[k] + i, dt);
-    for (int i = 0; i < bodies->mpm_count; i++) {
-        const brunt_grid *grid = &bodies->mpm[i].grid;
-        const int64_t nodes = acts_on(wall, bodies->mpm[i].index) ? (int64_t)grid->slot_count * BRUNT_BLOCK_NODES : 0;
-        for (int64_t q = 0; q < nodes; q++) {
-            const int32_t n = u->number[i][q];
-            if (n >= 0 && distance(u, &wall->plane, world->clock.time, n) <= ON_PLANE * (double)grid->h)
-                hold_plane_node(u, wall, w, n, dt);
-        }
-    }
+    double x[3] = {0};
+    for (int a = 0; a < u->dim; a++) x[a] = u->place[(size_t)n * (size_t)u->dim + (size_t)a];
+    return brunt_plane_distance(plane, time, x);
 }
 
 // A plane that moves and pushes has a node of its own, which is nobody's account: what it does is told by contact.
@@ -83,35 +78,6 @@ static void hold_moving_plane(brunt_unknowns *u, int32_t n, int a, double dt) {
     const size_t dof = (size_t)n * (size_t)u->dim + (size_t)a;
     u->held[dof] = 1;
     u->end[dof] = u->velocity[dof], u->target[dof] = dt * u->velocity[dof];
-}
-
-// ------------------------------------------------------------------------------------------ regions
-
-static void hold_region_grid(brunt_unknowns *u, const brunt_boundary *wall, int w, const brunt_grid *grid,
-                             const int32_t *number, double dt) {
-    const brunt_region_def *where = &wall->where;
-    for (int64_t q = 0; q < (int64_t)grid->slot_count * BRUNT_BLOCK_NODES; q++) {
-        const int32_t n = number[q];
-        if (n < 0) continue;
-        double local[3] = {0};
-        for (int a = 0; a < 3; a++)
-            for (int r = 0; r < 3; r++)
-                local[a] +=
-                    where->place.rotation[3 * r + a] *
-                    ((r < u->dim ? u->place[(size_t)n * (size_t)u->dim + (size_t)r] : 0) - where->place.translation[r]);
-        if (brunt_shape_distance(&where->shape, u->dim, local) > ON_PLANE * (double)grid->h) continue;
-        for (int a = 0; a < u->dim; a++)
-            if (where->component[a]) hold(u, n, a, w, dt * where->velocity[a], where->velocity[a]);
-    }
-}
-
-static void hold_region(brunt_unknowns *u, const brunt_world *world, int w, double dt) {
-    const brunt_boundary *wall = &world->boundaries.walls[w];
-    const double time = world->clock.time;
-    if (!(time >= wall->where.start && time < wall->where.end)) return;
-    for (int i = 0; i < world->bodies.mpm_count; i++)
-        if (acts_on(wall, world->bodies.mpm[i].index))
-            hold_region_grid(u, wall, w, &world->bodies.mpm[i].grid, u->number[i], dt);
 }
 
 void brunt_unknowns_hold(brunt_unknowns *u, const brunt_world *world, double dt) {
@@ -123,14 +89,8 @@ void brunt_unknowns_hold(brunt_unknowns *u, const brunt_world *world, double dt)
     for (int w = 0; w < world->boundaries.wall_count; w++)
         for (int a = 0; u->plane[w] >= 0 && a < u->dim; a++) hold_moving_plane(u, u->plane[w], a, dt);
     for (int k = 0; k < world->boundaries.sets.count; k++) hold_group(u, world, k, dt);
-    for (int w = 0; w < world->boundaries.wall_count; w++) {
-        const brunt_boundary *wall = &world->boundaries.walls[w];
-        if (wall->group) continue;
-        if (wall->region)
-            hold_region(u, world, w, dt);
-        else
-            hold_plane(u, world, w, dt);
-    }
+    for (int w = 0; w < world->boundaries.wall_count; w++)
+        if (world->boundaries.walls[w].kind->hold_at) hold_nodes(u, world, w, dt);
 }
 
 int32_t brunt_unknowns_passed(const brunt_unknowns *u, const brunt_world *world, const double *way, double dt,
@@ -142,7 +102,7 @@ int32_t brunt_unknowns_passed(const brunt_unknowns *u, const brunt_world *world,
         if (!brunt_boundary_holds(*wall)) continue;
         for (int k = 0; k < bodies->fem_count; k++) {
             const double slack = ON_PLANE * bodies->fem[k].mean_edge;
-            const int32_t nodes = acts_on(*wall, bodies->fem[k].index) ? bodies->fem[k].node_count : 0;
+            const int32_t nodes = brunt_boundary_acts_on(*wall, bodies->fem[k].index) ? bodies->fem[k].node_count : 0;
             for (int32_t n = u->base[k]; n < u->base[k] + nodes; n++) {
                 const double before = distance(u, plane, world->clock.time, n);
                 double after = before;

@@ -10,7 +10,7 @@
 int brunt_find_ordered(const brunt_body_def **order, int count, const char *name);
 int brunt_pairs_make(brunt_world *world, const brunt_world_def *def, const brunt_body_def **order, brunt_error *error);
 void brunt_pairs_free(brunt_pairs *pairs);
-// Planes, regions and the names of groups, before the bodies.
+// All but the nodes of groups, before the bodies.
 int brunt_boundaries_make(brunt_world *world, const brunt_world_def *def, const brunt_body_def **order,
                           brunt_error *error);
 int brunt_bodies_make(brunt_world *world, const brunt_world_def *def, const brunt_body_def **order, brunt_error *error);

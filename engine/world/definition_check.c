@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "contact/planes/condition.h"
+#include "boundary/kinds.h"
 #include "world/definitions.h"
 #include "base/check.h"
 #include "base/error.h"
@@ -142,65 +143,13 @@ static int check_materials(const brunt_world_def *def, brunt_error *error) {
 
 // ------------------------------------------------------------------------------------------ boundaries
 
-static int check_planes(const brunt_world_def *def, brunt_error *error) {
-    for (int32_t q = 0; q < def->plane_count; q++) {
-        const brunt_plane_def *plane = &def->planes[q];
-        char owner[80];
-        snprintf(owner, sizeof owner, "boundaries[%d].plane", q);
-        BRUNT_TRY(brunt_check_name_ends("boundaries", q, plane->name, error));
-        BRUNT_TRY(brunt_check_name_ends("boundaries", q, plane->body, error));
-        BRUNT_TRY(brunt_check_choice(owner, ".condition", (unsigned)plane->condition, (unsigned)brunt_condition_count,
-                                     error));
-        BRUNT_CHECK_NUMBERS(owner, {".point", plane->point, def->dimension, BRUNT_ANY_NUMBER},
-                            {".normal", plane->normal, def->dimension, BRUNT_ANY_NUMBER},
-                            {".friction", &plane->friction, 1, BRUNT_ANY_NUMBER},
-                            {".velocity", plane->velocity, def->dimension, BRUNT_ANY_NUMBER});
-    }
-    return BRUNT_OK;
-}
-
-static int check_regions(const brunt_world_def *def, brunt_error *error) {
-    for (int32_t q = 0; q < def->region_count; q++) {
-        const brunt_region_def *region = &def->regions[q];
-        char owner[80];
-        snprintf(owner, sizeof owner, "boundaries[%d].region", def->plane_count + q);
-        BRUNT_TRY(brunt_check_name_ends("boundaries", def->plane_count + q, region->name, error));
-        BRUNT_TRY(brunt_check_name_ends("boundaries", def->plane_count + q, region->body, error));
-        BRUNT_CHECK_NUMBERS(owner, {".velocity", region->velocity, def->dimension, BRUNT_ANY_NUMBER},
-                            {".start", &region->start, 1, BRUNT_OR_INFINITE},
-                            {".end", &region->end, 1, BRUNT_OR_INFINITE});
-        BRUNT_TRY(brunt_check_shape(owner, &region->shape, def->dimension, 0, error));
-        BRUNT_TRY(brunt_check_place(owner, &region->place, error));
-    }
-    return BRUNT_OK;
-}
-
-static int check_groups(const brunt_world_def *def, brunt_error *error) {
-    for (int32_t q = 0; q < def->group_count; q++) {
-        const brunt_group_def *group = &def->groups[q];
-        const int32_t index = def->plane_count + def->region_count + q;
-        const char *const names[] = {group->name, group->body, group->group};
-        for (int k = 0; k < 3; k++) BRUNT_TRY(brunt_check_name_ends("boundaries", index, names[k], error));
-        char owner[80];
-        snprintf(owner, sizeof owner, "boundaries[%d].group", index);
-        BRUNT_TRY(brunt_check_choice(owner, ".action", (unsigned)group->action, BRUNT_GROUP_GAS + 1, error));
-        BRUNT_TRY(brunt_check_curve(owner, ".table", &group->table, error));
-        const brunt_gas_def *gas = &group->gas;
-        const int filled = group->action == BRUNT_GROUP_GAS, turned = group->action == BRUNT_GROUP_ROTATION;
-        const brunt_rotation_def *turn = &group->rotation;
-        BRUNT_CHECK_NUMBERS(owner, {".rotation.angle", &turn->angle, turned, BRUNT_ANY_NUMBER},
-                            {".rotation.axis", turn->axis, 3 * turned, BRUNT_ANY_NUMBER},
-                            {".rotation.about", turn->about, 3 * turned, BRUNT_ANY_NUMBER});
-        if (turned && !(turn->axis[0] || turn->axis[1] || turn->axis[2]))
-            REFUSE("boundaries[%d].rotation.axis: the axis has zero length", index);
-        if (turned && def->dimension == 2 && (turn->axis[0] || turn->axis[1]))
-            REFUSE("boundaries[%d].rotation.axis: in two dimensions what turns does so about z", index);
-        BRUNT_CHECK_NUMBERS(owner, {".value", group->value, filled ? 0 : 3, BRUNT_ANY_NUMBER},
-                            {".gas.gamma", &gas->gamma, filled, BRUNT_ANY_NUMBER},
-                            {".gas.pressure", &gas->pressure, filled, BRUNT_ANY_NUMBER},
-                            {".gas.outside", &gas->outside, filled, BRUNT_ANY_NUMBER},
-                            {".gas.volume", &gas->volume, filled, BRUNT_ANY_NUMBER},
-                            {".gas.inflow", &gas->inflow, filled, BRUNT_ANY_NUMBER});
+static int check_boundaries(const brunt_world_def *def, brunt_error *error) {
+    for (int32_t w = 0; w < brunt_boundary_count(def); w++) {
+        const brunt_boundary_kind *kind;
+        const void *entry = brunt_boundary_entry(def, w, &kind);
+        BRUNT_TRY(brunt_check_name_ends("boundaries", w, kind->name(entry), error));
+        if (kind->body) BRUNT_TRY(brunt_check_name_ends("boundaries", w, kind->body(entry), error));
+        BRUNT_TRY(kind->check(def, entry, w, error));
     }
     return BRUNT_OK;
 }
@@ -217,26 +166,12 @@ static int check_detonations(const brunt_world_def *def, brunt_error *error) {
     return BRUNT_OK;
 }
 
-// The name of its columns in the history: its own, or what world.c gives it.
-static void wall_name(const brunt_world_def *def, int32_t w, char out[BRUNT_NAME_LENGTH]) {
-    const int32_t region = w - def->plane_count, group = region - def->region_count;
-    const char *kind = region < 0 ? "plane" : group < 0 ? "region" : "group";
-    const char *given = region < 0  ? def->planes[w].name
-                        : group < 0 ? def->regions[region].name
-                                    : def->groups[group].name;
-    if (given[0])
-        memcpy(out, given, BRUNT_NAME_LENGTH);
-    else
-        snprintf(out, BRUNT_NAME_LENGTH, "%s%d", kind, w + 1);
-}
-
-static int check_wall_names(const brunt_world_def *def, brunt_error *error) {
-    const int32_t count = def->plane_count + def->region_count + def->group_count;
+static int check_boundary_names(const brunt_world_def *def, brunt_error *error) {
     char name[BRUNT_NAME_LENGTH], other[BRUNT_NAME_LENGTH];
-    for (int32_t w = 0; w < count; w++) {
-        wall_name(def, w, name);
+    for (int32_t w = 0; w < brunt_boundary_count(def); w++) {
+        brunt_boundary_name(def, w, name);
         for (int32_t k = 0; k < w; k++) {
-            wall_name(def, k, other);
+            brunt_boundary_name(def, k, other);
             if (!strcmp(name, other)) REFUSE("boundaries[%d] and boundaries[%d] have the same name '%s'", k, w, name);
         }
     }
@@ -283,9 +218,10 @@ static int check_arrays(const brunt_world_def *def, brunt_error *error) {
     if (def->body_count == 0) REFUSE("bodies: there is none");
     BRUNT_TRY(brunt_check_array("materials", def->material_count, def->materials, error));
     BRUNT_TRY(brunt_check_array("bodies", def->body_count, def->bodies, error));
-    BRUNT_TRY(brunt_check_array("boundaries: planes", def->plane_count, def->planes, error));
-    BRUNT_TRY(brunt_check_array("boundaries: regions", def->region_count, def->regions, error));
-    BRUNT_TRY(brunt_check_array("boundaries: groups", def->group_count, def->groups, error));
+#define CHECK(NAME, kind, what)                                                                                        \
+    BRUNT_TRY(brunt_check_array("boundaries: " #kind "s", def->kind##_count, def->kind##s, error));
+    BRUNT_BOUNDARY_KINDS(CHECK)
+#undef CHECK
     BRUNT_TRY(brunt_check_array("detonations", def->detonation_count, def->detonations, error));
     return brunt_check_array("contact.pairs", def->contact.pair_count, def->contact.pairs, error);
 }
@@ -377,10 +313,8 @@ int brunt_definition_check(const brunt_world_def *def, brunt_error *error) {
     BRUNT_TRY(check_time_and_grid(def, particles, error));
     BRUNT_TRY(check_bodies(def, error));
     BRUNT_TRY(check_materials(def, error));
-    BRUNT_TRY(check_planes(def, error));
-    BRUNT_TRY(check_regions(def, error));
-    BRUNT_TRY(check_groups(def, error));
-    BRUNT_TRY(check_wall_names(def, error));
+    BRUNT_TRY(check_boundaries(def, error));
+    BRUNT_TRY(check_boundary_names(def, error));
     BRUNT_TRY(check_detonations(def, error));
     BRUNT_TRY(check_contact(def, error));
     if (def->axisymmetric) BRUNT_TRY(check_axis(def, particles, error));

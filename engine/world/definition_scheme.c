@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "contact/planes/condition.h"
+#include "boundary/kinds.h"
 #include "contact/methods/method.h"
 #include "materials/material.h"
 #include "world/definitions.h"
@@ -34,7 +34,7 @@ static void set_owner(refusals *r, const char *format, ...) {
     va_end(arguments);
 }
 
-#define EXPLICIT_ONLY "this belongs to time.scheme: explicit"
+#define EXPLICIT_ONLY BRUNT_EXPLICIT_ONLY
 
 // ------------------------------------------------------------------------------------------ implicit steps
 
@@ -84,13 +84,6 @@ static void look_at_body(const brunt_body_def *body, refusals *r) {
         say(r, ".hourglass.form", "viscous: " EXPLICIT_ONLY ", stiffness is wanted");
 }
 
-// A plane along an axis holds components of nodes; one that is oblique would couple them.
-static bool oblique(const brunt_plane_def *plane) {
-    int along = 0;
-    for (int a = 0; a < 3; a++) along += plane->normal[a] != 0;
-    return along > 1;
-}
-
 // A boundary's name is where it stands in its file; without one it is counted, which is its place if all are planes.
 static void name_boundary(refusals *r, int32_t index, const char *name) {
     if (name[0])
@@ -100,19 +93,12 @@ static void name_boundary(refusals *r, int32_t index, const char *name) {
 }
 
 static void look_at_boundaries(const brunt_world_def *def, refusals *r) {
-    for (int32_t q = 0; q < def->plane_count; q++) {
-        const brunt_plane_def *plane = &def->planes[q];
-        const brunt_condition_row *row = &brunt_conditions[plane->condition];
-        name_boundary(r, q, plane->name);
-        if (!row->pushes && !row->sticks && oblique(plane))
-            say(r, ".condition", "implicit steps hold nodes on planes that are normal to an axis");
-    }
-    for (int32_t q = 0; q < def->group_count; q++) {
-        const brunt_group_def *group = &def->groups[q];
-        name_boundary(r, def->plane_count + def->region_count + q, group->name);
-        if (group->action == BRUNT_GROUP_GAS) say(r, ".gas", EXPLICIT_ONLY);
-        if (group->action == BRUNT_GROUP_PRESSURE)
-            say(r, ".pressure", EXPLICIT_ONLY ": it follows the surface, traction does not");
+    for (int32_t w = 0; w < brunt_boundary_count(def); w++) {
+        const brunt_boundary_kind *kind;
+        const void *entry = brunt_boundary_entry(def, w, &kind);
+        const char *key, *reason = kind->explicit_only ? kind->explicit_only(entry, &key) : NULL;
+        name_boundary(r, w, kind->name(entry));
+        if (reason) say(r, key, "%s", reason);
     }
 }
 

@@ -4,6 +4,7 @@
 
 #include "brunt.h"
 #include "base/memory.h"
+#include "boundary/kinds.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -40,20 +41,6 @@ brunt_body_def brunt_body_def_default(void) {
     };
 }
 
-brunt_plane_def brunt_plane_def_default(void) { return (brunt_plane_def){.condition = BRUNT_SEPARATE}; }
-
-brunt_region_def brunt_region_def_default(void) {
-    return (brunt_region_def){
-        .place = brunt_placement_identity(),
-        .component = {true, true, true},
-        .end = INFINITY,
-    };
-}
-
-brunt_group_def brunt_group_def_default(void) {
-    return (brunt_group_def){.component = {true, true, true}, .rotation = {.axis = {0, 0, 1}}, .gas = {.gamma = 1.4}};
-}
-
 void brunt_world_def_free(brunt_world_def *def) {
     for (int32_t i = 0; i < def->body_count; i++) {
         brunt_shape_free(&def->bodies[i].shape);
@@ -61,13 +48,9 @@ void brunt_world_def_free(brunt_world_def *def) {
         brunt_free(def->bodies[i].faces);
         for (int a = 0; a < 3; a++) brunt_free(def->bodies[i].grading[a].points);
     }
-    for (int32_t i = 0; i < def->group_count; i++) brunt_free(def->groups[i].table.points);
-    brunt_free(def->groups);
-    for (int32_t i = 0; i < def->region_count; i++) brunt_shape_free(&def->regions[i].shape);
+    for (int k = 0; k < BRUNT_BOUNDARY_KIND_COUNT; k++) brunt_boundary_kinds[k]->free(def);
     brunt_free(def->materials);
     brunt_free(def->bodies);
-    brunt_free(def->planes);
-    brunt_free(def->regions);
     brunt_free(def->detonations);
     brunt_free(def->contact.pairs);
     *def = (brunt_world_def){0};

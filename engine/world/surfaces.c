@@ -16,7 +16,7 @@ enum { GRID_SWEEPS = 8, SWEEPS = 16, SHEET_SWEEPS = 64, TOUCH_SWEEPS = 64 };
 static const double THIN = 0.01; // mean edges
 
 static bool acts_on_fem(const brunt_world *world, const brunt_boundary *wall) {
-    if (wall->region) return false;
+    if (!wall->kind->meet_surface) return false;
     for (int k = 0; k < world->bodies.fem_count; k++)
         if (wall->body < 0 || wall->body == world->bodies.fem[k].index) return true;
     return false;

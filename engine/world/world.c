@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "boundary/kinds.h"
 #include "contact/planes/condition.h"
 #include "boundary/ignition.h"
 #include "contact/methods/method.h"
@@ -63,7 +64,7 @@ static int check_symmetry(const brunt_world *world, brunt_error *error) {
     for (int w = 0; w < world->boundaries.wall_count; w++) {
         const brunt_boundary *wall = &world->boundaries.walls[w];
         const double *n = wall->plane.normal, *at = wall->plane.point;
-        if (wall->region || !brunt_conditions[wall->plane.condition].images) continue;
+        if (!wall->kind->is_plane || !brunt_conditions[wall->plane.condition].images) continue;
         for (int i = 0; i < world->bodies.count; i++) {
             if (wall->body >= 0 && wall->body != i) continue;
             brunt_body *mpm = world->bodies.all[i].mpm;
@@ -221,9 +222,9 @@ brunt_world *brunt_world_create(const brunt_world_def *given, brunt_error *error
     if (!status) status = brunt_ignition_make(&world->bodies, def, &world->messages, error);
     if (!status) status = brunt_erosion_make(&world->erosion, &world->bodies, def, error);
     if (!status)
-        status = brunt_node_sets_make(&world->boundaries.sets, def, &world->bodies,
-                                      world->boundaries.walls + def->plane_count + def->region_count, &world->messages,
-                                      error);
+        status =
+            brunt_node_sets_make(&world->boundaries.sets, def, &world->bodies,
+                                 world->boundaries.walls + brunt_boundary_first(def, "group"), &world->messages, error);
     if (!status) status = brunt_surfaces_make(world, def, error);
     if (!status && brunt_fem_tasks_make(world)) status = brunt_fail(error, BRUNT_FAILED, "out of memory");
     if (!status) status = brunt_damping_make(&world->boundaries.damping, &world->bodies, error);

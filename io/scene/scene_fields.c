@@ -10,9 +10,9 @@ static const struct {
              {SCENE_MESHES, "method: fem or membrane"},
              {SCENE_FEM, "method: fem"},
              {SCENE_MEMBRANE, "method: membrane"},
-             {SCENE_PLANE, "a plane"},
-             {SCENE_REGION, "a region"},
-             {SCENE_GROUP_OF_NODES, "a group of nodes"}};
+#define AT(NAME, kind, what) {SCENE_AT_##NAME, what},
+             BRUNT_BOUNDARY_KINDS(AT)};
+#undef AT
 
 static const char *kind_name(unsigned kind) {
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)

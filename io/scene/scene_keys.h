@@ -75,25 +75,27 @@ typedef struct scene_key {
     // Columns that most rows leave out:
     const char *former;       // spelling of the key one version ago ...
     const char *former_words; // ... and of its words, "a|b|c", as many as `words`
-    unsigned only;     // the kinds that it is for (SCENE_MPM ..., SCENE_PLANE ...), which also its default waits for;
-                       // 0: all
+    unsigned only; // the kinds that it is for (SCENE_MPM ..., SCENE_AT_PLANE ...), which also its default waits for;
+                   // 0: all
     scene_field field; // that it fills
 } scene_key;
 
 extern const scene_key brunt_scene_table[];
 extern const int brunt_scene_table_count;
 
-// Kinds of entries: bodies by their method, boundaries by what they act at.
+#define SCENE_NUMBER(NAME, kind, what) SCENE_NUMBER_##NAME,
+enum { BRUNT_BOUNDARY_KINDS(SCENE_NUMBER) };
+#undef SCENE_NUMBER
+// Kinds of entries: bodies by their method, boundaries by what they act at (SCENE_AT_PLANE ...).
 enum {
     SCENE_MPM = 1 << BRUNT_MPM,
     SCENE_FEM = 1 << BRUNT_FEM,
     SCENE_MEMBRANE = 1 << BRUNT_MEMBRANE,
     SCENE_MESHES = SCENE_FEM | SCENE_MEMBRANE,
-    SCENE_PLANE = 8,
-    SCENE_REGION = 16,
-    SCENE_GROUP_OF_NODES = 32
+#define SCENE_AT(NAME, kind, what) SCENE_AT_##NAME = SCENE_MEMBRANE << (SCENE_NUMBER_##NAME + 1),
+    BRUNT_BOUNDARY_KINDS(SCENE_AT)
+#undef SCENE_AT
 };
-_Static_assert(SCENE_MEMBRANE < SCENE_PLANE, "one bit a kind");
 
 // A kind of file: what it is called, how it begins, and its rows.
 typedef struct scene_format {

@@ -1,4 +1,5 @@
 // Measures of a scene: what is measured, over which time, and against what it is judged.
+#include "boundary/kinds.h"
 #include "io/scene/scene_reader.h"
 
 #include <math.h>
@@ -91,12 +92,11 @@ static const char *column_mistake(const scene_reader *reader, const char *column
     if (family == 7 && strncmp(column, "contact", 7) == 0)
         return pair_exists(reader, rest) ? NULL : "there is no such pair of bodies, A-B is wanted";
     if (family == 4 && strncmp(column, "wall", 4) == 0) {
-        for (int i = 0; i < world->plane_count; i++)
-            if (names_part(rest, world->planes[i].name)) return NULL;
-        for (int i = 0; i < world->region_count; i++)
-            if (names_part(rest, world->regions[i].name)) return NULL;
-        for (int i = 0; i < world->group_count; i++)
-            if (names_part(rest, world->groups[i].name)) return NULL;
+        for (int32_t w = 0; w < brunt_boundary_count(world); w++) {
+            const brunt_boundary_kind *kind;
+            const void *entry = brunt_boundary_entry(world, w, &kind);
+            if (names_part(rest, kind->name(entry))) return NULL;
+        }
         return "there is no boundary of that name";
     }
     if (family == 3 && strncmp(column, "gas", 3) == 0) return gas_mistake(world, rest);

@@ -85,6 +85,10 @@ typedef struct brunt_contact_def {
     int32_t pair_count; // owned; overrides
 } brunt_contact_def;
 
+#define BRUNT_BOUNDARY_LIST(NAME, kind, what)                                                                          \
+    brunt_##kind##_def *kind##s;                                                                                       \
+    int32_t kind##_count;
+
 typedef struct brunt_world_def {
     int cookie;                  // set by brunt_world_def_default
     brunt_scheme scheme;         // default explicit
@@ -108,19 +112,15 @@ typedef struct brunt_world_def {
     brunt_material_def *materials;
     int32_t material_count; // owned
     brunt_body_def *bodies;
-    int32_t body_count; // owned
-    brunt_plane_def *planes;
-    int32_t plane_count; // owned
-    brunt_region_def *regions;
-    int32_t region_count; // owned
-    brunt_group_def *groups;
-    int32_t group_count; // owned
+    int32_t body_count;                       // owned
+    BRUNT_BOUNDARY_KINDS(BRUNT_BOUNDARY_LIST) // planes and plane_count, ...: owned
     brunt_detonation_def *detonations;
     int32_t detonation_count; // owned
     brunt_contact_def contact;
     double gravity[3];   // [m/s^2] default 0
     double gravity_ramp; // [s] gravity grows linearly from 0 over this time; default 0
 } brunt_world_def;
+#undef BRUNT_BOUNDARY_LIST
 
 brunt_world_def brunt_world_def_default(void);
 // The share of the stable step that is taken when none is given: 0.5, or less where material points alone in their

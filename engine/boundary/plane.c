@@ -1,0 +1,192 @@
+// Planes: bodies stick to them, slip along them, are pushed by them, or are mirrored at them.
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "base/check.h"
+#include "base/error.h"
+#include "base/memory.h"
+#include "boundary/boundaries.h"
+#include "boundary/kinds.h"
+#include "contact/planes/condition.h"
+#include "contact/planes/grid_conditions.h"
+#include "contact/search/particle_plane.h"
+#include "contact/search/plane_contact.h"
+#include "materials/material.h"
+
+#define REFUSE(...) return brunt_fail(error, BRUNT_BAD_INPUT, __VA_ARGS__)
+
+// ------------------------------------------------------------------------------------------ definition
+
+BRUNT_BOUNDARY_ENTRIES(plane)
+
+brunt_plane_def brunt_plane_def_default(void) { return (brunt_plane_def){.condition = BRUNT_SEPARATE}; }
+
+static const char *body_of(const void *one) { return ((const brunt_plane_def *)one)->body; }
+
+static void free_all(brunt_world_def *def) { brunt_free(def->planes); }
+
+static int check(const brunt_world_def *def, const void *entry, int32_t w, brunt_error *error) {
+    const brunt_plane_def *plane = entry;
+    char owner[80];
+    snprintf(owner, sizeof owner, "boundaries[%d].plane", w);
+    BRUNT_TRY(
+        brunt_check_choice(owner, ".condition", (unsigned)plane->condition, (unsigned)brunt_condition_count, error));
+    BRUNT_CHECK_NUMBERS(owner, {".point", plane->point, def->dimension, BRUNT_ANY_NUMBER},
+                        {".normal", plane->normal, def->dimension, BRUNT_ANY_NUMBER},
+                        {".friction", &plane->friction, 1, BRUNT_ANY_NUMBER},
+                        {".velocity", plane->velocity, def->dimension, BRUNT_ANY_NUMBER});
+    return BRUNT_OK;
+}
+
+// A plane along an axis holds components of nodes; one that is oblique would couple them.
+static bool oblique(const brunt_plane_def *plane) {
+    int along = 0;
+    for (int a = 0; a < 3; a++) along += plane->normal[a] != 0;
+    return along > 1;
+}
+
+static const char *explicit_only(const void *one, const char **key) {
+    const brunt_plane_def *plane = one;
+    const brunt_condition_row *row = &brunt_conditions[plane->condition];
+    *key = ".condition";
+    return !row->pushes && !row->sticks && oblique(plane)
+               ? "implicit steps hold nodes on planes that are normal to an axis"
+               : NULL;
+}
+
+// ------------------------------------------------------------------------------------------ making
+
+static const double ON_GRID_LINE = 1e-6; // cells: how far off a mirror plane may be and still count as on the line
+
+// Index of the axis a plane is normal to, -1 when it is oblique.
+static int plane_axis(const brunt_plane_def *plane, int dim) {
+    for (int a = 0; a < dim; a++)
+        if (fabs(fabs(plane->normal[a]) - 1) < 1e-12) return a;
+    return -1;
+}
+
+static bool has_fluid(const brunt_world_def *def) {
+    for (int i = 0; i < def->body_count; i++) {
+        const brunt_model *model = brunt_find_strength(def->materials[def->bodies[i].material].strength);
+        if (def->bodies[i].method == BRUNT_MPM && model && model->fluid) return true;
+    }
+    return false;
+}
+
+static int make(const brunt_boundary_making *m, const void *one, int index, brunt_error *error) {
+    const brunt_world_def *def = m->def;
+    brunt_boundaries *all = m->all;
+    brunt_boundary *wall = &all->walls[index];
+    wall->plane = *(const brunt_plane_def *)one;
+    brunt_plane_def *plane = &wall->plane;
+    double size = 0;
+    for (int a = 0; a < def->dimension; a++) size += plane->normal[a] * plane->normal[a];
+    if (!(size > 0) || !isfinite(size)) REFUSE("boundaries[%d].plane.normal: it has no direction", index);
+    for (int a = 0; a < 3; a++) plane->normal[a] = a < def->dimension ? plane->normal[a] / sqrt(size) : 0;
+    if (!(plane->friction >= 0)) REFUSE("boundaries[%d].friction: %g is negative", index, plane->friction);
+    bool moves = plane->velocity[0] != 0 || plane->velocity[1] != 0 || plane->velocity[2] != 0;
+    int axis = plane_axis(plane, def->dimension);
+    double at = axis < 0 ? 0 : (plane->point[axis] - def->origin[axis]) / def->cell;
+    bool on_line = axis >= 0 && !moves && fabs(at - round(at)) < ON_GRID_LINE;
+    if (!m->has_particles) { // meshes hold their nodes on any plane themselves
+        all->has_friction = all->has_friction || plane->friction > 0;
+        return BRUNT_OK;
+    }
+    const brunt_condition_row *row = &brunt_conditions[plane->condition];
+    if (row->images && !on_line)
+        REFUSE("boundaries[%d] (%s): a symmetry plane must stand still, be normal to an axis and lie on a grid line "
+               "(cell %g m)",
+               index, wall->name, def->cell);
+    if (on_line && row->mirrors) {
+        if (all->mirror_count == (int)(sizeof all->mirrors / sizeof all->mirrors[0]))
+            REFUSE("boundaries: more than 16 symmetry and slip planes");
+        for (int k = 0; k < all->mirror_count; k++) {
+            const brunt_symmetry_plane *other = &all->mirrors[k];
+            int32_t apart = (int32_t)round(at) - other->node;
+            if (other->wall >= 0 && other->axis == axis && apart != 0 && abs(apart) <= (int)def->kernel &&
+                has_fluid(def))
+                brunt_warn(
+                    m->messages,
+                    "boundaries[%d] (%s): this plane of symmetry or slip and '%s' are %d cells apart; the kernel "
+                    "reaches over both, and fluids leak: at least %d are wanted",
+                    index, wall->name, all->walls[other->wall].name, abs(apart), (int)def->kernel + 1);
+        }
+        wall->mirror = all->mirror_count;
+        all->mirrors[all->mirror_count++] =
+            (brunt_symmetry_plane){.axis = axis, .node = (int32_t)round(at), .wall = index};
+        return BRUNT_OK;
+    }
+    if (row->of_fluids && has_fluid(def))
+        brunt_warn(m->messages, "boundaries[%d] (%s): %s", index, wall->name, row->of_fluids);
+    all->has_walls = all->has_walls || row->pushes;
+    all->has_conditions = all->has_conditions || !row->pushes;
+    all->has_friction = all->has_friction || (row->pushes && plane->friction > 0);
+    return BRUNT_OK;
+}
+
+// ------------------------------------------------------------------------------------------ steps
+
+static const double *velocity(const brunt_boundary *b) { return b->plane.velocity; }
+
+// Of a total-Lagrangian body the plane lies in the undeformed configuration and holds what was behind it at the start.
+static void hold_grid(brunt_body *body, brunt_boundary *wall, double time) {
+    if (wall->mirror >= 0 || !brunt_boundary_holds(wall)) return;
+    const bool rings = brunt_axisymmetric(&body->particles);
+    const brunt_grid *grid = &body->grid;
+    if (brunt_total_lagrangian(&body->particles)) time = 0;
+    const brunt_plane_def *plane = &wall->plane;
+    double offset = 0, reach = BRUNT_ON_BOUNDARY * (double)grid->h;
+    const unsigned held = brunt_condition_components(plane, grid->dim);
+    const bool sticks = brunt_conditions[plane->condition].sticks;
+    for (int a = 0; a < grid->dim; a++) {
+        offset += plane->normal[a] * (plane->point[a] + plane->velocity[a] * time);
+        reach += fabs(plane->normal[a]) * 0.5 * grid->side * (double)grid->h;
+    }
+    for (int32_t s = 0; s < grid->slot_count; s++) {
+        const brunt_slot *slot = &grid->slots[s];
+        double middle = -offset;
+        for (int a = 0; a < grid->dim; a++) {
+            const double at = grid->origin[a] + (double)grid->h * (slot->coord[a] + 0.5) * grid->side;
+            middle += plane->normal[a] * (rings && a == 0 ? fabs(at) : at);
+        }
+        if (middle > reach) continue;
+        for (int node = 0; node < BRUNT_BLOCK_NODES; node++) {
+            real *n = brunt_slot_nodes(grid, s) + node * BRUNT_NODE_REALS;
+            if (!(n[0] > 0)) continue;
+            double x[3], v[3] = {0}, now[3] = {0}, distance = -offset, approach = 0;
+            brunt_node_position(grid, slot->coord, node, x);
+            for (int a = 0; a < grid->dim; a++) {
+                const double sign = rings && a == 0 && x[0] < 0 ? -1 : 1;
+                v[a] = sign * (double)n[BRUNT_NODE_VELOCITY + a];
+                distance += plane->normal[a] * sign * x[a];
+                approach += plane->normal[a] * (v[a] - plane->velocity[a]);
+            }
+            if (distance > BRUNT_ON_BOUNDARY * (double)grid->h) continue;
+            for (int a = 0; a < grid->dim; a++)
+                now[a] = sticks ? plane->velocity[a] : v[a] - approach * plane->normal[a];
+            brunt_condition_reflect(rings, x, (double)grid->h, now);
+            brunt_condition_hold(body, slot, node, now, plane->velocity, held, &wall->last);
+        }
+    }
+}
+
+static unsigned hold_at(const brunt_boundary *b, int dim, double time, const double x[3], double slack, double v[3]) {
+    if (!brunt_boundary_holds(b) || brunt_plane_distance(&b->plane, time, x) > slack) return 0;
+    for (int a = 0; a < dim; a++) v[a] = b->plane.velocity[a];
+    return brunt_condition_components(&b->plane, dim);
+}
+
+const brunt_boundary_kind brunt_boundary_plane = {
+    BRUNT_BOUNDARY_ROW(plane),
+    .is_plane = true,
+    .body = body_of,
+    .explicit_only = explicit_only,
+    .velocity = velocity,
+    .hold_grid = hold_grid,
+    .hold_at = hold_at,
+    .holds_meshes = true,
+    .near_surface = brunt_plane_near_surface,
+    .meet_surface = brunt_plane_meet_surface,
+    .meet_points = brunt_plane_meet_points,
+};

@@ -1,0 +1,93 @@
+// Groups of nodes of a scene that are held, moved or loaded.
+#include "io/scene/scene_boundary.h"
+
+#include <math.h>
+
+static void fill_table(scene_reader *reader, const scene_node *node, brunt_curve *table) {
+    if (!node || !node->good) return;
+    table->points = brunt_entries_for(reader, node->count, sizeof *table->points);
+    for (const scene_node *point = table->points ? node->first : NULL; point; point = point->next) {
+        table->points[table->count][0] = point->first->value[0];
+        table->points[table->count++][1] = point->last->value[0];
+    }
+}
+
+// Gas is kept between the steps, and its pressure is what comes of it: only the inflow follows a table.
+static void check_gas(scene_reader *reader, const scene_node *node, brunt_group_def *group) {
+    const scene_node *inflow = brunt_tree_child(node, "inflow");
+    if (node->kind != SCENE_MAP) return;
+    if (inflow && inflow->good && group->gas.inflow == 0)
+        brunt_refuse_key(reader, node->parent, "table", "a table is the factor of gas.inflow, there is none");
+    if (reader->dimension == 2) brunt_tree_complain_key(reader->tree, node, "enclosed gas is for three dimensions");
+}
+
+static void fill_motion(scene_reader *reader, const scene_node *motion, brunt_group_def *group) {
+    brunt_fill_partial(reader, motion, group->component, group->value);
+}
+
+// In three dimensions the axis must be given; in two there is but one.
+static void fill_rotation(scene_reader *reader, const scene_node *turn, brunt_group_def *group) {
+    brunt_rotation_def *rotation = &group->rotation;
+    if (turn->kind != SCENE_MAP) return;
+    const scene_node *axis = brunt_tree_child(turn, "axis");
+    rotation->angle = brunt_real_of(turn, "angle", 0);
+    brunt_vector_of(turn, "about", rotation->about);
+    if (!axis && reader->dimension == 3)
+        brunt_tree_complain(reader->tree, turn, "'axis' is missing: the direction about which the group turns");
+    if (!axis || !brunt_vector_of(turn, "axis", rotation->axis)) return;
+    if (!brunt_nonzero(rotation->axis)) brunt_tree_complain(reader->tree, axis, "the axis has zero length");
+}
+
+static void fill_fixed(scene_reader *reader, const scene_node *axes, brunt_group_def *group) {
+    brunt_refuse_key(reader, axes->parent, "table", "what is fixed does not change with time");
+    for (int c = 0; c < 3 && axes->good; c++) group->component[c] = axes->value[c] != 0;
+}
+
+static void fill_value(scene_reader *reader, const scene_node *value, brunt_group_def *group) {
+    (void)reader;
+    for (int c = 0; c < (value->components ? 3 : 1); c++) group->value[c] = value->value[c];
+}
+
+// What can be done to a group of nodes: the key that says so, and what it means.
+static const struct group_action {
+    const char *key;
+    brunt_group_action action;
+    void (*fill)(scene_reader *reader, const scene_node *value, brunt_group_def *group);
+} actions[] = {{"fix", BRUNT_GROUP_VELOCITY, fill_fixed},
+               {"velocity", BRUNT_GROUP_VELOCITY, fill_motion},
+               {"displacement", BRUNT_GROUP_DISPLACEMENT, fill_motion},
+               {"rotation", BRUNT_GROUP_ROTATION, fill_rotation},
+               {"traction", BRUNT_GROUP_TRACTION, fill_value},
+               {"pressure", BRUNT_GROUP_PRESSURE, fill_value},
+               {"gas", BRUNT_GROUP_GAS, check_gas}};
+enum { ACTIONS = sizeof actions / sizeof *actions };
+_Static_assert(ACTIONS > (int)BRUNT_GROUP_GAS, "a key for each action");
+
+static void fill_action(scene_reader *reader, const scene_node *node, brunt_group_def *group) {
+    const struct group_action *action = NULL;
+    int count = 0;
+    char names[200] = "";
+    BRUNT_LIST_NAMES(names, ACTIONS, actions[i].key);
+    for (size_t i = 0; i < ACTIONS; i++)
+        if (brunt_tree_child(node, actions[i].key)) action = &actions[i], count++;
+    if (count != 1) {
+        brunt_tree_complain(reader->tree, node, "exactly one of %s is wanted, %d are given", names, count);
+        return;
+    }
+    const scene_node *value = brunt_tree_child(node, action->key);
+    group->action = action->action;
+    if (value->good || action->fill == fill_fixed) action->fill(reader, value, group);
+}
+
+void brunt_fill_group(scene_reader *reader, scene_node *node, brunt_group_def *group) {
+    brunt_copy_text(reader, brunt_tree_child(node, "group"), group->group, sizeof group->group);
+    const scene_node *body = brunt_tree_child(node, "body");
+    if (!body) brunt_tree_complain(reader->tree, node, "'body' is missing: the body whose nodes they are");
+    brunt_fill_body_of(reader, node, group->body);
+    const brunt_body_def *def = brunt_body_named(reader, group->body);
+    if (def && def->method == BRUNT_MPM)
+        brunt_tree_complain(reader->tree, body, "groups are of bodies of method fem or membrane, '%s' is of method mpm",
+                            def->name);
+    fill_action(reader, node, group);
+    fill_table(reader, brunt_tree_child(node, "table"), &group->table);
+}
