@@ -17,7 +17,8 @@ ROOT = Path(__file__).resolve().parent.parent
 SAMPLES = {
     "element": (r"\b(BRUNT_TET4|brunt_tet4|tet4)\b", r"engine/fem/elements/tet4\.c", 3),
     "material": (r"drucker[-_]prager", r"materials/drucker_prager\.c", 2),
-    "contact method": (r"multi[-_]velocity|MULTI_VELOCITY", r"contact/methods/(grid_velocity|surface_on_grid)", 6),
+    # Its word, a row for bodies of points and one for meshes with them, and what the reference says of it.
+    "contact method": (r"multi[-_]velocity|MULTI_VELOCITY", r"contact/methods/(grid_velocity|surface_on_grid)", 4),
     # The list, the header of its definition, its member in brunt_boundary; a row for each key of its own besides. It has a file
     # each for its definition, what it does, and the keys that take more than filling a field.
     "boundary": (r"brunt_region|brunt/boundary_region|\bREGION\b|->regions\b|region_count|->where\b|\"region\"",

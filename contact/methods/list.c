@@ -1,5 +1,7 @@
 #include "contact/methods/method.h"
 
+#include <stdio.h>
+
 static bool points_alone(bool a, bool b) { return !a && !b; }
 static bool mesh_and_points(bool a, bool b) { return a != b; }
 static bool any_mesh(bool a, bool b) { return a || b; }
@@ -55,21 +57,28 @@ static int act_at_facets(const brunt_contact_context *m, const brunt_contact_wor
 #define METHOD(name) (1u << BRUNT_CONTACT_##name)
 #define FORM(name) (1u << BRUNT_AUGURY_##name)
 
+#define SELF(name) BRUNT_SELF_##name
+#define EXPLICIT (1u << BRUNT_EXPLICIT)
+#define IMPLICIT (1u << BRUNT_IMPLICIT)
+
 // clang-format off
 const brunt_contact_row brunt_contact_rows[] = {
-    {"grid velocity", METHOD(MULTI_VELOCITY), 0, true, "a body of method mpm", points_alone, NULL, NULL, NULL, NULL},
-    {"point touches", METHOD(AUGURY), FORM(AFFINE), false, NULL, points_alone, NULL, NULL, NULL, NULL},
-    {"tied", METHOD(TIED), 0, false, "two bodies of method mpm", points_alone, NULL, NULL, NULL, NULL},
-    {"published", METHOD(AUGURY), FORM(PAPER), false, NULL, any_mesh, mark_all, act_published, NULL, free_augury},
-    {"averaged surface", METHOD(AUGURY), FORM(SMOOTH) | FORM(SURFACE), false, NULL, any_mesh, NULL, act_averaged, NULL, free_augury},
-    {"surface on grid", METHOD(MULTI_VELOCITY), 0, true, NULL, mesh_and_points, brunt_surface_on_grid_near, act_on_grid, account_on_grid, free_on_grid},
-    {"barrier", METHOD(BARRIER), 0, false, "a body of method fem", any_mesh, NULL, NULL, NULL, NULL},
-    {"node to facet", METHOD(AUGURY), FORM(AFFINE), false, "a body of method fem or membrane", any_mesh, NULL, act_at_facets, NULL, NULL},
+    {"grid velocity", METHOD(MULTI_VELOCITY), 0, EXPLICIT, SELF(NONE), true, "a body of method mpm", points_alone, NULL, NULL, NULL, NULL},
+    {"point touches", METHOD(AUGURY), FORM(AFFINE), EXPLICIT, SELF(NONE), false, NULL, points_alone, NULL, NULL, NULL, NULL},
+    {"tied", METHOD(TIED), 0, EXPLICIT | IMPLICIT, SELF(NONE), false, "two bodies of method mpm", points_alone, NULL, NULL, NULL, NULL},
+    {"published", METHOD(AUGURY), FORM(PAPER), EXPLICIT, SELF(MEMBRANES), false, NULL, any_mesh, mark_all, act_published, NULL, free_augury},
+    {"averaged surface", METHOD(AUGURY), FORM(SMOOTH) | FORM(SURFACE), EXPLICIT, SELF(MEMBRANES), false, NULL, any_mesh, NULL, act_averaged, NULL, free_augury},
+    {"surface on grid", METHOD(MULTI_VELOCITY), 0, EXPLICIT, SELF(NONE), true, NULL, mesh_and_points, brunt_surface_on_grid_near, act_on_grid, account_on_grid, free_on_grid},
+    {"barrier", METHOD(BARRIER), 0, IMPLICIT, SELF(MESHES), false, "a body of method fem", any_mesh, NULL, NULL, NULL, NULL},
+    {"node to facet", METHOD(AUGURY), FORM(AFFINE), EXPLICIT, SELF(MEMBRANES), false, "a body of method fem or membrane", any_mesh, NULL, act_at_facets, NULL, NULL},
 };
 // clang-format on
 const int brunt_contact_row_count = sizeof brunt_contact_rows / sizeof *brunt_contact_rows;
 _Static_assert(sizeof brunt_contact_rows / sizeof *brunt_contact_rows <= (size_t)BRUNT_CONTACT_ROW_LIMIT,
                "more methods than a world keeps memory for");
+
+#define ONE(name, word) +1
+const int brunt_contact_method_count = BRUNT_CONTACT_METHODS(ONE);
 
 static bool is_of(const brunt_contact_row *row, brunt_contact_method method) { return row->methods >> method & 1; }
 
@@ -117,4 +126,37 @@ const char *brunt_contact_wants(brunt_contact_method method) {
     for (int r = 0; r < brunt_contact_row_count && !wants; r++)
         if (is_of(&brunt_contact_rows[r], method)) wants = brunt_contact_rows[r].wants;
     return wants ? wants : "other bodies";
+}
+
+brunt_contact_method brunt_contact_default(brunt_scheme scheme, bool meshes) {
+    const bool mesh = meshes || scheme == BRUNT_IMPLICIT;
+    const brunt_contact_row *row = brunt_contact_rows;
+    while (!(row->schemes >> scheme & 1) || !row->accepts(mesh, mesh)) row++;
+    return (brunt_contact_method)__builtin_ctz(row->methods);
+}
+
+bool brunt_contact_of_scheme(brunt_contact_method method, brunt_scheme scheme) {
+    bool has = method == BRUNT_CONTACT_NONE;
+    for (int r = 0; r < brunt_contact_row_count; r++)
+        has |= is_of(&brunt_contact_rows[r], method) && brunt_contact_rows[r].schemes >> scheme & 1;
+    return has;
+}
+
+void brunt_contact_words_of(brunt_scheme scheme, char *out, size_t size) {
+    size_t used = 0;
+    for (int method = brunt_contact_method_count - 1; method >= 0 && used < size; method--)
+        if (brunt_contact_of_scheme((brunt_contact_method)method, scheme))
+            used += (size_t)snprintf(out + used, size - used, "%s%s",
+                                     used == 0                     ? ""
+                                     : method > BRUNT_CONTACT_NONE ? ", "
+                                                                   : " or ",
+                                     brunt_contact_word((brunt_contact_method)method));
+}
+
+brunt_contact_self brunt_contact_with_itself(brunt_contact_method method) {
+    brunt_contact_self self = BRUNT_SELF_NONE;
+    for (int r = 0; r < brunt_contact_row_count; r++)
+        if (is_of(&brunt_contact_rows[r], method) && brunt_contact_rows[r].self > self)
+            self = brunt_contact_rows[r].self;
+    return self;
 }

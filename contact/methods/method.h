@@ -18,11 +18,16 @@ typedef struct brunt_contact_work {
     void **memory; // what the row that acts keeps; NULL before it does so first
 } brunt_contact_work;
 
+// Which bodies may be in contact with themselves by a method.
+typedef enum brunt_contact_self { BRUNT_SELF_NONE, BRUNT_SELF_MEMBRANES, BRUNT_SELF_MESHES } brunt_contact_self;
+
 typedef struct brunt_contact_row {
     const char *name;
     unsigned methods; // bits of brunt_contact_method by which scenes ask for it
     unsigned forms;   // bits of brunt_augury_form, where that is the method; else 0
-    bool at_nodes;    // of the grid of material points
+    unsigned schemes; // bits of brunt_scheme that have it
+    brunt_contact_self self;
+    bool at_nodes; // of the grid of material points
     // What it wants of two bodies, after "wants"; NULL: another row of the method says it.
     const char *wants;
     // Whether two bodies, of elements (else of material points), may meet by it.
@@ -52,3 +57,11 @@ bool brunt_contact_at_nodes(brunt_contact_method method);
 // What scenes call a method, and what it wants of two bodies.
 const char *brunt_contact_word(brunt_contact_method method);
 const char *brunt_contact_wants(brunt_contact_method method);
+extern const int brunt_contact_method_count;
+// The method of a scheme for all pairs of a scene that gives none, with bodies that are meshes or without: that of the
+// first row which takes two of them. Implicit steps have none for material points alone, and take that of meshes.
+brunt_contact_method brunt_contact_default(brunt_scheme scheme, bool meshes);
+// Whether a scheme has a method, none included, and the words of all that it has: "barrier, tied or none".
+bool brunt_contact_of_scheme(brunt_contact_method method, brunt_scheme scheme);
+void brunt_contact_words_of(brunt_scheme scheme, char *out, size_t size);
+brunt_contact_self brunt_contact_with_itself(brunt_contact_method method);

@@ -7,6 +7,7 @@
 
 #include "contact/planes/condition.h"
 #include "boundary/kinds.h"
+#include "contact/methods/method.h"
 #include "world/definitions.h"
 #include "base/check.h"
 #include "base/error.h"
@@ -182,7 +183,8 @@ static int check_boundary_names(const brunt_world_def *def, brunt_error *error) 
 
 static int check_contact(const brunt_world_def *def, brunt_error *error) {
     const brunt_contact_def *contact = &def->contact;
-    BRUNT_TRY(brunt_check_choice("contact", ".method", (unsigned)contact->method, BRUNT_CONTACT_BARRIER + 1, error));
+    BRUNT_TRY(brunt_check_choice("contact", ".method", (unsigned)contact->method, (unsigned)brunt_contact_method_count,
+                                 error));
     BRUNT_TRY(brunt_check_choice("contact", ".form", (unsigned)contact->form, BRUNT_AUGURY_PAPER + 1, error));
     BRUNT_TRY(brunt_check_choice("contact", ".transfer", (unsigned)contact->transfer, BRUNT_APIC + 1, error));
     if (!(contact->friction >= 0)) REFUSE("contact.friction: %g is negative", contact->friction);
@@ -202,7 +204,8 @@ static int check_contact(const brunt_world_def *def, brunt_error *error) {
         snprintf(owner, sizeof owner, "contact.pairs[%d]", q);
         BRUNT_TRY(brunt_check_name_ends("contact.pairs", q, pair->a, error));
         BRUNT_TRY(brunt_check_name_ends("contact.pairs", q, pair->b, error));
-        BRUNT_TRY(brunt_check_choice(owner, ".method", (unsigned)pair->method, BRUNT_CONTACT_BARRIER + 1, error));
+        BRUNT_TRY(
+            brunt_check_choice(owner, ".method", (unsigned)pair->method, (unsigned)brunt_contact_method_count, error));
         BRUNT_CHECK_NUMBERS(owner, {".friction", &pair->friction, 1, BRUNT_ANY_NUMBER});
     }
     int32_t one[2], other[2];

@@ -102,10 +102,6 @@ static void look_at_boundaries(const brunt_world_def *def, refusals *r) {
     }
 }
 
-static bool belongs(brunt_contact_method method) {
-    return method == BRUNT_CONTACT_NONE || method == BRUNT_CONTACT_BARRIER || method == BRUNT_CONTACT_TIED;
-}
-
 static brunt_contact_method method_of(const brunt_contact_def *contact, const brunt_body_def *a,
                                       const brunt_body_def *b) {
     brunt_contact_method method = contact->method;
@@ -136,23 +132,8 @@ static void look_at_points(const brunt_world_def *def, const refusals *r) {
 
 static void look_at_contact(const brunt_world_def *def, refusals *r) {
     const brunt_contact_def *contact = &def->contact;
-    const bool some = def->body_count > 1;
     set_owner(r, "contact");
-    if (some && !belongs(contact->method))
-        say(r, ".method",
-            "%s: " EXPLICIT_ONLY
-            ", barrier, tied or none is wanted; where no method is given each scheme takes its own",
-            brunt_contact_word(contact->method));
     if (contact->allow_overlap) say(r, ".initial_overlap", "allow: " EXPLICIT_ONLY ", barriers keep gaps open");
-    for (int32_t q = 0; q < contact->pair_count; q++) {
-        set_owner(r, "contact.pairs[%d]", q);
-        if (!belongs(contact->pairs[q].method))
-            say(r, ".method",
-                "%s: " EXPLICIT_ONLY
-                ", barrier, tied or none is wanted; where no method is given each scheme takes its own",
-                brunt_contact_word(contact->pairs[q].method));
-    }
-    set_owner(r, "contact");
     look_at_points(def, r);
 }
 
@@ -163,27 +144,35 @@ static void look_at_implicit(const brunt_world_def *def, refusals *r) {
         look_at_body(&def->bodies[i], r);
     }
     look_at_boundaries(def, r);
-    look_at_contact(def, r);
 }
 
-// ------------------------------------------------------------------------------------------ explicit steps
+// ------------------------------------------------------------------------------------------ both
 
-#define IMPLICIT_ONLY "this belongs to time.scheme: implicit; where no method is given each scheme takes its own"
+// Methods of contact that a scheme has not got.
+static void look_at_method(brunt_contact_method method, brunt_scheme scheme, const refusals *r) {
+    static const char own[] = "where no method is given each scheme takes its own";
+    char words[80];
+    if (brunt_contact_of_scheme(method, scheme)) return;
+    brunt_contact_words_of(scheme, words, sizeof words);
+    if (scheme == BRUNT_IMPLICIT)
+        say(r, ".method", "%s: " EXPLICIT_ONLY ", %s is wanted; %s", brunt_contact_word(method), words, own);
+    else
+        say(r, ".method", "%s: this belongs to time.scheme: implicit; %s", brunt_contact_word(method), own);
+}
 
-static void look_at_explicit(const brunt_world_def *def, refusals *r) {
+static void look_at_methods(const brunt_world_def *def, refusals *r) {
     const brunt_contact_def *contact = &def->contact;
     set_owner(r, "contact");
-    if (contact->method == BRUNT_CONTACT_BARRIER) say(r, ".method", "barrier: " IMPLICIT_ONLY);
+    if (def->body_count > 1 || def->scheme == BRUNT_EXPLICIT) look_at_method(contact->method, def->scheme, r);
     for (int32_t q = 0; q < contact->pair_count; q++) {
         set_owner(r, "contact.pairs[%d]", q);
-        if (contact->pairs[q].method == BRUNT_CONTACT_BARRIER) say(r, ".method", "barrier: " IMPLICIT_ONLY);
+        look_at_method(contact->pairs[q].method, def->scheme, r);
     }
 }
 
 void brunt_scheme_refusals(const brunt_world_def *def, brunt_refusal_fn *refuse, void *context) {
     refusals r = {.refuse = refuse, .context = context, .owner = ""};
-    if (def->scheme == BRUNT_IMPLICIT)
-        look_at_implicit(def, &r);
-    else
-        look_at_explicit(def, &r);
+    if (def->scheme == BRUNT_IMPLICIT) look_at_implicit(def, &r);
+    look_at_methods(def, &r);
+    if (def->scheme == BRUNT_IMPLICIT) look_at_contact(def, &r);
 }

@@ -5,6 +5,7 @@
 #include "brunt.h"
 #include "base/memory.h"
 #include "boundary/kinds.h"
+#include "contact/methods/method.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -19,7 +20,7 @@ brunt_world_def brunt_world_def_default(void) {
         .flip = 0.99,
         .energy_limit = 0.1,
         .newton = {.tolerance = 1e-6, .iterations = 100, .cut = 6, .accuracy = 1e-3},
-        .contact = {.method = BRUNT_CONTACT_MULTI_VELOCITY,
+        .contact = {.method = brunt_contact_default(BRUNT_EXPLICIT, false),
                     .iterations = -1,
                     .tolerance = 0.01,
                     .transfer = BRUNT_APIC,

@@ -41,19 +41,20 @@ static int make_self_pair(const maker *m, int q, brunt_error *error) {
               b = brunt_find_ordered(m->order, n, def->b);
     if (a < 0 || b < 0) REFUSE("contact.pairs[%d].between: '%s' and '%s' are not two bodies", q, def->a, def->b);
     if (a != b) return BRUNT_OK;
-    const bool barrier = def->method == BRUNT_CONTACT_BARRIER;
+    const brunt_contact_self self = brunt_contact_with_itself(def->method);
     if (def->method == BRUNT_CONTACT_NONE) return BRUNT_OK;
-    if (barrier && m->order[a]->method == BRUNT_MPM)
+    if (self == BRUNT_SELF_MESHES && m->order[a]->method == BRUNT_MPM)
         REFUSE("contact.pairs[%d].between: '%s' has no mesh to be in contact with itself", q, def->a);
-    if (!barrier && m->order[a]->method != BRUNT_MEMBRANE)
+    if (self != BRUNT_SELF_MESHES && m->order[a]->method != BRUNT_MEMBRANE)
         REFUSE("contact.pairs[%d].between: '%s' is no membrane: no other body can be in contact with itself", q,
                def->a);
-    if (!barrier && def->method != BRUNT_CONTACT_AUGURY)
+    if (self == BRUNT_SELF_NONE)
         REFUSE("contact.pairs[%d].method: contact of '%s' with itself is by augury", q, def->a);
     if (!(def->friction >= 0)) REFUSE("contact.pairs[%d].friction: %g is negative", q, def->friction);
     for (int p = 0; p < pairs->count; p++)
         if (pairs->pair[p].a == a) REFUSE("contact.pairs[%d].between: '%s' is listed twice", q, def->a);
     brunt_contact *contact = &m->world->contact;
+    const bool barrier = def->method == BRUNT_CONTACT_BARRIER;
     *(barrier ? &contact->has_barrier : &contact->has_augury) = contact->has_self = true;
     if (!barrier) contact->rows |= brunt_contact_rows_of(def->method, m->def->contact.form, true, true);
     m->world->contact.has_friction = m->world->contact.has_friction || def->friction > 0;

@@ -28,8 +28,9 @@ static void check_pair_method(scene_reader *reader, const scene_node *method, co
 static void check_self(scene_reader *reader, const scene_node *between, const scene_node *method,
                        const brunt_pair_def *pair) {
     const brunt_body_def *body = brunt_body_named(reader, pair->a);
+    const brunt_contact_self self = brunt_contact_with_itself(pair->method);
     if (!body || pair->method == BRUNT_CONTACT_NONE) return;
-    if (pair->method == BRUNT_CONTACT_BARRIER) {
+    if (self == BRUNT_SELF_MESHES) {
         if (body->method == BRUNT_MPM)
             brunt_tree_complain(reader->tree, between,
                                 "contact of a body with itself wants its mesh, '%s' is of method mpm", pair->a);
@@ -38,7 +39,7 @@ static void check_self(scene_reader *reader, const scene_node *between, const sc
     if (body->method != BRUNT_MEMBRANE)
         brunt_tree_complain(reader->tree, between, "contact of a body with itself is for membranes, '%s' is none",
                             pair->a);
-    else if (pair->method != BRUNT_CONTACT_AUGURY)
+    else if (self == BRUNT_SELF_NONE)
         brunt_tree_complain(reader->tree, method ? method : between,
                             "contact of a membrane with itself is by augury: method: augury is wanted");
     else if (body->contact_thickness == 0)
@@ -108,12 +109,11 @@ static void check_method(scene_reader *reader, const scene_node *method) {
             const bool mesh_a = one->method != BRUNT_MPM, mesh_b = other->method != BRUNT_MPM;
             if ((!mesh_a && !mesh_b) || brunt_contact_accepts(of_all, mesh_a, mesh_b)) continue;
             if (overridden(&world->contact, one->name, other->name)) continue;
-            brunt_tree_complain(
-                reader->tree, method,
-                "%s wants %s, which '%s' and '%s' are not: %s is wanted, or pairs with a method of "
-                "their own",
-                brunt_contact_word(of_all), brunt_contact_wants(of_all), one->name, other->name,
-                brunt_contact_word(world->scheme == BRUNT_IMPLICIT ? BRUNT_CONTACT_BARRIER : BRUNT_CONTACT_AUGURY));
+            brunt_tree_complain(reader->tree, method,
+                                "%s wants %s, which '%s' and '%s' are not: %s is wanted, or pairs with a method of "
+                                "their own",
+                                brunt_contact_word(of_all), brunt_contact_wants(of_all), one->name, other->name,
+                                brunt_contact_word(brunt_contact_default(world->scheme, true)));
             return;
         }
 }
@@ -225,9 +225,7 @@ void brunt_fill_contact(scene_reader *reader) {
     bool fem = false;
     for (int i = 0; i < world->body_count; i++) fem |= world->bodies[i].method != BRUNT_MPM;
     const scene_node *method = brunt_tree_child(node, "method");
-    contact->method = world->scheme == BRUNT_IMPLICIT ? BRUNT_CONTACT_BARRIER
-                      : fem                           ? BRUNT_CONTACT_AUGURY
-                                                      : BRUNT_CONTACT_MULTI_VELOCITY;
+    contact->method = brunt_contact_default(world->scheme, fem);
     // A default is not written down: each scheme takes its own, also of a resolved scene.
     contact->method = (brunt_contact_method)(int)brunt_real_of(node, "method", contact->method);
     contact->friction = brunt_real_of(node, "friction", 0);
