@@ -31,7 +31,7 @@ SAMPLES = {
     # coarser scene scales it, that implicit steps refuse it.
     "body key": (r"(from|def|body)->mass_scaling|double mass_scaling;|[.*\"]\.mass_scaling", r"engine/fem/", 3),
     # Of elements; the row of material points besides.
-    "output field": (r"\"von_mises\"|(derive|element)_von_mises", r"engine/world/read_mesh\.c", 2),
+    "output field": (r"\"von_mises\"|(derive|element)_von_mises", r"engine/body/mesh_fields\.c", 2),
 }
 
 

@@ -31,11 +31,11 @@ static double rounding_energy(const brunt_bodies *bodies) {
     for (int i = 0; i < bodies->count; i++) {
         const brunt_body_ref *body = &bodies->all[i];
         double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, far = 0;
-        const int dim = body->fem ? body->fem->dim : body->mpm->particles.dim;
+        const int dim = body->ops->dim(body);
         body->ops->bounds(body, low, high);
         for (int a = 0; a < dim; a++) far = fmax(far, fmax(fabs(low[a]), fabs(high[a])));
-        const double mass = body->ops->sums(body).mass, size = brunt_body_ref_size(body);
-        const double wave_speed = (double)brunt_body_ref_material(body)->wave_speed;
+        const double mass = body->ops->sums(body).mass, size = body->ops->fineness(body);
+        const double wave_speed = (double)body->ops->material(body)->wave_speed;
         const double v = wave_speed * STEP_ROUNDINGS * REAL_EPSILON * far / size;
         energy += mass * v * v;
     }

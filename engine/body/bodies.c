@@ -6,7 +6,7 @@
 
 const char *brunt_bodies_name(const brunt_bodies *bodies, int body) {
     const brunt_body_ref *ref = &bodies->all[body];
-    return ref->fem ? ref->fem->name : ref->mpm->name;
+    return ref->ops->name(ref);
 }
 
 int brunt_bodies_find(const brunt_bodies *bodies, const char *name) {
@@ -22,14 +22,6 @@ int brunt_bodies_find(const brunt_bodies *bodies, const char *name) {
     return -1;
 }
 
-const brunt_material *brunt_body_ref_material(const brunt_body_ref *body) {
-    return body->fem ? &body->fem->material : &body->mpm->material;
-}
-
-double brunt_body_ref_size(const brunt_body_ref *body) {
-    return body->fem ? (double)body->fem->mean_edge : body->mpm->spacing;
-}
-
 brunt_body_ref *brunt_bodies_summed(const brunt_bodies *bodies, int i) {
     const bool points = i < bodies->mpm_count;
     return &bodies->all[points ? bodies->mpm[i].index : bodies->fem[i - bodies->mpm_count].index];
@@ -42,7 +34,6 @@ void brunt_bodies_validate(const brunt_bodies *bodies) {
         BRUNT_ASSERT(!ref->mpm != !ref->fem && ref->ops == (ref->mpm ? &brunt_points_ops : &brunt_mesh_ops));
         BRUNT_ASSERT((ref->mpm ? ref->mpm->index : ref->fem->index) == i);
         BRUNT_ASSERT(!i || strcmp(brunt_bodies_name(bodies, i - 1), brunt_bodies_name(bodies, i)) < 0);
-        if (ref->mpm) brunt_body_validate(ref->mpm);
-        if (ref->fem) brunt_fem_validate(ref->fem);
+        ref->ops->validate(ref);
     }
 }

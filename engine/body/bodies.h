@@ -20,6 +20,24 @@ struct brunt_body_ops {
     void (*bounds)(const brunt_body_ref *body, double low[3],
                    double high[3]);               // [m]; INFINITY and less: nothing is left
     uint64_t (*hash)(const brunt_body_ref *body); // to be added to that of the others
+    const char *(*name)(const brunt_body_ref *body);
+    const brunt_material *(*material)(const brunt_body_ref *body);
+    brunt_method (*method)(const brunt_body_ref *body);
+    int (*dim)(const brunt_body_ref *body);
+    // How fine it is [m]: the spacing of its points, the mean edge of its surface.
+    double (*fineness)(const brunt_body_ref *body);
+    // Places of a kind that it still has.
+    int64_t (*count)(const brunt_body_ref *body, brunt_place at);
+    // Longest stable step [s] by what its blocks have reported, in cells of `cell` [m] and beside what moves at
+    // `around` [m/s], with loads that follow its surface at a frequency of squared `load` [1/s^2]. INFINITY: nothing is
+    // left, NAN: a report is no number. And as of its start, when nothing is left.
+    double (*stable_step)(const brunt_body_ref *body, double cell, double around, double load);
+    double (*first_step)(const brunt_body_ref *body, double cell);
+    // Fields that can be read: how many, what they are, and the values of one in the order of the ids of their places.
+    int32_t (*field_count)(const brunt_body_ref *body);
+    brunt_field_info (*field)(const brunt_body_ref *body, int32_t field);
+    void (*read)(const brunt_body_ref *body, int32_t field, double *out);
+    void (*validate)(const brunt_body_ref *body);
     // Blocks of its state, in their order: how many; what they are; out, and in. What follows from them is made later.
     int (*block_count)(const brunt_body_ref *body);
     brunt_state_block (*block_info)(const brunt_body_ref *body, int block);
@@ -54,9 +72,6 @@ typedef struct brunt_bodies {
 const char *brunt_bodies_name(const brunt_bodies *bodies, int body);
 // The body of a name, -1: there is none.
 int brunt_bodies_find(const brunt_bodies *bodies, const char *name);
-const brunt_material *brunt_body_ref_material(const brunt_body_ref *body);
-// How fine it is [m]: the spacing of its points, the mean edge of its surface.
-double brunt_body_ref_size(const brunt_body_ref *body);
 // Body `i` in the order that sums are taken in: points, then meshes, each by name.
 brunt_body_ref *brunt_bodies_summed(const brunt_bodies *bodies, int i);
 void brunt_bodies_validate(const brunt_bodies *bodies);

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "body/bodies.h"
+#include "body/fields.h"
 
 static const char REAL_TYPE = sizeof(real) == 8 ? 'd' : 'f';
 
@@ -49,6 +50,29 @@ static uint64_t hash(const brunt_body_ref *ref) {
         }
     for (int32_t s = 0; fem->bonds && s < fem->slots; s++) h = brunt_hash_add(h, (uint64_t)(int64_t)fem->element_id[s]);
     return h;
+}
+
+static const char *name(const brunt_body_ref *ref) { return ref->fem->name; }
+static const brunt_material *material(const brunt_body_ref *ref) { return &ref->fem->material; }
+static int dim(const brunt_body_ref *ref) { return ref->fem->dim; }
+static double fineness(const brunt_body_ref *ref) { return (double)ref->fem->mean_edge; }
+static double first_step(const brunt_body_ref *ref, double cell) { return (void)cell, ref->fem->least_step; }
+static void validate(const brunt_body_ref *ref) { brunt_fem_validate(ref->fem); }
+
+static brunt_method method(const brunt_body_ref *ref) {
+    return ref->fem->traits->membrane ? BRUNT_MEMBRANE : BRUNT_FEM;
+}
+
+static int64_t count(const brunt_body_ref *ref, brunt_place at) {
+    return at == BRUNT_AT_NODES ? ref->fem->node_count : at == BRUNT_AT_ELEMENTS ? ref->fem->element_count : 0;
+}
+
+// Elements alone are stable up to dt_e. That is dt^2 omega^2 <= 4 of springs, but with dampers, of rates half a step
+// behind, dt^2 omega^2 + 2 c dt <= 4, which at a share s of dt_e is at most 4 s: with loads 4 dt / dt_e + dt^2 q <= 4.
+static double stable_step(const brunt_body_ref *ref, double cell, double around, double load) {
+    (void)cell, (void)around;
+    const double inverse = 1 / brunt_fem_blocks_step(ref->fem);
+    return load > 0 ? 2 / (inverse + sqrt(inverse * inverse + load)) : 1 / inverse;
 }
 
 // ------------------------------------------------------------------------------------------ state
@@ -110,4 +134,4 @@ static int block_set(const brunt_body_ref *ref, int block, const void *in, int64
     return BRUNT_OK;
 }
 
-const brunt_body_ops brunt_mesh_ops = {sums, energy, bounds, hash, block_count, block_info, block_get, block_set};
+const brunt_body_ops brunt_mesh_ops = BRUNT_BODY_OPS(mesh);

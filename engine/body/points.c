@@ -10,6 +10,7 @@
 #include "base/hash.h"
 #include "base/memory.h"
 #include "body/bodies.h"
+#include "body/fields.h"
 #include "body/points.h"
 
 static const char REAL_TYPE = sizeof(real) == 8 ? 'd' : 'f';
@@ -40,6 +41,34 @@ static uint64_t hash(const brunt_body_ref *ref) {
         sum += h;
     }
     return sum;
+}
+
+static const char *name(const brunt_body_ref *ref) { return ref->mpm->name; }
+static const brunt_material *material(const brunt_body_ref *ref) { return &ref->mpm->material; }
+static brunt_method method(const brunt_body_ref *ref) { return (void)ref, BRUNT_MPM; }
+static int dim(const brunt_body_ref *ref) { return ref->mpm->particles.dim; }
+static double fineness(const brunt_body_ref *ref) { return ref->mpm->spacing; }
+static void validate(const brunt_body_ref *ref) { brunt_body_validate(ref->mpm); }
+
+static int64_t count(const brunt_body_ref *ref, brunt_place at) {
+    return at == BRUNT_AT_PARTICLES ? ref->mpm->particles.count : 0;
+}
+
+// Speeds are the greatest of the whole body, so that the step does not depend on how blocks cut it.
+static double stable_step(const brunt_body_ref *ref, double cell, double around, double load) {
+    (void)load;
+    const brunt_body *body = ref->mpm;
+    double wave = 0, speed = around;
+    for (int32_t b = 0; b < body->grid.block_count; b++) {
+        wave = fmax(wave, (double)body->report[b].wave_speed);
+        speed = fmax(speed, (double)body->report[b].speed);
+        if (isnan(body->report[b].wave_speed) || isnan(body->report[b].speed)) return NAN;
+    }
+    return wave + speed > 0 ? cell / (wave + speed) : INFINITY;
+}
+
+static double first_step(const brunt_body_ref *ref, double cell) {
+    return cell / (double)ref->mpm->material.wave_speed;
 }
 
 // ------------------------------------------------------------------------------------------ state: ids, then fields
@@ -121,4 +150,4 @@ static int block_set(const brunt_body_ref *ref, int block, const void *in, int64
     return BRUNT_OK;
 }
 
-const brunt_body_ops brunt_points_ops = {sums, energy, bounds, hash, block_count, block_info, block_get, block_set};
+const brunt_body_ops brunt_points_ops = BRUNT_BODY_OPS(points);

@@ -70,7 +70,7 @@ static double light_elements(const brunt_world_def *def, brunt_fem_body *fem, do
 }
 
 static bool burns(const brunt_body_ref *ref) {
-    const brunt_model *eos = ref->mpm ? ref->mpm->material.model[BRUNT_EOS] : ref->fem->material.model[BRUNT_EOS];
+    const brunt_model *eos = ref->ops->material(ref)->model[BRUNT_EOS];
     return eos && eos->explosive;
 }
 
@@ -111,14 +111,13 @@ static void warn(brunt_messages *messages, const brunt_world_def *def, const bru
         brunt_warn(messages, "bodies.%s: this explosive is never lit, no detonation reaches it", name);
         return;
     }
-    const double gap = (first - earliest) * speed, near = ref->mpm ? ref->mpm->spacing : ref->fem->mean_edge;
+    const double gap = (first - earliest) * speed, near = ref->ops->fineness(ref);
     if (gap > 2 * near)
         brunt_warn(messages,
                    "bodies.%s: the first detonation is %.3g m outside of this explosive, its front runs through "
                    "what is between as through explosive",
                    name, gap);
-    const brunt_material *material = ref->mpm ? &ref->mpm->material : &ref->fem->material;
-    if (!material->model[BRUNT_VISCOSITY])
+    if (!ref->ops->material(ref)->model[BRUNT_VISCOSITY])
         brunt_warn(messages,
                    "bodies.%s: an explosive without bulk viscosity rings behind its front (materials: viscosity: {})",
                    name);

@@ -104,9 +104,10 @@ static double look_at_faces(const brunt_node_set *set, double time, double *rate
     return def->gas.gamma * gas.pressure / gas.volume * mobility(set);
 }
 
-double brunt_load_frequency(const brunt_node_sets *sets, const brunt_bodies *bodies, int fem, double time) {
-    if (!sets->load_rate || !sets->load_rate[fem]) return 0;
-    const brunt_fem_body *body = &bodies->fem[fem];
+double brunt_load_frequency(const brunt_node_sets *sets, const brunt_bodies *bodies, int index, double time) {
+    const brunt_fem_body *body = bodies->all[index].fem;
+    const int fem = body ? (int)(body - bodies->fem) : -1;
+    if (fem < 0 || !sets->load_rate || !sets->load_rate[fem]) return 0;
     double *rate = sets->load_rate[fem], greatest = 0, gas = 0;
     const uint8_t all = (uint8_t)((1 << body->dim) - 1);
     memset(rate, 0, (size_t)body->node_count * sizeof *rate);

@@ -162,6 +162,10 @@ void brunt_fem_shares(const brunt_fem_body *body, int32_t slot, double *share);
 void brunt_fem_free(brunt_fem_body *body);
 size_t brunt_fem_bytes(const brunt_fem_body *body);
 
+// --- stable_step.c: the least of the steps that its blocks last reported [s]; INFINITY: there is none, NAN: one is
+// none.
+double brunt_fem_blocks_step(const brunt_fem_body *body);
+
 // --- validate.c: aborts where elements, blocks and nodes do not belong together. Every step in debug builds.
 void brunt_fem_validate(const brunt_fem_body *body);
 

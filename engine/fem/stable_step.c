@@ -200,3 +200,12 @@ void brunt_fem_stable_steps(brunt_fem_body *body, double mass_scaling) {
         body->least_step = fmin(body->least_step, stable_step(body, (const double(*)[3])x, density));
     }
 }
+
+double brunt_fem_blocks_step(const brunt_fem_body *fem) {
+    double least = INFINITY;
+    for (int32_t b = 0; b < fem->block_count; b++) {
+        if (isnan(fem->report[b].stable_step)) return NAN;
+        least = fmin(least, fem->report[b].stable_step);
+    }
+    return least;
+}

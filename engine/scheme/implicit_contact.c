@@ -20,7 +20,7 @@ static int out_of_memory(brunt_error *error) {
 
 // [Pa] Young's modulus, or of what has none that of its waves.
 static double young(const brunt_world_def *def, const brunt_world *world, int body) {
-    const brunt_material *material = brunt_body_ref_material(&world->bodies.all[body]);
+    const brunt_material *material = brunt_world_material(world, body);
     for (int32_t m = 0; m < def->material_count; m++) {
         const brunt_material_def *from = &def->materials[m];
         const brunt_model *model = brunt_find_strength(from->strength);
@@ -41,7 +41,7 @@ static double smallest_size(const brunt_world *world, int body) {
 static double slowest_wave(const brunt_world *world) {
     double slowest = INFINITY;
     for (int b = 0; b < world->bodies.count; b++)
-        slowest = fmin(slowest, (double)brunt_body_ref_material(&world->bodies.all[b])->wave_speed);
+        slowest = fmin(slowest, (double)brunt_world_material(world, b)->wave_speed);
     return slowest;
 }
 

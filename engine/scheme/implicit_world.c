@@ -160,7 +160,7 @@ static void set_options(brunt_world *world, struct brunt_implicit *m) {
     const brunt_newton_def *newton = &world->settings.newton;
     double slowest = INFINITY;
     for (int b = 0; b < world->bodies.count; b++)
-        slowest = fmin(slowest, (double)brunt_body_ref_material(&world->bodies.all[b])->wave_speed);
+        slowest = fmin(slowest, (double)brunt_world_material(world, b)->wave_speed);
     m->options = brunt_newton_defaults();
     m->options.tolerance = m->tolerance = newton->tolerance * slowest;
     m->options.iterations = newton->iterations;

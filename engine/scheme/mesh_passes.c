@@ -190,27 +190,10 @@ brunt_fem_body *brunt_fem_elements_all(brunt_world *world, double dt, int32_t *b
     return failed;
 }
 
-static double blocks_step(const brunt_fem_body *fem) {
-    double least = INFINITY;
-    for (int32_t b = 0; b < fem->block_count; b++) {
-        if (isnan(fem->report[b].stable_step)) return NAN;
-        least = fmin(least, fem->report[b].stable_step);
-    }
-    return least;
-}
-
-// Elements alone are stable up to dt_e. That is dt^2 omega^2 <= 4 of springs, but with dampers, of rates half a step
-// behind, dt^2 omega^2 + 2 c dt <= 4, which at a share s of dt_e is at most 4 s: with loads 4 dt / dt_e + dt^2 q <= 4.
-double brunt_fem_body_step(const brunt_world *world, int fem) {
-    const double inverse = 1 / blocks_step(&world->bodies.fem[fem]),
-                 q = brunt_load_frequency(&world->boundaries.sets, &world->bodies, fem, world->clock.time);
-    return q > 0 ? 2 / (inverse + sqrt(inverse * inverse + q)) : 1 / inverse;
-}
-
 double brunt_fem_stable_step(const brunt_world *world) {
     double least = INFINITY;
     for (int k = 0; k < world->bodies.fem_count; k++) {
-        double step = brunt_fem_body_step(world, k);
+        double step = brunt_body_step(world, world->bodies.fem[k].index, 0);
         if (isnan(step)) return NAN;
         least = fmin(least, step);
     }
@@ -220,7 +203,7 @@ double brunt_fem_stable_step(const brunt_world *world) {
 // The slot of a body's element that has the shortest step, -1: out of memory.
 static int32_t shortest_element(brunt_world *world, const brunt_fem_body *fem) {
     brunt_fem_single *single = brunt_fem_single_make(fem);
-    const double block_least = blocks_step(fem);
+    const double block_least = brunt_fem_blocks_step(fem);
     double shortest = INFINITY;
     int32_t slot = -1;
     for (int32_t b = 0; single && b < fem->block_count; b++) {
@@ -238,7 +221,7 @@ static int32_t shortest_element(brunt_world *world, const brunt_fem_body *fem) {
 brunt_fem_body *brunt_fem_shortest(brunt_world *world, int32_t *slot) {
     const double least = brunt_fem_stable_step(world);
     for (int k = 0; k < world->bodies.fem_count; k++)
-        if (brunt_fem_body_step(world, k) <= least)
+        if (brunt_body_step(world, world->bodies.fem[k].index, 0) <= least)
             return (*slot = shortest_element(world, &world->bodies.fem[k])) < 0 ? NULL : &world->bodies.fem[k];
     return NULL;
 }

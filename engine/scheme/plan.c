@@ -9,8 +9,8 @@
 static const brunt_model *find_model(const brunt_world *world, size_t flag) {
     for (int i = 0; i < world->bodies.count; i++)
         for (int k = 0; k < BRUNT_COMPONENTS; k++) {
-            const brunt_body_ref body = world->bodies.all[i];
-            const brunt_model *model = body.fem ? body.fem->material.model[k] : body.mpm->material.model[k];
+            const brunt_body_ref *body = &world->bodies.all[i];
+            const brunt_model *model = body->ops->material(body)->model[k];
             if (model && *(const bool *)((const char *)model + flag)) return model;
         }
     return NULL;
@@ -36,8 +36,8 @@ static bool has_tension_only(const brunt_world *world) {
 
 static bool has_softening(const brunt_world *world) {
     for (int i = 0; i < world->bodies.count; i++) {
-        const brunt_body_ref body = world->bodies.all[i];
-        const brunt_material *material = body.fem ? &body.fem->material : &body.mpm->material;
+        const brunt_body_ref *body = &world->bodies.all[i];
+        const brunt_material *material = body->ops->material(body);
         if (material->model[BRUNT_FAILURE] && material->failure_action == BRUNT_FAILURE_SOFTEN) return true;
     }
     return false;

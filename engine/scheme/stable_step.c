@@ -6,31 +6,28 @@
 #include "boundary/gravity.h"
 #include "scheme/scheme.h"
 
+double brunt_body_step(const brunt_world *world, int body, double around) {
+    const brunt_body_ref *ref = &world->bodies.all[body];
+    const double load = brunt_load_frequency(&world->boundaries.sets, &world->bodies, body, world->clock.time);
+    return ref->ops->stable_step(ref, world->settings.cell, around, load);
+}
+
 double brunt_stable_step(const brunt_world *world) {
-    double inverse = 0, wall_speed = 0;
+    double wall_speed = 0, first = INFINITY;
     for (int w = 0; w < world->boundaries.wall_count; w++) {
         const brunt_boundary *wall = &world->boundaries.walls[w];
         const double *v = wall->kind->velocity ? wall->kind->velocity(wall) : (const double[3]){0};
         wall_speed = fmax(wall_speed, sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
     }
-    // Greatest over the whole body, so that the step does not depend on how blocks cut it.
-    for (int i = 0; i < world->bodies.mpm_count; i++) {
-        const brunt_body *body = &world->bodies.mpm[i];
-        double wave = 0, speed = wall_speed;
-        for (int32_t b = 0; b < body->grid.block_count; b++) {
-            wave = fmax(wave, (double)body->report[b].wave_speed);
-            speed = fmax(speed, (double)body->report[b].speed);
-            if (isnan(body->report[b].wave_speed) || isnan(body->report[b].speed)) return NAN;
-        }
-        inverse = fmax(inverse, wave + speed);
+    double least = INFINITY;
+    for (int i = 0; i < world->bodies.count; i++) {
+        const double step = brunt_body_step(world, i, wall_speed);
+        if (isnan(step)) return NAN;
+        least = fmin(least, step);
     }
-    double grid = inverse > 0 ? world->settings.cell / inverse : INFINITY,
-           least = fmin(grid, brunt_fem_stable_step(world));
-    if (isinf(least)) { // all has eroded: steps as of what there was
-        for (int i = 0; i < world->bodies.mpm_count; i++)
-            least = fmin(least, world->settings.cell / (double)world->bodies.mpm[i].material.wave_speed);
-        for (int k = 0; k < world->bodies.fem_count; k++) least = fmin(least, world->bodies.fem[k].least_step);
-    }
+    for (int i = 0; isinf(least) && i < world->bodies.count; i++) // all has eroded: steps as of what there was
+        first = fmin(first, world->bodies.all[i].ops->first_step(&world->bodies.all[i], world->settings.cell));
+    if (isinf(least)) least = first;
     return world->settings.cfl * least;
 }
 
@@ -97,8 +94,8 @@ int brunt_fail_short(brunt_world *world, double stable, brunt_error *error, cons
     brunt_fem_body *fem = by_element ? brunt_fem_shortest(world, &slot) : NULL;
     if (!fem) return fail_short_points(world, error, why);
     char reason[240];
-    const double frequency = brunt_load_frequency(&world->boundaries.sets, &world->bodies,
-                                                  (int)(fem - world->bodies.fem), world->clock.time);
+    const double frequency =
+        brunt_load_frequency(&world->boundaries.sets, &world->bodies, fem->index, world->clock.time);
     const bool by_load = frequency * stable * stable > 2; // half of 4
     snprintf(reason, sizeof reason, "%s%s", why,
              by_load ? ", most of it by gas or pressure on the body's surface" : "");

@@ -3,16 +3,59 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "body/fields.h"
 #include "world/world.h"
 
+// Contact state of boundary nodes in the last step; elsewhere as of a node that touches nothing.
+static const brunt_field_info contact_fields[] = {
+    {"contact_gap", "m", 1, false, BRUNT_AT_NODES},       // to the nearest surface, NaN where none is near
+    {"contact_traction", "Pa", 3, false, BRUNT_AT_NODES}, // impulse over the step and the node's area
+    {"contact_state", "1", 1, false, BRUNT_AT_NODES},     // 0 free, 1 sticks, 2 slips
+};
+enum { CONTACT_FIELDS = sizeof contact_fields / sizeof contact_fields[0] };
+
+static void read_contact(const brunt_world *world, const brunt_body_ref *ref, int32_t field, double *out) {
+    const brunt_fem_body *fem = ref->fem;
+    const brunt_contact_surface *s = &world->contact.surface;
+    const int components = contact_fields[field].components;
+    for (int64_t k = 0; k < (int64_t)fem->node_count * components; k++) out[k] = field == 0 ? NAN : 0;
+    const int32_t body = (int32_t)(fem - world->bodies.fem);
+    if (world->clock.steps == 0 || !s->active[body]) return;
+    for (int32_t n = s->node_range[body]; n < s->node_end[body]; n++) {
+        double *to = out + (int64_t)fem->node_id[s->node[n]] * components;
+        if (field == 0) *to = isinf(s->output.gap[n]) ? NAN : s->output.gap[n];
+        if (field == 2) *to = s->output.state[n];
+        for (int a = 0; field == 1 && a < 3; a++)
+            to[a] = s->area[n] > 0 && world->clock.kick > 0 ? s->output.impulse[n][a] / (s->area[n] * world->clock.kick)
+                                                            : 0;
+    }
+}
+
+// Where those of contact stand among the fields of a body: after its own at nodes, if it has any there. -1: nowhere.
+static int32_t contact_place(const brunt_world *world, const brunt_body_ref *ref) {
+    int32_t place = 0;
+    while (place < ref->ops->field_count(ref) && ref->ops->field(ref, place).at == BRUNT_AT_NODES) place++;
+    return world->contact.has_surfaces && place ? place : -1;
+}
+
+// The number of a field among a body's own, or among those of contact.
+static int32_t own_field(const brunt_world *world, const brunt_body_ref *ref, int32_t field, bool *of_contact) {
+    const int32_t place = contact_place(world, ref);
+    *of_contact = place >= 0 && field >= place && field < place + CONTACT_FIELDS;
+    if (*of_contact) return field - place;
+    return place >= 0 && field >= place ? field - CONTACT_FIELDS : field;
+}
+
 int32_t brunt_body_field_count(const brunt_world *world, int32_t body) {
-    const brunt_body_ref ref = world->bodies.all[body];
-    return ref.mpm ? brunt_read_particle_fields(ref.mpm) : brunt_read_mesh_fields(world, ref.fem);
+    const brunt_body_ref *ref = &world->bodies.all[body];
+    return ref->ops->field_count(ref) + (contact_place(world, ref) < 0 ? 0 : CONTACT_FIELDS);
 }
 
 brunt_field_info brunt_body_field(const brunt_world *world, int32_t body, int32_t field) {
-    const brunt_body_ref ref = world->bodies.all[body];
-    return ref.mpm ? brunt_read_particle_field(ref.mpm, field) : brunt_read_mesh_field(world, ref.fem, field);
+    const brunt_body_ref *ref = &world->bodies.all[body];
+    bool of_contact;
+    field = own_field(world, ref, field, &of_contact);
+    return of_contact ? contact_fields[field] : ref->ops->field(ref, field);
 }
 
 int32_t brunt_body_find_field(const brunt_world *world, int32_t body, const char *name) {
@@ -22,11 +65,17 @@ int32_t brunt_body_find_field(const brunt_world *world, int32_t body, const char
 }
 
 void brunt_body_read(brunt_world *world, int32_t body, int32_t field, double *out) {
-    const brunt_body_ref ref = world->bodies.all[body];
-    if (ref.mpm)
-        brunt_read_particles(ref.mpm, field, out);
+    const brunt_body_ref *ref = &world->bodies.all[body];
+    bool of_contact;
+    field = own_field(world, ref, field, &of_contact);
+    if (of_contact)
+        read_contact(world, ref, field, out);
     else
-        brunt_read_mesh(world, ref.fem, field, out);
+        ref->ops->read(ref, field, out);
+}
+
+void brunt_body_connectivity(const brunt_world *world, int32_t body, int32_t *out) {
+    brunt_mesh_connectivity(&world->bodies.all[body], out);
 }
 
 int32_t brunt_gas_count(const brunt_world *world) { return brunt_gas_sets(&world->boundaries.sets); }
@@ -97,18 +146,20 @@ int64_t brunt_world_elements(const brunt_world *world) {
 }
 int32_t brunt_body_count(const brunt_world *world) { return world->bodies.count; }
 const char *brunt_body_name(const brunt_world *world, int32_t body) { return brunt_bodies_name(&world->bodies, body); }
+const brunt_material *brunt_world_material(const brunt_world *world, int body) {
+    const brunt_body_ref *ref = &world->bodies.all[body];
+    return ref->ops->material(ref);
+}
 const char *brunt_body_material(const brunt_world *world, int32_t body) {
-    return world->bodies.all[body].fem ? world->bodies.all[body].fem->material.name
-                                       : world->bodies.all[body].mpm->material.name;
+    return brunt_world_material(world, body)->name;
 }
 brunt_method brunt_body_method(const brunt_world *world, int32_t body) {
-    const brunt_fem_body *fem = world->bodies.all[body].fem;
-    return !fem ? BRUNT_MPM : fem->traits->membrane ? BRUNT_MEMBRANE : BRUNT_FEM;
+    const brunt_body_ref *ref = &world->bodies.all[body];
+    return ref->ops->method(ref);
 }
 int64_t brunt_body_size(const brunt_world *world, int32_t body, brunt_place at) {
-    const brunt_body_ref ref = world->bodies.all[body];
-    if (ref.mpm) return at == BRUNT_AT_PARTICLES ? ref.mpm->particles.count : 0;
-    return at == BRUNT_AT_NODES ? ref.fem->node_count : at == BRUNT_AT_ELEMENTS ? ref.fem->element_count : 0;
+    const brunt_body_ref *ref = &world->bodies.all[body];
+    return ref->ops->count(ref, at);
 }
 int64_t brunt_body_particles(const brunt_world *world, int32_t body) {
     return brunt_body_size(world, body, BRUNT_AT_PARTICLES);

@@ -71,7 +71,7 @@ static int check_symmetry(const brunt_world *world, brunt_error *error) {
             const brunt_fem_body *fem = world->bodies.all[i].fem;
             const int64_t count = mpm ? mpm->particles.slots : fem->node_count;
             real *const *x = mpm ? brunt_field(&mpm->particles, BRUNT_FIELD_position) : NULL;
-            double least = 0, size = mpm ? mpm->spacing : fem->mean_edge, far = 0;
+            double least = 0, size = world->bodies.all[i].ops->fineness(&world->bodies.all[i]), far = 0;
             for (int64_t s = 0; s < count; s++) {
                 double distance = 0;
                 for (int a = 0; a < world->settings.dimension; a++) {

@@ -83,9 +83,9 @@ void brunt_grid_ledger(void *job, int64_t begin, int64_t end, int worker); // no
 int brunt_fem_tasks_make(brunt_world *world);
 // Strain, stress and forces there. The failed body and slot when the update of an element failed.
 brunt_fem_body *brunt_fem_elements_all(brunt_world *world, double dt, int32_t *bad, const char **reason);
-// Stable step of a body [s]: that of its blocks as they last reported, and of the loads that follow its surface.
-double brunt_fem_body_step(const brunt_world *world, int fem);
-// Least of the bodies [s].
+// Stable step of a body [s] beside what moves at `around` [m/s], by the reports of its blocks and of the loads that
+// follow its surface. And least of the meshes.
+double brunt_body_step(const brunt_world *world, int body, double around);
 double brunt_fem_stable_step(const brunt_world *world);
 // The body and slot of the element that has it; NULL without elements, or without memory to look.
 brunt_fem_body *brunt_fem_shortest(brunt_world *world, int32_t *slot);
@@ -128,15 +128,8 @@ void brunt_world_validate(const brunt_world *world);
 #endif
 
 // --- read.c
+const brunt_material *brunt_world_material(const brunt_world *world, int body);
 brunt_books brunt_books_of(const brunt_world *world);
-
-// --- read_particles.c, read_mesh.c
-int32_t brunt_read_particle_fields(const brunt_body *body);
-brunt_field_info brunt_read_particle_field(const brunt_body *body, int32_t field);
-void brunt_read_particles(brunt_body *body, int32_t field, double *out);
-int32_t brunt_read_mesh_fields(const brunt_world *world, const brunt_fem_body *fem);
-brunt_field_info brunt_read_mesh_field(const brunt_world *world, const brunt_fem_body *fem, int32_t field);
-void brunt_read_mesh(brunt_world *world, brunt_fem_body *fem, int32_t field, double *out);
 
 // Largest stable step from the bodies' reports times cfl [s].
 double brunt_stable_step(const brunt_world *world);

@@ -3,32 +3,25 @@
 #include <string.h>
 
 #include "base/simd.h"
-#include "world/world.h"
+#include "body/fields.h"
 
 // ------------------------------------------------------------------------------------------ at nodes
 
-typedef void node_fn(const brunt_world *world, const brunt_fem_body *fem, int32_t node, double *out);
+typedef void node_fn(const brunt_fem_body *fem, int32_t node, double *out);
 
-static void node_position(const brunt_world *w, const brunt_fem_body *fem, int32_t n, double *out) {
-    (void)w;
+static void node_position(const brunt_fem_body *fem, int32_t n, double *out) {
     for (int a = 0; a < 3; a++) out[a] = (double)brunt_fem_node(fem, n)[a];
 }
-static void node_displacement(const brunt_world *w, const brunt_fem_body *fem, int32_t n, double *out) {
-    (void)w;
+static void node_displacement(const brunt_fem_body *fem, int32_t n, double *out) {
     for (int a = 0; a < 3; a++) out[a] = (double)(brunt_fem_node(fem, n)[a] - fem->start[4 * (size_t)n + (size_t)a]);
 }
-static void node_velocity(const brunt_world *w, const brunt_fem_body *fem, int32_t n, double *out) {
-    (void)w;
+static void node_velocity(const brunt_fem_body *fem, int32_t n, double *out) {
     for (int a = 0; a < 3; a++) out[a] = (double)brunt_fem_node(fem, n)[BRUNT_FEM_V + a];
 }
-static void node_mass(const brunt_world *w, const brunt_fem_body *fem, int32_t n, double *out) {
-    (void)w;
+static void node_mass(const brunt_fem_body *fem, int32_t n, double *out) {
     *out = (double)brunt_fem_node(fem, n)[BRUNT_FEM_MASS];
 }
-static void node_id(const brunt_world *w, const brunt_fem_body *fem, int32_t n, double *out) {
-    (void)w;
-    *out = fem->node_id[n];
-}
+static void node_id(const brunt_fem_body *fem, int32_t n, double *out) { *out = fem->node_id[n]; }
 
 static const struct node_field {
     brunt_field_info info;
@@ -41,30 +34,6 @@ static const struct node_field {
     {{"node", "1", 1, false, BRUNT_AT_NODES}, node_id},
 };
 enum { NODE_FIELDS = sizeof node_fields / sizeof node_fields[0] };
-
-// Contact state of boundary nodes in the last step; elsewhere as of a node that touches nothing.
-static const brunt_field_info contact_fields[] = {
-    {"contact_gap", "m", 1, false, BRUNT_AT_NODES},       // to the nearest surface, NaN where none is near
-    {"contact_traction", "Pa", 3, false, BRUNT_AT_NODES}, // impulse over the step and the node's area
-    {"contact_state", "1", 1, false, BRUNT_AT_NODES},     // 0 free, 1 sticks, 2 slips
-};
-enum { CONTACT_FIELDS = sizeof contact_fields / sizeof contact_fields[0] };
-
-static void read_contact(const brunt_world *world, const brunt_fem_body *fem, int32_t field, double *out) {
-    const brunt_contact_surface *s = &world->contact.surface;
-    const int components = contact_fields[field].components;
-    for (int64_t k = 0; k < (int64_t)fem->node_count * components; k++) out[k] = field == 0 ? NAN : 0;
-    const int32_t body = (int32_t)(fem - world->bodies.fem);
-    if (world->clock.steps == 0 || !s->active[body]) return;
-    for (int32_t n = s->node_range[body]; n < s->node_end[body]; n++) {
-        double *to = out + (int64_t)fem->node_id[s->node[n]] * components;
-        if (field == 0) *to = isinf(s->output.gap[n]) ? NAN : s->output.gap[n];
-        if (field == 2) *to = s->output.state[n];
-        for (int a = 0; field == 1 && a < 3; a++)
-            to[a] = s->area[n] > 0 && world->clock.kick > 0 ? s->output.impulse[n][a] / (s->area[n] * world->clock.kick)
-                                                            : 0;
-    }
-}
 
 // ------------------------------------------------------------------------------------------ at elements
 
@@ -154,17 +123,15 @@ static int element_count(const brunt_fem_body *fem) {
 
 // ------------------------------------------------------------------------------------------ all together
 
-static int contact_count(const brunt_world *world) { return world->contact.has_surfaces ? CONTACT_FIELDS : 0; }
-
-// Fields at nodes, those of contact, those at elements, and after them the states of the material.
-int32_t brunt_read_mesh_fields(const brunt_world *world, const brunt_fem_body *fem) {
-    return NODE_FIELDS + contact_count(world) + element_count(fem) + fem->field_count - BRUNT_ELEMENT_BASE_FIELDS;
+// Fields at nodes, those at elements, and after them the states of the material.
+int32_t brunt_mesh_field_count(const brunt_body_ref *ref) {
+    return NODE_FIELDS + element_count(ref->fem) + ref->fem->field_count - BRUNT_ELEMENT_BASE_FIELDS;
 }
 
-brunt_field_info brunt_read_mesh_field(const brunt_world *world, const brunt_fem_body *fem, int32_t field) {
+brunt_field_info brunt_mesh_field(const brunt_body_ref *ref, int32_t field) {
+    const brunt_fem_body *fem = ref->fem;
     if (field < NODE_FIELDS) return node_fields[field].info;
-    if ((field -= NODE_FIELDS) < contact_count(world)) return contact_fields[field];
-    if ((field -= contact_count(world)) < element_count(fem)) return element_fields[field].info;
+    if ((field -= NODE_FIELDS) < element_count(fem)) return element_fields[field].info;
     const brunt_element_field *f = &fem->field[BRUNT_ELEMENT_BASE_FIELDS + field - element_count(fem)];
     bool symmetric = f->components > 1 && f->components == BRUNT_SYMMETRIC(fem->point_dim);
     return (brunt_field_info){f->name, f->unit, symmetric ? 6 : f->components, symmetric, BRUNT_AT_ELEMENTS};
@@ -177,18 +144,15 @@ static int64_t place_of(brunt_fem_body *fem, int32_t slot) {
     return fem->rank[fem->element_id[slot]];
 }
 
-void brunt_read_mesh(brunt_world *world, brunt_fem_body *fem, int32_t field, double *out) {
-    const brunt_field_info info = brunt_read_mesh_field(world, fem, field);
+void brunt_mesh_read(const brunt_body_ref *ref, int32_t field, double *out) {
+    brunt_fem_body *fem = ref->fem;
+    const brunt_field_info info = brunt_mesh_field(ref, field);
     if (field < NODE_FIELDS) {
         for (int32_t n = 0; n < fem->node_count; n++)
-            node_fields[field].read(world, fem, n, out + (int64_t)fem->node_id[n] * info.components);
+            node_fields[field].read(fem, n, out + (int64_t)fem->node_id[n] * info.components);
         return;
     }
-    if ((field -= NODE_FIELDS) < contact_count(world)) {
-        read_contact(world, fem, field, out);
-        return;
-    }
-    field -= contact_count(world);
+    field -= NODE_FIELDS;
     const brunt_element_field *state =
         field < element_count(fem) ? NULL : &fem->field[BRUNT_ELEMENT_BASE_FIELDS + field - element_count(fem)];
     for (int32_t s = 0; s < fem->slots; s++) {
@@ -204,8 +168,8 @@ void brunt_read_mesh(brunt_world *world, brunt_fem_body *fem, int32_t field, dou
     }
 }
 
-void brunt_body_connectivity(const brunt_world *world, int32_t body, int32_t *out) {
-    brunt_fem_body *fem = world->bodies.all[body].fem;
+void brunt_mesh_connectivity(const brunt_body_ref *ref, int32_t *out) {
+    brunt_fem_body *fem = ref->fem;
     const int nodes = fem->traits->nodes;
     for (int32_t s = 0; s < fem->slots; s++) {
         if (fem->element_id[s] < 0) continue;

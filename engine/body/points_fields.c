@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "base/simd.h"
-#include "world/world.h"
+#include "body/fields.h"
 
 typedef void derive_fn(brunt_body *body, int64_t slot, double *out);
 
@@ -82,13 +82,13 @@ static const struct derived {
 enum { DERIVED = sizeof derived / sizeof derived[0] };
 
 // After the derived fields come the states of the material.
-int32_t brunt_read_particle_fields(const brunt_body *body) {
-    return DERIVED + body->particles.field_count - BRUNT_BASE_FIELDS;
+int32_t brunt_points_field_count(const brunt_body_ref *ref) {
+    return DERIVED + ref->mpm->particles.field_count - BRUNT_BASE_FIELDS;
 }
 
-brunt_field_info brunt_read_particle_field(const brunt_body *body, int32_t field) {
+brunt_field_info brunt_points_field(const brunt_body_ref *ref, int32_t field) {
     if (field < DERIVED) return derived[field].info;
-    const brunt_particles *p = &body->particles;
+    const brunt_particles *p = &ref->mpm->particles;
     const brunt_particle_field *f = &p->field[BRUNT_BASE_FIELDS + field - DERIVED];
     bool symmetric = f->components > 1 && f->components == BRUNT_SYMMETRIC(p->point_dim);
     return (brunt_field_info){f->name, f->unit, symmetric ? 6 : f->components, symmetric, BRUNT_AT_PARTICLES};
@@ -108,9 +108,10 @@ static const int32_t *rank_ids(brunt_body *body) {
     return body->rank;
 }
 
-void brunt_read_particles(brunt_body *body, int32_t field, double *out) {
+void brunt_points_read(const brunt_body_ref *ref, int32_t field, double *out) {
+    brunt_body *body = ref->mpm;
     brunt_particles *p = &body->particles;
-    brunt_field_info info = brunt_read_particle_field(body, field);
+    brunt_field_info info = brunt_points_field(ref, field);
     const int32_t *rank = p->count < p->made ? rank_ids(body) : NULL;
     for (int64_t s = 0; s < p->slots; s++) {
         if (p->id[s] < 0) continue;
