@@ -1,6 +1,7 @@
-// What acts on bodies from outside: planes, regions, named groups of nodes, drag.
+// What acts on bodies from outside: planes, regions, named groups of nodes, lines and surfaces, drag.
 #pragma once
 
+#include "boundary/boundary_surface.h"
 #include "boundary/damping.h"
 #include "boundary/gas.h"
 #include "boundary/load_step.h"
@@ -8,12 +9,13 @@
 #include "contact/planes/symmetry.h"
 
 typedef struct brunt_boundaries {
-    brunt_boundary *walls; // planes, then regions, then groups
+    brunt_boundary *walls; // planes, then regions, then groups, then surfaces
     int wall_count;
     brunt_symmetry_plane mirrors[BRUNT_MAX_PLANES];
     int mirror_count;
     bool has_walls, has_conditions, has_friction; // planes that push, conditions at grid nodes
     bool has_detonations;                         // explosives are lit
     brunt_node_sets sets;
+    brunt_boundary_surfaces surfaces;
     brunt_damping damping;
 } brunt_boundaries;

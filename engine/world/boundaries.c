@@ -77,7 +77,7 @@ static int make_plane(brunt_world *world, const brunt_world_def *def, int index,
 
 int brunt_boundaries_make(brunt_world *world, const brunt_world_def *def, const brunt_body_def **order,
                           brunt_error *error) {
-    world->boundaries.wall_count = def->plane_count + def->region_count + def->group_count;
+    world->boundaries.wall_count = def->plane_count + def->region_count + def->group_count + def->surface_count;
     world->boundaries.walls = brunt_alloc((size_t)(world->boundaries.wall_count + 1) * sizeof *world->boundaries.walls);
     if (!world->boundaries.walls) return brunt_fail(error, BRUNT_FAILED, "out of memory");
     if (def->axisymmetric && world->bodies.has_particles)
@@ -87,12 +87,13 @@ int brunt_boundaries_make(brunt_world *world, const brunt_world_def *def, const 
         brunt_boundary *wall = &world->boundaries.walls[w];
         wall->region = w >= def->plane_count;
         wall->mirror = wall->body = -1;
-        if (w >= def->plane_count + def->region_count) { // the rest follows with the bodies (holds.c)
-            const char *given = def->groups[w - def->plane_count - def->region_count].name;
+        if (w >= def->plane_count + def->region_count) { // the rest follows with the bodies
+            const int group = w - def->plane_count - def->region_count, surface = group - def->group_count;
+            const char *given = surface < 0 ? def->groups[group].name : def->surfaces[surface].name;
             if (given[0])
                 memcpy(wall->name, given, sizeof wall->name);
             else
-                snprintf(wall->name, sizeof wall->name, "group%d", w + 1);
+                snprintf(wall->name, sizeof wall->name, "%s%d", surface < 0 ? "group" : "surface", w + 1);
             continue;
         }
         if (wall->region)

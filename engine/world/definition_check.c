@@ -312,6 +312,43 @@ static int check_groups(const brunt_world_def *def, brunt_error *error) {
     return BRUNT_OK;
 }
 
+// Facets name corners that there are.
+static int check_facets(const brunt_boundary_surface_def *surface, int dim, int32_t index, brunt_error *error) {
+    if (surface->point_count < 2 || surface->facet_count < 1)
+        REFUSE("boundaries[%d]: a line wants two points at least", index);
+    for (int32_t f = 0; f < surface->facet_count; f++)
+        for (int c = 0; c < dim; c++)
+            if (surface->facet[f][c] < 0 || surface->facet[f][c] >= surface->point_count)
+                REFUSE("boundaries[%d]: facet %d has corner %d of %d", index, f, surface->facet[f][c],
+                       surface->point_count);
+    return BRUNT_OK;
+}
+
+static int check_surfaces(const brunt_world_def *def, brunt_error *error) {
+    for (int32_t q = 0; q < def->surface_count; q++) {
+        const brunt_boundary_surface_def *surface = &def->surfaces[q];
+        const int32_t index = def->plane_count + def->region_count + def->group_count + q;
+        char owner[80];
+        snprintf(owner, sizeof owner, "boundaries[%d]", index);
+        TRY(check_name("boundaries", index, surface->name, error));
+        TRY(check_name("boundaries", index, surface->body, error));
+        TRY(check_choice(owner, ".condition", (unsigned)surface->condition, BRUNT_SEPARATE + 1, error));
+        TRY(check_array("boundaries: points", surface->point_count, surface->point, error));
+        TRY(check_array("boundaries: facets", surface->facet_count, surface->facet, error));
+        TRY(check_facets(surface, def->dimension, index, error));
+        TRY(check_curve(owner, ".table", &surface->table, error));
+        for (int32_t k = 0; k < surface->point_count; k++)
+            CHECK_NUMBERS(owner, {".line.points", surface->point[k], 3, ANY});
+        CHECK_NUMBERS(owner, {".friction", &surface->friction, 1, NOT_NEGATIVE}, {".value", surface->value, 3, ANY},
+                      {".piece", &surface->piece, 1, POSITIVE}, {".about", surface->about, 3, ANY});
+        if (surface->friction > 0 && surface->condition != BRUNT_SEPARATE)
+            REFUSE("%s.friction: friction acts only with condition separate", owner);
+        if (surface->particles < 1) REFUSE("%s.particles_per_cell: %d is less than 1", owner, surface->particles);
+        if (!(def->cell > 0)) REFUSE("%s: it holds material points, and there are none", owner);
+    }
+    return BRUNT_OK;
+}
+
 static int check_detonations(const brunt_world_def *def, brunt_error *error) {
     for (int32_t q = 0; q < def->detonation_count; q++) {
         const brunt_detonation_def *d = &def->detonations[q];
@@ -325,11 +362,12 @@ static int check_detonations(const brunt_world_def *def, brunt_error *error) {
 
 // The name of its columns in the history: its own, or what world.c gives it.
 static void wall_name(const brunt_world_def *def, int32_t w, char out[BRUNT_NAME_LENGTH]) {
-    const int32_t region = w - def->plane_count, group = region - def->region_count;
-    const char *kind = region < 0 ? "plane" : group < 0 ? "region" : "group";
-    const char *given = region < 0  ? def->planes[w].name
-                        : group < 0 ? def->regions[region].name
-                                    : def->groups[group].name;
+    const int32_t region = w - def->plane_count, group = region - def->region_count, surface = group - def->group_count;
+    const char *kind = region < 0 ? "plane" : group < 0 ? "region" : surface < 0 ? "group" : "surface";
+    const char *given = region < 0    ? def->planes[w].name
+                        : group < 0   ? def->regions[region].name
+                        : surface < 0 ? def->groups[group].name
+                                      : def->surfaces[surface].name;
     if (given[0])
         memcpy(out, given, BRUNT_NAME_LENGTH);
     else
@@ -337,7 +375,7 @@ static void wall_name(const brunt_world_def *def, int32_t w, char out[BRUNT_NAME
 }
 
 static int check_wall_names(const brunt_world_def *def, brunt_error *error) {
-    const int32_t count = def->plane_count + def->region_count + def->group_count;
+    const int32_t count = def->plane_count + def->region_count + def->group_count + def->surface_count;
     char name[BRUNT_NAME_LENGTH], other[BRUNT_NAME_LENGTH];
     for (int32_t w = 0; w < count; w++) {
         wall_name(def, w, name);
@@ -391,6 +429,7 @@ static int check_arrays(const brunt_world_def *def, brunt_error *error) {
     TRY(check_array("boundaries: planes", def->plane_count, def->planes, error));
     TRY(check_array("boundaries: regions", def->region_count, def->regions, error));
     TRY(check_array("boundaries: groups", def->group_count, def->groups, error));
+    TRY(check_array("boundaries: surfaces", def->surface_count, def->surfaces, error));
     TRY(check_array("detonations", def->detonation_count, def->detonations, error));
     return check_array("contact.pairs", def->contact.pair_count, def->contact.pairs, error);
 }
@@ -483,6 +522,7 @@ int brunt_definition_check(const brunt_world_def *def, brunt_error *error) {
     TRY(check_planes(def, error));
     TRY(check_regions(def, error));
     TRY(check_groups(def, error));
+    TRY(check_surfaces(def, error));
     TRY(check_wall_names(def, error));
     TRY(check_detonations(def, error));
     TRY(check_contact(def, error));

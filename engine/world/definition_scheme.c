@@ -116,6 +116,19 @@ static void look_at_boundaries(const brunt_world_def *def, refusals *r) {
     }
 }
 
+static void look_at_surfaces(const brunt_world_def *def, refusals *r) {
+    for (int32_t q = 0; q < def->surface_count; q++) {
+        name_boundary(r, def->plane_count + def->region_count + def->group_count + q, def->surfaces[q].name);
+        if (def->scheme != BRUNT_IMPLICIT)
+            say(r, def->dimension == 2 ? ".line" : ".mesh",
+                "this belongs to time.scheme: implicit; explicit steps have plane and region");
+        else if (def->newton.solver == BRUNT_SOLVER_PCG)
+            say(r, "",
+                "newton.solver: pcg has no factor for the tractions of boundaries to follow with: direct or auto");
+        if (def->dimension == 3) say(r, "", "surfaces in three dimensions hold nothing yet");
+    }
+}
+
 static bool belongs(brunt_contact_method method) {
     return method == BRUNT_CONTACT_NONE || method == BRUNT_CONTACT_BARRIER || method == BRUNT_CONTACT_TIED;
 }
@@ -177,6 +190,7 @@ static void look_at_implicit(const brunt_world_def *def, refusals *r) {
         look_at_body(&def->bodies[i], r);
     }
     look_at_boundaries(def, r);
+    look_at_surfaces(def, r);
     look_at_contact(def, r);
 }
 
@@ -185,6 +199,7 @@ static void look_at_implicit(const brunt_world_def *def, refusals *r) {
 #define IMPLICIT_ONLY "this belongs to time.scheme: implicit; where no method is given each scheme takes its own"
 
 static void look_at_explicit(const brunt_world_def *def, refusals *r) {
+    look_at_surfaces(def, r);
     const brunt_contact_def *contact = &def->contact;
     set_owner(r, "contact");
     if (contact->method == BRUNT_CONTACT_BARRIER) say(r, ".method", "barrier: " IMPLICIT_ONLY);

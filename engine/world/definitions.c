@@ -54,6 +54,16 @@ brunt_group_def brunt_group_def_default(void) {
     return (brunt_group_def){.component = {true, true, true}, .rotation = {.axis = {0, 0, 1}}, .gas = {.gamma = 1.4}};
 }
 
+brunt_boundary_surface_def brunt_boundary_surface_def_default(void) {
+    return (brunt_boundary_surface_def){.condition = BRUNT_STICK, .piece = 1.5, .particles = 4};
+}
+
+static void free_surface(brunt_boundary_surface_def *surface) {
+    brunt_free(surface->point);
+    brunt_free(surface->facet);
+    brunt_free(surface->table.points);
+}
+
 void brunt_world_def_free(brunt_world_def *def) {
     for (int32_t i = 0; i < def->body_count; i++) {
         brunt_shape_free(&def->bodies[i].shape);
@@ -63,6 +73,8 @@ void brunt_world_def_free(brunt_world_def *def) {
     }
     for (int32_t i = 0; i < def->group_count; i++) brunt_free(def->groups[i].table.points);
     brunt_free(def->groups);
+    for (int32_t i = 0; i < def->surface_count; i++) free_surface(&def->surfaces[i]);
+    brunt_free(def->surfaces);
     for (int32_t i = 0; i < def->region_count; i++) brunt_shape_free(&def->regions[i].shape);
     brunt_free(def->materials);
     brunt_free(def->bodies);

@@ -115,6 +115,8 @@ typedef struct brunt_world_def {
     int32_t region_count; // owned
     brunt_group_def *groups;
     int32_t group_count; // owned
+    brunt_boundary_surface_def *surfaces;
+    int32_t surface_count; // owned
     brunt_detonation_def *detonations;
     int32_t detonation_count; // owned
     brunt_contact_def contact;
