@@ -1,5 +1,5 @@
 // Boundaries of a scene: walls, regions of the grid with prescribed motion, groups of nodes that are held, moved or
-// loaded.
+// loaded. Lines are in scene_boundary_line.c.
 #include "contact/planes/condition.h"
 #include "io/scene/scene_reader.h"
 
@@ -9,14 +9,14 @@
 static const char *const methods[] = {"mpm", "fem", "membrane"}; // by brunt_method
 _Static_assert(sizeof methods / sizeof *methods == BRUNT_MEMBRANE + 1, "a name for each method");
 
-static void fill_body_of(scene_reader *reader, const scene_node *node, char name[BRUNT_NAME_LENGTH]) {
+void brunt_fill_body_of(scene_reader *reader, const scene_node *node, char name[BRUNT_NAME_LENGTH]) {
     const scene_node *body = brunt_tree_child(node, "body");
     brunt_check_body_name(reader, body);
     brunt_copy_text(reader, body, name, BRUNT_NAME_LENGTH);
 }
 
 // Whether there are material points among the bodies a boundary acts on; a name that is wrong is another mistake.
-static bool acts_on_particles(const scene_reader *reader, const char *name) {
+bool brunt_acts_on_particles(const scene_reader *reader, const char *name) {
     const brunt_world_def *world = &reader->scene->world;
     const brunt_body_def *body = brunt_body_named(reader, name);
     if (*name) return !body || body->method == BRUNT_MPM;
@@ -54,7 +54,7 @@ static void check_image(scene_reader *reader, const scene_node *node, const brun
                             "a symmetry plane stands across x, y or z");
         return;
     }
-    if (nonzeros == 0 || !(world->cell > 0) || !acts_on_particles(reader, plane->body)) return;
+    if (nonzeros == 0 || !(world->cell > 0) || !brunt_acts_on_particles(reader, plane->body)) return;
     double lines = (plane->point[axis] - world->origin[axis]) / world->cell;
     if (!(fabs(lines - round(lines)) < 1e-9 * fmax(1, fabs(lines)))) {
         char a[32], b[32];
@@ -89,7 +89,7 @@ static void fill_plane(scene_reader *reader, scene_node *node, brunt_plane_def *
         brunt_tree_complain(reader->tree, velocity, "`free` is for regions and groups; a wall has a velocity");
     else
         brunt_vector_of(node, "velocity", plane->velocity);
-    fill_body_of(reader, node, plane->body);
+    brunt_fill_body_of(reader, node, plane->body);
     if (row->images && normal) check_image(reader, node, plane);
 }
 
@@ -108,10 +108,10 @@ static void fill_region(scene_reader *reader, scene_node *node, brunt_region_def
     region->end = brunt_real_of(node, "until", INFINITY);
     if (until && until->good && !(region->start < region->end))
         brunt_tree_complain(reader->tree, until, "until must be after from");
-    fill_body_of(reader, node, region->body);
+    brunt_fill_body_of(reader, node, region->body);
     const scene_node *body = brunt_tree_child(node, "body"), *where = body ? body : brunt_tree_child(node, "region");
     const brunt_body_def *def = brunt_body_named(reader, region->body);
-    if (!acts_on_particles(reader, region->body))
+    if (!brunt_acts_on_particles(reader, region->body))
         brunt_tree_complain_key(reader->tree, where,
                                 "a region acts on the grid, %s is of method %s: `group` names nodes of finite elements",
                                 body ? "this body" : "no body", body && def ? methods[def->method] : "mpm");
@@ -119,7 +119,7 @@ static void fill_region(scene_reader *reader, scene_node *node, brunt_region_def
 
 // ---------------------------------------------------------------------------------------------------- groups
 
-static void fill_table(scene_reader *reader, const scene_node *node, brunt_curve *table) {
+void brunt_fill_table(scene_reader *reader, const scene_node *node, brunt_curve *table) {
     if (!node || !node->good) return;
     table->points = brunt_entries_for(reader, node->count, sizeof *table->points);
     for (const scene_node *point = table->points ? node->first : NULL; point; point = point->next) {
@@ -204,13 +204,13 @@ static void fill_group(scene_reader *reader, scene_node *node, brunt_group_def *
     brunt_copy_text(reader, brunt_tree_child(node, "group"), group->group, sizeof group->group);
     const scene_node *body = brunt_tree_child(node, "body");
     if (!body) brunt_tree_complain(reader->tree, node, "'body' is missing: the body whose nodes they are");
-    fill_body_of(reader, node, group->body);
+    brunt_fill_body_of(reader, node, group->body);
     const brunt_body_def *def = brunt_body_named(reader, group->body);
     if (def && def->method == BRUNT_MPM)
         brunt_tree_complain(reader->tree, body, "groups are of bodies of method fem or membrane, '%s' is of method mpm",
                             def->name);
     fill_action(reader, node, group);
-    fill_table(reader, brunt_tree_child(node, "table"), &group->table);
+    brunt_fill_table(reader, brunt_tree_child(node, "table"), &group->table);
 }
 
 // ---------------------------------------------------------------------------------------------------- boundaries
@@ -234,9 +234,9 @@ static void fill_named(scene_reader *reader, scene_node *node, const char *kind,
 static void fill_boundary(scene_reader *reader, scene_node *node) {
     brunt_world_def *world = &reader->scene->world;
     bool plane = brunt_tree_child(node, "plane"), region = brunt_tree_child(node, "region"),
-         group = brunt_tree_child(node, "group");
-    if (plane + region + group != 1) {
-        brunt_tree_complain(reader->tree, node, "exactly one of plane, region and group is wanted");
+         group = brunt_tree_child(node, "group"), line = brunt_tree_child(node, "line");
+    if (plane + region + group + line != 1) {
+        brunt_tree_complain(reader->tree, node, "exactly one of plane, region, group and line is wanted");
     } else if (plane) {
         brunt_plane_def *def = &world->planes[world->plane_count++];
         *def = brunt_plane_def_default();
@@ -249,6 +249,14 @@ static void fill_boundary(scene_reader *reader, scene_node *node) {
         fill_named(reader, node, "region", world->region_count, def->name);
         brunt_fill_fields(reader, node, "boundaries[]", SCENE_REGION, def);
         fill_region(reader, node, def);
+    } else if (line && reader->dimension == 3) {
+        return; // there is none, as has been said
+    } else if (line) {
+        brunt_boundary_surface_def *def = &world->surfaces[world->surface_count++];
+        *def = brunt_boundary_surface_def_default();
+        fill_named(reader, node, "line", world->surface_count, def->name);
+        brunt_fill_fields(reader, node, "boundaries[]", SCENE_LINE, def);
+        brunt_fill_line(reader, node, def);
     } else {
         brunt_group_def *def = &world->groups[world->group_count++];
         *def = brunt_group_def_default();
@@ -265,7 +273,8 @@ void brunt_fill_boundaries(scene_reader *reader) {
     world->planes = brunt_entries_for(reader, count, sizeof *world->planes);
     world->regions = brunt_entries_for(reader, count, sizeof *world->regions);
     world->groups = brunt_entries_for(reader, count, sizeof *world->groups);
-    if (!world->planes || !world->regions || !world->groups) return;
+    world->surfaces = brunt_entries_for(reader, count, sizeof *world->surfaces);
+    if (!world->planes || !world->regions || !world->groups || !world->surfaces) return;
     for (scene_node *node = list->first; node; node = node->next)
         if (node->kind == SCENE_MAP) fill_boundary(reader, node);
     check_wall_names(reader, list);

@@ -12,7 +12,10 @@ static const struct {
              {SCENE_MEMBRANE, "method: membrane"},
              {SCENE_PLANE, "a plane"},
              {SCENE_REGION, "a region"},
-             {SCENE_GROUP_OF_NODES, "a group of nodes"}};
+             {SCENE_GROUP_OF_NODES, "a group of nodes"},
+             {SCENE_LINE, "a line"},
+             {SCENE_PLANE | SCENE_LINE, "a plane or a line"},
+             {SCENE_GROUP_OF_NODES | SCENE_LINE, "a group of nodes or a line"}};
 
 static const char *kind_name(unsigned kind) {
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)

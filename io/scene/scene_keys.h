@@ -91,7 +91,8 @@ enum {
     SCENE_MESHES = SCENE_FEM | SCENE_MEMBRANE,
     SCENE_PLANE = 8,
     SCENE_REGION = 16,
-    SCENE_GROUP_OF_NODES = 32
+    SCENE_GROUP_OF_NODES = 32,
+    SCENE_LINE = 64
 };
 _Static_assert(SCENE_MEMBRANE < SCENE_PLANE, "one bit a kind");
 

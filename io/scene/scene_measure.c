@@ -97,6 +97,8 @@ static const char *column_mistake(const scene_reader *reader, const char *column
             if (names_part(rest, world->regions[i].name)) return NULL;
         for (int i = 0; i < world->group_count; i++)
             if (names_part(rest, world->groups[i].name)) return NULL;
+        for (int i = 0; i < world->surface_count; i++)
+            if (names_part(rest, world->surfaces[i].name)) return NULL;
         return "there is no boundary of that name";
     }
     if (family == 3 && strncmp(column, "gas", 3) == 0) return gas_mistake(world, rest);

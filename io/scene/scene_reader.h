@@ -46,6 +46,11 @@ brunt_placement brunt_fill_place(scene_reader *reader, const scene_node *list);
 void brunt_fill_bodies(scene_reader *reader);
 void brunt_fill_contact(scene_reader *reader);
 void brunt_fill_boundaries(scene_reader *reader);
+// Of a boundary: the body that it acts on, whether there are material points there, its table, its motion.
+void brunt_fill_body_of(scene_reader *reader, const scene_node *node, char name[BRUNT_NAME_LENGTH]);
+bool brunt_acts_on_particles(const scene_reader *reader, const char *name);
+void brunt_fill_table(scene_reader *reader, const scene_node *node, brunt_curve *table);
+void brunt_fill_line(scene_reader *reader, scene_node *node, brunt_boundary_surface_def *line);
 void brunt_fill_scheme(scene_reader *reader);
 void brunt_check_scheme(scene_reader *reader);
 // Says that a key, if it is there, is of the other scheme: it has been checked, stays in the resolved scene, and does
