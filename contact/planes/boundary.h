@@ -44,8 +44,8 @@ struct brunt_boundary_kind {
     void (*free)(brunt_world_def *def);
     // Looks an entry over, which is boundary `w` of all. BRUNT_OK, or BRUNT_BAD_INPUT.
     int (*check)(const brunt_world_def *def, const void *entry, int32_t w, brunt_error *error);
-    // What implicit steps cannot do of it, and the key that asks for that; NULL: they can do all.
-    const char *(*explicit_only)(const void *entry, const char **key);
+    // What the scheme cannot do of it, and the key that asks for that; NULL: it can do all.
+    const char *(*refusal)(const brunt_world_def *def, const void *entry, const char **key);
     // Makes boundary `w` of its entry, named, with its body. BRUNT_OK, or what is wrong.
     int (*make)(const brunt_boundary_making *m, const void *entry, int w, brunt_error *error);
     // Of what moves by itself [m/s].

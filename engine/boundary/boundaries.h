@@ -1,6 +1,7 @@
 // What acts on bodies from outside: planes, regions, named groups of nodes, drag.
 #pragma once
 
+#include "boundary/boundary_surface.h"
 #include "boundary/damping.h"
 #include "boundary/gas.h"
 #include "boundary/load_step.h"
@@ -15,5 +16,6 @@ typedef struct brunt_boundaries {
     bool has_walls, has_conditions, has_friction; // planes that push, conditions at grid nodes
     bool has_detonations;                         // explosives are lit
     brunt_node_sets sets;
+    brunt_boundary_surfaces surfaces;
     brunt_damping damping;
 } brunt_boundaries;

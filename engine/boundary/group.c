@@ -9,7 +9,7 @@
 
 #define REFUSE(...) return brunt_fail(error, BRUNT_BAD_INPUT, __VA_ARGS__)
 
-BRUNT_BOUNDARY_ENTRIES(group)
+BRUNT_BOUNDARY_ENTRIES(group, brunt_group)
 
 brunt_group_def brunt_group_def_default(void) {
     return (brunt_group_def){.component = {true, true, true}, .rotation = {.axis = {0, 0, 1}}, .gas = {.gamma = 1.4}};
@@ -47,7 +47,8 @@ static int check(const brunt_world_def *def, const void *entry, int32_t w, brunt
     return BRUNT_OK;
 }
 
-static const char *explicit_only(const void *one, const char **key) {
+static const char *refusal(const brunt_world_def *def, const void *one, const char **key) {
+    if (def->scheme != BRUNT_IMPLICIT) return NULL;
     const brunt_group_def *group = one;
     *key = group->action == BRUNT_GROUP_GAS ? ".gas" : ".pressure";
     if (group->action == BRUNT_GROUP_GAS) return BRUNT_EXPLICIT_ONLY;
@@ -61,7 +62,7 @@ static int make(const brunt_boundary_making *m, const void *one, int w, brunt_er
     return BRUNT_OK;
 }
 
-const brunt_boundary_kind brunt_boundary_group = {
-    BRUNT_BOUNDARY_ROW(group),
-    .explicit_only = explicit_only,
+const brunt_boundary_kind brunt_kind_group = {
+    BRUNT_BOUNDARY_ROW("group"),
+    .refusal = refusal,
 };

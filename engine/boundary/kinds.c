@@ -3,10 +3,10 @@
 #include <stdio.h>
 #include <string.h>
 
-#define DECLARE(NAME, kind, what) extern const brunt_boundary_kind brunt_boundary_##kind;
+#define DECLARE(NAME, kind, type, word, what) extern const brunt_boundary_kind brunt_kind_##kind;
 BRUNT_BOUNDARY_KINDS(DECLARE)
 
-#define ROW(NAME, kind, what) &brunt_boundary_##kind,
+#define ROW(NAME, kind, type, word, what) &brunt_kind_##kind,
 const brunt_boundary_kind *const brunt_boundary_kinds[] = {BRUNT_BOUNDARY_KINDS(ROW)};
 
 int32_t brunt_boundary_count(const brunt_world_def *def) {

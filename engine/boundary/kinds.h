@@ -6,7 +6,7 @@
 
 #define BRUNT_EXPLICIT_ONLY "this belongs to time.scheme: explicit"
 
-#define BRUNT_BOUNDARY_ONE(NAME, kind, what) +1
+#define BRUNT_BOUNDARY_ONE(NAME, kind, type, word, what) +1
 enum { BRUNT_BOUNDARY_KIND_COUNT = 0 BRUNT_BOUNDARY_KINDS(BRUNT_BOUNDARY_ONE) };
 extern const brunt_boundary_kind *const brunt_boundary_kinds[BRUNT_BOUNDARY_KIND_COUNT];
 
@@ -18,10 +18,10 @@ const void *brunt_boundary_entry(const brunt_world_def *def, int32_t w, const br
 void brunt_boundary_name(const brunt_world_def *def, int32_t w, char out[BRUNT_NAME_LENGTH]);
 
 // In the file of a kind: the functions that its entries are found by.
-#define BRUNT_BOUNDARY_ENTRIES(kind)                                                                                   \
+#define BRUNT_BOUNDARY_ENTRIES(kind, type)                                                                             \
     static int32_t count(const brunt_world_def *def) { return def->kind##_count; }                                     \
     static const void *entry(const brunt_world_def *def, int32_t i) { return &def->kind##s[i]; }                       \
-    static const char *name(const void *one) { return ((const brunt_##kind##_def *)one)->name; }
+    static const char *name(const void *one) { return ((const type##_def *)one)->name; }
 // ... and the part of its row that every kind has.
-#define BRUNT_BOUNDARY_ROW(kind)                                                                                       \
-    .word = #kind, .count = count, .entry = entry, .name = name, .free = free_all, .check = check, .make = make
+#define BRUNT_BOUNDARY_ROW(key)                                                                                        \
+    .word = key, .count = count, .entry = entry, .name = name, .free = free_all, .check = check, .make = make

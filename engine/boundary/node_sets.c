@@ -146,12 +146,7 @@ static int find_nodes(brunt_node_set *set, const brunt_bodies *bodies, brunt_err
 // A definition, with a curve of its own.
 static int copy_definition(brunt_group_def *copy, const brunt_group_def *def) {
     *copy = *def;
-    copy->table.points = NULL;
-    if (!def->table.count) return 0;
-    const size_t bytes = (size_t)def->table.count * sizeof *def->table.points;
-    if (!(copy->table.points = brunt_alloc(bytes))) return -1;
-    memcpy(copy->table.points, def->table.points, bytes);
-    return 0;
+    return brunt_curve_copy(&copy->table, &def->table);
 }
 
 int brunt_node_sets_make(brunt_node_sets *sets, const brunt_world_def *def, const brunt_bodies *bodies,

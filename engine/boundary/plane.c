@@ -18,7 +18,7 @@
 
 // ------------------------------------------------------------------------------------------ definition
 
-BRUNT_BOUNDARY_ENTRIES(plane)
+BRUNT_BOUNDARY_ENTRIES(plane, brunt_plane)
 
 brunt_plane_def brunt_plane_def_default(void) { return (brunt_plane_def){.condition = BRUNT_SEPARATE}; }
 
@@ -46,7 +46,8 @@ static bool oblique(const brunt_plane_def *plane) {
     return along > 1;
 }
 
-static const char *explicit_only(const void *one, const char **key) {
+static const char *refusal(const brunt_world_def *def, const void *one, const char **key) {
+    if (def->scheme != BRUNT_IMPLICIT) return NULL;
     const brunt_plane_def *plane = one;
     const brunt_condition_row *row = &brunt_conditions[plane->condition];
     *key = ".condition";
@@ -177,11 +178,11 @@ static unsigned hold_at(const brunt_boundary *b, int dim, double time, const dou
     return brunt_condition_components(&b->plane, dim);
 }
 
-const brunt_boundary_kind brunt_boundary_plane = {
-    BRUNT_BOUNDARY_ROW(plane),
+const brunt_boundary_kind brunt_kind_plane = {
+    BRUNT_BOUNDARY_ROW("plane"),
     .is_plane = true,
     .body = body_of,
-    .explicit_only = explicit_only,
+    .refusal = refusal,
     .velocity = velocity,
     .hold_grid = hold_grid,
     .hold_at = hold_at,

@@ -10,7 +10,7 @@
 #include "contact/planes/grid_conditions.h"
 #include "geometry/shape_check.h"
 
-BRUNT_BOUNDARY_ENTRIES(region)
+BRUNT_BOUNDARY_ENTRIES(region, brunt_region)
 
 brunt_region_def brunt_region_def_default(void) {
     return (brunt_region_def){.place = brunt_placement_identity(), .component = {true, true, true}, .end = INFINITY};
@@ -99,6 +99,6 @@ static unsigned hold_at(const brunt_boundary *b, int dim, double time, const dou
     return held;
 }
 
-const brunt_boundary_kind brunt_boundary_region = {
-    BRUNT_BOUNDARY_ROW(region), .body = body_of, .velocity = velocity, .hold_grid = hold_grid, .hold_at = hold_at,
+const brunt_boundary_kind brunt_kind_region = {
+    BRUNT_BOUNDARY_ROW("region"), .body = body_of, .velocity = velocity, .hold_grid = hold_grid, .hold_at = hold_at,
 };

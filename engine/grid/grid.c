@@ -160,3 +160,26 @@ real *brunt_grid_node(const brunt_grid *grid, const int32_t at[3]) {
     if (slot < 0) return NULL;
     return brunt_slot_nodes(grid, slot) + brunt_node_index(grid, local[0], local[1], local[2]) * BRUNT_NODE_REALS;
 }
+
+void brunt_grid_mark_reached(const brunt_grid *grid, uint8_t *mark) {
+    const int deep = grid->dim == 3 ? grid->order : 0;
+    for (int32_t b = 0; b < grid->block_count; b++)
+        for (int bin = 0; bin < BRUNT_BLOCK_NODES; bin++) {
+            const int32_t *start = grid->bin_start + (size_t)b * BRUNT_BIN_STARTS;
+            int from[3];
+            if (start[bin + 1] == start[bin]) continue;
+            brunt_node_local(grid, bin, from);
+            for (int x = from[0]; x <= from[0] + grid->order; x++)
+                for (int y = from[1]; y <= from[1] + grid->order; y++)
+                    for (int z = from[2]; z <= from[2] + deep; z++) {
+                        const int at[3] = {x, y, z};
+                        int corner = 0, local[3] = {0};
+                        for (int a = 0; a < grid->dim; a++) {
+                            const int beyond = at[a] >= grid->side;
+                            corner = 2 * corner + beyond, local[a] = at[a] - beyond * grid->side;
+                        }
+                        mark[(size_t)grid->blocks[b].slot[corner] * BRUNT_BLOCK_NODES +
+                             (size_t)brunt_node_index(grid, local[0], local[1], local[2])] = 1;
+                    }
+        }
+}

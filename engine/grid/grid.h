@@ -116,6 +116,8 @@ static inline bool brunt_node_held(const brunt_grid *grid, int64_t number, int c
 }
 // The node with global coordinates `at`, NULL when it is not alive.
 real *brunt_grid_node(const brunt_grid *grid, const int32_t at[3]);
+// Marks the nodes that the kernels of particles reach, by their numbers (slot * BRUNT_BLOCK_NODES + place).
+void brunt_grid_mark_reached(const brunt_grid *grid, uint8_t *mark);
 // Position of a node [m].
 static inline void brunt_node_position(const brunt_grid *grid, const int32_t coord[3], int node, double x[3]) {
     int local[3];

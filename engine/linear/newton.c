@@ -138,6 +138,37 @@ static brunt_linear_status solve(newton_run *r) {
     return status;
 }
 
+static bool sweeps(const newton_run *r) {
+    for (int t = 0; t < r->problem->count; t++)
+        if (r->problem->terms[t].ops->sweep) return true;
+    return false;
+}
+
+// What terms keep beside u follows the step, and the step follows it, until neither changes. Energies are then others.
+static brunt_linear_status sweep(newton_run *r) {
+    brunt_newton *n = r->n;
+    int outside;
+    for (int changed = 1; changed;) {
+        changed = 0;
+        for (int t = 0; t < r->problem->count; t++) {
+            const brunt_term *term = r->problem->terms + t;
+            if (!term->ops->sweep) continue;
+            const int now = term->ops->sweep(term->self, r->u, n->step, n->gradient, r->error);
+            if (now < 0) return BRUNT_LINEAR_FAILED;
+            changed |= now;
+        }
+        if (!changed) break;
+        for (int64_t i = 0; i < unknowns(r); i++) {
+            if (r->problem->held && r->problem->held[i]) n->gradient[i] = 0;
+            n->trial[i] = -n->gradient[i];
+        }
+        const brunt_linear_status status = brunt_linear_solve(&n->linear, r->team, n->trial, n->step, r->error);
+        if (status != BRUNT_LINEAR_DONE) return status;
+    }
+    r->energy = energy_at(r, r->u, &outside);
+    return BRUNT_LINEAR_DONE;
+}
+
 static double measure_step(newton_run *r) {
     brunt_newton_report *report = r->report;
     if (r->options->measure) {
@@ -158,6 +189,7 @@ static brunt_linear_status try_matrix(newton_run *r) {
         status = solve(r);
     }
     if (status != BRUNT_LINEAR_DONE) return status;
+    if (sweeps(r) && (status = sweep(r)) != BRUNT_LINEAR_DONE) return status;
     r->slope = 0;
     for (int64_t i = 0; i < unknowns(r); i++) r->slope += r->n->gradient[i] * r->n->step[i];
     if (r->slope < 0 || measure_step(r) <= r->options->tolerance) return BRUNT_LINEAR_DONE;

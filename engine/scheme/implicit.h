@@ -10,16 +10,15 @@
 #include "fem/potential.h"
 #include "linear/newton.h"
 #include "mpm/potential.h"
+#include "scheme/boundary_rows.h"
+#include "scheme/ghost.h"
 #include "scheme/implicit_contact.h"
 #include "scheme/scheme.h"
 #include "scheme/step_terms.h"
 
-// Inertia, loads and the pull of prescribed motion come first, then a term for each body, then those of contact.
-enum {
-    BRUNT_FIXED_TERMS = 3,
-    BRUNT_CONTACT_TERMS = 2,
-    BRUNT_MOST_OTHER_TERMS = BRUNT_FIXED_TERMS + BRUNT_CONTACT_TERMS
-};
+// Inertia, loads and the pull of prescribed motion come first, with what surfaces hold and nodes without material where
+// there are surfaces; then a term for each body, then those of contact.
+enum { BRUNT_MOST_OTHER_TERMS = 3 + 2 + 2 };
 
 // Of a time integrator.
 typedef struct brunt_weights {
@@ -52,9 +51,12 @@ struct brunt_implicit {
     brunt_pull pull;
     brunt_fem_potential **fem; // a body each
     brunt_mpm_potential **mpm;
-    brunt_term *term;           // inertia, loads, bodies of elements, of points, barrier, friction
-    int term_count, body_terms; // of them, up to the last of a body
+    brunt_term *term; // inertia, loads, pull, surfaces, bodies of elements, of points, barrier, friction
+    int fixed_terms, term_count, body_terms; // of them, before the first of a body, up to the last
     brunt_implicit_contact contact;
+    bool holds; // there are surfaces, the two below are of them
+    brunt_boundary_rows rows;
+    brunt_ghost ghost;
     bool rubs; // there is friction
     int friction_iterations;
     double *moved; // [m] of the particles of a body: a field of the unknowns where they are
@@ -97,6 +99,17 @@ void brunt_implicit_follow(brunt_world *world);
 // Velocities at the end; kinetic energy, work and impulses of the step, before it is committed. BRUNT_OK, or
 // BRUNT_FAILED: no memory to look at contact.
 int brunt_implicit_book(brunt_world *world, brunt_step *step, brunt_error *error);
+
+// --- implicit_surface.c: lines and surfaces that hold material points
+// Rows of the step that is tried. BRUNT_OK, or BRUNT_FAILED.
+int brunt_implicit_surfaces_begin(brunt_world *world, double dt, brunt_error *error);
+// Adds the forces of their tractions at the start of the step to `force` [N].
+void brunt_implicit_surfaces_before(const struct brunt_implicit *m, double *force);
+// What they did over the step; what they do at its end is added to `field.gradient`. Their tractions are kept.
+void brunt_implicit_book_surfaces(brunt_world *world);
+// Adds to a reason why a step has failed which bodies have too few rows to be held; nothing where there are no
+// surfaces.
+void brunt_implicit_surfaces_lack(const brunt_world *world, char *reason, size_t size);
 
 // --- implicit_account_contact.c
 typedef struct brunt_term_sums {

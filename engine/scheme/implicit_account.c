@@ -121,10 +121,11 @@ int brunt_implicit_book(brunt_world *world, brunt_step *step, brunt_error *error
     brunt_term_sums bodies;
     end_velocities(m);
     world->ledger.scheme += book_kinetic(m, step);
-    if (brunt_implicit_sums(m, BRUNT_FIXED_TERMS, m->body_terms, NULL, &bodies, error)) return BRUNT_FAILED;
+    if (brunt_implicit_sums(m, m->fixed_terms, m->body_terms, NULL, &bodies, error)) return BRUNT_FAILED;
     world->ledger.scheme += bodies.work - (bodies.after - bodies.before);
     memcpy(f->gradient, f->step, (size_t)brunt_implicit_components(m) * sizeof *f->gradient);
     if (m->contact.barrier && brunt_implicit_book_contact(world, error)) return BRUNT_FAILED;
+    if (m->holds) brunt_implicit_book_surfaces(world);
     if (world->settings.has_gravity) book_gravity(world);
     book_groups(world, gamma);
     book_holders(world);

@@ -18,11 +18,13 @@ static void take_acceleration(brunt_world *world) {
     if (m->weights.gamma == 1) return; // backward Euler asks for none
     brunt_implicit_loads(world, world->clock.time, f->force_before);
     const int friction = m->term_count - m->rubs; // of the velocities at the start: see barrier.h
-    brunt_implicit_gradient(m, BRUNT_FIXED_TERMS, friction, f->u, f->gradient);
+    brunt_implicit_gradient(m, m->fixed_terms, friction, f->u, f->gradient);
     brunt_implicit_gradient(m, friction, m->term_count, m->contact.before, f->step);
+    if (m->holds) brunt_implicit_surfaces_before(m, f->force_before);
     for (int64_t k = 0; k < all; k++) {
         f->force_before[k] -= f->gradient[k] + f->step[k];
-        if (!unknowns->held[k]) f->acceleration[k] = f->force_before[k] / unknowns->mass[k / unknowns->dim];
+        const double mass = unknowns->mass[k / unknowns->dim];
+        if (!unknowns->held[k] && mass > 0) f->acceleration[k] = f->force_before[k] / mass;
     }
 }
 
@@ -43,6 +45,7 @@ static int begin_try(brunt_world *world, double dt, brunt_error *error) {
     for (int i = 0; i < world->bodies.mpm_count; i++)
         if (brunt_mpm_potential_step(m->mpm[i], &m->team, m->unknowns.number[i], dt, error)) return BRUNT_FAILED;
     memset(m->field.u, 0, bytes);
+    if (m->holds && brunt_implicit_surfaces_begin(world, dt, error)) return BRUNT_FAILED;
     const double gamma = m->weights.gamma;
     const brunt_contact_rule rule = {
         .dt = dt, .factor = gamma / (2 * m->weights.alpha * m->weights.beta), .rest = m->field.u};
@@ -180,7 +183,19 @@ static int fail_try(brunt_world *world, const brunt_newton_report *report, brunt
     snprintf(reason, sizeof reason,
              "a step of %.4g s, halved %d times (newton.cut), does not converge: %s The greatest force left is %.3g N",
              m->dt, world->settings.newton.cut, why, report->residual);
+    brunt_implicit_surfaces_lack(world, reason, sizeof reason);
     return brunt_fail_place(world, at.body, at.x, error, reason);
+}
+
+// What may leave a surface, and friction there, settles over several minima: each is with the multipliers of the last.
+static int settle(struct brunt_implicit *m, brunt_newton_report *report, brunt_error *error) {
+    enum { MOST = 60 };
+    for (int k = 0; k < MOST; k++) {
+        if (!brunt_boundary_rows_settle(&m->rows, m->field.u)) return BRUNT_OK;
+        if (minimise(m, report, error)) return BRUNT_FAILED;
+    }
+    report->result = BRUNT_NEWTON_ITERATIONS;
+    return brunt_fail(error, BRUNT_FAILED, "friction at boundaries does not settle within %d solutions.", MOST);
 }
 
 static int try_step(brunt_world *world, double dt, brunt_newton_report *report, brunt_error *error) {
@@ -189,6 +204,7 @@ static int try_step(brunt_world *world, double dt, brunt_newton_report *report, 
     m->tried = (brunt_newton_counts){.least_gap = INFINITY, .least_part = INFINITY};
     int status = begin_try(world, dt, error);
     if (!status) status = go_and_minimise(m, report, error);
+    if (!status && m->holds) status = settle(m, report, error);
     for (int k = 1; !status && m->rubs && k < m->friction_iterations; k++) {
         if (brunt_barrier_lag(m->contact.barrier, &m->team, m->field.u, error)) return BRUNT_FAILED;
         status = minimise(m, report, error);

@@ -18,26 +18,7 @@ static int64_t count_reached(const brunt_grid *grid) {
     const size_t nodes = (size_t)grid->slot_count * BRUNT_BLOCK_NODES;
     uint8_t *mark = brunt_alloc(nodes + 1);
     if (!mark) return -1;
-    const int deep = grid->dim == 3 ? grid->order : 0;
-    for (int32_t b = 0; b < grid->block_count; b++)
-        for (int bin = 0; bin < BRUNT_BLOCK_NODES; bin++) {
-            const int32_t *start = grid->bin_start + (size_t)b * BRUNT_BIN_STARTS;
-            int from[3];
-            if (start[bin + 1] == start[bin]) continue;
-            brunt_node_local(grid, bin, from);
-            for (int x = from[0]; x <= from[0] + grid->order; x++)
-                for (int y = from[1]; y <= from[1] + grid->order; y++)
-                    for (int z = from[2]; z <= from[2] + deep; z++) {
-                        const int at[3] = {x, y, z};
-                        int corner = 0, local[3] = {0};
-                        for (int a = 0; a < grid->dim; a++) {
-                            const int beyond = at[a] >= grid->side;
-                            corner = 2 * corner + beyond, local[a] = at[a] - beyond * grid->side;
-                        }
-                        mark[(size_t)grid->blocks[b].slot[corner] * BRUNT_BLOCK_NODES +
-                             (size_t)brunt_node_index(grid, local[0], local[1], local[2])] = 1;
-                    }
-        }
+    brunt_grid_mark_reached(grid, mark);
     for (size_t n = 0; n < nodes; n++) count += mark[n];
     brunt_free(mark);
     return count;
@@ -75,6 +56,10 @@ static int measure_systems(const brunt_world *world, brunt_linear_size *size) {
 static void choose_solver(struct brunt_implicit *m, brunt_solver wanted) {
     enum { MOST_ITERATIONS = 300, MANY_ITERATIONS = 20000 };
     m->choice = brunt_linear_choose(&m->size);
+    if (m->holds) {
+        m->choice.solver = &brunt_linear_direct;
+        snprintf(m->choice.why, sizeof m->choice.why, "tractions of boundaries follow with one factor");
+    }
     m->options.solver = wanted == BRUNT_SOLVER_AUTO     ? m->choice.solver
                         : wanted == BRUNT_SOLVER_DIRECT ? &brunt_linear_direct
                                                         : &brunt_linear_pcg;
@@ -124,6 +109,9 @@ static int make_bodies(brunt_world *world, struct brunt_implicit *m, brunt_error
     m->term[m->term_count++] = (brunt_term){&brunt_dead_load_ops, &m->loads};
     m->term[m->term_count++] = (brunt_term){&brunt_pull_ops, &m->pull};
     m->inertia.unknowns = m->loads.unknowns = m->pull.unknowns = &m->unknowns;
+    if (m->holds) m->term[m->term_count++] = (brunt_term){&brunt_boundary_rows_ops, &m->rows};
+    if (m->holds) m->term[m->term_count++] = (brunt_term){&brunt_ghost_ops, &m->ghost};
+    m->fixed_terms = m->term_count;
     for (int k = 0; k < world->bodies.fem_count; k++) {
         brunt_fem_body *fem = &world->bodies.fem[k];
         const char *why = brunt_fem_implicit(fem);
@@ -179,6 +167,7 @@ int brunt_implicit_make(brunt_world *world, const brunt_world_def *def, brunt_er
     const brunt_bodies *bodies = &world->bodies;
     m->world = world;
     m->team.threads = world->settings.threads;
+    m->holds = world->boundaries.surfaces.count > 0;
     m->fem = brunt_alloc(((size_t)bodies->fem_count + 1) * sizeof *m->fem);
     m->mpm = brunt_alloc(((size_t)bodies->mpm_count + 1) * sizeof *m->mpm);
     m->term = brunt_alloc(((size_t)bodies->count + BRUNT_MOST_OTHER_TERMS) * sizeof *m->term);
@@ -202,6 +191,8 @@ void brunt_implicit_free(brunt_world *world) {
     for (size_t k = 0; k < sizeof fields / sizeof *fields; k++) brunt_free(fields[k]);
     brunt_newton_free(&m->newton);
     brunt_implicit_contact_free(&m->contact);
+    brunt_boundary_rows_free(&m->rows);
+    brunt_ghost_free(&m->ghost);
     brunt_unknowns_free(&m->unknowns, &world->bodies);
     brunt_free(m->fem);
     brunt_free(m->mpm);
@@ -231,6 +222,8 @@ int brunt_pass_number(brunt_world *world, brunt_step *step, brunt_error *error) 
     if (brunt_unknowns_number(&m->unknowns, world) || reserve(world, m))
         return brunt_fail_step(world, NULL, error, "out of memory for the unknowns");
     m->loads.force = m->field.load, m->inertia.aim = m->field.aim;
+    if (m->holds && brunt_ghost_step(&m->ghost, world, &m->unknowns))
+        return brunt_fail_step(world, NULL, error, "out of memory for nodes without material");
     return brunt_implicit_contact_points(&m->contact, world, &m->unknowns, error) ? brunt_fail_inner(world, NULL, error)
                                                                                   : BRUNT_OK;
 }
@@ -247,7 +240,9 @@ size_t brunt_implicit_bytes(const brunt_world *world) {
     const struct brunt_implicit *m = world->plan.implicit;
     const brunt_fields *f = &m->field;
     size_t bytes = brunt_unknowns_bytes(&m->unknowns, &world->bodies) + m->moved_capacity +
-                   brunt_implicit_contact_bytes(&m->contact) + f->contact_capacity;
+                   brunt_implicit_contact_bytes(&m->contact) + f->contact_capacity +
+                   brunt_boundary_rows_bytes(&m->rows) + brunt_ghost_bytes(&m->ghost) +
+                   brunt_boundary_surfaces_bytes(&world->boundaries.surfaces);
     for (int k = 0; k < world->bodies.fem_count; k++) bytes += brunt_fem_potential_bytes(m->fem[k]);
     for (int i = 0; i < world->bodies.mpm_count; i++) bytes += brunt_mpm_potential_bytes(m->mpm[i]);
     return bytes + f->u_capacity + f->v_capacity + f->aim_capacity + f->acceleration_capacity + f->load_capacity +

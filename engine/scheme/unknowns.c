@@ -68,22 +68,28 @@ static int32_t shared_number(const brunt_unknowns *u, const brunt_bodies *bodies
     return -1;
 }
 
-// Numbers of the nodes that have weight at some particle.
+// Numbers of the nodes that have weight at some particle; with linear kernels also of those that have a slope there but
+// no weight, when the particle lies on a line of the grid: stress pushes them.
 static int number_grid(brunt_unknowns *u, const brunt_bodies *bodies, int i) {
     const brunt_grid *grid = &bodies->mpm[i].grid;
     const int64_t nodes = (int64_t)grid->slot_count * BRUNT_BLOCK_NODES;
     if (BRUNT_RESERVE_IN(u->number[i], u->number_capacity[i], (size_t)nodes + 1, 0)) return -1;
     double most = 0;
+    uint8_t *sloped = grid->order == BRUNT_LINEAR ? brunt_alloc((size_t)nodes + 1) : NULL;
+    if (grid->order == BRUNT_LINEAR && !sloped) return -1;
+    if (sloped) brunt_grid_mark_reached(grid, sloped);
     for (int64_t k = 0; k < nodes; k++) most = fmax(most, (double)grid->nodes[k * BRUNT_NODE_REALS + BRUNT_NODE_MASS]);
     int64_t next = u->count;
     for (int64_t k = 0; k < nodes; k++) {
-        const bool weighs = (double)grid->nodes[k * BRUNT_NODE_REALS + BRUNT_NODE_MASS] > LEAST_SHARE * most;
+        const bool weighs =
+            (double)grid->nodes[k * BRUNT_NODE_REALS + BRUNT_NODE_MASS] > LEAST_SHARE * most || (sloped && sloped[k]);
         u->number[i][k] = weighs ? shared_number(u, bodies, i, k) : -1;
         if (weighs && u->number[i][k] < 0) u->number[i][k] = (int32_t)next++;
-        if (next > INT32_MAX / 3) return -1;
+        if (next > INT32_MAX / 3) break;
     }
+    brunt_free(sloped);
     u->count = (int32_t)next;
-    return 0;
+    return next > INT32_MAX / 3 ? -1 : 0;
 }
 
 static int reserve(brunt_unknowns *u) {
@@ -156,6 +162,22 @@ int brunt_unknowns_number(brunt_unknowns *u, const brunt_world *world) {
     for (int w = 0; w < world->boundaries.wall_count; w++)
         if (u->plane[w] >= 0) take_plane(u, &walls[w].plane, world->clock.time, u->plane[w]);
     return 0;
+}
+
+int32_t brunt_unknowns_node_at(const brunt_unknowns *u, const brunt_bodies *bodies, int i, const int32_t at[3]) {
+    const brunt_grid *own = &bodies->mpm[i].grid;
+    int32_t block[3] = {0, 0, 0}, local[3] = {0, 0, 0};
+    for (int a = 0; a < own->dim; a++) {
+        block[a] = (int32_t)floor((double)at[a] / own->side);
+        local[a] = at[a] - block[a] * own->side;
+    }
+    for (int other = u->tie[i]; other < bodies->mpm_count; other++) {
+        if (u->tie[other] != u->tie[i]) continue;
+        const int32_t slot = brunt_grid_slot(&bodies->mpm[other].grid, brunt_key(block));
+        const int64_t node = (int64_t)slot * BRUNT_BLOCK_NODES + brunt_node_index(own, local[0], local[1], local[2]);
+        if (slot >= 0 && u->number[other][node] >= 0) return u->number[other][node];
+    }
+    return -1;
 }
 
 brunt_unknown_place brunt_unknowns_place(const brunt_unknowns *u, const brunt_bodies *bodies, int32_t n) {

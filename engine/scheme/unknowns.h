@@ -41,6 +41,8 @@ void brunt_unknowns_hold(brunt_unknowns *u, const brunt_world *world, double dt)
 // that plane; -1: none.
 int32_t brunt_unknowns_passed(const brunt_unknowns *u, const brunt_world *world, const double *way, double dt,
                               const brunt_boundary **wall);
+// The node at grid coordinates `at` of body of points i, or of one that it is tied to; -1: none.
+int32_t brunt_unknowns_node_at(const brunt_unknowns *u, const brunt_bodies *bodies, int i, const int32_t at[3]);
 // What node `n` is of: a body, and its node or the slot's, for messages.
 typedef struct brunt_unknown_place {
     int body; // among all, in order of name

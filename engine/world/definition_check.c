@@ -221,7 +221,7 @@ static int check_arrays(const brunt_world_def *def, brunt_error *error) {
     if (def->body_count == 0) REFUSE("bodies: there is none");
     BRUNT_TRY(brunt_check_array("materials", def->material_count, def->materials, error));
     BRUNT_TRY(brunt_check_array("bodies", def->body_count, def->bodies, error));
-#define CHECK(NAME, kind, what)                                                                                        \
+#define CHECK(NAME, kind, type, word, what)                                                                            \
     BRUNT_TRY(brunt_check_array("boundaries: " #kind "s", def->kind##_count, def->kind##s, error));
     BRUNT_BOUNDARY_KINDS(CHECK)
 #undef CHECK

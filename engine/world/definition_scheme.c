@@ -96,7 +96,7 @@ static void look_at_boundaries(const brunt_world_def *def, refusals *r) {
     for (int32_t w = 0; w < brunt_boundary_count(def); w++) {
         const brunt_boundary_kind *kind;
         const void *entry = brunt_boundary_entry(def, w, &kind);
-        const char *key, *reason = kind->explicit_only ? kind->explicit_only(entry, &key) : NULL;
+        const char *key, *reason = kind->refusal ? kind->refusal(def, entry, &key) : NULL;
         name_boundary(r, w, kind->name(entry));
         if (reason) say(r, key, "%s", reason);
     }
@@ -143,7 +143,6 @@ static void look_at_implicit(const brunt_world_def *def, refusals *r) {
         look_at_material(def, &def->bodies[i], r);
         look_at_body(&def->bodies[i], r);
     }
-    look_at_boundaries(def, r);
 }
 
 // ------------------------------------------------------------------------------------------ both
@@ -173,6 +172,7 @@ static void look_at_methods(const brunt_world_def *def, refusals *r) {
 void brunt_scheme_refusals(const brunt_world_def *def, brunt_refusal_fn *refuse, void *context) {
     refusals r = {.refuse = refuse, .context = context, .owner = ""};
     if (def->scheme == BRUNT_IMPLICIT) look_at_implicit(def, &r);
+    look_at_boundaries(def, &r);
     look_at_methods(def, &r);
     if (def->scheme == BRUNT_IMPLICIT) look_at_contact(def, &r);
 }

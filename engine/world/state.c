@@ -12,7 +12,8 @@
 #include "mpm/sort.h"
 #include "world/world.h"
 
-// World blocks: clock (with the speeds of bodies of particles), walls (with the gas that groups of them enclose),
+// World blocks: clock (with the speeds of bodies of particles), walls (with the gas that groups of them enclose and
+// the tractions of surfaces),
 // pairs; where surfaces meet what their search remembers; and where contact keeps them the affine velocities of
 // boundary nodes. Last the accounts of erosion, if there is any, or those of implicit steps.
 static int plain_blocks(const brunt_world *world) {
@@ -116,7 +117,8 @@ static brunt_state_block world_info(const brunt_world *world, int index) {
                                         "world/contact_affine", "world/erosion", "world/newton"};
     const int64_t account = 2 * brunt_saved_count(account_table, ACCOUNT_ROWS); // since the start, and of the last step
     const int64_t counts[] = {brunt_saved_count(clock_table, CLOCK_ROWS) + world->bodies.mpm_count,
-                              world->boundaries.wall_count * account + brunt_gas_state_count(&world->boundaries.sets),
+                              world->boundaries.wall_count * account + brunt_gas_state_count(&world->boundaries.sets) +
+                                  brunt_boundary_surfaces_state_count(&world->boundaries.surfaces),
                               world->pairs.count * account,
                               brunt_node_to_facet_state_count(&world->contact.surface),
                               brunt_surface_affine_count(&world->contact.surface),
@@ -136,6 +138,7 @@ static void world_get(brunt_world *world, int block, double *to) {
     for (int i = 0; block == 0 && i < world->bodies.mpm_count; i++) *to++ = (double)world->bodies.mpm[i].speed;
     for (int w = 0; block == 1 && w < world->boundaries.wall_count; w++)
         to = get_account(&world->boundaries.walls[w].last, get_account(&world->boundaries.walls[w].action, to));
+    if (block == 1) to = brunt_boundary_surfaces_state_get(&world->boundaries.surfaces, to);
     if (block == 1) brunt_gas_state_get(&world->boundaries.sets, to);
     for (int p = 0; block == 2 && p < world->pairs.count; p++)
         to = get_account(&world->pairs.pair[p].last, get_account(&world->pairs.pair[p].action, to));
@@ -152,6 +155,7 @@ static int world_set(brunt_world *world, int block, const double *from, brunt_er
     for (int i = 0; block == 0 && i < world->bodies.mpm_count; i++) world->bodies.mpm[i].speed = (real)*from++;
     for (int w = 0; block == 1 && w < world->boundaries.wall_count; w++)
         from = set_account(&world->boundaries.walls[w].last, set_account(&world->boundaries.walls[w].action, from));
+    if (block == 1) from = brunt_boundary_surfaces_state_set(&world->boundaries.surfaces, from);
     if (block == 1) brunt_gas_state_set(&world->boundaries.sets, from);
     for (int p = 0; block == 2 && p < world->pairs.count; p++)
         from = set_account(&world->pairs.pair[p].last, set_account(&world->pairs.pair[p].action, from));

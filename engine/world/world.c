@@ -225,6 +225,9 @@ brunt_world *brunt_world_create(const brunt_world_def *given, brunt_error *error
         status =
             brunt_node_sets_make(&world->boundaries.sets, def, &world->bodies,
                                  world->boundaries.walls + brunt_boundary_first(def, "group"), &world->messages, error);
+    if (!status)
+        status = brunt_boundary_surfaces_make(&world->boundaries.surfaces, def, &world->bodies,
+                                              world->boundaries.walls + brunt_boundary_first(def, "surface"), error);
     if (!status) status = brunt_surfaces_make(world, def, error);
     if (!status && brunt_fem_tasks_make(world)) status = brunt_fail(error, BRUNT_FAILED, "out of memory");
     if (!status) status = brunt_damping_make(&world->boundaries.damping, &world->bodies, error);
@@ -263,6 +266,7 @@ void brunt_world_destroy(brunt_world *world) {
         if (brunt_contact_rows[r].free) brunt_contact_rows[r].free(world->contact.memory[r]);
     brunt_load_step_free(&world->boundaries.sets);
     brunt_node_sets_free(&world->boundaries.sets);
+    brunt_boundary_surfaces_free(&world->boundaries.surfaces);
     brunt_damping_free(&world->boundaries.damping);
     brunt_erosion_free(&world->erosion);
     for (int k = 0; world->bodies.fem && k < world->bodies.fem_count; k++) brunt_fem_free(&world->bodies.fem[k]);

@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-static void fill_table(scene_reader *reader, const scene_node *node, brunt_curve *table) {
+void brunt_fill_table(scene_reader *reader, const scene_node *node, brunt_curve *table) {
     if (!node || !node->good) return;
     table->points = brunt_entries_for(reader, node->count, sizeof *table->points);
     for (const scene_node *point = table->points ? node->first : NULL; point; point = point->next) {
@@ -89,5 +89,5 @@ void brunt_fill_group(scene_reader *reader, scene_node *node, brunt_group_def *g
         brunt_tree_complain(reader->tree, body, "groups are of bodies of method fem or membrane, '%s' is of method mpm",
                             def->name);
     fill_action(reader, node, group);
-    fill_table(reader, brunt_tree_child(node, "table"), &group->table);
+    brunt_fill_table(reader, brunt_tree_child(node, "table"), &group->table);
 }

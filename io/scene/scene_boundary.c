@@ -51,18 +51,18 @@ typedef struct boundary_reader {
     void (*read)(scene_reader *reader, scene_node *node);
 } boundary_reader;
 
-#define READER(NAME, kind, what)                                                                                       \
+#define READER(NAME, kind, type, word, what)                                                                           \
     static void read_##kind(scene_reader *reader, scene_node *node) {                                                  \
         brunt_world_def *world = &reader->scene->world;                                                                \
-        brunt_##kind##_def *def = &world->kind##s[world->kind##_count++];                                              \
-        *def = brunt_##kind##_def_default();                                                                           \
-        fill_name(reader, node, #kind, world->kind##_count, def->name);                                                \
+        type##_def *def = &world->kind##s[world->kind##_count++];                                                      \
+        *def = type##_def_default();                                                                                   \
+        fill_name(reader, node, word, world->kind##_count, def->name);                                                 \
         brunt_fill_fields(reader, node, "boundaries[]", SCENE_AT_##NAME, def);                                         \
         brunt_fill_##kind(reader, node, def);                                                                          \
     }
 BRUNT_BOUNDARY_KINDS(READER)
 
-#define ROW(NAME, kind, what) {#kind, read_##kind},
+#define ROW(NAME, kind, type, word, what) {word, read_##kind},
 static const boundary_reader readers[] = {BRUNT_BOUNDARY_KINDS(ROW)};
 enum { READERS = sizeof readers / sizeof *readers };
 
@@ -83,7 +83,7 @@ void brunt_fill_boundaries(scene_reader *reader) {
     brunt_world_def *world = &reader->scene->world;
     const scene_node *list = brunt_tree_child(reader->tree->root, "boundaries");
     const int count = brunt_children_of(list, SCENE_LIST);
-#define ROOM(NAME, kind, what)                                                                                         \
+#define ROOM(NAME, kind, type, word, what)                                                                             \
     if (!(world->kind##s = brunt_entries_for(reader, count, sizeof *world->kind##s))) return;
     BRUNT_BOUNDARY_KINDS(ROOM)
 #undef ROOM

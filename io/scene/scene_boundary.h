@@ -4,8 +4,8 @@
 #include "io/scene/scene_reader.h"
 
 // Fills the definition of a boundary from its map: brunt_fill_plane, ...
-#define BRUNT_FILL_BOUNDARY(NAME, kind, what)                                                                          \
-    void brunt_fill_##kind(scene_reader *reader, scene_node *node, brunt_##kind##_def *def);
+#define BRUNT_FILL_BOUNDARY(NAME, kind, type, word, what)                                                              \
+    void brunt_fill_##kind(scene_reader *reader, scene_node *node, type##_def *def);
 BRUNT_BOUNDARY_KINDS(BRUNT_FILL_BOUNDARY)
 #undef BRUNT_FILL_BOUNDARY
 
@@ -14,6 +14,8 @@ void brunt_fill_body_of(scene_reader *reader, const scene_node *node, char name[
 bool brunt_acts_on_particles(const scene_reader *reader, const char *name);
 // A vector of which some components may be free.
 void brunt_fill_partial(scene_reader *reader, const scene_node *node, bool component[3], double value[3]);
+// Factors over time.
+void brunt_fill_table(scene_reader *reader, const scene_node *node, brunt_curve *table);
 // "plane, region and group": names of a list, one after the other; `name` of i.
 #define BRUNT_LIST_NAMES(out, count, name)                                                                             \
     for (size_t i = 0, used = 0; i < (count) && used < sizeof(out); i++)                                               \

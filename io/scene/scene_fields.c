@@ -10,8 +10,9 @@ static const struct {
              {SCENE_MESHES, "method: fem or membrane"},
              {SCENE_FEM, "method: fem"},
              {SCENE_MEMBRANE, "method: membrane"},
-#define AT(NAME, kind, what) {SCENE_AT_##NAME, what},
-             BRUNT_BOUNDARY_KINDS(AT)};
+#define AT(NAME, kind, type, word, what) {SCENE_AT_##NAME, what},
+             BRUNT_BOUNDARY_KINDS(AT){SCENE_AT_PLANE | SCENE_AT_LINE, "a plane or a line"},
+             {SCENE_AT_GROUP | SCENE_AT_LINE, "a group of nodes or a line"}};
 #undef AT
 
 static const char *kind_name(unsigned kind) {

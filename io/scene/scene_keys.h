@@ -83,7 +83,7 @@ typedef struct scene_key {
 extern const scene_key brunt_scene_table[];
 extern const int brunt_scene_table_count;
 
-#define SCENE_NUMBER(NAME, kind, what) SCENE_NUMBER_##NAME,
+#define SCENE_NUMBER(NAME, kind, type, word, what) SCENE_NUMBER_##NAME,
 enum { BRUNT_BOUNDARY_KINDS(SCENE_NUMBER) };
 #undef SCENE_NUMBER
 // Kinds of entries: bodies by their method, boundaries by what they act at (SCENE_AT_PLANE ...).
@@ -92,7 +92,7 @@ enum {
     SCENE_FEM = 1 << BRUNT_FEM,
     SCENE_MEMBRANE = 1 << BRUNT_MEMBRANE,
     SCENE_MESHES = SCENE_FEM | SCENE_MEMBRANE,
-#define SCENE_AT(NAME, kind, what) SCENE_AT_##NAME = SCENE_MEMBRANE << (SCENE_NUMBER_##NAME + 1),
+#define SCENE_AT(NAME, kind, type, word, what) SCENE_AT_##NAME = SCENE_MEMBRANE << (SCENE_NUMBER_##NAME + 1),
     BRUNT_BOUNDARY_KINDS(SCENE_AT)
 #undef SCENE_AT
 };

@@ -170,7 +170,8 @@ static void schema_type(FILE *out, const scene_key *row) {
     case SCENE_PARTIAL: fputs("\"$ref\": \"#/$defs/vector\"", out); break;
     case SCENE_TURN: fputs("\"anyOf\": [{\"$ref\": \"#/$defs/number\"}, {\"$ref\": \"#/$defs/vector\"}]", out); break;
     case SCENE_POLYGON:
-        fputs("\"type\": \"array\", \"minItems\": 3, \"items\": {\"$ref\": \"#/$defs/vector\"}", out);
+        fprintf(out, "\"type\": \"array\", \"minItems\": %d, \"items\": {\"$ref\": \"#/$defs/vector\"}",
+                strstr(row->path, "polygon") ? 3 : 2);
         break;
     case SCENE_TABLE:
     case SCENE_PROFILE:

@@ -111,7 +111,19 @@ static const char implicit_text[] =
     "friction_iterations: "
     "2}\n";
 
-static const char *const texts[] = {small_scene_text, small_elements_text, rich_text, implicit_text};
+static const char flat_text[] =
+    "brunt: 1\n"
+    "dimension: 2\n"
+    "time: {scheme: implicit, end: 1 ms, step: 1 us}\n"
+    "grid: {cell: 0.1}\n"
+    "materials: {gum: {model: neo-hookean, density: 1000, E: 1e6, nu: 0.4}}\n"
+    "bodies:\n"
+    "  block: {method: mpm, material: gum, shape: {box: {min: [0, 0], max: [1, 1]}}}\n"
+    "boundaries:\n"
+    "  - {name: line, line: {points: [[0, 0], [1, 0], [1, 1]]}, condition: separate, friction: 0.2, piece: 2,\n"
+    "    particles_per_cell: 5, about: [1, 2], displacement: [0.1, 0.2], table: [[0, 0], [1, 2]]}\n";
+
+static const char *const texts[] = {small_scene_text, small_elements_text, rich_text, implicit_text, flat_text};
 enum { TEXTS = sizeof texts / sizeof *texts };
 
 static int parse(const char *text, char **messages) {

@@ -133,30 +133,6 @@ START_TEST(heavy_meets_light_and_stiff_soft) {
 }
 END_TEST
 
-// Points that meet the middle between two (in space, four) of the other body: all of them bear the push, on nodes that
-// they share, and momentum is kept; alike when the other body is the one named first.
-START_TEST(one_between_several_is_borne_by_all) {
-    for (int dimension = 2; dimension <= 3; dimension++)
-        for (int first = 0; first < 2; first++) {
-            const double half = 0.0625;
-            brunt_world_def def = touching(dimension, 0.25, 0.3);
-            for (int i = 0; i < 2; i++) {
-                const bool left = i == first;
-                const double x = left ? -0.5 : 0.01, y = left ? 0 : half, z = dimension == 3 ? y : 0;
-                def_velocity(def_box(&def, i ? "b" : "a", XYZ(x, y, z), XYZ(x + 0.5, y + 0.5, z + 0.5)), left ? 2 : 0,
-                             0, 0);
-            }
-            brunt_world *world = world_take(&def);
-            world_until(world, 0.02);
-            const brunt_momentum m = world_momentum(world);
-            ck_assert_double_gt(fabs(world_pair(world, 0).impulse[0]), 0);
-            ck_assert_double_lt(m.linear_drift, ROUNDING);
-            ck_assert_double_lt(m.angular_drift, ROUNDING);
-            brunt_world_destroy(world);
-        }
-}
-END_TEST
-
 // Bodies of one point each. What they were to do when they touched is done, and no more: they part no faster.
 START_TEST(points_alone_meet) {
     for (int dimension = 2; dimension <= 3; dimension++) {
@@ -215,7 +191,6 @@ int main(void) {
     ADD_LOOP(strips_between_mirrors_keep_momentum, 1);
     ADD_LOOP(mirrored_and_swapped_it_is_the_same, 1);
     ADD_LOOP(heavy_meets_light_and_stiff_soft, 5);
-    ADD_LOOP(one_between_several_is_borne_by_all, 1);
     ADD_LOOP(points_alone_meet, 1);
     ADD_LOOP(any_number_of_threads_and_restarts, 2);
     return suite_main(suite);

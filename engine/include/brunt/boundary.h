@@ -4,6 +4,7 @@
 
 #include <stdbool.h>
 #include "brunt/boundary_group.h"
+#include "brunt/boundary_line.h"
 #include "brunt/boundary_plane.h"
 #include "brunt/boundary_region.h"
 
@@ -11,12 +12,13 @@
 extern "C" {
 #endif
 
-// Kinds of boundaries: their key in scenes, and what an entry of one is. The file boundary_KEY.h has the definition of
-// a kind, brunt_KEY_def; a definition of a world has an array of each.
+// Kinds of boundaries: of what name their entries and of what type their definition is, their key in scenes, and what
+// an entry is called. A definition of a world has an array of each.
 #define BRUNT_BOUNDARY_KINDS(X)                                                                                        \
-    X(PLANE, plane, "a plane")                                                                                         \
-    X(REGION, region, "a region")                                                                                      \
-    X(GROUP, group, "a group of nodes")
+    X(PLANE, plane, brunt_plane, "plane", "a plane")                                                                   \
+    X(REGION, region, brunt_region, "region", "a region")                                                              \
+    X(GROUP, group, brunt_group, "group", "a group of nodes")                                                          \
+    X(LINE, surface, brunt_boundary_surface, "line", "a line")
 
 // Where and when explosives are lit: at a point, or on a plane. Material at distance d burns from time + d / detonation
 // speed on.

@@ -85,8 +85,8 @@ typedef struct brunt_contact_def {
     int32_t pair_count; // owned; overrides
 } brunt_contact_def;
 
-#define BRUNT_BOUNDARY_LIST(NAME, kind, what)                                                                          \
-    brunt_##kind##_def *kind##s;                                                                                       \
+#define BRUNT_BOUNDARY_LIST(NAME, kind, type, word, what)                                                              \
+    type##_def *kind##s;                                                                                               \
     int32_t kind##_count;
 
 typedef struct brunt_world_def {

@@ -1,0 +1,170 @@
+// Which boundary particles material points reach with their own boxes.
+#include <math.h>
+#include <string.h>
+
+#include "boundary/boundary_surface.h"
+#include "grid/grid.h"
+#include "materials/material.h"
+
+// Boxes are taken somewhat larger than they are: what is held at its own face leaves it by rounding and drift, and must
+// be held on. Of a spacing, beyond the half of it.
+static const double SLACK = 0.1;
+static const double ROUNDING_SHARE = 1e-9;
+static const double BEHIND = 1; // spacings: how far material may be behind a surface and still be pushed out
+
+// The own box of a material point: a cube of half edge `half` [m], turned as the body was placed and deformed: F is of
+// both.
+typedef struct point_box {
+    double x[3], F[9], inverse[9], half, extent[3];
+} point_box;
+
+static void invert(int dim, const double *F, double *out) {
+    if (dim == 2) {
+        const double J = F[0] * F[3] - F[1] * F[2];
+        out[0] = F[3] / J, out[1] = -F[1] / J, out[2] = -F[2] / J, out[3] = F[0] / J;
+        return;
+    }
+    double cofactor[9], J = 0;
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++) {
+            const int i = (r + 1) % 3, j = (r + 2) % 3, k = (c + 1) % 3, l = (c + 2) % 3;
+            cofactor[3 * c + r] = F[3 * i + k] * F[3 * j + l] - F[3 * i + l] * F[3 * j + k];
+        }
+    for (int c = 0; c < 3; c++) J += F[c] * cofactor[3 * c];
+    for (int k = 0; k < 9; k++) out[k] = cofactor[k] / J;
+}
+
+// Fluids remember no shape: theirs are cubes of the same volume.
+static void make_round(int dim, double *F) {
+    const double J = dim == 2 ? F[0] * F[3] - F[1] * F[2]
+                              : F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) +
+                                    F[2] * (F[3] * F[7] - F[4] * F[6]);
+    const double size = pow(J, 1.0 / dim);
+    for (int k = 0; k < dim * dim; k++) F[k] = k % (dim + 1) ? 0 : size;
+}
+
+static point_box box_of(brunt_body *body, int64_t s, const double *frame) {
+    brunt_particles *p = &body->particles;
+    const int dim = p->dim, stride = p->point_dim;
+    real *const *x = brunt_field(p, BRUNT_FIELD_position), *const *F = brunt_field(p, BRUNT_FIELD_deformation_gradient);
+    point_box box = {.half = 0.5 * pow((double)brunt_field(p, BRUNT_FIELD_reference_volume)[0][s], 1.0 / dim)};
+    for (int a = 0; a < dim; a++) box.x[a] = (double)x[a][s];
+    for (int r = 0; r < dim; r++)
+        for (int c = 0; c < dim; c++)
+            for (int k = 0; k < dim; k++) box.F[r * dim + c] += (double)F[r * stride + k][s] * frame[3 * k + c];
+    if (body->material.model[BRUNT_STRENGTH]->fluid) make_round(dim, box.F);
+    invert(dim, box.F, box.inverse);
+    for (int r = 0; r < dim; r++)
+        for (int c = 0; c < dim; c++) box.extent[r] += box.half * fabs(box.F[r * dim + c]);
+    return box;
+}
+
+static void pull_back(int dim, const point_box *box, const double *d, double *out) {
+    for (int r = 0; r < dim; r++) {
+        out[r] = 0;
+        for (int c = 0; c < dim; c++) out[r] += box->inverse[r * dim + c] * d[c];
+    }
+}
+
+static bool inside(int dim, const point_box *box, const double *d) {
+    double local[3];
+    pull_back(dim, box, d, local);
+    for (int a = 0; a < dim; a++)
+        if (fabs(local[a]) > (1 + 2 * SLACK) * box->half) return false;
+    return true;
+}
+
+// Where a ray from d, relative to the box, along n enters it and leaves it [m]; false: it does not.
+static bool crosses(int dim, const point_box *box, const double *d, const double *n, double *enter, double *leave) {
+    double from[3], along[3];
+    const double half = box->half * (1 + ROUNDING_SHARE);
+    pull_back(dim, box, d, from);
+    pull_back(dim, box, n, along);
+    *enter = -INFINITY, *leave = INFINITY;
+    for (int a = 0; a < dim; a++) {
+        if (along[a] == 0) {
+            if (fabs(from[a]) > half) return false;
+            continue;
+        }
+        const double one = (-half - from[a]) / along[a], other = (half - from[a]) / along[a];
+        *enter = fmax(*enter, fmin(one, other)), *leave = fmin(*leave, fmax(one, other));
+    }
+    return *enter <= *leave;
+}
+
+typedef struct search {
+    const brunt_boundary_surface *s;
+    double *gap;
+    int dim;
+    point_box box;    // of the point that looks, its place as the surface was at the start
+    double coming[3]; // [m] how far it goes within the step, as the surface sees it
+} search;
+
+static void look_at(search *l, int32_t b) {
+    const brunt_boundary_particle *p = &l->s->particle[b];
+    double d[3], enter, leave, towards = 0;
+    for (int a = 0; a < l->dim; a++) d[a] = p->x[a] - l->box.x[a], towards -= l->coming[a] * p->normal[a];
+    if (l->s->def.condition != BRUNT_SEPARATE) {
+        if (inside(l->dim, &l->box, d)) l->gap[b] = 0;
+        return;
+    }
+    if (!crosses(l->dim, &l->box, d, p->normal, &enter, &leave)) return;
+    if (leave < -2 * BEHIND * l->box.half || enter > fmax(0, towards) + 2 * SLACK * l->box.half) return;
+    l->gap[b] = fmin(l->gap[b], fmax(enter, 0));
+}
+
+static void look_in_cell(search *l, const int32_t at[3]) {
+    const uint64_t key = brunt_key(at);
+    int32_t low = 0, high = l->s->cells;
+    while (low < high) {
+        const int32_t middle = low + (high - low) / 2;
+        if (l->s->key[middle] < key)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    if (low == l->s->cells || l->s->key[low] != key) return;
+    for (int32_t k = l->s->cell_first[low]; k < l->s->cell_first[low + 1]; k++) look_at(l, l->s->cell_particle[k]);
+}
+
+// The boundary particles in the box that the point goes over within the step.
+static void look_around(search *l) {
+    const brunt_boundary_surface *s = l->s;
+    int32_t from[3] = {0}, to[3] = {0};
+    double cells = 1;
+    for (int a = 0; a < l->dim; a++) {
+        const double extent =
+            l->box.extent[a] * (1 + 2 * SLACK) + (s->def.condition == BRUNT_SEPARATE ? 2 * BEHIND * l->box.half : 0);
+        const double low = l->box.x[a] - extent + fmin(0, l->coming[a]),
+                     high = l->box.x[a] + extent + fmax(0, l->coming[a]);
+        if (!(low <= s->high[a] && high >= s->low[a])) return;
+        from[a] = (int32_t)floor((fmax(low, s->low[a]) - s->low[a]) / s->cell);
+        to[a] = (int32_t)floor((fmin(high, s->high[a]) - s->low[a]) / s->cell);
+        cells *= to[a] - from[a] + 1;
+    }
+    if (cells > s->particle_count) {
+        for (int32_t b = 0; b < s->particle_count; b++) look_at(l, b);
+        return;
+    }
+    for (int32_t x = from[0]; x <= to[0]; x++)
+        for (int32_t y = from[1]; y <= to[1]; y++)
+            for (int32_t z = from[2]; z <= to[2]; z++) look_in_cell(l, (const int32_t[3]){x, y, z});
+}
+
+void brunt_boundary_surface_reach(const brunt_boundary_surface *s, brunt_body *body, const brunt_boundary_reach *reach,
+                                  double *gap) {
+    search l = {.s = s, .gap = gap, .dim = body->particles.dim};
+    real *const *v = brunt_field(&body->particles, BRUNT_FIELD_velocity);
+    const bool leaves = s->def.condition == BRUNT_SEPARATE;
+    for (int32_t b = 0; b < body->grid.block_count; b++) {
+        const brunt_block *block = &body->grid.blocks[b];
+        for (int64_t p = block->first; p < block->first + block->count; p++) {
+            l.box = box_of(body, p, reach->frame);
+            for (int a = 0; a < l.dim; a++) {
+                l.box.x[a] -= reach->way[a];
+                l.coming[a] = leaves ? (double)v[a][p] * reach->dt - reach->step[a] : 0;
+            }
+            look_around(&l);
+        }
+    }
+}

@@ -1,0 +1,291 @@
+// Lines that hold material points: cut into pieces, with boundary particles on them.
+#include "boundary/boundary_surface.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "base/error.h"
+#include "base/memory.h"
+#include "boundary/curve.h"
+#include "grid/grid.h"
+
+static const double CORNER = 0.866; // cosine of the turn between parts of a line where pieces end: 30 degrees
+static const double MOST_PARTICLES = 1e6;
+
+static int out_of_memory(brunt_error *error) {
+    return brunt_fail(error, BRUNT_FAILED, "out of memory for the boundaries");
+}
+
+// ------------------------------------------------------------------------------------------ lines
+
+// Parts of a line that follow each other without a corner.
+typedef struct chain {
+    const brunt_boundary_surface_def *def;
+    int32_t first, end; // facets
+    double length;      // [m]
+} chain;
+
+static const double *corner_of(const brunt_boundary_surface_def *def, int32_t facet, int corner) {
+    return def->point[def->facet[facet][corner]];
+}
+
+// Length [m] and direction of a part.
+static double direction(const brunt_boundary_surface_def *def, int32_t facet, double t[3]) {
+    const double *a = corner_of(def, facet, 0), *b = corner_of(def, facet, 1);
+    const double length = hypot(b[0] - a[0], b[1] - a[1]);
+    for (int k = 0; k < 3; k++) t[k] = k < 2 ? (b[k] - a[k]) / length : 0;
+    return length;
+}
+
+static bool follows(const brunt_boundary_surface_def *def, int32_t facet) {
+    double a[3], b[3];
+    if (def->facet[facet][0] != def->facet[facet - 1][1]) return false;
+    direction(def, facet - 1, a);
+    direction(def, facet, b);
+    return a[0] * b[0] + a[1] * b[1] > CORNER;
+}
+
+static chain next_chain(const brunt_boundary_surface_def *def, int32_t first) {
+    chain c = {.def = def, .first = first, .end = first};
+    double t[3];
+    do c.length += direction(def, c.end++, t);
+    while (c.end < def->facet_count && follows(def, c.end));
+    return c;
+}
+
+// Pieces and particles of a chain: as many as the wanted lengths go into it, at least one.
+static int32_t chain_pieces(const chain *c, double cell) {
+    return (int32_t)fmax(1, floor(c->length / (c->def->piece * cell) + 1e-9));
+}
+static int32_t piece_particles(const chain *c, double cell) {
+    return (int32_t)fmax(1, ceil(c->length / chain_pieces(c, cell) / cell * c->def->particles - 1e-9));
+}
+
+static void fill_chain(brunt_boundary_surface *s, const chain *c) {
+    const int32_t pieces = chain_pieces(c, s->cell), each = piece_particles(c, s->cell);
+    const double step = c->length / pieces / each;
+    int32_t facet = c->first;
+    double t[3], from = 0, length = direction(c->def, facet, t);
+    for (int32_t k = 0; k < pieces * each; k++) {
+        const double at = (k + 0.5) * step;
+        while (at > from + length && facet + 1 < c->end) from += length, length = direction(c->def, ++facet, t);
+        const double *a = corner_of(c->def, facet, 0);
+        brunt_boundary_particle *p = &s->particle[s->particle_count++];
+        *p = (brunt_boundary_particle){.x = {a[0] + (at - from) * t[0], a[1] + (at - from) * t[1]},
+                                       .normal = {-t[1], t[0]},
+                                       .weight = step,
+                                       .piece = s->pieces + k / each};
+        if (k % each == each / 2) memcpy(s->tangent[p->piece][0], t, sizeof t);
+        if (k % each == 0) s->first[p->piece] = s->particle_count - 1;
+    }
+    s->pieces += pieces;
+    s->first[s->pieces] = s->particle_count;
+}
+
+static int cut_line(brunt_boundary_surface *s, const brunt_boundary_surface_def *def, brunt_error *error) {
+    size_t pieces = 1, particles = 1;
+    for (chain c = {0}; c.end < def->facet_count;) {
+        c = next_chain(def, c.end);
+        pieces += (size_t)chain_pieces(&c, s->cell);
+        particles += (size_t)chain_pieces(&c, s->cell) * (size_t)piece_particles(&c, s->cell);
+    }
+    s->particle = brunt_alloc(particles * sizeof *s->particle);
+    s->first = brunt_alloc((pieces + 1) * sizeof *s->first);
+    s->tangent = brunt_alloc(pieces * sizeof *s->tangent);
+    if (!s->particle || !s->first || !s->tangent) return out_of_memory(error);
+    for (chain c = {0}; c.end < def->facet_count;) {
+        c = next_chain(def, c.end);
+        fill_chain(s, &c);
+    }
+    return BRUNT_OK;
+}
+
+static int check_line(const brunt_boundary_surface *s, const brunt_boundary_surface_def *def, brunt_error *error) {
+    double length = 0, t[3];
+    for (int32_t f = 0; f < def->facet_count; f++) {
+        const double part = direction(def, f, t);
+        if (!(part > 0))
+            return brunt_fail(error, BRUNT_BAD_INPUT, "boundaries (%s).line.points: two that follow each other are one",
+                              s->wall->name);
+        length += part;
+    }
+    if (!(length / s->cell * fmax(def->particles, 1 / def->piece) < MOST_PARTICLES))
+        return brunt_fail(error, BRUNT_BAD_INPUT,
+                          "boundaries (%s).line: %.3g cells long, with %d boundary particles in each: that is too many",
+                          s->wall->name, length / s->cell, def->particles);
+    return BRUNT_OK;
+}
+
+// ------------------------------------------------------------------------------------------ cells
+
+typedef struct celled {
+    uint64_t key;
+    int32_t particle;
+} celled;
+
+static int compare_celled(const void *a, const void *b) {
+    const celled *p = a, *q = b;
+    return p->key != q->key ? (p->key < q->key ? -1 : 1) : (p->particle > q->particle) - (p->particle < q->particle);
+}
+
+static int sort_particles(brunt_boundary_surface *s, brunt_error *error) {
+    const size_t n = (size_t)s->particle_count;
+    celled *list = brunt_alloc((n + 1) * sizeof *list);
+    s->key = brunt_alloc((n + 1) * sizeof *s->key);
+    s->cell_first = brunt_alloc((n + 2) * sizeof *s->cell_first);
+    s->cell_particle = brunt_alloc((n + 1) * sizeof *s->cell_particle);
+    if (!list || !s->key || !s->cell_first || !s->cell_particle) {
+        brunt_free(list);
+        return out_of_memory(error);
+    }
+    for (int a = 0; a < 3; a++) s->low[a] = INFINITY, s->high[a] = -INFINITY;
+    for (size_t p = 0; p < n; p++)
+        for (int a = 0; a < 3; a++) {
+            s->low[a] = fmin(s->low[a], s->particle[p].x[a]);
+            s->high[a] = fmax(s->high[a], s->particle[p].x[a]);
+        }
+    for (size_t p = 0; p < n; p++) {
+        int32_t at[3];
+        for (int a = 0; a < 3; a++) at[a] = (int32_t)floor((s->particle[p].x[a] - s->low[a]) / s->cell);
+        list[p] = (celled){brunt_key(at), (int32_t)p};
+    }
+    qsort(list, n, sizeof *list, compare_celled);
+    for (size_t p = 0; p < n; p++) {
+        if (p == 0 || list[p].key != list[p - 1].key)
+            s->key[s->cells] = list[p].key, s->cell_first[s->cells++] = (int32_t)p;
+        s->cell_particle[p] = list[p].particle;
+    }
+    s->cell_first[s->cells] = (int32_t)n;
+    brunt_free(list);
+    return BRUNT_OK;
+}
+
+// ------------------------------------------------------------------------------------------ making
+
+static int find_body(brunt_boundary_surface *s, const brunt_bodies *bodies, brunt_error *error) {
+    s->wall->body = -1;
+    for (int b = 0; b < bodies->count && s->def.body[0]; b++) {
+        const brunt_body_ref *ref = &bodies->all[b];
+        if (strcmp(ref->mpm ? ref->mpm->name : ref->fem->name, s->def.body)) continue;
+        s->wall->body = b;
+        if (!ref->mpm)
+            return brunt_fail(
+                error, BRUNT_BAD_INPUT,
+                "boundaries (%s).body: '%s' is of elements, lines and surfaces hold material points: group "
+                "names nodes of elements",
+                s->wall->name, s->def.body);
+    }
+    if (s->def.body[0] && s->wall->body < 0)
+        return brunt_fail(error, BRUNT_BAD_INPUT, "boundaries (%s).body: there is no body '%s'", s->wall->name,
+                          s->def.body);
+    return BRUNT_OK;
+}
+
+static int make_surface(brunt_boundary_surface *s, const brunt_boundary_surface_def *def, const brunt_bodies *bodies,
+                        brunt_error *error) {
+    s->def = *def;
+    s->def.point = NULL, s->def.facet = NULL;
+    if (brunt_curve_copy(&s->def.table, &def->table)) return out_of_memory(error);
+    int status = find_body(s, bodies, error);
+    if (!status) status = check_line(s, def, error);
+    if (!status) status = cut_line(s, def, error);
+    if (!status) status = sort_particles(s, error);
+    if (status) return status;
+    s->bodies = bodies->mpm_count;
+    s->traction = brunt_alloc(((size_t)s->bodies * (size_t)s->pieces * 3 + 1) * sizeof *s->traction);
+    return s->traction ? BRUNT_OK : out_of_memory(error);
+}
+
+static int find_frames(brunt_boundary_surfaces *surfaces, const brunt_world_def *def, const brunt_bodies *bodies) {
+    surfaces->frame = brunt_alloc(((size_t)bodies->mpm_count + 1) * sizeof *surfaces->frame);
+    for (int i = 0; surfaces->frame && i < bodies->mpm_count; i++)
+        for (int32_t k = 0; k < def->body_count; k++)
+            if (!strcmp(def->bodies[k].name, bodies->mpm[i].name))
+                memcpy(surfaces->frame[i], def->bodies[k].place.rotation, sizeof *surfaces->frame);
+    return surfaces->frame ? 0 : -1;
+}
+
+int brunt_boundary_surfaces_make(brunt_boundary_surfaces *surfaces, const brunt_world_def *def,
+                                 const brunt_bodies *bodies, brunt_boundary *walls, brunt_error *error) {
+    if (!def->surface_count) return BRUNT_OK;
+    surfaces->surface = brunt_alloc((size_t)def->surface_count * sizeof *surfaces->surface);
+    if (!surfaces->surface || find_frames(surfaces, def, bodies)) return out_of_memory(error);
+    surfaces->count = def->surface_count;
+    for (int k = 0; k < surfaces->count; k++) {
+        brunt_boundary_surface *s = &surfaces->surface[k];
+        s->wall = &walls[k];
+        s->cell = def->cell;
+        const int status = make_surface(s, &def->surfaces[k], bodies, error);
+        if (status) return status;
+    }
+    return BRUNT_OK;
+}
+
+void brunt_boundary_surfaces_free(brunt_boundary_surfaces *surfaces) {
+    for (int k = 0; k < surfaces->count; k++) {
+        brunt_boundary_surface *s = &surfaces->surface[k];
+        brunt_free(s->def.table.points), brunt_free(s->particle), brunt_free(s->first), brunt_free(s->tangent);
+        brunt_free(s->key), brunt_free(s->cell_first), brunt_free(s->cell_particle), brunt_free(s->traction);
+    }
+    brunt_free(surfaces->surface), brunt_free(surfaces->frame);
+    *surfaces = (brunt_boundary_surfaces){.count = 0};
+}
+
+size_t brunt_boundary_surfaces_bytes(const brunt_boundary_surfaces *surfaces) {
+    size_t bytes = 0;
+    for (int k = 0; k < surfaces->count; k++) {
+        const brunt_boundary_surface *s = &surfaces->surface[k];
+        bytes += (size_t)s->particle_count * (sizeof *s->particle + sizeof *s->key + 2 * sizeof(int32_t)) +
+                 (size_t)s->pieces * (sizeof *s->tangent + (size_t)s->bodies * 3 * sizeof *s->traction);
+    }
+    return bytes;
+}
+
+// ------------------------------------------------------------------------------------------ what is asked of it
+
+int brunt_boundary_surface_rows(const brunt_boundary_surface *s, int dim) {
+    return s->def.condition == BRUNT_STICK || s->def.friction > 0 ? dim : 1;
+}
+
+void brunt_boundary_surface_way(const brunt_boundary_surface *s, double time, double way[3]) {
+    const double share =
+        s->def.displacement ? brunt_curve_at(&s->def.table, time) : brunt_curve_integral(&s->def.table, time);
+    for (int a = 0; a < 3; a++) way[a] = share * s->def.value[a];
+}
+
+bool brunt_boundary_surface_acts(const brunt_boundary_surface *s, const brunt_body *body) {
+    return s->wall->body < 0 || s->wall->body == body->index;
+}
+
+// ------------------------------------------------------------------------------------------ state
+
+// Tractions, and what was reported of the last step.
+static int64_t state_of(const brunt_boundary_surface *s) { return (int64_t)s->bodies * s->pieces * 3 + 2; }
+
+int64_t brunt_boundary_surfaces_state_count(const brunt_boundary_surfaces *surfaces) {
+    int64_t count = 0;
+    for (int k = 0; k < surfaces->count; k++) count += state_of(&surfaces->surface[k]);
+    return count;
+}
+
+double *brunt_boundary_surfaces_state_get(const brunt_boundary_surfaces *surfaces, double *out) {
+    for (int k = 0; k < surfaces->count; k++) {
+        const brunt_boundary_surface *s = &surfaces->surface[k];
+        memcpy(out, s->traction, (size_t)(state_of(s) - 2) * sizeof *out);
+        out += state_of(s);
+        out[-2] = s->active, out[-1] = s->drift;
+    }
+    return out;
+}
+
+const double *brunt_boundary_surfaces_state_set(brunt_boundary_surfaces *surfaces, const double *in) {
+    for (int k = 0; k < surfaces->count; k++) {
+        brunt_boundary_surface *s = &surfaces->surface[k];
+        memcpy(s->traction, in, (size_t)(state_of(s) - 2) * sizeof *in);
+        in += state_of(s);
+        s->active = (int32_t)in[-2], s->drift = in[-1];
+    }
+    return in;
+}

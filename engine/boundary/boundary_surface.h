@@ -1,0 +1,69 @@
+// Lines and surfaces anywhere in the grid of implicit material points, that hold what of them they reach.
+//
+// A line is cut into pieces of equal length, each with one traction [Pa], which is an unknown of the step: the mean of
+// the condition over the piece holds. Pieces are of the boundary, whatever the grid; shorter than about a cell they ask
+// for more than the grid can give. A piece sees the grid by its boundary particles.
+#pragma once
+
+#include "base/messages.h"
+#include "body/bodies.h"
+#include "contact/planes/boundary.h"
+
+typedef struct brunt_boundary_particle {
+    double x[3], normal[3]; // [m] at the start; [-], of length 1
+    double weight;          // [m^2] its part of the boundary, in plane strain [m]
+    int32_t piece;
+} brunt_boundary_particle;
+
+typedef struct brunt_boundary_surface {
+    brunt_boundary_surface_def def; // without points and facets, with a table of its own
+    brunt_boundary *wall;           // its name, and where its impulses are booked
+    brunt_boundary_particle *particle;
+    int32_t particle_count, pieces; // particles of a piece follow each other
+    int32_t *first;                 // pieces + 1: of its particles
+    double (*tangent)[2][3];        // of each piece: [-] two directions across its normal, the second of a surface
+    double low[3], high[3], cell;   // [m] box around the particles; of the grid
+    uint64_t *key;                  // the cells that have particles, ascending
+    int32_t *cell_first, *cell_particle, cells; // the particles of each
+    // Of each body of material points and piece: multipliers at the end of the last step [Pa], along the piece's
+    // directions. They last.
+    double *traction;
+    int32_t bodies;
+    // Of the last step.
+    int32_t active; // pieces that hold something
+    double drift;   // [m/s] greatest rate, as mean of a piece, at which what is held leaves its place
+} brunt_boundary_surface;
+
+typedef struct brunt_boundary_surfaces {
+    brunt_boundary_surface *surface;
+    int count;
+    double (*frame)[9]; // of each body of material points: how its particles' own boxes were turned at the start
+} brunt_boundary_surfaces;
+
+// After the bodies are made. `walls`: those of the surfaces. BRUNT_OK, or what is wrong.
+int brunt_boundary_surfaces_make(brunt_boundary_surfaces *surfaces, const brunt_world_def *def,
+                                 const brunt_bodies *bodies, brunt_boundary *walls, brunt_error *error);
+void brunt_boundary_surfaces_free(brunt_boundary_surfaces *surfaces);
+size_t brunt_boundary_surfaces_bytes(const brunt_boundary_surfaces *surfaces);
+// Components of its traction that are unknowns: all of stick, one of slip and of separate, all of that with friction.
+int brunt_boundary_surface_rows(const brunt_boundary_surface *surface, int dim);
+// How far it has gone since the start [m].
+void brunt_boundary_surface_way(const brunt_boundary_surface *surface, double time, double way[3]);
+// Whether it holds a body of material points.
+bool brunt_boundary_surface_acts(const brunt_boundary_surface *surface, const brunt_body *body);
+// What lasts from step to step.
+int64_t brunt_boundary_surfaces_state_count(const brunt_boundary_surfaces *surfaces);
+double *brunt_boundary_surfaces_state_get(const brunt_boundary_surfaces *surfaces, double *out);
+const double *brunt_boundary_surfaces_state_set(brunt_boundary_surfaces *surfaces, const double *in);
+
+// --- boundary_reach.c
+// When a body is looked at: how far the surface has gone, and how far it goes over the step [m], which takes dt [s].
+typedef struct brunt_boundary_reach {
+    double way[3], step[3], dt;
+    const double *frame; // of the body
+} brunt_boundary_reach;
+// How far the body is from each boundary particle, along its normal [m]: the own boxes of its material points reach it.
+// 0 where they do; of a surface that they can leave also what they come to within the step; INFINITY elsewhere. `gap`
+// holds the nearest so far, and INFINITY before the first body.
+void brunt_boundary_surface_reach(const brunt_boundary_surface *surface, brunt_body *body,
+                                  const brunt_boundary_reach *reach, double *gap);

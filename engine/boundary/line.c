@@ -1,0 +1,82 @@
+// Lines and surfaces that hold material points, as kinds of boundaries: what they do is in boundary_surface.c, and by
+// terms of implicit steps.
+#include <stdio.h>
+
+#include "base/check.h"
+#include "base/error.h"
+#include "base/memory.h"
+#include "boundary/kinds.h"
+
+#define REFUSE(...) return brunt_fail(error, BRUNT_BAD_INPUT, __VA_ARGS__)
+
+BRUNT_BOUNDARY_ENTRIES(surface, brunt_boundary_surface)
+
+brunt_boundary_surface_def brunt_boundary_surface_def_default(void) {
+    return (brunt_boundary_surface_def){.condition = BRUNT_STICK, .piece = 1.5, .particles = 4};
+}
+
+static void free_all(brunt_world_def *def) {
+    for (int32_t i = 0; i < def->surface_count; i++) {
+        brunt_free(def->surfaces[i].point);
+        brunt_free(def->surfaces[i].facet);
+        brunt_free(def->surfaces[i].table.points);
+    }
+    brunt_free(def->surfaces);
+}
+
+// Facets name corners that there are.
+static int check_facets(const brunt_boundary_surface_def *surface, int dim, int32_t index, brunt_error *error) {
+    if (surface->point_count < 2 || surface->facet_count < 1)
+        REFUSE("boundaries[%d]: a line wants two points at least", index);
+    for (int32_t f = 0; f < surface->facet_count; f++)
+        for (int c = 0; c < dim; c++)
+            if (surface->facet[f][c] < 0 || surface->facet[f][c] >= surface->point_count)
+                REFUSE("boundaries[%d]: facet %d has corner %d of %d", index, f, surface->facet[f][c],
+                       surface->point_count);
+    return BRUNT_OK;
+}
+
+static int check(const brunt_world_def *def, const void *one, int32_t w, brunt_error *error) {
+    const brunt_boundary_surface_def *surface = one;
+    char owner[80];
+    snprintf(owner, sizeof owner, "boundaries[%d]", w);
+    BRUNT_TRY(brunt_check_name_ends("boundaries", w, surface->body, error));
+    BRUNT_TRY(brunt_check_choice(owner, ".condition", (unsigned)surface->condition, BRUNT_SEPARATE + 1, error));
+    BRUNT_TRY(brunt_check_array("boundaries: points", surface->point_count, surface->point, error));
+    BRUNT_TRY(brunt_check_array("boundaries: facets", surface->facet_count, surface->facet, error));
+    BRUNT_TRY(check_facets(surface, def->dimension, w, error));
+    BRUNT_TRY(brunt_check_curve(owner, ".table", &surface->table, error));
+    for (int32_t k = 0; k < surface->point_count; k++)
+        BRUNT_CHECK_NUMBERS(owner, {".line.points", surface->point[k], 3, BRUNT_ANY_NUMBER});
+    BRUNT_CHECK_NUMBERS(owner, {".friction", &surface->friction, 1, BRUNT_NOT_NEGATIVE},
+                        {".value", surface->value, 3, BRUNT_ANY_NUMBER}, {".piece", &surface->piece, 1, BRUNT_POSITIVE},
+                        {".about", surface->about, 3, BRUNT_ANY_NUMBER});
+    if (surface->friction > 0 && surface->condition != BRUNT_SEPARATE)
+        REFUSE("%s.friction: friction acts only with condition separate", owner);
+    if (surface->particles < 1) REFUSE("%s.particles_per_cell: %d is less than 1", owner, surface->particles);
+    if (!(def->cell > 0)) REFUSE("%s: it holds material points, and there are none", owner);
+    return BRUNT_OK;
+}
+
+static const char *refusal(const brunt_world_def *def, const void *one, const char **key) {
+    (void)one;
+    *key = "";
+    if (def->scheme != BRUNT_IMPLICIT) {
+        *key = def->dimension == 2 ? ".line" : ".mesh";
+        return "this belongs to time.scheme: implicit; explicit steps have plane and region";
+    }
+    if (def->newton.solver == BRUNT_SOLVER_PCG)
+        return "newton.solver: pcg has no factor for the tractions of boundaries to follow with: direct or auto";
+    return def->dimension == 3 ? "surfaces in three dimensions hold nothing yet" : NULL;
+}
+
+// The rest follows with the bodies (boundary_surface.c).
+static int make(const brunt_boundary_making *m, const void *one, int w, brunt_error *error) {
+    (void)m, (void)one, (void)w, (void)error;
+    return BRUNT_OK;
+}
+
+const brunt_boundary_kind brunt_kind_surface = {
+    BRUNT_BOUNDARY_ROW("surface"),
+    .refusal = refusal,
+};

@@ -1,0 +1,36 @@
+// Lines and surfaces that hold material points.
+#pragma once
+
+#include <stdbool.h>
+#include "brunt/boundary_plane.h"
+#include "brunt/mesh.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+// A line (two dimensions) or a surface (three) that lies anywhere in the grid of implicit material points, and holds
+// what of them it reaches: its conditions hold as means over pieces, whose tractions are unknowns of the step. It may
+// move as a whole.
+typedef struct brunt_boundary_surface_def {
+    char name[BRUNT_NAME_LENGTH]; // of its column in the history; "" = "surface1", ...
+    char body[BRUNT_NAME_LENGTH]; // the one body it acts on; "" = all that are of material points
+    double (*point)[3];           // [m] corners; owned by the definition
+    int32_t point_count;          // >= 2
+    int32_t (*facet)[4];          // corners of each part, -1 where it has none: 2 of a line; owned by the definition
+    int32_t facet_count;          // >= 1
+    brunt_condition condition;    // stick, slip (in both directions, along the facets' normal) or separate
+    double friction;              // [-] >= 0, Coulomb, of separate; default 0
+    bool displacement;            // whether `value` is a displacement since the start [m], else a velocity [m/s]
+    double value[3];              // times the table; default 0
+    brunt_curve table;            // over time [s]; default 1 always; owned by the definition
+    double piece;                 // cells > 0, about: length of a piece; default 1.5
+    int32_t particles;            // > 0, a cell: boundary particles, by which a piece sees the grid; default 4
+    double about[3];              // [m] of the moments that are reported; default 0
+} brunt_boundary_surface_def;
+
+brunt_boundary_surface_def brunt_boundary_surface_def_default(void);
+
+#ifdef __cplusplus
+}
+#endif

@@ -1,0 +1,196 @@
+// The patches of a step: which pieces of lines reach which bodies, and how they see the grid.
+#include "scheme/boundary_rows.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "base/error.h"
+#include "base/memory.h"
+#include "grid/bspline.h"
+#include "linear/block_matrix.h"
+#include "materials/material.h"
+
+static const double STIFF = 1e3; // b beside the stiffness of the grid: sets the number of sweeps, nothing else
+
+static int out_of_memory(brunt_error *error) {
+    return brunt_fail(error, BRUNT_FAILED, "out of memory for what boundaries hold");
+}
+
+// ------------------------------------------------------------------------------------------ nodes
+
+// The direction of a row at a boundary particle.
+static void row_direction(const brunt_boundary_patch *p, const brunt_boundary_particle *b, int row, double out[3]) {
+    const brunt_boundary_surface *s = p->surface;
+    for (int a = 0; a < 3; a++)
+        out[a] = s->def.condition == BRUNT_STICK ? (a == row)
+                 : row == 0                      ? b->normal[a]
+                                                 : s->tangent[p->piece][row - 1][a];
+}
+
+// Adds a boundary particle's share of a node.
+static int add_node(brunt_boundary_rows *rows, brunt_boundary_patch *p, const brunt_boundary_particle *b, int32_t n,
+                    double weight) {
+    const int64_t begin = rows->first[rows->patch_count];
+    int64_t *end = &rows->first[rows->patch_count + 1];
+    if (!rows->mark[n]) {
+        if (BRUNT_RESERVE(rows->node, (size_t)*end + 1, (size_t)*end) ||
+            BRUNT_RESERVE(rows->weight, (size_t)*end + 1, (size_t)*end))
+            return -1;
+        memset(rows->weight[*end], 0, sizeof *rows->weight);
+        rows->node[*end] = n;
+        rows->mark[n] = (int32_t)(++*end - begin);
+    }
+    double *to = rows->weight[begin + rows->mark[n] - 1], direction[3];
+    for (int k = 0; k < p->rows; k++) {
+        row_direction(p, b, k, direction);
+        for (int a = 0; a < 3; a++) to[3 * k + a] += weight * direction[a];
+    }
+    p->size += weight;
+    return 0;
+}
+
+// Adds a boundary particle, at distance `gap` from the body; *share: its weight on nodes that have mass.
+static int add_particle(brunt_boundary_rows *rows, brunt_boundary_patch *p, const brunt_boundary_particle *b,
+                        const double way[3], double *share) {
+    const brunt_grid *grid = &rows->bodies->mpm[p->body].grid;
+    double w[3][4] = {{1}, {1}, {1}};
+    int32_t base[3] = {0, 0, 0};
+    *share = 0;
+    for (int a = 0; a < grid->dim; a++) {
+        const double at = (b->x[a] + way[a] - grid->origin[a]) / (double)grid->h;
+        base[a] = (int32_t)floor(at - 0.5 * (grid->order - 1));
+        brunt_bspline_weights(grid->order, at - base[a], w[a]);
+    }
+    const int deep = grid->dim == 3 ? grid->order : 0;
+    for (int i = 0; i <= grid->order; i++)
+        for (int j = 0; j <= grid->order; j++)
+            for (int k = 0; k <= deep; k++) {
+                const int32_t at[3] = {base[0] + i, base[1] + j, base[2] + k};
+                const double weight = b->weight * w[0][i] * w[1][j] * w[2][k];
+                const int32_t n = weight > 0 ? brunt_unknowns_node_at(rows->unknowns, rows->bodies, p->body, at) : -1;
+                if (n < 0) continue;
+                if (add_node(rows, p, b, n, weight)) return -1;
+                *share += weight;
+            }
+    return 0;
+}
+
+// ------------------------------------------------------------------------------------------ patches
+
+static double stiffness(const brunt_boundary_rows *rows, int body) {
+    const brunt_material *material = &rows->bodies->mpm[body].material;
+    const double c = (double)material->wave_speed, h = rows->cell;
+    return STIFF * (double)material->density * (c * c / h + 4 * h / (rows->dt * rows->dt));
+}
+
+// How the surface moves along the rows, at a boundary particle that is `gap` from the body.
+static void add_motion(brunt_boundary_patch *p, const brunt_boundary_particle *b, const brunt_boundary_reach *reach,
+                       double share, double gap) {
+    for (int k = 0; k < p->rows; k++) {
+        double direction[3], along = 0;
+        row_direction(p, b, k, direction);
+        for (int a = 0; a < 3; a++) along += reach->step[a] * direction[a];
+        p->wall[k] += share * along;
+        p->goal[k] += share * (along - (p->leaves && k == 0 ? gap : 0));
+    }
+}
+
+static void close_patch(brunt_boundary_rows *rows, brunt_boundary_patch *p) {
+    const brunt_boundary_surface *s = p->surface;
+    const double *kept = s->traction + 3 * ((size_t)p->body * (size_t)s->pieces + (size_t)p->piece);
+    for (int k = 0; k < p->rows; k++) p->multiplier[k] = p->before[k] = kept[k];
+    p->bound = p->rubs ? s->def.friction * fmax(0, -kept[0]) : 0;
+    p->stiffness = stiffness(rows, p->body);
+    for (int64_t k = rows->first[rows->patch_count]; k < rows->first[rows->patch_count + 1]; k++)
+        rows->mark[rows->node[k]] = 0;
+    if (p->size > 0) rows->patch_count++;
+}
+
+// A piece before a body whose distances are in `gap`.
+static int add_patch(brunt_boundary_rows *rows, brunt_boundary_surface *s, int32_t piece, int body,
+                     const brunt_boundary_reach *reach) {
+    const size_t count = (size_t)rows->patch_count;
+    bool any = false;
+    for (int32_t b = s->first[piece]; b < s->first[piece + 1]; b++) any = any || rows->gap[b] < INFINITY;
+    if (!any) return 0;
+    if (BRUNT_RESERVE(rows->patch, count + 1, count) || BRUNT_RESERVE(rows->first, count + 2, count + 1)) return -1;
+    brunt_boundary_patch *p = &rows->patch[count];
+    *p = (brunt_boundary_patch){.surface = s, .piece = piece, .body = body};
+    p->rows = brunt_boundary_surface_rows(s, rows->unknowns->dim);
+    p->leaves = s->def.condition == BRUNT_SEPARATE, p->rubs = p->leaves && p->rows > 1;
+    rows->first[count + 1] = rows->first[count];
+    for (int32_t b = s->first[piece]; b < s->first[piece + 1]; b++) {
+        double share;
+        if (rows->gap[b] == INFINITY) continue;
+        if (add_particle(rows, p, &s->particle[b], reach->way, &share)) return -1;
+        add_motion(p, &s->particle[b], reach, share, rows->gap[b]);
+    }
+    close_patch(rows, p);
+    return 0;
+}
+
+static int add_surface(brunt_boundary_rows *rows, brunt_boundary_surface *s, brunt_boundary_reach *reach) {
+    const brunt_unknowns *u = rows->unknowns;
+    if (BRUNT_RESERVE(rows->gap, (size_t)s->particle_count + 1, 0)) return -1;
+    for (int i = 0; i < rows->bodies->mpm_count; i++) {
+        if (u->tie[i] != i) continue;
+        for (int32_t b = 0; b < s->particle_count; b++) rows->gap[b] = INFINITY;
+        for (int other = i; other < rows->bodies->mpm_count; other++) {
+            brunt_body *body = &rows->bodies->mpm[other];
+            reach->frame = rows->surfaces->frame[other];
+            if (u->tie[other] == i && brunt_boundary_surface_acts(s, body))
+                brunt_boundary_surface_reach(s, body, reach, rows->gap);
+        }
+        for (int32_t piece = 0; piece < s->pieces; piece++)
+            if (add_patch(rows, s, piece, i, reach)) return -1;
+    }
+    return 0;
+}
+
+// Room for the matrix of the largest patch.
+static int make_room(brunt_boundary_rows *rows, brunt_error *error) {
+    int64_t most = 1;
+    for (int32_t p = 0; p < rows->patch_count; p++) {
+        const int64_t nodes = rows->first[p + 1] - rows->first[p];
+        if (nodes > most) most = nodes;
+        if (nodes > BRUNT_STENCIL_LIMIT)
+            return brunt_fail(error, BRUNT_FAILED,
+                              "a piece of boundary '%s' has %lld nodes of the grid, %d are the most: piece is too long",
+                              rows->patch[p].surface->wall->name, (long long)nodes, BRUNT_STENCIL_LIMIT);
+    }
+    most *= rows->unknowns->dim;
+    return BRUNT_RESERVE(rows->dense, (size_t)(most * most), 0) ? out_of_memory(error) : BRUNT_OK;
+}
+
+int brunt_boundary_rows_step(brunt_boundary_rows *rows, brunt_world *world, const brunt_unknowns *unknowns, double dt,
+                             brunt_error *error) {
+    rows->unknowns = unknowns, rows->bodies = &world->bodies, rows->surfaces = &world->boundaries.surfaces;
+    rows->patch_count = 0, rows->version++, rows->dt = dt, rows->swept = 0;
+    if (BRUNT_RESERVE(rows->first, 1, 0) || BRUNT_RESERVE(rows->mark, (size_t)unknowns->count + 1, 0))
+        return out_of_memory(error);
+    memset(rows->mark, 0, (size_t)unknowns->count * sizeof *rows->mark);
+    rows->first[0] = 0;
+    for (int k = 0; k < rows->surfaces->count; k++) {
+        brunt_boundary_surface *s = &rows->surfaces->surface[k];
+        brunt_boundary_reach reach = {.dt = dt};
+        double end[3];
+        brunt_boundary_surface_way(s, world->clock.time, reach.way);
+        brunt_boundary_surface_way(s, world->clock.time + dt, end);
+        for (int a = 0; a < 3; a++) reach.step[a] = end[a] - reach.way[a];
+        rows->cell = s->cell;
+        if (add_surface(rows, s, &reach)) return out_of_memory(error);
+    }
+    return make_room(rows, error);
+}
+
+void brunt_boundary_rows_free(brunt_boundary_rows *rows) {
+    void *const all[] = {rows->patch, rows->first, rows->node, rows->weight, rows->mark, rows->gap, rows->dense};
+    for (size_t k = 0; k < sizeof all / sizeof *all; k++) brunt_free(all[k]);
+    *rows = (brunt_boundary_rows){.patch_count = 0};
+}
+
+size_t brunt_boundary_rows_bytes(const brunt_boundary_rows *rows) {
+    return rows->patch_capacity + rows->first_capacity + rows->node_capacity + rows->weight_capacity +
+           rows->mark_capacity + rows->gap_capacity + rows->dense_capacity;
+}

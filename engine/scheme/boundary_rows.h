@@ -1,0 +1,61 @@
+// What lines and surfaces ask of an implicit step's unknowns, and the tractions that see to it.
+//
+// A patch is a piece of a surface before one body (or bodies that are tied), with one row for each of its directions:
+//   C u = sum w_b N(x_b) . u over its active boundary particles and the nodes with mass,   D = sum w_b N(x_b)
+//   gap = C u - D (way of the surface in the step) [+ D (distance that is left), of what may leave],   along the row
+// The condition gap = 0 (stick, slip) or gap >= 0 (separate) is that of an augmented Lagrangian,
+//   D/(2 b) (t^2 - l^2),   t = l + b/D gap  (separate: no more than 0; friction: within the cone of the pressure),
+// whose gradient is C t: t [Pa] is minus the traction on the body. The multiplier l follows within each step of
+// Newton's method, with the factor at hand, until t - l is nothing beside b h: b does not change what comes out.
+#pragma once
+
+#include "linear/term.h"
+#include "scheme/unknowns.h"
+
+typedef struct brunt_boundary_patch {
+    brunt_boundary_surface *surface;
+    int32_t piece, body; // body: the first of those that are tied, among bodies of points
+    int rows;
+    bool leaves, rubs;       // row 0 only pushes; the others have friction
+    double size, stiffness;  // D [m^2], b [Pa/m]
+    double wall[3], goal[3]; // [m^3] D (way of the surface); less the distance that is left: what C u is to be
+    double multiplier[3];    // l [Pa]
+    double before[3];        // [Pa] of the end of the last step
+    double bound;            // [Pa] most friction
+    bool stiff[2];           // whether the matrix has row 0, the others
+} brunt_boundary_patch;
+
+typedef struct brunt_boundary_rows {
+    const brunt_unknowns *unknowns;
+    const brunt_bodies *bodies;
+    brunt_boundary_surfaces *surfaces;
+    brunt_boundary_patch *patch;
+    int64_t *first; // patch_count + 1: of its nodes
+    int32_t *node;
+    double (*weight)[9]; // of each node: its vector in each row, [m^2]
+    int64_t version;
+    int32_t patch_count;
+    int32_t *mark; // of each unknown: its place in the patch under way + 1
+    double *gap;   // of the boundary particles of a surface
+    double *dense;
+    double cell, dt; // [m], [s]
+    int64_t sweeps;  // of the run
+    int swept;       // in the iteration under way
+    size_t patch_capacity, first_capacity, node_capacity, weight_capacity, mark_capacity, gap_capacity, dense_capacity;
+} brunt_boundary_rows;
+
+extern const brunt_term_ops brunt_boundary_rows_ops;
+
+void brunt_boundary_rows_free(brunt_boundary_rows *rows);
+size_t brunt_boundary_rows_bytes(const brunt_boundary_rows *rows);
+// The patches of a step of `dt`, with the multipliers that the surfaces have kept. BRUNT_OK, or BRUNT_FAILED.
+int brunt_boundary_rows_step(brunt_boundary_rows *rows, brunt_world *world, const brunt_unknowns *unknowns, double dt,
+                             brunt_error *error);
+// Once u is a minimum: multipliers and bounds of friction as they are there. Whether that changed them.
+bool brunt_boundary_rows_settle(brunt_boundary_rows *rows, const double *u);
+// t at u [Pa], C u - wall [m^3], of a patch.
+void brunt_boundary_patch_traction(const brunt_boundary_rows *rows, int32_t patch, const double *u, double t[3],
+                                   double moved[3]);
+// The forces of tractions t on the bodies, on node k of all [N].
+void brunt_boundary_patch_force(const brunt_boundary_rows *rows, int32_t patch, int64_t k, const double t[3],
+                                double F[3]);

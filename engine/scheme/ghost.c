@@ -1,0 +1,158 @@
+// Differences that hold nodes without material.
+#include "scheme/ghost.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "base/memory.h"
+#include "linear/block_matrix.h"
+#include "materials/material.h"
+
+enum { MOST_RUN = 5 };
+static const double PARAMETER = 1e-3; // c: anything from 1e-6 to 0.1 does
+static const double WEAK = 0.5;       // of the mass of a full cell: lighter nodes are held
+static const double difference[BRUNT_CUBIC + 1][MOST_RUN] = {{0}, {1, -2, 1}, {1, -3, 3, -1}, {1, -4, 6, -4, 1}};
+
+// ------------------------------------------------------------------------------------------ runs
+
+// A run from `at` along an axis: whether all its nodes are there, and one of them is weak.
+static bool find_run(const brunt_unknowns *u, const brunt_bodies *bodies, int i, const int32_t from[3], int axis,
+                     int32_t *node) {
+    const brunt_body *body = &bodies->mpm[i];
+    const double full = (double)body->material.density * pow((double)body->grid.h, u->dim);
+    int32_t at[3] = {from[0], from[1], from[2]};
+    bool weak = false;
+    for (int k = 0; k < body->grid.order + 2; k++) {
+        at[axis] = from[axis] + k;
+        node[k] = brunt_unknowns_node_at(u, bodies, i, at);
+        if (node[k] < 0) return false;
+        weak = weak || u->mass[node[k]] < WEAK * full;
+    }
+    return weak;
+}
+
+static int add_run(brunt_ghost *g, const int32_t *node, int length, double stiffness) {
+    const size_t runs = (size_t)g->runs, entries = (size_t)(g->runs ? g->first[g->runs] : 0);
+    if (BRUNT_RESERVE(g->first, runs + 2, runs + 1) || BRUNT_RESERVE(g->stiffness, runs + 1, runs) ||
+        BRUNT_RESERVE(g->node, entries + MOST_RUN, entries))
+        return -1;
+    memcpy(g->node + entries, node, (size_t)length * sizeof *node);
+    g->stiffness[runs] = stiffness;
+    g->first[runs] = (int64_t)entries;
+    g->first[++g->runs] = (int64_t)entries + length;
+    return 0;
+}
+
+static int add_body(brunt_ghost *g, const brunt_bodies *bodies, int i) {
+    const brunt_unknowns *u = g->unknowns;
+    const brunt_body *body = &bodies->mpm[i];
+    const double c = (double)body->material.wave_speed, h = (double)body->grid.h,
+                 stiffness = PARAMETER * (double)body->material.density * c * c * pow(h, u->dim - 2);
+    for (int64_t k = 0; k < (int64_t)body->grid.slot_count * BRUNT_BLOCK_NODES; k++) {
+        const int32_t n = u->number[i][k];
+        int32_t at[3], node[MOST_RUN];
+        int local[3];
+        if (n < 0 || g->seen[n]) continue;
+        g->seen[n] = 1;
+        brunt_node_local(&body->grid, (int)(k % BRUNT_BLOCK_NODES), local);
+        for (int a = 0; a < 3; a++)
+            at[a] = body->grid.slots[k / BRUNT_BLOCK_NODES].coord[a] * body->grid.side + local[a];
+        for (int axis = 0; axis < u->dim; axis++)
+            if (find_run(u, bodies, i, at, axis, node) && add_run(g, node, body->grid.order + 2, stiffness)) return -1;
+    }
+    return 0;
+}
+
+static bool is_held(const brunt_world *world, const brunt_body *body) {
+    for (int k = 0; k < world->boundaries.surfaces.count; k++)
+        if (brunt_boundary_surface_acts(&world->boundaries.surfaces.surface[k], body)) return true;
+    return false;
+}
+
+int brunt_ghost_step(brunt_ghost *g, const brunt_world *world, const brunt_unknowns *unknowns) {
+    g->unknowns = unknowns;
+    g->runs = 0, g->version++;
+    if (BRUNT_RESERVE(g->seen, (size_t)unknowns->count + 1, 0) || BRUNT_RESERVE(g->first, 1, 0)) return -1;
+    memset(g->seen, 0, (size_t)unknowns->count);
+    g->first[0] = 0;
+    for (int i = 0; i < world->bodies.mpm_count; i++)
+        if (is_held(world, &world->bodies.mpm[i]) && add_body(g, &world->bodies, i)) return -1;
+    return 0;
+}
+
+void brunt_ghost_free(brunt_ghost *g) {
+    brunt_free(g->first), brunt_free(g->node), brunt_free(g->stiffness), brunt_free(g->seen);
+    *g = (brunt_ghost){.runs = 0};
+}
+
+size_t brunt_ghost_bytes(const brunt_ghost *g) {
+    return g->first_capacity + g->node_capacity + g->stiffness_capacity + g->seen_capacity;
+}
+
+// ------------------------------------------------------------------------------------------ the term
+
+static const double *differences(const brunt_ghost *g, int64_t run) {
+    return difference[g->first[run + 1] - g->first[run] - 2];
+}
+
+// q . u of a component.
+static double bend(const brunt_ghost *g, int64_t run, int a, const double *u) {
+    const double *q = differences(g, run);
+    double sum = 0;
+    for (int64_t k = g->first[run]; k < g->first[run + 1]; k++)
+        sum += *q++ * u[g->node[k] * (int64_t)g->unknowns->dim + a];
+    return sum;
+}
+
+static brunt_energy_sum ghost_energy(void *term, const brunt_team *team, const double *u) {
+    (void)team;
+    const brunt_ghost *g = term;
+    brunt_energy_sum sum = {0, 0};
+    for (int64_t run = 0; run < g->runs; run++)
+        for (int a = 0; a < g->unknowns->dim; a++) {
+            const double b = bend(g, run, a, u);
+            sum.value += 0.5 * g->stiffness[run] * b * b;
+        }
+    sum.magnitude = sum.value;
+    return sum;
+}
+
+static void ghost_gradient(void *term, const brunt_team *team, const double *u, double *gradient) {
+    (void)team;
+    const brunt_ghost *g = term;
+    for (int64_t run = 0; run < g->runs; run++)
+        for (int a = 0; a < g->unknowns->dim; a++) {
+            const double force = g->stiffness[run] * bend(g, run, a, u), *q = differences(g, run);
+            for (int64_t k = g->first[run]; k < g->first[run + 1]; k++)
+                gradient[g->node[k] * (int64_t)g->unknowns->dim + a] += *q++ * force;
+        }
+}
+
+static brunt_stencils ghost_stencils(void *term) {
+    const brunt_ghost *g = term;
+    return (brunt_stencils){.count = g->runs, .first = g->first, .node = g->node, .version = g->version};
+}
+
+static void ghost_hessian(void *term, const brunt_team *team, const double *u, bool project,
+                          struct brunt_block_matrix *h) {
+    (void)team, (void)u, (void)project; // it has no negative eigenvalues
+    const brunt_ghost *g = term;
+    const int dim = g->unknowns->dim;
+    for (int64_t run = 0; run < g->runs; run++) {
+        const int length = (int)(g->first[run + 1] - g->first[run]);
+        const double *q = differences(g, run);
+        double dense[MOST_RUN * 3 * MOST_RUN * 3] = {0};
+        for (int e = 0; e < length; e++)
+            for (int f = 0; f < length; f++)
+                for (int a = 0; a < dim; a++)
+                    dense[((e * dim + a) * length + f) * dim + a] = g->stiffness[run] * q[e] * q[f];
+        brunt_block_matrix_add(h, g->node + g->first[run], length, dense);
+    }
+}
+
+const brunt_term_ops brunt_ghost_ops = {.name = "nodes without material",
+                                        .energy = ghost_energy,
+                                        .gradient = ghost_gradient,
+                                        .stencils = ghost_stencils,
+                                        .hessian = ghost_hessian};

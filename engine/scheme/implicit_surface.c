@@ -1,0 +1,114 @@
+// Lines and surfaces in an implicit step: its rows, and what they did.
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "scheme/implicit.h"
+
+int brunt_implicit_surfaces_begin(brunt_world *world, double dt, brunt_error *error) {
+    struct brunt_implicit *m = world->plan.implicit;
+    return brunt_boundary_rows_step(&m->rows, world, &m->unknowns, dt, error);
+}
+
+// Adds the forces of tractions to `sum`, with a sign.
+static void add_forces(const struct brunt_implicit *m, int32_t patch, const double t[3], double sign, double *sum) {
+    const int dim = m->unknowns.dim;
+    double F[3];
+    for (int64_t k = m->rows.first[patch]; k < m->rows.first[patch + 1]; k++) {
+        brunt_boundary_patch_force(&m->rows, patch, k, t, F);
+        for (int a = 0; a < dim; a++) sum[m->rows.node[k] * (int64_t)dim + a] += sign * F[a];
+    }
+}
+
+void brunt_implicit_surfaces_before(const struct brunt_implicit *m, double *force) {
+    for (int32_t p = 0; p < m->rows.patch_count; p++) add_forces(m, p, m->rows.patch[p].before, 1, force);
+}
+
+// ------------------------------------------------------------------------------------------ the account
+
+// Impulses, and their moments about the origin.
+static void book_impulses(const struct brunt_implicit *m, int32_t patch, const double t[3],
+                          brunt_impulse_account *last) {
+    brunt_impulse_account part = {.area = 0};
+    double F[3];
+    for (int64_t k = m->rows.first[patch]; k < m->rows.first[patch + 1]; k++) {
+        brunt_boundary_patch_force(&m->rows, patch, k, t, F);
+        brunt_implicit_book_force(m, &part, m->rows.node[k], F);
+    }
+    for (int a = 0; a < 3; a++) last->impulse[a] += part.impulse[a], last->angular[a] += part.angular[a];
+}
+
+// The greatest rate at which a row's material leaves what holds it.
+static double rate_of(const struct brunt_implicit *m, int32_t patch) {
+    const brunt_boundary_patch *p = &m->rows.patch[patch];
+    const int dim = m->unknowns.dim;
+    double most = 0;
+    for (int row = 0; row < (p->leaves ? 0 : p->rows); row++) {
+        double rate = -p->wall[row] / m->dt;
+        for (int64_t k = m->rows.first[patch]; k < m->rows.first[patch + 1]; k++)
+            for (int a = 0; a < dim; a++)
+                rate += m->rows.weight[k][3 * row + a] * m->field.v[m->rows.node[k] * (int64_t)dim + a];
+        most = fmax(most, fabs(rate) / p->size);
+    }
+    return most;
+}
+
+static void book_patch(struct brunt_implicit *m, int32_t patch) {
+    const brunt_boundary_patch *p = &m->rows.patch[patch];
+    brunt_boundary_surface *s = p->surface;
+    brunt_impulse_account *last = &s->wall->last;
+    const double gamma = m->weights.gamma;
+    double t[3], moved[3], mean[3] = {0, 0, 0};
+    brunt_boundary_patch_traction(&m->rows, patch, m->field.u, t, moved);
+    add_forces(m, patch, t, -1, m->field.gradient);
+    for (int k = 0; k < p->rows; k++) {
+        mean[k] = gamma * t[k] + (1 - gamma) * p->before[k];
+        last->external_work -= mean[k] * p->wall[k];
+        *(k == 0 || !p->rubs ? &last->normal_loss : &last->friction_loss) += mean[k] * moved[k];
+        s->traction[3 * ((size_t)p->body * (size_t)s->pieces + (size_t)p->piece) + (size_t)k] = t[k];
+    }
+    book_impulses(m, patch, mean, last);
+    if (!(p->leaves && t[0] == 0)) last->area += p->size, s->active++;
+    s->drift = fmax(s->drift, rate_of(m, patch));
+}
+
+// What holds nodes without material stores nothing.
+static void book_ghost(brunt_world *world) {
+    struct brunt_implicit *m = world->plan.implicit;
+    const int64_t all = brunt_implicit_components(m);
+    memset(m->field.step, 0, (size_t)all * sizeof *m->field.step);
+    brunt_ghost_ops.gradient(&m->ghost, &m->team, m->field.u, m->field.step);
+    for (int64_t k = 0; k < all; k++) {
+        world->ledger.scheme += m->weights.gamma * m->field.step[k] * m->field.u[k];
+        m->field.gradient[k] += m->field.step[k];
+    }
+}
+
+void brunt_implicit_book_surfaces(brunt_world *world) {
+    struct brunt_implicit *m = world->plan.implicit;
+    for (int k = 0; k < world->boundaries.surfaces.count; k++) {
+        brunt_boundary_surface *s = &world->boundaries.surfaces.surface[k];
+        memset(s->traction, 0, (size_t)s->bodies * (size_t)s->pieces * 3 * sizeof *s->traction);
+        s->active = 0, s->drift = 0;
+    }
+    for (int32_t p = 0; p < m->rows.patch_count; p++) book_patch(m, p);
+    book_ghost(world);
+}
+
+// ------------------------------------------------------------------------------------------ what is missing
+
+void brunt_implicit_surfaces_lack(const brunt_world *world, char *reason, size_t size) {
+    const struct brunt_implicit *m = world->plan.implicit;
+    const int wanted = m->unknowns.dim == 2 ? 3 : 6;
+    for (int i = 0; m->holds && i < world->bodies.mpm_count; i++) {
+        int rows = 0;
+        if (m->unknowns.tie[i] != i) continue;
+        for (int32_t p = 0; p < m->rows.patch_count; p++)
+            if (m->rows.patch[p].body == i) rows += m->rows.patch[p].rows;
+        const size_t used = strlen(reason);
+        if (rows < wanted)
+            snprintf(reason + used, size - used,
+                     ". Boundaries hold body '%s' by %d rows of pieces, at least %d keep it from moving as a whole",
+                     world->bodies.mpm[i].name, rows, wanted);
+    }
+}

@@ -1,0 +1,75 @@
+// Lines of a scene that hold material points.
+#include "contact/planes/condition.h"
+#include "io/scene/scene_boundary.h"
+
+#include <string.h>
+
+// Points in turn, and the parts between them.
+static void fill_points(scene_reader *reader, const scene_node *line, brunt_boundary_surface_def *def) {
+    const scene_node *points = brunt_tree_child(line, "points"), *before = NULL;
+    const bool closed = brunt_real_of(line, "closed", 0) != 0;
+    if (!points || !points->good) return;
+    if (points->count < 2) {
+        brunt_tree_complain(reader->tree, points, "%d points are given, two at least are wanted", points->count);
+        return;
+    }
+    def->point = brunt_entries_for(reader, points->count, sizeof *def->point);
+    def->facet = brunt_entries_for(reader, points->count, sizeof *def->facet);
+    if (!def->point || !def->facet) return;
+    for (const scene_node *p = points->first; p; before = p, p = p->next) {
+        if (before && before->value[0] == p->value[0] && before->value[1] == p->value[1])
+            brunt_tree_complain(reader->tree, p, "this is the point before it once more");
+        for (int a = 0; a < 2; a++) def->point[def->point_count][a] = p->value[a];
+        def->point_count++;
+    }
+    def->facet_count = def->point_count - !closed;
+    for (int32_t f = 0; f < def->facet_count; f++)
+        memcpy(def->facet[f], (const int32_t[4]){f, (f + 1) % def->point_count, -1, -1}, sizeof def->facet[f]);
+    if (closed && points->count < 3)
+        brunt_tree_complain(reader->tree, points, "a closed line has three points at least");
+}
+
+static void fill_condition(scene_reader *reader, const scene_node *node, brunt_boundary_surface_def *def) {
+    scene_node *condition = brunt_tree_child(node, "condition");
+    if (!condition) brunt_tree_complain(reader->tree, node, "'condition' is missing: one of stick, slip and separate");
+    def->condition = (brunt_condition)(int)brunt_real_of(node, "condition", BRUNT_STICK);
+    if (brunt_conditions[def->condition].images)
+        brunt_tree_complain(reader->tree, condition,
+                            "a line is no plane of symmetry: stick, slip and separate are "
+                            "possible");
+    if (condition && condition->good && def->condition != BRUNT_SEPARATE)
+        brunt_refuse_key(reader, node, "friction", "friction acts only with condition: separate");
+    def->friction = brunt_real_of(node, "friction", 0);
+}
+
+static void fill_motion(scene_reader *reader, scene_node *node, brunt_boundary_surface_def *def) {
+    const scene_node *velocity = brunt_tree_child(node, "velocity"), *way = brunt_tree_child(node, "displacement"),
+                     *given = way ? way : velocity;
+    def->displacement = way != NULL;
+    if (velocity && way)
+        brunt_tree_complain_key(reader->tree, way, "velocity is given as well: one of both moves the line");
+    if (!given) {
+        brunt_refuse_key(reader, node, "table", "a table is the factor of velocity or displacement, there is neither");
+        return;
+    }
+    if (given->free[0] || given->free[1] || given->free[2])
+        brunt_tree_complain(reader->tree, given, "`free` is for regions and groups; a line moves as a whole");
+    for (int a = 0; a < 2 && given->good; a++) def->value[a] = given->value[a];
+    brunt_fill_table(reader, brunt_tree_child(node, "table"), &def->table);
+}
+
+void brunt_fill_surface(scene_reader *reader, scene_node *node, brunt_boundary_surface_def *def) {
+    const scene_node *line = brunt_tree_child(node, "line"), *body = brunt_tree_child(node, "body");
+    if (reader->dimension == 3) { // there is none, as has been said
+        reader->scene->world.surface_count--;
+        return;
+    }
+    if (line->kind == SCENE_MAP) fill_points(reader, line, def);
+    fill_condition(reader, node, def);
+    fill_motion(reader, node, def);
+    brunt_fill_body_of(reader, node, def->body);
+    if (!brunt_acts_on_particles(reader, def->body))
+        brunt_tree_complain_key(reader->tree, body ? body : line,
+                                "a line holds material points, %s of method mpm: `group` names nodes of elements",
+                                body ? "this body is not" : "no body is");
+}

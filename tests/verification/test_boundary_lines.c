@@ -1,0 +1,294 @@
+// Labels: verification
+// Lines anywhere in the grid that hold implicit material points: reactions, places, approach, release, friction.
+#include <math.h>
+
+#include "tests/support/implicit_world.h"
+
+#ifdef BRUNT_FLOAT
+int main(void) { return 0; } // implicit steps want double
+#else
+
+static const double CELL = 0.1, DENSITY = 1000, YOUNG = 1e6;
+
+// A definition with room for a few lines.
+static brunt_world_def lines(int order, double step, double nu) {
+    brunt_world_def def = def_begin(2, CELL);
+    def_material(&def, "neo-hookean", DENSITY, YOUNG, nu);
+    def.kernel = (brunt_kernel)order;
+    if (order == 1) def.transfer = BRUNT_PIC;
+    def.surfaces = brunt_alloc(DEF_ROOM * sizeof *def.surfaces);
+    go_implicit(&def, BRUNT_EULER, step);
+    def.newton.tolerance = 1e-15;
+    return def;
+}
+
+static brunt_boundary_surface_def *def_line(brunt_world_def *def, double x0, double y0, double x1, double y1,
+                                            brunt_condition condition) {
+    brunt_boundary_surface_def *s = &def->surfaces[def->surface_count++];
+    *s = brunt_boundary_surface_def_default();
+    s->condition = condition;
+    s->point = brunt_alloc(2 * sizeof *s->point), s->point_count = 2;
+    s->facet = brunt_alloc(sizeof *s->facet), s->facet_count = 1;
+    s->point[0][0] = x0, s->point[0][1] = y0, s->point[1][0] = x1, s->point[1][1] = y1;
+    memcpy(s->facet[0], (const int32_t[4]){0, 1, -1, -1}, sizeof s->facet[0]);
+    return s;
+}
+
+// A bar of length 2 and thickness 0.5 that hangs from its face, in a grid that is turned by an angle and shifted; the
+// load acts along it, in one step as long as one likes.
+static brunt_world *bar(int order, double angle, double shift) {
+    brunt_world_def def = lines(order, 1e5, 0);
+    const double c = cos(angle), s = sin(angle);
+    brunt_body_def *b = def_box(&def, "bar", XYZ(0, 0, 0), XYZ(2, 0.5, 0));
+    b->particles_per_cell = 16;
+    b->place.rotation[0] = c, b->place.rotation[1] = -s, b->place.rotation[3] = s, b->place.rotation[4] = c;
+    b->place.translation[0] = shift, b->place.translation[1] = 0.7 * shift;
+    def_line(&def, shift - 0.0 * c, 0.7 * shift, shift - 0.5 * s, 0.7 * shift + 0.5 * c, BRUNT_STICK);
+    def.gravity[0] = 0.1 * c, def.gravity[1] = 0.1 * s;
+    return world_take(&def);
+}
+
+START_TEST(hangs) {
+    const int order = 1 + _i % 2;
+    const double angle = _i / 2 % 2 ? PI / 6 : 0, shift = 0.0125 * (_i / 4) + (_i / 4 == 4 ? 1e-9 : 0);
+    brunt_world *world = bar(order, angle, shift);
+    const brunt_body_sums before = world_sums(world, 0);
+    world_steps(world, 1);
+    const brunt_body_sums after = world_sums(world, 0);
+    const brunt_force f = world_wall(world, 0);
+    const double c = cos(angle), s = sin(angle), weight = 1 * DENSITY * 0.1;
+    const double along = f.force[0] * c + f.force[1] * s, across = f.force[1] * c - f.force[0] * s;
+    const double went = (after.centre[0] - before.centre[0]) * c + (after.centre[1] - before.centre[1]) * s,
+                 exact = DENSITY * 0.1 * 4 / 3 / YOUNG;
+    brunt_newton_counts n;
+    brunt_world_newton(world, &n, NULL);
+    printf("  order %d, %2.0f degrees, shift %.4f: force %+.1e across %.1e, centre off by %+.1e, %g iterations\n",
+           order, angle * 180 / PI, shift, along / weight + 1, across / weight, went / exact - 1, n.iterations);
+    ck_assert_double_le(fabs(along / weight + 1), 1e-8);
+    ck_assert_double_le(fabs(across / weight), 1e-8);
+    ck_assert_double_le(fabs(went / exact - 1), order == 2 ? 5e-3 : 4e-2);
+    brunt_world_destroy(world);
+}
+END_TEST
+
+// A block on a line, or hung from one.
+static brunt_world_def block(brunt_condition condition, double step, double at) {
+    brunt_world_def def = lines(2, step, 0.3);
+    def_box(&def, "block", XYZ(0.13, at, 0), XYZ(0.73, at + 0.6, 0));
+    def_line(&def, -2, at, 3, at, condition);
+    return def;
+}
+
+// A line that carries a block along takes as much as the block is given, at every step, and the block keeps its place
+// on it.
+START_TEST(carries) {
+    brunt_world_def def = block(BRUNT_STICK, 0.01, 0.02);
+    def.integrator = _i ? BRUNT_NEWMARK : BRUNT_EULER;
+    def_velocity(&def.bodies[0], 0.06, 0.2, 0);
+    def.surfaces[0].value[0] = 0.06, def.surfaces[0].value[1] = 0.2;
+    def.gravity[1] = -1;
+    brunt_world *world = world_take(&def);
+    const brunt_body_sums before = world_sums(world, 0);
+    double mean = 0;
+    for (int s = 0; s < 200; s++) {
+        world_steps(world, 1);
+        mean += world_wall(world, 0).force[1] / (200 * 360);
+    }
+    const brunt_body_sums after = world_sums(world, 0);
+    const brunt_energy e = world_energy(world);
+    printf("  %s: mean force off by %+.1e, block by %+.1e %+.1e cells, momentum %.1e, energy %.1e of the work\n",
+           _i ? "newmark" : "euler", mean - 1, (after.centre[0] - before.centre[0] - 0.12) / CELL,
+           (after.centre[1] - before.centre[1] - 0.4) / CELL, world_momentum(world).linear_drift,
+           e.error / e.external_work);
+    ck_assert_double_le(fabs(mean - 1), 2e-3);
+    ck_assert_double_le(fabs(after.centre[0] - before.centre[0] - 0.12), 1e-3 * CELL);
+    ck_assert_double_le(fabs(after.centre[1] - before.centre[1] - 0.4), 5e-3 * CELL);
+    ck_assert_double_le(world_momentum(world).linear_drift, 1e-10);
+    ck_assert_double_le(fabs(e.error_relative), 1e-6);
+    brunt_world_destroy(world);
+}
+END_TEST
+
+// Along a line that is at an angle to the grid a block slides as if nothing were there, and presses with its weight.
+START_TEST(slides) {
+    brunt_world_def def = lines(2, 0.01, 0.3);
+    const double angle = PI / 3, c = cos(angle), s = sin(angle);
+    const bool leaves = _i / 2;
+    brunt_body_def *b = def_box(&def, "block", XYZ(0, 0, 0), XYZ(0.6, 0.6, 0));
+    b->place.rotation[0] = c, b->place.rotation[1] = s, b->place.rotation[3] = -s, b->place.rotation[4] = c;
+    def_line(&def, -3 * c, 3 * s, 8 * c, -8 * s, leaves ? BRUNT_SEPARATE : BRUNT_SLIP);
+    def.integrator = _i % 2 ? BRUNT_NEWMARK : BRUNT_EULER;
+    def.gravity[1] = -9.81;
+    brunt_world *world = world_take(&def);
+    const brunt_body_sums before = world_sums(world, 0);
+    world_steps(world, 100);
+    const brunt_body_sums after = world_sums(world, 0);
+    const brunt_force f = world_wall(world, 0);
+    const double g = 9.81 * s, wanted = 0.5 * g * (_i % 2 ? 1 : 1.01), weight = 360 * 9.81 * c;
+    const double x = after.centre[0] - before.centre[0], y = after.centre[1] - before.centre[1];
+    printf("  %s %s: slid off by %+.1e, across %+.1e cells, mean force off by %+.1e along %.1e, momentum %.1e\n",
+           leaves ? "separate" : "slip", _i % 2 ? "newmark" : "euler", (c * x - s * y) / wanted - 1,
+           (s * x + c * y) / CELL, (s * f.impulse[0] + c * f.impulse[1]) / weight - 1,
+           (c * f.impulse[0] - s * f.impulse[1]) / weight, world_momentum(world).linear_drift);
+    ck_assert_double_le(fabs((c * x - s * y) / wanted - 1), 1e-8);
+    ck_assert_double_le(fabs(s * x + c * y), 2e-2 * CELL);
+    ck_assert_double_le(fabs((s * f.impulse[0] + c * f.impulse[1]) / weight - 1), 1e-2);
+    ck_assert_double_le(fabs(c * f.impulse[0] - s * f.impulse[1]) / weight, 1e-10);
+    ck_assert_double_le(world_momentum(world).linear_drift, 1e-10);
+    ck_assert_double_le(fabs(world_energy(world).error_relative), 1e-6);
+    brunt_world_destroy(world);
+}
+END_TEST
+
+// A block that comes to a line meets it where its own particles end, wherever lines of the grid are.
+START_TEST(meets) {
+    const brunt_condition condition = _i % 2 ? BRUNT_SLIP : BRUNT_SEPARATE;
+    const double at = 0.0125 * (_i / 2);
+    brunt_world_def def = block(condition, 2e-3, at);
+    for (int k = 0; k < 2; k++) def.surfaces[0].point[k][1] = at - 0.1;
+    def_velocity(&def.bodies[0], 0, -1, 0);
+    brunt_world *world = world_take(&def);
+    double first = -1;
+    for (int s = 0; s < 100 && first < 0; s++) {
+        world_steps(world, 1);
+        if (world_wall(world, 0).force[1] != 0) first = brunt_world_time(world);
+    }
+    printf("  %s, cut at %.3f: first force %.4f cells early\n", _i % 2 ? "slip" : "separate", at / CELL,
+           (0.1 - first) / CELL);
+    ck_assert_double_ge(first, 0);
+    ck_assert_double_le(fabs(0.1 - first), 0.05 * CELL);
+    brunt_world_destroy(world);
+}
+END_TEST
+
+// What may leave a line does so without being pulled, and what may not stays; a body that is moved away from it by the
+// line's own motion likewise.
+START_TEST(leaves) {
+    brunt_world_def def = block(BRUNT_SEPARATE, 5e-3, 0.02);
+    if (_i)
+        def.surfaces[0].value[1] = -1; // the line goes
+    else
+        def.gravity[1] = 5; // the block does
+    brunt_world *world = world_take(&def);
+    world_steps(world, 40);
+    const brunt_force f = world_wall(world, 0);
+    printf("  impulse %.1e N s\n", f.impulse[1]);
+    ck_assert_double_ge(f.impulse[1], 0);
+    ck_assert_double_le(f.impulse[1], 1e-9);
+    brunt_world_destroy(world);
+}
+END_TEST
+
+// Friction: a block on a slope stays below the angle of friction, and above it slides as Coulomb says.
+START_TEST(rubs) {
+    static const double friction[] = {0.7, 0.4, 0.1};
+    brunt_world_def def = block(BRUNT_SEPARATE, 5e-3, 0.02);
+    const double g[2] = {9.81 * 0.5, -9.81 * 0.75}, mu = friction[_i];
+    def.surfaces[0].friction = mu;
+    def.materials[0].strength_parameters[0] = 100 * YOUNG;
+    def.gravity[0] = g[0], def.gravity[1] = g[1];
+    brunt_world *world = world_take(&def);
+    world_steps(world, 100);
+    const brunt_body_sums s = world_sums(world, 0);
+    const brunt_force f = world_wall(world, 0);
+    const double wanted = fmax(0, g[0] + mu * g[1]) * 0.5;
+    brunt_newton_counts n;
+    brunt_world_newton(world, &n, NULL);
+    printf("  friction %.1f: speed %.5f, %.5f wanted; force %.4f of the normal one; %.1f iterations a step\n", mu,
+           s.velocity[0], wanted, -f.impulse[0] / f.impulse[1], n.iterations / n.steps);
+    ck_assert_double_le(fabs(s.velocity[0] - wanted), 1e-2 * g[0] * 0.5);
+    if (mu < 0.6) ck_assert_double_le(fabs(-f.impulse[0] / f.impulse[1] / mu - 1), 1e-2);
+    ck_assert_double_ge(f.friction_work, 0);
+    ck_assert_double_le(fabs(world_energy(world).error_relative), 1e-5);
+    brunt_world_destroy(world);
+}
+END_TEST
+
+// The same line twice shares what one takes alone.
+START_TEST(twice) {
+    double force[2] = {0, 0}, place[2];
+    for (int k = 0; k < 2; k++) {
+        brunt_world_def def = block(BRUNT_STICK, 10, 0.02);
+        if (k) def_line(&def, -2, 0.02, 3, 0.02, BRUNT_STICK);
+        def.gravity[1] = -1;
+        brunt_world *world = world_take(&def);
+        world_steps(world, 1);
+        for (int w = 0; w < brunt_wall_count(world); w++) force[k] += world_wall(world, w).force[1];
+        place[k] = world_sums(world, 0).centre[1];
+        brunt_world_destroy(world);
+    }
+    ck_assert_double_eq_tol(force[0], force[1], 1e-9 * force[0]);
+    ck_assert_double_eq_tol(place[0], place[1], 1e-12);
+}
+END_TEST
+
+// Any step, and lines that begin to move at once: each converges.
+START_TEST(hard) {
+    static const double steps[] = {1e-4, 1e-2, 1, 1e3};
+    brunt_world_def def = block(_i % 2 ? BRUNT_STICK : BRUNT_SEPARATE, steps[_i / 2], 0.02);
+    static double table[2][2];
+    table[0][0] = 3 * def.step, table[1][0] = 3.5 * def.step, table[1][1] = 1;
+    def.surfaces[0].table.points = brunt_alloc(sizeof table), def.surfaces[0].table.count = 2;
+    memcpy(def.surfaces[0].table.points, table, sizeof table);
+    def.surfaces[0].value[1] = fmin(5, 0.3 * CELL / def.step);
+    def.gravity[1] = -9.81;
+    brunt_world *world = world_take(&def);
+    world_steps(world, 8);
+    brunt_newton_counts n;
+    brunt_world_newton(world, &n, NULL);
+    printf("  dt %g s %s: %.1f iterations a step, %g cuts\n", steps[_i / 2], _i % 2 ? "stick" : "separate",
+           n.iterations / n.steps, n.cuts);
+    ck_assert_double_le(world_momentum(world).linear_drift, 1e-9);
+    brunt_world_destroy(world);
+}
+END_TEST
+
+static brunt_world *carried(int threads) {
+    brunt_world_def def = block(BRUNT_SEPARATE, 5e-3, 0.02);
+    def.surfaces[0].friction = 0.3, def.surfaces[0].value[0] = 0.5;
+    def.gravity[1] = -9.81;
+    def.integrator = BRUNT_NEWMARK;
+    def.threads = threads;
+    return world_take(&def);
+}
+
+START_TEST(threads) {
+    brunt_world *world[] = {carried(1), carried(2), carried(5)};
+    check_threads(world, 3, 6);
+}
+END_TEST
+
+START_TEST(restart) { check_restart(carried(1), carried(1)); }
+END_TEST
+
+// Two lines in one place that go different ways: said with a name, the body's too.
+START_TEST(refuses) {
+    brunt_world_def def = block(BRUNT_STICK, 1e-2, 0.02);
+    def_line(&def, -2, 0.02, 3, 0.02, BRUNT_STICK)->value[1] = 1;
+    def.newton.cut = 1;
+    brunt_world *world = world_take(&def);
+    brunt_error error = {0};
+    ck_assert_int_eq(brunt_world_step(world, INFINITY, &error), BRUNT_FAILED);
+    printf("  %s\n", error.message);
+    ck_assert_ptr_nonnull(strstr(error.message, "find no end"));
+    ck_assert_ptr_nonnull(strstr(error.message, "surface"));
+    brunt_world_destroy(world);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("boundary_lines");
+    ADD_LOOP(hangs, 32);
+    ADD_LOOP(carries, 2);
+    ADD_LOOP(slides, 4);
+    ADD_LOOP(meets, 16);
+    ADD_LOOP(leaves, 2);
+    ADD_LOOP(rubs, 3);
+    ADD_LOOP(twice, 1);
+    ADD_LOOP(hard, 8);
+    ADD_LOOP(threads, 1);
+    ADD_LOOP(restart, 1);
+    ADD_LOOP(refuses, 1);
+    return suite_main(suite);
+}
+#endif
