@@ -2,7 +2,6 @@
 #include "fem/potential_parts.h"
 
 const char *brunt_fem_implicit(const brunt_fem_body *body) {
-    if (body->traits->membrane) return "membranes have no implicit steps";
     if (body->element->axisymmetric) return "elements about an axis have no implicit steps";
     if (brunt_fem_has_hourglass(body) && body->hourglass == BRUNT_HOURGLASS_VISCOUS)
         return "viscous hourglass control has no potential for implicit steps: stiffness has";
@@ -60,7 +59,8 @@ brunt_fem_potential *brunt_fem_potential_make(brunt_fem_body *body, int32_t base
         return NULL;
     }
     const brunt_model *strength = body->material.model[BRUNT_STRENGTH];
-    *p = (brunt_fem_potential){.kind = &brunt_fem_solid_potential,
+    *p = (brunt_fem_potential){.kind =
+                                   body->traits->membrane ? &brunt_fem_membrane_potential : &brunt_fem_solid_potential,
                                .body = body,
                                .base = base,
                                .dim = body->dim,
@@ -85,7 +85,8 @@ void brunt_fem_potential_free(brunt_fem_potential *p) {
     if (!p) return;
     for (int w = 0; p->work && w < p->threads; w++) brunt_fem_workspace_free(&p->work[w]);
     brunt_colours_free(&p->colours);
-    brunt_free(p->slab), brunt_free(p->place), brunt_free(p->way), brunt_free(p->force), brunt_free(p->energy);
+    brunt_free(p->slab), brunt_free(p->sheet), brunt_free(p->place), brunt_free(p->way), brunt_free(p->force),
+        brunt_free(p->energy);
     brunt_free(p->limit), brunt_free(p->first), brunt_free(p->node), brunt_free(p->slot), brunt_free(p->work);
     brunt_free(p);
 }
@@ -176,6 +177,7 @@ static void hessian(void *self, const brunt_team *team, const double *u, bool pr
 static double limit(void *self, const brunt_team *team, const double *u, const double *way, double largest) {
     brunt_fem_potential *p = self;
     fem_call call = {.p = p, .wanted = FEM_LIMIT, .u = u, .way = way, .largest = largest};
+    if (!p->kind->limit) return largest;
     run(&call, team);
     for (int32_t b = 0; b < p->body->block_count; b++) largest = fmin(largest, p->limit[b]);
     return largest;

@@ -28,6 +28,7 @@ struct brunt_fem_potential {
     real *g[SHAPES], *tangent[TANGENTS];
     real *slab;
     size_t slab_bytes;
+    struct fem_sheet *sheet;  // of a membrane: its elements at the start, a slot each
     double *place, *way;      // of each node, dim each: where it is tried to be, less where it was at the start; p
     real *force;              // partial_count x 4, as body->partial
     brunt_energy_sum *energy; // a block each
@@ -60,4 +61,4 @@ struct fem_potential_kind {
     void (*commit)(brunt_fem_potential *p, int32_t block, brunt_fem_workspace *work);
 };
 
-extern const fem_potential_kind brunt_fem_solid_potential;
+extern const fem_potential_kind brunt_fem_solid_potential, brunt_fem_membrane_potential;
