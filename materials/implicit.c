@@ -7,7 +7,6 @@
 #include "materials/trial.h"
 
 const char *brunt_material_implicit(const brunt_material *material) {
-    if (material->membrane) return "membranes have no potential for implicit steps";
     if (material->model[BRUNT_VISCOSITY])
         return "bulk viscosity has no potential for implicit steps, which damp shocks by themselves: leave it out";
     if (material->model[BRUNT_FAILURE]) return "failure has no potential for implicit steps";
@@ -15,6 +14,8 @@ const char *brunt_material_implicit(const brunt_material *material) {
         const brunt_model *model = material->model[k];
         if (!model) continue;
         if (!model->potential) return model->no_potential;
+        if (material->membrane && !model->potential->respond_membrane)
+            return "the model has no potential of membranes for implicit steps";
         const char *reason = model->potential->refuses ? model->potential->refuses(material->constants[k]) : NULL;
         if (reason) return reason;
     }
@@ -22,6 +23,11 @@ const char *brunt_material_implicit(const brunt_material *material) {
 }
 
 void brunt_material_respond(const brunt_material *material, const brunt_trial_points trial[BRUNT_COMPONENTS]) {
+    if (material->membrane) {
+        const brunt_model_potential *strength = material->model[BRUNT_STRENGTH]->potential;
+        strength->respond_membrane(material->constants[BRUNT_STRENGTH], material->tension_only, &trial[BRUNT_STRENGTH]);
+        return;
+    }
     for (int k = 0; k < BRUNT_COMPONENTS; k++)
         if (material->model[k]) material->model[k]->potential->respond(material->constants[k], &trial[k]);
 }

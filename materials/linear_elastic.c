@@ -109,6 +109,7 @@ BRUNT_INLINE void plane_stress_response_of(const real *k, bool tension_only, con
         r->tau[i] = l[i] * biot[i];
         r->along[i] = plane * (l[i] * l[i]);
     }
+    r->cross = plane * nu * (l[0] * l[1]);
     r->energy = half * (e[0] * biot[0] + e[1] * biot[1]);
     r->thickness = 1 - nu / (1 - nu) * (e[0] + e[1]);
     r->shear = mu + half * (biot[0] + biot[1]) / (l[0] + l[1]);
@@ -162,7 +163,9 @@ BRUNT_INLINE void respond_dim(int dim, const real *k, const brunt_trial_points *
 
 TRIAL_RESPOND
 
-static const brunt_model_potential potential = {.respond = respond};
+PLANE_STRESS_RESPOND(plane_stress_response_of)
+
+static const brunt_model_potential potential = {.respond = respond, .respond_membrane = respond_membrane};
 
 const brunt_model brunt_linear_elastic = {
     .name = "linear-elastic",

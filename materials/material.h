@@ -113,6 +113,10 @@ typedef struct brunt_model_potential {
                                   const brunt_material_points *points);
     // As the model's own, NULL: that.
     void (*energy)(const real *constants, const brunt_material_points *points, brunt_point_energy *energy);
+    // Of a membrane; NULL: it has none. Points have dim 2, F is the symmetric stretch U in their plane, not a number
+    // where there is none. With C = U^2 and pairs of the plane in the order 11, 22, 12:
+    //   density W(C), stress[0..2] S = 2 dW/dC, tangent[0..5] 4 d2W/dCdC: 11 11, 11 22, 11 12, 22 22, 22 12, 12 12.
+    void (*respond_membrane)(const real *constants, bool tension_only, const brunt_trial_points *trial);
 } brunt_model_potential;
 
 typedef struct brunt_parameter {

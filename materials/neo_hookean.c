@@ -136,6 +136,7 @@ BRUNT_INLINE void plane_stress_response_of(const real *k, bool tension_only, con
     lanes bulk = lambda * stiff / (stiff + lambda);
     r->thickness = lanes_select(log_l3 == log_l3, l3, log_l3);
     r->shear = lanes_set(mu);
+    r->cross = bulk;
     for (int i = 0; i < 2; i++) {
         lanes change = 2 * e[i] + e[i] * e[i];
         r->tau[i] = mu * (change - growth);
@@ -194,7 +195,9 @@ BRUNT_INLINE void respond_dim(int dim, const real *k, const brunt_trial_points *
 
 TRIAL_RESPOND
 
-static const brunt_model_potential potential = {.respond = respond};
+PLANE_STRESS_RESPOND(plane_stress_response_of)
+
+static const brunt_model_potential potential = {.respond = respond, .respond_membrane = respond_membrane};
 
 const brunt_model brunt_neo_hookean = {
     .name = "neo-hookean",

@@ -17,6 +17,11 @@
 // or W of the stretches it is relaxed to, max(l1, 1) and max(l2, w(max(l1, 1))). Both are continuous with their first
 // derivatives, since W_2 = 0 at w; folds need no room, so the true stretches enter the deviator alone.
 //
+// Implicit steps see W(C), C = U^2. With S_i = tau_i / l_i^2 the tangent 4 d2W/dCdC has, in principal axes,
+//   1111: (A_1 - tau_1) / l1^4     1122: l1 l2 W_12 / (l1 l2)^2     1212: (S_1 - S_2) / (l1^2 - l2^2) = (shear - S_1) /
+//   l2^2
+// and where it is wrinkled, tau_2 = 0 along w(l1): A_1 - (l1 l2 W_12)^2 / A_2 for A_1, and nothing with a 22.
+//
 // Wave speed. Along a direction n of the plane with polarisation m, from the spatial tangent in principal axes (Ogden,
 // Non-Linear Elastic Deformations, section 6.1), in current lengths:
 //   rho0 c^2 = A1 (n1 m1)^2 + A2 (n2 m2)^2 + shear (l1^2 (n1 m2)^2 + l2^2 (n2 m1)^2) + 2 coupling n1 n2 m1 m2,
@@ -37,6 +42,7 @@ typedef struct plane_stress_response {
     lanes energy;    // W [Pa]
     lanes thickness; // l3; where it is not a positive number, there is none
     lanes along[2];  // A_i [Pa]
+    lanes cross;     // l1 l2 W_12 [Pa]
     lanes shear;     // [Pa]
     lane_mask taut;  // with tension_only only
 } plane_stress_response;
@@ -50,12 +56,12 @@ typedef struct plane_stress_stretch {
     lanes principal[2];    // strains l_i - 1
 } plane_stress_stretch;
 
-BRUNT_INLINE plane_stress_stretch load_plane_stretch(const brunt_material_points *points, int32_t i) {
+BRUNT_INLINE plane_stress_stretch plane_stretch(const real *const U[9], int32_t i) {
     plane_stress_stretch u;
-    lanes e11 = lanes_load(points->F[0] + i) - 1, e22 = lanes_load(points->F[3] + i) - 1;
+    lanes e11 = lanes_load(U[0] + i) - 1, e22 = lanes_load(U[3] + i) - 1;
     u.mean = (real)0.5 * (e11 + e22);
     u.half = (real)0.5 * (e11 - e22);
-    u.off = lanes_load(points->F[1] + i);
+    u.off = lanes_load(U[1] + i);
     u.radius = lanes_sqrt(u.half * u.half + u.off * u.off);
     u.principal[0] = u.mean + u.radius;
     u.principal[1] = u.mean - u.radius;
@@ -77,7 +83,7 @@ BRUNT_INLINE brunt_update_result plane_stress_update(plane_stress_law *law, bool
     const real half = (real)0.5;
     const lanes zero = lanes_set(0), rest = lanes_set(k[ELASTIC_PLANE]);
     for (int32_t i = 0; i < points->count; i += BRUNT_LANES) {
-        plane_stress_stretch u = load_plane_stretch(points, i);
+        plane_stress_stretch u = plane_stretch((const real *const *)points->F, i);
         note_deformation(&record, 1 + u.principal[1], i); // the lesser stretch: a number, and positive, when both are
         plane_stress_response r;
         law(k, tension_only, u.principal, &r);
@@ -103,13 +109,76 @@ BRUNT_INLINE void plane_stress_energy(plane_stress_law *law, bool tension_only, 
                                       const brunt_material_points *points, brunt_point_energy *energy) {
     lane_total stored = {0};
     for (int32_t i = 0; i < points->count; i += BRUNT_LANES) {
-        plane_stress_stretch u = load_plane_stretch(points, i);
+        plane_stress_stretch u = plane_stretch((const real *const *)points->F, i);
         plane_stress_response r;
         law(k, tension_only, u.principal, &r);
         total_add(&stored, lanes_load(points->volume + i) * r.energy);
     }
     energy->internal += total_end(&stored);
 }
+
+// --------------------------------------------------------------------------------- implicit steps
+
+// S_1, S_2 and the tangent 1111, 2222, 1122, 1212 in principal axes.
+typedef struct plane_stress_tangent {
+    lanes S[2], own[2], cross, shear;
+} plane_stress_tangent;
+
+BRUNT_INLINE plane_stress_tangent plane_stress_principal(bool tension_only, const lanes strain[2],
+                                                         const plane_stress_response *r) {
+    const lanes l[2] = {1 + strain[0], 1 + strain[1]}, C[2] = {l[0] * l[0], l[1] * l[1]}, zero = lanes_set(0);
+    plane_stress_tangent t = {.S = {r->tau[0] / C[0], r->tau[1] / C[1]}};
+    for (int i = 0; i < 2; i++) t.own[i] = (r->along[i] - r->tau[i]) / (C[i] * C[i]);
+    t.cross = r->cross / (C[0] * C[1]);
+    t.shear = (r->shear - t.S[0]) / C[1];
+    if (!tension_only) return t;
+    const lane_mask pulled = strain[0] > 0, taut = r->taut & pulled;
+    lanes relaxed = (r->along[0] - r->cross * r->cross / r->along[1] - r->tau[0]) / (C[0] * C[0]);
+    t.S[0] = lanes_select(pulled, t.S[0], zero);
+    t.S[1] = lanes_select(taut, t.S[1], zero);
+    t.own[0] = lanes_select(taut, t.own[0], lanes_select(pulled, relaxed, zero));
+    t.own[1] = lanes_select(taut, t.own[1], zero);
+    t.cross = lanes_select(taut, t.cross, zero);
+    t.shear = lanes_select(taut, t.shear, lanes_select(pulled, t.S[0] / (C[0] - C[1]), zero));
+    return t;
+}
+
+BRUNT_INLINE void plane_stress_respond(plane_stress_law *law, bool tension_only, const real *k,
+                                       const brunt_trial_points *trial) {
+    const real half = (real)0.5;
+    for (int32_t i = 0; i < trial->count; i += BRUNT_LANES) {
+        const plane_stress_stretch u = plane_stretch(trial->F, i);
+        plane_stress_response r;
+        law(k, tension_only, u.principal, &r);
+        const lane_mask there = (u.principal[1] > -1) & (r.thickness > 0);
+        if (trial->density) lanes_store(trial->density + i, lanes_select(there, r.energy, lanes_set((real)INFINITY)));
+        if (!trial->stress[0] && !trial->tangent[0]) continue;
+        const plane_stress_tangent t = plane_stress_principal(tension_only, u.principal, &r);
+        // cos and sin of twice the angle of the first axis: any where all are axes
+        const lane_mask turned = u.radius > 0;
+        const lanes one = lanes_set(1), radius = lanes_select(turned, u.radius, one);
+        const lanes c2 = lanes_select(turned, u.half / radius, one), s2 = lanes_select(turned, u.off / radius, 0 * one);
+        const lanes P[3][3] = {{half * (1 + c2), half * (1 - c2), half * s2},  // n1 n1
+                               {half * (1 - c2), half * (1 + c2), -half * s2}, // n2 n2
+                               {-half * s2, half * s2, half * c2}};            // their symmetric product
+        for (int m = 0; m < 3 && trial->stress[0]; m++)
+            lanes_store(trial->stress[m] + i, t.S[0] * P[0][m] + t.S[1] * P[1][m]);
+        for (int m = 0, at = 0; m < 3 && trial->tangent[0]; m++)
+            for (int n = m; n < 3; n++, at++)
+                lanes_store(trial->tangent[at] + i, t.own[0] * P[0][m] * P[0][n] + t.own[1] * P[1][m] * P[1][n] +
+                                                        t.cross * (P[0][m] * P[1][n] + P[1][m] * P[0][n]) +
+                                                        4 * t.shear * P[2][m] * P[2][n]);
+    }
+}
+
+// A model's function from its law.
+#define PLANE_STRESS_RESPOND(law)                                                                                      \
+    static void respond_membrane(const real *constants, bool tension_only, const brunt_trial_points *trial) {          \
+        if (tension_only)                                                                                              \
+            plane_stress_respond(law, true, constants, trial);                                                         \
+        else                                                                                                           \
+            plane_stress_respond(law, false, constants, trial);                                                        \
+    }
 
 static inline real plane_stress_wave_speed(const real *constants) {
     return (real)sqrt((double)constants[ELASTIC_PLANE] * (double)constants[ELASTIC_INVERSE_DENSITY]);

@@ -86,6 +86,7 @@ BRUNT_INLINE void plane_stress_response_of(const real *k, bool tension_only, con
         r->tau[i] = square[i] * S[i];
         r->along[i] = r->tau[i] + plane * (square[i] * square[i]);
     }
+    r->cross = plane * nu * (square[0] * square[1]);
     r->energy = half * (E[0] * S[0] + E[1] * S[1]);
     r->thickness = lanes_sqrt(1 - 2 * (nu / (1 - nu)) * (E[0] + E[1]));
     r->shear = half * ((S[0] + S[1]) + mu * (square[0] + square[1]));
@@ -144,7 +145,9 @@ BRUNT_INLINE void respond_dim(int dim, const real *k, const brunt_trial_points *
 
 TRIAL_RESPOND
 
-static const brunt_model_potential potential = {.respond = respond};
+PLANE_STRESS_RESPOND(plane_stress_response_of)
+
+static const brunt_model_potential potential = {.respond = respond, .respond_membrane = respond_membrane};
 
 const brunt_model brunt_st_venant_kirchhoff = {
     .name = "st-venant-kirchhoff",

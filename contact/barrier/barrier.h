@@ -31,6 +31,7 @@ typedef struct brunt_barrier_mesh {
 typedef struct brunt_barrier_pair {
     int32_t a, b;
     double distance;   // [m] dhat
+    double offset;     // [m] that surfaces stand off: their gap is the distance of features less it
     double stiffness;  // [Pa] kappa
     double friction;   // Coulomb's coefficient; INFINITY: it sticks where it touches
     double slip_speed; // [m/s] eps_v, below which it creeps instead of sticking; > 0 where there is friction
@@ -47,6 +48,7 @@ typedef struct brunt_barrier_plane {
     double origin[3], normal[3]; // [m] at the start of the step; of unit length, towards the points
     int32_t node;                // block node whose displacement moves it (held unknowns); -1: it does not move
     const bool *meets;           // of each body; NULL: all
+    const double *offset;        // [m] of each body, as of a pair; NULL: none
     double distance, stiffness, friction, slip_speed; // as of a pair; friction 0: slips, INFINITY: sticks
 } brunt_barrier_plane;
 

@@ -33,7 +33,7 @@ static mollifier mollifier_of(const barrier_contact *c) {
 static double weighted(const brunt_barrier *b, const barrier_contact *c, brunt_barrier_value *v) {
     const barrier_law law = barrier_law_of(b, c->law);
     double unused, g[6], second[36];
-    *v = brunt_barrier_at(c->at.d, law.distance, law.stiffness);
+    *v = brunt_barrier_at(c->at.d - c->offset, law.distance, law.stiffness);
     return c->threshold == 0 ? c->weight
                              : c->weight * mollify(brunt_edge_cross(c->edge[0], c->edge[1], g, second), c->threshold,
                                                    &unused, &unused);
@@ -83,46 +83,5 @@ void barrier_contact_hessian(const brunt_barrier *b, const barrier_contact *c, b
         const mollifier m = mollifier_of(c);
         if (m.dm != 0) mollified(c, &m, v, h);
     }
-    if (project) barrier_project(rows, h);
-}
-
-// Sets h[p][q] to 0 by a turn of rows and columns p and q; eigenvectors in v turn along.
-static void turn(int n, double *h, double *v, int p, int q) {
-    const double off = h[p * n + q];
-    if (off == 0) return;
-    const double theta = (h[q * n + q] - h[p * n + p]) / (2 * off);
-    const double t = (theta >= 0 ? 1 : -1) / (fabs(theta) + sqrt(theta * theta + 1));
-    const double c = 1 / sqrt(t * t + 1), s = t * c;
-    for (int k = 0; k < n; k++) {
-        const double x = h[k * n + p], y = h[k * n + q];
-        h[k * n + p] = c * x - s * y, h[k * n + q] = s * x + c * y;
-    }
-    for (int k = 0; k < n; k++) {
-        const double x = h[p * n + k], y = h[q * n + k], a = v[k * n + p], b = v[k * n + q];
-        h[p * n + k] = c * x - s * y, h[q * n + k] = s * x + c * y;
-        v[k * n + p] = c * a - s * b, v[k * n + q] = s * a + c * b;
-    }
-}
-
-// Jacobi's method: it takes small eigenvalues beside large ones as they are.
-void barrier_project(int n, double *h) {
-    enum { SWEEPS = 30 };
-    double d[BARRIER_DOFS * BARRIER_DOFS], v[BARRIER_DOFS * BARRIER_DOFS] = {0}, all = 0;
-    BRUNT_ASSERT(n <= BARRIER_DOFS);
-    for (int i = 0; i < n * n; i++) d[i] = h[i], all += h[i] * h[i];
-    for (int i = 0; i < n; i++) v[i * n + i] = 1;
-    for (int sweep = 0; sweep < SWEEPS; sweep++) {
-        double off = 0;
-        for (int p = 0; p < n; p++)
-            for (int q = p + 1; q < n; q++) off += d[p * n + q] * d[p * n + q];
-        if (!(off > 1e-32 * all)) break;
-        for (int p = 0; p < n; p++)
-            for (int q = p + 1; q < n; q++) turn(n, d, v, p, q);
-    }
-    for (int k = 0; k < n; k++) {
-        const double negative = d[k * n + k];
-        if (negative >= 0) continue;
-        for (int i = 0; i < n; i++)
-            for (int j = 0; j < n; j++) h[i * n + j] -= negative * v[i * n + k] * v[j * n + k];
-    }
+    if (project) brunt_project_positive(rows, h);
 }

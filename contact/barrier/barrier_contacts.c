@@ -41,6 +41,10 @@ static void count_shared(const brunt_barrier *b, barrier_room *r, const int32_t 
         for (int i = 0; i < 3; i++) shared_at(r->edge, &r->edge_count, f[i == 2], f[i == 0 ? 1 : 2], of)->facets++;
 }
 
+static bool in_reach(const brunt_barrier *b, int32_t law, double d) {
+    return d - b->pair[law].offset < b->pair[law].distance;
+}
+
 // The facets within reach, each at its nearest feature.
 static void count_facets(const brunt_barrier *b, int32_t point, const double *u, barrier_room *r) {
     static const double here[3] = {0};
@@ -55,7 +59,7 @@ static void count_facets(const brunt_barrier *b, int32_t point, const double *u,
         const int region = b->dim == 3 ? brunt_closest_of_triangle(here, (const double(*)[3])x, &d)
                                        : brunt_closest_of_edge(here, x[0], x[1], &d);
         of.law = barrier_law_between(b, body, b->body[f[0]], &of.side);
-        if (!(d < b->pair[of.law].distance)) continue;
+        if (!in_reach(b, of.law, d)) continue;
         of.share = barrier_share_of(b, of.law, of.side, false);
         vertices_of(f, region, v);
         feature_at(r, v, &of)->times++;
@@ -83,7 +87,7 @@ static void take_back_edges(const brunt_barrier *b, int32_t point, const double 
         if (e->facets == 1) continue;
         barrier_relative(b, u, point, ends, 2, x);
         const int region = brunt_closest_of_edge(here, x[0], x[1], &d);
-        if (!(d < b->pair[e->law].distance)) continue;
+        if (!in_reach(b, e->law, d)) continue;
         vertices_of(ends, region, v);
         feature_at(r, v, &of)->times -= e->facets - 1;
     }
@@ -94,7 +98,7 @@ static void take_back_vertices(const brunt_barrier *b, int32_t point, const doub
         const barrier_shared *s = &r->vertex[i];
         const int32_t v[3] = {s->a, -1, -1}, times = 1 - s->facets + s->more;
         const barrier_feature of = {.law = s->law, .side = s->side, .share = s->share};
-        if (times == 0 || !(vertex_distance(b, point, s->a, u) < b->pair[s->law].distance)) continue;
+        if (times == 0 || !in_reach(b, s->law, vertex_distance(b, point, s->a, u))) continue;
         feature_at(r, v, &of)->times += times;
     }
 }
@@ -102,6 +106,7 @@ static void take_back_vertices(const brunt_barrier *b, int32_t point, const doub
 static barrier_contact contact_of(const brunt_barrier *b, int32_t point, const barrier_feature *f, const double *u) {
     static const double here[3] = {0};
     barrier_contact c = {.place = {point, f->vertex[0], f->vertex[1], f->vertex[2]}, .law = f->law, .side = f->side};
+    c.offset = b->pair[f->law].offset;
     double x[3][3];
     int count = 1;
     while (count < 3 && f->vertex[count] >= 0) count++;
@@ -126,7 +131,8 @@ static void plane_contacts(const brunt_barrier *b, int32_t point, const double *
         c.at = (brunt_closest){.places = 2, .flat = true, .w = {1, -1}};
         for (int j = 0; j < b->dim; j++) c.at.d -= plane->normal[j] * x[0][j], c.at.n[j] = plane->normal[j];
         c.weight = barrier_area_of(b, point);
-        if (c.at.d < plane->distance) take(context, &c);
+        c.offset = barrier_plane_offset(b, plane, point);
+        if (c.at.d - c.offset < plane->distance) take(context, &c);
     }
 }
 
@@ -143,7 +149,8 @@ static void edge_contacts(const brunt_barrier *b, int32_t edge, const double *u,
         c.law = barrier_law_between(b, b->body[e[0]], b->body[f[0]], &c.side);
         barrier_relative(b, u, e[0], c.place, 4, x);
         brunt_closest_edges((const double(*)[3])x, (const double(*)[3])(x + 2), &c.at);
-        if (!(c.at.d < b->pair[c.law].distance)) continue;
+        if (!in_reach(b, c.law, c.at.d)) continue;
+        c.offset = b->pair[c.law].offset;
         for (int k = 0; k < 3; k++) c.edge[0][k] = x[1][k] - x[0][k], c.edge[1][k] = x[3][k] - x[2][k];
         c.threshold = PARALLEL * b->edge_length2[edge] * b->edge_length2[other];
         c.weight = barrier_share_of(b, c.law, c.side, true) * (b->edge_area[edge] + b->edge_area[other]) / 2;

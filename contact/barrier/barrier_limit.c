@@ -16,7 +16,7 @@ typedef struct moving_pair {
     double x[4][3], v[4][3]; // [m] places, and what they move by
     int first, count;        // places of the first feature; of both
     double rounding;         // [m]
-    double distance;         // [m] dhat
+    double distance, offset; // [m] dhat; what of the distance is no gap
 } moving_pair;
 
 typedef struct limit_work {
@@ -88,14 +88,14 @@ static double part_of(const moving_pair *m, double t, double left, const double 
 
 static double pair_limit(const moving_pair *m, double largest) {
     double n[3], t = 0, d = distance_at(m, 0, n);
-    const double left = LEFT * fmin(d, m->distance);
+    const double left = LEFT * fmin(d - m->offset, m->distance);
     for (int i = 0; i < PARTS; i++) {
-        const double part = part_of(m, t, left, n);
+        const double part = part_of(m, t, left + m->offset, n);
         if (!(t + part < largest)) return largest;
         t += part;
         if (part == 0) break;
         d = distance_at(m, t, n);
-        if (d <= CLOSE * left) break;
+        if (d - m->offset <= CLOSE * left) break;
     }
     return t;
 }
@@ -104,10 +104,15 @@ static double plane_limit(const limit_work *w, int32_t point, int32_t k, double 
     const brunt_barrier_plane *plane = &w->b->step.planes[k];
     const int32_t place[2] = {point, barrier_points(w->b) + k};
     const moving_pair m = pair_of(w, place, 1, 2);
-    double gap = 0;
+    const double offset = barrier_plane_offset(w->b, plane, point);
+    double gap = -offset;
     for (int j = 0; j < 3; j++) gap -= plane->normal[j] * m.x[1][j];
-    const double part = part_of(&m, 0, LEFT * fmin(gap, plane->distance), plane->normal);
+    const double part = part_of(&m, 0, LEFT * fmin(gap, plane->distance) + offset, plane->normal);
     return fmin(part, largest);
+}
+
+static void apart(const brunt_barrier *b, int32_t law, moving_pair *m) {
+    m->distance = b->pair[law].distance, m->offset = b->pair[law].offset;
 }
 
 static double point_limit(const limit_work *w, int32_t point, double largest) {
@@ -116,7 +121,7 @@ static double point_limit(const limit_work *w, int32_t point, double largest) {
     for (int64_t i = b->facets.first[point]; i < b->facets.first[point + 1]; i++) {
         const int32_t *f = b->facet[b->facets.item[i]], place[4] = {point, f[0], f[1], f[2]};
         moving_pair m = pair_of(w, place, 1, 1 + b->dim);
-        m.distance = b->pair[barrier_law_between(b, barrier_body_of(b, point), b->body[f[0]], &side)].distance;
+        apart(b, barrier_law_between(b, barrier_body_of(b, point), b->body[f[0]], &side), &m);
         largest = pair_limit(&m, largest);
     }
     for (int64_t i = b->planes.first[point]; i < b->planes.first[point + 1]; i++)
@@ -131,7 +136,7 @@ static double edge_limit(const limit_work *w, int32_t edge, double largest) {
     for (int64_t i = b->edges.first[edge]; i < b->edges.first[edge + 1]; i++) {
         const int32_t *f = b->edge[b->edges.item[i]], place[4] = {e[0], e[1], f[0], f[1]};
         moving_pair m = pair_of(w, place, 2, 4);
-        m.distance = b->pair[barrier_law_between(b, b->body[e[0]], b->body[f[0]], &side)].distance;
+        apart(b, barrier_law_between(b, b->body[e[0]], b->body[f[0]], &side), &m);
         largest = pair_limit(&m, largest);
     }
     return largest;

@@ -109,7 +109,7 @@ static int64_t planes_of(const void *context, int32_t point, int32_t *out) {
             gap += n * (corner - (plane->origin[k] - b->origin[k]) - from[k]);
             comes += n * by[k];
         }
-        if (gap - fmax(comes, 0) > plane->distance + w->slack) continue;
+        if (gap - fmax(comes, 0) > plane->distance + barrier_plane_offset(b, plane, point) + w->slack) continue;
         if (out) out[found] = i;
         found++;
     }

@@ -24,11 +24,12 @@ int brunt_barrier_set_pairs(brunt_barrier *b, const brunt_barrier_pair *pairs, i
     b->pair_count = count, b->reach = 0;
     for (int32_t i = 0; i < count; i++) {
         const brunt_barrier_pair *p = &pairs[i];
-        BRUNT_ASSERT(p->a >= 0 && p->b >= 0 && p->distance > 0 && p->stiffness > 0 && p->friction >= 0);
+        BRUNT_ASSERT(p->a >= 0 && p->b >= 0 && p->distance > 0 && p->offset >= 0 && p->stiffness > 0 &&
+                     p->friction >= 0);
         BRUNT_ASSERT(p->friction == 0 || p->slip_speed > 0);
         b->pair[i] = *p;
         b->key[i] = (barrier_key){bodies_of(p->a, p->b), i};
-        b->reach = fmax(b->reach, p->distance);
+        b->reach = fmax(b->reach, p->distance + p->offset);
     }
     qsort(b->key, (size_t)count, sizeof *b->key, by_bodies);
     for (int32_t i = 1; i < count; i++)
@@ -64,6 +65,10 @@ barrier_law barrier_law_of(const brunt_barrier *b, int32_t law) {
 
 double barrier_share_of(const brunt_barrier *b, int32_t law, int8_t side, bool edges) {
     return b->pair[law].share[edges ? 2 : side > 0 ? 0 : 1];
+}
+
+double barrier_plane_offset(const brunt_barrier *b, const brunt_barrier_plane *plane, int32_t point) {
+    return plane->offset ? plane->offset[barrier_body_of(b, point)] : 0;
 }
 
 bool brunt_barrier_has_friction(const brunt_barrier *b) {

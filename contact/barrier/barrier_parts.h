@@ -10,6 +10,7 @@
 #include "contact/barrier/closest.h"
 #include "contact/barrier/near.h"
 #include "linear/assembly.h"
+#include "linear/project.h"
 
 #include <math.h>
 #include <string.h>
@@ -29,6 +30,7 @@ typedef struct barrier_contact {
     double threshold;  // [m^4] |ea x eb|^2 from which two edges count in full; 0: not edges
     double edge[2][3]; // [m] of two edges
     brunt_closest at;
+    double offset;       // [m] the gap is at.d less it
     double normal_force; // [N] when friction was updated; stays 0 where there is none
 } barrier_contact;
 
@@ -139,6 +141,8 @@ int64_t barrier_nodes(const brunt_barrier *b, int32_t place, const int32_t **nod
 int32_t barrier_law_between(const brunt_barrier *b, int32_t own, int32_t other, int8_t *side);
 barrier_law barrier_law_of(const brunt_barrier *b, int32_t law);
 double barrier_share_of(const brunt_barrier *b, int32_t law, int8_t side, bool edges);
+// [m] what a point's surface stands off a plane.
+double barrier_plane_offset(const brunt_barrier *b, const brunt_barrier_plane *plane, int32_t point);
 
 // --- candidates (barrier_near.c)
 int barrier_find_near(brunt_barrier *b, const brunt_team *team, const double *u, const double *p, brunt_error *error);
@@ -158,8 +162,6 @@ void barrier_contact_gradient(const brunt_barrier *b, const barrier_contact *c, 
 void barrier_contact_hessian(const brunt_barrier *b, const barrier_contact *c, bool project, double *hessian);
 // [N] with which the features push each other apart; of contacts of negative weight negative.
 double barrier_contact_force(const brunt_barrier *b, const barrier_contact *c);
-// Takes the negative eigenvalues of a symmetric matrix of n rows away.
-void barrier_project(int n, double *h);
 
 // --- friction of one contact (barrier_slip.c)
 // How far the features slip along each other by block vector u [m].

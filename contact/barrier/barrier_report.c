@@ -2,9 +2,9 @@
 #include "contact/barrier/barrier_parts.h"
 
 static void note_gap(const brunt_barrier *b, const double *u, const barrier_contact *c, brunt_barrier_report *r) {
-    if (c->weight <= 0 || !(c->at.d < r->least_gap)) return;
+    if (c->weight <= 0 || !(c->at.d - c->offset < r->least_gap)) return;
     const bool plane = c->law >= b->pair_count, edges = c->threshold > 0;
-    r->least_gap = c->at.d, r->least_part = c->at.d / barrier_law_of(b, c->law).distance;
+    r->least_gap = c->at.d - c->offset, r->least_part = r->least_gap / barrier_law_of(b, c->law).distance;
     r->point = edges ? -1 : c->place[0], r->plane = plane ? c->law - b->pair_count : -1;
     r->body = barrier_body_of(b, c->place[0]);
     r->other = plane ? -1 : barrier_body_of(b, c->place[edges ? 2 : 1]);
@@ -20,7 +20,8 @@ static void note_gap(const brunt_barrier *b, const double *u, const barrier_cont
 double brunt_barrier_least_gap(const brunt_barrier *b) {
     double least = INFINITY;
     for (int64_t i = 0; i < b->contacts.count; i++)
-        if (b->contacts.contact[i].weight > 0) least = fmin(least, b->contacts.contact[i].at.d);
+        if (b->contacts.contact[i].weight > 0)
+            least = fmin(least, b->contacts.contact[i].at.d - b->contacts.contact[i].offset);
     return least;
 }
 

@@ -19,16 +19,19 @@ static void book(brunt_timer *timer, const span *spans, int workers) {
     }
 }
 
-void brunt_parallel(int threads, int64_t count, int64_t grain, brunt_task_fn *task, void *context, brunt_timer *timer) {
-    if (count <= 0) return;
-    int64_t pieces = (count + grain - 1) / grain;
+typedef struct phase {
+    int64_t count, grain;
+    brunt_task_fn *task;
+    void *context;
+} phase;
+
+static void run(int threads, const phase *p, brunt_timer *timer) {
+    const int64_t pieces = (p->count + p->grain - 1) / p->grain;
     int workers = 1; // may be fewer than asked for
     span spans[BRUNT_THREAD_LIMIT];
-    // A thread that gets less than a few pieces costs more to wake and wait for than it saves.
-    if (threads > pieces / LEAST_PIECES) threads = (int)(pieces / LEAST_PIECES);
     if (threads <= 1) {
         if (timer) spans[0].begin = brunt_clock();
-        task(context, 0, count, 0);
+        p->task(p->context, 0, p->count, 0);
         if (timer) spans[0].end = brunt_clock();
     } else {
 #pragma omp parallel num_threads(threads)
@@ -38,11 +41,25 @@ void brunt_parallel(int threads, int64_t count, int64_t grain, brunt_task_fn *ta
             if (timer) spans[worker].begin = brunt_clock();
 #pragma omp for schedule(dynamic, 1) nowait
             for (int64_t piece = 0; piece < pieces; piece++) {
-                int64_t begin = piece * grain, end = begin + grain < count ? begin + grain : count;
-                task(context, begin, end, worker);
+                int64_t begin = piece * p->grain, end = begin + p->grain < p->count ? begin + p->grain : p->count;
+                p->task(p->context, begin, end, worker);
             }
             if (timer) spans[worker].end = brunt_clock();
         }
     }
     if (timer) book(timer, spans, workers);
+}
+
+void brunt_parallel(int threads, int64_t count, int64_t grain, brunt_task_fn *task, void *context, brunt_timer *timer) {
+    if (count <= 0) return;
+    const int64_t pieces = (count + grain - 1) / grain;
+    const phase p = {count, grain, task, context};
+    // A thread that gets less than a few pieces costs more to wake and wait for than it saves.
+    run(threads > pieces / LEAST_PIECES ? (int)(pieces / LEAST_PIECES) : threads, &p, timer);
+}
+
+void brunt_parallel_each(int threads, int64_t count, brunt_task_fn *task, void *context, brunt_timer *timer) {
+    if (count <= 0) return;
+    const phase p = {count, 1, task, context};
+    run(threads > count ? (int)count : threads, &p, timer);
 }

@@ -20,6 +20,9 @@ typedef struct brunt_timer {
 // when nobody wants the time; else two readings of the clock a worker.
 void brunt_parallel(int threads, int64_t count, int64_t grain, brunt_task_fn *task, void *context, brunt_timer *timer);
 
+// The same for tasks each of which is worth a thread.
+void brunt_parallel_each(int threads, int64_t count, brunt_task_fn *task, void *context, brunt_timer *timer);
+
 int brunt_threads_available(void);
 
 // Monotonic time [s].

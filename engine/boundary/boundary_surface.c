@@ -249,6 +249,13 @@ int brunt_boundary_surface_rows(const brunt_boundary_surface *s, int dim) {
     return s->def.condition == BRUNT_STICK || s->def.friction > 0 ? dim : 1;
 }
 
+void brunt_boundary_surface_direction(const brunt_boundary_surface *s, const brunt_boundary_particle *b, int row,
+                                      double out[3]) {
+    const bool sticks = s->def.condition == BRUNT_STICK;
+    const double *direction = row == 0 ? b->normal : s->tangent[b->piece][row - 1];
+    for (int a = 0; a < 3; a++) out[a] = sticks ? a == row : direction[a];
+}
+
 void brunt_boundary_surface_way(const brunt_boundary_surface *s, double time, double way[3]) {
     const double share =
         s->def.displacement ? brunt_curve_at(&s->def.table, time) : brunt_curve_integral(&s->def.table, time);

@@ -47,6 +47,9 @@ void brunt_boundary_surfaces_free(brunt_boundary_surfaces *surfaces);
 size_t brunt_boundary_surfaces_bytes(const brunt_boundary_surfaces *surfaces);
 // Components of its traction that are unknowns: all of stick, one of slip and of separate, all of that with friction.
 int brunt_boundary_surface_rows(const brunt_boundary_surface *surface, int dim);
+// The direction of a row of its traction at a boundary particle.
+void brunt_boundary_surface_direction(const brunt_boundary_surface *surface, const brunt_boundary_particle *particle,
+                                      int row, double out[3]);
 // How far it has gone since the start [m].
 void brunt_boundary_surface_way(const brunt_boundary_surface *surface, double time, double way[3]);
 // Whether it holds a body of material points.

@@ -10,6 +10,7 @@
 // Steps so long that inertia, which alone holds what is free, is nothing beside what deforms, (c dt / cells across)^2:
 // conjugate gradients end before they have seen such motions, and Newton's method makes up for it.
 #define SOFT 100.0
+#define TINY 3e-4 // [s] that nobody notices: waves cross the whole body, and a factor has its motions exactly
 
 // Blocks a node of grids of quadratic splines, over those of linear elements.
 static bool of_splines(const brunt_linear_size *s) { return s->blocks > (s->dim == 2 ? 14 : 50); }
@@ -36,12 +37,14 @@ brunt_linear_choice brunt_linear_choose(const brunt_linear_size *s) {
     BRUNT_ASSERT((s->dim == 2 || s->dim == 3) && s->nodes > 0 && s->blocks >= 1 && s->courant > 0);
     brunt_linear_choice choice = {.direct_seconds = direct_seconds(s), .pcg_seconds = pcg_seconds(s)};
     const double d = choice.direct_seconds, p = choice.pcg_seconds;
-    const bool soft = isfinite(s->courant) && s->courant > SOFT * cells_across(s), direct = d < (soft ? 8 : 2) * p;
+    const bool tiny = d < TINY && s->courant > cells_across(s),
+               soft = isfinite(s->courant) && s->courant > SOFT * cells_across(s),
+               direct = d < (soft ? 8 : 2) * p || tiny;
     choice.solver = direct ? &brunt_linear_direct : &brunt_linear_pcg;
     choice.preconditioner = BRUNT_INCOMPLETE_CHOLESKY;
     snprintf(choice.why, sizeof choice.why, "%s: some %.2g s an iteration, %s %.2g s (%dD, %lld nodes, c dt/h %.3g)%s",
              choice.solver->name, direct ? d : p, direct ? "pcg" : "direct", direct ? p : d, s->dim,
              (long long)s->nodes, s->courant,
-             direct && p < d ? soft ? "; inertia alone holds what is free" : "; it cannot stall" : "");
+             direct && p < d ? soft || tiny ? "; inertia alone holds what is free" : "; it cannot stall" : "");
     return choice;
 }

@@ -1,5 +1,6 @@
 #include "linear/incomplete.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "base/array.h"
@@ -8,25 +9,77 @@
 #include "base/simd.h"
 
 enum { JACOBI_GRAIN = 2048 };
-
-int brunt_incomplete_analyse(brunt_incomplete *f, const brunt_block_matrix *a, bool whole) {
-    const size_t nodes = (size_t)a->nodes, size = (size_t)(a->dim * a->dim);
-    f->a = a;
-    if (BRUNT_RESERVE(f->inverse, nodes * size, 0)) return -1;
-    if (!whole) return 0;
-    if (BRUNT_RESERVE(f->upper, nodes + 1, 0) || BRUNT_RESERVE(f->d, nodes * size, 0) ||
-        BRUNT_RESERVE(f->next, nodes, 0) || BRUNT_RESERVE(f->slot, nodes, 0))
-        return -1;
-    f->upper[0] = 0;
-    for (int32_t r = 0; r < a->nodes; r++) f->upper[r + 1] = f->upper[r] + a->first[r + 1] - a->diagonal[r] - 1;
-    return BRUNT_RESERVE(f->v, (size_t)f->upper[nodes] * size, 0);
-}
+// Solutions read V from numbers of half the length, four at a time, which reach beyond the last.
+enum { BEYOND = 4 };
+typedef double four __attribute__((vector_size(32)));
+typedef float four_short __attribute__((vector_size(16)));
 
 void brunt_incomplete_free(brunt_incomplete *f) {
-    brunt_free(f->upper), brunt_free(f->v), brunt_free(f->d), brunt_free(f->inverse), brunt_free(f->next);
-    brunt_free(f->slot);
+    void *const all[] = {f->order, f->place, f->turn,    f->upper, f->lower, f->after, f->before, f->source, f->twin,
+                         f->v,     f->d,     f->inverse, f->size,  f->right, f->left,  f->work,   f->slot};
+    for (size_t k = 0; k < sizeof all / sizeof *all; k++) brunt_free(all[k]);
     *f = (brunt_incomplete){0};
 }
+
+// ------------------------------------------------------------------------------------------ the pattern
+
+static int make_room(brunt_incomplete *f, const brunt_team *team) {
+    const size_t nodes = (size_t)f->a->nodes, dim = (size_t)f->a->dim, size = dim * dim,
+                 half = ((size_t)brunt_block_matrix_blocks(f->a) - nodes) / 2;
+    return BRUNT_RESERVE(f->order, nodes, 0) || BRUNT_RESERVE(f->place, nodes, 0) || BRUNT_RESERVE(f->turn, nodes, 0) ||
+           BRUNT_RESERVE(f->upper, nodes + 1, 0) || BRUNT_RESERVE(f->lower, nodes + 2, 0) ||
+           BRUNT_RESERVE(f->after, half + 1, 0) || BRUNT_RESERVE(f->before, half + 1, 0) ||
+           BRUNT_RESERVE(f->source, half + 1, 0) || BRUNT_RESERVE(f->twin, half + 1, 0) ||
+           BRUNT_RESERVE(f->v, half * size + 1, 0) || BRUNT_RESERVE(f->d, nodes * size, 0) ||
+           BRUNT_RESERVE(f->size, nodes, 0) || BRUNT_RESERVE(f->right, half * size + BEYOND, 0) ||
+           BRUNT_RESERVE(f->left, half * size + BEYOND, 0) || BRUNT_RESERVE(f->work, nodes * dim, 0) ||
+           BRUNT_RESERVE(f->slot, nodes * (size_t)team->threads, 0);
+}
+
+// Columns right of the diagonal: by level, and those of a piece in ascending places.
+static void take_rows(brunt_incomplete *f) {
+    const brunt_block_matrix *a = f->a;
+    int64_t e = 0, *next = f->lower + 1; // shifted by one: filling moves each to where the next one begins
+    memset(f->lower, 0, ((size_t)a->nodes + 2) * sizeof *f->lower);
+    for (int32_t p = 0; p < a->nodes; p++) {
+        const int32_t node = f->order[p];
+        f->upper[p] = e;
+        for (int turn = f->turn[node]; turn < 2 * f->levels; turn++)
+            for (int64_t k = 0; k < a->first[node + 1] - a->first[node]; k++) {
+                const int64_t at = turn % 2 ? a->first[node + 1] - 1 - k : a->first[node] + k;
+                const int32_t q = f->place[a->column[at]];
+                if (q <= p || f->turn[a->column[at]] != turn) continue;
+                f->after[e] = q, f->source[e++] = (int32_t)(at - a->first[node]);
+                next[q + 1]++;
+            }
+    }
+    f->upper[a->nodes] = e;
+}
+
+static void take_columns(brunt_incomplete *f) {
+    int64_t *next = f->lower + 1;
+    for (int32_t p = 0; p < f->a->nodes; p++) next[p + 1] += next[p];
+    for (int32_t p = 0; p < f->a->nodes; p++)
+        for (int64_t e = f->upper[p]; e < f->upper[p + 1]; e++) {
+            const int64_t at = next[f->after[e]]++;
+            f->before[at] = p, f->twin[at] = (int32_t)(e - f->upper[p]);
+        }
+}
+
+int brunt_incomplete_analyse(brunt_incomplete *f, const brunt_team *team, const brunt_block_matrix *a, bool whole,
+                             int slabs) {
+    f->a = a;
+    if (BRUNT_RESERVE(f->inverse, (size_t)a->nodes * (size_t)(a->dim * a->dim), 0)) return -1;
+    if (!whole) return 0;
+    if (make_room(f, team)) return -1;
+    brunt_incomplete_order(f, slabs);
+    take_rows(f);
+    take_columns(f);
+    memset(f->slot, 0, (size_t)a->nodes * (size_t)team->threads * sizeof *f->slot);
+    return 0;
+}
+
+// ------------------------------------------------------------------------------------------ the factor
 
 // The inverse of a symmetric block; false when the block is not positive definite.
 static bool invert_2(const double *a, double *b) {
@@ -61,48 +114,102 @@ BRUNT_INLINE void multiply(int dim, product_form form, const double *restrict a,
         }
 }
 
-// Row i of D (I + V), from the matrix less what earlier rows bring to it: V of the row is there instead of D V until
-// the end. Columns of earlier rows come in their order, so that each row needs to remember the next one only.
-BRUNT_INLINE bool factor_row(brunt_incomplete *f, const brunt_block_matrix *a, int32_t i, double raise, int dim) {
+// Blocks of V as a solution reads them: in 2D row by row, in 3D column by column.
+BRUNT_INLINE void shorten(int dim, bool transposed, const double *v, float *to) {
+    for (int i = 0; i < dim; i++)
+        for (int j = 0; j < dim; j++)
+            to[i * dim + j] = (float)(transposed == (dim == 2) ? v[j * dim + i] : v[i * dim + j]);
+}
+
+// The row of place p: from the matrix less what earlier rows bring to it.
+BRUNT_INLINE bool factor_row(brunt_incomplete *f, const brunt_block_matrix *a, int32_t p, double raise, int32_t *slot,
+                             int dim) {
     const int size = dim * dim;
-    const int64_t diagonal = a->diagonal[i], after = diagonal + 1, columns = a->first[i + 1] - after;
-    double *row = f->v + f->upper[i] * size, *pivot = f->d + (int64_t)i * size,
-           *inverse = f->inverse + (int64_t)i * size;
-    memcpy(row, a->value + after * size, (size_t)(columns * size) * sizeof *row);
-    for (int e = 0; e < size; e++) pivot[e] = raise * a->value[diagonal * size + e];
-    for (int64_t c = 0; c < columns; c++) f->slot[a->column[after + c]] = (int32_t)c;
-    for (int64_t k = a->first[i]; k < diagonal; k++) {
-        const int32_t above = a->column[k];
-        const int32_t *column = a->column + a->diagonal[above] + 1;
-        const int64_t end = f->upper[above + 1] - f->upper[above];
+    const int32_t node = f->order[p], *after = f->after + f->upper[p];
+    const int64_t columns = f->upper[p + 1] - f->upper[p];
+    double *row = f->v + f->upper[p] * size, *pivot = f->d + (int64_t)p * size,
+           *inverse = f->inverse + (int64_t)p * size;
+    for (int64_t c = 0; c < columns; c++) {
+        const double *from = a->value + (a->first[node] + f->source[f->upper[p] + c]) * size,
+                     both = f->size[p] * f->size[after[c]];
+        for (int e = 0; e < size; e++) row[c * size + e] = both * from[e];
+        slot[after[c]] = (int32_t)c + 1;
+    }
+    for (int e = 0; e < size; e++) pivot[e] = raise * f->size[p] * f->size[p] * a->value[a->diagonal[node] * size + e];
+    for (int64_t k = f->lower[p]; k < f->lower[p + 1]; k++) {
+        const int64_t above = f->before[k], end = f->upper[above + 1] - f->upper[above];
+        const int32_t *column = f->after + f->upper[above];
         const double *v = f->v + f->upper[above] * size;
-        int64_t c = f->next[above]++;
-        BRUNT_ASSERT(column[c] == i);
+        int64_t c = f->twin[k];
         double t[9];
-        multiply(dim, TRANSPOSED_TIMES, v + c * size, f->d + (int64_t)above * size, t);
+        multiply(dim, TRANSPOSED_TIMES, v + c * size, f->d + above * size, t);
         multiply(dim, MINUS_TIMES, t, v + c * size, pivot);
+        shorten(dim, true, v + c * size, f->left + k * size);
         for (c++; c < end; c++) {
-            const int32_t slot = f->slot[column[c]];
-            if (slot >= 0) multiply(dim, MINUS_TIMES, t, v + c * size, row + (int64_t)slot * size);
+            const int32_t at = slot[column[c]];
+            if (at) multiply(dim, MINUS_TIMES, t, v + c * size, row + (int64_t)(at - 1) * size);
         }
     }
-    for (int64_t c = 0; c < columns; c++) f->slot[a->column[after + c]] = -1;
+    for (int64_t c = 0; c < columns; c++) slot[after[c]] = 0;
     if (!invert(dim, pivot, inverse)) return false;
     for (int64_t c = 0; c < columns; c++) {
         double w[9];
         memcpy(w, row + c * size, (size_t)size * sizeof *w);
         multiply(dim, TIMES, inverse, w, row + c * size);
+        shorten(dim, false, row + c * size, f->right + (f->upper[p] + c) * size);
     }
     return true;
 }
 
-int32_t brunt_incomplete_factor(brunt_incomplete *f, const brunt_block_matrix *a, double raise) {
-    memset(f->next, 0, (size_t)a->nodes * sizeof *f->next);
-    for (int32_t i = 0; i < a->nodes; i++) f->slot[i] = -1;
-    for (int32_t i = 0; i < a->nodes; i++)
-        if (!(a->dim == 2 ? factor_row(f, a, i, raise, 2) : factor_row(f, a, i, raise, 3))) return i;
+typedef struct factor_work {
+    brunt_incomplete *f;
+    const brunt_block_matrix *a;
+    double raise;
+    int piece;                // the first of the level
+    int32_t bad[BRUNT_SLABS]; // the place that broke down, -1: none
+} factor_work;
+
+static void factor_pieces(void *context, int64_t begin, int64_t end, int worker) {
+    factor_work *w = context;
+    brunt_incomplete *f = w->f;
+    int32_t *slot = f->slot + (int64_t)worker * w->a->nodes;
+    for (int64_t s = begin; s < end; s++) {
+        const int32_t last = f->first[w->piece + s + 1];
+        w->bad[s] = -1;
+        for (int32_t p = f->first[w->piece + s]; p < last && w->bad[s] < 0; p++)
+            if (!(w->a->dim == 2 ? factor_row(f, w->a, p, w->raise, slot, 2)
+                                 : factor_row(f, w->a, p, w->raise, slot, 3)))
+                w->bad[s] = p;
+    }
+}
+
+// Sizes of nodes: 1 over the root of the greatest diagonal entry. -1, or a node that has none above 0.
+static int32_t take_sizes(brunt_incomplete *f, const brunt_block_matrix *a) {
+    for (int32_t n = 0; n < a->nodes; n++) {
+        const double *block = a->value + a->diagonal[n] * a->dim * a->dim;
+        double most = 0;
+        for (int i = 0; i < a->dim; i++) most = fmax(most, block[i * (a->dim + 1)]);
+        if (!(most > 0 && isfinite(most))) return n;
+        f->size[f->place[n]] = 1 / sqrt(most);
+    }
     return -1;
 }
+
+int32_t brunt_incomplete_factor(brunt_incomplete *f, const brunt_team *team, const brunt_block_matrix *a,
+                                double raise) {
+    factor_work work = {.f = f, .a = a, .raise = raise};
+    const int32_t without = take_sizes(f, a);
+    if (without >= 0) return without;
+    for (int l = 0; l < f->levels; l++) {
+        work.piece = l * f->slabs;
+        brunt_parallel_each(team->threads, f->slabs, factor_pieces, &work, team->timer);
+        for (int s = 0; s < f->slabs; s++)
+            if (work.bad[s] >= 0) return f->order[work.bad[s]];
+    }
+    return -1;
+}
+
+// ------------------------------------------------------------------------------------------ solutions
 
 int32_t brunt_incomplete_jacobi(brunt_incomplete *f, const brunt_block_matrix *a) {
     const int size = a->dim * a->dim;
@@ -115,6 +222,8 @@ typedef struct apply_work {
     const brunt_incomplete *f;
     const double *r;
     double *z;
+    int piece; // the first of the level
+    bool up;
 } apply_work;
 
 static void apply_jacobi(void *context, int64_t begin, int64_t end, int worker) {
@@ -129,46 +238,78 @@ static void apply_jacobi(void *context, int64_t begin, int64_t end, int worker) 
         }
 }
 
-// (I + V)' y = r downwards, D y, and (I + V) z = D^-1 y upwards, all in z.
-BRUNT_INLINE void substitute(const brunt_incomplete *f, double *z, int dim) {
-    const brunt_block_matrix *a = f->a;
-    for (int64_t r = 0; r < a->nodes; r++) {
-        const int32_t *column = a->column + a->diagonal[r] + 1;
-        const double *v = f->v + f->upper[r] * dim * dim, *y = z + r * dim;
-        for (int64_t c = 0; c < f->upper[r + 1] - f->upper[r]; c++, v += dim * dim) {
-            double *to = z + (int64_t)column[c] * dim;
-            for (int j = 0; j < dim; j++) {
-                double s = 0;
-                for (int i = 0; i < dim; i++) s += v[i * dim + j] * y[i];
-                to[j] -= s;
-            }
+// sum = the blocks from .. to - 1 of a row times what their columns have.
+BRUNT_INLINE void gather(int dim, const float *v, const int32_t *column, int64_t from, int64_t to, const double *x,
+                         double sum[3]) {
+    four s[3] = {{0}, {0}, {0}};
+    for (int64_t k = from; k < to; k++) {
+        const double *y = x + (int64_t)column[k] * dim;
+        four_short part[3];
+        if (dim == 2) {
+            memcpy(part, v + 4 * k, sizeof *part);
+            s[k & 1] += __builtin_convertvector(part[0], four) * (four){y[0], y[1], y[0], y[1]};
+            continue;
+        }
+        for (int j = 0; j < 3; j++) {
+            memcpy(part + j, v + 9 * k + 3 * j, sizeof *part);
+            s[j] += __builtin_convertvector(part[j], four) * y[j];
         }
     }
-    for (int64_t r = a->nodes - 1; r >= 0; r--) {
-        const int32_t *column = a->column + a->diagonal[r] + 1;
-        const double *v = f->v + f->upper[r] * dim * dim, *inverse = f->inverse + r * dim * dim;
-        double s[3] = {0};
-        for (int i = 0; i < dim; i++)
-            for (int j = 0; j < dim; j++) s[i] += inverse[i * dim + j] * z[r * dim + j];
-        for (int64_t c = 0; c < f->upper[r + 1] - f->upper[r]; c++, v += dim * dim) {
-            const double *from = z + (int64_t)column[c] * dim;
-            for (int i = 0; i < dim; i++)
-                for (int j = 0; j < dim; j++) s[i] -= v[i * dim + j] * from[j];
+    s[0] += s[1];
+    if (dim == 2)
+        sum[0] = s[0][0] + s[0][1], sum[1] = s[0][2] + s[0][3];
+    else
+        for (int i = 0; i < 3; i++) sum[i] = s[0][i] + s[2][i];
+}
+
+// (I + V)' y = r from the first place of a piece to its last.
+BRUNT_INLINE void substitute_down(const apply_work *w, int32_t begin, int32_t end, int dim) {
+    const brunt_incomplete *f = w->f;
+    for (int64_t p = begin; p < end; p++) {
+        const double *r = w->r + (int64_t)f->order[p] * dim;
+        double s[3];
+        gather(dim, f->left, f->before, f->lower[p], f->lower[p + 1], f->work, s);
+        for (int i = 0; i < dim; i++) f->work[p * dim + i] = f->size[p] * r[i] - s[i];
+    }
+}
+
+// D (I + V) z = y from the last to the first.
+BRUNT_INLINE void substitute_up(const apply_work *w, int32_t begin, int32_t end, int dim) {
+    const brunt_incomplete *f = w->f;
+    for (int64_t p = end - 1; p >= begin; p--) {
+        const double *inverse = f->inverse + p * dim * dim;
+        double *y = f->work + p * dim, *z = w->z + (int64_t)f->order[p] * dim, s[3], x[3];
+        gather(dim, f->right, f->after, f->upper[p], f->upper[p + 1], f->work, s);
+        for (int i = 0; i < dim; i++) {
+            x[i] = -s[i];
+            for (int j = 0; j < dim; j++) x[i] += inverse[i * dim + j] * y[j];
         }
-        for (int i = 0; i < dim; i++) z[r * dim + i] = s[i];
+        for (int i = 0; i < dim; i++) y[i] = x[i], z[i] = f->size[p] * x[i];
+    }
+}
+
+static void substitute_pieces(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    const apply_work *w = context;
+    const bool flat = w->f->a->dim == 2;
+    for (int64_t s = begin; s < end; s++) {
+        const int32_t *first = w->f->first + w->piece + s;
+        if (w->up)
+            flat ? substitute_up(w, first[0], first[1], 2) : substitute_up(w, first[0], first[1], 3);
+        else
+            flat ? substitute_down(w, first[0], first[1], 2) : substitute_down(w, first[0], first[1], 3);
     }
 }
 
 void brunt_incomplete_apply(const brunt_incomplete *f, const brunt_team *team, bool whole, const double *r, double *z) {
-    const brunt_block_matrix *a = f->a;
-    if (whole) {
-        memcpy(z, r, (size_t)a->nodes * (size_t)a->dim * sizeof *z);
-        if (a->dim == 2)
-            substitute(f, z, 2);
-        else
-            substitute(f, z, 3);
+    apply_work work = {.f = f, .r = r, .z = z};
+    if (!whole) {
+        brunt_parallel(team->threads, f->a->nodes, JACOBI_GRAIN, apply_jacobi, &work, team->timer);
         return;
     }
-    apply_work work = {f, r, z};
-    brunt_parallel(team->threads, a->nodes, JACOBI_GRAIN, apply_jacobi, &work, team->timer);
+    for (int step = 0; step < 2 * f->levels; step++) {
+        work.up = step >= f->levels;
+        work.piece = (work.up ? 2 * f->levels - 1 - step : step) * f->slabs;
+        brunt_parallel_each(team->threads, f->slabs, substitute_pieces, &work, team->timer);
+    }
 }

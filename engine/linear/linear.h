@@ -103,5 +103,6 @@ typedef struct brunt_linear_choice {
 } brunt_linear_choice;
 
 // The quicker one by estimate, the direct one when it takes less than twice as long, for it cannot stall; and less than
-// eight times as long where steps are so long that inertia is nothing beside stiffness.
+// eight times as long where steps are so long that inertia is nothing beside stiffness; and always where it takes next
+// to no time and waves cross the whole body in a step.
 brunt_linear_choice brunt_linear_choose(const brunt_linear_size *size);

@@ -33,13 +33,12 @@ static void pcg_free(void *self) {
 
 static brunt_linear_status pcg_analyse(brunt_linear *s, const brunt_team *team, const brunt_block_matrix *a,
                                        brunt_error *error) {
-    (void)team;
     pcg *g = s->self;
     const size_t n = (size_t)a->nodes * (size_t)a->dim;
     const bool whole = s->options.preconditioner == BRUNT_INCOMPLETE_CHOLESKY && !s->options.product;
     if (BRUNT_RESERVE(g->r, n, 0) || BRUNT_RESERVE(g->z, n, 0) || BRUNT_RESERVE(g->p, n, 0) ||
         BRUNT_RESERVE(g->q, n, 0) || BRUNT_RESERVE(g->sums, (size_t)brunt_sum_pieces((int64_t)n), 0) ||
-        brunt_incomplete_analyse(&g->factor, a, whole)) {
+        brunt_incomplete_analyse(&g->factor, team, a, whole, 0)) {
         brunt_fail(error, BRUNT_FAILED, "Out of memory for conjugate gradients of %zu unknowns.", n);
         return BRUNT_LINEAR_FAILED;
     }
@@ -48,14 +47,13 @@ static brunt_linear_status pcg_analyse(brunt_linear *s, const brunt_team *team, 
 
 static brunt_linear_status pcg_factor(brunt_linear *s, const brunt_team *team, const brunt_block_matrix *a,
                                       brunt_error *error) {
-    (void)team;
     pcg *g = s->self;
     const bool wanted = s->options.preconditioner == BRUNT_INCOMPLETE_CHOLESKY && !s->options.product;
     g->a = a;
     g->whole = false;
     s->report.tries = 0, s->report.shift = 0;
     for (int t = 0; wanted && t < RAISES && !g->whole; t++) {
-        g->whole = brunt_incomplete_factor(&g->factor, a, raises[t]) < 0;
+        g->whole = brunt_incomplete_factor(&g->factor, team, a, raises[t]) < 0;
         if (g->whole)
             s->report.shift = raises[t];
         else

@@ -1,6 +1,6 @@
 #include "linear/vectors.h"
 
-enum { GRAIN = 4 }; // pieces that a thread takes at a time: some 10 us
+enum { GRAIN = 1 }; // pieces that a thread takes at a time: some microseconds
 
 typedef struct vector_work {
     int64_t count;

@@ -19,15 +19,6 @@ static int out_of_memory(brunt_error *error) {
 
 // ------------------------------------------------------------------------------------------ nodes
 
-// The direction of a row at a boundary particle.
-static void row_direction(const brunt_boundary_patch *p, const brunt_boundary_particle *b, int row, double out[3]) {
-    const brunt_boundary_surface *s = p->surface;
-    for (int a = 0; a < 3; a++)
-        out[a] = s->def.condition == BRUNT_STICK ? (a == row)
-                 : row == 0                      ? b->normal[a]
-                                                 : s->tangent[p->piece][row - 1][a];
-}
-
 // Adds a boundary particle's share of a node.
 static int add_node(brunt_boundary_rows *rows, brunt_boundary_patch *p, const brunt_boundary_particle *b, int32_t n,
                     double weight) {
@@ -43,7 +34,7 @@ static int add_node(brunt_boundary_rows *rows, brunt_boundary_patch *p, const br
     }
     double *to = rows->weight[begin + rows->mark[n] - 1], direction[3];
     for (int k = 0; k < p->rows; k++) {
-        row_direction(p, b, k, direction);
+        brunt_boundary_surface_direction(p->surface, b, k, direction);
         for (int a = 0; a < 3; a++) to[3 * k + a] += weight * direction[a];
     }
     p->size += weight;
@@ -89,7 +80,7 @@ static void add_motion(brunt_boundary_patch *p, const brunt_boundary_particle *b
                        double share, double gap) {
     for (int k = 0; k < p->rows; k++) {
         double direction[3], along = 0;
-        row_direction(p, b, k, direction);
+        brunt_boundary_surface_direction(p->surface, b, k, direction);
         for (int a = 0; a < 3; a++) along += reach->step[a] * direction[a];
         p->wall[k] += share * along;
         p->goal[k] += share * (along - (p->leaves && k == 0 ? gap : 0));

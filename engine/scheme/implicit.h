@@ -105,6 +105,8 @@ int brunt_implicit_book(brunt_world *world, brunt_step *step, brunt_error *error
 int brunt_implicit_surfaces_begin(brunt_world *world, double dt, brunt_error *error);
 // Adds the forces of their tractions at the start of the step to `force` [N].
 void brunt_implicit_surfaces_before(const struct brunt_implicit *m, double *force);
+// Keeps the tractions at u: those that the next step begins with.
+void brunt_implicit_surfaces_keep(brunt_world *world);
 // What they did over the step; what they do at its end is added to `field.gradient`. Their tractions are kept.
 void brunt_implicit_book_surfaces(brunt_world *world);
 // Adds to a reason why a step has failed which bodies have too few rows to be held; nothing where there are no

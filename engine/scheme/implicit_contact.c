@@ -86,11 +86,14 @@ static int make_rooms(brunt_implicit_contact *c, const brunt_world *world, brunt
     c->force = brunt_alloc((pairs + planes) * sizeof *c->force);
     c->force_before = brunt_alloc((pairs + planes) * sizeof *c->force_before);
     c->has_points = brunt_alloc((size_t)world->bodies.mpm_count + 1);
+    c->half = brunt_alloc(((size_t)world->bodies.count + 1) * sizeof *c->half);
     bool made = c->pair && c->pair_account && c->plane && c->plane_wall && c->meets && c->force && c->force_before &&
-                c->has_points;
+                c->has_points && c->half;
     for (int32_t q = 0; made && q < c->plane_count; q++)
         made = (c->meets[q] = brunt_alloc((size_t)world->bodies.count)) != NULL;
     if (!made) return out_of_memory(error);
+    for (int k = 0; k < world->bodies.fem_count; k++)
+        c->half[world->bodies.fem[k].index] = 0.5 * (double)world->bodies.fem[k].contact_thickness;
     list_pairs(c, world);
     list_planes(c, world);
     return BRUNT_OK;
@@ -115,6 +118,7 @@ static void fill_pairs(brunt_implicit_contact *c, const brunt_world *world, cons
         brunt_barrier_pair *pair = &c->pair[p];
         pair->distance = c->distance;
         pair->slip_speed = slip;
+        pair->offset = pair->a == pair->b ? 0 : c->half[pair->a] + c->half[pair->b];
         pair->stiffness = contact->stiffness > 0
                               ? contact->stiffness
                               : brunt_barrier_default_stiffness(young(def, world, pair->a), young(def, world, pair->b));
@@ -138,6 +142,7 @@ static void fill_planes(brunt_implicit_contact *c, const brunt_world *world, con
         }
         c->plane[q] = (brunt_barrier_plane){.node = -1,
                                             .meets = c->meets[q],
+                                            .offset = c->half,
                                             .distance = c->distance,
                                             .stiffness = def->contact.stiffness,
                                             .friction = wall->plane.friction,
@@ -284,9 +289,9 @@ int brunt_implicit_contact_make(brunt_implicit_contact *c, brunt_world *world, c
 void brunt_implicit_contact_free(brunt_implicit_contact *c) {
     brunt_barrier_free(c->barrier);
     for (int32_t q = 0; c->meets && q < c->plane_count; q++) brunt_free(c->meets[q]);
-    void *const all[] = {c->rest,  c->place,      c->body,  c->node,  c->facet,        c->has_points, c->x,
-                         c->area,  c->weight,     c->owner, c->first, c->point_node,   c->pair,       c->pair_account,
-                         c->plane, c->plane_wall, c->meets, c->force, c->force_before, c->before};
+    void *const all[] = {c->rest,         c->place,  c->body,       c->node,  c->facet, c->has_points,   c->x,
+                         c->area,         c->weight, c->owner,      c->half,  c->first, c->point_node,   c->pair,
+                         c->pair_account, c->plane,  c->plane_wall, c->meets, c->force, c->force_before, c->before};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) brunt_free(all[k]);
     *c = (brunt_implicit_contact){.barrier = NULL};
 }

@@ -30,6 +30,7 @@ typedef struct brunt_implicit_contact {
     double *before;                            // [m] dt times velocities at the start; of Newmark
     size_t before_capacity;
     double distance; // [m]
+    double *half;    // [m] of each body: half its thickness in contact, of membranes; else 0
     bool told_small; // that a gap has become small
 } brunt_implicit_contact;
 

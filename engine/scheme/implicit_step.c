@@ -198,13 +198,34 @@ static int settle(struct brunt_implicit *m, brunt_newton_report *report, brunt_e
     return brunt_fail(error, BRUNT_FAILED, "friction at boundaries does not settle within %d solutions.", MOST);
 }
 
+static int solve_step(brunt_world *world, double dt, brunt_newton_report *report, brunt_error *error) {
+    struct brunt_implicit *m = world->plan.implicit;
+    int status = begin_try(world, dt, error);
+    if (!status) status = go_and_minimise(m, report, error);
+    if (!status && m->holds) status = settle(m, report, error);
+    return status;
+}
+
+// Newmark's method wants the forces at the start of each step: tractions of surfaces are those at the end of the one
+// before. Before the first step they are found by one of backward Euler, which is then forgotten: with none at the
+// start they would swing between nothing and twice what they are, for ever.
+static int find_tractions(brunt_world *world, double dt, brunt_newton_report *report, brunt_error *error) {
+    struct brunt_implicit *m = world->plan.implicit;
+    const brunt_weights own = m->weights;
+    if (!m->holds || world->clock.steps > 0 || own.gamma == 1) return BRUNT_OK;
+    m->weights = (brunt_weights){1, 0.5, 1, 1};
+    const int status = solve_step(world, dt, report, error);
+    if (!status) brunt_implicit_surfaces_keep(world);
+    m->weights = own;
+    return status;
+}
+
 static int try_step(brunt_world *world, double dt, brunt_newton_report *report, brunt_error *error) {
     struct brunt_implicit *m = world->plan.implicit;
     *report = (brunt_newton_report){.result = BRUNT_NEWTON_BROKEN, .residual_dof = -1};
     m->tried = (brunt_newton_counts){.least_gap = INFINITY, .least_part = INFINITY};
-    int status = begin_try(world, dt, error);
-    if (!status) status = go_and_minimise(m, report, error);
-    if (!status && m->holds) status = settle(m, report, error);
+    int status = find_tractions(world, dt, report, error);
+    if (!status) status = solve_step(world, dt, report, error);
     for (int k = 1; !status && m->rubs && k < m->friction_iterations; k++) {
         if (brunt_barrier_lag(m->contact.barrier, &m->team, m->field.u, error)) return BRUNT_FAILED;
         status = minimise(m, report, error);

@@ -65,7 +65,6 @@ static void book_patch(struct brunt_implicit *m, int32_t patch) {
         mean[k] = gamma * t[k] + (1 - gamma) * p->before[k];
         last->external_work -= mean[k] * p->wall[k];
         *(k == 0 || !p->rubs ? &last->normal_loss : &last->friction_loss) += mean[k] * moved[k];
-        s->traction[3 * ((size_t)p->body * (size_t)s->pieces + (size_t)p->piece) + (size_t)k] = t[k];
     }
     book_impulses(m, patch, mean, last);
     if (!(p->leaves && t[0] == 0)) last->area += p->size, s->active++;
@@ -84,14 +83,27 @@ static void book_ghost(brunt_world *world) {
     }
 }
 
-void brunt_implicit_book_surfaces(brunt_world *world) {
-    struct brunt_implicit *m = world->plan.implicit;
+void brunt_implicit_surfaces_keep(brunt_world *world) {
+    const struct brunt_implicit *m = world->plan.implicit;
     for (int k = 0; k < world->boundaries.surfaces.count; k++) {
         brunt_boundary_surface *s = &world->boundaries.surfaces.surface[k];
         memset(s->traction, 0, (size_t)s->bodies * (size_t)s->pieces * 3 * sizeof *s->traction);
-        s->active = 0, s->drift = 0;
     }
+    for (int32_t patch = 0; patch < m->rows.patch_count; patch++) {
+        const brunt_boundary_patch *p = &m->rows.patch[patch];
+        brunt_boundary_surface *s = p->surface;
+        double t[3], moved[3];
+        brunt_boundary_patch_traction(&m->rows, patch, m->field.u, t, moved);
+        memcpy(s->traction + 3 * ((size_t)p->body * (size_t)s->pieces + (size_t)p->piece), t, sizeof t);
+    }
+}
+
+void brunt_implicit_book_surfaces(brunt_world *world) {
+    struct brunt_implicit *m = world->plan.implicit;
+    for (int k = 0; k < world->boundaries.surfaces.count; k++)
+        world->boundaries.surfaces.surface[k].active = 0, world->boundaries.surfaces.surface[k].drift = 0;
     for (int32_t p = 0; p < m->rows.patch_count; p++) book_patch(m, p);
+    brunt_implicit_surfaces_keep(world);
     book_ghost(world);
 }
 

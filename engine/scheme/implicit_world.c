@@ -27,7 +27,7 @@ static int64_t count_reached(const brunt_grid *grid) {
 // Blocks of a row: nodes that an inner node of a mesh couples with.
 static double row_of_mesh(const brunt_fem_body *fem) {
     const bool simplex = brunt_element_is_simplex(fem->kind);
-    return fem->dim == 2 ? (simplex ? 7 : 9) : (simplex ? 15 : 27);
+    return fem->dim == 2 || fem->traits->membrane ? (simplex ? 7 : 9) : (simplex ? 15 : 27);
 }
 
 // How large the systems are. BRUNT_FAILED: out of memory.

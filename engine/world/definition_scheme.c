@@ -79,7 +79,6 @@ static void look_at_body(const brunt_body_def *body, refusals *r) {
             say(r, row->key, EXPLICIT_ONLY "%s", row->explicit_only);
     }
     if (body->total_lagrangian) say(r, ".lagrangian", "total: " EXPLICIT_ONLY);
-    if (body->method == BRUNT_MEMBRANE) say(r, ".method", "membrane: " EXPLICIT_ONLY);
     if (body->method == BRUNT_FEM && body->hourglass == BRUNT_HOURGLASS_VISCOUS)
         say(r, ".hourglass.form", "viscous: " EXPLICIT_ONLY ", stiffness is wanted");
 }

@@ -71,6 +71,18 @@ static void add_gas(brunt_history *h, const brunt_world *world, int32_t index) {
     add_named(h, "J", gas.inflow, "gas.%s.inflow", gas.name);
 }
 
+// Beside the force, which it has as every wall: of the last step.
+static void add_surface(brunt_history *h, const brunt_world *world, int32_t index) {
+    brunt_boundary_surface_report now;
+    char name[COLUMN_NAME];
+    brunt_boundary_surface_read(world, index, &now);
+    snprintf(name, sizeof name, "wall.%s.moment", now.name);
+    add_vector(h, name, "N m", now.moment);
+    add_named(h, "J", now.work, "wall.%s.work", now.name);
+    add_named(h, "m/s", now.drift, "wall.%s.drift", now.name);
+    add_named(h, "1", now.active, "wall.%s.active", now.name);
+}
+
 static void add_energy(brunt_history *h, brunt_world *world) {
     brunt_energy e;
     brunt_world_energy(world, &e);
@@ -213,6 +225,7 @@ static void traverse(brunt_history *h, brunt_world *world) {
         brunt_wall_force(world, w, &force);
         add_force(h, "wall", interval, &force);
     }
+    for (int32_t s = 0; s < brunt_boundary_surface_count(world); s++) add_surface(h, world, s);
     for (int32_t g = 0; g < brunt_gas_count(world); g++) add_gas(h, world, g);
     for (int32_t p = 0; p < h->probe_count; p++) add_probe(h, world, &h->probes[p]);
 }

@@ -4,8 +4,24 @@
 
 #include "io/file/atomic_file.h"
 
-void brunt_picture_name(char out[128], const char *body, int64_t number) {
-    snprintf(out, 128, "vtu/%s_%06lld.vtu", body, (long long)number);
+int32_t brunt_picture_parts(const brunt_world *world) {
+    return brunt_body_count(world) + brunt_boundary_surface_count(world);
+}
+
+// What a part is of; *boundary: whether that is a line or surface.
+static void part_name(const brunt_world *world, int32_t part, char out[BRUNT_NAME_LENGTH], bool *boundary) {
+    const int32_t bodies = brunt_body_count(world);
+    brunt_boundary_surface_report report;
+    *boundary = part >= bodies;
+    if (*boundary) brunt_boundary_surface_read(world, part - bodies, &report);
+    snprintf(out, BRUNT_NAME_LENGTH, "%s", *boundary ? report.name : brunt_body_name(world, part));
+}
+
+void brunt_picture_name(char out[128], const brunt_world *world, int32_t part, int64_t number) {
+    char name[BRUNT_NAME_LENGTH];
+    bool boundary;
+    part_name(world, part, name, &boundary);
+    snprintf(out, 128, "vtu/%s%s_%06lld.vtu", boundary ? "boundary." : "", name, (long long)number);
 }
 
 int brunt_pvd_write(const char *path, const brunt_world *world, const double *times, int64_t count,
@@ -17,11 +33,13 @@ int brunt_pvd_write(const char *path, const brunt_world *world, const double *ti
           "header_type=\"UInt64\">\n  <Collection>\n",
           file.stream);
     for (int64_t n = 0; n < count; n++)
-        for (int32_t b = 0; b < brunt_body_count(world); b++) {
-            char name[128];
-            brunt_picture_name(name, brunt_body_name(world, b), n);
+        for (int32_t b = 0; b < brunt_picture_parts(world); b++) {
+            char name[128], part[BRUNT_NAME_LENGTH];
+            bool boundary;
+            brunt_picture_name(name, world, b, n);
+            part_name(world, b, part, &boundary);
             fprintf(file.stream, "    <DataSet timestep=\"%.17g\" group=\"\" part=\"%d\" name=\"%s\" file=\"%s\"/>\n",
-                    times[n], (int)b, brunt_body_name(world, b), name);
+                    times[n], (int)b, part, name);
         }
     fputs("  </Collection>\n</VTKFile>\n", file.stream);
     return brunt_atomic_commit(&file, error);

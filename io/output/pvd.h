@@ -3,8 +3,11 @@
 
 #include "brunt.h"
 
-// Name of the picture `number` of a body, inside the output folder: "vtu/<body>_<number>.vtu".
-void brunt_picture_name(char out[128], const char *body, int64_t number);
+// Parts of a picture, a file each: the bodies, then the lines and surfaces that hold material points.
+int32_t brunt_picture_parts(const brunt_world *world);
+// Name of a part of picture `number`, inside the output folder: "vtu/<body>_<number>.vtu", of a boundary
+// "vtu/boundary.<name>_<number>.vtu".
+void brunt_picture_name(char out[128], const brunt_world *world, int32_t part, int64_t number);
 
-// Rewrites the collection (aside, then renamed): picture n, at times[n] [s], of every body of the world.
+// Rewrites the collection (aside, then renamed): picture n, at times[n] [s], in all its parts.
 int brunt_pvd_write(const char *path, const brunt_world *world, const double *times, int64_t count, brunt_error *error);

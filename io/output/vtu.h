@@ -38,5 +38,9 @@ int brunt_vtu_write(const char *path, double time, const brunt_vtu_grid *grid, c
 int brunt_vtu_write_body(const char *path, brunt_world *world, int32_t body, const char (*fields)[64], int field_count,
                          bool float32, brunt_error *error);
 
+// The boundary particles of a line or surface that holds material points: traction, normal, weight, piece.
+int brunt_vtu_write_boundary(const char *path, const brunt_world *world, int32_t surface, bool float32,
+                             brunt_error *error);
+
 // Says what a .vtu or .pvd file holds.
 int brunt_vtu_describe(const char *path, FILE *out, brunt_error *error);

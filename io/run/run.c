@@ -96,12 +96,15 @@ static int write_picture(run *r, brunt_error *error) {
     int64_t number = r->state.picture_count;
     char path[BRUNT_PATH_LENGTH], name[128];
     int status = brunt_run_folder_list_picture(&r->output, r->world, number, error);
-    for (int32_t b = 0; b < brunt_body_count(r->world) && !status; b++) {
-        brunt_picture_name(name, brunt_body_name(r->world, b), number);
+    const int32_t bodies = brunt_body_count(r->world);
+    for (int32_t b = 0; b < brunt_picture_parts(r->world) && !status; b++) {
+        brunt_picture_name(name, r->world, b, number);
         status = path_in(r, name, path, error);
-        if (!status)
+        if (!status && b < bodies)
             status = brunt_vtu_write_body(path, r->world, b, (const char(*)[64])output->fields, output->field_count,
                                           output->float32, error);
+        else if (!status)
+            status = brunt_vtu_write_boundary(path, r->world, b - bodies, output->float32, error);
     }
     if (status) return status;
     if (BRUNT_RESERVE_IN(r->state.picture_times, r->picture_capacity, (size_t)(number + 1), (size_t)number))

@@ -132,6 +132,26 @@ static json_t *newton_of(const brunt_world *world) {
     return newton;
 }
 
+// Lines and surfaces that hold material points, NULL where there are none.
+static json_t *boundaries_of(const brunt_world *world) {
+    if (!brunt_boundary_surface_count(world)) return NULL;
+    json_t *all = json_object();
+    for (int32_t s = 0; s < brunt_boundary_surface_count(world); s++) {
+        brunt_boundary_surface_report now;
+        brunt_boundary_surface_read(world, s, &now);
+        json_t *entry = json_object();
+        json_object_set_new(entry, "force", vector(now.force));
+        json_object_set_new(entry, "moment", vector(now.moment));
+        json_object_set_new(entry, "impulse", vector(now.impulse));
+        json_object_set_new(entry, "work", number(now.work));
+        json_object_set_new(entry, "drift", number(now.drift));
+        json_object_set_new(entry, "pieces", json_integer(now.pieces));
+        json_object_set_new(entry, "active", json_integer(now.active));
+        json_object_set_new(all, now.name, entry);
+    }
+    return all;
+}
+
 static void set_newton(json_t *object, const brunt_world *world) {
     brunt_newton_counts n;
     if (!brunt_world_newton(world, &n, NULL)) return;
@@ -196,6 +216,8 @@ static json_t *summary_object(const brunt_summary *s, const brunt_scene *scene, 
     json_object_set_new(o, "momentum", momentum_of(world));
     json_object_set_new(o, "eroded", eroded_of(world));
     set_newton(o, world);
+    json_t *boundaries = boundaries_of(world);
+    if (boundaries) json_object_set_new(o, "boundaries", boundaries);
     json_object_set_new(o, "measures", measures_of(s, scene));
     if (s->profile) json_object_set_new(o, "profile", brunt_profile_json(s->profile));
     return o;

@@ -11,7 +11,7 @@
 #define density fem_density
 #define E fem_E
 #define nu fem_nu
-#include "tests/support/fem_bodies.h"
+#include "tests/support/sheet_bodies.h"
 #include "world/world.h"
 
 static double between(uint64_t *seed) { // -1 .. 1
@@ -27,7 +27,8 @@ typedef struct subject {
     brunt_term term;
     int dim;
     int64_t nodes;
-    double *place, size; // size: of displacements that bend but do not turn anything over
+    double *place, size; // size: of displacements that bend but do not turn anything over ...
+    double mean[3];      // ... about a stretch along the axes less 1
 } subject;
 
 static double *numbers(const subject *s) { return brunt_alloc((size_t)(s->nodes * s->dim) * sizeof(double)); }
@@ -53,7 +54,8 @@ static void derivatives(const subject *s) {
     const int64_t n = s->nodes * s->dim;
     const double step[4] = {1e-3, -1e-3, 2e-3, -2e-3};
     for (int64_t k = 0; k < n; k++)
-        u[k] = s->size * between(&seed), p[k] = s->size * between(&seed), q[k] = between(&seed);
+        u[k] = s->mean[k % s->dim] * (s->place ? s->place[k] : 0) + s->size * between(&seed),
+        p[k] = s->size * between(&seed), q[k] = between(&seed);
     s->term.ops->gradient(s->term.self, &one, u, g);
     brunt_block_matrix m = {0};
     hessian_of(s, &one, u, false, &m);
@@ -138,6 +140,68 @@ static void volume_limit(const subject *s) {
     brunt_free(u), brunt_free(p);
 }
 
+// Body, potential and term, with `base` nodes of others before its own.
+enum { BASE = 3 };
+
+static subject subject_of(brunt_fem_body *body, brunt_fem_potential **p) {
+    brunt_error error;
+    *p = brunt_fem_potential_make(body, BASE, &three, &error);
+    ck_assert_msg(*p, "%s", error.message);
+    brunt_fem_potential_step(*p, 1e-3);
+    subject s = {.name = body->traits->name,
+                 .term = brunt_fem_potential_term(*p),
+                 .dim = body->dim,
+                 .nodes = BASE + body->node_count,
+                 .size = 0.03};
+    s.place = numbers(&s);
+    for (int32_t n = 0; n < body->node_count; n++)
+        for (int i = 0; i < s.dim; i++) s.place[(BASE + n) * s.dim + i] = (double)brunt_fem_node(body, n)[i];
+    return s;
+}
+
+// Nothing moves with nothing; and after a step by `mean` x and a little of all ways the forces are the gradient's, the
+// energy the same. Gives the energies.
+static brunt_point_energy commit_of(const subject *s, brunt_fem_potential *p, brunt_fem_body *body) {
+    double *u = numbers(s), *v = numbers(s), *g = numbers(s);
+    uint64_t seed = 2;
+    real before[3];
+    brunt_error error;
+    memcpy(before, brunt_fem_node(body, 5), sizeof before);
+    ck_assert_int_eq(brunt_fem_commit(p, &three, u, v, &error), BRUNT_OK);
+    ck_assert(!memcmp(before, brunt_fem_node(body, 5), sizeof before));
+    for (int64_t k = 0; k < s->nodes * s->dim; k++)
+        u[k] = s->mean[k % s->dim] * s->place[k] + s->size * between(&seed), v[k] = between(&seed);
+    const double tried = s->term.ops->energy(s->term.self, &one, u).value;
+    s->term.ops->gradient(s->term.self, &one, u, g);
+    ck_assert_msg(brunt_fem_commit(p, &three, u, v, &error) == BRUNT_OK, "%s", error.message);
+    body->material.implicit = true;
+    const brunt_point_energy stored = brunt_fem_energy(body);
+    double hourglass = 0, worst = 0, size = 0;
+    for (int32_t b = 0; b < body->block_count; b++) hourglass += body->report[b].hourglass_stored;
+    ck_assert_double_le(fabs(stored.internal + stored.plastic + hourglass - tried), 1e-10 * tried);
+    for (int32_t n = 0; n < body->node_count; n++) {
+        real f[3];
+        brunt_fem_internal_force(body, n, f);
+        for (int i = 0; i < s->dim; i++) {
+            worst = fmax(worst, fabs((double)f[i] + g[(BASE + n) * s->dim + i])), size = fmax(size, fabs((double)f[i]));
+            ck_assert((double)brunt_fem_node(body, n)[BRUNT_FEM_V + i] == v[(BASE + n) * s->dim + i]);
+        }
+    }
+    ck_assert_double_le(worst, 1e-10 * size);
+    // What a step does is seen from its start: to turn the body as it now is costs nothing, and flows nowhere.
+    memset(u, 0, (size_t)(s->nodes * s->dim) * 8);
+    const double rest = s->term.ops->energy(s->term.self, &one, u).value, c = cos(1.3), sn = sin(1.3);
+    for (int32_t n = 0; n < body->node_count; n++) {
+        const real *x = brunt_fem_node(body, n);
+        u[(BASE + n) * s->dim] = c * (double)x[0] - sn * (double)x[1] - (double)x[0];
+        u[(BASE + n) * s->dim + 1] = sn * (double)x[0] + c * (double)x[1] - (double)x[1];
+    }
+    ck_assert_double_eq_tol(s->term.ops->energy(s->term.self, &one, u).value, rest, 1e-11 * rest);
+    ck_assert_double_eq_tol(rest, tried, tried); // some of what was tried may have been dissipated
+    brunt_free(u), brunt_free(v), brunt_free(g);
+    return (brunt_point_energy){.internal = stored.internal / tried, .plastic = stored.plastic / tried};
+}
+
 static const brunt_element_kind kinds[] = {BRUNT_TRI3, BRUNT_QUAD4, BRUNT_TET4, BRUNT_HEX8};
 
 START_TEST(elements) {
@@ -145,58 +209,37 @@ START_TEST(elements) {
     brunt_mesh mesh = box_mesh(kind, 4, 1, 0.2, true);
     brunt_fem_body body = body_of(
         &mesh, (options){.model = _i < 4 ? "neo-hookean" : "von-mises", .hourglass = BRUNT_HOURGLASS_STIFFNESS});
-    brunt_error error;
-    const int32_t base = 3;
-    brunt_fem_potential *p = brunt_fem_potential_make(&body, base, &three, &error);
-    ck_assert_msg(p, "%s", error.message);
-    brunt_fem_potential_step(p, 1e-3);
-    subject s = {.name = body.traits->name,
-                 .term = brunt_fem_potential_term(p),
-                 .dim = body.dim,
-                 .nodes = base + body.node_count,
-                 .size = 0.03};
-    s.place = numbers(&s);
-    for (int32_t n = 0; n < body.node_count; n++)
-        for (int i = 0; i < s.dim; i++) s.place[(base + n) * s.dim + i] = (double)brunt_fem_node(&body, n)[i];
+    brunt_fem_potential *p;
+    subject s = subject_of(&body, &p);
     derivatives(&s);
     free_motions(&s);
     volume_limit(&s);
-    // Nothing moves with nothing; and after a step the forces are the gradient's, the energy the same.
-    double *u = numbers(&s), *v = numbers(&s), *g = numbers(&s);
-    uint64_t seed = 2;
-    real before[3];
-    memcpy(before, brunt_fem_node(&body, 5), sizeof before);
-    ck_assert_int_eq(brunt_fem_commit(p, &three, u, v, &error), BRUNT_OK);
-    ck_assert(!memcmp(before, brunt_fem_node(&body, 5), sizeof before));
-    for (int64_t k = 0; k < s.nodes * s.dim; k++) u[k] = s.size * between(&seed), v[k] = between(&seed);
-    const double tried = s.term.ops->energy(s.term.self, &one, u).value;
-    s.term.ops->gradient(s.term.self, &one, u, g);
-    ck_assert_msg(brunt_fem_commit(p, &three, u, v, &error) == BRUNT_OK, "%s", error.message);
-    body.material.implicit = true;
-    const brunt_point_energy stored = brunt_fem_energy(&body);
-    double hourglass = 0, worst = 0, size = 0;
-    for (int32_t b = 0; b < body.block_count; b++) hourglass += body.report[b].hourglass_stored;
-    ck_assert_double_le(fabs(stored.internal + stored.plastic + hourglass - tried), 1e-10 * tried);
-    for (int32_t n = 0; n < body.node_count; n++) {
-        real f[3];
-        brunt_fem_internal_force(&body, n, f);
-        for (int i = 0; i < s.dim; i++) {
-            worst = fmax(worst, fabs((double)f[i] + g[(base + n) * s.dim + i])), size = fmax(size, fabs((double)f[i]));
-            ck_assert((double)brunt_fem_node(&body, n)[BRUNT_FEM_V + i] == v[(base + n) * s.dim + i]);
-        }
-    }
-    ck_assert_double_le(worst, 1e-10 * size);
-    if (_i >= 4) ck_assert_double_gt(stored.plastic, 0.01 * tried);
-    // What a step does is seen from its start: to turn the body as it now is costs nothing, and flows nowhere.
-    memset(u, 0, (size_t)(s.nodes * s.dim) * 8);
-    const double rest = s.term.ops->energy(s.term.self, &one, u).value, c = cos(1.3), sn = sin(1.3);
-    for (int32_t n = 0; n < body.node_count; n++) {
-        const real *x = brunt_fem_node(&body, n);
-        u[(base + n) * s.dim] = c * (double)x[0] - sn * (double)x[1] - (double)x[0];
-        u[(base + n) * s.dim + 1] = sn * (double)x[0] + c * (double)x[1] - (double)x[1];
-    }
-    ck_assert_double_eq_tol(s.term.ops->energy(s.term.self, &one, u).value, rest, 1e-11 * rest);
-    brunt_free(u), brunt_free(v), brunt_free(g), brunt_free(s.place);
+    const brunt_point_energy share = commit_of(&s, p, &body);
+    if (_i >= 4) ck_assert_double_gt(share.plastic, 0.01);
+    brunt_free(s.place);
+    brunt_fem_potential_free(p);
+    brunt_fem_free(&body);
+}
+END_TEST
+
+// Membranes, warped and oblique: as they come, taut all over, and wrinkled all over (pulled along x, gathered along y).
+START_TEST(membranes) {
+    static const char *const models[] = {"neo-hookean", "st-venant-kirchhoff", "linear-elastic"};
+    static const double stretch[3][3] = {{0, 0, 0}, {0.15, 0.1, 0}, {0.3, -0.35, 0}};
+    const int state = _i / 6;
+    brunt_mesh mesh =
+        sheet_mesh(_i % 2 ? BRUNT_MEMBRANE_TRI3 : BRUNT_MEMBRANE_QUAD4, 5, 4, 0.3, 0.15, state ? 0.03 : 0.2, true);
+    brunt_fem_body body = sheet_of(&mesh, (sheet_options){.model = models[_i / 2 % 3], .tension_only = state > 0});
+    brunt_fem_potential *p;
+    subject s = subject_of(&body, &p);
+    s.size = state ? 0.003 : 0.02;
+    memcpy(s.mean, stretch[state], sizeof s.mean);
+    derivatives(&s);
+    if (!state) free_motions(&s);
+    double *u = numbers(&s);
+    ck_assert(s.term.ops->limit(s.term.self, &one, u, u, 3) == 3);
+    commit_of(&s, p, &body);
+    brunt_free(u), brunt_free(s.place);
     brunt_fem_potential_free(p);
     brunt_fem_free(&body);
 }
@@ -354,6 +397,7 @@ int main(void) {
     Suite *suite = suite_create("body terms");
     if (sizeof(real) == sizeof(double)) { // what implicit steps are of
         ADD_LOOP(elements, 8);
+        ADD_LOOP(membranes, 18);
         ADD_LOOP(points, 18);
     }
     return suite_main(suite);

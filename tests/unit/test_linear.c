@@ -359,29 +359,30 @@ END_TEST
 
 // (I + V)' D (I + V) is the matrix wherever that has a block: what makes an incomplete factor what it is.
 START_TEST(incomplete_factors_are_the_matrix_on_its_pattern) {
-    elastic e = model(_i);
+    elastic e = model(_i % 4);
     const int d = e.dim;
     const int64_t n = (int64_t)e.nodes * d;
     brunt_block_matrix m = assembled(&e, &alone, 3);
     brunt_incomplete f = {0};
-    ck_assert_int_eq(brunt_incomplete_analyse(&f, &m, true), 0);
-    ck_assert_int_eq(brunt_incomplete_factor(&f, &m, 1), -1);
+    ck_assert_int_eq(brunt_incomplete_analyse(&f, &alone, &m, true, _i / 4 ? 4 : 1), 0);
+    ck_assert_int_eq(brunt_incomplete_factor(&f, &alone, &m, 1), -1);
     double *w = calloc((size_t)(n * n), sizeof *w), *dw = calloc((size_t)(n * n), sizeof *w);
     for (int64_t i = 0; i < n; i++) w[i * n + i] = 1;
-    for (int64_t r = 0; r < e.nodes; r++)
-        for (int64_t c = 0; c < f.upper[r + 1] - f.upper[r]; c++)
+    for (int64_t p = 0; p < e.nodes; p++)
+        for (int64_t c = f.upper[p]; c < f.upper[p + 1]; c++)
             for (int k = 0; k < d * d; k++)
-                w[(r * d + k / d) * n + m.column[m.diagonal[r] + 1 + c] * d + k % d] =
-                    f.v[(f.upper[r] + c) * d * d + k];
+                w[(f.order[p] * d + k / d) * n + f.order[f.after[c]] * d + k % d] = f.v[c * d * d + k];
     for (int64_t i = 0; i < n; i++)
         for (int64_t j = 0; j < n; j++)
-            for (int k = 0; k < d; k++) dw[i * n + j] += f.d[(i / d * d + i % d) * d + k] * w[(i / d * d + k) * n + j];
+            for (int k = 0; k < d; k++)
+                dw[i * n + j] += f.d[(f.place[i / d] * d + i % d) * d + k] * w[(i / d * d + k) * n + j];
     for (int64_t i = 0; i < n; i++)
         for (int64_t k = m.first[i / d]; k < m.first[i / d + 1]; k++)
             for (int64_t j = (int64_t)m.column[k] * d; j < (m.column[k] + 1) * (int64_t)d; j++) {
                 double sum = 0;
                 for (int64_t l = 0; l < n; l++) sum += w[l * n + i] * dw[l * n + j];
-                ck_assert_double_eq_tol(sum, entry(&m, i, j), 1e-12);
+                const double sizes = f.size[f.place[i / d]] * f.size[f.place[j / d]];
+                ck_assert_double_eq_tol(sum, sizes * entry(&m, i, j), 1e-12);
             }
     free(w), free(dw), brunt_incomplete_free(&f), brunt_block_matrix_free(&m), elastic_free(&e);
 }
@@ -422,7 +423,8 @@ START_TEST(accuracy_is_of_the_solution) {
 }
 END_TEST
 
-// Where nothing is left out, the incomplete factor is the factor: one iteration.
+// Where nothing is left out, the incomplete factor is the factor, to the seven digits that solutions read of it: one
+// iteration.
 START_TEST(complete_where_nothing_fills_in) {
     enum { NODES = 40 };
     brunt_block_matrix m = rod_matrix(3, NODES);
@@ -434,10 +436,12 @@ START_TEST(complete_where_nothing_fills_in) {
     }
     double *b = wave(3 * NODES), x[3 * NODES], y[3 * NODES];
     brunt_linear_report report;
+    brunt_linear_options options = exact;
+    options.accuracy = 1e-6;
     gauss(&m, b, y);
-    ck_assert_int_eq(solve_once(&brunt_linear_pcg, &exact, &alone, &m, b, x, &report, NULL), BRUNT_LINEAR_DONE);
+    ck_assert_int_eq(solve_once(&brunt_linear_pcg, &options, &alone, &m, b, x, &report, NULL), BRUNT_LINEAR_DONE);
     ck_assert_int_eq(report.iterations, 1);
-    ck_assert_double_lt(furthest(x, y, 3 * NODES), 1e-13);
+    ck_assert_double_lt(furthest(x, y, 3 * NODES), 1e-6);
     free(b), brunt_block_matrix_free(&m);
 }
 END_TEST
@@ -641,8 +645,10 @@ END_TEST
 
 // Where inertia is next to nothing the direct one is taken as long as it can be paid for: a block on a slope, a ball.
 START_TEST(very_long_steps_are_solved_directly) {
-    const brunt_linear_size slope = {2, 303, 7, 4.2e4}, shorter = {2, 303, 7, 40}, ball = {3, 50000, 105, 1e6};
+    const brunt_linear_size slope = {2, 303, 7, 4.2e4}, shorter = {2, 303, 7, 40}, ball = {3, 50000, 105, 1e6},
+                            few = {2, 18, 7, 360};
     ck_assert_str_eq(brunt_linear_choose(&slope).solver->name, "direct");
+    ck_assert_str_eq(brunt_linear_choose(&few).solver->name, "direct");
     ck_assert_str_eq(brunt_linear_choose(&shorter).solver->name, "pcg");
     ck_assert_str_eq(brunt_linear_choose(&ball).solver->name, "pcg");
     ck_assert_ptr_nonnull(strstr(brunt_linear_choose(&slope).why, "inertia alone"));
@@ -675,7 +681,7 @@ int main(void) {
     tcase_add_loop_test(c, solutions_are_those_of_gauss, 0, 16);
     tcase_add_test(c, products_of_the_caller);
     tcase_add_loop_test(c, incomplete_factors_that_break_down, 0, 4);
-    tcase_add_loop_test(c, incomplete_factors_are_the_matrix_on_its_pattern, 0, 4);
+    tcase_add_loop_test(c, incomplete_factors_are_the_matrix_on_its_pattern, 0, 8);
     tcase_add_test(c, accuracy_is_of_the_solution);
     tcase_add_test(c, complete_where_nothing_fills_in);
     tcase_add_test(c, not_positive_definite);

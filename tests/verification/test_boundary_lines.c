@@ -48,6 +48,30 @@ static brunt_world *bar(int order, double angle, double shift) {
     return world_take(&def);
 }
 
+// What the line says of itself: its moment holds the weight where it is, and tractions along the bar are even.
+static void check_report(const brunt_world *world, const brunt_body_sums *bar, const double load[2], int order) {
+    brunt_boundary_surface_report report;
+    brunt_boundary_surface_read(world, 0, &report);
+    const double turn = bar->centre[0] * load[1] - bar->centre[1] * load[0];
+    ck_assert_int_eq(report.pieces, 3);
+    ck_assert_int_eq(report.active, 3);
+    ck_assert_double_le(fabs(report.moment[2] + turn), 1e-8 * hypot(load[0], load[1]));
+    const int64_t count = brunt_boundary_surface_size(world, 0);
+    double *values = malloc((size_t)count * 10 * sizeof *values), low = INFINITY, high = 0;
+    int64_t *piece = malloc((size_t)count * sizeof *piece);
+    const brunt_boundary_surface_arrays arrays = {values, values + 3 * count, values + 6 * count, values + 9 * count,
+                                                  piece};
+    brunt_boundary_surface_particles(world, 0, &arrays);
+    for (int64_t b = 0; b < count; b++) {
+        const double size = hypot(arrays.traction[3 * b], arrays.traction[3 * b + 1]);
+        low = fmin(low, size), high = fmax(high, size);
+        ck_assert_double_lt(arrays.traction[3 * b] * load[0] + arrays.traction[3 * b + 1] * load[1], 0);
+    }
+    printf("  tractions %.4f to %.4f of their mean\n", 2 * low / (low + high), 2 * high / (low + high));
+    if (order == 2) ck_assert_double_le(high / low, 1.06);
+    free(values), free(piece);
+}
+
 START_TEST(hangs) {
     const int order = 1 + _i % 2;
     const double angle = _i / 2 % 2 ? PI / 6 : 0, shift = 0.0125 * (_i / 4) + (_i / 4 == 4 ? 1e-9 : 0);
@@ -64,6 +88,7 @@ START_TEST(hangs) {
     brunt_world_newton(world, &n, NULL);
     printf("  order %d, %2.0f degrees, shift %.4f: force %+.1e across %.1e, centre off by %+.1e, %g iterations\n",
            order, angle * 180 / PI, shift, along / weight + 1, across / weight, went / exact - 1, n.iterations);
+    check_report(world, &after, (const double[2]){weight * c, weight * s}, order);
     ck_assert_double_le(fabs(along / weight + 1), 1e-8);
     ck_assert_double_le(fabs(across / weight), 1e-8);
     ck_assert_double_le(fabs(went / exact - 1), order == 2 ? 5e-3 : 4e-2);
@@ -157,6 +182,22 @@ START_TEST(meets) {
            (0.1 - first) / CELL);
     ck_assert_double_ge(first, 0);
     ck_assert_double_le(fabs(0.1 - first), 0.05 * CELL);
+    brunt_world_destroy(world);
+}
+END_TEST
+
+// A step that would take it far beyond the line takes it to the line.
+START_TEST(stops) {
+    brunt_world_def def = block(BRUNT_SEPARATE, 0.035, 0.02);
+    for (int k = 0; k < 2; k++) def.surfaces[0].point[k][1] = 0.02 - 0.1;
+    def.materials[0].strength_parameters[0] = 100 * YOUNG;
+    def_velocity(&def.bodies[0], 0, -1, 0);
+    brunt_world *world = world_take(&def);
+    const double before = world_sums(world, 0).centre[1];
+    world_steps(world, 3);
+    const double way = before - world_sums(world, 0).centre[1];
+    printf("  came %.4f cells short of the line\n", (0.1 - way) / CELL);
+    ck_assert_double_le(fabs(way - 0.1), 0.05 * CELL);
     brunt_world_destroy(world);
 }
 END_TEST
@@ -282,6 +323,7 @@ int main(void) {
     ADD_LOOP(carries, 2);
     ADD_LOOP(slides, 4);
     ADD_LOOP(meets, 16);
+    ADD_LOOP(stops, 1);
     ADD_LOOP(leaves, 2);
     ADD_LOOP(rubs, 3);
     ADD_LOOP(twice, 1);

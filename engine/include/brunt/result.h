@@ -110,8 +110,29 @@ typedef struct brunt_force {
 // Scenes with more than 64 pairs have them all in one, named "all".
 int32_t brunt_pair_count(const brunt_world *world);
 void brunt_pair_force(const brunt_world *world, int32_t pair, brunt_force *force); // name "a-b", force on b
-int32_t brunt_wall_count(const brunt_world *world);                                // planes, regions, then groups
+int32_t brunt_wall_count(const brunt_world *world); // planes, regions, groups, then surfaces
 void brunt_wall_force(const brunt_world *world, int32_t wall, brunt_force *force); // force on the bodies
+
+// A line or surface that holds material points, as of the last step; tractions, forces and moments are on the bodies.
+typedef struct brunt_boundary_surface_report {
+    char name[BRUNT_NAME_LENGTH];
+    double force[3], moment[3]; // [N], [N m] about the point that its definition gives
+    double impulse[3];          // [N s] since the start
+    double work;                // [J] that its motion has done on the bodies since the start
+    double drift;               // [m/s] greatest rate at which a piece's material leaves what holds it
+    int32_t pieces, active;     // active: those that hold something
+} brunt_boundary_surface_report;
+int32_t brunt_boundary_surface_count(const brunt_world *world);
+void brunt_boundary_surface_read(const brunt_world *world, int32_t index, brunt_boundary_surface_report *report);
+int64_t brunt_boundary_surface_size(const brunt_world *world, int32_t index); // boundary particles
+// Of each boundary particle: place [m], normal, traction of its piece on the bodies [Pa], 3 numbers each; its part of
+// the boundary [m^2] (of plane strain [m]); its piece.
+typedef struct brunt_boundary_surface_arrays {
+    double *place, *normal, *traction, *weight;
+    int64_t *piece;
+} brunt_boundary_surface_arrays;
+void brunt_boundary_surface_particles(const brunt_world *world, int32_t index,
+                                      const brunt_boundary_surface_arrays *out);
 
 // What Newton's method has done in implicit steps, steps that were cut included.
 typedef struct brunt_newton_counts {

@@ -1,0 +1,51 @@
+// What is read of lines and surfaces that hold material points.
+#include <string.h>
+
+#include "world/world.h"
+
+int32_t brunt_boundary_surface_count(const brunt_world *world) { return world->boundaries.surfaces.count; }
+
+void brunt_boundary_surface_read(const brunt_world *world, int32_t index, brunt_boundary_surface_report *report) {
+    const brunt_boundary_surface *s = &world->boundaries.surfaces.surface[index];
+    const brunt_impulse_account *last = &s->wall->last, *all = &s->wall->action;
+    const double kick = world->clock.kick;
+    *report = (brunt_boundary_surface_report){
+        .work = all->external_work, .drift = s->drift, .pieces = s->pieces, .active = s->active};
+    memcpy(report->name, s->wall->name, sizeof report->name);
+    for (int a = 0; a < 3; a++) {
+        const int i = (a + 1) % 3, j = (a + 2) % 3;
+        const double turn = s->def.about[i] * last->impulse[j] - s->def.about[j] * last->impulse[i];
+        report->force[a] = kick > 0 ? last->impulse[a] / kick : 0;
+        report->moment[a] = kick > 0 ? (last->angular[a] - turn) / kick : 0;
+        report->impulse[a] = all->impulse[a];
+    }
+}
+
+int64_t brunt_boundary_surface_size(const brunt_world *world, int32_t index) {
+    return world->boundaries.surfaces.surface[index].particle_count;
+}
+
+void brunt_boundary_surface_particles(const brunt_world *world, int32_t index,
+                                      const brunt_boundary_surface_arrays *out) {
+    const brunt_boundary_surface *s = &world->boundaries.surfaces.surface[index];
+    const int rows = brunt_boundary_surface_rows(s, world->settings.dimension);
+    double way[3], direction[3];
+    brunt_boundary_surface_way(s, world->clock.time, way);
+    for (int32_t b = 0; b < s->particle_count; b++) {
+        const brunt_boundary_particle *p = &s->particle[b];
+        double *traction = out->traction + 3 * (size_t)b;
+        for (int a = 0; a < 3; a++) {
+            out->place[3 * (size_t)b + (size_t)a] = p->x[a] + way[a];
+            out->normal[3 * (size_t)b + (size_t)a] = p->normal[a];
+            traction[a] = 0;
+        }
+        for (int k = 0; k < rows; k++) {
+            double t = 0;
+            for (int i = 0; i < s->bodies; i++)
+                t -= s->traction[3 * ((size_t)i * (size_t)s->pieces + (size_t)p->piece) + (size_t)k];
+            brunt_boundary_surface_direction(s, p, k, direction);
+            for (int a = 0; a < 3; a++) traction[a] += t * direction[a];
+        }
+        out->weight[b] = p->weight, out->piece[b] = p->piece;
+    }
+}
