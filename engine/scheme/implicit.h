@@ -16,9 +16,9 @@
 #include "scheme/scheme.h"
 #include "scheme/step_terms.h"
 
-// Inertia, loads and the pull of prescribed motion come first, with what surfaces hold and nodes without material where
-// there are surfaces; then a term for each body, then those of contact.
-enum { BRUNT_MOST_OTHER_TERMS = 3 + 2 + 2 };
+// Inertia, loads and the pull of prescribed motion come first, with drag where bodies are damped, what surfaces hold
+// and nodes without material where there are surfaces; then a term for each body, then those of contact.
+enum { BRUNT_MOST_OTHER_TERMS = 3 + 1 + 2 + 2 };
 
 // Of a time integrator.
 typedef struct brunt_weights {
@@ -49,6 +49,9 @@ struct brunt_implicit {
     brunt_inertia inertia;
     brunt_dead_loads loads;
     brunt_pull pull;
+    brunt_drag drag;                 // of bodies with damping
+    double *drag_weight, *drag_rest; // its arrays
+    size_t drag_weight_capacity, drag_rest_capacity;
     brunt_fem_potential **fem; // a body each
     brunt_mpm_potential **mpm;
     brunt_term *term; // inertia, loads, pull, surfaces, bodies of elements, of points, barrier, friction
@@ -91,6 +94,15 @@ void brunt_implicit_loads(brunt_world *world, double time, double *load);
 // Gradients of terms [first, end) at u, summed.
 void brunt_implicit_gradient(const struct brunt_implicit *m, int first, int end, const double *u, double *g);
 
+// --- implicit_drag.c
+// Weights of damped nodes, once the unknowns have numbers. 0, or -1: out of memory.
+int brunt_implicit_drag_number(struct brunt_implicit *m, const brunt_world *world);
+void brunt_implicit_drag_before(const struct brunt_implicit *m,
+                                double *force);         // adds the force at the step's start [N]
+void brunt_implicit_drag_aim(struct brunt_implicit *m); // once the aim is known
+// Loss and impulse of a step; adds the force at its end to `field.load`.
+void brunt_implicit_book_drag(brunt_world *world);
+
 // --- implicit_step.c
 // Finds the passes that Newton's phases are.
 void brunt_implicit_follow(brunt_world *world);
@@ -123,6 +135,8 @@ typedef struct brunt_term_sums {
 int brunt_implicit_sums(const struct brunt_implicit *m, int first, int end, double *total, brunt_term_sums *sums,
                         brunt_error *error);
 int brunt_implicit_book_contact(brunt_world *world, brunt_error *error);
+// Where the forces on a node have their moments [m].
+void brunt_implicit_moment_arm(const struct brunt_implicit *m, int32_t n, double x[3]);
 // A force on node n over the step, to a wall's account.
 void brunt_implicit_book_force(const struct brunt_implicit *m, brunt_impulse_account *last, int32_t n,
                                const double F[3]);

@@ -17,6 +17,7 @@ static void take_acceleration(brunt_world *world) {
     memset(f->acceleration, 0, (size_t)all * sizeof *f->acceleration);
     if (m->weights.gamma == 1) return; // backward Euler asks for none
     brunt_implicit_loads(world, world->clock.time, f->force_before);
+    brunt_implicit_drag_before(m, f->force_before);
     const int friction = m->term_count - m->rubs; // of the velocities at the start: see barrier.h
     brunt_implicit_gradient(m, m->fixed_terms, friction, f->u, f->gradient);
     brunt_implicit_gradient(m, friction, m->term_count, m->contact.before, f->step);
@@ -34,6 +35,7 @@ static void take_aim(struct brunt_implicit *m) {
     for (int64_t k = 0; k < brunt_implicit_components(m); k++)
         m->field.aim[k] = dt * m->unknowns.velocity[k] + drift * m->field.acceleration[k];
     m->inertia.c = 2 * w->alpha * w->beta * dt * dt;
+    brunt_implicit_drag_aim(m);
 }
 
 static int begin_try(brunt_world *world, double dt, brunt_error *error) {

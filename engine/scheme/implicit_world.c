@@ -108,7 +108,8 @@ static int make_bodies(brunt_world *world, struct brunt_implicit *m, brunt_error
     m->term[m->term_count++] = (brunt_term){&brunt_inertia_ops, &m->inertia};
     m->term[m->term_count++] = (brunt_term){&brunt_dead_load_ops, &m->loads};
     m->term[m->term_count++] = (brunt_term){&brunt_pull_ops, &m->pull};
-    m->inertia.unknowns = m->loads.unknowns = m->pull.unknowns = &m->unknowns;
+    m->inertia.unknowns = m->loads.unknowns = m->pull.unknowns = m->drag.unknowns = &m->unknowns;
+    if (world->boundaries.damping.active) m->term[m->term_count++] = (brunt_term){&brunt_drag_ops, &m->drag};
     if (m->holds) m->term[m->term_count++] = (brunt_term){&brunt_boundary_rows_ops, &m->rows};
     if (m->holds) m->term[m->term_count++] = (brunt_term){&brunt_ghost_ops, &m->ghost};
     m->fixed_terms = m->term_count;
@@ -186,8 +187,8 @@ void brunt_implicit_free(brunt_world *world) {
     for (int k = 0; m->fem && k < world->bodies.fem_count; k++) brunt_fem_potential_free(m->fem[k]);
     for (int i = 0; m->mpm && i < world->bodies.mpm_count; i++) brunt_mpm_potential_free(m->mpm[i]);
     brunt_fields *f = &m->field;
-    double *const fields[] = {f->u,        f->v,       f->aim,  f->acceleration, f->load,  f->force_before,
-                              f->gradient, f->contact, f->step, f->zero,         m->moved, f->pull};
+    double *const fields[] = {f->u,       f->v,    f->aim,  f->acceleration, f->load, f->force_before, f->gradient,
+                              f->contact, f->step, f->zero, m->moved,        f->pull, m->drag_weight,  m->drag_rest};
     for (size_t k = 0; k < sizeof fields / sizeof *fields; k++) brunt_free(fields[k]);
     brunt_newton_free(&m->newton);
     brunt_implicit_contact_free(&m->contact);
@@ -221,6 +222,7 @@ int brunt_pass_number(brunt_world *world, brunt_step *step, brunt_error *error) 
     struct brunt_implicit *m = world->plan.implicit;
     if (brunt_unknowns_number(&m->unknowns, world) || reserve(world, m))
         return brunt_fail_step(world, NULL, error, "out of memory for the unknowns");
+    if (brunt_implicit_drag_number(m, world)) return brunt_fail_step(world, NULL, error, "out of memory for damping");
     m->loads.force = m->field.load, m->inertia.aim = m->field.aim;
     if (m->holds && brunt_ghost_step(&m->ghost, world, &m->unknowns))
         return brunt_fail_step(world, NULL, error, "out of memory for nodes without material");
@@ -239,8 +241,8 @@ bool brunt_world_newton(const brunt_world *world, brunt_newton_counts *so_far, b
 size_t brunt_implicit_bytes(const brunt_world *world) {
     const struct brunt_implicit *m = world->plan.implicit;
     const brunt_fields *f = &m->field;
-    size_t bytes = brunt_unknowns_bytes(&m->unknowns, &world->bodies) + m->moved_capacity +
-                   brunt_implicit_contact_bytes(&m->contact) + f->contact_capacity +
+    size_t bytes = brunt_unknowns_bytes(&m->unknowns, &world->bodies) + m->moved_capacity + m->drag_weight_capacity +
+                   m->drag_rest_capacity + brunt_implicit_contact_bytes(&m->contact) + f->contact_capacity +
                    brunt_boundary_rows_bytes(&m->rows) + brunt_ghost_bytes(&m->ghost) +
                    brunt_boundary_surfaces_bytes(&world->boundaries.surfaces);
     for (int k = 0; k < world->bodies.fem_count; k++) bytes += brunt_fem_potential_bytes(m->fem[k]);
