@@ -28,6 +28,7 @@ typedef struct newton_run {
     double slope;            // gradient . step
     double before;           // measure of the step before; 0: not of a full, unprojected one
     bool plain;              // the matrix was taken as it is
+    bool looked;             // at u
 } newton_run;
 
 brunt_newton_options brunt_newton_defaults(void) {
@@ -281,9 +282,22 @@ static bool last_step(newton_run *r, double share) {
     return fmax(step / before, inexact) * step <= EARLY * r->options->tolerance;
 }
 
+// A small step is the last one if forces balance where it led.
+static int ask_balance(newton_run *r, bool *last) {
+    if (!r->options->balance) return BRUNT_OK;
+    phase(r, BRUNT_NEWTON_EVALUATE);
+    if (look(r, NULL)) return BRUNT_FAILED;
+    r->looked = true;
+    r->report->balance = r->options->balance(r->options->context, r->team, r->u);
+    *last = r->report->balance <= 1;
+    if (!*last) r->before = 0;
+    return BRUNT_OK;
+}
+
 static int iterate(newton_run *r, bool *last) {
     phase(r, BRUNT_NEWTON_EVALUATE);
-    if (r->report->iterations > 0 && look(r, NULL)) return BRUNT_FAILED;
+    if (!r->looked && look(r, NULL)) return BRUNT_FAILED;
+    r->looked = false;
     if (take_gradient(r) || find_step(r)) return BRUNT_FAILED;
     measure_step(r);
     phase(r, BRUNT_NEWTON_LIMIT);
@@ -294,7 +308,7 @@ static int iterate(newton_run *r, bool *last) {
     if (search(r, &share)) return BRUNT_FAILED;
     r->report->iterations++;
     *last = last_step(r, share);
-    return BRUNT_OK;
+    return *last ? ask_balance(r, last) : BRUNT_OK;
 }
 
 static int begin(newton_run *r) {
@@ -309,6 +323,7 @@ static int begin(newton_run *r) {
     if (open_solver(r, r->options->solver) || look(r, NULL)) return BRUNT_FAILED;
     int outside;
     r->energy = r->report->energy = energy_at(r, r->u, &outside);
+    r->looked = true;
     if (outside < 0) return BRUNT_OK;
     brunt_fail(r->error, BRUNT_FAILED, "Newton's method: the energy of %s is not finite where it begins.",
                r->problem->terms[outside].ops->name);
@@ -327,6 +342,11 @@ int brunt_newton_minimise(brunt_newton *newton, const brunt_team *team, const br
         if (iterate(&run, &last)) return BRUNT_FAILED;
     if (last) return BRUNT_OK;
     report->result = BRUNT_NEWTON_ITERATIONS;
+    if (report->step <= options->tolerance)
+        return brunt_fail(error, BRUNT_FAILED,
+                          "Newton's method did not converge: after %d iterations a step is %.3g m/s, but forces do not "
+                          "balance.",
+                          report->iterations, report->step);
     return brunt_fail(error, BRUNT_FAILED,
                       "Newton's method did not converge: after %d iterations a step is %.3g m/s, and %.3g m/s is the "
                       "tolerance.",

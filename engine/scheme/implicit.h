@@ -73,6 +73,11 @@ struct brunt_implicit {
     brunt_world *world;             // for the phases of Newton's method
     int phase[BRUNT_NEWTON_PHASES]; // their passes
     brunt_newton_counts tried;      // of the step that is tried
+    struct {                        // the body whose forces balance least, where Newton's method would have ended
+        int body;                   // among all; -1: all do
+        int32_t node;               // of the unknowns, with the greatest force left
+        double left, all;           // [N] that is left, of forces that add up to this
+    } off;
 };
 
 static inline int64_t brunt_implicit_components(const struct brunt_implicit *m) {
@@ -87,6 +92,10 @@ void brunt_newton_counts_add(brunt_newton_counts *sum, const brunt_newton_counts
 // slot. Sets the tolerance, below which it is small beside the least gap too: close to a wall a barrier's force goes by
 // 1 / gap, and Newton's corrections are as small as the gap.
 double brunt_implicit_measure(void *context, const brunt_team *team, const double *p, int64_t *where);
+
+// --- implicit_balance.c
+// What the forces on the body that balances least are off by, of what they may be (brunt_newton_options).
+double brunt_implicit_balance(void *context, const brunt_team *team, const double *u);
 
 // --- implicit_loads.c
 // Loads at a time [N], of all components: gravity, and tractions on groups of nodes, which are left as of that time.

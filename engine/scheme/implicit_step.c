@@ -181,10 +181,20 @@ static int fail_try(brunt_world *world, const brunt_newton_report *report, brunt
         if (brunt_fail_turned(world, error, reason)) return BRUNT_FAILED;
     }
     if (dof < 0) return brunt_fail_step(world, NULL, error, why);
-    const brunt_unknown_place at = brunt_unknowns_place(&m->unknowns, &world->bodies, (int32_t)(dof / m->unknowns.dim));
-    snprintf(reason, sizeof reason,
-             "a step of %.4g s, halved %d times (newton.cut), does not converge: %s The greatest force left is %.3g N",
-             m->dt, world->settings.newton.cut, why, report->residual);
+    const bool off = report->result == BRUNT_NEWTON_ITERATIONS && report->balance > 1;
+    const int32_t n = off ? m->off.node : (int32_t)(dof / m->unknowns.dim);
+    const brunt_unknown_place at = brunt_unknowns_place(&m->unknowns, &world->bodies, n);
+    if (off)
+        snprintf(
+            reason, sizeof reason,
+            "a step of %.4g s, halved %d times (newton.cut), does not converge: %s %.3g N are left of forces that "
+            "add up to %.3g N (less contact.stiffness or contact.friction, or more contact.slip_speed, leaves less)",
+            m->dt, world->settings.newton.cut, why, m->off.left, m->off.all);
+    else
+        snprintf(
+            reason, sizeof reason,
+            "a step of %.4g s, halved %d times (newton.cut), does not converge: %s The greatest force left is %.3g N",
+            m->dt, world->settings.newton.cut, why, report->residual);
     brunt_implicit_surfaces_lack(world, reason, sizeof reason);
     return brunt_fail_place(world, at.body, at.x, error, reason);
 }

@@ -155,6 +155,7 @@ static void set_options(brunt_world *world, struct brunt_implicit *m) {
     m->options.iterations = newton->iterations;
     m->options.accuracy = newton->accuracy;
     m->options.measure = brunt_implicit_measure;
+    m->options.balance = brunt_implicit_balance;
     m->weights = weights_of[world->settings.integrator];
     world->clock.next_dt = world->settings.fixed_step;
     world->clock.newton = world->clock.newton_last =

@@ -270,6 +270,37 @@ START_TEST(an_early_end) {
 }
 END_TEST
 
+// Newton's method goes on while forces do not balance, however small a correction is, and says so where they never do.
+static double greatest_force(void *context, const brunt_team *team, const double *u) {
+    (void)team;
+    const double stiffness = *(const double *)context;
+    return stiffness * fabs(log(u[0])) / 1e-6;
+}
+
+START_TEST(until_forces_balance) {
+    double stiffness = 1e9, u[2] = {1.001, 1}, v[2] = {1.001, 1};
+    brunt_newton_report report;
+    brunt_error error = {0};
+    lone stiff = LONE(square, 2, .a = stiffness, .b = 0), wall = LONE(barrier, 2, .a = stiffness, .limits = true);
+    wall.end = 0; // a minimum at 1, where x - 1 / x is 0
+    const brunt_term terms[] = {{&lone_ops, &stiff}, {&lone_ops, &wall}};
+    const brunt_problem problem = {2, 1, terms, 2, NULL};
+    brunt_newton_options options = usual(1e-2);
+    ck_assert_int_eq(minimise(&problem, &options, u, &report, NULL), BRUNT_OK);
+    ck_assert_int_eq(report.iterations, 1);
+    ck_assert_double_gt(fabs(u[0] - 1), 1e-8);
+    options.balance = greatest_force, options.context = &stiffness;
+    ck_assert_int_eq(minimise(&problem, &options, v, &report, NULL), BRUNT_OK);
+    ck_assert_double_le(report.balance, 1);
+    ck_assert_double_le(fabs(v[0] - 1), 1e-15);
+    stiffness = INFINITY, v[0] = 1.001, options.iterations = 7;
+    ck_assert_int_eq(minimise(&problem, &options, v, &report, &error), BRUNT_FAILED);
+    ck_assert_int_eq(report.result, BRUNT_NEWTON_ITERATIONS);
+    ck_assert_int_eq(report.iterations, 7);
+    ck_assert_ptr_nonnull(strstr(error.message, "forces do not balance"));
+}
+END_TEST
+
 // Between two wells the matrix is not positive definite: projected there, and only there. x^2 = 1 - m / a of
 // a / 4 (x^2 - 1)^2 + m / 2 x^2.
 START_TEST(out_of_what_is_not_convex) {
@@ -455,6 +486,7 @@ int main(void) {
     tcase_add_loop_test(c, barrier_in_closed_form, 0, 2);
     tcase_add_test(c, quadratic);
     tcase_add_test(c, an_early_end);
+    tcase_add_test(c, until_forces_balance);
     tcase_add_loop_test(c, out_of_what_is_not_convex, 0, 2);
     tcase_add_test(c, raised_where_singular);
     tcase_add_loop_test(c, what_has_no_minimum_is_said, 0, 7);
