@@ -4,7 +4,7 @@
 // term and never raise the energy by more than its rounding.
 //
 // A term is asked, at each iterate u: look (at u), gradient, stencils, hessian; then look (along p), limit, energies
-// between.
+// between; where there is none, gradients.
 #pragma once
 
 #include "linear/linear.h"
@@ -74,6 +74,9 @@ typedef struct brunt_problem {
     const brunt_term *terms;
     int count;
     const uint8_t *held; // unknowns that stay as they are, nodes * dim; NULL: none
+    // There is no energy: `gradient` is that of forces, whose derivative need not be symmetric. It is brought to 0:
+    // steps are those of the unsymmetric solver, and lower its length.
+    bool forces;
 } brunt_problem;
 
 // Memory that lasts from one minimisation to the next; starts as all zero. What it remembers does not change results.

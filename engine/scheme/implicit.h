@@ -60,7 +60,8 @@ struct brunt_implicit {
     bool holds; // there are surfaces, the two below are of them
     brunt_boundary_rows rows;
     brunt_ghost ghost;
-    bool rubs; // there is friction
+    bool rubs;   // there is friction
+    bool forces; // materials without a potential: Newton's method has no energy to lower
     int friction_iterations;
     double *moved; // [m] of the particles of a body: a field of the unknowns where they are
     size_t moved_capacity;

@@ -79,7 +79,8 @@ static int minimise(struct brunt_implicit *m, brunt_newton_report *report, brunt
                                    .nodes = m->unknowns.count,
                                    .terms = m->term,
                                    .count = m->term_count,
-                                   .held = m->unknowns.held};
+                                   .held = m->unknowns.held,
+                                   .forces = m->forces};
     const int status = brunt_newton_minimise(&m->newton, &m->team, &problem, &m->options, m->field.u, report, error);
     count(m, report);
     return status;

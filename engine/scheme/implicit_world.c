@@ -64,9 +64,13 @@ static void choose_solver(struct brunt_implicit *m, brunt_solver wanted) {
                         : wanted == BRUNT_SOLVER_DIRECT ? &brunt_linear_direct
                                                         : &brunt_linear_pcg;
     m->options.preconditioner = m->choice.preconditioner;
+    if (m->forces) {
+        m->options.solver = &brunt_linear_unsymmetric;
+        snprintf(m->choice.why, sizeof m->choice.why, "a material without a potential: its matrices are not symmetric");
+    }
     // What is left of a correction falls as its square only where systems are solved exactly.
-    m->options.early = m->options.solver == &brunt_linear_direct;
-    m->options.fallback = wanted == BRUNT_SOLVER_AUTO;
+    m->options.early = m->options.solver != &brunt_linear_pcg;
+    m->options.fallback = wanted == BRUNT_SOLVER_AUTO && !m->forces;
     m->options.linear_iterations = m->options.fallback ? MOST_ITERATIONS : MANY_ITERATIONS;
 }
 
@@ -176,6 +180,12 @@ int brunt_implicit_make(brunt_world *world, const brunt_world_def *def, brunt_er
     if (!m->fem || !m->mpm || !m->term || brunt_unknowns_make(&m->unknowns, world)) return out_of_memory(error);
     set_options(world, m);
     if (measure_systems(world, &m->size)) return out_of_memory(error);
+    for (int b = 0; b < bodies->count; b++)
+        m->forces = m->forces || brunt_body_ref_material(&bodies->all[b])->differences;
+    if (m->forces && world->settings.newton.solver == BRUNT_SOLVER_PCG)
+        return brunt_fail(error, BRUNT_BAD_INPUT,
+                          "newton.solver: pcg solves symmetric systems, and a material without a potential has others: "
+                          "auto or direct is wanted");
     choose_solver(m, world->settings.newton.solver);
     brunt_implicit_follow(world);
     const int status = make_bodies(world, m, error);
@@ -262,12 +272,13 @@ size_t brunt_implicit_matrix_bytes(const brunt_world *world) {
 bool brunt_world_newton_systems(const brunt_world *world, brunt_newton_systems *systems) {
     const struct brunt_implicit *m = world->plan.implicit;
     if (!m) return false;
-    *systems = (brunt_newton_systems){
-        .unknowns = m->size.nodes * m->size.dim,
-        .courant = m->size.courant,
-        .solver = m->options.solver->name,
-        .why = world->settings.newton.solver == BRUNT_SOLVER_AUTO ? m->choice.why : "newton.solver asks for it",
-        .tolerance = m->options.tolerance,
-        .bytes = (double)brunt_implicit_bytes(world)};
+    *systems = (brunt_newton_systems){.unknowns = m->size.nodes * m->size.dim,
+                                      .courant = m->size.courant,
+                                      .solver = m->options.solver->name,
+                                      .why = world->settings.newton.solver == BRUNT_SOLVER_AUTO || m->forces
+                                                 ? m->choice.why
+                                                 : "newton.solver asks for it",
+                                      .tolerance = m->options.tolerance,
+                                      .bytes = (double)brunt_implicit_bytes(world)};
     return true;
 }
