@@ -284,7 +284,7 @@ START_TEST(until_forces_balance) {
     lone stiff = LONE(square, 2, .a = stiffness, .b = 0), wall = LONE(barrier, 2, .a = stiffness, .limits = true);
     wall.end = 0; // a minimum at 1, where x - 1 / x is 0
     const brunt_term terms[] = {{&lone_ops, &stiff}, {&lone_ops, &wall}};
-    const brunt_problem problem = {2, 1, terms, 2, NULL};
+    const brunt_problem problem = {2, 1, terms, 2, NULL, false};
     brunt_newton_options options = usual(1e-2);
     ck_assert_int_eq(minimise(&problem, &options, u, &report, NULL), BRUNT_OK);
     ck_assert_int_eq(report.iterations, 1);
