@@ -129,7 +129,8 @@ static real wave_speed(const real *constants) { return brittle_wave_speed(consta
     .plastic = true, .parameters = parameters, .parameter_count = COUNT_OF(parameters), .state = state,                \
     .prepare = prepare, .wave_speed = wave_speed,                                                                      \
     .no_potential = "'drucker-prager' has no potential for implicit steps: it does not flow along the normal of its "  \
-                    "yield surface"
+                    "yield surface",                                                                                   \
+    .differences = true
 
 // Flow that keeps the volume has no plastic one to remember.
 static const brunt_model isochoric = {DRUCKER_PRAGER, .state_count = COUNT_OF(state) - 1, .flops = {223, 329},

@@ -84,4 +84,5 @@ const brunt_model brunt_ideal_gas = {
     .wave_speed = wave_speed,
     .no_potential =
         "'ideal-gas' has no potential for implicit steps: its pressure depends on the energy that it has at their end",
+    .differences = true,
 };

@@ -13,19 +13,28 @@ const char *brunt_material_implicit(const brunt_material *material) {
     for (int k = 0; k < BRUNT_COMPONENTS; k++) {
         const brunt_model *model = material->model[k];
         if (!model) continue;
-        if (!model->potential) return model->no_potential;
-        if (material->membrane && !model->potential->respond_membrane)
-            return "the model has no potential of membranes for implicit steps";
-        const char *reason = model->potential->refuses ? model->potential->refuses(material->constants[k]) : NULL;
-        if (reason) return reason;
+        if (material->membrane && !(model->potential && model->potential->respond_membrane))
+            return model->potential ? "the model has no potential of membranes for implicit steps"
+                                    : model->no_potential;
+        const char *reason = brunt_model_no_potential(model, material->constants[k]);
+        if (reason && !model->differences) return reason;
     }
     return NULL;
+}
+
+const char *brunt_model_no_potential(const brunt_model *model, const real *constants) {
+    if (!model->potential) return model->no_potential;
+    return model->potential->refuses ? model->potential->refuses(constants) : NULL;
 }
 
 void brunt_material_respond(const brunt_material *material, const brunt_trial_points trial[BRUNT_COMPONENTS]) {
     if (material->membrane) {
         const brunt_model_potential *strength = material->model[BRUNT_STRENGTH]->potential;
         strength->respond_membrane(material->constants[BRUNT_STRENGTH], material->tension_only, &trial[BRUNT_STRENGTH]);
+        return;
+    }
+    if (material->differences) {
+        brunt_material_respond_by_differences(material, trial);
         return;
     }
     for (int k = 0; k < BRUNT_COMPONENTS; k++)
@@ -35,6 +44,7 @@ void brunt_material_respond(const brunt_material *material, const brunt_trial_po
 brunt_update_result brunt_material_commit(const brunt_material *material,
                                           const brunt_trial_points trial[BRUNT_COMPONENTS],
                                           brunt_material_points points[BRUNT_COMPONENTS], real *plastic) {
+    if (material->differences) return brunt_material_commit_by_differences(material, trial, points, plastic);
     const brunt_model *const *model = material->model;
     const bool dissipates = model[BRUNT_STRENGTH]->plastic || model[BRUNT_STRENGTH]->shear_viscous;
     brunt_update_result total = {.bad = -1};
@@ -79,7 +89,7 @@ BRUNT_INLINE void rotate_pair(int rows, lanes A[MOST_ROWS][MOST_ROWS], lanes V[M
 }
 
 // Adds -l v v^T of the negative eigenvalues l to the tangents at i. Lanes stop one by one.
-BRUNT_INLINE void project_at(int dim, real *const tangent[45], int32_t i) {
+BRUNT_INLINE void project_at(int dim, real *const tangent[BRUNT_MOST_TANGENTS], int32_t i) {
     const int rows = dim * dim;
     lanes A[MOST_ROWS][MOST_ROWS], V[MOST_ROWS][MOST_ROWS];
     for (int r = 0; r < rows; r++)
@@ -106,11 +116,12 @@ BRUNT_INLINE void project_at(int dim, real *const tangent[45], int32_t i) {
     }
 }
 
-void brunt_material_project(int dim, int32_t count, real *const tangent[45]) {
-    for (int32_t i = 0; i < count; i += BRUNT_LANES) {
-        if (dim == 2)
-            project_at(2, tangent, i);
+void brunt_material_project(const brunt_material *material, const brunt_trial_points *trial) {
+    if (material->differences) return;
+    for (int32_t i = 0; i < trial->count; i += BRUNT_LANES) {
+        if (trial->dim == 2)
+            project_at(2, trial->tangent, i);
         else
-            project_at(3, tangent, i);
+            project_at(3, trial->tangent, i);
     }
 }

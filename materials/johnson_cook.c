@@ -211,7 +211,8 @@ static void add_energy(const real *constants, const brunt_material_points *point
     .accepts_eos = true, .parameters = parameters, .parameter_count = COUNT_OF(parameters), .state = state,            \
     .prepare = prepare, .flops = {231, 334}, .wave_speed = j2_wave_speed,                                              \
     .no_potential =                                                                                                    \
-        "'johnson-cook' has no potential for implicit steps: its flow stress depends on rate and temperature"
+        "'johnson-cook' has no potential for implicit steps: its flow stress depends on rate and temperature",         \
+    .differences = true
 #define HOT .thermal = true, .state_count = COUNT_OF(state), .energy = add_energy
 #define COLD .state_count = COUNT_OF(state) - 1, .energy = j2_energy, .set_temperature = set_temperature
 

@@ -81,6 +81,9 @@ typedef struct brunt_point_energy {
 // Upper half of the matrix of a tangent, row by row; its rows and columns are pairs (component i of the displacement,
 // direction a of its gradient), in the order of BRUNT_MATRIX.
 #define BRUNT_TANGENT(dim) ((dim) == 3 ? 45 : 10)
+// All of it, row by row, of materials whose tangent is not symmetric (brunt_material.differences).
+#define BRUNT_WHOLE_TANGENT(dim) ((dim) == 3 ? 81 : 16)
+enum { BRUNT_MOST_TANGENTS = BRUNT_WHOLE_TANGENT(3) };
 
 // The end of a step as it is tried: nothing of it is kept. F and f are of the end; state is that of the start of the
 // step, as the others' arrays are. Of `density`, `stress`, `tangent` those are written that are not NULL: by a strength
@@ -92,6 +95,8 @@ typedef struct brunt_trial_points {
     const real *F[9];                   // deformation gradient [-]
     const real *f[9];                   // of the step [-]: F = f F_old
     const real *state[BRUNT_MAX_STATE]; // this component's own
+    // Of materials by differences: reference volume [m^3], NULL: all alike; stress at the start [Pa], NULL: none.
+    const real *volume, *old_stress[6];
     // Incremental potential W per reference volume [J/m^3]: what is stored at the end, and what the step dissipates.
     // INFINITY where J is not positive.
     real *density;
@@ -99,7 +104,7 @@ typedef struct brunt_trial_points {
     real *stress[9];
     // a = F F d2W/dFdF [Pa], BRUNT_TANGENT(dim) components: with spatial gradients g_A, g_B of two shape functions, the
     // reference volume V0 and component i at A, j at B: d2(V0 W)/du_Ai du_Bj = V0 sum_ab g_Aa a_iajb g_Bb.
-    real *tangent[45];
+    real *tangent[BRUNT_MOST_TANGENTS];
 } brunt_trial_points;
 
 // What a model gives to implicit steps.
@@ -183,6 +188,8 @@ typedef struct brunt_model {
     real (*wave_speed_plane_stress)(const real *constants);
     const brunt_model_potential *potential; // for implicit steps; NULL: it has none ...
     const char *no_potential;               // ... because, after "the model's name ": "depends on the rate of strain"
+    // Without a potential: implicit steps take the stress of `update` and a tangent of its differences.
+    bool differences;
 } brunt_model;
 
 // The lists. Order is the order of `brunt keys`.

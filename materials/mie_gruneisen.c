@@ -147,4 +147,5 @@ const brunt_model brunt_mie_gruneisen = {
     .wave_speed = wave_speed,
     .no_potential = "'mie-gruneisen' has no potential for implicit steps: its pressure depends on the energy that it "
                     "has at their end",
+    .differences = true,
 };

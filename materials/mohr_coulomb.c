@@ -298,4 +298,5 @@ const brunt_model brunt_mohr_coulomb = {
     .wave_speed = wave_speed,
     .no_potential = "'mohr-coulomb' has no potential for implicit steps: it does not flow along the normal of its "
                     "yield surface",
+    .differences = true,
 };

@@ -228,6 +228,7 @@ const brunt_model brunt_polynomial = {
     .state_count = COUNT_OF(energy_state),
     .prepare = prepare,
     .potential = &potential,
+    .differences = true,
     .flops = {91, 139},
     .update = update,
     .energy = add_energy,

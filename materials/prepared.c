@@ -131,6 +131,12 @@ static bool erodes(const brunt_material *material, const brunt_material_def *def
     return limit >= 0 && isfinite(def->strength_parameters[limit]);
 }
 
+static bool wants_differences(const brunt_material *material) {
+    for (int k = 0; k < BRUNT_COMPONENTS; k++)
+        if (material->model[k] && brunt_model_no_potential(material->model[k], material->constants[k])) return true;
+    return false;
+}
+
 int brunt_material_make(const brunt_material_def *def, brunt_material *material, brunt_error *error) {
     *material = (brunt_material){.density = (real)def->density};
     memcpy(material->name, def->name, sizeof material->name);
@@ -172,7 +178,7 @@ int brunt_material_make(const brunt_material_def *def, brunt_material *material,
         if (reduced) material->model[k] = reduced;
         if (model->off && model->off(given[k])) material->model[k] = NULL;
     }
-    material->erodes = erodes(material, def);
+    material->erodes = erodes(material, def), material->differences = wants_differences(material);
     for (int dim = 2; dim <= 3; dim++) {
         material->temperature[dim - 2] = state_place(material->model[BRUNT_STRENGTH], "temperature", dim);
         material->integrity[dim - 2] = state_place(material->model[BRUNT_FAILURE], "integrity", dim);
@@ -231,7 +237,7 @@ void brunt_material_energy(const brunt_material *material, brunt_component k, co
         brunt_material_points own = *points;
         own.tension_only = material->tension_only;
         model->energy_plane_stress(material->constants[k], &own, energy);
-    } else if (material->implicit && model->potential->energy)
+    } else if (material->implicit && !material->differences && model->potential->energy)
         model->potential->energy(material->constants[k], points, energy);
     else if (model->energy)
         model->energy(material->constants[k], points, energy);

@@ -66,7 +66,8 @@ brunt_fem_potential *brunt_fem_potential_make(brunt_fem_body *body, int32_t base
                                .dim = body->dim,
                                .nodes = body->traits->nodes,
                                .modes = brunt_fem_has_hourglass(body) ? body->element->hourglass_modes : 0,
-                               .history = strength->plastic || strength->shear_viscous,
+                               .tangents = brunt_material_tangents(&body->material, body->dim),
+                               .history = strength->plastic || strength->shear_viscous || body->material.differences,
                                .threads = team->threads};
     int status = BRUNT_OK;
     if (make_arrays(p))

@@ -11,7 +11,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { MOST_NODES = 8, MOST_MODES = 4, SHAPES = MOST_NODES * 3, SHARES = MOST_NODES * MOST_MODES, TANGENTS = 45 };
+enum { MOST_NODES = 8, MOST_MODES = 4, SHAPES = MOST_NODES * 3, SHARES = MOST_NODES * MOST_MODES };
 
 typedef struct fem_potential_kind fem_potential_kind;
 
@@ -19,13 +19,13 @@ struct brunt_fem_potential {
     const fem_potential_kind *kind;
     brunt_fem_body *body;
     int32_t base;
-    int dim, nodes, modes; // of an element
-    bool history;          // the material looks at what the step did
+    int dim, nodes, modes, tangents; // of an element
+    bool history;                    // the material looks at what the step did
     real dt;
     // Of each slot: mean gradients b of the shape functions, gamma and k of its hourglass modes.
     real *b[SHAPES], *gamma[SHARES], *spring;
     // Of the last Hessian: spatial gradients and tangents.
-    real *g[SHAPES], *tangent[TANGENTS];
+    real *g[SHAPES], *tangent[BRUNT_MOST_TANGENTS];
     real *slab;
     size_t slab_bytes;
     struct fem_sheet *sheet;  // of a membrane: its elements at the start, a slot each

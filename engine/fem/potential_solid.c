@@ -47,7 +47,7 @@ static void shape_of(brunt_fem_potential *p, int32_t slot) {
 }
 
 static int make(brunt_fem_potential *p) {
-    const int shapes = p->nodes * p->dim, shares = p->nodes * p->modes, tangents = BRUNT_TANGENT(p->dim);
+    const int shapes = p->nodes * p->dim, shares = p->nodes * p->modes, tangents = p->tangents;
     const size_t stride = ((size_t)p->body->slots + 7) / 8 * 8 + 8;
     p->slab_bytes = (size_t)(2 * shapes + shares + tangents + 1) * stride * sizeof(real);
     real *at = p->slab = brunt_alloc(p->slab_bytes);
@@ -128,6 +128,8 @@ static void trial_points(const brunt_fem_potential *p, int64_t slot, int32_t cou
         const brunt_material_points points = brunt_fem_points(p->body, (brunt_component)k, slot, count);
         for (int c = 0; c < p->dim * p->dim; c++) trial[k].F[c] = tile->F[c], trial[k].f[c] = tile->f[c];
         for (int s = 0; s < BRUNT_MAX_STATE; s++) trial[k].state[s] = points.state[s];
+        for (int c = 0; c < BRUNT_SYMMETRIC(p->dim); c++) trial[k].old_stress[c] = points.stress[c];
+        trial[k].volume = points.volume;
     }
 }
 
@@ -216,11 +218,11 @@ BRUNT_INLINE void evaluate(int dim, int nodes, const fem_call *call, int32_t b) 
         for (int k = 0; k < BRUNT_COMPONENTS; k++) {
             if (call->wanted == FEM_ENERGY) trial[k].density = tile.density;
             for (int c = 0; c < dim * dim && call->wanted == FEM_GRADIENT; c++) trial[k].stress[c] = tile.stress[c];
-            for (int c = 0; c < BRUNT_TANGENT(dim) && call->wanted == FEM_TANGENT; c++)
+            for (int c = 0; c < p->tangents && call->wanted == FEM_TANGENT; c++)
                 trial[k].tangent[c] = p->tangent[c] + slot;
         }
         brunt_material_respond(&p->body->material, trial);
-        if (call->wanted == FEM_TANGENT && call->project) brunt_material_project(dim, count, trial[0].tangent);
+        if (call->wanted == FEM_TANGENT && call->project) brunt_material_project(&p->body->material, trial);
         for (int32_t s = 0; s < count; s += BRUNT_LANES) {
             if (call->wanted == FEM_ENERGY) add_energies(dim, nodes, p, slot + s, &tile, s);
             if (call->wanted == FEM_GRADIENT) add_forces(dim, nodes, p, slot + s, &tile, s, partial);
@@ -257,8 +259,10 @@ BRUNT_INLINE void element_hessian(int dim, int nodes, const brunt_fem_potential 
     const int rows = dim * dim, size = dim * nodes;
     const double volume = (double)brunt_element_scalars(p->body, BRUNT_ELEMENT_reference_volume)[0][slot];
     double a[9][9], g[MOST_NODES][3];
-    for (int m = 0, c = 0; m < rows; m++)
-        for (int n = m; n < rows; n++, c++) a[m][n] = a[n][m] = volume * (double)p->tangent[c][slot];
+    const bool whole = p->body->material.differences;
+    for (int m = 0; m < rows; m++)
+        for (int n = 0; n < rows; n++)
+            a[m][n] = volume * (double)p->tangent[brunt_tangent_place(whole, dim, m, n)][slot];
     for (int k = 0; k < nodes; k++)
         for (int i = 0; i < dim; i++) g[k][i] = (double)p->g[k * dim + i][slot];
     for (int B = 0; B < nodes; B++) {

@@ -7,10 +7,11 @@
 #include "base/error.h"
 #include "base/memory.h"
 
-enum { HALVINGS = 60 };
-#define ROUNDING 4e-16 // of a sum, over the sizes of what was added
-#define CLOSE 1e3      // a decrease within so many roundings is not judged by the energy
-#define LEAST_GAIN 2   // roundings
+enum { HALVINGS = 60, FEW_HALVINGS = 12, MEMORY = 3 };
+#define ROUNDING 4e-16      // of a sum, over the sizes of what was added
+#define CLOSE 1e3           // a decrease within so many roundings is not judged by the energy
+#define LEAST_GAIN 2        // roundings
+#define LEAST_DECREASE 1e-4 // of the gradient, of what the step promises
 #define LEAST_SHIFT 1e-13
 #define MORE_SHIFT 100.0
 #define MOST_SHIFT 1e-2
@@ -26,8 +27,10 @@ typedef struct newton_run {
     double *u;
     brunt_energy_sum energy; // at u
     double slope;            // gradient . step
+    double length[MEMORY];   // without energies: of the gradient, of the last iterates
     double before;           // measure of the step before; 0: not of a full, unprojected one
     bool plain;              // the matrix was taken as it is
+    bool looked;             // at u
 } newton_run;
 
 brunt_newton_options brunt_newton_defaults(void) {
@@ -69,14 +72,24 @@ static brunt_energy_sum energy_at(const newton_run *r, const double *u, int *out
     return sum;
 }
 
-static int take_gradient(newton_run *r) {
-    double *g = r->n->gradient;
+// Its length.
+static double gradient_at(newton_run *r, const double *u) {
+    double *g = r->n->gradient, square = 0;
     memset(g, 0, (size_t)unknowns(r) * sizeof *g);
     for (int t = 0; t < r->problem->count; t++)
-        r->problem->terms[t].ops->gradient(r->problem->terms[t].self, r->team, r->u, g);
-    r->report->residual = 0, r->report->residual_dof = -1;
+        r->problem->terms[t].ops->gradient(r->problem->terms[t].self, r->team, u, g);
     for (int64_t i = 0; i < unknowns(r); i++) {
         if (r->problem->held && r->problem->held[i]) g[i] = 0;
+        square += g[i] * g[i];
+    }
+    return sqrt(square);
+}
+
+static int take_gradient(newton_run *r) {
+    const double *g = r->n->gradient;
+    r->length[r->report->iterations % MEMORY] = gradient_at(r, r->u);
+    r->report->residual = 0, r->report->residual_dof = -1;
+    for (int64_t i = 0; i < unknowns(r); i++) {
         if (!isfinite(g[i])) {
             r->report->residual = g[i], r->report->residual_dof = i;
             brunt_fail(r->error, BRUNT_FAILED, "Newton's method: component %d of the gradient at node %lld is %g.",
@@ -188,8 +201,10 @@ static brunt_linear_status try_matrix(newton_run *r) {
         if (open_solver(r, &brunt_linear_direct)) return BRUNT_LINEAR_FAILED;
         status = solve(r);
     }
+    if (status == BRUNT_LINEAR_SINGULAR) return BRUNT_LINEAR_INDEFINITE;
     if (status != BRUNT_LINEAR_DONE) return status;
     if (sweeps(r) && (status = sweep(r)) != BRUNT_LINEAR_DONE) return status;
+    if (r->problem->forces) return status;
     r->slope = 0;
     for (int64_t i = 0; i < unknowns(r); i++) r->slope += r->n->gradient[i] * r->n->step[i];
     if (r->slope < 0 || measure_step(r) <= r->options->tolerance) return BRUNT_LINEAR_DONE;
@@ -244,21 +259,49 @@ static bool acceptable(const newton_run *r, brunt_energy_sum e, double noise, bo
     return e.value <= r->energy.value + noise;
 }
 
+static void try_share(newton_run *r, double share) {
+    for (int64_t i = 0; i < unknowns(r); i++) r->n->trial[i] = r->u[i] + share * r->n->step[i];
+}
+
+// To the place that was tried.
+static int go(newton_run *r, int halvings, double share) {
+    r->report->halvings += halvings;
+    r->report->least_share = fmin(r->report->least_share, share);
+    memcpy(r->u, r->n->trial, (size_t)unknowns(r) * sizeof *r->u);
+    return BRUNT_OK;
+}
+
+// Halves the step until the gradient is shorter than the longest of the last ones: near a kink, where flow begins, it
+// may grow for once (Grippo, Lampariello and Lucidi 1986, SIAM J. Numer. Anal. 23).
+static int search_forces(newton_run *r, double *share) {
+    double longest = 0;
+    for (int k = 0; k < MEMORY; k++) longest = fmax(longest, r->length[k]);
+    for (int half = 0; half <= FEW_HALVINGS; half++, *share *= 0.5) {
+        try_share(r, *share);
+        const double length = gradient_at(r, r->n->trial);
+        const bool small = half == 0 && r->report->step <= r->options->tolerance;
+        if (!isfinite(length) || !(small || length <= (1 - LEAST_DECREASE * *share) * longest)) continue;
+        return go(r, half, *share);
+    }
+    brunt_fail(
+        r->error, BRUNT_FAILED,
+        "Newton's method: no part of the step of iteration %d, of %.3g m/s, makes what is left of the forces less.",
+        r->report->iterations + 1, r->report->step);
+    return broken(r, BRUNT_NEWTON_UPHILL);
+}
+
 // Halves the step until it is acceptable; in vain once what is to be gained is lost in rounding.
 static int search(newton_run *r, double *share) {
-    brunt_newton *n = r->n;
+    if (r->problem->forces) return search_forces(r, share);
     for (int half = 0; half <= HALVINGS; half++, *share *= 0.5) {
-        for (int64_t i = 0; i < unknowns(r); i++) n->trial[i] = r->u[i] + *share * n->step[i];
+        try_share(r, *share);
         int outside;
-        const brunt_energy_sum e = energy_at(r, n->trial, &outside);
+        const brunt_energy_sum e = energy_at(r, r->n->trial, &outside);
         const double noise = ROUNDING * fmax(e.magnitude, r->energy.magnitude);
         if (half > 0 && outside < 0 && -*share * r->slope <= LEAST_GAIN * noise) break;
         if (outside < 0 && acceptable(r, e, noise, half == 0)) {
             r->energy = r->report->energy = e;
-            r->report->halvings += half;
-            r->report->least_share = fmin(r->report->least_share, *share);
-            memcpy(r->u, n->trial, (size_t)unknowns(r) * sizeof *r->u);
-            return BRUNT_OK;
+            return go(r, half, *share);
         }
     }
     brunt_fail(
@@ -277,13 +320,26 @@ static bool last_step(newton_run *r, double share) {
     r->before = full ? step : 0;
     if (step <= r->options->tolerance) return true;
     if (!r->options->early || !full || before <= 0 || step >= EARLY * before) return false;
-    const double inexact = r->n->linear.ops == &brunt_linear_direct ? 0 : r->options->accuracy;
+    const double inexact = r->n->linear.ops != &brunt_linear_pcg ? 0 : r->options->accuracy;
     return fmax(step / before, inexact) * step <= EARLY * r->options->tolerance;
+}
+
+// A small step is the last one if forces balance where it led.
+static int ask_balance(newton_run *r, bool *last) {
+    if (!r->options->balance) return BRUNT_OK;
+    phase(r, BRUNT_NEWTON_EVALUATE);
+    if (look(r, NULL)) return BRUNT_FAILED;
+    r->looked = true;
+    r->report->balance = r->options->balance(r->options->context, r->team, r->u);
+    *last = r->report->balance <= 1;
+    if (!*last) r->before = 0;
+    return BRUNT_OK;
 }
 
 static int iterate(newton_run *r, bool *last) {
     phase(r, BRUNT_NEWTON_EVALUATE);
-    if (r->report->iterations > 0 && look(r, NULL)) return BRUNT_FAILED;
+    if (!r->looked && look(r, NULL)) return BRUNT_FAILED;
+    r->looked = false;
     if (take_gradient(r) || find_step(r)) return BRUNT_FAILED;
     measure_step(r);
     phase(r, BRUNT_NEWTON_LIMIT);
@@ -294,7 +350,7 @@ static int iterate(newton_run *r, bool *last) {
     if (search(r, &share)) return BRUNT_FAILED;
     r->report->iterations++;
     *last = last_step(r, share);
-    return BRUNT_OK;
+    return *last ? ask_balance(r, last) : BRUNT_OK;
 }
 
 static int begin(newton_run *r) {
@@ -307,8 +363,10 @@ static int begin(newton_run *r) {
     }
     phase(r, BRUNT_NEWTON_EVALUATE);
     if (open_solver(r, r->options->solver) || look(r, NULL)) return BRUNT_FAILED;
-    int outside;
+    int outside = -1;
+    if (r->problem->forces) return BRUNT_OK;
     r->energy = r->report->energy = energy_at(r, r->u, &outside);
+    r->looked = true;
     if (outside < 0) return BRUNT_OK;
     brunt_fail(r->error, BRUNT_FAILED, "Newton's method: the energy of %s is not finite where it begins.",
                r->problem->terms[outside].ops->name);
@@ -327,6 +385,11 @@ int brunt_newton_minimise(brunt_newton *newton, const brunt_team *team, const br
         if (iterate(&run, &last)) return BRUNT_FAILED;
     if (last) return BRUNT_OK;
     report->result = BRUNT_NEWTON_ITERATIONS;
+    if (report->step <= options->tolerance)
+        return brunt_fail(error, BRUNT_FAILED,
+                          "Newton's method did not converge: after %d iterations a step is %.3g m/s, but forces do not "
+                          "balance.",
+                          report->iterations, report->step);
     return brunt_fail(error, BRUNT_FAILED,
                       "Newton's method did not converge: after %d iterations a step is %.3g m/s, and %.3g m/s is the "
                       "tolerance.",

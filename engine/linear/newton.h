@@ -4,7 +4,7 @@
 // term and never raise the energy by more than its rounding.
 //
 // A term is asked, at each iterate u: look (at u), gradient, stencils, hessian; then look (along p), limit, energies
-// between.
+// between; where there is none, gradients.
 #pragma once
 
 #include "linear/linear.h"
@@ -32,6 +32,9 @@ typedef struct brunt_newton_options {
     // The size of a step p [m/s]: of particles and mesh nodes, never of grid nodes. *where: which has it (the caller's
     // numbering; -1: none). NULL: the greatest component of p, where = its unknown.
     double (*measure)(void *context, const brunt_team *team, const double *p, int64_t *where);
+    // What forces at u are off by, of what they may be, asked where corrections have become small, after `look`: above
+    // 1 the method goes on. NULL: nobody minds.
+    double (*balance)(void *context, const brunt_team *team, const double *u);
     void (*phase)(void *context, brunt_newton_phase phase); // NULL: nobody wants to know
     void *context;
 } brunt_newton_options;
@@ -43,7 +46,7 @@ brunt_newton_options brunt_newton_defaults(void);
 typedef enum brunt_newton_result {
     BRUNT_NEWTON_CONVERGED,
     BRUNT_NEWTON_BAD_START,  // the energy is not finite where it begins
-    BRUNT_NEWTON_ITERATIONS, // tolerance not reached within as many
+    BRUNT_NEWTON_ITERATIONS, // tolerance not reached within as many, or balance
     BRUNT_NEWTON_INDEFINITE, // no positive definite matrix, projected and shifted
     BRUNT_NEWTON_BLOCKED,    // a term lets no step be taken
     BRUNT_NEWTON_UPHILL,     // no step, however short, lowers the energy
@@ -57,6 +60,7 @@ typedef struct brunt_newton_report {
     int32_t linear_iterations, factorisations, analyses;
     double step;             // measure of the last step [m/s]
     int64_t step_where;      // what had it
+    double balance;          // as `balance` said last; 0: not asked
     double least_share;      // smallest part of a step that was taken
     double residual;         // greatest component of the gradient [J/m], the last time it was taken
     int64_t residual_dof;    // which it is: node * dim + component; -1: none
@@ -70,6 +74,9 @@ typedef struct brunt_problem {
     const brunt_term *terms;
     int count;
     const uint8_t *held; // unknowns that stay as they are, nodes * dim; NULL: none
+    // There is no energy: `gradient` is that of forces, whose derivative need not be symmetric. It is brought to 0:
+    // steps are those of the unsymmetric solver, and lower its length.
+    bool forces;
 } brunt_problem;
 
 // Memory that lasts from one minimisation to the next; starts as all zero. What it remembers does not change results.

@@ -32,7 +32,8 @@ brunt_mpm_potential *brunt_mpm_potential_make(brunt_body *body, brunt_error *err
     }
     const brunt_model *strength = body->material.model[BRUNT_STRENGTH];
     p->body = body;
-    p->history = strength->plastic || strength->shear_viscous;
+    p->whole = body->material.differences;
+    p->history = strength->plastic || strength->shear_viscous || p->whole;
     return p;
 }
 
@@ -81,7 +82,7 @@ static void list_bins(brunt_mpm_potential *p) {
 
 static int make_room(brunt_mpm_potential *p) {
     const brunt_grid *grid = &p->body->grid;
-    const int64_t blocks = grid->block_count, tangents = BRUNT_TANGENT(grid->dim);
+    const int64_t blocks = grid->block_count, tangents = brunt_material_tangents(&p->body->material, grid->dim);
     const int64_t stride = (p->body->particles.slots + 7) / 8 * 8 + 8 * BRUNT_LANES;
     const int32_t *start = grid->bin_start;
     int64_t bins = 0;
@@ -172,10 +173,11 @@ BRUNT_INLINE void pull_back(int dim, brunt_mpm_potential *p, int64_t slot, const
     lanes inverse[9], a[9][9];
     inverse_step(dim, tile, at, inverse);
     const lanes volume = lanes_load(volume_of(p) + slot);
-    for (int m = 0, c = 0; m < rows; m++)
-        for (int n = m; n < rows; n++, c++) a[m][n] = a[n][m] = volume * lanes_load(p->tangent[c] + slot);
+    for (int m = 0; m < rows; m++)
+        for (int n = 0; n < rows; n++)
+            a[m][n] = volume * lanes_load(p->tangent[brunt_tangent_place(p->whole, dim, m, n)] + slot);
     for (int i = 0; i < dim; i++)
-        for (int j = i; j < dim; j++) {
+        for (int j = p->whole ? 0 : i; j < dim; j++) {
             lanes half[3][3];
             for (int A = 0; A < dim; A++)
                 for (int b = 0; b < dim; b++) {
@@ -183,11 +185,10 @@ BRUNT_INLINE void pull_back(int dim, brunt_mpm_potential *p, int64_t slot, const
                     for (int k = 1; k < dim; k++) half[A][b] += inverse[A * dim + k] * a[i * dim + k][j * dim + b];
                 }
             for (int A = 0; A < dim; A++)
-                for (int B = i == j ? A : 0; B < dim; B++) {
+                for (int B = i == j && !p->whole ? A : 0; B < dim; B++) {
                     lanes sum = half[A][0] * inverse[B * dim];
                     for (int k = 1; k < dim; k++) sum += half[A][k] * inverse[B * dim + k];
-                    const int m = i * dim + A, n = j * dim + B;
-                    lanes_store(p->tangent[m * (2 * rows - m - 1) / 2 + n] + slot, sum);
+                    lanes_store(p->tangent[brunt_tangent_place(p->whole, dim, i * dim + A, j * dim + B)] + slot, sum);
                 }
         }
 }
@@ -213,11 +214,11 @@ BRUNT_INLINE void evaluate_tile(int dim, int order, const mpm_call *call, int32_
     for (int k = 0; k < BRUNT_COMPONENTS; k++) {
         if (call->wanted == MPM_ENERGY) trial[k].density = tile.density;
         for (int c = 0; c < dim * dim && call->wanted == MPM_GRADIENT; c++) trial[k].stress[c] = tile.stress[c];
-        for (int c = 0; c < BRUNT_TANGENT(dim) && call->wanted == MPM_TANGENT; c++)
+        for (int c = 0; c < brunt_material_tangents(&p->body->material, dim) && call->wanted == MPM_TANGENT; c++)
             trial[k].tangent[c] = p->tangent[c] + slot;
     }
     brunt_material_respond(&p->body->material, trial);
-    if (call->wanted == MPM_TANGENT && call->project) brunt_material_project(dim, count, trial[0].tangent);
+    if (call->wanted == MPM_TANGENT && call->project) brunt_material_project(&p->body->material, trial);
     for (int32_t s = 0; s < count; s += BRUNT_LANES) {
         if (call->wanted == MPM_GRADIENT) add_forces(dim, order, p, block, slot + s, &tile, s);
         if (call->wanted == MPM_TANGENT) pull_back(dim, p, slot + s, &tile, s);

@@ -22,8 +22,9 @@ struct brunt_mpm_potential {
     bool history;          // the material looks at what the step did
     real dt;
     int threads;
+    bool whole; // the tangent is not symmetric
     // Of the last Hessian: V0 a, pulled back to the configuration of the grid; a slot each.
-    real *tangent[45];
+    real *tangent[BRUNT_MOST_TANGENTS];
     real *slab;
     size_t slab_capacity;
     double *force; // block_count x span_nodes x dim
@@ -180,6 +181,8 @@ static inline void trial_tile(brunt_mpm_potential *p, int64_t slot, int32_t coun
         const brunt_material_points points = brunt_body_points(p->body, (brunt_component)k, slot, count);
         for (int c = 0; c < dim * dim; c++) trial[k].F[c] = tile->F[c], trial[k].f[c] = tile->f[c];
         for (int s = 0; s < BRUNT_MAX_STATE; s++) trial[k].state[s] = points.state[s];
+        for (int c = 0; c < BRUNT_SYMMETRIC(dim); c++) trial[k].old_stress[c] = points.stress[c];
+        trial[k].volume = points.volume;
     }
 }
 

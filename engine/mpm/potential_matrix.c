@@ -22,6 +22,11 @@ BRUNT_INLINE int padded_nodes(int dim, int order) {
     return (kernel_nodes(dim, order) + BRUNT_LANES - 1) / BRUNT_LANES * BRUNT_LANES;
 }
 
+// Pairs of components: K_ij, i <= j where the tangent is symmetric.
+static inline int block_pairs(const brunt_mpm_potential *p, int dim) {
+    return p->whole ? dim * dim : dim * (dim + 1) / 2;
+}
+
 // Nodes within reach of a node.
 BRUNT_INLINE int reach(int dim, int order) {
     const int wide = 2 * order + 1;
@@ -31,7 +36,7 @@ BRUNT_INLINE int reach(int dim, int order) {
 int brunt_mpm_matrix_room(brunt_mpm_potential *p) {
     const brunt_grid *grid = &p->body->grid;
     const int dim = grid->dim, order = grid->order;
-    const int64_t n = padded_nodes(dim, order), pairs = dim * (dim + 1) / 2,
+    const int64_t n = padded_nodes(dim, order), pairs = block_pairs(p, dim),
                   chunk = CHUNK > BRUNT_LANES ? CHUNK : BRUNT_LANES;
     p->matrix_room = (pairs * n + 2 * chunk * dim) * n + BRUNT_LANES * n;
     p->place_room = (int64_t)grid->span_nodes * reach(dim, order);
@@ -103,8 +108,7 @@ BRUNT_INLINE void stretch(int dim, int stride, const brunt_mpm_potential *p, int
     for (int a = 0; a < dim; a++) {
         real factor[3];
         for (int b = 0; b < dim; b++) {
-            const int row = i * dim + a, column = j * dim + b, m = row < column ? row : column, n = row + column - m;
-            factor[b] = p->tangent[m * (2 * dim * dim - m - 1) / 2 + n][slot];
+            factor[b] = p->tangent[brunt_tangent_place(p->whole, dim, i * dim + a, j * dim + b)][slot];
         }
         for (int v = 0; v < stride; v += BRUNT_LANES) {
             lanes sum = factor[0] * lanes_load(G + v);
@@ -114,11 +118,11 @@ BRUNT_INLINE void stretch(int dim, int stride, const brunt_mpm_potential *p, int
     }
 }
 
-// The sums K_ij, i <= j, of the particles first .. end - 1 of a block.
+// The sums K_ij, i <= j where the tangent is symmetric, of the particles first .. end - 1 of a block.
 BRUNT_INLINE void bin_sums(int dim, int order, const brunt_mpm_potential *p, const brunt_block *block,
                            const int32_t particles[2], real *K) {
     enum { MOST = CHUNK > BRUNT_LANES ? CHUNK : BRUNT_LANES };
-    const int n = kernel_nodes(dim, order), stride = padded_nodes(dim, order), pairs = dim * (dim + 1) / 2;
+    const int n = kernel_nodes(dim, order), stride = padded_nodes(dim, order), pairs = block_pairs(p, dim);
     real *G = K + (size_t)pairs * (size_t)n * (size_t)stride, *S = G + MOST * dim * stride;
     memset(K, 0, (size_t)pairs * (size_t)n * (size_t)stride * sizeof *K);
     for (int32_t first = particles[0]; first < particles[1]; first += MOST) {
@@ -128,10 +132,11 @@ BRUNT_INLINE void bin_sums(int dim, int order, const brunt_mpm_potential *p, con
             slopes(dim, order, p, block, slot + q, some - q < BRUNT_LANES ? some - q : BRUNT_LANES,
                    G + q * dim * stride);
         for (int i = 0, pair = 0; i < dim; i++)
-            for (int j = i; j < dim; j++, pair++) {
+            for (int j = p->whole ? 0 : i; j < dim; j++, pair++) {
                 for (int32_t q = 0; q < some; q++)
                     stretch(dim, stride, p, slot + q, i * dim + j, G + q * dim * stride, S + q * dim * stride);
-                product(dim, order, i == j, some * dim, G, S, K + (size_t)pair * (size_t)n * (size_t)stride);
+                product(dim, order, i == j && !p->whole, some * dim, G, S,
+                        K + (size_t)pair * (size_t)n * (size_t)stride);
             }
     }
 }
@@ -172,8 +177,28 @@ BRUNT_INLINE void find_rows(int dim, int order, const brunt_mpm_potential *p, co
     }
 }
 
+// Adds K_ij of nodes A and B: of a symmetric tangent, A <= B and i <= j, to four places; of another, to its own.
+BRUNT_INLINE void add_pair(bool whole, int dim, int plane, const real *AB, const real *BA, double *there,
+                           double *back) {
+    const bool same = AB == BA;
+    for (int i = 0, pair = 0; i < dim; i++)
+        for (int j = whole ? 0 : i; j < dim; j++, pair++) {
+            const double ij = (double)AB[pair * plane];
+            there[i * dim + j] += ij;
+            if (whole) {
+                if (!same) back[i * dim + j] += (double)BA[pair * plane];
+                continue;
+            }
+            const double ji = i == j ? ij : (double)BA[pair * plane];
+            if (i != j) there[j * dim + i] += ji;
+            if (same) continue;
+            back[j * dim + i] += ij;
+            if (i != j) back[i * dim + j] += ji;
+        }
+}
+
 // Adds the sums of the bin whose kernels begin at node `base` of the window.
-BRUNT_INLINE void add_bin(int dim, int order, const block_rows *rows, int base, const real *K) {
+BRUNT_INLINE void add_bin(bool whole, int dim, int order, const block_rows *rows, int base, const real *K) {
     const int side = dim == 3 ? 4 : 8, span = side + order, N = order + 1, wide = 2 * order + 1, size = dim * dim,
               all = reach(dim, order);
     const int n = kernel_nodes(dim, order), stride = padded_nodes(dim, order), plane = n * stride;
@@ -191,16 +216,7 @@ BRUNT_INLINE void add_bin(int dim, int order, const block_rows *rows, int base, 
             if (rows->number[v] < 0) continue;
             double *there = rows->row[w] + rows->place[w * all + all / 2 + way] * size,
                    *back = rows->row[v] + rows->place[v * all + all / 2 - way] * size;
-            for (int i = 0, pair = 0; i < dim; i++)
-                for (int j = i; j < dim; j++, pair++) {
-                    const double ij = (double)K[pair * plane + A * stride + B],
-                                 ji = i == j ? ij : (double)K[pair * plane + B * stride + A];
-                    there[i * dim + j] += ij;
-                    if (i != j) there[j * dim + i] += ji;
-                    if (A == B) continue;
-                    back[j * dim + i] += ij;
-                    if (i != j) back[i * dim + j] += ji;
-                }
+            add_pair(whole, dim, plane, K + A * stride + B, K + B * stride + A, there, back);
         }
     }
 }
@@ -225,7 +241,7 @@ BRUNT_INLINE void add_block(int dim, int order, const matrix_work *work, int32_t
         if (start[0] == start[1]) continue;
         const int x = dim == 3 ? bin >> 4 : bin >> 3, y = dim == 3 ? bin >> 2 & 3 : bin & 7, z = bin & 3;
         bin_sums(dim, order, p, block, start, K);
-        add_bin(dim, order, &rows, dim == 3 ? (x * span + y) * span + z : x * span + y, K);
+        add_bin(p->whole, dim, order, &rows, dim == 3 ? (x * span + y) * span + z : x * span + y, K);
     }
 }
 

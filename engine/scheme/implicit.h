@@ -16,9 +16,9 @@
 #include "scheme/scheme.h"
 #include "scheme/step_terms.h"
 
-// Inertia, loads and the pull of prescribed motion come first, with what surfaces hold and nodes without material where
-// there are surfaces; then a term for each body, then those of contact.
-enum { BRUNT_MOST_OTHER_TERMS = 3 + 2 + 2 };
+// Inertia, loads and the pull of prescribed motion come first, with drag where bodies are damped, what surfaces hold
+// and nodes without material where there are surfaces; then a term for each body, then those of contact.
+enum { BRUNT_MOST_OTHER_TERMS = 3 + 1 + 2 + 2 };
 
 // Of a time integrator.
 typedef struct brunt_weights {
@@ -49,6 +49,9 @@ struct brunt_implicit {
     brunt_inertia inertia;
     brunt_dead_loads loads;
     brunt_pull pull;
+    brunt_drag drag;                 // of bodies with damping
+    double *drag_weight, *drag_rest; // its arrays
+    size_t drag_weight_capacity, drag_rest_capacity;
     brunt_fem_potential **fem; // a body each
     brunt_mpm_potential **mpm;
     brunt_term *term; // inertia, loads, pull, surfaces, bodies of elements, of points, barrier, friction
@@ -57,7 +60,8 @@ struct brunt_implicit {
     bool holds; // there are surfaces, the two below are of them
     brunt_boundary_rows rows;
     brunt_ghost ghost;
-    bool rubs; // there is friction
+    bool rubs;   // there is friction
+    bool forces; // materials without a potential: Newton's method has no energy to lower
     int friction_iterations;
     double *moved; // [m] of the particles of a body: a field of the unknowns where they are
     size_t moved_capacity;
@@ -70,6 +74,11 @@ struct brunt_implicit {
     brunt_world *world;             // for the phases of Newton's method
     int phase[BRUNT_NEWTON_PHASES]; // their passes
     brunt_newton_counts tried;      // of the step that is tried
+    struct {                        // the body whose forces balance least, where Newton's method would have ended
+        int body;                   // among all; -1: all do
+        int32_t node;               // of the unknowns, with the greatest force left
+        double left, all;           // [N] that is left, of forces that add up to this
+    } off;
 };
 
 static inline int64_t brunt_implicit_components(const struct brunt_implicit *m) {
@@ -85,11 +94,24 @@ void brunt_newton_counts_add(brunt_newton_counts *sum, const brunt_newton_counts
 // 1 / gap, and Newton's corrections are as small as the gap.
 double brunt_implicit_measure(void *context, const brunt_team *team, const double *p, int64_t *where);
 
+// --- implicit_balance.c
+// What the forces on the body that balances least are off by, of what they may be (brunt_newton_options).
+double brunt_implicit_balance(void *context, const brunt_team *team, const double *u);
+
 // --- implicit_loads.c
 // Loads at a time [N], of all components: gravity, and tractions on groups of nodes, which are left as of that time.
 void brunt_implicit_loads(brunt_world *world, double time, double *load);
 // Gradients of terms [first, end) at u, summed.
 void brunt_implicit_gradient(const struct brunt_implicit *m, int first, int end, const double *u, double *g);
+
+// --- implicit_drag.c
+// Weights of damped nodes, once the unknowns have numbers. 0, or -1: out of memory.
+int brunt_implicit_drag_number(struct brunt_implicit *m, const brunt_world *world);
+void brunt_implicit_drag_before(const struct brunt_implicit *m,
+                                double *force);         // adds the force at the step's start [N]
+void brunt_implicit_drag_aim(struct brunt_implicit *m); // once the aim is known
+// Loss and impulse of a step; adds the force at its end to `field.load`.
+void brunt_implicit_book_drag(brunt_world *world);
 
 // --- implicit_step.c
 // Finds the passes that Newton's phases are.
@@ -123,6 +145,8 @@ typedef struct brunt_term_sums {
 int brunt_implicit_sums(const struct brunt_implicit *m, int first, int end, double *total, brunt_term_sums *sums,
                         brunt_error *error);
 int brunt_implicit_book_contact(brunt_world *world, brunt_error *error);
+// Where the forces on a node have their moments [m].
+void brunt_implicit_moment_arm(const struct brunt_implicit *m, int32_t n, double x[3]);
 // A force on node n over the step, to a wall's account.
 void brunt_implicit_book_force(const struct brunt_implicit *m, brunt_impulse_account *last, int32_t n,
                                const double F[3]);

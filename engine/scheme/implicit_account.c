@@ -41,8 +41,7 @@ static double book_kinetic(const struct brunt_implicit *m, brunt_step *step) {
 
 // ------------------------------------------------------------------------------------------ loads
 
-// Where the forces on a node have their moments.
-static void moment_arm(const struct brunt_implicit *m, int32_t n, double x[3]) {
+void brunt_implicit_moment_arm(const struct brunt_implicit *m, int32_t n, double x[3]) {
     const int dim = m->unknowns.dim;
     for (int a = 0; a < 3; a++)
         x[a] = a < dim ? m->unknowns.place[n * (int64_t)dim + a] + m->weights.moment * m->field.u[n * (int64_t)dim + a]
@@ -58,7 +57,7 @@ static void book_gravity(brunt_world *world) {
     brunt_gravity_at(&world->settings, world->clock.time + m->dt, after);
     for (int a = 0; a < 3; a++) gravity[a] = (1 - gamma) * before[a] + gamma * after[a];
     for (int32_t n = 0; n < u->count; n++) {
-        moment_arm(m, n, x);
+        brunt_implicit_moment_arm(m, n, x);
         for (int a = 0; a < 3; a++) {
             const int i = (a + 1) % 3, j = (a + 2) % 3;
             if (a < u->dim) world->ledger.gravity_work += u->mass[n] * gravity[a] * m->field.u[n * (int64_t)u->dim + a];
@@ -72,7 +71,7 @@ static void book_gravity(brunt_world *world) {
 void brunt_implicit_book_force(const struct brunt_implicit *m, brunt_impulse_account *last, int32_t n,
                                const double F[3]) {
     double x[3];
-    moment_arm(m, n, x);
+    brunt_implicit_moment_arm(m, n, x);
     for (int a = 0; a < 3; a++) {
         const int i = (a + 1) % 3, j = (a + 2) % 3;
         last->impulse[a] += m->dt * F[a];
@@ -128,6 +127,7 @@ int brunt_implicit_book(brunt_world *world, brunt_step *step, brunt_error *error
     if (m->holds) brunt_implicit_book_surfaces(world);
     if (world->settings.has_gravity) book_gravity(world);
     book_groups(world, gamma);
+    brunt_implicit_book_drag(world);
     book_holders(world);
     if (gamma < 1 && world->boundaries.sets.count) {
         brunt_loads_begin(&world->boundaries.sets, &world->bodies, world->clock.time, 0);

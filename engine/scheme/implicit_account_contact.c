@@ -62,51 +62,59 @@ static int book_barrier(brunt_world *world, brunt_error *error) {
     return BRUNT_OK;
 }
 
-// Forces of friction at the velocities of both ends of the step. `before` is the displacement at which friction takes
-// the velocities at the start for those at the end.
-static int add_friction(struct brunt_implicit *m, brunt_error *error) {
-    const double gamma = m->weights.gamma;
+// Forces of friction at u, `weight` of them.
+static int add_friction(struct brunt_implicit *m, const double *u, double weight, brunt_error *error) {
     const int at = m->body_terms + 1;
     double energy;
-    if (at >= m->term_count) return BRUNT_OK;
-    if (gamma < 1) {
-        if (evaluate(m, at, at + 1, m->contact.before, &energy, error)) return BRUNT_FAILED;
-        add_weighed(m, 1 - gamma, m->field.contact);
-    }
-    if (evaluate(m, at, at + 1, m->field.u, &energy, error)) return BRUNT_FAILED;
-    add_weighed(m, gamma, m->field.contact);
-    add_to_gradient(m);
+    if (evaluate(m, at, at + 1, u, &energy, error)) return BRUNT_FAILED;
+    add_weighed(m, weight, m->field.contact);
     return BRUNT_OK;
 }
 
 // ------------------------------------------------------------------------------------------ forces
 
-// Of pairs and planes, and the heat of friction over the step's way, weighed as the integrator does.
-static int weigh_forces(struct brunt_implicit *m, brunt_barrier_report *report, brunt_error *error) {
+// At the start of the step, by what pressed there, whatever friction has followed since: normal forces and friction at
+// the velocities there. `before` is the displacement at which friction takes the velocities at the start for those at
+// the end.
+static int weigh_start(struct brunt_implicit *m, brunt_barrier_force *force, brunt_error *error) {
     brunt_implicit_contact *c = &m->contact;
-    const double gamma = m->weights.gamma;
-    const int32_t count = c->pair_count + c->plane_count;
-    brunt_barrier_report other;
-    memset(c->force_before, 0, (size_t)count * sizeof *c->force_before);
-    for (int friction = 0; friction < 2 && gamma < 1; friction++) {
-        const double *u = friction ? c->before : m->field.zero;
-        if (brunt_barrier_look_back(c->barrier, &m->team, u, m->field.u, &other, c->force, error)) return BRUNT_FAILED;
-        for (int32_t k = 0; k < count; k++) {
-            c->force_before[k].heat = c->force[k].heat; // of the second: friction's
-            memcpy(friction ? c->force_before[k].friction : c->force_before[k].normal,
-                   friction ? c->force[k].friction : c->force[k].normal, 3 * sizeof(double));
-        }
-    }
-    if (brunt_barrier_look_back(c->barrier, &m->team, m->field.u, m->field.u, report, c->force, error))
+    const double start = 1 - m->weights.gamma;
+    brunt_barrier_report unused;
+    if (m->rubs &&
+        (brunt_barrier_lag(c->barrier, &m->team, m->field.zero, error) || add_friction(m, c->before, start, error)))
         return BRUNT_FAILED;
-    for (int32_t k = 0; k < count; k++) {
-        c->force[k].heat = (1 - gamma) * c->force_before[k].heat + gamma * c->force[k].heat;
-        for (int a = 0; a < 3; a++) {
-            c->force[k].normal[a] = (1 - gamma) * c->force_before[k].normal[a] + gamma * c->force[k].normal[a];
-            c->force[k].friction[a] = (1 - gamma) * c->force_before[k].friction[a] + gamma * c->force[k].friction[a];
+    for (int friction = 0; friction < 2; friction++) {
+        const double *u = friction ? c->before : m->field.zero;
+        if (brunt_barrier_look_back(c->barrier, &m->team, u, m->field.u, &unused, c->force_before, error))
+            return BRUNT_FAILED;
+        for (int32_t k = 0; k < c->pair_count + c->plane_count; k++) {
+            const brunt_barrier_force *before = &c->force_before[k];
+            for (int a = 0; a < 3; a++)
+                *(friction ? &force[k].friction[a] : &force[k].normal[a]) +=
+                    start * (friction ? before->friction[a] : before->normal[a]);
+            if (friction) force[k].heat += start * before->heat;
         }
     }
     return BRUNT_OK;
+}
+
+// Of pairs and planes, and the heat of friction over the step's way, weighed as the integrator does. What is at the end
+// comes first, since the start wants friction as it was there.
+static int weigh_forces(struct brunt_implicit *m, brunt_barrier_report *report, brunt_error *error) {
+    brunt_implicit_contact *c = &m->contact;
+    const double gamma = m->weights.gamma;
+    if (m->rubs) {
+        if (add_friction(m, m->field.u, gamma, error)) return BRUNT_FAILED;
+        add_to_gradient(m);
+    }
+    if (brunt_barrier_look_back(c->barrier, &m->team, m->field.u, m->field.u, report, c->force, error))
+        return BRUNT_FAILED;
+    if (gamma == 1) return BRUNT_OK;
+    for (int32_t k = 0; k < c->pair_count + c->plane_count; k++) {
+        c->force[k].heat *= gamma;
+        for (int a = 0; a < 3; a++) c->force[k].normal[a] *= gamma, c->force[k].friction[a] *= gamma;
+    }
+    return weigh_start(m, c->force, error);
 }
 
 // Moments of all planes together: pairs have none.
@@ -163,7 +171,7 @@ int brunt_implicit_book_contact(brunt_world *world, brunt_error *error) {
     struct brunt_implicit *m = world->plan.implicit;
     brunt_barrier_report report;
     memset(m->field.contact, 0, (size_t)brunt_implicit_components(m) * sizeof *m->field.contact);
-    if (book_barrier(world, error) || add_friction(m, error) || weigh_forces(m, &report, error)) return BRUNT_FAILED;
+    if (book_barrier(world, error) || weigh_forces(m, &report, error)) return BRUNT_FAILED;
     book_forces(world);
     m->tried.least_gap = report.least_gap, m->tried.least_part = report.least_part;
     warn_of_gap(world, &report);

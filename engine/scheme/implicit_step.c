@@ -17,6 +17,7 @@ static void take_acceleration(brunt_world *world) {
     memset(f->acceleration, 0, (size_t)all * sizeof *f->acceleration);
     if (m->weights.gamma == 1) return; // backward Euler asks for none
     brunt_implicit_loads(world, world->clock.time, f->force_before);
+    brunt_implicit_drag_before(m, f->force_before);
     const int friction = m->term_count - m->rubs; // of the velocities at the start: see barrier.h
     brunt_implicit_gradient(m, m->fixed_terms, friction, f->u, f->gradient);
     brunt_implicit_gradient(m, friction, m->term_count, m->contact.before, f->step);
@@ -34,6 +35,7 @@ static void take_aim(struct brunt_implicit *m) {
     for (int64_t k = 0; k < brunt_implicit_components(m); k++)
         m->field.aim[k] = dt * m->unknowns.velocity[k] + drift * m->field.acceleration[k];
     m->inertia.c = 2 * w->alpha * w->beta * dt * dt;
+    brunt_implicit_drag_aim(m);
 }
 
 static int begin_try(brunt_world *world, double dt, brunt_error *error) {
@@ -77,7 +79,8 @@ static int minimise(struct brunt_implicit *m, brunt_newton_report *report, brunt
                                    .nodes = m->unknowns.count,
                                    .terms = m->term,
                                    .count = m->term_count,
-                                   .held = m->unknowns.held};
+                                   .held = m->unknowns.held,
+                                   .forces = m->forces};
     const int status = brunt_newton_minimise(&m->newton, &m->team, &problem, &m->options, m->field.u, report, error);
     count(m, report);
     return status;
@@ -179,10 +182,20 @@ static int fail_try(brunt_world *world, const brunt_newton_report *report, brunt
         if (brunt_fail_turned(world, error, reason)) return BRUNT_FAILED;
     }
     if (dof < 0) return brunt_fail_step(world, NULL, error, why);
-    const brunt_unknown_place at = brunt_unknowns_place(&m->unknowns, &world->bodies, (int32_t)(dof / m->unknowns.dim));
-    snprintf(reason, sizeof reason,
-             "a step of %.4g s, halved %d times (newton.cut), does not converge: %s The greatest force left is %.3g N",
-             m->dt, world->settings.newton.cut, why, report->residual);
+    const bool off = report->result == BRUNT_NEWTON_ITERATIONS && report->balance > 1;
+    const int32_t n = off ? m->off.node : (int32_t)(dof / m->unknowns.dim);
+    const brunt_unknown_place at = brunt_unknowns_place(&m->unknowns, &world->bodies, n);
+    if (off)
+        snprintf(
+            reason, sizeof reason,
+            "a step of %.4g s, halved %d times (newton.cut), does not converge: %s %.3g N are left of forces that "
+            "add up to %.3g N (less contact.stiffness or contact.friction, or more contact.slip_speed, leaves less)",
+            m->dt, world->settings.newton.cut, why, m->off.left, m->off.all);
+    else
+        snprintf(
+            reason, sizeof reason,
+            "a step of %.4g s, halved %d times (newton.cut), does not converge: %s The greatest force left is %.3g N",
+            m->dt, world->settings.newton.cut, why, report->residual);
     brunt_implicit_surfaces_lack(world, reason, sizeof reason);
     return brunt_fail_place(world, at.body, at.x, error, reason);
 }

@@ -64,9 +64,13 @@ static void choose_solver(struct brunt_implicit *m, brunt_solver wanted) {
                         : wanted == BRUNT_SOLVER_DIRECT ? &brunt_linear_direct
                                                         : &brunt_linear_pcg;
     m->options.preconditioner = m->choice.preconditioner;
+    if (m->forces) {
+        m->options.solver = &brunt_linear_unsymmetric;
+        snprintf(m->choice.why, sizeof m->choice.why, "a material without a potential: its matrices are not symmetric");
+    }
     // What is left of a correction falls as its square only where systems are solved exactly.
-    m->options.early = m->options.solver == &brunt_linear_direct;
-    m->options.fallback = wanted == BRUNT_SOLVER_AUTO;
+    m->options.early = m->options.solver != &brunt_linear_pcg;
+    m->options.fallback = wanted == BRUNT_SOLVER_AUTO && !m->forces;
     m->options.linear_iterations = m->options.fallback ? MOST_ITERATIONS : MANY_ITERATIONS;
 }
 
@@ -108,7 +112,8 @@ static int make_bodies(brunt_world *world, struct brunt_implicit *m, brunt_error
     m->term[m->term_count++] = (brunt_term){&brunt_inertia_ops, &m->inertia};
     m->term[m->term_count++] = (brunt_term){&brunt_dead_load_ops, &m->loads};
     m->term[m->term_count++] = (brunt_term){&brunt_pull_ops, &m->pull};
-    m->inertia.unknowns = m->loads.unknowns = m->pull.unknowns = &m->unknowns;
+    m->inertia.unknowns = m->loads.unknowns = m->pull.unknowns = m->drag.unknowns = &m->unknowns;
+    if (world->boundaries.damping.active) m->term[m->term_count++] = (brunt_term){&brunt_drag_ops, &m->drag};
     if (m->holds) m->term[m->term_count++] = (brunt_term){&brunt_boundary_rows_ops, &m->rows};
     if (m->holds) m->term[m->term_count++] = (brunt_term){&brunt_ghost_ops, &m->ghost};
     m->fixed_terms = m->term_count;
@@ -154,6 +159,7 @@ static void set_options(brunt_world *world, struct brunt_implicit *m) {
     m->options.iterations = newton->iterations;
     m->options.accuracy = newton->accuracy;
     m->options.measure = brunt_implicit_measure;
+    m->options.balance = brunt_implicit_balance;
     m->weights = weights_of[world->settings.integrator];
     world->clock.next_dt = world->settings.fixed_step;
     world->clock.newton = world->clock.newton_last =
@@ -174,6 +180,11 @@ int brunt_implicit_make(brunt_world *world, const brunt_world_def *def, brunt_er
     if (!m->fem || !m->mpm || !m->term || brunt_unknowns_make(&m->unknowns, world)) return out_of_memory(error);
     set_options(world, m);
     if (measure_systems(world, &m->size)) return out_of_memory(error);
+    for (int b = 0; b < bodies->count; b++) m->forces = m->forces || brunt_world_material(world, b)->differences;
+    if (m->forces && world->settings.newton.solver == BRUNT_SOLVER_PCG)
+        return brunt_fail(error, BRUNT_BAD_INPUT,
+                          "newton.solver: pcg solves symmetric systems, and a material without a potential has others: "
+                          "auto or direct is wanted");
     choose_solver(m, world->settings.newton.solver);
     brunt_implicit_follow(world);
     const int status = make_bodies(world, m, error);
@@ -186,8 +197,8 @@ void brunt_implicit_free(brunt_world *world) {
     for (int k = 0; m->fem && k < world->bodies.fem_count; k++) brunt_fem_potential_free(m->fem[k]);
     for (int i = 0; m->mpm && i < world->bodies.mpm_count; i++) brunt_mpm_potential_free(m->mpm[i]);
     brunt_fields *f = &m->field;
-    double *const fields[] = {f->u,        f->v,       f->aim,  f->acceleration, f->load,  f->force_before,
-                              f->gradient, f->contact, f->step, f->zero,         m->moved, f->pull};
+    double *const fields[] = {f->u,       f->v,    f->aim,  f->acceleration, f->load, f->force_before, f->gradient,
+                              f->contact, f->step, f->zero, m->moved,        f->pull, m->drag_weight,  m->drag_rest};
     for (size_t k = 0; k < sizeof fields / sizeof *fields; k++) brunt_free(fields[k]);
     brunt_newton_free(&m->newton);
     brunt_implicit_contact_free(&m->contact);
@@ -221,6 +232,7 @@ int brunt_pass_number(brunt_world *world, brunt_step *step, brunt_error *error) 
     struct brunt_implicit *m = world->plan.implicit;
     if (brunt_unknowns_number(&m->unknowns, world) || reserve(world, m))
         return brunt_fail_step(world, NULL, error, "out of memory for the unknowns");
+    if (brunt_implicit_drag_number(m, world)) return brunt_fail_step(world, NULL, error, "out of memory for damping");
     m->loads.force = m->field.load, m->inertia.aim = m->field.aim;
     if (m->holds && brunt_ghost_step(&m->ghost, world, &m->unknowns))
         return brunt_fail_step(world, NULL, error, "out of memory for nodes without material");
@@ -239,8 +251,8 @@ bool brunt_world_newton(const brunt_world *world, brunt_newton_counts *so_far, b
 size_t brunt_implicit_bytes(const brunt_world *world) {
     const struct brunt_implicit *m = world->plan.implicit;
     const brunt_fields *f = &m->field;
-    size_t bytes = brunt_unknowns_bytes(&m->unknowns, &world->bodies) + m->moved_capacity +
-                   brunt_implicit_contact_bytes(&m->contact) + f->contact_capacity +
+    size_t bytes = brunt_unknowns_bytes(&m->unknowns, &world->bodies) + m->moved_capacity + m->drag_weight_capacity +
+                   m->drag_rest_capacity + brunt_implicit_contact_bytes(&m->contact) + f->contact_capacity +
                    brunt_boundary_rows_bytes(&m->rows) + brunt_ghost_bytes(&m->ghost) +
                    brunt_boundary_surfaces_bytes(&world->boundaries.surfaces);
     for (int k = 0; k < world->bodies.fem_count; k++) bytes += brunt_fem_potential_bytes(m->fem[k]);
@@ -259,12 +271,13 @@ size_t brunt_implicit_matrix_bytes(const brunt_world *world) {
 bool brunt_world_newton_systems(const brunt_world *world, brunt_newton_systems *systems) {
     const struct brunt_implicit *m = world->plan.implicit;
     if (!m) return false;
-    *systems = (brunt_newton_systems){
-        .unknowns = m->size.nodes * m->size.dim,
-        .courant = m->size.courant,
-        .solver = m->options.solver->name,
-        .why = world->settings.newton.solver == BRUNT_SOLVER_AUTO ? m->choice.why : "newton.solver asks for it",
-        .tolerance = m->options.tolerance,
-        .bytes = (double)brunt_implicit_bytes(world)};
+    *systems = (brunt_newton_systems){.unknowns = m->size.nodes * m->size.dim,
+                                      .courant = m->size.courant,
+                                      .solver = m->options.solver->name,
+                                      .why = world->settings.newton.solver == BRUNT_SOLVER_AUTO || m->forces
+                                                 ? m->choice.why
+                                                 : "newton.solver asks for it",
+                                      .tolerance = m->options.tolerance,
+                                      .bytes = (double)brunt_implicit_bytes(world)};
     return true;
 }

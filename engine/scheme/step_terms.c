@@ -152,6 +152,52 @@ static void load_gradient(void *term, const brunt_team *team, const double *u, d
 
 const brunt_term_ops brunt_dead_load_ops = {.name = "loads", .energy = load_energy, .gradient = load_gradient};
 
+// ------------------------------------------------------------------------------------------ drag
+
+typedef struct drag_sum {
+    const brunt_drag *drag;
+    const double *u;
+} drag_sum;
+
+static brunt_energy_sum drag_stretch(const void *context, int32_t begin, int32_t end) {
+    const drag_sum *job = context;
+    const brunt_drag *drag = job->drag;
+    const int64_t dim = drag->unknowns->dim;
+    double sum = 0;
+    for (int64_t dof = begin * dim; dof < end * dim; dof++) {
+        const double off = job->u[dof] - drag->rest[dof];
+        sum += drag->weight[dof / dim] * off * off;
+    }
+    sum *= 0.5 * drag->slope;
+    return (brunt_energy_sum){sum, sum};
+}
+
+static brunt_energy_sum drag_energy(void *term, const brunt_team *team, const double *u) {
+    const drag_sum job = {term, u};
+    if (!job.drag->weight) return (brunt_energy_sum){0, 0};
+    return brunt_sum_nodes(team, job.drag->unknowns->count, drag_stretch, &job);
+}
+
+static void drag_gradient(void *term, const brunt_team *team, const double *u, double *g) {
+    const brunt_drag *drag = term;
+    const int64_t dim = drag->unknowns->dim;
+    (void)team;
+    for (int64_t dof = 0; drag->weight && dof < drag->unknowns->count * dim; dof++)
+        g[dof] += drag->slope * drag->weight[dof / dim] * (u[dof] - drag->rest[dof]);
+}
+
+static void drag_hessian(void *term, const brunt_team *team, const double *u, bool project,
+                         struct brunt_block_matrix *h) {
+    (void)u, (void)project, (void)team; // it has no negative eigenvalues
+    const brunt_drag *drag = term;
+    for (int32_t n = 0; drag->weight && n < drag->unknowns->count; n++)
+        for (int a = 0; a < h->dim; a++)
+            brunt_block_matrix_diagonal(h, n)[a * (h->dim + 1)] += drag->slope * drag->weight[n];
+}
+
+const brunt_term_ops brunt_drag_ops = {
+    .name = "damping", .energy = drag_energy, .gradient = drag_gradient, .hessian = drag_hessian};
+
 // ------------------------------------------------------------------------------------------ prescribed motion
 
 typedef struct pull_sum {

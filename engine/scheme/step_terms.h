@@ -1,5 +1,5 @@
 // The terms of an implicit step that are of no body and no contact: inertia, loads that do not follow what they
-// act on, and what draws prescribed motion to its end.
+// act on, drag, and what draws prescribed motion to its end.
 #pragma once
 
 #include "linear/term.h"
@@ -18,13 +18,22 @@ typedef struct brunt_dead_loads {
     const double *force; // [N] of each component
 } brunt_dead_loads;
 
+// 1/2 sum w slope |u - rest|^2 over nodes that are damped: a force of -w v at the end of the step, whose velocity is
+// v = slope (u - rest).
+typedef struct brunt_drag {
+    const brunt_unknowns *unknowns;
+    const double *weight; // [kg/s] of each node, damping times mass; NULL: no body is damped
+    const double *rest;   // [m] of each component: the displacement at whose end it is at rest
+    double slope;         // [1/s] gamma dt / c
+} brunt_drag;
+
 // 1/2 sum w (u - target)^2 over components of weight: what is on its way to a place that is given.
 typedef struct brunt_pull {
     const brunt_unknowns *unknowns;
     const double *weight; // [N/m] of each component; NULL: nothing is pulled
 } brunt_pull;
 
-extern const brunt_term_ops brunt_inertia_ops, brunt_dead_load_ops, brunt_pull_ops;
+extern const brunt_term_ops brunt_inertia_ops, brunt_dead_load_ops, brunt_drag_ops, brunt_pull_ops;
 
 // Sums over nodes that are the same for any number of threads: `add` takes the nodes of a stretch.
 typedef brunt_energy_sum brunt_stretch_fn(const void *context, int32_t begin, int32_t end);

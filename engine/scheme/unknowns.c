@@ -32,17 +32,19 @@ int brunt_unknowns_make(brunt_unknowns *u, const brunt_world *world) {
     u->dim = world->settings.dimension;
     u->plane = brunt_alloc(((size_t)world->boundaries.wall_count + 1) * sizeof *u->plane);
     u->base = brunt_alloc(((size_t)bodies->fem_count + 1) * sizeof *u->base);
+    u->grid_base = brunt_alloc(((size_t)bodies->mpm_count + 1) * sizeof *u->grid_base);
     u->number = brunt_alloc(((size_t)bodies->mpm_count + 1) * sizeof *u->number);
     u->number_capacity = brunt_alloc(((size_t)bodies->mpm_count + 1) * sizeof *u->number_capacity);
     u->tie = brunt_alloc(((size_t)bodies->mpm_count + 1) * sizeof *u->tie);
     if (u->tie) find_ties(world, u->tie);
-    return u->tie && u->plane && u->base && u->number && u->number_capacity ? 0 : -1;
+    return u->tie && u->plane && u->base && u->grid_base && u->number && u->number_capacity ? 0 : -1;
 }
 
 void brunt_unknowns_free(brunt_unknowns *u, const brunt_bodies *bodies) {
     for (int i = 0; u->number && i < bodies->mpm_count; i++) brunt_free(u->number[i]);
-    void *const all[] = {u->tie,   u->plane,    u->base, u->number, u->number_capacity, u->mass,
-                         u->place, u->velocity, u->held, u->holder, u->target,          u->end};
+    void *const all[] = {u->tie,  u->plane, u->grid_base, u->base, u->number, u->number_capacity,
+                         u->mass, u->place, u->velocity,  u->held, u->holder, u->target,
+                         u->end};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) brunt_free(all[k]);
     *u = (brunt_unknowns){.dim = u->dim};
 }
@@ -147,8 +149,11 @@ int brunt_unknowns_number(brunt_unknowns *u, const brunt_world *world) {
     u->count = 0;
     for (int k = 0; k < bodies->fem_count; k++) u->base[k] = u->count, u->count += bodies->fem[k].node_count;
     u->mesh_count = u->count;
-    for (int i = 0; i < bodies->mpm_count; i++)
+    for (int i = 0; i < bodies->mpm_count; i++) {
+        u->grid_base[i] = u->count;
         if (number_grid(u, bodies, i)) return -1;
+    }
+    u->grid_base[bodies->mpm_count] = u->count;
     for (int w = 0; w < world->boundaries.wall_count; w++) u->plane[w] = moves(&walls[w]) ? u->count++ : -1;
     if (reserve(u)) return -1;
     for (int k = 0; k < bodies->fem_count; k++) take_mesh(u, &bodies->fem[k], u->base[k]);

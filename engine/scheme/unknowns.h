@@ -13,7 +13,8 @@ typedef struct brunt_unknowns {
     int32_t count, mesh_count; // nodes; those of meshes
     int32_t *plane;            // of each wall: its node if it is a plane that moves and pushes, else -1
     int32_t *base;             // of each finite-element body: its node 0
-    int32_t **number; // of each body of points: node of slot * BRUNT_BLOCK_NODES + place, -1: without weight, at rest
+    int32_t *grid_base; // of each body of points: its first node that no earlier one has; then the end of the last
+    int32_t **number;   // of each body of points: node of slot * BRUNT_BLOCK_NODES + place, -1: without weight, at rest
     size_t *number_capacity;
     int32_t *tie; // of each body of points: the first one that it is tied to, itself else; ties of ties hold too
     double *mass; // [kg]

@@ -10,7 +10,7 @@ const brunt_body_number brunt_body_numbers[] = {
     {".erosion.strain",        AT(erosion.strain),        BRUNT_POSITIVE | BRUNT_OR_INFINITE, false, NULL},
     {".erosion.step",          AT(erosion.step),          BRUNT_NOT_NEGATIVE, true, NULL},
     {".mass_scaling",          AT(mass_scaling),          BRUNT_NOT_NEGATIVE, true, ": implicit steps need none"},
-    {".damping",               AT(damping),               BRUNT_NOT_NEGATIVE, false, ""},
+    {".damping",               AT(damping),               BRUNT_NOT_NEGATIVE, false, NULL},
     {".thickness",             AT(thickness),             BRUNT_ANY_NUMBER, false, NULL},
     {".contact_thickness",     AT(contact_thickness),     BRUNT_NOT_NEGATIVE | BRUNT_OR_NAN, false, NULL},
     {".spacing",               AT(spacing),               BRUNT_NOT_NEGATIVE, true, NULL},

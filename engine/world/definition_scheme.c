@@ -62,10 +62,25 @@ static void look_at_material(const brunt_world_def *def, const brunt_body_def *b
     const brunt_material_def *material = &def->materials[body->material];
     set_owner(r, "materials.%s", material->name);
     const brunt_model *strength = brunt_find_strength(material->strength), *eos = brunt_find_eos(material->eos);
-    if (strength && !strength->potential) say_no_potential(r, ".model", strength);
-    if (eos && !eos->potential) say_no_potential(r, ".eos.model", eos);
+    if (strength && !strength->potential && !strength->differences) say_no_potential(r, ".model", strength);
+    if (eos && !eos->potential && !eos->differences) say_no_potential(r, ".eos.model", eos);
     if (material->bulk_viscosity) say(r, ".viscosity", EXPLICIT_ONLY ": implicit steps need no bulk viscosity");
     if (material->failure[0]) say(r, ".failure", EXPLICIT_ONLY);
+}
+
+// Conjugate gradients are for the symmetric matrices of potentials.
+static void look_at_solver(const brunt_world_def *def, refusals *r) {
+    for (int32_t b = 0; b < def->body_count && def->newton.solver == BRUNT_SOLVER_PCG; b++) {
+        const int32_t m = def->bodies[b].material;
+        if (m < 0 || m >= def->material_count) continue;
+        const brunt_model *strength = brunt_find_strength(def->materials[m].strength),
+                          *eos = brunt_find_eos(def->materials[m].eos);
+        if (!(strength && !strength->potential) && !(eos && !eos->potential)) continue;
+        set_owner(r, "newton");
+        say(r, ".solver", "pcg wants symmetric matrices, and material '%s' has others: auto or direct is wanted",
+            def->materials[m].name);
+        return;
+    }
 }
 
 static void look_at_body(const brunt_body_def *body, refusals *r) {
@@ -137,6 +152,7 @@ static void look_at_contact(const brunt_world_def *def, refusals *r) {
 }
 
 static void look_at_implicit(const brunt_world_def *def, refusals *r) {
+    look_at_solver(def, r);
     look_at_time(def, r);
     for (int32_t i = 0; i < def->body_count; i++) {
         look_at_material(def, &def->bodies[i], r);

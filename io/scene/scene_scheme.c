@@ -48,6 +48,8 @@ void brunt_fill_scheme(scene_reader *reader) {
 static void refuse_at(void *context, const char *path, const char *reason) {
     scene_tree *tree = ((scene_reader *)context)->tree;
     const scene_node *node = brunt_tree_find(tree, path);
+    // A step that is given is not missing: what is wrong with it has been said.
+    if (!strcmp(path, "time.step") && node->kind == SCENE_SCALAR) return;
     if (node->kind == SCENE_SCALAR)
         brunt_tree_complain(tree, node, "%s", reason);
     else

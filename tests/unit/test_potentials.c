@@ -14,8 +14,8 @@
 
 typedef struct named_material {
     const char *name, *strength, *eos;
-    const char *key[10]; // of what is set, and the values
-    double value[10];
+    const char *key[14]; // of what is set, and the values
+    double value[14];
     bool objective, elastic;
 } named_material;
 
@@ -54,14 +54,43 @@ static const named_material materials[] = {
      {1000, 2e6, 0.3, 1e5, 2e6, 1e6},
      true,
      false},
+    // From here on by differences.
+    {"soil",
+     "drucker-prager",
+     "",
+     {"density", "E", "nu", "cohesion", "friction_angle", "dilatancy_angle", "hardening"},
+     {1000, 2e6, 0.3, 1e5, 0.5, 0.2, 1e5},
+     true,
+     false},
+    {"rock",
+     "mohr-coulomb",
+     "",
+     {"density", "E", "nu", "cohesion", "friction_angle", "dilatancy_angle", "hardening"},
+     {1000, 2e6, 0.3, 1e5, 0.5, 0.2, 1e5},
+     true,
+     false},
+    {"hot metal",
+     "johnson-cook",
+     "mie-gruneisen",
+     {"density", "E", "nu", "A", "B", "n", "C", "eos.c0", "eos.s", "eos.gamma0", "melt", "m", "heat_capacity"},
+     {1000, 2e6, 0.3, 1e5, 2e5, 0.5, 0.03, 40, 1.5, 2, 1000, 1, 100},
+     true,
+     false},
+    {"gas",
+     "newtonian",
+     "ideal-gas",
+     {"density", "dynamic_viscosity", "eos.gamma", "eos.initial_energy"},
+     {1000, 40, 1.4, 1e6},
+     true,
+     false},
 };
-enum { MATERIALS = sizeof materials / sizeof *materials };
+enum { MATERIALS = sizeof materials / sizeof *materials, POTENTIALS = MATERIALS - 4 };
 
 static brunt_material make(const named_material *from) {
     brunt_error error;
     brunt_material_def def = brunt_material_def_default("it", from->strength);
     if (from->eos[0]) ck_assert_int_eq(brunt_material_set(&def, "eos", 0, from->eos, &error), BRUNT_OK);
-    for (int k = 0; k < 10 && from->key[k]; k++)
+    for (int k = 0; k < 14 && from->key[k]; k++)
         ck_assert_msg(!brunt_material_set(&def, from->key[k], from->value[k], NULL, &error), "%s", error.message);
     brunt_material material;
     ck_assert_msg(!brunt_material_make(&def, &material, &error), "%s", error.message);
@@ -81,7 +110,7 @@ typedef struct trial {
     int dim, m;      // m: components of a matrix
     double old_F[9]; // of all lanes alike
     real F[9][BRUNT_LANES], f[9][BRUNT_LANES], state[2][BRUNT_MAX_STATE][BRUNT_LANES], stress[6][BRUNT_LANES];
-    real density[BRUNT_LANES], tau[9][BRUNT_LANES], a[45][BRUNT_LANES];
+    real density[BRUNT_LANES], tau[9][BRUNT_LANES], a[BRUNT_MOST_TANGENTS][BRUNT_LANES];
     brunt_trial_points points[BRUNT_COMPONENTS];
     brunt_material_points kept[BRUNT_COMPONENTS];
     real volume[BRUNT_LANES], plastic[BRUNT_LANES];
@@ -148,7 +177,8 @@ static void respond(trial *t, bool tangent) {
     for (int k = 0; k < BRUNT_COMPONENTS; k++) {
         t->points[k].density = t->density;
         for (int c = 0; c < t->m; c++) t->points[k].stress[c] = t->tau[c];
-        for (int c = 0; c < BRUNT_TANGENT(t->dim); c++) t->points[k].tangent[c] = tangent ? t->a[c] : NULL;
+        for (int c = 0; c < brunt_material_tangents(&t->material, t->dim); c++)
+            t->points[k].tangent[c] = tangent ? t->a[c] : NULL;
     }
     brunt_material_respond(&t->material, t->points);
 }
@@ -214,8 +244,8 @@ static void differences(trial *t, const double *f, uint64_t *seed, double *stres
     for (int c = 0; c < m; c++) {
         power += (double)t->tau[c][0] * G[c], size += fabs((double)t->tau[c][0]);
         for (int e = 0; e < m; e++) {
-            const double a = (double)t->a[place(d, c, e)][0];
-            quadratic += G[c] * a * K[e], stiff += fabs(a) / m;
+            const double a = (double)t->a[brunt_tangent_place(t->material.differences, d, c, e)][0];
+            quadratic += K[c] * a * G[e], stiff += fabs(a) / m;
         }
         F[c] = (double)t->F[c][0];
     }
@@ -230,11 +260,16 @@ static void differences(trial *t, const double *f, uint64_t *seed, double *stres
         piola(t, 0, P[s]);
     }
     const double slope = (4 * (W[0] - W[1]) / 2e-4 - (W[2] - W[3]) / 4e-4) / 3;
-    double bent = 0;
-    for (int c = 0; c < m; c++) bent += (4 * (P[0][c] - P[1][c]) / 2e-4 - (P[2][c] - P[3][c]) / 4e-4) / 3 * KF[c];
+    double bent = 0, kink = 0;
+    for (int c = 0; c < m; c++) {
+        const double near = (P[0][c] - P[1][c]) / 2e-4, far = (P[2][c] - P[3][c]) / 4e-4;
+        bent += (4 * near - far) / 3 * KF[c], kink += (near - far) * KF[c];
+    }
     // What is known of a difference: digits of the potential itself over the step.
-    *stress_error = fabs(slope - power) / (size + 1e-4 * stiff + fabs(W0));
+    *stress_error = t->material.differences ? 0 : fabs(slope - power) / (size + 1e-4 * stiff + fabs(W0));
     *tangent_error = fabs(bent - quadratic) / (stiff + size);
+    // Where both differences are not near each other, flow begins or another face of a yield surface is met between.
+    if (t->material.differences && fabs(kink) > 3e-6 * (stiff + size)) *tangent_error = NAN;
 }
 
 START_TEST(stress_and_tangent) {
@@ -243,6 +278,7 @@ START_TEST(stress_and_tangent) {
     static trial t;
     uint64_t seed = 7;
     double worst[2] = {0};
+    int tried = 0, known = 0;
     for (int history = 0; history < 3; history++) { // a new point, and one that has flowed
         begin(&t, from, dim);
         for (int n = 0; n < history; n++) {
@@ -253,29 +289,32 @@ START_TEST(stress_and_tangent) {
         }
         // Where it yields, and where C2 begins to act, the tangent jumps: no differences there.
         const brunt_model *strength = t.material.model[BRUNT_STRENGTH], *eos = t.material.model[BRUNT_EOS];
-        const bool kink =
-            (strength->plastic && history) || (!strength->plastic && eos && !strcmp(eos->name, "polynomial"));
+        const bool kink = (strength->plastic && history) || (eos && !strcmp(eos->name, "mie-gruneisen")) ||
+                          (!strength->plastic && eos && !strcmp(eos->name, "polynomial"));
         for (int kind = 0; kind < SHAPES; kind++)
             for (int n = 0; n < 10 && !(kink && (kind < 3 || kind == 4 || kind == 5)); n++) {
                 double f[9], error[2];
                 shape(kind, dim, &seed, f);
                 for (int l = 0; l < BRUNT_LANES; l++) set(&t, l, f);
                 differences(&t, f, &seed, &error[0], &error[1]);
-                for (int k = 0; k < 2; k++) {
-                    ck_assert_msg(error[k] < 1e-7, "%s %dD, history %d, shape %d: %s %.2e", from->name, dim, history,
-                                  kind, k ? "tangent" : "stress", error[k]);
+                tried++, known += isfinite(error[1]);
+                for (int k = 0; k < 2 && isfinite(error[1]); k++) {
+                    ck_assert_msg(error[k] < (t.material.differences ? 1e-6 : 1e-7),
+                                  "%s %dD, history %d, shape %d: %s %.2e", from->name, dim, history, kind,
+                                  k ? "tangent" : "stress", error[k]);
                     worst[k] = fmax(worst[k], error[k]);
                 }
             }
     }
-    printf("%s %dD: stress %.1e, tangent %.1e\n", from->name, dim, worst[0], worst[1]);
+    printf("%s %dD: stress %.1e, tangent %.1e, %d of %d\n", from->name, dim, worst[0], worst[1], known, tried);
+    ck_assert_int_ge(known, tried / 2);
 }
 END_TEST
 
 // A turn after the step changes neither the potential, and the stress turns with it.
 START_TEST(turns_are_free) {
-    const named_material *from = &materials[_i % MATERIALS];
-    const int dim = _i / MATERIALS + 2;
+    const named_material *from = &materials[_i % POTENTIALS];
+    const int dim = _i / POTENTIALS + 2;
     static trial t;
     uint64_t seed = 3;
     if (!from->objective) return;
@@ -309,8 +348,8 @@ END_TEST
 // What a commit leaves: of elastic models the bits of `update`; of all the energy that the potential said, stored and
 // dissipated; and the trial of no further step gives that same energy and stress.
 START_TEST(commits) {
-    const named_material *from = &materials[_i % MATERIALS];
-    const int dim = _i / MATERIALS + 2;
+    const named_material *from = &materials[_i % POTENTIALS];
+    const int dim = _i / POTENTIALS + 2;
     static trial t;
     uint64_t seed = 5;
     double flown = 0;
@@ -403,7 +442,7 @@ START_TEST(projection) {
     begin(&t, &materials[1], dim);
     int lifted = 0;
     for (int n = 0; n < 40; n++) {
-        real before[45][BRUNT_LANES], *tangent[45];
+        real before[BRUNT_MOST_TANGENTS][BRUNT_LANES];
         for (int l = 0; l < BRUNT_LANES; l++) {
             double f[9];
             shape(n % 2 ? 6 : 2, dim, &seed, f);
@@ -411,8 +450,7 @@ START_TEST(projection) {
         }
         respond(&t, true);
         memcpy(before, t.a, sizeof before);
-        for (int c = 0; c < BRUNT_TANGENT(dim); c++) tangent[c] = t.a[c];
-        brunt_material_project(dim, BRUNT_LANES, tangent);
+        brunt_material_project(&t.material, t.points);
         for (int l = 0; l < BRUNT_LANES; l++) {
             bool same = true;
             double trace = 0;
@@ -437,8 +475,8 @@ END_TEST
 
 // Past J = 0 the potential is infinite.
 START_TEST(inside_out) {
-    const named_material *from = &materials[_i % MATERIALS];
-    const int dim = _i / MATERIALS + 2;
+    const named_material *from = &materials[_i % POTENTIALS];
+    const int dim = _i / POTENTIALS + 2;
     static trial t;
     begin(&t, from, dim);
     double f[9];
@@ -455,6 +493,10 @@ START_TEST(the_rest_says_why) {
         ck_assert(!brunt_strength_models[k]->potential == !!brunt_strength_models[k]->no_potential);
     for (int k = 0; k < brunt_eos_model_count; k++)
         ck_assert(!brunt_eos_models[k]->potential == !!brunt_eos_models[k]->no_potential);
+    for (int k = 0; k < brunt_strength_model_count; k++) // damage and explosives stay out
+        ck_assert(!brunt_strength_models[k]->damage || !brunt_strength_models[k]->differences);
+    for (int k = 0; k < brunt_eos_model_count; k++)
+        ck_assert(!brunt_eos_models[k]->explosive || !brunt_eos_models[k]->differences);
     named_material gas = {
         "gas", "newtonian", "polynomial", {"density", "eos.C4", "eos.initial_energy", "eos.C1"}, {1, 0.4, 2.5e5, 1e3},
         true,  true};
@@ -464,7 +506,10 @@ START_TEST(the_rest_says_why) {
     for (int k = 0; k < 4; k++) brunt_material_set(&def, gas.key[k], gas.value[k], NULL, &error);
     brunt_material material;
     ck_assert_msg(!brunt_material_make(&def, &material, &error), "%s", error.message);
-    ck_assert_ptr_nonnull(strstr(brunt_material_implicit(&material), "depends on the energy"));
+    ck_assert_ptr_null(brunt_material_implicit(&material));
+    ck_assert(material.differences);
+    ck_assert_ptr_nonnull(strstr(brunt_model_no_potential(material.model[BRUNT_EOS], material.constants[BRUNT_EOS]),
+                                 "depends on the energy"));
     def = brunt_material_def_default("it", "neo-hookean");
     brunt_material_set(&def, "density", 1, NULL, &error), brunt_material_set(&def, "E", 1, NULL, &error);
     brunt_material_set(&def, "nu", 0.3, NULL, &error), brunt_material_set(&def, "viscosity", 0, NULL, &error);
@@ -478,12 +523,12 @@ int main(void) {
     TCase *all = tcase_create("all");
     if (sizeof(real) == sizeof(double)) { // what implicit steps are of
         tcase_add_loop_test(all, stress_and_tangent, 0, 2 * MATERIALS);
-        tcase_add_loop_test(all, turns_are_free, 0, 2 * MATERIALS);
-        tcase_add_loop_test(all, commits, 0, 2 * MATERIALS);
+        tcase_add_loop_test(all, turns_are_free, 0, 2 * POTENTIALS);
+        tcase_add_loop_test(all, commits, 0, 2 * POTENTIALS);
         tcase_add_test(all, hencky_agrees_with_the_explicit_return);
         tcase_add_loop_test(all, projection, 0, 2);
     }
-    tcase_add_loop_test(all, inside_out, 0, 2 * MATERIALS);
+    tcase_add_loop_test(all, inside_out, 0, 2 * POTENTIALS);
     tcase_add_test(all, the_rest_says_why);
     suite_add_tcase(suite, all);
     return suite_main(suite);

@@ -227,13 +227,50 @@ START_TEST(turned_round) {
 }
 END_TEST
 
+// ------------------------------------------------------------------------------------------ damping
+
+// A damped cube flies on, slowed in each step by 1 / (1 + d dt) of backward Euler, (1 - d dt / 2) / (1 + d dt / 2) of
+// Newmark; another, all of whose nodes are drawn at a speed, costs its holders d m v. Both are accounted for.
+START_TEST(damped) {
+    const bool newmark = _i % 2, drawn = _i / 2;
+    const double d = 3, dt = 0.05, mass = 1000;
+    brunt_world_def def = def_begin(3, 1);
+    def_material(&def, "neo-hookean", mass, 1e6, 0.3);
+    brunt_body_def *b = cube(&def, BRUNT_HEX8, drawn ? 1 : 0.5);
+    b->damping = d;
+    def_velocity(b, 2, drawn ? 0 : -1, 0);
+    if (drawn) def_group(&def, "cube", "surface", BRUNT_GROUP_VELOCITY)->value[0] = 2;
+    go_implicit(&def, newmark ? BRUNT_NEWMARK : BRUNT_EULER, dt);
+    def.newton.solver = BRUNT_SOLVER_DIRECT;
+    brunt_world *world = world_take(&def);
+    world_steps(world, 10);
+    const double left = pow(newmark ? (1 - d * dt / 2) / (1 + d * dt / 2) : 1 / (1 + d * dt), 10);
+    const brunt_body_sums s = world_sums(world, 0);
+    const brunt_energy e = world_energy(world);
+    brunt_newton_counts counts;
+    brunt_world_newton(world, &counts, NULL);
+    printf("  %d: v %.12g, %.12g m/s, lost %.6g J, drift %.1e, %.1e, energy error %.1e, %g iterations\n", _i,
+           s.velocity[0], s.velocity[1], e.viscosity, world_momentum(world).linear_drift,
+           world_momentum(world).angular_drift, e.error_relative, counts.iterations);
+    ck_assert_double_eq_tol(s.velocity[0], drawn ? 2 : 2 * left, 1e-9);
+    ck_assert_double_eq_tol(s.velocity[1], drawn ? 0 : -left, 1e-9);
+    if (drawn) ck_assert_double_eq_tol(world_wall(world, 0).force[0], d * mass * 2, 1e-6 * d * mass);
+    if (drawn) ck_assert_double_eq_tol(e.viscosity, d * mass * 4 * 10 * dt, 1e-6);
+    ck_assert_double_gt(e.viscosity, 100);
+    ck_assert_double_le(world_momentum(world).linear_drift, 1e-10);
+    ck_assert_double_le(fabs(e.error_relative), 1e-10);
+    ck_assert_double_le(counts.iterations, 20); // two a step: the Hessian is the slope of the force
+    brunt_world_destroy(world);
+}
+END_TEST
+
 // ------------------------------------------------------------------------------------------ bits
 
 static brunt_world *shaken(int threads) {
     brunt_world_def def = def_begin(3, 1);
     def_material(&def, "neo-hookean", 1000, 1e6, 0.3);
     brunt_body_def *b = cube(&def, BRUNT_TET4, 0.125);
-    b->spin[0] = 3;
+    b->spin[0] = 3, b->damping = 20;
     def_group(&def, "cube", "zmin", BRUNT_GROUP_VELOCITY);
     def.gravity[2] = -100;
     go_implicit(&def, BRUNT_NEWMARK, 2e-3);
@@ -304,6 +341,7 @@ int main(void) {
     ADD_LOOP(turns, 2);
     ADD_LOOP(pulled, 1);
     ADD_LOOP(turned_round, 1);
+    ADD_LOOP(damped, 4);
     ADD_LOOP(threads, 1);
     ADD_LOOP(restart, 1);
     ADD_LOOP(does_not_converge, 2);
