@@ -59,7 +59,7 @@ static int act_at_facets(const brunt_contact_context *m, const brunt_contact_wor
 
 #define SELF(name) BRUNT_SELF_##name
 #define EXPLICIT (1u << BRUNT_EXPLICIT)
-#define IMPLICIT (1u << BRUNT_IMPLICIT)
+#define IMPLICIT (1u << BRUNT_IMPLICIT | 1u << BRUNT_STATIC)
 
 // clang-format off
 const brunt_contact_row brunt_contact_rows[] = {
@@ -129,7 +129,7 @@ const char *brunt_contact_wants(brunt_contact_method method) {
 }
 
 brunt_contact_method brunt_contact_default(brunt_scheme scheme, bool meshes) {
-    const bool mesh = meshes || scheme == BRUNT_IMPLICIT;
+    const bool mesh = meshes || brunt_scheme_minimises(scheme);
     const brunt_contact_row *row = brunt_contact_rows;
     while (!(row->schemes >> scheme & 1) || !row->accepts(mesh, mesh)) row++;
     return (brunt_contact_method)__builtin_ctz(row->methods);

@@ -155,8 +155,12 @@ static double fastest_particle(brunt_world *world, int32_t body) {
 static void print_newton(const brunt_scene *scene, brunt_world *world) {
     brunt_newton_systems s;
     if (!brunt_world_newton_systems(world, &s)) return;
-    printf("implicit steps\n  c dt / h %.3g, %lld unknowns, corrections down to %.3g m/s, ", s.courant,
-           (long long)s.unknowns, s.tolerance);
+    if (brunt_world_static(world))
+        printf("load steps\n  %d to t = 1, %lld unknowns, forces balanced to %.3g of those that act, ",
+               scene->world.load_steps, (long long)s.unknowns, s.tolerance);
+    else
+        printf("implicit steps\n  c dt / h %.3g, %lld unknowns, corrections down to %.3g m/s, ", s.courant,
+               (long long)s.unknowns, s.tolerance);
     print_size(s.bytes, 0);
     printf(" beside the bodies\n  solver %s: %s\n", s.solver, s.why);
     double fastest = 0;

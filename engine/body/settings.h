@@ -11,6 +11,7 @@ typedef struct brunt_settings {
     brunt_scheme scheme;
     brunt_integrator integrator;        // of implicit steps
     brunt_newton_def newton;            // of implicit steps
+    brunt_predictor predictor;          // of load steps
     double flip, cell;                  // [-], [m] of the grids
     double cfl, fixed_step, least_step; // [-], [s] 0: the stable one, [s]
     double end, energy_limit;           // [s], [-]

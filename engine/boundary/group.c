@@ -48,7 +48,7 @@ static int check(const brunt_world_def *def, const void *entry, int32_t w, brunt
 }
 
 static const char *refusal(const brunt_world_def *def, const void *one, const char **key) {
-    if (def->scheme != BRUNT_IMPLICIT) return NULL;
+    if (!brunt_scheme_minimises(def->scheme)) return NULL;
     const brunt_group_def *group = one;
     *key = group->action == BRUNT_GROUP_GAS ? ".gas" : ".pressure";
     if (group->action == BRUNT_GROUP_GAS) return BRUNT_EXPLICIT_ONLY;

@@ -63,7 +63,7 @@ static const char *refusal(const brunt_world_def *def, const void *one, const ch
     *key = "";
     if (def->scheme != BRUNT_IMPLICIT) {
         *key = def->dimension == 2 ? ".line" : ".mesh";
-        return "this belongs to time.scheme: implicit; explicit steps have plane and region";
+        return "this belongs to time.scheme: implicit; others have plane and region";
     }
     if (def->newton.solver == BRUNT_SOLVER_PCG)
         return "newton.solver: pcg has no factor for the tractions of boundaries to follow with: direct or auto";

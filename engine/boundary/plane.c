@@ -47,7 +47,7 @@ static bool oblique(const brunt_plane_def *plane) {
 }
 
 static const char *refusal(const brunt_world_def *def, const void *one, const char **key) {
-    if (def->scheme != BRUNT_IMPLICIT) return NULL;
+    if (!brunt_scheme_minimises(def->scheme)) return NULL;
     const brunt_plane_def *plane = one;
     const brunt_condition_row *row = &brunt_conditions[plane->condition];
     *key = ".condition";

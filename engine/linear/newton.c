@@ -15,7 +15,8 @@ enum { HALVINGS = 60, FEW_HALVINGS = 12, MEMORY = 3 };
 #define LEAST_SHIFT 1e-13
 #define MORE_SHIFT 100.0
 #define MOST_SHIFT 1e-2
-#define EARLY 0.1 // of the tolerance, that the next step would be; of the last step, that this one is
+#define SPARE 1e-14 // of the diagonal, that a matrix may miss by rounding to be positive definite
+#define EARLY 0.1   // of the tolerance, that the next step would be; of the last step, that this one is
 
 typedef struct newton_run {
     brunt_newton *n;
@@ -78,6 +79,7 @@ static double gradient_at(newton_run *r, const double *u) {
     memset(g, 0, (size_t)unknowns(r) * sizeof *g);
     for (int t = 0; t < r->problem->count; t++)
         r->problem->terms[t].ops->gradient(r->problem->terms[t].self, r->team, u, g);
+    if (r->options->unbalance) r->report->unbalance = r->options->unbalance(r->options->context, g);
     for (int64_t i = 0; i < unknowns(r); i++) {
         if (r->problem->held && r->problem->held[i]) g[i] = 0;
         square += g[i] * g[i];
@@ -114,11 +116,14 @@ static int make_pattern(newton_run *r) {
 
 static void fill_matrix(newton_run *r, bool project) {
     brunt_block_matrix *m = &r->n->matrix;
-    if (project) brunt_block_matrix_zero(m, r->team);
+    brunt_block_matrix_zero(m, r->team);
     for (int t = 0; t < r->problem->count; t++)
         if (r->problem->terms[t].ops->hessian)
             r->problem->terms[t].ops->hessian(r->problem->terms[t].self, r->team, r->u, project, m);
-    if (r->problem->held) brunt_block_matrix_hold(m, r->team, r->problem->held, 1);
+}
+
+static void hold_matrix(newton_run *r) {
+    if (r->problem->held) brunt_block_matrix_hold(&r->n->matrix, r->team, r->problem->held, 1);
 }
 
 static int open_solver(newton_run *r, const brunt_linear_ops *solver) {
@@ -131,8 +136,8 @@ static int open_solver(newton_run *r, const brunt_linear_ops *solver) {
     return brunt_linear_open(l, solver, &options, r->error) ? broken(r, BRUNT_NEWTON_BROKEN) : BRUNT_OK;
 }
 
-// The step of the matrix as it stands.
-static brunt_linear_status solve(newton_run *r) {
+// Factors of the matrix as it stands.
+static brunt_linear_status factor(newton_run *r) {
     brunt_newton *n = r->n;
     brunt_linear_status status = BRUNT_LINEAR_DONE;
     if (n->analysed != n->matrix.pattern) {
@@ -143,6 +148,13 @@ static brunt_linear_status solve(newton_run *r) {
     }
     status = brunt_linear_factor(&n->linear, r->team, &n->matrix, r->error);
     r->report->factorisations++;
+    return status;
+}
+
+// The step of the matrix as it stands.
+static brunt_linear_status solve(newton_run *r) {
+    brunt_newton *n = r->n;
+    brunt_linear_status status = factor(r);
     if (status != BRUNT_LINEAR_DONE) return status;
     for (int64_t i = 0; i < unknowns(r); i++) n->trial[i] = -n->gradient[i];
     n->linear.report.iterations = 0;
@@ -194,6 +206,9 @@ static double measure_step(newton_run *r) {
     return report->step;
 }
 
+// Whether a step is so small that it ends the run; nothing is where forces say so.
+static bool small(const newton_run *r) { return !r->options->unbalance && r->report->step <= r->options->tolerance; }
+
 // Whether the step may be taken: it leads downhill, or is so small that rounding has the say.
 static brunt_linear_status try_matrix(newton_run *r) {
     brunt_linear_status status = solve(r);
@@ -207,7 +222,9 @@ static brunt_linear_status try_matrix(newton_run *r) {
     if (r->problem->forces) return status;
     r->slope = 0;
     for (int64_t i = 0; i < unknowns(r); i++) r->slope += r->n->gradient[i] * r->n->step[i];
-    if (r->slope < 0 || measure_step(r) <= r->options->tolerance) return BRUNT_LINEAR_DONE;
+    if (r->slope < 0) return BRUNT_LINEAR_DONE;
+    measure_step(r);
+    if (small(r)) return BRUNT_LINEAR_DONE;
     brunt_fail(r->error, BRUNT_FAILED, "The matrix is not positive definite: its step leads uphill, g.p = %.3g J.",
                r->slope);
     return BRUNT_LINEAR_INDEFINITE;
@@ -221,7 +238,7 @@ static int find_step(newton_run *r) {
     for (int attempt = 0;; attempt++) {
         if (attempt > 0) phase(r, BRUNT_NEWTON_MATRIX);
         r->plain = attempt == 0;
-        if (attempt <= 1) fill_matrix(r, !r->plain);
+        if (attempt <= 1) fill_matrix(r, !r->plain), hold_matrix(r);
         if (attempt == 1) r->report->projections++;
         if (attempt > 1) {
             const double next = shift > 0 ? MORE_SHIFT * shift : LEAST_SHIFT;
@@ -255,7 +272,7 @@ static double within_domain(newton_run *r) {
 // Whether u + share * step, of energy e, may be gone to: it is not higher, or so near that rounding has the say. A step
 // below tolerance is taken as it is.
 static bool acceptable(const newton_run *r, brunt_energy_sum e, double noise, bool whole) {
-    if (whole && (r->report->step <= r->options->tolerance || -r->slope < CLOSE * noise)) return true;
+    if (whole && (small(r) || -r->slope < CLOSE * noise)) return true;
     return e.value <= r->energy.value + noise;
 }
 
@@ -279,8 +296,8 @@ static int search_forces(newton_run *r, double *share) {
     for (int half = 0; half <= FEW_HALVINGS; half++, *share *= 0.5) {
         try_share(r, *share);
         const double length = gradient_at(r, r->n->trial);
-        const bool small = half == 0 && r->report->step <= r->options->tolerance;
-        if (!isfinite(length) || !(small || length <= (1 - LEAST_DECREASE * *share) * longest)) continue;
+        const bool taken = half == 0 && small(r);
+        if (!isfinite(length) || !(taken || length <= (1 - LEAST_DECREASE * *share) * longest)) continue;
         return go(r, half, *share);
     }
     brunt_fail(
@@ -306,9 +323,9 @@ static int search(newton_run *r, double *share) {
     }
     brunt_fail(
         r->error, BRUNT_FAILED,
-        "Newton's method: no part of the step of iteration %d, of %.3g m/s, lowers the energy of %.6g J, though its "
+        "Newton's method: no part of the step of iteration %d, of %.3g %s, lowers the energy of %.6g J, though its "
         "slope is %.3g J.",
-        r->report->iterations + 1, r->report->step, r->energy.value, r->slope);
+        r->report->iterations + 1, r->report->step, r->options->unbalance ? "m" : "m/s", r->energy.value, r->slope);
     return broken(r, BRUNT_NEWTON_UPHILL);
 }
 
@@ -318,8 +335,8 @@ static bool last_step(newton_run *r, double share) {
     const double step = r->report->step, before = r->before;
     const bool full = r->plain && share == 1;
     r->before = full ? step : 0;
-    if (step <= r->options->tolerance) return true;
-    if (!r->options->early || !full || before <= 0 || step >= EARLY * before) return false;
+    if (small(r)) return true;
+    if (!r->options->early || r->options->unbalance || !full || before <= 0 || step >= EARLY * before) return false;
     const double inexact = r->n->linear.ops != &brunt_linear_pcg ? 0 : r->options->accuracy;
     return fmax(step / before, inexact) * step <= EARLY * r->options->tolerance;
 }
@@ -340,7 +357,10 @@ static int iterate(newton_run *r, bool *last) {
     phase(r, BRUNT_NEWTON_EVALUATE);
     if (!r->looked && look(r, NULL)) return BRUNT_FAILED;
     r->looked = false;
-    if (take_gradient(r) || find_step(r)) return BRUNT_FAILED;
+    if (take_gradient(r)) return BRUNT_FAILED;
+    *last = r->options->unbalance && r->report->unbalance <= r->options->tolerance;
+    if (*last) return BRUNT_OK;
+    if (find_step(r)) return BRUNT_FAILED;
     measure_step(r);
     phase(r, BRUNT_NEWTON_LIMIT);
     if (look(r, r->n->step)) return BRUNT_FAILED;
@@ -351,6 +371,40 @@ static int iterate(newton_run *r, bool *last) {
     r->report->iterations++;
     *last = last_step(r, share);
     return *last ? ask_balance(r, last) : BRUNT_OK;
+}
+
+// Whether what has converged is a minimum: the matrix as it is has no negative pivots.
+static int check_stable(newton_run *r) {
+    const bool direct = r->options->solver == &brunt_linear_direct || r->options->fallback;
+    if (!r->options->stable || !direct) return BRUNT_OK;
+    phase(r, BRUNT_NEWTON_MATRIX);
+    if (make_pattern(r)) return BRUNT_FAILED;
+    fill_matrix(r, false), hold_matrix(r);
+    brunt_block_matrix_scale_diagonal(&r->n->matrix, 1 + SPARE);
+    phase(r, BRUNT_NEWTON_SOLVE);
+    if (open_solver(r, &brunt_linear_direct)) return BRUNT_FAILED;
+    const brunt_linear_status status = factor(r);
+    if (status == BRUNT_LINEAR_DONE) return BRUNT_OK;
+    return broken(r, status == BRUNT_LINEAR_INDEFINITE ? BRUNT_NEWTON_UNSTABLE : BRUNT_NEWTON_BROKEN);
+}
+
+// What there is after as many iterations as there may be.
+static int give_up(newton_run *r) {
+    r->report->result = BRUNT_NEWTON_ITERATIONS;
+    if (small(r))
+        return brunt_fail(r->error, BRUNT_FAILED,
+                          "Newton's method did not converge: after %d iterations a step is %.3g m/s, but forces do not "
+                          "balance.",
+                          r->report->iterations, r->report->step);
+    if (r->options->unbalance)
+        return brunt_fail(r->error, BRUNT_FAILED,
+                          "Newton's method did not converge: after %d iterations %.3g of the forces that act are "
+                          "unbalanced, and %.3g is the tolerance.",
+                          r->report->iterations, r->report->unbalance, r->options->tolerance);
+    return brunt_fail(r->error, BRUNT_FAILED,
+                      "Newton's method did not converge: after %d iterations a step is %.3g m/s, and %.3g m/s is the "
+                      "tolerance.",
+                      r->report->iterations, r->report->step, r->options->tolerance);
 }
 
 static int begin(newton_run *r) {
@@ -383,17 +437,29 @@ int brunt_newton_minimise(brunt_newton *newton, const brunt_team *team, const br
     if (begin(&run)) return BRUNT_FAILED;
     while (!last && report->iterations < options->iterations)
         if (iterate(&run, &last)) return BRUNT_FAILED;
-    if (last) return BRUNT_OK;
-    report->result = BRUNT_NEWTON_ITERATIONS;
-    if (report->step <= options->tolerance)
-        return brunt_fail(error, BRUNT_FAILED,
-                          "Newton's method did not converge: after %d iterations a step is %.3g m/s, but forces do not "
-                          "balance.",
-                          report->iterations, report->step);
-    return brunt_fail(error, BRUNT_FAILED,
-                      "Newton's method did not converge: after %d iterations a step is %.3g m/s, and %.3g m/s is the "
-                      "tolerance.",
-                      report->iterations, report->step, options->tolerance);
+    return last ? check_stable(&run) : give_up(&run);
+}
+
+int brunt_newton_lead(brunt_newton *newton, const brunt_team *team, const brunt_problem *problem,
+                      const brunt_newton_options *options, double *u, brunt_newton_way *lead, brunt_error *error) {
+    brunt_newton_report report = {.residual_dof = -1, .step_where = -1, .least_share = 1};
+    newton_run run = {
+        .n = newton, .team = team, .problem = problem, .options = options, .report = &report, .error = error, .u = u};
+    double *p = lead->p;
+    if (begin(&run) || take_gradient(&run)) return BRUNT_FAILED;
+    phase(&run, BRUNT_NEWTON_MATRIX);
+    if (make_pattern(&run)) return BRUNT_FAILED;
+    fill_matrix(&run, false);
+    brunt_block_matrix_product(&newton->matrix, team, lead->way, p);
+    for (int64_t i = 0; i < unknowns(&run); i++)
+        if (!problem->held[i]) newton->gradient[i] += p[i];
+    hold_matrix(&run);
+    phase(&run, BRUNT_NEWTON_SOLVE);
+    const brunt_linear_status status = solve(&run);
+    lead->factorisations = report.factorisations;
+    if (status != BRUNT_LINEAR_DONE) return BRUNT_FAILED;
+    for (int64_t i = 0; i < unknowns(&run); i++) p[i] = problem->held[i] ? lead->way[i] : newton->step[i];
+    return BRUNT_OK;
 }
 
 void brunt_newton_free(brunt_newton *n) {

@@ -20,18 +20,23 @@ typedef enum brunt_newton_phase {
 } brunt_newton_phase;
 
 typedef struct brunt_newton_options {
-    double tolerance;               // of `measure`: [m/s]
+    double tolerance;               // of `measure`: [m/s]; of `unbalance` where there is that: [-]
     int32_t iterations;             // at most
     double accuracy;                // pcg: of each iteration's solution; 1e-3
     const brunt_linear_ops *solver; // direct or pcg
     brunt_preconditioner preconditioner;
     int32_t linear_iterations; // pcg: at most
     bool fallback;             // where pcg stalls, the direct solver goes on (`auto`)
-    bool early;                // a step after which the next would be below tolerance/10 is the last
-    int64_t memory;            // [bytes] direct; 0: what the machine has
+    bool early;     // a step after which the next would be below tolerance/10 is the last; not of `unbalance`
+    bool stable;    // no saddle will do: what has converged is to have a positive definite matrix. By the
+                    // direct solver; not where pcg is to be alone
+    int64_t memory; // [bytes] direct; 0: what the machine has
     // The size of a step p [m/s]: of particles and mesh nodes, never of grid nodes. *where: which has it (the caller's
     // numbering; -1: none). NULL: the greatest component of p, where = its unknown.
     double (*measure)(void *context, const brunt_team *team, const double *p, int64_t *where);
+    // How large a gradient is beside the forces that act [-], of all unknowns, held ones too: where it is given it says
+    // what has converged, in place of the steps. NULL: steps do.
+    double (*unbalance)(void *context, const double *gradient);
     // What forces at u are off by, of what they may be, asked where corrections have become small, after `look`: above
     // 1 the method goes on. NULL: nobody minds.
     double (*balance)(void *context, const brunt_team *team, const double *u);
@@ -50,6 +55,7 @@ typedef enum brunt_newton_result {
     BRUNT_NEWTON_INDEFINITE, // no positive definite matrix, projected and shifted
     BRUNT_NEWTON_BLOCKED,    // a term lets no step be taken
     BRUNT_NEWTON_UPHILL,     // no step, however short, lowers the energy
+    BRUNT_NEWTON_UNSTABLE,   // converged, to what is no minimum
     BRUNT_NEWTON_BROKEN      // memory, the solver, or a number that is not finite
 } brunt_newton_result;
 
@@ -58,7 +64,8 @@ typedef struct brunt_newton_report {
     int32_t iterations, halvings;
     int32_t projections, shifts; // matrices made anew with projected blocks; raised diagonals
     int32_t linear_iterations, factorisations, analyses;
-    double step;             // measure of the last step [m/s]
+    double step;             // measure of the last step [m/s]; of `unbalance`: the greatest component [m]
+    double unbalance;        // of the last gradient; 0 where it is not asked for
     int64_t step_where;      // what had it
     double balance;          // as `balance` said last; 0: not asked
     double least_share;      // smallest part of a step that was taken
@@ -94,4 +101,13 @@ typedef struct brunt_newton {
 int brunt_newton_minimise(brunt_newton *newton, const brunt_team *team, const brunt_problem *problem,
                           const brunt_newton_options *options, double *u, brunt_newton_report *report,
                           brunt_error *error);
+// Where held unknowns go to, and the matrix at u takes all others: K p = -gradient there, p = way where it is held.
+typedef struct brunt_newton_way {
+    const double *way; // [m] of held unknowns; 0 of all others
+    double *p;         // [m] of all; another array
+    int32_t factorisations;
+} brunt_newton_way;
+// BRUNT_OK; BRUNT_FAILED: the matrix is not positive definite, or there is no memory for it: p is of no use.
+int brunt_newton_lead(brunt_newton *newton, const brunt_team *team, const brunt_problem *problem,
+                      const brunt_newton_options *options, double *u, brunt_newton_way *lead, brunt_error *error);
 void brunt_newton_free(brunt_newton *newton);

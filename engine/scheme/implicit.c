@@ -38,11 +38,12 @@ static int choose(brunt_world *world, brunt_step *step, brunt_error *error) {
     const struct brunt_clock *now = &world->clock;
     if (error) *error = (brunt_error){.id = -1};
     const double stop = fmin(step->limit > now->time ? step->limit : INFINITY, world->settings.end);
-    const double left = stop - now->time, wanted = now->next_dt;
+    const bool still = world->plan.implicit->still;
+    const double left = stop - now->time, wanted = still ? brunt_static_wanted(world) : now->next_dt;
     if (!(left > 0)) return brunt_fail_step(world, NULL, error, "the end has been reached, there is no step to take");
-    step->dt = wanted >= left * (1 - 1e-9) ? left
-               : left < 1e6 * wanted       ? left / ceil(left / wanted * (1 - 1e-9))
-                                           : wanted;
+    step->dt = wanted >= left * (1 - 1e-9)     ? left
+               : !still && left < 1e6 * wanted ? left / ceil(left / wanted * (1 - 1e-9))
+                                               : wanted;
     if (now->time + step->dt == now->time)
         return brunt_fail_step(world, NULL, error, "the step is too small to advance the time");
     step->kick = 0; // particles give the grid their mass and momentum, and no forces
@@ -56,7 +57,7 @@ static int commit_meshes(brunt_world *world, brunt_error *error) {
     world->ledger.fem_kinetic = 0;
     for (int k = 0; k < world->bodies.fem_count; k++) {
         brunt_fem_body *fem = &world->bodies.fem[k];
-        if (brunt_fem_commit(m->fem[k], &m->team, m->field.u, m->field.v, error))
+        if (brunt_fem_commit(m->fem[k], &m->team, m->field.u, brunt_implicit_velocity(m), error))
             return brunt_fail_inner(world, NULL, error);
         world->ledger.fem_kinetic += brunt_fem_audit(fem).kinetic;
         for (int32_t b = 0; b < fem->block_count; b++) stored += fem->report[b].hourglass_stored;
@@ -68,7 +69,7 @@ static int commit_meshes(brunt_world *world, brunt_error *error) {
 static int commit_points(brunt_world *world, brunt_step *step, brunt_error *error) {
     struct brunt_implicit *m = world->plan.implicit;
     const brunt_mpm_motion motion = {.u = m->field.u,
-                                     .v = m->field.v,
+                                     .v = brunt_implicit_velocity(m),
                                      .v_old = m->unknowns.velocity,
                                      .transfer = world->settings.transfer,
                                      .flip = world->settings.flip};

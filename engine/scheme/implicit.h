@@ -5,6 +5,9 @@
 //   aim = dt v + alpha (1 - 2 beta) dt^2 a,    a_end = (u - aim) / c,    v_end = v + dt ((1 - gamma) a + gamma a_end)
 // and backward Euler is alpha 1, beta 1/2, gamma 1, Newmark's trapezoidal form alpha 1/2, beta 1/4, gamma 1/2. The
 // acceleration a at the start is that of the forces there, on the grid of this step: it is not carried over.
+//
+// A load step is such a step with dt to infinity: no inertia, no velocities (static_step.c). dt is of a pseudo-time
+// then.
 #pragma once
 
 #include "fem/potential.h"
@@ -24,6 +27,7 @@ enum { BRUNT_MOST_OTHER_TERMS = 3 + 1 + 2 + 2 };
 typedef struct brunt_weights {
     double alpha, beta, gamma;
     double moment; // where along the step forces act, for their moments: 1 its end, 1/2 its middle
+    double work;   // share of the forces at the end in the work of the step; those at its start have the rest
 } brunt_weights;
 
 // Arrays over all components of the unknowns.
@@ -32,13 +36,16 @@ typedef struct brunt_fields {
     double *aim;          // [m]
     double *acceleration; // [m/s^2] at the start; 0 of backward Euler
     double *load;         // [N] at the end of the step
-    double *force_before; // [N] all forces at its start; of Newmark
+    double *force_before; // [N] all forces at its start; of Newmark and of load steps
     double *gradient;     // [N] of all that is stored, at the end once the step is booked
     double *contact;      // [N] of barriers and friction, as the integrator weighs both ends of the step
     double *step, *zero;  // room; 0
     double *pull;         // [N/m] of components on their way to where they are to be, while they are
+    double *stiffness;    // [N/m] of nodes, m (c / h)^2; of load steps
+    uint8_t *grounded;    // of nodes: whether something holds their body in all directions; of load steps
     size_t u_capacity, v_capacity, aim_capacity, acceleration_capacity, load_capacity, force_before_capacity,
-        gradient_capacity, contact_capacity, step_capacity, zero_capacity, pull_capacity;
+        gradient_capacity, contact_capacity, step_capacity, zero_capacity, pull_capacity, stiffness_capacity,
+        grounded_capacity;
 } brunt_fields;
 
 struct brunt_implicit {
@@ -46,7 +53,12 @@ struct brunt_implicit {
     brunt_weights weights;
     brunt_unknowns unknowns;
     brunt_fields field;
-    brunt_inertia inertia;
+    bool told_jump;        // that a load step has jumped; not of the state
+    bool leads;            // load steps begin where the matrix takes what follows prescribed motion
+    bool still;            // load steps: no inertia
+    brunt_inertia inertia; // or
+    brunt_proximal proximal;
+    brunt_load_scale scale; // of load steps
     brunt_dead_loads loads;
     brunt_pull pull;
     brunt_drag drag;                 // of bodies with damping
@@ -54,7 +66,8 @@ struct brunt_implicit {
     size_t drag_weight_capacity, drag_rest_capacity;
     brunt_fem_potential **fem; // a body each
     brunt_mpm_potential **mpm;
-    brunt_term *term; // inertia, loads, pull, surfaces, bodies of elements, of points, barrier, friction
+    brunt_term *term; // inertia or what holds load steps near their iterates, loads, pull, surfaces, bodies of
+                      // elements, of points, barrier, friction
     int fixed_terms, term_count, body_terms; // of them, before the first of a body, up to the last
     brunt_implicit_contact contact;
     bool holds; // there are surfaces, the two below are of them
@@ -81,6 +94,11 @@ struct brunt_implicit {
     } off;
 };
 
+// [m/s] at the end of the step; of load steps nothing moves.
+static inline const double *brunt_implicit_velocity(const struct brunt_implicit *m) {
+    return m->still ? m->field.zero : m->field.v;
+}
+
 static inline int64_t brunt_implicit_components(const struct brunt_implicit *m) {
     return (int64_t)m->unknowns.count * m->unknowns.dim;
 }
@@ -104,6 +122,20 @@ void brunt_implicit_loads(brunt_world *world, double time, double *load);
 // Gradients of terms [first, end) at u, summed.
 void brunt_implicit_gradient(const struct brunt_implicit *m, int first, int end, const double *u, double *g);
 
+// --- static_step.c
+// A load step begins, all that is held and the loads at its end are known: how stiff nodes are, how large forces, what
+// nothing holds. BRUNT_OK; BRUNT_FAILED: a body that nothing holds, and loads on it that do not balance.
+int brunt_static_begin(brunt_world *world, brunt_error *error);
+// What forces leave unbalanced, beside all that act (newton.h).
+double brunt_static_unbalance(void *context, const double *gradient);
+// The step to try, in parts of a load step; the least part of one that is tried.
+double brunt_static_wanted(const brunt_world *world);
+double brunt_static_least(const brunt_world *world);
+// Books the work of forces that are unbalanced where the step begins: particles on a new grid bring them, the
+// transfer's; meshes only have them where a run begins, and what they settle by is lost to the scheme.
+void brunt_static_settle(brunt_world *world);
+// Says, once, that a step has jumped: `taken` [J] of the work within bodies is not there at its end.
+void brunt_static_watch(brunt_world *world, double taken, double work);
 // --- implicit_drag.c
 // Weights of damped nodes, once the unknowns have numbers. 0, or -1: out of memory.
 int brunt_implicit_drag_number(struct brunt_implicit *m, const brunt_world *world);
@@ -147,6 +179,9 @@ int brunt_implicit_sums(const struct brunt_implicit *m, int first, int end, doub
 int brunt_implicit_book_contact(brunt_world *world, brunt_error *error);
 // Where the forces on a node have their moments [m].
 void brunt_implicit_moment_arm(const struct brunt_implicit *m, int32_t n, double x[3]);
-// A force on node n over the step, to a wall's account.
+// A force on node n over the step, to a wall's account: as impulses are weighed, and as work is.
+typedef struct brunt_weighed_force {
+    double impulse[3], work[3]; // [N]
+} brunt_weighed_force;
 void brunt_implicit_book_force(const struct brunt_implicit *m, brunt_impulse_account *last, int32_t n,
-                               const double F[3]);
+                               const brunt_weighed_force *F);

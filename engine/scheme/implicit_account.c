@@ -13,7 +13,7 @@
 
 // ------------------------------------------------------------------------------------------ velocities
 
-static void end_velocities(struct brunt_implicit *m) {
+static void end_velocities(const struct brunt_implicit *m) {
     const brunt_unknowns *unknowns = &m->unknowns;
     const brunt_fields *f = &m->field;
     const double dt = m->dt, gamma = m->weights.gamma, inverse = 1 / m->inertia.c;
@@ -51,16 +51,19 @@ void brunt_implicit_moment_arm(const struct brunt_implicit *m, int32_t n, double
 static void book_gravity(brunt_world *world) {
     const struct brunt_implicit *m = world->plan.implicit;
     const brunt_unknowns *u = &m->unknowns;
-    const double gamma = m->weights.gamma;
-    double before[3], after[3], gravity[3], x[3];
+    const double gamma = m->weights.gamma, work = m->weights.work;
+    double before[3], after[3], gravity[3], working[3], x[3];
     brunt_gravity_at(&world->settings, world->clock.time, before);
     brunt_gravity_at(&world->settings, world->clock.time + m->dt, after);
-    for (int a = 0; a < 3; a++) gravity[a] = (1 - gamma) * before[a] + gamma * after[a];
+    for (int a = 0; a < 3; a++) {
+        gravity[a] = (1 - gamma) * before[a] + gamma * after[a];
+        working[a] = (1 - work) * before[a] + work * after[a];
+    }
     for (int32_t n = 0; n < u->count; n++) {
         brunt_implicit_moment_arm(m, n, x);
         for (int a = 0; a < 3; a++) {
             const int i = (a + 1) % 3, j = (a + 2) % 3;
-            if (a < u->dim) world->ledger.gravity_work += u->mass[n] * gravity[a] * m->field.u[n * (int64_t)u->dim + a];
+            if (a < u->dim) world->ledger.gravity_work += u->mass[n] * working[a] * m->field.u[n * (int64_t)u->dim + a];
             world->ledger.gravity_impulse[a] += m->dt * u->mass[n] * gravity[a];
             world->ledger.gravity_angular[a] += m->dt * u->mass[n] * (x[i] * gravity[j] - x[j] * gravity[i]);
         }
@@ -69,26 +72,28 @@ static void book_gravity(brunt_world *world) {
 
 // A force on a node over the step, of a wall's account.
 void brunt_implicit_book_force(const struct brunt_implicit *m, brunt_impulse_account *last, int32_t n,
-                               const double F[3]) {
+                               const brunt_weighed_force *weighed) {
+    const double *F = weighed->impulse;
     double x[3];
     brunt_implicit_moment_arm(m, n, x);
     for (int a = 0; a < 3; a++) {
         const int i = (a + 1) % 3, j = (a + 2) % 3;
         last->impulse[a] += m->dt * F[a];
         last->angular[a] += m->dt * (x[i] * F[j] - x[j] * F[i]);
-        if (a < m->unknowns.dim) last->external_work += F[a] * m->field.u[n * (int64_t)m->unknowns.dim + a];
+        if (a < m->unknowns.dim) last->external_work += weighed->work[a] * m->field.u[n * (int64_t)m->unknowns.dim + a];
     }
 }
 
 // Loads on groups of nodes, as they are made for one end of the step.
-static void book_groups(brunt_world *world, double weight) {
+static void book_groups(brunt_world *world, double impulse, double work) {
     const struct brunt_implicit *m = world->plan.implicit;
     for (int k = 0; k < world->boundaries.sets.count; k++) {
         const brunt_node_set *set = &world->boundaries.sets.set[k];
         for (int32_t i = 0; set->force && i < set->node_count; i++) {
             const double *force = set->force + 3 * (size_t)i;
-            const double F[3] = {weight * force[0], weight * force[1], weight * force[2]};
-            brunt_implicit_book_force(m, &set->wall->last, m->unknowns.base[set->fem_index] + set->node[i], F);
+            const brunt_weighed_force F = {.impulse = {impulse * force[0], impulse * force[1], impulse * force[2]},
+                                           .work = {work * force[0], work * force[1], work * force[2]}};
+            brunt_implicit_book_force(m, &set->wall->last, m->unknowns.base[set->fem_index] + set->node[i], &F);
         }
     }
 }
@@ -100,14 +105,16 @@ static void book_holders(brunt_world *world) {
     const struct brunt_implicit *m = world->plan.implicit;
     const brunt_unknowns *u = &m->unknowns;
     const brunt_fields *f = &m->field;
-    const double gamma = m->weights.gamma;
+    const double gamma = m->weights.gamma, work = m->weights.work, *v = brunt_implicit_velocity(m);
     for (int64_t k = 0; k < brunt_implicit_components(m); k++) {
         if (!u->holder[k]) continue;
         const int a = (int)(k % u->dim);
-        const double after = f->load[k] - f->gradient[k], before = gamma < 1 ? f->force_before[k] : 0;
-        double F[3] = {0};
-        F[a] = u->mass[k / u->dim] * (f->v[k] - u->velocity[k]) / m->dt - (1 - gamma) * before - gamma * after;
-        brunt_implicit_book_force(m, &world->boundaries.walls[u->holder[k] - 1].last, (int32_t)(k / u->dim), F);
+        const double after = f->load[k] - f->gradient[k], before = work < 1 ? f->force_before[k] : 0;
+        const double inertia = u->mass[k / u->dim] * (v[k] - u->velocity[k]) / m->dt;
+        brunt_weighed_force F = {.work = {0}};
+        F.impulse[a] = inertia - (1 - gamma) * before - gamma * after;
+        F.work[a] = inertia - (1 - work) * before - work * after;
+        brunt_implicit_book_force(m, &world->boundaries.walls[u->holder[k] - 1].last, (int32_t)(k / u->dim), &F);
     }
 }
 
@@ -116,22 +123,27 @@ static void book_holders(brunt_world *world) {
 int brunt_implicit_book(brunt_world *world, brunt_step *step, brunt_error *error) {
     struct brunt_implicit *m = world->plan.implicit;
     const brunt_fields *f = &m->field;
-    const double gamma = m->weights.gamma;
+    const double gamma = m->weights.gamma, work = m->weights.work;
     brunt_term_sums bodies;
-    end_velocities(m);
-    world->ledger.scheme += book_kinetic(m, step);
+    if (!m->still) {
+        end_velocities(m);
+        world->ledger.scheme += book_kinetic(m, step);
+    }
     if (brunt_implicit_sums(m, m->fixed_terms, m->body_terms, NULL, &bodies, error)) return BRUNT_FAILED;
     world->ledger.scheme += bodies.work - (bodies.after - bodies.before);
     memcpy(f->gradient, f->step, (size_t)brunt_implicit_components(m) * sizeof *f->gradient);
     if (m->contact.barrier && brunt_implicit_book_contact(world, error)) return BRUNT_FAILED;
     if (m->holds) brunt_implicit_book_surfaces(world);
     if (world->settings.has_gravity) book_gravity(world);
-    book_groups(world, gamma);
+    book_groups(world, gamma, work);
     brunt_implicit_book_drag(world);
     book_holders(world);
-    if (gamma < 1 && world->boundaries.sets.count) {
+    if (work < 1 && world->boundaries.sets.count) {
         brunt_loads_begin(&world->boundaries.sets, &world->bodies, world->clock.time, 0);
-        book_groups(world, 1 - gamma);
+        book_groups(world, 1 - gamma, 1 - work);
     }
+    if (!m->still) return BRUNT_OK;
+    brunt_static_settle(world);
+    brunt_static_watch(world, bodies.work - (bodies.after - bodies.before), bodies.work);
     return BRUNT_OK;
 }

@@ -32,16 +32,16 @@ static void add_weighed(const struct brunt_implicit *m, double weight, double *t
 int brunt_implicit_sums(const struct brunt_implicit *m, int first, int end, double *total, brunt_term_sums *sums,
                         brunt_error *error) {
     const brunt_fields *f = &m->field;
-    const double gamma = m->weights.gamma;
+    const double gamma = m->weights.gamma, work = m->weights.work;
     *sums = (brunt_term_sums){.work = 0};
     memset(f->zero, 0, (size_t)brunt_implicit_components(m) * sizeof *f->zero);
     if (evaluate(m, first, end, f->zero, &sums->before, error)) return BRUNT_FAILED;
-    if (gamma < 1) {
-        sums->work = (1 - gamma) * dot(m, f->step, f->u);
+    if (work < 1) {
+        sums->work = (1 - work) * dot(m, f->step, f->u);
         add_weighed(m, 1 - gamma, total);
     }
     if (evaluate(m, first, end, f->u, &sums->after, error)) return BRUNT_FAILED;
-    sums->work += gamma * dot(m, f->step, f->u);
+    sums->work += work * dot(m, f->step, f->u);
     add_weighed(m, gamma, total);
     return BRUNT_OK;
 }
@@ -98,6 +98,21 @@ static int weigh_start(struct brunt_implicit *m, brunt_barrier_force *force, bru
     return BRUNT_OK;
 }
 
+// Of load steps, whose work is by the trapezium and which have no friction: what planes do work with, in force_before.
+static int weigh_work(struct brunt_implicit *m, brunt_error *error) {
+    brunt_implicit_contact *c = &m->contact;
+    const double work = m->weights.work;
+    brunt_barrier_report unused;
+    if (brunt_barrier_look_back(c->barrier, &m->team, m->field.zero, m->field.u, &unused, c->force_before, error))
+        return BRUNT_FAILED;
+    for (int32_t k = 0; k < c->pair_count + c->plane_count; k++)
+        for (int a = 0; a < 3; a++) {
+            double *before = &c->force_before[k].normal[a];
+            *before = (1 - work) * *before + work * c->force[k].normal[a];
+        }
+    return BRUNT_OK;
+}
+
 // Of pairs and planes, and the heat of friction over the step's way, weighed as the integrator does. What is at the end
 // comes first, since the start wants friction as it was there.
 static int weigh_forces(struct brunt_implicit *m, brunt_barrier_report *report, brunt_error *error) {
@@ -109,6 +124,7 @@ static int weigh_forces(struct brunt_implicit *m, brunt_barrier_report *report, 
     }
     if (brunt_barrier_look_back(c->barrier, &m->team, m->field.u, m->field.u, report, c->force, error))
         return BRUNT_FAILED;
+    if (m->still) return weigh_work(m, error);
     if (gamma == 1) return BRUNT_OK;
     for (int32_t k = 0; k < c->pair_count + c->plane_count; k++) {
         c->force[k].heat *= gamma;
@@ -122,9 +138,9 @@ static void book_moments(const struct brunt_implicit *m, brunt_impulse_account *
     const brunt_unknowns *u = &m->unknowns;
     brunt_impulse_account moments = {.area = 0};
     for (int32_t n = 0; n < u->count; n++) {
-        double F[3] = {0};
-        for (int a = 0; a < u->dim; a++) F[a] = -m->field.contact[n * (int64_t)u->dim + a];
-        if (u->mass[n] > 0) brunt_implicit_book_force(m, &moments, n, F);
+        brunt_weighed_force F = {.work = {0}};
+        for (int a = 0; a < u->dim; a++) F.impulse[a] = -m->field.contact[n * (int64_t)u->dim + a];
+        if (u->mass[n] > 0) brunt_implicit_book_force(m, &moments, n, &F);
     }
     for (int a = 0; a < 3; a++) last->angular[a] += moments.angular[a];
 }
@@ -140,13 +156,14 @@ static void book_forces(brunt_world *world) {
     }
     for (int32_t q = 0; q < c->plane_count; q++) {
         brunt_boundary *wall = &world->boundaries.walls[c->plane_wall[q]];
-        const brunt_barrier_force *force = &c->force[c->pair_count + q];
+        const brunt_barrier_force *force = &c->force[c->pair_count + q],
+                                  *working = m->still ? &c->force_before[c->pair_count + q] : force;
         wall->last.friction_loss += force->heat;
         wall->last.area = force->area;
         for (int a = 0; a < 3; a++) {
             const double F = force->normal[a] + force->friction[a];
             wall->last.impulse[a] += m->dt * F;
-            wall->last.external_work += m->dt * F * wall->plane.velocity[a];
+            wall->last.external_work += m->dt * (working->normal[a] + working->friction[a]) * wall->plane.velocity[a];
         }
     }
     if (c->plane_count) book_moments(m, &world->boundaries.walls[c->plane_wall[0]].last);

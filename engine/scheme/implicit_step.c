@@ -8,22 +8,27 @@
 
 // ------------------------------------------------------------------------------------------ the aim
 
-// Accelerations at the start, by the forces there. Those of components that are held are their holder's: 0 here.
-static void take_acceleration(brunt_world *world) {
+// Forces at the start, of the grid and the loads there.
+static void take_forces(brunt_world *world) {
     struct brunt_implicit *m = world->plan.implicit;
-    const brunt_unknowns *unknowns = &m->unknowns;
     brunt_fields *f = &m->field;
-    const int64_t all = brunt_implicit_components(m);
-    memset(f->acceleration, 0, (size_t)all * sizeof *f->acceleration);
-    if (m->weights.gamma == 1) return; // backward Euler asks for none
     brunt_implicit_loads(world, world->clock.time, f->force_before);
     brunt_implicit_drag_before(m, f->force_before);
     const int friction = m->term_count - m->rubs; // of the velocities at the start: see barrier.h
     brunt_implicit_gradient(m, m->fixed_terms, friction, f->u, f->gradient);
     brunt_implicit_gradient(m, friction, m->term_count, m->contact.before, f->step);
     if (m->holds) brunt_implicit_surfaces_before(m, f->force_before);
+    for (int64_t k = 0; k < brunt_implicit_components(m); k++) f->force_before[k] -= f->gradient[k] + f->step[k];
+}
+
+// Accelerations at the start, by the forces there. Those of components that are held are their holder's: 0 here.
+static void take_acceleration(struct brunt_implicit *m) {
+    const brunt_unknowns *unknowns = &m->unknowns;
+    brunt_fields *f = &m->field;
+    const int64_t all = brunt_implicit_components(m);
+    memset(f->acceleration, 0, (size_t)all * sizeof *f->acceleration);
+    if (m->weights.gamma == 1) return; // backward Euler asks for none
     for (int64_t k = 0; k < all; k++) {
-        f->force_before[k] -= f->gradient[k] + f->step[k];
         const double mass = unknowns->mass[k / unknowns->dim];
         if (!unknowns->held[k] && mass > 0) f->acceleration[k] = f->force_before[k] / mass;
     }
@@ -55,8 +60,10 @@ static int begin_try(brunt_world *world, double dt, brunt_error *error) {
     for (int t = 0; t < m->term_count; t++)
         if (m->term[t].ops->look && m->term[t].ops->look(m->term[t].self, &m->team, m->field.u, NULL, error))
             return BRUNT_FAILED;
-    take_acceleration(world);
+    if (m->weights.work < 1) take_forces(world);
     brunt_implicit_loads(world, world->clock.time + dt, m->field.load);
+    if (m->still) return brunt_static_begin(world, error);
+    take_acceleration(m);
     take_aim(m);
     return BRUNT_OK;
 }
@@ -70,33 +77,43 @@ static void count(struct brunt_implicit *m, const brunt_newton_report *report) {
     c->projections += report->projections;
     c->linear_iterations += report->linear_iterations;
     c->factorisations += report->factorisations;
-    c->residual = report->step;
+    c->residual = m->still ? report->unbalance : report->step;
+}
+
+static brunt_problem problem_of(const struct brunt_implicit *m) {
+    return (brunt_problem){.dim = m->unknowns.dim,
+                           .nodes = m->unknowns.count,
+                           .terms = m->term,
+                           .count = m->term_count,
+                           .held = m->unknowns.held,
+                           .forces = m->forces};
 }
 
 // From u to a minimum near it, with what is held where it is.
 static int minimise(struct brunt_implicit *m, brunt_newton_report *report, brunt_error *error) {
-    const brunt_problem problem = {.dim = m->unknowns.dim,
-                                   .nodes = m->unknowns.count,
-                                   .terms = m->term,
-                                   .count = m->term_count,
-                                   .held = m->unknowns.held,
-                                   .forces = m->forces};
+    const brunt_problem problem = problem_of(m);
     const int status = brunt_newton_minimise(&m->newton, &m->team, &problem, &m->options, m->field.u, report, error);
     count(m, report);
     return status;
 }
 
-// How far of the way to where they are to be the held components can go while all others stay, without that something
-// is turned inside out or touched. -1: the search for what is near has failed.
-static double free_way(struct brunt_implicit *m, brunt_error *error) {
+// The way of held components to where they are to be in field.step, nothing of all others; its greatest component.
+static double way_left(const struct brunt_implicit *m) {
     const brunt_unknowns *unknowns = &m->unknowns;
-    brunt_fields *f = &m->field;
-    double most = 0, way = 1;
+    const brunt_fields *f = &m->field;
+    double most = 0;
     for (int64_t k = 0; k < brunt_implicit_components(m); k++) {
         f->step[k] = unknowns->held[k] ? unknowns->target[k] - f->u[k] : 0;
         most = fmax(most, fabs(f->step[k]));
     }
-    if (most == 0) return 1;
+    return most;
+}
+
+// How much of field.step can be gone without that something is turned inside out or touched. -1: the search for what is
+// near has failed.
+static double free_part(const struct brunt_implicit *m, brunt_error *error) {
+    const brunt_fields *f = &m->field;
+    double way = 1;
     for (int t = 0; t < m->term_count; t++) {
         const brunt_term *term = &m->term[t];
         if (term->ops->look && term->ops->look(term->self, &m->team, f->u, f->step, error)) return -1;
@@ -107,8 +124,32 @@ static double free_way(struct brunt_implicit *m, brunt_error *error) {
     return way;
 }
 
+// How far of the way to where they are to be the held components can go while all others stay.
+static double free_way(const struct brunt_implicit *m, brunt_error *error) {
+    return way_left(m) == 0 ? 1 : free_part(m, error);
+}
+
+// Begins where held components are at their places and all others where the matrix at the start takes them, if that can
+// be gone to: what is drawn or turned by its end follows, instead of being torn first.
+static int lead(struct brunt_implicit *m, brunt_error *error) {
+    const brunt_fields *f = &m->field;
+    const brunt_problem problem = problem_of(m);
+    brunt_newton_way way = {.way = f->step, .p = f->gradient};
+    brunt_error vain = {.id = -1};
+    if (!m->leads || way_left(m) == 0) return BRUNT_OK;
+    const int status = brunt_newton_lead(&m->newton, &m->team, &problem, &m->options, f->u, &way, &vain);
+    m->tried.factorisations += way.factorisations;
+    if (status) return BRUNT_OK;
+    memcpy(f->step, f->gradient, (size_t)brunt_implicit_components(m) * sizeof *f->step);
+    const double part = free_part(m, error);
+    if (part < 0) return BRUNT_FAILED;
+    for (int64_t k = 0; k < brunt_implicit_components(m) && part == 1; k++)
+        f->u[k] = m->unknowns.held[k] ? m->unknowns.target[k] : f->step[k];
+    return BRUNT_OK;
+}
+
 // Weights of held components that are not where they are to be: `heavy` times their inertia, or of what has no mass
-// that of the heaviest node. Those are free until they are let go.
+// that of the heaviest node; in load steps times the stiffness of nodes. Those are free until they are let go.
 static void pull(struct brunt_implicit *m, double heavy) {
     const brunt_unknowns *unknowns = &m->unknowns;
     double heaviest = 0;
@@ -116,7 +157,9 @@ static void pull(struct brunt_implicit *m, double heavy) {
     for (int64_t k = 0; k < brunt_implicit_components(m); k++) {
         const double mass = unknowns->mass[k / unknowns->dim];
         const bool on_its_way = unknowns->held[k] && unknowns->target[k] != m->field.u[k];
-        m->field.pull[k] = on_its_way ? heavy * (mass > 0 ? mass : heaviest) / m->inertia.c : 0;
+        const double weight =
+            m->still ? m->field.stiffness[k / unknowns->dim] : (mass > 0 ? mass : heaviest) / m->inertia.c;
+        m->field.pull[k] = on_its_way ? heavy * weight : 0;
         if (on_its_way) unknowns->held[k] = 0;
     }
     m->pull.weight = m->field.pull;
@@ -175,11 +218,19 @@ void brunt_implicit_follow(brunt_world *world) {
 static int fail_try(brunt_world *world, const brunt_newton_report *report, brunt_error *error) {
     const struct brunt_implicit *m = world->plan.implicit;
     char why[256], reason[480];
+    if (error && error->body[0]) return BRUNT_FAILED; // it has been said
     snprintf(why, sizeof why, "%.250s", error ? error->message : "");
     const int64_t dof = report->residual_dof;
     if (report->result == BRUNT_NEWTON_BAD_START) {
         snprintf(reason, sizeof reason, "it is flat or turned over where the step begins: %s", why);
         if (brunt_fail_turned(world, error, reason)) return BRUNT_FAILED;
+    }
+    if (report->result == BRUNT_NEWTON_UNSTABLE) {
+        snprintf(reason, sizeof reason,
+                 "the equilibrium of the loads at %.6g is unstable, it buckles, snaps through or turns over; that at "
+                 "%.6g is stable (down to a part %.3g of a load step, newton.cut): %s",
+                 world->clock.time + m->dt, world->clock.time, m->dt / world->settings.fixed_step, why);
+        return brunt_fail_step(world, NULL, error, reason);
     }
     if (dof < 0) return brunt_fail_step(world, NULL, error, why);
     const bool off = report->result == BRUNT_NEWTON_ITERATIONS && report->balance > 1;
@@ -214,6 +265,7 @@ static int settle(struct brunt_implicit *m, brunt_newton_report *report, brunt_e
 static int solve_step(brunt_world *world, double dt, brunt_newton_report *report, brunt_error *error) {
     struct brunt_implicit *m = world->plan.implicit;
     int status = begin_try(world, dt, error);
+    if (!status) status = lead(m, error);
     if (!status) status = go_and_minimise(m, report, error);
     if (!status && m->holds) status = settle(m, report, error);
     return status;
@@ -226,7 +278,7 @@ static int find_tractions(brunt_world *world, double dt, brunt_newton_report *re
     struct brunt_implicit *m = world->plan.implicit;
     const brunt_weights own = m->weights;
     if (!m->holds || world->clock.steps > 0 || own.gamma == 1) return BRUNT_OK;
-    m->weights = (brunt_weights){1, 0.5, 1, 1};
+    m->weights = (brunt_weights){1, 0.5, 1, 1, 1};
     const int status = solve_step(world, dt, report, error);
     if (!status) brunt_implicit_surfaces_keep(world);
     m->weights = own;
@@ -268,7 +320,8 @@ int brunt_pass_newton(brunt_world *world, brunt_step *step, brunt_error *error) 
     int status = BRUNT_OK;
     double dt = step->dt;
     m->team = (brunt_team){.threads = world->settings.threads, .timer = brunt_pass_timer(world)};
-    for (int cut = 0; cut <= world->settings.newton.cut; cut++, dt *= 0.5) {
+    const double least = m->still ? brunt_static_least(world) : ldexp(dt, -world->settings.newton.cut);
+    for (int cut = 0; cut == 0 || dt >= least; cut++, dt *= 0.5) {
         brunt_error tried = {.id = -1};
         status = try_step(world, dt, &report, &tried);
         brunt_newton_counts_add(&sum, &m->tried);

@@ -30,10 +30,10 @@ void brunt_implicit_surfaces_before(const struct brunt_implicit *m, double *forc
 static void book_impulses(const struct brunt_implicit *m, int32_t patch, const double t[3],
                           brunt_impulse_account *last) {
     brunt_impulse_account part = {.area = 0};
-    double F[3];
+    brunt_weighed_force F = {.work = {0}}; // told beside, by rows
     for (int64_t k = m->rows.first[patch]; k < m->rows.first[patch + 1]; k++) {
-        brunt_boundary_patch_force(&m->rows, patch, k, t, F);
-        brunt_implicit_book_force(m, &part, m->rows.node[k], F);
+        brunt_boundary_patch_force(&m->rows, patch, k, t, F.impulse);
+        brunt_implicit_book_force(m, &part, m->rows.node[k], &F);
     }
     for (int a = 0; a < 3; a++) last->impulse[a] += part.impulse[a], last->angular[a] += part.angular[a];
 }

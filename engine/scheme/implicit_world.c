@@ -50,12 +50,17 @@ static int measure_systems(const brunt_world *world, brunt_linear_size *size) {
         size->courant = fmax(size->courant, (double)body->material.wave_speed * dt / (double)body->grid.h);
     }
     size->blocks = blocks / fmax((double)size->nodes, 1);
+    if (world->settings.scheme == BRUNT_STATIC) size->courant = INFINITY;
     return BRUNT_OK;
 }
 
 static void choose_solver(struct brunt_implicit *m, brunt_solver wanted) {
     enum { MOST_ITERATIONS = 300, MANY_ITERATIONS = 20000 };
     m->choice = brunt_linear_choose(&m->size);
+    if (m->still) { // whether an equilibrium is stable it says beside
+        m->choice.solver = &brunt_linear_direct;
+        snprintf(m->choice.why, sizeof m->choice.why, "direct: it tells whether an equilibrium is stable");
+    }
     if (m->holds) {
         m->choice.solver = &brunt_linear_direct;
         snprintf(m->choice.why, sizeof m->choice.why, "tractions of boundaries follow with one factor");
@@ -105,14 +110,19 @@ double brunt_implicit_measure(void *context, const brunt_team *team, const doubl
 
 // ------------------------------------------------------------------------------------------ making
 
-static const brunt_weights weights_of[] = {{1, 0.5, 1, 1}, {0.5, 0.25, 0.5, 0.5}}; // by brunt_integrator
+static const brunt_weights weights_of[] = {{1, 0.5, 1, 1, 1}, {0.5, 0.25, 0.5, 0.5, 0.5}}, // by brunt_integrator
+    weights_of_load_steps = {1, 0.5, 1, 1, 0.5};
+
+// Proximal shares, of the stiffness of nodes: where few material points are near a node of a grid its own may be lost.
+static const double EVERYWHERE = 1e-12;
 
 static int make_bodies(brunt_world *world, struct brunt_implicit *m, brunt_error *error) {
     int32_t base = 0;
-    m->term[m->term_count++] = (brunt_term){&brunt_inertia_ops, &m->inertia};
+    m->term[m->term_count++] =
+        m->still ? (brunt_term){&brunt_proximal_ops, &m->proximal} : (brunt_term){&brunt_inertia_ops, &m->inertia};
     m->term[m->term_count++] = (brunt_term){&brunt_dead_load_ops, &m->loads};
     m->term[m->term_count++] = (brunt_term){&brunt_pull_ops, &m->pull};
-    m->inertia.unknowns = m->loads.unknowns = m->pull.unknowns = m->drag.unknowns = &m->unknowns;
+    m->proximal.unknowns = m->inertia.unknowns = m->loads.unknowns = m->pull.unknowns = m->drag.unknowns = &m->unknowns;
     if (world->boundaries.damping.active) m->term[m->term_count++] = (brunt_term){&brunt_drag_ops, &m->drag};
     if (m->holds) m->term[m->term_count++] = (brunt_term){&brunt_boundary_rows_ops, &m->rows};
     if (m->holds) m->term[m->term_count++] = (brunt_term){&brunt_ghost_ops, &m->ghost};
@@ -158,20 +168,29 @@ static void set_options(brunt_world *world, struct brunt_implicit *m) {
     m->options.tolerance = m->tolerance = newton->tolerance * slowest;
     m->options.iterations = newton->iterations;
     m->options.accuracy = newton->accuracy;
-    m->options.measure = brunt_implicit_measure;
-    m->options.balance = brunt_implicit_balance;
-    m->weights = weights_of[world->settings.integrator];
+    m->weights = m->still ? weights_of_load_steps : weights_of[world->settings.integrator];
+    if (m->still) {
+        m->options.tolerance = newton->tolerance;
+        m->options.unbalance = brunt_static_unbalance;
+        m->options.stable = true;
+        m->leads = world->settings.predictor == BRUNT_PREDICTOR_TANGENT;
+        m->proximal.everywhere = EVERYWHERE;
+    } else {
+        m->options.measure = brunt_implicit_measure;
+        m->options.balance = brunt_implicit_balance;
+    }
     world->clock.next_dt = world->settings.fixed_step;
     world->clock.newton = world->clock.newton_last =
         (brunt_newton_counts){.least_gap = INFINITY, .least_part = INFINITY};
 }
 
 int brunt_implicit_make(brunt_world *world, const brunt_world_def *def, brunt_error *error) {
-    if (world->settings.scheme != BRUNT_IMPLICIT) return BRUNT_OK;
+    if (!brunt_scheme_minimises(world->settings.scheme)) return BRUNT_OK;
     struct brunt_implicit *m = world->plan.implicit = brunt_alloc(sizeof *m);
     if (!m) return out_of_memory(error);
     const brunt_bodies *bodies = &world->bodies;
     m->world = world;
+    m->still = world->settings.scheme == BRUNT_STATIC;
     m->team.threads = world->settings.threads;
     m->holds = world->boundaries.surfaces.count > 0;
     m->fem = brunt_alloc(((size_t)bodies->fem_count + 1) * sizeof *m->fem);
@@ -197,9 +216,11 @@ void brunt_implicit_free(brunt_world *world) {
     for (int k = 0; m->fem && k < world->bodies.fem_count; k++) brunt_fem_potential_free(m->fem[k]);
     for (int i = 0; m->mpm && i < world->bodies.mpm_count; i++) brunt_mpm_potential_free(m->mpm[i]);
     brunt_fields *f = &m->field;
-    double *const fields[] = {f->u,       f->v,    f->aim,  f->acceleration, f->load, f->force_before, f->gradient,
-                              f->contact, f->step, f->zero, m->moved,        f->pull, m->drag_weight,  m->drag_rest};
+    double *const fields[] = {f->u,         f->v,           f->aim,      f->acceleration, f->load,  f->force_before,
+                              f->gradient,  f->contact,     f->step,     f->zero,         m->moved, f->pull,
+                              f->stiffness, m->drag_weight, m->drag_rest};
     for (size_t k = 0; k < sizeof fields / sizeof *fields; k++) brunt_free(fields[k]);
+    brunt_free(f->grounded);
     brunt_newton_free(&m->newton);
     brunt_implicit_contact_free(&m->contact);
     brunt_boundary_rows_free(&m->rows);
@@ -220,8 +241,10 @@ static int reserve(const brunt_world *world, struct brunt_implicit *m) {
     size_t most = 1;
     for (int i = 0; i < world->bodies.mpm_count; i++)
         if ((size_t)world->bodies.mpm[i].particles.slots > most) most = (size_t)world->bodies.mpm[i].particles.slots;
-    return BRUNT_RESERVE(f->u, n, 0) || BRUNT_RESERVE(f->v, n, 0) || BRUNT_RESERVE(f->aim, n, 0) ||
-           BRUNT_RESERVE(f->acceleration, n, 0) || BRUNT_RESERVE(f->load, n, 0) ||
+    const bool failed =
+        m->still ? BRUNT_RESERVE(f->stiffness, n, 0) || BRUNT_RESERVE(f->grounded, n, 0)
+                 : BRUNT_RESERVE(f->v, n, 0) || BRUNT_RESERVE(f->aim, n, 0) || BRUNT_RESERVE(f->acceleration, n, 0);
+    return failed || BRUNT_RESERVE(f->u, n, 0) || BRUNT_RESERVE(f->load, n, 0) ||
            BRUNT_RESERVE(f->force_before, n, 0) || BRUNT_RESERVE(f->gradient, n, 0) ||
            BRUNT_RESERVE(f->contact, n, 0) || BRUNT_RESERVE(f->step, n, 0) || BRUNT_RESERVE(f->zero, n, 0) ||
            BRUNT_RESERVE(f->pull, n, 0) || BRUNT_RESERVE(m->moved, most * (size_t)m->unknowns.dim, 0);
@@ -234,6 +257,7 @@ int brunt_pass_number(brunt_world *world, brunt_step *step, brunt_error *error) 
         return brunt_fail_step(world, NULL, error, "out of memory for the unknowns");
     if (brunt_implicit_drag_number(m, world)) return brunt_fail_step(world, NULL, error, "out of memory for damping");
     m->loads.force = m->field.load, m->inertia.aim = m->field.aim;
+    m->proximal.stiffness = m->field.stiffness, m->proximal.grounded = m->field.grounded;
     if (m->holds && brunt_ghost_step(&m->ghost, world, &m->unknowns))
         return brunt_fail_step(world, NULL, error, "out of memory for nodes without material");
     return brunt_implicit_contact_points(&m->contact, world, &m->unknowns, error) ? brunt_fail_inner(world, NULL, error)
@@ -248,6 +272,8 @@ bool brunt_world_newton(const brunt_world *world, brunt_newton_counts *so_far, b
     return world->plan.implicit != NULL;
 }
 
+bool brunt_world_static(const brunt_world *world) { return world->settings.scheme == BRUNT_STATIC; }
+
 size_t brunt_implicit_bytes(const brunt_world *world) {
     const struct brunt_implicit *m = world->plan.implicit;
     const brunt_fields *f = &m->field;
@@ -258,7 +284,8 @@ size_t brunt_implicit_bytes(const brunt_world *world) {
     for (int k = 0; k < world->bodies.fem_count; k++) bytes += brunt_fem_potential_bytes(m->fem[k]);
     for (int i = 0; i < world->bodies.mpm_count; i++) bytes += brunt_mpm_potential_bytes(m->mpm[i]);
     return bytes + f->u_capacity + f->v_capacity + f->aim_capacity + f->acceleration_capacity + f->load_capacity +
-           f->force_before_capacity + f->gradient_capacity + f->step_capacity + f->zero_capacity + f->pull_capacity;
+           f->force_before_capacity + f->gradient_capacity + f->step_capacity + f->zero_capacity + f->pull_capacity +
+           f->stiffness_capacity + f->grounded_capacity;
 }
 
 size_t brunt_implicit_matrix_bytes(const brunt_world *world) {

@@ -68,7 +68,8 @@ static bool has_mirrors(const brunt_world *world) {
 }
 
 #define BRUNT_EFFECTS(X)                                                                                               \
-    X(implicit, world->settings.scheme == BRUNT_IMPLICIT, "time.scheme")                                               \
+    X(implicit, brunt_scheme_minimises(world->settings.scheme), "time.scheme")                                         \
+    X(equilibrium, world->settings.scheme == BRUNT_STATIC, "time.scheme: static")                                      \
     X(elements, world->bodies.fem_count > 0, "bodies: method fem or membrane")                                         \
     X(affine, world->settings.transfer == BRUNT_APIC && world->bodies.mpm_count > 0, "grid.transfer")                  \
     X(contact, world->contact.rows != 0, "contact.method")                                                             \
@@ -141,7 +142,7 @@ void brunt_plan_make(brunt_world *world) {
     brunt_plan *plan = &world->plan;
     *plan = (brunt_plan){.row_count = 0};
     world->timing.pass = -1;
-    const bool implicit = world->settings.scheme == BRUNT_IMPLICIT;
+    const bool implicit = brunt_scheme_minimises(world->settings.scheme);
     const brunt_pass_row *table = implicit ? brunt_implicit_passes : brunt_explicit_passes;
     for (int i = 0; i < (implicit ? brunt_implicit_pass_count : brunt_explicit_pass_count); i++) {
         const brunt_pass_row *row = &table[i];

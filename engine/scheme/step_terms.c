@@ -113,6 +113,41 @@ static void inertia_hessian(void *term, const brunt_team *team, const double *u,
 const brunt_term_ops brunt_inertia_ops = {
     .name = "inertia", .energy = inertia_energy, .gradient = inertia_gradient, .hessian = inertia_hessian};
 
+// ------------------------------------------------------------------------------------------ about the iterate
+
+static brunt_energy_sum proximal_energy(void *term, const brunt_team *team, const double *u) {
+    (void)term, (void)team, (void)u; // 0 at the iterate, and the energy that steps are judged by is without it
+    return (brunt_energy_sum){0, 0};
+}
+
+static void proximal_gradient(void *term, const brunt_team *team, const double *u, double *g) {
+    (void)term, (void)team, (void)u, (void)g;
+}
+
+static void proximal_add_hessian(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    const add_job *job = context;
+    const brunt_proximal *p = job->term;
+    for (int64_t n = begin; n < end; n++) {
+        const double grid = n < p->unknowns->mesh_count ? 0 : p->everywhere, share = p->grounded[n] ? grid : p->loose;
+        for (int a = 0; a < job->h->dim; a++)
+            brunt_block_matrix_diagonal(job->h, (int32_t)n)[a * (job->h->dim + 1)] += share * p->stiffness[n];
+    }
+}
+
+static void proximal_hessian(void *term, const brunt_team *team, const double *u, bool project,
+                             struct brunt_block_matrix *h) {
+    (void)u, (void)project; // it has no negative eigenvalues
+    const brunt_proximal *p = term;
+    add_job job = {.term = p, .h = h};
+    brunt_parallel(team->threads, p->unknowns->count, STRETCH, proximal_add_hessian, &job, team->timer);
+}
+
+const brunt_term_ops brunt_proximal_ops = {.name = "the iterate's neighbourhood",
+                                           .energy = proximal_energy,
+                                           .gradient = proximal_gradient,
+                                           .hessian = proximal_hessian};
+
 // ------------------------------------------------------------------------------------------ dead loads
 
 typedef struct load_sum {

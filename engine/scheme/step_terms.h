@@ -1,5 +1,5 @@
-// The terms of an implicit step that are of no body and no contact: inertia, loads that do not follow what they
-// act on, drag, and what draws prescribed motion to its end.
+// The terms of an implicit step that are of no body and no contact: inertia or what stands for it in load steps, loads
+// that do not follow what they act on, drag, and what draws prescribed motion to its end.
 #pragma once
 
 #include "linear/term.h"
@@ -11,6 +11,21 @@ typedef struct brunt_inertia {
     const double *aim; // [m] displacement without forces
     double c;          // [s^2]
 } brunt_inertia;
+
+// 1/2 sum w |u - iterate|^2 about each iterate of a load step: a step of Newton's method stays near where it begins,
+// what nothing holds does not fly away, and where it ends is the same.
+typedef struct brunt_proximal {
+    const brunt_unknowns *unknowns;
+    const double *stiffness;  // [N/m] of nodes
+    const uint8_t *grounded;  // of nodes
+    double loose, everywhere; // [-] shares of the stiffness: of what nothing holds, of all grid nodes
+} brunt_proximal;
+
+// How large forces are of which load steps leave a part unbalanced.
+typedef struct brunt_load_scale {
+    double least;    // [N] of forces: those within bodies at the start of the step, or loads at its end
+    double rounding; // [N] that rounding of places makes
+} brunt_load_scale;
 
 // -sum f . u.
 typedef struct brunt_dead_loads {
@@ -33,7 +48,7 @@ typedef struct brunt_pull {
     const double *weight; // [N/m] of each component; NULL: nothing is pulled
 } brunt_pull;
 
-extern const brunt_term_ops brunt_inertia_ops, brunt_dead_load_ops, brunt_drag_ops, brunt_pull_ops;
+extern const brunt_term_ops brunt_inertia_ops, brunt_proximal_ops, brunt_dead_load_ops, brunt_drag_ops, brunt_pull_ops;
 
 // Sums over nodes that are the same for any number of threads: `add` takes the nodes of a stretch.
 typedef brunt_energy_sum brunt_stretch_fn(const void *context, int32_t begin, int32_t end);

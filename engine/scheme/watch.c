@@ -43,7 +43,10 @@ static int check_energy(brunt_world *world, brunt_error *error) {
         length = snprintf(makers, sizeof makers, ", and the transfers have made %.3g %%", 100 * transfers);
     if (world->plan.implicit)
         snprintf(makers + length, sizeof makers - (size_t)length,
-                 ", and the integrator has made %.3g %% (shorter steps, or euler, make less)", 100 * scheme);
+                 world->settings.scheme == BRUNT_STATIC
+                     ? ", and load steps have made %.3g %% (more of them make less, but where bodies jump)"
+                     : ", and the integrator has made %.3g %% (shorter steps, or euler, make less)",
+                 100 * scheme);
     snprintf(reason, sizeof reason, "the energy error is %.3g %% of %.3g J%s; time.energy_limit allows %.3g %%",
              100 * energy.error_relative, energy.reference, makers, 100 * limit);
     return brunt_fail_step(world, NULL, error, reason);
@@ -89,7 +92,8 @@ int brunt_pass_watch(brunt_world *world, brunt_step *step, brunt_error *error) {
 // A step that was cut is followed by longer ones again, up to what is asked for.
 int brunt_pass_watch_implicit(brunt_world *world, brunt_step *step, brunt_error *error) {
     struct brunt_clock *now = &world->clock;
-    const double last = now->newton_last.cuts > 0 ? step->dt : now->next_dt;
-    now->next_dt = fmin(world->settings.fixed_step, 2 * last);
+    const bool cut = now->newton_last.cuts > 0, still = world->settings.scheme == BRUNT_STATIC;
+    const double last = cut ? step->dt : now->next_dt;
+    now->next_dt = fmin(world->settings.fixed_step, cut && still ? last : 2 * last);
     return watch_energy(world, 1, error); // there may be few steps
 }

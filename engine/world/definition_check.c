@@ -229,6 +229,17 @@ static int check_arrays(const brunt_world_def *def, brunt_error *error) {
     return brunt_check_array("contact.pairs", def->contact.pair_count, def->contact.pairs, error);
 }
 
+static int check_end(const brunt_world_def *def, brunt_error *error) {
+    if (def->scheme == BRUNT_STATIC) {
+        if (def->end != 0 && def->end != 1)
+            REFUSE("time.end: %g s: load steps run over a pseudo-time from 0 to 1, none or 1 is wanted", def->end);
+        return BRUNT_OK;
+    }
+    if (!(def->end > 0) || !isfinite(def->end)) REFUSE("time.end: %g s is not a positive time", def->end);
+    BRUNT_CHECK_NUMBERS("", {"time.end", &def->end, 1, BRUNT_POSITIVE});
+    return BRUNT_OK;
+}
+
 static int check_time_and_grid(const brunt_world_def *def, bool particles, brunt_error *error) {
     if (particles && (!(def->cell > 0) || !isfinite(def->cell)))
         REFUSE("grid.cell: %g m is not a positive length", def->cell);
@@ -240,14 +251,14 @@ static int check_time_and_grid(const brunt_world_def *def, bool particles, brunt
     if (!(def->step >= 0) || !isfinite(def->step)) REFUSE("time.step: %g s is not a positive time", def->step);
     if (!(def->least_step >= 0) || !isfinite(def->least_step))
         REFUSE("time.least_step: %g s is not a time", def->least_step);
-    if (!(def->end > 0) || !isfinite(def->end)) REFUSE("time.end: %g s is not a positive time", def->end);
+    BRUNT_TRY(check_end(def, error));
     if (!(def->energy_limit > 0)) REFUSE("time.energy_limit: %g is not positive", def->energy_limit);
-    BRUNT_CHECK_NUMBERS(
-        "", {"grid.cell", &def->cell, 1, BRUNT_ANY_NUMBER},
-        {"grid.origin", def->origin, def->dimension, BRUNT_ANY_NUMBER}, {"time.step", &def->step, 1, BRUNT_ANY_NUMBER},
-        {"time.least_step", &def->least_step, 1, BRUNT_ANY_NUMBER}, {"time.end", &def->end, 1, BRUNT_POSITIVE},
-        {"loads.gravity", def->gravity, def->dimension, BRUNT_ANY_NUMBER},
-        {"loads.gravity_ramp", &def->gravity_ramp, 1, BRUNT_NOT_NEGATIVE});
+    BRUNT_CHECK_NUMBERS("", {"grid.cell", &def->cell, 1, BRUNT_ANY_NUMBER},
+                        {"grid.origin", def->origin, def->dimension, BRUNT_ANY_NUMBER},
+                        {"time.step", &def->step, 1, BRUNT_ANY_NUMBER},
+                        {"time.least_step", &def->least_step, 1, BRUNT_ANY_NUMBER},
+                        {"loads.gravity", def->gravity, def->dimension, BRUNT_ANY_NUMBER},
+                        {"loads.gravity_ramp", &def->gravity_ramp, 1, BRUNT_NOT_NEGATIVE});
     if (def->threads < 0 || def->threads > BRUNT_THREAD_LIMIT)
         REFUSE("threads: %d is not between 0 (all) and %d", def->threads, BRUNT_THREAD_LIMIT);
     return BRUNT_OK;
@@ -287,6 +298,7 @@ static void refuse_first(void *context, const char *path, const char *reason) {
 static int check_newton(const brunt_world_def *def, brunt_error *error) {
     const brunt_newton_def *newton = &def->newton;
     BRUNT_TRY(brunt_check_choice("time", ".integrator", (unsigned)def->integrator, BRUNT_NEWMARK + 1, error));
+    BRUNT_TRY(brunt_check_choice("time", ".predictor", (unsigned)def->predictor, BRUNT_PREDICTOR_NONE + 1, error));
     BRUNT_TRY(brunt_check_choice("newton", ".solver", (unsigned)newton->solver, BRUNT_SOLVER_PCG + 1, error));
     BRUNT_CHECK_NUMBERS("newton", {".tolerance", &newton->tolerance, 1, BRUNT_POSITIVE});
     if (newton->iterations < 1) REFUSE("newton.iterations: %d is less than 1", newton->iterations);
@@ -298,8 +310,8 @@ static int check_newton(const brunt_world_def *def, brunt_error *error) {
 
 // What a scheme cannot do is refused, never left out.
 static int check_scheme(const brunt_world_def *def, brunt_error *error) {
-    BRUNT_TRY(brunt_check_choice("time", ".scheme", (unsigned)def->scheme, BRUNT_IMPLICIT + 1, error));
-    if (def->scheme == BRUNT_IMPLICIT) BRUNT_TRY(check_newton(def, error));
+    BRUNT_TRY(brunt_check_choice("time", ".scheme", (unsigned)def->scheme, BRUNT_STATIC + 1, error));
+    if (brunt_scheme_minimises(def->scheme)) BRUNT_TRY(check_newton(def, error));
     brunt_error first = {.code = BRUNT_OK};
     brunt_scheme_refusals(def, refuse_first, &first);
     if (!first.code) return BRUNT_OK;

@@ -41,8 +41,13 @@ static void set_owner(refusals *r, const char *format, ...) {
 static void look_at_time(const brunt_world_def *def, refusals *r) {
     set_owner(r, "time");
     if (sizeof(real) != sizeof(double))
-        say(r, ".scheme", "implicit: this program computes in single precision, implicit steps want double");
-    if (!(def->step > 0)) say(r, ".step", "implicit steps are of a length that is given: step is missing");
+        say(r, ".scheme", "%s: this program computes in single precision, %s steps want double",
+            def->scheme == BRUNT_STATIC ? "static" : "implicit", def->scheme == BRUNT_STATIC ? "load" : "implicit");
+    if (def->scheme == BRUNT_STATIC) {
+        if (def->load_steps < 1) say(r, ".steps", "load steps are as many as are given: steps is wanted, 1 or more");
+    } else if (!(def->step > 0)) {
+        say(r, ".step", "implicit steps are of a length that is given: step is missing");
+    }
     if (def->cfl > 0) say(r, ".cfl", EXPLICIT_ONLY);
     if (def->least_step > 0) say(r, ".least_step", EXPLICIT_ONLY);
     r->owner[0] = 0;
@@ -160,6 +165,58 @@ static void look_at_implicit(const brunt_world_def *def, refusals *r) {
     }
 }
 
+// ------------------------------------------------------------------------------------------ load steps
+
+#define NOT_STATIC "this belongs to time.scheme: explicit or implicit"
+
+static bool moves(const double v[3]) { return v[0] != 0 || v[1] != 0 || v[2] != 0; }
+
+// What flows has no equilibrium but at rest under its own weight, and of those there are many. Whether one is stable
+// the matrix of a potential says.
+static void look_at_equilibrium(const brunt_world_def *def, const brunt_body_def *body, refusals *r) {
+    if (body->material < 0 || body->material >= def->material_count) return; // another mistake
+    const brunt_material_def *material = &def->materials[body->material];
+    const brunt_model *strength = brunt_find_strength(material->strength);
+    set_owner(r, "materials.%s", material->name);
+    if (!strength || strength->fluid || strength->shear_viscous)
+        say(r, ".model", NOT_STATIC ": nothing keeps the shape of a fluid, it has no equilibrium to be found");
+    const brunt_model *eos = brunt_find_eos(material->eos);
+    if (strength && !strength->potential && strength->differences)
+        say(r, ".model", NOT_STATIC ": '%s' has no potential to tell stable equilibria by", strength->name);
+    if (eos && !eos->potential && eos->differences)
+        say(r, ".eos.model", NOT_STATIC ": '%s' has no potential to tell stable equilibria by", eos->name);
+}
+
+static void look_at_friction(const brunt_world_def *def, refusals *r) {
+    static const char *const why = NOT_STATIC ": where friction stops depends on the way there and its speed";
+    const brunt_contact_def *contact = &def->contact;
+    set_owner(r, "contact");
+    if (contact->friction > 0) say(r, ".friction", "%s", why);
+    for (int32_t q = 0; q < contact->pair_count; q++) {
+        set_owner(r, "contact.pairs[%d]", q);
+        if (contact->pairs[q].friction > 0) say(r, ".friction", "%s", why);
+    }
+    for (int32_t q = 0; q < def->plane_count; q++) {
+        name_boundary(r, q, def->planes[q].name);
+        if (def->planes[q].friction > 0) say(r, ".friction", "%s", why);
+    }
+}
+
+static void look_at_static(const brunt_world_def *def, refusals *r) {
+    for (int32_t i = 0; i < def->body_count; i++) {
+        const brunt_body_def *body = &def->bodies[i];
+        look_at_equilibrium(def, body, r);
+        set_owner(r, "bodies.%s", body->name);
+        if (body->method == BRUNT_MEMBRANE)
+            say(r, ".method", NOT_STATIC ": nothing keeps the shape of a membrane before it is drawn");
+        if (moves(body->velocity)) say(r, ".velocity", NOT_STATIC ": in load steps nothing moves");
+        if (moves(body->wave_velocity)) say(r, ".wave.velocity", NOT_STATIC ": in load steps nothing moves");
+        if (body->damping > 0) say(r, ".damping", NOT_STATIC ": in load steps nothing moves");
+        if (moves(body->spin)) say(r, ".spin", NOT_STATIC ": in load steps nothing moves");
+    }
+    look_at_friction(def, r);
+}
+
 // ------------------------------------------------------------------------------------------ both
 
 // Methods of contact that a scheme has not got.
@@ -168,7 +225,7 @@ static void look_at_method(brunt_contact_method method, brunt_scheme scheme, con
     char words[80];
     if (brunt_contact_of_scheme(method, scheme)) return;
     brunt_contact_words_of(scheme, words, sizeof words);
-    if (scheme == BRUNT_IMPLICIT)
+    if (brunt_scheme_minimises(scheme))
         say(r, ".method", "%s: " EXPLICIT_ONLY ", %s is wanted; %s", brunt_contact_word(method), words, own);
     else
         say(r, ".method", "%s: this belongs to time.scheme: implicit; %s", brunt_contact_word(method), own);
@@ -186,8 +243,10 @@ static void look_at_methods(const brunt_world_def *def, refusals *r) {
 
 void brunt_scheme_refusals(const brunt_world_def *def, brunt_refusal_fn *refuse, void *context) {
     refusals r = {.refuse = refuse, .context = context, .owner = ""};
-    if (def->scheme == BRUNT_IMPLICIT) look_at_implicit(def, &r);
+    const bool minimises = brunt_scheme_minimises(def->scheme);
+    if (def->scheme == BRUNT_STATIC) look_at_static(def, &r);
+    if (minimises) look_at_implicit(def, &r);
     look_at_boundaries(def, &r);
     look_at_methods(def, &r);
-    if (def->scheme == BRUNT_IMPLICIT) look_at_contact(def, &r);
+    if (minimises) look_at_contact(def, &r);
 }

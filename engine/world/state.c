@@ -19,7 +19,7 @@
 static int plain_blocks(const brunt_world *world) {
     return world->contact.surface.affine ? 5 : world->contact.has_surfaces ? 4 : 3;
 }
-static bool implicit(const brunt_world *world) { return world->settings.scheme == BRUNT_IMPLICIT; }
+static bool implicit(const brunt_world *world) { return brunt_scheme_minimises(world->settings.scheme); }
 static int world_blocks(const brunt_world *world) {
     return plain_blocks(world) + (world->erosion.active || implicit(world));
 }

@@ -90,7 +90,7 @@ static int make_sheets(brunt_world *world, brunt_error *error) {
 }
 
 int brunt_surfaces_make(brunt_world *world, const brunt_world_def *def, brunt_error *error) {
-    if (def->scheme == BRUNT_IMPLICIT) return BRUNT_OK; // barriers know surfaces of their own
+    if (brunt_scheme_minimises(def->scheme)) return BRUNT_OK; // barriers know surfaces of their own
     for (int w = 0; w < world->boundaries.wall_count; w++)
         world->contact.has_surfaces = world->contact.has_surfaces || acts_on_fem(world, &world->boundaries.walls[w]);
     for (int r = 0; r < brunt_contact_row_count; r++)

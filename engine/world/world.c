@@ -160,6 +160,7 @@ static void copy_settings(brunt_settings *s, const brunt_world_def *def) {
     s->kernel = def->kernel, s->transfer = def->transfer;
     s->flip = def->flip, s->fixed_step = def->step, s->end = def->end;
     s->scheme = def->scheme, s->integrator = def->integrator, s->newton = def->newton;
+    s->predictor = def->predictor;
     s->axisymmetric = def->axisymmetric;
     s->least_step = def->least_step;
     s->energy_limit = def->energy_limit, s->cell = def->cell, s->gravity_ramp = def->gravity_ramp;
@@ -190,11 +191,18 @@ static int make_room(brunt_world *world, int32_t bodies, brunt_error *error) {
     return made ? BRUNT_OK : brunt_fail(error, BRUNT_FAILED, "out of memory");
 }
 
+// Load steps are steps of a pseudo-time from 0 to 1, over which gravity grows where nothing else is said.
+static void go_static(brunt_world_def *def) {
+    def->end = 1, def->step = 1.0 / def->load_steps;
+    if (def->gravity_ramp == 0) def->gravity_ramp = 1;
+}
+
 brunt_world *brunt_world_create(const brunt_world_def *given, brunt_error *error) {
     if (error) *error = (brunt_error){.id = -1};
     if (brunt_definition_check(given, error)) return NULL;
     brunt_world_def own = *given;
     if (own.transfer == BRUNT_FLIP && own.flip == 0) own.transfer = BRUNT_PIC; // nothing of their own velocity is kept
+    if (own.scheme == BRUNT_STATIC) go_static(&own);
     const brunt_world_def *def = &own;
     brunt_world *world = brunt_alloc(sizeof *world);
     const brunt_body_def **order = brunt_alloc((size_t)def->body_count * sizeof *order);
@@ -237,7 +245,7 @@ brunt_world *brunt_world_create(const brunt_world_def *given, brunt_error *error
     if (!status) status = start(world, error);
     if (!status)
         status =
-            def->scheme == BRUNT_IMPLICIT ? brunt_implicit_make(world, def, error) : finish_explicit(world, def, error);
+            def->scheme == BRUNT_EXPLICIT ? finish_explicit(world, def, error) : brunt_implicit_make(world, def, error);
     brunt_free(order);
     if (!status) {
         BRUNT_VALIDATE(world);

@@ -113,7 +113,7 @@ static void add_newton(brunt_history *h, const brunt_world *world) {
     add(h, "newton.halvings", "1", last.halvings);
     add(h, "newton.linear_iterations", "1", last.linear_iterations);
     add(h, "newton.cuts", "1", last.cuts);
-    add(h, "newton.residual", "m/s", last.residual);
+    add(h, "newton.residual", brunt_world_static(world) ? "1" : "m/s", last.residual);
     add(h, "newton.least_gap", "m", isfinite(last.least_gap) ? last.least_gap : NAN);
     add(h, "newton.least_part", "1", isfinite(last.least_part) ? last.least_part : NAN);
 }

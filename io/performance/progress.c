@@ -76,7 +76,8 @@ static void format_newton(const brunt_world *world, char *text, size_t room) {
     brunt_newton_counts last;
     text[0] = 0;
     if (!brunt_world_newton(world, NULL, &last)) return;
-    const int used = snprintf(text, room, "  newton %.0f to %.2g m/s", last.iterations, last.residual);
+    const int used = snprintf(text, room, "  newton %.0f to %.2g%s", last.iterations, last.residual,
+                              brunt_world_static(world) ? " of forces" : " m/s");
     if (isfinite(last.least_part)) snprintf(text + used, room - (size_t)used, "  gap %.2g", last.least_part);
 }
 

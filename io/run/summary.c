@@ -287,11 +287,13 @@ static void print_eroded(brunt_world *world, brunt_console *console) {
 static void print_newton(brunt_world *world, brunt_console *console) {
     brunt_newton_counts n;
     if (!brunt_world_newton(world, &n, NULL)) return;
+    const bool still = brunt_world_static(world);
     brunt_console_print(console,
                         "newton: %.0f iterations in %.0f steps (%.1f each, at most %.0f), %.0f halvings, %.0f "
-                        "projections, %.0f steps cut, last corrections up to %.3g m/s\n",
+                        "projections, %.0f steps cut, %s up to %.3g%s\n",
                         n.iterations, n.steps, n.iterations / fmax(n.steps, 1), n.iterations_worst, n.halvings,
-                        n.projections, n.cuts, n.residual);
+                        n.projections, n.cuts, still ? "forces unbalanced" : "last corrections", n.residual,
+                        still ? " of those that act" : " m/s");
     brunt_console_print(console, "linear systems: %.0f factorised, %.0f iterations\n", n.factorisations,
                         n.linear_iterations);
     if (isfinite(n.least_gap))

@@ -129,7 +129,7 @@ static void fill_augury(scene_reader *reader, scene_node *node) {
     brunt_contact_def *contact = &reader->scene->world.contact;
     const bool used = uses(contact, BRUNT_CONTACT_AUGURY);
     static const char *const keys[] = {"form", "cell", "transfer", "tolerance", "iterations"};
-    if (reader->scene->world.scheme == BRUNT_IMPLICIT) {
+    if (brunt_scheme_minimises(reader->scene->world.scheme)) {
         for (int i = 0; i < 5; i++) brunt_note_unused(reader, node, keys[i]);
         return;
     }

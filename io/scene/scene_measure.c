@@ -54,7 +54,7 @@ static const char *gas_mistake(const brunt_world_def *world, const char *rest) {
 static const char *newton_mistake(const brunt_world_def *world, const char *rest) {
     static const char *const counts[] = {"iterations", "halvings",  "linear_iterations", "cuts",
                                          "residual",   "least_gap", "least_part"};
-    if (world->scheme != BRUNT_IMPLICIT) return "Newton's method belongs to time.scheme: implicit";
+    if (!brunt_scheme_minimises(world->scheme)) return "Newton's method belongs to time.scheme: implicit";
     return one_of(rest, counts, sizeof counts / sizeof *counts)
                ? NULL
                : "of Newton's method there are iterations, halvings, linear_iterations, cuts, residual, least_gap and "

@@ -110,7 +110,7 @@ static void fill_time(scene_reader *reader) {
     const scene_node *step = brunt_tree_child(time, "step"), *cfl = brunt_tree_child(time, "cfl");
     if (step && cfl && world->scheme == BRUNT_EXPLICIT)
         brunt_tree_complain_key(reader->tree, step, "step and cfl are both given, one of them is wanted");
-    if (step && world->step > world->end && world->end > 0)
+    if (step && world->scheme != BRUNT_STATIC && world->step > world->end && world->end > 0)
         brunt_tree_complain(reader->tree, step, "the step is longer than the run");
     world->cfl = brunt_real_of(time, "cfl", world->cfl);
 }

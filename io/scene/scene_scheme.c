@@ -7,10 +7,11 @@
 
 void brunt_note_unused(scene_reader *reader, const scene_node *map, const char *key) {
     const scene_node *child = brunt_tree_child(map, key);
-    const bool implicit = reader->scene->world.scheme == BRUNT_IMPLICIT;
-    if (child)
-        brunt_scene_warn_at(reader, child, true, "of %s steps, not used by %s ones", implicit ? "explicit" : "implicit",
-                            implicit ? "implicit" : "explicit");
+    static const char *const owner[] = {"implicit", "explicit", "explicit or implicit"}, *const own[] = {
+                                                                                             "explicit", "implicit",
+                                                                                             "load"}; // by brunt_scheme
+    const brunt_scheme scheme = reader->scene->world.scheme;
+    if (child) brunt_scene_warn_at(reader, child, true, "of %s steps, not used by %s ones", owner[scheme], own[scheme]);
 }
 
 // Keys of Newton's method, with their defaults.
@@ -28,10 +29,37 @@ static void fill_newton(scene_reader *reader) {
     brunt_fill_fields(reader, newton, "newton", 0, &reader->scene->world);
 }
 
+static void note_unused_of_load_steps(scene_reader *reader, const scene_node *time, const char *key) {
+    const scene_node *child = brunt_tree_child(time, key);
+    const bool implicit = reader->scene->world.scheme == BRUNT_IMPLICIT;
+    if (child)
+        brunt_scene_warn_at(reader, child, true, "of load steps, not used by %s ones",
+                            implicit ? "implicit" : "explicit");
+}
+
+// Load steps have a pseudo-time of their own, which tables go by: an end in seconds would change their meaning.
+static void fill_load_steps(scene_reader *reader, scene_node *time) {
+    brunt_world_def *world = &reader->scene->world;
+    brunt_refuse_key(reader, time, "end", "load steps run over a pseudo-time from 0 to 1: no end is wanted");
+    static const char *const unused[] = {"step", "cfl", "least_step", "integrator"};
+    for (size_t k = 0; k < sizeof unused / sizeof *unused; k++) brunt_note_unused(reader, time, unused[k]);
+    if (!brunt_tree_child(time, "predictor")) brunt_add_default(reader, time, "predictor", "tangent");
+    world->predictor = (brunt_predictor)(int)brunt_real_of(time, "predictor", BRUNT_PREDICTOR_TANGENT);
+    world->end = 1, world->step = world->cfl = world->least_step = 0;
+    fill_newton(reader);
+}
+
 void brunt_fill_scheme(scene_reader *reader) {
     brunt_world_def *world = &reader->scene->world;
     scene_node *root = reader->tree->root, *time = brunt_tree_child(root, "time");
     if (!time || time->kind != SCENE_MAP) return;
+    if (world->scheme == BRUNT_STATIC) {
+        fill_load_steps(reader, time);
+        return;
+    }
+    if (!brunt_tree_child(time, "end"))
+        brunt_tree_complain_key(reader->tree, time, "'end' is missing: a time (s), the run ends exactly there");
+    note_unused_of_load_steps(reader, time, "steps"), note_unused_of_load_steps(reader, time, "predictor");
     if (world->scheme == BRUNT_IMPLICIT) {
         if (!brunt_tree_child(time, "integrator")) brunt_add_default(reader, time, "integrator", "euler");
         world->integrator = (brunt_integrator)(int)brunt_real_of(time, "integrator", BRUNT_EULER);
@@ -49,7 +77,7 @@ static void refuse_at(void *context, const char *path, const char *reason) {
     scene_tree *tree = ((scene_reader *)context)->tree;
     const scene_node *node = brunt_tree_find(tree, path);
     // A step that is given is not missing: what is wrong with it has been said.
-    if (!strcmp(path, "time.step") && node->kind == SCENE_SCALAR) return;
+    if (node->kind == SCENE_SCALAR && (!strcmp(path, "time.step") || !strcmp(path, "time.steps"))) return;
     if (node->kind == SCENE_SCALAR)
         brunt_tree_complain(tree, node, "%s", reason);
     else

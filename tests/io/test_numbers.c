@@ -123,7 +123,19 @@ static const char flat_text[] =
     "  - {name: line, line: {points: [[0, 0], [1, 0], [1, 1]]}, condition: separate, friction: 0.2, piece: 2,\n"
     "    particles_per_cell: 5, about: [1, 2], displacement: [0.1, 0.2], table: [[0, 0], [1, 2]]}\n";
 
-static const char *const texts[] = {small_scene_text, small_elements_text, rich_text, implicit_text, flat_text};
+static const char static_text[] =
+    "brunt: 1\n"
+    "dimension: 3\n"
+    "time: {scheme: static, steps: 3}\n"
+    "newton: {tolerance: 1e-7, cut: 3}\n"
+    "materials: {gum: {model: neo-hookean, density: 1000, E: 1e6, nu: 0.4}}\n"
+    "bodies:\n"
+    "  low: {method: fem, material: gum, shape: {box: {min: [0, 0, 0], max: [1, 1, 1]}}, size: 1}\n"
+    "loads: {gravity: [1, 2, 3]}\n"
+    "boundaries: [{name: foot, body: low, group: zmin, fix: all}]\n";
+
+static const char *const texts[] = {small_scene_text, small_elements_text, rich_text,
+                                    implicit_text,    flat_text,           static_text};
 enum { TEXTS = sizeof texts / sizeof *texts };
 
 static int parse(const char *text, char **messages) {

@@ -167,7 +167,7 @@ START_TEST(enumerators) {
     REFUSED(def.kernel = (brunt_kernel)0, "grid.kernel");
     REFUSED(def.transfer = (brunt_transfer)3, "grid.transfer");
     REFUSED(def.contact.method = (brunt_contact_method)5, "contact.method: there is no choice 5");
-    REFUSED(def.scheme = (brunt_scheme)2, "time.scheme: there is no choice 2");
+    REFUSED(def.scheme = (brunt_scheme)3, "time.scheme: there is no choice 3");
     REFUSED(def.contact.method = (brunt_contact_method)-1, "contact.method: there is no choice -1");
     REFUSED(def.contact.form = (brunt_augury_form)4, "contact.form: there is no choice 4");
     REFUSED(def.contact.transfer = (brunt_transfer)77, "contact.transfer: there is no choice 77");

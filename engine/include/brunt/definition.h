@@ -13,19 +13,28 @@
 extern "C" {
 #endif
 
-// Time integration: central differences, or steps that minimise an energy.
-typedef enum brunt_scheme { BRUNT_EXPLICIT, BRUNT_IMPLICIT } brunt_scheme;
+// Time integration: central differences; steps that minimise an energy; load steps from one equilibrium to the next, in
+// a pseudo-time that runs from 0 to 1.
+typedef enum brunt_scheme { BRUNT_EXPLICIT, BRUNT_IMPLICIT, BRUNT_STATIC } brunt_scheme;
+// Whether its steps minimise an energy, by Newton's method.
+static inline bool brunt_scheme_minimises(brunt_scheme scheme) {
+    return scheme == BRUNT_IMPLICIT || scheme == BRUNT_STATIC;
+}
 // Of implicit steps: backward Euler (first order, dissipates), Newmark with gamma 1/2 and beta 1/4 (second order).
 typedef enum brunt_integrator { BRUNT_EULER, BRUNT_NEWMARK } brunt_integrator;
+// Where load steps with prescribed motion begin: where the tangent at the last equilibrium takes all that follows it,
+// or where that was, with what is moved alone at its place.
+typedef enum brunt_predictor { BRUNT_PREDICTOR_TANGENT, BRUNT_PREDICTOR_NONE } brunt_predictor;
 // Of the linear systems of implicit steps: by size and step, a factorisation, conjugate gradients.
 typedef enum brunt_solver { BRUNT_SOLVER_AUTO, BRUNT_SOLVER_DIRECT, BRUNT_SOLVER_PCG } brunt_solver;
 
 // Newton's method in implicit steps.
 typedef struct brunt_newton_def {
-    double tolerance;    // [-] > 0, of the slowest wave speed: a step has converged when its last correction moves no
-                         // material point and no node of a mesh faster than that; default 1e-6
+    double tolerance;    // [-] > 0; implicit: of the slowest wave speed: a step has converged when its last correction
+                         // moves no material point and no node of a mesh faster than that; static: of the forces that
+                         // act (loads or reactions, the sum of their sizes), what is left unbalanced; default 1e-6
     int iterations;      // most of a step; default 100
-    int cut;             // most halvings of a step that does not converge; default 6
+    int cut;             // most halvings of a step that does not converge (static: of a load step); default 6
     brunt_solver solver; // default auto
     double accuracy;     // [-] 0..1, of the residual of a linear system, of conjugate gradients; default 1e-3
 } brunt_newton_def;
@@ -102,13 +111,15 @@ typedef struct brunt_world_def {
     brunt_kernel kernel;     // default quadratic
     brunt_transfer transfer; // default APIC
     double flip;             // [-] for FLIP: share of the particle's own velocity kept, 0..1; default 0.99
-    double cfl;          // [-] 0..1, of the stable step; default 0: with material points brunt_default_cfl, without 0.5
-    double step;         // [s] fixed time step, 0 = from cfl; implicit steps: > 0
-    double least_step;   // [s] the run stops, with the reason, when the stable step falls below it; default 0:
-                         // when steps that follow it fall below a millionth of the greatest so far
-    double end;          // [s] > 0; the step that would pass it is cut to end on it
-    double energy_limit; // [-] of the energy `reference` (see brunt_energy); default 0.1; INFINITY = none
-    int threads;         // 0 = all there are; at most BRUNT_THREAD_LIMIT
+    double cfl;     // [-] 0..1, of the stable step; default 0: with material points brunt_default_cfl, without 0.5
+    double step;    // [s] fixed time step, 0 = from cfl; implicit steps: > 0; static: not used
+    int load_steps; // static: > 0, in which loads and prescribed motion grow
+    brunt_predictor predictor; // static; default tangent
+    double least_step;         // [s] the run stops, with the reason, when the stable step falls below it; default 0:
+                               // when steps that follow it fall below a millionth of the greatest so far
+    double end;                // [s] > 0; the step that would pass it is cut to end on it; static: 0 or 1, it is 1
+    double energy_limit;       // [-] of the energy `reference` (see brunt_energy); default 0.1; INFINITY = none
+    int threads;               // 0 = all there are; at most BRUNT_THREAD_LIMIT
     brunt_material_def *materials;
     int32_t material_count; // owned
     brunt_body_def *bodies;
@@ -118,7 +129,7 @@ typedef struct brunt_world_def {
     int32_t detonation_count; // owned
     brunt_contact_def contact;
     double gravity[3];   // [m/s^2] default 0
-    double gravity_ramp; // [s] gravity grows linearly from 0 over this time; default 0
+    double gravity_ramp; // [s] gravity grows linearly from 0 over this time; default 0; static: over all load steps
 } brunt_world_def;
 #undef BRUNT_BOUNDARY_LIST
 

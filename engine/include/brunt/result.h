@@ -141,19 +141,21 @@ typedef struct brunt_newton_counts {
     double projections;                         // matrices without their negative eigenvalues
     double linear_iterations, factorisations;
     double cuts;       // steps that were taken anew, half as long
-    double residual;   // [m/s] greatest last correction of a step
+    double residual;   // [m/s] greatest last correction of a step; static: [-] greatest share of forces left unbalanced
     double least_gap;  // [m] at the end of a step; INFINITY: nothing has been near
     double least_part; // [-] of the distance at which surfaces know of each other, likewise
 } brunt_newton_counts;
 // So far, and of the last step (NULL: not wanted). False in explicit schemes.
 bool brunt_world_newton(const brunt_world *world, brunt_newton_counts *so_far, brunt_newton_counts *last);
+// Whether its steps are load steps, whose residuals have no unit.
+bool brunt_world_static(const brunt_world *world);
 // The systems that implicit steps solve, as they are at the start.
 typedef struct brunt_newton_systems {
     int64_t unknowns;   // components of displacements
-    double courant;     // [-] greatest way of waves in a step, over edges and cells
+    double courant;     // [-] greatest way of waves in a step, over edges and cells; INFINITY: static
     const char *solver; // "direct", "pcg"
     const char *why;    // a sentence
-    double tolerance;   // [m/s] of a correction
+    double tolerance;   // [m/s] of a correction; static: [-] of forces
     double bytes;       // that terms and fields take beside the bodies
 } brunt_newton_systems;
 bool brunt_world_newton_systems(const brunt_world *world, brunt_newton_systems *systems); // false: explicit
