@@ -374,77 +374,103 @@ static double own_share(const job *j, const member *m, int node) {
     return image ? own + (double)(image[BRUNT_NODE_SPARE] / image[0]) : own;
 }
 
-static void meet_at_node(const job *j, group *g, int node, brunt_extent_cloud cloud[2]) {
-    if (j->axis && from_axis(j, &j->w->shared[g->first], node) < 0) return;
+// Bodies at a node of the grids, and the contacts between them.
+typedef struct node_meeting {
     member members[MAX_TOGETHER];
     node_contact contacts[MAX_TOGETHER * (MAX_TOGETHER - 1) / 2];
-    bool fixed = false;
-    int n = 0, contact_count = 0, dim = j->bodies[0].grid.dim;
+    int count, contact_count;
+    bool fixed; // something holds one of them
+} node_meeting;
+
+static void find_members(const job *j, group *g, int node, node_meeting *meeting) {
     for (int32_t i = 0; i < g->count; i++) {
         const shared_slot *s = &j->w->shared[g->first + i];
         real *at = brunt_slot_nodes(&j->bodies[s->body].grid, s->slot) + node * BRUNT_NODE_REALS;
         if (!(at[0] > 0)) continue;
-        if (n == MAX_TOGETHER) {
+        if (meeting->count == MAX_TOGETHER) {
             g->over_limit = true;
+            meeting->count = 0;
             return;
         }
-        members[n++] = make_member(&j->bodies[s->body], s, node, at, i);
+        meeting->members[meeting->count++] = make_member(&j->bodies[s->body], s, node, at, i);
     }
-    if (n < 2) return;
-    double scale = 0;
-    for (int i = 0; i < n; i++) {
-        for (int a = 0; a < dim; a++) scale = fmax(scale, fabs(members[i].v[a]));
-        for (int k = i + 1; k < n; k++) {
-            int32_t pair = pair_between(j, (int)(members[i].body - j->bodies), (int)(members[k].body - j->bodies));
-            if (pair < 0) continue;
-            node_contact *m = &contacts[contact_count];
-            int low = members[i].entry, high = members[k].entry;
-            *m = (node_contact){.a = i,
-                                .b = k,
-                                .action = low * g->count - low * (low + 1) / 2 + high - low - 1,
-                                .friction = j->m->pairs[pair].friction,
-                                .tied = j->m->pairs[pair].method == BRUNT_CONTACT_TIED};
-            double gap = 0;
-            const int known = m->tied ? 1 : make_normal(j, &members[i], &members[k], node, cloud, m->n, &gap);
-            if (known < 0) g->out_of_memory = true;
-            if (known <= 0) continue;
-            m->target = -fmax(gap, 0) / j->m->dt;
-            weigh_contact(&members[i], &members[k], m);
-            fixed |= members[i].fixed || members[k].fixed;
-            contact_count += m->tied || m->inverse > 0;
-        }
-    }
-    if (!contact_count) return;
+}
+
+// The contact of members a and b, if they meet there.
+static void add_contact(const job *j, group *g, int node, int a, int b, brunt_extent_cloud cloud[2],
+                        node_meeting *meeting) {
+    const member *one = &meeting->members[a], *other = &meeting->members[b];
+    const int32_t pair = pair_between(j, (int)(one->body - j->bodies), (int)(other->body - j->bodies));
+    if (pair < 0) return;
+    node_contact *m = &meeting->contacts[meeting->contact_count];
+    const int low = one->entry, high = other->entry;
+    *m = (node_contact){.a = a,
+                        .b = b,
+                        .action = low * g->count - low * (low + 1) / 2 + high - low - 1,
+                        .friction = j->m->pairs[pair].friction,
+                        .tied = j->m->pairs[pair].method == BRUNT_CONTACT_TIED};
+    double gap = 0;
+    const int known = m->tied ? 1 : make_normal(j, one, other, node, cloud, m->n, &gap);
+    if (known < 0) g->out_of_memory = true;
+    if (known <= 0) return;
+    m->target = -fmax(gap, 0) / j->m->dt;
+    weigh_contact(one, other, m);
+    meeting->fixed |= one->fixed || other->fixed;
+    meeting->contact_count += m->tied || m->inverse > 0;
+}
+
+static void solve_meeting(node_meeting *meeting, double scale) {
     for (int sweep = 0; sweep < MAX_SWEEPS; sweep++) {
         double changed = 0;
-        for (int q = 0; q < contact_count; q++) changed = fmax(changed, solve_contact(members, &contacts[q]));
-        if ((contact_count == 1 && !fixed) || changed <= SWEEP_TOLERANCE * scale) break;
+        for (int q = 0; q < meeting->contact_count; q++)
+            changed = fmax(changed, solve_contact(meeting->members, &meeting->contacts[q]));
+        if ((meeting->contact_count == 1 && !meeting->fixed) || changed <= SWEEP_TOLERANCE * scale) break;
     }
-    const int32_t *coord = members[0].body->grid.slots[members[0].slot].coord;
-    double x[3];
-    brunt_node_position(&members[0].body->grid, coord, node, x);
+}
+
+// Applies what a contact has come to at x, and books it.
+static void account_contact(const job *j, const group *g, int node, const double x[3], node_meeting *meeting,
+                            const node_contact *m) {
     static const double rest[3] = {0, 0, 0};
-    for (int q = 0; q < contact_count; q++) {
-        const node_contact *m = &contacts[q];
-        if (!(m->normal_impulse > 0) && !m->tied) continue;
-        double normal_impulse[3], friction_impulse[3], old[3] = {0}, now[3];
-        double own = own_share(j, &members[m->b], node);
-        relative(members, m, now);
-        for (int k = 0; k < 3; k++) {
-            normal_impulse[k] = own * m->normal_impulse * m->n[k], friction_impulse[k] = own * m->friction_impulse[k];
-            members[m->a].applied[k] -= m->normal_impulse * m->n[k] + m->friction_impulse[k];
-            members[m->b].applied[k] += m->normal_impulse * m->n[k] + m->friction_impulse[k];
-        }
-        for (int k = 0; k < dim; k++)
-            old[k] = (double)(members[m->b].node[BRUNT_NODE_OLD + k] - members[m->a].node[BRUNT_NODE_OLD + k]);
-        brunt_impulse_account *action = &j->w->actions[g->action + m->action];
-        brunt_impulse_account_book(action, &action->normal_loss, m->tied ? friction_impulse : normal_impulse, x, old,
-                                   now, rest);
-        if (m->friction > 0 && !m->tied)
-            brunt_impulse_account_book(action, &action->friction_loss, friction_impulse, x, old, now, rest);
+    member *members = meeting->members;
+    double normal_impulse[3], friction_impulse[3], old[3] = {0}, now[3];
+    const double own = own_share(j, &members[m->b], node);
+    relative(members, m, now);
+    for (int k = 0; k < 3; k++) {
+        normal_impulse[k] = own * m->normal_impulse * m->n[k], friction_impulse[k] = own * m->friction_impulse[k];
+        members[m->a].applied[k] -= m->normal_impulse * m->n[k] + m->friction_impulse[k];
+        members[m->b].applied[k] += m->normal_impulse * m->n[k] + m->friction_impulse[k];
     }
-    for (int i = 0; i < n; i++) scatter_node(&members[i]);
-    for (int i = 0; j->axis && i < n; i++) follow_axis(j, &members[i], node);
+    for (int k = 0; k < j->bodies[0].grid.dim; k++)
+        old[k] = (double)(members[m->b].node[BRUNT_NODE_OLD + k] - members[m->a].node[BRUNT_NODE_OLD + k]);
+    brunt_impulse_account *action = &j->w->actions[g->action + m->action];
+    brunt_impulse_account_book(action, &action->normal_loss, m->tied ? friction_impulse : normal_impulse, x, old, now,
+                               rest);
+    if (m->friction > 0 && !m->tied)
+        brunt_impulse_account_book(action, &action->friction_loss, friction_impulse, x, old, now, rest);
+}
+
+static void meet_at_node(const job *j, group *g, int node, brunt_extent_cloud cloud[2]) {
+    if (j->axis && from_axis(j, &j->w->shared[g->first], node) < 0) return;
+    node_meeting meeting;
+    meeting.count = meeting.contact_count = 0, meeting.fixed = false;
+    find_members(j, g, node, &meeting);
+    if (meeting.count < 2) return;
+    double scale = 0;
+    for (int i = 0; i < meeting.count; i++) {
+        for (int a = 0; a < j->bodies[0].grid.dim; a++) scale = fmax(scale, fabs(meeting.members[i].v[a]));
+        for (int k = i + 1; k < meeting.count; k++) add_contact(j, g, node, i, k, cloud, &meeting);
+    }
+    if (!meeting.contact_count) return;
+    solve_meeting(&meeting, scale);
+    const brunt_grid *grid = &meeting.members[0].body->grid;
+    double x[3];
+    brunt_node_position(grid, grid->slots[meeting.members[0].slot].coord, node, x);
+    for (int q = 0; q < meeting.contact_count; q++)
+        if (meeting.contacts[q].normal_impulse > 0 || meeting.contacts[q].tied)
+            account_contact(j, g, node, x, &meeting, &meeting.contacts[q]);
+    for (int i = 0; i < meeting.count; i++) scatter_node(&meeting.members[i]);
+    for (int i = 0; j->axis && i < meeting.count; i++) follow_axis(j, &meeting.members[i], node);
 }
 
 static void meet_blocks(void *context, int64_t begin, int64_t end, int worker) {

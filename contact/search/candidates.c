@@ -91,15 +91,26 @@ static bool in_patch(const search_query *l, int32_t face) {
     return low < l->patch_count && l->patch[low] == face;
 }
 
-// The nearest facets in a cell of each body in `list`, among those that face `normal` by more than `least`. How many
-// bodies. `guess`: a face that may well be the nearest, -1; it saves looking closely at most others. `all`: also notes
-// the two nearest facets of any direction, as far as `slack` beyond the nearest; may be NULL. `membranes`: whether
-// there are any; the cells have their fronts, for both sides.
-static inline __attribute__((always_inline)) int
-find_nearest(const brunt_contact_context *m, const brunt_node_to_facet *f, const search_query *l, const double *normal,
-             double least, const int32_t *list, int32_t count, int32_t guess, double slack, two_nearest *all,
-             bool membranes, nearest best[BRUNT_MAX_CANDIDATES]) {
-    const brunt_contact_surface *s = m->surface;
+// What is looked for in a cell.
+typedef struct facet_search {
+    const double *normal; // that facets are to face by more than `least`; NULL: any
+    double least;
+    const int32_t *list;  // bodies, so many
+    int32_t count, guess; // a face that may well be the nearest, -1; it saves looking closely at most others
+    double slack;
+    two_nearest *all; // notes the two nearest of any direction, as far as `slack` beyond the nearest; may be NULL
+} facet_search;
+
+// The nearest facets in a cell of each body that is looked for. How many bodies. `membranes`: whether there are any;
+// the cells have their fronts, for both sides.
+static inline __attribute__((always_inline)) int find_nearest(const brunt_contact_surface *s,
+                                                              const brunt_node_to_facet *f, const search_query *l,
+                                                              const facet_search what, bool membranes,
+                                                              nearest best[BRUNT_MAX_CANDIDATES]) {
+    const double *const normal = what.normal;
+    const double least = what.least, slack = what.slack;
+    const int32_t guess = what.guess;
+    two_nearest *const all = what.all;
     const double range2 = f->bodies.range * f->bodies.range;
     double bound = INFINITY; // of the one body that the guess belongs to
     brunt_closest guessed;
@@ -118,7 +129,7 @@ find_nearest(const brunt_contact_context *m, const brunt_node_to_facet *f, const
         if (!near_box(s->face_box[face], l->x, reach + slack)) continue;
         const double cosine = normal ? -dot(s->face_normal[face], normal) : 1;
         bool faces = !normal || cosine > least || (membrane && -cosine > least);
-        if ((!faces && !all) || !is_among(other, list, count)) continue;
+        if ((!faces && !all) || !is_among(other, what.list, what.count)) continue;
         if (membranes && other == l->body && in_patch(l, face)) continue;
         brunt_closest at = face == guess ? guessed : brunt_closest_on_face(s, face, l->x);
         if (at.square > range2) continue;
@@ -238,12 +249,10 @@ static inline bool is_before(const brunt_contact_surface *s, int32_t face, const
 
 // What a query meets of each other body. Facets that face the slave come first: a node that slides in under a block
 // meets its underside, not the wall it came through. Only a slave that has none of those close by, and is inside, is
-// sent out through the nearest facet there is. Tells how far the nearest facet is, or how far was looked, and how far
-// the nearest but the one hit.
+// sent out through the nearest facet there is.
 static inline __attribute__((always_inline)) void find_candidates(const brunt_contact_context *m,
                                                                   const brunt_node_to_facet *f, const search_query *l,
-                                                                  int32_t guess, candidate_list *out, double *distance,
-                                                                  double *second, bool membranes) {
+                                                                  int32_t guess, bool membranes, candidate_list *out) {
     const brunt_contact_surface *s = m->surface;
     nearest facing[BRUNT_MAX_CANDIDATES], any[BRUNT_MAX_CANDIDATES];
     two_nearest two;
@@ -253,8 +262,8 @@ static inline __attribute__((always_inline)) void find_candidates(const brunt_co
                        (l->normal && -dot(s->face_normal[guess], l->normal) <= OPPOSED)))
         guess = -1;
     if (membranes && guess >= 0 && is_membrane(s, s->face_body[guess])) guess = -1; // it may be on the other side now
-    int bodies = find_nearest(m, f, l, l->normal, OPPOSED, l->touch, l->touches, guess, slack, &two, membranes, facing),
-        unresolved = 0;
+    const facet_search facing_it = {l->normal, OPPOSED, l->touch, l->touches, guess, slack, &two};
+    int bodies = find_nearest(s, f, l, facing_it, membranes, facing), unresolved = 0;
     int32_t entered[BRUNT_MAX_NEAR];
     for (int32_t k = 0; l->normal && k < l->enters; k++) {
         bool resolved = false;
@@ -263,7 +272,9 @@ static inline __attribute__((always_inline)) void find_candidates(const brunt_co
                 resolved || (facing[b].body == l->enter[k] && facing[b].count && facing[b].square <= close * close);
         if (!resolved) entered[unresolved++] = l->enter[k];
     }
-    int all = unresolved ? find_nearest(m, f, l, NULL, 0, entered, unresolved, -1, 0, NULL, false, any) : 0;
+    int all = unresolved
+                  ? find_nearest(s, f, l, (facet_search){.list = entered, .count = unresolved, .guess = -1}, false, any)
+                  : 0;
     for (int b = 0; b < all; b++) {
         const double least = is_eroded(s, l->body) || is_eroded(s, any[b].body) ? -INFINITY : ASKEW;
         if (!any[b].count || !brunt_nearest_behind(s, &any[b], l->normal, least, &out->candidate[out->count])) continue;
@@ -290,19 +301,20 @@ static inline __attribute__((always_inline)) void find_candidates(const brunt_co
     }
     if (membranes) add_slopes(m, f, l, out);
     if (s->renewal.eroded) add_eroded(m, f, l, out);
-    *distance = outside || two.face < 0 || (by_membrane && !inside) ? fmin(f->bodies.range, sqrt(two.first)) : 0;
-    *second = 0;
+    out->distance = outside || two.face < 0 || (by_membrane && !inside) ? fmin(f->bodies.range, sqrt(two.first)) : 0;
+    out->second = 0;
     if (plain && out->count == 1 && two.face == out->candidate[0].face && !s->renewal.eroded)
-        *second = fmin(fmin(f->bodies.range, sqrt(two.second)), *distance + slack) * (1 - 1e-8) - TOUCH * s->mean_edge;
+        out->second =
+            fmin(fmin(f->bodies.range, sqrt(two.second)), out->distance + slack) * (1 - 1e-8) - TOUCH * s->mean_edge;
     if (membranes) thicken(s, l->half, out);
 }
 
 void brunt_candidates_find(const brunt_contact_context *m, const brunt_node_to_facet *f, const search_query *l,
-                           int32_t guess, candidate_list *out, double *distance, double *second) {
+                           int32_t guess, candidate_list *out) {
     if (m->surface->membrane.side)
-        find_candidates(m, f, l, guess, out, distance, second, true);
+        find_candidates(m, f, l, guess, true, out);
     else
-        find_candidates(m, f, l, guess, out, distance, second, false);
+        find_candidates(m, f, l, guess, false, out);
 }
 
 // The facet that was the nearest, when it is certain that it still is: it is nearer than `least`, which no other one

@@ -18,6 +18,7 @@ typedef struct facet_candidate {
 typedef struct candidate_list {
     facet_candidate candidate[BRUNT_MAX_CANDIDATES];
     int32_t count;
+    double distance, second; // [m] how far the nearest facet is, or how far was looked, and the nearest but the one hit
 } candidate_list;
 
 // A place that looks around: which bodies it may touch (their boxes are that near), and which it may have entered.

@@ -93,7 +93,8 @@ static void find_node_candidates(const search_job *j, int k, int32_t n, int work
             if (l.touches) cached->distance = 0; // near, but outside the cells
             return;
         }
-        brunt_candidates_find(m, f, &l, f->cache.nearest[n], found, &cached->distance, &cached->second);
+        brunt_candidates_find(m, f, &l, f->cache.nearest[n], found);
+        cached->distance = found->distance, cached->second = found->second;
         if (l.touches == BRUNT_MAX_NEAR)
             cached->distance = cached->second = 0; // there may be more bodies than were looked at
         if (found->count) f->cache.nearest[n] = found->candidate[0].face;

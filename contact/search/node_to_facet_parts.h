@@ -43,7 +43,7 @@ bool brunt_broad_phase_in_reach(const brunt_node_to_facet *f, int32_t box, const
 // Fills the bodies a query may touch or have entered; whether there are facets to look at.
 bool brunt_candidates_bodies(const brunt_node_to_facet *f, search_query *l);
 void brunt_candidates_find(const brunt_contact_context *m, const brunt_node_to_facet *f, const search_query *l,
-                           int32_t guess, candidate_list *out, double *distance, double *second);
+                           int32_t guess, candidate_list *out);
 bool brunt_candidates_still_nearest(const brunt_contact_context *m, const brunt_node_to_facet *f, int32_t n,
                                     const double *normal, double least, candidate_list *out);
 

@@ -63,12 +63,12 @@ static int search_from_block(const search_job *j, int32_t b, particle_list *list
     if (brunt_total_lagrangian(&j->body->particles)) brunt_body_block_bounds(j->body, b, low, high);
     if (!brunt_broad_phase_in_reach(f, j->box, low, high, f->bodies.range)) return 0;
     for (int64_t s = grid->blocks[b].first; s < grid->blocks[b].first + grid->blocks[b].count; s++) {
-        double x[3] = {0}, distance, second;
+        double x[3] = {0};
         for (int a = 0; a < dim; a++) x[a] = (double)place[a][s];
         candidate_list found;
         search_query l = {.box = j->box, .body = j->body->index, .x = x};
         if (!brunt_candidates_bodies(f, &l)) continue;
-        brunt_candidates_find(j->m, f, &l, -1, &found, &distance, &second);
+        brunt_candidates_find(j->m, f, &l, -1, &found);
         for (int32_t q = 0; q < found.count; q++) {
             found.candidate[q].gap -= brunt_extent_along(j->body, s, found.candidate[q].n);
             if (found.candidate[q].gap <= f->bodies.travel &&
