@@ -39,12 +39,13 @@ static int make_room(brunt_incomplete *f, const brunt_team *team) {
 // Columns right of the diagonal: by level, and those of a piece in ascending places.
 static void take_rows(brunt_incomplete *f) {
     const brunt_block_matrix *a = f->a;
-    int64_t e = 0, *next = f->lower + 1; // shifted by one: filling moves each to where the next one begins
+    int64_t e = 0, *next = f->lower + 1;    // shifted by one: filling moves each to where the next one begins
+    const int turns = f->slabs > 1 ? 1 : 2; // one slab is gone through forwards only
     memset(f->lower, 0, ((size_t)a->nodes + 2) * sizeof *f->lower);
     for (int32_t p = 0; p < a->nodes; p++) {
         const int32_t node = f->order[p];
         f->upper[p] = e;
-        for (int turn = f->turn[node]; turn < 2 * f->levels; turn++)
+        for (int turn = f->turn[node]; turn < 2 * f->levels; turn += turns)
             for (int64_t k = 0; k < a->first[node + 1] - a->first[node]; k++) {
                 const int64_t at = turn % 2 ? a->first[node + 1] - 1 - k : a->first[node] + k;
                 const int32_t q = f->place[a->column[at]];
