@@ -27,11 +27,11 @@ static void cut_slabs(cut *c) {
     }
 }
 
-// Whether a node of a slab that ends at `end` couples with one that no earlier level has and that is in a later slab.
-static bool waits(const cut *c, int32_t node, int32_t end, int level) {
+// Whether a node of a slab that ends at `end` couples with one of a later slab that has no level yet.
+static bool waits(const cut *c, int32_t node, int32_t end) {
     const brunt_block_matrix *a = c->a;
     for (int64_t k = a->first[node + 1] - 1; k >= a->first[node] && a->column[k] >= end; k--)
-        if (c->level[a->column[k]] < 0 || c->level[a->column[k]] == level) return true;
+        if (c->level[a->column[k]] < 0) return true;
     return false;
 }
 
@@ -44,7 +44,7 @@ static void find_levels(cut *c) {
         const bool last = c->levels == BRUNT_LEVELS - 1;
         for (int s = 0; s < c->slabs; s++)
             for (int32_t n = c->begin[s]; n < c->begin[s + 1]; n++) {
-                if (c->level[n] >= 0 || (!last && waits(c, n, c->begin[s + 1], c->levels))) continue;
+                if (c->level[n] >= 0 || (!last && waits(c, n, c->begin[s + 1]))) continue;
                 c->level[n] = (int8_t)c->levels, left--;
                 c->weight[c->levels][last ? 0 : s] += c->a->first[n + 1] - c->a->first[n];
             }
