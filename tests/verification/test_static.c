@@ -233,9 +233,11 @@ START_TEST(drawn_and_turned) {
     if (!turned) def.groups[1].component[1] = left->component[1] = false;
     if (!turned) group(&def, "bar", "ymin", BRUNT_GROUP_DISPLACEMENT)->component[0] = false;
     brunt_world *world = world_take(&def);
+    double before = 0, work = 0;
     for (int s = 1; s <= 4; s++) {
         world_until(world, 0.25 * s);
         const double way = node_way(world, 0, 2, 0, 0), force = world_wall(world, 0).force[0], F = 1 + s * 0.0625;
+        work += 0.125 * (before - force) / 2, before = -force;
         const double exact = turned ? 2 * cos(PI / 3 * s / 4) - 2 : 0.125 * s;
         ck_assert_double_eq_tol(way, exact, 1e-6);
         // Neo-Hookean with lambda = 0, mu = E / 2: P = mu (F - 1 / F), of a face of 1 m.
@@ -243,7 +245,10 @@ START_TEST(drawn_and_turned) {
         if (turned) ck_assert_double_eq_tol(force, 0, 1e-3);
     }
     ck_assert_int_eq(brunt_world_steps(world), 4);
-    printf("  %.6g N, %.6g J stored\n", world_wall(world, 0).force[0], world_energy(world).internal);
+    printf("  %.6g N, %.6g J stored, %.6g J of work\n", world_wall(world, 0).force[0], world_energy(world).internal,
+           world_energy(world).external_work);
+    // Of what moves nodes: the mean force of each load step along its way.
+    if (!turned) ck_assert_double_eq_tol(world_energy(world).external_work, work, 1e-6 * work);
     brunt_world_destroy(world);
 }
 END_TEST
