@@ -423,6 +423,31 @@ START_TEST(accuracy_is_of_the_solution) {
 }
 END_TEST
 
+// A block of splines whose steps are 100 times what a wave takes through a cell, pushed alike everywhere: it moves as a
+// whole, and the residual is small when it has hardly begun to (half of the error is left by then). An estimate, no
+// bound: of other loads more may be left.
+START_TEST(long_waves_are_waited_for) {
+    elastic e = elastic_splines(2, 60);
+    const int64_t n = (int64_t)e.nodes * e.dim;
+    double *b = malloc((size_t)n * sizeof *b), *u = malloc((size_t)n * sizeof *u), *x = malloc((size_t)n * sizeof *x);
+    double *r = malloc((size_t)n * sizeof *r);
+    brunt_block_matrix m = assembled(&e, &alone, 100);
+    for (int64_t i = 0; i < n; i++) b[i] = 1;
+    ck_assert_int_eq(solve_once(&brunt_linear_direct, &exact, &alone, &m, b, u, NULL, NULL), BRUNT_LINEAR_DONE);
+    for (int k = 0; k < 4; k++) {
+        brunt_linear_options options = {.accuracy = k < 2 ? 0.1 : 0.01, .iterations = 5000};
+        if (k % 2) options.preconditioner = BRUNT_BLOCK_JACOBI;
+        ck_assert_int_eq(solve_once(&brunt_linear_pcg, &options, &alone, &m, b, x, NULL, NULL), BRUNT_LINEAR_DONE);
+        double far = 0, size = 0; // squares of the error and of u in the norm of A
+        for (int64_t i = 0; i < n; i++) x[i] -= u[i];
+        brunt_block_matrix_product(&m, &alone, x, r);
+        for (int64_t i = 0; i < n; i++) far += x[i] * r[i], size += u[i] * b[i];
+        ck_assert_double_lt(sqrt(far / size), options.accuracy);
+    }
+    free(b), free(u), free(x), free(r), brunt_block_matrix_free(&m), elastic_free(&e);
+}
+END_TEST
+
 // Where nothing is left out, the incomplete factor is the factor, to the seven digits that solutions read of it: one
 // iteration.
 START_TEST(complete_where_nothing_fills_in) {
@@ -683,6 +708,7 @@ int main(void) {
     tcase_add_loop_test(c, incomplete_factors_that_break_down, 0, 4);
     tcase_add_loop_test(c, incomplete_factors_are_the_matrix_on_its_pattern, 0, 8);
     tcase_add_test(c, accuracy_is_of_the_solution);
+    tcase_add_test(c, long_waves_are_waited_for);
     tcase_add_test(c, complete_where_nothing_fills_in);
     tcase_add_test(c, not_positive_definite);
     tcase_add_test(c, singular);
