@@ -5,6 +5,7 @@
 #include "brunt.h"
 #include "contact/constraint/constraint.h"
 #include "contact/contact.h"
+#include "materials/material.h"
 
 typedef struct brunt_boundary_kind brunt_boundary_kind;
 typedef struct brunt_node_to_facet brunt_node_to_facet; // search/node_to_facet.h
@@ -13,13 +14,14 @@ typedef struct brunt_particle_dofs brunt_particle_dofs; // search/particle_dof.h
 struct brunt_boundary {
     char name[BRUNT_NAME_LENGTH];
     const brunt_boundary_kind *kind;
-    brunt_plane_def plane;        // of a plane; normal of unit length
-    brunt_region_def where;       // of a region; shares the world's definition
-    const brunt_group_def *group; // of a group, NULL for the others
-    int body;                     // the one it acts on, -1: all, or that of its group
-    int mirror;                   // index of the mirror plane it has become, -1
-    brunt_impulse_account action; // since the start
-    brunt_impulse_account last;   // of the last step
+    brunt_plane_def plane;                 // of a plane; normal of unit length
+    brunt_region_def where;                // of a region; shares the world's definition
+    const brunt_group_def *group;          // of a group, NULL for the others
+    double number[BRUNT_BOUNDARY_NUMBERS]; // of a kind that numbers describe
+    int body;                              // the one it acts on, -1: all, or that of its group
+    int mirror;                            // index of the mirror plane it has become, -1
+    brunt_impulse_account action;          // since the start
+    brunt_impulse_account last;            // of the last step
 };
 
 // What makes boundaries of a definition.
@@ -30,15 +32,26 @@ typedef struct brunt_boundary_making {
     bool has_particles;
 } brunt_boundary_making;
 
+// A number of such a kind, or a vector of three, from place `at` of its numbers on; and its key in scenes.
+typedef struct brunt_boundary_number {
+    int at;
+    bool vector;
+    int dimension;            // 2 or 3: it is there in that one only; 0: in both
+    brunt_parameter in_scene; // a vector has no range
+} brunt_boundary_number;
+
 // A kind of boundary, a row of boundary/kinds.h. Its functions are in the file of the kind; NULL: nothing of that is
 // its.
 struct brunt_boundary_kind {
     const char *word; // "plane"
     bool is_plane;    // brunt_boundary.plane says where it is
+    const char *doc;  // of a kind that numbers describe: what it does, and the numbers; else NULL and none
+    const brunt_boundary_number *numbers;
+    int number_count;
     // Of a definition: how many, the entries, the names of an entry and of the one body it acts on (NULL: that of its
     // nodes); frees all.
-    int32_t (*count)(const brunt_world_def *def);
-    const void *(*entry)(const brunt_world_def *def, int32_t i);
+    int32_t (*count)(const brunt_boundary_kind *kind, const brunt_world_def *def);
+    const void *(*entry)(const brunt_boundary_kind *kind, const brunt_world_def *def, int32_t i);
     const char *(*name)(const void *entry);
     const char *(*body)(const void *entry);
     void (*free)(brunt_world_def *def);

@@ -5,27 +5,37 @@
 
 #define DECLARE(NAME, kind, type, word, what) extern const brunt_boundary_kind brunt_kind_##kind;
 BRUNT_BOUNDARY_KINDS(DECLARE)
+// Those that numbers describe, with their own file and nothing else.
+#define NUMBERED(X) X(rotor)
+#define DECLARE_NUMBERED(kind) extern const brunt_boundary_kind brunt_kind_##kind;
+NUMBERED(DECLARE_NUMBERED)
 
 #define ROW(NAME, kind, type, word, what) &brunt_kind_##kind,
-const brunt_boundary_kind *const brunt_boundary_kinds[] = {BRUNT_BOUNDARY_KINDS(ROW)};
+#define ROW_NUMBERED(kind) &brunt_kind_##kind,
+const brunt_boundary_kind *const brunt_boundary_kinds[] = {BRUNT_BOUNDARY_KINDS(ROW) NUMBERED(ROW_NUMBERED)};
+const int brunt_boundary_kind_count = sizeof brunt_boundary_kinds / sizeof *brunt_boundary_kinds;
+
+static int32_t count_of(const brunt_world_def *def, int k) {
+    return brunt_boundary_kinds[k]->count(brunt_boundary_kinds[k], def);
+}
 
 int32_t brunt_boundary_count(const brunt_world_def *def) {
     int32_t count = 0;
-    for (int k = 0; k < BRUNT_BOUNDARY_KIND_COUNT; k++) count += brunt_boundary_kinds[k]->count(def);
+    for (int k = 0; k < brunt_boundary_kind_count; k++) count += count_of(def, k);
     return count;
 }
 
 int32_t brunt_boundary_first(const brunt_world_def *def, const char *word) {
     int32_t first = 0;
-    for (int k = 0; strcmp(brunt_boundary_kinds[k]->word, word); k++) first += brunt_boundary_kinds[k]->count(def);
+    for (int k = 0; strcmp(brunt_boundary_kinds[k]->word, word); k++) first += count_of(def, k);
     return first;
 }
 
 const void *brunt_boundary_entry(const brunt_world_def *def, int32_t w, const brunt_boundary_kind **kind) {
     int k = 0;
-    for (; w >= brunt_boundary_kinds[k]->count(def); k++) w -= brunt_boundary_kinds[k]->count(def);
+    for (; w >= count_of(def, k); k++) w -= count_of(def, k);
     *kind = brunt_boundary_kinds[k];
-    return (*kind)->entry(def, w);
+    return (*kind)->entry(*kind, def, w);
 }
 
 void brunt_boundary_name(const brunt_world_def *def, int32_t w, char out[BRUNT_NAME_LENGTH]) {

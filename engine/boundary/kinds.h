@@ -5,10 +5,11 @@
 #include "contact/planes/boundary.h"
 
 #define BRUNT_EXPLICIT_ONLY "this belongs to time.scheme: explicit"
+#define BRUNT_NOT_STATIC "this belongs to time.scheme: explicit or implicit"
+#define BRUNT_FRICTION_NOT_STATIC BRUNT_NOT_STATIC ": where friction stops depends on the way there and its speed"
 
-#define BRUNT_BOUNDARY_ONE(NAME, kind, type, word, what) +1
-enum { BRUNT_BOUNDARY_KIND_COUNT = 0 BRUNT_BOUNDARY_KINDS(BRUNT_BOUNDARY_ONE) };
-extern const brunt_boundary_kind *const brunt_boundary_kinds[BRUNT_BOUNDARY_KIND_COUNT];
+extern const brunt_boundary_kind *const brunt_boundary_kinds[];
+extern const int brunt_boundary_kind_count;
 
 int32_t brunt_boundary_count(const brunt_world_def *def);
 // Number of the first of a kind, by its word.
@@ -19,9 +20,33 @@ void brunt_boundary_name(const brunt_world_def *def, int32_t w, char out[BRUNT_N
 
 // In the file of a kind: the functions that its entries are found by.
 #define BRUNT_BOUNDARY_ENTRIES(kind, type)                                                                             \
-    static int32_t count(const brunt_world_def *def) { return def->kind##_count; }                                     \
-    static const void *entry(const brunt_world_def *def, int32_t i) { return &def->kind##s[i]; }                       \
+    static int32_t count(const brunt_boundary_kind *row, const brunt_world_def *def) {                                 \
+        (void)row;                                                                                                     \
+        return def->kind##_count;                                                                                      \
+    }                                                                                                                  \
+    static const void *entry(const brunt_boundary_kind *row, const brunt_world_def *def, int32_t i) {                  \
+        (void)row;                                                                                                     \
+        return &def->kind##s[i];                                                                                       \
+    }                                                                                                                  \
     static const char *name(const void *one) { return ((const type##_def *)one)->name; }
 // ... and the part of its row that every kind has.
 #define BRUNT_BOUNDARY_ROW(key)                                                                                        \
     .word = key, .count = count, .entry = entry, .name = name, .free = free_all, .check = check, .make = make
+
+// A kind that numbers describe is a file: its row begins with this, which gives all but what it does, hold_at. Material
+// points are held by that in explicit steps and in implicit ones, at the nodes of their grid.
+int32_t brunt_numbered_count(const brunt_boundary_kind *kind, const brunt_world_def *def);
+const void *brunt_numbered_entry(const brunt_boundary_kind *kind, const brunt_world_def *def, int32_t i);
+const char *brunt_numbered_name(const void *one);
+const char *brunt_numbered_body(const void *one);
+void brunt_numbered_free(brunt_world_def *def);
+int brunt_numbered_check(const brunt_world_def *def, const void *one, int32_t w, brunt_error *error);
+// Every entry is of a kind that there is.
+int brunt_numbered_kinds_check(const brunt_world_def *def, brunt_error *error);
+int brunt_numbered_make(const brunt_boundary_making *m, const void *one, int w, brunt_error *error);
+void brunt_numbered_hold_grid(brunt_body *body, brunt_boundary *wall, double time);
+#define BRUNT_NUMBERED_ROW(key, text, list)                                                                            \
+    .word = key, .doc = text, .numbers = list, .number_count = sizeof(list) / sizeof *(list),                          \
+    .count = brunt_numbered_count, .entry = brunt_numbered_entry, .name = brunt_numbered_name,                         \
+    .body = brunt_numbered_body, .free = brunt_numbered_free, .check = brunt_numbered_check,                           \
+    .make = brunt_numbered_make, .hold_grid = brunt_numbered_hold_grid

@@ -50,6 +50,8 @@ static const char *refusal(const brunt_world_def *def, const void *one, const ch
     if (!brunt_scheme_minimises(def->scheme)) return NULL;
     const brunt_plane_def *plane = one;
     const brunt_condition_row *row = &brunt_conditions[plane->condition];
+    *key = ".friction";
+    if (def->scheme == BRUNT_STATIC && plane->friction > 0) return BRUNT_FRICTION_NOT_STATIC;
     *key = ".condition";
     return !row->pushes && !row->sticks && oblique(plane)
                ? "implicit steps hold nodes on planes that are normal to an axis"

@@ -225,6 +225,7 @@ static int check_arrays(const brunt_world_def *def, brunt_error *error) {
     BRUNT_TRY(brunt_check_array("boundaries: " #kind "s", def->kind##_count, def->kind##s, error));
     BRUNT_BOUNDARY_KINDS(CHECK)
 #undef CHECK
+    BRUNT_TRY(brunt_check_array("boundaries", def->boundary_count, def->boundaries, error));
     BRUNT_TRY(brunt_check_array("detonations", def->detonation_count, def->detonations, error));
     return brunt_check_array("contact.pairs", def->contact.pair_count, def->contact.pairs, error);
 }
@@ -323,6 +324,7 @@ int brunt_definition_check(const brunt_world_def *def, brunt_error *error) {
     if (def->cookie != BRUNT_WORLD_COOKIE) REFUSE("the world's definition was not made by brunt_world_def_default");
     if (def->dimension != 2 && def->dimension != 3) REFUSE("dimension: %d is neither 2 nor 3", def->dimension);
     BRUNT_TRY(check_arrays(def, error));
+    BRUNT_TRY(brunt_numbered_kinds_check(def, error));
     bool particles = false;
     for (int32_t i = 0; i < def->body_count; i++) particles = particles || def->bodies[i].method == BRUNT_MPM;
     BRUNT_TRY(check_time_and_grid(def, particles, error));

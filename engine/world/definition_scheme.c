@@ -115,7 +115,9 @@ static void look_at_boundaries(const brunt_world_def *def, refusals *r) {
     for (int32_t w = 0; w < brunt_boundary_count(def); w++) {
         const brunt_boundary_kind *kind;
         const void *entry = brunt_boundary_entry(def, w, &kind);
-        const char *key, *reason = kind->refusal ? kind->refusal(def, entry, &key) : NULL;
+        const char *key = "", *reason = kind->refusal ? kind->refusal(def, entry, &key) : NULL;
+        if (!reason && brunt_scheme_minimises(def->scheme) && kind->hold_grid && !kind->hold_at)
+            reason = EXPLICIT_ONLY; // which no row needs to say: its function is not there
         name_boundary(r, w, kind->name(entry));
         if (reason) say(r, key, "%s", reason);
     }
@@ -167,7 +169,7 @@ static void look_at_implicit(const brunt_world_def *def, refusals *r) {
 
 // ------------------------------------------------------------------------------------------ load steps
 
-#define NOT_STATIC "this belongs to time.scheme: explicit or implicit"
+#define NOT_STATIC BRUNT_NOT_STATIC
 
 static bool moves(const double v[3]) { return v[0] != 0 || v[1] != 0 || v[2] != 0; }
 
@@ -188,17 +190,13 @@ static void look_at_equilibrium(const brunt_world_def *def, const brunt_body_def
 }
 
 static void look_at_friction(const brunt_world_def *def, refusals *r) {
-    static const char *const why = NOT_STATIC ": where friction stops depends on the way there and its speed";
+    static const char *const why = BRUNT_FRICTION_NOT_STATIC;
     const brunt_contact_def *contact = &def->contact;
     set_owner(r, "contact");
     if (contact->friction > 0) say(r, ".friction", "%s", why);
     for (int32_t q = 0; q < contact->pair_count; q++) {
         set_owner(r, "contact.pairs[%d]", q);
         if (contact->pairs[q].friction > 0) say(r, ".friction", "%s", why);
-    }
-    for (int32_t q = 0; q < def->plane_count; q++) {
-        name_boundary(r, q, def->planes[q].name);
-        if (def->planes[q].friction > 0) say(r, ".friction", "%s", why);
     }
 }
 

@@ -1,5 +1,6 @@
 // Measure `extent`: size of a body along an axis.
 #include "io/output/measure.h"
+#include "io/scene/scene_rows.h"
 
 #include <math.h>
 
@@ -20,3 +21,9 @@ static int take(const brunt_measure *m, measure_source *from, double *value, bru
 }
 
 const measure_kind measure_extent = {.take = take};
+
+// clang-format off
+SCENE_ROWS(measure_extent_keys,
+    MEASURE_OF_BODY("extent", "size of a body along an axis, at the end"),
+    {"measures.*.extent.axis", SCENE_VECTOR, "1", REQUIRED, NONE, "direction"});
+// clang-format on

@@ -1,5 +1,6 @@
 // Measure `field`: a field reduced over the particles, nodes or elements of a body.
 #include "io/output/measure.h"
+#include "io/scene/scene_rows.h"
 
 #include <math.h>
 
@@ -45,3 +46,14 @@ static int take(const brunt_measure *m, measure_source *from, double *value, bru
 }
 
 const measure_kind measure_field = {.check = check, .take = take};
+
+// clang-format off
+SCENE_ROWS(measure_field_keys,
+    MEASURE_OF_BODY("field", "a field reduced over the particles, nodes or elements of a body, at the end"),
+    {"measures.*.field.name", SCENE_NAME, NULL, REQUIRED, NONE, "the field"},
+    {"measures.*.field.component", SCENE_WORD, NULL, "magnitude", ANY, "magnitude|x|y|z|xx|yy|zz|xy|yz|xz", 0, false, "of a vector or symmetric tensor; magnitude: also a scalar's value"},
+    {"measures.*.field.axis", SCENE_VECTOR, "1", OPTIONAL, NONE, "direction of a slab, for from and to"},
+    {"measures.*.field.center", SCENE_VECTOR, "m", "0", ANY, NULL, 0, true, "where the coordinate along the axis is 0"},
+    {"measures.*.field.from", SCENE_REAL, "m", OPTIONAL, NONE, "only what has a coordinate along the axis above ..."},
+    {"measures.*.field.to", SCENE_REAL, "m", OPTIONAL, NONE, "... and below this"});
+// clang-format on

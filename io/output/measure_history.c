@@ -1,5 +1,6 @@
 // Measure `history`: a column reduced over time, or its distance from a curve.
 #include "io/output/measure.h"
+#include "io/scene/scene_rows.h"
 
 #include <math.h>
 #include <string.h>
@@ -166,3 +167,9 @@ static int check(const brunt_measure *m, const measure_source *from, brunt_error
 }
 
 const measure_kind measure_history = {.check = check, .take = take};
+
+// clang-format off
+SCENE_ROWS(measure_history_keys,
+    {"measures.*.history", SCENE_TEXT, NULL, OPTIONAL, NONE, "a column of the history, as energy.kinetic, body.rod.velocity_x, contact.rod-plate.force or gas.bag.pressure (forces of a pair are on its second body; of a body with itself 0, what its sides do to each other: its contact shows in contact.bag-bag.area; velocities and kinetic energy are of the middle of the step that ends at its time)"},
+    {"measures.*.energy", SCENE_NAME, NULL, OPTIONAL, NONE, "short for history: energy.NAME"});
+// clang-format on

@@ -1,5 +1,6 @@
 // Measure `profile`: distance of a field from a reference along an axis, by volume.
 #include "io/output/measure.h"
+#include "io/scene/scene_rows.h"
 
 #include <math.h>
 #include <string.h>
@@ -68,3 +69,14 @@ static int check(const brunt_measure *m, const measure_source *from, brunt_error
 }
 
 const measure_kind measure_profile = {.check = check, .take = take};
+
+// clang-format off
+SCENE_ROWS(measure_profile_keys,
+    {"measures.*.profile", SCENE_GROUP, NULL, OPTIONAL, NONE, "distance of a field at the end from a reference along an axis: sum of volume |field - reference| over sum of volume |reference|"},
+    {"measures.*.profile.body", SCENE_NAME, NULL, OPTIONAL, NONE, "the body (default: all that have the field)"},
+    {"measures.*.profile.name", SCENE_NAME, NULL, REQUIRED, NONE, "the field"},
+    {"measures.*.profile.component", SCENE_WORD, NULL, "magnitude", ANY, "magnitude|x|y|z|xx|yy|zz|xy|yz|xz", 0, false, "of a vector or symmetric tensor; magnitude: also a scalar's value"},
+    {"measures.*.profile.axis", SCENE_VECTOR, "1", REQUIRED, NONE, "direction of the coordinate"},
+    {"measures.*.profile.center", SCENE_VECTOR, "m", "0", NONE, "where it is 0"},
+    {"measures.*.profile.reference", SCENE_PROFILE, "any", REQUIRED, NONE, "[[-1 m, 3 Pa], [0 m, 4 Pa]]: linear between, held beyond its ends; the same coordinate twice is a jump"});
+// clang-format on

@@ -1,5 +1,6 @@
 // Measure `radius`: greatest distance of a body's surface from an axis.
 #include "io/output/measure.h"
+#include "io/scene/scene_rows.h"
 
 #include <math.h>
 
@@ -31,3 +32,12 @@ static int take(const brunt_measure *m, measure_source *from, double *value, bru
 }
 
 const measure_kind measure_radius = {.take = take};
+
+// clang-format off
+SCENE_ROWS(measure_radius_keys,
+    MEASURE_OF_BODY("radius", "greatest distance of a body's surface from an axis, at the end"),
+    {"measures.*.radius.axis", SCENE_VECTOR, "1", OPTIONAL, NONE, "direction of the axis (2D: may be left out, then it is out of the plane)"},
+    {"measures.*.radius.center", SCENE_VECTOR, "m", "0", NONE, "a point of the axis"},
+    {"measures.*.radius.from", SCENE_REAL, "m", OPTIONAL, NONE, "only what has a coordinate along the axis above ..."},
+    {"measures.*.radius.to", SCENE_REAL, "m", OPTIONAL, NONE, "... and below this"});
+// clang-format on

@@ -1,5 +1,6 @@
 // Measure `twist`: how far the material about an axis has turned, from the deformation gradients of particles.
 #include "io/output/measure.h"
+#include "io/scene/scene_rows.h"
 
 #include <math.h>
 
@@ -40,3 +41,13 @@ static int take(const brunt_measure *m, measure_source *from, double *value, bru
 }
 
 const measure_kind measure_twist = {.check = check, .take = take};
+
+// clang-format off
+SCENE_ROWS(measure_twist_keys,
+    MEASURE_OF_BODY("twist", "angle by which the material of an mpm body about an axis has turned, at the end, between -pi and pi"),
+    {"measures.*.twist.axis", SCENE_VECTOR, "1", OPTIONAL, NONE, "direction of the axis (2D: may be left out, then it is out of the plane)"},
+    {"measures.*.twist.center", SCENE_VECTOR, "m", "0", NONE, "a point of the axis"},
+    {"measures.*.twist.within", SCENE_REAL, "m", OPTIONAL, POSITIVE, NULL, 0, false, "only what is no farther from the axis"},
+    {"measures.*.twist.from", SCENE_REAL, "m", OPTIONAL, NONE, "only what has a coordinate along the axis above ..."},
+    {"measures.*.twist.to", SCENE_REAL, "m", OPTIONAL, NONE, "... and below this"});
+// clang-format on

@@ -1,4 +1,5 @@
 // Boundaries of a scene: which kind each is, and what all have. Their own keys are read in boundary_KEY.c.
+#include "boundary/kinds.h"
 #include "io/scene/scene_boundary.h"
 
 #include <string.h>
@@ -66,15 +67,42 @@ BRUNT_BOUNDARY_KINDS(READER)
 static const boundary_reader readers[] = {BRUNT_BOUNDARY_KINDS(ROW)};
 enum { READERS = sizeof readers / sizeof *readers };
 
+// Of a kind that numbers describe. Its keys say which of them they fill.
+static void read_numbered(scene_reader *reader, scene_node *node, const brunt_boundary_kind *kind) {
+    brunt_world_def *world = &reader->scene->world;
+    brunt_boundary_def *def = &world->boundaries[world->boundary_count++];
+    const scene_node *body = brunt_tree_child(node, "body");
+    snprintf(def->kind, sizeof def->kind, "%s", kind->word);
+    fill_name(reader, node, kind->word, kind->count(kind, world), def->name);
+    brunt_fill_fields(reader, node, "boundaries[]", SCENE_AT_NUMBERED, def);
+    brunt_fill_body_of(reader, node, def->body);
+    if (!brunt_acts_on_particles(reader, def->body))
+        brunt_tree_complain_key(reader->tree, body ? body : brunt_tree_child(node, kind->word),
+                                "a %s acts on the grid, %s of method mpm", kind->word,
+                                body ? "this body is not" : "no body is");
+}
+
 static void read_boundary(scene_reader *reader, scene_node *node) {
     const boundary_reader *found = NULL;
-    int count = 0;
-    for (int k = 0; k < READERS; k++)
+    const brunt_boundary_kind *numbered = NULL;
+    const char *keys[32];
+    int count = 0, key_count = 0;
+    for (int k = 0; k < READERS; k++) {
+        keys[key_count++] = readers[k].key;
         if (brunt_tree_child(node, readers[k].key)) found = &readers[k], count++;
-    char names[200] = "";
-    BRUNT_LIST_NAMES(names, READERS, readers[i].key);
+    }
+    for (int k = 0; k < brunt_boundary_kind_count; k++) {
+        const brunt_boundary_kind *kind = brunt_boundary_kinds[k];
+        if (!kind->numbers) continue;
+        if (key_count < (int)(sizeof keys / sizeof *keys)) keys[key_count++] = kind->word;
+        if (brunt_tree_child(node, kind->word)) numbered = kind, count++;
+    }
+    char names[400] = "";
+    BRUNT_LIST_NAMES(names, (size_t)key_count, keys[i]);
     if (count != 1)
         brunt_tree_complain(reader->tree, node, "exactly one of %s is wanted", names);
+    else if (numbered)
+        read_numbered(reader, node, numbered);
     else
         found->read(reader, node);
 }
@@ -87,6 +115,7 @@ void brunt_fill_boundaries(scene_reader *reader) {
     if (!(world->kind##s = brunt_entries_for(reader, count, sizeof *world->kind##s))) return;
     BRUNT_BOUNDARY_KINDS(ROOM)
 #undef ROOM
+    if (!(world->boundaries = brunt_entries_for(reader, count, sizeof *world->boundaries))) return;
     for (scene_node *node = list->first; node; node = node->next)
         if (node->kind == SCENE_MAP) read_boundary(reader, node);
     check_wall_names(reader, list);

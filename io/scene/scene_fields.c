@@ -11,14 +11,18 @@ static const struct {
              {SCENE_FEM, "method: fem"},
              {SCENE_MEMBRANE, "method: membrane"},
 #define AT(NAME, kind, type, word, what) {SCENE_AT_##NAME, what},
-             BRUNT_BOUNDARY_KINDS(AT){SCENE_AT_PLANE | SCENE_AT_LINE, "a plane or a line"},
-             {SCENE_AT_GROUP | SCENE_AT_LINE, "a group of nodes or a line"}};
+             BRUNT_BOUNDARY_KINDS(AT)};
 #undef AT
 
-static const char *kind_name(unsigned kind) {
-    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
-        if (kinds[i].kind == kind) return kinds[i].name;
-    return "another kind";
+// "a plane or a line".
+static void name_kinds(unsigned set, char *out, size_t size) {
+    size_t used = 0;
+    *out = 0;
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds && set && used < size; i++) {
+        if ((kinds[i].kind & set) != kinds[i].kind) continue;
+        set &= ~kinds[i].kind;
+        used += (size_t)snprintf(out + used, size - used, "%s%s", !used ? "" : set ? ", " : " or ", kinds[i].name);
+    }
 }
 
 // The part of a row's path below `path`, through groups alone; NULL: it is not below it.
@@ -75,7 +79,9 @@ void brunt_fill_fields(scene_reader *reader, scene_node *map, const char *path, 
         if (!group_is_for(format, path, rest, kind)) continue;
         scene_node *node = value_below(map, rest);
         if (row->only && !(row->only & kind)) {
-            if (node) brunt_tree_complain_key(reader->tree, node, "this belongs to %s", kind_name(row->only));
+            char names[160];
+            name_kinds(row->only, names, sizeof names);
+            if (node) brunt_tree_complain_key(reader->tree, node, "this belongs to %s", names);
             continue;
         }
         if (!node && row->only && !row->depends && row->initial && *row->initial)

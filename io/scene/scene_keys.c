@@ -3,37 +3,21 @@
 
 #include "io/scene/scene.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "geometry/element_traits.h"
+#include "io/scene/scene_rows.h"
 
 // "none|...": each with a bar before it, less the first of these.
 #define BAR(name, word) "|" word
 #define CONTACT_WORDS (&(BRUNT_CONTACT_METHODS(BAR))[1])
 #define CONDITION_WORDS (&(BRUNT_CONDITIONS(BAR))[1])
 
-#define ANY -INFINITY, INFINITY, true, true
-#define POSITIVE 0, INFINITY, true, true
-#define NOT_NEGATIVE 0, INFINITY, false, true
-#define NONE ANY, NULL, 0, false
-#define OPTIONAL ""
-#define REQUIRED NULL
-
 #define SIGNALS "end|initial|min|max|mean|slope|first_nonzero|last_nonzero|max_abs|period|rise"
 
-// Rows that every measure of one body has: the kind's group and whose it is.
-#define MEASURE_OF_BODY(kind, doc)                                                                                     \
-    {"measures.*." kind, SCENE_GROUP, NULL, OPTIONAL, NONE, doc}, {                                                    \
-        "measures.*." kind ".body", SCENE_NAME, NULL, REQUIRED, NONE, "the body"                                       \
-    }
-
-// Rows leave out the columns that most have no use for.
-#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
-
 // clang-format off
-const scene_key brunt_scene_table[] = {
+static const scene_key own_rows[] = {
     {"brunt", SCENE_INTEGER, NULL, REQUIRED, 1, 1, false, false, NULL, 0, false, "version of the scene format: 1"},
     {"title", SCENE_TEXT, NULL, "''", NONE, "one line on what the scene is"},
     {"dimension", SCENE_INTEGER, NULL, "3", 2, 3, false, false, NULL, 0, false, "3, or 2: plane strain of unit thickness"},
@@ -185,9 +169,9 @@ const scene_key brunt_scene_table[] = {
     {"contact.pairs[].method", SCENE_WORD, NULL, OPTIONAL, ANY, CONTACT_WORDS, 0, false, "default: that of contact"},
     {"contact.pairs[].friction", SCENE_REAL, "1", OPTIONAL, NOT_NEGATIVE, NULL, 0, false, "default: that of contact"},
 
-    {"boundaries", SCENE_ENTRIES, NULL, OPTIONAL, NONE, "walls (plane), regions with prescribed motion, groups of nodes, lines (line) that hold points"},
-    {"boundaries[].name", SCENE_NAME, NULL, OPTIONAL, NONE, "in the history; default plane1, ..., region1, ..., group1, ... and line1, ..."},
-    {"boundaries[].plane", SCENE_GROUP, NULL, OPTIONAL, NONE, "a wall: exactly one of plane, region, group and line is wanted"},
+    {"boundaries", SCENE_ENTRIES, NULL, OPTIONAL, NONE, "what acts on bodies from outside, each of one kind"},
+    {"boundaries[].name", SCENE_NAME, NULL, OPTIONAL, NONE, "in the history; default: its kind and number, plane1, ..."},
+    {"boundaries[].plane", SCENE_GROUP, NULL, OPTIONAL, NONE, "a wall; of it and the other kinds exactly one is wanted"},
     {"boundaries[].plane.point", SCENE_VECTOR, "m", REQUIRED, NONE, "a point of it"},
     {"boundaries[].plane.normal", SCENE_VECTOR, "1", REQUIRED, NONE, "pointing to the side the bodies are on"},
     {"boundaries[].condition", SCENE_WORD, NULL, OPTIONAL, ANY, CONDITION_WORDS, 0, false, "of a plane or a line; symmetry: of a plane along the axes, for mpm on a grid line; slip of a line: in both directions, material does not leave it", .only = SCENE_AT_PLANE | SCENE_AT_LINE},
@@ -199,7 +183,7 @@ const scene_key brunt_scene_table[] = {
     {"boundaries[].place[].rotate.axis", SCENE_VECTOR, "1", REQUIRED, ANY, NULL, 3, false, "direction of its axis"},
     {"boundaries[].place[].rotate.angle", SCENE_REAL, "rad", REQUIRED, NONE, "right-handed; in 2D counter-clockwise"},
     {"boundaries[].place[].rotate.about", SCENE_VECTOR, "m", "0", NONE, "a point of its axis"},
-    {"boundaries[].velocity", SCENE_PARTIAL, "m/s", "0", ANY, NULL, 0, true, "of the wall, of the region (must be given), of the group or of the line; of region and group a component may be `free`"},
+    {"boundaries[].velocity", SCENE_PARTIAL, "m/s", "0", ANY, NULL, 0, true, "of the wall, of the region (must be given), of the group or of the line; of region and group a component may be `free`", .only = SCENE_AT_PLANE | SCENE_AT_REGION | SCENE_AT_GROUP | SCENE_AT_LINE},
     {"boundaries[].from", SCENE_REAL, "s", "0", ANY, NULL, 0, true, "a region acts from then ...", .only = SCENE_AT_REGION},
     {"boundaries[].until", SCENE_REAL, "s", OPTIONAL, ANY, "none", 0, false, "... until then (default: for ever)", .only = SCENE_AT_REGION},
     {"boundaries[].line", SCENE_GROUP, NULL, OPTIONAL, ANY, NULL, 2, false, "holds material points that reach it, as means over pieces of it, and says by which force; its normal is to its left, where bodies are with condition separate; of scheme implicit"},
@@ -224,6 +208,7 @@ const scene_key brunt_scene_table[] = {
     {"boundaries[].gas.volume", SCENE_REAL, "m^3", "0", NOT_NEGATIVE, NULL, 0, false, "of gas beside what the faces enclose, as in a vessel", .field = SCENE_FIELD(brunt_group_def, gas.volume)},
     {"boundaries[].gas.inflow", SCENE_REAL, "W", "0", NOT_NEGATIVE, NULL, 0, false, "enthalpy that flows in", .field = SCENE_FIELD(brunt_group_def, gas.inflow)},
     {"boundaries[].table", SCENE_TABLE, "s", OPTIONAL, NONE, "factor of the group's value, or of the line's velocity or displacement, over time, [[0 s, 0], [1 ms, 1]]: linear between, constant outside (default: 1)", .only = SCENE_AT_GROUP | SCENE_AT_LINE},
+    SCENE_OF_KINDS("boundaries[]"),
     {"boundaries[].body", SCENE_NAME, NULL, OPTIONAL, NONE, "the one body it acts on (default: all; of a group it must be given)"},
 
     {"loads", SCENE_GROUP, NULL, "{}", NONE, "forces on everything"},
@@ -242,35 +227,7 @@ const scene_key brunt_scene_table[] = {
     {"output.probes.*.field", SCENE_NAME, NULL, REQUIRED, NONE, "what is recorded"},
 
     {"measures", SCENE_NAMED, NULL, OPTIONAL, NONE, "results by name, judged where a value is expected"},
-    {"measures.*.history", SCENE_TEXT, NULL, OPTIONAL, NONE, "a column of the history, as energy.kinetic, body.rod.velocity_x, contact.rod-plate.force or gas.bag.pressure (forces of a pair are on its second body; of a body with itself 0, what its sides do to each other: its contact shows in contact.bag-bag.area; velocities and kinetic energy are of the middle of the step that ends at its time)"},
-    {"measures.*.energy", SCENE_NAME, NULL, OPTIONAL, NONE, "short for history: energy.NAME"},
-    MEASURE_OF_BODY("extent", "size of a body along an axis, at the end"),
-    {"measures.*.extent.axis", SCENE_VECTOR, "1", REQUIRED, NONE, "direction"},
-    MEASURE_OF_BODY("radius", "greatest distance of a body's surface from an axis, at the end"),
-    {"measures.*.radius.axis", SCENE_VECTOR, "1", OPTIONAL, NONE, "direction of the axis (2D: may be left out, then it is out of the plane)"},
-    {"measures.*.radius.center", SCENE_VECTOR, "m", "0", NONE, "a point of the axis"},
-    {"measures.*.radius.from", SCENE_REAL, "m", OPTIONAL, NONE, "only what has a coordinate along the axis above ..."},
-    {"measures.*.radius.to", SCENE_REAL, "m", OPTIONAL, NONE, "... and below this"},
-    MEASURE_OF_BODY("twist", "angle by which the material of an mpm body about an axis has turned, at the end, between -pi and pi"),
-    {"measures.*.twist.axis", SCENE_VECTOR, "1", OPTIONAL, NONE, "direction of the axis (2D: may be left out, then it is out of the plane)"},
-    {"measures.*.twist.center", SCENE_VECTOR, "m", "0", NONE, "a point of the axis"},
-    {"measures.*.twist.within", SCENE_REAL, "m", OPTIONAL, POSITIVE, NULL, 0, false, "only what is no farther from the axis"},
-    {"measures.*.twist.from", SCENE_REAL, "m", OPTIONAL, NONE, "only what has a coordinate along the axis above ..."},
-    {"measures.*.twist.to", SCENE_REAL, "m", OPTIONAL, NONE, "... and below this"},
-    MEASURE_OF_BODY("field", "a field reduced over the particles, nodes or elements of a body, at the end"),
-    {"measures.*.field.name", SCENE_NAME, NULL, REQUIRED, NONE, "the field"},
-    {"measures.*.field.component", SCENE_WORD, NULL, "magnitude", ANY, "magnitude|x|y|z|xx|yy|zz|xy|yz|xz", 0, false, "of a vector or symmetric tensor; magnitude: also a scalar's value"},
-    {"measures.*.field.axis", SCENE_VECTOR, "1", OPTIONAL, NONE, "direction of a slab, for from and to"},
-    {"measures.*.field.center", SCENE_VECTOR, "m", "0", ANY, NULL, 0, true, "where the coordinate along the axis is 0"},
-    {"measures.*.field.from", SCENE_REAL, "m", OPTIONAL, NONE, "only what has a coordinate along the axis above ..."},
-    {"measures.*.field.to", SCENE_REAL, "m", OPTIONAL, NONE, "... and below this"},
-    {"measures.*.profile", SCENE_GROUP, NULL, OPTIONAL, NONE, "distance of a field at the end from a reference along an axis: sum of volume |field - reference| over sum of volume |reference|"},
-    {"measures.*.profile.body", SCENE_NAME, NULL, OPTIONAL, NONE, "the body (default: all that have the field)"},
-    {"measures.*.profile.name", SCENE_NAME, NULL, REQUIRED, NONE, "the field"},
-    {"measures.*.profile.component", SCENE_WORD, NULL, "magnitude", ANY, "magnitude|x|y|z|xx|yy|zz|xy|yz|xz", 0, false, "of a vector or symmetric tensor; magnitude: also a scalar's value"},
-    {"measures.*.profile.axis", SCENE_VECTOR, "1", REQUIRED, NONE, "direction of the coordinate"},
-    {"measures.*.profile.center", SCENE_VECTOR, "m", "0", NONE, "where it is 0"},
-    {"measures.*.profile.reference", SCENE_PROFILE, "any", REQUIRED, NONE, "[[-1 m, 3 Pa], [0 m, 4 Pa]]: linear between, held beyond its ends; the same coordinate twice is a jump"},
+    SCENE_OF_KINDS("measures.*"),
     {"measures.*.take", SCENE_WORD, NULL, "end", ANY, SIGNALS, 0, true, "how history is reduced over time (period: mean time between rises through the middle of its range; rise: time at which it first passes half of its greatest value), a field over the body (min max mean max_abs)"},
     {"measures.*.at", SCENE_WORD, NULL, OPTIONAL, ANY, SIGNALS, 0, false, "another name for take"},
     {"measures.*.curve", SCENE_CURVE, "any", OPTIONAL, NONE, "reference over time for the history, [[0 s, 0 m], [1 s, 2 m]], linear between: what is reduced (take: max_abs by default, max, min, mean, initial or end) is history less curve, after minus and relative_to, over the curve's range of values, from its first to its last time"},
@@ -285,7 +242,7 @@ const scene_key brunt_scene_table[] = {
     {"measures.*.source", SCENE_TEXT, NULL, "''", NONE, "where the expected value is from"},
 };
 
-const int brunt_scene_table_count = sizeof brunt_scene_table / sizeof *brunt_scene_table;
+const scene_rows brunt_scene_own_rows = {own_rows, sizeof own_rows / sizeof *own_rows};
 
 const scene_section brunt_scene_sections[] = {
     {"scene", "brunt title dimension axisymmetric", "the file as a whole"},
@@ -297,8 +254,6 @@ const scene_section brunt_scene_sections[] = {
 };
 const int brunt_scene_section_count = sizeof brunt_scene_sections / sizeof *brunt_scene_sections;
 // clang-format on
-
-const scene_format brunt_scene_format = {"scene", "brunt: 1", brunt_scene_table, &brunt_scene_table_count};
 
 const scene_key *brunt_format_row(const scene_format *format, const char *path) {
     for (int i = 0; i < *format->row_count; i++)

@@ -80,11 +80,12 @@ typedef struct scene_key {
     scene_field field; // that it fills
 } scene_key;
 
-extern const scene_key brunt_scene_table[];
-extern const int brunt_scene_table_count;
+extern const scene_key *const brunt_scene_table; // of all keys, made in scene_table.c
+extern const int *const brunt_scene_table_rows;
+#define brunt_scene_table_count (*brunt_scene_table_rows)
 
 #define SCENE_NUMBER(NAME, kind, type, word, what) SCENE_NUMBER_##NAME,
-enum { BRUNT_BOUNDARY_KINDS(SCENE_NUMBER) };
+enum { BRUNT_BOUNDARY_KINDS(SCENE_NUMBER) SCENE_KINDS_AT };
 #undef SCENE_NUMBER
 // Kinds of entries: bodies by their method, boundaries by what they act at (SCENE_AT_PLANE ...).
 enum {
@@ -95,6 +96,7 @@ enum {
 #define SCENE_AT(NAME, kind, type, word, what) SCENE_AT_##NAME = SCENE_MEMBRANE << (SCENE_NUMBER_##NAME + 1),
     BRUNT_BOUNDARY_KINDS(SCENE_AT)
 #undef SCENE_AT
+        SCENE_AT_NUMBERED = SCENE_MEMBRANE << (SCENE_KINDS_AT + 1), // of kinds that numbers describe
 };
 
 // A kind of file: what it is called, how it begins, and its rows.

@@ -207,6 +207,9 @@ static void fill_kind(scene_reader *reader, scene_node *node, brunt_measure *mea
         return;
     }
     if (where->kind != SCENE_MAP) return;
+    char path[64];
+    snprintf(path, sizeof path, "measures.*.%s", kinds[measure->kind]);
+    brunt_fill_fields(reader, where, path, 0, measure);
     brunt_check_body_name(reader, brunt_tree_child(where, "body"));
     brunt_copy_text(reader, brunt_tree_child(where, "body"), measure->body, sizeof measure->body);
     if (measure->kind == BRUNT_MEASURE_FIELD || measure->kind == BRUNT_MEASURE_PROFILE) {

@@ -1,17 +1,6 @@
 // Every key of a study file, one row each.
-#include "io/scene/scene_keys.h"
+#include "io/scene/scene_rows.h"
 #include "brunt/error.h"
-
-#include <math.h>
-
-#define ANY -INFINITY, INFINITY, true, true
-#define POSITIVE 0, INFINITY, true, true
-#define NONE ANY, NULL, 0, false
-#define OPTIONAL ""
-#define REQUIRED NULL
-
-// Rows leave out the columns that most have no use for.
-#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
 
 // clang-format off
 static const scene_key rows[] = {

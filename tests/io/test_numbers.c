@@ -76,6 +76,7 @@ static const char rich_text[] =
     "  - {name: held, region: {sphere: {center: [0.4, 0, 0], radius: 1 mm}}, velocity: [free, 0, 2], from: 1 us, "
     "until: 10 us,\n"
     "    place: [{translate: [0, 0, 0]}]}\n"
+    "  - {rotor: {point: [0, 0, 0], axis: [0, 0, 1], radius: 0.1, rate: 3}}\n"
     "  - {name: grip, group: xmin, body: plate, velocity: [0, free, 1], table: [[0, 0], [1, 2]]}\n"
     "  - {name: shift, group: xmax, body: plate, displacement: [0.1, free, free], table: [[0, 0], [1, 2]]}\n"
     "  - {name: turn, group: zmax, body: plate, rotation: {angle: 1, axis: [0, 0, 1], about: [0, 0, 0]}}\n"

@@ -20,6 +20,16 @@ extern "C" {
     X(GROUP, group, brunt_group, "group", "a group of nodes")                                                          \
     X(LINE, surface, brunt_boundary_surface, "line", "a line")
 
+enum { BRUNT_BOUNDARY_NUMBERS = 16 };
+// A boundary of a kind that numbers describe: its row in engine/boundary/KIND.c says which, in which places of
+// `number`.
+typedef struct brunt_boundary_def {
+    char name[BRUNT_NAME_LENGTH]; // of its column in the history; "" = "rotor1", ...
+    char kind[BRUNT_NAME_LENGTH]; // "rotor"
+    char body[BRUNT_NAME_LENGTH]; // the one body it acts on; "" = all
+    double number[BRUNT_BOUNDARY_NUMBERS];
+} brunt_boundary_def;
+
 // Where and when explosives are lit: at a point, or on a plane. Material at distance d burns from time + d / detonation
 // speed on.
 typedef struct brunt_detonation_def {

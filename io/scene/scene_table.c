@@ -1,0 +1,81 @@
+// The table of all keys of a scene: the rows of scene_keys.c, and among them those that kinds of measures and
+// boundaries bring in files of their own. It is made before the program begins, and never changes.
+#include "io/scene/scene_rows.h"
+
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "boundary/kinds.h"
+#include "io/scene/scene.h"
+#include "io/scene/units.h"
+
+enum { ROOM = 600 };
+static scene_key table[ROOM];
+static int table_count;
+const scene_key *const brunt_scene_table = table;
+const int *const brunt_scene_table_rows = &table_count;
+const scene_format brunt_scene_format = {"scene", "brunt: 1", table, &table_count};
+
+#define DECLARE(NAME, name) extern const scene_rows measure_##name##_keys;
+BRUNT_MEASURE_KINDS(DECLARE)
+#define ROWS(NAME, name) &measure_##name##_keys,
+static const scene_rows *const measures[] = {BRUNT_MEASURE_KINDS(ROWS)};
+
+static void add(const scene_rows *rows) {
+    for (int i = 0; i < rows->count; i++) {
+        if (table_count == ROOM) abort();
+        table[table_count++] = rows->row[i];
+    }
+}
+
+static void add_measures(void) {
+    for (size_t k = 0; k < sizeof measures / sizeof *measures; k++) add(measures[k]);
+}
+
+// Of a kind of boundary that numbers describe: its group, and a row for each number, which fills that.
+static void add_boundary(const brunt_boundary_kind *kind) {
+    static char paths[ROOM][64], defaults[ROOM][32];
+    scene_key row = {.path = paths[table_count], .type = SCENE_GROUP, .initial = OPTIONAL, .doc = kind->doc};
+    snprintf(paths[table_count], sizeof *paths, "boundaries[].%s", kind->word);
+    row.min = -INFINITY, row.max = INFINITY;
+    add(&(scene_rows){&row, 1});
+    for (int k = 0; k < kind->number_count; k++) {
+        const brunt_boundary_number *number = &kind->numbers[k];
+        const brunt_parameter *in = &number->in_scene;
+        char *initial = defaults[table_count];
+        snprintf(paths[table_count], sizeof *paths, "boundaries[].%s.%s", kind->word, in->key);
+        brunt_format_number(in->initial, initial);
+        row = (scene_key){.path = paths[table_count],
+                          .type = number->vector ? SCENE_VECTOR : SCENE_REAL,
+                          .unit = in->unit,
+                          .initial = isnan(in->initial) ? REQUIRED : initial,
+                          .min = in->min,
+                          .max = in->max,
+                          .min_open = in->min_open,
+                          .max_open = in->max_open,
+                          .dimension = number->dimension,
+                          .doc = in->doc};
+        row.field.store = number->vector ? STORE_VECTOR : STORE_REAL;
+        row.field.offset = offsetof(brunt_boundary_def, number) + (size_t)number->at * sizeof(double);
+        add(&(scene_rows){&row, 1});
+    }
+}
+
+static void add_boundaries(void) {
+    for (int k = 0; k < brunt_boundary_kind_count; k++)
+        if (brunt_boundary_kinds[k]->numbers) add_boundary(brunt_boundary_kinds[k]);
+}
+
+__attribute__((constructor)) static void make_table(void) {
+    const scene_rows *own = &brunt_scene_own_rows;
+    for (int i = 0; i < own->count; i++) {
+        if (strcmp(own->row[i].path, "measures.*.<kind>") == 0)
+            add_measures();
+        else if (strcmp(own->row[i].path, "boundaries[].<kind>") == 0)
+            add_boundaries();
+        else
+            add(&(scene_rows){&own->row[i], 1});
+    }
+}
