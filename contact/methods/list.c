@@ -61,17 +61,24 @@ static int act_at_facets(const brunt_contact_context *m, const brunt_contact_wor
 #define EXPLICIT (1u << BRUNT_EXPLICIT)
 #define IMPLICIT (1u << BRUNT_IMPLICIT | 1u << BRUNT_STATIC)
 
+// In the order in which they act. A method of one file has its row there.
+#define ROWS(X)                                                                                                        \
+    X(grid_velocity)                                                                                                   \
+    X(point_touches) X(tied) X(published) X(averaged_surface) X(surface_on_grid) X(barrier) X(node_to_facet)
+#define DECLARE(name) extern const brunt_contact_row brunt_contact_##name;
+ROWS(DECLARE)
+#define ADDRESS(name) &brunt_contact_##name,
+const brunt_contact_row *const brunt_contact_rows[] = {ROWS(ADDRESS)};
+
 // clang-format off
-const brunt_contact_row brunt_contact_rows[] = {
-    {"grid velocity", METHOD(MULTI_VELOCITY), 0, EXPLICIT, SELF(NONE), true, "a body of method mpm", points_alone, NULL, NULL, NULL, NULL},
-    {"point touches", METHOD(AUGURY), FORM(AFFINE), EXPLICIT, SELF(NONE), false, NULL, points_alone, NULL, NULL, NULL, NULL},
-    {"tied", METHOD(TIED), 0, EXPLICIT | IMPLICIT, SELF(NONE), false, "two bodies of method mpm", points_alone, NULL, NULL, NULL, NULL},
-    {"published", METHOD(AUGURY), FORM(PAPER), EXPLICIT, SELF(MEMBRANES), false, NULL, any_mesh, mark_all, act_published, NULL, free_augury},
-    {"averaged surface", METHOD(AUGURY), FORM(SMOOTH) | FORM(SURFACE), EXPLICIT, SELF(MEMBRANES), false, NULL, any_mesh, NULL, act_averaged, NULL, free_augury},
-    {"surface on grid", METHOD(MULTI_VELOCITY), 0, EXPLICIT, SELF(NONE), true, NULL, mesh_and_points, brunt_surface_on_grid_near, act_on_grid, account_on_grid, free_on_grid},
-    {"barrier", METHOD(BARRIER), 0, IMPLICIT, SELF(MESHES), false, "a body of method fem", any_mesh, NULL, NULL, NULL, NULL},
-    {"node to facet", METHOD(AUGURY), FORM(AFFINE), EXPLICIT, SELF(MEMBRANES), false, "a body of method fem or membrane", any_mesh, NULL, act_at_facets, NULL, NULL},
-};
+const brunt_contact_row brunt_contact_grid_velocity = {"grid velocity", METHOD(MULTI_VELOCITY), 0, EXPLICIT, SELF(NONE), true, "a body of method mpm", points_alone, NULL, NULL, NULL, NULL};
+const brunt_contact_row brunt_contact_point_touches = {"point touches", METHOD(AUGURY), FORM(AFFINE), EXPLICIT, SELF(NONE), false, NULL, points_alone, NULL, NULL, NULL, NULL};
+const brunt_contact_row brunt_contact_tied = {"tied", METHOD(TIED), 0, EXPLICIT | IMPLICIT, SELF(NONE), false, "two bodies of method mpm", points_alone, NULL, NULL, NULL, NULL};
+const brunt_contact_row brunt_contact_published = {"published", METHOD(AUGURY), FORM(PAPER), EXPLICIT, SELF(MEMBRANES), false, NULL, any_mesh, mark_all, act_published, NULL, free_augury};
+const brunt_contact_row brunt_contact_averaged_surface = {"averaged surface", METHOD(AUGURY), FORM(SMOOTH) | FORM(SURFACE), EXPLICIT, SELF(MEMBRANES), false, NULL, any_mesh, NULL, act_averaged, NULL, free_augury};
+const brunt_contact_row brunt_contact_surface_on_grid = {"surface on grid", METHOD(MULTI_VELOCITY), 0, EXPLICIT, SELF(NONE), true, NULL, mesh_and_points, brunt_surface_on_grid_near, act_on_grid, account_on_grid, free_on_grid};
+const brunt_contact_row brunt_contact_barrier = {"barrier", METHOD(BARRIER), 0, IMPLICIT, SELF(MESHES), false, "a body of method fem", any_mesh, NULL, NULL, NULL, NULL};
+const brunt_contact_row brunt_contact_node_to_facet = {"node to facet", METHOD(AUGURY), FORM(AFFINE), EXPLICIT, SELF(MEMBRANES), false, "a body of method fem or membrane", any_mesh, NULL, act_at_facets, NULL, NULL};
 // clang-format on
 const int brunt_contact_row_count = sizeof brunt_contact_rows / sizeof *brunt_contact_rows;
 _Static_assert(sizeof brunt_contact_rows / sizeof *brunt_contact_rows <= (size_t)BRUNT_CONTACT_ROW_LIMIT,
@@ -85,14 +92,14 @@ static bool is_of(const brunt_contact_row *row, brunt_contact_method method) { r
 bool brunt_contact_accepts(brunt_contact_method method, bool mesh_a, bool mesh_b) {
     bool accepts = method == BRUNT_CONTACT_NONE;
     for (int r = 0; r < brunt_contact_row_count; r++)
-        accepts |= is_of(&brunt_contact_rows[r], method) && brunt_contact_rows[r].accepts(mesh_a, mesh_b);
+        accepts |= is_of(brunt_contact_rows[r], method) && brunt_contact_rows[r]->accepts(mesh_a, mesh_b);
     return accepts;
 }
 
 unsigned brunt_contact_rows_of(brunt_contact_method method, brunt_augury_form form, bool mesh_a, bool mesh_b) {
     unsigned rows = 0;
     for (int r = 0; r < brunt_contact_row_count; r++) {
-        const brunt_contact_row *row = &brunt_contact_rows[r];
+        const brunt_contact_row *row = brunt_contact_rows[r];
         const bool formed = !row->forms || row->forms >> form & 1;
         if (is_of(row, method) && formed && row->accepts(mesh_a, mesh_b)) rows |= 1u << r;
     }
@@ -110,7 +117,7 @@ brunt_contact_method brunt_contact_between_points(brunt_contact_method method, b
 bool brunt_contact_at_nodes(brunt_contact_method method) {
     bool at_nodes = false;
     for (int r = 0; r < brunt_contact_row_count; r++)
-        at_nodes |= is_of(&brunt_contact_rows[r], method) && brunt_contact_rows[r].at_nodes;
+        at_nodes |= is_of(brunt_contact_rows[r], method) && brunt_contact_rows[r]->at_nodes;
     return at_nodes;
 }
 
@@ -124,21 +131,21 @@ const char *brunt_contact_word(brunt_contact_method method) {
 const char *brunt_contact_wants(brunt_contact_method method) {
     const char *wants = NULL;
     for (int r = 0; r < brunt_contact_row_count && !wants; r++)
-        if (is_of(&brunt_contact_rows[r], method)) wants = brunt_contact_rows[r].wants;
+        if (is_of(brunt_contact_rows[r], method)) wants = brunt_contact_rows[r]->wants;
     return wants ? wants : "other bodies";
 }
 
 brunt_contact_method brunt_contact_default(brunt_scheme scheme, bool meshes) {
     const bool mesh = meshes || brunt_scheme_minimises(scheme);
-    const brunt_contact_row *row = brunt_contact_rows;
-    while (!(row->schemes >> scheme & 1) || !row->accepts(mesh, mesh)) row++;
-    return (brunt_contact_method)__builtin_ctz(row->methods);
+    const brunt_contact_row *const *row = brunt_contact_rows;
+    while (!((*row)->schemes >> scheme & 1) || !(*row)->accepts(mesh, mesh)) row++;
+    return (brunt_contact_method)__builtin_ctz((*row)->methods);
 }
 
 bool brunt_contact_of_scheme(brunt_contact_method method, brunt_scheme scheme) {
     bool has = method == BRUNT_CONTACT_NONE;
     for (int r = 0; r < brunt_contact_row_count; r++)
-        has |= is_of(&brunt_contact_rows[r], method) && brunt_contact_rows[r].schemes >> scheme & 1;
+        has |= is_of(brunt_contact_rows[r], method) && brunt_contact_rows[r]->schemes >> scheme & 1;
     return has;
 }
 
@@ -156,7 +163,7 @@ void brunt_contact_words_of(brunt_scheme scheme, char *out, size_t size) {
 brunt_contact_self brunt_contact_with_itself(brunt_contact_method method) {
     brunt_contact_self self = BRUNT_SELF_NONE;
     for (int r = 0; r < brunt_contact_row_count; r++)
-        if (is_of(&brunt_contact_rows[r], method) && brunt_contact_rows[r].self > self)
-            self = brunt_contact_rows[r].self;
+        if (is_of(brunt_contact_rows[r], method) && brunt_contact_rows[r]->self > self)
+            self = brunt_contact_rows[r]->self;
     return self;
 }

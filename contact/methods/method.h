@@ -42,7 +42,7 @@ typedef struct brunt_contact_row {
     void (*free)(void *memory);
 } brunt_contact_row;
 
-extern const brunt_contact_row brunt_contact_rows[];
+extern const brunt_contact_row *const brunt_contact_rows[];
 extern const int brunt_contact_row_count; // at most BRUNT_CONTACT_ROW_LIMIT
 
 // Whether two bodies may meet by a method, whichever of its rows that is.

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/simd.h"
+#include "body/derived.h"
 #include "body/fields.h"
 
 // ------------------------------------------------------------------------------------------ at nodes
@@ -37,15 +38,11 @@ enum { NODE_FIELDS = sizeof node_fields / sizeof node_fields[0] };
 
 // ------------------------------------------------------------------------------------------ at elements
 
-typedef struct element_point {
-    double F[9], J, stress[6], volume, density; // of sheets F is the stretch U in its plane, and that across
-} element_point;
-
 static double scalar(const brunt_fem_body *fem, int field, int c, int32_t s) {
     return (double)fem->scalar[fem->field[field].first + c][s];
 }
 
-static void read_point(const brunt_fem_body *fem, int32_t s, element_point *p) {
+static void read_point(const brunt_fem_body *fem, int32_t s, brunt_point_values *p) {
     const int dim = fem->point_dim;
     const bool sheet = fem->traits->membrane;
     memset(p, 0, sizeof *p);
@@ -61,56 +58,47 @@ static void read_point(const brunt_fem_body *fem, int32_t s, element_point *p) {
     p->density = (double)fem->material.density / p->J;
 }
 
-typedef void element_fn(const brunt_fem_body *fem, int32_t slot, const element_point *p, double *out);
+typedef void element_fn(const brunt_fem_body *fem, int32_t slot, const brunt_point_values *p, double *out);
 
-static void element_stress(const brunt_fem_body *fem, int32_t s, const element_point *p, double *out) {
+static void element_stress(const brunt_fem_body *fem, int32_t s, const brunt_point_values *p, double *out) {
     (void)fem, (void)s;
     memcpy(out, p->stress, sizeof p->stress);
 }
-static void element_pressure(const brunt_fem_body *fem, int32_t s, const element_point *p, double *out) {
-    (void)fem, (void)s;
-    *out = -(p->stress[0] + p->stress[1] + p->stress[2]) / 3;
-}
-static void element_von_mises(const brunt_fem_body *fem, int32_t s, const element_point *p, double *out) {
-    (void)fem, (void)s;
-    const double *t = p->stress;
-    double a = t[0] - t[1], b = t[1] - t[2], c = t[2] - t[0];
-    *out = sqrt(0.5 * (a * a + b * b + c * c) + 3 * (t[3] * t[3] + t[4] * t[4] + t[5] * t[5]));
-}
-static void element_J(const brunt_fem_body *fem, int32_t s, const element_point *p, double *out) {
+static void element_J(const brunt_fem_body *fem, int32_t s, const brunt_point_values *p, double *out) {
     (void)fem, (void)s;
     *out = p->J;
 }
-static void element_volume(const brunt_fem_body *fem, int32_t s, const element_point *p, double *out) {
+static void element_volume(const brunt_fem_body *fem, int32_t s, const brunt_point_values *p, double *out) {
     (void)fem, (void)s;
     *out = p->volume;
 }
-static void element_density(const brunt_fem_body *fem, int32_t s, const element_point *p, double *out) {
+static void element_density(const brunt_fem_body *fem, int32_t s, const brunt_point_values *p, double *out) {
     (void)fem, (void)s;
     *out = p->density;
 }
-static void element_F(const brunt_fem_body *fem, int32_t s, const element_point *p, double *out) {
+static void element_F(const brunt_fem_body *fem, int32_t s, const brunt_point_values *p, double *out) {
     (void)fem, (void)s;
     memcpy(out, p->F, sizeof p->F);
 }
-static void element_id(const brunt_fem_body *fem, int32_t s, const element_point *p, double *out) {
+static void element_id(const brunt_fem_body *fem, int32_t s, const brunt_point_values *p, double *out) {
     (void)p;
     *out = fem->element_id[s];
 }
 
-static void element_thickness(const brunt_fem_body *fem, int32_t s, const element_point *p, double *out) {
+static void element_thickness(const brunt_fem_body *fem, int32_t s, const brunt_point_values *p, double *out) {
     (void)s;
     *out = (double)fem->thickness * p->F[8];
 }
 
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers" // rows of their own leave the last out
+#define DERIVED(name) {.derived = &brunt_field_##name},
 static const struct element_field {
     brunt_field_info info;
     element_fn *read;
+    const brunt_derived_field *derived; // in place of both
 } element_fields[] = {
     {{"stress", "Pa", 6, true, BRUNT_AT_ELEMENTS}, element_stress},
-    {{"pressure", "Pa", 1, false, BRUNT_AT_ELEMENTS}, element_pressure},
-    {{"von_mises", "Pa", 1, false, BRUNT_AT_ELEMENTS}, element_von_mises},
-    {{"J", "1", 1, false, BRUNT_AT_ELEMENTS}, element_J},
+    BRUNT_DERIVED_FIELDS(DERIVED){{"J", "1", 1, false, BRUNT_AT_ELEMENTS}, element_J},
     {{"volume", "m^3", 1, false, BRUNT_AT_ELEMENTS}, element_volume},
     {{"density", "kg/m^3", 1, false, BRUNT_AT_ELEMENTS}, element_density},
     {{"deformation_gradient", "1", 9, false, BRUNT_AT_ELEMENTS}, element_F},
@@ -131,7 +119,8 @@ int32_t brunt_mesh_field_count(const brunt_body_ref *ref) {
 brunt_field_info brunt_mesh_field(const brunt_body_ref *ref, int32_t field) {
     const brunt_fem_body *fem = ref->fem;
     if (field < NODE_FIELDS) return node_fields[field].info;
-    if ((field -= NODE_FIELDS) < element_count(fem)) return element_fields[field].info;
+    if ((field -= NODE_FIELDS) < element_count(fem))
+        return brunt_field_info_of(element_fields[field].derived, element_fields[field].info, BRUNT_AT_ELEMENTS);
     const brunt_element_field *f = &fem->field[BRUNT_ELEMENT_BASE_FIELDS + field - element_count(fem)];
     bool symmetric = f->components > 1 && f->components == BRUNT_SYMMETRIC(fem->point_dim);
     return (brunt_field_info){f->name, f->unit, symmetric ? 6 : f->components, symmetric, BRUNT_AT_ELEMENTS};
@@ -158,10 +147,13 @@ void brunt_mesh_read(const brunt_body_ref *ref, int32_t field, double *out) {
     for (int32_t s = 0; s < fem->slots; s++) {
         if (fem->element_id[s] < 0) continue;
         double *to = out + place_of(fem, s) * info.components;
-        element_point point;
+        brunt_point_values point;
         if (!state) {
             read_point(fem, s, &point);
-            element_fields[field].read(fem, s, &point, to);
+            if (element_fields[field].derived)
+                element_fields[field].derived->read(&point, to);
+            else
+                element_fields[field].read(fem, s, &point, to);
         }
         for (int c = 0; state && c < info.components; c++)
             to[c] = c < state->components ? (double)fem->scalar[state->first + c][s] : 0;

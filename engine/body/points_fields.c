@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/simd.h"
+#include "body/derived.h"
 #include "body/fields.h"
 
 typedef void derive_fn(brunt_body *body, int64_t slot, double *out);
@@ -37,17 +38,6 @@ static void derive_stress(brunt_body *body, int64_t s, double *out) {
                      ? entry(&body->particles, BRUNT_FIELD_kirchhoff_stress, c, s) / J
                      : 0;
 }
-static void derive_pressure(brunt_body *body, int64_t s, double *out) {
-    double t[6];
-    derive_stress(body, s, t);
-    *out = -(t[0] + t[1] + t[2]) / 3;
-}
-static void derive_von_mises(brunt_body *body, int64_t s, double *out) {
-    double t[6];
-    derive_stress(body, s, t);
-    double a = t[0] - t[1], b = t[1] - t[2], c = t[2] - t[0];
-    *out = sqrt(0.5 * (a * a + b * b + c * c) + 3 * (t[3] * t[3] + t[4] * t[4] + t[5] * t[5]));
-}
 static void derive_J(brunt_body *body, int64_t s, double *out) { *out = jacobian(&body->particles, s); }
 static void derive_volume(brunt_body *body, int64_t s, double *out) {
     *out = entry(&body->particles, BRUNT_FIELD_reference_volume, 0, s) * jacobian(&body->particles, s);
@@ -63,16 +53,27 @@ static void derive_F(brunt_body *body, int64_t s, double *out) {
 }
 static void derive_id(brunt_body *body, int64_t s, double *out) { *out = (double)body->particles.id[s]; }
 
+static void derive_shared(const brunt_derived_field *field, brunt_body *body, int64_t s, double *out) {
+    brunt_point_values at;
+    derive_F(body, s, at.F);
+    derive_J(body, s, &at.J);
+    derive_stress(body, s, at.stress);
+    derive_volume(body, s, &at.volume);
+    derive_density(body, s, &at.density);
+    field->read(&at, out);
+}
+
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers" // rows of their own leave the last out
+#define SHARED(name) {.shared = &brunt_field_##name},
 static const struct derived {
     brunt_field_info info;
     derive_fn *derive;
+    const brunt_derived_field *shared; // in place of both
 } derived[] = {
     {{"position", "m", 3, false, BRUNT_AT_PARTICLES}, derive_position},
     {{"velocity", "m/s", 3, false, BRUNT_AT_PARTICLES}, derive_velocity},
     {{"stress", "Pa", 6, true, BRUNT_AT_PARTICLES}, derive_stress},
-    {{"pressure", "Pa", 1, false, BRUNT_AT_PARTICLES}, derive_pressure},
-    {{"von_mises", "Pa", 1, false, BRUNT_AT_PARTICLES}, derive_von_mises},
-    {{"J", "1", 1, false, BRUNT_AT_PARTICLES}, derive_J},
+    BRUNT_DERIVED_FIELDS(SHARED){{"J", "1", 1, false, BRUNT_AT_PARTICLES}, derive_J},
     {{"volume", "m^3", 1, false, BRUNT_AT_PARTICLES}, derive_volume},
     {{"density", "kg/m^3", 1, false, BRUNT_AT_PARTICLES}, derive_density},
     {{"mass", "kg", 1, false, BRUNT_AT_PARTICLES}, derive_mass},
@@ -87,7 +88,7 @@ int32_t brunt_points_field_count(const brunt_body_ref *ref) {
 }
 
 brunt_field_info brunt_points_field(const brunt_body_ref *ref, int32_t field) {
-    if (field < DERIVED) return derived[field].info;
+    if (field < DERIVED) return brunt_field_info_of(derived[field].shared, derived[field].info, BRUNT_AT_PARTICLES);
     const brunt_particles *p = &ref->mpm->particles;
     const brunt_particle_field *f = &p->field[BRUNT_BASE_FIELDS + field - DERIVED];
     bool symmetric = f->components > 1 && f->components == BRUNT_SYMMETRIC(p->point_dim);
@@ -117,7 +118,10 @@ void brunt_points_read(const brunt_body_ref *ref, int32_t field, double *out) {
         if (p->id[s] < 0) continue;
         double *to = out + (rank ? rank[p->id[s]] : p->id[s]) * info.components;
         if (field < DERIVED) {
-            derived[field].derive(body, s, to);
+            if (derived[field].shared)
+                derive_shared(derived[field].shared, body, s, to);
+            else
+                derived[field].derive(body, s, to);
             continue;
         }
         const brunt_particle_field *f = &p->field[BRUNT_BASE_FIELDS + field - DERIVED];

@@ -94,7 +94,7 @@ int brunt_surfaces_make(brunt_world *world, const brunt_world_def *def, brunt_er
     for (int w = 0; w < world->boundaries.wall_count; w++)
         world->contact.has_surfaces = world->contact.has_surfaces || acts_on_fem(world, &world->boundaries.walls[w]);
     for (int r = 0; r < brunt_contact_row_count; r++)
-        world->contact.has_surfaces |= brunt_contact_rows[r].act && world->contact.rows >> r & 1;
+        world->contact.has_surfaces |= brunt_contact_rows[r]->act && world->contact.rows >> r & 1;
     world->contact.def = def->contact;
     world->contact.def.pairs = NULL, world->contact.def.pair_count = 0;
     world->contact.touch_sweeps = def->contact.iterations > 0 ? def->contact.iterations : TOUCH_SWEEPS;
@@ -177,8 +177,9 @@ int brunt_surfaces_renew(brunt_world *world, brunt_error *error) {
 }
 
 // Whether a world has something for a row to do; planes are met where facets are.
-static bool is_used(const brunt_contact *contact, const brunt_contact_row *row) {
-    return row->act && (contact->rows >> (row - brunt_contact_rows) & 1 || row->forms >> BRUNT_AUGURY_AFFINE & 1);
+static bool is_used(const brunt_contact *contact, int r) {
+    const brunt_contact_row *row = brunt_contact_rows[r];
+    return row->act && (contact->rows >> r & 1 || row->forms >> BRUNT_AUGURY_AFFINE & 1);
 }
 
 static brunt_contact_work contact_work(brunt_contact *contact) {
@@ -244,7 +245,7 @@ static bool is_clear(brunt_world *world, const brunt_contact_context *m) {
     brunt_contact_surface *s = &contact->surface;
     bool clear = !any_active(s, s->motion.was_active);
     for (int r = 0; r < brunt_contact_row_count; r++)
-        clear = clear && !(brunt_contact_rows[r].near && is_used(contact, &brunt_contact_rows[r]));
+        clear = clear && !(brunt_contact_rows[r]->near && is_used(contact, r));
     if (!clear) return s->motion.rests = false;
     for (int anew = !s->motion.rests; anew <= 1; anew++) { // by the bounds that are kept, then by those of now
         brunt_surface_rest(s, anew, m->threads, m->timer);
@@ -269,16 +270,15 @@ int brunt_surfaces_meet(brunt_world *world, const double gravity[3], double kick
     if (failed == -2) return fail_far(world, error);
     brunt_contact *contact = &world->contact;
     brunt_contact_work work = contact_work(contact);
-    const brunt_contact_row *const end = brunt_contact_rows + brunt_contact_row_count;
-    for (const brunt_contact_row *row = brunt_contact_rows; !failed && row < end; row++)
-        if (row->near && is_used(contact, row)) row->near(&m);
+    const brunt_contact_row *const *rows = brunt_contact_rows;
+    const int count = brunt_contact_row_count;
+    for (int r = 0; !failed && r < count; r++)
+        if (rows[r]->near && is_used(contact, r)) rows[r]->near(&m);
     if (!failed) brunt_surface_gather_state(&contact->surface, kick, gravity, world->settings.threads, timer);
-    for (const brunt_contact_row *row = brunt_contact_rows; !failed && row < end; row++)
-        if (is_used(contact, row))
-            work.memory = &contact->memory[row - brunt_contact_rows], failed = row->act(&m, &work);
-    for (const brunt_contact_row *row = brunt_contact_rows; !failed && row < end; row++)
-        if (row->account && is_used(contact, row))
-            work.memory = &contact->memory[row - brunt_contact_rows], row->account(&m, &work);
+    for (int r = 0; !failed && r < count; r++)
+        if (is_used(contact, r)) work.memory = &contact->memory[r], failed = rows[r]->act(&m, &work);
+    for (int r = 0; !failed && r < count; r++)
+        if (rows[r]->account && is_used(contact, r)) work.memory = &contact->memory[r], rows[r]->account(&m, &work);
     if (failed) return brunt_fail(error, BRUNT_FAILED, "out of memory in the contact of surfaces");
     brunt_surface_scatter_velocity(&world->contact.surface, dt, world->settings.threads, timer);
     memcpy(world->contact.frame, world->contact.surface.motion.frame, sizeof world->contact.surface.motion.frame);

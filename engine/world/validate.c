@@ -18,7 +18,7 @@ static void validate_pairs(const brunt_pairs *pairs, int body_count) {
 static void validate_contact(const brunt_contact *contact) {
     BRUNT_ASSERT(contact->rows >> brunt_contact_row_count == 0);
     for (int r = 0; r < brunt_contact_row_count; r++)
-        BRUNT_ASSERT(!contact->memory[r] || (contact->rows >> r & 1 && brunt_contact_rows[r].free));
+        BRUNT_ASSERT(!contact->memory[r] || (contact->rows >> r & 1 && brunt_contact_rows[r]->free));
     brunt_constraints_validate(&contact->constraints);
     if (contact->has_surfaces) brunt_surface_validate(&contact->surface);
 }

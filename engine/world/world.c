@@ -271,7 +271,7 @@ void brunt_world_destroy(brunt_world *world) {
     brunt_constraints_free(&world->contact.constraints);
     brunt_node_to_facet_free(world->contact.node_to_facet);
     for (int r = 0; r < brunt_contact_row_count; r++)
-        if (brunt_contact_rows[r].free) brunt_contact_rows[r].free(world->contact.memory[r]);
+        if (brunt_contact_rows[r]->free) brunt_contact_rows[r]->free(world->contact.memory[r]);
     brunt_load_step_free(&world->boundaries.sets);
     brunt_node_sets_free(&world->boundaries.sets);
     brunt_boundary_surfaces_free(&world->boundaries.surfaces);
