@@ -64,7 +64,13 @@ static int act_at_facets(const brunt_contact_context *m, const brunt_contact_wor
 // In the order in which they act. A method of one file has its row there.
 #define ROWS(X)                                                                                                        \
     X(grid_velocity)                                                                                                   \
-    X(point_touches) X(tied) X(published) X(averaged_surface) X(surface_on_grid) X(barrier) X(node_to_facet)
+    X(point_touches)                                                                                                   \
+    X(tied)                                                                                                            \
+    X(published)                                                                                                       \
+    X(averaged_surface)                                                                                                \
+    X(surface_on_grid)                                                                                                 \
+    X(barrier)                                                                                                         \
+    X(node_to_facet)
 #define DECLARE(name) extern const brunt_contact_row brunt_contact_##name;
 ROWS(DECLARE)
 #define ADDRESS(name) &brunt_contact_##name,
