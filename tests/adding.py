@@ -1,61 +1,97 @@
 #!/usr/bin/env python3
-"""What it costs to add a thing: the lines outside its own file that name a sample of its kind.
+"""What it costs to add a thing, by adding one: tests/adding/KIND.patch is a whole one of each kind.
 
-    python3 tests/adding.py          the figures and the places
-    python3 tests/adding.py check    the figures; exit code 1 when one is beyond its limit
+    python3 tests/adding.py          the figures, and the lines elsewhere
+    python3 tests/adding.py check    the figures; exit code 1 when one is beyond its limit, when a patch does not apply, or
+                                     when CONTRIBUTING.md says another figure
+    python3 tests/adding.py run      adds all of them to a copy (build/adding), builds that, and runs the scenes beside the patches
 
-Code only: comments, tests and documents do not count. What names a sample as a default, a choice that the physics makes,
-or a member of its own file counts as well, so that a figure is an upper bound.
+Counted are files of its own (at most 1), and lines elsewhere (at most 3), in so many files: added ones, or taken ones
+where those are more. Code only: documents, tests, and what chooses the thing in a scene do not count.
 """
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-# kind: (what names the sample, its own files, at most so many lines elsewhere)
-SAMPLES = {
-    "element": (r"\b(BRUNT_TET4|brunt_tet4|tet4)\b", r"engine/fem/elements/tet4\.c", 3),
-    "material": (r"drucker[-_]prager", r"materials/drucker_prager\.c", 2),
-    # Its word, a row for bodies of points and one for meshes with them, and what the reference says of it.
-    "contact method": (r"multi[-_]velocity|MULTI_VELOCITY", r"contact/methods/(grid_velocity|surface_on_grid)", 4),
-    # The list, the header of its definition, its member in brunt_boundary; a row for each key of its own besides. It has a file
-    # each for its definition, what it does, and the keys that take more than filling a field.
-    "boundary": (r"brunt_region|brunt/boundary_region|\bREGION\b|->regions\b|region_count|->where\b|\"region\"",
-                 r"boundary_region\.[ch]$|engine/boundary/region\.c", 3),
-    # Its word and its row.
-    "condition of planes": (r"SYMMETRY|\"symmetry\"", r"^$", 2),
-    # A line in the list of kinds, the rows of a measure of one body, and a row for each key of its own.
-    "measure": (r"measures\.\*\.extent|OF_BODY\(\"extent|\bEXTENT\b|MEASURE_EXTENT", r"io/output/measure_extent\.c", 3),
-    # Its row of a scene, the member that it fills, its row among a body's numbers: what it may be, how a prediction's
-    # coarser scene scales it, that implicit steps refuse it.
-    "body key": (r"(from|def|body)->mass_scaling|double mass_scaling;|[.*\"]\.mass_scaling", r"engine/fem/", 3),
-    # Of elements; the row of material points besides.
-    "output field": (r"\"von_mises\"|(derive|element)_von_mises", r"engine/body/mesh_fields\.c", 2),
-}
+TRIALS = ROOT / "tests" / "adding"
+KINDS = ["material", "element", "contact method", "boundary", "measure", "body key", "output field"]
+# A body key has no file of its own: what it does stands where bodies are made, in so many lines of those elsewhere.
+LINES = {"body key": 5}
 
 
-def code(path):
-    """The lines of a file without its comments."""
-    text = re.sub(r"/\*.*?\*/", lambda m: "\n" * m[0].count("\n"), (ROOT / path).read_text(), flags=re.S)
-    return [re.sub(r"(^|\s)//.*", "", line) for line in text.split("\n")]
+def patch(kind):
+    return TRIALS / (kind.replace(" ", "_") + ".patch")
+
+
+def count(kind):
+    """(names of its own files, {file: lines} elsewhere)"""
+    own, elsewhere, name, new, added, taken = [], {}, None, False, 0, 0
+    for line in [*patch(kind).read_text().split("\n"), "diff --git a/ b/"]:
+        if line.startswith("diff --git "):
+            if name and new:
+                own.append(name)
+            elif name:
+                elsewhere[name] = max(added, taken)
+            name, new, added, taken = line.split(" b/")[1], False, 0, 0
+        elif line.startswith("new file"):
+            new = True
+        elif re.match(r"[+-](?![+-]{2} )", line):
+            added, taken = added + (line[0] == "+"), taken + (line[0] == "-")
+    return own, elsewhere
+
+
+def applies(kind):
+    return subprocess.run(["git", "apply", "--check", patch(kind)], cwd=ROOT, capture_output=True).returncode == 0
+
+
+def run():
+    """All of them at once in a copy of what git knows."""
+    copy = ROOT / "build" / "adding"
+    shutil.rmtree(copy / "source", ignore_errors=True)
+    (copy / "source").mkdir(parents=True)
+    names = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True).stdout.split("\n")
+    for name in filter(None, names):
+        if (ROOT / name).exists():
+            (copy / "source" / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy2(ROOT / name, copy / "source" / name)
+    for kind in KINDS:
+        with open(patch(kind), encoding="utf-8") as text:
+            subprocess.run(["patch", "-p1", "-s"], cwd=copy / "source", stdin=text, check=True)
+    settings = ["-DCMAKE_BUILD_TYPE=Release", "-DBRUNT_TESTS=OFF", "-DBRUNT_BENCH=OFF", "-DBRUNT_WERROR=ON"]
+    subprocess.run(["cmake", "-S", copy / "source", "-B", copy / "build", *settings], check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(["cmake", "--build", copy / "build", "-j2"], check=True, stdout=subprocess.DEVNULL)
+    for scene in sorted(TRIALS.glob("*.yaml")):
+        subprocess.run([copy / "build" / "brunt", "run", scene, "-o", copy / scene.stem], check=True, stdout=subprocess.DEVNULL)
+        print(f"{scene.stem}: its measures hold")
 
 
 def main():
-    tracked = subprocess.run(["git", "ls-files", "engine", "contact", "materials", "io"], cwd=ROOT, capture_output=True,
-                             text=True, check=True).stdout.split()
-    sources = {f: code(f) for f in tracked if re.search(r"\.(c|h|inc)$", f) and (ROOT / f).exists()}
-    broken = 0
-    for kind, (pattern, own, limit) in SAMPLES.items():
-        places = [(f, n, line.strip()) for f, lines in sources.items() if not re.search(own, f)
-                  for n, line in enumerate(lines, 1) if re.search(pattern, line)]
-        bad = limit is not None and len(places) > limit
-        broken += bad
-        print(f"{kind}: {len({f for f, _, _ in places})} files, {len(places)} lines" + (f" (at most {limit})" if bad else ""))
-        if bad or sys.argv[1:] != ["check"]:
-            for f, n, line in places:
-                print(f"    {f}:{n}: {line[:100]}")
-    sys.exit(1 if sys.argv[1:] == ["check"] and broken else 0)
+    if sys.argv[1:] == ["run"]:
+        return run()
+    check, broken = sys.argv[1:] == ["check"], 0
+    said = (ROOT / "CONTRIBUTING.md").read_text()
+    for kind in KINDS:
+        own, elsewhere = count(kind)
+        lines = sum(elsewhere.values())
+        figure = f"{len(own)} + {lines} in {len(elsewhere)}"
+        bad = []
+        if len(own) > 1 or lines > LINES.get(kind, 3):
+            bad.append("too many")
+        if not applies(kind):
+            bad.append("its patch does not apply")
+        if not re.search(rf"^\| {kind}\b[^|\n]*\| {re.escape(figure)} \|", said, re.M):
+            bad.append("CONTRIBUTING.md says another figure")
+        broken += bool(bad)
+        print(f"{kind}: {figure} files" + "".join(f"; {b}" for b in bad))
+        if bad or not check:
+            for name in own:
+                print(f"    {name}")
+            for name, number in elsewhere.items():
+                print(f"    {name}: {number}")
+    sys.exit(1 if check and broken else 0)
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 // What a kind of element is apart from its mechanics: one row a kind, which meshes, their checks, scenes, mesh files,
 // pictures and finite elements read.
 //
-// To add an element: its kind in brunt.h, its row here, and its file in fem/elements with a line in that folder's list.
+// To add an element: its kind in brunt/mesh.h, its row here, its file in fem/elements and a line in that folder's list.
 #pragma once
 
 #include "brunt.h"
