@@ -23,7 +23,7 @@ void brunt_start_motion(const brunt_body_def *def, int dim, const double x[3], d
     double phase = def->wave_phase, r[3];
     for (int a = 0; a < 3; a++) phase += def->wave_vector[a] * x[a], r[a] = x[a] - def->spin_about[a];
     const double *w = def->spin;
-    const double turn[3][3] = {{0, -w[2], w[1]}, {w[2], 0, -w[0]}, {-w[1], w[0], 0}};
+    double turn[3][3] = {{0, -w[2], w[1]}, {w[2], 0, -w[0]}, {-w[1], w[0], 0}};
     for (int a = 0; a < 3; a++) {
         v[a] = def->velocity[a] + def->wave_velocity[a] * sin(phase);
         for (int b = 0; b < dim; b++) {

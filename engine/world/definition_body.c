@@ -3,6 +3,9 @@
 
 #define AT(member) offsetof(brunt_body_def, member), sizeof(((brunt_body_def *)0)->member) / sizeof(double)
 
+#define METHOD(name) (1u << BRUNT_##name)
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers" // most rows leave out the last columns
+
 // clang-format off
 const brunt_body_number brunt_body_numbers[] = {
     {".size",                  AT(size),                  BRUNT_ANY_NUMBER, true, NULL},
@@ -10,7 +13,7 @@ const brunt_body_number brunt_body_numbers[] = {
     {".erosion.strain",        AT(erosion.strain),        BRUNT_POSITIVE | BRUNT_OR_INFINITE, false, NULL},
     {".erosion.step",          AT(erosion.step),          BRUNT_NOT_NEGATIVE, true, NULL},
     {".mass_scaling",          AT(mass_scaling),          BRUNT_NOT_NEGATIVE, true, ": implicit steps need none"},
-    {".damping",               AT(damping),               BRUNT_NOT_NEGATIVE, false, NULL},
+    {".damping",               AT(damping),               BRUNT_NOT_NEGATIVE, false, NULL, "1/s", "0", METHOD(FEM) | METHOD(MEMBRANE), "fem, membrane: a force of - damping m v on every node; exact in explicit steps, whatever the step, of the order of time.integrator in implicit ones"},
     {".thickness",             AT(thickness),             BRUNT_ANY_NUMBER, false, NULL},
     {".contact_thickness",     AT(contact_thickness),     BRUNT_NOT_NEGATIVE | BRUNT_OR_NAN, false, NULL},
     {".spacing",               AT(spacing),               BRUNT_NOT_NEGATIVE, true, NULL},

@@ -22,6 +22,10 @@ typedef struct brunt_body_number {
     int rule;        // BRUNT_NOT_NEGATIVE, ...
     bool length;     // a length, or a time that goes with it: a discretisation that is coarser has as much more of it
     const char *explicit_only; // implicit steps refuse what is above 0, and say this behind; NULL: they do not
+    // Its key in scenes, where it is this number and nothing more; else doc is NULL, and io/scene/scene_keys.c has it.
+    const char *unit, *initial; // "1/s"; "0", or "": it may be left out
+    unsigned methods;           // bits of brunt_method that have it; 0: all
+    const char *doc;
 } brunt_body_number;
 extern const brunt_body_number brunt_body_numbers[];
 extern const int brunt_body_number_count;

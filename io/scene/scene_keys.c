@@ -95,7 +95,7 @@ static const scene_key own_rows[] = {
     {"bodies.*.erosion.step", SCENE_REAL, "s", OPTIONAL, POSITIVE, NULL, 0, false, "fem, membrane: elements go whose stable step falls below it (default: none)", .field = SCENE_FIELD(brunt_body_def, erosion.step)},
     {"bodies.*.erosion.inverted", SCENE_WORD, NULL, "error", ANY, "error|erode", 0, false, "what is turned inside out stops the run, or goes", .field = SCENE_FIELD(brunt_body_def, erosion.inverted)},
     {"bodies.*.erosion.debris", SCENE_WORD, NULL, "remove", ANY, "remove|keep", 0, false, "mass without elements leaves, with an account; or flies on: loose nodes as free particles in contact, material points without stress, which want transfer: {flip: 1} (apic stretches a lone one without end)", .field = SCENE_FIELD(brunt_body_def, erosion.keep)},
-    {"bodies.*.damping", SCENE_REAL, "1/s", "0", NOT_NEGATIVE, NULL, 0, false, "fem, membrane: a force of - damping m v on every node; exact in explicit steps, whatever the step, of the order of time.integrator in implicit ones", .only = SCENE_MESHES, .field = SCENE_FIELD(brunt_body_def, damping)},
+    SCENE_OF_KINDS("bodies.*"),
     {"bodies.*.mass_scaling", SCENE_REAL, "s", OPTIONAL, POSITIVE, NULL, 0, false, "fem, membrane: elements whose stable step is less are made denser until it is not (default: none are)", .only = SCENE_MESHES, .field = SCENE_FIELD(brunt_body_def, mass_scaling)},
     {"bodies.*.place", SCENE_ENTRIES, NULL, OPTIONAL, NONE, "moves of the shape or mesh, one after the other"},
     {"bodies.*.place[].translate", SCENE_VECTOR, "m", OPTIONAL, NONE, "a shift"},

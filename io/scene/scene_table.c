@@ -7,9 +7,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/check.h"
 #include "boundary/kinds.h"
 #include "io/scene/scene.h"
 #include "io/scene/units.h"
+#include "world/definitions.h"
 
 enum { ROOM = 600 };
 static scene_key table[ROOM];
@@ -63,6 +65,30 @@ static void add_boundary(const brunt_boundary_kind *kind) {
     }
 }
 
+// Of a number of a body that says its key itself.
+static void add_body_number(const brunt_body_number *number) {
+    static char paths[ROOM][64];
+    const bool positive = number->rule & BRUNT_POSITIVE, limited = number->rule & (BRUNT_POSITIVE | BRUNT_NOT_NEGATIVE);
+    snprintf(paths[table_count], sizeof *paths, "bodies.*%s", number->key);
+    const scene_key row = {.path = paths[table_count],
+                           .type = number->count == 3 ? SCENE_VECTOR : SCENE_REAL,
+                           .unit = number->unit,
+                           .initial = number->initial,
+                           .min = limited ? 0 : -INFINITY,
+                           .max = INFINITY,
+                           .min_open = positive || !limited,
+                           .max_open = true,
+                           .doc = number->doc,
+                           .only = number->methods, // SCENE_MPM, ... are these bits
+                           .field = {number->count == 3 ? STORE_VECTOR : STORE_REAL, number->offset}};
+    add(&(scene_rows){&row, 1});
+}
+
+static void add_body_numbers(void) {
+    for (int k = 0; k < brunt_body_number_count; k++)
+        if (brunt_body_numbers[k].doc) add_body_number(&brunt_body_numbers[k]);
+}
+
 static void add_boundaries(void) {
     for (int k = 0; k < brunt_boundary_kind_count; k++)
         if (brunt_boundary_kinds[k]->numbers) add_boundary(brunt_boundary_kinds[k]);
@@ -73,6 +99,8 @@ __attribute__((constructor)) static void make_table(void) {
     for (int i = 0; i < own->count; i++) {
         if (strcmp(own->row[i].path, "measures.*.<kind>") == 0)
             add_measures();
+        else if (strcmp(own->row[i].path, "bodies.*.<kind>") == 0)
+            add_body_numbers();
         else if (strcmp(own->row[i].path, "boundaries[].<kind>") == 0)
             add_boundaries();
         else
