@@ -101,6 +101,7 @@ rm -rf build/hard_cases && mkdir build/hard_cases
 BRUNT_HARD_CASES=$PWD/build/hard_cases run build -LE long
 check "structure of the sources" python3 tests/structure.py check
 check "what one more thing costs" python3 tests/adding.py check
+check "one more of each thing" python3 tests/adding.py run
 check "list of mistakes" python3 tests/mutations.py check
 check "format" sh tests/support/static.sh format
 check "static checks" sh tests/support/static.sh tidy build

@@ -140,13 +140,11 @@ static void look_at_points(const brunt_world_def *def, const refusals *r) {
     for (int32_t i = 0; i < def->body_count; i++)
         for (int32_t k = i + 1; k < def->body_count; k++) {
             const brunt_body_def *a = &def->bodies[i], *b = &def->bodies[k];
-            if (a->method != BRUNT_MPM || b->method != BRUNT_MPM ||
-                method_of(&def->contact, a, b) != BRUNT_CONTACT_BARRIER)
+            const brunt_contact_method method = method_of(&def->contact, a, b);
+            if (a->method != BRUNT_MPM || b->method != BRUNT_MPM || brunt_contact_accepts(method, false, false))
                 continue;
-            say(r, ".method",
-                "barriers want a body of method fem, neither '%s' nor '%s' is: tied or none is wanted, for all or in "
-                "pairs",
-                a->name, b->name);
+            say(r, ".method", "%s wants %s, neither '%s' nor '%s' is: tied or none is wanted, for all or in pairs",
+                brunt_contact_word(method), brunt_contact_wants(method), a->name, b->name);
             return;
         }
 }
