@@ -165,9 +165,11 @@ static void add_faces(const brunt_contact_surface *s, const brunt_feature *f, co
     }
 }
 
-int brunt_feature_weights(const brunt_contact_surface *s, const brunt_feature *f, const double n[3], const double x[3],
+int brunt_feature_weights(const brunt_contact_surface *s, const brunt_feature_place *place,
                           int32_t node[BRUNT_FEATURE_NODES], double weight[BRUNT_FEATURE_NODES],
                           double gradient[BRUNT_FEATURE_NODES][3], double *height) {
+    const brunt_feature *f = place->feature;
+    const double *n = place->n, *x = place->x;
     const double none[3] = {0};
     about to = {.node = node, .gradient = gradient};
     double own[4] = {0.25, 0.25, 0.25, 0.25}, d[3]; // the triangles of a quadrilateral meet at its centre, too

@@ -189,9 +189,11 @@ void brunt_face_values(const brunt_contact_surface *s, int32_t face, int triangl
     spread(node, triangle, 1 - w1 - w2, w1, w2, weight);
 }
 
-void brunt_face_weights(const brunt_contact_surface *s, int32_t face, int triangle, const double x[3], double weight[4],
+void brunt_face_weights(const brunt_contact_surface *s, const brunt_facet_place *place, double weight[4],
                         double gradient[4][3], double normal[3], double *height) {
-    const int32_t *node = s->face[face];
+    const int32_t face = place->face, *node = s->face[face];
+    const int triangle = place->triangle;
+    const double *x = place->x;
     brunt_face_values(s, face, triangle, x, weight);
     if (node[2] < 0) {
         const double *a = s->x[node[0]], *b = s->x[node[1]];

@@ -143,10 +143,12 @@ int brunt_node_to_facet_master(const brunt_contact_surface *s, const facet_candi
                                brunt_master *m) {
     if (h->feature.any) {
         memcpy(m->facet, h->n, sizeof m->facet);
-        return m->count = brunt_feature_weights(s, &h->feature, h->n, x, m->node, m->weight, m->gradient, &m->height);
+        const brunt_feature_place place = {&h->feature, h->n, x};
+        return m->count = brunt_feature_weights(s, &place, m->node, m->weight, m->gradient, &m->height);
     }
     memcpy(m->node, s->face[h->face], sizeof s->face[h->face]);
-    brunt_face_weights(s, h->face, h->triangle, x, m->weight, m->gradient, m->facet, &m->height);
+    const brunt_facet_place place = {h->face, h->triangle, x};
+    brunt_face_weights(s, &place, m->weight, m->gradient, m->facet, &m->height);
     return m->count = brunt_face_corners(s->face[h->face]);
 }
 
