@@ -3,6 +3,7 @@
 #include "scheme/implicit_contact.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "base/array.h"
@@ -261,10 +262,88 @@ static int check_start(const brunt_implicit_contact *c, const brunt_world *world
             if (!(brunt_shape_distance(&l.other->shape, l.dim, local) > 0))
                 return brunt_fail(error, BRUNT_BAD_INPUT,
                                   "bodies.%s touches bodies.%s at the start, or lies in it, at (%.6g, %.6g, %.6g) m: "
-                                  "barriers want a gap",
-                                  brunt_body_name(world, one), brunt_body_name(world, other), x[0], x[1], x[2]);
+                                  "barriers want a gap of more than 0 m, of %.4g m to begin without a force",
+                                  brunt_body_name(world, one), brunt_body_name(world, other), x[0], x[1], x[2],
+                                  c->distance);
     }
     return BRUNT_OK;
+}
+
+static int32_t count_points(const brunt_implicit_contact *c, const brunt_world *world, int64_t *nodes) {
+    int64_t count = 0;
+    *nodes = 0;
+    for (int i = 0; i < world->bodies.mpm_count; i++) {
+        const brunt_body *body = &world->bodies.mpm[i];
+        if (!c->has_points[i]) continue;
+        count += body->particles.count;
+        *nodes += body->particles.count * (int64_t)pow(body->grid.order + 1, body->grid.dim);
+    }
+    return count < INT32_MAX ? (int32_t)count : -1;
+}
+
+// Material points as they begin, which nothing moves yet.
+static int place_points(brunt_implicit_contact *c, const brunt_world *world, brunt_error *error) {
+    int64_t nodes;
+    const int32_t count = count_points(c, world, &nodes);
+    const size_t n = (size_t)count + 1;
+    if (count < 0 || BRUNT_RESERVE(c->x, n, 0) || BRUNT_RESERVE(c->area, n, 0) || BRUNT_RESERVE(c->owner, n, 0) ||
+        BRUNT_RESERVE(c->first, n + 1, 0))
+        return out_of_memory(error);
+    memset(c->first, 0, (n + 1) * sizeof *c->first);
+    c->point_count = 0;
+    for (int i = 0; i < world->bodies.mpm_count; i++) {
+        brunt_particles *p = &world->bodies.mpm[i].particles;
+        real *const *x = brunt_field(p, BRUNT_FIELD_position);
+        const real *volume = brunt_field(p, BRUNT_FIELD_reference_volume)[0];
+        for (int64_t s = 0; c->has_points[i] && s < p->slots; s++) {
+            if (!(volume[s] > 0)) continue; // padding
+            for (int a = 0; a < 3; a++) c->x[c->point_count][a] = a < p->dim ? (double)x[a][s] : 0;
+            c->area[c->point_count] = brunt_barrier_particle_area(p->dim, (double)volume[s]);
+            c->owner[c->point_count++] = world->bodies.mpm[i].index;
+        }
+    }
+    return BRUNT_OK;
+}
+
+// What is nearest to something as the run begins, by the barrier itself: of planes, surfaces whatever they are made
+// from, and edges.
+static int look_at_start(brunt_implicit_contact *c, const brunt_world *world, brunt_barrier_report *nearest,
+                         brunt_error *error) {
+    const brunt_team alone = {.threads = 1};
+    const int status = place_points(c, world, error);
+    if (status) return status;
+    for (int32_t q = 0; q < c->plane_count; q++)
+        memcpy(c->plane[q].origin, world->boundaries.walls[c->plane_wall[q]].plane.point, sizeof c->plane[q].origin);
+    const brunt_barrier_step step = {.x = (const double(*)[3])c->rest,
+                                     .node = c->node,
+                                     .particles = {.count = c->point_count,
+                                                   .x = (const double(*)[3])c->x,
+                                                   .area = c->area,
+                                                   .body = c->owner,
+                                                   .first = c->first},
+                                     .planes = c->plane,
+                                     .plane_count = c->plane_count,
+                                     .dt = 1,
+                                     .factor = 1};
+    const int set = brunt_barrier_set_step(c->barrier, &step, error);
+    return set ? set : brunt_barrier_look_back(c->barrier, &alone, NULL, NULL, nearest, NULL, error);
+}
+
+// A closed gap has no energy that a step could begin with.
+static int check_gaps(brunt_implicit_contact *c, const brunt_world *world, brunt_error *error) {
+    brunt_barrier_report r;
+    const int status = look_at_start(c, world, &r, error);
+    if (status || r.least_gap > 0) return status;
+    char to[2 * BRUNT_NAME_LENGTH];
+    if (r.plane >= 0)
+        snprintf(to, sizeof to, "the plane '%s'", world->boundaries.walls[c->plane_wall[r.plane]].name);
+    else
+        snprintf(to, sizeof to, "bodies.%s", brunt_body_name(world, r.other));
+    return brunt_fail(error, BRUNT_BAD_INPUT,
+                      "bodies.%s has a gap of %.4g m to %s at the start, at (%.6g, %.6g, %.6g) m: barriers want more "
+                      "than 0 m, %.4g m to begin without a force",
+                      brunt_body_name(world, r.body), r.least_gap + 0.0, to, r.place[0], r.place[1], r.place[2],
+                      c->distance);
 }
 
 // ------------------------------------------------------------------------------------------ making
@@ -283,7 +362,8 @@ int brunt_implicit_contact_make(brunt_implicit_contact *c, brunt_world *world, c
     if ((status = check_start(c, world, def, error))) return status;
     if (!(c->barrier = brunt_barrier_make(error))) return BRUNT_FAILED;
     status = make_surfaces(c, world, error);
-    return status ? status : brunt_barrier_set_pairs(c->barrier, c->pair, c->pair_count, error);
+    if (status || (status = brunt_barrier_set_pairs(c->barrier, c->pair, c->pair_count, error))) return status;
+    return check_gaps(c, world, error);
 }
 
 void brunt_implicit_contact_free(brunt_implicit_contact *c) {
@@ -354,18 +434,6 @@ static void add_points(const point_job *job, int32_t block_index, int32_t point)
         const int count = weigh(grid, block, p->bin[s], c->x[point], job->number, c->point_node + at, c->weight + at);
         c->first[point + 1] = at + count;
     }
-}
-
-static int32_t count_points(const brunt_implicit_contact *c, const brunt_world *world, int64_t *nodes) {
-    int64_t count = 0;
-    *nodes = 0;
-    for (int i = 0; i < world->bodies.mpm_count; i++) {
-        const brunt_body *body = &world->bodies.mpm[i];
-        if (!c->has_points[i]) continue;
-        count += body->particles.count;
-        *nodes += body->particles.count * (int64_t)pow(body->grid.order + 1, body->grid.dim);
-    }
-    return count < INT32_MAX ? (int32_t)count : -1;
 }
 
 int brunt_implicit_contact_points(brunt_implicit_contact *c, const brunt_world *world, const brunt_unknowns *u,

@@ -322,14 +322,32 @@ START_TEST(graded_bodies) {
 }
 END_TEST
 
+typedef struct refused_world {
+    const char *text, *message;
+} refused_world;
+
+static void expect_refused(const char *head, const refused_world *cases, int count) {
+    for (int c = 0; c < count; c++) {
+        char text[4096];
+        brunt_scene scene;
+        brunt_error error = {0};
+        snprintf(text, sizeof text, "%s%s", head, cases[c].text);
+        small_scene_of(text, &scene, NULL, 0);
+        brunt_world *world = brunt_world_create(&scene.world, &error);
+        ck_assert_msg(!world, "%s", cases[c].text);
+        ck_assert_int_eq(error.code, BRUNT_BAD_INPUT);
+        ck_assert_msg(strstr(error.message, cases[c].message), "%s\nis refused with: %s", cases[c].text, error.message);
+        brunt_scene_free(&scene);
+    }
+    ck_assert_uint_eq(brunt_memory_live(), 0);
+}
+
 // Scenes whose mistakes show only when the world is made.
 START_TEST(worlds_that_are_refused) {
     static const char head[] = "brunt: 1\ntime: {end: 1 ms}\ngrid: {cell: 1 mm}\n"
                                "materials: {m: {preset: copper-ofhc}, tnt: {preset: tnt}, water: {preset: water}, "
                                "gum: {model: neo-hookean, density: 1000, E: 1 MPa, nu: 0.4}}\n";
-    static const struct {
-        const char *text, *message;
-    } cases[] = {
+    static const refused_world cases[] = {
         {"dimension: 2\naxisymmetric: true\n"
          "bodies: {b: {method: mpm, material: m, shape: {box: {min: [-1 mm, 0], max: [4 mm, 4 mm]}}}}\n",
          "bodies.b: a particle at r = "},
@@ -373,19 +391,35 @@ START_TEST(worlds_that_are_refused) {
          "{x: [[0, 1e-3]]}}}\n",
          "bodies.b: an edge length of 0.001 m makes more than 100 million nodes"},
     };
-    for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
-        char text[4096];
-        brunt_scene scene;
-        brunt_error error = {0};
-        snprintf(text, sizeof text, "%s%s", head, cases[c].text);
-        small_scene_of(text, &scene, NULL, 0);
-        brunt_world *world = brunt_world_create(&scene.world, &error);
-        ck_assert_msg(!world, "%s", cases[c].text);
-        ck_assert_int_eq(error.code, BRUNT_BAD_INPUT);
-        ck_assert_msg(strstr(error.message, cases[c].message), "%s\nis refused with: %s", cases[c].text, error.message);
-        brunt_scene_free(&scene);
-    }
-    ck_assert_uint_eq(brunt_memory_live(), 0);
+    expect_refused(head, cases, (int)(sizeof cases / sizeof *cases));
+}
+END_TEST
+
+// Barriers have no energy where a gap is closed: at a plane, a mesh, and where only edges cross.
+START_TEST(closed_gaps_are_refused) {
+    static const char head[] = "brunt: 1\ndimension: 3\ntime: {end: 1 ms, scheme: implicit, step: 10 us}\n"
+                               "grid: {cell: 1 mm}\nmaterials: {gum: {model: neo-hookean, density: 1000, E: 1 MPa, nu: "
+                               "0.4}}\n";
+    static const refused_world cases[] = {
+        {"bodies: {b: {method: fem, material: gum, size: 2 mm, shape: {box: {min: [0, 0, 0], max: [4 mm, 4 mm, 4 "
+         "mm]}}}}\n"
+         "boundaries: [{name: floor, plane: {point: [0, 0, 0], normal: [0, 0, 1]}, condition: separate}]\n",
+         "bodies.b has a gap of 0 m to the plane 'floor' at the start, at (0, 0, 0) m: barriers want more than 0 m, "
+         "0.0002 m to begin"},
+        {"bodies: {b: {method: mpm, material: gum, particles_per_cell: 8, shape: {box: {min: [0, 0, 0], max: [4 mm, 4 "
+         "mm, 4 mm]}}}}\n"
+         "boundaries: [{name: floor, plane: {point: [0, 0, 0.5 mm], normal: [0, 0, 1]}, condition: separate}]\n",
+         "bodies.b has a gap of -0.00025 m to the plane 'floor' at the start"},
+        {"bodies: {b: {method: mpm, material: gum, particles_per_cell: 8, shape: {box: {min: [0, 0, 0], max: [4 mm, 4 "
+         "mm, 4 mm]}}}, c: {method: fem, material: gum, size: 2 mm, shape: {box: {min: [0, 0, 3.75 mm], max: [4 mm, 4 "
+         "mm, 8 mm]}}}}\n",
+         "bodies.b touches bodies.c at the start, or lies in it"},
+        {"bodies: {b: {method: fem, material: gum, size: 10 mm, shape: {box: {min: [0, 4 mm, 0], max: [10 mm, 5 mm, 1 "
+         "mm]}}}, c: {method: fem, material: gum, size: 10 mm, shape: {box: {min: [4 mm, 0, 1 mm], max: [5 mm, 10 mm, "
+         "2 mm]}}}}\n",
+         "bodies.b has a gap of 0 m to bodies.c at the start, at (0.00"},
+    };
+    expect_refused(head, cases, (int)(sizeof cases / sizeof *cases));
 }
 END_TEST
 
@@ -460,6 +494,7 @@ int main(void) {
     tcase_add_test(tests, total_lagrangian_bodies);
     tcase_add_test(tests, graded_bodies);
     tcase_add_test(tests, worlds_that_are_refused);
+    tcase_add_test(tests, closed_gaps_are_refused);
     tcase_add_test(tests, explosives_that_are_doubtful);
     tcase_add_test(tests, reference_has_presets_and_failure);
     suite_add_tcase(suite, tests);
