@@ -106,7 +106,10 @@ static void run_blocks(void *context, int64_t begin, int64_t end, int worker) {
     const fem_call *call = context;
     (void)worker;
     const fem_potential_kind *kind = call->p->kind;
-    for (int64_t b = begin; b < end; b++) (call->wanted == FEM_LIMIT ? kind->limit : kind->evaluate)(call, (int32_t)b);
+    void (*const block)(const fem_call *, int32_t) = call->wanted == FEM_LIMIT     ? kind->limit
+                                                     : call->wanted == FEM_PRODUCT ? kind->product
+                                                                                   : kind->evaluate;
+    for (int64_t b = begin; b < end; b++) block(call, (int32_t)b);
 }
 
 static void run_nodes(void *context, int64_t begin, int64_t end, int worker) {
@@ -175,6 +178,21 @@ static void hessian(void *self, const brunt_team *team, const double *u, bool pr
     brunt_assemble(h, team, &list, &p->colours, fill, p);
 }
 
+static void linearise(void *self, const brunt_team *team, const double *u, bool project, brunt_block_matrix *blocks) {
+    brunt_fem_potential *p = self;
+    fem_call call = {.p = p, .wanted = FEM_TANGENT, .project = project, .u = u};
+    run(&call, team);
+    const brunt_stencils list = stencils(p);
+    brunt_assemble_diagonal(blocks, team, &list, &p->colours, fill, p);
+}
+
+static void product(void *self, const brunt_team *team, const double *x, double *y) {
+    brunt_fem_potential *p = self;
+    fem_call call = {.p = p, .wanted = FEM_PRODUCT, .way = x + (int64_t)p->base * p->dim, .out = y};
+    brunt_parallel(team->threads, p->body->block_count, 1, run_blocks, &call, team->timer);
+    brunt_parallel(team->threads, p->body->node_count, NODE_GRAIN, add_gradient, &call, team->timer);
+}
+
 static double limit(void *self, const brunt_team *team, const double *u, const double *way, double largest) {
     brunt_fem_potential *p = self;
     fem_call call = {.p = p, .wanted = FEM_LIMIT, .u = u, .way = way, .largest = largest};
@@ -190,6 +208,8 @@ brunt_term brunt_fem_potential_term(brunt_fem_potential *p) {
                                        .gradient = gradient,
                                        .stencils = stencils,
                                        .hessian = hessian,
+                                       .linearise = linearise,
+                                       .product = product,
                                        .limit = limit};
     return (brunt_term){.ops = &ops, .self = p};
 }

@@ -317,6 +317,28 @@ static void hessian(const brunt_fem_potential *p, int64_t slot, double *dense) {
             }
 }
 
+static void product(const fem_call *call, int32_t b) {
+    const brunt_fem_potential *p = call->p;
+    const brunt_fem_block *block = &p->body->block[b];
+    real *partial = p->force + (size_t)block->node_first * 4;
+    memset(partial, 0, (size_t)block->node_count * 4 * sizeof *partial);
+    for (int64_t slot = block->first; slot < (int64_t)block->first + block->count; slot++) {
+        const int32_t *node = p->body->element_node + slot * p->nodes;
+        double x[Y] = {0}, g[Y] = {0};
+        for (int a = 0; a < p->nodes; a++)
+            for (int k = 0; k < Y; k++)
+                x[k] += p->sheet[slot].share[k / 3][a] * call->way[(int64_t)node[a] * 3 + k % 3];
+        for (int r = 0, k = 0; r < Y; r++, k++) {
+            g[r] += (double)p->tangent[k][slot] * x[r];
+            for (int c = r + 1; c < Y; c++) {
+                const double h = (double)p->tangent[++k][slot];
+                g[r] += h * x[c], g[c] += h * x[r];
+            }
+        }
+        add_force(p, slot, g, partial);
+    }
+}
+
 // The element's kernel does it all: its laws are elastic, and look at nothing that a step did.
 static void commit(brunt_fem_potential *p, int32_t b, brunt_fem_workspace *work) {
     brunt_fem_report *report = &p->body->report[b];
@@ -325,4 +347,4 @@ static void commit(brunt_fem_potential *p, int32_t b, brunt_fem_workspace *work)
 }
 
 const fem_potential_kind brunt_fem_membrane_potential = {
-    .make = make, .evaluate = evaluate, .hessian = hessian, .commit = commit};
+    .make = make, .evaluate = evaluate, .hessian = hessian, .product = product, .commit = commit};

@@ -40,7 +40,7 @@ struct brunt_fem_potential {
     int threads;
 };
 
-typedef enum fem_wanted { FEM_ENERGY, FEM_GRADIENT, FEM_TANGENT, FEM_LIMIT } fem_wanted;
+typedef enum fem_wanted { FEM_ENERGY, FEM_GRADIENT, FEM_TANGENT, FEM_LIMIT, FEM_PRODUCT } fem_wanted;
 
 typedef struct fem_call {
     brunt_fem_potential *p;
@@ -57,6 +57,8 @@ struct fem_potential_kind {
     void (*evaluate)(const fem_call *call, int32_t block); // energy, gradient into `force`, or what `hessian` reads
     void (*limit)(const fem_call *call, int32_t block);    // NULL: elements bear any step
     void (*hessian)(const brunt_fem_potential *p, int64_t slot, double *dense); // of one element, row by row
+    // The Hessian that stands times `way` (of the body's nodes, dim each) into `force`, of a block.
+    void (*product)(const fem_call *call, int32_t block);
     // Elements of a block to where their nodes are now: material, partial forces and report.
     void (*commit)(brunt_fem_potential *p, int32_t block, brunt_fem_workspace *work);
 };

@@ -289,6 +289,49 @@ BRUNT_INLINE void element_hessian(int dim, int nodes, const brunt_fem_potential 
             }
 }
 
+// Of one vector of elements: V a : (sum_b x_b (x) g_b) . g_a, and k gamma_a (gamma . x).
+BRUNT_INLINE void add_product(int dim, int nodes, const fem_call *call, int64_t slot, int32_t some, real *partial) {
+    const brunt_fem_potential *p = call->p;
+    const lanes volume = volumes(p, slot);
+    lanes x[MOST_NODES][3], f[MOST_NODES][3], H[9], T[9];
+    nodal_values(dim, nodes, p, call->way, slot, x);
+    for (int c = 0; c < dim * dim; c++) H[c] = lanes_set(0);
+    for (int a = 0; a < nodes; a++)
+        for (int j = 0; j < dim; j++) {
+            const lanes g = lanes_load(p->g[a * dim + j] + slot);
+            for (int i = 0; i < dim; i++) H[i * dim + j] += x[a][i] * g;
+        }
+    for (int m = 0; m < dim * dim; m++) {
+        lanes sum = lanes_set(0);
+        for (int n = 0; n < dim * dim; n++)
+            sum += lanes_load(p->tangent[brunt_tangent_place(false, dim, m, n)] + slot) * H[n];
+        T[m] = volume * sum;
+    }
+    for (int a = 0; a < nodes; a++)
+        for (int i = 0; i < dim; i++) {
+            f[a][i] = lanes_set(0);
+            for (int j = 0; j < dim; j++) f[a][i] += T[i * dim + j] * lanes_load(p->g[a * dim + j] + slot);
+        }
+    for (int m = 0; m < p->modes; m++) {
+        lanes q[3];
+        const lanes k = hourglass(dim, nodes, p, slot, m, (const lanes(*)[3])x, q);
+        for (int a = 0; a < nodes; a++)
+            for (int i = 0; i < dim; i++) f[a][i] += k * lanes_load(p->gamma[m * nodes + a] + slot) * q[i];
+    }
+    for (int a = 0; a < nodes; a++) add_to_records(partial, p->body->local + slot * nodes + a, nodes, some, dim, f[a]);
+}
+
+BRUNT_INLINE void product_of(int dim, int nodes, const fem_call *call, int32_t b) {
+    brunt_fem_potential *p = call->p;
+    const brunt_fem_block *block = &p->body->block[b];
+    real *partial = p->force + (size_t)block->node_first * 4;
+    memset(partial, 0, (size_t)block->node_count * 4 * sizeof *partial);
+    for (int32_t at = 0; at < block->count; at += BRUNT_LANES) {
+        const int32_t rest = block->count - at;
+        add_product(dim, nodes, call, (int64_t)block->first + at, rest < BRUNT_LANES ? rest : BRUNT_LANES, partial);
+    }
+}
+
 // Elements of a block to where their nodes are now: F, material, partial forces and report.
 BRUNT_INLINE void commit_block(int dim, int nodes, brunt_fem_potential *p, int32_t b, brunt_fem_workspace *work) {
     brunt_fem_body *body = p->body;
@@ -337,10 +380,19 @@ static void hessian(const brunt_fem_potential *p, int64_t slot, double *dense) {
     BY_SIZE(p->body, FILL)
 }
 
+static void product(const fem_call *call, int32_t b) {
+#define PRODUCT(dim, nodes) product_of(dim, nodes, call, b)
+    BY_SIZE(call->p->body, PRODUCT)
+}
+
 static void commit(brunt_fem_potential *p, int32_t b, brunt_fem_workspace *work) {
 #define COMMIT(dim, nodes) commit_block(dim, nodes, p, b, work)
     BY_SIZE(p->body, COMMIT)
 }
 
-const fem_potential_kind brunt_fem_solid_potential = {
-    .make = make, .evaluate = evaluate_block, .limit = limit_block, .hessian = hessian, .commit = commit};
+const fem_potential_kind brunt_fem_solid_potential = {.make = make,
+                                                      .evaluate = evaluate_block,
+                                                      .limit = limit_block,
+                                                      .hessian = hessian,
+                                                      .product = product,
+                                                      .commit = commit};

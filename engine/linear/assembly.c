@@ -73,7 +73,17 @@ typedef struct colour_work {
     const int64_t *stencil; // of the colour
     brunt_stencil_fn *fill;
     void *context;
+    bool diagonal; // alone
 } colour_work;
+
+static void add_diagonal(brunt_block_matrix *m, const int32_t *node, int count, const double *dense) {
+    const int dim = m->dim, size = count * dim;
+    for (int a = 0; a < count; a++) {
+        double *block = brunt_block_matrix_diagonal(m, node[a]);
+        for (int i = 0; i < dim; i++)
+            for (int j = 0; j < dim; j++) block[i * dim + j] += dense[(a * dim + i) * size + a * dim + j];
+    }
+}
 
 static void add_stencils(void *context, int64_t begin, int64_t end, int worker) {
     const colour_work *w = context;
@@ -83,16 +93,25 @@ static void add_stencils(void *context, int64_t begin, int64_t end, int worker) 
         const int count = (int)(w->stencils->first[s + 1] - from);
         memset(dense, 0, (size_t)count * (size_t)count * (size_t)(w->m->dim * w->m->dim) * sizeof *dense);
         w->fill(w->context, s, dense, worker);
-        brunt_block_matrix_add(w->m, w->stencils->node + from, count, dense);
+        (w->diagonal ? add_diagonal : brunt_block_matrix_add)(w->m, w->stencils->node + from, count, dense);
+    }
+}
+
+static void assemble(colour_work work, const brunt_team *team) {
+    const brunt_colours *c = work.colours;
+    BRUNT_ASSERT(c->count == work.stencils->count && team->threads <= c->threads);
+    for (int32_t k = 0; k < c->colours; k++) {
+        work.stencil = c->stencil + c->first[k];
+        brunt_parallel(team->threads, c->first[k + 1] - c->first[k], GRAIN, add_stencils, &work, team->timer);
     }
 }
 
 void brunt_assemble(brunt_block_matrix *m, const brunt_team *team, const brunt_stencils *stencils,
                     const brunt_colours *c, brunt_stencil_fn *fill, void *context) {
-    BRUNT_ASSERT(c->count == stencils->count && team->threads <= c->threads);
-    colour_work work = {m, stencils, c, NULL, fill, context};
-    for (int32_t k = 0; k < c->colours; k++) {
-        work.stencil = c->stencil + c->first[k];
-        brunt_parallel(team->threads, c->first[k + 1] - c->first[k], GRAIN, add_stencils, &work, team->timer);
-    }
+    assemble((colour_work){m, stencils, c, NULL, fill, context, false}, team);
+}
+
+void brunt_assemble_diagonal(brunt_block_matrix *m, const brunt_team *team, const brunt_stencils *stencils,
+                             const brunt_colours *c, brunt_stencil_fn *fill, void *context) {
+    assemble((colour_work){m, stencils, c, NULL, fill, context, true}, team);
 }

@@ -26,6 +26,9 @@ void brunt_colours_free(brunt_colours *colours);
 // it comes filled with zeros. `worker`: 0 .. threads - 1.
 typedef void brunt_stencil_fn(void *context, int64_t s, double *dense, int worker);
 
+// Adds all stencils' blocks on the diagonal alone, to a matrix that needs no others.
+void brunt_assemble_diagonal(brunt_block_matrix *m, const brunt_team *team, const brunt_stencils *stencils,
+                             const brunt_colours *colours, brunt_stencil_fn *fill, void *context);
 // Adds all stencils to a matrix that couples them, with no more threads than they were coloured for.
 void brunt_assemble(brunt_block_matrix *m, const brunt_team *team, const brunt_stencils *stencils,
                     const brunt_colours *colours, brunt_stencil_fn *fill, void *context);

@@ -103,34 +103,61 @@ static int take_gradient(newton_run *r) {
     return BRUNT_OK;
 }
 
+// Whether a term is left out of the matrix, for products of its own.
+static bool has_product(const newton_run *r, int term) {
+    return r->options->matrix_free && r->problem->terms[term].ops->product;
+}
+
+// The matrix that the solver is given.
+static brunt_block_matrix *system_of(newton_run *r) {
+    return r->options->matrix_free ? &r->n->free.blocks : &r->n->matrix;
+}
+
 static int make_pattern(newton_run *r) {
     brunt_newton *n = r->n;
     int lists = 0;
     for (int t = 0; t < r->problem->count; t++)
-        if (r->problem->terms[t].ops->stencils)
+        if (r->problem->terms[t].ops->stencils && !has_product(r, t))
             n->stencils[lists++] = r->problem->terms[t].ops->stencils(r->problem->terms[t].self);
     const brunt_pattern pattern = {r->problem->dim, r->problem->nodes, n->stencils, lists, r->report->iterations > 0};
     if (brunt_block_matrix_pattern(&n->matrix, r->team, &pattern, r->error)) return broken(r, BRUNT_NEWTON_BROKEN);
     return BRUNT_OK;
 }
 
-static void fill_matrix(newton_run *r, bool project) {
+static int fill_matrix(newton_run *r, bool project) {
     brunt_block_matrix *m = &r->n->matrix;
+    brunt_matrix_free *f = &r->n->free;
     brunt_block_matrix_zero(m, r->team);
     for (int t = 0; t < r->problem->count; t++)
-        if (r->problem->terms[t].ops->hessian)
+        if (r->problem->terms[t].ops->hessian && !has_product(r, t))
             r->problem->terms[t].ops->hessian(r->problem->terms[t].self, r->team, r->u, project, m);
+    if (!r->options->matrix_free) return BRUNT_OK;
+    f->rest = m, f->terms = r->problem->terms, f->count = r->problem->count, f->held = r->problem->held;
+    return brunt_matrix_free_take(f, r->team, r->u, project, r->error) ? broken(r, BRUNT_NEWTON_BROKEN) : BRUNT_OK;
 }
 
 static void hold_matrix(newton_run *r) {
-    if (r->problem->held) brunt_block_matrix_hold(&r->n->matrix, r->team, r->problem->held, 1);
+    if (r->options->matrix_free)
+        brunt_matrix_free_hold(&r->n->free, r->team);
+    else if (r->problem->held)
+        brunt_block_matrix_hold(&r->n->matrix, r->team, r->problem->held, 1);
+}
+
+// Diagonal entries times 1 + next, which are times 1 + before.
+static void raise_matrix(newton_run *r, double before, double next) {
+    if (r->options->matrix_free)
+        brunt_matrix_free_raise(&r->n->free, next);
+    else
+        brunt_block_matrix_scale_diagonal(&r->n->matrix, (1 + next) / (1 + before));
 }
 
 static int open_solver(newton_run *r, const brunt_linear_ops *solver) {
     const brunt_linear_options options = {.accuracy = r->options->accuracy,
                                           .iterations = r->options->linear_iterations,
                                           .preconditioner = r->options->preconditioner,
-                                          .memory = r->options->memory};
+                                          .memory = r->options->memory,
+                                          .product = r->options->matrix_free ? brunt_matrix_free_product : NULL,
+                                          .context = &r->n->free};
     brunt_linear *l = &r->n->linear;
     if (l->ops != solver || l->options.preconditioner != options.preconditioner) r->n->analysed = 0;
     return brunt_linear_open(l, solver, &options, r->error) ? broken(r, BRUNT_NEWTON_BROKEN) : BRUNT_OK;
@@ -139,14 +166,15 @@ static int open_solver(newton_run *r, const brunt_linear_ops *solver) {
 // Factors of the matrix as it stands.
 static brunt_linear_status factor(newton_run *r) {
     brunt_newton *n = r->n;
+    const brunt_block_matrix *matrix = system_of(r);
     brunt_linear_status status = BRUNT_LINEAR_DONE;
-    if (n->analysed != n->matrix.pattern) {
+    if (n->analysed != matrix->pattern) {
         n->analysed = 0;
-        status = brunt_linear_analyse(&n->linear, r->team, &n->matrix, r->error);
+        status = brunt_linear_analyse(&n->linear, r->team, matrix, r->error);
         if (status != BRUNT_LINEAR_DONE) return status;
-        n->analysed = n->matrix.pattern, r->report->analyses++;
+        n->analysed = matrix->pattern, r->report->analyses++;
     }
-    status = brunt_linear_factor(&n->linear, r->team, &n->matrix, r->error);
+    status = brunt_linear_factor(&n->linear, r->team, matrix, r->error);
     r->report->factorisations++;
     return status;
 }
@@ -238,11 +266,14 @@ static int find_step(newton_run *r) {
     for (int attempt = 0;; attempt++) {
         if (attempt > 0) phase(r, BRUNT_NEWTON_MATRIX);
         r->plain = attempt == 0;
-        if (attempt <= 1) fill_matrix(r, !r->plain), hold_matrix(r);
+        if (attempt <= 1) {
+            if (fill_matrix(r, !r->plain)) return BRUNT_FAILED;
+            hold_matrix(r);
+        }
         if (attempt == 1) r->report->projections++;
         if (attempt > 1) {
             const double next = shift > 0 ? MORE_SHIFT * shift : LEAST_SHIFT;
-            brunt_block_matrix_scale_diagonal(&r->n->matrix, (1 + next) / (1 + shift));
+            raise_matrix(r, shift, next);
             shift = next, r->report->shifts++;
         }
         phase(r, BRUNT_NEWTON_SOLVE);
@@ -379,8 +410,9 @@ static int check_stable(newton_run *r) {
     if (!r->options->stable || !direct) return BRUNT_OK;
     phase(r, BRUNT_NEWTON_MATRIX);
     if (make_pattern(r)) return BRUNT_FAILED;
-    fill_matrix(r, false), hold_matrix(r);
-    brunt_block_matrix_scale_diagonal(&r->n->matrix, 1 + SPARE);
+    if (fill_matrix(r, false)) return BRUNT_FAILED;
+    hold_matrix(r);
+    raise_matrix(r, 0, SPARE);
     phase(r, BRUNT_NEWTON_SOLVE);
     if (open_solver(r, &brunt_linear_direct)) return BRUNT_FAILED;
     const brunt_linear_status status = factor(r);
@@ -410,6 +442,8 @@ static int give_up(newton_run *r) {
 static int begin(newton_run *r) {
     brunt_newton *n = r->n;
     const size_t count = (size_t)unknowns(r);
+    // A factor of the diagonal blocks alone would pass for the system's.
+    BRUNT_ASSERT(!r->options->matrix_free || (r->options->solver == &brunt_linear_pcg && !r->options->fallback));
     if (BRUNT_RESERVE(n->gradient, count, 0) || BRUNT_RESERVE(n->step, count, 0) || BRUNT_RESERVE(n->trial, count, 0) ||
         BRUNT_RESERVE(n->stencils, (size_t)r->problem->count, 0)) {
         brunt_fail(r->error, BRUNT_FAILED, "Out of memory for Newton's method with %zu unknowns.", count);
@@ -449,8 +483,11 @@ int brunt_newton_lead(brunt_newton *newton, const brunt_team *team, const brunt_
     if (begin(&run) || take_gradient(&run)) return BRUNT_FAILED;
     phase(&run, BRUNT_NEWTON_MATRIX);
     if (make_pattern(&run)) return BRUNT_FAILED;
-    fill_matrix(&run, false);
-    brunt_block_matrix_product(&newton->matrix, team, lead->way, p);
+    if (fill_matrix(&run, false)) return BRUNT_FAILED;
+    if (options->matrix_free)
+        brunt_matrix_free_hessian(&newton->free, team, lead->way, p);
+    else
+        brunt_block_matrix_product(&newton->matrix, team, lead->way, p);
     for (int64_t i = 0; i < unknowns(&run); i++)
         if (!problem->held[i]) newton->gradient[i] += p[i];
     hold_matrix(&run);
@@ -464,6 +501,7 @@ int brunt_newton_lead(brunt_newton *newton, const brunt_team *team, const brunt_
 
 void brunt_newton_free(brunt_newton *n) {
     brunt_block_matrix_free(&n->matrix);
+    brunt_matrix_free_free(&n->free);
     brunt_linear_close(&n->linear);
     brunt_free(n->gradient), brunt_free(n->step), brunt_free(n->trial), brunt_free(n->stencils);
     *n = (brunt_newton){0};

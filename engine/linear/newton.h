@@ -8,6 +8,7 @@
 #pragma once
 
 #include "linear/linear.h"
+#include "linear/matrix_free.h"
 
 // What the method is at; from the call on, time is that of the phase.
 typedef enum brunt_newton_phase {
@@ -25,6 +26,7 @@ typedef struct brunt_newton_options {
     double accuracy;                // pcg: of each iteration's solution; 1e-3
     const brunt_linear_ops *solver; // direct or pcg
     brunt_preconditioner preconditioner;
+    bool matrix_free;          // pcg with the products of terms, by block Jacobi: no matrix of what has them
     int32_t linear_iterations; // pcg: at most
     bool fallback;             // where pcg stalls, the direct solver goes on (`auto`)
     bool early;     // a step after which the next would be below tolerance/10 is the last; not of `unbalance`
@@ -88,7 +90,8 @@ typedef struct brunt_problem {
 
 // Memory that lasts from one minimisation to the next; starts as all zero. What it remembers does not change results.
 typedef struct brunt_newton {
-    brunt_block_matrix matrix;
+    brunt_block_matrix matrix; // matrix-free: of terms without products
+    brunt_matrix_free free;    // matrix-free: the system
     brunt_linear linear;
     int64_t analysed;                // the matrix's pattern when it was analysed
     double *gradient, *step, *trial; // *trial: places tried, and minus the gradient before

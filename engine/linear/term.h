@@ -50,6 +50,12 @@ typedef struct brunt_term_ops {
     // Adds the Hessian at u [J/m^2] to blocks that the matrix has. `project`: without its negative eigenvalues, of each
     // point or stencil.
     void (*hessian)(void *term, const brunt_team *team, const double *u, bool project, struct brunt_block_matrix *h);
+    // Without a matrix: takes what products with the Hessian at u go by, as `hessian` has it, and adds its blocks on
+    // the diagonal to `blocks`, which has no others. NULL: the matrix has the term's Hessian all the same.
+    void (*linearise)(void *term, const brunt_team *team, const double *u, bool project,
+                      struct brunt_block_matrix *blocks);
+    // Adds the Hessian of the last `linearise` times x to y. NULL where that is.
+    void (*product)(void *term, const brunt_team *team, const double *x, double *y);
     // Greatest t in [0, largest] for which u + t p stays within the domain, with what is left of it for the next step;
     // NULL: any.
     double (*limit)(void *term, const brunt_team *team, const double *u, const double *p, double largest);

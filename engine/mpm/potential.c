@@ -284,9 +284,9 @@ static void run(mpm_call *call, const brunt_team *team) {
 // --------------------------------------------------------------------------------- the term
 
 // Nodes of slots: what the blocks around give, in their order.
-static void add_gradient(void *context, int64_t begin, int64_t end, int worker) {
-    const mpm_call *call = context;
-    const brunt_mpm_potential *p = call->p;
+static void gather_slots(void *context, int64_t begin, int64_t end, int worker) {
+    const mpm_gather *gather = context;
+    const brunt_mpm_potential *p = gather->p;
     const brunt_grid *grid = &p->body->grid;
     const int dim = grid->dim, span = grid->span, side = grid->side;
     (void)worker;
@@ -307,9 +307,13 @@ static void add_gradient(void *context, int64_t begin, int64_t end, int worker) 
                 }
                 if (!inside) continue;
                 const double *f = p->force + ((size_t)source * (size_t)grid->span_nodes + (size_t)at) * (size_t)dim;
-                for (int i = 0; i < dim; i++) call->out[(int64_t)unknown * dim + i] += f[i];
+                for (int i = 0; i < dim; i++) gather->out[(int64_t)unknown * gather->stride + i] += f[i];
             }
         }
+}
+
+void brunt_mpm_gather(mpm_gather *gather, const brunt_team *team) {
+    brunt_parallel(team->threads, gather->p->body->grid.slot_count, 1, gather_slots, gather, team->timer);
 }
 
 static brunt_energy_sum energy(void *self, const brunt_team *team, const double *u) {
@@ -324,9 +328,9 @@ static brunt_energy_sum energy(void *self, const brunt_team *team, const double 
 
 static void gradient(void *self, const brunt_team *team, const double *u, double *g) {
     brunt_mpm_potential *p = self;
-    mpm_call call = {.p = p, .wanted = MPM_GRADIENT, .u = u, .out = g};
+    mpm_call call = {.p = p, .wanted = MPM_GRADIENT, .u = u};
     run(&call, team);
-    brunt_parallel(team->threads, p->body->grid.slot_count, 1, add_gradient, &call, team->timer);
+    brunt_mpm_gather(&(mpm_gather){p, g, p->body->grid.dim}, team);
 }
 
 static void hessian(void *self, const brunt_team *team, const double *u, bool project, brunt_block_matrix *h) {
@@ -334,6 +338,17 @@ static void hessian(void *self, const brunt_team *team, const double *u, bool pr
     mpm_call call = {.p = p, .wanted = MPM_TANGENT, .project = project, .u = u};
     run(&call, team);
     brunt_mpm_add_matrix(p, team, h);
+}
+
+static void linearise(void *self, const brunt_team *team, const double *u, bool project, brunt_block_matrix *blocks) {
+    brunt_mpm_potential *p = self;
+    mpm_call call = {.p = p, .wanted = MPM_TANGENT, .project = project, .u = u};
+    run(&call, team);
+    brunt_mpm_add_diagonal(p, team, blocks);
+}
+
+static void product(void *self, const brunt_team *team, const double *x, double *y) {
+    brunt_mpm_add_product(self, team, x, y);
 }
 
 static double limit(void *self, const brunt_team *team, const double *u, const double *way, double largest) {
@@ -355,6 +370,8 @@ brunt_term brunt_mpm_potential_term(brunt_mpm_potential *p) {
                                        .gradient = gradient,
                                        .stencils = stencils,
                                        .hessian = hessian,
+                                       .linearise = linearise,
+                                       .product = product,
                                        .energy = energy};
     return (brunt_term){.ops = &ops, .self = p};
 }

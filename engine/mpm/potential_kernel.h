@@ -153,6 +153,12 @@ BRUNT_INLINE void field_at(int dim, int order, const double *window, const kerne
     }
 }
 
+// The nodes of bins with particles follow one another in a window: the first one's place.
+BRUNT_INLINE int bin_base(int dim, int order, int bin) {
+    const int span = (dim == 3 ? 4 : 8) + order;
+    return dim == 3 ? ((bin >> 4) * span + (bin >> 2 & 3)) * span + (bin & 3) : (bin >> 3) * span + (bin & 7);
+}
+
 // A tile of particles of a block: what they would be.
 typedef struct mpm_tile {
     real F[9][MOST_TILE], f[9][MOST_TILE], density[MOST_TILE], stress[9][MOST_TILE];
@@ -185,6 +191,18 @@ static inline void trial_tile(brunt_mpm_potential *p, int64_t slot, int32_t coun
         trial[k].volume = points.volume;
     }
 }
+
+// What a sum over the windows of blocks goes to.
+typedef struct mpm_gather {
+    const brunt_mpm_potential *p;
+    double *out; // of each unknown `stride` numbers, the first `dim` of which are added to
+    int stride;
+} mpm_gather;
+// potential.c: adds what the blocks' windows have in `force`, at each node in the order of blocks.
+void brunt_mpm_gather(mpm_gather *gather, const brunt_team *team);
+// potential_product.c: once tangents are there, as those of the term (term.h).
+void brunt_mpm_add_diagonal(brunt_mpm_potential *p, const brunt_team *team, brunt_block_matrix *blocks);
+void brunt_mpm_add_product(brunt_mpm_potential *p, const brunt_team *team, const double *x, double *y);
 
 // potential_matrix.c: room and colours of a step, 0, or -1: out of memory; and the Hessian, once tangents are there.
 int brunt_mpm_matrix_room(brunt_mpm_potential *p);

@@ -46,6 +46,37 @@ static void hessian_of(const subject *s, const brunt_team *team, const double *u
     s->term.ops->hessian(s->term.self, team, u, project, m);
 }
 
+// Without a matrix: products and the blocks on the diagonal are the matrix's, projected or not, added to what is there,
+// and have the same bits with any number of threads.
+static void without_a_matrix(const subject *s, const double *u, bool project) {
+    uint64_t seed = 21;
+    const int64_t n = s->nodes * s->dim;
+    const int size = s->dim * s->dim;
+    double *x = numbers(s), *y = numbers(s), *same = numbers(s), *exact = numbers(s), largest = 0;
+    brunt_block_matrix m = {0}, blocks = {0};
+    const brunt_team *teams[] = {&one, &two, &three};
+    hessian_of(s, &one, u, project, &m);
+    for (int64_t i = 0; i < n; i++) x[i] = between(&seed);
+    brunt_block_matrix_product(&m, &one, x, exact);
+    for (int64_t i = 0; i < n; i++) largest = fmax(largest, fabs(exact[i]));
+    for (int t = 0; t < 3; t++) {
+        const brunt_pattern alone = {.dim = s->dim, .nodes = (int32_t)s->nodes};
+        ck_assert_int_eq(brunt_block_matrix_pattern(&blocks, teams[t], &alone, NULL), BRUNT_OK);
+        s->term.ops->linearise(s->term.self, teams[t], u, project, &blocks);
+        for (int64_t i = 0; i < n; i++) y[i] = largest;
+        s->term.ops->product(s->term.self, teams[t], x, y);
+        if (t == 0) memcpy(same, y, (size_t)n * sizeof *y);
+        ck_assert(!memcmp(same, y, (size_t)n * sizeof *y));
+        for (int64_t i = 0; i < n; i++) ck_assert_double_le(fabs(y[i] - largest - exact[i]), 1e-13 * largest);
+        for (int32_t k = 0; k < s->nodes; k++)
+            for (int c = 0; c < size; c++)
+                ck_assert_double_le(fabs(blocks.value[k * size + c] - m.value[m.diagonal[k] * size + c]),
+                                    1e-13 * largest);
+    }
+    brunt_block_matrix_free(&m), brunt_block_matrix_free(&blocks);
+    brunt_free(x), brunt_free(y), brunt_free(same), brunt_free(exact);
+}
+
 // Derivatives of the energy along p, at u + t p, by Richardson's extrapolation.
 static void derivatives(const subject *s) {
     uint64_t seed = 9;
@@ -92,8 +123,10 @@ static void derivatives(const subject *s) {
         brunt_block_matrix_free(&other);
         brunt_free(h);
     }
+    without_a_matrix(s, u, false);
     // Projected: what is less is not there.
     for (int64_t k = 0; k < n; k++) u[k] *= 2;
+    without_a_matrix(s, u, true);
     hessian_of(s, &one, u, true, &m);
     for (int k = 0; k < 20; k++) {
         for (int64_t i = 0; i < n; i++) p[i] = between(&seed);

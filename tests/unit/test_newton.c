@@ -157,6 +157,48 @@ static const brunt_term_ops springs_ops = {.name = "springs",
                                            .stencils = springs_stencils,
                                            .hessian = springs_hessian};
 
+// The same chain without its matrix: what is multiplied goes by the displacements that were linearised at.
+static double linearised_at[3 * CHAIN];
+
+static void springs_linearise(void *self, const brunt_team *team, const double *u, bool project,
+                              brunt_block_matrix *blocks) {
+    (void)team, (void)project;
+    const springs *t = self;
+    const int d = t->dim;
+    memcpy(linearised_at, u, (size_t)(t->nodes * d) * sizeof *u);
+    for (int i = 0; i < t->nodes - 1; i++)
+        for (int c = 0; c < d * d; c++) {
+            const double way[2] = {u[(i + 1) * d + c / d] - u[i * d + c / d],
+                                   u[(i + 1) * d + c % d] - u[i * d + c % d]},
+                         k = (c / d == c % d ? t->k + t->s * stretch(t, u, i) : 0) + 2 * t->s * way[0] * way[1];
+            for (int end = 0; end < 2; end++) brunt_block_matrix_diagonal(blocks, i + end)[c] += k;
+        }
+}
+
+static void springs_product(void *self, const brunt_team *team, const double *x, double *y) {
+    (void)team;
+    const springs *t = self;
+    const int d = t->dim;
+    const double *u = linearised_at;
+    for (int i = 0; i < t->nodes - 1; i++) {
+        double along = 0;
+        for (int c = 0; c < d; c++) along += (u[(i + 1) * d + c] - u[i * d + c]) * (x[(i + 1) * d + c] - x[i * d + c]);
+        for (int a = i * d; a < (i + 1) * d; a++) {
+            const double f =
+                (t->k + t->s * stretch(t, u, i)) * (x[a + d] - x[a]) + 2 * t->s * along * (u[a + d] - u[a]);
+            y[a] -= f, y[a + d] += f;
+        }
+    }
+}
+
+static const brunt_term_ops free_springs_ops = {.name = "springs",
+                                                .energy = springs_energy,
+                                                .gradient = springs_gradient,
+                                                .stencils = springs_stencils,
+                                                .hessian = springs_hessian,
+                                                .linearise = springs_linearise,
+                                                .product = springs_product};
+
 static brunt_newton_options usual(double tolerance) {
     brunt_newton_options options = brunt_newton_defaults();
     options.tolerance = tolerance;
@@ -340,6 +382,71 @@ START_TEST(raised_where_singular) {
 }
 END_TEST
 
+// A system without its matrix is the one with it: unknowns that are held, a term that has no products, a raised
+// diagonal.
+START_TEST(the_system_without_its_matrix) {
+    enum { NODES = 40, N = 3 * NODES };
+    springs *chain = new_springs(3, NODES, 3, 40);
+    lone inertia = LONE(square, N, .a = 0.7, .b = 0.3);
+    const brunt_term terms[] = {{&lone_ops, &inertia}, {&free_springs_ops, chain}};
+    uint8_t held[N] = {0};
+    double u[N], x[N], y[N], exact[N];
+    for (int i = 0; i < N; i++) u[i] = sin(i * i), x[i] = cos(7 * i), held[i] = i % 5 == 2;
+    brunt_block_matrix m = {0}, rest = {0};
+    const brunt_stencils list = springs_stencils(chain);
+    const brunt_pattern whole = {3, NODES, &list, 1, false}, alone_each = {3, NODES, NULL, 0, false};
+    ck_assert_int_eq(brunt_block_matrix_pattern(&m, &alone, &whole, NULL), BRUNT_OK);
+    ck_assert_int_eq(brunt_block_matrix_pattern(&rest, &alone, &alone_each, NULL), BRUNT_OK);
+    for (int k = 0; k < 2; k++) terms[k].ops->hessian(terms[k].self, &alone, u, false, &m);
+    lone_hessian(&inertia, &alone, u, false, &rest);
+    brunt_matrix_free f = {.rest = &rest, .terms = terms, .count = 2, .held = held};
+    ck_assert_int_eq(brunt_matrix_free_take(&f, &alone, u, false, NULL), BRUNT_OK);
+    for (int turn = 0; turn < 4; turn++) {
+        if (turn == 1) brunt_block_matrix_hold(&m, &alone, held, 1), brunt_matrix_free_hold(&f, &alone);
+        if (turn == 2) brunt_block_matrix_scale_diagonal(&m, 1.5), brunt_matrix_free_raise(&f, 0.5);
+        if (turn == 3) brunt_block_matrix_scale_diagonal(&m, 4 / 1.5), brunt_matrix_free_raise(&f, 3);
+        brunt_block_matrix_product(&m, &alone, x, exact);
+        if (turn)
+            brunt_matrix_free_product(&f, &alone, x, y);
+        else
+            brunt_matrix_free_hessian(&f, &alone, x, y);
+        for (int i = 0; i < N; i++) ck_assert_double_eq_tol(y[i], exact[i], 1e-11);
+        for (int i = 0; i < 9 * NODES; i++)
+            ck_assert_double_eq_tol(f.blocks.value[i], m.value[m.diagonal[i / 9] * 9 + i % 9], 1e-11);
+    }
+    brunt_block_matrix_free(&m), brunt_block_matrix_free(&rest), brunt_matrix_free_free(&f), free(chain);
+}
+END_TEST
+
+// A tensioned chain under a push, with its matrix and without: the same minimum; and it is said when the linear system
+// is not solved, for there is nothing to fall back on.
+START_TEST(matrix_free) {
+    enum { NODES = 60, N = 2 * NODES };
+    springs *chain = new_springs(2, NODES, 3, 40);
+    lone inertia = LONE(square, N, .a = 0.01, .b = 0.3);
+    const brunt_term terms[] = {{&lone_ops, &inertia}, {&free_springs_ops, chain}};
+    uint8_t held[N] = {1, 1};
+    const brunt_problem problem = {2, NODES, terms, 2, held, false};
+    double u[2][N];
+    brunt_newton_report report;
+    brunt_error error = {0};
+    brunt_newton_options options = usual(1e-11);
+    for (int k = 0; k < 2; k++) {
+        for (int i = 0; i < N; i++) u[k][i] = i < 2 ? 2 : sin(i);
+        options.solver = k ? &brunt_linear_pcg : &brunt_linear_direct, options.matrix_free = k == 1;
+        ck_assert_int_eq(minimise(&problem, &options, u[k], &report, &error), BRUNT_OK);
+    }
+    ck_assert_int_gt(report.linear_iterations, NODES);
+    for (int i = 0; i < N; i++) ck_assert_double_eq_tol(u[0][i], u[1][i], 1e-9);
+    options.linear_iterations = 2;
+    u[1][10] += 1;
+    ck_assert_int_eq(minimise(&problem, &options, u[1], &report, &error), BRUNT_FAILED);
+    ck_assert_int_eq(report.result, BRUNT_NEWTON_BROKEN);
+    ck_assert_ptr_nonnull(strstr(error.message, "2 iterations brought the residual"));
+    free(chain);
+}
+END_TEST
+
 static int told_not_to(void *self, const brunt_team *team, const double *u, const double *p, brunt_error *error) {
     (void)self, (void)team, (void)u;
     return p ? brunt_fail(error, BRUNT_FAILED, "No place for candidates.") : BRUNT_OK;
@@ -400,13 +507,13 @@ END_TEST
 START_TEST(held_unknowns_stay) {
     enum { NODES = 5, N = 2 * NODES };
     springs *chain = new_springs(2, NODES, 4, 0);
-    const brunt_term terms[] = {{&springs_ops, chain}};
+    const brunt_term terms[] = {{&free_springs_ops, chain}};
     uint8_t held[N] = {1, 1, 0, 0, 0, 0, 0, 0, 1, 1};
     const brunt_problem problem = {2, NODES, terms, 1, held, false};
-    for (int k = 0; k < 2; k++) {
+    for (int k = 0; k < 3; k++) {
         double u[N] = {0.25, -1, 7, 7, 7, 7, 7, 7, 1.25, 3};
         brunt_newton_options options = usual(1e-12);
-        options.solver = k ? &brunt_linear_pcg : &brunt_linear_direct;
+        options.solver = k ? &brunt_linear_pcg : &brunt_linear_direct, options.matrix_free = k == 2;
         brunt_newton_report report;
         ck_assert_int_eq(minimise(&problem, &options, u, &report, NULL), BRUNT_OK);
         for (int i = 0; i < NODES; i++) {
@@ -489,6 +596,8 @@ int main(void) {
     tcase_add_test(c, until_forces_balance);
     tcase_add_loop_test(c, out_of_what_is_not_convex, 0, 2);
     tcase_add_test(c, raised_where_singular);
+    tcase_add_test(c, the_system_without_its_matrix);
+    tcase_add_test(c, matrix_free);
     tcase_add_loop_test(c, what_has_no_minimum_is_said, 0, 7);
     tcase_add_test(c, held_unknowns_stay);
     tcase_add_test(c, fallback_and_phases);
