@@ -65,8 +65,11 @@ static const char *refusal(const brunt_world_def *def, const void *one, const ch
         *key = def->dimension == 2 ? ".line" : ".mesh";
         return "this belongs to time.scheme: implicit; others have plane and region";
     }
-    if (def->newton.solver == BRUNT_SOLVER_PCG)
-        return "newton.solver: pcg has no factor for the tractions of boundaries to follow with: direct or auto";
+    if (brunt_solver_iterates(def->newton.solver))
+        return def->newton.solver == BRUNT_SOLVER_PCG
+                   ? "newton.solver: pcg has no factor for the tractions of boundaries to follow with: direct or auto"
+                   : "newton.solver: matrix-free has no factor for the tractions of boundaries to follow with: direct "
+                     "or auto";
     return def->dimension == 3 ? "surfaces in three dimensions hold nothing yet" : NULL;
 }
 

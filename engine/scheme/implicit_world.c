@@ -68,7 +68,8 @@ static void choose_solver(struct brunt_implicit *m, brunt_solver wanted) {
     m->options.solver = wanted == BRUNT_SOLVER_AUTO     ? m->choice.solver
                         : wanted == BRUNT_SOLVER_DIRECT ? &brunt_linear_direct
                                                         : &brunt_linear_pcg;
-    m->options.preconditioner = m->choice.preconditioner;
+    m->options.matrix_free = wanted == BRUNT_SOLVER_MATRIX_FREE;
+    m->options.preconditioner = m->options.matrix_free ? BRUNT_BLOCK_JACOBI : m->choice.preconditioner;
     if (m->forces) {
         m->options.solver = &brunt_linear_unsymmetric;
         snprintf(m->choice.why, sizeof m->choice.why, "a material without a potential: its matrices are not symmetric");
@@ -200,9 +201,10 @@ int brunt_implicit_make(brunt_world *world, const brunt_world_def *def, brunt_er
     set_options(world, m);
     if (measure_systems(world, &m->size)) return out_of_memory(error);
     for (int b = 0; b < bodies->count; b++) m->forces = m->forces || brunt_world_material(world, b)->differences;
-    if (m->forces && world->settings.newton.solver == BRUNT_SOLVER_PCG)
+    if (m->forces && brunt_solver_iterates(world->settings.newton.solver))
         return brunt_fail(error, BRUNT_BAD_INPUT,
-                          "newton.solver: pcg solves symmetric systems, and a material without a potential has others: "
+                          "newton.solver: conjugate gradients solve symmetric systems, and a material without a "
+                          "potential has others: "
                           "auto or direct is wanted");
     choose_solver(m, world->settings.newton.solver);
     brunt_implicit_follow(world);
@@ -292,7 +294,7 @@ size_t brunt_implicit_matrix_bytes(const brunt_world *world) {
     const brunt_newton *n = &world->plan.implicit->newton;
     const brunt_block_matrix *a = &n->matrix;
     return a->first_capacity + a->column_capacity + a->diagonal_capacity + a->value_capacity + n->gradient_capacity +
-           n->step_capacity + n->trial_capacity;
+           n->step_capacity + n->trial_capacity + brunt_matrix_free_bytes(&n->free);
 }
 
 bool brunt_world_newton_systems(const brunt_world *world, brunt_newton_systems *systems) {
@@ -300,7 +302,7 @@ bool brunt_world_newton_systems(const brunt_world *world, brunt_newton_systems *
     if (!m) return false;
     *systems = (brunt_newton_systems){.unknowns = m->size.nodes * m->size.dim,
                                       .courant = m->size.courant,
-                                      .solver = m->options.solver->name,
+                                      .solver = m->options.matrix_free ? "matrix-free" : m->options.solver->name,
                                       .why = world->settings.newton.solver == BRUNT_SOLVER_AUTO || m->forces
                                                  ? m->choice.why
                                                  : "newton.solver asks for it",

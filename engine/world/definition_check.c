@@ -300,7 +300,7 @@ static int check_newton(const brunt_world_def *def, brunt_error *error) {
     const brunt_newton_def *newton = &def->newton;
     BRUNT_TRY(brunt_check_choice("time", ".integrator", (unsigned)def->integrator, BRUNT_NEWMARK + 1, error));
     BRUNT_TRY(brunt_check_choice("time", ".predictor", (unsigned)def->predictor, BRUNT_PREDICTOR_NONE + 1, error));
-    BRUNT_TRY(brunt_check_choice("newton", ".solver", (unsigned)newton->solver, BRUNT_SOLVER_PCG + 1, error));
+    BRUNT_TRY(brunt_check_choice("newton", ".solver", (unsigned)newton->solver, BRUNT_SOLVER_MATRIX_FREE + 1, error));
     BRUNT_CHECK_NUMBERS("newton", {".tolerance", &newton->tolerance, 1, BRUNT_POSITIVE});
     if (newton->iterations < 1) REFUSE("newton.iterations: %d is less than 1", newton->iterations);
     if (newton->cut < 0) REFUSE("newton.cut: %d is negative", newton->cut);

@@ -75,15 +75,15 @@ static void look_at_material(const brunt_world_def *def, const brunt_body_def *b
 
 // Conjugate gradients are for the symmetric matrices of potentials.
 static void look_at_solver(const brunt_world_def *def, refusals *r) {
-    for (int32_t b = 0; b < def->body_count && def->newton.solver == BRUNT_SOLVER_PCG; b++) {
+    for (int32_t b = 0; b < def->body_count && brunt_solver_iterates(def->newton.solver); b++) {
         const int32_t m = def->bodies[b].material;
         if (m < 0 || m >= def->material_count) continue;
         const brunt_model *strength = brunt_find_strength(def->materials[m].strength),
                           *eos = brunt_find_eos(def->materials[m].eos);
         if (!(strength && !strength->potential) && !(eos && !eos->potential)) continue;
         set_owner(r, "newton");
-        say(r, ".solver", "pcg wants symmetric matrices, and material '%s' has others: auto or direct is wanted",
-            def->materials[m].name);
+        say(r, ".solver", "%s wants symmetric matrices, and material '%s' has others: auto or direct is wanted",
+            def->newton.solver == BRUNT_SOLVER_PCG ? "pcg" : "matrix-free", def->materials[m].name);
         return;
     }
 }

@@ -192,6 +192,53 @@ START_TEST(pushed) {
 }
 END_TEST
 
+// ------------------------------------------------------------------------------------------ solvers
+
+// Points on elements that are held, drawn along with friction: whichever solver, the same places.
+static brunt_world *rubbed(brunt_solver solver) {
+    brunt_world_def def = begin(3, BRUNT_NEWMARK, 5e-3);
+    mesh(&def, "floor", XYZ(-0.25, -0.25, -0.5), XYZ(0.75, 0.75, 0), 0.25);
+    hold(&def, "floor", "zmin")->value[0] = 1;
+    def_velocity(def_box(&def, "block", XYZ(0.01, 0.01, -0.04), XYZ(0.51, 0.51, 0.46)), 0, 0, -1);
+    def.contact.friction = 0.3, def.contact.distance = 0.025;
+    def.newton.solver = solver;
+    if (brunt_solver_iterates(solver)) def.newton.accuracy = 1e-9;
+    brunt_world *world = world_take(&def);
+    world_steps(world, 8);
+    return world;
+}
+
+START_TEST(whichever_solver) {
+    static const brunt_solver solvers[] = {BRUNT_SOLVER_DIRECT, BRUNT_SOLVER_PCG, BRUNT_SOLVER_MATRIX_FREE};
+    double *exact[2];
+    for (int k = 0; k < 3; k++) {
+        brunt_world *world = rubbed(solvers[k]);
+        double worst = 0;
+        for (int b = 0; b < 2; b++) {
+            const int64_t count = brunt_body_particles(world, b) + brunt_body_nodes(world, b);
+            ck_assert_int_gt(count, 0);
+            double *u = world_field(world, b, "velocity");
+            for (int64_t i = 0; k && i < 3 * count; i++) worst = fmax(worst, fabs(u[i] - exact[b][i]));
+            if (k)
+                free(u);
+            else
+                exact[b] = u;
+        }
+        brunt_newton_counts counts;
+        brunt_world_newton(world, &counts, NULL);
+        printf("  solver %d: velocities %.1e m/s apart, %g + %g iterations, impulses %.4g and %.4g N s\n",
+               (int)solvers[k], worst, counts.iterations, counts.linear_iterations, world_pair(world, 0).impulse[0],
+               world_pair(world, 0).impulse[2]);
+        for (int a = 0; a < 3; a += 2) ck_assert_double_gt(fabs(world_pair(world, 0).impulse[a]), 1);
+        ck_assert_double_le(worst, 1e-10);
+        ck_assert((counts.linear_iterations > 0) == (k > 0));
+        ck_assert_double_le(world_momentum(world).linear_drift, 1e-9);
+        brunt_world_destroy(world);
+    }
+    free(exact[0]), free(exact[1]);
+}
+END_TEST
+
 // ------------------------------------------------------------------------------------------ bits
 
 START_TEST(threads) {
@@ -220,6 +267,7 @@ int main(void) {
     ADD_LOOP(pressed_and_sheared, 2);
     ADD_LOOP(collide, 3);
     ADD_LOOP(pushed, 2);
+    ADD_LOOP(whichever_solver, 1);
     ADD_LOOP(threads, 1);
     return suite_main(suite);
 }

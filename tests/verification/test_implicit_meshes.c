@@ -266,7 +266,7 @@ END_TEST
 
 // ------------------------------------------------------------------------------------------ bits
 
-static brunt_world *shaken(int threads) {
+static brunt_world *shaken(int threads, brunt_solver solver) {
     brunt_world_def def = def_begin(3, 1);
     def_material(&def, "neo-hookean", 1000, 1e6, 0.3);
     brunt_body_def *b = cube(&def, BRUNT_TET4, 0.125);
@@ -274,18 +274,22 @@ static brunt_world *shaken(int threads) {
     def_group(&def, "cube", "zmin", BRUNT_GROUP_VELOCITY);
     def.gravity[2] = -100;
     go_implicit(&def, BRUNT_NEWMARK, 2e-3);
-    def.newton.solver = BRUNT_SOLVER_PCG;
+    def.newton.solver = solver;
     def.threads = threads;
     return world_take(&def);
 }
 
 START_TEST(threads) {
-    brunt_world *world[] = {shaken(1), shaken(2), shaken(3)};
+    const brunt_solver solver = _i ? BRUNT_SOLVER_MATRIX_FREE : BRUNT_SOLVER_PCG;
+    brunt_world *world[] = {shaken(1, solver), shaken(2, solver), shaken(3, solver)};
     check_threads(world, 3, 5);
 }
 END_TEST
 
-START_TEST(restart) { check_restart(shaken(1), shaken(2)); }
+START_TEST(restart) {
+    const brunt_solver solver = _i ? BRUNT_SOLVER_MATRIX_FREE : BRUNT_SOLVER_PCG;
+    check_restart(shaken(1, solver), shaken(2, solver));
+}
 END_TEST
 
 // A bar of 1 m in 8 x 2 squares that is held at its left end and bends far within its first step.
@@ -342,8 +346,8 @@ int main(void) {
     ADD_LOOP(pulled, 1);
     ADD_LOOP(turned_round, 1);
     ADD_LOOP(damped, 4);
-    ADD_LOOP(threads, 1);
-    ADD_LOOP(restart, 1);
+    ADD_LOOP(threads, 2);
+    ADD_LOOP(restart, 2);
     ADD_LOOP(does_not_converge, 2);
     ADD_LOOP(is_cut, 1);
     return suite_main(suite);

@@ -25,8 +25,18 @@ typedef enum brunt_integrator { BRUNT_EULER, BRUNT_NEWMARK } brunt_integrator;
 // Where load steps with prescribed motion begin: where the tangent at the last equilibrium takes all that follows it,
 // or where that was, with what is moved alone at its place.
 typedef enum brunt_predictor { BRUNT_PREDICTOR_TANGENT, BRUNT_PREDICTOR_NONE } brunt_predictor;
-// Of the linear systems of implicit steps: by size and step, a factorisation, conjugate gradients.
-typedef enum brunt_solver { BRUNT_SOLVER_AUTO, BRUNT_SOLVER_DIRECT, BRUNT_SOLVER_PCG } brunt_solver;
+// Of the linear systems of implicit steps: by size and step, a factorisation, conjugate gradients, these by products of
+// bodies in place of a matrix.
+typedef enum brunt_solver {
+    BRUNT_SOLVER_AUTO,
+    BRUNT_SOLVER_DIRECT,
+    BRUNT_SOLVER_PCG,
+    BRUNT_SOLVER_MATRIX_FREE
+} brunt_solver;
+// Whether it is conjugate gradients that are asked for: matrices have to be symmetric, and there are no factors.
+static inline bool brunt_solver_iterates(brunt_solver solver) {
+    return solver == BRUNT_SOLVER_PCG || solver == BRUNT_SOLVER_MATRIX_FREE;
+}
 
 // Newton's method in implicit steps.
 typedef struct brunt_newton_def {

@@ -153,7 +153,7 @@ bool brunt_world_static(const brunt_world *world);
 typedef struct brunt_newton_systems {
     int64_t unknowns;   // components of displacements
     double courant;     // [-] greatest way of waves in a step, over edges and cells; INFINITY: static
-    const char *solver; // "direct", "pcg"
+    const char *solver; // "direct", "pcg", "matrix-free", "unsymmetric"
     const char *why;    // a sentence
     double tolerance;   // [m/s] of a correction; static: [-] of forces
     double bytes;       // that terms and fields take beside the bodies
