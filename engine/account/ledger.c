@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "account/ledger.h"
+#include "base/error.h"
 
 static const double MOST_GROWTH = 10, STEP_ROUNDINGS = 10;
 static const double REAL_EPSILON = sizeof(real) == sizeof(float) ? FLT_EPSILON : DBL_EPSILON;
@@ -18,6 +19,16 @@ static double given_energy(const brunt_ledger *ledger, const brunt_books *books)
     }
     const double initial = ledger->initial_energy;
     return fmax(fmax(fabs(initial), fabs(initial + work)), turned_over);
+}
+
+void brunt_ledger_validate(const brunt_ledger *ledger) {
+    double number[sizeof *ledger / sizeof(double)];
+    _Static_assert(sizeof number == sizeof *ledger, "the ledger has numbers only");
+    memcpy(number, ledger, sizeof number);
+    for (size_t i = 0; i < sizeof number / sizeof *number; i++) BRUNT_ASSERT(isfinite(number[i]));
+    BRUNT_ASSERT(ledger->initial_kinetic >= 0 && ledger->rounding_energy >= 0);
+    BRUNT_ASSERT(ledger->scale_linear >= 0 && ledger->scale_angular >= 0);
+    BRUNT_ASSERT(ledger->energy_scale >= fabs(ledger->initial_energy));
 }
 
 void brunt_ledger_remember(brunt_ledger *ledger, const brunt_books *books) {

@@ -35,6 +35,8 @@ typedef struct brunt_books {
     bool axisymmetric;
 } brunt_books;
 
+// Aborts where a number is not finite, or a scale less than what it is a scale of.
+void brunt_ledger_validate(const brunt_ledger *ledger);
 // Energy and momenta as the bodies are at the start. Takes `hourglass_stored` as it is.
 void brunt_ledger_open(brunt_ledger *ledger, const brunt_books *books);
 // Keeps the most that the run has been given so far; once a step.

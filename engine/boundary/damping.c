@@ -37,6 +37,17 @@ int brunt_damping_make(brunt_damping *damping, const brunt_bodies *bodies, brunt
     return damping->sums ? BRUNT_OK : brunt_fail(error, BRUNT_FAILED, "out of memory");
 }
 
+void brunt_damping_validate(const brunt_damping *damping, const brunt_bodies *bodies) {
+    bool any = false;
+    BRUNT_ASSERT(damping->fem_count == bodies->fem_count && damping->drag);
+    for (int k = 0; k < bodies->fem_count; k++) {
+        const brunt_fem_body *fem = &bodies->fem[k];
+        BRUNT_ASSERT((fem->damping > 0) == (damping->drag[k] != NULL) && (!damping->drag[k] || fem->load));
+        any = any || damping->drag[k];
+    }
+    BRUNT_ASSERT(damping->active == any && damping->active == (damping->sums != NULL));
+}
+
 void brunt_damping_free(brunt_damping *damping) {
     for (int k = 0; k < damping->fem_count; k++) brunt_free(damping->drag[k]);
     brunt_free(damping->drag);

@@ -17,6 +17,8 @@ typedef struct brunt_damping {
 
 // After the node tasks are made.
 int brunt_damping_make(brunt_damping *damping, const brunt_bodies *bodies, brunt_error *error);
+// Aborts where bodies with damping and their arrays do not belong together.
+void brunt_damping_validate(const brunt_damping *damping, const brunt_bodies *bodies);
 void brunt_damping_free(brunt_damping *damping);
 // A kick of the meshes: over `dt`, by so many threads.
 typedef struct brunt_kick {

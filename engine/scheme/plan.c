@@ -153,6 +153,18 @@ void brunt_plan_make(brunt_world *world) {
     for (int i = 0; i < plan->row_count; i++) plan->pass_of[i] = find_pass(plan, plan->row[i]->name);
 }
 
+void brunt_plan_validate(const brunt_world *world) {
+    const brunt_plan *plan = &world->plan;
+    BRUNT_ASSERT(plan->row_count >= 1 && plan->row_count <= BRUNT_PASS_LIMIT);
+    BRUNT_ASSERT(plan->pass_count >= 1 && plan->pass_count <= plan->row_count);
+    BRUNT_ASSERT(world->timing.pass >= -1 && world->timing.pass < plan->pass_count);
+    for (int i = 0; i < plan->row_count; i++) {
+        const int pass = plan->pass_of[i];
+        BRUNT_ASSERT(pass >= 0 && pass < plan->pass_count && !strcmp(plan->pass[pass]->name, plan->row[i]->name));
+        BRUNT_ASSERT(!i || plan->row[i - 1] < plan->row[i]); // in the order of the table
+    }
+}
+
 int32_t brunt_pass_count(const brunt_world *world) { return world->plan.pass_count; }
 
 static const char *unit_of(const brunt_world *world, const brunt_pass_row *row) {

@@ -135,6 +135,8 @@ brunt_books brunt_books_of(const brunt_world *world);
 double brunt_stable_step(const brunt_world *world);
 // The plan of a world that is made: which rows of its scheme's table run.
 void brunt_plan_make(brunt_world *world);
+// Aborts where rows, passes and the pass that runs do not belong together.
+void brunt_plan_validate(const brunt_world *world);
 // What implicit steps keep beside the world, once its bodies are sorted. BRUNT_OK, or the code of what is wrong.
 int brunt_implicit_make(brunt_world *world, const brunt_world_def *def, brunt_error *error);
 void brunt_implicit_free(brunt_world *world);
