@@ -11,37 +11,37 @@ static void mark_all(const brunt_contact_context *m) {
     for (int k = 0; k < m->surface->fem_count; k++) m->surface->active[k] = true;
 }
 
-static int act_published(const brunt_contact_context *m, const brunt_contact_work *work) {
-    brunt_augury_workspace *kept = *work->memory;
+static int act_published(const brunt_contact_context *m, brunt_contact_work *work) {
+    brunt_augury_workspace *kept = work->memory;
     const int status = brunt_augury_paper(m, work->def->transfer, &kept);
-    *work->memory = kept;
+    work->memory = kept;
     return status;
 }
 
-static int act_averaged(const brunt_contact_context *m, const brunt_contact_work *work) {
-    brunt_augury_workspace *kept = *work->memory;
+static int act_averaged(const brunt_contact_context *m, brunt_contact_work *work) {
+    brunt_augury_workspace *kept = work->memory;
     const int status = brunt_augury_surface(m, work->def->form == BRUNT_AUGURY_SMOOTH, &kept);
-    *work->memory = kept;
+    work->memory = kept;
     return status;
 }
 
 static void free_augury(void *memory) { brunt_augury_workspace_free(memory); }
 
-static int act_on_grid(const brunt_contact_context *m, const brunt_contact_work *work) {
-    brunt_surface_on_grid *kept = *work->memory;
+static int act_on_grid(const brunt_contact_context *m, brunt_contact_work *work) {
+    brunt_surface_on_grid *kept = work->memory;
     const int status = brunt_surface_on_grid_meet(m, work->grid_sweeps, &kept);
-    *work->memory = kept;
+    work->memory = kept;
     return status;
 }
 
 static void account_on_grid(const brunt_contact_context *m, const brunt_contact_work *work) {
-    brunt_surface_on_grid_finish(m, *work->memory);
+    brunt_surface_on_grid_finish(m, work->memory);
 }
 
 static void free_on_grid(void *memory) { brunt_surface_on_grid_free(memory); }
 
 // Constraints at facets, and those at planes, which any surface may meet: solved together.
-static int act_at_facets(const brunt_contact_context *m, const brunt_contact_work *work) {
+static int act_at_facets(const brunt_contact_context *m, brunt_contact_work *work) {
     brunt_constraint_set *set = work->constraints;
     brunt_node_to_facet *facets = *work->node_to_facet;
     brunt_constraints_clear(set);

@@ -15,7 +15,7 @@ typedef struct brunt_contact_work {
     bool facets;     // there are pairs that meet at facets; else planes alone
     brunt_constraint_set *constraints;
     brunt_node_to_facet **node_to_facet;
-    void **memory; // what the row that acts keeps; NULL before it does so first
+    void *memory; // what the row that acts keeps, which it may make or move; NULL before it does so first
 } brunt_contact_work;
 
 // Which bodies may be in contact with themselves by a method.
@@ -35,7 +35,7 @@ typedef struct brunt_contact_row {
     // Marks surfaces as near something beside those that the broad phase marks; NULL: none.
     void (*near)(const brunt_contact_context *m);
     // Changes the velocities of surfaces and grids; NULL: it has a pass of its own. 0, or -1: out of memory.
-    int (*act)(const brunt_contact_context *m, const brunt_contact_work *work);
+    int (*act)(const brunt_contact_context *m, brunt_contact_work *work);
     // Accounts and contact state, once all else has acted; NULL: with act.
     void (*account)(const brunt_contact_context *m, const brunt_contact_work *work);
     // Frees what it keeps, which may be NULL.

@@ -275,10 +275,14 @@ int brunt_surfaces_meet(brunt_world *world, const double gravity[3], double kick
     for (int r = 0; !failed && r < count; r++)
         if (rows[r]->near && is_used(contact, r)) rows[r]->near(&m);
     if (!failed) brunt_surface_gather_state(&contact->surface, kick, gravity, world->settings.threads, timer);
+    for (int r = 0; !failed && r < count; r++) {
+        if (!is_used(contact, r)) continue;
+        work.memory = contact->memory[r];
+        failed = rows[r]->act(&m, &work);
+        contact->memory[r] = work.memory;
+    }
     for (int r = 0; !failed && r < count; r++)
-        if (is_used(contact, r)) work.memory = &contact->memory[r], failed = rows[r]->act(&m, &work);
-    for (int r = 0; !failed && r < count; r++)
-        if (rows[r]->account && is_used(contact, r)) work.memory = &contact->memory[r], rows[r]->account(&m, &work);
+        if (rows[r]->account && is_used(contact, r)) work.memory = contact->memory[r], rows[r]->account(&m, &work);
     if (failed) return brunt_fail(error, BRUNT_FAILED, "out of memory in the contact of surfaces");
     brunt_surface_scatter_velocity(&world->contact.surface, dt, world->settings.threads, timer);
     memcpy(world->contact.frame, world->contact.surface.motion.frame, sizeof world->contact.surface.motion.frame);

@@ -44,6 +44,7 @@ static void validate_boundaries(const brunt_boundaries *all, const brunt_bodies 
     for (int k = 0; k < all->mirror_count; k++) {
         const brunt_symmetry_plane *mirror = &all->mirrors[k];
         BRUNT_ASSERT(mirror->axis >= 0 && mirror->axis < 3 && mirror->wall >= -1 && mirror->wall < all->wall_count);
+        BRUNT_ASSERT(mirror->wall < 0 || all->walls[mirror->wall].mirror == k);
     }
     brunt_node_sets_validate(&all->sets);
     brunt_damping_validate(&all->damping, bodies);
@@ -57,7 +58,7 @@ static void validate_scratch(const brunt_scratch *scratch, int threads) {
         BRUNT_ASSERT(!scratch->meshes[t].memory == !scratch->meshes[t].capacity);
     }
     BRUNT_ASSERT(!scratch->node_sums == !scratch->node_sums_capacity);
-    BRUNT_ASSERT(planes->dof_count >= 0 && (size_t)planes->dof_count <= planes->dof_capacity);
+    BRUNT_ASSERT(planes->dof_count >= 0 && (size_t)planes->dof_count <= planes->dof_capacity / sizeof *planes->dof);
     BRUNT_ASSERT(planes->symmetry_count >= 0 && planes->symmetry_count <= BRUNT_MAX_PLANES);
 }
 
