@@ -22,7 +22,7 @@ static void on_save(int number) {
 static void handle(int number, void (*handler)(int)) {
     struct sigaction old, action = {.sa_handler = handler, .sa_flags = SA_RESTART};
     sigemptyset(&action.sa_mask);
-    // Who starts the program with a signal ignored (nohup) wants it ignored.
+    // A program started with a signal ignored (nohup) goes on ignoring it.
     if (sigaction(number, NULL, &old) == 0 && old.sa_handler == SIG_IGN) return;
     sigaction(number, &action, NULL);
 }

@@ -16,7 +16,7 @@ static void on_stop(int number) {
 static void handle(int number) {
     struct sigaction old, action = {.sa_handler = on_stop, .sa_flags = SA_RESTART};
     sigemptyset(&action.sa_mask);
-    // Who starts the program with a signal ignored (nohup) wants it ignored.
+    // A program started with a signal ignored (nohup) goes on ignoring it.
     if (sigaction(number, NULL, &old) == 0 && old.sa_handler == SIG_IGN) return;
     sigaction(number, &action, NULL);
 }
@@ -35,7 +35,7 @@ int cmd_study(int argc, char **argv) {
                            APP_OUTPUT | APP_THREADS | APP_FRESH | APP_QUIET, true, &arguments);
     if (status) return status < 0 ? BRUNT_OK : status;
     signal(SIGPIPE, SIG_IGN);
-    signal(SIGCHLD, SIG_DFL); // who ignores it gets no exit codes
+    signal(SIGCHLD, SIG_DFL); // ignored, there are no exit codes
     handle(SIGTERM);
     handle(SIGINT);
     handle(SIGHUP);

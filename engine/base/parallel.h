@@ -9,7 +9,7 @@
 // Work on tasks [begin, end) as `worker` (0 .. threads-1).
 typedef void brunt_task_fn(void *context, int64_t begin, int64_t end, int worker);
 
-// Where the time of parallel phases goes. Nothing is kept of the single phase: who wants to know is told after it.
+// Where the time of parallel phases goes. Nothing is kept of the single phase: a listener is told after it.
 typedef struct brunt_timer {
     double seconds[BRUNT_THREAD_LIMIT]; // [s] that each worker was at work
     const brunt_observer *observer;     // told when each worker began and ended; NULL: nobody

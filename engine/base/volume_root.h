@@ -1,4 +1,4 @@
-// How far a deformation may go before a volume is gone: det(F + t D) is a polynomial in t, of degree 2 or 3.
+// How far a deformation may go before a volume is zero: det(F + t D) is a polynomial in t, of degree 2 or 3.
 #pragma once
 
 #include "base/simd.h"

@@ -79,7 +79,7 @@ static uint8_t open_faces(const brunt_surface_topology *topology, int32_t place,
     return (uint8_t)open;
 }
 
-// An element is gone: what it covered lies open.
+// An element is eroded: what it covered lies open.
 static void open_neighbours(brunt_surface_topology *topology, int32_t place, int faces) {
     topology->open[place] = 0;
     for (int f = 0; f < faces; f++) {

@@ -1,7 +1,7 @@
 // The surface of a body whose elements may leave it, as it is now.
 //
-// Who is whose neighbour is found once, among the elements the body has at the start; after that a face is of the
-// surface when the element on its other side is gone. Faces are in the order that brunt_fem_faces gave them at the
+// What is whose neighbour is found once, among the elements the body has at the start; after that a face is of the
+// surface when the element on its other side is eroded. Faces are in the order that brunt_fem_faces gave them at the
 // start, whatever has left meanwhile and wherever elements lie now: the surface follows from which elements there are,
 // and from nothing else.
 #pragma once
@@ -12,7 +12,7 @@ typedef struct brunt_surface_topology {
     int32_t elements; // at the start
     int32_t *rank;    // of each element by its number in the mesh: its place then
     int32_t *slot;    // of each place: where the element is now, -1: gone
-    uint8_t *open;    // of each place: bit f set when face f is of the surface; 0 of elements that are gone
+    uint8_t *open;    // of each place: bit f set when face f is of the surface; 0 of eroded elements
     int32_t live;     // elements now
     int32_t *across;  // of each place and face: the place of the element on the other side, -1: none
     int32_t *key,

@@ -45,7 +45,7 @@ typedef struct brunt_mesh_cut {
 // BRUNT_BAD_INPUT of an intersection that has no such mesh; every other shape is its own whole.
 int brunt_mesh_cutting(const brunt_shape *shape, int dimension, brunt_mesh_cut *cut, brunt_error *error);
 bool brunt_mesh_is_cut(const brunt_mesh_cut *cut);
-// Cuts the grid of the whole, and names the groups of the faces that come to light. 0, or BRUNT_GRID_MEMORY.
+// Cuts the grid of the whole, and names the groups of the faces that are found. 0, or BRUNT_GRID_MEMORY.
 int brunt_mesh_grid_cut(const brunt_mesh_cut *cut, const char *names[BRUNT_GRID_GROUPS], brunt_mesh_grid *grid);
 
 // Cuts quadrilaterals into 2 triangles each, hexahedra into 6 tetrahedra each: `elements` takes 6 resp. 24 numbers a

@@ -40,7 +40,7 @@ static int make_room(brunt_incomplete *f, const brunt_team *team) {
 static void take_rows(brunt_incomplete *f) {
     const brunt_block_matrix *a = f->a;
     int64_t e = 0, *next = f->lower + 1;    // shifted by one: filling moves each to where the next one begins
-    const int turns = f->slabs > 1 ? 1 : 2; // one slab is gone through forwards only
+    const int turns = f->slabs > 1 ? 1 : 2; // through one slab forwards only
     memset(f->lower, 0, ((size_t)a->nodes + 2) * sizeof *f->lower);
     for (int32_t p = 0; p < a->nodes; p++) {
         const int32_t node = f->order[p];

@@ -1,5 +1,5 @@
 // Particles that are to leave a body that erodes, or have left it and stay as mass: while a step updates them, their
-// deformation gradient stands still. (Who leaves is found out at the end of the step,
+// deformation gradient stands still. (What leaves is found out at the end of the step,
 // engine/account/erosion_points.c.)
 #include "mpm/mpm_body.h"
 #include "base/simd.h"

@@ -23,7 +23,7 @@ static bool conditions_of_walls(const brunt_world *world) { return conditions(wo
 static bool remapping(const brunt_world *world) { return particles(world) && world->transfers.musl_velocity; }
 static bool erosion(const brunt_world *world) { return world->erosion.active; }
 
-// ------------------------------------------------------------------------------------------ what is gone over
+// ------------------------------------------------------------------------------------------ what passes run over
 
 static double all_bodies(const brunt_world *world, const brunt_body *body) {
     (void)body;

@@ -70,7 +70,7 @@ static void erode(brunt_world *world) {
 
 static double stored(const brunt_energy *e) { return e->kinetic + e->internal + e->hourglass; }
 
-// ------------------------------------------------------------------------------------------ who is inside
+// ------------------------------------------------------------------------------------------ what lies inside
 
 static const int hex_face[6][4] = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
 
@@ -305,7 +305,7 @@ START_TEST(no_spike) {
 }
 END_TEST
 
-// Two bodies that lie in each other: what comes to light inside the other one when the first layer goes is not thrown
+// Two bodies that lie in each other: what is laid open inside the other one when the first layer goes is not thrown
 // out of it. The overlap stays until they part; only their approach ends.
 START_TEST(overlap_at_birth) {
     const brunt_element_kind kind = kinds[_i];

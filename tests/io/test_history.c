@@ -373,7 +373,7 @@ START_TEST(elements_have_the_same_columns) {
 }
 END_TEST
 
-// Bodies of which something may go tell how much has gone; a probe at what is gone has no value. In a scene where
+// Bodies of which something may go tell how much has gone; a probe at what was eroded has no value. In a scene where
 // nothing may there are no such columns.
 START_TEST(eroded_is_counted) {
     ck_assert_ptr_null(brunt_history_column(history, "body.upper.eroded"));
@@ -412,7 +412,7 @@ START_TEST(eroded_is_counted) {
     ck_assert_double_eq(count[1], (double)gone.elements);
     ck_assert_double_eq(mass[1], gone.mass);
     ck_assert_double_eq(brunt_history_column(lines, "body.upper.eroded")[1], 0);
-    // Where the bar was drawn out it is gone; elsewhere the probe is still at its element, whose number is another.
+    // Where the bar was drawn out it is eroded; elsewhere the probe is still at its element, whose number is another.
     ck_assert_double_eq_tol(first[0], 1000, 1e-3);
     ck_assert(isnan(first[1]));
     int64_t left = brunt_body_elements(bar, 0), at = 0;
@@ -427,7 +427,7 @@ START_TEST(eroded_is_counted) {
     char path[160];
     snprintf(path, sizeof path, "%s", small_path("eroded.csv"));
     ck_assert_int_eq(brunt_history_open_csv(lines, path, NULL), BRUNT_OK);
-    brunt_history *again = brunt_history_create(bar, &pulled, NULL); // declared when something is gone
+    brunt_history *again = brunt_history_create(bar, &pulled, NULL); // declared when something has eroded
     ck_assert_int_eq(brunt_history_resume(again, path, 2, brunt_history_hash(lines), NULL), BRUNT_OK);
     ck_assert_int_eq(brunt_history_open_csv(again, path, NULL), BRUNT_OK);
     ck_assert_double_eq(brunt_history_column(again, "body.lower.eroded_mass")[1], gone.mass);

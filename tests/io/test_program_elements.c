@@ -151,14 +151,14 @@ START_TEST(erosion_is_reported) {
     ck_assert_double_eq(measured(summary, "gone"), number_of(bar, "mass"));
     ck_assert_double_eq_tol(number_of(energy, "eroded"), number_of(bar, "energy") + number_of(points, "energy"),
                             1e-9 * number_of(energy, "initial"));
-    // Nine tenths of the plastic work become heat, of what is still there and of what is gone.
+    // Nine tenths of the plastic work become heat, of what is still there and of what has been eroded.
     ck_assert_double_eq(measured(summary, "heat"), number_of(energy, "heat"));
     ck_assert_double_eq_tol(number_of(energy, "heat"), 0.9 * number_of(energy, "plastic"),
                             1e-3 * number_of(energy, "plastic"));
     ck_assert_double_gt(number_of(energy, "heat"), 0);
     json_decref(summary);
     contains(shell(0, "head -1 torn/history.csv"), "body.points.eroded [1],body.points.eroded_mass [kg]");
-    contains(shell(0, "tail -1 torn/history.csv"), "nan"); // the probe's element is gone
+    contains(shell(0, "tail -1 torn/history.csv"), "nan"); // the probe's element is eroded
     // Pictures keep the numbers that elements and points had.
     double range[2];
     range_of(shell(0, "$R --facts torn/vtu/bar_000004.vtu"), "cell id", range);

@@ -201,7 +201,7 @@ START_TEST(format_and_sums) {
         in_output++;
     }
     small_steps(alone, steps);
-    ck_assert_uint_eq(brunt_world_hash(world), brunt_world_hash(alone)); // who is watched steps the same
+    ck_assert_uint_eq(brunt_world_hash(world), brunt_world_hash(alone)); // being watched changes no step
     brunt_trace_count count;
     ck_assert_int_eq(brunt_trace_close(trace, &count, &error), BRUNT_OK);
     ck_assert_int_eq(count.steps, steps);

@@ -162,7 +162,7 @@ static void free_motions(const subject *s) {
     brunt_free(u), brunt_free(g);
 }
 
-// Squeezed along x by t: J = 1 - t is gone at t = 1; a tenth is left. The energy is infinite past it.
+// Squeezed along x by t: J = 1 - t is 0 at t = 1; a tenth is left. The energy is infinite past it.
 static void volume_limit(const subject *s) {
     double *u = numbers(s), *p = numbers(s);
     for (int64_t n = 0; n < s->nodes; n++) p[n * s->dim] = -s->place[n * s->dim];

@@ -684,7 +684,7 @@ START_TEST(forces_without_a_step_are_the_same_bits) {
 }
 END_TEST
 
-// Numbers of nodes and elements lead back to the mesh; unused nodes are gone; groups follow; memory is given back.
+// Numbers of nodes and elements lead back to the mesh; unused nodes are dropped; groups follow; memory is given back.
 START_TEST(numbering_leads_back_to_the_mesh) {
     brunt_fem_workspace_free(&workspace);
     size_t live = brunt_memory_live();

@@ -63,7 +63,7 @@ START_TEST(strips_between_mirrors_keep_momentum) {
 }
 END_TEST
 
-// ------------------------------------------------------------------------------------------ who is who
+// ------------------------------------------------------------------------------------------ bodies and names
 
 // A disk meets a block obliquely; seen in a mirror, and with the two in the other order. Its velocity and spin about
 // the centre.

@@ -243,7 +243,7 @@ START_TEST(wave_speed) {
     world_until(world, end);
     double speed = (world_sums(world, 0).momentum[0] - middle) / (0.5 * end) * L / (mass * v), front = 0;
     double *velocity = world_field(world, 0, "velocity"), *stress = world_field(world, 0, "stress");
-    // The front: a third of the velocity is gone; the last particle, from the wall, of which that is true.
+    // The front: a third of the velocity is lost; the last particle, from the wall, of which that is true.
     double plateau = 0;
     int64_t behind = 0;
     for (int64_t i = 0; i < brunt_world_particles(world); i++) {
