@@ -34,7 +34,10 @@ static void plan_order(brunt_world *w) { w->plan.row[1] = w->plan.row[0], w->pla
 static void plan_rows(brunt_world *w) { w->plan.row_count = BRUNT_PASS_LIMIT + 1; }
 static void timing_pass(brunt_world *w) { w->timing.pass = w->plan.pass_count; }
 static void scratch_capacity(brunt_world *w) { w->scratch.node_sums_capacity = w->scratch.node_sums ? 0 : 1; }
-static void scratch_dofs(brunt_world *w) { w->scratch.planes.dof_count = (int32_t)(w->scratch.planes.dof_capacity / sizeof *w->scratch.planes.dof) + 1; }
+static void scratch_dofs(brunt_world *w) {
+    brunt_particle_dofs *planes = &w->scratch.planes;
+    planes->dof_count = (int32_t)(planes->dof_capacity / sizeof *planes->dof) + 1;
+}
 static void scratch_thread(brunt_world *w) { w->scratch.points[0].capacity = w->scratch.points[0].memory ? 0 : 1; }
 
 static breaking *const breakings[] = {boundary_body, boundary_normal,  boundary_mirror, boundary_account,
