@@ -126,17 +126,18 @@ static real wave_speed(const real *constants) { return brittle_wave_speed(consta
 #define DRUCKER_PRAGER                                                                                                 \
     .name = "drucker-prager",                                                                                          \
     .doc = "soil and frictional material: strength that grows with pressure, dilatancy (Drucker and Prager 1952)",     \
-    .plastic = true, .parameters = parameters, .parameter_count = COUNT_OF(parameters), .state = state,                \
+    .plastic = true, .parameters = parameters, .parameter_count = BRUNT_COUNT(parameters), .state = state,             \
     .prepare = prepare, .wave_speed = wave_speed,                                                                      \
     .no_potential = "'drucker-prager' has no potential for implicit steps: it does not flow along the normal of its "  \
                     "yield surface",                                                                                   \
     .differences = true
 
 // Flow that keeps the volume has no plastic one to remember.
-static const brunt_model isochoric = {DRUCKER_PRAGER, .state_count = COUNT_OF(state) - 1, .flops = {223, 329},
+static const brunt_model isochoric = {DRUCKER_PRAGER, .state_count = BRUNT_COUNT(state) - 1, .flops = {223, 329},
                                       .update = update_isochoric, .energy = add_energy_isochoric};
 
 static const brunt_model *reduced(const double *p) { return p[4] > 0 ? NULL : &isochoric; }
 
-const brunt_model brunt_drucker_prager = {DRUCKER_PRAGER,   .state_count = COUNT_OF(state), .flops = {264, 377},
-                                          .update = update, .energy = add_energy,           .reduced = reduced};
+const brunt_model brunt_drucker_prager = {DRUCKER_PRAGER,       .state_count = BRUNT_COUNT(state),
+                                          .flops = {264, 377},  .update = update,
+                                          .energy = add_energy, .reduced = reduced};

@@ -124,7 +124,7 @@ static const char *prepare(const double *p, double density, bool with_eos, real 
     if (!(p[2] > 0 || p[3] > 0)) return "A and B are both 0: there is no strength";
     brittle_prepare(p[0], density, constants);
     static const int place[] = {FC, A, B, N, RATE, RATE_ZERO, SMAX, D1, D2, EFMIN, TENSION};
-    for (int c = 0; c < COUNT_OF(place); c++) constants[place[c]] = (real)p[c + 1];
+    for (int c = 0; c < BRUNT_COUNT(place); c++) constants[place[c]] = (real)p[c + 1];
     constants[TENSION_STAR] = (real)(p[11] / p[1]);
     constants[FAILURE_STRAIN] = (real)p[19];
     return prepare_pressure(p, constants);
@@ -237,8 +237,8 @@ static real wave_speed(const real *constants) { return brittle_wave_speed(consta
 #define HOLMQUIST_JOHNSON_COOK                                                                                         \
     .name = "holmquist-johnson-cook",                                                                                  \
     .doc = "concrete: strength by pressure and rate, damage, compaction of pores (Holmquist, Johnson and Cook 1993)",  \
-    .plastic = true, .damage = true, .parameters = parameters, .parameter_count = COUNT_OF(parameters),                \
-    .state = state, .state_count = COUNT_OF(state), .prepare = prepare, .flops = {598, 736}, .update = update,         \
+    .plastic = true, .damage = true, .parameters = parameters, .parameter_count = BRUNT_COUNT(parameters),             \
+    .state = state, .state_count = BRUNT_COUNT(state), .prepare = prepare, .flops = {598, 736}, .update = update,      \
     .energy = add_energy, .wave_speed = wave_speed,                                                                    \
     .no_potential = "'holmquist-johnson-cook' has no potential for implicit steps: its strength falls with damage"
 

@@ -208,13 +208,13 @@ static void add_energy(const real *constants, const brunt_material_points *point
 #define JOHNSON_COOK                                                                                                   \
     .name = "johnson-cook",                                                                                            \
     .doc = "J2 plasticity with strain, rate and temperature dependence (Johnson and Cook 1983)", .plastic = true,      \
-    .accepts_eos = true, .parameters = parameters, .parameter_count = COUNT_OF(parameters), .state = state,            \
+    .accepts_eos = true, .parameters = parameters, .parameter_count = BRUNT_COUNT(parameters), .state = state,         \
     .prepare = prepare, .flops = {231, 334}, .wave_speed = j2_wave_speed,                                              \
     .no_potential =                                                                                                    \
         "'johnson-cook' has no potential for implicit steps: its flow stress depends on rate and temperature",         \
     .differences = true
-#define HOT .thermal = true, .state_count = COUNT_OF(state), .energy = add_energy
-#define COLD .state_count = COUNT_OF(state) - 1, .energy = j2_energy, .set_temperature = set_temperature
+#define HOT .thermal = true, .state_count = BRUNT_COUNT(state), .energy = add_energy
+#define COLD .state_count = BRUNT_COUNT(state) - 1, .energy = j2_energy, .set_temperature = set_temperature
 
 static const brunt_model static_form = {JOHNSON_COOK, HOT, .update = update_static};
 static const brunt_model cold_form = {JOHNSON_COOK, COLD, .rate_dependent = true, .update = update_cold};

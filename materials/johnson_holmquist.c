@@ -70,7 +70,7 @@ static const char *prepare(const double *p, double density, bool with_eos, real 
     if (!(p[12] > p[13])) return "HEL is not above P_HEL: nothing is left for the strength";
     brittle_prepare(p[0], density, constants);
     static const int place[] = {K1, K2, K3, A, N, B, M, RATE, RATE_ZERO, SF_MAX, TENSION};
-    for (int c = 0; c < COUNT_OF(place); c++) constants[place[c]] = (real)p[c + 1];
+    for (int c = 0; c < BRUNT_COUNT(place); c++) constants[place[c]] = (real)p[c + 1];
     constants[TENSION_STAR] = (real)(p[11] / p[13]);
     constants[INVERSE_P_HEL] = (real)(1 / p[13]);
     constants[SIGMA_HEL] = (real)(1.5 * (p[12] - p[13]));
@@ -200,11 +200,11 @@ static real wave_speed(const real *constants) { return brittle_wave_speed(consta
 #define JOHNSON_HOLMQUIST                                                                                              \
     .name = "johnson-holmquist-2",                                                                                     \
     .doc = "brittle ceramics and glass: intact and fractured strength, damage, bulking (Johnson and Holmquist 1994)",  \
-    .plastic = true, .damage = true, .parameters = parameters, .parameter_count = COUNT_OF(parameters),                \
+    .plastic = true, .damage = true, .parameters = parameters, .parameter_count = BRUNT_COUNT(parameters),             \
     .state = state, .prepare = prepare, .flops = {538, 648}, .wave_speed = wave_speed,                                 \
     .no_potential = "'johnson-holmquist-2' has no potential for implicit steps: its strength falls with damage"
-#define BULKS .state_count = COUNT_OF(state), .update = update, .energy = add_energy
-#define FLAT .state_count = COUNT_OF(state) - 1, .update = update_flat, .energy = add_energy_without_bulking
+#define BULKS .state_count = BRUNT_COUNT(state), .update = update, .energy = add_energy
+#define FLAT .state_count = BRUNT_COUNT(state) - 1, .update = update_flat, .energy = add_energy_without_bulking
 
 static const brunt_model static_form = {JOHNSON_HOLMQUIST, BULKS};
 static const brunt_model flat_form = {JOHNSON_HOLMQUIST, FLAT, .rate_dependent = true};

@@ -246,7 +246,7 @@ static const brunt_model_potential inviscid_potentials = {.respond = respond_inv
     .name = "newtonian",                                                                                               \
     .doc = "fluid of constant viscosity, which bears no other shear stress; an equation of state gives its pressure",  \
     .fluid = true, .needs_eos = true, .accepts_eos = true, .parameters = parameters,                                   \
-    .parameter_count = COUNT_OF(parameters), .prepare = prepare, .wave_speed = wave_speed
+    .parameter_count = BRUNT_COUNT(parameters), .prepare = prepare, .wave_speed = wave_speed
 
 static const brunt_model inviscid = {NEWTONIAN, .flops = {8, 30}, .update = update_inviscid,
                                      .potential = &inviscid_potentials};
@@ -254,6 +254,6 @@ static const brunt_model inviscid = {NEWTONIAN, .flops = {8, 30}, .update = upda
 static const brunt_model *reduced(const double *p) { return p[0] > 0 ? NULL : &inviscid; }
 
 const brunt_model brunt_newtonian = {
-    NEWTONIAN,        .shear_viscous = true, .state = state,     .state_count = COUNT_OF(state),   .flops = {96, 188},
+    NEWTONIAN,        .shear_viscous = true, .state = state,     .state_count = BRUNT_COUNT(state), .flops = {96, 188},
     .update = update, .energy = add_energy,  .reduced = reduced, .potential = &viscous_potentials,
 };

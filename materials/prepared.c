@@ -4,12 +4,14 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/error.h"
 #include "base/simd.h"
 
 static int prepare(const brunt_material_def *def, brunt_component component, const brunt_model *model,
                    const double *given, bool with_eos, real *constants, brunt_error *error) {
-    static const char *const part[BRUNT_COMPONENTS] = {"", "viscosity.", "eos.", "failure."};
+    static const char *const part[] = {"", "viscosity.", "eos.", "failure."};
+    _Static_assert(BRUNT_COUNT(part) == BRUNT_COMPONENTS, "a part of the key for each component");
     for (int k = 0; k < model->parameter_count; k++) {
         const brunt_parameter *row = &model->parameters[k];
         double v = given[k];
@@ -88,7 +90,7 @@ static int find_failure(const brunt_material_def *def, brunt_material *material,
     if (def->failure_action == BRUNT_FAILURE_SOFTEN && !eos)
         return brunt_fail(error, BRUNT_BAD_INPUT,
                           "materials.%s.failure.action: soften wants an equation of state, which bears pressure when "
-                          "strength and tension are gone",
+                          "strength and tension are lost",
                           def->name);
     return BRUNT_OK;
 }

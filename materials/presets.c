@@ -104,14 +104,14 @@ static const preset presets[] = {
 };
 // clang-format on
 
-int32_t brunt_preset_count(void) { return COUNT_OF(presets); }
+int32_t brunt_preset_count(void) { return BRUNT_COUNT(presets); }
 
 brunt_preset_info brunt_preset(int32_t index) { return presets[index].info; }
 
 int brunt_material_preset(const char *name, const char *as, brunt_material_def *def, brunt_error *error) {
     if (!name || !as || !def)
         return brunt_fail(error, BRUNT_BAD_INPUT, "materials: the name of a material of the library is wanted");
-    for (size_t k = 0; k < COUNT_OF(presets); k++) {
+    for (size_t k = 0; k < BRUNT_COUNT(presets); k++) {
         const preset *from = &presets[k];
         if (strcmp(from->info.name, name) != 0) continue;
         int status = BRUNT_OK;

@@ -7,6 +7,7 @@
 //   H = F - I     J = det F     B = F F^T - I     e:f full contraction of symmetric tensors
 #pragma once
 
+#include "base/array.h"
 #include "base/simd_math.h"
 #include "materials/material.h"
 
@@ -164,4 +165,3 @@ static inline double lame_lambda(double E, double nu) { return E * nu / ((1 + nu
     { "E", "Pa", NAN, 0, INFINITY, true, true, "Young's modulus" }
 #define PARAMETER_NU                                                                                                   \
     { "nu", "1", NAN, -1, 0.5, true, true, "Poisson's ratio" }
-#define COUNT_OF(table) ((int)(sizeof(table) / sizeof *(table)))

@@ -7,7 +7,8 @@
 
 Arrows against the order: includes of a folder that stands later in ORDER. Circles: files that include each other, by way of
 headers. Functions are counted by their lines from the name to the closing brace at the line's start
-(or at the end of their one line). Lines are repeated where six
+(or at the end of their one line). Tables are arrays of constants, static or of a whole file, without a number for their
+extent: counted by BRUNT_COUNT, a static assert, or the NULL at their end. Lines are repeated where six
 or more stand in two places.
 """
 import re
@@ -29,6 +30,7 @@ LIMITS = {
     "arrows against the order": 0, "circles of files": 0, "unknown folders": 0, "headers that shadow a system's": 0,
     "includes not from the root": 0, "members of the world": 14, "functions over 60 lines": 0,
     "functions with over 7 parameters": 0, "lines of the largest file": 600, "files over 600 lines": 0,
+    "tables that nothing counts": 0, "pointers to void pointers": 0, "words not of plain English": 0,
     "lines repeated in blocks of six": 260, "terms not found": 0,
 }
 TERMS = {  # of the field: what a file or folder is looked for by
@@ -43,6 +45,12 @@ TERMS = {  # of the field: what a file or folder is looked for by
 def sources():
     tracked = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True).stdout.split()
     return [f for f in tracked if re.match(r"(engine|contact|materials|io)/.*\.(c|h|inc)$", f) and (ROOT / f).exists()]
+
+
+def texts():
+    """Sources, tests, scenes and documents; this file names the words it looks for."""
+    tracked = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True).stdout.split()
+    return [f for f in tracked if re.search(r"\.(c|h|inc|md|py|sh|yaml|txt|cmake)$", f) and f != "tests/structure.py" and (ROOT / f).exists()]
 
 
 def below(path):
@@ -129,6 +137,25 @@ def functions(path):
         start = end.end()
 
 
+def uncounted(path):
+    """Names of the tables of a file whose rows nothing counts: one too few or too many would go unseen."""
+    text = re.sub(r"//[^\n]*|\"[^\"\n]*\"", "", (ROOT / path).read_text())
+    users = text if not path.endswith(".h") else "".join((ROOT / f).read_text() for f in sources())
+    for table in re.finditer(r"^(?:(?:static |extern )?const |[ \t]*static const )[^;{}()]*?[ *](\w+)\[([^\]\n]*)\][^;{}()]*? = \{(.*?)\};", text, re.M | re.S):
+        name, extent, rows = table.groups()
+        tail = name[name.rfind("_"):]  # macros paste names together
+        counted = rf"(?:COUNT\w*\(|sizeof[ (]|_assert\([^;]*\b|NUMBERED_ROW\([^;]*\b)(?:{name}\b|\w+##{tail}\b)"
+        if not extent.isdigit() and not rows.rstrip().endswith("NULL") and not re.search(counted, users):
+            yield f"{path}: {name}"
+
+
+def wordings(path):
+    """Words that the house does not use of things, by place."""
+    for number, line in enumerate((ROOT / path).read_text(errors="replace").split("\n"), 1):
+        for word in re.findall(r"\b[Ww]ho\b|\b(?:is|are|was) gone\b|comes? to light", line):
+            yield f"{path}:{number}: {word}"
+
+
 def repeated(files, least=6):
     """Lines that stand in two places, `least` or more one after the other (files, or apart in one), by place. Blank lines,
     includes and lone braces do not count as lines."""
@@ -182,6 +209,9 @@ def figures():
     size = {f: len((ROOT / f).read_text().split("\n")) - 1 for f in files}
     largest = max(size, key=size.get)
     copies, copied = repeated(files)
+    loose = [name for f in files for name in uncounted(f)]
+    voids = [f"{f}:{n}" for f in files for n, line in enumerate(code(f).split("\n"), 1) if re.search(r"void\s*\*\s*(?:const\s*)?\*", line)]
+    words = [place for f in texts() for place in wordings(f)]
     lost = [term for term, found in terms() if not found]
     return [
         ("arrows against the order", len(arrows), [f"{a} -> {b}" for a, b in arrows]),
@@ -195,6 +225,9 @@ def figures():
         ("functions with over 7 parameters", len(wide), [f"{f}: {name}, {count}" for f, name, _, count in wide]),
         ("lines of the largest file", size[largest], [largest]),
         ("files over 600 lines", sum(s > 600 for s in size.values()), [f"{f}: {s}" for f, s in size.items() if s > 600]),
+        ("tables that nothing counts", len(loose), loose),
+        ("pointers to void pointers", len(voids), voids),
+        ("words not of plain English", len(words), words),
         ("lines repeated in blocks of six", copies, copied),
         ("terms not found", len(lost), lost),
         ("lines", sum(size.values()), []),

@@ -1,3 +1,4 @@
+#include "base/array.h"
 #include "contact/methods/method.h"
 
 #include <stdio.h>
@@ -130,6 +131,7 @@ bool brunt_contact_at_nodes(brunt_contact_method method) {
 const char *brunt_contact_word(brunt_contact_method method) {
 #define WORD(name, word) word,
     static const char *const words[] = {BRUNT_CONTACT_METHODS(WORD)};
+    _Static_assert(BRUNT_COUNT(words) == BRUNT_CONTACT_BARRIER + 1, "a word for each method");
 #undef WORD
     return words[method];
 }

@@ -331,7 +331,7 @@ static const brunt_saved saved[] = {
     EACH(short_step), EACH(inverted),    EACH(mass),       EACH(energy),      AXIS(momentum, 0),
     AXIS(angular, 0), AXIS(momentum, 1), AXIS(angular, 1), AXIS(momentum, 2), AXIS(angular, 2),
 };
-enum { ROWS = BRUNT_SAVED_ROWS(saved) };
+enum { ROWS = BRUNT_COUNT(saved) };
 
 int64_t brunt_erosion_state_count(const brunt_erosion *erosion) {
     return erosion->active ? erosion->count * brunt_saved_count(saved, ROWS) : 0;

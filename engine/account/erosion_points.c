@@ -10,6 +10,7 @@
 // closes as well as without erosion.
 #include <math.h>
 
+#include "base/array.h"
 #include "base/error.h"
 #include "base/simd.h"
 #include "materials/log_strain.h"
@@ -29,7 +30,7 @@ typedef struct job {
 // The component whose state is called damage: of the failure model, or of a strength model that knows when it fails.
 static const real *find_damage(brunt_body *body) {
     static const brunt_component order[] = {BRUNT_FAILURE, BRUNT_STRENGTH};
-    for (int k = 0; k < 2; k++) {
+    for (int k = 0; k < BRUNT_COUNT(order); k++) {
         const brunt_model *model = body->material.model[order[k]];
         for (int s = 0; model && s < model->state_count; s++)
             if (!strcmp(model->state[s].name, "damage")) return brunt_state_arrays(&body->particles, model, s)[0];

@@ -5,6 +5,7 @@
 #include <sys/statvfs.h>
 
 #include "app/app.h"
+#include "base/array.h"
 #include "io/output/history.h"
 #include "io/performance/machine.h"
 #include "io/performance/predict.h"
@@ -14,7 +15,7 @@
 static void print_size(double bytes, int width) {
     static const char *const units[] = {"B", "kB", "MB", "GB", "TB"};
     int u = 0;
-    for (; bytes >= 999.5 && u < 4; u++) bytes /= 1000;
+    for (; bytes >= 999.5 && u < BRUNT_COUNT(units) - 1; u++) bytes /= 1000;
     printf("%*.*f %s", width, u ? 2 : 0, bytes, units[u]);
 }
 

@@ -4,6 +4,9 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+// How many elements an array has whose extent is its initialiser's.
+#define BRUNT_COUNT(table) ((int)(sizeof(table) / sizeof *(table)))
+
 // Makes `array` hold `count` elements and keeps its first `keep`; what is new is zero. Grows by half to stay rare: a
 // block is taken only when there is not room. 0, or -1 when out of memory: then the array is as it was. The arguments
 // are evaluated more than once.

@@ -5,6 +5,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/array.h"
+
 typedef struct brunt_saved {
     const char *name;
     size_t offset, count;
@@ -16,7 +18,6 @@ typedef struct brunt_saved {
 #member, offsetof(type, member), sizeof(((type *)0)->member) / 8,                                                 \
      _Generic(((type *)0)->member, int64_t : true, double : false, double * : false)    \
     }
-#define BRUNT_SAVED_ROWS(table) ((int)(sizeof(table) / sizeof *(table)))
 
 // Doubles that a table makes.
 int64_t brunt_saved_count(const brunt_saved *table, int rows);

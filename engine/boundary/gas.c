@@ -157,7 +157,7 @@ brunt_gas brunt_gas_now(const brunt_node_set *set) {
 
 #define SET(member) BRUNT_SAVED(brunt_node_set, member)
 static const brunt_saved saved[] = {SET(gas_energy), SET(gas_volume), SET(gas_inflow)};
-enum { ROWS = BRUNT_SAVED_ROWS(saved) };
+enum { ROWS = BRUNT_COUNT(saved) };
 
 int64_t brunt_gas_state_count(const brunt_node_sets *sets) {
     return brunt_gas_sets(sets) * brunt_saved_count(saved, ROWS);

@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/error.h"
 #include "base/memory.h"
 #include "boundary/curve.h"
@@ -14,7 +15,7 @@ static bool moves(const brunt_group_def *group) {
            group->action == BRUNT_GROUP_ROTATION;
 }
 
-// A load of 0, whatever its table says, is none: no forces are kept and nothing is gone over.
+// A load of 0, whatever its table says, is none: no forces are kept and no pass runs.
 static bool is_idle(const brunt_group_def *group) {
     if (group->action == BRUNT_GROUP_PRESSURE) return group->value[0] == 0;
     return group->action == BRUNT_GROUP_TRACTION && !(group->value[0] || group->value[1] || group->value[2]);
@@ -146,7 +147,7 @@ static int find_nodes(brunt_node_set *set, const brunt_bodies *bodies, brunt_err
 // A definition, with a curve of its own. In load steps what has none grows from nothing, but velocities: motion does.
 static int copy_definition(brunt_group_def *copy, const brunt_group_def *def, bool load_steps) {
     static const double ramp[][2] = {{0, 0}, {1, 1}};
-    const brunt_curve grows = {.points = (double(*)[2])ramp, .count = 2};
+    const brunt_curve grows = {.points = (double(*)[2])ramp, .count = BRUNT_COUNT(ramp)};
     const bool ramped = load_steps && !def->table.count && def->action != BRUNT_GROUP_VELOCITY;
     const brunt_curve *table = ramped ? &grows : &def->table;
     *copy = *def;

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#define COUNT(array) (sizeof(array) / sizeof *(array))
+#include "base/array.h"
 
 static const brunt_element_shape tetrahedron = {
     .plural = "tetrahedra",
@@ -56,20 +56,21 @@ static const int8_t quadrilateral_corner[][3] = {{1, 3, 0}, {2, 0, 0}, {3, 1, 0}
 static const uint8_t membrane_face[][4] = {{0, 1, 2, 3}};
 
 #define SOLID(kind, name, shape, nodes, dimension, face_nodes)                                                         \
-    [kind] = {name,       &(shape),     nodes,         dimension, dimension, false, COUNT(shape##_face),               \
+    [kind] = {name,       &(shape),     nodes,         dimension, dimension, false, BRUNT_COUNT(shape##_face),         \
               face_nodes, shape##_face, shape##_corner},
 #define MEMBRANE(kind, name, shape, nodes, dimension, face_nodes)                                                      \
-    [kind] = {name,       &(shape),      nodes,         3, dimension, true, COUNT(membrane_face),                      \
+    [kind] = {name,       &(shape),      nodes,         3, dimension, true, BRUNT_COUNT(membrane_face),                \
               face_nodes, membrane_face, shape##_corner},
 const brunt_element_traits brunt_element_table[] = {BRUNT_SOLID_ELEMENTS(SOLID) BRUNT_MEMBRANE_ELEMENTS(MEMBRANE)};
 
 #define AS_MANY(kind, name, shape, nodes, dimension, face_nodes)                                                       \
-    static_assert(COUNT(shape##_corner) == (nodes) && (nodes) <= BRUNT_ELEMENT_NODES, name ": a corner for each "      \
-                                                                                           "node");
+    static_assert(BRUNT_COUNT(shape##_corner) == (nodes) && (nodes) <= BRUNT_ELEMENT_NODES,                            \
+                  name ": a corner for each "                                                                          \
+                       "node");
 BRUNT_SOLID_ELEMENTS(AS_MANY)
 BRUNT_MEMBRANE_ELEMENTS(AS_MANY)
 #define AND_ONE(kind, name, shape, nodes, dimension, face_nodes) +1
-static_assert(COUNT(brunt_element_table) == BRUNT_ELEMENT_KINDS, "a row for the last kind");
+static_assert(BRUNT_COUNT(brunt_element_table) == BRUNT_ELEMENT_KINDS, "a row for the last kind");
 static_assert(0 BRUNT_SOLID_ELEMENTS(AND_ONE) BRUNT_MEMBRANE_ELEMENTS(AND_ONE) == BRUNT_ELEMENT_KINDS,
               "a row for each kind");
 

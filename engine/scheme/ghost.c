@@ -12,7 +12,8 @@
 enum { MOST_RUN = 5 };
 static const double PARAMETER = 1e-3; // c: anything from 1e-6 to 0.1 does
 static const double WEAK = 0.5;       // of the mass of a full cell: lighter nodes are held
-static const double difference[BRUNT_CUBIC + 1][MOST_RUN] = {{0}, {1, -2, 1}, {1, -3, 3, -1}, {1, -4, 6, -4, 1}};
+static const double difference[][MOST_RUN] = {{0}, {1, -2, 1}, {1, -3, 3, -1}, {1, -4, 6, -4, 1}};
+_Static_assert(BRUNT_COUNT(difference) == BRUNT_CUBIC + 1, "a row for each kernel");
 
 // ------------------------------------------------------------------------------------------ runs
 

@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/error.h"
 #include "scheme/implicit.h"
 
@@ -172,7 +173,7 @@ static void let_go(struct brunt_implicit *m) {
 }
 
 // Held components go to their places if nothing is in the way. Otherwise heavy weights draw them there, together with
-// what they push, so that the energy of all that moves can be compared; what little is left then is gone as it is.
+// what they push, so that the energy of all that moves can be compared; what little is left is lost then.
 static int go_and_minimise(struct brunt_implicit *m, brunt_newton_report *report, brunt_error *error) {
     enum { MOST = 6 };
     double heavy = 1e7;
@@ -203,7 +204,8 @@ static void follow_phase(void *context, brunt_newton_phase phase) {
 }
 
 void brunt_implicit_follow(brunt_world *world) {
-    static const char *const names[BRUNT_NEWTON_PHASES] = {"evaluate", "matrix", "solve", "limit", "search"};
+    static const char *const names[] = {"evaluate", "matrix", "solve", "limit", "search"};
+    _Static_assert(BRUNT_COUNT(names) == BRUNT_NEWTON_PHASES, "a pass for each phase");
     struct brunt_implicit *m = world->plan.implicit;
     for (int p = 0; p < world->plan.pass_count; p++)
         for (int k = 0; k < BRUNT_NEWTON_PHASES; k++)

@@ -113,6 +113,7 @@ double brunt_implicit_measure(void *context, const brunt_team *team, const doubl
 
 static const brunt_weights weights_of[] = {{1, 0.5, 1, 1, 1}, {0.5, 0.25, 0.5, 0.5, 0.5}}, // by brunt_integrator
     weights_of_load_steps = {1, 0.5, 1, 1, 0.5};
+_Static_assert(BRUNT_COUNT(weights_of) == BRUNT_NEWMARK + 1, "weights of each integrator");
 
 // Proximal shares, of the stiffness of nodes: where few material points are near a node of a grid its own may be lost.
 static const double EVERYWHERE = 1e-12;

@@ -15,6 +15,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/simd.h"
 #include "scheme/scheme.h"
 
@@ -30,7 +31,7 @@ typedef enum transfer_pass { SCATTER, ADVANCE, GATHER, GATHER_REST, TRANSFER_PAS
 
 // How often each field goes over the bus: scatter, the first stage of the gather in two (linear kernel), all of the
 // gather, its second stage.
-static const uint8_t trips[BRUNT_BASE_FIELDS][TRANSFER_PASSES] = {
+static const uint8_t trips[][TRANSFER_PASSES] = {
     [BRUNT_FIELD_position] = {1, 1, 2, 2},             // that of kernels, which is read; moved by the gather
     [BRUNT_FIELD_velocity] = {1, 2, 2, 1},             //
     [BRUNT_FIELD_affine] = {1, 0, 2, 2},               //
@@ -41,6 +42,8 @@ static const uint8_t trips[BRUNT_BASE_FIELDS][TRANSFER_PASSES] = {
     [BRUNT_FIELD_undeformed_position] = {1, 0, 1, 0},  // of total-Lagrangian bodies, which have no stages
     [BRUNT_FIELD_grid_velocity] = {0, 2, 0, 1},
 };
+_Static_assert(BRUNT_COUNT(trips) == BRUNT_BASE_FIELDS && BRUNT_FIELD_grid_velocity == BRUNT_BASE_FIELDS - 1,
+               "a row of trips for each field");
 enum { STATE_TRIPS = 2 }; // of materials, by what updates them
 
 static double particle_bytes(const brunt_particles *p, transfer_pass pass) {
@@ -79,6 +82,8 @@ static double buffer_bytes(const brunt_grid *grid) { return grid->span_nodes * 8
 // Along an axis: u, bspline_weights, bspline_slopes.
 static double kernel_flops(int order) {
     static const int weights[] = {0, 1, 9, 18}, slopes[] = {0, 0, 4, 12};
+    _Static_assert(BRUNT_COUNT(weights) == BRUNT_CUBIC + 1 && BRUNT_COUNT(slopes) == BRUNT_CUBIC + 1,
+                   "a row for each kernel");
     return 3 + weights[order] + slopes[order];
 }
 
@@ -112,6 +117,8 @@ static double power_flops(const brunt_particles *p) {
 // From nodes to particles: coefficients of a bin's polynomials, shared by its particles, and their evaluation.
 static double interpolation_flops(const brunt_body *body, bool old, bool affine, crowd per) {
     static const int polynomial[] = {0, 1, 7, 15}, correction[] = {0, 0, 4, 5}, slope[] = {0, 0, 3, 6};
+    _Static_assert(BRUNT_COUNT(polynomial) == BRUNT_CUBIC + 1 && BRUNT_COUNT(slope) == BRUNT_CUBIC + 1,
+                   "a row for each kernel");
     const int d = body->particles.dim, order = body->grid.order, N = order + 1, side = body->grid.side,
               span = side + order;
     const int width = old ? 8 : 4;

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "contact/planes/condition.h"
 #include "boundary/kinds.h"
 #include "contact/methods/method.h"
@@ -65,7 +66,7 @@ static int check_body(const brunt_world_def *def, const brunt_body_def *body, br
     if (body->particles_per_cell < 0) REFUSE("%s.particles_per_cell: %d is negative", owner, body->particles_per_cell);
     BRUNT_TRY(brunt_check_array(owner, body->face_count, body->faces, error));
     for (int32_t f = 0; f < body->face_count; f++) BRUNT_TRY(brunt_check_name_ends("faces", f, body->faces[f], error));
-    for (int a = 0; a < 3; a++) BRUNT_TRY(brunt_check_curve(owner, axes[a], &body->grading[a], error));
+    for (int a = 0; a < BRUNT_COUNT(axes); a++) BRUNT_TRY(brunt_check_curve(owner, axes[a], &body->grading[a], error));
     BRUNT_TRY(brunt_check_place(owner, &body->place, error));
     if (body->method != BRUNT_MPM && body->mesh.node_count) return check_mesh(owner, &body->mesh, error);
     if (body->method != BRUNT_MPM)

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/memory.h"
@@ -99,9 +100,9 @@ static const brunt_saved newton_table[] = {
 static const brunt_saved account_table[] = {ACCOUNT(impulse),     ACCOUNT(angular),       ACCOUNT(external_work),
                                             ACCOUNT(normal_loss), ACCOUNT(friction_loss), ACCOUNT(area)};
 enum {
-    NEWTON_ROWS = BRUNT_SAVED_ROWS(newton_table),
-    CLOCK_ROWS = BRUNT_SAVED_ROWS(clock_table),
-    ACCOUNT_ROWS = BRUNT_SAVED_ROWS(account_table)
+    NEWTON_ROWS = BRUNT_COUNT(newton_table),
+    CLOCK_ROWS = BRUNT_COUNT(clock_table),
+    ACCOUNT_ROWS = BRUNT_COUNT(account_table)
 };
 
 static double *get_account(const brunt_impulse_account *account, double *out) {
@@ -124,6 +125,7 @@ static brunt_state_block world_info(const brunt_world *world, int index) {
                               brunt_surface_affine_count(&world->contact.surface),
                               brunt_erosion_state_count(&world->erosion),
                               brunt_saved_count(newton_table, NEWTON_ROWS)};
+    _Static_assert(BRUNT_COUNT(names) == BRUNT_COUNT(counts), "a count for each block of the world");
     snprintf(block.name, sizeof block.name, "%s", names[index]);
     block.count = counts[index];
     return block;

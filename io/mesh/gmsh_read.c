@@ -14,7 +14,7 @@
 #include "base/array.h"
 #include "base/memory.h"
 
-const gmsh_type gmsh_types[GMSH_TYPE_LIMIT] = {
+const gmsh_type gmsh_types[] = {
     [1] = {1, 2, "2-node lines"},         [2] = {2, 3, "3-node triangles"},     [3] = {2, 4, "4-node quadrangles"},
     [4] = {3, 4, "4-node tetrahedra"},    [5] = {3, 8, "8-node hexahedra"},     [6] = {3, 6, "6-node prisms"},
     [7] = {3, 5, "5-node pyramids"},      [8] = {1, 3, "3-node lines"},         [9] = {2, 6, "6-node triangles"},
@@ -27,6 +27,7 @@ const gmsh_type gmsh_types[GMSH_TYPE_LIMIT] = {
     [28] = {1, 6, "6-node lines"},        [29] = {3, 20, "20-node tetrahedra"}, [30] = {3, 35, "35-node tetrahedra"},
     [31] = {3, 56, "56-node tetrahedra"},
 };
+_Static_assert(BRUNT_COUNT(gmsh_types) == GMSH_TYPE_LIMIT, "types up to the limit");
 
 // Physical groups are searched one by one, for every run of elements.
 enum { PHYSICAL_LIMIT = 4096 };

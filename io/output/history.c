@@ -175,8 +175,8 @@ static int64_t probe_place(brunt_history *h, brunt_world *world, const probe *p)
 }
 
 static void add_probe(brunt_history *h, brunt_world *world, const probe *p) {
-    static const char *const names3[] = {"x", "y", "z"}, *const names6[] = {"xx", "yy", "zz", "xy", "yz", "xz"},
-                             *const names9[] = {"xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"};
+    static const char *const names3[3] = {"x", "y", "z"}, *const names6[6] = {"xx", "yy", "zz", "xy", "yz", "xz"},
+                             *const names9[9] = {"xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"};
     int n = p->info.components;
     const char *const *names = n == 3 ? names3 : n == 6 ? names6 : n == 9 ? names9 : NULL;
     const double *values = NULL;

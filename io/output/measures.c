@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "base/array.h"
 #include "io/output/measure.h"
 
 static const measure_kind *const kinds[] = {
@@ -9,6 +10,8 @@ static const measure_kind *const kinds[] = {
     BRUNT_MEASURE_KINDS(X)
 #undef X
 };
+#define AND_ONE(NAME, name) +1
+_Static_assert(BRUNT_COUNT(kinds) == 0 BRUNT_MEASURE_KINDS(AND_ONE), "a row for each kind of measure");
 
 int brunt_measure_check(const brunt_measure *measure, const brunt_history *history, brunt_world *world,
                         brunt_error *error) {

@@ -88,9 +88,9 @@ static int append_array(vtu_writer *w, const brunt_vtu_array *array, int64_t cou
     FILE *header = w->header;
     byte_buffer *scratch = &w->scratch;
     const bool float32 = w->float32;
-    static const char *const components3[] = {"X", "Y", "Z"};
-    static const char *const components6[] = {"XX", "YY", "ZZ", "XY", "YZ", "XZ"};
-    static const char *const components9[] = {"XX", "XY", "XZ", "YX", "YY", "YZ", "ZX", "ZY", "ZZ"};
+    static const char *const components3[3] = {"X", "Y", "Z"};
+    static const char *const components6[6] = {"XX", "YY", "ZZ", "XY", "YZ", "XZ"};
+    static const char *const components9[9] = {"XX", "XY", "XZ", "YX", "YY", "YZ", "ZX", "ZY", "ZZ"};
     const char *const *names = array->components == 3   ? components3
                                : array->components == 6 ? components6
                                : array->components == 9 ? components9

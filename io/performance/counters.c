@@ -9,8 +9,11 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-static const uint64_t events[BRUNT_COUNTERS] = {PERF_COUNT_HW_CPU_CYCLES, PERF_COUNT_HW_INSTRUCTIONS,
-                                                PERF_COUNT_HW_CACHE_MISSES, PERF_COUNT_HW_BRANCH_MISSES};
+#include "base/array.h"
+
+static const uint64_t events[] = {PERF_COUNT_HW_CPU_CYCLES, PERF_COUNT_HW_INSTRUCTIONS, PERF_COUNT_HW_CACHE_MISSES,
+                                  PERF_COUNT_HW_BRANCH_MISSES};
+_Static_assert(BRUNT_COUNT(events) == BRUNT_COUNTERS, "an event for each counter");
 
 static int open_event(uint64_t event) {
     struct perf_event_attr attributes = {.type = PERF_TYPE_HARDWARE,

@@ -257,6 +257,8 @@ static double cost_of(const brunt_machine *machine, const char *kind, const char
 double brunt_machine_step(const brunt_machine *machine, const brunt_world_def *def, const brunt_world *world) {
     static const char *const kernels[] = {"", "linear", "quadratic", "cubic"}, *const transfers[] = {"pic", "flip",
                                                                                                      "apic"};
+    _Static_assert(BRUNT_COUNT(kernels) == BRUNT_CUBIC + 1 && BRUNT_COUNT(transfers) == BRUNT_APIC + 1,
+                   "a word for each");
     const int32_t threads = brunt_world_threads(world);
     double seconds = 0;
     for (int32_t b = 0; b < brunt_body_count(world); b++) {

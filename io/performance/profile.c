@@ -3,12 +3,14 @@
 #include <jansson.h>
 #include <math.h>
 
+#include "base/array.h"
 #include "base/real.h"
 #include "io/performance/roofline.h"
 
 enum { THREADS_SHOWN = 4 }; // one by one
 
-static const char *const counter_names[BRUNT_COUNTERS] = {"cycles", "instructions", "cache_misses", "branch_misses"};
+static const char *const counter_names[] = {"cycles", "instructions", "cache_misses", "branch_misses"};
+_Static_assert(BRUNT_COUNT(counter_names) == BRUNT_COUNTERS, "a name for each counter");
 
 // Positive over positive, else no number.
 static double ratio(double of, double per) { return of > 0 && per > 0 ? of / per : NAN; }

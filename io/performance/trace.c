@@ -121,6 +121,7 @@ static void describe_lines(brunt_trace *trace) {
 
 static void write_record(brunt_trace *trace, const record *r, long long step) {
     static const char *const category[] = {[PASS] = "pass", [THREAD] = "thread", [OUTPUT] = "output"};
+    _Static_assert(BRUNT_COUNT(category) == OUTPUT + 1, "a word for each kind of event");
     complete_event(trace, r->name, category[r->kind], r->kind == THREAD ? r->thread + 1 : 0, r->begin, r->end);
     fprintf(trace->file.stream, ",\"args\":{\"step\":%lld", step - (r->kind == OUTPUT)); // output is of the step before
     if (r->kind == PASS) fprintf(trace->file.stream, ",\"units\":%.0f", r->units);

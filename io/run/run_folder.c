@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/array.h"
 #include "io/output/checkpoint.h"
 #include "base/error.h"
 #include "io/output/pvd.h"
@@ -119,7 +120,7 @@ int brunt_run_folder_prepare(brunt_output_folder *folder, const brunt_run_option
         brunt_output_remove_leftovers(folder);
         unlinkat(folder->folder, "summary.json", 0); // it is of the leg before, which had come to an end
     } else if (!status) {
-        status = brunt_output_clear(folder, stays, 1, error);
+        status = brunt_output_clear(folder, stays, BRUNT_COUNT(stays), error);
         if (!status) status = brunt_output_list(folder, files, FILES, error);
     }
     if (!status && mkdirat(folder->folder, "vtu", 0777) && !brunt_output_has(folder, "vtu/"))

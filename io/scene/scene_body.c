@@ -247,7 +247,7 @@ static bool fill_elements(scene_reader *reader, scene_node *node, brunt_body_def
 }
 
 static void fill_grading(scene_reader *reader, const scene_node *node, brunt_body_def *body) {
-    static const char *const axes[] = {"x", "y", "z"};
+    static const char *const axes[3] = {"x", "y", "z"};
     const scene_node *map = brunt_tree_child(node, "grading");
     if (!map || map->kind != SCENE_MAP) return;
     if (body->shape.kind != BRUNT_BOX || body->method == BRUNT_MEMBRANE || brunt_tree_child(node, "mesh"))

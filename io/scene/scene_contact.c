@@ -1,4 +1,5 @@
 // Contact of a scene: the method for all, for single pairs, and what goes with which bodies.
+#include "base/array.h"
 #include "io/scene/scene_reader.h"
 
 #include <string.h>
@@ -130,7 +131,7 @@ static void fill_augury(scene_reader *reader, scene_node *node) {
     const bool used = uses(contact, BRUNT_CONTACT_AUGURY);
     static const char *const keys[] = {"form", "cell", "transfer", "tolerance", "iterations"};
     if (brunt_scheme_minimises(reader->scene->world.scheme)) {
-        for (int i = 0; i < 5; i++) brunt_note_unused(reader, node, keys[i]);
+        for (int i = 0; i < BRUNT_COUNT(keys); i++) brunt_note_unused(reader, node, keys[i]);
         return;
     }
     bool meshes = false, at_nodes = brunt_contact_at_nodes(contact->method);
@@ -139,7 +140,8 @@ static void fill_augury(scene_reader *reader, scene_node *node) {
         meshes |= reader->scene->world.bodies[i].method != BRUNT_MPM;
     contact->iterations = (int)brunt_real_of(node, "iterations", -1);
     if (!used) {
-        for (int i = 0; i < 4; i++) brunt_refuse_key(reader, node, keys[i], "this belongs to method: augury");
+        for (int i = 0; i < BRUNT_COUNT(keys) - 1; i++) // all but iterations
+            brunt_refuse_key(reader, node, keys[i], "this belongs to method: augury");
         if (!meshes || !at_nodes) brunt_refuse_key(reader, node, "iterations", "this belongs to method: augury");
         return;
     }
@@ -189,11 +191,12 @@ static void fill_barrier(scene_reader *reader, scene_node *node) {
     brunt_contact_def *contact = &reader->scene->world.contact;
     static const char *const keys[] = {"distance", "stiffness", "slip_speed", "friction_iterations"};
     if (reader->scene->world.scheme == BRUNT_EXPLICIT) {
-        for (int i = 0; i < 4; i++) brunt_note_unused(reader, node, keys[i]);
+        for (int i = 0; i < BRUNT_COUNT(keys); i++) brunt_note_unused(reader, node, keys[i]);
         return;
     }
     if (!uses(contact, BRUNT_CONTACT_BARRIER)) {
-        for (int i = 0; i < 4; i++) brunt_refuse_key(reader, node, keys[i], "this belongs to method: barrier");
+        for (int i = 0; i < BRUNT_COUNT(keys); i++)
+            brunt_refuse_key(reader, node, keys[i], "this belongs to method: barrier");
         return;
     }
     if (!brunt_tree_child(node, "friction_iterations")) brunt_add_default(reader, node, "friction_iterations", "1");

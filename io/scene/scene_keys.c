@@ -1,6 +1,7 @@
 // Every key of a scene, one row each.
 #include "io/scene/scene_keys.h"
 
+#include "base/array.h"
 #include "io/scene/scene.h"
 
 #include <stdio.h>
@@ -282,7 +283,7 @@ const brunt_model *const *brunt_scene_models(const char *path, int *count) {
         return brunt_eos_models;
     }
     if (strncmp(path, "materials.*.viscosity.", 22) == 0) {
-        *count = 1;
+        *count = BRUNT_COUNT(viscosity);
         return viscosity;
     }
     if (strncmp(path, "materials.*.failure.", 20) == 0) {

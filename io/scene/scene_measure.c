@@ -1,4 +1,5 @@
 // Measures of a scene: what is measured, over which time, and against what it is judged.
+#include "base/array.h"
 #include "boundary/kinds.h"
 #include "io/scene/scene_reader.h"
 
@@ -46,7 +47,9 @@ static const char *gas_mistake(const brunt_world_def *world, const char *rest) {
         size_t length = strlen(group->name);
         if (group->action != BRUNT_GROUP_GAS || strncmp(rest, group->name, length) != 0 || rest[length] != '.')
             continue;
-        return one_of(rest + length + 1, quantities, 4) ? NULL : "of gas there are volume, pressure, energy and inflow";
+        return one_of(rest + length + 1, quantities, BRUNT_COUNT(quantities))
+                   ? NULL
+                   : "of gas there are volume, pressure, energy and inflow";
     }
     return "there is no boundary of that name with gas";
 }
@@ -73,7 +76,7 @@ static const char *column_mistake(const scene_reader *reader, const char *column
         "columns are time, step, dt, energy.*, momentum.*, newton.*, body.NAME.*, contact.A-B.*, wall.NAME.*, "
         "gas.NAME.* and probe.NAME";
     const char *dot = strchr(column, '.');
-    if (!dot) return one_of(column, plain, 3) ? NULL : families;
+    if (!dot) return one_of(column, plain, BRUNT_COUNT(plain)) ? NULL : families;
     const char *rest = dot + 1;
     size_t family = (size_t)(dot - column);
     if (!*rest) return "the name ends with its dot";
@@ -248,7 +251,7 @@ static void check_curve_units(scene_reader *reader, const scene_node *node, cons
             break;
         }
     }
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; i < BRUNT_COUNT(pure); i++) {
         const scene_node *key = brunt_tree_child(node, pure[i]);
         if (has_unit(key)) brunt_tree_complain(tree, key, "a distance relative to the curve's range has no unit");
     }

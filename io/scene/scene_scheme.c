@@ -1,4 +1,5 @@
 // Explicit and implicit steps: the keys that are one's alone, which the other leaves unused, and what it cannot do.
+#include "base/array.h"
 #include "io/scene/scene_reader.h"
 
 #include <string.h>
@@ -10,6 +11,8 @@ void brunt_note_unused(scene_reader *reader, const scene_node *map, const char *
     static const char *const owner[] = {"implicit", "explicit", "explicit or implicit"}, *const own[] = {
                                                                                              "explicit", "implicit",
                                                                                              "load"}; // by brunt_scheme
+    _Static_assert(BRUNT_COUNT(owner) == BRUNT_STATIC + 1 && BRUNT_COUNT(own) == BRUNT_STATIC + 1,
+                   "words for each scheme");
     const brunt_scheme scheme = reader->scene->world.scheme;
     if (child) brunt_scene_warn_at(reader, child, true, "of %s steps, not used by %s ones", owner[scheme], own[scheme]);
 }

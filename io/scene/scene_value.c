@@ -365,7 +365,7 @@ static void check_reals(scene_reader *reader, scene_node *node, const scene_key 
 
 // Which axes: value[c] is 1 for those that are meant.
 static void check_axes(scene_reader *reader, scene_node *node) {
-    static const char *const axes[] = {"x", "y", "z"};
+    static const char *const axes[3] = {"x", "y", "z"};
     int dimension = reader->dimension ? reader->dimension : 3;
     bool all = node->kind == SCENE_SCALAR && strcmp(node->text, "all") == 0;
     if (!all && (node->kind != SCENE_LIST || node->count == 0)) {

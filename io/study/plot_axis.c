@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
+
 enum { MOST_TICS = 64 };
 
 void plot_axis_widen(plot_axis *a, double value) {
@@ -22,7 +24,7 @@ void plot_axis_pad(plot_axis *a) {
 }
 
 static void number_label(double value, char out[48]) {
-    static const char *const raised[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+    static const char *const raised[10] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
     if (value >= 0.99e-4 && value < 0.99e6) {
         snprintf(out, 48, "%.10g", value);
         return;
@@ -99,7 +101,7 @@ double plot_prefixed(const char *unit, double most, char out[48]) {
     for (size_t u = 0; u < sizeof plain / sizeof *plain; u++) known = known || !strcmp(unit, plain[u]);
     int p = 3;
     if (known && most > 0) p += (int)floor(log10(most) / 3 + 1e-9);
-    p = p < 0 ? 0 : p > 6 ? 6 : p;
+    p = p < 0 ? 0 : p >= BRUNT_COUNT(prefix) ? BRUNT_COUNT(prefix) - 1 : p;
     snprintf(out, 48, "%s%s", prefix[p], unit[0] ? unit : "1");
     return pow(1000, 3 - p);
 }

@@ -3,6 +3,7 @@
 //
 // Ranges and labels are worked out here: gnuplot's own leave logarithmic axes of less than a decade without a number.
 // All text is drawn as it is ("noenhanced"); the powers of ten are characters.
+#include "base/array.h"
 #include "io/study/study.h"
 
 #include <math.h>
@@ -21,7 +22,7 @@
 static const char *const colours[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000"};
 static const int symbols[] = {7, 5, 9, 13, 11, 15, 6, 4, 8, 12, 10, 14}; // filled ones first
 static const int dashes[] = {1, 2, 4, 5, 3};
-enum { COLOURS = 7, SYMBOLS = 12, DASHES = 5 };
+enum { COLOURS = BRUNT_COUNT(colours), SYMBOLS = BRUNT_COUNT(symbols), DASHES = BRUNT_COUNT(dashes) };
 
 typedef struct look {
     int colour, symbol, dash;

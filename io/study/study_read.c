@@ -1,5 +1,6 @@
 // A study file: its keys are checked like those of a scene, then every case is made and its scene read, so that nothing
 // is found out after hours that could have been said at once.
+#include "base/array.h"
 #include "io/study/study_cases.h"
 
 #include <ctype.h>
@@ -474,7 +475,7 @@ static void fill_reference(study_reader *r, const scene_node *node, brunt_study_
         number_state state = read_number(r, text, &measure->exact, base, why, sizeof why);
         if (state == BAD_NUMBER) brunt_tree_complain(study_tree(r), node, "%s", why);
         if (state != NOT_ONE) return;
-        const char *nearest = brunt_nearest_name(text, words, 3);
+        const char *nearest = brunt_nearest_name(text, words, BRUNT_COUNT(words));
         brunt_tree_complain(study_tree(r), node,
                             "%s%s%sscene, finest, richardson, a number or {axis: NAME, values: {...}} "
                             "is wanted",
@@ -518,7 +519,7 @@ static void fill_accuracies(study_reader *r, const scene_node *list) {
     for (const scene_node *child = list ? list->first : NULL; child; child = child->next)
         if (study->accuracy_count < BRUNT_STUDY_ACCURACIES)
             study->accuracies[study->accuracy_count++] = child->good ? child->value[0] : NAN;
-    for (int i = 0; !list && i < 3; i++) study->accuracies[study->accuracy_count++] = usual[i];
+    for (int i = 0; !list && i < BRUNT_COUNT(usual); i++) study->accuracies[study->accuracy_count++] = usual[i];
 }
 
 static void read_study(study_reader *r) {

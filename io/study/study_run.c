@@ -5,6 +5,7 @@
 // when all else is, holds the key of the run: a hash over the program, the scene as resolved, its mesh files, the
 // number of threads and the kind of machine. A folder whose key is the same is taken over, failed runs too; all others
 // are run again.
+#include "base/array.h"
 #include "io/study/study_reader.h"
 
 #include <ctype.h>
@@ -423,10 +424,10 @@ static char **own_names(const runner *r, int32_t *count) {
          run[200];
     *count = 0;
     for (int32_t n = 0; names && n < most; n++) names[n] = text + room * (size_t)n;
-    for (int t = 0; names && t < 3; t++) snprintf(names[(*count)++], room, "%s", tables[t]);
+    for (int t = 0; names && t < BRUNT_COUNT(tables); t++) snprintf(names[(*count)++], room, "%s", tables[t]);
     for (int32_t p = 0; names && p < pictures; p++) {
         picture_name(r->study, p, picture);
-        for (int e = 0; e < 3; e++) snprintf(names[(*count)++], room, "%s%s", picture, endings[e]);
+        for (int e = 0; e < BRUNT_COUNT(endings); e++) snprintf(names[(*count)++], room, "%s%s", picture, endings[e]);
     }
     if (names) snprintf(names[(*count)++], room, "runs/");
     for (int32_t n = 0; names && n < runs; n++) {

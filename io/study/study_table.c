@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "io/file/atomic_file.h"
 #include "base/error.h"
 #include "base/memory.h"
@@ -10,6 +11,7 @@
 #include "io/scene/units.h"
 
 static const char *const statuses[] = {"waiting", "done", "failed"};
+_Static_assert(BRUNT_COUNT(statuses) == BRUNT_STUDY_FAILED + 1, "a word for each status");
 
 // ---------------------------------------------------------------------------------------------------- study.csv
 
@@ -116,6 +118,7 @@ static json_t *axes_of(const brunt_study *study) {
 
 static json_t *measures_of(const brunt_study *study) {
     static const char *const references[] = {"number", "table", "finest", "richardson"};
+    _Static_assert(BRUNT_COUNT(references) == BRUNT_REFERENCE_RICHARDSON + 1, "a word for each reference");
     json_t *measures = json_array();
     for (int32_t m = 0; m < study->measure_count; m++) {
         const brunt_study_measure *measure = &study->measures[m];

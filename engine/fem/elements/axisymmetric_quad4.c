@@ -1,5 +1,6 @@
 // Bilinear quadrilateral revolved about the axis, with one point. Modes as in quad4.c: xi, eta, and the hourglass xi
 // eta.
+#include "base/array.h"
 #include "fem/plane_strain.h"
 #include "fem/axisymmetric.h"
 
@@ -60,7 +61,7 @@ const brunt_element brunt_axisymmetric_quad4 = {
     .axisymmetric = true,
     .block = 1024,
     .flops = {.whole = {524, 579}},
-    .hourglass_modes = 1,
+    .hourglass_modes = BRUNT_COUNT(hourglass_mode),
     .hourglass = hourglass_mode,
     .volume = quad4_area,
     .shares = shares,

@@ -5,6 +5,7 @@
 // from integrating det dx/dxi over the cube: all other products are odd, or have a vector twice. So dV/dX_a, the mean
 // gradient times V (Flanagan and Belytschko, Int. J. Numer. Meth. Eng. 17 (1981) 679, there with 24 sums of products),
 // follows from six vectors dV/dmode, and 18 numbers do the work of 24.
+#include "base/array.h"
 #include "fem/kernel.h"
 
 // By mode and node, in the order of the modes.
@@ -92,7 +93,7 @@ const brunt_element brunt_hex8 = {
     .block = 512,
     // modes by sums of pairs; six products of two crosses: three of 27, three of 24
     .flops = {.strain_modes = 6, .combine = 69, .spread = 66, .slope = 164},
-    .hourglass_modes = 4,
+    .hourglass_modes = BRUNT_COUNT(hourglass),
     .hourglass = hourglass,
     .volume = volume,
     .gradient = hex8_mean_gradient,

@@ -1,4 +1,5 @@
 // The elements there are, by their kind; and those about an axis, by the kind that a section is of.
+#include "base/array.h"
 #include "fem/element.h"
 
 #define ELEMENTS(X)                                                                                                    \
@@ -19,4 +20,8 @@ AXISYMMETRIC(DECLARE)
 
 #define BY_KIND(kind, element) [kind] = &brunt_##element,
 const brunt_element *const brunt_elements[BRUNT_ELEMENT_KINDS] = {ELEMENTS(BY_KIND)};
-const brunt_element *const brunt_axisymmetric_elements[BRUNT_ELEMENT_KINDS] = {AXISYMMETRIC(BY_KIND)};
+#define AND_ONE(kind, element) +1
+_Static_assert(0 ELEMENTS(AND_ONE) == BRUNT_ELEMENT_KINDS, "a row of brunt_elements for each kind");
+const brunt_element *const brunt_axisymmetric_elements[BRUNT_ELEMENT_KINDS] = {
+    AXISYMMETRIC(BY_KIND)}; // NULL: not about an axis
+_Static_assert(BRUNT_COUNT(brunt_axisymmetric_elements) == BRUNT_COUNT(brunt_elements), "both by kind");

@@ -1,5 +1,6 @@
 // Bilinear membrane quadrilateral with one point. Modes: the tangents chi (along xi) and psi (along eta), and the
 // hourglass xi eta, each the sum of the nodes' values times the mode's +-1 there.
+#include "base/array.h"
 #include "fem/kernel.h"
 
 static const int8_t hourglass_mode[][BRUNT_ELEMENT_NODES] = {{1, -1, 1, -1}};
@@ -38,7 +39,7 @@ const brunt_element brunt_membrane_quad4 = {
         "Flanagan and Belytschko 1981)",
     .block = 1024,
     .flops = {.whole = {636, 636}},
-    .hourglass_modes = 1,
+    .hourglass_modes = BRUNT_COUNT(hourglass_mode),
     .hourglass = hourglass_mode,
     .volume = area,
     .gradient = mean_gradient,

@@ -1,5 +1,6 @@
 // Bilinear quadrilateral in plane strain with one point. Modes: xi, eta, and the hourglass xi eta, each the sum of the
 // nodes' values times the mode's +-1 there.
+#include "base/array.h"
 #include "fem/plane_strain.h"
 
 static const int8_t hourglass[][BRUNT_ELEMENT_NODES] = QUAD4_HOURGLASS;
@@ -25,7 +26,7 @@ const brunt_element brunt_quad4 = {
     .doc = "bilinear quadrilateral in plane strain, one point with hourglass control (Flanagan and Belytschko 1981)",
     .block = 1024,
     .flops = {.strain_modes = 2, .combine = 14, .spread = 12, .slope = 7},
-    .hourglass_modes = 1,
+    .hourglass_modes = BRUNT_COUNT(hourglass),
     .hourglass = hourglass,
     .volume = quad4_area,
     .gradient = quad4_mean_gradient,
