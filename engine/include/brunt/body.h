@@ -71,6 +71,7 @@ typedef struct brunt_body_def {
     double temperature;                // [K] >= 0, for thermal materials; default 293.15
 } brunt_body_def;
 
+// With every default that is given above; what has none is not set.
 brunt_body_def brunt_body_def_default(void);
 
 #ifdef __cplusplus

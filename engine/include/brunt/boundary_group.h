@@ -42,6 +42,7 @@ typedef struct brunt_group_def {
     brunt_gas_def gas;           // of BRUNT_GROUP_GAS
 } brunt_group_def;
 
+// With every default that is given above; what has none is not set.
 brunt_group_def brunt_group_def_default(void);
 
 #ifdef __cplusplus

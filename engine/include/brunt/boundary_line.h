@@ -29,6 +29,7 @@ typedef struct brunt_boundary_surface_def {
     double about[3];              // [m] of the moments that are reported; default 0
 } brunt_boundary_surface_def;
 
+// With every default that is given above; what has none is not set.
 brunt_boundary_surface_def brunt_boundary_surface_def_default(void);
 
 #ifdef __cplusplus

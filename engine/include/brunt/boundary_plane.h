@@ -30,6 +30,7 @@ typedef struct brunt_plane_def {
     char body[BRUNT_NAME_LENGTH]; // the one body it acts on; "" = all
 } brunt_plane_def;
 
+// With every default that is given above; what has none is not set.
 brunt_plane_def brunt_plane_def_default(void);
 
 #ifdef __cplusplus

@@ -20,6 +20,7 @@ typedef struct brunt_region_def {
     char body[BRUNT_NAME_LENGTH]; // "" = all
 } brunt_region_def;
 
+// With every default that is given above; what has none is not set.
 brunt_region_def brunt_region_def_default(void);
 
 #ifdef __cplusplus

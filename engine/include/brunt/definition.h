@@ -98,10 +98,10 @@ typedef struct brunt_contact_def {
     double stiffness;        // [Pa] of the barrier; 0 = a tenth of Young's modulus of the softer body of a pair
     double slip_speed;       // [m/s] below it friction grows with the speed; 0 = a thousandth of the slowest wave speed
     int friction_iterations; // solutions of a step, each with the pressures of the one before; default 1
-    bool allow_overlap; // accept bodies that overlap at the start (meshes: by more than a fifth of an edge), or lie
-                        // behind a plane of condition separate; default false: an error
-    brunt_pair_def *pairs;
-    int32_t pair_count; // owned; overrides
+    bool allow_overlap;    // accept bodies that overlap at the start (meshes: by more than a fifth of an edge), or lie
+                           // behind a plane of condition separate; default false: an error
+    brunt_pair_def *pairs; // what holds of two bodies instead of the above
+    int32_t pair_count;    // owned; overrides
 } brunt_contact_def;
 
 #define BRUNT_BOUNDARY_LIST(NAME, kind, type, word, what)                                                              \
@@ -145,6 +145,7 @@ typedef struct brunt_world_def {
 } brunt_world_def;
 #undef BRUNT_BOUNDARY_LIST
 
+// With every default that is given above; what has none is not set.
 brunt_world_def brunt_world_def_default(void);
 // The share of the stable step that is taken when none is given: 0.5, or less where material points alone in their
 // cells would gain energy: 0.4 in three dimensions with the quadratic kernel and PIC or FLIP.

@@ -29,8 +29,8 @@ enum {
     BRUNT_PARAMETER_LIMIT = 24
 };
 
-enum { // also the exit codes of the program
-    BRUNT_OK = 0,
+enum {                    // also the exit codes of the program
+    BRUNT_OK = 0,         // done
     BRUNT_BAD_USAGE = 64, // command line
     BRUNT_BAD_INPUT = 65, // scene, mesh or checkpoint that is not acceptable
     BRUNT_FAILED = 70,    // the computation failed: body, id, place, time and reason say where and why

@@ -18,17 +18,17 @@ typedef enum brunt_failure_action {
 } brunt_failure_action;
 
 typedef struct brunt_material_def {
-    char name[BRUNT_NAME_LENGTH];
+    char name[BRUNT_NAME_LENGTH];                      // that bodies name it by
     double density;                                    // [kg/m^3] > 0
     char strength[BRUNT_NAME_LENGTH];                  // model name; `brunt keys materials` lists them
     double strength_parameters[BRUNT_PARAMETER_LIMIT]; // in the order of the model's parameter table
     char eos[BRUNT_NAME_LENGTH];                       // "" = none
     double eos_parameters[BRUNT_PARAMETER_LIMIT];      // as the strength model's; NAN: not set yet
     bool bulk_viscosity; // linear and quadratic (von Neumann and Richtmyer 1950, Landshoff 1955); default false
-    double viscosity_parameters[BRUNT_PARAMETER_LIMIT];
-    char failure[BRUNT_NAME_LENGTH];                  // "" = none
-    double failure_parameters[BRUNT_PARAMETER_LIMIT]; // NAN: of the strength model's parameter of the same name
-    brunt_failure_action failure_action;
+    double viscosity_parameters[BRUNT_PARAMETER_LIMIT]; // as the strength model's
+    char failure[BRUNT_NAME_LENGTH];                    // "" = none
+    double failure_parameters[BRUNT_PARAMETER_LIMIT];   // NAN: of the strength model's parameter of the same name
+    brunt_failure_action failure_action;                // of what has failed
 } brunt_material_def;
 
 // An unknown model is refused by brunt_material_set and brunt_world_create.

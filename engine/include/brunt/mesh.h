@@ -34,13 +34,13 @@ typedef struct brunt_group {
 } brunt_group;
 
 typedef struct brunt_mesh {
-    brunt_element_kind kind; // all elements are of one kind
-    int32_t node_count;
+    brunt_element_kind kind;          // all elements are of one kind
+    int32_t node_count;               // at least those of one element
     double (*nodes)[3];               // [m]; the third is 0 in two dimensions
     int32_t element_count, *elements; // brunt_element_nodes(kind) node numbers each, from 0
-    brunt_group *groups;
-    int32_t group_count;
-} brunt_mesh; // arrays owned by the mesh (brunt_def_alloc, brunt_mesh_free)
+    brunt_group *groups;              // in any order, names unique
+    int32_t group_count;              // 0: none
+} brunt_mesh;                         // arrays owned by the mesh (brunt_def_alloc, brunt_mesh_free)
 
 // A function of time (or place): linear between points, held constant before the first and after the last; no points: 1
 // always.

@@ -34,9 +34,10 @@ typedef struct brunt_momentum {
     double angular[3]; // [kg m^2/s] about the origin, with the spin of APIC; 2D: the third component
     double linear_impulse[3], angular_impulse[3]; // external, so far, with what erosion took away (negative)
     double linear_drift, angular_drift;           // relative change since the start, external impulses taken off
-    double linear_initial[3], angular_initial[3];
+    double linear_initial[3], angular_initial[3]; // at the start, as the first two
 } brunt_momentum;
 
+// Filled from the state as it stands; sums are the same for any number of threads.
 void brunt_world_energy(brunt_world *world, brunt_energy *energy);
 void brunt_world_momentum(brunt_world *world, brunt_momentum *momentum);
 // Hash of every state bit of every particle, independent of the order they lie in memory.

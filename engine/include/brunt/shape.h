@@ -23,14 +23,14 @@ typedef enum brunt_shape_kind {
 } brunt_shape_kind;
 
 typedef struct brunt_shape {
-    brunt_shape_kind kind;
+    brunt_shape_kind kind;               // which of the numbers below it reads
     double min[3], max[3];               // [m] max > min; two dimensions: the first two
     double center[3], axis[3];           // [m], [-] (any length but 0)
     double radius, inner_radius, length; // [m] > 0, inner_radius < radius
     double (*points)[2];                 // [m] corners of the polygon, at least 3; owned (brunt_def_alloc)
-    int32_t point_count;
-    struct brunt_shape *children; // at least 1 of unions, differences and intersections; at most 64 deep; owned
-    int32_t child_count;
+    int32_t point_count;                 // of the polygon
+    struct brunt_shape *children;        // at least 1 of unions, differences and intersections; at most 64 deep; owned
+    int32_t child_count;                 // at least 1
 } brunt_shape;
 
 // A rigid motion x -> rotation x + translation. Filled with the identity by brunt_placement_identity.

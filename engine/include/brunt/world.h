@@ -31,17 +31,17 @@ void brunt_world_destroy(brunt_world *world); // frees all of it; NULL: nothing
 // looked at. `limit` [s]: a time that must be hit exactly (an output time), INFINITY for none.
 int brunt_world_step(brunt_world *world, double limit, brunt_error *error);
 
-double brunt_world_time(const brunt_world *world);   // [s]
-double brunt_world_end(const brunt_world *world);    // [s]
-int64_t brunt_world_steps(const brunt_world *world); // taken so far
-double brunt_world_dt(const brunt_world *world);     // [s] of the last step, or the first one to come
-double brunt_world_dt_min(const brunt_world *world); // [s] of the steps so far
-double brunt_world_dt_max(const brunt_world *world);
-int brunt_world_dimension(const brunt_world *world);
-int brunt_world_threads(const brunt_world *world);
-int64_t brunt_world_particles(const brunt_world *world);
-int64_t brunt_world_nodes(const brunt_world *world); // grid nodes alive in the last step, and nodes of meshes
-int64_t brunt_world_elements(const brunt_world *world);
+double brunt_world_time(const brunt_world *world);       // [s]
+double brunt_world_end(const brunt_world *world);        // [s]
+int64_t brunt_world_steps(const brunt_world *world);     // taken so far
+double brunt_world_dt(const brunt_world *world);         // [s] of the last step, or the first one to come
+double brunt_world_dt_min(const brunt_world *world);     // [s] of the steps so far
+double brunt_world_dt_max(const brunt_world *world);     // likewise
+int brunt_world_dimension(const brunt_world *world);     // 2 (axisymmetric ones, too) or 3
+int brunt_world_threads(const brunt_world *world);       // that its passes run on
+int64_t brunt_world_particles(const brunt_world *world); // material points there are now: less those eroded
+int64_t brunt_world_nodes(const brunt_world *world);     // grid nodes alive in the last step, and nodes of meshes
+int64_t brunt_world_elements(const brunt_world *world);  // of meshes, less those eroded
 
 // Warnings about the scene: found when the world was made (contact grids too fine or too coarse, doubtful meshes), or
 // in a step (fluids that have spread until cells are empty between their particles).
