@@ -25,13 +25,13 @@ int32_t brunt_pair_of(const brunt_pair_map *map, int32_t a, int32_t b) {
     return a == b || !map->mesh ? -1 : map->usual[map->mesh[a] + map->mesh[b]];
 }
 
-int brunt_pair_map_add(brunt_pair_map *map, int32_t a, int32_t b, int32_t pair) {
+int brunt_pair_map_add(brunt_pair_map *map, int32_t a, int32_t b, int32_t pair, brunt_error *error) {
     const size_t count = (size_t)map->count;
-    if (BRUNT_RESERVE(map->entry, count + 1, count)) return -1;
+    if (BRUNT_ROOM(map->entry, count + 1, count, "pairs of bodies", error)) return BRUNT_FAILED;
     const bool turned = a > b;
     map->entry[count] = (brunt_pair_entry){turned ? b : a, turned ? a : b, pair, map->count};
     map->count++;
-    return 0;
+    return BRUNT_OK;
 }
 
 static int compare_entries(const void *left, const void *right) {

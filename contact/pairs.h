@@ -5,6 +5,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/error.h"
+
 struct brunt_pair;
 
 typedef struct brunt_pair_entry {
@@ -30,6 +32,6 @@ typedef struct brunt_pairs {
 // The pair of two bodies, in either order; -1: they do not meet. A body meets itself only where an entry says so.
 int32_t brunt_pair_of(const brunt_pair_map *map, int32_t a, int32_t b);
 // An entry for two bodies; before brunt_pair_of they must be sorted, after which the last that was added for two bodies
-// counts. 0, or -1: out of memory.
-int brunt_pair_map_add(brunt_pair_map *map, int32_t a, int32_t b, int32_t pair);
+// counts. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_pair_map_add(brunt_pair_map *map, int32_t a, int32_t b, int32_t pair, brunt_error *error);
 void brunt_pair_map_sort(brunt_pair_map *map);

@@ -28,9 +28,9 @@ void brunt_condition_hold(brunt_body *body, const brunt_slot *slot, int node, co
     brunt_impulse_account_book(account, &account->normal_loss, J, x, old, now, support);
 }
 
-int brunt_condition_clear(brunt_body *body) {
+int brunt_condition_clear(brunt_body *body, brunt_error *error) {
     const size_t bytes = (size_t)body->grid.slot_count * BRUNT_BLOCK_NODES;
-    if (BRUNT_RESERVE(body->grid.held, bytes, 0)) return -1;
+    if (BRUNT_ROOM(body->grid.held, bytes, 0, "grid nodes under conditions", error)) return BRUNT_FAILED;
     memset(body->grid.held, 0, bytes);
-    return 0;
+    return BRUNT_OK;
 }

@@ -8,9 +8,9 @@
 // much as they are cells away from the origin, in float that of the cell's edge itself.
 #define BRUNT_ON_BOUNDARY (sizeof(real) == 4 ? 1e-4 : 1e-9)
 
-// What is imposed marks the components of nodes that it gives (brunt_grid.held); cleared before the first of it. 0, or
-// -1: out of memory.
-int brunt_condition_clear(brunt_body *body);
+// What is imposed marks the components of nodes that it gives (brunt_grid.held); cleared before the first of it.
+// BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_condition_clear(brunt_body *body, brunt_error *error);
 // Nodes beyond the axis of rings are the images of those before it: they get what those get, mirrored. On the axis
 // there is no radial velocity.
 void brunt_condition_reflect(bool rings, const double place[3], double h, double now[3]);

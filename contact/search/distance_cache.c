@@ -47,7 +47,7 @@ void brunt_node_to_facet_state_get(const brunt_node_to_facet *f, const brunt_con
 
 int brunt_node_to_facet_state_set(brunt_node_to_facet **facing, brunt_contact_surface *s, int mpm_count,
                                   const double *in) {
-    if (brunt_surface_renew(s, true) || brunt_node_to_facet_make(facing, mpm_count, s->node_count)) return -1;
+    if (brunt_surface_renew(s, true, NULL) || brunt_node_to_facet_make(facing, mpm_count, s->node_count)) return -1;
     brunt_node_to_facet *f = *facing;
     if (brunt_distance_cache_fit(f, s->node_count, 0)) return -1;
     f->cells.made = f->cells.made && !s->renewal.change.any;

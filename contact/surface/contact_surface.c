@@ -13,8 +13,7 @@ enum { GRAIN = BRUNT_SURFACE_GRAIN };
 static const double SHALLOW =
     0.25; // mean edges: how far a node may get behind a membrane, at most, and still be sent back
 
-// Nodes that have a face, ascending; `number` gets their surface numbers, from `first`. Their count, or -1: out of
-// memory.
+// Nodes that have a face, ascending; `number` gets their surface numbers, from `first`. Their count.
 static int32_t number_nodes(const brunt_fem_body *fem, const brunt_faces *faces, int32_t first, int32_t *number) {
     for (int32_t n = 0; n < fem->node_count; n++) number[n] = -1;
     for (int32_t f = 0; f < faces->count; f++)
@@ -25,49 +24,52 @@ static int32_t number_nodes(const brunt_fem_body *fem, const brunt_faces *faces,
     return next - first;
 }
 
-// What there is one of for each node, and for each face, beside the lists themselves.
+// What there is one of for each body, and for each node, and for each face, beside the lists themselves.
 // clang-format off
+#define BODY_ARRAYS(X) \
+    X(fem) X(node_range) X(face_range) X(low) X(high) X(active) X(node_end) X(face_end) X(motion.mean) X(motion.speed) \
+    X(motion.was_active) X(motion.kept) X(motion.travel)
 #define NODE_ARRAYS(X) \
     X(x, 1) X(v, 1) X(old, 1) X(mass, 1) X(inverse, 1) X(normal, 1) X(area, 1) X(face_first, 1) X(output.gap, 1) \
     X(output.impulse, 1) X(output.state, 1) X(affine, s->affine) X(membrane.front, s->membrane.front)
 #define FACE_ARRAYS(X) X(face_normal) X(face_centre) X(face_area) X(face_box) X(face_body)
 // clang-format on
 
-static int enlarge(void *array, size_t keep, size_t bytes) {
+static int enlarge(void *array, size_t keep, size_t bytes, brunt_error *error) {
     void *larger = brunt_alloc(bytes), *old;
-    if (!larger) return -1;
+    if (!larger) return brunt_fail_memory(error, "bytes of nodes and faces of surfaces", bytes, 1);
     memcpy(&old, array, sizeof old);
     if (keep) memcpy(larger, old, keep);
     brunt_free(old);
     memcpy(array, &larger, sizeof larger);
-    return 0;
+    return BRUNT_OK;
 }
 
 // Room for so many nodes and faces, with what is there kept: exactly that at the start, later half as much again, so
 // that surfaces that grow seldom ask for it.
-int brunt_surface_reserve(brunt_contact_surface *s, int32_t node_count, int32_t face_count) {
+int brunt_surface_reserve(brunt_contact_surface *s, int32_t node_count, int32_t face_count, brunt_error *error) {
     const size_t nodes = (size_t)node_count + 2, faces = (size_t)face_count + 1;
     if (nodes > s->node_array_capacity) {
         const size_t room = s->node_array_capacity ? nodes + nodes / 2 : nodes, had = s->node_array_capacity;
-        int failed = enlarge(&s->motion.chunk, 0, (room / GRAIN + 1) * sizeof *s->motion.chunk);
+        int failed = enlarge(&s->motion.chunk, 0, (room / GRAIN + 1) * sizeof *s->motion.chunk, error);
 #define ENLARGE(what, when)                                                                                            \
-    if (!failed && (when)) failed = enlarge(&s->what, had * sizeof *s->what, room * sizeof *s->what);
+    if (!failed && (when)) failed = enlarge(&s->what, had * sizeof *s->what, room * sizeof *s->what, error);
         NODE_ARRAYS(ENLARGE)
 #undef ENLARGE
-        if (failed) return -1;
+        if (failed) return BRUNT_FAILED;
         s->node_array_capacity = room;
     }
     if (faces > s->face_array_capacity) {
         const size_t room = s->face_array_capacity ? faces + faces / 2 : faces, had = s->face_array_capacity;
-        int failed = enlarge(&s->face_of, 0, 4 * room * sizeof *s->face_of);
+        int failed = enlarge(&s->face_of, 0, 4 * room * sizeof *s->face_of, error);
 #define ENLARGE(what)                                                                                                  \
-    if (!failed) failed = enlarge(&s->what, had * sizeof *s->what, room * sizeof *s->what);
+    if (!failed) failed = enlarge(&s->what, had * sizeof *s->what, room * sizeof *s->what, error);
         FACE_ARRAYS(ENLARGE)
 #undef ENLARGE
-        if (failed) return -1;
+        if (failed) return BRUNT_FAILED;
         s->face_array_capacity = room;
     }
-    return 0;
+    return BRUNT_OK;
 }
 
 static void link_faces(brunt_contact_surface *s) {
@@ -98,33 +100,33 @@ static double edge_sum(const brunt_contact_surface *s, int32_t *edges) {
     return sum;
 }
 
-static int add_body(brunt_contact_surface *s, int k) {
+static int add_body(brunt_contact_surface *s, int k, brunt_error *error) {
     brunt_fem_body *fem = s->fem[k];
     brunt_faces found;
-    if (brunt_fem_faces(fem, &found, NULL)) return -1;
+    if (brunt_fem_faces(fem, &found, error)) return BRUNT_FAILED;
     const int32_t sides = fem->traits->membrane ? 2 : 1;
-    int32_t *number = brunt_alloc((size_t)(fem->node_count + 1) * sizeof *number);
-    int32_t count = number ? number_nodes(fem, &found, s->node_count, number) : -1;
-    const int32_t had = s->node_count, faces = s->face_count, n = had + (count > 0 ? count : 0) * sides,
-                  f = faces + found.count * sides;
-    bool failed = count < 0 || BRUNT_RESERVE(s->node, (size_t)n + 1, (size_t)had) ||
-                  BRUNT_RESERVE(s->face, (size_t)f + 1, (size_t)faces);
+    int32_t *number;
+    bool failed = BRUNT_NEW(number, fem->node_count + 1, "numbers of a mesh's nodes in its surface", error);
+    const int32_t count = failed ? 0 : number_nodes(fem, &found, s->node_count, number);
+    const int32_t had = s->node_count, faces = s->face_count, n = had + count * sides, f = faces + found.count * sides;
+    failed = failed || BRUNT_ROOM(s->node, (size_t)n + 1, (size_t)had, "surface nodes", error) ||
+             BRUNT_ROOM(s->face, (size_t)f + 1, (size_t)faces, "surface faces", error);
     for (int32_t i = 0; !failed && i < fem->node_count; i++)
         if (number[i] >= 0) s->node[number[i]] = i;
     for (int32_t i = 0; !failed && i < found.count; i++)
         for (int c = 0; c < 4; c++) s->face[faces + i][c] = found.node[i][c] < 0 ? -1 : number[found.node[i][c]];
     if (!failed && sides == 2) brunt_membrane_add_back(s->node + had, count, s->face + faces, found.count);
-    s->node_end[k] = had + (count > 0 ? count : 0), s->face_end[k] = faces + found.count;
+    s->node_end[k] = had + count, s->face_end[k] = faces + found.count;
     s->node_count = n, s->face_count = f;
     s->node_range[k + 1] = n, s->face_range[k + 1] = f;
     brunt_free(number);
     brunt_faces_free(&found);
-    return failed ? -1 : 0;
+    return failed ? BRUNT_FAILED : BRUNT_OK;
 }
 
 // Owners of nodes and faces, and what follows from the lists of them.
-int brunt_surface_relate(brunt_contact_surface *s) {
-    if (BRUNT_RESERVE(s->body, (size_t)s->node_count + 1, 0)) return -1;
+int brunt_surface_relate(brunt_contact_surface *s, brunt_error *error) {
+    if (BRUNT_ROOM(s->body, (size_t)s->node_count + 1, 0, "bodies of surface nodes", error)) return BRUNT_FAILED;
     for (int k = 0; k < s->fem_count; k++) {
         const int32_t index = s->fem[k]->index, nodes = s->node_end[k] - s->node_range[k];
         for (int32_t n = s->node_range[k]; n < s->node_range[k + 1]; n++) s->body[n] = index;
@@ -135,56 +137,45 @@ int brunt_surface_relate(brunt_contact_surface *s) {
             s->membrane.side[index].faces = s->face_end[k] - s->face_range[k];
     }
     link_faces(s);
-    return 0;
+    return BRUNT_OK;
 }
 
-static int add_topologies(brunt_contact_surface *s) {
+static int add_topologies(brunt_contact_surface *s, brunt_error *error) {
     int32_t last = 0;
     for (int k = 0; k < s->fem_count; k++) last = s->fem[k]->index > last ? s->fem[k]->index : last;
     for (int k = 0; k < s->fem_count; k++) {
         if (!s->fem[k]->bonds) continue;
-        if (!s->renewal.topology &&
-            !(s->renewal.topology = brunt_alloc(((size_t)s->fem_count + 1) * sizeof *s->renewal.topology)))
-            return -1;
-        if (!s->renewal.eroded && !(s->renewal.eroded = brunt_alloc((size_t)last + 1))) return -1;
-        if (brunt_topology_make(&s->renewal.topology[k], s->fem[k])) return -1;
+        if (!s->renewal.topology && BRUNT_NEW(s->renewal.topology, s->fem_count + 1, "surfaces of meshes", error))
+            return BRUNT_FAILED;
+        if (!s->renewal.eroded && BRUNT_NEW(s->renewal.eroded, last + 1, "marks of bodies that erode", error))
+            return BRUNT_FAILED;
+        if (brunt_topology_make(&s->renewal.topology[k], s->fem[k], error)) return BRUNT_FAILED;
         s->renewal.eroded[s->fem[k]->index] = true;
     }
-    return 0;
+    return BRUNT_OK;
 }
 
-int brunt_surface_make(brunt_contact_surface *s, brunt_fem_body **fem, int count, bool affine) {
+int brunt_surface_make(brunt_contact_surface *s, brunt_fem_body **fem, int count, bool affine, brunt_error *error) {
     *s = (brunt_contact_surface){
         .fem_count = count, .dim = count ? fem[0]->dim : 3, .axisymmetric = count && fem[0]->element->axisymmetric};
-    size_t k1 = (size_t)count + 1;
-    s->fem = brunt_alloc(k1 * sizeof *s->fem);
-    s->node_range = brunt_alloc(k1 * sizeof *s->node_range), s->face_range = brunt_alloc(k1 * sizeof *s->face_range);
-    s->low = brunt_alloc(k1 * sizeof *s->low), s->high = brunt_alloc(k1 * sizeof *s->high);
-    s->motion.mean = brunt_alloc(k1 * sizeof *s->motion.mean),
-    s->motion.speed = brunt_alloc(k1 * sizeof *s->motion.speed);
-    s->active = brunt_alloc(k1), s->motion.was_active = brunt_alloc(k1);
-    s->motion.kept = brunt_alloc(k1 * sizeof *s->motion.kept);
-    s->motion.travel = brunt_alloc(k1 * sizeof *s->motion.travel);
-    s->node_end = brunt_alloc(k1 * sizeof *s->node_end), s->face_end = brunt_alloc(k1 * sizeof *s->face_end);
-    if (!s->node_end || !s->face_end || !s->fem || !s->node_range || !s->face_range || !s->low || !s->high ||
-        !s->active || !s->motion.was_active || !s->motion.mean || !s->motion.speed || !s->motion.kept ||
-        !s->motion.travel)
-        return -1;
+#define MAKE(what)                                                                                                     \
+    if (BRUNT_NEW(s->what, count + 1, "meshes with surfaces", error)) return BRUNT_FAILED;
+    BODY_ARRAYS(MAKE)
+#undef MAKE
     for (int k = 0; k < count; k++) {
         s->fem[k] = fem[k];
-        if (add_body(s, k)) return -1;
+        if (add_body(s, k, error)) return BRUNT_FAILED;
     }
-    if (brunt_surface_reserve(s, s->node_count, s->face_count) || brunt_membrane_sides_make(s) ||
-        brunt_surface_relate(s) || add_topologies(s))
-        return -1;
+    if (brunt_surface_reserve(s, s->node_count, s->face_count, error) || brunt_membrane_sides_make(s, error) ||
+        brunt_surface_relate(s, error) || add_topologies(s, error))
+        return BRUNT_FAILED;
     for (int32_t n = 0; n < s->node_count; n++) s->output.gap[n] = INFINITY;
     int32_t edges = 0;
     double sum = edge_sum(s, &edges);
     s->mean_edge = edges ? sum / edges : 0;
     for (int k = 0; s->membrane.side && k < count; k++)
         s->membrane.side[fem[k]->index].shallow = fmin(s->membrane.side[fem[k]->index].shallow, SHALLOW * s->mean_edge);
-    if (affine && !(s->affine = brunt_alloc(s->node_array_capacity * sizeof *s->affine))) return -1;
-    return 0;
+    return affine ? BRUNT_NEW(s->affine, s->node_array_capacity, "affine velocities of nodes", error) : BRUNT_OK;
 }
 
 void brunt_surface_free(brunt_contact_surface *s) {

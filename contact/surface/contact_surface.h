@@ -114,15 +114,16 @@ typedef struct brunt_contact_surface {
 
 // Aborts where bodies, nodes and faces do not belong to each other as they must.
 void brunt_surface_validate(const brunt_contact_surface *surface);
-// The surfaces of `count` bodies. `affine`: keep B. 0, or -1: out of memory.
-int brunt_surface_make(brunt_contact_surface *surface, brunt_fem_body **fem, int count, bool affine);
+// The surfaces of `count` bodies. `affine`: keep B. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_surface_make(brunt_contact_surface *surface, brunt_fem_body **fem, int count, bool affine,
+                       brunt_error *error);
 // Lists the elements near each node of the bodies marked in `self`, which are membranes in contact with themselves:
-// those are no obstacles to it. 0, or -1: out of memory.
-int brunt_surface_patches(brunt_contact_surface *surface, const bool *self);
+// those are no obstacles to it. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_surface_patches(brunt_contact_surface *surface, const bool *self, brunt_error *error);
 // The surfaces anew after elements have left bodies, or (`restored`) of a saved state. What is kept of a node from step
 // to step stays with it, and surface->change tells what has become of each. The order of nodes and faces follows from
-// which elements there are. 0, or -1: out of memory.
-int brunt_surface_renew(brunt_contact_surface *surface, bool restored);
+// which elements there are. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_surface_renew(brunt_contact_surface *surface, bool restored, brunt_error *error);
 // The affine velocities as they are saved: so many doubles, of all nodes that may ever be of the surface.
 int64_t brunt_surface_affine_count(const brunt_contact_surface *surface);
 void brunt_surface_affine_get(const brunt_contact_surface *surface, double *out);

@@ -22,9 +22,9 @@ void brunt_membrane_add_back(int32_t *node, int32_t nodes, int32_t (*face)[4], i
 
 // Least height of the elements behind a body's surface [m], as volume over area of the face: what it may have been
 // entered by, and still be told from what is behind it.
-static int least_height(const brunt_fem_body *fem, double *least) {
+static int least_height(const brunt_fem_body *fem, double *least, brunt_error *error) {
     brunt_faces found;
-    if (brunt_fem_faces(fem, &found, NULL)) return -1;
+    if (brunt_fem_faces(fem, &found, error)) return BRUNT_FAILED;
     *least = INFINITY;
     for (int32_t f = 0; f < found.count; f++) {
         double x[BRUNT_ELEMENT_NODES][3], e[3], g[3], square = 0;
@@ -46,33 +46,33 @@ static int least_height(const brunt_fem_body *fem, double *least) {
         if (square > 0) *least = fmin(*least, fem->element->volume((const double(*)[3])x) / sqrt(square));
     }
     brunt_faces_free(&found);
-    return 0;
+    return BRUNT_OK;
 }
 
 // What membranes need besides, when there are any.
-int brunt_membrane_sides_make(brunt_contact_surface *s) {
+int brunt_membrane_sides_make(brunt_contact_surface *s, brunt_error *error) {
     int32_t last = 0;
     bool any = false;
     for (int k = 0; k < s->fem_count; k++) {
         any = any || s->fem[k]->traits->membrane;
         last = s->fem[k]->index > last ? s->fem[k]->index : last;
     }
-    if (!any) return 0;
-    s->membrane.front = brunt_alloc(s->node_array_capacity * sizeof *s->membrane.front);
-    s->membrane.side = brunt_alloc(((size_t)last + 1) * sizeof *s->membrane.side);
-    if (!s->membrane.front || !s->membrane.side) return -1;
+    if (!any) return BRUNT_OK;
+    if (BRUNT_NEW(s->membrane.front, s->node_array_capacity, "nodes before those of a membrane's back", error) ||
+        BRUNT_NEW(s->membrane.side, last + 1, "bodies as membranes meet them", error))
+        return BRUNT_FAILED;
     for (int k = 0; k < s->fem_count; k++) {
         const brunt_fem_body *fem = s->fem[k];
         brunt_side *side = &s->membrane.side[fem->index];
         if (!fem->traits->membrane) {
-            if (least_height(fem, &side->shallow)) return -1;
+            if (least_height(fem, &side->shallow, error)) return BRUNT_FAILED;
             side->shallow *= 0.5;
             continue;
         }
         side->half = 0.5 * (double)fem->contact_thickness;
         s->membrane.thickest = fmax(s->membrane.thickest, (double)fem->contact_thickness);
     }
-    return 0;
+    return BRUNT_OK;
 }
 
 static int ascending(const void *a, const void *b) {
@@ -93,30 +93,35 @@ static int32_t list_patch(const brunt_contact_surface *s, int32_t n, int32_t *li
     return kept;
 }
 
-int brunt_membrane_patches_make(brunt_contact_surface *s) {
+int brunt_membrane_patches_make(brunt_contact_surface *s, brunt_error *error) {
     size_t most = 0, used = 0;
     for (int32_t n = 0; n < s->node_count; n++) {
         const size_t at = (size_t)(s->face_first[n + 1] - s->face_first[n]);
         most = at > most ? at : most;
     }
-    if (BRUNT_RESERVE(s->renewal.spare, (4 * most * most + 1) * sizeof(int32_t), 0) ||
-        BRUNT_RESERVE(s->membrane.patch_first, (size_t)s->node_count + 2, 0))
-        return -1;
+    if (BRUNT_ROOM(s->renewal.spare, (4 * most * most + 1) * sizeof(int32_t), 0, "bytes to put surface nodes in order",
+                   error) ||
+        BRUNT_ROOM(s->membrane.patch_first, (size_t)s->node_count + 2, 0, "first elements about nodes of membranes",
+                   error))
+        return BRUNT_FAILED;
     int32_t *list = (void *)s->renewal.spare;
     s->membrane.patch_first[0] = 0;
     for (int k = 0; k < s->fem_count; k++)
         for (int32_t n = s->node_range[k]; n < s->node_range[k + 1]; n++) {
             const int32_t count = s->membrane.self[k] && n < s->node_end[k] ? list_patch(s, n, list) : 0;
-            if (BRUNT_RESERVE(s->membrane.patch_face, used + (size_t)count + 1, used)) return -1;
+            if (BRUNT_ROOM(s->membrane.patch_face, used + (size_t)count + 1, used, "elements about nodes of membranes",
+                           error))
+                return BRUNT_FAILED;
             memcpy(s->membrane.patch_face + used, list, (size_t)count * sizeof *list);
             used += (size_t)count;
             s->membrane.patch_first[n + 1] = (int32_t)used;
         }
-    return 0;
+    return BRUNT_OK;
 }
 
-int brunt_surface_patches(brunt_contact_surface *s, const bool *self) {
-    if (!(s->membrane.self = brunt_alloc((size_t)s->fem_count + 1))) return -1;
+int brunt_surface_patches(brunt_contact_surface *s, const bool *self, brunt_error *error) {
+    if (BRUNT_NEW(s->membrane.self, s->fem_count + 1, "marks of membranes that meet themselves", error))
+        return BRUNT_FAILED;
     memcpy(s->membrane.self, self, (size_t)s->fem_count);
-    return brunt_membrane_patches_make(s);
+    return brunt_membrane_patches_make(s, error);
 }

@@ -7,15 +7,15 @@ enum { BRUNT_SURFACE_GRAIN = 256 };
 
 // --- contact_surface.c
 // Room for so many nodes and faces, with what is there kept: exactly that at the start, later half as much again, so
-// that surfaces that grow seldom ask for it. 0, or -1: out of memory.
-int brunt_surface_reserve(brunt_contact_surface *s, int32_t node_count, int32_t face_count);
-// Owners of nodes and faces, and what follows from the lists of them. 0, or -1: out of memory.
-int brunt_surface_relate(brunt_contact_surface *s);
+// that surfaces that grow seldom ask for it. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_surface_reserve(brunt_contact_surface *s, int32_t node_count, int32_t face_count, brunt_error *error);
+// Owners of nodes and faces, and what follows from the lists of them. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_surface_relate(brunt_contact_surface *s, brunt_error *error);
 
 // --- membrane_sides.c
 // The other side of a membrane: `nodes` nodes and `faces` faces once more, behind them, facing the other way.
 void brunt_membrane_add_back(int32_t *node, int32_t nodes, int32_t (*face)[4], int32_t faces);
-// What membranes need besides, when there are any. 0, or -1: out of memory.
-int brunt_membrane_sides_make(brunt_contact_surface *s);
-// Elements within two rings of the nodes of membranes that touch themselves. 0, or -1: out of memory.
-int brunt_membrane_patches_make(brunt_contact_surface *s);
+// What membranes need besides, when there are any. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_membrane_sides_make(brunt_contact_surface *s, brunt_error *error);
+// Elements within two rings of the nodes of membranes that touch themselves. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_membrane_patches_make(brunt_contact_surface *s, brunt_error *error);

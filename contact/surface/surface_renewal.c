@@ -56,9 +56,11 @@ static void renew_body(brunt_contact_surface *s, int k, int32_t sides, const bod
 }
 
 // An array by nodes in their new order; those that are new get zeros.
-static int reorder(brunt_contact_surface *s, void *array, size_t bytes) {
-    if (!array) return 0;
-    if (BRUNT_RESERVE(s->renewal.spare, (size_t)s->node_count * bytes + 1, 0)) return -1;
+static int reorder(brunt_contact_surface *s, void *array, size_t bytes, brunt_error *error) {
+    if (!array) return BRUNT_OK;
+    if (BRUNT_ROOM(s->renewal.spare, (size_t)s->node_count * bytes + 1, 0, "bytes to put surface nodes in order",
+                   error))
+        return BRUNT_FAILED;
     for (int32_t n = 0; n < s->node_count; n++) {
         char *to = s->renewal.spare + (size_t)n * bytes;
         if (s->renewal.change.node_was[n] < 0)
@@ -67,17 +69,18 @@ static int reorder(brunt_contact_surface *s, void *array, size_t bytes) {
             memcpy(to, (char *)array + (size_t)s->renewal.change.node_was[n] * bytes, bytes);
     }
     memcpy(array, s->renewal.spare, (size_t)s->node_count * bytes);
-    return 0;
+    return BRUNT_OK;
 }
 
 // What is known of nodes from step to step, or told to others until the next one. A new node has not moved by more than
 // the frame since the step began.
-static int keep_nodes(brunt_contact_surface *s) {
-    if (reorder(s, s->x, sizeof *s->x) || reorder(s, s->affine, sizeof *s->affine) ||
-        reorder(s, s->output.gap, sizeof *s->output.gap) || reorder(s, s->output.impulse, sizeof *s->output.impulse) ||
-        reorder(s, s->output.state, sizeof *s->output.state) || reorder(s, s->area, sizeof *s->area) ||
-        reorder(s, s->mass, sizeof *s->mass))
-        return -1;
+static int keep_nodes(brunt_contact_surface *s, brunt_error *error) {
+    if (reorder(s, s->x, sizeof *s->x, error) || reorder(s, s->affine, sizeof *s->affine, error) ||
+        reorder(s, s->output.gap, sizeof *s->output.gap, error) ||
+        reorder(s, s->output.impulse, sizeof *s->output.impulse, error) ||
+        reorder(s, s->output.state, sizeof *s->output.state, error) || reorder(s, s->area, sizeof *s->area, error) ||
+        reorder(s, s->mass, sizeof *s->mass, error))
+        return BRUNT_FAILED;
     for (int k = 0; k < s->fem_count; k++)
         for (int32_t n = s->node_range[k]; n < s->node_range[k + 1]; n++) {
             if (s->renewal.change.node_was[n] >= 0) continue;
@@ -85,7 +88,7 @@ static int keep_nodes(brunt_contact_surface *s) {
             for (int a = 0; a < 3; a++)
                 s->x[n][a] = (double)brunt_fem_node(s->fem[k], s->node[n])[a] - s->motion.frame_step[a];
         }
-    return 0;
+    return BRUNT_OK;
 }
 
 static body_range range_of_body(const brunt_contact_surface *s, int k) {
@@ -93,7 +96,7 @@ static body_range range_of_body(const brunt_contact_surface *s, int k) {
                         s->face_end[k] - s->face_range[k]};
 }
 
-static int list_anew(brunt_contact_surface *s) {
+static int list_anew(brunt_contact_surface *s, brunt_error *error) {
     int64_t nodes = 0, faces = 0;
     for (int k = 0; k < s->fem_count; k++) {
         const body_range was = range_of_body(s, k);
@@ -102,11 +105,12 @@ static int list_anew(brunt_contact_surface *s) {
         faces += sides * (int64_t)(s->renewal.topology[k].changed ? s->renewal.topology[k].key_count : was.faces);
     }
     brunt_surface_change *c = &s->renewal.change;
-    if (BRUNT_RESERVE(s->renewal.next_node, (size_t)nodes + 1, 0) ||
-        BRUNT_RESERVE(s->renewal.next_face, (size_t)faces + 1, 0) || BRUNT_RESERVE(c->node_was, (size_t)nodes + 1, 0) ||
-        BRUNT_RESERVE(c->face_now, (size_t)s->face_count + 1, 0) ||
-        brunt_surface_reserve(s, (int32_t)nodes, (int32_t)faces))
-        return -1;
+    if (BRUNT_ROOM(s->renewal.next_node, (size_t)nodes + 1, 0, "nodes of a surface made anew", error) ||
+        BRUNT_ROOM(s->renewal.next_face, (size_t)faces + 1, 0, "faces of a surface made anew", error) ||
+        BRUNT_ROOM(c->node_was, (size_t)nodes + 1, 0, "nodes of a surface made anew", error) ||
+        BRUNT_ROOM(c->face_now, (size_t)s->face_count + 1, 0, "faces of a surface made anew", error) ||
+        brunt_surface_reserve(s, (int32_t)nodes, (int32_t)faces, error))
+        return BRUNT_FAILED;
     c->node_count = s->node_count, c->face_count = s->face_count;
     body_range is = {0}, was = s->fem_count ? range_of_body(s, 0) : is;
     for (int k = 0; k < s->fem_count; k++) {
@@ -124,7 +128,7 @@ static int list_anew(brunt_contact_surface *s) {
     }
     s->node_range[s->fem_count] = is.node, s->face_range[s->fem_count] = is.face;
     s->node_count = is.node, s->face_count = is.face;
-    return 0;
+    return BRUNT_OK;
 }
 
 static void swap_lists(brunt_contact_surface *s) {
@@ -136,21 +140,21 @@ static void swap_lists(brunt_contact_surface *s) {
     s->renewal.next_face = face, s->renewal.next_face_capacity = faces;
 }
 
-int brunt_surface_renew(brunt_contact_surface *s, bool restored) {
+int brunt_surface_renew(brunt_contact_surface *s, bool restored, brunt_error *error) {
     s->renewal.change.any = s->motion.rests = false;
-    if (!s->renewal.topology) return 0;
-    int failed = 0;
-    for (int k = 0; !failed && k < s->fem_count; k++) {
-        const int renewed =
-            s->renewal.topology[k].elements ? brunt_topology_renew(&s->renewal.topology[k], s->fem[k], restored) : 0;
-        if (renewed < 0) failed = -1;
-        s->renewal.topology[k].changed = renewed > 0;
-        s->renewal.change.any = s->renewal.change.any || renewed > 0;
+    if (!s->renewal.topology) return BRUNT_OK;
+    for (int k = 0; k < s->fem_count; k++) {
+        brunt_surface_topology *topology = &s->renewal.topology[k];
+        if (topology->elements && brunt_topology_renew(topology, s->fem[k], restored, error)) return BRUNT_FAILED;
+        s->renewal.change.any = s->renewal.change.any || topology->changed;
     }
-    if (failed || !s->renewal.change.any) return failed;
-    if (list_anew(s)) return -1;
+    if (!s->renewal.change.any) return BRUNT_OK;
+    if (list_anew(s, error)) return BRUNT_FAILED;
     swap_lists(s);
-    return keep_nodes(s) || brunt_surface_relate(s) || (s->membrane.self && brunt_membrane_patches_make(s)) ? -1 : 0;
+    return keep_nodes(s, error) || brunt_surface_relate(s, error) ||
+                   (s->membrane.self && brunt_membrane_patches_make(s, error))
+               ? BRUNT_FAILED
+               : BRUNT_OK;
 }
 
 int64_t brunt_surface_slots(const brunt_contact_surface *s) {

@@ -4,6 +4,9 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "base/error.h"
+#include "base/memory.h"
+
 // How many elements an array has whose extent is its initialiser's.
 #define BRUNT_COUNT(table) ((int)(sizeof(table) / sizeof *(table)))
 
@@ -20,6 +23,21 @@
 #define BRUNT_RESERVE_IN(array, capacity, count, keep)                                                                 \
     ((array) = brunt_array_fit((array), &(capacity), sizeof *(array), (count), (keep)),                                \
      brunt_array_holds((array), (capacity), sizeof *(array), (count)) ? 0 : -1)
+
+// The same with words: BRUNT_OK, or BRUNT_FAILED with what (a plural) there was no memory for.
+//   if (BRUNT_ROOM(s->x, n, 0, "places of nodes", error)) return BRUNT_FAILED;
+#define BRUNT_ROOM(array, count, keep, what, error) BRUNT_ROOM_IN(array, array##_capacity, count, keep, what, error)
+#define BRUNT_ROOM_IN(array, capacity, count, keep, what, error)                                                       \
+    (BRUNT_RESERVE_IN(array, capacity, count, keep)                                                                    \
+         ? brunt_fail_memory((error), (what), (size_t)(count), sizeof *(array))                                        \
+         : BRUNT_OK)
+#define BRUNT_ROOM_MORE(array, what, error)                                                                            \
+    BRUNT_ROOM(array, (size_t)array##_count + 1, (size_t)array##_count, what, error)
+
+// The same of what is made once and freed by brunt_free: zeros.
+#define BRUNT_NEW(array, count, what, error)                                                                           \
+    ((array) = brunt_alloc((size_t)(count) * sizeof *(array)),                                                         \
+     (array) ? BRUNT_OK : brunt_fail_memory((error), (what), (size_t)(count), sizeof *(array)))
 
 // The memory of an array that has been made to hold `count` elements of `size` bytes, or `memory` itself when it held
 // them or nothing is left. It is returned, not written through a pointer: a T * is no void * (C17 6.5p7).

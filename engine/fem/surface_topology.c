@@ -57,16 +57,16 @@ static void pair_faces(brunt_surface_topology *topology, const brunt_fem_body *f
         }
 }
 
-static int find_neighbours(brunt_surface_topology *topology, const brunt_fem_body *fem) {
+static int find_neighbours(brunt_surface_topology *topology, const brunt_fem_body *fem, brunt_error *error) {
     const size_t faces = (size_t)topology->elements * (size_t)fem->traits->face_count;
-    int32_t *first = brunt_alloc(((size_t)fem->node_count + 2) * sizeof *first);
-    int32_t *list = brunt_alloc((faces + 1) * sizeof *list);
-    const bool made = first && list;
+    int32_t *first, *list = NULL;
+    const bool made = !BRUNT_NEW(first, fem->node_count + 2, "nodes to find neighbours by", error) &&
+                      !BRUNT_NEW(list, faces + 1, "faces to find neighbours by", error);
     for (size_t k = 0; k < faces; k++) topology->across[k] = -1;
     if (made && !fem->traits->membrane) pair_faces(topology, fem, first, list); // a membrane's element is its one face
     brunt_free(first);
     brunt_free(list);
-    return made ? 0 : -1;
+    return made ? BRUNT_OK : BRUNT_FAILED;
 }
 
 // ------------------------------------------------------------------------------------------ the surface
@@ -117,17 +117,19 @@ static bool find_elements(brunt_surface_topology *topology, const brunt_fem_body
     return left || back;
 }
 
-static int list_faces(brunt_surface_topology *topology, const brunt_fem_body *fem) {
+static int list_faces(brunt_surface_topology *topology, const brunt_fem_body *fem, brunt_error *error) {
     const int faces = fem->traits->face_count;
     int32_t count = 0;
     for (int32_t r = 0; r < topology->elements; r++) {
         if (!topology->open[r]) continue;
-        if (BRUNT_RESERVE(topology->key, (size_t)count + (size_t)faces, (size_t)count)) return -1;
+        if (BRUNT_ROOM(topology->key, (size_t)count + (size_t)faces, (size_t)count, "faces of a mesh that erodes",
+                       error))
+            return BRUNT_FAILED;
         for (int f = 0; f < faces; f++)
             if (topology->open[r] >> f & 1) topology->key[count++] = r * faces + f;
     }
     topology->key_count = count;
-    return 0;
+    return BRUNT_OK;
 }
 
 static bool flies_on(const brunt_fem_body *fem, int32_t n) {
@@ -155,37 +157,38 @@ void brunt_topology_face(const brunt_surface_topology *topology, const brunt_fem
     for (int c = 0; c < 4; c++) node[c] = c < type->face_nodes ? corner[face[c]] : -1;
 }
 
-int brunt_topology_renew(brunt_surface_topology *topology, const brunt_fem_body *fem, bool restored) {
-    if (!restored && fem->element_count == topology->live) return 0;
-    if (!find_elements(topology, fem) && !restored) return 0;
+int brunt_topology_renew(brunt_surface_topology *topology, const brunt_fem_body *fem, bool restored,
+                         brunt_error *error) {
+    topology->changed = false;
+    if (!restored && fem->element_count == topology->live) return BRUNT_OK;
+    if (!find_elements(topology, fem) && !restored) return BRUNT_OK;
     int32_t *const key = topology->key, *const number = topology->number;
     const size_t capacity = topology->key_capacity;
     topology->key = topology->before, topology->key_capacity = topology->before_capacity;
     topology->before = key, topology->before_capacity = capacity, topology->before_count = topology->key_count;
     topology->number = topology->number_before, topology->number_before = number;
-    if (list_faces(topology, fem)) return -1;
+    if (list_faces(topology, fem, error)) return BRUNT_FAILED;
     number_nodes(topology, fem);
-    return 1;
+    topology->changed = true;
+    return BRUNT_OK;
 }
 
-int brunt_topology_make(brunt_surface_topology *topology, const brunt_fem_body *fem) {
+int brunt_topology_make(brunt_surface_topology *topology, const brunt_fem_body *fem, brunt_error *error) {
     *topology = (brunt_surface_topology){.elements = fem->element_count, .live = fem->element_count};
     const size_t n = (size_t)fem->element_count + 1, nodes = (size_t)fem->node_count + 1;
-    topology->rank = brunt_alloc(n * sizeof *topology->rank), topology->slot = brunt_alloc(n * sizeof *topology->slot);
-    topology->open = brunt_alloc(n);
-    topology->across = brunt_alloc(n * (size_t)fem->traits->face_count * sizeof *topology->across);
-    topology->number = brunt_alloc(nodes * sizeof *topology->number);
-    topology->number_before = brunt_alloc(nodes * sizeof *topology->number_before);
-    if (!topology->rank || !topology->slot || !topology->open || !topology->across || !topology->number ||
-        !topology->number_before)
-        return -1;
+    static const char places[] = "elements of a mesh that erodes", of_nodes[] = "nodes of a mesh that erodes";
+    if (BRUNT_NEW(topology->rank, n, places, error) || BRUNT_NEW(topology->slot, n, places, error) ||
+        BRUNT_NEW(topology->open, n, places, error) || BRUNT_NEW(topology->number, nodes, of_nodes, error) ||
+        BRUNT_NEW(topology->across, n * (size_t)fem->traits->face_count, "neighbours in a mesh that erodes", error) ||
+        BRUNT_NEW(topology->number_before, nodes, of_nodes, error))
+        return BRUNT_FAILED;
     int32_t place = 0;
     for (int32_t s = 0; s < fem->slots; s++)
         if (fem->element_id[s] >= 0) topology->rank[fem->element_id[s]] = place, topology->slot[place++] = s;
-    if (find_neighbours(topology, fem)) return -1;
+    if (find_neighbours(topology, fem, error)) return BRUNT_FAILED;
     for (int32_t r = 0; r < topology->elements; r++)
         topology->open[r] = open_faces(topology, r, fem->traits->face_count);
-    if (list_faces(topology, fem)) return -1;
+    if (list_faces(topology, fem, error)) return BRUNT_FAILED;
     number_nodes(topology, fem);
-    return 0;
+    return BRUNT_OK;
 }

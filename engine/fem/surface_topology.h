@@ -23,15 +23,16 @@ typedef struct brunt_surface_topology {
     // faces of the surface, or are loose and go on as free particles.
     int32_t *number, *number_before;
     int32_t number_count;
-    bool changed; // of the caller
+    bool changed; // by the last renewal
 } brunt_surface_topology;
 
-// Of a body that has all its elements. 0, or -1: out of memory.
-int brunt_topology_make(brunt_surface_topology *topology, const brunt_fem_body *fem);
-// The surface as it is now; what it was becomes `before`. 1 when it is made anew, 0 when nothing has changed, -1: out
-// of memory. `restored`: others may be there than before, of a saved state, and other nodes may be loose; else as many
-// as before are the same.
-int brunt_topology_renew(brunt_surface_topology *topology, const brunt_fem_body *fem, bool restored);
+// Of a body that has all its elements. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_topology_make(brunt_surface_topology *topology, const brunt_fem_body *fem, brunt_error *error);
+// The surface as it is now; what it was becomes `before`. `changed` tells whether it was made anew. BRUNT_OK, or
+// BRUNT_FAILED: out of memory. `restored`: others may be there than before, of a saved state, and other nodes may be
+// loose; else as many as before are the same.
+int brunt_topology_renew(brunt_surface_topology *topology, const brunt_fem_body *fem, bool restored,
+                         brunt_error *error);
 // Nodes (of the body) of face `k` of the surface; the 4th is -1 for triangles, 3rd and 4th for segments.
 void brunt_topology_face(const brunt_surface_topology *topology, const brunt_fem_body *fem, int32_t k, int32_t node[4]);
 void brunt_topology_free(brunt_surface_topology *topology);

@@ -125,8 +125,8 @@ static void hold_nodes(brunt_boundary *wall, brunt_body *body, double time) {
 int brunt_pass_conditions(brunt_world *world, brunt_step *step, brunt_error *error) {
     (void)step;
     for (int i = 0; i < world->bodies.mpm_count; i++)
-        if (brunt_condition_clear(&world->bodies.mpm[i]))
-            return brunt_fail_step(world, &world->bodies.mpm[i], error, "out of memory at a condition");
+        if (brunt_condition_clear(&world->bodies.mpm[i], error))
+            return brunt_fail_inner(world, &world->bodies.mpm[i], error);
     for (int w = 0; w < world->boundaries.wall_count; w++)
         for (int i = 0; i < world->bodies.mpm_count; i++)
             hold_nodes(&world->boundaries.walls[w], &world->bodies.mpm[i], world->clock.time);

@@ -58,7 +58,7 @@ static int make_self_pair(const maker *m, int q, brunt_error *error) {
     *(barrier ? &contact->has_barrier : &contact->has_augury) = contact->has_self = true;
     if (!barrier) contact->rows |= brunt_contact_rows_of(def->method, m->def->contact.form, true, true);
     m->world->contact.has_friction = m->world->contact.has_friction || def->friction > 0;
-    if (brunt_pair_map_add(&pairs->map, a, a, pairs->count)) return out_of_memory(error);
+    if (brunt_pair_map_add(&pairs->map, a, a, pairs->count, error)) return BRUNT_FAILED;
     pairs->pair[pairs->count++] = (brunt_pair){.a = a, .b = a, .method = def->method, .friction = def->friction};
     return BRUNT_OK;
 }
@@ -174,8 +174,8 @@ static int make_pair(const maker *m, const candidate *c, brunt_error *error) {
     }
     if (c->usual)
         pairs->map.usual[pairs->mesh[c->a] + pairs->mesh[c->b]] = index;
-    else if (brunt_pair_map_add(&pairs->map, c->a, c->b, index))
-        return out_of_memory(error);
+    else
+        return brunt_pair_map_add(&pairs->map, c->a, c->b, index, error);
     return BRUNT_OK;
 }
 

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/error.h"
 #include "base/memory.h"
 #include "contact/methods/method.h"
@@ -79,12 +80,11 @@ static int check_sheets(brunt_world *world, bool *self, brunt_error *error) {
 }
 
 static int make_sheets(brunt_world *world, brunt_error *error) {
-    bool any = false, *self = brunt_alloc((size_t)world->bodies.fem_count + 1);
-    if (!self) return brunt_fail(error, BRUNT_FAILED, "out of memory");
+    bool any = false, *self;
+    if (BRUNT_NEW(self, world->bodies.fem_count + 1, "marks of membranes", error)) return BRUNT_FAILED;
     int status = check_sheets(world, self, error);
     for (int k = 0; k < world->bodies.fem_count; k++) any = any || self[k];
-    if (!status && any && brunt_surface_patches(&world->contact.surface, self))
-        status = brunt_fail(error, BRUNT_FAILED, "out of memory for the bodies' surfaces");
+    if (!status && any) status = brunt_surface_patches(&world->contact.surface, self, error);
     brunt_free(self);
     return status;
 }
@@ -103,15 +103,15 @@ int brunt_surfaces_make(brunt_world *world, const brunt_world_def *def, brunt_er
     const brunt_augury_form form = def->contact.form;
     if (world->contact.def.iterations < 0)
         world->contact.def.iterations = form == BRUNT_AUGURY_PAPER ? 1 : form == BRUNT_AUGURY_AFFINE ? SWEEPS : 4;
-    brunt_fem_body **fems = brunt_alloc((size_t)(world->bodies.fem_count + 1) * sizeof *fems);
-    if (!fems) return brunt_fail(error, BRUNT_FAILED, "out of memory");
+    brunt_fem_body **fems;
+    if (BRUNT_NEW(fems, world->bodies.fem_count + 1, "meshes with surfaces", error)) return BRUNT_FAILED;
     for (int k = 0; k < world->bodies.fem_count; k++) fems[k] = &world->bodies.fem[k];
-    int failed = brunt_surface_make(&world->contact.surface, fems, world->bodies.fem_count,
-                                    world->contact.has_augury && form == BRUNT_AUGURY_PAPER);
+    int status = brunt_surface_make(&world->contact.surface, fems, world->bodies.fem_count,
+                                    world->contact.has_augury && form == BRUNT_AUGURY_PAPER, error);
     brunt_free(fems);
-    if (failed) return brunt_fail(error, BRUNT_FAILED, "out of memory for the bodies' surfaces");
+    if (status) return status;
     if (world->contact.surface.membrane.side) {
-        int status = make_sheets(world, error);
+        status = make_sheets(world, error);
         if (status) return status;
         if (def->contact.iterations < 0 && form == BRUNT_AUGURY_AFFINE) world->contact.def.iterations = SHEET_SWEEPS;
     }
@@ -170,7 +170,7 @@ int brunt_surfaces_overlap(brunt_world *world, brunt_error *error) {
 
 int brunt_surfaces_renew(brunt_world *world, brunt_error *error) {
     if (!world->contact.has_surfaces) return BRUNT_OK;
-    if (brunt_surface_renew(&world->contact.surface, false) ||
+    if (brunt_surface_renew(&world->contact.surface, false, error) ||
         brunt_node_to_facet_renew(world->contact.node_to_facet, &world->contact.surface))
         return brunt_fail(error, BRUNT_FAILED, "out of memory for the bodies' surfaces");
     return BRUNT_OK;

@@ -73,10 +73,10 @@ END_TEST
 START_TEST(pairs_are_those_of_their_kind_or_their_own) {
     const uint8_t mesh[] = {0, 1, 0, 1, 1};
     brunt_pair_map map = {.mesh = mesh, .usual = {7, 8, -1}};
-    ck_assert_int_eq(brunt_pair_map_add(&map, 3, 1, 5), 0);
-    ck_assert_int_eq(brunt_pair_map_add(&map, 0, 2, 4), 0);
-    ck_assert_int_eq(brunt_pair_map_add(&map, 2, 0, -1), 0); // the last counts
-    ck_assert_int_eq(brunt_pair_map_add(&map, 4, 4, 6), 0);
+    ck_assert_int_eq(brunt_pair_map_add(&map, 3, 1, 5, NULL), 0);
+    ck_assert_int_eq(brunt_pair_map_add(&map, 0, 2, 4, NULL), 0);
+    ck_assert_int_eq(brunt_pair_map_add(&map, 2, 0, -1, NULL), 0); // the last counts
+    ck_assert_int_eq(brunt_pair_map_add(&map, 4, 4, 6, NULL), 0);
     brunt_pair_map_sort(&map);
     static const int32_t expected[5][5] = {
         {-1, 8, -1, 8, 8}, {8, -1, 8, 5, -1}, {-1, 8, -1, 8, 8}, {8, 5, 8, -1, -1}, {8, -1, 8, -1, 6}};
