@@ -103,6 +103,7 @@ typedef struct brunt_constraint_set {
     // Of accelerated sweeps, else unused: what points and nodes had after the sweep before, and of each chunk how much
     // of its correction goes back on the last one's (see solve.c).
     bool accelerated;
+    int sweeps;      // of the last solution
     double momentum; // [-] share of the last sweep's correction that the next one begins with
     struct brunt_constraint_past {
         double normal_impulse, friction_impulse[3];
@@ -121,18 +122,21 @@ typedef struct brunt_constraint_set {
 void brunt_constraints_validate(const brunt_constraint_set *set);
 void brunt_constraints_clear(brunt_constraint_set *set);
 void brunt_constraints_free(brunt_constraint_set *set);
-// New degree-of-freedom node, point, and entry of the last point. The index, or -1: out of memory.
-int32_t brunt_constraints_dof_node(brunt_constraint_set *set);
-int32_t brunt_constraints_add(brunt_constraint_set *set);
-int32_t brunt_constraints_entry(brunt_constraint_set *set, int32_t dof_node, double weight); // all components alike
+// New degree-of-freedom node, point, and entry of the last point. The index, or BRUNT_NONE: out of memory.
+int32_t brunt_constraints_dof_node(brunt_constraint_set *set, brunt_error *error);
+int32_t brunt_constraints_add(brunt_constraint_set *set, brunt_error *error);
+int32_t brunt_constraints_entry(brunt_constraint_set *set, int32_t dof_node, double weight,
+                                brunt_error *error); // all components alike
 // Gives the last point, when its entries are complete, a friction point to x: entries without weights, for the caller
-// to fill. The index of the first, or -1.
-int32_t brunt_constraints_friction_point(brunt_constraint_set *set, const double x[3]);
-// Makes room for so many points and entries in all, which the caller then fills. 0, or -1.
-int brunt_constraints_reserve(brunt_constraint_set *set, int32_t point_count, int32_t entry_count);
+// to fill. The index of the first, or BRUNT_NONE: out of memory.
+int32_t brunt_constraints_friction_point(brunt_constraint_set *set, const double x[3], brunt_error *error);
+// Makes room for so many points and entries in all, which the caller then fills. BRUNT_OK, or BRUNT_FAILED: out of
+// memory.
+int brunt_constraints_reserve(brunt_constraint_set *set, int32_t point_count, int32_t entry_count, brunt_error *error);
 // Relative velocity of a point, with the degree-of-freedom nodes' v (old: as they were before the forces).
 void brunt_constraint_velocity(const brunt_constraint_set *set, const brunt_constraint *constraint, bool old,
                                double u[3]);
 // Solves with at most `sweeps` sweeps, until the greatest correction of one is no more than `tolerance` of that of the
-// first; what is left is met in the next step. Books every point. The number of sweeps, or -1: out of memory.
-int brunt_constraints_solve(brunt_constraint_set *set, int sweeps, double tolerance, int threads, brunt_timer *timer);
+// first; what is left is met in the next step. Books every point. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_constraints_solve(brunt_constraint_set *set, int sweeps, double tolerance, int threads, brunt_timer *timer,
+                            brunt_error *error);

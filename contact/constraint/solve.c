@@ -53,45 +53,49 @@ void brunt_constraints_free(brunt_constraint_set *p) {
     memset(p, 0, sizeof *p);
 }
 
-#define ADD(p, what)                                                                                                   \
-    (BRUNT_GROW((p)->what) ? -1 : (memset(&(p)->what[(p)->what##_count], 0, sizeof *(p)->what), (p)->what##_count++))
+#define ADD(p, array, what, error)                                                                                     \
+    (BRUNT_ROOM_MORE((p)->array, what, error)                                                                          \
+         ? BRUNT_NONE                                                                                                  \
+         : (memset(&(p)->array[(p)->array##_count], 0, sizeof *(p)->array), (p)->array##_count++))
 
-int32_t brunt_constraints_dof_node(brunt_constraint_set *p) { return ADD(p, dof_node); }
+int32_t brunt_constraints_dof_node(brunt_constraint_set *p, brunt_error *error) {
+    return ADD(p, dof_node, "nodes that contact moves", error);
+}
 
-int32_t brunt_constraints_add(brunt_constraint_set *p) {
-    int32_t at = ADD(p, constraint);
+int32_t brunt_constraints_add(brunt_constraint_set *p, brunt_error *error) {
+    int32_t at = ADD(p, constraint, "contact points", error);
     if (at >= 0) p->constraint[at].first = p->entry_count;
     return at;
 }
 
-int32_t brunt_constraints_entry(brunt_constraint_set *p, int32_t dof_node, double weight) {
-    int32_t at = ADD(p, entry);
-    if (at < 0) return -1;
+int32_t brunt_constraints_entry(brunt_constraint_set *p, int32_t dof_node, double weight, brunt_error *error) {
+    int32_t at = ADD(p, entry, "entries of contact points", error);
+    if (at < 0) return BRUNT_NONE;
     p->entry[at].dof_node = dof_node;
     for (int a = 0; a < 3; a++) p->entry[at].weight[a] = weight;
     p->constraint[p->constraint_count - 1].count++;
     return at;
 }
 
-int32_t brunt_constraints_friction_point(brunt_constraint_set *p, const double x[3]) {
-    const int32_t at = ADD(p, friction_point), first = p->entry_count;
+int32_t brunt_constraints_friction_point(brunt_constraint_set *p, const double x[3], brunt_error *error) {
+    const int32_t at = ADD(p, friction_point, "friction points", error), first = p->entry_count;
     brunt_constraint *constraint = &p->constraint[p->constraint_count - 1];
-    if (at < 0) return -1;
+    if (at < 0) return BRUNT_NONE;
     memcpy(p->friction_point[at].x, x, sizeof p->friction_point[at].x);
     for (int32_t e = 0; e < constraint->count; e++) {
-        const int32_t entry = ADD(p, entry);
-        if (entry < 0) return -1;
+        const int32_t entry = ADD(p, entry, "entries of contact points", error);
+        if (entry < 0) return BRUNT_NONE;
         p->entry[entry].dof_node = p->entry[constraint->first + e].dof_node;
     }
     constraint->friction_point = at + 1;
     return first;
 }
 
-int brunt_constraints_reserve(brunt_constraint_set *p, int32_t points, int32_t entries) {
-    return BRUNT_RESERVE(p->constraint, (size_t)points + 1, (size_t)p->constraint_count) ||
-                   BRUNT_RESERVE(p->entry, (size_t)entries + 1, (size_t)p->entry_count)
-               ? -1
-               : 0;
+int brunt_constraints_reserve(brunt_constraint_set *p, int32_t points, int32_t entries, brunt_error *error) {
+    return BRUNT_ROOM(p->constraint, (size_t)points + 1, (size_t)p->constraint_count, "contact points", error) ||
+                   BRUNT_ROOM(p->entry, (size_t)entries + 1, (size_t)p->entry_count, "entries of contact points", error)
+               ? BRUNT_FAILED
+               : BRUNT_OK;
 }
 
 // Of what does not turn, with the weights of `entry` and the `count` - 1 after it.
@@ -148,12 +152,14 @@ static struct brunt_constraint_column column_of(int32_t constraint, const brunt_
 }
 
 // Entries by support, in the order of the points, each with that of its friction point.
-static int transpose(brunt_constraint_set *p) {
+static int transpose(brunt_constraint_set *p, brunt_error *error) {
     size_t entries = (size_t)p->entry_count + 1, dof_nodes = (size_t)p->dof_node_count + 1,
            points = (size_t)p->constraint_count + (size_t)p->friction_point_count + 1;
-    if (BRUNT_RESERVE(p->column, entries, 0) || BRUNT_RESERVE(p->column_first, dof_nodes + 1, 0) ||
-        BRUNT_RESERVE(p->applied, points, 0) || BRUNT_RESERVE(p->changed, points / GRAIN + 2, 0))
-        return -1;
+    if (BRUNT_ROOM(p->column, entries, 0, "entries of contact points", error) ||
+        BRUNT_ROOM(p->column_first, dof_nodes + 1, 0, "nodes that contact moves", error) ||
+        BRUNT_ROOM(p->applied, points, 0, "impulses of contact points", error) ||
+        BRUNT_ROOM(p->changed, points / GRAIN + 2, 0, "groups of contact points", error))
+        return BRUNT_FAILED;
     int32_t *first = p->column_first;
     memset(first, 0, (dof_nodes + 1) * sizeof(int32_t));
     for (int32_t e = 0; e < p->entry_count; e++) first[p->entry[e].dof_node + 2]++;
@@ -171,7 +177,7 @@ static int transpose(brunt_constraint_set *p) {
                 p->column[(*at)++] = column_of(friction_point, &p->entry[e + constraint->count]);
         }
     }
-    return 0;
+    return BRUNT_OK;
 }
 
 // Effective mass of each point alone, without its images: half of a body is then solved as the whole is. Points that
@@ -436,18 +442,19 @@ static void account_constraints(brunt_constraint_set *p) {
     }
 }
 
-static int begin_acceleration(brunt_constraint_set *p) {
+static int begin_acceleration(brunt_constraint_set *p, brunt_error *error) {
     const size_t points = (size_t)p->constraint_count, dofs = (size_t)p->dof_node_count;
-    if (BRUNT_RESERVE(p->point_past, points, 0) || BRUNT_RESERVE(p->dof_past, dofs + 1, 0) ||
-        BRUNT_RESERVE(p->turned_back, points / GRAIN + 2, 0))
-        return -1;
+    if (BRUNT_ROOM(p->point_past, points, 0, "contact points", error) ||
+        BRUNT_ROOM(p->dof_past, dofs + 1, 0, "nodes that contact moves", error) ||
+        BRUNT_ROOM(p->turned_back, points / GRAIN + 2, 0, "groups of contact points", error))
+        return BRUNT_FAILED;
     p->momentum = 0;
     memset(p->point_past, 0, points * sizeof *p->point_past);
     for (size_t s = 0; s < dofs; s++) {
         memcpy(p->dof_past[s].v, p->dof_node[s].v, sizeof p->dof_past[s].v);
         memcpy(p->dof_past[s].impulse, p->dof_node[s].impulse, sizeof p->dof_past[s].impulse);
     }
-    return 0;
+    return BRUNT_OK;
 }
 
 // With how much of its correction the next sweep begins: none where the last one went back. The weight that follows.
@@ -463,26 +470,27 @@ static double accelerate(brunt_constraint_set *p, int64_t chunks, double weight)
     return next;
 }
 
-int brunt_constraints_solve(brunt_constraint_set *p, int sweeps, double tolerance, int threads, brunt_timer *timer) {
-    if (!p->constraint_count) return 0;
-    if (transpose(p)) return -1;
+int brunt_constraints_solve(brunt_constraint_set *p, int sweeps, double tolerance, int threads, brunt_timer *timer,
+                            brunt_error *error) {
+    p->sweeps = 0;
+    if (!p->constraint_count) return BRUNT_OK;
+    if (transpose(p, error)) return BRUNT_FAILED;
     const int64_t chunks = (p->constraint_count + GRAIN - 1) / GRAIN, groups = (p->dof_node_count + GRAIN - 1) / GRAIN;
     brunt_parallel(threads, chunks, 1, weigh_constraints, p, timer);
     brunt_parallel(threads, groups, 1, load_dof_nodes, p, timer);
     brunt_parallel(threads, chunks, 1, sum_rows, p, timer);
     double first = 0, greatest = INFINITY, weight = 1;
-    int sweep = 0;
-    if (p->accelerated && begin_acceleration(p)) return -1;
-    while (sweep < sweeps && !(greatest <= tolerance * first)) {
+    if (p->accelerated && begin_acceleration(p, error)) return BRUNT_FAILED;
+    while (p->sweeps < sweeps && !(greatest <= tolerance * first)) {
         brunt_parallel(threads, chunks, 1, solve_chunks, p, timer);
-        sweep++;
+        p->sweeps++;
         greatest = 0;
         for (int64_t c = 0; c < chunks; c++) greatest = fmax(greatest, p->changed[c]);
         first = fmax(first, greatest);
         if (p->accelerated) weight = accelerate(p, chunks, weight);
-        if (sweep == sweeps || greatest <= tolerance * first) p->momentum = 0;
+        if (p->sweeps == sweeps || greatest <= tolerance * first) p->momentum = 0;
         brunt_parallel(threads, groups, 1, move_dof_nodes, p, timer);
     }
     account_constraints(p);
-    return sweep;
+    return BRUNT_OK;
 }

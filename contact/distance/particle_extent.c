@@ -181,22 +181,27 @@ static void add_particle(void *context, brunt_body *body, int64_t s, const int b
     to[CLOUD_REACH * stride] = (double)brunt_field(p, BRUNT_FIELD_reach)[0][s];
 }
 
-int brunt_extent_gather(brunt_body *body, int32_t slot, int node, brunt_extent_cloud *cloud) {
+int brunt_extent_gather(brunt_body *body, int32_t slot, int node, brunt_extent_cloud *cloud, brunt_error *error) {
     int count = 0;
     brunt_extent_visit(body, slot, node, count_particle, &count);
     cloud->stride = ((size_t)count + CLOUD_LANES - 1) / CLOUD_LANES * CLOUD_LANES;
     cloud->count = 0;
-    if (BRUNT_RESERVE_IN(cloud->data, cloud->bytes, CLOUD_ROWS * cloud->stride, 0)) return -1;
+    if (BRUNT_ROOM_IN(cloud->data, cloud->bytes, CLOUD_ROWS * cloud->stride, 0, "numbers of particles about a node",
+                      error))
+        return BRUNT_FAILED;
     cloud_fill fill = {.cloud = cloud};
     brunt_node_position(&body->grid, body->grid.slots[slot].coord, node, fill.node);
     brunt_extent_visit(body, slot, node, add_particle, &fill);
-    return 0;
+    return BRUNT_OK;
 }
 
-int brunt_extent_cloud_points(brunt_extent_cloud *cloud, int count) {
+int brunt_extent_cloud_points(brunt_extent_cloud *cloud, int count, brunt_error *error) {
     cloud->stride = ((size_t)count + CLOUD_LANES - 1) / CLOUD_LANES * CLOUD_LANES;
     cloud->count = 0;
-    return BRUNT_RESERVE_IN(cloud->data, cloud->bytes, CLOUD_ROWS * cloud->stride, 0) ? -1 : 0;
+    return BRUNT_ROOM_IN(cloud->data, cloud->bytes, CLOUD_ROWS * cloud->stride, 0, "numbers of particles about a node",
+                         error)
+               ? BRUNT_FAILED
+               : BRUNT_OK;
 }
 
 void brunt_extent_cloud_point(brunt_extent_cloud *cloud, const double x[3]) {

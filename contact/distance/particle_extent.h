@@ -13,10 +13,11 @@ typedef struct brunt_extent_cloud {
     size_t stride, bytes;
     int count;
 } brunt_extent_cloud;
-// Refills a cloud, empty at first ({0}). 0, or -1: out of memory.
-int brunt_extent_gather(brunt_body *body, int32_t slot, int node, brunt_extent_cloud *cloud);
-// Empties a cloud, and makes room in it for points without extent, `count` at most. 0, or -1: out of memory.
-int brunt_extent_cloud_points(brunt_extent_cloud *cloud, int count);
+// Refills a cloud, empty at first ({0}). BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_extent_gather(brunt_body *body, int32_t slot, int node, brunt_extent_cloud *cloud, brunt_error *error);
+// Empties a cloud, and makes room in it for points without extent, `count` at most. BRUNT_OK, or BRUNT_FAILED: out of
+// memory.
+int brunt_extent_cloud_points(brunt_extent_cloud *cloud, int count, brunt_error *error);
 void brunt_extent_cloud_point(brunt_extent_cloud *cloud, const double x[3]);
 void brunt_extent_cloud_free(brunt_extent_cloud *cloud);
 // Greatest distance along unit vector n, from the node, that one of them reaches [m], and the point that does, relative

@@ -19,13 +19,15 @@ typedef struct brunt_augury_workspace brunt_augury_workspace;
 
 // The published form: spline over four nodes a direction, time scale tau = dt, N = m->iterations. It acts on all
 // boundary nodes of active bodies that have a pair, in contact or not. `transfer`: BRUNT_PIC, or BRUNT_APIC, which
-// keeps B in surface->affine (0 at the start of a run). 0, or -1: out of memory.
-int brunt_augury_paper(const brunt_contact_context *m, brunt_transfer transfer, brunt_augury_workspace **work);
+// keeps B in surface->affine (0 at the start of a run). BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_augury_paper(const brunt_contact_context *m, brunt_transfer transfer, brunt_augury_workspace **work,
+                       brunt_error *error);
 
 // Nodes against averaged surfaces, m->iterations sweeps, each with one of the two bodies as the one whose nodes are
 // held back; m->step says which begins. Linear momentum is exact; so is angular momentum, with `affine` always, else
 // for pairs without prescribed nodes. Bodies that do not approach are not touched. `affine` false: form "surface";
-// true: form "smooth". 0, or -1: out of memory.
-int brunt_augury_surface(const brunt_contact_context *m, bool affine, brunt_augury_workspace **work);
+// true: form "smooth". BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_augury_surface(const brunt_contact_context *m, bool affine, brunt_augury_workspace **work,
+                         brunt_error *error);
 
 void brunt_augury_workspace_free(brunt_augury_workspace *work);

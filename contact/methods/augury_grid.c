@@ -52,39 +52,44 @@ static brunt_augury_slot *probe(const brunt_augury_grid *grid, uint64_t key) {
 }
 
 // A table of at least twice as many slots as blocks.
-static int widen(brunt_augury_grid *grid) {
-    if (grid->slot_count >= 2 * (grid->block_count + 1)) return 0;
+static int widen(brunt_augury_grid *grid, brunt_error *error) {
+    if (grid->slot_count >= 2 * (grid->block_count + 1)) return BRUNT_OK;
     int32_t count = grid->slot_count ? 2 * grid->slot_count : FIRST_SLOTS;
-    if (BRUNT_RESERVE(grid->slot, (size_t)count, 0)) return -1;
+    if (BRUNT_ROOM(grid->slot, (size_t)count, 0, "slots for blocks of the contact grid", error)) return BRUNT_FAILED;
     memset(grid->slot, 0, (size_t)count * sizeof *grid->slot);
     grid->slot_count = count;
     for (int32_t b = 0; b < grid->block_count; b++) {
         uint64_t key = pack(grid->coord[b]);
         *probe(grid, key) = (brunt_augury_slot){key, grid->epoch, b};
     }
-    return 0;
+    return BRUNT_OK;
 }
 
-// Number of the block at `coord`, which is made when there is none; -1: out of memory.
-static int32_t block_at(brunt_augury_grid *grid, const int32_t coord[3]) {
-    if (widen(grid)) return -1;
+// Number of the block at `coord`, which is made when there is none. BRUNT_NONE: out of memory.
+static int32_t block_at(brunt_augury_grid *grid, const int32_t coord[3], brunt_error *error) {
+    if (widen(grid, error)) return BRUNT_NONE;
     uint64_t key = pack(coord);
     brunt_augury_slot *s = probe(grid, key);
     if (s->epoch == grid->epoch) return s->block;
     size_t n = (size_t)grid->block_count;
-    if (BRUNT_RESERVE(grid->coord, n + 1, n) || BRUNT_RESERVE(grid->reached, n + 1, n)) return -1;
+    if (BRUNT_ROOM(grid->coord, n + 1, n, "blocks of the contact grid", error) ||
+        BRUNT_ROOM(grid->reached, n + 1, n, "blocks of the contact grid", error))
+        return BRUNT_NONE;
     memcpy(grid->coord[n], coord, sizeof grid->coord[n]);
     grid->reached[n] = 0;
     *s = (brunt_augury_slot){key, grid->epoch, grid->block_count};
     return grid->block_count++;
 }
 
-int brunt_augury_cloud_add(brunt_augury_grid *grid, brunt_augury_cloud *cloud, int32_t item, const double x[3]) {
+int brunt_augury_cloud_add(brunt_augury_grid *grid, brunt_augury_cloud *cloud, int32_t item, const double x[3],
+                           brunt_error *error) {
     // Neighbours that a stencil reaches when it goes past the block's end along the axes of `k`: all their
     // combinations.
     static const uint8_t reaches[8] = {0x01, 0x03, 0x05, 0x0f, 0x11, 0x33, 0x55, 0xff};
     size_t n = (size_t)cloud->count;
-    if (BRUNT_RESERVE(cloud->unsorted, n + 1, n) || BRUNT_RESERVE(cloud->unsorted_item, n + 1, n)) return -1;
+    if (BRUNT_ROOM(cloud->unsorted, n + 1, n, "points in the contact grid", error) ||
+        BRUNT_ROOM(cloud->unsorted_item, n + 1, n, "points in the contact grid", error))
+        return BRUNT_FAILED;
     brunt_augury_point *p = &cloud->unsorted[n];
     int32_t coord[3];
     int past = 0;
@@ -102,30 +107,30 @@ int brunt_augury_cloud_add(brunt_augury_grid *grid, brunt_augury_cloud *cloud, i
         if (a < grid->dim && p->local[a] + grid->width > BRUNT_AUGURY_EDGE) past |= 1 << a;
     }
     // Points come roughly along a curve: most lie in the block of the one before.
-    int32_t block = n ? cloud->unsorted[n - 1].block : -1;
-    if (block < 0 || memcmp(grid->coord[block], coord, sizeof coord)) block = block_at(grid, coord);
-    if (block < 0) return -1;
+    int32_t block = n ? cloud->unsorted[n - 1].block : BRUNT_NONE;
+    if (block < 0 || memcmp(grid->coord[block], coord, sizeof coord)) block = block_at(grid, coord, error);
+    if (block < 0) return BRUNT_FAILED;
     p->block = block;
     grid->reached[block] |= reaches[past];
     cloud->unsorted_item[n] = item;
     cloud->count++;
-    return 0;
+    return BRUNT_OK;
 }
 
 // Makes the blocks that points reach into, and links them.
-static int link_blocks(brunt_augury_grid *grid) {
+static int link_blocks(brunt_augury_grid *grid, brunt_error *error) {
     const int32_t with_points = grid->block_count;
     size_t n = (size_t)with_points;
-    if (BRUNT_RESERVE(grid->next, n + 1, 0)) return -1;
+    if (BRUNT_ROOM(grid->next, n + 1, 0, "blocks of the contact grid", error)) return BRUNT_FAILED;
     for (int32_t b = 0; b < with_points; b++)
         for (int k = 0; k < 8; k++) {
             int32_t c[3] = {grid->coord[b][0] + (k & 1), grid->coord[b][1] + (k >> 1 & 1),
                             grid->coord[b][2] + (k >> 2)};
-            grid->next[b][k] = grid->reached[b] >> k & 1 ? block_at(grid, c) : 0;
-            if (grid->next[b][k] < 0) return -1;
+            grid->next[b][k] = grid->reached[b] >> k & 1 ? block_at(grid, c, error) : 0;
+            if (grid->next[b][k] < 0) return BRUNT_FAILED;
         }
     // Only blocks with points have anything to do.
-    if (BRUNT_RESERVE(grid->coloured, n + 1, 0)) return -1;
+    if (BRUNT_ROOM(grid->coloured, n + 1, 0, "blocks of the contact grid", error)) return BRUNT_FAILED;
     int32_t at = 0;
     for (int colour = 0; colour < BRUNT_AUGURY_COLOURS; colour++) {
         grid->colour_first[colour] = at;
@@ -135,14 +140,15 @@ static int link_blocks(brunt_augury_grid *grid) {
         }
     }
     grid->colour_first[BRUNT_AUGURY_COLOURS] = at;
-    return 0;
+    return BRUNT_OK;
 }
 
-static int sort_cloud(const brunt_augury_grid *grid, brunt_augury_cloud *cloud) {
+static int sort_cloud(const brunt_augury_grid *grid, brunt_augury_cloud *cloud, brunt_error *error) {
     size_t n = (size_t)cloud->count, blocks = (size_t)grid->block_count;
-    if (BRUNT_RESERVE(cloud->point, n + 1, 0) || BRUNT_RESERVE(cloud->item, n + 1, 0) ||
-        BRUNT_RESERVE(cloud->block_first, blocks + 2, 0))
-        return -1;
+    if (BRUNT_ROOM(cloud->point, n + 1, 0, "points in the contact grid", error) ||
+        BRUNT_ROOM(cloud->item, n + 1, 0, "points in the contact grid", error) ||
+        BRUNT_ROOM(cloud->block_first, blocks + 2, 0, "blocks of the contact grid", error))
+        return BRUNT_FAILED;
     int32_t *first = cloud->block_first;
     memset(first, 0, (blocks + 2) * sizeof(int32_t));
     for (size_t k = 0; k < n; k++) first[cloud->unsorted[k].block + 2]++;
@@ -152,14 +158,14 @@ static int sort_cloud(const brunt_augury_grid *grid, brunt_augury_cloud *cloud) 
         cloud->point[at] = cloud->unsorted[k];
         cloud->item[at] = cloud->unsorted_item[k];
     }
-    return 0;
+    return BRUNT_OK;
 }
 
-int brunt_augury_grid_finish(brunt_augury_grid *grid, brunt_augury_cloud *clouds, int cloud_count) {
-    if (link_blocks(grid)) return -1;
+int brunt_augury_grid_finish(brunt_augury_grid *grid, brunt_augury_cloud *clouds, int cloud_count, brunt_error *error) {
+    if (link_blocks(grid, error)) return BRUNT_FAILED;
     for (int k = 0; k < cloud_count; k++)
-        if (sort_cloud(grid, &clouds[k])) return -1;
-    return 0;
+        if (sort_cloud(grid, &clouds[k], error)) return BRUNT_FAILED;
+    return BRUNT_OK;
 }
 
 // ------------------------------------------------------------------------------------------ scatter

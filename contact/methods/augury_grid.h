@@ -103,10 +103,11 @@ static inline void brunt_augury_position(const brunt_augury_grid *grid, int32_t 
 
 // Begins a new grid. The caller empties its clouds (count = 0).
 void brunt_augury_grid_start(brunt_augury_grid *grid, int dim, int width, double cell);
-// Adds a point to a cloud of the grid. 0, or -1: out of memory.
-int brunt_augury_cloud_add(brunt_augury_grid *grid, brunt_augury_cloud *cloud, int32_t item, const double x[3]);
-// All points are there: links the blocks and sorts the clouds by them. 0, or -1: out of memory.
-int brunt_augury_grid_finish(brunt_augury_grid *grid, brunt_augury_cloud *clouds, int cloud_count);
+// Adds a point to a cloud of the grid. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_augury_cloud_add(brunt_augury_grid *grid, brunt_augury_cloud *cloud, int32_t item, const double x[3],
+                           brunt_error *error);
+// All points are there: links the blocks and sorts the clouds by them. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_augury_grid_finish(brunt_augury_grid *grid, brunt_augury_cloud *clouds, int cloud_count, brunt_error *error);
 
 // Called with points [begin, end) of the cloud.
 typedef void brunt_augury_scatter_fn(void *context, int32_t begin, int32_t end);

@@ -34,10 +34,10 @@ static int sweep_axis(const brunt_contact_surface *s) {
 
 // Bodies by their low ends. Sorted by insertion from the last step's order, which is nearly right; ties go by number,
 // so that where it starts does not show.
-static int sort_bodies(brunt_augury_near *near, const brunt_contact_surface *s, int axis) {
+static int sort_bodies(brunt_augury_near *near, const brunt_contact_surface *s, int axis, brunt_error *error) {
     const int32_t n = s->fem_count;
     if (near->order_count != n) {
-        if (BRUNT_RESERVE(near->order, (size_t)(n + 1), 0)) return -1;
+        if (BRUNT_ROOM(near->order, (size_t)(n + 1), 0, "bodies in order", error)) return BRUNT_FAILED;
         for (int32_t k = 0; k < n; k++) near->order[k] = k;
         near->order_count = n;
     }
@@ -51,7 +51,7 @@ static int sort_bodies(brunt_augury_near *near, const brunt_contact_surface *s, 
         }
         near->order[at] = body;
     }
-    return 0;
+    return BRUNT_OK;
 }
 
 static int compare(const void *p, const void *q) {
@@ -59,11 +59,11 @@ static int compare(const void *p, const void *q) {
     return (u->pair > v->pair) - (u->pair < v->pair);
 }
 
-int brunt_augury_near_find(brunt_augury_near *near, const brunt_contact_context *m, double margin) {
+int brunt_augury_near_find(brunt_augury_near *near, const brunt_contact_context *m, double margin, brunt_error *error) {
     const brunt_contact_surface *s = m->surface;
     const int axis = sweep_axis(s);
     near->count = 0;
-    if (sort_bodies(near, s, axis)) return -1;
+    if (sort_bodies(near, s, axis, error)) return BRUNT_FAILED;
     for (int32_t u = 0; u < near->order_count; u++) {
         const int32_t i = near->order[u];
         if (!s->active[i] || s->node_range[i + 1] == s->node_range[i]) continue;
@@ -79,12 +79,12 @@ int brunt_augury_near_find(brunt_augury_near *near, const brunt_contact_context 
             const int32_t pair = brunt_pair_of(m->pair_map, p, q);
             if (pair < 0 || m->pairs[pair].method != BRUNT_CONTACT_AUGURY) continue;
             size_t n = (size_t)near->count;
-            if (BRUNT_RESERVE(near->found, n + 1, n)) return -1;
+            if (BRUNT_ROOM(near->found, n + 1, n, "pairs of bodies near each other", error)) return BRUNT_FAILED;
             near->found[near->count++] = (brunt_augury_neighbours){pair, p < q ? i : o, p < q ? o : i};
         }
     }
     if (near->count > 1) qsort(near->found, (size_t)near->count, sizeof *near->found, compare);
-    return 0;
+    return BRUNT_OK;
 }
 
 // ------------------------------------------------------------------------------------------ points
@@ -117,15 +117,18 @@ static void bound_runs(void *context, int64_t begin, int64_t end, int worker) {
     }
 }
 
-int brunt_augury_near_runs(brunt_augury_near *near, const brunt_contact_surface *s, int threads, brunt_timer *timer) {
+int brunt_augury_near_runs(brunt_augury_near *near, const brunt_contact_surface *s, int threads, brunt_timer *timer,
+                           brunt_error *error) {
     size_t nodes = (size_t)(s->node_count / RUN + s->fem_count + 1),
            faces = (size_t)(s->face_count / RUN + s->fem_count + 1);
-    if (BRUNT_RESERVE(near->node_run, nodes, 0) || BRUNT_RESERVE(near->face_run, faces, 0)) return -1;
+    if (BRUNT_ROOM(near->node_run, nodes, 0, "boxes about nodes", error) ||
+        BRUNT_ROOM(near->face_run, faces, 0, "boxes about faces", error))
+        return BRUNT_FAILED;
     bound_job node = {s->x, s->node_range, s, near->node_run};
     bound_job face = {s->face_centre, s->face_range, s, near->face_run};
     brunt_parallel(threads, s->fem_count, GRAIN, bound_runs, &node, timer);
     brunt_parallel(threads, s->fem_count, GRAIN, bound_runs, &face, timer);
-    return 0;
+    return BRUNT_OK;
 }
 
 static bool apart(const brunt_augury_box *u, const brunt_augury_box *v, int dim) {

@@ -27,12 +27,12 @@ static inline int brunt_augury_body(const brunt_contact_surface *surface, int k)
     return surface->body[surface->node_range[k]];
 }
 
-// Active bodies with a pair of method augury that come closer than `margin` [m] by their boxes. 0, or -1: out of
-// memory.
-int brunt_augury_near_find(brunt_augury_near *near, const brunt_contact_context *m, double margin);
+// Active bodies with a pair of method augury that come closer than `margin` [m] by their boxes. BRUNT_OK, or
+// BRUNT_FAILED: out of memory.
+int brunt_augury_near_find(brunt_augury_near *near, const brunt_contact_context *m, double margin, brunt_error *error);
 // Boxes of runs, once a step, before the next.
 int brunt_augury_near_runs(brunt_augury_near *near, const brunt_contact_surface *surface, int threads,
-                           brunt_timer *timer);
+                           brunt_timer *timer, brunt_error *error);
 
 // Called with each point of a body's surface inside a box; returns 0 to go on.
 typedef int brunt_augury_visit_fn(void *context, int32_t item, const double x[3]);

@@ -1,10 +1,10 @@
 #include "contact/methods/augury_work.h"
 
+#include "base/array.h"
 #include "base/memory.h"
 
-brunt_augury_workspace *brunt_augury_work(brunt_augury_workspace **work) {
-    if (!*work) *work = brunt_alloc(sizeof **work);
-    return *work;
+brunt_augury_workspace *brunt_augury_work(brunt_augury_workspace **work, brunt_error *error) {
+    return *work || !BRUNT_NEW(*work, 1, "room for augury", error) ? *work : NULL;
 }
 
 void brunt_augury_workspace_free(brunt_augury_workspace *work) {

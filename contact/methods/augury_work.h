@@ -17,6 +17,6 @@ struct brunt_augury_workspace {
 };
 
 // The workspace, made when there is none. NULL: out of memory.
-brunt_augury_workspace *brunt_augury_work(brunt_augury_workspace **work);
+brunt_augury_workspace *brunt_augury_work(brunt_augury_workspace **work, brunt_error *error);
 void brunt_averaged_work_free(brunt_averaged_work *averaged);
 void brunt_published_work_free(brunt_published_work *published);

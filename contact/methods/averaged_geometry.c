@@ -11,15 +11,15 @@ static const double DEEPEST = 1.5; // [cells] beyond it a node is taken to be on
 typedef struct adder {
     brunt_augury_grid *grid;
     brunt_augury_cloud *cloud;
+    brunt_error *error;
 } adder;
 
 static int add_point(void *context, int32_t item, const double x[3]) {
     adder *to = context;
-    return brunt_augury_cloud_add(to->grid, to->cloud, item, x);
+    return brunt_augury_cloud_add(to->grid, to->cloud, item, x, to->error);
 }
 
-// Points of each body within reach of the other's box. 1 when there are some of each, 0, or -1: out of memory.
-int brunt_averaged_collect(averaged_job *j, int a, int b) {
+int brunt_averaged_collect(averaged_job *j, int a, int b, bool *some, brunt_error *error) {
     brunt_augury_workspace *w = j->w;
     const brunt_contact_surface *s = j->surface;
     const double reach = REACH * j->m->cell;
@@ -29,18 +29,18 @@ int brunt_averaged_collect(averaged_job *j, int a, int b) {
         const int of = c % 2 ? b : a, other = c % 2 ? a : b;
         brunt_augury_box box;
         for (int k = 0; k < 3; k++) box.low[k] = s->low[other][k] - reach, box.high[k] = s->high[other][k] + reach;
-        adder to = {&w->grid, &w->cloud[c]};
-        if (brunt_augury_near_visit(&w->near, s, of, c >= 2, &box, add_point, &to)) return -1;
-        if (!w->cloud[c].count) return 0;
+        adder to = {&w->grid, &w->cloud[c], error};
+        if (brunt_augury_near_visit(&w->near, s, of, c >= 2, &box, add_point, &to)) return BRUNT_FAILED;
+        if (!(*some = w->cloud[c].count > 0)) return BRUNT_OK;
     }
-    return brunt_augury_grid_finish(&w->grid, w->cloud, 4) ? -1 : 1;
+    return brunt_augury_grid_finish(&w->grid, w->cloud, 4, error);
 }
 
 // Most points near a box are not near the body in it: blocks from which no node is reached that faces of both reach are
 // left out throughout.
-static int mark_blocks(averaged_job *j) {
+static int mark_blocks(averaged_job *j, brunt_error *error) {
     const brunt_augury_grid *grid = &j->w->grid;
-    if (NEED(j->work, visitors, grid->block_count, 0)) return -1;
+    if (NEED(j->work, visitors, grid->block_count, 0, "blocks of the contact grid", error)) return BRUNT_FAILED;
     uint8_t *mark = j->work->visitors;
     memset(mark, 0, (size_t)grid->block_count);
     for (int round = 0; round < 2; round++)
@@ -56,7 +56,7 @@ static int mark_blocks(averaged_job *j) {
                     mark[b] |= 4;
             }
         }
-    return 0;
+    return BRUNT_OK;
 }
 
 static bool is_near(const averaged_job *j, const brunt_augury_point *p) { return j->work->visitors[p->block] & 4; }
@@ -158,11 +158,12 @@ void brunt_averaged_scatter(averaged_job *j, int cloud, brunt_augury_scatter_fn 
     brunt_augury_scatter(&j->w->grid, &j->w->cloud[cloud], each, j, j->m->threads, j->m->timer);
 }
 
-// The grid nodes where the two meet, and the direction there. 1 when there are any, 0, or -1: out of memory.
-int brunt_averaged_orient(averaged_job *j) {
+int brunt_averaged_orient(averaged_job *j, bool *some, brunt_error *error) {
     brunt_averaged_work *work = j->work;
     const int32_t nodes = j->w->grid.block_count * j->w->grid.block_nodes;
-    if (NEED(work, sums, 2 * nodes, 0) || NEED(work, shared_of, nodes, 0) || mark_blocks(j)) return -1;
+    if (NEED(work, sums, 2 * nodes, 0, "nodes of the contact grid", error) ||
+        NEED(work, shared_of, nodes, 0, "nodes of the contact grid", error) || mark_blocks(j, error))
+        return BRUNT_FAILED;
     memset(work->sums, 0, 2 * (size_t)nodes * sizeof *work->sums);
     for (int b = 0; b < 2; b++) brunt_averaged_scatter(j, 2 + b, add_faces);
     work->shared_count = 0;
@@ -171,9 +172,11 @@ int brunt_averaged_orient(averaged_job *j) {
         double d[3];
         work->shared_of[i] = -1;
         if (s[0].of[0] == 0 || s[1].of[0] == 0 || !direction(s, d)) continue;
-        if (NEED(work, shared, work->shared_count + 1, work->shared_count) ||
-            NEED(work, heading, work->shared_count + 1, work->shared_count))
-            return -1;
+        if (NEED(work, shared, work->shared_count + 1, work->shared_count,
+                 "nodes of the contact grid that bodies share", error) ||
+            NEED(work, heading, work->shared_count + 1, work->shared_count,
+                 "nodes of the contact grid that bodies share", error))
+            return BRUNT_FAILED;
         shared_node *n = &work->shared[work->shared_count];
         *n = (shared_node){.x = {0}};
         work->heading[work->shared_count] = (heading){{d[0], d[1], d[2]}};
@@ -181,12 +184,12 @@ int brunt_averaged_orient(averaged_job *j) {
         work->shared_of[i] = work->shared_count++;
         s[0] = s[1] = (surface_sums){0};
     }
-    if (!work->shared_count) return 0;
+    *some = false;
+    if (!work->shared_count) return BRUNT_OK;
     for (int b = 0; b < 2; b++) brunt_averaged_scatter(j, 2 + b, refine_faces);
-    bool any = false;
     for (int32_t i = 0; i < nodes; i++)
-        if (work->shared_of[i] >= 0) any |= direction(&work->sums[2 * i], work->heading[work->shared_of[i]].d);
-    return any;
+        if (work->shared_of[i] >= 0) *some |= direction(&work->sums[2 * i], work->heading[work->shared_of[i]].d);
+    return BRUNT_OK;
 }
 
 // Facing surfaces and masses.

@@ -34,31 +34,33 @@ void brunt_averaged_work_free(brunt_averaged_work *work) {
     brunt_free(work);
 }
 
-// Slot of a node that may change.
-static int32_t touch(averaged_job *j, int32_t node) {
+// Slot of a node that may change. BRUNT_NONE: out of memory.
+static int32_t touch(averaged_job *j, int32_t node, brunt_error *error) {
     brunt_averaged_work *work = j->work;
     if (work->touched_of[node] >= 0) return work->touched_of[node];
-    if (NEED(work, touched, work->touched_count + 1, work->touched_count)) return -1;
+    if (NEED(work, touched, work->touched_count + 1, work->touched_count, "nodes that contact may change", error))
+        return BRUNT_NONE;
     changed_node *t = &work->touched[work->touched_count];
     *t = (changed_node){.node = node};
     memcpy(t->before, j->surface->v[node], sizeof t->before);
     return work->touched_of[node] = work->touched_count++;
 }
 
-static int touch_face(averaged_job *j, int32_t face) {
+static int touch_face(averaged_job *j, int32_t face, brunt_error *error) {
     brunt_averaged_work *work = j->work;
-    if (work->face_of[face] >= 0) return 0;
-    if (NEED(work, face, work->face_count + 1, work->face_count)) return -1;
+    if (work->face_of[face] >= 0) return BRUNT_OK;
+    if (NEED(work, face, work->face_count + 1, work->face_count, "faces that contact may change", error))
+        return BRUNT_FAILED;
     work->face[work->face_count].face = face;
     brunt_averaged_make_facets(j->surface, &work->face[work->face_count]);
     work->face_of[face] = work->face_count++;
     for (int k = 0; k < 4 && j->surface->face[face][k] >= 0; k++)
-        if (touch(j, j->surface->face[face][k]) < 0) return -1;
-    return 0;
+        if (touch(j, j->surface->face[face][k], error) < 0) return BRUNT_FAILED;
+    return BRUNT_OK;
 }
 
-// Everything that may change, body by body. 0, or -1: out of memory.
-static int touch_all(averaged_job *j) {
+// Everything that may change, body by body.
+static int touch_all(averaged_job *j, brunt_error *error) {
     brunt_averaged_work *work = j->work;
     const brunt_contact_surface *s = j->surface;
     work->touched_count = work->face_count = 0;
@@ -67,18 +69,18 @@ static int touch_all(averaged_job *j) {
         for (int32_t k = j->node_first[b]; k < j->node_first[b + 1]; k++) {
             averaged_node *p = &work->averaged_node[k];
             if (!p->master_count && !p->meets) continue;
-            if ((p->touched = touch(j, p->node)) < 0) return -1;
+            if ((p->touched = touch(j, p->node, error)) < 0) return BRUNT_FAILED;
             work->touched[p->touched].master = p->master_count > 0;
             if (!j->affine || !p->master_count) continue;
             for (int32_t q = s->face_first[p->node]; q < s->face_first[p->node + 1]; q++) {
-                if (touch_face(j, s->face_of[q])) return -1;
+                if (touch_face(j, s->face_of[q], error)) return BRUNT_FAILED;
                 const used_face *f = &work->face[work->face_of[s->face_of[q]]];
                 for (int c = 0; c < f->facet_count; c++) work->touched[p->touched].area += f->facet[c].weight;
             }
         }
     }
     j->touched_first[2] = work->touched_count, j->face_first[2] = work->face_count;
-    return 0;
+    return BRUNT_OK;
 }
 
 static void untouch_all(brunt_averaged_work *work) {
@@ -146,13 +148,14 @@ static void repair_moment(averaged_job *j) {
     }
 }
 
-// Notes what was done. 0, or -1: out of memory.
-static int remember_pair(averaged_job *j, const brunt_augury_neighbours *near) {
+// Notes what was done.
+static int remember_pair(averaged_job *j, const brunt_augury_neighbours *near, brunt_error *error) {
     brunt_averaged_work *work = j->work;
     const brunt_contact_surface *s = j->surface;
-    if (NEED(work, impulse, work->impulse_count + work->touched_count, work->impulse_count) ||
-        NEED(work, pair_account, work->pair_account_count + 1, work->pair_account_count))
-        return -1;
+    if (NEED(work, impulse, work->impulse_count + work->touched_count, work->impulse_count, "impulses on nodes",
+             error) ||
+        NEED(work, pair_account, work->pair_account_count + 1, work->pair_account_count, "accounts of pairs", error))
+        return BRUNT_FAILED;
     pair_account *d = &work->pair_account[work->pair_account_count];
     *d = (pair_account){.pair = near->pair, .first = work->impulse_count, .body_b = brunt_augury_body(s, near->b)};
     for (int32_t k = 0; k < work->touched_count; k++) {
@@ -176,31 +179,33 @@ static int remember_pair(averaged_job *j, const brunt_augury_neighbours *near) {
     d->area = fmax(area[0], area[1]);
     d->end = work->impulse_count;
     work->pair_account_count += d->end > d->first;
-    return 0;
+    return BRUNT_OK;
 }
 
-static int meet_pair(averaged_job *j, const brunt_augury_neighbours *near) {
+static int meet_pair(averaged_job *j, const brunt_augury_neighbours *near, brunt_error *error) {
     brunt_averaged_work *work = j->work;
     j->friction = j->m->pairs[near->pair].friction;
-    int some = brunt_averaged_collect(j, near->a, near->b);
-    if (some > 0) some = brunt_averaged_orient(j);
-    if (some <= 0) return some;
+    bool some = false;
+    if (brunt_averaged_collect(j, near->a, near->b, &some, error)) return BRUNT_FAILED;
+    if (some && brunt_averaged_orient(j, &some, error)) return BRUNT_FAILED;
+    if (!some) return BRUNT_OK;
     brunt_averaged_face(j);
     j->node_first[0] = 0;
     j->node_first[1] = j->w->cloud[0].count;
     j->node_first[2] = j->node_first[1] + j->w->cloud[1].count;
-    if (NEED(work, averaged_node, j->node_first[2], 0) ||
-        NEED(work, entries, 2 * STENCIL * (size_t)j->node_first[2], 0))
-        return -1;
+    if (NEED(work, averaged_node, j->node_first[2], 0, "nodes near the other body", error) ||
+        NEED(work, entries, 2 * STENCIL * (size_t)j->node_first[2], 0, "grid nodes about nodes near the other body",
+             error))
+        return BRUNT_FAILED;
     brunt_averaged_run(j, j->node_first[2], brunt_averaged_list_entries);
-    int status = touch_all(j);
+    int status = touch_all(j, error);
     // Two sweeps in a row without work: nothing will change any more.
     for (int k = 0, idle = 0; !status && k < j->m->iterations && idle < 2; k++) {
         j->master = (k + j->m->step) % 2 != 0;
         idle = brunt_averaged_sweep(j) ? 0 : idle + 1;
     }
     if (!status && !j->affine && !work->fixed[near->a] && !work->fixed[near->b]) repair_moment(j);
-    if (!status) status = remember_pair(j, near);
+    if (!status) status = remember_pair(j, near, error);
     untouch_all(work);
     return status;
 }
@@ -217,17 +222,18 @@ static void find_fixed(void *context, int64_t begin, int64_t end, int worker) {
     }
 }
 
-static int prepare(averaged_job *j) {
+static int prepare(averaged_job *j, brunt_error *error) {
     brunt_averaged_work *work = j->work;
     const brunt_contact_surface *s = j->surface;
-    if (NEED(work, touched_of, s->node_count, work->marked_nodes) ||
-        NEED(work, face_of, s->face_count, work->marked_faces) || NEED(work, fixed, s->fem_count, 0))
-        return -1;
+    if (NEED(work, touched_of, s->node_count, work->marked_nodes, "nodes of surfaces", error) ||
+        NEED(work, face_of, s->face_count, work->marked_faces, "faces of surfaces", error) ||
+        NEED(work, fixed, s->fem_count, 0, "bodies with surfaces", error))
+        return BRUNT_FAILED;
     for (; work->marked_nodes < s->node_count; work->marked_nodes++) work->touched_of[work->marked_nodes] = -1;
     for (; work->marked_faces < s->face_count; work->marked_faces++) work->face_of[work->marked_faces] = -1;
     work->impulse_count = work->pair_account_count = 0;
     brunt_parallel(j->m->threads, s->fem_count, 1, find_fixed, j, j->m->timer);
-    return brunt_augury_near_runs(&j->w->near, s, j->m->threads, j->m->timer);
+    return brunt_augury_near_runs(&j->w->near, s, j->m->threads, j->m->timer, error);
 }
 
 static void account_pairs(const averaged_job *j) {
@@ -245,16 +251,17 @@ static void account_pairs(const averaged_job *j) {
     }
 }
 
-int brunt_augury_surface(const brunt_contact_context *m, bool affine, brunt_augury_workspace **work) {
-    brunt_augury_workspace *w = brunt_augury_work(work);
-    if (!w) return -1;
-    if (!w->averaged && !(w->averaged = brunt_alloc(sizeof *w->averaged))) return -1;
-    if (brunt_augury_near_find(&w->near, m, REACH * m->cell)) return -1;
-    if (!w->near.count) return 0;
+int brunt_augury_surface(const brunt_contact_context *m, bool affine, brunt_augury_workspace **work,
+                         brunt_error *error) {
+    brunt_augury_workspace *w = brunt_augury_work(work, error);
+    if (!w) return BRUNT_FAILED;
+    if (!w->averaged && BRUNT_NEW(w->averaged, 1, "room for averaged surfaces", error)) return BRUNT_FAILED;
+    if (brunt_augury_near_find(&w->near, m, REACH * m->cell, error)) return BRUNT_FAILED;
+    if (!w->near.count) return BRUNT_OK;
     averaged_job j = {.m = m, .surface = m->surface, .w = w, .work = w->averaged, .affine = affine};
-    if (prepare(&j)) return -1;
+    if (prepare(&j, error)) return BRUNT_FAILED;
     for (int32_t k = 0; k < w->near.count; k++)
-        if (meet_pair(&j, &w->near.found[k])) return -1;
+        if (meet_pair(&j, &w->near.found[k], error)) return BRUNT_FAILED;
     account_pairs(&j);
-    return 0;
+    return BRUNT_OK;
 }

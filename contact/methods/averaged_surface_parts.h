@@ -115,7 +115,8 @@ typedef struct averaged_job {
     int master; // this sweep
 } averaged_job;
 
-#define NEED(work, name, count, keep) BRUNT_RESERVE((work)->name, (size_t)(count) + 1, (size_t)(keep))
+#define NEED(work, name, count, keep, what, error)                                                                     \
+    BRUNT_ROOM((work)->name, (size_t)(count) + 1, (size_t)(keep), what, error)
 
 static inline double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 static inline double normalise(double a[3]) {
@@ -146,10 +147,12 @@ static inline void give_impulse(const averaged_job *j, changed_node *t, const do
 }
 
 // --- averaged_geometry.c: where the two bodies of a pair meet, and their surfaces there
-// Points of each body within reach of the other's box. 1 when there are some of each, 0, or -1: out of memory.
-int brunt_averaged_collect(averaged_job *j, int a, int b);
-// The grid nodes where the two meet, and the direction there. 1 when there are any, 0, or -1: out of memory.
-int brunt_averaged_orient(averaged_job *j);
+// Points of each body within reach of the other's box, if there are `some` of each. BRUNT_OK, or BRUNT_FAILED: out of
+// memory.
+int brunt_averaged_collect(averaged_job *j, int a, int b, bool *some, brunt_error *error);
+// The grid nodes where the two meet, and the direction there, if there are `some`. BRUNT_OK, or BRUNT_FAILED: out of
+// memory.
+int brunt_averaged_orient(averaged_job *j, bool *some, brunt_error *error);
 // Facing surfaces and masses.
 void brunt_averaged_face(averaged_job *j);
 // What each node of the two has of the grid, as master and as slave, and where it meets a surface.

@@ -34,8 +34,12 @@ typedef struct shared_slot {
 // Slots with the same coordinate: entries first .. first+count-1, and where their pairs' actions are collected.
 typedef struct group {
     int32_t first, count, action;
-    bool over_limit, out_of_memory; // too many bodies, too little memory at one of its nodes
 } group;
+// Of each thread: two bodies near a node, and what went wrong at one of its nodes.
+typedef struct thread_work {
+    brunt_extent_cloud cloud[2];
+    brunt_error error;
+} thread_work;
 
 typedef struct box {
     int32_t low[3], high[3];
@@ -60,8 +64,8 @@ struct brunt_contact_workspace {
     brunt_impulse_account *actions;
     size_t actions_capacity;
     int32_t action_count;
-    brunt_extent_cloud (*clouds)[2]; // of each thread: two bodies near a node
-    int cloud_count;
+    thread_work *thread;
+    int thread_count;
 };
 
 typedef struct job {
@@ -78,9 +82,9 @@ void brunt_contact_workspace_free(brunt_contact_workspace *workspace) {
     brunt_free(workspace->shared);
     brunt_free(workspace->groups);
     brunt_free(workspace->actions);
-    for (int t = 0; t < workspace->cloud_count; t++)
-        for (int k = 0; k < 2; k++) brunt_extent_cloud_free(&workspace->clouds[t][k]);
-    brunt_free(workspace->clouds);
+    for (int t = 0; t < workspace->thread_count; t++)
+        for (int k = 0; k < 2; k++) brunt_extent_cloud_free(&workspace->thread[t].cloud[k]);
+    brunt_free(workspace->thread);
     brunt_free(workspace);
 }
 
@@ -127,23 +131,27 @@ static int compare_low(const void *a, const void *b) {
     return (u->body > v->body) - (u->body < v->body);
 }
 
-// Slots of a body inside the box of another. 0, or -1: out of memory.
-static int share_slots(const job *j, int body, int other) {
+// Slots of a body inside the box of another.
+static int share_slots(const job *j, int body, int other, brunt_error *error) {
     brunt_contact_workspace *w = j->w;
     const brunt_grid *grid = &j->bodies[body].grid;
-    if (BRUNT_RESERVE(w->shared, (size_t)(w->shared_count + grid->slot_count), (size_t)w->shared_count)) return -1;
+    if (BRUNT_ROOM(w->shared, (size_t)(w->shared_count + grid->slot_count), (size_t)w->shared_count,
+                   "blocks of nodes that bodies share", error))
+        return BRUNT_FAILED;
     for (int32_t s = 0; s < grid->slot_count; s++)
         if (inside(&w->bounds[other], grid->slots[s].coord))
             w->shared[w->shared_count++] = (shared_slot){grid->slot_key[s], body, s};
-    return 0;
+    return BRUNT_OK;
 }
 
 // Of each two bodies that may touch and whose boxes overlap, the slots in there: boxes by their low ends, so that of
-// many bodies only those that overlap along the first axis are looked at. 0, or -1: out of memory.
-static int find_shared(job *j) {
+// many bodies only those that overlap along the first axis are looked at.
+static int find_shared(job *j, brunt_error *error) {
     brunt_contact_workspace *w = j->w;
     const int n = j->m->mpm_count;
-    if (BRUNT_RESERVE(w->bounds, (size_t)n, 0) || BRUNT_RESERVE(w->lows, (size_t)n, 0)) return -1;
+    if (BRUNT_ROOM(w->bounds, (size_t)n, 0, "bodies of material points", error) ||
+        BRUNT_ROOM(w->lows, (size_t)n, 0, "bodies of material points", error))
+        return BRUNT_FAILED;
     for (int b = 0; b < n; b++) {
         w->bounds[b] = slot_bounds(&j->bodies[b].grid);
         w->lows[b] = (body_low){w->bounds[b].low[0], b};
@@ -154,35 +162,35 @@ static int find_shared(job *j) {
         for (int k = i + 1; k < n && w->lows[k].low <= w->bounds[a].high[0]; k++) {
             const int b = w->lows[k].body;
             if (!overlap(&w->bounds[a], &w->bounds[b]) || pair_between(j, a, b) < 0) continue;
-            if (share_slots(j, a, b) || share_slots(j, b, a)) return -1;
+            if (share_slots(j, a, b, error) || share_slots(j, b, a, error)) return BRUNT_FAILED;
         }
     }
-    return 0;
+    return BRUNT_OK;
 }
 
-// Slots that bodies share, sorted; then those that really coincide. 0, or -1: out of memory.
-static int find_groups(job *j) {
+// Slots that bodies share, sorted; then those that really coincide.
+static int find_groups(job *j, brunt_error *error) {
     brunt_contact_workspace *w = j->w;
     w->shared_count = w->group_count = w->action_count = 0;
-    if (find_shared(j)) return -1;
-    if (!w->shared_count) return 0;
+    if (find_shared(j, error)) return BRUNT_FAILED;
+    if (!w->shared_count) return BRUNT_OK;
     qsort(w->shared, (size_t)w->shared_count, sizeof *w->shared, compare_shared);
     int32_t unique = 0;
     for (int32_t i = 0; i < w->shared_count; i++)
         if (!unique || compare_shared(&w->shared[i], &w->shared[unique - 1])) w->shared[unique++] = w->shared[i];
     w->shared_count = unique;
-    if (BRUNT_RESERVE(w->groups, (size_t)unique, 0)) return -1;
+    if (BRUNT_ROOM(w->groups, (size_t)unique, 0, "blocks of nodes that bodies share", error)) return BRUNT_FAILED;
     for (int32_t i = 0, next; i < unique; i = next) {
         for (next = i + 1; next < unique && w->shared[next].key == w->shared[i].key; next++) {}
         int32_t count = next - i;
         if (count < 2) continue;
-        w->groups[w->group_count++] = (group){i, count, w->action_count, false, false};
+        w->groups[w->group_count++] = (group){i, count, w->action_count};
         w->action_count += count * (count - 1) / 2;
     }
     const size_t actions = (size_t)(w->action_count + 1);
-    if (BRUNT_RESERVE(w->actions, actions, 0)) return -1;
+    if (BRUNT_ROOM(w->actions, actions, 0, "accounts of blocks that bodies share", error)) return BRUNT_FAILED;
     memset(w->actions, 0, actions * sizeof *w->actions);
-    return 0;
+    return BRUNT_OK;
 }
 
 // ------------------------------------------------------------------------------------------ one node
@@ -233,20 +241,21 @@ static double gap_along(const brunt_extent_cloud *a, const brunt_extent_cloud *b
 // there it finds bodies touching that graze a third of a cell apart, and a block sliding over another is held by its
 // edges. So where the mean normal finds contact, the direction that keeps the bodies farthest apart decides: the one of
 // their true distance, or, when they touch, that between the hulls of the particles' centres, which are apart still.
-// 0 when nothing tells the bodies apart, 1, or -1: out of memory.
-static int make_normal(const job *j, const member *a, const member *b, int node, brunt_extent_cloud cloud[2],
-                       double n[3], double *gap) {
+// Whether anything tells the bodies apart.
+static bool make_normal(const job *j, const member *a, const member *b, int node, thread_work *thread, double n[3],
+                        double *gap) {
+    brunt_extent_cloud *cloud = thread->cloud;
     double ga[3], gb[3], ca[3], cb[3], between[3], approach = 0;
     brunt_extent_gradient(a->body, a->slot, node, ga, ca);
     brunt_extent_gradient(b->body, b->slot, node, gb, cb);
     for (int k = 0; k < 3; k++) n[k] = gb[k] - ga[k], between[k] = cb[k] - ca[k];
-    if (!make_unit(j, a, node, n)) return 0;
-    if (brunt_extent_gather(a->body, a->slot, node, &cloud[0]) ||
-        brunt_extent_gather(b->body, b->slot, node, &cloud[1]))
-        return -1;
+    if (!make_unit(j, a, node, n)) return false;
+    if (brunt_extent_gather(a->body, a->slot, node, &cloud[0], &thread->error) ||
+        brunt_extent_gather(b->body, b->slot, node, &cloud[1], &thread->error))
+        return false;
     for (int k = 0; k < 3; k++) approach += (b->v[k] - a->v[k]) * n[k];
     *gap = gap_along(&cloud[0], &cloud[1], n);
-    if (approach * j->m->dt >= -fmax(*gap, 0) || !make_unit(j, a, node, between)) return 1;
+    if (approach * j->m->dt >= -fmax(*gap, 0) || !make_unit(j, a, node, between)) return true;
     for (int centres = 0; centres <= 1; centres++) {
         double direct[3], found, h = (double)a->body->grid.h;
         if (!(brunt_gjk_distance(&cloud[0], &cloud[1], h, 1 - centres, between, direct) > 0)) continue;
@@ -255,7 +264,7 @@ static int make_normal(const job *j, const member *a, const member *b, int node,
         memcpy(n, direct, sizeof direct);
         break;
     }
-    return 1;
+    return true;
 }
 
 static double relative(const member *members, const node_contact *m, double v[3]) {
@@ -382,13 +391,13 @@ typedef struct node_meeting {
     bool fixed; // something holds one of them
 } node_meeting;
 
-static void find_members(const job *j, group *g, int node, node_meeting *meeting) {
+static void find_members(const job *j, const group *g, int node, thread_work *thread, node_meeting *meeting) {
     for (int32_t i = 0; i < g->count; i++) {
         const shared_slot *s = &j->w->shared[g->first + i];
         real *at = brunt_slot_nodes(&j->bodies[s->body].grid, s->slot) + node * BRUNT_NODE_REALS;
         if (!(at[0] > 0)) continue;
         if (meeting->count == MAX_TOGETHER) {
-            g->over_limit = true;
+            brunt_fail(&thread->error, BRUNT_FAILED, "more than %d bodies meet at one grid node", MAX_TOGETHER);
             meeting->count = 0;
             return;
         }
@@ -397,7 +406,7 @@ static void find_members(const job *j, group *g, int node, node_meeting *meeting
 }
 
 // The contact of members a and b, if they meet there.
-static void add_contact(const job *j, group *g, int node, int a, int b, brunt_extent_cloud cloud[2],
+static void add_contact(const job *j, const group *g, int node, int a, int b, thread_work *thread,
                         node_meeting *meeting) {
     const member *one = &meeting->members[a], *other = &meeting->members[b];
     const int32_t pair = pair_between(j, (int)(one->body - j->bodies), (int)(other->body - j->bodies));
@@ -410,9 +419,7 @@ static void add_contact(const job *j, group *g, int node, int a, int b, brunt_ex
                         .friction = j->m->pairs[pair].friction,
                         .tied = j->m->pairs[pair].method == BRUNT_CONTACT_TIED};
     double gap = 0;
-    const int known = m->tied ? 1 : make_normal(j, one, other, node, cloud, m->n, &gap);
-    if (known < 0) g->out_of_memory = true;
-    if (known <= 0) return;
+    if (!m->tied && !make_normal(j, one, other, node, thread, m->n, &gap)) return;
     m->target = -fmax(gap, 0) / j->m->dt;
     weigh_contact(one, other, m);
     meeting->fixed |= one->fixed || other->fixed;
@@ -450,16 +457,16 @@ static void account_contact(const job *j, const group *g, int node, const double
         brunt_impulse_account_book(action, &action->friction_loss, friction_impulse, x, old, now, rest);
 }
 
-static void meet_at_node(const job *j, group *g, int node, brunt_extent_cloud cloud[2]) {
+static void meet_at_node(const job *j, const group *g, int node, thread_work *thread) {
     if (j->axis && from_axis(j, &j->w->shared[g->first], node) < 0) return;
     node_meeting meeting;
     meeting.count = meeting.contact_count = 0, meeting.fixed = false;
-    find_members(j, g, node, &meeting);
+    find_members(j, g, node, thread, &meeting);
     if (meeting.count < 2) return;
     double scale = 0;
     for (int i = 0; i < meeting.count; i++) {
         for (int a = 0; a < j->bodies[0].grid.dim; a++) scale = fmax(scale, fabs(meeting.members[i].v[a]));
-        for (int k = i + 1; k < meeting.count; k++) add_contact(j, g, node, i, k, cloud, &meeting);
+        for (int k = i + 1; k < meeting.count; k++) add_contact(j, g, node, i, k, thread, &meeting);
     }
     if (!meeting.contact_count) return;
     solve_meeting(&meeting, scale);
@@ -477,27 +484,29 @@ static void meet_blocks(void *context, int64_t begin, int64_t end, int worker) {
     const job *j = context;
     for (int64_t q = begin; q < end; q++)
         for (int node = 0; node < BRUNT_BLOCK_NODES; node++)
-            meet_at_node(j, &j->w->groups[q], node, j->w->clouds[worker]);
+            meet_at_node(j, &j->w->groups[q], node, &j->w->thread[worker]);
 }
 
-static int make_clouds(brunt_contact_workspace *w, int threads) {
-    if (w->cloud_count >= threads) return 0;
-    w->clouds = brunt_alloc(sizeof *w->clouds * (size_t)threads);
-    w->cloud_count = w->clouds ? threads : 0;
-    return w->clouds ? 0 : -1;
+static int make_threads(brunt_contact_workspace *w, int threads, brunt_error *error) {
+    if (w->thread_count >= threads) return BRUNT_OK;
+    const int status = BRUNT_NEW(w->thread, threads, "threads that meet at grid nodes", error);
+    w->thread_count = status ? 0 : threads;
+    return status;
 }
 
-int brunt_grid_velocity_apply(const brunt_contact_context *m, brunt_contact_workspace **workspace) {
-    if (!*workspace) *workspace = brunt_alloc(sizeof **workspace);
-    if (!*workspace || make_clouds(*workspace, m->threads)) return -1;
+int brunt_grid_velocity_apply(const brunt_contact_context *m, brunt_contact_workspace **workspace, brunt_error *error) {
+    if (!*workspace && BRUNT_NEW(*workspace, 1, "room for contact at grid nodes", error)) return BRUNT_FAILED;
+    if (make_threads(*workspace, m->threads, error)) return BRUNT_FAILED;
     job j = {.m = m, .bodies = m->mpm, .w = *workspace};
     for (int k = 0; k < m->mirror_count; k++)
         if (m->mirrors[k].wall < 0) j.axis = &m->mirrors[k];
-    if (find_groups(&j)) return -1;
+    if (find_groups(&j, error)) return BRUNT_FAILED;
+    for (int t = 0; t < m->threads; t++) j.w->thread[t].error.code = BRUNT_OK;
     brunt_parallel(m->threads, j.w->group_count, 1, meet_blocks, &j, m->timer);
+    for (int t = 0; t < m->threads; t++)
+        if (brunt_hand_on(error, &j.w->thread[t].error)) return BRUNT_FAILED;
     for (int32_t q = 0; q < j.w->group_count; q++) {
         const group *g = &j.w->groups[q];
-        if (g->over_limit || g->out_of_memory) return g->over_limit ? -2 : -1;
         int at = g->action;
         for (int32_t i = 0; i < g->count; i++)
             for (int32_t k = i + 1; k < g->count; k++, at++) {
@@ -505,5 +514,5 @@ int brunt_grid_velocity_apply(const brunt_contact_context *m, brunt_contact_work
                 if (pair >= 0) brunt_impulse_account_add(&m->pairs[pair].last, &j.w->actions[at]);
             }
     }
-    return 0;
+    return BRUNT_OK;
 }

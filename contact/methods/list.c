@@ -12,25 +12,25 @@ static void mark_all(const brunt_contact_context *m) {
     for (int k = 0; k < m->surface->fem_count; k++) m->surface->active[k] = true;
 }
 
-static int act_published(const brunt_contact_context *m, brunt_contact_work *work) {
+static int act_published(const brunt_contact_context *m, brunt_contact_work *work, brunt_error *error) {
     brunt_augury_workspace *kept = work->memory;
-    const int status = brunt_augury_paper(m, work->def->transfer, &kept);
+    const int status = brunt_augury_paper(m, work->def->transfer, &kept, error);
     work->memory = kept;
     return status;
 }
 
-static int act_averaged(const brunt_contact_context *m, brunt_contact_work *work) {
+static int act_averaged(const brunt_contact_context *m, brunt_contact_work *work, brunt_error *error) {
     brunt_augury_workspace *kept = work->memory;
-    const int status = brunt_augury_surface(m, work->def->form == BRUNT_AUGURY_SMOOTH, &kept);
+    const int status = brunt_augury_surface(m, work->def->form == BRUNT_AUGURY_SMOOTH, &kept, error);
     work->memory = kept;
     return status;
 }
 
 static void free_augury(void *memory) { brunt_augury_workspace_free(memory); }
 
-static int act_on_grid(const brunt_contact_context *m, brunt_contact_work *work) {
+static int act_on_grid(const brunt_contact_context *m, brunt_contact_work *work, brunt_error *error) {
     brunt_surface_on_grid *kept = work->memory;
-    const int status = brunt_surface_on_grid_meet(m, work->grid_sweeps, &kept);
+    const int status = brunt_surface_on_grid_meet(m, work->grid_sweeps, &kept, error);
     work->memory = kept;
     return status;
 }
@@ -42,17 +42,19 @@ static void account_on_grid(const brunt_contact_context *m, const brunt_contact_
 static void free_on_grid(void *memory) { brunt_surface_on_grid_free(memory); }
 
 // Constraints at facets, and those at planes, which any surface may meet: solved together.
-static int act_at_facets(const brunt_contact_context *m, brunt_contact_work *work) {
+static int act_at_facets(const brunt_contact_context *m, brunt_contact_work *work, brunt_error *error) {
     brunt_constraint_set *set = work->constraints;
     brunt_node_to_facet *facets = *work->node_to_facet;
     brunt_constraints_clear(set);
     for (int w = 0; w < m->wall_count; w++)
-        if (m->walls[w].kind->meet_surface && m->walls[w].kind->meet_surface(m, &m->walls[w], facets, set)) return -1;
-    if (work->facets && brunt_node_to_facet_find(m, m->mpm, m->mpm_count, facets, set)) return -1;
-    if (brunt_constraints_solve(set, work->sweeps, work->def->tolerance, m->threads, m->timer) < 0) return -1;
+        if (m->walls[w].kind->meet_surface && m->walls[w].kind->meet_surface(m, &m->walls[w], facets, set, error))
+            return BRUNT_FAILED;
+    if (work->facets && brunt_node_to_facet_find(m, m->mpm, m->mpm_count, facets, set, error)) return BRUNT_FAILED;
+    if (brunt_constraints_solve(set, work->sweeps, work->def->tolerance, m->threads, m->timer, error))
+        return BRUNT_FAILED;
     brunt_node_to_facet_account_fixed(m, facets, set);
     brunt_node_to_facet_finish(m, m->mpm, facets, set);
-    return 0;
+    return BRUNT_OK;
 }
 
 #define METHOD(name) (1u << BRUNT_CONTACT_##name)

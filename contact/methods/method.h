@@ -34,8 +34,8 @@ typedef struct brunt_contact_row {
     bool (*accepts)(bool mesh_a, bool mesh_b);
     // Marks surfaces as near something beside those that the broad phase marks; NULL: none.
     void (*near)(const brunt_contact_context *m);
-    // Changes the velocities of surfaces and grids; NULL: it has a pass of its own. 0, or -1: out of memory.
-    int (*act)(const brunt_contact_context *m, brunt_contact_work *work);
+    // Changes the velocities of surfaces and grids; NULL: it has a pass of its own. BRUNT_OK, or BRUNT_FAILED.
+    int (*act)(const brunt_contact_context *m, brunt_contact_work *work, brunt_error *error);
     // Accounts and contact state, once all else has acted; NULL: with act.
     void (*account)(const brunt_contact_context *m, const brunt_contact_work *work);
     // Frees what it keeps, which may be NULL.

@@ -235,12 +235,13 @@ static void finish_points(void *context, int64_t begin, int64_t end, int worker)
 
 // The account of each body: the first pair of it whose other body is near, else its first. Where more than two bodies
 // share nodes, where an impulse comes from is not known: the sums are exact, their division among pairs is nominal.
-static int find_pairs(job *j) {
+static int find_pairs(job *j, brunt_error *error) {
     const brunt_contact_context *m = j->m;
     const brunt_contact_surface *s = j->surface;
     brunt_published_work *f = j->filter;
-    if (BRUNT_RESERVE(f->pair, (size_t)s->fem_count + 1, 0) || brunt_augury_near_find(&j->w->near, m, WIDTH * m->cell))
-        return -1;
+    if (BRUNT_ROOM(f->pair, (size_t)s->fem_count + 1, 0, "bodies with surfaces", error) ||
+        brunt_augury_near_find(&j->w->near, m, WIDTH * m->cell, error))
+        return BRUNT_FAILED;
     for (int k = 0; k < s->fem_count; k++) f->pair[k] = -1;
     for (int32_t q = j->w->near.count - 1; q >= 0; q--) {
         const brunt_augury_neighbours *near = &j->w->near.found[q];
@@ -255,11 +256,11 @@ static int find_pairs(job *j) {
                 if (pair >= 0 && m->pairs[pair].method == BRUNT_CONTACT_AUGURY) f->pair[k] = pair;
             }
     }
-    return 0;
+    return BRUNT_OK;
 }
 
-// The grid under all nodes that take part. 0, or -1: out of memory.
-static int make_grid(job *j) {
+// The grid under all nodes that take part.
+static int make_grid(job *j, brunt_error *error) {
     brunt_augury_workspace *w = j->w;
     const brunt_contact_surface *s = j->surface;
     brunt_augury_grid_start(&w->grid, s->dim, WIDTH, j->m->cell);
@@ -267,15 +268,17 @@ static int make_grid(job *j) {
     w->cloud[0].count = 0;
     for (int k = 0; k < s->fem_count; k++)
         for (int32_t n = s->node_range[k]; n < s->node_range[k + 1] && j->filter->pair[k] >= 0; n++)
-            if (brunt_augury_cloud_add(&w->grid, &w->cloud[0], n, s->x[n])) return -1;
-    if (brunt_augury_grid_finish(&w->grid, w->cloud, 1)) return -1;
+            if (brunt_augury_cloud_add(&w->grid, &w->cloud[0], n, s->x[n], error)) return BRUNT_FAILED;
+    if (brunt_augury_grid_finish(&w->grid, w->cloud, 1, error)) return BRUNT_FAILED;
     brunt_published_work *f = j->filter;
     size_t nodes = (size_t)w->grid.block_count * (size_t)w->grid.block_nodes + 1,
            points = (size_t)w->cloud[0].count + 1;
-    if (BRUNT_RESERVE(f->blend, nodes, 0) || BRUNT_RESERVE(f->in, points, 0) || BRUNT_RESERVE(f->delta, points, 0))
-        return -1;
+    if (BRUNT_ROOM(f->blend, nodes, 0, "nodes of the contact grid", error) ||
+        BRUNT_ROOM(f->in, points, 0, "points in the contact grid", error) ||
+        BRUNT_ROOM(f->delta, points, 0, "points in the contact grid", error))
+        return BRUNT_FAILED;
     memset(f->blend, 0, nodes * sizeof *f->blend);
-    return 0;
+    return BRUNT_OK;
 }
 
 // Friction is what the tangential changes cost that Coulomb allows, where a surface is pushed in.
@@ -301,16 +304,17 @@ static void book(job *j) {
     }
 }
 
-int brunt_augury_paper(const brunt_contact_context *m, brunt_transfer transfer, brunt_augury_workspace **work) {
-    brunt_augury_workspace *w = brunt_augury_work(work);
-    if (!w) return -1;
-    if (!w->published && !(w->published = brunt_alloc(sizeof *w->published))) return -1;
+int brunt_augury_paper(const brunt_contact_context *m, brunt_transfer transfer, brunt_augury_workspace **work,
+                       brunt_error *error) {
+    brunt_augury_workspace *w = brunt_augury_work(work, error);
+    if (!w) return BRUNT_FAILED;
+    if (!w->published && BRUNT_NEW(w->published, 1, "room for the published form", error)) return BRUNT_FAILED;
     job j = {.m = m,
              .surface = m->surface,
              .w = w,
              .filter = w->published,
              .affine = transfer == BRUNT_APIC && m->surface->affine};
-    if (find_pairs(&j) || make_grid(&j)) return -1;
+    if (find_pairs(&j, error) || make_grid(&j, error)) return BRUNT_FAILED;
     const int64_t count = w->cloud[0].count;
     brunt_augury_scatter(&w->grid, &w->cloud[0], add_mass, &j, m->threads, m->timer);
     brunt_parallel(m->threads, count, NODE_GRAIN, start_points, &j, m->timer);
@@ -321,5 +325,5 @@ int brunt_augury_paper(const brunt_contact_context *m, brunt_transfer transfer, 
     }
     brunt_parallel(m->threads, count, NODE_GRAIN, finish_points, &j, m->timer);
     book(&j);
-    return 0;
+    return BRUNT_OK;
 }

@@ -100,15 +100,15 @@ static void follow_front(brunt_contact_surface *s) {
 
 // Whether some node of a mesh is met by two bodies. What they squeeze between them passes on in a sweep no more than a
 // share of what its own mass can carry.
-static bool squeezed(brunt_surface_on_grid *w, const brunt_contact_surface *s, bool *found) {
+static int squeezed(brunt_surface_on_grid *w, const brunt_contact_surface *s, bool *found, brunt_error *error) {
     int32_t met = 0;
     *found = false;
     for (int32_t b = 0; b < w->range_count; b++) met += w->range[b].item_end > w->range[b].item;
-    if (met < 2) return true;
-    if (RESERVE(w, met, s->node_count + 1)) return false;
+    if (met < 2) return BRUNT_OK;
+    if (RESERVE(w, met, s->node_count + 1, "nodes of surfaces", error)) return BRUNT_FAILED;
     memset(w->met, 0, (size_t)s->node_count * sizeof *w->met);
     for (int32_t i = 0; i < w->item_count && !*found; i++) *found = w->met[w->item[i].surface]++ > 0;
-    return true;
+    return BRUNT_OK;
 }
 
 static double sweep(job *j) {
@@ -136,29 +136,29 @@ static void scatter_node(const brunt_surface_on_grid *w, int32_t leader, int dim
     }
 }
 
-int brunt_surface_on_grid_meet(const brunt_contact_context *m, int sweeps, brunt_surface_on_grid **work) {
-    if (!*work) *work = brunt_alloc(sizeof **work);
-    if (!*work) return -1;
+int brunt_surface_on_grid_meet(const brunt_contact_context *m, int sweeps, brunt_surface_on_grid **work,
+                               brunt_error *error) {
+    if (!*work && BRUNT_NEW(*work, 1, "room for meshes at the points' grid", error)) return BRUNT_FAILED;
     brunt_surface_on_grid *w = *work;
     job j = {.m = m, .w = w};
     w->range_count = w->link_count = w->item_count = w->contact_count = 0;
-    if (RESERVE(w, range, m->mpm_count + 1)) return -1;
+    if (RESERVE(w, range, m->mpm_count + 1, "bodies of material points", error)) return BRUNT_FAILED;
     for (int b = 0; b < m->mpm_count; b++)
-        if (brunt_surface_on_grid_link(&j, b)) return -1;
-    if (!w->contact_count) return 0;
-    if (brunt_surface_on_grid_sort(w)) return -1;
+        if (brunt_surface_on_grid_link(&j, b, error)) return BRUNT_FAILED;
+    if (!w->contact_count) return BRUNT_OK;
+    if (brunt_surface_on_grid_sort(w, error)) return BRUNT_FAILED;
     for (int32_t b = 0; b < w->range_count; b++) {
-        if (brunt_surface_on_grid_look(&j, b)) return -1;
+        if (brunt_surface_on_grid_look(&j, b, error)) return BRUNT_FAILED;
         if (m->mirror_count) brunt_surface_on_grid_reflect(&j);
     }
     bool two;
-    if (!squeezed(w, m->surface, &two)) return -1;
+    if (squeezed(w, m->surface, &two, error)) return BRUNT_FAILED;
     for (int k = 0; k < (two ? MORE_SWEEPS : 1) * sweeps; k++)
         if (!(sweep(&j) > 0)) break;
     for (int32_t i = 0; i < w->contact_count; i++)
         if (w->contact[i].leader == i) scatter_node(w, i, m->mpm[w->contact[i].mpm].grid.dim);
     follow_front(m->surface);
-    return 0;
+    return BRUNT_OK;
 }
 
 static void account_contact(const job *j, const contact *c) {

@@ -38,8 +38,9 @@ typedef struct brunt_surface_on_grid brunt_surface_on_grid;
 // brunt_surface_bounds and brunt_surface_gather_state, after what sets it.
 void brunt_surface_on_grid_near(const brunt_contact_context *m);
 // Changes the velocities of grid nodes and of the surface, with `sweeps` sweeps; four times as many where two bodies
-// meet one place of a mesh. 0, or -1: out of memory.
-int brunt_surface_on_grid_meet(const brunt_contact_context *m, int sweeps, brunt_surface_on_grid **work);
+// meet one place of a mesh. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_surface_on_grid_meet(const brunt_contact_context *m, int sweeps, brunt_surface_on_grid **work,
+                               brunt_error *error);
 // Accounts and contact state, once all else has acted on the surface's velocities.
 void brunt_surface_on_grid_finish(const brunt_contact_context *m, const brunt_surface_on_grid *work);
 void brunt_surface_on_grid_free(brunt_surface_on_grid *work);

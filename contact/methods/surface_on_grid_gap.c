@@ -16,8 +16,8 @@ static double box_distance(const double box[6], const double x[3]) {
     return square;
 }
 
-// Lists, for each block of the body, the faces of mesh k that come near its particles. 0, or -1: out of memory.
-static int list_faces(job *j, int b, int k) {
+// Lists, for each block of the body, the faces of mesh k that come near its particles.
+static int list_faces(job *j, int b, int k, brunt_error *error) {
     brunt_surface_on_grid *w = j->w;
     const brunt_contact_surface *s = j->m->surface;
     const brunt_body *body = &j->m->mpm[b];
@@ -38,18 +38,19 @@ static int list_faces(job *j, int b, int k) {
                 for (int32_t z = low[2]; z <= high[2]; z++) {
                     const int32_t coord[3] = {x, y, z}, block = brunt_grid_block(grid, brunt_key(coord));
                     if (block < 0) continue;
-                    if (GROW(w, near)) return -1;
+                    if (GROW(w, near, "faces near blocks of particles", error)) return BRUNT_FAILED;
                     w->near[w->near_count++] = (near_face){block, f};
                 }
     }
-    if (RESERVE(w, block_first, grid->block_count + 2) || RESERVE(w, block_face, w->near_count + 1) ||
-        RESERVE(w, touch, body->particles.slots + 1))
-        return -1;
+    if (RESERVE(w, block_first, grid->block_count + 2, "blocks of particles", error) ||
+        RESERVE(w, block_face, w->near_count + 1, "faces near blocks of particles", error) ||
+        RESERVE(w, touch, body->particles.slots + 1, "particles near faces", error))
+        return BRUNT_FAILED;
     memset(w->block_first, 0, ((size_t)grid->block_count + 2) * sizeof *w->block_first);
     for (int32_t q = 0; q < w->near_count; q++) w->block_first[w->near[q].block + 2]++;
     for (int32_t q = 2; q <= grid->block_count + 1; q++) w->block_first[q] += w->block_first[q - 1];
     for (int32_t q = 0; q < w->near_count; q++) w->block_face[w->block_first[w->near[q].block + 1]++] = w->near[q].face;
-    return 0;
+    return BRUNT_OK;
 }
 
 // Faces that may be near the particles of a bin: those of its block, or some of them.
@@ -257,7 +258,7 @@ static double fastest(const job *j) {
 }
 
 // Normals and gaps of all contacts of body b, mesh after mesh.
-int brunt_surface_on_grid_look(job *j, int b) {
+int brunt_surface_on_grid_look(job *j, int b, brunt_error *error) {
     brunt_surface_on_grid *w = j->w;
     const range whole = w->range[b];
     j->range_mpm = b;
@@ -265,14 +266,14 @@ int brunt_surface_on_grid_look(job *j, int b) {
         j->range_fem = w->contact[c].fem;
         for (next = c + 1; next < whole.contact_end && w->contact[next].fem == j->range_fem; next++) {}
         w->search_range = SEARCH * j->m->mpm[b].spacing + MARGIN * fastest(j) * j->m->dt;
-        if (list_faces(j, b, j->range_fem)) return -1;
+        if (list_faces(j, b, j->range_fem, error)) return BRUNT_FAILED;
         brunt_parallel(j->m->threads, j->m->mpm[b].grid.block_count, 1, touch_blocks, j, j->m->timer);
         const range run = {.contact = c, .contact_end = next};
         j->range = &run;
         brunt_parallel(j->m->threads, next - c, GRAIN, prepare_all, j, j->m->timer);
     }
     j->range = &w->range[b];
-    return 0;
+    return BRUNT_OK;
 }
 
 // A node behind a mirror plane sees few particles, or none: it has what its image has, reflected. The one that sees

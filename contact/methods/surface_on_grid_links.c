@@ -50,10 +50,18 @@ void brunt_surface_on_grid_near(const brunt_contact_context *m) {
     }
 }
 
-// The contact of mesh k with body b at a node, made when it is first asked for; -1: the body has no mass there, -2: out
-// of memory.
-static int32_t find_contact(job *j, int b, int k, brunt_pair *pair, int32_t slot, int node) {
+// A surface node, of mesh `fem`, at the grid of body `mpm`.
+typedef struct grid_place {
+    int mpm, fem;
+    int32_t node;
+    brunt_pair *pair;
+} grid_place;
+
+// The contact of a mesh with a body at a node that has mass, made when it is first asked for. BRUNT_NONE: out of
+// memory.
+static int32_t find_contact(job *j, const grid_place *of, int32_t slot, int node, brunt_error *error) {
     brunt_surface_on_grid *w = j->w;
+    const int b = of->mpm, k = of->fem;
     const int32_t number = slot * BRUNT_BLOCK_NODES + node;
     int32_t last = -1, leader = -1;
     for (int32_t c = w->place[number] - 1; c >= 0; c = w->contact[c].next) {
@@ -61,8 +69,7 @@ static int32_t find_contact(job *j, int b, int k, brunt_pair *pair, int32_t slot
         leader = leader < 0 ? c : leader, last = c;
     }
     real *at = j->m->mpm[b].grid.nodes + (size_t)number * BRUNT_NODE_REALS;
-    if (!(at[BRUNT_NODE_MASS] > 0)) return -1;
-    if (GROW(w, contact)) return -2;
+    if (GROW(w, contact, "contacts at grid nodes", error)) return BRUNT_NONE;
     const int32_t made = w->contact_count++;
     contact *c = &w->contact[made];
     *c = (contact){.mpm = b,
@@ -73,7 +80,7 @@ static int32_t find_contact(job *j, int b, int k, brunt_pair *pair, int32_t slot
                    .leader = leader < 0 ? made : leader,
                    .next = -1,
                    .across = {1, 1, 1},
-                   .pair = pair,
+                   .pair = of->pair,
                    .at = at};
     for (int a = 0; a < 3; a++) {
         const bool held = a < j->m->mpm[b].grid.dim && brunt_node_held(&j->m->mpm[b].grid, number, a);
@@ -89,32 +96,27 @@ static int32_t find_contact(job *j, int b, int k, brunt_pair *pair, int32_t slot
     return made;
 }
 
-// A surface node, of mesh `fem`, at the grid of body `mpm`.
-typedef struct grid_place {
-    int mpm, fem;
-    int32_t node;
-    brunt_pair *pair;
-} grid_place;
-
 static int add_link(job *j, const grid_place *of, const int32_t at[3], double weight, const real *sign,
-                    slot_cache *cached) {
+                    slot_cache *cached, brunt_error *error) {
     brunt_surface_on_grid *w = j->w;
     int32_t slot;
     int node;
-    if (!brunt_surface_on_grid_place(&j->m->mpm[of->mpm].grid, at, cached, &slot, &node)) return 0;
-    int32_t c = find_contact(j, of->mpm, of->fem, of->pair, slot, node);
-    if (c < 0) return c == -1 ? 0 : -1;
-    if (GROW(w, link)) return -1;
+    if (!brunt_surface_on_grid_place(&j->m->mpm[of->mpm].grid, at, cached, &slot, &node)) return BRUNT_OK;
+    const size_t number = (size_t)slot * BRUNT_BLOCK_NODES + (size_t)node;
+    if (!(j->m->mpm[of->mpm].grid.nodes[number * BRUNT_NODE_REALS + BRUNT_NODE_MASS] > 0)) return BRUNT_OK;
+    const int32_t c = find_contact(j, of, slot, node, error);
+    if (c < 0) return BRUNT_FAILED;
+    if (GROW(w, link, "links of surface nodes with grid nodes", error)) return BRUNT_FAILED;
     link *l = &w->link[w->link_count++];
     *l = (link){.surface = of->node, .contact = c, .weight = weight, .sign = {1, 1, 1}, .own = !sign};
     for (int a = 0; a < 3 && sign; a++) l->sign[a] = (int8_t)sign[a];
     w->contact[c].count++;
-    return 0;
+    return BRUNT_OK;
 }
 
 // Links of surface node n with the nodes of body b, and, near mirrors, with their images: the same as the particles'
 // shares get from brunt_symmetry_fold.
-static int add_item(job *j, const grid_place *of) {
+static int add_item(job *j, const grid_place *of, brunt_error *error) {
     brunt_surface_on_grid *w = j->w;
     const brunt_grid *grid = &j->m->mpm[of->mpm].grid;
     const double *x = j->m->surface->x[of->node];
@@ -135,7 +137,7 @@ static int add_item(job *j, const grid_place *of) {
                 const int32_t at[3] = {base[0] + p, base[1] + q, base[2] + r};
                 if (!(share > 0)) continue;
                 if (!j->m->mirror_count) {
-                    if (add_link(j, of, at, share, NULL, &cached)) return -1;
+                    if (add_link(j, of, at, share, NULL, &cached, error)) return BRUNT_FAILED;
                     continue;
                 }
                 int32_t image[BRUNT_MAX_IMAGES][3];
@@ -143,17 +145,18 @@ static int add_item(job *j, const grid_place *of) {
                 int images = brunt_symmetry_images(j->m->mirrors, j->m->mirror_count, at, 2, image, sign);
                 for (int i = 0; i < images; i++) {
                     const int32_t before = w->link_count;
-                    if (add_link(j, of, image[i], share, sign[i], i ? &cached_image : &cached)) return -1;
+                    if (add_link(j, of, image[i], share, sign[i], i ? &cached_image : &cached, error))
+                        return BRUNT_FAILED;
                     if (w->link_count == before) continue;
                     w->link[before].own = i == 0;
                     for (int a = 0; a < 3; a++)
                         if (sign[i][a] == 0) w->contact[w->link[before].contact].across[a] = 0;
                 }
             }
-    if (w->link_count == first) return 0;
-    if (GROW(w, item)) return -1;
+    if (w->link_count == first) return BRUNT_OK;
+    if (GROW(w, item, "surface nodes at a grid", error)) return BRUNT_FAILED;
     w->item[w->item_count++] = (item){of->node, first, w->link_count - first};
-    return 0;
+    return BRUNT_OK;
 }
 
 // Whether a surface node is on what mirror planes have cut open, and on no other surface.
@@ -176,7 +179,7 @@ static bool inside(const double x[3], const double low[3], const double high[3])
 }
 
 // Contacts, links and items of body b.
-int brunt_surface_on_grid_link(job *j, int b) {
+int brunt_surface_on_grid_link(job *j, int b, brunt_error *error) {
     brunt_surface_on_grid *w = j->w;
     const brunt_contact_surface *s = j->m->surface;
     const brunt_grid *grid = &j->m->mpm[b].grid;
@@ -190,7 +193,7 @@ int brunt_surface_on_grid_link(job *j, int b) {
         if (!pair || !s->active[k] || !overlap(low, high, s->low[k], s->high[k])) continue;
         if (!any) {
             const size_t nodes = (size_t)grid->slot_count * BRUNT_BLOCK_NODES;
-            if (RESERVE(w, place, nodes + 1)) return -1;
+            if (RESERVE(w, place, nodes + 1, "nodes of a grid", error)) return BRUNT_FAILED;
             memset(w->place, 0, nodes * sizeof *w->place);
             any = true;
         }
@@ -198,16 +201,18 @@ int brunt_surface_on_grid_link(job *j, int b) {
             if (s->face_first[n + 1] == s->face_first[n])
                 continue; // a detached node: there is no surface to press with
             const grid_place of = {b, k, n, pair};
-            if (inside(s->x[n], low, high) && !on_cut(j, grid, n) && add_item(j, &of)) return -1;
+            if (inside(s->x[n], low, high) && !on_cut(j, grid, n) && add_item(j, &of, error)) return BRUNT_FAILED;
         }
     }
     r->contact_end = w->contact_count, r->item_end = w->item_count;
-    return 0;
+    return BRUNT_OK;
 }
 
 // Links by contact, in their order.
-int brunt_surface_on_grid_sort(brunt_surface_on_grid *w) {
-    if (RESERVE(w, by_contact, w->link_count + 1) || RESERVE(w, changed, w->contact_count + 1)) return -1;
+int brunt_surface_on_grid_sort(brunt_surface_on_grid *w, brunt_error *error) {
+    if (RESERVE(w, by_contact, w->link_count + 1, "links of surface nodes with grid nodes", error) ||
+        RESERVE(w, changed, w->contact_count + 1, "contacts at grid nodes", error))
+        return BRUNT_FAILED;
     int32_t first = 0;
     for (int32_t c = 0; c < w->contact_count; c++) {
         w->contact[c].first = first;
@@ -218,5 +223,5 @@ int brunt_surface_on_grid_sort(brunt_surface_on_grid *w) {
         contact *c = &w->contact[w->link[l].contact];
         w->by_contact[c->first + c->count++] = l;
     }
-    return 0;
+    return BRUNT_OK;
 }

@@ -100,8 +100,8 @@ static inline bool make_unit(double n[3]) {
 }
 
 // Room for one more, keeping what is there.
-#define GROW(w, what) BRUNT_GROW((w)->what)
-#define RESERVE(w, what, count) BRUNT_RESERVE((w)->what, (size_t)(count), 0)
+#define GROW(w, array, what, error) BRUNT_ROOM_MORE((w)->array, what, error)
+#define RESERVE(w, array, count, what, error) BRUNT_ROOM((w)->array, (size_t)(count), 0, what, error)
 
 static inline bool overlap(const double low[3], const double high[3], const double low2[3], const double high2[3]) {
     for (int a = 0; a < 3; a++)
@@ -110,10 +110,10 @@ static inline bool overlap(const double low[3], const double high[3], const doub
 }
 
 // --- surface_on_grid_links.c: which nodes of a mesh and of a grid have to do with each other
-// Contacts, links and items of body b. 0, or -1: out of memory.
-int brunt_surface_on_grid_link(job *j, int b);
-// Links by contact, in their order. 0, or -1: out of memory.
-int brunt_surface_on_grid_sort(brunt_surface_on_grid *w);
+// Contacts, links and items of body b. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_surface_on_grid_link(job *j, int b, brunt_error *error);
+// Links by contact, in their order. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_surface_on_grid_sort(brunt_surface_on_grid *w, brunt_error *error);
 // Slot and node with global coordinates `at`; false when it is not alive. `seen` remembers the last slot.
 typedef struct slot_cache {
     int32_t coord[3], slot;
@@ -123,7 +123,7 @@ bool brunt_surface_on_grid_place(const brunt_grid *grid, const int32_t at[3], sl
                                  int *node);
 
 // --- surface_on_grid_gap.c: normal and gap at each of them
-// Normals and gaps of all contacts of body b, mesh after mesh. 0, or -1: out of memory.
-int brunt_surface_on_grid_look(job *j, int b);
+// Normals and gaps of all contacts of body b, mesh after mesh. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_surface_on_grid_look(job *j, int b, brunt_error *error);
 // A node behind a mirror plane sees few particles, or none: it has what its image has, reflected.
 void brunt_surface_on_grid_reflect(const job *j);

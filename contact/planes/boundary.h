@@ -68,13 +68,14 @@ struct brunt_boundary_kind {
     // Implicit steps: the components (bits) of a node at x (within `slack` [m]) that it holds, and their velocity.
     unsigned (*hold_at)(const brunt_boundary *b, int dim, double time, const double x[3], double slack, double v[3]);
     bool holds_meshes; // ... of meshes as well
-    // Whether mesh k of the surface is near it, and what it does to the nodes of near ones: 0, or -1: out of memory.
+    // Whether mesh k of the surface is near it, and what it does to the nodes of near ones: BRUNT_OK, or BRUNT_FAILED:
+    // out of memory.
     bool (*near_surface)(const brunt_contact_surface *s, int k, const brunt_boundary *b, double time, double range);
     int (*meet_surface)(const brunt_contact_context *m, brunt_boundary *b, brunt_node_to_facet *f,
-                        brunt_constraint_set *set);
-    // Adds the constraints of the particles of a body that it would catch. 0, or -1: out of memory.
+                        brunt_constraint_set *set, brunt_error *error);
+    // Adds the constraints of the particles of a body that it would catch. BRUNT_OK, or BRUNT_FAILED: out of memory.
     int (*meet_points)(const brunt_contact_context *m, brunt_boundary *b, brunt_body *body, brunt_particle_dofs *dofs,
-                       brunt_constraint_set *set);
+                       brunt_constraint_set *set, brunt_error *error);
 };
 
 // Whether it acts on a body.

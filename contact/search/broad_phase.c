@@ -47,10 +47,13 @@ static bool meets(const brunt_contact_context *m, const body_box *a, const body_
     return pair >= 0 && m->pairs[pair].method == BRUNT_CONTACT_AUGURY;
 }
 
-static int find_boxes(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, brunt_node_to_facet *f) {
+static int find_boxes(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, brunt_node_to_facet *f,
+                      brunt_error *error) {
     const brunt_contact_surface *s = m->surface;
     f->bodies.box_count = s->fem_count + mpm_count;
-    if (RESERVE(&f->bodies, box, f->bodies.box_count + 1) || RESERVE(&f->bodies, box_of, s->fem_count + 1)) return -1;
+    if (RESERVE(&f->bodies, box, f->bodies.box_count + 1, "boxes about bodies", error) ||
+        RESERVE(&f->bodies, box_of, s->fem_count + 1, "boxes of meshes", error))
+        return BRUNT_FAILED;
     for (int k = 0; k < s->fem_count; k++) {
         body_box *box = &f->bodies.box[k];
         *box = (body_box){.body = s->fem[k]->index, .fem = k, .mpm = -1, .membrane = s->fem[k]->traits->membrane};
@@ -64,10 +67,10 @@ static int find_boxes(const brunt_contact_context *m, brunt_body *mpm, int mpm_c
     qsort(f->bodies.box, (size_t)f->bodies.box_count, sizeof *f->bodies.box, by_low);
     for (int32_t k = 0; k < f->bodies.box_count; k++)
         if (f->bodies.box[k].fem >= 0) f->bodies.box_of[f->bodies.box[k].fem] = k;
-    return 0;
+    return BRUNT_OK;
 }
 
-static int find_pairs(const brunt_contact_context *m, brunt_node_to_facet *f) {
+static int find_pairs(const brunt_contact_context *m, brunt_node_to_facet *f, brunt_error *error) {
     f->bodies.pair_count = 0;
     for (int32_t i = 0; i < f->bodies.box_count; i++)
         // A membrane may be near itself.
@@ -77,12 +80,14 @@ static int find_pairs(const brunt_contact_context *m, brunt_node_to_facet *f) {
             if (!overlap(&f->bodies.box[i], &f->bodies.box[k], 2 * f->bodies.range) ||
                 !meets(m, &f->bodies.box[i], &f->bodies.box[k]))
                 continue;
-            if (BRUNT_RESERVE(f->bodies.pair, (size_t)f->bodies.pair_count + 1, (size_t)f->bodies.pair_count))
-                return -1;
+            if (BRUNT_ROOM(f->bodies.pair, (size_t)f->bodies.pair_count + 1, (size_t)f->bodies.pair_count,
+                           "pairs of bodies that are near each other", error))
+                return BRUNT_FAILED;
             f->bodies.pair[f->bodies.pair_count++] = (near_pair){i, k};
         }
-    if (RESERVE(&f->bodies, first, f->bodies.box_count + 2) || RESERVE(&f->bodies, list, 2 * f->bodies.pair_count + 1))
-        return -1;
+    if (RESERVE(&f->bodies, first, f->bodies.box_count + 2, "boxes near boxes", error) ||
+        RESERVE(&f->bodies, list, 2 * f->bodies.pair_count + 1, "boxes near boxes", error))
+        return BRUNT_FAILED;
     memset(f->bodies.first, 0, ((size_t)f->bodies.box_count + 2) * sizeof *f->bodies.first);
     for (int32_t p = 0; p < f->bodies.pair_count; p++) {
         f->bodies.first[f->bodies.pair[p].a + 2]++;
@@ -94,7 +99,7 @@ static int find_pairs(const brunt_contact_context *m, brunt_node_to_facet *f) {
         if (f->bodies.pair[p].b != f->bodies.pair[p].a)
             f->bodies.list[f->bodies.first[f->bodies.pair[p].b + 1]++] = f->bodies.pair[p].a;
     }
-    return 0;
+    return BRUNT_OK;
 }
 
 // Whether there is a place for everything: else no cells could be laid.
@@ -109,10 +114,13 @@ static bool all_finite(const brunt_node_to_facet *f) {
     return true;
 }
 
-int brunt_broad_phase(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, const brunt_boundary *walls,
-                      int wall_count, double time, brunt_node_to_facet **facing) {
+int brunt_broad_phase(const brunt_contact_context *m, brunt_node_to_facet **facing, bool *far, brunt_error *error) {
     brunt_contact_surface *s = m->surface;
-    if (brunt_node_to_facet_make(facing, mpm_count, s->node_count)) return -1;
+    brunt_body *mpm = m->mpm;
+    const brunt_boundary *walls = m->walls;
+    const int mpm_count = m->mpm_count, wall_count = m->wall_count;
+    *far = false;
+    if (brunt_node_to_facet_make(facing, mpm_count, s->node_count, error)) return BRUNT_FAILED;
     brunt_node_to_facet *f = *facing;
     // Nothing may pass anything unseen: the reach covers twice the fastest motion of a step, against the frame of all.
     double fastest = 0, spacing = 0;
@@ -131,18 +139,18 @@ int brunt_broad_phase(const brunt_contact_context *m, brunt_body *mpm, int mpm_c
     f->bodies.plane_travel = (fastest + frame + walls_speed) * m->dt + 0.5 * s->membrane.thickest;
     f->bodies.travel = 2 * fastest * m->dt + spacing + s->membrane.thickest;
     f->bodies.range = fmax(fmax(RANGE * s->mean_edge + spacing + s->membrane.thickest, f->bodies.travel), m->look);
-    if (find_boxes(m, mpm, mpm_count, f)) return -1;
-    if (!all_finite(f)) return -2;
-    if (find_pairs(m, f)) return -1;
+    if (find_boxes(m, mpm, mpm_count, f, error)) return BRUNT_FAILED;
+    if ((*far = !all_finite(f))) return brunt_fail(error, BRUNT_FAILED, "a body or a plane goes too far in a step");
+    if (find_pairs(m, f, error)) return BRUNT_FAILED;
     for (int k = 0; k < s->fem_count; k++) {
         int32_t box = f->bodies.box_of[k];
         s->active[k] = f->bodies.first[box + 1] > f->bodies.first[box];
         for (int w = 0; w < wall_count && !s->active[k]; w++)
             s->active[k] =
                 walls[w].kind->near_surface && brunt_boundary_acts_on(&walls[w], s->fem[k]->index) &&
-                walls[w].kind->near_surface(s, k, &walls[w], time, f->bodies.plane_travel + 1e-6 * s->mean_edge);
+                walls[w].kind->near_surface(s, k, &walls[w], m->time, f->bodies.plane_travel + 1e-6 * s->mean_edge);
     }
-    if (RESERVE(&f->nodes, dof_of, s->node_count + 1)) return -1;
+    if (RESERVE(&f->nodes, dof_of, s->node_count + 1, "nodes that contact moves", error)) return BRUNT_FAILED;
     memset(f->nodes.dof_of, 0xff, (size_t)s->node_count * sizeof *f->nodes.dof_of); // -1: none
-    return 0;
+    return BRUNT_OK;
 }

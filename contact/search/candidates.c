@@ -23,7 +23,7 @@ static int64_t cell_of(const brunt_node_to_facet *f, const double x[3]) {
     int64_t cell = 0;
     for (int a = 0; a < 3; a++) {
         double c = floor((x[a] - f->cells.origin[a]) / f->cells.cell);
-        if (!(c >= 0) || c >= f->cells.n[a]) return -1;
+        if (!(c >= 0) || c >= f->cells.n[a]) return BRUNT_NONE;
         cell = cell * f->cells.n[a] + (int64_t)c;
     }
     return cell;
@@ -48,7 +48,7 @@ bool brunt_candidates_bodies(const brunt_node_to_facet *f, search_query *l) {
         l->touch[l->touches++] = other->body;
         if (!other->membrane && within(other, l->x, 0)) l->enter[l->enters++] = other->body;
     }
-    l->cell = l->touches ? cell_of(f, l->x) : -1;
+    l->cell = l->touches ? cell_of(f, l->x) : BRUNT_NONE;
     return l->cell >= 0;
 }
 

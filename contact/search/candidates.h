@@ -47,7 +47,7 @@ typedef struct master_list {
     brunt_master *master;
     size_t capacity;
     int32_t count;
-    bool failed;
+    brunt_error error;
 } master_list;
 
 // Of the nodes of a surface.
@@ -72,7 +72,7 @@ typedef struct particle_list {
     particle_candidate *candidate;
     size_t capacity;
     int32_t count;
-    bool failed;
+    brunt_error error;
 } particle_list;
 
 typedef struct particle_run {

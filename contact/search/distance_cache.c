@@ -2,21 +2,23 @@
 #include "contact/search/node_to_facet_parts.h"
 
 // Room for what is remembered of so many nodes.
-int brunt_distance_cache_fit(brunt_node_to_facet *f, int32_t nodes, int32_t kept) {
-    return RESERVE(&f->nodes, count, nodes + 1) || RESERVE(&f->nodes, candidate, BRUNT_MAX_CANDIDATES * (nodes + 1)) ||
-                   BRUNT_RESERVE(f->cache.nearest, (size_t)nodes + 1, (size_t)kept) ||
-                   RESERVE(&f->cache, node, nodes + 1)
+int brunt_distance_cache_fit(brunt_node_to_facet *f, int32_t nodes, int32_t kept, brunt_error *error) {
+    return RESERVE(&f->nodes, count, nodes + 1, "nodes that look for facets", error) ||
+                   RESERVE(&f->nodes, candidate, BRUNT_MAX_CANDIDATES * (nodes + 1), "facets near nodes", error) ||
+                   BRUNT_ROOM(f->cache.nearest, (size_t)nodes + 1, (size_t)kept, "nearest facets of nodes", error) ||
+                   RESERVE(&f->cache, node, nodes + 1, "distances of nodes", error)
                ? -1
                : 0;
 }
 
 // Distances are to facets that may be gone, so that all look anew. A face that was the nearest and is still there
 // is looked at first as before.
-int brunt_node_to_facet_renew(brunt_node_to_facet *f, const brunt_contact_surface *s) {
+int brunt_node_to_facet_renew(brunt_node_to_facet *f, const brunt_contact_surface *s, brunt_error *error) {
     const brunt_surface_change *c = &s->renewal.change;
-    if (!f || !c->any) return 0;
-    if (brunt_distance_cache_fit(f, s->node_count, c->node_count) || RESERVE(&f->cache, spare, s->node_count + 1))
-        return -1;
+    if (!f || !c->any) return BRUNT_OK;
+    if (brunt_distance_cache_fit(f, s->node_count, c->node_count, error) ||
+        RESERVE(&f->cache, spare, s->node_count + 1, "nearest facets of nodes", error))
+        return BRUNT_FAILED;
     for (int32_t n = 0; n < s->node_count; n++) {
         const int32_t face = c->node_was[n] < 0 ? -1 : f->cache.nearest[c->node_was[n]];
         f->cache.spare[n] = face < 0 ? -1 : c->face_now[face];
@@ -24,7 +26,7 @@ int brunt_node_to_facet_renew(brunt_node_to_facet *f, const brunt_contact_surfac
     }
     memcpy(f->cache.nearest, f->cache.spare, (size_t)s->node_count * sizeof *f->cache.nearest);
     f->cells.made = false;
-    return 0;
+    return BRUNT_OK;
 }
 
 int64_t brunt_node_to_facet_state_count(const brunt_contact_surface *s) {
@@ -46,10 +48,11 @@ void brunt_node_to_facet_state_get(const brunt_node_to_facet *f, const brunt_con
 }
 
 int brunt_node_to_facet_state_set(brunt_node_to_facet **facing, brunt_contact_surface *s, int mpm_count,
-                                  const double *in) {
-    if (brunt_surface_renew(s, true, NULL) || brunt_node_to_facet_make(facing, mpm_count, s->node_count)) return -1;
+                                  const double *in, brunt_error *error) {
+    if (brunt_surface_renew(s, true, error) || brunt_node_to_facet_make(facing, mpm_count, s->node_count, error))
+        return BRUNT_FAILED;
     brunt_node_to_facet *f = *facing;
-    if (brunt_distance_cache_fit(f, s->node_count, 0)) return -1;
+    if (brunt_distance_cache_fit(f, s->node_count, 0, error)) return BRUNT_FAILED;
     f->cells.made = f->cells.made && !s->renewal.change.any;
     f->cache.motion = *in++;
     for (int k = 0; k < s->fem_count; k++) s->motion.was_active[k] = *in++ != 0;
@@ -60,5 +63,5 @@ int brunt_node_to_facet_state_set(brunt_node_to_facet **facing, brunt_contact_su
             f->cache.node[n] = (node_distance){from[1], from[2], from[3]};
             for (int a = 0; a < 3; a++) s->x[n][a] = from[4 + a];
         }
-    return 0;
+    return BRUNT_OK;
 }

@@ -106,19 +106,19 @@ static bool edges_meet(const brunt_contact_context *m, double travel, edge_pair 
 }
 
 static int add_entry(const brunt_contact_surface *s, brunt_node_to_facet *f, int32_t node, double weight,
-                     const double gradient[3], double height, brunt_constraint_set *constraints) {
-    const int32_t dof_node = brunt_node_to_facet_dof_node(f, s, node, constraints);
-    const int32_t entry = dof_node < 0 ? -1 : brunt_constraints_entry(constraints, dof_node, weight);
-    if (entry < 0) return -1;
-    for (int a = 0; a < 3; a++) constraints->entry[entry].height_gradient[a] = height * gradient[a];
-    return 0;
+                     const double gradient[3], brunt_constraint_set *constraints, brunt_error *error) {
+    const int32_t dof_node = brunt_node_to_facet_dof_node(f, s, node, constraints, error);
+    const int32_t entry = dof_node < 0 ? BRUNT_NONE : brunt_constraints_entry(constraints, dof_node, weight, error);
+    if (entry < 0) return BRUNT_FAILED;
+    memcpy(constraints->entry[entry].height_gradient, gradient, sizeof constraints->entry[entry].height_gradient);
+    return BRUNT_OK;
 }
 
 static int add_constraint(const brunt_contact_context *m, brunt_node_to_facet *f, const edge_pair *p,
-                          brunt_constraint_set *constraints) {
+                          brunt_constraint_set *constraints, brunt_error *error) {
     brunt_contact_surface *s = m->surface;
-    const int32_t at = brunt_constraints_add(constraints);
-    if (at < 0) return -1;
+    const int32_t at = brunt_constraints_add(constraints, error);
+    if (at < 0) return BRUNT_FAILED;
     brunt_constraint *constraint = &constraints->constraint[at];
     const int32_t *a = p->edge[0]->node, *b = p->edge[1]->node;
     const facet_candidate master = {.body = p->body[1], .gap = p->gap, .n = {p->n[0], p->n[1], p->n[2]}};
@@ -136,12 +136,13 @@ static int add_constraint(const brunt_contact_context *m, brunt_node_to_facet *f
     constraint->tag = p->at.s < 0.5 ? a[0] : a[1];
     for (int i = 0; i < 4; i++) {
         const int32_t node = i < 2 ? a[i] : b[i - 2];
-        const double share = i < 2 ? p->at.s : p->at.t, weight = i % 2 ? share : 1 - share;
-        if (add_entry(s, f, node, i < 2 ? weight : -weight, dual[i / 2], i % 2 ? p->height : -p->height, constraints))
-            return -1;
+        const double share = i < 2 ? p->at.s : p->at.t, weight = i % 2 ? share : 1 - share,
+                     height = i % 2 ? p->height : -p->height, *way = dual[i / 2],
+                     gradient[3] = {height * way[0], height * way[1], height * way[2]};
+        if (add_entry(s, f, node, i < 2 ? weight : -weight, gradient, constraints, error)) return BRUNT_FAILED;
         s->output.gap[node] = fmin(s->output.gap[node], p->gap);
     }
-    return 0;
+    return BRUNT_OK;
 }
 
 static int by_low(const void *a, const void *b) {
@@ -149,26 +150,33 @@ static int by_low(const void *a, const void *b) {
     return p->low < q->low ? -1 : p->low > q->low ? 1 : p->feature - q->feature;
 }
 
-// The room that two bodies share within `travel`; its longest axis, or -1: there is none.
-static int shared_room(const body_box *a, const body_box *b, double travel, double low[3], double high[3]) {
-    int axis = 0;
+// What two bodies share, and its longest axis.
+typedef struct shared_room {
+    double low[3], high[3];
+    int axis;
+} shared_room;
+
+// The room that two bodies share within `travel`. Whether there is any.
+static bool find_room(const body_box *a, const body_box *b, double travel, shared_room *room) {
+    double *low = room->low, *high = room->high;
+    room->axis = 0;
     for (int k = 0; k < 3; k++) {
         low[k] = fmax(a->low[k], b->low[k]) - travel, high[k] = fmin(a->high[k], b->high[k]) + travel;
-        if (low[k] > high[k]) return -1;
-        if (high[k] - low[k] > high[axis] - low[axis]) axis = k;
+        if (low[k] > high[k]) return false;
+        if (high[k] - low[k] > high[room->axis] - low[room->axis]) room->axis = k;
     }
-    return axis;
+    return true;
 }
 
 // Features of body k in a room, by their low ends; `longest`: of their spans, and how deep they are met. Their count.
-static int32_t list_spans(const near_edges *edges, int k, const double low[3], const double high[3], int axis,
-                          edge_span *out, double *longest) {
+static int32_t list_spans(const near_edges *edges, int k, const shared_room *room, edge_span *out, double *longest) {
+    const int axis = room->axis;
     int32_t count = 0;
     *longest = 0;
     for (int32_t i = edges->feature_first[2 * k]; i < edges->feature_first[2 * k + 1]; i++) {
         const feature_edge *edge = &edges->feature[i];
         bool outside = false;
-        for (int a = 0; a < 3; a++) outside = outside || edge->low[a] > high[a] || edge->high[a] < low[a];
+        for (int a = 0; a < 3; a++) outside = outside || edge->low[a] > room->high[a] || edge->high[a] < room->low[a];
         if (outside) continue;
         *longest = fmax(*longest, edge->high[axis] - edge->low[axis] + edge->depth);
         out[count++] = (edge_span){edge->low[axis], edge->high[axis], i};
@@ -184,18 +192,18 @@ static bool edges_near(const feature_edge *a, const feature_edge *b, double trav
     return true;
 }
 
-// Meshes a and b of the surface, a before b; `low`, `high`: the room that they share.
-static int bodies_meet(const brunt_contact_context *m, brunt_node_to_facet *f, const int fem[2], const double low[3],
-                       const double high[3], int axis, brunt_constraint_set *constraints) {
+// Meshes a and b of the surface, a before b, in the room that they share.
+static int bodies_meet(const brunt_contact_context *m, brunt_node_to_facet *f, const int fem[2],
+                       const shared_room *room, brunt_constraint_set *constraints, brunt_error *error) {
     near_edges *edges = &f->edges;
     const double travel = f->bodies.travel;
     double longest, unused;
-    if (RESERVE(edges, span, edges->feature_count + 1)) return -1;
+    if (RESERVE(edges, span, edges->feature_count + 1, "edges that meet", error)) return BRUNT_FAILED;
     edge_span *const a = edges->span;
-    const int32_t a_count = list_spans(edges, fem[0], low, high, axis, a, &unused);
-    if (!a_count) return 0;
+    const int32_t a_count = list_spans(edges, fem[0], room, a, &unused);
+    if (!a_count) return BRUNT_OK;
     edge_span *const b = a + a_count;
-    const int32_t b_count = list_spans(edges, fem[1], low, high, axis, b, &longest);
+    const int32_t b_count = list_spans(edges, fem[1], room, b, &longest);
     for (int32_t i = 0, first = 0; i < a_count; i++) {
         const feature_edge *slave = &edges->feature[a[i].feature];
         while (first < b_count && b[first].low < a[i].low - longest - travel) first++;
@@ -204,27 +212,29 @@ static int bodies_meet(const brunt_contact_context *m, brunt_node_to_facet *f, c
             edge_pair p = {.edge = {slave, master},
                            .body = {m->surface->fem[fem[0]]->index, m->surface->fem[fem[1]]->index}};
             if (!edges_near(slave, master, travel) || !edges_meet(m, travel, &p)) continue;
-            if (add_constraint(m, f, &p, constraints)) return -1;
+            if (add_constraint(m, f, &p, constraints, error)) return BRUNT_FAILED;
         }
     }
-    return 0;
+    return BRUNT_OK;
 }
 
-int brunt_edge_edge_find(const brunt_contact_context *m, brunt_node_to_facet *f, brunt_constraint_set *constraints) {
+int brunt_edge_edge_find(const brunt_contact_context *m, brunt_node_to_facet *f, brunt_constraint_set *constraints,
+                         brunt_error *error) {
     const brunt_contact_surface *s = m->surface;
-    if (!f->edges.near_count) return 0;
-    if (RESERVE(&f->edges, feature_first, 2 * (size_t)s->fem_count)) return -1;
+    if (!f->edges.near_count) return BRUNT_OK;
+    if (RESERVE(&f->edges, feature_first, 2 * (size_t)s->fem_count, "bodies with edges that meet", error))
+        return BRUNT_FAILED;
     memset(f->edges.feature_first, 0xff, 2 * (size_t)s->fem_count * sizeof *f->edges.feature_first); // -1
     f->edges.feature_count = 0;
     for (int32_t p = 0; p < f->bodies.pair_count; p++) {
         const body_box *a = &f->bodies.box[f->bodies.pair[p].a], *b = &f->bodies.box[f->bodies.pair[p].b];
         if (a->fem < 0 || b->fem < 0 || a == b) continue;
-        double low[3], high[3];
-        const int axis = shared_room(a, b, f->bodies.travel, low, high);
-        if (axis < 0) continue;
+        shared_room room;
+        if (!find_room(a, b, f->bodies.travel, &room)) continue;
         const int fem[2] = {a->fem < b->fem ? a->fem : b->fem, a->fem < b->fem ? b->fem : a->fem};
-        if (brunt_feature_edges_list(f, s, fem[0]) || brunt_feature_edges_list(f, s, fem[1])) return -1;
-        if (bodies_meet(m, f, fem, low, high, axis, constraints)) return -1;
+        if (brunt_feature_edges_list(f, s, fem[0], error) || brunt_feature_edges_list(f, s, fem[1], error))
+            return BRUNT_FAILED;
+        if (bodies_meet(m, f, fem, &room, constraints, error)) return BRUNT_FAILED;
     }
-    return 0;
+    return BRUNT_OK;
 }

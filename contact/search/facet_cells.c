@@ -35,8 +35,8 @@ static void cell_range(const brunt_node_to_facet *f, const double low[3], const 
     }
 }
 
-// Counts, or lists, the facets of every cell; with them their edges. 0, or -1: out of memory.
-static int list_facets(const brunt_contact_context *m, brunt_node_to_facet *f, bool list) {
+// Counts, or lists, the facets of every cell; with them their edges. BRUNT_OK, or BRUNT_FAILED: out of memory.
+static int list_facets(const brunt_contact_context *m, brunt_node_to_facet *f, bool list, brunt_error *error) {
     const brunt_contact_surface *s = m->surface;
     const double by = f->cells.range + MARGIN * s->mean_edge;
     for (int k = 0; k < s->fem_count; k++) {
@@ -46,7 +46,7 @@ static int list_facets(const brunt_contact_context *m, brunt_node_to_facet *f, b
             int32_t from[3], to[3];
             face_bounds(s, face, low, high);
             if (!brunt_broad_phase_in_reach(f, f->bodies.box_of[k], low, high, 2 * by)) continue;
-            if (list && s->dim == 3 && brunt_feature_edges_add(f, s, k, face)) return -1;
+            if (list && s->dim == 3 && brunt_feature_edges_add(f, s, k, face, error)) return BRUNT_FAILED;
             cell_range(f, low, high, by, from, to);
             for (int32_t x = from[0]; x <= to[0]; x++)
                 for (int32_t y = from[1]; y <= to[1]; y++)
@@ -60,7 +60,7 @@ static int list_facets(const brunt_contact_context *m, brunt_node_to_facet *f, b
                     }
         }
     }
-    return 0;
+    return BRUNT_OK;
 }
 
 // The room that pairs share, cut into cells; few enough that making them costs no more than the facets do.
@@ -91,19 +91,20 @@ static int32_t box_number(const brunt_contact_surface *s, const body_box *box) {
     return box->fem >= 0 ? box->fem : s->fem_count + box->mpm;
 }
 
-static int make_cells(const brunt_contact_context *m, brunt_node_to_facet *f) {
+static int make_cells(const brunt_contact_context *m, brunt_node_to_facet *f, brunt_error *error) {
     const brunt_contact_surface *s = m->surface;
     f->cells.range = 1.25 * f->bodies.range;
     size_cells(m, f);
     size_t cells = (size_t)f->cells.n[0] * (size_t)f->cells.n[1] * (size_t)f->cells.n[2];
-    if (RESERVE(&f->cells, first, cells + 3) || RESERVE(&f->cells, x, s->node_count + 1) ||
-        RESERVE(&f->cells, box, f->bodies.box_count + 1))
-        return -1;
+    if (RESERVE(&f->cells, first, cells + 3, "cells of facets", error) ||
+        RESERVE(&f->cells, x, s->node_count + 1, "places of nodes", error) ||
+        RESERVE(&f->cells, box, f->bodies.box_count + 1, "boxes of cells of facets", error))
+        return BRUNT_FAILED;
     memset(f->cells.first, 0, (cells + 3) * sizeof *f->cells.first);
-    list_facets(m, f, false);
+    list_facets(m, f, false, error);
     for (size_t c = 2; c <= cells + 1; c++) f->cells.first[c] += f->cells.first[c - 1];
-    if (RESERVE(&f->cells, face, f->cells.first[cells + 1] + 1)) return -1;
-    if (brunt_feature_edges_clear(f, s) || list_facets(m, f, true)) return -1;
+    if (RESERVE(&f->cells, face, f->cells.first[cells + 1] + 1, "facets in cells", error)) return BRUNT_FAILED;
+    if (brunt_feature_edges_clear(f, s, error) || list_facets(m, f, true, error)) return BRUNT_FAILED;
     for (int k = 0; k < s->fem_count; k++) {
         if (!s->active[k]) continue;
         memcpy(f->cells.x + s->node_range[k], s->x + s->node_range[k],
@@ -111,7 +112,7 @@ static int make_cells(const brunt_contact_context *m, brunt_node_to_facet *f) {
     }
     for (int32_t b = 0; b < f->bodies.box_count; b++) f->cells.box[box_number(s, &f->bodies.box[b])] = f->bodies.box[b];
     f->cells.made = true;
-    return 0;
+    return BRUNT_OK;
 }
 
 // Whether all that look in are where the cells were made for: what they share then is within the room (three ranges, of
@@ -160,10 +161,10 @@ static uint64_t pairs_key(const brunt_contact_context *m, const brunt_node_to_fa
     return key;
 }
 
-int brunt_facet_cells_make(const brunt_contact_context *m, brunt_node_to_facet *f) {
+int brunt_facet_cells_make(const brunt_contact_context *m, brunt_node_to_facet *f, brunt_error *error) {
     uint64_t key = pairs_key(m, f);
-    if (cells_hold(m, f, key)) return 0;
-    if (make_cells(m, f)) return -1;
+    if (cells_hold(m, f, key)) return BRUNT_OK;
+    if (make_cells(m, f, error)) return BRUNT_FAILED;
     f->cells.pair_count = f->bodies.pair_count, f->cells.pairs_key = key;
-    return 0;
+    return BRUNT_OK;
 }

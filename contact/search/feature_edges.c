@@ -12,11 +12,12 @@ void brunt_feature_edges_free(near_edges *edges) {
     brunt_free(edges->feature), brunt_free(edges->feature_first);
 }
 
-int brunt_feature_edges_clear(brunt_node_to_facet *f, const brunt_contact_surface *s) {
+int brunt_feature_edges_clear(brunt_node_to_facet *f, const brunt_contact_surface *s, brunt_error *error) {
     f->edges.near_count = 0;
-    if (RESERVE(&f->edges, first, 2 * (size_t)s->fem_count + 1)) return -1;
+    if (RESERVE(&f->edges, first, 2 * (size_t)s->fem_count + 1, "bodies with edges near others", error))
+        return BRUNT_FAILED;
     memset(f->edges.first, 0, 2 * (size_t)s->fem_count * sizeof *f->edges.first);
-    return 0;
+    return BRUNT_OK;
 }
 
 // The face beyond the edge of a face from node p to q; -1: none, -2: several, where elements touch along an edge.
@@ -32,7 +33,8 @@ static int32_t face_beyond(const brunt_contact_surface *s, int32_t p, int32_t q)
 }
 
 // Of a solid each edge once, from the face in which it ascends; of a membrane its rims, which one face has.
-int brunt_feature_edges_add(brunt_node_to_facet *f, const brunt_contact_surface *s, int k, int32_t face) {
+int brunt_feature_edges_add(brunt_node_to_facet *f, const brunt_contact_surface *s, int k, int32_t face,
+                            brunt_error *error) {
     const int32_t *node = s->face[face];
     const int n = brunt_face_corners(node);
     const bool membrane = s->fem[k]->traits->membrane;
@@ -44,11 +46,11 @@ int brunt_feature_edges_add(brunt_node_to_facet *f, const brunt_contact_surface 
         const int32_t other = face_beyond(s, p, q);
         if (membrane ? other != -1 : other < 0) continue;
         const size_t used = (size_t)f->edges.near_count;
-        if (BRUNT_RESERVE(f->edges.near, used + 1, used)) return -1;
+        if (BRUNT_ROOM(f->edges.near, used + 1, used, "edges near other bodies", error)) return BRUNT_FAILED;
         f->edges.near[f->edges.near_count++] = (near_edge){{p, q}, {face, other}};
     }
     range[1] = f->edges.near_count;
-    return 0;
+    return BRUNT_OK;
 }
 
 // Whether an edge is convex and turns enough.
@@ -85,16 +87,16 @@ static feature_edge feature_of(const brunt_contact_surface *s, const near_edge *
     return out;
 }
 
-int brunt_feature_edges_list(brunt_node_to_facet *f, const brunt_contact_surface *s, int k) {
+int brunt_feature_edges_list(brunt_node_to_facet *f, const brunt_contact_surface *s, int k, brunt_error *error) {
     near_edges *edges = &f->edges;
-    if (edges->feature_first[2 * k] >= 0) return 0;
+    if (edges->feature_first[2 * k] >= 0) return BRUNT_OK;
     edges->feature_first[2 * k] = edges->feature_count;
     for (int32_t i = edges->first[2 * k]; i < edges->first[2 * k + 1]; i++) {
         if (!is_feature(s, &edges->near[i])) continue;
         const size_t used = (size_t)edges->feature_count;
-        if (BRUNT_RESERVE(edges->feature, used + 1, used)) return -1;
+        if (BRUNT_ROOM(edges->feature, used + 1, used, "edges that meet", error)) return BRUNT_FAILED;
         edges->feature[edges->feature_count++] = feature_of(s, &edges->near[i]);
     }
     edges->feature_first[2 * k + 1] = edges->feature_count;
-    return 0;
+    return BRUNT_OK;
 }

@@ -108,18 +108,20 @@ static void list_facets(cells *c, const box *b, int32_t i, bool list) {
 
 typedef bool box_fn(const void *context, int32_t i, box *out); // false: it is nowhere
 
-static int fill_cells(cells *c, const box *room, double edge, int32_t items, box_fn *box_of, const void *context) {
+static int fill_cells(cells *c, const box *room, double edge, int32_t items, box_fn *box_of, const void *context,
+                      brunt_error *error) {
     size_cells(c, room, edge, items);
-    if (BRUNT_RESERVE(c->first, (size_t)c->count + 3, 0)) return -1;
+    if (BRUNT_ROOM(c->first, (size_t)c->count + 3, 0, "cells of what may overlap", error)) return BRUNT_FAILED;
     memset(c->first, 0, ((size_t)c->count + 3) * sizeof *c->first);
     box b;
     for (int32_t i = 0; i < items; i++)
         if (box_of(context, i, &b)) list_facets(c, &b, i, false);
     for (int32_t k = 2; k <= c->count + 1; k++) c->first[k] += c->first[k - 1];
-    if (BRUNT_RESERVE(c->item, (size_t)c->first[c->count + 1] + 1, 0)) return -1;
+    if (BRUNT_ROOM(c->item, (size_t)c->first[c->count + 1] + 1, 0, "elements and facets that may overlap", error))
+        return BRUNT_FAILED;
     for (int32_t i = 0; i < items; i++)
         if (box_of(context, i, &b)) list_facets(c, &b, i, true);
-    return 0;
+    return BRUNT_OK;
 }
 
 // ------------------------------------------------------------------------------------------ one body in another
@@ -130,6 +132,7 @@ typedef struct search_job {
     double by;    // its facets reach so much further than they are [m]
     double size;  // of what it is made of: its elements, or all of it [m]
     double limit; // [m] what is no deeper is no overlap
+    bool shares;  // the two bodies some room
     cells elements, facets;
     brunt_overlap *found;
 } search_job;
@@ -377,28 +380,29 @@ static double size_of_body(const brunt_contact_surface *s, int k) {
     return size;
 }
 
-// Facets, and elements of a solid, near what the other body's box shares with its own. 1, or 0: that is nothing.
-static int look_at(search_job *j, int k, const box *other, double limit, double by) {
+// Facets, and elements of a solid, near what the other body's box shares with its own, if it does (`shares`).
+static int look_at(search_job *j, int k, const box *other, double limit, double by, brunt_error *error) {
     const brunt_contact_surface *s = j->m->surface;
     const brunt_fem_body *fem = s->fem[k];
     const box own = grown(surface_box(s, k), s->dim, fem->traits->membrane ? by : -limit);
     box room;
-    if (!common(&own, other, &room)) return 0;
+    if (!(j->shares = common(&own, other, &room))) return BRUNT_OK;
     j->k = k, j->limit = limit, j->by = by, j->size = size_of_body(s, k);
-    if (fill_cells(&j->facets, &room, fem->mean_edge, s->face_end[k] - s->face_range[k], facet_box, j)) return -1;
-    if (fem->traits->membrane) return 1;
-    return fill_cells(&j->elements, &room, fem->mean_edge, fem->slots, element_box, j) ? -1 : 1;
+    if (fill_cells(&j->facets, &room, fem->mean_edge, s->face_end[k] - s->face_range[k], facet_box, j, error))
+        return BRUNT_FAILED;
+    if (fem->traits->membrane) return BRUNT_OK;
+    return fill_cells(&j->elements, &room, fem->mean_edge, fem->slots, element_box, j, error);
 }
 
-// Whether mesh `other` is in mesh or membrane `k`.
-static int meshes_overlap(search_job *j, int other, int k) {
+// Finds out whether mesh `other` is in mesh or membrane `k`.
+static int meshes_overlap(search_job *j, int other, int k, brunt_error *error) {
     const brunt_contact_surface *s = j->m->surface;
     const double edge = s->fem[other]->mean_edge, limit = DEEP * fmin(size_of_body(s, other), size_of_body(s, k));
     const box of_other = surface_box(s, other);
     const bool membrane = s->fem[k]->traits->membrane;
-    int status = look_at(j, k, &of_other, limit, membrane ? NEXT * edge : limit);
-    if (status <= 0) return status;
-    return membrane ? is_cut(j, other) : mesh_is_deep(j, other);
+    if (look_at(j, k, &of_other, limit, membrane ? NEXT * edge : limit, error)) return BRUNT_FAILED;
+    j->found->any = j->shares && (membrane ? is_cut(j, other) : mesh_is_deep(j, other));
+    return BRUNT_OK;
 }
 
 // ------------------------------------------------------------------------------------------ material points
@@ -449,19 +453,19 @@ static bool sheet_cuts_points(search_job *j, brunt_body *body) {
     return side[0] && side[1] && j->found->depth > j->limit;
 }
 
-// Whether material points are in mesh or membrane k.
-static int points_overlap(search_job *j, brunt_body *body, int k) {
+// Finds out whether material points are in mesh or membrane k.
+static int points_overlap(search_job *j, brunt_body *body, int k, brunt_error *error) {
     const brunt_contact_surface *s = j->m->surface;
     const bool membrane = s->fem[k]->traits->membrane;
     box of_points = empty_box();
     double x[3];
-    if (!body->particles.field[BRUNT_FIELD_reach].components) return 0;
+    if (!body->particles.field[BRUNT_FIELD_reach].components) return BRUNT_OK;
     for (int64_t i = 0; i < body->particles.slots; i++) particle_at(body, i, x), widen(&of_points, x);
     const double by = (membrane ? NEXT : 1) * body->spacing;
-    int status = look_at(j, k, &of_points, -by, by);
-    if (status <= 0) return status;
+    if (look_at(j, k, &of_points, -by, by, error)) return BRUNT_FAILED;
     j->limit = DEEP * fmin(body->spacing, size_of_body(s, k));
-    return membrane ? sheet_cuts_points(j, body) : solid_holds_points(j, body);
+    j->found->any = j->shares && (membrane ? sheet_cuts_points(j, body) : solid_holds_points(j, body));
+    return BRUNT_OK;
 }
 
 // ------------------------------------------------------------------------------------------ planes
@@ -481,18 +485,17 @@ static bool is_held(const brunt_contact_surface *s, int32_t n) {
     return !(s->inverse[n][0] + s->inverse[n][1] + s->inverse[n][2] > 0);
 }
 
-// The deepest place of a body behind a plane that pushes it.
-static bool find_behind(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, int w, brunt_overlap *found) {
+// The deepest place of a body behind a plane that pushes it, if there is one.
+static void find_behind(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, int w, brunt_overlap *found) {
     const brunt_contact_surface *s = m->surface;
     const brunt_boundary *wall = &m->walls[w];
-    bool any = false;
-    if (!brunt_boundary_pushes(wall)) return false;
+    if (!brunt_boundary_pushes(wall)) return;
     *found = (brunt_overlap){.b = -1, .wall = w};
     for (int k = 0; k < s->fem_count; k++) {
         if (wall->body >= 0 && wall->body != s->fem[k]->index) continue;
         for (int32_t n = s->node_range[k]; n < s->node_end[k]; n++)
             if (!is_held(s, n) && keep_behind(&wall->plane, s->x[n], 0, BEHIND * s->fem[k]->mean_edge, found))
-                found->a = s->fem[k]->index, any = true;
+                found->a = s->fem[k]->index, found->any = true;
     }
     for (int i = 0; i < mpm_count; i++) {
         if (wall->body >= 0 && wall->body != mpm[i].index) continue;
@@ -501,10 +504,9 @@ static bool find_behind(const brunt_contact_context *m, brunt_body *mpm, int mpm
             double x[3];
             particle_at(&mpm[i], p, x);
             if (keep_behind(&wall->plane, x, reach_of(&mpm[i], p), BEHIND * mpm[i].spacing, found))
-                found->a = mpm[i].index, any = true;
+                found->a = mpm[i].index, found->any = true;
         }
     }
-    return any;
 }
 
 // ------------------------------------------------------------------------------------------ all
@@ -532,52 +534,54 @@ static int compare_meetings(const void *left, const void *right) {
     return (p->other > q->other) - (p->other < q->other);
 }
 
-// Which bodies are near which meshes, ascending. Their count, or -1: out of memory.
-static int64_t list_meetings(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, meeting **list) {
+// Which bodies are near which meshes, ascending, and their count.
+static int list_meetings(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, meeting **list, int64_t *found,
+                         brunt_error *error) {
     const brunt_contact_surface *s = m->surface;
     const int32_t count = s->fem_count + mpm_count;
-    brunt_box *boxes = brunt_alloc(((size_t)count + 1) * sizeof *boxes);
-    brunt_box_pair *near = NULL;
-    int64_t pairs = -1, found = 0;
-    if (boxes) {
-        bound_bodies(s, mpm, mpm_count, boxes);
-        pairs = brunt_sweep(boxes, s->fem_count, count, &near);
-    }
+    brunt_box *boxes;
+    brunt_box_pair *near;
+    int64_t pairs;
+    *list = NULL, *found = 0;
+    if (BRUNT_NEW(boxes, count + 1, "boxes about bodies", error)) return BRUNT_FAILED;
+    bound_bodies(s, mpm, mpm_count, boxes);
+    int status = brunt_sweep(boxes, s->fem_count, count, &near, &pairs, error);
     brunt_free(boxes);
-    *list = pairs < 0 ? NULL : brunt_alloc(2 * (size_t)(pairs + 1) * sizeof **list);
-    for (int64_t q = 0; *list && q < pairs; q++) {
-        (*list)[found++] = (meeting){near[q].a, near[q].b};
-        if (near[q].b < s->fem_count) (*list)[found++] = (meeting){near[q].b, near[q].a};
+    if (!status) status = BRUNT_NEW(*list, 2 * (pairs + 1), "bodies near meshes", error);
+    for (int64_t q = 0; !status && q < pairs; q++) {
+        (*list)[(*found)++] = (meeting){near[q].a, near[q].b};
+        if (near[q].b < s->fem_count) (*list)[(*found)++] = (meeting){near[q].b, near[q].a};
     }
     brunt_free(near);
-    if (!*list) return -1;
-    qsort(*list, (size_t)found, sizeof **list, compare_meetings);
-    return found;
+    if (!status) qsort(*list, (size_t)*found, sizeof **list, compare_meetings);
+    return status;
 }
 
-static int find_in_meshes(search_job *j, brunt_body *mpm, int mpm_count) {
+static int find_in_meshes(search_job *j, brunt_body *mpm, int mpm_count, brunt_error *error) {
     const brunt_contact_surface *s = j->m->surface;
-    if (!s->fem_count) return 0;
+    if (!s->fem_count) return BRUNT_OK;
     meeting *list;
-    const int64_t count = list_meetings(j->m, mpm, mpm_count, &list);
-    int status = count < 0 ? -1 : 0;
-    for (int64_t q = 0; q < count && !status; q++) {
+    int64_t count;
+    int status = list_meetings(j->m, mpm, mpm_count, &list, &count, error);
+    for (int64_t q = 0; q < count && !status && !j->found->any; q++) {
         const int k = list[q].mesh, i = list[q].other;
         const int b = s->fem[k]->index, a = i < s->fem_count ? s->fem[i]->index : mpm[i - s->fem_count].index;
         if (brunt_pair_of(j->m->pair_map, a, b) < 0) continue;
         *j->found = (brunt_overlap){.a = a, .b = b, .wall = -1};
-        status = i < s->fem_count ? meshes_overlap(j, i, k) : points_overlap(j, &mpm[i - s->fem_count], k);
+        status =
+            i < s->fem_count ? meshes_overlap(j, i, k, error) : points_overlap(j, &mpm[i - s->fem_count], k, error);
     }
     brunt_free(list);
     return status;
 }
 
 int brunt_overlap_find(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, int wall_count,
-                       brunt_overlap *found) {
+                       brunt_overlap *found, brunt_error *error) {
     search_job j = {.m = m, .found = found};
-    int status = find_in_meshes(&j, mpm, mpm_count);
+    *found = (brunt_overlap){.b = -1, .wall = -1};
+    int status = find_in_meshes(&j, mpm, mpm_count, error);
     cells *made[] = {&j.elements, &j.facets};
     for (int k = 0; k < 2; k++) brunt_free(made[k]->first), brunt_free(made[k]->item);
-    for (int w = 0; w < wall_count && !status; w++) status = find_behind(m, mpm, mpm_count, w, found);
+    for (int w = 0; w < wall_count && !status && !found->any; w++) find_behind(m, mpm, mpm_count, w, found);
     return status;
 }

@@ -6,6 +6,7 @@
 #include "contact/planes/boundary.h"
 
 typedef struct brunt_overlap {
+    bool any;     // there is one
     int a, b;     // bodies by their index among all; b: -1 where it is a plane
     int wall;     // the plane, -1
     double depth; // [m] at least so much of `a` is in the other, or behind it
@@ -13,6 +14,7 @@ typedef struct brunt_overlap {
 } brunt_overlap;
 
 // The first overlap of a mesh or membrane with another body that it has a pair with, or of any body with a plane of
-// condition separate. Call with the surface of all bodies taken. 1, or 0: there is none, -1: out of memory.
+// condition separate, if there is `any`. Call with the surface of all bodies taken. BRUNT_OK, or BRUNT_FAILED: out of
+// memory.
 int brunt_overlap_find(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, int wall_count,
-                       brunt_overlap *found);
+                       brunt_overlap *found, brunt_error *error);

@@ -65,8 +65,7 @@ static void keep_master(brunt_node_to_facet *f, const brunt_contact_surface *s, 
                         int worker) {
     master_list *of = &f->nodes.masters[worker];
     const size_t used = (size_t)of->count;
-    of->failed = of->failed || BRUNT_RESERVE_IN(of->master, of->capacity, used + 1, used);
-    if (of->failed) return;
+    if (BRUNT_ROOM_IN(of->master, of->capacity, used + 1, used, "edges and corners near nodes", &of->error)) return;
     h->worker = worker, h->master = of->count;
     brunt_node_to_facet_master(s, h, x, &of->master[of->count++]);
 }
@@ -205,14 +204,13 @@ static void fill_constraints(void *context, int64_t begin, int64_t end, int work
     }
 }
 
-// The support of a surface node, made when it is first asked for. -1: out of memory.
 int32_t brunt_node_to_facet_dof_node(brunt_node_to_facet *f, const brunt_contact_surface *s, int32_t n,
-                                     brunt_constraint_set *constraints) {
+                                     brunt_constraint_set *constraints, brunt_error *error) {
     if (f->nodes.dof_of[n] >= 0) return f->nodes.dof_of[n];
     if (s->membrane.front && s->membrane.front[n] != n)
-        return f->nodes.dof_of[n] = brunt_node_to_facet_dof_node(f, s, s->membrane.front[n], constraints);
-    int32_t at = brunt_constraints_dof_node(constraints);
-    if (at < 0) return -1;
+        return f->nodes.dof_of[n] = brunt_node_to_facet_dof_node(f, s, s->membrane.front[n], constraints, error);
+    int32_t at = brunt_constraints_dof_node(constraints, error);
+    if (at < 0) return BRUNT_NONE;
     brunt_dof_node *dof_node = &constraints->dof_node[at];
     memcpy(dof_node->v, s->v[n], sizeof dof_node->v);
     memcpy(dof_node->old, s->old[n], sizeof dof_node->old);
@@ -221,10 +219,10 @@ int32_t brunt_node_to_facet_dof_node(brunt_node_to_facet *f, const brunt_contact
 }
 
 static int add_node_constraints(const brunt_contact_context *m, brunt_node_to_facet *f,
-                                brunt_constraint_set *constraints) {
+                                brunt_constraint_set *constraints, brunt_error *error) {
     const brunt_contact_surface *s = m->surface;
     int32_t constraint = constraints->constraint_count, entry = constraints->entry_count;
-    if (RESERVE(&f->nodes, first, 2 * (size_t)s->node_count + 2)) return -1;
+    if (RESERVE(&f->nodes, first, 2 * (size_t)s->node_count + 2, "contact points of nodes", error)) return BRUNT_FAILED;
     for (int32_t n = 0; n < s->node_count; n++) {
         f->nodes.first[2 * n] = constraint, f->nodes.first[2 * n + 1] = entry;
         for (int32_t q = 0; q < f->nodes.count[n]; q++) {
@@ -232,53 +230,54 @@ static int add_node_constraints(const brunt_contact_context *m, brunt_node_to_fa
             const brunt_master *feature = h->feature.any ? kept_master(f, h) : NULL;
             const int32_t *node = feature ? feature->node : s->face[h->face];
             const int count = feature ? feature->count : brunt_face_corners(s->face[h->face]);
-            if (brunt_node_to_facet_dof_node(f, s, n, constraints) < 0) return -1;
+            if (brunt_node_to_facet_dof_node(f, s, n, constraints, error) < 0) return BRUNT_FAILED;
             for (int c = 0; c < count; c++)
-                if (brunt_node_to_facet_dof_node(f, s, node[c], constraints) < 0) return -1;
+                if (brunt_node_to_facet_dof_node(f, s, node[c], constraints, error) < 0) return BRUNT_FAILED;
             constraint++, entry += 1 + count;
         }
     }
-    if (brunt_constraints_reserve(constraints, constraint, entry)) return -1;
+    if (brunt_constraints_reserve(constraints, constraint, entry, error)) return BRUNT_FAILED;
     constraints->constraint_count = constraint, constraints->entry_count = entry;
     search_job j = {.m = m, .f = f, .constraints = constraints};
     brunt_parallel(m->threads, s->node_count, GRAIN, fill_constraints, &j, m->timer);
-    return 0;
+    return BRUNT_OK;
 }
 
-static int search_from_nodes(search_job *j) {
+static int search_from_nodes(search_job *j, brunt_error *error) {
     const brunt_contact_context *m = j->m;
     brunt_node_to_facet *f = j->f;
-    if (!f->nodes.masters && !(f->nodes.masters = brunt_alloc((size_t)m->threads * sizeof *f->nodes.masters)))
-        return -1;
+    if (!f->nodes.masters && BRUNT_NEW(f->nodes.masters, m->threads, "threads that look from nodes", error))
+        return BRUNT_FAILED;
     f->nodes.masters_count = m->threads;
-    for (int t = 0; t < m->threads; t++) f->nodes.masters[t].count = 0;
+    for (int t = 0; t < m->threads; t++) f->nodes.masters[t].count = 0, f->nodes.masters[t].error.code = BRUNT_OK;
     brunt_parallel(m->threads, m->surface->node_count, GRAIN, find_nodes, j, m->timer);
     for (int t = 0; t < m->threads; t++)
-        if (f->nodes.masters[t].failed) return -1;
-    return 0;
+        if (brunt_hand_on(error, &f->nodes.masters[t].error)) return BRUNT_FAILED;
+    return BRUNT_OK;
 }
 
 int brunt_node_to_facet_find(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, brunt_node_to_facet *f,
-                             brunt_constraint_set *constraints) {
+                             brunt_constraint_set *constraints, brunt_error *error) {
     const brunt_contact_surface *s = m->surface;
     f->cache.motion += 2 * s->motion.furthest;
     if (!(f->cache.motion < 1e300)) { // a body is new: nothing is known of distances
         f->cache.motion = 0;
         for (int32_t n = 0; f->cache.node && n < s->node_count; n++) f->cache.node[n] = (node_distance){0};
     }
-    if (!f->bodies.pair_count) return 0;
-    if (brunt_facet_cells_make(m, f)) return -1;
+    if (!f->bodies.pair_count) return BRUNT_OK;
+    if (brunt_facet_cells_make(m, f, error)) return BRUNT_FAILED;
     search_job j = {.m = m, .f = f, .constraints = constraints};
-    if (search_from_nodes(&j) || add_node_constraints(m, f, constraints) || brunt_edge_edge_find(m, f, constraints))
-        return -1;
+    if (search_from_nodes(&j, error) || add_node_constraints(m, f, constraints, error) ||
+        brunt_edge_edge_find(m, f, constraints, error))
+        return BRUNT_FAILED;
     for (int k = 0; k < mpm_count; k++) {
         int32_t box = 0;
         while (f->bodies.box[box].mpm != k) box++;
         if (f->bodies.first[box + 1] > f->bodies.first[box] &&
-            brunt_node_to_facet_particles(m, f, &mpm[k], k, box, constraints))
-            return -1;
+            brunt_node_to_facet_particles(m, f, &mpm[k], k, box, constraints, error))
+            return BRUNT_FAILED;
     }
-    return 0;
+    return BRUNT_OK;
 }
 
 // ------------------------------------------------------------------------------------------ the way back

@@ -25,13 +25,14 @@ size_t brunt_node_to_facet_bytes(const brunt_node_to_facet *f) {
              : 0;
 }
 
-int brunt_node_to_facet_make(brunt_node_to_facet **facing, int mpm_count, int32_t nodes) {
-    if (*facing) return 0;
-    brunt_node_to_facet *f = *facing = brunt_alloc(sizeof *f);
-    if (!f) return -1;
+int brunt_node_to_facet_make(brunt_node_to_facet **facing, int mpm_count, int32_t nodes, brunt_error *error) {
+    if (*facing) return BRUNT_OK;
+    if (BRUNT_NEW(*facing, 1, "search for contact", error)) return BRUNT_FAILED;
+    brunt_node_to_facet *f = *facing;
     f->particles.mpm_count = mpm_count;
-    f->particles.dofs = brunt_alloc(((size_t)mpm_count + 1) * sizeof *f->particles.dofs);
-    if (!f->particles.dofs || brunt_distance_cache_fit(f, nodes, 0)) return -1;
+    if (BRUNT_NEW(f->particles.dofs, mpm_count + 1, "bodies of particles near facets", error) ||
+        brunt_distance_cache_fit(f, nodes, 0, error))
+        return BRUNT_FAILED;
     for (int32_t n = 0; n < nodes; n++) f->cache.nearest[n] = -1;
-    return 0;
+    return BRUNT_OK;
 }

@@ -23,19 +23,19 @@ struct brunt_node_to_facet {
     particle_candidates particles;
 };
 
-#define RESERVE(f, what, count) BRUNT_RESERVE((f)->what, (size_t)(count), 0)
+#define RESERVE(f, array, count, what, error) BRUNT_ROOM((f)->array, (size_t)(count), 0, what, error)
 
 // --- node_to_facet.c
-// Makes what is kept between steps, when there is none. 0, or -1: out of memory.
-int brunt_node_to_facet_make(brunt_node_to_facet **facing, int mpm_count, int32_t nodes);
+// Makes what is kept between steps, when there is none. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_node_to_facet_make(brunt_node_to_facet **facing, int mpm_count, int32_t nodes, brunt_error *error);
 
 // --- distance_cache.c
-// Room for what is remembered of so many nodes. 0, or -1: out of memory.
-int brunt_distance_cache_fit(brunt_node_to_facet *f, int32_t nodes, int32_t kept);
+// Room for what is remembered of so many nodes. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_distance_cache_fit(brunt_node_to_facet *f, int32_t nodes, int32_t kept, brunt_error *error);
 
 // --- facet_cells.c
-// Makes the cells anew when they no longer hold all that may be near. 0, or -1: out of memory.
-int brunt_facet_cells_make(const brunt_contact_context *m, brunt_node_to_facet *f);
+// Makes the cells anew when they no longer hold all that may be near. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_facet_cells_make(const brunt_contact_context *m, brunt_node_to_facet *f, brunt_error *error);
 // Whether anything reaches, within `by`, a box near box `box`.
 bool brunt_broad_phase_in_reach(const brunt_node_to_facet *f, int32_t box, const double low[3], const double high[3],
                                 double by);
@@ -51,8 +51,9 @@ bool brunt_candidates_still_nearest(const brunt_contact_context *m, const brunt_
 double brunt_node_to_facet_target(const brunt_contact_surface *s, double gap, double approach, double before,
                                   double dt);
 double brunt_node_to_facet_area(const brunt_contact_surface *s, int32_t n, const double direction[3]);
+// The support of a surface node, made when it is first asked for. BRUNT_NONE: out of memory.
 int32_t brunt_node_to_facet_dof_node(brunt_node_to_facet *f, const brunt_contact_surface *s, int32_t n,
-                                     brunt_constraint_set *constraints);
+                                     brunt_constraint_set *constraints, brunt_error *error);
 double brunt_node_to_facet_approach(const brunt_contact_surface *s, const facet_candidate *h, const double x[3],
                                     const double v[3], double (*of)[3]);
 void brunt_node_to_facet_constraint(const brunt_contact_context *m, const facet_candidate *h, const double x[3],
@@ -65,21 +66,24 @@ void brunt_node_to_facet_entries(const brunt_node_to_facet *f, const brunt_maste
 
 // --- feature_edges.c
 // The edges near other bodies, in the order of the cells' facets: freed; none; and those of one more facet, of body k.
-// 0, or -1: out of memory.
+// BRUNT_OK, or BRUNT_FAILED: out of memory.
 void brunt_feature_edges_free(near_edges *edges);
-int brunt_feature_edges_clear(brunt_node_to_facet *f, const brunt_contact_surface *s);
-int brunt_feature_edges_add(brunt_node_to_facet *f, const brunt_contact_surface *s, int k, int32_t face);
-// Lists the features among the edges of body k, as they are in this step, unless that is done. 0, or -1: out of memory.
-int brunt_feature_edges_list(brunt_node_to_facet *f, const brunt_contact_surface *s, int k);
+int brunt_feature_edges_clear(brunt_node_to_facet *f, const brunt_contact_surface *s, brunt_error *error);
+int brunt_feature_edges_add(brunt_node_to_facet *f, const brunt_contact_surface *s, int k, int32_t face,
+                            brunt_error *error);
+// Lists the features among the edges of body k, as they are in this step, unless that is done. BRUNT_OK, or
+// BRUNT_FAILED: out of memory.
+int brunt_feature_edges_list(brunt_node_to_facet *f, const brunt_contact_surface *s, int k, brunt_error *error);
 
 // --- edge_edge.c
-// Contact points where edges cross. 0, or -1: out of memory.
-int brunt_edge_edge_find(const brunt_contact_context *m, brunt_node_to_facet *f, brunt_constraint_set *constraints);
+// Contact points where edges cross. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_edge_edge_find(const brunt_contact_context *m, brunt_node_to_facet *f, brunt_constraint_set *constraints,
+                         brunt_error *error);
 
 // --- particle_facet.c
-// Contact points of the particles of body k of the mpm bodies. 0, or -1: out of memory.
+// Contact points of the particles of body k of the mpm bodies. BRUNT_OK, or BRUNT_FAILED: out of memory.
 int brunt_node_to_facet_particles(const brunt_contact_context *m, brunt_node_to_facet *f, brunt_body *body, int k,
-                                  int32_t box, brunt_constraint_set *constraints);
+                                  int32_t box, brunt_constraint_set *constraints, brunt_error *error);
 // After the solution: velocities back to the grids' nodes.
 void brunt_node_to_facet_scatter_grids(const brunt_contact_context *m, brunt_body *mpm, brunt_node_to_facet *f,
                                        const brunt_constraint_set *constraints);

@@ -96,28 +96,29 @@ static int symmetry_of(const brunt_contact_context *m, const brunt_body *body,
     return count;
 }
 
-int brunt_particle_dofs_begin(const brunt_contact_context *m, const brunt_body *body, brunt_particle_dofs *dofs) {
+int brunt_particle_dofs_begin(const brunt_contact_context *m, const brunt_body *body, brunt_particle_dofs *dofs,
+                              brunt_error *error) {
     const size_t count = (size_t)body->grid.slot_count * BRUNT_BLOCK_NODES;
-    if (BRUNT_RESERVE(dofs->of, count, 0)) return -1;
+    if (BRUNT_ROOM(dofs->of, count, 0, "grid nodes of a body in contact", error)) return BRUNT_FAILED;
     for (int32_t g = 0; g < dofs->dof_count; g++) dofs->of[dofs->dof[g].node] = 0;
     dofs->dof_count = 0;
     dofs->symmetry_count = symmetry_of(m, body, dofs->symmetry);
-    return 0;
+    return BRUNT_OK;
 }
 
-// Makes the degree-of-freedom node of a grid node and of its images. 0, or -1: out of memory.
+// Makes the degree-of-freedom node of a grid node and of its images. BRUNT_OK, or BRUNT_FAILED: out of memory.
 static int make_dof_node(const brunt_grid *grid, const int32_t at[3], brunt_particle_dofs *dofs,
-                         brunt_constraint_set *set) {
+                         brunt_constraint_set *set, brunt_error *error) {
     int32_t image[BRUNT_MAX_IMAGES][3];
     real sign[BRUNT_MAX_IMAGES][3];
     int images = brunt_symmetry_images(dofs->symmetry, dofs->symmetry_count, at, IMAGE_LAYERS, image, sign);
-    int32_t dof_node = brunt_constraints_dof_node(set);
-    if (dof_node < 0) return -1;
+    int32_t dof_node = brunt_constraints_dof_node(set, error);
+    if (dof_node < 0) return BRUNT_FAILED;
     for (int i = 0; i < images; i++) {
         real *node = brunt_grid_node(grid, image[i]);
         if (!node || !(node[BRUNT_NODE_MASS] > 0)) continue;
         int64_t number = (node - grid->nodes) / BRUNT_NODE_REALS;
-        if (BRUNT_GROW(dofs->dof)) return -1;
+        if (BRUNT_ROOM_MORE(dofs->dof, "grid nodes under contact points", error)) return BRUNT_FAILED;
         brunt_grid_dof *entry = &dofs->dof[dofs->dof_count];
         *entry = (brunt_grid_dof){.node = number, .dof_node = dof_node};
         for (int a = 0; a < 3; a++) entry->sign[a] = (double)sign[i][a];
@@ -130,7 +131,7 @@ static int make_dof_node(const brunt_grid *grid, const int32_t at[3], brunt_part
                 sign[0][a] != 0 && !brunt_node_held(grid, number, a) ? 1 / (double)node[BRUNT_NODE_MASS] : 0;
         }
     }
-    return 0;
+    return BRUNT_OK;
 }
 
 // The degree-of-freedom node of node `e` under a particle; NULL: there is none yet.
@@ -161,26 +162,27 @@ static double image_share(const brunt_grid *grid, const brunt_particle_dofs *dof
 
 // Of each degree-of-freedom node the weights of all its nodes, turned over as they are.
 int brunt_particle_dofs_enter(const brunt_body *body, const brunt_particle_nodes *under, double factor,
-                              brunt_particle_dofs *dofs, brunt_constraint_set *set) {
+                              brunt_particle_dofs *dofs, brunt_constraint_set *set, brunt_error *error) {
     const brunt_grid *grid = &body->grid;
     const int32_t first = set->entry_count;
     for (int e = 0; e < under->count; e++) {
-        if (!dof_under(grid, dofs, under, e) && make_dof_node(grid, under->at[e], dofs, set)) return -1;
+        if (!dof_under(grid, dofs, under, e) && make_dof_node(grid, under->at[e], dofs, set, error))
+            return BRUNT_FAILED;
         const brunt_grid_dof *g = dof_under(grid, dofs, under, e);
         int32_t entry = dofs->symmetry_count ? first : set->entry_count; // without images each node has its own
         while (entry < set->entry_count && set->entry[entry].dof_node != g->dof_node) entry++;
-        if (entry == set->entry_count && brunt_constraints_entry(set, g->dof_node, 0) < 0) return -1;
+        if (entry == set->entry_count && brunt_constraints_entry(set, g->dof_node, 0, error) < 0) return BRUNT_FAILED;
         for (int a = 0; a < 3; a++) set->entry[entry].weight[a] += factor * under->weight[e] * g->sign[a];
     }
     if (dofs->symmetry_count)
         set->constraint[set->constraint_count - 1].image += image_share(grid, dofs, under, set, first);
-    return 0;
+    return BRUNT_OK;
 }
 
 int32_t brunt_particle_dofs_friction_point(const brunt_body *body, const brunt_particle_nodes *at_arm,
                                            const double x[3], const brunt_particle_dofs *dofs,
-                                           brunt_constraint_set *set) {
-    const int32_t first = brunt_constraints_friction_point(set, x);
+                                           brunt_constraint_set *set, brunt_error *error) {
+    const int32_t first = brunt_constraints_friction_point(set, x, error);
     if (first >= 0) brunt_particle_dofs_rub(body, at_arm, 1, dofs, first, set);
     return first;
 }

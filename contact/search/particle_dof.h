@@ -57,17 +57,18 @@ typedef struct brunt_particle_dofs {
 } brunt_particle_dofs;
 
 void brunt_particle_dofs_free(brunt_particle_dofs *dofs);
-// Room for the nodes of a body's grid, of which none is in use. 0, or -1: out of memory.
-int brunt_particle_dofs_begin(const brunt_contact_context *m, const brunt_body *body, brunt_particle_dofs *dofs);
-// Entries of the set's last constraint for a particle, its slave (`factor` 1), or for what bears it (-1). 0, or -1: out
-// of memory.
+// Room for the nodes of a body's grid, of which none is in use. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_particle_dofs_begin(const brunt_contact_context *m, const brunt_body *body, brunt_particle_dofs *dofs,
+                              brunt_error *error);
+// Entries of the set's last constraint for a particle, its slave (`factor` 1), or for what bears it (-1). BRUNT_OK, or
+// BRUNT_FAILED: out of memory.
 int brunt_particle_dofs_enter(const brunt_body *body, const brunt_particle_nodes *under, double factor,
-                              brunt_particle_dofs *dofs, brunt_constraint_set *set);
+                              brunt_particle_dofs *dofs, brunt_constraint_set *set, brunt_error *error);
 // Gives the last constraint, when its entries are complete, a friction point to x [m], with the weights of the particle
-// at an arm's length. The index of its first entry, or -1: out of memory.
+// at an arm's length. The index of its first entry, or BRUNT_NONE: out of memory.
 int32_t brunt_particle_dofs_friction_point(const brunt_body *body, const brunt_particle_nodes *at_arm,
                                            const double x[3], const brunt_particle_dofs *dofs,
-                                           brunt_constraint_set *set);
+                                           brunt_constraint_set *set, brunt_error *error);
 // Adds `factor` times weights to the entries of a friction point, from `first` on, which there are.
 void brunt_particle_dofs_rub(const brunt_body *body, const brunt_particle_nodes *at_arm, double factor,
                              const brunt_particle_dofs *dofs, int32_t first, brunt_constraint_set *set);

@@ -28,9 +28,9 @@ typedef struct search_job {
 
 // ------------------------------------------------------------------------------------------ looking
 
-// Keeps a hit that the particle would pass in this step. 0, or -1: out of memory.
+// Keeps a hit that the particle would pass in this step.
 static int add_particle_candidate(const search_job *j, particle_list *list, int32_t b, int64_t s, const double x[3],
-                                  const facet_candidate *h) {
+                                  const facet_candidate *h, brunt_error *error) {
     const brunt_contact_surface *surface = j->m->surface;
     brunt_particle_nodes under;
     double v[3], old[3];
@@ -40,17 +40,18 @@ static int add_particle_candidate(const search_job *j, particle_list *list, int3
     const double approach = brunt_node_to_facet_approach(surface, h, x, v, surface->v);
     const double before = brunt_node_to_facet_approach(surface, h, x, old, surface->old);
     const double target = brunt_node_to_facet_target(surface, h->gap, fmin(before, LIFT * approach), before, j->m->dt);
-    if (!(approach < target + 1e-6 * surface->mean_edge / j->m->dt)) return 0;
+    if (!(approach < target + 1e-6 * surface->mean_edge / j->m->dt)) return BRUNT_OK;
     const size_t used = (size_t)list->count;
-    if (BRUNT_RESERVE_IN(list->candidate, list->capacity, used + 1, used)) return -1;
+    if (BRUNT_ROOM_IN(list->candidate, list->capacity, used + 1, used, "facets near particles", error))
+        return BRUNT_FAILED;
     particle_candidate *found = &list->candidate[list->count++];
     *found = (particle_candidate){.block = b, .particle = s, .h = *h};
     memcpy(found->x, x, sizeof found->x);
     found->h.target = target;
-    return 0;
+    return BRUNT_OK;
 }
 
-static int search_from_block(const search_job *j, int32_t b, particle_list *list) {
+static int search_from_block(const search_job *j, int32_t b, particle_list *list, brunt_error *error) {
     brunt_node_to_facet *f = j->f;
     const brunt_grid *grid = &j->body->grid;
     const int dim = grid->dim;
@@ -61,7 +62,7 @@ static int search_from_block(const search_job *j, int32_t b, particle_list *list
     }
     real *const *place = brunt_field(&j->body->particles, BRUNT_FIELD_position);
     if (brunt_total_lagrangian(&j->body->particles)) brunt_body_block_bounds(j->body, b, low, high);
-    if (!brunt_broad_phase_in_reach(f, j->box, low, high, f->bodies.range)) return 0;
+    if (!brunt_broad_phase_in_reach(f, j->box, low, high, f->bodies.range)) return BRUNT_OK;
     for (int64_t s = grid->blocks[b].first; s < grid->blocks[b].first + grid->blocks[b].count; s++) {
         double x[3] = {0};
         for (int a = 0; a < dim; a++) x[a] = (double)place[a][s];
@@ -72,11 +73,11 @@ static int search_from_block(const search_job *j, int32_t b, particle_list *list
         for (int32_t q = 0; q < found.count; q++) {
             found.candidate[q].gap -= brunt_extent_along(j->body, s, found.candidate[q].n);
             if (found.candidate[q].gap <= f->bodies.travel &&
-                add_particle_candidate(j, list, b, s, x, &found.candidate[q]))
-                return -1;
+                add_particle_candidate(j, list, b, s, x, &found.candidate[q], error))
+                return BRUNT_FAILED;
         }
     }
-    return 0;
+    return BRUNT_OK;
 }
 
 static void search_from_blocks(void *context, int64_t begin, int64_t end, int worker) {
@@ -84,7 +85,7 @@ static void search_from_blocks(void *context, int64_t begin, int64_t end, int wo
     particle_list *list = &j->f->particles.list[worker];
     for (int64_t b = begin; b < end; b++) {
         j->f->particles.run[b] = (particle_run){.worker = worker, .first = list->count};
-        if (search_from_block(j, (int32_t)b, list)) list->failed = true;
+        search_from_block(j, (int32_t)b, list, &list->error);
         j->f->particles.run[b].count = list->count - j->f->particles.run[b].first;
     }
 }
@@ -92,7 +93,7 @@ static void search_from_blocks(void *context, int64_t begin, int64_t end, int wo
 // ------------------------------------------------------------------------------------------ constraints
 
 // What the last constraint rubs with: the same degree-of-freedom nodes, at the particle's surface.
-static int add_friction_point(const search_job *j, const particle_candidate *found) {
+static int add_friction_point(const search_job *j, const particle_candidate *found, brunt_error *error) {
     brunt_constraint_set *set = j->constraints;
     const int32_t number = set->constraint_count - 1;
     double arm[3], kernel_arm[3], x[3];
@@ -101,16 +102,16 @@ static int add_friction_point(const search_job *j, const particle_candidate *fou
     for (int a = 0; a < 3; a++) x[a] = found->x[a] + arm[a];
     brunt_particle_nodes at_arm;
     brunt_particle_nodes_find(j->body, found->block, found->particle, kernel_arm, &at_arm);
-    const int32_t first = brunt_particle_dofs_friction_point(j->body, &at_arm, x, j->dofs, set);
-    if (first < 0) return -1;
+    const int32_t first = brunt_particle_dofs_friction_point(j->body, &at_arm, x, j->dofs, set, error);
+    if (first < 0) return BRUNT_FAILED;
     brunt_constraint *constraint = &set->constraint[number];
     brunt_master master;
     brunt_node_to_facet_master(j->m->surface, &found->h, x, &master);
     brunt_node_to_facet_entries(j->f, &master, constraint, &set->entry[first + constraint->count - master.count]);
-    return 0;
+    return BRUNT_OK;
 }
 
-static int add_particle_constraint(const search_job *j, const particle_candidate *found) {
+static int add_particle_constraint(const search_job *j, const particle_candidate *found, brunt_error *error) {
     const brunt_contact_surface *surface = j->m->surface;
     const brunt_body *body = j->body;
     brunt_constraint_set *set = j->constraints;
@@ -119,49 +120,51 @@ static int add_particle_constraint(const search_job *j, const particle_candidate
     brunt_particle_nodes_find(body, found->block, found->particle, NULL, &under);
     brunt_node_to_facet_master(surface, &found->h, found->x, &master);
     for (int c = 0; c < master.count; c++)
-        if (brunt_node_to_facet_dof_node(j->f, surface, master.node[c], set) < 0) return -1;
-    int32_t at = brunt_constraints_add(set);
-    if (at < 0) return -1;
+        if (brunt_node_to_facet_dof_node(j->f, surface, master.node[c], set, error) < 0) return BRUNT_FAILED;
+    int32_t at = brunt_constraints_add(set, error);
+    if (at < 0) return BRUNT_FAILED;
     brunt_node_to_facet_constraint(j->m, &found->h, found->x, body->index, &set->constraint[at]);
     set->constraint[at].target = found->h.target, set->constraint[at].tag = j->dofs->tag;
     set->constraint[at].area = body->spacing * (body->grid.dim == 3     ? body->spacing
                                                 : surface->axisymmetric ? 2 * M_PI * found->x[0]
                                                                         : 1);
-    if (brunt_particle_dofs_enter(body, &under, 1, j->dofs, set)) return -1;
+    if (brunt_particle_dofs_enter(body, &under, 1, j->dofs, set, error)) return BRUNT_FAILED;
     const int32_t first = set->entry_count;
     for (int c = 0; c < master.count; c++)
-        if (brunt_constraints_entry(set, j->f->nodes.dof_of[master.node[c]], 0) < 0) return -1;
+        if (brunt_constraints_entry(set, j->f->nodes.dof_of[master.node[c]], 0, error) < 0) return BRUNT_FAILED;
     brunt_node_to_facet_entries(j->f, &master, &set->constraint[at], set->entry + first);
-    return set->constraint[at].friction > 0 ? add_friction_point(j, found) : 0;
+    return set->constraint[at].friction > 0 ? add_friction_point(j, found, error) : BRUNT_OK;
 }
 
-static int reserve_particles(brunt_node_to_facet *f, const brunt_body *body, int threads) {
-    if (RESERVE(&f->particles, run, body->grid.block_count + 1)) return -1;
+static int reserve_particles(brunt_node_to_facet *f, const brunt_body *body, int threads, brunt_error *error) {
+    if (RESERVE(&f->particles, run, body->grid.block_count + 1, "blocks of particles near facets", error))
+        return BRUNT_FAILED;
     if (!f->particles.list) {
-        if (!(f->particles.list = brunt_alloc((size_t)threads * sizeof *f->particles.list))) return -1;
+        if (BRUNT_NEW(f->particles.list, threads, "threads that look from particles", error)) return BRUNT_FAILED;
         f->particles.list_count = threads;
     }
     for (int t = 0; t < f->particles.list_count; t++)
-        f->particles.list[t].count = 0, f->particles.list[t].failed = false;
-    return 0;
+        f->particles.list[t].count = 0, f->particles.list[t].error.code = BRUNT_OK;
+    return BRUNT_OK;
 }
 
 int brunt_node_to_facet_particles(const brunt_contact_context *m, brunt_node_to_facet *f, brunt_body *body, int k,
-                                  int32_t box, brunt_constraint_set *constraints) {
+                                  int32_t box, brunt_constraint_set *constraints, brunt_error *error) {
     brunt_particle_dofs *dofs = &f->particles.dofs[k];
     search_job j = {.m = m, .f = f, .body = body, .box = box, .constraints = constraints, .dofs = dofs};
-    if (reserve_particles(f, body, m->threads) || brunt_particle_dofs_begin(m, body, dofs)) return -1;
+    if (reserve_particles(f, body, m->threads, error) || brunt_particle_dofs_begin(m, body, dofs, error))
+        return BRUNT_FAILED;
     dofs->tag = -1 - k;
     brunt_parallel(m->threads, body->grid.block_count, 1, search_from_blocks, &j, m->timer);
     for (int t = 0; t < f->particles.list_count; t++)
-        if (f->particles.list[t].failed) return -1;
+        if (brunt_hand_on(error, &f->particles.list[t].error)) return BRUNT_FAILED;
     for (int32_t b = 0; b < body->grid.block_count; b++) {
         const particle_run *run = &f->particles.run[b];
         const particle_candidate *found = f->particles.list[run->worker].candidate;
         for (int32_t i = run->first; i < run->first + run->count; i++)
-            if (add_particle_constraint(&j, &found[i])) return -1;
+            if (add_particle_constraint(&j, &found[i], error)) return BRUNT_FAILED;
     }
-    return 0;
+    return BRUNT_OK;
 }
 
 void brunt_node_to_facet_scatter_grids(const brunt_contact_context *m, brunt_body *mpm, brunt_node_to_facet *f,

@@ -31,17 +31,20 @@ typedef struct plane_job {
     double offset, speed, near; // [m] of the plane along its normal, [m/s] along it, [m] gaps that are looked at
 } plane_job;
 
-static int add_friction_point(const plane_job *j, int32_t b, int64_t s, const double x[3], double distance) {
+static int add_friction_point(const plane_job *j, int32_t b, int64_t s, const double x[3], double distance,
+                              brunt_error *error) {
     double arm[3], kernel_arm[3], at[3];
     brunt_particle_nodes at_arm;
     brunt_extent_arm(j->body, s, j->wall->plane.normal, distance, arm, kernel_arm);
     for (int a = 0; a < 3; a++) at[a] = x[a] + arm[a];
     brunt_particle_nodes_find(j->body, b, s, kernel_arm, &at_arm);
-    return brunt_particle_dofs_friction_point(j->body, &at_arm, at, j->dofs, j->set) < 0 ? -1 : 0;
+    return brunt_particle_dofs_friction_point(j->body, &at_arm, at, j->dofs, j->set, error) < 0 ? BRUNT_FAILED
+                                                                                                : BRUNT_OK;
 }
 
-// The constraint of a particle that the plane would catch in this step. 0, or -1: out of memory.
-static int add_particle(const plane_job *j, int32_t b, int64_t s, const double x[3], double distance, double gap) {
+// The constraint of a particle that the plane would catch in this step.
+static int add_particle(const plane_job *j, int32_t b, int64_t s, const double x[3], double distance, double gap,
+                        brunt_error *error) {
     const brunt_plane_def *plane = &j->wall->plane;
     const int dim = j->body->grid.dim;
     const double target = j->speed - fmax(gap, 0) / j->m->dt;
@@ -50,20 +53,20 @@ static int add_particle(const plane_job *j, int32_t b, int64_t s, const double x
     brunt_particle_nodes_find(j->body, b, s, NULL, &under);
     brunt_particle_nodes_velocity(&under, dim, BRUNT_NODE_VELOCITY, v);
     for (int a = 0; a < dim; a++) approach += plane->normal[a] * v[a];
-    if (approach > target + 1e-6 * (double)j->body->grid.h / j->m->dt) return 0;
-    const int32_t at = brunt_constraints_add(j->set);
-    if (at < 0) return -1;
+    if (approach > target + 1e-6 * (double)j->body->grid.h / j->m->dt) return BRUNT_OK;
+    const int32_t at = brunt_constraints_add(j->set, error);
+    if (at < 0) return BRUNT_FAILED;
     brunt_constraint *constraint = &j->set->constraint[at];
     memcpy(constraint->x, x, sizeof constraint->x);
     memcpy(constraint->n, plane->normal, sizeof constraint->n);
     memcpy(constraint->plane, plane->velocity, sizeof constraint->plane);
     constraint->gap = gap, constraint->target = target - j->speed, constraint->friction = plane->friction;
     constraint->account = &j->wall->last, constraint->sign = 1, constraint->tag = j->dofs->tag;
-    if (brunt_particle_dofs_enter(j->body, &under, 1, j->dofs, j->set)) return -1;
-    return plane->friction > 0 ? add_friction_point(j, b, s, x, distance) : 0;
+    if (brunt_particle_dofs_enter(j->body, &under, 1, j->dofs, j->set, error)) return BRUNT_FAILED;
+    return plane->friction > 0 ? add_friction_point(j, b, s, x, distance, error) : BRUNT_OK;
 }
 
-static int add_block(const plane_job *j, int32_t b) {
+static int add_block(const plane_job *j, int32_t b, brunt_error *error) {
     brunt_particles *p = &j->body->particles;
     const brunt_plane_def *plane = &j->wall->plane;
     const brunt_block *block = &j->body->grid.blocks[b];
@@ -73,12 +76,12 @@ static int add_block(const plane_job *j, int32_t b) {
         for (int a = 0; a < p->dim; a++) x[a] = (double)place[a][s], distance += plane->normal[a] * x[a];
         if (distance > j->near + 4 * (double)j->body->grid.h) continue;
         const double gap = distance - brunt_extent_along(j->body, s, plane->normal);
-        if (!(gap > j->near) && add_particle(j, b, s, x, distance, gap)) return -1;
+        if (!(gap > j->near) && add_particle(j, b, s, x, distance, gap, error)) return BRUNT_FAILED;
     }
-    return 0;
+    return BRUNT_OK;
 }
 
-static int add_plane(plane_job *j) {
+static int add_plane(plane_job *j, brunt_error *error) {
     const brunt_grid *grid = &j->body->grid;
     const brunt_plane_def *plane = &j->wall->plane;
     const double h = (double)grid->h;
@@ -95,27 +98,27 @@ static int add_plane(plane_job *j) {
         for (int a = 0; a < grid->dim; a++)
             middle += plane->normal[a] * (grid->origin[a] + h * (grid->blocks[b].coord[a] + 0.5) * grid->side);
         if (middle > half + j->near + 4 * h && !brunt_total_lagrangian(&j->body->particles)) continue;
-        if (add_block(j, b)) return -1;
+        if (add_block(j, b, error)) return BRUNT_FAILED;
     }
-    return 0;
+    return BRUNT_OK;
 }
 
 int brunt_plane_meet_points(const brunt_contact_context *m, brunt_boundary *wall, brunt_body *body,
-                            brunt_particle_dofs *dofs, brunt_constraint_set *set) {
+                            brunt_particle_dofs *dofs, brunt_constraint_set *set, brunt_error *error) {
     plane_job j = {.m = m, .body = body, .wall = wall, .dofs = dofs, .set = set};
-    return brunt_boundary_pushes(wall) ? add_plane(&j) : 0;
+    return brunt_boundary_pushes(wall) ? add_plane(&j, error) : BRUNT_OK;
 }
 
 int brunt_boundaries_meet_points(const brunt_contact_context *m, brunt_body *body, brunt_particle_dofs *dofs,
-                                 brunt_constraint_set *set) {
-    if (brunt_particle_dofs_begin(m, body, dofs)) return -1;
+                                 brunt_constraint_set *set, brunt_error *error) {
+    if (brunt_particle_dofs_begin(m, body, dofs, error)) return BRUNT_FAILED;
     brunt_constraints_clear(set);
     for (int k = 0; k < m->wall_count; k++) {
         brunt_boundary *wall = &m->walls[k];
         if (!wall->kind->meet_points || !brunt_boundary_acts_on(wall, body->index)) continue;
-        if (wall->kind->meet_points(m, wall, body, dofs, set)) return -1;
+        if (wall->kind->meet_points(m, wall, body, dofs, set, error)) return BRUNT_FAILED;
     }
-    if (brunt_constraints_solve(set, MAX_SWEEPS, SWEEP_TOLERANCE, m->threads, m->timer) < 0) return -1;
+    if (brunt_constraints_solve(set, MAX_SWEEPS, SWEEP_TOLERANCE, m->threads, m->timer, error)) return BRUNT_FAILED;
     brunt_particle_dofs_scatter(m, body, dofs, set);
-    return 0;
+    return BRUNT_OK;
 }

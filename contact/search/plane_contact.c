@@ -35,28 +35,37 @@ static void fix_node(brunt_contact_surface *s, int32_t n, int32_t back, brunt_bo
     memcpy(s->inverse[n + back], s->inverse[n], sizeof *s->inverse);
 }
 
-static int add_plane_constraint(const brunt_contact_context *m, brunt_node_to_facet *f, int32_t n, int32_t back,
-                                brunt_boundary *wall, double gap, brunt_constraint_set *constraints) {
-    const brunt_contact_surface *s = m->surface;
-    const brunt_plane_def *plane = &wall->plane;
+// A plane that meets the surface.
+typedef struct plane_job {
+    const brunt_contact_context *m;
+    brunt_boundary *wall;
+    brunt_node_to_facet *f;
+    brunt_constraint_set *constraints;
+} plane_job;
+
+static int add_plane_constraint(const plane_job *j, int32_t n, int32_t back, double gap, brunt_error *error) {
+    const brunt_contact_surface *s = j->m->surface;
+    const brunt_plane_def *plane = &j->wall->plane;
+    brunt_constraint_set *constraints = j->constraints;
     double approach = 0, before = 0;
     for (int a = 0; a < 3; a++) {
         approach += plane->normal[a] * (s->v[n][a] - plane->velocity[a]);
         before += plane->normal[a] * (s->old[n][a] - plane->velocity[a]);
     }
-    double target = brunt_node_to_facet_target(s, gap, approach, before, m->dt);
-    if (!(approach < target + 1e-6 * s->mean_edge / m->dt)) return 0;
-    int32_t at = brunt_constraints_add(constraints), dof_node = brunt_node_to_facet_dof_node(f, s, n, constraints);
-    if (at < 0 || dof_node < 0) return -1;
+    double target = brunt_node_to_facet_target(s, gap, approach, before, j->m->dt);
+    if (!(approach < target + 1e-6 * s->mean_edge / j->m->dt)) return BRUNT_OK;
+    int32_t at = brunt_constraints_add(constraints, error),
+            dof_node = brunt_node_to_facet_dof_node(j->f, s, n, constraints, error);
+    if (at < 0 || dof_node < 0) return BRUNT_FAILED;
     brunt_constraint *constraint = &constraints->constraint[at];
     memcpy(constraint->x, s->x[n], sizeof constraint->x);
     memcpy(constraint->n, plane->normal, sizeof constraint->n);
     memcpy(constraint->plane, plane->velocity, sizeof constraint->plane);
     constraint->gap = gap, constraint->target = target, constraint->friction = plane->friction;
-    constraint->account = &wall->last, constraint->sign = 1, constraint->tag = n,
+    constraint->account = &j->wall->last, constraint->sign = 1, constraint->tag = n,
     constraint->area = brunt_node_to_facet_area(s, n, plane->normal);
     if (back) constraint->area += brunt_node_to_facet_area(s, n + back, plane->normal);
-    return brunt_constraints_entry(constraints, dof_node, 1) < 0 ? -1 : 0;
+    return brunt_constraints_entry(constraints, dof_node, 1, error) < 0 ? BRUNT_FAILED : BRUNT_OK;
 }
 
 bool brunt_plane_near_surface(const brunt_contact_surface *s, int k, const brunt_boundary *wall, double time,
@@ -66,28 +75,30 @@ bool brunt_plane_near_surface(const brunt_contact_surface *s, int k, const brunt
     return brunt_plane_distance(&wall->plane, time, corner) < range;
 }
 
-// What a plane does to a node that it may touch in this step. 0, or -1: out of memory.
-static int meet_node(const brunt_contact_context *m, brunt_boundary *wall, int32_t n, int32_t back, double gap,
-                     brunt_node_to_facet *f, brunt_constraint_set *set) {
-    brunt_contact_surface *s = m->surface;
+// What a plane does to a node that it may touch in this step.
+static int meet_node(const plane_job *j, int32_t n, int32_t back, double gap, brunt_error *error) {
+    brunt_contact_surface *s = j->m->surface;
+    brunt_boundary *wall = j->wall;
+    const double dt = j->m->dt;
     const brunt_condition_row *condition = &brunt_conditions[wall->plane.condition];
     if (condition->pushes) {
         s->output.gap[n] = fmin(s->output.gap[n], gap);
-        return add_plane_constraint(m, f, n, back, wall, gap, set);
+        return add_plane_constraint(j, n, back, gap, error);
     }
     double along = 0;
     for (int a = 0; a < 3; a++) along += wall->plane.normal[a] * (s->v[n][a] - wall->plane.velocity[a]);
     if (gap <= ON * s->mean_edge)
         fix_node(s, n, back, wall, 0, condition->sticks);
-    else if (gap + along * m->dt < 0)
-        fix_node(s, n, back, wall, -gap / m->dt, condition->sticks);
-    return 0;
+    else if (gap + along * dt < 0)
+        fix_node(s, n, back, wall, -gap / dt, condition->sticks);
+    return BRUNT_OK;
 }
 
 int brunt_plane_meet_surface(const brunt_contact_context *m, brunt_boundary *wall, brunt_node_to_facet *f,
-                             brunt_constraint_set *set) {
+                             brunt_constraint_set *set, brunt_error *error) {
     const brunt_contact_surface *s = m->surface;
     const double range = f->bodies.plane_travel + ON * s->mean_edge;
+    const plane_job j = {.m = m, .wall = wall, .f = f, .constraints = set};
     for (int k = 0; k < s->fem_count; k++) {
         if (!s->active[k] || !brunt_boundary_acts_on(wall, s->fem[k]->index)) continue;
         if (!brunt_plane_near_surface(s, k, wall, m->time, range)) continue;
@@ -96,10 +107,10 @@ int brunt_plane_meet_surface(const brunt_contact_context *m, brunt_boundary *wal
             brunt_boundary_pushes(wall) && s->membrane.side ? s->membrane.side[s->fem[k]->index].half : 0;
         for (int32_t n = s->node_range[k]; n < s->node_end[k]; n++) {
             const double gap = brunt_plane_distance(&wall->plane, m->time, s->x[n]);
-            if (!(gap > range) && meet_node(m, wall, n, back, gap - half, f, set)) return -1;
+            if (!(gap > range) && meet_node(&j, n, back, gap - half, error)) return BRUNT_FAILED;
         }
     }
-    return 0;
+    return BRUNT_OK;
 }
 
 // The plane that keeps component a of a node from moving: of those that hold it, the nearest. -1: none.

@@ -9,4 +9,4 @@ bool brunt_plane_near_surface(const brunt_contact_surface *s, int k, const brunt
                               double range);
 // Adds the constraints of a plane that pushes, and applies one that holds.
 int brunt_plane_meet_surface(const brunt_contact_context *m, brunt_boundary *wall, brunt_node_to_facet *f,
-                             brunt_constraint_set *set);
+                             brunt_constraint_set *set, brunt_error *error);

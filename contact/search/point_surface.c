@@ -44,8 +44,10 @@ typedef struct ball {
     int32_t low[3], high[3];
 } ball;
 
-// Adds the particles of slots `from` to `to` (not included) that are in the ball. 0, or -1: out of memory.
-static int add_near(brunt_body *body, const ball *in, int32_t block, const int64_t slots[2], brunt_neighbours *list) {
+// Adds the particles of slots `from` to `to` (not included) that are in the ball. BRUNT_OK, or BRUNT_FAILED: out of
+// memory.
+static int add_near(brunt_body *body, const ball *in, int32_t block, const int64_t slots[2], brunt_neighbours *list,
+                    brunt_error *error) {
     const int dim = body->grid.dim;
     real *const *place = brunt_field(&body->particles, BRUNT_FIELD_position);
     const real *mass = brunt_field(&body->particles, BRUNT_FIELD_mass)[0];
@@ -53,13 +55,13 @@ static int add_near(brunt_body *body, const ball *in, int32_t block, const int64
         brunt_neighbour n = {.block = block, .particle = s};
         for (int a = 0; a < dim; a++) n.d[a] = (double)place[a][s] - in->x[a];
         if (!(dot(n.d, n.d) < in->range * in->range) || !(mass[s] > 0)) continue;
-        if (BRUNT_GROW(list->near)) return -1;
+        if (BRUNT_ROOM_MORE(list->near, "particles about a place", error)) return BRUNT_FAILED;
         list->near[list->near_count++] = n;
     }
-    return 0;
+    return BRUNT_OK;
 }
 
-static int add_block(brunt_body *body, const ball *in, int32_t b, brunt_neighbours *list) {
+static int add_block(brunt_body *body, const ball *in, int32_t b, brunt_neighbours *list, brunt_error *error) {
     const brunt_grid *grid = &body->grid;
     const int dim = grid->dim, last = dim - 1;
     int from[3] = {0}, to[3] = {0};
@@ -76,12 +78,13 @@ static int add_block(brunt_body *body, const ball *in, int32_t b, brunt_neighbou
             bin[last] = from[last], end[last] = to[last];
             const int64_t slots[2] = {first + start[brunt_node_index(grid, bin[0], bin[1], bin[2])],
                                       first + start[brunt_node_index(grid, end[0], end[1], end[2]) + 1]};
-            if (add_near(body, in, b, slots, list)) return -1;
+            if (add_near(body, in, b, slots, list, error)) return BRUNT_FAILED;
         }
-    return 0;
+    return BRUNT_OK;
 }
 
-int brunt_neighbours_find(brunt_body *body, double range, const double x[3], brunt_neighbours *list) {
+int brunt_neighbours_find(brunt_body *body, double range, const double x[3], brunt_neighbours *list,
+                          brunt_error *error) {
     const brunt_grid *grid = &body->grid;
     ball in = {.range = range};
     int32_t first[3] = {0}, last[3] = {0}, c[3];
@@ -98,17 +101,17 @@ int brunt_neighbours_find(brunt_body *body, double range, const double x[3], bru
         for (c[1] = first[1]; c[1] <= last[1]; c[1]++)
             for (c[2] = first[2]; c[2] <= last[2]; c[2]++) {
                 const int32_t b = brunt_grid_block(grid, brunt_key(c));
-                if (b >= 0 && add_block(body, &in, b, list)) return -1;
+                if (b >= 0 && add_block(body, &in, b, list, error)) return BRUNT_FAILED;
             }
-    return 0;
+    return BRUNT_OK;
 }
 
-int brunt_neighbours_centres(brunt_neighbours *list, double range) {
-    if (brunt_extent_cloud_points(&list->centres, list->near_count)) return -1;
+int brunt_neighbours_centres(brunt_neighbours *list, double range, brunt_error *error) {
+    if (brunt_extent_cloud_points(&list->centres, list->near_count, error)) return BRUNT_FAILED;
     for (int32_t i = 0; i < list->near_count; i++)
         if (dot(list->near[i].d, list->near[i].d) < range * range)
             brunt_extent_cloud_point(&list->centres, list->near[i].d);
-    return 0;
+    return BRUNT_OK;
 }
 
 // ------------------------------------------------------------------------------------------ which way is out

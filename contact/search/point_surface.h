@@ -19,10 +19,11 @@ typedef struct brunt_neighbours {
 } brunt_neighbours;
 
 void brunt_neighbours_free(brunt_neighbours *list);
-// Those within `range` of x, in the order of the body's blocks. 0, or -1: out of memory.
-int brunt_neighbours_find(brunt_body *body, double range, const double x[3], brunt_neighbours *list);
-// Fills the cloud with the centres of those within `range` of the place. 0, or -1: out of memory.
-int brunt_neighbours_centres(brunt_neighbours *list, double range);
+// Those within `range` of x, in the order of the body's blocks. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_neighbours_find(brunt_body *body, double range, const double x[3], brunt_neighbours *list,
+                          brunt_error *error);
+// Fills the cloud with the centres of those within `range` of the place. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_neighbours_centres(brunt_neighbours *list, double range, brunt_error *error);
 
 // How far a particle reaches along n [m]: its ball, but not past the particles next to it, so that the outermost speak
 // for the surface.

@@ -33,7 +33,7 @@ typedef struct touch_list {
     size_t touch_capacity;
     int32_t touch_count;
     brunt_neighbours own, other; // of the slave
-    bool failed;
+    brunt_error error;
 } touch_list;
 
 struct brunt_point_touches {
@@ -173,17 +173,17 @@ static double slope_gap(const look *l, const touch *t) {
 }
 
 // The direction of the least distance between the centres of both bodies about the slave. Whether they are apart.
-static int least_distance(const look *l, touch_list *list, double n[3], bool *apart) {
+static int least_distance(const look *l, touch_list *list, double n[3], bool *apart, brunt_error *error) {
     const brunt_neighbour *nearest = list->other.near;
     for (int32_t i = 1; i < list->other.near_count; i++)
         if (dot(list->other.near[i].d, list->other.near[i].d) < dot(nearest->d, nearest->d))
             nearest = &list->other.near[i];
     const double start[3] = {-nearest->d[0], -nearest->d[1], -nearest->d[2]};
-    if (brunt_neighbours_centres(&list->own, OWN * l->slave->spacing) ||
-        brunt_neighbours_centres(&list->other, l->range))
-        return -1;
+    if (brunt_neighbours_centres(&list->own, OWN * l->slave->spacing, error) ||
+        brunt_neighbours_centres(&list->other, l->range, error))
+        return BRUNT_FAILED;
     *apart = brunt_gjk_distance(&list->other.centres, &list->own.centres, (double)l->slave->grid.h, 0, start, n) > 0;
-    return 0;
+    return BRUNT_OK;
 }
 
 // Of the slopes that which keeps what is about the slave of both bodies the farthest apart. Whether there is any.
@@ -202,23 +202,24 @@ static bool best_slope(const look *l, const touch_list *list, touch *best) {
 }
 
 // Looks from a particle along the direction in which the bodies are the least apart about it.
-static int look_from(const look *l, int32_t b, int64_t s, touch_list *list) {
+static int look_from(const look *l, int32_t b, int64_t s, touch_list *list, brunt_error *error) {
     touch t = {.slave = l->slave_k, .master = l->master_k, .block = b, .particle = s};
     const double dt = l->m->dt;
     double n[3];
     bool apart;
     place_of(l->slave, s, t.x);
-    if (brunt_neighbours_find(l->master, l->range, t.x, &list->other)) return -1;
-    if (!list->other.near_count) return 0;
-    if (brunt_neighbours_find(l->slave, l->range, t.x, &list->own) || least_distance(l, list, n, &apart)) return -1;
-    if (!(apart ? measure(l, &list->other, n, &t) : best_slope(l, list, &t)) || t.gap > l->travel) return 0;
+    if (brunt_neighbours_find(l->master, l->range, t.x, &list->other, error)) return BRUNT_FAILED;
+    if (!list->other.near_count) return BRUNT_OK;
+    if (brunt_neighbours_find(l->slave, l->range, t.x, &list->own, error) || least_distance(l, list, n, &apart, error))
+        return BRUNT_FAILED;
+    if (!(apart ? measure(l, &list->other, n, &t) : best_slope(l, list, &t)) || t.gap > l->travel) return BRUNT_OK;
     t.gap = fmax(t.gap, slope_gap(l, &t));
-    if (t.gap > l->travel) return 0;
+    if (t.gap > l->travel) return BRUNT_OK;
     t.target = -fmax(t.gap, 0) / dt;
-    if (!(approach_of(l, &t) < t.target + 1e-6 * (double)l->slave->grid.h / dt)) return 0;
-    if (BRUNT_GROW(list->touch)) return -1;
+    if (!(approach_of(l, &t) < t.target + 1e-6 * (double)l->slave->grid.h / dt)) return BRUNT_OK;
+    if (BRUNT_ROOM_MORE(list->touch, "particles that touch", error)) return BRUNT_FAILED;
     list->touch[list->touch_count++] = t;
-    return 0;
+    return BRUNT_OK;
 }
 
 static bool block_near(const look *l, int32_t b) {
@@ -243,7 +244,7 @@ static void look_from_blocks(void *context, int64_t begin, int64_t end, int work
         *run = (struct touch_run){.worker = worker, .first = list->touch_count};
         if (block_near(l, (int32_t)b))
             for (int64_t s = block->first; s < block->first + block->count; s++)
-                if (mass[s] > 0 && look_from(l, (int32_t)b, s, list)) list->failed = true;
+                if (mass[s] > 0) look_from(l, (int32_t)b, s, list, &list->error);
         run->count = list->touch_count - run->first;
     }
 }
@@ -251,34 +252,35 @@ static void look_from_blocks(void *context, int64_t begin, int64_t end, int work
 // ------------------------------------------------------------------------------------------ constraints
 
 // Entries of the slave, and of what bears it.
-static int enter_touch(const look *l, const touch *t) {
+static int enter_touch(const look *l, const touch *t, brunt_error *error) {
     brunt_particle_nodes under;
     brunt_particle_nodes_find(l->slave, t->block, t->particle, NULL, &under);
-    if (brunt_particle_dofs_enter(l->slave, &under, 1, &l->t->dofs[t->slave], &l->t->set)) return -1;
+    if (brunt_particle_dofs_enter(l->slave, &under, 1, &l->t->dofs[t->slave], &l->t->set, error)) return BRUNT_FAILED;
     nodes_of_masters(l->master, t, true, 0, &under);
-    return brunt_particle_dofs_enter(l->master, &under, -1, &l->t->dofs[t->master], &l->t->set);
+    return brunt_particle_dofs_enter(l->master, &under, -1, &l->t->dofs[t->master], &l->t->set, error);
 }
 
 // What the last constraint rubs with: the same nodes, where the surfaces meet.
-static int enter_friction(const look *l, const touch *t) {
+static int enter_friction(const look *l, const touch *t, brunt_error *error) {
     const double back[3] = {-t->n[0], -t->n[1], -t->n[2]},
                  reach = brunt_point_extent(l->slave, t->particle, back) + 0.5 * fmin(t->gap, 0);
     double x[3], arm[3];
     brunt_particle_nodes under;
     for (int a = 0; a < 3; a++) arm[a] = -reach * t->n[a], x[a] = t->x[a] + arm[a];
     brunt_particle_nodes_find(l->slave, t->block, t->particle, arm, &under);
-    const int32_t first = brunt_particle_dofs_friction_point(l->slave, &under, x, &l->t->dofs[t->slave], &l->t->set);
-    if (first < 0) return -1;
+    const int32_t first =
+        brunt_particle_dofs_friction_point(l->slave, &under, x, &l->t->dofs[t->slave], &l->t->set, error);
+    if (first < 0) return BRUNT_FAILED;
     nodes_of_masters(l->master, t, false, reach, &under);
     brunt_particle_dofs_rub(l->master, &under, -1, &l->t->dofs[t->master], first, &l->t->set);
-    return 0;
+    return BRUNT_OK;
 }
 
-static int add_constraint(const look *l, const touch *t) {
+static int add_constraint(const look *l, const touch *t, brunt_error *error) {
     brunt_constraint_set *set = &l->t->set;
     brunt_pair *pair = &l->m->pairs[brunt_pair_of(l->m->pair_map, l->slave->index, l->master->index)];
-    const int32_t at = brunt_constraints_add(set);
-    if (at < 0) return -1;
+    const int32_t at = brunt_constraints_add(set, error);
+    if (at < 0) return BRUNT_FAILED;
     brunt_constraint *constraint = &set->constraint[at];
     memcpy(constraint->x, t->x, sizeof constraint->x);
     memcpy(constraint->n, t->n, sizeof constraint->n);
@@ -288,8 +290,8 @@ static int add_constraint(const look *l, const touch *t) {
     constraint->sign = l->slave->index > l->master->index ? 1 : -1;
     constraint->area = 0.5 * l->slave->spacing * (l->slave->grid.dim == 3 ? l->slave->spacing : 1);
     constraint->tag = t->slave, constraint->bearer = t->master + 1;
-    if (enter_touch(l, t)) return -1;
-    return pair->friction > 0 ? enter_friction(l, t) : 0;
+    if (enter_touch(l, t, error)) return BRUNT_FAILED;
+    return pair->friction > 0 ? enter_friction(l, t, error) : BRUNT_OK;
 }
 
 static void bound_blocks(const brunt_grid *grid, struct touch_box *box) {
@@ -310,47 +312,47 @@ static bool are_apart(const look *l) {
     return false;
 }
 
-static int meet(look *l, int slave, int master) {
+static int meet(look *l, int slave, int master, brunt_error *error) {
     brunt_point_touches *t = l->t;
     l->slave = &l->m->mpm[slave], l->master = &l->m->mpm[master], l->slave_k = slave, l->master_k = master;
     const double spacing = fmax(l->slave->spacing, l->master->spacing);
     l->travel = fmax(2 * l->m->dt * (double)(l->slave->speed + l->master->speed), NEAR * spacing);
     l->range = sqrt(spacing * spacing + pow(2 * spacing + l->travel, 2));
-    if (are_apart(l)) return 0;
+    if (are_apart(l)) return BRUNT_OK;
     const int32_t blocks = l->slave->grid.block_count;
-    if (BRUNT_RESERVE(t->run, (size_t)blocks + 1, 0)) return -1;
-    for (int w = 0; w < t->list_count; w++) t->list[w].touch_count = 0;
+    if (BRUNT_ROOM(t->run, (size_t)blocks + 1, 0, "blocks of particles that may touch", error)) return BRUNT_FAILED;
+    for (int w = 0; w < t->list_count; w++) t->list[w].touch_count = 0, t->list[w].error.code = BRUNT_OK;
     brunt_parallel(l->m->threads, blocks, 1, look_from_blocks, l, l->m->timer);
     for (int w = 0; w < t->list_count; w++)
-        if (t->list[w].failed) return -1;
+        if (brunt_hand_on(error, &t->list[w].error)) return BRUNT_FAILED;
     for (int32_t b = 0; b < blocks; b++)
         for (int32_t i = 0; i < t->run[b].count; i++)
-            if (add_constraint(l, &t->list[t->run[b].worker].touch[t->run[b].first + i])) return -1;
-    return 0;
+            if (add_constraint(l, &t->list[t->run[b].worker].touch[t->run[b].first + i], error)) return BRUNT_FAILED;
+    return BRUNT_OK;
 }
 
-static brunt_point_touches *make_touches(const brunt_contact_context *m) {
-    brunt_point_touches *t = brunt_alloc(sizeof *t);
-    if (!t) return NULL;
+static brunt_point_touches *make_touches(const brunt_contact_context *m, brunt_error *error) {
+    brunt_point_touches *t;
+    if (BRUNT_NEW(t, 1, "search for particles that touch", error)) return NULL;
     t->set.accelerated = true;
-    t->list = brunt_alloc((size_t)m->threads * sizeof *t->list);
-    t->list_count = t->list ? m->threads : 0;
     t->mpm_count = m->mpm_count;
-    t->dofs = brunt_alloc((size_t)m->mpm_count * sizeof *t->dofs);
-    t->box = brunt_alloc((size_t)m->mpm_count * sizeof *t->box);
-    if (t->list && t->dofs && t->box) return t;
+    const bool failed = BRUNT_NEW(t->list, m->threads, "threads that look from particles", error) ||
+                        BRUNT_NEW(t->dofs, m->mpm_count, "bodies of particles that touch", error) ||
+                        BRUNT_NEW(t->box, m->mpm_count, "boxes about bodies of particles", error);
+    t->list_count = t->list ? m->threads : 0;
+    if (!failed) return t;
     brunt_point_touches_free(t);
     return NULL;
 }
 
 int brunt_point_touches_apply(const brunt_contact_context *m, int sweeps, double tolerance,
-                              brunt_point_touches **touches) {
-    if (!*touches && !(*touches = make_touches(m))) return -1;
+                              brunt_point_touches **touches, brunt_error *error) {
+    if (!*touches && !(*touches = make_touches(m, error))) return BRUNT_FAILED;
     brunt_point_touches *t = *touches;
     look l = {.m = m, .t = t};
     brunt_constraints_clear(&t->set);
     for (int k = 0; k < m->mpm_count; k++) {
-        if (brunt_particle_dofs_begin(m, &m->mpm[k], &t->dofs[k])) return -1;
+        if (brunt_particle_dofs_begin(m, &m->mpm[k], &t->dofs[k], error)) return BRUNT_FAILED;
         t->dofs[k].tag = k;
         bound_blocks(&m->mpm[k].grid, &t->box[k]);
     }
@@ -358,9 +360,9 @@ int brunt_point_touches_apply(const brunt_contact_context *m, int sweeps, double
         for (int b = 0; b < m->mpm_count; b++) {
             const int32_t pair = a == b ? -1 : brunt_pair_of(m->pair_map, m->mpm[a].index, m->mpm[b].index);
             if (pair < 0 || m->pairs[pair].method != BRUNT_CONTACT_AUGURY) continue;
-            if (meet(&l, a, b)) return -1;
+            if (meet(&l, a, b, error)) return BRUNT_FAILED;
         }
-    if (brunt_constraints_solve(&t->set, sweeps, tolerance, m->threads, m->timer) < 0) return -1;
+    if (brunt_constraints_solve(&t->set, sweeps, tolerance, m->threads, m->timer, error)) return BRUNT_FAILED;
     for (int k = 0; k < m->mpm_count; k++) brunt_particle_dofs_scatter(m, &m->mpm[k], &t->dofs[k], &t->set);
-    return 0;
+    return BRUNT_OK;
 }

@@ -11,7 +11,7 @@
 
 typedef struct brunt_point_touches brunt_point_touches;
 
-// Meets all pairs of bodies of material points whose method is augury. 0, or -1: out of memory.
+// Meets all pairs of bodies of material points whose method is augury. BRUNT_OK, or BRUNT_FAILED: out of memory.
 int brunt_point_touches_apply(const brunt_contact_context *m, int sweeps, double tolerance,
-                              brunt_point_touches **touches);
+                              brunt_point_touches **touches, brunt_error *error);
 void brunt_point_touches_free(brunt_point_touches *touches);

@@ -18,8 +18,7 @@ int brunt_fail_memory(brunt_error *error, const char *what, size_t count, size_t
 }
 
 int brunt_hand_on(brunt_error *error, const brunt_error *from) {
-    if (from->code && error) *error = *from;
-    return from->code;
+    return from->code ? brunt_fail(error, from->code, "%s", from->message) : BRUNT_OK;
 }
 
 // The one place where the library ends the process: after a programmer's error nothing it holds can be trusted.

@@ -44,13 +44,13 @@ static int widest_axis(const brunt_box *boxes, int32_t count) {
     return widest;
 }
 
-int64_t brunt_sweep(const brunt_box *boxes, int32_t first, int32_t count, brunt_box_pair **pairs) {
-    start *order = brunt_alloc(((size_t)count + 1) * sizeof *order);
+int brunt_sweep(const brunt_box *boxes, int32_t first, int32_t count, brunt_box_pair **pairs, int64_t *found,
+                brunt_error *error) {
+    start *order;
     brunt_box_pair *list = NULL;
-    size_t capacity = 0;
-    int64_t found = 0;
-    *pairs = NULL;
-    if (!order) return -1;
+    size_t capacity = 0, pair = 0;
+    *pairs = NULL, *found = 0;
+    if (BRUNT_NEW(order, count + 1, "boxes in order", error)) return BRUNT_FAILED;
     const int axis = widest_axis(boxes, count);
     for (int32_t i = 0; i < count; i++) order[i] = (start){boxes[i].low[axis], i};
     qsort(order, (size_t)count, sizeof *order, compare_starts);
@@ -59,11 +59,11 @@ int64_t brunt_sweep(const brunt_box *boxes, int32_t first, int32_t count, brunt_
         for (int32_t k = i + 1; k < count && !failed && order[k].low <= boxes[order[i].box].high[axis]; k++) {
             const int32_t p = order[i].box, q = order[k].box;
             if ((p >= first && q >= first) || !share(&boxes[p], &boxes[q])) continue;
-            failed = BRUNT_RESERVE_IN(list, capacity, (size_t)found + 1, (size_t)found);
-            if (!failed) list[found++] = p < q ? (brunt_box_pair){p, q} : (brunt_box_pair){q, p};
+            failed = BRUNT_ROOM_IN(list, capacity, pair + 1, pair, "pairs of boxes that share something", error);
+            if (!failed) list[pair++] = p < q ? (brunt_box_pair){p, q} : (brunt_box_pair){q, p};
         }
     brunt_free(order);
-    *pairs = list;
-    if (found) qsort(list, (size_t)found, sizeof *list, compare_pairs);
-    return failed ? -1 : found;
+    *pairs = list, *found = (int64_t)pair;
+    if (pair) qsort(list, pair, sizeof *list, compare_pairs);
+    return failed ? BRUNT_FAILED : BRUNT_OK;
 }

@@ -3,6 +3,8 @@
 
 #include <stdint.h>
 
+#include "base/error.h"
+
 typedef struct brunt_box {
     double low[3], high[3]; // closed; infinite where there is no end
 } brunt_box;
@@ -11,6 +13,7 @@ typedef struct brunt_box_pair {
     int32_t a, b; // a < b
 } brunt_box_pair;
 
-// Pairs of boxes that share a point, of which at least one is among the first `first`, ascending. `pairs` is the
-// caller's to free. Their count, or -1: out of memory.
-int64_t brunt_sweep(const brunt_box *boxes, int32_t first, int32_t count, brunt_box_pair **pairs);
+// Pairs of boxes that share a point, of which at least one is among the first `first`, ascending. `pairs`, so
+// many as `found`, is the caller's to free, also when it fails. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_sweep(const brunt_box *boxes, int32_t first, int32_t count, brunt_box_pair **pairs, int64_t *found,
+                brunt_error *error);

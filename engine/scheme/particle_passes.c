@@ -136,22 +136,19 @@ int brunt_pass_conditions(brunt_world *world, brunt_step *step, brunt_error *err
 int brunt_pass_contact(brunt_world *world, brunt_step *step, brunt_error *error) {
     const brunt_contact_context m = brunt_contact_context_of(world, step->dt, brunt_pass_timer(world));
     const brunt_contact *contact = &world->contact;
-    int failed = contact->has_grid ? brunt_grid_velocity_apply(&m, &world->scratch.grid_velocity) : 0;
+    int failed = contact->has_grid ? brunt_grid_velocity_apply(&m, &world->scratch.grid_velocity, error) : BRUNT_OK;
     if (contact->has_touches && !failed)
         failed = brunt_point_touches_apply(&m, contact->touch_sweeps, 0.1 * contact->def.tolerance,
-                                           &world->scratch.point_touches);
-    return failed ? brunt_fail_step(world, NULL, error,
-                                    failed == -1 ? "out of memory in the contact search"
-                                                 : "more than 16 bodies meet at one grid node")
-                  : BRUNT_OK;
+                                           &world->scratch.point_touches, error);
+    return failed ? brunt_fail_inner(world, NULL, error) : BRUNT_OK;
 }
 
 int brunt_pass_walls(brunt_world *world, brunt_step *step, brunt_error *error) {
     const brunt_contact_context m = brunt_contact_context_of(world, step->dt, NULL);
     for (int i = 0; i < world->bodies.mpm_count; i++)
-        if (brunt_boundaries_meet_points(&m, &world->bodies.mpm[i], &world->scratch.planes,
-                                         &world->contact.constraints))
-            return brunt_fail_step(world, &world->bodies.mpm[i], error, "out of memory at a wall");
+        if (brunt_boundaries_meet_points(&m, &world->bodies.mpm[i], &world->scratch.planes, &world->contact.constraints,
+                                         error))
+            return brunt_fail_inner(world, &world->bodies.mpm[i], error);
     return BRUNT_OK;
 }
 

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "contact/methods/method.h"
+#include "base/array.h"
 #include "base/error.h"
 #include "base/memory.h"
 #include "base/sweep.h"
@@ -142,15 +143,15 @@ static bool fills_its_shape(const brunt_body_def *body) {
 static int check_overlap(const brunt_world *world, const brunt_world_def *def, const brunt_body_def **order,
                          const brunt_filled *filled, brunt_error *error) {
     const int n = def->body_count, dim = def->dimension;
-    brunt_box *box = brunt_alloc(2 * (size_t)n * sizeof *box);
-    if (!box) return brunt_fail(error, BRUNT_FAILED, "out of memory");
+    brunt_box *box;
+    if (BRUNT_NEW(box, 2 * n, "boxes about bodies", error)) return BRUNT_FAILED;
     for (int i = 0; i < n; i++) {
         box[i] = box_of_particles(&filled[i], dim, lattice_spacing(def, order[i]));
         box[n + i] = box_of_shape(order[i], dim);
     }
     brunt_box_pair *near;
-    const int64_t count = brunt_sweep(box, n, 2 * n, &near);
-    int status = count < 0 ? brunt_fail(error, BRUNT_FAILED, "out of memory") : BRUNT_OK;
+    int64_t count;
+    int status = brunt_sweep(box, n, 2 * n, &near, &count, error);
     for (int64_t q = 0; q < count && !status; q++) {
         const int i = near[q].a, k = near[q].b - n;
         if (k < 0 || i == k || brunt_pair_of(&world->pairs.map, i, k) < 0 || !fills_its_shape(order[k])) continue;

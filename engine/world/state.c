@@ -150,8 +150,8 @@ static int world_set(brunt_world *world, int block, const double *from, brunt_er
     if (block == EROSION_BLOCK) brunt_erosion_state_set(&world->erosion, from);
     if (block == NEWTON_BLOCK) brunt_saved_set(newton_table, NEWTON_ROWS, world, from);
     if (block == 3 && brunt_node_to_facet_state_set(&world->contact.node_to_facet, &world->contact.surface,
-                                                    world->bodies.mpm_count, from))
-        return brunt_fail(error, BRUNT_FAILED, "out of memory");
+                                                    world->bodies.mpm_count, from, error))
+        return BRUNT_FAILED;
     if (block == 4) brunt_surface_affine_set(&world->contact.surface, from);
     if (block == 0) from = brunt_saved_set(clock_table, CLOCK_ROWS, world, from);
     for (int i = 0; block == 0 && i < world->bodies.mpm_count; i++) world->bodies.mpm[i].speed = (real)*from++;

@@ -154,9 +154,8 @@ int brunt_surfaces_overlap(brunt_world *world, brunt_error *error) {
     }
     brunt_overlap o;
     const int status =
-        brunt_overlap_find(&m, world->bodies.mpm, world->bodies.mpm_count, world->boundaries.wall_count, &o);
-    if (status < 0) return brunt_fail(error, BRUNT_FAILED, "out of memory for the bodies' surfaces");
-    if (!status) return BRUNT_OK;
+        brunt_overlap_find(&m, world->bodies.mpm, world->bodies.mpm_count, world->boundaries.wall_count, &o, error);
+    if (status || !o.any) return status;
     static const char way_out[] = "move one of them, or write contact.initial_overlap: allow";
     if (o.b < 0)
         return brunt_fail(error, BRUNT_BAD_INPUT,
@@ -170,10 +169,8 @@ int brunt_surfaces_overlap(brunt_world *world, brunt_error *error) {
 
 int brunt_surfaces_renew(brunt_world *world, brunt_error *error) {
     if (!world->contact.has_surfaces) return BRUNT_OK;
-    if (brunt_surface_renew(&world->contact.surface, false, error) ||
-        brunt_node_to_facet_renew(world->contact.node_to_facet, &world->contact.surface))
-        return brunt_fail(error, BRUNT_FAILED, "out of memory for the bodies' surfaces");
-    return BRUNT_OK;
+    const int status = brunt_surface_renew(&world->contact.surface, false, error);
+    return status ? status : brunt_node_to_facet_renew(world->contact.node_to_facet, &world->contact.surface, error);
 }
 
 // Whether a world has something for a row to do; planes are met where facets are.
@@ -243,14 +240,13 @@ static bool any_active(const brunt_contact_surface *s, const bool *active) {
 static bool is_clear(brunt_world *world, const brunt_contact_context *m) {
     brunt_contact *contact = &world->contact;
     brunt_contact_surface *s = &contact->surface;
-    bool clear = !any_active(s, s->motion.was_active);
+    bool far, clear = !any_active(s, s->motion.was_active);
     for (int r = 0; r < brunt_contact_row_count; r++)
         clear = clear && !(brunt_contact_rows[r]->near && is_used(contact, r));
     if (!clear) return s->motion.rests = false;
     for (int anew = !s->motion.rests; anew <= 1; anew++) { // by the bounds that are kept, then by those of now
         brunt_surface_rest(s, anew, m->threads, m->timer);
-        if (brunt_broad_phase(m, m->mpm, m->mpm_count, m->walls, m->wall_count, m->time, &contact->node_to_facet))
-            break;
+        if (brunt_broad_phase(m, &contact->node_to_facet, &far, NULL)) break;
         if (any_active(s, s->active)) continue;
         brunt_surface_rest_moves(s, m->dt);
         memset(contact->frame, 0, sizeof contact->frame); // as of a state that is restored
@@ -265,9 +261,9 @@ int brunt_surfaces_meet(brunt_world *world, const double gravity[3], double kick
     if (is_clear(world, &m)) return BRUNT_OK;
     memcpy(world->contact.surface.motion.frame, world->contact.frame, sizeof world->contact.surface.motion.frame);
     brunt_surface_bounds(&world->contact.surface, world->settings.threads, timer);
-    int failed = brunt_broad_phase(&m, world->bodies.mpm, world->bodies.mpm_count, world->boundaries.walls,
-                                   world->boundaries.wall_count, world->clock.time, &world->contact.node_to_facet);
-    if (failed == -2) return fail_far(world, error);
+    bool far;
+    int failed = brunt_broad_phase(&m, &world->contact.node_to_facet, &far, error);
+    if (far) return fail_far(world, error);
     brunt_contact *contact = &world->contact;
     brunt_contact_work work = contact_work(contact);
     const brunt_contact_row *const *rows = brunt_contact_rows;
@@ -278,12 +274,12 @@ int brunt_surfaces_meet(brunt_world *world, const double gravity[3], double kick
     for (int r = 0; !failed && r < count; r++) {
         if (!is_used(contact, r)) continue;
         work.memory = contact->memory[r];
-        failed = rows[r]->act(&m, &work);
+        failed = rows[r]->act(&m, &work, error);
         contact->memory[r] = work.memory;
     }
     for (int r = 0; !failed && r < count; r++)
         if (rows[r]->account && is_used(contact, r)) work.memory = contact->memory[r], rows[r]->account(&m, &work);
-    if (failed) return brunt_fail(error, BRUNT_FAILED, "out of memory in the contact of surfaces");
+    if (failed) return failed;
     brunt_surface_scatter_velocity(&world->contact.surface, dt, world->settings.threads, timer);
     memcpy(world->contact.frame, world->contact.surface.motion.frame, sizeof world->contact.surface.motion.frame);
     brunt_node_sets_book_contact(&world->boundaries.sets, &world->contact.surface);

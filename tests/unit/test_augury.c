@@ -14,8 +14,8 @@
 typedef enum form { SURFACE, SMOOTH, PAPER_APIC, PAPER_PIC, FORMS } form;
 
 static brunt_augury_workspace *apply(const brunt_contact_context *m, form f, brunt_augury_workspace *work) {
-    int status = f >= PAPER_APIC ? brunt_augury_paper(m, f == PAPER_APIC ? BRUNT_APIC : BRUNT_PIC, &work)
-                                 : brunt_augury_surface(m, f == SMOOTH, &work);
+    int status = f >= PAPER_APIC ? brunt_augury_paper(m, f == PAPER_APIC ? BRUNT_APIC : BRUNT_PIC, &work, NULL)
+                                 : brunt_augury_surface(m, f == SMOOTH, &work, NULL);
     ck_assert_int_eq(status, 0);
     return work;
 }
@@ -57,9 +57,9 @@ START_TEST(stencils_reproduce_positions) {
     brunt_augury_grid_start(&grid, dim, width, 0.3);
     for (int k = 0; k < POINTS; k++) {
         for (int a = 0; a < 3; a++) x[k][a] = a < dim ? 8 * uniform(&seed) - 4 : 0;
-        ck_assert_int_eq(brunt_augury_cloud_add(&grid, &cloud, k, x[k]), 0);
+        ck_assert_int_eq(brunt_augury_cloud_add(&grid, &cloud, k, x[k], NULL), 0);
     }
-    ck_assert_int_eq(brunt_augury_grid_finish(&grid, &cloud, 1), 0);
+    ck_assert_int_eq(brunt_augury_grid_finish(&grid, &cloud, 1, NULL), 0);
     for (int k = 0; k < POINTS; k++) {
         int32_t at[BRUNT_AUGURY_STENCIL];
         double w[BRUNT_AUGURY_STENCIL], sum = 0, mean[3] = {0}, *p = x[cloud.item[k]];

@@ -106,7 +106,8 @@ START_TEST(a_sweep_finds_what_all_by_all_finds) {
         }
     const int first = _i < 4 ? COUNT : COUNT / 3;
     brunt_box_pair *pairs;
-    const int64_t count = brunt_sweep(box, first, COUNT, &pairs);
+    int64_t count;
+    ck_assert_int_eq(brunt_sweep(box, first, COUNT, &pairs, &count, NULL), BRUNT_OK);
     int64_t found = 0;
     for (int a = 0; a < first; a++)
         for (int b = a + 1; b < COUNT; b++) {
