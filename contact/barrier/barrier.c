@@ -10,9 +10,8 @@ double brunt_barrier_particle_area(int dim, double volume) {
 }
 
 brunt_barrier *brunt_barrier_make(brunt_error *error) {
-    brunt_barrier *b = brunt_alloc(sizeof *b);
-    if (!b) brunt_fail(error, BRUNT_FAILED, "out of memory for contact by a barrier");
-    return b;
+    brunt_barrier *b;
+    return BRUNT_NEW(b, 1, "room for contact by a barrier", error) ? NULL : b;
 }
 
 static void sets_free(barrier_sets *s) { brunt_free(s->first), brunt_free(s->node); }
@@ -112,11 +111,13 @@ static int by_vertices(const void *left, const void *right) {
 }
 
 // Edges of triangles, each once, ascending; a third of the triangles about them is theirs.
-static int make_edges(brunt_barrier *b, const double (*x)[3]) {
+static int make_edges(brunt_barrier *b, const double (*x)[3], brunt_error *error) {
     const size_t sides = (size_t)b->facet_count * 3;
-    edge_side *side = brunt_alloc((sides + 1) * sizeof *side);
-    const bool room = side && !BRUNT_RESERVE(b->edge, sides + 1, 0) && !BRUNT_RESERVE(b->edge_area, sides + 1, 0) &&
-                      !BRUNT_RESERVE(b->edge_length2, sides + 1, 0);
+    edge_side *side;
+    const bool room = !BRUNT_NEW(side, sides + 1, "sides of facets", error) &&
+                      !BRUNT_ROOM(b->edge, sides + 1, 0, "edges of surfaces", error) &&
+                      !BRUNT_ROOM(b->edge_area, sides + 1, 0, "edges of surfaces", error) &&
+                      !BRUNT_ROOM(b->edge_length2, sides + 1, 0, "edges of surfaces", error);
     b->edge_count = 0;
     if (room) {
         for (size_t i = 0; i < sides; i++) {
@@ -136,16 +137,17 @@ static int make_edges(brunt_barrier *b, const double (*x)[3]) {
         }
     }
     brunt_free(side);
-    return room ? 0 : -1;
+    return room ? BRUNT_OK : BRUNT_FAILED;
 }
 
 int brunt_barrier_set_mesh(brunt_barrier *b, const brunt_barrier_mesh *mesh, brunt_error *error) {
     BRUNT_ASSERT(mesh->dim == 2 || mesh->dim == 3);
     b->dim = mesh->dim, b->vertex_count = mesh->vertex_count, b->edge_count = 0;
     const size_t vertices = (size_t)mesh->vertex_count + 1;
-    if (BRUNT_RESERVE(b->facet, (size_t)mesh->facet_count * 2 + 1, 0) || BRUNT_RESERVE(b->body, vertices, 0) ||
-        BRUNT_RESERVE(b->vertex_area, vertices, 0))
-        return brunt_fail(error, BRUNT_FAILED, "out of memory for the surfaces of contact");
+    if (BRUNT_ROOM(b->facet, (size_t)mesh->facet_count * 2 + 1, 0, "facets of surfaces", error) ||
+        BRUNT_ROOM(b->body, vertices, 0, "vertices of surfaces", error) ||
+        BRUNT_ROOM(b->vertex_area, vertices, 0, "vertices of surfaces", error))
+        return BRUNT_FAILED;
     if (mesh->vertex_count) memcpy(b->body, mesh->body, (size_t)mesh->vertex_count * sizeof *b->body);
     memset(b->vertex_area, 0, vertices * sizeof *b->vertex_area);
     take_facets(b, mesh);
@@ -156,9 +158,7 @@ int brunt_barrier_set_mesh(brunt_barrier *b, const brunt_barrier_mesh *mesh, bru
         if (code) return code;
         for (int k = 0; k < b->dim; k++) b->vertex_area[f[k]] += area / b->dim;
     }
-    if (b->dim == 3 && make_edges(b, mesh->rest))
-        return brunt_fail(error, BRUNT_FAILED, "out of memory for the edges of contact");
-    return BRUNT_OK;
+    return b->dim == 3 ? make_edges(b, mesh->rest, error) : BRUNT_OK;
 }
 
 int brunt_barrier_set_step(brunt_barrier *b, const brunt_barrier_step *step, brunt_error *error) {

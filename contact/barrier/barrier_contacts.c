@@ -205,17 +205,18 @@ static void list_task(void *context, int64_t begin, int64_t end, int worker) {
     }
 }
 
-int barrier_list_contacts(brunt_barrier *b, const brunt_team *team, const double *u, barrier_contacts *list) {
+int barrier_list_contacts(brunt_barrier *b, const brunt_team *team, const double *u, barrier_contacts *list,
+                          brunt_error *error) {
     contacts_work work = {.b = b, .u = u};
     list->count = 0;
     b->task_first[0] = 0;
     brunt_parallel(team->threads, b->task_count, BARRIER_GRAIN, list_task, &work, team->timer);
     for (int64_t i = 0; i < b->task_count; i++) b->task_first[i + 1] += b->task_first[i];
     const int64_t count = b->task_first[b->task_count];
-    if (BRUNT_RESERVE(list->contact, (size_t)count + 1, 0)) return -1;
+    if (BRUNT_ROOM(list->contact, (size_t)count + 1, 0, "places of contact", error)) return BRUNT_FAILED;
     list->count = count, work.list = list->contact;
     brunt_parallel(team->threads, b->task_count, BARRIER_GRAIN, list_task, &work, team->timer);
-    return 0;
+    return BRUNT_OK;
 }
 
 typedef struct energy_taken {

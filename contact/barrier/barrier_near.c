@@ -143,24 +143,24 @@ static int make_boxes(near_work *w, const brunt_team *team, brunt_error *error) 
     return BRUNT_OK;
 }
 
-static int make_lists(near_work *w, const brunt_team *team) {
+static int make_lists(near_work *w, const brunt_team *team, brunt_error *error) {
     brunt_barrier *b = w->b;
-    if (brunt_near_cells_make(&b->facet_cells, b->facet_box, b->facet_count, b->dim) ||
-        brunt_near_cells_make(&b->edge_cells, b->edge_box, b->edge_count, b->dim))
-        return -1;
-    return brunt_near_list_make(&b->facets, team, barrier_points(b), facets_of, w) ||
-                   brunt_near_list_make(&b->planes, team, barrier_points(b), planes_of, w) ||
-                   brunt_near_list_make(&b->edges, team, b->edge_count, edges_of, w)
-               ? -1
-               : 0;
+    if (brunt_near_cells_make(&b->facet_cells, b->facet_box, b->facet_count, b->dim, error) ||
+        brunt_near_cells_make(&b->edge_cells, b->edge_box, b->edge_count, b->dim, error))
+        return BRUNT_FAILED;
+    return brunt_near_list_make(&b->facets, team, barrier_points(b), facets_of, w, error) ||
+                   brunt_near_list_make(&b->planes, team, barrier_points(b), planes_of, w, error) ||
+                   brunt_near_list_make(&b->edges, team, b->edge_count, edges_of, w, error)
+               ? BRUNT_FAILED
+               : BRUNT_OK;
 }
 
 // Points and edges that are near something; room for the threads, for as much as one of them is near.
-static int make_tasks(brunt_barrier *b, int threads) {
+static int make_tasks(brunt_barrier *b, int threads, brunt_error *error) {
     const int32_t points = barrier_points(b);
     const size_t most = (size_t)points + (size_t)b->edge_count + 1;
     int64_t longest = 0;
-    if (BRUNT_RESERVE(b->task, most, 0)) return -1;
+    if (BRUNT_ROOM(b->task, most, 0, "points and edges that may be in contact", error)) return BRUNT_FAILED;
     b->task_count = 0;
     for (int32_t i = 0; i < points; i++) {
         const int64_t near = b->facets.first[i + 1] - b->facets.first[i];
@@ -169,30 +169,31 @@ static int make_tasks(brunt_barrier *b, int threads) {
     }
     for (int32_t i = 0; i < b->edge_count; i++)
         if (b->edges.first[i + 1] > b->edges.first[i]) b->task[b->task_count++] = -1 - i;
-    if (BRUNT_RESERVE(b->task_energy, (size_t)b->task_count + 1, 0) ||
-        BRUNT_RESERVE(b->task_first, (size_t)b->task_count + 1, 0) ||
-        BRUNT_RESERVE(b->room, (size_t)threads, (size_t)b->room_count))
-        return -1;
+    if (BRUNT_ROOM(b->task_energy, (size_t)b->task_count + 1, 0, "points and edges near something", error) ||
+        BRUNT_ROOM(b->task_first, (size_t)b->task_count + 1, 0, "points and edges near something", error) ||
+        BRUNT_ROOM(b->room, (size_t)threads, (size_t)b->room_count, "threads that look for contact", error))
+        return BRUNT_FAILED;
     if (b->room_count < threads) b->room_count = threads;
     for (int i = 0; i < threads; i++) {
         barrier_room *r = &b->room[i];
-        if (BRUNT_RESERVE(r->feature, 7 * (size_t)longest + 1, 0) ||
-            BRUNT_RESERVE(r->edge, 3 * (size_t)longest + 1, 0) || BRUNT_RESERVE(r->vertex, 3 * (size_t)longest + 1, 0))
-            return -1;
+        if (BRUNT_ROOM(r->feature, 7 * (size_t)longest + 1, 0, "features near a point", error) ||
+            BRUNT_ROOM(r->edge, 3 * (size_t)longest + 1, 0, "edges near a point", error) ||
+            BRUNT_ROOM(r->vertex, 3 * (size_t)longest + 1, 0, "vertices near a point", error))
+            return BRUNT_FAILED;
     }
-    return 0;
+    return BRUNT_OK;
 }
 
 int barrier_find_near(brunt_barrier *b, const brunt_team *team, const double *u, const double *p, brunt_error *error) {
     near_work work = {.b = b, .u = u, .p = p};
     const size_t points = (size_t)barrier_points(b) + 1;
-    if (BRUNT_RESERVE(b->point_box, points, 0) || BRUNT_RESERVE(b->facet_box, (size_t)b->facet_count + 1, 0) ||
-        BRUNT_RESERVE(b->edge_box, (size_t)b->edge_count + 1, 0))
-        return brunt_fail(error, BRUNT_FAILED, "out of memory for the boxes of contact");
+    if (BRUNT_ROOM(b->point_box, points, 0, "boxes about points", error) ||
+        BRUNT_ROOM(b->facet_box, (size_t)b->facet_count + 1, 0, "boxes about facets", error) ||
+        BRUNT_ROOM(b->edge_box, (size_t)b->edge_count + 1, 0, "boxes about edges", error))
+        return BRUNT_FAILED;
     const int code = make_boxes(&work, team, error);
     if (code) return code;
-    if (make_lists(&work, team) || make_tasks(b, team->threads))
-        return brunt_fail(error, BRUNT_FAILED, "out of memory for what may be in contact");
+    if (make_lists(&work, team, error) || make_tasks(b, team->threads, error)) return BRUNT_FAILED;
     b->swept = p != NULL;
     return BRUNT_OK;
 }

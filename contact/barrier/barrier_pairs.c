@@ -19,8 +19,9 @@ static int by_bodies(const void *left, const void *right) {
 }
 
 int brunt_barrier_set_pairs(brunt_barrier *b, const brunt_barrier_pair *pairs, int32_t count, brunt_error *error) {
-    if (BRUNT_RESERVE(b->pair, (size_t)count + 1, 0) || BRUNT_RESERVE(b->key, (size_t)count + 1, 0))
-        return brunt_fail(error, BRUNT_FAILED, "out of memory for %d pairs of bodies that may meet", count);
+    if (BRUNT_ROOM(b->pair, (size_t)count + 1, 0, "pairs of bodies that may meet", error) ||
+        BRUNT_ROOM(b->key, (size_t)count + 1, 0, "pairs of bodies that may meet", error))
+        return BRUNT_FAILED;
     b->pair_count = count, b->reach = 0;
     for (int32_t i = 0; i < count; i++) {
         const brunt_barrier_pair *p = &pairs[i];
@@ -49,7 +50,7 @@ int32_t barrier_law_between(const brunt_barrier *b, int32_t own, int32_t other, 
         else
             high = middle;
     }
-    if (low == b->pair_count || b->key[low].bodies != bodies) return -1;
+    if (low == b->pair_count || b->key[low].bodies != bodies) return BRUNT_NONE;
     *side = b->pair[b->key[low].pair].a == own ? 1 : -1;
     return b->key[low].pair;
 }

@@ -106,7 +106,7 @@ struct brunt_barrier {
     brunt_near_cells facet_cells, edge_cells;
     brunt_near_list facets, planes, edges; // of points, points, edges
     bool swept, stale;                     // found along a way; `sets` are not those of `contacts`
-    bool broken;                           // memory ran out where no function could say so: the next look does
+    brunt_error unsaid;                    // memory ran out where no function could say so: the next look does
     int32_t *task;                         // points that are near something; edges as -1 - edge
     int64_t task_count;
     double (*task_energy)[2];
@@ -137,7 +137,7 @@ void barrier_relative(const brunt_barrier *b, const double *u, int32_t from, con
 int64_t barrier_nodes(const brunt_barrier *b, int32_t place, const int32_t **node, const double **weight);
 
 // --- pairs (barrier_pairs.c)
-// The law between two bodies; -1: they do not meet. `side`: 1 where `own` is the pair's a.
+// The law between two bodies; BRUNT_NONE: they do not meet. `side`: 1 where `own` is the pair's a.
 int32_t barrier_law_between(const brunt_barrier *b, int32_t own, int32_t other, int8_t *side);
 barrier_law barrier_law_of(const brunt_barrier *b, int32_t law);
 double barrier_share_of(const brunt_barrier *b, int32_t law, int8_t side, bool edges);
@@ -152,8 +152,9 @@ int barrier_find_near(brunt_barrier *b, const brunt_team *team, const double *u,
 typedef void barrier_take(void *context, const barrier_contact *contact);
 void barrier_each_contact(const brunt_barrier *b, int64_t task, const double *u, int worker, barrier_take *take,
                           void *context);
-// All of them into a list. 0, or -1: out of memory.
-int barrier_list_contacts(brunt_barrier *b, const brunt_team *team, const double *u, barrier_contacts *list);
+// All of them into a list. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int barrier_list_contacts(brunt_barrier *b, const brunt_team *team, const double *u, barrier_contacts *list,
+                          brunt_error *error);
 brunt_energy_sum barrier_sum_energy(brunt_barrier *b, const brunt_team *team, const double *u);
 
 // --- one contact (barrier_contact.c)
@@ -179,7 +180,7 @@ void barrier_slip_hessian(const brunt_barrier *b, const barrier_contact *c, cons
 
 // --- into the unknowns (barrier_sum.c)
 void barrier_add_gradient(const brunt_barrier *b, const barrier_contact *c, const double *local, double *g);
-int barrier_make_sets(const brunt_barrier *b, const barrier_contacts *contacts, barrier_sets *sets);
+int barrier_make_sets(const brunt_barrier *b, const barrier_contacts *contacts, barrier_sets *sets, brunt_error *error);
 // What a Hessian is made of: contacts, their sets of nodes, and the colours of those.
 typedef struct barrier_assembly {
     const brunt_barrier *b;
@@ -188,9 +189,9 @@ typedef struct barrier_assembly {
     brunt_colours *colours;
     bool friction;
 } barrier_assembly;
-// 0, or -1: out of memory.
+// BRUNT_OK, or BRUNT_FAILED: out of memory.
 int barrier_add_hessian(const barrier_assembly *a, const brunt_team *team, const double *u, bool project,
-                        brunt_block_matrix *m);
+                        brunt_block_matrix *m, brunt_error *error);
 
 // --- limit (barrier_limit.c)
 double barrier_limit(const brunt_barrier *b, const brunt_team *team, const double *u, const double *p, double largest);

@@ -11,10 +11,11 @@ void barrier_add_gradient(const brunt_barrier *b, const barrier_contact *c, cons
     }
 }
 
-int barrier_make_sets(const brunt_barrier *b, const barrier_contacts *contacts, barrier_sets *sets) {
+int barrier_make_sets(const brunt_barrier *b, const barrier_contacts *contacts, barrier_sets *sets,
+                      brunt_error *error) {
     const int32_t *node;
     const double *weight;
-    if (BRUNT_RESERVE(sets->first, (size_t)contacts->count + 1, 0)) return -1;
+    if (BRUNT_ROOM(sets->first, (size_t)contacts->count + 1, 0, "places of contact", error)) return BRUNT_FAILED;
     sets->count = contacts->count, sets->first[0] = 0;
     for (int64_t s = 0; s < contacts->count; s++) {
         const barrier_contact *c = &contacts->contact[s];
@@ -22,7 +23,8 @@ int barrier_make_sets(const brunt_barrier *b, const barrier_contacts *contacts, 
         for (int i = 0; i < c->at.places; i++) nodes += barrier_nodes(b, c->place[i], &node, &weight);
         sets->first[s + 1] = sets->first[s] + nodes;
     }
-    if (BRUNT_RESERVE(sets->node, (size_t)sets->first[sets->count] + 1, 0)) return -1;
+    if (BRUNT_ROOM(sets->node, (size_t)sets->first[sets->count] + 1, 0, "nodes of places of contact", error))
+        return BRUNT_FAILED;
     for (int64_t s = 0; s < contacts->count; s++) {
         const barrier_contact *c = &contacts->contact[s];
         int32_t *to = sets->node + sets->first[s];
@@ -32,7 +34,7 @@ int barrier_make_sets(const brunt_barrier *b, const barrier_contacts *contacts, 
             to += nodes;
         }
     }
-    return 0;
+    return BRUNT_OK;
 }
 
 typedef struct fill_work {
@@ -83,10 +85,10 @@ static void fill_contact(void *context, int64_t s, double *dense, int worker) {
 }
 
 int barrier_add_hessian(const barrier_assembly *a, const brunt_team *team, const double *u, bool project,
-                        brunt_block_matrix *m) {
+                        brunt_block_matrix *m, brunt_error *error) {
     fill_work work = {a->b, a->contacts, u, project, a->friction};
     const brunt_stencils sets = {.count = a->sets->count, .first = a->sets->first, .node = a->sets->node};
-    if (brunt_colours_make(a->colours, team, a->b->dim, m->nodes, &sets, NULL)) return -1;
+    if (brunt_colours_make(a->colours, team, a->b->dim, m->nodes, &sets, error)) return BRUNT_FAILED;
     brunt_assemble(m, team, &sets, a->colours, fill_contact, &work);
-    return 0;
+    return BRUNT_OK;
 }

@@ -1,18 +1,14 @@
 // The two terms: the barrier, and friction with what it was at the last lag.
 #include "contact/barrier/barrier_parts.h"
 
-static int out_of_memory(brunt_error *error, const char *what) {
-    return brunt_fail(error, BRUNT_FAILED, "out of memory for %s of contact", what);
-}
-
 // ---------------------------------------------------------------------------------------------------- barrier
 
 // All pairs that are near, as if they touched: what may couple on the way.
-static int list_candidates(brunt_barrier *b) {
+static int list_candidates(brunt_barrier *b, brunt_error *error) {
     barrier_contacts *list = &b->contacts;
     const int64_t most =
         b->facets.first[b->facets.count] + b->planes.first[b->planes.count] + b->edges.first[b->edges.count];
-    if (BRUNT_RESERVE(list->contact, (size_t)most + 1, 0)) return -1;
+    if (BRUNT_ROOM(list->contact, (size_t)most + 1, 0, "places of contact", error)) return BRUNT_FAILED;
     list->count = 0;
     for (int32_t i = 0; i < b->facets.count; i++) {
         for (int64_t k = b->facets.first[i]; k < b->facets.first[i + 1]; k++) {
@@ -28,18 +24,15 @@ static int list_candidates(brunt_barrier *b) {
             const int32_t *e = b->edge[i], *f = b->edge[b->edges.item[k]];
             list->contact[list->count++] = (barrier_contact){.place = {e[0], e[1], f[0], f[1]}, .at.places = 4};
         }
-    return 0;
+    return BRUNT_OK;
 }
 
 static int term_look(void *self, const brunt_team *team, const double *u, const double *p, brunt_error *error) {
     brunt_barrier *b = self;
-    if (b->broken) return out_of_memory(error, "the stiffness");
-    const int code = barrier_find_near(b, team, u, p, error);
-    if (code) return code;
+    if (brunt_hand_on(error, &b->unsaid) || barrier_find_near(b, team, u, p, error)) return BRUNT_FAILED;
     b->contacts.count = b->sets.count = 0;
     b->stale = true;
-    if (!p && barrier_list_contacts(b, team, u, &b->contacts)) return out_of_memory(error, "the places");
-    return BRUNT_OK;
+    return p ? BRUNT_OK : barrier_list_contacts(b, team, u, &b->contacts, error);
 }
 
 static brunt_energy_sum term_energy(void *self, const brunt_team *team, const double *u) {
@@ -47,9 +40,9 @@ static brunt_energy_sum term_energy(void *self, const brunt_team *team, const do
 }
 
 static bool list_at(brunt_barrier *b, const brunt_team *team, const double *u) {
-    if (barrier_list_contacts(b, team, u, &b->contacts)) b->broken = true;
+    barrier_list_contacts(b, team, u, &b->contacts, &b->unsaid);
     b->stale = true;
-    return !b->broken;
+    return !b->unsaid.code;
 }
 
 // Adds to g the forces of a list: of friction, which follow the slips at u, or of the barrier as it was listed.
@@ -72,8 +65,9 @@ static void term_gradient(void *self, const brunt_team *team, const double *u, d
 
 static brunt_stencils term_stencils(void *self) {
     brunt_barrier *b = self;
-    if (b->stale && ((b->swept && list_candidates(b)) || barrier_make_sets(b, &b->contacts, &b->sets)))
-        b->broken = true, b->sets.count = 0;
+    if (b->stale &&
+        ((b->swept && list_candidates(b, &b->unsaid)) || barrier_make_sets(b, &b->contacts, &b->sets, &b->unsaid)))
+        b->sets.count = 0;
     b->stale = false;
     return (brunt_stencils){.count = b->sets.count, .first = b->sets.first, .node = b->sets.node};
 }
@@ -82,7 +76,8 @@ static void term_hessian(void *self, const brunt_team *team, const double *u, bo
     brunt_barrier *b = self;
     const barrier_assembly a = {b, &b->contacts, &b->sets, &b->colours, false};
     if (!list_at(b, team, u)) return;
-    if (barrier_make_sets(b, &b->contacts, &b->sets) || barrier_add_hessian(&a, team, u, project, m)) b->broken = true;
+    if (!barrier_make_sets(b, &b->contacts, &b->sets, &b->unsaid))
+        barrier_add_hessian(&a, team, u, project, m, &b->unsaid);
 }
 
 static double term_limit(void *self, const brunt_team *team, const double *u, const double *p, double largest) {
@@ -108,8 +103,9 @@ brunt_term brunt_barrier_term(brunt_barrier *barrier) {
 int brunt_barrier_lag(brunt_barrier *b, const brunt_team *team, const double *u, brunt_error *error) {
     const int code = barrier_find_near(b, team, u, NULL, error);
     if (code) return code;
-    if (barrier_list_contacts(b, team, u, &b->lagged) || BRUNT_RESERVE(b->rub, (size_t)b->lagged.count + 1, 0))
-        return out_of_memory(error, "the places");
+    if (barrier_list_contacts(b, team, u, &b->lagged, error) ||
+        BRUNT_ROOM(b->rub, (size_t)b->lagged.count + 1, 0, "places that rub", error))
+        return BRUNT_FAILED;
     barrier_contacts *list = &b->lagged;
     int64_t kept = 0;
     for (int64_t i = 0; i < list->count; i++) {
@@ -119,15 +115,14 @@ int brunt_barrier_lag(brunt_barrier *b, const brunt_team *team, const double *u,
     }
     list->count = kept;
     for (int64_t i = 0; i < kept; i++) b->rub[i] = barrier_slip_begin(b, &list->contact[i], u);
-    if (barrier_make_sets(b, list, &b->lagged_sets)) return out_of_memory(error, "friction");
-    return BRUNT_OK;
+    return barrier_make_sets(b, list, &b->lagged_sets, error);
 }
 
 static int friction_look(void *self, const brunt_team *team, const double *u, const double *p, brunt_error *error) {
     const brunt_barrier *b = self;
     (void)team;
     for (int64_t i = 0; i < b->lagged.count && !p; i++) barrier_slip_follow(b, &b->lagged.contact[i], u, &b->rub[i]);
-    return b->broken ? out_of_memory(error, "the stiffness") : BRUNT_OK;
+    return brunt_hand_on(error, &b->unsaid);
 }
 
 static brunt_energy_sum friction_energy(void *self, const brunt_team *team, const double *u) {
@@ -156,7 +151,7 @@ static void friction_hessian(void *self, const brunt_team *team, const double *u
     brunt_barrier *b = self;
     const barrier_assembly a = {b, &b->lagged, &b->lagged_sets, &b->lagged_colours, true};
     (void)project;
-    if (b->lagged.count && barrier_add_hessian(&a, team, u, false, m)) b->broken = true;
+    if (b->lagged.count) barrier_add_hessian(&a, team, u, false, m, &b->unsaid);
 }
 
 brunt_term brunt_barrier_friction_term(brunt_barrier *barrier) {

@@ -60,11 +60,13 @@ static int64_t cell_index(const brunt_near_cells *c, int32_t i, int32_t j, int32
     return ((int64_t)k * c->n[1] + j) * c->n[0] + i;
 }
 
-int brunt_near_cells_make(brunt_near_cells *c, const brunt_near_box *box, int32_t count, int dim) {
+int brunt_near_cells_make(brunt_near_cells *c, const brunt_near_box *box, int32_t count, int dim, brunt_error *error) {
     c->dim = dim, c->count = count, c->box = box;
-    if (count == 0) return 0;
+    if (count == 0) return BRUNT_OK;
     const int64_t entries = choose_cells(c), cells = (int64_t)c->n[0] * c->n[1] * c->n[2];
-    if (BRUNT_RESERVE(c->first, (size_t)cells + 1, 0) || BRUNT_RESERVE(c->item, (size_t)entries, 0)) return -1;
+    if (BRUNT_ROOM(c->first, (size_t)cells + 1, 0, "cells of what may be in contact", error) ||
+        BRUNT_ROOM(c->item, (size_t)entries, 0, "items in cells of what may be in contact", error))
+        return BRUNT_FAILED;
     memset(c->first, 0, ((size_t)cells + 1) * sizeof *c->first);
     for (int fill = 0; fill < 2; fill++) {
         for (int32_t b = count - 1; b >= 0; b--) { // downwards, since entries are filled from their ends
@@ -82,7 +84,7 @@ int brunt_near_cells_make(brunt_near_cells *c, const brunt_near_box *box, int32_
         if (!fill)
             for (int64_t i = 1; i <= cells; i++) c->first[i] += c->first[i - 1];
     }
-    return 0;
+    return BRUNT_OK;
 }
 
 void brunt_near_cells_free(brunt_near_cells *c) {
@@ -159,15 +161,17 @@ static void list_fill(void *context, int64_t begin, int64_t end, int worker) {
 }
 
 int brunt_near_list_make(brunt_near_list *list, const brunt_team *team, int32_t queries, brunt_near_fn *find,
-                         const void *context) {
+                         const void *context, brunt_error *error) {
     list_work work = {list, find, context};
-    if (BRUNT_RESERVE(list->first, (size_t)queries + 1, 0)) return -1;
+    if (BRUNT_ROOM(list->first, (size_t)queries + 1, 0, "points and edges that may be in contact", error))
+        return BRUNT_FAILED;
     list->count = queries, list->first[0] = 0;
     brunt_parallel(team->threads, queries, QUERIES, list_count, &work, team->timer);
     for (int32_t q = 0; q < queries; q++) list->first[q + 1] += list->first[q];
-    if (BRUNT_RESERVE(list->item, (size_t)list->first[queries] + 1, 0)) return -1;
+    if (BRUNT_ROOM(list->item, (size_t)list->first[queries] + 1, 0, "features near points and edges", error))
+        return BRUNT_FAILED;
     brunt_parallel(team->threads, queries, QUERIES, list_fill, &work, team->timer);
-    return 0;
+    return BRUNT_OK;
 }
 
 void brunt_near_list_free(brunt_near_list *list) {

@@ -29,8 +29,9 @@ typedef struct brunt_near_list {
     size_t first_capacity, item_capacity;
 } brunt_near_list;
 
-// Boxes are finite. 0, or -1: out of memory.
-int brunt_near_cells_make(brunt_near_cells *cells, const brunt_near_box *box, int32_t count, int dim);
+// Boxes are finite. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_near_cells_make(brunt_near_cells *cells, const brunt_near_box *box, int32_t count, int dim,
+                          brunt_error *error);
 void brunt_near_cells_free(brunt_near_cells *cells);
 
 // Items whose box shares a point with `box` and that `wanted` takes for this query: their count, and themselves unless
@@ -39,8 +40,9 @@ typedef bool brunt_near_wanted(const void *context, int32_t query, int32_t item)
 int64_t brunt_near_find(const brunt_near_cells *cells, const brunt_near_box *box, brunt_near_wanted *wanted,
                         const void *context, int32_t query, int32_t *out);
 
-// Lists of what `find` gives for each query: how many it found (out NULL), and themselves. 0, or -1: out of memory.
+// Lists of what `find` gives for each query: how many it found (out NULL), and themselves. BRUNT_OK, or BRUNT_FAILED:
+// out of memory.
 typedef int64_t brunt_near_fn(const void *context, int32_t query, int32_t *out);
 int brunt_near_list_make(brunt_near_list *list, const brunt_team *team, int32_t queries, brunt_near_fn *find,
-                         const void *context);
+                         const void *context, brunt_error *error);
 void brunt_near_list_free(brunt_near_list *list);

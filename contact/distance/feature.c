@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/error.h"
+
 static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 static void cross(const double a[3], const double b[3], double c[3]) {
     c[0] = a[1] * b[2] - a[2] * b[1], c[1] = a[2] * b[0] - a[0] * b[2], c[2] = a[0] * b[1] - a[1] * b[0];
@@ -17,7 +19,7 @@ static int corners(const int32_t face[4]) { return face[2] < 0 ? 2 : face[3] < 0
 static int corner_of(const int32_t face[4], int32_t node) {
     for (int c = 0; c < corners(face); c++)
         if (face[c] == node) return c;
-    return -1;
+    return BRUNT_NONE;
 }
 
 bool brunt_feature_share(const brunt_contact_surface *s, int32_t face, brunt_shared *shared) {

@@ -29,21 +29,23 @@ static int64_t colour_round(brunt_colours *c, const brunt_stencils *list, int32_
     return left;
 }
 
-static int sort_by_colour(brunt_colours *c) {
-    if (BRUNT_RESERVE(c->first, (size_t)c->colours + 2, 0)) return -1;
+static int sort_by_colour(brunt_colours *c, brunt_error *error) {
+    if (BRUNT_ROOM(c->first, (size_t)c->colours + 2, 0, "colours of stencils", error)) return BRUNT_FAILED;
     int64_t *next = c->first + 1;
     memset(c->first, 0, ((size_t)c->colours + 2) * sizeof *c->first);
     for (int64_t s = 0; s < c->count; s++) next[c->order[s] + 1]++;
     for (int32_t k = 0; k < c->colours; k++) next[k + 1] += next[k];
     for (int64_t s = 0; s < c->count; s++) c->stencil[next[c->order[s]]++] = s;
-    return 0;
+    return BRUNT_OK;
 }
 
-static int make_colours(brunt_colours *c, const brunt_team *team, int dim, int32_t nodes, const brunt_stencils *list) {
+int brunt_colours_make(brunt_colours *c, const brunt_team *team, int dim, int32_t nodes, const brunt_stencils *list,
+                       brunt_error *error) {
     int64_t largest = 0;
-    if (BRUNT_RESERVE(c->used, (size_t)nodes, 0) || BRUNT_RESERVE(c->order, (size_t)list->count, 0) ||
-        BRUNT_RESERVE(c->stencil, (size_t)list->count, 0))
-        return -1;
+    if (BRUNT_ROOM(c->used, (size_t)nodes, 0, "nodes of stencils", error) ||
+        BRUNT_ROOM(c->order, (size_t)list->count, 0, "stencils to assemble", error) ||
+        BRUNT_ROOM(c->stencil, (size_t)list->count, 0, "stencils to assemble", error))
+        return BRUNT_FAILED;
     for (int64_t s = 0; s < list->count; s++) {
         const int64_t size = list->first[s + 1] - list->first[s];
         if (size > largest) largest = size;
@@ -51,14 +53,8 @@ static int make_colours(brunt_colours *c, const brunt_team *team, int dim, int32
     }
     c->count = list->count, c->colours = 0, c->threads = team->threads, c->room = largest * largest * dim * dim;
     for (int64_t base = 0, left = list->count; left; base += COLOURS_A_ROUND) left = colour_round(c, list, nodes, base);
-    return sort_by_colour(c) || BRUNT_RESERVE(c->dense, (size_t)(c->room * c->threads), 0) ? -1 : 0;
-}
-
-int brunt_colours_make(brunt_colours *c, const brunt_team *team, int dim, int32_t nodes, const brunt_stencils *stencils,
-                       brunt_error *error) {
-    if (!make_colours(c, team, dim, nodes, stencils)) return BRUNT_OK;
-    return brunt_fail(error, BRUNT_FAILED, "Out of memory for the order in which %lld stencils are assembled.",
-                      (long long)stencils->count);
+    if (sort_by_colour(c, error)) return BRUNT_FAILED;
+    return BRUNT_ROOM(c->dense, (size_t)(c->room * c->threads), 0, "values of dense matrices of stencils", error);
 }
 
 void brunt_colours_free(brunt_colours *c) {

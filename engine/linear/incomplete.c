@@ -23,17 +23,25 @@ void brunt_incomplete_free(brunt_incomplete *f) {
 
 // ------------------------------------------------------------------------------------------ the pattern
 
-static int make_room(brunt_incomplete *f, const brunt_team *team) {
+static int make_room(brunt_incomplete *f, const brunt_team *team, brunt_error *error) {
     const size_t nodes = (size_t)f->a->nodes, dim = (size_t)f->a->dim, size = dim * dim,
                  half = ((size_t)brunt_block_matrix_blocks(f->a) - nodes) / 2;
-    return BRUNT_RESERVE(f->order, nodes, 0) || BRUNT_RESERVE(f->place, nodes, 0) || BRUNT_RESERVE(f->turn, nodes, 0) ||
-           BRUNT_RESERVE(f->upper, nodes + 1, 0) || BRUNT_RESERVE(f->lower, nodes + 2, 0) ||
-           BRUNT_RESERVE(f->after, half + 1, 0) || BRUNT_RESERVE(f->before, half + 1, 0) ||
-           BRUNT_RESERVE(f->source, half + 1, 0) || BRUNT_RESERVE(f->twin, half + 1, 0) ||
-           BRUNT_RESERVE(f->v, half * size + 1, 0) || BRUNT_RESERVE(f->d, nodes * size, 0) ||
-           BRUNT_RESERVE(f->size, nodes, 0) || BRUNT_RESERVE(f->right, half * size + BEYOND, 0) ||
-           BRUNT_RESERVE(f->left, half * size + BEYOND, 0) || BRUNT_RESERVE(f->work, nodes * dim, 0) ||
-           BRUNT_RESERVE(f->slot, nodes * (size_t)team->threads, 0);
+    return BRUNT_ROOM(f->order, nodes, 0, "rows of an incomplete factor", error) ||
+           BRUNT_ROOM(f->place, nodes, 0, "rows of an incomplete factor", error) ||
+           BRUNT_ROOM(f->turn, nodes, 0, "rows of an incomplete factor", error) ||
+           BRUNT_ROOM(f->upper, nodes + 1, 0, "rows of an incomplete factor", error) ||
+           BRUNT_ROOM(f->lower, nodes + 2, 0, "rows of an incomplete factor", error) ||
+           BRUNT_ROOM(f->after, half + 1, 0, "blocks of an incomplete factor", error) ||
+           BRUNT_ROOM(f->before, half + 1, 0, "blocks of an incomplete factor", error) ||
+           BRUNT_ROOM(f->source, half + 1, 0, "blocks of an incomplete factor", error) ||
+           BRUNT_ROOM(f->twin, half + 1, 0, "blocks of an incomplete factor", error) ||
+           BRUNT_ROOM(f->v, half * size + 1, 0, "values of an incomplete factor", error) ||
+           BRUNT_ROOM(f->d, nodes * size, 0, "values of an incomplete factor", error) ||
+           BRUNT_ROOM(f->size, nodes, 0, "rows of an incomplete factor", error) ||
+           BRUNT_ROOM(f->right, half * size + BEYOND, 0, "values of an incomplete factor", error) ||
+           BRUNT_ROOM(f->left, half * size + BEYOND, 0, "values of an incomplete factor", error) ||
+           BRUNT_ROOM(f->work, nodes * dim, 0, "values of an incomplete factor", error) ||
+           BRUNT_ROOM(f->slot, nodes * (size_t)team->threads, 0, "rows of an incomplete factor", error);
 }
 
 // Columns right of the diagonal: by level, and those of a piece in ascending places.
@@ -68,16 +76,18 @@ static void take_columns(brunt_incomplete *f) {
 }
 
 int brunt_incomplete_analyse(brunt_incomplete *f, const brunt_team *team, const brunt_block_matrix *a, bool whole,
-                             int slabs) {
+                             int slabs, brunt_error *error) {
     f->a = a;
-    if (BRUNT_RESERVE(f->inverse, (size_t)a->nodes * (size_t)(a->dim * a->dim), 0)) return -1;
-    if (!whole) return 0;
-    if (make_room(f, team)) return -1;
+    if (BRUNT_ROOM(f->inverse, (size_t)a->nodes * (size_t)(a->dim * a->dim), 0, "values of the diagonal of a matrix",
+                   error))
+        return BRUNT_FAILED;
+    if (!whole) return BRUNT_OK;
+    if (make_room(f, team, error)) return BRUNT_FAILED;
     brunt_incomplete_order(f, slabs);
     take_rows(f);
     take_columns(f);
     memset(f->slot, 0, (size_t)a->nodes * (size_t)team->threads * sizeof *f->slot);
-    return 0;
+    return BRUNT_OK;
 }
 
 // ------------------------------------------------------------------------------------------ the factor
@@ -184,7 +194,7 @@ static void factor_pieces(void *context, int64_t begin, int64_t end, int worker)
     }
 }
 
-// Sizes of nodes: 1 over the root of the greatest diagonal entry. -1, or a node that has none above 0.
+// Sizes of nodes: 1 over the root of the greatest diagonal entry. BRUNT_NONE, or a node that has none above 0.
 static int32_t take_sizes(brunt_incomplete *f, const brunt_block_matrix *a) {
     for (int32_t n = 0; n < a->nodes; n++) {
         const double *block = a->value + a->diagonal[n] * a->dim * a->dim;
@@ -193,7 +203,7 @@ static int32_t take_sizes(brunt_incomplete *f, const brunt_block_matrix *a) {
         if (!(most > 0 && isfinite(most))) return n;
         f->size[f->place[n]] = 1 / sqrt(most);
     }
-    return -1;
+    return BRUNT_NONE;
 }
 
 int32_t brunt_incomplete_factor(brunt_incomplete *f, const brunt_team *team, const brunt_block_matrix *a,
@@ -207,7 +217,7 @@ int32_t brunt_incomplete_factor(brunt_incomplete *f, const brunt_team *team, con
         for (int s = 0; s < f->slabs; s++)
             if (work.bad[s] >= 0) return f->order[work.bad[s]];
     }
-    return -1;
+    return BRUNT_NONE;
 }
 
 // ------------------------------------------------------------------------------------------ solutions
@@ -216,7 +226,7 @@ int32_t brunt_incomplete_jacobi(brunt_incomplete *f, const brunt_block_matrix *a
     const int size = a->dim * a->dim;
     for (int32_t i = 0; i < a->nodes; i++)
         if (!invert(a->dim, a->value + a->diagonal[i] * size, f->inverse + (int64_t)i * size)) return i;
-    return -1;
+    return BRUNT_NONE;
 }
 
 typedef struct apply_work {

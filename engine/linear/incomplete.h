@@ -31,14 +31,15 @@ typedef struct brunt_incomplete {
 } brunt_incomplete;
 
 // Room for matrices of a pattern; `whole`: for the incomplete factor, else for block Jacobi. `slabs`: up to
-// BRUNT_SLABS; 0: two, or one where threads would wait for each other longer than they work. 0, or -1: out of memory.
+// BRUNT_SLABS; 0: two, or one where threads would wait for each other longer than they work. BRUNT_OK, or BRUNT_FAILED:
+// out of memory.
 int brunt_incomplete_analyse(brunt_incomplete *f, const brunt_team *team, const brunt_block_matrix *a, bool whole,
-                             int slabs);
+                             int slabs, brunt_error *error);
 // The order, levels and pieces that it begins with.
 void brunt_incomplete_order(brunt_incomplete *f, int slabs);
-// The factor with diagonal blocks multiplied by `raise`: -1, or a node whose pivot is not positive definite.
+// The factor with diagonal blocks multiplied by `raise`: BRUNT_NONE, or a node whose pivot is not positive definite.
 int32_t brunt_incomplete_factor(brunt_incomplete *f, const brunt_team *team, const brunt_block_matrix *a, double raise);
-// The inverse of each diagonal block: -1, or the first node whose block is not positive definite.
+// The inverse of each diagonal block: BRUNT_NONE, or the first node whose block is not positive definite.
 int32_t brunt_incomplete_jacobi(brunt_incomplete *f, const brunt_block_matrix *a);
 // z = M^-1 r with the factor, or (whole false) with the diagonal blocks.
 void brunt_incomplete_apply(const brunt_incomplete *f, const brunt_team *team, bool whole, const double *r, double *z);

@@ -15,7 +15,7 @@ typedef struct row_maker {
     int32_t *column; // rows made by this thread, one after the other
     int64_t made;
     size_t mark_capacity, column_capacity;
-    bool failed;
+    brunt_error error;
 } row_maker;
 
 typedef struct row_place {
@@ -43,12 +43,14 @@ typedef struct pattern_work {
 } pattern_work;
 
 // Which stencils of lists that the pattern has not hold each node, in the order of lists and of stencils.
-static int list_holders(struct brunt_pattern_scratch *s, const brunt_pattern *p) {
+static int list_holders(struct brunt_pattern_scratch *s, const brunt_pattern *p, brunt_error *error) {
     int64_t entries = 0;
     for (int l = 0; l < p->lists; l++)
         if (p->stencils[l].count && !s->known[l])
             entries += p->stencils[l].first[p->stencils[l].count] - p->stencils[l].first[0];
-    if (BRUNT_RESERVE(s->first, (size_t)p->nodes + 2, 0) || BRUNT_RESERVE(s->stencil, (size_t)entries, 0)) return -1;
+    if (BRUNT_ROOM(s->first, (size_t)p->nodes + 2, 0, "nodes of a matrix", error) ||
+        BRUNT_ROOM(s->stencil, (size_t)entries, 0, "stencils of nodes of a matrix", error))
+        return BRUNT_FAILED;
     int64_t *next = s->first + 1; // shifted by one: filling moves each to where the next one begins
     memset(s->first, 0, ((size_t)p->nodes + 2) * sizeof *s->first);
     for (int l = 0; l < p->lists; l++) {
@@ -66,7 +68,7 @@ static int list_holders(struct brunt_pattern_scratch *s, const brunt_pattern *p)
             for (int64_t k = list->first[i]; k < list->first[i + 1]; k++)
                 s->stencil[next[list->node[k]]++] = (int64_t)l << LIST_SHIFT | i;
     }
-    return 0;
+    return BRUNT_OK;
 }
 
 static void sort_few(int32_t *a, int64_t count) {
@@ -104,14 +106,16 @@ static int64_t mark_columns(row_maker *w, int32_t row, const int32_t *column, in
 
 // Room for `more` columns of the row under way, which has `count`, and as much again to sort them in.
 static int row_room(row_maker *w, int64_t count, int64_t more) {
-    return BRUNT_RESERVE(w->column, (size_t)(w->made + 2 * (count + more)), (size_t)(w->made + count));
+    return BRUNT_ROOM(w->column, (size_t)(w->made + 2 * (count + more)), (size_t)(w->made + count),
+                      "columns of rows of a matrix", &w->error);
 }
 
+// The columns of a row, and how many. BRUNT_NONE: out of memory.
 static int64_t make_row(const pattern_work *work, row_maker *w, int32_t row) {
     const struct brunt_pattern_scratch *s = work->s;
     const brunt_block_matrix *m = work->m;
     const int64_t kept = work->keep ? m->first[row + 1] - m->first[row] : 0;
-    if (row_room(w, 0, kept + 1)) return -1;
+    if (row_room(w, 0, kept + 1)) return BRUNT_NONE;
     if (kept && s->first[row] == s->first[row + 1]) {
         memcpy(w->column + w->made, m->column + m->first[row], (size_t)kept * sizeof(int32_t));
         return kept;
@@ -121,7 +125,7 @@ static int64_t make_row(const pattern_work *work, row_maker *w, int32_t row) {
     for (int64_t k = s->first[row]; k < s->first[row + 1]; k++) {
         const brunt_stencils *list = work->pattern->stencils + (s->stencil[k] >> LIST_SHIFT);
         const int64_t i = s->stencil[k] & (((int64_t)1 << LIST_SHIFT) - 1), size = list->first[i + 1] - list->first[i];
-        if (row_room(w, count, size)) return -1;
+        if (row_room(w, count, size)) return BRUNT_NONE;
         count = mark_columns(w, row, list->node + list->first[i], size, count);
     }
     sort_columns(w->column + w->made, count, w->column + w->made + count);
@@ -131,9 +135,8 @@ static int64_t make_row(const pattern_work *work, row_maker *w, int32_t row) {
 static void make_rows(void *context, int64_t begin, int64_t end, int worker) {
     const pattern_work *work = context;
     row_maker *w = work->s->maker + worker;
-    for (int64_t r = begin; r < end && !w->failed; r++) {
+    for (int64_t r = begin; r < end && !w->error.code; r++) {
         const int64_t count = make_row(work, w, (int32_t)r);
-        w->failed = count < 0;
         work->s->row[r] = (row_place){w->made, (int32_t)count, worker};
         if (count > 0) w->made += count;
     }
@@ -194,31 +197,32 @@ static bool complete(const brunt_block_matrix *m, const brunt_pattern *p, bool k
     return all;
 }
 
-static int make_marks(const brunt_block_matrix *m, const brunt_team *team, int32_t nodes) {
+static int make_marks(const brunt_block_matrix *m, const brunt_team *team, int32_t nodes, brunt_error *error) {
     for (int t = 0; t < team->threads; t++)
-        if (BRUNT_RESERVE(m->scratch->maker[t].mark, (size_t)nodes, 0)) return -1;
-    return 0;
+        if (BRUNT_ROOM(m->scratch->maker[t].mark, (size_t)nodes, 0, "nodes of a matrix", error)) return BRUNT_FAILED;
+    return BRUNT_OK;
 }
 
 // The rows, into new_first and new_column.
-static int new_rows(pattern_work *work, const brunt_team *team) {
+static int new_rows(pattern_work *work, const brunt_team *team, brunt_error *error) {
     struct brunt_pattern_scratch *s = work->s;
     const int32_t nodes = work->pattern->nodes;
-    if (list_holders(s, work->pattern) || BRUNT_RESERVE(s->row, (size_t)nodes, 0)) return -1;
+    if (list_holders(s, work->pattern, error) || BRUNT_ROOM(s->row, (size_t)nodes, 0, "rows of a matrix", error))
+        return BRUNT_FAILED;
     for (int t = 0; t < team->threads; t++) {
         row_maker *w = s->maker + t;
         memset(w->mark, 0, (size_t)nodes * sizeof *w->mark);
-        w->made = 0, w->failed = false;
+        w->made = 0, w->error.code = BRUNT_OK;
     }
     brunt_parallel(team->threads, nodes, ROW_GRAIN, make_rows, work, team->timer);
     for (int t = 0; t < team->threads; t++)
-        if (s->maker[t].failed) return -1;
-    if (BRUNT_RESERVE(s->new_first, (size_t)nodes + 1, 0)) return -1;
+        if (brunt_hand_on(error, &s->maker[t].error)) return BRUNT_FAILED;
+    if (BRUNT_ROOM(s->new_first, (size_t)nodes + 1, 0, "rows of a matrix", error)) return BRUNT_FAILED;
     s->new_first[0] = 0;
     for (int32_t r = 0; r < nodes; r++) s->new_first[r + 1] = s->new_first[r] + s->row[r].count;
-    if (BRUNT_RESERVE(s->new_column, (size_t)s->new_first[nodes], 0)) return -1;
+    if (BRUNT_ROOM(s->new_column, (size_t)s->new_first[nodes], 0, "blocks of a matrix", error)) return BRUNT_FAILED;
     brunt_parallel(team->threads, nodes, ROW_GRAIN, place_rows, work, team->timer);
-    return 0;
+    return BRUNT_OK;
 }
 
 static bool same_pattern(const brunt_block_matrix *m, const brunt_pattern *p) {
@@ -229,10 +233,12 @@ static bool same_pattern(const brunt_block_matrix *m, const brunt_pattern *p) {
 }
 
 // Takes the rows that have been made for its own.
-static int take_rows(brunt_block_matrix *m, const brunt_team *team, const brunt_pattern *p) {
+static int take_rows(brunt_block_matrix *m, const brunt_team *team, const brunt_pattern *p, brunt_error *error) {
     struct brunt_pattern_scratch *s = m->scratch;
     const size_t values = (size_t)s->new_first[p->nodes] * (size_t)(p->dim * p->dim);
-    if (BRUNT_RESERVE(m->diagonal, (size_t)p->nodes, 0) || BRUNT_RESERVE(m->value, values, 0)) return -1;
+    if (BRUNT_ROOM(m->diagonal, (size_t)p->nodes, 0, "rows of a matrix", error) ||
+        BRUNT_ROOM(m->value, values, 0, "values of a matrix", error))
+        return BRUNT_FAILED;
     int64_t *first = m->first;
     int32_t *column = m->column;
     const size_t first_capacity = m->first_capacity, column_capacity = m->column_capacity;
@@ -242,24 +248,18 @@ static int take_rows(brunt_block_matrix *m, const brunt_team *team, const brunt_
     s->new_column = column, s->new_column_capacity = column_capacity;
     m->dim = p->dim, m->nodes = p->nodes, m->pattern++;
     brunt_parallel(team->threads, m->nodes, ROW_GRAIN, find_diagonals, m, team->timer);
-    return 0;
+    return BRUNT_OK;
 }
 
 int brunt_block_matrix_pattern(brunt_block_matrix *m, const brunt_team *team, const brunt_pattern *p,
                                brunt_error *error) {
     BRUNT_ASSERT((p->dim == 2 || p->dim == 3) && p->lists <= LISTS && p->nodes >= 0);
-    if (!m->scratch) m->scratch = brunt_alloc(sizeof *m->scratch);
-    bool made = m->scratch;
-    if (made) {
-        const bool keep = p->keep && m->pattern && m->nodes == p->nodes && m->dim == p->dim;
-        pattern_work work = {m, p, m->scratch, keep};
-        made = !make_marks(m, team, p->nodes);
-        if (made && !complete(m, p, keep))
-            made = !new_rows(&work, team) && (same_pattern(m, p) || !take_rows(m, team, p));
-    }
-    if (!made)
-        return brunt_fail(error, BRUNT_FAILED, "Out of memory for the matrix of %lld unknowns.",
-                          (long long)p->nodes * p->dim);
+    if (!m->scratch && BRUNT_NEW(m->scratch, 1, "room to make a matrix", error)) return BRUNT_FAILED;
+    const bool keep = p->keep && m->pattern && m->nodes == p->nodes && m->dim == p->dim;
+    pattern_work work = {m, p, m->scratch, keep};
+    if (make_marks(m, team, p->nodes, error)) return BRUNT_FAILED;
+    if (!complete(m, p, keep))
+        if (new_rows(&work, team, error) || (!same_pattern(m, p) && take_rows(m, team, p, error))) return BRUNT_FAILED;
     brunt_block_matrix_zero(m, team);
     return BRUNT_OK;
 }

@@ -341,10 +341,10 @@ START_TEST(search_finds_what_all_pairs_show) {
         const int dim = 2 + round % 2, items = draw_whole(&state, MOST), count = draw_whole(&state, MOST);
         draw_boxes(&state, dim, items, round % 4 == 0 ? 1e3 : 0.5, item);
         draw_boxes(&state, dim, count, 2, query);
-        ck_assert_int_eq(brunt_near_cells_make(&cells, item, items, dim), 0);
+        ck_assert_int_eq(brunt_near_cells_make(&cells, item, items, dim, NULL), 0);
         const brunt_team team = {1 + round % 3, NULL};
         const queries q = {&cells, query};
-        ck_assert_int_eq(brunt_near_list_make(&list, &team, count, found_by, &q), 0);
+        ck_assert_int_eq(brunt_near_list_make(&list, &team, count, found_by, &q, NULL), 0);
         for (int i = 0; i < count; i++) {
             int64_t at = list.first[i];
             for (int j = 0; j < items; j++) {

@@ -364,7 +364,7 @@ START_TEST(incomplete_factors_are_the_matrix_on_its_pattern) {
     const int64_t n = (int64_t)e.nodes * d;
     brunt_block_matrix m = assembled(&e, &alone, 3);
     brunt_incomplete f = {0};
-    ck_assert_int_eq(brunt_incomplete_analyse(&f, &alone, &m, true, _i / 4 ? 4 : 1), 0);
+    ck_assert_int_eq(brunt_incomplete_analyse(&f, &alone, &m, true, _i / 4 ? 4 : 1, NULL), 0);
     ck_assert_int_eq(brunt_incomplete_factor(&f, &alone, &m, 1), -1);
     double *w = calloc((size_t)(n * n), sizeof *w), *dw = calloc((size_t)(n * n), sizeof *w);
     for (int64_t i = 0; i < n; i++) w[i * n + i] = 1;
