@@ -108,7 +108,7 @@ static int make(brunt_element_kind kind, bool rings, int cells, bench *b) {
     b->kicked = brunt_alloc(pieces * sizeof *b->kicked);
     b->drifted = brunt_alloc(pieces * sizeof *b->drifted);
     for (int t = 0; t < THREAD_LIMIT; t++)
-        if (brunt_fem_workspace_fit(&b->work[t], &b->body)) return BRUNT_FAILED;
+        if (brunt_fem_workspace_fit(&b->work[t], &b->body, NULL)) return BRUNT_FAILED;
     for (int32_t n = 0; n < b->body.node_count; n++) {
         real *node = brunt_fem_node(&b->body, n);
         for (int a = 0; a < b->body.dim; a++)

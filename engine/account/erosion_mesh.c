@@ -243,10 +243,12 @@ static int ascending(const void *left, const void *right) {
     return (a > b) - (a < b);
 }
 
-// Nodes of the elements that go, each once, ascending. Their count, or -1: out of memory.
-static int32_t list_corners(struct brunt_erosion_work *work, const brunt_fem_body *fem, int32_t count) {
+// Nodes of the elements that go, each once, ascending: their count, or BRUNT_NONE: out of memory.
+static int32_t list_corners(struct brunt_erosion_work *work, const brunt_fem_body *fem, int32_t count,
+                            brunt_error *error) {
     const int nodes = fem->traits->nodes;
-    if (BRUNT_RESERVE(work->corner, (size_t)count * (size_t)nodes, 0)) return -1;
+    if (BRUNT_ROOM(work->corner, (size_t)count * (size_t)nodes, 0, "nodes of elements that leave", error))
+        return BRUNT_NONE;
     int32_t found = 0;
     for (int32_t i = 0; i < count; i++)
         for (int a = 0; a < nodes; a++) work->corner[found++] = fem->element_node[(int64_t)work->slots[i] * nodes + a];
@@ -276,8 +278,8 @@ static int take_out(brunt_erosion *erosion, const brunt_erosion_step *step, int 
     brunt_fem_body *fem = &step->bodies->fem[k];
     struct brunt_erosion_work *work = erosion->work;
     brunt_eroded *account = &erosion->account[fem->index];
-    const int32_t corners = list_corners(work, fem, count);
-    if (corners < 0) return brunt_fail(error, BRUNT_FAILED, "bodies.%s: out of memory", fem->name);
+    const int32_t corners = list_corners(work, fem, count, error);
+    if (corners < 0) return BRUNT_FAILED;
     book_elements(erosion, step, k, count);
     brunt_fem_remove(fem, work->slots, count, step->room);
     for (int32_t i = 0; i < corners; i++) {

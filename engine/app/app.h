@@ -34,8 +34,10 @@ typedef enum app_option {
     APP_QUICK = 512
 } app_option;
 
+enum { APP_HELPED = -1 };
+
 // Reads options of those `allowed` (app_option, or-ed) and one operand. On a mistake prints one line with a hint and
-// returns BRUNT_BAD_USAGE; returns -1 when help was asked for and printed.
+// returns BRUNT_BAD_USAGE; returns APP_HELPED when help was asked for and printed.
 int app_parse(int argc, char **argv, const char *usage, int allowed, bool operand_required, app_arguments *arguments);
 
 // Reads the scene; mistakes go to stderr.

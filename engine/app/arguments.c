@@ -85,7 +85,7 @@ int app_parse(int argc, char **argv, const char *usage, int allowed, bool operan
         case 'F': arguments->fresh = true; break;
         case 'T': arguments->trace = optarg; break;
         case 'Q': arguments->quick = true; break;
-        case 'h': printf("usage: %s\n", usage); return -1;
+        case 'h': printf("usage: %s\n", usage); return APP_HELPED;
         case ':': return bad_usage(usage, "%s wants a value", argv[optind - 1]);
         default: return bad_usage(usage, "there is no option %s here", argv[optind - 1]);
         }

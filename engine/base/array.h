@@ -11,8 +11,8 @@
 #define BRUNT_COUNT(table) ((int)(sizeof(table) / sizeof *(table)))
 
 // Makes `array` hold `count` elements and keeps its first `keep`; what is new is zero. Grows by half to stay rare: a
-// block is taken only when there is not room. 0, or -1 when out of memory: then the array is as it was. The arguments
-// are evaluated more than once.
+// block is taken only when there is not room. Whether there is none: then the array is as it was. The arguments are
+// evaluated more than once.
 //   double *x; size_t x_capacity;   ...   if (BRUNT_RESERVE(s->x, n, 0)) ...
 #define BRUNT_RESERVE(array, count, keep) BRUNT_RESERVE_IN(array, array##_capacity, count, keep)
 
@@ -22,7 +22,7 @@
 // The same where the capacity has another name.
 #define BRUNT_RESERVE_IN(array, capacity, count, keep)                                                                 \
     ((array) = brunt_array_fit((array), &(capacity), sizeof *(array), (count), (keep)),                                \
-     brunt_array_holds((array), (capacity), sizeof *(array), (count)) ? 0 : -1)
+     !brunt_array_holds((array), (capacity), sizeof *(array), (count)))
 
 // The same with words: BRUNT_OK, or BRUNT_FAILED with what (a plural) there was no memory for.
 //   if (BRUNT_ROOM(s->x, n, 0, "places of nodes", error)) return BRUNT_FAILED;

@@ -19,7 +19,7 @@ int brunt_bodies_find(const brunt_bodies *bodies, const char *name) {
         else
             high = middle;
     }
-    return -1;
+    return BRUNT_NONE;
 }
 
 brunt_body_ref *brunt_bodies_summed(const brunt_bodies *bodies, int i) {

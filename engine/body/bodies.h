@@ -70,7 +70,7 @@ typedef struct brunt_bodies {
 } brunt_bodies;
 
 const char *brunt_bodies_name(const brunt_bodies *bodies, int body);
-// The body of a name, -1: there is none.
+// The body of a name, BRUNT_NONE: there is none.
 int brunt_bodies_find(const brunt_bodies *bodies, const char *name);
 // Body `i` in the order that sums are taken in: points, then meshes, each by name.
 brunt_body_ref *brunt_bodies_summed(const brunt_bodies *bodies, int i);

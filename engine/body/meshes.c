@@ -124,9 +124,7 @@ static int block_set(const brunt_body_ref *ref, int block, const void *in, int64
     (void)count;
     brunt_fem_body *fem = ref->fem;
     const int f = field_of(fem, block);
-    if (f == ELEMENTS && brunt_fem_elements_set(fem, in))
-        return brunt_fail(error, BRUNT_BAD_INPUT, "the state block 'bodies/%s/elements' is not of this mesh",
-                          fem->name);
+    if (f == ELEMENTS && brunt_fem_elements_set(fem, in, error)) return BRUNT_BAD_INPUT;
     if (f == NODES) memcpy(fem->node, in, (size_t)fem->node_count * BRUNT_FEM_NODE_REALS * sizeof(real));
     for (int c = 0; f >= 0 && c < fem->field[f].components; c++)
         memcpy(fem->scalar[fem->field[f].first + c], (const real *)in + (size_t)c * (size_t)fem->slots,

@@ -187,7 +187,7 @@ static int make_surface(brunt_boundary_surface *s, const brunt_boundary_surface_
                         brunt_error *error) {
     s->def = *def;
     s->def.point = NULL, s->def.facet = NULL;
-    if (brunt_curve_copy(&s->def.table, &def->table)) return out_of_memory(error);
+    if (brunt_curve_copy(&s->def.table, &def->table, error)) return BRUNT_FAILED;
     int status = find_body(s, bodies, error);
     if (!status) status = check_line(s, def, error);
     if (!status) status = cut_line(s, def, error);

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 
 double brunt_curve_at(const brunt_curve *curve, double time) {
@@ -37,11 +38,11 @@ double brunt_curve_integral(const brunt_curve *curve, double time) {
     return since_first(curve, time) - since_first(curve, 0);
 }
 
-int brunt_curve_copy(brunt_curve *copy, const brunt_curve *curve) {
+int brunt_curve_copy(brunt_curve *copy, const brunt_curve *curve, brunt_error *error) {
     *copy = (brunt_curve){.count = curve->count};
-    if (!curve->count) return 0;
+    if (!curve->count) return BRUNT_OK;
     const size_t bytes = (size_t)curve->count * sizeof *curve->points;
-    if (!(copy->points = brunt_alloc(bytes))) return -1;
+    if (BRUNT_NEW(copy->points, curve->count, "points of a curve", error)) return BRUNT_FAILED;
     memcpy(copy->points, curve->points, bytes);
-    return 0;
+    return BRUNT_OK;
 }

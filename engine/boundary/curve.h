@@ -7,5 +7,5 @@
 double brunt_curve_at(const brunt_curve *curve, double time);
 // Its integral over [0, time] [s]; negative before 0.
 double brunt_curve_integral(const brunt_curve *curve, double time);
-// A curve with points of its own. 0, or -1: out of memory.
-int brunt_curve_copy(brunt_curve *copy, const brunt_curve *curve);
+// A curve with points of its own. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_curve_copy(brunt_curve *copy, const brunt_curve *curve, brunt_error *error);

@@ -61,13 +61,13 @@ static bool on_plane_of_symmetry(const brunt_fem_body *fem, const edge *e) {
     return false;
 }
 
-// An edge that an odd number of the faces has, and that is on no plane of symmetry through the origin: 1 and its
-// middle, 0 when there is none, -1: out of memory.
-static int find_opening(const brunt_node_set *set, double at[3]) {
+// An edge that an odd number of the faces has, and that is on no plane of symmetry through the origin, if there is one
+// (`open`), and its middle.
+static int find_opening(const brunt_node_set *set, bool *open, double at[3], brunt_error *error) {
     const brunt_fem_body *fem = set->fem;
-    edge *edges = brunt_alloc(((size_t)set->face_count * 4 + 1) * sizeof *edges);
+    edge *edges;
     size_t count = 0;
-    if (!edges) return -1;
+    if (BRUNT_NEW(edges, (size_t)set->face_count * 4 + 1, "edges of an envelope", error)) return BRUNT_FAILED;
     for (int32_t f = 0; f < set->face_count; f++) {
         const int n = corners_of(set->face[f]);
         for (int c = 0; c < n; c++) {
@@ -76,15 +76,15 @@ static int find_opening(const brunt_node_set *set, double at[3]) {
         }
     }
     qsort(edges, count, sizeof *edges, by_nodes);
-    int open = 0;
-    for (size_t i = 0, next; i < count && !open; i = next) {
+    *open = false;
+    for (size_t i = 0, next; i < count && !*open; i = next) {
         for (next = i; next < count && !by_nodes(&edges[i], &edges[next]);) next++;
-        open = (next - i) % 2 == 1 && !on_plane_of_symmetry(fem, &edges[i]);
-        for (int a = 0; a < 3 && open; a++)
+        *open = (next - i) % 2 == 1 && !on_plane_of_symmetry(fem, &edges[i]);
+        for (int a = 0; a < 3 && *open; a++)
             at[a] = 0.5 * (double)(brunt_fem_node(fem, edges[i].low)[a] + brunt_fem_node(fem, edges[i].high)[a]);
     }
     brunt_free(edges);
-    return open;
+    return BRUNT_OK;
 }
 
 int brunt_gas_start(brunt_node_set *set, brunt_error *error) {
@@ -96,8 +96,8 @@ int brunt_gas_start(brunt_node_set *set, brunt_error *error) {
         return brunt_fail(error, BRUNT_BAD_INPUT,
                           "boundaries (%s).gas: gamma > 1 and pressures and volume >= 0 are wanted", name);
     double at[3];
-    int open = find_opening(set, at);
-    if (open < 0) return brunt_fail(error, BRUNT_FAILED, "out of memory");
+    bool open;
+    if (find_opening(set, &open, at, error)) return BRUNT_FAILED;
     if (open)
         return brunt_fail(
             error, BRUNT_BAD_INPUT,

@@ -145,13 +145,13 @@ static int find_nodes(brunt_node_set *set, const brunt_bodies *bodies, brunt_err
 }
 
 // A definition, with a curve of its own. In load steps what has none grows from nothing, but velocities: motion does.
-static int copy_definition(brunt_group_def *copy, const brunt_group_def *def, bool load_steps) {
+static int copy_definition(brunt_group_def *copy, const brunt_group_def *def, bool load_steps, brunt_error *error) {
     static const double ramp[][2] = {{0, 0}, {1, 1}};
     const brunt_curve grows = {.points = (double(*)[2])ramp, .count = BRUNT_COUNT(ramp)};
     const bool ramped = load_steps && !def->table.count && def->action != BRUNT_GROUP_VELOCITY;
     const brunt_curve *table = ramped ? &grows : &def->table;
     *copy = *def;
-    return brunt_curve_copy(&copy->table, table);
+    return brunt_curve_copy(&copy->table, table, error);
 }
 
 int brunt_node_sets_make(brunt_node_sets *sets, const brunt_world_def *def, const brunt_bodies *bodies,
@@ -164,7 +164,7 @@ int brunt_node_sets_make(brunt_node_sets *sets, const brunt_world_def *def, cons
     for (int k = 0; k < sets->count; k++) {
         brunt_node_set *set = &sets->set[k];
         set->wall = &walls[k];
-        if (copy_definition(&set->def, &def->groups[k], def->scheme == BRUNT_STATIC)) return out_of_memory(error);
+        if (copy_definition(&set->def, &def->groups[k], def->scheme == BRUNT_STATIC, error)) return BRUNT_FAILED;
         set->wall->group = &set->def;
         int status = find_nodes(set, bodies, error);
         if (status) return status;

@@ -62,11 +62,11 @@ static const char *refusal(const brunt_world_def *def, const void *one, const ch
 
 static const double ON_GRID_LINE = 1e-6; // cells: how far off a mirror plane may be and still count as on the line
 
-// Index of the axis a plane is normal to, -1 when it is oblique.
+// Index of the axis a plane is normal to, BRUNT_NONE when it is oblique.
 static int plane_axis(const brunt_plane_def *plane, int dim) {
     for (int a = 0; a < dim; a++)
         if (fabs(fabs(plane->normal[a]) - 1) < 1e-12) return a;
-    return -1;
+    return BRUNT_NONE;
 }
 
 static bool has_fluid(const brunt_world_def *def) {

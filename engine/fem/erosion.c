@@ -182,7 +182,8 @@ static int32_t place_in_block(const brunt_fem_body *body, const brunt_fem_block 
     return low < block->node_count && list[low] == node ? low : -1;
 }
 
-static int check_elements(brunt_fem_body *body, const int64_t *id, const int64_t *corner) {
+// Whether they are elements of this body.
+static bool check_elements(brunt_fem_body *body, const int64_t *id, const int64_t *corner) {
     const int nodes = body->traits->nodes;
     memset(body->rank, 0, (size_t)body->mesh_elements * sizeof *body->rank);
     body->ranked = false;
@@ -190,19 +191,21 @@ static int check_elements(brunt_fem_body *body, const int64_t *id, const int64_t
         bool ended = false;
         for (int32_t s = body->block[b].first; s < block_end(body, b); s++) {
             ended = ended || id[s] < 0;
-            if (id[s] < -1 || id[s] >= body->mesh_elements || (ended && id[s] >= 0)) return -1;
-            if (id[s] >= 0 && body->rank[id[s]]++) return -1;
+            if (id[s] < -1 || id[s] >= body->mesh_elements || (ended && id[s] >= 0)) return false;
+            if (id[s] >= 0 && body->rank[id[s]]++) return false;
             for (int a = 0; a < nodes; a++)
-                if (place_in_block(body, &body->block[b], corner[(int64_t)s * nodes + a]) < 0) return -1;
+                if (place_in_block(body, &body->block[b], corner[(int64_t)s * nodes + a]) < 0) return false;
         }
     }
-    return 0;
+    return true;
 }
 
-int brunt_fem_elements_set(brunt_fem_body *body, const int64_t *in) {
+int brunt_fem_elements_set(brunt_fem_body *body, const int64_t *in, brunt_error *error) {
     const int nodes = body->traits->nodes;
     const int64_t *corner = in + body->slots;
-    if (check_elements(body, in, corner)) return -1;
+    if (!check_elements(body, in, corner))
+        return brunt_fail(error, BRUNT_BAD_INPUT, "the state block 'bodies/%s/elements' is not of this mesh",
+                          body->name);
     body->element_count = 0;
     for (int32_t b = 0; b < body->block_count; b++) {
         brunt_fem_block *block = &body->block[b];
@@ -220,7 +223,7 @@ int brunt_fem_elements_set(brunt_fem_body *body, const int64_t *in) {
         body->report[b] = (brunt_fem_report){.bad = -1};
     }
     count_bonds(body);
-    return 0;
+    return BRUNT_OK;
 }
 
 // ------------------------------------------------------------------------------------------ one by itself

@@ -41,13 +41,13 @@ static void list_fields(brunt_fem_body *body, const element_needs *needs) {
 
 // One slab; the arrays' distance is 9 cache lines past a page, so that streams read together do not fall into the same
 // sets of the cache.
-static int allocate_fields(brunt_fem_body *body) {
+static int allocate_fields(brunt_fem_body *body, brunt_error *error) {
     size_t stride = ((size_t)body->slots * sizeof(real) + 4095) / 4096 * 4096 + (size_t)9 * 64;
     body->slab_bytes = stride * (size_t)body->scalar_count;
-    body->slab = brunt_alloc(body->slab_bytes);
-    if (!body->slab) return -1;
+    if (!(body->slab = brunt_alloc(body->slab_bytes)))
+        return brunt_fail_memory(error, "bytes of fields of elements", body->slab_bytes, 1);
     for (int k = 0; k < body->scalar_count; k++) body->scalar[k] = (real *)((char *)body->slab + stride * (size_t)k);
-    return 0;
+    return BRUNT_OK;
 }
 
 // New, undeformed material in slots [0, count).
@@ -200,22 +200,20 @@ static int ascending(const void *left, const void *right) {
 }
 
 // The mesh's groups in the body's node numbers. Nodes that no element has are left out.
-static int number_groups(brunt_fem_body *body, const brunt_mesh *mesh, int32_t *number) {
+static int number_groups(brunt_fem_body *body, const brunt_mesh *mesh, int32_t *number, brunt_error *error) {
     memset(number, -1, (size_t)mesh->node_count * sizeof *number);
     for (int32_t n = 0; n < body->node_count; n++) number[body->node_id[n]] = n;
-    body->groups = brunt_alloc((size_t)mesh->group_count * sizeof *body->groups);
-    if (!body->groups) return -1;
+    if (BRUNT_NEW(body->groups, mesh->group_count, "groups of nodes", error)) return BRUNT_FAILED;
     for (int32_t g = 0; g < mesh->group_count; g++) {
         const brunt_group *from = &mesh->groups[g];
         brunt_group *to = &body->groups[body->group_count++];
         memcpy(to->name, from->name, sizeof to->name);
-        to->nodes = brunt_alloc((size_t)from->count * sizeof *to->nodes);
-        if (!to->nodes) return -1;
+        if (BRUNT_NEW(to->nodes, from->count, "nodes of a group", error)) return BRUNT_FAILED;
         for (int32_t k = 0; k < from->count; k++)
             if (number[from->nodes[k]] >= 0) to->nodes[to->count++] = number[from->nodes[k]];
         qsort(to->nodes, (size_t)to->count, sizeof *to->nodes, ascending);
     }
-    return 0;
+    return BRUNT_OK;
 }
 
 static int measure_surface(brunt_fem_body *body, brunt_error *error) {
@@ -237,21 +235,21 @@ static int measure_surface(brunt_fem_body *body, brunt_error *error) {
     return BRUNT_OK;
 }
 
-static int allocate_nodes(brunt_fem_body *body) {
-    body->node = brunt_alloc((size_t)body->node_count * BRUNT_FEM_NODE_REALS * sizeof(real));
-    body->start = brunt_alloc((size_t)body->node_count * 4 * sizeof(real));
-    body->partial = brunt_alloc((size_t)body->partial_count * 4 * sizeof(real));
-    body->report = brunt_alloc((size_t)body->block_count * sizeof *body->report);
-    if (body->element->axisymmetric && !(body->held = brunt_alloc((size_t)body->node_count + 1))) return -1;
-    return body->node && body->start && body->partial && body->report ? 0 : -1;
+static int allocate_nodes(brunt_fem_body *body, brunt_error *error) {
+    if (BRUNT_NEW(body->node, (size_t)body->node_count * BRUNT_FEM_NODE_REALS, "numbers of nodes of a mesh", error) ||
+        BRUNT_NEW(body->start, (size_t)body->node_count * 4, "numbers of nodes of a mesh", error) ||
+        BRUNT_NEW(body->partial, (size_t)body->partial_count * 4, "numbers of nodes of blocks of a mesh", error) ||
+        BRUNT_NEW(body->report, body->block_count, "blocks of a mesh", error))
+        return BRUNT_FAILED;
+    return body->element->axisymmetric ? BRUNT_NEW(body->held, body->node_count + 1, "nodes of a mesh", error)
+                                       : BRUNT_OK;
 }
 
 static int make(const brunt_body_def *def, const brunt_mesh *mesh, brunt_fem_body *body, double *mass, int32_t *number,
                 brunt_error *error) {
-    if (!mass || !number || brunt_fem_layout(body, mesh) || allocate_nodes(body) || allocate_fields(body) ||
-        number_groups(body, mesh, number))
-        return brunt_fail(error, BRUNT_FAILED, "bodies.%s: out of memory for %d elements", def->name,
-                          mesh->element_count);
+    if (brunt_fem_layout(body, mesh, error) || allocate_nodes(body, error) || allocate_fields(body, error) ||
+        number_groups(body, mesh, number, error))
+        return BRUNT_FAILED;
     place_nodes(def, mesh, body);
     int status = body->element->axisymmetric ? put_on_axis(body, error) : BRUNT_OK;
     if (!status) status = measure_volumes(body, error);
@@ -307,9 +305,11 @@ static int make_body(const brunt_body_def *def, const brunt_material *material, 
                                  .viscous_hourglass =
                                      brunt_fem_has_hourglass(body) && body->hourglass == BRUNT_HOURGLASS_VISCOUS};
     list_fields(body, &needs);
-    double *mass = brunt_alloc((size_t)mesh->node_count * sizeof *mass);
-    int32_t *number = brunt_alloc((size_t)mesh->node_count * sizeof *number);
-    int status = make(def, mesh, body, mass, number, error);
+    double *mass;
+    int32_t *number = NULL;
+    int status = BRUNT_NEW(mass, mesh->node_count, "masses of nodes of a mesh", error);
+    if (!status) status = BRUNT_NEW(number, mesh->node_count, "numbers of nodes of a mesh", error);
+    if (!status) status = make(def, mesh, body, mass, number, error);
     brunt_free(mass);
     brunt_free(number);
     if (status) brunt_fem_free(body);
@@ -352,10 +352,10 @@ size_t brunt_fem_tile_reals(const brunt_fem_body *body) {
     return (size_t)body->block_nodes * 12 + (size_t)(40 + 9 + 3) * BRUNT_FEM_TILE;
 }
 
-int brunt_fem_workspace_fit(brunt_fem_workspace *work, const brunt_fem_body *body) {
+int brunt_fem_workspace_fit(brunt_fem_workspace *work, const brunt_fem_body *body, brunt_error *error) {
     size_t reals = brunt_fem_tile_reals(body);
     if (body->erodes_inverted) reals += (size_t)body->scalar_count * BRUNT_FEM_TILE;
-    return BRUNT_RESERVE_IN(work->memory, work->capacity, reals, 0);
+    return BRUNT_ROOM_IN(work->memory, work->capacity, reals, 0, "numbers of a thread to work with", error);
 }
 
 void brunt_fem_workspace_free(brunt_fem_workspace *work) {

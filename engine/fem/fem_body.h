@@ -177,11 +177,11 @@ int brunt_fem_prepare_erosion(brunt_fem_body *body, bool inverted, brunt_error *
 // anew (dt 0). Nodes are left alone.
 void brunt_fem_remove(brunt_fem_body *body, const int32_t *slots, int32_t count, brunt_fem_workspace *work);
 // Elements of a saved state by their slots, brunt_fem_elements_count numbers: first the mesh's number of each (-1:
-// none), then their nodes. `set` makes of them all that follows from them but the forces; -1 when they are not of this
-// body.
+// none), then their nodes. `set` makes of them all that follows from them but the forces. BRUNT_OK, or BRUNT_BAD_INPUT:
+// they are not of this body.
 int64_t brunt_fem_elements_count(const brunt_fem_body *body);
 void brunt_fem_elements_get(const brunt_fem_body *body, int64_t *out);
-int brunt_fem_elements_set(brunt_fem_body *body, const int64_t *in);
+int brunt_fem_elements_set(brunt_fem_body *body, const int64_t *in, brunt_error *error);
 // Brings `rank` up to date.
 void brunt_fem_ranks(brunt_fem_body *body);
 // Something resists the zero-energy modes of the body's elements.
@@ -216,8 +216,9 @@ brunt_fem_share brunt_fem_single_look(brunt_fem_single *single, const brunt_fem_
 struct brunt_fem_workspace {
     real *memory;
     size_t capacity;
-};                                                                                  // of a thread, for any body
-int brunt_fem_workspace_fit(brunt_fem_workspace *work, const brunt_fem_body *body); // 0, or -1: out of memory
+}; // of a thread, for any body
+int brunt_fem_workspace_fit(brunt_fem_workspace *work, const brunt_fem_body *body,
+                            brunt_error *error);         // BRUNT_OK, or BRUNT_FAILED
 size_t brunt_fem_tile_reals(const brunt_fem_body *body); // of it, what a tile takes; states that are kept follow
 void brunt_fem_workspace_free(brunt_fem_workspace *work);
 

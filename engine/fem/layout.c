@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "base/simd.h"
+#include "base/array.h"
 #include "base/memory.h"
 
 // J. Skilling, Programming the Hilbert curve, AIP Conf. Proc. 707 (2004) 381.
@@ -162,7 +163,23 @@ static void invert_blocks(brunt_fem_body *body) {
     first[0] = 0;
 }
 
-int brunt_fem_layout(brunt_fem_body *body, const brunt_mesh *mesh) {
+// The nodes of each block, and the blocks of each node. A block has at most as many nodes as its elements have corners.
+static int number_blocks(brunt_fem_body *body, size_t corners, int32_t *number, brunt_error *error) {
+    static const char what[] = "nodes of blocks of a mesh";
+    if (BRUNT_NEW(body->block_node, corners, what, error)) return BRUNT_FAILED;
+    int32_t *list = body->block_node;
+    place_nodes(body, number);
+    const int status = BRUNT_NEW(body->block_node, body->partial_count, what, error);
+    if (!status) memcpy(body->block_node, list, (size_t)body->partial_count * sizeof *list);
+    brunt_free(list);
+    if (status || BRUNT_NEW(body->partial_first, body->node_count + 1, "nodes of a mesh", error) ||
+        BRUNT_NEW(body->partial_of, body->partial_count, what, error))
+        return BRUNT_FAILED;
+    invert_blocks(body);
+    return BRUNT_OK;
+}
+
+int brunt_fem_layout(brunt_fem_body *body, const brunt_mesh *mesh, brunt_error *error) {
     const brunt_element *type = body->element;
     const int size = block_size(type, mesh->element_count);
     body->element_count = mesh->element_count;
@@ -171,33 +188,20 @@ int brunt_fem_layout(brunt_fem_body *body, const brunt_mesh *mesh) {
     int32_t rest = mesh->element_count - (body->block_count - 1) * size;
     body->slots += (rest + BRUNT_LANES - 1) / BRUNT_LANES * BRUNT_LANES;
     size_t corners = (size_t)body->slots * (size_t)type->traits->nodes, nodes = (size_t)mesh->node_count;
-    placed_element *order = brunt_alloc((size_t)mesh->element_count * sizeof *order);
-    int32_t *number = brunt_alloc(nodes * sizeof *number);
-    body->block = brunt_alloc((size_t)body->block_count * sizeof *body->block);
-    body->element_id = brunt_alloc((size_t)body->slots * sizeof *body->element_id);
-    body->element_node = brunt_alloc(corners * sizeof *body->element_node);
-    body->local = brunt_alloc(corners * sizeof *body->local);
-    body->node_id = brunt_alloc(nodes * sizeof *body->node_id);
-    int status = -1;
-    if (order && number && body->block && body->element_id && body->element_node && body->local && body->node_id) {
+    placed_element *order;
+    int32_t *number = NULL;
+    int status = BRUNT_NEW(order, mesh->element_count, "elements in order", error);
+    if (!status && (BRUNT_NEW(number, nodes, "numbers of nodes of a mesh", error) ||
+                    BRUNT_NEW(body->block, body->block_count, "blocks of a mesh", error) ||
+                    BRUNT_NEW(body->element_id, body->slots, "elements of a mesh", error) ||
+                    BRUNT_NEW(body->element_node, corners, "nodes of elements of a mesh", error) ||
+                    BRUNT_NEW(body->local, corners, "nodes of elements of a mesh", error) ||
+                    BRUNT_NEW(body->node_id, nodes, "nodes of a mesh", error)))
+        status = BRUNT_FAILED;
+    if (!status) {
         sort_elements(type, mesh, order);
         place_elements(body, mesh, order, size, number);
-        // A block has at most as many nodes as its elements have corners.
-        int32_t *list = body->block_node = brunt_alloc(corners * sizeof *list);
-        if (list) {
-            place_nodes(body, number);
-            body->block_node = brunt_alloc((size_t)body->partial_count * sizeof *list);
-            if (body->block_node) memcpy(body->block_node, list, (size_t)body->partial_count * sizeof *list);
-            brunt_free(list);
-        }
-        if (body->block_node) {
-            body->partial_first = brunt_alloc(((size_t)body->node_count + 1) * sizeof *body->partial_first);
-            body->partial_of = brunt_alloc((size_t)body->partial_count * sizeof *body->partial_of);
-            if (body->partial_first && body->partial_of) {
-                invert_blocks(body);
-                status = 0;
-            }
-        }
+        status = number_blocks(body, corners, number, error);
     }
     brunt_free(order);
     brunt_free(number);

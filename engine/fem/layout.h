@@ -4,8 +4,8 @@
 #include "fem/fem_body.h"
 
 // Orders elements and nodes, cuts blocks, and numbers what each node sums. Sets element_*, node_*, block_*, partial_*
-// and local of a body whose element and dim are set. 0, or -1: out of memory.
-int brunt_fem_layout(brunt_fem_body *body, const brunt_mesh *mesh);
+// and local of a body whose element and dim are set. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_fem_layout(brunt_fem_body *body, const brunt_mesh *mesh, brunt_error *error);
 // A key that grows along a curve of Hilbert through `dim` coordinates of `bits` bits; dim * bits <= 63.
 uint64_t brunt_hilbert_key(int dim, int bits, const uint32_t *coordinate);
 

@@ -11,22 +11,22 @@ const char *brunt_fem_implicit(const brunt_fem_body *body) {
 
 // --------------------------------------------------------------------------------- making
 
-static int make_arrays(brunt_fem_potential *p) {
+static int make_arrays(brunt_fem_potential *p, brunt_error *error) {
     const brunt_fem_body *body = p->body;
-    p->place = brunt_alloc((size_t)body->node_count * (size_t)p->dim * sizeof(double));
-    p->way = brunt_alloc((size_t)body->node_count * (size_t)p->dim * sizeof(double));
-    p->force = brunt_alloc((size_t)body->partial_count * 4 * sizeof(real));
-    p->energy = brunt_alloc((size_t)body->block_count * sizeof *p->energy);
-    p->limit = brunt_alloc((size_t)body->block_count * sizeof(double));
-    p->first = brunt_alloc(((size_t)body->element_count + 1) * sizeof(int64_t));
-    p->node = brunt_alloc((size_t)body->element_count * (size_t)p->nodes * sizeof(int32_t));
-    p->slot = brunt_alloc((size_t)body->element_count * sizeof(int32_t));
-    p->work = brunt_alloc((size_t)p->threads * sizeof *p->work);
-    if (!p->place || !p->way || !p->force || !p->energy || !p->limit || !p->first || !p->node || !p->slot || !p->work)
-        return -1;
+    const size_t numbers = (size_t)body->node_count * (size_t)p->dim;
+    static const char of_nodes[] = "numbers of nodes of a mesh", elements[] = "elements of a mesh";
+    if (BRUNT_NEW(p->place, numbers, of_nodes, error) || BRUNT_NEW(p->way, numbers, of_nodes, error) ||
+        BRUNT_NEW(p->force, (size_t)body->partial_count * 4, "numbers of nodes of blocks of a mesh", error) ||
+        BRUNT_NEW(p->energy, body->block_count, "blocks of a mesh", error) ||
+        BRUNT_NEW(p->limit, body->block_count, "blocks of a mesh", error) ||
+        BRUNT_NEW(p->first, body->element_count + 1, elements, error) ||
+        BRUNT_NEW(p->node, (size_t)body->element_count * (size_t)p->nodes, "nodes of elements of a mesh", error) ||
+        BRUNT_NEW(p->slot, body->element_count, elements, error) ||
+        BRUNT_NEW(p->work, p->threads, "threads with room to work", error))
+        return BRUNT_FAILED;
     for (int w = 0; w < p->threads; w++)
-        if (brunt_fem_workspace_fit(&p->work[w], body)) return -1;
-    return p->kind->make(p);
+        if (brunt_fem_workspace_fit(&p->work[w], body, error)) return BRUNT_FAILED;
+    return p->kind->make(p, error);
 }
 
 static void make_stencils(brunt_fem_potential *p) {
@@ -53,11 +53,8 @@ brunt_fem_potential *brunt_fem_potential_make(brunt_fem_body *body, int32_t base
         brunt_fail(error, BRUNT_BAD_INPUT, "body '%s': %s", body->name, reason);
         return NULL;
     }
-    brunt_fem_potential *p = brunt_alloc(sizeof *p);
-    if (!p) {
-        brunt_fail(error, BRUNT_FAILED, "out of memory for the implicit steps of body '%s'", body->name);
-        return NULL;
-    }
+    brunt_fem_potential *p;
+    if (BRUNT_NEW(p, 1, "room for the implicit steps of a mesh", error)) return NULL;
     const brunt_model *strength = body->material.model[BRUNT_STRENGTH];
     *p = (brunt_fem_potential){.kind =
                                    body->traits->membrane ? &brunt_fem_membrane_potential : &brunt_fem_solid_potential,
@@ -69,9 +66,7 @@ brunt_fem_potential *brunt_fem_potential_make(brunt_fem_body *body, int32_t base
                                .tangents = brunt_material_tangents(&body->material, body->dim),
                                .history = strength->plastic || strength->shear_viscous || body->material.differences,
                                .threads = team->threads};
-    int status = BRUNT_OK;
-    if (make_arrays(p))
-        status = brunt_fail(error, BRUNT_FAILED, "out of memory for the implicit steps of body '%s'", body->name);
+    int status = make_arrays(p, error);
     if (!status) {
         make_stencils(p);
         const brunt_stencils list = stencils(p);

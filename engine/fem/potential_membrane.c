@@ -64,18 +64,18 @@ static void sheet_of(const brunt_fem_potential *p, int64_t slot, fem_sheet *shee
     if (p->nodes == 4) warping_of(p, slot, (const double(*)[3])x, (const double(*)[3])e, sheet);
 }
 
-static int make(brunt_fem_potential *p) {
+static int make(brunt_fem_potential *p, brunt_error *error) {
     const brunt_fem_body *body = p->body;
     const size_t stride = ((size_t)body->slots + 7) / 8 * 8 + 8;
     p->slab_bytes = HESSIAN * stride * sizeof(real) + (size_t)body->slots * sizeof *p->sheet;
-    p->slab = brunt_alloc(HESSIAN * stride * sizeof(real));
-    p->sheet = brunt_alloc((size_t)body->slots * sizeof *p->sheet);
-    if (!p->slab || !p->sheet) return -1;
+    if (BRUNT_NEW(p->slab, HESSIAN * stride, "numbers of elements of a membrane", error) ||
+        BRUNT_NEW(p->sheet, body->slots, "elements of a membrane", error))
+        return BRUNT_FAILED;
     for (int k = 0; k < HESSIAN; k++) p->tangent[k] = p->slab + (size_t)k * stride;
     for (int32_t b = 0; b < body->block_count; b++)
         for (int32_t s = body->block[b].first; s < body->block[b].first + body->block[b].count; s++)
             sheet_of(p, s, &p->sheet[s]);
-    return 0;
+    return BRUNT_OK;
 }
 
 // --------------------------------------------------------------------------------- a tile of elements

@@ -52,8 +52,9 @@ typedef struct fem_call {
 
 // What the elements of a kind do: potential.c goes over blocks and nodes, and knows no shapes.
 struct fem_potential_kind {
-    // Takes the slab and cuts its arrays, as long as the body has slots, and fills what stays. 0, or -1: out of memory.
-    int (*make)(brunt_fem_potential *p);
+    // Takes the slab and cuts its arrays, as long as the body has slots, and fills what stays. BRUNT_OK, or
+    // BRUNT_FAILED: out of memory.
+    int (*make)(brunt_fem_potential *p, brunt_error *error);
     void (*evaluate)(const fem_call *call, int32_t block); // energy, gradient into `force`, or what `hessian` reads
     void (*limit)(const fem_call *call, int32_t block);    // NULL: elements bear any step
     void (*hessian)(const brunt_fem_potential *p, int64_t slot, double *dense); // of one element, row by row

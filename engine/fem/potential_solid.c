@@ -46,19 +46,20 @@ static void shape_of(brunt_fem_potential *p, int32_t slot) {
         p->spring[slot] = (real)((double)body->hourglass_coefficient * modulus * volume * square / (dim * n));
 }
 
-static int make(brunt_fem_potential *p) {
+static int make(brunt_fem_potential *p, brunt_error *error) {
     const int shapes = p->nodes * p->dim, shares = p->nodes * p->modes, tangents = p->tangents;
     const size_t stride = ((size_t)p->body->slots + 7) / 8 * 8 + 8;
     p->slab_bytes = (size_t)(2 * shapes + shares + tangents + 1) * stride * sizeof(real);
-    real *at = p->slab = brunt_alloc(p->slab_bytes);
-    if (!at) return -1;
+    if (BRUNT_NEW(p->slab, p->slab_bytes / sizeof *p->slab, "numbers of elements of a mesh", error))
+        return BRUNT_FAILED;
+    real *at = p->slab;
     for (int k = 0; k < shapes; k++, at += stride) p->b[k] = at;
     for (int k = 0; k < shapes; k++, at += stride) p->g[k] = at;
     for (int k = 0; k < shares; k++, at += stride) p->gamma[k] = at;
     for (int k = 0; k < tangents; k++, at += stride) p->tangent[k] = at;
     p->spring = at;
     for (int32_t s = 0; s < p->body->slots; s++) shape_of(p, s);
-    return 0;
+    return BRUNT_OK;
 }
 
 // --------------------------------------------------------------------------------- a tile of elements

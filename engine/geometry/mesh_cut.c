@@ -46,13 +46,15 @@ static int box_between(brunt_mesh_cut *cut, int dimension, brunt_error *error) {
     return BRUNT_OK;
 }
 
-// The coordinate axis that a shape turns about: -1 of balls and disks, -2 of what is oblique.
+enum { OBLIQUE = -2 };
+
+// The coordinate axis that a shape turns about: BRUNT_NONE of balls and disks, or OBLIQUE.
 static int axis_of(const brunt_shape *shape, int dimension) {
-    int along = -1;
-    if (shape->kind == BRUNT_SPHERE || dimension == 2) return -1;
+    int along = BRUNT_NONE;
+    if (shape->kind == BRUNT_SPHERE || dimension == 2) return BRUNT_NONE;
     for (int d = 0; d < 3; d++) {
         if (shape->axis[d] == 0) continue;
-        if (along >= 0) return -2;
+        if (along >= 0) return OBLIQUE;
         along = d;
     }
     return along;
@@ -88,7 +90,7 @@ int brunt_mesh_cutting(const brunt_shape *shape, int dimension, brunt_mesh_cut *
         if (*high >= max[d] - near) *high = INFINITY;
         if (isinf(*low) && isinf(*high)) continue;
         const double from = fmax(*low, min[d]), to = fmin(*high, max[d]);
-        if (along == -2 || !(to - from > near)) return refuse(error);
+        if (along == OBLIQUE || !(to - from > near)) return refuse(error);
         if (d == along) {
             shorten(&cut->whole, along, from, to);
             continue;

@@ -5,6 +5,7 @@
 // its nodes lie where the integral is k N / n. g is linear between its points and constant beyond them, so that both
 // the integral and its inverse are closed: int_0^x dx / (g0 + m x) = ln(1 + m x / g0) / m.
 #include "brunt.h"
+#include "base/array.h"
 #include "base/error.h"
 #include "base/memory.h"
 
@@ -58,25 +59,26 @@ static int32_t cut(const brunt_curve *g, double low, double high, double size, s
 }
 
 // Nodes of an axis: *count elements, their ends ascending in new memory; none when there are NODE_LIMIT or more of
-// them. 0, or -1: out of memory.
-static int divide(const brunt_curve *g, double low, double high, double size, int32_t *count, double **nodes) {
+// them.
+static int divide(const brunt_curve *g, double low, double high, double size, int32_t *count, double **nodes,
+                  brunt_error *error) {
     double elements;
-    stretch *stretches = brunt_alloc(((size_t)g->count + 2) * sizeof *stretches);
-    if (!stretches) return -1;
+    stretch *stretches;
+    if (BRUNT_NEW(stretches, g->count + 2, "stretches of a graded axis", error)) return BRUNT_FAILED;
     const int32_t n = cut(g, low, high, size, stretches, &elements);
     *count = elements < 1 ? 1 : elements < NODE_LIMIT ? (int32_t)round(elements) : NODE_LIMIT;
     if (*count == NODE_LIMIT) {
         brunt_free(stretches);
-        return 0;
+        return BRUNT_OK;
     }
-    *nodes = brunt_alloc(((size_t)*count + 1) * sizeof **nodes);
-    for (int32_t k = 0, at = 0; *nodes && k <= *count; k++) {
+    const int status = BRUNT_NEW(*nodes, *count + 1, "nodes of a graded axis", error);
+    for (int32_t k = 0, at = 0; !status && k <= *count; k++) {
         double wanted = elements * k / *count;
         while (at + 1 < n && stretches[at + 1].before <= wanted) at++;
         (*nodes)[k] = k == 0 ? low : k == *count ? high : place_of(&stretches[at], size, wanted - stretches[at].before);
     }
     brunt_free(stretches);
-    return *nodes ? 0 : -1;
+    return status;
 }
 
 static int check(const brunt_shape *box, int dimension, double size, const brunt_curve grading[3], brunt_error *error) {
@@ -108,8 +110,7 @@ int brunt_mesh_graded(const brunt_shape *box, int dimension, brunt_element_kind 
     double *nodes[3] = {NULL, NULL, NULL}, all = 1;
     for (int a = 0; a < dimension && !status; a++) {
         int32_t count = 0;
-        if (divide(&grading[a], box->min[a], box->max[a], size, &count, &nodes[a]))
-            status = brunt_fail(error, BRUNT_FAILED, "out of memory for a mesh");
+        status = divide(&grading[a], box->min[a], box->max[a], size, &count, &nodes[a], error);
         units.max[a] = count;
         all *= count + 1.0;
     }

@@ -50,16 +50,17 @@ static void key_coord(uint64_t key, int32_t c[3]) {
 
 enum { EMPTY = -1 };
 
-static int table_build(brunt_table *table, const uint64_t *keys, int32_t count) {
+static int table_build(brunt_table *table, const uint64_t *keys, int32_t count, brunt_error *error) {
     int32_t capacity = 64;
     while (capacity < 2 * count) capacity *= 2;
     if (capacity > table->capacity) {
         brunt_free(table->key);
         brunt_free(table->value);
-        table->key = brunt_alloc((size_t)capacity * sizeof *table->key);
-        table->value = brunt_alloc((size_t)capacity * sizeof *table->value);
-        table->capacity = table->key && table->value ? capacity : 0;
-        if (!table->capacity) return -1;
+        table->capacity = 0, table->value = NULL;
+        if (BRUNT_NEW(table->key, capacity, "keys of blocks of the grid", error) ||
+            BRUNT_NEW(table->value, capacity, "blocks of the grid by their keys", error))
+            return BRUNT_FAILED;
+        table->capacity = capacity;
     }
     for (int32_t i = 0; i < table->capacity; i++) table->value[i] = EMPTY;
     uint64_t mask = (uint64_t)table->capacity - 1;
@@ -69,17 +70,17 @@ static int table_build(brunt_table *table, const uint64_t *keys, int32_t count) 
         table->key[at] = keys[i];
         table->value[at] = i;
     }
-    return 0;
+    return BRUNT_OK;
 }
 
 static int32_t table_find(const brunt_table *table, uint64_t key) {
-    if (!table->capacity) return -1;
+    if (!table->capacity) return BRUNT_NONE;
     uint64_t mask = (uint64_t)table->capacity - 1, at = brunt_mix(key) & mask;
     while (table->value[at] != EMPTY) {
         if (table->key[at] == key) return table->value[at];
         at = (at + 1) & mask;
     }
-    return -1;
+    return BRUNT_NONE;
 }
 
 int32_t brunt_grid_block(const brunt_grid *grid, uint64_t key) { return table_find(&grid->block_table, key); }
@@ -106,16 +107,19 @@ static uint64_t corner_shift(const brunt_grid *grid, int corner) {
     return brunt_key(c) - brunt_key(zero);
 }
 
-int brunt_grid_set_blocks(brunt_grid *grid, const uint64_t *keys, int32_t count) {
+int brunt_grid_set_blocks(brunt_grid *grid, const uint64_t *keys, int32_t count, brunt_error *error) {
     size_t n = (size_t)count, most = n * (size_t)grid->corners;
-    if (BRUNT_RESERVE(grid->block_key, n, 0) || BRUNT_RESERVE(grid->blocks, n, 0) ||
-        BRUNT_RESERVE(grid->bin_start, n * BRUNT_BIN_STARTS, 0) ||
-        BRUNT_RESERVE(grid->scatter, n * (size_t)grid->span_nodes * BRUNT_NODE_REALS, 0) ||
-        BRUNT_RESERVE(grid->slot_key, most + 1, 0) || BRUNT_RESERVE(grid->spare_key, most + 1, 0))
-        return -1;
+    if (BRUNT_ROOM(grid->block_key, n, 0, "blocks of the grid", error) ||
+        BRUNT_ROOM(grid->blocks, n, 0, "blocks of the grid", error) ||
+        BRUNT_ROOM(grid->bin_start, n * BRUNT_BIN_STARTS, 0, "bins of blocks of the grid", error) ||
+        BRUNT_ROOM(grid->scatter, n * (size_t)grid->span_nodes * BRUNT_NODE_REALS, 0,
+                   "numbers of nodes of blocks of the grid", error) ||
+        BRUNT_ROOM(grid->slot_key, most + 1, 0, "blocks of grid nodes", error) ||
+        BRUNT_ROOM(grid->spare_key, most + 1, 0, "blocks of grid nodes", error))
+        return BRUNT_FAILED;
     memmove(grid->block_key, keys, n * sizeof *keys);
     grid->block_count = count;
-    if (table_build(&grid->block_table, grid->block_key, count)) return -1;
+    if (table_build(&grid->block_table, grid->block_key, count, error)) return BRUNT_FAILED;
 
     // The nodes reached: united with a shift by one along z, then y, then x.
     uint64_t *from = grid->slot_key, *to = grid->spare_key;
@@ -128,10 +132,11 @@ int brunt_grid_set_blocks(brunt_grid *grid, const uint64_t *keys, int32_t count)
     }
     if (from != grid->slot_key) memcpy(grid->slot_key, from, (size_t)slots * sizeof *from);
     grid->slot_count = slots;
-    if (BRUNT_RESERVE(grid->slots, (size_t)slots, 0) ||
-        BRUNT_RESERVE(grid->nodes, (size_t)slots * BRUNT_BLOCK_NODES * BRUNT_NODE_REALS, 0) ||
-        table_build(&grid->slot_table, grid->slot_key, slots))
-        return -1;
+    if (BRUNT_ROOM(grid->slots, (size_t)slots, 0, "blocks of grid nodes", error) ||
+        BRUNT_ROOM(grid->nodes, (size_t)slots * BRUNT_BLOCK_NODES * BRUNT_NODE_REALS, 0, "numbers of grid nodes",
+                   error) ||
+        table_build(&grid->slot_table, grid->slot_key, slots, error))
+        return BRUNT_FAILED;
 
     for (int32_t s = 0; s < slots; s++) {
         key_coord(grid->slot_key[s], grid->slots[s].coord);
@@ -145,7 +150,7 @@ int brunt_grid_set_blocks(brunt_grid *grid, const uint64_t *keys, int32_t count)
             grid->slots[block->slot[c]].source[c] = b;
         }
     }
-    return 0;
+    return BRUNT_OK;
 }
 
 static int32_t floor_divide(int32_t a, int32_t b) { return a >= 0 ? a / b : -((-a + b - 1) / b); }

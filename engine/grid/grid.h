@@ -13,6 +13,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/error.h"
 #include "base/real.h"
 
 enum {
@@ -88,13 +89,13 @@ size_t brunt_grid_bytes(const brunt_grid *grid);
 enum { BRUNT_COORD_LIMIT = (1 << 20) - 2 };
 uint64_t brunt_key(const int32_t coord[3]);
 
-// Index of a coordinate's block or slot, -1 when it is not alive.
+// Index of a coordinate's block or slot, BRUNT_NONE when it is not alive.
 int32_t brunt_grid_block(const brunt_grid *grid, uint64_t key);
 int32_t brunt_grid_slot(const brunt_grid *grid, uint64_t key);
 
-// Replaces the set of blocks by `count` keys (sorted, no duplicates) and makes slots and neighbour lists. 0, or -1: out
-// of memory.
-int brunt_grid_set_blocks(brunt_grid *grid, const uint64_t *keys, int32_t count);
+// Replaces the set of blocks by `count` keys (sorted, no duplicates) and makes slots and neighbour lists. BRUNT_OK, or
+// BRUNT_FAILED: out of memory.
+int brunt_grid_set_blocks(brunt_grid *grid, const uint64_t *keys, int32_t count, brunt_error *error);
 
 // Node index within a slot of local coordinates (z fastest), and back.
 static inline int brunt_node_index(const brunt_grid *grid, int x, int y, int z) {

@@ -201,14 +201,12 @@ static bool sweeps(const newton_run *r) {
 static brunt_linear_status sweep(newton_run *r) {
     brunt_newton *n = r->n;
     int outside;
-    for (int changed = 1; changed;) {
-        changed = 0;
+    for (bool changed = true; changed;) {
+        changed = false;
         for (int t = 0; t < r->problem->count; t++) {
             const brunt_term *term = r->problem->terms + t;
-            if (!term->ops->sweep) continue;
-            const int now = term->ops->sweep(term->self, r->u, n->step, n->gradient, r->error);
-            if (now < 0) return BRUNT_LINEAR_FAILED;
-            changed |= now;
+            if (term->ops->sweep && term->ops->sweep(term->self, r->u, n->step, n->gradient, &changed, r->error))
+                return BRUNT_LINEAR_FAILED;
         }
         if (!changed) break;
         for (int64_t i = 0; i < unknowns(r); i++) {

@@ -60,10 +60,10 @@ typedef struct brunt_term_ops {
     // NULL: any.
     double (*limit)(void *term, const brunt_team *team, const double *u, const double *p, double largest);
     // Once a step p has been found: what the term keeps beside u (the multipliers of constraints) as it is to be at
-    // u + p; the change of its gradient at u is added to g, and p is then found anew with the same factor. 1: changed,
-    // 0: that is as it is to be, -1: there is no end to it, with the reason. NULL: it keeps nothing. The solver has to
-    // be exact.
-    int (*sweep)(void *term, const double *u, const double *p, double *g, brunt_error *error);
+    // u + p; the change of its gradient at u is added to g, and p is then found anew with the same factor. `changed`
+    // becomes true unless that is as it is to be. BRUNT_OK, or BRUNT_FAILED: there is no end to it, with the reason.
+    // NULL: it keeps nothing. The solver has to be exact.
+    int (*sweep)(void *term, const double *u, const double *p, double *g, bool *changed, brunt_error *error);
 } brunt_term_ops;
 
 typedef struct brunt_term {

@@ -30,15 +30,15 @@ void brunt_particles_init(brunt_particles *particles, int dim, int point_dim, co
 
 // All arrays lie in one slab. Their distance is 9 cache lines past a multiple of a page: streams read together must not
 // fall into the same sets of the cache.
-int brunt_particles_reserve(brunt_particles *particles, int64_t slots) {
-    if (slots <= particles->capacity) return 0;
+int brunt_particles_reserve(brunt_particles *particles, int64_t slots, brunt_error *error) {
+    if (slots <= particles->capacity) return BRUNT_OK;
     int64_t capacity = (slots + slots / 8 + 2 * BRUNT_LANES + 511) / 512 * 512;
     int arrays = particles->scalar_count + BRUNT_SORT_GROUP;
     size_t stride = ((size_t)capacity * sizeof(real) + 4095) / 4096 * 4096 + (size_t)9 * 64;
     size_t wide = (size_t)capacity * sizeof(int64_t);
     size_t bytes = stride * (size_t)arrays + 3 * wide + (size_t)capacity * (sizeof(int32_t) + 1) + 64;
     char *slab = brunt_alloc(bytes);
-    if (!slab) return -1;
+    if (!slab) return brunt_fail_memory(error, "bytes of particles", bytes, 1);
     char *at = slab;
     for (int k = 0; k < arrays; k++, at += stride) {
         if (k < particles->scalar_count && particles->slots)
@@ -56,7 +56,7 @@ int brunt_particles_reserve(brunt_particles *particles, int64_t slots) {
     particles->slab = slab;
     particles->slab_bytes = bytes;
     particles->capacity = capacity;
-    return 0;
+    return BRUNT_OK;
 }
 
 void brunt_particles_free(brunt_particles *particles) {

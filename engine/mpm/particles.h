@@ -10,6 +10,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/error.h"
 #include "materials/material.h"
 #include "base/real.h"
 
@@ -84,8 +85,8 @@ typedef struct brunt_particles {
 
 // Lays out the fields for a body; no particles yet. `point_dim` as in brunt_particles.
 void brunt_particles_init(brunt_particles *particles, int dim, int point_dim, const brunt_particle_needs *needs);
-// Makes room for `slots`; keeps what is there. 0, or -1: out of memory.
-int brunt_particles_reserve(brunt_particles *particles, int64_t slots);
+// Makes room for `slots`; keeps what is there. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_particles_reserve(brunt_particles *particles, int64_t slots, brunt_error *error);
 void brunt_particles_free(brunt_particles *particles);
 
 // Whether the particles are rings.

@@ -15,21 +15,14 @@ const char *brunt_mpm_implicit(const brunt_body *body) {
     return brunt_material_implicit(&body->material);
 }
 
-static int out_of_memory(const brunt_body *body, brunt_error *error) {
-    return brunt_fail(error, BRUNT_FAILED, "out of memory for the implicit steps of body '%s'", body->name);
-}
-
 brunt_mpm_potential *brunt_mpm_potential_make(brunt_body *body, brunt_error *error) {
     const char *reason = brunt_mpm_implicit(body);
     if (reason) {
         brunt_fail(error, BRUNT_BAD_INPUT, "body '%s': %s", body->name, reason);
         return NULL;
     }
-    brunt_mpm_potential *p = brunt_alloc(sizeof *p);
-    if (!p) {
-        out_of_memory(body, error);
-        return NULL;
-    }
+    brunt_mpm_potential *p;
+    if (BRUNT_NEW(p, 1, "room for the implicit steps of a body of points", error)) return NULL;
     const brunt_model *strength = body->material.model[BRUNT_STRENGTH];
     p->body = body;
     p->whole = body->material.differences;
@@ -80,28 +73,33 @@ static void list_bins(brunt_mpm_potential *p) {
     p->stencil_count = count;
 }
 
-static int make_room(brunt_mpm_potential *p) {
+static int make_room(brunt_mpm_potential *p, brunt_error *error) {
     const brunt_grid *grid = &p->body->grid;
     const int64_t blocks = grid->block_count, tangents = brunt_material_tangents(&p->body->material, grid->dim);
     const int64_t stride = (p->body->particles.slots + 7) / 8 * 8 + 8 * BRUNT_LANES;
     const int32_t *start = grid->bin_start;
     int64_t bins = 0;
     for (int64_t k = 0; k < blocks * BRUNT_BIN_STARTS; k++) bins += k % BRUNT_BIN_STARTS && start[k] > start[k - 1];
-    if (BRUNT_RESERVE(p->slab, (size_t)(tangents * stride), 0) ||
-        BRUNT_RESERVE(p->force, (size_t)(blocks * grid->span_nodes * grid->dim), 0) ||
-        BRUNT_RESERVE(p->energy, (size_t)blocks, 0) || BRUNT_RESERVE(p->limit, (size_t)blocks, 0) ||
-        BRUNT_RESERVE(p->result, (size_t)blocks, 0) || BRUNT_RESERVE(p->first, (size_t)bins + 1, 0) ||
-        BRUNT_RESERVE(p->node, (size_t)(bins * kernel_nodes(grid->dim, grid->order)) + 1, 0) ||
-        brunt_mpm_matrix_room(p) || BRUNT_RESERVE_IN(p->body->report, p->body->report_capacity, (size_t)blocks, 0))
-        return -1;
+    if (BRUNT_ROOM(p->slab, (size_t)(tangents * stride), 0, "numbers of tangents of particles", error) ||
+        BRUNT_ROOM(p->force, (size_t)(blocks * grid->span_nodes * grid->dim), 0, "forces of blocks of particles",
+                   error) ||
+        BRUNT_ROOM(p->energy, (size_t)blocks, 0, "blocks of particles", error) ||
+        BRUNT_ROOM(p->limit, (size_t)blocks, 0, "blocks of particles", error) ||
+        BRUNT_ROOM(p->result, (size_t)blocks, 0, "blocks of particles", error) ||
+        BRUNT_ROOM(p->first, (size_t)bins + 1, 0, "bins of particles", error) ||
+        BRUNT_ROOM(p->node, (size_t)(bins * kernel_nodes(grid->dim, grid->order)) + 1, 0,
+                   "grid nodes of bins of particles", error) ||
+        brunt_mpm_matrix_room(p, error) ||
+        BRUNT_ROOM_IN(p->body->report, p->body->report_capacity, (size_t)blocks, 0, "blocks of particles", error))
+        return BRUNT_FAILED;
     for (int64_t k = 0; k < tangents; k++) p->tangent[k] = p->slab + k * stride;
-    return 0;
+    return BRUNT_OK;
 }
 
 int brunt_mpm_potential_step(brunt_mpm_potential *p, const brunt_team *team, const int32_t *number, double dt,
                              brunt_error *error) {
     p->number = number, p->dt = (real)dt, p->threads = team->threads, p->step++;
-    if (make_room(p)) return out_of_memory(p->body, error);
+    if (make_room(p, error)) return BRUNT_FAILED;
     list_bins(p);
     return BRUNT_OK;
 }

@@ -204,6 +204,7 @@ void brunt_mpm_gather(mpm_gather *gather, const brunt_team *team);
 void brunt_mpm_add_diagonal(brunt_mpm_potential *p, const brunt_team *team, brunt_block_matrix *blocks);
 void brunt_mpm_add_product(brunt_mpm_potential *p, const brunt_team *team, const double *x, double *y);
 
-// potential_matrix.c: room and colours of a step, 0, or -1: out of memory; and the Hessian, once tangents are there.
-int brunt_mpm_matrix_room(brunt_mpm_potential *p);
+// potential_matrix.c: room and colours of a step (BRUNT_OK, or BRUNT_FAILED: out of memory); and the Hessian, once
+// tangents are there.
+int brunt_mpm_matrix_room(brunt_mpm_potential *p, brunt_error *error);
 void brunt_mpm_add_matrix(brunt_mpm_potential *p, const brunt_team *team, brunt_block_matrix *m);

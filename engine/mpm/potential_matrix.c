@@ -33,17 +33,18 @@ BRUNT_INLINE int reach(int dim, int order) {
     return dim == 3 ? wide * wide * wide : wide * wide;
 }
 
-int brunt_mpm_matrix_room(brunt_mpm_potential *p) {
+int brunt_mpm_matrix_room(brunt_mpm_potential *p, brunt_error *error) {
     const brunt_grid *grid = &p->body->grid;
     const int dim = grid->dim, order = grid->order;
     const int64_t n = padded_nodes(dim, order), pairs = block_pairs(p, dim),
                   chunk = CHUNK > BRUNT_LANES ? CHUNK : BRUNT_LANES;
     p->matrix_room = (pairs * n + 2 * chunk * dim) * n + BRUNT_LANES * n;
     p->place_room = (int64_t)grid->span_nodes * reach(dim, order);
-    if (BRUNT_RESERVE(p->matrix, (size_t)(p->threads * p->matrix_room), 0) ||
-        BRUNT_RESERVE(p->place, (size_t)(p->threads * p->place_room), 0) ||
-        BRUNT_RESERVE(p->coloured, (size_t)grid->block_count, 0))
-        return -1;
+    if (BRUNT_ROOM(p->matrix, (size_t)(p->threads * p->matrix_room), 0, "values of matrices of blocks of particles",
+                   error) ||
+        BRUNT_ROOM(p->place, (size_t)(p->threads * p->place_room), 0, "places of nodes in a matrix", error) ||
+        BRUNT_ROOM(p->coloured, (size_t)grid->block_count, 0, "blocks of particles", error))
+        return BRUNT_FAILED;
     int32_t count = 0;
     for (int colour = 0; colour < grid->corners; colour++) {
         p->colour_first[colour] = count;
@@ -54,7 +55,7 @@ int brunt_mpm_matrix_room(brunt_mpm_potential *p) {
         }
     }
     p->colour_first[grid->corners] = count;
-    return 0;
+    return BRUNT_OK;
 }
 
 // K += G^T S of `rows` rows from A on and `columns` vectors from B on; `count` rows of G and S.

@@ -19,6 +19,7 @@ enum { MISS_LIMIT = 1 << 16, BLOCK_GRAIN = 16 };
 typedef struct range {
     int64_t begin, end;
     int64_t bad; // slot of a particle that cannot be placed, -1
+    bool lost;   // there was no memory for one more that is missing
     bool moved;  // some particle is not where the last sort put it
     uint64_t *missing;
     size_t missing_capacity;
@@ -58,7 +59,6 @@ typedef struct job {
     brunt_timer *timer; // may be NULL
     bool renewed;       // ranks of blocks are not those of the last sort: what it stored no longer compares
     int group;          // scalars being moved: BRUNT_SORT_GROUP of them from here
-    bool out_of_memory;
 } job;
 
 static bool range_miss(range *r, uint64_t key) {
@@ -91,7 +91,7 @@ static void find_places_of(job *j, range *r) {
     const real origin[3] = {(real)grid->origin[0], (real)grid->origin[1], (real)grid->origin[2]};
     uint64_t last_key = UINT64_MAX;
     int32_t last = -1;
-    r->bad = -1, r->moved = false, r->missing_count = 0;
+    r->bad = -1, r->moved = r->lost = false, r->missing_count = 0;
     for (int64_t s = r->begin; s < r->end; s++) {
         int32_t block[3];
         int bin;
@@ -103,7 +103,7 @@ static void find_places_of(job *j, range *r) {
         uint64_t key = brunt_key(block);
         if (key != last_key) last_key = key, last = brunt_grid_block(grid, key);
         if (last < 0) {
-            if (!range_miss(r, key)) j->out_of_memory = true;
+            r->lost = r->lost || !range_miss(r, key);
             r->moved = true;
             continue;
         }
@@ -228,11 +228,11 @@ static int fail_place(const brunt_particles *p, int64_t s, brunt_error *error) {
 }
 
 // United set of the blocks that are alive and needed: those with particles now, and the missing ones.
-static int renew_blocks(job *j) {
+static int renew_blocks(job *j, brunt_error *error) {
     brunt_grid *grid = j->grid;
     int64_t most = j->renewed ? 0 : grid->block_count;
     for (int q = 0; q < j->range_count; q++) most += j->ranges[q].missing_count;
-    if (BRUNT_RESERVE(j->room->keys, (size_t)(most + 1), 0)) return -1;
+    if (BRUNT_ROOM(j->room->keys, (size_t)(most + 1), 0, "blocks of the grid", error)) return BRUNT_FAILED;
     uint64_t *keys = j->room->keys;
     int64_t n = 0;
     if (!j->renewed)
@@ -243,19 +243,15 @@ static int renew_blocks(job *j) {
     int64_t unique = 0;
     for (int64_t i = 0; i < n; i++)
         if (!unique || keys[i] != keys[unique - 1]) keys[unique++] = keys[i];
-    return brunt_grid_set_blocks(grid, keys, (int32_t)unique);
+    return brunt_grid_set_blocks(grid, keys, (int32_t)unique, error);
 }
 
 // Blocks that have lost all their particles go; their number is rare and their presence would change no sum.
-static int drop_empty(brunt_grid *grid, const int64_t *total) {
+static int drop_empty(brunt_grid *grid, const int64_t *total, brunt_error *error) {
     int32_t kept = 0;
     for (int32_t b = 0; b < grid->block_count; b++)
         if (total[b]) grid->block_key[kept++] = grid->block_key[b];
-    return brunt_grid_set_blocks(grid, grid->block_key, kept);
-}
-
-static int fail_memory(brunt_error *error, const char *of) {
-    return brunt_fail(error, BRUNT_FAILED, "out of memory %s", of);
+    return brunt_grid_set_blocks(grid, grid->block_key, kept, error);
 }
 
 // Round one, for all ranges: whether some particle is not where the last sort put it, and whether some have no block.
@@ -263,19 +259,23 @@ static int look(job *j, bool *moved, bool *missing, brunt_error *error) {
     brunt_parallel(j->threads, j->range_count, 1, find_places, j, j->timer);
     *moved = j->particles->holes || j->renewed, *missing = false;
     for (int q = 0; q < j->range_count; q++) {
-        if (j->ranges[q].bad >= 0) return fail_place(j->particles, j->ranges[q].bad, error);
-        *moved = *moved || j->ranges[q].moved;
-        *missing = *missing || j->ranges[q].missing_count > 0;
+        const range *r = &j->ranges[q];
+        if (r->bad >= 0) return fail_place(j->particles, r->bad, error);
+        if (r->lost)
+            return brunt_fail_memory(error, "blocks of the grid that particles come to", (size_t)r->missing_count + 1,
+                                     sizeof *r->missing);
+        *moved = *moved || r->moved;
+        *missing = *missing || r->missing_count > 0;
     }
-    return j->out_of_memory ? fail_memory(error, "while sorting particles") : BRUNT_OK;
+    return BRUNT_OK;
 }
 
 // Particles of each block, by range and in all; whether there is one without any.
 static int count_particles(job *j, bool *empty, brunt_error *error) {
     const int32_t blocks = j->grid->block_count;
     for (int q = 0; q < j->range_count; q++)
-        if (BRUNT_RESERVE(j->ranges[q].count, (size_t)blocks, 0)) return fail_memory(error, "while sorting particles");
-    if (BRUNT_RESERVE(j->room->total, (size_t)blocks, 0)) return fail_memory(error, "while sorting particles");
+        if (BRUNT_ROOM(j->ranges[q].count, (size_t)blocks, 0, "blocks of particles", error)) return BRUNT_FAILED;
+    if (BRUNT_ROOM(j->room->total, (size_t)blocks, 0, "blocks of particles", error)) return BRUNT_FAILED;
     brunt_parallel(j->threads, j->range_count, 1, count_blocks, j, j->timer);
     *empty = false;
     for (int32_t b = 0; b < blocks; b++) {
@@ -295,11 +295,11 @@ static int settle_blocks(job *j, bool *rests, brunt_error *error) {
         *rests = !moved;
         if (*rests) return BRUNT_OK;
         if (missing) {
-            if (renew_blocks(j)) return fail_memory(error, "for the grid");
+            if (renew_blocks(j, error)) return BRUNT_FAILED;
         } else {
             if (count_particles(j, &empty, error)) return BRUNT_FAILED;
             if (!empty) return BRUNT_OK;
-            if (drop_empty(j->grid, j->room->total)) return fail_memory(error, "for the grid");
+            if (drop_empty(j->grid, j->room->total, error)) return BRUNT_FAILED;
         }
         j->renewed = true;
     }
@@ -327,12 +327,13 @@ static int64_t place_blocks(job *j) {
 static int make_room(brunt_particles *p, int64_t slots, brunt_error *error) {
     if (slots <= p->capacity) return BRUNT_OK;
     size_t bytes = (size_t)p->slots * sizeof *p->key;
-    uint64_t *keys = brunt_alloc(bytes + 1);
-    if (keys) memcpy(keys, p->key, bytes);
-    const bool failed = !keys || brunt_particles_reserve(p, slots);
-    if (!failed) memcpy(p->key, keys, bytes);
+    uint64_t *keys;
+    if (BRUNT_NEW(keys, p->slots + 1, "keys of particles", error)) return BRUNT_FAILED;
+    memcpy(keys, p->key, bytes);
+    const int status = brunt_particles_reserve(p, slots, error);
+    if (!status) memcpy(p->key, keys, bytes);
     brunt_free(keys);
-    return failed ? fail_memory(error, "for particles") : BRUNT_OK;
+    return status;
 }
 
 // Every array to its new order, a few at a time through the spare ones.

@@ -49,6 +49,6 @@ int32_t brunt_keep_inverted_rings(brunt_body *body, const brunt_block *block, re
 // What is freed has no stress.
 void brunt_still_stress(brunt_body *body, const brunt_block *block);
 
-// Makes room for blocks of up to `most` particles. 0, or -1: out of memory.
-int brunt_workspace_fit(brunt_workspace *work, const brunt_grid *grid, int32_t most);
+// Makes room for blocks of up to `most` particles. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_workspace_fit(brunt_workspace *work, const brunt_grid *grid, int32_t most, brunt_error *error);
 void brunt_workspace_free(brunt_workspace *work);

@@ -3,14 +3,15 @@
 #include "base/simd.h"
 #include "mpm/transfer.h"
 
-int brunt_workspace_fit(brunt_workspace *work, const brunt_grid *grid, int32_t most) {
+int brunt_workspace_fit(brunt_workspace *work, const brunt_grid *grid, int32_t most, brunt_error *error) {
     int64_t stride = (most + 2 * BRUNT_LANES + 7) / 8 * 8 + 72; // 9 cache lines apart, see brunt_particles_reserve
     int n = grid->order + 1, arrays = (int)(sizeof work->out / sizeof work->out[0]) + 3;
     int64_t window = ((int64_t)grid->span_nodes + 1) * 8;
     int64_t planes = (int64_t)n * (grid->dim == 3 ? 16 * n * n : 8 * n) * 8;
     size_t reals = (size_t)(window + planes + arrays * stride + 64);
-    if (work->memory && work->capacity / sizeof(real) >= reals && work->stride >= stride) return 0;
-    if (BRUNT_RESERVE_IN(work->memory, work->capacity, reals, 0)) return -1;
+    if (work->memory && work->capacity / sizeof(real) >= reals && work->stride >= stride) return BRUNT_OK;
+    if (BRUNT_ROOM_IN(work->memory, work->capacity, reals, 0, "numbers of a thread to work with", error))
+        return BRUNT_FAILED;
     work->stride = stride;
     work->window = work->memory;
     work->planes = work->window + window;
@@ -19,7 +20,7 @@ int brunt_workspace_fit(brunt_workspace *work, const brunt_grid *grid, int32_t m
     work->plastic = at;
     work->viscous = at + stride;
     work->strain = at + 2 * stride;
-    return 0;
+    return BRUNT_OK;
 }
 
 void brunt_workspace_free(brunt_workspace *work) {

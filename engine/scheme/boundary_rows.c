@@ -13,21 +13,17 @@
 
 static const double STIFF = 1e3; // b beside the stiffness of the grid: sets the number of sweeps, nothing else
 
-static int out_of_memory(brunt_error *error) {
-    return brunt_fail(error, BRUNT_FAILED, "out of memory for what boundaries hold");
-}
-
 // ------------------------------------------------------------------------------------------ nodes
 
 // Adds a boundary particle's share of a node.
 static int add_node(brunt_boundary_rows *rows, brunt_boundary_patch *p, const brunt_boundary_particle *b, int32_t n,
-                    double weight) {
+                    double weight, brunt_error *error) {
     const int64_t begin = rows->first[rows->patch_count];
     int64_t *end = &rows->first[rows->patch_count + 1];
     if (!rows->mark[n]) {
-        if (BRUNT_RESERVE(rows->node, (size_t)*end + 1, (size_t)*end) ||
-            BRUNT_RESERVE(rows->weight, (size_t)*end + 1, (size_t)*end))
-            return -1;
+        if (BRUNT_ROOM(rows->node, (size_t)*end + 1, (size_t)*end, "nodes of pieces of boundaries", error) ||
+            BRUNT_ROOM(rows->weight, (size_t)*end + 1, (size_t)*end, "nodes of pieces of boundaries", error))
+            return BRUNT_FAILED;
         memset(rows->weight[*end], 0, sizeof *rows->weight);
         rows->node[*end] = n;
         rows->mark[n] = (int32_t)(++*end - begin);
@@ -38,12 +34,12 @@ static int add_node(brunt_boundary_rows *rows, brunt_boundary_patch *p, const br
         for (int a = 0; a < 3; a++) to[3 * k + a] += weight * direction[a];
     }
     p->size += weight;
-    return 0;
+    return BRUNT_OK;
 }
 
 // Adds a boundary particle, at distance `gap` from the body; *share: its weight on nodes that have mass.
 static int add_particle(brunt_boundary_rows *rows, brunt_boundary_patch *p, const brunt_boundary_particle *b,
-                        const double way[3], double *share) {
+                        const double way[3], double *share, brunt_error *error) {
     const brunt_grid *grid = &rows->bodies->mpm[p->body].grid;
     double w[3][4] = {{1}, {1}, {1}};
     int32_t base[3] = {0, 0, 0};
@@ -59,12 +55,13 @@ static int add_particle(brunt_boundary_rows *rows, brunt_boundary_patch *p, cons
             for (int k = 0; k <= deep; k++) {
                 const int32_t at[3] = {base[0] + i, base[1] + j, base[2] + k};
                 const double weight = b->weight * w[0][i] * w[1][j] * w[2][k];
-                const int32_t n = weight > 0 ? brunt_unknowns_node_at(rows->unknowns, rows->bodies, p->body, at) : -1;
+                const int32_t n =
+                    weight > 0 ? brunt_unknowns_node_at(rows->unknowns, rows->bodies, p->body, at) : BRUNT_NONE;
                 if (n < 0) continue;
-                if (add_node(rows, p, b, n, weight)) return -1;
+                if (add_node(rows, p, b, n, weight, error)) return BRUNT_FAILED;
                 *share += weight;
             }
-    return 0;
+    return BRUNT_OK;
 }
 
 // ------------------------------------------------------------------------------------------ patches
@@ -100,12 +97,14 @@ static void close_patch(brunt_boundary_rows *rows, brunt_boundary_patch *p) {
 
 // A piece before a body whose distances are in `gap`.
 static int add_patch(brunt_boundary_rows *rows, brunt_boundary_surface *s, int32_t piece, int body,
-                     const brunt_boundary_reach *reach) {
+                     const brunt_boundary_reach *reach, brunt_error *error) {
     const size_t count = (size_t)rows->patch_count;
     bool any = false;
     for (int32_t b = s->first[piece]; b < s->first[piece + 1]; b++) any = any || rows->gap[b] < INFINITY;
-    if (!any) return 0;
-    if (BRUNT_RESERVE(rows->patch, count + 1, count) || BRUNT_RESERVE(rows->first, count + 2, count + 1)) return -1;
+    if (!any) return BRUNT_OK;
+    if (BRUNT_ROOM(rows->patch, count + 1, count, "pieces of boundaries", error) ||
+        BRUNT_ROOM(rows->first, count + 2, count + 1, "pieces of boundaries", error))
+        return BRUNT_FAILED;
     brunt_boundary_patch *p = &rows->patch[count];
     *p = (brunt_boundary_patch){.surface = s, .piece = piece, .body = body};
     p->rows = brunt_boundary_surface_rows(s, rows->unknowns->dim);
@@ -114,16 +113,17 @@ static int add_patch(brunt_boundary_rows *rows, brunt_boundary_surface *s, int32
     for (int32_t b = s->first[piece]; b < s->first[piece + 1]; b++) {
         double share;
         if (rows->gap[b] == INFINITY) continue;
-        if (add_particle(rows, p, &s->particle[b], reach->way, &share)) return -1;
+        if (add_particle(rows, p, &s->particle[b], reach->way, &share, error)) return BRUNT_FAILED;
         add_motion(p, &s->particle[b], reach, share, rows->gap[b]);
     }
     close_patch(rows, p);
-    return 0;
+    return BRUNT_OK;
 }
 
-static int add_surface(brunt_boundary_rows *rows, brunt_boundary_surface *s, brunt_boundary_reach *reach) {
+static int add_surface(brunt_boundary_rows *rows, brunt_boundary_surface *s, brunt_boundary_reach *reach,
+                       brunt_error *error) {
     const brunt_unknowns *u = rows->unknowns;
-    if (BRUNT_RESERVE(rows->gap, (size_t)s->particle_count + 1, 0)) return -1;
+    if (BRUNT_ROOM(rows->gap, (size_t)s->particle_count + 1, 0, "particles of boundaries", error)) return BRUNT_FAILED;
     for (int i = 0; i < rows->bodies->mpm_count; i++) {
         if (u->tie[i] != i) continue;
         for (int32_t b = 0; b < s->particle_count; b++) rows->gap[b] = INFINITY;
@@ -134,9 +134,9 @@ static int add_surface(brunt_boundary_rows *rows, brunt_boundary_surface *s, bru
                 brunt_boundary_surface_reach(s, body, reach, rows->gap);
         }
         for (int32_t piece = 0; piece < s->pieces; piece++)
-            if (add_patch(rows, s, piece, i, reach)) return -1;
+            if (add_patch(rows, s, piece, i, reach, error)) return BRUNT_FAILED;
     }
-    return 0;
+    return BRUNT_OK;
 }
 
 // Room for the matrix of the largest patch.
@@ -151,15 +151,16 @@ static int make_room(brunt_boundary_rows *rows, brunt_error *error) {
                               rows->patch[p].surface->wall->name, (long long)nodes, BRUNT_STENCIL_LIMIT);
     }
     most *= rows->unknowns->dim;
-    return BRUNT_RESERVE(rows->dense, (size_t)(most * most), 0) ? out_of_memory(error) : BRUNT_OK;
+    return BRUNT_ROOM(rows->dense, (size_t)(most * most), 0, "values of the matrix of a piece of a boundary", error);
 }
 
 int brunt_boundary_rows_step(brunt_boundary_rows *rows, brunt_world *world, const brunt_unknowns *unknowns, double dt,
                              brunt_error *error) {
     rows->unknowns = unknowns, rows->bodies = &world->bodies, rows->surfaces = &world->boundaries.surfaces;
     rows->patch_count = 0, rows->version++, rows->dt = dt, rows->swept = 0;
-    if (BRUNT_RESERVE(rows->first, 1, 0) || BRUNT_RESERVE(rows->mark, (size_t)unknowns->count + 1, 0))
-        return out_of_memory(error);
+    if (BRUNT_ROOM(rows->first, 1, 0, "pieces of boundaries", error) ||
+        BRUNT_ROOM(rows->mark, (size_t)unknowns->count + 1, 0, "unknowns", error))
+        return BRUNT_FAILED;
     memset(rows->mark, 0, (size_t)unknowns->count * sizeof *rows->mark);
     rows->first[0] = 0;
     for (int k = 0; k < rows->surfaces->count; k++) {
@@ -170,7 +171,7 @@ int brunt_boundary_rows_step(brunt_boundary_rows *rows, brunt_world *world, cons
         brunt_boundary_surface_way(s, world->clock.time + dt, end);
         for (int a = 0; a < 3; a++) reach.step[a] = end[a] - reach.way[a];
         rows->cell = s->cell;
-        if (add_surface(rows, s, &reach)) return out_of_memory(error);
+        if (add_surface(rows, s, &reach, error)) return BRUNT_FAILED;
     }
     return make_room(rows, error);
 }

@@ -182,12 +182,11 @@ static double follow(brunt_boundary_patch *p, const double here[3], const double
 
 static int never_ends(const brunt_boundary_rows *r, int32_t patch, brunt_error *error) {
     const brunt_boundary_patch *p = &r->patch[patch];
-    brunt_fail(
+    return brunt_fail(
         error, BRUNT_FAILED,
         "Boundary '%s': the tractions on its pieces find no end: pieces of %g cells are too short for this grid, "
         "or something else holds what they hold.",
         p->surface->wall->name, p->surface->def.piece);
-    return -1;
 }
 
 // The multipliers of a patch after the step; `change` over b h.
@@ -202,7 +201,7 @@ static double patch_sweep(brunt_boundary_rows *r, int32_t patch, const double *u
     return follow(&r->patch[patch], here, there, r->cell, multiplier);
 }
 
-static int rows_sweep(void *term, const double *u, const double *step, double *g, brunt_error *error) {
+static int rows_sweep(void *term, const double *u, const double *step, double *g, bool *changed, brunt_error *error) {
     brunt_boundary_rows *r = term;
     int32_t worst = -1;
     double most = EVEN, multiplier[3];
@@ -210,7 +209,7 @@ static int rows_sweep(void *term, const double *u, const double *step, double *g
         const double change = patch_sweep(r, p, u, step, multiplier);
         if (change > most) most = change, worst = p;
     }
-    if (worst < 0) return 0; // what is left of it is in t as it is: no force is lost
+    if (worst < 0) return BRUNT_OK; // what is left of it is in t as it is: no force is lost
     for (int32_t p = 0; p < r->patch_count; p++) {
         double before[3], after[3], moved[3];
         brunt_boundary_patch_traction(r, p, u, before, moved);
@@ -221,7 +220,8 @@ static int rows_sweep(void *term, const double *u, const double *step, double *g
         add_forces(r, p, after, g);
     }
     r->sweeps++;
-    return ++r->swept > MOST_SWEEPS ? never_ends(r, worst, error) : 1;
+    *changed = true;
+    return ++r->swept > MOST_SWEEPS ? never_ends(r, worst, error) : BRUNT_OK;
 }
 
 // Whether tractions and bounds at u are not yet those that it was found with.

@@ -33,19 +33,20 @@ static bool find_run(const brunt_unknowns *u, const brunt_bodies *bodies, int i,
     return weak;
 }
 
-static int add_run(brunt_ghost *g, const int32_t *node, int length, double stiffness) {
+static int add_run(brunt_ghost *g, const int32_t *node, int length, double stiffness, brunt_error *error) {
     const size_t runs = (size_t)g->runs, entries = (size_t)(g->runs ? g->first[g->runs] : 0);
-    if (BRUNT_RESERVE(g->first, runs + 2, runs + 1) || BRUNT_RESERVE(g->stiffness, runs + 1, runs) ||
-        BRUNT_RESERVE(g->node, entries + MOST_RUN, entries))
-        return -1;
+    if (BRUNT_ROOM(g->first, runs + 2, runs + 1, "runs of nodes with little material", error) ||
+        BRUNT_ROOM(g->stiffness, runs + 1, runs, "runs of nodes with little material", error) ||
+        BRUNT_ROOM(g->node, entries + MOST_RUN, entries, "nodes of runs with little material", error))
+        return BRUNT_FAILED;
     memcpy(g->node + entries, node, (size_t)length * sizeof *node);
     g->stiffness[runs] = stiffness;
     g->first[runs] = (int64_t)entries;
     g->first[++g->runs] = (int64_t)entries + length;
-    return 0;
+    return BRUNT_OK;
 }
 
-static int add_body(brunt_ghost *g, const brunt_bodies *bodies, int i) {
+static int add_body(brunt_ghost *g, const brunt_bodies *bodies, int i, brunt_error *error) {
     const brunt_unknowns *u = g->unknowns;
     const brunt_body *body = &bodies->mpm[i];
     const double c = (double)body->material.wave_speed, h = (double)body->grid.h,
@@ -60,9 +61,10 @@ static int add_body(brunt_ghost *g, const brunt_bodies *bodies, int i) {
         for (int a = 0; a < 3; a++)
             at[a] = body->grid.slots[k / BRUNT_BLOCK_NODES].coord[a] * body->grid.side + local[a];
         for (int axis = 0; axis < u->dim; axis++)
-            if (find_run(u, bodies, i, at, axis, node) && add_run(g, node, body->grid.order + 2, stiffness)) return -1;
+            if (find_run(u, bodies, i, at, axis, node) && add_run(g, node, body->grid.order + 2, stiffness, error))
+                return BRUNT_FAILED;
     }
-    return 0;
+    return BRUNT_OK;
 }
 
 static bool is_held(const brunt_world *world, const brunt_body *body) {
@@ -71,15 +73,17 @@ static bool is_held(const brunt_world *world, const brunt_body *body) {
     return false;
 }
 
-int brunt_ghost_step(brunt_ghost *g, const brunt_world *world, const brunt_unknowns *unknowns) {
+int brunt_ghost_step(brunt_ghost *g, const brunt_world *world, const brunt_unknowns *unknowns, brunt_error *error) {
     g->unknowns = unknowns;
     g->runs = 0, g->version++;
-    if (BRUNT_RESERVE(g->seen, (size_t)unknowns->count + 1, 0) || BRUNT_RESERVE(g->first, 1, 0)) return -1;
+    if (BRUNT_ROOM(g->seen, (size_t)unknowns->count + 1, 0, "unknowns", error) ||
+        BRUNT_ROOM(g->first, 1, 0, "runs of nodes with little material", error))
+        return BRUNT_FAILED;
     memset(g->seen, 0, (size_t)unknowns->count);
     g->first[0] = 0;
     for (int i = 0; i < world->bodies.mpm_count; i++)
-        if (is_held(world, &world->bodies.mpm[i]) && add_body(g, &world->bodies, i)) return -1;
-    return 0;
+        if (is_held(world, &world->bodies.mpm[i]) && add_body(g, &world->bodies, i, error)) return BRUNT_FAILED;
+    return BRUNT_OK;
 }
 
 void brunt_ghost_free(brunt_ghost *g) {

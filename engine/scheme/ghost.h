@@ -19,7 +19,7 @@ typedef struct brunt_ghost {
 
 extern const brunt_term_ops brunt_ghost_ops;
 
-// The runs of a step, of bodies of points that surfaces act on. 0, or -1: out of memory.
-int brunt_ghost_step(brunt_ghost *ghost, const brunt_world *world, const brunt_unknowns *unknowns);
+// The runs of a step, of bodies of points that surfaces act on. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_ghost_step(brunt_ghost *ghost, const brunt_world *world, const brunt_unknowns *unknowns, brunt_error *error);
 void brunt_ghost_free(brunt_ghost *ghost);
 size_t brunt_ghost_bytes(const brunt_ghost *ghost);

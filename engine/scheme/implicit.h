@@ -137,8 +137,8 @@ void brunt_static_settle(brunt_world *world);
 // Says, once, that a step has jumped: `taken` [J] of the work within bodies is not there at its end.
 void brunt_static_watch(brunt_world *world, double taken, double work);
 // --- implicit_drag.c
-// Weights of damped nodes, once the unknowns have numbers. 0, or -1: out of memory.
-int brunt_implicit_drag_number(struct brunt_implicit *m, const brunt_world *world);
+// Weights of damped nodes, once the unknowns have numbers. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_implicit_drag_number(struct brunt_implicit *m, const brunt_world *world, brunt_error *error);
 void brunt_implicit_drag_before(const struct brunt_implicit *m,
                                 double *force);         // adds the force at the step's start [N]
 void brunt_implicit_drag_aim(struct brunt_implicit *m); // once the aim is known

@@ -5,12 +5,12 @@
 #include "base/array.h"
 #include "scheme/implicit.h"
 
-int brunt_implicit_drag_number(struct brunt_implicit *m, const brunt_world *world) {
+int brunt_implicit_drag_number(struct brunt_implicit *m, const brunt_world *world, brunt_error *error) {
     const brunt_unknowns *u = &m->unknowns;
-    if (!world->boundaries.damping.active) return 0;
-    if (BRUNT_RESERVE(m->drag_weight, (size_t)u->count + 1, 0) ||
-        BRUNT_RESERVE(m->drag_rest, (size_t)brunt_implicit_components(m) + 1, 0))
-        return -1;
+    if (!world->boundaries.damping.active) return BRUNT_OK;
+    if (BRUNT_ROOM(m->drag_weight, (size_t)u->count + 1, 0, "damped unknowns", error) ||
+        BRUNT_ROOM(m->drag_rest, (size_t)brunt_implicit_components(m) + 1, 0, "damped unknowns", error))
+        return BRUNT_FAILED;
     for (int32_t n = 0; n < u->count; n++) m->drag_weight[n] = 0;
     for (int k = 0; k < world->bodies.fem_count; k++) {
         const brunt_fem_body *fem = &world->bodies.fem[k];
@@ -18,7 +18,7 @@ int brunt_implicit_drag_number(struct brunt_implicit *m, const brunt_world *worl
             m->drag_weight[n] = (double)fem->damping * u->mass[n];
     }
     m->drag.weight = m->drag_weight, m->drag.rest = m->drag_rest;
-    return 0;
+    return BRUNT_OK;
 }
 
 void brunt_implicit_drag_before(const struct brunt_implicit *m, double *force) {

@@ -110,24 +110,25 @@ static double way_left(const struct brunt_implicit *m) {
     return most;
 }
 
-// How much of field.step can be gone without that something is turned inside out or touched. -1: the search for what is
-// near has failed.
-static double free_part(const struct brunt_implicit *m, brunt_error *error) {
+// How much of field.step can be gone without that something is turned inside out or touched.
+static int free_part(const struct brunt_implicit *m, double *part, brunt_error *error) {
     const brunt_fields *f = &m->field;
     double way = 1;
     for (int t = 0; t < m->term_count; t++) {
         const brunt_term *term = &m->term[t];
-        if (term->ops->look && term->ops->look(term->self, &m->team, f->u, f->step, error)) return -1;
+        if (term->ops->look && term->ops->look(term->self, &m->team, f->u, f->step, error)) return BRUNT_FAILED;
     }
     for (int t = 0; t < m->term_count; t++)
         if (m->term[t].ops->limit)
             way = fmin(way, m->term[t].ops->limit(m->term[t].self, &m->team, f->u, f->step, way));
-    return way;
+    *part = way;
+    return BRUNT_OK;
 }
 
 // How far of the way to where they are to be the held components can go while all others stay.
-static double free_way(const struct brunt_implicit *m, brunt_error *error) {
-    return way_left(m) == 0 ? 1 : free_part(m, error);
+static int free_way(const struct brunt_implicit *m, double *way, brunt_error *error) {
+    *way = 1;
+    return way_left(m) == 0 ? BRUNT_OK : free_part(m, way, error);
 }
 
 // Begins where held components are at their places and all others where the matrix at the start takes them, if that can
@@ -142,8 +143,8 @@ static int lead(struct brunt_implicit *m, brunt_error *error) {
     m->tried.factorisations += way.factorisations;
     if (status) return BRUNT_OK;
     memcpy(f->step, f->gradient, (size_t)brunt_implicit_components(m) * sizeof *f->step);
-    const double part = free_part(m, error);
-    if (part < 0) return BRUNT_FAILED;
+    double part;
+    if (free_part(m, &part, error)) return BRUNT_FAILED;
     for (int64_t k = 0; k < brunt_implicit_components(m) && part == 1; k++)
         f->u[k] = m->unknowns.held[k] ? m->unknowns.target[k] : f->step[k];
     return BRUNT_OK;
@@ -178,8 +179,8 @@ static int go_and_minimise(struct brunt_implicit *m, brunt_newton_report *report
     enum { MOST = 6 };
     double heavy = 1e7;
     for (int k = 0; k < MOST; k++, heavy *= 10) {
-        const double way = free_way(m, error);
-        if (way < 0) return BRUNT_FAILED;
+        double way;
+        if (free_way(m, &way, error)) return BRUNT_FAILED;
         if (way == 1) {
             for (int64_t q = 0; q < brunt_implicit_components(m); q++)
                 if (m->unknowns.held[q]) m->field.u[q] = m->unknowns.target[q];

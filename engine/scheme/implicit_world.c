@@ -8,20 +8,18 @@
 #include "base/memory.h"
 #include "scheme/implicit.h"
 
-static int out_of_memory(brunt_error *error) { return brunt_fail(error, BRUNT_FAILED, "out of memory"); }
-
 // ------------------------------------------------------------------------------------------ the solver
 
-// Grid nodes in reach of particles; -1: out of memory.
-static int64_t count_reached(const brunt_grid *grid) {
-    int64_t count = 0;
+// Grid nodes in reach of particles.
+static int count_reached(const brunt_grid *grid, int64_t *count, brunt_error *error) {
     const size_t nodes = (size_t)grid->slot_count * BRUNT_BLOCK_NODES;
-    uint8_t *mark = brunt_alloc(nodes + 1);
-    if (!mark) return -1;
+    uint8_t *mark;
+    if (BRUNT_NEW(mark, nodes + 1, "marks of grid nodes", error)) return BRUNT_FAILED;
     brunt_grid_mark_reached(grid, mark);
-    for (size_t n = 0; n < nodes; n++) count += mark[n];
+    *count = 0;
+    for (size_t n = 0; n < nodes; n++) *count += mark[n];
     brunt_free(mark);
-    return count;
+    return BRUNT_OK;
 }
 
 // Blocks of a row: nodes that an inner node of a mesh couples with.
@@ -31,7 +29,7 @@ static double row_of_mesh(const brunt_fem_body *fem) {
 }
 
 // How large the systems are. BRUNT_FAILED: out of memory.
-static int measure_systems(const brunt_world *world, brunt_linear_size *size) {
+static int measure_systems(const brunt_world *world, brunt_linear_size *size, brunt_error *error) {
     const double dt = world->settings.fixed_step;
     double blocks = 0;
     *size = (brunt_linear_size){.dim = world->settings.dimension};
@@ -43,8 +41,8 @@ static int measure_systems(const brunt_world *world, brunt_linear_size *size) {
     }
     for (int i = 0; i < world->bodies.mpm_count; i++) {
         const brunt_body *body = &world->bodies.mpm[i];
-        const int64_t nodes = count_reached(&body->grid);
-        if (nodes < 0) return BRUNT_FAILED;
+        int64_t nodes;
+        if (count_reached(&body->grid, &nodes, error)) return BRUNT_FAILED;
         size->nodes += nodes;
         blocks += pow(2 * body->grid.order + 1, body->grid.dim) * (double)nodes;
         size->courant = fmax(size->courant, (double)body->material.wave_speed * dt / (double)body->grid.h);
@@ -188,19 +186,20 @@ static void set_options(brunt_world *world, struct brunt_implicit *m) {
 
 int brunt_implicit_make(brunt_world *world, const brunt_world_def *def, brunt_error *error) {
     if (!brunt_scheme_minimises(world->settings.scheme)) return BRUNT_OK;
-    struct brunt_implicit *m = world->plan.implicit = brunt_alloc(sizeof *m);
-    if (!m) return out_of_memory(error);
+    if (BRUNT_NEW(world->plan.implicit, 1, "room for implicit steps", error)) return BRUNT_FAILED;
+    struct brunt_implicit *m = world->plan.implicit;
     const brunt_bodies *bodies = &world->bodies;
     m->world = world;
     m->still = world->settings.scheme == BRUNT_STATIC;
     m->team.threads = world->settings.threads;
     m->holds = world->boundaries.surfaces.count > 0;
-    m->fem = brunt_alloc(((size_t)bodies->fem_count + 1) * sizeof *m->fem);
-    m->mpm = brunt_alloc(((size_t)bodies->mpm_count + 1) * sizeof *m->mpm);
-    m->term = brunt_alloc(((size_t)bodies->count + BRUNT_MOST_OTHER_TERMS) * sizeof *m->term);
-    if (!m->fem || !m->mpm || !m->term || brunt_unknowns_make(&m->unknowns, world)) return out_of_memory(error);
+    if (BRUNT_NEW(m->fem, bodies->fem_count + 1, "potentials of meshes", error) ||
+        BRUNT_NEW(m->mpm, bodies->mpm_count + 1, "potentials of bodies of points", error) ||
+        BRUNT_NEW(m->term, bodies->count + BRUNT_MOST_OTHER_TERMS, "terms of a step", error) ||
+        brunt_unknowns_make(&m->unknowns, world, error))
+        return BRUNT_FAILED;
     set_options(world, m);
-    if (measure_systems(world, &m->size)) return out_of_memory(error);
+    if (measure_systems(world, &m->size, error)) return BRUNT_FAILED;
     for (int b = 0; b < bodies->count; b++) m->forces = m->forces || brunt_world_material(world, b)->differences;
     if (m->forces && brunt_solver_iterates(world->settings.newton.solver))
         return brunt_fail(error, BRUNT_BAD_INPUT,
@@ -238,31 +237,33 @@ void brunt_implicit_free(brunt_world *world) {
 
 // ------------------------------------------------------------------------------------------ the pass of numbers
 
-static int reserve(const brunt_world *world, struct brunt_implicit *m) {
+static int reserve(const brunt_world *world, struct brunt_implicit *m, brunt_error *error) {
     brunt_fields *f = &m->field;
     const size_t n = (size_t)brunt_implicit_components(m) + 1;
     size_t most = 1;
     for (int i = 0; i < world->bodies.mpm_count; i++)
         if ((size_t)world->bodies.mpm[i].particles.slots > most) most = (size_t)world->bodies.mpm[i].particles.slots;
     const bool failed =
-        m->still ? BRUNT_RESERVE(f->stiffness, n, 0) || BRUNT_RESERVE(f->grounded, n, 0)
-                 : BRUNT_RESERVE(f->v, n, 0) || BRUNT_RESERVE(f->aim, n, 0) || BRUNT_RESERVE(f->acceleration, n, 0);
-    return failed || BRUNT_RESERVE(f->u, n, 0) || BRUNT_RESERVE(f->load, n, 0) ||
-           BRUNT_RESERVE(f->force_before, n, 0) || BRUNT_RESERVE(f->gradient, n, 0) ||
-           BRUNT_RESERVE(f->contact, n, 0) || BRUNT_RESERVE(f->step, n, 0) || BRUNT_RESERVE(f->zero, n, 0) ||
-           BRUNT_RESERVE(f->pull, n, 0) || BRUNT_RESERVE(m->moved, most * (size_t)m->unknowns.dim, 0);
+        m->still ? BRUNT_ROOM(f->stiffness, n, 0, "unknowns", error) || BRUNT_ROOM(f->grounded, n, 0, "unknowns", error)
+                 : BRUNT_ROOM(f->v, n, 0, "unknowns", error) || BRUNT_ROOM(f->aim, n, 0, "unknowns", error) ||
+                       BRUNT_ROOM(f->acceleration, n, 0, "unknowns", error);
+    return failed || BRUNT_ROOM(f->u, n, 0, "unknowns", error) || BRUNT_ROOM(f->load, n, 0, "unknowns", error) ||
+           BRUNT_ROOM(f->force_before, n, 0, "unknowns", error) || BRUNT_ROOM(f->gradient, n, 0, "unknowns", error) ||
+           BRUNT_ROOM(f->contact, n, 0, "unknowns", error) || BRUNT_ROOM(f->step, n, 0, "unknowns", error) ||
+           BRUNT_ROOM(f->zero, n, 0, "unknowns", error) || BRUNT_ROOM(f->pull, n, 0, "unknowns", error) ||
+           BRUNT_ROOM(m->moved, most * (size_t)m->unknowns.dim, 0, "ways of particles", error);
 }
 
 int brunt_pass_number(brunt_world *world, brunt_step *step, brunt_error *error) {
     (void)step;
     struct brunt_implicit *m = world->plan.implicit;
-    if (brunt_unknowns_number(&m->unknowns, world) || reserve(world, m))
-        return brunt_fail_step(world, NULL, error, "out of memory for the unknowns");
-    if (brunt_implicit_drag_number(m, world)) return brunt_fail_step(world, NULL, error, "out of memory for damping");
+    if (brunt_unknowns_number(&m->unknowns, world, error) || reserve(world, m, error) ||
+        brunt_implicit_drag_number(m, world, error))
+        return brunt_fail_inner(world, NULL, error);
     m->loads.force = m->field.load, m->inertia.aim = m->field.aim;
     m->proximal.stiffness = m->field.stiffness, m->proximal.grounded = m->field.grounded;
-    if (m->holds && brunt_ghost_step(&m->ghost, world, &m->unknowns))
-        return brunt_fail_step(world, NULL, error, "out of memory for nodes without material");
+    if (m->holds && brunt_ghost_step(&m->ghost, world, &m->unknowns, error))
+        return brunt_fail_inner(world, NULL, error);
     return brunt_implicit_contact_points(&m->contact, world, &m->unknowns, error) ? brunt_fail_inner(world, NULL, error)
                                                                                   : BRUNT_OK;
 }

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "scheme/scheme.h"
@@ -24,22 +25,19 @@ static int64_t list_tasks(const brunt_world *world, brunt_fem_task *nodes, brunt
     return nodes || !elements ? n : e;
 }
 
-int brunt_fem_tasks_make(brunt_world *world) {
+int brunt_fem_tasks_make(brunt_world *world, brunt_error *error) {
     world->bodies.tasks.node_count = list_tasks(world, NULL, NULL);
     for (int k = 0; k < world->bodies.fem_count; k++)
         world->bodies.tasks.element_count += world->bodies.fem[k].block_count;
-    world->bodies.tasks.node =
-        brunt_alloc((size_t)(world->bodies.tasks.node_count + 1) * sizeof *world->bodies.tasks.node);
-    world->bodies.tasks.element =
-        brunt_alloc((size_t)(world->bodies.tasks.element_count + 1) * sizeof *world->bodies.tasks.element);
-    world->bodies.tasks.sums =
-        brunt_alloc((size_t)(world->bodies.tasks.node_count + 1) * sizeof *world->bodies.tasks.sums);
-    if (!world->bodies.tasks.node || !world->bodies.tasks.element || !world->bodies.tasks.sums) return -1;
+    if (BRUNT_NEW(world->bodies.tasks.node, world->bodies.tasks.node_count + 1, "tasks of nodes", error) ||
+        BRUNT_NEW(world->bodies.tasks.element, world->bodies.tasks.element_count + 1, "tasks of elements", error) ||
+        BRUNT_NEW(world->bodies.tasks.sums, world->bodies.tasks.node_count + 1, "sums of tasks of nodes", error))
+        return BRUNT_FAILED;
     list_tasks(world, world->bodies.tasks.node, world->bodies.tasks.element);
     for (int t = 0; t < world->settings.threads; t++)
         for (int k = 0; k < world->bodies.fem_count; k++)
-            if (brunt_fem_workspace_fit(&world->scratch.meshes[t], &world->bodies.fem[k])) return -1;
-    return 0;
+            if (brunt_fem_workspace_fit(&world->scratch.meshes[t], &world->bodies.fem[k], error)) return BRUNT_FAILED;
+    return BRUNT_OK;
 }
 
 typedef struct job {
@@ -200,12 +198,12 @@ double brunt_fem_stable_step(const brunt_world *world) {
     return least;
 }
 
-// The slot of a body's element that has the shortest step, -1: out of memory.
+// The slot of a body's element that has the shortest step, BRUNT_NONE: out of memory.
 static int32_t shortest_element(brunt_world *world, const brunt_fem_body *fem) {
     brunt_fem_single *single = brunt_fem_single_make(fem);
     const double block_least = brunt_fem_blocks_step(fem);
     double shortest = INFINITY;
-    int32_t slot = -1;
+    int32_t slot = BRUNT_NONE;
     for (int32_t b = 0; single && b < fem->block_count; b++) {
         const brunt_fem_block *block = &fem->block[b];
         if (!block->count || fem->report[b].stable_step > block_least) continue;

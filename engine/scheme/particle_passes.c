@@ -45,12 +45,12 @@ int brunt_pass_sort(brunt_world *world, brunt_step *step, brunt_error *error) {
         int32_t most = 0;
         for (int32_t b = 0; b < grid->block_count; b++)
             if (grid->blocks[b].count > most) most = grid->blocks[b].count;
-        if (BRUNT_RESERVE(body->report, (size_t)grid->block_count, 0) ||
-            BRUNT_RESERVE(world->scratch.node_sums, (size_t)grid->slot_count, 0))
-            return brunt_fail_step(world, body, error, "out of memory");
+        if (BRUNT_ROOM(body->report, (size_t)grid->block_count, 0, "reports of blocks of particles", error) ||
+            BRUNT_ROOM(world->scratch.node_sums, (size_t)grid->slot_count, 0, "sums of blocks of nodes", error))
+            return brunt_fail_inner(world, body, error);
         for (int t = 0; t < world->settings.threads; t++)
-            if (brunt_workspace_fit(&world->scratch.points[t], grid, most))
-                return brunt_fail_step(world, body, error, "out of memory");
+            if (brunt_workspace_fit(&world->scratch.points[t], grid, most, error))
+                return brunt_fail_inner(world, body, error);
     }
     return BRUNT_OK;
 }

@@ -27,17 +27,18 @@ static void find_ties(const brunt_world *world, int32_t *tie) {
         }
 }
 
-int brunt_unknowns_make(brunt_unknowns *u, const brunt_world *world) {
+int brunt_unknowns_make(brunt_unknowns *u, const brunt_world *world, brunt_error *error) {
     const brunt_bodies *bodies = &world->bodies;
     u->dim = world->settings.dimension;
-    u->plane = brunt_alloc(((size_t)world->boundaries.wall_count + 1) * sizeof *u->plane);
-    u->base = brunt_alloc(((size_t)bodies->fem_count + 1) * sizeof *u->base);
-    u->grid_base = brunt_alloc(((size_t)bodies->mpm_count + 1) * sizeof *u->grid_base);
-    u->number = brunt_alloc(((size_t)bodies->mpm_count + 1) * sizeof *u->number);
-    u->number_capacity = brunt_alloc(((size_t)bodies->mpm_count + 1) * sizeof *u->number_capacity);
-    u->tie = brunt_alloc(((size_t)bodies->mpm_count + 1) * sizeof *u->tie);
-    if (u->tie) find_ties(world, u->tie);
-    return u->tie && u->plane && u->base && u->grid_base && u->number && u->number_capacity ? 0 : -1;
+    if (BRUNT_NEW(u->plane, world->boundaries.wall_count + 1, "nodes of walls", error) ||
+        BRUNT_NEW(u->base, bodies->fem_count + 1, "meshes with unknowns", error) ||
+        BRUNT_NEW(u->grid_base, bodies->mpm_count + 1, "grids with unknowns", error) ||
+        BRUNT_NEW(u->number, bodies->mpm_count + 1, "grids with unknowns", error) ||
+        BRUNT_NEW(u->number_capacity, bodies->mpm_count + 1, "grids with unknowns", error) ||
+        BRUNT_NEW(u->tie, bodies->mpm_count + 1, "bodies that are tied", error))
+        return BRUNT_FAILED;
+    find_ties(world, u->tie);
+    return BRUNT_OK;
 }
 
 void brunt_unknowns_free(brunt_unknowns *u, const brunt_bodies *bodies) {
@@ -58,7 +59,7 @@ size_t brunt_unknowns_bytes(const brunt_unknowns *u, const brunt_bodies *bodies)
 
 // ------------------------------------------------------------------------------------------ numbers
 
-// The number that a node has already of a body that this one is tied to, -1: none.
+// The number that a node has already of a body that this one is tied to; BRUNT_NONE: none.
 static int32_t shared_number(const brunt_unknowns *u, const brunt_bodies *bodies, int i, int64_t k) {
     const int32_t *coord = bodies->mpm[i].grid.slots[k / BRUNT_BLOCK_NODES].coord;
     for (int other = u->tie[i]; other < i; other++) {
@@ -67,18 +68,19 @@ static int32_t shared_number(const brunt_unknowns *u, const brunt_bodies *bodies
         const int64_t at = (int64_t)slot * BRUNT_BLOCK_NODES + k % BRUNT_BLOCK_NODES;
         if (slot >= 0 && u->number[other][at] >= 0) return u->number[other][at];
     }
-    return -1;
+    return BRUNT_NONE;
 }
 
 // Numbers of the nodes that have weight at some particle; with linear kernels also of those that have a slope there but
 // no weight, when the particle lies on a line of the grid: stress pushes them.
-static int number_grid(brunt_unknowns *u, const brunt_bodies *bodies, int i) {
+static int number_grid(brunt_unknowns *u, const brunt_bodies *bodies, int i, brunt_error *error) {
     const brunt_grid *grid = &bodies->mpm[i].grid;
     const int64_t nodes = (int64_t)grid->slot_count * BRUNT_BLOCK_NODES;
-    if (BRUNT_RESERVE_IN(u->number[i], u->number_capacity[i], (size_t)nodes + 1, 0)) return -1;
+    if (BRUNT_ROOM_IN(u->number[i], u->number_capacity[i], (size_t)nodes + 1, 0, "numbers of grid nodes", error))
+        return BRUNT_FAILED;
     double most = 0;
-    uint8_t *sloped = grid->order == BRUNT_LINEAR ? brunt_alloc((size_t)nodes + 1) : NULL;
-    if (grid->order == BRUNT_LINEAR && !sloped) return -1;
+    uint8_t *sloped = NULL;
+    if (grid->order == BRUNT_LINEAR && BRUNT_NEW(sloped, nodes + 1, "marks of grid nodes", error)) return BRUNT_FAILED;
     if (sloped) brunt_grid_mark_reached(grid, sloped);
     for (int64_t k = 0; k < nodes; k++) most = fmax(most, (double)grid->nodes[k * BRUNT_NODE_REALS + BRUNT_NODE_MASS]);
     int64_t next = u->count;
@@ -91,16 +93,18 @@ static int number_grid(brunt_unknowns *u, const brunt_bodies *bodies, int i) {
     }
     brunt_free(sloped);
     u->count = (int32_t)next;
-    return next > INT32_MAX / 3 ? -1 : 0;
+    if (next <= INT32_MAX / 3) return BRUNT_OK;
+    return brunt_fail(error, BRUNT_FAILED, "there are more than %d nodes with unknowns", INT32_MAX / 3);
 }
 
-static int reserve(brunt_unknowns *u) {
+static int reserve(brunt_unknowns *u, brunt_error *error) {
     const size_t n = (size_t)u->count + 1, all = n * (size_t)u->dim;
-    return BRUNT_RESERVE(u->mass, n, 0) || BRUNT_RESERVE(u->place, all, 0) || BRUNT_RESERVE(u->velocity, all, 0) ||
-                   BRUNT_RESERVE(u->held, all, 0) || BRUNT_RESERVE(u->holder, all, 0) ||
-                   BRUNT_RESERVE(u->target, all, 0) || BRUNT_RESERVE(u->end, all, 0)
-               ? -1
-               : 0;
+    return BRUNT_ROOM(u->mass, n, 0, "unknowns", error) || BRUNT_ROOM(u->place, all, 0, "unknowns", error) ||
+                   BRUNT_ROOM(u->velocity, all, 0, "unknowns", error) ||
+                   BRUNT_ROOM(u->held, all, 0, "unknowns", error) || BRUNT_ROOM(u->holder, all, 0, "unknowns", error) ||
+                   BRUNT_ROOM(u->target, all, 0, "unknowns", error) || BRUNT_ROOM(u->end, all, 0, "unknowns", error)
+               ? BRUNT_FAILED
+               : BRUNT_OK;
 }
 
 static void take_mesh(brunt_unknowns *u, const brunt_fem_body *fem, int32_t base) {
@@ -143,7 +147,7 @@ static void take_plane(brunt_unknowns *u, const brunt_plane_def *plane, double t
     }
 }
 
-int brunt_unknowns_number(brunt_unknowns *u, const brunt_world *world) {
+int brunt_unknowns_number(brunt_unknowns *u, const brunt_world *world, brunt_error *error) {
     const brunt_bodies *bodies = &world->bodies;
     const brunt_boundary *walls = world->boundaries.walls;
     u->count = 0;
@@ -151,11 +155,11 @@ int brunt_unknowns_number(brunt_unknowns *u, const brunt_world *world) {
     u->mesh_count = u->count;
     for (int i = 0; i < bodies->mpm_count; i++) {
         u->grid_base[i] = u->count;
-        if (number_grid(u, bodies, i)) return -1;
+        if (number_grid(u, bodies, i, error)) return BRUNT_FAILED;
     }
     u->grid_base[bodies->mpm_count] = u->count;
     for (int w = 0; w < world->boundaries.wall_count; w++) u->plane[w] = moves(&walls[w]) ? u->count++ : -1;
-    if (reserve(u)) return -1;
+    if (reserve(u, error)) return BRUNT_FAILED;
     for (int k = 0; k < bodies->fem_count; k++) take_mesh(u, &bodies->fem[k], u->base[k]);
     const int32_t grids = u->mesh_count;
     memset(u->mass + grids, 0, (size_t)(u->count - grids) * sizeof *u->mass);
@@ -166,7 +170,7 @@ int brunt_unknowns_number(brunt_unknowns *u, const brunt_world *world) {
         if (u->mass[k / u->dim] > 0) u->velocity[k] /= u->mass[k / u->dim];
     for (int w = 0; w < world->boundaries.wall_count; w++)
         if (u->plane[w] >= 0) take_plane(u, &walls[w].plane, world->clock.time, u->plane[w]);
-    return 0;
+    return BRUNT_OK;
 }
 
 int32_t brunt_unknowns_node_at(const brunt_unknowns *u, const brunt_bodies *bodies, int i, const int32_t at[3]) {
@@ -182,7 +186,7 @@ int32_t brunt_unknowns_node_at(const brunt_unknowns *u, const brunt_bodies *bodi
         const int64_t node = (int64_t)slot * BRUNT_BLOCK_NODES + brunt_node_index(own, local[0], local[1], local[2]);
         if (slot >= 0 && u->number[other][node] >= 0) return u->number[other][node];
     }
-    return -1;
+    return BRUNT_NONE;
 }
 
 brunt_unknown_place brunt_unknowns_place(const brunt_unknowns *u, const brunt_bodies *bodies, int32_t n) {

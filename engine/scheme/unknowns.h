@@ -29,20 +29,20 @@ typedef struct brunt_unknowns {
     size_t target_capacity, end_capacity;
 } brunt_unknowns;
 
-// Arrays by body. 0, or -1: out of memory.
-int brunt_unknowns_make(brunt_unknowns *u, const brunt_world *world);
+// Arrays by body. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_unknowns_make(brunt_unknowns *u, const brunt_world *world, brunt_error *error);
 void brunt_unknowns_free(brunt_unknowns *u, const brunt_bodies *bodies);
 size_t brunt_unknowns_bytes(const brunt_unknowns *u, const brunt_bodies *bodies);
-// Numbers, masses, places and velocities, once masses and momenta are on the grids. 0, or -1: out of memory, or more
-// nodes than there are numbers.
-int brunt_unknowns_number(brunt_unknowns *u, const brunt_world *world);
+// Numbers, masses, places and velocities, once masses and momenta are on the grids. BRUNT_OK, or BRUNT_FAILED: out
+// of memory, or more nodes than there are numbers.
+int brunt_unknowns_number(brunt_unknowns *u, const brunt_world *world, brunt_error *error);
 // What walls and groups hold over a step of `dt`: components and where they go. Clears what was held.
 void brunt_unknowns_hold(brunt_unknowns *u, const brunt_world *world, double dt);
 // The first node of a mesh that displacements `way` [m] over `dt` take behind a plane that holds what lies on it, and
-// that plane; -1: none.
+// that plane; BRUNT_NONE: none.
 int32_t brunt_unknowns_passed(const brunt_unknowns *u, const brunt_world *world, const double *way, double dt,
                               const brunt_boundary **wall);
-// The node at grid coordinates `at` of body of points i, or of one that it is tied to; -1: none.
+// The node at grid coordinates `at` of body of points i, or of one that it is tied to; BRUNT_NONE: none.
 int32_t brunt_unknowns_node_at(const brunt_unknowns *u, const brunt_bodies *bodies, int i, const int32_t at[3]);
 // What node `n` is of: a body, and its node or the slot's, for messages.
 typedef struct brunt_unknown_place {

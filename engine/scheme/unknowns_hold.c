@@ -112,5 +112,5 @@ int32_t brunt_unknowns_passed(const brunt_unknowns *u, const brunt_world *world,
             }
         }
     }
-    return -1;
+    return BRUNT_NONE;
 }

@@ -46,8 +46,7 @@ static double particle_reach(const brunt_body *body, double distance) {
 static int fill_body(const brunt_body_def *def, const brunt_filled *filled, brunt_body *body, brunt_error *error) {
     brunt_particles *p = &body->particles;
     const int dim = p->dim;
-    if (brunt_particles_reserve(p, filled->count))
-        return brunt_fail(error, BRUNT_FAILED, "bodies.%s: out of memory for %d particles", def->name, filled->count);
+    if (brunt_particles_reserve(p, filled->count, error)) return BRUNT_FAILED;
     p->count = p->slots = p->made = filled->count;
     const bool rings = brunt_axisymmetric(p);
     body->particle_mass = (real)(filled->volume * (double)body->material.density * (rings ? 2 * M_PI : 1));

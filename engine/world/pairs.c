@@ -30,7 +30,7 @@ static int out_of_memory(brunt_error *error) { return brunt_fail(error, BRUNT_FA
 static int find_alike(const brunt_pairs *pairs, const brunt_pair *pair) {
     for (int p = 0; p < pairs->count; p++)
         if (pairs->pair[p].method == pair->method && pairs->pair[p].friction == pair->friction) return p;
-    return -1;
+    return BRUNT_NONE;
 }
 
 // Checks the names of a pair, and makes that of a membrane with itself.

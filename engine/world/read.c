@@ -5,6 +5,7 @@
 
 #include "body/fields.h"
 #include "world/world.h"
+#include "base/error.h"
 
 // Contact state of boundary nodes in the last step; elsewhere as of a node that touches nothing.
 static const brunt_field_info contact_fields[] = {
@@ -61,7 +62,7 @@ brunt_field_info brunt_body_field(const brunt_world *world, int32_t body, int32_
 int32_t brunt_body_find_field(const brunt_world *world, int32_t body, const char *name) {
     for (int32_t f = 0; name && f < brunt_body_field_count(world, body); f++)
         if (!strcmp(brunt_body_field(world, body, f).name, name)) return f;
-    return -1;
+    return BRUNT_NONE;
 }
 
 void brunt_body_read(brunt_world *world, int32_t body, int32_t field, double *out) {

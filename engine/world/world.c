@@ -33,7 +33,7 @@ int brunt_find_ordered(const brunt_body_def **order, int count, const char *name
         else
             high = middle;
     }
-    return -1;
+    return BRUNT_NONE;
 }
 
 // ------------------------------------------------------------------------------------------ start
@@ -237,7 +237,7 @@ brunt_world *brunt_world_create(const brunt_world_def *given, brunt_error *error
         status = brunt_boundary_surfaces_make(&world->boundaries.surfaces, def, &world->bodies,
                                               world->boundaries.walls + brunt_boundary_first(def, "surface"), error);
     if (!status) status = brunt_surfaces_make(world, def, error);
-    if (!status && brunt_fem_tasks_make(world)) status = brunt_fail(error, BRUNT_FAILED, "out of memory");
+    if (!status) status = brunt_fem_tasks_make(world, error);
     if (!status) status = brunt_damping_make(&world->boundaries.damping, &world->bodies, error);
     if (!status) status = brunt_load_step_make(&world->boundaries.sets, error);
     if (!status) number_symmetry_planes(world, def);

@@ -79,8 +79,8 @@ void brunt_grid_update(void *job, int64_t begin, int64_t end, int worker); // mo
 void brunt_grid_ledger(void *job, int64_t begin, int64_t end, int worker); // node_sums of each slot
 
 // --- mesh_passes.c
-// Blocks and runs of nodes of all bodies, as tasks. 0, or -1: out of memory.
-int brunt_fem_tasks_make(brunt_world *world);
+// Blocks and runs of nodes of all bodies, as tasks. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_fem_tasks_make(brunt_world *world, brunt_error *error);
 // Strain, stress and forces there. The failed body and slot when the update of an element failed.
 brunt_fem_body *brunt_fem_elements_all(brunt_world *world, double dt, int32_t *bad, const char **reason);
 // Stable step of a body [s] beside what moves at `around` [m/s], by the reports of its blocks and of the loads that

@@ -105,7 +105,7 @@ static inline brunt_fem_body body_of(brunt_mesh *mesh, options o) {
     int status = brunt_fem_make(&def, &material, brunt_element_dimension(mesh->kind), mesh, &body, &error);
     ck_assert_msg(status == BRUNT_OK, "%s", error.message);
     brunt_mesh_free(mesh);
-    ck_assert_int_eq(brunt_fem_workspace_fit(&workspace, &body), 0);
+    ck_assert_int_eq(brunt_fem_workspace_fit(&workspace, &body, NULL), 0);
     return body;
 }
 

@@ -22,7 +22,7 @@ static brunt_fem_body ring_of(brunt_mesh *mesh, options o) {
     brunt_error error = {0};
     ck_assert_msg(brunt_fem_make_axisymmetric(&def, &material, mesh, &body, &error) == BRUNT_OK, "%s", error.message);
     brunt_mesh_free(mesh);
-    ck_assert_int_eq(brunt_fem_workspace_fit(&workspace, &body), 0);
+    ck_assert_int_eq(brunt_fem_workspace_fit(&workspace, &body, NULL), 0);
     return body;
 }
 

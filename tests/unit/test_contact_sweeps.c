@@ -4,6 +4,8 @@
 #include "contact/constraint/constraint.h"
 #include "tests/support/suite.h"
 
+#include <sys/resource.h>
+
 // ------------------------------------------------------------------------------------------ points alone
 
 enum { CHAIN = 24 };
@@ -46,6 +48,26 @@ static double approach_left(int most, double tolerance, int *sweeps) {
     brunt_constraints_free(&p);
     return left;
 }
+
+// Where memory ends, contact says what of it there was no room for; what there was is as it was.
+START_TEST(no_room_is_told) {
+    brunt_constraint_set p = {0};
+    brunt_error error = {.id = -1};
+    ck_assert_int_eq(brunt_constraints_add(&p, &error), 0);
+    ck_assert_int_eq(error.code, BRUNT_OK);
+    struct rlimit old, little;
+    getrlimit(RLIMIT_AS, &old);
+    little = (struct rlimit){(rlim_t)1 << 35, old.rlim_max}; // half a terabyte is asked for
+    ck_assert_int_eq(setrlimit(RLIMIT_AS, &little), 0);
+    const int status = brunt_constraints_reserve(&p, INT32_MAX - 1, 1, &error);
+    setrlimit(RLIMIT_AS, &old);
+    ck_assert_int_eq(status, BRUNT_FAILED);
+    ck_assert_int_eq(error.code, BRUNT_FAILED);
+    ck_assert_msg(strstr(error.message, "no room for 2147483647 contact points"), "%s", error.message);
+    ck_assert_int_eq(p.constraint_count, 1);
+    brunt_constraints_free(&p);
+}
+END_TEST
 
 START_TEST(more_sweeps_leave_less) {
     int sweeps;
@@ -156,6 +178,7 @@ END_TEST
 int main(void) {
     Suite *suite = suite_create("contact sweeps");
     ADD(more_sweeps_leave_less);
+    ADD(no_room_is_told);
     ADD(a_tighter_tolerance_leaves_less);
     ADD(whichever_comes_first_ends_them);
     ADD(a_world_takes_both);

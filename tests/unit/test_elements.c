@@ -638,7 +638,7 @@ START_TEST(same_bits_for_any_number_of_threads) {
             ck_assert_int_ge(body[k].block_count, 12);
             throw(&body[k], 10);
             crew c = {.body = &body[k], .dt = 1e-5};
-            for (int t = 0; t < 4; t++) ck_assert_int_eq(brunt_fem_workspace_fit(&c.work[t], &body[k]), 0);
+            for (int t = 0; t < 4; t++) ck_assert_int_eq(brunt_fem_workspace_fit(&c.work[t], &body[k], NULL), 0);
             for (int s = 0; s < 5; s++) {
                 brunt_fem_sums sums;
                 const double none[3] = {0};
