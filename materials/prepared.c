@@ -52,7 +52,7 @@ static void probe(const brunt_model *model, const real *constants, const double 
 static int parameter_index(const brunt_model *model, const char *key) {
     for (int k = 0; model && k < model->parameter_count; k++)
         if (!strcmp(model->parameters[k].key, key)) return k;
-    return -1;
+    return BRUNT_NONE;
 }
 
 // The parameters of a failure model: what is left open is the strength model's parameter of that name, or its own
@@ -115,14 +115,14 @@ static int check_softening(const brunt_material *material, brunt_error *error) {
     return BRUNT_OK;
 }
 
-// The first of a model's state arrays that belongs to a state, -1 when it has no such.
+// The first of a model's state arrays that belongs to a state, BRUNT_NONE when it has no such.
 static int8_t state_place(const brunt_model *model, const char *name, int dim) {
     int place = 0;
     for (int s = 0; model && s < model->state_count; s++) {
         if (!strcmp(model->state[s].name, name)) return (int8_t)place;
         place += dim == 3 ? model->state[s].components3 : model->state[s].components2;
     }
-    return -1;
+    return BRUNT_NONE;
 }
 
 // Of a failure model by its action, of a strength model with damage of its own where a failure strain is given.

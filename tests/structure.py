@@ -9,7 +9,8 @@ Arrows against the order: includes of a folder that stands later in ORDER. Circl
 headers. Functions are counted by their lines from the name to the closing brace at the line's start
 (or at the end of their one line). Tables are arrays of constants, static or of a whole file, without a number for their
 extent: counted by BRUNT_COUNT, a static assert, or the NULL at their end. Lines are repeated where six
-or more stand in two places.
+or more stand in two places. A line that returns -1 says neither that something failed (BRUNT_FAILED, with a message) nor that
+there is none of something (BRUNT_NONE).
 """
 import re
 import subprocess
@@ -30,7 +31,8 @@ LIMITS = {
     "arrows against the order": 0, "circles of files": 0, "unknown folders": 0, "headers that shadow a system's": 0,
     "includes not from the root": 0, "members of the world": 14, "functions over 60 lines": 0,
     "functions with over 7 parameters": 0, "lines of the largest file": 600, "files over 600 lines": 0,
-    "tables that nothing counts": 0, "pointers to void pointers": 0, "words not of plain English": 0,
+    "tables that nothing counts": 0, "pointers to void pointers": 0, "lines that return -1": 0,
+    "words not of plain English": 0,
     "lines repeated in blocks of six": 260, "terms not found": 0,
 }
 TERMS = {  # of the field: what a file or folder is looked for by
@@ -211,6 +213,7 @@ def figures():
     copies, copied = repeated(files)
     loose = [name for f in files for name in uncounted(f)]
     voids = [f"{f}:{n}" for f in files for n, line in enumerate(code(f).split("\n"), 1) if re.search(r"void\s*\*\s*(?:const\s*)?\*", line)]
+    bare = [f"{f}:{n}" for f in files for n, line in enumerate(code(f).split("\n"), 1) if re.search(r"\breturn -1\b", line)]
     words = [place for f in texts() for place in wordings(f)]
     lost = [term for term, found in terms() if not found]
     return [
@@ -227,6 +230,7 @@ def figures():
         ("files over 600 lines", sum(s > 600 for s in size.values()), [f"{f}: {s}" for f, s in size.items() if s > 600]),
         ("tables that nothing counts", len(loose), loose),
         ("pointers to void pointers", len(voids), voids),
+        ("lines that return -1", len(bare), bare),
         ("words not of plain English", len(words), words),
         ("lines repeated in blocks of six", copies, copied),
         ("terms not found", len(lost), lost),

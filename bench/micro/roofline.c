@@ -37,7 +37,7 @@ int main(int argc, char **argv) {
     double bandwidth[COUNT_LIMIT][ROUND_LIMIT], flops[COUNT_LIMIT][ROUND_LIMIT];
     for (int r = 0; r < rounds; r++)
         for (int k = 0; k < count; k++)
-            if (brunt_roofline_measure(threads[k], &bandwidth[k][r], &flops[k][r])) {
+            if (brunt_roofline_measure(threads[k], &bandwidth[k][r], &flops[k][r], NULL)) {
                 fprintf(stderr, "bench_roofline: out of memory\n");
                 return BRUNT_FAILED;
             }

@@ -32,7 +32,7 @@ hid_t brunt_hdf5_create(size_t bytes_expected) {
     size_t increment = bytes_expected / 4 > 65536 ? bytes_expected / 4 : 65536;
     if (access >= 0 && H5Pset_fapl_core(access, increment, 0) < 0) {
         H5Pclose(access);
-        return -1;
+        return H5I_INVALID_HID;
     }
     return create("in memory", access);
 }
@@ -274,13 +274,13 @@ hid_t brunt_hdf5_dataset(hid_t file, const char *name, H5T_class_t kind, size_t 
     H5O_info_t info;
     if (!stays_within(file, name) || H5Oget_info_by_name2(file, name, &info, H5O_INFO_BASIC, H5P_DEFAULT) < 0 ||
         info.type != H5O_TYPE_DATASET)
-        return -1;
+        return H5I_INVALID_HID;
     hid_t set = H5Dopen2(file, name, H5P_DEFAULT);
-    if (set < 0) return -1;
+    if (set < 0) return H5I_INVALID_HID;
     if (is_plain(set)) *count = count_of(file, set, kind, bytes);
     if (*count >= 0) return set;
     H5Dclose(set);
-    return -1;
+    return H5I_INVALID_HID;
 }
 
 // Reads into `values`, or writes `source`.

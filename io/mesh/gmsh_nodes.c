@@ -1,5 +1,6 @@
 // Nodes of a file of gmsh, and which has a tag.
 #include "io/mesh/gmsh_nodes.h"
+#include "base/error.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -131,7 +132,7 @@ int32_t gmsh_find_node(const gmsh_file *file, int64_t tag) {
         uint64_t at = (uint64_t)tag - (uint64_t)file->least_tag;
         return at < file->node_of_count ? file->node_of[at] : -1;
     }
-    if (!file->numbered) return -1;
+    if (!file->numbered) return BRUNT_NONE;
     gmsh_numbered key = {.tag = tag};
     const gmsh_numbered *found = bsearch(&key, file->numbered, (size_t)file->node_count, sizeof key, by_tag);
     return found ? found->node : -1;

@@ -8,5 +8,5 @@ void gmsh_read_nodes_2(gmsh_cursor *c);
 void gmsh_read_nodes_4(gmsh_cursor *c);
 // Once all nodes are there. Complains of a tag that is given twice.
 void gmsh_number_nodes(gmsh_cursor *c);
-// Node of a tag, -1: none.
+// Node of a tag, BRUNT_NONE: none.
 int32_t gmsh_find_node(const gmsh_file *file, int64_t tag);

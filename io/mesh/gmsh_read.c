@@ -55,13 +55,13 @@ static int32_t physical_index(gmsh_cursor *c, int dimension, int32_t tag) {
         if (file->physicals[p].tag == tag && file->physicals[p].dimension == dimension) return p;
     if (file->physical_count == PHYSICAL_LIMIT)
         gmsh_complain(c, c->at, "more than %d physical groups", (int)PHYSICAL_LIMIT);
-    if (!ROOM(c, file->physicals, file->physical_capacity, file->physical_count, 1)) return -1;
+    if (!ROOM(c, file->physicals, file->physical_capacity, file->physical_count, 1)) return BRUNT_NONE;
     char number[16];
     int length = snprintf(number, sizeof number, "%d", (int)tag);
     gmsh_physical physical = {.dimension = dimension, .tag = tag, .name = copy_text(number, (size_t)length)};
     if (!physical.name) {
         gmsh_out_of_memory(c);
-        return -1;
+        return BRUNT_NONE;
     }
     file->physicals[file->physical_count] = physical;
     return file->physical_count++;

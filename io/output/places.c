@@ -8,7 +8,7 @@
 int32_t brunt_find_body(const brunt_world *world, const char *name) {
     for (int32_t b = 0; b < brunt_body_count(world); b++)
         if (!strcmp(brunt_body_name(world, b), name)) return b;
-    return -1;
+    return BRUNT_NONE;
 }
 
 brunt_place brunt_place_of_motion(const brunt_world *world, int32_t body) {

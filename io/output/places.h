@@ -5,7 +5,7 @@
 
 // The places [m] of a body's particles, nodes or elements as they are now, 3 numbers each, in new memory (brunt_free).
 int brunt_places_read(brunt_world *world, int32_t body, brunt_place at, double **places, brunt_error *error);
-// Index of a body, -1 when there is none of that name.
+// Index of a body, BRUNT_NONE when there is none of that name.
 int32_t brunt_find_body(const brunt_world *world, const char *name);
 // Where positions and velocities of a body are: its particles or its nodes.
 brunt_place brunt_place_of_motion(const brunt_world *world, int32_t body);

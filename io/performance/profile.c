@@ -43,7 +43,7 @@ void brunt_profile_make(const brunt_world *world, const brunt_counters *counters
                         brunt_profile *profile) {
     *profile = (brunt_profile){.steps = steps, .output_seconds = output_seconds};
     profile->threads = brunt_world_threads(world);
-    if (brunt_roofline_measure(profile->threads, &profile->bandwidth, &profile->peak))
+    if (brunt_roofline_measure(profile->threads, &profile->bandwidth, &profile->peak, NULL))
         profile->bandwidth = profile->peak = NAN;
     profile->step_seconds = brunt_world_step_seconds(world);
     for (int k = 0; counters && k < BRUNT_COUNTERS; k++)

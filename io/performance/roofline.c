@@ -8,6 +8,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include "base/error.h"
 #include "base/real.h"
 #include "base/parallel.h"
 
@@ -93,11 +94,11 @@ static size_t array_bytes(void) {
     return bytes < least_array ? least_array : bytes > most_array ? most_array : bytes;
 }
 
-int brunt_roofline_measure(int threads, double *bytes_per_second, double *flops_per_second) {
+int brunt_roofline_measure(int threads, double *bytes_per_second, double *flops_per_second, brunt_error *error) {
     const size_t bytes = array_bytes();
     // Not of brunt_alloc, which zeroes: the thread that does so would have touched all of it first.
     void *memory = mmap(NULL, 3 * bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    if (memory == MAP_FAILED) return -1;
+    if (memory == MAP_FAILED) return brunt_fail_memory(error, "bytes to measure the machine with", 3 * bytes, 1);
     madvise(memory, 3 * bytes, MADV_HUGEPAGE);
     vector *first = memory;
     roofline r = {
@@ -107,5 +108,5 @@ int brunt_roofline_measure(int threads, double *bytes_per_second, double *flops_
     munmap(memory, 3 * bytes);
     *bytes_per_second = 4.0 * (double)bytes / r.triad;
     *flops_per_second = 2.0 * CHAINS * LINKS * VECTOR_REALS * (double)r.threads / r.chains;
-    return 0;
+    return BRUNT_OK;
 }

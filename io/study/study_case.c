@@ -29,19 +29,19 @@ int32_t brunt_study_placeholder(const brunt_study *study, const char *text, doub
     *factor = 1;
     *unknown = false;
     size_t length = *text == '{' ? name_length(text + 1) : 0;
-    if (length == 0) return -1;
+    if (length == 0) return BRUNT_NONE;
     const char *p = text + 1 + length;
     if (*p == '*' || *p == '/') {
         bool divide = *p == '/';
-        if (brunt_read_number(p + 1, factor, &p) || (divide && *factor == 0)) return -1;
+        if (brunt_read_number(p + 1, factor, &p) || (divide && *factor == 0)) return BRUNT_NONE;
         if (divide) *factor = 1 / *factor;
     }
-    if (*p != '}') return -1;
+    if (*p != '}') return BRUNT_NONE;
     *rest = p + 1;
     for (int32_t a = 0; a < study->axis_count; a++)
         if (strlen(study->axes[a].name) == length && memcmp(study->axes[a].name, text + 1, length) == 0) return a;
     *unknown = true;
-    return -1;
+    return BRUNT_NONE;
 }
 
 static void expand(const brunt_study *study, const brunt_study_case *c, const char *text, FILE *out) {
@@ -49,7 +49,7 @@ static void expand(const brunt_study *study, const brunt_study_case *c, const ch
         double factor;
         const char *rest;
         bool unknown;
-        int32_t a = *text == '{' ? brunt_study_placeholder(study, text, &factor, &rest, &unknown) : -1;
+        int32_t a = *text == '{' ? brunt_study_placeholder(study, text, &factor, &rest, &unknown) : BRUNT_NONE;
         if (a < 0) {
             fputc(*text++, out);
             continue;

@@ -65,7 +65,7 @@ int32_t study_axis_named(study_reader *r, const scene_node *node, const char *na
         if (strcmp(names[a], name) == 0) return a;
     }
     study_complain_choice(r, node, "axis", name, names, r->study->axis_count, key);
-    return -1;
+    return BRUNT_NONE;
 }
 
 int32_t study_value_labelled(study_reader *r, const scene_node *node, int32_t a, const char *label, bool key) {
@@ -79,7 +79,7 @@ int32_t study_value_labelled(study_reader *r, const scene_node *node, int32_t a,
     char what[80];
     snprintf(what, sizeof what, "value of %s", axis->name);
     study_complain_choice(r, node, what, label, names, count, key);
-    return -1;
+    return BRUNT_NONE;
 }
 
 static void copy_name(char *out, size_t size, const char *text) { snprintf(out, size, "%.*s", (int)size - 1, text); }

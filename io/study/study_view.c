@@ -1,5 +1,6 @@
 // References, fits that only reports want, and words for numbers.
 #include "io/study/study_view.h"
+#include "base/error.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -62,7 +63,7 @@ static int32_t limit_line(const brunt_study *study, const brunt_study_case *c, i
         const brunt_study_case *o = &study->cases[i];
         if (is_of(study, o, study->measures[m].of) && isfinite(study->lines[o->line].limit[m])) return o->line;
     }
-    return -1;
+    return BRUNT_NONE;
 }
 
 brunt_study_truth brunt_study_truth_of(const brunt_study *study, const brunt_study_case *c, int32_t m) {

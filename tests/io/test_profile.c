@@ -203,7 +203,7 @@ END_TEST
 // threads in one only.
 START_TEST(roofline_counts_what_it_does) {
     double bandwidth[2], peak[2];
-    for (int t = 0; t < 2; t++) ck_assert_int_eq(brunt_roofline_measure(1 + t, &bandwidth[t], &peak[t]), 0);
+    for (int t = 0; t < 2; t++) ck_assert_int_eq(brunt_roofline_measure(1 + t, &bandwidth[t], &peak[t], NULL), 0);
     const double bytes = bandwidth[0] * fake_tick, flops = peak[0] * fake_tick;
     printf("  %g bytes, %g flops\n", bytes, flops);
     ck_assert_double_gt(bytes, 4 * 16e6); // four arrays that no cache holds
