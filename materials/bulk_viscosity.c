@@ -61,22 +61,11 @@ BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_
     return update_end(&record, points, NULL);
 }
 
-static brunt_update_result update(const real *constants, const brunt_material_points *points) {
-    return points->dim == 2 ? update_dim(2, constants, points) : update_dim(3, constants, points);
-}
+MATERIAL_UPDATE
 
 static void add_energy(const real *constants, const brunt_material_points *points, brunt_point_energy *energy) {
     (void)constants;
-    lane_total dissipated = {0};
-    for (int32_t i = 0; i < points->count; i += BRUNT_LANES)
-        total_add(&dissipated, lanes_load(points->volume + i) * lanes_load(points->state[VISCOUS_WORK] + i));
-    energy->viscosity += total_end(&dissipated);
-}
-
-// Nothing is compressed at rest.
-static real wave_speed(const real *constants) {
-    (void)constants;
-    return 0;
+    energy->viscosity += state_total(points, VISCOUS_WORK);
 }
 
 static bool off(const double *p) { return p[0] == 0 && p[1] == 0; }
@@ -94,5 +83,5 @@ const brunt_model brunt_bulk_viscosity = {
     .flops = {34, 83},
     .update = update,
     .energy = add_energy,
-    .wave_speed = wave_speed,
+    .wave_speed = no_wave_speed, // nothing is compressed at rest
 };

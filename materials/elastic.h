@@ -26,3 +26,52 @@ static inline real elastic_wave_speed(const real *constants) {
 BRUNT_INLINE void store_stress(int dim, const brunt_material_points *points, int32_t i, const lanes tau[6]) {
     for (int k = 0; k < BRUNT_SYMMETRIC(dim); k++) lanes_store(points->stress[k] + i, tau[k]);
 }
+
+// c^2 of the fastest wave [m^2/s^2] and tau, from H, J - 1 and B.
+typedef lanes elastic_law(int dim, const real *k, const lanes H[9], lanes change, const lanes B[6], lanes tau[6]);
+
+// Stored per reference volume [J/m^3].
+typedef lanes elastic_density(int dim, const real *k, const lanes H[9]);
+
+BRUNT_INLINE brunt_update_result elastic_update(int dim, elastic_law *law, const real *k,
+                                                const brunt_material_points *points) {
+    update_record record = update_begin();
+    for (int32_t i = 0; i < points->count; i += BRUNT_LANES) {
+        lanes H[9], B[6], tau[6];
+        load_displacement_gradient(dim, points, i, H);
+        lanes change = volume_change(dim, H);
+        note_deformation(&record, 1 + change, i);
+        finger_strain(dim, H, B);
+        lanes speed_squared = law(dim, k, H, change, B, tau);
+        store_stress(dim, points, i, tau);
+        note_speed(&record, speed_squared);
+    }
+    return update_end(&record, points, NULL);
+}
+
+BRUNT_INLINE void elastic_energy(int dim, elastic_density *density, const real *k, const brunt_material_points *points,
+                                 brunt_point_energy *energy) {
+    lane_total stored = {0};
+    for (int32_t i = 0; i < points->count; i += BRUNT_LANES) {
+        lanes H[9];
+        load_displacement_gradient(dim, points, i, H);
+        total_add(&stored, lanes_load(points->volume + i) * density(dim, k, H));
+    }
+    energy->internal += total_end(&stored);
+}
+
+// A model's functions from its elastic_law and elastic_density, and its table from them.
+#define ELASTIC_FUNCTIONS(law, density)                                                                                \
+    static brunt_update_result update(const real *constants, const brunt_material_points *points) {                    \
+        return points->dim == 2 ? elastic_update(2, law, constants, points)                                            \
+                                : elastic_update(3, law, constants, points);                                           \
+    }                                                                                                                  \
+    static void add_energy(const real *constants, const brunt_material_points *points, brunt_point_energy *energy) {   \
+        if (points->dim == 2)                                                                                          \
+            elastic_energy(2, density, constants, points, energy);                                                     \
+        else                                                                                                           \
+            elastic_energy(3, density, constants, points, energy);                                                     \
+    }
+#define ELASTIC_MODEL                                                                                                  \
+    .parameters = elastic_parameters, .parameter_count = BRUNT_COUNT(elastic_parameters), .prepare = elastic_prepare,  \
+    .update = update, .energy = add_energy, .wave_speed = elastic_wave_speed

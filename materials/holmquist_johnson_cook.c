@@ -224,9 +224,7 @@ BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_
     return result;
 }
 
-static brunt_update_result update(const real *constants, const brunt_material_points *points) {
-    return points->dim == 2 ? update_dim(2, constants, points) : update_dim(3, constants, points);
-}
+MATERIAL_UPDATE
 
 static void add_energy(const real *constants, const brunt_material_points *points, brunt_point_energy *energy) {
     brittle_energy(constants, points, COMPACTION, DAMAGE, stored_energy, energy);

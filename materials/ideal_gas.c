@@ -42,28 +42,14 @@ BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_
         if (points->viscous_pressure) heat -= lanes_load(points->viscous_pressure + i) * J * (v / (1 + v));
         lanes m = lanes_exp(-half * lanes_log1p(v)), e_new = (e * m + heat) * m;
         note_first(&record.model, ~((e_new > 0) & (e_new <= MATERIAL_REAL_MAX)), i);
-        lanes_store(points->state[INTERNAL_ENERGY] + i, e_new);
-        real *work = points->state[COMPRESSION_WORK] + i;
-        lanes_store(work, lanes_load(work) + (m - 1) * (e * (m + 1) + heat)); // e_new - e - heat
-
-        lanes Jp = k[GAMMA_1] * e_new;
-        for (int c = 0; c < 3; c++) lanes_store(points->stress[c] + i, lanes_load(points->stress[c] + i) - Jp);
+        lanes work = (m - 1) * (e * (m + 1) + heat); // e_new - e - heat
+        store_energy_step(points, i, e_new, work, k[GAMMA_1] * e_new);
         note_speed(&record, k[SOUND] * e_new); // c^2 = gamma p / rho
     }
     return update_end(&record, points, "the internal energy of the gas is not positive and finite");
 }
 
-static brunt_update_result update(const real *constants, const brunt_material_points *points) {
-    return points->dim == 2 ? update_dim(2, constants, points) : update_dim(3, constants, points);
-}
-
-static void add_energy(const real *constants, const brunt_material_points *points, brunt_point_energy *energy) {
-    lane_total stored = {0};
-    for (int32_t i = 0; i < points->count; i += BRUNT_LANES)
-        total_add(&stored, lanes_load(points->volume + i) *
-                               (constants[INITIAL_ENERGY] + lanes_load(points->state[COMPRESSION_WORK] + i)));
-    energy->internal += total_end(&stored);
-}
+MATERIAL_UPDATE
 
 static real wave_speed(const real *constants) {
     return (real)sqrt((double)constants[SOUND] * (double)constants[INITIAL_ENERGY]);
@@ -72,15 +58,13 @@ static real wave_speed(const real *constants) {
 const brunt_model brunt_ideal_gas = {
     .name = "ideal-gas",
     .doc = "ideal gas of constant specific heats",
-    .eos = true,
+    ENERGY_EOS,
     .parameters = parameters,
     .parameter_count = BRUNT_COUNT(parameters),
-    .state = energy_state,
-    .state_count = BRUNT_COUNT(energy_state),
     .prepare = prepare,
     .flops = {115, 163},
     .update = update,
-    .energy = add_energy,
+    .energy = add_internal_energy,
     .wave_speed = wave_speed,
     .no_potential =
         "'ideal-gas' has no potential for implicit steps: its pressure depends on the energy that it has at their end",

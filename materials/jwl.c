@@ -148,9 +148,7 @@ BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_
         F = lanes_max(lanes_min(lanes_max(F, zero), one), F_old);
         lanes_store(burnt, F);
 
-        lanes e = lanes_load(points->state[INTERNAL_ENERGY] + i), heat = zero;
-        if (points->plastic_increment) heat += lanes_load(points->plastic_increment + i);
-        if (points->viscous_pressure) heat -= lanes_load(points->viscous_pressure + i) * dV;
+        lanes e = lanes_load(points->state[INTERNAL_ENERGY] + i), heat = step_heat(points, i, dV);
         cold_products old = cold(k, V_old), now = cold(k, V);
 
         lanes m = lanes_exp(-half * w * lanes_log1p(step)), t = e - old.energy;
@@ -165,12 +163,8 @@ BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_
 
         lanes work = lanes_select(burning, trapezoid, isentrope), e_new = e + heat + work;
         note_first(&record.model, ~((follows > 0) & (e_new > 0) & (e_new <= MATERIAL_REAL_MAX)), i);
-        lanes_store(points->state[INTERNAL_ENERGY] + i, e_new);
-        real *sum = points->state[COMPRESSION_WORK] + i;
-        lanes_store(sum, lanes_load(sum) + work);
-
-        lanes p = a + b * e_new, Jp = V * p;
-        for (int c = 0; c < 3; c++) lanes_store(points->stress[c] + i, lanes_load(points->stress[c] + i) - Jp);
+        lanes p = a + b * e_new;
+        store_energy_step(points, i, e_new, work, V * p);
 
         // c^2 = V^2 / rho0 (-dp/dV at constant e + p dp/de).
         t = e_new - now.energy;
@@ -182,17 +176,7 @@ BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_
     return update_end(&record, points, "the internal energy of the explosive is not positive and finite");
 }
 
-static brunt_update_result update(const real *constants, const brunt_material_points *points) {
-    return points->dim == 2 ? update_dim(2, constants, points) : update_dim(3, constants, points);
-}
-
-static void add_energy(const real *constants, const brunt_material_points *points, brunt_point_energy *energy) {
-    lane_total stored = {0};
-    for (int32_t i = 0; i < points->count; i += BRUNT_LANES)
-        total_add(&stored, lanes_load(points->volume + i) *
-                               (constants[INITIAL_ENERGY] + lanes_load(points->state[COMPRESSION_WORK] + i)));
-    energy->internal += total_end(&stored);
-}
+MATERIAL_UPDATE
 
 static real wave_speed(const real *constants) { return constants[DETONATION_SPEED]; }
 
@@ -209,7 +193,7 @@ const brunt_model brunt_jwl = {
     .prepare = prepare,
     .flops = {318, 366},
     .update = update,
-    .energy = add_energy,
+    .energy = add_internal_energy,
     .wave_speed = wave_speed,
     .no_potential =
         "'jwl' has no potential for implicit steps: its pressure depends on the energy that it has at their end",

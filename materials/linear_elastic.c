@@ -29,74 +29,51 @@ BRUNT_INLINE void small_strain(int dim, const lanes H[9], lanes eps[6]) {
     eps[XZ] = half * (H[2] + H[6]);
 }
 
-BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_material_points *points) {
-    update_record record = update_begin();
+BRUNT_INLINE lanes law(int dim, const real *k, const lanes H[9], lanes change, const lanes B[6], lanes tau[6]) {
+    (void)change;
     const real lambda = k[ELASTIC_LAMBDA], mu = k[ELASTIC_MU], half = (real)0.5;
-    for (int32_t i = 0; i < points->count; i += BRUNT_LANES) {
-        lanes H[9], B[6], eps[6], sigma[6], tau[6];
-        load_displacement_gradient(dim, points, i, H);
-        note_deformation(&record, 1 + volume_change(dim, H), i);
-        small_strain(dim, H, eps);
-        lanes pressure = lambda * plane_trace(dim, eps);
-        sigma[XX] = pressure + 2 * mu * eps[XX];
-        sigma[YY] = pressure + 2 * mu * eps[YY];
-        sigma[XY] = 2 * mu * eps[XY];
-        if (dim == 2) {
-            tau[XX] = sigma[XX] + (sigma[XX] * H[0] + sigma[XY] * H[1]);
-            tau[YY] = sigma[YY] + (sigma[XY] * H[2] + sigma[YY] * H[3]);
-            tau[ZZ] = pressure;
-            tau[XY] =
-                sigma[XY] + half * ((sigma[XX] * H[2] + sigma[XY] * H[3]) + (sigma[XY] * H[0] + sigma[YY] * H[1]));
-        } else {
-            sigma[ZZ] = pressure + 2 * mu * eps[ZZ];
-            sigma[YZ] = 2 * mu * eps[YZ];
-            sigma[XZ] = 2 * mu * eps[XZ];
-            // rows of sigma times rows of H
-            const lanes *x = H, *y = H + 3, *z = H + 6;
-            lanes sx[3] = {sigma[XX], sigma[XY], sigma[XZ]}, sy[3] = {sigma[XY], sigma[YY], sigma[YZ]},
-                  sz[3] = {sigma[XZ], sigma[YZ], sigma[ZZ]};
-            tau[XX] = sigma[XX] + (sx[0] * x[0] + sx[1] * x[1] + sx[2] * x[2]);
-            tau[YY] = sigma[YY] + (sy[0] * y[0] + sy[1] * y[1] + sy[2] * y[2]);
-            tau[ZZ] = sigma[ZZ] + (sz[0] * z[0] + sz[1] * z[1] + sz[2] * z[2]);
-            tau[XY] = sigma[XY] + half * ((sx[0] * y[0] + sx[1] * y[1] + sx[2] * y[2]) +
-                                          (sy[0] * x[0] + sy[1] * x[1] + sy[2] * x[2]));
-            tau[YZ] = sigma[YZ] + half * ((sy[0] * z[0] + sy[1] * z[1] + sy[2] * z[2]) +
-                                          (sz[0] * y[0] + sz[1] * y[1] + sz[2] * y[2]));
-            tau[XZ] = sigma[XZ] + half * ((sx[0] * z[0] + sx[1] * z[1] + sx[2] * z[2]) +
-                                          (sz[0] * x[0] + sz[1] * x[1] + sz[2] * x[2]));
-        }
-        store_stress(dim, points, i, tau);
-        // Per reference length the speed is constant; a length now is stretched.
-        finger_strain(dim, H, B);
-        note_speed(&record, (lambda + 2 * mu) * k[ELASTIC_INVERSE_DENSITY] * stretch_squared_bound(dim, B));
+    lanes eps[6], sigma[6];
+    small_strain(dim, H, eps);
+    lanes pressure = lambda * plane_trace(dim, eps);
+    sigma[XX] = pressure + 2 * mu * eps[XX];
+    sigma[YY] = pressure + 2 * mu * eps[YY];
+    sigma[XY] = 2 * mu * eps[XY];
+    if (dim == 2) {
+        tau[XX] = sigma[XX] + (sigma[XX] * H[0] + sigma[XY] * H[1]);
+        tau[YY] = sigma[YY] + (sigma[XY] * H[2] + sigma[YY] * H[3]);
+        tau[ZZ] = pressure;
+        tau[XY] = sigma[XY] + half * ((sigma[XX] * H[2] + sigma[XY] * H[3]) + (sigma[XY] * H[0] + sigma[YY] * H[1]));
+    } else {
+        sigma[ZZ] = pressure + 2 * mu * eps[ZZ];
+        sigma[YZ] = 2 * mu * eps[YZ];
+        sigma[XZ] = 2 * mu * eps[XZ];
+        // rows of sigma times rows of H
+        const lanes *x = H, *y = H + 3, *z = H + 6;
+        lanes sx[3] = {sigma[XX], sigma[XY], sigma[XZ]}, sy[3] = {sigma[XY], sigma[YY], sigma[YZ]},
+              sz[3] = {sigma[XZ], sigma[YZ], sigma[ZZ]};
+        tau[XX] = sigma[XX] + (sx[0] * x[0] + sx[1] * x[1] + sx[2] * x[2]);
+        tau[YY] = sigma[YY] + (sy[0] * y[0] + sy[1] * y[1] + sy[2] * y[2]);
+        tau[ZZ] = sigma[ZZ] + (sz[0] * z[0] + sz[1] * z[1] + sz[2] * z[2]);
+        tau[XY] = sigma[XY] +
+                  half * ((sx[0] * y[0] + sx[1] * y[1] + sx[2] * y[2]) + (sy[0] * x[0] + sy[1] * x[1] + sy[2] * x[2]));
+        tau[YZ] = sigma[YZ] +
+                  half * ((sy[0] * z[0] + sy[1] * z[1] + sy[2] * z[2]) + (sz[0] * y[0] + sz[1] * y[1] + sz[2] * y[2]));
+        tau[XZ] = sigma[XZ] +
+                  half * ((sx[0] * z[0] + sx[1] * z[1] + sx[2] * z[2]) + (sz[0] * x[0] + sz[1] * x[1] + sz[2] * x[2]));
     }
-    return update_end(&record, points, NULL);
+    // Per reference length the speed is constant; a length now is stretched.
+    return (lambda + 2 * mu) * k[ELASTIC_INVERSE_DENSITY] * stretch_squared_bound(dim, B);
 }
 
-BRUNT_INLINE void energy_dim(int dim, const real *k, const brunt_material_points *points, brunt_point_energy *energy) {
-    lane_total stored = {0};
-    for (int32_t i = 0; i < points->count; i += BRUNT_LANES) {
-        lanes H[9], eps[6];
-        load_displacement_gradient(dim, points, i, H);
-        eps[ZZ] = lanes_set(0);
-        small_strain(dim, H, eps);
-        lanes trace = plane_trace(dim, eps);
-        lanes density = (real)0.5 * k[ELASTIC_LAMBDA] * trace * trace + k[ELASTIC_MU] * contraction(dim, eps);
-        total_add(&stored, lanes_load(points->volume + i) * density);
-    }
-    energy->internal += total_end(&stored);
+BRUNT_INLINE lanes density_of(int dim, const real *k, const lanes H[9]) {
+    lanes eps[6];
+    eps[ZZ] = lanes_set(0);
+    small_strain(dim, H, eps);
+    lanes trace = plane_trace(dim, eps);
+    return (real)0.5 * k[ELASTIC_LAMBDA] * trace * trace + k[ELASTIC_MU] * contraction(dim, eps);
 }
 
-static brunt_update_result update(const real *constants, const brunt_material_points *points) {
-    return points->dim == 2 ? update_dim(2, constants, points) : update_dim(3, constants, points);
-}
-
-static void add_energy(const real *constants, const brunt_material_points *points, brunt_point_energy *energy) {
-    if (points->dim == 2)
-        energy_dim(2, constants, points, energy);
-    else
-        energy_dim(3, constants, points, energy);
-}
+ELASTIC_FUNCTIONS(law, density_of)
 
 BRUNT_INLINE void plane_stress_response_of(const real *k, bool tension_only, const lanes strain[2],
                                            plane_stress_response *r) {
@@ -115,18 +92,7 @@ BRUNT_INLINE void plane_stress_response_of(const real *k, bool tension_only, con
     r->shear = mu + half * (biot[0] + biot[1]) / (l[0] + l[1]);
 }
 
-static brunt_update_result update_plane_stress(const real *constants, const brunt_material_points *points) {
-    return points->tension_only ? plane_stress_update(plane_stress_response_of, true, constants, points)
-                                : plane_stress_update(plane_stress_response_of, false, constants, points);
-}
-
-static void add_energy_plane_stress(const real *constants, const brunt_material_points *points,
-                                    brunt_point_energy *energy) {
-    if (points->tension_only)
-        plane_stress_energy(plane_stress_response_of, true, constants, points, energy);
-    else
-        plane_stress_energy(plane_stress_response_of, false, constants, points, energy);
-}
+PLANE_STRESS_FUNCTIONS(plane_stress_response_of)
 
 // --------------------------------------------------------------------------------- implicit steps
 
@@ -171,15 +137,8 @@ const brunt_model brunt_linear_elastic = {
     .name = "linear-elastic",
     .doc = "Hooke's law with small strain: for small rotations only",
     .small_strain = true,
-    .parameters = elastic_parameters,
-    .parameter_count = BRUNT_COUNT(elastic_parameters),
-    .prepare = elastic_prepare,
+    ELASTIC_MODEL,
     .potential = &potential,
     .flops = {51, 151, 46},
-    .update = update,
-    .energy = add_energy,
-    .wave_speed = elastic_wave_speed,
-    .update_plane_stress = update_plane_stress,
-    .energy_plane_stress = add_energy_plane_stress,
-    .wave_speed_plane_stress = plane_stress_wave_speed,
+    PLANE_STRESS_MODEL,
 };

@@ -58,12 +58,6 @@ BRUNT_INLINE lanes cold_pressure(const real *k, lanes change, lanes *valid) {
 // Pressure per energy, g.
 BRUNT_INLINE lanes thermal(const real *k, lanes change) { return k[GAMMA] / (1 + lanes_max(change, lanes_set(0))); }
 
-// Pressure at which a point tears.
-BRUNT_INLINE lanes tear_pressure(const real *k, const real *integrity, int32_t i) {
-    lanes sound = lanes_set(-k[TENSION]);
-    return integrity ? lanes_select(lanes_load(integrity + i) > 0, sound, lanes_set(0)) : sound;
-}
-
 BRUNT_INLINE brunt_update_result update_dim(int dim, bool tears, const real *k, const brunt_material_points *points) {
     update_record record = update_begin();
     const real half = (real)0.5;
@@ -78,27 +72,15 @@ BRUNT_INLINE brunt_update_result update_dim(int dim, bool tears, const real *k, 
 
         lanes e = lanes_load(points->state[INTERNAL_ENERGY] + i);
         lanes p_old = cold_pressure(k, change - dJ, &valid_before) + thermal(k, change - dJ) * e;
-        if (tears) p_old = lanes_max(p_old, tear_pressure(k, points->integrity_before, i));
+        if (tears) p_old = lanes_max(p_old, tear_pressure(k[TENSION], points->integrity_before, i));
         lanes cold = cold_pressure(k, change, &valid), g = thermal(k, change);
-        lanes heat = lanes_set(0);
-        if (points->plastic_increment) heat += lanes_load(points->plastic_increment + i);
-        if (points->viscous_pressure) heat -= lanes_load(points->viscous_pressure + i) * dJ;
-        lanes e_new = (e - half * (p_old + cold) * dJ + heat) / (1 + half * g * dJ);
+        const energy_step begin = {e, p_old, dJ, step_heat(points, i, dJ)};
+        lanes e_new = (e - half * (p_old + cold) * dJ + begin.heat) / (1 + half * g * dJ);
         lanes p = cold + g * e_new;
         lane_mask torn = {0};
-        if (tears) {
-            lanes least = tear_pressure(k, points->integrity, i);
-            torn = p < least;
-            e_new = lanes_select(torn, e - half * (p_old + least) * dJ + heat, e_new);
-            p = lanes_max(p, least);
-        }
+        if (tears) torn = tear_at(&begin, tear_pressure(k[TENSION], points->integrity, i), &e_new, &p);
         note_first(&record.model, ~(valid > 0), i);
-
-        lanes_store(points->state[INTERNAL_ENERGY] + i, e_new);
-        real *work = points->state[COMPRESSION_WORK] + i;
-        lanes_store(work, lanes_load(work) - half * (p_old + p) * dJ);
-        lanes Jp = J * p;
-        for (int c = 0; c < 3; c++) lanes_store(points->stress[c] + i, lanes_load(points->stress[c] + i) - Jp);
+        store_energy_step(points, i, e_new, -half * (p_old + p) * dJ, J * p);
 
         // c^2 = J^2 / rho0 (dp/deta at constant e + g p); in expansion c0^2 + J (gamma0 p + g e) / rho0.
         lanes eta = -change, inverse = 1 / valid, r = 1 - half * k[GAMMA] * eta;
@@ -121,10 +103,7 @@ static brunt_update_result update(const real *constants, const brunt_material_po
 
 static void add_energy(const real *constants, const brunt_material_points *points, brunt_point_energy *energy) {
     (void)constants;
-    lane_total stored = {0};
-    for (int32_t i = 0; i < points->count; i += BRUNT_LANES)
-        total_add(&stored, lanes_load(points->volume + i) * lanes_load(points->state[COMPRESSION_WORK] + i));
-    energy->internal += total_end(&stored);
+    energy->internal += state_total(points, COMPRESSION_WORK);
 }
 
 static real wave_speed(const real *constants) {
@@ -135,11 +114,9 @@ static real wave_speed(const real *constants) {
 const brunt_model brunt_mie_gruneisen = {
     .name = "mie-gruneisen",
     .doc = "Mie-Gruneisen equation of state about a linear shock Hugoniot",
-    .eos = true,
+    ENERGY_EOS,
     .parameters = parameters,
     .parameter_count = BRUNT_COUNT(parameters),
-    .state = energy_state,
-    .state_count = BRUNT_COUNT(energy_state),
     .prepare = prepare,
     .flops = {89, 137},
     .update = update,

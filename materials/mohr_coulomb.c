@@ -256,9 +256,7 @@ BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_
     return update_end(&record, points, NULL);
 }
 
-static brunt_update_result update(const real *constants, const brunt_material_points *points) {
-    return points->dim == 2 ? update_dim(2, constants, points) : update_dim(3, constants, points);
-}
+MATERIAL_UPDATE
 
 BRUNT_INLINE void energy_dim(int dim, const real *k, const brunt_material_points *points, brunt_point_energy *energy) {
     lane_total stored = {0}, plastic = {0};
@@ -275,12 +273,7 @@ BRUNT_INLINE void energy_dim(int dim, const real *k, const brunt_material_points
     energy->plastic += total_end(&plastic);
 }
 
-static void add_energy(const real *constants, const brunt_material_points *points, brunt_point_energy *energy) {
-    if (points->dim == 2)
-        energy_dim(2, constants, points, energy);
-    else
-        energy_dim(3, constants, points, energy);
-}
+MATERIAL_ENERGY
 
 static real wave_speed(const real *constants) { return brittle_wave_speed(constants, constants[BULK]); }
 

@@ -6,58 +6,32 @@
 #include "materials/plane_stress.h"
 #include "materials/trial.h"
 
-BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_material_points *points) {
-    update_record record = update_begin();
+BRUNT_INLINE lanes law(int dim, const real *k, const lanes H[9], lanes change, const lanes B[6], lanes tau[6]) {
+    (void)H;
     const real lambda = k[ELASTIC_LAMBDA], mu = k[ELASTIC_MU];
-    for (int32_t i = 0; i < points->count; i += BRUNT_LANES) {
-        lanes H[9], B[6], tau[6];
-        load_displacement_gradient(dim, points, i, H);
-        lanes change = volume_change(dim, H);
-        note_deformation(&record, 1 + change, i);
-        finger_strain(dim, H, B);
-        lanes log_J = lanes_log1p(change), pressure = lambda * log_J;
-        tau[XX] = mu * B[XX] + pressure;
-        tau[YY] = mu * B[YY] + pressure;
-        tau[ZZ] = dim == 3 ? mu * B[ZZ] + pressure : pressure;
-        tau[XY] = mu * B[XY];
-        if (dim == 3) {
-            tau[YZ] = mu * B[YZ];
-            tau[XZ] = mu * B[XZ];
-        }
-        store_stress(dim, points, i, tau);
-        // Along n: rho0 c^2 = lambda (1 - ln J) + mu (1 + b_nn) for the longitudinal wave, mu b_nn for the transverse
-        // one.
-        lanes stretch = stretch_squared_bound(dim, B);
-        lanes modulus = lanes_max(lambda - pressure + mu, lanes_set(0)) + mu * stretch;
-        note_speed(&record, k[ELASTIC_INVERSE_DENSITY] * modulus);
+    lanes log_J = lanes_log1p(change), pressure = lambda * log_J;
+    tau[XX] = mu * B[XX] + pressure;
+    tau[YY] = mu * B[YY] + pressure;
+    tau[ZZ] = dim == 3 ? mu * B[ZZ] + pressure : pressure;
+    tau[XY] = mu * B[XY];
+    if (dim == 3) {
+        tau[YZ] = mu * B[YZ];
+        tau[XZ] = mu * B[XZ];
     }
-    return update_end(&record, points, NULL);
+    // Along n: rho0 c^2 = lambda (1 - ln J) + mu (1 + b_nn) for the longitudinal wave, mu b_nn for the transverse one.
+    lanes stretch = stretch_squared_bound(dim, B);
+    lanes modulus = lanes_max(lambda - pressure + mu, lanes_set(0)) + mu * stretch;
+    return k[ELASTIC_INVERSE_DENSITY] * modulus;
 }
 
-BRUNT_INLINE void energy_dim(int dim, const real *k, const brunt_material_points *points, brunt_point_energy *energy) {
-    lane_total stored = {0};
-    for (int32_t i = 0; i < points->count; i += BRUNT_LANES) {
-        lanes H[9], B[6];
-        load_displacement_gradient(dim, points, i, H);
-        finger_strain(dim, H, B);
-        lanes log_J = lanes_log1p(volume_change(dim, H));
-        lanes density =
-            k[ELASTIC_MU] * ((real)0.5 * plane_trace(dim, B) - log_J) + (real)0.5 * k[ELASTIC_LAMBDA] * log_J * log_J;
-        total_add(&stored, lanes_load(points->volume + i) * density);
-    }
-    energy->internal += total_end(&stored);
+BRUNT_INLINE lanes density_of(int dim, const real *k, const lanes H[9]) {
+    lanes B[6];
+    finger_strain(dim, H, B);
+    lanes log_J = lanes_log1p(volume_change(dim, H));
+    return k[ELASTIC_MU] * ((real)0.5 * plane_trace(dim, B) - log_J) + (real)0.5 * k[ELASTIC_LAMBDA] * log_J * log_J;
 }
 
-static brunt_update_result update(const real *constants, const brunt_material_points *points) {
-    return points->dim == 2 ? update_dim(2, constants, points) : update_dim(3, constants, points);
-}
-
-static void add_energy(const real *constants, const brunt_material_points *points, brunt_point_energy *energy) {
-    if (points->dim == 2)
-        energy_dim(2, constants, points, energy);
-    else
-        energy_dim(3, constants, points, energy);
-}
+ELASTIC_FUNCTIONS(law, density_of)
 
 // The s for which mu (e^(2s) - 1) + lambda (m s + c) = 0, in the lanes of `wanted`; also growth = e^(2s) - 1. With m =
 // 1 and c = ln(l1 l2) s is ln l3 of plane stress, with m = 2 and c = ln l1 it is ln l2 = ln l3 of uniaxial tension.
@@ -148,18 +122,7 @@ BRUNT_INLINE void plane_stress_response_of(const real *k, bool tension_only, con
     r->energy = mu * shape + half * lambda * log_J * log_J;
 }
 
-static brunt_update_result update_plane_stress(const real *constants, const brunt_material_points *points) {
-    return points->tension_only ? plane_stress_update(plane_stress_response_of, true, constants, points)
-                                : plane_stress_update(plane_stress_response_of, false, constants, points);
-}
-
-static void add_energy_plane_stress(const real *constants, const brunt_material_points *points,
-                                    brunt_point_energy *energy) {
-    if (points->tension_only)
-        plane_stress_energy(plane_stress_response_of, true, constants, points, energy);
-    else
-        plane_stress_energy(plane_stress_response_of, false, constants, points, energy);
-}
+PLANE_STRESS_FUNCTIONS(plane_stress_response_of)
 
 // --------------------------------------------------------------------------------- implicit steps
 
@@ -202,15 +165,8 @@ static const brunt_model_potential potential = {.respond = respond, .respond_mem
 const brunt_model brunt_neo_hookean = {
     .name = "neo-hookean",
     .doc = "compressible neo-Hookean solid with ln J volumetric term (Bonet and Wood): large elastic strains",
-    .parameters = elastic_parameters,
-    .parameter_count = BRUNT_COUNT(elastic_parameters),
-    .prepare = elastic_prepare,
+    ELASTIC_MODEL,
     .potential = &potential,
     .flops = {78, 136, 169},
-    .update = update,
-    .energy = add_energy,
-    .wave_speed = elastic_wave_speed,
-    .update_plane_stress = update_plane_stress,
-    .energy_plane_stress = add_energy_plane_stress,
-    .wave_speed_plane_stress = plane_stress_wave_speed,
+    PLANE_STRESS_MODEL,
 };

@@ -141,15 +141,7 @@ static brunt_update_result update_inviscid(const real *constants, const brunt_ma
 
 static void add_energy(const real *constants, const brunt_material_points *points, brunt_point_energy *energy) {
     (void)constants;
-    lane_total dissipated = {0};
-    for (int32_t i = 0; i < points->count; i += BRUNT_LANES)
-        total_add(&dissipated, lanes_load(points->volume + i) * lanes_load(points->state[VISCOUS_WORK] + i));
-    energy->viscosity += total_end(&dissipated);
-}
-
-static real wave_speed(const real *constants) {
-    (void)constants;
-    return 0;
+    energy->viscosity += state_total(points, VISCOUS_WORK);
 }
 
 // --------------------------------------------------------------------------------- implicit steps
@@ -246,7 +238,7 @@ static const brunt_model_potential inviscid_potentials = {.respond = respond_inv
     .name = "newtonian",                                                                                               \
     .doc = "fluid of constant viscosity, which bears no other shear stress; an equation of state gives its pressure",  \
     .fluid = true, .needs_eos = true, .accepts_eos = true, .parameters = parameters,                                   \
-    .parameter_count = BRUNT_COUNT(parameters), .prepare = prepare, .wave_speed = wave_speed
+    .parameter_count = BRUNT_COUNT(parameters), .prepare = prepare, .wave_speed = no_wave_speed
 
 static const brunt_model inviscid = {NEWTONIAN, .flops = {8, 30}, .update = update_inviscid,
                                      .potential = &inviscid_potentials};

@@ -171,7 +171,22 @@ BRUNT_INLINE void plane_stress_respond(plane_stress_law *law, bool tension_only,
     }
 }
 
-// A model's function from its law.
+// A model's functions from its law, and its table from them.
+#define PLANE_STRESS_FUNCTIONS(law)                                                                                    \
+    static brunt_update_result update_plane_stress(const real *constants, const brunt_material_points *points) {       \
+        return points->tension_only ? plane_stress_update(law, true, constants, points)                                \
+                                    : plane_stress_update(law, false, constants, points);                              \
+    }                                                                                                                  \
+    static void add_energy_plane_stress(const real *constants, const brunt_material_points *points,                    \
+                                        brunt_point_energy *energy) {                                                  \
+        if (points->tension_only)                                                                                      \
+            plane_stress_energy(law, true, constants, points, energy);                                                 \
+        else                                                                                                           \
+            plane_stress_energy(law, false, constants, points, energy);                                                \
+    }
+#define PLANE_STRESS_MODEL                                                                                             \
+    .update_plane_stress = update_plane_stress, .energy_plane_stress = add_energy_plane_stress,                        \
+    .wave_speed_plane_stress = plane_stress_wave_speed
 #define PLANE_STRESS_RESPOND(law)                                                                                      \
     static void respond_membrane(const real *constants, bool tension_only, const brunt_trial_points *trial) {          \
         if (tension_only)                                                                                              \

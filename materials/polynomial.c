@@ -82,12 +82,6 @@ BRUNT_INLINE line pressure_line(const real *k, lanes mu) {
     };
 }
 
-// Pressure at which a point tears.
-BRUNT_INLINE lanes tear_pressure(const real *k, const real *integrity, int32_t i) {
-    lanes sound = lanes_set(-k[TENSION]);
-    return integrity ? lanes_select(lanes_load(integrity + i) > 0, sound, lanes_set(0)) : sound;
-}
-
 BRUNT_INLINE brunt_update_result update_dim(int dim, bool tears, const real *k, const brunt_material_points *points) {
     update_record record = update_begin();
     const real half = (real)0.5;
@@ -101,28 +95,17 @@ BRUNT_INLINE brunt_update_result update_dim(int dim, bool tears, const real *k, 
         note_deformation(&record, lanes_select(1 + step > 0, J, lanes_set(0)), i);
 
         line old = pressure_line(k, -before / (1 + before)), now = pressure_line(k, mu);
-        lanes e = lanes_load(points->state[INTERNAL_ENERGY] + i), p_old = old.a + old.b * e, heat = lanes_set(0);
-        if (tears) p_old = lanes_max(p_old, tear_pressure(k, points->integrity_before, i));
-        if (points->plastic_increment) heat += lanes_load(points->plastic_increment + i);
-        if (points->viscous_pressure) heat -= lanes_load(points->viscous_pressure + i) * dJ;
+        lanes e = lanes_load(points->state[INTERNAL_ENERGY] + i), p_old = old.a + old.b * e;
+        if (tears) p_old = lanes_max(p_old, tear_pressure(k[TENSION], points->integrity_before, i));
+        const energy_step begin = {e, p_old, dJ, step_heat(points, i, dJ)};
         lanes follows = 1 + half * now.b * dJ;
-        lanes e_new = (e - half * (p_old + now.a) * dJ + heat) / follows, p = now.a + now.b * e_new;
+        lanes e_new = (e - half * (p_old + now.a) * dJ + begin.heat) / follows, p = now.a + now.b * e_new;
         lane_mask torn = {0};
-        if (tears) {
-            lanes least = tear_pressure(k, points->integrity, i);
-            torn = p < least;
-            e_new = lanes_select(torn, e - half * (p_old + least) * dJ + heat, e_new);
-            p = lanes_max(p, least);
-        }
+        if (tears) torn = tear_at(&begin, tear_pressure(k[TENSION], points->integrity, i), &e_new, &p);
         lane_mask good = follows > 0;
         if (k[INITIAL_ENERGY] > 0) good &= e_new > 0;
         note_first(&record.model, ~good, i);
-
-        lanes_store(points->state[INTERNAL_ENERGY] + i, e_new);
-        real *work = points->state[COMPRESSION_WORK] + i;
-        lanes_store(work, lanes_load(work) - half * (p_old + p) * dJ);
-        lanes Jp = J * p;
-        for (int c = 0; c < 3; c++) lanes_store(points->stress[c] + i, lanes_load(points->stress[c] + i) - Jp);
+        store_energy_step(points, i, e_new, -half * (p_old + p) * dJ, J * p);
 
         lanes speed2 = (now.a_slope + now.b_slope * e_new + now.b * p * J * J) / k[DENSITY];
         // What is torn closes again at the speed of the reference volume.
@@ -137,15 +120,6 @@ static brunt_update_result update(const real *constants, const brunt_material_po
     if (constants[TENSION] < (real)INFINITY || points->integrity)
         return points->dim == 2 ? update_dim(2, true, constants, points) : update_dim(3, true, constants, points);
     return points->dim == 2 ? update_dim(2, false, constants, points) : update_dim(3, false, constants, points);
-}
-
-// That of the start counts: a gas begins with some, a solid has 0.
-static void add_energy(const real *constants, const brunt_material_points *points, brunt_point_energy *energy) {
-    lane_total stored = {0};
-    for (int32_t i = 0; i < points->count; i += BRUNT_LANES)
-        total_add(&stored, lanes_load(points->volume + i) *
-                               (constants[INITIAL_ENERGY] + lanes_load(points->state[COMPRESSION_WORK] + i)));
-    energy->internal += total_end(&stored);
 }
 
 static real wave_speed(const real *k) {
@@ -221,16 +195,14 @@ const brunt_model brunt_polynomial = {
     .name = "polynomial",
     .doc =
         "equation of state, polynomial in mu = rho/rho0 - 1 and linear in the energy (LS-DYNA *EOS_LINEAR_POLYNOMIAL)",
-    .eos = true,
+    ENERGY_EOS,
     .parameters = parameters,
     .parameter_count = BRUNT_COUNT(parameters),
-    .state = energy_state,
-    .state_count = BRUNT_COUNT(energy_state),
     .prepare = prepare,
     .potential = &potential,
     .differences = true,
     .flops = {91, 139},
     .update = update,
-    .energy = add_energy,
+    .energy = add_internal_energy,
     .wave_speed = wave_speed,
 };

@@ -30,50 +30,27 @@ BRUNT_INLINE lanes stress_of(int dim, const real *k, const lanes B[6], lanes tau
     return pressure;
 }
 
-BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_material_points *points) {
-    update_record record = update_begin();
+BRUNT_INLINE lanes law(int dim, const real *k, const lanes H[9], lanes change, const lanes B[6], lanes tau[6]) {
+    (void)H, (void)change;
     const real lambda = k[ELASTIC_LAMBDA], mu = k[ELASTIC_MU];
-    for (int32_t i = 0; i < points->count; i += BRUNT_LANES) {
-        lanes H[9], B[6], tau[6];
-        load_displacement_gradient(dim, points, i, H);
-        note_deformation(&record, 1 + volume_change(dim, H), i);
-        finger_strain(dim, H, B);
-        lanes pressure = stress_of(dim, k, B, tau);
-        store_stress(dim, points, i, tau);
-        // rho0 c^2 = (lambda + 2 mu) b_nn^2 + tau_nn along n; tension is kept, compression (which slows the wave) is
-        // not.
-        lanes stretch = stretch_squared_bound(dim, B), zero = lanes_set(0);
-        lanes tension = lanes_max(pressure, zero) * stretch + mu * stretch * lanes_max(stretch - 1, zero);
-        note_speed(&record, k[ELASTIC_INVERSE_DENSITY] * ((lambda + 2 * mu) * stretch * stretch + tension));
-    }
-    return update_end(&record, points, NULL);
+    lanes pressure = stress_of(dim, k, B, tau);
+    // rho0 c^2 = (lambda + 2 mu) b_nn^2 + tau_nn along n; tension is kept, compression (which slows the wave) is not.
+    lanes stretch = stretch_squared_bound(dim, B), zero = lanes_set(0);
+    lanes tension = lanes_max(pressure, zero) * stretch + mu * stretch * lanes_max(stretch - 1, zero);
+    return k[ELASTIC_INVERSE_DENSITY] * ((lambda + 2 * mu) * stretch * stretch + tension);
 }
 
-BRUNT_INLINE void energy_dim(int dim, const real *k, const brunt_material_points *points, brunt_point_energy *energy) {
-    lane_total stored = {0};
-    for (int32_t i = 0; i < points->count; i += BRUNT_LANES) {
-        lanes H[9], B[6];
-        load_displacement_gradient(dim, points, i, H);
-        B[ZZ] = lanes_set(0);
-        finger_strain(dim, H, B);
-        lanes trace = (real)0.5 * plane_trace(dim, B);
-        lanes density = (real)0.5 * k[ELASTIC_LAMBDA] * trace * trace;
-        density += (real)0.25 * k[ELASTIC_MU] * contraction(dim, B);
-        total_add(&stored, lanes_load(points->volume + i) * density);
-    }
-    energy->internal += total_end(&stored);
+BRUNT_INLINE lanes density_of(int dim, const real *k, const lanes H[9]) {
+    lanes B[6];
+    B[ZZ] = lanes_set(0);
+    finger_strain(dim, H, B);
+    lanes trace = (real)0.5 * plane_trace(dim, B);
+    lanes density = (real)0.5 * k[ELASTIC_LAMBDA] * trace * trace;
+    density += (real)0.25 * k[ELASTIC_MU] * contraction(dim, B);
+    return density;
 }
 
-static brunt_update_result update(const real *constants, const brunt_material_points *points) {
-    return points->dim == 2 ? update_dim(2, constants, points) : update_dim(3, constants, points);
-}
-
-static void add_energy(const real *constants, const brunt_material_points *points, brunt_point_energy *energy) {
-    if (points->dim == 2)
-        energy_dim(2, constants, points, energy);
-    else
-        energy_dim(3, constants, points, energy);
-}
+ELASTIC_FUNCTIONS(law, density_of)
 
 BRUNT_INLINE void plane_stress_response_of(const real *k, bool tension_only, const lanes e[2],
                                            plane_stress_response *r) {
@@ -92,18 +69,7 @@ BRUNT_INLINE void plane_stress_response_of(const real *k, bool tension_only, con
     r->shear = half * ((S[0] + S[1]) + mu * (square[0] + square[1]));
 }
 
-static brunt_update_result update_plane_stress(const real *constants, const brunt_material_points *points) {
-    return points->tension_only ? plane_stress_update(plane_stress_response_of, true, constants, points)
-                                : plane_stress_update(plane_stress_response_of, false, constants, points);
-}
-
-static void add_energy_plane_stress(const real *constants, const brunt_material_points *points,
-                                    brunt_point_energy *energy) {
-    if (points->tension_only)
-        plane_stress_energy(plane_stress_response_of, true, constants, points, energy);
-    else
-        plane_stress_energy(plane_stress_response_of, false, constants, points, energy);
-}
+PLANE_STRESS_FUNCTIONS(plane_stress_response_of)
 
 // --------------------------------------------------------------------------------- implicit steps
 
@@ -152,15 +118,8 @@ static const brunt_model_potential potential = {.respond = respond, .respond_mem
 const brunt_model brunt_st_venant_kirchhoff = {
     .name = "st-venant-kirchhoff",
     .doc = "Hooke's law for Green's strain: large rotations, moderate strains",
-    .parameters = elastic_parameters,
-    .parameter_count = BRUNT_COUNT(elastic_parameters),
-    .prepare = elastic_prepare,
+    ELASTIC_MODEL,
     .potential = &potential,
     .flops = {54, 136, 59},
-    .update = update,
-    .energy = add_energy,
-    .wave_speed = elastic_wave_speed,
-    .update_plane_stress = update_plane_stress,
-    .energy_plane_stress = add_energy_plane_stress,
-    .wave_speed_plane_stress = plane_stress_wave_speed,
+    PLANE_STRESS_MODEL,
 };

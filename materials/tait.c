@@ -50,9 +50,7 @@ BRUNT_INLINE brunt_update_result update_dim(int dim, const real *k, const brunt_
     return update_end(&record, points, NULL);
 }
 
-static brunt_update_result update(const real *constants, const brunt_material_points *points) {
-    return points->dim == 2 ? update_dim(2, constants, points) : update_dim(3, constants, points);
-}
+MATERIAL_UPDATE
 
 // U(J) of log J.
 BRUNT_INLINE lanes stored_density(const real *k, lanes log_J) {
@@ -75,12 +73,7 @@ BRUNT_INLINE void energy_dim(int dim, const real *k, const brunt_material_points
     energy->internal += total_end(&stored);
 }
 
-static void add_energy(const real *constants, const brunt_material_points *points, brunt_point_energy *energy) {
-    if (points->dim == 2)
-        energy_dim(2, constants, points, energy);
-    else
-        energy_dim(3, constants, points, energy);
-}
+MATERIAL_ENERGY
 
 static real wave_speed(const real *constants) { return constants[SOUND_SPEED]; }
 

@@ -155,6 +155,35 @@ BRUNT_INLINE void total_add(lane_total *total, lanes a) {
     if (++total->count == 16) total_end(total);
 }
 
+// A component of the state, in J/m^3 of reference volume, over all points [J].
+static inline double state_total(const brunt_material_points *points, int component) {
+    lane_total total = {0};
+    for (int32_t i = 0; i < points->count; i += BRUNT_LANES)
+        total_add(&total, lanes_load(points->volume + i) * lanes_load(points->state[component] + i));
+    return total_end(&total);
+}
+
+// --------------------------------------------------------------------------------- by dimension
+
+// A model's functions from its update_dim and energy_dim, which take the dimension as a literal.
+#define MATERIAL_UPDATE                                                                                                \
+    static brunt_update_result update(const real *constants, const brunt_material_points *points) {                    \
+        return points->dim == 2 ? update_dim(2, constants, points) : update_dim(3, constants, points);                 \
+    }
+#define MATERIAL_ENERGY                                                                                                \
+    static void add_energy(const real *constants, const brunt_material_points *points, brunt_point_energy *energy) {   \
+        if (points->dim == 2)                                                                                          \
+            energy_dim(2, constants, points, energy);                                                                  \
+        else                                                                                                           \
+            energy_dim(3, constants, points, energy);                                                                  \
+    }
+
+// Wave speed of what bears no elastic stress.
+static inline real no_wave_speed(const real *constants) {
+    (void)constants;
+    return 0;
+}
+
 // --------------------------------------------------------------------------------- elastic constants
 
 static inline double shear_modulus(double E, double nu) { return E / (2 * (1 + nu)); }
