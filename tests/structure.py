@@ -33,7 +33,7 @@ LIMITS = {
     "functions with over 7 parameters": 0, "lines of the largest file": 600, "files over 600 lines": 0,
     "tables that nothing counts": 0, "pointers to void pointers": 0, "lines that return -1": 0,
     "words not of plain English": 0,
-    "lines repeated in blocks of six": 260, "terms not found": 0,
+    "lines repeated in blocks of six": 0, "terms not found": 0,
 }
 TERMS = {  # of the field: what a file or folder is looked for by
     "hourglass control": "hourglass", "return mapping": "return_mapping|j2|von_mises", "friction cone": "coulomb",

@@ -57,6 +57,16 @@ BRUNT_INLINE lanes joint_eigenvalue(lanes a, lanes b, real overlap) {
     return (real)0.5 * ((a + b) + lanes_sqrt((a - b) * (a - b) + 4 * overlap * a * b));
 }
 
+// Bound of omega^2 such that 2 / omega is stable, from that of the strain and the rate C of the hourglass dampers,
+// which act by rates of the step before: dt^2 omega^2 + 2 dt c' <= 4 of a mode by itself; of both together, with the
+// eigenvalue of the sum bounded by the greater plus s times the lesser.
+BRUNT_INLINE lanes damped_frequency(lanes strain, lanes C, real overlap) {
+    const real s = (real)sqrt((double)overlap);
+    lanes first = s * C + lanes_sqrt(s * s * C * C + 4 * strain), second = C + lanes_sqrt(C * C + 4 * s * strain);
+    lanes twice = (real)0.5 * lanes_max(first, second);
+    return twice * twice;
+}
+
 // A block's pass through its elements. The local copy holds X Y Z 0 ux uy uz 0 of each node, u = x - X.
 typedef struct fem_pass {
     const real *copy, *velocity; // of the block's nodes; velocity (4 reals each): viscous hourglass control only

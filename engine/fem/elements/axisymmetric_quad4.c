@@ -65,6 +65,6 @@ const brunt_element brunt_axisymmetric_quad4 = {
     .hourglass = hourglass_mode,
     .volume = quad4_area,
     .shares = shares,
-    .gradient = mean_gradient,
+    .gradient = axisymmetric_quad4_mean_gradient,
     .forces = axisymmetric_quad4_forces,
 };

@@ -36,6 +36,6 @@ const brunt_element brunt_axisymmetric_tri3 = {
     .flops = {.whole = {309, 309}},
     .volume = tri3_area,
     .shares = shares,
-    .gradient = mean_gradient,
+    .gradient = axisymmetric_tri3_mean_gradient,
     .forces = axisymmetric_tri3_forces,
 };

@@ -42,6 +42,6 @@ const brunt_element brunt_membrane_quad4 = {
     .hourglass_modes = BRUNT_COUNT(hourglass_mode),
     .hourglass = hourglass_mode,
     .volume = area,
-    .gradient = mean_gradient,
+    .gradient = membrane_quad4_mean_gradient,
     .forces = membrane_quad4_forces,
 };

@@ -27,6 +27,6 @@ const brunt_element brunt_membrane_tri3 = {
     .block = 512,
     .flops = {.whole = {338, 338}},
     .volume = area,
-    .gradient = mean_gradient,
+    .gradient = membrane_tri3_mean_gradient,
     .forces = membrane_tri3_forces,
 };
