@@ -1,6 +1,6 @@
-// Which solver is the quicker one, by estimates of both for one iteration of Newton's method: an analysis, a factor and
-// a solution; or an incomplete factor and conjugate gradients to 1e-3. Fitted to bench/micro/solvers.c on one core of
-// an EPYC of the second generation, within a factor of two.
+// Which solver is the quicker one, by estimates of both for one iteration of Newton's method: an analysis where the
+// pattern is new, a factor and a solution; or an incomplete factor and conjugate gradients to 1e-3. The numbers are
+// those that bench/studies/implicit_table.py fits to its rows, of one core of an EPYC: most within a factor of two.
 #include <math.h>
 #include <stdio.h>
 
@@ -10,27 +10,40 @@
 // Steps so long that inertia, which alone holds what is free, is nothing beside what deforms, (c dt / cells across)^2:
 // conjugate gradients end before they have seen such motions, and Newton's method makes up for it.
 #define SOFT 100.0
-#define TINY 3e-4 // [s] that nobody notices: waves cross the whole body, and a factor has its motions exactly
+#define TINY 1e-4 // [s] that nobody notices: waves cross the whole body, and a factor has its motions exactly
 
 // Blocks a node of grids of quadratic splines, over those of linear elements.
 static bool of_splines(const brunt_linear_size *s) { return s->blocks > (s->dim == 2 ? 14 : 50); }
 
-// [s] METIS and MUMPS' analysis, what goes with its entries, and the flops of the fronts by nested dissection.
+// [s] What goes with nodes and entries, and the flops of the fronts by nested dissection (George 1973, SIAM J. Numer.
+// Anal. 10).
 static double direct_seconds(const brunt_linear_size *s) {
     const double n = (double)s->nodes, b = s->blocks,
-                 flops = s->dim == 2 ? 1.55e8 * pow(n / 1e4, 1.52) * pow(b / 7, 1.85)
-                                     : 2.85e9 * pow(n / 4096, 2.2) * pow(b / 13.5, 1.1);
-    return n * (2.3e-6 + 6e-7 * b) + flops / 3.5e10;
+                 fronts = s->dim == 2 ? 4.4e-3 * pow(n / 1e4, 1.5) * pow(b / 7, 1.85)
+                                      : 4.7e-2 * pow(n / 4096, 2) * pow(b / 13.5, 1.1);
+    return n * (1.9e-6 + 4.5e-8 * b) + fronts;
 }
 
-// Cells that a wave can cross before it has met every wall.
-static double cells_across(const brunt_linear_size *s) { return 3 * pow((double)s->nodes, 1. / s->dim); }
+static double nodes_across(const brunt_linear_size *s) { return pow((double)s->nodes, 1. / s->dim); }
 
-// [s] Iterations grow with the cells that a wave crosses in a step, up to those that the body has.
+// Cells that a wave can cross before it has met every wall.
+static double cells_across(const brunt_linear_size *s) { return 3 * nodes_across(s); }
+
+// Of conjugate gradients: as many as the root of the condition, 1 + (c dt / h)^2 times a number, until the whole body
+// moves as one.
+static double iterations(const brunt_linear_size *s) {
+    static const struct {
+        double of_waves, of_nodes;
+    } laws[2][2] = {{{1.9, 1.9}, {2.0, 2.9}}, {{0.82, 0.75}, {0.91, 1.5}}};
+    const bool splines = of_splines(s), space = s->dim == 3;
+    const double by_waves = laws[splines][space].of_waves * s->courant,
+                 by_nodes = laws[splines][space].of_nodes * nodes_across(s);
+    return 1 + 1 / hypot(1 / by_waves, 1 / by_nodes);
+}
+
 static double pcg_seconds(const brunt_linear_size *s) {
-    const double n = (double)s->nodes, b = s->blocks, cells = fmin(s->courant, cells_across(s)),
-                 iterations = 2 + (of_splines(s) ? 1.25 : 2.6) * pow(fmax(cells, 1), 0.75);
-    return n * (6e-10 * b * b + 1.3e-9 * b * s->dim * s->dim * iterations);
+    const double n = (double)s->nodes, b = s->blocks;
+    return n * (1.1e-8 * b + 3.1e-10 * b * b + (2.1e-8 + 3.6e-10 * b * s->dim * s->dim) * iterations(s));
 }
 
 brunt_linear_choice brunt_linear_choose(const brunt_linear_size *s) {

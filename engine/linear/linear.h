@@ -98,7 +98,7 @@ typedef struct brunt_linear_choice {
     const brunt_linear_ops *solver;
     brunt_preconditioner preconditioner;
     double direct_seconds,
-        pcg_seconds; // [s] estimated of one iteration with either, on one thread of a machine of 2019
+        pcg_seconds; // [s] estimated of one iteration with either, on one thread (choose.c)
     char why[200];   // for `brunt check`
 } brunt_linear_choice;
 
