@@ -146,7 +146,7 @@ def uncounted(path):
     for table in re.finditer(r"^(?:(?:static |extern )?const |[ \t]*static const )[^;{}()]*?[ *](\w+)\[([^\]\n]*)\][^;{}()]*? = \{(.*?)\};", text, re.M | re.S):
         name, extent, rows = table.groups()
         tail = name[name.rfind("_"):]  # macros paste names together
-        counted = rf"(?:COUNT\w*\(|sizeof[ (]|_assert\([^;]*\b|NUMBERED_ROW\([^;]*\b)(?:{name}\b|\w+##{tail}\b)"
+        counted = rf"(?:COUNT\w*\(|sizeof[ (]|_assert\([^;]*\b|LISTED_ROW\([^;]*\b)(?:{name}\b|\w+##{tail}\b)"
         if not extent.isdigit() and not rows.rstrip().endswith("NULL") and not re.search(counted, users):
             yield f"{path}: {name}"
 

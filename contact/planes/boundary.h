@@ -14,14 +14,14 @@ typedef struct brunt_particle_dofs brunt_particle_dofs; // search/particle_dof.h
 struct brunt_boundary {
     char name[BRUNT_NAME_LENGTH];
     const brunt_boundary_kind *kind;
-    brunt_plane_def plane;                 // of a plane; normal of unit length
-    brunt_region_def where;                // of a region; shares the world's definition
-    const brunt_group_def *group;          // of a group, NULL for the others
-    double number[BRUNT_BOUNDARY_NUMBERS]; // of a kind that numbers describe
-    int body;                              // the one it acts on, -1: all, or that of its group
-    int mirror;                            // index of the mirror plane it has become, -1
-    brunt_impulse_account action;          // since the start
-    brunt_impulse_account last;            // of the last step
+    brunt_plane_def plane;        // of a plane; normal of unit length
+    brunt_region_def where;       // of a region; shares the world's definition
+    const brunt_group_def *group; // of a group, NULL for the others
+    brunt_boundary_def given;     // of a kind that lists its keys; shares the world's definition
+    int body;                     // the one it acts on, -1: all, or that of its group
+    int mirror;                   // index of the mirror plane it has become, -1
+    brunt_impulse_account action; // since the start
+    brunt_impulse_account last;   // of the last step
 };
 
 // What makes boundaries of a definition.
@@ -32,22 +32,31 @@ typedef struct brunt_boundary_making {
     bool has_particles;
 } brunt_boundary_making;
 
-// A number of such a kind, or a vector of three, from place `at` of its numbers on; and its key in scenes.
-typedef struct brunt_boundary_number {
-    int at;
-    bool vector;
+typedef enum brunt_boundary_value {
+    BRUNT_VALUE_NUMBER,
+    BRUNT_VALUE_VECTOR, // three numbers
+    BRUNT_VALUE_WORD,   // one of `words`
+    BRUNT_VALUE_SHAPE,  // one of a kind at most, and so of tables
+    BRUNT_VALUE_TABLE
+} brunt_boundary_value;
+
+// A key of such a kind: a value, in scenes below the key of the kind.
+typedef struct brunt_boundary_key {
+    brunt_boundary_value is;
+    int at;                   // of a number, vector or word: its place among the numbers of the definition
     int dimension;            // 2 or 3: it is there in that one only; 0: in both
-    brunt_parameter in_scene; // a vector has no range
-} brunt_boundary_number;
+    brunt_parameter in_scene; // numbers alone have a range; a word's default is a place in `words`
+    const char *words;        // "a|b|c"
+} brunt_boundary_key;
 
 // A kind of boundary, a row of boundary/kinds.h. Its functions are in the file of the kind; NULL: nothing of that is
 // its.
 struct brunt_boundary_kind {
     const char *word; // "plane"
     bool is_plane;    // brunt_boundary.plane says where it is
-    const char *doc;  // of a kind that numbers describe: what it does, and the numbers; else NULL and none
-    const brunt_boundary_number *numbers;
-    int number_count;
+    const char *doc;  // of a kind that lists its keys: what it does, and they; else NULL and none
+    const brunt_boundary_key *keys;
+    int key_count;
     // Of a definition: how many, the entries, the names of an entry and of the one body it acts on (NULL: that of its
     // nodes); frees all.
     int32_t (*count)(const brunt_boundary_kind *kind, const brunt_world_def *def);

@@ -5,14 +5,17 @@
 
 #define DECLARE(NAME, kind, type, word, what) extern const brunt_boundary_kind brunt_kind_##kind;
 BRUNT_BOUNDARY_KINDS(DECLARE)
-// Those that numbers describe, with their own file and nothing else.
-#define NUMBERED(X) X(rotor)
-#define DECLARE_NUMBERED(kind) extern const brunt_boundary_kind brunt_kind_##kind;
-NUMBERED(DECLARE_NUMBERED)
+// Those that list their keys, with their own file and nothing else.
+// clang-format off
+#define LISTED(X) \
+    X(rotor)
+// clang-format on
+#define DECLARE_LISTED(kind) extern const brunt_boundary_kind brunt_kind_##kind;
+LISTED(DECLARE_LISTED)
 
 #define ROW(NAME, kind, type, word, what) &brunt_kind_##kind,
-#define ROW_NUMBERED(kind) &brunt_kind_##kind,
-const brunt_boundary_kind *const brunt_boundary_kinds[] = {BRUNT_BOUNDARY_KINDS(ROW) NUMBERED(ROW_NUMBERED)};
+#define ROW_LISTED(kind) &brunt_kind_##kind,
+const brunt_boundary_kind *const brunt_boundary_kinds[] = {BRUNT_BOUNDARY_KINDS(ROW) LISTED(ROW_LISTED)};
 const int brunt_boundary_kind_count = sizeof brunt_boundary_kinds / sizeof *brunt_boundary_kinds;
 
 static int32_t count_of(const brunt_world_def *def, int k) {

@@ -33,20 +33,19 @@ void brunt_boundary_name(const brunt_world_def *def, int32_t w, char out[BRUNT_N
 #define BRUNT_BOUNDARY_ROW(key)                                                                                        \
     .word = key, .count = count, .entry = entry, .name = name, .free = free_all, .check = check, .make = make
 
-// A kind that numbers describe is a file: its row begins with this, which gives all but what it does, hold_at. Material
+// A kind that lists its keys is a file: its row begins with this, which gives all but what it does, hold_at. Material
 // points are held by that in explicit steps and in implicit ones, at the nodes of their grid.
-int32_t brunt_numbered_count(const brunt_boundary_kind *kind, const brunt_world_def *def);
-const void *brunt_numbered_entry(const brunt_boundary_kind *kind, const brunt_world_def *def, int32_t i);
-const char *brunt_numbered_name(const void *one);
-const char *brunt_numbered_body(const void *one);
-void brunt_numbered_free(brunt_world_def *def);
-int brunt_numbered_check(const brunt_world_def *def, const void *one, int32_t w, brunt_error *error);
+int32_t brunt_listed_count(const brunt_boundary_kind *kind, const brunt_world_def *def);
+const void *brunt_listed_entry(const brunt_boundary_kind *kind, const brunt_world_def *def, int32_t i);
+const char *brunt_listed_name(const void *one);
+const char *brunt_listed_body(const void *one);
+void brunt_listed_free(brunt_world_def *def);
+int brunt_listed_check(const brunt_world_def *def, const void *one, int32_t w, brunt_error *error);
 // Every entry is of a kind that there is.
-int brunt_numbered_kinds_check(const brunt_world_def *def, brunt_error *error);
-int brunt_numbered_make(const brunt_boundary_making *m, const void *one, int w, brunt_error *error);
-void brunt_numbered_hold_grid(brunt_body *body, brunt_boundary *wall, double time);
-#define BRUNT_NUMBERED_ROW(key, text, list)                                                                            \
-    .word = key, .doc = text, .numbers = list, .number_count = sizeof(list) / sizeof *(list),                          \
-    .count = brunt_numbered_count, .entry = brunt_numbered_entry, .name = brunt_numbered_name,                         \
-    .body = brunt_numbered_body, .free = brunt_numbered_free, .check = brunt_numbered_check,                           \
-    .make = brunt_numbered_make, .hold_grid = brunt_numbered_hold_grid
+int brunt_listed_kinds_check(const brunt_world_def *def, brunt_error *error);
+int brunt_listed_make(const brunt_boundary_making *m, const void *one, int w, brunt_error *error);
+void brunt_listed_hold_grid(brunt_body *body, brunt_boundary *wall, double time);
+#define BRUNT_LISTED_ROW(key, text, list)                                                                              \
+    .word = key, .doc = text, .keys = list, .key_count = sizeof(list) / sizeof *(list), .count = brunt_listed_count,   \
+    .entry = brunt_listed_entry, .name = brunt_listed_name, .body = brunt_listed_body, .free = brunt_listed_free,      \
+    .check = brunt_listed_check, .make = brunt_listed_make, .hold_grid = brunt_listed_hold_grid

@@ -6,11 +6,11 @@
 enum { POINT = 0, AXIS = 3, RADIUS = 6, RATE = 7 };
 
 // clang-format off
-static const brunt_boundary_number numbers[] = {
-    {POINT, true, 0, {"point", "m", NAN, -INFINITY, INFINITY, true, true, "a point of its axis"}},
-    {AXIS, true, 3, {"axis", "1", NAN, -INFINITY, INFINITY, true, true, "direction of its axis"}},
-    {RADIUS, false, 0, {"radius", "m", NAN, 0, INFINITY, true, true, "distance from the axis up to which it holds"}},
-    {RATE, false, 0, {"rate", "rad/s", NAN, -INFINITY, INFINITY, true, true, "right-handed; in 2D counter-clockwise"}},
+static const brunt_boundary_key keys[] = {
+    {BRUNT_VALUE_VECTOR, POINT, 0, {"point", "m", NAN, -INFINITY, INFINITY, true, true, "a point of its axis"}, NULL},
+    {BRUNT_VALUE_VECTOR, AXIS, 3, {"axis", "1", NAN, -INFINITY, INFINITY, true, true, "direction of its axis"}, NULL},
+    {BRUNT_VALUE_NUMBER, RADIUS, 0, {"radius", "m", NAN, 0, INFINITY, true, true, "distance from the axis up to which it holds"}, NULL},
+    {BRUNT_VALUE_NUMBER, RATE, 0, {"rate", "rad/s", NAN, -INFINITY, INFINITY, true, true, "right-handed; in 2D counter-clockwise"}, NULL},
 };
 // clang-format on
 
@@ -27,21 +27,22 @@ static const char *refusal(const brunt_world_def *def, const void *one, const ch
 // v = rate axis x (x - point). A node turns about where it is, so that material holds its shape to the order of a step.
 static unsigned hold_at(const brunt_boundary *b, int dim, double time, const double x[3], double slack, double v[3]) {
     (void)time;
+    const double *number = b->given.number;
     double axis[3] = {0, 0, 1}, r[3] = {0}, along = 0, length = 0, square = 0;
-    for (int a = 0; a < 3; a++) axis[a] = dim == 3 ? b->number[AXIS + a] : axis[a];
+    for (int a = 0; a < 3; a++) axis[a] = dim == 3 ? number[AXIS + a] : axis[a];
     for (int a = 0; a < 3; a++) length += axis[a] * axis[a];
     for (int a = 0; a < 3; a++) axis[a] /= sqrt(length);
-    for (int a = 0; a < dim; a++) r[a] = x[a] - b->number[POINT + a], along += r[a] * axis[a];
+    for (int a = 0; a < dim; a++) r[a] = x[a] - number[POINT + a], along += r[a] * axis[a];
     for (int a = 0; a < dim; a++) square += (r[a] - along * axis[a]) * (r[a] - along * axis[a]);
-    if (sqrt(square) > b->number[RADIUS] + slack) return 0;
+    if (sqrt(square) > number[RADIUS] + slack) return 0;
     for (int a = 0; a < dim; a++)
-        v[a] = b->number[RATE] * (axis[(a + 1) % 3] * r[(a + 2) % 3] - axis[(a + 2) % 3] * r[(a + 1) % 3]);
+        v[a] = number[RATE] * (axis[(a + 1) % 3] * r[(a + 2) % 3] - axis[(a + 2) % 3] * r[(a + 1) % 3]);
     return (1u << dim) - 1;
 }
 
 const brunt_boundary_kind brunt_kind_rotor = {
-    BRUNT_NUMBERED_ROW("rotor", "material points within a cylinder turn about its axis; acts on bodies of method mpm",
-                       numbers),
+    BRUNT_LISTED_ROW("rotor", "material points within a cylinder turn about its axis; acts on bodies of method mpm",
+                     keys),
     .refusal = refusal,
     .hold_at = hold_at,
 };

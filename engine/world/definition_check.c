@@ -325,7 +325,7 @@ int brunt_definition_check(const brunt_world_def *def, brunt_error *error) {
     if (def->cookie != BRUNT_WORLD_COOKIE) REFUSE("the world's definition was not made by brunt_world_def_default");
     if (def->dimension != 2 && def->dimension != 3) REFUSE("dimension: %d is neither 2 nor 3", def->dimension);
     BRUNT_TRY(check_arrays(def, error));
-    BRUNT_TRY(brunt_numbered_kinds_check(def, error));
+    BRUNT_TRY(brunt_listed_kinds_check(def, error));
     bool particles = false;
     for (int32_t i = 0; i < def->body_count; i++) particles = particles || def->bodies[i].method == BRUNT_MPM;
     BRUNT_TRY(check_time_and_grid(def, particles, error));

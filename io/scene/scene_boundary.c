@@ -67,24 +67,29 @@ BRUNT_BOUNDARY_KINDS(READER)
 static const boundary_reader readers[] = {BRUNT_BOUNDARY_KINDS(ROW)};
 enum { READERS = sizeof readers / sizeof *readers };
 
-// Of a kind that numbers describe. Its keys say which of them they fill.
-static void read_numbered(scene_reader *reader, scene_node *node, const brunt_boundary_kind *kind) {
+// Of a kind that lists its keys. They say which number they fill; shapes and tables are read here.
+static void read_listed(scene_reader *reader, scene_node *node, const brunt_boundary_kind *kind) {
     brunt_world_def *world = &reader->scene->world;
     brunt_boundary_def *def = &world->boundaries[world->boundary_count++];
     const scene_node *body = brunt_tree_child(node, "body");
     snprintf(def->kind, sizeof def->kind, "%s", kind->word);
     fill_name(reader, node, kind->word, kind->count(kind, world), def->name);
-    brunt_fill_fields(reader, node, "boundaries[]", SCENE_AT_NUMBERED, def);
+    brunt_fill_fields(reader, node, "boundaries[]", SCENE_AT_LISTED, def);
+    const scene_node *group = brunt_tree_child(node, kind->word);
+    for (int k = 0; k < kind->key_count; k++) {
+        const scene_node *value = brunt_tree_child(group, kind->keys[k].in_scene.key);
+        if (kind->keys[k].is == BRUNT_VALUE_SHAPE) brunt_fill_shape_def(reader, value, &def->shape);
+        if (kind->keys[k].is == BRUNT_VALUE_TABLE) brunt_fill_table(reader, value, &def->table);
+    }
     brunt_fill_body_of(reader, node, def->body);
     if (!brunt_acts_on_particles(reader, def->body))
-        brunt_tree_complain_key(reader->tree, body ? body : brunt_tree_child(node, kind->word),
-                                "a %s acts on the grid, %s of method mpm", kind->word,
-                                body ? "this body is not" : "no body is");
+        brunt_tree_complain_key(reader->tree, body ? body : group, "a %s acts on the grid, %s of method mpm",
+                                kind->word, body ? "this body is not" : "no body is");
 }
 
 static void read_boundary(scene_reader *reader, scene_node *node) {
     const boundary_reader *found = NULL;
-    const brunt_boundary_kind *numbered = NULL;
+    const brunt_boundary_kind *listed = NULL;
     const char *keys[32];
     int count = 0, key_count = 0;
     for (int k = 0; k < READERS; k++) {
@@ -93,16 +98,16 @@ static void read_boundary(scene_reader *reader, scene_node *node) {
     }
     for (int k = 0; k < brunt_boundary_kind_count; k++) {
         const brunt_boundary_kind *kind = brunt_boundary_kinds[k];
-        if (!kind->numbers) continue;
+        if (!kind->keys) continue;
         if (key_count < (int)(sizeof keys / sizeof *keys)) keys[key_count++] = kind->word;
-        if (brunt_tree_child(node, kind->word)) numbered = kind, count++;
+        if (brunt_tree_child(node, kind->word)) listed = kind, count++;
     }
     char names[400] = "";
     BRUNT_LIST_NAMES(names, (size_t)key_count, keys[i]);
     if (count != 1)
         brunt_tree_complain(reader->tree, node, "exactly one of %s is wanted", names);
-    else if (numbered)
-        read_numbered(reader, node, numbered);
+    else if (listed)
+        read_listed(reader, node, listed);
     else
         found->read(reader, node);
 }

@@ -96,7 +96,7 @@ enum {
 #define SCENE_AT(NAME, kind, type, word, what) SCENE_AT_##NAME = SCENE_MEMBRANE << (SCENE_NUMBER_##NAME + 1),
     BRUNT_BOUNDARY_KINDS(SCENE_AT)
 #undef SCENE_AT
-        SCENE_AT_NUMBERED = SCENE_MEMBRANE << (SCENE_KINDS_AT + 1), // of kinds that numbers describe
+        SCENE_AT_LISTED = SCENE_MEMBRANE << (SCENE_KINDS_AT + 1), // of kinds that list their keys
 };
 
 // A kind of file: what it is called, how it begins, and its rows.

@@ -36,31 +36,52 @@ static void add_measures(void) {
     for (size_t k = 0; k < sizeof measures / sizeof *measures; k++) add(measures[k]);
 }
 
-// Of a kind of boundary that numbers describe: its group, and a row for each number, which fills that.
+// What a key of a boundary has when it is not given, as typed; `room` for a number or a word.
+static const char *initial_of(const brunt_boundary_key *key, char room[32]) {
+    const double initial = key->in_scene.initial;
+    if (isnan(initial)) return REQUIRED;
+    switch (key->is) {
+    case BRUNT_VALUE_NUMBER:
+    case BRUNT_VALUE_VECTOR: brunt_format_number(initial, room); return room;
+    case BRUNT_VALUE_WORD: brunt_scene_word_at(key->words, (int)initial, room, 32); return room;
+    case BRUNT_VALUE_SHAPE:
+    case BRUNT_VALUE_TABLE: break;
+    }
+    return OPTIONAL;
+}
+
+// Of a kind of boundary that lists its keys: its group, and a row for each, which fills a number where it is one.
 static void add_boundary(const brunt_boundary_kind *kind) {
+    static const struct {
+        scene_type type;
+        scene_store store;
+    } as[] = {[BRUNT_VALUE_NUMBER] = {SCENE_REAL, STORE_REAL},
+              [BRUNT_VALUE_VECTOR] = {SCENE_VECTOR, STORE_VECTOR},
+              [BRUNT_VALUE_WORD] = {SCENE_WORD, STORE_REAL}, // its place
+              [BRUNT_VALUE_SHAPE] = {SCENE_SHAPE, STORE_NOT},
+              [BRUNT_VALUE_TABLE] = {SCENE_TABLE, STORE_NOT}};
     static char paths[ROOM][64], defaults[ROOM][32];
     scene_key row = {.path = paths[table_count], .type = SCENE_GROUP, .initial = OPTIONAL, .doc = kind->doc};
     snprintf(paths[table_count], sizeof *paths, "boundaries[].%s", kind->word);
     row.min = -INFINITY, row.max = INFINITY;
     add(&(scene_rows){&row, 1});
-    for (int k = 0; k < kind->number_count; k++) {
-        const brunt_boundary_number *number = &kind->numbers[k];
-        const brunt_parameter *in = &number->in_scene;
-        char *initial = defaults[table_count];
+    for (int k = 0; k < kind->key_count; k++) {
+        const brunt_boundary_key *key = &kind->keys[k];
+        const brunt_parameter *in = &key->in_scene;
         snprintf(paths[table_count], sizeof *paths, "boundaries[].%s.%s", kind->word, in->key);
-        brunt_format_number(in->initial, initial);
-        row = (scene_key){.path = paths[table_count],
-                          .type = number->vector ? SCENE_VECTOR : SCENE_REAL,
-                          .unit = in->unit,
-                          .initial = isnan(in->initial) ? REQUIRED : initial,
-                          .min = in->min,
-                          .max = in->max,
-                          .min_open = in->min_open,
-                          .max_open = in->max_open,
-                          .dimension = number->dimension,
-                          .doc = in->doc};
-        row.field.store = number->vector ? STORE_VECTOR : STORE_REAL;
-        row.field.offset = offsetof(brunt_boundary_def, number) + (size_t)number->at * sizeof(double);
+        row = (scene_key){
+            .path = paths[table_count],
+            .type = as[key->is].type,
+            .unit = in->unit,
+            .initial = initial_of(key, defaults[table_count]),
+            .min = in->min,
+            .max = in->max,
+            .min_open = in->min_open,
+            .max_open = in->max_open,
+            .words = key->words,
+            .dimension = key->dimension,
+            .doc = in->doc,
+            .field = {as[key->is].store, offsetof(brunt_boundary_def, number) + (size_t)key->at * sizeof(double)}};
         add(&(scene_rows){&row, 1});
     }
 }
@@ -91,7 +112,7 @@ static void add_body_numbers(void) {
 
 static void add_boundaries(void) {
     for (int k = 0; k < brunt_boundary_kind_count; k++)
-        if (brunt_boundary_kinds[k]->numbers) add_boundary(brunt_boundary_kinds[k]);
+        if (brunt_boundary_kinds[k]->keys) add_boundary(brunt_boundary_kinds[k]);
 }
 
 __attribute__((constructor)) static void make_table(void) {

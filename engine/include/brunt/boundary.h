@@ -21,13 +21,15 @@ extern "C" {
     X(LINE, surface, brunt_boundary_surface, "line", "a line")
 
 enum { BRUNT_BOUNDARY_NUMBERS = 16 };
-// A boundary of a kind that numbers describe: its row in engine/boundary/KIND.c says which, in which places of
-// `number`.
+// A boundary of a kind whose keys a row in engine/boundary/KIND.c lists: numbers and vectors, in which places of
+// `number`, words there by their place in their list, a shape and a table where the kind has one.
 typedef struct brunt_boundary_def {
     char name[BRUNT_NAME_LENGTH]; // of its column in the history; "" = "rotor1", ...
     char kind[BRUNT_NAME_LENGTH]; // "rotor"
     char body[BRUNT_NAME_LENGTH]; // the one body it acts on; "" = all
     double number[BRUNT_BOUNDARY_NUMBERS];
+    brunt_shape shape; // owned by the definition
+    brunt_curve table; // over time [s]; default 1 always; owned by the definition
 } brunt_boundary_def;
 
 // Where and when explosives are lit: at a point, or on a plane. Material at distance d burns from time + d / detonation

@@ -135,7 +135,7 @@ typedef struct brunt_world_def {
     brunt_body_def *bodies;
     int32_t body_count;                       // owned
     BRUNT_BOUNDARY_KINDS(BRUNT_BOUNDARY_LIST) // planes and plane_count, ...: owned
-    brunt_boundary_def *boundaries;           // of kinds that numbers describe
+    brunt_boundary_def *boundaries;           // of kinds that list their keys
     int32_t boundary_count;                   // owned
     brunt_detonation_def *detonations;
     int32_t detonation_count; // owned

@@ -1,4 +1,4 @@
-// Boundaries of kinds that numbers describe. A rotor turns what it holds: the velocity of a step is linear in place,
+// Boundaries of kinds that list their keys. A rotor turns what it holds: the velocity of a step is linear in place,
 // which transfers carry exactly, so that n steps of dt are x -> (I + dt W)^n x, with W = rate (axis x), whatever the
 // scheme.
 #include "tests/support/def_world.h"
@@ -75,7 +75,7 @@ START_TEST(what_is_wrong_is_refused) {
     refused(&def, "boundaries[0].rotor.rate");
     def = held(3, BRUNT_EXPLICIT, 1);
     strcpy(def.boundaries[0].kind, "motor");
-    refused(&def, "'motor' is no kind that numbers describe");
+    refused(&def, "'motor' is no kind that lists its keys");
     def = held(2, BRUNT_EXPLICIT, 1);
     def.axisymmetric = true;
     refused(&def, "rings do not turn in their plane");
@@ -86,7 +86,7 @@ START_TEST(what_is_wrong_is_refused) {
 END_TEST
 
 int main(void) {
-    Suite *suite = suite_create("numbered_boundaries");
+    Suite *suite = suite_create("listed_boundaries");
     TCase *all = tcase_create("all");
     tcase_add_loop_test(all, a_rotor_turns_what_it_reaches, 0, 4);
     tcase_add_test(all, what_is_wrong_is_refused);
