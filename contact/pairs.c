@@ -22,7 +22,7 @@ int32_t brunt_pair_of(const brunt_pair_map *map, int32_t a, int32_t b) {
         else
             high = middle;
     }
-    return a == b || !map->mesh ? -1 : map->usual[map->mesh[a] + map->mesh[b]];
+    return a == b || !map->mesh ? BRUNT_NONE : map->usual[map->mesh[a] + map->mesh[b]];
 }
 
 int brunt_pair_map_add(brunt_pair_map *map, int32_t a, int32_t b, int32_t pair, brunt_error *error) {

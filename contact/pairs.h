@@ -29,7 +29,8 @@ typedef struct brunt_pairs {
     brunt_pair_map map;
 } brunt_pairs;
 
-// The pair of two bodies, in either order; -1: they do not meet. A body meets itself only where an entry says so.
+// The pair of two bodies, in either order; BRUNT_NONE: they do not meet. A body meets itself only where an entry says
+// so.
 int32_t brunt_pair_of(const brunt_pair_map *map, int32_t a, int32_t b);
 // An entry for two bodies; before brunt_pair_of they must be sorted, after which the last that was added for two bodies
 // counts. BRUNT_OK, or BRUNT_FAILED: out of memory.

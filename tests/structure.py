@@ -35,6 +35,7 @@ LIMITS = {
     "words not of plain English": 0,
     "lines repeated in blocks of six": 0, "terms not found": 0,
 }
+BARE = re.compile(r"\breturn (?:-1;|[^;]*(?:\? -1 : 0;|(?<!\? 1) : -1;))")  # but for what compares: -1 or 1
 TERMS = {  # of the field: what a file or folder is looked for by
     "hourglass control": "hourglass", "return mapping": "return_mapping|j2|von_mises", "friction cone": "coulomb",
     "stable time step": "stable_step", "checkpoint": "checkpoint", "B-spline weights": "bspline",
@@ -213,7 +214,7 @@ def figures():
     copies, copied = repeated(files)
     loose = [name for f in files for name in uncounted(f)]
     voids = [f"{f}:{n}" for f in files for n, line in enumerate(code(f).split("\n"), 1) if re.search(r"void\s*\*\s*(?:const\s*)?\*", line)]
-    bare = [f"{f}:{n}" for f in files for n, line in enumerate(code(f).split("\n"), 1) if re.search(r"\breturn -1\b", line)]
+    bare = [f"{f}:{n}" for f in files for n, line in enumerate(code(f).split("\n"), 1) if BARE.search(line)]
     words = [place for f in texts() for place in wordings(f)]
     lost = [term for term, found in terms() if not found]
     return [

@@ -119,10 +119,10 @@ static int compare_shared(const void *a, const void *b) {
     return (u->body > v->body) - (u->body < v->body);
 }
 
-// The pair of two bodies by their places among those of material points; -1: none.
+// The pair of two bodies by their places among those of material points; BRUNT_NONE: none.
 static int32_t pair_between(const job *j, int a, int b) {
     const int32_t pair = brunt_pair_of(j->m->pair_map, j->bodies[a].index, j->bodies[b].index);
-    return pair >= 0 && j->m->pairs[pair].method == BRUNT_CONTACT_AUGURY ? -1 : pair;
+    return pair >= 0 && j->m->pairs[pair].method == BRUNT_CONTACT_AUGURY ? BRUNT_NONE : pair;
 }
 
 static int compare_low(const void *a, const void *b) {

@@ -69,20 +69,21 @@ static int make_mesh(brunt_erosion *erosion, const brunt_bodies *bodies, brunt_f
 
 static int allocate(brunt_erosion *erosion, const brunt_bodies *bodies, brunt_error *error) {
     const size_t all = (size_t)bodies->count, fems = (size_t)bodies->fem_count + 1;
-    struct brunt_erosion_work *work = erosion->work = brunt_alloc(sizeof *work);
-    erosion->account = brunt_alloc(all * sizeof *erosion->account);
-    erosion->rule = brunt_alloc(all * sizeof *erosion->rule);
+    if (BRUNT_NEW(erosion->work, 1, "room for erosion", error) ||
+        BRUNT_NEW(erosion->account, all, "accounts of bodies that erode", error) ||
+        BRUNT_NEW(erosion->rule, all, "bodies that erode", error))
+        return BRUNT_FAILED;
+    struct brunt_erosion_work *work = erosion->work;
     erosion->count = bodies->count;
     erosion->active = true;
-    if (!work || !erosion->account || !erosion->rule) return brunt_fail(error, BRUNT_FAILED, "out of memory");
     size_t most = 1;
     for (int k = 0; k < bodies->fem_count; k++)
         most = (size_t)bodies->fem[k].slots > most ? (size_t)bodies->fem[k].slots : most;
     work->mesh_count = bodies->fem_count;
-    work->single = brunt_alloc(fems * sizeof *work->single);
-    work->damage = brunt_alloc(fems * sizeof *work->damage);
-    work->slots = brunt_alloc(most * sizeof *work->slots);
-    return work->single && work->damage && work->slots ? BRUNT_OK : brunt_fail(error, BRUNT_FAILED, "out of memory");
+    if (BRUNT_NEW(work->single, fems, "meshes that erode", error) ||
+        BRUNT_NEW(work->damage, fems, "meshes that erode", error))
+        return BRUNT_FAILED;
+    return BRUNT_NEW(work->slots, most, "elements that leave", error);
 }
 
 int brunt_erosion_make(brunt_erosion *erosion, const brunt_bodies *bodies, const brunt_world_def *def,

@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/memory.h"
@@ -124,8 +125,8 @@ void brunt_points_close_ranks(brunt_particles *p, int64_t count) {
 }
 
 static int set_ids(brunt_particles *p, const char *name, const int64_t *id, int64_t count, brunt_error *error) {
-    bool *there = brunt_alloc((size_t)p->made + 1);
-    if (!there) return brunt_fail(error, BRUNT_FAILED, "out of memory");
+    bool *there;
+    if (BRUNT_NEW(there, p->made + 1, "marks of particles", error)) return BRUNT_FAILED;
     int64_t s = 0;
     for (; s < count && id[s] >= 0 && id[s] < p->made && !there[id[s]]; s++) there[id[s]] = true;
     brunt_free(there);

@@ -14,10 +14,6 @@
 static const double CORNER = 0.866; // cosine of the turn between parts of a line where pieces end: 30 degrees
 static const double MOST_PARTICLES = 1e6;
 
-static int out_of_memory(brunt_error *error) {
-    return brunt_fail(error, BRUNT_FAILED, "out of memory for the boundaries");
-}
-
 // ------------------------------------------------------------------------------------------ lines
 
 // Parts of a line that follow each other without a corner.
@@ -91,10 +87,10 @@ static int cut_line(brunt_boundary_surface *s, const brunt_boundary_surface_def 
         pieces += (size_t)chain_pieces(&c, s->cell);
         particles += (size_t)chain_pieces(&c, s->cell) * (size_t)piece_particles(&c, s->cell);
     }
-    s->particle = brunt_alloc(particles * sizeof *s->particle);
-    s->first = brunt_alloc((pieces + 1) * sizeof *s->first);
-    s->tangent = brunt_alloc(pieces * sizeof *s->tangent);
-    if (!s->particle || !s->first || !s->tangent) return out_of_memory(error);
+    if (BRUNT_NEW(s->particle, particles, "particles of a boundary", error) ||
+        BRUNT_NEW(s->first, pieces + 1, "pieces of a boundary", error) ||
+        BRUNT_NEW(s->tangent, pieces, "pieces of a boundary", error))
+        return BRUNT_FAILED;
     for (chain c = {0}; c.end < def->facet_count;) {
         c = next_chain(def, c.end);
         fill_chain(s, &c);
@@ -132,14 +128,12 @@ static int compare_celled(const void *a, const void *b) {
 
 static int sort_particles(brunt_boundary_surface *s, brunt_error *error) {
     const size_t n = (size_t)s->particle_count;
-    celled *list = brunt_alloc((n + 1) * sizeof *list);
-    s->key = brunt_alloc((n + 1) * sizeof *s->key);
-    s->cell_first = brunt_alloc((n + 2) * sizeof *s->cell_first);
-    s->cell_particle = brunt_alloc((n + 1) * sizeof *s->cell_particle);
-    if (!list || !s->key || !s->cell_first || !s->cell_particle) {
-        brunt_free(list);
-        return out_of_memory(error);
-    }
+    celled *list;
+    if (BRUNT_NEW(s->key, n + 1, "cells of a boundary", error) ||
+        BRUNT_NEW(s->cell_first, n + 2, "cells of a boundary", error) ||
+        BRUNT_NEW(s->cell_particle, n + 1, "particles of a boundary", error) ||
+        BRUNT_NEW(list, n + 1, "particles of a boundary", error))
+        return BRUNT_FAILED;
     for (int a = 0; a < 3; a++) s->low[a] = INFINITY, s->high[a] = -INFINITY;
     for (size_t p = 0; p < n; p++)
         for (int a = 0; a < 3; a++) {
@@ -194,24 +188,25 @@ static int make_surface(brunt_boundary_surface *s, const brunt_boundary_surface_
     if (!status) status = sort_particles(s, error);
     if (status) return status;
     s->bodies = bodies->mpm_count;
-    s->traction = brunt_alloc(((size_t)s->bodies * (size_t)s->pieces * 3 + 1) * sizeof *s->traction);
-    return s->traction ? BRUNT_OK : out_of_memory(error);
+    return BRUNT_NEW(s->traction, (size_t)s->bodies * (size_t)s->pieces * 3 + 1, "tractions of a boundary", error);
 }
 
-static int find_frames(brunt_boundary_surfaces *surfaces, const brunt_world_def *def, const brunt_bodies *bodies) {
-    surfaces->frame = brunt_alloc(((size_t)bodies->mpm_count + 1) * sizeof *surfaces->frame);
-    for (int i = 0; surfaces->frame && i < bodies->mpm_count; i++)
+static int find_frames(brunt_boundary_surfaces *surfaces, const brunt_world_def *def, const brunt_bodies *bodies,
+                       brunt_error *error) {
+    if (BRUNT_NEW(surfaces->frame, bodies->mpm_count + 1, "bodies at boundaries", error)) return BRUNT_FAILED;
+    for (int i = 0; i < bodies->mpm_count; i++)
         for (int32_t k = 0; k < def->body_count; k++)
             if (!strcmp(def->bodies[k].name, bodies->mpm[i].name))
                 memcpy(surfaces->frame[i], def->bodies[k].place.rotation, sizeof *surfaces->frame);
-    return surfaces->frame ? 0 : -1;
+    return BRUNT_OK;
 }
 
 int brunt_boundary_surfaces_make(brunt_boundary_surfaces *surfaces, const brunt_world_def *def,
                                  const brunt_bodies *bodies, brunt_boundary *walls, brunt_error *error) {
     if (!def->surface_count) return BRUNT_OK;
-    surfaces->surface = brunt_alloc((size_t)def->surface_count * sizeof *surfaces->surface);
-    if (!surfaces->surface || find_frames(surfaces, def, bodies)) return out_of_memory(error);
+    if (BRUNT_NEW(surfaces->surface, def->surface_count, "boundaries of lines and surfaces", error) ||
+        find_frames(surfaces, def, bodies, error))
+        return BRUNT_FAILED;
     surfaces->count = def->surface_count;
     for (int k = 0; k < surfaces->count; k++) {
         brunt_boundary_surface *s = &surfaces->surface[k];

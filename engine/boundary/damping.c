@@ -9,6 +9,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/error.h"
 #include "base/memory.h"
 #include "base/parallel.h"
@@ -21,20 +22,19 @@ typedef struct job {
 } job;
 
 int brunt_damping_make(brunt_damping *damping, const brunt_bodies *bodies, brunt_error *error) {
-    damping->drag = brunt_alloc((size_t)(bodies->fem_count + 1) * sizeof *damping->drag);
-    if (!damping->drag) return brunt_fail(error, BRUNT_FAILED, "out of memory");
+    if (BRUNT_NEW(damping->drag, bodies->fem_count + 1, "meshes with damping", error)) return BRUNT_FAILED;
     damping->fem_count = bodies->fem_count;
     for (int k = 0; k < bodies->fem_count; k++) {
         brunt_fem_body *fem = &bodies->fem[k];
         if (!(fem->damping > 0)) continue;
         damping->active = true;
-        size_t bytes = (size_t)(fem->node_count + 1) * 4 * sizeof(real);
-        if (!(damping->drag[k] = brunt_alloc(bytes)) || (!fem->load && !(fem->load = brunt_alloc(bytes))))
-            return brunt_fail(error, BRUNT_FAILED, "bodies.%s: out of memory", fem->name);
+        const size_t numbers = (size_t)(fem->node_count + 1) * 4;
+        if (BRUNT_NEW(damping->drag[k], numbers, "forces that damp nodes of a mesh", error) ||
+            (!fem->load && BRUNT_NEW(fem->load, numbers, "loads on nodes of a mesh", error)))
+            return BRUNT_FAILED;
     }
     if (!damping->active) return BRUNT_OK;
-    damping->sums = brunt_alloc((size_t)(bodies->tasks.node_count + 1) * sizeof *damping->sums);
-    return damping->sums ? BRUNT_OK : brunt_fail(error, BRUNT_FAILED, "out of memory");
+    return BRUNT_NEW(damping->sums, bodies->tasks.node_count + 1, "sums of tasks of nodes", error);
 }
 
 void brunt_damping_validate(const brunt_damping *damping, const brunt_bodies *bodies) {

@@ -14,6 +14,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/error.h"
 #include "base/memory.h"
 #include "boundary/curve.h"
@@ -25,13 +26,11 @@ static bool follows(const brunt_group_def *group) {
 }
 
 int brunt_load_step_make(brunt_node_sets *sets, brunt_error *error) {
-    sets->load_rate = brunt_alloc((size_t)(sets->fem_count + 1) * sizeof *sets->load_rate);
-    if (!sets->load_rate) return brunt_fail(error, BRUNT_FAILED, "out of memory");
+    if (BRUNT_NEW(sets->load_rate, sets->fem_count + 1, "meshes with loads", error)) return BRUNT_FAILED;
     for (int k = 0; k < sets->count; k++) {
         double **rate = &sets->load_rate[sets->set[k].fem_index];
         if (!follows(&sets->set[k].def) || *rate) continue;
-        *rate = brunt_alloc((size_t)(sets->set[k].fem->node_count + 1) * sizeof **rate);
-        if (!*rate) return brunt_fail(error, BRUNT_FAILED, "out of memory");
+        if (BRUNT_NEW(*rate, sets->set[k].fem->node_count + 1, "rates of loads on nodes", error)) return BRUNT_FAILED;
     }
     return BRUNT_OK;
 }

@@ -33,24 +33,18 @@ static void list_groups(const brunt_fem_body *fem, char *out, size_t size) {
     if (!fem->group_count) snprintf(out, size, "none");
 }
 
-static int out_of_memory(brunt_error *error) { return brunt_fail(error, BRUNT_FAILED, "out of memory"); }
-
 // Room for the faces, and for what acts on their nodes.
-static int make_room(brunt_node_set *set, int32_t faces) {
-    set->place = brunt_alloc((size_t)(set->fem->node_count + 1) * sizeof *set->place);
-    set->force = brunt_alloc((size_t)(set->node_count + 1) * 3 * sizeof *set->force);
-    set->face = brunt_alloc((size_t)(faces + 1) * sizeof *set->face);
-    bool made = set->place && set->force && set->face;
-    if (set->def.action == BRUNT_GROUP_GAS) {
-        set->area = brunt_alloc((size_t)(set->node_count + 1) * 3 * sizeof *set->area);
-        made = made && set->area;
-    }
-    if (set->fem->bonds) {
-        set->whole = brunt_alloc((size_t)(faces + 1) * sizeof *set->whole);
-        set->owner = brunt_alloc((size_t)(faces + 1) * sizeof *set->owner);
-        made = made && set->whole && set->owner;
-    }
-    return made ? BRUNT_OK : BRUNT_FAILED;
+static int make_room(brunt_node_set *set, int32_t faces, brunt_error *error) {
+    const size_t components = (size_t)(set->node_count + 1) * 3;
+    if (BRUNT_NEW(set->place, set->fem->node_count + 1, "places of nodes in a group", error) ||
+        BRUNT_NEW(set->force, components, "forces on nodes of a group", error) ||
+        BRUNT_NEW(set->face, faces + 1, "faces of a group", error))
+        return BRUNT_FAILED;
+    if (set->def.action == BRUNT_GROUP_GAS && BRUNT_NEW(set->area, components, "areas of nodes of a group", error))
+        return BRUNT_FAILED;
+    if (!set->fem->bonds) return BRUNT_OK;
+    if (BRUNT_NEW(set->whole, faces + 1, "faces of a group", error)) return BRUNT_FAILED;
+    return BRUNT_NEW(set->owner, faces + 1, "elements of faces of a group", error);
 }
 
 // The faces whose nodes are all in the group.
@@ -59,7 +53,7 @@ static int take_faces(brunt_node_set *set, brunt_messages *messages, brunt_error
     brunt_faces faces;
     int status = brunt_fem_faces(fem, &faces, error);
     if (status) return status;
-    status = make_room(set, faces.count);
+    status = make_room(set, faces.count, error);
     for (int32_t i = 0; !status && i < set->node_count; i++) set->place[set->node[i]] = i + 1;
     for (int32_t f = 0; !status && f < faces.count; f++) {
         bool all = true;
@@ -71,7 +65,7 @@ static int take_faces(brunt_node_set *set, brunt_messages *messages, brunt_error
         set->owner[set->whole_count++] = fem->element_id[faces.element[f]];
     }
     brunt_faces_free(&faces);
-    if (status) return out_of_memory(error);
+    if (status) return status;
     if (!set->face_count)
         brunt_warn(messages, "boundaries (%s): no face of the body has all its nodes in the group: nothing is loaded",
                    set->wall->name);
@@ -97,8 +91,8 @@ const brunt_node_set *brunt_node_sets_follow(brunt_node_sets *sets, brunt_fem_bo
 
 static int make_load(brunt_node_set *set, brunt_messages *messages, brunt_error *error) {
     brunt_fem_body *fem = set->fem;
-    if (!fem->load && !(fem->load = brunt_alloc((size_t)(fem->node_count + 1) * 4 * sizeof(real))))
-        return out_of_memory(error);
+    if (!fem->load && BRUNT_NEW(fem->load, (size_t)(fem->node_count + 1) * 4, "loads on nodes of a mesh", error))
+        return BRUNT_FAILED;
     int status = take_faces(set, messages, error);
     if (status) return status;
     return set->def.action == BRUNT_GROUP_GAS ? brunt_gas_start(set, error) : BRUNT_OK;
@@ -108,10 +102,9 @@ static int make_load(brunt_node_set *set, brunt_messages *messages, brunt_error 
 static int make_prescribed(brunt_node_sets *sets, int index, brunt_error *error) {
     const brunt_node_set *set = &sets->set[index];
     brunt_fem_body *fem = set->fem;
-    if (!fem->held && !(fem->held = brunt_alloc((size_t)fem->node_count + 1))) return out_of_memory(error);
+    if (!fem->held && BRUNT_NEW(fem->held, fem->node_count + 1, "nodes that are held", error)) return BRUNT_FAILED;
     uint8_t(**holder)[3] = &sets->holder[set->fem_index];
-    if (!*holder && !(*holder = brunt_alloc(((size_t)fem->node_count + 1) * sizeof **holder)))
-        return out_of_memory(error);
+    if (!*holder && BRUNT_NEW(*holder, fem->node_count + 1, "nodes that are held", error)) return BRUNT_FAILED;
     for (int32_t i = 0; i < set->node_count; i++)
         for (int a = 0; a < fem->dim; a++) {
             if (!set->def.component[a] || (*holder)[set->node[i]][a]) continue;
@@ -157,9 +150,9 @@ static int copy_definition(brunt_group_def *copy, const brunt_group_def *def, bo
 int brunt_node_sets_make(brunt_node_sets *sets, const brunt_world_def *def, const brunt_bodies *bodies,
                          brunt_boundary *walls, brunt_messages *messages, brunt_error *error) {
     if (def->group_count > 255) return brunt_fail(error, BRUNT_BAD_INPUT, "boundaries: more than 255 groups");
-    sets->set = brunt_alloc((size_t)(def->group_count + 1) * sizeof *sets->set);
-    sets->holder = brunt_alloc((size_t)(bodies->fem_count + 1) * sizeof *sets->holder);
-    if (!sets->set || !sets->holder) return out_of_memory(error);
+    if (BRUNT_NEW(sets->set, def->group_count + 1, "groups of nodes", error) ||
+        BRUNT_NEW(sets->holder, bodies->fem_count + 1, "meshes with groups", error))
+        return BRUNT_FAILED;
     sets->count = def->group_count, sets->fem_count = bodies->fem_count;
     for (int k = 0; k < sets->count; k++) {
         brunt_node_set *set = &sets->set[k];

@@ -8,6 +8,7 @@
 #include "fem/kernel.h"
 #include "fem/layout.h"
 #include "materials/log_strain.h"
+#include "base/array.h"
 #include "base/error.h"
 #include "base/memory.h"
 
@@ -38,11 +39,10 @@ static void count_bonds(brunt_fem_body *body) {
 int brunt_fem_prepare_erosion(brunt_fem_body *body, bool inverted, brunt_error *error) {
     body->mesh_elements = body->element_count;
     body->erodes_inverted = inverted;
-    body->bonds = brunt_alloc((size_t)body->node_count * sizeof *body->bonds);
-    body->mark = brunt_alloc((size_t)body->slots);
-    body->rank = brunt_alloc((size_t)body->mesh_elements * sizeof *body->rank);
-    if (!body->bonds || !body->mark || !body->rank)
-        return brunt_fail(error, BRUNT_FAILED, "body '%s': out of memory for erosion", body->name);
+    if (BRUNT_NEW(body->bonds, body->node_count, "nodes of a mesh that erodes", error) ||
+        BRUNT_NEW(body->mark, body->slots, "marks of elements of a mesh that erodes", error) ||
+        BRUNT_NEW(body->rank, body->mesh_elements, "ranks of elements of a mesh that erodes", error))
+        return BRUNT_FAILED;
     count_bonds(body);
     return BRUNT_OK;
 }
@@ -179,7 +179,7 @@ static int32_t place_in_block(const brunt_fem_body *body, const brunt_fem_block 
         else
             high = middle;
     }
-    return low < block->node_count && list[low] == node ? low : -1;
+    return low < block->node_count && list[low] == node ? low : BRUNT_NONE;
 }
 
 // Whether they are elements of this body.

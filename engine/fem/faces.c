@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "fem/layout.h"
+#include "base/array.h"
 #include "base/error.h"
 #include "base/memory.h"
 
@@ -41,11 +42,12 @@ int brunt_fem_faces(const brunt_fem_body *body, brunt_faces *faces, brunt_error 
     const brunt_element_traits *type = body->traits;
     *faces = (brunt_faces){0};
     int64_t count = (int64_t)body->slots * type->face_count;
-    int64_t *first = brunt_alloc(((size_t)body->node_count + 2) * sizeof *first);
-    int64_t *list = brunt_alloc((size_t)count * sizeof *list);
-    uint8_t *outside = brunt_alloc((size_t)count);
-    bool made = false;
-    if (first && list && outside) {
+    int64_t *first, *list = NULL;
+    uint8_t *outside = NULL;
+    bool made = !BRUNT_NEW(first, body->node_count + 2, "nodes of a mesh", error) &&
+                !BRUNT_NEW(list, count, "faces of elements of a mesh", error) &&
+                !BRUNT_NEW(outside, count, "faces of elements of a mesh", error);
+    if (made) {
         for (int64_t f = 0; f < count; f++)
             if (body->element_id[f / type->face_count] >= 0) first[least_node(body, f) + 2]++;
         for (int32_t n = 0; n < body->node_count; n++) first[n + 2] += first[n + 1];
@@ -60,24 +62,20 @@ int brunt_fem_faces(const brunt_fem_body *body, brunt_faces *faces, brunt_error 
                 outside[list[i]] = alone;
                 found += alone;
             }
-        faces->node = brunt_alloc((size_t)found * sizeof *faces->node);
-        faces->element = brunt_alloc((size_t)found * sizeof *faces->element);
-        if (faces->node && faces->element) {
-            for (int64_t f = 0; f < count; f++) {
-                if (!outside[f]) continue;
-                for (int k = 0; k < 4; k++)
-                    faces->node[faces->count][k] = k < type->face_nodes ? face_node(body, f, k) : -1;
-                faces->element[faces->count++] = (int32_t)(f / type->face_count);
-            }
-            made = true;
-        } else {
-            brunt_faces_free(faces);
+        made = !BRUNT_NEW(faces->node, found, "faces of a surface", error) &&
+               !BRUNT_NEW(faces->element, found, "faces of a surface", error);
+        for (int64_t f = 0; f < count && made; f++) {
+            if (!outside[f]) continue;
+            for (int k = 0; k < 4; k++)
+                faces->node[faces->count][k] = k < type->face_nodes ? face_node(body, f, k) : -1;
+            faces->element[faces->count++] = (int32_t)(f / type->face_count);
         }
+        if (!made) brunt_faces_free(faces);
     }
     brunt_free(first);
     brunt_free(list);
     brunt_free(outside);
-    return made ? BRUNT_OK : brunt_fail(error, BRUNT_FAILED, "body '%s': out of memory for its surface", body->name);
+    return made ? BRUNT_OK : BRUNT_FAILED;
 }
 
 void brunt_faces_free(brunt_faces *faces) {

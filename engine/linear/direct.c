@@ -170,10 +170,13 @@ static brunt_linear_status direct_analyse(brunt_linear *s, const brunt_team *tea
                    (long long)unknowns);
         return BRUNT_LINEAR_FAILED;
     }
-    if (BRUNT_RESERVE(d->row, (size_t)entries, 0) || BRUNT_RESERVE(d->column, (size_t)entries, 0) ||
-        BRUNT_RESERVE(d->value, (size_t)entries, 0) || BRUNT_RESERVE(d->order, (size_t)unknowns, 0) ||
-        BRUNT_RESERVE(d->position, (size_t)a->nodes, 0))
-        return out_of_memory(a, error);
+    static const char values[] = "entries of a matrix to factor";
+    if (BRUNT_ROOM(d->row, (size_t)entries, 0, values, error) ||
+        BRUNT_ROOM(d->column, (size_t)entries, 0, values, error) ||
+        BRUNT_ROOM(d->value, (size_t)entries, 0, values, error) ||
+        BRUNT_ROOM(d->order, (size_t)unknowns, 0, "unknowns in order", error) ||
+        BRUNT_ROOM(d->position, (size_t)a->nodes, 0, "nodes in order", error))
+        return BRUNT_LINEAR_FAILED;
     if (brunt_elimination_order(a, d->position, error)) return BRUNT_LINEAR_FAILED;
     for (int32_t n = 0; n < a->nodes; n++)
         for (int c = 0; c < a->dim; c++) d->order[n * a->dim + c] = d->position[n] * a->dim + c + 1;

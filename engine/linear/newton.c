@@ -442,11 +442,11 @@ static int begin(newton_run *r) {
     const size_t count = (size_t)unknowns(r);
     // A factor of the diagonal blocks alone would pass for the system's.
     BRUNT_ASSERT(!r->options->matrix_free || (r->options->solver == &brunt_linear_pcg && !r->options->fallback));
-    if (BRUNT_RESERVE(n->gradient, count, 0) || BRUNT_RESERVE(n->step, count, 0) || BRUNT_RESERVE(n->trial, count, 0) ||
-        BRUNT_RESERVE(n->stencils, (size_t)r->problem->count, 0)) {
-        brunt_fail(r->error, BRUNT_FAILED, "Out of memory for Newton's method with %zu unknowns.", count);
+    static const char what[] = "unknowns of Newton's method";
+    if (BRUNT_ROOM(n->gradient, count, 0, what, r->error) || BRUNT_ROOM(n->step, count, 0, what, r->error) ||
+        BRUNT_ROOM(n->trial, count, 0, what, r->error) ||
+        BRUNT_ROOM(n->stencils, (size_t)r->problem->count, 0, "terms of Newton's method", r->error))
         return broken(r, BRUNT_NEWTON_BROKEN);
-    }
     phase(r, BRUNT_NEWTON_EVALUATE);
     if (open_solver(r, r->options->solver) || look(r, NULL)) return BRUNT_FAILED;
     int outside = -1;

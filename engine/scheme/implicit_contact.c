@@ -13,10 +13,6 @@
 #include "grid/bspline.h"
 #include "materials/material.h"
 
-static int out_of_memory(brunt_error *error) {
-    return brunt_fail(error, BRUNT_FAILED, "out of memory for the contact of bodies");
-}
-
 // ------------------------------------------------------------------------------------------ stiffness and distance
 
 // [Pa] Young's modulus, or of what has none that of its waves.
@@ -79,20 +75,16 @@ static int make_rooms(brunt_implicit_contact *c, const brunt_world *world, brunt
     list_pairs(c, world);
     list_planes(c, world);
     const size_t pairs = (size_t)c->pair_count + 1, planes = (size_t)c->plane_count + 1;
-    c->pair = brunt_alloc(pairs * sizeof *c->pair);
-    c->pair_account = brunt_alloc(pairs * sizeof *c->pair_account);
-    c->plane = brunt_alloc(planes * sizeof *c->plane);
-    c->plane_wall = brunt_alloc(planes * sizeof *c->plane_wall);
-    c->meets = brunt_alloc(planes * sizeof *c->meets);
-    c->force = brunt_alloc((pairs + planes) * sizeof *c->force);
-    c->force_before = brunt_alloc((pairs + planes) * sizeof *c->force_before);
-    c->has_points = brunt_alloc((size_t)world->bodies.mpm_count + 1);
-    c->half = brunt_alloc(((size_t)world->bodies.count + 1) * sizeof *c->half);
-    bool made = c->pair && c->pair_account && c->plane && c->plane_wall && c->meets && c->force && c->force_before &&
-                c->has_points && c->half;
-    for (int32_t q = 0; made && q < c->plane_count; q++)
-        made = (c->meets[q] = brunt_alloc((size_t)world->bodies.count)) != NULL;
-    if (!made) return out_of_memory(error);
+    static const char of_pairs[] = "pairs of bodies and planes", of_planes[] = "planes that push";
+    if (BRUNT_NEW(c->pair, pairs, of_pairs, error) || BRUNT_NEW(c->pair_account, pairs, of_pairs, error) ||
+        BRUNT_NEW(c->plane, planes, of_planes, error) || BRUNT_NEW(c->plane_wall, planes, of_planes, error) ||
+        BRUNT_NEW(c->meets, planes, of_planes, error) || BRUNT_NEW(c->force, pairs + planes, of_pairs, error) ||
+        BRUNT_NEW(c->force_before, pairs + planes, of_pairs, error) ||
+        BRUNT_NEW(c->has_points, world->bodies.mpm_count + 1, "bodies of points", error) ||
+        BRUNT_NEW(c->half, world->bodies.count + 1, "bodies", error))
+        return BRUNT_FAILED;
+    for (int32_t q = 0; q < c->plane_count; q++)
+        if (BRUNT_NEW(c->meets[q], world->bodies.count, "bodies at a plane", error)) return BRUNT_FAILED;
     for (int k = 0; k < world->bodies.fem_count; k++)
         c->half[world->bodies.fem[k].index] = 0.5 * (double)world->bodies.fem[k].contact_thickness;
     list_pairs(c, world);
@@ -183,9 +175,10 @@ static int walk_surfaces(brunt_implicit_contact *c, const brunt_world *world, br
     c->vertex_count = c->facet_count = 0;
     for (int k = 0; k < world->bodies.fem_count; k++) {
         const brunt_fem_body *fem = &world->bodies.fem[k];
-        int32_t *number = brunt_alloc(((size_t)fem->node_count + 1) * sizeof *number);
+        int32_t *number;
         brunt_faces faces;
-        const int status = number ? brunt_fem_faces(fem, &faces, error) : out_of_memory(error);
+        if (BRUNT_NEW(number, fem->node_count + 1, "numbers of nodes in a surface", error)) return BRUNT_FAILED;
+        const int status = brunt_fem_faces(fem, &faces, error);
         if (status) {
             brunt_free(number);
             return status;
@@ -202,12 +195,11 @@ static int make_surfaces(brunt_implicit_contact *c, const brunt_world *world, br
     int status = walk_surfaces(c, world, error);
     if (status) return status;
     const size_t vertices = (size_t)c->vertex_count + 1;
-    c->rest = brunt_alloc(vertices * sizeof *c->rest);
-    c->place = brunt_alloc(vertices * sizeof *c->place);
-    c->body = brunt_alloc(vertices * sizeof *c->body);
-    c->node = brunt_alloc(vertices * sizeof *c->node);
-    c->facet = brunt_alloc(((size_t)c->facet_count + 1) * sizeof *c->facet);
-    if (!c->rest || !c->place || !c->body || !c->node || !c->facet) return out_of_memory(error);
+    static const char of_surfaces[] = "vertices of surfaces";
+    if (BRUNT_NEW(c->rest, vertices, of_surfaces, error) || BRUNT_NEW(c->place, vertices, of_surfaces, error) ||
+        BRUNT_NEW(c->body, vertices, of_surfaces, error) || BRUNT_NEW(c->node, vertices, of_surfaces, error) ||
+        BRUNT_NEW(c->facet, c->facet_count + 1, "facets of surfaces", error))
+        return BRUNT_FAILED;
     if ((status = walk_surfaces(c, world, error))) return status;
     const brunt_barrier_mesh mesh = {.dim = world->settings.dimension,
                                      .vertex_count = c->vertex_count,
@@ -269,7 +261,9 @@ static int check_start(const brunt_implicit_contact *c, const brunt_world *world
     return BRUNT_OK;
 }
 
-static int32_t count_points(const brunt_implicit_contact *c, const brunt_world *world, int64_t *nodes) {
+// Material points that may meet something, and how many nodes they have in all.
+static int count_points(const brunt_implicit_contact *c, const brunt_world *world, int32_t *points, int64_t *nodes,
+                        brunt_error *error) {
     int64_t count = 0;
     *nodes = 0;
     for (int i = 0; i < world->bodies.mpm_count; i++) {
@@ -278,17 +272,28 @@ static int32_t count_points(const brunt_implicit_contact *c, const brunt_world *
         count += body->particles.count;
         *nodes += body->particles.count * (int64_t)pow(body->grid.order + 1, body->grid.dim);
     }
-    return count < INT32_MAX ? (int32_t)count : -1;
+    *points = (int32_t)count;
+    if (count < INT32_MAX) return BRUNT_OK;
+    return brunt_fail(error, BRUNT_FAILED, "there are more than %d material points in contact", INT32_MAX - 1);
+}
+
+static int make_points(brunt_implicit_contact *c, const brunt_world *world, int32_t *count, int64_t *nodes,
+                       brunt_error *error) {
+    static const char points[] = "points in contact";
+    if (count_points(c, world, count, nodes, error)) return BRUNT_FAILED;
+    const size_t n = (size_t)*count + 1;
+    if (BRUNT_ROOM(c->x, n, 0, points, error) || BRUNT_ROOM(c->area, n, 0, points, error) ||
+        BRUNT_ROOM(c->owner, n, 0, points, error))
+        return BRUNT_FAILED;
+    return BRUNT_ROOM(c->first, n + 1, 0, points, error);
 }
 
 // Material points as they begin, which nothing moves yet.
 static int place_points(brunt_implicit_contact *c, const brunt_world *world, brunt_error *error) {
     int64_t nodes;
-    const int32_t count = count_points(c, world, &nodes);
+    int32_t count;
+    if (make_points(c, world, &count, &nodes, error)) return BRUNT_FAILED;
     const size_t n = (size_t)count + 1;
-    if (count < 0 || BRUNT_RESERVE(c->x, n, 0) || BRUNT_RESERVE(c->area, n, 0) || BRUNT_RESERVE(c->owner, n, 0) ||
-        BRUNT_RESERVE(c->first, n + 1, 0))
-        return out_of_memory(error);
     memset(c->first, 0, (n + 1) * sizeof *c->first);
     c->point_count = 0;
     for (int i = 0; i < world->bodies.mpm_count; i++) {
@@ -440,12 +445,11 @@ int brunt_implicit_contact_points(brunt_implicit_contact *c, const brunt_world *
                                   brunt_error *error) {
     if (!c->barrier) return BRUNT_OK;
     int64_t nodes;
-    const int32_t count = count_points(c, world, &nodes);
-    const size_t n = (size_t)count + 1;
-    if (count < 0 || BRUNT_RESERVE(c->x, n, 0) || BRUNT_RESERVE(c->area, n, 0) || BRUNT_RESERVE(c->owner, n, 0) ||
-        BRUNT_RESERVE(c->first, n + 1, 0) || BRUNT_RESERVE(c->point_node, (size_t)nodes + 1, 0) ||
-        BRUNT_RESERVE(c->weight, (size_t)nodes + 1, 0))
-        return out_of_memory(error);
+    int32_t count;
+    if (make_points(c, world, &count, &nodes, error) ||
+        BRUNT_ROOM(c->point_node, (size_t)nodes + 1, 0, "nodes of points in contact", error) ||
+        BRUNT_ROOM(c->weight, (size_t)nodes + 1, 0, "nodes of points in contact", error))
+        return BRUNT_FAILED;
     c->first[0] = 0;
     c->point_count = 0;
     for (int i = 0; i < world->bodies.mpm_count; i++) {
@@ -466,7 +470,7 @@ int brunt_implicit_contact_begin(brunt_implicit_contact *c, const brunt_world *w
                                  const brunt_team *team, const brunt_contact_rule *rule, brunt_error *error) {
     if (!c->barrier) return BRUNT_OK;
     const int64_t all = (int64_t)u->count * u->dim;
-    if (BRUNT_RESERVE(c->before, (size_t)all + 1, 0)) return out_of_memory(error);
+    if (BRUNT_ROOM(c->before, (size_t)all + 1, 0, "unknowns", error)) return BRUNT_FAILED;
     for (int64_t k = 0; k < all; k++) c->before[k] = rule->dt * u->velocity[k];
     for (int32_t q = 0; q < c->plane_count; q++) {
         const brunt_plane_def *plane = &world->boundaries.walls[c->plane_wall[q]].plane;

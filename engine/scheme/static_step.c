@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/error.h"
 #include "base/memory.h"
 #include "scheme/implicit.h"
@@ -234,9 +235,11 @@ static int check_points(brunt_world *world, int i, brunt_error *error) {
     const brunt_unknowns *u = &m->unknowns;
     piece p = {.u = u, .first = u->mesh_count, .modes = u->dim == 2 ? 3 : MODES};
     bool meets = false;
-    int32_t *node = brunt_alloc(((size_t)u->count + 1) * sizeof *node);
-    uint8_t *seen = brunt_alloc((size_t)u->count + 1);
-    for (int k = i; node && seen && k < world->bodies.mpm_count; k++) {
+    int32_t *node;
+    uint8_t *seen = NULL;
+    int status = BRUNT_NEW(node, u->count + 1, "unknowns of points", error);
+    if (!status) status = BRUNT_NEW(seen, u->count + 1, "marks of unknowns", error);
+    for (int k = i; !status && k < world->bodies.mpm_count; k++) {
         const brunt_body *body = &world->bodies.mpm[k];
         if (u->tie[k] != i) continue;
         meets = meets || meets_something(m, body->index);
@@ -247,7 +250,6 @@ static int check_points(brunt_world *world, int i, brunt_error *error) {
         }
     }
     p.node = node;
-    int status = node && seen ? BRUNT_OK : brunt_fail(error, BRUNT_FAILED, "out of memory");
     if (!status && p.count) status = check_piece(world, &p, world->bodies.mpm[i].index, meets, error);
     brunt_free(node), brunt_free(seen);
     return status;

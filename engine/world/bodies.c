@@ -217,8 +217,7 @@ static int set_erosion(const brunt_body_def *from, int32_t count, brunt_body *bo
     body->erodes = body->fails || body->erodes_inverted || isfinite(from->erosion.strain);
     body->keeps = body->erodes && from->erosion.keep;
     if (!body->erodes) return BRUNT_OK;
-    body->rank = brunt_alloc(((size_t)count + 1) * sizeof *body->rank);
-    return body->rank ? BRUNT_OK : brunt_fail(error, BRUNT_FAILED, "out of memory");
+    return BRUNT_NEW(body->rank, count + 1, "ranks of particles that erode", error);
 }
 
 static int make_particles(brunt_world *world, const brunt_world_def *def, const brunt_body_def **order,
@@ -248,8 +247,8 @@ static int make_particles(brunt_world *world, const brunt_world_def *def, const 
 int brunt_bodies_make(brunt_world *world, const brunt_world_def *def, const brunt_body_def **order,
                       brunt_error *error) {
     const int n = def->body_count, dim = def->dimension;
-    brunt_filled *filled = brunt_alloc((size_t)n * sizeof *filled);
-    if (!filled) return brunt_fail(error, BRUNT_FAILED, "out of memory");
+    brunt_filled *filled;
+    if (BRUNT_NEW(filled, n, "bodies of points", error)) return BRUNT_FAILED;
     double low[3] = {INFINITY, INFINITY, INFINITY};
     int status = fill_shapes(world, def, order, filled, low, error);
     // A grid far from the scene would waste the digits of the particles' places on it: it starts near them, whole cells

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/error.h"
 #include "base/memory.h"
 #include "world/create.h"
@@ -9,8 +10,8 @@
 // Nodes that no element uses are left out: the others are numbered without gaps, in the mesh's order.
 static int close_ranks(brunt_fem_body *fem, int32_t mesh_nodes, brunt_error *error) {
     if (fem->node_count == mesh_nodes) return BRUNT_OK;
-    int32_t *rank = brunt_alloc((size_t)(mesh_nodes + 1) * sizeof *rank), next = 0;
-    if (!rank) return brunt_fail(error, BRUNT_FAILED, "body '%s': out of memory for its nodes", fem->name);
+    int32_t *rank, next = 0;
+    if (BRUNT_NEW(rank, mesh_nodes + 1, "ranks of nodes of a mesh", error)) return BRUNT_FAILED;
     for (int32_t n = 0; n < fem->node_count; n++) rank[fem->node_id[n]] = 1;
     for (int32_t i = 0; i < mesh_nodes; i++)
         if (rank[i]) rank[i] = next++;

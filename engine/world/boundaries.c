@@ -1,6 +1,7 @@
 // Boundaries of a definition: what becomes of each.
 #include <math.h>
 
+#include "base/array.h"
 #include "base/error.h"
 #include "base/memory.h"
 #include "boundary/kinds.h"
@@ -11,8 +12,7 @@ int brunt_boundaries_make(brunt_world *world, const brunt_world_def *def, const 
     brunt_boundaries *all = &world->boundaries;
     const brunt_boundary_making m = {def, all, &world->messages, world->bodies.has_particles};
     all->wall_count = brunt_boundary_count(def);
-    all->walls = brunt_alloc((size_t)(all->wall_count + 1) * sizeof *all->walls);
-    if (!all->walls) return brunt_fail(error, BRUNT_FAILED, "out of memory");
+    if (BRUNT_NEW(all->walls, all->wall_count + 1, "boundaries", error)) return BRUNT_FAILED;
     if (def->axisymmetric && world->bodies.has_particles)
         all->mirrors[all->mirror_count++] =
             (brunt_symmetry_plane){.axis = 0, .node = (int32_t)round(-def->origin[0] / def->cell), .wall = -1};

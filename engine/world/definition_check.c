@@ -81,8 +81,8 @@ static int compare_body_names(const void *a, const void *b) {
 
 // Two bodies of one name stand side by side in the order of names.
 static int check_body_names(const brunt_world_def *def, brunt_error *error) {
-    const brunt_body_def **order = brunt_alloc(((size_t)def->body_count + 1) * sizeof *order);
-    if (!order) return brunt_fail(error, BRUNT_FAILED, "out of memory");
+    const brunt_body_def **order;
+    if (BRUNT_NEW(order, def->body_count + 1, "bodies in order of name", error)) return BRUNT_FAILED;
     for (int32_t i = 0; i < def->body_count; i++) order[i] = &def->bodies[i];
     qsort(order, (size_t)def->body_count, sizeof *order, compare_body_names);
     const brunt_body_def *twice = NULL;

@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/error.h"
 #include "base/memory.h"
 #include "contact/methods/method.h"
@@ -23,8 +24,6 @@ typedef struct maker {
     candidate *list;
     int32_t count;
 } maker;
-
-static int out_of_memory(brunt_error *error) { return brunt_fail(error, BRUNT_FAILED, "out of memory"); }
 
 // In a crowded scene all pairs of one method and friction are one.
 static int find_alike(const brunt_pairs *pairs, const brunt_pair *pair) {
@@ -183,10 +182,10 @@ int brunt_pairs_make(brunt_world *world, const brunt_world_def *def, const brunt
     const int64_t n = def->body_count, named = def->contact.pair_count;
     maker m = {.world = world, .def = def, .order = order, .crowded = n * (n - 1) / 2 > BRUNT_MOST_PAIRS};
     const size_t most = (size_t)(named + (m.crowded ? 3 : n * (n - 1) / 2) + 1);
-    world->pairs.mesh = brunt_alloc((size_t)n);
-    world->pairs.pair = brunt_alloc((most + (size_t)named) * sizeof *world->pairs.pair);
-    m.list = brunt_alloc(most * sizeof *m.list);
-    int status = world->pairs.mesh && world->pairs.pair && m.list ? BRUNT_OK : out_of_memory(error);
+    if (BRUNT_NEW(world->pairs.mesh, n, "bodies with pairs", error) ||
+        BRUNT_NEW(world->pairs.pair, most + (size_t)named, "pairs of bodies", error))
+        return BRUNT_FAILED;
+    int status = BRUNT_NEW(m.list, most, "pairs of bodies", error);
     for (int i = 0; !status && i < n; i++) world->pairs.mesh[i] = order[i]->method != BRUNT_MPM;
     world->pairs.map.mesh = world->pairs.mesh;
     for (int k = 0; k < 3; k++) world->pairs.map.usual[k] = -1;

@@ -36,7 +36,7 @@ static void read_contact(const brunt_world *world, const brunt_body_ref *ref, in
 static int32_t contact_place(const brunt_world *world, const brunt_body_ref *ref) {
     int32_t place = 0;
     while (place < ref->ops->field_count(ref) && ref->ops->field(ref, place).at == BRUNT_AT_NODES) place++;
-    return world->contact.has_surfaces && place ? place : -1;
+    return world->contact.has_surfaces && place ? place : BRUNT_NONE;
 }
 
 // The number of a field among a body's own, or among those of contact.

@@ -41,8 +41,8 @@ int brunt_find_ordered(const brunt_body_def **order, int count, const char *name
 int brunt_reports_make(brunt_world *world, brunt_error *error) {
     for (int i = 0; i < world->bodies.mpm_count; i++) {
         brunt_body *body = &world->bodies.mpm[i];
-        if (BRUNT_RESERVE(body->report, (size_t)body->grid.block_count, 0))
-            return brunt_fail(error, BRUNT_FAILED, "out of memory");
+        if (BRUNT_ROOM(body->report, (size_t)body->grid.block_count, 0, "reports of blocks of particles", error))
+            return BRUNT_FAILED;
         real *const *v = brunt_field(&body->particles, BRUNT_FIELD_velocity);
         for (int32_t b = 0; b < body->grid.block_count; b++) {
             const brunt_block *block = &body->grid.blocks[b];
@@ -178,17 +178,14 @@ static void find_transfers(brunt_transfers *t, const brunt_world_def *def) {
 
 // Bodies, and what each thread works in.
 static int make_room(brunt_world *world, int32_t bodies, brunt_error *error) {
-    const size_t threads = (size_t)world->settings.threads;
-    world->scratch.points = brunt_alloc(threads * sizeof *world->scratch.points);
-    world->scratch.meshes = brunt_alloc(threads * sizeof *world->scratch.meshes);
+    const int threads = world->settings.threads;
     world->bodies.count = bodies;
-    world->bodies.all = brunt_alloc((size_t)bodies * sizeof *world->bodies.all);
-    world->bodies.mpm = brunt_alloc((size_t)bodies * sizeof *world->bodies.mpm);
-    world->bodies.fem = brunt_alloc((size_t)bodies * sizeof *world->bodies.fem);
-    world->bodies.mesh_reports = brunt_alloc((size_t)bodies * sizeof *world->bodies.mesh_reports);
-    const bool made = world->scratch.points && world->scratch.meshes && world->bodies.mpm && world->bodies.all &&
-                      world->bodies.fem && world->bodies.mesh_reports;
-    return made ? BRUNT_OK : brunt_fail(error, BRUNT_FAILED, "out of memory");
+    if (BRUNT_NEW(world->scratch.points, threads, "threads with room to work", error) ||
+        BRUNT_NEW(world->scratch.meshes, threads, "threads with room to work", error) ||
+        BRUNT_NEW(world->bodies.all, bodies, "bodies", error) ||
+        BRUNT_NEW(world->bodies.mpm, bodies, "bodies", error) || BRUNT_NEW(world->bodies.fem, bodies, "bodies", error))
+        return BRUNT_FAILED;
+    return BRUNT_NEW(world->bodies.mesh_reports, bodies, "reports of meshes", error);
 }
 
 // Load steps are steps of a pseudo-time from 0 to 1, over which gravity grows where nothing else is said.
@@ -204,12 +201,11 @@ brunt_world *brunt_world_create(const brunt_world_def *given, brunt_error *error
     if (own.transfer == BRUNT_FLIP && own.flip == 0) own.transfer = BRUNT_PIC; // nothing of their own velocity is kept
     if (own.scheme == BRUNT_STATIC) go_static(&own);
     const brunt_world_def *def = &own;
-    brunt_world *world = brunt_alloc(sizeof *world);
-    const brunt_body_def **order = brunt_alloc((size_t)def->body_count * sizeof *order);
-    if (!world || !order) {
+    brunt_world *world;
+    const brunt_body_def **order;
+    if (BRUNT_NEW(world, 1, "world", error)) return NULL;
+    if (BRUNT_NEW(order, def->body_count, "bodies in order of name", error)) {
         brunt_free(world);
-        brunt_free(order);
-        brunt_fail(error, BRUNT_FAILED, "out of memory");
         return NULL;
     }
     for (int i = 0; i < def->body_count; i++) order[i] = &def->bodies[i];

@@ -266,7 +266,7 @@ static int64_t count_of(hid_t file, hid_t set, H5T_class_t kind, size_t bytes) {
                 H5Fget_filesize(file, &size) >= 0 && count <= size / bytes;
     if (space >= 0) H5Sclose(space);
     if (type >= 0) H5Tclose(type);
-    return good ? (int64_t)count : -1;
+    return good ? (int64_t)count : BRUNT_NONE;
 }
 
 hid_t brunt_hdf5_dataset(hid_t file, const char *name, H5T_class_t kind, size_t bytes, int64_t *count) {

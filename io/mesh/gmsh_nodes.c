@@ -130,10 +130,10 @@ void gmsh_number_nodes(gmsh_cursor *c) {
 int32_t gmsh_find_node(const gmsh_file *file, int64_t tag) {
     if (file->node_of) {
         uint64_t at = (uint64_t)tag - (uint64_t)file->least_tag;
-        return at < file->node_of_count ? file->node_of[at] : -1;
+        return at < file->node_of_count ? file->node_of[at] : BRUNT_NONE;
     }
     if (!file->numbered) return BRUNT_NONE;
     gmsh_numbered key = {.tag = tag};
     const gmsh_numbered *found = bsearch(&key, file->numbered, (size_t)file->node_count, sizeof key, by_tag);
-    return found ? found->node : -1;
+    return found ? found->node : BRUNT_NONE;
 }

@@ -171,7 +171,7 @@ static int64_t probe_place(brunt_history *h, brunt_world *world, const probe *p)
         else
             high = middle;
     }
-    return low < count && h->scratch[low] == (double)p->id ? low : -1;
+    return low < count && h->scratch[low] == (double)p->id ? low : BRUNT_NONE;
 }
 
 static void add_probe(brunt_history *h, brunt_world *world, const probe *p) {

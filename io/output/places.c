@@ -66,5 +66,6 @@ int brunt_places_read(brunt_world *world, int32_t body, brunt_place at, double *
 }
 
 int32_t brunt_place_ids(const brunt_world *world, int32_t body, brunt_place at) {
-    return at == BRUNT_AT_NODES ? -1 : brunt_body_find_field(world, body, at == BRUNT_AT_ELEMENTS ? "element" : "id");
+    return at == BRUNT_AT_NODES ? BRUNT_NONE
+                                : brunt_body_find_field(world, body, at == BRUNT_AT_ELEMENTS ? "element" : "id");
 }

@@ -140,7 +140,7 @@ bool brunt_study_lacks_limit(const brunt_study *study, int32_t line, int32_t m, 
 }
 
 int32_t brunt_study_reference_case(const brunt_study *study, int32_t m) {
-    return study->measures[m].reference == BRUNT_REFERENCE_FINEST ? finest(study, m) : -1;
+    return study->measures[m].reference == BRUNT_REFERENCE_FINEST ? finest(study, m) : BRUNT_NONE;
 }
 
 const char *brunt_study_unit(const brunt_study *study, int32_t m) {
