@@ -21,12 +21,14 @@ typedef struct brunt_block_matrix {
 } brunt_block_matrix;
 
 // What a pattern is made of.
+struct brunt_fold; // linear/fold.h
 typedef struct brunt_pattern {
     int dim;
     int32_t nodes;
     const brunt_stencils *stencils; // `lists` lists, nodes within [0, nodes)
     int lists;                      // at most 255
     bool keep; // what the matrix has stays in it, when it has as many nodes: versions of lists are then of one problem
+    const struct brunt_fold *fold; // stencils that hold a follower hold its leader too; NULL: none follows
 } brunt_pattern;
 
 // Makes room for a pattern, and sets all values to zero. BRUNT_OK, or BRUNT_FAILED: out of memory.
@@ -38,6 +40,8 @@ void brunt_block_matrix_free(brunt_block_matrix *m);
 static inline int64_t brunt_block_matrix_blocks(const brunt_block_matrix *m) {
     return m->first ? m->first[m->nodes] : 0;
 }
+// Which block of a row a column's is, or where it would be.
+int64_t brunt_block_matrix_place(const brunt_block_matrix *m, int64_t row, int64_t column);
 // The values of a node's own block.
 static inline double *brunt_block_matrix_diagonal(brunt_block_matrix *m, int32_t node) {
     return m->value + m->diagonal[node] * m->dim * m->dim;

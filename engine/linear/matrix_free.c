@@ -21,6 +21,7 @@ int brunt_matrix_free_take(brunt_matrix_free *f, const brunt_team *team, const d
                (size_t)size * sizeof(double));
     for (int t = 0; t < f->count; t++)
         if (f->terms[t].ops->linearise) f->terms[t].ops->linearise(f->terms[t].self, team, u, project, blocks);
+    if (f->fold) brunt_fold_diagonal(f->fold, blocks);
     return BRUNT_OK;
 }
 
@@ -37,6 +38,7 @@ void brunt_matrix_free_hessian(const brunt_matrix_free *f, const brunt_team *tea
     brunt_block_matrix_product(f->rest, team, x, y);
     for (int t = 0; t < f->count; t++)
         if (f->terms[t].ops->product) f->terms[t].ops->product(f->terms[t].self, team, x, y);
+    if (f->fold) brunt_fold_gather(f->fold, f->rest->dim, y);
 }
 
 typedef struct masks {
@@ -50,7 +52,7 @@ enum { GRAIN = 4096 }; // unknowns
 static void leave_out_held(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     const masks *m = context;
-    for (int64_t i = begin; i < end; i++) m->f->x[i] = m->f->held[i] ? 0 : m->x[i];
+    for (int64_t i = begin; i < end; i++) m->f->x[i] = m->f->held && m->f->held[i] ? 0 : m->x[i];
 }
 
 static void add_held(void *context, int64_t begin, int64_t end, int worker) {
@@ -71,8 +73,10 @@ static void add_raise(void *context, int64_t begin, int64_t end, int worker) {
 void brunt_matrix_free_product(void *matrix_free, const brunt_team *team, const double *x, double *y) {
     const brunt_matrix_free *f = matrix_free;
     masks m = {f, x, y};
-    if (f->held) brunt_parallel(team->threads, unknowns(f), GRAIN, leave_out_held, &m, team->timer);
-    brunt_matrix_free_hessian(f, team, f->held ? f->x : x, y);
+    const bool masked = f->held || f->fold;
+    if (masked) brunt_parallel(team->threads, unknowns(f), GRAIN, leave_out_held, &m, team->timer);
+    if (f->fold) brunt_fold_spread(f->fold, f->rest->dim, f->x);
+    brunt_matrix_free_hessian(f, team, masked ? f->x : x, y);
     if (f->held) brunt_parallel(team->threads, unknowns(f), GRAIN, add_held, &m, team->timer);
     if (f->raise > 0) brunt_parallel(team->threads, unknowns(f), GRAIN, add_raise, &m, team->timer);
 }

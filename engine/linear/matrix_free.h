@@ -3,7 +3,7 @@
 // Of the whole there are the blocks on the diagonal, for the preconditioner.
 #pragma once
 
-#include "linear/block_matrix.h"
+#include "linear/fold.h"
 
 typedef struct brunt_matrix_free {
     brunt_block_matrix blocks; // the diagonal of all: the matrix that a solver is given
@@ -13,8 +13,9 @@ typedef struct brunt_matrix_free {
     const brunt_term *terms;
     int count;
     const uint8_t *held;
-    double raise; // diagonal entries are multiplied by 1 + this
-    double *x;    // what is multiplied, 0 where it is held
+    const brunt_fold *fold; // nodes that follow others, as `rest` has them already; NULL: none
+    double raise;           // diagonal entries are multiplied by 1 + this
+    double *x;              // what is multiplied, 0 where it is held, of followers as of their leaders
     size_t x_capacity;
 } brunt_matrix_free;
 
@@ -27,7 +28,7 @@ void brunt_matrix_free_hold(brunt_matrix_free *f, const brunt_team *team);
 void brunt_matrix_free_raise(brunt_matrix_free *f, double raise);
 // y = A x, of the system that is solved (brunt_product_fn).
 void brunt_matrix_free_product(void *matrix_free, const brunt_team *team, const double *x, double *y);
-// y = H x, of the Hessian itself: nothing is held or raised.
+// y = H x, of the Hessian itself: nothing is held or raised; x has followers as their leaders, y nothing of them.
 void brunt_matrix_free_hessian(const brunt_matrix_free *f, const brunt_team *team, const double *x, double *y);
 size_t brunt_matrix_free_bytes(const brunt_matrix_free *f);
 void brunt_matrix_free_free(brunt_matrix_free *f);

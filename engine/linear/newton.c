@@ -45,6 +45,10 @@ static void phase(const newton_run *r, brunt_newton_phase now) {
 
 static int64_t unknowns(const newton_run *r) { return (int64_t)r->problem->nodes * r->problem->dim; }
 
+static void gather(const newton_run *r, double *g) {
+    if (r->problem->fold) brunt_fold_gather(r->problem->fold, r->problem->dim, g);
+}
+
 // What there is instead of a minimum; the error has been said.
 static int broken(newton_run *r, brunt_newton_result result) {
     r->report->result = result;
@@ -79,6 +83,7 @@ static double gradient_at(newton_run *r, const double *u) {
     memset(g, 0, (size_t)unknowns(r) * sizeof *g);
     for (int t = 0; t < r->problem->count; t++)
         r->problem->terms[t].ops->gradient(r->problem->terms[t].self, r->team, u, g);
+    gather(r, g);
     if (r->options->unbalance) r->report->unbalance = r->options->unbalance(r->options->context, g);
     for (int64_t i = 0; i < unknowns(r); i++) {
         if (r->problem->held && r->problem->held[i]) g[i] = 0;
@@ -119,7 +124,12 @@ static int make_pattern(newton_run *r) {
     for (int t = 0; t < r->problem->count; t++)
         if (r->problem->terms[t].ops->stencils && !has_product(r, t))
             n->stencils[lists++] = r->problem->terms[t].ops->stencils(r->problem->terms[t].self);
-    const brunt_pattern pattern = {r->problem->dim, r->problem->nodes, n->stencils, lists, r->report->iterations > 0};
+    const brunt_pattern pattern = {.dim = r->problem->dim,
+                                   .nodes = r->problem->nodes,
+                                   .stencils = n->stencils,
+                                   .lists = lists,
+                                   .keep = r->report->iterations > 0,
+                                   .fold = r->problem->fold};
     if (brunt_block_matrix_pattern(&n->matrix, r->team, &pattern, r->error)) return broken(r, BRUNT_NEWTON_BROKEN);
     return BRUNT_OK;
 }
@@ -131,7 +141,9 @@ static int fill_matrix(newton_run *r, bool project) {
     for (int t = 0; t < r->problem->count; t++)
         if (r->problem->terms[t].ops->hessian && !has_product(r, t))
             r->problem->terms[t].ops->hessian(r->problem->terms[t].self, r->team, r->u, project, m);
+    if (r->problem->fold) brunt_fold_matrix(r->problem->fold, r->team, m);
     if (!r->options->matrix_free) return BRUNT_OK;
+    f->fold = r->problem->fold;
     f->rest = m, f->terms = r->problem->terms, f->count = r->problem->count, f->held = r->problem->held;
     return brunt_matrix_free_take(f, r->team, r->u, project, r->error) ? broken(r, BRUNT_NEWTON_BROKEN) : BRUNT_OK;
 }
@@ -141,6 +153,7 @@ static void hold_matrix(newton_run *r) {
         brunt_matrix_free_hold(&r->n->free, r->team);
     else if (r->problem->held)
         brunt_block_matrix_hold(&r->n->matrix, r->team, r->problem->held, 1);
+    if (r->problem->fold) brunt_fold_hold(r->problem->fold, system_of(r));
 }
 
 // Diagonal entries times 1 + next, which are times 1 + before.
@@ -161,6 +174,15 @@ static int open_solver(newton_run *r, const brunt_linear_ops *solver) {
     brunt_linear *l = &r->n->linear;
     if (l->ops != solver || l->options.preconditioner != options.preconditioner) r->n->analysed = 0;
     return brunt_linear_open(l, solver, &options, r->error) ? broken(r, BRUNT_NEWTON_BROKEN) : BRUNT_OK;
+}
+
+// The step that the factor gives.
+static brunt_linear_status solve_with_factor(newton_run *r) {
+    brunt_newton *n = r->n;
+    for (int64_t i = 0; i < unknowns(r); i++) n->trial[i] = -n->gradient[i];
+    const brunt_linear_status status = brunt_linear_solve(&n->linear, r->team, n->trial, n->step, r->error);
+    if (status == BRUNT_LINEAR_DONE && r->problem->fold) brunt_fold_spread(r->problem->fold, r->problem->dim, n->step);
+    return status;
 }
 
 // Factors of the matrix as it stands.
@@ -184,9 +206,8 @@ static brunt_linear_status solve(newton_run *r) {
     brunt_newton *n = r->n;
     brunt_linear_status status = factor(r);
     if (status != BRUNT_LINEAR_DONE) return status;
-    for (int64_t i = 0; i < unknowns(r); i++) n->trial[i] = -n->gradient[i];
     n->linear.report.iterations = 0;
-    status = brunt_linear_solve(&n->linear, r->team, n->trial, n->step, r->error);
+    status = solve_with_factor(r);
     r->report->linear_iterations += n->linear.report.iterations;
     return status;
 }
@@ -209,11 +230,10 @@ static brunt_linear_status sweep(newton_run *r) {
                 return BRUNT_LINEAR_FAILED;
         }
         if (!changed) break;
-        for (int64_t i = 0; i < unknowns(r); i++) {
+        gather(r, n->gradient);
+        for (int64_t i = 0; i < unknowns(r); i++)
             if (r->problem->held && r->problem->held[i]) n->gradient[i] = 0;
-            n->trial[i] = -n->gradient[i];
-        }
-        const brunt_linear_status status = brunt_linear_solve(&n->linear, r->team, n->trial, n->step, r->error);
+        const brunt_linear_status status = solve_with_factor(r);
         if (status != BRUNT_LINEAR_DONE) return status;
     }
     r->energy = energy_at(r, r->u, &outside);
@@ -486,6 +506,7 @@ int brunt_newton_lead(brunt_newton *newton, const brunt_team *team, const brunt_
         brunt_matrix_free_hessian(&newton->free, team, lead->way, p);
     else
         brunt_block_matrix_product(&newton->matrix, team, lead->way, p);
+    gather(&run, p);
     for (int64_t i = 0; i < unknowns(&run); i++)
         if (!problem->held[i]) newton->gradient[i] += p[i];
     hold_matrix(&run);

@@ -7,6 +7,7 @@
 // between; where there is none, gradients.
 #pragma once
 
+#include "linear/fold.h"
 #include "linear/linear.h"
 #include "linear/matrix_free.h"
 
@@ -36,8 +37,8 @@ typedef struct brunt_newton_options {
     // The size of a step p [m/s]: of particles and mesh nodes, never of grid nodes. *where: which has it (the caller's
     // numbering; -1: none). NULL: the greatest component of p, where = its unknown.
     double (*measure)(void *context, const brunt_team *team, const double *p, int64_t *where);
-    // How large a gradient is beside the forces that act [-], of all unknowns, held ones too: where it is given it says
-    // what has converged, in place of the steps. NULL: steps do.
+    // How large a gradient is beside the forces that act [-], of all unknowns, held ones too, of followers with their
+    // leaders: where it is given it says what has converged, in place of the steps. NULL: steps do.
     double (*unbalance)(void *context, const double *gradient);
     // What forces at u are off by, of what they may be, asked where corrections have become small, after `look`: above
     // 1 the method goes on. NULL: nobody minds.
@@ -82,7 +83,8 @@ typedef struct brunt_problem {
     int32_t nodes;
     const brunt_term *terms;
     int count;
-    const uint8_t *held; // unknowns that stay as they are, nodes * dim; NULL: none
+    const uint8_t *held;    // unknowns that stay as they are, nodes * dim; NULL: none. Followers as their leaders
+    const brunt_fold *fold; // nodes that follow others, where u has them already; NULL: none
     // There is no energy: `gradient` is that of forces, whose derivative need not be symmetric. It is brought to 0:
     // steps are those of the unsymmetric solver, and lower its length.
     bool forces;

@@ -1,6 +1,6 @@
 // The pattern of a matrix from lists of stencils. First which stencils hold each node, then row by row the union of
 // these, by a marker for each node; each thread keeps the rows that it has made until all rows have their place.
-#include "linear/block_matrix.h"
+#include "linear/fold.h"
 
 #include <string.h>
 
@@ -42,6 +42,8 @@ typedef struct pattern_work {
     bool keep;
 } pattern_work;
 
+static int32_t leader_of(const brunt_pattern *p, int32_t node) { return p->fold ? p->fold->leader[node] : node; }
+
 // Which stencils of lists that the pattern has not hold each node, in the order of lists and of stencils.
 static int list_holders(struct brunt_pattern_scratch *s, const brunt_pattern *p, brunt_error *error) {
     int64_t entries = 0;
@@ -49,7 +51,7 @@ static int list_holders(struct brunt_pattern_scratch *s, const brunt_pattern *p,
         if (p->stencils[l].count && !s->known[l])
             entries += p->stencils[l].first[p->stencils[l].count] - p->stencils[l].first[0];
     if (BRUNT_ROOM(s->first, (size_t)p->nodes + 2, 0, "nodes of a matrix", error) ||
-        BRUNT_ROOM(s->stencil, (size_t)entries, 0, "stencils of nodes of a matrix", error))
+        BRUNT_ROOM(s->stencil, (size_t)entries * (p->fold ? 2 : 1), 0, "stencils of nodes of a matrix", error))
         return BRUNT_FAILED;
     int64_t *next = s->first + 1; // shifted by one: filling moves each to where the next one begins
     memset(s->first, 0, ((size_t)p->nodes + 2) * sizeof *s->first);
@@ -59,14 +61,18 @@ static int list_holders(struct brunt_pattern_scratch *s, const brunt_pattern *p,
         for (int64_t k = list->count ? list->first[0] : 0; list->count && k < list->first[list->count]; k++) {
             BRUNT_ASSERT(list->node[k] >= 0 && list->node[k] < p->nodes);
             next[list->node[k] + 1]++;
+            if (leader_of(p, list->node[k]) != list->node[k]) next[leader_of(p, list->node[k]) + 1]++;
         }
     }
     for (int32_t n = 0; n < p->nodes; n++) next[n + 1] += next[n];
     for (int l = 0; l < p->lists; l++) {
         const brunt_stencils *list = p->stencils + l;
         for (int64_t i = 0; i < list->count && !s->known[l]; i++)
-            for (int64_t k = list->first[i]; k < list->first[i + 1]; k++)
-                s->stencil[next[list->node[k]]++] = (int64_t)l << LIST_SHIFT | i;
+            for (int64_t k = list->first[i]; k < list->first[i + 1]; k++) {
+                const int32_t n = list->node[k], leader = leader_of(p, n);
+                s->stencil[next[n]++] = (int64_t)l << LIST_SHIFT | i;
+                if (leader != n) s->stencil[next[leader]++] = (int64_t)l << LIST_SHIFT | i;
+            }
     }
     return BRUNT_OK;
 }
@@ -104,6 +110,12 @@ static int64_t mark_columns(row_maker *w, int32_t row, const int32_t *column, in
     return count;
 }
 
+static int64_t mark_leaders(row_maker *w, int32_t row, const brunt_fold *fold, int64_t count) {
+    const int64_t had = count;
+    for (int64_t k = 0; k < had; k++) count = mark_columns(w, row, &fold->leader[w->column[w->made + k]], 1, count);
+    return count;
+}
+
 // Room for `more` columns of the row under way, which has `count`, and as much again to sort them in.
 static int row_room(row_maker *w, int64_t count, int64_t more) {
     return BRUNT_ROOM(w->column, (size_t)(w->made + 2 * (count + more)), (size_t)(w->made + count),
@@ -127,6 +139,10 @@ static int64_t make_row(const pattern_work *work, row_maker *w, int32_t row) {
         const int64_t i = s->stencil[k] & (((int64_t)1 << LIST_SHIFT) - 1), size = list->first[i + 1] - list->first[i];
         if (row_room(w, count, size)) return BRUNT_NONE;
         count = mark_columns(w, row, list->node + list->first[i], size, count);
+    }
+    if (work->pattern->fold) {
+        if (row_room(w, count, count)) return BRUNT_NONE;
+        count = mark_leaders(w, row, work->pattern->fold, count);
     }
     sort_columns(w->column + w->made, count, w->column + w->made + count);
     return count;
@@ -152,8 +168,7 @@ static void place_rows(void *context, int64_t begin, int64_t end, int worker) {
     }
 }
 
-// Where a column stands in its row, or would.
-static int64_t place_of(const brunt_block_matrix *m, int64_t row, int64_t column) {
+int64_t brunt_block_matrix_place(const brunt_block_matrix *m, int64_t row, int64_t column) {
     int64_t low = m->first[row], high = m->first[row + 1];
     while (low < high) {
         const int64_t middle = (low + high) / 2;
@@ -168,19 +183,26 @@ static int64_t place_of(const brunt_block_matrix *m, int64_t row, int64_t column
 static void find_diagonals(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     brunt_block_matrix *m = context;
-    for (int64_t r = begin; r < end; r++) m->diagonal[r] = place_of(m, r, r);
+    for (int64_t r = begin; r < end; r++) m->diagonal[r] = brunt_block_matrix_place(m, r, r);
 }
 
 static bool couples(const brunt_block_matrix *m, int32_t row, int32_t column) {
-    const int64_t at = place_of(m, row, column);
+    const int64_t at = brunt_block_matrix_place(m, row, column);
     return at < m->first[row + 1] && m->column[at] == column;
 }
 
-static bool has_stencils(const brunt_block_matrix *m, const brunt_stencils *list) {
+// Whether two nodes couple, and their leaders with both.
+static bool all_couple(const brunt_block_matrix *m, const brunt_pattern *p, int32_t a, int32_t b) {
+    const int32_t A = leader_of(p, a), B = leader_of(p, b);
+    return couples(m, a, b) && (A == a || couples(m, A, b)) && (B == b || couples(m, a, B)) &&
+           (A == a || B == b || couples(m, A, B));
+}
+
+static bool has_stencils(const brunt_block_matrix *m, const brunt_pattern *p, const brunt_stencils *list) {
     for (int64_t s = 0; s < list->count; s++)
         for (int64_t i = list->first[s]; i < list->first[s + 1]; i++)
             for (int64_t j = list->first[s]; j < list->first[s + 1]; j++)
-                if (!couples(m, list->node[i], list->node[j])) return false;
+                if (!all_couple(m, p, list->node[i], list->node[j])) return false;
     return true;
 }
 
@@ -190,7 +212,7 @@ static bool complete(const brunt_block_matrix *m, const brunt_pattern *p, bool k
     bool all = keep;
     for (int l = 0; l < p->lists; l++) {
         s->known[l] = keep && p->stencils[l].version && p->stencils[l].version == s->version[l];
-        all = all && (s->known[l] || has_stencils(m, &p->stencils[l]));
+        all = all && (s->known[l] || has_stencils(m, p, &p->stencils[l]));
         s->version[l] = p->stencils[l].version;
     }
     for (int l = p->lists; l < LISTS; l++) s->version[l] = 0;

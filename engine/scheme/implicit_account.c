@@ -100,7 +100,8 @@ static void book_groups(brunt_world *world, double impulse, double work) {
 
 // ------------------------------------------------------------------------------------------ holders
 
-// What holders gave: what is missing of M dv = dt F. `field.gradient` holds that of all forces but loads at the end.
+// What holders and mirrors gave: what is missing of M dv = dt F. `field.gradient` holds that of all forces but loads at
+// the end.
 static void book_holders(brunt_world *world) {
     const struct brunt_implicit *m = world->plan.implicit;
     const brunt_unknowns *u = &m->unknowns;
@@ -113,7 +114,7 @@ static void book_holders(brunt_world *world) {
         const double inertia = u->mass[k / u->dim] * (v[k] - u->velocity[k]) / m->dt;
         brunt_weighed_force F = {.work = {0}};
         F.impulse[a] = inertia - (1 - gamma) * before - gamma * after;
-        F.work[a] = inertia - (1 - work) * before - work * after;
+        if (u->held[k]) F.work[a] = inertia - (1 - work) * before - work * after; // mirrors do none
         brunt_implicit_book_force(m, &world->boundaries.walls[u->holder[k] - 1].last, (int32_t)(k / u->dim), &F);
     }
 }

@@ -63,6 +63,10 @@ static void take_gradients(const struct brunt_implicit *m, const double *u) {
     add_gradients(m, rows, rest, u, m->field.step);
     brunt_implicit_gradient(m, rest, m->body_terms, u, m->field.gradient);
     add_gradients(m, 0, rows, u, m->field.gradient);
+    const brunt_fold *fold = brunt_unknowns_fold(&m->unknowns);
+    if (!fold) return;
+    brunt_fold_gather(fold, m->unknowns.dim, m->field.step);
+    brunt_fold_gather(fold, m->unknowns.dim, m->field.gradient);
 }
 
 double brunt_implicit_balance(void *context, const brunt_team *team, const double *u) {

@@ -24,15 +24,10 @@ static void take_forces(brunt_world *world) {
 
 // Accelerations at the start, by the forces there. Those of components that are held are their holder's: 0 here.
 static void take_acceleration(struct brunt_implicit *m) {
-    const brunt_unknowns *unknowns = &m->unknowns;
     brunt_fields *f = &m->field;
-    const int64_t all = brunt_implicit_components(m);
-    memset(f->acceleration, 0, (size_t)all * sizeof *f->acceleration);
+    memset(f->acceleration, 0, (size_t)brunt_implicit_components(m) * sizeof *f->acceleration);
     if (m->weights.gamma == 1) return; // backward Euler asks for none
-    for (int64_t k = 0; k < all; k++) {
-        const double mass = unknowns->mass[k / unknowns->dim];
-        if (!unknowns->held[k] && mass > 0) f->acceleration[k] = f->force_before[k] / mass;
-    }
+    brunt_unknowns_accelerate(&m->unknowns, f->force_before, f->acceleration);
 }
 
 static void take_aim(struct brunt_implicit *m) {
@@ -87,6 +82,7 @@ static brunt_problem problem_of(const struct brunt_implicit *m) {
                            .terms = m->term,
                            .count = m->term_count,
                            .held = m->unknowns.held,
+                           .fold = brunt_unknowns_fold(&m->unknowns),
                            .forces = m->forces};
 }
 

@@ -58,7 +58,9 @@ static void take_scale(struct brunt_implicit *m) {
     enum { ROUNDINGS = 10 };
     const int64_t all = brunt_implicit_components(m);
     double within = 0, loads = 0, rounding = 0;
+    const brunt_fold *fold = brunt_unknowns_fold(&m->unknowns);
     brunt_implicit_gradient(m, m->fixed_terms, m->body_terms, m->field.u, m->field.step);
+    if (fold) brunt_fold_gather(fold, m->unknowns.dim, m->field.step);
     for (int64_t k = 0; k < all; k++) {
         within += fabs(m->field.step[k]), loads += fabs(m->field.load[k]);
         rounding += m->field.stiffness[k / m->unknowns.dim] * fabs(m->unknowns.place[k]);

@@ -38,21 +38,29 @@ int brunt_unknowns_make(brunt_unknowns *u, const brunt_world *world, brunt_error
         BRUNT_NEW(u->tie, bodies->mpm_count + 1, "bodies that are tied", error))
         return BRUNT_FAILED;
     find_ties(world, u->tie);
+    u->images.any = bodies->mpm_count > 0 && world->boundaries.mirror_count > 0;
     return BRUNT_OK;
 }
 
 void brunt_unknowns_free(brunt_unknowns *u, const brunt_bodies *bodies) {
     for (int i = 0; u->number && i < bodies->mpm_count; i++) brunt_free(u->number[i]);
-    void *const all[] = {u->tie,  u->plane, u->grid_base, u->base, u->number, u->number_capacity,
-                         u->mass, u->place, u->velocity,  u->held, u->holder, u->target,
-                         u->end};
+    void *const all[] = {u->tie,         u->plane,
+                         u->grid_base,   u->base,
+                         u->number,      u->number_capacity,
+                         u->mass,        u->place,
+                         u->velocity,    u->held,
+                         u->holder,      u->target,
+                         u->end,         u->images.leader,
+                         u->images.sign, u->images.follower,
+                         u->images.mass, u->images.wall};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) brunt_free(all[k]);
     *u = (brunt_unknowns){.dim = u->dim};
 }
 
 size_t brunt_unknowns_bytes(const brunt_unknowns *u, const brunt_bodies *bodies) {
     size_t bytes = u->mass_capacity + u->place_capacity + u->velocity_capacity + u->held_capacity + u->holder_capacity +
-                   u->target_capacity + u->end_capacity;
+                   u->target_capacity + u->end_capacity + u->images.leader_capacity + u->images.follower_capacity +
+                   u->images.sign_capacity + u->images.mass_capacity + u->images.wall_capacity;
     for (int i = 0; i < bodies->mpm_count; i++) bytes += u->number_capacity[i];
     return bytes;
 }
@@ -147,7 +155,7 @@ static void take_plane(brunt_unknowns *u, const brunt_plane_def *plane, double t
     }
 }
 
-int brunt_unknowns_number(brunt_unknowns *u, const brunt_world *world, brunt_error *error) {
+int brunt_unknowns_number(brunt_unknowns *u, brunt_world *world, brunt_error *error) {
     const brunt_bodies *bodies = &world->bodies;
     const brunt_boundary *walls = world->boundaries.walls;
     u->count = 0;
@@ -166,8 +174,8 @@ int brunt_unknowns_number(brunt_unknowns *u, const brunt_world *world, brunt_err
     memset(u->velocity + (size_t)grids * (size_t)u->dim, 0,
            (size_t)(u->count - grids) * (size_t)u->dim * sizeof *u->velocity);
     for (int i = 0; i < bodies->mpm_count; i++) take_grid(u, &bodies->mpm[i].grid, u->number[i]);
-    for (int64_t k = (int64_t)grids * u->dim; k < (int64_t)u->count * u->dim; k++)
-        if (u->mass[k / u->dim] > 0) u->velocity[k] /= u->mass[k / u->dim];
+    if (brunt_unknowns_mirror(u, world, error)) return BRUNT_FAILED;
+    brunt_unknowns_divide(u, world);
     for (int w = 0; w < world->boundaries.wall_count; w++)
         if (u->plane[w] >= 0) take_plane(u, &walls[w].plane, world->clock.time, u->plane[w]);
     return BRUNT_OK;

@@ -5,7 +5,19 @@
 // nodes and slots, so that they do not depend on threads.
 #pragma once
 
+#include "linear/fold.h"
 #include "world/world.h"
+
+// Nodes of grids that mirrors have images of: symmetry planes, and slip planes on a line of the grid. What is at a node
+// is what the body's own points bring there; a node that is another's image follows it.
+typedef struct brunt_images {
+    bool any;                   // there are mirrors of material points; else no arrays
+    brunt_fold fold;            // of `leader`, `follower`, `sign`
+    int32_t *leader, *follower; // by node; `fold.count` of them
+    double *sign, *mass;        // of each component: 0 on its mirror; [kg] with all images, 0 on its mirror
+    int16_t *wall;              // of each component: the mirror that bears what images take, + 1; 0: none
+    size_t leader_capacity, follower_capacity, sign_capacity, mass_capacity, wall_capacity;
+} brunt_images;
 
 // What the nodes bring into a step, `count` of them with `dim` components each.
 typedef struct brunt_unknowns {
@@ -17,13 +29,14 @@ typedef struct brunt_unknowns {
     int32_t **number;   // of each body of points: node of slot * BRUNT_BLOCK_NODES + place, -1: without weight, at rest
     size_t *number_capacity;
     int32_t *tie; // of each body of points: the first one that it is tied to, itself else; ties of ties hold too
+    brunt_images images;
     double *mass; // [kg]
     size_t mass_capacity;
     double *place, *velocity; // [m], [m/s] at the start of the step
     size_t place_capacity, velocity_capacity;
     uint8_t *held; // of each component: whether it is given
     size_t held_capacity;
-    int16_t *holder; // of each component: the wall that holds it + 1; 0: free
+    int16_t *holder; // of each component: the wall that holds it, or whose images it has, + 1; 0: free
     size_t holder_capacity;
     double *target, *end; // [m], [m/s] displacement of held components over the step, velocity at its end
     size_t target_capacity, end_capacity;
@@ -35,7 +48,20 @@ void brunt_unknowns_free(brunt_unknowns *u, const brunt_bodies *bodies);
 size_t brunt_unknowns_bytes(const brunt_unknowns *u, const brunt_bodies *bodies);
 // Numbers, masses, places and velocities, once masses and momenta are on the grids. BRUNT_OK, or BRUNT_FAILED: out
 // of memory, or more nodes than there are numbers.
-int brunt_unknowns_number(brunt_unknowns *u, const brunt_world *world, brunt_error *error);
+int brunt_unknowns_number(brunt_unknowns *u, brunt_world *world, brunt_error *error);
+// --- unknowns_images.c
+// Which nodes are images of which, once they have numbers. BRUNT_OK, or BRUNT_FAILED: out of
+// memory.
+int brunt_unknowns_mirror(brunt_unknowns *u, const brunt_world *world, brunt_error *error);
+// What followers follow; NULL: nothing follows.
+const brunt_fold *brunt_unknowns_fold(const brunt_unknowns *u);
+// Velocities of grids from momenta, those of images together; what mirrors bear by that is booked.
+void brunt_unknowns_divide(brunt_unknowns *u, brunt_world *world);
+// [m/s^2] of all components that are not held, by forces [N] on the nodes.
+void brunt_unknowns_accelerate(const brunt_unknowns *u, const double *force, double *acceleration);
+// What is held of a node is held of its images; what mirrors bear of others is theirs.
+void brunt_unknowns_hold_images(brunt_unknowns *u);
+// --- unknowns_hold.c
 // What walls and groups hold over a step of `dt`: components and where they go. Clears what was held.
 void brunt_unknowns_hold(brunt_unknowns *u, const brunt_world *world, double dt);
 // The first node of a mesh that displacements `way` [m] over `dt` take behind a plane that holds what lies on it, and

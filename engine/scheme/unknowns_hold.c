@@ -51,7 +51,14 @@ static void hold_node(brunt_unknowns *u, const brunt_world *world, int w, int32_
         if (held >> a & 1) hold(u, n, a, w, dt * v[a], v[a]);
 }
 
-// Nodes in a boundary, or at it and behind it.
+// Distance of a node to a plane as it is at the start of the step [m].
+static double distance(const brunt_unknowns *u, const brunt_plane_def *plane, double time, int32_t n) {
+    double x[3] = {0};
+    for (int a = 0; a < u->dim; a++) x[a] = u->place[(size_t)n * (size_t)u->dim + (size_t)a];
+    return brunt_plane_distance(plane, time, x);
+}
+
+// Nodes in a boundary, or at it and behind it; of grids that it mirrors those at it.
 static void hold_nodes(brunt_unknowns *u, const brunt_world *world, int w, double dt) {
     const brunt_boundary *wall = &world->boundaries.walls[w];
     const brunt_bodies *bodies = &world->bodies;
@@ -61,16 +68,13 @@ static void hold_nodes(brunt_unknowns *u, const brunt_world *world, int w, doubl
     for (int i = 0; i < bodies->mpm_count; i++) {
         const brunt_grid *grid = &bodies->mpm[i].grid;
         const bool acts = brunt_boundary_acts_on(wall, bodies->mpm[i].index);
-        for (int64_t q = 0; acts && q < (int64_t)grid->slot_count * BRUNT_BLOCK_NODES; q++)
-            if (u->number[i][q] >= 0) hold_node(u, world, w, u->number[i][q], ON_PLANE * (double)grid->h, dt);
+        const double slack = ON_PLANE * (double)grid->h;
+        for (int64_t q = 0; acts && q < (int64_t)grid->slot_count * BRUNT_BLOCK_NODES; q++) {
+            const int32_t n = u->number[i][q];
+            if (n < 0 || (wall->mirror >= 0 && distance(u, &wall->plane, world->clock.time, n) < -slack)) continue;
+            hold_node(u, world, w, n, slack, dt);
+        }
     }
-}
-
-// Distance of a node to a plane as it is at the start of the step [m].
-static double distance(const brunt_unknowns *u, const brunt_plane_def *plane, double time, int32_t n) {
-    double x[3] = {0};
-    for (int a = 0; a < u->dim; a++) x[a] = u->place[(size_t)n * (size_t)u->dim + (size_t)a];
-    return brunt_plane_distance(plane, time, x);
 }
 
 // A plane that moves and pushes has a node of its own, which is nobody's account: what it does is told by contact.
@@ -91,6 +95,7 @@ void brunt_unknowns_hold(brunt_unknowns *u, const brunt_world *world, double dt)
     for (int k = 0; k < world->boundaries.sets.count; k++) hold_group(u, world, k, dt);
     for (int w = 0; w < world->boundaries.wall_count; w++)
         if (world->boundaries.walls[w].kind->hold_at) hold_nodes(u, world, w, dt);
+    if (u->images.any) brunt_unknowns_hold_images(u);
 }
 
 int32_t brunt_unknowns_passed(const brunt_unknowns *u, const brunt_world *world, const double *way, double dt,

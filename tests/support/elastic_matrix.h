@@ -200,7 +200,7 @@ static inline void elastic_fill(void *context, int64_t s, double *dense, int wor
 }
 
 static inline brunt_pattern elastic_pattern(const elastic *e) {
-    return (brunt_pattern){e->dim, e->nodes, &e->stencils, 1, false};
+    return (brunt_pattern){e->dim, e->nodes, &e->stencils, 1, false, NULL};
 }
 
 // Adds 4 / dt^2 M for a step of `courant`; INFINITY: nothing, and the nodes of least x are held.

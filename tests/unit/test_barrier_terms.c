@@ -18,7 +18,7 @@ static void check_term(barrier_case *c, brunt_term term, double *u, double h) {
     for (int k = 0; k < 2; k++) ck_assert_int_eq(term.ops->look(term.self, &team, u, NULL, NULL), BRUNT_OK);
     case_gradient(c, term, u, g);
     const brunt_stencils stencils = term.ops->stencils(term.self);
-    const brunt_pattern pattern = {c->dim, c->nodes, &stencils, 1, false};
+    const brunt_pattern pattern = {c->dim, c->nodes, &stencils, 1, false, NULL};
     ck_assert_int_eq(brunt_block_matrix_pattern(&m, &team, &pattern, NULL), BRUNT_OK);
     term.ops->hessian(term.self, &team, u, false, &m);
     double *dense = calloc((size_t)n * (size_t)n, sizeof *dense);
@@ -319,7 +319,7 @@ START_TEST(threads_give_the_same_bits) {
         g[i] = whole_of(c, u, p, &energy[i], &limit[i]);
         case_look(c, u, NULL);
         const brunt_stencils stencils = term.ops->stencils(term.self);
-        const brunt_pattern pattern = {c->dim, c->nodes, &stencils, 1, false};
+        const brunt_pattern pattern = {c->dim, c->nodes, &stencils, 1, false, NULL};
         ck_assert_int_eq(brunt_block_matrix_pattern(&m[i], &team, &pattern, NULL), BRUNT_OK);
         term.ops->hessian(term.self, &team, u, true, &m[i]);
         const int64_t blocks = brunt_block_matrix_blocks(&m[0]);
@@ -395,7 +395,7 @@ START_TEST(later_steps_take_no_memory) {
         case_step(c), case_lag(c, u), case_look(c, u, NULL);
         brunt_stencils stencils[2];
         for (int i = 0; i < 2; i++) stencils[i] = terms[i].ops->stencils(terms[i].self);
-        const brunt_pattern pattern = {c->dim, c->nodes, stencils, 2, false};
+        const brunt_pattern pattern = {c->dim, c->nodes, stencils, 2, false, NULL};
         if (step == 0) ck_assert_int_eq(brunt_block_matrix_pattern(&m, &team, &pattern, NULL), BRUNT_OK);
         for (int i = 0; i < 2; i++) {
             case_gradient(c, terms[i], u, g);

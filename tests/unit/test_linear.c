@@ -125,7 +125,7 @@ START_TEST(patterns_grow_and_are_known_again) {
     const int32_t node[] = {4, 1, 1, 2, 0};
     const brunt_stencils both = {2, first, node, 0}, one = {1, first, node, 0};
     brunt_block_matrix m = {0};
-    brunt_pattern pattern = {2, 6, &both, 1, false};
+    brunt_pattern pattern = {2, 6, &both, 1, false, NULL};
     ck_assert_int_eq(brunt_block_matrix_pattern(&m, &alone, &pattern, NULL), BRUNT_OK);
     ck_assert_int_eq(brunt_block_matrix_blocks(&m), 6 + 2 + 6);
     const int64_t number = m.pattern;
@@ -154,7 +154,7 @@ START_TEST(lists_that_are_known_are_not_read_again) {
     const int64_t three[] = {0, 3};
     brunt_stencils list[] = {{2, first, node, 7}, {0, three, contact, 0}};
     brunt_block_matrix m = {0}, fresh = {0};
-    brunt_pattern pattern = {2, 6, list, 2, false};
+    brunt_pattern pattern = {2, 6, list, 2, false, NULL};
     ck_assert_int_eq(brunt_block_matrix_pattern(&m, &alone, &pattern, NULL), BRUNT_OK);
     const int64_t number = m.pattern;
     list[1].count = 1;
@@ -217,7 +217,7 @@ START_TEST(stencils_need_not_be_sorted) {
     const int64_t first[] = {0, 3};
     const int32_t node[] = {2, 0, 1};
     const brunt_stencils list = {1, first, node, 0};
-    const brunt_pattern pattern = {2, 3, &list, 1, false};
+    const brunt_pattern pattern = {2, 3, &list, 1, false, NULL};
     brunt_block_matrix m = {0};
     ck_assert_int_eq(brunt_block_matrix_pattern(&m, &alone, &pattern, NULL), BRUNT_OK);
     double dense[36];
@@ -304,7 +304,7 @@ static void own_product(void *context, const brunt_team *team, const double *x, 
 START_TEST(products_of_the_caller) {
     elastic e = elastic_splines(2, 5);
     brunt_block_matrix m = assembled(&e, &alone, 10), blocks = {0};
-    const brunt_pattern pattern = {2, e.nodes, NULL, 0, false};
+    const brunt_pattern pattern = {2, e.nodes, NULL, 0, false, NULL};
     ck_assert_int_eq(brunt_block_matrix_pattern(&blocks, &alone, &pattern, NULL), BRUNT_OK);
     for (int32_t i = 0; i < e.nodes; i++)
         memcpy(blocks.value + 4 * i, brunt_block_matrix_diagonal(&m, i), 4 * sizeof(double));
@@ -324,7 +324,7 @@ static brunt_block_matrix ring(double diagonal, double beside) {
     static const int64_t first[] = {0, 2, 4, 6, 8};
     static const int32_t node[] = {0, 1, 1, 2, 2, 3, 0, 3};
     static const brunt_stencils list = {4, first, node, 0};
-    const brunt_pattern pattern = {2, 4, &list, 1, false};
+    const brunt_pattern pattern = {2, 4, &list, 1, false, NULL};
     brunt_block_matrix m = {0};
     ck_assert_int_eq(brunt_block_matrix_pattern(&m, &alone, &pattern, NULL), BRUNT_OK);
     for (int s = 0; s < 4; s++) {
@@ -396,7 +396,7 @@ static brunt_block_matrix rod_matrix(int dim, int nodes) {
     ck_assert_int_le(nodes, LONGEST);
     for (int s = 0; s < nodes; s++) first[s] = 2 * s, node[2 * s] = s, node[2 * s + 1] = s + 1;
     const brunt_stencils list = {nodes - 1, first, node, 0};
-    const brunt_pattern pattern = {dim, nodes, &list, 1, false};
+    const brunt_pattern pattern = {dim, nodes, &list, 1, false, NULL};
     brunt_block_matrix m = {0};
     ck_assert_int_eq(brunt_block_matrix_pattern(&m, &alone, &pattern, NULL), BRUNT_OK);
     return m;

@@ -394,7 +394,7 @@ START_TEST(the_system_without_its_matrix) {
     for (int i = 0; i < N; i++) u[i] = sin(i * i), x[i] = cos(7 * i), held[i] = i % 5 == 2;
     brunt_block_matrix m = {0}, rest = {0};
     const brunt_stencils list = springs_stencils(chain);
-    const brunt_pattern whole = {3, NODES, &list, 1, false}, alone_each = {3, NODES, NULL, 0, false};
+    const brunt_pattern whole = {3, NODES, &list, 1, false, NULL}, alone_each = {3, NODES, NULL, 0, false, NULL};
     ck_assert_int_eq(brunt_block_matrix_pattern(&m, &alone, &whole, NULL), BRUNT_OK);
     ck_assert_int_eq(brunt_block_matrix_pattern(&rest, &alone, &alone_each, NULL), BRUNT_OK);
     for (int k = 0; k < 2; k++) terms[k].ops->hessian(terms[k].self, &alone, u, false, &m);

@@ -1,0 +1,179 @@
+// Mirrors in an implicit step: a body that they cut is computed by its own points, with nodes that are each other's
+// images moving as one. What the images' points would bring is that mirrored, so that the energy is that of the part
+// there is, and its minimum that of the whole.
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "scheme/unknowns.h"
+
+enum { LAYERS = 2 }; // of nodes that a mirror has images of: what lies before it reaches no further behind
+
+const brunt_fold *brunt_unknowns_fold(const brunt_unknowns *u) {
+    return u->images.any && u->images.fold.count ? &u->images.fold : NULL;
+}
+
+// ------------------------------------------------------------------------------------------ which are images
+
+// Mirrors that act on a body of points, or on one that it shares nodes with.
+static int mirrors_of(const brunt_unknowns *u, const brunt_world *world, int i,
+                      brunt_symmetry_plane mirrors[BRUNT_MAX_PLANES]) {
+    int count = 0;
+    for (int m = 0; m < world->boundaries.mirror_count; m++) {
+        const brunt_symmetry_plane *mirror = &world->boundaries.mirrors[m];
+        bool acts = false;
+        for (int k = 0; k < world->bodies.mpm_count; k++)
+            acts = acts || (u->tie[k] == u->tie[i] &&
+                            brunt_boundary_acts_on(&world->boundaries.walls[mirror->wall], world->bodies.mpm[k].index));
+        if (acts) mirrors[count++] = *mirror;
+    }
+    return count;
+}
+
+// The wall of the nearest mirror across an axis, of the first one where there is none across it; + 1.
+static int16_t bearer(const brunt_symmetry_plane *mirrors, int count, const int32_t at[3], int axis) {
+    int nearest = 0;
+    for (int m = 1; m < count; m++) {
+        const bool across = mirrors[m].axis == axis;
+        if (across &&
+            (mirrors[nearest].axis != axis || abs(mirrors[m].node - at[axis]) < abs(mirrors[nearest].node - at[axis])))
+            nearest = m;
+    }
+    return (int16_t)(mirrors[nearest].wall + 1);
+}
+
+// Node n at grid coordinates `at` of body i: whom it follows, with which signs.
+static void find_leader(brunt_unknowns *u, const brunt_world *world, int i, int32_t n, const int32_t at[3],
+                        const brunt_symmetry_plane *mirrors, int mirror_count) {
+    int32_t image[BRUNT_MAX_IMAGES][3], leader = n;
+    real sign[BRUNT_MAX_IMAGES][3];
+    const int count = brunt_symmetry_images(mirrors, mirror_count, at, LAYERS, image, sign);
+    int from = 0, others = 0;
+    for (int k = 1; k < count; k++) {
+        const int32_t other = brunt_unknowns_node_at(u, &world->bodies, i, image[k]);
+        others += other >= 0;
+        if (other >= 0 && other < leader) leader = other, from = k;
+    }
+    u->images.leader[n] = leader;
+    for (int a = 0; a < u->dim; a++) {
+        const int64_t k = n * (int64_t)u->dim + a;
+        u->images.sign[k] = (double)sign[from][a];
+        if (others || sign[0][a] == 0) u->images.wall[k] = bearer(mirrors, mirror_count, at, a);
+    }
+}
+
+static void find_leaders(brunt_unknowns *u, const brunt_world *world, int i) {
+    const brunt_grid *grid = &world->bodies.mpm[i].grid;
+    brunt_symmetry_plane mirrors[BRUNT_MAX_PLANES];
+    const int count = mirrors_of(u, world, i, mirrors);
+    for (int64_t q = 0; count && q < (int64_t)grid->slot_count * BRUNT_BLOCK_NODES; q++) {
+        int32_t at[3] = {0};
+        int local[3];
+        if (u->number[i][q] < 0) continue;
+        brunt_node_local(grid, (int)(q % BRUNT_BLOCK_NODES), local);
+        for (int a = 0; a < grid->dim; a++) at[a] = grid->slots[q / BRUNT_BLOCK_NODES].coord[a] * grid->side + local[a];
+        find_leader(u, world, i, u->number[i][q], at, mirrors, count);
+    }
+}
+
+// Masses of all images together, at their leaders.
+static void add_masses(brunt_unknowns *u) {
+    const brunt_images *images = &u->images;
+    for (int64_t k = 0; k < (int64_t)u->count * u->dim; k++) {
+        const int32_t n = (int32_t)(k / u->dim);
+        if (images->sign[k] != 0) images->mass[images->leader[n] * (int64_t)u->dim + k % u->dim] += u->mass[n];
+    }
+}
+
+int brunt_unknowns_mirror(brunt_unknowns *u, const brunt_world *world, brunt_error *error) {
+    brunt_images *images = &u->images;
+    const size_t n = (size_t)u->count + 1, all = n * (size_t)u->dim;
+    if (!images->any) return BRUNT_OK;
+    if (BRUNT_ROOM(images->leader, n, 0, "images of nodes", error) ||
+        BRUNT_ROOM(images->follower, n, 0, "images of nodes", error) ||
+        BRUNT_ROOM(images->sign, all, 0, "images of nodes", error) ||
+        BRUNT_ROOM(images->mass, all, 0, "images of nodes", error) ||
+        BRUNT_ROOM(images->wall, all, 0, "images of nodes", error))
+        return BRUNT_FAILED;
+    memset(images->mass, 0, all * sizeof *images->mass);
+    memset(images->wall, 0, all * sizeof *images->wall);
+    for (size_t k = 0; k < all; k++) images->sign[k] = 1;
+    for (int32_t k = 0; k < u->count; k++) images->leader[k] = k;
+    for (int i = 0; i < world->bodies.mpm_count; i++) find_leaders(u, world, i);
+    int32_t count = 0;
+    for (int32_t k = 0; k < u->count; k++)
+        if (images->leader[k] != k) images->follower[count++] = k;
+    images->fold = (brunt_fold){count, images->follower, images->leader, images->sign};
+    add_masses(u);
+    return BRUNT_OK;
+}
+
+// ------------------------------------------------------------------------------------------ momenta and forces
+
+// Sums over all images by their masses, for each of them.
+static void divide(const brunt_unknowns *u, int64_t first, double *sum) {
+    const double *mass = u->images.any ? u->images.mass : NULL;
+    if (mass) brunt_fold_gather(&u->images.fold, u->dim, sum);
+    for (int64_t k = first; k < (int64_t)u->count * u->dim; k++) {
+        const double of = mass ? mass[k] : u->mass[k / u->dim];
+        sum[k] = of > 0 ? sum[k] / of : 0;
+    }
+    if (mass) brunt_fold_spread(&u->images.fold, u->dim, sum);
+}
+
+// Adds momentum, `share` [kg] of each node's velocity (NULL: 1), to what mirrors bear, with a sign.
+static void bear(const brunt_unknowns *u, brunt_world *world, const double *share, double sign) {
+    for (int64_t k = 0; k < (int64_t)u->count * u->dim; k++) {
+        double J[3] = {0}, turn[3] = {0}, x[3] = {0};
+        if (!u->images.wall[k]) continue;
+        const int32_t n = (int32_t)(k / u->dim);
+        const int a = (int)(k % u->dim);
+        for (int i = 0; i < u->dim; i++) x[i] = u->place[n * (int64_t)u->dim + i];
+        J[a] = sign * (share ? share[n] : 1) * u->velocity[k];
+        for (int i = 0; i < 3; i++) turn[i] = x[(i + 1) % 3] * J[(i + 2) % 3] - x[(i + 2) % 3] * J[(i + 1) % 3];
+        brunt_impulse_account_reaction(&world->boundaries.walls[u->images.wall[k] - 1].last, J, turn);
+    }
+}
+
+void brunt_unknowns_divide(brunt_unknowns *u, brunt_world *world) {
+    // Of FLIP's share particles take changes over alone.
+    const double taken = world->settings.transfer == BRUNT_FLIP ? 1 - world->settings.flip : 1;
+    const bool bears = u->images.any && world->settings.scheme != BRUNT_STATIC;
+    if (bears) bear(u, world, NULL, -taken);
+    divide(u, (int64_t)u->mesh_count * u->dim, u->velocity);
+    if (bears) bear(u, world, u->mass, taken);
+}
+
+void brunt_unknowns_accelerate(const brunt_unknowns *u, const double *force, double *acceleration) {
+    const size_t all = (size_t)u->count * (size_t)u->dim;
+    memcpy(acceleration, force, all * sizeof *acceleration);
+    divide(u, 0, acceleration);
+    for (size_t k = 0; k < all; k++)
+        if (u->held[k]) acceleration[k] = 0;
+}
+
+// ------------------------------------------------------------------------------------------ what is held
+
+void brunt_unknowns_hold_images(brunt_unknowns *u) {
+    const brunt_images *images = &u->images;
+    for (int32_t i = 0; i < images->fold.count; i++) {
+        const int64_t n = images->follower[i] * (int64_t)u->dim,
+                      to = images->leader[images->follower[i]] * (int64_t)u->dim;
+        for (int a = 0; a < u->dim; a++) {
+            if (!u->held[n + a] || u->held[to + a] || images->sign[n + a] == 0) continue;
+            u->held[to + a] = 1, u->holder[to + a] = u->holder[n + a];
+            u->target[to + a] = images->sign[n + a] * u->target[n + a];
+            u->end[to + a] = images->sign[n + a] * u->end[n + a];
+        }
+    }
+    brunt_fold_spread(&images->fold, u->dim, u->target);
+    brunt_fold_spread(&images->fold, u->dim, u->end);
+    for (int32_t i = 0; i < images->fold.count; i++) {
+        const int64_t n = images->follower[i] * (int64_t)u->dim,
+                      to = images->leader[images->follower[i]] * (int64_t)u->dim;
+        for (int a = 0; a < u->dim; a++) u->held[n + a] = u->held[to + a], u->holder[n + a] = u->holder[to + a];
+    }
+    for (int64_t k = 0; k < (int64_t)u->count * u->dim; k++)
+        if (!u->held[k]) u->holder[k] = images->wall[k];
+}
