@@ -213,10 +213,11 @@ void brunt_implicit_follow(brunt_world *world) {
 
 // ------------------------------------------------------------------------------------------ the step
 
-// Body, place and reason of a step that did not converge.
-static int fail_try(brunt_world *world, const brunt_newton_report *report, brunt_error *error) {
+// Body, place and reason of a step that did not converge, the last of those that were tried in place of `wanted`.
+static int fail_try(brunt_world *world, double wanted, const brunt_newton_report *report, brunt_error *error) {
     const struct brunt_implicit *m = world->plan.implicit;
-    char why[256], reason[480];
+    const int halved = (int)lround(log2(wanted / m->dt));
+    char why[256], tried[64], reason[600];
     if (error && error->body[0]) return BRUNT_FAILED; // it has been said
     snprintf(why, sizeof why, "%.250s", error ? error->message : "");
     const int64_t dof = report->residual_dof;
@@ -232,20 +233,23 @@ static int fail_try(brunt_world *world, const brunt_newton_report *report, brunt
         return brunt_fail_step(world, NULL, error, reason);
     }
     if (dof < 0) return brunt_fail_step(world, NULL, error, why);
+    if (m->still)
+        snprintf(tried, sizeof tried, "a part %.4g of a load step", m->dt / world->settings.fixed_step);
+    else
+        snprintf(tried, sizeof tried, "a step of %.4g s", m->dt);
     const bool off = report->result == BRUNT_NEWTON_ITERATIONS && report->balance > 1;
     const int32_t n = off ? m->off.node : (int32_t)(dof / m->unknowns.dim);
     const brunt_unknown_place at = brunt_unknowns_place(&m->unknowns, &world->bodies, n);
     if (off)
         snprintf(
             reason, sizeof reason,
-            "a step of %.4g s, halved %d times (newton.cut), does not converge: %s %.3g N are left of forces that "
-            "add up to %.3g N (less contact.stiffness or contact.friction, or more contact.slip_speed, leaves less)",
-            m->dt, world->settings.newton.cut, why, m->off.left, m->off.all);
+            "%s, halved %d times (newton.cut), does not converge: %s %.3g N are left of forces that add up to %.3g N "
+            "(less contact.stiffness or contact.friction, or more contact.slip_speed, leaves less)",
+            tried, halved, why, m->off.left, m->off.all);
     else
-        snprintf(
-            reason, sizeof reason,
-            "a step of %.4g s, halved %d times (newton.cut), does not converge: %s The greatest force left is %.3g N",
-            m->dt, world->settings.newton.cut, why, report->residual);
+        snprintf(reason, sizeof reason,
+                 "%s, halved %d times (newton.cut), does not converge: %s The greatest force left is %.3g N", tried,
+                 halved, why, report->residual);
     brunt_implicit_surfaces_lack(world, reason, sizeof reason);
     return brunt_fail_place(world, at.body, at.x, error, reason);
 }
@@ -334,7 +338,7 @@ int brunt_pass_newton(brunt_world *world, brunt_step *step, brunt_error *error) 
     }
     sum.steps = 1, sum.iterations_worst = sum.iterations;
     m->tried = sum;
-    if (status) return fail_try(world, &report, error);
+    if (status) return fail_try(world, step->dt, &report, error);
     step->dt = step->kick = m->dt;
     return check_planes(world, error);
 }

@@ -226,6 +226,24 @@ START_TEST(planes_push_and_rub) {
 }
 END_TEST
 
+// Surfaces that stand off: a tenth of their gap is left, or of the distance where that is less.
+START_TEST(offsets_limit_a_step) {
+    const double offset = 0.04, distance = _i ? 0.02 : 0.2, gap = 0.1 - offset;
+    barrier_case *c = case_begin(2);
+    case_vertex(c, -1, 0, 0, 0), case_vertex(c, 1, 0, 0, 0), case_vertex(c, 0, -1, 0, 0);
+    case_vertex(c, 0, 0.1, 0, 1), case_vertex(c, 0.5, 1, 0, 1), case_vertex(c, -0.5, 1, 0, 1);
+    for (int b = 0; b < 2; b++)
+        for (int i = 0; i < 3; i++) case_facet(c, 3 * b + i, 3 * b + (i + 1) % 3, -1, -1);
+    case_pair(c, 0, 1, distance, 1)->offset = offset;
+    case_ready(c);
+    double *u = case_unknowns(c), *p = case_unknowns(c);
+    for (int i = 3; i < 6; i++) p[i * 2 + 1] = -50; // the upper one comes
+    case_look(c, u, p);
+    ck_assert_double_eq_tol(case_limit(c, u, p, 1) * 50, gap - 0.1 * fmin(gap, distance), 1e-9);
+    free(u), free(p), case_end(c);
+}
+END_TEST
+
 START_TEST(planes_limit_a_step) {
     barrier_case *c = case_begin(3);
     uint64_t state = 1;
@@ -302,6 +320,7 @@ int main(void) {
     tcase_add_test(motion, gaps_never_close);
     tcase_add_test(motion, edges_do_not_pass);
     tcase_add_test(motion, planes_push_and_rub);
+    tcase_add_loop_test(motion, offsets_limit_a_step, 0, 2);
     tcase_add_test(motion, planes_limit_a_step);
     tcase_add_test(motion, friction_is_of_the_velocity);
     tcase_add_test(motion, the_pressure_is_that_of_the_barrier);

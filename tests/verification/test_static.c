@@ -418,18 +418,27 @@ START_TEST(cut_back) {
     brunt_world *world = world_take(&def);
     brunt_error error = {0};
     int status = BRUNT_OK;
-    double shortest = 1;
+    double shortest = 1, wanted = 0.5;
     while (!status && brunt_world_time(world) < 1) {
         const uint64_t before = brunt_world_hash(world);
+        const double left = brunt_world_time(world) < 0.5 ? 0.5 - brunt_world_time(world) : 1 - brunt_world_time(world);
         status = brunt_world_step(world, INFINITY, &error);
         if (status) ck_assert_uint_eq(brunt_world_hash(world), before);
-        if (!status) shortest = fmin(shortest, brunt_world_dt(world));
+        if (status) break;
+        // As long as the last one where that was cut, else twice as long, up to the next load step.
+        brunt_newton_counts last;
+        brunt_world_newton(world, NULL, &last);
+        const double dt = brunt_world_dt(world);
+        ck_assert_double_eq_tol(dt, ldexp(fmin(wanted, left), -(int)last.cuts), 1e-12);
+        wanted = last.cuts > 0 ? dt : fmin(0.5, 2 * wanted);
+        shortest = fmin(shortest, dt);
     }
     printf("  %lld steps, the shortest %g, %.0f cuts: %s\n", (long long)brunt_world_steps(world), shortest,
            counts_of(world).cuts, error.message);
     if (_i) {
         ck_assert_int_eq(status, BRUNT_FAILED);
         ck_assert(strstr(error.message, "body 'bar'") && strstr(error.message, "does not converge"));
+        ck_assert(strstr(error.message, "a part 0.5 of a load step, halved 1 times"));
     } else {
         ck_assert_int_eq(status, BRUNT_OK);
         ck_assert_double_ge(counts_of(world).cuts, 1);
