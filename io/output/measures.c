@@ -17,6 +17,7 @@ int brunt_measure_check(const brunt_measure *measure, const brunt_history *histo
                         brunt_error *error) {
     const measure_kind *kind = kinds[measure->kind];
     const measure_source from = {.history = history, .world = world};
+    if (measure->absent) return BRUNT_OK;
     int status = kind->check ? kind->check(measure, &from, error) : BRUNT_OK;
     double unused;
     return status ? status : brunt_measure_initial(measure, world, &unused, error);
@@ -32,6 +33,7 @@ int brunt_measure_initial(const brunt_measure *measure, brunt_world *world, doub
 int brunt_measure_evaluate(const brunt_measure *measure, const brunt_history *history, brunt_world *world,
                            double initial, brunt_measure_result *result, brunt_error *error) {
     *result = (brunt_measure_result){.value = NAN, .error = NAN};
+    if (measure->absent) return BRUNT_OK;
     double value = NAN;
     measure_source from = {.history = history, .world = world, .initial = initial};
     int status = kinds[measure->kind]->take(measure, &from, &value, error);

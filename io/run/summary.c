@@ -306,6 +306,10 @@ static void print_measures(const brunt_summary *summary, const brunt_scene *scen
     for (int32_t i = 0; i < scene->measure_count; i++) {
         const brunt_measure *m = &scene->measures[i];
         const brunt_measure_result *r = &summary->results[i];
+        if (m->absent) {
+            brunt_console_print(console, "  %-28s   not measured\n", m->name);
+            continue;
+        }
         brunt_console_print(console, "  %-28s %14.7g %-8s", m->name, r->value, m->unit);
         if (!isnan(m->expect))
             brunt_console_print(console, "  expected %.7g, off by %.3g%s", m->expect,

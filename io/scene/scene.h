@@ -40,6 +40,7 @@ typedef struct brunt_measure {
     char name[64];
     brunt_measure_kind kind;
     char column[160];    // history: column name without unit, e.g. "body.rod.velocity_x"
+    bool absent;         // history: the scheme has no such column; its value is NAN, and nothing judges it
     brunt_take take;     // how it is reduced; default end
     double from, to;     // [s] window of the history, default everything, or the curve's times
     brunt_curve curve;   // history: its distance from this [s], [SI], over the curve's range, is reduced; no points:

@@ -54,10 +54,9 @@ static const char *gas_mistake(const brunt_world_def *world, const char *rest) {
     return "there is no boundary of that name with gas";
 }
 
-static const char *newton_mistake(const brunt_world_def *world, const char *rest) {
+static const char *newton_mistake(const char *rest) {
     static const char *const counts[] = {"iterations", "halvings",  "linear_iterations", "cuts",
                                          "residual",   "least_gap", "least_part"};
-    if (!brunt_scheme_minimises(world->scheme)) return "Newton's method belongs to time.scheme: implicit";
     return one_of(rest, counts, sizeof counts / sizeof *counts)
                ? NULL
                : "of Newton's method there are iterations, halvings, linear_iterations, cuts, residual, least_gap and "
@@ -86,7 +85,7 @@ static const char *column_mistake(const scene_reader *reader, const char *column
                    : "energies are kinetic, internal, plastic, hourglass, contact, friction, viscosity, transfer, "
                      "eroded, heat, scheme, external_work, initial, total, error, error_relative";
     if (family == 8 && strncmp(column, "momentum", 8) == 0) return NULL;
-    if (family == 6 && strncmp(column, "newton", 6) == 0) return newton_mistake(world, rest);
+    if (family == 6 && strncmp(column, "newton", 6) == 0) return newton_mistake(rest);
     if (family == 4 && strncmp(column, "body", 4) == 0) {
         for (int i = 0; i < world->body_count; i++)
             if (names_part(rest, world->bodies[i].name)) return NULL;
@@ -207,6 +206,10 @@ static void fill_kind(scene_reader *reader, scene_node *node, brunt_measure *mea
         brunt_copy_text(reader, where, measure->column, sizeof measure->column);
         const char *mistake = where->good ? column_mistake(reader, where->text) : NULL;
         if (mistake) brunt_tree_complain(tree, where, "'%.100s' is no column of the history: %s", where->text, mistake);
+        measure->absent =
+            !strncmp(measure->column, "newton.", 7) && !brunt_scheme_minimises(reader->scene->world.scheme);
+        if (measure->absent && !mistake)
+            brunt_scene_warn_at(reader, where, false, "not measured: Newton's method is of implicit and static steps");
         return;
     }
     if (where->kind != SCENE_MAP) return;

@@ -83,7 +83,7 @@ static const char both[] =
     "  upper: {method: fem, material: rubber, size: 0.1 m, shape: {box: {min: [0, 0.01], max: [0.5, 0.51]}}, "
     "velocity: [0, -1]}\n"
     "contact: {friction: 0.1, distance: 5 mm, slip_speed: 1 mm/s, friction_iterations: 2, iterations: 8}\n"
-    "measures: {up: {history: body.upper.velocity_y}}\n"
+    "measures: {up: {history: body.upper.velocity_y}, work: {history: newton.iterations, expect: 3, tolerance: 1}}\n"
     "output: {every: none, checkpoint: none}\n";
 
 static const char *const of_implicit[] = {
@@ -107,12 +107,21 @@ START_TEST(runs_by_both) {
     small_put("both.yaml", both);
     check_notes("check both.yaml --quick", of_explicit, 2);
     check_notes("check both.yaml --quick --set time.scheme=explicit", of_implicit, 5);
+    // What the other scheme does not have is not measured, and no reason to go without the rest.
+    small_expect("check both.yaml --quick --set time.scheme=explicit", 0,
+                 "warning: both.yaml:10:66: measures.work.history: not measured");
+    small_expect("check both.yaml --quick --set time.scheme=explicit --set measures.work.history=newton.work", 65,
+                 "'newton.work' is no column of the history");
     check_notes("run both.yaml --fresh -o implicit", of_explicit, 2);
     check_notes("run both.yaml --fresh -o explicit --set time.scheme=explicit", of_implicit, 5);
+    ck_assert_int_eq(small_shell("grep -q 'work  *not measured' output"), 0);
     const char *const folders[] = {"implicit", "explicit"};
     for (int i = 0; i < 2; i++) {
         json_t *s = summary_of(folders[i]);
         ck_assert((json_object_get(s, "newton") != NULL) == !i); // no part of the other scheme is there
+        const json_t *work = json_object_get(json_object_get(s, "measures"), "work");
+        ck_assert(json_is_number(json_object_get(work, "value")) == !i);
+        ck_assert(json_is_boolean(json_object_get(work, "ok")) == !i);
         // Two blocks that are alike exchange their velocities, less what goes on swinging in them.
         const double up = number_at(json_object_get(json_object_get(s, "measures"), "up"), NULL, "value");
         ck_assert_msg(up > -0.25 && up < 0.05, "%s: %g m/s", folders[i], up);
