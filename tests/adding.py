@@ -17,7 +17,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 TRIALS = ROOT / "tests" / "adding"
-KINDS = ["material", "element", "contact method", "boundary", "boundary with a shape", "measure", "body key", "output field"]
+KINDS = ["material", "element", "contact method", "contact method at nodes", "contact method by energy", "boundary", "boundary with a shape", "measure", "body key", "output field"]
 
 
 def patch(kind):

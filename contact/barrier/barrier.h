@@ -12,6 +12,7 @@
 // given anew. Memory is kept from step to step: none is taken once it suffices.
 #pragma once
 
+#include "contact/methods/gap_energy.h"
 #include "linear/term.h"
 
 typedef struct brunt_barrier brunt_barrier;
@@ -38,6 +39,7 @@ typedef struct brunt_barrier_pair {
     // What part of the integral over the surface is taken by points of a at facets of b, points of b at facets of a,
     // edges at edges (3D). Of a pair (a, a) the first and third. brunt_barrier_shares has the usual ones.
     double share[3];
+    brunt_gap_energy *energy; // NULL: brunt_barrier_at
 } brunt_barrier_pair;
 
 // Both meshes: 1/2, 1/2, 1/2 (edges add where points are not); b a body of material points: 0, 1, 0; a: 1, 0, 0.
@@ -50,6 +52,7 @@ typedef struct brunt_barrier_plane {
     const bool *meets;           // of each body; NULL: all
     const double *offset;        // [m] of each body, as of a pair; NULL: none
     double distance, stiffness, friction, slip_speed; // as of a pair; friction 0: slips, INFINITY: sticks
+    brunt_gap_energy *energy;                         // as of a pair
 } brunt_barrier_plane;
 
 // Material points of all bodies. Nodes that count for point i, with weights: node[first[i]] .. node[first[i + 1] - 1],

@@ -33,7 +33,7 @@ static mollifier mollifier_of(const barrier_contact *c) {
 static double weighted(const brunt_barrier *b, const barrier_contact *c, brunt_barrier_value *v) {
     const barrier_law law = barrier_law_of(b, c->law);
     double unused, g[6], second[36];
-    *v = brunt_barrier_at(c->at.d - c->offset, law.distance, law.stiffness);
+    *v = law.energy(c->at.d - c->offset, law.distance, law.stiffness);
     return c->threshold == 0 ? c->weight
                              : c->weight * mollify(brunt_edge_cross(c->edge[0], c->edge[1], g, second), c->threshold,
                                                    &unused, &unused);

@@ -5,19 +5,6 @@
 // Newmark's rule amplifies nothing, but does not damp what it does not resolve: its limit is (dt omega)^2 = 4.
 static const double NEWMARK_LIMIT = 4, SMALL_GAP = 1e-3, DEFAULT_PART = 0.1;
 
-brunt_barrier_value brunt_barrier_at(double d, double distance, double stiffness) {
-    const double s = d / distance;
-    if (s >= 1) return (brunt_barrier_value){0};
-    if (!(s > 0)) return (brunt_barrier_value){INFINITY, -INFINITY, INFINITY};
-    // 1 - s from the difference: digits are kept where contact begins.
-    const double y = (distance - d) / distance, log_s = s > 0.5 ? log1p(-y) : log(s);
-    return (brunt_barrier_value){
-        .b = -stiffness * distance * y * y * log_s,
-        .db = -stiffness * (y * y / s - 2 * y * log_s),
-        .ddb = stiffness / distance * (y * (3 + 1 / s) / s - 2 * log_s),
-    };
-}
-
 double brunt_barrier_default_distance(double smallest_spacing) { return DEFAULT_PART * smallest_spacing; }
 
 double brunt_barrier_default_stiffness(double young_a, double young_b) { return DEFAULT_PART * fmin(young_a, young_b); }

@@ -1,15 +1,9 @@
-// The barrier of contact: an energy per area that is 0 from the distance dhat on and grows without bound as a gap
-// closes, b(d) = kappa dhat g(d / dhat), g(s) = -(s - 1)^2 ln s for s < 1 (Li et al. 2020; Li, Kaufman and Jiang 2023
-// for the weights). kappa is a pressure [Pa]: b is in J/m^2, -b' is the pressure across the gap.
+// Where contact by an energy begins and how stiff it is where a scene does not say, and what is too stiff or too soft.
 #pragma once
 
 #include <stdbool.h>
 
-typedef struct brunt_barrier_value {
-    double b, db, ddb; // [J/m^2, Pa, Pa/m]; INFINITY at d <= 0
-} brunt_barrier_value;
-
-brunt_barrier_value brunt_barrier_at(double d, double distance, double stiffness);
+#include "contact/methods/gap_energy.h"
 
 // Distance [m] below which surfaces repel each other, and stiffness [Pa], where a scene gives none: a tenth of the
 // smallest edge or spacing of particles, and of Young's modulus of the softer body (INFINITY: one that does not

@@ -58,10 +58,12 @@ int32_t barrier_law_between(const brunt_barrier *b, int32_t own, int32_t other, 
 barrier_law barrier_law_of(const brunt_barrier *b, int32_t law) {
     if (law < b->pair_count) {
         const brunt_barrier_pair *p = &b->pair[law];
-        return (barrier_law){p->distance, p->stiffness, p->friction, p->slip_speed};
+        return (barrier_law){p->distance, p->stiffness, p->friction, p->slip_speed,
+                             p->energy ? p->energy : brunt_barrier_at};
     }
     const brunt_barrier_plane *p = &b->step.planes[law - b->pair_count];
-    return (barrier_law){p->distance, p->stiffness, p->friction, p->slip_speed};
+    return (barrier_law){p->distance, p->stiffness, p->friction, p->slip_speed,
+                         p->energy ? p->energy : brunt_barrier_at};
 }
 
 double barrier_share_of(const brunt_barrier *b, int32_t law, int8_t side, bool edges) {

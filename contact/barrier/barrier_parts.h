@@ -20,6 +20,7 @@ enum { BARRIER_DOFS = 3 * BRUNT_CLOSEST_PLACES, BARRIER_GRAIN = 64 };
 // Of a pair or plane: what a contact needs to know.
 typedef struct barrier_law {
     double distance, stiffness, friction, slip_speed;
+    brunt_gap_energy *energy;
 } barrier_law;
 
 typedef struct barrier_contact {

@@ -16,7 +16,7 @@
 #include <string.h>
 
 #include "contact/constraint/coulomb.h"
-#include "contact/methods/grid_velocity.h"
+#include "contact/methods/method.h"
 #include "contact/distance/gjk.h"
 #include "contact/planes/symmetry.h"
 #include "base/array.h"
@@ -68,11 +68,16 @@ struct brunt_contact_workspace {
     int thread_count;
 };
 
+#define ONE(name, word) +1
+enum { METHODS = 0 BRUNT_CONTACT_METHODS(ONE) };
+#undef ONE
+
 typedef struct job {
     const brunt_contact_context *m;
     brunt_body *bodies; // of material points
     brunt_contact_workspace *w;
     const brunt_symmetry_plane *axis; // of rings; NULL
+    brunt_node_law *law[METHODS];     // of each method
 } job;
 
 void brunt_contact_workspace_free(brunt_contact_workspace *workspace) {
@@ -202,7 +207,7 @@ typedef struct node_contact {
     double friction;                            // [-]
     double inverse, slide;                      // [1/kg] along n; the greatest across
     double normal_impulse, friction_impulse[3]; // [N s] on b
-    bool tied;                                  // `drag` takes all of the relative velocity
+    brunt_node_law *law;                        // of the pair's method; NULL: pushes and friction
 } node_contact;
 
 typedef struct member {
@@ -276,25 +281,23 @@ static double relative(const member *members, const node_contact *m, double v[3]
     return along;
 }
 
-// Gives a tied pair one velocity; returns the change of velocity [m/s].
-static double tie_contact(member *members, node_contact *m) {
-    double v[3], changed = 0;
+// Does what the method of a pair says; returns the change of velocity [m/s].
+static double follow_law(member *members, node_contact *m) {
+    double v[3], inverse[3], J[3] = {0};
     relative(members, m, v);
+    for (int k = 0; k < 3; k++) inverse[k] = members[m->a].inverse[k] + members[m->b].inverse[k];
+    const double changed = m->law(v, inverse, J);
     for (int k = 0; k < 3; k++) {
-        const double inverse = members[m->a].inverse[k] + members[m->b].inverse[k];
-        if (!(inverse > 0)) continue;
-        const double J = -v[k] / inverse;
-        m->friction_impulse[k] += J;
-        members[m->a].v[k] -= J * members[m->a].inverse[k];
-        members[m->b].v[k] += J * members[m->b].inverse[k];
-        changed = fmax(changed, fabs(v[k]));
+        m->friction_impulse[k] += J[k];
+        members[m->a].v[k] -= J[k] * members[m->a].inverse[k];
+        members[m->b].v[k] += J[k] * members[m->b].inverse[k];
     }
     return changed;
 }
 
 // Brings one pair to its complementarity condition; returns the change of velocity [m/s].
 static double solve_contact(member *members, node_contact *m) {
-    if (m->tied) return tie_contact(members, m);
+    if (m->law) return follow_law(members, m);
     double v[3], J[3], along = relative(members, m, v);
     double normal_impulse = fmax(0, m->normal_impulse + (m->target - along) / m->inverse),
            step = normal_impulse - m->normal_impulse;
@@ -417,13 +420,13 @@ static void add_contact(const job *j, const group *g, int node, int a, int b, th
                         .b = b,
                         .action = low * g->count - low * (low + 1) / 2 + high - low - 1,
                         .friction = j->m->pairs[pair].friction,
-                        .tied = j->m->pairs[pair].method == BRUNT_CONTACT_TIED};
+                        .law = j->law[j->m->pairs[pair].method]};
     double gap = 0;
-    if (!m->tied && !make_normal(j, one, other, node, thread, m->n, &gap)) return;
+    if (!m->law && !make_normal(j, one, other, node, thread, m->n, &gap)) return;
     m->target = -fmax(gap, 0) / j->m->dt;
     weigh_contact(one, other, m);
     meeting->fixed |= one->fixed || other->fixed;
-    meeting->contact_count += m->tied || m->inverse > 0;
+    meeting->contact_count += m->law || m->inverse > 0;
 }
 
 static void solve_meeting(node_meeting *meeting, double scale) {
@@ -451,9 +454,9 @@ static void account_contact(const job *j, const group *g, int node, const double
     for (int k = 0; k < j->bodies[0].grid.dim; k++)
         old[k] = (double)(members[m->b].node[BRUNT_NODE_OLD + k] - members[m->a].node[BRUNT_NODE_OLD + k]);
     brunt_impulse_account *action = &j->w->actions[g->action + m->action];
-    brunt_impulse_account_book(action, &action->normal_loss, m->tied ? friction_impulse : normal_impulse, x, old, now,
+    brunt_impulse_account_book(action, &action->normal_loss, m->law ? friction_impulse : normal_impulse, x, old, now,
                                rest);
-    if (m->friction > 0 && !m->tied)
+    if (m->friction > 0 && !m->law)
         brunt_impulse_account_book(action, &action->friction_loss, friction_impulse, x, old, now, rest);
 }
 
@@ -474,7 +477,7 @@ static void meet_at_node(const job *j, const group *g, int node, thread_work *th
     double x[3];
     brunt_node_position(grid, grid->slots[meeting.members[0].slot].coord, node, x);
     for (int q = 0; q < meeting.contact_count; q++)
-        if (meeting.contacts[q].normal_impulse > 0 || meeting.contacts[q].tied)
+        if (meeting.contacts[q].normal_impulse > 0 || meeting.contacts[q].law)
             account_contact(j, g, node, x, &meeting, &meeting.contacts[q]);
     for (int i = 0; i < meeting.count; i++) scatter_node(&meeting.members[i]);
     for (int i = 0; j->axis && i < meeting.count; i++) follow_axis(j, &meeting.members[i], node);
@@ -498,6 +501,7 @@ int brunt_grid_velocity_apply(const brunt_contact_context *m, brunt_contact_work
     if (!*workspace && BRUNT_NEW(*workspace, 1, "room for contact at grid nodes", error)) return BRUNT_FAILED;
     if (make_threads(*workspace, m->threads, error)) return BRUNT_FAILED;
     job j = {.m = m, .bodies = m->mpm, .w = *workspace};
+    for (int k = 0; k < METHODS; k++) j.law[k] = brunt_contact_node_law((brunt_contact_method)k);
     for (int k = 0; k < m->mirror_count; k++)
         if (m->mirrors[k].wall < 0) j.axis = &m->mirrors[k];
     if (find_groups(&j, error)) return BRUNT_FAILED;

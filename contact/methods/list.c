@@ -62,7 +62,6 @@ static int act_at_facets(const brunt_contact_context *m, brunt_contact_work *wor
 
 #define SELF(name) BRUNT_SELF_##name
 #define EXPLICIT (1u << BRUNT_EXPLICIT)
-#define IMPLICIT (1u << BRUNT_IMPLICIT | 1u << BRUNT_STATIC)
 
 // In the order in which they act. A method of one file has its row there.
 #define ROWS(X)                                                                                                        \
@@ -80,14 +79,12 @@ ROWS(DECLARE)
 const brunt_contact_row *const brunt_contact_rows[] = {ROWS(ADDRESS)};
 
 // clang-format off
-const brunt_contact_row brunt_contact_grid_velocity = {"grid velocity", METHOD(MULTI_VELOCITY), 0, EXPLICIT, SELF(NONE), true, "a body of method mpm", points_alone, NULL, NULL, NULL, NULL};
-const brunt_contact_row brunt_contact_point_touches = {"point touches", METHOD(AUGURY), FORM(AFFINE), EXPLICIT, SELF(NONE), false, NULL, points_alone, NULL, NULL, NULL, NULL};
-const brunt_contact_row brunt_contact_tied = {"tied", METHOD(TIED), 0, EXPLICIT | IMPLICIT, SELF(NONE), false, "two bodies of method mpm", points_alone, NULL, NULL, NULL, NULL};
-const brunt_contact_row brunt_contact_published = {"published", METHOD(AUGURY), FORM(PAPER), EXPLICIT, SELF(MEMBRANES), false, NULL, any_mesh, mark_all, act_published, NULL, free_augury};
-const brunt_contact_row brunt_contact_averaged_surface = {"averaged surface", METHOD(AUGURY), FORM(SMOOTH) | FORM(SURFACE), EXPLICIT, SELF(MEMBRANES), false, NULL, any_mesh, NULL, act_averaged, NULL, free_augury};
-const brunt_contact_row brunt_contact_surface_on_grid = {"surface on grid", METHOD(MULTI_VELOCITY), 0, EXPLICIT, SELF(NONE), true, NULL, mesh_and_points, brunt_surface_on_grid_near, act_on_grid, account_on_grid, free_on_grid};
-const brunt_contact_row brunt_contact_barrier = {"barrier", METHOD(BARRIER), 0, IMPLICIT, SELF(MESHES), false, "a body of method fem", any_mesh, NULL, NULL, NULL, NULL};
-const brunt_contact_row brunt_contact_node_to_facet = {"node to facet", METHOD(AUGURY), FORM(AFFINE), EXPLICIT, SELF(MEMBRANES), false, "a body of method fem or membrane", any_mesh, NULL, act_at_facets, NULL, NULL};
+const brunt_contact_row brunt_contact_grid_velocity = {"grid velocity", METHOD(MULTI_VELOCITY), 0, EXPLICIT, SELF(NONE), true, "a body of method mpm", points_alone, NULL, NULL, NULL, NULL, NULL, NULL};
+const brunt_contact_row brunt_contact_point_touches = {"point touches", METHOD(AUGURY), FORM(AFFINE), EXPLICIT, SELF(NONE), false, NULL, points_alone, NULL, NULL, NULL, NULL, NULL, NULL};
+const brunt_contact_row brunt_contact_published = {"published", METHOD(AUGURY), FORM(PAPER), EXPLICIT, SELF(MEMBRANES), false, NULL, any_mesh, mark_all, act_published, NULL, free_augury, NULL, NULL};
+const brunt_contact_row brunt_contact_averaged_surface = {"averaged surface", METHOD(AUGURY), FORM(SMOOTH) | FORM(SURFACE), EXPLICIT, SELF(MEMBRANES), false, NULL, any_mesh, NULL, act_averaged, NULL, free_augury, NULL, NULL};
+const brunt_contact_row brunt_contact_surface_on_grid = {"surface on grid", METHOD(MULTI_VELOCITY), 0, EXPLICIT, SELF(NONE), true, NULL, mesh_and_points, brunt_surface_on_grid_near, act_on_grid, account_on_grid, free_on_grid, NULL, NULL};
+const brunt_contact_row brunt_contact_node_to_facet = {"node to facet", METHOD(AUGURY), FORM(AFFINE), EXPLICIT, SELF(MEMBRANES), false, "a body of method fem or membrane", any_mesh, NULL, act_at_facets, NULL, NULL, NULL, NULL};
 // clang-format on
 const int brunt_contact_row_count = sizeof brunt_contact_rows / sizeof *brunt_contact_rows;
 _Static_assert(sizeof brunt_contact_rows / sizeof *brunt_contact_rows <= (size_t)BRUNT_CONTACT_ROW_LIMIT,
@@ -133,7 +130,7 @@ bool brunt_contact_at_nodes(brunt_contact_method method) {
 const char *brunt_contact_word(brunt_contact_method method) {
 #define WORD(name, word) word,
     static const char *const words[] = {BRUNT_CONTACT_METHODS(WORD)};
-    _Static_assert(BRUNT_COUNT(words) == BRUNT_CONTACT_BARRIER + 1, "a word for each method");
+    _Static_assert(BRUNT_COUNT(words) == BRUNT_CONTACT_METHODS(ONE), "a word for each method");
 #undef WORD
     return words[method];
 }
@@ -176,4 +173,17 @@ brunt_contact_self brunt_contact_with_itself(brunt_contact_method method) {
         if (is_of(brunt_contact_rows[r], method) && brunt_contact_rows[r]->self > self)
             self = brunt_contact_rows[r]->self;
     return self;
+}
+
+brunt_node_law *brunt_contact_node_law(brunt_contact_method method) {
+    for (int r = 0; r < brunt_contact_row_count; r++)
+        if (is_of(brunt_contact_rows[r], method) && brunt_contact_rows[r]->at_node)
+            return brunt_contact_rows[r]->at_node;
+    return NULL;
+}
+
+brunt_gap_energy *brunt_contact_energy(brunt_contact_method method) {
+    for (int r = 0; r < brunt_contact_row_count; r++)
+        if (is_of(brunt_contact_rows[r], method) && brunt_contact_rows[r]->energy) return brunt_contact_rows[r]->energy;
+    return NULL;
 }

@@ -4,6 +4,8 @@
 
 #include "contact/constraint/constraint.h"
 #include "contact/methods/augury.h"
+#include "contact/methods/gap_energy.h"
+#include "contact/methods/grid_velocity.h"
 #include "contact/methods/surface_on_grid.h"
 #include "contact/search/node_to_facet.h"
 
@@ -40,6 +42,12 @@ typedef struct brunt_contact_row {
     void (*account)(const brunt_contact_context *m, const brunt_contact_work *work);
     // Frees what it keeps, which may be NULL.
     void (*free)(void *memory);
+    // Of two bodies of material points, at a node of their grids that both reach: in place of pushes and friction there
+    // (grid_velocity.c). Implicit steps that have the method give such bodies one displacement there. NULL: none.
+    brunt_node_law *at_node;
+    // Of implicit steps: a term of what they minimise, made of the gaps of all that meets (contact/barrier). NULL:
+    // none.
+    brunt_gap_energy *energy;
 } brunt_contact_row;
 
 extern const brunt_contact_row *const brunt_contact_rows[];
@@ -64,4 +72,7 @@ brunt_contact_method brunt_contact_default(brunt_scheme scheme, bool meshes);
 // Whether a scheme has a method, none included, and the words of all that it has: "barrier, tied or none".
 bool brunt_contact_of_scheme(brunt_contact_method method, brunt_scheme scheme);
 void brunt_contact_words_of(brunt_scheme scheme, char *out, size_t size);
+// What a method does at nodes, and its energy; NULL: none.
+brunt_node_law *brunt_contact_node_law(brunt_contact_method method);
+brunt_gap_energy *brunt_contact_energy(brunt_contact_method method);
 brunt_contact_self brunt_contact_with_itself(brunt_contact_method method);

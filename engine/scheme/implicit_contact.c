@@ -1,4 +1,5 @@
 // Surfaces, particles and planes that barriers keep apart.
+#include "contact/methods/method.h"
 #include "contact/planes/condition.h"
 #include "scheme/implicit_contact.h"
 
@@ -52,10 +53,11 @@ static void list_pairs(brunt_implicit_contact *c, const brunt_world *world) {
     for (int32_t a = 0; a < world->bodies.count; a++)
         for (int32_t b = a; b < world->bodies.count; b++) {
             const int32_t p = brunt_pair_of(&world->pairs.map, a, b);
-            if (p < 0 || world->pairs.pair[p].method != BRUNT_CONTACT_BARRIER) continue;
+            brunt_gap_energy *energy = p < 0 ? NULL : brunt_contact_energy(world->pairs.pair[p].method);
+            if (!energy) continue;
             if (c->pair) {
                 c->pair[c->pair_count] =
-                    (brunt_barrier_pair){.a = a, .b = b, .friction = world->pairs.pair[p].friction};
+                    (brunt_barrier_pair){.a = a, .b = b, .friction = world->pairs.pair[p].friction, .energy = energy};
                 c->pair_account[c->pair_count] = p;
             }
             c->pair_count++;
@@ -139,7 +141,8 @@ static void fill_planes(brunt_implicit_contact *c, const brunt_world *world, con
                                             .distance = c->distance,
                                             .stiffness = def->contact.stiffness,
                                             .friction = wall->plane.friction,
-                                            .slip_speed = slip};
+                                            .slip_speed = slip,
+                                            .energy = brunt_contact_energy(def->contact.method)};
         if (!(def->contact.stiffness > 0)) c->plane[q].stiffness = brunt_barrier_default_stiffness(softest, INFINITY);
         memcpy(c->plane[q].normal, wall->plane.normal, sizeof c->plane[q].normal);
     }

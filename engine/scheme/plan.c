@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/error.h"
+#include "contact/methods/method.h"
 #include "scheme/scheme.h"
 
 // The first model that brings an effect, NULL when none does; `flag`: where brunt_model says so.
@@ -45,7 +46,7 @@ static bool has_softening(const brunt_world *world) {
 
 static bool has_tied(const brunt_world *world) {
     for (int p = 0; p < world->pairs.count; p++)
-        if (world->pairs.pair[p].method == BRUNT_CONTACT_TIED) return true;
+        if (brunt_contact_node_law(world->pairs.pair[p].method)) return true;
     return false;
 }
 

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "contact/methods/method.h"
 #include "contact/planes/condition.h"
 #include "base/array.h"
 #include "base/memory.h"
@@ -12,7 +13,7 @@ static const double LEAST_SHARE = 1e-28;
 
 static bool tied(const brunt_world *world, int i, int k) {
     const int32_t p = brunt_pair_of(&world->pairs.map, world->bodies.mpm[i].index, world->bodies.mpm[k].index);
-    return p >= 0 && world->pairs.pair[p].method == BRUNT_CONTACT_TIED;
+    return p >= 0 && brunt_contact_node_law(world->pairs.pair[p].method) != NULL;
 }
 
 // Bodies that share nodes, by the first of them.

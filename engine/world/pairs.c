@@ -53,7 +53,7 @@ static int make_self_pair(const maker *m, int q, brunt_error *error) {
     for (int p = 0; p < pairs->count; p++)
         if (pairs->pair[p].a == a) REFUSE("contact.pairs[%d].between: '%s' is listed twice", q, def->a);
     brunt_contact *contact = &m->world->contact;
-    const bool barrier = def->method == BRUNT_CONTACT_BARRIER;
+    const bool barrier = brunt_contact_energy(def->method) != NULL;
     *(barrier ? &contact->has_barrier : &contact->has_augury) = contact->has_self = true;
     if (!barrier) contact->rows |= brunt_contact_rows_of(def->method, m->def->contact.form, true, true);
     m->world->contact.has_friction = m->world->contact.has_friction || def->friction > 0;
@@ -136,7 +136,7 @@ static int settle_method(const maker *m, const candidate *c, brunt_pair *pair, b
     brunt_contact *contact = &m->world->contact;
     const int meshes = (a->method != BRUNT_MPM) + (b->method != BRUNT_MPM);
     const bool mesh_a = a->method != BRUNT_MPM, mesh_b = b->method != BRUNT_MPM;
-    const bool barrier = pair->method == BRUNT_CONTACT_BARRIER;
+    const bool barrier = brunt_contact_energy(pair->method) != NULL;
     const brunt_contact_method asked = pair->method;
     if (!meshes && !barrier)
         pair->method = brunt_contact_between_points(asked, m->def->contact.form, m->def->axisymmetric);

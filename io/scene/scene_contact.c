@@ -56,12 +56,13 @@ static void fill_pair(scene_reader *reader, scene_node *node, brunt_pair_def *pa
     brunt_format_number(contact->friction, friction);
     const scene_node *method = brunt_tree_child(node, "method");
     pair->method = (brunt_contact_method)(int)brunt_real_of(node, "method", contact->method);
-    const bool tied = pair->method == BRUNT_CONTACT_TIED;
+    const bool tied = brunt_contact_node_law(pair->method) != NULL;
     scene_node *rubs = brunt_tree_child(node, "friction");
     if (!rubs) rubs = brunt_add_default(reader, node, "friction", tied ? "0" : friction);
     pair->friction = brunt_real_of(node, "friction", 0);
     if (tied && pair->friction > 0)
-        brunt_tree_complain_key(reader->tree, rubs, "tied bodies do not slide on each other: there is no friction");
+        brunt_tree_complain_key(reader->tree, rubs, "%s bodies do not slide on each other: there is no friction",
+                                brunt_contact_word(pair->method));
     const scene_node *between = brunt_tree_child(node, "between");
     if (!between || !between->good) return;
     if (between->count != 2) {
@@ -194,7 +195,9 @@ static void fill_barrier(scene_reader *reader, scene_node *node) {
         for (int i = 0; i < BRUNT_COUNT(keys); i++) brunt_note_unused(reader, node, keys[i]);
         return;
     }
-    if (!uses(contact, BRUNT_CONTACT_BARRIER)) {
+    bool used = brunt_contact_energy(contact->method) != NULL;
+    for (int i = 0; i < contact->pair_count; i++) used |= brunt_contact_energy(contact->pairs[i].method) != NULL;
+    if (!used) {
         for (int i = 0; i < BRUNT_COUNT(keys); i++)
             brunt_refuse_key(reader, node, keys[i], "this belongs to method: barrier");
         return;

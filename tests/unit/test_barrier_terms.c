@@ -195,6 +195,33 @@ START_TEST(sums_are_constant_along_a_triangulation) {
 }
 END_TEST
 
+// Of the energies of two pairs each is taken at its own gaps.
+static brunt_barrier_value square(double d, double distance, double stiffness) {
+    const double y = distance - d;
+    return d < distance ? (brunt_barrier_value){stiffness * y * y, -2 * stiffness * y, 2 * stiffness}
+                        : (brunt_barrier_value){0};
+}
+
+START_TEST(a_pair_has_the_energy_of_its_method) {
+    const double dhat = 0.1, kappa = 1e5, gap[2] = {0.04, 0.07}, area = 0.02;
+    barrier_case *c = case_begin(2);
+    uint64_t state = 1;
+    static const double x[][2] = {{-5, 0}, {5, 0}, {0, -5}};
+    case_polygon(c, 0, x, 3);
+    for (int i = 0; i < 2; i++) case_particle(c, (double[3]){0.3 + i, gap[i], 0}, area, 1 + i, 1, &state);
+    case_pair(c, 0, 1, dhat, kappa);
+    case_pair(c, 0, 2, dhat, kappa)->energy = square;
+    case_ready(c);
+    double *u = case_unknowns(c), *g = case_unknowns(c);
+    case_look(c, u, NULL);
+    case_gradient(c, brunt_barrier_term(c->barrier), u, g);
+    const double own = area * brunt_barrier_at(gap[0], dhat, kappa).db, other = area * square(gap[1], dhat, kappa).db;
+    ck_assert_double_eq_tol(g[c->particle_node[0] * 2 + 1], own, 1e-12 * -own);
+    ck_assert_double_eq_tol(g[c->particle_node[1] * 2 + 1], other, 1e-12 * -other);
+    free(u), free(g), case_end(c);
+}
+END_TEST
+
 // What a surface's border, corner and valley add up to.
 START_TEST(sums_at_borders_corners_and_valleys) {
     const double dhat = 0.1, kappa = 1e5, area = 0.02;
@@ -467,6 +494,7 @@ int main(void) {
     tcase_add_test(terms, derivatives_of_whole_terms);
     tcase_add_test(terms, sums_are_constant_along_a_polygon);
     tcase_add_test(terms, sums_are_constant_along_a_triangulation);
+    tcase_add_test(terms, a_pair_has_the_energy_of_its_method);
     tcase_add_test(terms, sums_at_borders_corners_and_valleys);
     tcase_add_test(terms, forces_are_opposite);
     tcase_add_test(terms, threads_give_the_same_bits);
