@@ -7,24 +7,35 @@
 #include "base/memory.h"
 
 enum { COLOURS_A_ROUND = 64, GRAIN = 4 };
+// Stencils side by side in a list, as elements of a mesh are, share most of their rows, which a bundle keeps in the
+// cache; one by one, each colour would go through the whole matrix. Worth it where the matrix is larger than the cache.
+enum { BUNDLE = 64, MANY = 16384 };
 
-// Gives colours base .. base + 63 to stencils that have none; how many are left without. A node remembers the colours
+// The stencil after the last one of bundle g.
+static int64_t bundle_end(const brunt_colours *c, int64_t g) {
+    return (g + 1) * c->bundle < c->count ? (g + 1) * c->bundle : c->count;
+}
+
+static int64_t bundles(const brunt_colours *c) { return (c->count + c->bundle - 1) / c->bundle; }
+
+// Gives colours base .. base + 63 to bundles that have none; how many are left without. A node remembers the colours
 // of this round by one bit each.
 static int64_t colour_round(brunt_colours *c, const brunt_stencils *list, int32_t nodes, int64_t base) {
     int64_t left = 0;
     memset(c->used, 0, (size_t)nodes * sizeof *c->used);
-    for (int64_t s = 0; s < list->count; s++) {
-        if (c->order[s] >= 0) continue;
+    for (int64_t g = 0; g < bundles(c); g++) {
+        if (c->order[g] >= 0) continue;
+        const int64_t from = list->first[g * c->bundle], to = list->first[bundle_end(c, g)];
         uint64_t used = 0;
-        for (int64_t k = list->first[s]; k < list->first[s + 1]; k++) used |= c->used[list->node[k]];
+        for (int64_t k = from; k < to; k++) used |= c->used[list->node[k]];
         if (used == UINT64_MAX) {
             left++;
             continue;
         }
         const int bit = __builtin_ctzll(~used);
-        c->order[s] = base + bit;
+        c->order[g] = base + bit;
         if (base + bit >= c->colours) c->colours = (int32_t)(base + bit + 1);
-        for (int64_t k = list->first[s]; k < list->first[s + 1]; k++) c->used[list->node[k]] |= (uint64_t)1 << bit;
+        for (int64_t k = from; k < to; k++) c->used[list->node[k]] |= (uint64_t)1 << bit;
     }
     return left;
 }
@@ -33,9 +44,9 @@ static int sort_by_colour(brunt_colours *c, brunt_error *error) {
     if (BRUNT_ROOM(c->first, (size_t)c->colours + 2, 0, "colours of stencils", error)) return BRUNT_FAILED;
     int64_t *next = c->first + 1;
     memset(c->first, 0, ((size_t)c->colours + 2) * sizeof *c->first);
-    for (int64_t s = 0; s < c->count; s++) next[c->order[s] + 1]++;
+    for (int64_t g = 0; g < bundles(c); g++) next[c->order[g] + 1]++;
     for (int32_t k = 0; k < c->colours; k++) next[k + 1] += next[k];
-    for (int64_t s = 0; s < c->count; s++) c->stencil[next[c->order[s]]++] = s;
+    for (int64_t g = 0; g < bundles(c); g++) c->stencil[next[c->order[g]]++] = g * c->bundle;
     return BRUNT_OK;
 }
 
@@ -51,8 +62,9 @@ int brunt_colours_make(brunt_colours *c, const brunt_team *team, int dim, int32_
         if (size > largest) largest = size;
         c->order[s] = -1;
     }
-    c->count = list->count, c->colours = 0, c->threads = team->threads, c->room = largest * largest * dim * dim;
-    for (int64_t base = 0, left = list->count; left; base += COLOURS_A_ROUND) left = colour_round(c, list, nodes, base);
+    c->count = list->count, c->bundle = list->count < MANY ? 1 : BUNDLE, c->colours = 0, c->threads = team->threads,
+    c->room = largest * largest * dim * dim;
+    for (int64_t base = 0, left = bundles(c); left; base += COLOURS_A_ROUND) left = colour_round(c, list, nodes, base);
     if (sort_by_colour(c, error)) return BRUNT_FAILED;
     return BRUNT_ROOM(c->dense, (size_t)(c->room * c->threads), 0, "values of dense matrices of stencils", error);
 }
@@ -81,16 +93,20 @@ static void add_diagonal(brunt_block_matrix *m, const int32_t *node, int count, 
     }
 }
 
-static void add_stencils(void *context, int64_t begin, int64_t end, int worker) {
+static void add_stencil(const colour_work *w, int64_t s, double *dense, int worker) {
+    const int64_t from = w->stencils->first[s];
+    const int count = (int)(w->stencils->first[s + 1] - from);
+    memset(dense, 0, (size_t)count * (size_t)count * (size_t)(w->m->dim * w->m->dim) * sizeof *dense);
+    w->fill(w->context, s, dense, worker);
+    (w->diagonal ? add_diagonal : brunt_block_matrix_add)(w->m, w->stencils->node + from, count, dense);
+}
+
+static void add_bundles(void *context, int64_t begin, int64_t end, int worker) {
     const colour_work *w = context;
-    double *dense = w->colours->dense + worker * w->colours->room;
-    for (int64_t i = begin; i < end; i++) {
-        const int64_t s = w->stencil[i], from = w->stencils->first[s];
-        const int count = (int)(w->stencils->first[s + 1] - from);
-        memset(dense, 0, (size_t)count * (size_t)count * (size_t)(w->m->dim * w->m->dim) * sizeof *dense);
-        w->fill(w->context, s, dense, worker);
-        (w->diagonal ? add_diagonal : brunt_block_matrix_add)(w->m, w->stencils->node + from, count, dense);
-    }
+    const brunt_colours *c = w->colours;
+    for (int64_t i = begin; i < end; i++)
+        for (int64_t s = w->stencil[i]; s < bundle_end(c, w->stencil[i] / c->bundle); s++)
+            add_stencil(w, s, c->dense + worker * c->room, worker);
 }
 
 static void assemble(colour_work work, const brunt_team *team) {
@@ -98,7 +114,8 @@ static void assemble(colour_work work, const brunt_team *team) {
     BRUNT_ASSERT(c->count == work.stencils->count && team->threads <= c->threads);
     for (int32_t k = 0; k < c->colours; k++) {
         work.stencil = c->stencil + c->first[k];
-        brunt_parallel(team->threads, c->first[k + 1] - c->first[k], GRAIN, add_stencils, &work, team->timer);
+        brunt_parallel(team->threads, c->first[k + 1] - c->first[k], c->bundle > 1 ? 1 : GRAIN, add_bundles, &work,
+                       team->timer);
     }
 }
 

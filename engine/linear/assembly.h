@@ -1,18 +1,19 @@
-// A term's stencils into a matrix by several threads, to the same bits for any number of them: stencils that share no
-// node are of one colour; colours go one after the other, the stencils of one side by side. What a block is the sum of
-// is added in the order of colours.
+// A term's stencils into a matrix by several threads, to the same bits for any number of them: stencils, of long lists
+// bundles of them, that share no node are of one colour; colours go one after the other, what is of one side by side.
+// What a block is the sum of is added in the order of colours.
 #pragma once
 
 #include "linear/block_matrix.h"
 
 // The colours of a list of stencils, and room for the dense matrices. May be kept while the stencils stay as they are.
 typedef struct brunt_colours {
-    int64_t *stencil; // ordered by colour, ascending within one
+    int64_t *stencil; // the first of each bundle, ordered by colour, ascending within one
     int64_t *first;   // colours + 1
     uint64_t *used;   // of each node: colours that it has met
-    int64_t *order;   // colour of each stencil
+    int64_t *order;   // colour of each bundle
     double *dense;    // `room` for each thread
     int64_t count, room;
+    int64_t bundle; // stencils that follow one another in the list, but for the last bundle: 1 of short lists
     int32_t colours, threads;
     size_t stencil_capacity, first_capacity, used_capacity, order_capacity, dense_capacity;
 } brunt_colours;

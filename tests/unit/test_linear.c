@@ -681,6 +681,44 @@ START_TEST(very_long_steps_are_solved_directly) {
 }
 END_TEST
 
+// Of a long list stencils are coloured by bundles: no two of a colour share a node, all stencils are there, and the
+// matrix is that of one after the other, with the same bits for any number of threads.
+START_TEST(long_lists_are_bundled) {
+    elastic e = elastic_simplices(_i ? 3 : 2, _i ? 16 : 96);
+    brunt_colours colours = {0};
+    brunt_block_matrix one = {0};
+    const brunt_pattern pattern = elastic_pattern(&e);
+    ck_assert_int_eq(brunt_colours_make(&colours, &alone, e.dim, e.nodes, &e.stencils, NULL), BRUNT_OK);
+    ck_assert_int_gt(colours.bundle, 1);
+    ck_assert_int_eq(brunt_block_matrix_pattern(&one, &alone, &pattern, NULL), BRUNT_OK);
+    int64_t *met = malloc((size_t)e.nodes * sizeof *met), count = 0; // the last bundle of a node
+    for (int32_t n = 0; n < e.nodes; n++) met[n] = -1;
+    for (int32_t k = 0; k < colours.colours; k++)
+        for (int64_t g = colours.first[k]; g < colours.first[k + 1]; g++)
+            for (int64_t s = colours.stencil[g]; s < colours.stencil[g] + colours.bundle && s < colours.count; s++) {
+                const int64_t from = e.first[s], size = e.first[s + 1] - from;
+                double dense[16 * 9] = {0};
+                for (int64_t a = from; a < from + size; a++) {
+                    ck_assert(met[e.node[a]] < colours.first[k] || met[e.node[a]] == g);
+                    met[e.node[a]] = g;
+                }
+                elastic_fill(&e, s, dense, 0);
+                brunt_block_matrix_add(&one, e.node + from, (int)size, dense);
+                count++;
+            }
+    ck_assert_int_eq(count, e.stencils.count);
+    elastic_inertia(&e, &alone, 100, &one);
+    for (int threads = 1; threads <= 3; threads++) {
+        const brunt_team team = {threads, NULL};
+        brunt_block_matrix m = assembled(&e, &team, 100);
+        const size_t size = (size_t)(brunt_block_matrix_blocks(&m) * e.dim * e.dim) * sizeof *m.value;
+        ck_assert_int_eq(memcmp(m.value, one.value, size), 0);
+        brunt_block_matrix_free(&m);
+    }
+    free(met), brunt_colours_free(&colours), brunt_block_matrix_free(&one), elastic_free(&e);
+}
+END_TEST
+
 START_TEST(memory_is_given_back) {
     const size_t live = brunt_memory_live();
     elastic e = elastic_splines(2, 5);
@@ -720,6 +758,7 @@ int main(void) {
     tcase_add_test(c, solvers_serve_again);
     tcase_add_loop_test(c, the_quicker_one_is_chosen, 0, 12);
     tcase_add_test(c, very_long_steps_are_solved_directly);
+    tcase_add_loop_test(c, long_lists_are_bundled, 0, 2);
     tcase_add_test(c, memory_is_given_back);
     suite_add_tcase(suite, c);
     return suite_main(suite);
