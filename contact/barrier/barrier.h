@@ -78,6 +78,7 @@ typedef struct brunt_barrier_step {
     // Backward Euler and static steps: 1 and NULL; Newmark: 2.
     double factor;
     const double *before;
+    const double *inverse_mass; // [1/kg] of block nodes, 0: given; NULL: nobody asks how long steps may be
 } brunt_barrier_step;
 
 // The disc or sphere of a volume's greatest section: 2 sqrt(V / pi) [m], pi (3 V / 4 pi)^(2/3) [m^2].
@@ -115,6 +116,13 @@ typedef struct brunt_barrier_force {
     int64_t contacts;
 } brunt_barrier_force;
 
+// What Newmark's rule follows by the shortest steps: one contact, with the mass that its gap moves, 1 / sum w^2 / m.
+typedef struct brunt_barrier_stiffest {
+    double step;         // [s] brunt_barrier_longest_step; INFINITY: nothing that moves is in contact, or nobody asks
+    int32_t body, other; // other -1: a plane
+    double place[3];     // [m]
+} brunt_barrier_stiffest;
+
 typedef struct brunt_barrier_report {
     double least_gap;    // [m] of all that is near; INFINITY: nothing is
     double least_part;   // of its distance dhat
@@ -124,6 +132,7 @@ typedef struct brunt_barrier_report {
     double place[3];     // [m] of the point, or on the edge
     int64_t contacts;    // places with a force
     double energy;       // [J] in the barrier
+    brunt_barrier_stiffest stiffest;
 } brunt_barrier_report;
 
 // At u, the end of the step; friction there works along the displacements `way` [m]. `force` (NULL: not wanted) has

@@ -50,6 +50,26 @@ double barrier_contact_force(const brunt_barrier *b, const barrier_contact *c) {
     return -weighted(b, c, &v) * v.db;
 }
 
+bool barrier_contact_is_stiffer(const brunt_barrier *b, const barrier_contact *c, double *step) {
+    brunt_barrier_value v;
+    const double area = weighted(b, c, &v);
+    double inverse = 0;
+    for (int i = 0; i < c->at.places; i++) {
+        const int32_t *node;
+        const double *weight;
+        const int64_t count = barrier_nodes(b, c->place[i], &node, &weight);
+        for (int64_t k = 0; k < count; k++) {
+            const double w = c->at.w[i] * weight[k];
+            inverse += w * w * b->step.inverse_mass[node[k]];
+        }
+    }
+    if (!(area * v.ddb * inverse > 0)) return false;
+    const double longest = brunt_barrier_longest_step(area, v.ddb, 1 / inverse);
+    if (!(longest < *step)) return false;
+    *step = longest;
+    return true;
+}
+
 void barrier_contact_gradient(const brunt_barrier *b, const barrier_contact *c, double *gradient) {
     brunt_barrier_value v;
     const double weight = weighted(b, c, &v);

@@ -9,8 +9,8 @@ double brunt_barrier_default_distance(double smallest_spacing) { return DEFAULT_
 
 double brunt_barrier_default_stiffness(double young_a, double young_b) { return DEFAULT_PART * fmin(young_a, young_b); }
 
-bool brunt_barrier_chatters(double dt, double area, double ddb, double mass) {
-    return dt * dt * area * ddb > NEWMARK_LIMIT * mass;
+double brunt_barrier_longest_step(double area, double ddb, double mass) {
+    return sqrt(NEWMARK_LIMIT * mass / (area * ddb));
 }
 
 bool brunt_barrier_gap_is_small(double gap, double distance) { return gap < SMALL_GAP * distance; }

@@ -11,8 +11,8 @@
 double brunt_barrier_default_distance(double smallest_spacing);
 double brunt_barrier_default_stiffness(double young_a, double young_b);
 
-// Whether gaps chatter: contact of stiffness `ddb` [Pa/m] over `area` [m^2] on a mass [kg] that a step `dt` [s] of
-// Newmark's rule does not resolve, dt^2 area ddb > 4 m. Backward Euler damps it.
-bool brunt_barrier_chatters(double dt, double area, double ddb, double mass);
+// [s] The longest step by which Newmark's rule follows contact of stiffness `ddb` [Pa/m], b'' at its gap, over `area`
+// [m^2] on a mass [kg]: dt^2 area ddb = 4 m. By longer ones gaps chatter; backward Euler damps them.
+double brunt_barrier_longest_step(double area, double ddb, double mass);
 // Whether a gap at the end of a step is so small a part of `distance` that the stiffness should be raised.
 bool brunt_barrier_gap_is_small(double gap, double distance);

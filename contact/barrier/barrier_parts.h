@@ -164,6 +164,8 @@ void barrier_contact_gradient(const brunt_barrier *b, const barrier_contact *c, 
 void barrier_contact_hessian(const brunt_barrier *b, const barrier_contact *c, bool project, double *hessian);
 // [N] with which the features push each other apart; of contacts of negative weight negative.
 double barrier_contact_force(const brunt_barrier *b, const barrier_contact *c);
+// Whether a contact that pushes is stiffer for what it moves than `step` [s] follows: then `step` is what does.
+bool barrier_contact_is_stiffer(const brunt_barrier *b, const barrier_contact *c, double *step);
 
 // --- friction of one contact (barrier_slip.c)
 // How far the features slip along each other by block vector u [m].

@@ -1,20 +1,37 @@
 // What contact was at the end of a step.
 #include "contact/barrier/barrier_parts.h"
 
+// [m] of the point, or on the first edge.
+static void take_place(const brunt_barrier *b, const double *u, const barrier_contact *c, double place[3]) {
+    for (int k = 0; k < 3; k++) place[k] = 0;
+    for (int i = 0; i < (c->threshold > 0 ? 2 : 1); i++) {
+        const double *x = barrier_start(b, c->place[i]);
+        double move[3];
+        barrier_move(b, c->place[i], u, move);
+        for (int k = 0; k < b->dim; k++) place[k] += c->at.w[i] * (x[k] + move[k]);
+    }
+}
+
+// The body of the second feature; -1: a plane.
+static int32_t other_of(const brunt_barrier *b, const barrier_contact *c) {
+    return c->law >= b->pair_count ? -1 : barrier_body_of(b, c->place[c->threshold > 0 ? 2 : 1]);
+}
+
+static void note_stiffness(const brunt_barrier *b, const double *u, const barrier_contact *c,
+                           brunt_barrier_stiffest *s) {
+    if (!b->step.inverse_mass || !barrier_contact_is_stiffer(b, c, &s->step)) return;
+    s->body = barrier_body_of(b, c->place[0]), s->other = other_of(b, c);
+    take_place(b, u, c, s->place);
+}
+
 static void note_gap(const brunt_barrier *b, const double *u, const barrier_contact *c, brunt_barrier_report *r) {
     if (c->weight <= 0 || !(c->at.d - c->offset < r->least_gap)) return;
     const bool plane = c->law >= b->pair_count, edges = c->threshold > 0;
     r->least_gap = c->at.d - c->offset, r->least_part = r->least_gap / barrier_law_of(b, c->law).distance;
     r->point = edges ? -1 : c->place[0], r->plane = plane ? c->law - b->pair_count : -1;
     r->body = barrier_body_of(b, c->place[0]);
-    r->other = plane ? -1 : barrier_body_of(b, c->place[edges ? 2 : 1]);
-    for (int k = 0; k < 3; k++) r->place[k] = 0;
-    for (int i = 0; i < (edges ? 2 : 1); i++) {
-        const double *x = barrier_start(b, c->place[i]);
-        double move[3];
-        barrier_move(b, c->place[i], u, move);
-        for (int k = 0; k < b->dim; k++) r->place[k] += c->at.w[i] * (x[k] + move[k]);
-    }
+    r->other = other_of(b, c);
+    take_place(b, u, c, r->place);
 }
 
 double brunt_barrier_least_gap(const brunt_barrier *b) {
@@ -52,14 +69,20 @@ static void add_friction(const brunt_barrier *b, const double *u, const double *
 
 int brunt_barrier_look_back(brunt_barrier *b, const brunt_team *team, const double *u, const double *way,
                             brunt_barrier_report *r, brunt_barrier_force *force, brunt_error *error) {
-    *r = (brunt_barrier_report){
-        .least_gap = INFINITY, .least_part = INFINITY, .body = -1, .other = -1, .point = -1, .plane = -1};
+    *r = (brunt_barrier_report){.least_gap = INFINITY,
+                                .least_part = INFINITY,
+                                .body = -1,
+                                .other = -1,
+                                .point = -1,
+                                .plane = -1,
+                                .stiffest = {.step = INFINITY, .body = -1, .other = -1}};
     if (force) memset(force, 0, (size_t)(b->pair_count + b->step.plane_count) * sizeof *force);
     const int code = brunt_barrier_term(b).ops->look(b, team, u, NULL, error);
     if (code) return code;
     for (int64_t i = 0; i < b->contacts.count; i++) {
         const barrier_contact *c = &b->contacts.contact[i];
         note_gap(b, u, c, r);
+        note_stiffness(b, u, c, &r->stiffest);
         r->energy += barrier_contact_energy(b, c);
         if (force) add_normal(b, c, &force[c->law]);
     }

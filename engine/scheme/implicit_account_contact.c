@@ -171,17 +171,30 @@ static void book_forces(brunt_world *world) {
 
 // A gap that is next to nothing says that the barrier is too soft for what presses.
 static void warn_of_gap(brunt_world *world, const brunt_barrier_report *report) {
-    struct brunt_implicit *m = world->plan.implicit;
-    if (m->contact.told_small || !(report->least_part < INFINITY) || report->body < 0 ||
+    if (world->clock.gap_told || !(report->least_part < INFINITY) || report->body < 0 ||
         !brunt_barrier_gap_is_small(report->least_gap, report->least_gap / report->least_part))
         return;
-    m->contact.told_small = true;
+    world->clock.gap_told = 1;
     brunt_warn(&world->messages,
                "bodies.%s: at t = %.4g s the gap to %s has become %.2g of contact.distance, at (%.4g, %.4g, %.4g) m: "
                "contact.stiffness is low for what presses there",
                brunt_body_name(world, report->body), world->clock.time,
                report->other < 0 ? "a plane" : brunt_body_name(world, report->other), report->least_part,
                report->place[0], report->place[1], report->place[2]);
+}
+
+// Newmark's rule keeps what swings faster than its steps follow: gaps chatter, and pressures with them.
+static void warn_of_chatter(brunt_world *world, const brunt_barrier_stiffest *stiff) {
+    const struct brunt_implicit *m = world->plan.implicit;
+    if (world->clock.chatter_told || !(m->dt > stiff->step)) return;
+    world->clock.chatter_told = 1;
+    brunt_warn(&world->messages,
+               "bodies.%s: at t = %.4g s Newmark's step of %.3g s is too long to follow the barrier to %s, at (%.4g, "
+               "%.4g, %.4g) m: gaps and pressures there swing from step to step; below %.2g s, less contact.stiffness "
+               "or time.integrator: euler is wanted",
+               brunt_body_name(world, stiff->body), world->clock.time, m->dt,
+               stiff->other < 0 ? "a plane" : brunt_body_name(world, stiff->other), stiff->place[0], stiff->place[1],
+               stiff->place[2], stiff->step);
 }
 
 int brunt_implicit_book_contact(brunt_world *world, brunt_error *error) {
@@ -192,5 +205,6 @@ int brunt_implicit_book_contact(brunt_world *world, brunt_error *error) {
     book_forces(world);
     m->tried.least_gap = report.least_gap, m->tried.least_part = report.least_part;
     warn_of_gap(world, &report);
+    warn_of_chatter(world, &report.stiffest);
     return BRUNT_OK;
 }

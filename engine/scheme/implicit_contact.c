@@ -377,16 +377,18 @@ int brunt_implicit_contact_make(brunt_implicit_contact *c, brunt_world *world, c
 void brunt_implicit_contact_free(brunt_implicit_contact *c) {
     brunt_barrier_free(c->barrier);
     for (int32_t q = 0; c->meets && q < c->plane_count; q++) brunt_free(c->meets[q]);
-    void *const all[] = {c->rest,         c->place,  c->body,       c->node,  c->facet, c->has_points,   c->x,
-                         c->area,         c->weight, c->owner,      c->half,  c->first, c->point_node,   c->pair,
-                         c->pair_account, c->plane,  c->plane_wall, c->meets, c->force, c->force_before, c->before};
+    void *const all[] = {c->rest,       c->place,        c->body,         c->node,        c->facet,      c->has_points,
+                         c->x,          c->area,         c->weight,       c->owner,       c->half,       c->first,
+                         c->point_node, c->pair,         c->pair_account, c->plane,       c->plane_wall, c->meets,
+                         c->force,      c->force_before, c->before,       c->inverse_mass};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) brunt_free(all[k]);
     *c = (brunt_implicit_contact){.barrier = NULL};
 }
 
 size_t brunt_implicit_contact_bytes(const brunt_implicit_contact *c) {
     return (size_t)c->vertex_count * 56 + (size_t)c->facet_count * 16 + c->x_capacity + c->area_capacity +
-           c->weight_capacity + c->owner_capacity + c->point_node_capacity + c->first_capacity + c->before_capacity;
+           c->weight_capacity + c->owner_capacity + c->point_node_capacity + c->first_capacity + c->before_capacity +
+           c->inverse_mass_capacity;
 }
 
 // ------------------------------------------------------------------------------------------ the points of a step
@@ -469,12 +471,32 @@ int brunt_implicit_contact_points(brunt_implicit_contact *c, const brunt_world *
     return BRUNT_OK;
 }
 
+// How lightly nodes move, with their images; those that are given do not. Nobody asks of backward Euler, nor once it
+// has been said that a step is too long.
+static int take_inverse_mass(brunt_implicit_contact *c, const brunt_unknowns *u, brunt_error *error) {
+    const double *images = u->images.any ? u->images.mass : NULL;
+    if (BRUNT_ROOM(c->inverse_mass, (size_t)u->count + 1, 0, "unknowns", error)) return BRUNT_FAILED;
+    for (int32_t n = 0; n < u->count; n++) {
+        const int32_t leader = images ? u->images.leader[n] : n;
+        double mass = images ? 0 : u->mass[n];
+        bool moves = false;
+        for (int a = 0; a < u->dim; a++) {
+            moves = moves || !u->held[n * (int64_t)u->dim + a];
+            if (images) mass = fmax(mass, images[leader * (int64_t)u->dim + a]);
+        }
+        c->inverse_mass[n] = moves && mass > 0 ? 1 / mass : 0;
+    }
+    return BRUNT_OK;
+}
+
 int brunt_implicit_contact_begin(brunt_implicit_contact *c, const brunt_world *world, const brunt_unknowns *u,
                                  const brunt_team *team, const brunt_contact_rule *rule, brunt_error *error) {
     if (!c->barrier) return BRUNT_OK;
     const int64_t all = (int64_t)u->count * u->dim;
     if (BRUNT_ROOM(c->before, (size_t)all + 1, 0, "unknowns", error)) return BRUNT_FAILED;
     for (int64_t k = 0; k < all; k++) c->before[k] = rule->dt * u->velocity[k];
+    const bool asks = rule->factor != 1 && !world->clock.chatter_told;
+    if (asks && take_inverse_mass(c, u, error)) return BRUNT_FAILED;
     for (int32_t q = 0; q < c->plane_count; q++) {
         const brunt_plane_def *plane = &world->boundaries.walls[c->plane_wall[q]].plane;
         c->plane[q].node = u->plane[c->plane_wall[q]];
@@ -493,7 +515,8 @@ int brunt_implicit_contact_begin(brunt_implicit_contact *c, const brunt_world *w
                                      .plane_count = c->plane_count,
                                      .dt = rule->dt,
                                      .factor = rule->factor,
-                                     .before = rule->factor == 1 ? NULL : c->before};
+                                     .before = rule->factor == 1 ? NULL : c->before,
+                                     .inverse_mass = asks ? c->inverse_mass : NULL};
     const int status = brunt_barrier_set_step(c->barrier, &step, error);
     if (status || !brunt_barrier_has_friction(c->barrier)) return status;
     return brunt_barrier_lag(c->barrier, team, rule->rest, error);

@@ -28,10 +28,10 @@ typedef struct brunt_implicit_contact {
     int32_t plane_count;
     brunt_barrier_force *force, *force_before; // pairs, then planes
     double *before;                            // [m] dt times velocities at the start; of Newmark
-    size_t before_capacity;
+    double *inverse_mass;                      // [1/kg] of nodes, 0: given; of Newmark, until a step was too long
+    size_t before_capacity, inverse_mass_capacity;
     double distance; // [m]
     double *half;    // [m] of each body: half its thickness in contact, of membranes; else 0
-    bool told_small; // that a gap has become small
 } brunt_implicit_contact;
 
 // Pairs, planes and surfaces of a world whose bodies are made. BRUNT_OK, or the code of what is wrong.

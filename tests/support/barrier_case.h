@@ -29,6 +29,7 @@ typedef struct barrier_case {
     int32_t particle_body[CASE_PARTICLES], particle_node[CASE_PARTICLES * CASE_WEIGHTS];
     int64_t particle_first[CASE_PARTICLES + 1];
     double dt, factor, before[3 * (CASE_VERTICES + CASE_PARTICLES * CASE_WEIGHTS)];
+    const double *inverse_mass;
     brunt_barrier *barrier;
     int threads;
 } barrier_case;
@@ -146,6 +147,7 @@ static inline void case_step(barrier_case *c) {
         .dt = c->dt,
         .factor = c->factor,
         .before = c->factor == 1 ? NULL : c->before,
+        .inverse_mass = c->inverse_mass,
     };
     brunt_error error = {0};
     ck_assert_msg(brunt_barrier_set_step(c->barrier, &step, &error) == BRUNT_OK, "%s", error.message);

@@ -244,6 +244,46 @@ START_TEST(offsets_limit_a_step) {
 }
 END_TEST
 
+// The longest step of Newmark's rule: a corner of mass m on an edge whose ends have 2 m each, sqrt(4 M / (A b'')) with
+// 1 / M = 1 / m + (1/4 + 1/4) / (2 m); on a node that is given, and above a plane, M = m.
+START_TEST(longest_step) {
+    const double m = 3, gap = 0.01, distance = 0.05, stiffness = 2e4;
+    const bool plane = _i == 2, given = _i == 1;
+    double inverse[CASE_VERTICES];
+    barrier_case *c = case_begin(2);
+    uint64_t state = 1;
+    if (!plane) {
+        case_vertex(c, -1, 0, 0, 1), case_vertex(c, 1, 0, 0, 1), case_vertex(c, 0, -1, 0, 1);
+        for (int i = 0; i < 3; i++) case_facet(c, i, (i + 1) % 3, -1, -1);
+    }
+    case_particle(c, (double[3]){0, gap, 0}, 0.3, 0, 1, &state);
+    c->planes = plane;
+    if (plane)
+        c->plane[0] =
+            (brunt_barrier_plane){.normal = {0, 1, 0}, .node = -1, .distance = distance, .stiffness = stiffness};
+    else
+        case_pair(c, 0, 1, distance, stiffness);
+    for (int i = 0; i < c->nodes; i++) inverse[i] = given ? 0 : 1 / (2 * m);
+    inverse[c->particle_node[0]] = 1 / m;
+    c->inverse_mass = inverse;
+    case_ready(c);
+    double *u = case_unknowns(c);
+    const brunt_barrier_stiffest s = case_report(c, u, NULL).stiffest;
+    const double mass = plane || given ? m : 1 / (1 / m + 0.5 / (2 * m)),
+                 step = sqrt(4 * mass / (0.3 * brunt_barrier_at(gap, distance, stiffness).ddb));
+    ck_assert_double_eq_tol(s.step, step, 1e-12 * step);
+    ck_assert_int_eq(s.body, 0);
+    ck_assert_int_eq(s.other, plane ? -1 : 1);
+    ck_assert_double_eq_tol(s.place[1], gap, 1e-15);
+    for (int i = 0; i < c->nodes; i++) inverse[i] = 0;
+    ck_assert(case_report(c, u, NULL).stiffest.step == INFINITY);
+    c->inverse_mass = NULL;
+    case_step(c);
+    ck_assert(case_report(c, u, NULL).stiffest.step == INFINITY);
+    free(u), case_end(c);
+}
+END_TEST
+
 START_TEST(planes_limit_a_step) {
     barrier_case *c = case_begin(3);
     uint64_t state = 1;
@@ -321,6 +361,7 @@ int main(void) {
     tcase_add_test(motion, edges_do_not_pass);
     tcase_add_test(motion, planes_push_and_rub);
     tcase_add_loop_test(motion, offsets_limit_a_step, 0, 2);
+    tcase_add_loop_test(motion, longest_step, 0, 3);
     tcase_add_test(motion, planes_limit_a_step);
     tcase_add_test(motion, friction_is_of_the_velocity);
     tcase_add_test(motion, the_pressure_is_that_of_the_barrier);

@@ -195,6 +195,46 @@ END_TEST
 // ------------------------------------------------------------------------------------------ solvers
 
 // Points on elements that are held, drawn along with friction: whichever solver, the same places.
+// ------------------------------------------------------------------------------------------ what is said
+
+static brunt_world *falling(brunt_integrator integrator, double step) {
+    brunt_world_def def = begin(2, integrator, step);
+    def_velocity(mesh(&def, "block", XYZ(0, 0.02, 0), XYZ(0.5, 0.52, 0), 0.125), 0, -2, 0);
+    def_plane(&def, XYZ(0, 0, 0), XYZ(0, 1, 0), BRUNT_SEPARATE, 0);
+    def.contact.distance = 0.01, def.contact.stiffness = 1e6;
+    return world_take(&def);
+}
+
+static int warned(const brunt_world *world) {
+    int count = 0;
+    for (int32_t w = 0; w < brunt_warning_count(world); w++)
+        count += strstr(brunt_world_warning(world, w), "too long to follow the barrier") != NULL;
+    return count;
+}
+
+// A step that Newmark's rule does not follow the barrier by is said once, by the step too that does; backward Euler
+// damps. What has gone on from a checkpoint has nothing more to say.
+START_TEST(chatters) {
+    brunt_world *newmark = falling(BRUNT_NEWMARK, 2e-3), *euler = falling(BRUNT_EULER, 2e-3),
+                *fine = falling(BRUNT_NEWMARK, 2e-5), *fresh = falling(BRUNT_NEWMARK, 2e-3);
+    ck_assert_int_eq(warned(newmark), 0);
+    while (!warned(newmark) && brunt_world_steps(newmark) < 50) world_steps(newmark, 1);
+    ck_assert_int_eq(warned(newmark), 1);
+    printf("  %s\n", brunt_world_warning(newmark, brunt_warning_count(newmark) - 1));
+    ck_assert(strstr(brunt_world_warning(newmark, brunt_warning_count(newmark) - 1), "bodies.block: at t = "));
+    world_copy_state(newmark, fresh);
+    world_steps(newmark, 3), world_steps(fresh, 3);
+    ck_assert_int_eq(warned(newmark), 1);
+    ck_assert_int_eq(warned(fresh), 0);
+    ck_assert_uint_eq(brunt_world_hash(newmark), brunt_world_hash(fresh));
+    world_until(euler, 0.03), world_until(fine, 0.03);
+    ck_assert_int_eq(warned(euler) + warned(fine), 0);
+    ck_assert_double_lt(least_part(euler), 1);
+    ck_assert_double_lt(least_part(fine), 1);
+    brunt_world_destroy(newmark), brunt_world_destroy(euler), brunt_world_destroy(fine), brunt_world_destroy(fresh);
+}
+END_TEST
+
 static brunt_world *rubbed(brunt_solver solver) {
     brunt_world_def def = begin(3, BRUNT_NEWMARK, 5e-3);
     mesh(&def, "floor", XYZ(-0.25, -0.25, -0.5), XYZ(0.75, 0.75, 0), 0.25);
@@ -267,6 +307,7 @@ int main(void) {
     ADD_LOOP(pressed_and_sheared, 2);
     ADD_LOOP(collide, 3);
     ADD_LOOP(pushed, 2);
+    ADD_LOOP(chatters, 1);
     ADD_LOOP(whichever_solver, 1);
     ADD_LOOP(threads, 1);
     return suite_main(suite);
