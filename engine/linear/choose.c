@@ -20,8 +20,8 @@ static bool of_splines(const brunt_linear_size *s) { return s->blocks > (s->dim 
 static double direct_seconds(const brunt_linear_size *s) {
     const double n = (double)s->nodes, b = s->blocks,
                  fronts = s->dim == 2 ? 4.4e-3 * pow(n / 1e4, 1.5) * pow(b / 7, 1.85)
-                                      : 4.7e-2 * pow(n / 4096, 2) * pow(b / 13.5, 1.1);
-    return n * (1.9e-6 + 4.5e-8 * b) + fronts;
+                                      : 4.8e-2 * pow(n / 4096, 2) * pow(b / 13.5, 1.1);
+    return n * (1.9e-6 + 4.4e-8 * b) + fronts;
 }
 
 static double nodes_across(const brunt_linear_size *s) { return pow((double)s->nodes, 1. / s->dim); }
@@ -43,7 +43,7 @@ static double iterations(const brunt_linear_size *s) {
 
 static double pcg_seconds(const brunt_linear_size *s) {
     const double n = (double)s->nodes, b = s->blocks;
-    return n * (1.1e-8 * b + 3.1e-10 * b * b + (2.1e-8 + 3.6e-10 * b * s->dim * s->dim) * iterations(s));
+    return n * (1.1e-8 * b + 3.4e-10 * b * b + (1.7e-8 + 3.4e-10 * b * s->dim * s->dim) * iterations(s));
 }
 
 brunt_linear_choice brunt_linear_choose(const brunt_linear_size *s) {

@@ -645,7 +645,7 @@ START_TEST(solvers_serve_again) {
 END_TEST
 
 // Measured on one thread, bench/studies/implicit_table.md, seconds of pass `solve` in an iteration: estimates are
-// within a factor of two of them, and the choice is that of the measurement where it is not close.
+// within a factor of 2.5 of them, and the choice is that of the measurement where it is not close.
 START_TEST(the_quicker_one_is_chosen) {
     const struct {
         brunt_linear_size size;
@@ -653,15 +653,15 @@ START_TEST(the_quicker_one_is_chosen) {
     } measured[] = {
         {{2, 1225, 25, 1000}, 0.0056, 0.00235}, {{2, 10609, 25, 10}, 0.089, 0.01},
         {{2, 49729, 25, 100}, 0.703, 0.276},    {{2, 196249, 25, 10}, 4.38, 0.242},
-        {{2, 10201, 7, 100}, 0.0258, 0.0409},   {{2, 48841, 7, 10}, 0.171, 0.0377},
-        {{2, 194481, 7, 100}, 0.929, 1.32},     {{3, 1331, 125, 10}, 0.0716, 0.0111},
+        {{2, 10201, 7, 100}, 0.0263, 0.0393},   {{2, 48841, 7, 10}, 0.199, 0.0329},
+        {{2, 194481, 7, 100}, 0.853, 1.21},     {{3, 1331, 125, 10}, 0.0716, 0.0111},
         {{3, 6859, 125, 100}, 1.43, 0.176},     {{3, 21952, 125, 100}, 13.4, 0.895},
-        {{3, 6859, 15, 10}, 0.197, 0.00982},    {{3, 59319, 15, 100}, 9.62, 0.712},
+        {{3, 6859, 15, 10}, 0.225, 0.00976},    {{3, 59319, 15, 100}, 9.88, 0.773},
     };
     const brunt_linear_choice c = brunt_linear_choose(&measured[_i].size);
     const double direct = measured[_i].direct, pcg = measured[_i].pcg;
-    ck_assert_msg(fabs(log(c.direct_seconds / direct)) < log(2), "direct %g, measured %g", c.direct_seconds, direct);
-    ck_assert_msg(fabs(log(c.pcg_seconds / pcg)) < log(2), "pcg %g, measured %g", c.pcg_seconds, pcg);
+    ck_assert_msg(fabs(log(c.direct_seconds / direct)) < log(2.5), "direct %g, measured %g", c.direct_seconds, direct);
+    ck_assert_msg(fabs(log(c.pcg_seconds / pcg)) < log(2.5), "pcg %g, measured %g", c.pcg_seconds, pcg);
     if (direct > 3 * pcg || direct < pcg) ck_assert_str_eq(c.solver->name, direct < pcg ? "direct" : "pcg");
     ck_assert_int_eq(strncmp(c.why, c.solver->name, strlen(c.solver->name)), 0);
     ck_assert_ptr_nonnull(strstr(c.why, " nodes, c dt/h "));
