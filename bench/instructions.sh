@@ -24,8 +24,8 @@ if [ ! -d "$other" ]; then
 fi
 here=$PWD
 mkdir "$work/there" "$work/here"
-(cd "$other" && COST_SCENE=$here/tests/support/cost_scene.c sh "$here/tests/support/cost_build.sh" "$work/there")
-sh tests/support/cost_build.sh "$work/here"
+(cd "$other" && BRUNT=$work/there/brunt COST_SCENE=$here/tests/support/cost_scene.c sh "$here/tests/support/cost_build.sh" "$work/there")
+BRUNT=$work/here/brunt sh tests/support/cost_build.sh "$work/here"
 
 # Instructions of a run of $3 steps in the dress $2, in the folder $1.
 count() {
