@@ -1,9 +1,18 @@
-// Coulomb's friction cone: the impulse across the normal is at most the coefficient of friction times the one along it.
-// Every law of contact here has its friction from this file.
+// The law of contact: an impulse along the normal that only pushes, and Coulomb's friction cone, by which the one
+// across it is at most the coefficient of friction times that. Whatever sweeps over contacts takes its steps from this
+// file.
 #pragma once
 
 #include <math.h>
 #include <stdbool.h>
+
+// Adds `asked`, which would end the approach, to the normal impulse in all [N s], but leaves no less than 0 of it. What
+// that changes it by.
+static inline double brunt_coulomb_push(double *normal_impulse, double asked) {
+    const double now = fmax(0, *normal_impulse + asked), added = now - *normal_impulse;
+    *normal_impulse = now;
+    return added;
+}
 
 // The size of an impulse of `size` across the normal that the cone lets through [N s].
 static inline double brunt_coulomb_size(double friction, double normal_impulse, double size) {

@@ -282,9 +282,7 @@ static double solve_constraint(const brunt_constraint_set *p, brunt_constraint *
     brunt_constraint_velocity(p, constraint, false, u);
     for (int a = 0; a < 3; a++) along += u[a] * constraint->n[a];
     double unit = constraint->scale / constraint->row_sum;
-    double normal_impulse = fmax(0, constraint->normal_impulse + (constraint->target - along) * unit),
-           step = normal_impulse - constraint->normal_impulse;
-    constraint->normal_impulse = normal_impulse;
+    const double step = brunt_coulomb_push(&constraint->normal_impulse, (constraint->target - along) * unit);
     double changed = fabs(step) / unit;
     for (int a = 0; a < 3; a++) J[a] = step * constraint->n[a];
     if (constraint->friction > 0) {
@@ -296,7 +294,7 @@ static double solve_constraint(const brunt_constraint_set *p, brunt_constraint *
         double wanted[3], change[3];
         for (int a = 0; a < 3; a++)
             wanted[a] = constraint->friction_impulse[a] - (u[a] - along * constraint->n[a]) * unit_t;
-        constraint->slips = brunt_coulomb_project(3, constraint->friction, normal_impulse, wanted,
+        constraint->slips = brunt_coulomb_project(3, constraint->friction, constraint->normal_impulse, wanted,
                                                   constraint->friction_impulse, change);
         for (int a = 0; a < 3; a++) rub[a] += change[a];
         changed = fmax(changed, brunt_coulomb_norm(3, change) / unit_t);

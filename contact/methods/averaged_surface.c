@@ -19,6 +19,10 @@
 // affine ones a bouncing block creeps sideways twice as far. "surface" uses plain averages for all, and a rigid spin of
 // the nodes it changed takes the moment away that is left, for pairs without prescribed nodes.
 //
+// No constraints of the common solver are made of it: which nodes press is decided anew in each sweep, the effective
+// masses with it, and what one has given is not taken back, so that there is no impulse in all to hold to the cone.
+// Friction of a sweep is within the cone of that sweep (coulomb.h).
+//
 // Prescribed components have infinite mass: a cluster that holds one moves with it, and reactions end there.
 // Tried and worse: impulses at grid nodes (half a cell of overlap at edges), faces as carriers of momentum (half the
 // approach stays), memory of slip, pushing out in "smooth" (adds up to 7 % of energy: M knows nothing of the moments).

@@ -7,6 +7,9 @@
 // it where it pulls the surface outward, and its tangential part beyond Coulomb's limit. Corrected: the limit is -mu
 // dv.n (41), dv_t = dv - (dv.n) n (42), and no slip has no direction (44). tau = dt: v + Delta is what nodes get.
 //
+// No constraints of the common solver are made of it: it filters velocities, of nodes in contact or not, and has no gap
+// that must not close. Coulomb's limit is that of coulomb.h, and impulses are what nodes have been changed by.
+//
 // Angular momentum is exact for APIC when the spin of B is counted: sum m x v + sum m (B^T : eps).
 // Nodes with prescribed motion take part with their mass, as in the paper, and keep their velocity; their supports take
 // the impulse. What it cannot do is measured in the tests: it slides hardly at all, and takes energy out of free

@@ -42,15 +42,13 @@ static double solve_contact(const job *j, contact *c, double vs[3]) {
         drag_inverse = fmax(drag_inverse, c->inverse_s[a] + c->inverse[a]);
     }
     if (!(push_inverse > 0)) return 0; // neither gives way
-    const double normal_impulse = fmax(0, c->normal_impulse + c->relax * (c->target - along) / push_inverse),
-                 step = normal_impulse - c->normal_impulse;
+    const double step = brunt_coulomb_push(&c->normal_impulse, c->relax * (c->target - along) / push_inverse);
     double changed = fabs(step) * push_inverse;
-    c->normal_impulse = normal_impulse;
     for (int a = 0; a < 3; a++) c->applied[a] = step * c->n[a];
     if (c->pair->friction > 0) {
         double wanted[3], change[3];
         for (int a = 0; a < 3; a++) wanted[a] = c->friction_impulse[a] - c->relax * slip[a] / drag_inverse;
-        brunt_coulomb_project(3, c->pair->friction, normal_impulse, wanted, c->friction_impulse, change);
+        brunt_coulomb_project(3, c->pair->friction, c->normal_impulse, wanted, c->friction_impulse, change);
         for (int a = 0; a < 3; a++) c->applied[a] += change[a];
         changed = fmax(changed, brunt_coulomb_norm(3, change) * drag_inverse);
     }

@@ -23,6 +23,11 @@
 //     sweeps take what is left of the approach, one is the paper
 //   - prescribed components do not give way: what they get is the holder's
 //
+// No constraints of the common solver are made of it, which would be solved to its tolerance: what a prescribed mesh
+// feels is a whole kernel wide, and grid nodes a cell away from it would be held fast. A sweep gives there the share
+// that the surface has of the node (`relax`), and how many there are is part of the method. Each step of a sweep is one
+// of the law of contact (coulomb.h).
+//
 // The way back averages over a kernel: motions of a mesh that is finer than the cells are felt only in their mean, and
 // a mesh that is coarser leaves nodes between its own unseen. Elements about as large as the cells are what it is for.
 #pragma once
