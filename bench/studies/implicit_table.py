@@ -17,7 +17,7 @@ import sys
 import tempfile
 
 STEPS = 2
-REPEATS, SHORT = 3, 2  # the quickest of so many runs that take fewer seconds
+REPEATS, SHORT = 3, 2  # the middle one of so many runs that take fewer seconds
 SMALL = 5000  # nodes: up to there all lengths of steps and one thread, beyond two of them and two threads
 CELL = 0.05
 WAVE = 36.69  # [m/s] of the material below
@@ -91,7 +91,7 @@ def run(brunt, text, threads):
     runs = []
     while len(runs) < REPEATS and (not runs or runs[-1]["wall_s"] < SHORT):
         runs.append(call(brunt, text, "run", "-o", "{folder}/out", "-t", str(threads), "--profile", "-q"))
-    return min(runs, key=lambda summary: summary["step_s"] * share(summary))
+    return sorted(runs, key=lambda summary: summary["step_s"] * share(summary))[len(runs) // 2]
 
 
 def share(summary):

@@ -1,6 +1,7 @@
 // Which solver is the quicker one, by estimates of both for one iteration of Newton's method: an analysis where the
 // pattern is new, a factor and a solution; or an incomplete factor and conjugate gradients to 1e-3. The numbers are
-// those that bench/studies/implicit_table.py fits to its rows, of one core of an EPYC: most within a factor of two.
+// those that bench/studies/implicit_table.py fits to its rows, to a tenth, of one core of an EPYC: most estimates are
+// within a factor of two.
 #include <math.h>
 #include <stdio.h>
 
