@@ -25,14 +25,25 @@ int64_t barrier_nodes(const brunt_barrier *b, int32_t place, const int32_t **nod
     return p->first[particle + 1] - p->first[particle];
 }
 
+// Sums in registers: through `out`, which may be what they are of, each node would wait for the one before.
 void barrier_move(const brunt_barrier *b, int32_t place, const double *u, double out[3]) {
     const int32_t *node;
     const double *weight;
     out[0] = out[1] = out[2] = 0;
     if (!u) return;
     const int64_t count = barrier_nodes(b, place, &node, &weight);
-    for (int64_t i = 0; i < count; i++)
-        for (int k = 0; k < b->dim; k++) out[k] += weight[i] * u[(int64_t)node[i] * b->dim + k];
+    double x = 0, y = 0, z = 0;
+    if (b->dim == 3)
+        for (int64_t i = 0; i < count; i++) {
+            const double *v = u + (int64_t)node[i] * 3;
+            x += weight[i] * v[0], y += weight[i] * v[1], z += weight[i] * v[2];
+        }
+    else
+        for (int64_t i = 0; i < count; i++) {
+            const double *v = u + (int64_t)node[i] * 2;
+            x += weight[i] * v[0], y += weight[i] * v[1];
+        }
+    out[0] = x, out[1] = y, out[2] = z;
 }
 
 // Differences of places at the start, then of displacements: both keep their digits far from the origin.
