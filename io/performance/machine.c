@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "base/error.h"
+#include "base/simd.h"
 #include "io/file/input_file.h"
 #include "base/array.h"
 #include "base/memory.h"
@@ -153,12 +154,19 @@ static int read_row(reader *r, char *text) {
     return BRUNT_OK;
 }
 
+// What follows the key in a line "# key: value"; NULL: it is not that line.
+static const char *value_of(const char *text, const char *key) {
+    const size_t length = strlen(key);
+    return strncmp(text, key, length) == 0 ? text + length + strspn(text + length, " ") : NULL;
+}
+
 static int read_line(reader *r, char *text) {
-    static const char key[] = "# processor:";
     text[strcspn(text, "\r\n")] = 0;
-    if (strncmp(text, key, sizeof key - 1) == 0) {
-        const char *value = text + sizeof key - 1;
-        snprintf(r->machine->processor, sizeof r->machine->processor, "%.127s", value + strspn(value, " "));
+    const char *processor = value_of(text, "# processor:"), *width = value_of(text, "# lanes:");
+    if (processor) snprintf(r->machine->processor, sizeof r->machine->processor, "%.127s", processor);
+    if (width) {
+        const int status = read_count(r, "lanes", width, &r->machine->lanes);
+        if (status) return status;
     }
     if (!*text || *text == '#') return BRUNT_OK;
     if (r->has_header) return read_row(r, text);
@@ -202,7 +210,9 @@ int brunt_machine_load(brunt_machine *machine, brunt_error *error) {
         return BRUNT_OK;
     }
     int status = read_file(machine, error);
-    if (status) brunt_machine_free(machine);
+    // Processors of one name differ in the width of their registers, and by that in the speed of every kernel.
+    const bool others = !(named && *named) && machine->lanes && machine->lanes != BRUNT_LANES;
+    if (status || others) brunt_machine_free(machine);
     return status;
 }
 

@@ -23,11 +23,13 @@ typedef struct brunt_machine {
     char path[1024], processor[128]; // "": none was found
     brunt_machine_row *rows;
     int32_t row_count; // owned
+    int32_t lanes;     // reals to a vector of the program that was measured; 0: it does not say
 } brunt_machine;
 
 // The stored benchmark of this machine: the file that the environment's BRUNT_MACHINE names, else NAME.csv of the
-// folder the program was built with (bench/machines), NAME made of the processor's name and the number of cores.
-// BRUNT_OK also when there is none (row_count 0); BRUNT_BAD_INPUT for a file that is not one, with its line.
+// folder the program was built with (bench/machines), NAME made of the processor's name and the number of cores; not
+// one of a program with other vectors. BRUNT_OK also when there is none (row_count 0); BRUNT_BAD_INPUT for a file that
+// is not one, with its line.
 int brunt_machine_load(brunt_machine *machine, brunt_error *error);
 void brunt_machine_free(brunt_machine *machine);
 // The processor as the system names it, "unknown processor" where it does not.

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <unistd.h>
 
+#include "base/simd.h"
 #include "io/performance/machine.h"
 
 static const char head[] = "# processor: Some Processor 7\n"
@@ -191,6 +192,7 @@ START_TEST(without_a_name_the_stored_one) {
     int status = brunt_machine_load(&machine, &error);
     ck_assert_msg(status == BRUNT_OK, "%s", error.message);
     if (machine.row_count) {
+        ck_assert_int_eq(machine.lanes, BRUNT_LANES);
         ck_assert_ptr_nonnull(strstr(machine.path, name));
         ck_assert_str_ne(machine.processor, "");
     } else {
