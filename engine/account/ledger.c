@@ -6,7 +6,7 @@
 #include "account/ledger.h"
 #include "base/error.h"
 
-static const double MOST_GROWTH = 10, STEP_ROUNDINGS = 10;
+static const double MOST_GROWTH = 10, STEP_ROUNDINGS = 10, STORED_ROUNDINGS = 100;
 static const double REAL_EPSILON = sizeof(real) == sizeof(float) ? FLT_EPSILON : DBL_EPSILON;
 
 // What the run has been given by now [J]: the energy at the start, with the work done on it, and that work itself, each
@@ -26,13 +26,25 @@ void brunt_ledger_validate(const brunt_ledger *ledger) {
     _Static_assert(sizeof number == sizeof *ledger, "the ledger has numbers only");
     memcpy(number, ledger, sizeof number);
     for (size_t i = 0; i < sizeof number / sizeof *number; i++) BRUNT_ASSERT(isfinite(number[i]));
-    BRUNT_ASSERT(ledger->initial_kinetic >= 0 && ledger->rounding_energy >= 0);
+    BRUNT_ASSERT(ledger->initial_kinetic >= 0 && ledger->rounding_energy >= 0 && ledger->rounding_stored >= 0);
     BRUNT_ASSERT(ledger->scale_linear >= 0 && ledger->scale_angular >= 0);
     BRUNT_ASSERT(ledger->energy_scale >= fabs(ledger->initial_energy));
 }
 
 void brunt_ledger_remember(brunt_ledger *ledger, const brunt_books *books) {
     ledger->energy_scale = fmax(ledger->energy_scale, given_energy(ledger, books));
+}
+
+// A density of energy is a difference of numbers as large as the moduli, whose roundings are m c^2 eps of a body: of
+// one that is turned by load steps, and by nothing else, there is no other energy.
+static double rounding_stored(const brunt_bodies *bodies) {
+    double energy = 0;
+    for (int i = 0; i < bodies->count; i++) {
+        const brunt_body_ref *body = &bodies->all[i];
+        const double wave_speed = (double)body->ops->material(body)->wave_speed;
+        energy += body->ops->sums(body).mass * wave_speed * wave_speed;
+    }
+    return STORED_ROUNDINGS * REAL_EPSILON * energy;
 }
 
 // Places x are known to eps |x|, strains of elements of size h to eps |x| / h, and rounded some ten times a step, now
@@ -68,6 +80,7 @@ void brunt_ledger_open(brunt_ledger *ledger, const brunt_books *books) {
     ledger->initial_energy += ledger->hourglass_stored;
     brunt_ledger_remember(ledger, books);
     ledger->rounding_energy = rounding_energy(books->bodies);
+    ledger->rounding_stored = rounding_stored(books->bodies);
 }
 
 // Energy that bodies have and have dissipated.
@@ -121,7 +134,7 @@ void brunt_ledger_energy(const brunt_ledger *now, const brunt_books *books, brun
     const double given = fmax(now->energy_scale, given_energy(now, books));
     const double has = energy->kinetic + fabs(energy->internal);
     const double scale = fmax(given, given > 0 ? fmin(has, MOST_GROWTH * given) : has);
-    energy->reference = fmax(scale, now->rounding_energy * fmax(books->steps, 1));
+    energy->reference = fmax(fmax(scale, now->rounding_stored), now->rounding_energy * fmax(books->steps, 1));
     energy->error_relative = energy->reference > 0 ? energy->error / energy->reference : 0;
 }
 

@@ -20,6 +20,7 @@ typedef struct brunt_ledger {
     double energy_scale; // [J] the most that the run has been given so far: what its energy error is relative to
     double eroded_plastic, eroded_viscosity, eroded_heat; // [J] dissipated by what has been eroded since
     double rounding_energy; // [J] a step: what rounding may do, follows from the bodies at the start
+    double rounding_stored; // [J] to which stored energy is known at any time, likewise
 } brunt_ledger;
 
 // What the balance goes over besides the ledger.

@@ -46,6 +46,14 @@ static brunt_stencils stencils(void *self) {
     return (brunt_stencils){.count = p->body->element_count, .first = p->first, .node = p->node, .version = 1};
 }
 
+static double moduli_of(brunt_fem_body *body) {
+    const real *volume = brunt_element_scalars(body, BRUNT_ELEMENT_reference_volume)[0];
+    const double c0 = (double)body->material.wave_speed;
+    double all = 0;
+    for (int64_t s = 0; s < body->slots; s++) all += (double)volume[s];
+    return all * (double)body->material.density * c0 * c0;
+}
+
 brunt_fem_potential *brunt_fem_potential_make(brunt_fem_body *body, int32_t base, const brunt_team *team,
                                               brunt_error *error) {
     const char *reason = brunt_fem_implicit(body);
@@ -65,6 +73,7 @@ brunt_fem_potential *brunt_fem_potential_make(brunt_fem_body *body, int32_t base
                                .modes = brunt_fem_has_hourglass(body) ? body->element->hourglass_modes : 0,
                                .tangents = brunt_material_tangents(&body->material, body->dim),
                                .history = strength->plastic || strength->shear_viscous || body->material.differences,
+                               .moduli = moduli_of(body),
                                .threads = team->threads};
     int status = make_arrays(p, error);
     if (!status) {
@@ -146,7 +155,7 @@ static brunt_energy_sum energy(void *self, const brunt_team *team, const double 
     brunt_fem_potential *p = self;
     fem_call call = {.p = p, .wanted = FEM_ENERGY, .u = u};
     run(&call, team);
-    brunt_energy_sum sum = {0};
+    brunt_energy_sum sum = {.moduli = p->moduli};
     for (int32_t b = 0; b < p->body->block_count; b++)
         sum.value += p->energy[b].value, sum.magnitude += p->energy[b].magnitude;
     return sum;

@@ -281,7 +281,7 @@ static void evaluate(const fem_call *call, int32_t b) {
     const brunt_fem_block *block = &p->body->block[b];
     real *partial = p->force + (size_t)block->node_first * 4;
     if (call->wanted == FEM_GRADIENT) memset(partial, 0, (size_t)block->node_count * 4 * sizeof *partial);
-    brunt_energy_sum sum = {0, 0};
+    brunt_energy_sum sum = {0};
     sheet_tile tile;
     for (int32_t first = 0; first < block->count; first += FEM_TILE) {
         const int32_t there = block->count - first < FEM_TILE ? block->count - first : FEM_TILE;

@@ -32,6 +32,7 @@ struct brunt_fem_potential {
     double *place, *way;      // of each node, dim each: where it is tried to be, less where it was at the start; p
     real *force;              // partial_count x 4, as body->partial
     brunt_energy_sum *energy; // a block each
+    double moduli;            // [J] m c^2
     double *limit;            // a block each
     int64_t *first;           // stencils: the elements in order of slots
     int32_t *node, *slot;

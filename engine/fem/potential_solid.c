@@ -234,7 +234,8 @@ BRUNT_INLINE void evaluate(int dim, int nodes, const fem_call *call, int32_t b) 
                 for (int i = 0; i < dim; i++) lanes_store(p->g[a * dim + i] + slot + s, g[a][i]);
         }
     }
-    p->energy[b] = (brunt_energy_sum){(double)lanes_sum(tile.value), (double)lanes_sum(tile.magnitude)};
+    p->energy[b] =
+        (brunt_energy_sum){.value = (double)lanes_sum(tile.value), .magnitude = (double)lanes_sum(tile.magnitude)};
 }
 
 // Along u + t p the deformation gradient is F + t D: its J is a polynomial in t. The smallest of the elements' steps.

@@ -71,7 +71,7 @@ static brunt_energy_sum energy_at(const newton_run *r, const double *u, int *out
     for (int t = 0; t < r->problem->count && *outside < 0; t++) {
         const brunt_term *term = r->problem->terms + t;
         const brunt_energy_sum e = term->ops->energy(term->self, r->team, u);
-        sum.value += e.value, sum.magnitude += e.magnitude;
+        sum.value += e.value, sum.magnitude += e.magnitude, sum.moduli += e.moduli;
         if (!isfinite(e.value)) *outside = t;
     }
     return sum;
@@ -363,7 +363,9 @@ static int search(newton_run *r, double *share) {
         try_share(r, *share);
         int outside;
         const brunt_energy_sum e = energy_at(r, r->n->trial, &outside);
-        const double noise = ROUNDING * fmax(e.magnitude, r->energy.magnitude);
+        // Where forces say when it ends: what is turned by load steps, and by nothing else, has no other energy.
+        const double least = r->options->unbalance ? e.moduli : 0;
+        const double noise = ROUNDING * fmax(fmax(e.magnitude, r->energy.magnitude), least);
         if (half > 0 && outside < 0 && -*share * r->slope <= LEAST_GAIN * noise) break;
         if (outside < 0 && acceptable(r, e, noise, half == 0)) {
             r->energy = r->report->energy = e;

@@ -26,6 +26,7 @@ typedef struct brunt_team {
 typedef struct brunt_energy_sum {
     double value;     // [J]; INFINITY outside the term's domain (J <= 0, a gap that is closed)
     double magnitude; // [J]
+    double moduli;    // [J] m c^2 of a body: densities are differences of numbers as large, whatever is left of them
 } brunt_energy_sum;
 
 // Sets of nodes that couple with each other: those of set s are node[first[s]] .. node[first[s + 1] - 1], each once.

@@ -98,7 +98,9 @@ static int make_room(brunt_mpm_potential *p, brunt_error *error) {
 
 int brunt_mpm_potential_step(brunt_mpm_potential *p, const brunt_team *team, const int32_t *number, double dt,
                              brunt_error *error) {
+    const double c0 = (double)p->body->material.wave_speed;
     p->number = number, p->dt = (real)dt, p->threads = team->threads, p->step++;
+    p->moduli = (double)p->body->particles.count * (double)p->body->particle_mass * c0 * c0;
     if (make_room(p, error)) return BRUNT_FAILED;
     list_bins(p);
     return BRUNT_OK;
@@ -318,7 +320,7 @@ static brunt_energy_sum energy(void *self, const brunt_team *team, const double 
     brunt_mpm_potential *p = self;
     mpm_call call = {.p = p, .wanted = MPM_ENERGY, .u = u};
     run(&call, team);
-    brunt_energy_sum sum = {0};
+    brunt_energy_sum sum = {.moduli = p->moduli};
     for (int32_t b = 0; b < p->body->grid.block_count; b++)
         sum.value += p->energy[b].value, sum.magnitude += p->energy[b].magnitude;
     return sum;

@@ -29,6 +29,7 @@ struct brunt_mpm_potential {
     size_t slab_capacity;
     double *force; // block_count x span_nodes x dim
     size_t force_capacity;
+    double moduli;            // [J] m c^2
     brunt_energy_sum *energy; // a block each, as the two below
     double *limit;
     mpm_block_result *result;

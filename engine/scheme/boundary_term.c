@@ -65,7 +65,7 @@ static double size_of(const double *t, int count) {
 static brunt_energy_sum patch_energy(const brunt_boundary_rows *r, int32_t patch, const double *u) {
     const brunt_boundary_patch *p = &r->patch[patch];
     const double factor = 0.5 * p->size / p->stiffness;
-    brunt_energy_sum sum = {0, 0};
+    brunt_energy_sum sum = {0};
     double moved[3], wanted[3], t[3];
     rows_of(r, patch, u, moved);
     tentative(r, patch, moved, wanted);
@@ -83,7 +83,7 @@ static brunt_energy_sum patch_energy(const brunt_boundary_rows *r, int32_t patch
 static brunt_energy_sum rows_energy(void *term, const brunt_team *team, const double *u) {
     (void)team;
     const brunt_boundary_rows *r = term;
-    brunt_energy_sum sum = {0, 0};
+    brunt_energy_sum sum = {0};
     for (int32_t p = 0; p < r->patch_count; p++) {
         const brunt_energy_sum e = patch_energy(r, p, u);
         sum.value += e.value, sum.magnitude += e.magnitude;

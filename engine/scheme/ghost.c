@@ -113,7 +113,7 @@ static double bend(const brunt_ghost *g, int64_t run, int a, const double *u) {
 static brunt_energy_sum ghost_energy(void *term, const brunt_team *team, const double *u) {
     (void)team;
     const brunt_ghost *g = term;
-    brunt_energy_sum sum = {0, 0};
+    brunt_energy_sum sum = {0};
     for (int64_t run = 0; run < g->runs; run++)
         for (int a = 0; a < g->unknowns->dim; a++) {
             const double b = bend(g, run, a, u);

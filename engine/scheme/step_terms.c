@@ -28,7 +28,7 @@ static void sum_stretches(void *context, int64_t begin, int64_t end, int worker)
 
 brunt_energy_sum brunt_sum_nodes(const brunt_team *team, int32_t count, brunt_stretch_fn *add, const void *context) {
     sum_job job = {.add = add, .context = context, .count = count};
-    brunt_energy_sum all = {0, 0};
+    brunt_energy_sum all = {0};
     const int64_t stretches = ((int64_t)count + STRETCH - 1) / STRETCH;
     for (job.first = 0; job.first < stretches; job.first += STRETCHES) {
         const int64_t n = stretches - job.first < STRETCHES ? stretches - job.first : STRETCHES;
@@ -49,7 +49,7 @@ static brunt_energy_sum inertia_stretch(const void *context, int32_t begin, int3
     const inertia_sum *job = context;
     const brunt_unknowns *unknowns = job->inertia->unknowns;
     const int dim = unknowns->dim;
-    brunt_energy_sum sum = {0, 0};
+    brunt_energy_sum sum = {0};
     for (int32_t n = begin; n < end; n++) {
         double square = 0;
         for (int a = 0; a < dim; a++) {
@@ -117,7 +117,7 @@ const brunt_term_ops brunt_inertia_ops = {
 
 static brunt_energy_sum proximal_energy(void *term, const brunt_team *team, const double *u) {
     (void)term, (void)team, (void)u; // 0 at the iterate, and the energy that steps are judged by is without it
-    return (brunt_energy_sum){0, 0};
+    return (brunt_energy_sum){0};
 }
 
 static void proximal_gradient(void *term, const brunt_team *team, const double *u, double *g) {
@@ -158,7 +158,7 @@ typedef struct load_sum {
 static brunt_energy_sum load_stretch(const void *context, int32_t begin, int32_t end) {
     const load_sum *job = context;
     const int dim = job->loads->unknowns->dim;
-    brunt_energy_sum sum = {0, 0};
+    brunt_energy_sum sum = {0};
     for (int64_t dof = (int64_t)begin * dim; dof < (int64_t)end * dim; dof++) {
         const double work = job->loads->force[dof] * job->u[dof];
         sum.value -= work, sum.magnitude += fabs(work);
@@ -204,12 +204,12 @@ static brunt_energy_sum drag_stretch(const void *context, int32_t begin, int32_t
         sum += drag->weight[dof / dim] * off * off;
     }
     sum *= 0.5 * drag->slope;
-    return (brunt_energy_sum){sum, sum};
+    return (brunt_energy_sum){.value = sum, .magnitude = sum};
 }
 
 static brunt_energy_sum drag_energy(void *term, const brunt_team *team, const double *u) {
     const drag_sum job = {term, u};
-    if (!job.drag->weight) return (brunt_energy_sum){0, 0};
+    if (!job.drag->weight) return (brunt_energy_sum){0};
     return brunt_sum_nodes(team, job.drag->unknowns->count, drag_stretch, &job);
 }
 
@@ -243,7 +243,7 @@ typedef struct pull_sum {
 static brunt_energy_sum pull_stretch(const void *context, int32_t begin, int32_t end) {
     const pull_sum *job = context;
     const brunt_unknowns *unknowns = job->pull->unknowns;
-    brunt_energy_sum sum = {0, 0};
+    brunt_energy_sum sum = {0};
     for (int64_t dof = (int64_t)begin * unknowns->dim; dof < (int64_t)end * unknowns->dim; dof++) {
         const double off = job->u[dof] - unknowns->target[dof];
         if (job->pull->weight[dof] > 0) sum.value += 0.5 * job->pull->weight[dof] * off * off;
@@ -254,7 +254,7 @@ static brunt_energy_sum pull_stretch(const void *context, int32_t begin, int32_t
 
 static brunt_energy_sum pull_energy(void *term, const brunt_team *team, const double *u) {
     const pull_sum job = {term, u};
-    if (!job.pull->weight) return (brunt_energy_sum){0, 0};
+    if (!job.pull->weight) return (brunt_energy_sum){0};
     return brunt_sum_nodes(team, job.pull->unknowns->count, pull_stretch, &job);
 }
 

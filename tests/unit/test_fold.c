@@ -35,7 +35,7 @@ static void slopes(const double *u, int s, double slope[DIM], double curvature[D
 
 static brunt_energy_sum energy(void *self, const brunt_team *team, const double *u) {
     (void)self, (void)team;
-    brunt_energy_sum e = {0, 0};
+    brunt_energy_sum e = {0};
     for (int s = 0; s < SETS; s++) {
         double square = 0;
         for (int a = 0; a < DIM; a++) {

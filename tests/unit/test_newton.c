@@ -29,7 +29,7 @@ typedef struct lone {
 static brunt_energy_sum lone_energy(void *self, const brunt_team *team, const double *u) {
     (void)team;
     lone *t = self;
-    brunt_energy_sum e = {0, 0};
+    brunt_energy_sum e = {0};
     for (int64_t i = 0; i < t->count; i++) {
         const double v = u[i] > t->end ? t->value(t, i, u[i]) : INFINITY;
         if (v == INFINITY) t->outside++;
@@ -114,7 +114,7 @@ static brunt_energy_sum springs_energy(void *self, const brunt_team *team, const
         const double q = stretch(t, u, i);
         e += t->k / 2 * q + t->s / 4 * q * q;
     }
-    return (brunt_energy_sum){e, e};
+    return (brunt_energy_sum){.value = e, .magnitude = e};
 }
 
 static void springs_gradient(void *self, const brunt_team *team, const double *u, double *g) {
