@@ -482,7 +482,8 @@ START_TEST(moving_the_scene) {
     outcome near = collide(2 + _i, 0.1, 0, XYZ(6.4, -12.8, 3.2), XYZ(0, 0, 0));
     double off = difference(&near, &straight);
     printf("  moved by 64 cells, %dD: %.1e\n", 2 + _i, off);
-    ck_assert_double_le(off, 1e3 * ROUNDING);
+    // As above, with the lanes of AVX2 2e-9 in three dimensions; in two 1e-12.
+    ck_assert_double_le(off, (_i ? 1e4 : 1e3) * ROUNDING);
 #ifndef BRUNT_FLOAT // a float has no digits left there
     outcome far = collide(2 + _i, 0.1, 0, XYZ(1e6, -1e6, 1e6), XYZ(0, 0, 0));
     off = difference(&far, &straight);
