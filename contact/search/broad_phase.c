@@ -150,7 +150,5 @@ int brunt_broad_phase(const brunt_contact_context *m, brunt_node_to_facet **faci
                 walls[w].kind->near_surface && brunt_boundary_acts_on(&walls[w], s->fem[k]->index) &&
                 walls[w].kind->near_surface(s, k, &walls[w], m->time, f->bodies.plane_travel + 1e-6 * s->mean_edge);
     }
-    if (RESERVE(&f->nodes, dof_of, s->node_count + 1, "nodes that contact moves", error)) return BRUNT_FAILED;
-    memset(f->nodes.dof_of, 0xff, (size_t)s->node_count * sizeof *f->nodes.dof_of); // -1: none
     return BRUNT_OK;
 }

@@ -25,6 +25,12 @@ size_t brunt_node_to_facet_bytes(const brunt_node_to_facet *f) {
              : 0;
 }
 
+int brunt_node_to_facet_begin(brunt_node_to_facet *f, int32_t nodes, brunt_error *error) {
+    if (RESERVE(&f->nodes, dof_of, nodes + 1, "nodes that contact moves", error)) return BRUNT_FAILED;
+    memset(f->nodes.dof_of, 0xff, (size_t)nodes * sizeof *f->nodes.dof_of); // -1: none
+    return BRUNT_OK;
+}
+
 int brunt_node_to_facet_make(brunt_node_to_facet **facing, int mpm_count, int32_t nodes, brunt_error *error) {
     if (*facing) return BRUNT_OK;
     if (BRUNT_NEW(*facing, 1, "search for contact", error)) return BRUNT_FAILED;

@@ -18,6 +18,8 @@
 // others), near; call after brunt_surface_bounds, before brunt_surface_gather_state. BRUNT_OK, or BRUNT_FAILED: out of
 // memory, or (`far`) a place or a way of a step is not a number that can be worked with.
 int brunt_broad_phase(const brunt_contact_context *m, brunt_node_to_facet **facing, bool *far, brunt_error *error);
+// Where something is near: no node has a degree of freedom of the step yet. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_node_to_facet_begin(brunt_node_to_facet *facing, int32_t nodes, brunt_error *error);
 // Adds the contact points of this step. BRUNT_OK, or BRUNT_FAILED: out of memory.
 int brunt_node_to_facet_find(const brunt_contact_context *m, brunt_body *mpm, int mpm_count,
                              brunt_node_to_facet *facing, brunt_constraint_set *constraints, brunt_error *error);

@@ -265,6 +265,7 @@ int brunt_surfaces_meet(brunt_world *world, const double gravity[3], double kick
     int failed = brunt_broad_phase(&m, &world->contact.node_to_facet, &far, error);
     if (far) return fail_far(world, error);
     brunt_contact *contact = &world->contact;
+    if (!failed) failed = brunt_node_to_facet_begin(contact->node_to_facet, contact->surface.node_count, error);
     brunt_contact_work work = contact_work(contact);
     const brunt_contact_row *const *rows = brunt_contact_rows;
     const int count = brunt_contact_row_count;
