@@ -114,6 +114,17 @@ int32_t brunt_effect_count(const brunt_world *world) {
     return EFFECT_COUNT;
 }
 
+bool brunt_effect_on(const brunt_world *world, const char *name) {
+    static const char *const names[] = {
+#define NAME(name, ...) #name,
+        BRUNT_EFFECTS(NAME) BRUNT_MODEL_EFFECTS(NAME)
+#undef NAME
+    };
+    for (int32_t e = 0; e < EFFECT_COUNT; e++)
+        if (!strcmp(names[e], name)) return brunt_world_effect(world, e).on;
+    return false;
+}
+
 brunt_effect brunt_world_effect(const brunt_world *world, int32_t effect) {
     switch (effect) {
 #define ROW(name, on, key)                                                                                             \

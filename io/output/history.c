@@ -127,12 +127,6 @@ static void add_momentum(brunt_history *h, brunt_world *world) {
     add(h, "momentum.angular_drift", "1", m.angular_drift);
 }
 
-static bool has_effect(const brunt_world *world, const char *name) {
-    for (int32_t e = 0; e < brunt_effect_count(world); e++)
-        if (!strcmp(brunt_world_effect(world, e).name, name)) return brunt_world_effect(world, e).on;
-    return false;
-}
-
 static void add_body(brunt_history *h, brunt_world *world, int32_t body) {
     brunt_body_sums sums;
     brunt_body_totals(world, body, &sums);
@@ -150,7 +144,7 @@ static void add_body(brunt_history *h, brunt_world *world, int32_t body) {
     add_named(h, "J", sums.kinetic, "body.%s.kinetic", body_name);
     add_named(h, "J", sums.internal, "body.%s.internal", body_name);
     add_named(h, "J", sums.plastic, "body.%s.plastic", body_name);
-    if (!has_effect(world, "erosion")) return;
+    if (!brunt_effect_on(world, "erosion")) return;
     brunt_eroded eroded;
     brunt_body_eroded(world, body, &eroded);
     add_named(h, "1", (double)(eroded.elements + eroded.particles), "body.%s.eroded", body_name);
@@ -213,7 +207,7 @@ static void traverse(brunt_history *h, brunt_world *world) {
     add_momentum(h, world);
     add_newton(h, world);
     for (int32_t b = 0; b < brunt_body_count(world); b++) add_body(h, world, b);
-    const bool flat = brunt_world_dimension(world) == 2 && !has_effect(world, "axisymmetric");
+    const bool flat = brunt_world_dimension(world) == 2 && !brunt_effect_on(world, "axisymmetric");
     for (int32_t p = 0; p < brunt_pair_count(world); p++) {
         brunt_force force;
         brunt_pair_force(world, p, &force);
@@ -286,6 +280,7 @@ brunt_history *brunt_history_create(brunt_world *world, const brunt_scene *scene
     h->declaring = true;
     traverse(h, world);
     h->declaring = false;
+    h->out_of_memory |= brunt_names_sort(&h->names, h->columns[0].name, sizeof *h->columns, h->column_count, NULL) != 0;
     if (h->out_of_memory) {
         brunt_history_destroy(h);
         brunt_fail(error, BRUNT_FAILED, "out of memory");
@@ -307,6 +302,7 @@ void brunt_history_destroy(brunt_history *history) {
     if (history->csv) fclose(history->csv);
     forget_columns(history);
     brunt_free(history->columns);
+    brunt_names_free(&history->names);
     brunt_free(history->lines);
     brunt_free(history->probes);
     brunt_free(history->scratch);
@@ -359,29 +355,51 @@ int brunt_history_sample(brunt_history *history, brunt_world *world, brunt_error
     return BRUNT_OK;
 }
 
-int brunt_history_read(const brunt_history *history, const char *name, const double **values, brunt_error *error) {
-    int32_t c = 0;
-    while (c < history->column_count && strcmp(history->columns[c].name, name) != 0) c++;
-    if (c == history->column_count) return brunt_fail(error, BRUNT_BAD_INPUT, "the history has no column '%s'", name);
-    *values = history->columns[c].values;
-    if (*values) return BRUNT_OK;
-    double *all = brunt_alloc(sizeof *all * (size_t)history->rows),
-           *line = brunt_alloc(sizeof *line * (size_t)history->column_count);
+int32_t brunt_history_find(const brunt_history *history, const char *name) {
+    return brunt_names_find(&history->names, name, strlen(name));
+}
+
+// All lines of the columns that are `wanted`, whose memory is there, in one go over the file.
+static int read_lines(const brunt_history *h, const bool *wanted, double *line, brunt_error *error) {
     line_reader r = {0};
-    int status = all && line ? brunt_history_open_lines(&r, history, brunt_history_lines_path(history), error)
-                             : brunt_fail(error, BRUNT_FAILED, "out of memory for the history's column '%s'", name);
-    for (int64_t row = 0; row < history->rows && !status; row++) {
-        status = brunt_history_next_line(&r, c, line, error);
-        all[row] = line[c];
+    int status = brunt_history_open_lines(&r, h, brunt_history_lines_path(h), error);
+    for (int64_t row = 0; row < h->rows && !status; row++) {
+        status = brunt_history_next_line(&r, wanted, line, error);
+        for (int32_t c = 0; c < h->column_count; c++)
+            if (wanted[c]) h->columns[c].values[row] = line[c];
     }
     brunt_history_close_lines(&r);
-    brunt_free(line);
-    if (status) {
-        brunt_free(all);
-        return status;
+    return status;
+}
+
+int brunt_history_fetch(const brunt_history *history, const char *const *names, int32_t count, brunt_error *error) {
+    bool *wanted = brunt_alloc(sizeof *wanted * (size_t)history->column_count), any = false;
+    double *line = brunt_alloc(sizeof *line * (size_t)history->column_count);
+    int status = wanted && line ? BRUNT_OK : brunt_fail(error, BRUNT_FAILED, "out of memory for the history's columns");
+    for (int32_t i = 0; i < count && !status; i++) {
+        const int32_t c = brunt_history_find(history, names[i]);
+        if (c < 0 || history->columns[c].values) continue;
+        history->columns[c].values = brunt_alloc(sizeof(double) * (size_t)history->rows);
+        wanted[c] = any = true;
+        if (!history->columns[c].values)
+            status = brunt_fail(error, BRUNT_FAILED, "out of memory for the history's column '%s'", names[i]);
     }
-    *values = history->columns[c].values = all;
-    return BRUNT_OK;
+    if (!status && any) status = read_lines(history, wanted, line, error);
+    for (int32_t c = 0; status && wanted && c < history->column_count; c++) {
+        if (!wanted[c]) continue;
+        brunt_free(history->columns[c].values);
+        history->columns[c].values = NULL;
+    }
+    brunt_free(wanted), brunt_free(line);
+    return status;
+}
+
+int brunt_history_read(const brunt_history *history, const char *name, const double **values, brunt_error *error) {
+    const int32_t c = brunt_history_find(history, name);
+    if (c < 0) return brunt_fail(error, BRUNT_BAD_INPUT, "the history has no column '%s'", name);
+    const int status = brunt_history_fetch(history, &name, 1, error);
+    if (!status) *values = history->columns[c].values;
+    return status;
 }
 
 const double *brunt_history_column(const brunt_history *history, const char *name) {
@@ -396,7 +414,7 @@ int brunt_history_resume(brunt_history *history, const char *path, int64_t lines
     line_reader r = {0};
     int status = line ? brunt_history_open_lines(&r, history, path, error)
                       : brunt_fail(error, BRUNT_FAILED, "out of memory while reading %s", path);
-    for (int64_t row = 0; row < lines && !status; row++) status = brunt_history_next_line(&r, -1, line, error);
+    for (int64_t row = 0; row < lines && !status; row++) status = brunt_history_next_line(&r, NULL, line, error);
     if (!status && r.hash != hash)
         status =
             brunt_fail(error, BRUNT_BAD_INPUT,
@@ -419,7 +437,7 @@ static int print_all(const brunt_history *h, const char *path, FILE *out, brunt_
     int status = line ? brunt_history_open_lines(&r, h, h->resumed ? path : NULL, error)
                       : brunt_fail(error, BRUNT_FAILED, "out of memory while writing %s", path);
     for (int64_t row = 0; row < h->rows && !status; row++) {
-        status = brunt_history_next_line(&r, -1, line, error);
+        status = brunt_history_next_line(&r, NULL, line, error);
         if (!status) brunt_history_print_line(h, line, out);
     }
     brunt_history_close_lines(&r);

@@ -37,6 +37,10 @@ double brunt_history_time(const brunt_history *history);
 uint64_t brunt_history_hash(const brunt_history *history);
 // [B] that a line takes in both files.
 double brunt_history_line_bytes(const brunt_history *history);
+// The column of a name; BRUNT_NONE: there is none.
+int32_t brunt_history_find(const brunt_history *history, const char *name);
+// Reads the lines back once for all the columns named; names of none are passed over.
+int brunt_history_fetch(const brunt_history *history, const char *const *names, int32_t count, brunt_error *error);
 // The values of a column, one a line, read back; valid until the next sample. BRUNT_BAD_INPUT when there is none of
 // that name.
 int brunt_history_read(const brunt_history *history, const char *name, const double **values, brunt_error *error);

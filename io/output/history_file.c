@@ -62,7 +62,7 @@ static int put_all(const brunt_history *h, hid_t file, const char *path, brunt_e
     for (int64_t first = 0; first < h->rows && !status; first += block) {
         const int64_t count = h->rows - first < block ? h->rows - first : block;
         for (int64_t row = 0; row < count && !status; row++)
-            status = brunt_history_next_line(&r, -1, lines + h->column_count * row, error);
+            status = brunt_history_next_line(&r, NULL, lines + h->column_count * row, error);
         if (!status && !put_lines(h, file, first, count, lines, lines + block * h->column_count))
             status = brunt_fail(error, BRUNT_IO_ERROR, "%s: HDF5 could not write the file", path);
     }

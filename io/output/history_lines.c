@@ -53,6 +53,23 @@ static int next_text(line_reader *r, brunt_error *error) {
     return BRUNT_OK;
 }
 
+// Whether a heading "time [s]" of `length` bytes is that of a column.
+static bool is_heading(const column *c, const char *heading, size_t length) {
+    const size_t name = strlen(c->name), unit = strlen(c->unit);
+    return length == name + unit + 3 && !memcmp(heading, c->name, name) && !memcmp(heading + name, " [", 2) &&
+           !memcmp(heading + name + 2, c->unit, unit) && heading[length - 1] == ']';
+}
+
+// The column of a heading that is number `f` of its file: the same one in a file of this run, any in one of another
+// leg.
+static int32_t column_of(const brunt_history *h, int32_t f, const char *heading, size_t length) {
+    if (f < h->column_count && is_heading(&h->columns[f], heading, length)) return f;
+    size_t name = length;
+    while (name > 0 && heading[name - 1] != '[') name--; // no unit has a bracket in it
+    const int32_t c = name < 2 ? BRUNT_NONE : brunt_names_find(&h->names, heading, name - 2);
+    return c >= 0 && is_heading(&h->columns[c], heading, length) ? c : BRUNT_NONE;
+}
+
 // "time [s],step [1],..."
 static int read_heading(line_reader *r, brunt_error *error) {
     const brunt_history *h = r->history;
@@ -66,14 +83,8 @@ static int read_heading(line_reader *r, brunt_error *error) {
     if (!r->column || !r->counted) return brunt_fail(error, BRUNT_FAILED, "out of memory while reading %s", r->path);
     const char *at = r->text;
     for (int32_t f = 0; f < count; f++, at += strcspn(at, ",\n") + 1) {
-        char wanted[COLUMN_NAME + 32];
-        const size_t length = strcspn(at, ",\n");
-        r->column[f] = -1;
         r->counted[f] = brunt_history_counts(at);
-        for (int32_t c = 0; c < h->column_count && r->column[f] < 0; c++) {
-            snprintf(wanted, sizeof wanted, "%s [%s]", h->columns[c].name, h->columns[c].unit);
-            if (strlen(wanted) == length && !strncmp(wanted, at, length)) r->column[f] = c;
-        }
+        r->column[f] = column_of(h, f, at, strcspn(at, ",\n"));
     }
     return BRUNT_OK;
 }
@@ -87,7 +98,7 @@ int brunt_history_open_lines(line_reader *r, const brunt_history *h, const char 
     return read_heading(r, error);
 }
 
-int brunt_history_next_line(line_reader *r, int32_t only, double *values, brunt_error *error) {
+int brunt_history_next_line(line_reader *r, const bool *wanted, double *values, brunt_error *error) {
     const int32_t columns = r->history->column_count;
     if (!r->path) {
         memcpy(values, r->history->lines + columns * r->row++, sizeof *values * (size_t)columns);
@@ -95,11 +106,11 @@ int brunt_history_next_line(line_reader *r, int32_t only, double *values, brunt_
     }
     r->row++;
     int status = next_text(r, error);
-    for (int32_t c = 0; c < columns && only < 0; c++) values[c] = NAN;
+    for (int32_t c = 0; c < columns && !wanted; c++) values[c] = NAN;
     char *at = r->text;
     for (int32_t f = 0; f < r->column_count && !status; f++) {
         char *end = at;
-        if (only < 0 || r->column[f] == only) {
+        if (!wanted || (r->column[f] >= 0 && wanted[r->column[f]])) {
             double value = strtod(at, &end);
             if (end == at) return bad_line(r, error);
             if (r->column[f] >= 0) values[r->column[f]] = value;

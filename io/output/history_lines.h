@@ -2,6 +2,7 @@
 // history*.c.
 #pragma once
 
+#include "base/names.h"
 #include "io/file/atomic_file.h"
 #include "io/output/history.h"
 
@@ -25,7 +26,8 @@ struct brunt_history {
     column *columns;
     size_t columns_capacity; // [bytes]
     int32_t column_count, cursor;
-    bool declaring; // the first traversal names the columns, later ones fill them
+    brunt_names names; // of the columns, once they are all there
+    bool declaring;    // the first traversal names the columns, later ones fill them
     bool out_of_memory;
     int64_t rows;
     uint64_t hash; // of all lines but their probes, which may change from leg to leg
@@ -63,9 +65,9 @@ void brunt_history_print_line(const brunt_history *h, const double *values, FILE
 
 // Starts with the first line; `path` NULL: from memory. To be closed in any case.
 int brunt_history_open_lines(line_reader *r, const brunt_history *h, const char *path, brunt_error *error);
-// The next line into `values`, one a column of the history, NAN where the file has none; of one column alone with
-// `only` >= 0.
-int brunt_history_next_line(line_reader *r, int32_t only, double *values, brunt_error *error);
+// The next line into `values`, one a column of the history, NAN where the file has none; of the columns that are
+// `wanted` alone, the others being left, unless that is NULL.
+int brunt_history_next_line(line_reader *r, const bool *wanted, double *values, brunt_error *error);
 void brunt_history_close_lines(line_reader *r);
 // Of history.csv; NULL: lines are in memory.
 const char *brunt_history_lines_path(const brunt_history *h);

@@ -140,9 +140,9 @@ static int take(const brunt_measure *m, measure_source *from, double *value, bru
 
 static int check(const brunt_measure *m, const measure_source *from, brunt_error *error) {
     const brunt_history *history = from->history;
-    for (int32_t c = 0; c < brunt_history_column_count(history); c++) {
-        const char *unit = brunt_history_column_unit(history, c);
-        if (strcmp(brunt_history_column_name(history, c), m->column) != 0) continue;
+    const int32_t column = brunt_history_find(history, m->column);
+    if (column >= 0) {
+        const char *unit = brunt_history_column_unit(history, column);
         if (!*m->curve_unit || measure_same_unit(unit, m->curve_unit)) return BRUNT_OK;
         return brunt_fail(error, BRUNT_BAD_INPUT, "measures.%s: the curve is in %s, the history's column '%s' in %s",
                           m->name, m->curve_unit, m->column, unit);

@@ -30,12 +30,6 @@ void measure_free_points(point_set *set) {
     brunt_free(set->values);
 }
 
-static bool is_axisymmetric(const brunt_world *world) {
-    for (int32_t e = 0; e < brunt_effect_count(world); e++)
-        if (!strcmp(brunt_world_effect(world, e).name, "axisymmetric")) return brunt_world_effect(world, e).on;
-    return false;
-}
-
 int measure_read_points(const brunt_measure *m, brunt_world *world, int32_t body, point_set *set, brunt_error *error) {
     memset(set, 0, sizeof *set);
     brunt_field_info info = {.at = brunt_place_of_motion(world, body)};
@@ -43,7 +37,7 @@ int measure_read_points(const brunt_measure *m, brunt_world *world, int32_t body
     bool sized = !of_field && info.at == BRUNT_AT_PARTICLES;
     int status = BRUNT_OK;
     set->dimension = brunt_world_dimension(world);
-    set->rings = is_axisymmetric(world);
+    set->rings = brunt_effect_on(world, "axisymmetric");
     if (of_field) {
         status = read_field(world, body, m->field, m, &set->values, &info, error);
         set->components = info.components;

@@ -30,6 +30,19 @@ int brunt_measure_initial(const brunt_measure *measure, brunt_world *world, doub
                                                   : kinds[measure->kind]->take(measure, &from, initial, error);
 }
 
+int brunt_measures_fetch(const brunt_measure *measures, int32_t count, const brunt_history *history,
+                         brunt_error *error) {
+    const char **names;
+    if (BRUNT_NEW(names, count + 1, "columns of measures", error)) return BRUNT_FAILED;
+    int32_t wanted = 0;
+    names[wanted++] = "time";
+    for (int32_t m = 0; m < count; m++)
+        if (measures[m].kind == BRUNT_MEASURE_HISTORY && !measures[m].absent) names[wanted++] = measures[m].column;
+    const int status = wanted > 1 ? brunt_history_fetch(history, names, wanted, error) : BRUNT_OK;
+    brunt_free(names);
+    return status;
+}
+
 int brunt_measure_evaluate(const brunt_measure *measure, const brunt_history *history, brunt_world *world,
                            double initial, brunt_measure_result *result, brunt_error *error) {
     *result = (brunt_measure_result){.value = NAN, .error = NAN};

@@ -21,6 +21,10 @@ int brunt_measure_check(const brunt_measure *measure, const brunt_history *histo
 // `relative_to: initial`. To be called before the world has moved or been restored.
 int brunt_measure_initial(const brunt_measure *measure, brunt_world *world, double *initial, brunt_error *error);
 
+// Reads the columns that the measures will ask for, all at once: to be called before they are evaluated.
+int brunt_measures_fetch(const brunt_measure *measures, int32_t count, const brunt_history *history,
+                         brunt_error *error);
+
 // Evaluates with history and world as they are. The value is (reduced - minus) / divisor; with a curve, the reduced
 // ((history - minus) / divisor - curve) / range of the curve, between its times or those of the window.
 int brunt_measure_evaluate(const brunt_measure *measure, const brunt_history *history, brunt_world *world,

@@ -6,8 +6,13 @@
 #include "base/memory.h"
 
 int32_t brunt_find_body(const brunt_world *world, const char *name) {
-    for (int32_t b = 0; b < brunt_body_count(world); b++)
-        if (!strcmp(brunt_body_name(world, b), name)) return b;
+    int32_t low = 0, high = brunt_body_count(world); // in order of name
+    while (low < high) {
+        const int32_t middle = low + (high - low) / 2;
+        const int order = strcmp(brunt_body_name(world, middle), name);
+        if (order == 0) return middle;
+        *(order < 0 ? &low : &high) = order < 0 ? middle + 1 : middle;
+    }
     return BRUNT_NONE;
 }
 

@@ -191,15 +191,21 @@ static int write_outputs(run *r, bool last, brunt_error *error) {
 // ---------------------------------------------------------------------------------------------------- before the first
 // step
 
+// Whether a name is among others, each of which has a space before it.
+static bool is_listed(const char *names, const char *name) {
+    const size_t length = strlen(name);
+    for (const char *at = names; (at = strchr(at, ' ')); at++)
+        if (strcspn(at + 1, " ") == length && !strncmp(at + 1, name, length)) return true;
+    return false;
+}
+
 // The fields that any body has, each once.
 static void list_fields(const brunt_world *world, char *names, size_t room) {
     size_t used = 0;
     for (int32_t b = 0; b < brunt_body_count(world); b++)
         for (int32_t f = 0; f < brunt_body_field_count(world, b); f++) {
             const char *name = brunt_body_field(world, b, f).name;
-            bool listed = false;
-            for (int32_t other = 0; other < b; other++) listed |= brunt_body_find_field(world, other, name) >= 0;
-            int wrote = listed ? 0 : snprintf(names + used, room - used, " %s", name);
+            int wrote = is_listed(names, name) ? 0 : snprintf(names + used, room - used, " %s", name);
             if ((size_t)wrote >= room - used) return;
             used += (size_t)wrote;
         }
@@ -351,6 +357,7 @@ static int finish(run *r, const char *status_name, const char *reason, bool eval
     if (evaluate) {
         results = brunt_alloc(sizeof *results * (size_t)scene->measure_count);
         if (!results) status = brunt_fail(error, BRUNT_FAILED, "out of memory");
+        if (!status) status = brunt_measures_fetch(scene->measures, scene->measure_count, r->history, error);
         for (int32_t m = 0; m < scene->measure_count && !status; m++)
             status = brunt_measure_evaluate(&scene->measures[m], r->history, r->world, r->measure_initial[m],
                                             &results[m], error);

@@ -20,6 +20,8 @@ typedef struct brunt_effect {
 int32_t brunt_effect_count(const brunt_world *world);                      // those on and those off
 brunt_effect brunt_world_effect(const brunt_world *world, int32_t effect); // 0 <= effect < brunt_effect_count
 
+bool brunt_effect_on(const brunt_world *world, const char *name); // false: it is off, or there is none
+
 // What a pass has cost so far. `units`: particles, nodes or elements it has gone over, all steps together; bytes and
 // flops per unit are counted from the arrays and the arithmetic of its kernels (engine/scheme/work.c), 0 where they
 // depend on what meets what.
