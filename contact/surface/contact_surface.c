@@ -83,9 +83,9 @@ static void link_faces(brunt_contact_surface *s) {
 
 static double edge_sum(const brunt_contact_surface *s, int32_t *edges) {
     double sum = 0;
+    int k = 0; // faces lie in the order of the bodies
     for (int32_t f = 0; f < s->face_count; f++) {
         int n = brunt_face_corners(s->face[f]);
-        int k = 0;
         while (s->face_range[k + 1] <= f) k++;
         if (f >= s->face_end[k]) continue;
         for (int e = 0; e < (n == 2 ? 1 : n); e++) {
@@ -176,6 +176,23 @@ int brunt_surface_make(brunt_contact_surface *s, brunt_fem_body **fem, int count
     for (int k = 0; s->membrane.side && k < count; k++)
         s->membrane.side[fem[k]->index].shallow = fmin(s->membrane.side[fem[k]->index].shallow, SHALLOW * s->mean_edge);
     return affine ? BRUNT_NEW(s->affine, s->node_array_capacity, "affine velocities of nodes", error) : BRUNT_OK;
+}
+
+size_t brunt_surface_bytes(const brunt_contact_surface *s) {
+    const size_t nodes = s->node_array_capacity, faces = s->face_array_capacity;
+    size_t of_body = 0, of_node = sizeof *s->motion.chunk / GRAIN, of_face = 4 * sizeof *s->face_of;
+#define ADD(what) of_body += sizeof *s->what;
+    BODY_ARRAYS(ADD)
+#undef ADD
+#define ADD(what, when) of_node += (when) ? sizeof *s->what : 0;
+    NODE_ARRAYS(ADD)
+#undef ADD
+#define ADD(what) of_face += sizeof *s->what;
+    FACE_ARRAYS(ADD)
+#undef ADD
+    return (size_t)(s->fem_count + 1) * of_body + nodes * of_node + faces * of_face + s->node_capacity +
+           s->body_capacity + s->face_capacity + s->membrane.patch_first_capacity + s->membrane.patch_face_capacity +
+           s->renewal.next_node_capacity + s->renewal.next_face_capacity + s->renewal.spare_capacity;
 }
 
 void brunt_surface_free(brunt_contact_surface *s) {

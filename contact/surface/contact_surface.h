@@ -132,6 +132,8 @@ void brunt_surface_affine_set(brunt_contact_surface *surface, const double *in);
 // is in the order of, since its size must not depend on what has left.
 int64_t brunt_surface_slot(const brunt_contact_surface *surface, int k, int32_t n);
 int64_t brunt_surface_slots(const brunt_contact_surface *surface);
+// [bytes] that it takes.
+size_t brunt_surface_bytes(const brunt_contact_surface *surface);
 void brunt_surface_free(brunt_contact_surface *surface);
 // Bounds and speeds of every body's surface as it is now.
 void brunt_surface_bounds(brunt_contact_surface *surface, int threads, brunt_timer *timer);

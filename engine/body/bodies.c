@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "base/array.h"
 #include "base/error.h"
 
 const char *brunt_bodies_name(const brunt_bodies *bodies, int body) {
@@ -27,6 +28,40 @@ brunt_body_ref *brunt_bodies_summed(const brunt_bodies *bodies, int i) {
     return &bodies->all[points ? bodies->mpm[i].index : bodies->fem[i - bodies->mpm_count].index];
 }
 
+// Its fields, and what else it has.
+static int32_t arrays_of(const brunt_body_ref *body) {
+    int32_t n = BRUNT_BODY_ARRAYS;
+    for (int f = 0; body->mpm && f < body->mpm->particles.field_count; f++)
+        n += body->mpm->particles.field[f].components > 0;
+    for (int f = 0; body->fem && f < body->fem->field_count; f++) n += body->fem->field[f].components > 0;
+    return n;
+}
+
+int brunt_bodies_number(brunt_bodies *bodies, brunt_error *error) {
+    const int count = bodies->count;
+    if (BRUNT_NEW(bodies->first_block, count + 1, "blocks of the state", error) ||
+        BRUNT_NEW(bodies->first_array, count + 1, "arrays of bodies", error))
+        return BRUNT_FAILED;
+    for (int i = 0; i < count; i++) {
+        const brunt_body_ref *body = &bodies->all[i];
+        bodies->first_block[i + 1] = bodies->first_block[i] + body->ops->block_count(body);
+        bodies->first_array[i + 1] = bodies->first_array[i] + arrays_of(body);
+    }
+    return BRUNT_OK;
+}
+
+int brunt_bodies_holding(const brunt_bodies *bodies, const int32_t *first, int32_t index) {
+    int low = 0, high = bodies->count; // the last that begins at or before it
+    while (low < high) {
+        const int middle = (low + high + 1) / 2;
+        if (first[middle] <= index)
+            low = middle;
+        else
+            high = middle - 1;
+    }
+    return low;
+}
+
 void brunt_bodies_validate(const brunt_bodies *bodies) {
     BRUNT_ASSERT(bodies->mpm_count + bodies->fem_count == bodies->count);
     for (int i = 0; i < bodies->count; i++) {
@@ -34,6 +69,8 @@ void brunt_bodies_validate(const brunt_bodies *bodies) {
         BRUNT_ASSERT(!ref->mpm != !ref->fem && ref->ops == (ref->mpm ? &brunt_points_ops : &brunt_mesh_ops));
         BRUNT_ASSERT((ref->mpm ? ref->mpm->index : ref->fem->index) == i);
         BRUNT_ASSERT(!i || strcmp(brunt_bodies_name(bodies, i - 1), brunt_bodies_name(bodies, i)) < 0);
+        BRUNT_ASSERT(bodies->first_block[i + 1] - bodies->first_block[i] == ref->ops->block_count(ref));
+        BRUNT_ASSERT(bodies->first_array[i + 1] - bodies->first_array[i] == arrays_of(ref));
         ref->ops->validate(ref);
     }
 }

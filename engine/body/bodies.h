@@ -66,12 +66,21 @@ typedef struct brunt_bodies {
     int fem_count;
     brunt_mesh_report *mesh_reports; // a finite-element body each
     brunt_fem_tasks tasks;
+    // Of each body its first block of the state and its first array; past the last how many they all have.
+    int32_t *first_block, *first_array;
     bool has_particles, has_fluid;
 } brunt_bodies;
+
+// The arrays of each are its fields, and this many more.
+enum { BRUNT_BODY_ARRAYS = 2 };
 
 const char *brunt_bodies_name(const brunt_bodies *bodies, int body);
 // The body of a name, BRUNT_NONE: there is none.
 int brunt_bodies_find(const brunt_bodies *bodies, const char *name);
 // Body `i` in the order that sums are taken in: points, then meshes, each by name.
 brunt_body_ref *brunt_bodies_summed(const brunt_bodies *bodies, int i);
+// Numbers the blocks and the arrays of all, once their fields are there. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_bodies_number(brunt_bodies *bodies, brunt_error *error);
+// The body that block or array `index` is of, by where each begins; `count`, that of the bodies: of none.
+int brunt_bodies_holding(const brunt_bodies *bodies, const int32_t *first, int32_t index);
 void brunt_bodies_validate(const brunt_bodies *bodies);

@@ -201,19 +201,10 @@ brunt_pass brunt_world_pass(const brunt_world *world, int32_t index) {
     return pass;
 }
 
-// Arrays: of each body its fields, and what else it has.
-enum { EXTRA = 2 };
-
+// Arrays: those of each body, then the surfaces of meshes, or what implicit steps have.
 int32_t brunt_array_count(const brunt_world *world) {
-    int32_t n = 0;
-    for (int i = 0; i < world->bodies.count; i++) {
-        const brunt_body *mpm = world->bodies.all[i].mpm;
-        const brunt_fem_body *fem = world->bodies.all[i].fem;
-        for (int f = 0; mpm && f < mpm->particles.field_count; f++) n += mpm->particles.field[f].components > 0;
-        for (int f = 0; fem && f < fem->field_count; f++) n += fem->field[f].components > 0;
-        n += EXTRA;
-    }
-    return n + (world->contact.has_surfaces ? 1 : 0) + (world->plan.implicit ? 2 : 0);
+    return world->bodies.first_array[world->bodies.count] + (world->contact.has_surfaces ? 1 : 0) +
+           (world->plan.implicit ? 2 : 0);
 }
 
 static brunt_array particle_array(const brunt_body *body, int32_t index) {
@@ -250,26 +241,24 @@ static brunt_array element_array(const brunt_fem_body *body, int32_t index) {
     return array;
 }
 
-brunt_array brunt_world_array(const brunt_world *world, int32_t index) {
-    for (int i = 0; i < world->bodies.count; i++) {
-        const brunt_body *mpm = world->bodies.all[i].mpm;
-        const brunt_fem_body *fem = world->bodies.all[i].fem;
-        int32_t n = EXTRA;
-        for (int f = 0; mpm && f < mpm->particles.field_count; f++) n += mpm->particles.field[f].components > 0;
-        for (int f = 0; fem && f < fem->field_count; f++) n += fem->field[f].components > 0;
-        if (index < n) return mpm ? particle_array(mpm, index) : element_array(fem, index);
-        index -= n;
-    }
-    if (world->plan.implicit) {
-        brunt_array implicit = {.unit = "", .components = 1};
-        snprintf(implicit.name, sizeof implicit.name, index ? "implicit steps: matrix" : "implicit steps: unknowns");
-        implicit.bytes = index ? brunt_implicit_matrix_bytes(world) : brunt_implicit_bytes(world);
-        return implicit;
-    }
+static brunt_array surfaces_array(const brunt_world *world) {
     brunt_array array = {.name = "contact of surfaces", .unit = "", .components = 1};
-    array.bytes = (size_t)world->contact.surface.node_count * 200 + (size_t)world->contact.surface.face_count * 76 +
+    array.bytes = brunt_surface_bytes(&world->contact.surface) +
                   brunt_node_to_facet_bytes(world->contact.node_to_facet) +
                   world->contact.constraints.constraint_capacity + world->contact.constraints.entry_capacity +
                   world->contact.constraints.dof_node_capacity;
     return array;
+}
+
+brunt_array brunt_world_array(const brunt_world *world, int32_t index) {
+    const brunt_bodies *bodies = &world->bodies;
+    const int i = brunt_bodies_holding(bodies, bodies->first_array, index);
+    const brunt_body_ref *body = &bodies->all[i];
+    index -= bodies->first_array[i];
+    if (i < bodies->count) return body->mpm ? particle_array(body->mpm, index) : element_array(body->fem, index);
+    if (world->contact.has_surfaces && index-- == 0) return surfaces_array(world);
+    brunt_array implicit = {.unit = "", .components = 1};
+    snprintf(implicit.name, sizeof implicit.name, index ? "implicit steps: matrix" : "implicit steps: unknowns");
+    implicit.bytes = index ? brunt_implicit_matrix_bytes(world) : brunt_implicit_bytes(world);
+    return implicit;
 }

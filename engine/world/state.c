@@ -34,21 +34,16 @@ typedef struct place {
 } place;
 
 static place find(const brunt_world *world, int32_t index) {
-    for (int i = 0; i < world->bodies.count; i++) {
-        const brunt_body_ref *body = &world->bodies.all[i];
-        const int blocks = body->ops->block_count(body);
-        if (index < blocks) return (place){body, index};
-        index -= blocks;
-    }
+    const brunt_bodies *bodies = &world->bodies;
+    const int i = brunt_bodies_holding(bodies, bodies->first_block, index);
+    index -= bodies->first_block[i];
+    if (i < bodies->count) return (place){&bodies->all[i], index};
     const int last = implicit(world) ? NEWTON_BLOCK : EROSION_BLOCK;
     return (place){NULL, index == plain_blocks(world) ? last : index};
 }
 
 int32_t brunt_state_count(brunt_world *world) {
-    if (!world) return 0;
-    int32_t n = world_blocks(world);
-    for (int i = 0; i < world->bodies.count; i++) n += world->bodies.all[i].ops->block_count(&world->bodies.all[i]);
-    return n;
+    return world ? world->bodies.first_block[world->bodies.count] + world_blocks(world) : 0;
 }
 
 #define CLOCK(member) BRUNT_SAVED(brunt_world, clock.member)

@@ -237,6 +237,7 @@ brunt_world *brunt_world_create(const brunt_world_def *given, brunt_error *error
     if (!status) status = brunt_damping_make(&world->boundaries.damping, &world->bodies, error);
     if (!status) status = brunt_load_step_make(&world->boundaries.sets, error);
     if (!status) number_symmetry_planes(world, def);
+    if (!status) status = brunt_bodies_number(&world->bodies, error);
     brunt_plan_make(world);
     if (!status) status = start(world, error);
     if (!status)
@@ -277,6 +278,8 @@ void brunt_world_destroy(brunt_world *world) {
     brunt_free(world->bodies.all);
     brunt_free(world->bodies.fem);
     brunt_free(world->bodies.mesh_reports);
+    brunt_free(world->bodies.first_block);
+    brunt_free(world->bodies.first_array);
     brunt_free(world->bodies.tasks.node);
     brunt_free(world->bodies.tasks.element);
     brunt_free(world->bodies.tasks.sums);
