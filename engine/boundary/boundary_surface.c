@@ -160,21 +160,16 @@ static int sort_particles(brunt_boundary_surface *s, brunt_error *error) {
 
 static int find_body(brunt_boundary_surface *s, const brunt_bodies *bodies, brunt_error *error) {
     s->wall->body = -1;
-    for (int b = 0; b < bodies->count && s->def.body[0]; b++) {
-        const brunt_body_ref *ref = &bodies->all[b];
-        if (strcmp(ref->mpm ? ref->mpm->name : ref->fem->name, s->def.body)) continue;
-        s->wall->body = b;
-        if (!ref->mpm)
-            return brunt_fail(
-                error, BRUNT_BAD_INPUT,
-                "boundaries (%s).body: '%s' is of elements, lines and surfaces hold material points: group "
-                "names nodes of elements",
-                s->wall->name, s->def.body);
-    }
-    if (s->def.body[0] && s->wall->body < 0)
+    if (!s->def.body[0]) return BRUNT_OK;
+    s->wall->body = brunt_bodies_find(bodies, s->def.body);
+    if (s->wall->body < 0)
         return brunt_fail(error, BRUNT_BAD_INPUT, "boundaries (%s).body: there is no body '%s'", s->wall->name,
                           s->def.body);
-    return BRUNT_OK;
+    if (bodies->all[s->wall->body].mpm) return BRUNT_OK;
+    return brunt_fail(error, BRUNT_BAD_INPUT,
+                      "boundaries (%s).body: '%s' is of elements, lines and surfaces hold material points: group "
+                      "names nodes of elements",
+                      s->wall->name, s->def.body);
 }
 
 static int make_surface(brunt_boundary_surface *s, const brunt_boundary_surface_def *def, const brunt_bodies *bodies,
@@ -194,10 +189,12 @@ static int make_surface(brunt_boundary_surface *s, const brunt_boundary_surface_
 static int find_frames(brunt_boundary_surfaces *surfaces, const brunt_world_def *def, const brunt_bodies *bodies,
                        brunt_error *error) {
     if (BRUNT_NEW(surfaces->frame, bodies->mpm_count + 1, "bodies at boundaries", error)) return BRUNT_FAILED;
-    for (int i = 0; i < bodies->mpm_count; i++)
-        for (int32_t k = 0; k < def->body_count; k++)
-            if (!strcmp(def->bodies[k].name, bodies->mpm[i].name))
-                memcpy(surfaces->frame[i], def->bodies[k].place.rotation, sizeof *surfaces->frame);
+    for (int32_t k = 0; k < def->body_count; k++) {
+        const int b = brunt_bodies_find(bodies, def->bodies[k].name);
+        if (!bodies->all[b].mpm) continue;
+        memcpy(surfaces->frame[bodies->all[b].mpm - bodies->mpm], def->bodies[k].place.rotation,
+               sizeof *surfaces->frame);
+    }
     return BRUNT_OK;
 }
 

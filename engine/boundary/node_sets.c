@@ -117,8 +117,9 @@ static int make_prescribed(brunt_node_sets *sets, int index, brunt_error *error)
 // The body and the group of its mesh that a set is of.
 static int find_nodes(brunt_node_set *set, const brunt_bodies *bodies, brunt_error *error) {
     const brunt_group_def *def = &set->def;
-    for (int k = 0; k < bodies->fem_count; k++)
-        if (!strcmp(bodies->fem[k].name, def->body)) set->fem = &bodies->fem[k], set->fem_index = k;
+    const int body = brunt_bodies_find(bodies, def->body);
+    set->fem = body < 0 ? NULL : bodies->all[body].fem;
+    if (set->fem) set->fem_index = (int)(set->fem - bodies->fem);
     if (!set->fem)
         return brunt_fail(error, BRUNT_BAD_INPUT, "boundaries (%s).body: there is no finite-element body '%s'",
                           set->wall->name, def->body);

@@ -237,22 +237,16 @@ static bool local_point(const looked_at *l, int64_t n, double x[3], double local
     return true;
 }
 
-static const brunt_body_def *definition_of(const brunt_world_def *def, const char *name) {
-    for (int32_t i = 0; i < def->body_count; i++)
-        if (!strcmp(def->bodies[i].name, name)) return &def->bodies[i];
-    return NULL;
-}
-
-// Barriers know gaps, not insides: bodies must begin outside each other, as far as shapes can tell.
-static int check_start(const brunt_implicit_contact *c, const brunt_world *world, const brunt_world_def *def,
-                       brunt_error *error) {
+// Barriers know gaps, not insides: bodies must begin outside each other, as far as shapes can tell. `order`: the
+// definitions by name, as the bodies of the world are.
+static int check_shapes(const brunt_implicit_contact *c, const brunt_world *world, const brunt_body_def **order,
+                        brunt_error *error) {
     for (int32_t q = 0; q < 2 * c->pair_count; q++) {
         const brunt_barrier_pair *pair = &c->pair[q / 2];
         const int one = q % 2 ? pair->b : pair->a, other = q % 2 ? pair->a : pair->b;
-        const looked_at l = {&world->bodies.all[one], definition_of(def, brunt_body_name(world, other)),
-                             world->settings.dimension};
+        const looked_at l = {&world->bodies.all[one], order[other], world->settings.dimension};
         double x[3], local[3];
-        if (one == other || !l.other || l.other->mesh.node_count || l.other->method != BRUNT_FEM) continue;
+        if (one == other || l.other->mesh.node_count || l.other->method != BRUNT_FEM) continue;
         for (int64_t n = 0; local_point(&l, n, x, local); n++)
             if (!(brunt_shape_distance(&l.other->shape, l.dim, local) > 0))
                 return brunt_fail(error, BRUNT_BAD_INPUT,
@@ -262,6 +256,17 @@ static int check_start(const brunt_implicit_contact *c, const brunt_world *world
                                   c->distance);
     }
     return BRUNT_OK;
+}
+
+static int check_start(const brunt_implicit_contact *c, const brunt_world *world, const brunt_world_def *def,
+                       brunt_error *error) {
+    const brunt_body_def **order;
+    if (BRUNT_NEW(order, def->body_count + 1, "bodies in order of name", error)) return BRUNT_FAILED;
+    for (int32_t i = 0; i < def->body_count; i++)
+        order[brunt_bodies_find(&world->bodies, def->bodies[i].name)] = &def->bodies[i];
+    const int status = check_shapes(c, world, order, error);
+    brunt_free(order);
+    return status;
 }
 
 // Material points that may meet something, and how many nodes they have in all.
