@@ -2,7 +2,10 @@
 #include "boundary/kinds.h"
 #include "io/scene/scene_boundary.h"
 
+#include <stdlib.h>
 #include <string.h>
+
+#include "base/memory.h"
 
 void brunt_fill_body_of(scene_reader *reader, const scene_node *node, char name[BRUNT_NAME_LENGTH]) {
     const scene_node *body = brunt_tree_child(node, "body");
@@ -15,7 +18,7 @@ bool brunt_acts_on_particles(const scene_reader *reader, const char *name) {
     const brunt_body_def *body = brunt_body_named(reader, name);
     if (*name) return !body || body->method == BRUNT_MPM;
     bool any = world->body_count == 0;
-    for (int i = 0; i < world->body_count; i++) any |= world->bodies[i].method == BRUNT_MPM;
+    for (int i = 0; i < world->body_count && !any; i++) any = world->bodies[i].method == BRUNT_MPM;
     return any;
 }
 
@@ -30,13 +33,27 @@ void brunt_fill_partial(scene_reader *reader, const scene_node *node, bool compo
         brunt_tree_complain(reader->tree, node, "all components are free: nothing would be prescribed");
 }
 
+typedef struct wall_name {
+    const scene_node *node;
+    int number; // in the list
+} wall_name;
+
+static int compare_wall_names(const void *a, const void *b) {
+    const wall_name *p = a, *q = b;
+    const int order = strcmp(p->node->text, q->node->text);
+    return order ? order : (p->number > q->number) - (p->number < q->number);
+}
+
 static void check_wall_names(scene_reader *reader, const scene_node *list) {
-    for (const scene_node *a = list->first; a; a = a->next) {
-        const char *name = brunt_text_of(a, "name", "");
-        for (const scene_node *b = list->first; *name && b != a; b = b->next)
-            if (strcmp(brunt_text_of(b, "name", ""), name) == 0)
-                brunt_tree_complain(reader->tree, brunt_tree_child(a, "name"), "the name '%s' is there twice", name);
-    }
+    wall_name *all = brunt_entries_for(reader, list->count, sizeof *all);
+    int count = 0, number = 0;
+    for (const scene_node *wall = all ? list->first : NULL; wall; wall = wall->next, number++)
+        if (*brunt_text_of(wall, "name", "")) all[count++] = (wall_name){brunt_tree_child(wall, "name"), number};
+    if (count) qsort(all, (size_t)count, sizeof *all, compare_wall_names);
+    for (int i = 1; i < count; i++)
+        if (!strcmp(all[i - 1].node->text, all[i].node->text))
+            brunt_tree_complain(reader->tree, all[i].node, "the name '%s' is there twice", all[i].node->text);
+    brunt_free(all);
 }
 
 static void fill_name(scene_reader *reader, scene_node *node, const char *kind, int number, char *name) {

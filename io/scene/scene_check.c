@@ -65,17 +65,17 @@ static const scene_key *parameter_row(scene_reader *reader, const scene_key *slo
 
 // The children in the order of the table: the resolved scene then does not depend on how it was typed.
 static void sort_children(scene_node *node) {
-    scene_node *sorted = NULL;
+    scene_node *sorted = NULL, *last = NULL;
     for (scene_node *child = node->first, *next; child; child = next) {
         next = child->next;
-        scene_node **at = &sorted;
+        scene_node **at = last && last->order <= child->order ? &last->next : &sorted; // most are in order
         while (*at && (*at)->order <= child->order) at = &(*at)->next;
         child->next = *at;
         *at = child;
+        if (!child->next) last = child;
     }
     node->first = sorted;
-    node->last = NULL;
-    for (scene_node *child = sorted; child; child = child->next) node->last = child;
+    node->last = last;
 }
 
 scene_node *brunt_add_default(scene_reader *reader, scene_node *map, const char *key, const char *text) {
@@ -245,7 +245,7 @@ static void rename_former(scene_reader *reader, scene_node *node, const group_ro
         brunt_scene_warn_at(reader, child, true, "the name is now '%s', this one goes with the next version",
                             rows->key[r]);
         char *key = brunt_tree_text(reader->tree, rows->key[r], strlen(rows->key[r]));
-        if (key) child->key = key;
+        if (key) brunt_tree_rename(child, key);
     }
 }
 

@@ -30,13 +30,15 @@ static bool meets_itself(const brunt_world_def *world, const char *body) {
 }
 
 static bool pair_exists(const scene_reader *reader, const char *rest) {
-    const brunt_world_def *world = &reader->scene->world;
     char pair[2 * BRUNT_NAME_LENGTH];
-    for (int i = 0; i < world->body_count; i++)
-        for (int j = 0; j < world->body_count; j++) {
-            snprintf(pair, sizeof pair, "%s-%s", world->bodies[i].name, world->bodies[j].name);
-            if ((i != j || meets_itself(world, world->bodies[i].name)) && names_part(rest, pair)) return true;
-        }
+    const size_t length = strcspn(rest, ".");
+    if (length >= sizeof pair) return false;
+    snprintf(pair, sizeof pair, "%.*s", (int)length, rest);
+    for (char *dash = strchr(pair, '-'); dash; *dash = '-', dash = strchr(dash + 1, '-')) { // names may have some
+        *dash = 0;
+        const brunt_body_def *a = brunt_body_named(reader, pair), *b = brunt_body_named(reader, dash + 1);
+        if (a && b && (a != b || meets_itself(&reader->scene->world, a->name))) return true;
+    }
     return false;
 }
 
@@ -87,9 +89,10 @@ static const char *column_mistake(const scene_reader *reader, const char *column
     if (family == 8 && strncmp(column, "momentum", 8) == 0) return NULL;
     if (family == 6 && strncmp(column, "newton", 6) == 0) return newton_mistake(rest);
     if (family == 4 && strncmp(column, "body", 4) == 0) {
-        for (int i = 0; i < world->body_count; i++)
-            if (names_part(rest, world->bodies[i].name)) return NULL;
-        return "there is no such body";
+        char name[BRUNT_NAME_LENGTH];
+        const size_t length = strcspn(rest, ".");
+        snprintf(name, sizeof name, "%.*s", (int)length, rest);
+        return length < sizeof name && brunt_body_named(reader, name) ? NULL : "there is no such body";
     }
     if (family == 7 && strncmp(column, "contact", 7) == 0)
         return pair_exists(reader, rest) ? NULL : "there is no such pair of bodies, A-B is wanted";

@@ -58,8 +58,12 @@ void brunt_scene_warn_at(scene_reader *reader, const scene_node *node, bool at_k
 
 const brunt_body_def *brunt_body_named(const scene_reader *reader, const char *name) {
     const brunt_world_def *world = &reader->scene->world;
-    for (int i = 0; i < world->body_count; i++)
-        if (strcmp(world->bodies[i].name, name) == 0) return &world->bodies[i];
+    int low = 0, high = world->body_count; // in order of name
+    while (low < high) {
+        const int middle = low + (high - low) / 2, order = strcmp(world->bodies[middle].name, name);
+        if (order == 0) return &world->bodies[middle];
+        *(order < 0 ? &low : &high) = order < 0 ? middle + 1 : middle;
+    }
     return NULL;
 }
 

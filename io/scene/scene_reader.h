@@ -54,6 +54,7 @@ void brunt_note_unused(scene_reader *reader, const scene_node *map, const char *
 void brunt_fill_world(scene_reader *reader); // calls the five above
 void brunt_fill_output(scene_reader *reader);
 void brunt_fill_measures(scene_reader *reader);
+// Once all bodies are filled; NULL: there is none.
 const brunt_body_def *brunt_body_named(const scene_reader *reader, const char *name);
 // Says when `node` names no body.
 void brunt_check_body_name(scene_reader *reader, const scene_node *node);

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/hash.h"
 #include "base/memory.h"
 
 typedef struct block {
@@ -59,11 +60,30 @@ scene_node *brunt_tree_node(scene_tree *tree, scene_kind kind) {
     return node;
 }
 
+// Where in a map's index the child of a key is, or would be.
+static scene_node **slot_of(scene_node *map, const char *key, size_t length) {
+    uint64_t hash = length;
+    for (size_t i = 0; i < length; i++) hash = brunt_hash_add(hash, (unsigned char)key[i]);
+    scene_node **at = &map->index;
+    for (; *at && (strncmp((*at)->key, key, length) || (*at)->key[length]); hash <<= 1) at = &(*at)->branch[hash >> 63];
+    return at;
+}
+
 scene_node *brunt_tree_child(const scene_node *map, const char *key) {
-    if (!map || map->kind != SCENE_MAP) return NULL;
-    for (scene_node *child = map->first; child; child = child->next)
-        if (strcmp(child->key, key) == 0) return child;
-    return NULL;
+    return !map || map->kind != SCENE_MAP ? NULL : *slot_of((scene_node *)map, key, strlen(key));
+}
+
+// Of two of one key the first counts.
+static void enter(scene_node *map, scene_node *child) {
+    if (map->kind != SCENE_MAP) return;
+    child->branch[0] = child->branch[1] = NULL;
+    scene_node **at = slot_of(map, child->key, strlen(child->key));
+    if (!*at) *at = child;
+}
+
+static void enter_all(scene_node *map) {
+    map->index = NULL;
+    for (scene_node *child = map->first; child; child = child->next) enter(map, child);
 }
 
 void brunt_tree_append(scene_node *parent, scene_node *child) {
@@ -75,6 +95,7 @@ void brunt_tree_append(scene_node *parent, scene_node *child) {
         parent->first = child;
     parent->last = child;
     parent->count++;
+    enter(parent, child);
 }
 
 void brunt_tree_remove(scene_node *child) {
@@ -88,6 +109,12 @@ void brunt_tree_remove(scene_node *child) {
     parent->count--;
     child->parent = NULL;
     child->next = NULL;
+    enter_all(parent);
+}
+
+void brunt_tree_rename(scene_node *child, char *key) {
+    child->key = key;
+    enter_all(child->parent);
 }
 
 void brunt_tree_path(const scene_node *node, char *out, size_t size) {
@@ -307,10 +334,9 @@ static scene_node *step_into(scene_tree *tree, scene_node *node, const char *wor
         return NULL;
     }
     if (node->kind == SCENE_MAP) {
-        for (scene_node *child = node->first; child; child = child->next)
-            if (strlen(child->key) == length && memcmp(child->key, word, length) == 0) return child;
-        *missing = true;
-        return NULL;
+        scene_node *child = *slot_of(node, word, length);
+        *missing = !child;
+        return child;
     }
     int index = 0;
     for (size_t i = 0; i < length; i++) {
@@ -345,6 +371,7 @@ static void replace(scene_node *old, scene_node *fresh) {
         before->next = fresh;
     }
     if (parent->last == old) parent->last = fresh;
+    enter_all(parent);
 }
 
 void brunt_tree_set(scene_tree *tree, const char *option) {

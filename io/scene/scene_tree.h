@@ -31,6 +31,8 @@ typedef struct scene_node {
     const char *option; // the override it came from, NULL: the file
     struct scene_node *parent, *first, *last, *next;
     int count; // children
+    // Of a map its children by the bits of a hash of their keys, so that one of thousands is found at once.
+    struct scene_node *index, *branch[2];
     // What checking leaves:
     const struct scene_key *row;
     int order;        // in the resolved scene
@@ -77,6 +79,7 @@ scene_node *brunt_tree_node(scene_tree *tree, scene_kind kind);
 scene_node *brunt_tree_child(const scene_node *map, const char *key); // NULL: not there
 void brunt_tree_append(scene_node *parent, scene_node *child);
 void brunt_tree_remove(scene_node *child);
+void brunt_tree_rename(scene_node *child, char *key);
 // "bodies.rod.place[1].rotate"
 void brunt_tree_path(const scene_node *node, char *out, size_t size);
 
