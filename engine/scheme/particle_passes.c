@@ -127,9 +127,13 @@ int brunt_pass_conditions(brunt_world *world, brunt_step *step, brunt_error *err
     for (int i = 0; i < world->bodies.mpm_count; i++)
         if (brunt_condition_clear(&world->bodies.mpm[i], error))
             return brunt_fail_inner(world, &world->bodies.mpm[i], error);
-    for (int w = 0; w < world->boundaries.wall_count; w++)
-        for (int i = 0; i < world->bodies.mpm_count; i++)
-            hold_nodes(&world->boundaries.walls[w], &world->bodies.mpm[i], world->clock.time);
+    for (int w = 0; w < world->boundaries.wall_count; w++) {
+        brunt_boundary *wall = &world->boundaries.walls[w];
+        brunt_body *only = wall->body < 0 ? NULL : world->bodies.all[wall->body].mpm;
+        if (only) hold_nodes(wall, only, world->clock.time);
+        for (int i = 0; i < world->bodies.mpm_count && wall->body < 0; i++)
+            hold_nodes(wall, &world->bodies.mpm[i], world->clock.time);
+    }
     return BRUNT_OK;
 }
 

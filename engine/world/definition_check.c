@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "base/names.h"
 #include "contact/planes/condition.h"
 #include "boundary/kinds.h"
 #include "contact/methods/method.h"
@@ -169,15 +170,21 @@ static int check_detonations(const brunt_world_def *def, brunt_error *error) {
 }
 
 static int check_boundary_names(const brunt_world_def *def, brunt_error *error) {
-    char name[BRUNT_NAME_LENGTH], other[BRUNT_NAME_LENGTH];
-    for (int32_t w = 0; w < brunt_boundary_count(def); w++) {
-        brunt_boundary_name(def, w, name);
-        for (int32_t k = 0; k < w; k++) {
-            brunt_boundary_name(def, k, other);
-            if (!strcmp(name, other)) REFUSE("boundaries[%d] and boundaries[%d] have the same name '%s'", k, w, name);
-        }
+    const int32_t count = brunt_boundary_count(def);
+    char(*name)[BRUNT_NAME_LENGTH];
+    brunt_names sorted;
+    if (BRUNT_NEW(name, count + 1, "names of boundaries", error)) return BRUNT_FAILED;
+    for (int32_t w = 0; w < count; w++) brunt_boundary_name(def, w, name[w]);
+    int status = brunt_names_sort(&sorted, name[0], sizeof name[0], count, error);
+    for (int32_t w = 0; w < count && !status; w++) {
+        const int32_t first = brunt_names_find(&sorted, name[w], strlen(name[w]));
+        if (first < w)
+            status = brunt_fail(error, BRUNT_BAD_INPUT, "boundaries[%d] and boundaries[%d] have the same name '%s'",
+                                first, w, name[w]);
     }
-    return BRUNT_OK;
+    brunt_names_free(&sorted);
+    brunt_free(name);
+    return status;
 }
 
 // ------------------------------------------------------------------------------------------ contact
