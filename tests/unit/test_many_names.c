@@ -1,0 +1,172 @@
+// Labels: unit
+//
+// What scenes of many bodies cost in comparisons of names, which do not depend on what else the machine does: four
+// times the bodies take some four times as many, while they are read, made into a world, and written about.
+#include "body/bodies.h"
+#include "io/output/history.h"
+#include "io/output/measures.h"
+#include "io/output/places.h"
+#include "tests/support/small_scene.h"
+#include "world/world.h"
+
+#include <unistd.h>
+
+static int64_t comparisons;
+
+// In the place of those of the C library, for all that this program is made of.
+int strcmp(const char *a, const char *b) {
+    comparisons++;
+    for (; *a && *a == *b; a++) b++;
+    return (unsigned char)*a - (unsigned char)*b;
+}
+
+int strncmp(const char *a, const char *b, size_t count) {
+    comparisons++;
+    for (; count && *a && *a == *b; a++, count--) b++;
+    return count ? (unsigned char)*a - (unsigned char)*b : 0;
+}
+
+// Disks and squares in turns, apart; each is held by a boundary of its own that names it, and each has a measure.
+static char *text_of(int count) {
+    char *text;
+    size_t length;
+    FILE *out = open_memstream(&text, &length);
+    fputs("brunt: 1\ntitle: Many\ndimension: 2\ntime: {end: 1 ms, step: 1 ms}\ngrid: {cell: 1 m}\n"
+          "materials: {rubber: {model: neo-hookean, density: 1000, E: 1 MPa, nu: 0.3}}\nbodies:\n",
+          out);
+    for (int i = 0; i < count; i++) {
+        const int x = 4 * (i % 50), y = 4 * (i / 50);
+        fprintf(out, "  b%05d: {method: %s, material: rubber, shape: {box: {min: [%d, %d], max: [%d, %d]}}}\n", i,
+                i % 2 ? "fem, element: quad4, size: 1 m" : "mpm", x, y, x + 1, y + 1);
+    }
+    fputs("contact: {method: augury}\nboundaries:\n", out);
+    for (int i = 0; i < count; i += 2)
+        fprintf(out,
+                "  - {name: w%05d, body: b%05d, region: {box: {min: [-1, -1], max: [1000, 1000]}}, "
+                "velocity: [0, 0]}\n",
+                i, i);
+    fputs("output: {every: none, fields: [velocity]}\nmeasures:\n", out);
+    for (int i = 0; i < count; i++)
+        fprintf(out,
+                "  m%05d: {history: body.b%05d.velocity_y, unit: m/s}\n  f%05d: {history: contact.b%05d-b%05d.area, unit: m}\n",
+                i, i, i, i, (i + 1) % count);
+    fclose(out);
+    return text;
+}
+
+enum { READ, MADE, LISTED, SAMPLED, FETCHED, STATED, FOUND, STAGES };
+static const char *const stages[STAGES] = {"reading",          "making the world",  "listing columns",
+                                           "lines of history", "reading them back", "blocks of state",
+                                           "finding bodies"};
+
+static void take(int64_t *cost) {
+    *cost = comparisons;
+    comparisons = 0;
+}
+
+static int64_t asked; // how often bodies were asked for the number of their blocks
+static int count_blocks(const brunt_body_ref *body) {
+    asked++;
+    return body->mpm ? brunt_points_ops.block_count(body) : brunt_mesh_ops.block_count(body);
+}
+
+// Each block of the state once, as checkpoints do.
+static void look_at_state(brunt_world *world) {
+    static brunt_body_ops counted[2];
+    counted[0] = brunt_points_ops, counted[1] = brunt_mesh_ops;
+    asked = 0;
+    for (int i = 0; i < world->bodies.count; i++) {
+        brunt_body_ref *body = &world->bodies.all[i];
+        brunt_body_ops *ops = &counted[body->mpm ? 0 : 1];
+        ops->block_count = count_blocks, body->ops = ops;
+    }
+    int blocks = 0;
+    for (int32_t b = 0; b < brunt_state_count(world); b++) blocks += brunt_state_info(world, b).name[0] != 0;
+    ck_assert_int_eq(blocks, brunt_state_count(world));
+    ck_assert_int_le(asked, 2 * (int64_t)world->bodies.count);
+    for (int i = 0; i < world->bodies.count; i++)
+        world->bodies.all[i].ops = world->bodies.all[i].mpm ? &brunt_points_ops : &brunt_mesh_ops;
+}
+
+static void cost_of(int count, int64_t cost[STAGES]) {
+    char *text = text_of(count), csv[] = "/tmp/brunt_names_XXXXXX";
+    brunt_scene scene;
+    brunt_error error;
+    comparisons = 0;
+    ck_assert_int_eq(brunt_scene_parse(text, strlen(text), "many.yaml", NULL, 0, &scene, stderr), BRUNT_OK);
+    ck_assert_int_eq(scene.world.body_count, count);
+    take(&cost[READ]);
+    brunt_world *world = brunt_world_create(&scene.world, &error);
+    ck_assert_msg(world != NULL, "%s", error.message);
+    take(&cost[MADE]);
+    brunt_history *history = brunt_history_create(world, &scene, &error);
+    ck_assert_ptr_nonnull(history);
+    take(&cost[LISTED]);
+    close(mkstemp(csv));
+    ck_assert_int_eq(brunt_history_open_csv(history, csv, &error), BRUNT_OK);
+    for (int k = 0; k < 2; k++) ck_assert_int_eq(brunt_history_sample(history, world, &error), BRUNT_OK);
+    take(&cost[SAMPLED]);
+    ck_assert_int_eq(brunt_measures_fetch(scene.measures, scene.measure_count, history, &error), BRUNT_OK);
+    for (int m = 0; m < scene.measure_count; m++) {
+        const double *values;
+        const int status = brunt_history_read(history, scene.measures[m].column, &values, &error);
+        ck_assert_int_eq(status, strstr(scene.measures[m].column, "contact") ? BRUNT_BAD_INPUT : BRUNT_OK);
+    }
+    take(&cost[FETCHED]);
+    look_at_state(world);
+    take(&cost[STATED]);
+    for (int i = 0; i < count; i++) ck_assert_int_eq(brunt_find_body(world, scene.world.bodies[i].name), i);
+    ck_assert_int_eq(brunt_find_body(world, "b"), BRUNT_NONE);
+    take(&cost[FOUND]);
+    unlink(csv);
+    brunt_history_destroy(history);
+    brunt_world_destroy(world);
+    brunt_scene_free(&scene);
+    free(text);
+}
+
+START_TEST(comparisons_grow_with_the_bodies) {
+    int64_t few[STAGES], many[STAGES];
+    cost_of(250, few);
+    cost_of(1000, many);
+    for (int s = 0; s < STAGES; s++) {
+        printf("%-20s %10lld %10lld\n", stages[s], (long long)few[s], (long long)many[s]);
+        ck_assert_msg(many[s] <= 5 * few[s] + 1000, "%s: 250 bodies %lld, 1000 bodies %lld", stages[s],
+                      (long long)few[s], (long long)many[s]);
+    }
+}
+END_TEST
+
+// Arrays of all bodies, one after the other, then those of the world.
+START_TEST(arrays_are_those_of_their_bodies) {
+    char *text = text_of(20);
+    brunt_scene scene;
+    ck_assert_int_eq(brunt_scene_parse(text, strlen(text), "many.yaml", NULL, 0, &scene, stderr), BRUNT_OK);
+    brunt_world *world = brunt_world_create(&scene.world, NULL);
+    ck_assert_ptr_nonnull(world);
+    const int32_t count = brunt_array_count(world);
+    int body = 0;
+    for (int32_t a = 0; a + 1 < count; a++) {
+        const brunt_array array = brunt_world_array(world, a);
+        if (strncmp(array.name, scene.world.bodies[body].name, 6)) body++;
+        ck_assert_int_eq(strncmp(array.name, scene.world.bodies[body].name, 6), 0);
+    }
+    ck_assert_int_eq(body, 19);
+    const brunt_array last = brunt_world_array(world, count - 1);
+    ck_assert_str_eq(last.name, "contact of surfaces");
+    ck_assert_uint_eq(last.bytes > 40 * sizeof(double), true); // four nodes of ten squares
+    brunt_world_destroy(world);
+    brunt_scene_free(&scene);
+    free(text);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("many names");
+    TCase *all = tcase_create("all");
+    tcase_set_timeout(all, 120);
+    tcase_add_test(all, comparisons_grow_with_the_bodies);
+    tcase_add_test(all, arrays_are_those_of_their_bodies);
+    suite_add_tcase(suite, all);
+    return suite_main(suite);
+}
