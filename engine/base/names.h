@@ -1,4 +1,4 @@
-// Names, sorted once, for those who look many of them up.
+// Names, sorted once, where many of them are looked up.
 #pragma once
 
 #include <stdint.h>

@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/error.h"
 #include "contact/methods/method.h"
 #include "scheme/scheme.h"
@@ -120,6 +121,7 @@ bool brunt_effect_on(const brunt_world *world, const char *name) {
         BRUNT_EFFECTS(NAME) BRUNT_MODEL_EFFECTS(NAME)
 #undef NAME
     };
+    _Static_assert(BRUNT_COUNT(names) == EFFECT_COUNT, "a name for each effect");
     for (int32_t e = 0; e < EFFECT_COUNT; e++)
         if (!strcmp(names[e], name)) return brunt_world_effect(world, e).on;
     return false;

@@ -48,7 +48,8 @@ static char *text_of(int count) {
     fputs("output: {every: none, fields: [velocity]}\nmeasures:\n", out);
     for (int i = 0; i < count; i++)
         fprintf(out,
-                "  m%05d: {history: body.b%05d.velocity_y, unit: m/s}\n  f%05d: {history: contact.b%05d-b%05d.area, unit: m}\n",
+                "  m%05d: {history: body.b%05d.velocity_y, unit: m/s}\n  f%05d: {history: contact.b%05d-b%05d.area, "
+                "unit: m}\n",
                 i, i, i, i, (i + 1) % count);
     fclose(out);
     return text;
