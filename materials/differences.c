@@ -62,6 +62,31 @@ static bool is_still(const brunt_trial_points *trial) {
     return most <= 64 * LANES_REAL_EPSILON;
 }
 
+// The update of a viscous fluid takes half of the step's work to be that of the stress before: here the stress at the
+// end does all of it, and is found first.
+static void find_viscous_stress(const brunt_material *material, const brunt_material_points *points) {
+    const brunt_model *model = material->model[BRUNT_STRENGTH];
+    if (!model->shear_viscous) return;
+    const size_t bytes = (size_t)points->count * sizeof(real);
+    brunt_material_points first = *points;
+    real state[BRUNT_MAX_STATE][MOST_POINTS];
+    first.may_reshape = false, first.plastic_increment = NULL;
+    for (int c = 0; c < states_of(model, points->dim); c++)
+        memcpy(state[c], points->state[c], bytes), first.state[c] = state[c];
+    model->update(material->constants[BRUNT_STRENGTH], &first);
+}
+
+// What a viscous fluid has beside pressure, as the integrator wants it.
+static void weigh_viscous_stress(difference_step *s) {
+    const real more = 1 / (1 - s->trial->rule.start) - 1;
+    if (more == 0 || !s->material->model[BRUNT_STRENGTH]->shear_viscous) return;
+    for (int32_t q = 0; q < s->trial->count; q++) {
+        const real mean = (s->stress[XX][q] + s->stress[YY][q] + s->stress[ZZ][q]) / 3;
+        for (int c = 0; c < BRUNT_SYMMETRIC(s->trial->dim); c++)
+            s->stress[c][q] += more * (s->stress[c][q] - (c < 3 ? mean : 0));
+    }
+}
+
 // The step of (I + h e_k (x) e_b) f from the start; h = 0: that of the trial.
 static brunt_update_result step(difference_step *s, int k, int b, real h) {
     const brunt_trial_points *trial = s->trial;
@@ -84,7 +109,10 @@ static brunt_update_result step(difference_step *s, int k, int b, real h) {
         else
             memset(s->stress[c], 0, bytes);
     }
-    return brunt_material_update(s->material, s->points, s->plastic, s->viscous, NULL);
+    find_viscous_stress(s->material, &s->points[BRUNT_STRENGTH]);
+    const brunt_update_result result = brunt_material_update(s->material, s->points, s->plastic, s->viscous, NULL);
+    weigh_viscous_stress(s);
+    return result;
 }
 
 static const int place[3][3] = {{XX, XY, XZ}, {XY, YY, YZ}, {XZ, YZ, ZZ}};
@@ -164,5 +192,6 @@ brunt_update_result brunt_material_commit_by_differences(const brunt_material *m
         points[k].dt = step_time(trial);
         for (int c = 0; c < dim * dim; c++) points[k].L[c] = L[c];
     }
+    find_viscous_stress(material, &points[BRUNT_STRENGTH]);
     return brunt_material_update(material, points, plastic, viscous, NULL);
 }

@@ -85,6 +85,20 @@ typedef struct brunt_point_energy {
 #define BRUNT_WHOLE_TANGENT(dim) ((dim) == 3 ? 81 : 16)
 enum { BRUNT_MOST_TANGENTS = BRUNT_WHOLE_TANGENT(3) };
 
+// What of a step is asked for.
+typedef enum brunt_trial_part {
+    BRUNT_TRIAL_END,   // what is minimised
+    BRUNT_TRIAL_START, // f = I: the stress that the start holds. It is that of the last step, and of its rate
+    BRUNT_TRIAL_BOOKS, // density: what is stored at the end and what the step has dissipated, the minimum reached
+} brunt_trial_part;
+
+typedef struct brunt_trial_rule {
+    brunt_trial_part part;
+    // Share that the integrator gives to forces at the start of the step, [0, 1). Stresses that follow a fluid's rate
+    // are of the mean rate of the step and act at its end alone, 1 / (1 - start) times: over the step, whole.
+    real start;
+} brunt_trial_rule;
+
 // The end of a step as it is tried: nothing of it is kept. F and f are of the end; state is that of the start of the
 // step, as the others' arrays are. Of `density`, `stress`, `tangent` those are written that are not NULL: by a strength
 // model, and an equation of state adds its own.
@@ -92,6 +106,7 @@ typedef struct brunt_trial_points {
     int32_t count;                      // a multiple of BRUNT_LANES
     int dim;                            // 2 (plane strain) or 3
     real dt;                            // [s]; INFINITY when there is no time: nothing is viscous
+    brunt_trial_rule rule;              // 0: the end of a step of backward Euler
     const real *F[9];                   // deformation gradient [-]
     const real *f[9];                   // of the step [-]: F = f F_old
     const real *state[BRUNT_MAX_STATE]; // this component's own

@@ -150,6 +150,12 @@ static void add_energy(const real *constants, const brunt_material_points *point
 // and to second order in the step it is the explicit one. The fluid's potential is that of Rayleigh,
 //   dt mu J_old |dev D|^2 = (mu J_old / dt) |dev e|^2,   e_i = ln(x_i) / 2 of the eigenvalues x_i of f f^T,
 // whose stress is 2 mu J_old dev D. The step dissipates twice as much: stress times strain.
+//
+// Newmark's rule wants half the stress of the rate at the start of the step and half that of the rate at its end. Rates
+// at both ends are the mean one in the mean, D = (D_start + D_end) / 2, as displacements are of velocities: what acts
+// over the step is the stress of the mean rate, which is second order and dissipates in every step. All of it acts at
+// the end (brunt_trial_rule.start), where potentials are; that it does so where the flow has turned on by half a step
+// is first order in that turn.
 typedef struct viscous_step {
     principal_axes axes;
     lanes e[3], modulus; // [-]; mu J_old / dt [Pa]
@@ -171,16 +177,20 @@ BRUNT_INLINE viscous_step viscous_step_at(int dim, const real *k, const brunt_tr
     return s;
 }
 
-BRUNT_INLINE lanes viscous_potential(const viscous_step *s) {
-    return s->modulus * (s->e[0] * s->e[0] + s->e[1] * s->e[1] + s->e[2] * s->e[2]);
+// Of the step; the potential is half of it.
+BRUNT_INLINE lanes dissipation(const viscous_step *s) {
+    return 2 * s->modulus * (s->e[0] * s->e[0] + s->e[1] * s->e[1] + s->e[2] * s->e[2]);
 }
 
 BRUNT_INLINE void respond_dim(int dim, const real *k, const brunt_trial_points *trial) {
+    const bool books = trial->rule.part == BRUNT_TRIAL_BOOKS;
     for (int32_t i = 0; i < trial->count; i += BRUNT_LANES) {
-        const viscous_step s = viscous_step_at(dim, k, trial, i);
+        viscous_step s = viscous_step_at(dim, k, trial, i);
         principal_moduli m;
+        if (trial->density && books) lanes_store(trial->density + i, dissipation(&s));
+        s.modulus /= 1 - trial->rule.start;
         for (int a = 0; a < 3; a++) m.tau[a] = 2 * s.modulus * s.e[a];
-        if (trial->density) lanes_store(trial->density + i, viscous_potential(&s));
+        if (trial->density && !books) lanes_store(trial->density + i, (real)0.5 * dissipation(&s));
         if (trial->stress[0]) {
             lanes tau[6];
             principal_tensor(dim, &s.axes, m.tau, tau);
@@ -216,7 +226,7 @@ BRUNT_INLINE brunt_update_result commit_dim(int dim, const real *k, const brunt_
         lanes H[9], tau[6], value[3];
         const viscous_step s = viscous_step_at(dim, k, trial, i);
         load_trial_gradient(dim, trial->F, i, H);
-        lanes change = volume_change(dim, H), work = 2 * viscous_potential(&s);
+        lanes change = volume_change(dim, H), work = dissipation(&s);
         note_deformation(&record, 1 + change, i);
         for (int a = 0; a < 3; a++) value[a] = 2 * s.modulus * s.e[a];
         principal_tensor(dim, &s.axes, value, tau);

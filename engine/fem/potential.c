@@ -104,6 +104,8 @@ size_t brunt_fem_potential_bytes(const brunt_fem_potential *p) {
            p->colours.order_capacity + p->colours.dense_capacity;
 }
 
+void brunt_fem_potential_ask(brunt_fem_potential *p, brunt_trial_rule rule) { p->rule = rule; }
+
 void brunt_fem_potential_step(brunt_fem_potential *p, double dt) { p->dt = (real)dt; }
 
 static void run_blocks(void *context, int64_t begin, int64_t end, int worker) {

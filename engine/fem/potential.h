@@ -17,6 +17,8 @@ brunt_fem_potential *brunt_fem_potential_make(brunt_fem_body *body, int32_t base
                                               brunt_error *error);
 void brunt_fem_potential_free(brunt_fem_potential *potential);
 size_t brunt_fem_potential_bytes(const brunt_fem_potential *potential);
+// What is asked of the body from here on; at first the end of a step of backward Euler.
+void brunt_fem_potential_ask(brunt_fem_potential *potential, brunt_trial_rule rule);
 // Begins a step of `dt` [s]; INFINITY: static, nothing is viscous.
 void brunt_fem_potential_step(brunt_fem_potential *potential, double dt);
 // The term; valid as long as the potential. Its `limit` leaves an element a tenth of the way to J = 0.

@@ -22,6 +22,7 @@ struct brunt_fem_potential {
     int dim, nodes, modes, tangents; // of an element
     bool history;                    // the material looks at what the step did
     real dt;
+    brunt_trial_rule rule;
     // Of each slot: mean gradients b of the shape functions, gamma and k of its hourglass modes.
     real *b[SHAPES], *gamma[SHARES], *spring;
     // Of the last Hessian: spatial gradients and tangents.

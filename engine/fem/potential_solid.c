@@ -124,7 +124,7 @@ BRUNT_INLINE void deform_tile(int dim, int nodes, const brunt_fem_potential *p, 
 static void trial_points(const brunt_fem_potential *p, int64_t slot, int32_t count, fem_tile *tile,
                          brunt_trial_points trial[BRUNT_COMPONENTS]) {
     for (int k = 0; k < BRUNT_COMPONENTS; k++) {
-        trial[k] = (brunt_trial_points){.count = count, .dim = p->dim, .dt = p->dt};
+        trial[k] = (brunt_trial_points){.count = count, .dim = p->dim, .dt = p->dt, .rule = p->rule};
         if (!p->body->material.model[k]) continue;
         const brunt_material_points points = brunt_fem_points(p->body, (brunt_component)k, slot, count);
         for (int c = 0; c < p->dim * p->dim; c++) trial[k].F[c] = tile->F[c], trial[k].f[c] = tile->f[c];

@@ -96,6 +96,8 @@ static int make_room(brunt_mpm_potential *p, brunt_error *error) {
     return BRUNT_OK;
 }
 
+void brunt_mpm_potential_ask(brunt_mpm_potential *p, brunt_trial_rule rule) { p->rule = rule; }
+
 int brunt_mpm_potential_step(brunt_mpm_potential *p, const brunt_team *team, const int32_t *number, double dt,
                              brunt_error *error) {
     const double c0 = (double)p->body->material.wave_speed;

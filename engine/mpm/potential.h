@@ -16,6 +16,8 @@ typedef struct brunt_mpm_potential brunt_mpm_potential;
 brunt_mpm_potential *brunt_mpm_potential_make(brunt_body *body, brunt_error *error); // NULL with the reason
 void brunt_mpm_potential_free(brunt_mpm_potential *potential);
 size_t brunt_mpm_potential_bytes(const brunt_mpm_potential *potential);
+// What is asked of the body from here on; at first the end of a step of backward Euler.
+void brunt_mpm_potential_ask(brunt_mpm_potential *potential, brunt_trial_rule rule);
 // Begins a step of `dt` [s] (INFINITY: static, nothing is viscous), after the sort. Node n of slot s of the body's grid
 // is block node number[s * BRUNT_BLOCK_NODES + n] of the unknowns, -1: not one of them, at rest; `number` has to last
 // for the step; the term has no more threads than `team`. BRUNT_FAILED: out of memory.

@@ -21,6 +21,7 @@ struct brunt_mpm_potential {
     const int32_t *number; // of the step
     bool history;          // the material looks at what the step did
     real dt;
+    brunt_trial_rule rule;
     int threads;
     bool whole; // the tangent is not symmetric
     // Of the last Hessian: V0 a, pulled back to the configuration of the grid; a slot each.
@@ -183,7 +184,7 @@ static inline void trial_tile(brunt_mpm_potential *p, int64_t slot, int32_t coun
                               brunt_trial_points trial[BRUNT_COMPONENTS]) {
     const int dim = p->body->particles.dim;
     for (int k = 0; k < BRUNT_COMPONENTS; k++) {
-        trial[k] = (brunt_trial_points){.count = count, .dim = dim, .dt = p->dt};
+        trial[k] = (brunt_trial_points){.count = count, .dim = dim, .dt = p->dt, .rule = p->rule};
         if (!p->body->material.model[k]) continue;
         const brunt_material_points points = brunt_body_points(p->body, (brunt_component)k, slot, count);
         for (int c = 0; c < dim * dim; c++) trial[k].F[c] = tile->F[c], trial[k].f[c] = tile->f[c];

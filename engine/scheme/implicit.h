@@ -146,6 +146,8 @@ void brunt_implicit_drag_aim(struct brunt_implicit *m); // once the aim is known
 void brunt_implicit_book_drag(brunt_world *world);
 
 // --- implicit_step.c
+// What is asked of bodies from here on.
+void brunt_implicit_ask(const struct brunt_implicit *m, brunt_trial_part part);
 // Finds the passes that Newton's phases are.
 void brunt_implicit_follow(brunt_world *world);
 

@@ -35,11 +35,13 @@ int brunt_implicit_sums(const struct brunt_implicit *m, int first, int end, doub
     const double gamma = m->weights.gamma, work = m->weights.work;
     *sums = (brunt_term_sums){.work = 0};
     memset(f->zero, 0, (size_t)brunt_implicit_components(m) * sizeof *f->zero);
+    brunt_implicit_ask(m, BRUNT_TRIAL_START);
     if (evaluate(m, first, end, f->zero, &sums->before, error)) return BRUNT_FAILED;
     if (work < 1) {
         sums->work = (1 - work) * dot(m, f->step, f->u);
         add_weighed(m, 1 - gamma, total);
     }
+    brunt_implicit_ask(m, BRUNT_TRIAL_BOOKS);
     if (evaluate(m, first, end, f->u, &sums->after, error)) return BRUNT_FAILED;
     sums->work += work * dot(m, f->step, f->u);
     add_weighed(m, gamma, total);

@@ -9,6 +9,12 @@
 
 // ------------------------------------------------------------------------------------------ the aim
 
+void brunt_implicit_ask(const struct brunt_implicit *m, brunt_trial_part part) {
+    const brunt_trial_rule rule = {.part = part, .start = (real)(1 - m->weights.gamma)};
+    for (int k = 0; k < m->world->bodies.fem_count; k++) brunt_fem_potential_ask(m->fem[k], rule);
+    for (int i = 0; i < m->world->bodies.mpm_count; i++) brunt_mpm_potential_ask(m->mpm[i], rule);
+}
+
 // Forces at the start, of the grid and the loads there.
 static void take_forces(brunt_world *world) {
     struct brunt_implicit *m = world->plan.implicit;
@@ -16,7 +22,9 @@ static void take_forces(brunt_world *world) {
     brunt_implicit_loads(world, world->clock.time, f->force_before);
     brunt_implicit_drag_before(m, f->force_before);
     const int friction = m->term_count - m->rubs; // of the velocities at the start: see barrier.h
+    brunt_implicit_ask(m, BRUNT_TRIAL_START);
     brunt_implicit_gradient(m, m->fixed_terms, friction, f->u, f->gradient);
+    brunt_implicit_ask(m, BRUNT_TRIAL_END);
     brunt_implicit_gradient(m, friction, m->term_count, m->contact.before, f->step);
     if (m->holds) brunt_implicit_surfaces_before(m, f->force_before);
     for (int64_t k = 0; k < brunt_implicit_components(m); k++) f->force_before[k] -= f->gradient[k] + f->step[k];
@@ -43,6 +51,7 @@ static int begin_try(brunt_world *world, double dt, brunt_error *error) {
     struct brunt_implicit *m = world->plan.implicit;
     const size_t bytes = (size_t)brunt_implicit_components(m) * sizeof(double);
     m->dt = dt;
+    brunt_implicit_ask(m, BRUNT_TRIAL_END);
     brunt_unknowns_hold(&m->unknowns, world, dt);
     for (int k = 0; k < world->bodies.fem_count; k++) brunt_fem_potential_step(m->fem[k], dt);
     for (int i = 0; i < world->bodies.mpm_count; i++)
