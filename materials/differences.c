@@ -167,6 +167,11 @@ void brunt_material_respond_by_differences(const brunt_material *material,
         if (is_still(trial)) take_states(&s); // energies of the start: what creeps has not yet
         put_energies(&s, &result);
     }
+    // What bears more at the rate of the last step would creep at none, and leave a part of each step without its
+    // stress.
+    const bool held = trial->rule.part == BRUNT_TRIAL_START && material->model[BRUNT_STRENGTH]->rate_dependent;
+    for (int c = 0; c < BRUNT_SYMMETRIC(dim) && held && trial->old_stress[c]; c++)
+        memcpy(s.stress[c], trial->old_stress[c], (size_t)trial->count * sizeof(real));
     for (int i = 0; i < dim && trial->stress[0]; i++)
         for (int a = 0; a < dim; a++)
             for (int32_t q = 0; q < trial->count; q++)
