@@ -3,6 +3,7 @@
 #include <stdio.h>
 
 #include "base/error.h"
+#include "scheme/implicit.h"
 #include "scheme/scheme.h"
 
 enum { ENERGY_CHECK = 32, SPREAD_CHECK = 32 }; // steps
@@ -30,6 +31,15 @@ static double made_share(const brunt_energy *energy, double lost) {
     return energy->reference > 0 ? fmax(-lost / energy->reference, 0) : 0;
 }
 
+// Newmark's rule keeps the energy of linear springs: barriers are the least linear that there is.
+static const char *what_makes(const brunt_world *world) {
+    if (world->settings.scheme == BRUNT_STATIC)
+        return ", and load steps have made %.3g %% (more of them make less, but where bodies jump)";
+    if (world->plan.implicit->contact.barrier)
+        return ", and the integrator has made %.3g %% (shorter steps, less contact.stiffness, or euler, make less)";
+    return ", and the integrator has made %.3g %% (shorter steps, or euler, make less)";
+}
+
 static int check_energy(brunt_world *world, brunt_error *error) {
     brunt_energy energy;
     brunt_world_energy(world, &energy);
@@ -42,11 +52,7 @@ static int check_energy(brunt_world *world, brunt_error *error) {
     if (world->bodies.mpm_count)
         length = snprintf(makers, sizeof makers, ", and the transfers have made %.3g %%", 100 * transfers);
     if (world->plan.implicit)
-        snprintf(makers + length, sizeof makers - (size_t)length,
-                 world->settings.scheme == BRUNT_STATIC
-                     ? ", and load steps have made %.3g %% (more of them make less, but where bodies jump)"
-                     : ", and the integrator has made %.3g %% (shorter steps, or euler, make less)",
-                 100 * scheme);
+        snprintf(makers + length, sizeof makers - (size_t)length, what_makes(world), 100 * scheme);
     snprintf(reason, sizeof reason, "the energy error is %.3g %% of %.3g J%s; time.energy_limit allows %.3g %%",
              100 * energy.error_relative, energy.reference, makers, 100 * limit);
     return brunt_fail_step(world, NULL, error, reason);

@@ -296,6 +296,7 @@ START_TEST(energy_from_the_integrator) {
         ck_assert_int_eq(status, BRUNT_FAILED);
         ck_assert_double_lt(e.scheme, -def.energy_limit * e.initial);
         ck_assert_ptr_nonnull(strstr(error.message, "the integrator has made"));
+        ck_assert_ptr_nonnull(strstr(error.message, "less contact.stiffness"));
     }
     brunt_world_destroy(world);
 }
