@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "base/array.h"
+#include "contact/contact.h"
 
 static int compare(const brunt_pair_entry *p, int32_t a, int32_t b) {
     if (p->a != a) return p->a < a ? -1 : 1;
@@ -49,4 +50,24 @@ void brunt_pair_map_sort(brunt_pair_map *map) {
         if (last) map->entry[kept++] = map->entry[i];
     }
     map->count = kept;
+}
+
+void brunt_pairs_validate(const brunt_pairs *pairs, int bodies) {
+    const brunt_pair_map *map = &pairs->map;
+    for (int k = 0; k < 3; k++) BRUNT_ASSERT(map->usual[k] >= -1 && map->usual[k] < pairs->count);
+    for (int32_t i = 0; i < map->count; i++) {
+        const brunt_pair_entry *e = &map->entry[i];
+        BRUNT_ASSERT(e->a >= 0 && e->a <= e->b && e->b < bodies && e->pair >= -1 && e->pair < pairs->count);
+        BRUNT_ASSERT(!i || e[-1].a < e->a || (e[-1].a == e->a && e[-1].b < e->b));
+    }
+    for (int p = 0; p < pairs->count; p++) {
+        brunt_impulse_account_validate(&pairs->pair[p].action);
+        brunt_impulse_account_validate(&pairs->pair[p].last);
+    }
+}
+
+void brunt_pairs_free(brunt_pairs *pairs) {
+    brunt_free(pairs->pair);
+    brunt_free(pairs->mesh);
+    brunt_free(pairs->map.entry);
 }

@@ -36,3 +36,7 @@ int32_t brunt_pair_of(const brunt_pair_map *map, int32_t a, int32_t b);
 // counts. BRUNT_OK, or BRUNT_FAILED: out of memory.
 int brunt_pair_map_add(brunt_pair_map *map, int32_t a, int32_t b, int32_t pair, brunt_error *error);
 void brunt_pair_map_sort(brunt_pair_map *map);
+void brunt_pairs_free(brunt_pairs *pairs); // made in world/pairs.c; accounts are saved by world/state.c
+// Aborts where an entry is not of two of `bodies` bodies, not in its order, or of a pair that there is not; or an
+// account is no number.
+void brunt_pairs_validate(const brunt_pairs *pairs, int bodies);

@@ -86,6 +86,8 @@ double brunt_barrier_particle_area(int dim, double volume);
 
 brunt_barrier *brunt_barrier_make(brunt_error *error); // NULL: out of memory
 void brunt_barrier_free(brunt_barrier *barrier);
+// Aborts where surfaces, pairs and what was in contact last do not belong to each other.
+void brunt_barrier_validate(const brunt_barrier *barrier);
 // BRUNT_OK, or BRUNT_FAILED: out of memory; a facet without area, of two bodies or with one vertex twice.
 int brunt_barrier_set_mesh(brunt_barrier *barrier, const brunt_barrier_mesh *mesh, brunt_error *error);
 // Copied. BRUNT_OK, or BRUNT_FAILED: out of memory, a pair that is there twice.

@@ -1,5 +1,9 @@
 #include "contact/constraint/impulse_account.h"
 
+#include <math.h>
+
+#include "base/error.h"
+
 void brunt_impulse_account_add(brunt_impulse_account *sum, const brunt_impulse_account *part) {
     for (int a = 0; a < 3; a++) sum->impulse[a] += part->impulse[a], sum->angular[a] += part->angular[a];
     sum->external_work += part->external_work;
@@ -40,4 +44,9 @@ double brunt_impulse_account_node(brunt_contact_surface *s, brunt_impulse_accoun
         loss -= work;
     }
     return loss;
+}
+
+void brunt_impulse_account_validate(const brunt_impulse_account *a) {
+    for (int k = 0; k < 3; k++) BRUNT_ASSERT(isfinite(a->impulse[k]) && isfinite(a->angular[k]));
+    BRUNT_ASSERT(isfinite(a->external_work) && isfinite(a->normal_loss) && isfinite(a->friction_loss) && a->area >= 0);
 }

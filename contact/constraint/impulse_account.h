@@ -15,6 +15,8 @@ typedef struct brunt_impulse_account {
     double area;          // [m^2] that touched in the last step
 } brunt_impulse_account;
 
+// Aborts where a number of it is none.
+void brunt_impulse_account_validate(const brunt_impulse_account *account);
 void brunt_impulse_account_add(brunt_impulse_account *sum, const brunt_impulse_account *part);
 // Books impulse J acting at x while its material moves with `old` before and `now` after, against a carrier that moves
 // with `carrier`. What it dissipates is added to `loss`: the account's normal_loss or its friction_loss.

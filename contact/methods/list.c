@@ -40,6 +40,7 @@ static void account_on_grid(const brunt_contact_context *m, const brunt_contact_
 }
 
 static void free_on_grid(void *memory) { brunt_surface_on_grid_free(memory); }
+static void validate_on_grid(const void *memory) { brunt_surface_on_grid_validate(memory); }
 
 // Constraints at facets, and those at planes, which any surface may meet: solved together.
 static int act_at_facets(const brunt_contact_context *m, brunt_contact_work *work, brunt_error *error) {
@@ -79,12 +80,12 @@ ROWS(DECLARE)
 const brunt_contact_row *const brunt_contact_rows[] = {ROWS(ADDRESS)};
 
 // clang-format off
-const brunt_contact_row brunt_contact_grid_velocity = {"grid velocity", METHOD(MULTI_VELOCITY), 0, EXPLICIT, SELF(NONE), true, "a body of method mpm", points_alone, NULL, NULL, NULL, NULL, NULL, NULL};
-const brunt_contact_row brunt_contact_point_touches = {"point touches", METHOD(AUGURY), FORM(AFFINE), EXPLICIT, SELF(NONE), false, NULL, points_alone, NULL, NULL, NULL, NULL, NULL, NULL};
-const brunt_contact_row brunt_contact_published = {"published", METHOD(AUGURY), FORM(PAPER), EXPLICIT, SELF(MEMBRANES), false, NULL, any_mesh, mark_all, act_published, NULL, free_augury, NULL, NULL};
-const brunt_contact_row brunt_contact_averaged_surface = {"averaged surface", METHOD(AUGURY), FORM(SMOOTH) | FORM(SURFACE), EXPLICIT, SELF(MEMBRANES), false, NULL, any_mesh, NULL, act_averaged, NULL, free_augury, NULL, NULL};
-const brunt_contact_row brunt_contact_surface_on_grid = {"surface on grid", METHOD(MULTI_VELOCITY), 0, EXPLICIT, SELF(NONE), true, NULL, mesh_and_points, brunt_surface_on_grid_near, act_on_grid, account_on_grid, free_on_grid, NULL, NULL};
-const brunt_contact_row brunt_contact_node_to_facet = {"node to facet", METHOD(AUGURY), FORM(AFFINE), EXPLICIT, SELF(MEMBRANES), false, "a body of method fem or membrane", any_mesh, NULL, act_at_facets, NULL, NULL, NULL, NULL};
+const brunt_contact_row brunt_contact_grid_velocity = {"grid velocity", METHOD(MULTI_VELOCITY), 0, EXPLICIT, SELF(NONE), true, "a body of method mpm", points_alone, NULL, NULL, NULL, NULL, NULL, NULL, NULL};
+const brunt_contact_row brunt_contact_point_touches = {"point touches", METHOD(AUGURY), FORM(AFFINE), EXPLICIT, SELF(NONE), false, NULL, points_alone, NULL, NULL, NULL, NULL, NULL, NULL, NULL};
+const brunt_contact_row brunt_contact_published = {"published", METHOD(AUGURY), FORM(PAPER), EXPLICIT, SELF(MEMBRANES), false, NULL, any_mesh, mark_all, act_published, NULL, free_augury, NULL, NULL, NULL};
+const brunt_contact_row brunt_contact_averaged_surface = {"averaged surface", METHOD(AUGURY), FORM(SMOOTH) | FORM(SURFACE), EXPLICIT, SELF(MEMBRANES), false, NULL, any_mesh, NULL, act_averaged, NULL, free_augury, NULL, NULL, NULL};
+const brunt_contact_row brunt_contact_surface_on_grid = {"surface on grid", METHOD(MULTI_VELOCITY), 0, EXPLICIT, SELF(NONE), true, NULL, mesh_and_points, brunt_surface_on_grid_near, act_on_grid, account_on_grid, free_on_grid, validate_on_grid, NULL, NULL};
+const brunt_contact_row brunt_contact_node_to_facet = {"node to facet", METHOD(AUGURY), FORM(AFFINE), EXPLICIT, SELF(MEMBRANES), false, "a body of method fem or membrane", any_mesh, NULL, act_at_facets, NULL, NULL, NULL, NULL, NULL};
 // clang-format on
 const int brunt_contact_row_count = sizeof brunt_contact_rows / sizeof *brunt_contact_rows;
 _Static_assert(sizeof brunt_contact_rows / sizeof *brunt_contact_rows <= (size_t)BRUNT_CONTACT_ROW_LIMIT,
@@ -186,4 +187,13 @@ brunt_gap_energy *brunt_contact_energy(brunt_contact_method method) {
     for (int r = 0; r < brunt_contact_row_count; r++)
         if (is_of(brunt_contact_rows[r], method) && brunt_contact_rows[r]->energy) return brunt_contact_rows[r]->energy;
     return NULL;
+}
+
+void brunt_contact_methods_validate(unsigned rows, void *const memory[]) {
+    BRUNT_ASSERT(rows >> brunt_contact_row_count == 0);
+    for (int r = 0; r < brunt_contact_row_count; r++) {
+        const brunt_contact_row *row = brunt_contact_rows[r];
+        BRUNT_ASSERT(!memory[r] || (rows >> r & 1 && row->free));
+        if (memory[r] && row->validate) row->validate(memory[r]);
+    }
 }

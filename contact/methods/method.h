@@ -42,6 +42,9 @@ typedef struct brunt_contact_row {
     void (*account)(const brunt_contact_context *m, const brunt_contact_work *work);
     // Frees what it keeps, which may be NULL.
     void (*free)(void *memory);
+    // Aborts where what it keeps is not as it must be; never of NULL. NULL: it keeps room alone, made anew in each
+    // step.
+    void (*validate)(const void *memory);
     // Of two bodies of material points, at a node of their grids that both reach: in place of pushes and friction there
     // (grid_velocity.c). Implicit steps that have the method give such bodies one displacement there. NULL: none.
     brunt_node_law *at_node;
@@ -76,3 +79,6 @@ void brunt_contact_words_of(brunt_scheme scheme, char *out, size_t size);
 brunt_node_law *brunt_contact_node_law(brunt_contact_method method);
 brunt_gap_energy *brunt_contact_energy(brunt_contact_method method);
 brunt_contact_self brunt_contact_with_itself(brunt_contact_method method);
+// Aborts where a row keeps something that `rows` has no bit of, or what it keeps is not as it must be. `memory`: of
+// each.
+void brunt_contact_methods_validate(unsigned rows, void *const memory[]);

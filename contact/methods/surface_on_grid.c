@@ -9,6 +9,19 @@ void brunt_surface_on_grid_free(brunt_surface_on_grid *w) {
     for (size_t k = 0; k < sizeof owned / sizeof owned[0]; k++) brunt_free(owned[k]);
 }
 
+void brunt_surface_on_grid_validate(const brunt_surface_on_grid *w) {
+    for (int32_t l = 0; l < w->link_count; l++)
+        BRUNT_ASSERT(w->link[l].contact >= 0 && w->link[l].contact < w->contact_count && isfinite(w->link[l].weight));
+    for (int32_t i = 0; i < w->item_count; i++)
+        BRUNT_ASSERT(w->item[i].first >= 0 && w->item[i].first + w->item[i].count <= w->link_count);
+    for (int32_t i = 0; i < w->contact_count; i++) {
+        const contact *c = &w->contact[i];
+        BRUNT_ASSERT(c->first >= 0 && c->count >= 0 && c->first + c->count <= w->link_count);
+        BRUNT_ASSERT(c->leader >= 0 && c->leader <= i && c->next >= -1 && c->next < w->contact_count);
+        BRUNT_ASSERT(c->normal_impulse >= 0);
+    }
+}
+
 size_t brunt_surface_on_grid_bytes(const brunt_surface_on_grid *w) {
     return w ? w->range_capacity + w->link_capacity + w->item_capacity + w->contact_capacity + w->by_contact_capacity +
                    w->place_capacity + w->changed_capacity + w->near_capacity + w->block_first_capacity +

@@ -49,4 +49,6 @@ int brunt_surface_on_grid_meet(const brunt_contact_context *m, int sweeps, brunt
 // Accounts and contact state, once all else has acted on the surface's velocities.
 void brunt_surface_on_grid_finish(const brunt_contact_context *m, const brunt_surface_on_grid *work);
 void brunt_surface_on_grid_free(brunt_surface_on_grid *work);
+// Aborts where links, nodes of the surface and contacts of the last step do not belong to each other.
+void brunt_surface_on_grid_validate(const brunt_surface_on_grid *work);
 size_t brunt_surface_on_grid_bytes(const brunt_surface_on_grid *work);

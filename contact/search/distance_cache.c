@@ -7,8 +7,8 @@ int brunt_distance_cache_fit(brunt_node_to_facet *f, int32_t nodes, int32_t kept
                    RESERVE(&f->nodes, candidate, BRUNT_MAX_CANDIDATES * (nodes + 1), "facets near nodes", error) ||
                    BRUNT_ROOM(f->cache.nearest, (size_t)nodes + 1, (size_t)kept, "nearest facets of nodes", error) ||
                    RESERVE(&f->cache, node, nodes + 1, "distances of nodes", error)
-               ? -1
-               : 0;
+               ? BRUNT_FAILED
+               : BRUNT_OK;
 }
 
 // Distances are to facets that may be gone, so that all look anew. A face that was the nearest and is still there
@@ -64,4 +64,14 @@ int brunt_node_to_facet_state_set(brunt_node_to_facet **facing, brunt_contact_su
             for (int a = 0; a < 3; a++) s->x[n][a] = from[4 + a];
         }
     return BRUNT_OK;
+}
+
+void brunt_distance_cache_validate(const distance_cache *c, int32_t nodes, int32_t faces) {
+    BRUNT_ASSERT(c->motion >= 0 && brunt_array_holds(c->node, c->node_capacity, sizeof *c->node, (size_t)nodes));
+    BRUNT_ASSERT(brunt_array_holds(c->nearest, c->nearest_capacity, sizeof *c->nearest, (size_t)nodes));
+    for (int32_t n = 0; n < nodes; n++) {
+        BRUNT_ASSERT(c->nearest[n] >= -1 && c->nearest[n] < faces);
+        BRUNT_ASSERT(c->node[n].motion >= 0 && c->node[n].motion <= c->motion);
+        BRUNT_ASSERT(!isnan(c->node[n].distance) && !isnan(c->node[n].second));
+    }
 }

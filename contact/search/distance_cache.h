@@ -18,3 +18,6 @@ typedef struct distance_cache {
     int32_t *spare;      // while they are put in a new order
     size_t node_capacity, nearest_capacity, spare_capacity;
 } distance_cache;
+
+// Aborts where what is remembered of `nodes` nodes names faces that there are not, or a way that nothing has gone.
+void brunt_distance_cache_validate(const distance_cache *cache, int32_t nodes, int32_t faces);

@@ -168,3 +168,11 @@ int brunt_facet_cells_make(const brunt_contact_context *m, brunt_node_to_facet *
     f->cells.pair_count = f->bodies.pair_count, f->cells.pairs_key = key;
     return BRUNT_OK;
 }
+
+void brunt_facet_cells_validate(const facet_cells *cells, int32_t faces) {
+    if (!cells->made) return;
+    const int64_t count = (int64_t)cells->n[0] * cells->n[1] * cells->n[2];
+    BRUNT_ASSERT(cells->cell > 0 && cells->range >= 0 && count > 0 && cells->first[0] == 0);
+    for (int64_t c = 0; c < count; c++) BRUNT_ASSERT(cells->first[c] <= cells->first[c + 1]);
+    for (int32_t i = 0; i < cells->first[count]; i++) BRUNT_ASSERT(cells->face[i] >= 0 && cells->face[i] < faces);
+}

@@ -15,3 +15,6 @@ typedef struct facet_cells {
     int32_t *first, *face; // facets of cell c: face[first[c] .. first[c + 1])
     size_t first_capacity, face_capacity, x_capacity, box_capacity;
 } facet_cells;
+
+// Aborts where cells that are made list facets that there are not.
+void brunt_facet_cells_validate(const facet_cells *cells, int32_t faces);

@@ -42,3 +42,9 @@ int brunt_node_to_facet_make(brunt_node_to_facet **facing, int mpm_count, int32_
     for (int32_t n = 0; n < nodes; n++) f->cache.nearest[n] = -1;
     return BRUNT_OK;
 }
+
+void brunt_node_to_facet_validate(const brunt_node_to_facet *f, const brunt_contact_surface *s) {
+    if (!f) return;
+    brunt_distance_cache_validate(&f->cache, s->node_count, s->face_count);
+    brunt_facet_cells_validate(&f->cells, s->face_count);
+}

@@ -42,4 +42,6 @@ void brunt_node_to_facet_state_get(const brunt_node_to_facet *facing, const brun
 int brunt_node_to_facet_state_set(brunt_node_to_facet **facing, brunt_contact_surface *surface, int mpm_count,
                                   const double *in, brunt_error *error);
 void brunt_node_to_facet_free(brunt_node_to_facet *facing);
+// Aborts where what is remembered is not of this surface. NULL: nothing is.
+void brunt_node_to_facet_validate(const brunt_node_to_facet *facing, const brunt_contact_surface *surface);
 size_t brunt_node_to_facet_bytes(const brunt_node_to_facet *facing);

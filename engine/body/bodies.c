@@ -4,6 +4,7 @@
 
 #include "base/array.h"
 #include "base/error.h"
+#include "base/memory.h"
 
 const char *brunt_bodies_name(const brunt_bodies *bodies, int body) {
     const brunt_body_ref *ref = &bodies->all[body];
@@ -60,6 +61,20 @@ int brunt_bodies_holding(const brunt_bodies *bodies, const int32_t *first, int32
             high = middle - 1;
     }
     return low;
+}
+
+void brunt_bodies_free(brunt_bodies *bodies) {
+    for (int i = 0; bodies->mpm && i < bodies->mpm_count; i++) brunt_body_free(&bodies->mpm[i]);
+    for (int k = 0; bodies->fem && k < bodies->fem_count; k++) brunt_fem_free(&bodies->fem[k]);
+    brunt_free(bodies->all);
+    brunt_free(bodies->mpm);
+    brunt_free(bodies->fem);
+    brunt_free(bodies->mesh_reports);
+    brunt_free(bodies->first_block);
+    brunt_free(bodies->first_array);
+    brunt_free(bodies->tasks.node);
+    brunt_free(bodies->tasks.element);
+    brunt_free(bodies->tasks.sums);
 }
 
 void brunt_bodies_validate(const brunt_bodies *bodies) {

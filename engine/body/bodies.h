@@ -83,4 +83,7 @@ brunt_body_ref *brunt_bodies_summed(const brunt_bodies *bodies, int i);
 int brunt_bodies_number(brunt_bodies *bodies, brunt_error *error);
 // The body that block or array `index` is of, by where each begins; `count`, that of the bodies: of none.
 int brunt_bodies_holding(const brunt_bodies *bodies, const int32_t *first, int32_t index);
+// Made of a definition in world/bodies.c; their state is in blocks of their own (ops).
+void brunt_bodies_free(brunt_bodies *bodies);
+// Aborts where a body is not in its order, or what it is made of not as it must be.
 void brunt_bodies_validate(const brunt_bodies *bodies);

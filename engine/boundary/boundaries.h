@@ -19,3 +19,9 @@ typedef struct brunt_boundaries {
     brunt_boundary_surfaces surfaces;
     brunt_damping damping;
 } brunt_boundaries;
+
+// Made of a definition in world/boundaries.c, beside the bodies that they name. What lasts of them is saved by
+// world/state.c: accounts of walls, tractions of surfaces, gas of groups.
+void brunt_boundaries_free(brunt_boundaries *boundaries);
+// Aborts where walls, mirrors, bodies and groups do not belong to each other, or an account is no number.
+void brunt_boundaries_validate(const brunt_boundaries *boundaries, const brunt_bodies *bodies);

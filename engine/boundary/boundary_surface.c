@@ -258,6 +258,32 @@ bool brunt_boundary_surface_acts(const brunt_boundary_surface *s, const brunt_bo
     return s->wall->body < 0 || s->wall->body == body->index;
 }
 
+// ------------------------------------------------------------------------------------------ what must hold
+
+static void validate_cells(const brunt_boundary_surface *s) {
+    BRUNT_ASSERT(s->cell > 0 && s->cells >= 0 && s->cell_first[0] == 0 && s->cell_first[s->cells] == s->particle_count);
+    for (int32_t c = 0; c < s->cells; c++)
+        BRUNT_ASSERT(s->cell_first[c] < s->cell_first[c + 1] && (!c || s->key[c - 1] < s->key[c]));
+    for (int32_t p = 0; p < s->particle_count; p++)
+        BRUNT_ASSERT(s->cell_particle[p] >= 0 && s->cell_particle[p] < s->particle_count);
+}
+
+void brunt_boundary_surfaces_validate(const brunt_boundary_surfaces *surfaces, const brunt_bodies *bodies) {
+    for (int k = 0; k < surfaces->count; k++) {
+        const brunt_boundary_surface *s = &surfaces->surface[k];
+        BRUNT_ASSERT(s->wall && s->wall->body < bodies->count && s->bodies == bodies->mpm_count);
+        BRUNT_ASSERT(s->pieces > 0 && s->first[0] == 0 && s->first[s->pieces] == s->particle_count);
+        for (int32_t p = 0; p < s->particle_count; p++) {
+            const int32_t piece = s->particle[p].piece;
+            BRUNT_ASSERT(piece >= 0 && piece < s->pieces && p >= s->first[piece] && p < s->first[piece + 1]);
+            BRUNT_ASSERT(s->particle[p].weight > 0);
+        }
+        for (int64_t i = 0; i < (int64_t)s->bodies * s->pieces * 3; i++) BRUNT_ASSERT(isfinite(s->traction[i]));
+        BRUNT_ASSERT(s->active >= 0 && s->drift >= 0);
+        validate_cells(s);
+    }
+}
+
 // ------------------------------------------------------------------------------------------ state
 
 // Tractions, and what was reported of the last step.

@@ -44,6 +44,8 @@ typedef struct brunt_boundary_surfaces {
 int brunt_boundary_surfaces_make(brunt_boundary_surfaces *surfaces, const brunt_world_def *def,
                                  const brunt_bodies *bodies, brunt_boundary *walls, brunt_error *error);
 void brunt_boundary_surfaces_free(brunt_boundary_surfaces *surfaces);
+// Aborts where pieces, particles and cells do not belong to each other, or a traction is no number.
+void brunt_boundary_surfaces_validate(const brunt_boundary_surfaces *surfaces, const brunt_bodies *bodies);
 size_t brunt_boundary_surfaces_bytes(const brunt_boundary_surfaces *surfaces);
 // Components of its traction that are unknowns: all of stick, one of slip and of separate, all of that with friction.
 int brunt_boundary_surface_rows(const brunt_boundary_surface *surface, int dim);

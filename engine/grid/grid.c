@@ -153,6 +153,26 @@ int brunt_grid_set_blocks(brunt_grid *grid, const uint64_t *keys, int32_t count,
     return BRUNT_OK;
 }
 
+void brunt_grid_validate(const brunt_grid *grid) {
+    BRUNT_ASSERT(grid->h > 0 && grid->corners == 1 << grid->dim && grid->block_count <= grid->slot_count);
+    for (int32_t b = 0; b < grid->block_count; b++) {
+        const uint64_t key = grid->block_key[b];
+        BRUNT_ASSERT(!b || grid->block_key[b - 1] < key);
+        BRUNT_ASSERT(brunt_key(grid->blocks[b].coord) == key && brunt_grid_block(grid, key) == b);
+        for (int c = 0; c < grid->corners; c++) {
+            const int32_t slot = grid->blocks[b].slot[c];
+            BRUNT_ASSERT(slot >= 0 && slot < grid->slot_count && grid->slots[slot].source[c] == b);
+        }
+    }
+    for (int32_t s = 0; s < grid->slot_count && grid->block_count; s++) {
+        const uint64_t key = grid->slot_key[s];
+        BRUNT_ASSERT(!s || grid->slot_key[s - 1] < key);
+        BRUNT_ASSERT(brunt_key(grid->slots[s].coord) == key && brunt_grid_slot(grid, key) == s);
+        for (int c = 0; c < 8; c++)
+            BRUNT_ASSERT(grid->slots[s].source[c] >= -1 && grid->slots[s].source[c] < grid->block_count);
+    }
+}
+
 static int32_t floor_divide(int32_t a, int32_t b) { return a >= 0 ? a / b : -((-a + b - 1) / b); }
 
 real *brunt_grid_node(const brunt_grid *grid, const int32_t at[3]) {

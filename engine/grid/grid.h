@@ -97,6 +97,9 @@ int32_t brunt_grid_slot(const brunt_grid *grid, uint64_t key);
 // BRUNT_FAILED: out of memory.
 int brunt_grid_set_blocks(brunt_grid *grid, const uint64_t *keys, int32_t count, brunt_error *error);
 
+// Aborts where blocks, slots, their keys and their neighbours do not belong to each other.
+void brunt_grid_validate(const brunt_grid *grid);
+
 // Node index within a slot of local coordinates (z fastest), and back.
 static inline int brunt_node_index(const brunt_grid *grid, int x, int y, int z) {
     return grid->dim == 3 ? (x * 4 + y) * 4 + z : x * 8 + y;

@@ -137,3 +137,15 @@ void brunt_block_matrix_scale_diagonal(brunt_block_matrix *m, double factor) {
     for (int64_t n = 0; n < m->nodes; n++)
         for (int c = 0; c < dim; c++) m->value[(m->diagonal[n] * dim + c) * dim + c] *= factor;
 }
+
+void brunt_block_matrix_validate(const brunt_block_matrix *m) {
+    if (!m->pattern) return; // never made
+    BRUNT_ASSERT((m->dim == 2 || m->dim == 3) && m->nodes >= 0 && m->first[0] == 0);
+    for (int32_t r = 0; r < m->nodes; r++) {
+        const int64_t low = m->first[r], high = m->first[r + 1], own = m->diagonal[r];
+        BRUNT_ASSERT(low <= own && own < high && m->column[own] == r);
+        for (int64_t k = low; k < high; k++)
+            BRUNT_ASSERT(m->column[k] >= 0 && m->column[k] < m->nodes && (k == low || m->column[k - 1] < m->column[k]));
+    }
+    BRUNT_ASSERT((size_t)m->first[m->nodes] <= m->value_capacity / sizeof *m->value / (size_t)(m->dim * m->dim));
+}

@@ -36,6 +36,8 @@ int brunt_block_matrix_pattern(brunt_block_matrix *m, const brunt_team *team, co
                                brunt_error *error);
 void brunt_block_matrix_zero(brunt_block_matrix *m, const brunt_team *team);
 void brunt_block_matrix_free(brunt_block_matrix *m);
+// Aborts where rows, columns and diagonal blocks of a pattern are not in their places.
+void brunt_block_matrix_validate(const brunt_block_matrix *m);
 
 static inline int64_t brunt_block_matrix_blocks(const brunt_block_matrix *m) {
     return m->first ? m->first[m->nodes] : 0;

@@ -527,3 +527,10 @@ void brunt_newton_free(brunt_newton *n) {
     brunt_free(n->gradient), brunt_free(n->step), brunt_free(n->trial), brunt_free(n->stencils);
     *n = (brunt_newton){0};
 }
+
+void brunt_newton_validate(const brunt_newton *n) {
+    brunt_block_matrix_validate(&n->matrix);
+    brunt_block_matrix_validate(&n->free.blocks);
+    BRUNT_ASSERT(n->analysed >= 0 && (n->analysed == 0 || n->linear.ops)); // what is analysed is so by a solver
+    BRUNT_ASSERT(!n->linear.ops == !n->linear.self);
+}

@@ -116,3 +116,5 @@ typedef struct brunt_newton_way {
 int brunt_newton_lead(brunt_newton *newton, const brunt_team *team, const brunt_problem *problem,
                       const brunt_newton_options *options, double *u, brunt_newton_way *lead, brunt_error *error);
 void brunt_newton_free(brunt_newton *newton);
+// Aborts where what lasts is not as it must be: the matrices, and what the solver knows of them.
+void brunt_newton_validate(const brunt_newton *newton);

@@ -24,6 +24,7 @@ static void validate_block(brunt_body *body, int32_t b) {
 void brunt_body_validate(brunt_body *body) {
     const brunt_particles *p = &body->particles;
     BRUNT_ASSERT(p->count <= p->slots && p->slots <= p->capacity && p->count <= p->made);
+    if (body->grid.block_count) brunt_grid_validate(&body->grid);
     if (!body->grid.block_count || p->holes) return; // not sorted since it was made, read, or has lost some
     int64_t count = 0;
     for (int32_t b = 0; b < body->grid.block_count; b++) {

@@ -396,6 +396,21 @@ size_t brunt_implicit_contact_bytes(const brunt_implicit_contact *c) {
            c->inverse_mass_capacity;
 }
 
+void brunt_implicit_contact_validate(const brunt_implicit_contact *c, int bodies, int walls, int pairs) {
+    if (!c->barrier) return;
+    brunt_barrier_validate(c->barrier);
+    for (int32_t v = 0; v < c->vertex_count; v++)
+        BRUNT_ASSERT(c->body[v] >= 0 && c->body[v] < bodies && c->node[v] >= 0);
+    for (int32_t p = 0; p < c->pair_count; p++) {
+        const brunt_barrier_pair *pair = &c->pair[p];
+        BRUNT_ASSERT(pair->a >= 0 && pair->a <= pair->b && pair->b < bodies);
+        BRUNT_ASSERT(c->pair_account[p] >= 0 && c->pair_account[p] < pairs);
+    }
+    for (int32_t q = 0; q < c->plane_count; q++) BRUNT_ASSERT(c->plane_wall[q] >= 0 && c->plane_wall[q] < walls);
+    for (int32_t i = 0; i < c->point_count; i++)
+        BRUNT_ASSERT(c->owner[i] >= 0 && c->owner[i] < bodies && c->first[i] <= c->first[i + 1]);
+}
+
 // ------------------------------------------------------------------------------------------ the points of a step
 
 // Nodes and weights of a particle, those alone that are unknowns; returns how many.

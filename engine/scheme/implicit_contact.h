@@ -38,6 +38,8 @@ typedef struct brunt_implicit_contact {
 int brunt_implicit_contact_make(brunt_implicit_contact *c, brunt_world *world, const brunt_world_def *def,
                                 brunt_error *error);
 void brunt_implicit_contact_free(brunt_implicit_contact *c);
+// Aborts where surfaces, pairs and planes are not of what there is: so many bodies, boundaries and pairs of the world.
+void brunt_implicit_contact_validate(const brunt_implicit_contact *c, int bodies, int walls, int pairs);
 size_t brunt_implicit_contact_bytes(const brunt_implicit_contact *c);
 // Places and weights of a step, whose unknowns have numbers. BRUNT_OK, or BRUNT_FAILED.
 int brunt_implicit_contact_points(brunt_implicit_contact *c, const brunt_world *world, const brunt_unknowns *u,

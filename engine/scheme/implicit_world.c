@@ -212,6 +212,18 @@ int brunt_implicit_make(brunt_world *world, const brunt_world_def *def, brunt_er
     return status ? status : make_contact(world, m, def, error);
 }
 
+// Terms by what they are of; the rest is each part's own.
+void brunt_implicit_validate(const struct brunt_implicit *m, const brunt_bodies *bodies,
+                             const brunt_boundaries *boundaries, int pairs) {
+    BRUNT_ASSERT(m->fixed_terms >= 3 && m->body_terms == m->fixed_terms + bodies->count);
+    BRUNT_ASSERT(m->term_count == m->body_terms + (m->contact.barrier != NULL) + m->rubs);
+    for (int t = 0; t < m->term_count; t++) BRUNT_ASSERT(m->term[t].ops && m->term[t].self);
+    BRUNT_ASSERT(m->team.threads >= 1 && m->dt >= 0 && m->options.solver && m->options.tolerance >= 0);
+    brunt_unknowns_validate(&m->unknowns, bodies, boundaries->wall_count);
+    brunt_implicit_contact_validate(&m->contact, bodies->count, boundaries->wall_count, pairs);
+    brunt_newton_validate(&m->newton);
+}
+
 void brunt_implicit_free(brunt_world *world) {
     struct brunt_implicit *m = world->plan.implicit;
     if (!m) return;

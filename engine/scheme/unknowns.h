@@ -45,6 +45,9 @@ typedef struct brunt_unknowns {
 // Arrays by body. BRUNT_OK, or BRUNT_FAILED: out of memory.
 int brunt_unknowns_make(brunt_unknowns *u, const brunt_world *world, brunt_error *error);
 void brunt_unknowns_free(brunt_unknowns *u, const brunt_bodies *bodies);
+// Aborts where nodes are not in the order of bodies, `walls` boundaries, mirrors and grids as of the step that they
+// were numbered for.
+void brunt_unknowns_validate(const brunt_unknowns *u, const brunt_bodies *bodies, int walls);
 size_t brunt_unknowns_bytes(const brunt_unknowns *u, const brunt_bodies *bodies);
 // Numbers, masses, places and velocities, once masses and momenta are on the grids. BRUNT_OK, or BRUNT_FAILED: out
 // of memory, or more nodes than there are numbers.

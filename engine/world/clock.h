@@ -14,3 +14,9 @@ struct brunt_clock {
     bool creep_told;                         // that steps have become short; not of the state
     int64_t gap_told, chatter_told;          // implicit: 1 once a gap has become small, a step too long for a barrier
 };
+
+// The start: the first step is `stable` [s], or `fixed` where that is not 0. Nothing to free; all of it is saved by
+// world/state.c, but for `creep_told`.
+void brunt_clock_make(struct brunt_clock *clock, double stable, double fixed);
+// Aborts where time, steps or their bounds are no such numbers.
+void brunt_clock_validate(const struct brunt_clock *clock);

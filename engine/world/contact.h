@@ -23,3 +23,9 @@ typedef struct brunt_contact {
     void *memory[BRUNT_CONTACT_ROW_LIMIT]; // what each of them keeps
     double frame[3];                       // [m/s] what contact measures motion against; of the state
 } brunt_contact;
+
+// Made with the pairs (world/pairs.c: by which methods) and the surfaces (world/surfaces.c). What lasts, `frame` and
+// what search and surfaces remember, is saved by world/state.c.
+void brunt_contact_free(brunt_contact *contact);
+// Aborts where a method, the search or the surfaces keep what does not belong to them.
+void brunt_contact_validate(const brunt_contact *contact);

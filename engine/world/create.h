@@ -9,7 +9,6 @@
 // The body of a name among those in order of name, BRUNT_NONE: there is none.
 int brunt_find_ordered(const brunt_body_def **order, int count, const char *name);
 int brunt_pairs_make(brunt_world *world, const brunt_world_def *def, const brunt_body_def **order, brunt_error *error);
-void brunt_pairs_free(brunt_pairs *pairs);
 // All but the nodes of groups, before the bodies.
 int brunt_boundaries_make(brunt_world *world, const brunt_world_def *def, const brunt_body_def **order,
                           brunt_error *error);

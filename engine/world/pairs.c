@@ -196,9 +196,3 @@ int brunt_pairs_make(brunt_world *world, const brunt_world_def *def, const brunt
     brunt_free(m.list);
     return status;
 }
-
-void brunt_pairs_free(brunt_pairs *pairs) {
-    brunt_free(pairs->pair);
-    brunt_free(pairs->mesh);
-    brunt_free(pairs->map.entry);
-}

@@ -19,3 +19,10 @@ typedef struct brunt_scratch {
     brunt_node_sums *node_sums; // of the slots of one grid
     size_t node_sums_capacity;
 } brunt_scratch;
+
+// Room for as many threads; all else is made where it is first wanted. No state: nothing in it lasts. BRUNT_OK, or
+// BRUNT_FAILED: out of memory.
+int brunt_scratch_make(brunt_scratch *scratch, int threads, brunt_error *error);
+void brunt_scratch_free(brunt_scratch *scratch, int threads);
+// Aborts where there is memory without a capacity, or more is in it than it holds.
+void brunt_scratch_validate(const brunt_scratch *scratch, int threads);

@@ -107,10 +107,7 @@ static int start(brunt_world *world, brunt_error *error) {
     const char *reason;
     if (brunt_fem_elements_all(world, 0, &bad, &reason))
         return brunt_fail(error, BRUNT_BAD_INPUT, "a mesh: %s", reason);
-    struct brunt_clock *clock = &world->clock;
-    clock->next_dt = clock->dt = clock->recent_step = clock->earlier_step = brunt_stable_step(world);
-    if (world->settings.fixed_step > 0) clock->dt = world->settings.fixed_step;
-    clock->dt_min = INFINITY;
+    brunt_clock_make(&world->clock, brunt_stable_step(world), world->settings.fixed_step);
     const brunt_books books = brunt_books_of(world);
     brunt_ledger_open(&world->ledger, &books);
     return BRUNT_OK;
@@ -178,10 +175,8 @@ static void find_transfers(brunt_transfers *t, const brunt_world_def *def) {
 
 // Bodies, and what each thread works in.
 static int make_room(brunt_world *world, int32_t bodies, brunt_error *error) {
-    const int threads = world->settings.threads;
     world->bodies.count = bodies;
-    if (BRUNT_NEW(world->scratch.points, threads, "threads with room to work", error) ||
-        BRUNT_NEW(world->scratch.meshes, threads, "threads with room to work", error) ||
+    if (brunt_scratch_make(&world->scratch, world->settings.threads, error) ||
         BRUNT_NEW(world->bodies.all, bodies, "bodies", error) ||
         BRUNT_NEW(world->bodies.mpm, bodies, "bodies", error) || BRUNT_NEW(world->bodies.fem, bodies, "bodies", error))
         return BRUNT_FAILED;
@@ -255,39 +250,12 @@ brunt_world *brunt_world_create(const brunt_world_def *given, brunt_error *error
 void brunt_world_destroy(brunt_world *world) {
     if (!world) return;
     brunt_implicit_free(world);
-    for (int i = 0; world->bodies.mpm && i < world->bodies.mpm_count; i++) brunt_body_free(&world->bodies.mpm[i]);
-    for (int t = 0; t < world->settings.threads; t++) {
-        if (world->scratch.points) brunt_workspace_free(&world->scratch.points[t]);
-        if (world->scratch.meshes) brunt_fem_workspace_free(&world->scratch.meshes[t]);
-    }
-    brunt_free(world->scratch.points);
-    brunt_free(world->scratch.meshes);
-    brunt_contact_workspace_free(world->scratch.grid_velocity);
-    brunt_point_touches_free(world->scratch.point_touches);
-    brunt_surface_free(&world->contact.surface);
-    brunt_constraints_free(&world->contact.constraints);
-    brunt_node_to_facet_free(world->contact.node_to_facet);
-    for (int r = 0; r < brunt_contact_row_count; r++)
-        if (brunt_contact_rows[r]->free) brunt_contact_rows[r]->free(world->contact.memory[r]);
-    brunt_load_step_free(&world->boundaries.sets);
-    brunt_node_sets_free(&world->boundaries.sets);
-    brunt_boundary_surfaces_free(&world->boundaries.surfaces);
-    brunt_damping_free(&world->boundaries.damping);
+    brunt_scratch_free(&world->scratch, world->settings.threads);
+    brunt_contact_free(&world->contact);
+    brunt_boundaries_free(&world->boundaries);
     brunt_erosion_free(&world->erosion);
-    for (int k = 0; world->bodies.fem && k < world->bodies.fem_count; k++) brunt_fem_free(&world->bodies.fem[k]);
-    brunt_free(world->bodies.all);
-    brunt_free(world->bodies.fem);
-    brunt_free(world->bodies.mesh_reports);
-    brunt_free(world->bodies.first_block);
-    brunt_free(world->bodies.first_array);
-    brunt_free(world->bodies.tasks.node);
-    brunt_free(world->bodies.tasks.element);
-    brunt_free(world->bodies.tasks.sums);
-    brunt_messages_free(&world->messages);
-    brunt_particle_dofs_free(&world->scratch.planes);
-    brunt_free(world->bodies.mpm);
-    brunt_free(world->boundaries.walls);
     brunt_pairs_free(&world->pairs);
-    brunt_free(world->scratch.node_sums);
+    brunt_bodies_free(&world->bodies);
+    brunt_messages_free(&world->messages);
     brunt_free(world);
 }

@@ -140,3 +140,6 @@ void brunt_plan_validate(const brunt_world *world);
 // What implicit steps keep beside the world, once its bodies are sorted. BRUNT_OK, or the code of what is wrong.
 int brunt_implicit_make(brunt_world *world, const brunt_world_def *def, brunt_error *error);
 void brunt_implicit_free(brunt_world *world);
+// Aborts where unknowns, terms, contact or matrices do not belong to each other and to what there is in the world.
+void brunt_implicit_validate(const struct brunt_implicit *implicit, const brunt_bodies *bodies,
+                             const brunt_boundaries *boundaries, int pairs);
