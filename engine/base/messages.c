@@ -3,6 +3,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 
+#include "base/error.h"
 #include "base/memory.h"
 
 enum { MOST = 64 };
@@ -17,3 +18,5 @@ void brunt_warn(brunt_messages *messages, const char *format, ...) {
 }
 
 void brunt_messages_free(brunt_messages *messages) { brunt_free(messages->text); }
+
+void brunt_messages_validate(const brunt_messages *m) { BRUNT_ASSERT(m->count >= 0 && (m->count == 0 || m->text)); }

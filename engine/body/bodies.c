@@ -11,6 +11,11 @@ const char *brunt_bodies_name(const brunt_bodies *bodies, int body) {
     return ref->ops->name(ref);
 }
 
+const brunt_material *brunt_bodies_material(const brunt_bodies *bodies, int body) {
+    const brunt_body_ref *ref = &bodies->all[body];
+    return ref->ops->material(ref);
+}
+
 int brunt_bodies_find(const brunt_bodies *bodies, const char *name) {
     int low = 0, high = bodies->count;
     while (low < high) {

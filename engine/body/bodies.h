@@ -75,6 +75,7 @@ typedef struct brunt_bodies {
 enum { BRUNT_BODY_ARRAYS = 2 };
 
 const char *brunt_bodies_name(const brunt_bodies *bodies, int body);
+const brunt_material *brunt_bodies_material(const brunt_bodies *bodies, int body);
 // The body of a name, BRUNT_NONE: there is none.
 int brunt_bodies_find(const brunt_bodies *bodies, const char *name);
 // Body `i` in the order that sums are taken in: points, then meshes, each by name.

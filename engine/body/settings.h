@@ -17,3 +17,8 @@ typedef struct brunt_settings {
     double end, energy_limit;           // [s], [-]
     double gravity[3], gravity_ramp;    // [m/s^2], [s]
 } brunt_settings;
+
+// Of a definition that has been looked over; `particles`: there are material points. Nothing to free, and no state:
+// they do not change.
+void brunt_settings_make(brunt_settings *settings, const brunt_world_def *def, bool particles);
+void brunt_settings_validate(const brunt_settings *settings); // aborts where one is out of its range

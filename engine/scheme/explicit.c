@@ -71,8 +71,9 @@ static double surface_nodes(const brunt_world *world, const brunt_body *body) {
 // ------------------------------------------------------------------------------------------ passes of other parts
 
 static int meet_surfaces(brunt_world *world, brunt_step *step, brunt_error *error) {
-    return brunt_surfaces_meet(world, step->gravity, step->kick, step->dt, error) ? brunt_fail_inner(world, NULL, error)
-                                                                                  : BRUNT_OK;
+    return brunt_surfaces_meet(world, step->gravity, step->kick, step->dt, error)
+               ? brunt_fail_inner(&world->clock, NULL, error)
+               : BRUNT_OK;
 }
 
 static int64_t all_eroded(const brunt_world *world) {
@@ -151,9 +152,9 @@ static int run_pass(brunt_world *world, int at, brunt_step *step, brunt_error *e
     const brunt_pass_row *row = world->plan.row[at];
     if (row->kind == BRUNT_PASS_INNER) return BRUNT_OK;
     const double units = row->units ? row->units(world, step->body) : 0;
-    brunt_pass_begin(world, world->plan.pass_of[at]);
+    brunt_pass_begin(&world->timing, world->plan.pass_of[at]);
     int status = row->run(world, step, error);
-    brunt_pass_end(world, units);
+    brunt_pass_end(&world->timing, units);
     return status;
 }
 
@@ -181,9 +182,9 @@ static int run_plan(brunt_world *world, double limit, brunt_error *error) {
 
 int brunt_world_step(brunt_world *world, double limit, brunt_error *error) {
     if (!world) return brunt_fail(error, BRUNT_BAD_INPUT, "there is no world to take a step of");
-    brunt_step_begin(world);
+    brunt_step_begin(&world->timing);
     int status = run_plan(world, limit, error);
-    brunt_step_end(world);
+    brunt_step_end(&world->timing);
     if (!status) BRUNT_VALIDATE(world);
     return status;
 }

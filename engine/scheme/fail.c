@@ -5,9 +5,9 @@
 #include "base/error.h"
 #include "scheme/scheme.h"
 
-int brunt_fail_step(const brunt_world *world, const brunt_body *body, brunt_error *error, const char *reason) {
+int brunt_fail_step(const struct brunt_clock *clock, const brunt_body *body, brunt_error *error, const char *reason) {
     if (!error) return BRUNT_FAILED;
-    error->time = world->clock.time;
+    error->time = clock->time;
     if (body)
         memcpy(error->body, body->name,
                sizeof error->body < sizeof body->name ? sizeof error->body : sizeof body->name);
@@ -17,14 +17,13 @@ int brunt_fail_step(const brunt_world *world, const brunt_body *body, brunt_erro
                  (long long)error->id, error->place[0], error->place[1], error->place[2]);
     else if (body)
         snprintf(where, sizeof where, "body '%s', ", body->name);
-    return brunt_fail(error, BRUNT_FAILED, "%stime %.9g s, step %.0f: %s", where, world->clock.time, world->clock.steps,
-                      reason);
+    return brunt_fail(error, BRUNT_FAILED, "%stime %.9g s, step %.0f: %s", where, clock->time, clock->steps, reason);
 }
 
-int brunt_fail_inner(const brunt_world *world, const brunt_body *body, brunt_error *error) {
+int brunt_fail_inner(const struct brunt_clock *clock, const brunt_body *body, brunt_error *error) {
     char reason[256];
     snprintf(reason, sizeof reason, "%.250s", error ? error->message : "");
-    return brunt_fail_step(world, body, error, reason);
+    return brunt_fail_step(clock, body, error, reason);
 }
 
 int brunt_fail_particle(const brunt_world *world, brunt_body *body, int64_t slot, brunt_error *error,
@@ -36,7 +35,7 @@ int brunt_fail_particle(const brunt_world *world, brunt_body *body, int64_t slot
             error->id = body->particles.id[s]; // padding copies the last one
         for (int a = 0; a < 3; a++) error->place[a] = a < world->settings.dimension ? (double)x[a][slot] : 0;
     }
-    return brunt_fail_step(world, body, error, reason);
+    return brunt_fail_step(&world->clock, body, error, reason);
 }
 
 int brunt_fail_place(const brunt_world *world, int index, const double x[3], brunt_error *error, const char *reason) {
@@ -49,11 +48,11 @@ int brunt_fail_place(const brunt_world *world, int index, const double x[3], bru
                       x[1], x[2], world->clock.time, world->clock.steps, reason);
 }
 
-int brunt_fail_element(const brunt_world *world, const brunt_fem_body *fem, int32_t slot, brunt_error *error,
+int brunt_fail_element(const struct brunt_clock *clock, const brunt_fem_body *fem, int32_t slot, brunt_error *error,
                        const char *reason) {
     if (!error) return BRUNT_FAILED;
     const int nodes = fem->traits->nodes;
-    error->time = world->clock.time;
+    error->time = clock->time;
     memcpy(error->body, fem->name, sizeof error->body < sizeof fem->name ? sizeof error->body : sizeof fem->name);
     for (int32_t s = slot; s >= 0 && (error->id = fem->element_id[s]) < 0; s--) {} // padding copies the last one
     for (int a = 0; a < 3; a++) {
@@ -65,8 +64,8 @@ int brunt_fail_element(const brunt_world *world, const brunt_fem_body *fem, int3
     const char *hint = strstr(reason, "inside out") ? "; erosion.inverted takes such elements out instead" : "";
     return brunt_fail(error, BRUNT_FAILED,
                       "body '%s', element %lld at (%.6g, %.6g, %.6g) m, time %.9g s, step %.0f: %s%s", fem->name,
-                      (long long)error->id + 1, error->place[0], error->place[1], error->place[2], world->clock.time,
-                      world->clock.steps, reason, hint);
+                      (long long)error->id + 1, error->place[0], error->place[1], error->place[2], clock->time,
+                      clock->steps, reason, hint);
 }
 
 static double element_size(const brunt_fem_body *fem, int32_t slot) {
@@ -91,7 +90,7 @@ int brunt_fail_turned(const brunt_world *world, brunt_error *error, const char *
         const brunt_fem_body *fem = &world->bodies.fem[k];
         for (int32_t s = 0; s < fem->slots; s++)
             if (fem->element_id[s] >= 0 && element_size(fem, s) <= 0)
-                return brunt_fail_element(world, fem, s, error, reason);
+                return brunt_fail_element(&world->clock, fem, s, error, reason);
     }
     for (int i = 0; i < world->bodies.mpm_count; i++) {
         brunt_body *body = &world->bodies.mpm[i];

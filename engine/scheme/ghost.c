@@ -67,9 +67,9 @@ static int add_body(brunt_ghost *g, const brunt_bodies *bodies, int i, brunt_err
     return BRUNT_OK;
 }
 
-static bool is_held(const brunt_world *world, const brunt_body *body) {
-    for (int k = 0; k < world->boundaries.surfaces.count; k++)
-        if (brunt_boundary_surface_acts(&world->boundaries.surfaces.surface[k], body)) return true;
+static bool is_held(const brunt_boundaries *boundaries, const brunt_body *body) {
+    for (int k = 0; k < boundaries->surfaces.count; k++)
+        if (brunt_boundary_surface_acts(&boundaries->surfaces.surface[k], body)) return true;
     return false;
 }
 
@@ -82,7 +82,8 @@ int brunt_ghost_step(brunt_ghost *g, const brunt_world *world, const brunt_unkno
     memset(g->seen, 0, (size_t)unknowns->count);
     g->first[0] = 0;
     for (int i = 0; i < world->bodies.mpm_count; i++)
-        if (is_held(world, &world->bodies.mpm[i]) && add_body(g, &world->bodies, i, error)) return BRUNT_FAILED;
+        if (is_held(&world->boundaries, &world->bodies.mpm[i]) && add_body(g, &world->bodies, i, error))
+            return BRUNT_FAILED;
     return BRUNT_OK;
 }
 

@@ -40,12 +40,13 @@ static int choose(brunt_world *world, brunt_step *step, brunt_error *error) {
     const double stop = fmin(step->limit > now->time ? step->limit : INFINITY, world->settings.end);
     const bool still = world->plan.implicit->still;
     const double left = stop - now->time, wanted = still ? brunt_static_wanted(world) : now->next_dt;
-    if (!(left > 0)) return brunt_fail_step(world, NULL, error, "the end has been reached, there is no step to take");
+    if (!(left > 0))
+        return brunt_fail_step(&world->clock, NULL, error, "the end has been reached, there is no step to take");
     step->dt = wanted >= left * (1 - 1e-9)     ? left
                : !still && left < 1e6 * wanted ? left / ceil(left / wanted * (1 - 1e-9))
                                                : wanted;
     if (now->time + step->dt == now->time)
-        return brunt_fail_step(world, NULL, error, "the step is too small to advance the time");
+        return brunt_fail_step(&world->clock, NULL, error, "the step is too small to advance the time");
     step->kick = 0; // particles give the grid their mass and momentum, and no forces
     brunt_step_open(world, step);
     return BRUNT_OK;
@@ -58,7 +59,7 @@ static int commit_meshes(brunt_world *world, brunt_error *error) {
     for (int k = 0; k < world->bodies.fem_count; k++) {
         brunt_fem_body *fem = &world->bodies.fem[k];
         if (brunt_fem_commit(m->fem[k], &m->team, m->field.u, brunt_implicit_velocity(m), error))
-            return brunt_fail_inner(world, NULL, error);
+            return brunt_fail_inner(&world->clock, NULL, error);
         world->ledger.fem_kinetic += brunt_fem_audit(fem).kinetic;
         for (int32_t b = 0; b < fem->block_count; b++) stored += fem->report[b].hourglass_stored;
     }
@@ -77,7 +78,8 @@ static int commit_points(brunt_world *world, brunt_step *step, brunt_error *erro
     for (int i = 0; i < world->bodies.mpm_count; i++) {
         brunt_body *body = &world->bodies.mpm[i];
         brunt_mpm_result result;
-        if (brunt_mpm_commit(m->mpm[i], &m->team, &motion, &result, error)) return brunt_fail_inner(world, NULL, error);
+        if (brunt_mpm_commit(m->mpm[i], &m->team, &motion, &result, error))
+            return brunt_fail_inner(&world->clock, NULL, error);
         step->kinetic += result.kinetic;
         body->speed = result.speed;
     }
@@ -87,8 +89,8 @@ static int commit_points(brunt_world *world, brunt_step *step, brunt_error *erro
 // The step becomes that of the bodies.
 static int commit(brunt_world *world, brunt_step *step, brunt_error *error) {
     struct brunt_implicit *m = world->plan.implicit;
-    m->team.timer = brunt_pass_timer(world);
-    if (brunt_implicit_book(world, step, error)) return brunt_fail_inner(world, NULL, error);
+    m->team.timer = brunt_pass_timer(&world->timing);
+    if (brunt_implicit_book(world, step, error)) return brunt_fail_inner(&world->clock, NULL, error);
     const int status = commit_meshes(world, error);
     if (status) return status;
     brunt_newton_counts_add(&world->clock.newton, &m->tried);

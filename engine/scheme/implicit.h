@@ -130,7 +130,7 @@ int brunt_static_begin(brunt_world *world, brunt_error *error);
 double brunt_static_unbalance(void *context, const double *gradient);
 // The step to try, in parts of a load step; the least part of one that is tried.
 double brunt_static_wanted(const brunt_world *world);
-double brunt_static_least(const brunt_world *world);
+double brunt_static_least(const brunt_settings *settings);
 // Books the work of forces that are unbalanced where the step begins: particles on a new grid bring them, the
 // transfer's; meshes only have them where a run begins, and what they settle by is lost to the scheme.
 void brunt_static_settle(brunt_world *world);
@@ -149,7 +149,7 @@ void brunt_implicit_book_drag(brunt_world *world);
 // What is asked of bodies from here on.
 void brunt_implicit_ask(const struct brunt_implicit *m, brunt_trial_part part);
 // Finds the passes that Newton's phases are.
-void brunt_implicit_follow(brunt_world *world);
+void brunt_implicit_follow(brunt_plan *plan);
 
 // --- implicit_account.c
 // Velocities at the end; kinetic energy, work and impulses of the step, before it is committed. BRUNT_OK, or

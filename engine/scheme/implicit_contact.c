@@ -17,8 +17,8 @@
 // ------------------------------------------------------------------------------------------ stiffness and distance
 
 // [Pa] Young's modulus, or of what has none that of its waves.
-static double young(const brunt_world_def *def, const brunt_world *world, int body) {
-    const brunt_material *material = brunt_world_material(world, body);
+static double young(const brunt_world_def *def, const brunt_bodies *bodies, int body) {
+    const brunt_material *material = brunt_bodies_material(bodies, body);
     for (int32_t m = 0; m < def->material_count; m++) {
         const brunt_material_def *from = &def->materials[m];
         const brunt_model *model = brunt_find_strength(from->strength);
@@ -30,16 +30,15 @@ static double young(const brunt_world_def *def, const brunt_world *world, int bo
 }
 
 // [m] shortest edge of a mesh at the start, or spacing of particles.
-static double smallest_size(const brunt_world *world, int body) {
-    const brunt_body_ref *ref = &world->bodies.all[body];
-    return ref->mpm ? ref->mpm->spacing
-                    : world->bodies.mesh_reports[ref->fem - world->bodies.fem].quality.shortest_edge;
+static double smallest_size(const brunt_bodies *bodies, int body) {
+    const brunt_body_ref *ref = &bodies->all[body];
+    return ref->mpm ? ref->mpm->spacing : bodies->mesh_reports[ref->fem - bodies->fem].quality.shortest_edge;
 }
 
-static double slowest_wave(const brunt_world *world) {
+static double slowest_wave(const brunt_bodies *bodies) {
     double slowest = INFINITY;
-    for (int b = 0; b < world->bodies.count; b++)
-        slowest = fmin(slowest, (double)brunt_world_material(world, b)->wave_speed);
+    for (int b = 0; b < bodies->count; b++)
+        slowest = fmin(slowest, (double)brunt_bodies_material(bodies, b)->wave_speed);
     return slowest;
 }
 
@@ -64,10 +63,10 @@ static void list_pairs(brunt_implicit_contact *c, const brunt_world *world) {
         }
 }
 
-static void list_planes(brunt_implicit_contact *c, const brunt_world *world) {
+static void list_planes(brunt_implicit_contact *c, const brunt_boundaries *boundaries) {
     c->plane_count = 0;
-    for (int32_t w = 0; w < world->boundaries.wall_count; w++) {
-        if (!brunt_boundary_pushes(&world->boundaries.walls[w])) continue;
+    for (int32_t w = 0; w < boundaries->wall_count; w++) {
+        if (!brunt_boundary_pushes(&boundaries->walls[w])) continue;
         if (c->plane) c->plane_wall[c->plane_count] = w;
         c->plane_count++;
     }
@@ -75,7 +74,7 @@ static void list_planes(brunt_implicit_contact *c, const brunt_world *world) {
 
 static int make_rooms(brunt_implicit_contact *c, const brunt_world *world, brunt_error *error) {
     list_pairs(c, world);
-    list_planes(c, world);
+    list_planes(c, &world->boundaries);
     const size_t pairs = (size_t)c->pair_count + 1, planes = (size_t)c->plane_count + 1;
     static const char of_pairs[] = "pairs of bodies and planes", of_planes[] = "planes that push";
     if (BRUNT_NEW(c->pair, pairs, of_pairs, error) || BRUNT_NEW(c->pair_account, pairs, of_pairs, error) ||
@@ -90,37 +89,37 @@ static int make_rooms(brunt_implicit_contact *c, const brunt_world *world, brunt
     for (int k = 0; k < world->bodies.fem_count; k++)
         c->half[world->bodies.fem[k].index] = 0.5 * (double)world->bodies.fem[k].contact_thickness;
     list_pairs(c, world);
-    list_planes(c, world);
+    list_planes(c, &world->boundaries);
     return BRUNT_OK;
 }
 
 // A tenth of the finest size among bodies that meet something, unless the definition says.
-static double contact_distance(const brunt_implicit_contact *c, const brunt_world *world,
+static double contact_distance(const brunt_implicit_contact *c, const brunt_bodies *bodies,
                                const brunt_contact_def *def) {
     double finest = INFINITY;
     if (def->distance > 0) return def->distance;
     for (int32_t p = 0; p < c->pair_count; p++)
-        finest = fmin(finest, fmin(smallest_size(world, c->pair[p].a), smallest_size(world, c->pair[p].b)));
+        finest = fmin(finest, fmin(smallest_size(bodies, c->pair[p].a), smallest_size(bodies, c->pair[p].b)));
     for (int32_t q = 0; q < c->plane_count; q++)
-        for (int b = 0; b < world->bodies.count; b++)
-            if (c->meets[q][b]) finest = fmin(finest, smallest_size(world, b));
+        for (int b = 0; b < bodies->count; b++)
+            if (c->meets[q][b]) finest = fmin(finest, smallest_size(bodies, b));
     return brunt_barrier_default_distance(finest);
 }
 
-static void fill_pairs(brunt_implicit_contact *c, const brunt_world *world, const brunt_world_def *def, double slip) {
+static void fill_pairs(brunt_implicit_contact *c, const brunt_bodies *bodies, const brunt_world_def *def, double slip) {
     const brunt_contact_def *contact = &def->contact;
     for (int32_t p = 0; p < c->pair_count; p++) {
         brunt_barrier_pair *pair = &c->pair[p];
         pair->distance = c->distance;
         pair->slip_speed = slip;
         pair->offset = pair->a == pair->b ? 0 : c->half[pair->a] + c->half[pair->b];
-        pair->stiffness = contact->stiffness > 0
-                              ? contact->stiffness
-                              : brunt_barrier_default_stiffness(young(def, world, pair->a), young(def, world, pair->b));
-        brunt_barrier_shares(pair, world->bodies.all[pair->a].fem != NULL, world->bodies.all[pair->b].fem != NULL);
+        pair->stiffness = contact->stiffness > 0 ? contact->stiffness
+                                                 : brunt_barrier_default_stiffness(young(def, bodies, pair->a),
+                                                                                   young(def, bodies, pair->b));
+        brunt_barrier_shares(pair, bodies->all[pair->a].fem != NULL, bodies->all[pair->b].fem != NULL);
         for (int side = 0; side < 2; side++) {
-            const brunt_body *mpm = world->bodies.all[side ? pair->b : pair->a].mpm;
-            if (mpm) c->has_points[mpm - world->bodies.mpm] = true;
+            const brunt_body *mpm = bodies->all[side ? pair->b : pair->a].mpm;
+            if (mpm) c->has_points[mpm - bodies->mpm] = true;
         }
     }
 }
@@ -131,7 +130,7 @@ static void fill_planes(brunt_implicit_contact *c, const brunt_world *world, con
         double softest = INFINITY;
         for (int b = 0; b < world->bodies.count; b++) {
             if (!c->meets[q][b]) continue;
-            softest = fmin(softest, young(def, world, b));
+            softest = fmin(softest, young(def, &world->bodies, b));
             const brunt_body *mpm = world->bodies.all[b].mpm;
             if (mpm) c->has_points[mpm - world->bodies.mpm] = true;
         }
@@ -173,11 +172,11 @@ static void add_surface(brunt_implicit_contact *c, const brunt_fem_body *fem, co
     c->facet_count += faces->count;
 }
 
-static int walk_surfaces(brunt_implicit_contact *c, const brunt_world *world, brunt_error *error) {
+static int walk_surfaces(brunt_implicit_contact *c, const brunt_bodies *bodies, brunt_error *error) {
     int32_t base = 0; // block nodes of meshes come first, body by body
     c->vertex_count = c->facet_count = 0;
-    for (int k = 0; k < world->bodies.fem_count; k++) {
-        const brunt_fem_body *fem = &world->bodies.fem[k];
+    for (int k = 0; k < bodies->fem_count; k++) {
+        const brunt_fem_body *fem = &bodies->fem[k];
         int32_t *number;
         brunt_faces faces;
         if (BRUNT_NEW(number, fem->node_count + 1, "numbers of nodes in a surface", error)) return BRUNT_FAILED;
@@ -195,7 +194,7 @@ static int walk_surfaces(brunt_implicit_contact *c, const brunt_world *world, br
 }
 
 static int make_surfaces(brunt_implicit_contact *c, const brunt_world *world, brunt_error *error) {
-    int status = walk_surfaces(c, world, error);
+    int status = walk_surfaces(c, &world->bodies, error);
     if (status) return status;
     const size_t vertices = (size_t)c->vertex_count + 1;
     static const char of_surfaces[] = "vertices of surfaces";
@@ -203,7 +202,7 @@ static int make_surfaces(brunt_implicit_contact *c, const brunt_world *world, br
         BRUNT_NEW(c->body, vertices, of_surfaces, error) || BRUNT_NEW(c->node, vertices, of_surfaces, error) ||
         BRUNT_NEW(c->facet, c->facet_count + 1, "facets of surfaces", error))
         return BRUNT_FAILED;
-    if ((status = walk_surfaces(c, world, error))) return status;
+    if ((status = walk_surfaces(c, &world->bodies, error))) return status;
     const brunt_barrier_mesh mesh = {.dim = world->settings.dimension,
                                      .vertex_count = c->vertex_count,
                                      .facet_count = c->facet_count,
@@ -270,12 +269,12 @@ static int check_start(const brunt_implicit_contact *c, const brunt_world *world
 }
 
 // Material points that may meet something, and how many nodes they have in all.
-static int count_points(const brunt_implicit_contact *c, const brunt_world *world, int32_t *points, int64_t *nodes,
+static int count_points(const brunt_implicit_contact *c, const brunt_bodies *bodies, int32_t *points, int64_t *nodes,
                         brunt_error *error) {
     int64_t count = 0;
     *nodes = 0;
-    for (int i = 0; i < world->bodies.mpm_count; i++) {
-        const brunt_body *body = &world->bodies.mpm[i];
+    for (int i = 0; i < bodies->mpm_count; i++) {
+        const brunt_body *body = &bodies->mpm[i];
         if (!c->has_points[i]) continue;
         count += body->particles.count;
         *nodes += body->particles.count * (int64_t)pow(body->grid.order + 1, body->grid.dim);
@@ -285,10 +284,10 @@ static int count_points(const brunt_implicit_contact *c, const brunt_world *worl
     return brunt_fail(error, BRUNT_FAILED, "there are more than %d material points in contact", INT32_MAX - 1);
 }
 
-static int make_points(brunt_implicit_contact *c, const brunt_world *world, int32_t *count, int64_t *nodes,
+static int make_points(brunt_implicit_contact *c, const brunt_bodies *bodies, int32_t *count, int64_t *nodes,
                        brunt_error *error) {
     static const char points[] = "points in contact";
-    if (count_points(c, world, count, nodes, error)) return BRUNT_FAILED;
+    if (count_points(c, bodies, count, nodes, error)) return BRUNT_FAILED;
     const size_t n = (size_t)*count + 1;
     if (BRUNT_ROOM(c->x, n, 0, points, error) || BRUNT_ROOM(c->area, n, 0, points, error) ||
         BRUNT_ROOM(c->owner, n, 0, points, error))
@@ -297,22 +296,22 @@ static int make_points(brunt_implicit_contact *c, const brunt_world *world, int3
 }
 
 // Material points as they begin, which nothing moves yet.
-static int place_points(brunt_implicit_contact *c, const brunt_world *world, brunt_error *error) {
+static int place_points(brunt_implicit_contact *c, const brunt_bodies *bodies, brunt_error *error) {
     int64_t nodes;
     int32_t count;
-    if (make_points(c, world, &count, &nodes, error)) return BRUNT_FAILED;
+    if (make_points(c, bodies, &count, &nodes, error)) return BRUNT_FAILED;
     const size_t n = (size_t)count + 1;
     memset(c->first, 0, (n + 1) * sizeof *c->first);
     c->point_count = 0;
-    for (int i = 0; i < world->bodies.mpm_count; i++) {
-        brunt_particles *p = &world->bodies.mpm[i].particles;
+    for (int i = 0; i < bodies->mpm_count; i++) {
+        brunt_particles *p = &bodies->mpm[i].particles;
         real *const *x = brunt_field(p, BRUNT_FIELD_position);
         const real *volume = brunt_field(p, BRUNT_FIELD_reference_volume)[0];
         for (int64_t s = 0; c->has_points[i] && s < p->slots; s++) {
             if (!(volume[s] > 0)) continue; // padding
             for (int a = 0; a < 3; a++) c->x[c->point_count][a] = a < p->dim ? (double)x[a][s] : 0;
             c->area[c->point_count] = brunt_barrier_particle_area(p->dim, (double)volume[s]);
-            c->owner[c->point_count++] = world->bodies.mpm[i].index;
+            c->owner[c->point_count++] = bodies->mpm[i].index;
         }
     }
     return BRUNT_OK;
@@ -323,7 +322,7 @@ static int place_points(brunt_implicit_contact *c, const brunt_world *world, bru
 static int look_at_start(brunt_implicit_contact *c, const brunt_world *world, brunt_barrier_report *nearest,
                          brunt_error *error) {
     const brunt_team alone = {.threads = 1};
-    const int status = place_points(c, world, error);
+    const int status = place_points(c, &world->bodies, error);
     if (status) return status;
     for (int32_t q = 0; q < c->plane_count; q++)
         memcpy(c->plane[q].origin, world->boundaries.walls[c->plane_wall[q]].plane.point, sizeof c->plane[q].origin);
@@ -365,12 +364,12 @@ int brunt_implicit_contact_make(brunt_implicit_contact *c, brunt_world *world, c
                                 brunt_error *error) {
     int status = make_rooms(c, world, error);
     if (status || c->pair_count + c->plane_count == 0) return status;
-    const double slip = def->contact.slip_speed > 0 ? def->contact.slip_speed : 1e-3 * slowest_wave(world);
+    const double slip = def->contact.slip_speed > 0 ? def->contact.slip_speed : 1e-3 * slowest_wave(&world->bodies);
     for (int32_t q = 0; q < c->plane_count; q++)
         for (int b = 0; b < world->bodies.count; b++)
             c->meets[q][b] = plane_meets(&world->boundaries.walls[c->plane_wall[q]], b);
-    c->distance = contact_distance(c, world, &def->contact);
-    fill_pairs(c, world, def, slip);
+    c->distance = contact_distance(c, &world->bodies, &def->contact);
+    fill_pairs(c, &world->bodies, def, slip);
     fill_planes(c, world, def, slip);
     if ((status = check_start(c, world, def, error))) return status;
     if (!(c->barrier = brunt_barrier_make(error))) return BRUNT_FAILED;
@@ -466,19 +465,19 @@ static void add_points(const point_job *job, int32_t block_index, int32_t point)
     }
 }
 
-int brunt_implicit_contact_points(brunt_implicit_contact *c, const brunt_world *world, const brunt_unknowns *u,
+int brunt_implicit_contact_points(brunt_implicit_contact *c, const brunt_bodies *bodies, const brunt_unknowns *u,
                                   brunt_error *error) {
     if (!c->barrier) return BRUNT_OK;
     int64_t nodes;
     int32_t count;
-    if (make_points(c, world, &count, &nodes, error) ||
+    if (make_points(c, bodies, &count, &nodes, error) ||
         BRUNT_ROOM(c->point_node, (size_t)nodes + 1, 0, "nodes of points in contact", error) ||
         BRUNT_ROOM(c->weight, (size_t)nodes + 1, 0, "nodes of points in contact", error))
         return BRUNT_FAILED;
     c->first[0] = 0;
     c->point_count = 0;
-    for (int i = 0; i < world->bodies.mpm_count; i++) {
-        const point_job job = {.c = c, .body = &world->bodies.mpm[i], .number = u->number[i]};
+    for (int i = 0; i < bodies->mpm_count; i++) {
+        const point_job job = {.c = c, .body = &bodies->mpm[i], .number = u->number[i]};
         for (int32_t b = 0; c->has_points[i] && b < job.body->grid.block_count; b++) {
             add_points(&job, b, c->point_count);
             c->point_count += job.body->grid.blocks[b].count;

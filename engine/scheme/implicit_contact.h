@@ -42,7 +42,7 @@ void brunt_implicit_contact_free(brunt_implicit_contact *c);
 void brunt_implicit_contact_validate(const brunt_implicit_contact *c, int bodies, int walls, int pairs);
 size_t brunt_implicit_contact_bytes(const brunt_implicit_contact *c);
 // Places and weights of a step, whose unknowns have numbers. BRUNT_OK, or BRUNT_FAILED.
-int brunt_implicit_contact_points(brunt_implicit_contact *c, const brunt_world *world, const brunt_unknowns *u,
+int brunt_implicit_contact_points(brunt_implicit_contact *c, const brunt_bodies *bodies, const brunt_unknowns *u,
                                   brunt_error *error);
 // How a step is integrated, as far as friction asks.
 typedef struct brunt_contact_rule {

@@ -204,18 +204,18 @@ static int go_and_minimise(struct brunt_implicit *m, brunt_newton_report *report
 static void follow_phase(void *context, brunt_newton_phase phase) {
     struct brunt_implicit *m = context;
     if (m->world->timing.pass == m->phase[phase]) return;
-    brunt_pass_end(m->world, 0);
-    brunt_pass_begin(m->world, m->phase[phase]);
-    m->team.timer = brunt_pass_timer(m->world);
+    brunt_pass_end(&m->world->timing, 0);
+    brunt_pass_begin(&m->world->timing, m->phase[phase]);
+    m->team.timer = brunt_pass_timer(&m->world->timing);
 }
 
-void brunt_implicit_follow(brunt_world *world) {
+void brunt_implicit_follow(brunt_plan *plan) {
     static const char *const names[] = {"evaluate", "matrix", "solve", "limit", "search"};
     _Static_assert(BRUNT_COUNT(names) == BRUNT_NEWTON_PHASES, "a pass for each phase");
-    struct brunt_implicit *m = world->plan.implicit;
-    for (int p = 0; p < world->plan.pass_count; p++)
+    struct brunt_implicit *m = plan->implicit;
+    for (int p = 0; p < plan->pass_count; p++)
         for (int k = 0; k < BRUNT_NEWTON_PHASES; k++)
-            if (!strcmp(world->plan.pass[p]->name, names[k])) m->phase[k] = p;
+            if (!strcmp(plan->pass[p]->name, names[k])) m->phase[k] = p;
     m->options.phase = follow_phase;
     m->options.context = m;
 }
@@ -239,9 +239,9 @@ static int fail_try(brunt_world *world, double wanted, const brunt_newton_report
                  "the equilibrium of the loads at %.6g is unstable, it buckles, snaps through or turns over; that at "
                  "%.6g is stable (down to a part %.3g of a load step, newton.cut): %s",
                  world->clock.time + m->dt, world->clock.time, m->dt / world->settings.fixed_step, why);
-        return brunt_fail_step(world, NULL, error, reason);
+        return brunt_fail_step(&world->clock, NULL, error, reason);
     }
-    if (dof < 0) return brunt_fail_step(world, NULL, error, why);
+    if (dof < 0) return brunt_fail_step(&world->clock, NULL, error, why);
     if (m->still)
         snprintf(tried, sizeof tried, "a part %.4g of a load step", m->dt / world->settings.fixed_step);
     else
@@ -331,8 +331,8 @@ int brunt_pass_newton(brunt_world *world, brunt_step *step, brunt_error *error) 
     const int own = world->timing.pass;
     int status = BRUNT_OK;
     double dt = step->dt;
-    m->team = (brunt_team){.threads = world->settings.threads, .timer = brunt_pass_timer(world)};
-    const double least = m->still ? brunt_static_least(world) : ldexp(dt, -world->settings.newton.cut);
+    m->team = (brunt_team){.threads = world->settings.threads, .timer = brunt_pass_timer(&world->timing)};
+    const double least = m->still ? brunt_static_least(&world->settings) : ldexp(dt, -world->settings.newton.cut);
     for (int cut = 0; cut == 0 || dt >= least; cut++, dt *= 0.5) {
         brunt_error tried = {.id = -1};
         status = try_step(world, dt, &report, &tried);
@@ -342,8 +342,8 @@ int brunt_pass_newton(brunt_world *world, brunt_step *step, brunt_error *error) 
         sum.cuts += 1;
     }
     if (world->timing.pass != own) {
-        brunt_pass_end(world, 0);
-        brunt_pass_begin(world, own);
+        brunt_pass_end(&world->timing, 0);
+        brunt_pass_begin(&world->timing, own);
     }
     sum.steps = 1, sum.iterations_worst = sum.iterations;
     m->tried = sum;

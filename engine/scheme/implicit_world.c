@@ -163,7 +163,7 @@ static void set_options(brunt_world *world, struct brunt_implicit *m) {
     const brunt_newton_def *newton = &world->settings.newton;
     double slowest = INFINITY;
     for (int b = 0; b < world->bodies.count; b++)
-        slowest = fmin(slowest, (double)brunt_world_material(world, b)->wave_speed);
+        slowest = fmin(slowest, (double)brunt_bodies_material(&world->bodies, b)->wave_speed);
     m->options = brunt_newton_defaults();
     m->options.tolerance = m->tolerance = newton->tolerance * slowest;
     m->options.iterations = newton->iterations;
@@ -200,14 +200,15 @@ int brunt_implicit_make(brunt_world *world, const brunt_world_def *def, brunt_er
         return BRUNT_FAILED;
     set_options(world, m);
     if (measure_systems(world, &m->size, error)) return BRUNT_FAILED;
-    for (int b = 0; b < bodies->count; b++) m->forces = m->forces || brunt_world_material(world, b)->differences;
+    for (int b = 0; b < bodies->count; b++)
+        m->forces = m->forces || brunt_bodies_material(&world->bodies, b)->differences;
     if (m->forces && brunt_solver_iterates(world->settings.newton.solver))
         return brunt_fail(error, BRUNT_BAD_INPUT,
                           "newton.solver: conjugate gradients solve symmetric systems, and a material without a "
                           "potential has others: "
                           "auto or direct is wanted");
     choose_solver(m, world->settings.newton.solver);
-    brunt_implicit_follow(world);
+    brunt_implicit_follow(&world->plan);
     const int status = make_bodies(world, m, error);
     return status ? status : make_contact(world, m, def, error);
 }
@@ -224,11 +225,11 @@ void brunt_implicit_validate(const struct brunt_implicit *m, const brunt_bodies 
     brunt_newton_validate(&m->newton);
 }
 
-void brunt_implicit_free(brunt_world *world) {
-    struct brunt_implicit *m = world->plan.implicit;
+void brunt_implicit_free(brunt_plan *plan, const brunt_bodies *bodies) {
+    struct brunt_implicit *m = plan->implicit;
     if (!m) return;
-    for (int k = 0; m->fem && k < world->bodies.fem_count; k++) brunt_fem_potential_free(m->fem[k]);
-    for (int i = 0; m->mpm && i < world->bodies.mpm_count; i++) brunt_mpm_potential_free(m->mpm[i]);
+    for (int k = 0; m->fem && k < bodies->fem_count; k++) brunt_fem_potential_free(m->fem[k]);
+    for (int i = 0; m->mpm && i < bodies->mpm_count; i++) brunt_mpm_potential_free(m->mpm[i]);
     brunt_fields *f = &m->field;
     double *const fields[] = {f->u,         f->v,           f->aim,      f->acceleration, f->load,  f->force_before,
                               f->gradient,  f->contact,     f->step,     f->zero,         m->moved, f->pull,
@@ -239,22 +240,22 @@ void brunt_implicit_free(brunt_world *world) {
     brunt_implicit_contact_free(&m->contact);
     brunt_boundary_rows_free(&m->rows);
     brunt_ghost_free(&m->ghost);
-    brunt_unknowns_free(&m->unknowns, &world->bodies);
+    brunt_unknowns_free(&m->unknowns, bodies);
     brunt_free(m->fem);
     brunt_free(m->mpm);
     brunt_free(m->term);
     brunt_free(m);
-    world->plan.implicit = NULL;
+    plan->implicit = NULL;
 }
 
 // ------------------------------------------------------------------------------------------ the pass of numbers
 
-static int reserve(const brunt_world *world, struct brunt_implicit *m, brunt_error *error) {
+static int reserve(const brunt_bodies *bodies, struct brunt_implicit *m, brunt_error *error) {
     brunt_fields *f = &m->field;
     const size_t n = (size_t)brunt_implicit_components(m) + 1;
     size_t most = 1;
-    for (int i = 0; i < world->bodies.mpm_count; i++)
-        if ((size_t)world->bodies.mpm[i].particles.slots > most) most = (size_t)world->bodies.mpm[i].particles.slots;
+    for (int i = 0; i < bodies->mpm_count; i++)
+        if ((size_t)bodies->mpm[i].particles.slots > most) most = (size_t)bodies->mpm[i].particles.slots;
     const bool failed =
         m->still ? BRUNT_ROOM(f->stiffness, n, 0, "unknowns", error) || BRUNT_ROOM(f->grounded, n, 0, "unknowns", error)
                  : BRUNT_ROOM(f->v, n, 0, "unknowns", error) || BRUNT_ROOM(f->aim, n, 0, "unknowns", error) ||
@@ -269,15 +270,16 @@ static int reserve(const brunt_world *world, struct brunt_implicit *m, brunt_err
 int brunt_pass_number(brunt_world *world, brunt_step *step, brunt_error *error) {
     (void)step;
     struct brunt_implicit *m = world->plan.implicit;
-    if (brunt_unknowns_number(&m->unknowns, world, error) || reserve(world, m, error) ||
+    if (brunt_unknowns_number(&m->unknowns, world, error) || reserve(&world->bodies, m, error) ||
         brunt_implicit_drag_number(m, world, error))
-        return brunt_fail_inner(world, NULL, error);
+        return brunt_fail_inner(&world->clock, NULL, error);
     m->loads.force = m->field.load, m->inertia.aim = m->field.aim;
     m->proximal.stiffness = m->field.stiffness, m->proximal.grounded = m->field.grounded;
     if (m->holds && brunt_ghost_step(&m->ghost, world, &m->unknowns, error))
-        return brunt_fail_inner(world, NULL, error);
-    return brunt_implicit_contact_points(&m->contact, world, &m->unknowns, error) ? brunt_fail_inner(world, NULL, error)
-                                                                                  : BRUNT_OK;
+        return brunt_fail_inner(&world->clock, NULL, error);
+    return brunt_implicit_contact_points(&m->contact, &world->bodies, &m->unknowns, error)
+               ? brunt_fail_inner(&world->clock, NULL, error)
+               : BRUNT_OK;
 }
 
 // ------------------------------------------------------------------------------------------ what is read of it
@@ -304,8 +306,8 @@ size_t brunt_implicit_bytes(const brunt_world *world) {
            f->stiffness_capacity + f->grounded_capacity;
 }
 
-size_t brunt_implicit_matrix_bytes(const brunt_world *world) {
-    const brunt_newton *n = &world->plan.implicit->newton;
+size_t brunt_implicit_matrix_bytes(const brunt_plan *plan) {
+    const brunt_newton *n = &plan->implicit->newton;
     const brunt_block_matrix *a = &n->matrix;
     return a->first_capacity + a->column_capacity + a->diagonal_capacity + a->value_capacity + n->gradient_capacity +
            n->step_capacity + n->trial_capacity + brunt_matrix_free_bytes(&n->free);

@@ -115,7 +115,7 @@ static brunt_kick drag_of(brunt_world *world, const brunt_step *step) {
     return (brunt_kick){.dt = step->kick,
                         .gravity = {gravity[0], gravity[1], gravity[2]},
                         .threads = world->settings.threads,
-                        .timer = brunt_pass_timer(world)};
+                        .timer = brunt_pass_timer(&world->timing)};
 }
 
 int brunt_pass_kick(brunt_world *world, brunt_step *step, brunt_error *error) {
@@ -125,7 +125,8 @@ int brunt_pass_kick(brunt_world *world, brunt_step *step, brunt_error *error) {
     if (world->boundaries.sets.act || world->boundaries.damping.active)
         brunt_loads_begin(&world->boundaries.sets, &world->bodies, world->clock.time, step->kick);
     if (world->boundaries.damping.active) brunt_damping_begin(&world->boundaries.damping, &world->bodies, &drag);
-    brunt_parallel(world->settings.threads, world->bodies.tasks.node_count, 1, kick_nodes, &j, brunt_pass_timer(world));
+    brunt_parallel(world->settings.threads, world->bodies.tasks.node_count, 1, kick_nodes, &j,
+                   brunt_pass_timer(&world->timing));
     return BRUNT_OK;
 }
 
@@ -136,7 +137,7 @@ int brunt_pass_groups(brunt_world *world, brunt_step *step, brunt_error *error) 
     char reason[200];
     snprintf(reason, sizeof reason, "boundaries (%s): the gas's volume has become %.4g m^3", lost->wall->name,
              lost->gas_volume);
-    return brunt_fail_step(world, NULL, error, reason);
+    return brunt_fail_step(&world->clock, NULL, error, reason);
 }
 
 // The other half of what loads and drag do: velocities are final now.
@@ -153,7 +154,7 @@ int brunt_pass_drift(brunt_world *world, brunt_step *step, brunt_error *error) {
     (void)error;
     job j = {world, step->gravity, step->dt};
     brunt_parallel(world->settings.threads, world->bodies.tasks.node_count, 1, drift_nodes, &j,
-                   brunt_pass_timer(world));
+                   brunt_pass_timer(&world->timing));
     if (world->settings.has_gravity) book_gravity(world, step->gravity, step->kick);
     world->ledger.fem_kinetic = 0;
     for (int64_t t = 0; t < world->bodies.tasks.node_count; t++)
@@ -165,14 +166,14 @@ int brunt_pass_elements(brunt_world *world, brunt_step *step, brunt_error *error
     int32_t bad = -1;
     const char *reason = "";
     const brunt_fem_body *failed = brunt_fem_elements_all(world, step->dt, &bad, &reason);
-    if (failed && !step->status) step->status = brunt_fail_element(world, failed, bad, error, reason);
+    if (failed && !step->status) step->status = brunt_fail_element(&world->clock, failed, bad, error, reason);
     return BRUNT_OK;
 }
 
 brunt_fem_body *brunt_fem_elements_all(brunt_world *world, double dt, int32_t *bad, const char **reason) {
     job j = {.world = world, .dt = dt};
     brunt_parallel(world->settings.threads, world->bodies.tasks.element_count, 1, strain_elements, &j,
-                   brunt_pass_timer(world));
+                   brunt_pass_timer(&world->timing));
     brunt_fem_body *failed = NULL;
     double work = 0, stored = 0;
     for (int k = 0; k < world->bodies.fem_count; k++)
@@ -199,7 +200,7 @@ double brunt_fem_stable_step(const brunt_world *world) {
 }
 
 // The slot of a body's element that has the shortest step, BRUNT_NONE: out of memory.
-static int32_t shortest_element(brunt_world *world, const brunt_fem_body *fem) {
+static int32_t shortest_element(brunt_scratch *scratch, const brunt_fem_body *fem) {
     brunt_fem_single *single = brunt_fem_single_make(fem);
     const double block_least = brunt_fem_blocks_step(fem);
     double shortest = INFINITY;
@@ -208,7 +209,7 @@ static int32_t shortest_element(brunt_world *world, const brunt_fem_body *fem) {
         const brunt_fem_block *block = &fem->block[b];
         if (!block->count || fem->report[b].stable_step > block_least) continue;
         for (int32_t s = block->first; s < block->first + block->count; s++) {
-            double step = brunt_fem_single_look(single, fem, s, 0, 0, &world->scratch.meshes[0]).stable_step;
+            double step = brunt_fem_single_look(single, fem, s, 0, 0, &scratch->meshes[0]).stable_step;
             if (step < shortest) shortest = step, slot = s;
         }
     }
@@ -220,6 +221,7 @@ brunt_fem_body *brunt_fem_shortest(brunt_world *world, int32_t *slot) {
     const double least = brunt_fem_stable_step(world);
     for (int k = 0; k < world->bodies.fem_count; k++)
         if (brunt_body_step(world, world->bodies.fem[k].index, 0) <= least)
-            return (*slot = shortest_element(world, &world->bodies.fem[k])) < 0 ? NULL : &world->bodies.fem[k];
+            return (*slot = shortest_element(&world->scratch, &world->bodies.fem[k])) < 0 ? NULL
+                                                                                          : &world->bodies.fem[k];
     return NULL;
 }

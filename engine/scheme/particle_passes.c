@@ -39,18 +39,18 @@ int brunt_pass_sort(brunt_world *world, brunt_step *step, brunt_error *error) {
     for (int i = 0; i < world->bodies.mpm_count; i++) {
         brunt_body *body = &world->bodies.mpm[i];
         if (error) error->id = -1;
-        if (brunt_sort(&body->grid, &body->particles, world->settings.threads, brunt_pass_timer(world), error))
-            return brunt_fail_inner(world, body, error);
+        if (brunt_sort(&body->grid, &body->particles, world->settings.threads, brunt_pass_timer(&world->timing), error))
+            return brunt_fail_inner(&world->clock, body, error);
         const brunt_grid *grid = &body->grid;
         int32_t most = 0;
         for (int32_t b = 0; b < grid->block_count; b++)
             if (grid->blocks[b].count > most) most = grid->blocks[b].count;
         if (BRUNT_ROOM(body->report, (size_t)grid->block_count, 0, "reports of blocks of particles", error) ||
             BRUNT_ROOM(world->scratch.node_sums, (size_t)grid->slot_count, 0, "sums of blocks of nodes", error))
-            return brunt_fail_inner(world, body, error);
+            return brunt_fail_inner(&world->clock, body, error);
         for (int t = 0; t < world->settings.threads; t++)
             if (brunt_workspace_fit(&world->scratch.points[t], grid, most, error))
-                return brunt_fail_inner(world, body, error);
+                return brunt_fail_inner(&world->clock, body, error);
     }
     return BRUNT_OK;
 }
@@ -61,16 +61,16 @@ static bool acts_on(const brunt_boundary *wall, const brunt_body *body) {
 
 // Sums of the grid's nodes and of their images by the mirrors that act on a body, booked when `booked`. What the axis
 // of rings does never is: its impulses cancel around the circle.
-static void fold_mirrors(brunt_world *world, brunt_body *body, double taken, bool booked) {
+static void fold_mirrors(brunt_boundaries *boundaries, brunt_body *body, double taken, bool booked) {
     brunt_symmetry_plane mirrors[BRUNT_MAX_PLANES];
     brunt_impulse_account unbooked = {.external_work = 0}, *account[BRUNT_MAX_PLANES];
     int count = 0;
-    for (int m = 0; m < world->boundaries.mirror_count; m++) {
-        const int w = world->boundaries.mirrors[m].wall;
-        brunt_boundary *wall = w < 0 ? NULL : &world->boundaries.walls[w];
+    for (int m = 0; m < boundaries->mirror_count; m++) {
+        const int w = boundaries->mirrors[m].wall;
+        brunt_boundary *wall = w < 0 ? NULL : &boundaries->walls[w];
         if (wall && !acts_on(wall, body)) continue;
         account[count] = wall && booked ? &wall->last : &unbooked;
-        mirrors[count++] = world->boundaries.mirrors[m];
+        mirrors[count++] = boundaries->mirrors[m];
     }
     brunt_symmetry_fold(body, mirrors, count, taken, account);
 }
@@ -87,7 +87,7 @@ int brunt_pass_scatter(brunt_world *world, brunt_step *step, brunt_error *error)
     (void)error;
     body_job job = {world, step->body, step->kick};
     brunt_parallel(world->settings.threads, step->body->grid.block_count, BLOCK_GRAIN, scatter_blocks, &job,
-                   brunt_pass_timer(world));
+                   brunt_pass_timer(&world->timing));
     return BRUNT_OK;
 }
 
@@ -95,13 +95,14 @@ int brunt_pass_grid(brunt_world *world, brunt_step *step, brunt_error *error) {
     (void)error;
     brunt_grid_job job = grid_job(world, step, step->body);
     brunt_parallel(world->settings.threads, step->body->grid.slot_count, SLOT_GRAIN, brunt_grid_sum, &job,
-                   brunt_pass_timer(world));
+                   brunt_pass_timer(&world->timing));
     return BRUNT_OK;
 }
 
 int brunt_pass_mirror(brunt_world *world, brunt_step *step, brunt_error *error) {
     (void)error;
-    fold_mirrors(world, step->body, world->settings.transfer == BRUNT_FLIP ? 1 - world->settings.flip : 1, true);
+    fold_mirrors(&world->boundaries, step->body, world->settings.transfer == BRUNT_FLIP ? 1 - world->settings.flip : 1,
+                 true);
     return BRUNT_OK;
 }
 
@@ -111,7 +112,8 @@ int brunt_pass_update(brunt_world *world, brunt_step *step, brunt_error *error) 
     (void)error;
     brunt_grid_job job = grid_job(world, step, step->body);
     const int32_t slots = step->body->grid.slot_count;
-    brunt_parallel(world->settings.threads, slots, SLOT_GRAIN, brunt_grid_update, &job, brunt_pass_timer(world));
+    brunt_parallel(world->settings.threads, slots, SLOT_GRAIN, brunt_grid_update, &job,
+                   brunt_pass_timer(&world->timing));
     for (int32_t n = 0; n < slots; n++) world->ledger.transfer -= 0.5 * world->scratch.node_sums[n].stress_work;
     return BRUNT_OK;
 }
@@ -126,7 +128,7 @@ int brunt_pass_conditions(brunt_world *world, brunt_step *step, brunt_error *err
     (void)step;
     for (int i = 0; i < world->bodies.mpm_count; i++)
         if (brunt_condition_clear(&world->bodies.mpm[i], error))
-            return brunt_fail_inner(world, &world->bodies.mpm[i], error);
+            return brunt_fail_inner(&world->clock, &world->bodies.mpm[i], error);
     for (int w = 0; w < world->boundaries.wall_count; w++) {
         brunt_boundary *wall = &world->boundaries.walls[w];
         brunt_body *only = wall->body < 0 ? NULL : world->bodies.all[wall->body].mpm;
@@ -138,13 +140,13 @@ int brunt_pass_conditions(brunt_world *world, brunt_step *step, brunt_error *err
 }
 
 int brunt_pass_contact(brunt_world *world, brunt_step *step, brunt_error *error) {
-    const brunt_contact_context m = brunt_contact_context_of(world, step->dt, brunt_pass_timer(world));
+    const brunt_contact_context m = brunt_contact_context_of(world, step->dt, brunt_pass_timer(&world->timing));
     const brunt_contact *contact = &world->contact;
     int failed = contact->has_grid ? brunt_grid_velocity_apply(&m, &world->scratch.grid_velocity, error) : BRUNT_OK;
     if (contact->has_touches && !failed)
         failed = brunt_point_touches_apply(&m, contact->touch_sweeps, 0.1 * contact->def.tolerance,
                                            &world->scratch.point_touches, error);
-    return failed ? brunt_fail_inner(world, NULL, error) : BRUNT_OK;
+    return failed ? brunt_fail_inner(&world->clock, NULL, error) : BRUNT_OK;
 }
 
 int brunt_pass_walls(brunt_world *world, brunt_step *step, brunt_error *error) {
@@ -152,28 +154,27 @@ int brunt_pass_walls(brunt_world *world, brunt_step *step, brunt_error *error) {
     for (int i = 0; i < world->bodies.mpm_count; i++)
         if (brunt_boundaries_meet_points(&m, &world->bodies.mpm[i], &world->scratch.planes, &world->contact.constraints,
                                          error))
-            return brunt_fail_inner(world, &world->bodies.mpm[i], error);
+            return brunt_fail_inner(&world->clock, &world->bodies.mpm[i], error);
     return BRUNT_OK;
 }
 
 // The grid of a total-Lagrangian body is not where its weight acts.
-static void book_gravity_moment(brunt_world *world, brunt_body *body, const double gravity[3], double dt) {
+static void book_gravity_moment(brunt_ledger *ledger, brunt_body *body, const double gravity[3], double dt) {
     const brunt_audit audit = brunt_body_audit(body);
     for (int a = 0; a < 3; a++) {
         const int k = (a + 1) % 3, l = (a + 2) % 3;
-        world->ledger.gravity_angular[a] +=
-            dt * audit.mass * (audit.centre[k] * gravity[l] - audit.centre[l] * gravity[k]);
+        ledger->gravity_angular[a] += dt * audit.mass * (audit.centre[k] * gravity[l] - audit.centre[l] * gravity[k]);
     }
 }
 
-static void book_gravity(brunt_world *world, const brunt_step *step, const brunt_node_sums *n, bool total) {
+static void book_gravity(brunt_ledger *ledger, const brunt_step *step, const brunt_node_sums *n, bool total) {
     const double *gravity = step->gravity, dt = step->kick;
-    world->ledger.gravity_work += n->gravity_work;
+    ledger->gravity_work += n->gravity_work;
     for (int a = 0; a < 3; a++) {
         int k = (a + 1) % 3, l = (a + 2) % 3;
-        world->ledger.gravity_impulse[a] += dt * n->mass * gravity[a];
+        ledger->gravity_impulse[a] += dt * n->mass * gravity[a];
         if (total) continue;
-        world->ledger.gravity_angular[a] += dt * (n->first_moment[k] * gravity[l] - n->first_moment[l] * gravity[k]);
+        ledger->gravity_angular[a] += dt * (n->first_moment[k] * gravity[l] - n->first_moment[l] * gravity[k]);
     }
 }
 
@@ -186,14 +187,14 @@ int brunt_pass_ledger(brunt_world *world, brunt_step *step, brunt_error *error) 
         const bool total = brunt_total_lagrangian(&body->particles);
         brunt_grid_job job = grid_job(world, step, body);
         brunt_parallel(world->settings.threads, body->grid.slot_count, SLOT_GRAIN, brunt_grid_ledger, &job,
-                       brunt_pass_timer(world));
+                       brunt_pass_timer(&world->timing));
         for (int32_t s = 0; s < body->grid.slot_count; s++) {
             const brunt_node_sums *n = &world->scratch.node_sums[s];
             step->old_kinetic += n->old_kinetic;
             step->new_kinetic += n->new_kinetic;
-            if (world->settings.has_gravity) book_gravity(world, step, n, total);
+            if (world->settings.has_gravity) book_gravity(&world->ledger, step, n, total);
         }
-        if (total && world->settings.has_gravity) book_gravity_moment(world, body, step->gravity, step->kick);
+        if (total && world->settings.has_gravity) book_gravity_moment(&world->ledger, body, step->gravity, step->kick);
     }
     return BRUNT_OK;
 }
@@ -207,13 +208,13 @@ static void advance_blocks(void *context, int64_t begin, int64_t end, int worker
 
 static void remap_body(brunt_world *world, brunt_body *body, double dt) {
     static const double weightless[3] = {0, 0, 0};
-    brunt_timer *timer = brunt_pass_timer(world);
+    brunt_timer *timer = brunt_pass_timer(&world->timing);
     body_job job = {world, body, dt}, still = {world, body, 0};
     brunt_grid_job nodes = {.body = body, .gravity = weightless, .sums = world->scratch.node_sums};
     brunt_parallel(world->settings.threads, body->grid.block_count, BLOCK_GRAIN, advance_blocks, &job, timer);
     brunt_parallel(world->settings.threads, body->grid.block_count, BLOCK_GRAIN, scatter_blocks, &still, timer);
     brunt_parallel(world->settings.threads, body->grid.slot_count, SLOT_GRAIN, brunt_grid_sum, &nodes, timer);
-    fold_mirrors(world, body, 1, false);
+    fold_mirrors(&world->boundaries, body, 1, false);
     brunt_parallel(world->settings.threads, body->grid.slot_count, SLOT_GRAIN, brunt_grid_update, &nodes, timer);
     for (int w = 0; w < world->boundaries.wall_count; w++) {
         brunt_boundary wall = world->boundaries.walls[w];
@@ -260,7 +261,7 @@ int brunt_pass_gather(brunt_world *world, brunt_step *step, brunt_error *error) 
         body->uneven = kick != dt;
         body->speed = 0;
         brunt_parallel(world->settings.threads, body->grid.block_count, BLOCK_GRAIN, gather_blocks, &job,
-                       brunt_pass_timer(world));
+                       brunt_pass_timer(&world->timing));
         const int64_t bad = sum_reports(body, step, &sums, &reason);
         if (bad >= 0 && !step->status) step->status = brunt_fail_particle(world, body, bad, error, reason);
     }

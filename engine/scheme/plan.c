@@ -8,65 +8,64 @@
 #include "scheme/scheme.h"
 
 // The first model that brings an effect, NULL when none does; `flag`: where brunt_model says so.
-static const brunt_model *find_model(const brunt_world *world, size_t flag) {
-    for (int i = 0; i < world->bodies.count; i++)
+static const brunt_model *find_model(const brunt_bodies *bodies, size_t flag) {
+    for (int i = 0; i < bodies->count; i++)
         for (int k = 0; k < BRUNT_COMPONENTS; k++) {
-            const brunt_body_ref *body = &world->bodies.all[i];
+            const brunt_body_ref *body = &bodies->all[i];
             const brunt_model *model = body->ops->material(body)->model[k];
             if (model && *(const bool *)((const char *)model + flag)) return model;
         }
     return NULL;
 }
 
-static bool has_hourglass(const brunt_world *world) {
-    for (int k = 0; k < world->bodies.fem_count; k++)
-        if (brunt_fem_has_hourglass(&world->bodies.fem[k])) return true;
+static bool has_hourglass(const brunt_bodies *bodies) {
+    for (int k = 0; k < bodies->fem_count; k++)
+        if (brunt_fem_has_hourglass(&bodies->fem[k])) return true;
     return false;
 }
 
-static bool has_total_lagrangian(const brunt_world *world) {
-    for (int i = 0; i < world->bodies.mpm_count; i++)
-        if (brunt_total_lagrangian(&world->bodies.mpm[i].particles)) return true;
+static bool has_total_lagrangian(const brunt_bodies *bodies) {
+    for (int i = 0; i < bodies->mpm_count; i++)
+        if (brunt_total_lagrangian(&bodies->mpm[i].particles)) return true;
     return false;
 }
 
-static bool has_tension_only(const brunt_world *world) {
-    for (int k = 0; k < world->bodies.fem_count; k++)
-        if (world->bodies.fem[k].material.tension_only) return true;
+static bool has_tension_only(const brunt_bodies *bodies) {
+    for (int k = 0; k < bodies->fem_count; k++)
+        if (bodies->fem[k].material.tension_only) return true;
     return false;
 }
 
-static bool has_softening(const brunt_world *world) {
-    for (int i = 0; i < world->bodies.count; i++) {
-        const brunt_body_ref *body = &world->bodies.all[i];
+static bool has_softening(const brunt_bodies *bodies) {
+    for (int i = 0; i < bodies->count; i++) {
+        const brunt_body_ref *body = &bodies->all[i];
         const brunt_material *material = body->ops->material(body);
         if (material->model[BRUNT_FAILURE] && material->failure_action == BRUNT_FAILURE_SOFTEN) return true;
     }
     return false;
 }
 
-static bool has_tied(const brunt_world *world) {
-    for (int p = 0; p < world->pairs.count; p++)
-        if (brunt_contact_node_law(world->pairs.pair[p].method)) return true;
+static bool has_tied(const brunt_pairs *pairs) {
+    for (int p = 0; p < pairs->count; p++)
+        if (brunt_contact_node_law(pairs->pair[p].method)) return true;
     return false;
 }
 
-static bool has_sheets(const brunt_world *world) {
-    for (int k = 0; k < world->bodies.fem_count; k++)
-        if (world->bodies.fem[k].traits->membrane) return true;
+static bool has_sheets(const brunt_bodies *bodies) {
+    for (int k = 0; k < bodies->fem_count; k++)
+        if (bodies->fem[k].traits->membrane) return true;
     return false;
 }
 
-static bool has_mass_scaling(const brunt_world *world) {
-    for (int k = 0; k < world->bodies.fem_count; k++)
-        if (world->bodies.fem[k].field[BRUNT_ELEMENT_density_scale].components) return true;
+static bool has_mass_scaling(const brunt_bodies *bodies) {
+    for (int k = 0; k < bodies->fem_count; k++)
+        if (bodies->fem[k].field[BRUNT_ELEMENT_density_scale].components) return true;
     return false;
 }
 
 // Besides the axis of rings.
-static bool has_mirrors(const brunt_world *world) {
-    return world->boundaries.mirror_count > 0 &&
-           world->boundaries.mirrors[world->boundaries.mirror_count - 1].wall >= 0;
+static bool has_mirrors(const brunt_boundaries *boundaries) {
+    return boundaries->mirror_count > 0 && boundaries->mirrors[boundaries->mirror_count - 1].wall >= 0;
 }
 
 #define BRUNT_EFFECTS(X)                                                                                               \
@@ -76,24 +75,24 @@ static bool has_mirrors(const brunt_world *world) {
     X(affine, world->settings.transfer == BRUNT_APIC && world->bodies.mpm_count > 0, "grid.transfer")                  \
     X(contact, world->contact.rows != 0, "contact.method")                                                             \
     X(barrier, world->contact.has_barrier, "contact.method: barrier")                                                  \
-    X(tied, has_tied(world), "contact.pairs: method tied")                                                             \
+    X(tied, has_tied(&world->pairs), "contact.pairs: method tied")                                                     \
     X(self_contact, world->contact.has_self, "contact.pairs: a body with itself")                                      \
     X(friction, world->contact.has_friction || world->boundaries.has_friction, "friction of contact or boundaries")    \
     X(surfaces, world->contact.has_surfaces, "contact of meshes, or planes they may meet")                             \
-    X(hourglass, has_hourglass(world), "bodies: elements with hourglass modes")                                        \
-    X(mass_scaling, has_mass_scaling(world), "bodies: mass_scaling")                                                   \
+    X(hourglass, has_hourglass(&world->bodies), "bodies: elements with hourglass modes")                               \
+    X(mass_scaling, has_mass_scaling(&world->bodies), "bodies: mass_scaling")                                          \
     X(groups, world->boundaries.sets.act, "boundaries: group")                                                         \
     X(gas, world->boundaries.sets.has_gas, "boundaries: gas")                                                          \
     X(damping, world->boundaries.damping.active, "bodies: damping")                                                    \
-    X(membranes, has_sheets(world), "bodies: method membrane")                                                         \
-    X(tension_only, has_tension_only(world), "bodies: tension_only")                                                   \
-    X(total_lagrangian, has_total_lagrangian(world), "bodies: lagrangian total")                                       \
+    X(membranes, has_sheets(&world->bodies), "bodies: method membrane")                                                \
+    X(tension_only, has_tension_only(&world->bodies), "bodies: tension_only")                                          \
+    X(total_lagrangian, has_total_lagrangian(&world->bodies), "bodies: lagrangian total")                              \
     X(walls, world->boundaries.has_walls, "boundaries: condition separate")                                            \
     X(axisymmetric, world->settings.axisymmetric, "axisymmetric")                                                      \
-    X(mirrors, has_mirrors(world), "boundaries: condition symmetry or slip")                                           \
+    X(mirrors, has_mirrors(&world->boundaries), "boundaries: condition symmetry or slip")                              \
     X(conditions, world->boundaries.has_conditions, "boundaries: stick, oblique slip, region")                         \
     X(erosion, world->erosion.active, "bodies: erosion, materials: failure")                                           \
-    X(softening, has_softening(world), "materials: failure.action soften")                                             \
+    X(softening, has_softening(&world->bodies), "materials: failure.action soften")                                    \
     X(detonation, world->boundaries.has_detonations, "detonations")                                                    \
     X(gravity, world->settings.has_gravity, "loads.gravity")
 
@@ -135,7 +134,7 @@ brunt_effect brunt_world_effect(const brunt_world *world, int32_t effect) {
 #undef ROW
 #define ROW(effect_name, flag)                                                                                         \
     case EFFECT_##effect_name: {                                                                                       \
-        const brunt_model *model = find_model(world, offsetof(brunt_model, flag));                                     \
+        const brunt_model *model = find_model(&world->bodies, offsetof(brunt_model, flag));                            \
         return (brunt_effect){#effect_name, model != NULL, model ? model->name : ""};                                  \
     }
         BRUNT_MODEL_EFFECTS(ROW)
@@ -152,10 +151,8 @@ static int find_pass(const brunt_plan *plan, const char *name) {
     return 0;
 }
 
-void brunt_plan_make(brunt_world *world) {
-    brunt_plan *plan = &world->plan;
+void brunt_plan_make(brunt_plan *plan, const brunt_world *world) {
     *plan = (brunt_plan){.row_count = 0};
-    world->timing.pass = -1;
     const bool implicit = brunt_scheme_minimises(world->settings.scheme);
     const brunt_pass_row *table = implicit ? brunt_implicit_passes : brunt_explicit_passes;
     for (int i = 0; i < (implicit ? brunt_implicit_pass_count : brunt_explicit_pass_count); i++) {
@@ -167,11 +164,9 @@ void brunt_plan_make(brunt_world *world) {
     for (int i = 0; i < plan->row_count; i++) plan->pass_of[i] = find_pass(plan, plan->row[i]->name);
 }
 
-void brunt_plan_validate(const brunt_world *world) {
-    const brunt_plan *plan = &world->plan;
+void brunt_plan_validate(const brunt_plan *plan) {
     BRUNT_ASSERT(plan->row_count >= 1 && plan->row_count <= BRUNT_PASS_LIMIT);
     BRUNT_ASSERT(plan->pass_count >= 1 && plan->pass_count <= plan->row_count);
-    BRUNT_ASSERT(world->timing.pass >= -1 && world->timing.pass < plan->pass_count);
     for (int i = 0; i < plan->row_count; i++) {
         const int pass = plan->pass_of[i];
         BRUNT_ASSERT(pass >= 0 && pass < plan->pass_count && !strcmp(plan->pass[pass]->name, plan->row[i]->name));
@@ -181,20 +176,20 @@ void brunt_plan_validate(const brunt_world *world) {
 
 int32_t brunt_pass_count(const brunt_world *world) { return world->plan.pass_count; }
 
-static const char *unit_of(const brunt_world *world, const brunt_pass_row *row) {
+static const char *unit_of(const brunt_bodies *bodies, const brunt_pass_row *row) {
     if (strcmp(row->unit, "point") != 0) return row->unit;
-    return !world->bodies.fem_count ? "particle" : !world->bodies.mpm_count ? "element" : row->unit;
+    return !bodies->fem_count ? "particle" : !bodies->mpm_count ? "element" : row->unit;
 }
 
 brunt_pass brunt_world_pass(const brunt_world *world, int32_t index) {
     if (index < 0 || index >= world->plan.pass_count) return (brunt_pass){.name = "", .unit = ""};
     const brunt_pass_row *row = world->plan.pass[index];
-    const struct brunt_pass_time *time = &world->pass[index];
+    const brunt_pass_time *time = &world->timing.passes[index];
     const brunt_amount work = brunt_pass_work(world, row);
     brunt_pass pass = {.name = row->name,
                        .calls = time->calls,
                        .seconds = time->seconds,
-                       .unit = unit_of(world, row),
+                       .unit = unit_of(&world->bodies, row),
                        .units = time->units,
                        .bytes_per_unit = work.bytes,
                        .flops_per_unit = work.flops};
@@ -243,12 +238,12 @@ static brunt_array element_array(const brunt_fem_body *body, int32_t index) {
     return array;
 }
 
-static brunt_array surfaces_array(const brunt_world *world) {
+static brunt_array surfaces_array(const struct brunt_contact *contact) {
     brunt_array array = {.name = "contact of surfaces", .unit = "", .components = 1};
-    array.bytes = brunt_surface_bytes(&world->contact.surface) +
-                  brunt_node_to_facet_bytes(world->contact.node_to_facet) +
-                  world->contact.constraints.constraint_capacity + world->contact.constraints.entry_capacity +
-                  world->contact.constraints.dof_node_capacity;
+    array.bytes = brunt_surface_bytes(&contact->surface) +
+                  brunt_node_to_facet_bytes(contact->node_to_facet) +
+                  contact->constraints.constraint_capacity + contact->constraints.entry_capacity +
+                  contact->constraints.dof_node_capacity;
     return array;
 }
 
@@ -258,9 +253,9 @@ brunt_array brunt_world_array(const brunt_world *world, int32_t index) {
     const brunt_body_ref *body = &bodies->all[i];
     index -= bodies->first_array[i];
     if (i < bodies->count) return body->mpm ? particle_array(body->mpm, index) : element_array(body->fem, index);
-    if (world->contact.has_surfaces && index-- == 0) return surfaces_array(world);
+    if (world->contact.has_surfaces && index-- == 0) return surfaces_array(&world->contact);
     brunt_array implicit = {.unit = "", .components = 1};
     snprintf(implicit.name, sizeof implicit.name, index ? "implicit steps: matrix" : "implicit steps: unknowns");
-    implicit.bytes = index ? brunt_implicit_matrix_bytes(world) : brunt_implicit_bytes(world);
+    implicit.bytes = index ? brunt_implicit_matrix_bytes(&world->plan) : brunt_implicit_bytes(world);
     return implicit;
 }

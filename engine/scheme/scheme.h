@@ -53,8 +53,8 @@ extern const brunt_pass_row brunt_implicit_passes[];
 extern const int brunt_implicit_pass_count;
 
 // --- implicit_world.c, implicit_step.c: steps that minimise an energy
-size_t brunt_implicit_bytes(const brunt_world *world);        // of unknowns, fields and terms
-size_t brunt_implicit_matrix_bytes(const brunt_world *world); // of Newton's matrix, without factors
+size_t brunt_implicit_bytes(const brunt_world *world);      // of unknowns, fields and terms
+size_t brunt_implicit_matrix_bytes(const brunt_plan *plan); // of Newton's matrix, without factors
 int brunt_pass_number(brunt_world *world, brunt_step *step, brunt_error *error);
 int brunt_pass_newton(brunt_world *world, brunt_step *step, brunt_error *error);
 
@@ -93,25 +93,17 @@ int brunt_pass_watch(brunt_world *world, brunt_step *step, brunt_error *error);
 int brunt_pass_watch_implicit(brunt_world *world, brunt_step *step, brunt_error *error);
 
 // --- fail.c: computations that fail. All give BRUNT_FAILED and say body, place and time in front of the reason.
-int brunt_fail_step(const brunt_world *world, const brunt_body *body, brunt_error *error, const char *reason);
+int brunt_fail_step(const struct brunt_clock *clock, const brunt_body *body, brunt_error *error, const char *reason);
 // With the reason that `error` has.
-int brunt_fail_inner(const brunt_world *world, const brunt_body *body, brunt_error *error);
+int brunt_fail_inner(const struct brunt_clock *clock, const brunt_body *body, brunt_error *error);
 int brunt_fail_particle(const brunt_world *world, brunt_body *body, int64_t slot, brunt_error *error,
                         const char *reason);
 // At a place [m] of body `index` (-1: of none).
 int brunt_fail_place(const brunt_world *world, int index, const double x[3], brunt_error *error, const char *reason);
-int brunt_fail_element(const brunt_world *world, const brunt_fem_body *fem, int32_t slot, brunt_error *error,
+int brunt_fail_element(const struct brunt_clock *clock, const brunt_fem_body *fem, int32_t slot, brunt_error *error,
                        const char *reason);
 // At the first element or particle without a positive volume. BRUNT_OK: there is none, nothing has been said.
 int brunt_fail_turned(const brunt_world *world, brunt_error *error, const char *reason);
-
-// --- timing.c: what the step and its passes take. A pass begins where the one before ended, so that no moment of a
-// step is left out and the clock is read once a pass.
-void brunt_step_begin(brunt_world *world);
-void brunt_step_end(brunt_world *world); // ends a pass that was left by an error as well
-void brunt_pass_begin(brunt_world *world, int pass);
-// `units`: how many particles, nodes or elements the pass has gone over.
-void brunt_pass_end(brunt_world *world, double units);
 
 // --- work.c: what a pass moves and computes, counted
 brunt_amount brunt_work_sort(const brunt_world *world, brunt_body_ref body);

@@ -47,21 +47,21 @@ double brunt_held_step(struct brunt_clock *now, double stable) {
 
 // The body of material points that has the shortest stable step, and of the block where its waves or its points are
 // fastest the densest or the fastest point. NULL: there is none.
-static brunt_body *shortest_points(brunt_world *world, int64_t *slot, double *wave) {
+static brunt_body *shortest_points(brunt_bodies *bodies, int64_t *slot, double *wave) {
     brunt_body *shortest = NULL;
     int32_t block = 0;
     double most = 0, speed = 0;
-    for (int i = 0; i < world->bodies.mpm_count; i++) {
-        const brunt_block_report *report = world->bodies.mpm[i].report;
+    for (int i = 0; i < bodies->mpm_count; i++) {
+        const brunt_block_report *report = bodies->mpm[i].report;
         int32_t w = 0, v = 0;
-        for (int32_t b = 1; b < world->bodies.mpm[i].grid.block_count; b++) {
+        for (int32_t b = 1; b < bodies->mpm[i].grid.block_count; b++) {
             if (report[b].wave_speed > report[w].wave_speed) w = b;
             if (report[b].speed > report[v].speed) v = b;
         }
-        if (!world->bodies.mpm[i].grid.block_count || !((double)report[w].wave_speed + (double)report[v].speed > most))
+        if (!bodies->mpm[i].grid.block_count || !((double)report[w].wave_speed + (double)report[v].speed > most))
             continue;
         *wave = (double)report[w].wave_speed, speed = (double)report[v].speed, most = *wave + speed;
-        shortest = &world->bodies.mpm[i], block = *wave > speed ? w : v;
+        shortest = &bodies->mpm[i], block = *wave > speed ? w : v;
     }
     if (!shortest) return NULL;
     brunt_particles *p = &shortest->particles;
@@ -82,8 +82,8 @@ static int fail_short_points(brunt_world *world, brunt_error *error, const char 
     char reason[240];
     int64_t slot;
     double wave;
-    brunt_body *body = shortest_points(world, &slot, &wave);
-    if (!body) return brunt_fail_step(world, NULL, error, why);
+    brunt_body *body = shortest_points(&world->bodies, &slot, &wave);
+    if (!body) return brunt_fail_step(&world->clock, NULL, error, why);
     snprintf(reason, sizeof reason, "%s: waves run at %.4g m/s in cells of %.4g m", why, wave, world->settings.cell);
     return brunt_fail_particle(world, body, slot, error, reason);
 }
@@ -99,7 +99,7 @@ int brunt_fail_short(brunt_world *world, double stable, brunt_error *error, cons
     const bool by_load = frequency * stable * stable > 2; // half of 4
     snprintf(reason, sizeof reason, "%s%s", why,
              by_load ? ", most of it by gas or pressure on the body's surface" : "");
-    return brunt_fail_element(world, fem, slot, error, reason);
+    return brunt_fail_element(&world->clock, fem, slot, error, reason);
 }
 
 // The step that is due: stable, not past the end, and exactly on `limit` when that comes first. The way to such a time
@@ -118,18 +118,18 @@ static double choose_step(const brunt_world *world, double limit) {
 static int refuse_step(brunt_world *world, double dt, brunt_error *error) {
     const double stable = world->clock.next_dt / world->settings.cfl;
     if (world->clock.time >= world->settings.end)
-        return brunt_fail_step(world, NULL, error, "the end has been reached, there is no step to take");
+        return brunt_fail_step(&world->clock, NULL, error, "the end has been reached, there is no step to take");
     char reason[160];
     snprintf(reason, sizeof reason,
              "the stable step is %.4g s: something moves, or its waves run, too fast to be computed with", stable);
-    if (!(dt > 0)) return brunt_fail_step(world, NULL, error, reason);
+    if (!(dt > 0)) return brunt_fail_step(&world->clock, NULL, error, reason);
     snprintf(reason, sizeof reason, "the stable step has become %.4g s, time.least_step is %.4g s", stable,
              world->settings.least_step);
     if (stable < world->settings.least_step) return brunt_fail_short(world, stable, error, reason);
     snprintf(reason, sizeof reason, "the fixed step of %.6g s is larger than the stable one, %.6g s", dt, stable);
     if (world->settings.fixed_step > 0 && dt > stable) return brunt_fail_short(world, stable, error, reason);
     if (world->clock.time + dt == world->clock.time)
-        return brunt_fail_step(world, NULL, error, "the stable step has become too small to advance the time");
+        return brunt_fail_step(&world->clock, NULL, error, "the stable step has become too small to advance the time");
     return BRUNT_OK;
 }
 

@@ -13,8 +13,8 @@ static const double MOST_LOOSE = 1e-5, LEAST_LOOSE = 1e-10; // of the stiffness,
 
 // ------------------------------------------------------------------------------------------ parts of load steps
 
-double brunt_static_least(const brunt_world *world) {
-    return world->settings.fixed_step * ldexp(1 - 1e-9, -world->settings.newton.cut);
+double brunt_static_least(const brunt_settings *settings) {
+    return settings->fixed_step * ldexp(1 - 1e-9, -settings->newton.cut);
 }
 
 // Up to the next load step; after a step that was cut, longer ones again.

@@ -44,14 +44,14 @@ static int16_t bearer(const brunt_symmetry_plane *mirrors, int count, const int3
 }
 
 // Node n at grid coordinates `at` of body i: whom it follows, with which signs.
-static void find_leader(brunt_unknowns *u, const brunt_world *world, int i, int32_t n, const int32_t at[3],
+static void find_leader(brunt_unknowns *u, const brunt_bodies *bodies, int i, int32_t n, const int32_t at[3],
                         const brunt_symmetry_plane *mirrors, int mirror_count) {
     int32_t image[BRUNT_MAX_IMAGES][3], leader = n;
     real sign[BRUNT_MAX_IMAGES][3];
     const int count = brunt_symmetry_images(mirrors, mirror_count, at, LAYERS, image, sign);
     int from = 0, others = 0;
     for (int k = 1; k < count; k++) {
-        const int32_t other = brunt_unknowns_node_at(u, &world->bodies, i, image[k]);
+        const int32_t other = brunt_unknowns_node_at(u, bodies, i, image[k]);
         others += other >= 0;
         if (other >= 0 && other < leader) leader = other, from = k;
     }
@@ -73,7 +73,7 @@ static void find_leaders(brunt_unknowns *u, const brunt_world *world, int i) {
         if (u->number[i][q] < 0) continue;
         brunt_node_local(grid, (int)(q % BRUNT_BLOCK_NODES), local);
         for (int a = 0; a < grid->dim; a++) at[a] = grid->slots[q / BRUNT_BLOCK_NODES].coord[a] * grid->side + local[a];
-        find_leader(u, world, i, u->number[i][q], at, mirrors, count);
+        find_leader(u, &world->bodies, i, u->number[i][q], at, mirrors, count);
     }
 }
 
@@ -123,7 +123,7 @@ static void divide(const brunt_unknowns *u, int64_t first, double *sum) {
 }
 
 // Adds momentum, `share` [kg] of each node's velocity (NULL: 1), to what mirrors bear, with a sign.
-static void bear(const brunt_unknowns *u, brunt_world *world, const double *share, double sign) {
+static void bear(const brunt_unknowns *u, brunt_boundaries *boundaries, const double *share, double sign) {
     for (int64_t k = 0; k < (int64_t)u->count * u->dim; k++) {
         double J[3] = {0}, turn[3] = {0}, x[3] = {0};
         if (!u->images.wall[k]) continue;
@@ -132,7 +132,7 @@ static void bear(const brunt_unknowns *u, brunt_world *world, const double *shar
         for (int i = 0; i < u->dim; i++) x[i] = u->place[n * (int64_t)u->dim + i];
         J[a] = sign * (share ? share[n] : 1) * u->velocity[k];
         for (int i = 0; i < 3; i++) turn[i] = x[(i + 1) % 3] * J[(i + 2) % 3] - x[(i + 2) % 3] * J[(i + 1) % 3];
-        brunt_impulse_account_reaction(&world->boundaries.walls[u->images.wall[k] - 1].last, J, turn);
+        brunt_impulse_account_reaction(&boundaries->walls[u->images.wall[k] - 1].last, J, turn);
     }
 }
 
@@ -140,9 +140,9 @@ void brunt_unknowns_divide(brunt_unknowns *u, brunt_world *world) {
     // Of FLIP's share particles take changes over alone.
     const double taken = world->settings.transfer == BRUNT_FLIP ? 1 - world->settings.flip : 1;
     const bool bears = u->images.any && world->settings.scheme != BRUNT_STATIC;
-    if (bears) bear(u, world, NULL, -taken);
+    if (bears) bear(u, &world->boundaries, NULL, -taken);
     divide(u, (int64_t)u->mesh_count * u->dim, u->velocity);
-    if (bears) bear(u, world, u->mass, taken);
+    if (bears) bear(u, &world->boundaries, u->mass, taken);
 }
 
 void brunt_unknowns_accelerate(const brunt_unknowns *u, const double *force, double *acceleration) {

@@ -55,7 +55,7 @@ static int check_energy(brunt_world *world, brunt_error *error) {
         snprintf(makers + length, sizeof makers - (size_t)length, what_makes(world), 100 * scheme);
     snprintf(reason, sizeof reason, "the energy error is %.3g %% of %.3g J%s; time.energy_limit allows %.3g %%",
              100 * energy.error_relative, energy.reference, makers, 100 * limit);
-    return brunt_fail_step(world, NULL, error, reason);
+    return brunt_fail_step(&world->clock, NULL, error, reason);
 }
 
 // Steps that shorten without end never get there: told at a thousandth of the longest so far that was not cut short,
@@ -79,7 +79,7 @@ static int watch_creep(brunt_world *world, brunt_error *error) {
 static int watch_energy(brunt_world *world, int every, brunt_error *error) {
     const struct brunt_clock *now = &world->clock;
     if (!isfinite(world->ledger.kinetic) || !isfinite(world->ledger.fem_kinetic) || !isfinite(now->next_dt))
-        return brunt_fail_step(world, NULL, error, "the kinetic energy is not a finite number");
+        return brunt_fail_step(&world->clock, NULL, error, "the kinetic energy is not a finite number");
     if (world->bodies.has_fluid && (int64_t)now->steps % SPREAD_CHECK == 0) watch_spread(world);
     if ((int64_t)now->steps % every != 0 || !isfinite(world->settings.energy_limit)) return BRUNT_OK;
     return check_energy(world, error);

@@ -156,20 +156,19 @@ static double model_flops(const brunt_material *material, int dim) {
     return flops;
 }
 
-static brunt_amount scatter_work(const brunt_world *world, const brunt_body *body) {
+static brunt_amount scatter_work(const brunt_settings *settings, const brunt_body *body) {
     const crowd per = crowd_of(body);
     return (brunt_amount){particle_bytes(&body->particles, SCATTER) + 2 * per.blocks * buffer_bytes(&body->grid),
-                          scatter_flops(body, world->settings.transfer == BRUNT_APIC, per)};
+                          scatter_flops(body, settings->transfer == BRUNT_APIC, per)};
 }
 
 // With nodes as velocities where `pass` takes them from the grid.
-static brunt_amount gather_work(const brunt_world *world, const brunt_body *body, transfer_pass pass) {
+static brunt_amount gather_work(const brunt_settings *settings, const brunt_body *body, transfer_pass pass) {
     const crowd per = crowd_of(body);
-    const bool old = world->settings.transfer == BRUNT_FLIP && pass != GATHER_REST;
-    const bool affine = world->settings.transfer == BRUNT_APIC && pass != ADVANCE;
+    const bool old = settings->transfer == BRUNT_FLIP && pass != GATHER_REST;
+    const bool affine = settings->transfer == BRUNT_APIC && pass != ADVANCE;
     brunt_amount work = {particle_bytes(&body->particles, pass) + per.slots * slot_bytes(),
-                         interpolation_flops(body, old, affine, per) +
-                             update_flops(body, world->settings.transfer, pass)};
+                         interpolation_flops(body, old, affine, per) + update_flops(body, settings->transfer, pass)};
     if (pass != ADVANCE) work.flops += model_flops(&body->material, body->particles.point_dim);
     return work;
 }
@@ -190,20 +189,20 @@ static brunt_amount sort_work(const brunt_body *body) {
 
 // ------------------------------------------------------------------------------------------ nodes of grids
 
-static brunt_amount grid_sum_work(const brunt_world *world, const brunt_body *body) {
+static brunt_amount grid_sum_work(const brunt_settings *settings, const brunt_body *body) {
     const brunt_grid *grid = &body->grid;
     const double nodes = fmax(1, (double)grid->slot_count * BRUNT_BLOCK_NODES);
     const double sources = (double)grid->block_count * grid->span_nodes / nodes; // of a node: blocks that reach it
     return (brunt_amount){BRUNT_NODE_REALS * sizeof(real) * (2 + sources),
-                          8 * sources + (world->settings.has_gravity ? 6 : 0)};
+                          8 * sources + (settings->has_gravity ? 6 : 0)};
 }
 
 // 1 / m and the part of it that is the body's own; of each component v, work, v + impulse / m.
 static brunt_amount grid_update_work(void) { return (brunt_amount){2 * BRUNT_NODE_REALS * sizeof(real), 2 + 3 * 8}; }
 
 // Squares of both velocities and their sum by mass, of each component; both energies; with gravity the place and m x.
-static brunt_amount ledger_work(const brunt_world *world) {
-    return (brunt_amount){BRUNT_NODE_REALS * sizeof(real), 3 * 7 + 4 + (world->settings.has_gravity ? 13 : 0)};
+static brunt_amount ledger_work(const brunt_settings *settings) {
+    return (brunt_amount){BRUNT_NODE_REALS * sizeof(real), 3 * 7 + 4 + (settings->has_gravity ? 13 : 0)};
 }
 
 // ------------------------------------------------------------------------------------------ meshes
@@ -282,11 +281,11 @@ brunt_amount brunt_work_sort(const brunt_world *world, brunt_body_ref body) {
 }
 
 brunt_amount brunt_work_scatter(const brunt_world *world, brunt_body_ref body) {
-    return body.mpm ? scatter_work(world, body.mpm) : NOTHING;
+    return body.mpm ? scatter_work(&world->settings, body.mpm) : NOTHING;
 }
 
 brunt_amount brunt_work_grid(const brunt_world *world, brunt_body_ref body) {
-    return body.mpm ? grid_sum_work(world, body.mpm) : NOTHING;
+    return body.mpm ? grid_sum_work(&world->settings, body.mpm) : NOTHING;
 }
 
 brunt_amount brunt_work_update(const brunt_world *world, brunt_body_ref body) {
@@ -295,20 +294,22 @@ brunt_amount brunt_work_update(const brunt_world *world, brunt_body_ref body) {
 }
 
 brunt_amount brunt_work_ledger(const brunt_world *world, brunt_body_ref body) {
-    return body.mpm ? ledger_work(world) : NOTHING;
+    return body.mpm ? ledger_work(&world->settings) : NOTHING;
 }
 
 // Once more to the grid and back, of the nodes that there are for a particle.
 brunt_amount brunt_work_remap(const brunt_world *world, brunt_body_ref body) {
     if (!body.mpm) return NOTHING;
-    const brunt_amount nodes = sum_of(grid_sum_work(world, body.mpm), grid_update_work());
+    const brunt_amount nodes = sum_of(grid_sum_work(&world->settings, body.mpm), grid_update_work());
     const double share = crowd_of(body.mpm).slots * BRUNT_BLOCK_NODES;
-    const brunt_amount points = sum_of(gather_work(world, body.mpm, ADVANCE), scatter_work(world, body.mpm));
+    const brunt_amount points =
+        sum_of(gather_work(&world->settings, body.mpm, ADVANCE), scatter_work(&world->settings, body.mpm));
     return sum_of(points, (brunt_amount){share * nodes.bytes, share * nodes.flops});
 }
 
 brunt_amount brunt_work_gather(const brunt_world *world, brunt_body_ref body) {
-    return body.mpm ? gather_work(world, body.mpm, world->transfers.musl_velocity ? GATHER_REST : GATHER) : NOTHING;
+    return body.mpm ? gather_work(&world->settings, body.mpm, world->transfers.musl_velocity ? GATHER_REST : GATHER)
+                    : NOTHING;
 }
 
 brunt_amount brunt_work_kick(const brunt_world *world, brunt_body_ref body) {

@@ -139,7 +139,7 @@ static bool fills_its_shape(const brunt_body_def *body) {
 }
 
 // Refuses particles of one body in the shape of another that it meets. Only where boxes share something is looked.
-static int check_overlap(const brunt_world *world, const brunt_world_def *def, const brunt_body_def **order,
+static int check_overlap(const brunt_pairs *pairs, const brunt_world_def *def, const brunt_body_def **order,
                          const brunt_filled *filled, brunt_error *error) {
     const int n = def->body_count, dim = def->dimension;
     brunt_box *box;
@@ -153,7 +153,7 @@ static int check_overlap(const brunt_world *world, const brunt_world_def *def, c
     int status = brunt_sweep(box, n, 2 * n, &near, &count, error);
     for (int64_t q = 0; q < count && !status; q++) {
         const int i = near[q].a, k = near[q].b - n;
-        if (k < 0 || i == k || brunt_pair_of(&world->pairs.map, i, k) < 0 || !fills_its_shape(order[k])) continue;
+        if (k < 0 || i == k || brunt_pair_of(&pairs->map, i, k) < 0 || !fills_its_shape(order[k])) continue;
         double depth = overlap_depth(&filled[i], order[k], dim);
         if (depth > TOUCHING * lattice_spacing(def, order[i]))
             status = brunt_fail(error, BRUNT_BAD_INPUT,
@@ -167,7 +167,7 @@ static int check_overlap(const brunt_world *world, const brunt_world_def *def, c
 }
 
 // Particles of the bodies that are made of them, and the lowest of their coordinates. Bodies of meshes stay empty.
-static int fill_shapes(brunt_world *world, const brunt_world_def *def, const brunt_body_def **order,
+static int fill_shapes(brunt_pairs *pairs, const brunt_world_def *def, const brunt_body_def **order,
                        brunt_filled *filled, double low[3], brunt_error *error) {
     const int n = def->body_count, dim = def->dimension;
     int status = BRUNT_OK;
@@ -179,7 +179,7 @@ static int fill_shapes(brunt_world *world, const brunt_world_def *def, const bru
     }
     // Barriers look at points alone (scheme/implicit_contact.c).
     if (!status && !def->contact.allow_overlap && def->scheme == BRUNT_EXPLICIT)
-        status = check_overlap(world, def, order, filled, error);
+        status = check_overlap(pairs, def, order, filled, error);
     return status;
 }
 
@@ -250,7 +250,7 @@ int brunt_bodies_make(brunt_world *world, const brunt_world_def *def, const brun
     brunt_filled *filled;
     if (BRUNT_NEW(filled, n, "bodies of points", error)) return BRUNT_FAILED;
     double low[3] = {INFINITY, INFINITY, INFINITY};
-    int status = fill_shapes(world, def, order, filled, low, error);
+    int status = fill_shapes(&world->pairs, def, order, filled, low, error);
     // A grid far from the scene would waste the digits of the particles' places on it: it starts near them, whole cells
     // away.
     double origin[3] = {0};

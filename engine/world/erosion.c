@@ -10,14 +10,14 @@ static brunt_erosion_step step_of(brunt_world *world, double dt) {
                                 .time = world->clock.time,
                                 .steps = world->clock.steps,
                                 .threads = world->settings.threads,
-                                .timer = brunt_pass_timer(world)};
+                                .timer = brunt_pass_timer(&world->timing)};
 }
 
 int brunt_erode_marked(brunt_world *world, double dt, brunt_error *error) {
     const brunt_erosion_step step = step_of(world, dt);
     bool any;
     int status = brunt_erosion_take_elements(&world->erosion, &step, &any, error);
-    return status || !any ? status : brunt_surfaces_renew(world, error);
+    return status || !any ? status : brunt_surfaces_renew(&world->contact, error);
 }
 
 int brunt_erode_meshes(brunt_world *world, double dt, brunt_error *error) {

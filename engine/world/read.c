@@ -33,15 +33,15 @@ static void read_contact(const brunt_world *world, const brunt_body_ref *ref, in
 }
 
 // Where those of contact stand among the fields of a body: after its own at nodes, if it has any there. -1: nowhere.
-static int32_t contact_place(const brunt_world *world, const brunt_body_ref *ref) {
+static int32_t contact_place(const brunt_contact *contact, const brunt_body_ref *ref) {
     int32_t place = 0;
     while (place < ref->ops->field_count(ref) && ref->ops->field(ref, place).at == BRUNT_AT_NODES) place++;
-    return world->contact.has_surfaces && place ? place : BRUNT_NONE;
+    return contact->has_surfaces && place ? place : BRUNT_NONE;
 }
 
 // The number of a field among a body's own, or among those of contact.
-static int32_t own_field(const brunt_world *world, const brunt_body_ref *ref, int32_t field, bool *of_contact) {
-    const int32_t place = contact_place(world, ref);
+static int32_t own_field(const brunt_contact *contact, const brunt_body_ref *ref, int32_t field, bool *of_contact) {
+    const int32_t place = contact_place(contact, ref);
     *of_contact = place >= 0 && field >= place && field < place + CONTACT_FIELDS;
     if (*of_contact) return field - place;
     return place >= 0 && field >= place ? field - CONTACT_FIELDS : field;
@@ -49,13 +49,13 @@ static int32_t own_field(const brunt_world *world, const brunt_body_ref *ref, in
 
 int32_t brunt_body_field_count(const brunt_world *world, int32_t body) {
     const brunt_body_ref *ref = &world->bodies.all[body];
-    return ref->ops->field_count(ref) + (contact_place(world, ref) < 0 ? 0 : CONTACT_FIELDS);
+    return ref->ops->field_count(ref) + (contact_place(&world->contact, ref) < 0 ? 0 : CONTACT_FIELDS);
 }
 
 brunt_field_info brunt_body_field(const brunt_world *world, int32_t body, int32_t field) {
     const brunt_body_ref *ref = &world->bodies.all[body];
     bool of_contact;
-    field = own_field(world, ref, field, &of_contact);
+    field = own_field(&world->contact, ref, field, &of_contact);
     return of_contact ? contact_fields[field] : ref->ops->field(ref, field);
 }
 
@@ -68,7 +68,7 @@ int32_t brunt_body_find_field(const brunt_world *world, int32_t body, const char
 void brunt_body_read(brunt_world *world, int32_t body, int32_t field, double *out) {
     const brunt_body_ref *ref = &world->bodies.all[body];
     bool of_contact;
-    field = own_field(world, ref, field, &of_contact);
+    field = own_field(&world->contact, ref, field, &of_contact);
     if (of_contact)
         read_contact(world, ref, field, out);
     else
@@ -147,12 +147,8 @@ int64_t brunt_world_elements(const brunt_world *world) {
 }
 int32_t brunt_body_count(const brunt_world *world) { return world->bodies.count; }
 const char *brunt_body_name(const brunt_world *world, int32_t body) { return brunt_bodies_name(&world->bodies, body); }
-const brunt_material *brunt_world_material(const brunt_world *world, int body) {
-    const brunt_body_ref *ref = &world->bodies.all[body];
-    return ref->ops->material(ref);
-}
 const char *brunt_body_material(const brunt_world *world, int32_t body) {
-    return brunt_world_material(world, body)->name;
+    return brunt_bodies_material(&world->bodies, body)->name;
 }
 brunt_method brunt_body_method(const brunt_world *world, int32_t body) {
     const brunt_body_ref *ref = &world->bodies.all[body];

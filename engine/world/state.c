@@ -17,12 +17,12 @@
 // the tractions of surfaces),
 // pairs; where surfaces meet what their search remembers; and where contact keeps them the affine velocities of
 // boundary nodes. Last the accounts of erosion, if there is any, or those of implicit steps.
-static int plain_blocks(const brunt_world *world) {
-    return world->contact.surface.affine ? 5 : world->contact.has_surfaces ? 4 : 3;
+static int plain_blocks(const brunt_contact *contact) {
+    return contact->surface.affine ? 5 : contact->has_surfaces ? 4 : 3;
 }
-static bool implicit(const brunt_world *world) { return brunt_scheme_minimises(world->settings.scheme); }
+static bool implicit(const brunt_settings *settings) { return brunt_scheme_minimises(settings->scheme); }
 static int world_blocks(const brunt_world *world) {
-    return plain_blocks(world) + (world->erosion.active || implicit(world));
+    return plain_blocks(&world->contact) + (world->erosion.active || implicit(&world->settings));
 }
 
 enum { EROSION_BLOCK = 5, NEWTON_BLOCK = 6 };
@@ -38,8 +38,8 @@ static place find(const brunt_world *world, int32_t index) {
     const int i = brunt_bodies_holding(bodies, bodies->first_block, index);
     index -= bodies->first_block[i];
     if (i < bodies->count) return (place){&bodies->all[i], index};
-    const int last = implicit(world) ? NEWTON_BLOCK : EROSION_BLOCK;
-    return (place){NULL, index == plain_blocks(world) ? last : index};
+    const int last = implicit(&world->settings) ? NEWTON_BLOCK : EROSION_BLOCK;
+    return (place){NULL, index == plain_blocks(&world->contact) ? last : index};
 }
 
 int32_t brunt_state_count(brunt_world *world) {
@@ -196,7 +196,7 @@ static int check_set(brunt_world *world, int32_t index, const void *in, int64_t 
 static int follow_elements(brunt_world *world, brunt_fem_body *fem, brunt_error *error) {
     int32_t element;
     brunt_node_sets_follow(&world->boundaries.sets, fem, &element);
-    return world->contact.has_surfaces ? brunt_surfaces_renew(world, error) : BRUNT_OK;
+    return world->contact.has_surfaces ? brunt_surfaces_renew(&world->contact, error) : BRUNT_OK;
 }
 
 int brunt_state_set(brunt_world *world, int32_t index, const void *in, int64_t count, brunt_error *error) {

@@ -24,11 +24,11 @@ static bool acts_on_fem(const brunt_world *world, const brunt_boundary *wall) {
 }
 
 // Smallest and largest mean edge among the bodies, for the choice of the contact grid.
-static void look_at_edges(const brunt_world *world, double *fine, double *coarse) {
+static void look_at_edges(const brunt_bodies *bodies, double *fine, double *coarse) {
     *fine = INFINITY, *coarse = 0;
-    for (int k = 0; k < world->bodies.fem_count; k++) {
-        *fine = fmin(*fine, world->bodies.fem[k].mean_edge);
-        *coarse = fmax(*coarse, world->bodies.fem[k].mean_edge);
+    for (int k = 0; k < bodies->fem_count; k++) {
+        *fine = fmin(*fine, bodies->fem[k].mean_edge);
+        *coarse = fmax(*coarse, bodies->fem[k].mean_edge);
     }
 }
 
@@ -116,7 +116,7 @@ int brunt_surfaces_make(brunt_world *world, const brunt_world_def *def, brunt_er
         if (def->contact.iterations < 0 && form == BRUNT_AUGURY_AFFINE) world->contact.def.iterations = SHEET_SWEEPS;
     }
     double fine, coarse;
-    look_at_edges(world, &fine, &coarse);
+    look_at_edges(&world->bodies, &fine, &coarse);
     world->contact.cell = def->contact.cell > 0 ? def->contact.cell : form == BRUNT_AUGURY_PAPER ? 2 * coarse : coarse;
     if (world->contact.has_grid_surfaces && coarse > COARSE * world->settings.cell)
         brunt_warn(&world->messages,
@@ -167,10 +167,10 @@ int brunt_surfaces_overlap(brunt_world *world, brunt_error *error) {
         brunt_body_name(world, o.a), brunt_body_name(world, o.b), o.depth, o.x[0], o.x[1], o.x[2], way_out);
 }
 
-int brunt_surfaces_renew(brunt_world *world, brunt_error *error) {
-    if (!world->contact.has_surfaces) return BRUNT_OK;
-    const int status = brunt_surface_renew(&world->contact.surface, false, error);
-    return status ? status : brunt_node_to_facet_renew(world->contact.node_to_facet, &world->contact.surface, error);
+int brunt_surfaces_renew(brunt_contact *contact, brunt_error *error) {
+    if (!contact->has_surfaces) return BRUNT_OK;
+    const int status = brunt_surface_renew(&contact->surface, false, error);
+    return status ? status : brunt_node_to_facet_renew(contact->node_to_facet, &contact->surface, error);
 }
 
 // Whether a world has something for a row to do; planes are met where facets are.
@@ -190,8 +190,8 @@ static brunt_contact_work contact_work(brunt_contact *contact) {
 }
 
 // Names the mesh that is fastest, or farthest away: contact cannot look that far.
-static int fail_far(const brunt_world *world, brunt_error *error) {
-    const brunt_contact_surface *s = &world->contact.surface;
+static int fail_far(const brunt_contact *contact, brunt_error *error) {
+    const brunt_contact_surface *s = &contact->surface;
     int worst = -1;
     double most = -1;
     for (int k = 0; k < s->fem_count; k++) {
@@ -237,8 +237,7 @@ static bool any_active(const brunt_contact_surface *s, const bool *active) {
 
 // Whether nothing comes near anything in this step, as in the one before: there is nothing more to do then. Methods
 // with an eye of their own for what is near look themselves.
-static bool is_clear(brunt_world *world, const brunt_contact_context *m) {
-    brunt_contact *contact = &world->contact;
+static bool is_clear(brunt_contact *contact, const brunt_contact_context *m) {
     brunt_contact_surface *s = &contact->surface;
     bool far, clear = !any_active(s, s->motion.was_active);
     for (int r = 0; r < brunt_contact_row_count; r++)
@@ -256,14 +255,14 @@ static bool is_clear(brunt_world *world, const brunt_contact_context *m) {
 }
 
 int brunt_surfaces_meet(brunt_world *world, const double gravity[3], double kick, double dt, brunt_error *error) {
-    brunt_timer *timer = brunt_pass_timer(world);
+    brunt_timer *timer = brunt_pass_timer(&world->timing);
     const brunt_contact_context m = brunt_contact_context_of(world, dt, timer);
-    if (is_clear(world, &m)) return BRUNT_OK;
+    if (is_clear(&world->contact, &m)) return BRUNT_OK;
     memcpy(world->contact.surface.motion.frame, world->contact.frame, sizeof world->contact.surface.motion.frame);
     brunt_surface_bounds(&world->contact.surface, world->settings.threads, timer);
     bool far;
     int failed = brunt_broad_phase(&m, &world->contact.node_to_facet, &far, error);
-    if (far) return fail_far(world, error);
+    if (far) return fail_far(&world->contact, error);
     brunt_contact *contact = &world->contact;
     if (!failed) failed = brunt_node_to_facet_begin(contact->node_to_facet, contact->surface.node_count, error);
     brunt_contact_work work = contact_work(contact);

@@ -4,8 +4,8 @@
 
 void brunt_world_validate(const brunt_world *world) {
     const brunt_bodies *bodies = &world->bodies;
-    BRUNT_ASSERT(world->settings.threads >= 1 && world->settings.threads <= BRUNT_THREAD_LIMIT);
-    BRUNT_ASSERT(world->messages.count == 0 || world->messages.text);
+    brunt_settings_validate(&world->settings);
+    brunt_messages_validate(&world->messages);
     brunt_clock_validate(&world->clock);
     brunt_bodies_validate(bodies);
     brunt_boundaries_validate(&world->boundaries, bodies);
@@ -14,7 +14,9 @@ void brunt_world_validate(const brunt_world *world) {
     brunt_contact_validate(&world->contact);
     brunt_ledger_validate(&world->ledger);
     brunt_scratch_validate(&world->scratch, world->settings.threads);
-    brunt_plan_validate(world);
+    brunt_transfers_validate(&world->transfers);
+    brunt_plan_validate(&world->plan);
+    brunt_timing_validate(&world->timing, world->plan.pass_count);
     if (world->plan.implicit)
         brunt_implicit_validate(world->plan.implicit, bodies, &world->boundaries, world->pairs.count);
 }

@@ -113,11 +113,6 @@ static int start(brunt_world *world, brunt_error *error) {
     return BRUNT_OK;
 }
 
-static double cfl_of(const brunt_world_def *def, bool particles) {
-    if (def->cfl > 0) return def->cfl;
-    return particles ? brunt_default_cfl(def->dimension, def->kernel, def->transfer) : 0.5;
-}
-
 // Points that fail and stay, or that are a fluid's, fly on alone, and bear pressure there. (What erosion keeps has no
 // stress, and nothing to be unstable with.)
 static void warn_of_lone_points(brunt_world *world) {
@@ -148,29 +143,6 @@ static void number_symmetry_planes(brunt_world *world, const brunt_world_def *de
         const double start = world->bodies.mpm[0].grid.origin[plane->axis];
         plane->node -= (int32_t)round((start - def->origin[plane->axis]) / def->cell);
     }
-}
-
-static void copy_settings(brunt_settings *s, const brunt_world_def *def) {
-    s->dimension = def->dimension;
-    s->threads = def->threads > 0 ? def->threads : brunt_threads_available();
-    if (s->threads > BRUNT_THREAD_LIMIT) s->threads = BRUNT_THREAD_LIMIT;
-    s->kernel = def->kernel, s->transfer = def->transfer;
-    s->flip = def->flip, s->fixed_step = def->step, s->end = def->end;
-    s->scheme = def->scheme, s->integrator = def->integrator, s->newton = def->newton;
-    s->predictor = def->predictor;
-    s->axisymmetric = def->axisymmetric;
-    s->least_step = def->least_step;
-    s->energy_limit = def->energy_limit, s->cell = def->cell, s->gravity_ramp = def->gravity_ramp;
-    memcpy(s->gravity, def->gravity, sizeof s->gravity);
-    for (int a = 0; a < def->dimension; a++) s->has_gravity = s->has_gravity || def->gravity[a] != 0;
-}
-
-static void find_transfers(brunt_transfers *t, const brunt_world_def *def) {
-    t->p2g = brunt_find_p2g(def->dimension, def->axisymmetric, def->kernel, def->transfer);
-    t->total_p2g = brunt_find_total_p2g(def->dimension, def->kernel, def->transfer);
-    t->total_g2p = brunt_find_total_g2p(def->dimension, def->kernel, def->transfer);
-    t->g2p = brunt_find_g2p(def->dimension, def->axisymmetric, def->kernel, def->transfer);
-    t->musl_velocity = brunt_find_musl_velocity(def->dimension, def->axisymmetric, def->kernel, def->transfer);
 }
 
 // Bodies, and what each thread works in.
@@ -206,11 +178,11 @@ brunt_world *brunt_world_create(const brunt_world_def *given, brunt_error *error
     for (int i = 0; i < def->body_count; i++) order[i] = &def->bodies[i];
     qsort(order, (size_t)def->body_count, sizeof *order, compare_names);
 
-    copy_settings(&world->settings, def);
-    find_transfers(&world->transfers, def);
+    brunt_transfers_make(&world->transfers, def);
+    brunt_timing_make(&world->timing);
     for (int i = 0; i < def->body_count; i++)
         world->bodies.has_particles = world->bodies.has_particles || order[i]->method == BRUNT_MPM;
-    world->settings.cfl = cfl_of(def, world->bodies.has_particles);
+    brunt_settings_make(&world->settings, def, world->bodies.has_particles);
 
     int status = make_room(world, def->body_count, error);
     if (!status) status = brunt_boundaries_make(world, def, order, error);
@@ -233,7 +205,7 @@ brunt_world *brunt_world_create(const brunt_world_def *given, brunt_error *error
     if (!status) status = brunt_load_step_make(&world->boundaries.sets, error);
     if (!status) number_symmetry_planes(world, def);
     if (!status) status = brunt_bodies_number(&world->bodies, error);
-    brunt_plan_make(world);
+    brunt_plan_make(&world->plan, world);
     if (!status) status = start(world, error);
     if (!status)
         status =
@@ -249,7 +221,7 @@ brunt_world *brunt_world_create(const brunt_world_def *given, brunt_error *error
 
 void brunt_world_destroy(brunt_world *world) {
     if (!world) return;
-    brunt_implicit_free(world);
+    brunt_implicit_free(&world->plan, &world->bodies);
     brunt_scratch_free(&world->scratch, world->settings.threads);
     brunt_contact_free(&world->contact);
     brunt_boundaries_free(&world->boundaries);

@@ -1,0 +1,15 @@
+#include "mpm/transfers.h"
+
+#include "base/error.h"
+
+void brunt_transfers_make(brunt_transfers *t, const brunt_world_def *def) {
+    t->p2g = brunt_find_p2g(def->dimension, def->axisymmetric, def->kernel, def->transfer);
+    t->total_p2g = brunt_find_total_p2g(def->dimension, def->kernel, def->transfer);
+    t->total_g2p = brunt_find_total_g2p(def->dimension, def->kernel, def->transfer);
+    t->g2p = brunt_find_g2p(def->dimension, def->axisymmetric, def->kernel, def->transfer);
+    t->musl_velocity = brunt_find_musl_velocity(def->dimension, def->axisymmetric, def->kernel, def->transfer);
+}
+
+void brunt_transfers_validate(const brunt_transfers *t) {
+    BRUNT_ASSERT(t->p2g && t->g2p && !t->total_p2g == !t->total_g2p);
+}
