@@ -29,14 +29,14 @@ typedef struct brunt_boundary_def {
     char body[BRUNT_NAME_LENGTH]; // the one body it acts on; "" = all
     double number[BRUNT_BOUNDARY_NUMBERS];
     brunt_shape shape; // owned by the definition
-    brunt_curve table; // over time [s]; default 1 always; owned by the definition
+    brunt_curve table; // [-] a factor over time [s], on what the kind says; default 1 always; owned by the definition
 } brunt_boundary_def;
 
 // Where and when explosives are lit: at a point, or on a plane. Material at distance d burns from time + d / detonation
 // speed on.
 typedef struct brunt_detonation_def {
     double point[3], normal[3];   // [m]; [-] of a plane, 0: a point
-    double time;                  // [s] when it is lit
+    double time;                  // [s] any, when it is lit; there is no default but that of zeroed memory, 0
     char body[BRUNT_NAME_LENGTH]; // "" = all explosives
 } brunt_detonation_def;
 

@@ -23,7 +23,8 @@ typedef struct brunt_rotation_def {
     double angle;             // [rad]
     double axis[3], about[3]; // its direction, in two dimensions +-z, default z; [m] a point of it, default 0
 } brunt_rotation_def;
-// Ideal gas of one pressure and temperature in an enclosed volume V: p = (gamma - 1) E / V, dE = -p dV + inflow dt.
+// Ideal gas of one pressure and temperature in an enclosed volume V, the control volume of airbags (Wang and Nefske
+// 1988, SAE paper 880654): p = (gamma - 1) E / V, dE = -p dV + inflow dt.
 typedef struct brunt_gas_def {
     double gamma;    // [-] > 1, ratio of specific heats; default 1.4
     double pressure; // [Pa] >= 0 at the start, absolute

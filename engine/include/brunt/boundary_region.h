@@ -15,7 +15,7 @@ typedef struct brunt_region_def {
     brunt_shape shape;            // owned by the definition
     brunt_placement place;        // default: the identity
     bool component[3];            // which components are prescribed; default all
-    double velocity[3];           // [m/s]
+    double velocity[3];           // [m/s] any; default 0
     double start, end;            // [s] active in start <= t < end; default 0, INFINITY
     char body[BRUNT_NAME_LENGTH]; // "" = all
 } brunt_region_def;

@@ -43,15 +43,19 @@ typedef struct brunt_newton_def {
     double tolerance;    // [-] > 0; implicit: of the slowest wave speed: a step has converged when its last correction
                          // moves no material point and no node of a mesh faster than that; static: of the forces that
                          // act (loads or reactions, the sum of their sizes), what is left unbalanced; default 1e-6
-    int iterations;      // most of a step; default 100
-    int cut;             // most halvings of a step that does not converge (static: of a load step); default 6
+    int iterations;      // >= 1: most of a step; default 100
+    int cut;             // >= 0: most halvings of a step that does not converge (static: of a load step); default 6
     brunt_solver solver; // default auto
-    double accuracy;     // [-] 0..1, of the residual of a linear system, of conjugate gradients; default 1e-3
+    double accuracy;     // [-] between 0 and 1 (neither), of the residual of a linear system, of conjugate gradients;
+                         // default 1e-3
 } brunt_newton_def;
 
 // B-splines of the grid, by order.
 typedef enum brunt_kernel { BRUNT_LINEAR = 1, BRUNT_QUADRATIC = 2, BRUNT_CUBIC = 3 } brunt_kernel;
-// Harlow 1964; Brackbill and Ruppel 1986; Jiang, Schroeder, Selle, Teran and Stomakhin 2015.
+// PIC: Harlow 1964, "The particle-in-cell computing method for fluid dynamics". FLIP: Brackbill and Ruppel 1986, "FLIP:
+// a method for adaptively zoned, particle-in-cell calculations of fluid flows in two dimensions"; points keep the share
+// `flip` of their own velocity, and PIC's has the rest (Zhu and Bridson 2005, "Animating sand as a fluid"). APIC:
+// Jiang, Schroeder, Selle, Teran and Stomakhin 2015, "The affine particle-in-cell method"; it has no share of FLIP.
 typedef enum brunt_transfer { BRUNT_PIC, BRUNT_FLIP, BRUNT_APIC } brunt_transfer;
 
 // Tied: bodies of material points share one velocity field at the grid nodes that both reach, in both directions: they
@@ -86,18 +90,19 @@ typedef struct brunt_contact_def {
     brunt_contact_method method; // default: multi-velocity
     double friction;             // [-] >= 0, Coulomb; default 0
     brunt_augury_form form;      // of augury; default affine
-    int iterations;   // most sweeps of a step, or N of the paper form; -1 = the method's own: augury 16 (64 where
-                      // there are membranes), 4, 4, 1 by form; multi-velocity of a mesh with material points 8
+    int iterations; // >= 0: most sweeps of a step, or N of the paper form; -1 (default) = the method's own: augury 16
+                    // (64 where there are membranes), 4, 4, 1 by form; multi-velocity of a mesh with material points 8
     double tolerance; // [-] 0..1 (not 1): sweeps end when the greatest correction of one is no more than this share of
                       // the first one's; 0: when nothing changes, or by `iterations`; of form affine; default 0.01
-    double cell;      // [m] of the contact grid; 0 = the mean surface edge (paper: twice that)
+    double cell;      // [m] >= 0 of the contact grid; 0 (default) = the mean surface edge (paper: twice that)
     brunt_transfer transfer; // of the paper form: BRUNT_PIC or BRUNT_APIC (default)
     // Of barriers.
-    double distance;         // [m] gaps beyond it know nothing of each other; 0 = a tenth of the shortest edge or
-                             // spacing of particles
-    double stiffness;        // [Pa] of the barrier; 0 = a tenth of Young's modulus of the softer body of a pair
-    double slip_speed;       // [m/s] below it friction grows with the speed; 0 = a thousandth of the slowest wave speed
-    int friction_iterations; // solutions of a step, each with the pressures of the one before; default 1
+    double distance;  // [m] >= 0: gaps beyond it know nothing of each other; 0 (default) = a tenth of the shortest edge
+                      // or spacing of particles
+    double stiffness; // [Pa] >= 0 of the barrier; 0 (default) = a tenth of Young's modulus of the softer body of a pair
+    double slip_speed; // [m/s] >= 0: below it friction grows with the speed; 0 (default) = a thousandth of the slowest
+                       // wave speed
+    int friction_iterations; // >= 1: solutions of a step, each with the pressures of the one before; default 1
     bool allow_overlap;    // accept bodies that overlap at the start (meshes: by more than a fifth of an edge), or lie
                            // behind a plane of condition separate; default false: an error
     brunt_pair_def *pairs; // what holds of two bodies instead of the above
@@ -113,7 +118,7 @@ typedef struct brunt_world_def {
     brunt_scheme scheme;         // default explicit
     brunt_integrator integrator; // of implicit steps; default Euler
     brunt_newton_def newton;     // of implicit steps
-    int dimension;               // 3 (default), or 2 = plane strain of unit thickness
+    int dimension;               // 2 or 3: 3 (default), or 2 = plane strain of unit thickness
     bool axisymmetric; // with dimension 2: x is the distance r >= 0 from the axis of revolution, y along it; bodies are
                        // whole rings: masses, forces and energies are those of the full circle; default false
     double cell;       // [m] > 0 of the grid; 0 where no body is of material points
@@ -123,12 +128,12 @@ typedef struct brunt_world_def {
     double flip;             // [-] for FLIP: share of the particle's own velocity kept, 0..1; default 0.99
     double cfl;     // [-] 0..1, of the stable step; default 0: with material points brunt_default_cfl, without 0.5
     double step;    // [s] fixed time step, 0 = from cfl; implicit steps: > 0; static: not used
-    int load_steps; // static: > 0, in which loads and prescribed motion grow
+    int load_steps; // static: >= 1, in which loads and prescribed motion grow
     brunt_predictor predictor; // static; default tangent
     double least_step;         // [s] the run stops, with the reason, when the stable step falls below it; default 0:
-                               // when steps that follow it fall below a millionth of the greatest so far
+                               // when steps that follow it fall below a millionth of the greatest so far; >= 0
     double end;                // [s] > 0; the step that would pass it is cut to end on it; static: 0 or 1, it is 1
-    double energy_limit;       // [-] of the energy `reference` (see brunt_energy); default 0.1; INFINITY = none
+    double energy_limit;       // [-] > 0, of the energy `reference` (see brunt_energy); default 0.1; INFINITY = none
     int threads;               // 0 = all there are; at most BRUNT_THREAD_LIMIT
     brunt_material_def *materials;
     int32_t material_count; // owned
@@ -141,7 +146,7 @@ typedef struct brunt_world_def {
     int32_t detonation_count; // owned
     brunt_contact_def contact;
     double gravity[3];   // [m/s^2] default 0
-    double gravity_ramp; // [s] gravity grows linearly from 0 over this time; default 0; static: over all load steps
+    double gravity_ramp; // [s] >= 0: gravity grows linearly from 0 over it; default 0; static: over all load steps
 } brunt_world_def;
 #undef BRUNT_BOUNDARY_LIST
 

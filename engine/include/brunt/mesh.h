@@ -49,23 +49,27 @@ typedef struct brunt_curve {
     int32_t count;
 } brunt_curve;
 
-// A structured mesh of a shape (not placed) with edges of about `size` [m]: box, sphere, cylinder, ring, prism with
-// four corners; in two dimensions box, disk, annulus, quadrilateral. Boundary groups by shape: box xmin xmax ymin ymax
-// zmin zmax; cylinder and ring start end side (ring: inner outer); prism side1 ... side4 (from corner i to the next)
-// zmin zmax; sphere none; and `surface` for all. Intersections of one sphere (disk), cylinder or ring with boxes, or
-// half-spaces along the axes, are its halves, quarters and eighths: cut through its centre along x, y, z, or across its
-// axis (cuts may miss it, too); nodes lie exactly on the cuts, which are the groups xmin xmax ymin ymax zmin zmax.
-// Intersections of boxes are boxes. BRUNT_BAD_INPUT for shapes that have no such mesh (union, difference, ...).
+// A structured mesh of a shape (not placed) with edges of about `size` [m], finite and > 0: box, sphere, cylinder,
+// ring, prism with four corners; in two dimensions box, disk, annulus, quadrilateral. Boundary groups by shape: box
+// xmin xmax ymin ymax zmin zmax; cylinder and ring start end side (ring: inner outer); prism side1 ... side4 (from
+// corner i to the next) zmin zmax; sphere none; and `surface` for all. Intersections of one sphere (disk), cylinder or
+// ring with boxes, or half-spaces along the axes, are its halves, quarters and eighths: cut through its centre along x,
+// y, z, or across its axis (cuts may miss it, too); nodes lie exactly on the cuts, which are the groups xmin xmax ymin
+// ymax zmin zmax. Intersections of boxes are boxes. Balls and disks are a cube bulged towards the surface, with layers
+// of cells about it, by the equiangular projection of Ronchi, Iacono and Paolucci 1996, "The cubed sphere". BRUNT_OK;
+// BRUNT_BAD_INPUT for shapes that have no such mesh (union, difference, ...) or another size; BRUNT_FAILED: out of
+// memory.
 int brunt_mesh_shape(const brunt_shape *shape, int dimension, brunt_element_kind kind, double size, brunt_mesh *mesh,
                      brunt_error *error);
-// The same of a box whose elements grow along the axes: grading[a] is the factor on `size` along axis a, over the
-// coordinate [m].
+// The same, with the same errors, of a box whose elements grow along the axes: grading[a] is the factor on `size` along
+// axis a, over the coordinate [m].
 int brunt_mesh_graded(const brunt_shape *box, int dimension, brunt_element_kind kind, double size,
                       const brunt_curve grading[3], brunt_mesh *mesh, brunt_error *error);
 // The surface of such a mesh in three dimensions, as sheets (a membrane kind), seen counter-clockwise from outside: all
 // of it, or the faces in the named boundary groups. Groups are kept, with the nodes that are left; `border` is added
 // where the surface is open: the nodes of edges that only one element has. A flat sheet is one face of a box, a disk
-// the start of a cylinder.
+// the start of a cylinder. `size` and errors as of brunt_mesh_shape, and BRUNT_BAD_INPUT too for a kind that is no
+// membrane's or a face that the shape has not; the message lists those that it has.
 int brunt_mesh_surface(const brunt_shape *shape, brunt_element_kind kind, double size,
                        const char (*faces)[BRUNT_NAME_LENGTH], int32_t face_count, brunt_mesh *mesh,
                        brunt_error *error);

@@ -68,6 +68,8 @@ typedef struct brunt_body_sums {
     double kinetic, internal, plastic;                // [J]
     double low[3], high[3];                           // [m] bounds of its nodes, or of its particles' centres
 } brunt_body_sums;
+// Of what is left of body 0 <= `body` < brunt_body_count. Where nothing is: sums and velocity 0, centre of no use (0 of
+// material points, NAN of elements), low INFINITY and high -INFINITY (third components of two dimensions: bounds 0).
 void brunt_body_totals(brunt_world *world, int32_t body, brunt_body_sums *sums);
 
 // What has left a body, or been freed of stress, since the start.
@@ -99,11 +101,12 @@ int64_t brunt_body_size(const brunt_world *world, int32_t body, brunt_place at);
 // always have 3 components, symmetric tensors 6 (XX YY ZZ XY YZ XZ), matrices 9, whatever the dimension.
 void brunt_body_read(brunt_world *world, int32_t body, int32_t field, double *out);
 
-// Contact pairs and walls: force averaged over the last step [N] and impulse since the start [N s], on `b` / on the
-// bodies. What a body does to itself adds up to nothing: of a pair of one body both are 0.
+// Contact pairs and walls: what they do to `b` / to the bodies. What a body does to itself adds up to nothing: of a
+// pair of one body force and impulse are 0. Before the first step all is 0.
 typedef struct brunt_force {
     char name[2 * BRUNT_NAME_LENGTH + 2];
-    double force[3], impulse[3];
+    double force[3];                   // [N] averaged over the last step
+    double impulse[3];                 // [N s] since the start
     double normal_work, friction_work; // [J] so far
     double area; // [m^2] that touched in the last step; in plane strain [m]; of implicit steps what is nearer than
                  // contact.distance
@@ -120,14 +123,15 @@ typedef struct brunt_boundary_surface_report {
     double force[3], moment[3]; // [N], [N m] about the point that its definition gives
     double impulse[3];          // [N s] since the start
     double work;                // [J] that its motion has done on the bodies since the start
-    double drift;               // [m/s] greatest rate at which a piece's material leaves what holds it
-    int32_t pieces, active;     // active: those that hold something
+    double drift;               // [m/s] >= 0 greatest rate at which a piece's material leaves what holds it
+    int32_t pieces, active;     // >= 1; >= 0, those that hold something
 } brunt_boundary_surface_report;
-int32_t brunt_boundary_surface_count(const brunt_world *world);
+int32_t brunt_boundary_surface_count(const brunt_world *world); // 0: there are none
+// The next three: 0 <= index < brunt_boundary_surface_count, which is not looked at.
 void brunt_boundary_surface_read(const brunt_world *world, int32_t index, brunt_boundary_surface_report *report);
-int64_t brunt_boundary_surface_size(const brunt_world *world, int32_t index); // boundary particles
-// Of each boundary particle: place [m], normal, traction of its piece on the bodies [Pa], 3 numbers each; its part of
-// the boundary [m^2] (of plane strain [m]); its piece.
+int64_t brunt_boundary_surface_size(const brunt_world *world, int32_t index); // boundary particles, >= 1
+// Arrays of the caller, with room for that many. Of each boundary particle: place [m], normal, traction of its piece on
+// the bodies [Pa], 3 numbers each; its part of the boundary [m^2] (of plane strain [m]); its piece.
 typedef struct brunt_boundary_surface_arrays {
     double *place, *normal, *traction, *weight;
     int64_t *piece;
@@ -135,7 +139,8 @@ typedef struct brunt_boundary_surface_arrays {
 void brunt_boundary_surface_particles(const brunt_world *world, int32_t index,
                                       const brunt_boundary_surface_arrays *out);
 
-// What Newton's method has done in implicit steps, steps that were cut included.
+// What Newton's method has done in implicit steps, steps that were cut included. Numbers of times are whole and >= 0; 0
+// before the first step, as the residual, and the least of gaps INFINITY.
 typedef struct brunt_newton_counts {
     double steps, iterations, iterations_worst; // worst: of one step
     double halvings;                            // of a Newton step, in its line search
@@ -146,7 +151,7 @@ typedef struct brunt_newton_counts {
     double least_gap;  // [m] at the end of a step; INFINITY: nothing has been near
     double least_part; // [-] of the distance at which surfaces know of each other, likewise
 } brunt_newton_counts;
-// So far, and of the last step (NULL: not wanted). False in explicit schemes.
+// So far, and of the last step (NULL: not wanted). False in explicit schemes, where all numbers are 0.
 bool brunt_world_newton(const brunt_world *world, brunt_newton_counts *so_far, brunt_newton_counts *last);
 // Whether its steps are load steps, whose residuals have no unit.
 bool brunt_world_static(const brunt_world *world);
@@ -167,7 +172,7 @@ typedef struct brunt_gas {
     double volume, pressure, energy; // [m^3], [Pa] absolute, [J]
     double inflow;                   // [J] so far
 } brunt_gas;
-int32_t brunt_gas_count(const brunt_world *world);
+int32_t brunt_gas_count(const brunt_world *world); // 0: there is none
 void brunt_world_gas(const brunt_world *world, int32_t index, brunt_gas *gas);
 
 #ifdef __cplusplus
