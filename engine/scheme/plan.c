@@ -238,7 +238,7 @@ static brunt_array element_array(const brunt_fem_body *body, int32_t index) {
     return array;
 }
 
-static brunt_array surfaces_array(const struct brunt_contact *contact) {
+static brunt_array surfaces_array(const brunt_contact *contact) {
     brunt_array array = {.name = "contact of surfaces", .unit = "", .components = 1};
     array.bytes = brunt_surface_bytes(&contact->surface) +
                   brunt_node_to_facet_bytes(contact->node_to_facet) +

@@ -138,6 +138,17 @@ static bool fills_its_shape(const brunt_body_def *body) {
     return !body->mesh.node_count && body->method != BRUNT_MEMBRANE;
 }
 
+// What lies in another body by no more than its particles' reach is outside it for implicit steps, which know centres.
+static int refuse_overlap(const brunt_filled *a, const char *name, const char *other, double depth,
+                          brunt_error *error) {
+    double reach = 0;
+    for (int32_t i = 0; i < a->count; i++) reach = fmax(reach, a->reach[i]);
+    return brunt_fail(error, BRUNT_BAD_INPUT,
+                      "bodies.%s overlaps bodies.%s by %.4g m at the start%s; move one of them, or write "
+                      "contact.initial_overlap: allow",
+                      name, other, depth, depth < reach ? BRUNT_POINTS_REACH : "");
+}
+
 // Refuses particles of one body in the shape of another that it meets. Only where boxes share something is looked.
 static int check_overlap(const brunt_pairs *pairs, const brunt_world_def *def, const brunt_body_def **order,
                          const brunt_filled *filled, brunt_error *error) {
@@ -156,10 +167,7 @@ static int check_overlap(const brunt_pairs *pairs, const brunt_world_def *def, c
         if (k < 0 || i == k || brunt_pair_of(&pairs->map, i, k) < 0 || !fills_its_shape(order[k])) continue;
         double depth = overlap_depth(&filled[i], order[k], dim);
         if (depth > TOUCHING * lattice_spacing(def, order[i]))
-            status = brunt_fail(error, BRUNT_BAD_INPUT,
-                                "bodies.%s overlaps bodies.%s by %.4g m at the start; move one of them, or write "
-                                "contact.initial_overlap: allow",
-                                order[i]->name, order[k]->name, depth);
+            status = refuse_overlap(&filled[i], order[i]->name, order[k]->name, depth, error);
     }
     brunt_free(near);
     brunt_free(box);

@@ -6,6 +6,11 @@
 
 #define REFUSE(...) return brunt_fail(error, BRUNT_BAD_INPUT, __VA_ARGS__)
 
+// Why bodies of material points overlap that do not in implicit steps.
+#define BRUNT_POINTS_REACH                                                                                             \
+    " (in explicit steps material points meet others half their spacing out from their centres, in implicit ones at "  \
+    "the centres)"
+
 // The body of a name among those in order of name, BRUNT_NONE: there is none.
 int brunt_find_ordered(const brunt_body_def **order, int count, const char *name);
 int brunt_pairs_make(brunt_world *world, const brunt_world_def *def, const brunt_body_def **order, brunt_error *error);

@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "contact/methods/method.h"
 #include "contact/search/initial_overlap.h"
+#include "world/create.h"
 #include "world/world.h"
 
 // A membrane between two blocks is light between heavy ones: each sweep passes on the share of its mass in theirs. At a
@@ -138,6 +139,12 @@ int brunt_surfaces_make(brunt_world *world, const brunt_world_def *def, brunt_er
     return BRUNT_OK;
 }
 
+// [m] that material points meet others out from their centres; 0 of meshes.
+static double half_spacing(const brunt_world *world, int body) {
+    const brunt_body *mpm = world->bodies.all[body].mpm;
+    return mpm ? 0.5 * mpm->spacing : 0;
+}
+
 // Bodies that lie in each other, or behind a plane, at the start. The skin is taken for it, and forgets that it was.
 int brunt_surfaces_overlap(brunt_world *world, brunt_error *error) {
     const double none[3] = {0};
@@ -162,9 +169,11 @@ int brunt_surfaces_overlap(brunt_world *world, brunt_error *error) {
                           "bodies.%s is %.4g m behind the plane '%s' at the start, at (%.6g, %.6g, %.6g) m; %s",
                           brunt_body_name(world, o.a), o.depth, world->boundaries.walls[o.wall].name, o.x[0], o.x[1],
                           o.x[2], way_out);
-    return brunt_fail(
-        error, BRUNT_BAD_INPUT, "bodies.%s overlaps bodies.%s by %.4g m at the start, at (%.6g, %.6g, %.6g) m; %s",
-        brunt_body_name(world, o.a), brunt_body_name(world, o.b), o.depth, o.x[0], o.x[1], o.x[2], way_out);
+    const bool shallow = o.depth < half_spacing(world, o.a) + half_spacing(world, o.b);
+    return brunt_fail(error, BRUNT_BAD_INPUT,
+                      "bodies.%s overlaps bodies.%s by %.4g m at the start, at (%.6g, %.6g, %.6g) m%s; %s",
+                      brunt_body_name(world, o.a), brunt_body_name(world, o.b), o.depth, o.x[0], o.x[1], o.x[2],
+                      shallow ? BRUNT_POINTS_REACH : "", way_out);
 }
 
 int brunt_surfaces_renew(brunt_contact *contact, brunt_error *error) {

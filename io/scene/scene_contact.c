@@ -38,8 +38,8 @@ static void check_self(scene_reader *reader, const scene_node *between, const sc
         return;
     }
     if (body->method != BRUNT_MEMBRANE)
-        brunt_tree_complain(reader->tree, between, "contact of a body with itself is for membranes, '%s' is none",
-                            pair->a);
+        brunt_tree_complain(reader->tree, between,
+                            "contact of a body with itself is for membranes in explicit steps, '%s' is none", pair->a);
     else if (self == BRUNT_SELF_NONE)
         brunt_tree_complain(reader->tree, method ? method : between,
                             "contact of a membrane with itself is by augury: method: augury is wanted");

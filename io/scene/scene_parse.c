@@ -112,8 +112,11 @@ static void fill_time(scene_reader *reader) {
     if (!time || time->kind != SCENE_MAP) return;
     brunt_fill_fields(reader, time, "time", 0, world);
     const scene_node *step = brunt_tree_child(time, "step"), *cfl = brunt_tree_child(time, "cfl");
-    if (step && cfl && world->scheme == BRUNT_EXPLICIT)
-        brunt_tree_complain_key(reader->tree, step, "step and cfl are both given, one of them is wanted");
+    // Beside each other they are for both schemes: each takes its own (scene_scheme.c says what implicit ones leave).
+    if (step && cfl && world->scheme == BRUNT_EXPLICIT) {
+        brunt_scene_warn_at(reader, step, true, "of implicit steps where cfl is beside it, not used by explicit ones");
+        world->step = 0;
+    }
     if (step && world->scheme != BRUNT_STATIC && world->step > world->end && world->end > 0)
         brunt_tree_complain(reader->tree, step, "the step is longer than the run");
     world->cfl = brunt_real_of(time, "cfl", world->cfl);
