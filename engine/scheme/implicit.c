@@ -36,12 +36,13 @@ static double all_points(const brunt_world *world, const brunt_body *body) {
 // The step that is asked for, in equal parts up to a time that must be hit.
 static int choose(brunt_world *world, brunt_step *step, brunt_error *error) {
     const struct brunt_clock *now = &world->clock;
+    world->clock.withdrawn = false;
     if (error) *error = (brunt_error){.id = -1};
     const double stop = fmin(step->limit > now->time ? step->limit : INFINITY, world->settings.end);
     const bool still = world->plan.implicit->still;
-    const double left = stop - now->time, wanted = still ? brunt_static_wanted(world) : now->next_dt;
-    if (!(left > 0))
-        return brunt_fail_step(&world->clock, NULL, error, "the end has been reached, there is no step to take");
+    const double left = stop - now->time,
+                 wanted = still ? brunt_static_wanted(world) : fmin(now->next_dt, world->settings.fixed_step);
+    if (!(left > 0)) return brunt_fail_step(&world->clock, NULL, error, "the end has been reached, there is no step to take");
     step->dt = wanted >= left * (1 - 1e-9)     ? left
                : !still && left < 1e6 * wanted ? left / ceil(left / wanted * (1 - 1e-9))
                                                : wanted;

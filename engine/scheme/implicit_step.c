@@ -324,6 +324,15 @@ static int check_planes(const brunt_world *world, brunt_error *error) {
     return brunt_fail_place(world, at.body, at.x, error, reason);
 }
 
+// What was tried counts, and nothing else of the step is kept: but the tractions that Newmark's first one has found.
+static int withdraw(brunt_world *world, double wanted, const brunt_newton_counts *tried,
+                    const brunt_newton_report *report, brunt_error *error) {
+    const struct brunt_implicit *m = world->plan.implicit;
+    brunt_newton_counts_add(&world->clock.newton, tried);
+    world->clock.withdrawn = !m->holds || m->weights.gamma == 1 || world->clock.steps > 0;
+    return fail_try(world, wanted, report, error);
+}
+
 int brunt_pass_newton(brunt_world *world, brunt_step *step, brunt_error *error) {
     struct brunt_implicit *m = world->plan.implicit;
     brunt_newton_counts sum = {.least_gap = INFINITY, .least_part = INFINITY};
@@ -335,19 +344,20 @@ int brunt_pass_newton(brunt_world *world, brunt_step *step, brunt_error *error) 
     const double least = m->still ? brunt_static_least(&world->settings) : ldexp(dt, -world->settings.newton.cut);
     for (int cut = 0; cut == 0 || dt >= least; cut++, dt *= 0.5) {
         brunt_error tried = {.id = -1};
+        sum.cuts = cut;
         status = try_step(world, dt, &report, &tried);
         brunt_newton_counts_add(&sum, &m->tried);
         if (error && status) *error = tried;
         if (!status || report.result == BRUNT_NEWTON_BROKEN) break;
-        sum.cuts += 1;
     }
     if (world->timing.pass != own) {
         brunt_pass_end(&world->timing, 0);
         brunt_pass_begin(&world->timing, own);
     }
-    sum.steps = 1, sum.iterations_worst = sum.iterations;
+    sum.iterations_worst = sum.iterations;
+    if (status) return withdraw(world, step->dt, &sum, &report, error);
+    sum.steps = 1;
     m->tried = sum;
-    if (status) return fail_try(world, step->dt, &report, error);
     step->dt = step->kick = m->dt;
     return check_planes(world, error);
 }

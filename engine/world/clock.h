@@ -12,6 +12,7 @@ struct brunt_clock {
     double recent_step, earlier_step;        // [s] least stable one of this stretch of steps, and of the one before
     brunt_newton_counts newton, newton_last; // so far, of the last step
     bool creep_told;                         // that steps have become short; not of the state
+    bool withdrawn;                          // the last step failed and changed nothing; not of the state
     int64_t gap_told, chatter_told;          // implicit: 1 once a gap has become small, a step too long for a barrier
 };
 

@@ -119,6 +119,7 @@ void brunt_wall_force(const brunt_world *world, int32_t index, brunt_force *forc
 double brunt_world_time(const brunt_world *world) { return world->clock.time; }
 double brunt_world_end(const brunt_world *world) { return world->settings.end; }
 int64_t brunt_world_steps(const brunt_world *world) { return (int64_t)world->clock.steps; }
+bool brunt_world_step_withdrawn(const brunt_world *world) { return world->clock.withdrawn; }
 double brunt_world_dt(const brunt_world *world) { return world->clock.dt; }
 double brunt_world_dt_min(const brunt_world *world) {
     return world->clock.steps > 0 ? world->clock.dt_min : world->clock.dt;

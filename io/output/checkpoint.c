@@ -94,6 +94,7 @@ static bool put_run_state(hid_t file, brunt_world *world, const char *scene_text
            brunt_hdf5_put_number(file, "step_seconds", state->step_seconds) &&
            brunt_hdf5_put_number(file, "output_seconds", state->output_seconds) &&
            brunt_hdf5_put_integer(file, "failed", state->failed) &&
+           brunt_hdf5_put_integer(file, "withdrawn", state->withdrawn) &&
            brunt_hdf5_put_text(file, "reason", state->reason) &&
            brunt_hdf5_put(file, "/picture_times", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, (hsize_t)state->picture_count,
                           state->picture_times) &&
@@ -156,6 +157,25 @@ static void shorten_meshes(struct fy_document *document, struct fy_node *bodies)
         shorten_mesh(document, fy_node_pair_value(pair));
 }
 
+static void remove_key_of(struct fy_document *document, struct fy_node *root, const char *section, const char *key) {
+    struct fy_node *map = fy_node_mapping_lookup_by_string(root, section, FY_NT);
+    if (map && fy_node_is_mapping(map)) remove_key(document, map, key);
+}
+
+// How implicit steps are solved, by which keys a step may be found that by others was not: what bodies are and what
+// they store in a gap is not of it.
+static void remove_solution(struct fy_document *document, struct fy_node *root) {
+    size_t length = 0;
+    struct fy_node *scheme = fy_node_by_path(root, "/time/scheme", FY_NT, FYNWF_DONT_FOLLOW);
+    const char *text = scheme ? fy_node_get_scalar(scheme, &length) : NULL;
+    if (!text || !strncmp(text, "explicit", length)) return;
+    remove_key(document, root, "newton");
+    if (strncmp(text, "implicit", length)) return;
+    remove_key_of(document, root, "time", "step");
+    remove_key_of(document, root, "contact", "slip_speed");
+    remove_key_of(document, root, "contact", "friction_iterations");
+}
+
 // The scene less what may change between the legs of a run, as block YAML; NULL when it is not YAML. Freed with
 // free().
 static char *comparable(const char *text) {
@@ -166,8 +186,8 @@ static char *comparable(const char *text) {
     if (root && fy_node_is_mapping(root)) {
         static const char *const free_keys[] = {"output", "measures", "title"};
         for (size_t k = 0; k < sizeof free_keys / sizeof *free_keys; k++) remove_key(document, root, free_keys[k]);
-        struct fy_node *time = fy_node_by_path(root, "/time", FY_NT, FYNWF_DONT_FOLLOW);
-        if (time && fy_node_is_mapping(time)) remove_key(document, time, "end");
+        remove_key_of(document, root, "time", "end");
+        remove_solution(document, root);
         shorten_meshes(document, fy_node_by_path(root, "/bodies", FY_NT, FYNWF_DONT_FOLLOW));
         out = fy_emit_document_to_string(document, FYECF_MODE_BLOCK | FYECF_WIDTH_INF);
     }
@@ -207,7 +227,8 @@ static int compare_scenes(const char *path, const char *stored, const char *want
         status =
             brunt_fail(error, BRUNT_BAD_INPUT,
                        "%s: made from another scene: '%s' in the checkpoint, '%s' in the scene (only time.end, output, "
-                       "measures and title may change)",
+                       "measures and title may change; of implicit steps also newton, time.step, contact.slip_speed "
+                       "and contact.friction_iterations)",
                        path, line_a, line_b);
     }
     free(a);
@@ -241,7 +262,7 @@ static bool is_sound(const brunt_run_state *s) {
 }
 
 static int read_run_state(hid_t file, const char *path, brunt_run_state *state, brunt_error *error) {
-    long long step = 0, failed = 0, mesh_hash = 0, lines = 0, hash = 0;
+    long long step = 0, failed = 0, withdrawn = 0, mesh_hash = 0, lines = 0, hash = 0;
     memset(state, 0, sizeof *state);
     bool ok = brunt_hdf5_get_integer(file, "step", &step) && brunt_hdf5_get_integer(file, "failed", &failed) &&
               brunt_hdf5_get_integer(file, "history_lines", &lines) &&
@@ -260,6 +281,7 @@ static int read_run_state(hid_t file, const char *path, brunt_run_state *state, 
     state->history_hash = (uint64_t)hash;
     state->step = step;
     state->failed = failed != 0;
+    state->withdrawn = brunt_hdf5_get_integer(file, "withdrawn", &withdrawn) && withdrawn;
     return is_sound(state) ? BRUNT_OK
                            : brunt_fail(error, BRUNT_BAD_INPUT,
                                         "%s: the state of the run's outputs holds numbers that no run has", path);
@@ -317,7 +339,7 @@ int brunt_checkpoint_read(const char *path, brunt_world *world, const char *scen
     if (status) return status;
     status = check_header(file, path, error);
     if (!status) status = read_run_state(file, path, state, error);
-    if (!status && state->failed)
+    if (!status && state->failed && !state->withdrawn)
         status = brunt_fail(error, BRUNT_BAD_INPUT,
                             "%s: written where the computation failed (%.600s); it can be looked at, not resumed: "
                             "put the checkpoint before it in its place",
@@ -386,6 +408,7 @@ int brunt_checkpoint_describe(const char *path, FILE *out, brunt_error *error) {
                 state.time, (long long)state.step, particles, elements, (long long)state.picture_count,
                 state.wall_seconds);
         if (state.failed) fprintf(out, "FAILED     %s\n", state.reason);
+        if (state.withdrawn) fprintf(out, "           the step has changed nothing: --resume goes on from here\n");
         if (H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_NATIVE, describe_block, out, H5O_INFO_BASIC) < 0)
             status = brunt_fail(error, BRUNT_BAD_INPUT, "%s: HDF5 cannot read the file", path);
     }

@@ -13,7 +13,8 @@ typedef struct brunt_run_state {
     double *picture_times; // [s] of the pictures so far; owned
     int64_t picture_count;
     double wall_seconds, cpu_seconds, step_seconds, output_seconds; // [s] spent so far, over all legs of the run
-    bool failed; // written where the computation failed, to be looked at: it cannot be resumed
+    bool failed;    // written where the computation failed, to be looked at,
+    bool withdrawn; // by a step that has changed nothing: only such can be resumed
     char reason[1024];
     double time; // [s] of the world
     int64_t step;
@@ -32,9 +33,9 @@ int brunt_checkpoint_write(const char *path, const char *backup, brunt_world *wo
 // and the history.
 uint64_t brunt_checkpoint_identity(const char *scene_text, uint64_t mesh_hash);
 
-// Restores a world made from the same scene: everything but time.end, output, measures and title must agree (the number
-// of threads is no part of a scene). Fills `state`, to be freed. BRUNT_BAD_INPUT, with what differs, when it cannot be
-// resumed.
+// Restores a world made from the same scene: everything but time.end, output, measures and title must agree, and how
+// the equations of implicit steps are solved (the number of threads is no part of a scene). Fills `state`, to be freed.
+// BRUNT_BAD_INPUT, with what differs, when it cannot be resumed.
 int brunt_checkpoint_read(const char *path, brunt_world *world, const char *scene_text, brunt_run_state *state,
                           brunt_error *error);
 

@@ -148,6 +148,7 @@ static int write_checkpoint(run *r, const char *failure, brunt_error *error) {
     brunt_run_state state = state_now(r);
     if (failure) {
         state.failed = true;
+        state.withdrawn = brunt_world_step_withdrawn(r->world);
         snprintf(state.reason, sizeof state.reason, "%s", failure);
     }
     status = brunt_checkpoint_write(path, backup, r->world, r->scene_text, &state, error);
@@ -302,6 +303,15 @@ static int make_world(run *r, brunt_error *error) {
     return status;
 }
 
+// A run goes on as if the step that has changed nothing had not been tried: its picture is none of those that were due.
+static void forget_failure(run *r) {
+    const double time = brunt_world_time(r->world), every = r->scene->output.every;
+    int64_t *count = &r->state.picture_count;
+    const bool due = *count > 1 ? reached(time, next_time(r->state.picture_times[*count - 2], every)) : time == 0;
+    if (picture_is_here(r) && !due) --*count;
+    r->state.failed = r->state.withdrawn = false, r->state.reason[0] = 0;
+}
+
 static int restore(run *r, brunt_error *error) {
     char path[BRUNT_PATH_LENGTH];
     uint64_t mesh_hash = r->state.mesh_hash;
@@ -311,6 +321,7 @@ static int restore(run *r, brunt_error *error) {
     if (r->state.mesh_hash != mesh_hash)
         return brunt_fail(error, BRUNT_BAD_INPUT, "%s: a mesh file has changed since the checkpoint was written", path);
     r->picture_capacity = sizeof(double) * (size_t)r->state.picture_count;
+    if (r->state.failed) forget_failure(r);
     // The clocks of this process start now; those in the checkpoint are of the legs before.
     r->state.cpu_seconds -= cpu_clock();
     status = path_in(r, "history.h5", path, error);
@@ -400,6 +411,12 @@ static void finish_failed(run *r, brunt_error *error) {
         if (write_history(r, &second))
             brunt_console_print(&r->console, "no history.h5 of the failure: %s\n", second.message);
     }
+    if (brunt_world_step_withdrawn(r->world))
+        brunt_console_print(
+            &r->console,
+            "the step has changed nothing: --resume goes on from t = %.9g s, also by other keys of newton, "
+            "time.step, contact.slip_speed, contact.friction_iterations\n",
+            brunt_world_time(r->world));
     if (finish(r, "failed", reason, false, &second))
         brunt_console_print(&r->console, "no summary: %s\n", second.message);
     memcpy(error->message, reason, sizeof reason);

@@ -163,6 +163,52 @@ START_TEST(that_does_not_converge_is_70) {
     small_expect("run small.yaml -o out --set newton.iterations=1 --set newton.cut=1", 70, "does not converge");
     small_expect("info out/checkpoint.h5", 0, "FAILED");
     ck_assert(small_exists("out/vtu/upper_000000.vtu"));
+    // What was tried counts: two times one iteration, of a step that was cut once.
+    json_t *s = summary_of("out");
+    ck_assert_double_eq(number_at(s, "newton", "steps"), 0);
+    ck_assert_double_eq(number_at(s, "newton", "iterations"), 2);
+    ck_assert_double_eq(number_at(s, "newton", "iterations_worst"), 2);
+    ck_assert_double_eq(number_at(s, "newton", "cuts"), 1);
+    json_decref(s);
+}
+END_TEST
+
+static void check_same_state(const char *one, const char *other) {
+    json_t *a = summary_of(one), *b = summary_of(other);
+    ck_assert_str_eq(json_string_value(json_object_get(a, "state_hash")),
+                     json_string_value(json_object_get(b, "state_hash")));
+    json_decref(a), json_decref(b);
+}
+
+// A step that was not solved has changed nothing: a run goes on by other keys of its solution with the bits, pictures
+// and lines of one that had them from there on.
+START_TEST(goes_on_where_a_step_failed) {
+    static const char failing[] = "--set newton.iterations=3 --set newton.cut=0",
+                      going[] = "--set newton.iterations=50";
+    char words[240];
+    // Steps and times that are binary fractions: a run that ends at one of them is there to the bit.
+    ck_assert_int_eq(small_shell("sed -i 's/step: 2 ms/step: 0.0078125/; s/every: 20 ms, history: 2 ms/every: "
+                                 "0.0625, history: 0/' small.yaml"),
+                     0);
+    snprintf(words, sizeof words, "run small.yaml -o out %s", failing);
+    small_expect(words, 70, "--resume goes on from t = 0.0");
+    small_expect("info out/checkpoint.h5", 0, "the step has changed nothing");
+    ck_assert_int_eq(small_shell("grep '^t = ' out/log.txt | cut -d' ' -f3 > end"), 0);
+    snprintf(words, sizeof words, "run small.yaml -o out --resume %s", failing);
+    small_expect(words, 70, "does not converge");
+    small_expect("run small.yaml -o out --resume --set contact.friction=0.3", 65, "made from another scene: 'friction");
+    snprintf(words, sizeof words, "run small.yaml -o out --resume %s --set time.step=0.00390625", going);
+    small_expect(words, 0, "resumed at t = 0.0");
+    ck_assert_int_eq(small_shell("$B run small.yaml -o two -q %s --set time.end=`cat end`", failing), 0);
+    snprintf(words, sizeof words, "run small.yaml -o two --resume %s --set time.step=0.00390625", going);
+    small_expect(words, 0, "resumed at t = 0.0");
+    check_same_state("out", "two");
+    ck_assert_int_eq(
+        small_shell("cmp out/history.csv two/history.csv && ! grep -q 'timestep=\"0.03125\"' out/brunt.pvd"),
+        0); // where it failed no picture was due
+    json_t *s = summary_of("out");
+    ck_assert_double_gt(number_at(s, "newton", "steps"), 45); // of half the length
+    json_decref(s);
 }
 END_TEST
 
@@ -176,6 +222,7 @@ int main(void) {
     tcase_add_test(tests, runs_by_both);
     tcase_add_test(tests, in_two_legs);
     tcase_add_test(tests, that_does_not_converge_is_70);
+    tcase_add_test(tests, goes_on_where_a_step_failed);
     suite_add_tcase(suite, tests);
     return suite_main(suite);
 }

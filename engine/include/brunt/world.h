@@ -1,6 +1,7 @@
 // A world: made from a definition, stepped, asked for its time and size, destroyed. Two may live side by side.
 #pragma once
 
+#include <stdbool.h>
 #include <stdint.h>
 #include "brunt/definition.h"
 #include "brunt/error.h"
@@ -30,6 +31,10 @@ void brunt_world_destroy(brunt_world *world); // frees all of it; NULL: nothing
 // One time step. BRUNT_OK, or BRUNT_FAILED with where and why; the world then is as the failing step left it, to be
 // looked at. `limit` [s]: a time that must be hit exactly (an output time), INFINITY for none.
 int brunt_world_step(brunt_world *world, double limit, brunt_error *error);
+
+// Whether the last step failed and has changed nothing, as implicit ones do whose equations were not solved: the state
+// is that of the step before, which others may go on from.
+bool brunt_world_step_withdrawn(const brunt_world *world);
 
 double brunt_world_time(const brunt_world *world);       // [s]
 double brunt_world_end(const brunt_world *world);        // [s]
