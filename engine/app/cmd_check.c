@@ -2,6 +2,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/statvfs.h>
 
 #include "app/app.h"
@@ -152,6 +153,19 @@ static double fastest_particle(brunt_world *world, int32_t body) {
     return sqrt(most);
 }
 
+// What contact goes by where the scene does not say: it decides how near bodies come and how they rest.
+static void print_barrier(const brunt_world *world) {
+    brunt_barrier_values v;
+    if (!brunt_world_barrier(world, &v)) return;
+    printf("  contact.distance %.4g m, contact.stiffness %.4g", v.distance, v.stiffness[0]);
+    if (v.stiffness[1] > v.stiffness[0]) printf(" to %.4g", v.stiffness[1]);
+    printf(" Pa\n");
+    if (v.slip_speed > 0)
+        printf("  contact.slip_speed %.4g m/s, %.3g of the slowest wave speed: what sticks creeps by up to that, "
+               "and slower sliding has less than Coulomb's friction\n",
+               v.slip_speed, v.slip_speed / v.slowest_wave);
+}
+
 // What implicit steps solve, and whether they are short enough for the grid.
 static void print_newton(const brunt_scene *scene, brunt_world *world) {
     brunt_newton_systems s;
@@ -163,7 +177,10 @@ static void print_newton(const brunt_scene *scene, brunt_world *world) {
         printf("implicit steps\n  c dt / h %.3g, %lld unknowns, corrections down to %.3g m/s, ", s.courant,
                (long long)s.unknowns, s.tolerance);
     print_size(s.bytes, 0);
-    printf(" beside the bodies\n  solver %s: %s\n", s.solver, s.why);
+    printf(" beside the bodies\n");
+    const bool named = !strncmp(s.why, s.solver, strlen(s.solver)); // the reason begins with it
+    printf("  solver %s%s%s\n", named ? "" : s.solver, named ? "" : ": ", s.why);
+    print_barrier(world);
     double fastest = 0;
     for (int32_t b = 0; b < brunt_body_count(world); b++) fastest = fmax(fastest, fastest_particle(world, b));
     if (fastest * scene->world.step > scene->world.cell)

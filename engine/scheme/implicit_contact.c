@@ -1,7 +1,7 @@
 // Surfaces, particles and planes that barriers keep apart.
 #include "contact/methods/method.h"
 #include "contact/planes/condition.h"
-#include "scheme/implicit_contact.h"
+#include "scheme/implicit.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -13,6 +13,8 @@
 #include "contact/barrier/barrier_function.h"
 #include "grid/bspline.h"
 #include "materials/material.h"
+
+static const double WITHIN = 0.99; // of the distance: nearer gaps have a force to speak of at the start
 
 // ------------------------------------------------------------------------------------------ stiffness and distance
 
@@ -341,16 +343,31 @@ static int look_at_start(brunt_implicit_contact *c, const brunt_world *world, br
     return set ? set : brunt_barrier_look_back(c->barrier, &alone, NULL, NULL, nearest, NULL, error);
 }
 
-// A closed gap has no energy that a step could begin with.
-static int check_gaps(brunt_implicit_contact *c, const brunt_world *world, brunt_error *error) {
+// [J]
+static double kinetic_energy(const brunt_world *world) {
+    double sum = 0;
+    for (int b = 0; b < world->bodies.count; b++) sum += world->bodies.all[b].ops->sums(&world->bodies.all[b]).kinetic;
+    return sum;
+}
+
+// A closed gap has no energy that a step could begin with; one within the barrier pushes from the first step on.
+static int check_gaps(brunt_implicit_contact *c, brunt_world *world, bool given, brunt_error *error) {
     brunt_barrier_report r;
     const int status = look_at_start(c, world, &r, error);
-    if (status || r.least_gap > 0) return status;
+    if (status || !(r.least_gap < WITHIN * c->distance)) return status;
     char to[2 * BRUNT_NAME_LENGTH];
     if (r.plane >= 0)
         snprintf(to, sizeof to, "the plane '%s'", world->boundaries.walls[c->plane_wall[r.plane]].name);
     else
         snprintf(to, sizeof to, "bodies.%s", brunt_body_name(world, r.other));
+    if (r.least_gap > 0) {
+        brunt_warn(&world->messages,
+                   "bodies.%s begins with a gap of %.4g m to %s, at (%.6g, %.6g, %.6g) m: within contact.distance, "
+                   "%.4g m%s, barriers push; they store %.3g J at the start, all bodies move with %.3g J",
+                   brunt_body_name(world, r.body), r.least_gap, to, r.place[0], r.place[1], r.place[2], c->distance,
+                   given ? "" : " by default", r.energy, kinetic_energy(world));
+        return BRUNT_OK;
+    }
     return brunt_fail(error, BRUNT_BAD_INPUT,
                       "bodies.%s has a gap of %.4g m to %s at the start, at (%.6g, %.6g, %.6g) m: barriers want more "
                       "than 0 m, %.4g m to begin without a force",
@@ -375,7 +392,25 @@ int brunt_implicit_contact_make(brunt_implicit_contact *c, brunt_world *world, c
     if (!(c->barrier = brunt_barrier_make(error))) return BRUNT_FAILED;
     status = make_surfaces(c, world, error);
     if (status || (status = brunt_barrier_set_pairs(c->barrier, c->pair, c->pair_count, error))) return status;
-    return check_gaps(c, world, error);
+    return check_gaps(c, world, def->contact.distance > 0, error);
+}
+
+static void take_law(brunt_barrier_values *values, double stiffness, double friction, double slip) {
+    values->stiffness[0] = fmin(values->stiffness[0], stiffness);
+    values->stiffness[1] = fmax(values->stiffness[1], stiffness);
+    if (friction > 0) values->slip_speed = slip;
+}
+
+bool brunt_world_barrier(const brunt_world *world, brunt_barrier_values *values) {
+    if (!world->plan.implicit || !world->plan.implicit->contact.barrier) return false;
+    const brunt_implicit_contact *c = &world->plan.implicit->contact;
+    *values = (brunt_barrier_values){
+        .distance = c->distance, .stiffness = {INFINITY, 0}, .slowest_wave = slowest_wave(&world->bodies)};
+    for (int32_t p = 0; p < c->pair_count; p++)
+        take_law(values, c->pair[p].stiffness, c->pair[p].friction, c->pair[p].slip_speed);
+    for (int32_t q = 0; q < c->plane_count; q++)
+        take_law(values, c->plane[q].stiffness, c->plane[q].friction, c->plane[q].slip_speed);
+    return true;
 }
 
 void brunt_implicit_contact_free(brunt_implicit_contact *c) {

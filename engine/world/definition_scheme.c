@@ -70,7 +70,7 @@ static void look_at_material(const brunt_world_def *def, const brunt_body_def *b
     if (strength && !strength->potential && !strength->differences) say_no_potential(r, ".model", strength);
     if (eos && !eos->potential && !eos->differences) say_no_potential(r, ".eos.model", eos);
     if (material->bulk_viscosity) say(r, ".viscosity", EXPLICIT_ONLY ": implicit steps need no bulk viscosity");
-    if (material->failure[0]) say(r, ".failure", EXPLICIT_ONLY);
+    if (material->failure[0]) say(r, ".failure", EXPLICIT_ONLY ": failure: none leaves out that of a preset");
 }
 
 // Conjugate gradients are for the symmetric matrices of potentials.
@@ -136,14 +136,17 @@ static brunt_contact_method method_of(const brunt_contact_def *contact, const br
 }
 
 // Bodies of material points have no surface that particles of others could be kept from.
-static void look_at_points(const brunt_world_def *def, const refusals *r) {
+static void look_at_points(const brunt_world_def *def, refusals *r) {
     for (int32_t i = 0; i < def->body_count; i++)
         for (int32_t k = i + 1; k < def->body_count; k++) {
             const brunt_body_def *a = &def->bodies[i], *b = &def->bodies[k];
             const brunt_contact_method method = method_of(&def->contact, a, b);
             if (a->method != BRUNT_MPM || b->method != BRUNT_MPM || brunt_contact_accepts(method, false, false))
                 continue;
-            say(r, ".method", "%s wants %s, neither '%s' nor '%s' is: tied or none is wanted, for all or in pairs",
+            set_owner(r, "bodies.%s", b->name);
+            say(r, ".method",
+                "%s wants %s, neither '%s' nor '%s' is: each has a grid of its own and no surface; method: fem is "
+                "wanted for one, or contact tied or none, for all or in pairs",
                 brunt_contact_word(method), brunt_contact_wants(method), a->name, b->name);
             return;
         }

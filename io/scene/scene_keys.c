@@ -162,7 +162,7 @@ static const scene_key own_rows[] = {
     {"contact.transfer", SCENE_WORD, NULL, "apic", ANY, "pic|apic", 0, true, "of augury, form published: velocity transfer to the contact grid"},
     {"contact.distance", SCENE_REAL, "m", OPTIONAL, POSITIVE, NULL, 0, false, "of barrier: gaps beyond it know nothing of each other; bodies at rest keep most of it (default: a tenth of the shortest edge or spacing of particles in contact)"},
     {"contact.stiffness", SCENE_REAL, "Pa", OPTIONAL, POSITIVE, NULL, 0, false, "of barrier: pressures of that size half close the gaps (default: a tenth of Young's modulus of the softest body in contact)"},
-    {"contact.slip_speed", SCENE_REAL, "m/s", OPTIONAL, POSITIVE, NULL, 0, false, "of barrier: below it friction grows with the speed; what sticks creeps no faster (default: a thousandth of the slowest wave speed)"},
+    {"contact.slip_speed", SCENE_REAL, "m/s", OPTIONAL, POSITIVE, NULL, 0, false, "of barrier: below it friction grows with the speed, and is less than Coulomb's; what sticks creeps no faster. It should be well below the speeds of sliding that friction matters at (default: a thousandth of the slowest wave speed, metres a second in metal)"},
     {"contact.friction_iterations", SCENE_INTEGER, NULL, "1", 1, 1000, false, false, NULL, 0, true, "of barrier: solutions of a step, friction being by the pressures of the one before (the first: of the step before)"},
     {"contact.initial_overlap", SCENE_WORD, NULL, "error", ANY, "error|allow", 0, false, "bodies that overlap at the start, or lie behind a plane of condition separate: contact ends an approach, and what is in each other already may pass. Of meshes a fifth of an edge is let be"},
     {"contact.pairs", SCENE_ENTRIES, NULL, OPTIONAL, NONE, "pairs of bodies that differ from the above"},
@@ -218,7 +218,7 @@ static const scene_key own_rows[] = {
 
     {"output", SCENE_GROUP, NULL, "{}", NONE, "what is written, and how often"},
     {"output.every", SCENE_REAL, "s", "0", 0, INFINITY, false, true, "none", 0, false, "time between pictures, to which steps are cut; 0: the first and the last; none: no pictures", .field = SCENE_FIELD(brunt_output_def, every)},
-    {"output.history", SCENE_REAL, "s", "0", NOT_NEGATIVE, NULL, 0, false, "time between history lines, each of the first step at or after its time; 0: every step. Places, stress and stored energy are of the time of the line, velocities, momenta, kinetic energy and forces of the middle of the step that ends there", .field = SCENE_FIELD(brunt_output_def, history)},
+    {"output.history", SCENE_REAL, "s", "0", NOT_NEGATIVE, NULL, 0, false, "time between history lines, each of the first step at or after its time; 0: every step. Places, stress and stored energy are of the time of the line, velocities, momenta, kinetic energy and forces of the middle of the step that ends there, of implicit steps of its end", .field = SCENE_FIELD(brunt_output_def, history)},
     {"output.checkpoint", SCENE_REAL, "s", "600", 0, INFINITY, false, true, "none", 0, false, "wall time between checkpoints; 0: with every picture; none: at the end and on signals", .field = SCENE_FIELD(brunt_output_def, checkpoint)},
     {"output.fields", SCENE_NAMES, NULL, "[default]", NONE, "fields in pictures; default: velocity, and of fem and membrane bodies displacement, stress, plastic_strain and what contact does, where there are"},
     {"output.precision", SCENE_WORD, NULL, "float32", ANY, "float32|float64", 0, false, "of numbers in pictures"},

@@ -348,12 +348,13 @@ static void fill_time_of(scene_reader *reader, scene_node *node, brunt_measure *
     measure->from = brunt_real_of(node, "from", 0);
     measure->to = brunt_real_of(node, "to", INFINITY);
     double end = reader->scene->world.end, last = end * (1 + 1e-9);
+    static const char way_out[] = "a window within it is wanted, or --set measures={} for a short run";
     char text[32];
     brunt_format_number(end, text);
     if (end > 0 && from && from->good && measure->from > last)
-        brunt_tree_complain(tree, from, "the window starts after the run has ended (%s s)", text);
+        brunt_tree_complain(tree, from, "the window starts after the run has ended (%s s): %s", text, way_out);
     if (end > 0 && to && to->good && measure->to > last)
-        brunt_tree_complain(tree, to, "the window ends after the run has ended (%s s)", text);
+        brunt_tree_complain(tree, to, "the window ends after the run has ended (%s s): %s", text, way_out);
     if (to && to->good && !(measure->from < measure->to)) brunt_tree_complain(tree, to, "to must be after from");
     if (measure->curve.count && history) check_curve_times(reader, node, measure);
 }

@@ -63,11 +63,64 @@ START_TEST(says_what_it_does) {
 }
 END_TEST
 
+// Values by default, and what a barrier stores where bodies begin within it.
+START_TEST(says_how_contact_is) {
+    small_expect("check small.yaml --quick", 0, "  contact.distance 0.005 m, contact.stiffness 1e+05 Pa\n");
+    small_expect("check small.yaml --quick", 0,
+                 "contact.slip_speed 0.03669 m/s, 0.001 of the slowest wave speed: what");
+    ck_assert_int_eq(small_shell("grep -q 'barriers push' output"), 1);
+    ck_assert_int_eq(small_shell("grep -q 'solver pcg: some' output"), 0);
+    small_expect("check small.yaml --quick --set contact.friction=0 --set contact.distance='80 mm'", 0,
+                 "m: within contact.distance, 0.08 m, barriers push; they store ");
+    ck_assert_int_eq(small_shell("grep -q slip_speed output"), 1);
+}
+END_TEST
+
 START_TEST(is_the_scheme_that_is_set) {
     small_expect("run small.yaml -o out --set time.scheme=explicit --set time.step=0.2ms", 0, "done");
     json_t *s = summary_of("out");
     ck_assert_ptr_null(json_object_get(s, "newton"));
     json_decref(s);
+}
+END_TEST
+
+// Friction acts at both sides of a gap, and backward Euler loses what turns (contact/barrier/README.md).
+START_TEST(keeps_momentum) {
+    static const char blocks[] = "brunt: 1\n"
+                                 "dimension: 2\n"
+                                 "time: {scheme: implicit, end: 40 ms, step: 0.2 ms, energy_limit: none}\n"
+                                 "newton: {tolerance: 1e-9, solver: direct}\n"
+                                 "materials: {soft: {model: neo-hookean, density: 1000, E: 1e6, nu: 0.3}}\n"
+                                 "bodies:\n"
+                                 "  a: {method: fem, element: quad4, size: 25 mm, material: soft, shape: {box: {min: "
+                                 "[0, 0.07], max: [0.1, 0.17]}}, "
+                                 "velocity: [3, -3]}\n"
+                                 "  b: {method: fem, element: tri3, size: 25 mm, material: soft, shape: {box: {min: "
+                                 "[0, -0.04], max: [0.2, 0.06]}}}\n"
+                                 "contact: {distance: 5 mm}\n"
+                                 "output: {every: none, history: 0}\n";
+    static const struct {
+        const char *how;
+        double drift;
+    } cases[] = {{"time.integrator=euler", 1.93e-3},
+                 {"time.integrator=newmark", 4.7e-6},
+                 {"time.integrator=newmark --set contact.friction=0.5", 5.75e-3},
+                 {"time.integrator=euler --set contact.friction=0.5", 5.1e-3},
+                 {"time.integrator=euler --set time.step=0.1ms", 0.88e-3},
+                 {"time.integrator=newmark --set contact.friction=0.5 --set contact.distance=2.5mm", 2.5e-3}};
+    char words[200];
+    small_put("blocks.yaml", blocks);
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        snprintf(words, sizeof words, "run blocks.yaml -o out -q --fresh --set %s", cases[k].how);
+        small_expect(words, 0, NULL);
+        json_t *s = summary_of("out");
+        const double angular = number_at(s, "momentum", "angular_drift");
+        printf("  %s: %.3g\n", cases[k].how, angular);
+        ck_assert_double_lt(number_at(s, "momentum", "linear_drift"), 1e-14);
+        ck_assert_double_lt(angular, 1.1 * cases[k].drift);
+        ck_assert_double_gt(angular, 0.5 * cases[k].drift); // the document tells of it
+        json_decref(s);
+    }
 }
 END_TEST
 
@@ -218,6 +271,8 @@ int main(void) {
     tcase_add_checked_fixture(tests, set_up, small_folder_remove);
     tcase_set_timeout(tests, 0);
     tcase_add_test(tests, says_what_it_does);
+    tcase_add_test(tests, says_how_contact_is);
+    tcase_add_test(tests, keeps_momentum);
     tcase_add_test(tests, is_the_scheme_that_is_set);
     tcase_add_test(tests, runs_by_both);
     tcase_add_test(tests, in_two_legs);

@@ -165,6 +165,13 @@ typedef struct brunt_newton_systems {
     double bytes;       // that terms and fields take beside the bodies
 } brunt_newton_systems;
 bool brunt_world_newton_systems(const brunt_world *world, brunt_newton_systems *systems); // false: explicit
+// Contact of implicit steps, as given or by default.
+typedef struct brunt_barrier_values {
+    double distance;                 // [m]
+    double stiffness[2];             // [Pa] least and greatest of pairs and planes
+    double slip_speed, slowest_wave; // [m/s]; slip_speed 0: nothing rubs
+} brunt_barrier_values;
+bool brunt_world_barrier(const brunt_world *world, brunt_barrier_values *values); // false: no barrier
 
 // Gas in enclosed volumes.
 typedef struct brunt_gas {
