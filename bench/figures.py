@@ -142,8 +142,8 @@ def at_time(folder, name):
 
 
 def figures_of(run, folder, summary, names):
-    """All measures, the steps, and what else is named, as Figures."""
-    measures, found = summary["measures"], {}
+    """All measures that were measured, the steps, and what else is named, as Figures."""
+    measures, found = {n: m for n, m in summary["measures"].items() if m["value"] is not None}, {}
     for name in ["steps", *measures, *names]:
         expect = None
         if name in measures:
