@@ -12,9 +12,18 @@ typedef struct brunt_boundary brunt_boundary;             // planes/boundary.h
 
 enum { BRUNT_CONTACT_ROW_LIMIT = 16 }; // methods, methods/list.c
 
+// Where two bodies meet, as the rows of methods say by which they do.
+typedef enum brunt_contact_place {
+    BRUNT_MEET_AT_FACETS = 1,    // facets of a mesh, which it meets others and particles by
+    BRUNT_MEET_AT_PARTICLES = 2, // surfaces of particles of two bodies
+    BRUNT_MEET_AT_NODES = 4,     // nodes of the grids of two bodies of material points
+    BRUNT_MEET_ON_GRID = 8       // ... of one of them, which a mesh comes to
+} brunt_contact_place;
+
 typedef struct brunt_pair {
     int a, b; // bodies, a < b; -1: all pairs of a crowded scene together
     brunt_contact_method method;
+    unsigned meets; // bits of brunt_contact_place
     double friction;
     brunt_impulse_account action, last;
 } brunt_pair;

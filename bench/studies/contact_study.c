@@ -77,10 +77,10 @@ static settings read_settings(int argc, char **argv) {
     if (s.rounds > ROUND_LIMIT) s.rounds = ROUND_LIMIT;
     const char *form = word(argc, argv, "form", "node_to_facet");
     s.none = !strcmp(form, "none"), s.rigid = !strcmp(form, "rigid");
-    s.form = !strcmp(form, "averaged_facets")    ? BRUNT_AUGURY_SMOOTH
-             : !strcmp(form, "averaged_surface") ? BRUNT_AUGURY_SURFACE
-             : !strcmp(form, "published")        ? BRUNT_AUGURY_PAPER
-                                                 : BRUNT_AUGURY_AFFINE;
+    s.form = !strcmp(form, "averaged_facets")    ? BRUNT_AUGURY_AVERAGED_FACETS
+             : !strcmp(form, "averaged_surface") ? BRUNT_AUGURY_AVERAGED_SURFACE
+             : !strcmp(form, "published")        ? BRUNT_AUGURY_PUBLISHED
+                                                 : BRUNT_AUGURY_NODE_TO_FACET;
     s.transfer = !strcmp(word(argc, argv, "transfer", "apic"), "pic") ? BRUNT_PIC : BRUNT_APIC;
     s.element = !strcmp(word(argc, argv, "element", "tet4"), "hex8") ? BRUNT_HEX8 : BRUNT_TET4;
     return s;

@@ -77,7 +77,7 @@ int brunt_augury_near_find(brunt_augury_near *near, const brunt_contact_context 
             if (apart) continue;
             const int p = brunt_augury_body(s, i), q = brunt_augury_body(s, o);
             const int32_t pair = brunt_pair_of(m->pair_map, p, q);
-            if (pair < 0 || m->pairs[pair].method != BRUNT_CONTACT_AUGURY) continue;
+            if (pair < 0 || !(m->pairs[pair].meets & BRUNT_MEET_AT_FACETS)) continue;
             size_t n = (size_t)near->count;
             if (BRUNT_ROOM(near->found, n + 1, n, "pairs of bodies near each other", error)) return BRUNT_FAILED;
             near->found[near->count++] = (brunt_augury_neighbours){pair, p < q ? i : o, p < q ? o : i};

@@ -24,6 +24,7 @@ const brunt_contact_row brunt_contact_barrier = {
     .name = "barrier",
     .methods = 1u << BRUNT_CONTACT_BARRIER,
     .schemes = 1u << BRUNT_IMPLICIT | 1u << BRUNT_STATIC,
+    .keys = "distance stiffness slip_speed friction_iterations",
     .self = BRUNT_SELF_MESHES,
     .wants = "a body of method fem",
     .accepts = any_mesh,

@@ -132,7 +132,7 @@ static int compare_shared(const void *a, const void *b) {
 // The pair of two bodies by their places among those of material points; BRUNT_NONE: none.
 static int32_t pair_between(const job *j, int a, int b) {
     const int32_t pair = brunt_pair_of(j->m->pair_map, j->bodies[a].index, j->bodies[b].index);
-    return pair >= 0 && j->m->pairs[pair].method == BRUNT_CONTACT_AUGURY ? BRUNT_NONE : pair;
+    return pair >= 0 && j->m->pairs[pair].meets & BRUNT_MEET_AT_NODES ? pair : BRUNT_NONE;
 }
 
 static int compare_low(const void *a, const void *b) {

@@ -14,7 +14,7 @@ typedef struct brunt_contact_work {
     const brunt_contact_def *def;
     int grid_sweeps; // of meshes on the points' grid
     int sweeps;      // over constraints at facets and planes
-    bool facets;     // there are pairs that meet at facets; else planes alone
+    bool facets;     // there are pairs that meet by the row; else planes alone
     brunt_constraint_set *constraints;
     brunt_node_to_facet **node_to_facet;
     void *memory; // what the row that acts keeps, which it may make or move; NULL before it does so first
@@ -28,8 +28,17 @@ typedef struct brunt_contact_row {
     unsigned methods; // bits of brunt_contact_method by which scenes ask for it
     unsigned forms;   // bits of brunt_augury_form, where that is the method; else 0
     unsigned schemes; // bits of brunt_scheme that have it
+    unsigned meets; // bits of brunt_contact_place: where two bodies are looked for that meet by it; 0: it looks itself
+    const char *keys; // of `contact` in a scene that are its own, "a b c"; NULL: none
     brunt_contact_self self;
-    bool at_nodes; // of the grid of material points
+    bool no_rings; // not in axisymmetric scenes
+    // Of what meets at facets.
+    bool sheets;              // it knows the two sides of a membrane
+    bool planes;              // it acts where there are planes alone, too
+    bool affine;              // it acts on every surface, touched or not, and keeps affine velocities of nodes
+    int sweeps, sheet_sweeps; // most of a step by default; where there are membranes, 0: the same
+    double cell_factor;       // cell of the contact grid by default, in mean edges
+    double look;              // cells of that grid that it looks ahead; 0: it has none
     // What it wants of two bodies, after "wants"; NULL: another row of the method says it.
     const char *wants;
     // Whether two bodies, of elements (else of material points), may meet by it.
@@ -58,17 +67,27 @@ extern const int brunt_contact_row_count; // at most BRUNT_CONTACT_ROW_LIMIT
 
 // Whether two bodies may meet by a method, whichever of its rows that is.
 bool brunt_contact_accepts(brunt_contact_method method, bool mesh_a, bool mesh_b);
-// Bits of the rows by which they do.
+// Bits of the rows by which they do, where these meet, and the first of them that meets at a place; NULL: none.
 unsigned brunt_contact_rows_of(brunt_contact_method method, brunt_augury_form form, bool mesh_a, bool mesh_b);
+unsigned brunt_contact_places_of(unsigned rows);
+const brunt_contact_row *brunt_contact_row_at(unsigned rows, brunt_contact_place place);
 // The method by which two bodies of material points meet where that of all is `method`: itself, where it accepts them.
-// Where augury has no form of its own for them, and between rings, it is multi-velocity.
+// Where its form has no row for them, or none for rings, it is multi-velocity.
 brunt_contact_method brunt_contact_between_points(brunt_contact_method method, brunt_augury_form form, bool rings);
-// Whether a method acts at the nodes of the grid of material points.
-bool brunt_contact_at_nodes(brunt_contact_method method);
+// Whether a row is for a method, and for a form of it.
+bool brunt_contact_is_of(const brunt_contact_row *row, brunt_contact_method method);
+bool brunt_contact_has_form(const brunt_contact_row *row, brunt_augury_form form);
+bool brunt_contact_has_key(const brunt_contact_row *row, const char *key);
 // What scenes call a method, and what it wants of two bodies.
 const char *brunt_contact_word(brunt_contact_method method);
 const char *brunt_contact_wants(brunt_contact_method method);
-extern const int brunt_contact_method_count;
+extern const int brunt_contact_method_count, brunt_augury_form_count;
+// What scenes call a form, and those that rows have, joined: bits of brunt_augury_form, "a or b".
+const char *brunt_augury_form_word(brunt_augury_form form);
+void brunt_augury_words_of(unsigned forms, char *out, size_t size);
+// Forms in which two bodies of material points may meet by a method, and membranes by any.
+unsigned brunt_augury_forms_of_points(brunt_contact_method method);
+unsigned brunt_augury_forms_of_sheets(void);
 // The method of a scheme for all pairs of a scene that gives none, with bodies that are meshes or without: that of the
 // first row which takes two of them. Implicit steps have none for material points alone, and take that of meshes.
 brunt_contact_method brunt_contact_default(brunt_scheme scheme, bool meshes);
@@ -82,3 +101,5 @@ brunt_contact_self brunt_contact_with_itself(brunt_contact_method method);
 // Aborts where a row keeps something that `rows` has no bit of, or what it keeps is not as it must be. `memory`: of
 // each.
 void brunt_contact_methods_validate(unsigned rows, void *const memory[]);
+// The first method of a scheme by which bodies may be in contact with themselves.
+brunt_contact_method brunt_contact_of_self(brunt_scheme scheme);

@@ -256,7 +256,7 @@ static int find_pairs(job *j, brunt_error *error) {
         else
             for (int o = 0; o < m->body_count && f->pair[k] < 0; o++) {
                 int32_t pair = brunt_pair_of(m->pair_map, brunt_augury_body(s, k), o);
-                if (pair >= 0 && m->pairs[pair].method == BRUNT_CONTACT_AUGURY) f->pair[k] = pair;
+                if (pair >= 0 && m->pairs[pair].meets & BRUNT_MEET_AT_FACETS) f->pair[k] = pair;
             }
     }
     return BRUNT_OK;

@@ -5,7 +5,7 @@ static const double CUT = 1e-6; // cells: how near a mirror plane what it cuts i
 
 static brunt_pair *pair_of(const brunt_contact_context *m, const brunt_body *body, const brunt_fem_body *fem) {
     int32_t pair = brunt_pair_of(m->pair_map, body->index, fem->index);
-    return pair >= 0 && m->pairs[pair].method == BRUNT_CONTACT_MULTI_VELOCITY ? &m->pairs[pair] : NULL;
+    return pair >= 0 && m->pairs[pair].meets & BRUNT_MEET_ON_GRID ? &m->pairs[pair] : NULL;
 }
 
 static int32_t floor_divide(int32_t a, int32_t b) { return a >= 0 ? a / b : -((-a + b - 1) / b); }

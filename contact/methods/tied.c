@@ -20,6 +20,7 @@ const brunt_contact_row brunt_contact_tied = {
     .name = "tied",
     .methods = 1u << BRUNT_CONTACT_TIED,
     .schemes = 1u << BRUNT_EXPLICIT | 1u << BRUNT_IMPLICIT | 1u << BRUNT_STATIC,
+    .meets = BRUNT_MEET_AT_NODES,
     .wants = "two bodies of method mpm",
     .accepts = points_alone,
     .at_node = tie,

@@ -44,7 +44,7 @@ static bool overlap(const body_box *a, const body_box *b, double by) {
 static bool meets(const brunt_contact_context *m, const body_box *a, const body_box *b) {
     if (a->fem < 0 && b->fem < 0) return false; // particles have no facets: those meet at grid nodes
     int32_t pair = brunt_pair_of(m->pair_map, a->body, b->body);
-    return pair >= 0 && m->pairs[pair].method == BRUNT_CONTACT_AUGURY;
+    return pair >= 0 && m->pairs[pair].meets & BRUNT_MEET_AT_FACETS;
 }
 
 static int find_boxes(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, brunt_node_to_facet *f,

@@ -359,7 +359,7 @@ int brunt_point_touches_apply(const brunt_contact_context *m, int sweeps, double
     for (int a = 0; a < m->mpm_count; a++)
         for (int b = 0; b < m->mpm_count; b++) {
             const int32_t pair = a == b ? -1 : brunt_pair_of(m->pair_map, m->mpm[a].index, m->mpm[b].index);
-            if (pair < 0 || m->pairs[pair].method != BRUNT_CONTACT_AUGURY) continue;
+            if (pair < 0 || !(m->pairs[pair].meets & BRUNT_MEET_AT_PARTICLES)) continue;
             if (meet(&l, a, b, error)) return BRUNT_FAILED;
         }
     if (brunt_constraints_solve(&t->set, sweeps, tolerance, m->threads, m->timer, error)) return BRUNT_FAILED;

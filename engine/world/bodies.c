@@ -212,7 +212,7 @@ static int check_total_lagrangian(const brunt_world *world, const brunt_world_de
                    "'%s' "
                    "is undeformed (lagrangian: total); let one of them be a mesh, or switch contact off between them",
                    from->name, other->name, from->name);
-        if (brunt_contact_at_nodes(world->pairs.pair[pair].method))
+        if (world->pairs.pair[pair].meets & BRUNT_MEET_ON_GRID)
             REFUSE("contact of '%s' and '%s': the grid of '%s' is undeformed (lagrangian: total): use augury, not %s",
                    from->name, other->name, from->name, brunt_contact_word(world->pairs.pair[pair].method));
     }

@@ -8,13 +8,13 @@ typedef struct brunt_contact {
     brunt_contact_def def; // without its pairs
     double cell;           // [m]
     int grid_sweeps, touch_sweeps;
-    bool has_grid;          // bodies of material points meet at the nodes of their grids
-    bool has_touches;       // ... where their surfaces touch
-    bool has_grid_surfaces; // meshes meet material points at the nodes of their grids
-    bool has_augury;        // meshes meet each other, or particles, by their facets
-    bool has_barrier;       // bodies, or bodies and planes, are kept apart by an energy
-    bool has_surfaces;      // surfaces of meshes meet something: each other, particles, planes
-    bool has_self;          // a membrane meets itself
+    bool has_grid;                          // bodies of material points meet at the nodes of their grids
+    bool has_touches;                       // ... where their surfaces touch
+    bool has_grid_surfaces;                 // meshes meet material points at the nodes of their grids
+    const struct brunt_contact_row *facets; // by which meshes meet each other, or particles, at facets; NULL: none
+    bool has_barrier;                       // bodies, or bodies and planes, are kept apart by an energy
+    bool has_surfaces;                      // surfaces of meshes meet something: each other, particles, planes
+    bool has_self;                          // a membrane meets itself
     bool has_friction;
     brunt_contact_surface surface;
     brunt_constraint_set constraints;

@@ -32,6 +32,22 @@ static int find_alike(const brunt_pairs *pairs, const brunt_pair *pair) {
     return BRUNT_NONE;
 }
 
+// What the world has by the rows by which two bodies meet, and where they do.
+static unsigned note_rows(const maker *m, brunt_contact_method method, bool mesh_a, bool mesh_b) {
+    brunt_contact *contact = &m->world->contact;
+    const unsigned rows = brunt_contact_rows_of(method, m->def->contact.form, mesh_a, mesh_b),
+                   meets = brunt_contact_places_of(rows);
+    if (brunt_contact_energy(method))
+        contact->has_barrier = true;
+    else
+        contact->rows |= rows;
+    contact->has_grid = contact->has_grid || meets & BRUNT_MEET_AT_NODES;
+    contact->has_touches = contact->has_touches || meets & BRUNT_MEET_AT_PARTICLES;
+    contact->has_grid_surfaces = contact->has_grid_surfaces || meets & BRUNT_MEET_ON_GRID;
+    contact->facets = brunt_contact_row_at(contact->rows, BRUNT_MEET_AT_FACETS);
+    return meets;
+}
+
 // Checks the names of a pair, and makes that of a membrane with itself.
 static int make_self_pair(const maker *m, int q, brunt_error *error) {
     const brunt_pair_def *def = &m->def->contact.pairs[q];
@@ -48,17 +64,18 @@ static int make_self_pair(const maker *m, int q, brunt_error *error) {
         REFUSE("contact.pairs[%d].between: '%s' is no membrane: no other body can be in contact with itself", q,
                def->a);
     if (self == BRUNT_SELF_NONE)
-        REFUSE("contact.pairs[%d].method: contact of '%s' with itself is by augury", q, def->a);
+        REFUSE("contact.pairs[%d].method: contact of '%s' with itself is by %s", q, def->a,
+               brunt_contact_word(brunt_contact_of_self(m->def->scheme)));
     if (!(def->friction >= 0)) REFUSE("contact.pairs[%d].friction: %g is negative", q, def->friction);
     for (int p = 0; p < pairs->count; p++)
         if (pairs->pair[p].a == a) REFUSE("contact.pairs[%d].between: '%s' is listed twice", q, def->a);
     brunt_contact *contact = &m->world->contact;
-    const bool barrier = brunt_contact_energy(def->method) != NULL;
-    *(barrier ? &contact->has_barrier : &contact->has_augury) = contact->has_self = true;
-    if (!barrier) contact->rows |= brunt_contact_rows_of(def->method, m->def->contact.form, true, true);
+    contact->has_self = true;
+    const unsigned meets = note_rows(m, def->method, true, true);
     m->world->contact.has_friction = m->world->contact.has_friction || def->friction > 0;
     if (brunt_pair_map_add(&pairs->map, a, a, pairs->count, error)) return BRUNT_FAILED;
-    pairs->pair[pairs->count++] = (brunt_pair){.a = a, .b = a, .method = def->method, .friction = def->friction};
+    pairs->pair[pairs->count++] =
+        (brunt_pair){.a = a, .b = a, .method = def->method, .meets = meets, .friction = def->friction};
     return BRUNT_OK;
 }
 
@@ -134,25 +151,19 @@ static void list_candidates(maker *m) {
 static int settle_method(const maker *m, const candidate *c, brunt_pair *pair, brunt_error *error) {
     const brunt_body_def *a = m->order[c->a], *b = m->order[c->b];
     brunt_contact *contact = &m->world->contact;
-    const int meshes = (a->method != BRUNT_MPM) + (b->method != BRUNT_MPM);
     const bool mesh_a = a->method != BRUNT_MPM, mesh_b = b->method != BRUNT_MPM;
-    const bool barrier = brunt_contact_energy(pair->method) != NULL;
     const brunt_contact_method asked = pair->method;
-    if (!meshes && !barrier)
+    char forms[96];
+    if (!mesh_a && !mesh_b && !brunt_contact_energy(asked))
         pair->method = brunt_contact_between_points(asked, m->def->contact.form, m->def->axisymmetric);
     if (c->named >= 0 && pair->method != asked)
-        REFUSE("contact of '%s' and '%s': %s of two bodies of material points wants form node_to_facet, and no rings",
-               a->name, b->name, brunt_contact_word(asked));
-    const bool augury = pair->method == BRUNT_CONTACT_AUGURY;
+        REFUSE("contact of '%s' and '%s': %s of two bodies of material points wants form %s, and no rings", a->name,
+               b->name, brunt_contact_word(asked),
+               (brunt_augury_words_of(brunt_augury_forms_of_points(asked), forms, sizeof forms), forms));
     if (!brunt_contact_accepts(pair->method, mesh_a, mesh_b))
         REFUSE("contact of '%s' and '%s': %s wants %s", a->name, b->name, brunt_contact_word(pair->method),
                brunt_contact_wants(pair->method));
-    if (!barrier) contact->rows |= brunt_contact_rows_of(pair->method, m->def->contact.form, mesh_a, mesh_b);
-    contact->has_barrier = contact->has_barrier || barrier;
-    contact->has_grid = contact->has_grid || (!meshes && !augury);
-    contact->has_touches = contact->has_touches || (!meshes && augury);
-    contact->has_grid_surfaces = contact->has_grid_surfaces || (meshes && brunt_contact_at_nodes(pair->method));
-    contact->has_augury = contact->has_augury || (meshes && augury);
+    pair->meets = note_rows(m, pair->method, mesh_a, mesh_b);
     if (!(pair->friction >= 0)) REFUSE("contact.friction: %g is negative", pair->friction);
     contact->has_friction = contact->has_friction || pair->friction > 0;
     return BRUNT_OK;
@@ -170,6 +181,7 @@ static int make_pair(const maker *m, const candidate *c, brunt_error *error) {
         if (m->crowded) pair.a = pair.b = -1;
         index = m->crowded ? find_alike(pairs, &pair) : -1;
         if (index < 0) pairs->pair[index = pairs->count++] = pair;
+        pairs->pair[index].meets |= pair.meets;
     }
     if (c->usual)
         pairs->map.usual[pairs->mesh[c->a] + pairs->mesh[c->b]] = index;

@@ -10,11 +10,8 @@
 #include "world/create.h"
 #include "world/world.h"
 
-// A membrane between two blocks is light between heavy ones: each sweep passes on the share of its mass in theirs. At a
-// twentieth, 16 sweeps let the nodes of blocks that meet at a tenth of their wave speed through its middle; 64 leave a
-// hundredth of its thickness. Sweeps end sooner where there is nothing to do.
 static const double COARSE = 1.25; // cells: edges of meshes that meet particles at grid nodes
-enum { GRID_SWEEPS = 8, SWEEPS = 16, SHEET_SWEEPS = 64, TOUCH_SWEEPS = 64 };
+enum { GRID_SWEEPS = 8, TOUCH_SWEEPS = 64 };
 static const double THIN = 0.01; // mean edges
 
 static bool acts_on_fem(const brunt_world *world, const brunt_boundary *wall) {
@@ -55,11 +52,13 @@ static void warn_of_thickness(brunt_world *world, const brunt_fem_body *fem, boo
 // What membranes ask of contact: a form that knows their two sides, elements that particles do not fit through, and
 // elements longer than they are thick.
 static int check_sheets(brunt_world *world, bool *self, brunt_error *error) {
-    const brunt_augury_form form = world->contact.def.form;
+    const brunt_contact_row *facets = world->contact.facets;
+    char forms[96];
+    brunt_augury_words_of(brunt_augury_forms_of_sheets(), forms, sizeof forms);
     const int n = world->bodies.count;
     for (int k = 0; k < world->bodies.fem_count; k++) {
         const brunt_fem_body *fem = &world->bodies.fem[k];
-        bool meets = form == BRUNT_AUGURY_PAPER; // which acts on all
+        bool meets = facets && facets->affine; // which acts on all
         if (!fem->traits->membrane) continue;
         for (int i = 0; i < n; i++) {
             const bool pair = brunt_pair_of(&world->pairs.map, fem->index, i) >= 0;
@@ -71,9 +70,9 @@ static int check_sheets(brunt_world *world, bool *self, brunt_error *error) {
                            "m: nodes can pass between them",
                            fem->name, fem->mean_edge, mpm->name, mpm->spacing);
         }
-        if (world->contact.has_augury && meets && form != BRUNT_AUGURY_AFFINE)
+        if (facets && meets && !facets->sheets)
             return brunt_fail(error, BRUNT_BAD_INPUT,
-                              "contact.form: affine is wanted where a membrane is in contact, here '%s'", fem->name);
+                              "contact.form: %s is wanted where a membrane is in contact, here '%s'", forms, fem->name);
         self[k] = brunt_pair_of(&world->pairs.map, fem->index, fem->index) >= 0;
         warn_of_thickness(world, fem, self[k]);
     }
@@ -90,6 +89,18 @@ static int make_sheets(brunt_world *world, brunt_error *error) {
     return status;
 }
 
+// The row that acts where there are planes alone.
+static const brunt_contact_row *row_of_planes(void) {
+    const brunt_contact_row *const *row = brunt_contact_rows;
+    while (!(*row)->planes) row++;
+    return *row;
+}
+
+// The row by which surfaces meet what they do.
+static const brunt_contact_row *acting(const brunt_contact *contact) {
+    return contact->facets ? contact->facets : row_of_planes();
+}
+
 int brunt_surfaces_make(brunt_world *world, const brunt_world_def *def, brunt_error *error) {
     if (brunt_scheme_minimises(def->scheme)) return BRUNT_OK; // barriers know surfaces of their own
     for (int w = 0; w < world->boundaries.wall_count; w++)
@@ -101,31 +112,29 @@ int brunt_surfaces_make(brunt_world *world, const brunt_world_def *def, brunt_er
     world->contact.touch_sweeps = def->contact.iterations > 0 ? def->contact.iterations : TOUCH_SWEEPS;
     if (!world->contact.has_surfaces) return BRUNT_OK;
     world->contact.grid_sweeps = def->contact.iterations > 0 ? def->contact.iterations : GRID_SWEEPS;
-    const brunt_augury_form form = def->contact.form;
-    if (world->contact.def.iterations < 0)
-        world->contact.def.iterations = form == BRUNT_AUGURY_PAPER ? 1 : form == BRUNT_AUGURY_AFFINE ? SWEEPS : 4;
+    const brunt_contact_row *row = acting(&world->contact);
+    if (world->contact.def.iterations < 0) world->contact.def.iterations = row->sweeps;
     brunt_fem_body **fems;
     if (BRUNT_NEW(fems, world->bodies.fem_count + 1, "meshes with surfaces", error)) return BRUNT_FAILED;
     for (int k = 0; k < world->bodies.fem_count; k++) fems[k] = &world->bodies.fem[k];
-    int status = brunt_surface_make(&world->contact.surface, fems, world->bodies.fem_count,
-                                    world->contact.has_augury && form == BRUNT_AUGURY_PAPER, error);
+    int status = brunt_surface_make(&world->contact.surface, fems, world->bodies.fem_count, row->affine, error);
     brunt_free(fems);
     if (status) return status;
     if (world->contact.surface.membrane.side) {
         status = make_sheets(world, error);
         if (status) return status;
-        if (def->contact.iterations < 0 && form == BRUNT_AUGURY_AFFINE) world->contact.def.iterations = SHEET_SWEEPS;
+        if (def->contact.iterations < 0 && row->sheet_sweeps) world->contact.def.iterations = row->sheet_sweeps;
     }
     double fine, coarse;
     look_at_edges(&world->bodies, &fine, &coarse);
-    world->contact.cell = def->contact.cell > 0 ? def->contact.cell : form == BRUNT_AUGURY_PAPER ? 2 * coarse : coarse;
+    world->contact.cell = def->contact.cell > 0 ? def->contact.cell : row->cell_factor * coarse;
     if (world->contact.has_grid_surfaces && coarse > COARSE * world->settings.cell)
         brunt_warn(&world->messages,
                    "grid.cell %g m is much less than the longest mean edge of a mesh, %g m: contact at the grid's "
                    "nodes may not "
                    "see particles between those of the mesh",
                    world->settings.cell, coarse);
-    if (!world->contact.has_augury || form == BRUNT_AUGURY_AFFINE) return BRUNT_OK;
+    if (!(row->look > 0)) return BRUNT_OK;
     if (world->contact.cell < 0.7 * coarse)
         brunt_warn(&world->messages,
                    "contact.cell %g m is less than 0.7 of the longest mean edge, %g m: nodes may pass between those of "
@@ -185,15 +194,13 @@ int brunt_surfaces_renew(brunt_contact *contact, brunt_error *error) {
 // Whether a world has something for a row to do; planes are met where facets are.
 static bool is_used(const brunt_contact *contact, int r) {
     const brunt_contact_row *row = brunt_contact_rows[r];
-    return row->act && (contact->rows >> r & 1 || row->forms >> BRUNT_AUGURY_AFFINE & 1);
+    return row->act && (contact->rows >> r & 1 || row->planes);
 }
 
 static brunt_contact_work contact_work(brunt_contact *contact) {
-    const bool affine = contact->def.form == BRUNT_AUGURY_AFFINE;
     return (brunt_contact_work){.def = &contact->def,
                                 .grid_sweeps = contact->grid_sweeps,
-                                .sweeps = affine ? contact->def.iterations : SWEEPS,
-                                .facets = contact->has_augury && affine,
+                                .sweeps = acting(contact)->planes ? contact->def.iterations : row_of_planes()->sweeps,
                                 .constraints = &contact->constraints,
                                 .node_to_facet = &contact->node_to_facet};
 }
@@ -217,7 +224,7 @@ static int fail_far(const brunt_contact *contact, brunt_error *error) {
 }
 
 brunt_contact_context brunt_contact_context_of(brunt_world *world, double dt, brunt_timer *timer) {
-    const bool averaged = world->contact.has_augury && world->contact.def.form != BRUNT_AUGURY_AFFINE;
+    const brunt_contact_row *facets = world->contact.facets;
     return (brunt_contact_context){.surface = &world->contact.surface,
                                    .pairs = world->pairs.pair,
                                    .pair_map = &world->pairs.map,
@@ -225,7 +232,7 @@ brunt_contact_context brunt_contact_context_of(brunt_world *world, double dt, br
                                    .dt = dt,
                                    .cell = world->contact.cell,
                                    .iterations = world->contact.def.iterations,
-                                   .look = averaged ? 1.6 * world->contact.cell : 0,
+                                   .look = facets ? facets->look * world->contact.cell : 0,
                                    .step = (int64_t)world->clock.steps,
                                    .mirrors = world->boundaries.mirrors,
                                    .mirror_count = world->boundaries.mirror_count,
@@ -282,7 +289,7 @@ int brunt_surfaces_meet(brunt_world *world, const double gravity[3], double kick
     if (!failed) brunt_surface_gather_state(&contact->surface, kick, gravity, world->settings.threads, timer);
     for (int r = 0; !failed && r < count; r++) {
         if (!is_used(contact, r)) continue;
-        work.memory = contact->memory[r];
+        work.memory = contact->memory[r], work.facets = contact->rows >> r & 1;
         failed = rows[r]->act(&m, &work, error);
         contact->memory[r] = work.memory;
     }

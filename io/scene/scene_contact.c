@@ -2,6 +2,7 @@
 #include "base/array.h"
 #include "io/scene/scene_reader.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #include "contact/methods/method.h"
@@ -25,11 +26,12 @@ static void check_pair_method(scene_reader *reader, const scene_node *method, co
                         brunt_contact_word(pair->method), brunt_contact_wants(pair->method), pair->a, pair->b);
 }
 
-// A membrane folds onto itself, and meets itself by augury alone: `method` is NULL when it is that of all pairs.
+// A membrane folds onto itself, which not every method meets: `method` is NULL when it is that of all pairs.
 static void check_self(scene_reader *reader, const scene_node *between, const scene_node *method,
                        const brunt_pair_def *pair) {
     const brunt_body_def *body = brunt_body_named(reader, pair->a);
     const brunt_contact_self self = brunt_contact_with_itself(pair->method);
+    const char *word = brunt_contact_word(brunt_contact_of_self(reader->scene->world.scheme));
     if (!body || pair->method == BRUNT_CONTACT_NONE) return;
     if (self == BRUNT_SELF_MESHES) {
         if (body->method == BRUNT_MPM)
@@ -42,7 +44,7 @@ static void check_self(scene_reader *reader, const scene_node *between, const sc
                             "contact of a body with itself is for membranes in explicit steps, '%s' is none", pair->a);
     else if (self == BRUNT_SELF_NONE)
         brunt_tree_complain(reader->tree, method ? method : between,
-                            "contact of a membrane with itself is by augury: method: augury is wanted");
+                            "contact of a membrane with itself is by %s: method: %s is wanted", word, word);
     else if (body->contact_thickness == 0)
         brunt_tree_complain(reader->tree, between,
                             "contact of a membrane with itself wants a contact_thickness above 0, '%s' has none",
@@ -120,60 +122,88 @@ static void check_method(scene_reader *reader, const scene_node *method) {
         }
 }
 
-// Whether all pairs but some, or some pairs, meet by a method.
-static bool uses(const brunt_contact_def *contact, brunt_contact_method method) {
-    bool used = contact->method == method;
-    for (int i = 0; i < contact->pair_count; i++) used |= contact->pairs[i].method == method;
-    return used;
+// Whether all pairs but some, or some pairs, meet by a method of a row, which has bodies for it.
+static bool uses(const brunt_world_def *world, const brunt_contact_row *row) {
+    const brunt_contact_def *contact = &world->contact;
+    bool used = brunt_contact_is_of(row, contact->method), meshes = !(row->meets & BRUNT_MEET_ON_GRID);
+    for (int i = 0; i < contact->pair_count; i++) used |= brunt_contact_is_of(row, contact->pairs[i].method);
+    for (int i = 0; i < world->body_count; i++) meshes |= world->bodies[i].method != BRUNT_MPM;
+    return used && meshes;
 }
 
-static void fill_augury(scene_reader *reader, scene_node *node) {
-    brunt_contact_def *contact = &reader->scene->world.contact;
-    const bool used = uses(contact, BRUNT_CONTACT_AUGURY);
-    static const char *const keys[] = {"form", "cell", "transfer", "tolerance", "iterations"};
-    if (brunt_scheme_minimises(reader->scene->world.scheme)) {
-        for (int i = 0; i < BRUNT_COUNT(keys); i++) brunt_note_unused(reader, node, keys[i]);
-        return;
-    }
-    bool meshes = false, at_nodes = brunt_contact_at_nodes(contact->method);
-    for (int i = 0; i < contact->pair_count; i++) at_nodes |= brunt_contact_at_nodes(contact->pairs[i].method);
-    for (int i = 0; i < reader->scene->world.body_count; i++)
-        meshes |= reader->scene->world.bodies[i].method != BRUNT_MPM;
-    contact->iterations = (int)brunt_real_of(node, "iterations", -1);
-    if (!used) {
-        for (int i = 0; i < BRUNT_COUNT(keys) - 1; i++) // all but iterations
-            brunt_refuse_key(reader, node, keys[i], "this belongs to method: augury");
-        if (!meshes || !at_nodes) brunt_refuse_key(reader, node, "iterations", "this belongs to method: augury");
-        return;
-    }
-    if (!brunt_tree_child(node, "form")) brunt_add_default(reader, node, "form", "node_to_facet");
+static void refuse_key(scene_reader *reader, const scene_node *node, const char *key, const char *what,
+                       const char *words) {
+    char why[160];
+    snprintf(why, sizeof why, "this belongs to %s: %s", what, words);
+    brunt_refuse_key(reader, node, key, why);
+}
+
+// Whether a key goes with what is used, by the keys that rows of methods say they have; refused or noted where not.
+static bool takes(scene_reader *reader, scene_node *node, const char *key) {
+    const brunt_world_def *world = &reader->scene->world;
     const scene_node *form = brunt_tree_child(node, "form");
-    contact->form = (brunt_augury_form)(int)brunt_real_of(node, "form", BRUNT_AUGURY_AFFINE);
-    contact->cell = brunt_real_of(node, "cell", 0);
-    if (contact->form == BRUNT_AUGURY_AFFINE) {
-        if (!brunt_tree_child(node, "tolerance")) brunt_add_default(reader, node, "tolerance", "0.01");
-        contact->tolerance = brunt_real_of(node, "tolerance", contact->tolerance);
-    } else if (form && form->good) {
-        brunt_refuse_key(reader, node, "tolerance", "this belongs to form: node_to_facet");
+    const brunt_contact_row *first = NULL;
+    bool used = false, formed = false;
+    unsigned forms = 0;
+    for (int r = 0; r < brunt_contact_row_count; r++) {
+        const brunt_contact_row *row = brunt_contact_rows[r];
+        if (!(row->schemes >> world->scheme & 1) || !brunt_contact_has_key(row, key)) continue;
+        if (!first) first = row;
+        forms |= row->forms;
+        used = used || uses(world, row);
+        formed = formed || (uses(world, row) && brunt_contact_has_form(row, world->contact.form));
     }
-    if (contact->form == BRUNT_AUGURY_PAPER) {
-        if (!brunt_tree_child(node, "transfer")) brunt_add_default(reader, node, "transfer", "apic");
-    } else if (form && form->good) {
-        brunt_refuse_key(reader, node, "transfer", "this belongs to form: published");
-    }
-    contact->transfer = brunt_real_of(node, "transfer", 1) == 0 ? BRUNT_PIC : BRUNT_APIC;
+    char words[96];
+    brunt_augury_words_of(forms, words, sizeof words);
+    if (!first)
+        brunt_note_unused(reader, node, key);
+    else if (!used)
+        refuse_key(reader, node, key, "method",
+                   brunt_contact_word((brunt_contact_method)__builtin_ctz(first->methods)));
+    else if (!formed && form && form->good)
+        refuse_key(reader, node, key, "form", words);
+    return formed;
 }
 
-// Bodies of material points that are to meet by augury: where their surfaces touch, which not all can.
+// A number of contact, or a word by its place, or its default, where it goes with what is used.
+static double take(scene_reader *reader, scene_node *node, const char *key, double otherwise) {
+    char path[40];
+    snprintf(path, sizeof path, "contact.%s", key);
+    if (!takes(reader, node, key)) return otherwise;
+    const char *initial = brunt_scene_row(path)->initial;
+    if (*initial && !brunt_tree_child(node, key)) brunt_add_default(reader, node, key, initial);
+    return brunt_real_of(node, key, otherwise);
+}
+
+static void fill_keys(scene_reader *reader, scene_node *node) {
+    brunt_contact_def *contact = &reader->scene->world.contact;
+    contact->form = (brunt_augury_form)(int)take(reader, node, "form", contact->form);
+    contact->cell = take(reader, node, "cell", 0);
+    contact->transfer = take(reader, node, "transfer", 1) == 0 ? BRUNT_PIC : BRUNT_APIC;
+    contact->tolerance = take(reader, node, "tolerance", contact->tolerance);
+    contact->iterations = (int)take(reader, node, "iterations", -1);
+    contact->distance = take(reader, node, "distance", 0);
+    contact->stiffness = take(reader, node, "stiffness", 0);
+    contact->slip_speed = take(reader, node, "slip_speed", 0);
+    contact->friction_iterations = (int)take(reader, node, "friction_iterations", 1);
+}
+
+// Bodies of material points that are to meet by a method with forms: not all have rows for them, or for rings.
 static void check_touch(scene_reader *reader, const scene_node *method, brunt_contact_method of_them) {
     const brunt_world_def *world = &reader->scene->world;
-    if (of_them != BRUNT_CONTACT_AUGURY) return;
+    const unsigned forms = brunt_augury_forms_of_points(of_them);
+    const brunt_contact_method instead =
+        brunt_contact_between_points(of_them, world->contact.form, world->axisymmetric);
+    char words[96];
+    if (!forms || instead == of_them) return;
+    brunt_augury_words_of(forms, words, sizeof words);
     if (world->axisymmetric)
         brunt_tree_complain(reader->tree, method,
-                            "augury of two bodies of method mpm is not for axisymmetric scenes: %s is wanted",
-                            brunt_contact_word(brunt_contact_between_points(of_them, world->contact.form, true)));
-    else if (world->contact.form != BRUNT_AUGURY_AFFINE)
-        brunt_tree_complain(reader->tree, method, "augury of two bodies of method mpm wants form: node_to_facet");
+                            "%s of two bodies of method mpm is not for axisymmetric scenes: %s is wanted",
+                            brunt_contact_word(of_them), brunt_contact_word(instead));
+    else
+        brunt_tree_complain(reader->tree, method, "%s of two bodies of method mpm wants form: %s",
+                            brunt_contact_word(of_them), words);
 }
 
 static void check_touches(scene_reader *reader, const scene_node *list) {
@@ -186,27 +216,6 @@ static void check_touches(scene_reader *reader, const scene_node *list) {
         if (a && b && a != b && a->method == BRUNT_MPM && b->method == BRUNT_MPM && method && method->good)
             check_touch(reader, method, pair->method);
     }
-}
-
-static void fill_barrier(scene_reader *reader, scene_node *node) {
-    brunt_contact_def *contact = &reader->scene->world.contact;
-    static const char *const keys[] = {"distance", "stiffness", "slip_speed", "friction_iterations"};
-    if (reader->scene->world.scheme == BRUNT_EXPLICIT) {
-        for (int i = 0; i < BRUNT_COUNT(keys); i++) brunt_note_unused(reader, node, keys[i]);
-        return;
-    }
-    bool used = brunt_contact_energy(contact->method) != NULL;
-    for (int i = 0; i < contact->pair_count; i++) used |= brunt_contact_energy(contact->pairs[i].method) != NULL;
-    if (!used) {
-        for (int i = 0; i < BRUNT_COUNT(keys); i++)
-            brunt_refuse_key(reader, node, keys[i], "this belongs to method: barrier");
-        return;
-    }
-    if (!brunt_tree_child(node, "friction_iterations")) brunt_add_default(reader, node, "friction_iterations", "1");
-    contact->distance = brunt_real_of(node, "distance", 0);
-    contact->stiffness = brunt_real_of(node, "stiffness", 0);
-    contact->slip_speed = brunt_real_of(node, "slip_speed", 0);
-    contact->friction_iterations = (int)brunt_real_of(node, "friction_iterations", 1);
 }
 
 // Names may hold the hyphen that columns of pairs are joined by.
@@ -238,9 +247,8 @@ void brunt_fill_contact(scene_reader *reader) {
     contact->allow_overlap = brunt_real_of(node, "initial_overlap", 0) == 1;
     fill_pairs(reader, brunt_tree_child(node, "pairs"));
     if (method && method->good) check_method(reader, method);
-    fill_augury(reader, node);
+    fill_keys(reader, node);
     if (!fem && world->body_count && method && method->good) check_touch(reader, method, contact->method);
     check_touches(reader, brunt_tree_child(node, "pairs"));
-    fill_barrier(reader, node);
     check_pair_columns(reader);
 }

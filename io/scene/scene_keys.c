@@ -13,6 +13,7 @@
 // "none|...": each with a bar before it, less the first of these.
 #define BAR(name, word) "|" word
 #define CONTACT_WORDS (&(BRUNT_CONTACT_METHODS(BAR))[1])
+#define FORM_WORDS (&(BRUNT_AUGURY_FORMS(BAR))[1])
 #define CONDITION_WORDS (&(BRUNT_CONDITIONS(BAR))[1])
 
 #define SIGNALS "end|initial|min|max|mean|slope|first_nonzero|last_nonzero|max_abs|period|rise"
@@ -155,7 +156,7 @@ static const scene_key own_rows[] = {
     {"contact", SCENE_GROUP, NULL, "{}", NONE, "contact between bodies"},
     {"contact.method", SCENE_WORD, NULL, "multi-velocity", ANY, CONTACT_WORDS, 0, true, "augury: bodies meet where their surfaces touch, two mpm bodies too, but for axisymmetric scenes and forms other than node_to_facet, where those meet by multi-velocity; multi-velocity also takes one of them with an mpm body; the default is augury when a body is of method fem or membrane; none: they pass through each other; tied: mpm bodies share one velocity where they share grid nodes, they neither part nor slide; barrier: of scheme implicit and its default, an energy keeps gaps open, with a fem or membrane body in each pair. A method that is given is kept to, or refused by a scheme that has not got it; for both schemes leave it out"},
     {"contact.friction", SCENE_REAL, "1", "0", NOT_NEGATIVE, NULL, 0, false, "Coulomb coefficient"},
-    {"contact.form", SCENE_WORD, NULL, "node_to_facet", ANY, "node_to_facet|averaged_facets|averaged_surface|published", 0, true, "of augury: velocity and gap from facing facets, from facets averaged on a grid, from averaged velocities and surfaces, or as published", .former_words = "affine|smooth|surface|paper"},
+    {"contact.form", SCENE_WORD, NULL, "node_to_facet", ANY, FORM_WORDS, 0, true, "of augury: velocity and gap from facing facets, from facets averaged on a grid, from averaged velocities and surfaces, or as published", .former_words = "affine|smooth|surface|paper"},
     {"contact.iterations", SCENE_INTEGER, NULL, OPTIONAL, 0, 1000, false, false, NULL, 0, false, "most sweeps of a step, see tolerance (default: augury 16, with membranes 64, forms averaged_facets and averaged_surface 4; of a mesh with material points at grid nodes 8); of form published its augury iterations (default 1)"},
     {"contact.tolerance", SCENE_REAL, "1", "0.01", 0, 1, false, true, NULL, 0, true, "of augury, form node_to_facet: sweeps end before iterations when the greatest correction of one is no more than this share of the first one's; what is left is met in the next step; 0: when nothing changes any more"},
     {"contact.cell", SCENE_REAL, "m", OPTIONAL, POSITIVE, NULL, 0, false, "of augury: edge of the contact grid (default: the mean edge of the surfaces; form published: twice that)"},

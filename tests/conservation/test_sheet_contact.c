@@ -780,12 +780,13 @@ static void expect_refusal(brunt_world_def *def, const char *text) {
 }
 
 START_TEST(refusals) {
-    static const brunt_augury_form forms[] = {BRUNT_AUGURY_SMOOTH, BRUNT_AUGURY_SURFACE, BRUNT_AUGURY_PAPER};
+    static const brunt_augury_form forms[] = {BRUNT_AUGURY_AVERAGED_FACETS, BRUNT_AUGURY_AVERAGED_SURFACE,
+                                              BRUNT_AUGURY_PUBLISHED};
     size_t live = brunt_memory_live();
     for (int f = 0; f < 3; f++) {
         brunt_world_def def = busy(0);
         def.contact.form = forms[f];
-        expect_refusal(&def, "affine");
+        expect_refusal(&def, "node_to_facet");
     }
     brunt_world_def def = busy(0);
     meets_itself(&def, "above");

@@ -7,8 +7,8 @@
 #include "tests/support/hard_world.h"
 
 typedef enum form { AFFINE, SMOOTH, SURFACE, PAPER, FORMS } form;
-static const brunt_augury_form form_kind[] = {BRUNT_AUGURY_AFFINE, BRUNT_AUGURY_SMOOTH, BRUNT_AUGURY_SURFACE,
-                                              BRUNT_AUGURY_PAPER};
+static const brunt_augury_form form_kind[] = {BRUNT_AUGURY_NODE_TO_FACET, BRUNT_AUGURY_AVERAGED_FACETS,
+                                              BRUNT_AUGURY_AVERAGED_SURFACE, BRUNT_AUGURY_PUBLISHED};
 static const char *const form_name[] = {"affine", "smooth", "surface", "paper"};
 
 // ------------------------------------------------------------------------------------------ worlds

@@ -363,7 +363,7 @@ START_TEST(augury) {
     ck_assert_msg(parse(elements, NULL, 0, &s) == BRUNT_OK, "%s", messages);
     const brunt_contact_def *c = &s.world.contact;
     ck_assert_int_eq(c->method, BRUNT_CONTACT_AUGURY);
-    ck_assert_int_eq(c->form, BRUNT_AUGURY_PAPER);
+    ck_assert_int_eq(c->form, BRUNT_AUGURY_PUBLISHED);
     ck_assert_int_eq(c->iterations, 0);
     ck_assert_int_eq(c->transfer, BRUNT_PIC);
     NEAR(c->cell, 3e-3);
@@ -372,7 +372,7 @@ START_TEST(augury) {
     brunt_scene_free(&s);
     const char *sets[] = {"contact={pairs: [{between: [sand, tets], friction: 0.5}]}"};
     ck_assert_msg(parse(elements, sets, 1, &s) == BRUNT_OK, "%s", messages);
-    ck_assert(s.world.contact.form == BRUNT_AUGURY_AFFINE && s.world.contact.iterations == -1);
+    ck_assert(s.world.contact.form == BRUNT_AUGURY_NODE_TO_FACET && s.world.contact.iterations == -1);
     ck_assert(s.world.contact.transfer == BRUNT_APIC && s.world.contact.cell == 0);
     ck_assert_int_eq(s.world.contact.pairs[0].method, BRUNT_CONTACT_AUGURY);
     brunt_scene_free(&s);
@@ -381,7 +381,7 @@ START_TEST(augury) {
         "contact={method: multi-velocity, pairs: [{between: [sand, tets], method: augury}, {between: "
         "[beam, tets], method: none}, {between: [sand, beam], method: none}], form: averaged_facets}"};
     ck_assert_msg(parse(elements, bridged, 1, &s) == BRUNT_OK, "%s", messages);
-    ck_assert_int_eq(s.world.contact.form, BRUNT_AUGURY_SMOOTH);
+    ck_assert_int_eq(s.world.contact.form, BRUNT_AUGURY_AVERAGED_FACETS);
     brunt_scene_free(&s);
 }
 END_TEST

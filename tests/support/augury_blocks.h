@@ -235,7 +235,7 @@ static inline void blocks_finish(blocks *b, double friction) {
     int32_t pair = 0;
     for (int p = 0; p < b->count; p++)
         for (int q = p + 1; q < b->count; q++, pair++) {
-            b->pairs[pair] = (brunt_pair){.a = p, .b = q, .method = BRUNT_CONTACT_AUGURY, .friction = friction};
+            b->pairs[pair] = (brunt_pair){.a = p, .b = q, .meets = BRUNT_MEET_AT_FACETS, .friction = friction};
             ck_assert_int_eq(brunt_pair_map_add(&b->pair_map, p, q, pair, NULL), 0);
         }
     brunt_pair_map_sort(&b->pair_map);

@@ -71,13 +71,18 @@ typedef enum brunt_transfer { BRUNT_PIC, BRUNT_FLIP, BRUNT_APIC } brunt_transfer
 #define BRUNT_CONTACT_VALUE(name, word) BRUNT_CONTACT_##name,
 typedef enum brunt_contact_method { BRUNT_CONTACT_METHODS(BRUNT_CONTACT_VALUE) } brunt_contact_method;
 #undef BRUNT_CONTACT_VALUE
-// How augury makes the velocity that opposing bodies are to have where they meet.
-typedef enum brunt_augury_form {
-    BRUNT_AUGURY_AFFINE,  // velocity and gap from the same facing facet, extended affinely; reaction by the transpose
-    BRUNT_AUGURY_SMOOTH,  // the same from facets averaged on the grid
-    BRUNT_AUGURY_SURFACE, // velocities averaged on the grid, gap to the averaged facing surface
-    BRUNT_AUGURY_PAPER    // grid transfers and augury iterations as published
-} brunt_augury_form;
+// How augury makes the velocity that opposing bodies are to have where they meet, with the words of scenes. Node to
+// facet: velocity and gap from the same facing facet, extended affinely; reaction by the transpose. Averaged facets:
+// the same from facets averaged on the grid. Averaged surface: velocities averaged on the grid, gap to the averaged
+// facing surface. Published: grid transfers and augury iterations as published.
+#define BRUNT_AUGURY_FORMS(X)                                                                                          \
+    X(NODE_TO_FACET, "node_to_facet")                                                                                  \
+    X(AVERAGED_FACETS, "averaged_facets")                                                                              \
+    X(AVERAGED_SURFACE, "averaged_surface")                                                                            \
+    X(PUBLISHED, "published")
+#define BRUNT_AUGURY_VALUE(name, word) BRUNT_AUGURY_##name,
+typedef enum brunt_augury_form { BRUNT_AUGURY_FORMS(BRUNT_AUGURY_VALUE) } brunt_augury_form;
+#undef BRUNT_AUGURY_VALUE
 
 // Of two bodies; with both names the same, of a membrane with itself, which is not in contact unless it is asked for.
 typedef struct brunt_pair_def {
@@ -89,13 +94,14 @@ typedef struct brunt_pair_def {
 typedef struct brunt_contact_def {
     brunt_contact_method method; // default: multi-velocity
     double friction;             // [-] >= 0, Coulomb; default 0
-    brunt_augury_form form;      // of augury; default affine
-    int iterations; // >= 0: most sweeps of a step, or N of the paper form; -1 (default) = the method's own: augury 16
-                    // (64 where there are membranes), 4, 4, 1 by form; multi-velocity of a mesh with material points 8
+    brunt_augury_form form;      // of augury; default node to facet
+    int iterations; // >= 0: most sweeps of a step, or N of the published form; -1 (default) = the method's own: augury
+                    // 16 (64 where there are membranes), 4, 4, 1 by form; multi-velocity of a mesh with material points
+                    // 8
     double tolerance; // [-] 0..1 (not 1): sweeps end when the greatest correction of one is no more than this share of
-                      // the first one's; 0: when nothing changes, or by `iterations`; of form affine; default 0.01
-    double cell;      // [m] >= 0 of the contact grid; 0 (default) = the mean surface edge (paper: twice that)
-    brunt_transfer transfer; // of the paper form: BRUNT_PIC or BRUNT_APIC (default)
+                      // the first one's; 0: when nothing changes, or by `iterations`; of node to facet; default 0.01
+    double cell;      // [m] >= 0 of the contact grid; 0 (default) = the mean surface edge (published: twice that)
+    brunt_transfer transfer; // of the published form: BRUNT_PIC or BRUNT_APIC (default)
     // Of barriers.
     double distance;  // [m] >= 0: gaps beyond it know nothing of each other; 0 (default) = a tenth of the shortest edge
                       // or spacing of particles
