@@ -136,13 +136,13 @@ double brunt_gas_push(brunt_node_set *set, double time, double dt) {
 
 const brunt_node_set *brunt_gas_number(const brunt_node_sets *sets, int32_t index) {
     for (int k = 0; k < sets->count; k++)
-        if (sets->set[k].def.action == BRUNT_GROUP_GAS && index-- == 0) return &sets->set[k];
+        if (sets->set[k].does->gas && index-- == 0) return &sets->set[k];
     return NULL;
 }
 
 int32_t brunt_gas_sets(const brunt_node_sets *sets) {
     int32_t count = 0;
-    for (int k = 0; k < sets->count; k++) count += sets->set[k].def.action == BRUNT_GROUP_GAS;
+    for (int k = 0; k < sets->count; k++) count += sets->set[k].does->gas;
     return count;
 }
 
@@ -165,10 +165,10 @@ int64_t brunt_gas_state_count(const brunt_node_sets *sets) {
 
 void brunt_gas_state_get(const brunt_node_sets *sets, double *out) {
     for (int k = 0; k < sets->count; k++)
-        if (sets->set[k].def.action == BRUNT_GROUP_GAS) out = brunt_saved_get(saved, ROWS, &sets->set[k], out);
+        if (sets->set[k].does->gas) out = brunt_saved_get(saved, ROWS, &sets->set[k], out);
 }
 
 void brunt_gas_state_set(brunt_node_sets *sets, const double *in) {
     for (int k = 0; k < sets->count; k++)
-        if (sets->set[k].def.action == BRUNT_GROUP_GAS) in = brunt_saved_set(saved, ROWS, &sets->set[k], in);
+        if (sets->set[k].does->gas) in = brunt_saved_set(saved, ROWS, &sets->set[k], in);
 }

@@ -3,6 +3,7 @@
 #include "base/check.h"
 #include "base/error.h"
 #include "base/memory.h"
+#include "boundary/group_actions.h"
 #include "boundary/kinds.h"
 
 #include <stdio.h>
@@ -26,10 +27,10 @@ static int check(const brunt_world_def *def, const void *entry, int32_t w, brunt
     BRUNT_TRY(brunt_check_name_ends("boundaries", w, group->group, error));
     char owner[80];
     snprintf(owner, sizeof owner, "boundaries[%d].group", w);
-    BRUNT_TRY(brunt_check_choice(owner, ".action", (unsigned)group->action, BRUNT_GROUP_GAS + 1, error));
+    BRUNT_TRY(brunt_check_choice(owner, ".action", (unsigned)group->action, (unsigned)brunt_group_row_count, error));
     BRUNT_TRY(brunt_check_curve(owner, ".table", &group->table, error));
     const brunt_gas_def *gas = &group->gas;
-    const int filled = group->action == BRUNT_GROUP_GAS, turned = group->action == BRUNT_GROUP_ROTATION;
+    const int filled = brunt_group_rows[group->action].gas, turned = brunt_group_rows[group->action].turns;
     const brunt_rotation_def *turn = &group->rotation;
     BRUNT_CHECK_NUMBERS(owner, {".rotation.angle", &turn->angle, turned, BRUNT_ANY_NUMBER},
                         {".rotation.axis", turn->axis, 3 * turned, BRUNT_ANY_NUMBER},
@@ -49,11 +50,9 @@ static int check(const brunt_world_def *def, const void *entry, int32_t w, brunt
 
 static const char *refusal(const brunt_world_def *def, const void *one, const char **key) {
     if (!brunt_scheme_minimises(def->scheme)) return NULL;
-    const brunt_group_def *group = one;
-    *key = group->action == BRUNT_GROUP_GAS ? ".gas" : ".pressure";
-    if (group->action == BRUNT_GROUP_GAS) return BRUNT_EXPLICIT_ONLY;
-    return group->action == BRUNT_GROUP_PRESSURE ? BRUNT_EXPLICIT_ONLY ": it follows the surface, traction does not"
-                                                 : NULL;
+    const brunt_group_row *does = &brunt_group_rows[((const brunt_group_def *)one)->action];
+    *key = does->key;
+    return does->refusal;
 }
 
 // The rest follows with the bodies (node_sets.c).

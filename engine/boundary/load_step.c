@@ -21,15 +21,14 @@
 #include "boundary/gas.h"
 #include "boundary/load_step.h"
 
-static bool follows(const brunt_group_def *group) {
-    return group->action == BRUNT_GROUP_GAS || group->action == BRUNT_GROUP_PRESSURE;
-}
+// Whether it acts along the normals of the faces as they are.
+static bool follows(const brunt_node_set *set) { return set->does->push != NULL; }
 
 int brunt_load_step_make(brunt_node_sets *sets, brunt_error *error) {
     if (BRUNT_NEW(sets->load_rate, sets->fem_count + 1, "meshes with loads", error)) return BRUNT_FAILED;
     for (int k = 0; k < sets->count; k++) {
         double **rate = &sets->load_rate[sets->set[k].fem_index];
-        if (!follows(&sets->set[k].def) || *rate) continue;
+        if (!follows(&sets->set[k]) || *rate) continue;
         if (BRUNT_NEW(*rate, sets->set[k].fem->node_count + 1, "rates of loads on nodes", error)) return BRUNT_FAILED;
     }
     return BRUNT_OK;
@@ -82,7 +81,7 @@ static double look_at_faces(const brunt_node_set *set, double time, double *rate
     const brunt_group_def *def = &set->def;
     brunt_gas gas = {.pressure = 0};
     double push = fabs(def->value[0] * brunt_curve_at(&def->table, time));
-    if (def->action == BRUNT_GROUP_GAS) {
+    if (set->does->gas) {
         gas = brunt_gas_now(set);
         push = fabs(gas.pressure - def->gas.outside);
     }
@@ -94,12 +93,12 @@ static double look_at_faces(const brunt_node_set *set, double time, double *rate
             for (int a = 0; a < 3; a++) x[c][a] = (double)brunt_fem_node(fem, node[c])[a];
         const double stiffness = push * face_stiffness((const double(*)[3])x, corners, fem->element->axisymmetric);
         for (int c = 0; c < corners; c++) rate[node[c]] += stiffness;
-        if (def->action != BRUNT_GROUP_GAS) continue;
+        if (!set->does->gas) continue;
         brunt_face_shares((const double(*)[3])x, corners, shares);
         for (int c = 0; c < corners; c++)
             for (int a = 0; a < 3; a++) set->area[3 * (set->place[node[c]] - 1) + a] += shares[c][a];
     }
-    if (def->action != BRUNT_GROUP_GAS || !(gas.volume > 0)) return 0;
+    if (!set->does->gas || !(gas.volume > 0)) return 0;
     return def->gas.gamma * gas.pressure / gas.volume * mobility(set);
 }
 
@@ -111,8 +110,7 @@ double brunt_load_frequency(const brunt_node_sets *sets, const brunt_bodies *bod
     const uint8_t all = (uint8_t)((1 << body->dim) - 1);
     memset(rate, 0, (size_t)body->node_count * sizeof *rate);
     for (int k = 0; k < sets->count; k++)
-        if (sets->set[k].fem_index == fem && follows(&sets->set[k].def))
-            gas += look_at_faces(&sets->set[k], time, rate);
+        if (sets->set[k].fem_index == fem && follows(&sets->set[k])) gas += look_at_faces(&sets->set[k], time, rate);
     for (int32_t n = 0; n < body->node_count; n++)
         if (!body->held || (body->held[n] & all) != all)
             greatest = fmax(greatest, rate[n] / (double)brunt_fem_node(body, n)[BRUNT_FEM_MASS]);

@@ -10,18 +10,14 @@
 #include "boundary/gas.h"
 #include "boundary/node_sets.h"
 
-static bool moves(const brunt_group_def *group) {
-    return group->action == BRUNT_GROUP_VELOCITY || group->action == BRUNT_GROUP_DISPLACEMENT ||
-           group->action == BRUNT_GROUP_ROTATION;
-}
-
 // A load of 0, whatever its table says, is none: no forces are kept and no pass runs.
-static bool is_idle(const brunt_group_def *group) {
-    if (group->action == BRUNT_GROUP_PRESSURE) return group->value[0] == 0;
-    return group->action == BRUNT_GROUP_TRACTION && !(group->value[0] || group->value[1] || group->value[2]);
+static bool is_idle(const brunt_node_set *set) {
+    bool idle = set->does->values > 0;
+    for (int a = 0; a < set->does->values; a++) idle = idle && set->def.value[a] == 0;
+    return idle;
 }
 
-static bool loads(const brunt_node_set *set) { return !moves(&set->def) && !is_idle(&set->def); }
+static bool loads(const brunt_node_set *set) { return !set->does->moves && !is_idle(set); }
 
 // ------------------------------------------------------------------------------------------ making
 
@@ -40,8 +36,7 @@ static int make_room(brunt_node_set *set, int32_t faces, brunt_error *error) {
         BRUNT_NEW(set->force, components, "forces on nodes of a group", error) ||
         BRUNT_NEW(set->face, faces + 1, "faces of a group", error))
         return BRUNT_FAILED;
-    if (set->def.action == BRUNT_GROUP_GAS && BRUNT_NEW(set->area, components, "areas of nodes of a group", error))
-        return BRUNT_FAILED;
+    if (set->does->gas && BRUNT_NEW(set->area, components, "areas of nodes of a group", error)) return BRUNT_FAILED;
     if (!set->fem->bonds) return BRUNT_OK;
     if (BRUNT_NEW(set->whole, faces + 1, "faces of a group", error)) return BRUNT_FAILED;
     return BRUNT_NEW(set->owner, faces + 1, "elements of faces of a group", error);
@@ -82,7 +77,7 @@ const brunt_node_set *brunt_node_sets_follow(brunt_node_sets *sets, brunt_fem_bo
         for (int32_t f = 0; f < set->whole_count; f++) {
             if (fem->rank[set->owner[f]] >= 0)
                 memcpy(set->face[set->face_count++], set->whole[f], sizeof *set->face);
-            else if (set->def.action == BRUNT_GROUP_GAS && !opened)
+            else if (set->does->gas && !opened)
                 opened = set, *element = set->owner[f];
         }
     }
@@ -95,7 +90,7 @@ static int make_load(brunt_node_set *set, brunt_messages *messages, brunt_error 
         return BRUNT_FAILED;
     int status = take_faces(set, messages, error);
     if (status) return status;
-    return set->def.action == BRUNT_GROUP_GAS ? brunt_gas_start(set, error) : BRUNT_OK;
+    return set->does->start ? set->does->start(set, error) : BRUNT_OK;
 }
 
 // Marks the components that a set prescribes: the first that does has them.
@@ -142,7 +137,8 @@ static int find_nodes(brunt_node_set *set, const brunt_bodies *bodies, brunt_err
 static int copy_definition(brunt_group_def *copy, const brunt_group_def *def, bool load_steps, brunt_error *error) {
     static const double ramp[][2] = {{0, 0}, {1, 1}};
     const brunt_curve grows = {.points = (double(*)[2])ramp, .count = BRUNT_COUNT(ramp)};
-    const bool ramped = load_steps && !def->table.count && def->action != BRUNT_GROUP_VELOCITY;
+    const brunt_group_row *does = &brunt_group_rows[def->action];
+    const bool ramped = load_steps && !def->table.count && (!does->moves || does->goal);
     const brunt_curve *table = ramped ? &grows : &def->table;
     *copy = *def;
     return brunt_curve_copy(&copy->table, table, error);
@@ -160,17 +156,18 @@ int brunt_node_sets_make(brunt_node_sets *sets, const brunt_world_def *def, cons
         set->wall = &walls[k];
         if (copy_definition(&set->def, &def->groups[k], def->scheme == BRUNT_STATIC, error)) return BRUNT_FAILED;
         set->wall->group = &set->def;
+        set->does = &brunt_group_rows[set->def.action];
         int status = find_nodes(set, bodies, error);
         if (status) return status;
         for (int32_t i = 1; i < set->def.table.count; i++)
             if (!(set->def.table.points[i][0] > set->def.table.points[i - 1][0]))
                 return brunt_fail(error, BRUNT_BAD_INPUT, "boundaries (%s).table: times must grow from point to point",
                                   set->wall->name);
-        if (is_idle(&set->def)) continue;
-        status = moves(&set->def) ? make_prescribed(sets, k, error) : make_load(set, messages, error);
+        if (is_idle(set)) continue;
+        status = set->does->moves ? make_prescribed(sets, k, error) : make_load(set, messages, error);
         if (status) return status;
         sets->act = true;
-        sets->has_gas = sets->has_gas || set->def.action == BRUNT_GROUP_GAS;
+        sets->has_gas = sets->has_gas || set->does->gas;
     }
     return BRUNT_OK;
 }
@@ -195,10 +192,10 @@ void brunt_node_sets_validate(const brunt_node_sets *sets) {
     for (int k = 0; k < sets->count; k++) {
         const brunt_node_set *set = &sets->set[k];
         BRUNT_ASSERT(set->fem && set->wall && set->wall->group == &set->def);
-        BRUNT_ASSERT(moves(&set->def) ? sets->holder[set->fem_index] && set->fem->held
-                                      : is_idle(&set->def) || (set->force && set->fem->load));
+        BRUNT_ASSERT(set->does->moves ? sets->holder[set->fem_index] && set->fem->held
+                                      : is_idle(set) || (set->force && set->fem->load));
         BRUNT_ASSERT(set->face_count >= 0 && (!set->whole || set->face_count <= set->whole_count));
-        BRUNT_ASSERT(set->def.action != BRUNT_GROUP_GAS || set->gas_energy >= 0);
+        BRUNT_ASSERT(!set->does->gas || set->gas_energy >= 0);
     }
 }
 
@@ -261,9 +258,8 @@ static void make_forces(brunt_node_set *set, double time, double dt) {
     brunt_fem_body *fem = set->fem;
     const brunt_group_def *def = &set->def;
     const bool rings = fem->element->axisymmetric;
-    const bool traction = def->action == BRUNT_GROUP_TRACTION;
-    double push = def->action == BRUNT_GROUP_GAS ? brunt_gas_push(set, time, dt)
-                                                 : -def->value[0] * brunt_curve_at(&def->table, time);
+    const bool traction = !set->does->push;
+    double push = traction ? 0 : set->does->push(set, time, dt);
     double factor = traction ? brunt_curve_at(&def->table, time) : 0;
     memset(set->force, 0, (size_t)set->node_count * 3 * sizeof *set->force);
     for (int32_t f = 0; f < set->face_count; f++) {
@@ -316,7 +312,7 @@ void brunt_loads_begin(brunt_node_sets *sets, const brunt_bodies *bodies, double
         brunt_node_set *set = &sets->set[k];
         if (!loads(set)) continue;
         make_forces(set, time, dt);
-        if (set->def.action == BRUNT_GROUP_GAS && !(set->gas_volume > 0)) sets->gas_lost = set;
+        if (set->does->gas && !(set->gas_volume > 0)) sets->gas_lost = set;
         book_loads(set, dt, true);
     }
 }
@@ -330,12 +326,7 @@ void brunt_loads_end(const brunt_node_sets *sets, double dt) {
 
 brunt_placement brunt_node_set_goal(const brunt_node_set *set, double time) {
     const brunt_group_def *def = &set->def;
-    const double factor = brunt_curve_at(&def->table, time);
-    brunt_placement goal = brunt_placement_identity();
-    if (def->action == BRUNT_GROUP_ROTATION)
-        return brunt_placement_rotate(goal, def->rotation.axis, factor * def->rotation.angle, def->rotation.about);
-    for (int a = 0; a < 3; a++) goal.translation[a] = factor * def->value[a];
-    return goal;
+    return set->does->goal ? set->does->goal(def, brunt_curve_at(&def->table, time)) : brunt_placement_identity();
 }
 
 double brunt_node_set_way(const brunt_node_set *set, const brunt_placement *goal, int32_t node, int a) {
@@ -365,8 +356,7 @@ static void prescribe(const brunt_node_sets *sets, int k, const double gravity[3
             double mass = (double)node[BRUNT_FEM_MASS], trial = (double)node[BRUNT_FEM_V + a];
             double load = fem->load ? (double)fem->load[4 * (size_t)n + (size_t)a] : 0;
             old[a] = trial - dt * (((double)force[a] + load) / mass + gravity[a]);
-            v[a] =
-                def->action == BRUNT_GROUP_VELOCITY ? now * def->value[a] : brunt_node_set_way(set, &goal, n, a) / step;
+            v[a] = set->does->goal ? brunt_node_set_way(set, &goal, n, a) / step : now * def->value[a];
             J[a] = mass * fem->drag_mass * (v[a] - trial);
             mean[a] = 0.5 * (old[a] + v[a]);
             node[BRUNT_FEM_V + a] = (real)v[a];
@@ -378,7 +368,7 @@ static void prescribe(const brunt_node_sets *sets, int k, const double gravity[3
 void brunt_node_sets_prescribe(const brunt_node_sets *sets, const double gravity[3], double time, double dt,
                                double step) {
     for (int k = 0; k < sets->count; k++)
-        if (moves(&sets->set[k].def)) prescribe(sets, k, gravity, time, dt, step);
+        if (sets->set[k].does->moves) prescribe(sets, k, gravity, time, dt, step);
 }
 
 void brunt_node_sets_book_contact(const brunt_node_sets *sets, const brunt_contact_surface *s) {

@@ -3,13 +3,15 @@
 
 #include "body/bodies.h"
 #include "base/messages.h"
+#include "boundary/group_actions.h"
 #include "contact/contact.h"
 #include "contact/planes/boundary.h"
 #include "contact/surface/contact_surface.h"
 
 typedef struct brunt_node_set {
-    brunt_group_def def;  // a copy, with its curve
-    brunt_boundary *wall; // its name, and where its impulses are booked
+    brunt_group_def def;         // a copy, with its curve
+    const brunt_group_row *does; // of its action
+    brunt_boundary *wall;        // its name, and where its impulses are booked
     brunt_fem_body *fem;
     int fem_index; // of the body, among those of elements
     const int32_t *node;

@@ -24,8 +24,8 @@ static void hold_group(brunt_unknowns *u, const brunt_world *world, int k, doubl
     const brunt_node_sets *sets = &world->boundaries.sets;
     const brunt_node_set *set = &sets->set[k];
     const brunt_group_def *def = &set->def;
-    const bool velocity = def->action == BRUNT_GROUP_VELOCITY;
-    if (!velocity && def->action != BRUNT_GROUP_DISPLACEMENT && def->action != BRUNT_GROUP_ROTATION) return;
+    const bool velocity = !set->does->goal;
+    if (!set->does->moves) return;
     const double time = world->clock.time, middle = brunt_curve_at(&def->table, time + 0.5 * dt),
                  then = brunt_curve_at(&def->table, time + dt);
     const brunt_placement goal = brunt_node_set_goal(set, time + dt);

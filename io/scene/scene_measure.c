@@ -1,5 +1,6 @@
 // Measures of a scene: what is measured, over which time, and against what it is judged.
 #include "base/array.h"
+#include "boundary/group_actions.h"
 #include "boundary/kinds.h"
 #include "io/scene/scene_reader.h"
 
@@ -47,7 +48,7 @@ static const char *gas_mistake(const brunt_world_def *world, const char *rest) {
     for (int i = 0; i < world->group_count; i++) {
         const brunt_group_def *group = &world->groups[i];
         size_t length = strlen(group->name);
-        if (group->action != BRUNT_GROUP_GAS || strncmp(rest, group->name, length) != 0 || rest[length] != '.')
+        if (!brunt_group_rows[group->action].gas || strncmp(rest, group->name, length) != 0 || rest[length] != '.')
             continue;
         return one_of(rest + length + 1, quantities, BRUNT_COUNT(quantities))
                    ? NULL
