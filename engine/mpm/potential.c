@@ -1,3 +1,4 @@
+#include "mpm/instances.h"
 #include "mpm/potential_kernel.h"
 
 #include <math.h>
@@ -265,18 +266,19 @@ BRUNT_INLINE void evaluate(int dim, int order, const mpm_call *call, int32_t b) 
     }
 }
 
+#define INSTANCE(name, dim, order)                                                                                     \
+    static void potential_##name(const mpm_call *call, int32_t block) { evaluate(dim, order, call, block); }
+MPM_INSTANCES(INSTANCE)
+#define FOUND(name, dim, order) [order][dim] = potential_##name,
+typedef void block_instance(const mpm_call *call, int32_t block);
+static block_instance *const instances[][4] = {MPM_INSTANCES(FOUND)};
+
 static void run_blocks(void *context, int64_t begin, int64_t end, int worker) {
     const mpm_call *call = context;
     const brunt_grid *grid = &call->p->body->grid;
+    block_instance *instance = instances[grid->order][grid->dim];
     (void)worker;
-    for (int64_t b = begin; b < end; b++) switch (grid->dim * 10 + grid->order) {
-        case 21: evaluate(2, 1, call, (int32_t)b); break;
-        case 22: evaluate(2, 2, call, (int32_t)b); break;
-        case 23: evaluate(2, 3, call, (int32_t)b); break;
-        case 31: evaluate(3, 1, call, (int32_t)b); break;
-        case 32: evaluate(3, 2, call, (int32_t)b); break;
-        default: evaluate(3, 3, call, (int32_t)b); break;
-        }
+    for (int64_t b = begin; b < end; b++) instance(call, (int32_t)b);
 }
 
 static void run(mpm_call *call, const brunt_team *team) {

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/error.h"
+#include "mpm/instances.h"
 #include "mpm/potential_kernel.h"
 
 typedef struct mpm_commit {
@@ -147,18 +148,21 @@ BRUNT_INLINE void commit_block(int dim, int order, const mpm_commit *commit, int
     p->result[b] = (mpm_block_result){report->kinetic, 0.5 * (double)lanes_sum(grid_kinetic)};
 }
 
+#define INSTANCE(name, dim, order)                                                                                     \
+    static void potential_commit_##name(const mpm_commit *commit, int32_t block) {                                     \
+        commit_block(dim, order, commit, block);                                                                       \
+    }
+MPM_INSTANCES(INSTANCE)
+#define FOUND(name, dim, order) [order][dim] = potential_commit_##name,
+typedef void block_instance(const mpm_commit *commit, int32_t block);
+static block_instance *const instances[][4] = {MPM_INSTANCES(FOUND)};
+
 static void commit_blocks(void *context, int64_t begin, int64_t end, int worker) {
     const mpm_commit *commit = context;
     const brunt_grid *grid = &commit->p->body->grid;
+    block_instance *instance = instances[grid->order][grid->dim];
     (void)worker;
-    for (int64_t b = begin; b < end; b++) switch (grid->dim * 10 + grid->order) {
-        case 21: commit_block(2, 1, commit, (int32_t)b); break;
-        case 22: commit_block(2, 2, commit, (int32_t)b); break;
-        case 23: commit_block(2, 3, commit, (int32_t)b); break;
-        case 31: commit_block(3, 1, commit, (int32_t)b); break;
-        case 32: commit_block(3, 2, commit, (int32_t)b); break;
-        default: commit_block(3, 3, commit, (int32_t)b); break;
-        }
+    for (int64_t b = begin; b < end; b++) instance(commit, (int32_t)b);
 }
 
 int brunt_mpm_commit(brunt_mpm_potential *p, const brunt_team *team, const brunt_mpm_motion *motion,

@@ -13,6 +13,7 @@
 
 #include "base/array.h"
 #include "base/error.h"
+#include "mpm/instances.h"
 #include "mpm/potential_kernel.h"
 
 enum { CHUNK = 8, COLUMNS = 4 }; // particles at a time; vectors of a row in registers
@@ -246,17 +247,20 @@ BRUNT_INLINE void add_block(int dim, int order, const matrix_work *work, int32_t
     }
 }
 
+#define INSTANCE(name, dim, order)                                                                                     \
+    static void potential_matrix_##name(const matrix_work *work, int32_t block, int worker) {                          \
+        add_block(dim, order, work, block, worker);                                                                    \
+    }
+MPM_INSTANCES(INSTANCE)
+#define FOUND(name, dim, order) [order][dim] = potential_matrix_##name,
+typedef void block_instance(const matrix_work *work, int32_t block, int worker);
+static block_instance *const instances[][4] = {MPM_INSTANCES(FOUND)};
+
 static void add_blocks(void *context, int64_t begin, int64_t end, int worker) {
     const matrix_work *work = context;
     const brunt_grid *grid = &work->p->body->grid;
-    for (int64_t k = begin; k < end; k++) switch (grid->dim * 10 + grid->order) {
-        case 21: add_block(2, 1, work, work->block[k], worker); break;
-        case 22: add_block(2, 2, work, work->block[k], worker); break;
-        case 23: add_block(2, 3, work, work->block[k], worker); break;
-        case 31: add_block(3, 1, work, work->block[k], worker); break;
-        case 32: add_block(3, 2, work, work->block[k], worker); break;
-        default: add_block(3, 3, work, work->block[k], worker); break;
-        }
+    block_instance *instance = instances[grid->order][grid->dim];
+    for (int64_t k = begin; k < end; k++) instance(work, work->block[k], worker);
 }
 
 void brunt_mpm_add_matrix(brunt_mpm_potential *p, const brunt_team *team, brunt_block_matrix *m) {

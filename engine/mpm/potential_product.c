@@ -5,6 +5,7 @@
 // block writes its own window; the windows are added at the nodes in the order of blocks.
 #include <string.h>
 
+#include "mpm/instances.h"
 #include "mpm/potential_kernel.h"
 
 typedef struct bin_vector {
@@ -105,18 +106,19 @@ BRUNT_INLINE void block_of(int dim, int order, const product_work *work, int32_t
     }
 }
 
+#define INSTANCE(name, dim, order)                                                                                     \
+    static void potential_product_##name(const product_work *work, int32_t block) { block_of(dim, order, work, block); }
+MPM_INSTANCES(INSTANCE)
+#define FOUND(name, dim, order) [order][dim] = potential_product_##name,
+typedef void block_instance(const product_work *work, int32_t block);
+static block_instance *const instances[][4] = {MPM_INSTANCES(FOUND)};
+
 static void run_blocks(void *context, int64_t begin, int64_t end, int worker) {
     const product_work *work = context;
     const brunt_grid *grid = &work->p->body->grid;
+    block_instance *instance = instances[grid->order][grid->dim];
     (void)worker;
-    for (int64_t b = begin; b < end; b++) switch (grid->dim * 10 + grid->order) {
-        case 21: block_of(2, 1, work, (int32_t)b); break;
-        case 22: block_of(2, 2, work, (int32_t)b); break;
-        case 23: block_of(2, 3, work, (int32_t)b); break;
-        case 31: block_of(3, 1, work, (int32_t)b); break;
-        case 32: block_of(3, 2, work, (int32_t)b); break;
-        default: block_of(3, 3, work, (int32_t)b); break;
-        }
+    for (int64_t b = begin; b < end; b++) instance(work, (int32_t)b);
 }
 
 static void run(product_work *work, const brunt_team *team, double *out, int stride) {
