@@ -44,7 +44,7 @@ static void hold_group(brunt_unknowns *u, const brunt_world *world, int k, doubl
 
 static void hold_node(brunt_unknowns *u, const brunt_world *world, int w, int32_t n, double slack, double dt) {
     const brunt_boundary *wall = &world->boundaries.walls[w];
-    double x[3] = {0}, v[3];
+    double x[3] = {0}, v[3] = {0};
     for (int a = 0; a < u->dim; a++) x[a] = u->place[(size_t)n * (size_t)u->dim + (size_t)a];
     const unsigned held = wall->kind->hold_at(wall, u->dim, world->clock.time, x, slack, v);
     for (int a = 0; a < u->dim; a++)
