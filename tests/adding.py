@@ -2,8 +2,9 @@
 """What it costs to add a thing, by adding one: tests/adding/KIND.patch is a whole one of each kind.
 
     python3 tests/adding.py          the figures, and the lines elsewhere
-    python3 tests/adding.py check    the figures; exit code 1 when one is beyond its limit, when a patch does not apply, or
-                                     when CONTRIBUTING.md says another figure
+    python3 tests/adding.py check    the figures; exit code 1 when one is beyond its limit, when a patch does not apply, when
+                                     CONTRIBUTING.md says another figure, or when code asks for one of a kind by its name
+                                     outside the rows of that kind
     python3 tests/adding.py run      adds all of them to a copy (build/adding), builds that, and runs the scenes beside the patches
 
 Counted are files of its own (at most 1), and lines elsewhere (at most 3), in so many files: added ones, or taken ones
@@ -17,7 +18,31 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 TRIALS = ROOT / "tests" / "adding"
-KINDS = ["material", "element", "contact method", "contact method at nodes", "contact method by energy", "boundary", "boundary with a shape", "measure", "body key", "output field"]
+KINDS = ["material", "element", "contact method", "contact method at nodes", "contact method by energy", "boundary", "boundary with a shape", "measure", "body key", "output field",
+         "preset", "condition of planes", "pass", "other key of a scene", "stored field"]
+# What is known to its rows alone: its list in a header and how code names one, but for what is none and the rows themselves.
+ROWS = {
+    "contact method": ("engine/include/brunt/definition.h", r"#define BRUNT_CONTACT_METHODS\(X\)", "BRUNT_CONTACT_", ["contact/methods/"]),
+    "form of augury": ("engine/include/brunt/definition.h", r"#define BRUNT_AUGURY_FORMS\(X\)", "BRUNT_AUGURY_", ["contact/methods/list.c"]),
+    "group action": ("engine/include/brunt/boundary_group.h", r"typedef enum brunt_group_action \{", "BRUNT_GROUP_",
+                     ["engine/boundary/group_actions.c", "io/scene/boundary_group.c"]),
+}
+
+
+def named_outside():
+    """(kind, "file:line") of code that names one of a kind outside its rows"""
+    for kind, (header, start, prefix, rows) in ROWS.items():
+        list_of = re.search(start + r"(.*?)\n(?!    )", (ROOT / header).read_text(), re.S).group(1)
+        names = set(re.findall(rf"X\((\w+),|\b{prefix}(\w+)", list_of))
+        name = re.compile(prefix + "(" + "|".join(a or b for a, b in names if a != "NONE") + r")\b")
+        for folder in ("contact", "engine", "io", "materials"):
+            for path in sorted((ROOT / folder).rglob("*.[ch]")):
+                place = str(path.relative_to(ROOT))
+                if place == header or place.startswith(tuple(rows)):
+                    continue
+                for number, line in enumerate(path.read_text().split("\n"), 1):
+                    if name.search(line.split("//")[0]):
+                        yield kind, f"{place}:{number}"
 
 
 def patch(kind):
@@ -89,6 +114,9 @@ def main():
                 print(f"    {name}")
             for name, number in elsewhere.items():
                 print(f"    {name}: {number}")
+    for kind, place in named_outside():
+        broken += 1
+        print(f"{place}: a {kind} by its name outside its rows")
     sys.exit(1 if check and broken else 0)
 
 
