@@ -25,7 +25,7 @@ typedef struct brunt_pair {
     brunt_contact_method method;
     unsigned meets; // bits of brunt_contact_place
     double friction;
-    brunt_impulse_account action, last;
+    brunt_impulse_account account, last;
 } brunt_pair;
 
 // What every method is given of a step.
@@ -38,10 +38,10 @@ typedef struct brunt_contact_context {
     int iterations;  // sweeps, or augury iterations of the paper's form
     double look;     // [m] bodies are near from twice this distance on, at least
     int64_t step;
-    const brunt_symmetry_plane *mirrors; // of the grids
-    int mirror_count;
-    brunt_boundary *walls; // what the mirrors are, and all others
-    int wall_count;
+    const brunt_symmetry_plane *symmetry; // of the grids
+    int symmetry_count;
+    brunt_boundary *boundaries; // what the symmetry planes are, and all others
+    int boundary_count;
     double time;     // [s] at the start of the step
     brunt_body *mpm; // the bodies of material points
     int mpm_count;

@@ -28,7 +28,7 @@ int32_t brunt_pair_of(const brunt_pair_map *map, int32_t a, int32_t b) {
 
 int brunt_pair_map_add(brunt_pair_map *map, int32_t a, int32_t b, int32_t pair, brunt_error *error) {
     const size_t count = (size_t)map->count;
-    if (BRUNT_ROOM(map->entry, count + 1, count, "pairs of bodies", error)) return BRUNT_FAILED;
+    if (BRUNT_CAPACITY(map->entry, count + 1, count, "pairs of bodies", error)) return BRUNT_FAILED;
     const bool turned = a > b;
     map->entry[count] = (brunt_pair_entry){turned ? b : a, turned ? a : b, pair, map->count};
     map->count++;
@@ -61,7 +61,7 @@ void brunt_pairs_validate(const brunt_pairs *pairs, int bodies) {
         BRUNT_ASSERT(!i || e[-1].a < e->a || (e[-1].a == e->a && e[-1].b < e->b));
     }
     for (int p = 0; p < pairs->count; p++) {
-        brunt_impulse_account_validate(&pairs->pair[p].action);
+        brunt_impulse_account_validate(&pairs->pair[p].account);
         brunt_impulse_account_validate(&pairs->pair[p].last);
     }
 }

@@ -1,11 +1,11 @@
 // What brittle and frictional materials share: Cauchy flow stresses that depend on the pressure, flow stresses that
-// damage lowers within the step, a pressure of their own that bears a limited tension, and the books of it. The
+// damage lowers within the step, a pressure of their own that carries a limited tension, and the accounts of it. The
 // deviator is that of j2.h with kappa = 0.
 //
 // Volume. mu = 1/J - 1, eta = 1 - J = mu / (1 + mu). The pressure does the work p d(eta) per reference volume, so that
 // an energy
 //   W(eta, s),  p = dW/d(eta)   with internal variables s (damage, compaction, bulking)
-// is stored, and what a change of s takes from it is dissipated. Over a step from 0 to 1 that is booked as
+// is stored, and what a change of s takes from it is dissipated. Over a step from 0 to 1 that is recorded as
 //   loss = 1/2 [W(eta1, s0) - W(eta1, s1) + W(eta0, s0) - W(eta0, s1)],
 // which is 0 where s stays, of second order with the trapezoid of the pressure, and right also where s jumps (damage
 // from 0 to 1 in a step): the rest is 1/4 d2p d(eta) ds, not dp ds.

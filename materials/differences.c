@@ -11,7 +11,7 @@
 #include "materials/prepared.h"
 #include "materials/tensor.h"
 
-enum { MOST_POINTS = 64 };
+enum { POINT_LIMIT = 64 };
 #define STEADY 1e30     // [s] a step without time: no rate
 #define DIFFERENCE 0.02 // of the cube root of the rounding of 1
 
@@ -20,9 +20,9 @@ typedef struct difference_step {
     const brunt_material *material;
     const brunt_trial_points *trial; // of each component
     brunt_material_points points[BRUNT_COMPONENTS];
-    real F[9][MOST_POINTS], L[9][MOST_POINTS], stress[6][MOST_POINTS], volume[MOST_POINTS];
-    real state[BRUNT_COMPONENTS][BRUNT_MAX_STATE][MOST_POINTS];
-    real plastic[MOST_POINTS], viscous[MOST_POINTS];
+    real F[9][POINT_LIMIT], L[9][POINT_LIMIT], stress[6][POINT_LIMIT], volume[POINT_LIMIT];
+    real state[BRUNT_COMPONENTS][BRUNT_MAX_STATE][POINT_LIMIT];
+    real plastic[POINT_LIMIT], viscous[POINT_LIMIT];
 } __attribute__((aligned(64))) difference_step;
 
 static int states_of(const brunt_model *model, int dim) {
@@ -69,7 +69,7 @@ static void find_viscous_stress(const brunt_material *material, const brunt_mate
     if (!model->shear_viscous) return;
     const size_t bytes = (size_t)points->count * sizeof(real);
     brunt_material_points first = *points;
-    real state[BRUNT_MAX_STATE][MOST_POINTS];
+    real state[BRUNT_MAX_STATE][POINT_LIMIT];
     first.may_reshape = false, first.plastic_increment = NULL;
     for (int c = 0; c < states_of(model, points->dim); c++)
         memcpy(state[c], points->state[c], bytes), first.state[c] = state[c];
@@ -139,11 +139,11 @@ static void put_energies(difference_step *s, const brunt_update_result *result) 
 }
 
 // dtau/dG_kb less what turns tau to the first stress of Piola and Kirchhoff; `tau` of the trial.
-static void put_column(difference_step *s, const real tau[6][MOST_POINTS], int k, int b) {
+static void put_column(difference_step *s, const real tau[6][POINT_LIMIT], int k, int b) {
     const brunt_trial_points *trial = s->trial;
     const int dim = trial->dim, rows = dim * dim;
     const real h = (real)(DIFFERENCE * cbrt((double)LANES_REAL_EPSILON)), over = 1 / (2 * h);
-    real ahead[6][MOST_POINTS];
+    real ahead[6][POINT_LIMIT];
     step(s, k, b, h);
     memcpy(ahead, s->stress, sizeof ahead);
     step(s, k, b, -h);
@@ -160,14 +160,14 @@ void brunt_material_respond_by_differences(const brunt_material *material,
                                            const brunt_trial_points trial[BRUNT_COMPONENTS]) {
     const int dim = trial->dim;
     difference_step s;
-    BRUNT_ASSERT(trial->count <= MOST_POINTS);
+    BRUNT_ASSERT(trial->count <= POINT_LIMIT);
     begin(&s, material, trial);
     const brunt_update_result result = step(&s, 0, 0, 0);
     if (trial->density) {
         if (is_still(trial)) take_states(&s); // energies of the start: what creeps has not yet
         put_energies(&s, &result);
     }
-    // What bears more at the rate of the last step would creep at none, and leave a part of each step without its
+    // What carries more at the rate of the last step would creep at none, and leave a part of each step without its
     // stress.
     const bool held = trial->rule.part == BRUNT_TRIAL_START && material->model[BRUNT_STRENGTH]->rate_dependent;
     for (int c = 0; c < BRUNT_SYMMETRIC(dim) && held && trial->old_stress[c]; c++)
@@ -177,10 +177,10 @@ void brunt_material_respond_by_differences(const brunt_material *material,
             for (int32_t q = 0; q < trial->count; q++)
                 trial->stress[i * dim + a][q] = q == result.bad ? (real)NAN : s.stress[place[i][a]][q];
     if (!trial->tangent[0]) return;
-    real tau[6][MOST_POINTS];
+    real tau[6][POINT_LIMIT];
     memcpy(tau, s.stress, sizeof tau);
     for (int k = 0; k < dim; k++)
-        for (int b = 0; b < dim; b++) put_column(&s, (const real(*)[MOST_POINTS])tau, k, b);
+        for (int b = 0; b < dim; b++) put_column(&s, (const real(*)[POINT_LIMIT])tau, k, b);
 }
 
 brunt_update_result brunt_material_commit_by_differences(const brunt_material *material,
@@ -188,8 +188,8 @@ brunt_update_result brunt_material_commit_by_differences(const brunt_material *m
                                                          brunt_material_points points[BRUNT_COMPONENTS],
                                                          real *plastic) {
     const int dim = trial->dim;
-    real L[9][MOST_POINTS], viscous[MOST_POINTS];
-    BRUNT_ASSERT(trial->count <= MOST_POINTS);
+    real L[9][POINT_LIMIT], viscous[POINT_LIMIT];
+    BRUNT_ASSERT(trial->count <= POINT_LIMIT);
     for (int c = 0; c < dim * dim; c++)
         for (int32_t q = 0; q < trial->count; q++)
             L[c][q] = (trial->f[c][q] - (real)(c % (dim + 1) == 0)) / step_time(trial);

@@ -41,7 +41,7 @@ BRUNT_INLINE lanes step_heat(const brunt_material_points *points, int32_t i, lan
     return heat;
 }
 
-// Pressure at which a point tears that bears `tension` [Pa] while it is whole.
+// Pressure at which a point tears that carries `tension` [Pa] while it is whole.
 BRUNT_INLINE lanes tear_pressure(real tension, const real *integrity, int32_t i) {
     lanes sound = lanes_set(-tension);
     return integrity ? lanes_select(lanes_load(integrity + i) > 0, sound, lanes_set(0)) : sound;

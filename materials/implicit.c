@@ -65,10 +65,10 @@ brunt_update_result brunt_material_commit(const brunt_material *material,
 
 // --------------------------------------------------------------------------------- projection
 
-enum { MOST_ROWS = 9, PROJECTION_SWEEPS = 16 };
+enum { ROW_LIMIT = 9, PROJECTION_SWEEPS = 16 };
 
 // One rotation of Jacobi's method of A with the vectors V, rows, of lanes in `active`.
-BRUNT_INLINE void rotate_pair(int rows, lanes A[MOST_ROWS][MOST_ROWS], lanes V[MOST_ROWS][MOST_ROWS], int p, int q,
+BRUNT_INLINE void rotate_pair(int rows, lanes A[ROW_LIMIT][ROW_LIMIT], lanes V[ROW_LIMIT][ROW_LIMIT], int p, int q,
                               lane_mask active) {
     const lane_mask turn = active & (A[p][q] != 0);
     if (!lanes_any(turn)) return;
@@ -89,9 +89,9 @@ BRUNT_INLINE void rotate_pair(int rows, lanes A[MOST_ROWS][MOST_ROWS], lanes V[M
 }
 
 // Adds -l v v^T of the negative eigenvalues l to the tangents at i. Lanes stop one by one.
-BRUNT_INLINE void project_at(int dim, real *const tangent[BRUNT_MOST_TANGENTS], int32_t i) {
+BRUNT_INLINE void project_at(int dim, real *const tangent[BRUNT_TANGENT_LIMIT], int32_t i) {
     const int rows = dim * dim;
-    lanes A[MOST_ROWS][MOST_ROWS], V[MOST_ROWS][MOST_ROWS];
+    lanes A[ROW_LIMIT][ROW_LIMIT], V[ROW_LIMIT][ROW_LIMIT];
     for (int r = 0; r < rows; r++)
         for (int c = 0; c < rows; c++) {
             V[r][c] = lanes_set(r == c ? 1 : 0);

@@ -21,7 +21,7 @@
 // reaches, of which these constants say nothing.
 //
 // What is not burnt is as stiff as `bulk_modulus` K in compression (LS-DYNA's K with beta 2, RADIOSS' B_unreacted),
-// with mu = max(1/V - 1, 0): against these pressures cast and pressed explosives bear no tension. With K = 0 it bears
+// with mu = max(1/V - 1, 0): against these pressures cast and pressed explosives bear no tension. With K = 0 it carries
 // nothing at all, which is enough when the front is all that reaches it. It changes nothing behind the front: a steady
 // wave obeys p = rho0 D^2 (1 - V) and e = e0 + p (1 - V) / 2 all through whatever F, and ends where these meet
 // p_products.
@@ -55,7 +55,7 @@ static const brunt_parameter parameters[] = {
     {"R2", "1", NAN, 0, INFINITY, true, true, "rate of the second exponential"},
     {"omega", "1", NAN, 0, INFINITY, true, true, "Gruneisen coefficient of the products"},
     {"initial_energy", "J/m^3", NAN, 0, INFINITY, true, true, "chemical energy per reference volume"},
-    {"bulk_modulus", "Pa", 0, 0, INFINITY, false, true, "of the explosive before it burns; 0: it bears no pressure"},
+    {"bulk_modulus", "Pa", 0, 0, INFINITY, false, true, "of the explosive before it burns; 0: it carries no pressure"},
     {"front_width", "1", 1.5, 0, INFINITY, true, true, "cells over which the front burns; wider smooths it"},
 };
 

@@ -40,15 +40,15 @@ typedef struct brunt_material_points {
     real *F[9];       // deformation gradient at the end of the step [-] (already updated: F = (I + dt L) F_old)
     real *stress[6];  // Kirchhoff stress [Pa]; in: of the last step, out: of this step; BRUNT_SYMMETRIC(dim) components
     bool may_reshape; // F is the points' own memory (material points): a fluid may replace it by one of the same J
-    bool tension_only;            // of a membrane: it bears no compression
+    bool tension_only;            // of a membrane: it carries no compression
     real *thickness;              // of a membrane: stretch across it at the end of the step [-], written; else NULL
     const real *volume;           // reference volume [m^3]; 0 for padding
     real *state[BRUNT_MAX_STATE]; // this component's own state arrays, in the order of its state table
     // What one component leaves for the next, within one update (never stored): dissipation and viscous pressure.
     real *plastic_increment; // [J/m^3 of reference volume] what the strength model dissipated in this step; NULL when
-                             // nobody reads it (no eos), or when it is neither plastic nor viscous
-    real *strain_increment;  // [-] equivalent plastic strain of this step, from the strength model; NULL when nobody
-                             // reads it
+                             // it is not read (no eos), or when it is neither plastic nor viscous
+    real *strain_increment;  // [-] equivalent plastic strain of this step, from the strength model; NULL when it is
+                             // not read
     // What failure says to the others, and they to it.
     const real *integrity; // [-] 1 sound .. 0 failed, as the last step left it: a factor on the flow stress; at 0 there
                            // is no tension either. NULL when nothing softens
@@ -56,7 +56,7 @@ typedef struct brunt_material_points {
         *integrity_before;   // [-] the same as the step before left it: that of the stress at the start of this step
     const real *temperature; // [K] of the strength model at the end of the step, for failure; NULL when it has none
     real *viscous_pressure;  // [Pa] q > 0 in compression, mean of the last step's and this one's: its work in the step
-                             // is -viscous_pressure dJ per reference volume; NULL when nobody reads it
+                             // is -viscous_pressure dJ per reference volume; NULL when it is not read
 } brunt_material_points;
 
 // What an update tells its caller.
@@ -83,13 +83,13 @@ typedef struct brunt_point_energy {
 #define BRUNT_TANGENT(dim) ((dim) == 3 ? 45 : 10)
 // All of it, row by row, of materials whose tangent is not symmetric (brunt_material.differences).
 #define BRUNT_WHOLE_TANGENT(dim) ((dim) == 3 ? 81 : 16)
-enum { BRUNT_MOST_TANGENTS = BRUNT_WHOLE_TANGENT(3) };
+enum { BRUNT_TANGENT_LIMIT = BRUNT_WHOLE_TANGENT(3) };
 
 // What of a step is asked for.
 typedef enum brunt_trial_part {
-    BRUNT_TRIAL_END,   // what is minimised
-    BRUNT_TRIAL_START, // f = I: the stress that the start holds. It is that of the last step, and of its rate
-    BRUNT_TRIAL_BOOKS, // density: what is stored at the end and what the step has dissipated, the minimum reached
+    BRUNT_TRIAL_END,     // what is minimised
+    BRUNT_TRIAL_START,   // f = I: the stress that the start holds. It is that of the last step, and of its rate
+    BRUNT_TRIAL_ACCOUNT, // density: what is stored at the end and what the step has dissipated, the minimum reached
 } brunt_trial_part;
 
 typedef struct brunt_trial_rule {
@@ -119,7 +119,7 @@ typedef struct brunt_trial_points {
     real *stress[9];
     // a = F F d2W/dFdF [Pa], BRUNT_TANGENT(dim) components: with spatial gradients g_A, g_B of two shape functions, the
     // reference volume V0 and component i at A, j at B: d2(V0 W)/du_Ai du_Bj = V0 sum_ab g_Aa a_iajb g_Bb.
-    real *tangent[BRUNT_MOST_TANGENTS];
+    real *tangent[BRUNT_TANGENT_LIMIT];
 } brunt_trial_points;
 
 // What a model gives to implicit steps.

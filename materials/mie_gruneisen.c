@@ -18,7 +18,7 @@
 // With `tension` p stays at -tension where the laws give less, the material then being torn (liquids: 0; p = 0 for mu <
 // 0). The trapezoid is that of the pressures so bounded. Whether the end of a step is torn does not depend on the order
 // of bounding and solving: both pressures lie on the same side of -tension, as 1 + g dJ/2 > 0.
-// A point that has failed (integrity 0) bears none, from the step after on: the bound then differs at both ends of a
+// A point that has failed (integrity 0) carries none, from the step after on: the bound then differs at both ends of a
 // step.
 #include "materials/energy_state.h"
 
@@ -30,7 +30,7 @@ static const brunt_parameter parameters[] = {
     {"gamma0", "1", NAN, 0, INFINITY, false, true, "Gruneisen coefficient at reference density"},
     {"initial_energy", "J/m^3", 0, -INFINITY, INFINITY, true, true, "energy per reference volume at the start"},
     {"tension", "Pa", INFINITY, 0, INFINITY, false, false,
-     "greatest tension it bears, beyond which it cavitates; 0: none at all"},
+     "greatest tension it carries, beyond which it cavitates; 0: none at all"},
 };
 
 static const char *prepare(const double *p, double density, bool with_eos, real *constants) {

@@ -18,7 +18,7 @@
 //
 // Hardening raises the cohesion, c + h eps_p, eps_p the equivalent plastic strain, as sqrt(2/3 e:e) of the deviator of
 // each increment. What flows dissipates 2 c cos(phi) - (sin(phi) - sin(psi)) (t1 + t3) per multiplier, which is not
-// negative up to the apex with psi <= phi. It is booked as the trapezoid of stress over plastic strain (material.h).
+// negative up to the apex with psi <= phi. It is recorded as the trapezoid of stress over plastic strain (material.h).
 #include "materials/brittle.h"
 #include "materials/principal.h"
 

@@ -183,14 +183,14 @@ BRUNT_INLINE lanes dissipation(const viscous_step *s) {
 }
 
 BRUNT_INLINE void respond_dim(int dim, const real *k, const brunt_trial_points *trial) {
-    const bool books = trial->rule.part == BRUNT_TRIAL_BOOKS;
+    const bool records = trial->rule.part == BRUNT_TRIAL_ACCOUNT;
     for (int32_t i = 0; i < trial->count; i += BRUNT_LANES) {
         viscous_step s = viscous_step_at(dim, k, trial, i);
         principal_moduli m;
-        if (trial->density && books) lanes_store(trial->density + i, dissipation(&s));
+        if (trial->density && records) lanes_store(trial->density + i, dissipation(&s));
         s.modulus /= 1 - trial->rule.start;
         for (int a = 0; a < 3; a++) m.tau[a] = 2 * s.modulus * s.e[a];
-        if (trial->density && !books) lanes_store(trial->density + i, (real)0.5 * dissipation(&s));
+        if (trial->density && !records) lanes_store(trial->density + i, (real)0.5 * dissipation(&s));
         if (trial->stress[0]) {
             lanes tau[6];
             principal_tensor(dim, &s.axes, m.tau, tau);
@@ -246,7 +246,8 @@ static const brunt_model_potential inviscid_potentials = {.respond = respond_inv
 
 #define NEWTONIAN                                                                                                      \
     .name = "newtonian",                                                                                               \
-    .doc = "fluid of constant viscosity, which bears no other shear stress; an equation of state gives its pressure",  \
+    .doc =                                                                                                             \
+        "fluid of constant viscosity, which carries no other shear stress; an equation of state gives its pressure",   \
     .fluid = true, .needs_eos = true, .accepts_eos = true, .parameters = parameters,                                   \
     .parameter_count = BRUNT_COUNT(parameters), .prepare = prepare, .wave_speed = no_wave_speed
 

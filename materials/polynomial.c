@@ -31,7 +31,7 @@ static const brunt_parameter parameters[] = {
     {"C6", "1", 0, -INFINITY, INFINITY, true, true, "pressure per energy, factor of mu^2, in compression"},
     {"initial_energy", "J/m^3", 0, -INFINITY, INFINITY, true, true, "energy per reference volume at the start"},
     {"tension", "Pa", INFINITY, 0, INFINITY, false, false,
-     "greatest tension it bears, beyond which it cavitates; 0: none at all"},
+     "greatest tension it carries, beyond which it cavitates; 0: none at all"},
 };
 
 static double speed_squared_at_start(const double *p, double density) {

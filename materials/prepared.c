@@ -89,7 +89,7 @@ static int find_failure(const brunt_material_def *def, brunt_material *material,
                           def->name, strength->name);
     if (def->failure_action == BRUNT_FAILURE_SOFTEN && !eos)
         return brunt_fail(error, BRUNT_BAD_INPUT,
-                          "materials.%s.failure.action: soften wants an equation of state, which bears pressure when "
+                          "materials.%s.failure.action: soften wants an equation of state, which carries pressure when "
                           "strength and tension are lost",
                           def->name);
     return BRUNT_OK;

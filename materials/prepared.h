@@ -19,7 +19,7 @@ typedef struct brunt_material {
     real constants[BRUNT_COMPONENTS][BRUNT_MAX_CONSTANTS];
     real wave_speed;  // [m/s] undeformed
     real rest_stress; // [Pa] what every normal stress is while undeformed: less the pressure of the equation of state
-    bool membrane, tension_only; // in plane stress; bears no compression
+    bool membrane, tension_only; // in plane stress; carries no compression
     bool implicit;    // its steps are implicit: energies are those of the potentials; set by whom makes the world
     bool differences; // no potential, but implicit steps have it by differences of its update; the tangent is whole
     bool erodes;      // points of it may fail, and leave when they do

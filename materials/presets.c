@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "materials/tensor.h"
 
-enum { MOST_VALUES = 40 };
+enum { VALUE_LIMIT = 40 };
 
 typedef struct preset_value {
     const char *key;
@@ -18,7 +18,7 @@ typedef struct preset_value {
 typedef struct preset {
     brunt_preset_info info;
     const char *model;
-    preset_value values[MOST_VALUES]; // in SI; up to the first without a key
+    preset_value values[VALUE_LIMIT]; // in SI; up to the first without a key
 } preset;
 
 // clang-format off
@@ -116,7 +116,7 @@ int brunt_material_preset(const char *name, const char *as, brunt_material_def *
         if (strcmp(from->info.name, name) != 0) continue;
         int status = BRUNT_OK;
         *def = brunt_material_def_default(as, from->model);
-        for (int v = 0; v < MOST_VALUES && from->values[v].key && !status; v++)
+        for (int v = 0; v < VALUE_LIMIT && from->values[v].key && !status; v++)
             status = brunt_material_set(def, from->values[v].key, from->values[v].value, from->values[v].text, error);
         return status;
     }

@@ -91,9 +91,10 @@ typedef struct principal_moduli {
 
 // Adds the tangent in the axes of space.
 BRUNT_INLINE void principal_tangent(int dim, const principal_axes *p, const principal_moduli *m, lanes a[45]) {
-    enum { MOST = 9 };
+    enum { PAIR_LIMIT = 9 };
     const int rows = dim * dim;
-    lanes R[MOST][MOST], Z[MOST][MOST]; // n_I (x) n_A by pair (I, A); what the tangent in principal axes makes of them
+    lanes R[PAIR_LIMIT][PAIR_LIMIT],
+        Z[PAIR_LIMIT][PAIR_LIMIT]; // n_I (x) n_A by pair (I, A); what the tangent in principal axes makes of them
     for (int I = 0; I < dim; I++)
         for (int A = 0; A < dim; A++)
             for (int i = 0; i < dim; i++)

@@ -16,7 +16,7 @@ static const brunt_parameter parameters[] = {
     {"c0", "m/s", NAN, 0, INFINITY, true, true, "sound speed at rest; ten times the flow's keeps density to 1 %"},
     {"gamma", "1", 7, 1, INFINITY, false, true, "exponent; 1: pressure linear in density"},
     {"tension", "Pa", INFINITY, 0, INFINITY, false, false,
-     "greatest tension it bears, beyond which it cavitates; 0: none at all"},
+     "greatest tension it carries, beyond which it cavitates; 0: none at all"},
 };
 
 static const char *prepare(const double *p, double density, bool with_eos, real *constants) {

@@ -178,7 +178,7 @@ static inline double state_total(const brunt_material_points *points, int compon
             energy_dim(3, constants, points, energy);                                                                  \
     }
 
-// Wave speed of what bears no elastic stress.
+// Wave speed of what carries no elastic stress.
 static inline real no_wave_speed(const real *constants) {
     (void)constants;
     return 0;

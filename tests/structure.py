@@ -34,9 +34,24 @@ LIMITS = {
     "includes not from the root": 0, "members of the world": 13, "functions that take the world for one part": 0, "functions over 60 lines": 0,
     "functions with over 7 parameters": 0, "lines of the largest file": 600, "files over 600 lines": 0,
     "tables that nothing counts": 0, "pointers to void pointers": 0, "lines that return -1": 0,
-    "words not of plain English": 0,
+    "words not of plain English": 0, "words of before": 0,
     "lines repeated in blocks of six": 0, "terms not found": 0,
 }
+# Words that were the project's own for what the field has a term for (CONTRIBUTING.md), as parts of identifiers; and where one
+# of them means something else: (paths, identifiers, what it means there).
+BEFORE = re.compile(r"(?:^|_)(?:walls?|mirror(?:s|ed)?|sheets?|skins?|book(?:s|ed|ing)?|meetings?|rings?|reach|facing|looker|sight|ragged|"
+                    r"scatter|gather|remap|rooms?|loose|slack|drag|actions?|places?)(?:_|$)", re.I)
+ELSEWHERE = [
+    (r"^io/", r"(\w+_)?walls?(_\w+)?", "time of the wall clock"),
+    (r"^(contact|engine)/", r"(\w+_)?gather(_\w+)?|GATHER", "numbers from all over the memory in a row; sums of what followers have"),
+    (r"^contact/|^engine/world/surfaces", r"(\w+_)?scatter(_\w+)?", "what contact gives to nodes, not particles to the grid"),
+    (r"^(engine|contact)/", r"reach|\w+_(reach|REACH)", "a field of particles: columns of output have its name"),
+    (r"^engine/(geometry/fill|world/definition_check|include/brunt/body)", r"(\w+_)?rings(_\w+)?|\w+_RINGS", "particles in rings: a word of scenes"),
+    (r"^(engine|io|materials)/", r"actions?|ACTIONS|posix_\w+|\w+_action", "of a group, of failure: keys of scenes; of POSIX"),
+    (r"^engine/", r"(\w+_)?drag(_\w+)?", "of damping"),
+    (r"^(engine|io|contact)/", r"room", "how much a text or an array takes, of a function's own"),
+    (r"", r"(\w+_)?places?(_\w+)?|\w+_PLACES?", "an index in a list; `place` of scenes"),
+]
 BARE = re.compile(r"\breturn (?:-1;|[^;]*(?:\? -1 : 0;|(?<!\? 1) : -1;))")  # but for what compares: -1 or 1
 TERMS = {  # of the field: what a file or folder is looked for by
     "hourglass control": "hourglass", "return mapping": "return_mapping|j2|von_mises", "friction cone": "coulomb",
@@ -179,8 +194,17 @@ def uncounted(path):
 def wordings(path):
     """Words that the house does not use of things, by place."""
     for number, line in enumerate((ROOT / path).read_text(errors="replace").split("\n"), 1):
-        for word in re.findall(r"\b[Ww]ho\b|\b(?:is|are|was) gone\b|comes? to light", line):
+        for word in re.findall(r"\b[Ww]ho\b|\b(?:is|are|was) gone\b|comes? to light|\b(?:[Nn]obody|[Ss]omeone|[Ss]ooner|bears)\b", line):
             yield f"{path}:{number}: {word}"
+
+
+def before(path):
+    """Identifiers with a word of before, by path: code and macros, without comments, strings and includes."""
+    text = re.sub(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\'', " ", (ROOT / path).read_text(), flags=re.S)
+    meant = [name for where, name, _ in ELSEWHERE if re.search(where, path)]
+    for name in sorted({name for name in re.findall(r"[A-Za-z_]\w*", text) if BEFORE.search(name)}):
+        if not any(re.fullmatch(other, name) for other in meant):
+            yield f"{path}: {name}"
 
 
 def repeated(files, least=6):
@@ -242,6 +266,7 @@ def figures():
     voids = [f"{f}:{n}" for f in files for n, line in enumerate(code(f).split("\n"), 1) if re.search(r"void\s*\*\s*(?:const\s*)?\*", line)]
     bare = [f"{f}:{n}" for f in files for n, line in enumerate(code(f).split("\n"), 1) if BARE.search(line)]
     words = [place for f in texts() for place in wordings(f)]
+    old = [place for f in files for place in before(f)]
     lost = [term for term, found in terms() if not found]
     return [
         ("arrows against the order", len(arrows), [f"{a} -> {b}" for a, b in arrows]),
@@ -260,6 +285,7 @@ def figures():
         ("pointers to void pointers", len(voids), voids),
         ("lines that return -1", len(bare), bare),
         ("words not of plain English", len(words), words),
+        ("words of before", len(old), old),
         ("lines repeated in blocks of six", copies, copied),
         ("terms not found", len(lost), lost),
         ("lines", sum(size.values()), []),

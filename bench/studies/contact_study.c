@@ -304,7 +304,7 @@ static void run_stack(const settings *s) {
     brunt_body_sums start, now, late;
     brunt_body_totals(world, 2, &start);
     brunt_gap_probe *probe = brunt_gap_probe_make(world);
-    brunt_force before, after;
+    brunt_reaction before, after;
     double deepest = 0, from = brunt_clock(), t0 = 0;
     int status = BRUNT_OK;
     for (int64_t k = 0; k < steps && !status; k++) {

@@ -24,9 +24,9 @@ void brunt_barrier_free(brunt_barrier *b) {
     brunt_near_cells_free(&b->facet_cells), brunt_near_cells_free(&b->edge_cells);
     brunt_near_list_free(&b->facets), brunt_near_list_free(&b->planes), brunt_near_list_free(&b->edges);
     brunt_free(b->task), brunt_free(b->task_energy), brunt_free(b->task_first);
-    for (size_t i = 0; i < b->room_capacity / sizeof *b->room; i++)
-        brunt_free(b->room[i].feature), brunt_free(b->room[i].edge), brunt_free(b->room[i].vertex);
-    brunt_free(b->room), brunt_free(b->contacts.contact), brunt_free(b->lagged.contact), brunt_free(b->rub);
+    for (size_t i = 0; i < b->workspace_capacity / sizeof *b->workspace; i++)
+        brunt_free(b->workspace[i].feature), brunt_free(b->workspace[i].edge), brunt_free(b->workspace[i].vertex);
+    brunt_free(b->workspace), brunt_free(b->contacts.contact), brunt_free(b->lagged.contact), brunt_free(b->rub);
     sets_free(&b->sets), sets_free(&b->lagged_sets);
     brunt_colours_free(&b->colours), brunt_colours_free(&b->lagged_colours);
     brunt_free(b);
@@ -115,9 +115,9 @@ static int make_edges(brunt_barrier *b, const double (*x)[3], brunt_error *error
     const size_t sides = (size_t)b->facet_count * 3;
     edge_side *side;
     const bool room = !BRUNT_NEW(side, sides + 1, "sides of facets", error) &&
-                      !BRUNT_ROOM(b->edge, sides + 1, 0, "edges of surfaces", error) &&
-                      !BRUNT_ROOM(b->edge_area, sides + 1, 0, "edges of surfaces", error) &&
-                      !BRUNT_ROOM(b->edge_length2, sides + 1, 0, "edges of surfaces", error);
+                      !BRUNT_CAPACITY(b->edge, sides + 1, 0, "edges of surfaces", error) &&
+                      !BRUNT_CAPACITY(b->edge_area, sides + 1, 0, "edges of surfaces", error) &&
+                      !BRUNT_CAPACITY(b->edge_length2, sides + 1, 0, "edges of surfaces", error);
     b->edge_count = 0;
     if (room) {
         for (size_t i = 0; i < sides; i++) {
@@ -144,9 +144,9 @@ int brunt_barrier_set_mesh(brunt_barrier *b, const brunt_barrier_mesh *mesh, bru
     BRUNT_ASSERT(mesh->dim == 2 || mesh->dim == 3);
     b->dim = mesh->dim, b->vertex_count = mesh->vertex_count, b->edge_count = 0;
     const size_t vertices = (size_t)mesh->vertex_count + 1;
-    if (BRUNT_ROOM(b->facet, (size_t)mesh->facet_count * 2 + 1, 0, "facets of surfaces", error) ||
-        BRUNT_ROOM(b->body, vertices, 0, "vertices of surfaces", error) ||
-        BRUNT_ROOM(b->vertex_area, vertices, 0, "vertices of surfaces", error))
+    if (BRUNT_CAPACITY(b->facet, (size_t)mesh->facet_count * 2 + 1, 0, "facets of surfaces", error) ||
+        BRUNT_CAPACITY(b->body, vertices, 0, "vertices of surfaces", error) ||
+        BRUNT_CAPACITY(b->vertex_area, vertices, 0, "vertices of surfaces", error))
         return BRUNT_FAILED;
     if (mesh->vertex_count) memcpy(b->body, mesh->body, (size_t)mesh->vertex_count * sizeof *b->body);
     memset(b->vertex_area, 0, vertices * sizeof *b->vertex_area);

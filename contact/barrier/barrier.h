@@ -78,7 +78,7 @@ typedef struct brunt_barrier_step {
     // Backward Euler and static steps: 1 and NULL; Newmark: 2.
     double factor;
     const double *before;
-    const double *inverse_mass; // [1/kg] of block nodes, 0: given; NULL: nobody asks how long steps may be
+    const double *inverse_mass; // [1/kg] of block nodes, 0: given; NULL: it is not asked how long steps may be
 } brunt_barrier_step;
 
 // The disc or sphere of a volume's greatest section: 2 sqrt(V / pi) [m], pi (3 V / 4 pi)^(2/3) [m^2].
@@ -120,9 +120,9 @@ typedef struct brunt_barrier_force {
 
 // What Newmark's rule follows by the shortest steps: one contact, with the mass that its gap moves, 1 / sum w^2 / m.
 typedef struct brunt_barrier_stiffest {
-    double step;         // [s] brunt_barrier_longest_step; INFINITY: nothing that moves is in contact, or nobody asks
+    double step; // [s] brunt_barrier_longest_step; INFINITY: nothing that moves is in contact, or it is not asked for
     int32_t body, other; // other -1: a plane
-    double place[3];     // [m]
+    double position[3];  // [m]
 } brunt_barrier_stiffest;
 
 typedef struct brunt_barrier_report {
@@ -131,7 +131,7 @@ typedef struct brunt_barrier_report {
     int32_t body, other; // that are that near; other -1: a plane
     int32_t point;       // vertex (below vertex_count) or material point (vertex_count and on); -1: two edges
     int32_t plane;       // -1: none
-    double place[3];     // [m] of the point, or on the edge
+    double position[3];  // [m] of the point, or on the edge
     int64_t contacts;    // places with a force
     double energy;       // [J] in the barrier
     brunt_barrier_stiffest stiffest;

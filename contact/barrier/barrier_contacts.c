@@ -7,7 +7,7 @@
 // at the same feature is one contact, with the sum as its multiplicity; 0 is dropped.
 #include "contact/barrier/barrier_parts.h"
 
-static barrier_feature *feature_at(barrier_room *r, const int32_t v[3], const barrier_feature *of) {
+static barrier_feature *feature_at(barrier_workspace *r, const int32_t v[3], const barrier_feature *of) {
     for (int64_t i = 0; i < r->feature_count; i++) {
         barrier_feature *f = &r->feature[i];
         if (f->vertex[0] == v[0] && f->vertex[1] == v[1] && f->vertex[2] == v[2]) return f;
@@ -35,18 +35,18 @@ static barrier_shared *shared_at(barrier_shared *list, int64_t *count, int32_t a
     return &list[(*count)++];
 }
 
-static void count_shared(const brunt_barrier *b, barrier_room *r, const int32_t *f, const barrier_feature *of) {
+static void count_shared(const brunt_barrier *b, barrier_workspace *r, const int32_t *f, const barrier_feature *of) {
     for (int i = 0; i < b->dim; i++) shared_at(r->vertex, &r->vertex_count, f[i], -1, of)->facets++;
     if (b->dim == 3)
         for (int i = 0; i < 3; i++) shared_at(r->edge, &r->edge_count, f[i == 2], f[i == 0 ? 1 : 2], of)->facets++;
 }
 
-static bool in_reach(const brunt_barrier *b, int32_t law, double d) {
+static bool in_range(const brunt_barrier *b, int32_t law, double d) {
     return d - b->pair[law].offset < b->pair[law].distance;
 }
 
 // The facets within reach, each at its nearest feature.
-static void count_facets(const brunt_barrier *b, int32_t point, const double *u, barrier_room *r) {
+static void count_facets(const brunt_barrier *b, int32_t point, const double *u, barrier_workspace *r) {
     static const double here[3] = {0};
     r->feature_count = r->edge_count = r->vertex_count = 0;
     const int32_t body = barrier_body_of(b, point);
@@ -59,7 +59,7 @@ static void count_facets(const brunt_barrier *b, int32_t point, const double *u,
         const int region = b->dim == 3 ? brunt_closest_of_triangle(here, (const double(*)[3])x, &d)
                                        : brunt_closest_of_edge(here, x[0], x[1], &d);
         of.law = barrier_law_between(b, body, b->body[f[0]], &of.side);
-        if (!in_reach(b, of.law, d)) continue;
+        if (!in_range(b, of.law, d)) continue;
         of.share = barrier_share_of(b, of.law, of.side, false);
         vertices_of(f, region, v);
         feature_at(r, v, &of)->times++;
@@ -74,7 +74,7 @@ static double vertex_distance(const brunt_barrier *b, int32_t point, int32_t ver
 }
 
 // Edges of triangles and what they take back.
-static void take_back_edges(const brunt_barrier *b, int32_t point, const double *u, barrier_room *r) {
+static void take_back_edges(const brunt_barrier *b, int32_t point, const double *u, barrier_workspace *r) {
     static const double here[3] = {0};
     for (int64_t i = 0; i < r->edge_count; i++) {
         const barrier_shared *e = &r->edge[i];
@@ -87,18 +87,18 @@ static void take_back_edges(const brunt_barrier *b, int32_t point, const double 
         if (e->facets == 1) continue;
         barrier_relative(b, u, point, ends, 2, x);
         const int region = brunt_closest_of_edge(here, x[0], x[1], &d);
-        if (!in_reach(b, e->law, d)) continue;
+        if (!in_range(b, e->law, d)) continue;
         vertices_of(ends, region, v);
         feature_at(r, v, &of)->times -= e->facets - 1;
     }
 }
 
-static void take_back_vertices(const brunt_barrier *b, int32_t point, const double *u, barrier_room *r) {
+static void take_back_vertices(const brunt_barrier *b, int32_t point, const double *u, barrier_workspace *r) {
     for (int64_t i = 0; i < r->vertex_count; i++) {
         const barrier_shared *s = &r->vertex[i];
         const int32_t v[3] = {s->a, -1, -1}, times = 1 - s->facets + s->more;
         const barrier_feature of = {.law = s->law, .side = s->side, .share = s->share};
-        if (times == 0 || !in_reach(b, s->law, vertex_distance(b, point, s->a, u))) continue;
+        if (times == 0 || !in_range(b, s->law, vertex_distance(b, point, s->a, u))) continue;
         feature_at(r, v, &of)->times += times;
     }
 }
@@ -149,7 +149,7 @@ static void edge_contacts(const brunt_barrier *b, int32_t edge, const double *u,
         c.law = barrier_law_between(b, b->body[e[0]], b->body[f[0]], &c.side);
         barrier_relative(b, u, e[0], c.place, 4, x);
         brunt_closest_edges((const double(*)[3])x, (const double(*)[3])(x + 2), &c.at);
-        if (!in_reach(b, c.law, c.at.d)) continue;
+        if (!in_range(b, c.law, c.at.d)) continue;
         c.offset = b->pair[c.law].offset;
         for (int k = 0; k < 3; k++) c.edge[0][k] = x[1][k] - x[0][k], c.edge[1][k] = x[3][k] - x[2][k];
         c.threshold = PARALLEL * b->edge_length2[edge] * b->edge_length2[other];
@@ -165,7 +165,7 @@ void barrier_each_contact(const brunt_barrier *b, int64_t task, const double *u,
         edge_contacts(b, -1 - point, u, take, context);
         return;
     }
-    barrier_room *r = &b->room[worker];
+    barrier_workspace *r = &b->workspace[worker];
     count_facets(b, point, u, r);
     if (b->dim == 3) take_back_edges(b, point, u, r);
     take_back_vertices(b, point, u, r);
@@ -213,7 +213,7 @@ int barrier_list_contacts(brunt_barrier *b, const brunt_team *team, const double
     brunt_parallel(team->threads, b->task_count, BARRIER_GRAIN, list_task, &work, team->timer);
     for (int64_t i = 0; i < b->task_count; i++) b->task_first[i + 1] += b->task_first[i];
     const int64_t count = b->task_first[b->task_count];
-    if (BRUNT_ROOM(list->contact, (size_t)count + 1, 0, "places of contact", error)) return BRUNT_FAILED;
+    if (BRUNT_CAPACITY(list->contact, (size_t)count + 1, 0, "places of contact", error)) return BRUNT_FAILED;
     list->count = count, work.list = list->contact;
     brunt_parallel(team->threads, b->task_count, BARRIER_GRAIN, list_task, &work, team->timer);
     return BRUNT_OK;

@@ -4,8 +4,8 @@
 typedef struct near_work {
     brunt_barrier *b;
     const double *u, *p;
-    double slack; // [m] more than the distances: rounding of boxes
-    bool *bad;    // of each worker: something is not a number
+    double margin; // [m] more than the distances: rounding of boxes
+    bool *bad;     // of each worker: something is not a number
 } near_work;
 
 // Where a place is on its way, from the origin of the boxes.
@@ -51,14 +51,14 @@ static void facet_boxes(void *context, int64_t begin, int64_t end, int worker) {
     brunt_barrier *b = w->b;
     (void)worker;
     for (int64_t i = begin; i < end; i++)
-        hull_box(b->point_box, b->facet[i], b->dim, b->reach + w->slack, &b->facet_box[i]);
+        hull_box(b->point_box, b->facet[i], b->dim, b->range + w->margin, &b->facet_box[i]);
 }
 
 static void edge_boxes(void *context, int64_t begin, int64_t end, int worker) {
     near_work *w = context;
     brunt_barrier *b = w->b;
     (void)worker;
-    for (int64_t i = begin; i < end; i++) hull_box(b->point_box, b->edge[i], 2, b->reach + w->slack, &b->edge_box[i]);
+    for (int64_t i = begin; i < end; i++) hull_box(b->point_box, b->edge[i], 2, b->range + w->margin, &b->edge_box[i]);
 }
 
 static bool facet_wanted(const void *context, int32_t point, int32_t facet) {
@@ -109,7 +109,7 @@ static int64_t planes_of(const void *context, int32_t point, int32_t *out) {
             gap += n * (corner - (plane->origin[k] - b->origin[k]) - from[k]);
             comes += n * by[k];
         }
-        if (gap - fmax(comes, 0) > plane->distance + barrier_plane_offset(b, plane, point) + w->slack) continue;
+        if (gap - fmax(comes, 0) > plane->distance + barrier_plane_offset(b, plane, point) + w->margin) continue;
         if (out) out[found] = i;
         found++;
     }
@@ -137,7 +137,7 @@ static int make_boxes(near_work *w, const brunt_team *team, brunt_error *error) 
     w->bad = NULL;
     for (int i = 0; i < BRUNT_THREAD_LIMIT; i++)
         if (bad[i]) return brunt_fail(error, BRUNT_FAILED, "a point of contact is at a place that is not a number");
-    w->slack = rounding_of(b, points);
+    w->margin = rounding_of(b, points);
     brunt_parallel(team->threads, b->facet_count, BARRIER_GRAIN, facet_boxes, w, team->timer);
     brunt_parallel(team->threads, b->edge_count, BARRIER_GRAIN, edge_boxes, w, team->timer);
     return BRUNT_OK;
@@ -160,7 +160,7 @@ static int make_tasks(brunt_barrier *b, int threads, brunt_error *error) {
     const int32_t points = barrier_points(b);
     const size_t most = (size_t)points + (size_t)b->edge_count + 1;
     int64_t longest = 0;
-    if (BRUNT_ROOM(b->task, most, 0, "points and edges that may be in contact", error)) return BRUNT_FAILED;
+    if (BRUNT_CAPACITY(b->task, most, 0, "points and edges that may be in contact", error)) return BRUNT_FAILED;
     b->task_count = 0;
     for (int32_t i = 0; i < points; i++) {
         const int64_t near = b->facets.first[i + 1] - b->facets.first[i];
@@ -169,16 +169,17 @@ static int make_tasks(brunt_barrier *b, int threads, brunt_error *error) {
     }
     for (int32_t i = 0; i < b->edge_count; i++)
         if (b->edges.first[i + 1] > b->edges.first[i]) b->task[b->task_count++] = -1 - i;
-    if (BRUNT_ROOM(b->task_energy, (size_t)b->task_count + 1, 0, "points and edges near something", error) ||
-        BRUNT_ROOM(b->task_first, (size_t)b->task_count + 1, 0, "points and edges near something", error) ||
-        BRUNT_ROOM(b->room, (size_t)threads, (size_t)b->room_count, "threads that look for contact", error))
+    if (BRUNT_CAPACITY(b->task_energy, (size_t)b->task_count + 1, 0, "points and edges near something", error) ||
+        BRUNT_CAPACITY(b->task_first, (size_t)b->task_count + 1, 0, "points and edges near something", error) ||
+        BRUNT_CAPACITY(b->workspace, (size_t)threads, (size_t)b->workspace_count, "threads that look for contact",
+                       error))
         return BRUNT_FAILED;
-    if (b->room_count < threads) b->room_count = threads;
+    if (b->workspace_count < threads) b->workspace_count = threads;
     for (int i = 0; i < threads; i++) {
-        barrier_room *r = &b->room[i];
-        if (BRUNT_ROOM(r->feature, 7 * (size_t)longest + 1, 0, "features near a point", error) ||
-            BRUNT_ROOM(r->edge, 3 * (size_t)longest + 1, 0, "edges near a point", error) ||
-            BRUNT_ROOM(r->vertex, 3 * (size_t)longest + 1, 0, "vertices near a point", error))
+        barrier_workspace *r = &b->workspace[i];
+        if (BRUNT_CAPACITY(r->feature, 7 * (size_t)longest + 1, 0, "features near a point", error) ||
+            BRUNT_CAPACITY(r->edge, 3 * (size_t)longest + 1, 0, "edges near a point", error) ||
+            BRUNT_CAPACITY(r->vertex, 3 * (size_t)longest + 1, 0, "vertices near a point", error))
             return BRUNT_FAILED;
     }
     return BRUNT_OK;
@@ -187,9 +188,9 @@ static int make_tasks(brunt_barrier *b, int threads, brunt_error *error) {
 int barrier_find_near(brunt_barrier *b, const brunt_team *team, const double *u, const double *p, brunt_error *error) {
     near_work work = {.b = b, .u = u, .p = p};
     const size_t points = (size_t)barrier_points(b) + 1;
-    if (BRUNT_ROOM(b->point_box, points, 0, "boxes about points", error) ||
-        BRUNT_ROOM(b->facet_box, (size_t)b->facet_count + 1, 0, "boxes about facets", error) ||
-        BRUNT_ROOM(b->edge_box, (size_t)b->edge_count + 1, 0, "boxes about edges", error))
+    if (BRUNT_CAPACITY(b->point_box, points, 0, "boxes about points", error) ||
+        BRUNT_CAPACITY(b->facet_box, (size_t)b->facet_count + 1, 0, "boxes about facets", error) ||
+        BRUNT_CAPACITY(b->edge_box, (size_t)b->edge_count + 1, 0, "boxes about edges", error))
         return BRUNT_FAILED;
     const int code = make_boxes(&work, team, error);
     if (code) return code;

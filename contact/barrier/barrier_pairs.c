@@ -19,10 +19,10 @@ static int by_bodies(const void *left, const void *right) {
 }
 
 int brunt_barrier_set_pairs(brunt_barrier *b, const brunt_barrier_pair *pairs, int32_t count, brunt_error *error) {
-    if (BRUNT_ROOM(b->pair, (size_t)count + 1, 0, "pairs of bodies that may meet", error) ||
-        BRUNT_ROOM(b->key, (size_t)count + 1, 0, "pairs of bodies that may meet", error))
+    if (BRUNT_CAPACITY(b->pair, (size_t)count + 1, 0, "pairs of bodies that may meet", error) ||
+        BRUNT_CAPACITY(b->key, (size_t)count + 1, 0, "pairs of bodies that may meet", error))
         return BRUNT_FAILED;
-    b->pair_count = count, b->reach = 0;
+    b->pair_count = count, b->range = 0;
     for (int32_t i = 0; i < count; i++) {
         const brunt_barrier_pair *p = &pairs[i];
         BRUNT_ASSERT(p->a >= 0 && p->b >= 0 && p->distance > 0 && p->offset >= 0 && p->stiffness > 0 &&
@@ -30,7 +30,7 @@ int brunt_barrier_set_pairs(brunt_barrier *b, const brunt_barrier_pair *pairs, i
         BRUNT_ASSERT(p->friction == 0 || p->slip_speed > 0);
         b->pair[i] = *p;
         b->key[i] = (barrier_key){bodies_of(p->a, p->b), i};
-        b->reach = fmax(b->reach, p->distance + p->offset);
+        b->range = fmax(b->range, p->distance + p->offset);
     }
     qsort(b->key, (size_t)count, sizeof *b->key, by_bodies);
     for (int32_t i = 1; i < count; i++)

@@ -66,12 +66,12 @@ typedef struct barrier_shared {
 } barrier_shared;
 
 // Room that a thread works in.
-typedef struct barrier_room {
+typedef struct barrier_workspace {
     barrier_feature *feature;
     barrier_shared *edge, *vertex;
     int64_t feature_count, edge_count, vertex_count;
     size_t feature_capacity, edge_capacity, vertex_capacity;
-} barrier_room;
+} barrier_workspace;
 
 typedef struct barrier_sets {
     int64_t *first, count;
@@ -98,7 +98,7 @@ struct brunt_barrier {
     barrier_key *key;
     int32_t pair_count;
     size_t pair_capacity, key_capacity;
-    double reach; // [m] greatest distance of all pairs
+    double range; // [m] greatest distance of all pairs
     brunt_barrier_step step;
     // What was found last.
     double origin[3]; // boxes are measured from it
@@ -113,9 +113,9 @@ struct brunt_barrier {
     double (*task_energy)[2];
     int64_t *task_first;
     size_t task_capacity, task_energy_capacity, task_first_capacity;
-    barrier_room *room;
-    int32_t room_count;
-    size_t room_capacity;
+    barrier_workspace *workspace;
+    int32_t workspace_count;
+    size_t workspace_capacity;
     barrier_contacts contacts, lagged;
     barrier_rub *rub; // of `lagged`
     size_t rub_capacity;

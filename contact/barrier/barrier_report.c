@@ -2,7 +2,7 @@
 #include "contact/barrier/barrier_parts.h"
 
 // [m] of the point, or on the first edge.
-static void take_place(const brunt_barrier *b, const double *u, const barrier_contact *c, double place[3]) {
+static void take_position(const brunt_barrier *b, const double *u, const barrier_contact *c, double place[3]) {
     for (int k = 0; k < 3; k++) place[k] = 0;
     for (int i = 0; i < (c->threshold > 0 ? 2 : 1); i++) {
         const double *x = barrier_start(b, c->place[i]);
@@ -21,7 +21,7 @@ static void note_stiffness(const brunt_barrier *b, const double *u, const barrie
                            brunt_barrier_stiffest *s) {
     if (!b->step.inverse_mass || !barrier_contact_is_stiffer(b, c, &s->step)) return;
     s->body = barrier_body_of(b, c->place[0]), s->other = other_of(b, c);
-    take_place(b, u, c, s->place);
+    take_position(b, u, c, s->position);
 }
 
 static void note_gap(const brunt_barrier *b, const double *u, const barrier_contact *c, brunt_barrier_report *r) {
@@ -31,7 +31,7 @@ static void note_gap(const brunt_barrier *b, const double *u, const barrier_cont
     r->point = edges ? -1 : c->place[0], r->plane = plane ? c->law - b->pair_count : -1;
     r->body = barrier_body_of(b, c->place[0]);
     r->other = other_of(b, c);
-    take_place(b, u, c, r->place);
+    take_position(b, u, c, r->position);
 }
 
 double brunt_barrier_least_gap(const brunt_barrier *b) {

@@ -15,7 +15,7 @@ int barrier_make_sets(const brunt_barrier *b, const barrier_contacts *contacts, 
                       brunt_error *error) {
     const int32_t *node;
     const double *weight;
-    if (BRUNT_ROOM(sets->first, (size_t)contacts->count + 1, 0, "places of contact", error)) return BRUNT_FAILED;
+    if (BRUNT_CAPACITY(sets->first, (size_t)contacts->count + 1, 0, "places of contact", error)) return BRUNT_FAILED;
     sets->count = contacts->count, sets->first[0] = 0;
     for (int64_t s = 0; s < contacts->count; s++) {
         const barrier_contact *c = &contacts->contact[s];
@@ -23,7 +23,7 @@ int barrier_make_sets(const brunt_barrier *b, const barrier_contacts *contacts, 
         for (int i = 0; i < c->at.places; i++) nodes += barrier_nodes(b, c->place[i], &node, &weight);
         sets->first[s + 1] = sets->first[s] + nodes;
     }
-    if (BRUNT_ROOM(sets->node, (size_t)sets->first[sets->count] + 1, 0, "nodes of places of contact", error))
+    if (BRUNT_CAPACITY(sets->node, (size_t)sets->first[sets->count] + 1, 0, "nodes of places of contact", error))
         return BRUNT_FAILED;
     for (int64_t s = 0; s < contacts->count; s++) {
         const barrier_contact *c = &contacts->contact[s];

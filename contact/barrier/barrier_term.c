@@ -8,7 +8,7 @@ static int list_candidates(brunt_barrier *b, brunt_error *error) {
     barrier_contacts *list = &b->contacts;
     const int64_t most =
         b->facets.first[b->facets.count] + b->planes.first[b->planes.count] + b->edges.first[b->edges.count];
-    if (BRUNT_ROOM(list->contact, (size_t)most + 1, 0, "places of contact", error)) return BRUNT_FAILED;
+    if (BRUNT_CAPACITY(list->contact, (size_t)most + 1, 0, "places of contact", error)) return BRUNT_FAILED;
     list->count = 0;
     for (int32_t i = 0; i < b->facets.count; i++) {
         for (int64_t k = b->facets.first[i]; k < b->facets.first[i + 1]; k++) {
@@ -104,7 +104,7 @@ int brunt_barrier_lag(brunt_barrier *b, const brunt_team *team, const double *u,
     const int code = barrier_find_near(b, team, u, NULL, error);
     if (code) return code;
     if (barrier_list_contacts(b, team, u, &b->lagged, error) ||
-        BRUNT_ROOM(b->rub, (size_t)b->lagged.count + 1, 0, "places that rub", error))
+        BRUNT_CAPACITY(b->rub, (size_t)b->lagged.count + 1, 0, "places that rub", error))
         return BRUNT_FAILED;
     barrier_contacts *list = &b->lagged;
     int64_t kept = 0;

@@ -19,7 +19,7 @@ static void validate_pairs(const brunt_barrier *b) {
     for (int32_t i = 0; i < b->pair_count; i++) {
         const brunt_barrier_pair *p = &b->pair[i];
         BRUNT_ASSERT(p->distance > 0 && p->stiffness > 0 && p->friction >= 0);
-        BRUNT_ASSERT(p->distance + p->offset <= b->reach);
+        BRUNT_ASSERT(p->distance + p->offset <= b->range);
         BRUNT_ASSERT(b->key[i].pair >= 0 && b->key[i].pair < b->pair_count);
         BRUNT_ASSERT(!i || b->key[i - 1].bodies < b->key[i].bodies);
     }

@@ -58,7 +58,7 @@ void brunt_closest_line(const double q[3], const double a[3], const double b[3],
     double r[3];
     const double u = along_edge(q, a, b, r);
     *c = (brunt_closest){.places = 3, .free = 1, .w = {1, u - 1, -u}, .g = {{0, 1, -1}}};
-    minus(a, b, c->turn[0]);
+    minus(a, b, c->tangent[0]);
     direction(r, c);
 }
 
@@ -105,7 +105,7 @@ void brunt_closest_plane(const double q[3], const double p[3][3], brunt_closest 
     *c = (brunt_closest){.places = 4, .free = 2, .g = {{0, 1, -1, 0}, {0, 1, 0, -1}}};
     on_plane(q, p, c->n, uv, &height);
     c->w[0] = 1, c->w[1] = uv[0] + uv[1] - 1, c->w[2] = -uv[0], c->w[3] = -uv[1];
-    minus(p[0], p[1], c->turn[0]), minus(p[0], p[2], c->turn[1]);
+    minus(p[0], p[1], c->tangent[0]), minus(p[0], p[2], c->tangent[1]);
     c->d = fabs(height);
     if (height < 0)
         for (int k = 0; k < 3; k++) c->n[k] = -c->n[k];
@@ -134,8 +134,8 @@ static int crossing(const double a[2][3], const double b[2][3], brunt_closest *c
     const double s = at.s, t = at.t, sine = sqrt(at.sine2);
     if (!(s > BORDER && s < 1 - BORDER && t > BORDER && t < 1 - BORDER)) return 0;
     *c = (brunt_closest){.places = 4, .free = 2, .w = {1 - s, s, t - 1, -t}, .g = {{-1, 1, 0, 0}, {0, 0, 1, -1}}};
-    memcpy(c->turn[0], at.ea, sizeof at.ea);
-    for (int k = 0; k < 3; k++) c->turn[1][k] = -at.eb[k];
+    memcpy(c->tangent[0], at.ea, sizeof at.ea);
+    for (int k = 0; k < 3; k++) c->tangent[1][k] = -at.eb[k];
     direction(at.r, c);
     const double height = dot(at.r, at.n) / sine;
     if (at.sine2 > 1e-12 * at.aa * at.bb) { // else r is the better known
@@ -164,7 +164,7 @@ static void end_at_edge(const double a[2][3], const double b[2][3], int side, in
             c->w[theirs + i] = sign * part.w[1 + i], c->g[0][theirs + i] = sign * part.g[0][1 + i];
     else
         c->w[theirs + (region == BRUNT_AT_B)] = -sign;
-    for (int k = 0; k < 3; k++) c->n[k] = sign * part.n[k], c->turn[0][k] = sign * part.turn[0][k];
+    for (int k = 0; k < 3; k++) c->n[k] = sign * part.n[k], c->tangent[0][k] = sign * part.tangent[0][k];
 }
 
 static int bearing(const brunt_closest *c) {
@@ -190,7 +190,7 @@ static void turning(const brunt_closest *c, int dim, double out[3][3]) {
     if (c->flat || c->free == 2 || (c->free == 1 && dim == 2)) return;
     double m[3];
     if (c->free == 1) {
-        cross(c->n, c->turn[0], m);
+        cross(c->n, c->tangent[0], m);
         const double l2 = dot(m, m);
         for (int k = 0; k < 3; k++)
             for (int l = 0; l < 3; l++) out[k][l] = m[k] * m[l] / l2;
@@ -204,17 +204,18 @@ static void turning(const brunt_closest *c, int dim, double out[3][3]) {
 static void duals(const brunt_closest *c, double inverse[2][2], double dual[2][3]) {
     memset(inverse, 0, 4 * sizeof(double));
     memset(dual, 0, 6 * sizeof(double));
-    const double a = dot(c->turn[0], c->turn[0]), b = dot(c->turn[0], c->turn[1]), d = dot(c->turn[1], c->turn[1]);
+    const double a = dot(c->tangent[0], c->tangent[0]), b = dot(c->tangent[0], c->tangent[1]),
+                 d = dot(c->tangent[1], c->tangent[1]);
     if (c->free == 1) inverse[0][0] = 1 / a;
     if (c->free == 2) {
         double normal[3];
-        cross(c->turn[0], c->turn[1], normal);
+        cross(c->tangent[0], c->tangent[1], normal);
         const double det = dot(normal, normal);
         inverse[0][0] = d / det, inverse[1][1] = a / det, inverse[0][1] = inverse[1][0] = -b / det;
     }
     for (int i = 0; i < c->free; i++)
         for (int j = 0; j < c->free; j++)
-            for (int k = 0; k < 3; k++) dual[i][k] += inverse[i][j] * c->turn[j][k];
+            for (int k = 0; k < 3; k++) dual[i][k] += inverse[i][j] * c->tangent[j][k];
 }
 
 void brunt_closest_hessian(const brunt_closest *c, int dim, double outer, double inner, double *h) {

@@ -11,13 +11,13 @@
 enum { BRUNT_CLOSEST_PLACES = 4 };
 
 typedef struct brunt_closest {
-    int places;        // 2 points, 3 point and edge, 4 point and triangle, or two edges
-    bool flat;         // n does not turn: planes
-    int free;          // coordinates on the features that d is least over: 0, 1, 2
-    double d, n[3];    // distance; unit vector from the other feature to the first
-    double w[4];       // of places, sum 0: r = sum w x = d n
-    double g[2][4];    // derivatives of w by the free coordinates
-    double turn[2][3]; // derivatives of r by them [m]: along the features
+    int places;           // 2 points, 3 point and edge, 4 point and triangle, or two edges
+    bool flat;            // n does not turn: planes
+    int free;             // coordinates on the features that d is least over: 0, 1, 2
+    double d, n[3];       // distance; unit vector from the other feature to the first
+    double w[4];          // of places, sum 0: r = sum w x = d n
+    double g[2][4];       // derivatives of w by the free coordinates
+    double tangent[2][3]; // derivatives of r by them [m]: along the features
 } brunt_closest;
 
 // Which of the vertices a point is nearest to the hull of: a bit each.

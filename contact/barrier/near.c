@@ -64,8 +64,8 @@ int brunt_near_cells_make(brunt_near_cells *c, const brunt_near_box *box, int32_
     c->dim = dim, c->count = count, c->box = box;
     if (count == 0) return BRUNT_OK;
     const int64_t entries = choose_cells(c), cells = (int64_t)c->n[0] * c->n[1] * c->n[2];
-    if (BRUNT_ROOM(c->first, (size_t)cells + 1, 0, "cells of what may be in contact", error) ||
-        BRUNT_ROOM(c->item, (size_t)entries, 0, "items in cells of what may be in contact", error))
+    if (BRUNT_CAPACITY(c->first, (size_t)cells + 1, 0, "cells of what may be in contact", error) ||
+        BRUNT_CAPACITY(c->item, (size_t)entries, 0, "items in cells of what may be in contact", error))
         return BRUNT_FAILED;
     memset(c->first, 0, ((size_t)cells + 1) * sizeof *c->first);
     for (int fill = 0; fill < 2; fill++) {
@@ -163,12 +163,12 @@ static void list_fill(void *context, int64_t begin, int64_t end, int worker) {
 int brunt_near_list_make(brunt_near_list *list, const brunt_team *team, int32_t queries, brunt_near_fn *find,
                          const void *context, brunt_error *error) {
     list_work work = {list, find, context};
-    if (BRUNT_ROOM(list->first, (size_t)queries + 1, 0, "points and edges that may be in contact", error))
+    if (BRUNT_CAPACITY(list->first, (size_t)queries + 1, 0, "points and edges that may be in contact", error))
         return BRUNT_FAILED;
     list->count = queries, list->first[0] = 0;
     brunt_parallel(team->threads, queries, QUERIES, list_count, &work, team->timer);
     for (int32_t q = 0; q < queries; q++) list->first[q + 1] += list->first[q];
-    if (BRUNT_ROOM(list->item, (size_t)list->first[queries] + 1, 0, "features near points and edges", error))
+    if (BRUNT_CAPACITY(list->item, (size_t)list->first[queries] + 1, 0, "features near points and edges", error))
         return BRUNT_FAILED;
     brunt_parallel(team->threads, queries, QUERIES, list_fill, &work, team->timer);
     return BRUNT_OK;

@@ -11,18 +11,18 @@
 //
 // Material points are balls: their centres, whose velocity is weighed, stand off the surface. Where one rubs, friction
 // acts at its surface: with a friction point, u of slip has entries of its own, on the same degree-of-freedom nodes,
-// and drag goes back by their transpose, so that it acts there.
+// and friction goes back by their transpose, so that it acts there.
 //
-// All points of a step together must satisfy: u_n >= target, push >= 0, one of them 0; drag within the Coulomb cone and
-// against what is left of slip. Solved by projected Jacobi sweeps: a point's correction is scaled by its row sum of the
-// coupling matrix (in units of its own effective mass), so that a uniform approach is met in one sweep and no sweep can
-// add energy. Neither the order of points nor the number of threads changes a bit.
+// All points of a step together must satisfy: u_n >= target, normal impulse >= 0, one of them 0; friction impulse
+// within the Coulomb cone and against what is left of slip. Solved by projected Jacobi sweeps: a point's correction is
+// scaled by its row sum of the coupling matrix (in units of its own effective mass), so that a uniform approach is met
+// in one sweep and no sweep can add energy. Neither the order of points nor the number of threads changes a bit.
 //
 // Accelerated sweeps (Nesterov 1983, with the restarts of O'Donoghue and Candes 2015; contact: Mazhar, Heyn, Negrut and
 // Tasora 2015) begin with a share of the last correction on top. Where touches are many to a node they need a
 // quarter of the sweeps.
 //
-// Tried and left: starting the sweeps from the last step's impulses. They end sooner, but what is given too much is
+// Tried and left: starting the sweeps from the last step's impulses. They end earlier, but what is given too much is
 // taken back only as far as the sweeps go, and a stack of hexahedra at rest gained energy until it fell.
 #pragma once
 
@@ -41,7 +41,7 @@ typedef struct brunt_dof_node {
 
 typedef struct brunt_constraint_entry {
     int32_t dof_node;
-    double weight[3];          // w_s of a slave, -beta_k of a master, by component: mirrors turn some of them
+    double weight[3];          // w_s of a slave, -beta_k of a master, by component: symmetry planes turn some of them
     double height_gradient[3]; // 0 of a slave; height grad beta_k of a master
 } brunt_constraint_entry;
 
@@ -54,11 +54,11 @@ typedef struct brunt_constraint {
     double target;        // [m/s] least u_n
     double friction;
     double plane[3];                // [m/s] velocity of the master when it is a plane; 0 for facets
-    brunt_impulse_account *account; // where the point is booked: impulse on the slave times `sign`
+    brunt_impulse_account *account; // where the point is recorded: impulse on the slave times `sign`
     double sign; // of a body with itself 0: it gets both, and the account neither, but what they dissipate
     double area; // [m^2] it stands for in the account's area
     int32_t tag; // the caller's
-    // number + 1 of the body of material points that bears the reaction, if that is the caller's; else 0
+    // number + 1 of the body of material points that carries the reaction, if that is the caller's; else 0
     int32_t bearer;
     int32_t friction_point; // number + 1 of its own for friction, whose `count` entries follow the others; 0: it rubs
                             // where it pushes
@@ -85,7 +85,7 @@ typedef struct brunt_constraint_set {
     brunt_dof_node *dof_node;
     size_t dof_node_capacity;
     int32_t dof_node_count;
-    // Which points press on a degree-of-freedom node: copies of their entries by support, in the order of the points,
+    // Which points press on a degree-of-freedom node: copies of their entries by dof_node, in the order of the points,
     // with what the sweep gives beside the facet it turns with, so that a sweep reads little more than it uses.
     struct brunt_constraint_column {
         int32_t constraint; // from the number of points on: friction point
@@ -137,6 +137,6 @@ int brunt_constraints_reserve(brunt_constraint_set *set, int32_t point_count, in
 void brunt_constraint_velocity(const brunt_constraint_set *set, const brunt_constraint *constraint, bool old,
                                double u[3]);
 // Solves with at most `sweeps` sweeps, until the greatest correction of one is no more than `tolerance` of that of the
-// first; what is left is met in the next step. Books every point. BRUNT_OK, or BRUNT_FAILED: out of memory.
+// first; what is left is met in the next step. Records every point. BRUNT_OK, or BRUNT_FAILED: out of memory.
 int brunt_constraints_solve(brunt_constraint_set *set, int sweeps, double tolerance, int threads, brunt_timer *timer,
                             brunt_error *error);

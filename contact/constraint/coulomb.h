@@ -8,7 +8,7 @@
 
 // Adds `asked`, which would end the approach, to the normal impulse in all [N s], but leaves no less than 0 of it. What
 // that changes it by.
-static inline double brunt_coulomb_push(double *normal_impulse, double asked) {
+static inline double brunt_coulomb_normal(double *normal_impulse, double asked) {
     const double now = fmax(0, *normal_impulse + asked), added = now - *normal_impulse;
     *normal_impulse = now;
     return added;

@@ -12,8 +12,8 @@ void brunt_impulse_account_add(brunt_impulse_account *sum, const brunt_impulse_a
     sum->area = part->area;
 }
 
-void brunt_impulse_account_book(brunt_impulse_account *account, double *loss, const double J[3], const double x[3],
-                                const double old[3], const double now[3], const double carrier[3]) {
+void brunt_impulse_account_record(brunt_impulse_account *account, double *loss, const double J[3], const double x[3],
+                                  const double old[3], const double now[3], const double carrier[3]) {
     for (int a = 0; a < 3; a++) {
         int i = (a + 1) % 3, j = (a + 2) % 3;
         account->impulse[a] += J[a];

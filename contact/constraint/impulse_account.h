@@ -1,5 +1,5 @@
 // What a condition or a pair has done: impulse, work and dissipation, taken at the mean of the old and the new
-// velocity, which makes the work of an impulse equal to the change of kinetic energy it causes. Everything is booked
+// velocity, which makes the work of an impulse equal to the change of kinetic energy it causes. Everything is recorded
 // here.
 #pragma once
 
@@ -18,12 +18,12 @@ typedef struct brunt_impulse_account {
 // Aborts where a number of it is none.
 void brunt_impulse_account_validate(const brunt_impulse_account *account);
 void brunt_impulse_account_add(brunt_impulse_account *sum, const brunt_impulse_account *part);
-// Books impulse J acting at x while its material moves with `old` before and `now` after, against a carrier that moves
-// with `carrier`. What it dissipates is added to `loss`: the account's normal_loss or its friction_loss.
-void brunt_impulse_account_book(brunt_impulse_account *account, double *loss, const double J[3], const double x[3],
-                                const double old[3], const double now[3], const double carrier[3]);
-// Books what a symmetry plane bears: an impulse [N s] and its moment about the origin [N m s] on the bodies. Nothing
-// moves across the plane, so that it does no work and loses nothing.
+// Records impulse J acting at x while its material moves with `old` before and `now` after, against a carrier that
+// moves with `carrier`. What it dissipates is added to `loss`: the account's normal_loss or its friction_loss.
+void brunt_impulse_account_record(brunt_impulse_account *account, double *loss, const double J[3], const double x[3],
+                                  const double old[3], const double now[3], const double carrier[3]);
+// Records what a symmetry plane carries: an impulse [N s] and its moment about the origin [N m s] on the bodies.
+// Nothing moves across the plane, so that it does no work and loses nothing.
 void brunt_impulse_account_reaction(brunt_impulse_account *account, const double linear[3], const double angular[3]);
 
 // An impulse on a node of the surface [N s]: on components with prescribed motion what their support takes.

@@ -54,7 +54,7 @@ void brunt_constraints_free(brunt_constraint_set *p) {
 }
 
 #define ADD(p, array, what, error)                                                                                     \
-    (BRUNT_ROOM_MORE((p)->array, what, error)                                                                          \
+    (BRUNT_CAPACITY_MORE((p)->array, what, error)                                                                      \
          ? BRUNT_NONE                                                                                                  \
          : (memset(&(p)->array[(p)->array##_count], 0, sizeof *(p)->array), (p)->array##_count++))
 
@@ -92,8 +92,9 @@ int32_t brunt_constraints_friction_point(brunt_constraint_set *p, const double x
 }
 
 int brunt_constraints_reserve(brunt_constraint_set *p, int32_t points, int32_t entries, brunt_error *error) {
-    return BRUNT_ROOM(p->constraint, (size_t)points + 1, (size_t)p->constraint_count, "contact points", error) ||
-                   BRUNT_ROOM(p->entry, (size_t)entries + 1, (size_t)p->entry_count, "entries of contact points", error)
+    return BRUNT_CAPACITY(p->constraint, (size_t)points + 1, (size_t)p->constraint_count, "contact points", error) ||
+                   BRUNT_CAPACITY(p->entry, (size_t)entries + 1, (size_t)p->entry_count, "entries of contact points",
+                                  error)
                ? BRUNT_FAILED
                : BRUNT_OK;
 }
@@ -151,14 +152,14 @@ static struct brunt_constraint_column column_of(int32_t constraint, const brunt_
         {entry->height_gradient[0], entry->height_gradient[1], entry->height_gradient[2]}};
 }
 
-// Entries by support, in the order of the points, each with that of its friction point.
+// Entries by dof_node, in the order of the points, each with that of its friction point.
 static int transpose(brunt_constraint_set *p, brunt_error *error) {
     size_t entries = (size_t)p->entry_count + 1, dof_nodes = (size_t)p->dof_node_count + 1,
            points = (size_t)p->constraint_count + (size_t)p->friction_point_count + 1;
-    if (BRUNT_ROOM(p->column, entries, 0, "entries of contact points", error) ||
-        BRUNT_ROOM(p->column_first, dof_nodes + 1, 0, "nodes that contact moves", error) ||
-        BRUNT_ROOM(p->applied, points, 0, "impulses of contact points", error) ||
-        BRUNT_ROOM(p->changed, points / GRAIN + 2, 0, "groups of contact points", error))
+    if (BRUNT_CAPACITY(p->column, entries, 0, "entries of contact points", error) ||
+        BRUNT_CAPACITY(p->column_first, dof_nodes + 1, 0, "nodes that contact moves", error) ||
+        BRUNT_CAPACITY(p->applied, points, 0, "impulses of contact points", error) ||
+        BRUNT_CAPACITY(p->changed, points / GRAIN + 2, 0, "groups of contact points", error))
         return BRUNT_FAILED;
     int32_t *first = p->column_first;
     memset(first, 0, (dof_nodes + 1) * sizeof(int32_t));
@@ -282,7 +283,7 @@ static double solve_constraint(const brunt_constraint_set *p, brunt_constraint *
     brunt_constraint_velocity(p, constraint, false, u);
     for (int a = 0; a < 3; a++) along += u[a] * constraint->n[a];
     double unit = constraint->scale / constraint->row_sum;
-    const double step = brunt_coulomb_push(&constraint->normal_impulse, (constraint->target - along) * unit);
+    const double step = brunt_coulomb_normal(&constraint->normal_impulse, (constraint->target - along) * unit);
     double changed = fabs(step) / unit;
     for (int a = 0; a < 3; a++) J[a] = step * constraint->n[a];
     if (constraint->friction > 0) {
@@ -426,8 +427,8 @@ static void account_constraints(brunt_constraint_set *p) {
             friction_impulse[a] = sign * constraint->friction_impulse[a];
             x[a] = constraint->x[a];
         }
-        brunt_impulse_account_book(account, &constraint->account->normal_loss, normal_impulse, x, old, now,
-                                   constraint->plane);
+        brunt_impulse_account_record(account, &constraint->account->normal_loss, normal_impulse, x, old, now,
+                                     constraint->plane);
         if (constraint->friction_point) {
             velocity(p, constraint, constraint->first + constraint->count, true, old);
             velocity(p, constraint, constraint->first + constraint->count, false, now);
@@ -435,16 +436,16 @@ static void account_constraints(brunt_constraint_set *p) {
             for (int a = 0; a < 3; a++) x[a] = p->friction_point[constraint->friction_point - 1].x[a];
         }
         if (constraint->friction > 0)
-            brunt_impulse_account_book(account, &constraint->account->friction_loss, friction_impulse, x, old, now,
-                                       constraint->plane);
+            brunt_impulse_account_record(account, &constraint->account->friction_loss, friction_impulse, x, old, now,
+                                         constraint->plane);
     }
 }
 
 static int begin_acceleration(brunt_constraint_set *p, brunt_error *error) {
     const size_t points = (size_t)p->constraint_count, dofs = (size_t)p->dof_node_count;
-    if (BRUNT_ROOM(p->point_past, points, 0, "contact points", error) ||
-        BRUNT_ROOM(p->dof_past, dofs + 1, 0, "nodes that contact moves", error) ||
-        BRUNT_ROOM(p->turned_back, points / GRAIN + 2, 0, "groups of contact points", error))
+    if (BRUNT_CAPACITY(p->point_past, points, 0, "contact points", error) ||
+        BRUNT_CAPACITY(p->dof_past, dofs + 1, 0, "nodes that contact moves", error) ||
+        BRUNT_CAPACITY(p->turned_back, points / GRAIN + 2, 0, "groups of contact points", error))
         return BRUNT_FAILED;
     p->momentum = 0;
     memset(p->point_past, 0, points * sizeof *p->point_past);

@@ -167,7 +167,7 @@ static void add_faces(const brunt_contact_surface *s, const brunt_feature *f, co
     }
 }
 
-int brunt_feature_weights(const brunt_contact_surface *s, const brunt_feature_place *place,
+int brunt_feature_weights(const brunt_contact_surface *s, const brunt_feature_position *place,
                           int32_t node[BRUNT_FEATURE_NODES], double weight[BRUNT_FEATURE_NODES],
                           double gradient[BRUNT_FEATURE_NODES][3], double *height) {
     const brunt_feature *f = place->feature;

@@ -33,14 +33,14 @@ void brunt_feature_values(const brunt_contact_surface *surface, const brunt_feat
                           double weight[2]);
 
 // A feature, as it is seen along n from a place x.
-typedef struct brunt_feature_place {
+typedef struct brunt_feature_position {
     const brunt_feature *feature;
     const double *n, *x; // [-] of length 1; [m]
-} brunt_feature_place;
+} brunt_feature_position;
 
 // A feature as master: its nodes and those of the faces about it that are seen along n, with their weights where x is
 // and the gradients of those across n; `height` of x above the feature along n. The motion is that of the feature's
 // nodes, and turns as its faces do on the mean: exact for every rigid motion. How many nodes.
-int brunt_feature_weights(const brunt_contact_surface *surface, const brunt_feature_place *place,
+int brunt_feature_weights(const brunt_contact_surface *surface, const brunt_feature_position *place,
                           int32_t node[BRUNT_FEATURE_NODES], double weight[BRUNT_FEATURE_NODES],
                           double gradient[BRUNT_FEATURE_NODES][3], double *height);

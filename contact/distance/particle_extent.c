@@ -96,7 +96,7 @@ static void add_deformed(void *context, brunt_body *body, int64_t s, const int b
     deformed_sum *d = context;
     brunt_particles *p = &body->particles;
     real *const *F = brunt_field(p, BRUNT_FIELD_deformation_gradient), *const *x = brunt_field(p, BRUNT_FIELD_position),
-                *const *X = brunt_kernel_place(p);
+                *const *X = brunt_kernel_position(p);
     double weight = (double)brunt_field(p, BRUNT_FIELD_mass)[0][s], w, g;
     for (int a = 0; a < p->dim; a++) {
         double u = ((double)X[a][s] - d->undeformed[a]) * (double)body->grid.inv_h + base[a];
@@ -186,8 +186,8 @@ int brunt_extent_gather(brunt_body *body, int32_t slot, int node, brunt_extent_c
     brunt_extent_visit(body, slot, node, count_particle, &count);
     cloud->stride = ((size_t)count + CLOUD_LANES - 1) / CLOUD_LANES * CLOUD_LANES;
     cloud->count = 0;
-    if (BRUNT_ROOM_IN(cloud->data, cloud->bytes, CLOUD_ROWS * cloud->stride, 0, "numbers of particles about a node",
-                      error))
+    if (BRUNT_CAPACITY_IN(cloud->data, cloud->bytes, CLOUD_ROWS * cloud->stride, 0, "numbers of particles about a node",
+                          error))
         return BRUNT_FAILED;
     cloud_fill fill = {.cloud = cloud};
     brunt_node_position(&body->grid, body->grid.slots[slot].coord, node, fill.node);
@@ -198,8 +198,8 @@ int brunt_extent_gather(brunt_body *body, int32_t slot, int node, brunt_extent_c
 int brunt_extent_cloud_points(brunt_extent_cloud *cloud, int count, brunt_error *error) {
     cloud->stride = ((size_t)count + CLOUD_LANES - 1) / CLOUD_LANES * CLOUD_LANES;
     cloud->count = 0;
-    return BRUNT_ROOM_IN(cloud->data, cloud->bytes, CLOUD_ROWS * cloud->stride, 0, "numbers of particles about a node",
-                         error)
+    return BRUNT_CAPACITY_IN(cloud->data, cloud->bytes, CLOUD_ROWS * cloud->stride, 0,
+                             "numbers of particles about a node", error)
                ? BRUNT_FAILED
                : BRUNT_OK;
 }

@@ -115,10 +115,11 @@ static brunt_closest closest_on_quadrilateral(const brunt_contact_surface *s, in
         double n[3];
         triangle_of(s, face, t, p);
         unit_normal(p, n);
-        const double facing = inside[k] ? INFINITY : fabs(dot(n, d[k]));
+        const double normal_distance = inside[k] ? INFINITY : fabs(dot(n, d[k]));
         count++, best.triangles |= 1 << t;
         for (int c = 0; c < 3; c++) best.normal[c] += n[c], best.d[c] += d[k][c];
-        if (facing > most) most = facing, best.square = square[k], best.inside = inside[k], best.triangle = t;
+        if (normal_distance > most)
+            most = normal_distance, best.square = square[k], best.inside = inside[k], best.triangle = t;
     }
     if (count == 1) best.triangles = 0;
     const double size = count > 1 ? sqrt(dot(best.normal, best.normal)) : 1;
@@ -189,7 +190,7 @@ void brunt_face_values(const brunt_contact_surface *s, int32_t face, int triangl
     spread(node, triangle, 1 - w1 - w2, w1, w2, weight);
 }
 
-void brunt_face_weights(const brunt_contact_surface *s, const brunt_facet_place *place, double weight[4],
+void brunt_face_weights(const brunt_contact_surface *s, const brunt_facet_position *place, double weight[4],
                         double gradient[4][3], double normal[3], double *height) {
     const int32_t face = place->face, *node = s->face[face];
     const int triangle = place->triangle;

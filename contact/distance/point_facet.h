@@ -20,12 +20,12 @@ brunt_closest brunt_closest_on_face(const brunt_contact_surface *surface, int32_
 void brunt_face_values(const brunt_contact_surface *surface, int32_t face, int triangle, const double x[3],
                        double weight[4]);
 // A facet, of a quadrilateral the triangle found, and a place x [m] that is projected onto its plane.
-typedef struct brunt_facet_place {
+typedef struct brunt_facet_position {
     int32_t face;
     int triangle;
     const double *x;
-} brunt_facet_place;
+} brunt_facet_position;
 // Weights of the facet's nodes where x projects onto its plane (they may be outside 0..1), their gradients along the
 // plane [1/m], its unit normal, and the distance of x from it [m].
-void brunt_face_weights(const brunt_contact_surface *surface, const brunt_facet_place *place, double weight[4],
+void brunt_face_weights(const brunt_contact_surface *surface, const brunt_facet_position *place, double weight[4],
                         double gradient[4][3], double normal[3], double *height);

@@ -55,7 +55,8 @@ static brunt_augury_slot *probe(const brunt_augury_grid *grid, uint64_t key) {
 static int widen(brunt_augury_grid *grid, brunt_error *error) {
     if (grid->slot_count >= 2 * (grid->block_count + 1)) return BRUNT_OK;
     int32_t count = grid->slot_count ? 2 * grid->slot_count : FIRST_SLOTS;
-    if (BRUNT_ROOM(grid->slot, (size_t)count, 0, "slots for blocks of the contact grid", error)) return BRUNT_FAILED;
+    if (BRUNT_CAPACITY(grid->slot, (size_t)count, 0, "slots for blocks of the contact grid", error))
+        return BRUNT_FAILED;
     memset(grid->slot, 0, (size_t)count * sizeof *grid->slot);
     grid->slot_count = count;
     for (int32_t b = 0; b < grid->block_count; b++) {
@@ -72,8 +73,8 @@ static int32_t block_at(brunt_augury_grid *grid, const int32_t coord[3], brunt_e
     brunt_augury_slot *s = probe(grid, key);
     if (s->epoch == grid->epoch) return s->block;
     size_t n = (size_t)grid->block_count;
-    if (BRUNT_ROOM(grid->coord, n + 1, n, "blocks of the contact grid", error) ||
-        BRUNT_ROOM(grid->reached, n + 1, n, "blocks of the contact grid", error))
+    if (BRUNT_CAPACITY(grid->coord, n + 1, n, "blocks of the contact grid", error) ||
+        BRUNT_CAPACITY(grid->reached, n + 1, n, "blocks of the contact grid", error))
         return BRUNT_NONE;
     memcpy(grid->coord[n], coord, sizeof grid->coord[n]);
     grid->reached[n] = 0;
@@ -87,8 +88,8 @@ int brunt_augury_cloud_add(brunt_augury_grid *grid, brunt_augury_cloud *cloud, i
     // combinations.
     static const uint8_t reaches[8] = {0x01, 0x03, 0x05, 0x0f, 0x11, 0x33, 0x55, 0xff};
     size_t n = (size_t)cloud->count;
-    if (BRUNT_ROOM(cloud->unsorted, n + 1, n, "points in the contact grid", error) ||
-        BRUNT_ROOM(cloud->unsorted_item, n + 1, n, "points in the contact grid", error))
+    if (BRUNT_CAPACITY(cloud->unsorted, n + 1, n, "points in the contact grid", error) ||
+        BRUNT_CAPACITY(cloud->unsorted_item, n + 1, n, "points in the contact grid", error))
         return BRUNT_FAILED;
     brunt_augury_point *p = &cloud->unsorted[n];
     int32_t coord[3];
@@ -121,7 +122,7 @@ int brunt_augury_cloud_add(brunt_augury_grid *grid, brunt_augury_cloud *cloud, i
 static int link_blocks(brunt_augury_grid *grid, brunt_error *error) {
     const int32_t with_points = grid->block_count;
     size_t n = (size_t)with_points;
-    if (BRUNT_ROOM(grid->next, n + 1, 0, "blocks of the contact grid", error)) return BRUNT_FAILED;
+    if (BRUNT_CAPACITY(grid->next, n + 1, 0, "blocks of the contact grid", error)) return BRUNT_FAILED;
     for (int32_t b = 0; b < with_points; b++)
         for (int k = 0; k < 8; k++) {
             int32_t c[3] = {grid->coord[b][0] + (k & 1), grid->coord[b][1] + (k >> 1 & 1),
@@ -130,7 +131,7 @@ static int link_blocks(brunt_augury_grid *grid, brunt_error *error) {
             if (grid->next[b][k] < 0) return BRUNT_FAILED;
         }
     // Only blocks with points have anything to do.
-    if (BRUNT_ROOM(grid->coloured, n + 1, 0, "blocks of the contact grid", error)) return BRUNT_FAILED;
+    if (BRUNT_CAPACITY(grid->coloured, n + 1, 0, "blocks of the contact grid", error)) return BRUNT_FAILED;
     int32_t at = 0;
     for (int colour = 0; colour < BRUNT_AUGURY_COLOURS; colour++) {
         grid->colour_first[colour] = at;
@@ -145,9 +146,9 @@ static int link_blocks(brunt_augury_grid *grid, brunt_error *error) {
 
 static int sort_cloud(const brunt_augury_grid *grid, brunt_augury_cloud *cloud, brunt_error *error) {
     size_t n = (size_t)cloud->count, blocks = (size_t)grid->block_count;
-    if (BRUNT_ROOM(cloud->point, n + 1, 0, "points in the contact grid", error) ||
-        BRUNT_ROOM(cloud->item, n + 1, 0, "points in the contact grid", error) ||
-        BRUNT_ROOM(cloud->block_first, blocks + 2, 0, "blocks of the contact grid", error))
+    if (BRUNT_CAPACITY(cloud->point, n + 1, 0, "points in the contact grid", error) ||
+        BRUNT_CAPACITY(cloud->item, n + 1, 0, "points in the contact grid", error) ||
+        BRUNT_CAPACITY(cloud->block_first, blocks + 2, 0, "blocks of the contact grid", error))
         return BRUNT_FAILED;
     int32_t *first = cloud->block_first;
     memset(first, 0, (blocks + 2) * sizeof(int32_t));

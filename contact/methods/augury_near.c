@@ -37,7 +37,7 @@ static int sweep_axis(const brunt_contact_surface *s) {
 static int sort_bodies(brunt_augury_near *near, const brunt_contact_surface *s, int axis, brunt_error *error) {
     const int32_t n = s->fem_count;
     if (near->order_count != n) {
-        if (BRUNT_ROOM(near->order, (size_t)(n + 1), 0, "bodies in order", error)) return BRUNT_FAILED;
+        if (BRUNT_CAPACITY(near->order, (size_t)(n + 1), 0, "bodies in order", error)) return BRUNT_FAILED;
         for (int32_t k = 0; k < n; k++) near->order[k] = k;
         near->order_count = n;
     }
@@ -79,7 +79,7 @@ int brunt_augury_near_find(brunt_augury_near *near, const brunt_contact_context 
             const int32_t pair = brunt_pair_of(m->pair_map, p, q);
             if (pair < 0 || !(m->pairs[pair].meets & BRUNT_MEET_AT_FACETS)) continue;
             size_t n = (size_t)near->count;
-            if (BRUNT_ROOM(near->found, n + 1, n, "pairs of bodies near each other", error)) return BRUNT_FAILED;
+            if (BRUNT_CAPACITY(near->found, n + 1, n, "pairs of bodies near each other", error)) return BRUNT_FAILED;
             near->found[near->count++] = (brunt_augury_neighbours){pair, p < q ? i : o, p < q ? o : i};
         }
     }
@@ -121,8 +121,8 @@ int brunt_augury_near_runs(brunt_augury_near *near, const brunt_contact_surface 
                            brunt_error *error) {
     size_t nodes = (size_t)(s->node_count / RUN + s->fem_count + 1),
            faces = (size_t)(s->face_count / RUN + s->fem_count + 1);
-    if (BRUNT_ROOM(near->node_run, nodes, 0, "boxes about nodes", error) ||
-        BRUNT_ROOM(near->face_run, faces, 0, "boxes about faces", error))
+    if (BRUNT_CAPACITY(near->node_run, nodes, 0, "boxes about nodes", error) ||
+        BRUNT_CAPACITY(near->face_run, faces, 0, "boxes about faces", error))
         return BRUNT_FAILED;
     bound_job node = {s->x, s->node_range, s, near->node_run};
     bound_job face = {s->face_centre, s->face_range, s, near->face_run};

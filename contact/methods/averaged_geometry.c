@@ -3,7 +3,7 @@
 
 // Cosines against d, or of slave and master normal: faces that make up d in its second round, facing faces, facing
 // nodes, nodes that may be slaves.
-static const double ALONG = 0.2, FACING_FACE = 0.7, FACING_NODE = 0.3, SLAVE = 0.1;
+static const double ALONG = 0.2, OPPOSED_FACE = 0.7, OPPOSED_NODE = 0.3, SLAVE = 0.1;
 static const double OPPOSED = 0.2; // of c_A^4 + c_B^4: bodies whose normals agree that well with none between them
 static const double LEAST_WEIGHT = 1e-4, LEAST_NORMAL = 0.3;
 static const double DEEPEST = 1.5; // [cells] beyond it a node is taken to be on the far side
@@ -22,13 +22,13 @@ static int add_point(void *context, int32_t item, const double x[3]) {
 int brunt_averaged_collect(averaged_job *j, int a, int b, bool *some, brunt_error *error) {
     brunt_augury_workspace *w = j->w;
     const brunt_contact_surface *s = j->surface;
-    const double reach = REACH * j->m->cell;
+    const double width = STENCIL_WIDTH * j->m->cell;
     brunt_augury_grid_start(&w->grid, s->dim, WIDTH, j->m->cell);
     for (int c = 0; c < 4; c++) w->cloud[c].count = 0;
     for (int c = 3; c >= 0; c--) { // faces first: without them nothing is left to do
         const int of = c % 2 ? b : a, other = c % 2 ? a : b;
         brunt_augury_box box;
-        for (int k = 0; k < 3; k++) box.low[k] = s->low[other][k] - reach, box.high[k] = s->high[other][k] + reach;
+        for (int k = 0; k < 3; k++) box.low[k] = s->low[other][k] - width, box.high[k] = s->high[other][k] + width;
         adder to = {&w->grid, &w->cloud[c], error};
         if (brunt_augury_near_visit(&w->near, s, of, c >= 2, &box, add_point, &to)) return BRUNT_FAILED;
         if (!(*some = w->cloud[c].count > 0)) return BRUNT_OK;
@@ -97,7 +97,7 @@ static bool direction(const surface_sums s[2], double d[3]) {
 }
 
 // Second round of the sums, and the facing surfaces: faces that look along d by more than `least`.
-static void add_looking_faces(const averaged_job *j, int32_t begin, int32_t end, double least, bool facing) {
+static void add_looking_faces(const averaged_job *j, int32_t begin, int32_t end, double least, bool opposed) {
     const brunt_augury_cloud *cloud = &j->w->cloud[2 + j->of];
     const double sign = j->of ? -1 : 1;
     if (!is_near(j, &cloud->point[begin])) return;
@@ -112,7 +112,7 @@ static void add_looking_faces(const averaged_job *j, int32_t begin, int32_t end,
         for (int e = 0; e < count; e++) {
             const int32_t i = j->work->shared_of[at[e]];
             if (i < 0 || sign * dot(j->work->heading[i].d, n) <= least) continue;
-            if (facing) {
+            if (opposed) {
                 side *s = &j->work->shared[i].side[j->of];
                 const double area = w[e] * add[0];
                 s->area += area;
@@ -129,7 +129,7 @@ static void refine_faces(void *context, int32_t begin, int32_t end) {
     add_looking_faces(context, begin, end, ALONG, false);
 }
 static void face_faces(void *context, int32_t begin, int32_t end) {
-    add_looking_faces(context, begin, end, FACING_FACE, true);
+    add_looking_faces(context, begin, end, OPPOSED_FACE, true);
 }
 
 static void add_masses(void *context, int32_t begin, int32_t end) {
@@ -144,7 +144,7 @@ static void add_masses(void *context, int32_t begin, int32_t end) {
         int count = brunt_augury_stencil(&j->w->grid, &cloud->point[k], at, w);
         for (int e = 0; e < count; e++) {
             const int32_t i = j->work->shared_of[at[e]];
-            if (i < 0 || sign * dot(j->work->heading[i].d, j->surface->normal[p]) <= FACING_NODE) continue;
+            if (i < 0 || sign * dot(j->work->heading[i].d, j->surface->normal[p]) <= OPPOSED_NODE) continue;
             side *s = &j->work->shared[i].side[j->of];
             s->mass += w[e] * j->surface->mass[p];
             for (int a = 0; a < 3; a++)
@@ -248,7 +248,7 @@ void brunt_averaged_list_entries(void *context, int64_t begin, int64_t end, int 
             if (i < 0) continue;
             const shared_node *n = &j->work->shared[i];
             double looks = (of ? -1 : 1) * dot(j->work->heading[i].d, j->surface->normal[p->node]);
-            if (looks > FACING_NODE && n->side[of].master) master[p->master_count++] = (entry){w[e], i};
+            if (looks > OPPOSED_NODE && n->side[of].master) master[p->master_count++] = (entry){w[e], i};
             if (looks > SLAVE && n->side[!of].master) slave[p->slave_count++] = (entry){w[e], i}, sum += w[e];
         }
         find_surface(j, p, sum);

@@ -33,7 +33,7 @@
 void brunt_averaged_work_free(brunt_averaged_work *work) {
     if (!work) return;
 #define FREE(type, name) brunt_free(work->name);
-    ROOM(FREE)
+    ARRAYS(FREE)
 #undef FREE
     brunt_free(work);
 }
@@ -260,7 +260,7 @@ int brunt_augury_surface(const brunt_contact_context *m, bool affine, brunt_augu
     brunt_augury_workspace *w = brunt_augury_work(work, error);
     if (!w) return BRUNT_FAILED;
     if (!w->averaged && BRUNT_NEW(w->averaged, 1, "room for averaged surfaces", error)) return BRUNT_FAILED;
-    if (brunt_augury_near_find(&w->near, m, REACH * m->cell, error)) return BRUNT_FAILED;
+    if (brunt_augury_near_find(&w->near, m, STENCIL_WIDTH * m->cell, error)) return BRUNT_FAILED;
     if (!w->near.count) return BRUNT_OK;
     averaged_job j = {.m = m, .surface = m->surface, .w = w, .work = w->averaged, .affine = affine};
     if (prepare(&j, error)) return BRUNT_FAILED;

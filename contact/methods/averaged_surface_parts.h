@@ -10,7 +10,7 @@
 #include "contact/methods/augury_work.h"
 
 enum { WIDTH = 3, STENCIL = 27 };
-static const double REACH = 3; // [cells] between points that share a node
+static const double STENCIL_WIDTH = 3; // [cells] between points that share a node
 
 typedef struct surface_sums {
     double of[4]; // S, s
@@ -71,13 +71,13 @@ typedef struct used_face {
     double L[9], E[9]; // sum of weight * grad v; sum of its nodes' D / area
 } used_face;
 
-// What was done for one pair, booked when all pairs are through: losses need the final velocities.
+// What was done for one pair, recorded when all pairs are through: losses need the final velocities.
 typedef struct pair_account {
     int32_t pair, first, end, body_b; // impulses first .. end - 1
     double friction_loss, area;
 } pair_account;
 
-#define ROOM(X)                                                                                                        \
+#define ARRAYS(X)                                                                                                      \
     X(surface_sums, sums) /* by grid node, 2 each */                                                                   \
     X(int32_t, shared_of) /* by grid node, -1: none */                                                                 \
     X(uint8_t, visitors)  /* by block: bit b, faces of b reach it; bit 2, points in it may reach what both do */       \
@@ -97,7 +97,7 @@ struct brunt_averaged_work {
 #define DECLARE(type, name)                                                                                            \
     type *name;                                                                                                        \
     size_t name##_capacity;
-    ROOM(DECLARE)
+    ARRAYS(DECLARE)
 #undef DECLARE
     int32_t shared_count, touched_count, face_count, impulse_count, pair_account_count;
     int32_t marked_nodes, marked_faces; // entries of touched_of and face_of that are -1
@@ -116,7 +116,7 @@ typedef struct averaged_job {
 } averaged_job;
 
 #define NEED(work, name, count, keep, what, error)                                                                     \
-    BRUNT_ROOM((work)->name, (size_t)(count) + 1, (size_t)(keep), what, error)
+    BRUNT_CAPACITY((work)->name, (size_t)(count) + 1, (size_t)(keep), what, error)
 
 static inline double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 static inline double normalise(double a[3]) {

@@ -38,7 +38,7 @@ typedef struct shared_slot {
 } shared_slot;
 // Slots with the same coordinate: entries first .. first+count-1, and where their pairs' actions are collected.
 typedef struct group {
-    int32_t first, count, action;
+    int32_t first, count, account;
 } group;
 // Of each thread: two bodies near a node, and what went wrong at one of its nodes.
 typedef struct thread_work {
@@ -66,9 +66,9 @@ struct brunt_contact_workspace {
     group *groups;
     size_t groups_capacity;
     int32_t group_count;
-    brunt_impulse_account *actions;
-    size_t actions_capacity;
-    int32_t action_count;
+    brunt_impulse_account *accounts;
+    size_t accounts_capacity;
+    int32_t account_count;
     thread_work *thread;
     int thread_count;
 };
@@ -91,7 +91,7 @@ void brunt_contact_workspace_free(brunt_contact_workspace *workspace) {
     brunt_free(workspace->lows);
     brunt_free(workspace->shared);
     brunt_free(workspace->groups);
-    brunt_free(workspace->actions);
+    brunt_free(workspace->accounts);
     for (int t = 0; t < workspace->thread_count; t++)
         for (int k = 0; k < 2; k++) brunt_extent_cloud_free(&workspace->thread[t].cloud[k]);
     brunt_free(workspace->thread);
@@ -145,8 +145,8 @@ static int compare_low(const void *a, const void *b) {
 static int share_slots(const job *j, int body, int other, brunt_error *error) {
     brunt_contact_workspace *w = j->w;
     const brunt_grid *grid = &j->bodies[body].grid;
-    if (BRUNT_ROOM(w->shared, (size_t)(w->shared_count + grid->slot_count), (size_t)w->shared_count,
-                   "blocks of nodes that bodies share", error))
+    if (BRUNT_CAPACITY(w->shared, (size_t)(w->shared_count + grid->slot_count), (size_t)w->shared_count,
+                       "blocks of nodes that bodies share", error))
         return BRUNT_FAILED;
     for (int32_t s = 0; s < grid->slot_count; s++)
         if (inside(&w->bounds[other], grid->slots[s].coord))
@@ -159,8 +159,8 @@ static int share_slots(const job *j, int body, int other, brunt_error *error) {
 static int find_shared(job *j, brunt_error *error) {
     brunt_contact_workspace *w = j->w;
     const int n = j->m->mpm_count;
-    if (BRUNT_ROOM(w->bounds, (size_t)n, 0, "bodies of material points", error) ||
-        BRUNT_ROOM(w->lows, (size_t)n, 0, "bodies of material points", error))
+    if (BRUNT_CAPACITY(w->bounds, (size_t)n, 0, "bodies of material points", error) ||
+        BRUNT_CAPACITY(w->lows, (size_t)n, 0, "bodies of material points", error))
         return BRUNT_FAILED;
     for (int b = 0; b < n; b++) {
         w->bounds[b] = slot_bounds(&j->bodies[b].grid);
@@ -181,7 +181,7 @@ static int find_shared(job *j, brunt_error *error) {
 // Slots that bodies share, sorted; then those that really coincide.
 static int find_groups(job *j, brunt_error *error) {
     brunt_contact_workspace *w = j->w;
-    w->shared_count = w->group_count = w->action_count = 0;
+    w->shared_count = w->group_count = w->account_count = 0;
     if (find_shared(j, error)) return BRUNT_FAILED;
     if (!w->shared_count) return BRUNT_OK;
     qsort(w->shared, (size_t)w->shared_count, sizeof *w->shared, compare_shared);
@@ -189,17 +189,17 @@ static int find_groups(job *j, brunt_error *error) {
     for (int32_t i = 0; i < w->shared_count; i++)
         if (!unique || compare_shared(&w->shared[i], &w->shared[unique - 1])) w->shared[unique++] = w->shared[i];
     w->shared_count = unique;
-    if (BRUNT_ROOM(w->groups, (size_t)unique, 0, "blocks of nodes that bodies share", error)) return BRUNT_FAILED;
+    if (BRUNT_CAPACITY(w->groups, (size_t)unique, 0, "blocks of nodes that bodies share", error)) return BRUNT_FAILED;
     for (int32_t i = 0, next; i < unique; i = next) {
         for (next = i + 1; next < unique && w->shared[next].key == w->shared[i].key; next++) {}
         int32_t count = next - i;
         if (count < 2) continue;
-        w->groups[w->group_count++] = (group){i, count, w->action_count};
-        w->action_count += count * (count - 1) / 2;
+        w->groups[w->group_count++] = (group){i, count, w->account_count};
+        w->account_count += count * (count - 1) / 2;
     }
-    const size_t actions = (size_t)(w->action_count + 1);
-    if (BRUNT_ROOM(w->actions, actions, 0, "accounts of blocks that bodies share", error)) return BRUNT_FAILED;
-    memset(w->actions, 0, actions * sizeof *w->actions);
+    const size_t accounts = (size_t)(w->account_count + 1);
+    if (BRUNT_CAPACITY(w->accounts, accounts, 0, "accounts of blocks that bodies share", error)) return BRUNT_FAILED;
+    memset(w->accounts, 0, accounts * sizeof *w->accounts);
     return BRUNT_OK;
 }
 
@@ -207,7 +207,7 @@ static int find_groups(job *j, brunt_error *error) {
 
 typedef struct node_contact {
     int a, b;                                   // members
-    int action;                                 // index among the group's pairs
+    int account;                                // index among the group's pairs
     double n[3], target;                        // normal from a to b; least relative velocity along it [m/s]
     double friction;                            // [-]
     double inverse, slide;                      // [1/kg] along n; the greatest across
@@ -224,15 +224,15 @@ typedef struct member {
     double v[3], inverse[3], applied[3]; // [m/s], [1/kg] by component: 0 where a condition gives v; [N s]
 } member;
 
-// Unit vector along n with the parts taken out that a body cut by mirror planes cannot know: its image has no
+// Unit vector along n with the parts taken out that a body cut by symmetry planes cannot know: its image has no
 // particles.
 static bool make_unit(const job *j, const member *a, int node, double n[3]) {
     int local[3];
     const brunt_grid *grid = &a->body->grid;
     brunt_node_local(grid, node, local);
-    for (int m = 0; m < j->m->mirror_count; m++) {
-        int axis = j->m->mirrors[m].axis;
-        int32_t away = grid->slots[a->slot].coord[axis] * grid->side + local[axis] - j->m->mirrors[m].node;
+    for (int m = 0; m < j->m->symmetry_count; m++) {
+        int axis = j->m->symmetry[m].axis;
+        int32_t away = grid->slots[a->slot].coord[axis] * grid->side + local[axis] - j->m->symmetry[m].node;
         if (away >= -1 && away <= 1) n[axis] = 0;
     }
     double size = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
@@ -304,7 +304,7 @@ static double follow_law(member *members, node_contact *m) {
 static double solve_contact(member *members, node_contact *m) {
     if (m->law) return follow_law(members, m);
     double v[3], J[3], along = relative(members, m, v);
-    const double step = brunt_coulomb_push(&m->normal_impulse, (m->target - along) / m->inverse);
+    const double step = brunt_coulomb_normal(&m->normal_impulse, (m->target - along) / m->inverse);
     double changed = fabs(step) * m->inverse;
     for (int k = 0; k < 3; k++) J[k] = step * m->n[k];
     if (m->friction > 0) {
@@ -344,7 +344,7 @@ static member make_member(brunt_body *body, const shared_slot *s, int node, real
     return m;
 }
 
-// The node has what it was given even where it is held: the condition then takes it, and books it.
+// The node has what it was given even where it is held: the condition then takes it, and records it.
 static void scatter_node(const member *m) {
     for (int a = 0; a < m->body->grid.dim; a++)
         m->node[BRUNT_NODE_VELOCITY + a] =
@@ -390,62 +390,62 @@ static double own_share(const job *j, const member *m, int node) {
 }
 
 // Bodies at a node of the grids, and the contacts between them.
-typedef struct node_meeting {
+typedef struct node_contacts {
     member members[MAX_TOGETHER];
     node_contact contacts[MAX_TOGETHER * (MAX_TOGETHER - 1) / 2];
     int count, contact_count;
     bool fixed; // something holds one of them
-} node_meeting;
+} node_contacts;
 
-static void find_members(const job *j, const group *g, int node, thread_work *thread, node_meeting *meeting) {
+static void find_members(const job *j, const group *g, int node, thread_work *thread, node_contacts *here) {
     for (int32_t i = 0; i < g->count; i++) {
         const shared_slot *s = &j->w->shared[g->first + i];
         real *at = brunt_slot_nodes(&j->bodies[s->body].grid, s->slot) + node * BRUNT_NODE_REALS;
         if (!(at[0] > 0)) continue;
-        if (meeting->count == MAX_TOGETHER) {
+        if (here->count == MAX_TOGETHER) {
             brunt_fail(&thread->error, BRUNT_FAILED, "more than %d bodies meet at one grid node", MAX_TOGETHER);
-            meeting->count = 0;
+            here->count = 0;
             return;
         }
-        meeting->members[meeting->count++] = make_member(&j->bodies[s->body], s, node, at, i);
+        here->members[here->count++] = make_member(&j->bodies[s->body], s, node, at, i);
     }
 }
 
 // The contact of members a and b, if they meet there.
 static void add_contact(const job *j, const group *g, int node, int a, int b, thread_work *thread,
-                        node_meeting *meeting) {
-    const member *one = &meeting->members[a], *other = &meeting->members[b];
+                        node_contacts *here) {
+    const member *one = &here->members[a], *other = &here->members[b];
     const int32_t pair = pair_between(j, (int)(one->body - j->bodies), (int)(other->body - j->bodies));
     if (pair < 0) return;
-    node_contact *m = &meeting->contacts[meeting->contact_count];
+    node_contact *m = &here->contacts[here->contact_count];
     const int low = one->entry, high = other->entry;
     *m = (node_contact){.a = a,
                         .b = b,
-                        .action = low * g->count - low * (low + 1) / 2 + high - low - 1,
+                        .account = low * g->count - low * (low + 1) / 2 + high - low - 1,
                         .friction = j->m->pairs[pair].friction,
                         .law = j->law[j->m->pairs[pair].method]};
     double gap = 0;
     if (!m->law && !make_normal(j, one, other, node, thread, m->n, &gap)) return;
     m->target = -fmax(gap, 0) / j->m->dt;
     weigh_contact(one, other, m);
-    meeting->fixed |= one->fixed || other->fixed;
-    meeting->contact_count += m->law || m->inverse > 0;
+    here->fixed |= one->fixed || other->fixed;
+    here->contact_count += m->law || m->inverse > 0;
 }
 
-static void solve_meeting(node_meeting *meeting, double scale) {
+static void solve_node(node_contacts *here, double scale) {
     for (int sweep = 0; sweep < MAX_SWEEPS; sweep++) {
         double changed = 0;
-        for (int q = 0; q < meeting->contact_count; q++)
-            changed = fmax(changed, solve_contact(meeting->members, &meeting->contacts[q]));
-        if ((meeting->contact_count == 1 && !meeting->fixed) || changed <= SWEEP_TOLERANCE * scale) break;
+        for (int q = 0; q < here->contact_count; q++)
+            changed = fmax(changed, solve_contact(here->members, &here->contacts[q]));
+        if ((here->contact_count == 1 && !here->fixed) || changed <= SWEEP_TOLERANCE * scale) break;
     }
 }
 
-// Applies what a contact has come to at x, and books it.
-static void account_contact(const job *j, const group *g, int node, const double x[3], node_meeting *meeting,
+// Applies what a contact has come to at x, and records it.
+static void account_contact(const job *j, const group *g, int node, const double x[3], node_contacts *here,
                             const node_contact *m) {
     static const double rest[3] = {0, 0, 0};
-    member *members = meeting->members;
+    member *members = here->members;
     double normal_impulse[3], friction_impulse[3], old[3] = {0}, now[3];
     const double own = own_share(j, &members[m->b], node);
     relative(members, m, now);
@@ -456,34 +456,34 @@ static void account_contact(const job *j, const group *g, int node, const double
     }
     for (int k = 0; k < j->bodies[0].grid.dim; k++)
         old[k] = (double)(members[m->b].node[BRUNT_NODE_OLD + k] - members[m->a].node[BRUNT_NODE_OLD + k]);
-    brunt_impulse_account *action = &j->w->actions[g->action + m->action];
-    brunt_impulse_account_book(action, &action->normal_loss, m->law ? friction_impulse : normal_impulse, x, old, now,
-                               rest);
+    brunt_impulse_account *account = &j->w->accounts[g->account + m->account];
+    brunt_impulse_account_record(account, &account->normal_loss, m->law ? friction_impulse : normal_impulse, x, old,
+                                 now, rest);
     if (m->friction > 0 && !m->law)
-        brunt_impulse_account_book(action, &action->friction_loss, friction_impulse, x, old, now, rest);
+        brunt_impulse_account_record(account, &account->friction_loss, friction_impulse, x, old, now, rest);
 }
 
 static void meet_at_node(const job *j, const group *g, int node, thread_work *thread) {
     if (j->axis && from_axis(j, &j->w->shared[g->first], node) < 0) return;
-    node_meeting meeting;
-    meeting.count = meeting.contact_count = 0, meeting.fixed = false;
-    find_members(j, g, node, thread, &meeting);
-    if (meeting.count < 2) return;
+    node_contacts here;
+    here.count = here.contact_count = 0, here.fixed = false;
+    find_members(j, g, node, thread, &here);
+    if (here.count < 2) return;
     double scale = 0;
-    for (int i = 0; i < meeting.count; i++) {
-        for (int a = 0; a < j->bodies[0].grid.dim; a++) scale = fmax(scale, fabs(meeting.members[i].v[a]));
-        for (int k = i + 1; k < meeting.count; k++) add_contact(j, g, node, i, k, thread, &meeting);
+    for (int i = 0; i < here.count; i++) {
+        for (int a = 0; a < j->bodies[0].grid.dim; a++) scale = fmax(scale, fabs(here.members[i].v[a]));
+        for (int k = i + 1; k < here.count; k++) add_contact(j, g, node, i, k, thread, &here);
     }
-    if (!meeting.contact_count) return;
-    solve_meeting(&meeting, scale);
-    const brunt_grid *grid = &meeting.members[0].body->grid;
+    if (!here.contact_count) return;
+    solve_node(&here, scale);
+    const brunt_grid *grid = &here.members[0].body->grid;
     double x[3];
-    brunt_node_position(grid, grid->slots[meeting.members[0].slot].coord, node, x);
-    for (int q = 0; q < meeting.contact_count; q++)
-        if (meeting.contacts[q].normal_impulse > 0 || meeting.contacts[q].law)
-            account_contact(j, g, node, x, &meeting, &meeting.contacts[q]);
-    for (int i = 0; i < meeting.count; i++) scatter_node(&meeting.members[i]);
-    for (int i = 0; j->axis && i < meeting.count; i++) follow_axis(j, &meeting.members[i], node);
+    brunt_node_position(grid, grid->slots[here.members[0].slot].coord, node, x);
+    for (int q = 0; q < here.contact_count; q++)
+        if (here.contacts[q].normal_impulse > 0 || here.contacts[q].law)
+            account_contact(j, g, node, x, &here, &here.contacts[q]);
+    for (int i = 0; i < here.count; i++) scatter_node(&here.members[i]);
+    for (int i = 0; j->axis && i < here.count; i++) follow_axis(j, &here.members[i], node);
 }
 
 static void meet_blocks(void *context, int64_t begin, int64_t end, int worker) {
@@ -505,8 +505,8 @@ int brunt_grid_velocity_apply(const brunt_contact_context *m, brunt_contact_work
     if (make_threads(*workspace, m->threads, error)) return BRUNT_FAILED;
     job j = {.m = m, .bodies = m->mpm, .w = *workspace};
     for (int k = 0; k < METHODS; k++) j.law[k] = brunt_contact_node_law((brunt_contact_method)k);
-    for (int k = 0; k < m->mirror_count; k++)
-        if (m->mirrors[k].wall < 0) j.axis = &m->mirrors[k];
+    for (int k = 0; k < m->symmetry_count; k++)
+        if (m->symmetry[k].boundary < 0) j.axis = &m->symmetry[k];
     if (find_groups(&j, error)) return BRUNT_FAILED;
     for (int t = 0; t < m->threads; t++) j.w->thread[t].error.code = BRUNT_OK;
     brunt_parallel(m->threads, j.w->group_count, 1, meet_blocks, &j, m->timer);
@@ -514,11 +514,11 @@ int brunt_grid_velocity_apply(const brunt_contact_context *m, brunt_contact_work
         if (brunt_hand_on(error, &j.w->thread[t].error)) return BRUNT_FAILED;
     for (int32_t q = 0; q < j.w->group_count; q++) {
         const group *g = &j.w->groups[q];
-        int at = g->action;
+        int at = g->account;
         for (int32_t i = 0; i < g->count; i++)
             for (int32_t k = i + 1; k < g->count; k++, at++) {
                 int32_t pair = pair_between(&j, j.w->shared[g->first + i].body, j.w->shared[g->first + k].body);
-                if (pair >= 0) brunt_impulse_account_add(&m->pairs[pair].last, &j.w->actions[at]);
+                if (pair >= 0) brunt_impulse_account_add(&m->pairs[pair].last, &j.w->accounts[at]);
             }
     }
     return BRUNT_OK;

@@ -56,8 +56,9 @@ static int act_at_facets(const brunt_contact_context *m, brunt_contact_work *wor
     brunt_constraint_set *set = work->constraints;
     brunt_node_to_facet *facets = *work->node_to_facet;
     brunt_constraints_clear(set);
-    for (int w = 0; w < m->wall_count; w++)
-        if (m->walls[w].kind->meet_surface && m->walls[w].kind->meet_surface(m, &m->walls[w], facets, set, error))
+    for (int w = 0; w < m->boundary_count; w++)
+        if (m->boundaries[w].kind->meet_surface &&
+            m->boundaries[w].kind->meet_surface(m, &m->boundaries[w], facets, set, error))
             return BRUNT_FAILED;
     if (work->facets && brunt_node_to_facet_find(m, m->mpm, m->mpm_count, facets, set, error)) return BRUNT_FAILED;
     if (brunt_constraints_solve(set, work->sweeps, work->def->tolerance, m->threads, m->timer, error))
@@ -102,7 +103,7 @@ const brunt_contact_row brunt_contact_point_touches = {
     .schemes = EXPLICIT,
     .meets = BRUNT_MEET_AT_PARTICLES,
     .keys = "form cell tolerance iterations",
-    .no_rings = true,
+    .never_axisymmetric = true,
     .accepts = points_alone,
 };
 const brunt_contact_row brunt_contact_published = {
@@ -151,7 +152,7 @@ const brunt_contact_row brunt_contact_surface_on_grid = {
 };
 // A membrane between two blocks is light between heavy ones: each sweep passes on the share of its mass in theirs. At a
 // twentieth, 16 sweeps let the nodes of blocks that meet at a tenth of their wave speed through its middle; 64 leave a
-// hundredth of its thickness. Sweeps end sooner where there is nothing to do.
+// hundredth of its thickness. Sweeps end earlier where there is nothing to do.
 const brunt_contact_row brunt_contact_node_to_facet = {
     .name = "node to facet",
     .methods = METHOD(AUGURY),
@@ -160,10 +161,10 @@ const brunt_contact_row brunt_contact_node_to_facet = {
     .meets = BRUNT_MEET_AT_FACETS,
     .keys = "form cell tolerance iterations",
     .self = BRUNT_SELF_MEMBRANES,
-    .sheets = true,
+    .knows_membranes = true,
     .planes = true,
     .sweeps = 16,
-    .sheet_sweeps = 64,
+    .membrane_sweeps = 64,
     .cell_factor = 1,
     .wants = "a body of method fem or membrane",
     .accepts = any_mesh,
@@ -225,11 +226,12 @@ const brunt_contact_row *brunt_contact_row_at(unsigned rows, brunt_contact_place
     return NULL;
 }
 
-brunt_contact_method brunt_contact_between_points(brunt_contact_method method, brunt_augury_form form, bool rings) {
+brunt_contact_method brunt_contact_between_points(brunt_contact_method method, brunt_augury_form form,
+                                                  bool axisymmetric) {
     bool meet = method == BRUNT_CONTACT_NONE;
     const unsigned rows = brunt_contact_rows_of(method, form, false, false);
     for (int r = 0; r < brunt_contact_row_count; r++)
-        meet |= rows >> r & 1 && !(rings && brunt_contact_rows[r]->no_rings);
+        meet |= rows >> r & 1 && !(axisymmetric && brunt_contact_rows[r]->never_axisymmetric);
     if (meet) return method;
     for (int other = BRUNT_CONTACT_NONE + 1;; other++) // one of them always does: at the nodes of their grid
         if (other != (int)method && brunt_contact_accepts((brunt_contact_method)other, false, false))
@@ -259,10 +261,10 @@ unsigned brunt_augury_forms_of_points(brunt_contact_method method) {
     return forms;
 }
 
-unsigned brunt_augury_forms_of_sheets(void) {
+unsigned brunt_augury_forms_of_membranes(void) {
     unsigned forms = 0;
     for (int r = 0; r < brunt_contact_row_count; r++)
-        if (brunt_contact_rows[r]->sheets) forms |= brunt_contact_rows[r]->forms;
+        if (brunt_contact_rows[r]->knows_membranes) forms |= brunt_contact_rows[r]->forms;
     return forms;
 }
 

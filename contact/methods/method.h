@@ -31,14 +31,14 @@ typedef struct brunt_contact_row {
     unsigned meets; // bits of brunt_contact_place: where two bodies are looked for that meet by it; 0: it looks itself
     const char *keys; // of `contact` in a scene that are its own, "a b c"; NULL: none
     brunt_contact_self self;
-    bool no_rings; // not in axisymmetric scenes
+    bool never_axisymmetric; // not in axisymmetric scenes
     // Of what meets at facets.
-    bool sheets;              // it knows the two sides of a membrane
-    bool planes;              // it acts where there are planes alone, too
-    bool affine;              // it acts on every surface, touched or not, and keeps affine velocities of nodes
-    int sweeps, sheet_sweeps; // most of a step by default; where there are membranes, 0: the same
-    double cell_factor;       // cell of the contact grid by default, in mean edges
-    double look;              // cells of that grid that it looks ahead; 0: it has none
+    bool knows_membranes;        // it knows the two sides of a membrane
+    bool planes;                 // it acts where there are planes alone, too
+    bool affine;                 // it acts on every surface, touched or not, and keeps affine velocities of nodes
+    int sweeps, membrane_sweeps; // most of a step by default; where there are membranes, 0: the same
+    double cell_factor;          // cell of the contact grid by default, in mean edges
+    double look;                 // cells of that grid that it looks ahead; 0: it has none
     // What it wants of two bodies, after "wants"; NULL: another row of the method says it.
     const char *wants;
     // Whether two bodies, of elements (else of material points), may meet by it.
@@ -73,7 +73,8 @@ unsigned brunt_contact_places_of(unsigned rows);
 const brunt_contact_row *brunt_contact_row_at(unsigned rows, brunt_contact_place place);
 // The method by which two bodies of material points meet where that of all is `method`: itself, where it accepts them.
 // Where its form has no row for them, or none for rings, it is multi-velocity.
-brunt_contact_method brunt_contact_between_points(brunt_contact_method method, brunt_augury_form form, bool rings);
+brunt_contact_method brunt_contact_between_points(brunt_contact_method method, brunt_augury_form form,
+                                                  bool axisymmetric);
 // Whether a row is for a method, and for a form of it.
 bool brunt_contact_is_of(const brunt_contact_row *row, brunt_contact_method method);
 bool brunt_contact_has_form(const brunt_contact_row *row, brunt_augury_form form);
@@ -87,7 +88,7 @@ const char *brunt_augury_form_word(brunt_augury_form form);
 void brunt_augury_words_of(unsigned forms, char *out, size_t size);
 // Forms in which two bodies of material points may meet by a method, and membranes by any.
 unsigned brunt_augury_forms_of_points(brunt_contact_method method);
-unsigned brunt_augury_forms_of_sheets(void);
+unsigned brunt_augury_forms_of_membranes(void);
 // The method of a scheme for all pairs of a scene that gives none, with bodies that are meshes or without: that of the
 // first row which takes two of them. Implicit steps have none for material points alone, and take that of meshes.
 brunt_contact_method brunt_contact_default(brunt_scheme scheme, bool meshes);

@@ -38,7 +38,7 @@ typedef struct state {
 struct brunt_published_work {
     blend *blend;      // by grid node
     state *in, *delta; // by point of the cloud
-    int32_t *pair;     // by body of the surface: where it is booked, -1: it takes no part
+    int32_t *pair;     // by body of the surface: where it is recorded, -1: it takes no part
     size_t blend_capacity, in_capacity, delta_capacity, pair_capacity;
 };
 
@@ -242,7 +242,7 @@ static int find_pairs(job *j, brunt_error *error) {
     const brunt_contact_context *m = j->m;
     const brunt_contact_surface *s = j->surface;
     brunt_published_work *f = j->filter;
-    if (BRUNT_ROOM(f->pair, (size_t)s->fem_count + 1, 0, "bodies with surfaces", error) ||
+    if (BRUNT_CAPACITY(f->pair, (size_t)s->fem_count + 1, 0, "bodies with surfaces", error) ||
         brunt_augury_near_find(&j->w->near, m, WIDTH * m->cell, error))
         return BRUNT_FAILED;
     for (int k = 0; k < s->fem_count; k++) f->pair[k] = -1;
@@ -276,16 +276,16 @@ static int make_grid(job *j, brunt_error *error) {
     brunt_published_work *f = j->filter;
     size_t nodes = (size_t)w->grid.block_count * (size_t)w->grid.block_nodes + 1,
            points = (size_t)w->cloud[0].count + 1;
-    if (BRUNT_ROOM(f->blend, nodes, 0, "nodes of the contact grid", error) ||
-        BRUNT_ROOM(f->in, points, 0, "points in the contact grid", error) ||
-        BRUNT_ROOM(f->delta, points, 0, "points in the contact grid", error))
+    if (BRUNT_CAPACITY(f->blend, nodes, 0, "nodes of the contact grid", error) ||
+        BRUNT_CAPACITY(f->in, points, 0, "points in the contact grid", error) ||
+        BRUNT_CAPACITY(f->delta, points, 0, "points in the contact grid", error))
         return BRUNT_FAILED;
     memset(f->blend, 0, nodes * sizeof *f->blend);
     return BRUNT_OK;
 }
 
 // Friction is what the tangential changes cost that Coulomb allows, where a surface is pushed in.
-static void book(job *j) {
+static void account_losses(job *j) {
     brunt_contact_surface *s = j->surface;
     const brunt_augury_cloud *cloud = &j->w->cloud[0];
     for (int32_t k = 0; k < cloud->count; k++) {
@@ -294,16 +294,16 @@ static void book(job *j) {
         brunt_pair *pair = &j->m->pairs[j->filter->pair[body]];
         const double *dv = j->filter->delta[k].v;
         brunt_node_impulse J = {n, {0}};
-        double along, tangential[3], size, drag = 0;
+        double along, tangential[3], size, friction_loss = 0;
         double allowed = split(j, n, dv, &along, tangential, &size);
         for (int a = 0; a < s->dim; a++) {
             J.J[a] = s->inverse[n][a] > 0 ? dv[a] / s->inverse[n][a] : s->mass[n] * dv[a];
             double part = size > 0 ? tangential[a] * allowed / size : 0;
-            drag -= s->mass[n] * part * 0.5 * (s->old[n][a] + s->v[n][a]);
+            friction_loss -= s->mass[n] * part * 0.5 * (s->old[n][a] + s->v[n][a]);
         }
         double loss = brunt_impulse_account_node(s, &pair->last, &J, s->body[n] == pair->b);
-        pair->last.friction_loss += drag;
-        pair->last.normal_loss += loss - drag;
+        pair->last.friction_loss += friction_loss;
+        pair->last.normal_loss += loss - friction_loss;
     }
 }
 
@@ -327,6 +327,6 @@ int brunt_augury_paper(const brunt_contact_context *m, brunt_transfer transfer, 
         apply_G(&j);
     }
     brunt_parallel(m->threads, count, NODE_GRAIN, finish_points, &j, m->timer);
-    book(&j);
+    account_losses(&j);
     return BRUNT_OK;
 }

@@ -43,7 +43,7 @@ static void map_velocity(const job *j, const contact *c, double (*of)[3], double
 // Brings one contact to its complementarity condition, as far as mesh and body are concerned there; returns the change
 // of velocity [m/s].
 static double solve_contact(const job *j, contact *c, double vs[3]) {
-    double v[3], slip[3], along, push_inverse = c->held ? 0 : c->inverse_s[0], drag_inverse = push_inverse;
+    double v[3], slip[3], along, normal_inverse = c->held ? 0 : c->inverse_s[0], friction_inverse = normal_inverse;
     memset(c->applied, 0, sizeof c->applied);
     if (!isfinite(c->target)) return 0;
     map_velocity(j, c, j->m->surface->v, v);
@@ -51,19 +51,19 @@ static double solve_contact(const job *j, contact *c, double vs[3]) {
     along = dot(slip, c->n);
     for (int a = 0; a < 3; a++) {
         slip[a] -= along * c->n[a];
-        push_inverse += c->n[a] * c->n[a] * (c->held ? c->inverse[a] + c->inverse_s[a] : c->inverse[a]);
-        drag_inverse = fmax(drag_inverse, c->inverse_s[a] + c->inverse[a]);
+        normal_inverse += c->n[a] * c->n[a] * (c->held ? c->inverse[a] + c->inverse_s[a] : c->inverse[a]);
+        friction_inverse = fmax(friction_inverse, c->inverse_s[a] + c->inverse[a]);
     }
-    if (!(push_inverse > 0)) return 0; // neither gives way
-    const double step = brunt_coulomb_push(&c->normal_impulse, c->relax * (c->target - along) / push_inverse);
-    double changed = fabs(step) * push_inverse;
+    if (!(normal_inverse > 0)) return 0; // neither gives way
+    const double step = brunt_coulomb_normal(&c->normal_impulse, c->relax * (c->target - along) / normal_inverse);
+    double changed = fabs(step) * normal_inverse;
     for (int a = 0; a < 3; a++) c->applied[a] = step * c->n[a];
     if (c->pair->friction > 0) {
         double wanted[3], change[3];
-        for (int a = 0; a < 3; a++) wanted[a] = c->friction_impulse[a] - c->relax * slip[a] / drag_inverse;
+        for (int a = 0; a < 3; a++) wanted[a] = c->friction_impulse[a] - c->relax * slip[a] / friction_inverse;
         brunt_coulomb_project(3, c->pair->friction, c->normal_impulse, wanted, c->friction_impulse, change);
         for (int a = 0; a < 3; a++) c->applied[a] += change[a];
-        changed = fmax(changed, brunt_coulomb_norm(3, change) * drag_inverse);
+        changed = fmax(changed, brunt_coulomb_norm(3, change) * friction_inverse);
     }
     for (int a = 0; a < 3; a++) vs[a] += c->applied[a] * c->inverse_s[a];
     return changed;
@@ -135,7 +135,7 @@ static double sweep(job *j) {
     return greatest;
 }
 
-// The node has what all contacts gave it even where it is held: the condition then takes it, and books it.
+// The node has what all contacts gave it even where it is held: the condition then takes it, and records it.
 static void scatter_node(const brunt_surface_on_grid *w, int32_t leader, int dim) {
     const contact *first = &w->contact[leader];
     for (int a = 0; a < dim; a++) {
@@ -160,7 +160,7 @@ int brunt_surface_on_grid_meet(const brunt_contact_context *m, int sweeps, brunt
     if (brunt_surface_on_grid_sort(w, error)) return BRUNT_FAILED;
     for (int32_t b = 0; b < w->range_count; b++) {
         if (brunt_surface_on_grid_look(&j, b, error)) return BRUNT_FAILED;
-        if (m->mirror_count) brunt_surface_on_grid_reflect(&j);
+        if (m->symmetry_count) brunt_surface_on_grid_reflect(&j);
     }
     bool two;
     if (squeezed(w, m->surface, &two, error)) return BRUNT_FAILED;
@@ -187,9 +187,9 @@ static void account_contact(const job *j, const contact *c) {
         now[a] = sign * ((a < dim ? (double)c->at[BRUNT_NODE_VELOCITY + a] : 0) - now[a]);
     }
     brunt_impulse_account *last = &c->pair->last;
-    brunt_impulse_account_book(last, &last->normal_loss, normal_impulse, c->x, old, now, rest);
+    brunt_impulse_account_record(last, &last->normal_loss, normal_impulse, c->x, old, now, rest);
     if (c->pair->friction > 0)
-        brunt_impulse_account_book(last, &last->friction_loss, friction_impulse, c->x, old, now, rest);
+        brunt_impulse_account_record(last, &last->friction_loss, friction_impulse, c->x, old, now, rest);
     last->area += own * c->area;
 }
 
@@ -205,8 +205,8 @@ static void mark_state(const job *j, const contact *c) {
     }
 }
 
-// Across a mirror plane the two do not get the same, each being the half of a whole: the rest is the plane's.
-static void account_symmetry(const job *j, const contact *c, brunt_boundary *walls) {
+// Across a symmetry plane the two do not get the same, each being the half of a whole: the rest is the plane's.
+static void account_symmetry(const job *j, const contact *c, brunt_boundary *boundaries) {
     const brunt_grid *grid = &j->m->mpm[c->mpm].grid;
     const double own = (double)(c->at[BRUNT_NODE_SPARE] / c->at[BRUNT_NODE_MASS]);
     static const double none[3] = {0};
@@ -215,13 +215,13 @@ static void account_symmetry(const job *j, const contact *c, brunt_boundary *wal
         const link *l = &j->w->link[j->w->by_contact[i]];
         applied += l->own ? l->weight * j->m->surface->mass[l->surface] / c->mass : 0;
     }
-    for (int m = 0; m < j->m->mirror_count; m++) {
-        const int axis = j->m->mirrors[m].axis;
-        const double plane = grid->origin[axis] + (double)grid->h * j->m->mirrors[m].node;
-        if (j->m->mirrors[m].wall < 0 || fabs(c->x[axis] - plane) > 2.5 * (double)grid->h) continue;
+    for (int m = 0; m < j->m->symmetry_count; m++) {
+        const int axis = j->m->symmetry[m].axis;
+        const double plane = grid->origin[axis] + (double)grid->h * j->m->symmetry[m].node;
+        if (j->m->symmetry[m].boundary < 0 || fabs(c->x[axis] - plane) > 2.5 * (double)grid->h) continue;
         double across[3] = {0};
         across[axis] = (own - applied) * (c->normal_impulse * c->n[axis] + c->friction_impulse[axis]);
-        brunt_impulse_account_reaction(&walls[j->m->mirrors[m].wall].last, across, none);
+        brunt_impulse_account_reaction(&boundaries[j->m->symmetry[m].boundary].last, across, none);
     }
 }
 
@@ -233,6 +233,6 @@ void brunt_surface_on_grid_finish(const brunt_contact_context *m, const brunt_su
         if (!(c->normal_impulse > 0)) continue;
         account_contact(&j, c);
         mark_state(&j, c);
-        if (m->mirror_count) account_symmetry(&j, c, m->walls);
+        if (m->symmetry_count) account_symmetry(&j, c, m->boundaries);
     }
 }

@@ -1,7 +1,7 @@
 // Normal and gap of a mesh and the particles about a node of their grid.
 #include "contact/methods/surface_on_grid_parts.h"
 
-enum { GRAIN = 16, MOST_FACES = 128 };
+enum { GRAIN = 16, FACE_LIMIT = 128 };
 static const double SEARCH = 1.5; // spacings: how far a particle's reach may go; it starts with 0.87 at most
 static const double BAND = 0.5;   // spacings: particles up to so much farther than the nearest have a say in the normal
 static const double MARGIN = 2;   // times the way of a step that it looks further
@@ -57,7 +57,7 @@ static int list_faces(job *j, int b, int k, brunt_error *error) {
 typedef struct faces {
     int32_t count;
     const int32_t *face;
-    int32_t some[MOST_FACES];
+    int32_t some[FACE_LIMIT];
 } faces;
 
 static void faces_of_bin(const job *j, int32_t block, int bin, faces *near) {
@@ -77,7 +77,7 @@ static void faces_of_bin(const job *j, int32_t block, int bin, faces *near) {
     for (int32_t q = w->block_first[block]; q < w->block_first[block + 1]; q++) {
         const double *box = s->face_box[w->block_face[q]];
         if (!overlap(low, high, box, box + 3)) continue;
-        if (near->count == MOST_FACES) { // of a mesh that is much finer than the grid: all of the block
+        if (near->count == FACE_LIMIT) { // of a mesh that is much finer than the grid: all of the block
             near->face = w->block_face + w->block_first[block];
             near->count = w->block_first[block + 1] - w->block_first[block];
             return;
@@ -276,7 +276,7 @@ int brunt_surface_on_grid_look(job *j, int b, brunt_error *error) {
     return BRUNT_OK;
 }
 
-// A node behind a mirror plane sees few particles, or none: it has what its image has, reflected. The one that sees
+// A node behind a symmetry plane sees few particles, or none: it has what its image has, reflected. The one that sees
 // more of the mesh counts.
 void brunt_surface_on_grid_reflect(const job *j) {
     brunt_surface_on_grid *w = j->w;
@@ -295,12 +295,12 @@ void brunt_surface_on_grid_reflect(const job *j) {
         double greatest = 0;
         brunt_node_local(grid, c->node, local);
         for (int a = 0; a < grid->dim; a++) at[a] = grid->slots[c->slot].coord[a] * grid->side + local[a];
-        const int images = brunt_symmetry_images(j->m->mirrors, j->m->mirror_count, at, 2, image, sign);
+        const int images = brunt_symmetry_images(j->m->symmetry, j->m->symmetry_count, at, 2, image, sign);
         for (int q = 0; q < images; q++) {
             slot_cache cached = {.is = false};
             int32_t slot;
             int node;
-            if (!brunt_surface_on_grid_place(grid, image[q], &cached, &slot, &node)) continue;
+            if (!brunt_surface_on_grid_node(grid, image[q], &cached, &slot, &node)) continue;
             int32_t o = w->place[slot * BRUNT_BLOCK_NODES + node] - 1;
             while (o >= 0 && w->contact[o].fem != c->fem) o = w->contact[o].next;
             if (o < 0) continue;

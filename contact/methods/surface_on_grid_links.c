@@ -1,7 +1,7 @@
 // Which nodes of a mesh and of the grid of a body have to do with each other.
 #include "contact/methods/surface_on_grid_parts.h"
 
-static const double CUT = 1e-6; // cells: how near a mirror plane what it cuts is
+static const double CUT = 1e-6; // cells: how near a symmetry plane what it cuts is
 
 static brunt_pair *pair_of(const brunt_contact_context *m, const brunt_body *body, const brunt_fem_body *fem) {
     int32_t pair = brunt_pair_of(m->pair_map, body->index, fem->index);
@@ -10,8 +10,8 @@ static brunt_pair *pair_of(const brunt_contact_context *m, const brunt_body *bod
 
 static int32_t floor_divide(int32_t a, int32_t b) { return a >= 0 ? a / b : -((-a + b - 1) / b); }
 
-bool brunt_surface_on_grid_place(const brunt_grid *grid, const int32_t at[3], slot_cache *cached, int32_t *slot,
-                                 int *node) {
+bool brunt_surface_on_grid_node(const brunt_grid *grid, const int32_t at[3], slot_cache *cached, int32_t *slot,
+                                int *node) {
     int32_t coord[3] = {0, 0, 0}, local[3] = {0, 0, 0};
     for (int a = 0; a < grid->dim; a++) {
         coord[a] = floor_divide(at[a], grid->side);
@@ -28,13 +28,13 @@ bool brunt_surface_on_grid_place(const brunt_grid *grid, const int32_t at[3], sl
 
 // Bounds of the points whose kernel reaches nodes of the grid [m].
 static void bound_grid(const brunt_grid *grid, double low[3], double high[3]) {
-    const double reach = 0.5 * (grid->order + 1) * (double)grid->h;
+    const double width = 0.5 * (grid->order + 1) * (double)grid->h;
     for (int a = 0; a < 3; a++) low[a] = a < grid->dim ? INFINITY : -INFINITY, high[a] = -low[a];
     for (int32_t s = 0; s < grid->slot_count; s++)
         for (int a = 0; a < grid->dim; a++) {
             double first = grid->origin[a] + (double)grid->h * grid->slots[s].coord[a] * grid->side,
                    last = first + (double)grid->h * (grid->side - 1);
-            low[a] = fmin(low[a], first - reach), high[a] = fmax(high[a], last + reach);
+            low[a] = fmin(low[a], first - width), high[a] = fmax(high[a], last + width);
         }
 }
 
@@ -101,7 +101,7 @@ static int add_link(job *j, const grid_place *of, const int32_t at[3], double we
     brunt_surface_on_grid *w = j->w;
     int32_t slot;
     int node;
-    if (!brunt_surface_on_grid_place(&j->m->mpm[of->mpm].grid, at, cached, &slot, &node)) return BRUNT_OK;
+    if (!brunt_surface_on_grid_node(&j->m->mpm[of->mpm].grid, at, cached, &slot, &node)) return BRUNT_OK;
     const size_t number = (size_t)slot * BRUNT_BLOCK_NODES + (size_t)node;
     if (!(j->m->mpm[of->mpm].grid.nodes[number * BRUNT_NODE_REALS + BRUNT_NODE_MASS] > 0)) return BRUNT_OK;
     const int32_t c = find_contact(j, of, slot, node, error);
@@ -114,8 +114,8 @@ static int add_link(job *j, const grid_place *of, const int32_t at[3], double we
     return BRUNT_OK;
 }
 
-// Links of surface node n with the nodes of body b, and, near mirrors, with their images: the same as the particles'
-// shares get from brunt_symmetry_fold.
+// Links of surface node n with the nodes of body b, and, near symmetry planes, with their images: the same as the
+// particles' shares get from brunt_symmetry_fold.
 static int add_item(job *j, const grid_place *of, brunt_error *error) {
     brunt_surface_on_grid *w = j->w;
     const brunt_grid *grid = &j->m->mpm[of->mpm].grid;
@@ -136,13 +136,13 @@ static int add_item(job *j, const grid_place *of, brunt_error *error) {
                 const double share = weight[0][p] * weight[1][q] * weight[2][r];
                 const int32_t at[3] = {base[0] + p, base[1] + q, base[2] + r};
                 if (!(share > 0)) continue;
-                if (!j->m->mirror_count) {
+                if (!j->m->symmetry_count) {
                     if (add_link(j, of, at, share, NULL, &cached, error)) return BRUNT_FAILED;
                     continue;
                 }
                 int32_t image[BRUNT_MAX_IMAGES][3];
                 real sign[BRUNT_MAX_IMAGES][3];
-                int images = brunt_symmetry_images(j->m->mirrors, j->m->mirror_count, at, 2, image, sign);
+                int images = brunt_symmetry_images(j->m->symmetry, j->m->symmetry_count, at, 2, image, sign);
                 for (int i = 0; i < images; i++) {
                     const int32_t before = w->link_count;
                     if (add_link(j, of, image[i], share, sign[i], i ? &cached_image : &cached, error))
@@ -159,14 +159,14 @@ static int add_item(job *j, const grid_place *of, brunt_error *error) {
     return BRUNT_OK;
 }
 
-// Whether a surface node is on what mirror planes have cut open, and on no other surface.
+// Whether a surface node is on what symmetry planes have cut open, and on no other surface.
 static bool on_cut(const job *j, const brunt_grid *grid, int32_t n) {
     const brunt_contact_surface *s = j->m->surface;
     double normal[3] = {s->normal[n][0], s->normal[n][1], s->normal[n][2]};
     bool cut = false;
-    for (int m = 0; m < j->m->mirror_count; m++) {
-        const int axis = j->m->mirrors[m].axis;
-        const double plane = grid->origin[axis] + (double)grid->h * j->m->mirrors[m].node;
+    for (int m = 0; m < j->m->symmetry_count; m++) {
+        const int axis = j->m->symmetry[m].axis;
+        const double plane = grid->origin[axis] + (double)grid->h * j->m->symmetry[m].node;
         if (fabs(s->x[n][axis] - plane) < CUT * (double)grid->h) normal[axis] = 0, cut = true;
     }
     return cut && dot(normal, normal) < CUT * CUT;

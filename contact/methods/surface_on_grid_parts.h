@@ -14,7 +14,7 @@
 #include "grid/bspline.h"
 #include "mpm/mpm_body.h"
 
-// What a surface node gives to a node of the grid, itself or, by a mirror, its image.
+// What a surface node gives to a node of the grid, itself or, by a symmetry plane, its image.
 typedef struct link {
     int32_t surface, contact;
     double weight;
@@ -32,7 +32,7 @@ typedef struct contact {
     int32_t mpm, fem, slot, node, number; // number: of the node in its grid
     int32_t leader, next;                 // contacts at one grid node: the first of them has its velocity; -1
     int32_t first, count;                 // links, in by_contact
-    int8_t across[3];                     // 0 where a mirror plane through the node lets nothing move
+    int8_t across[3];                     // 0 where a symmetry plane through the node lets nothing move
     brunt_pair *pair;
     real *at;
     double x[3], mass, area; // of the mesh: [kg], [m^2]
@@ -100,8 +100,8 @@ static inline bool make_unit(double n[3]) {
 }
 
 // Room for one more, keeping what is there.
-#define GROW(w, array, what, error) BRUNT_ROOM_MORE((w)->array, what, error)
-#define RESERVE(w, array, count, what, error) BRUNT_ROOM((w)->array, (size_t)(count), 0, what, error)
+#define GROW(w, array, what, error) BRUNT_CAPACITY_MORE((w)->array, what, error)
+#define RESERVE(w, array, count, what, error) BRUNT_CAPACITY((w)->array, (size_t)(count), 0, what, error)
 
 static inline bool overlap(const double low[3], const double high[3], const double low2[3], const double high2[3]) {
     for (int a = 0; a < 3; a++)
@@ -119,11 +119,11 @@ typedef struct slot_cache {
     int32_t coord[3], slot;
     bool is;
 } slot_cache;
-bool brunt_surface_on_grid_place(const brunt_grid *grid, const int32_t at[3], slot_cache *cached, int32_t *slot,
-                                 int *node);
+bool brunt_surface_on_grid_node(const brunt_grid *grid, const int32_t at[3], slot_cache *cached, int32_t *slot,
+                                int *node);
 
 // --- surface_on_grid_gap.c: normal and gap at each of them
 // Normals and gaps of all contacts of body b, mesh after mesh. BRUNT_OK, or BRUNT_FAILED: out of memory.
 int brunt_surface_on_grid_look(job *j, int b, brunt_error *error);
-// A node behind a mirror plane sees few particles, or none: it has what its image has, reflected.
+// A node behind a symmetry plane sees few particles, or none: it has what its image has, reflected.
 void brunt_surface_on_grid_reflect(const job *j);

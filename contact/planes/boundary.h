@@ -14,14 +14,14 @@ typedef struct brunt_particle_dofs brunt_particle_dofs; // search/particle_dof.h
 struct brunt_boundary {
     char name[BRUNT_NAME_LENGTH];
     const brunt_boundary_kind *kind;
-    brunt_plane_def plane;        // of a plane; normal of unit length
-    brunt_region_def where;       // of a region; shares the world's definition
-    const brunt_group_def *group; // of a group, NULL for the others
-    brunt_boundary_def given;     // of a kind that lists its keys; shares the world's definition
-    int body;                     // the one it acts on, -1: all, or that of its group
-    int mirror;                   // index of the mirror plane it has become, -1
-    brunt_impulse_account action; // since the start
-    brunt_impulse_account last;   // of the last step
+    brunt_plane_def plane;         // of a plane; normal of unit length
+    brunt_region_def where;        // of a region; shares the world's definition
+    const brunt_group_def *group;  // of a group, NULL for the others
+    brunt_boundary_def given;      // of a kind that lists its keys; shares the world's definition
+    int body;                      // the one it acts on, -1: all, or that of its group
+    int symmetry_plane;            // index of the symmetry plane it has become, -1
+    brunt_impulse_account account; // since the start
+    brunt_impulse_account last;    // of the last step
 };
 
 // What makes boundaries of a definition.
@@ -74,8 +74,9 @@ struct brunt_boundary_kind {
     const double *(*velocity)(const brunt_boundary *b);
     // Gives velocities to nodes of the grid of a body of material points.
     void (*hold_grid)(brunt_body *body, brunt_boundary *b, double time);
-    // Implicit steps: the components (bits) of a node at x (within `slack` [m]) that it holds, and their velocity.
-    unsigned (*hold_at)(const brunt_boundary *b, int dim, double time, const double x[3], double slack, double v[3]);
+    // Implicit steps: the components (bits) of a node at x (within `tolerance` [m]) that it holds, and their velocity.
+    unsigned (*hold_at)(const brunt_boundary *b, int dim, double time, const double x[3], double tolerance,
+                        double v[3]);
     bool holds_meshes; // ... of meshes as well
     // Whether mesh k of the surface is near it, and what it does to the nodes of near ones: BRUNT_OK, or BRUNT_FAILED:
     // out of memory.

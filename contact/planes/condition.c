@@ -9,9 +9,9 @@
 
 const brunt_condition_row brunt_conditions[] = {
     [BRUNT_STICK] = {.sticks = true},
-    [BRUNT_SLIP] = {.mirrors = true, .of_fluids = LEAK},
+    [BRUNT_SLIP] = {.symmetry = true, .of_fluids = LEAK},
     [BRUNT_SEPARATE] = {.pushes = true, .of_fluids = TEAR},
-    [BRUNT_SYMMETRY] = {.mirrors = true, .images = true},
+    [BRUNT_SYMMETRY] = {.symmetry = true, .images = true},
 };
 const int brunt_condition_count = sizeof brunt_conditions / sizeof *brunt_conditions;
 

@@ -6,14 +6,14 @@
 
 #include "base/array.h"
 
-void brunt_condition_reflect(bool rings, const double place[3], double h, double now[3]) {
-    if (!rings) return;
-    if (place[0] < -1e-9 * h) now[0] = -now[0];
-    if (fabs(place[0]) <= 1e-9 * h) now[0] = 0;
+void brunt_condition_reflect(bool axisymmetric, const double position[3], double h, double now[3]) {
+    if (!axisymmetric) return;
+    if (position[0] < -1e-9 * h) now[0] = -now[0];
+    if (fabs(position[0]) <= 1e-9 * h) now[0] = 0;
 }
 
-void brunt_condition_hold(brunt_body *body, const brunt_slot *slot, int node, const double now[3],
-                          const double support[3], unsigned held, brunt_impulse_account *account) {
+void brunt_condition_hold(brunt_body *body, const brunt_slot *slot, int node, const double now[3], const double rest[3],
+                          unsigned held, brunt_impulse_account *account) {
     const brunt_grid *grid = &body->grid;
     real *n = brunt_slot_nodes(grid, (int32_t)(slot - grid->slots)) + node * BRUNT_NODE_REALS;
     double x[3], J[3] = {0}, old[3] = {0};
@@ -25,12 +25,12 @@ void brunt_condition_hold(brunt_body *body, const brunt_slot *slot, int node, co
         old[a] = (double)n[BRUNT_NODE_OLD + a];
         n[BRUNT_NODE_VELOCITY + a] = (real)now[a];
     }
-    brunt_impulse_account_book(account, &account->normal_loss, J, x, old, now, support);
+    brunt_impulse_account_record(account, &account->normal_loss, J, x, old, now, rest);
 }
 
 int brunt_condition_clear(brunt_body *body, brunt_error *error) {
     const size_t bytes = (size_t)body->grid.slot_count * BRUNT_BLOCK_NODES;
-    if (BRUNT_ROOM(body->grid.held, bytes, 0, "grid nodes under conditions", error)) return BRUNT_FAILED;
+    if (BRUNT_CAPACITY(body->grid.held, bytes, 0, "grid nodes under conditions", error)) return BRUNT_FAILED;
     memset(body->grid.held, 0, bytes);
     return BRUNT_OK;
 }

@@ -13,7 +13,7 @@
 int brunt_condition_clear(brunt_body *body, brunt_error *error);
 // Nodes beyond the axis of rings are the images of those before it: they get what those get, mirrored. On the axis
 // there is no radial velocity.
-void brunt_condition_reflect(bool rings, const double place[3], double h, double now[3]);
-// Gives a node its velocity, holds components of it (bits), and books what moves at `support`.
-void brunt_condition_hold(brunt_body *body, const brunt_slot *slot, int node, const double now[3],
-                          const double support[3], unsigned held, brunt_impulse_account *account);
+void brunt_condition_reflect(bool axisymmetric, const double position[3], double h, double now[3]);
+// Gives a node its velocity, holds components of it (bits), and records what moves at `rest`.
+void brunt_condition_hold(brunt_body *body, const brunt_slot *slot, int node, const double now[3], const double rest[3],
+                          unsigned held, brunt_impulse_account *account);

@@ -1,4 +1,4 @@
-// Mirror planes. A body cut by a symmetry plane that runs through grid nodes is computed as the half of a whole: the
+// Symmetry planes. A body cut by a symmetry plane that runs through grid nodes is computed as the half of a whole: the
 // mirror image's particles would give the nodes exactly what the body gives to the mirrored nodes. So each node gets
 // its own sums plus the reflected sums of its partner, and node pairs stay each other's reflection from then on. The
 // spare real of a node keeps the mass that the body itself has there, for the energy and momentum ledgers.
@@ -25,18 +25,19 @@ static void sum_momentum(const real *n, const double x[3], int dim, double facto
     }
 }
 
-static void fold(brunt_body *body, const brunt_symmetry_plane *mirror, double taken, brunt_impulse_account *account) {
+static void fold(brunt_body *body, const brunt_symmetry_plane *symmetry_plane, double taken,
+                 brunt_impulse_account *account) {
     const brunt_grid *grid = &body->grid;
-    const int dim = grid->dim, axis = mirror->axis;
+    const int dim = grid->dim, axis = symmetry_plane->axis;
     double before[3] = {0}, after[3] = {0}, turn_before[3] = {0}, turn_after[3] = {0};
     for (int32_t s = 0; s < grid->slot_count; s++) {
         const brunt_slot *slot = &grid->slots[s];
         int32_t first = slot->coord[axis] * grid->side;
-        if (first > mirror->node || first + grid->side <= mirror->node - LAYERS) continue;
+        if (first > symmetry_plane->node || first + grid->side <= symmetry_plane->node - LAYERS) continue;
         for (int node = 0; node < BRUNT_BLOCK_NODES; node++) {
             int local[3];
             brunt_node_local(grid, node, local);
-            int depth = mirror->node - (first + local[axis]);
+            int depth = symmetry_plane->node - (first + local[axis]);
             if (depth < 0 || depth > LAYERS) continue;
             real *n = brunt_slot_nodes(grid, s) + node * BRUNT_NODE_REALS;
             int32_t at[3] = {0, 0, 0};
@@ -51,11 +52,11 @@ static void fold(brunt_body *body, const brunt_symmetry_plane *mirror, double ta
                 sum_momentum(n, x, dim, n[0] > 0 ? (double)(n[BRUNT_NODE_SPARE] / n[0]) : 0, taken, after, turn_after);
                 continue;
             }
-            at[axis] = mirror->node + depth;
+            at[axis] = symmetry_plane->node + depth;
             y[axis] = grid->origin[axis] + (double)grid->h * at[axis];
             real *m = brunt_grid_node(grid, at);
             if (!m || (n[0] <= 0 && m[0] <= 0)) continue;
-            // The share of a node's own mass in what earlier mirrors have put there.
+            // The share of a node's own mass in what earlier symmetry planes have put there.
             double own_n = n[0] > 0 ? (double)(n[BRUNT_NODE_SPARE] / n[0]) : 0,
                    own_m = m[0] > 0 ? (double)(m[BRUNT_NODE_SPARE] / m[0]) : 0;
             sum_momentum(n, x, dim, own_n, taken, before, turn_before);
@@ -73,18 +74,20 @@ static void fold(brunt_body *body, const brunt_symmetry_plane *mirror, double ta
     brunt_impulse_account_reaction(account, after, turn_after);
 }
 
-// ------------------------------------------------------------------------------------------ between two mirrors
+// ------------------------------------------------------------------------------------------ between two symmetry
+// planes
 
 static double own_share(const real *n) { return n[0] > 0 ? (double)(n[BRUNT_NODE_SPARE] / n[0]) : 0; }
 
-// What a mirror has added to a node goes on to the node's images by the other: that with the most mass has it all.
-static void share_sums(const brunt_body *body, const brunt_symmetry_plane mirrors[2], const int32_t at[3], double taken,
-                       double sums[4][3]) {
+// What a symmetry plane has added to a node goes on to the node's images by the other: that with the most mass has it
+// all.
+static void share_sums(const brunt_body *body, const brunt_symmetry_plane symmetry[2], const int32_t at[3],
+                       double taken, double sums[4][3]) {
     const brunt_grid *grid = &body->grid;
-    const int axis = mirrors[0].axis;
+    const int axis = symmetry[0].axis;
     int32_t image[BRUNT_MAX_IMAGES][3];
     real sign[BRUNT_MAX_IMAGES][3], *node[BRUNT_MAX_IMAGES];
-    const int count = brunt_symmetry_images(mirrors, 2, at, LAYERS, image, sign);
+    const int count = brunt_symmetry_images(symmetry, 2, at, LAYERS, image, sign);
     int from = 0;
     for (int i = 0; i < count; i++) {
         node[i] = brunt_grid_node(grid, image[i]);
@@ -105,12 +108,12 @@ static void share_sums(const brunt_body *body, const brunt_symmetry_plane mirror
     }
 }
 
-static void share_between(brunt_body *body, const brunt_symmetry_plane mirrors[2], double taken,
+static void share_between(brunt_body *body, const brunt_symmetry_plane symmetry[2], double taken,
                           brunt_impulse_account *account) {
     const brunt_grid *grid = &body->grid;
-    const int axis = mirrors[0].axis;
-    const int32_t least = (mirrors[0].node < mirrors[1].node ? mirrors[0] : mirrors[1]).node - LAYERS,
-                  most = (mirrors[0].node < mirrors[1].node ? mirrors[1] : mirrors[0]).node + LAYERS;
+    const int axis = symmetry[0].axis;
+    const int32_t least = (symmetry[0].node < symmetry[1].node ? symmetry[0] : symmetry[1]).node - LAYERS,
+                  most = (symmetry[0].node < symmetry[1].node ? symmetry[1] : symmetry[0]).node + LAYERS;
     double sums[4][3] = {{0}}; // linear and angular, before and after
     for (int32_t s = 0; s < grid->slot_count; s++) {
         const int32_t *coord = grid->slots[s].coord;
@@ -120,34 +123,35 @@ static void share_between(brunt_body *body, const brunt_symmetry_plane mirrors[2
             int32_t at[3] = {0};
             brunt_node_local(grid, node, local);
             for (int a = 0; a < grid->dim; a++) at[a] = coord[a] * grid->side + local[a];
-            if (at[axis] >= least && at[axis] <= most) share_sums(body, mirrors, at, taken, sums);
+            if (at[axis] >= least && at[axis] <= most) share_sums(body, symmetry, at, taken, sums);
         }
     }
     for (int a = 0; a < 3; a++) sums[2][a] -= sums[0][a], sums[3][a] -= sums[1][a];
     brunt_impulse_account_reaction(account, sums[2], sums[3]);
 }
 
-void brunt_symmetry_fold(brunt_body *body, const brunt_symmetry_plane *mirrors, int mirror_count, double taken,
+void brunt_symmetry_fold(brunt_body *body, const brunt_symmetry_plane *symmetry, int symmetry_count, double taken,
                          brunt_impulse_account *const *account) {
-    for (int m = 0; m < mirror_count; m++) {
-        fold(body, &mirrors[m], taken, account[m]);
+    for (int m = 0; m < symmetry_count; m++) {
+        fold(body, &symmetry[m], taken, account[m]);
         for (int k = 0; k < m; k++) {
-            const int32_t apart = mirrors[k].axis == mirrors[m].axis ? abs(mirrors[k].node - mirrors[m].node) : 0;
+            const int32_t apart = symmetry[k].axis == symmetry[m].axis ? abs(symmetry[k].node - symmetry[m].node) : 0;
             if (apart > 0 && apart <= 2 * LAYERS)
-                share_between(body, (brunt_symmetry_plane[2]){mirrors[k], mirrors[m]}, taken, account[k]);
+                share_between(body, (brunt_symmetry_plane[2]){symmetry[k], symmetry[m]}, taken, account[k]);
         }
     }
 }
 
 // ------------------------------------------------------------------------------------------ images
 
-// Adds the images of those there are by one mirror; where it goes through one, nothing moves them along its axis.
-static int add_images(const brunt_symmetry_plane *mirror, int near, int32_t image[BRUNT_MAX_IMAGES][3],
+// Adds the images of those there are by one symmetry plane; where it goes through one, nothing moves them along its
+// axis.
+static int add_images(const brunt_symmetry_plane *symmetry_plane, int near, int32_t image[BRUNT_MAX_IMAGES][3],
                       real sign[BRUNT_MAX_IMAGES][3], int count) {
-    const int axis = mirror->axis, had = count;
+    const int axis = symmetry_plane->axis, had = count;
     for (int k = 0; k < had && count < BRUNT_MAX_IMAGES; k++) {
         int32_t to[3] = {image[k][0], image[k][1], image[k][2]};
-        to[axis] = 2 * mirror->node - image[k][axis];
+        to[axis] = 2 * symmetry_plane->node - image[k][axis];
         if (abs(to[axis] - image[k][axis]) > 2 * near) continue;
         int found = 0;
         while (found < count && memcmp(image[found], to, sizeof to) != 0) found++;
@@ -161,14 +165,14 @@ static int add_images(const brunt_symmetry_plane *mirror, int near, int32_t imag
     return count;
 }
 
-int brunt_symmetry_images(const brunt_symmetry_plane *mirrors, int mirror_count, const int32_t node[3], int near,
+int brunt_symmetry_images(const brunt_symmetry_plane *symmetry, int symmetry_count, const int32_t node[3], int near,
                           int32_t image[BRUNT_MAX_IMAGES][3], real sign[BRUNT_MAX_IMAGES][3]) {
     int count = 1, before = 0;
     memcpy(image[0], node, sizeof image[0]);
     for (int a = 0; a < 3; a++) sign[0][a] = 1;
     while (count > before) {
         before = count;
-        for (int m = 0; m < mirror_count; m++) count = add_images(&mirrors[m], near, image, sign, count);
+        for (int m = 0; m < symmetry_count; m++) count = add_images(&symmetry[m], near, image, sign, count);
     }
     return count;
 }

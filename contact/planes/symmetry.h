@@ -4,23 +4,23 @@
 #include "contact/constraint/impulse_account.h"
 #include "mpm/mpm_body.h"
 
-// A mirror plane through grid nodes `node` along `axis`: symmetry, and slip walls that lie on a grid line.
+// A symmetry plane through grid nodes `node` along `axis`: symmetry, and slip planes that lie on a grid line.
 typedef struct brunt_symmetry_plane {
     int axis;
     int32_t node;
-    int wall; // -1: the axis of revolution of rings, which is there for every body and gives no impulse
+    int boundary; // -1: the axis of revolution of rings, which is there for every body and gives no impulse
 } brunt_symmetry_plane;
 
 enum { BRUNT_MAX_PLANES = 16 }; // of a world
 
-// Adds up the sums of every node and its images by the mirrors that act on a body, each with its account. `taken`: the
-// share of the grid's velocity that particles take over, 1 but for FLIP; the rest of what the mirrors do to the old
-// velocity never reaches them.
-void brunt_symmetry_fold(brunt_body *body, const brunt_symmetry_plane *mirrors, int mirror_count, double taken,
+// Adds up the sums of every node and its images by the symmetry planes that act on a body, each with its account.
+// `taken`: the share of the grid's velocity that particles take over, 1 but for FLIP; the rest of what the symmetry
+// planes do to the old velocity never reaches them.
+void brunt_symmetry_fold(brunt_body *body, const brunt_symmetry_plane *symmetry, int symmetry_count, double taken,
                          brunt_impulse_account *const *account);
-// Images of a node coordinate under the mirrors it is near to (within the kernel), itself first, and the images of
-// these, as between two mirrors; `sign` of each velocity component, 0 across a mirror that one of them lies on. The
-// same nodes whichever of them is given.
-enum { BRUNT_MAX_IMAGES = 27 }; // three along an axis: of two mirrors, each within two nodes
-int brunt_symmetry_images(const brunt_symmetry_plane *mirrors, int mirror_count, const int32_t node[3], int near,
+// Images of a node coordinate under the symmetry planes it is near to (within the kernel), itself first, and the images
+// of these, as between two symmetry planes; `sign` of each velocity component, 0 across a symmetry plane that one of
+// them lies on. The same nodes whichever of them is given.
+enum { BRUNT_MAX_IMAGES = 27 }; // three along an axis: of two symmetry planes, each within two nodes
+int brunt_symmetry_images(const brunt_symmetry_plane *symmetry, int symmetry_count, const int32_t node[3], int near,
                           int32_t image[BRUNT_MAX_IMAGES][3], real sign[BRUNT_MAX_IMAGES][3]);

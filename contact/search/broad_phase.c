@@ -80,8 +80,8 @@ static int find_pairs(const brunt_contact_context *m, brunt_node_to_facet *f, br
             if (!overlap(&f->bodies.box[i], &f->bodies.box[k], 2 * f->bodies.range) ||
                 !meets(m, &f->bodies.box[i], &f->bodies.box[k]))
                 continue;
-            if (BRUNT_ROOM(f->bodies.pair, (size_t)f->bodies.pair_count + 1, (size_t)f->bodies.pair_count,
-                           "pairs of bodies that are near each other", error))
+            if (BRUNT_CAPACITY(f->bodies.pair, (size_t)f->bodies.pair_count + 1, (size_t)f->bodies.pair_count,
+                               "pairs of bodies that are near each other", error))
                 return BRUNT_FAILED;
             f->bodies.pair[f->bodies.pair_count++] = (near_pair){i, k};
         }
@@ -114,14 +114,15 @@ static bool all_finite(const brunt_node_to_facet *f) {
     return true;
 }
 
-int brunt_broad_phase(const brunt_contact_context *m, brunt_node_to_facet **facing, bool *far, brunt_error *error) {
+int brunt_broad_phase(const brunt_contact_context *m, brunt_node_to_facet **node_to_facet, bool *far,
+                      brunt_error *error) {
     brunt_contact_surface *s = m->surface;
     brunt_body *mpm = m->mpm;
-    const brunt_boundary *walls = m->walls;
-    const int mpm_count = m->mpm_count, wall_count = m->wall_count;
+    const brunt_boundary *boundaries = m->boundaries;
+    const int mpm_count = m->mpm_count, boundary_count = m->boundary_count;
     *far = false;
-    if (brunt_node_to_facet_make(facing, mpm_count, s->node_count, error)) return BRUNT_FAILED;
-    brunt_node_to_facet *f = *facing;
+    if (brunt_node_to_facet_make(node_to_facet, mpm_count, s->node_count, error)) return BRUNT_FAILED;
+    brunt_node_to_facet *f = *node_to_facet;
     // Nothing may pass anything unseen: the reach covers twice the fastest motion of a step, against the frame of all.
     double fastest = 0, spacing = 0;
     for (int k = 0; k < s->fem_count; k++) fastest = fmax(fastest, s->motion.speed[k]);
@@ -130,13 +131,13 @@ int brunt_broad_phase(const brunt_contact_context *m, brunt_node_to_facet **faci
         spacing = fmax(spacing, mpm[k].spacing);
         fastest = fmax(fastest, (double)mpm[k].speed + frame);
     }
-    double walls_speed = 0;
-    for (int w = 0; w < wall_count; w++)
-        if (walls[w].kind->near_surface) {
-            const double *v = walls[w].kind->velocity(&walls[w]);
-            walls_speed = fmax(walls_speed, sqrt(dot(v, v)));
+    double boundaries_speed = 0;
+    for (int w = 0; w < boundary_count; w++)
+        if (boundaries[w].kind->near_surface) {
+            const double *v = boundaries[w].kind->velocity(&boundaries[w]);
+            boundaries_speed = fmax(boundaries_speed, sqrt(dot(v, v)));
         }
-    f->bodies.plane_travel = (fastest + frame + walls_speed) * m->dt + 0.5 * s->membrane.thickest;
+    f->bodies.plane_travel = (fastest + frame + boundaries_speed) * m->dt + 0.5 * s->membrane.thickest;
     f->bodies.travel = 2 * fastest * m->dt + spacing + s->membrane.thickest;
     f->bodies.range = fmax(fmax(RANGE * s->mean_edge + spacing + s->membrane.thickest, f->bodies.travel), m->look);
     if (find_boxes(m, mpm, mpm_count, f, error)) return BRUNT_FAILED;
@@ -145,10 +146,11 @@ int brunt_broad_phase(const brunt_contact_context *m, brunt_node_to_facet **faci
     for (int k = 0; k < s->fem_count; k++) {
         int32_t box = f->bodies.box_of[k];
         s->active[k] = f->bodies.first[box + 1] > f->bodies.first[box];
-        for (int w = 0; w < wall_count && !s->active[k]; w++)
-            s->active[k] =
-                walls[w].kind->near_surface && brunt_boundary_acts_on(&walls[w], s->fem[k]->index) &&
-                walls[w].kind->near_surface(s, k, &walls[w], m->time, f->bodies.plane_travel + 1e-6 * s->mean_edge);
+        for (int w = 0; w < boundary_count && !s->active[k]; w++)
+            s->active[k] = boundaries[w].kind->near_surface &&
+                           brunt_boundary_acts_on(&boundaries[w], s->fem[k]->index) &&
+                           boundaries[w].kind->near_surface(s, k, &boundaries[w], m->time,
+                                                            f->bodies.plane_travel + 1e-6 * s->mean_edge);
     }
     return BRUNT_OK;
 }

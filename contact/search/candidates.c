@@ -5,7 +5,7 @@
 static const double ASKEW = -0.3;     // ... or, where nothing opposed is within ...
 static const double CLOSE = 0.25;     // ... so many mean edges, the least one with the normal of a facet
 static const double SAME_SLOPE = 0.7; // cosine of normals from which on two facets of a membrane are one slope
-static const double SLACK = 0.125;    // mean edges: facets so much further than the nearest are looked at closely, too
+static const double MARGIN = 0.125;   // mean edges: facets so much further than the nearest are looked at closely, too
 static const double BEHIND = 0.05; // mean edges: how far behind a facet of a eroded surface a place is still before it
 static const double VALLEY = 0.05; // mean edges: how far before one slope the middle of the other is, in a valley
 
@@ -61,14 +61,14 @@ static bool is_among(int32_t body, const int32_t *list, int32_t count) {
 // The two nearest facets of all, whichever way they face.
 typedef struct two_nearest {
     int32_t face;
-    double first, second; // squares of their distances
-    double facing;        // [m] how far the place is before or behind the nearest one
+    double first, second;   // squares of their distances
+    double normal_distance; // [m] how far the place is before or behind the nearest one
 } two_nearest;
 
 // Notes a facet. Of those that are equally near, as at an edge or a corner, the one that most faces the place tells on
 // which side of the surface that is, whatever their order.
 static void add_nearest(two_nearest *two, const brunt_closest *at, int32_t face) {
-    const double facing = fabs(dot(at->normal, at->d)), same = two->face < 0 ? 0 : 1e-9 * two->first;
+    const double normal_distance = fabs(dot(at->normal, at->d)), same = two->face < 0 ? 0 : 1e-9 * two->first;
     if (at->square >= two->first + same) {
         two->second = fmin(two->second, at->square);
         return;
@@ -76,7 +76,7 @@ static void add_nearest(two_nearest *two, const brunt_closest *at, int32_t face)
     const bool nearer = at->square < two->first - same;
     two->second = fmax(two->first, at->square);
     two->first = fmin(two->first, at->square);
-    if (nearer || facing > two->facing) two->face = face, two->facing = facing;
+    if (nearer || normal_distance > two->normal_distance) two->face = face, two->normal_distance = normal_distance;
 }
 
 static bool in_patch(const search_query *l, int32_t face) {
@@ -97,8 +97,8 @@ typedef struct facet_search {
     double least;
     const int32_t *list;  // bodies, so many
     int32_t count, guess; // a face that may well be the nearest, -1; it saves looking closely at most others
-    double slack;
-    two_nearest *all; // notes the two nearest of any direction, as far as `slack` beyond the nearest; may be NULL
+    double margin;
+    two_nearest *all; // notes the two nearest of any direction, as far as `margin` beyond the nearest; may be NULL
 } facet_search;
 
 // The nearest facets in a cell of each body that is looked for. How many bodies. `membranes`: whether there are any;
@@ -108,7 +108,7 @@ static inline __attribute__((always_inline)) int find_nearest(const brunt_contac
                                                               const facet_search what, bool membranes,
                                                               nearest best[BRUNT_MAX_CANDIDATES]) {
     const double *const normal = what.normal;
-    const double least = what.least, slack = what.slack;
+    const double least = what.least, margin = what.margin;
     const int32_t guess = what.guess;
     two_nearest *const all = what.all;
     const double range2 = f->bodies.range * f->bodies.range;
@@ -124,9 +124,9 @@ static inline __attribute__((always_inline)) int find_nearest(const brunt_contac
         const bool membrane = membranes && s->membrane.side[other].faces;
         int b = 0;
         while (b < bodies && best[b].body != other) b++;
-        double reach = b < bodies ? best[b].root : f->bodies.range;
-        if (guess >= 0 && bound < reach && s->face_body[guess] == other) reach = bound;
-        if (!near_box(s->face_box[face], l->x, reach + slack)) continue;
+        double extent = b < bodies ? best[b].root : f->bodies.range;
+        if (guess >= 0 && bound < extent && s->face_body[guess] == other) extent = bound;
+        if (!near_box(s->face_box[face], l->x, extent + margin)) continue;
         const double cosine = normal ? -dot(s->face_normal[face], normal) : 1;
         bool faces = !normal || cosine > least || (membrane && -cosine > least);
         if ((!faces && !all) || !is_among(other, what.list, what.count)) continue;
@@ -254,22 +254,22 @@ static inline __attribute__((always_inline)) void find_candidates(const brunt_co
                                                                   const brunt_node_to_facet *f, const search_query *l,
                                                                   int32_t guess, bool membranes, candidate_list *out) {
     const brunt_contact_surface *s = m->surface;
-    nearest facing[BRUNT_MAX_CANDIDATES], any[BRUNT_MAX_CANDIDATES];
+    nearest opposed[BRUNT_MAX_CANDIDATES], any[BRUNT_MAX_CANDIDATES];
     two_nearest two;
-    const double close = CLOSE * s->mean_edge, slack = SLACK * s->mean_edge;
+    const double close = CLOSE * s->mean_edge, margin = MARGIN * s->mean_edge;
     out->count = 0;
     if (guess >= 0 && (!is_among(s->face_body[guess], l->touch, l->touches) ||
                        (l->normal && -dot(s->face_normal[guess], l->normal) <= OPPOSED)))
         guess = -1;
     if (membranes && guess >= 0 && is_membrane(s, s->face_body[guess])) guess = -1; // it may be on the other side now
-    const facet_search facing_it = {l->normal, OPPOSED, l->touch, l->touches, guess, slack, &two};
-    int bodies = find_nearest(s, f, l, facing_it, membranes, facing), unresolved = 0;
+    const facet_search opposed_to_it = {l->normal, OPPOSED, l->touch, l->touches, guess, margin, &two};
+    int bodies = find_nearest(s, f, l, opposed_to_it, membranes, opposed), unresolved = 0;
     int32_t entered[BRUNT_MAX_NEAR];
     for (int32_t k = 0; l->normal && k < l->enters; k++) {
         bool resolved = false;
         for (int b = 0; b < bodies; b++)
             resolved =
-                resolved || (facing[b].body == l->enter[k] && facing[b].count && facing[b].square <= close * close);
+                resolved || (opposed[b].body == l->enter[k] && opposed[b].count && opposed[b].square <= close * close);
         if (!resolved) entered[unresolved++] = l->enter[k];
     }
     int all = unresolved
@@ -280,7 +280,7 @@ static inline __attribute__((always_inline)) void find_candidates(const brunt_co
         if (!any[b].count || !brunt_nearest_behind(s, &any[b], l->normal, least, &out->candidate[out->count])) continue;
         out->count++;
         for (int k = 0; k < bodies; k++)
-            if (facing[k].body == any[b].body) facing[k].count = 0;
+            if (opposed[k].body == any[b].body) opposed[k].count = 0;
     }
     // What is before the nearest facet of all is outside, even if the nearest facet that faces it is seen from
     // behind. A membrane has no inside: it tells nothing of the others.
@@ -290,14 +290,14 @@ static inline __attribute__((always_inline)) void find_candidates(const brunt_co
     bool inside = out->count > 0;
     for (int b = 0; b < bodies && out->count < BRUNT_MAX_CANDIDATES; b++) {
         facet_candidate *h = &out->candidate[out->count];
-        if (!facing[b].count || !brunt_nearest_facing(s, &facing[b], l->normal, h)) continue;
+        if (!opposed[b].count || !brunt_nearest_opposed(s, &opposed[b], l->normal, h)) continue;
         if (h->gap < 0 && outside && h->body == s->face_body[two.face]) continue;
         if (membranes && h->gap < 0 && l->normal && (by_membrane || l->membrane) && !is_membrane(s, h->body) &&
-            other_way_out(m, f, l, h->body, facing[b].square))
+            other_way_out(m, f, l, h->body, opposed[b].square))
             continue;
         inside = inside || h->gap < 0;
         out->count++;
-        if (!is_eroded(s, h->body)) brunt_nearest_valley(s, &facing[b], l->normal, out);
+        if (!is_eroded(s, h->body)) brunt_nearest_valley(s, &opposed[b], l->normal, out);
     }
     if (membranes) add_slopes(m, f, l, out);
     if (s->renewal.eroded) add_eroded(m, f, l, out);
@@ -305,7 +305,7 @@ static inline __attribute__((always_inline)) void find_candidates(const brunt_co
     out->second = 0;
     if (plain && out->count == 1 && two.face == out->candidate[0].face && !s->renewal.eroded)
         out->second =
-            fmin(fmin(f->bodies.range, sqrt(two.second)), out->distance + slack) * (1 - 1e-8) - TOUCH * s->mean_edge;
+            fmin(fmin(f->bodies.range, sqrt(two.second)), out->distance + margin) * (1 - 1e-8) - TOUCH * s->mean_edge;
     if (membranes) thicken(s, l->half, out);
 }
 
@@ -329,7 +329,7 @@ bool brunt_candidates_still_nearest(const brunt_contact_context *m, const brunt_
     if (is_membrane(s, one.body) && !(dot(at.normal, at.d) > 0)) return false;
     const double square = at.square, close = CLOSE * s->mean_edge;
     if (square >= least * least || square > close * close || square > f->bodies.range * f->bodies.range) return false;
-    out->count = brunt_nearest_facing(s, &one, normal, &out->candidate[0]) ? 1 : 0;
+    out->count = brunt_nearest_opposed(s, &one, normal, &out->candidate[0]) ? 1 : 0;
     if (s->membrane.side) thicken(s, s->membrane.side[s->body[n]].half, out);
     return true;
 }

@@ -5,7 +5,8 @@
 int brunt_distance_cache_fit(brunt_node_to_facet *f, int32_t nodes, int32_t kept, brunt_error *error) {
     return RESERVE(&f->nodes, count, nodes + 1, "nodes that look for facets", error) ||
                    RESERVE(&f->nodes, candidate, BRUNT_MAX_CANDIDATES * (nodes + 1), "facets near nodes", error) ||
-                   BRUNT_ROOM(f->cache.nearest, (size_t)nodes + 1, (size_t)kept, "nearest facets of nodes", error) ||
+                   BRUNT_CAPACITY(f->cache.nearest, (size_t)nodes + 1, (size_t)kept, "nearest facets of nodes",
+                                  error) ||
                    RESERVE(&f->cache, node, nodes + 1, "distances of nodes", error)
                ? BRUNT_FAILED
                : BRUNT_OK;
@@ -47,11 +48,11 @@ void brunt_node_to_facet_state_get(const brunt_node_to_facet *f, const brunt_con
         }
 }
 
-int brunt_node_to_facet_state_set(brunt_node_to_facet **facing, brunt_contact_surface *s, int mpm_count,
+int brunt_node_to_facet_state_set(brunt_node_to_facet **node_to_facet, brunt_contact_surface *s, int mpm_count,
                                   const double *in, brunt_error *error) {
-    if (brunt_surface_renew(s, true, error) || brunt_node_to_facet_make(facing, mpm_count, s->node_count, error))
+    if (brunt_surface_renew(s, true, error) || brunt_node_to_facet_make(node_to_facet, mpm_count, s->node_count, error))
         return BRUNT_FAILED;
-    brunt_node_to_facet *f = *facing;
+    brunt_node_to_facet *f = *node_to_facet;
     if (brunt_distance_cache_fit(f, s->node_count, 0, error)) return BRUNT_FAILED;
     f->cells.made = f->cells.made && !s->renewal.change.any;
     f->cache.motion = *in++;

@@ -151,32 +151,33 @@ static int by_low(const void *a, const void *b) {
 }
 
 // What two bodies share, and its longest axis.
-typedef struct shared_room {
+typedef struct shared_box {
     double low[3], high[3];
     int axis;
-} shared_room;
+} shared_box;
 
 // The room that two bodies share within `travel`. Whether there is any.
-static bool find_room(const body_box *a, const body_box *b, double travel, shared_room *room) {
-    double *low = room->low, *high = room->high;
-    room->axis = 0;
+static bool find_shared_box(const body_box *a, const body_box *b, double travel, shared_box *shared) {
+    double *low = shared->low, *high = shared->high;
+    shared->axis = 0;
     for (int k = 0; k < 3; k++) {
         low[k] = fmax(a->low[k], b->low[k]) - travel, high[k] = fmin(a->high[k], b->high[k]) + travel;
         if (low[k] > high[k]) return false;
-        if (high[k] - low[k] > high[room->axis] - low[room->axis]) room->axis = k;
+        if (high[k] - low[k] > high[shared->axis] - low[shared->axis]) shared->axis = k;
     }
     return true;
 }
 
 // Features of body k in a room, by their low ends; `longest`: of their spans, and how deep they are met. Their count.
-static int32_t list_spans(const near_edges *edges, int k, const shared_room *room, edge_span *out, double *longest) {
-    const int axis = room->axis;
+static int32_t list_spans(const near_edges *edges, int k, const shared_box *shared, edge_span *out, double *longest) {
+    const int axis = shared->axis;
     int32_t count = 0;
     *longest = 0;
     for (int32_t i = edges->feature_first[2 * k]; i < edges->feature_first[2 * k + 1]; i++) {
         const feature_edge *edge = &edges->feature[i];
         bool outside = false;
-        for (int a = 0; a < 3; a++) outside = outside || edge->low[a] > room->high[a] || edge->high[a] < room->low[a];
+        for (int a = 0; a < 3; a++)
+            outside = outside || edge->low[a] > shared->high[a] || edge->high[a] < shared->low[a];
         if (outside) continue;
         *longest = fmax(*longest, edge->high[axis] - edge->low[axis] + edge->depth);
         out[count++] = (edge_span){edge->low[axis], edge->high[axis], i};
@@ -194,16 +195,16 @@ static bool edges_near(const feature_edge *a, const feature_edge *b, double trav
 
 // Meshes a and b of the surface, a before b, in the room that they share.
 static int bodies_meet(const brunt_contact_context *m, brunt_node_to_facet *f, const int fem[2],
-                       const shared_room *room, brunt_constraint_set *constraints, brunt_error *error) {
+                       const shared_box *shared, brunt_constraint_set *constraints, brunt_error *error) {
     near_edges *edges = &f->edges;
     const double travel = f->bodies.travel;
     double longest, unused;
     if (RESERVE(edges, span, edges->feature_count + 1, "edges that meet", error)) return BRUNT_FAILED;
     edge_span *const a = edges->span;
-    const int32_t a_count = list_spans(edges, fem[0], room, a, &unused);
+    const int32_t a_count = list_spans(edges, fem[0], shared, a, &unused);
     if (!a_count) return BRUNT_OK;
     edge_span *const b = a + a_count;
-    const int32_t b_count = list_spans(edges, fem[1], room, b, &longest);
+    const int32_t b_count = list_spans(edges, fem[1], shared, b, &longest);
     for (int32_t i = 0, first = 0; i < a_count; i++) {
         const feature_edge *slave = &edges->feature[a[i].feature];
         while (first < b_count && b[first].low < a[i].low - longest - travel) first++;
@@ -229,12 +230,12 @@ int brunt_edge_edge_find(const brunt_contact_context *m, brunt_node_to_facet *f,
     for (int32_t p = 0; p < f->bodies.pair_count; p++) {
         const body_box *a = &f->bodies.box[f->bodies.pair[p].a], *b = &f->bodies.box[f->bodies.pair[p].b];
         if (a->fem < 0 || b->fem < 0 || a == b) continue;
-        shared_room room;
-        if (!find_room(a, b, f->bodies.travel, &room)) continue;
+        shared_box shared;
+        if (!find_shared_box(a, b, f->bodies.travel, &shared)) continue;
         const int fem[2] = {a->fem < b->fem ? a->fem : b->fem, a->fem < b->fem ? b->fem : a->fem};
         if (brunt_feature_edges_list(f, s, fem[0], error) || brunt_feature_edges_list(f, s, fem[1], error))
             return BRUNT_FAILED;
-        if (bodies_meet(m, f, fem, &room, constraints, error)) return BRUNT_FAILED;
+        if (bodies_meet(m, f, fem, &shared, constraints, error)) return BRUNT_FAILED;
     }
     return BRUNT_OK;
 }

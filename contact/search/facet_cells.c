@@ -5,7 +5,7 @@ static const double MARGIN = 0.125; // mean edges: how far facets may move befor
 static const double CELL = 0.5;     // mean edges: of the cells that facets are found in ...
 static const double COARSE = 0.25;  // ... of how far they are looked for, where all is fast
 
-bool brunt_broad_phase_in_reach(const brunt_node_to_facet *f, int32_t box, const double low[3], const double high[3],
+bool brunt_broad_phase_in_range(const brunt_node_to_facet *f, int32_t box, const double low[3], const double high[3],
                                 double by) {
     for (int32_t q = f->bodies.first[box]; q < f->bodies.first[box + 1]; q++) {
         const body_box *other = &f->bodies.box[f->bodies.list[q]];
@@ -45,7 +45,7 @@ static int list_facets(const brunt_contact_context *m, brunt_node_to_facet *f, b
             double low[3], high[3];
             int32_t from[3], to[3];
             face_bounds(s, face, low, high);
-            if (!brunt_broad_phase_in_reach(f, f->bodies.box_of[k], low, high, 2 * by)) continue;
+            if (!brunt_broad_phase_in_range(f, f->bodies.box_of[k], low, high, 2 * by)) continue;
             if (list && s->dim == 3 && brunt_feature_edges_add(f, s, k, face, error)) return BRUNT_FAILED;
             cell_range(f, low, high, by, from, to);
             for (int32_t x = from[0]; x <= to[0]; x++)

@@ -46,7 +46,7 @@ int brunt_feature_edges_add(brunt_node_to_facet *f, const brunt_contact_surface 
         const int32_t other = face_beyond(s, p, q);
         if (membrane ? other != -1 : other < 0) continue;
         const size_t used = (size_t)f->edges.near_count;
-        if (BRUNT_ROOM(f->edges.near, used + 1, used, "edges near other bodies", error)) return BRUNT_FAILED;
+        if (BRUNT_CAPACITY(f->edges.near, used + 1, used, "edges near other bodies", error)) return BRUNT_FAILED;
         f->edges.near[f->edges.near_count++] = (near_edge){{p, q}, {face, other}};
     }
     range[1] = f->edges.near_count;
@@ -94,7 +94,7 @@ int brunt_feature_edges_list(brunt_node_to_facet *f, const brunt_contact_surface
     for (int32_t i = edges->first[2 * k]; i < edges->first[2 * k + 1]; i++) {
         if (!is_feature(s, &edges->near[i])) continue;
         const size_t used = (size_t)edges->feature_count;
-        if (BRUNT_ROOM(edges->feature, used + 1, used, "edges that meet", error)) return BRUNT_FAILED;
+        if (BRUNT_CAPACITY(edges->feature, used + 1, used, "edges that meet", error)) return BRUNT_FAILED;
         edges->feature[edges->feature_count++] = feature_of(s, &edges->near[i]);
     }
     edges->feature_first[2 * k + 1] = edges->feature_count;

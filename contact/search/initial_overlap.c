@@ -19,7 +19,7 @@ static const double RIM = 1e-6;       // ... and share of a triangle that is its
 static const double NEXT = 1.25;      // edges: nodes so near to a membrane tell on which sides of it a body is
 static const double SPACING = 0.5;    // of the other body's elements: how close a long facet is looked at
 static const double FARTHEST = 1e150; // [m] squares of distances are still numbers
-enum { MOST_PIECES = 64 };
+enum { PIECE_LIMIT = 64 };
 
 static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
@@ -57,23 +57,23 @@ static bool holds(const box *b, const double x[3]) {
 
 // A room in cells, with what reaches into each.
 typedef struct cells {
-    box room;
+    box bounds;
     double edge;
     int32_t n[3], count;
     int32_t *first, *item;
     size_t first_capacity, item_capacity;
 } cells;
 
-static void size_cells(cells *c, const box *room, double edge, int32_t items) {
-    c->room = *room;
+static void size_cells(cells *c, const box *bounds, double edge, int32_t items) {
+    c->bounds = *bounds;
     double widest = 0;
-    for (int a = 0; a < 3; a++) widest = fmax(widest, room->high[a] - room->low[a]);
+    for (int a = 0; a < 3; a++) widest = fmax(widest, bounds->high[a] - bounds->low[a]);
     c->edge = widest < FARTHEST ? fmax(edge, 1e-9 * widest) : INFINITY; // one cell
     c->edge = c->edge > 0 ? c->edge : 1;
     for (;; c->edge *= 1.25) {
         double count = 1;
         for (int a = 0; a < 3; a++) {
-            c->n[a] = isinf(c->edge) ? 1 : (int32_t)floor((room->high[a] - room->low[a]) / c->edge) + 1;
+            c->n[a] = isinf(c->edge) ? 1 : (int32_t)floor((bounds->high[a] - bounds->low[a]) / c->edge) + 1;
             count *= c->n[a];
         }
         if (!(count > 4.0 * items + 64)) break;
@@ -82,7 +82,7 @@ static void size_cells(cells *c, const box *room, double edge, int32_t items) {
 }
 
 static int32_t cell_along(const cells *c, int a, double x) {
-    return (int32_t)fmin(fmax(floor((x - c->room.low[a]) / c->edge), 0), c->n[a] - 1);
+    return (int32_t)fmin(fmax(floor((x - c->bounds.low[a]) / c->edge), 0), c->n[a] - 1);
 }
 
 static int32_t cell_at(const cells *c, const double x[3]) {
@@ -92,7 +92,7 @@ static int32_t cell_at(const cells *c, const double x[3]) {
 // Counts, or lists, item `i` in the cells that its box reaches.
 static void list_facets(cells *c, const box *b, int32_t i, bool list) {
     box in;
-    if (!common(b, &c->room, &in)) return;
+    if (!common(b, &c->bounds, &in)) return;
     int32_t from[3], to[3];
     for (int a = 0; a < 3; a++) from[a] = cell_along(c, a, in.low[a]), to[a] = cell_along(c, a, in.high[a]);
     for (int32_t x = from[0]; x <= to[0]; x++)
@@ -108,16 +108,16 @@ static void list_facets(cells *c, const box *b, int32_t i, bool list) {
 
 typedef bool box_fn(const void *context, int32_t i, box *out); // false: it is nowhere
 
-static int fill_cells(cells *c, const box *room, double edge, int32_t items, box_fn *box_of, const void *context,
+static int fill_cells(cells *c, const box *bounds, double edge, int32_t items, box_fn *box_of, const void *context,
                       brunt_error *error) {
-    size_cells(c, room, edge, items);
-    if (BRUNT_ROOM(c->first, (size_t)c->count + 3, 0, "cells of what may overlap", error)) return BRUNT_FAILED;
+    size_cells(c, bounds, edge, items);
+    if (BRUNT_CAPACITY(c->first, (size_t)c->count + 3, 0, "cells of what may overlap", error)) return BRUNT_FAILED;
     memset(c->first, 0, ((size_t)c->count + 3) * sizeof *c->first);
     box b;
     for (int32_t i = 0; i < items; i++)
         if (box_of(context, i, &b)) list_facets(c, &b, i, false);
     for (int32_t k = 2; k <= c->count + 1; k++) c->first[k] += c->first[k - 1];
-    if (BRUNT_ROOM(c->item, (size_t)c->first[c->count + 1] + 1, 0, "elements and facets that may overlap", error))
+    if (BRUNT_CAPACITY(c->item, (size_t)c->first[c->count + 1] + 1, 0, "elements and facets that may overlap", error))
         return BRUNT_FAILED;
     for (int32_t i = 0; i < items; i++)
         if (box_of(context, i, &b)) list_facets(c, &b, i, true);
@@ -210,21 +210,21 @@ static double distance(const search_job *j, const double x[3], double *height) {
 }
 
 static bool in_elements(const search_job *j, const double x[3]) {
-    if (!holds(&j->elements.room, x)) return false;
+    if (!holds(&j->elements.bounds, x)) return false;
     const int32_t cell = cell_at(&j->elements, x);
     for (int32_t q = j->elements.first[cell]; q < j->elements.first[cell + 1]; q++)
         if (in_element(j->m->surface->fem[j->k], j->elements.item[q], x)) return true;
     return false;
 }
 
-// Whether x is in an element of the other body, and with its `reach` deeper than the limit.
-static bool is_deep(search_job *j, const double x[3], double reach) {
+// Whether x is in an element of the other body, and with its `extent` deeper than the limit.
+static bool is_deep(search_job *j, const double x[3], double extent) {
     const brunt_contact_surface *s = j->m->surface;
     double height, least = INFINITY;
-    if (!in_elements(j, x) || !(reach + distance(j, x, &height) > j->limit)) return false;
+    if (!in_elements(j, x) || !(extent + distance(j, x, &height) > j->limit)) return false;
     for (int32_t f = s->face_range[j->k]; f < s->face_end[j->k]; f++)
         least = fmin(least, brunt_closest_on_face(s, f, x).square);
-    j->found->depth = reach + sqrt(least);
+    j->found->depth = extent + sqrt(least);
     memcpy(j->found->x, x, sizeof j->found->x);
     return true;
 }
@@ -253,7 +253,7 @@ static bool any_edge(search_job *j, int other, edge_fn *visit) {
 
 static double pieces_of(const double p[3], const double q[3], double size) {
     const double e[3] = {q[0] - p[0], q[1] - p[1], q[2] - p[2]};
-    return fmin(fmax(ceil(sqrt(dot(e, e)) / size), 1), MOST_PIECES);
+    return fmin(fmax(ceil(sqrt(dot(e, e)) / size), 1), PIECE_LIMIT);
 }
 
 // A facet that is long for the other body may go through it between its nodes: places on it, of a triangle as of a
@@ -303,7 +303,7 @@ static bool mesh_is_deep(search_job *j, int other) {
         const double *b = s->face_box[f];
         box of_face, in;
         memcpy(of_face.low, b, sizeof of_face.low), memcpy(of_face.high, b + 3, sizeof of_face.high);
-        if (common(&of_face, &j->elements.room, &in) && facet_is_deep(j, f)) return true;
+        if (common(&of_face, &j->elements.bounds, &in) && facet_is_deep(j, f)) return true;
     }
     return false;
 }
@@ -364,7 +364,7 @@ static bool is_cut(search_job *j, int other) {
     double side[2] = {0};
     for (int32_t n = s->node_range[other]; n < s->node_end[other]; n++) {
         double height = 0;
-        if (!holds(&j->facets.room, s->x[n])) continue;
+        if (!holds(&j->facets.bounds, s->x[n])) continue;
         const double d = distance(j, s->x[n], &height);
         if (!(height * height >= 0.5 * d * d)) continue; // beyond the border
         side[height > 0] = fmax(side[height > 0], fabs(height));
@@ -385,13 +385,13 @@ static int look_at(search_job *j, int k, const box *other, double limit, double 
     const brunt_contact_surface *s = j->m->surface;
     const brunt_fem_body *fem = s->fem[k];
     const box own = grown(surface_box(s, k), s->dim, fem->traits->membrane ? by : -limit);
-    box room;
-    if (!(j->shares = common(&own, other, &room))) return BRUNT_OK;
+    box bounds;
+    if (!(j->shares = common(&own, other, &bounds))) return BRUNT_OK;
     j->k = k, j->limit = limit, j->by = by, j->size = size_of_body(s, k);
-    if (fill_cells(&j->facets, &room, fem->mean_edge, s->face_end[k] - s->face_range[k], facet_box, j, error))
+    if (fill_cells(&j->facets, &bounds, fem->mean_edge, s->face_end[k] - s->face_range[k], facet_box, j, error))
         return BRUNT_FAILED;
     if (fem->traits->membrane) return BRUNT_OK;
-    return fill_cells(&j->elements, &room, fem->mean_edge, fem->slots, element_box, j, error);
+    return fill_cells(&j->elements, &bounds, fem->mean_edge, fem->slots, element_box, j, error);
 }
 
 // Finds out whether mesh `other` is in mesh or membrane `k`.
@@ -412,17 +412,17 @@ static void particle_at(brunt_body *body, int64_t i, double x[3]) {
     for (int a = 0; a < 3; a++) x[a] = a < body->grid.dim ? (double)place[a][i] : 0;
 }
 
-static double reach_of(brunt_body *body, int64_t i) {
+static double extent_of(brunt_body *body, int64_t i) {
     return (double)brunt_field(&body->particles, BRUNT_FIELD_reach)[0][i];
 }
 
 // Whether a particle's centre is in the solid, or so near its surface that its reach is.
-static bool point_is_deep(search_job *j, const double x[3], double reach) {
+static bool point_is_deep(search_job *j, const double x[3], double extent) {
     double height;
-    if (is_deep(j, x, reach)) return true;
-    const double d = holds(&j->facets.room, x) ? distance(j, x, &height) : INFINITY;
-    if (!(d < reach - j->limit)) return false;
-    j->found->depth = reach - d;
+    if (is_deep(j, x, extent)) return true;
+    const double d = holds(&j->facets.bounds, x) ? distance(j, x, &height) : INFINITY;
+    if (!(d < extent - j->limit)) return false;
+    j->found->depth = extent - d;
     memcpy(j->found->x, x, sizeof j->found->x);
     return true;
 }
@@ -431,19 +431,19 @@ static bool solid_holds_points(search_job *j, brunt_body *body) {
     double x[3];
     for (int64_t i = 0; i < body->particles.slots; i++) {
         particle_at(body, i, x);
-        if (point_is_deep(j, x, reach_of(body, i))) return true;
+        if (point_is_deep(j, x, extent_of(body, i))) return true;
     }
     return false;
 }
 
 // Whether a membrane lies in particles of a body that is on both its sides.
-static bool sheet_cuts_points(search_job *j, brunt_body *body) {
+static bool membrane_cuts_points(search_job *j, brunt_body *body) {
     bool side[2] = {false, false};
     for (int64_t i = 0; i < body->particles.slots; i++) {
         double x[3], height = 0;
         particle_at(body, i, x);
-        if (!holds(&j->facets.room, x)) continue;
-        const double d = distance(j, x, &height), depth = reach_of(body, i) - d;
+        if (!holds(&j->facets.bounds, x)) continue;
+        const double d = distance(j, x, &height), depth = extent_of(body, i) - d;
         if (!(height * height >= 0.5 * d * d)) continue; // beyond the border
         side[height > 0] = true;
         if (!(depth > j->found->depth)) continue;
@@ -464,15 +464,15 @@ static int points_overlap(search_job *j, brunt_body *body, int k, brunt_error *e
     const double by = (membrane ? NEXT : 1) * body->spacing;
     if (look_at(j, k, &of_points, -by, by, error)) return BRUNT_FAILED;
     j->limit = DEEP * fmin(body->spacing, size_of_body(s, k));
-    j->found->any = j->shares && (membrane ? sheet_cuts_points(j, body) : solid_holds_points(j, body));
+    j->found->any = j->shares && (membrane ? membrane_cuts_points(j, body) : solid_holds_points(j, body));
     return BRUNT_OK;
 }
 
 // ------------------------------------------------------------------------------------------ planes
 
-static bool keep_behind(const brunt_plane_def *plane, const double x[3], double reach, double greatest,
+static bool keep_behind(const brunt_plane_def *plane, const double x[3], double extent, double greatest,
                         brunt_overlap *found) {
-    double d = -reach, far = 0;
+    double d = -extent, far = 0;
     for (int a = 0; a < 3; a++) d += plane->normal[a] * (x[a] - plane->point[a]), far = fmax(far, fabs(x[a]));
     if (!(-d > greatest + 1e-6 * far) || !(-d > found->depth)) return false;
     found->depth = -d;
@@ -488,22 +488,22 @@ static bool is_held(const brunt_contact_surface *s, int32_t n) {
 // The deepest place of a body behind a plane that pushes it, if there is one.
 static void find_behind(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, int w, brunt_overlap *found) {
     const brunt_contact_surface *s = m->surface;
-    const brunt_boundary *wall = &m->walls[w];
-    if (!brunt_boundary_pushes(wall)) return;
-    *found = (brunt_overlap){.b = -1, .wall = w};
+    const brunt_boundary *boundary = &m->boundaries[w];
+    if (!brunt_boundary_pushes(boundary)) return;
+    *found = (brunt_overlap){.b = -1, .boundary = w};
     for (int k = 0; k < s->fem_count; k++) {
-        if (wall->body >= 0 && wall->body != s->fem[k]->index) continue;
+        if (boundary->body >= 0 && boundary->body != s->fem[k]->index) continue;
         for (int32_t n = s->node_range[k]; n < s->node_end[k]; n++)
-            if (!is_held(s, n) && keep_behind(&wall->plane, s->x[n], 0, BEHIND * s->fem[k]->mean_edge, found))
+            if (!is_held(s, n) && keep_behind(&boundary->plane, s->x[n], 0, BEHIND * s->fem[k]->mean_edge, found))
                 found->a = s->fem[k]->index, found->any = true;
     }
     for (int i = 0; i < mpm_count; i++) {
-        if (wall->body >= 0 && wall->body != mpm[i].index) continue;
+        if (boundary->body >= 0 && boundary->body != mpm[i].index) continue;
         if (!mpm[i].particles.field[BRUNT_FIELD_reach].components) continue; // no plane pushes it
         for (int64_t p = 0; p < mpm[i].particles.slots; p++) {
             double x[3];
             particle_at(&mpm[i], p, x);
-            if (keep_behind(&wall->plane, x, reach_of(&mpm[i], p), BEHIND * mpm[i].spacing, found))
+            if (keep_behind(&boundary->plane, x, extent_of(&mpm[i], p), BEHIND * mpm[i].spacing, found))
                 found->a = mpm[i].index, found->any = true;
         }
     }
@@ -524,19 +524,19 @@ static void bound_bodies(const brunt_contact_surface *s, brunt_body *mpm, int mp
 }
 
 // One of the bodies in the other mesh.
-typedef struct meeting {
+typedef struct candidate_pair {
     int32_t mesh, other; // by place among the boxes
-} meeting;
+} candidate_pair;
 
-static int compare_meetings(const void *left, const void *right) {
-    const meeting *p = left, *q = right;
+static int compare_candidates(const void *left, const void *right) {
+    const candidate_pair *p = left, *q = right;
     if (p->mesh != q->mesh) return p->mesh < q->mesh ? -1 : 1;
     return (p->other > q->other) - (p->other < q->other);
 }
 
 // Which bodies are near which meshes, ascending, and their count.
-static int list_meetings(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, meeting **list, int64_t *found,
-                         brunt_error *error) {
+static int list_candidates(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, candidate_pair **list,
+                           int64_t *found, brunt_error *error) {
     const brunt_contact_surface *s = m->surface;
     const int32_t count = s->fem_count + mpm_count;
     brunt_box *boxes;
@@ -549,25 +549,25 @@ static int list_meetings(const brunt_contact_context *m, brunt_body *mpm, int mp
     brunt_free(boxes);
     if (!status) status = BRUNT_NEW(*list, 2 * (pairs + 1), "bodies near meshes", error);
     for (int64_t q = 0; !status && q < pairs; q++) {
-        (*list)[(*found)++] = (meeting){near[q].a, near[q].b};
-        if (near[q].b < s->fem_count) (*list)[(*found)++] = (meeting){near[q].b, near[q].a};
+        (*list)[(*found)++] = (candidate_pair){near[q].a, near[q].b};
+        if (near[q].b < s->fem_count) (*list)[(*found)++] = (candidate_pair){near[q].b, near[q].a};
     }
     brunt_free(near);
-    if (!status) qsort(*list, (size_t)*found, sizeof **list, compare_meetings);
+    if (!status) qsort(*list, (size_t)*found, sizeof **list, compare_candidates);
     return status;
 }
 
 static int find_in_meshes(search_job *j, brunt_body *mpm, int mpm_count, brunt_error *error) {
     const brunt_contact_surface *s = j->m->surface;
     if (!s->fem_count) return BRUNT_OK;
-    meeting *list;
+    candidate_pair *list;
     int64_t count;
-    int status = list_meetings(j->m, mpm, mpm_count, &list, &count, error);
+    int status = list_candidates(j->m, mpm, mpm_count, &list, &count, error);
     for (int64_t q = 0; q < count && !status && !j->found->any; q++) {
         const int k = list[q].mesh, i = list[q].other;
         const int b = s->fem[k]->index, a = i < s->fem_count ? s->fem[i]->index : mpm[i - s->fem_count].index;
         if (brunt_pair_of(j->m->pair_map, a, b) < 0) continue;
-        *j->found = (brunt_overlap){.a = a, .b = b, .wall = -1};
+        *j->found = (brunt_overlap){.a = a, .b = b, .boundary = -1};
         status =
             i < s->fem_count ? meshes_overlap(j, i, k, error) : points_overlap(j, &mpm[i - s->fem_count], k, error);
     }
@@ -575,13 +575,13 @@ static int find_in_meshes(search_job *j, brunt_body *mpm, int mpm_count, brunt_e
     return status;
 }
 
-int brunt_overlap_find(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, int wall_count,
+int brunt_overlap_find(const brunt_contact_context *m, brunt_body *mpm, int mpm_count, int boundary_count,
                        brunt_overlap *found, brunt_error *error) {
     search_job j = {.m = m, .found = found};
-    *found = (brunt_overlap){.b = -1, .wall = -1};
+    *found = (brunt_overlap){.b = -1, .boundary = -1};
     int status = find_in_meshes(&j, mpm, mpm_count, error);
     cells *made[] = {&j.elements, &j.facets};
     for (int k = 0; k < 2; k++) brunt_free(made[k]->first), brunt_free(made[k]->item);
-    for (int w = 0; w < wall_count && !status && !found->any; w++) find_behind(m, mpm, mpm_count, w, found);
+    for (int w = 0; w < boundary_count && !status && !found->any; w++) find_behind(m, mpm, mpm_count, w, found);
     return status;
 }

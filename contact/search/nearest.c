@@ -4,19 +4,20 @@
 static const double SAME_SLOPE = 0.7; // cosine of normals from which on two facets of a membrane are one slope
 static const double STRAIGHT = 0.01;  // [rad] within it of their mean normal, ways to edges and corners are along it
 
-static const tied *most_facing(const nearest *best) {
+static const tied *most_opposed(const nearest *best) {
     const tied *chosen = NULL;
     double greatest = -1;
     for (int32_t k = 0; k < best->count; k++) {
         if (best->tied[k].at.square > best->root * best->root) continue;
-        double facing = best->tied[k].at.inside ? INFINITY : fabs(dot(best->tied[k].at.normal, best->tied[k].at.d));
-        if (facing > greatest || (facing == greatest && best->tied[k].face < chosen->face))
-            greatest = facing, chosen = &best->tied[k];
+        double normal_distance =
+            best->tied[k].at.inside ? INFINITY : fabs(dot(best->tied[k].at.normal, best->tied[k].at.d));
+        if (normal_distance > greatest || (normal_distance == greatest && best->tied[k].face < chosen->face))
+            greatest = normal_distance, chosen = &best->tied[k];
     }
     return chosen;
 }
 
-// Whether two facets that tie are of one slope, or of a ridge; of a valley each bears for itself.
+// Whether two facets that tie are of one slope, or of a ridge; of a valley each carries for itself.
 static bool bear_together(const brunt_contact_surface *s, const tied *a, const tied *b) {
     if (dot(a->at.normal, b->at.normal) > SAME_SLOPE) return true;
     double to[3];
@@ -55,7 +56,7 @@ static void find_feature(const brunt_contact_surface *s, const nearest *best, co
 
 static const tied *take_nearest(const brunt_contact_surface *s, const nearest *best, facet_candidate *out,
                                 double way[3]) {
-    const tied *chosen = most_facing(best);
+    const tied *chosen = most_opposed(best);
     const brunt_closest *at = &chosen->at;
     *out = (facet_candidate){
         .face = chosen->face, .triangle = at->triangle, .body = best->body, .gap = dot(at->normal, at->d)};
@@ -77,8 +78,8 @@ static bool aside(const double n[3], const double d[3]) {
 }
 
 // A hit on facets that face the slave; beside an edge or a corner it must also face the way to them.
-bool brunt_nearest_facing(const brunt_contact_surface *s, const nearest *best, const double *normal,
-                          facet_candidate *out) {
+bool brunt_nearest_opposed(const brunt_contact_surface *s, const nearest *best, const double *normal,
+                           facet_candidate *out) {
     double way[3];
     const brunt_closest *at = &take_nearest(s, best, out, way)->at;
     const double distance = sqrt(best->square), length = sqrt(dot(way, way));
@@ -92,7 +93,7 @@ bool brunt_nearest_facing(const brunt_contact_surface *s, const nearest *best, c
 
 // Leaves the facets that tie with the chosen one and are of another slope. Whether there are any.
 static bool next_slope(const brunt_contact_surface *s, nearest *best) {
-    const tied chosen = *most_facing(best);
+    const tied chosen = *most_opposed(best);
     int32_t left = 0;
     double square = INFINITY;
     for (int32_t k = 0; k < best->count; k++) {
@@ -112,7 +113,7 @@ void brunt_nearest_valley(const brunt_contact_surface *s, nearest *best, const d
     bool more = out->candidate[out->count - 1].valley;
     while (more && out->count < BRUNT_MAX_CANDIDATES && next_slope(s, best)) {
         facet_candidate *h = &out->candidate[out->count];
-        if (brunt_nearest_facing(s, best, normal, h)) out->count++;
+        if (brunt_nearest_opposed(s, best, normal, h)) out->count++;
         more = h->valley;
     }
 }

@@ -62,8 +62,8 @@ static inline void keep(const brunt_contact_surface *s, nearest *best, const bru
 }
 
 // A hit on facets that face the slave; beside an edge or a corner it must also face the way to them.
-bool brunt_nearest_facing(const brunt_contact_surface *s, const nearest *best, const double *normal,
-                          facet_candidate *out);
+bool brunt_nearest_opposed(const brunt_contact_surface *s, const nearest *best, const double *normal,
+                           facet_candidate *out);
 // The other slopes of a valley, in which all bear: with the first of two, an inside corner and its mirror image bore
 // differently.
 void brunt_nearest_valley(const brunt_contact_surface *s, nearest *best, const double *normal, candidate_list *out);

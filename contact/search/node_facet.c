@@ -65,7 +65,7 @@ static void keep_master(brunt_node_to_facet *f, const brunt_contact_surface *s, 
                         int worker) {
     master_list *of = &f->nodes.masters[worker];
     const size_t used = (size_t)of->count;
-    if (BRUNT_ROOM_IN(of->master, of->capacity, used + 1, used, "edges and corners near nodes", &of->error)) return;
+    if (BRUNT_CAPACITY_IN(of->master, of->capacity, used + 1, used, "edges and corners near nodes", &of->error)) return;
     h->worker = worker, h->master = of->count;
     brunt_node_to_facet_master(s, h, x, &of->master[of->count++]);
 }
@@ -142,11 +142,11 @@ int brunt_node_to_facet_master(const brunt_contact_surface *s, const facet_candi
                                brunt_master *m) {
     if (h->feature.any) {
         memcpy(m->facet, h->n, sizeof m->facet);
-        const brunt_feature_place place = {&h->feature, h->n, x};
+        const brunt_feature_position place = {&h->feature, h->n, x};
         return m->count = brunt_feature_weights(s, &place, m->node, m->weight, m->gradient, &m->height);
     }
     memcpy(m->node, s->face[h->face], sizeof s->face[h->face]);
-    const brunt_facet_place place = {h->face, h->triangle, x};
+    const brunt_facet_position place = {h->face, h->triangle, x};
     brunt_face_weights(s, &place, m->weight, m->gradient, m->facet, &m->height);
     return m->count = brunt_face_corners(s->face[h->face]);
 }

@@ -31,10 +31,10 @@ int brunt_node_to_facet_begin(brunt_node_to_facet *f, int32_t nodes, brunt_error
     return BRUNT_OK;
 }
 
-int brunt_node_to_facet_make(brunt_node_to_facet **facing, int mpm_count, int32_t nodes, brunt_error *error) {
-    if (*facing) return BRUNT_OK;
-    if (BRUNT_NEW(*facing, 1, "search for contact", error)) return BRUNT_FAILED;
-    brunt_node_to_facet *f = *facing;
+int brunt_node_to_facet_make(brunt_node_to_facet **node_to_facet, int mpm_count, int32_t nodes, brunt_error *error) {
+    if (*node_to_facet) return BRUNT_OK;
+    if (BRUNT_NEW(*node_to_facet, 1, "search for contact", error)) return BRUNT_FAILED;
+    brunt_node_to_facet *f = *node_to_facet;
     f->particles.mpm_count = mpm_count;
     if (BRUNT_NEW(f->particles.dofs, mpm_count + 1, "bodies of particles near facets", error) ||
         brunt_distance_cache_fit(f, nodes, 0, error))

@@ -14,34 +14,36 @@
 #include "contact/planes/boundary.h"
 #include "contact/planes/symmetry.h"
 
-// Marks in surface->active which bodies have another one, or a wall (planes of brunt_walls with condition separate and
+// Marks in surface->active which bodies have another one, or a boundary (planes with condition separate and
 // others), near; call after brunt_surface_bounds, before brunt_surface_gather_state. BRUNT_OK, or BRUNT_FAILED: out of
 // memory, or (`far`) a place or a way of a step is not a number that can be worked with.
-int brunt_broad_phase(const brunt_contact_context *m, brunt_node_to_facet **facing, bool *far, brunt_error *error);
+int brunt_broad_phase(const brunt_contact_context *m, brunt_node_to_facet **node_to_facet, bool *far,
+                      brunt_error *error);
 // Where something is near: no node has a degree of freedom of the step yet. BRUNT_OK, or BRUNT_FAILED: out of memory.
-int brunt_node_to_facet_begin(brunt_node_to_facet *facing, int32_t nodes, brunt_error *error);
+int brunt_node_to_facet_begin(brunt_node_to_facet *node_to_facet, int32_t nodes, brunt_error *error);
 // Adds the contact points of this step. BRUNT_OK, or BRUNT_FAILED: out of memory.
 int brunt_node_to_facet_find(const brunt_contact_context *m, brunt_body *mpm, int mpm_count,
-                             brunt_node_to_facet *facing, brunt_constraint_set *constraints, brunt_error *error);
+                             brunt_node_to_facet *node_to_facet, brunt_constraint_set *constraints, brunt_error *error);
 // After the solution: what contact gave to nodes that planes hold is those planes' reaction.
-void brunt_node_to_facet_account_fixed(const brunt_contact_context *m, const brunt_node_to_facet *facing,
+void brunt_node_to_facet_account_fixed(const brunt_contact_context *m, const brunt_node_to_facet *node_to_facet,
                                        const brunt_constraint_set *constraints);
 // After brunt_surface_renew: what is remembered follows its nodes, and all look anew. BRUNT_OK, or BRUNT_FAILED: out of
 // memory.
-int brunt_node_to_facet_renew(brunt_node_to_facet *facing, const brunt_contact_surface *surface, brunt_error *error);
+int brunt_node_to_facet_renew(brunt_node_to_facet *node_to_facet, const brunt_contact_surface *surface,
+                              brunt_error *error);
 // After the solution: velocities back to the surface and to the grids' nodes, contact state to the surface.
-void brunt_node_to_facet_finish(const brunt_contact_context *m, brunt_body *mpm, brunt_node_to_facet *facing,
+void brunt_node_to_facet_finish(const brunt_contact_context *m, brunt_body *mpm, brunt_node_to_facet *node_to_facet,
                                 const brunt_constraint_set *constraints);
 // What is remembered from step to step only saves work; but where two facets are equally near it may settle which one
 // is taken, so that a run that goes on needs it. So many doubles, however many elements have left; copied out; and in,
 // before the first step and after the bodies, from which the surface is renewed (BRUNT_OK, or BRUNT_FAILED: out of
 // memory).
 int64_t brunt_node_to_facet_state_count(const brunt_contact_surface *surface);
-void brunt_node_to_facet_state_get(const brunt_node_to_facet *facing, const brunt_contact_surface *surface,
+void brunt_node_to_facet_state_get(const brunt_node_to_facet *node_to_facet, const brunt_contact_surface *surface,
                                    double *out);
-int brunt_node_to_facet_state_set(brunt_node_to_facet **facing, brunt_contact_surface *surface, int mpm_count,
+int brunt_node_to_facet_state_set(brunt_node_to_facet **node_to_facet, brunt_contact_surface *surface, int mpm_count,
                                   const double *in, brunt_error *error);
-void brunt_node_to_facet_free(brunt_node_to_facet *facing);
+void brunt_node_to_facet_free(brunt_node_to_facet *node_to_facet);
 // Aborts where what is remembered is not of this surface. NULL: nothing is.
-void brunt_node_to_facet_validate(const brunt_node_to_facet *facing, const brunt_contact_surface *surface);
-size_t brunt_node_to_facet_bytes(const brunt_node_to_facet *facing);
+void brunt_node_to_facet_validate(const brunt_node_to_facet *node_to_facet, const brunt_contact_surface *surface);
+size_t brunt_node_to_facet_bytes(const brunt_node_to_facet *node_to_facet);

@@ -23,11 +23,11 @@ struct brunt_node_to_facet {
     particle_candidates particles;
 };
 
-#define RESERVE(f, array, count, what, error) BRUNT_ROOM((f)->array, (size_t)(count), 0, what, error)
+#define RESERVE(f, array, count, what, error) BRUNT_CAPACITY((f)->array, (size_t)(count), 0, what, error)
 
 // --- node_to_facet.c
 // Makes what is kept between steps, when there is none. BRUNT_OK, or BRUNT_FAILED: out of memory.
-int brunt_node_to_facet_make(brunt_node_to_facet **facing, int mpm_count, int32_t nodes, brunt_error *error);
+int brunt_node_to_facet_make(brunt_node_to_facet **node_to_facet, int mpm_count, int32_t nodes, brunt_error *error);
 
 // --- distance_cache.c
 // Room for what is remembered of so many nodes. BRUNT_OK, or BRUNT_FAILED: out of memory.
@@ -37,7 +37,7 @@ int brunt_distance_cache_fit(brunt_node_to_facet *f, int32_t nodes, int32_t kept
 // Makes the cells anew when they no longer hold all that may be near. BRUNT_OK, or BRUNT_FAILED: out of memory.
 int brunt_facet_cells_make(const brunt_contact_context *m, brunt_node_to_facet *f, brunt_error *error);
 // Whether anything reaches, within `by`, a box near box `box`.
-bool brunt_broad_phase_in_reach(const brunt_node_to_facet *f, int32_t box, const double low[3], const double high[3],
+bool brunt_broad_phase_in_range(const brunt_node_to_facet *f, int32_t box, const double low[3], const double high[3],
                                 double by);
 // --- candidates.c
 // Fills the bodies a query may touch or have entered; whether there are facets to look at.

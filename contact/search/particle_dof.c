@@ -32,7 +32,7 @@ void brunt_particle_nodes_find(const brunt_body *body, int32_t b, int64_t s, con
     double w[3][4] = {{1}, {1}, {1}}, slope[3][4] = {{0}};
     out->count = 0;
     brunt_node_local(grid, body->particles.bin[s], local);
-    real *const *x = brunt_kernel_place(&body->particles);
+    real *const *x = brunt_kernel_position(&body->particles);
     for (int a = 0; a < dim; a++) {
         base[a] = block->coord[a] * grid->side + local[a];
         const double u = ((double)x[a][s] - grid->origin[a]) / (double)grid->h - base[a];
@@ -89,9 +89,9 @@ void brunt_particle_dofs_free(brunt_particle_dofs *dofs) {
 static int symmetry_of(const brunt_contact_context *m, const brunt_body *body,
                        brunt_symmetry_plane out[BRUNT_MAX_PLANES]) {
     int count = 0;
-    for (int k = 0; k < m->mirror_count && count < BRUNT_MAX_PLANES; k++) {
-        int on = m->mirrors[k].wall < 0 ? -1 : m->walls[m->mirrors[k].wall].body;
-        if (on < 0 || on == body->index) out[count++] = m->mirrors[k];
+    for (int k = 0; k < m->symmetry_count && count < BRUNT_MAX_PLANES; k++) {
+        int on = m->symmetry[k].boundary < 0 ? -1 : m->boundaries[m->symmetry[k].boundary].body;
+        if (on < 0 || on == body->index) out[count++] = m->symmetry[k];
     }
     return count;
 }
@@ -99,7 +99,7 @@ static int symmetry_of(const brunt_contact_context *m, const brunt_body *body,
 int brunt_particle_dofs_begin(const brunt_contact_context *m, const brunt_body *body, brunt_particle_dofs *dofs,
                               brunt_error *error) {
     const size_t count = (size_t)body->grid.slot_count * BRUNT_BLOCK_NODES;
-    if (BRUNT_ROOM(dofs->of, count, 0, "grid nodes of a body in contact", error)) return BRUNT_FAILED;
+    if (BRUNT_CAPACITY(dofs->of, count, 0, "grid nodes of a body in contact", error)) return BRUNT_FAILED;
     for (int32_t g = 0; g < dofs->dof_count; g++) dofs->of[dofs->dof[g].node] = 0;
     dofs->dof_count = 0;
     dofs->symmetry_count = symmetry_of(m, body, dofs->symmetry);
@@ -118,7 +118,7 @@ static int make_dof_node(const brunt_grid *grid, const int32_t at[3], brunt_part
         real *node = brunt_grid_node(grid, image[i]);
         if (!node || !(node[BRUNT_NODE_MASS] > 0)) continue;
         int64_t number = (node - grid->nodes) / BRUNT_NODE_REALS;
-        if (BRUNT_ROOM_MORE(dofs->dof, "grid nodes under contact points", error)) return BRUNT_FAILED;
+        if (BRUNT_CAPACITY_MORE(dofs->dof, "grid nodes under contact points", error)) return BRUNT_FAILED;
         brunt_grid_dof *entry = &dofs->dof[dofs->dof_count];
         *entry = (brunt_grid_dof){.node = number, .dof_node = dof_node};
         for (int a = 0; a < 3; a++) entry->sign[a] = (double)sign[i][a];
@@ -214,24 +214,24 @@ static void account_symmetry(const brunt_contact_context *m, const brunt_particl
     const brunt_symmetry_plane *planes = dofs->symmetry;
     for (int32_t p = 0; p < set->constraint_count; p++) {
         const brunt_constraint *constraint = &set->constraint[p];
-        const bool bears = constraint->bearer > 0 && constraint->bearer == dofs->tag + 1;
-        const double factor = bears ? 1 : -1;
+        const bool carries = constraint->bearer > 0 && constraint->bearer == dofs->tag + 1;
+        const double factor = carries ? 1 : -1;
         double normal_impulse[3];
-        if ((constraint->tag != dofs->tag && !bears) || !(constraint->normal_impulse > 0)) continue;
+        if ((constraint->tag != dofs->tag && !carries) || !(constraint->normal_impulse > 0)) continue;
         for (int a = 0; a < 3; a++) normal_impulse[a] = constraint->normal_impulse * constraint->n[a];
         add_moment(constraint->x, normal_impulse, factor, linear, angular);
         add_moment(constraint->friction_point ? set->friction_point[constraint->friction_point - 1].x : constraint->x,
                    constraint->friction_impulse, factor, linear, angular);
     }
     static const double none[3] = {0};
-    if (planes[0].wall >= 0) brunt_impulse_account_reaction(&m->walls[planes[0].wall].last, none, angular);
+    if (planes[0].boundary >= 0) brunt_impulse_account_reaction(&m->boundaries[planes[0].boundary].last, none, angular);
     for (int a = 0; a < 3; a++) {
         double across[3] = {0};
         int i = 0;
         across[a] = linear[a];
         while (i < dofs->symmetry_count && planes[i].axis != a) i++;
-        if (i < dofs->symmetry_count && planes[i].wall >= 0)
-            brunt_impulse_account_reaction(&m->walls[planes[i].wall].last, across, none);
+        if (i < dofs->symmetry_count && planes[i].boundary >= 0)
+            brunt_impulse_account_reaction(&m->boundaries[planes[i].boundary].last, across, none);
     }
 }
 
@@ -247,7 +247,7 @@ void brunt_particle_dofs_scatter(const brunt_contact_context *m, brunt_body *bod
         for (int a = 0; a < grid->dim; a++) {
             const brunt_dof_node *dof_node = &set->dof_node[entry->dof_node];
             double v = entry->sign[a] * dof_node->v[a];
-            if (brunt_node_held(grid, entry->node, a)) // the condition takes it again, and books it
+            if (brunt_node_held(grid, entry->node, a)) // the condition takes it again, and records it
                 v += entry->sign[a] * dof_node->impulse[a] / (double)node[BRUNT_NODE_MASS];
             P[a] = (double)node[BRUNT_NODE_SPARE] * (v - (double)node[BRUNT_NODE_VELOCITY + a]);
             node[BRUNT_NODE_VELOCITY + a] = (real)v;

@@ -10,7 +10,7 @@
 // Where a symmetry plane is near, a node and its images have one velocity, turned over: they are one degree of freedom,
 // and what a particle gives it is the sum of the weights of all of them, each turned over, since the image of the
 // particle presses too. A node on the plane moves along it only. Tangentially the body then gets all of the impulse;
-// what is missing across the plane is what the plane bears.
+// what is missing across the plane is what the plane carries.
 #pragma once
 
 #include "contact/constraint/constraint.h"
@@ -60,8 +60,8 @@ void brunt_particle_dofs_free(brunt_particle_dofs *dofs);
 // Room for the nodes of a body's grid, of which none is in use. BRUNT_OK, or BRUNT_FAILED: out of memory.
 int brunt_particle_dofs_begin(const brunt_contact_context *m, const brunt_body *body, brunt_particle_dofs *dofs,
                               brunt_error *error);
-// Entries of the set's last constraint for a particle, its slave (`factor` 1), or for what bears it (-1). BRUNT_OK, or
-// BRUNT_FAILED: out of memory.
+// Entries of the set's last constraint for a particle, its slave (`factor` 1), or for what carries it (-1). BRUNT_OK,
+// or BRUNT_FAILED: out of memory.
 int brunt_particle_dofs_enter(const brunt_body *body, const brunt_particle_nodes *under, double factor,
                               brunt_particle_dofs *dofs, brunt_constraint_set *set, brunt_error *error);
 // Gives the last constraint, when its entries are complete, a friction point to x [m], with the weights of the particle

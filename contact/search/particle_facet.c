@@ -42,7 +42,7 @@ static int add_particle_candidate(const search_job *j, particle_list *list, int3
     const double target = brunt_node_to_facet_target(surface, h->gap, fmin(before, LIFT * approach), before, j->m->dt);
     if (!(approach < target + 1e-6 * surface->mean_edge / j->m->dt)) return BRUNT_OK;
     const size_t used = (size_t)list->count;
-    if (BRUNT_ROOM_IN(list->candidate, list->capacity, used + 1, used, "facets near particles", error))
+    if (BRUNT_CAPACITY_IN(list->candidate, list->capacity, used + 1, used, "facets near particles", error))
         return BRUNT_FAILED;
     particle_candidate *found = &list->candidate[list->count++];
     *found = (particle_candidate){.block = b, .particle = s, .h = *h};
@@ -62,7 +62,7 @@ static int search_from_block(const search_job *j, int32_t b, particle_list *list
     }
     real *const *place = brunt_field(&j->body->particles, BRUNT_FIELD_position);
     if (brunt_total_lagrangian(&j->body->particles)) brunt_body_block_bounds(j->body, b, low, high);
-    if (!brunt_broad_phase_in_reach(f, j->box, low, high, f->bodies.range)) return BRUNT_OK;
+    if (!brunt_broad_phase_in_range(f, j->box, low, high, f->bodies.range)) return BRUNT_OK;
     for (int64_t s = grid->blocks[b].first; s < grid->blocks[b].first + grid->blocks[b].count; s++) {
         double x[3] = {0};
         for (int a = 0; a < dim; a++) x[a] = (double)place[a][s];

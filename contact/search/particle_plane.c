@@ -25,7 +25,7 @@ static const double NEAR = 0.5; // cells: how far from a plane particles are loo
 typedef struct plane_job {
     const brunt_contact_context *m;
     brunt_body *body;
-    brunt_boundary *wall;
+    brunt_boundary *boundary;
     brunt_particle_dofs *dofs;
     brunt_constraint_set *set;
     double offset, speed, near; // [m] of the plane along its normal, [m/s] along it, [m] gaps that are looked at
@@ -35,7 +35,7 @@ static int add_friction_point(const plane_job *j, int32_t b, int64_t s, const do
                               brunt_error *error) {
     double arm[3], kernel_arm[3], at[3];
     brunt_particle_nodes at_arm;
-    brunt_extent_arm(j->body, s, j->wall->plane.normal, distance, arm, kernel_arm);
+    brunt_extent_arm(j->body, s, j->boundary->plane.normal, distance, arm, kernel_arm);
     for (int a = 0; a < 3; a++) at[a] = x[a] + arm[a];
     brunt_particle_nodes_find(j->body, b, s, kernel_arm, &at_arm);
     return brunt_particle_dofs_friction_point(j->body, &at_arm, at, j->dofs, j->set, error) < 0 ? BRUNT_FAILED
@@ -45,7 +45,7 @@ static int add_friction_point(const plane_job *j, int32_t b, int64_t s, const do
 // The constraint of a particle that the plane would catch in this step.
 static int add_particle(const plane_job *j, int32_t b, int64_t s, const double x[3], double distance, double gap,
                         brunt_error *error) {
-    const brunt_plane_def *plane = &j->wall->plane;
+    const brunt_plane_def *plane = &j->boundary->plane;
     const int dim = j->body->grid.dim;
     const double target = j->speed - fmax(gap, 0) / j->m->dt;
     brunt_particle_nodes under;
@@ -61,14 +61,14 @@ static int add_particle(const plane_job *j, int32_t b, int64_t s, const double x
     memcpy(constraint->n, plane->normal, sizeof constraint->n);
     memcpy(constraint->plane, plane->velocity, sizeof constraint->plane);
     constraint->gap = gap, constraint->target = target - j->speed, constraint->friction = plane->friction;
-    constraint->account = &j->wall->last, constraint->sign = 1, constraint->tag = j->dofs->tag;
+    constraint->account = &j->boundary->last, constraint->sign = 1, constraint->tag = j->dofs->tag;
     if (brunt_particle_dofs_enter(j->body, &under, 1, j->dofs, j->set, error)) return BRUNT_FAILED;
     return plane->friction > 0 ? add_friction_point(j, b, s, x, distance, error) : BRUNT_OK;
 }
 
 static int add_block(const plane_job *j, int32_t b, brunt_error *error) {
     brunt_particles *p = &j->body->particles;
-    const brunt_plane_def *plane = &j->wall->plane;
+    const brunt_plane_def *plane = &j->boundary->plane;
     const brunt_block *block = &j->body->grid.blocks[b];
     real *const *place = brunt_field(p, BRUNT_FIELD_position);
     for (int64_t s = block->first; s < block->first + block->count; s++) {
@@ -83,7 +83,7 @@ static int add_block(const plane_job *j, int32_t b, brunt_error *error) {
 
 static int add_plane(plane_job *j, brunt_error *error) {
     const brunt_grid *grid = &j->body->grid;
-    const brunt_plane_def *plane = &j->wall->plane;
+    const brunt_plane_def *plane = &j->boundary->plane;
     const double h = (double)grid->h;
     double half = 0;
     j->offset = j->speed = 0;
@@ -103,20 +103,20 @@ static int add_plane(plane_job *j, brunt_error *error) {
     return BRUNT_OK;
 }
 
-int brunt_plane_meet_points(const brunt_contact_context *m, brunt_boundary *wall, brunt_body *body,
+int brunt_plane_meet_points(const brunt_contact_context *m, brunt_boundary *boundary, brunt_body *body,
                             brunt_particle_dofs *dofs, brunt_constraint_set *set, brunt_error *error) {
-    plane_job j = {.m = m, .body = body, .wall = wall, .dofs = dofs, .set = set};
-    return brunt_boundary_pushes(wall) ? add_plane(&j, error) : BRUNT_OK;
+    plane_job j = {.m = m, .body = body, .boundary = boundary, .dofs = dofs, .set = set};
+    return brunt_boundary_pushes(boundary) ? add_plane(&j, error) : BRUNT_OK;
 }
 
 int brunt_boundaries_meet_points(const brunt_contact_context *m, brunt_body *body, brunt_particle_dofs *dofs,
                                  brunt_constraint_set *set, brunt_error *error) {
     if (brunt_particle_dofs_begin(m, body, dofs, error)) return BRUNT_FAILED;
     brunt_constraints_clear(set);
-    for (int k = 0; k < m->wall_count; k++) {
-        brunt_boundary *wall = &m->walls[k];
-        if (!wall->kind->meet_points || !brunt_boundary_acts_on(wall, body->index)) continue;
-        if (wall->kind->meet_points(m, wall, body, dofs, set, error)) return BRUNT_FAILED;
+    for (int k = 0; k < m->boundary_count; k++) {
+        brunt_boundary *boundary = &m->boundaries[k];
+        if (!boundary->kind->meet_points || !brunt_boundary_acts_on(boundary, body->index)) continue;
+        if (boundary->kind->meet_points(m, boundary, body, dofs, set, error)) return BRUNT_FAILED;
     }
     if (brunt_constraints_solve(set, MAX_SWEEPS, SWEEP_TOLERANCE, m->threads, m->timer, error)) return BRUNT_FAILED;
     brunt_particle_dofs_scatter(m, body, dofs, set);

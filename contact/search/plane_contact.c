@@ -13,9 +13,9 @@ double brunt_plane_distance(const brunt_plane_def *plane, double time, const dou
 
 // Holds a node on a plane: stick takes all components, slip and symmetry the normal one. `back`: how much further its
 // twin is, of a membrane; else 0.
-static void fix_node(brunt_contact_surface *s, int32_t n, int32_t back, brunt_boundary *wall, double normal_velocity,
-                     bool stick) {
-    const brunt_plane_def *plane = &wall->plane;
+static void fix_node(brunt_contact_surface *s, int32_t n, int32_t back, brunt_boundary *boundary,
+                     double normal_velocity, bool stick) {
+    const brunt_plane_def *plane = &boundary->plane;
     double now[3], J[3], old[3], along = 0;
     for (int a = 0; a < 3; a++) along += plane->normal[a] * (s->v[n][a] - plane->velocity[a]);
     for (int a = 0; a < 3; a++) {
@@ -25,7 +25,7 @@ static void fix_node(brunt_contact_surface *s, int32_t n, int32_t back, brunt_bo
         if (!(s->inverse[n][a] > 0)) now[a] = s->v[n][a], J[a] = 0;
         old[a] = s->old[n][a];
     }
-    brunt_impulse_account_book(&wall->last, &wall->last.normal_loss, J, s->x[n], old, now, plane->velocity);
+    brunt_impulse_account_record(&boundary->last, &boundary->last.normal_loss, J, s->x[n], old, now, plane->velocity);
     for (int a = 0; a < 3; a++) {
         s->v[n][a] = now[a];
         if (stick || fabs(plane->normal[a]) > 1 - 1e-12) s->inverse[n][a] = 0;
@@ -38,14 +38,14 @@ static void fix_node(brunt_contact_surface *s, int32_t n, int32_t back, brunt_bo
 // A plane that meets the surface.
 typedef struct plane_job {
     const brunt_contact_context *m;
-    brunt_boundary *wall;
+    brunt_boundary *boundary;
     brunt_node_to_facet *f;
     brunt_constraint_set *constraints;
 } plane_job;
 
 static int add_plane_constraint(const plane_job *j, int32_t n, int32_t back, double gap, brunt_error *error) {
     const brunt_contact_surface *s = j->m->surface;
-    const brunt_plane_def *plane = &j->wall->plane;
+    const brunt_plane_def *plane = &j->boundary->plane;
     brunt_constraint_set *constraints = j->constraints;
     double approach = 0, before = 0;
     for (int a = 0; a < 3; a++) {
@@ -62,51 +62,51 @@ static int add_plane_constraint(const plane_job *j, int32_t n, int32_t back, dou
     memcpy(constraint->n, plane->normal, sizeof constraint->n);
     memcpy(constraint->plane, plane->velocity, sizeof constraint->plane);
     constraint->gap = gap, constraint->target = target, constraint->friction = plane->friction;
-    constraint->account = &j->wall->last, constraint->sign = 1, constraint->tag = n,
+    constraint->account = &j->boundary->last, constraint->sign = 1, constraint->tag = n,
     constraint->area = brunt_node_to_facet_area(s, n, plane->normal);
     if (back) constraint->area += brunt_node_to_facet_area(s, n + back, plane->normal);
     return brunt_constraints_entry(constraints, dof_node, 1, error) < 0 ? BRUNT_FAILED : BRUNT_OK;
 }
 
-bool brunt_plane_near_surface(const brunt_contact_surface *s, int k, const brunt_boundary *wall, double time,
+bool brunt_plane_near_surface(const brunt_contact_surface *s, int k, const brunt_boundary *boundary, double time,
                               double range) {
     double corner[3]; // of the box, deepest behind the plane
-    for (int a = 0; a < 3; a++) corner[a] = wall->plane.normal[a] > 0 ? s->low[k][a] : s->high[k][a];
-    return brunt_plane_distance(&wall->plane, time, corner) < range;
+    for (int a = 0; a < 3; a++) corner[a] = boundary->plane.normal[a] > 0 ? s->low[k][a] : s->high[k][a];
+    return brunt_plane_distance(&boundary->plane, time, corner) < range;
 }
 
 // What a plane does to a node that it may touch in this step.
 static int meet_node(const plane_job *j, int32_t n, int32_t back, double gap, brunt_error *error) {
     brunt_contact_surface *s = j->m->surface;
-    brunt_boundary *wall = j->wall;
+    brunt_boundary *boundary = j->boundary;
     const double dt = j->m->dt;
-    const brunt_condition_row *condition = &brunt_conditions[wall->plane.condition];
+    const brunt_condition_row *condition = &brunt_conditions[boundary->plane.condition];
     if (condition->pushes) {
         s->output.gap[n] = fmin(s->output.gap[n], gap);
         return add_plane_constraint(j, n, back, gap, error);
     }
     double along = 0;
-    for (int a = 0; a < 3; a++) along += wall->plane.normal[a] * (s->v[n][a] - wall->plane.velocity[a]);
+    for (int a = 0; a < 3; a++) along += boundary->plane.normal[a] * (s->v[n][a] - boundary->plane.velocity[a]);
     if (gap <= ON * s->mean_edge)
-        fix_node(s, n, back, wall, 0, condition->sticks);
+        fix_node(s, n, back, boundary, 0, condition->sticks);
     else if (gap + along * dt < 0)
-        fix_node(s, n, back, wall, -gap / dt, condition->sticks);
+        fix_node(s, n, back, boundary, -gap / dt, condition->sticks);
     return BRUNT_OK;
 }
 
-int brunt_plane_meet_surface(const brunt_contact_context *m, brunt_boundary *wall, brunt_node_to_facet *f,
+int brunt_plane_meet_surface(const brunt_contact_context *m, brunt_boundary *boundary, brunt_node_to_facet *f,
                              brunt_constraint_set *set, brunt_error *error) {
     const brunt_contact_surface *s = m->surface;
     const double range = f->bodies.plane_travel + ON * s->mean_edge;
-    const plane_job j = {.m = m, .wall = wall, .f = f, .constraints = set};
+    const plane_job j = {.m = m, .boundary = boundary, .f = f, .constraints = set};
     for (int k = 0; k < s->fem_count; k++) {
-        if (!s->active[k] || !brunt_boundary_acts_on(wall, s->fem[k]->index)) continue;
-        if (!brunt_plane_near_surface(s, k, wall, m->time, range)) continue;
+        if (!s->active[k] || !brunt_boundary_acts_on(boundary, s->fem[k]->index)) continue;
+        if (!brunt_plane_near_surface(s, k, boundary, m->time, range)) continue;
         const int32_t back = s->node_range[k + 1] - s->node_end[k];
         const double half =
-            brunt_boundary_pushes(wall) && s->membrane.side ? s->membrane.side[s->fem[k]->index].half : 0;
+            brunt_boundary_pushes(boundary) && s->membrane.side ? s->membrane.side[s->fem[k]->index].half : 0;
         for (int32_t n = s->node_range[k]; n < s->node_end[k]; n++) {
-            const double gap = brunt_plane_distance(&wall->plane, m->time, s->x[n]);
+            const double gap = brunt_plane_distance(&boundary->plane, m->time, s->x[n]);
             if (!(gap > range) && meet_node(&j, n, back, gap - half, error)) return BRUNT_FAILED;
         }
     }
@@ -116,13 +116,13 @@ int brunt_plane_meet_surface(const brunt_contact_context *m, brunt_boundary *wal
 // The plane that keeps component a of a node from moving: of those that hold it, the nearest. -1: none.
 static int fixing_plane(const brunt_contact_context *m, int32_t n, int a) {
     const brunt_contact_surface *s = m->surface;
-    const brunt_boundary *walls = m->walls;
+    const brunt_boundary *boundaries = m->boundaries;
     int nearest = -1;
     double least = INFINITY;
-    for (int w = 0; w < m->wall_count; w++) {
-        const brunt_plane_def *plane = &walls[w].plane;
-        if (!brunt_boundary_holds(&walls[w])) continue;
-        if (walls[w].body >= 0 && walls[w].body != s->body[n]) continue;
+    for (int w = 0; w < m->boundary_count; w++) {
+        const brunt_plane_def *plane = &boundaries[w].plane;
+        if (!brunt_boundary_holds(&boundaries[w])) continue;
+        if (boundaries[w].body >= 0 && boundaries[w].body != s->body[n]) continue;
         if (!(brunt_condition_components(plane, 3) >> a & 1)) continue;
         double gap = brunt_plane_distance(plane, m->time, s->x[n]);
         if (gap < least) least = gap, nearest = w;
@@ -145,8 +145,8 @@ void brunt_node_to_facet_account_fixed(const brunt_contact_context *m, const bru
             if (w < 0) continue;
             double J[3] = {0};
             J[a] = -given;
-            brunt_impulse_account *last = &m->walls[w].last;
-            brunt_impulse_account_book(last, &last->normal_loss, J, s->x[n], s->v[n], s->v[n], s->v[n]);
+            brunt_impulse_account *last = &m->boundaries[w].last;
+            brunt_impulse_account_record(last, &last->normal_loss, J, s->x[n], s->v[n], s->v[n], s->v[n]);
         }
     }
 }

@@ -55,7 +55,7 @@ static int add_near(brunt_body *body, const ball *in, int32_t block, const int64
         brunt_neighbour n = {.block = block, .particle = s};
         for (int a = 0; a < dim; a++) n.d[a] = (double)place[a][s] - in->x[a];
         if (!(dot(n.d, n.d) < in->range * in->range) || !(mass[s] > 0)) continue;
-        if (BRUNT_ROOM_MORE(list->near, "particles about a place", error)) return BRUNT_FAILED;
+        if (BRUNT_CAPACITY_MORE(list->near, "particles about a place", error)) return BRUNT_FAILED;
         list->near[list->near_count++] = n;
     }
     return BRUNT_OK;

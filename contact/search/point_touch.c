@@ -10,12 +10,12 @@
 #include "contact/search/point_surface.h"
 
 static const double NEAR = 0.25; // spacings: how near particles look at each other, if nothing moves faster
-// Spacings: how far aside of a slave a particle may be that bears it, more than half the diagonal of a square.
+// Spacings: how far aside of a slave a particle may be that carries it, more than half the diagonal of a square.
 static const double WIDE = 0.75;
 static const double OWN = 1.5;  // spacings about a slave: what its body is taken for where the distance is measured
 static const double TIE = 1e-6; // spacings: particles as near as this bear together
 // How much deeper a particle that is aside seems, spacings at one spacing aside: of a flat surface the particle under
-// the slave bears.
+// the slave carries.
 static const double ASIDE = 1e-3;
 
 // A slave, and the particles that bear it.
@@ -81,7 +81,7 @@ static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a
 
 // ------------------------------------------------------------------------------------------ looking
 
-// How far the slave is from the master along n, out of the master, with what bears it. Whether anything does.
+// How far the slave is from the master along n, out of the master, with what carries it. Whether anything does.
 static bool measure(const look *l, const brunt_neighbours *list, const double n[3], touch *t) {
     double best = -INFINITY;
     t->count = 0;
@@ -118,8 +118,8 @@ static void arm_of(brunt_body *body, const touch *t, int q, bool line, double at
     for (int a = 0; a < 3; a++) arm[a] -= along * t->n[a];
 }
 
-// The nodes of what bears a touch, with the weights where the line of the push meets it, or (`at` above 0) so far along
-// n from the slave.
+// The nodes of what carries a touch, with the weights where the line of the push meets it, or (`at` above 0) so far
+// along n from the slave.
 static void nodes_of_masters(brunt_body *body, const touch *t, bool line, double at, brunt_particle_nodes *out) {
     double arm[3];
     brunt_particle_nodes under;
@@ -158,7 +158,7 @@ static int slopes(const look *l, const double x[3], double n[3][3]) {
     return count + 1;
 }
 
-// How far the slave is, along the normal, from the slope of the master beside it: what bears may be aside of it.
+// How far the slave is, along the normal, from the slope of the master beside it: what carries may be aside of it.
 static double slope_gap(const look *l, const touch *t) {
     double out[3], x[3], gap = 0;
     if (!brunt_point_outward(&l->master->grid, t->x, out)) return t->gap;
@@ -217,7 +217,7 @@ static int look_from(const look *l, int32_t b, int64_t s, touch_list *list, brun
     if (t.gap > l->travel) return BRUNT_OK;
     t.target = -fmax(t.gap, 0) / dt;
     if (!(approach_of(l, &t) < t.target + 1e-6 * (double)l->slave->grid.h / dt)) return BRUNT_OK;
-    if (BRUNT_ROOM_MORE(list->touch, "particles that touch", error)) return BRUNT_FAILED;
+    if (BRUNT_CAPACITY_MORE(list->touch, "particles that touch", error)) return BRUNT_FAILED;
     list->touch[list->touch_count++] = t;
     return BRUNT_OK;
 }
@@ -251,7 +251,7 @@ static void look_from_blocks(void *context, int64_t begin, int64_t end, int work
 
 // ------------------------------------------------------------------------------------------ constraints
 
-// Entries of the slave, and of what bears it.
+// Entries of the slave, and of what carries it.
 static int enter_touch(const look *l, const touch *t, brunt_error *error) {
     brunt_particle_nodes under;
     brunt_particle_nodes_find(l->slave, t->block, t->particle, NULL, &under);
@@ -263,15 +263,15 @@ static int enter_touch(const look *l, const touch *t, brunt_error *error) {
 // What the last constraint rubs with: the same nodes, where the surfaces meet.
 static int enter_friction(const look *l, const touch *t, brunt_error *error) {
     const double back[3] = {-t->n[0], -t->n[1], -t->n[2]},
-                 reach = brunt_point_extent(l->slave, t->particle, back) + 0.5 * fmin(t->gap, 0);
+                 extent = brunt_point_extent(l->slave, t->particle, back) + 0.5 * fmin(t->gap, 0);
     double x[3], arm[3];
     brunt_particle_nodes under;
-    for (int a = 0; a < 3; a++) arm[a] = -reach * t->n[a], x[a] = t->x[a] + arm[a];
+    for (int a = 0; a < 3; a++) arm[a] = -extent * t->n[a], x[a] = t->x[a] + arm[a];
     brunt_particle_nodes_find(l->slave, t->block, t->particle, arm, &under);
     const int32_t first =
         brunt_particle_dofs_friction_point(l->slave, &under, x, &l->t->dofs[t->slave], &l->t->set, error);
     if (first < 0) return BRUNT_FAILED;
-    nodes_of_masters(l->master, t, false, reach, &under);
+    nodes_of_masters(l->master, t, false, extent, &under);
     brunt_particle_dofs_rub(l->master, &under, -1, &l->t->dofs[t->master], first, &l->t->set);
     return BRUNT_OK;
 }
@@ -320,7 +320,7 @@ static int meet(look *l, int slave, int master, brunt_error *error) {
     l->range = sqrt(spacing * spacing + pow(2 * spacing + l->travel, 2));
     if (are_apart(l)) return BRUNT_OK;
     const int32_t blocks = l->slave->grid.block_count;
-    if (BRUNT_ROOM(t->run, (size_t)blocks + 1, 0, "blocks of particles that may touch", error)) return BRUNT_FAILED;
+    if (BRUNT_CAPACITY(t->run, (size_t)blocks + 1, 0, "blocks of particles that may touch", error)) return BRUNT_FAILED;
     for (int w = 0; w < t->list_count; w++) t->list[w].touch_count = 0, t->list[w].error.code = BRUNT_OK;
     brunt_parallel(l->m->threads, blocks, 1, look_from_blocks, l, l->m->timer);
     for (int w = 0; w < t->list_count; w++)

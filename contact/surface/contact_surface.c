@@ -109,8 +109,8 @@ static int add_body(brunt_contact_surface *s, int k, brunt_error *error) {
     bool failed = BRUNT_NEW(number, fem->node_count + 1, "numbers of a mesh's nodes in its surface", error);
     const int32_t count = failed ? 0 : number_nodes(fem, &found, s->node_count, number);
     const int32_t had = s->node_count, faces = s->face_count, n = had + count * sides, f = faces + found.count * sides;
-    failed = failed || BRUNT_ROOM(s->node, (size_t)n + 1, (size_t)had, "surface nodes", error) ||
-             BRUNT_ROOM(s->face, (size_t)f + 1, (size_t)faces, "surface faces", error);
+    failed = failed || BRUNT_CAPACITY(s->node, (size_t)n + 1, (size_t)had, "surface nodes", error) ||
+             BRUNT_CAPACITY(s->face, (size_t)f + 1, (size_t)faces, "surface faces", error);
     for (int32_t i = 0; !failed && i < fem->node_count; i++)
         if (number[i] >= 0) s->node[number[i]] = i;
     for (int32_t i = 0; !failed && i < found.count; i++)
@@ -126,7 +126,7 @@ static int add_body(brunt_contact_surface *s, int k, brunt_error *error) {
 
 // Owners of nodes and faces, and what follows from the lists of them.
 int brunt_surface_relate(brunt_contact_surface *s, brunt_error *error) {
-    if (BRUNT_ROOM(s->body, (size_t)s->node_count + 1, 0, "bodies of surface nodes", error)) return BRUNT_FAILED;
+    if (BRUNT_CAPACITY(s->body, (size_t)s->node_count + 1, 0, "bodies of surface nodes", error)) return BRUNT_FAILED;
     for (int k = 0; k < s->fem_count; k++) {
         const int32_t index = s->fem[k]->index, nodes = s->node_end[k] - s->node_range[k];
         for (int32_t n = s->node_range[k]; n < s->node_range[k + 1]; n++) s->body[n] = index;

@@ -99,18 +99,18 @@ int brunt_membrane_patches_make(brunt_contact_surface *s, brunt_error *error) {
         const size_t at = (size_t)(s->face_first[n + 1] - s->face_first[n]);
         most = at > most ? at : most;
     }
-    if (BRUNT_ROOM(s->renewal.spare, (4 * most * most + 1) * sizeof(int32_t), 0, "bytes to put surface nodes in order",
-                   error) ||
-        BRUNT_ROOM(s->membrane.patch_first, (size_t)s->node_count + 2, 0, "first elements about nodes of membranes",
-                   error))
+    if (BRUNT_CAPACITY(s->renewal.spare, (4 * most * most + 1) * sizeof(int32_t), 0,
+                       "bytes to put surface nodes in order", error) ||
+        BRUNT_CAPACITY(s->membrane.patch_first, (size_t)s->node_count + 2, 0, "first elements about nodes of membranes",
+                       error))
         return BRUNT_FAILED;
     int32_t *list = (void *)s->renewal.spare;
     s->membrane.patch_first[0] = 0;
     for (int k = 0; k < s->fem_count; k++)
         for (int32_t n = s->node_range[k]; n < s->node_range[k + 1]; n++) {
             const int32_t count = s->membrane.self[k] && n < s->node_end[k] ? list_patch(s, n, list) : 0;
-            if (BRUNT_ROOM(s->membrane.patch_face, used + (size_t)count + 1, used, "elements about nodes of membranes",
-                           error))
+            if (BRUNT_CAPACITY(s->membrane.patch_face, used + (size_t)count + 1, used,
+                               "elements about nodes of membranes", error))
                 return BRUNT_FAILED;
             memcpy(s->membrane.patch_face + used, list, (size_t)count * sizeof *list);
             used += (size_t)count;

@@ -107,7 +107,7 @@ static void gather_nodes(void *context, int64_t begin, int64_t end, int worker) 
         real force[3];
         brunt_fem_internal_force(fem, node, force);
         double inverse = 1 / (double)at[BRUNT_FEM_MASS], moved = 0;
-        s->mass[n] = fem->drag_mass * (double)at[BRUNT_FEM_MASS]; // drag takes its share of impulses
+        s->mass[n] = fem->damping_mass * (double)at[BRUNT_FEM_MASS]; // drag takes its share of impulses
         for (int a = 0; a < 3; a++) {
             bool held = (fem->held && fem->held[node] >> a & 1) || a >= s->dim;
             double load = (double)force[a] + (fem->load ? (double)fem->load[4 * (size_t)node + (size_t)a] : 0);
@@ -116,7 +116,7 @@ static void gather_nodes(void *context, int64_t begin, int64_t end, int worker) 
             s->x[n][a] = (double)at[a];
             s->v[n][a] = (double)at[BRUNT_FEM_V + a];
             s->old[n][a] = held ? s->v[n][a] : s->v[n][a] - j->dt * (load * inverse + j->gravity[a]);
-            s->inverse[n][a] = held ? 0 : inverse / fem->drag_mass;
+            s->inverse[n][a] = held ? 0 : inverse / fem->damping_mass;
             s->output.impulse[n][a] = 0;
         }
         s->output.gap[n] = INFINITY;

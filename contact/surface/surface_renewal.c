@@ -58,8 +58,8 @@ static void renew_body(brunt_contact_surface *s, int k, int32_t sides, const bod
 // An array by nodes in their new order; those that are new get zeros.
 static int reorder(brunt_contact_surface *s, void *array, size_t bytes, brunt_error *error) {
     if (!array) return BRUNT_OK;
-    if (BRUNT_ROOM(s->renewal.spare, (size_t)s->node_count * bytes + 1, 0, "bytes to put surface nodes in order",
-                   error))
+    if (BRUNT_CAPACITY(s->renewal.spare, (size_t)s->node_count * bytes + 1, 0, "bytes to put surface nodes in order",
+                       error))
         return BRUNT_FAILED;
     for (int32_t n = 0; n < s->node_count; n++) {
         char *to = s->renewal.spare + (size_t)n * bytes;
@@ -105,10 +105,10 @@ static int list_anew(brunt_contact_surface *s, brunt_error *error) {
         faces += sides * (int64_t)(s->renewal.topology[k].changed ? s->renewal.topology[k].key_count : was.faces);
     }
     brunt_surface_change *c = &s->renewal.change;
-    if (BRUNT_ROOM(s->renewal.next_node, (size_t)nodes + 1, 0, "nodes of a surface made anew", error) ||
-        BRUNT_ROOM(s->renewal.next_face, (size_t)faces + 1, 0, "faces of a surface made anew", error) ||
-        BRUNT_ROOM(c->node_was, (size_t)nodes + 1, 0, "nodes of a surface made anew", error) ||
-        BRUNT_ROOM(c->face_now, (size_t)s->face_count + 1, 0, "faces of a surface made anew", error) ||
+    if (BRUNT_CAPACITY(s->renewal.next_node, (size_t)nodes + 1, 0, "nodes of a surface made anew", error) ||
+        BRUNT_CAPACITY(s->renewal.next_face, (size_t)faces + 1, 0, "faces of a surface made anew", error) ||
+        BRUNT_CAPACITY(c->node_was, (size_t)nodes + 1, 0, "nodes of a surface made anew", error) ||
+        BRUNT_CAPACITY(c->face_now, (size_t)s->face_count + 1, 0, "faces of a surface made anew", error) ||
         brunt_surface_reserve(s, (int32_t)nodes, (int32_t)faces, error))
         return BRUNT_FAILED;
     c->node_count = s->node_count, c->face_count = s->face_count;

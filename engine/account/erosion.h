@@ -20,8 +20,8 @@ typedef struct brunt_erosion_step {
     const brunt_bodies *bodies;
     brunt_node_sets *sets;
     brunt_ledger *ledger;
-    brunt_fem_workspace *room; // a thread each
-    double dt, time, steps;    // [s], [s], [-]
+    brunt_fem_workspace *workspace; // a thread each
+    double dt, time, steps;         // [s], [s], [-]
     int threads;
     brunt_timer *timer;
 } brunt_erosion_step;
@@ -33,8 +33,8 @@ void brunt_erosion_free(brunt_erosion *erosion);
 void brunt_erosion_validate(const brunt_erosion *erosion);
 // Marks elements that have failed, are strained, or short of step; those that were inside out are marked already.
 void brunt_erosion_mark_elements(const brunt_erosion *erosion, const brunt_erosion_step *step);
-// Takes out elements that have a mark, counted in the reports of their blocks, and books them; `any`: there were such.
-// BRUNT_OK, or BRUNT_FAILED with the reason.
+// Takes out elements that have a mark, counted in the reports of their blocks, and records them; `any`: there were
+// such. BRUNT_OK, or BRUNT_FAILED with the reason.
 int brunt_erosion_take_elements(brunt_erosion *erosion, const brunt_erosion_step *step, bool *any, brunt_error *error);
 // The same of material points, marks and all.
 void brunt_erosion_take_points(brunt_erosion *erosion, const brunt_erosion_step *step);

@@ -7,7 +7,7 @@
 // An element that would have turned inside out goes with the state of the step before, when its forces f were the last
 // to act: over the whole step they have done what should have become stored energy, dt W, so that it takes
 //   U + hourglass springs + W/2 dt,   all as they were then.
-// Nodes without elements take m v^2/2; gravity, loads and damping in the half step are booked on both sides of the
+// Nodes without elements take m v^2/2; gravity, loads and damping in the half step are recorded on both sides of the
 // balance. What elements had dissipated stays dissipated.
 #include <math.h>
 #include <stdlib.h>
@@ -163,7 +163,7 @@ static void mark_short(const brunt_erosion *erosion, const brunt_erosion_step *s
     const brunt_fem_block *block = &fem->block[b];
     for (int32_t s = block->first; s < block->first + block->count; s++) {
         if (fem->mark[s] != BRUNT_MARK_NONE) continue;
-        brunt_fem_share share = brunt_fem_single_look(erosion->work->single[k], fem, s, 0, 0, step->room);
+        brunt_fem_share share = brunt_fem_single_look(erosion->work->single[k], fem, s, 0, 0, step->workspace);
         if (!(share.stable_step < least)) continue;
         fem->mark[s] = BRUNT_MARK_SHORT;
         fem->report[b].marked++;
@@ -193,15 +193,15 @@ static int32_t list_marked(struct brunt_erosion_work *work, const brunt_fem_body
 
 // ------------------------------------------------------------------------------------------ what goes with them
 
-static void book_elements(brunt_erosion *erosion, const brunt_erosion_step *step, int k, int32_t count) {
+static void account_elements(brunt_erosion *erosion, const brunt_erosion_step *step, int k, int32_t count) {
     brunt_fem_body *fem = &step->bodies->fem[k];
     brunt_eroded *account = &erosion->account[fem->index];
     for (int32_t i = 0; i < count; i++) {
         const int32_t slot = erosion->work->slots[i];
         const uint8_t mark = fem->mark[slot];
         const bool turned = mark == BRUNT_MARK_INVERTED;
-        brunt_fem_share share =
-            brunt_fem_single_look(erosion->work->single[k], fem, slot, turned ? step->dt : 0, step->dt, step->room);
+        brunt_fem_share share = brunt_fem_single_look(erosion->work->single[k], fem, slot, turned ? step->dt : 0,
+                                                      step->dt, step->workspace);
         account->energy +=
             share.energy.internal + share.hourglass_stored + (turned ? share.half_work : -share.half_work);
         step->ledger->eroded_plastic += share.energy.plastic;
@@ -216,8 +216,8 @@ static void book_elements(brunt_erosion *erosion, const brunt_erosion_step *step
     }
 }
 
-static void book_node(brunt_eroded *account, brunt_ledger *ledger, brunt_fem_body *fem, int32_t n) {
-    const bool rings = fem->element->axisymmetric;
+static void account_node(brunt_eroded *account, brunt_ledger *ledger, brunt_fem_body *fem, int32_t n) {
+    const bool axisymmetric = fem->element->axisymmetric;
     real *node = brunt_fem_node(fem, n);
     const double mass = (double)node[BRUNT_FEM_MASS];
     double x[3], p[3], kinetic = 0;
@@ -227,11 +227,11 @@ static void book_node(brunt_eroded *account, brunt_ledger *ledger, brunt_fem_bod
         kinetic += 0.5 * mass * v * v;
         node[BRUNT_FEM_V + a] = 0;
     }
-    if (rings) p[0] = 0; // of a whole ring
+    if (axisymmetric) p[0] = 0; // of a whole ring
     for (int a = 0; a < 3; a++) {
         const int b = (a + 1) % 3, c = (a + 2) % 3;
         account->momentum[a] += p[a];
-        if (!rings) account->angular[a] += x[b] * p[c] - x[c] * p[b];
+        if (!axisymmetric) account->angular[a] += x[b] * p[c] - x[c] * p[b];
     }
     account->mass += mass;
     account->energy += kinetic;
@@ -248,7 +248,7 @@ static int ascending(const void *left, const void *right) {
 static int32_t list_corners(struct brunt_erosion_work *work, const brunt_fem_body *fem, int32_t count,
                             brunt_error *error) {
     const int nodes = fem->traits->nodes;
-    if (BRUNT_ROOM(work->corner, (size_t)count * (size_t)nodes, 0, "nodes of elements that leave", error))
+    if (BRUNT_CAPACITY(work->corner, (size_t)count * (size_t)nodes, 0, "nodes of elements that leave", error))
         return BRUNT_NONE;
     int32_t found = 0;
     for (int32_t i = 0; i < count; i++)
@@ -265,12 +265,13 @@ static int gas_escapes(const brunt_node_set *set, const brunt_erosion_step *step
     brunt_fail(error, BRUNT_FAILED,
                "boundaries (%s): the envelope of the gas has lost element %d of body '%s', time %.9g s, step %.0f: "
                "gas does not flow out through holes",
-               set->wall->name, element + 1, body, step->time, step->steps);
+               set->boundary->name, element + 1, body, step->time, step->steps);
     if (error) {
         error->time = step->time;
         error->id = element;
-        const size_t room = sizeof error->body < sizeof set->fem->name ? sizeof error->body : sizeof set->fem->name;
-        memcpy(error->body, body, room);
+        const size_t workspace =
+            sizeof error->body < sizeof set->fem->name ? sizeof error->body : sizeof set->fem->name;
+        memcpy(error->body, body, workspace);
     }
     return BRUNT_FAILED;
 }
@@ -281,12 +282,12 @@ static int take_out(brunt_erosion *erosion, const brunt_erosion_step *step, int 
     brunt_eroded *account = &erosion->account[fem->index];
     const int32_t corners = list_corners(work, fem, count, error);
     if (corners < 0) return BRUNT_FAILED;
-    book_elements(erosion, step, k, count);
-    brunt_fem_remove(fem, work->slots, count, step->room);
+    account_elements(erosion, step, k, count);
+    brunt_fem_remove(fem, work->slots, count, step->workspace);
     for (int32_t i = 0; i < corners; i++) {
         if (fem->bonds[work->corner[i]]) continue;
         account->nodes++;
-        if (!erosion->rule[fem->index].keep) book_node(account, step->ledger, fem, work->corner[i]);
+        if (!erosion->rule[fem->index].keep) account_node(account, step->ledger, fem, work->corner[i]);
     }
     int32_t element;
     const brunt_node_set *gas = brunt_node_sets_follow(step->sets, fem, &element);

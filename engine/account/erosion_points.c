@@ -1,11 +1,11 @@
 // Material points that leave their bodies at the end of a step: what they are made of has failed, has been strained too
 // far, or would have turned inside out.
 //
-// One that leaves takes its mass, momentum, spin, kinetic and stored energy along, all booked; what it had dissipated
+// One that leaves takes its mass, momentum, spin, kinetic and stored energy along, all recorded; what it had dissipated
 // stays dissipated. Its slot then is like padding (id -1, no mass, no volume) until the next sort drops it. With `keep`
-// it stays as mass: a point of no volume exerts no force whatever its stress, and only the stored energy is booked.
+// it stays as mass: a point of no volume exerts no force whatever its stress, and only the stored energy is recorded.
 //
-// The ledger needs no more than that. The half step by which velocities are behind the stress is booked with the
+// The ledger needs no more than that. The half step by which velocities are behind the stress is recorded with the
 // transfer when it is made, and taken off with the forces of the next step, to which the point no longer adds: energy
 // closes as well as without erosion.
 #include <math.h>
@@ -138,8 +138,8 @@ static brunt_point_energy energy_of(brunt_body *body, const int64_t *slots, int6
     return energy;
 }
 
-static void book_loss(brunt_body *body, const int64_t *slots, int64_t count, brunt_eroded *account,
-                      brunt_ledger *ledger) {
+static void account_loss(brunt_body *body, const int64_t *slots, int64_t count, brunt_eroded *account,
+                         brunt_ledger *ledger) {
     brunt_audit lost = brunt_slots_audit(body, slots, count);
     account->mass += lost.mass;
     account->energy += lost.kinetic;
@@ -177,7 +177,7 @@ static void erode(brunt_erosion *erosion, const brunt_erosion_step *step, brunt_
     ledger->eroded_plastic += energy.plastic;
     ledger->eroded_viscosity += energy.viscosity;
     ledger->eroded_heat += energy.heat;
-    if (!body->keeps) book_loss(body, slots, count, account, ledger);
+    if (!body->keeps) account_loss(body, slots, count, account, ledger);
     take_out(body, slots, count);
 }
 

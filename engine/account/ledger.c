@@ -1,4 +1,4 @@
-// Energy and momentum of a world, and what is known of bodies, pairs and walls.
+// Energy and momentum of a world, and what is known of bodies, pairs and boundaries.
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -6,16 +6,16 @@
 #include "account/ledger.h"
 #include "base/error.h"
 
-static const double MOST_GROWTH = 10, STEP_ROUNDINGS = 10, STORED_ROUNDINGS = 100;
+static const double GROWTH_LIMIT = 10, STEP_ROUNDINGS = 10, STORED_ROUNDINGS = 100;
 static const double REAL_EPSILON = sizeof(real) == sizeof(float) ? FLT_EPSILON : DBL_EPSILON;
 
 // What the run has been given by now [J]: the energy at the start, with the work done on it, and that work itself, each
-// cause by its amount, since what one wall puts in another may take out.
-static double given_energy(const brunt_ledger *ledger, const brunt_books *books) {
+// cause by its amount, since what one boundary puts in another may take out.
+static double given_energy(const brunt_ledger *ledger, const brunt_accounts *accounts) {
     double work = ledger->gravity_work, turned_over = fabs(work);
-    for (int w = 0; w < books->wall_count; w++) {
-        work += books->walls[w].action.external_work;
-        turned_over += fabs(books->walls[w].action.external_work);
+    for (int w = 0; w < accounts->boundary_count; w++) {
+        work += accounts->boundaries[w].account.external_work;
+        turned_over += fabs(accounts->boundaries[w].account.external_work);
     }
     const double initial = ledger->initial_energy;
     return fmax(fmax(fabs(initial), fabs(initial + work)), turned_over);
@@ -31,8 +31,8 @@ void brunt_ledger_validate(const brunt_ledger *ledger) {
     BRUNT_ASSERT(ledger->energy_scale >= fabs(ledger->initial_energy));
 }
 
-void brunt_ledger_remember(brunt_ledger *ledger, const brunt_books *books) {
-    ledger->energy_scale = fmax(ledger->energy_scale, given_energy(ledger, books));
+void brunt_ledger_remember(brunt_ledger *ledger, const brunt_accounts *accounts) {
+    ledger->energy_scale = fmax(ledger->energy_scale, given_energy(ledger, accounts));
 }
 
 // A density of energy is a difference of numbers as large as the moduli, whose roundings are m c^2 eps of a body: of
@@ -65,9 +65,9 @@ static double rounding_energy(const brunt_bodies *bodies) {
     return energy;
 }
 
-void brunt_ledger_open(brunt_ledger *ledger, const brunt_books *books) {
-    for (int i = 0; i < books->bodies->count; i++) {
-        const brunt_body_ref *body = brunt_bodies_summed(books->bodies, i);
+void brunt_ledger_open(brunt_ledger *ledger, const brunt_accounts *accounts) {
+    for (int i = 0; i < accounts->bodies->count; i++) {
+        const brunt_body_ref *body = brunt_bodies_summed(accounts->bodies, i);
         const brunt_audit a = body->ops->sums(body);
         *(body->mpm ? &ledger->kinetic : &ledger->fem_kinetic) += a.kinetic;
         ledger->initial_kinetic += a.kinetic;
@@ -78,9 +78,9 @@ void brunt_ledger_open(brunt_ledger *ledger, const brunt_books *books) {
             ledger->linear_initial[k] += a.linear[k], ledger->angular_initial[k] += a.angular[k];
     }
     ledger->initial_energy += ledger->hourglass_stored;
-    brunt_ledger_remember(ledger, books);
-    ledger->rounding_energy = rounding_energy(books->bodies);
-    ledger->rounding_stored = rounding_stored(books->bodies);
+    brunt_ledger_remember(ledger, accounts);
+    ledger->rounding_energy = rounding_energy(accounts->bodies);
+    ledger->rounding_stored = rounding_stored(accounts->bodies);
 }
 
 // Energy that bodies have and have dissipated.
@@ -96,34 +96,34 @@ static void add_bodies(const brunt_bodies *bodies, brunt_energy *energy) {
 }
 
 // What has acted between bodies and from outside.
-static void add_actions(const brunt_books *books, brunt_energy *energy) {
-    for (int w = 0; w < books->wall_count; w++) {
-        energy->contact += books->walls[w].action.normal_loss;
-        energy->friction += books->walls[w].action.friction_loss;
-        energy->external_work += books->walls[w].action.external_work;
+static void add_accounts(const brunt_accounts *accounts, brunt_energy *energy) {
+    for (int w = 0; w < accounts->boundary_count; w++) {
+        energy->contact += accounts->boundaries[w].account.normal_loss;
+        energy->friction += accounts->boundaries[w].account.friction_loss;
+        energy->external_work += accounts->boundaries[w].account.external_work;
     }
-    for (int p = 0; p < books->pair_count; p++) {
-        energy->contact += books->pairs[p].action.normal_loss;
-        energy->friction += books->pairs[p].action.friction_loss;
+    for (int p = 0; p < accounts->pair_count; p++) {
+        energy->contact += accounts->pairs[p].account.normal_loss;
+        energy->friction += accounts->pairs[p].account.friction_loss;
     }
 }
 
-void brunt_ledger_energy(const brunt_ledger *now, const brunt_books *books, brunt_energy *energy) {
+void brunt_ledger_energy(const brunt_ledger *now, const brunt_accounts *accounts, brunt_energy *energy) {
     // Velocities are those of the middle of the last step, stress that of its end: what it does to them in that half
-    // step is booked with the transfer.
+    // step is recorded with the transfer.
     *energy = (brunt_energy){.kinetic = now->kinetic + now->fem_kinetic,
                              .initial = now->initial_energy,
                              .transfer = now->transfer - 0.5 * (now->stress_work + now->fem_stress_work),
                              .scheme = now->scheme,
                              .contact = now->barrier,
                              .external_work = now->gravity_work};
-    add_bodies(books->bodies, energy);
+    add_bodies(accounts->bodies, energy);
     energy->hourglass = now->hourglass_stored + now->hourglass_lost;
     energy->viscosity += now->damping.loss + now->eroded_viscosity;
     energy->plastic += now->eroded_plastic;
     energy->heat += now->eroded_heat;
-    for (int i = 0; i < books->bodies->count && books->eroded; i++) energy->eroded += books->eroded[i].energy;
-    add_actions(books, energy);
+    for (int i = 0; i < accounts->bodies->count && accounts->eroded; i++) energy->eroded += accounts->eroded[i].energy;
+    add_accounts(accounts, energy);
     energy->total = energy->kinetic + energy->internal + energy->plastic + energy->hourglass + energy->contact +
                     energy->friction + energy->viscosity + energy->transfer + energy->eroded + energy->scheme;
     energy->error = energy->total - energy->initial - energy->external_work;
@@ -131,10 +131,10 @@ void brunt_ledger_energy(const brunt_ledger *now, const brunt_books *books, brun
     // error large where there is little. What it has may be more, when heat of an equation of state that counts from 0
     // becomes motion; but beyond ten times that it is energy out of nothing, which must not measure itself. Where next
     // to nothing happens, it is rounding that does.
-    const double given = fmax(now->energy_scale, given_energy(now, books));
+    const double given = fmax(now->energy_scale, given_energy(now, accounts));
     const double has = energy->kinetic + fabs(energy->internal);
-    const double scale = fmax(given, given > 0 ? fmin(has, MOST_GROWTH * given) : has);
-    energy->reference = fmax(fmax(scale, now->rounding_stored), now->rounding_energy * fmax(books->steps, 1));
+    const double scale = fmax(given, given > 0 ? fmin(has, GROWTH_LIMIT * given) : has);
+    energy->reference = fmax(fmax(scale, now->rounding_stored), now->rounding_energy * fmax(accounts->steps, 1));
     energy->error_relative = energy->reference > 0 ? energy->error / energy->reference : 0;
 }
 
@@ -161,22 +161,22 @@ typedef struct magnitudes {
 } magnitudes;
 
 // Component k of the impulses that the bodies have been given.
-static void add_impulses(const brunt_ledger *now, const brunt_books *books, int k, brunt_momentum *momentum,
+static void add_impulses(const brunt_ledger *now, const brunt_accounts *accounts, int k, brunt_momentum *momentum,
                          magnitudes *size) {
     momentum->linear_impulse[k] = now->gravity_impulse[k] + now->damping.impulse[k];
     momentum->angular_impulse[k] = now->gravity_angular[k] + now->damping.angular[k];
     size->linear += fabs(now->gravity_impulse[k]) + fabs(now->damping.impulse[k]);
     size->angular += fabs(now->gravity_angular[k]) + fabs(now->damping.angular[k]);
-    for (int w = 0; w < books->wall_count; w++) {
-        const brunt_impulse_account *action = &books->walls[w].action;
-        momentum->linear_impulse[k] += action->impulse[k];
-        momentum->angular_impulse[k] += action->angular[k];
-        size->linear += fabs(action->impulse[k]);
-        size->angular += fabs(action->angular[k]);
+    for (int w = 0; w < accounts->boundary_count; w++) {
+        const brunt_impulse_account *account = &accounts->boundaries[w].account;
+        momentum->linear_impulse[k] += account->impulse[k];
+        momentum->angular_impulse[k] += account->angular[k];
+        size->linear += fabs(account->impulse[k]);
+        size->angular += fabs(account->angular[k]);
     }
-    if (books->axisymmetric) keep_axial(k, momentum);
-    for (int i = 0; i < books->bodies->count && books->eroded; i++) {
-        const brunt_eroded *eroded = &books->eroded[i];
+    if (accounts->axisymmetric) keep_axial(k, momentum);
+    for (int i = 0; i < accounts->bodies->count && accounts->eroded; i++) {
+        const brunt_eroded *eroded = &accounts->eroded[i];
         momentum->linear_impulse[k] -= eroded->momentum[k];
         momentum->angular_impulse[k] -= eroded->angular[k];
         size->linear += fabs(eroded->momentum[k]);
@@ -184,22 +184,22 @@ static void add_impulses(const brunt_ledger *now, const brunt_books *books, int 
     }
 }
 
-void brunt_ledger_momentum(const brunt_ledger *now, const brunt_books *books, brunt_momentum *momentum) {
+void brunt_ledger_momentum(const brunt_ledger *now, const brunt_accounts *accounts, brunt_momentum *momentum) {
     memset(momentum, 0, sizeof *momentum);
     double linear_here = 0, angular_here = 0, linear = 0, angular = 0;
-    for (int i = 0; i < books->bodies->count; i++) {
-        const brunt_body_ref *body = brunt_bodies_summed(books->bodies, i);
+    for (int i = 0; i < accounts->bodies->count; i++) {
+        const brunt_body_ref *body = brunt_bodies_summed(accounts->bodies, i);
         const brunt_audit a = body->ops->sums(body);
         for (int k = 0; k < 3; k++) momentum->linear[k] += a.linear[k], momentum->angular[k] += a.angular[k];
         linear_here += a.scale_linear;
         angular_here += a.scale_angular;
     }
-    add_contact_spin(books->surface, momentum->angular);
+    add_contact_spin(accounts->surface, momentum->angular);
     magnitudes size = {0};
     for (int k = 0; k < 3; k++) {
         momentum->linear_initial[k] = now->linear_initial[k];
         momentum->angular_initial[k] = now->angular_initial[k];
-        add_impulses(now, books, k, momentum, &size);
+        add_impulses(now, accounts, k, momentum, &size);
         double d = momentum->linear[k] - momentum->linear_initial[k] - momentum->linear_impulse[k];
         double e = momentum->angular[k] - momentum->angular_initial[k] - momentum->angular_impulse[k];
         linear += d * d, angular += e * e;

@@ -1,4 +1,4 @@
-// Energy and momentum of a run, booked as it goes. All but the last member is of the state.
+// Energy and momentum of a run, recorded as it goes. All but the last member is of the state.
 #pragma once
 
 #include "boundary/damping.h"
@@ -24,23 +24,23 @@ typedef struct brunt_ledger {
 } brunt_ledger;
 
 // What the balance goes over besides the ledger.
-typedef struct brunt_books {
+typedef struct brunt_accounts {
     const brunt_bodies *bodies;
-    const brunt_boundary *walls;
-    int wall_count;
+    const brunt_boundary *boundaries;
+    int boundary_count;
     const brunt_pair *pairs;
     int pair_count;
     const brunt_eroded *eroded;           // a body each; NULL without erosion
     const brunt_contact_surface *surface; // of meshes
     double steps;                         // so far
     bool axisymmetric;
-} brunt_books;
+} brunt_accounts;
 
 // Aborts where a number is not finite, or a scale less than what it is a scale of.
 void brunt_ledger_validate(const brunt_ledger *ledger);
 // Energy and momenta as the bodies are at the start. Takes `hourglass_stored` as it is.
-void brunt_ledger_open(brunt_ledger *ledger, const brunt_books *books);
+void brunt_ledger_open(brunt_ledger *ledger, const brunt_accounts *accounts);
 // Keeps the most that the run has been given so far; once a step.
-void brunt_ledger_remember(brunt_ledger *ledger, const brunt_books *books);
-void brunt_ledger_energy(const brunt_ledger *ledger, const brunt_books *books, brunt_energy *energy);
-void brunt_ledger_momentum(const brunt_ledger *ledger, const brunt_books *books, brunt_momentum *momentum);
+void brunt_ledger_remember(brunt_ledger *ledger, const brunt_accounts *accounts);
+void brunt_ledger_energy(const brunt_ledger *ledger, const brunt_accounts *accounts, brunt_energy *energy);
+void brunt_ledger_momentum(const brunt_ledger *ledger, const brunt_accounts *accounts, brunt_momentum *momentum);

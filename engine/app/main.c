@@ -42,7 +42,7 @@ static int printed(int status) {
 }
 
 int main(int argc, char **argv) {
-    // Runs and studies go on when nobody listens: their results are in files.
+    // Runs and studies go on when nothing reads what they print: their results are in files.
     static const struct {
         const char *name;
         int (*run)(int, char **);

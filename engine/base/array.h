@@ -25,14 +25,15 @@
      !brunt_array_holds((array), (capacity), sizeof *(array), (count)))
 
 // The same with words: BRUNT_OK, or BRUNT_FAILED with what (a plural) there was no memory for.
-//   if (BRUNT_ROOM(s->x, n, 0, "places of nodes", error)) return BRUNT_FAILED;
-#define BRUNT_ROOM(array, count, keep, what, error) BRUNT_ROOM_IN(array, array##_capacity, count, keep, what, error)
-#define BRUNT_ROOM_IN(array, capacity, count, keep, what, error)                                                       \
+//   if (BRUNT_CAPACITY(s->x, n, 0, "places of nodes", error)) return BRUNT_FAILED;
+#define BRUNT_CAPACITY(array, count, keep, what, error)                                                                \
+    BRUNT_CAPACITY_IN(array, array##_capacity, count, keep, what, error)
+#define BRUNT_CAPACITY_IN(array, capacity, count, keep, what, error)                                                   \
     (BRUNT_RESERVE_IN(array, capacity, count, keep)                                                                    \
          ? brunt_fail_memory((error), (what), (size_t)(count), sizeof *(array))                                        \
          : BRUNT_OK)
-#define BRUNT_ROOM_MORE(array, what, error)                                                                            \
-    BRUNT_ROOM(array, (size_t)array##_count + 1, (size_t)array##_count, what, error)
+#define BRUNT_CAPACITY_MORE(array, what, error)                                                                        \
+    BRUNT_CAPACITY(array, (size_t)array##_count + 1, (size_t)array##_count, what, error)
 
 // The same of what is made once and freed by brunt_free: zeros.
 #define BRUNT_NEW(array, count, what, error)                                                                           \

@@ -6,11 +6,11 @@
 #include "base/error.h"
 #include "base/memory.h"
 
-enum { MOST = 64 };
+enum { MESSAGE_LIMIT = 64 };
 
 void brunt_warn(brunt_messages *messages, const char *format, ...) {
-    if (!messages->text && !(messages->text = brunt_alloc(MOST * sizeof *messages->text))) return;
-    if (messages->count == MOST) return;
+    if (!messages->text && !(messages->text = brunt_alloc(MESSAGE_LIMIT * sizeof *messages->text))) return;
+    if (messages->count == MESSAGE_LIMIT) return;
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(messages->text[messages->count++], sizeof *messages->text, format, arguments);

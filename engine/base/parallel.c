@@ -11,7 +11,7 @@ typedef struct span {
 } span;
 
 // By the thread that started the phase, after the others have joined it: observers need no locks.
-static void book(brunt_timer *timer, const span *spans, int workers) {
+static void account_times(brunt_timer *timer, const span *spans, int workers) {
     const brunt_observer *observer = timer->observer;
     for (int w = 0; w < workers; w++) {
         timer->seconds[w] += spans[w].end - spans[w].begin;
@@ -47,7 +47,7 @@ static void run(int threads, const phase *p, brunt_timer *timer) {
             if (timer) spans[worker].end = brunt_clock();
         }
     }
-    if (timer) book(timer, spans, workers);
+    if (timer) account_times(timer, spans, workers);
 }
 
 void brunt_parallel(int threads, int64_t count, int64_t grain, brunt_task_fn *task, void *context, brunt_timer *timer) {

@@ -12,12 +12,12 @@ typedef void brunt_task_fn(void *context, int64_t begin, int64_t end, int worker
 // Where the time of parallel phases goes. Nothing is kept of the single phase: a listener is told after it.
 typedef struct brunt_timer {
     double seconds[BRUNT_THREAD_LIMIT]; // [s] that each worker was at work
-    const brunt_observer *observer;     // told when each worker began and ended; NULL: nobody
+    const brunt_observer *observer;     // told when each worker began and ended; NULL: none is
     int32_t pass;                       // what the observer knows the phases by
 } brunt_timer;
 
 // Runs all tasks [0, count) in pieces of `grain`, on at most `threads` threads (1 .. BRUNT_THREAD_LIMIT). `timer`: NULL
-// when nobody wants the time; else two readings of the clock a worker.
+// when the time is not wanted; else two readings of the clock a worker.
 void brunt_parallel(int threads, int64_t count, int64_t grain, brunt_task_fn *task, void *context, brunt_timer *timer);
 
 // The same for tasks each of which is worth a thread.

@@ -59,7 +59,7 @@ int brunt_sweep(const brunt_box *boxes, int32_t first, int32_t count, brunt_box_
         for (int32_t k = i + 1; k < count && !failed && order[k].low <= boxes[order[i].box].high[axis]; k++) {
             const int32_t p = order[i].box, q = order[k].box;
             if ((p >= first && q >= first) || !share(&boxes[p], &boxes[q])) continue;
-            failed = BRUNT_ROOM_IN(list, capacity, pair + 1, pair, "pairs of boxes that share something", error);
+            failed = BRUNT_CAPACITY_IN(list, capacity, pair + 1, pair, "pairs of boxes that share something", error);
             if (!failed) list[pair++] = p < q ? (brunt_box_pair){p, q} : (brunt_box_pair){q, p};
         }
     brunt_free(order);

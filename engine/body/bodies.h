@@ -27,7 +27,7 @@ struct brunt_body_ops {
     // How fine it is [m]: the spacing of its points, the mean edge of its surface.
     double (*fineness)(const brunt_body_ref *body);
     // Places of a kind that it still has.
-    int64_t (*count)(const brunt_body_ref *body, brunt_place at);
+    int64_t (*count)(const brunt_body_ref *body, brunt_location at);
     // Longest stable step [s] by what its blocks have reported, in cells of `cell` [m] and beside what moves at
     // `around` [m/s], with loads that follow its surface at a frequency of squared `load` [1/s^2]. INFINITY: nothing is
     // left, NAN: a report is no number. And as of its start, when nothing is left.

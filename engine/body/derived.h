@@ -10,8 +10,8 @@
     X(von_mises)
 
 typedef struct brunt_point_values {
-    double F[9], J, stress[6], volume, density; // Cauchy's [Pa], [m^3], [kg/m^3]; of sheets F is the stretch U in its
-                                                // plane, and that across
+    double F[9], J, stress[6], volume, density; // Cauchy's [Pa], [m^3], [kg/m^3]; of membranes F is the stretch U in
+                                                // its plane, and that across
 } brunt_point_values;
 
 typedef struct brunt_derived_field {
@@ -27,7 +27,7 @@ BRUNT_DERIVED_FIELDS(BRUNT_DECLARE_FIELD)
 
 // What a row of a table of fields says of itself: `own`, or what the file of a derived one says.
 static inline brunt_field_info brunt_field_info_of(const brunt_derived_field *derived, brunt_field_info own,
-                                                   brunt_place at) {
+                                                   brunt_location at) {
     if (!derived) return own;
     return (brunt_field_info){derived->name, derived->unit, derived->components, derived->symmetric, at};
 }

@@ -44,16 +44,16 @@ static double scalar(const brunt_fem_body *fem, int field, int c, int32_t s) {
 
 static void read_point(const brunt_fem_body *fem, int32_t s, brunt_point_values *p) {
     const int dim = fem->point_dim;
-    const bool sheet = fem->traits->membrane;
+    const bool membrane = fem->traits->membrane;
     memset(p, 0, sizeof *p);
-    p->F[8] = sheet ? scalar(fem, BRUNT_ELEMENT_thickness_stretch, 0, s) : 1;
+    p->F[8] = membrane ? scalar(fem, BRUNT_ELEMENT_thickness_stretch, 0, s) : 1;
     for (int r = 0; r < dim; r++)
         for (int c = 0; c < dim; c++) p->F[3 * r + c] = scalar(fem, BRUNT_ELEMENT_deformation_gradient, r * dim + c, s);
     const double *F = p->F;
     p->J = F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) + F[2] * (F[3] * F[7] - F[4] * F[6]);
     for (int c = 0; c < BRUNT_SYMMETRIC(dim); c++)
         p->stress[c] = scalar(fem, BRUNT_ELEMENT_kirchhoff_stress, c, s) / p->J;
-    if (sheet) brunt_membrane_stress(fem, s, p->stress);
+    if (membrane) brunt_membrane_stress(fem, s, p->stress);
     p->volume = scalar(fem, BRUNT_ELEMENT_reference_volume, 0, s) * p->J;
     p->density = (double)fem->material.density / p->J;
 }
@@ -103,7 +103,7 @@ static const struct element_field {
     {{"density", "kg/m^3", 1, false, BRUNT_AT_ELEMENTS}, element_density},
     {{"deformation_gradient", "1", 9, false, BRUNT_AT_ELEMENTS}, element_F},
     {{"element", "1", 1, false, BRUNT_AT_ELEMENTS}, element_id},
-    {{"thickness", "m", 1, false, BRUNT_AT_ELEMENTS}, element_thickness}, // the last: of sheets alone
+    {{"thickness", "m", 1, false, BRUNT_AT_ELEMENTS}, element_thickness}, // the last: of membranes alone
 };
 static int element_count(const brunt_fem_body *fem) {
     return (int)(sizeof element_fields / sizeof element_fields[0]) - (fem->traits->membrane ? 0 : 1);

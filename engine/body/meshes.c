@@ -63,7 +63,7 @@ static brunt_method method(const brunt_body_ref *ref) {
     return ref->fem->traits->membrane ? BRUNT_MEMBRANE : BRUNT_FEM;
 }
 
-static int64_t count(const brunt_body_ref *ref, brunt_place at) {
+static int64_t count(const brunt_body_ref *ref, brunt_location at) {
     return at == BRUNT_AT_NODES ? ref->fem->node_count : at == BRUNT_AT_ELEMENTS ? ref->fem->element_count : 0;
 }
 

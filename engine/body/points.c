@@ -51,7 +51,7 @@ static int dim(const brunt_body_ref *ref) { return ref->mpm->particles.dim; }
 static double fineness(const brunt_body_ref *ref) { return ref->mpm->spacing; }
 static void validate(const brunt_body_ref *ref) { brunt_body_validate(ref->mpm); }
 
-static int64_t count(const brunt_body_ref *ref, brunt_place at) {
+static int64_t count(const brunt_body_ref *ref, brunt_location at) {
     return at == BRUNT_AT_PARTICLES ? ref->mpm->particles.count : 0;
 }
 

@@ -1,4 +1,4 @@
-// What acts on bodies from outside: planes, regions, named groups of nodes, drag.
+// What acts on bodies from outside: planes, regions, named groups of nodes, damping.
 #pragma once
 
 #include "boundary/boundary_surface.h"
@@ -9,12 +9,12 @@
 #include "contact/planes/symmetry.h"
 
 typedef struct brunt_boundaries {
-    brunt_boundary *walls; // by kind, in their order
-    int wall_count;
-    brunt_symmetry_plane mirrors[BRUNT_MAX_PLANES];
-    int mirror_count;
-    bool has_walls, has_conditions, has_friction; // planes that push, conditions at grid nodes
-    bool has_detonations;                         // explosives are lit
+    brunt_boundary *boundary; // by kind, in their order
+    int boundary_count;
+    brunt_symmetry_plane symmetry[BRUNT_MAX_PLANES];
+    int symmetry_count;
+    bool has_pushing_planes, has_conditions, has_friction; // planes that push, conditions at grid nodes
+    bool has_detonations;                                  // explosives are lit
     brunt_node_sets sets;
     brunt_boundary_surfaces surfaces;
     brunt_damping damping;
@@ -23,5 +23,5 @@ typedef struct brunt_boundaries {
 // Made of a definition in world/boundaries.c, beside the bodies that they name. What lasts of them is saved by
 // world/state.c: accounts of walls, tractions of surfaces, gas of groups.
 void brunt_boundaries_free(brunt_boundaries *boundaries);
-// Aborts where walls, mirrors, bodies and groups do not belong to each other, or an account is no number.
+// Aborts where walls, symmetry planes, bodies and groups do not belong to each other, or an account is no number.
 void brunt_boundaries_validate(const brunt_boundaries *boundaries, const brunt_bodies *bodies);

@@ -12,7 +12,7 @@
 #include "grid/grid.h"
 
 static const double CORNER = 0.866; // cosine of the turn between parts of a line where pieces end: 30 degrees
-static const double MOST_PARTICLES = 1e6;
+static const double PARTICLE_LIMIT = 1e6;
 
 // ------------------------------------------------------------------------------------------ lines
 
@@ -104,13 +104,13 @@ static int check_line(const brunt_boundary_surface *s, const brunt_boundary_surf
         const double part = direction(def, f, t);
         if (!(part > 0))
             return brunt_fail(error, BRUNT_BAD_INPUT, "boundaries (%s).line.points: two that follow each other are one",
-                              s->wall->name);
+                              s->boundary->name);
         length += part;
     }
-    if (!(length / s->cell * fmax(def->particles, 1 / def->piece) < MOST_PARTICLES))
+    if (!(length / s->cell * fmax(def->particles, 1 / def->piece) < PARTICLE_LIMIT))
         return brunt_fail(error, BRUNT_BAD_INPUT,
                           "boundaries (%s).line: %.3g cells long, with %d boundary particles in each: that is too many",
-                          s->wall->name, length / s->cell, def->particles);
+                          s->boundary->name, length / s->cell, def->particles);
     return BRUNT_OK;
 }
 
@@ -159,17 +159,17 @@ static int sort_particles(brunt_boundary_surface *s, brunt_error *error) {
 // ------------------------------------------------------------------------------------------ making
 
 static int find_body(brunt_boundary_surface *s, const brunt_bodies *bodies, brunt_error *error) {
-    s->wall->body = -1;
+    s->boundary->body = -1;
     if (!s->def.body[0]) return BRUNT_OK;
-    s->wall->body = brunt_bodies_find(bodies, s->def.body);
-    if (s->wall->body < 0)
-        return brunt_fail(error, BRUNT_BAD_INPUT, "boundaries (%s).body: there is no body '%s'", s->wall->name,
+    s->boundary->body = brunt_bodies_find(bodies, s->def.body);
+    if (s->boundary->body < 0)
+        return brunt_fail(error, BRUNT_BAD_INPUT, "boundaries (%s).body: there is no body '%s'", s->boundary->name,
                           s->def.body);
-    if (bodies->all[s->wall->body].mpm) return BRUNT_OK;
+    if (bodies->all[s->boundary->body].mpm) return BRUNT_OK;
     return brunt_fail(error, BRUNT_BAD_INPUT,
                       "boundaries (%s).body: '%s' is of elements, lines and surfaces hold material points: group "
                       "names nodes of elements",
-                      s->wall->name, s->def.body);
+                      s->boundary->name, s->def.body);
 }
 
 static int make_surface(brunt_boundary_surface *s, const brunt_boundary_surface_def *def, const brunt_bodies *bodies,
@@ -199,7 +199,7 @@ static int find_frames(brunt_boundary_surfaces *surfaces, const brunt_world_def 
 }
 
 int brunt_boundary_surfaces_make(brunt_boundary_surfaces *surfaces, const brunt_world_def *def,
-                                 const brunt_bodies *bodies, brunt_boundary *walls, brunt_error *error) {
+                                 const brunt_bodies *bodies, brunt_boundary *boundaries, brunt_error *error) {
     if (!def->surface_count) return BRUNT_OK;
     if (BRUNT_NEW(surfaces->surface, def->surface_count, "boundaries of lines and surfaces", error) ||
         find_frames(surfaces, def, bodies, error))
@@ -207,7 +207,7 @@ int brunt_boundary_surfaces_make(brunt_boundary_surfaces *surfaces, const brunt_
     surfaces->count = def->surface_count;
     for (int k = 0; k < surfaces->count; k++) {
         brunt_boundary_surface *s = &surfaces->surface[k];
-        s->wall = &walls[k];
+        s->boundary = &boundaries[k];
         s->cell = def->cell;
         const int status = make_surface(s, &def->surfaces[k], bodies, error);
         if (status) return status;
@@ -255,7 +255,7 @@ void brunt_boundary_surface_way(const brunt_boundary_surface *s, double time, do
 }
 
 bool brunt_boundary_surface_acts(const brunt_boundary_surface *s, const brunt_body *body) {
-    return s->wall->body < 0 || s->wall->body == body->index;
+    return s->boundary->body < 0 || s->boundary->body == body->index;
 }
 
 // ------------------------------------------------------------------------------------------ what must hold
@@ -271,7 +271,7 @@ static void validate_cells(const brunt_boundary_surface *s) {
 void brunt_boundary_surfaces_validate(const brunt_boundary_surfaces *surfaces, const brunt_bodies *bodies) {
     for (int k = 0; k < surfaces->count; k++) {
         const brunt_boundary_surface *s = &surfaces->surface[k];
-        BRUNT_ASSERT(s->wall && s->wall->body < bodies->count && s->bodies == bodies->mpm_count);
+        BRUNT_ASSERT(s->boundary && s->boundary->body < bodies->count && s->bodies == bodies->mpm_count);
         BRUNT_ASSERT(s->pieces > 0 && s->first[0] == 0 && s->first[s->pieces] == s->particle_count);
         for (int32_t p = 0; p < s->particle_count; p++) {
             const int32_t piece = s->particle[p].piece;

@@ -17,7 +17,7 @@ typedef struct brunt_boundary_particle {
 
 typedef struct brunt_boundary_surface {
     brunt_boundary_surface_def def; // without points and facets, with a table of its own
-    brunt_boundary *wall;           // its name, and where its impulses are booked
+    brunt_boundary *boundary;       // its name, and where its impulses are recorded
     brunt_boundary_particle *particle;
     int32_t particle_count, pieces; // particles of a piece follow each other
     int32_t *first;                 // pieces + 1: of its particles
@@ -40,9 +40,9 @@ typedef struct brunt_boundary_surfaces {
     double (*frame)[9]; // of each body of material points: how its particles' own boxes were turned at the start
 } brunt_boundary_surfaces;
 
-// After the bodies are made. `walls`: those of the surfaces. BRUNT_OK, or what is wrong.
+// After the bodies are made. `boundaries`: those of the surfaces. BRUNT_OK, or what is wrong.
 int brunt_boundary_surfaces_make(brunt_boundary_surfaces *surfaces, const brunt_world_def *def,
-                                 const brunt_bodies *bodies, brunt_boundary *walls, brunt_error *error);
+                                 const brunt_bodies *bodies, brunt_boundary *boundaries, brunt_error *error);
 void brunt_boundary_surfaces_free(brunt_boundary_surfaces *surfaces);
 // Aborts where pieces, particles and cells do not belong to each other, or a traction is no number.
 void brunt_boundary_surfaces_validate(const brunt_boundary_surfaces *surfaces, const brunt_bodies *bodies);
@@ -61,14 +61,14 @@ int64_t brunt_boundary_surfaces_state_count(const brunt_boundary_surfaces *surfa
 double *brunt_boundary_surfaces_state_get(const brunt_boundary_surfaces *surfaces, double *out);
 const double *brunt_boundary_surfaces_state_set(brunt_boundary_surfaces *surfaces, const double *in);
 
-// --- boundary_reach.c
+// --- boundary_extent.c
 // When a body is looked at: how far the surface has gone, and how far it goes over the step [m], which takes dt [s].
-typedef struct brunt_boundary_reach {
+typedef struct brunt_boundary_extent {
     double way[3], step[3], dt;
     const double *frame; // of the body
-} brunt_boundary_reach;
+} brunt_boundary_extent;
 // How far the body is from each boundary particle, along its normal [m]: the own boxes of its material points reach it.
 // 0 where they do; of a surface that they can leave also what they come to within the step; INFINITY elsewhere. `gap`
 // holds the nearest so far, and INFINITY before the first body.
-void brunt_boundary_surface_reach(const brunt_boundary_surface *surface, brunt_body *body,
-                                  const brunt_boundary_reach *reach, double *gap);
+void brunt_boundary_surface_extent(const brunt_boundary_surface *surface, brunt_body *body,
+                                   const brunt_boundary_extent *extent, double *gap);

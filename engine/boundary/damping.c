@@ -3,9 +3,9 @@
 // so that any damping slows and none turns a velocity round; with 2 / omega as step it is stable whatever c is (the
 // product of its two factors is e, and c dt / 2 >= tanh(c dt / 2)). Impulses of contact and of holders are part of F,
 // though not known before the kick: what they change of a velocity is phi J / m, so that they meet a mass m / phi
-// (drag_mass times the node's), and drag takes its share of them. What it did in all follows from v and v' alone:
-// the impulse m (v' - v) - m (v' - e v) / phi, booked as viscosity at the mean velocity, as all work is, and as
-// external to the momentum, which the ground behind the dashpots bears.
+// (damping_mass times the node's), and drag takes its share of them. What it did in all follows from v and v' alone:
+// the impulse m (v' - v) - m (v' - e v) / phi, recorded as viscosity at the mean velocity, as all work is, and as
+// external to the momentum, which the ground behind the dashpots carries.
 #include <math.h>
 #include <string.h>
 
@@ -57,7 +57,7 @@ void brunt_damping_free(brunt_damping *damping) {
 // The drag on what is known of the force, as a load; the velocities from before it are kept.
 static void drag_nodes(const job *j, const brunt_fem_task *task) {
     const brunt_fem_body *fem = &j->bodies->fem[task->fem];
-    const double loss = -expm1(-fem->damping * j->kick->dt) / j->kick->dt, share = 1 - 1 / fem->drag_mass;
+    const double loss = -expm1(-fem->damping * j->kick->dt) / j->kick->dt, share = 1 - 1 / fem->damping_mass;
     real *kept = j->damping->drag[task->fem];
     for (int32_t n = task->begin; kept && n < task->end; n++) {
         const real *node = brunt_fem_node(fem, n);
@@ -74,7 +74,7 @@ static void drag_nodes(const job *j, const brunt_fem_task *task) {
 }
 
 // What the drag of the kick did.
-static void book_nodes(const job *j, const brunt_fem_task *task, brunt_damping_sums *sums) {
+static void account_nodes(const job *j, const brunt_fem_task *task, brunt_damping_sums *sums) {
     const brunt_fem_body *fem = &j->bodies->fem[task->fem];
     const double left = exp(-fem->damping * j->kick->dt);
     const real *kept = j->damping->drag[task->fem];
@@ -84,7 +84,7 @@ static void book_nodes(const job *j, const brunt_fem_task *task, brunt_damping_s
         double J[3];
         for (int a = 0; a < 3; a++) {
             const double v = (double)node[BRUNT_FEM_V + a], old = (double)kept[4 * (size_t)n + (size_t)a];
-            J[a] = (double)node[BRUNT_FEM_MASS] * ((v - old) - fem->drag_mass * (v - left * old));
+            J[a] = (double)node[BRUNT_FEM_MASS] * ((v - old) - fem->damping_mass * (v - left * old));
             sums->loss -= 0.5 * J[a] * (old + v);
             sums->impulse[a] += J[a];
         }
@@ -101,10 +101,10 @@ static void drag_tasks(void *context, int64_t begin, int64_t end, int worker) {
     for (int64_t t = begin; t < end; t++) drag_nodes(j, &j->bodies->tasks.node[t]);
 }
 
-static void book_tasks(void *context, int64_t begin, int64_t end, int worker) {
+static void account_tasks(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     const job *j = context;
-    for (int64_t t = begin; t < end; t++) book_nodes(j, &j->bodies->tasks.node[t], &j->damping->sums[t]);
+    for (int64_t t = begin; t < end; t++) account_nodes(j, &j->bodies->tasks.node[t], &j->damping->sums[t]);
 }
 
 void brunt_damping_begin(const brunt_damping *damping, const brunt_bodies *bodies, const brunt_kick *kick) {
@@ -112,7 +112,7 @@ void brunt_damping_begin(const brunt_damping *damping, const brunt_bodies *bodie
     for (int k = 0; k < bodies->fem_count; k++) {
         brunt_fem_body *fem = &bodies->fem[k];
         const double decay = fem->damping * kick->dt;
-        if (damping->drag[k]) fem->drag_mass = decay > 0 ? decay / -expm1(-decay) : 1; // too small a number is 0
+        if (damping->drag[k]) fem->damping_mass = decay > 0 ? decay / -expm1(-decay) : 1; // too small a number is 0
     }
     brunt_parallel(kick->threads, bodies->tasks.node_count, 1, drag_tasks, &j, kick->timer);
 }
@@ -120,7 +120,7 @@ void brunt_damping_begin(const brunt_damping *damping, const brunt_bodies *bodie
 void brunt_damping_end(const brunt_damping *damping, const brunt_bodies *bodies, const brunt_kick *kick,
                        brunt_damping_sums *done) {
     job j = {damping, bodies, kick};
-    brunt_parallel(kick->threads, bodies->tasks.node_count, 1, book_tasks, &j, kick->timer);
+    brunt_parallel(kick->threads, bodies->tasks.node_count, 1, account_tasks, &j, kick->timer);
     for (int64_t t = 0; t < bodies->tasks.node_count; t++) {
         const brunt_damping_sums *s = &damping->sums[t];
         done->loss += s->loss;

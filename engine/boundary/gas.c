@@ -88,7 +88,7 @@ static int find_opening(const brunt_node_set *set, bool *open, double at[3], bru
 }
 
 int brunt_gas_start(brunt_node_set *set, brunt_error *error) {
-    const char *name = set->wall->name;
+    const char *name = set->boundary->name;
     const brunt_gas_def *gas = &set->def.gas;
     if (set->fem->dim != 3)
         return brunt_fail(error, BRUNT_BAD_INPUT, "boundaries (%s).gas: enclosed gas is for three dimensions", name);
@@ -149,7 +149,7 @@ int32_t brunt_gas_sets(const brunt_node_sets *sets) {
 brunt_gas brunt_gas_now(const brunt_node_set *set) {
     const double gamma = set->def.gas.gamma;
     brunt_gas gas = {.volume = brunt_gas_volume(set), .inflow = set->gas_inflow};
-    memcpy(gas.name, set->wall->name, sizeof gas.name);
+    memcpy(gas.name, set->boundary->name, sizeof gas.name);
     gas.energy = set->gas_energy * pow(set->gas_volume / gas.volume, gamma - 1);
     gas.pressure = (gamma - 1) * gas.energy / gas.volume;
     return gas;

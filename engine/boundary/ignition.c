@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "boundary/ignition.h"
 
-static bool lights(const brunt_detonation_def *d, const char *body) { return !d->body[0] || !strcmp(d->body, body); }
+static bool ignites(const brunt_detonation_def *d, const char *body) { return !d->body[0] || !strcmp(d->body, body); }
 
 static double distance(const brunt_detonation_def *d, int dim, const double x[3]) {
     double apart = 0, along = 0, size = 0;
@@ -24,7 +24,7 @@ static real ignition_time(const brunt_world_def *def, const char *body, double s
     double first = INFINITY;
     for (int32_t k = 0; k < def->detonation_count; k++) {
         const brunt_detonation_def *d = &def->detonations[k];
-        if (lights(d, body)) first = fmin(first, d->time + distance(d, def->dimension, x) / speed);
+        if (ignites(d, body)) first = fmin(first, d->time + distance(d, def->dimension, x) / speed);
     }
     return (real)first;
 }
@@ -36,7 +36,7 @@ static int state_index(const brunt_model *model) {
 }
 
 // First time at which something of the body burns [s].
-static double light_particles(const brunt_world_def *def, brunt_body *body, double speed) {
+static double ignite_particles(const brunt_world_def *def, brunt_body *body, double speed) {
     brunt_particles *p = &body->particles;
     double first = INFINITY;
     const brunt_model *model = body->material.model[BRUNT_EOS];
@@ -50,7 +50,7 @@ static double light_particles(const brunt_world_def *def, brunt_body *body, doub
 }
 
 // Padding repeats real elements, so it is treated like them.
-static double light_elements(const brunt_world_def *def, brunt_fem_body *fem, double speed) {
+static double ignite_elements(const brunt_world_def *def, brunt_fem_body *fem, double speed) {
     const brunt_model *model = fem->material.model[BRUNT_EOS];
     const int nodes = fem->traits->nodes;
     double first = INFINITY;
@@ -69,7 +69,7 @@ static double light_elements(const brunt_world_def *def, brunt_fem_body *fem, do
     return first;
 }
 
-static bool burns(const brunt_body_ref *ref) {
+static bool is_explosive(const brunt_body_ref *ref) {
     const brunt_model *eos = ref->ops->material(ref)->model[BRUNT_EOS];
     return eos && eos->explosive;
 }
@@ -89,9 +89,9 @@ static int check(const brunt_bodies *bodies, const brunt_detonation_def *d, int 
         return brunt_fail(error, BRUNT_BAD_INPUT, "detonations[%d]: point, normal or time is not a finite number",
                           index);
     for (int i = 0; i < bodies->count; i++) {
-        if (!lights(d, brunt_bodies_name(bodies, i))) continue;
+        if (!ignites(d, brunt_bodies_name(bodies, i))) continue;
         known = true;
-        something = something || burns(&bodies->all[i]);
+        something = something || is_explosive(&bodies->all[i]);
     }
     if (!known)
         return brunt_fail(error, BRUNT_BAD_INPUT, "detonations[%d].body: there is no body '%s'", index, d->body);
@@ -106,7 +106,7 @@ static void warn(brunt_messages *messages, const brunt_world_def *def, const bru
                  double speed, double first) {
     double earliest = INFINITY;
     for (int32_t k = 0; k < def->detonation_count; k++)
-        if (lights(&def->detonations[k], name)) earliest = fmin(earliest, def->detonations[k].time);
+        if (ignites(&def->detonations[k], name)) earliest = fmin(earliest, def->detonations[k].time);
     if (!(earliest < INFINITY)) {
         brunt_warn(messages, "bodies.%s: this explosive is never lit, no detonation reaches it", name);
         return;
@@ -131,10 +131,10 @@ int brunt_ignition_make(const brunt_bodies *bodies, const brunt_world_def *def, 
     }
     for (int i = 0; i < bodies->count; i++) {
         const brunt_body_ref *ref = &bodies->all[i];
-        if (!burns(ref)) continue;
+        if (!is_explosive(ref)) continue;
         const char *name = brunt_bodies_name(bodies, i);
         const double speed = detonation_speed(def, name);
-        const double first = ref->mpm ? light_particles(def, ref->mpm, speed) : light_elements(def, ref->fem, speed);
+        const double first = ref->mpm ? ignite_particles(def, ref->mpm, speed) : ignite_elements(def, ref->fem, speed);
         warn(messages, def, ref, name, speed, first);
     }
     return BRUNT_OK;

@@ -22,7 +22,7 @@ static int32_t count_of(const brunt_world_def *def, int k) {
     return brunt_boundary_kinds[k]->count(brunt_boundary_kinds[k], def);
 }
 
-int32_t brunt_boundary_count(const brunt_world_def *def) {
+int32_t brunt_boundary_entry_count(const brunt_world_def *def) {
     int32_t count = 0;
     for (int k = 0; k < brunt_boundary_kind_count; k++) count += count_of(def, k);
     return count;

@@ -11,7 +11,7 @@
 extern const brunt_boundary_kind *const brunt_boundary_kinds[];
 extern const int brunt_boundary_kind_count;
 
-int32_t brunt_boundary_count(const brunt_world_def *def);
+int32_t brunt_boundary_entry_count(const brunt_world_def *def);
 // Number of the first of a kind, by its word.
 int32_t brunt_boundary_first(const brunt_world_def *def, const char *word);
 const void *brunt_boundary_entry(const brunt_world_def *def, int32_t w, const brunt_boundary_kind **kind);
@@ -44,7 +44,7 @@ int brunt_listed_check(const brunt_world_def *def, const void *one, int32_t w, b
 // Every entry is of a kind that there is.
 int brunt_listed_kinds_check(const brunt_world_def *def, brunt_error *error);
 int brunt_listed_make(const brunt_boundary_making *m, const void *one, int w, brunt_error *error);
-void brunt_listed_hold_grid(brunt_body *body, brunt_boundary *wall, double time);
+void brunt_listed_hold_grid(brunt_body *body, brunt_boundary *boundary, double time);
 #define BRUNT_LISTED_ROW(key, text, list)                                                                              \
     .word = key, .doc = text, .keys = list, .key_count = sizeof(list) / sizeof *(list), .count = brunt_listed_count,   \
     .entry = brunt_listed_entry, .name = brunt_listed_name, .body = brunt_listed_body, .free = brunt_listed_free,      \

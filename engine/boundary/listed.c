@@ -98,29 +98,30 @@ int brunt_listed_check(const brunt_world_def *def, const void *one, int32_t w, b
 
 int brunt_listed_make(const brunt_boundary_making *m, const void *one, int w, brunt_error *error) {
     (void)error;
-    m->all->walls[w].given = *(const brunt_boundary_def *)one;
+    m->all->boundary[w].given = *(const brunt_boundary_def *)one;
     m->all->has_conditions = true;
     return BRUNT_OK;
 }
 
-void brunt_listed_hold_grid(brunt_body *body, brunt_boundary *wall, double time) {
-    const bool rings = brunt_axisymmetric(&body->particles);
+void brunt_listed_hold_grid(brunt_body *body, brunt_boundary *boundary, double time) {
+    const bool axisymmetric = brunt_axisymmetric(&body->particles);
     const brunt_grid *grid = &body->grid;
     for (int64_t q = 0; q < (int64_t)grid->slot_count * BRUNT_BLOCK_NODES; q++) {
         const brunt_slot *slot = &grid->slots[q / BRUNT_BLOCK_NODES];
         const int node = (int)(q % BRUNT_BLOCK_NODES);
         const real *n = brunt_slot_nodes(grid, (int32_t)(q / BRUNT_BLOCK_NODES)) + node * BRUNT_NODE_REALS;
         if (!(n[0] > 0)) continue;
-        double place[3] = {0}, x[3], v[3] = {0}, now[3] = {0}, support[3] = {0};
+        double place[3] = {0}, x[3], v[3] = {0}, now[3] = {0}, rest[3] = {0};
         brunt_node_position(grid, slot->coord, node, place);
         memcpy(x, place, sizeof x);
-        if (rings) x[0] = fabs(x[0]);
-        const unsigned held = wall->kind->hold_at(wall, grid->dim, time, x, BRUNT_ON_BOUNDARY * (double)grid->h, v);
+        if (axisymmetric) x[0] = fabs(x[0]);
+        const unsigned held =
+            boundary->kind->hold_at(boundary, grid->dim, time, x, BRUNT_ON_BOUNDARY * (double)grid->h, v);
         for (int a = 0; a < grid->dim; a++) {
-            support[a] = held >> a & 1 ? v[a] : 0;
+            rest[a] = held >> a & 1 ? v[a] : 0;
             now[a] = held >> a & 1 ? v[a] : (double)n[BRUNT_NODE_VELOCITY + a];
         }
-        if (held & 1) brunt_condition_reflect(rings, place, (double)grid->h, now);
-        if (held) brunt_condition_hold(body, slot, node, now, support, held, &wall->last);
+        if (held & 1) brunt_condition_reflect(axisymmetric, place, (double)grid->h, now);
+        if (held) brunt_condition_hold(body, slot, node, now, rest, held, &boundary->last);
     }
 }

@@ -3,9 +3,9 @@
 // Gas of volume V at pressure p pushes on node i with (p - p_outside) a_i, a_i = dV/dx_i. Its stiffness is
 //   gamma p / V  a a^T - (p - p_outside) d^2V/dx dx.
 // The first part has rank one: its eigenvalue with lumped masses is gamma p / V sum_i |a_i|^2 / m_i, exactly; of a
-// sheet of density rho, thickness t and area A around it that is gamma p A / (V rho t), whatever the mesh. The second
-// part, that of any pressure that follows, has no such sign: with |v^T K_f v| <= k_f sum |v_i|^2 over the nodes of face
-// f it is at most max_i 1/m_i sum_f k_f, and
+// membrane of density rho, thickness t and area A around it that is gamma p A / (V rho t), whatever the mesh. The
+// second part, that of any pressure that follows, has no such sign: with |v^T K_f v| <= k_f sum |v_i|^2 over the nodes
+// of face f it is at most max_i 1/m_i sum_f k_f, and
 //   edge (2D)       k_f = p                                   since f_i = p/2 J (x_1 - x_0)
 //   ring            k_f = p (pi L + sqrt(2 (R_0^2 + R_1^2)))  R_i = pi/3 (r_0 + r_1 + r_i), L its length
 //   triangle        k_f = p sqrt(sum of squared edges / 12)   since f_i = p/6 e x g
@@ -46,8 +46,8 @@ static double apart2(const double a[3], const double b[3]) {
 }
 
 // k_f of a pressure of 1 Pa.
-static double face_stiffness(const double (*x)[3], int corners, bool ring) {
-    if (corners == 2 && !ring) return 1;
+static double face_stiffness(const double (*x)[3], int corners, bool axisymmetric) {
+    if (corners == 2 && !axisymmetric) return 1;
     if (corners == 2) {
         const double sum = x[0][0] + x[1][0], first = sum + x[0][0], second = sum + x[1][0];
         return M_PI * sqrt(apart2(x[0], x[1])) + M_PI / 3 * sqrt(2 * (first * first + second * second));

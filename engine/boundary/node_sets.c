@@ -30,7 +30,7 @@ static void list_groups(const brunt_fem_body *fem, char *out, size_t size) {
 }
 
 // Room for the faces, and for what acts on their nodes.
-static int make_room(brunt_node_set *set, int32_t faces, brunt_error *error) {
+static int reserve_arrays(brunt_node_set *set, int32_t faces, brunt_error *error) {
     const size_t components = (size_t)(set->node_count + 1) * 3;
     if (BRUNT_NEW(set->place, set->fem->node_count + 1, "places of nodes in a group", error) ||
         BRUNT_NEW(set->force, components, "forces on nodes of a group", error) ||
@@ -48,7 +48,7 @@ static int take_faces(brunt_node_set *set, brunt_messages *messages, brunt_error
     brunt_faces faces;
     int status = brunt_fem_faces(fem, &faces, error);
     if (status) return status;
-    status = make_room(set, faces.count, error);
+    status = reserve_arrays(set, faces.count, error);
     for (int32_t i = 0; !status && i < set->node_count; i++) set->place[set->node[i]] = i + 1;
     for (int32_t f = 0; !status && f < faces.count; f++) {
         bool all = true;
@@ -63,7 +63,7 @@ static int take_faces(brunt_node_set *set, brunt_messages *messages, brunt_error
     if (status) return status;
     if (!set->face_count)
         brunt_warn(messages, "boundaries (%s): no face of the body has all its nodes in the group: nothing is loaded",
-                   set->wall->name);
+                   set->boundary->name);
     return BRUNT_OK;
 }
 
@@ -117,9 +117,9 @@ static int find_nodes(brunt_node_set *set, const brunt_bodies *bodies, brunt_err
     if (set->fem) set->fem_index = (int)(set->fem - bodies->fem);
     if (!set->fem)
         return brunt_fail(error, BRUNT_BAD_INPUT, "boundaries (%s).body: there is no finite-element body '%s'",
-                          set->wall->name, def->body);
+                          set->boundary->name, def->body);
     const brunt_fem_body *fem = set->fem;
-    set->wall->body = fem->index;
+    set->boundary->body = fem->index;
     const brunt_group *group = NULL;
     for (int32_t g = 0; g < fem->group_count; g++)
         if (!strcmp(fem->groups[g].name, def->group)) group = &fem->groups[g];
@@ -130,7 +130,7 @@ static int find_nodes(brunt_node_set *set, const brunt_bodies *bodies, brunt_err
     char names[600];
     list_groups(fem, names, sizeof names);
     return brunt_fail(error, BRUNT_BAD_INPUT, "boundaries (%s).group: body '%s' has no group '%s'; it has: %s",
-                      set->wall->name, def->body, def->group, names);
+                      set->boundary->name, def->body, def->group, names);
 }
 
 // A definition, with a curve of its own. In load steps what has none grows from nothing, but velocities: motion does.
@@ -145,7 +145,7 @@ static int copy_definition(brunt_group_def *copy, const brunt_group_def *def, bo
 }
 
 int brunt_node_sets_make(brunt_node_sets *sets, const brunt_world_def *def, const brunt_bodies *bodies,
-                         brunt_boundary *walls, brunt_messages *messages, brunt_error *error) {
+                         brunt_boundary *boundaries, brunt_messages *messages, brunt_error *error) {
     if (def->group_count > 255) return brunt_fail(error, BRUNT_BAD_INPUT, "boundaries: more than 255 groups");
     if (BRUNT_NEW(sets->set, def->group_count + 1, "groups of nodes", error) ||
         BRUNT_NEW(sets->holder, bodies->fem_count + 1, "meshes with groups", error))
@@ -153,16 +153,16 @@ int brunt_node_sets_make(brunt_node_sets *sets, const brunt_world_def *def, cons
     sets->count = def->group_count, sets->fem_count = bodies->fem_count;
     for (int k = 0; k < sets->count; k++) {
         brunt_node_set *set = &sets->set[k];
-        set->wall = &walls[k];
+        set->boundary = &boundaries[k];
         if (copy_definition(&set->def, &def->groups[k], def->scheme == BRUNT_STATIC, error)) return BRUNT_FAILED;
-        set->wall->group = &set->def;
+        set->boundary->group = &set->def;
         set->does = &brunt_group_rows[set->def.action];
         int status = find_nodes(set, bodies, error);
         if (status) return status;
         for (int32_t i = 1; i < set->def.table.count; i++)
             if (!(set->def.table.points[i][0] > set->def.table.points[i - 1][0]))
                 return brunt_fail(error, BRUNT_BAD_INPUT, "boundaries (%s).table: times must grow from point to point",
-                                  set->wall->name);
+                                  set->boundary->name);
         if (is_idle(set)) continue;
         status = set->does->moves ? make_prescribed(sets, k, error) : make_load(set, messages, error);
         if (status) return status;
@@ -191,7 +191,7 @@ void brunt_node_sets_free(brunt_node_sets *sets) {
 void brunt_node_sets_validate(const brunt_node_sets *sets) {
     for (int k = 0; k < sets->count; k++) {
         const brunt_node_set *set = &sets->set[k];
-        BRUNT_ASSERT(set->fem && set->wall && set->wall->group == &set->def);
+        BRUNT_ASSERT(set->fem && set->boundary && set->boundary->group == &set->def);
         BRUNT_ASSERT(set->does->moves ? sets->holder[set->fem_index] && set->fem->held
                                       : is_idle(set) || (set->force && set->fem->load));
         BRUNT_ASSERT(set->face_count >= 0 && (!set->whole || set->face_count <= set->whole_count));
@@ -247,7 +247,7 @@ void brunt_face_shares(const double (*x)[3], int corners, double (*share)[3]) {
 
 // Of rings, those of the whole circle: 2 pi int N_a r n ds, r being linear along the face. A pressure on them is the
 // slope of the volume pi int r^2 dz that they enclose.
-static void ring_shares(const double (*x)[3], double (*share)[3]) {
+static void axisymmetric_shares(const double (*x)[3], double (*share)[3]) {
     for (int c = 0; c < 2; c++) {
         const double around = M_PI / 3 * (x[0][0] + x[1][0] + x[c][0]);
         share[c][0] = around * (x[1][1] - x[0][1]), share[c][1] = around * (x[0][0] - x[1][0]), share[c][2] = 0;
@@ -257,7 +257,7 @@ static void ring_shares(const double (*x)[3], double (*share)[3]) {
 static void make_forces(brunt_node_set *set, double time, double dt) {
     brunt_fem_body *fem = set->fem;
     const brunt_group_def *def = &set->def;
-    const bool rings = fem->element->axisymmetric;
+    const bool axisymmetric = fem->element->axisymmetric;
     const bool traction = !set->does->push;
     double push = traction ? 0 : set->does->push(set, time, dt);
     double factor = traction ? brunt_curve_at(&def->table, time) : 0;
@@ -267,8 +267,8 @@ static void make_forces(brunt_node_set *set, double time, double dt) {
         const int corners = node[2] < 0 ? 2 : node[3] < 0 ? 3 : 4;
         double x[4][3], shares[4][3];
         face_corners(fem, node, traction, x);
-        if (rings)
-            ring_shares((const double(*)[3])x, shares);
+        if (axisymmetric)
+            axisymmetric_shares((const double(*)[3])x, shares);
         else
             brunt_face_shares((const double(*)[3])x, corners, shares);
         for (int c = 0; c < corners; c++) {
@@ -278,16 +278,16 @@ static void make_forces(brunt_node_set *set, double time, double dt) {
             for (int a = 0; a < fem->dim; a++) force[a] += traction ? factor * def->value[a] * size : push * share[a];
         }
     }
-    for (int32_t i = 0; rings && i < set->node_count; i++)
-        if (fem->start[4 * (size_t)set->node[i]] == 0) set->force[3 * i] = 0; // the axis bears it
+    for (int32_t i = 0; axisymmetric && i < set->node_count; i++)
+        if (fem->start[4 * (size_t)set->node[i]] == 0) set->force[3 * i] = 0; // the axis carries it
     for (int32_t i = 0; i < set->node_count; i++)
         for (int a = 0; a < 3; a++) fem->load[4 * (size_t)set->node[i] + (size_t)a] += (real)set->force[3 * i + a];
 }
 
 // Half of the work of the loads, at the velocities as they are; with `impulse`, that too.
-static void book_loads(const brunt_node_set *set, double dt, bool impulse) {
+static void account_loads(const brunt_node_set *set, double dt, bool impulse) {
     const brunt_fem_body *fem = set->fem;
-    brunt_impulse_account *last = &set->wall->last;
+    brunt_impulse_account *last = &set->boundary->last;
     double work = 0;
     for (int32_t i = 0; i < set->node_count; i++) {
         const real *node = brunt_fem_node(fem, set->node[i]);
@@ -313,13 +313,13 @@ void brunt_loads_begin(brunt_node_sets *sets, const brunt_bodies *bodies, double
         if (!loads(set)) continue;
         make_forces(set, time, dt);
         if (set->does->gas && !(set->gas_volume > 0)) sets->gas_lost = set;
-        book_loads(set, dt, true);
+        account_loads(set, dt, true);
     }
 }
 
 void brunt_loads_end(const brunt_node_sets *sets, double dt) {
     for (int k = 0; k < sets->count; k++)
-        if (loads(&sets->set[k])) book_loads(&sets->set[k], dt, false);
+        if (loads(&sets->set[k])) account_loads(&sets->set[k], dt, false);
 }
 
 // ------------------------------------------------------------------------------------------ prescribed motion
@@ -341,7 +341,7 @@ static void prescribe(const brunt_node_sets *sets, int k, const double gravity[3
     const brunt_node_set *set = &sets->set[k];
     const brunt_group_def *def = &set->def;
     brunt_fem_body *fem = set->fem;
-    brunt_impulse_account *last = &set->wall->last;
+    brunt_impulse_account *last = &set->boundary->last;
     const double now = brunt_curve_at(&def->table, time + 0.5 * step);
     const brunt_placement goal = brunt_node_set_goal(set, time + step);
     for (int32_t i = 0; i < set->node_count; i++) {
@@ -357,11 +357,11 @@ static void prescribe(const brunt_node_sets *sets, int k, const double gravity[3
             double load = fem->load ? (double)fem->load[4 * (size_t)n + (size_t)a] : 0;
             old[a] = trial - dt * (((double)force[a] + load) / mass + gravity[a]);
             v[a] = set->does->goal ? brunt_node_set_way(set, &goal, n, a) / step : now * def->value[a];
-            J[a] = mass * fem->drag_mass * (v[a] - trial);
+            J[a] = mass * fem->damping_mass * (v[a] - trial);
             mean[a] = 0.5 * (old[a] + v[a]);
             node[BRUNT_FEM_V + a] = (real)v[a];
         }
-        brunt_impulse_account_book(last, &last->normal_loss, J, x, old, v, mean);
+        brunt_impulse_account_record(last, &last->normal_loss, J, x, old, v, mean);
     }
 }
 
@@ -371,7 +371,7 @@ void brunt_node_sets_prescribe(const brunt_node_sets *sets, const double gravity
         if (sets->set[k].does->moves) prescribe(sets, k, gravity, time, dt, step);
 }
 
-void brunt_node_sets_book_contact(const brunt_node_sets *sets, const brunt_contact_surface *s) {
+void brunt_node_sets_account_contact(const brunt_node_sets *sets, const brunt_contact_surface *s) {
     for (int k = 0; k < s->fem_count && sets->count; k++) {
         if (!s->active[k] || !sets->holder[k]) continue;
         for (int32_t n = s->node_range[k]; n < s->node_end[k]; n++)
@@ -380,8 +380,8 @@ void brunt_node_sets_book_contact(const brunt_node_sets *sets, const brunt_conta
                 if (!holder || s->output.impulse[n][a] == 0) continue;
                 double J[3] = {0};
                 J[a] = -s->output.impulse[n][a];
-                brunt_impulse_account *last = &sets->set[holder - 1].wall->last;
-                brunt_impulse_account_book(last, &last->normal_loss, J, s->x[n], s->v[n], s->v[n], s->v[n]);
+                brunt_impulse_account *last = &sets->set[holder - 1].boundary->last;
+                brunt_impulse_account_record(last, &last->normal_loss, J, s->x[n], s->v[n], s->v[n], s->v[n]);
             }
     }
 }

@@ -11,7 +11,7 @@
 typedef struct brunt_node_set {
     brunt_group_def def;         // a copy, with its curve
     const brunt_group_row *does; // of its action
-    brunt_boundary *wall;        // its name, and where its impulses are booked
+    brunt_boundary *boundary;    // its name, and where its impulses are recorded
     brunt_fem_body *fem;
     int fem_index; // of the body, among those of elements
     const int32_t *node;
@@ -37,17 +37,17 @@ typedef struct brunt_node_sets {
     const brunt_node_set *gas_lost; // gas whose volume is no longer positive
 } brunt_node_sets;
 
-// After the bodies are made. `walls`: those of the sets.
+// After the bodies are made. `boundaries`: those of the sets.
 int brunt_node_sets_make(brunt_node_sets *sets, const brunt_world_def *def, const brunt_bodies *bodies,
-                         brunt_boundary *walls, brunt_messages *messages, brunt_error *error);
+                         brunt_boundary *boundaries, brunt_messages *messages, brunt_error *error);
 void brunt_node_sets_free(brunt_node_sets *sets);
 void brunt_node_sets_validate(const brunt_node_sets *sets);
 // Loads of a body's sets from now on act on the faces of those elements alone that it still has. The set whose faces
 // enclose gas and one of its elements (by number in the mesh) that has left, or NULL.
 const brunt_node_set *brunt_node_sets_follow(brunt_node_sets *sets, brunt_fem_body *fem, int32_t *element);
 
-// Loads of this step, made before the kick of `dt` and with half their work booked; the other half once velocities are
-// final.
+// Loads of this step, made before the kick of `dt` and with half their work recorded; the other half once velocities
+// are final.
 void brunt_loads_begin(brunt_node_sets *sets, const brunt_bodies *bodies, double time, double dt);
 void brunt_loads_end(const brunt_node_sets *sets, double dt);
 // Of a set that prescribes displacements, by its table at that time: where the whole body would go from the start.
@@ -58,6 +58,6 @@ double brunt_node_set_way(const brunt_node_set *set, const brunt_placement *goal
 void brunt_node_sets_prescribe(const brunt_node_sets *sets, const double gravity[3], double time, double dt,
                                double step);
 // Reaction of what contact gave to held nodes.
-void brunt_node_sets_book_contact(const brunt_node_sets *sets, const brunt_contact_surface *surface);
+void brunt_node_sets_account_contact(const brunt_node_sets *sets, const brunt_contact_surface *surface);
 // Vectors of the shares that the corners of a face have of its area [m^2], outward: int N_a n dA.
 void brunt_face_shares(const double (*x)[3], int corners, double (*share)[3]);

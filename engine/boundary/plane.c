@@ -60,7 +60,7 @@ static const char *refusal(const brunt_world_def *def, const void *one, const ch
 
 // ------------------------------------------------------------------------------------------ making
 
-static const double ON_GRID_LINE = 1e-6; // cells: how far off a mirror plane may be and still count as on the line
+static const double ON_GRID_LINE = 1e-6; // cells: how far off a symmetry plane may be and still count as on the line
 
 // Index of the axis a plane is normal to, BRUNT_NONE when it is oblique.
 static int plane_axis(const brunt_plane_def *plane, int dim) {
@@ -80,9 +80,9 @@ static bool has_fluid(const brunt_world_def *def) {
 static int make(const brunt_boundary_making *m, const void *one, int index, brunt_error *error) {
     const brunt_world_def *def = m->def;
     brunt_boundaries *all = m->all;
-    brunt_boundary *wall = &all->walls[index];
-    wall->plane = *(const brunt_plane_def *)one;
-    brunt_plane_def *plane = &wall->plane;
+    brunt_boundary *boundary = &all->boundary[index];
+    boundary->plane = *(const brunt_plane_def *)one;
+    brunt_plane_def *plane = &boundary->plane;
     double size = 0;
     for (int a = 0; a < def->dimension; a++) size += plane->normal[a] * plane->normal[a];
     if (!(size > 0) || !isfinite(size)) REFUSE("boundaries[%d].plane.normal: it has no direction", index);
@@ -100,29 +100,29 @@ static int make(const brunt_boundary_making *m, const void *one, int index, brun
     if (row->images && !on_line)
         REFUSE("boundaries[%d] (%s): a symmetry plane must stand still, be normal to an axis and lie on a grid line "
                "(cell %g m)",
-               index, wall->name, def->cell);
-    if (on_line && row->mirrors) {
-        if (all->mirror_count == (int)(sizeof all->mirrors / sizeof all->mirrors[0]))
+               index, boundary->name, def->cell);
+    if (on_line && row->symmetry) {
+        if (all->symmetry_count == (int)(sizeof all->symmetry / sizeof all->symmetry[0]))
             REFUSE("boundaries: more than 16 symmetry and slip planes");
-        for (int k = 0; k < all->mirror_count; k++) {
-            const brunt_symmetry_plane *other = &all->mirrors[k];
+        for (int k = 0; k < all->symmetry_count; k++) {
+            const brunt_symmetry_plane *other = &all->symmetry[k];
             int32_t apart = (int32_t)round(at) - other->node;
-            if (other->wall >= 0 && other->axis == axis && apart != 0 && abs(apart) <= (int)def->kernel &&
+            if (other->boundary >= 0 && other->axis == axis && apart != 0 && abs(apart) <= (int)def->kernel &&
                 has_fluid(def))
                 brunt_warn(
                     m->messages,
                     "boundaries[%d] (%s): this plane of symmetry or slip and '%s' are %d cells apart; the kernel "
                     "reaches over both, and fluids leak: at least %d are wanted",
-                    index, wall->name, all->walls[other->wall].name, abs(apart), (int)def->kernel + 1);
+                    index, boundary->name, all->boundary[other->boundary].name, abs(apart), (int)def->kernel + 1);
         }
-        wall->mirror = all->mirror_count;
-        all->mirrors[all->mirror_count++] =
-            (brunt_symmetry_plane){.axis = axis, .node = (int32_t)round(at), .wall = index};
+        boundary->symmetry_plane = all->symmetry_count;
+        all->symmetry[all->symmetry_count++] =
+            (brunt_symmetry_plane){.axis = axis, .node = (int32_t)round(at), .boundary = index};
         return BRUNT_OK;
     }
     if (row->of_fluids && has_fluid(def))
-        brunt_warn(m->messages, "boundaries[%d] (%s): %s", index, wall->name, row->of_fluids);
-    all->has_walls = all->has_walls || row->pushes;
+        brunt_warn(m->messages, "boundaries[%d] (%s): %s", index, boundary->name, row->of_fluids);
+    all->has_pushing_planes = all->has_pushing_planes || row->pushes;
     all->has_conditions = all->has_conditions || !row->pushes;
     all->has_friction = all->has_friction || (row->pushes && plane->friction > 0);
     return BRUNT_OK;
@@ -133,34 +133,34 @@ static int make(const brunt_boundary_making *m, const void *one, int index, brun
 static const double *velocity(const brunt_boundary *b) { return b->plane.velocity; }
 
 // Of a total-Lagrangian body the plane lies in the undeformed configuration and holds what was behind it at the start.
-static void hold_grid(brunt_body *body, brunt_boundary *wall, double time) {
-    if (wall->mirror >= 0 || !brunt_boundary_holds(wall)) return;
-    const bool rings = brunt_axisymmetric(&body->particles);
+static void hold_grid(brunt_body *body, brunt_boundary *boundary, double time) {
+    if (boundary->symmetry_plane >= 0 || !brunt_boundary_holds(boundary)) return;
+    const bool axisymmetric = brunt_axisymmetric(&body->particles);
     const brunt_grid *grid = &body->grid;
     if (brunt_total_lagrangian(&body->particles)) time = 0;
-    const brunt_plane_def *plane = &wall->plane;
-    double offset = 0, reach = BRUNT_ON_BOUNDARY * (double)grid->h;
+    const brunt_plane_def *plane = &boundary->plane;
+    double offset = 0, extent = BRUNT_ON_BOUNDARY * (double)grid->h;
     const unsigned held = brunt_condition_components(plane, grid->dim);
     const bool sticks = brunt_conditions[plane->condition].sticks;
     for (int a = 0; a < grid->dim; a++) {
         offset += plane->normal[a] * (plane->point[a] + plane->velocity[a] * time);
-        reach += fabs(plane->normal[a]) * 0.5 * grid->side * (double)grid->h;
+        extent += fabs(plane->normal[a]) * 0.5 * grid->side * (double)grid->h;
     }
     for (int32_t s = 0; s < grid->slot_count; s++) {
         const brunt_slot *slot = &grid->slots[s];
         double middle = -offset;
         for (int a = 0; a < grid->dim; a++) {
             const double at = grid->origin[a] + (double)grid->h * (slot->coord[a] + 0.5) * grid->side;
-            middle += plane->normal[a] * (rings && a == 0 ? fabs(at) : at);
+            middle += plane->normal[a] * (axisymmetric && a == 0 ? fabs(at) : at);
         }
-        if (middle > reach) continue;
+        if (middle > extent) continue;
         for (int node = 0; node < BRUNT_BLOCK_NODES; node++) {
             real *n = brunt_slot_nodes(grid, s) + node * BRUNT_NODE_REALS;
             if (!(n[0] > 0)) continue;
             double x[3], v[3] = {0}, now[3] = {0}, distance = -offset, approach = 0;
             brunt_node_position(grid, slot->coord, node, x);
             for (int a = 0; a < grid->dim; a++) {
-                const double sign = rings && a == 0 && x[0] < 0 ? -1 : 1;
+                const double sign = axisymmetric && a == 0 && x[0] < 0 ? -1 : 1;
                 v[a] = sign * (double)n[BRUNT_NODE_VELOCITY + a];
                 distance += plane->normal[a] * sign * x[a];
                 approach += plane->normal[a] * (v[a] - plane->velocity[a]);
@@ -168,14 +168,15 @@ static void hold_grid(brunt_body *body, brunt_boundary *wall, double time) {
             if (distance > BRUNT_ON_BOUNDARY * (double)grid->h) continue;
             for (int a = 0; a < grid->dim; a++)
                 now[a] = sticks ? plane->velocity[a] : v[a] - approach * plane->normal[a];
-            brunt_condition_reflect(rings, x, (double)grid->h, now);
-            brunt_condition_hold(body, slot, node, now, plane->velocity, held, &wall->last);
+            brunt_condition_reflect(axisymmetric, x, (double)grid->h, now);
+            brunt_condition_hold(body, slot, node, now, plane->velocity, held, &boundary->last);
         }
     }
 }
 
-static unsigned hold_at(const brunt_boundary *b, int dim, double time, const double x[3], double slack, double v[3]) {
-    if (!brunt_boundary_holds(b) || brunt_plane_distance(&b->plane, time, x) > slack) return 0;
+static unsigned hold_at(const brunt_boundary *b, int dim, double time, const double x[3], double tolerance,
+                        double v[3]) {
+    if (!brunt_boundary_holds(b) || brunt_plane_distance(&b->plane, time, x) > tolerance) return 0;
     for (int a = 0; a < dim; a++) v[a] = b->plane.velocity[a];
     return brunt_condition_components(&b->plane, dim);
 }

@@ -30,13 +30,13 @@ static int check(const brunt_world_def *def, const void *entry, int32_t w, brunt
     BRUNT_CHECK_NUMBERS(owner, {".velocity", region->velocity, def->dimension, BRUNT_ANY_NUMBER},
                         {".start", &region->start, 1, BRUNT_OR_INFINITE}, {".end", &region->end, 1, BRUNT_OR_INFINITE});
     BRUNT_TRY(brunt_check_shape(owner, &region->shape, def->dimension, 0, error));
-    BRUNT_TRY(brunt_check_place(owner, &region->place, error));
+    BRUNT_TRY(brunt_check_placement(owner, &region->place, error));
     return BRUNT_OK;
 }
 
 static int make(const brunt_boundary_making *m, const void *one, int w, brunt_error *error) {
     (void)error;
-    m->all->walls[w].where = *(const brunt_region_def *)one;
+    m->all->boundary[w].where = *(const brunt_region_def *)one;
     m->all->has_conditions = true;
     return BRUNT_OK;
 }
@@ -55,46 +55,49 @@ static void unplace(const brunt_placement *place, const double x[3], double out[
     }
 }
 
-static void hold_grid(brunt_body *body, brunt_boundary *wall, double time) {
-    if (!acts_at(wall, time)) return;
-    const bool rings = brunt_axisymmetric(&body->particles);
+static void hold_grid(brunt_body *body, brunt_boundary *boundary, double time) {
+    if (!acts_at(boundary, time)) return;
+    const bool axisymmetric = brunt_axisymmetric(&body->particles);
     const brunt_grid *grid = &body->grid;
     unsigned held = 0;
-    for (int a = 0; a < grid->dim; a++) held |= (unsigned)wall->where.component[a] << a;
+    for (int a = 0; a < grid->dim; a++) held |= (unsigned)boundary->where.component[a] << a;
     for (int32_t s = 0; s < grid->slot_count; s++) {
         const brunt_slot *slot = &grid->slots[s];
-        double middle[3], local[3], place[3], reach = 0.5 * sqrt((double)grid->dim) * grid->side * (double)grid->h;
+        double middle[3], local[3], place[3], extent = 0.5 * sqrt((double)grid->dim) * grid->side * (double)grid->h;
         for (int a = 0; a < 3; a++)
             middle[a] = a < grid->dim ? grid->origin[a] + (double)grid->h * (slot->coord[a] + 0.5) * grid->side : 0;
-        if (rings) middle[0] = fabs(middle[0]); // what reaches over the axis is no farther from the image of a place
-        unplace(&wall->where.place, middle, local);
-        if (brunt_shape_distance(&wall->where.shape, grid->dim, local) > reach) continue;
+        if (axisymmetric)
+            middle[0] = fabs(middle[0]); // what reaches over the axis is no farther from the image of a place
+        unplace(&boundary->where.place, middle, local);
+        if (brunt_shape_distance(&boundary->where.shape, grid->dim, local) > extent) continue;
         for (int node = 0; node < BRUNT_BLOCK_NODES; node++) {
             real *n = brunt_slot_nodes(grid, s) + node * BRUNT_NODE_REALS;
             if (!(n[0] > 0)) continue;
-            double x[3], now[3] = {0}, support[3] = {0};
+            double x[3], now[3] = {0}, rest[3] = {0};
             brunt_node_position(grid, slot->coord, node, place);
             memcpy(x, place, sizeof x);
-            if (rings) x[0] = fabs(x[0]);
-            unplace(&wall->where.place, x, local);
-            if (brunt_shape_distance(&wall->where.shape, grid->dim, local) > BRUNT_ON_BOUNDARY * (double)grid->h)
+            if (axisymmetric) x[0] = fabs(x[0]);
+            unplace(&boundary->where.place, x, local);
+            if (brunt_shape_distance(&boundary->where.shape, grid->dim, local) > BRUNT_ON_BOUNDARY * (double)grid->h)
                 continue;
             for (int a = 0; a < grid->dim; a++) {
-                now[a] = wall->where.component[a] ? wall->where.velocity[a] : (double)n[BRUNT_NODE_VELOCITY + a];
-                support[a] = wall->where.component[a] ? wall->where.velocity[a] : 0;
+                now[a] =
+                    boundary->where.component[a] ? boundary->where.velocity[a] : (double)n[BRUNT_NODE_VELOCITY + a];
+                rest[a] = boundary->where.component[a] ? boundary->where.velocity[a] : 0;
             }
-            if (wall->where.component[0]) brunt_condition_reflect(rings, place, (double)grid->h, now);
-            brunt_condition_hold(body, slot, node, now, support, held, &wall->last);
+            if (boundary->where.component[0]) brunt_condition_reflect(axisymmetric, place, (double)grid->h, now);
+            brunt_condition_hold(body, slot, node, now, rest, held, &boundary->last);
         }
     }
 }
 
-static unsigned hold_at(const brunt_boundary *b, int dim, double time, const double x[3], double slack, double v[3]) {
+static unsigned hold_at(const brunt_boundary *b, int dim, double time, const double x[3], double tolerance,
+                        double v[3]) {
     double local[3];
     unsigned held = 0;
     if (!acts_at(b, time)) return 0;
     unplace(&b->where.place, x, local);
-    if (brunt_shape_distance(&b->where.shape, dim, local) > slack) return 0;
+    if (brunt_shape_distance(&b->where.shape, dim, local) > tolerance) return 0;
     for (int a = 0; a < dim; a++) v[a] = b->where.velocity[a], held |= (unsigned)b->where.component[a] << a;
     return held;
 }

@@ -25,7 +25,8 @@ static const char *refusal(const brunt_world_def *def, const void *one, const ch
 }
 
 // v = rate axis x (x - point). A node turns about where it is, so that material holds its shape to the order of a step.
-static unsigned hold_at(const brunt_boundary *b, int dim, double time, const double x[3], double slack, double v[3]) {
+static unsigned hold_at(const brunt_boundary *b, int dim, double time, const double x[3], double tolerance,
+                        double v[3]) {
     (void)time;
     const double *number = b->given.number;
     double axis[3] = {0, 0, 1}, r[3] = {0}, along = 0, length = 0, square = 0;
@@ -34,7 +35,7 @@ static unsigned hold_at(const brunt_boundary *b, int dim, double time, const dou
     for (int a = 0; a < 3; a++) axis[a] /= sqrt(length);
     for (int a = 0; a < dim; a++) r[a] = x[a] - number[POINT + a], along += r[a] * axis[a];
     for (int a = 0; a < dim; a++) square += (r[a] - along * axis[a]) * (r[a] - along * axis[a]);
-    if (sqrt(square) > number[RADIUS] + slack) return 0;
+    if (sqrt(square) > number[RADIUS] + tolerance) return 0;
     for (int a = 0; a < dim; a++)
         v[a] = number[RATE] * (axis[(a + 1) % 3] * r[(a + 2) % 3] - axis[(a + 2) % 3] * r[(a + 1) % 3]);
     return (1u << dim) - 1;

@@ -23,7 +23,7 @@ typedef struct axisymmetric_sums {
     lanes radial[3], cross[2], hoop, axial[3];
 } axisymmetric_sums;
 
-BRUNT_INLINE void add_ring_sums(const lanes B[2], lanes H, lanes axial, lanes radial, axisymmetric_sums *sums) {
+BRUNT_INLINE void add_axisymmetric_sums(const lanes B[2], lanes H, lanes axial, lanes radial, axisymmetric_sums *sums) {
     lanes rr = B[0] * B[0], rz = B[0] * B[1], zz = B[1] * B[1], h = H * radial;
     sums->radial[0] += radial * rr, sums->radial[1] += radial * rz, sums->radial[2] += radial * zz;
     sums->axial[0] += axial * rr, sums->axial[1] += axial * rz, sums->axial[2] += axial * zz;

@@ -275,7 +275,7 @@ static int make_body(const brunt_body_def *def, const brunt_material *material, 
                                                   : isnan(def->contact_thickness)        ? (real)def->thickness
                                                                                          : (real)def->contact_thickness,
                              .damping = def->damping,
-                             .drag_mass = 1,
+                             .damping_mass = 1,
                              .kind = mesh->kind,
                              .traits = brunt_element_traits_of(mesh->kind),
                              .element = (axisymmetric ? brunt_axisymmetric_elements : brunt_elements)[mesh->kind],
@@ -355,7 +355,7 @@ size_t brunt_fem_tile_reals(const brunt_fem_body *body) {
 int brunt_fem_workspace_fit(brunt_fem_workspace *work, const brunt_fem_body *body, brunt_error *error) {
     size_t reals = brunt_fem_tile_reals(body);
     if (body->erodes_inverted) reals += (size_t)body->scalar_count * BRUNT_FEM_TILE;
-    return BRUNT_ROOM_IN(work->memory, work->capacity, reals, 0, "numbers of a thread to work with", error);
+    return BRUNT_CAPACITY_IN(work->memory, work->capacity, reals, 0, "numbers of a thread to work with", error);
 }
 
 void brunt_fem_workspace_free(brunt_fem_workspace *work) {

@@ -90,8 +90,8 @@ struct brunt_fem_body {
     real thickness; // [m] of membranes, undeformed; 0 of others
     real contact_thickness; // [m] of membranes, as contact sees it; 0 of others
     double damping;         // [1/s] of the mass
-    double drag_mass; // [-] of a kick: mass that impulses of contact and holders meet, over that of the node; 1 without
-                      // damping
+    double damping_mass;    // [-] of a kick: mass that impulses of contact and holders meet, over that of the node; 1
+                            // without damping
     const brunt_element *element;
     const brunt_element_traits *traits; // the element's
     brunt_element_kind kind;
@@ -134,7 +134,7 @@ struct brunt_fem_body {
     brunt_fem_report *report;            // a block each
 
     // Of bodies that erode, else NULL and 0.
-    int32_t *bonds;        // of each node: how many elements it still has; 0: it is loose
+    int32_t *bonds;        // of each node: how many elements it still has; 0: it is detached
     bool erodes_inverted;  // an element that would turn inside out keeps its last state and is marked instead
     uint8_t *mark;         // of each slot: why its element is to leave (brunt_fem_mark)
     int32_t mesh_elements; // elements at the start
@@ -253,7 +253,7 @@ static inline void brunt_fem_internal_force(const brunt_fem_body *body, int32_t 
 // Sums over a run of nodes, added up in order by the caller (over runs whose bounds do not depend on the threads). Of a
 // step v -> v_new (kick, and what contact and boundaries then change), x -> x + dt v_new (drift):
 //   work of gravity g       dt g . (momentum_old + momentum) / 2         impulse dt mass g, angular dt first_moment x g
-// first_moment is at the start of the step, where the forces act. What loads do is booked by whoever makes them.
+// first_moment is at the start of the step, where the forces act. What loads do is recorded by whoever makes them.
 typedef struct brunt_fem_sums {
     // by kick, at the velocities before it
     double momentum_old[3]; // [kg m/s] sum m v

@@ -15,7 +15,7 @@ static int make_arrays(brunt_fem_potential *p, brunt_error *error) {
     const brunt_fem_body *body = p->body;
     const size_t numbers = (size_t)body->node_count * (size_t)p->dim;
     static const char of_nodes[] = "numbers of nodes of a mesh", elements[] = "elements of a mesh";
-    if (BRUNT_NEW(p->place, numbers, of_nodes, error) || BRUNT_NEW(p->way, numbers, of_nodes, error) ||
+    if (BRUNT_NEW(p->displacement, numbers, of_nodes, error) || BRUNT_NEW(p->way, numbers, of_nodes, error) ||
         BRUNT_NEW(p->force, (size_t)body->partial_count * 4, "numbers of nodes of blocks of a mesh", error) ||
         BRUNT_NEW(p->energy, body->block_count, "blocks of a mesh", error) ||
         BRUNT_NEW(p->limit, body->block_count, "blocks of a mesh", error) ||
@@ -90,7 +90,7 @@ void brunt_fem_potential_free(brunt_fem_potential *p) {
     if (!p) return;
     for (int w = 0; p->work && w < p->threads; w++) brunt_fem_workspace_free(&p->work[w]);
     brunt_colours_free(&p->colours);
-    brunt_free(p->slab), brunt_free(p->sheet), brunt_free(p->place), brunt_free(p->way), brunt_free(p->force),
+    brunt_free(p->slab), brunt_free(p->membrane), brunt_free(p->displacement), brunt_free(p->way), brunt_free(p->force),
         brunt_free(p->energy);
     brunt_free(p->limit), brunt_free(p->first), brunt_free(p->node), brunt_free(p->slot), brunt_free(p->work);
     brunt_free(p);
@@ -127,7 +127,7 @@ static void run_nodes(void *context, int64_t begin, int64_t end, int worker) {
         for (int i = 0; i < dim; i++) {
             const int64_t unknown = (p->base + n) * dim + i;
             const double moved = (double)(brunt_fem_node(p->body, (int32_t)n)[i] - p->body->start[n * 4 + i]);
-            p->place[n * dim + i] = moved + (call->u ? call->u[unknown] : 0);
+            p->displacement[n * dim + i] = moved + (call->u ? call->u[unknown] : 0);
             if (call->way) p->way[n * dim + i] = call->way[unknown];
         }
 }

@@ -14,11 +14,11 @@
 
 enum { Y = 9, HESSIAN = 45 };
 
-typedef struct fem_sheet {
+typedef struct fem_membrane {
     double share[3][4];                     // s_ma
     double frame[2][3], start[3];           // [-] e_1, e_2; [m] q at the start, w0 e_3
     double M[3], spring, warp_spring, warp; // 11, 22, 12 [1/m^2]; k, k_w [N/m]; w0 [m]
-} fem_sheet;
+} fem_membrane;
 
 // --------------------------------------------------------------------------------- making
 
@@ -29,82 +29,82 @@ static void vector_product(const double *a, const double *b, double *out) {
 }
 
 static void warping_of(const brunt_fem_potential *p, int64_t slot, const double (*x)[3], const double e[3][3],
-                       fem_sheet *sheet) {
+                       fem_membrane *membrane) {
     brunt_fem_body *body = p->body;
     const int8_t *mode = body->element->hourglass[0];
     double carried[3] = {0}, square = 0;
     for (int a = 0; a < p->nodes; a++)
         for (int i = 0; i < 3; i++) carried[i] += mode[a] * (x[a][i] - x[0][i]);
-    sheet->warp = inner(carried, e[2]);
+    membrane->warp = inner(carried, e[2]);
     for (int a = 0; a < p->nodes; a++) {
-        const double b[2] = {sheet->share[0][a], sheet->share[1][a]};
-        sheet->share[2][a] = mode[a] - inner(carried, e[0]) * b[0] - inner(carried, e[1]) * b[1];
-        for (int c = 0; c < 3; c++) sheet->M[c] += b[c == 1] * b[c > 0] / 12;
+        const double b[2] = {membrane->share[0][a], membrane->share[1][a]};
+        membrane->share[2][a] = mode[a] - inner(carried, e[0]) * b[0] - inner(carried, e[1]) * b[1];
+        for (int c = 0; c < 3; c++) membrane->M[c] += b[c == 1] * b[c > 0] / 12;
         square += b[0] * b[0] + b[1] * b[1];
     }
-    for (int i = 0; i < 3; i++) sheet->start[i] = sheet->warp * e[2][i];
+    for (int i = 0; i < 3; i++) membrane->start[i] = membrane->warp * e[2][i];
     const double c0 = (double)body->material.wave_speed, modulus = (double)body->material.density * c0 * c0;
     const double volume = (double)brunt_element_scalars(body, BRUNT_ELEMENT_reference_volume)[0][slot];
     const double thickness = (double)body->thickness, area = volume / thickness;
-    sheet->spring = (double)body->hourglass_coefficient * modulus * volume * square / 8;
-    sheet->warp_spring = sheet->spring * fmin(thickness * thickness / area, 1);
+    membrane->spring = (double)body->hourglass_coefficient * modulus * volume * square / 8;
+    membrane->warp_spring = membrane->spring * fmin(thickness * thickness / area, 1);
 }
 
-static void sheet_of(const brunt_fem_potential *p, int64_t slot, fem_sheet *sheet) {
+static void membrane_of(const brunt_fem_potential *p, int64_t slot, fem_membrane *membrane) {
     double x[BRUNT_ELEMENT_NODES][3], e[3][3];
     real b[BRUNT_ELEMENT_NODES][3];
-    *sheet = (fem_sheet){.warp = 0};
+    *membrane = (fem_membrane){.warp = 0};
     brunt_fem_corners(p->body, (int32_t)slot, x);
     brunt_membrane_frame(p->nodes, (const double(*)[3])x, e);
     p->body->element->gradient((const double(*)[3])x, b);
-    memcpy(sheet->frame, e, sizeof sheet->frame);
+    memcpy(membrane->frame, e, sizeof membrane->frame);
     for (int a = 0; a < p->nodes; a++)
         for (int m = 0; m < 2; m++)
-            for (int i = 0; i < 3; i++) sheet->share[m][a] += (double)b[a][i] * e[m][i];
-    if (p->nodes == 4) warping_of(p, slot, (const double(*)[3])x, (const double(*)[3])e, sheet);
+            for (int i = 0; i < 3; i++) membrane->share[m][a] += (double)b[a][i] * e[m][i];
+    if (p->nodes == 4) warping_of(p, slot, (const double(*)[3])x, (const double(*)[3])e, membrane);
 }
 
 static int make(brunt_fem_potential *p, brunt_error *error) {
     const brunt_fem_body *body = p->body;
     const size_t stride = ((size_t)body->slots + 7) / 8 * 8 + 8;
-    p->slab_bytes = HESSIAN * stride * sizeof(real) + (size_t)body->slots * sizeof *p->sheet;
+    p->slab_bytes = HESSIAN * stride * sizeof(real) + (size_t)body->slots * sizeof *p->membrane;
     if (BRUNT_NEW(p->slab, HESSIAN * stride, "numbers of elements of a membrane", error) ||
-        BRUNT_NEW(p->sheet, body->slots, "elements of a membrane", error))
+        BRUNT_NEW(p->membrane, body->slots, "elements of a membrane", error))
         return BRUNT_FAILED;
     for (int k = 0; k < HESSIAN; k++) p->tangent[k] = p->slab + (size_t)k * stride;
     for (int32_t b = 0; b < body->block_count; b++)
         for (int32_t s = body->block[b].first; s < body->block[b].first + body->block[b].count; s++)
-            sheet_of(p, s, &p->sheet[s]);
+            membrane_of(p, s, &p->membrane[s]);
     return BRUNT_OK;
 }
 
 // --------------------------------------------------------------------------------- a tile of elements
 
-typedef struct sheet_tile {
+typedef struct membrane_tile {
     real U[3][FEM_TILE], density[FEM_TILE], S[3][FEM_TILE], tangent[6][FEM_TILE]; // 11, 22, 12
     double y[FEM_TILE][Y];
-} __attribute__((aligned(64))) sheet_tile;
+} __attribute__((aligned(64))) membrane_tile;
 
 // y, and the mean metric less 1, which keeps its digits when it is small.
 static void deform(const brunt_fem_potential *p, int64_t slot, double y[Y], double c[3]) {
-    const fem_sheet *sheet = &p->sheet[slot];
+    const fem_membrane *membrane = &p->membrane[slot];
     const int32_t *node = p->body->element_node + slot * p->nodes;
     double H[3][3] = {{0}}, more = 0;
     for (int a = 0; a < p->nodes; a++)
         for (int m = 0; m < 3; m++)
-            for (int i = 0; i < 3; i++) H[m][i] += sheet->share[m][a] * p->place[(int64_t)node[a] * 3 + i];
+            for (int i = 0; i < 3; i++) H[m][i] += membrane->share[m][a] * p->displacement[(int64_t)node[a] * 3 + i];
     for (int i = 0; i < 3; i++) {
-        for (int m = 0; m < 2; m++) y[3 * m + i] = sheet->frame[m][i] + H[m][i];
-        y[6 + i] = sheet->start[i] + H[2][i];
-        more += H[2][i] * (y[6 + i] + sheet->start[i]);
+        for (int m = 0; m < 2; m++) y[3 * m + i] = membrane->frame[m][i] + H[m][i];
+        y[6 + i] = membrane->start[i] + H[2][i];
+        more += H[2][i] * (y[6 + i] + membrane->start[i]);
     }
-    for (int m = 0; m < 2; m++) c[m] = inner(H[m], H[m]) + 2 * inner(sheet->frame[m], H[m]);
-    c[2] = inner(y, H[1]) + inner(sheet->frame[1], H[0]);
-    for (int k = 0; k < 3; k++) c[k] += more * sheet->M[k];
+    for (int m = 0; m < 2; m++) c[m] = inner(H[m], H[m]) + 2 * inner(membrane->frame[m], H[m]);
+    c[2] = inner(y, H[1]) + inner(membrane->frame[1], H[0]);
+    for (int k = 0; k < 3; k++) c[k] += more * membrane->M[k];
 }
 
 // U = sqrt(I + c) of element s of the tile, not a number where I + c is not positive.
-static void stretch(const double c[3], sheet_tile *tile, int32_t s) {
+static void stretch(const double c[3], membrane_tile *tile, int32_t s) {
     const double C0 = 1 + c[0], C1 = 1 + c[1], det = C0 * C1 - c[2] * c[2], J = det > 0 && C0 > 0 ? sqrt(det) : NAN;
     const double trace = 1 / sqrt(C0 + C1 + 2 * J);
     tile->U[0][s] = (real)((C0 + J) * trace), tile->U[1][s] = (real)((C1 + J) * trace);
@@ -112,7 +112,7 @@ static void stretch(const double c[3], sheet_tile *tile, int32_t s) {
 }
 
 // What the material says of `count` elements from `slot` on, `there` of which are no padding.
-static void respond(const fem_call *call, int64_t slot, int32_t there, int32_t count, sheet_tile *tile) {
+static void respond(const fem_call *call, int64_t slot, int32_t there, int32_t count, membrane_tile *tile) {
     const brunt_fem_potential *p = call->p;
     brunt_trial_points trial[BRUNT_COMPONENTS] = {{.count = count, .dim = 2, .dt = p->dt}};
     for (int32_t s = 0; s < count; s++) {
@@ -190,53 +190,55 @@ static double volume_of(const brunt_fem_potential *p, int64_t slot) {
     return (double)brunt_element_scalars(p->body, BRUNT_ELEMENT_reference_volume)[0][slot];
 }
 
-static void add_energy(const brunt_fem_potential *p, int64_t slot, const sheet_tile *tile, int32_t s,
+static void add_energy(const brunt_fem_potential *p, int64_t slot, const membrane_tile *tile, int32_t s,
                        brunt_energy_sum *sum) {
-    const fem_sheet *sheet = &p->sheet[slot];
+    const fem_membrane *membrane = &p->membrane[slot];
     const double stored = volume_of(p, slot) * (double)tile->density[s], *q = tile->y[s] + 6;
     sum->value += stored, sum->magnitude += fabs(stored);
     if (p->nodes == 3 || !(stored < INFINITY)) return;
     const warping at = warping_at(tile->y[s]);
     double flat = 0;
     for (int i = 0; i < 3; i++) flat += (q[i] - at.s * at.n[i]) * (q[i] - at.s * at.n[i]);
-    const double rise = at.s - sheet->warp, held = 0.5 * (sheet->spring * flat + sheet->warp_spring * rise * rise);
+    const double rise = at.s - membrane->warp,
+                 held = 0.5 * (membrane->spring * flat + membrane->warp_spring * rise * rise);
     sum->value += held, sum->magnitude += held;
 }
 
-static void gradient_of(const brunt_fem_potential *p, int64_t slot, const sheet_tile *tile, int32_t s, double g[Y]) {
-    const fem_sheet *sheet = &p->sheet[slot];
+static void gradient_of(const brunt_fem_potential *p, int64_t slot, const membrane_tile *tile, int32_t s, double g[Y]) {
+    const fem_membrane *membrane = &p->membrane[slot];
     const double volume = volume_of(p, slot), *y = tile->y[s];
     const double S[3] = {volume * (double)tile->S[0][s], volume * (double)tile->S[1][s],
                          volume * (double)tile->S[2][s]};
-    const double across = S[0] * sheet->M[0] + S[1] * sheet->M[1] + 2 * S[2] * sheet->M[2];
+    const double across = S[0] * membrane->M[0] + S[1] * membrane->M[1] + 2 * S[2] * membrane->M[2];
     for (int i = 0; i < 3; i++) {
         g[i] = S[0] * y[i] + S[2] * y[3 + i], g[3 + i] = S[2] * y[i] + S[1] * y[3 + i];
-        g[6 + i] = (across + sheet->spring) * y[6 + i];
+        g[6 + i] = (across + membrane->spring) * y[6 + i];
     }
     if (p->nodes == 3) return;
     const warping at = warping_at(y);
-    const double t = sheet->warp_spring * (at.s - sheet->warp) - sheet->spring * at.s;
+    const double t = membrane->warp_spring * (at.s - membrane->warp) - membrane->spring * at.s;
     for (int k = 0; k < Y; k++) g[k] += t * at.by_y[k];
 }
 
 // Of the metric: e by y, for 11, 22, and twice 12.
-static void strain_slope(const fem_sheet *sheet, const double y[Y], double e[3][Y]) {
+static void strain_slope(const fem_membrane *membrane, const double y[Y], double e[3][Y]) {
     for (int i = 0; i < 3; i++) {
         e[0][i] = y[i], e[1][i] = 0, e[2][i] = y[3 + i];
         e[0][3 + i] = 0, e[1][3 + i] = y[3 + i], e[2][3 + i] = y[i];
-        for (int m = 0; m < 3; m++) e[m][6 + i] = (m == 2 ? 2 : 1) * sheet->M[m] * y[6 + i];
+        for (int m = 0; m < 3; m++) e[m][6 + i] = (m == 2 ? 2 : 1) * membrane->M[m] * y[6 + i];
     }
 }
 
-static void hessian_of(const brunt_fem_potential *p, int64_t slot, const sheet_tile *tile, int32_t s, double h[Y][Y]) {
+static void hessian_of(const brunt_fem_potential *p, int64_t slot, const membrane_tile *tile, int32_t s,
+                       double h[Y][Y]) {
     static const int place[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}}, of[2][2] = {{0, 2}, {2, 1}};
-    const fem_sheet *sheet = &p->sheet[slot];
+    const fem_membrane *membrane = &p->membrane[slot];
     const double volume = volume_of(p, slot), *y = tile->y[s];
     double e[3][Y], S[3], across = 0;
-    strain_slope(sheet, y, e);
+    strain_slope(membrane, y, e);
     for (int m = 0; m < 3; m++) {
         S[m] = volume * (double)tile->S[m][s];
-        across += (m == 2 ? 2 : 1) * S[m] * sheet->M[m];
+        across += (m == 2 ? 2 : 1) * S[m] * membrane->M[m];
     }
     for (int r = 0; r < Y; r++)
         for (int c = 0; c < Y; c++) {
@@ -246,13 +248,13 @@ static void hessian_of(const brunt_fem_potential *p, int64_t slot, const sheet_t
             h[r][c] = volume * sum;
             if (r % 3 != c % 3) continue;
             if (r < 6 && c < 6) h[r][c] += S[of[r / 3][c / 3]];
-            if (r >= 6 && c >= 6) h[r][c] += across + sheet->spring;
+            if (r >= 6 && c >= 6) h[r][c] += across + membrane->spring;
         }
     if (p->nodes == 3) return;
     const warping at = warping_at(y);
     for (int r = 0; r < Y; r++)
-        for (int c = 0; c < Y; c++) h[r][c] += (sheet->warp_spring - sheet->spring) * at.by_y[r] * at.by_y[c];
-    add_warping_curvature(y, &at, sheet->warp_spring * (at.s - sheet->warp) - sheet->spring * at.s, h);
+        for (int c = 0; c < Y; c++) h[r][c] += (membrane->warp_spring - membrane->spring) * at.by_y[r] * at.by_y[c];
+    add_warping_curvature(y, &at, membrane->warp_spring * (at.s - membrane->warp) - membrane->spring * at.s, h);
 }
 
 // --------------------------------------------------------------------------------- the kind
@@ -262,12 +264,12 @@ static void add_force(const brunt_fem_potential *p, int64_t slot, const double g
     for (int a = 0; a < p->nodes; a++)
         for (int i = 0; i < 3; i++) {
             double force = 0;
-            for (int m = 0; m < 3; m++) force += p->sheet[slot].share[m][a] * g[3 * m + i];
+            for (int m = 0; m < 3; m++) force += p->membrane[slot].share[m][a] * g[3 * m + i];
             partial[(size_t)local[a] * 4 + (size_t)i] += (real)force;
         }
 }
 
-static void keep_hessian(const fem_call *call, int64_t slot, const sheet_tile *tile, int32_t s) {
+static void keep_hessian(const fem_call *call, int64_t slot, const membrane_tile *tile, int32_t s) {
     const brunt_fem_potential *p = call->p;
     double h[Y][Y];
     hessian_of(p, slot, tile, s, h);
@@ -282,7 +284,7 @@ static void evaluate(const fem_call *call, int32_t b) {
     real *partial = p->force + (size_t)block->node_first * 4;
     if (call->wanted == FEM_GRADIENT) memset(partial, 0, (size_t)block->node_count * 4 * sizeof *partial);
     brunt_energy_sum sum = {0};
-    sheet_tile tile;
+    membrane_tile tile;
     for (int32_t first = 0; first < block->count; first += FEM_TILE) {
         const int32_t there = block->count - first < FEM_TILE ? block->count - first : FEM_TILE;
         const int64_t slot = (int64_t)block->first + first;
@@ -300,7 +302,7 @@ static void evaluate(const fem_call *call, int32_t b) {
 }
 
 static void hessian(const brunt_fem_potential *p, int64_t slot, double *dense) {
-    const fem_sheet *sheet = &p->sheet[slot];
+    const fem_membrane *membrane = &p->membrane[slot];
     const int size = 3 * p->nodes;
     double h[Y][Y];
     for (int r = 0, k = 0; r < Y; r++)
@@ -312,7 +314,7 @@ static void hessian(const brunt_fem_potential *p, int64_t slot, double *dense) {
                 double sum = 0;
                 for (int m = 0; m < 3; m++)
                     for (int n = 0; n < 3; n++)
-                        sum += sheet->share[m][A] * h[3 * m + i][3 * n + j] * sheet->share[n][B];
+                        sum += membrane->share[m][A] * h[3 * m + i][3 * n + j] * membrane->share[n][B];
                 dense[(3 * A + i) * size + 3 * B + j] = sum;
             }
 }
@@ -327,7 +329,7 @@ static void product(const fem_call *call, int32_t b) {
         double x[Y] = {0}, g[Y] = {0};
         for (int a = 0; a < p->nodes; a++)
             for (int k = 0; k < Y; k++)
-                x[k] += p->sheet[slot].share[k / 3][a] * call->way[(int64_t)node[a] * 3 + k % 3];
+                x[k] += p->membrane[slot].share[k / 3][a] * call->way[(int64_t)node[a] * 3 + k % 3];
         for (int r = 0, k = 0; r < Y; r++, k++) {
             g[r] += (double)p->tangent[k][slot] * x[r];
             for (int c = r + 1; c < Y; c++) {

@@ -11,7 +11,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { MOST_NODES = 8, MOST_MODES = 4, SHAPES = MOST_NODES * 3, SHARES = MOST_NODES * MOST_MODES };
+enum { NODE_LIMIT = 8, MODE_LIMIT = 4, SHAPES = NODE_LIMIT * 3, SHARES = NODE_LIMIT * MODE_LIMIT };
 
 typedef struct fem_potential_kind fem_potential_kind;
 
@@ -26,16 +26,16 @@ struct brunt_fem_potential {
     // Of each slot: mean gradients b of the shape functions, gamma and k of its hourglass modes.
     real *b[SHAPES], *gamma[SHARES], *spring;
     // Of the last Hessian: spatial gradients and tangents.
-    real *g[SHAPES], *tangent[BRUNT_MOST_TANGENTS];
+    real *g[SHAPES], *tangent[BRUNT_TANGENT_LIMIT];
     real *slab;
     size_t slab_bytes;
-    struct fem_sheet *sheet;  // of a membrane: its elements at the start, a slot each
-    double *place, *way;      // of each node, dim each: where it is tried to be, less where it was at the start; p
-    real *force;              // partial_count x 4, as body->partial
-    brunt_energy_sum *energy; // a block each
-    double moduli;            // [J] m c^2
-    double *limit;            // a block each
-    int64_t *first;           // stencils: the elements in order of slots
+    struct fem_membrane *membrane; // of a membrane: its elements at the start, a slot each
+    double *displacement, *way;    // of each node, dim each: where it is tried to be, less where it was at the start; p
+    real *force;                   // partial_count x 4, as body->partial
+    brunt_energy_sum *energy;      // a block each
+    double moduli;                 // [J] m c^2
+    double *limit;                 // a block each
+    int64_t *first;                // stencils: the elements in order of slots
     int32_t *node, *slot;
     brunt_colours colours;
     brunt_fem_workspace *work; // a thread each

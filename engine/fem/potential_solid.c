@@ -18,8 +18,8 @@
 static void shape_of(brunt_fem_potential *p, int32_t slot) {
     const brunt_fem_body *body = p->body;
     const int n = p->nodes, dim = p->dim;
-    double x[MOST_NODES][3] = {{0}}, square = 0;
-    real b[MOST_NODES][3];
+    double x[NODE_LIMIT][3] = {{0}}, square = 0;
+    real b[NODE_LIMIT][3];
     for (int a = 0; a < n; a++)
         for (int i = 0; i < dim; i++)
             x[a][i] = (double)body->start[(size_t)body->element_node[(size_t)slot * n + a] * 4 + i];
@@ -72,7 +72,7 @@ typedef struct fem_tile {
 
 // Values of a field of the body's nodes, dim each, at the nodes of the elements of a vector.
 BRUNT_INLINE void nodal_values(int dim, int nodes, const brunt_fem_potential *p, const double *field, int64_t slot,
-                               lanes out[MOST_NODES][3]) {
+                               lanes out[NODE_LIMIT][3]) {
     const int32_t *node = p->body->element_node + slot * nodes;
     for (int a = 0; a < nodes; a++) {
         real column[3][BRUNT_LANES] __attribute__((aligned(64)));
@@ -84,7 +84,7 @@ BRUNT_INLINE void nodal_values(int dim, int nodes, const brunt_fem_potential *p,
 
 // sum_a u_a (x) b_a
 BRUNT_INLINE void mean_slope(int dim, int nodes, const brunt_fem_potential *p, int64_t slot,
-                             const lanes u[MOST_NODES][3], lanes H[9]) {
+                             const lanes u[NODE_LIMIT][3], lanes H[9]) {
     for (int j = 0; j < dim; j++)
         for (int i = 0; i < dim; i++) H[i * dim + j] = lanes_set(0);
     for (int a = 0; a < nodes; a++)
@@ -113,8 +113,8 @@ BRUNT_INLINE void deform(int dim, const brunt_fem_potential *p, int64_t slot, co
 BRUNT_INLINE void deform_tile(int dim, int nodes, const brunt_fem_potential *p, int64_t slot, int32_t count,
                               fem_tile *tile) {
     for (int32_t s = 0; s < count; s += BRUNT_LANES) {
-        lanes u[MOST_NODES][3], H[9];
-        nodal_values(dim, nodes, p, p->place, slot + s, u);
+        lanes u[NODE_LIMIT][3], H[9];
+        nodal_values(dim, nodes, p, p->displacement, slot + s, u);
         mean_slope(dim, nodes, p, slot + s, (const lanes(*)[3])u, H);
         deform(dim, p, slot + s, H, tile, s);
     }
@@ -140,7 +140,7 @@ BRUNT_INLINE lanes volumes(const brunt_fem_potential *p, int64_t slot) {
 
 // q = gamma . u of an hourglass mode, and k, 0 of padding.
 BRUNT_INLINE lanes hourglass(int dim, int nodes, const brunt_fem_potential *p, int64_t slot, int mode,
-                             const lanes u[MOST_NODES][3], lanes q[3]) {
+                             const lanes u[NODE_LIMIT][3], lanes q[3]) {
     for (int i = 0; i < dim; i++) q[i] = lanes_set(0);
     for (int a = 0; a < nodes; a++) {
         const lanes gamma = lanes_load(p->gamma[mode * nodes + a] + slot);
@@ -156,8 +156,8 @@ BRUNT_INLINE void add_energies(int dim, int nodes, const brunt_fem_potential *p,
     lanes energy = lanes_select(there, volume * lanes_load(tile->density + at), lanes_set(0));
     tile->value += energy, tile->magnitude += lanes_abs(energy);
     if (!p->modes) return;
-    lanes u[MOST_NODES][3], q[3];
-    nodal_values(dim, nodes, p, p->place, slot, u);
+    lanes u[NODE_LIMIT][3], q[3];
+    nodal_values(dim, nodes, p, p->displacement, slot, u);
     for (int m = 0; m < p->modes; m++) {
         const lanes k = hourglass(dim, nodes, p, slot, m, (const lanes(*)[3])u, q);
         energy = (real)0.5 * k * dot(dim, q, q);
@@ -167,7 +167,7 @@ BRUNT_INLINE void add_energies(int dim, int nodes, const brunt_fem_potential *p,
 
 // F^-T b_a of all nodes.
 BRUNT_INLINE void spatial_gradients(int dim, int nodes, const brunt_fem_potential *p, int64_t slot,
-                                    const fem_tile *tile, int32_t at, lanes g[MOST_NODES][3]) {
+                                    const fem_tile *tile, int32_t at, lanes g[NODE_LIMIT][3]) {
     lanes F[9], inverse[9];
     for (int c = 0; c < dim * dim; c++) F[c] = lanes_load(tile->F[c] + at);
     inverse_matrix(dim, F, inverse);
@@ -182,15 +182,15 @@ BRUNT_INLINE void spatial_gradients(int dim, int nodes, const brunt_fem_potentia
 BRUNT_INLINE void add_forces(int dim, int nodes, const brunt_fem_potential *p, int64_t slot, const fem_tile *tile,
                              int32_t at, real *partial) {
     const int32_t rest = tile->elements - at, some = rest < BRUNT_LANES ? rest : BRUNT_LANES;
-    lanes g[MOST_NODES][3], f[MOST_NODES][3], tau[9];
+    lanes g[NODE_LIMIT][3], f[NODE_LIMIT][3], tau[9];
     const lanes volume = volumes(p, slot);
     spatial_gradients(dim, nodes, p, slot, tile, at, g);
     for (int c = 0; c < dim * dim; c++) tau[c] = volume * lanes_load(tile->stress[c] + at);
     for (int a = 0; a < nodes; a++)
         for (int i = 0; i < dim; i++) f[a][i] = dot(dim, tau + i * dim, g[a]);
     if (p->modes) {
-        lanes u[MOST_NODES][3], q[3];
-        nodal_values(dim, nodes, p, p->place, slot, u);
+        lanes u[NODE_LIMIT][3], q[3];
+        nodal_values(dim, nodes, p, p->displacement, slot, u);
         for (int m = 0; m < p->modes; m++) {
             const lanes k = hourglass(dim, nodes, p, slot, m, (const lanes(*)[3])u, q);
             for (int a = 0; a < nodes; a++)
@@ -228,7 +228,7 @@ BRUNT_INLINE void evaluate(int dim, int nodes, const fem_call *call, int32_t b) 
             if (call->wanted == FEM_ENERGY) add_energies(dim, nodes, p, slot + s, &tile, s);
             if (call->wanted == FEM_GRADIENT) add_forces(dim, nodes, p, slot + s, &tile, s, partial);
             if (call->wanted != FEM_TANGENT) continue;
-            lanes g[MOST_NODES][3];
+            lanes g[NODE_LIMIT][3];
             spatial_gradients(dim, nodes, p, slot + s, &tile, s, g);
             for (int a = 0; a < nodes; a++)
                 for (int i = 0; i < dim; i++) lanes_store(p->g[a * dim + i] + slot + s, g[a][i]);
@@ -245,8 +245,8 @@ BRUNT_INLINE void limit_of(int dim, int nodes, const fem_call *call, int32_t b) 
     double least = call->largest;
     for (int32_t at = 0; at < block->count; at += BRUNT_LANES) {
         const int64_t slot = (int64_t)block->first + at;
-        lanes u[MOST_NODES][3], F[9], D[9];
-        nodal_values(dim, nodes, p, p->place, slot, u);
+        lanes u[NODE_LIMIT][3], F[9], D[9];
+        nodal_values(dim, nodes, p, p->displacement, slot, u);
         mean_slope(dim, nodes, p, slot, (const lanes(*)[3])u, F);
         for (int c = 0; c < dim; c++) F[c * (dim + 1)] += 1;
         nodal_values(dim, nodes, p, p->way, slot, u);
@@ -260,7 +260,7 @@ BRUNT_INLINE void limit_of(int dim, int nodes, const fem_call *call, int32_t b) 
 BRUNT_INLINE void element_hessian(int dim, int nodes, const brunt_fem_potential *p, int64_t slot, double *dense) {
     const int rows = dim * dim, size = dim * nodes;
     const double volume = (double)brunt_element_scalars(p->body, BRUNT_ELEMENT_reference_volume)[0][slot];
-    double a[9][9], g[MOST_NODES][3];
+    double a[9][9], g[NODE_LIMIT][3];
     const bool whole = p->body->material.differences;
     for (int m = 0; m < rows; m++)
         for (int n = 0; n < rows; n++)
@@ -295,7 +295,7 @@ BRUNT_INLINE void element_hessian(int dim, int nodes, const brunt_fem_potential 
 BRUNT_INLINE void add_product(int dim, int nodes, const fem_call *call, int64_t slot, int32_t some, real *partial) {
     const brunt_fem_potential *p = call->p;
     const lanes volume = volumes(p, slot);
-    lanes x[MOST_NODES][3], f[MOST_NODES][3], H[9], T[9];
+    lanes x[NODE_LIMIT][3], f[NODE_LIMIT][3], H[9], T[9];
     nodal_values(dim, nodes, p, call->way, slot, x);
     for (int c = 0; c < dim * dim; c++) H[c] = lanes_set(0);
     for (int a = 0; a < nodes; a++)

@@ -122,8 +122,8 @@ static int list_faces(brunt_surface_topology *topology, const brunt_fem_body *fe
     int32_t count = 0;
     for (int32_t r = 0; r < topology->elements; r++) {
         if (!topology->open[r]) continue;
-        if (BRUNT_ROOM(topology->key, (size_t)count + (size_t)faces, (size_t)count, "faces of a mesh that erodes",
-                       error))
+        if (BRUNT_CAPACITY(topology->key, (size_t)count + (size_t)faces, (size_t)count, "faces of a mesh that erodes",
+                           error))
             return BRUNT_FAILED;
         for (int f = 0; f < faces; f++)
             if (topology->open[r] >> f & 1) topology->key[count++] = r * faces + f;

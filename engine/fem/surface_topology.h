@@ -20,7 +20,7 @@ typedef struct brunt_surface_topology {
     int32_t key_count, before_count;
     size_t key_capacity, before_capacity;
     // Of each node of the body: its place among those that contact sees, -1; now, and of the last time. Those have
-    // faces of the surface, or are loose and go on as free particles.
+    // faces of the surface, or are detached and go on as free particles.
     int32_t *number, *number_before;
     int32_t number_count;
     bool changed; // by the last renewal
@@ -30,7 +30,7 @@ typedef struct brunt_surface_topology {
 int brunt_topology_make(brunt_surface_topology *topology, const brunt_fem_body *fem, brunt_error *error);
 // The surface as it is now; what it was becomes `before`. `changed` tells whether it was made anew. BRUNT_OK, or
 // BRUNT_FAILED: out of memory. `restored`: others may be there than before, of a saved state, and other nodes may be
-// loose; else as many as before are the same.
+// detached; else as many as before are the same.
 int brunt_topology_renew(brunt_surface_topology *topology, const brunt_fem_body *fem, bool restored,
                          brunt_error *error);
 // Nodes (of the body) of face `k` of the surface; the 4th is -1 for triangles, 3rd and 4th for segments.

@@ -18,9 +18,9 @@
 // Below this scaled Jacobian an element is flat: its sign is rounding when nodes lie up to 1e5 edges from the origin.
 static const double flat = 1e-10;
 // Nodes nearer than this share of the longest edge are at the same place.
-static const double same_place = 1e-9;
+static const double same_position = 1e-9;
 
-enum { INVERTED, DEGENERATE, TWICE, SAME_PLACE, UNREFERENCED, LISTED = 10 };
+enum { INVERTED, DEGENERATE, TWICE, SAME_POSITION, UNREFERENCED, LISTED = 10 };
 
 // ---------------------------------------------------------------------------------------------------- lists of numbers
 
@@ -269,19 +269,19 @@ static uint64_t cell_hash(const double *cell) {
     return hash;
 }
 
-// Nodes within `reach` of one before. A node is put into its cell of a grid of spacing 16 reach, and looked for in all
+// Nodes within `extent` of one before. A node is put into its cell of a grid of spacing 16 reach, and looked for in all
 // the cells within reach, which is nearly always one. Those found are not put in, so that a cell never holds many.
-static bool find_same_place(const brunt_mesh *mesh, double reach, list *found) {
-    if (!(reach > 0) || !isfinite(reach)) return true; // the elements are in disorder, and reported
+static bool find_same_position(const brunt_mesh *mesh, double extent, list *found) {
+    if (!(extent > 0) || !isfinite(extent)) return true; // the elements are in disorder, and reported
     uint64_t buckets = 1;
     while (buckets < 2 * (uint64_t)mesh->node_count) buckets *= 2;
     int32_t *head = brunt_alloc(buckets * sizeof *head), *next = brunt_alloc((size_t)mesh->node_count * sizeof *next);
     for (int32_t n = 0; n < mesh->node_count && head && next; n++) {
         const double *x = mesh->nodes[n];
-        double own[3], low[3], high[3], spacing = 16 * reach;
+        double own[3], low[3], high[3], spacing = 16 * extent;
         for (int d = 0; d < 3; d++) {
             own[d] = floor(x[d] / spacing);
-            low[d] = floor((x[d] - reach) / spacing), high[d] = floor((x[d] + reach) / spacing);
+            low[d] = floor((x[d] - extent) / spacing), high[d] = floor((x[d] + extent) / spacing);
         }
         bool met = false;
         for (int corner = 0; corner < 8 && !met; corner++) {
@@ -295,7 +295,7 @@ static bool find_same_place(const brunt_mesh *mesh, double reach, list *found) {
             for (int32_t m = head[cell_hash(cell) & (buckets - 1)]; m && !met; m = next[m - 1]) {
                 double e[3];
                 edge(mesh->nodes[m - 1], x, e);
-                met = length(e) <= reach;
+                met = length(e) <= extent;
             }
         }
         if (met) {
@@ -407,12 +407,12 @@ int brunt_mesh_check(const brunt_mesh *mesh, brunt_mesh_quality *quality, brunt_
     list found[5] = {0};
     look_at_elements(mesh, quality, found);
     if (!find_twice(mesh, &found[TWICE]) || !find_unreferenced(mesh, &found[UNREFERENCED]) ||
-        !find_same_place(mesh, same_place * quality->longest_edge, &found[SAME_PLACE]))
+        !find_same_position(mesh, same_position * quality->longest_edge, &found[SAME_POSITION]))
         return brunt_fail(error, BRUNT_FAILED, "no memory to check a mesh of %d nodes", (int)mesh->node_count);
     quality->inverted = found[INVERTED].count;
     quality->degenerate = found[DEGENERATE].count;
     quality->duplicate_elements = found[TWICE].count;
-    quality->duplicate_nodes = found[SAME_PLACE].count;
+    quality->duplicate_nodes = found[SAME_POSITION].count;
     quality->unreferenced = found[UNREFERENCED].count;
     for (int k = 0; k < 5; k++)
         if (found[k].count) quality->first[k] = found[k].first[0];

@@ -77,7 +77,7 @@ int brunt_mesh_cutting(const brunt_shape *shape, int dimension, brunt_mesh_cut *
         one = &shape->children[c];
     }
     if (!one) return box_between(cut, dimension, error);
-    if (one->kind != BRUNT_SPHERE && one->kind != BRUNT_RING && (one->kind != BRUNT_CYLINDER || dimension == 2))
+    if (one->kind != BRUNT_SPHERE && one->kind != BRUNT_TUBE && (one->kind != BRUNT_CYLINDER || dimension == 2))
         return refuse(error);
     double min[3], max[3];
     if (!brunt_shape_bounds(one, dimension, min, max)) return refuse(error);

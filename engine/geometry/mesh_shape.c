@@ -114,7 +114,7 @@ static int check_positive(const char *what, double value, brunt_error *error) {
 
 static int check_round(const brunt_shape *shape, int dimension, brunt_error *error) {
     int status = check_positive("radius", shape->radius, error);
-    if (!status && shape->kind == BRUNT_RING) {
+    if (!status && shape->kind == BRUNT_TUBE) {
         status = check_positive("inner radius", shape->inner_radius, error);
         if (!status && shape->inner_radius >= shape->radius)
             status = brunt_fail(error, BRUNT_BAD_INPUT,
@@ -141,7 +141,7 @@ static int check_shape(const brunt_shape *shape, int dimension, brunt_error *err
         if (dimension == 2) return refuse(error, "a cylinder in two dimensions");
         return check_round(shape, dimension, error);
     case BRUNT_SPHERE:
-    case BRUNT_RING: return check_round(shape, dimension, error);
+    case BRUNT_TUBE: return check_round(shape, dimension, error);
     case BRUNT_HALF_SPACE: return refuse(error, "a half-space");
     case BRUNT_UNION: return refuse(error, "a union");
     case BRUNT_DIFFERENCE: return refuse(error, "a difference");
@@ -172,7 +172,7 @@ static int make_grid(const brunt_shape *shape, int dimension, double size, bool 
                            {shape->max[0], shape->max[1]},
                            {shape->min[0], shape->max[1]}};
     int edge[4] = {0, 1, 2, 3}, made = 0, status;
-    bool is_round = shape->kind == BRUNT_CYLINDER || shape->kind == BRUNT_RING;
+    bool is_round = shape->kind == BRUNT_CYLINDER || shape->kind == BRUNT_TUBE;
     double from = is_round ? 0 : shape->min[2], to = is_round ? shape->length : shape->max[2];
     int32_t layers = cells(to - from, size, 1);
     if (dimension == 3 && shape->kind != BRUNT_SPHERE) grid->layers = layers;
@@ -186,7 +186,7 @@ static int make_grid(const brunt_shape *shape, int dimension, double size, bool 
         names[0] = "side";
         name_groups(names, 3, "start", "end");
         break;
-    case BRUNT_RING:
+    case BRUNT_TUBE:
         made = grid_of_annulus(shape->inner_radius, shape->radius, size, grid);
         names[0] = "inner", names[1] = "outer";
         name_groups(names, dimension, "start", "end");

@@ -20,7 +20,7 @@
 // 0.35: 0.23; odd cores, which cannot be cut symmetrically: 0.16 to 0.24). Half as many shells as core cells give the
 // ball of n core cells a side 4 n^3 cells, the disk 3 n^2: edges of R/n in the mean, 0.62 R/n in the core to 1.57 R/n
 // around.
-static const double core_reach = 0.541, core_bulge = 0.45;
+static const double core_extent = 0.541, core_bulge = 0.45;
 
 static const double pi = 3.14159265358979323846;
 
@@ -139,7 +139,7 @@ static void ball_point(const ball *b, const double *q, double out, double *x) {
     for (int d = 0; d < dim; d++) w = fmax(w, fabs(q[d]));
     if (w > 0) project(q, dim, w, s);
     for (int d = 0; d < dim; d++) {
-        double core = core_reach * ((1 - core_bulge * w) * q[d] / sqrt(dim) + core_bulge * w * w * s[d]);
+        double core = core_extent * ((1 - core_bulge * w) * q[d] / sqrt(dim) + core_bulge * w * w * s[d]);
         x[d] = b->radius * (out == 1 ? s[d] : (1 - out) * core + out * s[d]);
     }
 }

@@ -110,7 +110,7 @@ double brunt_shape_distance(const brunt_shape *shape, int dimension, const doubl
     case BRUNT_BOX: return box_distance(shape, dimension, point);
     case BRUNT_SPHERE: return center_distance(shape, dimension, point) - shape->radius;
     case BRUNT_CYLINDER: return cylinder_distance(shape, dimension, point, 0);
-    case BRUNT_RING:
+    case BRUNT_TUBE:
         if (dimension == 2) return span_gap(center_distance(shape, 2, point), shape->inner_radius, shape->radius);
         return cylinder_distance(shape, dimension, point, shape->inner_radius);
     case BRUNT_PRISM: {
@@ -161,14 +161,14 @@ static double disk_extent(const double *axis, int dimension, int i) {
 // Bounds that may be infinite, or empty (min > max).
 static void bounds_of(const brunt_shape *shape, int dimension, double *min, double *max) {
     for (int i = 0; i < dimension; i++) min[i] = -INFINITY, max[i] = INFINITY;
-    bool round = shape->kind == BRUNT_SPHERE || (shape->kind == BRUNT_RING && dimension == 2);
+    bool round = shape->kind == BRUNT_SPHERE || (shape->kind == BRUNT_TUBE && dimension == 2);
     switch (shape->kind) {
     case BRUNT_BOX:
         for (int i = 0; i < dimension; i++) min[i] = shape->min[i], max[i] = shape->max[i];
         break;
     case BRUNT_SPHERE:
     case BRUNT_CYLINDER:
-    case BRUNT_RING:
+    case BRUNT_TUBE:
         for (int i = 0; i < dimension; i++) {
             double half = round ? shape->radius : shape->radius * disk_extent(shape->axis, dimension, i);
             double end = round ? 0 : shape->length * shape->axis[i] / norm(shape->axis, dimension);

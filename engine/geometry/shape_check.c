@@ -22,7 +22,7 @@ int brunt_check_shape(const char *owner, const brunt_shape *shape, int dim, int 
     }
     const bool box = shape->kind == BRUNT_BOX, prism = shape->kind == BRUNT_PRISM,
                plane = shape->kind == BRUNT_HALF_SPACE, ball = shape->kind == BRUNT_SPHERE,
-               ring = shape->kind == BRUNT_RING, axial = plane || shape->kind == BRUNT_CYLINDER || (ring && dim == 3);
+               tube = shape->kind == BRUNT_TUBE, axial = plane || shape->kind == BRUNT_CYLINDER || (tube && dim == 3);
     const int centred = box || prism ? 0 : dim, whole = box ? dim : 0, high = prism && dim == 3;
     BRUNT_CHECK_NUMBERS(owner, {".shape: min", shape->min, whole, BRUNT_ANY_NUMBER},
                         {".shape: max", shape->max, whole, BRUNT_ANY_NUMBER},
@@ -31,7 +31,7 @@ int brunt_check_shape(const char *owner, const brunt_shape *shape, int dim, int 
                         {".shape: center", shape->center, centred, BRUNT_ANY_NUMBER},
                         {".shape: axis", shape->axis, axial ? dim : 0, BRUNT_ANY_NUMBER},
                         {".shape: radius", &shape->radius, centred && !plane, BRUNT_POSITIVE},
-                        {".shape: inner_radius", &shape->inner_radius, ring, BRUNT_POSITIVE},
+                        {".shape: inner_radius", &shape->inner_radius, tube, BRUNT_POSITIVE},
                         {".shape: length", &shape->length, axial && !plane && !ball, BRUNT_POSITIVE});
     bool direction = !axial;
     for (int a = 0; a < dim; a++) direction = direction || shape->axis[a] != 0;
@@ -44,7 +44,7 @@ int brunt_check_shape(const char *owner, const brunt_shape *shape, int dim, int 
     return BRUNT_OK;
 }
 
-int brunt_check_place(const char *owner, const brunt_placement *place, brunt_error *error) {
+int brunt_check_placement(const char *owner, const brunt_placement *place, brunt_error *error) {
     const double *R = place->rotation;
     BRUNT_CHECK_NUMBERS(owner, {".place", R, 9, BRUNT_ANY_NUMBER}, {".place", place->translation, 3, BRUNT_ANY_NUMBER});
     double off = 0;

@@ -6,4 +6,4 @@
 
 // `depth`: of shapes of shapes that it is part of, 0 at first.
 int brunt_check_shape(const char *owner, const brunt_shape *shape, int dim, int depth, brunt_error *error);
-int brunt_check_place(const char *owner, const brunt_placement *place, brunt_error *error);
+int brunt_check_placement(const char *owner, const brunt_placement *place, brunt_error *error);

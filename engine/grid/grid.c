@@ -21,7 +21,7 @@ void brunt_grid_init(brunt_grid *grid, int dim, int order, double h, const doubl
 void brunt_grid_free(brunt_grid *grid) {
     void *owned[] = {
         grid->blocks,         grid->block_key,        grid->bin_start, grid->slots,           grid->slot_key,
-        grid->nodes,          grid->scatter,          grid->spare_key, grid->block_table.key, grid->block_table.value,
+        grid->nodes,          grid->p2g_buffer,       grid->spare_key, grid->block_table.key, grid->block_table.value,
         grid->slot_table.key, grid->slot_table.value, grid->held};
     for (size_t k = 0; k < sizeof owned / sizeof owned[0]; k++) brunt_free(owned[k]);
     *grid = (brunt_grid){0};
@@ -29,7 +29,7 @@ void brunt_grid_free(brunt_grid *grid) {
 
 size_t brunt_grid_bytes(const brunt_grid *grid) {
     return grid->blocks_capacity + grid->block_key_capacity + grid->bin_start_capacity + grid->slots_capacity +
-           grid->slot_key_capacity + grid->nodes_capacity + grid->scatter_capacity + grid->spare_key_capacity +
+           grid->slot_key_capacity + grid->nodes_capacity + grid->p2g_buffer_capacity + grid->spare_key_capacity +
            grid->held_capacity + 12 * (size_t)(grid->block_table.capacity + grid->slot_table.capacity);
 }
 
@@ -109,13 +109,13 @@ static uint64_t corner_shift(const brunt_grid *grid, int corner) {
 
 int brunt_grid_set_blocks(brunt_grid *grid, const uint64_t *keys, int32_t count, brunt_error *error) {
     size_t n = (size_t)count, most = n * (size_t)grid->corners;
-    if (BRUNT_ROOM(grid->block_key, n, 0, "blocks of the grid", error) ||
-        BRUNT_ROOM(grid->blocks, n, 0, "blocks of the grid", error) ||
-        BRUNT_ROOM(grid->bin_start, n * BRUNT_BIN_STARTS, 0, "bins of blocks of the grid", error) ||
-        BRUNT_ROOM(grid->scatter, n * (size_t)grid->span_nodes * BRUNT_NODE_REALS, 0,
-                   "numbers of nodes of blocks of the grid", error) ||
-        BRUNT_ROOM(grid->slot_key, most + 1, 0, "blocks of grid nodes", error) ||
-        BRUNT_ROOM(grid->spare_key, most + 1, 0, "blocks of grid nodes", error))
+    if (BRUNT_CAPACITY(grid->block_key, n, 0, "blocks of the grid", error) ||
+        BRUNT_CAPACITY(grid->blocks, n, 0, "blocks of the grid", error) ||
+        BRUNT_CAPACITY(grid->bin_start, n * BRUNT_BIN_STARTS, 0, "bins of blocks of the grid", error) ||
+        BRUNT_CAPACITY(grid->p2g_buffer, n * (size_t)grid->span_nodes * BRUNT_NODE_REALS, 0,
+                       "numbers of nodes of blocks of the grid", error) ||
+        BRUNT_CAPACITY(grid->slot_key, most + 1, 0, "blocks of grid nodes", error) ||
+        BRUNT_CAPACITY(grid->spare_key, most + 1, 0, "blocks of grid nodes", error))
         return BRUNT_FAILED;
     memmove(grid->block_key, keys, n * sizeof *keys);
     grid->block_count = count;
@@ -132,9 +132,9 @@ int brunt_grid_set_blocks(brunt_grid *grid, const uint64_t *keys, int32_t count,
     }
     if (from != grid->slot_key) memcpy(grid->slot_key, from, (size_t)slots * sizeof *from);
     grid->slot_count = slots;
-    if (BRUNT_ROOM(grid->slots, (size_t)slots, 0, "blocks of grid nodes", error) ||
-        BRUNT_ROOM(grid->nodes, (size_t)slots * BRUNT_BLOCK_NODES * BRUNT_NODE_REALS, 0, "numbers of grid nodes",
-                   error) ||
+    if (BRUNT_CAPACITY(grid->slots, (size_t)slots, 0, "blocks of grid nodes", error) ||
+        BRUNT_CAPACITY(grid->nodes, (size_t)slots * BRUNT_BLOCK_NODES * BRUNT_NODE_REALS, 0, "numbers of grid nodes",
+                       error) ||
         table_build(&grid->slot_table, grid->slot_key, slots, error))
         return BRUNT_FAILED;
 

@@ -72,8 +72,8 @@ typedef struct brunt_grid {
     size_t slot_key_capacity;
     real *nodes;
     size_t nodes_capacity; // slot_count x 64 x 8
-    real *scatter;
-    size_t scatter_capacity; // block_count x span_nodes x 8: what each block's particles give
+    real *p2g_buffer;
+    size_t p2g_buffer_capacity; // block_count x span_nodes x 8: what each block's particles give
     uint8_t *held;
     size_t held_capacity; // slot_count x 64, a bit for each component that a condition gives; NULL where none acts
     uint64_t *spare_key;

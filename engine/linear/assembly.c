@@ -41,7 +41,7 @@ static int64_t colour_round(brunt_colours *c, const brunt_stencils *list, int32_
 }
 
 static int sort_by_colour(brunt_colours *c, brunt_error *error) {
-    if (BRUNT_ROOM(c->first, (size_t)c->colours + 2, 0, "colours of stencils", error)) return BRUNT_FAILED;
+    if (BRUNT_CAPACITY(c->first, (size_t)c->colours + 2, 0, "colours of stencils", error)) return BRUNT_FAILED;
     int64_t *next = c->first + 1;
     memset(c->first, 0, ((size_t)c->colours + 2) * sizeof *c->first);
     for (int64_t g = 0; g < bundles(c); g++) next[c->order[g] + 1]++;
@@ -53,9 +53,9 @@ static int sort_by_colour(brunt_colours *c, brunt_error *error) {
 int brunt_colours_make(brunt_colours *c, const brunt_team *team, int dim, int32_t nodes, const brunt_stencils *list,
                        brunt_error *error) {
     int64_t largest = 0;
-    if (BRUNT_ROOM(c->used, (size_t)nodes, 0, "nodes of stencils", error) ||
-        BRUNT_ROOM(c->order, (size_t)list->count, 0, "stencils to assemble", error) ||
-        BRUNT_ROOM(c->stencil, (size_t)list->count, 0, "stencils to assemble", error))
+    if (BRUNT_CAPACITY(c->used, (size_t)nodes, 0, "nodes of stencils", error) ||
+        BRUNT_CAPACITY(c->order, (size_t)list->count, 0, "stencils to assemble", error) ||
+        BRUNT_CAPACITY(c->stencil, (size_t)list->count, 0, "stencils to assemble", error))
         return BRUNT_FAILED;
     for (int64_t s = 0; s < list->count; s++) {
         const int64_t size = list->first[s + 1] - list->first[s];
@@ -63,10 +63,11 @@ int brunt_colours_make(brunt_colours *c, const brunt_team *team, int dim, int32_
         c->order[s] = -1;
     }
     c->count = list->count, c->bundle = list->count < MANY ? 1 : BUNDLE, c->colours = 0, c->threads = team->threads,
-    c->room = largest * largest * dim * dim;
+    c->dense_size = largest * largest * dim * dim;
     for (int64_t base = 0, left = bundles(c); left; base += COLOURS_A_ROUND) left = colour_round(c, list, nodes, base);
     if (sort_by_colour(c, error)) return BRUNT_FAILED;
-    return BRUNT_ROOM(c->dense, (size_t)(c->room * c->threads), 0, "values of dense matrices of stencils", error);
+    return BRUNT_CAPACITY(c->dense, (size_t)(c->dense_size * c->threads), 0, "values of dense matrices of stencils",
+                          error);
 }
 
 void brunt_colours_free(brunt_colours *c) {
@@ -106,7 +107,7 @@ static void add_bundles(void *context, int64_t begin, int64_t end, int worker) {
     const brunt_colours *c = w->colours;
     for (int64_t i = begin; i < end; i++)
         for (int64_t s = w->stencil[i]; s < bundle_end(c, w->stencil[i] / c->bundle); s++)
-            add_stencil(w, s, c->dense + worker * c->room, worker);
+            add_stencil(w, s, c->dense + worker * c->dense_size, worker);
 }
 
 static void assemble(colour_work work, const brunt_team *team) {

@@ -11,8 +11,8 @@ typedef struct brunt_colours {
     int64_t *first;   // colours + 1
     uint64_t *used;   // of each node: colours that it has met
     int64_t *order;   // colour of each bundle
-    double *dense;    // `room` for each thread
-    int64_t count, room;
+    double *dense;    // `dense_size` for each thread
+    int64_t count, dense_size;
     int64_t bundle; // stencils that follow one another in the list, but for the last bundle: 1 of short lists
     int32_t colours, threads;
     size_t stencil_capacity, first_capacity, used_capacity, order_capacity, dense_capacity;

@@ -11,7 +11,7 @@
 // Steps so long that inertia, which alone holds what is free, is nothing beside what deforms, (c dt / cells across)^2:
 // conjugate gradients end before they have seen such motions, and Newton's method makes up for it.
 #define SOFT 100.0
-#define TINY 1e-4 // [s] that nobody notices: waves cross the whole body, and a factor has its motions exactly
+#define TINY 1e-4 // [s] that is not noticed: waves cross the whole body, and a factor has its motions exactly
 
 // Blocks a node of grids of quadratic splines, over those of linear elements.
 static bool of_splines(const brunt_linear_size *s) { return s->blocks > (s->dim == 2 ? 14 : 50); }

@@ -19,9 +19,9 @@ enum { JOB_BEGIN = -1, JOB_END = -2, JOB_ANALYSE = 1, JOB_FACTOR = 2, JOB_SOLVE 
 enum { COMM_WORLD = -987654, UNSYMMETRIC = 0, SYMMETRIC_DEFINITE = 1 };
 // INFOG(1)
 enum { NO_INTEGERS = -8, NO_REALS = -9, SINGULAR = -10, NO_MEMORY = -13, OVER_LIMIT = -19, SINGULAR_PATTERN = -6 };
-enum { RELAXED = 30, RELAXED_MOST = 1000 }; // ICNTL(14) [%]: room beyond what the analysis asks for
-enum { ROWS_AND_COLUMNS = 7 };              // ICNTL(8): each is scaled to a greatest entry of about 1
-#define NO_DIGITS 1e-13                     // of a scaled pivot: what is left of the 1 that it was is rounding
+enum { RELAXED = 30, RELAXED_LIMIT = 1000 }; // ICNTL(14) [%]: room beyond what the analysis asks for
+enum { ROWS_AND_COLUMNS = 7 };               // ICNTL(8): each is scaled to a greatest entry of about 1
+#define NO_DIGITS 1e-13                      // of a scaled pivot: what is left of the 1 that it was is rounding
 
 typedef struct direct {
     DMUMPS_STRUC_C id;
@@ -171,11 +171,11 @@ static brunt_linear_status direct_analyse(brunt_linear *s, const brunt_team *tea
         return BRUNT_LINEAR_FAILED;
     }
     static const char values[] = "entries of a matrix to factor";
-    if (BRUNT_ROOM(d->row, (size_t)entries, 0, values, error) ||
-        BRUNT_ROOM(d->column, (size_t)entries, 0, values, error) ||
-        BRUNT_ROOM(d->value, (size_t)entries, 0, values, error) ||
-        BRUNT_ROOM(d->order, (size_t)unknowns, 0, "unknowns in order", error) ||
-        BRUNT_ROOM(d->position, (size_t)a->nodes, 0, "nodes in order", error))
+    if (BRUNT_CAPACITY(d->row, (size_t)entries, 0, values, error) ||
+        BRUNT_CAPACITY(d->column, (size_t)entries, 0, values, error) ||
+        BRUNT_CAPACITY(d->value, (size_t)entries, 0, values, error) ||
+        BRUNT_CAPACITY(d->order, (size_t)unknowns, 0, "unknowns in order", error) ||
+        BRUNT_CAPACITY(d->position, (size_t)a->nodes, 0, "nodes in order", error))
         return BRUNT_LINEAR_FAILED;
     if (brunt_elimination_order(a, d->position, error)) return BRUNT_LINEAR_FAILED;
     for (int32_t n = 0; n < a->nodes; n++)
@@ -193,7 +193,7 @@ static brunt_linear_status factorise(brunt_linear *s, const brunt_block_matrix *
     d->a = a;
     take_entries(d, a, false);
     call(d, JOB_FACTOR);
-    while ((INFOG(d, 1) == NO_REALS || INFOG(d, 1) == NO_INTEGERS) && ICNTL(d, 14) < RELAXED_MOST) {
+    while ((INFOG(d, 1) == NO_REALS || INFOG(d, 1) == NO_INTEGERS) && ICNTL(d, 14) < RELAXED_LIMIT) {
         ICNTL(d, 14) *= 2; // its estimate was short
         call(d, JOB_FACTOR);
     }

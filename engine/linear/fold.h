@@ -1,6 +1,7 @@
-// Nodes that follow others: the image of a node by a mirror goes where the node goes, turned. Terms are functions of
-// all nodes and know nothing of it; what is minimised is their sum at u = P u_free, with gradient P^T g and Hessian
-// P^T H P. Followers stay among the unknowns; what is solved has rows and columns of the unit matrix for them.
+// Nodes that follow others: the image of a node by a symmetry plane goes where the node goes, turned. Terms are
+// functions of all nodes and know nothing of it; what is minimised is their sum at u = P u_free, with gradient P^T g
+// and Hessian P^T H P. Followers stay among the unknowns; what is solved has rows and columns of the unit matrix for
+// them.
 #pragma once
 
 #include "linear/block_matrix.h"

@@ -23,25 +23,25 @@ void brunt_incomplete_free(brunt_incomplete *f) {
 
 // ------------------------------------------------------------------------------------------ the pattern
 
-static int make_room(brunt_incomplete *f, const brunt_team *team, brunt_error *error) {
+static int reserve_arrays(brunt_incomplete *f, const brunt_team *team, brunt_error *error) {
     const size_t nodes = (size_t)f->a->nodes, dim = (size_t)f->a->dim, size = dim * dim,
                  half = ((size_t)brunt_block_matrix_blocks(f->a) - nodes) / 2;
-    return BRUNT_ROOM(f->order, nodes, 0, "rows of an incomplete factor", error) ||
-           BRUNT_ROOM(f->place, nodes, 0, "rows of an incomplete factor", error) ||
-           BRUNT_ROOM(f->turn, nodes, 0, "rows of an incomplete factor", error) ||
-           BRUNT_ROOM(f->upper, nodes + 1, 0, "rows of an incomplete factor", error) ||
-           BRUNT_ROOM(f->lower, nodes + 2, 0, "rows of an incomplete factor", error) ||
-           BRUNT_ROOM(f->after, half + 1, 0, "blocks of an incomplete factor", error) ||
-           BRUNT_ROOM(f->before, half + 1, 0, "blocks of an incomplete factor", error) ||
-           BRUNT_ROOM(f->source, half + 1, 0, "blocks of an incomplete factor", error) ||
-           BRUNT_ROOM(f->twin, half + 1, 0, "blocks of an incomplete factor", error) ||
-           BRUNT_ROOM(f->v, half * size + 1, 0, "values of an incomplete factor", error) ||
-           BRUNT_ROOM(f->d, nodes * size, 0, "values of an incomplete factor", error) ||
-           BRUNT_ROOM(f->size, nodes, 0, "rows of an incomplete factor", error) ||
-           BRUNT_ROOM(f->right, half * size + BEYOND, 0, "values of an incomplete factor", error) ||
-           BRUNT_ROOM(f->left, half * size + BEYOND, 0, "values of an incomplete factor", error) ||
-           BRUNT_ROOM(f->work, nodes * dim, 0, "values of an incomplete factor", error) ||
-           BRUNT_ROOM(f->slot, nodes * (size_t)team->threads, 0, "rows of an incomplete factor", error);
+    return BRUNT_CAPACITY(f->order, nodes, 0, "rows of an incomplete factor", error) ||
+           BRUNT_CAPACITY(f->place, nodes, 0, "rows of an incomplete factor", error) ||
+           BRUNT_CAPACITY(f->turn, nodes, 0, "rows of an incomplete factor", error) ||
+           BRUNT_CAPACITY(f->upper, nodes + 1, 0, "rows of an incomplete factor", error) ||
+           BRUNT_CAPACITY(f->lower, nodes + 2, 0, "rows of an incomplete factor", error) ||
+           BRUNT_CAPACITY(f->after, half + 1, 0, "blocks of an incomplete factor", error) ||
+           BRUNT_CAPACITY(f->before, half + 1, 0, "blocks of an incomplete factor", error) ||
+           BRUNT_CAPACITY(f->source, half + 1, 0, "blocks of an incomplete factor", error) ||
+           BRUNT_CAPACITY(f->twin, half + 1, 0, "blocks of an incomplete factor", error) ||
+           BRUNT_CAPACITY(f->v, half * size + 1, 0, "values of an incomplete factor", error) ||
+           BRUNT_CAPACITY(f->d, nodes * size, 0, "values of an incomplete factor", error) ||
+           BRUNT_CAPACITY(f->size, nodes, 0, "rows of an incomplete factor", error) ||
+           BRUNT_CAPACITY(f->right, half * size + BEYOND, 0, "values of an incomplete factor", error) ||
+           BRUNT_CAPACITY(f->left, half * size + BEYOND, 0, "values of an incomplete factor", error) ||
+           BRUNT_CAPACITY(f->work, nodes * dim, 0, "values of an incomplete factor", error) ||
+           BRUNT_CAPACITY(f->slot, nodes * (size_t)team->threads, 0, "rows of an incomplete factor", error);
 }
 
 // Columns right of the diagonal: by level, and those of a piece in ascending places.
@@ -78,11 +78,11 @@ static void take_columns(brunt_incomplete *f) {
 int brunt_incomplete_analyse(brunt_incomplete *f, const brunt_team *team, const brunt_block_matrix *a, bool whole,
                              int slabs, brunt_error *error) {
     f->a = a;
-    if (BRUNT_ROOM(f->inverse, (size_t)a->nodes * (size_t)(a->dim * a->dim), 0, "values of the diagonal of a matrix",
-                   error))
+    if (BRUNT_CAPACITY(f->inverse, (size_t)a->nodes * (size_t)(a->dim * a->dim), 0,
+                       "values of the diagonal of a matrix", error))
         return BRUNT_FAILED;
     if (!whole) return BRUNT_OK;
-    if (make_room(f, team, error)) return BRUNT_FAILED;
+    if (reserve_arrays(f, team, error)) return BRUNT_FAILED;
     brunt_incomplete_order(f, slabs);
     take_rows(f);
     take_columns(f);

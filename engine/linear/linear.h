@@ -1,7 +1,7 @@
 // Solvers of A x = b for block matrices, symmetric positive definite but for the last one's: a table of operations, a
 // row for each.
 //
-//   direct  Cholesky's factors by MUMPS in the order of METIS; bears any stiffness of contact, tells for certain
+//   direct  Cholesky's factors by MUMPS in the order of METIS; carries any stiffness of contact, tells for certain
 //   whether
 //           the matrix is positive definite
 //   pcg     conjugate gradients with an incomplete block Cholesky or the diagonal blocks; little memory, less time

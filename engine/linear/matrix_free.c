@@ -14,7 +14,7 @@ int brunt_matrix_free_take(brunt_matrix_free *f, const brunt_team *team, const d
     const int size = f->rest->dim * f->rest->dim;
     const brunt_pattern alone = {.dim = f->rest->dim, .nodes = f->rest->nodes, .keep = true};
     if (brunt_block_matrix_pattern(blocks, team, &alone, error)) return BRUNT_FAILED;
-    if (BRUNT_ROOM(f->x, (size_t)unknowns(f), 0, "unknowns of products", error)) return BRUNT_FAILED;
+    if (BRUNT_CAPACITY(f->x, (size_t)unknowns(f), 0, "unknowns of products", error)) return BRUNT_FAILED;
     f->raise = 0;
     for (int32_t n = 0; n < f->rest->nodes; n++)
         memcpy(blocks->value + (int64_t)n * size, f->rest->value + f->rest->diagonal[n] * size,

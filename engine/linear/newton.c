@@ -14,7 +14,7 @@ enum { HALVINGS = 60, FEW_HALVINGS = 12, MEMORY = 3 };
 #define LEAST_DECREASE 1e-4 // of the gradient, of what the step promises
 #define LEAST_SHIFT 1e-13
 #define MORE_SHIFT 100.0
-#define MOST_SHIFT 1e-2
+#define SHIFT_LIMIT 1e-2
 #define SPARE 1e-14 // of the diagonal, that a matrix may miss by rounding to be positive definite
 #define EARLY 0.1   // of the tolerance, that the next step would be; of the last step, that this one is
 
@@ -298,7 +298,7 @@ static int find_step(newton_run *r) {
         const brunt_linear_status status = try_matrix(r);
         if (status == BRUNT_LINEAR_DONE) return BRUNT_OK;
         if (status != BRUNT_LINEAR_INDEFINITE) return broken(r, BRUNT_NEWTON_BROKEN);
-        if (MORE_SHIFT * shift > MOST_SHIFT) return broken(r, BRUNT_NEWTON_INDEFINITE);
+        if (MORE_SHIFT * shift > SHIFT_LIMIT) return broken(r, BRUNT_NEWTON_INDEFINITE);
     }
 }
 
@@ -465,9 +465,9 @@ static int begin(newton_run *r) {
     // A factor of the diagonal blocks alone would pass for the system's.
     BRUNT_ASSERT(!r->options->matrix_free || (r->options->solver == &brunt_linear_pcg && !r->options->fallback));
     static const char what[] = "unknowns of Newton's method";
-    if (BRUNT_ROOM(n->gradient, count, 0, what, r->error) || BRUNT_ROOM(n->step, count, 0, what, r->error) ||
-        BRUNT_ROOM(n->trial, count, 0, what, r->error) ||
-        BRUNT_ROOM(n->stencils, (size_t)r->problem->count, 0, "terms of Newton's method", r->error))
+    if (BRUNT_CAPACITY(n->gradient, count, 0, what, r->error) || BRUNT_CAPACITY(n->step, count, 0, what, r->error) ||
+        BRUNT_CAPACITY(n->trial, count, 0, what, r->error) ||
+        BRUNT_CAPACITY(n->stencils, (size_t)r->problem->count, 0, "terms of Newton's method", r->error))
         return broken(r, BRUNT_NEWTON_BROKEN);
     phase(r, BRUNT_NEWTON_EVALUATE);
     if (open_solver(r, r->options->solver) || look(r, NULL)) return BRUNT_FAILED;

@@ -41,9 +41,9 @@ typedef struct brunt_newton_options {
     // leaders: where it is given it says what has converged, in place of the steps. NULL: steps do.
     double (*unbalance)(void *context, const double *gradient);
     // What forces at u are off by, of what they may be, asked where corrections have become small, after `look`: above
-    // 1 the method goes on. NULL: nobody minds.
+    // 1 the method goes on. NULL: it is not asked.
     double (*balance)(void *context, const brunt_team *team, const double *u);
-    void (*phase)(void *context, brunt_newton_phase phase); // NULL: nobody wants to know
+    void (*phase)(void *context, brunt_newton_phase phase); // NULL: it is not told
     void *context;
 } brunt_newton_options;
 

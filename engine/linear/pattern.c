@@ -50,8 +50,8 @@ static int list_holders(struct brunt_pattern_scratch *s, const brunt_pattern *p,
     for (int l = 0; l < p->lists; l++)
         if (p->stencils[l].count && !s->known[l])
             entries += p->stencils[l].first[p->stencils[l].count] - p->stencils[l].first[0];
-    if (BRUNT_ROOM(s->first, (size_t)p->nodes + 2, 0, "nodes of a matrix", error) ||
-        BRUNT_ROOM(s->stencil, (size_t)entries * (p->fold ? 2 : 1), 0, "stencils of nodes of a matrix", error))
+    if (BRUNT_CAPACITY(s->first, (size_t)p->nodes + 2, 0, "nodes of a matrix", error) ||
+        BRUNT_CAPACITY(s->stencil, (size_t)entries * (p->fold ? 2 : 1), 0, "stencils of nodes of a matrix", error))
         return BRUNT_FAILED;
     int64_t *next = s->first + 1; // shifted by one: filling moves each to where the next one begins
     memset(s->first, 0, ((size_t)p->nodes + 2) * sizeof *s->first);
@@ -117,9 +117,9 @@ static int64_t mark_leaders(row_maker *w, int32_t row, const brunt_fold *fold, i
 }
 
 // Room for `more` columns of the row under way, which has `count`, and as much again to sort them in.
-static int row_room(row_maker *w, int64_t count, int64_t more) {
-    return BRUNT_ROOM(w->column, (size_t)(w->made + 2 * (count + more)), (size_t)(w->made + count),
-                      "columns of rows of a matrix", &w->error);
+static int reserve_row(row_maker *w, int64_t count, int64_t more) {
+    return BRUNT_CAPACITY(w->column, (size_t)(w->made + 2 * (count + more)), (size_t)(w->made + count),
+                          "columns of rows of a matrix", &w->error);
 }
 
 // The columns of a row, and how many. BRUNT_NONE: out of memory.
@@ -127,7 +127,7 @@ static int64_t make_row(const pattern_work *work, row_maker *w, int32_t row) {
     const struct brunt_pattern_scratch *s = work->s;
     const brunt_block_matrix *m = work->m;
     const int64_t kept = work->keep ? m->first[row + 1] - m->first[row] : 0;
-    if (row_room(w, 0, kept + 1)) return BRUNT_NONE;
+    if (reserve_row(w, 0, kept + 1)) return BRUNT_NONE;
     if (kept && s->first[row] == s->first[row + 1]) {
         memcpy(w->column + w->made, m->column + m->first[row], (size_t)kept * sizeof(int32_t));
         return kept;
@@ -137,11 +137,11 @@ static int64_t make_row(const pattern_work *work, row_maker *w, int32_t row) {
     for (int64_t k = s->first[row]; k < s->first[row + 1]; k++) {
         const brunt_stencils *list = work->pattern->stencils + (s->stencil[k] >> LIST_SHIFT);
         const int64_t i = s->stencil[k] & (((int64_t)1 << LIST_SHIFT) - 1), size = list->first[i + 1] - list->first[i];
-        if (row_room(w, count, size)) return BRUNT_NONE;
+        if (reserve_row(w, count, size)) return BRUNT_NONE;
         count = mark_columns(w, row, list->node + list->first[i], size, count);
     }
     if (work->pattern->fold) {
-        if (row_room(w, count, count)) return BRUNT_NONE;
+        if (reserve_row(w, count, count)) return BRUNT_NONE;
         count = mark_leaders(w, row, work->pattern->fold, count);
     }
     sort_columns(w->column + w->made, count, w->column + w->made + count);
@@ -221,7 +221,8 @@ static bool complete(const brunt_block_matrix *m, const brunt_pattern *p, bool k
 
 static int make_marks(const brunt_block_matrix *m, const brunt_team *team, int32_t nodes, brunt_error *error) {
     for (int t = 0; t < team->threads; t++)
-        if (BRUNT_ROOM(m->scratch->maker[t].mark, (size_t)nodes, 0, "nodes of a matrix", error)) return BRUNT_FAILED;
+        if (BRUNT_CAPACITY(m->scratch->maker[t].mark, (size_t)nodes, 0, "nodes of a matrix", error))
+            return BRUNT_FAILED;
     return BRUNT_OK;
 }
 
@@ -229,7 +230,7 @@ static int make_marks(const brunt_block_matrix *m, const brunt_team *team, int32
 static int new_rows(pattern_work *work, const brunt_team *team, brunt_error *error) {
     struct brunt_pattern_scratch *s = work->s;
     const int32_t nodes = work->pattern->nodes;
-    if (list_holders(s, work->pattern, error) || BRUNT_ROOM(s->row, (size_t)nodes, 0, "rows of a matrix", error))
+    if (list_holders(s, work->pattern, error) || BRUNT_CAPACITY(s->row, (size_t)nodes, 0, "rows of a matrix", error))
         return BRUNT_FAILED;
     for (int t = 0; t < team->threads; t++) {
         row_maker *w = s->maker + t;
@@ -239,10 +240,10 @@ static int new_rows(pattern_work *work, const brunt_team *team, brunt_error *err
     brunt_parallel(team->threads, nodes, ROW_GRAIN, make_rows, work, team->timer);
     for (int t = 0; t < team->threads; t++)
         if (brunt_hand_on(error, &s->maker[t].error)) return BRUNT_FAILED;
-    if (BRUNT_ROOM(s->new_first, (size_t)nodes + 1, 0, "rows of a matrix", error)) return BRUNT_FAILED;
+    if (BRUNT_CAPACITY(s->new_first, (size_t)nodes + 1, 0, "rows of a matrix", error)) return BRUNT_FAILED;
     s->new_first[0] = 0;
     for (int32_t r = 0; r < nodes; r++) s->new_first[r + 1] = s->new_first[r] + s->row[r].count;
-    if (BRUNT_ROOM(s->new_column, (size_t)s->new_first[nodes], 0, "blocks of a matrix", error)) return BRUNT_FAILED;
+    if (BRUNT_CAPACITY(s->new_column, (size_t)s->new_first[nodes], 0, "blocks of a matrix", error)) return BRUNT_FAILED;
     brunt_parallel(team->threads, nodes, ROW_GRAIN, place_rows, work, team->timer);
     return BRUNT_OK;
 }
@@ -258,8 +259,8 @@ static bool same_pattern(const brunt_block_matrix *m, const brunt_pattern *p) {
 static int take_rows(brunt_block_matrix *m, const brunt_team *team, const brunt_pattern *p, brunt_error *error) {
     struct brunt_pattern_scratch *s = m->scratch;
     const size_t values = (size_t)s->new_first[p->nodes] * (size_t)(p->dim * p->dim);
-    if (BRUNT_ROOM(m->diagonal, (size_t)p->nodes, 0, "rows of a matrix", error) ||
-        BRUNT_ROOM(m->value, values, 0, "values of a matrix", error))
+    if (BRUNT_CAPACITY(m->diagonal, (size_t)p->nodes, 0, "rows of a matrix", error) ||
+        BRUNT_CAPACITY(m->value, values, 0, "values of a matrix", error))
         return BRUNT_FAILED;
     int64_t *first = m->first;
     int32_t *column = m->column;

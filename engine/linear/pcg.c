@@ -37,9 +37,9 @@ static brunt_linear_status pcg_analyse(brunt_linear *s, const brunt_team *team, 
     const size_t n = (size_t)a->nodes * (size_t)a->dim;
     const bool whole = s->options.preconditioner == BRUNT_INCOMPLETE_CHOLESKY && !s->options.product;
     static const char unknowns[] = "unknowns of conjugate gradients";
-    if (BRUNT_ROOM(g->r, n, 0, unknowns, error) || BRUNT_ROOM(g->z, n, 0, unknowns, error) ||
-        BRUNT_ROOM(g->p, n, 0, unknowns, error) || BRUNT_ROOM(g->q, n, 0, unknowns, error) ||
-        BRUNT_ROOM(g->sums, (size_t)brunt_sum_pieces((int64_t)n), 0, "sums of conjugate gradients", error) ||
+    if (BRUNT_CAPACITY(g->r, n, 0, unknowns, error) || BRUNT_CAPACITY(g->z, n, 0, unknowns, error) ||
+        BRUNT_CAPACITY(g->p, n, 0, unknowns, error) || BRUNT_CAPACITY(g->q, n, 0, unknowns, error) ||
+        BRUNT_CAPACITY(g->sums, (size_t)brunt_sum_pieces((int64_t)n), 0, "sums of conjugate gradients", error) ||
         brunt_incomplete_analyse(&g->factor, team, a, whole, 0, error))
         return BRUNT_LINEAR_FAILED;
     return BRUNT_LINEAR_DONE;

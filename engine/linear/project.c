@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 
-enum { MOST_PROJECTED = 12 };
+enum { PROJECTED_LIMIT = 12 };
 
 // Sets h[p][q] to 0 by a turn of rows and columns p and q; eigenvectors in v turn along.
 static void turn(int n, double *h, double *v, int p, int q) {
@@ -28,8 +28,8 @@ static void turn(int n, double *h, double *v, int p, int q) {
 // Jacobi's method: it takes small eigenvalues beside large ones as they are.
 void brunt_project_positive(int n, double *h) {
     enum { SWEEPS = 30 };
-    double d[MOST_PROJECTED * MOST_PROJECTED], v[MOST_PROJECTED * MOST_PROJECTED] = {0}, all = 0;
-    BRUNT_ASSERT(n <= MOST_PROJECTED);
+    double d[PROJECTED_LIMIT * PROJECTED_LIMIT], v[PROJECTED_LIMIT * PROJECTED_LIMIT] = {0}, all = 0;
+    BRUNT_ASSERT(n <= PROJECTED_LIMIT);
     for (int i = 0; i < n * n; i++) d[i] = h[i], all += h[i] * h[i];
     for (int i = 0; i < n; i++) v[i * n + i] = 1;
     for (int sweep = 0; sweep < SWEEPS; sweep++) {

@@ -26,9 +26,9 @@ brunt_audit brunt_slots_audit(brunt_body *body, const int64_t *slots, int64_t co
     const int dim = p->dim;
     const brunt_grid *grid = &body->grid;
     real *const *x = brunt_field(p, BRUNT_FIELD_position), *const *v = brunt_field(p, BRUNT_FIELD_velocity);
-    real *const *C = brunt_field(p, BRUNT_FIELD_affine), *const *place = brunt_kernel_place(p);
+    real *const *C = brunt_field(p, BRUNT_FIELD_affine), *const *place = brunt_kernel_position(p);
     const real *mass = brunt_field(p, BRUNT_FIELD_mass)[0];
-    const bool affine = p->field[BRUNT_FIELD_affine].components > 0, rings = brunt_axisymmetric(p);
+    const bool affine = p->field[BRUNT_FIELD_affine].components > 0, axisymmetric = brunt_axisymmetric(p);
     long double total_mass = 0, kinetic = 0, linear[3] = {0}, angular[3] = {0}, centre[3] = {0}, scale_linear = 0,
                 scale_angular = 0;
     for (int64_t n = 0; n < count; n++) {
@@ -46,7 +46,7 @@ brunt_audit brunt_slots_audit(brunt_body *body, const int64_t *slots, int64_t co
             }
         }
         if (brunt_total_lagrangian(p)) deformed_spin(p, s, B);
-        if (rings) { // the circle's sums; only sizes are left of what cancels
+        if (axisymmetric) { // the circle's sums; only sizes are left of what cancels
             total_mass += m;
             kinetic += 0.5 * m * square;
             linear[1] += m * V[1];

@@ -52,7 +52,7 @@ int32_t brunt_keep_inverted(brunt_body *body, const brunt_block *block, real dt,
     return turned;
 }
 
-int32_t brunt_keep_inverted_rings(brunt_body *body, const brunt_block *block, real dt, real *hoop,
+int32_t brunt_keep_inverted_hoops(brunt_body *body, const brunt_block *block, real dt, real *hoop,
                                   const real *hoop_stretch) {
     brunt_particles *p = &body->particles;
     const real *volume = brunt_field(p, BRUNT_FIELD_reference_volume)[0];

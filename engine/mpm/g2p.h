@@ -168,15 +168,15 @@ BRUNT_INLINE void report_motion(brunt_body *body, int32_t b, const g2p_pass *pas
                                 transfer_kind kind) {
     const brunt_block *block = &body->grid.blocks[b];
     const real *hoop = kind.form == AXISYMMETRIC ? pass->hoop : NULL;
-    double remap_power = 0, old_power = 0;
+    double musl_power = 0, old_power = 0;
     if (kind.stage == AFTER_MUSL) { // the forces worked at the gradient of the first stage
-        old_power = -body->report[b].remap_power;
-        remap_power = brunt_stress_power(body, block, 0, work->out + kind.dim, hoop) - old_power;
+        old_power = -body->report[b].musl_power;
+        musl_power = brunt_stress_power(body, block, 0, work->out + kind.dim, hoop) - old_power;
     } else if (body->uneven) {
         old_power = brunt_stress_power(body, block, 0, work->out + kind.dim, hoop);
     }
     body->report[b] = (brunt_block_report){.kinetic = 0.5 * (double)lanes_sum(pass->kinetic),
-                                           .remap_power = remap_power,
+                                           .musl_power = musl_power,
                                            .old_power = old_power,
                                            .speed = (real)sqrt((double)lanes_max_of(pass->fastest)),
                                            .bad = -1};
@@ -188,7 +188,7 @@ BRUNT_INLINE void report_material(brunt_body *body, int32_t b, const g2p_pass *p
     const brunt_block *block = &body->grid.blocks[b];
     brunt_block_report *report = &body->report[b];
     real *rates[9];
-    if (kind.form == AXISYMMETRIC) brunt_ring_rates(work, padded_count(block), rates);
+    if (kind.form == AXISYMMETRIC) brunt_hoop_rates(work, padded_count(block), rates);
     brunt_update_points(body, block, pass->dt, work, kind.form == AXISYMMETRIC ? rates : work->out + kind.dim, report);
     if (kind.form == TOTAL) // waves run through undeformed cells, by as much faster as lengths have shrunk
         report->wave_speed *= (real)sqrt((double)lanes_max_of(pass->shortest));
@@ -215,7 +215,7 @@ BRUNT_INLINE void g2p(brunt_body *body, int32_t b, real dt, real flip, brunt_wor
     }
     report_motion(body, b, &pass, work, kind);
     if (kind.form == AXISYMMETRIC && keeps)
-        kept += brunt_keep_inverted_rings(body, block, dt, pass.hoop, work->out[BRUNT_OUT_STRETCH]);
+        kept += brunt_keep_inverted_hoops(body, block, dt, pass.hoop, work->out[BRUNT_OUT_STRETCH]);
     report_material(body, b, &pass, work, kind);
     body->report[b].turned = kept;
 }
@@ -238,6 +238,6 @@ BRUNT_INLINE void musl_velocity(brunt_body *body, int32_t b, real flip, brunt_wo
     if (kind.form == AXISYMMETRIC)
         for (int64_t i = 0; i < padded; i += BRUNT_LANES)
             lanes_store(pass.hoop + i, lanes_load(pass.out[0] + i) / lanes_load(pass.x[0] + block->first + i));
-    body->report[b].remap_power =
+    body->report[b].musl_power =
         -brunt_stress_power(body, block, 0, work->out + kind.dim, kind.form == AXISYMMETRIC ? pass.hoop : NULL);
 }

@@ -210,7 +210,7 @@ BRUNT_INLINE void fields(brunt_body *body, const brunt_block *block, const int32
     light_node light[MAX_WINDOW];
     int lights = load_window(body, block, work->window, light, reals_of(kind), kind.dim, kind.order);
     const brunt_grid *grid = &body->grid;
-    fields_block of = {block, brunt_kernel_place(&body->particles), work->out, {0}, grid->inv_h};
+    fields_block of = {block, brunt_kernel_position(&body->particles), work->out, {0}, grid->inv_h};
     for (int a = 0; a < kind.dim; a++)
         of.origin[a] = (real)(grid->origin[a] + (double)grid->h * (block->coord[a] * side));
     for (int ix = 0; ix < span; ix++) { // order + 1 planes in turn

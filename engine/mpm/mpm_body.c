@@ -7,7 +7,7 @@
 #include "mpm/sort.h"
 
 void brunt_body_free(brunt_body *body) {
-    brunt_sort_room_free(body->particles.sort_room);
+    brunt_sort_workspace_free(body->particles.sort_workspace);
     brunt_particles_free(&body->particles);
     brunt_grid_free(&body->grid);
     brunt_free(body->report);

@@ -10,7 +10,7 @@
 typedef struct brunt_block_report {
     double kinetic;      // [J]
     double stress_power; // [W] new stress times velocity gradient, over the particles
-    double remap_power;  // [W] linear kernel: old stress times what the velocities' second way to the grid does to the
+    double musl_power;   // [W] linear kernel: old stress times what the velocities' second way to the grid does to the
                          // gradient
     double old_power;    // [W] where the step changes: old stress times the grid's new velocity gradient; else 0
     real speed, wave_speed;  // [m/s] greatest

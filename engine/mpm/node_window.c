@@ -6,7 +6,7 @@ void brunt_add_light_nodes(const brunt_body *body, const brunt_block *block, con
                            const light_node *light, int lights, real *const *out, bool affine) {
     const brunt_grid *grid = &body->grid;
     const int dim = grid->dim, order = grid->order;
-    real *const *x = brunt_kernel_place(&body->particles);
+    real *const *x = brunt_kernel_position(&body->particles);
     for (const light_node *node = light; node < light + lights; node++)
         for (int k = 0; k < (dim == 3 ? (order + 1) * (order + 1) * (order + 1) : (order + 1) * (order + 1)); k++) {
             int number[3] = {0, 0, 0}, bin[3] = {0, 0, 0}; // the node's number in the bin's kernel; the bin

@@ -33,7 +33,7 @@ static real light_mass(const brunt_body *body) {
 }
 
 // Of rings a particle's mass grows with the distance from the axis; at the axis half a cell counts.
-static real ring_light_mass(const brunt_body *body, int32_t node) {
+static real axisymmetric_light_mass(const brunt_body *body, int32_t node) {
     const brunt_grid *grid = &body->grid;
     const double r = fabs(grid->origin[0] + (double)grid->h * node);
     return light_mass(body) * (real)fmax(r, 0.5 * (double)grid->h);
@@ -46,11 +46,11 @@ BRUNT_INLINE int load_window(const brunt_body *body, const brunt_block *block, r
                              int width, int dim, int order) {
     const brunt_grid *grid = &body->grid;
     const int side = dim == 3 ? 4 : 8, span = side + order;
-    const bool rings = dim == 2 && brunt_axisymmetric(&body->particles);
+    const bool axisymmetric = dim == 2 && brunt_axisymmetric(&body->particles);
     real least = light_mass(body);
     int lights = 0;
     for (int x = 0; x < span; x++) {
-        if (rings) least = ring_light_mass(body, block->coord[0] * side + x);
+        if (axisymmetric) least = axisymmetric_light_mass(body, block->coord[0] * side + x);
         for (int y = 0; y < span; y++) {
             int corner = (x >= side) * 2 + (y >= side), cx = x % side, cy = y % side;
             for (int half = 0; half < (dim == 3 ? 2 : 1); half++) {

@@ -45,7 +45,7 @@ static void p2g_arrays_of(brunt_body *body, p2g_arrays *f) {
     f->count = 0;
 #define TAKE(to, field, n)                                                                                             \
     for (int c = 0; c < (n); c++) f->all[f->count++] = (to)[c] = brunt_field(p, BRUNT_FIELD_##field)[c]
-    for (int a = 0; a < p->dim; a++) f->all[f->count++] = f->x[a] = brunt_kernel_place(p)[a];
+    for (int a = 0; a < p->dim; a++) f->all[f->count++] = f->x[a] = brunt_kernel_position(p)[a];
     if (brunt_total_lagrangian(p)) TAKE(f->F, deformation_gradient, BRUNT_MATRIX(p->dim));
     TAKE(f->v, velocity, p->dim);
     TAKE(f->C, affine, p->field[BRUNT_FIELD_affine].components);
@@ -185,7 +185,7 @@ BRUNT_INLINE void p2g(brunt_body *body, int32_t b, real dt, transfer_kind kind) 
     real corner[3] = {0};
     for (int a = 0; a < kind.dim; a++)
         corner[a] = (real)(grid->origin[a] + (double)grid->h * (block->coord[a] * (kind.dim == 3 ? 4 : 8)));
-    real *buffer = grid->scatter + (size_t)b * (size_t)grid->span_nodes * 8;
+    real *buffer = grid->p2g_buffer + (size_t)b * (size_t)grid->span_nodes * 8;
     memset(buffer, 0, (size_t)grid->span_nodes * 8 * sizeof(real));
 
     p2g_tile tile;

@@ -52,7 +52,7 @@ typedef struct brunt_particle_field {
     int state;                // index in the model's state table
 } brunt_particle_field;
 
-typedef struct brunt_sort_room brunt_sort_room;
+typedef struct brunt_sort_workspace brunt_sort_workspace;
 
 // Why a particle is to leave its body.
 typedef enum brunt_leaving {
@@ -80,7 +80,7 @@ typedef struct brunt_particles {
     uint64_t *key;  // sort: block key of each slot
     void *slab;
     size_t slab_bytes;
-    brunt_sort_room *sort_room; // see sort.c
+    brunt_sort_workspace *sort_workspace; // see sort.c
 } brunt_particles;
 
 // Lays out the fields for a body; no particles yet. `point_dim` as in brunt_particles.
@@ -98,7 +98,7 @@ static inline real **brunt_field(brunt_particles *particles, int field) {
 }
 // The place by which particles are sorted and kernels weigh them: the undeformed one of total-Lagrangian bodies, whose
 // grids live there.
-static inline real *const *brunt_kernel_place(const brunt_particles *particles) {
+static inline real *const *brunt_kernel_position(const brunt_particles *particles) {
     bool total = particles->field[BRUNT_FIELD_undeformed_position].components > 0;
     return particles->scalar + particles->field[total ? BRUNT_FIELD_undeformed_position : BRUNT_FIELD_position].first;
 }

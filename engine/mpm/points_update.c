@@ -47,7 +47,7 @@ double brunt_stress_power(brunt_body *body, const brunt_block *block, real dt, r
     return hoop ? power + hoop_power(body, block, dt, hoop) : power;
 }
 
-void brunt_ring_rates(const brunt_workspace *work, int32_t padded, real *rates[9]) {
+void brunt_hoop_rates(const brunt_workspace *work, int32_t padded, real *rates[9]) {
     real *zero = work->out[BRUNT_OUT_ZERO];
     memset(zero, 0, (size_t)padded * sizeof *zero);
     for (int c = 0; c < 9; c++) rates[c] = zero;

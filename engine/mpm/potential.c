@@ -74,24 +74,24 @@ static void list_bins(brunt_mpm_potential *p) {
     p->stencil_count = count;
 }
 
-static int make_room(brunt_mpm_potential *p, brunt_error *error) {
+static int reserve_arrays(brunt_mpm_potential *p, brunt_error *error) {
     const brunt_grid *grid = &p->body->grid;
     const int64_t blocks = grid->block_count, tangents = brunt_material_tangents(&p->body->material, grid->dim);
     const int64_t stride = (p->body->particles.slots + 7) / 8 * 8 + 8 * BRUNT_LANES;
     const int32_t *start = grid->bin_start;
     int64_t bins = 0;
     for (int64_t k = 0; k < blocks * BRUNT_BIN_STARTS; k++) bins += k % BRUNT_BIN_STARTS && start[k] > start[k - 1];
-    if (BRUNT_ROOM(p->slab, (size_t)(tangents * stride), 0, "numbers of tangents of particles", error) ||
-        BRUNT_ROOM(p->force, (size_t)(blocks * grid->span_nodes * grid->dim), 0, "forces of blocks of particles",
-                   error) ||
-        BRUNT_ROOM(p->energy, (size_t)blocks, 0, "blocks of particles", error) ||
-        BRUNT_ROOM(p->limit, (size_t)blocks, 0, "blocks of particles", error) ||
-        BRUNT_ROOM(p->result, (size_t)blocks, 0, "blocks of particles", error) ||
-        BRUNT_ROOM(p->first, (size_t)bins + 1, 0, "bins of particles", error) ||
-        BRUNT_ROOM(p->node, (size_t)(bins * kernel_nodes(grid->dim, grid->order)) + 1, 0,
-                   "grid nodes of bins of particles", error) ||
-        brunt_mpm_matrix_room(p, error) ||
-        BRUNT_ROOM_IN(p->body->report, p->body->report_capacity, (size_t)blocks, 0, "blocks of particles", error))
+    if (BRUNT_CAPACITY(p->slab, (size_t)(tangents * stride), 0, "numbers of tangents of particles", error) ||
+        BRUNT_CAPACITY(p->force, (size_t)(blocks * grid->span_nodes * grid->dim), 0, "forces of blocks of particles",
+                       error) ||
+        BRUNT_CAPACITY(p->energy, (size_t)blocks, 0, "blocks of particles", error) ||
+        BRUNT_CAPACITY(p->limit, (size_t)blocks, 0, "blocks of particles", error) ||
+        BRUNT_CAPACITY(p->result, (size_t)blocks, 0, "blocks of particles", error) ||
+        BRUNT_CAPACITY(p->first, (size_t)bins + 1, 0, "bins of particles", error) ||
+        BRUNT_CAPACITY(p->node, (size_t)(bins * kernel_nodes(grid->dim, grid->order)) + 1, 0,
+                       "grid nodes of bins of particles", error) ||
+        brunt_mpm_matrix_reserve(p, error) ||
+        BRUNT_CAPACITY_IN(p->body->report, p->body->report_capacity, (size_t)blocks, 0, "blocks of particles", error))
         return BRUNT_FAILED;
     for (int64_t k = 0; k < tangents; k++) p->tangent[k] = p->slab + k * stride;
     return BRUNT_OK;
@@ -104,7 +104,7 @@ int brunt_mpm_potential_step(brunt_mpm_potential *p, const brunt_team *team, con
     const double c0 = (double)p->body->material.wave_speed;
     p->number = number, p->dt = (real)dt, p->threads = team->threads, p->step++;
     p->moduli = (double)p->body->particles.count * (double)p->body->particle_mass * c0 * c0;
-    if (make_room(p, error)) return BRUNT_FAILED;
+    if (reserve_arrays(p, error)) return BRUNT_FAILED;
     list_bins(p);
     return BRUNT_OK;
 }
@@ -237,7 +237,7 @@ BRUNT_INLINE void evaluate(int dim, int order, const mpm_call *call, int32_t b) 
     const brunt_grid *grid = &p->body->grid;
     const brunt_block *block = &grid->blocks[b];
     const int32_t padded = (block->count + BRUNT_LANES - 1) / BRUNT_LANES * BRUNT_LANES;
-    double window[MOST_WINDOW * 3], way[MOST_WINDOW * 3];
+    double window[WINDOW_LIMIT * 3], way[WINDOW_LIMIT * 3];
     double *force = p->force + (size_t)b * (size_t)grid->span_nodes * (size_t)dim;
     fill_window(p, block, call->u, window);
     if (call->wanted == MPM_LIMIT) fill_window(p, block, call->way, way);
@@ -245,9 +245,9 @@ BRUNT_INLINE void evaluate(int dim, int order, const mpm_call *call, int32_t b) 
     p->energy[b] = (brunt_energy_sum){0};
     p->limit[b] = call->largest;
     if (call->wanted < MPM_LIMIT) {
-        for (int32_t first = 0; first < padded; first += MOST_TILE)
+        for (int32_t first = 0; first < padded; first += TILE_LIMIT)
             evaluate_tile(dim, order, call, b, (int64_t)block->first + first,
-                          padded - first < MOST_TILE ? padded - first : MOST_TILE, window);
+                          padded - first < TILE_LIMIT ? padded - first : TILE_LIMIT, window);
         return;
     }
     for (int64_t slot = block->first; slot < block->first + padded; slot += BRUNT_LANES) {

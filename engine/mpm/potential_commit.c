@@ -13,7 +13,7 @@ typedef struct mpm_commit {
 
 // Windows of the block: displacements, velocities, those at the start.
 typedef struct mpm_windows {
-    double u[MOST_WINDOW * 3], v[MOST_WINDOW * 3], old[MOST_WINDOW * 3];
+    double u[WINDOW_LIMIT * 3], v[WINDOW_LIMIT * 3], old[WINDOW_LIMIT * 3];
 } mpm_windows;
 
 // What the grid says at a vector of particles.
@@ -87,7 +87,7 @@ static void commit_material(brunt_mpm_potential *p, int64_t slot, int32_t count,
     real *const *F = brunt_field(&body->particles, BRUNT_FIELD_deformation_gradient);
     brunt_trial_points trial[BRUNT_COMPONENTS];
     brunt_material_points points[BRUNT_COMPONENTS];
-    real plastic[MOST_TILE];
+    real plastic[TILE_LIMIT];
     trial_tile(p, slot, count, tile, trial);
     for (int c = 0; c < dim * dim; c++) memcpy(F[c] + slot, tile->F[c], (size_t)count * sizeof(real));
     for (int k = 0; k < BRUNT_COMPONENTS; k++) {
@@ -118,8 +118,8 @@ BRUNT_INLINE void commit_block(int dim, int order, const mpm_commit *commit, int
     if (flips) fill_window(p, block, motion->v_old, windows.old);
     brunt_block_report *report = &body->report[b];
     *report = (brunt_block_report){.bad = -1};
-    for (int32_t first = 0; first < padded; first += MOST_TILE) {
-        const int32_t count = padded - first < MOST_TILE ? padded - first : MOST_TILE;
+    for (int32_t first = 0; first < padded; first += TILE_LIMIT) {
+        const int32_t count = padded - first < TILE_LIMIT ? padded - first : TILE_LIMIT;
         for (int32_t at = 0; at < count; at += BRUNT_LANES) {
             const int64_t slot = (int64_t)block->first + first + at;
             kernel_lanes k;

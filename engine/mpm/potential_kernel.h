@@ -10,7 +10,7 @@
 #include "linear/block_matrix.h"
 #include "mpm/potential.h"
 
-enum { MOST_WINDOW = 7 * 7 * 7, MOST_TILE = 64, MOST_KERNEL = 64 };
+enum { WINDOW_LIMIT = 7 * 7 * 7, TILE_LIMIT = 64, KERNEL_LIMIT = 64 };
 
 typedef struct mpm_block_result {
     double kinetic, grid_kinetic;
@@ -25,7 +25,7 @@ struct brunt_mpm_potential {
     int threads;
     bool whole; // the tangent is not symmetric
     // Of the last Hessian: V0 a, pulled back to the configuration of the grid; a slot each.
-    real *tangent[BRUNT_MOST_TANGENTS];
+    real *tangent[BRUNT_TANGENT_LIMIT];
     real *slab;
     size_t slab_capacity;
     double *force; // block_count x span_nodes x dim
@@ -42,7 +42,7 @@ struct brunt_mpm_potential {
     // Assembly (potential_matrix.c): blocks by colour; room for the sums of a bin, places in rows, a thread each.
     int32_t *coloured, colour_first[9], *place;
     double *matrix;
-    int64_t matrix_room, place_room;
+    int64_t matrix_size, place_size;
     size_t coloured_capacity, place_capacity, matrix_capacity;
 };
 
@@ -86,7 +86,7 @@ BRUNT_INLINE void kernel_at(int dim, int order, const brunt_body *body, const br
     const brunt_grid *grid = &body->grid;
     const brunt_particles *particles = &body->particles;
     const int side = dim == 3 ? 4 : 8, span = side + order;
-    real *const *x = brunt_kernel_place(particles);
+    real *const *x = brunt_kernel_position(particles);
     int bins[3][BRUNT_LANES];
     for (int l = 0; l < BRUNT_LANES; l++) {
         const int bin = particles->bin[slot + l];
@@ -163,7 +163,7 @@ BRUNT_INLINE int bin_base(int dim, int order, int bin) {
 
 // A tile of particles of a block: what they would be.
 typedef struct mpm_tile {
-    real F[9][MOST_TILE], f[9][MOST_TILE], density[MOST_TILE], stress[9][MOST_TILE];
+    real F[9][TILE_LIMIT], f[9][TILE_LIMIT], density[TILE_LIMIT], stress[9][TILE_LIMIT];
     double *force; // of the block's nodes, for the gradient
 } __attribute__((aligned(64))) mpm_tile;
 
@@ -208,5 +208,5 @@ void brunt_mpm_add_product(brunt_mpm_potential *p, const brunt_team *team, const
 
 // potential_matrix.c: room and colours of a step (BRUNT_OK, or BRUNT_FAILED: out of memory); and the Hessian, once
 // tangents are there.
-int brunt_mpm_matrix_room(brunt_mpm_potential *p, brunt_error *error);
+int brunt_mpm_matrix_reserve(brunt_mpm_potential *p, brunt_error *error);
 void brunt_mpm_add_matrix(brunt_mpm_potential *p, const brunt_team *team, brunt_block_matrix *m);

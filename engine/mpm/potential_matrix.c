@@ -29,22 +29,22 @@ static inline int block_pairs(const brunt_mpm_potential *p, int dim) {
 }
 
 // Nodes within reach of a node.
-BRUNT_INLINE int reach(int dim, int order) {
+BRUNT_INLINE int stencil_width(int dim, int order) {
     const int wide = 2 * order + 1;
     return dim == 3 ? wide * wide * wide : wide * wide;
 }
 
-int brunt_mpm_matrix_room(brunt_mpm_potential *p, brunt_error *error) {
+int brunt_mpm_matrix_reserve(brunt_mpm_potential *p, brunt_error *error) {
     const brunt_grid *grid = &p->body->grid;
     const int dim = grid->dim, order = grid->order;
     const int64_t n = padded_nodes(dim, order), pairs = block_pairs(p, dim),
                   chunk = CHUNK > BRUNT_LANES ? CHUNK : BRUNT_LANES;
-    p->matrix_room = (pairs * n + 2 * chunk * dim) * n + BRUNT_LANES * n;
-    p->place_room = (int64_t)grid->span_nodes * reach(dim, order);
-    if (BRUNT_ROOM(p->matrix, (size_t)(p->threads * p->matrix_room), 0, "values of matrices of blocks of particles",
-                   error) ||
-        BRUNT_ROOM(p->place, (size_t)(p->threads * p->place_room), 0, "places of nodes in a matrix", error) ||
-        BRUNT_ROOM(p->coloured, (size_t)grid->block_count, 0, "blocks of particles", error))
+    p->matrix_size = (pairs * n + 2 * chunk * dim) * n + BRUNT_LANES * n;
+    p->place_size = (int64_t)grid->span_nodes * stencil_width(dim, order);
+    if (BRUNT_CAPACITY(p->matrix, (size_t)(p->threads * p->matrix_size), 0, "values of matrices of blocks of particles",
+                       error) ||
+        BRUNT_CAPACITY(p->place, (size_t)(p->threads * p->place_size), 0, "places of nodes in a matrix", error) ||
+        BRUNT_CAPACITY(p->coloured, (size_t)grid->block_count, 0, "blocks of particles", error))
         return BRUNT_FAILED;
     int32_t count = 0;
     for (int colour = 0; colour < grid->corners; colour++) {
@@ -123,12 +123,12 @@ BRUNT_INLINE void stretch(int dim, int stride, const brunt_mpm_potential *p, int
 // The sums K_ij, i <= j where the tangent is symmetric, of the particles first .. end - 1 of a block.
 BRUNT_INLINE void bin_sums(int dim, int order, const brunt_mpm_potential *p, const brunt_block *block,
                            const int32_t particles[2], real *K) {
-    enum { MOST = CHUNK > BRUNT_LANES ? CHUNK : BRUNT_LANES };
+    enum { CHUNK_LIMIT = CHUNK > BRUNT_LANES ? CHUNK : BRUNT_LANES };
     const int n = kernel_nodes(dim, order), stride = padded_nodes(dim, order), pairs = block_pairs(p, dim);
-    real *G = K + (size_t)pairs * (size_t)n * (size_t)stride, *S = G + MOST * dim * stride;
+    real *G = K + (size_t)pairs * (size_t)n * (size_t)stride, *S = G + CHUNK_LIMIT * dim * stride;
     memset(K, 0, (size_t)pairs * (size_t)n * (size_t)stride * sizeof *K);
-    for (int32_t first = particles[0]; first < particles[1]; first += MOST) {
-        const int32_t some = particles[1] - first < MOST ? particles[1] - first : MOST;
+    for (int32_t first = particles[0]; first < particles[1]; first += CHUNK_LIMIT) {
+        const int32_t some = particles[1] - first < CHUNK_LIMIT ? particles[1] - first : CHUNK_LIMIT;
         const int64_t slot = (int64_t)block->first + first;
         for (int32_t q = 0; q < some; q += BRUNT_LANES)
             slopes(dim, order, p, block, slot + q, some - q < BRUNT_LANES ? some - q : BRUNT_LANES,
@@ -145,9 +145,9 @@ BRUNT_INLINE void bin_sums(int dim, int order, const brunt_mpm_potential *p, con
 
 // A block's nodes in the matrix.
 typedef struct block_rows {
-    int32_t number[MOST_WINDOW]; // of the window's nodes; -1: no unknown
-    double *row[MOST_WINDOW];    // where their rows begin
-    int32_t *place;              // of each node: how many blocks along its row the nodes within reach are
+    int32_t number[WINDOW_LIMIT]; // of the window's nodes; -1: no unknown
+    double *row[WINDOW_LIMIT];    // where their rows begin
+    int32_t *place;               // of each node: how many blocks along its row the nodes within reach are
 } block_rows;
 
 // `mark`: a number for each node, of no value before and after. Places of nodes that no bin couples say nothing.
@@ -174,7 +174,7 @@ BRUNT_INLINE void find_rows(int dim, int order, const brunt_mpm_potential *p, co
                     const int32_t other = rows->number[(x * span + y) * deep + z];
                     int off = (x - at[0] + order) * wide + y - at[1] + order;
                     if (dim == 3) off = off * wide + z - at[2] + order;
-                    if (other >= 0) rows->place[w * reach(dim, order) + off] = mark[other];
+                    if (other >= 0) rows->place[w * stencil_width(dim, order) + off] = mark[other];
                 }
     }
 }
@@ -202,9 +202,9 @@ BRUNT_INLINE void add_pair(bool whole, int dim, int plane, const real *AB, const
 // Adds the sums of the bin whose kernels begin at node `base` of the window.
 BRUNT_INLINE void add_bin(bool whole, int dim, int order, const block_rows *rows, int base, const real *K) {
     const int side = dim == 3 ? 4 : 8, span = side + order, N = order + 1, wide = 2 * order + 1, size = dim * dim,
-              all = reach(dim, order);
+              all = stencil_width(dim, order);
     const int n = kernel_nodes(dim, order), stride = padded_nodes(dim, order), plane = n * stride;
-    int window[MOST_KERNEL], off[MOST_KERNEL];
+    int window[KERNEL_LIMIT], off[KERNEL_LIMIT];
     for (int k = 0; k < n; k++) {
         const int x = dim == 3 ? k / (N * N) : k / N, y = dim == 3 ? k / N % N : k % N, z = k % N;
         window[k] = base + (dim == 3 ? (x * span + y) * span + z : x * span + y);
@@ -234,9 +234,9 @@ BRUNT_INLINE void add_block(int dim, int order, const matrix_work *work, int32_t
     const brunt_grid *grid = &p->body->grid;
     const brunt_block *block = &grid->blocks[b];
     const int side = dim == 3 ? 4 : 8, span = side + order;
-    real *K = (real *)(p->matrix + worker * p->matrix_room);
+    real *K = (real *)(p->matrix + worker * p->matrix_size);
     block_rows rows;
-    rows.place = p->place + worker * p->place_room;
+    rows.place = p->place + worker * p->place_size;
     find_rows(dim, order, p, block, work->m, brunt_block_matrix_marks(work->m, worker), &rows);
     for (int bin = 0; bin < BRUNT_BLOCK_NODES; bin++) {
         const int32_t *start = grid->bin_start + (size_t)b * BRUNT_BIN_STARTS + bin;

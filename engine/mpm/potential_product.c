@@ -36,7 +36,8 @@ BRUNT_INLINE void contract(int dim, const lanes a[], const lanes H[9], lanes T[9
 }
 
 // Adds a : (x (x) g) . g of a vector to the sums of the bin's nodes.
-BRUNT_INLINE void add_vector(int dim, int order, const bin_vector *v, const double *window, lanes sum[MOST_KERNEL][3]) {
+BRUNT_INLINE void add_vector(int dim, int order, const bin_vector *v, const double *window,
+                             lanes sum[KERNEL_LIMIT][3]) {
     lanes H[9], T[9];
     for (int c = 0; c < dim * dim; c++) H[c] = lanes_set(0);
     for (int n = 0; n < kernel_nodes(dim, order); n++) {
@@ -54,7 +55,7 @@ BRUNT_INLINE void add_vector(int dim, int order, const bin_vector *v, const doub
 }
 
 // Adds row i of g . a . g of a vector to the sums of the bin's nodes.
-BRUNT_INLINE void add_diagonal(int dim, int order, const bin_vector *v, int i, lanes sum[MOST_KERNEL][3]) {
+BRUNT_INLINE void add_diagonal(int dim, int order, const bin_vector *v, int i, lanes sum[KERNEL_LIMIT][3]) {
     for (int n = 0; n < kernel_nodes(dim, order); n++) {
         const kernel_node node = node_of(dim, order, &v->kernel, n);
         for (int j = 0; j < dim; j++)
@@ -74,7 +75,7 @@ typedef struct product_work {
 BRUNT_INLINE void bin_of(int dim, int order, const product_work *work, const brunt_block *block,
                          const int32_t particles[2], const double *window, double *force) {
     const int span = (dim == 3 ? 4 : 8) + order, N = order + 1;
-    lanes sum[MOST_KERNEL][3];
+    lanes sum[KERNEL_LIMIT][3];
     for (int n = 0; n < kernel_nodes(dim, order); n++)
         for (int i = 0; i < dim; i++) sum[n][i] = lanes_set(0);
     for (int32_t first = particles[0]; first < particles[1]; first += BRUNT_LANES) {
@@ -96,7 +97,7 @@ BRUNT_INLINE void block_of(int dim, int order, const product_work *work, int32_t
     const brunt_grid *grid = &p->body->grid;
     const brunt_block *block = &grid->blocks[b];
     const size_t size = (size_t)grid->span_nodes * (size_t)dim;
-    double window[MOST_WINDOW * 3], *force = p->force + (size_t)b * size;
+    double window[WINDOW_LIMIT * 3], *force = p->force + (size_t)b * size;
     if (work->x) fill_window(p, block, work->x, window);
     memset(force, 0, size * sizeof *force);
     for (int bin = 0; bin < BRUNT_BLOCK_NODES; bin++) {

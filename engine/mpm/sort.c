@@ -30,7 +30,7 @@ typedef struct range {
 
 // Kept from step to step, so that a step allocates nothing once the body has been everywhere.
 enum { MAX_RANGES = 64 };
-struct brunt_sort_room {
+struct brunt_sort_workspace {
     range ranges[MAX_RANGES];
     int64_t *total;
     size_t total_capacity;
@@ -38,15 +38,15 @@ struct brunt_sort_room {
     size_t keys_capacity;
 };
 
-void brunt_sort_room_free(brunt_sort_room *room) {
-    if (!room) return;
+void brunt_sort_workspace_free(brunt_sort_workspace *workspace) {
+    if (!workspace) return;
     for (int q = 0; q < MAX_RANGES; q++) {
-        brunt_free(room->ranges[q].missing);
-        brunt_free(room->ranges[q].count);
+        brunt_free(workspace->ranges[q].missing);
+        brunt_free(workspace->ranges[q].count);
     }
-    brunt_free(room->total);
-    brunt_free(room->keys);
-    brunt_free(room);
+    brunt_free(workspace->total);
+    brunt_free(workspace->keys);
+    brunt_free(workspace);
 }
 
 typedef struct job {
@@ -54,7 +54,7 @@ typedef struct job {
     brunt_particles *particles;
     range *ranges;
     int range_count;
-    brunt_sort_room *room;
+    brunt_sort_workspace *workspace;
     int threads;
     brunt_timer *timer; // may be NULL
     bool renewed;       // ranks of blocks are not those of the last sort: what it stored no longer compares
@@ -87,7 +87,7 @@ static bool find_bin(const brunt_grid *grid, const real *origin, real *const *x,
 static void find_places_of(job *j, range *r) {
     const brunt_grid *grid = j->grid;
     brunt_particles *p = j->particles;
-    real *const *x = brunt_kernel_place(p);
+    real *const *x = brunt_kernel_position(p);
     const real origin[3] = {(real)grid->origin[0], (real)grid->origin[1], (real)grid->origin[2]};
     uint64_t last_key = UINT64_MAX;
     int32_t last = -1;
@@ -213,13 +213,13 @@ static void set_keys(void *context, int64_t begin, int64_t end, int worker) {
     }
 }
 
-static int fail_place(const brunt_particles *p, int64_t s, brunt_error *error) {
+static int fail_position(const brunt_particles *p, int64_t s, brunt_error *error) {
     real *const *x = p->scalar + p->field[BRUNT_FIELD_position].first;
     double place[3] = {0, 0, 0};
     bool finite = true;
     for (int a = 0; a < p->dim; a++) place[a] = (double)x[a][s], finite = finite && isfinite(place[a]);
     if (error) {
-        memcpy(error->place, place, sizeof place);
+        memcpy(error->position, place, sizeof place);
         error->id = p->id[s];
     }
     return brunt_fail(error, BRUNT_FAILED,
@@ -232,8 +232,8 @@ static int renew_blocks(job *j, brunt_error *error) {
     brunt_grid *grid = j->grid;
     int64_t most = j->renewed ? 0 : grid->block_count;
     for (int q = 0; q < j->range_count; q++) most += j->ranges[q].missing_count;
-    if (BRUNT_ROOM(j->room->keys, (size_t)(most + 1), 0, "blocks of the grid", error)) return BRUNT_FAILED;
-    uint64_t *keys = j->room->keys;
+    if (BRUNT_CAPACITY(j->workspace->keys, (size_t)(most + 1), 0, "blocks of the grid", error)) return BRUNT_FAILED;
+    uint64_t *keys = j->workspace->keys;
     int64_t n = 0;
     if (!j->renewed)
         for (int32_t b = 0; b < grid->block_count; b++) keys[n++] = grid->block_key[b];
@@ -260,7 +260,7 @@ static int look(job *j, bool *moved, bool *missing, brunt_error *error) {
     *moved = j->particles->holes || j->renewed, *missing = false;
     for (int q = 0; q < j->range_count; q++) {
         const range *r = &j->ranges[q];
-        if (r->bad >= 0) return fail_place(j->particles, r->bad, error);
+        if (r->bad >= 0) return fail_position(j->particles, r->bad, error);
         if (r->lost)
             return brunt_fail_memory(error, "blocks of the grid that particles come to", (size_t)r->missing_count + 1,
                                      sizeof *r->missing);
@@ -274,14 +274,14 @@ static int look(job *j, bool *moved, bool *missing, brunt_error *error) {
 static int count_particles(job *j, bool *empty, brunt_error *error) {
     const int32_t blocks = j->grid->block_count;
     for (int q = 0; q < j->range_count; q++)
-        if (BRUNT_ROOM(j->ranges[q].count, (size_t)blocks, 0, "blocks of particles", error)) return BRUNT_FAILED;
-    if (BRUNT_ROOM(j->room->total, (size_t)blocks, 0, "blocks of particles", error)) return BRUNT_FAILED;
+        if (BRUNT_CAPACITY(j->ranges[q].count, (size_t)blocks, 0, "blocks of particles", error)) return BRUNT_FAILED;
+    if (BRUNT_CAPACITY(j->workspace->total, (size_t)blocks, 0, "blocks of particles", error)) return BRUNT_FAILED;
     brunt_parallel(j->threads, j->range_count, 1, count_blocks, j, j->timer);
     *empty = false;
     for (int32_t b = 0; b < blocks; b++) {
-        j->room->total[b] = 0;
-        for (int q = 0; q < j->range_count; q++) j->room->total[b] += j->ranges[q].count[b];
-        *empty = *empty || j->room->total[b] == 0;
+        j->workspace->total[b] = 0;
+        for (int q = 0; q < j->range_count; q++) j->workspace->total[b] += j->ranges[q].count[b];
+        *empty = *empty || j->workspace->total[b] == 0;
     }
     return BRUNT_OK;
 }
@@ -299,7 +299,7 @@ static int settle_blocks(job *j, bool *rests, brunt_error *error) {
         } else {
             if (count_particles(j, &empty, error)) return BRUNT_FAILED;
             if (!empty) return BRUNT_OK;
-            if (drop_empty(j->grid, j->room->total, error)) return BRUNT_FAILED;
+            if (drop_empty(j->grid, j->workspace->total, error)) return BRUNT_FAILED;
         }
         j->renewed = true;
     }
@@ -309,7 +309,7 @@ static int settle_blocks(job *j, bool *rests, brunt_error *error) {
 static int64_t place_blocks(job *j) {
     int64_t slots = 0;
     for (int32_t b = 0; b < j->grid->block_count; b++) {
-        const int64_t count = j->room->total[b];
+        const int64_t count = j->workspace->total[b];
         j->grid->blocks[b].first = (int32_t)slots;
         j->grid->blocks[b].count = (int32_t)count;
         int32_t at = (int32_t)slots;
@@ -324,7 +324,7 @@ static int64_t place_blocks(job *j) {
 }
 
 // The slab may grow, which moves the keys; they are still needed by the rounds that follow.
-static int make_room(brunt_particles *p, int64_t slots, brunt_error *error) {
+static int reserve_arrays(brunt_particles *p, int64_t slots, brunt_error *error) {
     if (slots <= p->capacity) return BRUNT_OK;
     size_t bytes = (size_t)p->slots * sizeof *p->key;
     uint64_t *keys;
@@ -359,7 +359,7 @@ static int sort_ranges(job *j, brunt_error *error) {
     if (settle_blocks(j, &rests, error)) return BRUNT_FAILED;
     if (rests) return BRUNT_OK;
     const int64_t slots = place_blocks(j);
-    if (make_room(p, slots, error)) return BRUNT_FAILED;
+    if (reserve_arrays(p, slots, error)) return BRUNT_FAILED;
     brunt_parallel(j->threads, j->range_count, 1, fill_blocks, j, j->timer);
     brunt_parallel(j->threads, j->grid->block_count, BLOCK_GRAIN, sort_blocks, j, j->timer);
     move_arrays(j, slots);
@@ -373,12 +373,12 @@ static int sort_ranges(job *j, brunt_error *error) {
 int brunt_sort(brunt_grid *grid, brunt_particles *particles, int threads, brunt_timer *timer, brunt_error *error) {
     int ranges = threads > 1 && particles->slots >= 4096 ? 4 * threads : 1;
     if (ranges > MAX_RANGES) ranges = MAX_RANGES;
-    if (!particles->sort_room) particles->sort_room = brunt_alloc(sizeof *particles->sort_room);
-    if (!particles->sort_room) return brunt_fail(error, BRUNT_FAILED, "out of memory while sorting particles");
+    if (!particles->sort_workspace) particles->sort_workspace = brunt_alloc(sizeof *particles->sort_workspace);
+    if (!particles->sort_workspace) return brunt_fail(error, BRUNT_FAILED, "out of memory while sorting particles");
     job j = {.grid = grid,
              .particles = particles,
-             .room = particles->sort_room,
-             .ranges = particles->sort_room->ranges,
+             .workspace = particles->sort_workspace,
+             .ranges = particles->sort_workspace->ranges,
              .range_count = ranges,
              .threads = threads,
              .timer = timer,

@@ -10,4 +10,4 @@
 // be NULL. Errors: BRUNT_FAILED with id and place when a position is not finite or too far away; the particles are then
 // untouched.
 int brunt_sort(brunt_grid *grid, brunt_particles *particles, int threads, brunt_timer *timer, brunt_error *error);
-void brunt_sort_room_free(brunt_sort_room *room);
+void brunt_sort_workspace_free(brunt_sort_workspace *workspace);

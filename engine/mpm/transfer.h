@@ -44,7 +44,7 @@ brunt_g2p_fn *brunt_find_musl_velocity(int dim, bool axisymmetric, brunt_kernel 
 int32_t brunt_keep_inverted(brunt_body *body, const brunt_block *block, real dt, real *const *gradient,
                             real *hoop_stretch);
 // The same for the hoop of rings, after F is updated: rate to 0, stretch as it was.
-int32_t brunt_keep_inverted_rings(brunt_body *body, const brunt_block *block, real dt, real *hoop,
+int32_t brunt_keep_inverted_hoops(brunt_body *body, const brunt_block *block, real dt, real *hoop,
                                   const real *hoop_stretch);
 // What is freed has no stress.
 void brunt_still_stress(brunt_body *body, const brunt_block *block);

@@ -10,7 +10,7 @@ int brunt_workspace_fit(brunt_workspace *work, const brunt_grid *grid, int32_t m
     int64_t planes = (int64_t)n * (grid->dim == 3 ? 16 * n * n : 8 * n) * 8;
     size_t reals = (size_t)(window + planes + arrays * stride + 64);
     if (work->memory && work->capacity / sizeof(real) >= reals && work->stride >= stride) return BRUNT_OK;
-    if (BRUNT_ROOM_IN(work->memory, work->capacity, reals, 0, "numbers of a thread to work with", error))
+    if (BRUNT_CAPACITY_IN(work->memory, work->capacity, reals, 0, "numbers of a thread to work with", error))
         return BRUNT_FAILED;
     work->stride = stride;
     work->window = work->memory;

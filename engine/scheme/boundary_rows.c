@@ -21,8 +21,8 @@ static int add_node(brunt_boundary_rows *rows, brunt_boundary_patch *p, const br
     const int64_t begin = rows->first[rows->patch_count];
     int64_t *end = &rows->first[rows->patch_count + 1];
     if (!rows->mark[n]) {
-        if (BRUNT_ROOM(rows->node, (size_t)*end + 1, (size_t)*end, "nodes of pieces of boundaries", error) ||
-            BRUNT_ROOM(rows->weight, (size_t)*end + 1, (size_t)*end, "nodes of pieces of boundaries", error))
+        if (BRUNT_CAPACITY(rows->node, (size_t)*end + 1, (size_t)*end, "nodes of pieces of boundaries", error) ||
+            BRUNT_CAPACITY(rows->weight, (size_t)*end + 1, (size_t)*end, "nodes of pieces of boundaries", error))
             return BRUNT_FAILED;
         memset(rows->weight[*end], 0, sizeof *rows->weight);
         rows->node[*end] = n;
@@ -73,13 +73,13 @@ static double stiffness(const brunt_boundary_rows *rows, int body) {
 }
 
 // How the surface moves along the rows, at a boundary particle that is `gap` from the body.
-static void add_motion(brunt_boundary_patch *p, const brunt_boundary_particle *b, const brunt_boundary_reach *reach,
+static void add_motion(brunt_boundary_patch *p, const brunt_boundary_particle *b, const brunt_boundary_extent *extent,
                        double share, double gap) {
     for (int k = 0; k < p->rows; k++) {
         double direction[3], along = 0;
         brunt_boundary_surface_direction(p->surface, b, k, direction);
-        for (int a = 0; a < 3; a++) along += reach->step[a] * direction[a];
-        p->wall[k] += share * along;
+        for (int a = 0; a < 3; a++) along += extent->step[a] * direction[a];
+        p->prescribed[k] += share * along;
         p->goal[k] += share * (along - (p->leaves && k == 0 ? gap : 0));
     }
 }
@@ -97,13 +97,13 @@ static void close_patch(brunt_boundary_rows *rows, brunt_boundary_patch *p) {
 
 // A piece before a body whose distances are in `gap`.
 static int add_patch(brunt_boundary_rows *rows, brunt_boundary_surface *s, int32_t piece, int body,
-                     const brunt_boundary_reach *reach, brunt_error *error) {
+                     const brunt_boundary_extent *extent, brunt_error *error) {
     const size_t count = (size_t)rows->patch_count;
     bool any = false;
     for (int32_t b = s->first[piece]; b < s->first[piece + 1]; b++) any = any || rows->gap[b] < INFINITY;
     if (!any) return BRUNT_OK;
-    if (BRUNT_ROOM(rows->patch, count + 1, count, "pieces of boundaries", error) ||
-        BRUNT_ROOM(rows->first, count + 2, count + 1, "pieces of boundaries", error))
+    if (BRUNT_CAPACITY(rows->patch, count + 1, count, "pieces of boundaries", error) ||
+        BRUNT_CAPACITY(rows->first, count + 2, count + 1, "pieces of boundaries", error))
         return BRUNT_FAILED;
     brunt_boundary_patch *p = &rows->patch[count];
     *p = (brunt_boundary_patch){.surface = s, .piece = piece, .body = body};
@@ -113,34 +113,35 @@ static int add_patch(brunt_boundary_rows *rows, brunt_boundary_surface *s, int32
     for (int32_t b = s->first[piece]; b < s->first[piece + 1]; b++) {
         double share;
         if (rows->gap[b] == INFINITY) continue;
-        if (add_particle(rows, p, &s->particle[b], reach->way, &share, error)) return BRUNT_FAILED;
-        add_motion(p, &s->particle[b], reach, share, rows->gap[b]);
+        if (add_particle(rows, p, &s->particle[b], extent->way, &share, error)) return BRUNT_FAILED;
+        add_motion(p, &s->particle[b], extent, share, rows->gap[b]);
     }
     close_patch(rows, p);
     return BRUNT_OK;
 }
 
-static int add_surface(brunt_boundary_rows *rows, brunt_boundary_surface *s, brunt_boundary_reach *reach,
+static int add_surface(brunt_boundary_rows *rows, brunt_boundary_surface *s, brunt_boundary_extent *extent,
                        brunt_error *error) {
     const brunt_unknowns *u = rows->unknowns;
-    if (BRUNT_ROOM(rows->gap, (size_t)s->particle_count + 1, 0, "particles of boundaries", error)) return BRUNT_FAILED;
+    if (BRUNT_CAPACITY(rows->gap, (size_t)s->particle_count + 1, 0, "particles of boundaries", error))
+        return BRUNT_FAILED;
     for (int i = 0; i < rows->bodies->mpm_count; i++) {
         if (u->tie[i] != i) continue;
         for (int32_t b = 0; b < s->particle_count; b++) rows->gap[b] = INFINITY;
         for (int other = i; other < rows->bodies->mpm_count; other++) {
             brunt_body *body = &rows->bodies->mpm[other];
-            reach->frame = rows->surfaces->frame[other];
+            extent->frame = rows->surfaces->frame[other];
             if (u->tie[other] == i && brunt_boundary_surface_acts(s, body))
-                brunt_boundary_surface_reach(s, body, reach, rows->gap);
+                brunt_boundary_surface_extent(s, body, extent, rows->gap);
         }
         for (int32_t piece = 0; piece < s->pieces; piece++)
-            if (add_patch(rows, s, piece, i, reach, error)) return BRUNT_FAILED;
+            if (add_patch(rows, s, piece, i, extent, error)) return BRUNT_FAILED;
     }
     return BRUNT_OK;
 }
 
 // Room for the matrix of the largest patch.
-static int make_room(brunt_boundary_rows *rows, brunt_error *error) {
+static int reserve_arrays(brunt_boundary_rows *rows, brunt_error *error) {
     int64_t most = 1;
     for (int32_t p = 0; p < rows->patch_count; p++) {
         const int64_t nodes = rows->first[p + 1] - rows->first[p];
@@ -148,32 +149,33 @@ static int make_room(brunt_boundary_rows *rows, brunt_error *error) {
         if (nodes > BRUNT_STENCIL_LIMIT)
             return brunt_fail(error, BRUNT_FAILED,
                               "a piece of boundary '%s' has %lld nodes of the grid, %d are the most: piece is too long",
-                              rows->patch[p].surface->wall->name, (long long)nodes, BRUNT_STENCIL_LIMIT);
+                              rows->patch[p].surface->boundary->name, (long long)nodes, BRUNT_STENCIL_LIMIT);
     }
     most *= rows->unknowns->dim;
-    return BRUNT_ROOM(rows->dense, (size_t)(most * most), 0, "values of the matrix of a piece of a boundary", error);
+    return BRUNT_CAPACITY(rows->dense, (size_t)(most * most), 0, "values of the matrix of a piece of a boundary",
+                          error);
 }
 
 int brunt_boundary_rows_step(brunt_boundary_rows *rows, brunt_world *world, const brunt_unknowns *unknowns, double dt,
                              brunt_error *error) {
     rows->unknowns = unknowns, rows->bodies = &world->bodies, rows->surfaces = &world->boundaries.surfaces;
     rows->patch_count = 0, rows->version++, rows->dt = dt, rows->swept = 0;
-    if (BRUNT_ROOM(rows->first, 1, 0, "pieces of boundaries", error) ||
-        BRUNT_ROOM(rows->mark, (size_t)unknowns->count + 1, 0, "unknowns", error))
+    if (BRUNT_CAPACITY(rows->first, 1, 0, "pieces of boundaries", error) ||
+        BRUNT_CAPACITY(rows->mark, (size_t)unknowns->count + 1, 0, "unknowns", error))
         return BRUNT_FAILED;
     memset(rows->mark, 0, (size_t)unknowns->count * sizeof *rows->mark);
     rows->first[0] = 0;
     for (int k = 0; k < rows->surfaces->count; k++) {
         brunt_boundary_surface *s = &rows->surfaces->surface[k];
-        brunt_boundary_reach reach = {.dt = dt};
+        brunt_boundary_extent extent = {.dt = dt};
         double end[3];
-        brunt_boundary_surface_way(s, world->clock.time, reach.way);
+        brunt_boundary_surface_way(s, world->clock.time, extent.way);
         brunt_boundary_surface_way(s, world->clock.time + dt, end);
-        for (int a = 0; a < 3; a++) reach.step[a] = end[a] - reach.way[a];
+        for (int a = 0; a < 3; a++) extent.step[a] = end[a] - extent.way[a];
         rows->cell = s->cell;
-        if (add_surface(rows, s, &reach, error)) return BRUNT_FAILED;
+        if (add_surface(rows, s, &extent, error)) return BRUNT_FAILED;
     }
-    return make_room(rows, error);
+    return reserve_arrays(rows, error);
 }
 
 void brunt_boundary_rows_free(brunt_boundary_rows *rows) {

@@ -16,13 +16,13 @@ typedef struct brunt_boundary_patch {
     brunt_boundary_surface *surface;
     int32_t piece, body; // body: the first of those that are tied, among bodies of points
     int rows;
-    bool leaves, rubs;       // row 0 only pushes; the others have friction
-    double size, stiffness;  // D [m^2], b [Pa/m]
-    double wall[3], goal[3]; // [m^3] D (way of the surface); less the distance that is left: what C u is to be
-    double multiplier[3];    // l [Pa]
-    double before[3];        // [Pa] of the end of the last step
-    double bound;            // [Pa] most friction
-    bool stiff[2];           // whether the matrix has row 0, the others
+    bool leaves, rubs;             // row 0 only pushes; the others have friction
+    double size, stiffness;        // D [m^2], b [Pa/m]
+    double prescribed[3], goal[3]; // [m^3] D (way of the surface); less the distance that is left: what C u is to be
+    double multiplier[3];          // l [Pa]
+    double before[3];              // [Pa] of the end of the last step
+    double bound;                  // [Pa] most friction
+    bool stiff[2];                 // whether the matrix has row 0, the others
 } brunt_boundary_patch;
 
 typedef struct brunt_boundary_rows {
@@ -53,7 +53,7 @@ int brunt_boundary_rows_step(brunt_boundary_rows *rows, brunt_world *world, cons
                              brunt_error *error);
 // Once u is a minimum: multipliers and bounds of friction as they are there. Whether that changed them.
 bool brunt_boundary_rows_settle(brunt_boundary_rows *rows, const double *u);
-// t at u [Pa], C u - wall [m^3], of a patch.
+// t at u [Pa], C u - prescribed [m^3], of a patch.
 void brunt_boundary_patch_traction(const brunt_boundary_rows *rows, int32_t patch, const double *u, double t[3],
                                    double moved[3]);
 // The forces of tractions t on the bodies, on node k of all [N].

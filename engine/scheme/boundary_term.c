@@ -7,7 +7,7 @@
 #include "linear/block_matrix.h"
 #include "scheme/boundary_rows.h"
 
-enum { MOST_SWEEPS = 10 };
+enum { SWEEP_LIMIT = 10 };
 static const double EVEN = 1e-11;      // cells: how well what is held keeps its place within a step of Newton's method
 static const double SETTLED = 1e-9;    // cells: the same of what may leave, at the end
 static const double SAME_BOUND = 1e-6; // of the greatest: bounds of friction
@@ -44,7 +44,7 @@ void brunt_boundary_patch_traction(const brunt_boundary_rows *r, int32_t patch, 
     rows_of(r, patch, u, moved);
     tentative(r, patch, moved, t);
     admit(&r->patch[patch], t);
-    for (int k = 0; k < r->patch[patch].rows; k++) moved[k] -= r->patch[patch].wall[k];
+    for (int k = 0; k < r->patch[patch].rows; k++) moved[k] -= r->patch[patch].prescribed[k];
 }
 
 void brunt_boundary_patch_force(const brunt_boundary_rows *r, int32_t patch, int64_t k, const double t[3],
@@ -186,7 +186,7 @@ static int never_ends(const brunt_boundary_rows *r, int32_t patch, brunt_error *
         error, BRUNT_FAILED,
         "Boundary '%s': the tractions on its pieces find no end: pieces of %g cells are too short for this grid, "
         "or something else holds what they hold.",
-        p->surface->wall->name, p->surface->def.piece);
+        p->surface->boundary->name, p->surface->def.piece);
 }
 
 // The multipliers of a patch after the step; `change` over b h.
@@ -221,7 +221,7 @@ static int rows_sweep(void *term, const double *u, const double *step, double *g
     }
     r->sweeps++;
     *changed = true;
-    return ++r->swept > MOST_SWEEPS ? never_ends(r, worst, error) : BRUNT_OK;
+    return ++r->swept > SWEEP_LIMIT ? never_ends(r, worst, error) : BRUNT_OK;
 }
 
 // Whether tractions and bounds at u are not yet those that it was found with.

@@ -12,14 +12,14 @@ static bool meshes(const brunt_world *world) { return world->bodies.fem_count > 
 static bool groups(const brunt_world *world) { return world->boundaries.sets.act; }
 static bool loads_or_drag(const brunt_world *world) { return groups(world) || world->boundaries.damping.active; }
 static bool particles(const brunt_world *world) { return world->bodies.mpm_count > 0; }
-static bool mirrors(const brunt_world *world) { return particles(world) && world->boundaries.mirror_count > 0; }
+static bool symmetry(const brunt_world *world) { return particles(world) && world->boundaries.symmetry_count > 0; }
 static bool conditions(const brunt_world *world) { return particles(world) && world->boundaries.has_conditions; }
 static bool grid_contact(const brunt_world *world) { return world->contact.has_grid || world->contact.has_touches; }
 static bool surfaces(const brunt_world *world) { return world->contact.has_surfaces; }
 static bool conditions_of_contact(const brunt_world *world) { return conditions(world) && grid_contact(world); }
 static bool conditions_of_surfaces(const brunt_world *world) { return conditions(world) && surfaces(world); }
-static bool walls(const brunt_world *world) { return particles(world) && world->boundaries.has_walls; }
-static bool conditions_of_walls(const brunt_world *world) { return conditions(world) && walls(world); }
+static bool boundaries(const brunt_world *world) { return particles(world) && world->boundaries.has_pushing_planes; }
+static bool conditions_of_boundaries(const brunt_world *world) { return conditions(world) && boundaries(world); }
 static bool remapping(const brunt_world *world) { return particles(world) && world->transfers.musl_velocity; }
 static bool erosion(const brunt_world *world) { return world->erosion.active; }
 
@@ -99,12 +99,12 @@ int brunt_pass_account(brunt_world *world, brunt_step *s, brunt_error *error) {
     brunt_ledger *ledger = &world->ledger;
     ledger->transfer += ledger->kinetic - s->old_kinetic + s->new_kinetic - s->kinetic;
     ledger->kinetic = s->kinetic;
-    for (int w = 0; w < world->boundaries.wall_count; w++)
-        brunt_impulse_account_add(&world->boundaries.walls[w].action, &world->boundaries.walls[w].last);
+    for (int w = 0; w < world->boundaries.boundary_count; w++)
+        brunt_impulse_account_add(&world->boundaries.boundary[w].account, &world->boundaries.boundary[w].last);
     for (int p = 0; p < world->pairs.count; p++)
-        brunt_impulse_account_add(&world->pairs.pair[p].action, &world->pairs.pair[p].last);
-    const brunt_books books = brunt_books_of(world);
-    brunt_ledger_remember(&world->ledger, &books);
+        brunt_impulse_account_add(&world->pairs.pair[p].account, &world->pairs.pair[p].last);
+    const brunt_accounts accounts = brunt_accounts_of(world);
+    brunt_ledger_remember(&world->ledger, &accounts);
     double stop = fmin(s->limit > now->time ? s->limit : INFINITY, world->settings.end);
     now->time = s->dt == stop - now->time ? stop : now->time + s->dt;
     now->steps += 1;
@@ -120,30 +120,30 @@ int brunt_pass_account(brunt_world *world, brunt_step *s, brunt_error *error) {
 
 // clang-format off
 const brunt_pass_row brunt_explicit_passes[] = {
-    {BRUNT_PASS_PART,  "advance",    "body",     always,                 brunt_pass_choose,      all_bodies,     NULL},
-    {BRUNT_PASS_WHOLE, "kick",       "node",     meshes,                 brunt_pass_kick,        all_mesh_nodes, brunt_work_kick},
-    {BRUNT_PASS_WHOLE, "groups",     "node",     groups,                 brunt_pass_groups,      group_nodes,    NULL},
-    {BRUNT_PASS_WHOLE, "sort",       "particle", particles,              brunt_pass_sort,        all_particles,  brunt_work_sort},
-    {BRUNT_PASS_BODY,  "scatter",    "particle", particles,              brunt_pass_scatter,     all_particles,  brunt_work_scatter},
-    {BRUNT_PASS_BODY,  "grid",       "node",     particles,              brunt_pass_grid,        all_grid_nodes, brunt_work_grid},
-    {BRUNT_PASS_BODY,  "mirror",     "node",     mirrors,                brunt_pass_mirror,      all_grid_nodes, NULL},
-    {BRUNT_PASS_BODY,  "update",     "node",     particles,              brunt_pass_update,      all_grid_nodes, brunt_work_update},
-    {BRUNT_PASS_WHOLE, "conditions", "node",     conditions,             brunt_pass_conditions,  all_grid_nodes, NULL},
-    {BRUNT_PASS_WHOLE, "contact",    "node",     grid_contact,           brunt_pass_contact,     all_grid_nodes, NULL},
-    {BRUNT_PASS_PART,  "conditions", "node",     conditions_of_contact,  brunt_pass_conditions,  all_grid_nodes, NULL},
-    {BRUNT_PASS_WHOLE, "surfaces",   "node",     surfaces,               meet_surfaces,          surface_nodes,  NULL},
-    {BRUNT_PASS_PART,  "conditions", "node",     conditions_of_surfaces, brunt_pass_conditions,  all_grid_nodes, NULL},
-    {BRUNT_PASS_WHOLE, "walls",      "node",     walls,                  brunt_pass_walls,       all_grid_nodes, NULL},
-    {BRUNT_PASS_PART,  "conditions", "node",     conditions_of_walls,    brunt_pass_conditions,  all_grid_nodes, NULL},
-    {BRUNT_PASS_WHOLE, "ledger",     "node",     particles,              brunt_pass_ledger,      all_grid_nodes, brunt_work_ledger},
-    {BRUNT_PASS_WHOLE, "remap",      "particle", remapping,              brunt_pass_remap,       all_particles,  brunt_work_remap},
-    {BRUNT_PASS_WHOLE, "gather",     "particle", particles,              brunt_pass_gather,      all_particles,  brunt_work_gather},
-    {BRUNT_PASS_PART,  "kick",       "node",     loads_or_drag,          brunt_pass_finish_kick, NULL,           NULL},
-    {BRUNT_PASS_WHOLE, "drift",      "node",     meshes,                 brunt_pass_drift,       all_mesh_nodes, brunt_work_drift},
-    {BRUNT_PASS_WHOLE, "elements",   "element",  meshes,                 brunt_pass_elements,    all_elements,   brunt_work_elements},
-    {BRUNT_PASS_PART,  "advance",    "body",     always,                 brunt_pass_account,     NULL,           NULL},
-    {BRUNT_PASS_WHOLE, "erosion",    "point",    erosion,                erode,                  all_points,     NULL},
-    {BRUNT_PASS_WHOLE, "advance",    "body",     always,                 brunt_pass_watch,       NULL,           NULL},
+    {BRUNT_PASS_PART,  "advance",       "body",     always,                   brunt_pass_choose,        all_bodies,     NULL},
+    {BRUNT_PASS_WHOLE, "kick",          "node",     meshes,                   brunt_pass_kick,          all_mesh_nodes, brunt_work_kick},
+    {BRUNT_PASS_WHOLE, "groups",        "node",     groups,                   brunt_pass_groups,        group_nodes,    NULL},
+    {BRUNT_PASS_WHOLE, "sort",          "particle", particles,                brunt_pass_sort,          all_particles,  brunt_work_sort},
+    {BRUNT_PASS_BODY,  "p2g",           "particle", particles,                brunt_pass_p2g,           all_particles,  brunt_work_p2g},
+    {BRUNT_PASS_BODY,  "grid",          "node",     particles,                brunt_pass_grid,          all_grid_nodes, brunt_work_grid},
+    {BRUNT_PASS_BODY,  "symmetry",      "node",     symmetry,                 brunt_pass_symmetry,      all_grid_nodes, NULL},
+    {BRUNT_PASS_BODY,  "update",        "node",     particles,                brunt_pass_update,        all_grid_nodes, brunt_work_update},
+    {BRUNT_PASS_WHOLE, "conditions",    "node",     conditions,               brunt_pass_conditions,    all_grid_nodes, NULL},
+    {BRUNT_PASS_WHOLE, "contact",       "node",     grid_contact,             brunt_pass_contact,       all_grid_nodes, NULL},
+    {BRUNT_PASS_PART,  "conditions",    "node",     conditions_of_contact,    brunt_pass_conditions,    all_grid_nodes, NULL},
+    {BRUNT_PASS_WHOLE, "surfaces",      "node",     surfaces,                 meet_surfaces,            surface_nodes,  NULL},
+    {BRUNT_PASS_PART,  "conditions",    "node",     conditions_of_surfaces,   brunt_pass_conditions,    all_grid_nodes, NULL},
+    {BRUNT_PASS_WHOLE, "boundaries",    "node",     boundaries,               brunt_pass_boundaries,    all_grid_nodes, NULL},
+    {BRUNT_PASS_PART,  "conditions",    "node",     conditions_of_boundaries, brunt_pass_conditions,    all_grid_nodes, NULL},
+    {BRUNT_PASS_WHOLE, "ledger",        "node",     particles,                brunt_pass_ledger,        all_grid_nodes, brunt_work_ledger},
+    {BRUNT_PASS_WHOLE, "musl_velocity", "particle", remapping,                brunt_pass_musl_velocity, all_particles,  brunt_work_musl_velocity},
+    {BRUNT_PASS_WHOLE, "g2p",           "particle", particles,                brunt_pass_g2p,           all_particles,  brunt_work_g2p},
+    {BRUNT_PASS_PART,  "kick",          "node",     loads_or_drag,            brunt_pass_finish_kick,   NULL,           NULL},
+    {BRUNT_PASS_WHOLE, "drift",         "node",     meshes,                   brunt_pass_drift,         all_mesh_nodes, brunt_work_drift},
+    {BRUNT_PASS_WHOLE, "elements",      "element",  meshes,                   brunt_pass_elements,      all_elements,   brunt_work_elements},
+    {BRUNT_PASS_PART,  "advance",       "body",     always,                   brunt_pass_account,       NULL,           NULL},
+    {BRUNT_PASS_WHOLE, "erosion",       "point",    erosion,                  erode,                    all_points,     NULL},
+    {BRUNT_PASS_WHOLE, "advance",       "body",     always,                   brunt_pass_watch,         NULL,           NULL},
 };
 // clang-format on
 BRUNT_COUNT_PASSES(brunt_explicit_passes, brunt_explicit_pass_count);

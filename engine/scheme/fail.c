@@ -14,7 +14,7 @@ int brunt_fail_step(const struct brunt_clock *clock, const brunt_body *body, bru
     char where[256] = "";
     if (body && error->id >= 0)
         snprintf(where, sizeof where, "body '%s', particle %lld at (%.6g, %.6g, %.6g) m, ", body->name,
-                 (long long)error->id, error->place[0], error->place[1], error->place[2]);
+                 (long long)error->id, error->position[0], error->position[1], error->position[2]);
     else if (body)
         snprintf(where, sizeof where, "body '%s', ", body->name);
     return brunt_fail(error, BRUNT_FAILED, "%stime %.9g s, step %.0f: %s", where, clock->time, clock->steps, reason);
@@ -33,16 +33,17 @@ int brunt_fail_particle(const brunt_world *world, brunt_body *body, int64_t slot
         error->id = body->particles.id[slot];
         for (int64_t s = slot; error->id < 0 && s >= 0; s--)
             error->id = body->particles.id[s]; // padding copies the last one
-        for (int a = 0; a < 3; a++) error->place[a] = a < world->settings.dimension ? (double)x[a][slot] : 0;
+        for (int a = 0; a < 3; a++) error->position[a] = a < world->settings.dimension ? (double)x[a][slot] : 0;
     }
     return brunt_fail_step(&world->clock, body, error, reason);
 }
 
-int brunt_fail_place(const brunt_world *world, int index, const double x[3], brunt_error *error, const char *reason) {
+int brunt_fail_position(const brunt_world *world, int index, const double x[3], brunt_error *error,
+                        const char *reason) {
     if (!error) return BRUNT_FAILED;
     const char *name = index < 0 ? "" : brunt_bodies_name(&world->bodies, index);
     error->time = world->clock.time;
-    memcpy(error->place, x, sizeof error->place);
+    memcpy(error->position, x, sizeof error->position);
     snprintf(error->body, sizeof error->body, "%s", name);
     return brunt_fail(error, BRUNT_FAILED, "body '%s' at (%.6g, %.6g, %.6g) m, time %.9g s, step %.0f: %s", name, x[0],
                       x[1], x[2], world->clock.time, world->clock.steps, reason);
@@ -56,15 +57,15 @@ int brunt_fail_element(const struct brunt_clock *clock, const brunt_fem_body *fe
     memcpy(error->body, fem->name, sizeof error->body < sizeof fem->name ? sizeof error->body : sizeof fem->name);
     for (int32_t s = slot; s >= 0 && (error->id = fem->element_id[s]) < 0; s--) {} // padding copies the last one
     for (int a = 0; a < 3; a++) {
-        error->place[a] = 0;
+        error->position[a] = 0;
         for (int c = 0; c < nodes; c++)
-            error->place[a] +=
+            error->position[a] +=
                 (double)brunt_fem_node(fem, fem->element_node[(size_t)slot * (size_t)nodes + (size_t)c])[a] / nodes;
     }
     const char *hint = strstr(reason, "inside out") ? "; erosion.inverted takes such elements out instead" : "";
     return brunt_fail(error, BRUNT_FAILED,
                       "body '%s', element %lld at (%.6g, %.6g, %.6g) m, time %.9g s, step %.0f: %s%s", fem->name,
-                      (long long)error->id + 1, error->place[0], error->place[1], error->place[2], clock->time,
+                      (long long)error->id + 1, error->position[0], error->position[1], error->position[2], clock->time,
                       clock->steps, reason, hint);
 }
 

@@ -9,10 +9,10 @@
 #include "linear/block_matrix.h"
 #include "materials/material.h"
 
-enum { MOST_RUN = 5 };
+enum { RUN_LIMIT = 5 };
 static const double PARAMETER = 1e-3; // c: anything from 1e-6 to 0.1 does
 static const double WEAK = 0.5;       // of the mass of a full cell: lighter nodes are held
-static const double difference[][MOST_RUN] = {{0}, {1, -2, 1}, {1, -3, 3, -1}, {1, -4, 6, -4, 1}};
+static const double difference[][RUN_LIMIT] = {{0}, {1, -2, 1}, {1, -3, 3, -1}, {1, -4, 6, -4, 1}};
 _Static_assert(BRUNT_COUNT(difference) == BRUNT_CUBIC + 1, "a row for each kernel");
 
 // ------------------------------------------------------------------------------------------ runs
@@ -35,9 +35,9 @@ static bool find_run(const brunt_unknowns *u, const brunt_bodies *bodies, int i,
 
 static int add_run(brunt_ghost *g, const int32_t *node, int length, double stiffness, brunt_error *error) {
     const size_t runs = (size_t)g->runs, entries = (size_t)(g->runs ? g->first[g->runs] : 0);
-    if (BRUNT_ROOM(g->first, runs + 2, runs + 1, "runs of nodes with little material", error) ||
-        BRUNT_ROOM(g->stiffness, runs + 1, runs, "runs of nodes with little material", error) ||
-        BRUNT_ROOM(g->node, entries + MOST_RUN, entries, "nodes of runs with little material", error))
+    if (BRUNT_CAPACITY(g->first, runs + 2, runs + 1, "runs of nodes with little material", error) ||
+        BRUNT_CAPACITY(g->stiffness, runs + 1, runs, "runs of nodes with little material", error) ||
+        BRUNT_CAPACITY(g->node, entries + RUN_LIMIT, entries, "nodes of runs with little material", error))
         return BRUNT_FAILED;
     memcpy(g->node + entries, node, (size_t)length * sizeof *node);
     g->stiffness[runs] = stiffness;
@@ -53,7 +53,7 @@ static int add_body(brunt_ghost *g, const brunt_bodies *bodies, int i, brunt_err
                  stiffness = PARAMETER * (double)body->material.density * c * c * pow(h, u->dim - 2);
     for (int64_t k = 0; k < (int64_t)body->grid.slot_count * BRUNT_BLOCK_NODES; k++) {
         const int32_t n = u->number[i][k];
-        int32_t at[3], node[MOST_RUN];
+        int32_t at[3], node[RUN_LIMIT];
         int local[3];
         if (n < 0 || g->seen[n]) continue;
         g->seen[n] = 1;
@@ -76,8 +76,8 @@ static bool is_held(const brunt_boundaries *boundaries, const brunt_body *body) 
 int brunt_ghost_step(brunt_ghost *g, const brunt_world *world, const brunt_unknowns *unknowns, brunt_error *error) {
     g->unknowns = unknowns;
     g->runs = 0, g->version++;
-    if (BRUNT_ROOM(g->seen, (size_t)unknowns->count + 1, 0, "unknowns", error) ||
-        BRUNT_ROOM(g->first, 1, 0, "runs of nodes with little material", error))
+    if (BRUNT_CAPACITY(g->seen, (size_t)unknowns->count + 1, 0, "unknowns", error) ||
+        BRUNT_CAPACITY(g->first, 1, 0, "runs of nodes with little material", error))
         return BRUNT_FAILED;
     memset(g->seen, 0, (size_t)unknowns->count);
     g->first[0] = 0;
@@ -148,7 +148,7 @@ static void ghost_hessian(void *term, const brunt_team *team, const double *u, b
     for (int64_t run = 0; run < g->runs; run++) {
         const int length = (int)(g->first[run + 1] - g->first[run]);
         const double *q = differences(g, run);
-        double dense[MOST_RUN * 3 * MOST_RUN * 3] = {0};
+        double dense[RUN_LIMIT * 3 * RUN_LIMIT * 3] = {0};
         for (int e = 0; e < length; e++)
             for (int f = 0; f < length; f++)
                 for (int a = 0; a < dim; a++)

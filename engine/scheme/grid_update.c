@@ -21,7 +21,7 @@ void brunt_grid_sum(void *context, int64_t begin, int64_t end, int worker) {
         for (int c = 0; c < grid->corners; c++) {
             int32_t b = grid->slots[s].source[c];
             if (b < 0) continue;
-            const real *buffer = grid->scatter + (size_t)b * (size_t)grid->span_nodes * 8;
+            const real *buffer = grid->p2g_buffer + (size_t)b * (size_t)grid->span_nodes * 8;
             int step[3] = {0, 0, 0}, n[3] = {1, 1, 1};
             for (int a = 0; a < dim; a++) {
                 bool beyond = c >> (dim - 1 - a) & 1;

@@ -42,7 +42,8 @@ static int choose(brunt_world *world, brunt_step *step, brunt_error *error) {
     const bool still = world->plan.implicit->still;
     const double left = stop - now->time,
                  wanted = still ? brunt_static_wanted(world) : fmin(now->next_dt, world->settings.fixed_step);
-    if (!(left > 0)) return brunt_fail_step(&world->clock, NULL, error, "the end has been reached, there is no step to take");
+    if (!(left > 0))
+        return brunt_fail_step(&world->clock, NULL, error, "the end has been reached, there is no step to take");
     step->dt = wanted >= left * (1 - 1e-9)     ? left
                : !still && left < 1e6 * wanted ? left / ceil(left / wanted * (1 - 1e-9))
                                                : wanted;
@@ -91,7 +92,7 @@ static int commit_points(brunt_world *world, brunt_step *step, brunt_error *erro
 static int commit(brunt_world *world, brunt_step *step, brunt_error *error) {
     struct brunt_implicit *m = world->plan.implicit;
     m->team.timer = brunt_pass_timer(&world->timing);
-    if (brunt_implicit_book(world, step, error)) return brunt_fail_inner(&world->clock, NULL, error);
+    if (brunt_implicit_account(world, step, error)) return brunt_fail_inner(&world->clock, NULL, error);
     const int status = commit_meshes(world, error);
     if (status) return status;
     brunt_newton_counts_add(&world->clock.newton, &m->tried);
@@ -119,7 +120,7 @@ void brunt_newton_counts_add(brunt_newton_counts *sum, const brunt_newton_counts
 const brunt_pass_row brunt_implicit_passes[] = {
     {BRUNT_PASS_PART,  "advance",  "body",     always,    choose,                    all_bodies,    NULL},
     {BRUNT_PASS_WHOLE, "sort",     "particle", particles, brunt_pass_sort,           all_particles, brunt_work_sort},
-    {BRUNT_PASS_BODY,  "scatter",  "particle", particles, brunt_pass_scatter,        all_particles, brunt_work_scatter},
+    {BRUNT_PASS_BODY,  "p2g",      "particle", particles, brunt_pass_p2g,            all_particles, brunt_work_p2g},
     {BRUNT_PASS_BODY,  "grid",     "node",     particles, brunt_pass_grid,           slot_nodes,    brunt_work_grid},
     {BRUNT_PASS_WHOLE, "number",   "node",     always,    brunt_pass_number,         all_unknowns,  NULL},
     {BRUNT_PASS_WHOLE, "newton",   "node",     always,    brunt_pass_newton,         all_unknowns,  NULL},

@@ -21,7 +21,7 @@
 
 // Inertia, loads and the pull of prescribed motion come first, with drag where bodies are damped, what surfaces hold
 // and nodes without material where there are surfaces; then a term for each body, then those of contact.
-enum { BRUNT_MOST_OTHER_TERMS = 3 + 1 + 2 + 2 };
+enum { BRUNT_OTHER_TERM_LIMIT = 3 + 1 + 2 + 2 };
 
 // Of a time integrator.
 typedef struct brunt_weights {
@@ -37,7 +37,7 @@ typedef struct brunt_fields {
     double *acceleration; // [m/s^2] at the start; 0 of backward Euler
     double *load;         // [N] at the end of the step
     double *force_before; // [N] all forces at its start; of Newmark and of load steps
-    double *gradient;     // [N] of all that is stored, at the end once the step is booked
+    double *gradient;     // [N] of all that is stored, at the end once the step is recorded
     double *contact;      // [N] of barriers and friction, as the integrator weighs both ends of the step
     double *step, *zero;  // room; 0
     double *pull;         // [N/m] of components on their way to where they are to be, while they are
@@ -131,7 +131,7 @@ double brunt_static_unbalance(void *context, const double *gradient);
 // The step to try, in parts of a load step; the least part of one that is tried.
 double brunt_static_wanted(const brunt_world *world);
 double brunt_static_least(const brunt_settings *settings);
-// Books the work of forces that are unbalanced where the step begins: particles on a new grid bring them, the
+// Records the work of forces that are unbalanced where the step begins: particles on a new grid bring them, the
 // transfer's; meshes only have them where a run begins, and what they settle by is lost to the scheme.
 void brunt_static_settle(brunt_world *world);
 // Says, once, that a step has jumped: `taken` [J] of the work within bodies is not there at its end.
@@ -143,7 +143,7 @@ void brunt_implicit_drag_before(const struct brunt_implicit *m,
                                 double *force);         // adds the force at the step's start [N]
 void brunt_implicit_drag_aim(struct brunt_implicit *m); // once the aim is known
 // Loss and impulse of a step; adds the force at its end to `field.load`.
-void brunt_implicit_book_drag(brunt_world *world);
+void brunt_implicit_account_drag(brunt_world *world);
 
 // --- implicit_step.c
 // What is asked of bodies from here on.
@@ -154,7 +154,7 @@ void brunt_implicit_follow(brunt_plan *plan);
 // --- implicit_account.c
 // Velocities at the end; kinetic energy, work and impulses of the step, before it is committed. BRUNT_OK, or
 // BRUNT_FAILED: no memory to look at contact.
-int brunt_implicit_book(brunt_world *world, brunt_step *step, brunt_error *error);
+int brunt_implicit_account(brunt_world *world, brunt_step *step, brunt_error *error);
 
 // --- implicit_surface.c: lines and surfaces that hold material points
 // Rows of the step that is tried. BRUNT_OK, or BRUNT_FAILED.
@@ -164,7 +164,7 @@ void brunt_implicit_surfaces_before(const struct brunt_implicit *m, double *forc
 // Keeps the tractions at u: those that the next step begins with.
 void brunt_implicit_surfaces_keep(brunt_world *world);
 // What they did over the step; what they do at its end is added to `field.gradient`. Their tractions are kept.
-void brunt_implicit_book_surfaces(brunt_world *world);
+void brunt_implicit_account_surfaces(brunt_world *world);
 // Adds to a reason why a step has failed which bodies have too few rows to be held; nothing where there are no
 // surfaces.
 void brunt_implicit_surfaces_lack(const brunt_world *world, char *reason, size_t size);
@@ -178,12 +178,12 @@ typedef struct brunt_term_sums {
 // weighed, to `total`.
 int brunt_implicit_sums(const struct brunt_implicit *m, int first, int end, double *total, brunt_term_sums *sums,
                         brunt_error *error);
-int brunt_implicit_book_contact(brunt_world *world, brunt_error *error);
+int brunt_implicit_account_contact(brunt_world *world, brunt_error *error);
 // Where the forces on a node have their moments [m].
 void brunt_implicit_moment_arm(const struct brunt_implicit *m, int32_t n, double x[3]);
-// A force on node n over the step, to a wall's account: as impulses are weighed, and as work is.
+// A force on node n over the step, to a boundary's account: as impulses are weighed, and as work is.
 typedef struct brunt_weighed_force {
     double impulse[3], work[3]; // [N]
 } brunt_weighed_force;
-void brunt_implicit_book_force(const struct brunt_implicit *m, brunt_impulse_account *last, int32_t n,
-                               const brunt_weighed_force *F);
+void brunt_implicit_account_force(const struct brunt_implicit *m, brunt_impulse_account *last, int32_t n,
+                                  const brunt_weighed_force *F);

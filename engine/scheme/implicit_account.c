@@ -24,7 +24,7 @@ static void end_velocities(const struct brunt_implicit *m) {
 }
 
 // Kinetic energies of the grids, and what backward Euler takes of all.
-static double book_kinetic(const struct brunt_implicit *m, brunt_step *step) {
+static double account_kinetic(const struct brunt_implicit *m, brunt_step *step) {
     const brunt_unknowns *u = &m->unknowns;
     double taken = 0;
     step->old_kinetic = step->new_kinetic = 0;
@@ -44,11 +44,12 @@ static double book_kinetic(const struct brunt_implicit *m, brunt_step *step) {
 void brunt_implicit_moment_arm(const struct brunt_implicit *m, int32_t n, double x[3]) {
     const int dim = m->unknowns.dim;
     for (int a = 0; a < 3; a++)
-        x[a] = a < dim ? m->unknowns.place[n * (int64_t)dim + a] + m->weights.moment * m->field.u[n * (int64_t)dim + a]
-                       : 0;
+        x[a] = a < dim
+                   ? m->unknowns.position[n * (int64_t)dim + a] + m->weights.moment * m->field.u[n * (int64_t)dim + a]
+                   : 0;
 }
 
-static void book_gravity(brunt_world *world) {
+static void account_gravity(brunt_world *world) {
     const struct brunt_implicit *m = world->plan.implicit;
     const brunt_unknowns *u = &m->unknowns;
     const double gamma = m->weights.gamma, work = m->weights.work;
@@ -70,9 +71,9 @@ static void book_gravity(brunt_world *world) {
     }
 }
 
-// A force on a node over the step, of a wall's account.
-void brunt_implicit_book_force(const struct brunt_implicit *m, brunt_impulse_account *last, int32_t n,
-                               const brunt_weighed_force *weighed) {
+// A force on a node over the step, of a boundary's account.
+void brunt_implicit_account_force(const struct brunt_implicit *m, brunt_impulse_account *last, int32_t n,
+                                  const brunt_weighed_force *weighed) {
     const double *F = weighed->impulse;
     double x[3];
     brunt_implicit_moment_arm(m, n, x);
@@ -85,7 +86,7 @@ void brunt_implicit_book_force(const struct brunt_implicit *m, brunt_impulse_acc
 }
 
 // Loads on groups of nodes, as they are made for one end of the step.
-static void book_groups(brunt_world *world, double impulse, double work) {
+static void account_groups(brunt_world *world, double impulse, double work) {
     const struct brunt_implicit *m = world->plan.implicit;
     for (int k = 0; k < world->boundaries.sets.count; k++) {
         const brunt_node_set *set = &world->boundaries.sets.set[k];
@@ -93,16 +94,16 @@ static void book_groups(brunt_world *world, double impulse, double work) {
             const double *force = set->force + 3 * (size_t)i;
             const brunt_weighed_force F = {.impulse = {impulse * force[0], impulse * force[1], impulse * force[2]},
                                            .work = {work * force[0], work * force[1], work * force[2]}};
-            brunt_implicit_book_force(m, &set->wall->last, m->unknowns.base[set->fem_index] + set->node[i], &F);
+            brunt_implicit_account_force(m, &set->boundary->last, m->unknowns.base[set->fem_index] + set->node[i], &F);
         }
     }
 }
 
 // ------------------------------------------------------------------------------------------ holders
 
-// What holders and mirrors gave: what is missing of M dv = dt F. `field.gradient` holds that of all forces but loads at
-// the end.
-static void book_holders(brunt_world *world) {
+// What holders and symmetry planes gave: what is missing of M dv = dt F. `field.gradient` holds that of all forces but
+// loads at the end.
+static void account_holders(brunt_world *world) {
     const struct brunt_implicit *m = world->plan.implicit;
     const brunt_unknowns *u = &m->unknowns;
     const brunt_fields *f = &m->field;
@@ -114,34 +115,34 @@ static void book_holders(brunt_world *world) {
         const double inertia = u->mass[k / u->dim] * (v[k] - u->velocity[k]) / m->dt;
         brunt_weighed_force F = {.work = {0}};
         F.impulse[a] = inertia - (1 - gamma) * before - gamma * after;
-        if (u->held[k]) F.work[a] = inertia - (1 - work) * before - work * after; // mirrors do none
-        brunt_implicit_book_force(m, &world->boundaries.walls[u->holder[k] - 1].last, (int32_t)(k / u->dim), &F);
+        if (u->held[k]) F.work[a] = inertia - (1 - work) * before - work * after; // symmetry planes do none
+        brunt_implicit_account_force(m, &world->boundaries.boundary[u->holder[k] - 1].last, (int32_t)(k / u->dim), &F);
     }
 }
 
 // ------------------------------------------------------------------------------------------ the step
 
-int brunt_implicit_book(brunt_world *world, brunt_step *step, brunt_error *error) {
+int brunt_implicit_account(brunt_world *world, brunt_step *step, brunt_error *error) {
     struct brunt_implicit *m = world->plan.implicit;
     const brunt_fields *f = &m->field;
     const double gamma = m->weights.gamma, work = m->weights.work;
     brunt_term_sums bodies;
     if (!m->still) {
         end_velocities(m);
-        world->ledger.scheme += book_kinetic(m, step);
+        world->ledger.scheme += account_kinetic(m, step);
     }
     if (brunt_implicit_sums(m, m->fixed_terms, m->body_terms, NULL, &bodies, error)) return BRUNT_FAILED;
     world->ledger.scheme += bodies.work - (bodies.after - bodies.before);
     memcpy(f->gradient, f->step, (size_t)brunt_implicit_components(m) * sizeof *f->gradient);
-    if (m->contact.barrier && brunt_implicit_book_contact(world, error)) return BRUNT_FAILED;
-    if (m->holds) brunt_implicit_book_surfaces(world);
-    if (world->settings.has_gravity) book_gravity(world);
-    book_groups(world, gamma, work);
-    brunt_implicit_book_drag(world);
-    book_holders(world);
+    if (m->contact.barrier && brunt_implicit_account_contact(world, error)) return BRUNT_FAILED;
+    if (m->holds) brunt_implicit_account_surfaces(world);
+    if (world->settings.has_gravity) account_gravity(world);
+    account_groups(world, gamma, work);
+    brunt_implicit_account_drag(world);
+    account_holders(world);
     if (work < 1 && world->boundaries.sets.count) {
         brunt_loads_begin(&world->boundaries.sets, &world->bodies, world->clock.time, 0);
-        book_groups(world, 1 - gamma, 1 - work);
+        account_groups(world, 1 - gamma, 1 - work);
     }
     if (!m->still) return BRUNT_OK;
     brunt_static_settle(world);

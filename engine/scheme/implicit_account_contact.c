@@ -41,7 +41,7 @@ int brunt_implicit_sums(const struct brunt_implicit *m, int first, int end, doub
         sums->work = (1 - work) * dot(m, f->step, f->u);
         add_weighed(m, 1 - gamma, total);
     }
-    brunt_implicit_ask(m, BRUNT_TRIAL_BOOKS);
+    brunt_implicit_ask(m, BRUNT_TRIAL_ACCOUNT);
     if (evaluate(m, first, end, f->u, &sums->after, error)) return BRUNT_FAILED;
     sums->work += work * dot(m, f->step, f->u);
     add_weighed(m, gamma, total);
@@ -53,7 +53,7 @@ static void add_to_gradient(const struct brunt_implicit *m) {
 }
 
 // Energy that the barriers hold; what the integrator takes of it.
-static int book_barrier(brunt_world *world, brunt_error *error) {
+static int account_barrier(brunt_world *world, brunt_error *error) {
     struct brunt_implicit *m = world->plan.implicit;
     brunt_term_sums sums;
     if (brunt_implicit_sums(m, m->body_terms, m->body_terms + 1, m->field.contact, &sums, error)) return BRUNT_FAILED;
@@ -136,18 +136,18 @@ static int weigh_forces(struct brunt_implicit *m, brunt_barrier_report *report, 
 }
 
 // Moments of all planes together: pairs have none.
-static void book_moments(const struct brunt_implicit *m, brunt_impulse_account *last) {
+static void account_moments(const struct brunt_implicit *m, brunt_impulse_account *last) {
     const brunt_unknowns *u = &m->unknowns;
     brunt_impulse_account moments = {.area = 0};
     for (int32_t n = 0; n < u->count; n++) {
         brunt_weighed_force F = {.work = {0}};
         for (int a = 0; a < u->dim; a++) F.impulse[a] = -m->field.contact[n * (int64_t)u->dim + a];
-        if (u->mass[n] > 0) brunt_implicit_book_force(m, &moments, n, &F);
+        if (u->mass[n] > 0) brunt_implicit_account_force(m, &moments, n, &F);
     }
     for (int a = 0; a < 3; a++) last->angular[a] += moments.angular[a];
 }
 
-static void book_forces(brunt_world *world) {
+static void account_forces(brunt_world *world) {
     const struct brunt_implicit *m = world->plan.implicit;
     const brunt_implicit_contact *c = &m->contact;
     for (int32_t p = 0; p < c->pair_count; p++) {
@@ -157,18 +157,19 @@ static void book_forces(brunt_world *world) {
         last->area = c->force[p].area;
     }
     for (int32_t q = 0; q < c->plane_count; q++) {
-        brunt_boundary *wall = &world->boundaries.walls[c->plane_wall[q]];
+        brunt_boundary *boundary = &world->boundaries.boundary[c->plane_boundary[q]];
         const brunt_barrier_force *force = &c->force[c->pair_count + q],
                                   *working = m->still ? &c->force_before[c->pair_count + q] : force;
-        wall->last.friction_loss += force->heat;
-        wall->last.area = force->area;
+        boundary->last.friction_loss += force->heat;
+        boundary->last.area = force->area;
         for (int a = 0; a < 3; a++) {
             const double F = force->normal[a] + force->friction[a];
-            wall->last.impulse[a] += m->dt * F;
-            wall->last.external_work += m->dt * (working->normal[a] + working->friction[a]) * wall->plane.velocity[a];
+            boundary->last.impulse[a] += m->dt * F;
+            boundary->last.external_work +=
+                m->dt * (working->normal[a] + working->friction[a]) * boundary->plane.velocity[a];
         }
     }
-    if (c->plane_count) book_moments(m, &world->boundaries.walls[c->plane_wall[0]].last);
+    if (c->plane_count) account_moments(m, &world->boundaries.boundary[c->plane_boundary[0]].last);
 }
 
 // A gap that is next to nothing says that the barrier is too soft for what presses.
@@ -182,7 +183,7 @@ static void warn_of_gap(brunt_world *world, const brunt_barrier_report *report) 
                "contact.stiffness is low for what presses there",
                brunt_body_name(world, report->body), world->clock.time,
                report->other < 0 ? "a plane" : brunt_body_name(world, report->other), report->least_part,
-               report->place[0], report->place[1], report->place[2]);
+               report->position[0], report->position[1], report->position[2]);
 }
 
 // Newmark's rule keeps what swings faster than its steps follow: gaps chatter, and pressures with them.
@@ -195,16 +196,16 @@ static void warn_of_chatter(brunt_world *world, const brunt_barrier_stiffest *st
                "%.4g, %.4g) m: gaps and pressures there swing from step to step; below %.2g s, less contact.stiffness "
                "or time.integrator: euler is wanted",
                brunt_body_name(world, stiff->body), world->clock.time, m->dt,
-               stiff->other < 0 ? "a plane" : brunt_body_name(world, stiff->other), stiff->place[0], stiff->place[1],
-               stiff->place[2], stiff->step);
+               stiff->other < 0 ? "a plane" : brunt_body_name(world, stiff->other), stiff->position[0],
+               stiff->position[1], stiff->position[2], stiff->step);
 }
 
-int brunt_implicit_book_contact(brunt_world *world, brunt_error *error) {
+int brunt_implicit_account_contact(brunt_world *world, brunt_error *error) {
     struct brunt_implicit *m = world->plan.implicit;
     brunt_barrier_report report;
     memset(m->field.contact, 0, (size_t)brunt_implicit_components(m) * sizeof *m->field.contact);
-    if (book_barrier(world, error) || weigh_forces(m, &report, error)) return BRUNT_FAILED;
-    book_forces(world);
+    if (account_barrier(world, error) || weigh_forces(m, &report, error)) return BRUNT_FAILED;
+    account_forces(world);
     m->tried.least_gap = report.least_gap, m->tried.least_part = report.least_part;
     warn_of_gap(world, &report);
     warn_of_chatter(world, &report.stiffest);

@@ -46,7 +46,9 @@ static double slowest_wave(const brunt_bodies *bodies) {
 
 // ------------------------------------------------------------------------------------------ pairs and planes
 
-static bool plane_meets(const brunt_boundary *wall, int body) { return wall->body < 0 || wall->body == body; }
+static bool plane_meets(const brunt_boundary *boundary, int body) {
+    return boundary->body < 0 || boundary->body == body;
+}
 
 // Pairs of bodies that barriers keep apart; `c->pair` NULL: counts them.
 static void list_pairs(brunt_implicit_contact *c, const brunt_world *world) {
@@ -67,20 +69,20 @@ static void list_pairs(brunt_implicit_contact *c, const brunt_world *world) {
 
 static void list_planes(brunt_implicit_contact *c, const brunt_boundaries *boundaries) {
     c->plane_count = 0;
-    for (int32_t w = 0; w < boundaries->wall_count; w++) {
-        if (!brunt_boundary_pushes(&boundaries->walls[w])) continue;
-        if (c->plane) c->plane_wall[c->plane_count] = w;
+    for (int32_t w = 0; w < boundaries->boundary_count; w++) {
+        if (!brunt_boundary_pushes(&boundaries->boundary[w])) continue;
+        if (c->plane) c->plane_boundary[c->plane_count] = w;
         c->plane_count++;
     }
 }
 
-static int make_rooms(brunt_implicit_contact *c, const brunt_world *world, brunt_error *error) {
+static int reserve_arrays(brunt_implicit_contact *c, const brunt_world *world, brunt_error *error) {
     list_pairs(c, world);
     list_planes(c, &world->boundaries);
     const size_t pairs = (size_t)c->pair_count + 1, planes = (size_t)c->plane_count + 1;
     static const char of_pairs[] = "pairs of bodies and planes", of_planes[] = "planes that push";
     if (BRUNT_NEW(c->pair, pairs, of_pairs, error) || BRUNT_NEW(c->pair_account, pairs, of_pairs, error) ||
-        BRUNT_NEW(c->plane, planes, of_planes, error) || BRUNT_NEW(c->plane_wall, planes, of_planes, error) ||
+        BRUNT_NEW(c->plane, planes, of_planes, error) || BRUNT_NEW(c->plane_boundary, planes, of_planes, error) ||
         BRUNT_NEW(c->meets, planes, of_planes, error) || BRUNT_NEW(c->force, pairs + planes, of_pairs, error) ||
         BRUNT_NEW(c->force_before, pairs + planes, of_pairs, error) ||
         BRUNT_NEW(c->has_points, world->bodies.mpm_count + 1, "bodies of points", error) ||
@@ -128,7 +130,7 @@ static void fill_pairs(brunt_implicit_contact *c, const brunt_bodies *bodies, co
 
 static void fill_planes(brunt_implicit_contact *c, const brunt_world *world, const brunt_world_def *def, double slip) {
     for (int32_t q = 0; q < c->plane_count; q++) {
-        const brunt_boundary *wall = &world->boundaries.walls[c->plane_wall[q]];
+        const brunt_boundary *boundary = &world->boundaries.boundary[c->plane_boundary[q]];
         double softest = INFINITY;
         for (int b = 0; b < world->bodies.count; b++) {
             if (!c->meets[q][b]) continue;
@@ -141,11 +143,11 @@ static void fill_planes(brunt_implicit_contact *c, const brunt_world *world, con
                                             .offset = c->half,
                                             .distance = c->distance,
                                             .stiffness = def->contact.stiffness,
-                                            .friction = wall->plane.friction,
+                                            .friction = boundary->plane.friction,
                                             .slip_speed = slip,
                                             .energy = brunt_contact_energy(def->contact.method)};
         if (!(def->contact.stiffness > 0)) c->plane[q].stiffness = brunt_barrier_default_stiffness(softest, INFINITY);
-        memcpy(c->plane[q].normal, wall->plane.normal, sizeof c->plane[q].normal);
+        memcpy(c->plane[q].normal, boundary->plane.normal, sizeof c->plane[q].normal);
     }
 }
 
@@ -200,7 +202,7 @@ static int make_surfaces(brunt_implicit_contact *c, const brunt_world *world, br
     if (status) return status;
     const size_t vertices = (size_t)c->vertex_count + 1;
     static const char of_surfaces[] = "vertices of surfaces";
-    if (BRUNT_NEW(c->rest, vertices, of_surfaces, error) || BRUNT_NEW(c->place, vertices, of_surfaces, error) ||
+    if (BRUNT_NEW(c->rest, vertices, of_surfaces, error) || BRUNT_NEW(c->position, vertices, of_surfaces, error) ||
         BRUNT_NEW(c->body, vertices, of_surfaces, error) || BRUNT_NEW(c->node, vertices, of_surfaces, error) ||
         BRUNT_NEW(c->facet, c->facet_count + 1, "facets of surfaces", error))
         return BRUNT_FAILED;
@@ -291,10 +293,10 @@ static int make_points(brunt_implicit_contact *c, const brunt_bodies *bodies, in
     static const char points[] = "points in contact";
     if (count_points(c, bodies, count, nodes, error)) return BRUNT_FAILED;
     const size_t n = (size_t)*count + 1;
-    if (BRUNT_ROOM(c->x, n, 0, points, error) || BRUNT_ROOM(c->area, n, 0, points, error) ||
-        BRUNT_ROOM(c->owner, n, 0, points, error))
+    if (BRUNT_CAPACITY(c->x, n, 0, points, error) || BRUNT_CAPACITY(c->area, n, 0, points, error) ||
+        BRUNT_CAPACITY(c->owner, n, 0, points, error))
         return BRUNT_FAILED;
-    return BRUNT_ROOM(c->first, n + 1, 0, points, error);
+    return BRUNT_CAPACITY(c->first, n + 1, 0, points, error);
 }
 
 // Material points as they begin, which nothing moves yet.
@@ -327,7 +329,8 @@ static int look_at_start(brunt_implicit_contact *c, const brunt_world *world, br
     const int status = place_points(c, &world->bodies, error);
     if (status) return status;
     for (int32_t q = 0; q < c->plane_count; q++)
-        memcpy(c->plane[q].origin, world->boundaries.walls[c->plane_wall[q]].plane.point, sizeof c->plane[q].origin);
+        memcpy(c->plane[q].origin, world->boundaries.boundary[c->plane_boundary[q]].plane.point,
+               sizeof c->plane[q].origin);
     const brunt_barrier_step step = {.x = (const double(*)[3])c->rest,
                                      .node = c->node,
                                      .particles = {.count = c->point_count,
@@ -357,34 +360,34 @@ static int check_gaps(brunt_implicit_contact *c, brunt_world *world, bool given,
     if (status || !(r.least_gap < WITHIN * c->distance)) return status;
     char to[2 * BRUNT_NAME_LENGTH];
     if (r.plane >= 0)
-        snprintf(to, sizeof to, "the plane '%s'", world->boundaries.walls[c->plane_wall[r.plane]].name);
+        snprintf(to, sizeof to, "the plane '%s'", world->boundaries.boundary[c->plane_boundary[r.plane]].name);
     else
         snprintf(to, sizeof to, "bodies.%s", brunt_body_name(world, r.other));
     if (r.least_gap > 0) {
         brunt_warn(&world->messages,
                    "bodies.%s begins with a gap of %.4g m to %s, at (%.6g, %.6g, %.6g) m: within contact.distance, "
                    "%.4g m%s, barriers push; they store %.3g J at the start, all bodies move with %.3g J",
-                   brunt_body_name(world, r.body), r.least_gap, to, r.place[0], r.place[1], r.place[2], c->distance,
-                   given ? "" : " by default", r.energy, kinetic_energy(world));
+                   brunt_body_name(world, r.body), r.least_gap, to, r.position[0], r.position[1], r.position[2],
+                   c->distance, given ? "" : " by default", r.energy, kinetic_energy(world));
         return BRUNT_OK;
     }
     return brunt_fail(error, BRUNT_BAD_INPUT,
                       "bodies.%s has a gap of %.4g m to %s at the start, at (%.6g, %.6g, %.6g) m: barriers want more "
                       "than 0 m, %.4g m to begin without a force",
-                      brunt_body_name(world, r.body), r.least_gap + 0.0, to, r.place[0], r.place[1], r.place[2],
-                      c->distance);
+                      brunt_body_name(world, r.body), r.least_gap + 0.0, to, r.position[0], r.position[1],
+                      r.position[2], c->distance);
 }
 
 // ------------------------------------------------------------------------------------------ making
 
 int brunt_implicit_contact_make(brunt_implicit_contact *c, brunt_world *world, const brunt_world_def *def,
                                 brunt_error *error) {
-    int status = make_rooms(c, world, error);
+    int status = reserve_arrays(c, world, error);
     if (status || c->pair_count + c->plane_count == 0) return status;
     const double slip = def->contact.slip_speed > 0 ? def->contact.slip_speed : 1e-3 * slowest_wave(&world->bodies);
     for (int32_t q = 0; q < c->plane_count; q++)
         for (int b = 0; b < world->bodies.count; b++)
-            c->meets[q][b] = plane_meets(&world->boundaries.walls[c->plane_wall[q]], b);
+            c->meets[q][b] = plane_meets(&world->boundaries.boundary[c->plane_boundary[q]], b);
     c->distance = contact_distance(c, &world->bodies, &def->contact);
     fill_pairs(c, &world->bodies, def, slip);
     fill_planes(c, world, def, slip);
@@ -416,10 +419,11 @@ bool brunt_world_barrier(const brunt_world *world, brunt_barrier_values *values)
 void brunt_implicit_contact_free(brunt_implicit_contact *c) {
     brunt_barrier_free(c->barrier);
     for (int32_t q = 0; c->meets && q < c->plane_count; q++) brunt_free(c->meets[q]);
-    void *const all[] = {c->rest,       c->place,        c->body,         c->node,        c->facet,      c->has_points,
-                         c->x,          c->area,         c->weight,       c->owner,       c->half,       c->first,
-                         c->point_node, c->pair,         c->pair_account, c->plane,       c->plane_wall, c->meets,
-                         c->force,      c->force_before, c->before,       c->inverse_mass};
+    void *const all[] = {
+        c->rest,       c->position,     c->body,         c->node,        c->facet,          c->has_points,
+        c->x,          c->area,         c->weight,       c->owner,       c->half,           c->first,
+        c->point_node, c->pair,         c->pair_account, c->plane,       c->plane_boundary, c->meets,
+        c->force,      c->force_before, c->before,       c->inverse_mass};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) brunt_free(all[k]);
     *c = (brunt_implicit_contact){.barrier = NULL};
 }
@@ -430,7 +434,7 @@ size_t brunt_implicit_contact_bytes(const brunt_implicit_contact *c) {
            c->inverse_mass_capacity;
 }
 
-void brunt_implicit_contact_validate(const brunt_implicit_contact *c, int bodies, int walls, int pairs) {
+void brunt_implicit_contact_validate(const brunt_implicit_contact *c, int bodies, int boundaries, int pairs) {
     if (!c->barrier) return;
     brunt_barrier_validate(c->barrier);
     for (int32_t v = 0; v < c->vertex_count; v++)
@@ -440,7 +444,8 @@ void brunt_implicit_contact_validate(const brunt_implicit_contact *c, int bodies
         BRUNT_ASSERT(pair->a >= 0 && pair->a <= pair->b && pair->b < bodies);
         BRUNT_ASSERT(c->pair_account[p] >= 0 && c->pair_account[p] < pairs);
     }
-    for (int32_t q = 0; q < c->plane_count; q++) BRUNT_ASSERT(c->plane_wall[q] >= 0 && c->plane_wall[q] < walls);
+    for (int32_t q = 0; q < c->plane_count; q++)
+        BRUNT_ASSERT(c->plane_boundary[q] >= 0 && c->plane_boundary[q] < boundaries);
     for (int32_t i = 0; i < c->point_count; i++)
         BRUNT_ASSERT(c->owner[i] >= 0 && c->owner[i] < bodies && c->first[i] <= c->first[i + 1]);
 }
@@ -506,8 +511,8 @@ int brunt_implicit_contact_points(brunt_implicit_contact *c, const brunt_bodies 
     int64_t nodes;
     int32_t count;
     if (make_points(c, bodies, &count, &nodes, error) ||
-        BRUNT_ROOM(c->point_node, (size_t)nodes + 1, 0, "nodes of points in contact", error) ||
-        BRUNT_ROOM(c->weight, (size_t)nodes + 1, 0, "nodes of points in contact", error))
+        BRUNT_CAPACITY(c->point_node, (size_t)nodes + 1, 0, "nodes of points in contact", error) ||
+        BRUNT_CAPACITY(c->weight, (size_t)nodes + 1, 0, "nodes of points in contact", error))
         return BRUNT_FAILED;
     c->first[0] = 0;
     c->point_count = 0;
@@ -520,16 +525,16 @@ int brunt_implicit_contact_points(brunt_implicit_contact *c, const brunt_bodies 
     }
     for (int32_t v = 0; v < c->vertex_count; v++) {
         const int32_t unknown = c->node[v];
-        for (int a = 0; a < u->dim; a++) c->place[v][a] = u->place[unknown * (int64_t)u->dim + a];
+        for (int a = 0; a < u->dim; a++) c->position[v][a] = u->position[unknown * (int64_t)u->dim + a];
     }
     return BRUNT_OK;
 }
 
-// How lightly nodes move, with their images; those that are given do not. Nobody asks of backward Euler, nor once it
-// has been said that a step is too long.
+// How lightly nodes move, with their images; those that are given do not. It is not asked of backward Euler, nor once
+// it has been said that a step is too long.
 static int take_inverse_mass(brunt_implicit_contact *c, const brunt_unknowns *u, brunt_error *error) {
     const double *images = u->images.any ? u->images.mass : NULL;
-    if (BRUNT_ROOM(c->inverse_mass, (size_t)u->count + 1, 0, "unknowns", error)) return BRUNT_FAILED;
+    if (BRUNT_CAPACITY(c->inverse_mass, (size_t)u->count + 1, 0, "unknowns", error)) return BRUNT_FAILED;
     for (int32_t n = 0; n < u->count; n++) {
         const int32_t leader = images ? u->images.leader[n] : n;
         double mass = images ? 0 : u->mass[n];
@@ -547,16 +552,16 @@ int brunt_implicit_contact_begin(brunt_implicit_contact *c, const brunt_world *w
                                  const brunt_team *team, const brunt_contact_rule *rule, brunt_error *error) {
     if (!c->barrier) return BRUNT_OK;
     const int64_t all = (int64_t)u->count * u->dim;
-    if (BRUNT_ROOM(c->before, (size_t)all + 1, 0, "unknowns", error)) return BRUNT_FAILED;
+    if (BRUNT_CAPACITY(c->before, (size_t)all + 1, 0, "unknowns", error)) return BRUNT_FAILED;
     for (int64_t k = 0; k < all; k++) c->before[k] = rule->dt * u->velocity[k];
     const bool asks = rule->factor != 1 && !world->clock.chatter_told;
     if (asks && take_inverse_mass(c, u, error)) return BRUNT_FAILED;
     for (int32_t q = 0; q < c->plane_count; q++) {
-        const brunt_plane_def *plane = &world->boundaries.walls[c->plane_wall[q]].plane;
-        c->plane[q].node = u->plane[c->plane_wall[q]];
+        const brunt_plane_def *plane = &world->boundaries.boundary[c->plane_boundary[q]].plane;
+        c->plane[q].node = u->plane[c->plane_boundary[q]];
         for (int a = 0; a < 3; a++) c->plane[q].origin[a] = plane->point[a] + plane->velocity[a] * world->clock.time;
     }
-    const brunt_barrier_step step = {.x = (const double(*)[3])c->place,
+    const brunt_barrier_step step = {.x = (const double(*)[3])c->position,
                                      .node = c->node,
                                      .particles = {.count = c->point_count,
                                                    .x = (const double(*)[3])c->x,

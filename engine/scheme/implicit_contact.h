@@ -9,8 +9,8 @@ typedef struct brunt_implicit_contact {
     brunt_barrier *barrier; // NULL: nothing meets
     // Surfaces, by the bodies of elements in their order: made once.
     int32_t vertex_count, facet_count;
-    double (*rest)[3], (*place)[3]; // [m] at the start of the run, of the step
-    int32_t *body, *node;           // of each vertex: the body among all, its block node
+    double (*rest)[3], (*position)[3]; // [m] at the start of the run, of the step
+    int32_t *body, *node;              // of each vertex: the body among all, its block node
     int32_t (*facet)[4];
     // Points, made for each step.
     bool *has_points; // of each body of points: whether it meets something
@@ -23,7 +23,7 @@ typedef struct brunt_implicit_contact {
     int32_t *pair_account; // among world->pairs
     int32_t pair_count;
     brunt_barrier_plane *plane;
-    int32_t *plane_wall;
+    int32_t *plane_boundary;
     bool **meets; // of each plane: the bodies it is for
     int32_t plane_count;
     brunt_barrier_force *force, *force_before; // pairs, then planes
@@ -39,7 +39,7 @@ int brunt_implicit_contact_make(brunt_implicit_contact *c, brunt_world *world, c
                                 brunt_error *error);
 void brunt_implicit_contact_free(brunt_implicit_contact *c);
 // Aborts where surfaces, pairs and planes are not of what there is: so many bodies, boundaries and pairs of the world.
-void brunt_implicit_contact_validate(const brunt_implicit_contact *c, int bodies, int walls, int pairs);
+void brunt_implicit_contact_validate(const brunt_implicit_contact *c, int bodies, int boundaries, int pairs);
 size_t brunt_implicit_contact_bytes(const brunt_implicit_contact *c);
 // Places and weights of a step, whose unknowns have numbers. BRUNT_OK, or BRUNT_FAILED.
 int brunt_implicit_contact_points(brunt_implicit_contact *c, const brunt_bodies *bodies, const brunt_unknowns *u,

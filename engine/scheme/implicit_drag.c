@@ -8,8 +8,8 @@
 int brunt_implicit_drag_number(struct brunt_implicit *m, const brunt_world *world, brunt_error *error) {
     const brunt_unknowns *u = &m->unknowns;
     if (!world->boundaries.damping.active) return BRUNT_OK;
-    if (BRUNT_ROOM(m->drag_weight, (size_t)u->count + 1, 0, "damped unknowns", error) ||
-        BRUNT_ROOM(m->drag_rest, (size_t)brunt_implicit_components(m) + 1, 0, "damped unknowns", error))
+    if (BRUNT_CAPACITY(m->drag_weight, (size_t)u->count + 1, 0, "damped unknowns", error) ||
+        BRUNT_CAPACITY(m->drag_rest, (size_t)brunt_implicit_components(m) + 1, 0, "damped unknowns", error))
         return BRUNT_FAILED;
     for (int32_t n = 0; n < u->count; n++) m->drag_weight[n] = 0;
     for (int k = 0; k < world->bodies.fem_count; k++) {
@@ -36,7 +36,7 @@ void brunt_implicit_drag_aim(struct brunt_implicit *m) {
     }
 }
 
-void brunt_implicit_book_drag(brunt_world *world) {
+void brunt_implicit_account_drag(brunt_world *world) {
     struct brunt_implicit *m = world->plan.implicit;
     const brunt_unknowns *u = &m->unknowns;
     const double gamma = m->weights.gamma;
@@ -48,7 +48,7 @@ void brunt_implicit_book_drag(brunt_world *world) {
             const int64_t k = n * (int64_t)u->dim + a;
             const double after = -m->drag.weight[n] * m->field.v[k];
             F[a] = gamma * after - (1 - gamma) * m->drag.weight[n] * u->velocity[k];
-            m->field.load[k] += after; // what holders give is what is missing: see book_holders
+            m->field.load[k] += after; // what holders give is what is missing: see account_holders
             done->loss -= F[a] * m->field.u[k];
             done->impulse[a] += m->dt * F[a];
         }

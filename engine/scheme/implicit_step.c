@@ -181,9 +181,9 @@ static void let_go(struct brunt_implicit *m) {
 // Held components go to their places if nothing is in the way. Otherwise heavy weights draw them there, together with
 // what they push, so that the energy of all that moves can be compared; what little is left is lost then.
 static int go_and_minimise(struct brunt_implicit *m, brunt_newton_report *report, brunt_error *error) {
-    enum { MOST = 6 };
+    enum { ROUND_LIMIT = 6 };
     double heavy = 1e7;
-    for (int k = 0; k < MOST; k++, heavy *= 10) {
+    for (int k = 0; k < ROUND_LIMIT; k++, heavy *= 10) {
         double way;
         if (free_way(m, &way, error)) return BRUNT_FAILED;
         if (way == 1) {
@@ -248,7 +248,7 @@ static int fail_try(brunt_world *world, double wanted, const brunt_newton_report
         snprintf(tried, sizeof tried, "a step of %.4g s", m->dt);
     const bool off = report->result == BRUNT_NEWTON_ITERATIONS && report->balance > 1;
     const int32_t n = off ? m->off.node : (int32_t)(dof / m->unknowns.dim);
-    const brunt_unknown_place at = brunt_unknowns_place(&m->unknowns, &world->bodies, n);
+    const brunt_unknown_location at = brunt_unknowns_location(&m->unknowns, &world->bodies, n);
     if (off)
         snprintf(
             reason, sizeof reason,
@@ -260,18 +260,18 @@ static int fail_try(brunt_world *world, double wanted, const brunt_newton_report
                  "%s, halved %d times (newton.cut), does not converge: %s The greatest force left is %.3g N", tried,
                  halved, why, report->residual);
     brunt_implicit_surfaces_lack(world, reason, sizeof reason);
-    return brunt_fail_place(world, at.body, at.x, error, reason);
+    return brunt_fail_position(world, at.body, at.x, error, reason);
 }
 
 // What may leave a surface, and friction there, settles over several minima: each is with the multipliers of the last.
 static int settle(struct brunt_implicit *m, brunt_newton_report *report, brunt_error *error) {
-    enum { MOST = 60 };
-    for (int k = 0; k < MOST; k++) {
+    enum { ROUND_LIMIT = 60 };
+    for (int k = 0; k < ROUND_LIMIT; k++) {
         if (!brunt_boundary_rows_settle(&m->rows, m->field.u)) return BRUNT_OK;
         if (minimise(m, report, error)) return BRUNT_FAILED;
     }
     report->result = BRUNT_NEWTON_ITERATIONS;
-    return brunt_fail(error, BRUNT_FAILED, "friction at boundaries does not settle within %d solutions.", MOST);
+    return brunt_fail(error, BRUNT_FAILED, "friction at boundaries does not settle within %d solutions.", ROUND_LIMIT);
 }
 
 static int solve_step(brunt_world *world, double dt, brunt_newton_report *report, brunt_error *error) {
@@ -313,15 +313,15 @@ static int try_step(brunt_world *world, double dt, brunt_newton_report *report, 
 // Planes that hold what lies on them do not push what comes to them.
 static int check_planes(const brunt_world *world, brunt_error *error) {
     const struct brunt_implicit *m = world->plan.implicit;
-    const brunt_boundary *wall;
+    const brunt_boundary *boundary;
     char reason[160];
-    const int32_t n = brunt_unknowns_passed(&m->unknowns, world, m->field.u, m->dt, &wall);
+    const int32_t n = brunt_unknowns_passed(&m->unknowns, world, m->field.u, m->dt, &boundary);
     if (n < 0) return BRUNT_OK;
-    const brunt_unknown_place at = brunt_unknowns_place(&m->unknowns, &world->bodies, n);
+    const brunt_unknown_location at = brunt_unknowns_location(&m->unknowns, &world->bodies, n);
     snprintf(reason, sizeof reason,
              "a node comes to the plane '%s' from afar, which holds what lies on it: condition separate is wanted",
-             wall->name);
-    return brunt_fail_place(world, at.body, at.x, error, reason);
+             boundary->name);
+    return brunt_fail_position(world, at.body, at.x, error, reason);
 }
 
 // What was tried counts, and nothing else of the step is kept: but the tractions that Newmark's first one has found.

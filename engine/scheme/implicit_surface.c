@@ -27,13 +27,13 @@ void brunt_implicit_surfaces_before(const struct brunt_implicit *m, double *forc
 // ------------------------------------------------------------------------------------------ the account
 
 // Impulses, and their moments about the origin.
-static void book_impulses(const struct brunt_implicit *m, int32_t patch, const double t[3],
-                          brunt_impulse_account *last) {
+static void account_impulses(const struct brunt_implicit *m, int32_t patch, const double t[3],
+                             brunt_impulse_account *last) {
     brunt_impulse_account part = {.area = 0};
     brunt_weighed_force F = {.work = {0}}; // told beside, by rows
     for (int64_t k = m->rows.first[patch]; k < m->rows.first[patch + 1]; k++) {
         brunt_boundary_patch_force(&m->rows, patch, k, t, F.impulse);
-        brunt_implicit_book_force(m, &part, m->rows.node[k], &F);
+        brunt_implicit_account_force(m, &part, m->rows.node[k], &F);
     }
     for (int a = 0; a < 3; a++) last->impulse[a] += part.impulse[a], last->angular[a] += part.angular[a];
 }
@@ -44,7 +44,7 @@ static double rate_of(const struct brunt_implicit *m, int32_t patch) {
     const int dim = m->unknowns.dim;
     double most = 0;
     for (int row = 0; row < (p->leaves ? 0 : p->rows); row++) {
-        double rate = -p->wall[row] / m->dt;
+        double rate = -p->prescribed[row] / m->dt;
         for (int64_t k = m->rows.first[patch]; k < m->rows.first[patch + 1]; k++)
             for (int a = 0; a < dim; a++)
                 rate += m->rows.weight[k][3 * row + a] * m->field.v[m->rows.node[k] * (int64_t)dim + a];
@@ -53,26 +53,26 @@ static double rate_of(const struct brunt_implicit *m, int32_t patch) {
     return most;
 }
 
-static void book_patch(struct brunt_implicit *m, int32_t patch) {
+static void account_patch(struct brunt_implicit *m, int32_t patch) {
     const brunt_boundary_patch *p = &m->rows.patch[patch];
     brunt_boundary_surface *s = p->surface;
-    brunt_impulse_account *last = &s->wall->last;
+    brunt_impulse_account *last = &s->boundary->last;
     const double gamma = m->weights.gamma;
     double t[3], moved[3], mean[3] = {0, 0, 0};
     brunt_boundary_patch_traction(&m->rows, patch, m->field.u, t, moved);
     add_forces(m, patch, t, -1, m->field.gradient);
     for (int k = 0; k < p->rows; k++) {
         mean[k] = gamma * t[k] + (1 - gamma) * p->before[k];
-        last->external_work -= mean[k] * p->wall[k];
+        last->external_work -= mean[k] * p->prescribed[k];
         *(k == 0 || !p->rubs ? &last->normal_loss : &last->friction_loss) += mean[k] * moved[k];
     }
-    book_impulses(m, patch, mean, last);
+    account_impulses(m, patch, mean, last);
     if (!(p->leaves && t[0] == 0)) last->area += p->size, s->active++;
     s->drift = fmax(s->drift, rate_of(m, patch));
 }
 
 // What holds nodes without material stores nothing.
-static void book_ghost(brunt_world *world) {
+static void account_ghost(brunt_world *world) {
     struct brunt_implicit *m = world->plan.implicit;
     const int64_t all = brunt_implicit_components(m);
     memset(m->field.step, 0, (size_t)all * sizeof *m->field.step);
@@ -98,13 +98,13 @@ void brunt_implicit_surfaces_keep(brunt_world *world) {
     }
 }
 
-void brunt_implicit_book_surfaces(brunt_world *world) {
+void brunt_implicit_account_surfaces(brunt_world *world) {
     struct brunt_implicit *m = world->plan.implicit;
     for (int k = 0; k < world->boundaries.surfaces.count; k++)
         world->boundaries.surfaces.surface[k].active = 0, world->boundaries.surfaces.surface[k].drift = 0;
-    for (int32_t p = 0; p < m->rows.patch_count; p++) book_patch(m, p);
+    for (int32_t p = 0; p < m->rows.patch_count; p++) account_patch(m, p);
     brunt_implicit_surfaces_keep(world);
-    book_ghost(world);
+    account_ghost(world);
 }
 
 // ------------------------------------------------------------------------------------------ what is missing

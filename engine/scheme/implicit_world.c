@@ -53,7 +53,7 @@ static int measure_systems(const brunt_world *world, brunt_linear_size *size, br
 }
 
 static void choose_solver(struct brunt_implicit *m, brunt_solver wanted) {
-    enum { MOST_ITERATIONS = 300, MANY_ITERATIONS = 20000 };
+    enum { ITERATION_LIMIT = 300, MANY_ITERATIONS = 20000 };
     m->choice = brunt_linear_choose(&m->size);
     if (m->still) { // whether an equilibrium is stable it says beside
         m->choice.solver = &brunt_linear_direct;
@@ -75,7 +75,7 @@ static void choose_solver(struct brunt_implicit *m, brunt_solver wanted) {
     // What is left of a correction falls as its square only where systems are solved exactly.
     m->options.early = m->options.solver != &brunt_linear_pcg;
     m->options.fallback = wanted == BRUNT_SOLVER_AUTO && !m->forces;
-    m->options.linear_iterations = m->options.fallback ? MOST_ITERATIONS : MANY_ITERATIONS;
+    m->options.linear_iterations = m->options.fallback ? ITERATION_LIMIT : MANY_ITERATIONS;
 }
 
 // ------------------------------------------------------------------------------------------ what is small
@@ -195,7 +195,7 @@ int brunt_implicit_make(brunt_world *world, const brunt_world_def *def, brunt_er
     m->holds = world->boundaries.surfaces.count > 0;
     if (BRUNT_NEW(m->fem, bodies->fem_count + 1, "potentials of meshes", error) ||
         BRUNT_NEW(m->mpm, bodies->mpm_count + 1, "potentials of bodies of points", error) ||
-        BRUNT_NEW(m->term, bodies->count + BRUNT_MOST_OTHER_TERMS, "terms of a step", error) ||
+        BRUNT_NEW(m->term, bodies->count + BRUNT_OTHER_TERM_LIMIT, "terms of a step", error) ||
         brunt_unknowns_make(&m->unknowns, world, error))
         return BRUNT_FAILED;
     set_options(world, m);
@@ -220,8 +220,8 @@ void brunt_implicit_validate(const struct brunt_implicit *m, const brunt_bodies 
     BRUNT_ASSERT(m->term_count == m->body_terms + (m->contact.barrier != NULL) + m->rubs);
     for (int t = 0; t < m->term_count; t++) BRUNT_ASSERT(m->term[t].ops && m->term[t].self);
     BRUNT_ASSERT(m->team.threads >= 1 && m->dt >= 0 && m->options.solver && m->options.tolerance >= 0);
-    brunt_unknowns_validate(&m->unknowns, bodies, boundaries->wall_count);
-    brunt_implicit_contact_validate(&m->contact, bodies->count, boundaries->wall_count, pairs);
+    brunt_unknowns_validate(&m->unknowns, bodies, boundaries->boundary_count);
+    brunt_implicit_contact_validate(&m->contact, bodies->count, boundaries->boundary_count, pairs);
     brunt_newton_validate(&m->newton);
 }
 
@@ -256,15 +256,18 @@ static int reserve(const brunt_bodies *bodies, struct brunt_implicit *m, brunt_e
     size_t most = 1;
     for (int i = 0; i < bodies->mpm_count; i++)
         if ((size_t)bodies->mpm[i].particles.slots > most) most = (size_t)bodies->mpm[i].particles.slots;
-    const bool failed =
-        m->still ? BRUNT_ROOM(f->stiffness, n, 0, "unknowns", error) || BRUNT_ROOM(f->grounded, n, 0, "unknowns", error)
-                 : BRUNT_ROOM(f->v, n, 0, "unknowns", error) || BRUNT_ROOM(f->aim, n, 0, "unknowns", error) ||
-                       BRUNT_ROOM(f->acceleration, n, 0, "unknowns", error);
-    return failed || BRUNT_ROOM(f->u, n, 0, "unknowns", error) || BRUNT_ROOM(f->load, n, 0, "unknowns", error) ||
-           BRUNT_ROOM(f->force_before, n, 0, "unknowns", error) || BRUNT_ROOM(f->gradient, n, 0, "unknowns", error) ||
-           BRUNT_ROOM(f->contact, n, 0, "unknowns", error) || BRUNT_ROOM(f->step, n, 0, "unknowns", error) ||
-           BRUNT_ROOM(f->zero, n, 0, "unknowns", error) || BRUNT_ROOM(f->pull, n, 0, "unknowns", error) ||
-           BRUNT_ROOM(m->moved, most * (size_t)m->unknowns.dim, 0, "ways of particles", error);
+    const bool failed = m->still ? BRUNT_CAPACITY(f->stiffness, n, 0, "unknowns", error) ||
+                                       BRUNT_CAPACITY(f->grounded, n, 0, "unknowns", error)
+                                 : BRUNT_CAPACITY(f->v, n, 0, "unknowns", error) ||
+                                       BRUNT_CAPACITY(f->aim, n, 0, "unknowns", error) ||
+                                       BRUNT_CAPACITY(f->acceleration, n, 0, "unknowns", error);
+    return failed || BRUNT_CAPACITY(f->u, n, 0, "unknowns", error) ||
+           BRUNT_CAPACITY(f->load, n, 0, "unknowns", error) ||
+           BRUNT_CAPACITY(f->force_before, n, 0, "unknowns", error) ||
+           BRUNT_CAPACITY(f->gradient, n, 0, "unknowns", error) ||
+           BRUNT_CAPACITY(f->contact, n, 0, "unknowns", error) || BRUNT_CAPACITY(f->step, n, 0, "unknowns", error) ||
+           BRUNT_CAPACITY(f->zero, n, 0, "unknowns", error) || BRUNT_CAPACITY(f->pull, n, 0, "unknowns", error) ||
+           BRUNT_CAPACITY(m->moved, most * (size_t)m->unknowns.dim, 0, "ways of particles", error);
 }
 
 int brunt_pass_number(brunt_world *world, brunt_step *step, brunt_error *error) {

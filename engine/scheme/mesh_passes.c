@@ -97,7 +97,7 @@ static void strain_elements(void *context, int64_t begin, int64_t end, int worke
 }
 
 // Gravity's work is taken at the mean of the velocities before the kick and after all impulses.
-static void book_gravity(brunt_world *world, const double gravity[3], double dt) {
+static void account_gravity(brunt_world *world, const double gravity[3], double dt) {
     for (int64_t t = 0; t < world->bodies.tasks.node_count; t++) {
         const brunt_fem_sums *s = &world->bodies.tasks.sums[t];
         for (int a = 0; a < 3; a++) {
@@ -135,7 +135,7 @@ int brunt_pass_groups(brunt_world *world, brunt_step *step, brunt_error *error) 
     const brunt_node_set *lost = world->boundaries.sets.gas_lost;
     if (!lost) return BRUNT_OK;
     char reason[200];
-    snprintf(reason, sizeof reason, "boundaries (%s): the gas's volume has become %.4g m^3", lost->wall->name,
+    snprintf(reason, sizeof reason, "boundaries (%s): the gas's volume has become %.4g m^3", lost->boundary->name,
              lost->gas_volume);
     return brunt_fail_step(&world->clock, NULL, error, reason);
 }
@@ -155,7 +155,7 @@ int brunt_pass_drift(brunt_world *world, brunt_step *step, brunt_error *error) {
     job j = {world, step->gravity, step->dt};
     brunt_parallel(world->settings.threads, world->bodies.tasks.node_count, 1, drift_nodes, &j,
                    brunt_pass_timer(&world->timing));
-    if (world->settings.has_gravity) book_gravity(world, step->gravity, step->kick);
+    if (world->settings.has_gravity) account_gravity(world, step->gravity, step->kick);
     world->ledger.fem_kinetic = 0;
     for (int64_t t = 0; t < world->bodies.tasks.node_count; t++)
         world->ledger.fem_kinetic += world->bodies.tasks.sums[t].kinetic;

@@ -17,21 +17,20 @@ typedef struct body_job {
     double dt;
 } body_job;
 
-static void scatter_blocks(void *context, int64_t begin, int64_t end, int worker) {
+static void p2g_blocks(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     const body_job *job = context;
-    brunt_p2g_fn *scatter =
+    brunt_p2g_fn *p2g =
         brunt_total_lagrangian(&job->body->particles) ? job->world->transfers.total_p2g : job->world->transfers.p2g;
-    for (int64_t b = begin; b < end; b++) scatter(job->body, (int32_t)b, (real)job->dt);
+    for (int64_t b = begin; b < end; b++) p2g(job->body, (int32_t)b, (real)job->dt);
 }
 
-static void gather_blocks(void *context, int64_t begin, int64_t end, int worker) {
+static void g2p_blocks(void *context, int64_t begin, int64_t end, int worker) {
     const body_job *job = context;
-    brunt_g2p_fn *gather =
+    brunt_g2p_fn *g2p =
         brunt_total_lagrangian(&job->body->particles) ? job->world->transfers.total_g2p : job->world->transfers.g2p;
     for (int64_t b = begin; b < end; b++)
-        gather(job->body, (int32_t)b, (real)job->dt, (real)job->world->settings.flip,
-               &job->world->scratch.points[worker]);
+        g2p(job->body, (int32_t)b, (real)job->dt, (real)job->world->settings.flip, &job->world->scratch.points[worker]);
 }
 
 int brunt_pass_sort(brunt_world *world, brunt_step *step, brunt_error *error) {
@@ -45,8 +44,8 @@ int brunt_pass_sort(brunt_world *world, brunt_step *step, brunt_error *error) {
         int32_t most = 0;
         for (int32_t b = 0; b < grid->block_count; b++)
             if (grid->blocks[b].count > most) most = grid->blocks[b].count;
-        if (BRUNT_ROOM(body->report, (size_t)grid->block_count, 0, "reports of blocks of particles", error) ||
-            BRUNT_ROOM(world->scratch.node_sums, (size_t)grid->slot_count, 0, "sums of blocks of nodes", error))
+        if (BRUNT_CAPACITY(body->report, (size_t)grid->block_count, 0, "reports of blocks of particles", error) ||
+            BRUNT_CAPACITY(world->scratch.node_sums, (size_t)grid->slot_count, 0, "sums of blocks of nodes", error))
             return brunt_fail_inner(&world->clock, body, error);
         for (int t = 0; t < world->settings.threads; t++)
             if (brunt_workspace_fit(&world->scratch.points[t], grid, most, error))
@@ -55,24 +54,24 @@ int brunt_pass_sort(brunt_world *world, brunt_step *step, brunt_error *error) {
     return BRUNT_OK;
 }
 
-static bool acts_on(const brunt_boundary *wall, const brunt_body *body) {
-    return wall->body < 0 || wall->body == body->index;
+static bool acts_on(const brunt_boundary *boundary, const brunt_body *body) {
+    return boundary->body < 0 || boundary->body == body->index;
 }
 
-// Sums of the grid's nodes and of their images by the mirrors that act on a body, booked when `booked`. What the axis
-// of rings does never is: its impulses cancel around the circle.
-static void fold_mirrors(brunt_boundaries *boundaries, brunt_body *body, double taken, bool booked) {
-    brunt_symmetry_plane mirrors[BRUNT_MAX_PLANES];
+// Sums of the grid's nodes and of their images by the symmetry planes that act on a body, recorded when `accounted`.
+// What the axis of rings does never is: its impulses cancel around the circle.
+static void fold_symmetry(brunt_boundaries *boundaries, brunt_body *body, double taken, bool accounted) {
+    brunt_symmetry_plane symmetry[BRUNT_MAX_PLANES];
     brunt_impulse_account unbooked = {.external_work = 0}, *account[BRUNT_MAX_PLANES];
     int count = 0;
-    for (int m = 0; m < boundaries->mirror_count; m++) {
-        const int w = boundaries->mirrors[m].wall;
-        brunt_boundary *wall = w < 0 ? NULL : &boundaries->walls[w];
-        if (wall && !acts_on(wall, body)) continue;
-        account[count] = wall && booked ? &wall->last : &unbooked;
-        mirrors[count++] = boundaries->mirrors[m];
+    for (int m = 0; m < boundaries->symmetry_count; m++) {
+        const int w = boundaries->symmetry[m].boundary;
+        brunt_boundary *boundary = w < 0 ? NULL : &boundaries->boundary[w];
+        if (boundary && !acts_on(boundary, body)) continue;
+        account[count] = boundary && accounted ? &boundary->last : &unbooked;
+        symmetry[count++] = boundaries->symmetry[m];
     }
-    brunt_symmetry_fold(body, mirrors, count, taken, account);
+    brunt_symmetry_fold(body, symmetry, count, taken, account);
 }
 
 static brunt_grid_job grid_job(brunt_world *world, const brunt_step *step, brunt_body *body) {
@@ -83,10 +82,10 @@ static brunt_grid_job grid_job(brunt_world *world, const brunt_step *step, brunt
                             .sums = world->scratch.node_sums};
 }
 
-int brunt_pass_scatter(brunt_world *world, brunt_step *step, brunt_error *error) {
+int brunt_pass_p2g(brunt_world *world, brunt_step *step, brunt_error *error) {
     (void)error;
     body_job job = {world, step->body, step->kick};
-    brunt_parallel(world->settings.threads, step->body->grid.block_count, BLOCK_GRAIN, scatter_blocks, &job,
+    brunt_parallel(world->settings.threads, step->body->grid.block_count, BLOCK_GRAIN, p2g_blocks, &job,
                    brunt_pass_timer(&world->timing));
     return BRUNT_OK;
 }
@@ -99,10 +98,10 @@ int brunt_pass_grid(brunt_world *world, brunt_step *step, brunt_error *error) {
     return BRUNT_OK;
 }
 
-int brunt_pass_mirror(brunt_world *world, brunt_step *step, brunt_error *error) {
+int brunt_pass_symmetry(brunt_world *world, brunt_step *step, brunt_error *error) {
     (void)error;
-    fold_mirrors(&world->boundaries, step->body, world->settings.transfer == BRUNT_FLIP ? 1 - world->settings.flip : 1,
-                 true);
+    fold_symmetry(&world->boundaries, step->body, world->settings.transfer == BRUNT_FLIP ? 1 - world->settings.flip : 1,
+                  true);
     return BRUNT_OK;
 }
 
@@ -118,8 +117,8 @@ int brunt_pass_update(brunt_world *world, brunt_step *step, brunt_error *error) 
     return BRUNT_OK;
 }
 
-static void hold_nodes(brunt_boundary *wall, brunt_body *body, double time) {
-    if (wall->kind->hold_grid && acts_on(wall, body)) wall->kind->hold_grid(body, wall, time);
+static void hold_nodes(brunt_boundary *boundary, brunt_body *body, double time) {
+    if (boundary->kind->hold_grid && acts_on(boundary, body)) boundary->kind->hold_grid(body, boundary, time);
 }
 
 // Planes that stick or slip and regions, at the nodes of the grids; once more after what gives impulses to nodes that
@@ -129,12 +128,12 @@ int brunt_pass_conditions(brunt_world *world, brunt_step *step, brunt_error *err
     for (int i = 0; i < world->bodies.mpm_count; i++)
         if (brunt_condition_clear(&world->bodies.mpm[i], error))
             return brunt_fail_inner(&world->clock, &world->bodies.mpm[i], error);
-    for (int w = 0; w < world->boundaries.wall_count; w++) {
-        brunt_boundary *wall = &world->boundaries.walls[w];
-        brunt_body *only = wall->body < 0 ? NULL : world->bodies.all[wall->body].mpm;
-        if (only) hold_nodes(wall, only, world->clock.time);
-        for (int i = 0; i < world->bodies.mpm_count && wall->body < 0; i++)
-            hold_nodes(wall, &world->bodies.mpm[i], world->clock.time);
+    for (int w = 0; w < world->boundaries.boundary_count; w++) {
+        brunt_boundary *boundary = &world->boundaries.boundary[w];
+        brunt_body *only = boundary->body < 0 ? NULL : world->bodies.all[boundary->body].mpm;
+        if (only) hold_nodes(boundary, only, world->clock.time);
+        for (int i = 0; i < world->bodies.mpm_count && boundary->body < 0; i++)
+            hold_nodes(boundary, &world->bodies.mpm[i], world->clock.time);
     }
     return BRUNT_OK;
 }
@@ -149,7 +148,7 @@ int brunt_pass_contact(brunt_world *world, brunt_step *step, brunt_error *error)
     return failed ? brunt_fail_inner(&world->clock, NULL, error) : BRUNT_OK;
 }
 
-int brunt_pass_walls(brunt_world *world, brunt_step *step, brunt_error *error) {
+int brunt_pass_boundaries(brunt_world *world, brunt_step *step, brunt_error *error) {
     const brunt_contact_context m = brunt_contact_context_of(world, step->dt, NULL);
     for (int i = 0; i < world->bodies.mpm_count; i++)
         if (brunt_boundaries_meet_points(&m, &world->bodies.mpm[i], &world->scratch.planes, &world->contact.constraints,
@@ -159,7 +158,7 @@ int brunt_pass_walls(brunt_world *world, brunt_step *step, brunt_error *error) {
 }
 
 // The grid of a total-Lagrangian body is not where its weight acts.
-static void book_gravity_moment(brunt_ledger *ledger, brunt_body *body, const double gravity[3], double dt) {
+static void account_gravity_moment(brunt_ledger *ledger, brunt_body *body, const double gravity[3], double dt) {
     const brunt_audit audit = brunt_body_audit(body);
     for (int a = 0; a < 3; a++) {
         const int k = (a + 1) % 3, l = (a + 2) % 3;
@@ -167,7 +166,7 @@ static void book_gravity_moment(brunt_ledger *ledger, brunt_body *body, const do
     }
 }
 
-static void book_gravity(brunt_ledger *ledger, const brunt_step *step, const brunt_node_sums *n, bool total) {
+static void account_gravity(brunt_ledger *ledger, const brunt_step *step, const brunt_node_sums *n, bool total) {
     const double *gravity = step->gravity, dt = step->kick;
     ledger->gravity_work += n->gravity_work;
     for (int a = 0; a < 3; a++) {
@@ -192,57 +191,58 @@ int brunt_pass_ledger(brunt_world *world, brunt_step *step, brunt_error *error) 
             const brunt_node_sums *n = &world->scratch.node_sums[s];
             step->old_kinetic += n->old_kinetic;
             step->new_kinetic += n->new_kinetic;
-            if (world->settings.has_gravity) book_gravity(&world->ledger, step, n, total);
+            if (world->settings.has_gravity) account_gravity(&world->ledger, step, n, total);
         }
-        if (total && world->settings.has_gravity) book_gravity_moment(&world->ledger, body, step->gravity, step->kick);
+        if (total && world->settings.has_gravity)
+            account_gravity_moment(&world->ledger, body, step->gravity, step->kick);
     }
     return BRUNT_OK;
 }
 
-static void advance_blocks(void *context, int64_t begin, int64_t end, int worker) {
+static void musl_blocks(void *context, int64_t begin, int64_t end, int worker) {
     const body_job *job = context;
     for (int64_t b = begin; b < end; b++)
         job->world->transfers.musl_velocity(job->body, (int32_t)b, (real)job->dt, (real)job->world->settings.flip,
                                             &job->world->scratch.points[worker]);
 }
 
-static void remap_body(brunt_world *world, brunt_body *body, double dt) {
+static void musl_body(brunt_world *world, brunt_body *body, double dt) {
     static const double weightless[3] = {0, 0, 0};
     brunt_timer *timer = brunt_pass_timer(&world->timing);
     body_job job = {world, body, dt}, still = {world, body, 0};
     brunt_grid_job nodes = {.body = body, .gravity = weightless, .sums = world->scratch.node_sums};
-    brunt_parallel(world->settings.threads, body->grid.block_count, BLOCK_GRAIN, advance_blocks, &job, timer);
-    brunt_parallel(world->settings.threads, body->grid.block_count, BLOCK_GRAIN, scatter_blocks, &still, timer);
+    brunt_parallel(world->settings.threads, body->grid.block_count, BLOCK_GRAIN, musl_blocks, &job, timer);
+    brunt_parallel(world->settings.threads, body->grid.block_count, BLOCK_GRAIN, p2g_blocks, &still, timer);
     brunt_parallel(world->settings.threads, body->grid.slot_count, SLOT_GRAIN, brunt_grid_sum, &nodes, timer);
-    fold_mirrors(&world->boundaries, body, 1, false);
+    fold_symmetry(&world->boundaries, body, 1, false);
     brunt_parallel(world->settings.threads, body->grid.slot_count, SLOT_GRAIN, brunt_grid_update, &nodes, timer);
-    for (int w = 0; w < world->boundaries.wall_count; w++) {
-        brunt_boundary wall = world->boundaries.walls[w];
-        hold_nodes(&wall, body, world->clock.time);
+    for (int w = 0; w < world->boundaries.boundary_count; w++) {
+        brunt_boundary boundary = world->boundaries.boundary[w];
+        hold_nodes(&boundary, body, world->clock.time);
     }
 }
 
 // Linear kernel: the particles' new velocities once more to the grid, without forces, for the gradient. What conditions
-// do to that field is no impulse: it is not booked.
-int brunt_pass_remap(brunt_world *world, brunt_step *step, brunt_error *error) {
+// do to that field is no impulse: it is not recorded.
+int brunt_pass_musl_velocity(brunt_world *world, brunt_step *step, brunt_error *error) {
     (void)error;
-    for (int i = 0; i < world->bodies.mpm_count; i++) remap_body(world, &world->bodies.mpm[i], step->dt);
+    for (int i = 0; i < world->bodies.mpm_count; i++) musl_body(world, &world->bodies.mpm[i], step->dt);
     return BRUNT_OK;
 }
 
-typedef struct gather_sums {
-    double power, remap, before; // [W] of the stress: after the step, of what remapping changed, before the step
-} gather_sums;
+typedef struct g2p_sums {
+    double power, musl_power, before; // [W] of the stress: after the step, of what remapping changed, before the step
+} g2p_sums;
 
 // The slot of the first particle whose update failed, -1: none.
-static int64_t sum_reports(brunt_body *body, brunt_step *step, gather_sums *sums, const char **reason) {
+static int64_t sum_reports(brunt_body *body, brunt_step *step, g2p_sums *sums, const char **reason) {
     int64_t bad = -1;
     for (int32_t b = 0; b < body->grid.block_count; b++) {
         const brunt_block_report *report = &body->report[b];
         body->speed = report->speed > body->speed ? report->speed : body->speed;
         step->kinetic += report->kinetic;
         sums->power += report->stress_power;
-        sums->remap += report->remap_power;
+        sums->musl_power += report->musl_power;
         sums->before += report->old_power;
         if (report->bad >= 0 && bad < 0) bad = report->bad, *reason = report->reason;
     }
@@ -250,22 +250,22 @@ static int64_t sum_reports(brunt_body *body, brunt_step *step, gather_sums *sums
 }
 
 // Where the step changes, the two halves of the kick are not alike: velocities are further behind the stress, or less,
-// by which central differences gain or lose (dt_old^2 - dt^2) / 8 f^2 / m. That is booked with the transfers, too.
-int brunt_pass_gather(brunt_world *world, brunt_step *step, brunt_error *error) {
+// by which central differences gain or lose (dt_old^2 - dt^2) / 8 f^2 / m. That is recorded with the transfers, too.
+int brunt_pass_g2p(brunt_world *world, brunt_step *step, brunt_error *error) {
     const double dt = step->dt, kick = step->kick;
-    gather_sums sums = {0, 0, 0};
+    g2p_sums sums = {0, 0, 0};
     for (int i = 0; i < world->bodies.mpm_count; i++) {
         brunt_body *body = &world->bodies.mpm[i];
         const char *reason = NULL;
         body_job job = {world, body, dt};
         body->uneven = kick != dt;
         body->speed = 0;
-        brunt_parallel(world->settings.threads, body->grid.block_count, BLOCK_GRAIN, gather_blocks, &job,
+        brunt_parallel(world->settings.threads, body->grid.block_count, BLOCK_GRAIN, g2p_blocks, &job,
                        brunt_pass_timer(&world->timing));
         const int64_t bad = sum_reports(body, step, &sums, &reason);
         if (bad >= 0 && !step->status) step->status = brunt_fail_particle(world, body, bad, error, reason);
     }
-    world->ledger.transfer -= 0.5 * (world->ledger.stress_work + dt * sums.remap + (dt - kick) * sums.before);
+    world->ledger.transfer -= 0.5 * (world->ledger.stress_work + dt * sums.musl_power + (dt - kick) * sums.before);
     world->ledger.stress_work = dt * sums.power;
     return BRUNT_OK;
 }

@@ -51,7 +51,7 @@ static bool has_tied(const brunt_pairs *pairs) {
     return false;
 }
 
-static bool has_sheets(const brunt_bodies *bodies) {
+static bool has_membranes(const brunt_bodies *bodies) {
     for (int k = 0; k < bodies->fem_count; k++)
         if (bodies->fem[k].traits->membrane) return true;
     return false;
@@ -64,8 +64,8 @@ static bool has_mass_scaling(const brunt_bodies *bodies) {
 }
 
 // Besides the axis of rings.
-static bool has_mirrors(const brunt_boundaries *boundaries) {
-    return boundaries->mirror_count > 0 && boundaries->mirrors[boundaries->mirror_count - 1].wall >= 0;
+static bool has_symmetry_planes(const brunt_boundaries *boundaries) {
+    return boundaries->symmetry_count > 0 && boundaries->symmetry[boundaries->symmetry_count - 1].boundary >= 0;
 }
 
 #define BRUNT_EFFECTS(X)                                                                                               \
@@ -84,12 +84,12 @@ static bool has_mirrors(const brunt_boundaries *boundaries) {
     X(groups, world->boundaries.sets.act, "boundaries: group")                                                         \
     X(gas, world->boundaries.sets.has_gas, "boundaries: gas")                                                          \
     X(damping, world->boundaries.damping.active, "bodies: damping")                                                    \
-    X(membranes, has_sheets(&world->bodies), "bodies: method membrane")                                                \
+    X(membranes, has_membranes(&world->bodies), "bodies: method membrane")                                             \
     X(tension_only, has_tension_only(&world->bodies), "bodies: tension_only")                                          \
     X(total_lagrangian, has_total_lagrangian(&world->bodies), "bodies: lagrangian total")                              \
-    X(walls, world->boundaries.has_walls, "boundaries: condition separate")                                            \
+    X(boundaries, world->boundaries.has_pushing_planes, "boundaries: condition separate")                              \
     X(axisymmetric, world->settings.axisymmetric, "axisymmetric")                                                      \
-    X(mirrors, has_mirrors(&world->boundaries), "boundaries: condition symmetry or slip")                              \
+    X(symmetry, has_symmetry_planes(&world->boundaries), "boundaries: condition symmetry or slip")                     \
     X(conditions, world->boundaries.has_conditions, "boundaries: stick, oblique slip, region")                         \
     X(erosion, world->erosion.active, "bodies: erosion, materials: failure")                                           \
     X(softening, has_softening(&world->bodies), "materials: failure.action soften")                                    \
@@ -240,8 +240,7 @@ static brunt_array element_array(const brunt_fem_body *body, int32_t index) {
 
 static brunt_array surfaces_array(const brunt_contact *contact) {
     brunt_array array = {.name = "contact of surfaces", .unit = "", .components = 1};
-    array.bytes = brunt_surface_bytes(&contact->surface) +
-                  brunt_node_to_facet_bytes(contact->node_to_facet) +
+    array.bytes = brunt_surface_bytes(&contact->surface) + brunt_node_to_facet_bytes(contact->node_to_facet) +
                   contact->constraints.constraint_capacity + contact->constraints.entry_capacity +
                   contact->constraints.dof_node_capacity;
     return array;

@@ -60,16 +60,16 @@ int brunt_pass_newton(brunt_world *world, brunt_step *step, brunt_error *error);
 
 // --- particle_passes.c: material points and their grids
 int brunt_pass_sort(brunt_world *world, brunt_step *step, brunt_error *error);
-int brunt_pass_scatter(brunt_world *world, brunt_step *step, brunt_error *error);
+int brunt_pass_p2g(brunt_world *world, brunt_step *step, brunt_error *error);
 int brunt_pass_grid(brunt_world *world, brunt_step *step, brunt_error *error);
-int brunt_pass_mirror(brunt_world *world, brunt_step *step, brunt_error *error);
+int brunt_pass_symmetry(brunt_world *world, brunt_step *step, brunt_error *error);
 int brunt_pass_update(brunt_world *world, brunt_step *step, brunt_error *error);
 int brunt_pass_conditions(brunt_world *world, brunt_step *step, brunt_error *error);
 int brunt_pass_contact(brunt_world *world, brunt_step *step, brunt_error *error);
-int brunt_pass_walls(brunt_world *world, brunt_step *step, brunt_error *error);
+int brunt_pass_boundaries(brunt_world *world, brunt_step *step, brunt_error *error);
 int brunt_pass_ledger(brunt_world *world, brunt_step *step, brunt_error *error);
-int brunt_pass_remap(brunt_world *world, brunt_step *step, brunt_error *error);
-int brunt_pass_gather(brunt_world *world, brunt_step *step, brunt_error *error);
+int brunt_pass_musl_velocity(brunt_world *world, brunt_step *step, brunt_error *error);
+int brunt_pass_g2p(brunt_world *world, brunt_step *step, brunt_error *error);
 
 // --- mesh_passes.c: finite-element bodies
 int brunt_pass_kick(brunt_world *world, brunt_step *step, brunt_error *error);
@@ -99,7 +99,7 @@ int brunt_fail_inner(const struct brunt_clock *clock, const brunt_body *body, br
 int brunt_fail_particle(const brunt_world *world, brunt_body *body, int64_t slot, brunt_error *error,
                         const char *reason);
 // At a place [m] of body `index` (-1: of none).
-int brunt_fail_place(const brunt_world *world, int index, const double x[3], brunt_error *error, const char *reason);
+int brunt_fail_position(const brunt_world *world, int index, const double x[3], brunt_error *error, const char *reason);
 int brunt_fail_element(const struct brunt_clock *clock, const brunt_fem_body *fem, int32_t slot, brunt_error *error,
                        const char *reason);
 // At the first element or particle without a positive volume. BRUNT_OK: there is none, nothing has been said.
@@ -107,12 +107,12 @@ int brunt_fail_turned(const brunt_world *world, brunt_error *error, const char *
 
 // --- work.c: what a pass moves and computes, counted
 brunt_amount brunt_work_sort(const brunt_world *world, brunt_body_ref body);
-brunt_amount brunt_work_scatter(const brunt_world *world, brunt_body_ref body);
+brunt_amount brunt_work_p2g(const brunt_world *world, brunt_body_ref body);
 brunt_amount brunt_work_grid(const brunt_world *world, brunt_body_ref body);
 brunt_amount brunt_work_update(const brunt_world *world, brunt_body_ref body);
 brunt_amount brunt_work_ledger(const brunt_world *world, brunt_body_ref body);
-brunt_amount brunt_work_remap(const brunt_world *world, brunt_body_ref body);
-brunt_amount brunt_work_gather(const brunt_world *world, brunt_body_ref body);
+brunt_amount brunt_work_musl_velocity(const brunt_world *world, brunt_body_ref body);
+brunt_amount brunt_work_g2p(const brunt_world *world, brunt_body_ref body);
 brunt_amount brunt_work_kick(const brunt_world *world, brunt_body_ref body);
 brunt_amount brunt_work_drift(const brunt_world *world, brunt_body_ref body);
 brunt_amount brunt_work_elements(const brunt_world *world, brunt_body_ref body);

@@ -13,15 +13,15 @@ double brunt_body_step(const brunt_world *world, int body, double around) {
 }
 
 double brunt_stable_step(const brunt_world *world) {
-    double wall_speed = 0, first = INFINITY;
-    for (int w = 0; w < world->boundaries.wall_count; w++) {
-        const brunt_boundary *wall = &world->boundaries.walls[w];
-        const double *v = wall->kind->velocity ? wall->kind->velocity(wall) : (const double[3]){0};
-        wall_speed = fmax(wall_speed, sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
+    double boundary_speed = 0, first = INFINITY;
+    for (int w = 0; w < world->boundaries.boundary_count; w++) {
+        const brunt_boundary *boundary = &world->boundaries.boundary[w];
+        const double *v = boundary->kind->velocity ? boundary->kind->velocity(boundary) : (const double[3]){0};
+        boundary_speed = fmax(boundary_speed, sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
     }
     double least = INFINITY;
     for (int i = 0; i < world->bodies.count; i++) {
-        const double step = brunt_body_step(world, i, wall_speed);
+        const double step = brunt_body_step(world, i, boundary_speed);
         if (isnan(step)) return NAN;
         least = fmin(least, step);
     }
@@ -153,8 +153,8 @@ void brunt_step_open(brunt_world *world, brunt_step *s) {
     brunt_gravity_at(&world->settings, world->clock.time, s->gravity);
     for (int i = 0; i < world->bodies.mpm_count; i++) world->bodies.mpm[i].time = (real)(world->clock.time + dt);
     for (int k = 0; k < world->bodies.fem_count; k++) world->bodies.fem[k].time = (real)(world->clock.time + dt);
-    for (int w = 0; w < world->boundaries.wall_count; w++)
-        world->boundaries.walls[w].last = (brunt_impulse_account){.external_work = 0};
+    for (int w = 0; w < world->boundaries.boundary_count; w++)
+        world->boundaries.boundary[w].last = (brunt_impulse_account){.external_work = 0};
     for (int p = 0; p < world->pairs.count; p++)
         world->pairs.pair[p].last = (brunt_impulse_account){.external_work = 0};
     s->old_kinetic = s->new_kinetic = world->ledger.kinetic;

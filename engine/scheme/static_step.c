@@ -9,7 +9,7 @@
 #include "base/memory.h"
 #include "scheme/implicit.h"
 
-static const double MOST_LOOSE = 1e-5, LEAST_LOOSE = 1e-10; // of the stiffness, for bodies that nothing holds
+static const double GREATEST_UNHELD = 1e-5, LEAST_UNHELD = 1e-10; // of the stiffness, for bodies that nothing holds
 
 // ------------------------------------------------------------------------------------------ parts of load steps
 
@@ -48,7 +48,7 @@ static void take_stiffness(const brunt_world *world, struct brunt_implicit *m) {
             if (u->number[i][q] >= 0) stiffen(m, u->number[i][q], u->mass[u->number[i][q]], rate);
     }
     for (int32_t n = 0; n < u->count; n++) most = fmax(most, m->field.stiffness[n]);
-    for (int w = 0; w < world->boundaries.wall_count; w++)
+    for (int w = 0; w < world->boundaries.boundary_count; w++)
         if (u->plane[w] >= 0) m->field.stiffness[u->plane[w]] = most;
 }
 
@@ -63,7 +63,7 @@ static void take_scale(struct brunt_implicit *m) {
     if (fold) brunt_fold_gather(fold, m->unknowns.dim, m->field.step);
     for (int64_t k = 0; k < all; k++) {
         within += fabs(m->field.step[k]), loads += fabs(m->field.load[k]);
-        rounding += m->field.stiffness[k / m->unknowns.dim] * fabs(m->unknowns.place[k]);
+        rounding += m->field.stiffness[k / m->unknowns.dim] * fabs(m->unknowns.position[k]);
     }
     m->scale = (brunt_load_scale){.least = fmax(within, loads), .rounding = ROUNDINGS * DBL_EPSILON * rounding};
 }
@@ -77,8 +77,8 @@ double brunt_static_unbalance(void *context, const double *gradient) {
     const double counts = left <= m->scale.rounding ? 0 : share;
     // Where it has converged its stability is asked for next: that bodies which contact alone holds slide on its
     // ripples is no matter.
-    m->proximal.loose =
-        counts <= m->options.tolerance ? MOST_LOOSE : fmax(LEAST_LOOSE, MOST_LOOSE * sqrt(fmin(share, 1)));
+    m->proximal.unheld =
+        counts <= m->options.tolerance ? GREATEST_UNHELD : fmax(LEAST_UNHELD, GREATEST_UNHELD * sqrt(fmin(share, 1)));
     return counts;
 }
 
@@ -101,7 +101,7 @@ void brunt_static_watch(brunt_world *world, double taken, double work) {
     int64_t most = 0;
     for (int64_t k = 0; k < brunt_implicit_components(m); k++)
         if (!u->held[k] && fabs(m->field.u[k]) > fabs(m->field.u[most])) most = k;
-    const brunt_unknown_place at = brunt_unknowns_place(u, &world->bodies, (int32_t)(most / u->dim));
+    const brunt_unknown_location at = brunt_unknowns_location(u, &world->bodies, (int32_t)(most / u->dim));
     brunt_warn(
         &world->messages,
         "bodies.%s: from t = %.6g to %.6g of the loads %.3g of the work on bodies (%.3g J) is not stored in them: near "
@@ -129,7 +129,8 @@ static void rigid_modes(const piece *p, int32_t n, double mode[MODES][3]) {
     const int dim = p->u->dim;
     double x[3] = {0};
     memset(mode, 0, MODES * sizeof *mode);
-    for (int a = 0; a < dim; a++) mode[a][a] = 1, x[a] = (p->u->place[n * (int64_t)dim + a] - p->middle[a]) / p->size;
+    for (int a = 0; a < dim; a++)
+        mode[a][a] = 1, x[a] = (p->u->position[n * (int64_t)dim + a] - p->middle[a]) / p->size;
     for (int k = dim; k < p->modes; k++) {
         const int axis = dim == 2 ? 2 : k - dim, i = (axis + 1) % 3, j = (axis + 2) % 3;
         mode[k][i] = -x[j], mode[k][j] = x[i];
@@ -142,12 +143,12 @@ static void measure_piece(piece *p) {
     for (int32_t i = 0; i < p->count; i++) {
         const int32_t n = node_of(p, i);
         mass += p->u->mass[n];
-        for (int a = 0; a < dim; a++) sum[a] += p->u->mass[n] * p->u->place[n * (int64_t)dim + a];
+        for (int a = 0; a < dim; a++) sum[a] += p->u->mass[n] * p->u->position[n * (int64_t)dim + a];
     }
     for (int a = 0; a < dim; a++) p->middle[a] = sum[a] / mass;
     for (int32_t i = 0; i < p->count; i++)
         for (int a = 0; a < dim; a++) {
-            const double off = p->u->place[node_of(p, i) * (int64_t)dim + a] - p->middle[a];
+            const double off = p->u->position[node_of(p, i) * (int64_t)dim + a] - p->middle[a];
             square += p->u->mass[node_of(p, i)] * off * off;
         }
     p->size = sqrt(square / mass);
@@ -228,7 +229,7 @@ static int check_piece(brunt_world *world, piece *p, int body, bool meets, brunt
              "nothing holds it against its loads: a force of %.3g N and a moment of %.3g N m stay unbalanced, and it "
              "meets nothing: no equilibrium",
              force, moment * p->size);
-    return brunt_fail_place(world, body, p->middle, error, reason);
+    return brunt_fail_position(world, body, p->middle, error, reason);
 }
 
 // The nodes of points that are tied to body i, and whether one of them meets something.

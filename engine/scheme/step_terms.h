@@ -16,9 +16,9 @@ typedef struct brunt_inertia {
 // what nothing holds does not fly away, and where it ends is the same.
 typedef struct brunt_proximal {
     const brunt_unknowns *unknowns;
-    const double *stiffness;  // [N/m] of nodes
-    const uint8_t *grounded;  // of nodes
-    double loose, everywhere; // [-] shares of the stiffness: of what nothing holds, of all grid nodes
+    const double *stiffness;   // [N/m] of nodes
+    const uint8_t *grounded;   // of nodes
+    double unheld, everywhere; // [-] shares of the stiffness: of what nothing holds, of all grid nodes
 } brunt_proximal;
 
 // How large forces are of which load steps leave a part unbalanced.

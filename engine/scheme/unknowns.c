@@ -31,7 +31,7 @@ static void find_ties(const brunt_world *world, int32_t *tie) {
 int brunt_unknowns_make(brunt_unknowns *u, const brunt_world *world, brunt_error *error) {
     const brunt_bodies *bodies = &world->bodies;
     u->dim = world->settings.dimension;
-    if (BRUNT_NEW(u->plane, world->boundaries.wall_count + 1, "nodes of walls", error) ||
+    if (BRUNT_NEW(u->plane, world->boundaries.boundary_count + 1, "nodes of walls", error) ||
         BRUNT_NEW(u->base, bodies->fem_count + 1, "meshes with unknowns", error) ||
         BRUNT_NEW(u->grid_base, bodies->mpm_count + 1, "grids with unknowns", error) ||
         BRUNT_NEW(u->number, bodies->mpm_count + 1, "grids with unknowns", error) ||
@@ -39,7 +39,7 @@ int brunt_unknowns_make(brunt_unknowns *u, const brunt_world *world, brunt_error
         BRUNT_NEW(u->tie, bodies->mpm_count + 1, "bodies that are tied", error))
         return BRUNT_FAILED;
     find_ties(world, u->tie);
-    u->images.any = bodies->mpm_count > 0 && world->boundaries.mirror_count > 0;
+    u->images.any = bodies->mpm_count > 0 && world->boundaries.symmetry_count > 0;
     return BRUNT_OK;
 }
 
@@ -48,20 +48,21 @@ void brunt_unknowns_free(brunt_unknowns *u, const brunt_bodies *bodies) {
     void *const all[] = {u->tie,         u->plane,
                          u->grid_base,   u->base,
                          u->number,      u->number_capacity,
-                         u->mass,        u->place,
+                         u->mass,        u->position,
                          u->velocity,    u->held,
                          u->holder,      u->target,
                          u->end,         u->images.leader,
                          u->images.sign, u->images.follower,
-                         u->images.mass, u->images.wall};
+                         u->images.mass, u->images.boundary};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) brunt_free(all[k]);
     *u = (brunt_unknowns){.dim = u->dim};
 }
 
 size_t brunt_unknowns_bytes(const brunt_unknowns *u, const brunt_bodies *bodies) {
-    size_t bytes = u->mass_capacity + u->place_capacity + u->velocity_capacity + u->held_capacity + u->holder_capacity +
-                   u->target_capacity + u->end_capacity + u->images.leader_capacity + u->images.follower_capacity +
-                   u->images.sign_capacity + u->images.mass_capacity + u->images.wall_capacity;
+    size_t bytes = u->mass_capacity + u->position_capacity + u->velocity_capacity + u->held_capacity +
+                   u->holder_capacity + u->target_capacity + u->end_capacity + u->images.leader_capacity +
+                   u->images.follower_capacity + u->images.sign_capacity + u->images.mass_capacity +
+                   u->images.boundary_capacity;
     for (int i = 0; i < bodies->mpm_count; i++) bytes += u->number_capacity[i];
     return bytes;
 }
@@ -85,7 +86,7 @@ static int32_t shared_number(const brunt_unknowns *u, const brunt_bodies *bodies
 static int number_grid(brunt_unknowns *u, const brunt_bodies *bodies, int i, brunt_error *error) {
     const brunt_grid *grid = &bodies->mpm[i].grid;
     const int64_t nodes = (int64_t)grid->slot_count * BRUNT_BLOCK_NODES;
-    if (BRUNT_ROOM_IN(u->number[i], u->number_capacity[i], (size_t)nodes + 1, 0, "numbers of grid nodes", error))
+    if (BRUNT_CAPACITY_IN(u->number[i], u->number_capacity[i], (size_t)nodes + 1, 0, "numbers of grid nodes", error))
         return BRUNT_FAILED;
     double most = 0;
     uint8_t *sloped = NULL;
@@ -108,10 +109,12 @@ static int number_grid(brunt_unknowns *u, const brunt_bodies *bodies, int i, bru
 
 static int reserve(brunt_unknowns *u, brunt_error *error) {
     const size_t n = (size_t)u->count + 1, all = n * (size_t)u->dim;
-    return BRUNT_ROOM(u->mass, n, 0, "unknowns", error) || BRUNT_ROOM(u->place, all, 0, "unknowns", error) ||
-                   BRUNT_ROOM(u->velocity, all, 0, "unknowns", error) ||
-                   BRUNT_ROOM(u->held, all, 0, "unknowns", error) || BRUNT_ROOM(u->holder, all, 0, "unknowns", error) ||
-                   BRUNT_ROOM(u->target, all, 0, "unknowns", error) || BRUNT_ROOM(u->end, all, 0, "unknowns", error)
+    return BRUNT_CAPACITY(u->mass, n, 0, "unknowns", error) || BRUNT_CAPACITY(u->position, all, 0, "unknowns", error) ||
+                   BRUNT_CAPACITY(u->velocity, all, 0, "unknowns", error) ||
+                   BRUNT_CAPACITY(u->held, all, 0, "unknowns", error) ||
+                   BRUNT_CAPACITY(u->holder, all, 0, "unknowns", error) ||
+                   BRUNT_CAPACITY(u->target, all, 0, "unknowns", error) ||
+                   BRUNT_CAPACITY(u->end, all, 0, "unknowns", error)
                ? BRUNT_FAILED
                : BRUNT_OK;
 }
@@ -122,7 +125,7 @@ static void take_mesh(brunt_unknowns *u, const brunt_fem_body *fem, int32_t base
         const size_t n = (size_t)(base + i);
         u->mass[n] = (double)node[BRUNT_FEM_MASS];
         for (int a = 0; a < u->dim; a++) {
-            u->place[n * (size_t)u->dim + (size_t)a] = (double)node[BRUNT_FEM_X + a];
+            u->position[n * (size_t)u->dim + (size_t)a] = (double)node[BRUNT_FEM_X + a];
             u->velocity[n * (size_t)u->dim + (size_t)a] = (double)node[BRUNT_FEM_V + a];
         }
     }
@@ -137,28 +140,28 @@ static void take_grid(brunt_unknowns *u, const brunt_grid *grid, const int32_t *
         brunt_node_position(grid, grid->slots[k / BRUNT_BLOCK_NODES].coord, (int)(k % BRUNT_BLOCK_NODES), x);
         u->mass[n] += (double)node[BRUNT_NODE_MASS];
         for (int a = 0; a < u->dim; a++) {
-            u->place[n * (size_t)u->dim + (size_t)a] = x[a];
+            u->position[n * (size_t)u->dim + (size_t)a] = x[a];
             u->velocity[n * (size_t)u->dim + (size_t)a] += (double)node[BRUNT_NODE_VELOCITY + a]; // momentum as yet
         }
     }
 }
 
-static bool moves(const brunt_boundary *wall) {
-    const double *v = wall->plane.velocity;
-    return brunt_boundary_pushes(wall) && (v[0] != 0 || v[1] != 0 || v[2] != 0);
+static bool moves(const brunt_boundary *boundary) {
+    const double *v = boundary->plane.velocity;
+    return brunt_boundary_pushes(boundary) && (v[0] != 0 || v[1] != 0 || v[2] != 0);
 }
 
 static void take_plane(brunt_unknowns *u, const brunt_plane_def *plane, double time, int32_t n) {
     u->mass[n] = 0;
     for (int a = 0; a < u->dim; a++) {
-        u->place[n * (int64_t)u->dim + a] = plane->point[a] + plane->velocity[a] * time;
+        u->position[n * (int64_t)u->dim + a] = plane->point[a] + plane->velocity[a] * time;
         u->velocity[n * (int64_t)u->dim + a] = plane->velocity[a];
     }
 }
 
 int brunt_unknowns_number(brunt_unknowns *u, brunt_world *world, brunt_error *error) {
     const brunt_bodies *bodies = &world->bodies;
-    const brunt_boundary *walls = world->boundaries.walls;
+    const brunt_boundary *boundaries = world->boundaries.boundary;
     u->count = 0;
     for (int k = 0; k < bodies->fem_count; k++) u->base[k] = u->count, u->count += bodies->fem[k].node_count;
     u->mesh_count = u->count;
@@ -167,7 +170,7 @@ int brunt_unknowns_number(brunt_unknowns *u, brunt_world *world, brunt_error *er
         if (number_grid(u, bodies, i, error)) return BRUNT_FAILED;
     }
     u->grid_base[bodies->mpm_count] = u->count;
-    for (int w = 0; w < world->boundaries.wall_count; w++) u->plane[w] = moves(&walls[w]) ? u->count++ : -1;
+    for (int w = 0; w < world->boundaries.boundary_count; w++) u->plane[w] = moves(&boundaries[w]) ? u->count++ : -1;
     if (reserve(u, error)) return BRUNT_FAILED;
     for (int k = 0; k < bodies->fem_count; k++) take_mesh(u, &bodies->fem[k], u->base[k]);
     const int32_t grids = u->mesh_count;
@@ -175,10 +178,10 @@ int brunt_unknowns_number(brunt_unknowns *u, brunt_world *world, brunt_error *er
     memset(u->velocity + (size_t)grids * (size_t)u->dim, 0,
            (size_t)(u->count - grids) * (size_t)u->dim * sizeof *u->velocity);
     for (int i = 0; i < bodies->mpm_count; i++) take_grid(u, &bodies->mpm[i].grid, u->number[i]);
-    if (brunt_unknowns_mirror(u, world, error)) return BRUNT_FAILED;
+    if (brunt_unknowns_symmetry(u, world, error)) return BRUNT_FAILED;
     brunt_unknowns_divide(u, world);
-    for (int w = 0; w < world->boundaries.wall_count; w++)
-        if (u->plane[w] >= 0) take_plane(u, &walls[w].plane, world->clock.time, u->plane[w]);
+    for (int w = 0; w < world->boundaries.boundary_count; w++)
+        if (u->plane[w] >= 0) take_plane(u, &boundaries[w].plane, world->clock.time, u->plane[w]);
     return BRUNT_OK;
 }
 
@@ -198,9 +201,9 @@ int32_t brunt_unknowns_node_at(const brunt_unknowns *u, const brunt_bodies *bodi
     return BRUNT_NONE;
 }
 
-brunt_unknown_place brunt_unknowns_place(const brunt_unknowns *u, const brunt_bodies *bodies, int32_t n) {
-    brunt_unknown_place at = {.body = -1, .node = -1};
-    for (int a = 0; a < u->dim; a++) at.x[a] = u->place[(size_t)n * (size_t)u->dim + (size_t)a];
+brunt_unknown_location brunt_unknowns_location(const brunt_unknowns *u, const brunt_bodies *bodies, int32_t n) {
+    brunt_unknown_location at = {.body = -1, .node = -1};
+    for (int a = 0; a < u->dim; a++) at.x[a] = u->position[(size_t)n * (size_t)u->dim + (size_t)a];
     for (int k = 0; k < bodies->fem_count; k++)
         if (n >= u->base[k] && n < u->base[k] + bodies->fem[k].node_count)
             at.body = bodies->fem[k].index, at.node = bodies->fem[k].node_id[n - u->base[k]];

@@ -9,7 +9,7 @@
 
 static const double ON_PLANE = 1e-6; // cells, mean edges: how far off a plane a node may be and still lie on it
 
-// Holds component `a` of node n by wall w, unless another does already.
+// Holds component `a` of node n by boundary w, unless another does already.
 static void hold(brunt_unknowns *u, int32_t n, int a, int w, double target, double end) {
     const size_t dof = (size_t)n * (size_t)u->dim + (size_t)a;
     if (u->held[dof]) return;
@@ -29,24 +29,24 @@ static void hold_group(brunt_unknowns *u, const brunt_world *world, int k, doubl
     const double time = world->clock.time, middle = brunt_curve_at(&def->table, time + 0.5 * dt),
                  then = brunt_curve_at(&def->table, time + dt);
     const brunt_placement goal = brunt_node_set_goal(set, time + dt);
-    const int wall = (int)(set->wall - world->boundaries.walls);
+    const int boundary = (int)(set->boundary - world->boundaries.boundary);
     for (int32_t i = 0; i < set->node_count; i++) {
         const int32_t n = set->node[i];
         for (int a = 0; a < u->dim; a++) {
             if (sets->holder[set->fem_index][n][a] != k + 1) continue;
             const double way = velocity ? dt * middle * def->value[a] : brunt_node_set_way(set, &goal, n, a);
-            hold(u, u->base[set->fem_index] + n, a, wall, way, velocity ? then * def->value[a] : way / dt);
+            hold(u, u->base[set->fem_index] + n, a, boundary, way, velocity ? then * def->value[a] : way / dt);
         }
     }
 }
 
 // ------------------------------------------------------------------------------------------ planes, regions
 
-static void hold_node(brunt_unknowns *u, const brunt_world *world, int w, int32_t n, double slack, double dt) {
-    const brunt_boundary *wall = &world->boundaries.walls[w];
+static void hold_node(brunt_unknowns *u, const brunt_world *world, int w, int32_t n, double tolerance, double dt) {
+    const brunt_boundary *boundary = &world->boundaries.boundary[w];
     double x[3] = {0}, v[3] = {0};
-    for (int a = 0; a < u->dim; a++) x[a] = u->place[(size_t)n * (size_t)u->dim + (size_t)a];
-    const unsigned held = wall->kind->hold_at(wall, u->dim, world->clock.time, x, slack, v);
+    for (int a = 0; a < u->dim; a++) x[a] = u->position[(size_t)n * (size_t)u->dim + (size_t)a];
+    const unsigned held = boundary->kind->hold_at(boundary, u->dim, world->clock.time, x, tolerance, v);
     for (int a = 0; a < u->dim; a++)
         if (held >> a & 1) hold(u, n, a, w, dt * v[a], v[a]);
 }
@@ -54,30 +54,33 @@ static void hold_node(brunt_unknowns *u, const brunt_world *world, int w, int32_
 // Distance of a node to a plane as it is at the start of the step [m].
 static double distance(const brunt_unknowns *u, const brunt_plane_def *plane, double time, int32_t n) {
     double x[3] = {0};
-    for (int a = 0; a < u->dim; a++) x[a] = u->place[(size_t)n * (size_t)u->dim + (size_t)a];
+    for (int a = 0; a < u->dim; a++) x[a] = u->position[(size_t)n * (size_t)u->dim + (size_t)a];
     return brunt_plane_distance(plane, time, x);
 }
 
 // Nodes in a boundary, or at it and behind it; of grids that it mirrors those at it.
 static void hold_nodes(brunt_unknowns *u, const brunt_world *world, int w, double dt) {
-    const brunt_boundary *wall = &world->boundaries.walls[w];
+    const brunt_boundary *boundary = &world->boundaries.boundary[w];
     const brunt_bodies *bodies = &world->bodies;
-    for (int k = 0; wall->kind->holds_meshes && k < bodies->fem_count; k++)
-        for (int32_t i = 0; brunt_boundary_acts_on(wall, bodies->fem[k].index) && i < bodies->fem[k].node_count; i++)
+    for (int k = 0; boundary->kind->holds_meshes && k < bodies->fem_count; k++)
+        for (int32_t i = 0; brunt_boundary_acts_on(boundary, bodies->fem[k].index) && i < bodies->fem[k].node_count;
+             i++)
             hold_node(u, world, w, u->base[k] + i, ON_PLANE * bodies->fem[k].mean_edge, dt);
     for (int i = 0; i < bodies->mpm_count; i++) {
         const brunt_grid *grid = &bodies->mpm[i].grid;
-        const bool acts = brunt_boundary_acts_on(wall, bodies->mpm[i].index);
-        const double slack = ON_PLANE * (double)grid->h;
+        const bool acts = brunt_boundary_acts_on(boundary, bodies->mpm[i].index);
+        const double tolerance = ON_PLANE * (double)grid->h;
         for (int64_t q = 0; acts && q < (int64_t)grid->slot_count * BRUNT_BLOCK_NODES; q++) {
             const int32_t n = u->number[i][q];
-            if (n < 0 || (wall->mirror >= 0 && distance(u, &wall->plane, world->clock.time, n) < -slack)) continue;
-            hold_node(u, world, w, n, slack, dt);
+            if (n < 0 ||
+                (boundary->symmetry_plane >= 0 && distance(u, &boundary->plane, world->clock.time, n) < -tolerance))
+                continue;
+            hold_node(u, world, w, n, tolerance, dt);
         }
     }
 }
 
-// A plane that moves and pushes has a node of its own, which is nobody's account: what it does is told by contact.
+// A plane that moves and pushes has a node of its own, which is in no account: what it does is told by contact.
 static void hold_moving_plane(brunt_unknowns *u, int32_t n, int a, double dt) {
     const size_t dof = (size_t)n * (size_t)u->dim + (size_t)a;
     u->held[dof] = 1;
@@ -90,30 +93,31 @@ void brunt_unknowns_hold(brunt_unknowns *u, const brunt_world *world, double dt)
     memset(u->holder, 0, all * sizeof *u->holder);
     memset(u->target, 0, all * sizeof *u->target);
     memset(u->end, 0, all * sizeof *u->end);
-    for (int w = 0; w < world->boundaries.wall_count; w++)
+    for (int w = 0; w < world->boundaries.boundary_count; w++)
         for (int a = 0; u->plane[w] >= 0 && a < u->dim; a++) hold_moving_plane(u, u->plane[w], a, dt);
     for (int k = 0; k < world->boundaries.sets.count; k++) hold_group(u, world, k, dt);
-    for (int w = 0; w < world->boundaries.wall_count; w++)
-        if (world->boundaries.walls[w].kind->hold_at) hold_nodes(u, world, w, dt);
+    for (int w = 0; w < world->boundaries.boundary_count; w++)
+        if (world->boundaries.boundary[w].kind->hold_at) hold_nodes(u, world, w, dt);
     if (u->images.any) brunt_unknowns_hold_images(u);
 }
 
 int32_t brunt_unknowns_passed(const brunt_unknowns *u, const brunt_world *world, const double *way, double dt,
-                              const brunt_boundary **wall) {
+                              const brunt_boundary **boundary) {
     const brunt_bodies *bodies = &world->bodies;
-    for (int w = 0; w < world->boundaries.wall_count; w++) {
-        *wall = &world->boundaries.walls[w];
-        const brunt_plane_def *plane = &(*wall)->plane;
-        if (!brunt_boundary_holds(*wall)) continue;
+    for (int w = 0; w < world->boundaries.boundary_count; w++) {
+        *boundary = &world->boundaries.boundary[w];
+        const brunt_plane_def *plane = &(*boundary)->plane;
+        if (!brunt_boundary_holds(*boundary)) continue;
         for (int k = 0; k < bodies->fem_count; k++) {
-            const double slack = ON_PLANE * bodies->fem[k].mean_edge;
-            const int32_t nodes = brunt_boundary_acts_on(*wall, bodies->fem[k].index) ? bodies->fem[k].node_count : 0;
+            const double tolerance = ON_PLANE * bodies->fem[k].mean_edge;
+            const int32_t nodes =
+                brunt_boundary_acts_on(*boundary, bodies->fem[k].index) ? bodies->fem[k].node_count : 0;
             for (int32_t n = u->base[k]; n < u->base[k] + nodes; n++) {
                 const double before = distance(u, plane, world->clock.time, n);
                 double after = before;
                 for (int a = 0; a < u->dim; a++)
                     after += plane->normal[a] * (way[n * (int64_t)u->dim + a] - dt * plane->velocity[a]);
-                if (before > slack && after < -slack) return n;
+                if (before > tolerance && after < -tolerance) return n;
             }
         }
     }

@@ -1,6 +1,6 @@
-// Mirrors in an implicit step: a body that they cut is computed by its own points, with nodes that are each other's
-// images moving as one. What the images' points would bring is that mirrored, so that the energy is that of the part
-// there is, and its minimum that of the whole.
+// Symmetry planes in an implicit step: a body that they cut is computed by its own points, with nodes that are each
+// other's images moving as one. What the images' points would bring is that mirrored, so that the energy is that of the
+// part there is, and its minimum that of the whole.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,7 +8,7 @@
 #include "base/array.h"
 #include "scheme/unknowns.h"
 
-enum { LAYERS = 2 }; // of nodes that a mirror has images of: what lies before it reaches no further behind
+enum { LAYERS = 2 }; // of nodes that a symmetry plane has images of: what lies before it reaches no further behind
 
 const brunt_fold *brunt_unknowns_fold(const brunt_unknowns *u) {
     return u->images.any && u->images.fold.count ? &u->images.fold : NULL;
@@ -16,39 +16,40 @@ const brunt_fold *brunt_unknowns_fold(const brunt_unknowns *u) {
 
 // ------------------------------------------------------------------------------------------ which are images
 
-// Mirrors that act on a body of points, or on one that it shares nodes with.
-static int mirrors_of(const brunt_unknowns *u, const brunt_world *world, int i,
-                      brunt_symmetry_plane mirrors[BRUNT_MAX_PLANES]) {
+// Symmetry planes that act on a body of points, or on one that it shares nodes with.
+static int symmetry_of(const brunt_unknowns *u, const brunt_world *world, int i,
+                       brunt_symmetry_plane symmetry[BRUNT_MAX_PLANES]) {
     int count = 0;
-    for (int m = 0; m < world->boundaries.mirror_count; m++) {
-        const brunt_symmetry_plane *mirror = &world->boundaries.mirrors[m];
+    for (int m = 0; m < world->boundaries.symmetry_count; m++) {
+        const brunt_symmetry_plane *symmetry_plane = &world->boundaries.symmetry[m];
         bool acts = false;
         for (int k = 0; k < world->bodies.mpm_count; k++)
             acts = acts || (u->tie[k] == u->tie[i] &&
-                            brunt_boundary_acts_on(&world->boundaries.walls[mirror->wall], world->bodies.mpm[k].index));
-        if (acts) mirrors[count++] = *mirror;
+                            brunt_boundary_acts_on(&world->boundaries.boundary[symmetry_plane->boundary],
+                                                   world->bodies.mpm[k].index));
+        if (acts) symmetry[count++] = *symmetry_plane;
     }
     return count;
 }
 
-// The wall of the nearest mirror across an axis, of the first one where there is none across it; + 1.
-static int16_t bearer(const brunt_symmetry_plane *mirrors, int count, const int32_t at[3], int axis) {
+// The boundary of the nearest symmetry plane across an axis, of the first one where there is none across it; + 1.
+static int16_t bearer(const brunt_symmetry_plane *symmetry, int count, const int32_t at[3], int axis) {
     int nearest = 0;
     for (int m = 1; m < count; m++) {
-        const bool across = mirrors[m].axis == axis;
-        if (across &&
-            (mirrors[nearest].axis != axis || abs(mirrors[m].node - at[axis]) < abs(mirrors[nearest].node - at[axis])))
+        const bool across = symmetry[m].axis == axis;
+        if (across && (symmetry[nearest].axis != axis ||
+                       abs(symmetry[m].node - at[axis]) < abs(symmetry[nearest].node - at[axis])))
             nearest = m;
     }
-    return (int16_t)(mirrors[nearest].wall + 1);
+    return (int16_t)(symmetry[nearest].boundary + 1);
 }
 
 // Node n at grid coordinates `at` of body i: whom it follows, with which signs.
 static void find_leader(brunt_unknowns *u, const brunt_bodies *bodies, int i, int32_t n, const int32_t at[3],
-                        const brunt_symmetry_plane *mirrors, int mirror_count) {
+                        const brunt_symmetry_plane *symmetry, int symmetry_count) {
     int32_t image[BRUNT_MAX_IMAGES][3], leader = n;
     real sign[BRUNT_MAX_IMAGES][3];
-    const int count = brunt_symmetry_images(mirrors, mirror_count, at, LAYERS, image, sign);
+    const int count = brunt_symmetry_images(symmetry, symmetry_count, at, LAYERS, image, sign);
     int from = 0, others = 0;
     for (int k = 1; k < count; k++) {
         const int32_t other = brunt_unknowns_node_at(u, bodies, i, image[k]);
@@ -59,21 +60,21 @@ static void find_leader(brunt_unknowns *u, const brunt_bodies *bodies, int i, in
     for (int a = 0; a < u->dim; a++) {
         const int64_t k = n * (int64_t)u->dim + a;
         u->images.sign[k] = (double)sign[from][a];
-        if (others || sign[0][a] == 0) u->images.wall[k] = bearer(mirrors, mirror_count, at, a);
+        if (others || sign[0][a] == 0) u->images.boundary[k] = bearer(symmetry, symmetry_count, at, a);
     }
 }
 
 static void find_leaders(brunt_unknowns *u, const brunt_world *world, int i) {
     const brunt_grid *grid = &world->bodies.mpm[i].grid;
-    brunt_symmetry_plane mirrors[BRUNT_MAX_PLANES];
-    const int count = mirrors_of(u, world, i, mirrors);
+    brunt_symmetry_plane symmetry[BRUNT_MAX_PLANES];
+    const int count = symmetry_of(u, world, i, symmetry);
     for (int64_t q = 0; count && q < (int64_t)grid->slot_count * BRUNT_BLOCK_NODES; q++) {
         int32_t at[3] = {0};
         int local[3];
         if (u->number[i][q] < 0) continue;
         brunt_node_local(grid, (int)(q % BRUNT_BLOCK_NODES), local);
         for (int a = 0; a < grid->dim; a++) at[a] = grid->slots[q / BRUNT_BLOCK_NODES].coord[a] * grid->side + local[a];
-        find_leader(u, &world->bodies, i, u->number[i][q], at, mirrors, count);
+        find_leader(u, &world->bodies, i, u->number[i][q], at, symmetry, count);
     }
 }
 
@@ -86,18 +87,18 @@ static void add_masses(brunt_unknowns *u) {
     }
 }
 
-int brunt_unknowns_mirror(brunt_unknowns *u, const brunt_world *world, brunt_error *error) {
+int brunt_unknowns_symmetry(brunt_unknowns *u, const brunt_world *world, brunt_error *error) {
     brunt_images *images = &u->images;
     const size_t n = (size_t)u->count + 1, all = n * (size_t)u->dim;
     if (!images->any) return BRUNT_OK;
-    if (BRUNT_ROOM(images->leader, n, 0, "images of nodes", error) ||
-        BRUNT_ROOM(images->follower, n, 0, "images of nodes", error) ||
-        BRUNT_ROOM(images->sign, all, 0, "images of nodes", error) ||
-        BRUNT_ROOM(images->mass, all, 0, "images of nodes", error) ||
-        BRUNT_ROOM(images->wall, all, 0, "images of nodes", error))
+    if (BRUNT_CAPACITY(images->leader, n, 0, "images of nodes", error) ||
+        BRUNT_CAPACITY(images->follower, n, 0, "images of nodes", error) ||
+        BRUNT_CAPACITY(images->sign, all, 0, "images of nodes", error) ||
+        BRUNT_CAPACITY(images->mass, all, 0, "images of nodes", error) ||
+        BRUNT_CAPACITY(images->boundary, all, 0, "images of nodes", error))
         return BRUNT_FAILED;
     memset(images->mass, 0, all * sizeof *images->mass);
-    memset(images->wall, 0, all * sizeof *images->wall);
+    memset(images->boundary, 0, all * sizeof *images->boundary);
     for (size_t k = 0; k < all; k++) images->sign[k] = 1;
     for (int32_t k = 0; k < u->count; k++) images->leader[k] = k;
     for (int i = 0; i < world->bodies.mpm_count; i++) find_leaders(u, world, i);
@@ -122,27 +123,27 @@ static void divide(const brunt_unknowns *u, int64_t first, double *sum) {
     if (mass) brunt_fold_spread(&u->images.fold, u->dim, sum);
 }
 
-// Adds momentum, `share` [kg] of each node's velocity (NULL: 1), to what mirrors bear, with a sign.
+// Adds momentum, `share` [kg] of each node's velocity (NULL: 1), to what symmetry planes bear, with a sign.
 static void bear(const brunt_unknowns *u, brunt_boundaries *boundaries, const double *share, double sign) {
     for (int64_t k = 0; k < (int64_t)u->count * u->dim; k++) {
         double J[3] = {0}, turn[3] = {0}, x[3] = {0};
-        if (!u->images.wall[k]) continue;
+        if (!u->images.boundary[k]) continue;
         const int32_t n = (int32_t)(k / u->dim);
         const int a = (int)(k % u->dim);
-        for (int i = 0; i < u->dim; i++) x[i] = u->place[n * (int64_t)u->dim + i];
+        for (int i = 0; i < u->dim; i++) x[i] = u->position[n * (int64_t)u->dim + i];
         J[a] = sign * (share ? share[n] : 1) * u->velocity[k];
         for (int i = 0; i < 3; i++) turn[i] = x[(i + 1) % 3] * J[(i + 2) % 3] - x[(i + 2) % 3] * J[(i + 1) % 3];
-        brunt_impulse_account_reaction(&boundaries->walls[u->images.wall[k] - 1].last, J, turn);
+        brunt_impulse_account_reaction(&boundaries->boundary[u->images.boundary[k] - 1].last, J, turn);
     }
 }
 
 void brunt_unknowns_divide(brunt_unknowns *u, brunt_world *world) {
     // Of FLIP's share particles take changes over alone.
     const double taken = world->settings.transfer == BRUNT_FLIP ? 1 - world->settings.flip : 1;
-    const bool bears = u->images.any && world->settings.scheme != BRUNT_STATIC;
-    if (bears) bear(u, &world->boundaries, NULL, -taken);
+    const bool carries = u->images.any && world->settings.scheme != BRUNT_STATIC;
+    if (carries) bear(u, &world->boundaries, NULL, -taken);
     divide(u, (int64_t)u->mesh_count * u->dim, u->velocity);
-    if (bears) bear(u, &world->boundaries, u->mass, taken);
+    if (carries) bear(u, &world->boundaries, u->mass, taken);
 }
 
 void brunt_unknowns_accelerate(const brunt_unknowns *u, const double *force, double *acceleration) {
@@ -175,5 +176,5 @@ void brunt_unknowns_hold_images(brunt_unknowns *u) {
         for (int a = 0; a < u->dim; a++) u->held[n + a] = u->held[to + a], u->holder[n + a] = u->holder[to + a];
     }
     for (int64_t k = 0; k < (int64_t)u->count * u->dim; k++)
-        if (!u->held[k]) u->holder[k] = images->wall[k];
+        if (!u->held[k]) u->holder[k] = images->boundary[k];
 }

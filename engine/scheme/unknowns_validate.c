@@ -20,17 +20,17 @@ static void validate_order(const brunt_unknowns *u, const brunt_bodies *bodies) 
     }
 }
 
-static void validate_components(const brunt_unknowns *u, int walls) {
+static void validate_components(const brunt_unknowns *u, int boundaries) {
     for (int32_t n = 0; n < u->count; n++) BRUNT_ASSERT(u->mass[n] >= 0 && isfinite(u->mass[n]));
     for (int64_t k = 0; k < (int64_t)u->count * u->dim; k++) {
-        BRUNT_ASSERT(isfinite(u->place[k]) && isfinite(u->velocity[k]));
-        BRUNT_ASSERT(u->held[k] <= 1 && u->holder[k] >= 0 && u->holder[k] <= walls);
+        BRUNT_ASSERT(isfinite(u->position[k]) && isfinite(u->velocity[k]));
+        BRUNT_ASSERT(u->held[k] <= 1 && u->holder[k] >= 0 && u->holder[k] <= boundaries);
         BRUNT_ASSERT(!u->held[k] || (isfinite(u->target[k]) && isfinite(u->end[k])));
     }
 }
 
 // A leader follows none; followers ascend.
-static void validate_images(const brunt_unknowns *u, int walls) {
+static void validate_images(const brunt_unknowns *u, int boundaries) {
     const brunt_images *images = &u->images;
     for (int32_t n = 0; n < u->count; n++) {
         const int32_t leader = images->leader[n];
@@ -41,16 +41,16 @@ static void validate_images(const brunt_unknowns *u, int walls) {
         BRUNT_ASSERT(n >= 0 && n < u->count && images->leader[n] != n && (!i || images->follower[i - 1] < n));
     }
     for (int64_t k = 0; k < (int64_t)u->count * u->dim; k++)
-        BRUNT_ASSERT(fabs(images->sign[k]) <= 1 && images->mass[k] >= 0 && images->wall[k] >= 0 &&
-                     images->wall[k] <= walls);
+        BRUNT_ASSERT(fabs(images->sign[k]) <= 1 && images->mass[k] >= 0 && images->boundary[k] >= 0 &&
+                     images->boundary[k] <= boundaries);
 }
 
-void brunt_unknowns_validate(const brunt_unknowns *u, const brunt_bodies *bodies, int walls) {
+void brunt_unknowns_validate(const brunt_unknowns *u, const brunt_bodies *bodies, int boundaries) {
     BRUNT_ASSERT((u->dim == 2 || u->dim == 3) && u->count >= 0);
     if (!u->count) return; // no step has been taken
     validate_order(u, bodies);
-    for (int w = 0; w < walls; w++)
+    for (int w = 0; w < boundaries; w++)
         BRUNT_ASSERT(u->plane[w] == -1 || (u->plane[w] >= u->grid_base[bodies->mpm_count] && u->plane[w] < u->count));
-    validate_components(u, walls);
-    if (u->images.any) validate_images(u, walls);
+    validate_components(u, boundaries);
+    if (u->images.any) validate_images(u, boundaries);
 }

@@ -27,7 +27,7 @@ static brunt_amount sum_of(brunt_amount a, brunt_amount b) {
 
 // ------------------------------------------------------------------------------------------ material points
 
-typedef enum transfer_pass { SCATTER, ADVANCE, GATHER, GATHER_REST, TRANSFER_PASSES } transfer_pass;
+typedef enum transfer_pass { P2G, MUSL, G2P, G2P_REST, TRANSFER_PASSES } transfer_pass;
 
 // How often each field goes over the bus: scatter, the first stage of the gather in two (linear kernel), all of the
 // gather, its second stage.
@@ -50,14 +50,14 @@ static double particle_bytes(const brunt_particles *p, transfer_pass pass) {
     const bool total = brunt_total_lagrangian(p);
     double reals = 0;
     for (int f = 0; f < p->field_count; f++) {
-        int times = f < BRUNT_BASE_FIELDS ? trips[f][pass] : pass >= GATHER ? STATE_TRIPS : 0;
+        int times = f < BRUNT_BASE_FIELDS ? trips[f][pass] : pass >= G2P ? STATE_TRIPS : 0;
         int components = p->field[f].components;
-        if (total && pass == SCATTER && f == BRUNT_FIELD_position) times = 0;
-        if (total && pass == SCATTER && f == BRUNT_FIELD_deformation_gradient) times = 1;
-        if (f == BRUNT_FIELD_kirchhoff_stress && pass == SCATTER) components = BRUNT_SYMMETRIC(p->dim); // of rings
+        if (total && pass == P2G && f == BRUNT_FIELD_position) times = 0;
+        if (total && pass == P2G && f == BRUNT_FIELD_deformation_gradient) times = 1;
+        if (f == BRUNT_FIELD_kirchhoff_stress && pass == P2G) components = BRUNT_SYMMETRIC(p->dim); // of rings
         reals += times * components;
     }
-    return reals * sizeof(real) + (pass == SCATTER ? sizeof *p->bin : 0);
+    return reals * sizeof(real) + (pass == P2G ? sizeof *p->bin : 0);
 }
 
 // Blocks, slots and bins for each particle of a body.
@@ -91,7 +91,7 @@ static double inverse_flops(int d) { return d == 3 ? 42 : 8; }       // cofactor
 static double product_flops(int d) { return d * d * (2.0 * d - 1); } // of two matrices
 static double pairs_of(int d) { return d * (d + 1) / 2.0; }          // components of a symmetric one
 
-static double scatter_flops(const brunt_body *body, bool affine, crowd per) {
+static double p2g_flops(const brunt_body *body, bool affine, crowd per) {
     const brunt_particles *p = &body->particles;
     const int d = p->dim, order = body->grid.order, N = order + 1;
     const double nodes = pow(N, d);
@@ -136,17 +136,17 @@ static double interpolation_flops(const brunt_body *body, bool old, bool affine,
 static double update_flops(const brunt_body *body, brunt_transfer transfer, transfer_pass pass) {
     const brunt_particles *p = &body->particles;
     const int d = p->dim;
-    const bool total = brunt_total_lagrangian(p), rings = brunt_axisymmetric(p);
-    double flops = pass != GATHER_REST && transfer == BRUNT_FLIP ? 5 * d : 0; // flip (v + change) + (1 - flip) v_grid
-    if (pass == ADVANCE) return flops + (rings ? 1 : 0) + power_flops(p);
-    flops += 4 * d + (rings ? 4 : 0) + 3; // x, speed; hoop; kinetic energy
+    const bool total = brunt_total_lagrangian(p), axisymmetric = brunt_axisymmetric(p);
+    double flops = pass != G2P_REST && transfer == BRUNT_FLIP ? 5 * d : 0; // flip (v + change) + (1 - flip) v_grid
+    if (pass == MUSL) return flops + (axisymmetric ? 1 : 0) + power_flops(p);
+    flops += 4 * d + (axisymmetric ? 4 : 0) + 3; // x, speed; hoop; kinetic energy
     flops +=
         total ? d * d * 2 + 2 * inverse_flops(d) + product_flops(d) + d * d * (2.0 * d + 1) // F, F^-1, L, its stretch
               : d * d * (2.0 * d + 1);                                                      // F += dt L F
     if (transfer == BRUNT_APIC)                                                             // C - dt sym(C C), |C|^2
         flops += d * (2.0 * d + 2) + (pairs_of(d) - d) * (4 * d + 2) + d * d * 3 + 2 * d +
                  (body->grid.order == 1 ? 7 * d : 0);
-    return flops + power_flops(p) * (pass == GATHER_REST ? 2 : 1);
+    return flops + power_flops(p) * (pass == G2P_REST ? 2 : 1);
 }
 
 static double model_flops(const brunt_material *material, int dim) {
@@ -156,20 +156,20 @@ static double model_flops(const brunt_material *material, int dim) {
     return flops;
 }
 
-static brunt_amount scatter_work(const brunt_settings *settings, const brunt_body *body) {
+static brunt_amount p2g_work(const brunt_settings *settings, const brunt_body *body) {
     const crowd per = crowd_of(body);
-    return (brunt_amount){particle_bytes(&body->particles, SCATTER) + 2 * per.blocks * buffer_bytes(&body->grid),
-                          scatter_flops(body, settings->transfer == BRUNT_APIC, per)};
+    return (brunt_amount){particle_bytes(&body->particles, P2G) + 2 * per.blocks * buffer_bytes(&body->grid),
+                          p2g_flops(body, settings->transfer == BRUNT_APIC, per)};
 }
 
 // With nodes as velocities where `pass` takes them from the grid.
-static brunt_amount gather_work(const brunt_settings *settings, const brunt_body *body, transfer_pass pass) {
+static brunt_amount g2p_work(const brunt_settings *settings, const brunt_body *body, transfer_pass pass) {
     const crowd per = crowd_of(body);
-    const bool old = settings->transfer == BRUNT_FLIP && pass != GATHER_REST;
-    const bool affine = settings->transfer == BRUNT_APIC && pass != ADVANCE;
+    const bool old = settings->transfer == BRUNT_FLIP && pass != G2P_REST;
+    const bool affine = settings->transfer == BRUNT_APIC && pass != MUSL;
     brunt_amount work = {particle_bytes(&body->particles, pass) + per.slots * slot_bytes(),
                          interpolation_flops(body, old, affine, per) + update_flops(body, settings->transfer, pass)};
-    if (pass != ADVANCE) work.flops += model_flops(&body->material, body->particles.point_dim);
+    if (pass != MUSL) work.flops += model_flops(&body->material, body->particles.point_dim);
     return work;
 }
 
@@ -280,8 +280,8 @@ brunt_amount brunt_work_sort(const brunt_world *world, brunt_body_ref body) {
     return body.mpm ? sort_work(body.mpm) : NOTHING;
 }
 
-brunt_amount brunt_work_scatter(const brunt_world *world, brunt_body_ref body) {
-    return body.mpm ? scatter_work(&world->settings, body.mpm) : NOTHING;
+brunt_amount brunt_work_p2g(const brunt_world *world, brunt_body_ref body) {
+    return body.mpm ? p2g_work(&world->settings, body.mpm) : NOTHING;
 }
 
 brunt_amount brunt_work_grid(const brunt_world *world, brunt_body_ref body) {
@@ -298,18 +298,17 @@ brunt_amount brunt_work_ledger(const brunt_world *world, brunt_body_ref body) {
 }
 
 // Once more to the grid and back, of the nodes that there are for a particle.
-brunt_amount brunt_work_remap(const brunt_world *world, brunt_body_ref body) {
+brunt_amount brunt_work_musl_velocity(const brunt_world *world, brunt_body_ref body) {
     if (!body.mpm) return NOTHING;
     const brunt_amount nodes = sum_of(grid_sum_work(&world->settings, body.mpm), grid_update_work());
     const double share = crowd_of(body.mpm).slots * BRUNT_BLOCK_NODES;
     const brunt_amount points =
-        sum_of(gather_work(&world->settings, body.mpm, ADVANCE), scatter_work(&world->settings, body.mpm));
+        sum_of(g2p_work(&world->settings, body.mpm, MUSL), p2g_work(&world->settings, body.mpm));
     return sum_of(points, (brunt_amount){share * nodes.bytes, share * nodes.flops});
 }
 
-brunt_amount brunt_work_gather(const brunt_world *world, brunt_body_ref body) {
-    return body.mpm ? gather_work(&world->settings, body.mpm, world->transfers.musl_velocity ? GATHER_REST : GATHER)
-                    : NOTHING;
+brunt_amount brunt_work_g2p(const brunt_world *world, brunt_body_ref body) {
+    return body.mpm ? g2p_work(&world->settings, body.mpm, world->transfers.musl_velocity ? G2P_REST : G2P) : NOTHING;
 }
 
 brunt_amount brunt_work_kick(const brunt_world *world, brunt_body_ref body) {

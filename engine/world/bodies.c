@@ -37,7 +37,7 @@ void brunt_start_motion(const brunt_body_def *def, int dim, const double x[3], d
 // How far a particle reaches that is at a distance from the body's surface. What is inside a fluid comes to its surface
 // later, and so does what is inside a body that erodes: there is a particle's own material about it, no more. Of a body
 // that erodes those in the outermost layer keep their distance: it says where the surface is that there is now.
-static double particle_reach(const brunt_body *body, double distance) {
+static double particle_extent(const brunt_body *body, double distance) {
     const double own = 0.5 * body->spacing;
     if (body->material.model[BRUNT_STRENGTH]->fluid) return fmin(distance, own);
     return body->erodes && distance > body->spacing ? own : distance;
@@ -48,8 +48,8 @@ static int fill_body(const brunt_body_def *def, const brunt_filled *filled, brun
     const int dim = p->dim;
     if (brunt_particles_reserve(p, filled->count, error)) return BRUNT_FAILED;
     p->count = p->slots = p->made = filled->count;
-    const bool rings = brunt_axisymmetric(p);
-    body->particle_mass = (real)(filled->volume * (double)body->material.density * (rings ? 2 * M_PI : 1));
+    const bool axisymmetric = brunt_axisymmetric(p);
+    body->particle_mass = (real)(filled->volume * (double)body->material.density * (axisymmetric ? 2 * M_PI : 1));
     real **x = brunt_field(p, BRUNT_FIELD_position), **v = brunt_field(p, BRUNT_FIELD_velocity),
          **C = brunt_field(p, BRUNT_FIELD_affine);
     real **F = brunt_field(p, BRUNT_FIELD_deformation_gradient);
@@ -60,17 +60,17 @@ static int fill_body(const brunt_body_def *def, const brunt_filled *filled, brun
         brunt_start_motion(def, dim, at, speed, gradient);
         p->id[s] = s;
         // Of a ring, 2 pi times the integral of r over its square: exact.
-        const double volume = filled->volume * (rings ? 2 * M_PI * at[0] : 1);
+        const double volume = filled->volume * (axisymmetric ? 2 * M_PI * at[0] : 1);
         if (!(volume > 0)) REFUSE("bodies.%s: a particle at r = %g m: " BRUNT_CUT_AT_AXIS, def->name, at[0]);
         brunt_field(p, BRUNT_FIELD_mass)[0][s] = (real)(volume * (double)body->material.density);
         brunt_field(p, BRUNT_FIELD_reference_volume)[0][s] = (real)volume;
-        if (reach) brunt_field(p, BRUNT_FIELD_reach)[0][s] = (real)particle_reach(body, filled->reach[s]);
+        if (reach) brunt_field(p, BRUNT_FIELD_reach)[0][s] = (real)particle_extent(body, filled->reach[s]);
         for (int a = 0; a < 3 && body->material.rest_stress != 0; a++)
             brunt_field(p, BRUNT_FIELD_kirchhoff_stress)[a][s] = body->material.rest_stress;
-        if (rings) F[8][s] = 1;
+        if (axisymmetric) F[8][s] = 1;
         for (int a = 0; a < dim; a++) {
             x[a][s] = (real)at[a];
-            if (brunt_total_lagrangian(p)) brunt_kernel_place(p)[a][s] = (real)at[a];
+            if (brunt_total_lagrangian(p)) brunt_kernel_position(p)[a][s] = (real)at[a];
             v[a][s] = (real)speed[a];
             for (int b = 0; b < dim; b++) {
                 F[a * p->point_dim + b][s] = a == b;
@@ -243,7 +243,7 @@ static int make_particles(brunt_world *world, const brunt_world_def *def, const 
     if ((status = set_erosion(from, filled->count, body, error))) return status;
     world->bodies.has_fluid = world->bodies.has_fluid || body->material.model[BRUNT_STRENGTH]->fluid;
     brunt_particle_needs needs = {.affine = def->transfer == BRUNT_APIC,
-                                  .reach = world->contact.rows || world->boundaries.has_walls,
+                                  .reach = world->contact.rows || world->boundaries.has_pushing_planes,
                                   .grid_velocity = world->transfers.musl_velocity && def->transfer == BRUNT_FLIP,
                                   .total = from->total_lagrangian};
     memcpy(needs.models, body->material.model, sizeof needs.models);

@@ -25,10 +25,10 @@ static bool is_graded(const brunt_body_def *def) {
 }
 
 static int check_numbers(const brunt_body_def *from, brunt_error *error) {
-    const bool sheet = from->method == BRUNT_MEMBRANE;
-    if (sheet && !(from->thickness > 0 && isfinite(from->thickness)))
+    const bool membrane = from->method == BRUNT_MEMBRANE;
+    if (membrane && !(from->thickness > 0 && isfinite(from->thickness)))
         REFUSE("bodies.%s.thickness: %g m is not a positive length", from->name, from->thickness);
-    if (is_graded(from) && (sheet || from->mesh.node_count || from->shape.kind != BRUNT_BOX))
+    if (is_graded(from) && (membrane || from->mesh.node_count || from->shape.kind != BRUNT_BOX))
         REFUSE("bodies.%s.grading: only the mesh of a box of method fem is graded", from->name);
     if (!from->mesh.node_count && !(from->size > 0))
         REFUSE("bodies.%s.size: %g m is not a positive length", from->name, from->size);
@@ -63,7 +63,7 @@ int brunt_make_elements(brunt_world *world, const brunt_world_def *def, const br
     world->bodies.all[index] = (brunt_body_ref){.ops = &brunt_mesh_ops, .fem = fem};
     brunt_mesh made = {0};
     brunt_material material;
-    const bool sheet = from->method == BRUNT_MEMBRANE;
+    const bool membrane = from->method == BRUNT_MEMBRANE;
     int status = check_numbers(from, error);
     if (status) return status;
     if (!from->mesh.node_count) status = mesh_of_shape(from, def->dimension, &made, error);
@@ -74,13 +74,13 @@ int brunt_make_elements(brunt_world *world, const brunt_world_def *def, const br
         memcpy(reason, error->message, sizeof reason);
         brunt_fail(error, error->code, "bodies.%s: %.900s", from->name, reason);
     }
-    if (!status && brunt_element_is_membrane(mesh->kind) != sheet)
+    if (!status && brunt_element_is_membrane(mesh->kind) != membrane)
         status = brunt_fail(error, BRUNT_BAD_INPUT, "bodies.%s: elements of kind %s are not for method %s", from->name,
-                            brunt_element_name(mesh->kind), sheet ? "membrane" : "fem");
+                            brunt_element_name(mesh->kind), membrane ? "membrane" : "fem");
     const brunt_material_def *law = &def->materials[from->material];
     if (!status)
-        status = sheet ? brunt_material_make_membrane(law, from->tension_only, &material, error)
-                       : brunt_material_make(law, &material, error);
+        status = membrane ? brunt_material_make_membrane(law, from->tension_only, &material, error)
+                          : brunt_material_make(law, &material, error);
     if (!status) brunt_material_set_temperature(&material, from->temperature);
     if (!status)
         status = def->axisymmetric ? brunt_fem_make_axisymmetric(from, &material, mesh, fem, error)

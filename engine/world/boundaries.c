@@ -11,20 +11,20 @@ int brunt_boundaries_make(brunt_world *world, const brunt_world_def *def, const 
                           brunt_error *error) {
     brunt_boundaries *all = &world->boundaries;
     const brunt_boundary_making m = {def, all, &world->messages, world->bodies.has_particles};
-    all->wall_count = brunt_boundary_count(def);
-    if (BRUNT_NEW(all->walls, all->wall_count + 1, "boundaries", error)) return BRUNT_FAILED;
+    all->boundary_count = brunt_boundary_entry_count(def);
+    if (BRUNT_NEW(all->boundary, all->boundary_count + 1, "boundaries", error)) return BRUNT_FAILED;
     if (def->axisymmetric && world->bodies.has_particles)
-        all->mirrors[all->mirror_count++] =
-            (brunt_symmetry_plane){.axis = 0, .node = (int32_t)round(-def->origin[0] / def->cell), .wall = -1};
-    for (int w = 0; w < all->wall_count; w++) {
-        brunt_boundary *wall = &all->walls[w];
-        const void *entry = brunt_boundary_entry(def, w, &wall->kind);
-        const char *body = wall->kind->body ? wall->kind->body(entry) : "";
-        brunt_boundary_name(def, w, wall->name);
-        wall->mirror = wall->body = -1;
-        if (body[0] && (wall->body = brunt_find_ordered(order, def->body_count, body)) < 0)
-            REFUSE("boundaries (%s).body: there is no body '%s'", wall->name, body);
-        const int status = wall->kind->make(&m, entry, w, error);
+        all->symmetry[all->symmetry_count++] =
+            (brunt_symmetry_plane){.axis = 0, .node = (int32_t)round(-def->origin[0] / def->cell), .boundary = -1};
+    for (int w = 0; w < all->boundary_count; w++) {
+        brunt_boundary *boundary = &all->boundary[w];
+        const void *entry = brunt_boundary_entry(def, w, &boundary->kind);
+        const char *body = boundary->kind->body ? boundary->kind->body(entry) : "";
+        brunt_boundary_name(def, w, boundary->name);
+        boundary->symmetry_plane = boundary->body = -1;
+        if (body[0] && (boundary->body = brunt_find_ordered(order, def->body_count, body)) < 0)
+            REFUSE("boundaries (%s).body: there is no body '%s'", boundary->name, body);
+        const int status = boundary->kind->make(&m, entry, w, error);
         if (status) return status;
     }
     return BRUNT_OK;

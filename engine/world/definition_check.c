@@ -68,7 +68,7 @@ static int check_body(const brunt_world_def *def, const brunt_body_def *body, br
     BRUNT_TRY(brunt_check_array(owner, body->face_count, body->faces, error));
     for (int32_t f = 0; f < body->face_count; f++) BRUNT_TRY(brunt_check_name_ends("faces", f, body->faces[f], error));
     for (int a = 0; a < BRUNT_COUNT(axes); a++) BRUNT_TRY(brunt_check_curve(owner, axes[a], &body->grading[a], error));
-    BRUNT_TRY(brunt_check_place(owner, &body->place, error));
+    BRUNT_TRY(brunt_check_placement(owner, &body->place, error));
     if (body->method != BRUNT_MPM && body->mesh.node_count) return check_mesh(owner, &body->mesh, error);
     if (body->method != BRUNT_MPM)
         BRUNT_TRY(brunt_check_choice(owner, ".element", (unsigned)body->element, BRUNT_ELEMENT_KINDS, error));
@@ -147,7 +147,7 @@ static int check_materials(const brunt_world_def *def, brunt_error *error) {
 // ------------------------------------------------------------------------------------------ boundaries
 
 static int check_boundaries(const brunt_world_def *def, brunt_error *error) {
-    for (int32_t w = 0; w < brunt_boundary_count(def); w++) {
+    for (int32_t w = 0; w < brunt_boundary_entry_count(def); w++) {
         const brunt_boundary_kind *kind;
         const void *entry = brunt_boundary_entry(def, w, &kind);
         BRUNT_TRY(brunt_check_name_ends("boundaries", w, kind->name(entry), error));
@@ -170,7 +170,7 @@ static int check_detonations(const brunt_world_def *def, brunt_error *error) {
 }
 
 static int check_boundary_names(const brunt_world_def *def, brunt_error *error) {
-    const int32_t count = brunt_boundary_count(def);
+    const int32_t count = brunt_boundary_entry_count(def);
     char(*name)[BRUNT_NAME_LENGTH];
     brunt_names sorted;
     if (BRUNT_NEW(name, count + 1, "names of boundaries", error)) return BRUNT_FAILED;
@@ -291,7 +291,7 @@ static int check_axis(const brunt_world_def *def, bool particles, brunt_error *e
         const brunt_plane_def *plane = &def->planes[q];
         const brunt_condition_row *row = &brunt_conditions[plane->condition];
         const bool round_axis = plane->normal[0] != 0 && plane->normal[1] == 0;
-        if (round_axis && (row->images || (row->mirrors && plane->point[0] == 0)))
+        if (round_axis && (row->images || (row->symmetry && plane->point[0] == 0)))
             REFUSE("boundaries[%d]: a cylinder is no plane of symmetry, and the axis of revolution x = 0 needs none",
                    q);
     }

@@ -112,7 +112,7 @@ static void name_boundary(refusals *r, int32_t index, const char *name) {
 }
 
 static void look_at_boundaries(const brunt_world_def *def, refusals *r) {
-    for (int32_t w = 0; w < brunt_boundary_count(def); w++) {
+    for (int32_t w = 0; w < brunt_boundary_entry_count(def); w++) {
         const brunt_boundary_kind *kind;
         const void *entry = brunt_boundary_entry(def, w, &kind);
         const char *key = "", *reason = kind->refusal ? kind->refusal(def, entry, &key) : NULL;

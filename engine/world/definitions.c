@@ -72,9 +72,9 @@ static bool in_contact(const brunt_contact_def *contact, const char *a, const ch
 
 bool brunt_pairs_of_one_name(const brunt_world_def *def, int32_t first[2], int32_t second[2]) {
     const int32_t n = def->body_count;
-    char name[2 * BRUNT_MOST_PAIRS][2 * BRUNT_NAME_LENGTH + 2];
-    int32_t pair[2 * BRUNT_MOST_PAIRS][2], count = 0;
-    if ((int64_t)n * (n - 1) / 2 > BRUNT_MOST_PAIRS) return false; // they share accounts, which are numbered
+    char name[2 * BRUNT_PAIR_LIMIT][2 * BRUNT_NAME_LENGTH + 2];
+    int32_t pair[2 * BRUNT_PAIR_LIMIT][2], count = 0;
+    if ((int64_t)n * (n - 1) / 2 > BRUNT_PAIR_LIMIT) return false; // they share accounts, which are numbered
     for (int32_t i = 0; i < n; i++)
         for (int32_t k = i; k < n; k++) {
             const bool turned = strcmp(def->bodies[i].name, def->bodies[k].name) > 0;

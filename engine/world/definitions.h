@@ -8,7 +8,7 @@
 #include "brunt.h"
 
 enum { BRUNT_WORLD_COOKIE = 0x6272756e }; // the mark of a definition that was filled by its default function
-enum { BRUNT_MOST_PAIRS = 64 };           // of bodies in contact, with an account each
+enum { BRUNT_PAIR_LIMIT = 64 };           // of bodies in contact, with an account each
 
 // Two pairs of bodies in contact that have one name, "a-b", which columns of the history are called by: of 'a-b' with
 // 'c' and 'a' with 'b-c'. Bodies by index, each pair in order of name. False: there are none.

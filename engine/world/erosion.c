@@ -5,7 +5,7 @@ static brunt_erosion_step step_of(brunt_world *world, double dt) {
     return (brunt_erosion_step){.bodies = &world->bodies,
                                 .sets = &world->boundaries.sets,
                                 .ledger = &world->ledger,
-                                .room = world->scratch.meshes,
+                                .workspace = world->scratch.meshes,
                                 .dt = dt,
                                 .time = world->clock.time,
                                 .steps = world->clock.steps,

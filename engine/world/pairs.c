@@ -192,7 +192,7 @@ static int make_pair(const maker *m, const candidate *c, brunt_error *error) {
 
 int brunt_pairs_make(brunt_world *world, const brunt_world_def *def, const brunt_body_def **order, brunt_error *error) {
     const int64_t n = def->body_count, named = def->contact.pair_count;
-    maker m = {.world = world, .def = def, .order = order, .crowded = n * (n - 1) / 2 > BRUNT_MOST_PAIRS};
+    maker m = {.world = world, .def = def, .order = order, .crowded = n * (n - 1) / 2 > BRUNT_PAIR_LIMIT};
     const size_t most = (size_t)(named + (m.crowded ? 3 : n * (n - 1) / 2) + 1);
     if (BRUNT_NEW(world->pairs.mesh, n, "bodies with pairs", error) ||
         BRUNT_NEW(world->pairs.pair, most + (size_t)named, "pairs of bodies", error))

@@ -89,7 +89,7 @@ int32_t brunt_warning_count(const brunt_world *world) { return world->messages.c
 const char *brunt_world_warning(const brunt_world *world, int32_t warning) { return world->messages.text[warning]; }
 
 static void fill_force(const brunt_impulse_account *last, const brunt_impulse_account *all, double kick,
-                       brunt_force *force) {
+                       brunt_reaction *force) {
     for (int k = 0; k < 3; k++) {
         force->force[k] = kick > 0 ? last->impulse[k] / kick : 0;
         force->impulse[k] = all->impulse[k];
@@ -100,20 +100,20 @@ static void fill_force(const brunt_impulse_account *last, const brunt_impulse_ac
 }
 
 int32_t brunt_pair_count(const brunt_world *world) { return world->pairs.count; }
-void brunt_pair_force(const brunt_world *world, int32_t index, brunt_force *force) {
+void brunt_pair_force(const brunt_world *world, int32_t index, brunt_reaction *force) {
     const brunt_pair *pair = &world->pairs.pair[index];
     if (pair->a < 0)
         snprintf(force->name, sizeof force->name, index ? "all%d" : "all", index + 1);
     else
         snprintf(force->name, sizeof force->name, "%s-%s", brunt_body_name(world, pair->a),
                  brunt_body_name(world, pair->b));
-    fill_force(&pair->last, &pair->action, world->clock.kick, force);
+    fill_force(&pair->last, &pair->account, world->clock.kick, force);
 }
-int32_t brunt_wall_count(const brunt_world *world) { return world->boundaries.wall_count; }
-void brunt_wall_force(const brunt_world *world, int32_t index, brunt_force *force) {
-    const brunt_boundary *wall = &world->boundaries.walls[index];
-    snprintf(force->name, sizeof force->name, "%s", wall->name);
-    fill_force(&wall->last, &wall->action, world->clock.kick, force);
+int32_t brunt_boundary_count(const brunt_world *world) { return world->boundaries.boundary_count; }
+void brunt_boundary_reaction(const brunt_world *world, int32_t index, brunt_reaction *force) {
+    const brunt_boundary *boundary = &world->boundaries.boundary[index];
+    snprintf(force->name, sizeof force->name, "%s", boundary->name);
+    fill_force(&boundary->last, &boundary->account, world->clock.kick, force);
 }
 
 double brunt_world_time(const brunt_world *world) { return world->clock.time; }
@@ -155,7 +155,7 @@ brunt_method brunt_body_method(const brunt_world *world, int32_t body) {
     const brunt_body_ref *ref = &world->bodies.all[body];
     return ref->ops->method(ref);
 }
-int64_t brunt_body_size(const brunt_world *world, int32_t body, brunt_place at) {
+int64_t brunt_body_size(const brunt_world *world, int32_t body, brunt_location at) {
     const brunt_body_ref *ref = &world->bodies.all[body];
     return ref->ops->count(ref, at);
 }
@@ -177,26 +177,26 @@ void brunt_body_mesh(const brunt_world *world, int32_t body, brunt_mesh_report *
 
 // ------------------------------------------------------------------------------------------ the balance
 
-brunt_books brunt_books_of(const brunt_world *world) {
-    return (brunt_books){.bodies = &world->bodies,
-                         .walls = world->boundaries.walls,
-                         .wall_count = world->boundaries.wall_count,
-                         .pairs = world->pairs.pair,
-                         .pair_count = world->pairs.count,
-                         .eroded = world->erosion.account,
-                         .surface = &world->contact.surface,
-                         .steps = world->clock.steps,
-                         .axisymmetric = world->settings.axisymmetric};
+brunt_accounts brunt_accounts_of(const brunt_world *world) {
+    return (brunt_accounts){.bodies = &world->bodies,
+                            .boundaries = world->boundaries.boundary,
+                            .boundary_count = world->boundaries.boundary_count,
+                            .pairs = world->pairs.pair,
+                            .pair_count = world->pairs.count,
+                            .eroded = world->erosion.account,
+                            .surface = &world->contact.surface,
+                            .steps = world->clock.steps,
+                            .axisymmetric = world->settings.axisymmetric};
 }
 
 void brunt_world_energy(brunt_world *world, brunt_energy *energy) {
-    const brunt_books books = brunt_books_of(world);
-    brunt_ledger_energy(&world->ledger, &books, energy);
+    const brunt_accounts accounts = brunt_accounts_of(world);
+    brunt_ledger_energy(&world->ledger, &accounts, energy);
 }
 
 void brunt_world_momentum(brunt_world *world, brunt_momentum *momentum) {
-    const brunt_books books = brunt_books_of(world);
-    brunt_ledger_momentum(&world->ledger, &books, momentum);
+    const brunt_accounts accounts = brunt_accounts_of(world);
+    brunt_ledger_momentum(&world->ledger, &accounts, momentum);
 }
 
 void brunt_body_totals(brunt_world *world, int32_t index, brunt_body_sums *sums) {

@@ -7,11 +7,11 @@ int32_t brunt_boundary_surface_count(const brunt_world *world) { return world->b
 
 void brunt_boundary_surface_read(const brunt_world *world, int32_t index, brunt_boundary_surface_report *report) {
     const brunt_boundary_surface *s = &world->boundaries.surfaces.surface[index];
-    const brunt_impulse_account *last = &s->wall->last, *all = &s->wall->action;
+    const brunt_impulse_account *last = &s->boundary->last, *all = &s->boundary->account;
     const double kick = world->clock.kick;
     *report = (brunt_boundary_surface_report){
         .work = all->external_work, .drift = s->drift, .pieces = s->pieces, .active = s->active};
-    memcpy(report->name, s->wall->name, sizeof report->name);
+    memcpy(report->name, s->boundary->name, sizeof report->name);
     for (int a = 0; a < 3; a++) {
         const int i = (a + 1) % 3, j = (a + 2) % 3;
         const double turn = s->def.about[i] * last->impulse[j] - s->def.about[j] * last->impulse[i];
@@ -35,7 +35,7 @@ void brunt_boundary_surface_particles(const brunt_world *world, int32_t index,
         const brunt_boundary_particle *p = &s->particle[b];
         double *traction = out->traction + 3 * (size_t)b;
         for (int a = 0; a < 3; a++) {
-            out->place[3 * (size_t)b + (size_t)a] = p->x[a] + way[a];
+            out->position[3 * (size_t)b + (size_t)a] = p->x[a] + way[a];
             out->normal[3 * (size_t)b + (size_t)a] = p->normal[a];
             traction[a] = 0;
         }

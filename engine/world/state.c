@@ -13,10 +13,9 @@
 #include "mpm/sort.h"
 #include "world/world.h"
 
-// World blocks: clock (with the speeds of bodies of particles), walls (with the gas that groups of them enclose and
-// the tractions of surfaces),
-// pairs; where surfaces meet what their search remembers; and where contact keeps them the affine velocities of
-// boundary nodes. Last the accounts of erosion, if there is any, or those of implicit steps.
+// World blocks: clock (with the speeds of bodies of particles), boundaries (with the gas that groups of them enclose
+// and the tractions of surfaces), pairs; where surfaces meet what their search remembers; and where contact keeps them
+// the affine velocities of boundary nodes. Last the accounts of erosion, if there is any, or those of implicit steps.
 static int plain_blocks(const brunt_contact *contact) {
     return contact->surface.affine ? 5 : contact->has_surfaces ? 4 : 3;
 }
@@ -28,18 +27,18 @@ static int world_blocks(const brunt_world *world) {
 enum { EROSION_BLOCK = 5, NEWTON_BLOCK = 6 };
 
 // Where block `index` is: which of a body, or (body NULL) which of the world.
-typedef struct place {
+typedef struct block_location {
     const brunt_body_ref *body;
     int block;
-} place;
+} block_location;
 
-static place find(const brunt_world *world, int32_t index) {
+static block_location find(const brunt_world *world, int32_t index) {
     const brunt_bodies *bodies = &world->bodies;
     const int i = brunt_bodies_holding(bodies, bodies->first_block, index);
     index -= bodies->first_block[i];
-    if (i < bodies->count) return (place){&bodies->all[i], index};
+    if (i < bodies->count) return (block_location){&bodies->all[i], index};
     const int last = implicit(&world->settings) ? NEWTON_BLOCK : EROSION_BLOCK;
-    return (place){NULL, index == plain_blocks(&world->contact) ? last : index};
+    return (block_location){NULL, index == plain_blocks(&world->contact) ? last : index};
 }
 
 int32_t brunt_state_count(brunt_world *world) {
@@ -113,7 +112,8 @@ static brunt_state_block world_info(const brunt_world *world, int index) {
                                         "world/contact_affine", "world/erosion", "world/newton"};
     const int64_t account = 2 * brunt_saved_count(account_table, ACCOUNT_ROWS); // since the start, and of the last step
     const int64_t counts[] = {brunt_saved_count(clock_table, CLOCK_ROWS) + world->bodies.mpm_count,
-                              world->boundaries.wall_count * account + brunt_gas_state_count(&world->boundaries.sets) +
+                              world->boundaries.boundary_count * account +
+                                  brunt_gas_state_count(&world->boundaries.sets) +
                                   brunt_boundary_surfaces_state_count(&world->boundaries.surfaces),
                               world->pairs.count * account,
                               brunt_node_to_facet_state_count(&world->contact.surface),
@@ -133,12 +133,12 @@ static void world_get(brunt_world *world, int block, double *to) {
     if (block == 4) brunt_surface_affine_get(&world->contact.surface, to);
     if (block == 0) to = brunt_saved_get(clock_table, CLOCK_ROWS, world, to);
     for (int i = 0; block == 0 && i < world->bodies.mpm_count; i++) *to++ = (double)world->bodies.mpm[i].speed;
-    for (int w = 0; block == 1 && w < world->boundaries.wall_count; w++)
-        to = get_account(&world->boundaries.walls[w].last, get_account(&world->boundaries.walls[w].action, to));
+    for (int w = 0; block == 1 && w < world->boundaries.boundary_count; w++)
+        to = get_account(&world->boundaries.boundary[w].last, get_account(&world->boundaries.boundary[w].account, to));
     if (block == 1) to = brunt_boundary_surfaces_state_get(&world->boundaries.surfaces, to);
     if (block == 1) brunt_gas_state_get(&world->boundaries.sets, to);
     for (int p = 0; block == 2 && p < world->pairs.count; p++)
-        to = get_account(&world->pairs.pair[p].last, get_account(&world->pairs.pair[p].action, to));
+        to = get_account(&world->pairs.pair[p].last, get_account(&world->pairs.pair[p].account, to));
 }
 
 static int world_set(brunt_world *world, int block, const double *from, brunt_error *error) {
@@ -150,24 +150,25 @@ static int world_set(brunt_world *world, int block, const double *from, brunt_er
     if (block == 4) brunt_surface_affine_set(&world->contact.surface, from);
     if (block == 0) from = brunt_saved_set(clock_table, CLOCK_ROWS, world, from);
     for (int i = 0; block == 0 && i < world->bodies.mpm_count; i++) world->bodies.mpm[i].speed = (real)*from++;
-    for (int w = 0; block == 1 && w < world->boundaries.wall_count; w++)
-        from = set_account(&world->boundaries.walls[w].last, set_account(&world->boundaries.walls[w].action, from));
+    for (int w = 0; block == 1 && w < world->boundaries.boundary_count; w++)
+        from =
+            set_account(&world->boundaries.boundary[w].last, set_account(&world->boundaries.boundary[w].account, from));
     if (block == 1) from = brunt_boundary_surfaces_state_set(&world->boundaries.surfaces, from);
     if (block == 1) brunt_gas_state_set(&world->boundaries.sets, from);
     for (int p = 0; block == 2 && p < world->pairs.count; p++)
-        from = set_account(&world->pairs.pair[p].last, set_account(&world->pairs.pair[p].action, from));
+        from = set_account(&world->pairs.pair[p].last, set_account(&world->pairs.pair[p].account, from));
     return BRUNT_OK;
 }
 
 brunt_state_block brunt_state_info(brunt_world *world, int32_t index) {
     if (index < 0 || index >= brunt_state_count(world)) return (brunt_state_block){.type = 'd'};
-    const place at = find(world, index);
+    const block_location at = find(world, index);
     return at.body ? at.body->ops->block_info(at.body, at.block) : world_info(world, at.block);
 }
 
 void brunt_state_get(brunt_world *world, int32_t index, void *out) {
     if (index < 0 || index >= brunt_state_count(world)) return;
-    const place at = find(world, index);
+    const block_location at = find(world, index);
     if (at.body)
         at.body->ops->block_get(at.body, at.block, out);
     else
@@ -180,7 +181,7 @@ static int check_set(brunt_world *world, int32_t index, const void *in, int64_t 
         return brunt_fail(error, BRUNT_BAD_INPUT, "there is no state block %d, this scene has %d", index,
                           brunt_state_count(world));
     const brunt_state_block block = brunt_state_info(world, index);
-    const place at = find(world, index);
+    const block_location at = find(world, index);
     const brunt_body *mpm = at.body ? at.body->mpm : NULL;
     // Of a body that erodes there may be fewer particles by now than in the world as it is; its ids say how many.
     const bool fits =
@@ -202,7 +203,7 @@ static int follow_elements(brunt_world *world, brunt_fem_body *fem, brunt_error 
 int brunt_state_set(brunt_world *world, int32_t index, const void *in, int64_t count, brunt_error *error) {
     int status = check_set(world, index, in, count, error);
     if (status) return status;
-    const place at = find(world, index);
+    const block_location at = find(world, index);
     if (!at.body) return world_set(world, at.block, in, error);
     status = at.body->ops->block_set(at.body, at.block, in, count, error);
     const bool elements = at.body->fem && at.body->fem->bonds && at.block == 1;

@@ -14,10 +14,10 @@ static const double COARSE = 1.25; // cells: edges of meshes that meet particles
 enum { GRID_SWEEPS = 8, TOUCH_SWEEPS = 64 };
 static const double THIN = 0.01; // mean edges
 
-static bool acts_on_fem(const brunt_world *world, const brunt_boundary *wall) {
-    if (!wall->kind->meet_surface) return false;
+static bool acts_on_fem(const brunt_world *world, const brunt_boundary *boundary) {
+    if (!boundary->kind->meet_surface) return false;
     for (int k = 0; k < world->bodies.fem_count; k++)
-        if (wall->body < 0 || wall->body == world->bodies.fem[k].index) return true;
+        if (boundary->body < 0 || boundary->body == world->bodies.fem[k].index) return true;
     return false;
 }
 
@@ -30,7 +30,7 @@ static void look_at_edges(const brunt_bodies *bodies, double *fine, double *coar
     }
 }
 
-// Sheets keep apart by their thickness, which is all there is to tell their sides by.
+// Membranes keep apart by their thickness, which is all there is to tell their sides by.
 static void warn_of_thickness(brunt_world *world, const brunt_fem_body *fem, bool self) {
     const double thick = (double)fem->contact_thickness;
     bool other = self;
@@ -51,10 +51,10 @@ static void warn_of_thickness(brunt_world *world, const brunt_fem_body *fem, boo
 
 // What membranes ask of contact: a form that knows their two sides, elements that particles do not fit through, and
 // elements longer than they are thick.
-static int check_sheets(brunt_world *world, bool *self, brunt_error *error) {
+static int check_membranes(brunt_world *world, bool *self, brunt_error *error) {
     const brunt_contact_row *facets = world->contact.facets;
     char forms[96];
-    brunt_augury_words_of(brunt_augury_forms_of_sheets(), forms, sizeof forms);
+    brunt_augury_words_of(brunt_augury_forms_of_membranes(), forms, sizeof forms);
     const int n = world->bodies.count;
     for (int k = 0; k < world->bodies.fem_count; k++) {
         const brunt_fem_body *fem = &world->bodies.fem[k];
@@ -70,7 +70,7 @@ static int check_sheets(brunt_world *world, bool *self, brunt_error *error) {
                            "m: nodes can pass between them",
                            fem->name, fem->mean_edge, mpm->name, mpm->spacing);
         }
-        if (facets && meets && !facets->sheets)
+        if (facets && meets && !facets->knows_membranes)
             return brunt_fail(error, BRUNT_BAD_INPUT,
                               "contact.form: %s is wanted where a membrane is in contact, here '%s'", forms, fem->name);
         self[k] = brunt_pair_of(&world->pairs.map, fem->index, fem->index) >= 0;
@@ -79,10 +79,10 @@ static int check_sheets(brunt_world *world, bool *self, brunt_error *error) {
     return BRUNT_OK;
 }
 
-static int make_sheets(brunt_world *world, brunt_error *error) {
+static int make_membranes(brunt_world *world, brunt_error *error) {
     bool any = false, *self;
     if (BRUNT_NEW(self, world->bodies.fem_count + 1, "marks of membranes", error)) return BRUNT_FAILED;
-    int status = check_sheets(world, self, error);
+    int status = check_membranes(world, self, error);
     for (int k = 0; k < world->bodies.fem_count; k++) any = any || self[k];
     if (!status && any) status = brunt_surface_patches(&world->contact.surface, self, error);
     brunt_free(self);
@@ -103,8 +103,8 @@ static const brunt_contact_row *acting(const brunt_contact *contact) {
 
 int brunt_surfaces_make(brunt_world *world, const brunt_world_def *def, brunt_error *error) {
     if (brunt_scheme_minimises(def->scheme)) return BRUNT_OK; // barriers know surfaces of their own
-    for (int w = 0; w < world->boundaries.wall_count; w++)
-        world->contact.has_surfaces = world->contact.has_surfaces || acts_on_fem(world, &world->boundaries.walls[w]);
+    for (int w = 0; w < world->boundaries.boundary_count; w++)
+        world->contact.has_surfaces = world->contact.has_surfaces || acts_on_fem(world, &world->boundaries.boundary[w]);
     for (int r = 0; r < brunt_contact_row_count; r++)
         world->contact.has_surfaces |= brunt_contact_rows[r]->act && world->contact.rows >> r & 1;
     world->contact.def = def->contact;
@@ -121,9 +121,9 @@ int brunt_surfaces_make(brunt_world *world, const brunt_world_def *def, brunt_er
     brunt_free(fems);
     if (status) return status;
     if (world->contact.surface.membrane.side) {
-        status = make_sheets(world, error);
+        status = make_membranes(world, error);
         if (status) return status;
-        if (def->contact.iterations < 0 && row->sheet_sweeps) world->contact.def.iterations = row->sheet_sweeps;
+        if (def->contact.iterations < 0 && row->membrane_sweeps) world->contact.def.iterations = row->membrane_sweeps;
     }
     double fine, coarse;
     look_at_edges(&world->bodies, &fine, &coarse);
@@ -154,14 +154,15 @@ static double half_spacing(const brunt_world *world, int body) {
     return mpm ? 0.5 * mpm->spacing : 0;
 }
 
-// Bodies that lie in each other, or behind a plane, at the start. The skin is taken for it, and forgets that it was.
+// Bodies that lie in each other, or behind a plane, at the start. The contact surface is taken for it, and forgets that
+// it was.
 int brunt_surfaces_overlap(brunt_world *world, brunt_error *error) {
     const double none[3] = {0};
     brunt_contact_surface *s = &world->contact.surface;
     brunt_contact_context m = {.surface = s,
                                .pair_map = &world->pairs.map,
                                .body_count = world->bodies.count,
-                               .walls = world->boundaries.walls};
+                               .boundaries = world->boundaries.boundary};
     if (s->fem_count) {
         brunt_surface_bounds(s, world->settings.threads, NULL);
         for (int k = 0; k < s->fem_count; k++) s->active[k] = true;
@@ -170,14 +171,14 @@ int brunt_surfaces_overlap(brunt_world *world, brunt_error *error) {
     }
     brunt_overlap o;
     const int status =
-        brunt_overlap_find(&m, world->bodies.mpm, world->bodies.mpm_count, world->boundaries.wall_count, &o, error);
+        brunt_overlap_find(&m, world->bodies.mpm, world->bodies.mpm_count, world->boundaries.boundary_count, &o, error);
     if (status || !o.any) return status;
     static const char way_out[] = "move one of them, or write contact.initial_overlap: allow";
     if (o.b < 0)
         return brunt_fail(error, BRUNT_BAD_INPUT,
                           "bodies.%s is %.4g m behind the plane '%s' at the start, at (%.6g, %.6g, %.6g) m; %s",
-                          brunt_body_name(world, o.a), o.depth, world->boundaries.walls[o.wall].name, o.x[0], o.x[1],
-                          o.x[2], way_out);
+                          brunt_body_name(world, o.a), o.depth, world->boundaries.boundary[o.boundary].name, o.x[0],
+                          o.x[1], o.x[2], way_out);
     const bool shallow = o.depth < half_spacing(world, o.a) + half_spacing(world, o.b);
     return brunt_fail(error, BRUNT_BAD_INPUT,
                       "bodies.%s overlaps bodies.%s by %.4g m at the start, at (%.6g, %.6g, %.6g) m%s; %s",
@@ -234,10 +235,10 @@ brunt_contact_context brunt_contact_context_of(brunt_world *world, double dt, br
                                    .iterations = world->contact.def.iterations,
                                    .look = facets ? facets->look * world->contact.cell : 0,
                                    .step = (int64_t)world->clock.steps,
-                                   .mirrors = world->boundaries.mirrors,
-                                   .mirror_count = world->boundaries.mirror_count,
-                                   .walls = world->boundaries.walls,
-                                   .wall_count = world->boundaries.wall_count,
+                                   .symmetry = world->boundaries.symmetry,
+                                   .symmetry_count = world->boundaries.symmetry_count,
+                                   .boundaries = world->boundaries.boundary,
+                                   .boundary_count = world->boundaries.boundary_count,
                                    .time = world->clock.time,
                                    .mpm = world->bodies.mpm,
                                    .mpm_count = world->bodies.mpm_count,
@@ -298,6 +299,6 @@ int brunt_surfaces_meet(brunt_world *world, const double gravity[3], double kick
     if (failed) return failed;
     brunt_surface_scatter_velocity(&world->contact.surface, dt, world->settings.threads, timer);
     memcpy(world->contact.frame, world->contact.surface.motion.frame, sizeof world->contact.surface.motion.frame);
-    brunt_node_sets_book_contact(&world->boundaries.sets, &world->contact.surface);
+    brunt_node_sets_account_contact(&world->boundaries.sets, &world->contact.surface);
     return BRUNT_OK;
 }

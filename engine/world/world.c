@@ -41,7 +41,7 @@ int brunt_find_ordered(const brunt_body_def **order, int count, const char *name
 int brunt_reports_make(brunt_world *world, brunt_error *error) {
     for (int i = 0; i < world->bodies.mpm_count; i++) {
         brunt_body *body = &world->bodies.mpm[i];
-        if (BRUNT_ROOM(body->report, (size_t)body->grid.block_count, 0, "reports of blocks of particles", error))
+        if (BRUNT_CAPACITY(body->report, (size_t)body->grid.block_count, 0, "reports of blocks of particles", error))
             return BRUNT_FAILED;
         real *const *v = brunt_field(&body->particles, BRUNT_FIELD_velocity);
         for (int32_t b = 0; b < body->grid.block_count; b++) {
@@ -61,12 +61,12 @@ int brunt_reports_make(brunt_world *world, brunt_error *error) {
 
 // A plane of symmetry stands for what is behind it: what a body has there would be there twice.
 static int check_symmetry(const brunt_world *world, brunt_error *error) {
-    for (int w = 0; w < world->boundaries.wall_count; w++) {
-        const brunt_boundary *wall = &world->boundaries.walls[w];
-        const double *n = wall->plane.normal, *at = wall->plane.point;
-        if (!wall->kind->is_plane || !brunt_conditions[wall->plane.condition].images) continue;
+    for (int w = 0; w < world->boundaries.boundary_count; w++) {
+        const brunt_boundary *boundary = &world->boundaries.boundary[w];
+        const double *n = boundary->plane.normal, *at = boundary->plane.point;
+        if (!boundary->kind->is_plane || !brunt_conditions[boundary->plane.condition].images) continue;
         for (int i = 0; i < world->bodies.count; i++) {
-            if (wall->body >= 0 && wall->body != i) continue;
+            if (boundary->body >= 0 && boundary->body != i) continue;
             brunt_body *mpm = world->bodies.all[i].mpm;
             const brunt_fem_body *fem = world->bodies.all[i].fem;
             const int64_t count = mpm ? mpm->particles.slots : fem->node_count;
@@ -85,7 +85,7 @@ static int check_symmetry(const brunt_world *world, brunt_error *error) {
                 REFUSE(
                     "bodies.%s: it reaches %.4g m behind the plane of symmetry '%s', which stands for what is there: "
                     "cut the body at the plane",
-                    brunt_body_name(world, i), -least, wall->name);
+                    brunt_body_name(world, i), -least, boundary->name);
         }
     }
     return BRUNT_OK;
@@ -108,8 +108,8 @@ static int start(brunt_world *world, brunt_error *error) {
     if (brunt_fem_elements_all(world, 0, &bad, &reason))
         return brunt_fail(error, BRUNT_BAD_INPUT, "a mesh: %s", reason);
     brunt_clock_make(&world->clock, brunt_stable_step(world), world->settings.fixed_step);
-    const brunt_books books = brunt_books_of(world);
-    brunt_ledger_open(&world->ledger, &books);
+    const brunt_accounts accounts = brunt_accounts_of(world);
+    brunt_ledger_open(&world->ledger, &accounts);
     return BRUNT_OK;
 }
 
@@ -138,15 +138,15 @@ static int finish_explicit(brunt_world *world, const brunt_world_def *def, brunt
 
 // Node numbers count from where the grid starts.
 static void number_symmetry_planes(brunt_world *world, const brunt_world_def *def) {
-    for (int m = 0; m < world->boundaries.mirror_count; m++) {
-        brunt_symmetry_plane *plane = &world->boundaries.mirrors[m];
+    for (int m = 0; m < world->boundaries.symmetry_count; m++) {
+        brunt_symmetry_plane *plane = &world->boundaries.symmetry[m];
         const double start = world->bodies.mpm[0].grid.origin[plane->axis];
         plane->node -= (int32_t)round((start - def->origin[plane->axis]) / def->cell);
     }
 }
 
 // Bodies, and what each thread works in.
-static int make_room(brunt_world *world, int32_t bodies, brunt_error *error) {
+static int reserve_arrays(brunt_world *world, int32_t bodies, brunt_error *error) {
     world->bodies.count = bodies;
     if (brunt_scratch_make(&world->scratch, world->settings.threads, error) ||
         BRUNT_NEW(world->bodies.all, bodies, "bodies", error) ||
@@ -184,7 +184,7 @@ brunt_world *brunt_world_create(const brunt_world_def *given, brunt_error *error
         world->bodies.has_particles = world->bodies.has_particles || order[i]->method == BRUNT_MPM;
     brunt_settings_make(&world->settings, def, world->bodies.has_particles);
 
-    int status = make_room(world, def->body_count, error);
+    int status = reserve_arrays(world, def->body_count, error);
     if (!status) status = brunt_boundaries_make(world, def, order, error);
     if (!status) status = brunt_pairs_make(world, def, order, error);
     if (!status) status = brunt_bodies_make(world, def, order, error);
@@ -193,12 +193,12 @@ brunt_world *brunt_world_create(const brunt_world_def *given, brunt_error *error
     if (!status) status = brunt_ignition_make(&world->bodies, def, &world->messages, error);
     if (!status) status = brunt_erosion_make(&world->erosion, &world->bodies, def, error);
     if (!status)
-        status =
-            brunt_node_sets_make(&world->boundaries.sets, def, &world->bodies,
-                                 world->boundaries.walls + brunt_boundary_first(def, "group"), &world->messages, error);
+        status = brunt_node_sets_make(&world->boundaries.sets, def, &world->bodies,
+                                      world->boundaries.boundary + brunt_boundary_first(def, "group"), &world->messages,
+                                      error);
     if (!status)
         status = brunt_boundary_surfaces_make(&world->boundaries.surfaces, def, &world->bodies,
-                                              world->boundaries.walls + brunt_boundary_first(def, "surface"), error);
+                                              world->boundaries.boundary + brunt_boundary_first(def, "surface"), error);
     if (!status) status = brunt_surfaces_make(world, def, error);
     if (!status) status = brunt_fem_tasks_make(world, error);
     if (!status) status = brunt_damping_make(&world->boundaries.damping, &world->bodies, error);

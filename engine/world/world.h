@@ -78,8 +78,8 @@ int brunt_surfaces_overlap(brunt_world *world, brunt_error *error);
 int brunt_surfaces_renew(brunt_contact *contact, brunt_error *error);
 
 // --- erosion.c: elements and material points that leave their bodies, at the end of a step
-// Takes out what has failed, is strained, short of step or inside out, and books it. BRUNT_OK, or BRUNT_FAILED with the
-// reason.
+// Takes out what has failed, is strained, short of step or inside out, and records it. BRUNT_OK, or BRUNT_FAILED with
+// the reason.
 int brunt_erode_meshes(brunt_world *world, double dt, brunt_error *error);
 void brunt_erode_particles(brunt_world *world);
 // Of brunt_erode_meshes, the taking out of elements that have a mark, counted in the reports of their blocks.
@@ -95,7 +95,7 @@ void brunt_world_validate(const brunt_world *world);
 #endif
 
 // --- read.c
-brunt_books brunt_books_of(const brunt_world *world);
+brunt_accounts brunt_accounts_of(const brunt_world *world);
 
 // Largest stable step from the bodies' reports times cfl [s].
 double brunt_stable_step(const brunt_world *world);

@@ -79,7 +79,7 @@ int brunt_hdf5_write(hid_t file, const char *kind, int format, const char *path,
 }
 
 // Room for a file that HDF5 writes itself, so that it does not meet a full disk. Some file systems keep none; errno.
-static bool keep_room(int descriptor, size_t bytes) {
+static bool reserve_disk(int descriptor, size_t bytes) {
     struct rlimit limit;
     if (!getrlimit(RLIMIT_FSIZE, &limit) && limit.rlim_cur != RLIM_INFINITY && bytes > limit.rlim_cur) {
         errno = EFBIG;
@@ -94,7 +94,7 @@ int brunt_hdf5_create_aside(const char *path, size_t bytes, brunt_atomic_file *o
     int status = brunt_atomic_open(out, path, error);
     if (status) return status;
     *file = create(out->aside, H5Pcreate(H5P_FILE_ACCESS));
-    if (*file >= 0 && keep_room(fileno(out->stream), bytes)) return BRUNT_OK;
+    if (*file >= 0 && reserve_disk(fileno(out->stream), bytes)) return BRUNT_OK;
     status = brunt_fail(error, BRUNT_IO_ERROR, "%s: cannot write the file: %s", path,
                         *file < 0 ? "HDF5 could not start it" : strerror(errno));
     if (*file >= 0) H5Fclose(*file);

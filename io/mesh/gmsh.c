@@ -87,7 +87,7 @@ static int fail_missing(const gmsh_file *file, const char *group, int dimension,
 typedef struct selection {
     const gmsh_file *file;
     int dimension;
-    bool sheet; // a surface in three dimensions
+    bool membrane; // a surface in three dimensions
     bool all;
     bool *wanted; // of each physical group
     const char *name;
@@ -104,7 +104,7 @@ static int select_all(selection *s, brunt_error *error) {
     for (int32_t r = 0; r < file->run_count; r++)
         if (gmsh_types[file->runs[r].type].dimension > s->dimension)
             return brunt_fail(error, BRUNT_BAD_INPUT,
-                              s->sheet
+                              s->membrane
                                   ? "%s: has elements of dimension %d (%s): which physical group of dimension %d is "
                                     "the sheet?"
                                   : "%s: has elements of dimension %d (%s), the scene is of dimension %d",
@@ -237,9 +237,9 @@ static int flatten(const gmsh_file *file, brunt_mesh *mesh, brunt_error *error) 
     for (int32_t n = 0; n < mesh->node_count; n++)
         for (int d = 0; d < 2; d++)
             least[d] = fmin(least[d], mesh->nodes[n][d]), most[d] = fmax(most[d], mesh->nodes[n][d]);
-    double reach = plane_tolerance * hypot(most[0] - least[0], most[1] - least[1]);
+    double tolerance = plane_tolerance * hypot(most[0] - least[0], most[1] - least[1]);
     for (int32_t n = 0; n < mesh->node_count; n++) {
-        if (!(fabs(mesh->nodes[n][2]) <= reach))
+        if (!(fabs(mesh->nodes[n][2]) <= tolerance))
             return brunt_fail(error, BRUNT_BAD_INPUT,
                               "%s: a node at (%g, %g, %g): a mesh of two dimensions lies in the plane z = 0",
                               file->path, mesh->nodes[n][0], mesh->nodes[n][1], mesh->nodes[n][2]);
@@ -349,10 +349,10 @@ static int add_groups(const selection *s, const int32_t *number, brunt_mesh *mes
     m.marked = brunt_alloc((size_t)mesh->node_count);
     mesh->groups = brunt_alloc((size_t)(file->physical_count + 1) * sizeof *mesh->groups);
     int status = m.wanted && m.marked && mesh->groups ? BRUNT_OK : fail_memory(file, error);
-    for (int d = s->sheet ? s->dimension : s->dimension - 1; d >= 0; d--)
+    for (int d = s->membrane ? s->dimension : s->dimension - 1; d >= 0; d--)
         for (int32_t p = 0; p < file->physical_count && !status; p++)
             if (file->physicals[p].dimension == d) status = add_group(&m, p, error);
-    if (s->sheet && !status) status = add_surface(file, mesh, error);
+    if (s->membrane && !status) status = add_surface(file, mesh, error);
     brunt_free(m.wanted);
     brunt_free(m.marked);
     return status;
@@ -361,18 +361,18 @@ static int add_groups(const selection *s, const int32_t *number, brunt_mesh *mes
 // ---------------------------------------------------------------------------------------------------- a body
 
 // Nodes that belong to no element of the dimension or, beside a sheet, a higher one, of this body or another.
-static int32_t count_loose(const selection *s, int32_t *number) {
-    int32_t loose = 0;
+static int32_t count_unused(const selection *s, int32_t *number) {
+    int32_t unused = 0;
     memset(number, 0, (size_t)s->file->node_count * sizeof *number);
     for (int32_t r = 0; r < s->file->run_count; r++) {
         const gmsh_run *run = &s->file->runs[r];
         const int dimension = gmsh_types[run->type].dimension;
-        if (dimension != s->dimension && !(s->sheet && dimension > s->dimension)) continue;
+        if (dimension != s->dimension && !(s->membrane && dimension > s->dimension)) continue;
         for (size_t i = 0; i < (size_t)run->count * (size_t)gmsh_types[run->type].nodes; i++)
             number[s->file->element_nodes[run->first + i]] = 1;
     }
-    for (int32_t n = 0; n < s->file->node_count; n++) loose += !number[n];
-    return loose;
+    for (int32_t n = 0; n < s->file->node_count; n++) unused += !number[n];
+    return unused;
 }
 
 static int make_body(selection *s, brunt_mesh *mesh, FILE *warnings, brunt_error *error) {
@@ -387,29 +387,29 @@ static int make_body(selection *s, brunt_mesh *mesh, FILE *warnings, brunt_error
         if (!number) status = fail_memory(file, error);
     }
     if (!status && warnings) {
-        int32_t loose = count_loose(s, number);
-        if (loose)
-            warn(warnings, file, "%d of its nodes belong to no element of dimension %d and are left out", (int)loose,
+        int32_t unused = count_unused(s, number);
+        if (unused)
+            warn(warnings, file, "%d of its nodes belong to no element of dimension %d and are left out", (int)unused,
                  s->dimension);
     }
     if (!status) status = fill_mesh(s, number, number_nodes(s, number), elements, mesh, error);
-    if (!status && s->dimension == 2 && !s->sheet) status = flatten(file, mesh, error);
-    if (!status && !s->sheet && turn_over(mesh))
+    if (!status && s->dimension == 2 && !s->membrane) status = flatten(file, mesh, error);
+    if (!status && !s->membrane && turn_over(mesh))
         warn(warnings, file, "all %lld elements were inside out and have been turned over", (long long)elements);
     if (!status) status = add_groups(s, number, mesh, warnings, error);
-    if (s->sheet) mesh->kind = brunt_element_as_membrane(mesh->kind);
+    if (s->membrane) mesh->kind = brunt_element_as_membrane(mesh->kind);
     brunt_free(number);
     brunt_free(s->wanted);
     if (status) brunt_mesh_free(mesh);
     return status;
 }
 
-static int read_body(const char *path, const char *group, int dimension, bool sheet, brunt_mesh *mesh, FILE *warnings,
-                     brunt_error *error) {
+static int read_body(const char *path, const char *group, int dimension, bool membrane, brunt_mesh *mesh,
+                     FILE *warnings, brunt_error *error) {
     *mesh = (brunt_mesh){0};
     gmsh_file file;
     int status = gmsh_file_read(path, &file, error);
-    selection s = {.file = &file, .dimension = dimension, .sheet = sheet, .name = group ? group : ""};
+    selection s = {.file = &file, .dimension = dimension, .membrane = membrane, .name = group ? group : ""};
     if (!status) status = make_body(&s, mesh, warnings, error);
     gmsh_file_free(&file);
     return status;
@@ -428,11 +428,11 @@ int brunt_gmsh_read_membrane(const char *path, const char *group, brunt_mesh *me
 
 // ---------------------------------------------------------------------------------------------------- in words
 
-static void describe_body(const gmsh_file *file, const char *name, int dimension, bool sheet, FILE *out) {
+static void describe_body(const gmsh_file *file, const char *name, int dimension, bool membrane, FILE *out) {
     brunt_mesh mesh = {0};
     brunt_mesh_quality q;
     brunt_error error = {0};
-    selection s = {.file = file, .dimension = dimension, .sheet = sheet, .name = name};
+    selection s = {.file = file, .dimension = dimension, .membrane = membrane, .name = name};
     int status = make_body(&s, &mesh, NULL, &error);
     if (!status) status = brunt_mesh_check(&mesh, &q, &error);
     if (status) {
@@ -471,8 +471,8 @@ int brunt_gmsh_describe(const char *path, FILE *out, brunt_error *error) {
         fprintf(out, "mesh of gmsh, format %s, %s\n", file.version, file.binary ? "binary" : "text");
         fprintf(out, "nodes      %d\n", (int)file.node_count);
         int highest = describe_elements(&file, out), bodies = 0;
-        const double reach = plane_tolerance * hypot(most[0] - least[0], most[1] - least[1]);
-        const bool sheet = highest == 2 && file.node_count && !(fmax(fabs(least[2]), fabs(most[2])) <= reach);
+        const double tolerance = plane_tolerance * hypot(most[0] - least[0], most[1] - least[1]);
+        const bool membrane = highest == 2 && file.node_count && !(fmax(fabs(least[2]), fabs(most[2])) <= tolerance);
         if (file.node_count)
             fprintf(out, "bounds     (%.6g, %.6g, %.6g) to (%.6g, %.6g, %.6g) m\n", least[0], least[1], least[2],
                     most[0], most[1], most[2]);
@@ -481,10 +481,10 @@ int brunt_gmsh_describe(const char *path, FILE *out, brunt_error *error) {
                     (int)file.physicals[p].dimension, (long long)count_members(&file, p));
         for (int32_t p = 0; p < file.physical_count && highest >= 2; p++) {
             if (file.physicals[p].dimension != highest) continue;
-            describe_body(&file, file.physicals[p].name, highest, sheet, out);
+            describe_body(&file, file.physicals[p].name, highest, membrane, out);
             bodies++;
         }
-        if (!bodies && highest >= 2) describe_body(&file, "", highest, sheet, out);
+        if (!bodies && highest >= 2) describe_body(&file, "", highest, membrane, out);
     }
     gmsh_file_free(&file);
     return status;

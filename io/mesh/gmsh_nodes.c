@@ -28,7 +28,7 @@ static int64_t node_tag(gmsh_cursor *c, int bytes) {
     return tag;
 }
 
-static void read_place(gmsh_cursor *c, double *x) {
+static void read_position(gmsh_cursor *c, double *x) {
     for (int d = 0; d < 3; d++) x[d] = gmsh_real(c, "a coordinate of a node");
 }
 
@@ -39,7 +39,7 @@ void gmsh_read_nodes_2(gmsh_cursor *c) {
     for (int64_t i = 0; i < count && !c->status; i++) {
         gmsh_begin_line(c);
         file->node_tag[i] = node_tag(c, 4);
-        read_place(c, file->x[i]);
+        read_position(c, file->x[i]);
         gmsh_end_line(c);
     }
 }
@@ -72,7 +72,7 @@ void gmsh_read_nodes_4(gmsh_cursor *c) {
         }
         for (int64_t i = 0; i < count && !c->status; i++) {
             gmsh_begin_line(c);
-            read_place(c, file->x[done + i]);
+            read_position(c, file->x[done + i]);
             for (int d = 0; d < dimension * parametric; d++) gmsh_real(c, "a parameter of a node");
             gmsh_end_line(c);
         }

@@ -33,9 +33,9 @@ _Static_assert(BRUNT_COUNT(gmsh_types) == GMSH_TYPE_LIMIT, "types up to the limi
 enum { PHYSICAL_LIMIT = 4096 };
 
 // Whether `array` has room for `more` elements after the `used` it keeps. False, with the status set: out of memory.
-#define ROOM(c, array, capacity, used, more)                                                                           \
-    (!(c)->status && has_room((c), BRUNT_RESERVE_IN(array, capacity, (size_t)(used) + (more), (size_t)(used))))
-static bool has_room(gmsh_cursor *c, int status) {
+#define RESERVE(c, array, capacity, used, more)                                                                        \
+    (!(c)->status && has_capacity((c), BRUNT_RESERVE_IN(array, capacity, (size_t)(used) + (more), (size_t)(used))))
+static bool has_capacity(gmsh_cursor *c, int status) {
     if (status) gmsh_out_of_memory(c);
     return !status;
 }
@@ -55,7 +55,7 @@ static int32_t physical_index(gmsh_cursor *c, int dimension, int32_t tag) {
         if (file->physicals[p].tag == tag && file->physicals[p].dimension == dimension) return p;
     if (file->physical_count == PHYSICAL_LIMIT)
         gmsh_complain(c, c->at, "more than %d physical groups", (int)PHYSICAL_LIMIT);
-    if (!ROOM(c, file->physicals, file->physical_capacity, file->physical_count, 1)) return BRUNT_NONE;
+    if (!RESERVE(c, file->physicals, file->physical_capacity, file->physical_count, 1)) return BRUNT_NONE;
     char number[16];
     int length = snprintf(number, sizeof number, "%d", (int)tag);
     gmsh_physical physical = {.dimension = dimension, .tag = tag, .name = copy_text(number, (size_t)length)};
@@ -69,7 +69,7 @@ static int32_t physical_index(gmsh_cursor *c, int dimension, int32_t tag) {
 
 static void add_membership(gmsh_cursor *c, int32_t physical) {
     gmsh_file *file = c->file;
-    if (physical < 0 || !ROOM(c, file->memberships, file->membership_capacity, file->membership_count, 1)) return;
+    if (physical < 0 || !RESERVE(c, file->memberships, file->membership_capacity, file->membership_count, 1)) return;
     file->memberships[file->membership_count++] = physical;
 }
 
@@ -142,7 +142,7 @@ static void read_entity(gmsh_cursor *c, int dimension) {
         gmsh_begin_line(c);
         gmsh_tag(c, "the tag of an entity");
     }
-    if (!ROOM(c, file->entities, file->entity_capacity, file->entity_count, 1)) return;
+    if (!RESERVE(c, file->entities, file->entity_capacity, file->entity_count, 1)) return;
     file->entities[file->entity_count++] = entity;
 }
 
@@ -171,7 +171,7 @@ static const gmsh_type *element_type(gmsh_cursor *c, const char *at, int64_t typ
 
 static gmsh_run *add_run(gmsh_cursor *c, int32_t type, int32_t physical_first, int32_t physical_count) {
     gmsh_file *file = c->file;
-    if (!ROOM(c, file->runs, file->run_capacity, file->run_count, 1)) return NULL;
+    if (!RESERVE(c, file->runs, file->run_capacity, file->run_count, 1)) return NULL;
     gmsh_run *run = &file->runs[file->run_count++];
     *run = (gmsh_run){.type = type,
                       .first = file->element_node_count,
@@ -195,10 +195,10 @@ static void read_element_nodes(gmsh_cursor *c, int nodes, int bytes) {
     gmsh_end_line(c);
 }
 
-static bool room_for_elements(gmsh_cursor *c, int64_t count, int nodes) {
+static bool reserve_elements(gmsh_cursor *c, int64_t count, int nodes) {
     gmsh_file *file = c->file;
-    return ROOM(c, file->element_nodes, file->element_node_capacity, file->element_node_count,
-                (size_t)count * (size_t)nodes);
+    return RESERVE(c, file->element_nodes, file->element_node_capacity, file->element_node_count,
+                   (size_t)count * (size_t)nodes);
 }
 
 // The tags of one element: the first is its physical group, 0 for none.
@@ -223,7 +223,7 @@ static void add_element_2(gmsh_cursor *c, int32_t type, int32_t tag) {
         if (physical >= 0) add_membership(c, physical);
         run = c->status ? NULL : add_run(c, type, first, physical >= 0);
     }
-    if (!run || !room_for_elements(c, 1, known->nodes)) return;
+    if (!run || !reserve_elements(c, 1, known->nodes)) return;
     run->count++;
     read_element_nodes(c, known->nodes, 4);
 }
@@ -288,7 +288,7 @@ static void read_elements_4(gmsh_cursor *c) {
         const gmsh_entity *entity =
             file->entity_count ? bsearch(&key, file->entities, (size_t)file->entity_count, sizeof key, by_entity)
                                : NULL;
-        if (!room_for_elements(c, count, known->nodes)) return;
+        if (!reserve_elements(c, count, known->nodes)) return;
         gmsh_run *run = add_run(c, type, entity ? entity->physical_first : 0, entity ? entity->physical_count : 0);
         if (!run) return;
         run->count = count;

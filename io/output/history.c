@@ -12,7 +12,7 @@
 #include "base/error.h"
 #include "base/array.h"
 #include "base/memory.h"
-#include "io/output/places.h"
+#include "io/output/positions.h"
 
 // ---------------------------------------------------------------------------------------------------- columns
 
@@ -47,7 +47,7 @@ static void add_vector(brunt_history *h, const char *name, const char *unit, con
 }
 
 // Force over the interval from the impulses at its ends; the impulse columns lie four after the force columns.
-static void add_force(brunt_history *h, const char *prefix, double interval, const brunt_force *force) {
+static void add_force(brunt_history *h, const char *prefix, double interval, const brunt_reaction *force) {
     double mean[3] = {0, 0, 0}, square = 0;
     for (int c = 0; c < 3; c++) {
         if (!h->declaring && h->rows > 0 && interval > 0)
@@ -71,7 +71,7 @@ static void add_gas(brunt_history *h, const brunt_world *world, int32_t index) {
     add_named(h, "J", gas.inflow, "gas.%s.inflow", gas.name);
 }
 
-// Beside the force, which it has as every wall: of the last step.
+// Beside the force, which it has as every boundary: of the last step.
 static void add_surface(brunt_history *h, const brunt_world *world, int32_t index) {
     brunt_boundary_surface_report now;
     char name[COLUMN_NAME];
@@ -154,7 +154,7 @@ static void add_body(brunt_history *h, brunt_world *world, int32_t body) {
 // Where the probe's id is among those there are now, -1 when it has eroded. Uses the scratch.
 static int64_t probe_place(brunt_history *h, brunt_world *world, const probe *p) {
     const int64_t count = brunt_body_size(world, p->body, p->info.at);
-    const int32_t field = brunt_place_ids(world, p->body, p->info.at);
+    const int32_t field = brunt_location_ids(world, p->body, p->info.at);
     if (count == p->count || field < 0) return p->id;
     brunt_body_read(world, p->body, field, h->scratch);
     int64_t low = 0, high = count; // ids ascend
@@ -209,14 +209,14 @@ static void traverse(brunt_history *h, brunt_world *world) {
     for (int32_t b = 0; b < brunt_body_count(world); b++) add_body(h, world, b);
     const bool flat = brunt_world_dimension(world) == 2 && !brunt_effect_on(world, "axisymmetric");
     for (int32_t p = 0; p < brunt_pair_count(world); p++) {
-        brunt_force force;
+        brunt_reaction force;
         brunt_pair_force(world, p, &force);
         add_force(h, "contact", interval, &force);
         add_named(h, flat ? "m" : "m^2", force.area, "contact.%s.area", force.name);
     }
-    for (int32_t w = 0; w < brunt_wall_count(world); w++) {
-        brunt_force force;
-        brunt_wall_force(world, w, &force);
+    for (int32_t w = 0; w < brunt_boundary_count(world); w++) {
+        brunt_reaction force;
+        brunt_boundary_reaction(world, w, &force);
         add_force(h, "wall", interval, &force);
     }
     for (int32_t s = 0; s < brunt_boundary_surface_count(world); s++) add_surface(h, world, s);
@@ -251,7 +251,7 @@ static int find_probe(brunt_world *world, const brunt_probe *def, probe *out, br
                           def->field);
     out->info = brunt_body_field(world, out->body, out->field);
     double *places = NULL;
-    int status = brunt_places_read(world, out->body, out->info.at, &places, error);
+    int status = brunt_positions_read(world, out->body, out->info.at, &places, error);
     if (status) return status;
     out->count = brunt_body_size(world, out->body, out->info.at);
     out->id = nearest_place(places, out->count, brunt_world_dimension(world), def->point);

@@ -29,7 +29,7 @@ typedef struct point_set {
     int dimension;
     double *position, *values;
     double *gradient, *volume; // of particles, for their size; nodes have none
-    bool rings;                // about the axis x = 0, as long as they are there
+    bool axisymmetric;         // about the axis x = 0, as long as they are there
     double *integrity;         // of particles that may fail and stay; else NULL
     int components;
 } point_set;

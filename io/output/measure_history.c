@@ -29,10 +29,10 @@ static double period(const double *time, const double *value, int64_t count, dou
 // Reduces the samples of a column within [from, to]. Times at the ends of the window count: output times carry
 // rounding.
 static double reduce_history(const brunt_measure *m, const double *time, const double *value, int64_t rows) {
-    double slack = 1e-9 * fmax(isfinite(m->from) ? fabs(m->from) : 0, isfinite(m->to) ? fabs(m->to) : 0);
+    double tolerance = 1e-9 * fmax(isfinite(m->from) ? fabs(m->from) : 0, isfinite(m->to) ? fabs(m->to) : 0);
     int64_t first = 0, last = rows - 1;
-    while (first < rows && time[first] < m->from - slack) first++;
-    while (last >= 0 && time[last] > m->to + slack) last--;
+    while (first < rows && time[first] < m->from - tolerance) first++;
+    while (last >= 0 && time[last] > m->to + tolerance) last--;
     if (first > last) return NAN;
     int64_t count = last - first + 1;
     double least = value[first], most = value[first];
@@ -99,9 +99,9 @@ static int reduce_distance(const brunt_measure *m, const double *time, const dou
                            double divisor, double *out, brunt_error *error) {
     const double(*points)[2] = (const double(*)[2])m->curve.points;
     const int64_t count = m->curve.count;
-    const double slack = 1e-9 * fmax(fabs(m->from), fabs(m->to));
+    const double tolerance = 1e-9 * fmax(fabs(m->from), fabs(m->to));
     *out = NAN;
-    if (!rows || time[0] > m->from + slack || time[rows - 1] < m->to - slack) return BRUNT_OK;
+    if (!rows || time[0] > m->from + tolerance || time[rows - 1] < m->to - tolerance) return BRUNT_OK;
     double *at = brunt_alloc(2 * sizeof(double) * (size_t)(rows + count + 2)), least = INFINITY, most = -INFINITY;
     if (!at) return brunt_fail(error, BRUNT_FAILED, "out of memory for measure '%s'", m->name);
     double *distance = at + rows + count + 2;

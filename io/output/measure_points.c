@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "base/memory.h"
-#include "io/output/places.h"
+#include "io/output/positions.h"
 #include "io/scene/units.h"
 
 // A field of a body in new memory.
@@ -32,12 +32,12 @@ void measure_free_points(point_set *set) {
 
 int measure_read_points(const brunt_measure *m, brunt_world *world, int32_t body, point_set *set, brunt_error *error) {
     memset(set, 0, sizeof *set);
-    brunt_field_info info = {.at = brunt_place_of_motion(world, body)};
+    brunt_field_info info = {.at = brunt_location_of_motion(world, body)};
     const bool of_field = m->kind == BRUNT_MEASURE_FIELD || m->kind == BRUNT_MEASURE_PROFILE;
     bool sized = !of_field && info.at == BRUNT_AT_PARTICLES;
     int status = BRUNT_OK;
     set->dimension = brunt_world_dimension(world);
-    set->rings = brunt_effect_on(world, "axisymmetric");
+    set->axisymmetric = brunt_effect_on(world, "axisymmetric");
     if (of_field) {
         status = read_field(world, body, m->field, m, &set->values, &info, error);
         set->components = info.components;
@@ -56,7 +56,7 @@ int measure_read_points(const brunt_measure *m, brunt_world *world, int32_t body
     if (!status && (sized || m->kind == BRUNT_MEASURE_PROFILE))
         status = read_field(world, body, "volume", m, &set->volume, &unused, error);
     set->count = brunt_body_size(world, body, info.at);
-    if (!status) status = brunt_places_read(world, body, info.at, &set->position, error);
+    if (!status) status = brunt_positions_read(world, body, info.at, &set->position, error);
     if (status) measure_free_points(set);
     return status;
 }
@@ -67,10 +67,10 @@ static double determinant(const double F[9]) {
 
 double measure_half_size(const point_set *set, int64_t p, const double n[3]) {
     if (!set->gradient) return 0;
-    const double volume = set->volume[p] / (set->rings ? 2 * acos(-1) * set->position[3 * p] : 1);
+    const double volume = set->volume[p] / (set->axisymmetric ? 2 * acos(-1) * set->position[3 * p] : 1);
     if (set->integrity && !(set->integrity[p] > 0)) return 0.5 * (set->dimension == 3 ? cbrt(volume) : sqrt(volume));
     const double *F = set->gradient + 9 * p;
-    double reference = volume / (set->rings ? F[0] * F[4] - F[1] * F[3] : determinant(F));
+    double reference = volume / (set->axisymmetric ? F[0] * F[4] - F[1] * F[3] : determinant(F));
     double spacing = set->dimension == 3 ? cbrt(reference) : sqrt(reference), square = 0;
     for (int j = 0; j < 3; j++) {
         double component = F[j] * n[0] + F[3 + j] * n[1] + F[6 + j] * n[2];

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/error.h"
-#include "io/output/places.h"
+#include "io/output/positions.h"
 
 // The reference at a coordinate. Of a jump, its upper end at the coordinate itself.
 static double reference_at(const brunt_curve *reference, double at) {

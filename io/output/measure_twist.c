@@ -5,7 +5,7 @@
 #include <math.h>
 
 #include "base/error.h"
-#include "io/output/places.h"
+#include "io/output/positions.h"
 
 // The turn R about the unit axis a that comes nearest to the sum of all F, by least squares, among those that leave a:
 // tr (R^T F) = cos (tr F - a.F a) + sin (a_i e_ijk F_kj) + a.F a is greatest.
@@ -31,7 +31,7 @@ static double twist(const brunt_measure *m, const point_set *set) {
 
 static int check(const brunt_measure *m, const measure_source *from, brunt_error *error) {
     const int32_t body = brunt_find_body(from->world, m->body);
-    if (body < 0 || brunt_place_of_motion(from->world, body) == BRUNT_AT_PARTICLES) return BRUNT_OK;
+    if (body < 0 || brunt_location_of_motion(from->world, body) == BRUNT_AT_PARTICLES) return BRUNT_OK;
     return brunt_fail(error, BRUNT_BAD_INPUT, "measures.%s: a twist is of a body of material points, '%s' has none",
                       m->name, m->body);
 }

@@ -10,7 +10,7 @@
 #include "io/file/input_file.h"
 #include "base/array.h"
 #include "base/memory.h"
-#include "io/output/places.h"
+#include "io/output/positions.h"
 
 // Uncompressed bytes of a zlib block. VTK's own default is 32768; larger blocks compress better and read as fast.
 enum { BLOCK_BYTES = 262144 };
@@ -250,8 +250,8 @@ static int add_ids(picture *p, int64_t count, bool at_cells, brunt_error *error)
     int64_t *ids = picture_alloc(p, sizeof *ids * (size_t)count, error);
     if (!ids) return BRUNT_FAILED;
     for (int64_t i = 0; i < count; i++) ids[i] = i;
-    const brunt_place here = at_cells ? BRUNT_AT_ELEMENTS : p->elements ? BRUNT_AT_NODES : BRUNT_AT_PARTICLES;
-    const int32_t field = brunt_place_ids(p->world, p->body, here);
+    const brunt_location here = at_cells ? BRUNT_AT_ELEMENTS : p->elements ? BRUNT_AT_NODES : BRUNT_AT_PARTICLES;
+    const int32_t field = brunt_location_ids(p->world, p->body, here);
     if (field >= 0) {
         double *values = picture_alloc(p, sizeof *values * (size_t)count, error);
         if (!values) return BRUNT_FAILED;

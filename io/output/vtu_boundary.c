@@ -10,12 +10,12 @@ int brunt_vtu_write_boundary(const char *path, const brunt_world *world, int32_t
     int64_t *piece = brunt_alloc((size_t)count * sizeof *piece + 1);
     int status = BRUNT_FAILED;
     if (values && piece) {
-        const brunt_boundary_surface_arrays arrays = {.place = values,
+        const brunt_boundary_surface_arrays arrays = {.position = values,
                                                       .normal = values + 3 * count,
                                                       .traction = values + 6 * count,
                                                       .weight = values + 9 * count,
                                                       .piece = piece};
-        const brunt_vtu_grid grid = {.point_count = count, .points = arrays.place};
+        const brunt_vtu_grid grid = {.point_count = count, .points = arrays.position};
         const brunt_vtu_array shown[] = {{.name = "traction", .components = 3, .values = arrays.traction},
                                          {.name = "normal", .components = 3, .values = arrays.normal},
                                          {.name = "weight", .components = 1, .values = arrays.weight},

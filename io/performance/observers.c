@@ -23,7 +23,7 @@ static void end(void *context, int32_t pass, double from, double to) {
 }
 
 void brunt_observers_add(brunt_observers *observers, brunt_observer observer) {
-    BRUNT_ASSERT(observers->count < BRUNT_OBSERVERS_MOST);
+    BRUNT_ASSERT(observers->count < BRUNT_OBSERVER_LIMIT);
     observers->list[observers->count++] = observer;
 }
 

@@ -3,10 +3,10 @@
 
 #include "brunt.h"
 
-enum { BRUNT_OBSERVERS_MOST = 4 };
+enum { BRUNT_OBSERVER_LIMIT = 4 };
 
 typedef struct brunt_observers {
-    brunt_observer list[BRUNT_OBSERVERS_MOST];
+    brunt_observer list[BRUNT_OBSERVER_LIMIT];
     int count;
 } brunt_observers;
 

@@ -16,7 +16,7 @@ enum { FIRST_STEPS = 3 };
 
 // What is spent on the world itself, on a rehearsal of a short run, and on all rehearsals at most [s]. In between they
 // take a tenth of what they predict.
-static const double sample_budget = 0.1, least_budget = 0.5, most_budget = 2.0, deadline = 3.0;
+static const double sample_budget = 0.1, least_budget = 0.5, budget_limit = 2.0, deadline = 3.0;
 
 // ------------------------------------------------------------------------------------------ steps that are timed
 
@@ -218,10 +218,11 @@ static double named_bytes(const brunt_world *world, const char *name) {
 
 static double over(double a, double b, double otherwise) { return a > 0 && b > 0 ? a / b : otherwise; }
 
-// What each pass goes over in `fine` over that in `coarse`: contact and walls surfaces, the rest particles or elements.
+// What each pass goes over in `fine` over that in `coarse`: contact and boundaries surfaces, the rest particles or
+// elements.
 static void count_ratios(const brunt_world *fine, const brunt_world *coarse, rehearsal *r) {
     static const char *const of_elements[] = {"kick", "groups", "drift", "elements"};
-    static const char *const of_surfaces[] = {"contact", "walls", "conditions", "mirror", "surfaces"};
+    static const char *const of_surfaces[] = {"contact", "boundaries", "conditions", "symmetry", "surfaces"};
     double all = over(points_of(fine), points_of(coarse), 1);
     double particles = over((double)brunt_world_particles(fine), (double)brunt_world_particles(coarse), all);
     double elements = over((double)brunt_world_elements(fine), (double)brunt_world_elements(coarse), all);
@@ -363,7 +364,7 @@ static void rehearse_in_turn(const brunt_scene *scene, const brunt_world *world,
     const double points = points_of(world), exponent = brunt_world_dimension(world) + 1, at_start = out->step_seconds;
     // Fewer than some 30 points are no rehearsal of anything.
     const double coarsest = pow(points / 30, 1 / (exponent - 1));
-    const double scout = 0.15 * clamp(0.1 * at_start, least_budget, most_budget);
+    const double scout = 0.15 * clamp(0.1 * at_start, least_budget, budget_limit);
     int i = affordable(at_start, exponent, scout);
     while (i + 1 < FACTORS && factors[i] > coarsest) i++;
     rehearsal first, second;
@@ -379,7 +380,7 @@ static void rehearse_in_turn(const brunt_scene *scene, const brunt_world *world,
     if (made < 0) return;
     predict_by_rehearsal(own, &first, out);
     double measured = log(out->step_seconds * first.reached / first.seconds) / log(first.factor);
-    double budget = clamp(0.1 * out->step_seconds, least_budget, most_budget) - (brunt_clock() - start);
+    double budget = clamp(0.1 * out->step_seconds, least_budget, budget_limit) - (brunt_clock() - start);
     int j = affordable(out->step_seconds, clamp(measured, 1, exponent), budget);
     for (int tries = 0; j > made && tries < 2; tries++, j--) {
         if (!rehearse(scene, world, own, factors[j], INFINITY, start + deadline - brunt_clock(), &second)) continue;
@@ -425,7 +426,7 @@ int brunt_predict(const brunt_scene *scene, brunt_world *world, brunt_history *h
         rehearse_in_turn(scene, world, &own, start, p);
         if (p->factor == 0) { // nothing can be made coarser: a tenth of the run itself, whose latest steps go on
             own.all = (sums){.weight = 0};
-            status = take_sample(scene, world, clamp(0.1 * p->step_seconds, least_budget, most_budget), &own, error);
+            status = take_sample(scene, world, clamp(0.1 * p->step_seconds, least_budget, budget_limit), &own, error);
             if (status) return status;
             predict_by_sample(world, &own, p);
             note(p, "it cannot be made coarser, so that what comes later than %.2g %% of the time was not seen",

@@ -17,15 +17,15 @@ static double ratio(double of, double per) { return of > 0 && per > 0 ? of / per
 
 static void take_threads(brunt_profile_row *row, int threads) {
     double sum = 0;
-    row->busy_least = INFINITY, row->busy_most = 0;
+    row->busy_least = INFINITY, row->busy_greatest = 0;
     for (int t = 0; t < threads; t++) {
         const double busy = row->pass.thread_seconds[t];
         sum += busy;
         row->busy_least = fmin(row->busy_least, busy);
-        row->busy_most = fmax(row->busy_most, busy);
+        row->busy_greatest = fmax(row->busy_greatest, busy);
     }
     row->busy_mean = sum / threads;
-    row->imbalance = ratio(row->busy_most, row->busy_mean);
+    row->imbalance = ratio(row->busy_greatest, row->busy_mean);
 }
 
 static void take_work(brunt_profile_row *row, double bandwidth, double peak) {
@@ -87,7 +87,7 @@ static void print_heading(const brunt_profile *profile, brunt_console *console) 
 
 static void print_threads(const brunt_profile *profile, const brunt_profile_row *row, brunt_console *console) {
     if (profile->threads > THREADS_SHOWN)
-        brunt_console_print(console, " %.3f %.3f %.3f", row->busy_least, row->busy_mean, row->busy_most);
+        brunt_console_print(console, " %.3f %.3f %.3f", row->busy_least, row->busy_mean, row->busy_greatest);
     for (int t = 0; t < profile->threads && profile->threads <= THREADS_SHOWN; t++)
         brunt_console_print(console, " %.3f", row->pass.thread_seconds[t]);
     brunt_console_print(console, "\n");

@@ -14,7 +14,7 @@ typedef struct brunt_profile_row {
     brunt_pass pass;
     double share;     // [-] of the steps' time
     double imbalance; // [-] >= 1: most busy thread over the mean of all; NAN: no phase of it is parallel
-    double busy_least, busy_mean, busy_most;                // [s] of the threads
+    double busy_least, busy_mean, busy_greatest;            // [s] of the threads
     double ns_per_unit, bytes_per_second, flops_per_second; // NAN: nothing is counted
     double roofline;                // [-] attainable over measured time; NAN: nothing is counted
     bool memory_bound;              // the bytes take longer than the flops

@@ -30,7 +30,7 @@ enum {
     CHAINS = 12,
     LINKS = 400000 // of a chain in one repeat: about a millisecond
 };
-static const size_t least_array = (size_t)64 << 20, most_array = (size_t)256 << 20; // [bytes]
+static const size_t least_array = (size_t)64 << 20, greatest_array = (size_t)256 << 20; // [bytes]
 
 typedef struct roofline {
     vector *a, *b, *c;
@@ -91,7 +91,7 @@ static void measure(roofline *r) {
 static size_t array_bytes(void) {
     long cache = sysconf(_SC_LEVEL3_CACHE_SIZE);
     size_t bytes = cache > 0 ? 2 * (size_t)cache : 0; // three of them: six times the cache
-    return bytes < least_array ? least_array : bytes > most_array ? most_array : bytes;
+    return bytes < least_array ? least_array : bytes > greatest_array ? greatest_array : bytes;
 }
 
 int brunt_roofline_measure(int threads, double *bytes_per_second, double *flops_per_second, brunt_error *error) {

@@ -17,7 +17,7 @@
 #include "base/array.h"
 #include "base/memory.h"
 
-enum { FIRST_EVENTS = 300000, MORE_EVENTS = 10000, MOST_EVENTS = 400000 };
+enum { FIRST_EVENTS = 300000, MORE_EVENTS = 10000, EVENT_LIMIT = 400000 };
 static const double counter_every = 0.1; // [s] of the clock: reading the energy goes over all bodies
 
 typedef enum kind { PASS, THREAD, OUTPUT } kind;
@@ -150,7 +150,7 @@ static void write_counters(brunt_trace *trace, double time) {
 
 static bool step_is_kept(const brunt_trace *trace) {
     enum { BESIDES = 3 }; // the step itself and the counters
-    if (trace->count.events + trace->record_count + BESIDES > MOST_EVENTS) return false;
+    if (trace->count.events + trace->record_count + BESIDES > EVENT_LIMIT) return false;
     return trace->count.steps % trace->stride == 0;
 }
 

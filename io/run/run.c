@@ -23,7 +23,7 @@
 
 // An output time counts as reached within this relative distance: two series of times may differ by rounding where they
 // meet.
-static const double time_slack = 1e-12;
+static const double time_tolerance = 1e-12;
 
 typedef struct run {
     const brunt_scene *scene;
@@ -61,13 +61,13 @@ static double cpu_clock(void) {
 
 // ---------------------------------------------------------------------------------------------------- output times
 
-static bool reached(double time, double due) { return time >= due - time_slack * fabs(due); }
+static bool reached(double time, double due) { return time >= due - time_tolerance * fabs(due); }
 
 // The first multiple of `every` after `time`. From the multiples, not by adding up, so that a resumed run meets the
 // same times.
 static double next_time(double time, double every) {
     if (every == 0 || isinf(every)) return INFINITY;
-    double number = floor(time / every * (1 + time_slack) + 1e-9) + 1;
+    double number = floor(time / every * (1 + time_tolerance) + 1e-9) + 1;
     return number * every;
 }
 

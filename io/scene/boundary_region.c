@@ -9,7 +9,7 @@ _Static_assert(sizeof methods / sizeof *methods == BRUNT_MEMBRANE + 1, "a name f
 void brunt_fill_region(scene_reader *reader, scene_node *node, brunt_region_def *region) {
     const scene_node *velocity = brunt_tree_child(node, "velocity"), *until = brunt_tree_child(node, "until");
     brunt_fill_shape_def(reader, brunt_tree_child(node, "region"), &region->shape);
-    region->place = brunt_fill_place(reader, brunt_tree_child(node, "place"));
+    region->place = brunt_fill_placement(reader, brunt_tree_child(node, "place"));
     if (!velocity)
         brunt_tree_complain(reader->tree, node, "'velocity' is missing: a list of numbers or `free`, in m/s");
     brunt_fill_partial(reader, velocity, region->component, region->velocity);

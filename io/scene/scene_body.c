@@ -12,7 +12,7 @@
 #include "geometry/mesh_shape.h"
 #include "materials/prepared.h"
 
-enum { PATH_ROOM = 4096 };
+enum { PATH_CAPACITY = 4096 };
 
 // Largest number of lattice intervals across anything: block coordinates are 32-bit.
 static const double CELL_COUNT_LIMIT = 1e9, PARTICLE_LIMIT = 2147483648.0, ELEMENT_LIMIT = 2147483648.0;
@@ -167,11 +167,11 @@ static void fill_particles(scene_reader *reader, scene_node *node, brunt_body_de
 // ---------------------------------------------------------------------------------------------------- finite elements
 
 // A path counts from the folder of the scene; the resolved scene, which lies elsewhere, has the whole path.
-static bool find_mesh(scene_reader *reader, scene_node *node, char path[PATH_ROOM]) {
+static bool find_mesh(scene_reader *reader, scene_node *node, char path[PATH_CAPACITY]) {
     const char *source = reader->scene->source, *slash = strrchr(source, '/');
     int folder = slash && node->text[0] != '/' ? (int)(slash - source) + 1 : 0;
     struct stat status;
-    char joined[PATH_ROOM], *whole = NULL;
+    char joined[PATH_CAPACITY], *whole = NULL;
     int length = snprintf(joined, sizeof joined, "%.*s%s", folder, source, node->text);
     if (length < 0 || length >= (int)sizeof joined) {
         brunt_tree_complain(reader->tree, node, "the path is too long");
@@ -184,7 +184,7 @@ static bool find_mesh(scene_reader *reader, scene_node *node, char path[PATH_ROO
         brunt_tree_complain(reader->tree, node, "'%.400s' is not a file", joined);
     else if (!(whole = realpath(joined, NULL)))
         brunt_tree_complain(reader->tree, node, "the mesh file '%.400s' cannot be read: %s", joined, strerror(errno));
-    bool found = whole && snprintf(path, PATH_ROOM, "%s", whole) < PATH_ROOM;
+    bool found = whole && snprintf(path, PATH_CAPACITY, "%s", whole) < PATH_CAPACITY;
     free(whole);
     if (found) {
         char *kept = brunt_tree_text(reader->tree, path, strlen(path));
@@ -200,7 +200,7 @@ static bool read_mesh(scene_reader *reader, scene_node *node, brunt_body_def *bo
     const scene_node *group = brunt_tree_child(node, "group");
     brunt_refuse_key(reader, node, "element", "a mesh file has elements of its own");
     brunt_refuse_key(reader, node, "size", "a mesh file has elements of its own");
-    char name[BRUNT_NAME_LENGTH] = "", path[PATH_ROOM];
+    char name[BRUNT_NAME_LENGTH] = "", path[PATH_CAPACITY];
     brunt_copy_text(reader, group, name, sizeof name);
     if (!mesh->good || !reader->dimension || (group && !*name) || !find_mesh(reader, mesh, path)) return false;
     brunt_error error = {0};
@@ -218,22 +218,22 @@ static bool read_mesh(scene_reader *reader, scene_node *node, brunt_body_def *bo
 static bool fill_elements(scene_reader *reader, scene_node *node, brunt_body_def *body) {
     const scene_node *kind = brunt_tree_child(node, "element");
     int dimension = reader->dimension;
-    const bool sheet = body->method == BRUNT_MEMBRANE;
+    const bool membrane = body->method == BRUNT_MEMBRANE;
     brunt_refuse_key(reader, node, "group", "this belongs to a mesh file, none is given");
     if (!kind && dimension)
-        kind = brunt_add_default(reader, node, "element", dimension == 2 || sheet ? "quad4" : "hex8");
+        kind = brunt_add_default(reader, node, "element", dimension == 2 || membrane ? "quad4" : "hex8");
     const brunt_element_kind solid = kind && kind->good ? brunt_element_named(kind->text) : BRUNT_HEX8;
     body->element = solid;
     if (!brunt_tree_child(node, "size"))
         brunt_tree_complain_key(reader->tree, node, "'size' is missing: a length (m), edge of the elements");
     bool known = kind && kind->good && dimension;
     char wanted[128];
-    if (known && sheet && brunt_element_dimension(solid) == 3) {
+    if (known && membrane && brunt_element_dimension(solid) == 3) {
         brunt_element_choice(2, wanted, sizeof wanted);
         brunt_tree_complain(reader->tree, kind, "a membrane has elements %s, not %s", wanted, kind->text);
         return false;
     }
-    if (known && sheet) {
+    if (known && membrane) {
         body->element = brunt_element_as_membrane(solid);
         return true;
     }
@@ -284,8 +284,8 @@ static void fill_hourglass(scene_reader *reader, scene_node *node, brunt_body_de
     body->hourglass_coefficient = brunt_real_of(map, "coefficient", NAN);
 }
 
-// A material that is good by itself may have no form for sheets.
-static void check_sheet_material(scene_reader *reader, const scene_node *node, const brunt_body_def *body) {
+// A material that is good by itself may have no form for membranes.
+static void check_membrane_material(scene_reader *reader, const scene_node *node, const brunt_body_def *body) {
     brunt_material material;
     brunt_error error = {0};
     if (body->material < 0) return;
@@ -295,12 +295,12 @@ static void check_sheet_material(scene_reader *reader, const scene_node *node, c
         brunt_tree_complain(reader->tree, brunt_tree_child(node, "material"), "%s", error.message);
 }
 
-static void fill_sheet(scene_reader *reader, scene_node *node, brunt_body_def *body) {
+static void fill_membrane(scene_reader *reader, scene_node *node, brunt_body_def *body) {
     const scene_node *faces = brunt_tree_child(node, "faces"), *method = brunt_tree_child(node, "method");
     if (reader->dimension == 2) brunt_tree_complain(reader->tree, method, "membranes are for three dimensions");
     if (!brunt_tree_child(node, "thickness"))
         brunt_tree_complain_key(reader->tree, node, "'thickness' is missing: a length (m), of the sheet");
-    check_sheet_material(reader, node, body);
+    check_membrane_material(reader, node, body);
     if (brunt_tree_child(node, "mesh"))
         brunt_refuse_key(reader, node, "faces", "a mesh file is the sheet as it is: group chooses a part of it");
     if (!faces || !faces->good || brunt_tree_child(node, "mesh")) return;
@@ -311,7 +311,7 @@ static void fill_sheet(scene_reader *reader, scene_node *node, brunt_body_def *b
 
 static void fill_fem(scene_reader *reader, scene_node *node, brunt_body_def *body, bool measurable) {
     bool shape = brunt_tree_child(node, "shape"), mesh = brunt_tree_child(node, "mesh"), known = false;
-    if (body->method == BRUNT_MEMBRANE) fill_sheet(reader, node, body);
+    if (body->method == BRUNT_MEMBRANE) fill_membrane(reader, node, body);
     if (shape == mesh) {
         brunt_tree_complain_key(reader->tree, node, "exactly one of shape and mesh is wanted, %s given",
                                 shape ? "both are" : "none is");
@@ -369,7 +369,7 @@ static void fill_body(scene_reader *reader, scene_node *node, brunt_body_def *bo
     int mistakes = reader->tree->message_count;
     const scene_node *shape = brunt_tree_child(node, "shape");
     brunt_fill_shape_def(reader, shape, &body->shape);
-    body->place = brunt_fill_place(reader, brunt_tree_child(node, "place"));
+    body->place = brunt_fill_placement(reader, brunt_tree_child(node, "place"));
     bool measurable = shape && shape->good && reader->dimension && mistakes == reader->tree->message_count;
     body->method = (brunt_method)(int)brunt_real_of(node, "method", BRUNT_MPM);
     // Without a method it is not known which keys are wanted.

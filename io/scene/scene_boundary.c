@@ -44,7 +44,7 @@ static int compare_wall_names(const void *a, const void *b) {
     return order ? order : (p->number > q->number) - (p->number < q->number);
 }
 
-static void check_wall_names(scene_reader *reader, const scene_node *list) {
+static void check_boundary_names(scene_reader *reader, const scene_node *list) {
     wall_name *all = brunt_entries_for(reader, list->count, sizeof *all);
     int count = 0, number = 0;
     for (const scene_node *wall = all ? list->first : NULL; wall; wall = wall->next, number++)
@@ -133,12 +133,12 @@ void brunt_fill_boundaries(scene_reader *reader) {
     brunt_world_def *world = &reader->scene->world;
     const scene_node *list = brunt_tree_child(reader->tree->root, "boundaries");
     const int count = brunt_children_of(list, SCENE_LIST);
-#define ROOM(NAME, kind, type, word, what)                                                                             \
+#define ENTRIES(NAME, kind, type, word, what)                                                                          \
     if (!(world->kind##s = brunt_entries_for(reader, count, sizeof *world->kind##s))) return;
-    BRUNT_BOUNDARY_KINDS(ROOM)
-#undef ROOM
+    BRUNT_BOUNDARY_KINDS(ENTRIES)
+#undef ENTRIES
     if (!(world->boundaries = brunt_entries_for(reader, count, sizeof *world->boundaries))) return;
     for (scene_node *node = list->first; node; node = node->next)
         if (node->kind == SCENE_MAP) read_boundary(reader, node);
-    check_wall_names(reader, list);
+    check_boundary_names(reader, list);
 }

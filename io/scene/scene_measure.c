@@ -66,7 +66,8 @@ static const char *newton_mistake(const char *rest) {
                  "least_part";
 }
 
-// What of a column can be known before the engine runs: its family, and the names of bodies, walls and probes in it.
+// What of a column can be known before the engine runs: its family, and the names of bodies, boundaries and probes in
+// it.
 static const char *column_mistake(const scene_reader *reader, const char *column) {
     static const char *const plain[] = {"time", "step", "dt"};
     static const char *const energies[] = {"kinetic",        "internal",      "mechanical", "plastic",  "hourglass",
@@ -98,7 +99,7 @@ static const char *column_mistake(const scene_reader *reader, const char *column
     if (family == 7 && strncmp(column, "contact", 7) == 0)
         return pair_exists(reader, rest) ? NULL : "there is no such pair of bodies, A-B is wanted";
     if (family == 4 && strncmp(column, "wall", 4) == 0) {
-        for (int32_t w = 0; w < brunt_boundary_count(world); w++) {
+        for (int32_t w = 0; w < brunt_boundary_entry_count(world); w++) {
             const brunt_boundary_kind *kind;
             const void *entry = brunt_boundary_entry(world, w, &kind);
             if (names_part(rest, kind->name(entry))) return NULL;
@@ -309,10 +310,10 @@ static void check_curve_times(scene_reader *reader, scene_node *node, brunt_meas
                             "the distance from a curve is reduced by max_abs, max, min, mean, initial or end");
     if (!from) measure->from = first;
     if (!to) measure->to = last;
-    double slack = 1e-9 * (last - first);
-    if (from && from->good && (measure->from < first - slack || measure->from > last + slack))
+    double tolerance = 1e-9 * (last - first);
+    if (from && from->good && (measure->from < first - tolerance || measure->from > last + tolerance))
         brunt_tree_complain(tree, from, "there is no curve then");
-    if (to && to->good && (measure->to < first - slack || measure->to > last + slack))
+    if (to && to->good && (measure->to < first - tolerance || measure->to > last + tolerance))
         brunt_tree_complain(tree, to, "there is no curve then");
     brunt_format_number(end, text);
     if (!from && first < 0)

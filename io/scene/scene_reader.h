@@ -42,7 +42,7 @@ void brunt_fill_fields(scene_reader *reader, scene_node *map, const char *path, 
 
 // Stage 4. World and output are filled in this order.
 void brunt_fill_shape_def(scene_reader *reader, const scene_node *node, brunt_shape *shape);
-brunt_placement brunt_fill_place(scene_reader *reader, const scene_node *list);
+brunt_placement brunt_fill_placement(scene_reader *reader, const scene_node *list);
 void brunt_fill_bodies(scene_reader *reader);
 void brunt_fill_contact(scene_reader *reader);
 void brunt_fill_boundaries(scene_reader *reader);

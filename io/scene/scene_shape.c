@@ -127,7 +127,7 @@ void brunt_fill_shape_def(scene_reader *reader, const scene_node *node, brunt_sh
                  {"sphere", BRUNT_SPHERE},
                  {"disk", BRUNT_SPHERE},
                  {"cylinder", BRUNT_CYLINDER},
-                 {"tube", BRUNT_RING},
+                 {"tube", BRUNT_TUBE},
                  {"polygon", BRUNT_PRISM},
                  {"half-space", BRUNT_HALF_SPACE},
                  {"union", BRUNT_UNION},
@@ -156,7 +156,7 @@ void brunt_fill_shape_def(scene_reader *reader, const scene_node *node, brunt_sh
         brunt_vector_of(map, "normal", shape->axis);
         complain_zero(reader, map, "normal", "the normal");
         break;
-    case BRUNT_RING:
+    case BRUNT_TUBE:
         if (shape->inner_radius > 0 && shape->radius > 0 && !(shape->inner_radius < shape->radius))
             brunt_tree_complain(reader->tree, brunt_tree_child(map, "inner_radius"),
                                 "inner_radius must be below radius");
@@ -166,7 +166,7 @@ void brunt_fill_shape_def(scene_reader *reader, const scene_node *node, brunt_sh
     }
 }
 
-brunt_placement brunt_fill_place(scene_reader *reader, const scene_node *list) {
+brunt_placement brunt_fill_placement(scene_reader *reader, const scene_node *list) {
     brunt_placement place = brunt_placement_identity();
     if (!list || list->kind != SCENE_LIST) return place;
     for (const scene_node *entry = list->first; entry; entry = entry->next) {

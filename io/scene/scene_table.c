@@ -13,8 +13,8 @@
 #include "io/scene/units.h"
 #include "world/definitions.h"
 
-enum { ROOM = 600 };
-static scene_key table[ROOM];
+enum { KEY_LIMIT = 600 };
+static scene_key table[KEY_LIMIT];
 static int table_count;
 const scene_key *const brunt_scene_table = table;
 const int *const brunt_scene_table_rows = &table_count;
@@ -27,7 +27,7 @@ static const scene_rows *const measures[] = {BRUNT_MEASURE_KINDS(ROWS)};
 
 static void add(const scene_rows *rows) {
     for (int i = 0; i < rows->count; i++) {
-        if (table_count == ROOM) abort();
+        if (table_count == KEY_LIMIT) abort();
         table[table_count++] = rows->row[i];
     }
 }
@@ -60,7 +60,7 @@ static void add_boundary(const brunt_boundary_kind *kind) {
               [BRUNT_VALUE_WORD] = {SCENE_WORD, STORE_REAL}, // its place
               [BRUNT_VALUE_SHAPE] = {SCENE_SHAPE, STORE_NOT},
               [BRUNT_VALUE_TABLE] = {SCENE_TABLE, STORE_NOT}};
-    static char paths[ROOM][64], defaults[ROOM][32];
+    static char paths[KEY_LIMIT][64], defaults[KEY_LIMIT][32];
     scene_key row = {.path = paths[table_count], .type = SCENE_GROUP, .initial = OPTIONAL, .doc = kind->doc};
     snprintf(paths[table_count], sizeof *paths, "boundaries[].%s", kind->word);
     row.min = -INFINITY, row.max = INFINITY;
@@ -88,7 +88,7 @@ static void add_boundary(const brunt_boundary_kind *kind) {
 
 // Of a number of a body that says its key itself.
 static void add_body_number(const brunt_body_number *number) {
-    static char paths[ROOM][64];
+    static char paths[KEY_LIMIT][64];
     const bool positive = number->rule & BRUNT_POSITIVE, limited = number->rule & (BRUNT_POSITIVE | BRUNT_NOT_NEGATIVE);
     snprintf(paths[table_count], sizeof *paths, "bodies.*%s", number->key);
     const scene_key row = {.path = paths[table_count],

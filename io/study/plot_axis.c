@@ -8,7 +8,7 @@
 
 #include "base/array.h"
 
-enum { MOST_TICS = 64 };
+enum { TIC_LIMIT = 64 };
 
 void plot_axis_widen(plot_axis *a, double value) {
     if (!(value > 0) || !isfinite(value)) return;
@@ -57,7 +57,7 @@ void plot_write_tics(FILE *out, char name, const plot_axis *a) {
         const double rough = (a->to - a->from) / 5, power = pow(10, floor(log10(rough))), m = rough / power;
         const double step = power * (m < 1.5 ? 1 : m < 3.5 ? 2 : m < 7.5 ? 5 : 10);
         const double start = ceil(a->from / step - 1e-9);
-        for (int k = 0; k < MOST_TICS && (start + k) * step <= a->to * (1 + 1e-9); k++)
+        for (int k = 0; k < TIC_LIMIT && (start + k) * step <= a->to * (1 + 1e-9); k++)
             tic(out, a, (start + k) * step, true, &first);
     } else {
         const int low = (int)floor(log10(a->from)), high = (int)ceil(log10(a->to)), every = (high - low + 7) / 8;

@@ -69,10 +69,10 @@ typedef struct brunt_study_case {
     char reason[256]; // why it failed
     int32_t runs;     // repeats that are finished
     double *wall;     // [s] of the steps (output left out), one a repeat, in the order they ran; owned
-    double wall_median, wall_least, wall_most; // [s]
-    double peak_bytes, steps, units;           // units: particles + elements
-    double result[BRUNT_STUDY_MEASURES];       // in the measures' own unit; NAN: none
-    double expect[BRUNT_STUDY_MEASURES];       // what the scene says it should be; NAN: nothing
+    double wall_median, wall_least, wall_greatest; // [s]
+    double peak_bytes, steps, units;               // units: particles + elements
+    double result[BRUNT_STUDY_MEASURES];           // in the measures' own unit; NAN: none
+    double expect[BRUNT_STUDY_MEASURES];           // what the scene says it should be; NAN: nothing
     char unit[BRUNT_STUDY_MEASURES][32];
     // Filled by brunt_study_analyse:
     double error[BRUNT_STUDY_MEASURES]; // relative (or over `scale`); NAN: none

@@ -68,7 +68,7 @@ static bool coarsest_of_line(const brunt_study *study, const brunt_study_case *c
 }
 
 static bool overlap(const brunt_study_case *a, const brunt_study_case *b) {
-    return a->wall_least <= b->wall_most && b->wall_least <= a->wall_most;
+    return a->wall_least <= b->wall_greatest && b->wall_least <= a->wall_greatest;
 }
 
 static void write_error(FILE *out, const brunt_study *study, const brunt_study_case *c, int32_t m) {

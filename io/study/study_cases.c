@@ -82,7 +82,7 @@ static void name_line(const brunt_study *study, const brunt_study_case *c, char 
 static void add_case(brunt_study *study, const int32_t *value) {
     brunt_study_case *c = &study->cases[study->case_count++];
     memcpy(c->value, value, sizeof c->value);
-    c->wall_median = c->wall_least = c->wall_most = NAN;
+    c->wall_median = c->wall_least = c->wall_greatest = NAN;
     for (int32_t m = 0; m < BRUNT_STUDY_MEASURES; m++) c->result[m] = c->expect[m] = c->error[m] = NAN;
     for (const brunt_study_case *other = study->cases; other < c; other++)
         if (same_line(study, other->value, value)) {

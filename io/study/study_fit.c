@@ -64,7 +64,7 @@ brunt_study_fit brunt_study_line_fit(const double *x, const double *y, int32_t c
 bool brunt_study_richardson(const double x[3], const double y[3], double *limit, double *order) {
     // Below the least order the limit would be more than ten steps beyond the last value (when resolutions halve);
     // above the most it is the last value, by rounding.
-    static const double least_order = 0.1, most_order = 64;
+    static const double least_order = 0.1, order_limit = 64;
     *limit = *order = NAN;
     for (int i = 0; i < 3; i++)
         if (!isfinite(y[i]) || !isfinite(x[i]) || x[i] <= 0 || (i && x[i] >= x[i - 1])) return false;
@@ -74,7 +74,7 @@ bool brunt_study_richardson(const double x[3], const double y[3], double *limit,
     }
     const double ratio = (y[0] - y[1]) / (y[1] - y[2]);
     const double a = log(x[0] / x[1]), b = log(x[1] / x[2]);
-    double low = least_order, high = most_order;
+    double low = least_order, high = order_limit;
 #define RATIO_OF(p) (expm1((p)*a) / -expm1(-(p)*b))
     if (!isfinite(ratio) || !(ratio > RATIO_OF(low)) || !(ratio < RATIO_OF(high))) return false;
     for (int i = 0; i < 200 && high - low > 4e-16 * high; i++) {
@@ -102,7 +102,7 @@ static void take_wall(brunt_study_case *c, double *scratch) {
         if (isfinite(c->wall[r])) scratch[count++] = c->wall[r];
     if (!count) return;
     qsort(scratch, (size_t)count, sizeof *scratch, ascending);
-    c->wall_least = scratch[0], c->wall_most = scratch[count - 1];
+    c->wall_least = scratch[0], c->wall_greatest = scratch[count - 1];
     c->wall_median = 0.5 * (scratch[(count - 1) / 2] + scratch[count / 2]);
 }
 

@@ -191,23 +191,23 @@ static double ordinate(const errors *e, const brunt_study_case *c) {
 
 static void find_ranges(errors *e) {
     const brunt_study *study = e->p.study;
-    double least = INFINITY, most_x = 0;
+    double least = INFINITY, greatest_x = 0;
     e->x = (plot_axis){INFINITY, -INFINITY, 1}, e->y = (plot_axis){INFINITY, -INFINITY, 1};
     for (int32_t i = 0; i < study->case_count; i++) {
         const brunt_study_case *c = &study->cases[i];
         if (!shown(e, c)) continue;
         e->zeros += c->error[e->measure] == 0;
         if (c->error[e->measure] > 0) least = fmin(least, c->error[e->measure]);
-        most_x = fmax(most_x, abscissa(e, c));
+        greatest_x = fmax(greatest_x, abscissa(e, c));
     }
     e->percent = !(least < 1e-6);
     e->y.factor = e->percent ? 100 : 1;
-    if (e->over_resolution) e->x.factor = plot_prefixed(study->axes[study->resolution].unit, most_x, e->unit_x);
+    if (e->over_resolution) e->x.factor = plot_prefixed(study->axes[study->resolution].unit, greatest_x, e->unit_x);
     for (int32_t i = 0; i < study->case_count; i++) {
         const brunt_study_case *c = &study->cases[i];
         if (!shown(e, c)) continue;
         plot_axis_widen(&e->x, abscissa(e, c)), plot_axis_widen(&e->y, c->error[e->measure]);
-        if (!e->over_resolution) plot_axis_widen(&e->x, c->wall_least), plot_axis_widen(&e->x, c->wall_most);
+        if (!e->over_resolution) plot_axis_widen(&e->x, c->wall_least), plot_axis_widen(&e->x, c->wall_greatest);
     }
     if (plot_axis_empty(&e->x)) return;
     if (e->over_resolution)
@@ -237,7 +237,7 @@ static void write_points(errors *e, int32_t line, int32_t *points) {
         if (shown(e, c))
             fprintf(e->p.out, "%.9g %.9g %.9g %.9g\n", e->x.factor * abscissa(e, c), ordinate(e, c),
                     isfinite(c->wall_least) ? c->wall_least : c->wall_median,
-                    isfinite(c->wall_most) ? c->wall_most : c->wall_median);
+                    isfinite(c->wall_greatest) ? c->wall_greatest : c->wall_median);
     }
     fprintf(e->p.out, "END\n");
 }
@@ -413,7 +413,7 @@ static bool write_theory(errors *e) {
 
 static bool repeated(const brunt_study *study) {
     for (int32_t i = 0; i < study->case_count; i++)
-        if (study->cases[i].wall_most > 1.05 * study->cases[i].wall_least) return true;
+        if (study->cases[i].wall_greatest > 1.05 * study->cases[i].wall_least) return true;
     return false;
 }
 

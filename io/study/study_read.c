@@ -96,9 +96,9 @@ static number_state read_number(study_reader *r, const char *text, double *value
     while (*rest == ' ') rest++;
     strcpy(base, "1");
     if (*rest && !brunt_units_to_si(r->base.units, rest, &number, base, why, size)) return BAD_NUMBER;
-    char reach[160];
-    if (!brunt_usable_number(number, false, reach, sizeof reach)) {
-        snprintf(why, size, "'%.60s' is %s", text, reach);
+    char range[160];
+    if (!brunt_usable_number(number, false, range, sizeof range)) {
+        snprintf(why, size, "'%.60s' is %s", text, range);
         return BAD_NUMBER;
     }
     *value = number;

@@ -32,7 +32,7 @@ static bool other_scenes(const brunt_study *study) {
 }
 
 // [most - least] / median of the times of a case.
-static double noise(const brunt_study_case *c) { return (c->wall_most - c->wall_least) / c->wall_median; }
+static double noise(const brunt_study_case *c) { return (c->wall_greatest - c->wall_least) / c->wall_median; }
 
 static void write_noise(FILE *out, const brunt_study *study) {
     double worst = -1, sum = 0;
@@ -440,7 +440,8 @@ static void write_runs(FILE *out, const brunt_study *study, int32_t *cases) {
                 put_number(out, "%.0f", c->units), put_number(out, "%.0f", c->steps);
                 fprintf(out, " %s |", report_seconds(c->wall_median).text);
                 if (c->runs > 1)
-                    fprintf(out, " %s to %s |", report_seconds(c->wall_least).text, report_seconds(c->wall_most).text);
+                    fprintf(out, " %s to %s |", report_seconds(c->wall_least).text,
+                            report_seconds(c->wall_greatest).text);
                 else
                     fprintf(out, " - |");
                 put_number(out, "%.3g", c->peak_bytes / 1e6);

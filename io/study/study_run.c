@@ -263,7 +263,7 @@ static void take_times(brunt_study_case *c) {
     qsort(sorted, (size_t)n, sizeof *sorted, by_size);
     c->wall_median = n % 2 ? sorted[n / 2] : 0.5 * (sorted[n / 2 - 1] + sorted[n / 2]);
     c->wall_least = sorted[0];
-    c->wall_most = sorted[n - 1];
+    c->wall_greatest = sorted[n - 1];
 }
 
 static void take_result(runner *r, int32_t index, const run_result *result) {

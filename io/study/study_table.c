@@ -69,7 +69,7 @@ static void csv_row(const brunt_study *study, const brunt_study_case *c, FILE *o
     fprintf(out, ",%s,", statuses[c->status]);
     csv_text(out, c->reason);
     bool ran = c->runs > 0;
-    const double numbers[] = {c->steps, c->units, c->wall_median, c->wall_least, c->wall_most, c->peak_bytes};
+    const double numbers[] = {c->steps, c->units, c->wall_median, c->wall_least, c->wall_greatest, c->peak_bytes};
     for (size_t n = 0; n < sizeof numbers / sizeof *numbers; n++) {
         fputc(',', out);
         csv_number(out, ran ? numbers[n] : NAN);

@@ -117,7 +117,7 @@ START_TEST(oblique_collision) {
     brunt_world *world = world_take(&def);
     world_until(world, soft(c) ? 0.04 : 0.12);
     judge_momentum("collision", c, world);
-    brunt_force pair = world_pair(world, 0);
+    brunt_reaction pair = world_pair(world, 0);
     brunt_body_sums right = world_sums(world, 1);
     brunt_energy e = world_energy(world);
     ck_assert_double_gt(pair.impulse[0], (soft(c) ? 0.02 : 0.5) * right.mass * 3); // they did collide
@@ -253,7 +253,7 @@ START_TEST(contact_never_pulls) {
     double last = 0, least = 0, most = 0, time_of_last = 0;
     while (brunt_world_time(world) < (soft(c) ? 0.12 : 0.5)) {
         world_steps(world, 1);
-        brunt_force pair = world_pair(world, 0);
+        brunt_reaction pair = world_pair(world, 0);
         least = fmin(least, pair.force[0]);
         most = fmax(most, pair.force[0]);
         if (pair.impulse[0] != last) time_of_last = brunt_world_time(world);
@@ -309,7 +309,7 @@ START_TEST(untouched_bodies_feel_nothing) {
         world[k] = world_take(&def);
         world_until(world[k], 0.15);
     }
-    brunt_force force = world_pair(world[0], 0);
+    brunt_reaction force = world_pair(world[0], 0);
     printf("  %s %s: impulse %.2g of the momentum\n", ways[_i / CASES], name_of(c),
            (fabs(force.impulse[0]) + fabs(force.impulse[1])) / (1.5 * world_sums(world[0], 0).mass));
     for (int a = 0; a < 3; a++) ck_assert_double_eq(force.impulse[a], 0);

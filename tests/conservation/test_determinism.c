@@ -44,9 +44,9 @@ static void expect_eventful(brunt_world *world) {
     ck_assert_double_gt(e.viscosity, 0);
     ck_assert_double_gt(e.friction, 0);
     ck_assert_double_ne(world_pair(world, 0).impulse[1], 0);
-    ck_assert_double_gt(world_wall(world, 1).impulse[1], 0);
-    ck_assert_double_ne(world_wall(world, 1).impulse[0], 0);
-    ck_assert_double_ne(world_wall(world, 0).impulse[0], 0);
+    ck_assert_double_gt(world_boundary(world, 1).impulse[1], 0);
+    ck_assert_double_ne(world_boundary(world, 1).impulse[0], 0);
+    ck_assert_double_ne(world_boundary(world, 0).impulse[0], 0);
 }
 
 // Sizes at which seven threads are really woken: a pass needs four pieces of two blocks for each.
@@ -63,8 +63,8 @@ START_TEST(any_number_of_threads) {
         world_steps(world, 12);
         expect_eventful(world);
         for (int t = 0; t < threads[k]; t++) {
-            ck_assert_double_gt(find_pass(world, "scatter").thread_seconds[t], 0);
-            ck_assert_double_gt(find_pass(world, "gather").thread_seconds[t], 0);
+            ck_assert_double_gt(find_pass(world, "p2g").thread_seconds[t], 0);
+            ck_assert_double_gt(find_pass(world, "g2p").thread_seconds[t], 0);
         }
         hash[k] = brunt_world_hash(world);
         energy[k] = world_energy(world);
@@ -141,9 +141,10 @@ START_TEST(restored_is_as_good_as_continuous) {
     brunt_momentum p = world_momentum(whole), q = world_momentum(third);
     ck_assert(memcmp(&a, &b, sizeof a) == 0);
     ck_assert(memcmp(&p, &q, sizeof p) == 0);
-    for (int a_wall = 0; a_wall < 2; a_wall++)
+    for (int a_boundary = 0; a_boundary < 2; a_boundary++)
         for (int k = 0; k < 3; k++)
-            ck_assert_double_eq(world_wall(whole, a_wall).impulse[k], world_wall(third, a_wall).impulse[k]);
+            ck_assert_double_eq(world_boundary(whole, a_boundary).impulse[k],
+                                world_boundary(third, a_boundary).impulse[k]);
     brunt_world *const all[] = {whole, first, second, third};
     for (int w = 0; w < 4; w++) brunt_world_destroy(all[w]);
     brunt_world_def_free(&def);
@@ -197,7 +198,7 @@ static brunt_world_def dropped(floor_kind floor, double gap, double speed) {
 }
 
 static double pushed(const brunt_world *world, floor_kind floor) {
-    return fabs(floor == PLANE ? world_wall(world, 0).impulse[1] : world_pair(world, 0).impulse[1]);
+    return fabs(floor == PLANE ? world_boundary(world, 0).impulse[1] : world_pair(world, 0).impulse[1]);
 }
 
 // Contact looks as far as the fastest particle goes. A world that is restored starts from rest, and must look no less
@@ -265,7 +266,7 @@ START_TEST(no_allocation_in_a_step) {
     brunt_world *world = world_take(&def);
     double calls = allocations_per_step(world, 50, 200);
     printf("  at rest, %dD: %g allocations a step\n", 2 + _i, calls);
-    ck_assert_double_gt(world_wall(world, 0).impulse[1], 0);
+    ck_assert_double_gt(world_boundary(world, 0).impulse[1], 0);
     ck_assert_double_ne(world_pair(world, 0).impulse[1], 0);
     ck_assert_double_eq(calls, 0);
     brunt_world_destroy(world);

@@ -188,7 +188,7 @@ static double deep(brunt_element_kind kind) { return brunt_element_dimension(kin
 static int by_nodes(const void *a, const void *b) { return memcmp(a, b, 4 * sizeof(int32_t)); }
 
 // Faces of the skin's body k as sorted numbers of the body's nodes.
-static int32_t (*skin_faces(const brunt_contact_surface *s, int k))[4] {
+static int32_t (*surface_faces(const brunt_contact_surface *s, int k))[4] {
     const int32_t count = s->face_end[k] - s->face_range[k];
     int32_t(*list)[4] = malloc(((size_t)count + 1) * sizeof *list);
     for (int32_t f = 0; f < count; f++)
@@ -223,7 +223,7 @@ START_TEST(surface_is_that_of_the_elements) {
             brunt_faces faces;
             ck_assert_int_eq(brunt_fem_faces(fem, &faces, NULL), 0);
             ck_assert_int_eq(faces.count, s->face_end[k] - s->face_range[k]);
-            int32_t(*list)[4] = skin_faces(s, k);
+            int32_t(*list)[4] = surface_faces(s, k);
             qsort(faces.node, (size_t)faces.count, sizeof *faces.node, by_nodes);
             ck_assert_int_eq(memcmp(list, faces.node, (size_t)faces.count * sizeof *list), 0);
             int32_t expected = 0;
@@ -634,7 +634,7 @@ START_TEST(loose_nodes) {
     ck_assert_int_eq(cube->element_count, 0);
     world_until(world, 0.8 / v);
     const brunt_momentum p = world_momentum(world);
-    const brunt_force f = world_pair(world, 0);
+    const brunt_reaction f = world_pair(world, 0);
     const brunt_energy e = world_energy(world);
     int inside;
     deepest_node(world, 0.05 * h, &inside);
@@ -669,7 +669,7 @@ static brunt_world *torn_world(brunt_element_kind kind) {
 
 static int fem_elements(const brunt_world *world) { return world->bodies.fem[0].element_count; }
 
-START_TEST(torn_sheet) {
+START_TEST(torn_membrane) {
     const brunt_element_kind kind = _i ? BRUNT_MEMBRANE_TRI3 : BRUNT_MEMBRANE_QUAD4;
     brunt_world *world = torn_world(kind);
     uint64_t seed = 3, hash[2];
@@ -753,7 +753,7 @@ int main(void) {
     ADD_LOOP(points_through_a_plate, 8);
     ADD_LOOP(very_fast, FAST_CASES);
     ADD_LOOP(loose_nodes, 8);
-    ADD_LOOP(torn_sheet, 2);
+    ADD_LOOP(torn_membrane, 2);
     ADD(no_growth);
     return suite_main(suite);
 }

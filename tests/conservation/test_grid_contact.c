@@ -9,7 +9,7 @@ static const double RADIUS = 3, HEIGHT = 3.33, SPEED = 3, THICKNESS = 0.1;
 
 static brunt_world_def begin(double friction) {
     brunt_world_def def = def_begin(3, 1);
-    def.groups = brunt_alloc(DEF_ROOM * sizeof *def.groups);
+    def.groups = brunt_alloc(DEF_CAPACITY * sizeof *def.groups);
     def.contact.method = BRUNT_CONTACT_MULTI_VELOCITY;
     def.contact.friction = friction;
     def_material(&def, "neo-hookean", 1000, 1e6, 0.3);
@@ -84,7 +84,7 @@ static kept watch(brunt_world *world, double end) {
         k.energy_error = fmax(k.energy_error, fabs(e.error_relative));
         k.most = fmax(k.most, stored(&e) / start.initial);
     }
-    const brunt_force f = world_pair(world, 0);
+    const brunt_reaction f = world_pair(world, 0);
     k.impulse = fabs(f.impulse[2]);
     return k;
 }
@@ -151,7 +151,7 @@ END_TEST
 
 // A quarter with mirrors is the whole, but that the normal near a mirror is the mean of the particles on one side of
 // it.
-START_TEST(mirrors_stand_for_the_rest) {
+START_TEST(symmetry_planes_stand_for_the_rest) {
     double centre[2], speed[2];
     for (int quarter = 0; quarter <= 1; quarter++) {
         brunt_world_def def = begin(0);
@@ -213,7 +213,7 @@ START_TEST(what_does_not_touch_is_left_alone) {
     world_until(world, 0.5);
     double *v = world_field(world, 1, "velocity");
     for (int64_t i = 0; i < 3 * brunt_body_size(world, 1, BRUNT_AT_NODES); i++) ck_assert(v[i] == 0);
-    const brunt_force f = world_pair(world, 0);
+    const brunt_reaction f = world_pair(world, 0);
     for (int a = 0; a < 3; a++) ck_assert(f.impulse[a] == 0);
     free(v);
     brunt_world_destroy(world);
@@ -221,7 +221,7 @@ START_TEST(what_does_not_touch_is_left_alone) {
 END_TEST
 
 // From above and from below the same, mirrored; all particles stay on their side by what they reach.
-START_TEST(sheets_have_two_sides) {
+START_TEST(membranes_have_two_sides) {
     double height[2], speed[2];
     for (int k = 0; k < 2; k++) {
         brunt_world_def def = begin(0);
@@ -248,7 +248,7 @@ START_TEST(sheets_have_two_sides) {
 END_TEST
 
 // Two balls squeeze a sheet of 1/40 of their mass: neither gets through, and it does not matter which is first.
-START_TEST(a_sheet_keeps_two_bodies_apart) {
+START_TEST(a_membrane_keeps_two_bodies_apart) {
     brunt_world_def def = begin(0);
     ball(&def, "ball", 1), ball(&def, "drop", -1), sheet(&def, true);
     brunt_world *world = world_take(&def);
@@ -287,10 +287,10 @@ START_TEST(friction_slows_by_its_coefficient) {
     brunt_world *world = sliding_block(0.3);
     world_until(world, 0.25);
     const double from = world_sums(world, 0).velocity[0];
-    const brunt_force before = world_pair(world, 0);
+    const brunt_reaction before = world_pair(world, 0);
     world_until(world, 0.55);
     const brunt_body_sums sums = world_sums(world, 0);
-    const brunt_force after = world_pair(world, 0);
+    const brunt_reaction after = world_pair(world, 0);
     const double slowing = (from - sums.velocity[0]) / 0.3, *force = after.impulse, *start = before.impulse,
                  ratio = (force[0] - start[0]) / (force[2] - start[2]),
                  weight = -(force[2] - start[2]) / (3 * sums.mass);
@@ -309,7 +309,7 @@ END_TEST
 START_TEST(without_friction_nothing_slows) {
     brunt_world *world = sliding_block(0);
     world_until(world, 0.5);
-    const brunt_force f = world_pair(world, 0);
+    const brunt_reaction f = world_pair(world, 0);
     ck_assert_double_gt(fabs(f.impulse[2]), 1e4);
     ck_assert_double_lt(fabs(f.impulse[0]), ROUNDING * fabs(f.impulse[2]));
     ck_assert(f.friction_work == 0);
@@ -337,11 +337,11 @@ int main(void) {
     const TTest *const tests[] = {momentum_is_kept_and_no_energy_made,
                                   the_same_bits_for_any_number_of_threads,
                                   no_memory_is_asked_for_in_a_step,
-                                  mirrors_stand_for_the_rest,
+                                  symmetry_planes_stand_for_the_rest,
                                   contact_begins_at_touch,
                                   what_does_not_touch_is_left_alone,
-                                  sheets_have_two_sides,
-                                  a_sheet_keeps_two_bodies_apart,
+                                  membranes_have_two_sides,
+                                  a_membrane_keeps_two_bodies_apart,
                                   friction_slows_by_its_coefficient,
                                   without_friction_nothing_slows,
                                   two_meshes_have_no_grid};

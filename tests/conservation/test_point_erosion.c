@@ -415,7 +415,7 @@ START_TEST(no_memory_grows) {
 }
 END_TEST
 
-// Nothing of it where nobody asks.
+// Nothing of it where it is not asked for.
 START_TEST(costs_nothing_unasked) {
     brunt_world_def def = shaken(2, BRUNT_APIC, BRUNT_QUADRATIC, 4);
     def.bodies[0].erosion = brunt_body_def_default().erosion;

@@ -15,7 +15,7 @@ static const char *const form_name[] = {"affine", "smooth", "surface", "paper"};
 
 static brunt_world_def begin(int dimension, form f, double friction) {
     brunt_world_def def = def_begin(dimension, 1);
-    def.groups = brunt_alloc(DEF_ROOM * sizeof *def.groups);
+    def.groups = brunt_alloc(DEF_CAPACITY * sizeof *def.groups);
     def.contact.method = BRUNT_CONTACT_AUGURY;
     def.contact.form = form_kind[f];
     def.contact.friction = friction;
@@ -113,7 +113,7 @@ START_TEST(oblique_impact) {
     brunt_energy e = world_energy(world);
     brunt_momentum p = world_momentum(world);
     brunt_body_sums a = world_sums(world, 0), b = world_sums(world, 1);
-    brunt_force force = world_pair(world, 0);
+    brunt_reaction force = world_pair(world, 0);
     last = stored(&e) / e.initial;
     printf("%s %s: E/E0 %.4f, most %.6f, depth %.4f h, apart at %.1f m/s, drift %.1e %.1e, error %.1e\n", form_name[f],
            brunt_element_name(kind), last, most, depth / 0.5, b.velocity[1] - a.velocity[1], p.linear_drift,
@@ -270,7 +270,7 @@ START_TEST(friction_at_its_limits) {
     brunt_body_sums start = world_sums(world, 1);
     world_until(world, end);
     brunt_body_sums now = world_sums(world, 1);
-    brunt_force force = world_pair(world, 0);
+    brunt_reaction force = world_pair(world, 0);
     // Gravity that grows over T: way of a body that slides freely.
     double T = 0.1, after = end - T, way = along * (T * T / 6 + T / 2 * after + after * after / 2);
     double went = now.centre[0] - start.centre[0];
@@ -296,7 +296,7 @@ START_TEST(plane_without_friction) {
     def.gravity[1] = -10, def.gravity[0] = 2;
     brunt_world *world = world_take(&def);
     world_until(world, 0.2);
-    brunt_force force = world_wall(world, 0);
+    brunt_reaction force = world_boundary(world, 0);
     ck_assert_double_gt(force.impulse[1], 0);
     ck_assert_double_eq(force.impulse[0], 0);
     ck_assert_double_eq(force.impulse[2], 0);
@@ -583,7 +583,7 @@ START_TEST(a_plate_pushes) {
     brunt_body_sums before = world_sums(world, 0);
     world_until(world, 0.3);
     brunt_body_sums after = world_sums(world, 0);
-    brunt_force work = world_wall(world, 0), pair = world_pair(world, 0);
+    brunt_reaction work = world_boundary(world, 0), pair = world_pair(world, 0);
     brunt_energy e = world_energy(world);
     double gained =
         e.kinetic + e.internal + e.hourglass - e.initial + e.contact + e.friction + e.transfer + e.viscosity;

@@ -54,7 +54,7 @@ START_TEST(restored_world_goes_on_with_the_same_bits) {
     for (int i = 0; i < 3; i++) {
         brunt_energy a, b;
         brunt_momentum m, n;
-        brunt_force f = {0}, g = {0};
+        brunt_reaction f = {0}, g = {0};
         ck_assert(brunt_world_hash(other) == brunt_world_hash(world));
         ck_assert_double_eq(brunt_world_time(other), brunt_world_time(world));
         ck_assert_double_eq(brunt_world_dt(other), brunt_world_dt(world));

@@ -42,7 +42,7 @@ static brunt_mesh read_from(const char *file, const char *group, int dimension, 
     return mesh;
 }
 
-static brunt_mesh read_sheet(const char *file, const char *group, char *warnings) {
+static brunt_mesh read_membrane(const char *file, const char *group, char *warnings) {
     brunt_mesh mesh;
     brunt_error error = {0};
     FILE *stream = warnings ? fmemopen(warnings, 1024, "w") : NULL;
@@ -156,7 +156,7 @@ static gmsh_model model_of(const brunt_mesh *mesh, const int64_t *tags) {
 }
 
 START_TEST(every_kind_in_every_format) {
-    brunt_shape ring = {.kind = BRUNT_RING, .axis = {0, 0, 1}, .radius = 1, .inner_radius = 0.5, .length = 1};
+    brunt_shape ring = {.kind = BRUNT_TUBE, .axis = {0, 0, 1}, .radius = 1, .inner_radius = 0.5, .length = 1};
     for (int k = 0; k < BRUNT_ELEMENT_KINDS; k++) {
         brunt_mesh mesh;
         const bool sheet = brunt_element_is_membrane(k);
@@ -175,8 +175,8 @@ START_TEST(every_kind_in_every_format) {
                     tags[n] = numbering == 1 ? 5 + 3 * (mesh.node_count - n) : 17 + far * ((n * 7) % mesh.node_count);
                 gmsh_model m = model_of(&mesh, numbering ? tags : NULL);
                 gmsh_write(path, &m, format < 2 ? 2 : 4, format % 2);
-                brunt_mesh back =
-                    sheet ? read_sheet(path, "body", NULL) : read_from(path, "body", brunt_element_dimension(k), NULL);
+                brunt_mesh back = sheet ? read_membrane(path, "body", NULL)
+                                        : read_from(path, "body", brunt_element_dimension(k), NULL);
                 expect_same(&back, &mesh);
                 ck_assert_int_eq(back.group_count, mesh.group_count + sheet); // a sheet is one of its groups
                 for (int32_t g = 0; g < mesh.group_count; g++) {
@@ -304,7 +304,7 @@ START_TEST(bodies_are_physical_groups) {
 END_TEST
 
 // A tent: two squares that meet at a ridge, the second clockwise; a solid stands below it, a line along the ridge.
-START_TEST(sheets_are_surfaces_in_space) {
+START_TEST(membranes_are_surfaces_in_space) {
     double x[][3] = {{0, 0, 0}, {1, 0, 1}, {1, 1, 1}, {0, 1, 0}, {2, 0, 0}, {2, 1, 0}, {1, 0.5, 0}};
     const int32_t ridge[] = {1, 2}, tet[] = {0, 4, 3, 6}, backwards[] = {1, 2, 5, 4};
     for (int format = 0; format < 4; format++) {
@@ -319,7 +319,7 @@ START_TEST(sheets_are_surfaces_in_space) {
         for (int i = 0; i < 3; i++)
             m.name[i].dimension = i < 2 ? 2 : 1, m.name[i].tag = i + 1, m.name[i].name = names[i];
         gmsh_write(path, &m, version, binary);
-        brunt_mesh mesh = read_sheet(path, "east", warnings);
+        brunt_mesh mesh = read_membrane(path, "east", warnings);
         ck_assert_str_eq(warnings, "");
         ck_assert_int_eq(mesh.kind, BRUNT_MEMBRANE_QUAD4);
         ck_assert_int_eq(mesh.node_count, 4);
@@ -334,7 +334,7 @@ START_TEST(sheets_are_surfaces_in_space) {
 
         m.part[0].elements = clockwise; // seen from below: that is its front then
         gmsh_write(path, &m, version, binary);
-        mesh = read_sheet(path, "west", warnings);
+        mesh = read_membrane(path, "west", warnings);
         ck_assert_str_eq(warnings, "");
         ck_assert_mem_eq(mesh.elements, clockwise, 4 * sizeof *clockwise);
         brunt_mesh_free(&mesh);
@@ -342,7 +342,7 @@ START_TEST(sheets_are_surfaces_in_space) {
 
         m.name[1].name = "west", m.part[1].elements = backwards; // two groups of one name; turned as in the file
         gmsh_write(path, &m, version, binary);
-        mesh = read_sheet(path, "west", NULL);
+        mesh = read_membrane(path, "west", NULL);
         ck_assert_int_eq(mesh.element_count, 2);
         ck_assert_mem_eq(mesh.elements + 4, backwards, sizeof backwards);
         brunt_mesh_quality quality;
@@ -358,7 +358,7 @@ START_TEST(sheets_are_surfaces_in_space) {
         ck_assert_int_eq(brunt_gmsh_read_membrane(path, "", &mesh, NULL, &error), BRUNT_BAD_INPUT);
         ck_assert_msg(strstr(error.message, "which physical group of dimension 2 is the sheet?") != NULL, "'%s'",
                       error.message);
-        mesh = read_sheet(path, "west", warnings);
+        mesh = read_membrane(path, "west", warnings);
         ck_assert_int_eq(mesh.element_count, 1);
         ck_assert_msg(strstr(warnings, "1 of its nodes belong to no element") != NULL, "'%s'", warnings); // the sixth
         brunt_mesh_free(&mesh);
@@ -699,7 +699,7 @@ int main(void) {
     tcase_add_test(tests, disks_of_gmsh);
     tcase_add_test(tests, every_kind_in_every_format);
     tcase_add_test(tests, bodies_are_physical_groups);
-    tcase_add_test(tests, sheets_are_surfaces_in_space);
+    tcase_add_test(tests, membranes_are_surfaces_in_space);
     tcase_add_test(tests, groups_that_cannot_be_are_said);
     tcase_add_test(tests, description);
     tcase_add_test(tests, broken_files_are_refused);

@@ -5,7 +5,7 @@
 
 #include "io/output/history.h"
 #include "base/memory.h"
-#include "io/output/places.h"
+#include "io/output/positions.h"
 #include "base/real.h"
 
 static brunt_scene scene;
@@ -390,7 +390,7 @@ START_TEST(eroded_is_counted) {
     brunt_eroded gone = {0};
     double *places, nearest = INFINITY;
     int64_t number = -1;
-    ck_assert_int_eq(brunt_places_read(bar, 0, BRUNT_AT_ELEMENTS, &places, NULL), BRUNT_OK);
+    ck_assert_int_eq(brunt_positions_read(bar, 0, BRUNT_AT_ELEMENTS, &places, NULL), BRUNT_OK);
     for (int64_t e = 0; e < brunt_body_elements(bar, 0); e++) {
         double away = hypot(hypot(places[3 * e] - 0.35, places[3 * e + 1] - 0.35), places[3 * e + 2] - 0.15);
         if (away < nearest) nearest = away, number = e;

@@ -276,7 +276,7 @@ START_TEST(damage_under_a_checksum_that_fits) {
 }
 END_TEST
 
-// Pipes that nobody writes to, and devices that never end.
+// Pipes that nothing writes to, and devices that never end.
 START_TEST(pipes_and_devices_are_no_files) {
     ck_assert_int_eq(mkfifo(small_path("pipe"), 0666), 0);
     static const char *const places[] = {"pipe", "/dev/zero", "/dev/null", "."};

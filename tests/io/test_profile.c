@@ -96,7 +96,7 @@ END_TEST
 START_TEST(each_of_many_threads_is_told) {
     json_t *profile = profile_of(small_scene_text, 100, true);
     check(profile, 100);
-    const json_t *row = row_of(profile, "gather"), *threads = json_object_get(row, "thread_s");
+    const json_t *row = row_of(profile, "g2p"), *threads = json_object_get(row, "thread_s");
     double sum = 0, most = 0;
     for (size_t t = 0; t < json_array_size(threads); t++) {
         const double busy = json_number_value(json_array_get(threads, t));
@@ -111,8 +111,7 @@ END_TEST
 START_TEST(rows_are_those_of_the_scene) {
     json_t *points = profile_of(small_scene_text, 1, true);
     json_t *elements = profile_of(small_elements_text, 1, true);
-    static const char *const of_points[] = {"sort",    "scatter", "grid",   "update",
-                                            "contact", "walls",   "ledger", "gather"};
+    static const char *const of_points[] = {"sort", "p2g", "grid", "update", "contact", "boundaries", "ledger", "g2p"};
     static const char *const of_elements[] = {"kick", "groups", "surfaces", "drift", "elements"};
     for (size_t k = 0; k < sizeof of_points / sizeof *of_points; k++) {
         ck_assert_ptr_nonnull(row_of(points, of_points[k]));
@@ -123,9 +122,9 @@ START_TEST(rows_are_those_of_the_scene) {
         ck_assert_ptr_null(row_of(points, of_elements[k]));
     }
     ck_assert_ptr_null(row_of(points, "erosion"));
-    ck_assert_ptr_null(row_of(points, "remap"));
+    ck_assert_ptr_null(row_of(points, "musl_velocity"));
     // Counted where the work is fixed.
-    ck_assert(json_is_number(json_object_get(row_of(points, "gather"), "roofline")));
+    ck_assert(json_is_number(json_object_get(row_of(points, "g2p"), "roofline")));
     ck_assert(json_is_number(json_object_get(row_of(elements, "elements"), "roofline")));
     ck_assert(json_is_null(json_object_get(row_of(points, "contact"), "roofline")));
     ck_assert(json_is_null(json_object_get(row_of(elements, "surfaces"), "roofline")));
@@ -158,7 +157,7 @@ START_TEST(page_fits) {
         for (int32_t p = 0; p < profile.row_count; p++) {
             profile.rows[p].pass.seconds = 1234.5678, profile.rows[p].ns_per_unit = 12345.67;
             for (int n = 0; n < BRUNT_THREAD_LIMIT; n++) profile.rows[p].pass.thread_seconds[n] = 123.456;
-            profile.rows[p].busy_least = profile.rows[p].busy_mean = profile.rows[p].busy_most = 1234.567;
+            profile.rows[p].busy_least = profile.rows[p].busy_mean = profile.rows[p].busy_greatest = 1234.567;
         }
         brunt_profile_print(&profile, &console);
         fclose(out);

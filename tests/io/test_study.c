@@ -366,7 +366,7 @@ START_TEST(results) {
         const brunt_study_case *k = &s.cases[c];
         ck_assert_int_eq(k->status, BRUNT_STUDY_DONE);
         ck_assert_int_eq(k->runs, 2);
-        ck_assert(k->wall_least > 0 && k->wall_least <= k->wall_median && k->wall_median <= k->wall_most);
+        ck_assert(k->wall_least > 0 && k->wall_least <= k->wall_median && k->wall_median <= k->wall_greatest);
         NEAR(k->wall_median, 0.5 * (k->wall[0] + k->wall[1]));
         ck_assert(k->steps > 2 && k->peak_bytes > 1e6);
         // Four particles a cell in both bodies: 25 cells of 0.1 m, 100 of 50 mm.

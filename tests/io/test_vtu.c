@@ -166,7 +166,7 @@ static void write_elements(const char *path, int shape, int64_t count, bool floa
     int32_t *cells = brunt_alloc(sizeof *cells * (size_t)points);
     int64_t *ids = brunt_alloc(sizeof *ids * (size_t)points);
     for (int64_t i = 0; i < points; i++) {
-        // Nodes out of order, so that a connectivity nobody reads would show.
+        // Nodes out of order, so that a connectivity that is not read would show.
         int64_t at = 7 * i % points;
         cells[i] = (int32_t)at;
         ids[i] = i * 3000000000;

@@ -5,7 +5,7 @@
 
 static brunt_world_def begin(int dimension, double cell, double friction) {
     brunt_world_def def = def_begin(dimension, cell);
-    def.groups = brunt_alloc(DEF_ROOM * sizeof *def.groups);
+    def.groups = brunt_alloc(DEF_CAPACITY * sizeof *def.groups);
     def.contact.method = BRUNT_CONTACT_AUGURY;
     def.contact.friction = friction;
     return def;
@@ -82,7 +82,7 @@ START_TEST(far_apart) {
             mesh(def_box(&def, "b", XYZ(-0.5, -1, 0), XYZ(1.5, 0, 0)), BRUNT_QUAD4, 0.25)->material = 1;
         brunt_world *world = world_take(&def);
         world_until(world, 0.5);
-        impulse[rigid] = fabs(rigid ? world_wall(world, 0).impulse[1] : world_pair(world, 0).impulse[1]);
+        impulse[rigid] = fabs(rigid ? world_boundary(world, 0).impulse[1] : world_pair(world, 0).impulse[1]);
         const brunt_energy e = world_energy(world);
         printf("  soft and light on %s: impulse %.5f of m v, error %.1e\n", rigid ? "a plane" : "stiff and heavy",
                impulse[rigid] / (10 * v), e.error_relative);
@@ -185,7 +185,7 @@ static pulled pull(bool points, double friction, double size) {
         if (start[3 * i + 1] < low + 1e-9 && start[3 * i] > 0.2 && start[3 * i] < 0.4)
             out.slip = fmax(out.slip, fabs(now[3 * i] - start[3 * i]));
     free(start), free(now);
-    const brunt_force f = world_pair(world, 0);
+    const brunt_reaction f = world_pair(world, 0);
     out.tangential = fabs(f.impulse[0] / f.impulse[1]);
     brunt_world_destroy(world);
     return out;

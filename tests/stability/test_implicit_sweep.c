@@ -81,7 +81,7 @@ static random_scene make_scene(uint64_t seed) {
                 (const double[4]){left, gap, left + 0.3, gap + between(&state, 0.05, 0.4)});
     random_body(&scene, &state, !points && !one_of(&state, 3), "lower", (const double[4]){-0.4, -0.3, 0.5, 0});
     def->gravity[1] = one_of(&state, 2) ? -10 : 0;
-    def->groups = brunt_def_alloc(DEF_ROOM * sizeof *def->groups);
+    def->groups = brunt_def_alloc(DEF_CAPACITY * sizeof *def->groups);
     const bool held = def->bodies[1].method == BRUNT_FEM && one_of(&state, 2);
     if (held) {
         brunt_group_def *g = &def->groups[def->group_count++];
@@ -109,7 +109,7 @@ static double unbalanced(brunt_world *world, const brunt_world_def *def, const b
     brunt_newton_systems systems;
     brunt_world_newton_systems(world, &systems);
     const brunt_body_sums now = world_sums(world, UPPER);
-    const brunt_force pair = world_pair(world, 0);
+    const brunt_reaction pair = world_pair(world, 0);
     double off = 0, all = 1e4 * systems.tolerance * now.mass;
     for (int a = 0; a < def->dimension; a++) {
         const double change = now.momentum[a] - before->momentum[a], weight = now.mass * def->gravity[a];

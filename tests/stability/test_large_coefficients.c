@@ -38,7 +38,7 @@ static double error_of(brunt_world_def *def, const char *what) {
     return fabs(e.error_relative);
 }
 
-START_TEST(what_they_take_is_booked) {
+START_TEST(what_they_take_is_accounted) {
     for (int k = 0; k < 2; k++) {
         const double cfl = k ? 0.9 : 0.5;
         brunt_world_def def = impact(cfl);
@@ -83,7 +83,7 @@ END_TEST
 int main(void) {
     Suite *suite = suite_create("large_coefficients");
     TCase *tests = tcase_create("large coefficients");
-    tcase_add_test(tests, what_they_take_is_booked);
+    tcase_add_test(tests, what_they_take_is_accounted);
     tcase_add_test(tests, bulk_viscosity_has_bounds);
     suite_add_tcase(suite, tests);
     return suite_main(suite);

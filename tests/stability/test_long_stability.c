@@ -72,11 +72,11 @@ START_TEST(million_steps_at_rest) {
     const int body = plane ? 0 : 1; // in order of name
     world_until(world, 1.1 * ramp);
     const brunt_body_sums start = world_sums(world, body);
-    const double from = (plane ? world_wall(world, 0) : world_pair(world, 0)).impulse[1],
+    const double from = (plane ? world_boundary(world, 0) : world_pair(world, 0)).impulse[1],
                  begun = brunt_world_time(world);
     world_steps(world, MILLION - (int)brunt_world_steps(world));
     const brunt_body_sums end = world_sums(world, body);
-    const brunt_force f = plane ? world_wall(world, 0) : world_pair(world, 0);
+    const brunt_reaction f = plane ? world_boundary(world, 0) : world_pair(world, 0);
     const double weight = end.mass * g, time = brunt_world_time(world) - begun;
     char what[64];
     snprintf(what, sizeof what, "mesh on %s, friction %g", plane ? "a plane" : "held elements", mu);

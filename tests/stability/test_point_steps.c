@@ -137,7 +137,7 @@ START_TEST(steps_that_shorten_without_end_are_reported) {
         printf("  %s\n", error.message);
         ck_assert_int_eq(brunt_warning_count(world), 1);
         ck_assert_str_eq(error.body, "block");
-        ck_assert(error.id >= 0 && error.place[0] > 0 && error.place[0] < 1 && error.time > 0);
+        ck_assert(error.id >= 0 && error.position[0] > 0 && error.position[0] < 1 && error.time > 0);
         ck_assert_ptr_nonnull(strstr(error.message, "least_step"));
         hard_case("C26", brunt_world_dt(world) / brunt_world_dt_max(world), 1.1e-6, 1.1e-6,
                   "hardening without bound, %s: last step, of the longest", i ? "elements" : "points");

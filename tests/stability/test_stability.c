@@ -45,7 +45,7 @@ START_TEST(lone_particles_fly_ballistically) {
         worst = fmax(worst, fabs(a.velocity[1] + 3 - g[1] * (brunt_world_time(world) - 0.5 * last)));
         worst = fmax(worst, fmax(fabs(a.velocity[0]), fabs(b.velocity[0])));
         furthest = fmax(furthest, fabs(a.centre[0] - at[0]) + fabs(b.centre[0] - beside[0]));
-        brunt_force pair = world_pair(world, 0);
+        brunt_reaction pair = world_pair(world, 0);
         for (int k = 0; k < 3; k++)
             ck_assert_double_le(fabs(pair.impulse[k]), ROUNDING > 1e-8 ? 1e-15 : 1e-30); // of almost empty nodes
         brunt_world_destroy(world);
@@ -149,7 +149,7 @@ START_TEST(leaving_the_grid_is_reported) {
             ck_assert_int_eq(brunt_world_step(world, INFINITY, &error), BRUNT_FAILED);
             ck_assert_str_eq(error.body, "runaway");
             ck_assert_int_eq(error.id, 0);
-            ck_assert_double_eq_tol(error.place[axis], there + side * 0.5 * 1e7, 1);
+            ck_assert_double_eq_tol(error.position[axis], there + side * 0.5 * 1e7, 1);
             ck_assert_ptr_nonnull(strstr(error.message, "cells away"));
             brunt_world_destroy(world);
         }
@@ -454,7 +454,7 @@ static extreme run_extreme(brunt_world_def *def, double end, int most) {
     x.steps = brunt_world_steps(world);
     x.sound = x.sound && isfinite(x.error) && x.low > 0;
     if (x.status)
-        x.sound = error.id >= 0 && error.body[0] && isfinite(error.place[0]) && error.time > 0 && error.message[0];
+        x.sound = error.id >= 0 && error.body[0] && isfinite(error.position[0]) && error.time > 0 && error.message[0];
     snprintf(x.message, sizeof x.message, "%.190s", error.message);
     brunt_world_destroy(world);
     return x;
@@ -520,7 +520,7 @@ START_TEST(expansion_to_the_twentyfold) {
         else
             give_eos(def_material(&def, "von-mises", 1000, 1e5, 0.3), 10, 1.5, 1e7);
         if (i > 6)
-            def.materials[0].eos_parameters[4] = 0; // a gas bears no tension; what does pulls lone particles shut
+            def.materials[0].eos_parameters[4] = 0; // a gas carries no tension; what does pulls lone particles shut
         brunt_body_def *b = def_box(&def, "block", XYZ(-0.5, -0.25, 0), XYZ(0.5, 0.25, 0));
         b->wave_vector[0] = 1e-3;
         b->wave_velocity[0] = rate * 1e3;
@@ -572,7 +572,7 @@ START_TEST(threads_and_restart_keep_every_bit) {
             world = other;
         }
         world_steps(world, STEPS / 2);
-        brunt_force f = world_pair(world, 0);
+        brunt_reaction f = world_pair(world, 0);
         if (i == 0) hash = brunt_world_hash(world), memcpy(impulse, f.impulse, sizeof impulse);
         ck_assert_double_gt(fabs(f.impulse[0]), 0);
         others += brunt_world_hash(world) != hash;

@@ -45,14 +45,14 @@ static sliding slide(bool slab, double friction, double along) {
     brunt_error error = {0};
     while (brunt_world_time(world) < end) {
         ck_assert_msg(brunt_world_step(world, end, &error) == BRUNT_OK, "%s", error.message);
-        brunt_force f = slab ? world_pair(world, 0) : world_wall(world, 0);
+        brunt_reaction f = slab ? world_pair(world, 0) : world_boundary(world, 0);
         s.back = fmax(s.back, sign * f.force[0]);
         s.pull = fmin(s.pull, sign * f.force[1]);
         double slip = mean_shift(world, 0, block, 0, 0.3 * h) - (slab ? mean_shift(world, 1, below, -0.3 * h, 0) : 0);
         s.slip = fmax(s.slip, fabs(slip));
         if (brunt_world_time(world) < 0.5 * end) s.early_slip = s.slip;
     }
-    brunt_force f = slab ? world_pair(world, 0) : world_wall(world, 0);
+    brunt_reaction f = slab ? world_pair(world, 0) : world_boundary(world, 0);
     s.tangential = sign * f.impulse[0], s.normal = sign * f.impulse[1], s.friction_work = f.friction_work;
     free(block), free(below);
     brunt_world_destroy(world);
@@ -162,7 +162,7 @@ START_TEST(bodies_that_touch_or_overlap_bounce_without_gain) {
                 gained = fmax(gained, (e.kinetic + e.internal) / e.initial - 1);
                 pull = fmin(pull, world_pair(world, 0).force[0]);
             }
-            brunt_force f = world_pair(world, 0);
+            brunt_reaction f = world_pair(world, 0);
             printf("  overlap %.2f h, %s: fastest %.3f m/s, energy gained %.1e, impulse %.3f, pull %.1e N\n",
                    overlap[i], way > 0 ? "closing" : "parting", fastest, gained, f.impulse[0], pull);
             ck_assert_double_ge(pull, 0);
@@ -199,11 +199,11 @@ START_TEST(a_wall_that_starts_suddenly_pushes_once) {
             bool on = false;
             for (int s = 0; s < 200; s++) {
                 world_steps(world, 1);
-                double f = world_wall(world, 0).force[0];
+                double f = world_boundary(world, 0).force[0];
                 low = fmin(low, f);
                 if ((f > 0) != on) changes++, on = f > 0;
-                most =
-                    fmax(most, fabs(world_sums(world, 0).momentum[0] - world_wall(world, 0).impulse[0]) / (2 * mass));
+                most = fmax(most,
+                            fabs(world_sums(world, 0).momentum[0] - world_boundary(world, 0).impulse[0]) / (2 * mass));
             }
             brunt_body_sums b = world_sums(world, 0);
             printf("  wall %+d kernel %d: velocity %.4f m/s, momentum less impulse %.1e, pull %.1e N, on or off %d "

@@ -28,11 +28,11 @@ typedef struct place {
 } place;
 
 static const place places[] = {
-    {"tiny, linear with remap", tiny_text, NULL, {NULL}, "remap"},
-    {"contact and wall of particles", small_scene_text, NULL, {NULL}, "contact walls"},
+    {"tiny, linear with remap", tiny_text, NULL, {NULL}, "musl_velocity"},
+    {"contact and wall of particles", small_scene_text, NULL, {NULL}, "contact boundaries"},
     {"elements, contact, groups", small_elements_text, NULL, {NULL}, "surfaces groups kick drift elements"},
     {"membrane with gas", NULL, "bench/scenes/gas_in_membrane.yaml", {NULL}, "groups elements"},
-    {"falling water", NULL, "bench/scenes/dam_break.yaml", {"grid.cell=20 mm", "output.every=none"}, "scatter gather"},
+    {"falling water", NULL, "bench/scenes/dam_break.yaml", {"grid.cell=20 mm", "output.every=none"}, "p2g g2p"},
     {"erosion", NULL, "bench/scenes/plate_weldox_blunt.yaml", {NULL}, "erosion surfaces"},
     {"many small bodies",
      tiny_text,
@@ -42,7 +42,7 @@ static const place places[] = {
       "0.3]}}}",
       "boundaries=[{name: left, plane: {point: [-1, 0], normal: [1, 0]}, condition: symmetry},"
       " {name: low, plane: {point: [0, -1], normal: [0, 1]}, condition: stick}]"},
-     "mirror conditions kick drift"},
+     "symmetry conditions kick drift"},
 };
 enum { PLACES = sizeof places / sizeof *places, STEPS = 20, PAUSE = 200 };
 
@@ -142,7 +142,7 @@ static void on_end(void *context, int32_t pass, double begin, double end) {
     w->calls[pass]++, w->seconds[pass] += end - begin, w->pass = -1, w->last = end;
 }
 
-START_TEST(observers_see_what_is_booked) {
+START_TEST(observers_see_what_is_accounted) {
     const place *p = &places[_i];
     brunt_scene scene;
     brunt_world *world = make(p, &scene, 2);
@@ -172,7 +172,7 @@ START_TEST(observers_see_what_is_booked) {
 END_TEST
 
 // A step that fails leaves in the midst of a pass, which is ended all the same.
-START_TEST(failed_steps_are_booked) {
+START_TEST(failed_steps_are_accounted) {
     static const place failing = {"failing", tiny_text, NULL, {"time.step=0.5 s"}, ""};
     brunt_scene scene;
     brunt_world *world = make(&failing, &scene, 1);
@@ -223,8 +223,8 @@ int main(void) {
     TCase *sums = tcase_create("sums");
     tcase_set_timeout(sums, 0);
     tcase_add_loop_test(sums, passes_are_all_of_the_step, 0, 2 * PLACES);
-    tcase_add_loop_test(sums, observers_see_what_is_booked, 0, PLACES);
-    tcase_add_test(sums, failed_steps_are_booked);
+    tcase_add_loop_test(sums, observers_see_what_is_accounted, 0, PLACES);
+    tcase_add_test(sums, failed_steps_are_accounted);
     TCase *cost = tcase_create("cost");
     tcase_set_timeout(cost, 0);
     tcase_add_test(cost, timers_cost_next_to_nothing);

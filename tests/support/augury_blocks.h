@@ -13,7 +13,7 @@
 
 typedef enum blocks_kind { BLOCKS_TETS, BLOCKS_HEXES, BLOCKS_PLANE } blocks_kind;
 
-enum { BLOCKS_MOST = 520 };
+enum { BLOCKS_LIMIT = 520 };
 
 typedef struct blocks {
     blocks_kind kind;

@@ -53,11 +53,11 @@ int main(int count, char **words) {
     } else if (!strcmp(dress, "dim2")) { // 1600 particles
         def.dimension = 2, def.cell = 0.04;
         for (int b = 0; b < 2; b++) bodies[b].shape.min[2] = bodies[b].shape.max[2] = bodies[b].wave_velocity[2] = 0;
-    } else if (!strcmp(dress, "contact")) { // asked for, but there is nobody to touch
+    } else if (!strcmp(dress, "contact")) { // asked for, but there is nothing to touch
         def.contact.method = BRUNT_CONTACT_MULTI_VELOCITY;
         def.contact.friction = 0.4;
         def.contact.allow_overlap = true;
-    } else if (!strcmp(dress, "options")) { // numbers of effects that are off, and a material nobody is made of
+    } else if (!strcmp(dress, "options")) { // numbers of effects that are off, and a material that nothing is made of
         snprintf(materials[0].eos, sizeof materials[0].eos, "%s", "");
         materials[0].eos_parameters[0] = 3000;
         materials[0].viscosity_parameters[0] = 0.06;

@@ -29,7 +29,7 @@
         suite_add_tcase(suite, tests);                                                                                 \
     } while (0)
 
-enum { DEF_ROOM = 12 };
+enum { DEF_CAPACITY = 12 };
 
 // A definition with room for a dozen bodies, planes and materials, one thread and no limit on the time.
 static inline brunt_world_def def_begin(int dimension, double cell) {
@@ -39,9 +39,9 @@ static inline brunt_world_def def_begin(int dimension, double cell) {
     def.end = 1e6;
     def.threads = 1;
     def.energy_limit = INFINITY;
-    def.materials = brunt_alloc(DEF_ROOM * sizeof *def.materials);
-    def.bodies = brunt_alloc(DEF_ROOM * sizeof *def.bodies);
-    def.planes = brunt_alloc(DEF_ROOM * sizeof *def.planes);
+    def.materials = brunt_alloc(DEF_CAPACITY * sizeof *def.materials);
+    def.bodies = brunt_alloc(DEF_CAPACITY * sizeof *def.bodies);
+    def.planes = brunt_alloc(DEF_CAPACITY * sizeof *def.planes);
     return def;
 }
 
@@ -153,14 +153,14 @@ static inline brunt_body_sums world_sums(brunt_world *world, int body) {
     brunt_body_totals(world, body, &s);
     return s;
 }
-static inline brunt_force world_pair(const brunt_world *world, int pair) {
-    brunt_force f;
+static inline brunt_reaction world_pair(const brunt_world *world, int pair) {
+    brunt_reaction f;
     brunt_pair_force(world, pair, &f);
     return f;
 }
-static inline brunt_force world_wall(const brunt_world *world, int wall) {
-    brunt_force f;
-    brunt_wall_force(world, wall, &f);
+static inline brunt_reaction world_boundary(const brunt_world *world, int wall) {
+    brunt_reaction f;
+    brunt_boundary_reaction(world, wall, &f);
     return f;
 }
 

@@ -34,7 +34,7 @@ static void gmsh_put(FILE *out, bool binary, int bytes, int64_t value) {
     else
         fwrite(bytes == 4 ? (void *)&narrow : (void *)&value, (size_t)bytes, 1, out);
 }
-static void gmsh_place(FILE *out, bool binary, const double *x) {
+static void gmsh_position(FILE *out, bool binary, const double *x) {
     if (binary)
         fwrite(x, sizeof *x, 3, out);
     else
@@ -50,7 +50,7 @@ static void gmsh_write_2(const gmsh_model *m, bool binary, FILE *out) {
     fprintf(out, "$Nodes\n%d\n", m->node_count);
     for (int n = 0; n < m->node_count; n++) {
         gmsh_put(out, binary, 4, gmsh_node(m, n));
-        gmsh_place(out, binary, m->x[n]);
+        gmsh_position(out, binary, m->x[n]);
         gmsh_line(out, binary);
     }
     for (int p = 0; p < m->part_count; p++) total += m->part[p].count;
@@ -88,8 +88,8 @@ static void gmsh_write_entities(const gmsh_model *m, bool binary, FILE *out) {
         for (int p = 0; p < m->part_count; p++) {
             if (m->part[p].dimension != d) continue;
             gmsh_put(out, binary, 4, p + 1);
-            gmsh_place(out, binary, box);
-            if (d) gmsh_place(out, binary, box + 3);
+            gmsh_position(out, binary, box);
+            if (d) gmsh_position(out, binary, box + 3);
             gmsh_put(out, binary, 8, m->part[p].physical != 0);
             if (m->part[p].physical) gmsh_put(out, binary, 4, m->part[p].physical);
             if (d) gmsh_put(out, binary, 8, 1), gmsh_put(out, binary, 4, -1);
@@ -114,7 +114,7 @@ static void gmsh_write_4(const gmsh_model *m, bool binary, FILE *out) {
         gmsh_line(out, binary);
         for (int n = begin; n < end; n++) gmsh_put(out, binary, 8, gmsh_node(m, n)), gmsh_line(out, binary);
         for (int n = begin; n < end; n++) {
-            gmsh_place(out, binary, m->x[n]);
+            gmsh_position(out, binary, m->x[n]);
             if (b && binary) fwrite(m->x[n], sizeof(double), 2, out);
             if (b && !binary) fputs("0.5 -1e-3", out);
             gmsh_line(out, binary);

@@ -141,7 +141,7 @@ static inline spinning spin_ring(double cell, int turns) {
     brunt_world_def def = def_begin(2, cell);
     def_material(&def, "neo-hookean", 1000, 1e5, 0.3);
     brunt_body_def *b = def_body(&def, "ring");
-    b->shape.kind = BRUNT_RING;
+    b->shape.kind = BRUNT_TUBE;
     b->shape.radius = 1, b->shape.inner_radius = 0.6;
     b->spin[2] = 1;
     brunt_world *world = world_take(&def);

@@ -29,7 +29,7 @@ static inline void made_case(brunt_study *study, int32_t line, int32_t value, in
     c->status = BRUNT_STUDY_DONE;
     c->runs = repeats;
     c->wall = brunt_alloc((size_t)repeats * sizeof *c->wall);
-    c->wall_median = c->wall_least = c->wall_most = c->peak_bytes = c->steps = NAN;
+    c->wall_median = c->wall_least = c->wall_greatest = c->peak_bytes = c->steps = NAN;
     for (int32_t m = 0; m < BRUNT_STUDY_MEASURES; m++) {
         c->result[m] = c->expect[m] = c->error[m] = NAN;
         strcpy(c->unit[m], "m");

@@ -50,7 +50,7 @@ START_TEST(a_wall_pushes_where_it_is_touched) {
     const double mass = world_sums(world, 0).mass;
     world_until(world, 0.05);
     const brunt_momentum m = world_momentum(world);
-    const double push = world_wall(world, 0).impulse[1], near = 1e3 * ROUNDING * mass * 10;
+    const double push = world_boundary(world, 0).impulse[1], near = 1e3 * ROUNDING * mass * 10;
     ck_assert_double_gt(push, 0.1 * mass);
     ck_assert_double_eq_tol(m.angular_impulse[2], 5.5 * push, near);
     ck_assert_double_eq_tol(m.angular_impulse[0], dimension == 3 ? -3.5 * push : 0, near);
@@ -96,8 +96,8 @@ START_TEST(an_edge_has_what_is_beside_it) {
     def.step = 4e-4;
     brunt_world *world = world_take(&def);
     world_steps(world, 1);
-    ck_assert_double_gt(world_wall(world, 0).impulse[1], 0);
-    ck_assert_double_eq_tol(world_wall(world, 0).area, cos(turn) * size / 2 * (dimension == 3 ? 0.4 : 1),
+    ck_assert_double_gt(world_boundary(world, 0).impulse[1], 0);
+    ck_assert_double_eq_tol(world_boundary(world, 0).area, cos(turn) * size / 2 * (dimension == 3 ? 0.4 : 1),
                             100 * ROUNDING);
     brunt_world_destroy(world);
 }

@@ -13,7 +13,7 @@ enum { OFF_END = 0x41 };
 
 // As they were made: what a test spoils is put back before it is freed.
 static brunt_world_def made;
-static brunt_body_def made_bodies[DEF_ROOM];
+static brunt_body_def made_bodies[DEF_CAPACITY];
 static brunt_group_def made_groups[2];
 
 static void release(void) {

@@ -75,9 +75,9 @@ START_TEST(refused_with_words) {
     char wanted[128];
     snprintf(wanted, sizeof wanted, "out of memory: no room for %zu places of nodes of %zu bytes each", many,
              sizeof(item));
-    ck_assert_int_eq(BRUNT_ROOM(list, 3, 0, "places of nodes", &error), BRUNT_OK);
+    ck_assert_int_eq(BRUNT_CAPACITY(list, 3, 0, "places of nodes", &error), BRUNT_OK);
     ck_assert_int_eq(error.code, BRUNT_OK);
-    ck_assert_int_eq(BRUNT_ROOM(list, many, 3, "places of nodes", &error), BRUNT_FAILED);
+    ck_assert_int_eq(BRUNT_CAPACITY(list, many, 3, "places of nodes", &error), BRUNT_FAILED);
     ck_assert_int_eq(error.code, BRUNT_FAILED);
     ck_assert_str_eq(error.message, wanted);
     error = (brunt_error){.id = -1};

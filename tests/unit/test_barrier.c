@@ -332,13 +332,13 @@ static void draw_boxes(uint64_t *state, int dim, int count, double large, brunt_
 }
 
 START_TEST(search_finds_what_all_pairs_show) {
-    enum { MOST = 400 };
-    static brunt_near_box item[MOST], query[MOST];
+    enum { ITEM_LIMIT = 400 };
+    static brunt_near_box item[ITEM_LIMIT], query[ITEM_LIMIT];
     brunt_near_cells cells = {0};
     brunt_near_list list = {0};
     uint64_t state = 9;
     for (int round = 0; round < 60; round++) {
-        const int dim = 2 + round % 2, items = draw_whole(&state, MOST), count = draw_whole(&state, MOST);
+        const int dim = 2 + round % 2, items = draw_whole(&state, ITEM_LIMIT), count = draw_whole(&state, ITEM_LIMIT);
         draw_boxes(&state, dim, items, round % 4 == 0 ? 1e3 : 0.5, item);
         draw_boxes(&state, dim, count, 2, query);
         ck_assert_int_eq(brunt_near_cells_make(&cells, item, items, dim, NULL), 0);

@@ -274,7 +274,7 @@ START_TEST(longest_step) {
     ck_assert_double_eq_tol(s.step, step, 1e-12 * step);
     ck_assert_int_eq(s.body, 0);
     ck_assert_int_eq(s.other, plane ? -1 : 1);
-    ck_assert_double_eq_tol(s.place[1], gap, 1e-15);
+    ck_assert_double_eq_tol(s.position[1], gap, 1e-15);
     for (int i = 0; i < c->nodes; i++) inverse[i] = 0;
     ck_assert(case_report(c, u, NULL).stiffest.step == INFINITY);
     c->inverse_mass = NULL;

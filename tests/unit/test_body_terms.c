@@ -11,7 +11,7 @@
 #define density fem_density
 #define E fem_E
 #define nu fem_nu
-#include "tests/support/sheet_bodies.h"
+#include "tests/support/membrane_bodies.h"
 #include "world/world.h"
 
 static double between(uint64_t *seed) { // -1 .. 1
@@ -261,8 +261,9 @@ START_TEST(membranes) {
     static const double stretch[3][3] = {{0, 0, 0}, {0.15, 0.1, 0}, {0.3, -0.35, 0}};
     const int state = _i / 6;
     brunt_mesh mesh =
-        sheet_mesh(_i % 2 ? BRUNT_MEMBRANE_TRI3 : BRUNT_MEMBRANE_QUAD4, 5, 4, 0.3, 0.15, state ? 0.03 : 0.2, true);
-    brunt_fem_body body = sheet_of(&mesh, (sheet_options){.model = models[_i / 2 % 3], .tension_only = state > 0});
+        membrane_mesh(_i % 2 ? BRUNT_MEMBRANE_TRI3 : BRUNT_MEMBRANE_QUAD4, 5, 4, 0.3, 0.15, state ? 0.03 : 0.2, true);
+    brunt_fem_body body =
+        membrane_of(&mesh, (membrane_options){.model = models[_i / 2 % 3], .tension_only = state > 0});
     brunt_fem_potential *p;
     subject s = subject_of(&body, &p);
     s.size = state ? 0.003 : 0.02;

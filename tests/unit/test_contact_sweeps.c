@@ -54,7 +54,7 @@ __attribute__((visibility("default"))) const char *__asan_default_options(void);
 const char *__asan_default_options(void) { return "allocator_may_return_null=1"; }
 
 // Where memory ends, contact says what of it there was no room for; what there was is as it was.
-START_TEST(no_room_is_told) {
+START_TEST(no_memory_is_told) {
     brunt_constraint_set p = {0};
     brunt_error error = {.id = -1};
     ck_assert_int_eq(brunt_constraints_add(&p, &error), 0);
@@ -182,7 +182,7 @@ END_TEST
 int main(void) {
     Suite *suite = suite_create("contact sweeps");
     ADD(more_sweeps_leave_less);
-    ADD(no_room_is_told);
+    ADD(no_memory_is_told);
     ADD(a_tighter_tolerance_leaves_less);
     ADD(whichever_comes_first_ends_them);
     ADD(a_world_takes_both);

@@ -11,7 +11,7 @@ static brunt_world_def bag(bool gas) {
     def_material(&def, "neo-hookean", 1000, gas ? 1e9 : 1e6, 0.4);
     brunt_body_def *b = def_ball(&def, "bag", gas ? XYZ(0, 0, 0) : XYZ(0.1, 0.2, 0.3), 0.1);
     b->method = BRUNT_MEMBRANE, b->element = BRUNT_MEMBRANE_QUAD4, b->size = 0.02, b->thickness = gas ? 5e-3 : 1e-3;
-    def.groups = brunt_alloc(DEF_ROOM * sizeof *def.groups);
+    def.groups = brunt_alloc(DEF_CAPACITY * sizeof *def.groups);
     if (!gas) return def;
     brunt_group_def *g = &def.groups[def.group_count++];
     *g = brunt_group_def_default();
@@ -76,7 +76,7 @@ START_TEST(restart) {
 }
 END_TEST
 
-// Velocities of a body times a factor, by nobody's work.
+// Velocities of a body times a factor, by no work.
 static void hasten(brunt_world *world, const char *block_name, real factor) {
     brunt_error error = {0};
     for (int32_t b = 0; b < brunt_state_count(world); b++) {

@@ -121,8 +121,8 @@ static audit audit_of(brunt_world *world) {
 static const double EXACT = sizeof(real) == 4 ? 3e-6 : 1e-13; // of what there is
 
 // The ledger before and after, and what the account says against what is missing.
-static void check_booking(brunt_world *world, const brunt_energy *e, const brunt_momentum *m, const brunt_eroded *c,
-                          const audit *a, const double scale[3]) {
+static void check_accounts(brunt_world *world, const brunt_energy *e, const brunt_momentum *m, const brunt_eroded *c,
+                           const audit *a, const double scale[3]) {
     brunt_energy f = world_energy(world);
     brunt_momentum n = world_momentum(world);
     brunt_eroded d = eroded_of(world);
@@ -143,7 +143,7 @@ static void check_booking(brunt_world *world, const brunt_energy *e, const brunt
 }
 
 // 1000 erosions over all kinds of elements, with both kinds of hourglass control, of bodies that move and deform.
-START_TEST(random_erosions_are_booked) {
+START_TEST(random_erosions_are_accounted) {
     const int k = _i % KINDS;
     brunt_world_def def = thrown(k, _i < KINDS ? BRUNT_HOURGLASS_STIFFNESS : BRUNT_HOURGLASS_VISCOUS);
     brunt_world *world = world_take(&def);
@@ -162,7 +162,7 @@ START_TEST(random_erosions_are_booked) {
         audit a = audit_of(world);
         mark_random(fem, bulk ? fem->element_count / 2 : 1 + (int32_t)random_below(3));
         erode(world);
-        check_booking(world, &e, &m, &c, &a, scale);
+        check_accounts(world, &e, &m, &c, &a, scale);
         worst = fmax(worst, fabs(world_energy(world).total - e.total) / scale[0]);
         world_steps(world, 2);
         ck_assert_double_lt(fabs(world_energy(world).error_relative), 0.02);
@@ -528,7 +528,7 @@ static void flatten(brunt_fem_body *fem, double dt) {
 
 // What an element takes along that turns inside out is exact, too: its forces act over one more step, and the work they
 // did there is not stored any more. One swinging element, of which a node is shot through the others.
-START_TEST(inverted_elements_are_booked) {
+START_TEST(inverted_elements_are_accounted) {
     const int k = _i % MAY_INVERT;
     brunt_world_def def = thrown(k, _i < MAY_INVERT ? BRUNT_HOURGLASS_STIFFNESS : BRUNT_HOURGLASS_VISCOUS);
     def.bodies[0].size = 1;
@@ -632,7 +632,7 @@ START_TEST(faces_of_gone_elements_bear_no_load) {
     brunt_world *world = world_take(&def);
     brunt_fem_body *fem = &world->bodies.fem[0];
     world_steps(world, 2);
-    const double whole = world_wall(world, 0).force[0];
+    const double whole = world_boundary(world, 0).force[0];
     ck_assert_double_eq_tol(whole, -1000 * 0.04, 0.01);
     // One element of the four at that end.
     for (int32_t s = 0; s < fem->slots; s++) {
@@ -644,10 +644,10 @@ START_TEST(faces_of_gone_elements_bear_no_load) {
     erode(world);
     brunt_world *other = world; // and after a restart
     world_steps(world, 1);
-    ck_assert_double_eq_tol(world_wall(world, 0).force[0], -1000 * 0.03, 0.01);
+    ck_assert_double_eq_tol(world_boundary(world, 0).force[0], -1000 * 0.03, 0.01);
     world_copy_state(world, other);
     world_steps(other, 1);
-    ck_assert_double_eq_tol(world_wall(other, 0).force[0], -1000 * 0.03, 0.01);
+    ck_assert_double_eq_tol(world_boundary(other, 0).force[0], -1000 * 0.03, 0.01);
     brunt_energy e = world_energy(world);
     ck_assert_double_lt(fabs(e.error), (sizeof(real) == 4 ? 1e-2 : 1e-3) * fabs(e.external_work));
     ck_assert_double_lt(world_momentum(world).linear_drift, ROUNDING);
@@ -764,7 +764,7 @@ int main(void) {
     Suite *suite = suite_create("erosion");
     TCase *all = tcase_create("all");
     suite_add_tcase(suite, all);
-    tcase_add_loop_test(all, random_erosions_are_booked, 0, 2 * KINDS);
+    tcase_add_loop_test(all, random_erosions_are_accounted, 0, 2 * KINDS);
     tcase_add_loop_test(all, order_is_kept, 0, KINDS);
     tcase_add_loop_test(all, readers_see_what_is_left, 0, KINDS);
     tcase_add_loop_test(all, bar_tears_in_two, 0, SOLIDS);
@@ -774,7 +774,7 @@ int main(void) {
     tcase_add_loop_test(all, threads_and_restarts_change_no_bit, 0, SOLIDS);
     tcase_add_test(all, foreign_elements_are_refused);
     tcase_add_loop_test(all, inverted_elements_are_an_error_or_go, 0, 2 * SOLIDS);
-    tcase_add_loop_test(all, inverted_elements_are_booked, 0, 2 * MAY_INVERT);
+    tcase_add_loop_test(all, inverted_elements_are_accounted, 0, 2 * MAY_INVERT);
     tcase_add_loop_test(all, short_elements_go_or_the_run_stops, 0, SOLIDS);
     tcase_add_test(all, faces_of_gone_elements_bear_no_load);
     tcase_add_test(all, gas_does_not_flow_out);

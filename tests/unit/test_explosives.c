@@ -18,7 +18,7 @@ static const double rho0 = 1630, A = 371.2e9, B = 3.231e9, R1 = 4.15, R2 = 0.95,
 
 // ------------------------------------------------------------------------------------------ points
 
-// One vector of points, all alike, of an equation of state with a fluid that bears no shear.
+// One vector of points, all alike, of an equation of state with a fluid that carries no shear.
 enum { SCALARS = 8 };
 typedef struct point {
     const brunt_model *eos;
@@ -85,7 +85,7 @@ static real *point_state(point *p, const char *name) {
     ck_abort_msg("there is no state %s", name);
     return NULL;
 }
-static void point_light(point *p, double time) {
+static void point_ignition(point *p, double time) {
     for (int l = 0; l < BRUNT_LANES; l++) point_state(p, "ignition_time")[l] = (real)time;
 }
 
@@ -213,7 +213,7 @@ START_TEST(polynomial_solid) {
 }
 END_TEST
 
-// With `tension` the pressure stays at -tension, and it closes where it tore. A point that has failed bears none at
+// With `tension` the pressure stays at -tension, and it closes where it tore. A point that has failed carries none at
 // all.
 START_TEST(polynomial_tension) {
     for (int failed = 0; failed < 2; failed++) {
@@ -271,7 +271,7 @@ START_TEST(jwl_isentrope) {
             brunt_material_def def = tnt();
             point p;
             point_begin(&p, &def, 2 + k % 2, 1e-6);
-            point_light(&p, -1);
+            point_ignition(&p, -1);
             point_step(&p, 1); // burns, and stands still
             ck_assert_double_eq_tol(point_pressure(&p), products_pressure(1, E0), TOLERANCE(1e-12, 1e-4) * E0);
             point_to(&p, V, often ? 700 : 1);
@@ -294,7 +294,7 @@ START_TEST(jwl_burns) {
     const double lit = 1e-6, over = 1.5 * 1e-3 / D, full = products_pressure(1, E0);
     point_begin(&p, &def, 3, 1e-8);
     ck_assert_double_eq(point_pressure(&p), 0);
-    point_light(&p, lit);
+    point_ignition(&p, lit);
     for (int k = 0; k < 140; k++) {
         point_step(&p, 1);
         const double burnt = fmin(1, fmax(0, (p.time - lit) / over));
@@ -309,7 +309,7 @@ START_TEST(jwl_burns) {
 END_TEST
 
 // While it burns under compression the energy is the work -p dV of the whole pressure, to the last digit; so it is when
-// it is stiff before it burns; expanded and unburnt it bears nothing.
+// it is stiff before it burns; expanded and unburnt it carries nothing.
 START_TEST(jwl_energy_of_burning) {
     for (int stiff = 0; stiff < 2; stiff++) {
         brunt_material_def def = tnt();
@@ -322,7 +322,7 @@ START_TEST(jwl_energy_of_burning) {
         const double mu = 1 / point_J(&p) - 1;
         ck_assert_double_eq_tol(point_pressure(&p), stiff ? 10e9 * mu : 0, TOLERANCE(1e-9, 1e-2) * 10e9 * mu);
         if (!stiff) ck_assert_double_eq_tol(point_energy(&p), E0, TOLERANCE(1e-12, 1e-5) * E0);
-        point_light(&p, p.time);
+        point_ignition(&p, p.time);
         double work = point_energy(&p), old = point_pressure(&p), J = point_J(&p);
         while ((double)point_state(&p, "burn_fraction")[0] < 1) {
             point_step(&p, 1 / 1.004);
@@ -356,7 +356,7 @@ START_TEST(tnt_chapman_jouguet) {
     brunt_material_def def = tnt();
     point p;
     point_begin(&p, &def, 3, 1e-8);
-    point_light(&p, -1);
+    point_ignition(&p, -1);
     point_step(&p, 1);
     const double e = E0 + 0.5 * cj.p * (1 - cj.V);
     for (int l = 0; l < BRUNT_LANES; l++) {
@@ -418,7 +418,7 @@ START_TEST(extremes) {
             const bool gas = kind == 5 || kind == 6, explosive = kind == 3 || kind == 4;
             point p;
             point_begin(&p, &def, 3, 1e-8);
-            if (explosive) point_light(&p, kind == 3 ? -1 : 1e-7);
+            if (explosive) point_ignition(&p, kind == 3 ? -1 : 1e-7);
             brunt_update_result result = {.bad = -1};
             for (int n = 0; n < 400 && result.bad < 0; n++) result = point_try(&p, pow(J, 1.0 / (3 * 400)));
             if (result.bad >= 0) {
@@ -655,7 +655,7 @@ END_TEST
 // ------------------------------------------------------------------------------------------ lighting
 
 // The least over the detonators of the time and the way at D, at particles and at centres of elements.
-START_TEST(lighting_times) {
+START_TEST(ignition_times) {
     for (int mesh = 0; mesh < 2; mesh++) {
         brunt_world_def def = def_begin(3, 0.01);
         def.materials[def.material_count++] = tnt();
@@ -708,7 +708,7 @@ START_TEST(unlit) {
         const char *body;
         double time;
         const char *because;
-    } wrong[] = {{"nobody", 0, "no body 'nobody'"}, {"inert", 0, "lights nothing"}, {"charge", NAN, "finite"}};
+    } wrong[] = {{"absent", 0, "no body 'absent'"}, {"inert", 0, "lights nothing"}, {"charge", NAN, "finite"}};
     def_material(&def, "neo-hookean", 1000, 1e6, 0.3);
     def_box(&def, "inert", XYZ(1, 0, 0), XYZ(1.04, 0.04, 0))->material = 1;
     for (int k = 0; k < 3; k++) {
@@ -765,7 +765,7 @@ int main(void) {
     TCase *worlds = tcase_create("detonation");
     tcase_add_loop_test(worlds, detonation, 0, (int)(sizeof slabs / sizeof slabs[0]));
     tcase_add_loop_test(worlds, shock_tube, 0, 2);
-    tcase_add_test(worlds, lighting_times);
+    tcase_add_test(worlds, ignition_times);
     tcase_add_test(worlds, unlit);
     tcase_add_test(worlds, same_bits);
     suite_add_tcase(suite, worlds);

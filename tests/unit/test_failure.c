@@ -410,7 +410,7 @@ START_TEST(strength_falls_with_damage) {
 }
 END_TEST
 
-// A failed point bears neither shear nor tension, and pressure again when it is pressed back.
+// A failed point carries neither shear nor tension, and pressure again when it is pressed back.
 START_TEST(failed_points_bear_pressure) {
     for (int dim = 2; dim <= 3; dim++) {
         brunt_material_def def = ductile(0.02, 0, 0), fluid = ductile(0.02, 0, 0);

@@ -505,7 +505,7 @@ START_TEST(hydrostatic_column) {
            bottom / (double)low / (rho * g) - 1, e.error_relative);
     ck_assert_double_eq_tol(bottom / (double)low, rho * g, 0.01 * rho * g);
     ck_assert_double_le(worst, 0.03 * rho * g);
-    ck_assert_double_eq_tol(world_wall(world, 2).force[1], 4 * h * rho * g * height, 0.02 * 4 * h * rho * g);
+    ck_assert_double_eq_tol(world_boundary(world, 2).force[1], 4 * h * rho * g * height, 0.02 * 4 * h * rho * g);
     ck_assert_double_le(fabs(e.error_relative), 2e-3);
     brunt_world_destroy(world);
 }

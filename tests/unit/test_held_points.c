@@ -9,7 +9,7 @@ static const double HELD = ROUNDING; // [m] what places of held points are round
 // The caller frees the definition after the world, which shares the region's shape.
 static brunt_world *block_on_held_points(bool mesh, brunt_contact_method method, brunt_world_def *kept) {
     brunt_world_def def = def_begin(2, H);
-    def.regions = brunt_alloc(DEF_ROOM * sizeof *def.regions);
+    def.regions = brunt_alloc(DEF_CAPACITY * sizeof *def.regions);
     def.contact.method = method;
     def_material(&def, "neo-hookean", 1000, 1e6, 0.3);
     brunt_body_def *block = def_box(&def, "block", XYZ(1.3 * H, 0, 0), XYZ(4.3 * H, 2 * H, 0));
@@ -58,7 +58,7 @@ END_TEST
 // each other, so that the plane gives nothing.
 START_TEST(a_plane_gives_way_to_what_moves_points) {
     brunt_world_def def = def_begin(2, H);
-    def.regions = brunt_alloc(DEF_ROOM * sizeof *def.regions);
+    def.regions = brunt_alloc(DEF_CAPACITY * sizeof *def.regions);
     def_material(&def, "neo-hookean", 1000, 1e6, 0.3);
     def_box(&def, "slab", XYZ(0, 0, 0), XYZ(6 * H, 2 * H, 0));
     brunt_region_def *r = &def.regions[def.region_count++];
@@ -74,8 +74,8 @@ START_TEST(a_plane_gives_way_to_what_moves_points) {
     double *to = world_field(world, 0, "position");
     for (int64_t i = 0; i < brunt_body_particles(world, 0); i++)
         ck_assert_double_eq_tol(to[3 * i + 1] - from[3 * i + 1], -0.05, HELD);
-    brunt_force plane;
-    brunt_wall_force(world, 0, &plane);
+    brunt_reaction plane;
+    brunt_boundary_reaction(world, 0, &plane);
     for (int a = 0; a < 3; a++) ck_assert_double_eq(plane.impulse[a], 0);
     free(from), free(to);
     brunt_world_destroy(world);

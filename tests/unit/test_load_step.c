@@ -5,7 +5,7 @@
 
 static const double GAMMA = 1.4;
 
-typedef enum shell { SHEET_QUAD, SHEET_TRI, HEX, TET, FLAT_QUAD, FLAT_TRI, RING_QUAD, RING_TRI } shell;
+typedef enum shell { MEMBRANE_QUAD, MEMBRANE_TRI, HEX, TET, FLAT_QUAD, FLAT_TRI, RING_QUAD, RING_TRI } shell;
 
 static void load(brunt_world_def *def, brunt_group_action action, double pressure, double outside) {
     def->groups = brunt_alloc(2 * sizeof *def->groups);
@@ -28,9 +28,9 @@ static brunt_world_def box(shell kind, double E, double size) {
     def_material(&def, "neo-hookean", 1000, E, 0.3);
     const double left = kind >= RING_QUAD ? 0.1 : 0;
     brunt_body_def *body = def_box(&def, "box", XYZ(left, 0, 0), XYZ(left + 0.4, 0.3, 0.2));
-    body->method = kind <= SHEET_TRI ? BRUNT_MEMBRANE : BRUNT_FEM;
+    body->method = kind <= MEMBRANE_TRI ? BRUNT_MEMBRANE : BRUNT_FEM;
     body->element = element[kind], body->size = size;
-    if (kind <= SHEET_TRI) body->thickness = 1e-3;
+    if (kind <= MEMBRANE_TRI) body->thickness = 1e-3;
     def.cfl = 0.9;
     return def;
 }
@@ -38,7 +38,7 @@ static brunt_world_def box(shell kind, double E, double size) {
 // Eight nodes at the corners of a cube of side L: a = L^2 / 4 (1, 1, 1), m = 6 rho t L^2 / 8, so that
 // omega^2 = gamma p / L^3 * 2 L^2 / (rho t), beside a sheet that has next to no stiffness.
 START_TEST(step_of_a_cube_of_gas) {
-    brunt_world_def def = box(SHEET_QUAD, 1e-3, 0.2);
+    brunt_world_def def = box(MEMBRANE_QUAD, 1e-3, 0.2);
     for (int a = 0; a < 3; a++) def.bodies[0].shape.max[a] = 0.2;
     load(&def, BRUNT_GROUP_GAS, 1e6, 1e6);
     def.cfl = 1;
@@ -142,7 +142,7 @@ END_TEST
 START_TEST(frequency_of_a_cube) {
     const double p = 1e5, unit = p / 0.2;
     for (int k = 0; k < 6; k++) {
-        brunt_world_def def = box(k % 2 ? SHEET_TRI : SHEET_QUAD, 1e-3, 0.2);
+        brunt_world_def def = box(k % 2 ? MEMBRANE_TRI : MEMBRANE_QUAD, 1e-3, 0.2);
         for (int a = 0; a < 3; a++) def.bodies[0].shape.max[a] = 0.2;
         load(&def, k < 2 ? BRUNT_GROUP_PRESSURE : BRUNT_GROUP_GAS, p, 0);
         if (k >= 4) {
@@ -184,7 +184,7 @@ END_TEST
 
 // A step that is too long for the gas, though not for the sheet, is refused as such.
 START_TEST(the_step_is_named) {
-    brunt_world_def def = box(SHEET_QUAD, 1e5, 0.1);
+    brunt_world_def def = box(MEMBRANE_QUAD, 1e5, 0.1);
     def.cfl = 1;
     brunt_world *alone = world_from(&def);
     def.step = 0.9 * brunt_world_dt(alone);

@@ -5,7 +5,7 @@
 #include "body/bodies.h"
 #include "io/output/history.h"
 #include "io/output/measures.h"
-#include "io/output/places.h"
+#include "io/output/positions.h"
 #include "tests/support/small_scene.h"
 #include "world/world.h"
 

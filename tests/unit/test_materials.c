@@ -554,7 +554,7 @@ START_TEST(plane_strain_equals_three_dimensions) {
         brunt_update_result ra = step_all(&a, H), rb = step_all(&b, H);
         mat difference = combine(1, get_stress(&a, 0), -1, get_stress(&b, 0));
         double scale = sqrt(inner(get_stress(&b, 0), get_stress(&b, 0)));
-        // What is torn bears rounding of the strain, times moduli of 1e11 Pa.
+        // What is torn carries rounding of the strain, times moduli of 1e11 Pa.
         const double torn = f.model->damage ? TOLERANCE(1e-15, 1e-6) * 1e11 : 0;
         ck_assert_msg(sqrt(inner(difference, difference)) <= TOLERANCE(1e-10, 2e-2) * scale + torn, "%s: step %d",
                       f.model->name, step);

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 #include "base/error.h"
-#include "tests/support/sheet_bodies.h"
+#include "tests/support/membrane_bodies.h"
 #include "tests/support/suite.h"
 
 static const double tolerance = sizeof(real) == 4 ? 2e-5 : 1e-11;
@@ -17,7 +17,7 @@ static void scatter(brunt_fem_body *body, double size) {
         for (int i = 0; i < 3; i++) brunt_fem_node(body, n)[i] += (real)(size * uniform(-1, 1));
 }
 
-static double greatest_sheet_stress(const brunt_fem_body *body) {
+static double greatest_membrane_stress(const brunt_fem_body *body) {
     double most = 0, sigma[6];
     for (int32_t s = 0; s < body->slots; s++) {
         brunt_membrane_stress(body, s, sigma);
@@ -40,8 +40,8 @@ static double force_scale(const brunt_fem_body *body) {
 
 // Area and sum_a X_a (x) b_a of a flat element anywhere in space; faces, each once and oriented like its element.
 START_TEST(geometry_is_that_of_the_plane) {
-    FOR_SHEETS(kind) {
-        brunt_mesh mesh = sheet_mesh(kind, 3, 2, 0.5, 0.2, 0, false);
+    FOR_MEMBRANES(kind) {
+        brunt_mesh mesh = membrane_mesh(kind, 3, 2, 0.5, 0.2, 0, false);
         turn_mesh(&mesh, 1);
         double area = 0, R[3][3];
         rotation(3, 1, R);
@@ -61,7 +61,7 @@ START_TEST(geometry_is_that_of_the_plane) {
         }
         ck_assert_double_eq_tol(area, 1.5, tolerance);
         int elements = mesh.element_count;
-        brunt_fem_body body = sheet_of(&mesh, (sheet_options){.thickness = 0.02});
+        brunt_fem_body body = membrane_of(&mesh, (membrane_options){.thickness = 0.02});
         double volume = 0, mass = 0;
         for (int32_t s = 0; s < body.slots; s++)
             volume += (double)brunt_element_scalars(&body, BRUNT_ELEMENT_reference_volume)[0][s];
@@ -94,7 +94,7 @@ START_TEST(layers_of_the_same_nodes_are_two_faces) {
     mesh.elements = brunt_alloc(6 * sizeof *mesh.elements);
     mesh.element_count = 2;
     memcpy(mesh.elements, (int32_t[]){0, 1, 2, 0, 2, 1}, 6 * sizeof *mesh.elements);
-    brunt_fem_body body = sheet_of(&mesh, (sheet_options){0});
+    brunt_fem_body body = membrane_of(&mesh, (membrane_options){0});
     brunt_faces faces;
     ck_assert_int_eq(brunt_fem_faces(&body, &faces, NULL), 0);
     ck_assert_int_eq(faces.count, 2);
@@ -108,7 +108,7 @@ START_TEST(corners_that_turn_over_are_counted) {
     const double square[4][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
     brunt_mesh mesh = single_mesh(BRUNT_MEMBRANE_QUAD4, square);
     turn_mesh(&mesh, 2);
-    brunt_fem_body body = sheet_of(&mesh, (sheet_options){0});
+    brunt_fem_body body = membrane_of(&mesh, (membrane_options){0});
     double R[3][3];
     rotation(3, 0.7, R);
     for (int32_t n = 0; n < 4; n++)
@@ -126,11 +126,11 @@ END_TEST
 // B28. A warped sheet as it is made, and after ten thousand turns about an axis across it, has neither stress nor
 // springs.
 START_TEST(rigid_motion_makes_no_stress) {
-    FOR_SHEETS(kind)
+    FOR_MEMBRANES(kind)
     for (int m = 0; m < 3; m++) {
-        brunt_mesh mesh = sheet_mesh(kind, 4, 4, 0.25, 0.25, 0.3, true);
+        brunt_mesh mesh = membrane_mesh(kind, 4, 4, 0.25, 0.25, 0.3, true);
         turn_mesh(&mesh, 2);
-        brunt_fem_body body = sheet_of(&mesh, (sheet_options){.model = models[m]});
+        brunt_fem_body body = membrane_of(&mesh, (membrane_options){.model = models[m]});
         for (int t = 1; t <= 1000; t++) {
             double R[3][3], shift[3] = {0.01 * t, -0.02 * t, 0.003 * t};
             rotation(3, 20 * acos(-1) * t + 1e-3 * t, R);
@@ -139,8 +139,8 @@ START_TEST(rigid_motion_makes_no_stress) {
         }
         brunt_fem_report report = forces(&body, 1e-3);
         double limit = sizeof(real) == 4 ? 1e-3 : 1e-12;
-        ck_assert_msg(greatest_sheet_stress(&body) < limit * E, "%s %s: stress %g E", body.traits->name, models[m],
-                      greatest_sheet_stress(&body) / E);
+        ck_assert_msg(greatest_membrane_stress(&body) < limit * E, "%s %s: stress %g E", body.traits->name, models[m],
+                      greatest_membrane_stress(&body) / E);
         ck_assert_double_lt(energy_of(&body, &report), limit * limit * E);
         brunt_fem_free(&body);
     }
@@ -148,10 +148,10 @@ START_TEST(rigid_motion_makes_no_stress) {
 END_TEST
 
 // Stress of a stretch A in the reference plane, by one element: the patch test compares others with it.
-static void stress_of(double A[3][3], sheet_options o, double sigma[6], double *across) {
+static void stress_of(double A[3][3], membrane_options o, double sigma[6], double *across) {
     const double square[4][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
     brunt_mesh mesh = single_mesh(BRUNT_MEMBRANE_QUAD4, square);
-    brunt_fem_body body = sheet_of(&mesh, o);
+    brunt_fem_body body = membrane_of(&mesh, o);
     double shift[3] = {0};
     move_affine(&body, A, shift);
     forces(&body, 1e-3);
@@ -162,20 +162,20 @@ static void stress_of(double A[3][3], sheet_options o, double sigma[6], double *
 
 // B28. An affine motion, out of the plane too, of a distorted flat mesh that lies anywhere in space.
 START_TEST(patch_test) {
-    FOR_SHEETS(kind)
+    FOR_MEMBRANES(kind)
     for (int m = 0; m < 3; m++) {
-        sheet_options o = {.model = models[m]};
+        membrane_options o = {.model = models[m]};
         double A[3][3] = {{1.2, 0.3, 0}, {0.05, 0.9, 0}, {0.4, -0.2, 1}}, R[3][3], B[3][3] = {{0}},
                shift[3] = {3, 4, 5};
         double sigma[6], across;
         stress_of(A, o, sigma, &across);
-        brunt_mesh mesh = sheet_mesh(kind, 4, 3, 0.25, 0.25, 0, false);
+        brunt_mesh mesh = membrane_mesh(kind, 4, 3, 0.25, 0.25, 0, false);
         turn_mesh(&mesh, 1);
         rotation(3, 1, R);
         for (int i = 0; i < 3; i++) // A R^T: back to the plane, then as above
             for (int j = 0; j < 3; j++)
                 for (int k = 0; k < 3; k++) B[i][j] += A[i][k] * R[j][k];
-        brunt_fem_body body = sheet_of(&mesh, o);
+        brunt_fem_body body = membrane_of(&mesh, o);
         move_affine(&body, B, shift);
         brunt_fem_report report = forces(&body, 1e-3);
         ck_assert_int_eq(report.bad, -1);
@@ -206,10 +206,10 @@ END_TEST
 // Uniaxial tension of St. Venant-Kirchhoff material: S = E (l^2 - 1) / 2 along, width and thickness strain -nu times it
 // (both Green's), sigma = l S / (l2 l3).
 START_TEST(uniaxial_tension_is_exact) {
-    FOR_SHEETS(kind) {
+    FOR_MEMBRANES(kind) {
         double l = 1.3, green = 0.5 * (l * l - 1), l2 = sqrt(1 - 2 * nu * green), l3 = l2;
-        brunt_mesh mesh = sheet_mesh(kind, 3, 3, 1, 0.2, 0, false);
-        brunt_fem_body body = sheet_of(&mesh, (sheet_options){.model = "st-venant-kirchhoff"});
+        brunt_mesh mesh = membrane_mesh(kind, 3, 3, 1, 0.2, 0, false);
+        brunt_fem_body body = membrane_of(&mesh, (membrane_options){.model = "st-venant-kirchhoff"});
         double A[3][3] = {{l, 0, 0}, {0, l2, 0}, {0, 0, 1}}, shift[3] = {0};
         move_affine(&body, A, shift);
         forces(&body, 1e-3);
@@ -230,13 +230,13 @@ END_TEST
 
 START_TEST(forces_are_the_slope_of_the_energy) {
     if (sizeof(real) == 4) return;
-    FOR_SHEETS(kind)
+    FOR_MEMBRANES(kind)
     for (int m = 0; m < 6; m++) {
-        sheet_options o = {
+        membrane_options o = {
             .model = models[m % 3], .tension_only = m >= 3, .coefficient = m % 2 ? 1 : 0, .thickness = 0.15};
-        brunt_mesh mesh = sheet_mesh(kind, 2, 2, 0.5, 0.2, 0.3, true);
+        brunt_mesh mesh = membrane_mesh(kind, 2, 2, 0.5, 0.2, 0.3, true);
         turn_mesh(&mesh, 1);
-        brunt_fem_body body = sheet_of(&mesh, o);
+        brunt_fem_body body = membrane_of(&mesh, o);
         scatter(&body, 0.08);
         brunt_fem_report report = forces(&body, 1e-3);
         ck_assert_int_eq(report.bad, -1);
@@ -267,10 +267,10 @@ START_TEST(forces_are_the_slope_of_the_energy) {
 END_TEST
 
 START_TEST(forces_have_no_resultant) {
-    FOR_SHEETS(kind)
+    FOR_MEMBRANES(kind)
     for (int k = 0; k < 20; k++) {
-        brunt_mesh mesh = sheet_mesh(kind, 3, 3, 1, 0.25, 0.3, true);
-        brunt_fem_body body = sheet_of(&mesh, (sheet_options){.coefficient = 1});
+        brunt_mesh mesh = membrane_mesh(kind, 3, 3, 1, 0.25, 0.3, true);
+        brunt_fem_body body = membrane_of(&mesh, (membrane_options){.coefficient = 1});
         scatter(&body, 0.3);
         if (forces(&body, 1e-3).bad >= 0) {
             brunt_fem_free(&body);
@@ -304,7 +304,8 @@ START_TEST(hourglass_modes_are_resisted) {
         for (int i = 0; i < 3; i++) {
             const double square[4][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
             brunt_mesh mesh = single_mesh(BRUNT_MEMBRANE_QUAD4, square);
-            brunt_fem_body body = sheet_of(&mesh, (sheet_options){.thickness = t, .model = "st-venant-kirchhoff"});
+            brunt_fem_body body =
+                membrane_of(&mesh, (membrane_options){.thickness = t, .model = "st-venant-kirchhoff"});
             double l = tense ? stretched : 1, A[3][3] = {{l, 0, 0}, {0, l, 0}, {0, 0, 1}}, shift[3] = {0};
             move_affine(&body, A, shift);
             for (int32_t n = 0; n < 4; n++) brunt_fem_node(&body, n)[i] += (real)(body.node_id[n] % 2 ? -a : a);
@@ -374,21 +375,21 @@ static double true_frequency(brunt_fem_body *body) {
 // Elements of any shape, warped at the start or not, stretched, twisted, compressed.
 START_TEST(stable_step_is_a_bound_and_a_close_one) {
     if (sizeof(real) == 4) return; // no second differences of floats
-    FOR_SHEETS(kind) {
+    FOR_MEMBRANES(kind) {
         double worst = INFINITY, mean = 0;
         int count = 0;
         for (int k = 0; k < 600; k++) {
-            sheet_options o = {.model = models[k % 2],
-                               .thickness = k % 7 ? 0.05 : 0.8,
-                               .coefficient = k % 5 ? 0 : 1,
-                               .tension_only = k % 3 == 1};
+            membrane_options o = {.model = models[k % 2],
+                                  .thickness = k % 7 ? 0.05 : 0.8,
+                                  .coefficient = k % 5 ? 0 : 1,
+                                  .tension_only = k % 3 == 1};
             double jitter = k % 11 ? 0.3 : 0;
-            brunt_mesh mesh = sheet_mesh(BRUNT_MEMBRANE_QUAD4, 1, 1, 1, jitter, k % 4 ? 0 : 0.3, true);
+            brunt_mesh mesh = membrane_mesh(BRUNT_MEMBRANE_QUAD4, 1, 1, 1, jitter, k % 4 ? 0 : 0.3, true);
             if (kind == BRUNT_MEMBRANE_TRI3) mesh.kind = kind, mesh.node_count = 3;
             if (kind == BRUNT_MEMBRANE_TRI3) memcpy(mesh.elements, (int32_t[]){0, 1, 2}, 3 * sizeof(int32_t));
             if (k % 13 == 0)
                 for (int n = 0; n < mesh.node_count; n++) mesh.nodes[n][1] *= 0.2;
-            brunt_fem_body body = sheet_of(&mesh, o);
+            brunt_fem_body body = membrane_of(&mesh, o);
             double l = uniform(0.9, 1.3), A[3][3] = {{l, 0.1, 0}, {0.1, 0.95 * l, 0.2}, {0.2, 0.1, 1}}, shift[3] = {0};
             if (o.tension_only) // folds may be crushed to almost nothing, beside tension or not
                 for (int i = 0; i < 3; i++) A[i][1] *= uniform(0.02, 1), A[i][0] *= uniform(0.9, 1.2);
@@ -423,8 +424,8 @@ static void throw_nodes(brunt_fem_body *body, double speed) {
 // Growth of a small motion in a tense sheet, held at its edge.
 static double growth(double share) {
     random_state = 3;
-    brunt_mesh mesh = sheet_mesh(BRUNT_MEMBRANE_QUAD4, 1, 1, 1, 0, 0, false);
-    brunt_fem_body body = sheet_of(&mesh, (sheet_options){0});
+    brunt_mesh mesh = membrane_mesh(BRUNT_MEMBRANE_QUAD4, 1, 1, 1, 0, 0, false);
+    brunt_fem_body body = membrane_of(&mesh, (membrane_options){0});
     throw_nodes(&body, 1e-4);
     double most = 0, dt = share * body.least_step;
     for (int k = 0; k < 3000 && most < 1e3; k++) {
@@ -443,18 +444,18 @@ START_TEST(steps_below_the_stable_one_are_stable) {
 END_TEST
 
 START_TEST(mass_scaling_reaches_its_step) {
-    FOR_SHEETS(kind) {
-        sheet_options o = {.thickness = 0.02};
+    FOR_MEMBRANES(kind) {
+        membrane_options o = {.thickness = 0.02};
         random_state = 1;
-        brunt_mesh mesh = sheet_mesh(kind, 4, 4, 0.25, 0.3, 0.1, false);
-        brunt_fem_body plain = sheet_of(&mesh, o);
+        brunt_mesh mesh = membrane_mesh(kind, 4, 4, 0.25, 0.3, 0.1, false);
+        brunt_fem_body plain = membrane_of(&mesh, o);
         double step = plain.least_step, mass = 0, added = 0;
         for (int32_t n = 0; n < plain.node_count; n++) mass += (double)brunt_fem_node(&plain, n)[BRUNT_FEM_MASS];
         brunt_fem_free(&plain);
         random_state = 1;
-        mesh = sheet_mesh(kind, 4, 4, 0.25, 0.3, 0.1, false);
+        mesh = membrane_mesh(kind, 4, 4, 0.25, 0.3, 0.1, false);
         o.mass_scaling = 1.2 * step;
-        brunt_fem_body scaled = sheet_of(&mesh, o);
+        brunt_fem_body scaled = membrane_of(&mesh, o);
         for (int32_t n = 0; n < scaled.node_count; n++) added += (double)brunt_fem_node(&scaled, n)[BRUNT_FEM_MASS];
         ck_assert_double_ge(scaled.least_step, o.mass_scaling);
         ck_assert_double_ge(forces(&scaled, 0).stable_step, o.mass_scaling);
@@ -467,8 +468,8 @@ END_TEST
 
 static double ledger_error(brunt_element_kind kind, double dt, double end) {
     random_state = 5;
-    brunt_mesh mesh = sheet_mesh(kind, 3, 3, 0.33, 0.2, 0.2, true);
-    brunt_fem_body body = sheet_of(&mesh, (sheet_options){0});
+    brunt_mesh mesh = membrane_mesh(kind, 3, 3, 0.33, 0.2, 0.2, true);
+    brunt_fem_body body = membrane_of(&mesh, (membrane_options){0});
     throw_nodes(&body, 3);
     brunt_fem_sums sums;
     brunt_fem_report report = forces(&body, 0);
@@ -491,7 +492,7 @@ static double ledger_error(brunt_element_kind kind, double dt, double end) {
 // Free vibration, with warping of elements that are in compression as often as in tension.
 START_TEST(energy_ledger_closes) {
     if (sizeof(real) == 4) return;
-    FOR_SHEETS(kind) {
+    FOR_MEMBRANES(kind) {
         double dt = 1e-3, coarse = ledger_error(kind, dt, 200 * dt), fine = ledger_error(kind, dt / 4, 200 * dt);
         ck_assert_msg(fine < 2e-3 && coarse / fine > 10, "%s: errors %g, %g", brunt_element_name(kind), coarse, fine);
     }
@@ -499,9 +500,9 @@ START_TEST(energy_ledger_closes) {
 END_TEST
 
 START_TEST(forces_without_a_step_are_the_same_bits) {
-    FOR_SHEETS(kind) {
-        brunt_mesh mesh = sheet_mesh(kind, 9, 9, 0.1, 0.2, 0.2, true);
-        brunt_fem_body body = sheet_of(&mesh, (sheet_options){0});
+    FOR_MEMBRANES(kind) {
+        brunt_mesh mesh = membrane_mesh(kind, 9, 9, 0.1, 0.2, 0.2, true);
+        brunt_fem_body body = membrane_of(&mesh, (membrane_options){0});
         scatter(&body, 0.02);
         double stable = forces(&body, 1e-3).stable_step;
         size_t bytes = (size_t)body.partial_count * 4 * sizeof(real);
@@ -519,7 +520,7 @@ END_TEST
 
 START_TEST(what_is_no_membrane_is_refused) {
     const double square[4][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
-    brunt_material material = sheet_material((sheet_options){0});
+    brunt_material material = membrane_material((membrane_options){0});
     for (int k = 0; k < 3; k++) {
         brunt_mesh mesh = single_mesh(BRUNT_MEMBRANE_QUAD4, square);
         brunt_body_def def = brunt_body_def_default();
@@ -540,8 +541,8 @@ END_TEST
 // c^2 = sigma / rho in its present density.
 static double string_frequency(int n) {
     const double l = 1.2, dt_share = 0.2;
-    brunt_mesh mesh = sheet_mesh(BRUNT_MEMBRANE_QUAD4, n, 1, 1.0 / n, 0, 0, false);
-    brunt_fem_body body = sheet_of(&mesh, (sheet_options){.model = "st-venant-kirchhoff", .nu = -1});
+    brunt_mesh mesh = membrane_mesh(BRUNT_MEMBRANE_QUAD4, n, 1, 1.0 / n, 0, 0, false);
+    brunt_fem_body body = membrane_of(&mesh, (membrane_options){.model = "st-venant-kirchhoff", .nu = -1});
     double A[3][3] = {{l, 0, 0}, {0, 1, 0}, {0, 0, 1}}, shift[3] = {0}, sigma[6], pi = acos(-1);
     move_affine(&body, A, shift);
     double dt = dt_share * forces(&body, 1e-9).stable_step / n * 8, time = 0, mode = 0;
@@ -592,7 +593,7 @@ typedef struct hencky {
 static hencky hencky_membrane(int m, int rings, double slope, double t) {
     const double p = E * t * pow(slope / 0.6534, 3), stress = 0.4311 * cbrt(E * p * p / (t * t));
     brunt_mesh mesh = quarter_disk(m, rings);
-    brunt_fem_body body = sheet_of(&mesh, (sheet_options){.thickness = t, .nu = 0.3});
+    brunt_fem_body body = membrane_of(&mesh, (membrane_options){.thickness = t, .nu = 0.3});
     body.load = brunt_alloc((size_t)body.node_count * 4 * sizeof(real));
     int32_t centre = 0;
     for (int32_t n = 0; n < body.node_count; n++) {

@@ -38,7 +38,7 @@ static void all_meshed(meshed list[MESHED]) {
     brunt_shape ball = {.kind = BRUNT_SPHERE, .center = {1, 2, 3}, .radius = 1};
     brunt_shape rod = {.kind = BRUNT_CYLINDER, .center = {1, 2, 3}, .axis = {1, -2, 0.5}, .radius = 1, .length = 1.5};
     brunt_shape ring = {
-        .kind = BRUNT_RING, .center = {1, 2, 3}, .axis = {0, 0, 2}, .radius = 1, .inner_radius = 0.5, .length = 1};
+        .kind = BRUNT_TUBE, .center = {1, 2, 3}, .axis = {0, 0, 2}, .radius = 1, .inner_radius = 0.5, .length = 1};
     brunt_shape prism = {.kind = BRUNT_PRISM, .points = quad, .point_count = 4, .min = {0, 0, -1}, .max = {0, 0, 1}};
     brunt_shape other = prism;
     other.points = quad_clockwise;
@@ -219,7 +219,7 @@ START_TEST(volume_converges) {
         for (int k = 0; k < SOLID_KINDS; k++) {
             if (brunt_element_dimension(k) != list[i].dimension || brunt_element_is_membrane(k)) continue;
             double error[2];
-            if (list[i].shape.kind == BRUNT_RING) { // 20 edges of a quarter around at half the width, then 40
+            if (list[i].shape.kind == BRUNT_TUBE) { // 20 edges of a quarter around at half the width, then 40
                 double inner = list[i].shape.inner_radius = 5 / pi - 1;
                 list[i].measure = pi * (1 - inner * inner);
             }
@@ -373,10 +373,10 @@ START_TEST(meshes_are_as_symmetric_as_their_shapes) {
         {"box", 3, {.kind = BRUNT_BOX, .min = {-1, -1, -1}, .max = {1, 1, 1}}, true},
         {"ball", 3, {.kind = BRUNT_SPHERE, .radius = 1}, true},
         {"cylinder", 3, {.kind = BRUNT_CYLINDER, .axis = {0, 0, 1}, .radius = 1, .length = 1}, false},
-        {"ring", 3, {.kind = BRUNT_RING, .axis = {0, 0, 1}, .radius = 1, .inner_radius = 0.4, .length = 1}, false},
+        {"ring", 3, {.kind = BRUNT_TUBE, .axis = {0, 0, 1}, .radius = 1, .inner_radius = 0.4, .length = 1}, false},
         {"box", 2, {.kind = BRUNT_BOX, .min = {-1, -1}, .max = {1, 1}}, false},
         {"disk", 2, {.kind = BRUNT_SPHERE, .radius = 1}, false},
-        {"annulus", 2, {.kind = BRUNT_RING, .radius = 1, .inner_radius = 0.4}, false},
+        {"annulus", 2, {.kind = BRUNT_TUBE, .radius = 1, .inner_radius = 0.4}, false},
     };
     for (size_t i = 0; i < sizeof list / sizeof *list; i++) {
         for (int k = 0; k < BRUNT_ELEMENT_KINDS; k++) {
@@ -430,10 +430,10 @@ START_TEST(what_cannot_be_meshed_is_refused) {
         {{.kind = BRUNT_BOX, .max = {1, 1, 1}}, 3, BRUNT_TET4, 1e-4, "more than 100 million nodes"},
         {{.kind = BRUNT_BOX, .max = {1, 1, 1}}, 3, BRUNT_TET4, 1e-300, "more than 100 million nodes"},
         {{.kind = BRUNT_SPHERE, .radius = 1}, 3, BRUNT_TET4, 1e-300, "more than 100 million nodes"},
-        {{.kind = BRUNT_RING, .radius = 1, .inner_radius = 0.5}, 2, BRUNT_QUAD4, 1e-300, "more than 100 million nodes"},
+        {{.kind = BRUNT_TUBE, .radius = 1, .inner_radius = 0.5}, 2, BRUNT_QUAD4, 1e-300, "more than 100 million nodes"},
         {{.kind = BRUNT_BOX, .max = {1, 0, 1}}, 3, BRUNT_HEX8, 1, "the extent of a shape to be meshed is 0 m"},
         {{.kind = BRUNT_SPHERE}, 3, BRUNT_HEX8, 1, "the radius of a shape"},
-        {{.kind = BRUNT_RING, .radius = 1, .inner_radius = 2, .axis = {1}, .length = 1},
+        {{.kind = BRUNT_TUBE, .radius = 1, .inner_radius = 2, .axis = {1}, .length = 1},
          3,
          BRUNT_HEX8,
          1,

@@ -105,7 +105,7 @@ START_TEST(halves_quarters_eighths) {
     check_parts(&ball, 3, -1);
     check_parts(&ball, 2, -1);
     brunt_shape ring = ball;
-    ring.kind = BRUNT_RING, ring.inner_radius = 0.5;
+    ring.kind = BRUNT_TUBE, ring.inner_radius = 0.5;
     check_parts(&ring, 2, -1);
     for (int axis = 0; axis < 3; axis++)
         for (int turned = 0; turned < 2; turned++)
@@ -235,7 +235,7 @@ static brunt_world_def rings(bool elements, bool cut, brunt_shape_kind kind) {
 START_TEST(one_rule_on_the_axis) {
     for (int k = 0; k < 4; k++) {
         const bool elements = k % 2, shell = k / 2;
-        const brunt_shape_kind kind = shell ? BRUNT_RING : BRUNT_SPHERE;
+        const brunt_shape_kind kind = shell ? BRUNT_TUBE : BRUNT_SPHERE;
         brunt_world_def def = rings(elements, false, kind);
         brunt_error error = {0};
         ck_assert_ptr_null(brunt_world_create(&def, &error));

@@ -127,7 +127,7 @@ static const brunt_shape ball = {.kind = BRUNT_SPHERE, .center = {1, 2, 3}, .rad
 static const brunt_shape rod = {
     .kind = BRUNT_CYLINDER, .center = {1, 2, 3}, .axis = {2, -1, 2}, .radius = 1, .length = 1.5};
 static const brunt_shape ring = {
-    .kind = BRUNT_RING, .center = {1, 2, 3}, .axis = {0, 0, -2}, .radius = 1, .inner_radius = 0.5, .length = 1};
+    .kind = BRUNT_TUBE, .center = {1, 2, 3}, .axis = {0, 0, -2}, .radius = 1, .inner_radius = 0.5, .length = 1};
 
 enum { SHAPES = 6 };
 typedef struct shaped {
@@ -193,7 +193,7 @@ START_TEST(area_converges) {
     for (int i = 0; i < SHAPES; i++)
         for (int k = 0; k < 2; k++) {
             double error[2];
-            if (list[i].shape.kind == BRUNT_RING) { // 20 edges of a quarter around at half the width, then 40
+            if (list[i].shape.kind == BRUNT_TUBE) { // 20 edges of a quarter around at half the width, then 40
                 double inner = list[i].shape.inner_radius = 5 / pi - 1;
                 list[i].area = 2 * pi * (1 - inner * inner) + 2 * pi * (1 + inner);
             }
@@ -421,7 +421,7 @@ static void turn(brunt_mesh *mesh, int32_t element) {
 }
 
 // Where a sheet is and how it lies in space changes nothing.
-START_TEST(regular_sheets_are_ideal) {
+START_TEST(regular_membranes_are_ideal) {
     int32_t in_order[4] = {0, 1, 2, 3};
     const double a[3] = {2 / 3., -1 / 3., 2 / 3.}, b[3] = {1 / 3., -2 / 3., -2 / 3.}; // unit, at right angles
     for (int k = 0; k < 2; k++)
@@ -515,7 +515,7 @@ START_TEST(neighbours_are_turned_alike) {
 END_TEST
 
 // Three sheets that meet in a seam have no common front; sheets that share a node alone are no neighbours.
-START_TEST(seams_join_sheets_of_any_side) {
+START_TEST(seams_join_membranes_of_any_side) {
     double x[8][3] = {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}, {-1, 0, 0}, {-1, 1, 0}, {0, 0, 1}, {0, 1, 1}};
     int32_t seam[12] = {0, 2, 3, 1, 0, 4, 5, 1, 0, 6, 7, 1};
     brunt_mesh mesh = {.kind = BRUNT_MEMBRANE_QUAD4, .node_count = 8, .nodes = x, .element_count = 3, .elements = seam};
@@ -574,10 +574,10 @@ int main(void) {
     tcase_add_test(tests, faces_of_round_shapes);
     tcase_add_test(tests, triangles_keep_mirror_symmetry);
     tcase_add_test(tests, what_has_no_surface_is_refused);
-    tcase_add_test(tests, regular_sheets_are_ideal);
+    tcase_add_test(tests, regular_membranes_are_ideal);
     tcase_add_test(tests, damaged_elements_are_found);
     tcase_add_test(tests, neighbours_are_turned_alike);
-    tcase_add_test(tests, seams_join_sheets_of_any_side);
+    tcase_add_test(tests, seams_join_membranes_of_any_side);
     tcase_add_test(tests, one_sided_strips_are_refused);
     suite_add_tcase(suite, tests);
     return suite_main(suite);

@@ -18,7 +18,7 @@ START_TEST(what_slides_is_held_by_coulombs_share) {
     def_velocity(def_box(&def, "high", XYZ(-0.25, 0.01, 0), XYZ(0.25, 0.51, 0.5)), 4 * way, -1, 0);
     brunt_world *world = world_take(&def);
     world_until(world, 0.06);
-    const brunt_force pair = world_pair(world, 0);
+    const brunt_reaction pair = world_pair(world, 0);
     ck_assert_double_lt(pair.impulse[1], 0); // on the lower one
     ck_assert_double_eq_tol(-way * pair.impulse[0] / pair.impulse[1], friction, 0.012);
     brunt_world_destroy(world);
@@ -47,7 +47,7 @@ START_TEST(what_goes_round_a_corner_feels_nothing) {
     def.step = step;
     brunt_world *world = world_take(&def);
     world_steps(world, 3);
-    const brunt_force pair = world_pair(world, 0);
+    const brunt_reaction pair = world_pair(world, 0);
     for (int a = 0; a < 3; a++) ck_assert_double_eq(pair.impulse[a], 0);
     brunt_world_destroy(world);
 }

@@ -110,7 +110,7 @@ typedef struct trial {
     int dim, m;      // m: components of a matrix
     double old_F[9]; // of all lanes alike
     real F[9][BRUNT_LANES], f[9][BRUNT_LANES], state[2][BRUNT_MAX_STATE][BRUNT_LANES], stress[6][BRUNT_LANES];
-    real density[BRUNT_LANES], tau[9][BRUNT_LANES], a[BRUNT_MOST_TANGENTS][BRUNT_LANES];
+    real density[BRUNT_LANES], tau[9][BRUNT_LANES], a[BRUNT_TANGENT_LIMIT][BRUNT_LANES];
     brunt_trial_points points[BRUNT_COMPONENTS];
     brunt_material_points kept[BRUNT_COMPONENTS];
     real volume[BRUNT_LANES], plastic[BRUNT_LANES];
@@ -375,7 +375,7 @@ START_TEST(commits) {
         respond(&t, false);
         real stress[9];
         for (int c = 0; c < t.m; c++) stress[c] = t.tau[c][0];
-        ask(&t, BRUNT_TRIAL_BOOKS, n % 2 ? 0.5 : 0);
+        ask(&t, BRUNT_TRIAL_ACCOUNT, n % 2 ? 0.5 : 0);
         respond(&t, false);
         before = (double)t.density[0] * BRUNT_LANES;
         const double viscosity = t.material.model[BRUNT_STRENGTH]->shear_viscous ? 1 : 0;
@@ -449,7 +449,7 @@ START_TEST(projection) {
     begin(&t, &materials[1], dim);
     int lifted = 0;
     for (int n = 0; n < 40; n++) {
-        real before[BRUNT_MOST_TANGENTS][BRUNT_LANES];
+        real before[BRUNT_TANGENT_LIMIT][BRUNT_LANES];
         for (int l = 0; l < BRUNT_LANES; l++) {
             double f[9];
             shape(n % 2 ? 6 : 2, dim, &seed, f);

@@ -69,7 +69,7 @@ START_TEST(distance_of_primitives) {
     ck_assert_double_eq_tol(distance3(&shape, 4, 4, 1 + sqrt(2)), sqrt(8 + 2), 1e-14); // past the rim
 
     shape = (brunt_shape){
-        .kind = BRUNT_RING, .center = {0, 0, 1}, .axis = {0, 0, -2}, .radius = 3, .inner_radius = 1, .length = 2};
+        .kind = BRUNT_TUBE, .center = {0, 0, 1}, .axis = {0, 0, -2}, .radius = 3, .inner_radius = 1, .length = 2};
     ck_assert_double_eq_tol(distance3(&shape, 0, 0, 0), 1, 1e-15); // in the bore
     ck_assert_double_eq_tol(distance3(&shape, 2, 0, 0), -1, 1e-15);
     ck_assert_double_eq_tol(distance3(&shape, 0, 1.25, 0), -0.25, 1e-15);
@@ -137,7 +137,7 @@ START_TEST(bounds) {
         .kind = BRUNT_CYLINDER, .center = {1, 0, 0}, .axis = {1, 0, 1}, .radius = 1, .length = sqrt(2)};
     double h = sqrt(0.5);
     expect_bounds(&shape, 3, (double[]){1 - h, -1, -h}, (double[]){2 + h, 1, 1 + h});
-    shape = (brunt_shape){.kind = BRUNT_RING, .center = {1, 2, 0}, .radius = 3, .inner_radius = 2};
+    shape = (brunt_shape){.kind = BRUNT_TUBE, .center = {1, 2, 0}, .radius = 3, .inner_radius = 2};
     expect_bounds(&shape, 2, (double[]){-2, -1}, (double[]){4, 5});
 
     double min[3], max[3];
@@ -231,7 +231,7 @@ START_TEST(round_shapes_keep_their_volume) {
     ck_assert_int_eq(filled.count, 316 * 67);
     brunt_filled_free(&filled);
 
-    shape = (brunt_shape){.kind = BRUNT_RING, .center = {0, 0, 0}, .radius = 1, .inner_radius = 0.5};
+    shape = (brunt_shape){.kind = BRUNT_TUBE, .center = {0, 0, 0}, .radius = 1, .inner_radius = 0.5};
     filled = fill(&shape, 2, 1.0 / 40, 0, 1);
     ck_assert_double_eq_tol(filled.count * filled.volume, 0.75 * pi, 0.01 * 0.75 * pi);
     brunt_filled_free(&filled);
@@ -292,7 +292,7 @@ static void check_reach(const brunt_shape *shape, int dimension, double jitter) 
 
 START_TEST(reach_never_exceeds_the_distance) {
     brunt_shape round = sphere(0.5, 0.5, 0.5, 0.5), square = box(0, 0, 0, 1, 1, 1);
-    brunt_shape ring = {.kind = BRUNT_RING, .axis = {0, 0, 1}, .radius = 1, .inner_radius = 0.4, .length = 1};
+    brunt_shape ring = {.kind = BRUNT_TUBE, .axis = {0, 0, 1}, .radius = 1, .inner_radius = 0.4, .length = 1};
     for (int dimension = 2; dimension <= 3; dimension++)
         for (int jittered = 0; jittered < 2; jittered++) {
             check_reach(&round, dimension, jittered * 0.5);
@@ -392,7 +392,7 @@ START_TEST(impossible_fills_are_errors) {
         {box(0, 0, 0, 1, 1, 1), 2e-5, "too many"},
         {box(0, 0, 0, 1, 1, 1), 1e-12, "at most 2^31"},
         // One lattice site in the middle of its bounds, and there is the hole.
-        {{.kind = BRUNT_RING, .axis = {0, 0, 1}, .radius = 1, .inner_radius = 0.5, .length = 2}, 2, "no particle lies"},
+        {{.kind = BRUNT_TUBE, .axis = {0, 0, 1}, .radius = 1, .inner_radius = 0.5, .length = 2}, 2, "no particle lies"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         brunt_error error = {0};

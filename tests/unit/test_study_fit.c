@@ -254,7 +254,7 @@ START_TEST(settled_values_have_a_limit) {
     ck_assert(isnan(study.lines[1].limit[0]) && !study.lines[1].settled[0]);
     ck_assert(brunt_study_lacks_limit(&study, 1, 0, why));
     ck_assert_str_eq(why, "its values 1, 3, 1 do not settle");
-    // A last change of zero is no certainty: nobody is without error.
+    // A last change of zero is no certainty: nothing is without error.
     ck_assert(still->settled[0]);
     ck_assert_double_eq(still->limit_uncertainty[0], 1);
     for (int32_t v = 0; v < 3; v++) ck_assert_double_gt(made_at(&study, 2, v)->error[0], 0);
@@ -299,7 +299,7 @@ START_TEST(times_are_medians) {
     ck_assert_double_eq(odd->wall_median, 2);
     ck_assert_double_eq(even->wall_median, 2.5);
     ck_assert_double_eq(even->wall_least, 1);
-    ck_assert_double_eq(even->wall_most, 5);
+    ck_assert_double_eq(even->wall_greatest, 5);
     ck_assert_double_eq(even->wall[0], 5); // the order they ran in stays
 }
 END_TEST

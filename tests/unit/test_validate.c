@@ -38,11 +38,13 @@ static brunt_world *mesh_on_grid(void) { return meeting(BRUNT_CONTACT_MULTI_VELO
 
 // ------------------------------------------------------------------------------------------ what breaks them
 
-static void boundary_body(brunt_world *w) { w->boundaries.walls[0].body = w->bodies.count; }
-static void boundary_normal(brunt_world *w) { w->boundaries.walls[0].plane.normal[1] = 0.9; }
-static void boundary_mirror(brunt_world *w) { w->boundaries.walls[0].mirror = w->boundaries.mirror_count; }
-static void boundary_account(brunt_world *w) { w->boundaries.walls[0].action.impulse[1] = NAN; }
-static void mirror_count(brunt_world *w) { w->boundaries.mirror_count = -1; }
+static void boundary_body(brunt_world *w) { w->boundaries.boundary[0].body = w->bodies.count; }
+static void boundary_normal(brunt_world *w) { w->boundaries.boundary[0].plane.normal[1] = 0.9; }
+static void boundary_symmetry(brunt_world *w) {
+    w->boundaries.boundary[0].symmetry_plane = w->boundaries.symmetry_count;
+}
+static void boundary_account(brunt_world *w) { w->boundaries.boundary[0].account.impulse[1] = NAN; }
+static void symmetry_count(brunt_world *w) { w->boundaries.symmetry_count = -1; }
 static void damping_active(brunt_world *w) { w->boundaries.damping.active = false; }
 static void damping_count(brunt_world *w) { w->boundaries.damping.fem_count++; }
 static void ledger_number(brunt_world *w) { w->ledger.gravity_angular[2] = INFINITY; }
@@ -84,22 +86,38 @@ static void on_grid_of(brunt_world *w) { on_grid(w)->link[0].contact = on_grid(w
 static void on_grid_leader(brunt_world *w) { on_grid(w)->contact[0].leader = 1; }
 
 static const broken_row rows[] = {
-    {two_bodies, boundary_body},   {two_bodies, boundary_normal},
-    {two_bodies, boundary_mirror}, {two_bodies, boundary_account},
-    {two_bodies, mirror_count},    {two_bodies, damping_active},
-    {two_bodies, damping_count},   {two_bodies, ledger_number},
-    {two_bodies, ledger_scale},    {two_bodies, plan_pass},
-    {two_bodies, plan_order},      {two_bodies, plan_rows},
-    {two_bodies, timing_pass},     {two_bodies, clock_steps},
-    {two_bodies, clock_step},      {two_bodies, scratch_capacity},
-    {two_bodies, scratch_dofs},    {two_bodies, scratch_thread},
-    {two_bodies, grid_key},        {two_bodies, grid_source},
-    {two_bodies, grid_slot},       {two_bodies, pair_usual},
-    {meshes, pair_entry},          {meshes, pair_account},
-    {meshes, contact_rows},        {meshes, contact_frame},
-    {meshes, cache_face},          {meshes, cache_motion},
-    {meshes, cell_face},           {meshes, cell_order},
-    {mesh_on_grid, on_grid_of},    {mesh_on_grid, on_grid_leader},
+    {two_bodies, boundary_body},
+    {two_bodies, boundary_normal},
+    {two_bodies, boundary_symmetry},
+    {two_bodies, boundary_account},
+    {two_bodies, symmetry_count},
+    {two_bodies, damping_active},
+    {two_bodies, damping_count},
+    {two_bodies, ledger_number},
+    {two_bodies, ledger_scale},
+    {two_bodies, plan_pass},
+    {two_bodies, plan_order},
+    {two_bodies, plan_rows},
+    {two_bodies, timing_pass},
+    {two_bodies, clock_steps},
+    {two_bodies, clock_step},
+    {two_bodies, scratch_capacity},
+    {two_bodies, scratch_dofs},
+    {two_bodies, scratch_thread},
+    {two_bodies, grid_key},
+    {two_bodies, grid_source},
+    {two_bodies, grid_slot},
+    {two_bodies, pair_usual},
+    {meshes, pair_entry},
+    {meshes, pair_account},
+    {meshes, contact_rows},
+    {meshes, contact_frame},
+    {meshes, cache_face},
+    {meshes, cache_motion},
+    {meshes, cell_face},
+    {meshes, cell_order},
+    {mesh_on_grid, on_grid_of},
+    {mesh_on_grid, on_grid_leader},
 };
 
 START_TEST(broken_part_is_noticed) { check_noticed(&rows[_i]); }

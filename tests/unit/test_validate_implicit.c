@@ -36,7 +36,7 @@ static void implicit_terms(brunt_world *w) { of(w)->term_count--; }
 static void unknown_base(brunt_world *w) { of(w)->unknowns.base[1]++; }
 static void unknown_number(brunt_world *w) { of(w)->unknowns.number[0][0] = of(w)->unknowns.count; }
 static void unknown_mass(brunt_world *w) { of(w)->unknowns.mass[0] = -1; }
-static void unknown_holder(brunt_world *w) { of(w)->unknowns.holder[0] = (int16_t)(w->boundaries.wall_count + 1); }
+static void unknown_holder(brunt_world *w) { of(w)->unknowns.holder[0] = (int16_t)(w->boundaries.boundary_count + 1); }
 static void unknown_image(brunt_world *w) {
     const brunt_images *images = &of(w)->unknowns.images;
     images->leader[images->follower[0]] = images->follower[0];
@@ -47,7 +47,7 @@ static void matrix_solver(brunt_world *w) { of(w)->newton.linear.ops = NULL; }
 static void barrier_facet(brunt_world *w) {
     of(w)->contact.barrier->facet[0][0] = of(w)->contact.barrier->vertex_count;
 }
-static void barrier_reach(brunt_world *w) { of(w)->contact.barrier->reach *= 0.5; }
+static void barrier_range(brunt_world *w) { of(w)->contact.barrier->range *= 0.5; }
 static void barrier_place(brunt_world *w) { of(w)->contact.barrier->contacts.contact[0].place[0] = -1; }
 static void barrier_force(brunt_world *w) { of(w)->contact.barrier->lagged.contact[0].normal_force = 0; }
 static void contact_pair(brunt_world *w) { of(w)->contact.pair_account[0] = w->pairs.count; }
@@ -58,7 +58,7 @@ static void surface_traction(brunt_world *w) { w->boundaries.surfaces.surface[0]
 static const broken_row rows[] = {
     {implicit, implicit_terms},   {implicit, unknown_base},  {implicit, unknown_number}, {implicit, unknown_mass},
     {implicit, unknown_holder},   {implicit, unknown_image}, {implicit, matrix_column},  {implicit, matrix_diagonal},
-    {implicit, matrix_solver},    {implicit, barrier_facet}, {implicit, barrier_reach},  {implicit, barrier_place},
+    {implicit, matrix_solver},    {implicit, barrier_facet}, {implicit, barrier_range},  {implicit, barrier_place},
     {implicit, barrier_force},    {implicit, contact_pair},  {implicit, surface_piece},  {implicit, surface_cell},
     {implicit, surface_traction},
 };

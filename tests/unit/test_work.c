@@ -90,7 +90,7 @@ START_TEST(bytes_are_those_of_the_arrays) {
         ck_assert_double_gt(state, 0);
         const double buffers = 2.0 * grid->block_count * grid->span_nodes * node / particles;
         const double nodes = (double)grid->slot_count * BRUNT_BLOCK_NODES * node / particles;
-        brunt_pass scatter = pass_of(world, "scatter"), gather = pass_of(world, "gather");
+        brunt_pass scatter = pass_of(world, "p2g"), gather = pass_of(world, "g2p");
         ck_assert_double_eq_tol(scatter.bytes_per_unit, read_once * sizeof(real) + 1 + buffers, 1e-9);
         ck_assert_double_eq_tol(gather.bytes_per_unit, (2 * updated + 2 * state + 2) * sizeof(real) + nodes, 1e-9);
         ck_assert_double_eq(pass_of(world, "ledger").bytes_per_unit, node);
@@ -164,9 +164,9 @@ START_TEST(flops_are_those_that_run) {
         const body_of *b = &points[k].body;
         const double model = brunt_find_strength("neo-hookean")->flops[b->dimension == 3 || b->rings];
         brunt_world *world = points_of(*b);
-        const double scatter = pass_of(world, "scatter").flops_per_unit;
-        const double gather = pass_of(world, "gather").flops_per_unit - model;
-        printf("  %dD order %d transfer %d: scatter %.0f of %.0f, gather %.0f of %.0f\n", b->dimension, (int)b->kernel,
+        const double scatter = pass_of(world, "p2g").flops_per_unit;
+        const double gather = pass_of(world, "g2p").flops_per_unit - model;
+        printf("  %dD order %d transfer %d: p2g %.0f of %.0f, g2p %.0f of %.0f\n", b->dimension, (int)b->kernel,
                (int)b->transfer, scatter, points[k].scatter, gather, points[k].gather);
         ck_assert(about(scatter, points[k].scatter, 0.05));
         ck_assert(about(gather, points[k].gather, b->dimension == 3 ? 0.05 : 0.1));
@@ -213,7 +213,7 @@ START_TEST(work_follows_what_it_is_of) {
             metal = usual;
     plane.dimension = 2, cubic.kernel = BRUNT_CUBIC, linear.kernel = BRUNT_LINEAR, pic.transfer = BRUNT_PIC;
     flip.transfer = BRUNT_FLIP, total.total = true, heavy.gravity = true, metal.model = "von-mises";
-    static const char *const passes[] = {"scatter", "gather"};
+    static const char *const passes[] = {"p2g", "g2p"};
     for (int p = 0; p < 2; p++) {
         const brunt_pass of = once(usual, passes[p]);
         const body_of *less[] = {&plane, &linear, &pic}, *more[] = {&cubic, &total};
@@ -221,16 +221,16 @@ START_TEST(work_follows_what_it_is_of) {
         for (int k = 0; k < 3; k++) ck_assert_double_lt(once(*less[k], passes[p]).flops_per_unit, of.flops_per_unit);
         for (int k = 0; k < 2; k++) ck_assert_double_gt(once(*more[k], passes[p]).flops_per_unit, of.flops_per_unit);
     }
-    ck_assert_double_gt(once(flip, "gather").flops_per_unit, once(pic, "gather").flops_per_unit);
+    ck_assert_double_gt(once(flip, "g2p").flops_per_unit, once(pic, "g2p").flops_per_unit);
     ck_assert_double_gt(once(heavy, "ledger").flops_per_unit, once(usual, "ledger").flops_per_unit);
     ck_assert_double_gt(once(heavy, "grid").flops_per_unit, once(usual, "grid").flops_per_unit);
     const double models =
         brunt_find_strength("von-mises")->flops[1] - (double)brunt_find_strength("neo-hookean")->flops[1];
     ck_assert_double_gt(models, 0);
-    ck_assert_double_eq_tol(once(metal, "gather").flops_per_unit - once(usual, "gather").flops_per_unit, models, 1e-9);
+    ck_assert_double_eq_tol(once(metal, "g2p").flops_per_unit - once(usual, "g2p").flops_per_unit, models, 1e-9);
     // The linear kernel's second way to the grid has all of a scatter in it.
-    ck_assert_double_gt(once(linear, "remap").flops_per_unit, once(linear, "scatter").flops_per_unit);
-    ck_assert_double_gt(once(linear, "remap").bytes_per_unit, once(linear, "scatter").bytes_per_unit);
+    ck_assert_double_gt(once(linear, "musl_velocity").flops_per_unit, once(linear, "p2g").flops_per_unit);
+    ck_assert_double_gt(once(linear, "musl_velocity").bytes_per_unit, once(linear, "p2g").bytes_per_unit);
 }
 END_TEST
 
@@ -253,8 +253,7 @@ END_TEST
 
 START_TEST(units_are_those_gone_over) {
     brunt_world *world = points_of(usual);
-    static const char *const of_particles[] = {"sort", "scatter", "gather"}, *const of_nodes[] = {"grid", "update",
-                                                                                                  "ledger"};
+    static const char *const of_particles[] = {"sort", "p2g", "g2p"}, *const of_nodes[] = {"grid", "update", "ledger"};
     for (int k = 0; k < 3; k++) {
         const brunt_pass points = pass_of(world, of_particles[k]), nodes = pass_of(world, of_nodes[k]);
         ck_assert_str_eq(points.unit, "particle");
@@ -276,7 +275,7 @@ START_TEST(what_is_not_fixed_is_not_counted) {
     def_plane(&def, XYZ(0, -0.01, 0), XYZ(0, 1, 0), BRUNT_SEPARATE, 0);
     brunt_world *world = world_take(&def);
     world_steps(world, STEPS);
-    static const char *const passes[] = {"contact", "walls"};
+    static const char *const passes[] = {"contact", "boundaries"};
     for (int k = 0; k < 2; k++) {
         const brunt_pass pass = pass_of(world, passes[k]);
         ck_assert_double_eq(pass.bytes_per_unit, 0);

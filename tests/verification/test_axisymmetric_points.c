@@ -535,7 +535,7 @@ START_TEST(flat_impact_is_plane) {
         n = brunt_body_size(world, 0, BRUNT_AT_PARTICLES);
         x[k] = world_field(world, 0, "position");
         stress[k] = world_field(world, 0, "stress");
-        const brunt_force force = world_pair(world, 0);
+        const brunt_reaction force = world_pair(world, 0);
         ck_assert_double_gt(fabs(force.impulse[1]), 0);
         ck_assert_double_le(fabs(force.impulse[0]), TOLERANCE(1e-9, 1e-4) * fabs(force.impulse[1]));
         brunt_world_destroy(world);
@@ -571,9 +571,9 @@ START_TEST(ball_bounces_off_a_plane) {
     brunt_world *world = world_take(&def);
     double highest = 0, first = -1, last = 0;
     while (brunt_world_time(world) < 1.3 * duration) {
-        double impulse = world_wall(world, 0).impulse[1], time = brunt_world_time(world);
+        double impulse = world_boundary(world, 0).impulse[1], time = brunt_world_time(world);
         world_until(world, time + duration / 100); // a mean, as single steps ring
-        const double force = (world_wall(world, 0).impulse[1] - impulse) / (brunt_world_time(world) - time);
+        const double force = (world_boundary(world, 0).impulse[1] - impulse) / (brunt_world_time(world) - time);
         highest = fmax(highest, force);
         if (force > 0.01 * most) last = brunt_world_time(world), first = first < 0 ? time : first;
     }

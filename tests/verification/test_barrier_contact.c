@@ -106,7 +106,7 @@ static void slope_free(slope *s) {
     free(s->u), free(s->start), free(s->force), case_end(s->c), free(s);
 }
 
-// The gap at which the barrier bears a force [N].
+// The gap at which the barrier carries a force [N].
 static double gap_of(double force) {
     double low = 0, high = DHAT;
     for (int i = 0; i < 200; i++) {

@@ -16,7 +16,7 @@ static brunt_world_def lines(int order, double step, double nu) {
     def_material(&def, "neo-hookean", DENSITY, YOUNG, nu);
     def.kernel = (brunt_kernel)order;
     if (order == 1) def.transfer = BRUNT_PIC;
-    def.surfaces = brunt_alloc(DEF_ROOM * sizeof *def.surfaces);
+    def.surfaces = brunt_alloc(DEF_CAPACITY * sizeof *def.surfaces);
     go_implicit(&def, BRUNT_EULER, step);
     def.newton.tolerance = 1e-15;
     return def;
@@ -79,7 +79,7 @@ START_TEST(hangs) {
     const brunt_body_sums before = world_sums(world, 0);
     world_steps(world, 1);
     const brunt_body_sums after = world_sums(world, 0);
-    const brunt_force f = world_wall(world, 0);
+    const brunt_reaction f = world_boundary(world, 0);
     const double c = cos(angle), s = sin(angle), weight = 1 * DENSITY * 0.1;
     const double along = f.force[0] * c + f.force[1] * s, across = f.force[1] * c - f.force[0] * s;
     const double went = (after.centre[0] - before.centre[0]) * c + (after.centre[1] - before.centre[1]) * s,
@@ -117,7 +117,7 @@ START_TEST(carries) {
     double mean = 0;
     for (int s = 0; s < 200; s++) {
         world_steps(world, 1);
-        mean += world_wall(world, 0).force[1] / (200 * 360);
+        mean += world_boundary(world, 0).force[1] / (200 * 360);
     }
     const brunt_body_sums after = world_sums(world, 0);
     const brunt_energy e = world_energy(world);
@@ -148,7 +148,7 @@ START_TEST(slides) {
     const brunt_body_sums before = world_sums(world, 0);
     world_steps(world, 100);
     const brunt_body_sums after = world_sums(world, 0);
-    const brunt_force f = world_wall(world, 0);
+    const brunt_reaction f = world_boundary(world, 0);
     const double g = 9.81 * s, wanted = 0.5 * g * (_i % 2 ? 1 : 1.01), weight = 360 * 9.81 * c;
     const double x = after.centre[0] - before.centre[0], y = after.centre[1] - before.centre[1];
     printf("  %s %s: slid off by %+.1e, across %+.1e cells, mean force off by %+.1e along %.1e, momentum %.1e\n",
@@ -176,7 +176,7 @@ START_TEST(meets) {
     double first = -1;
     for (int s = 0; s < 100 && first < 0; s++) {
         world_steps(world, 1);
-        if (world_wall(world, 0).force[1] != 0) first = brunt_world_time(world);
+        if (world_boundary(world, 0).force[1] != 0) first = brunt_world_time(world);
     }
     printf("  %s, cut at %.3f: first force %.4f cells early\n", _i % 2 ? "slip" : "separate", at / CELL,
            (0.1 - first) / CELL);
@@ -212,7 +212,7 @@ START_TEST(leaves) {
         def.gravity[1] = 5; // the block does
     brunt_world *world = world_take(&def);
     world_steps(world, 40);
-    const brunt_force f = world_wall(world, 0);
+    const brunt_reaction f = world_boundary(world, 0);
     printf("  impulse %.1e N s\n", f.impulse[1]);
     ck_assert_double_ge(f.impulse[1], 0);
     ck_assert_double_le(f.impulse[1], 1e-9);
@@ -231,7 +231,7 @@ START_TEST(rubs) {
     brunt_world *world = world_take(&def);
     world_steps(world, 100);
     const brunt_body_sums s = world_sums(world, 0);
-    const brunt_force f = world_wall(world, 0);
+    const brunt_reaction f = world_boundary(world, 0);
     const double wanted = fmax(0, g[0] + mu * g[1]) * 0.5;
     brunt_newton_counts n;
     brunt_world_newton(world, &n, NULL);
@@ -254,7 +254,7 @@ START_TEST(twice) {
         def.gravity[1] = -1;
         brunt_world *world = world_take(&def);
         world_steps(world, 1);
-        for (int w = 0; w < brunt_wall_count(world); w++) force[k] += world_wall(world, w).force[1];
+        for (int w = 0; w < brunt_boundary_count(world); w++) force[k] += world_boundary(world, w).force[1];
         place[k] = world_sums(world, 0).centre[1];
         brunt_world_destroy(world);
     }

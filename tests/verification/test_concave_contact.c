@@ -97,12 +97,12 @@ static crossing cross_bars(brunt_element_kind kind) {
     world_edges at = {world, {{0}}};
     find_front(world, 0, 2, -1, at.node[0]), find_front(world, 1, 1, 1, at.node[1]);
     crossing c = {0};
-    brunt_force f = {0};
+    brunt_reaction f = {0};
     while (brunt_world_time(world) < 0.8) {
         double n[3], J[3];
         c.depth = fmax(c.depth, passed(&at, n));
         world_steps(world, 1);
-        const brunt_force now = world_pair(world, 0);
+        const brunt_reaction now = world_pair(world, 0);
         for (int k = 0; k < 3; k++) J[k] = now.impulse[k] - f.impulse[k];
         f = now;
         if (J[0] != 0) c.across = fmax(c.across, degrees_between(J, n));
@@ -225,7 +225,7 @@ START_TEST(cube_in_the_corner_of_a_trough) {
         trough odd = even;
         odd.vy *= 0.4;
         brunt_world *world = press(&even, false);
-        const brunt_force f = world_pair(world, 0);
+        const brunt_reaction f = world_pair(world, 0);
         const brunt_momentum p = world_momentum(world);
         const brunt_energy e = world_energy(world);
         const brunt_body_sums s = world_sums(world, even.cube_first ? 0 : 1);

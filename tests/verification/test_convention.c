@@ -4,7 +4,7 @@
 // v t + g t^2 / 2 exactly, with a velocity of v + g (t - dt / 2).
 #include "tests/support/hard_world.h"
 
-typedef enum kind { POINTS, TOTAL_POINTS, MESH, SHEET } kind;
+typedef enum kind { POINTS, TOTAL_POINTS, MESH, MEMBRANE } kind;
 
 static const brunt_kernel kernels[] = {BRUNT_LINEAR, BRUNT_QUADRATIC, BRUNT_CUBIC};
 static const brunt_transfer transfers[] = {BRUNT_PIC, BRUNT_FLIP, BRUNT_APIC};
@@ -18,9 +18,9 @@ static brunt_body_def *thrown(brunt_world_def *def, const char *name, kind k, do
     const double deep = def->dimension == 3 ? 0.2 : 0;
     brunt_body_def *body = def_box(def, name, XYZ(at, 0.1, 0), XYZ(at + 0.2, 0.3, deep));
     if (k == TOTAL_POINTS) body->total_lagrangian = true;
-    if (k == MESH || k == SHEET) body->method = BRUNT_FEM, body->size = 0.1;
+    if (k == MESH || k == MEMBRANE) body->method = BRUNT_FEM, body->size = 0.1;
     if (k == MESH) body->element = def->dimension == 3 ? BRUNT_HEX8 : BRUNT_QUAD4;
-    if (k == SHEET) body->method = BRUNT_MEMBRANE, body->element = BRUNT_MEMBRANE_QUAD4, body->thickness = 0.01;
+    if (k == MEMBRANE) body->method = BRUNT_MEMBRANE, body->element = BRUNT_MEMBRANE_QUAD4, body->thickness = 0.01;
     return body;
 }
 
@@ -80,7 +80,7 @@ START_TEST(every_kind_is_on_its_parabola) {
     ck_assert_double_le(off(MESH, 2, false, 0, ramp), bound);
     ck_assert_double_le(off(MESH, 2, true, 0, ramp), bound);
     ck_assert_double_le(off(MESH, 3, false, 0, ramp), bound);
-    ck_assert_double_le(off(SHEET, 3, false, 0, ramp), bound);
+    ck_assert_double_le(off(MEMBRANE, 3, false, 0, ramp), bound);
 }
 END_TEST
 
@@ -90,7 +90,7 @@ START_TEST(thrown_bodies_of_each_kind_agree) {
         brunt_world_def def = def_begin(3, 0.1);
         def_material(&def, "neo-hookean", 1000, 1e4, 0.3);
         static const char *const names[] = {"a", "b", "c"};
-        static const kind kinds[] = {POINTS, MESH, SHEET};
+        static const kind kinds[] = {POINTS, MESH, MEMBRANE};
         for (int k = 0; k < 3; k++)
             def_velocity(thrown(&def, names[turned ? 2 - k : k], kinds[k], (turned ? -1 : 1) * (0.1 + k)), 1, 2, 3);
         def.gravity[1] = _i ? 0 : turned ? 10 : -10;
@@ -132,7 +132,7 @@ START_TEST(force_is_that_of_the_kick) {
             ck_assert_int_eq(brunt_world_step(world, brunt_world_time(world) + (s % 2 ? 1e-3 : 2e-3), &error),
                              BRUNT_OK);
             const brunt_body_sums sums = world_sums(world, 0);
-            const brunt_force f = world_wall(world, 0);
+            const brunt_reaction f = world_boundary(world, 0);
             ck_assert_double_eq_tol(sums.momentum[1],
                                     f.impulse[1] -
                                         10 * sums.mass * (brunt_world_time(world) - 0.5 * brunt_world_dt(world)),
@@ -186,7 +186,7 @@ END_TEST
 // a line of the history, velocities those of the middle of the step; the force that holds them is mass times
 // acceleration in each step, and its work the kinetic energy.
 START_TEST(prescribed_nodes_go_as_they_are_told) {
-    const kind k = _i % 2 ? SHEET : MESH;
+    const kind k = _i % 2 ? MEMBRANE : MESH;
     const brunt_group_action action = _i < 2 ? BRUNT_GROUP_VELOCITY : BRUNT_GROUP_DISPLACEMENT;
     static const double a[3] = {4, -3, 2}, end = 0.06;
     enum { POINTS_OF_WAY = 2000 };
@@ -216,7 +216,7 @@ START_TEST(prescribed_nodes_go_as_they_are_told) {
     for (int s = 0; brunt_world_time(world) < end - 4e-3; s++) {
         const double dt = uneven_step(world, s), kick = 0.5 * (last + dt), now = brunt_world_time(world);
         const brunt_body_sums sums = world_sums(world, 0);
-        const brunt_force f = world_wall(world, 0);
+        const brunt_reaction f = world_boundary(world, 0);
         for (int c = 0; c < 3; c++) {
             const double v = a[c] * (now - 0.5 * dt);
             ck_assert_double_eq_tol(sums.centre[c], start.centre[c] + 0.5 * a[c] * now * now, off + 10 * ROUNDING);
@@ -252,7 +252,7 @@ START_TEST(planes_take_nodes_to_where_they_are) {
             ck_assert_double_ge(sums.low[2], V[2] * now - 10 * ROUNDING);
             if (condition == BRUNT_STICK || with || s == 0)
                 ck_assert_double_eq_tol(sums.low[2], V[2] * now, 10 * ROUNDING);
-            const brunt_force f = world_wall(world, 0);
+            const brunt_reaction f = world_boundary(world, 0);
             for (int a = 0; a < 3; a++)
                 ck_assert_double_eq_tol(sums.momentum[a], f.impulse[a] + (with ? sums.mass * V[a] : 0),
                                         100 * ROUNDING * sums.mass);
@@ -294,7 +294,8 @@ START_TEST(regions_move_points_from_their_start_on) {
                 place[a] += active ? dt * V[a] : 0;
                 ck_assert_double_eq_tol(sums.velocity[a], active ? V[a] : 0, 10 * ROUNDING);
                 ck_assert_double_eq_tol(sums.centre[a], place[a], 10 * ROUNDING);
-                ck_assert_double_eq_tol(world_wall(world, 0).impulse[a], sums.momentum[a], 10 * ROUNDING * sums.mass);
+                ck_assert_double_eq_tol(world_boundary(world, 0).impulse[a], sums.momentum[a],
+                                        10 * ROUNDING * sums.mass);
             }
         }
         brunt_world_destroy(world);
@@ -316,7 +317,7 @@ START_TEST(restart_keeps_bits_and_forces) {
         world_copy_state(first, second);
         world_steps(second, 20 - before);
         ck_assert_uint_eq(brunt_world_hash(whole), brunt_world_hash(second));
-        ck_assert_double_eq(world_wall(whole, 0).force[1], world_wall(second, 0).force[1]);
+        ck_assert_double_eq(world_boundary(whole, 0).force[1], world_boundary(second, 0).force[1]);
         ck_assert_double_eq(world_energy(whole).error, world_energy(second).error);
         brunt_world_destroy(whole), brunt_world_destroy(first), brunt_world_destroy(second);
     }

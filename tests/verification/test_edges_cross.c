@@ -137,7 +137,7 @@ static outcome meet(const crossing *c, double end) {
         const double gap = gap_of(world, c, node, n);
         o.depth = fmax(o.depth, -gap);
         world_steps(world, 1);
-        const brunt_force f = world_pair(world, 0);
+        const brunt_reaction f = world_pair(world, 0);
         for (int k = 0; k < 3; k++) J[k] = f.impulse[k] - before[k], before[k] = f.impulse[k];
         look_at_step(c, n, J, &o);
     }
@@ -264,7 +264,7 @@ START_TEST(leaves_over_the_end) {
     }
     const brunt_energy e = world_energy(world);
     const brunt_momentum p = world_momentum(world);
-    const brunt_force f = world_pair(world, 0);
+    const brunt_reaction f = world_pair(world, 0);
     printf("greatest energy %.12f of the first, ledger error %.1e, impulse %.3g %.3g %.3g, drift %.1e %.1e\n", greatest,
            e.error_relative, f.impulse[0], f.impulse[1], f.impulse[2], p.linear_drift, p.angular_drift);
     brunt_world_destroy(world);
@@ -301,7 +301,7 @@ END_TEST
 static const double THICK = 0.02; // [m]
 
 // A square of 3 x 3 in a plane that has the x axis, its rim along `along` towards the other one.
-static void add_sheet(brunt_world_def *def, int along, double side) {
+static void add_membrane(brunt_world_def *def, int along, double side) {
     enum { N = 3 };
     brunt_body_def *b = def_body(def, side < 0 ? "a" : "b");
     brunt_mesh *mesh = &b->mesh;
@@ -325,7 +325,7 @@ START_TEST(rims_of_membranes_cross) {
     brunt_world_def def = def_begin(3, 0.25);
     def_material(&def, "neo-hookean", 1000, 1e6, 0.3);
     def.contact.method = BRUNT_CONTACT_AUGURY;
-    add_sheet(&def, 2, -1), add_sheet(&def, 1, 1);
+    add_membrane(&def, 2, -1), add_membrane(&def, 1, 1);
     brunt_world *world = world_take(&def);
     double least = INFINITY;
     while (brunt_world_time(world) < 0.7) {

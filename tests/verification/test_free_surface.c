@@ -51,7 +51,7 @@ static field_range range_of(brunt_world *world, const char *name) {
 // B21, B22. A column a wide and 2 a high between a wall and a floor, in units of a = 1, g = 1, density 1; ten cells to
 // a. The front's speed against Martin and Moyce's measurement (Phil. Trans. R. Soc. A 244 (1952) 312: the slope of x /
 // a over t sqrt(2 g / a) is 1.324 between 1.5 and 3; with these cells it is a tenth too much) and Ritter's bound 2
-// sqrt(g 2 a). First the floor bears what a potential flow presses on it: p is harmonic, 0 on the top and on the free
+// sqrt(g 2 a). First the floor carries what a potential flow presses on it: p is harmonic, 0 on the top and on the free
 // side, so that the force is 16 / pi^3 sum 1 / (2 k - 1)^3 = 0.5427, not the weight 2; in the mean over the gravest
 // sound wave, whose wave number is (pi / 2, pi / 4).
 START_TEST(column_falls) {
@@ -66,7 +66,7 @@ START_TEST(column_falls) {
     def.gravity[1] = -1;
     brunt_world *world = world_take(&def);
     world_until(world, wave);
-    const double force = world_wall(world, 1).impulse[1] / wave;
+    const double force = world_boundary(world, 1).impulse[1] / wave;
     double front = 1, fastest = 0, way[2], most_energy = 0, rise = 0;
     for (int k = 1; k <= 30; k++) {
         world_until(world, fmax(wave, 0.1 * k * unit));
@@ -104,7 +104,7 @@ START_TEST(column_falls) {
 }
 END_TEST
 
-// A round drop on a floor that lets go, in the middle of a cell; water that bears tension (0) and that does not (1).
+// A round drop on a floor that lets go, in the middle of a cell; water that carries tension (0) and that does not (1).
 START_TEST(drop_hits_floor) {
     const double radius = 1, h = 0.1, c = 20, speed = 1, floor_height = 0.03;
     brunt_world_def def = def_begin(2, h);
@@ -136,7 +136,7 @@ START_TEST(drop_hits_floor) {
            hardest / (c * speed), sums.momentum[1], down, sums.high[0] - sums.low[0], e.kinetic / start.kinetic,
            e.contact / start.kinetic, e.transfer / start.kinetic, e.error_relative, rise / start.kinetic);
     ck_assert_double_le(fabs(world_momentum(world).linear_drift), 100 * ROUNDING);
-    ck_assert_double_eq_tol(sums.momentum[1] - down, world_wall(world, 0).impulse[1], 100 * ROUNDING * fabs(down));
+    ck_assert_double_eq_tol(sums.momentum[1] - down, world_boundary(world, 0).impulse[1], 100 * ROUNDING * fabs(down));
     ck_assert_double_le(fabs(sums.momentum[0]), 1e-3 * fabs(down)); // of a lattice that is not quite symmetric
     ck_assert_double_ge(sums.momentum[1], 0.25 * down);             // stopped ...
     ck_assert_double_ge(sums.high[0] - sums.low[0], 2.5 * radius);  // ... and flows out to the sides

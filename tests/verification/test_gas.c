@@ -62,7 +62,7 @@ START_TEST(gas_keeps_its_entropy) {
         widest = fmax(widest, now.volume / start.volume);
     }
     ck_assert_double_gt(widest, 1.002);
-    brunt_force push = world_wall(world, 0);
+    brunt_reaction push = world_boundary(world, 0);
     double scale = 3 * OUTSIDE * 0.52 * brunt_world_time(world); // pressure times surface times time
     for (int a = 0; a < 3; a++) ck_assert_double_lt(fabs(push.impulse[a]), ROUNDING * scale);
     brunt_momentum m = world_momentum(world);
@@ -130,7 +130,7 @@ START_TEST(nonsense_is_refused) {
 }
 END_TEST
 
-// A body that flies freely slows down as exp(-damping t); the ground bears its momentum, viscosity its energy.
+// A body that flies freely slows down as exp(-damping t); the ground carries its momentum, viscosity its energy.
 START_TEST(damping_slows) {
     brunt_world_def def = def_begin(3, 0);
     def_material(&def, "neo-hookean", 1000, 1e5, 0.3);
@@ -190,7 +190,7 @@ START_TEST(any_damping_is_exact) {
 }
 END_TEST
 
-// Weight on a plane: at rest nothing drags, whatever the damping, and the plane bears all of it.
+// Weight on a plane: at rest nothing drags, whatever the damping, and the plane carries all of it.
 START_TEST(contact_bears_all_of_the_weight) {
     static const double of_step[] = {0, 0.1, 3};
     for (int heavy = 0; heavy < 3; heavy++) {
@@ -205,7 +205,7 @@ START_TEST(contact_bears_all_of_the_weight) {
         brunt_world *world = world_take(&def);
         world_steps(world, 1);
         // All nodes fall but those on the plane: of the first half step, what they bear of the weight is theirs.
-        const double bottom = world_wall(world, 0).impulse[2];
+        const double bottom = world_boundary(world, 0).impulse[2];
         ck_assert_double_eq_tol(bottom, 0.5 * 10 * 0.5 * 2e-3, 100 * ROUNDING);
         ck_assert_double_lt(world_momentum(world).linear_drift, 100 * ROUNDING);
         brunt_world_destroy(world);

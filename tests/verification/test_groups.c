@@ -84,7 +84,7 @@ START_TEST(a_load_off_the_centre_turns) {
     brunt_world *world = world_take(&def);
     world_until(world, end);
     const brunt_body_sums body = world_sums(world, 0);
-    const brunt_force f = world_wall(world, 0);
+    const brunt_reaction f = world_boundary(world, 0);
     const brunt_energy e = world_energy(world);
     const brunt_momentum m = world_momentum(world);
     const double push =
@@ -119,7 +119,7 @@ START_TEST(pressure_squeezes) {
         free(v);
     }
     mean /= samples;
-    brunt_force f = world_wall(world, 0);
+    brunt_reaction f = world_boundary(world, 0);
     for (int a = 0; a < 3; a++) ck_assert_double_lt(fabs(f.impulse[a]), 1e-9);
     ck_assert_double_eq_tol(mean, -p / (E / (3 * (1 - 2 * NU))), 0.05 * p / E);
     check_ledger(world, 1e-4);

@@ -25,7 +25,7 @@ static brunt_body_def *mesh(brunt_world_def *def, const char *name, const double
 }
 
 static brunt_group_def *hold(brunt_world_def *def, const char *body, const char *group) {
-    if (!def->groups) def->groups = brunt_def_alloc(DEF_ROOM * sizeof *def->groups);
+    if (!def->groups) def->groups = brunt_def_alloc(DEF_CAPACITY * sizeof *def->groups);
     brunt_group_def *g = &def->groups[def->group_count++];
     *g = brunt_group_def_default();
     snprintf(g->body, sizeof g->body, "%s", body);
@@ -61,7 +61,7 @@ START_TEST(rests) {
     def.newton.tolerance = 1e-10;
     brunt_world *world = world_take(&def);
     world_steps(world, 160);
-    const brunt_force f = plane ? world_wall(world, 0) : world_pair(world, 0);
+    const brunt_reaction f = plane ? world_boundary(world, 0) : world_pair(world, 0);
     const brunt_energy e = world_energy(world);
     printf("  %s on %s: %.9g N of 5000, least gap %.3f of the distance, energy error %.1e, drift %.1e\n",
            points ? "points" : "elements", plane ? "a plane" : "elements", f.force[1], least_part(world),
@@ -100,7 +100,7 @@ START_TEST(slides) {
     if (mu > tilt) ck_assert_double_le(fabs(world_sums(world, 0).velocity[0]), 2e-4);
     ck_assert_double_ge(e.friction, 0);
     ck_assert_double_le(fabs(e.error_relative), 1e-4);
-    ck_assert_double_eq_tol(world_wall(world, 0).friction_work, e.friction, 1e-12 * e.friction + 1e-300);
+    ck_assert_double_eq_tol(world_boundary(world, 0).friction_work, e.friction, 1e-12 * e.friction + 1e-300);
     brunt_world_destroy(world);
 }
 END_TEST

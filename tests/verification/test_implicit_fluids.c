@@ -31,7 +31,7 @@ static void fluid(brunt_world_def *def, const char *eos, double c0) {
 }
 
 static brunt_group_def *hold(brunt_world_def *def, const char *group, int axis, double velocity) {
-    if (!def->groups) def->groups = brunt_def_alloc(DEF_ROOM * sizeof *def->groups);
+    if (!def->groups) def->groups = brunt_def_alloc(DEF_CAPACITY * sizeof *def->groups);
     brunt_group_def *g = &def->groups[def->group_count++];
     *g = brunt_group_def_default();
     snprintf(g->body, sizeof g->body, "film");
@@ -112,7 +112,7 @@ START_TEST(between_plates) {
         const double y = x[3 * n + 1], exact = plate * y + g / (2 * VISCOSITY) * y * (1 - y);
         worst = fmax(worst, fabs(v[3 * n] - exact));
     }
-    const double force = world_wall(world, 1).force[0], exact = (g / 2 - VISCOSITY * plate) * width;
+    const double force = world_boundary(world, 1).force[0], exact = (g / 2 - VISCOSITY * plate) * width;
     printf("  velocities off by %.1e, force of the plate below %.9g N, exactly %.9g\n", worst, force, exact);
     ck_assert_double_le(worst, 1e-5 * speed);
     ck_assert_double_le(fabs(fabs(force) - fabs(exact)), 1e-5 * fabs(exact) + 0.5 * g * width * width);

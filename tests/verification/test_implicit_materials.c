@@ -53,7 +53,7 @@ static const pressed materials[] = {
 enum { MATERIALS = sizeof materials / sizeof *materials };
 
 static brunt_group_def *add_group(brunt_world_def *def, const char *group, int axis, double velocity) {
-    if (!def->groups) def->groups = brunt_def_alloc(DEF_ROOM * sizeof *def->groups);
+    if (!def->groups) def->groups = brunt_def_alloc(DEF_CAPACITY * sizeof *def->groups);
     brunt_group_def *g = &def->groups[def->group_count++];
     *g = brunt_group_def_default();
     snprintf(g->body, sizeof g->body, "block");
@@ -122,7 +122,7 @@ START_TEST(slow_press) {
 END_TEST
 
 // Newmark's steps begin with the stress that the last one ended with, which is of its rate: at the rate of no step at
-// all what bears more when it is fast would creep, and half of the work with it.
+// all what carries more when it is fast would creep, and half of the work with it.
 START_TEST(rates_last) {
     const pressed fast = {"fast metal",
                           "johnson-cook",

@@ -12,7 +12,7 @@ int main(void) { return 0; } // implicit steps want double
 
 static brunt_group_def *def_group(brunt_world_def *def, const char *body, const char *group,
                                   brunt_group_action action) {
-    if (!def->groups) def->groups = brunt_def_alloc(DEF_ROOM * sizeof *def->groups);
+    if (!def->groups) def->groups = brunt_def_alloc(DEF_CAPACITY * sizeof *def->groups);
     brunt_group_def *g = &def->groups[def->group_count++];
     *g = brunt_group_def_default();
     g->action = action;
@@ -22,7 +22,8 @@ static brunt_group_def *def_group(brunt_world_def *def, const char *body, const 
 }
 
 // The upper face of a box that ends at height z.
-static brunt_body_def *def_sheet(brunt_world_def *def, const char *name, const double size[2], double z, double edge) {
+static brunt_body_def *def_membrane(brunt_world_def *def, const char *name, const double size[2], double z,
+                                    double edge) {
     brunt_body_def *b = def_box(def, name, XYZ(0, 0, z - edge), XYZ(size[0], size[1], z));
     b->method = BRUNT_MEMBRANE, b->element = BRUNT_MEMBRANE_QUAD4, b->size = edge;
     b->faces = brunt_def_alloc(sizeof *b->faces), b->face_count = 1;
@@ -38,7 +39,7 @@ static double strip_after(brunt_integrator integrator, int steps) {
     const double size = 1.0 / 256, v0 = 1e-6, time = 1.25;
     brunt_world_def def = def_begin(3, 1);
     def_material(&def, "st-venant-kirchhoff", 1, 1, 0);
-    brunt_body_def *b = def_sheet(&def, "strip", (const double[2]){1, size}, 0, size);
+    brunt_body_def *b = def_membrane(&def, "strip", (const double[2]){1, size}, 0, size);
     b->thickness = 0.1;
     b->wave_velocity[0] = v0, b->wave_vector[0] = PI, b->wave_phase = PI / 2;
     go_implicit(&def, integrator, time / steps);
@@ -71,7 +72,7 @@ START_TEST(hangs) {
     brunt_world_def def = def_begin(3, 1);
     const double g = 1e-5, size = 0.125, thickness = 0.02;
     def_material(&def, "linear-elastic", 1, 1, 0.3);
-    brunt_body_def *b = def_sheet(&def, "strip", (const double[2]){1, size}, 0, size);
+    brunt_body_def *b = def_membrane(&def, "strip", (const double[2]){1, size}, 0, size);
     b->thickness = thickness;
     brunt_group_def *top = def_group(&def, "strip", "xmin", BRUNT_GROUP_VELOCITY);
     top->component[1] = false;
@@ -83,9 +84,9 @@ START_TEST(hangs) {
     double *u = world_field(world, 0, "displacement"), lowest = 0;
     for (int64_t n = 0; n < brunt_body_nodes(world, 0); n++) lowest = fmax(lowest, u[3 * n]);
     const double weight = g * size * thickness;
-    printf("  sinks %.9g of %.9g m, force %.9g of %.9g N\n", lowest, g / 2, world_wall(world, 0).force[0], -weight);
+    printf("  sinks %.9g of %.9g m, force %.9g of %.9g N\n", lowest, g / 2, world_boundary(world, 0).force[0], -weight);
     ck_assert_double_eq_tol(lowest, g / 2, 1e-8 * g / 2);
-    ck_assert_double_eq_tol(world_wall(world, 0).force[0], -weight, 1e-6 * weight);
+    ck_assert_double_eq_tol(world_boundary(world, 0).force[0], -weight, 1e-6 * weight);
     free(u);
     brunt_world_destroy(world);
 }
@@ -110,7 +111,7 @@ START_TEST(stack) {
     def_material(&def, "neo-hookean", rho, 1e6, 0.3);
     for (int k = 0; k <= _i; k++) {
         const double z = k ? thickness[0] + 2 * distance + 0.5 * thickness[1] : 0.5 * thickness[0] + 0.5 * distance;
-        brunt_body_def *b = def_sheet(&def, k ? "upper" : "lower", (const double[2]){1, 0.5}, z, 0.25);
+        brunt_body_def *b = def_membrane(&def, k ? "upper" : "lower", (const double[2]){1, 0.5}, z, 0.25);
         b->thickness = thickness[k];
         b->element = BRUNT_MEMBRANE_TRI3; // nodes have the same share of mass and of surface
     }
@@ -126,7 +127,7 @@ START_TEST(stack) {
     double low[2], high[2];
     for (int k = 0; k <= _i; k++) heights(world, k, &low[k], &high[k]);
     const double gap = low[0] - 0.5 * thickness[0], weight = rho * g * (thickness[0] + _i * thickness[1]);
-    const double carried = -brunt_barrier_at(gap, distance, stiffness).db, force = world_wall(world, 0).force[2];
+    const double carried = -brunt_barrier_at(gap, distance, stiffness).db, force = world_boundary(world, 0).force[2];
     printf("  gap %.6g m carries %.6g of %.6g Pa; force %.6g N\n", gap, carried, weight, force);
     ck_assert_double_eq_tol(force, 0.5 * weight, 1e-6 * weight);
     if (!_i) ck_assert_double_eq_tol(carried, weight, 1e-6 * weight);
@@ -147,7 +148,7 @@ END_TEST
 static brunt_world *struck(int threads, bool points, brunt_integrator integrator) {
     brunt_world_def def = def_begin(3, 0.1);
     def_material(&def, "neo-hookean", 1000, 1e6, 0.3);
-    brunt_body_def *b = def_sheet(&def, "sheet", (const double[2]){1, 1}, 0, 0.125);
+    brunt_body_def *b = def_membrane(&def, "sheet", (const double[2]){1, 1}, 0, 0.125);
     b->thickness = 0.02;
     b = def_box(&def, "block", XYZ(0.31, 0.27, 0.02), XYZ(0.72, 0.63, 0.31));
     def_velocity(b, 0.5, 0, -2);

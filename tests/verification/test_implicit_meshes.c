@@ -10,7 +10,7 @@ int main(void) { return 0; } // implicit steps want double
 
 static brunt_group_def *def_group(brunt_world_def *def, const char *body, const char *group,
                                   brunt_group_action action) {
-    if (!def->groups) def->groups = brunt_def_alloc(DEF_ROOM * sizeof *def->groups);
+    if (!def->groups) def->groups = brunt_def_alloc(DEF_CAPACITY * sizeof *def->groups);
     brunt_group_def *g = &def->groups[def->group_count++];
     *g = brunt_group_def_default();
     g->action = action;
@@ -127,7 +127,7 @@ START_TEST(hangs) {
     brunt_world *world = world_take(&def);
     world_steps(world, 12);
     const double low = world_sums(world, 0).low[1];
-    const brunt_force force = world_wall(world, 0);
+    const brunt_reaction force = world_boundary(world, 0);
     printf("  end at %.9g of %.9g, support %.12g of %.12g N\n", low, -g * L * L / 2, force.force[1], g * L * size);
     ck_assert_double_eq_tol(low, -g * L * L / 2, 1e-9 * g);
     ck_assert_double_eq_tol(force.force[1], g * L * size, 1e-9 * g * L * size);
@@ -179,7 +179,7 @@ START_TEST(pulled) {
     def.newton.tolerance = 1e-12;
     brunt_world *world = world_take(&def);
     world_steps(world, 3);
-    const brunt_force force = world_wall(world, 1);
+    const brunt_reaction force = world_boundary(world, 1);
     const brunt_energy e = world_energy(world);
     printf("  force %.9g of %.9g N, stored %.9g of %.9g J\n", force.force[0], 0.1 * size, e.internal,
            0.5 * 0.01 * size);
@@ -254,7 +254,7 @@ START_TEST(damped) {
            world_momentum(world).angular_drift, e.error_relative, counts.iterations);
     ck_assert_double_eq_tol(s.velocity[0], drawn ? 2 : 2 * left, 1e-9);
     ck_assert_double_eq_tol(s.velocity[1], drawn ? 0 : -left, 1e-9);
-    if (drawn) ck_assert_double_eq_tol(world_wall(world, 0).force[0], d * mass * 2, 1e-6 * d * mass);
+    if (drawn) ck_assert_double_eq_tol(world_boundary(world, 0).force[0], d * mass * 2, 1e-6 * d * mass);
     if (drawn) ck_assert_double_eq_tol(e.viscosity, d * mass * 4 * 10 * dt, 1e-6);
     ck_assert_double_gt(e.viscosity, 100);
     ck_assert_double_le(world_momentum(world).linear_drift, 1e-10);

@@ -2,7 +2,7 @@
 // They are refused with the place and the depth unless the definition allows it; bodies that touch are not.
 #include "tests/support/hard_world.h"
 
-typedef enum kind { QUAD, TRI, HEX, TET, POINTS, SHEET } kind;
+typedef enum kind { QUAD, TRI, HEX, TET, POINTS, MEMBRANE } kind;
 static const char *const kind_name[] = {"quad4", "tri3", "hex8", "tet4", "points", "sheet"};
 static const brunt_element_kind element_of[] = {BRUNT_QUAD4, BRUNT_TRI3, BRUNT_HEX8,
                                                 BRUNT_TET4,  BRUNT_HEX8, BRUNT_MEMBRANE_QUAD4};
@@ -24,8 +24,8 @@ static brunt_body_def *add(brunt_world_def *def, const char *name, kind k, const
         b->spacing = size;
         return b;
     }
-    b->method = k == SHEET ? BRUNT_MEMBRANE : BRUNT_FEM, b->element = element_of[k], b->size = size;
-    if (k == SHEET) {
+    b->method = k == MEMBRANE ? BRUNT_MEMBRANE : BRUNT_FEM, b->element = element_of[k], b->size = size;
+    if (k == MEMBRANE) {
         b->thickness = 0.1 * size;
         b->faces = brunt_alloc(sizeof *b->faces), b->face_count = 1;
         snprintf(*b->faces, sizeof *b->faces, "zmax");
@@ -113,7 +113,7 @@ END_TEST
 
 // None of the nodes on the surface of the outer one is near the inner one.
 START_TEST(one_wholly_in_the_other) {
-    static const kind inner[] = {QUAD, HEX, TET, POINTS, SHEET};
+    static const kind inner[] = {QUAD, HEX, TET, POINTS, MEMBRANE};
     for (int k = 0; k < 10; k++) {
         const kind in = inner[k % 5];
         const int dim = in == QUAD ? 2 : 3;
@@ -144,7 +144,7 @@ END_TEST
 // ------------------------------------------------------------------------------------------ sheets
 
 // A sheet at the height of 0.13 edges of the block over nodes of it, or on top of it; fine and coarse.
-START_TEST(sheet_through_a_body) {
+START_TEST(membrane_through_a_body) {
     static const kind bodies[] = {HEX, TET, POINTS};
     for (int k = 0; k < 3 * 2 * 2; k++) {
         const kind body = bodies[k % 3];
@@ -152,25 +152,25 @@ START_TEST(sheet_through_a_body) {
         const double size = fine ? 0.1 : 1.4;
         brunt_world_def def = begin(3, 0.25);
         add(&def, swapped ? "b" : "a", body, XYZ(0, 0, 0), XYZ(1, 1, 1), 0.125, true);
-        add(&def, swapped ? "a" : "b", SHEET, XYZ(-0.2, -0.21, 0), XYZ(1.2, 1.19, 0.516 + (body == POINTS ? 0.04 : 0)),
-            size, false);
+        add(&def, swapped ? "a" : "b", MEMBRANE, XYZ(-0.2, -0.21, 0),
+            XYZ(1.2, 1.19, 0.516 + (body == POINTS ? 0.04 : 0)), size, false);
         def.bodies[1].thickness = 1e-3;
         refused(&def, kind_name[body]);
         def = begin(3, 0.25);
         add(&def, swapped ? "b" : "a", body, XYZ(0, 0, 0), XYZ(1, 1, 1), 0.125, true);
-        add(&def, swapped ? "a" : "b", SHEET, XYZ(-0.2, -0.21, 0), XYZ(1.2, 1.19, 1.0005), size, false);
+        add(&def, swapped ? "a" : "b", MEMBRANE, XYZ(-0.2, -0.21, 0), XYZ(1.2, 1.19, 1.0005), size, false);
         def.bodies[1].thickness = 1e-3;
         accepted(&def, "a sheet on it");
     }
 }
 END_TEST
 
-START_TEST(sheets_that_cross) {
+START_TEST(membranes_that_cross) {
     for (int k = 0; k < 4; k++) {
         const bool swapped = k & 1, apart = k >> 1;
         brunt_world_def def = begin(3, 0.25);
-        add(&def, swapped ? "b" : "a", SHEET, XYZ(0, 0, -1), XYZ(1, 1, 0), 0.1, false);
-        brunt_body_def *b = add(&def, swapped ? "a" : "b", SHEET, XYZ(0, 0, -1), XYZ(1, 1, 0.013), 0.1, false);
+        add(&def, swapped ? "b" : "a", MEMBRANE, XYZ(0, 0, -1), XYZ(1, 1, 0), 0.1, false);
+        brunt_body_def *b = add(&def, swapped ? "a" : "b", MEMBRANE, XYZ(0, 0, -1), XYZ(1, 1, 0.013), 0.1, false);
         b->place = brunt_placement_rotate(b->place, XYZ(1, 0, 0), 1.2, XYZ(0, 0.47, 0));
         if (apart) b->place = brunt_placement_translate(b->place, XYZ(0, 0, 0.6));
         if (apart)
@@ -184,14 +184,14 @@ END_TEST
 // ------------------------------------------------------------------------------------------ planes
 
 START_TEST(behind_a_plane) {
-    static const kind all[] = {QUAD, HEX, TET, POINTS, SHEET};
+    static const kind all[] = {QUAD, HEX, TET, POINTS, MEMBRANE};
     for (int k = 0; k < 5 * 3; k++) {
         const kind body = all[k % 5];
         const double depth = k / 5 == 0 ? 0 : k / 5 == 1 ? 0.1 : 5;
         const int dim = body == QUAD ? 2 : 3;
         for (int condition = BRUNT_SLIP; condition <= BRUNT_SEPARATE; condition++) {
             brunt_world_def def = begin(dim, 0.25);
-            const double n[3] = {0.6, dim == 2 ? 0.8 : 0, dim == 3 ? 0.8 : 0}, on = body == SHEET ? 0.8 : 0;
+            const double n[3] = {0.6, dim == 2 ? 0.8 : 0, dim == 3 ? 0.8 : 0}, on = body == MEMBRANE ? 0.8 : 0;
             add(&def, "a", body, XYZ(0, 0, 0), XYZ(1, 1, 1), 0.25, true);
             def_plane(&def, XYZ(n[0] * (on + depth), n[1] * (on + depth), n[2] * (on + depth)), n, condition, 0);
             if (depth > 0 && condition == BRUNT_SEPARATE)
@@ -217,7 +217,7 @@ START_TEST(what_is_none) {
     accepted(&def, "balls that touch");
     def = begin(2, 0.25);
     brunt_body_def *ring = def_ball(&def, "ring", XYZ(0, 0, 0), 1);
-    ring->shape.kind = BRUNT_RING, ring->shape.inner_radius = 0.5;
+    ring->shape.kind = BRUNT_TUBE, ring->shape.inner_radius = 0.5;
     ring->method = BRUNT_FEM, ring->element = BRUNT_QUAD4, ring->size = 0.1;
     brunt_body_def *disk = def_ball(&def, "disk", XYZ(0, 0, 0), 0.5);
     disk->method = BRUNT_FEM, disk->element = BRUNT_TRI3, disk->size = 0.13;
@@ -234,8 +234,8 @@ int main(void) {
     ADD(one_in_the_place_of_the_other);
     ADD(one_wholly_in_the_other);
     ADD(bars_that_cross);
-    ADD(sheet_through_a_body);
-    ADD(sheets_that_cross);
+    ADD(membrane_through_a_body);
+    ADD(membranes_that_cross);
     ADD(behind_a_plane);
     ADD(what_is_none);
     return suite_main(suite);

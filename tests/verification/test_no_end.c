@@ -4,12 +4,12 @@
 
 #include "tests/support/hard_world.h"
 
-enum { MOST_STEPS = 50 };
+enum { STEP_LIMIT = 50 };
 
 // Two blocks, and what is done to the upper one.
 static brunt_world_def blocks(double size) {
     brunt_world_def def = def_begin(2, size);
-    def.groups = brunt_alloc(DEF_ROOM * sizeof *def.groups);
+    def.groups = brunt_alloc(DEF_CAPACITY * sizeof *def.groups);
     def.contact.method = BRUNT_CONTACT_AUGURY;
     def_material(&def, "neo-hookean", 1000, 1e6, 0.3);
     for (int k = 0; k < 2; k++) {
@@ -25,7 +25,7 @@ static bool ends(brunt_world_def *def, const char *what) {
     brunt_error error = {0};
     brunt_world *world = brunt_world_create(def, &error);
     int status = world ? BRUNT_OK : error.code;
-    for (int s = 0; s < MOST_STEPS && !status; s++) status = brunt_world_step(world, INFINITY, &error);
+    for (int s = 0; s < STEP_LIMIT && !status; s++) status = brunt_world_step(world, INFINITY, &error);
     printf("  %s: %s\n", what, status ? error.message : "goes on");
     ck_assert(!status || *error.message);
     brunt_world_destroy(world);
@@ -106,7 +106,7 @@ START_TEST(endless_states) {
             free(node);
         }
         int status = BRUNT_OK;
-        for (int s = 0; s < MOST_STEPS && !status; s++) status = brunt_world_step(world, INFINITY, &error);
+        for (int s = 0; s < STEP_LIMIT && !status; s++) status = brunt_world_step(world, INFINITY, &error);
         printf("  a node %s %g: %s\n", k & 1 ? "at a speed of" : "at", values[k / 2], error.message);
         ck_assert_int_eq(status, BRUNT_FAILED);
         brunt_world_destroy(world);

@@ -10,7 +10,7 @@ static const double THICK = 0.2;    // edges
 static const double GRAVITY = 10;   // [m/s^2] presses by half a percent of the stiffness
 static const double DISTANCE = 8.3; // edges: from how far away bodies approach; contact looks a quarter of one
 
-typedef enum side { MESH, POINTS, SHEET, PLANE } side;
+typedef enum side { MESH, POINTS, MEMBRANE, PLANE } side;
 static const char *const side_name[] = {"mesh", "points", "sheet", "plane"};
 
 // A block `a` that slides over `b`, or hits it; `turn`: which way is up.
@@ -58,8 +58,8 @@ static brunt_body_def *add_body(brunt_world_def *def, const motion *m, const cha
     turn(m, v, velocity);
     def_velocity(b, velocity[0], velocity[1], velocity[2]);
     if (kind == POINTS) return b;
-    b->method = kind == SHEET ? BRUNT_MEMBRANE : BRUNT_FEM;
-    b->element = kind == SHEET ? BRUNT_MEMBRANE_QUAD4 : m->dim == 3 ? BRUNT_HEX8 : BRUNT_QUAD4;
+    b->method = kind == MEMBRANE ? BRUNT_MEMBRANE : BRUNT_FEM;
+    b->element = kind == MEMBRANE ? BRUNT_MEMBRANE_QUAD4 : m->dim == 3 ? BRUNT_HEX8 : BRUNT_QUAD4;
     b->size = H;
     if (kind == MESH) return b;
     b->thickness = THICK * H;
@@ -86,24 +86,25 @@ static void drive(brunt_world_def *def, const motion *m, const char *name, side 
     for (int a = 0; a < m->dim; a++) r->component[a] = true, r->velocity[a] = velocity[a];
 }
 
-static double half_of(side kind) { return kind == POINTS ? 0.25 * H : kind == SHEET ? 0.5 * THICK * H : 0; }
+static double half_of(side kind) { return kind == POINTS ? 0.25 * H : kind == MEMBRANE ? 0.5 * THICK * H : 0; }
 static double travel(const motion *m) { return (m->dim == 3 ? 8 : 20) * H; }
 
 static brunt_world *begin(const motion *m) {
     brunt_world_def def = def_begin(m->dim, H);
-    def.groups = brunt_alloc(DEF_ROOM * sizeof *def.groups);
-    def.regions = brunt_alloc(DEF_ROOM * sizeof *def.regions);
+    def.groups = brunt_alloc(DEF_CAPACITY * sizeof *def.groups);
+    def.regions = brunt_alloc(DEF_CAPACITY * sizeof *def.regions);
     def.contact.method = m->method;
     def_material(&def, "neo-hookean", 1000, 1e5, 0.3);
-    const double way = travel(m), gap = (m->approach ? DISTANCE : 0.02) * H + (m->a == SHEET ? half_of(SHEET) : 0) +
-                                        (m->b == SHEET ? half_of(SHEET) : 0);
-    const double wide = m->approach ? 8 * H : way + 9 * H, tall = m->a == SHEET ? H : m->dim == 3 ? 3 * H : 4 * H;
+    const double way = travel(m), gap = (m->approach ? DISTANCE : 0.02) * H +
+                                        (m->a == MEMBRANE ? half_of(MEMBRANE) : 0) +
+                                        (m->b == MEMBRANE ? half_of(MEMBRANE) : 0);
+    const double wide = m->approach ? 8 * H : way + 9 * H, tall = m->a == MEMBRANE ? H : m->dim == 3 ? 3 * H : 4 * H;
     const double *along = m->approach ? XYZ(0, 0, -SPEED) : XYZ(SPEED, 0, 0);
     double v[3];
     for (int a = 0; a < 3; a++) v[a] = m->b_moves ? -along[a] : along[a];
     const double *still = XYZ(0, 0, 0), *va = m->b_moves ? still : v, *vb = m->b_moves ? v : still;
     // The upper face of a sheet's box is where it is.
-    const double low[3] = {0.03 * H, 0.04 * H, m->a == SHEET ? gap - H : gap},
+    const double low[3] = {0.03 * H, 0.04 * H, m->a == MEMBRANE ? gap - H : gap},
                  high[3] = {3.03 * H, 3.04 * H, low[2] + tall};
     add_body(&def, m, m->b_first ? "q" : "p", m->a, low, high, va);
     const char *base = m->b_first ? "p" : "q";
@@ -159,7 +160,7 @@ static found go(const motion *m) {
         f.depth = fmax(f.depth,
                        (half_of(m->a) + half_of(m->b == PLANE ? MESH : m->b) + top - end_of(world, m, a, false)) / H);
     }
-    brunt_force force = m->b == PLANE ? world_wall(world, 0) : world_pair(world, 0);
+    brunt_reaction force = m->b == PLANE ? world_boundary(world, 0) : world_pair(world, 0);
     f.impulse = fabs(force.impulse[up_axis(m)]) / (mass * (m->approach ? SPEED : GRAVITY * end));
     brunt_world_destroy(world);
     return f;
@@ -196,9 +197,9 @@ static int try_ways(motion m) {
 
 static void try_all(int dim, bool approach, brunt_contact_method method) {
     int failed = 0;
-    for (int a = MESH; a <= SHEET; a++)
+    for (int a = MESH; a <= MEMBRANE; a++)
         for (int b = MESH; b <= PLANE; b++) {
-            if (dim == 2 && (a == SHEET || b == SHEET)) continue;
+            if (dim == 2 && (a == MEMBRANE || b == MEMBRANE)) continue;
             if (method == BRUNT_CONTACT_MULTI_VELOCITY && a != POINTS && b != POINTS) continue;
             failed += try_ways((motion){.dim = dim, .a = a, .b = b, .approach = approach, .method = method});
         }
@@ -231,7 +232,7 @@ END_TEST
 static brunt_world_def over_held_mesh(double length, double friction) {
     const motion m = {.dim = 2};
     brunt_world_def def = def_begin(2, H);
-    def.groups = brunt_alloc(DEF_ROOM * sizeof *def.groups);
+    def.groups = brunt_alloc(DEF_CAPACITY * sizeof *def.groups);
     def.contact.method = BRUNT_CONTACT_AUGURY, def.contact.friction = friction;
     def.gravity[1] = -GRAVITY;
     def_material(&def, "neo-hookean", 1000, 1e5, 0.3);
@@ -294,7 +295,7 @@ static double first_blow(bool both, double gap) {
     brunt_plane_def *p = def_plane(&def, XYZ(0, 0, 0), XYZ(0, 1, 0), BRUNT_SEPARATE, 0);
     p->velocity[1] = v;
     brunt_world *world = world_take(&def);
-    while (world_wall(world, 0).impulse[1] == 0) world_steps(world, 1);
+    while (world_boundary(world, 0).impulse[1] == 0) world_steps(world, 1);
     const double depth = v * brunt_world_time(world) - end_of(world, &(motion){.dim = 2}, 0, false);
     brunt_world_destroy(world);
     return depth / H;

@@ -26,7 +26,7 @@ static brunt_world *cut(int halves, double friction) {
     return world;
 }
 
-START_TEST(mirrors_stand_for_the_rest) {
+START_TEST(symmetry_planes_stand_for_the_rest) {
     double speed[3], centre[3];
     for (int halves = 0; halves < 3; halves++) {
         brunt_world *world = cut(halves, 0.5);
@@ -48,7 +48,7 @@ START_TEST(mirrors_stand_for_the_rest) {
 END_TEST
 
 // Between two planes three cells apart a node has images by both, the same at times.
-START_TEST(strips_between_mirrors_keep_momentum) {
+START_TEST(strips_between_symmetry_planes_keep_momentum) {
     brunt_world_def def = touching(2, 0.25, 0.3);
     def_velocity(def_box(&def, "left", XYZ(-1, 0, 0), XYZ(0, 0.75, 0)), 3, 0, 0);
     def_box(&def, "right", XYZ(0, 0, 0), XYZ(1, 0.75, 0));
@@ -187,8 +187,8 @@ END_TEST
 
 int main(void) {
     Suite *suite = suite_create("points_touch");
-    ADD_LOOP(mirrors_stand_for_the_rest, 1);
-    ADD_LOOP(strips_between_mirrors_keep_momentum, 1);
+    ADD_LOOP(symmetry_planes_stand_for_the_rest, 1);
+    ADD_LOOP(strips_between_symmetry_planes_keep_momentum, 1);
     ADD_LOOP(mirrored_and_swapped_it_is_the_same, 1);
     ADD_LOOP(heavy_meets_light_and_stiff_soft, 5);
     ADD_LOOP(points_alone_meet, 1);

@@ -236,7 +236,7 @@ START_TEST(without_friction_nothing_rubs) {
         const double tangential = i < 2 ? 0 : 0.4;
         brunt_world *w = bounced(&r, tangential, 0.2);
         const motion after = observe(w, &r);
-        const brunt_force f = r.bed == MESH ? world_pair(w, 0) : world_wall(w, 0);
+        const brunt_reaction f = r.bed == MESH ? world_pair(w, 0) : world_boundary(w, 0);
         ck_assert_double_gt(fabs(f.impulse[1]), 1);
         ck_assert_double_eq(f.impulse[0], 0);
         ck_assert_double_eq_tol(after.velocity, tangential, 10 * ROUNDING);

@@ -19,7 +19,7 @@ static brunt_world_def begin(double cell, int steps) {
 }
 
 static brunt_group_def *group(brunt_world_def *def, const char *body, const char *name, brunt_group_action action) {
-    if (!def->groups) def->groups = brunt_def_alloc(DEF_ROOM * sizeof *def->groups);
+    if (!def->groups) def->groups = brunt_def_alloc(DEF_CAPACITY * sizeof *def->groups);
     brunt_group_def *q = &def->groups[def->group_count++];
     *q = brunt_group_def_default();
     q->action = action;
@@ -119,9 +119,9 @@ START_TEST(hangs) {
         const brunt_energy e = world_energy(world);
         error[k] = fabs(way / exact - 1);
         printf("  %s, %g: %.9g of %.9g m (%.1e), held by %.9g N, energy error %.1e, kinetic %g\n",
-               points ? "points" : "elements", 0.25 / (k + 1), way, exact, error[k], world_wall(world, 0).force[0],
+               points ? "points" : "elements", 0.25 / (k + 1), way, exact, error[k], world_boundary(world, 0).force[0],
                e.error_relative, e.kinetic);
-        ck_assert_double_eq_tol(world_wall(world, 0).force[0], -78480, 78480e-8);
+        ck_assert_double_eq_tol(world_boundary(world, 0).force[0], -78480, 78480e-8);
         ck_assert_double_le(fabs(e.error_relative), 1e-8);
         ck_assert(e.kinetic == 0 && brunt_world_steps(world) == steps);
         ck_assert_double_le(counts_of(world).residual, 1e-10);
@@ -143,7 +143,7 @@ START_TEST(steps_alike) {
         brunt_world *world = world_take(&def);
         world_until(world, 1);
         tip[k] = node_way(world, 0, LENGTH, 0.5, 1), taken[k] = world_energy(world).scheme;
-        ck_assert_double_eq_tol(world_wall(world, 0).force[1], 78480, 78480e-7);
+        ck_assert_double_eq_tol(world_boundary(world, 0).force[1], 78480, 78480e-7);
         ck_assert_double_le(fabs(world_energy(world).error_relative), 1e-7);
         printf("  %d steps: tip %.10g m, %.4g J taken, %.0f iterations\n", steps[k], tip[k], taken[k],
                counts_of(world).iterations);
@@ -239,7 +239,7 @@ START_TEST(drawn_and_turned) {
     double before = 0, work = 0;
     for (int s = 1; s <= 4; s++) {
         world_until(world, 0.25 * s);
-        const double way = node_way(world, 0, 2, 0, 0), force = world_wall(world, 0).force[0], F = 1 + s * 0.0625;
+        const double way = node_way(world, 0, 2, 0, 0), force = world_boundary(world, 0).force[0], F = 1 + s * 0.0625;
         work += 0.125 * (before - force) / 2, before = -force;
         const double exact = turned ? 2 * cos(PI / 3 * s / 4) - 2 : 0.125 * s;
         ck_assert_double_eq_tol(way, exact, 1e-6);
@@ -248,7 +248,7 @@ START_TEST(drawn_and_turned) {
         if (turned) ck_assert_double_eq_tol(force, 0, 1e-3);
     }
     ck_assert_int_eq(brunt_world_steps(world), 4);
-    printf("  %.6g N, %.6g J stored, %.6g J of work\n", world_wall(world, 0).force[0], world_energy(world).internal,
+    printf("  %.6g N, %.6g J stored, %.6g J of work\n", world_boundary(world, 0).force[0], world_energy(world).internal,
            world_energy(world).external_work);
     // What is turned has the roundings of its moduli alone.
     if (turned) ck_assert_double_le(fabs(world_energy(world).error), 1e-15 * 2 * E);
@@ -276,11 +276,11 @@ START_TEST(soft_on_stiff) {
     // Of a soft lower half: strain 1e-3 (2 - y), mean way 1e-3 int (2 - y)(1 - y) = 5/6e-3, upper 1.5e-3; above:
     // 1/3e-3.
     const double expect[2][2] = {{5e-3 / 6, 1.5e-3}, {0, 1e-3 / 3}};
-    printf("  ways %.5g and %.5g m, %.8g N, %.0f iterations\n", lower, upper, world_wall(world, 0).force[1],
+    printf("  ways %.5g and %.5g m, %.8g N, %.0f iterations\n", lower, upper, world_boundary(world, 0).force[1],
            counts_of(world).iterations);
     ck_assert_double_eq_tol(lower, expect[_i][0], 2e-5);
     ck_assert_double_eq_tol(upper, expect[_i][1], 4e-5);
-    ck_assert_double_eq_tol(world_wall(world, 0).force[1], 2000, 1e-3);
+    ck_assert_double_eq_tol(world_boundary(world, 0).force[1], 2000, 1e-3);
     brunt_world_destroy(world);
 }
 END_TEST
@@ -368,9 +368,9 @@ START_TEST(lies_on_a_plane) {
     world_until(world, 1);
     const brunt_newton_counts counts = counts_of(world);
     printf("  %.9g of 10000 N, %.0f iterations, least gap %.3g, x %.12g, energy error %.1e\n",
-           world_wall(world, 0).force[1], counts.iterations, counts.least_part, world_sums(world, 0).centre[0],
+           world_boundary(world, 0).force[1], counts.iterations, counts.least_part, world_sums(world, 0).centre[0],
            world_energy(world).error_relative);
-    ck_assert_double_eq_tol(world_wall(world, 0).force[1], 10000, 1e-4);
+    ck_assert_double_eq_tol(world_boundary(world, 0).force[1], 10000, 1e-4);
     ck_assert_double_gt(counts.least_part, 0.01);
     ck_assert_double_eq_tol(world_sums(world, 0).centre[0], 0.5, 1e-6);
     ck_assert_double_le(fabs(world_energy(world).error_relative), 1e-6);
@@ -399,7 +399,7 @@ START_TEST(disk_between_plates) {
         const double d = 2 * F * (1 - nu * nu) / (PI * modulus) * (2 * log(4 / a) - 1);
         *(d < approach ? &low : &high) = F;
     }
-    const double below = world_wall(world, 0).force[1], above = -world_wall(world, 1).force[1];
+    const double below = world_boundary(world, 0).force[1], above = -world_boundary(world, 1).force[1];
     const brunt_newton_counts counts = counts_of(world);
     const brunt_energy e = world_energy(world);
     printf("  %.7g below, %.7g above, %.7g N by Johnson; %.0f iterations, %.0f cuts, energy error %.1e of %.4g J\n",

@@ -78,7 +78,7 @@ static void pull(bool total, double until, double *force, double *wanted, double
             (real)(speed * fmin(fmax(((double)brunt_field(p, BRUNT_FIELD_position)[0][s] - 0.4) / gauge, 0), 1));
     double end = (until - 1) * gauge / speed, window = 0.05;
     world_until(world, end - window);
-    double before = world_wall(world, 1).impulse[0];
+    double before = world_boundary(world, 1).impulse[0];
     world_until(world, end - 0.5 * window);
     double *F = world_field(world, 0, "deformation_gradient"), *x = world_field(world, 0, "position"), sum = 0;
     int64_t n = brunt_body_particles(world, 0), middle = 0;
@@ -88,7 +88,7 @@ static void pull(bool total, double until, double *force, double *wanted, double
         sum += F[9 * i], middle++;
     }
     world_until(world, end);
-    *force = (world_wall(world, 1).impulse[0] - before) / window;
+    *force = (world_boundary(world, 1).impulse[0] - before) / window;
     *stretch = middle ? sum / (double)middle : 0;
     *wanted = middle ? 0.2 * nominal_stress(*stretch) : 0;
     if (total) ck_assert_double_lt(fabs(world_energy(world).error_relative), 1e-3);

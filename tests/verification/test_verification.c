@@ -169,9 +169,9 @@ START_TEST(column_under_its_own_weight) {
     brunt_world *world = world_take(&def);
     double *start = world_field(world, 0, "position");
     world_until(world, 11 * period);
-    double before = world_wall(world, 0).impulse[1];
+    double before = world_boundary(world, 0).impulse[1];
     world_until(world, 13 * period);
-    double force = (world_wall(world, 0).impulse[1] - before) / (2 * period), worst = 0, mean = 0;
+    double force = (world_boundary(world, 0).impulse[1] - before) / (2 * period), worst = 0, mean = 0;
     double *stress = world_field(world, 0, "stress");
     int64_t n = brunt_world_particles(world);
     for (int64_t i = 0; i < n; i++) {
@@ -409,7 +409,7 @@ static outcome collide(int dimension, double cell, int turn, const double by[3],
     brunt_world *world = world_take(&def);
     world_until(world, 0.1);
     outcome o = {.kinetic = world_energy(world).kinetic};
-    brunt_force force = world_pair(world, 0);
+    brunt_reaction force = world_pair(world, 0);
     for (int b = 0; b < 3; b++) { // turned back
         const double *from = b < 2 ? world_sums(world, b).velocity : force.impulse;
         double *to = b < 2 ? o.velocity[b] : o.impulse;
@@ -560,12 +560,12 @@ START_TEST(mirrored_part_equals_the_whole) {
     // So is what the ledgers say, but for the share.
     brunt_energy e = world_energy(whole), p = world_energy(part);
     double share = 1 << parts, scale = e.initial;
-    ck_assert_double_gt(world_wall(whole, 0).impulse[2], 0);
+    ck_assert_double_gt(world_boundary(whole, 0).impulse[2], 0);
     ck_assert_double_le(fabs(share * p.kinetic - e.kinetic) / scale, 100 * ROUNDING);
     ck_assert_double_le(fabs(share * p.internal - e.internal) / scale, 100 * ROUNDING);
     ck_assert_double_le(fabs(share * p.friction - e.friction) / scale, 100 * ROUNDING);
     ck_assert_double_le(fabs(share * p.contact - e.contact) / scale, 100 * ROUNDING);
-    ck_assert_double_le(fabs(share * world_wall(part, 0).impulse[2] / world_wall(whole, 0).impulse[2] - 1),
+    ck_assert_double_le(fabs(share * world_boundary(part, 0).impulse[2] / world_boundary(whole, 0).impulse[2] - 1),
                         100 * ROUNDING);
     ck_assert_double_le(world_momentum(part).linear_drift, ROUNDING);
     free(whole_start);
@@ -575,7 +575,7 @@ START_TEST(mirrored_part_equals_the_whole) {
 }
 END_TEST
 
-// ------------------------------------------------------------------------------------------ what nobody asked for
+// ------------------------------------------------------------------------------------------ what is not asked for
 
 // Two bodies apart, FLIP, elastic, nothing acting on them: no effect, and only the passes of any material point method.
 static brunt_world_def plain(void) {
@@ -593,9 +593,9 @@ static void ask_apic(brunt_world_def *def) { def->transfer = BRUNT_APIC; }
 static void ask_contact(brunt_world_def *def) { def->contact.method = BRUNT_CONTACT_MULTI_VELOCITY; }
 static void ask_friction(brunt_world_def *def) { ask_contact(def), def->contact.friction = 0.1; }
 static void ask_gravity(brunt_world_def *def) { def->gravity[1] = -1; }
-static void ask_wall(brunt_world_def *def) { def_plane(def, XYZ(0, -1, 0), XYZ(0, 1, 0), BRUNT_SEPARATE, 0); }
-static void ask_rough_wall(brunt_world_def *def) { def_plane(def, XYZ(0, -1, 0), XYZ(0, 1, 0), BRUNT_SEPARATE, 0.1); }
-static void ask_mirror(brunt_world_def *def) { def_plane(def, XYZ(0, -1, 0), XYZ(0, 1, 0), BRUNT_SYMMETRY, 0); }
+static void ask_plane(brunt_world_def *def) { def_plane(def, XYZ(0, -1, 0), XYZ(0, 1, 0), BRUNT_SEPARATE, 0); }
+static void ask_rough_plane(brunt_world_def *def) { def_plane(def, XYZ(0, -1, 0), XYZ(0, 1, 0), BRUNT_SEPARATE, 0.1); }
+static void ask_symmetry(brunt_world_def *def) { def_plane(def, XYZ(0, -1, 0), XYZ(0, 1, 0), BRUNT_SYMMETRY, 0); }
 static void ask_stick(brunt_world_def *def) { def_plane(def, XYZ(0, -1, 0), XYZ(0, 1, 0), BRUNT_STICK, 0); }
 static void ask_plasticity(brunt_world_def *def) {
     snprintf(def->materials[0].strength, sizeof def->materials[0].strength, "von-mises");
@@ -606,7 +606,7 @@ static void ask_viscosity(brunt_world_def *def) {
     def->materials[0].viscosity_parameters[0] = 0.06;
 }
 
-// Effects, passes and arrays (of body a) that each adds; arrays of bodies nobody asked anything for are not counted
+// Effects, passes and arrays (of body a) that each adds; arrays of bodies that nothing was asked for are not counted
 // twice.
 static const struct {
     const char *name;
@@ -618,9 +618,9 @@ static const struct {
     {"contact", ask_contact, "contact ", "contact ", "reach "},
     {"friction", ask_friction, "contact friction ", "contact ", "reach "},
     {"gravity", ask_gravity, "gravity ", "", ""},
-    {"wall", ask_wall, "walls ", "walls ", "reach "},
-    {"rough wall", ask_rough_wall, "friction walls ", "walls ", "reach "},
-    {"mirror", ask_mirror, "mirrors ", "mirror ", ""},
+    {"wall", ask_plane, "boundaries ", "boundaries ", "reach "},
+    {"rough wall", ask_rough_plane, "friction boundaries ", "boundaries ", "reach "},
+    {"mirror", ask_symmetry, "symmetry ", "symmetry ", ""},
     {"stick", ask_stick, "conditions ", "conditions ", ""},
     {"plasticity", ask_plasticity, "plasticity ", "", "elastic_left_cauchy_green plastic_strain plastic_work "},
     {"viscosity", ask_viscosity, "bulk_viscosity ", "", "viscous_work viscous_pressure "},
@@ -663,7 +663,7 @@ START_TEST(only_what_was_asked_for) {
     brunt_world *world = world_take(&def);
     world_steps(world, 2);
     list(world, effects, passes, arrays);
-    take_out(passes, "sort scatter grid update ledger gather advance");
+    take_out(passes, "sort p2g grid update ledger g2p advance");
     take_out(arrays, "position velocity deformation_gradient kirchhoff_stress mass reference_volume ids and sort grid");
     printf("  asked for %s: effects '%s', passes + '%s', arrays + '%s'\n", asked[_i].name, effects, passes, arrays);
     ck_assert_str_eq(effects, asked[_i].effects);

@@ -14,7 +14,7 @@ static brunt_body_def *mesh_of(brunt_body_def *body, brunt_element_kind kind, do
 
 // Holds components of a group of a body's nodes.
 static void fix(brunt_world_def *def, const char *body, const char *group, bool x, bool y, bool z) {
-    if (!def->groups) def->groups = brunt_def_alloc(DEF_ROOM * sizeof *def->groups);
+    if (!def->groups) def->groups = brunt_def_alloc(DEF_CAPACITY * sizeof *def->groups);
     brunt_group_def *g = &def->groups[def->group_count++];
     *g = brunt_group_def_default();
     snprintf(g->body, sizeof g->body, "%s", body);
@@ -207,16 +207,16 @@ START_TEST(rod_on_wall) {
     const double touch = gap / V, window[2] = {touch + 0.2 * L, touch + 1.8 * L};
     double first = 0, last = 0, impulse[2];
     world_until(world, touch - 1);
-    ck_assert(world_wall(world, 0).impulse[2] == 0);
+    ck_assert(world_boundary(world, 0).impulse[2] == 0);
     while (brunt_world_time(world) < touch + 3 * L) {
         for (int k = 0; k < 2; k++)
-            if (brunt_world_time(world) == window[k]) impulse[k] = world_wall(world, 0).impulse[2];
+            if (brunt_world_time(world) == window[k]) impulse[k] = world_boundary(world, 0).impulse[2];
         double next = touch + 3 * L;
         for (int k = 1; k >= 0; k--)
             if (brunt_world_time(world) < window[k]) next = window[k];
         brunt_error error;
         ck_assert_int_eq(brunt_world_step(world, next, &error), BRUNT_OK);
-        if (world_wall(world, 0).force[2] > 0) {
+        if (world_boundary(world, 0).force[2] > 0) {
             if (!(first > 0)) first = brunt_world_time(world);
             last = brunt_world_time(world);
         }
@@ -264,7 +264,7 @@ START_TEST(ball_on_plane) {
     double before = 0, most = 0, last = 0, springs = 0;
     for (int k = 1; k <= 275; k++) {
         world_until(world, k * dt);
-        double now = world_wall(world, 0).impulse[2], mean = (now - before) / dt;
+        double now = world_boundary(world, 0).impulse[2], mean = (now - before) / dt;
         most = fmax(most, mean);
         if (mean > 0) last = k * dt;
         before = now;

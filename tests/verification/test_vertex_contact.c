@@ -128,7 +128,7 @@ typedef struct outcome {
 static outcome measure(const meeting *m, const frame *g) {
     brunt_world *world = meet(m, g);
     world_until(world, 0.4);
-    const brunt_force f = world_pair(world, 0);
+    const brunt_reaction f = world_pair(world, 0);
     double J[3] = {0};
     for (int a = 0; a < 3; a++)
         for (int k = 0; k < 3; k++) J[a] += f.impulse[k] * g->turn[k][a];

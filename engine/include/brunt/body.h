@@ -54,7 +54,7 @@ typedef struct brunt_body_def {
     double thickness;         // [m] > 0, of the undeformed sheet
     double contact_thickness; // [m] >= 0: contact keeps its middle surface half of it from others; NAN (default):
                               // thickness
-    bool tension_only;        // bears no compression (tension field) instead of what its material says
+    bool tension_only;        // carries no compression (tension field) instead of what its material says
     char (*faces)[BRUNT_NAME_LENGTH];
     int32_t face_count; // owned; groups of the shape's boundary to take, 0: all of it
     // Particles sit on a lattice fixed to the unplaced shape's bounding box, then move with the placement.

@@ -11,7 +11,7 @@ extern "C" {
 
 // What a plane does to nodes and particles, with the words of scenes. Stick: all components follow the plane. Slip: the
 // normal component follows it, the tangential ones are free, and it never lets go. Separate: like slip in compression,
-// lets go in tension; with friction > 0 a Coulomb wall. Symmetry: mirror plane, axis-aligned and on a grid line.
+// lets go in tension; with friction > 0 it rubs by Coulomb's law. Symmetry: axis-aligned and on a grid line.
 #define BRUNT_CONDITIONS(X)                                                                                            \
     X(STICK, "stick")                                                                                                  \
     X(SLIP, "slip")                                                                                                    \
@@ -26,7 +26,7 @@ typedef struct brunt_plane_def {
     double point[3], normal[3];   // [m], [-] pointing into the room the bodies are in
     brunt_condition condition;    // default BRUNT_SEPARATE
     double friction;              // [-] Coulomb coefficient >= 0, for BRUNT_SEPARATE; default 0
-    double velocity[3];           // [m/s] of a moving wall; default 0
+    double velocity[3];           // [m/s] of a moving plane; default 0
     char body[BRUNT_NAME_LENGTH]; // the one body it acts on; "" = all
 } brunt_plane_def;
 

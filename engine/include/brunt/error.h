@@ -45,7 +45,7 @@ typedef struct brunt_error {
     char message[1024]; // complete sentence, with the values that matter
     char body[64];      // for BRUNT_FAILED: body ...
     int64_t id;         // ... particle id (-1: none) ...
-    double place[3];    // [m] where
+    double position[3]; // [m] where
     double time;        // [s] of the step that failed
 } brunt_error;
 

@@ -19,7 +19,7 @@ typedef struct brunt_energy { // [J]; in 2D per metre of thickness
                           // contact of implicit steps: what barriers have stored, which comes back
     double scheme;        // taken out by the integrator of implicit steps: backward Euler damps what is fast
     double heat;          // of plastic: what has warmed the material; a part, no term of the sum
-    double external_work; // done on the bodies by gravity, walls and prescribed motion
+    double external_work; // done on the bodies by gravity, boundaries and prescribed motion
     double initial;       // kinetic + internal at the start
     double total;         // kinetic + internal + all that was taken out
     double error;         // total - initial - external_work
@@ -85,37 +85,37 @@ void brunt_body_eroded(const brunt_world *world, int32_t body, brunt_eroded *ero
 // What can be read of a body, at its particles, or at its nodes and its elements: stored and derived fields alike
 // ("velocity", "stress" = Cauchy, "pressure", "von_mises", "density", "plastic_strain", "temperature", "J", "volume",
 // "id", ...).
-typedef enum brunt_place { BRUNT_AT_PARTICLES, BRUNT_AT_NODES, BRUNT_AT_ELEMENTS } brunt_place;
+typedef enum brunt_location { BRUNT_AT_PARTICLES, BRUNT_AT_NODES, BRUNT_AT_ELEMENTS } brunt_location;
 typedef struct brunt_field_info {
     const char *name, *unit;
     int components; // 1, 3, 6 (symmetric) or 9
     bool symmetric;
-    brunt_place at;
+    brunt_location at;
 } brunt_field_info;
 int32_t brunt_body_field_count(const brunt_world *world, int32_t body);
 brunt_field_info brunt_body_field(const brunt_world *world, int32_t body, int32_t field);
 // -1 when the body has no such field.
 int32_t brunt_body_find_field(const brunt_world *world, int32_t body, const char *name);
-int64_t brunt_body_size(const brunt_world *world, int32_t body, brunt_place at); // particles, nodes or elements
+int64_t brunt_body_size(const brunt_world *world, int32_t body, brunt_location at); // particles, nodes or elements
 // Writes brunt_body_size(at) x components doubles in the order of the ids (0 .. count-1 within the body). Vectors
 // always have 3 components, symmetric tensors 6 (XX YY ZZ XY YZ XZ), matrices 9, whatever the dimension.
 void brunt_body_read(brunt_world *world, int32_t body, int32_t field, double *out);
 
-// Contact pairs and walls: what they do to `b` / to the bodies. What a body does to itself adds up to nothing: of a
-// pair of one body force and impulse are 0. Before the first step all is 0.
-typedef struct brunt_force {
+// Contact pairs and boundaries: what they do to `b` / to the bodies. What a body does to itself adds up to nothing: of
+// a pair of one body force and impulse are 0. Before the first step all is 0.
+typedef struct brunt_reaction {
     char name[2 * BRUNT_NAME_LENGTH + 2];
     double force[3];                   // [N] averaged over the last step
     double impulse[3];                 // [N s] since the start
     double normal_work, friction_work; // [J] so far
     double area; // [m^2] that touched in the last step; in plane strain [m]; of implicit steps what is nearer than
                  // contact.distance
-} brunt_force;
+} brunt_reaction;
 // Scenes with more than 64 pairs have them all in one, named "all".
 int32_t brunt_pair_count(const brunt_world *world);
-void brunt_pair_force(const brunt_world *world, int32_t pair, brunt_force *force); // name "a-b", force on b
-int32_t brunt_wall_count(const brunt_world *world); // planes, regions, groups, then surfaces
-void brunt_wall_force(const brunt_world *world, int32_t wall, brunt_force *force); // force on the bodies
+void brunt_pair_force(const brunt_world *world, int32_t pair, brunt_reaction *force); // name "a-b", force on b
+int32_t brunt_boundary_count(const brunt_world *world); // planes, regions, groups, then surfaces
+void brunt_boundary_reaction(const brunt_world *world, int32_t boundary, brunt_reaction *force); // force on the bodies
 
 // A line or surface that holds material points, as of the last step; tractions, forces and moments are on the bodies.
 typedef struct brunt_boundary_surface_report {
@@ -133,7 +133,7 @@ int64_t brunt_boundary_surface_size(const brunt_world *world, int32_t index); //
 // Arrays of the caller, with room for that many. Of each boundary particle: place [m], normal, traction of its piece on
 // the bodies [Pa], 3 numbers each; its part of the boundary [m^2] (of plane strain [m]); its piece.
 typedef struct brunt_boundary_surface_arrays {
-    double *place, *normal, *traction, *weight;
+    double *position, *normal, *traction, *weight;
     int64_t *piece;
 } brunt_boundary_surface_arrays;
 void brunt_boundary_surface_particles(const brunt_world *world, int32_t index,

@@ -13,7 +13,7 @@ typedef enum brunt_shape_kind {
     BRUNT_BOX,        // min, max
     BRUNT_SPHERE,     // center, radius (a disk in two dimensions)
     BRUNT_CYLINDER,   // center of one end, axis, radius, length
-    BRUNT_RING,       // like cylinder with inner_radius; in two dimensions an annulus (center, inner_radius, radius)
+    BRUNT_TUBE,       // like cylinder with inner_radius; in two dimensions an annulus (center, inner_radius, radius)
     BRUNT_PRISM,      // polygon (counter-clockwise or clockwise, in the x-y plane) between min[2] and max[2]; 2D: the
                       // polygon
     BRUNT_HALF_SPACE, // center: a point of the plane; axis: normal pointing out of the material

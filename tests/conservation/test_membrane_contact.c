@@ -10,8 +10,8 @@ static const double THICK = 0.02; // [m]
 
 static brunt_world_def begin(double cell, double friction) {
     brunt_world_def def = def_begin(3, cell);
-    def.groups = brunt_alloc(DEF_ROOM * sizeof *def.groups);
-    def.contact.pairs = brunt_alloc(DEF_ROOM * sizeof *def.contact.pairs);
+    def.groups = brunt_alloc(DEF_CAPACITY * sizeof *def.groups);
+    def.contact.pairs = brunt_alloc(DEF_CAPACITY * sizeof *def.contact.pairs);
     def.contact.method = BRUNT_CONTACT_AUGURY;
     def.contact.friction = friction;
     return def;
@@ -109,13 +109,13 @@ static double height_over(const double (*node)[3], const int32_t *quad, int64_t 
 }
 
 // Least and greatest height of a body's nodes, or particles, over a sheet.
-static void heights(brunt_world *world, int sheet_body, int body, double *least, double *most) {
-    double(*node)[3] = (void *)world_field(world, sheet_body, "position");
+static void heights(brunt_world *world, int membrane_body, int body, double *least, double *most) {
+    double(*node)[3] = (void *)world_field(world, membrane_body, "position");
     double(*x)[3] = (void *)world_field(world, body, "position");
-    int64_t quads = brunt_body_elements(world, sheet_body);
+    int64_t quads = brunt_body_elements(world, membrane_body);
     int64_t count = brunt_body_nodes(world, body) + brunt_body_particles(world, body);
     int32_t *quad = malloc((size_t)(4 * quads) * sizeof *quad);
-    brunt_body_connectivity(world, sheet_body, quad);
+    brunt_body_connectivity(world, membrane_body, quad);
     *least = INFINITY, *most = -INFINITY;
     for (int64_t i = 0; i < count; i++) {
         double h = height_over((const double(*)[3])node, quad, quads, x[i]);
@@ -161,7 +161,7 @@ START_TEST(between_two_blocks) {
     }
     brunt_energy e = world_energy(world);
     brunt_momentum p = world_momentum(world);
-    brunt_body_sums up = world_sums(world, a), down = world_sums(world, b), sheet_sums = world_sums(world, m);
+    brunt_body_sums up = world_sums(world, a), down = world_sums(world, b), membrane_sums = world_sums(world, m);
     printf("squeezed%s: upper block from %.4f, lower to %.4f (half thickness %.3f), apart at %.2f, %.2f m/s; "
            "E %.4f, most %.6f, error %.1e, drift %.1e %.1e\n",
            turned ? ", turned" : "", over, under, THICK / 2, up.velocity[2], down.velocity[2], stored(&e) / e.initial,
@@ -171,7 +171,7 @@ START_TEST(between_two_blocks) {
               "blocks on both sides of a sheet%s: depth [half thicknesses]", how);
     ck_assert_double_gt(up.velocity[2], 0.5);
     ck_assert_double_lt(down.velocity[2], -0.2);
-    ck_assert(up.centre[2] > sheet_sums.centre[2] && sheet_sums.centre[2] > down.centre[2]);
+    ck_assert(up.centre[2] > membrane_sums.centre[2] && membrane_sums.centre[2] > down.centre[2]);
     hard_case("C08", p.linear_drift, ROUNDING, ROUNDING, "blocks on both sides of a sheet%s: drift of momentum", how);
     ck_assert_double_lt(p.angular_drift, 100 * ROUNDING);
     ck_assert_double_lt(fabs(e.error_relative), 2e-3);
@@ -207,7 +207,7 @@ static void drop_ball(double side, bool turned, double z[SAMPLES]) {
     brunt_energy e = world_energy(world);
     brunt_momentum p = world_momentum(world);
     brunt_body_sums s = world_sums(world, b);
-    brunt_force held = world_wall(world, 0);
+    brunt_reaction held = world_boundary(world, 0);
     printf("ball from %s%s: nearest %.4f of %.3f, leaves at %.3f m/s, E %.4f, most %.6f, error %.1e, drift %.1e\n",
            side > 0 ? "above" : "below", turned ? ", turned" : "", deepest, THICK / 2, s.velocity[2],
            stored(&e) / e.initial, top, e.error_relative, p.linear_drift);
@@ -405,7 +405,7 @@ START_TEST(crossing_strips) {
     }
     brunt_momentum p = world_momentum(world);
     brunt_energy e = world_energy(world);
-    brunt_force f = world_pair(world, 0);
+    brunt_reaction f = world_pair(world, 0);
     printf("strips: nearest %.4f of %.3f, impulse %.2f N s, most %.6f, error %.1e, drift %.1e %.1e\n", nearest, THICK,
            f.impulse[2], top, e.error_relative, p.linear_drift, p.angular_drift);
     ck_assert_double_gt(nearest, 0.8 * THICK);
@@ -469,7 +469,7 @@ static void folded(double s, double t, double x[3]) {
 
 // What a body does to itself adds up to nothing, whatever the area of it. Returns that.
 static double checked_self_force(const brunt_world *world) {
-    brunt_force force;
+    brunt_reaction force;
     brunt_pair_force(world, 0, &force);
     ck_assert_str_eq(force.name, "m-m");
     for (int k = 0; k < 3; k++) ck_assert(force.force[k] == 0 && force.impulse[k] == 0);
@@ -630,7 +630,7 @@ START_TEST(a_buckled_strip) {
         top = fmax(top, stored(&e) / (fabs(e.external_work) + 1e-3));
     }
     brunt_energy e = world_energy(world);
-    brunt_force f = world_pair(world, 0);
+    brunt_reaction f = world_pair(world, 0);
     printf("buckled: energy over work at most %.3f, error %.1e, contact took %.3e J of %.3e J\n", top, e.error_relative,
            e.contact + e.friction, e.external_work);
     hard_case("C21", top, 1, 1.05, "strip buckled from its ends: energy, of the work");
@@ -661,9 +661,9 @@ START_TEST(on_a_plane) {
         free(x);
     }
     double weight = 10 * world_sums(world, 0).mass, height = world_sums(world, 0).centre[2];
-    double before = world_wall(world, 0).impulse[2];
+    double before = world_boundary(world, 0).impulse[2];
     world_until(world, 2);
-    double mean = (world_wall(world, 0).impulse[2] - before) / 1.0;
+    double mean = (world_boundary(world, 0).impulse[2] - before) / 1.0;
     brunt_momentum p = world_momentum(world);
     printf("on a plane%s: lowest %.5f, rests at %.5f (half thickness %.3f), force %.4f of %.4f N, drift %.1e\n",
            turned ? ", turned" : "", lowest, height, THICK / 2, mean, weight, p.linear_drift);
@@ -795,8 +795,8 @@ START_TEST(refusals) {
     meets_itself(&def, "m");
     expect_refusal(&def, "twice");
     def = busy(1);
-    meets_itself(&def, "nobody");
-    expect_refusal(&def, "nobody");
+    meets_itself(&def, "absent");
+    expect_refusal(&def, "absent");
     ck_assert_uint_eq(brunt_memory_live(), live);
 }
 END_TEST

@@ -107,7 +107,7 @@ START_TEST(moves_as_with_its_images) {
 END_TEST
 
 int main(void) {
-    Suite *suite = suite_create("between_mirrors");
+    Suite *suite = suite_create("between_symmetry_planes");
     ADD_LOOP(moves_as_with_its_images, (int)(sizeof strips / sizeof strips[0]));
     return suite_main(suite);
 }

@@ -4,13 +4,13 @@
 #include "tests/support/fem_bodies.h"
 #include "fem/layout.h"
 
-typedef struct sheet_options {
+typedef struct membrane_options {
     const char *model; // neo-hookean when NULL
     bool tension_only;
     double nu, thickness, coefficient, mass_scaling; // 0: standard
-} sheet_options;
+} membrane_options;
 
-static inline brunt_material sheet_material(sheet_options o) {
+static inline brunt_material membrane_material(membrane_options o) {
     brunt_material_def def = brunt_material_def_default("m", o.model ? o.model : "neo-hookean");
     brunt_material material;
     brunt_error error = {0};
@@ -23,14 +23,14 @@ static inline brunt_material sheet_material(sheet_options o) {
 }
 
 // Takes the mesh.
-static inline brunt_fem_body sheet_of(brunt_mesh *mesh, sheet_options o) {
+static inline brunt_fem_body membrane_of(brunt_mesh *mesh, membrane_options o) {
     brunt_body_def def = brunt_body_def_default();
     snprintf(def.name, sizeof def.name, "sheet");
     def.method = BRUNT_MEMBRANE;
     def.thickness = o.thickness > 0 ? o.thickness : 0.01;
     def.hourglass_coefficient = o.coefficient > 0 ? o.coefficient : NAN;
     def.mass_scaling = o.mass_scaling;
-    brunt_material material = sheet_material(o);
+    brunt_material material = membrane_material(o);
     brunt_fem_body body;
     brunt_error error = {0};
     int status = brunt_fem_make(&def, &material, 3, mesh, &body, &error);
@@ -42,8 +42,8 @@ static inline brunt_fem_body sheet_of(brunt_mesh *mesh, sheet_options o) {
 
 // A rectangle of nx x ny squares of size h in the plane z = 0; inner nodes (or all) moved by up to `jitter` h in the
 // plane and `warp` h across it.
-static inline brunt_mesh sheet_mesh(brunt_element_kind kind, int nx, int ny, double h, double jitter, double warp,
-                                    bool all) {
+static inline brunt_mesh membrane_mesh(brunt_element_kind kind, int nx, int ny, double h, double jitter, double warp,
+                                       bool all) {
     const int parts = kind == BRUNT_MEMBRANE_TRI3 ? 2 : 1, nodes = brunt_element_nodes(kind), m = nx + 1;
     brunt_mesh mesh = {.kind = kind, .node_count = m * (ny + 1), .element_count = nx * ny * parts};
     mesh.nodes = brunt_alloc((size_t)mesh.node_count * sizeof *mesh.nodes);
@@ -119,4 +119,5 @@ static inline brunt_mesh quarter_disk(int m, int rings) {
     return mesh;
 }
 
-#define FOR_SHEETS(kind) for (brunt_element_kind kind = BRUNT_MEMBRANE_QUAD4; (int)kind <= BRUNT_MEMBRANE_TRI3; kind++)
+#define FOR_MEMBRANES(kind)                                                                                            \
+    for (brunt_element_kind kind = BRUNT_MEMBRANE_QUAD4; (int)kind <= BRUNT_MEMBRANE_TRI3; kind++)

@@ -67,7 +67,7 @@ START_TEST(quarter_is_a_quarter) {
 END_TEST
 
 int main(void) {
-    Suite *suite = suite_create("mirrored contact");
+    Suite *suite = suite_create("symmetry contact");
     TCase *all = tcase_create("all");
     tcase_set_timeout(all, 0);
     tcase_add_loop_test(all, quarter_is_a_quarter, 0, CASES);

@@ -8,7 +8,7 @@
 
 // Boxes are taken somewhat larger than they are: what is held at its own face leaves it by rounding and drift, and must
 // be held on. Of a spacing, beyond the half of it.
-static const double SLACK = 0.1;
+static const double MARGIN = 0.1;
 static const double ROUNDING_SHARE = 1e-9;
 static const double BEHIND = 1; // spacings: how far material may be behind a surface and still be pushed out
 
@@ -70,7 +70,7 @@ static bool inside(int dim, const point_box *box, const double *d) {
     double local[3];
     pull_back(dim, box, d, local);
     for (int a = 0; a < dim; a++)
-        if (fabs(local[a]) > (1 + 2 * SLACK) * box->half) return false;
+        if (fabs(local[a]) > (1 + 2 * MARGIN) * box->half) return false;
     return true;
 }
 
@@ -109,7 +109,7 @@ static void look_at(search *l, int32_t b) {
         return;
     }
     if (!crosses(l->dim, &l->box, d, p->normal, &enter, &leave)) return;
-    if (leave < -2 * BEHIND * l->box.half || enter > fmax(0, towards) + 2 * SLACK * l->box.half) return;
+    if (leave < -2 * BEHIND * l->box.half || enter > fmax(0, towards) + 2 * MARGIN * l->box.half) return;
     l->gap[b] = fmin(l->gap[b], fmax(enter, 0));
 }
 
@@ -134,7 +134,7 @@ static void look_around(search *l) {
     double cells = 1;
     for (int a = 0; a < l->dim; a++) {
         const double extent =
-            l->box.extent[a] * (1 + 2 * SLACK) + (s->def.condition == BRUNT_SEPARATE ? 2 * BEHIND * l->box.half : 0);
+            l->box.extent[a] * (1 + 2 * MARGIN) + (s->def.condition == BRUNT_SEPARATE ? 2 * BEHIND * l->box.half : 0);
         const double low = l->box.x[a] - extent + fmin(0, l->coming[a]),
                      high = l->box.x[a] + extent + fmax(0, l->coming[a]);
         if (!(low <= s->high[a] && high >= s->low[a])) return;
@@ -151,18 +151,18 @@ static void look_around(search *l) {
             for (int32_t z = from[2]; z <= to[2]; z++) look_in_cell(l, (const int32_t[3]){x, y, z});
 }
 
-void brunt_boundary_surface_reach(const brunt_boundary_surface *s, brunt_body *body, const brunt_boundary_reach *reach,
-                                  double *gap) {
+void brunt_boundary_surface_extent(const brunt_boundary_surface *s, brunt_body *body,
+                                   const brunt_boundary_extent *extent, double *gap) {
     search l = {.s = s, .gap = gap, .dim = body->particles.dim};
     real *const *v = brunt_field(&body->particles, BRUNT_FIELD_velocity);
     const bool leaves = s->def.condition == BRUNT_SEPARATE;
     for (int32_t b = 0; b < body->grid.block_count; b++) {
         const brunt_block *block = &body->grid.blocks[b];
         for (int64_t p = block->first; p < block->first + block->count; p++) {
-            l.box = box_of(body, p, reach->frame);
+            l.box = box_of(body, p, extent->frame);
             for (int a = 0; a < l.dim; a++) {
-                l.box.x[a] -= reach->way[a];
-                l.coming[a] = leaves ? (double)v[a][p] * reach->dt - reach->step[a] : 0;
+                l.box.x[a] -= extent->way[a];
+                l.coming[a] = leaves ? (double)v[a][p] * extent->dt - extent->step[a] : 0;
             }
             look_around(&l);
         }

@@ -66,7 +66,7 @@ static void arrive(const approach *a, double *after, double *before, double *str
         F = world_field(world, 0, "deformation_gradient");
         const double last = gap = nearest(world, a, F);
         world_steps(world, 1);
-        if (fabs(world_wall(world, 0).impulse[0]) + fabs(world_wall(world, 0).impulse[1]) > 0) break;
+        if (fabs(world_boundary(world, 0).impulse[0]) + fabs(world_boundary(world, 0).impulse[1]) > 0) break;
         come = last - nearest(world, a, F);
     } while (brunt_world_time(world) < 1);
     *after = nearest(world, a, F) / come, *before = gap / come, *stretched = reach(F, 0, a->normal);

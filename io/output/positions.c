@@ -1,4 +1,4 @@
-#include "io/output/places.h"
+#include "io/output/positions.h"
 
 #include <string.h>
 
@@ -16,7 +16,7 @@ int32_t brunt_find_body(const brunt_world *world, const char *name) {
     return BRUNT_NONE;
 }
 
-brunt_place brunt_place_of_motion(const brunt_world *world, int32_t body) {
+brunt_location brunt_location_of_motion(const brunt_world *world, int32_t body) {
     return brunt_body_method(world, body) == BRUNT_MPM ? BRUNT_AT_PARTICLES : BRUNT_AT_NODES;
 }
 
@@ -29,14 +29,15 @@ static int read_points(brunt_world *world, int32_t body, double **points, brunt_
     if (position < 0)
         return brunt_fail(error, BRUNT_FAILED, "body '%s' has no field 'position'", brunt_body_name(world, body));
     *points =
-        brunt_alloc(sizeof(double) * 3 * (size_t)brunt_body_size(world, body, brunt_place_of_motion(world, body)));
+        brunt_alloc(sizeof(double) * 3 * (size_t)brunt_body_size(world, body, brunt_location_of_motion(world, body)));
     if (!*points) return no_memory(world, body, error);
     brunt_body_read(world, body, position, *points);
     return BRUNT_OK;
 }
 
 // Means of the corners.
-static int read_centres(brunt_world *world, int32_t body, const double *points, double **places, brunt_error *error) {
+static int read_centres(brunt_world *world, int32_t body, const double *points, double **positions,
+                        brunt_error *error) {
     int nodes = brunt_element_nodes(brunt_body_element(world, body));
     int64_t count = brunt_body_size(world, body, BRUNT_AT_ELEMENTS);
     int32_t *cells = brunt_alloc(sizeof *cells * (size_t)nodes * (size_t)count);
@@ -54,23 +55,23 @@ static int read_centres(brunt_world *world, int32_t body, const double *points, 
             centres[3 * e + c] = sum / nodes;
         }
     brunt_free(cells);
-    *places = centres;
+    *positions = centres;
     return BRUNT_OK;
 }
 
-int brunt_places_read(brunt_world *world, int32_t body, brunt_place at, double **places, brunt_error *error) {
+int brunt_positions_read(brunt_world *world, int32_t body, brunt_location at, double **positions, brunt_error *error) {
     double *points = NULL;
     int status = read_points(world, body, &points, error);
     if (status || at != BRUNT_AT_ELEMENTS) {
-        *places = points;
+        *positions = points;
         return status;
     }
-    status = read_centres(world, body, points, places, error);
+    status = read_centres(world, body, points, positions, error);
     brunt_free(points);
     return status;
 }
 
-int32_t brunt_place_ids(const brunt_world *world, int32_t body, brunt_place at) {
+int32_t brunt_location_ids(const brunt_world *world, int32_t body, brunt_location at) {
     return at == BRUNT_AT_NODES ? BRUNT_NONE
                                 : brunt_body_find_field(world, body, at == BRUNT_AT_ELEMENTS ? "element" : "id");
 }

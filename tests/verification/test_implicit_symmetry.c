@@ -211,7 +211,7 @@ START_TEST(restart) {
 END_TEST
 
 int main(void) {
-    Suite *suite = suite_create("implicit_mirrors");
+    Suite *suite = suite_create("implicit_symmetry");
     ADD_LOOP(as_whole, PARTS);
     ADD_LOOP(on_mesh, 2);
     ADD_LOOP(threads, PARTS + 1);

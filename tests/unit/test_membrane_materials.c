@@ -34,7 +34,7 @@ typedef struct sheet {
     real F[4][ROOM], stress[4][ROOM], thickness[ROOM], volume[ROOM];
 } sheet;
 
-static void sheet_make(sheet *s, int law, double nu, bool slack) {
+static void membrane_make(sheet *s, int law, double nu, bool slack) {
     memset(s, 0, sizeof *s);
     s->model = brunt_find_strength(law_name[law]);
     ck_assert(s->model && s->model->update_plane_stress && s->model->energy_plane_stress &&
@@ -51,8 +51,8 @@ static void sheet_make(sheet *s, int law, double nu, bool slack) {
 
 static int form_law(int form) { return form / (RATIOS * 2); }
 static bool form_slack(int form) { return form % 2; }
-static void sheet_of(sheet *s, int form) {
-    sheet_make(s, form_law(form), poisson[form / 2 % RATIOS], form_slack(form));
+static void membrane_of(sheet *s, int form) {
+    membrane_make(s, form_law(form), poisson[form / 2 % RATIOS], form_slack(form));
 }
 
 typedef struct sym {
@@ -109,7 +109,7 @@ static sym random_stretch(uint64_t *seed, double strain) {
 
 START_TEST(rest) {
     sheet s;
-    sheet_of(&s, _i);
+    membrane_of(&s, _i);
     double speed = respond(&s, (sym){1, 1, 0}), expect = sqrt(s.plane / density);
     ck_assert(size_of(get_stress(&s, 0)) == 0 && s.thickness[0] == 1 && energy_at(&s, (sym){1, 1, 0}) == 0);
     ck_assert_double_eq_tol(speed, expect, 10 * epsilon * expect);
@@ -121,7 +121,7 @@ END_TEST
 // slack sheet.
 START_TEST(stress_is_derivative_of_energy) {
     sheet s;
-    sheet_of(&s, _i);
+    membrane_of(&s, _i);
     uint64_t seed = 3;
     const double h = TOLERANCE(1e-6, 1e-2);
     for (int n = 0; n < 200; n++) {
@@ -143,7 +143,7 @@ END_TEST
 
 START_TEST(response_turns_with_the_axes) {
     sheet s;
-    sheet_of(&s, _i);
+    membrane_of(&s, _i);
     uint64_t seed = 4;
     for (int n = 0; n < 100; n++) {
         double l1 = 1 + 0.2 * uniform(&seed), l2 = 1 + 0.2 * uniform(&seed), a = 3 * uniform(&seed);
@@ -162,7 +162,7 @@ END_TEST
 // strain itself.
 START_TEST(small_strain_is_hooke) {
     sheet s;
-    sheet_of(&s, _i);
+    membrane_of(&s, _i);
     if (form_slack(_i)) return;
     uint64_t seed = 5;
     for (int n = 0; n < 60; n++) {
@@ -189,7 +189,7 @@ static bool same_bits(const sheet *a, int i, const sheet *b, int j) {
 // A point among others in all states, and the same one alone: the same bits.
 START_TEST(batch_equals_point) {
     sheet batch, alone;
-    sheet_of(&batch, _i), sheet_of(&alone, _i);
+    membrane_of(&batch, _i), membrane_of(&alone, _i);
     batch.points.count = ROOM;
     const double strains[] = {1e-6, 1e-2, 0.2, 0.3};
     uint64_t seed = 6;
@@ -243,7 +243,7 @@ static double tangent(sheet *s, sym U, double a, double b) {
 // No wave is faster than the update says, in the plane or out of it.
 START_TEST(wave_speed_is_a_bound) {
     sheet s;
-    sheet_of(&s, _i);
+    membrane_of(&s, _i);
     uint64_t seed = 8;
     double loosest = 0;
     for (int state = 0; state < 12; state++) {
@@ -272,7 +272,7 @@ END_TEST
 
 START_TEST(linear_uniaxial) {
     sheet s;
-    sheet_make(&s, LINEAR, 0.3, _i);
+    membrane_make(&s, LINEAR, 0.3, _i);
     for (int n = 0; n < 8; n++) {
         double e = 0.05 * (n + 1);
         sym tau = stress_at(&s, (sym){1 + e, 1 - 0.3 * e, 0});
@@ -286,7 +286,7 @@ END_TEST
 
 START_TEST(st_venant_uniaxial) {
     sheet s;
-    sheet_make(&s, ST_VENANT, 0.3, _i);
+    membrane_make(&s, ST_VENANT, 0.3, _i);
     for (int n = 0; n < 8; n++) {
         double E = 0.05 * (n + 1), l = sqrt(1 + 2 * E), w = sqrt(1 - 2 * 0.3 * E);
         sym tau = stress_at(&s, (sym){w, l, 0});
@@ -315,7 +315,7 @@ static long double bisect(const sheet *s, long double m, long double c) {
 START_TEST(neo_hookean_thickness) {
     const double ratios[] = {0, 0.3, 0.499, 0.4999, -0.5};
     sheet s;
-    sheet_make(&s, NEO_HOOKEAN, ratios[_i], false);
+    membrane_make(&s, NEO_HOOKEAN, ratios[_i], false);
     uint64_t seed = 9;
     double worst = 0;
     for (int n = 0; n < 300; n++) {
@@ -341,7 +341,7 @@ END_TEST
 // The solid law with F = diag(U, l3) has no stress across and the same in the plane.
 START_TEST(neo_hookean_is_the_solid) {
     sheet s;
-    sheet_make(&s, NEO_HOOKEAN, poisson[_i], false);
+    membrane_make(&s, NEO_HOOKEAN, poisson[_i], false);
     real F[9][BRUNT_LANES] = {{0}}, L[9][BRUNT_LANES] = {{0}}, stress[6][BRUNT_LANES] = {{0}};
     brunt_material_points solid = {.count = BRUNT_LANES, .dim = 3, .dt = 1, .volume = s.volume};
     for (int k = 0; k < 9; k++) solid.F[k] = F[k], solid.L[k] = L[k];
@@ -373,7 +373,7 @@ START_TEST(balloon_has_its_greatest_pressure) {
     const double ratios[] = {0.499, 0.4999}, peak = pow(7, 1 / 6.0), height = 1 / peak - pow(peak, -7);
     for (int k = 0; k < 2; k++) {
         sheet s;
-        sheet_make(&s, NEO_HOOKEAN, ratios[k], false);
+        membrane_make(&s, NEO_HOOKEAN, ratios[k], false);
         double low = 1.1, high = 1.9;
         while (high - low > TOLERANCE(1e-6, 2e-2)) {
             double a = low + (high - low) / 3, b = high - (high - low) / 3;
@@ -402,8 +402,8 @@ static double natural_width(const sheet *s, int law, double l) {
 START_TEST(slack_bears_tension_only) {
     sheet s, stiff;
     int law = _i / RATIOS;
-    sheet_make(&s, law, poisson[_i % RATIOS], true);
-    sheet_make(&stiff, law, poisson[_i % RATIOS], false);
+    membrane_make(&s, law, poisson[_i % RATIOS], true);
+    membrane_make(&stiff, law, poisson[_i % RATIOS], false);
     uint64_t seed = 12;
     for (int n = 0; n < 60; n++) {
         double u = 0.5 * (1 + uniform(&seed)), v = 0.5 * (1 + uniform(&seed));
@@ -431,7 +431,7 @@ END_TEST
 // Young's modulus: wrinkled stress over strain, for a strain at which all laws agree.
 START_TEST(slack_has_youngs_modulus) {
     sheet s;
-    sheet_make(&s, _i / RATIOS, poisson[_i % RATIOS], true);
+    membrane_make(&s, _i / RATIOS, poisson[_i % RATIOS], true);
     const double e = TOLERANCE(1e-7, 1e-3);
     sym tau = stress_at(&s, (sym){0.8, 1 + e, 0});
     double strain = (double)s.F[3][0] - 1;
@@ -444,8 +444,8 @@ END_TEST
 START_TEST(slack_energy_is_the_least) {
     sheet s, stiff;
     int law = _i / RATIOS;
-    sheet_make(&s, law, poisson[_i % RATIOS], true);
-    sheet_make(&stiff, law, poisson[_i % RATIOS], false);
+    membrane_make(&s, law, poisson[_i % RATIOS], true);
+    membrane_make(&stiff, law, poisson[_i % RATIOS], false);
     uint64_t seed = 13;
     for (int n = 0; n < 8; n++) {
         double l1 = 1 + 0.15 * uniform(&seed), l2 = 1 + 0.15 * uniform(&seed), least = INFINITY;
@@ -465,7 +465,7 @@ END_TEST
 // Stress changes by no more than a stiffness times the change of stretch, along paths through all three states.
 START_TEST(slack_is_continuous) {
     sheet s;
-    sheet_make(&s, _i / RATIOS, poisson[_i % RATIOS], true);
+    membrane_make(&s, _i / RATIOS, poisson[_i % RATIOS], true);
     const double ends[][4] = {{0.8, 0.9, 1.2, 1.15}, {1.2, 0.7, 1.2, 1.2}, {0.7, 1.2, 1.2, 1.15}, {1.2, 0.9, 0.9, 1.2}};
     enum { STEPS = 2000 };
     for (int path = 0; path < 4; path++) {
@@ -507,7 +507,7 @@ static void expect_bad(sheet *s, sym U, const char *word) {
 
 START_TEST(bad_points_are_reported) {
     sheet s;
-    sheet_of(&s, _i);
+    membrane_of(&s, _i);
     expect_bad(&s, (sym){1, -0.1, 0}, "inside out");
     expect_bad(&s, (sym){1, 1, 1.5}, "inside out");
     expect_bad(&s, (sym){-1, -2, 0}, "inside out");
@@ -520,9 +520,9 @@ START_TEST(bad_points_are_reported) {
     }
     if (s.nu > 0.2 && form_law(_i) != NEO_HOOKEAN) expect_bad(&s, (sym){3, 3, 0}, "thickness");
     // The law with nu < 0 shrinks to nothing in strong compression of both stretches; a slack sheet is not compressed.
-    sheet_make(&s, NEO_HOOKEAN, -0.8, false);
+    membrane_make(&s, NEO_HOOKEAN, -0.8, false);
     expect_bad(&s, (sym){0.5, 0.5, 0}, "thickness");
-    sheet_make(&s, NEO_HOOKEAN, -0.8, true);
+    membrane_make(&s, NEO_HOOKEAN, -0.8, true);
     ck_assert(size_of(stress_at(&s, (sym){0.5, 0.5, 0})) == 0);
 }
 END_TEST
@@ -535,7 +535,7 @@ START_TEST(extremes_are_admissible) {
             for (int a = 0; a < 5; a++)
                 for (int b = 0; b < 5; b++) {
                     sheet s;
-                    sheet_make(&s, NEO_HOOKEAN, ratios[r], slack);
+                    membrane_make(&s, NEO_HOOKEAN, ratios[r], slack);
                     sym U = {stretches[a], stretches[b], 0};
                     double speed = respond(&s, U);
                     ck_assert(isfinite(speed) && speed > 0 && s.thickness[0] > 0);
@@ -556,7 +556,7 @@ START_TEST(material_of_a_body) {
         ck_assert_int_eq(brunt_material_make_membrane(&def, slack, &material, &error), BRUNT_OK);
         ck_assert_double_eq_tol((double)material.wave_speed, sqrt(young / 0.91 / density), 1e-4);
         sheet s;
-        sheet_make(&s, NEO_HOOKEAN, 0.3, false);
+        membrane_make(&s, NEO_HOOKEAN, 0.3, false);
         for (int i = 0; i < BRUNT_LANES; i++) set_stretch(&s, i, (sym){0.9, 0.95, 0.01});
         brunt_material_points points[BRUNT_COMPONENTS] = {[BRUNT_STRENGTH] = s.points};
         ck_assert_int_lt(brunt_material_update(&material, points, NULL, NULL, NULL).bad, 0);
