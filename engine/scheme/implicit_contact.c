@@ -347,9 +347,9 @@ static int look_at_start(brunt_implicit_contact *c, const brunt_world *world, br
 }
 
 // [J]
-static double kinetic_energy(const brunt_world *world) {
+static double kinetic_energy(const brunt_bodies *bodies) {
     double sum = 0;
-    for (int b = 0; b < world->bodies.count; b++) sum += world->bodies.all[b].ops->sums(&world->bodies.all[b]).kinetic;
+    for (int b = 0; b < bodies->count; b++) sum += bodies->all[b].ops->sums(&bodies->all[b]).kinetic;
     return sum;
 }
 
@@ -368,7 +368,7 @@ static int check_gaps(brunt_implicit_contact *c, brunt_world *world, bool given,
                    "bodies.%s begins with a gap of %.4g m to %s, at (%.6g, %.6g, %.6g) m: within contact.distance, "
                    "%.4g m%s, barriers push; they store %.3g J at the start, all bodies move with %.3g J",
                    brunt_body_name(world, r.body), r.least_gap, to, r.position[0], r.position[1], r.position[2],
-                   c->distance, given ? "" : " by default", r.energy, kinetic_energy(world));
+                   c->distance, given ? "" : " by default", r.energy, kinetic_energy(&world->bodies));
         return BRUNT_OK;
     }
     return brunt_fail(error, BRUNT_BAD_INPUT,

@@ -149,8 +149,8 @@ int brunt_surfaces_make(brunt_world *world, const brunt_world_def *def, brunt_er
 }
 
 // [m] that material points meet others out from their centres; 0 of meshes.
-static double half_spacing(const brunt_world *world, int body) {
-    const brunt_body *mpm = world->bodies.all[body].mpm;
+static double half_spacing(const brunt_bodies *bodies, int body) {
+    const brunt_body *mpm = bodies->all[body].mpm;
     return mpm ? 0.5 * mpm->spacing : 0;
 }
 
@@ -179,7 +179,7 @@ int brunt_surfaces_overlap(brunt_world *world, brunt_error *error) {
                           "bodies.%s is %.4g m behind the plane '%s' at the start, at (%.6g, %.6g, %.6g) m; %s",
                           brunt_body_name(world, o.a), o.depth, world->boundaries.boundary[o.boundary].name, o.x[0],
                           o.x[1], o.x[2], way_out);
-    const bool shallow = o.depth < half_spacing(world, o.a) + half_spacing(world, o.b);
+    const bool shallow = o.depth < half_spacing(&world->bodies, o.a) + half_spacing(&world->bodies, o.b);
     return brunt_fail(error, BRUNT_BAD_INPUT,
                       "bodies.%s overlaps bodies.%s by %.4g m at the start, at (%.6g, %.6g, %.6g) m%s; %s",
                       brunt_body_name(world, o.a), brunt_body_name(world, o.b), o.depth, o.x[0], o.x[1], o.x[2],
