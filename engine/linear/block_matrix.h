@@ -26,7 +26,7 @@ typedef struct brunt_pattern {
     int dim;
     int32_t nodes;
     const brunt_stencils *stencils; // `lists` lists, nodes within [0, nodes)
-    int lists;                      // at most 255
+    int lists;                      // fewer than 2^23
     bool keep; // what the matrix has stays in it, when it has as many nodes: versions of lists are then of one problem
     const struct brunt_fold *fold; // stencils that hold a follower hold its leader too; NULL: none follows
 } brunt_pattern;

@@ -8,7 +8,7 @@
 #include "base/error.h"
 #include "base/memory.h"
 
-enum { LIST_SHIFT = 56, LISTS = 255, ROW_GRAIN = 64, FEW = 24 };
+enum { LIST_SHIFT = 40, LISTS = 1 << 23, ROW_GRAIN = 64, FEW = 24 }; // a sign, 23 bits of list, 40 of number
 
 typedef struct row_maker {
     int32_t *mark;   // of each node: the row + 1 that has it
@@ -30,8 +30,10 @@ struct brunt_pattern_scratch {
     int64_t *new_first;
     int32_t *new_column;
     size_t first_capacity, stencil_capacity, row_capacity, new_first_capacity, new_column_capacity;
-    int64_t version[LISTS]; // of the lists that the pattern has been made of; 0: not known
-    bool known[LISTS];      // lists that the pattern has already
+    int64_t *version; // of the lists that the pattern has been made of; 0: not known
+    bool *known;      // lists that the pattern has already
+    int lists;        // that have versions
+    size_t version_capacity, known_capacity;
     row_maker maker[BRUNT_THREAD_LIMIT];
 };
 
@@ -211,11 +213,12 @@ static bool complete(const brunt_block_matrix *m, const brunt_pattern *p, bool k
     struct brunt_pattern_scratch *s = m->scratch;
     bool all = keep;
     for (int l = 0; l < p->lists; l++) {
-        s->known[l] = keep && p->stencils[l].version && p->stencils[l].version == s->version[l];
+        const int64_t before = l < s->lists ? s->version[l] : 0;
+        s->known[l] = keep && p->stencils[l].version && p->stencils[l].version == before;
         all = all && (s->known[l] || has_stencils(m, p, &p->stencils[l]));
         s->version[l] = p->stencils[l].version;
     }
-    for (int l = p->lists; l < LISTS; l++) s->version[l] = 0;
+    s->lists = p->lists;
     return all;
 }
 
@@ -224,6 +227,14 @@ static int make_marks(const brunt_block_matrix *m, const brunt_team *team, int32
         if (BRUNT_CAPACITY(m->scratch->maker[t].mark, (size_t)nodes, 0, "nodes of a matrix", error))
             return BRUNT_FAILED;
     return BRUNT_OK;
+}
+
+static int make_versions(struct brunt_pattern_scratch *s, int lists, brunt_error *error) {
+    static const char of_stencils[] = "lists of stencils of a matrix";
+    return BRUNT_CAPACITY(s->version, (size_t)lists + 1, (size_t)s->lists, of_stencils, error) ||
+                   BRUNT_CAPACITY(s->known, (size_t)lists + 1, 0, of_stencils, error)
+               ? BRUNT_FAILED
+               : BRUNT_OK;
 }
 
 // The rows, into new_first and new_column.
@@ -276,11 +287,11 @@ static int take_rows(brunt_block_matrix *m, const brunt_team *team, const brunt_
 
 int brunt_block_matrix_pattern(brunt_block_matrix *m, const brunt_team *team, const brunt_pattern *p,
                                brunt_error *error) {
-    BRUNT_ASSERT((p->dim == 2 || p->dim == 3) && p->lists <= LISTS && p->nodes >= 0);
+    BRUNT_ASSERT((p->dim == 2 || p->dim == 3) && p->lists < LISTS && p->nodes >= 0);
     if (!m->scratch && BRUNT_NEW(m->scratch, 1, "room to make a matrix", error)) return BRUNT_FAILED;
     const bool keep = p->keep && m->pattern && m->nodes == p->nodes && m->dim == p->dim;
     pattern_work work = {m, p, m->scratch, keep};
-    if (make_marks(m, team, p->nodes, error)) return BRUNT_FAILED;
+    if (make_marks(m, team, p->nodes, error) || make_versions(m->scratch, p->lists, error)) return BRUNT_FAILED;
     if (!complete(m, p, keep))
         if (new_rows(&work, team, error) || (!same_pattern(m, p) && take_rows(m, team, p, error))) return BRUNT_FAILED;
     brunt_block_matrix_zero(m, team);
@@ -297,7 +308,8 @@ void brunt_block_matrix_free(brunt_block_matrix *m) {
     if (s) {
         for (int t = 0; t < BRUNT_THREAD_LIMIT; t++) brunt_free(s->maker[t].mark), brunt_free(s->maker[t].column);
         brunt_free(s->first), brunt_free(s->stencil), brunt_free(s->row);
-        brunt_free(s->new_first), brunt_free(s->new_column), brunt_free(s);
+        brunt_free(s->new_first), brunt_free(s->new_column), brunt_free(s->version), brunt_free(s->known);
+        brunt_free(s);
     }
     brunt_free(m->first), brunt_free(m->column), brunt_free(m->diagonal), brunt_free(m->value);
     *m = (brunt_block_matrix){0};
