@@ -11,21 +11,59 @@
 // Of the heaviest node of a body: lighter ones have no weight at any particle, and stay at rest.
 static const double LEAST_SHARE = 1e-28;
 
-static bool tied(const brunt_world *world, int i, int k) {
-    const int32_t p = brunt_pair_of(&world->pairs.map, world->bodies.mpm[i].index, world->bodies.mpm[k].index);
-    return p >= 0 && brunt_contact_node_law(world->pairs.pair[p].method) != NULL;
+static bool ties(const brunt_pairs *pairs, int32_t p) {
+    return p >= 0 && brunt_contact_node_law(pairs->pair[p].method) != NULL;
+}
+
+// The first of the bodies that share nodes with one.
+static int32_t first_of(int32_t *tie, int32_t i) {
+    while (tie[i] != i) i = tie[i] = tie[tie[i]];
+    return i;
+}
+
+static void tie_two(int32_t *tie, int32_t i, int32_t k) {
+    const int32_t a = first_of(tie, i), b = first_of(tie, k);
+    tie[a > b ? a : b] = a > b ? b : a;
+}
+
+// Where bodies of points are tied unless an entry says otherwise: from body to body, those that are left are looked at,
+// and each is found at once but for the few that are not tied to one.
+static int tie_usual(const brunt_pairs *pairs, const brunt_bodies *bodies, int32_t *tie, brunt_error *error) {
+    int32_t *left, *found, count = bodies->mpm_count;
+    if (BRUNT_NEW(left, 2 * count + 1, "bodies that may be tied", error)) return BRUNT_FAILED;
+    for (int32_t i = 0; i < count; i++) left[i] = i;
+    found = left + count;
+    while (count > 0) {
+        int32_t next = 1;
+        for (found[0] = left[--count]; next > 0;) {
+            const int32_t i = found[--next];
+            int32_t kept = 0;
+            for (int32_t q = 0; q < count; q++) {
+                const int32_t k = left[q];
+                if (ties(pairs, brunt_pair_of(&pairs->map, bodies->mpm[i].index, bodies->mpm[k].index)))
+                    tie_two(tie, i, k), found[next++] = k;
+                else
+                    left[kept++] = k;
+            }
+            count = kept;
+        }
+    }
+    brunt_free(left);
+    return BRUNT_OK;
 }
 
 // Bodies that share nodes, by the first of them.
-static void find_ties(const brunt_world *world, int32_t *tie) {
-    for (int i = 0; i < world->bodies.mpm_count; i++) tie[i] = i;
-    for (int i = 0; i < world->bodies.mpm_count; i++)
-        for (int k = 0; k < i; k++) {
-            if (!tied(world, i, k)) continue;
-            const int32_t low = tie[i] < tie[k] ? tie[i] : tie[k], high = tie[i] < tie[k] ? tie[k] : tie[i];
-            for (int q = 0; q <= i; q++)
-                if (tie[q] == high) tie[q] = low;
-        }
+static int find_ties(const brunt_pairs *pairs, const brunt_bodies *bodies, int32_t *tie, brunt_error *error) {
+    const brunt_pair_map *map = &pairs->map;
+    for (int i = 0; i < bodies->mpm_count; i++) tie[i] = i;
+    for (int32_t q = 0; q < map->count; q++) {
+        const brunt_body *a = bodies->all[map->entry[q].a].mpm, *b = bodies->all[map->entry[q].b].mpm;
+        if (a && b && ties(pairs, map->entry[q].pair))
+            tie_two(tie, (int32_t)(a - bodies->mpm), (int32_t)(b - bodies->mpm));
+    }
+    if (map->mesh && ties(pairs, map->usual[0]) && tie_usual(pairs, bodies, tie, error)) return BRUNT_FAILED;
+    for (int i = 0; i < bodies->mpm_count; i++) tie[i] = first_of(tie, i);
+    return BRUNT_OK;
 }
 
 int brunt_unknowns_make(brunt_unknowns *u, const brunt_world *world, brunt_error *error) {
@@ -36,9 +74,9 @@ int brunt_unknowns_make(brunt_unknowns *u, const brunt_world *world, brunt_error
         BRUNT_NEW(u->grid_base, bodies->mpm_count + 1, "grids with unknowns", error) ||
         BRUNT_NEW(u->number, bodies->mpm_count + 1, "grids with unknowns", error) ||
         BRUNT_NEW(u->number_capacity, bodies->mpm_count + 1, "grids with unknowns", error) ||
-        BRUNT_NEW(u->tie, bodies->mpm_count + 1, "bodies that are tied", error))
+        BRUNT_NEW(u->tie, bodies->mpm_count + 1, "bodies that are tied", error) ||
+        find_ties(&world->pairs, bodies, u->tie, error))
         return BRUNT_FAILED;
-    find_ties(world, u->tie);
     u->images.any = bodies->mpm_count > 0 && world->boundaries.symmetry_count > 0;
     return BRUNT_OK;
 }

@@ -23,10 +23,10 @@ static int symmetry_of(const brunt_unknowns *u, const brunt_world *world, int i,
     for (int m = 0; m < world->boundaries.symmetry_count; m++) {
         const brunt_symmetry_plane *symmetry_plane = &world->boundaries.symmetry[m];
         bool acts = false;
-        for (int k = 0; k < world->bodies.mpm_count; k++)
-            acts = acts || (u->tie[k] == u->tie[i] &&
-                            brunt_boundary_acts_on(&world->boundaries.boundary[symmetry_plane->boundary],
-                                                   world->bodies.mpm[k].index));
+        for (int k = u->tie[i]; k < world->bodies.mpm_count && !acts; k++)
+            acts =
+                u->tie[k] == u->tie[i] && brunt_boundary_acts_on(&world->boundaries.boundary[symmetry_plane->boundary],
+                                                                 world->bodies.mpm[k].index);
         if (acts) symmetry[count++] = *symmetry_plane;
     }
     return count;
