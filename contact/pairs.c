@@ -1,9 +1,10 @@
 #include "contact/pairs.h"
 
-#include <stdbool.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/array.h"
+#include "base/memory.h"
 #include "contact/contact.h"
 
 static int compare(const brunt_pair_entry *p, int32_t a, int32_t b) {
@@ -24,6 +25,32 @@ int32_t brunt_pair_of(const brunt_pair_map *map, int32_t a, int32_t b) {
             high = middle;
     }
     return a == b || !map->mesh ? BRUNT_NONE : map->usual[map->mesh[a] + map->mesh[b]];
+}
+
+static bool is_wanted(int32_t pair, const bool *wanted) { return pair >= 0 && wanted[pair]; }
+
+// Those whose pairs are entries; how many entries each body has with bodies of points and of meshes in `named`.
+static void note_entries(const brunt_pair_map *map, const bool *wanted, bool *met, int32_t (*named)[2]) {
+    for (int32_t i = 0; i < map->count; i++) {
+        const brunt_pair_entry *e = &map->entry[i];
+        if (is_wanted(e->pair, wanted)) met[e->a] = met[e->b] = true;
+        if (e->a != e->b && map->mesh) named[e->a][map->mesh[e->b]]++, named[e->b][map->mesh[e->a]]++;
+    }
+}
+
+int brunt_pair_map_met(const brunt_pair_map *map, int32_t bodies, const bool *wanted, bool *met, brunt_error *error) {
+    int32_t(*named)[2], all[2] = {0, 0};
+    if (BRUNT_NEW(named, bodies + 1, "pairs of bodies", error)) return BRUNT_FAILED;
+    memset(met, 0, (size_t)bodies * sizeof *met);
+    note_entries(map, wanted, met, named);
+    for (int32_t b = 0; map->mesh && b < bodies; b++) all[map->mesh[b]]++;
+    for (int32_t b = 0; map->mesh && b < bodies; b++)
+        for (int mesh = 0; mesh < 2; mesh++) {
+            const int32_t others = all[mesh] - (map->mesh[b] == mesh) - named[b][mesh];
+            met[b] = met[b] || (others > 0 && is_wanted(map->usual[map->mesh[b] + mesh], wanted));
+        }
+    brunt_free(named);
+    return BRUNT_OK;
 }
 
 int brunt_pair_map_add(brunt_pair_map *map, int32_t a, int32_t b, int32_t pair, brunt_error *error) {

@@ -2,6 +2,7 @@
 // between bodies of points and of meshes is kept once, and pairs one by one only where they are not.
 #pragma once
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -32,6 +33,9 @@ typedef struct brunt_pairs {
 // The pair of two bodies, in either order; BRUNT_NONE: they do not meet. A body meets itself only where an entry says
 // so.
 int32_t brunt_pair_of(const brunt_pair_map *map, int32_t a, int32_t b);
+// Which of `bodies` bodies meet another, or themselves, by a pair that is wanted (`wanted` of each pair): in `met`.
+// BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_pair_map_met(const brunt_pair_map *map, int32_t bodies, const bool *wanted, bool *met, brunt_error *error);
 // An entry for two bodies; before brunt_pair_of they must be sorted, after which the last that was added for two bodies
 // counts. BRUNT_OK, or BRUNT_FAILED: out of memory.
 int brunt_pair_map_add(brunt_pair_map *map, int32_t a, int32_t b, int32_t pair, brunt_error *error);

@@ -167,5 +167,6 @@ int brunt_barrier_set_step(brunt_barrier *b, const brunt_barrier_step *step, bru
     (void)error;
     b->step = *step;
     b->contacts.count = b->lagged.count = 0;
+    b->pair_count = b->key_count = 0;
     return BRUNT_OK;
 }

@@ -8,6 +8,7 @@
 // for one. Nothing here knows of the world: it is made from arrays.
 //
 // Order: make; mesh (at the start, and when the surface has changed); pairs; step (of every step); then the terms.
+// Pairs of bodies are made as their surfaces come near each other: there are as many as bodies that are near.
 // `lag` before the first iteration, and whenever friction is to follow. Arrays that are given are read until they are
 // given anew. Memory is kept from step to step: none is taken once it suffices.
 #pragma once
@@ -28,9 +29,10 @@ typedef struct brunt_barrier_mesh {
     const int32_t (*facet)[4];
 } brunt_barrier_mesh;
 
-// Two bodies that may meet. Only those do: a body meets itself by a pair (a, a).
+// Two bodies that meet; a body meets itself by a pair (a, a).
 typedef struct brunt_barrier_pair {
-    int32_t a, b;
+    int32_t a, b;      // a <= b
+    int32_t account;   // what it is known by to whoever gave it
     double distance;   // [m] dhat
     double offset;     // [m] that surfaces stand off: their gap is the distance of features less it
     double stiffness;  // [Pa] kappa
@@ -44,6 +46,17 @@ typedef struct brunt_barrier_pair {
 
 // Both meshes: 1/2, 1/2, 1/2 (edges add where points are not); b a body of material points: 0, 1, 0; a: 1, 0, 0.
 void brunt_barrier_shares(brunt_barrier_pair *pair, bool a_has_facets, bool b_has_facets);
+
+// What bodies a <= b are to each other: false: nothing, and `pair` is left as it is. Asked by several threads at once,
+// often, of bodies that are near each other alone; the answer does not change within a step.
+typedef bool brunt_barrier_pair_between(const void *self, int32_t a, int32_t b, brunt_barrier_pair *pair);
+
+typedef struct brunt_barrier_pair_source {
+    brunt_barrier_pair_between *between;
+    const void *self;
+    double range;  // [m] at least distance + offset of all pairs
+    bool friction; // some pair may have it
+} brunt_barrier_pair_source;
 
 // A half space that points of some bodies stay in front of.
 typedef struct brunt_barrier_plane {
@@ -90,8 +103,9 @@ void brunt_barrier_free(brunt_barrier *barrier);
 void brunt_barrier_validate(const brunt_barrier *barrier);
 // BRUNT_OK, or BRUNT_FAILED: out of memory; a facet without area, of two bodies or with one vertex twice.
 int brunt_barrier_set_mesh(brunt_barrier *barrier, const brunt_barrier_mesh *mesh, brunt_error *error);
-// Copied. BRUNT_OK, or BRUNT_FAILED: out of memory, a pair that is there twice.
-int brunt_barrier_set_pairs(brunt_barrier *barrier, const brunt_barrier_pair *pairs, int32_t count, brunt_error *error);
+void brunt_barrier_set_pairs(brunt_barrier *barrier, const brunt_barrier_pair_source *source);
+// Those that were near each other in this step: `count` of them, new ones behind those that were there.
+const brunt_barrier_pair *brunt_barrier_pairs(const brunt_barrier *barrier, int32_t *count);
 int brunt_barrier_set_step(brunt_barrier *barrier, const brunt_barrier_step *step, brunt_error *error);
 // [m^2] (2D [m]) of the surface in the reference configuration that is a vertex's.
 double brunt_barrier_vertex_area(const brunt_barrier *barrier, int32_t vertex);
@@ -118,6 +132,17 @@ typedef struct brunt_barrier_force {
     int64_t contacts;
 } brunt_barrier_force;
 
+// Planes in their order, then the pairs of the step (brunt_barrier_pairs).
+typedef struct brunt_barrier_forces {
+    brunt_barrier_force *force;
+    int32_t count;
+    size_t force_capacity;
+} brunt_barrier_forces;
+
+// At least `count` of them, new ones 0. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_barrier_forces_extend(brunt_barrier_forces *forces, int32_t count, brunt_error *error);
+void brunt_barrier_forces_free(brunt_barrier_forces *forces);
+
 // What Newmark's rule follows by the shortest steps: one contact, with the mass that its gap moves, 1 / sum w^2 / m.
 typedef struct brunt_barrier_stiffest {
     double step; // [s] brunt_barrier_longest_step; INFINITY: nothing that moves is in contact, or it is not asked for
@@ -137,7 +162,6 @@ typedef struct brunt_barrier_report {
     brunt_barrier_stiffest stiffest;
 } brunt_barrier_report;
 
-// At u, the end of the step; friction there works along the displacements `way` [m]. `force` (NULL: not wanted) has
-// room for the pairs in their order, then the planes.
+// At u, the end of the step; friction there works along the displacements `way` [m]. `forces` NULL: not wanted.
 int brunt_barrier_look_back(brunt_barrier *barrier, const brunt_team *team, const double *u, const double *way,
-                            brunt_barrier_report *report, brunt_barrier_force *force, brunt_error *error);
+                            brunt_barrier_report *report, brunt_barrier_forces *forces, brunt_error *error);

@@ -42,7 +42,8 @@ static void count_shared(const brunt_barrier *b, barrier_workspace *r, const int
 }
 
 static bool in_range(const brunt_barrier *b, int32_t law, double d) {
-    return d - b->pair[law].offset < b->pair[law].distance;
+    const brunt_barrier_pair *pair = barrier_pair_of(b, law);
+    return d - pair->offset < pair->distance;
 }
 
 // The facets within reach, each at its nearest feature.
@@ -106,7 +107,7 @@ static void take_back_vertices(const brunt_barrier *b, int32_t point, const doub
 static barrier_contact contact_of(const brunt_barrier *b, int32_t point, const barrier_feature *f, const double *u) {
     static const double here[3] = {0};
     barrier_contact c = {.place = {point, f->vertex[0], f->vertex[1], f->vertex[2]}, .law = f->law, .side = f->side};
-    c.offset = b->pair[f->law].offset;
+    c.offset = barrier_pair_of(b, f->law)->offset;
     double x[3][3];
     int count = 1;
     while (count < 3 && f->vertex[count] >= 0) count++;
@@ -125,7 +126,7 @@ static void plane_contacts(const brunt_barrier *b, int32_t point, const double *
     for (int64_t i = b->planes.first[point]; i < b->planes.first[point + 1]; i++) {
         const int32_t k = b->planes.item[i], place = barrier_points(b) + k;
         const brunt_barrier_plane *plane = &b->step.planes[k];
-        barrier_contact c = {.place = {point, place, -1, -1}, .law = b->pair_count + k, .side = 1};
+        barrier_contact c = {.place = {point, place, -1, -1}, .law = k, .side = 1};
         double x[1][3];
         barrier_relative(b, u, point, &place, 1, x);
         c.at = (brunt_closest){.places = 2, .flat = true, .w = {1, -1}};
@@ -150,7 +151,7 @@ static void edge_contacts(const brunt_barrier *b, int32_t edge, const double *u,
         barrier_relative(b, u, e[0], c.place, 4, x);
         brunt_closest_edges((const double(*)[3])x, (const double(*)[3])(x + 2), &c.at);
         if (!in_range(b, c.law, c.at.d)) continue;
-        c.offset = b->pair[c.law].offset;
+        c.offset = barrier_pair_of(b, c.law)->offset;
         for (int k = 0; k < 3; k++) c.edge[0][k] = x[1][k] - x[0][k], c.edge[1][k] = x[3][k] - x[2][k];
         c.threshold = PARALLEL * b->edge_length2[edge] * b->edge_length2[other];
         c.weight = barrier_share_of(b, c.law, c.side, true) * (b->edge_area[edge] + b->edge_area[other]) / 2;

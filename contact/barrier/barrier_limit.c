@@ -112,7 +112,7 @@ static double plane_limit(const limit_work *w, int32_t point, int32_t k, double 
 }
 
 static void apart(const brunt_barrier *b, int32_t law, moving_pair *m) {
-    m->distance = b->pair[law].distance, m->offset = b->pair[law].offset;
+    m->distance = barrier_pair_of(b, law)->distance, m->offset = barrier_pair_of(b, law)->offset;
 }
 
 static double point_limit(const limit_work *w, int32_t point, double largest) {

@@ -51,23 +51,22 @@ static void facet_boxes(void *context, int64_t begin, int64_t end, int worker) {
     brunt_barrier *b = w->b;
     (void)worker;
     for (int64_t i = begin; i < end; i++)
-        hull_box(b->point_box, b->facet[i], b->dim, b->range + w->margin, &b->facet_box[i]);
+        hull_box(b->point_box, b->facet[i], b->dim, b->source.range + w->margin, &b->facet_box[i]);
 }
 
 static void edge_boxes(void *context, int64_t begin, int64_t end, int worker) {
     near_work *w = context;
     brunt_barrier *b = w->b;
     (void)worker;
-    for (int64_t i = begin; i < end; i++) hull_box(b->point_box, b->edge[i], 2, b->range + w->margin, &b->edge_box[i]);
+    for (int64_t i = begin; i < end; i++)
+        hull_box(b->point_box, b->edge[i], 2, b->source.range + w->margin, &b->edge_box[i]);
 }
 
 static bool facet_wanted(const void *context, int32_t point, int32_t facet) {
     const brunt_barrier *b = ((const near_work *)context)->b;
     const int32_t *f = b->facet[facet];
-    int8_t side;
     if (f[0] == point || f[1] == point || f[2] == point) return false;
-    const int32_t law = barrier_law_between(b, barrier_body_of(b, point), b->body[f[0]], &side);
-    return law >= 0 && barrier_share_of(b, law, side, false) > 0;
+    return barrier_bodies_meet(b, barrier_body_of(b, point), b->body[f[0]], false);
 }
 
 static int64_t facets_of(const void *context, int32_t point, int32_t *out) {
@@ -79,10 +78,8 @@ static int64_t facets_of(const void *context, int32_t point, int32_t *out) {
 static bool edge_wanted(const void *context, int32_t edge, int32_t other) {
     const brunt_barrier *b = ((const near_work *)context)->b;
     const int32_t *e = b->edge[edge], *f = b->edge[other];
-    int8_t side;
     if (other <= edge || e[0] == f[0] || e[0] == f[1] || e[1] == f[0] || e[1] == f[1]) return false;
-    const int32_t law = barrier_law_between(b, b->body[e[0]], b->body[f[0]], &side);
-    return law >= 0 && barrier_share_of(b, law, side, true) > 0;
+    return barrier_bodies_meet(b, b->body[e[0]], b->body[f[0]], true);
 }
 
 static int64_t edges_of(const void *context, int32_t edge, int32_t *out) {
@@ -194,7 +191,8 @@ int barrier_find_near(brunt_barrier *b, const brunt_team *team, const double *u,
         return BRUNT_FAILED;
     const int code = make_boxes(&work, team, error);
     if (code) return code;
-    if (make_lists(&work, team, error) || make_tasks(b, team->threads, error)) return BRUNT_FAILED;
+    if (make_lists(&work, team, error) || make_tasks(b, team->threads, error) || barrier_find_pairs(b, error))
+        return BRUNT_FAILED;
     b->swept = p != NULL;
     return BRUNT_OK;
 }

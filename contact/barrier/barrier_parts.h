@@ -25,7 +25,7 @@ typedef struct barrier_law {
 
 typedef struct barrier_contact {
     int32_t place[BRUNT_CLOSEST_PLACES];
-    int32_t law;       // pair, or pair_count + plane
+    int32_t law;       // plane, or plane_count + pair
     int8_t side;       // 1: the first feature is of the law's body a (a plane's points), -1: of b
     double weight;     // [m^2] (2D [m]) share of the surface, times the multiplicity: negative in concave corners
     double threshold;  // [m^4] |ea x eb|^2 from which two edges count in full; 0: not edges
@@ -93,12 +93,12 @@ struct brunt_barrier {
     double *vertex_area, *edge_area, *edge_length2; // [m^2] (2D [m]), [m^2], [m^2]
     size_t facet_capacity, body_capacity, edge_capacity, vertex_area_capacity, edge_area_capacity,
         edge_length2_capacity;
-    // Pairs as they were given, and where each stands, by its bodies.
+    brunt_barrier_pair_source source;
+    // Pairs that were near each other in this step, as they were found, and where each stands, by its bodies.
     brunt_barrier_pair *pair;
     barrier_key *key;
-    int32_t pair_count;
+    int32_t pair_count, key_count; // keys that are being collected come behind those of the pairs
     size_t pair_capacity, key_capacity;
-    double range; // [m] greatest distance of all pairs
     brunt_barrier_step step;
     // What was found last.
     double origin[3]; // boxes are measured from it
@@ -138,9 +138,17 @@ void barrier_relative(const brunt_barrier *b, const double *u, int32_t from, con
 int64_t barrier_nodes(const brunt_barrier *b, int32_t place, const int32_t **node, const double **weight);
 
 // --- pairs (barrier_pairs.c)
-// The law between two bodies; BRUNT_NONE: they do not meet. `side`: 1 where `own` is the pair's a.
+// Whether features of two bodies meet: points of `own` at facets of `other`, or edges.
+bool barrier_bodies_meet(const brunt_barrier *b, int32_t own, int32_t other, bool edges);
+// Makes the pairs of what is near. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int barrier_find_pairs(brunt_barrier *b, brunt_error *error);
+// The law between two bodies whose features are near. `side`: 1 where `own` is the pair's a.
 int32_t barrier_law_between(const brunt_barrier *b, int32_t own, int32_t other, int8_t *side);
 barrier_law barrier_law_of(const brunt_barrier *b, int32_t law);
+static inline bool barrier_law_is_plane(const brunt_barrier *b, int32_t law) { return law < b->step.plane_count; }
+static inline const brunt_barrier_pair *barrier_pair_of(const brunt_barrier *b, int32_t law) {
+    return &b->pair[law - b->step.plane_count];
+}
 double barrier_share_of(const brunt_barrier *b, int32_t law, int8_t side, bool edges);
 // [m] what a point's surface stands off a plane.
 double barrier_plane_offset(const brunt_barrier *b, const brunt_barrier_plane *plane, int32_t point);

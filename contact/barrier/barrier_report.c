@@ -14,7 +14,7 @@ static void take_position(const brunt_barrier *b, const double *u, const barrier
 
 // The body of the second feature; -1: a plane.
 static int32_t other_of(const brunt_barrier *b, const barrier_contact *c) {
-    return c->law >= b->pair_count ? -1 : barrier_body_of(b, c->place[c->threshold > 0 ? 2 : 1]);
+    return barrier_law_is_plane(b, c->law) ? -1 : barrier_body_of(b, c->place[c->threshold > 0 ? 2 : 1]);
 }
 
 static void note_stiffness(const brunt_barrier *b, const double *u, const barrier_contact *c,
@@ -26,9 +26,9 @@ static void note_stiffness(const brunt_barrier *b, const double *u, const barrie
 
 static void note_gap(const brunt_barrier *b, const double *u, const barrier_contact *c, brunt_barrier_report *r) {
     if (c->weight <= 0 || !(c->at.d - c->offset < r->least_gap)) return;
-    const bool plane = c->law >= b->pair_count, edges = c->threshold > 0;
+    const bool plane = barrier_law_is_plane(b, c->law), edges = c->threshold > 0;
     r->least_gap = c->at.d - c->offset, r->least_part = r->least_gap / barrier_law_of(b, c->law).distance;
-    r->point = edges ? -1 : c->place[0], r->plane = plane ? c->law - b->pair_count : -1;
+    r->point = edges ? -1 : c->place[0], r->plane = plane ? c->law : -1;
     r->body = barrier_body_of(b, c->place[0]);
     r->other = other_of(b, c);
     take_position(b, u, c, r->position);
@@ -44,7 +44,9 @@ double brunt_barrier_least_gap(const brunt_barrier *b) {
 
 // 1: on the law's body a is what is on the first feature; -1: the reaction. 0: a body with itself has both.
 static int sign_of(const brunt_barrier *b, const barrier_contact *c) {
-    return c->law < b->pair_count && b->pair[c->law].a == b->pair[c->law].b ? 0 : c->side;
+    if (barrier_law_is_plane(b, c->law)) return c->side;
+    const brunt_barrier_pair *pair = barrier_pair_of(b, c->law);
+    return pair->a == pair->b ? 0 : c->side;
 }
 
 static void add_normal(const brunt_barrier *b, const barrier_contact *c, brunt_barrier_force *force) {
@@ -67,8 +69,23 @@ static void add_friction(const brunt_barrier *b, const double *u, const double *
     }
 }
 
+int brunt_barrier_forces_extend(brunt_barrier_forces *forces, int32_t count, brunt_error *error) {
+    const int32_t from = forces->count;
+    if (count <= from) return BRUNT_OK;
+    if (BRUNT_CAPACITY(forces->force, (size_t)count, (size_t)from, "planes and pairs of bodies", error))
+        return BRUNT_FAILED;
+    memset(&forces->force[from], 0, (size_t)(count - from) * sizeof *forces->force);
+    forces->count = count;
+    return BRUNT_OK;
+}
+
+void brunt_barrier_forces_free(brunt_barrier_forces *forces) {
+    brunt_free(forces->force);
+    *forces = (brunt_barrier_forces){.force = NULL};
+}
+
 int brunt_barrier_look_back(brunt_barrier *b, const brunt_team *team, const double *u, const double *way,
-                            brunt_barrier_report *r, brunt_barrier_force *force, brunt_error *error) {
+                            brunt_barrier_report *r, brunt_barrier_forces *forces, brunt_error *error) {
     *r = (brunt_barrier_report){.least_gap = INFINITY,
                                 .least_part = INFINITY,
                                 .body = -1,
@@ -76,9 +93,11 @@ int brunt_barrier_look_back(brunt_barrier *b, const brunt_team *team, const doub
                                 .point = -1,
                                 .plane = -1,
                                 .stiffest = {.step = INFINITY, .body = -1, .other = -1}};
-    if (force) memset(force, 0, (size_t)(b->pair_count + b->step.plane_count) * sizeof *force);
     const int code = brunt_barrier_term(b).ops->look(b, team, u, NULL, error);
     if (code) return code;
+    if (forces) forces->count = 0;
+    if (forces && brunt_barrier_forces_extend(forces, b->step.plane_count + b->pair_count, error)) return BRUNT_FAILED;
+    brunt_barrier_force *force = forces ? forces->force : NULL;
     for (int64_t i = 0; i < b->contacts.count; i++) {
         const barrier_contact *c = &b->contacts.contact[i];
         note_gap(b, u, c, r);

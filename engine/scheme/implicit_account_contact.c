@@ -78,7 +78,7 @@ static int add_friction(struct brunt_implicit *m, const double *u, double weight
 // At the start of the step, by what pressed there, whatever friction has followed since: normal forces and friction at
 // the velocities there. `before` is the displacement at which friction takes the velocities at the start for those at
 // the end.
-static int weigh_start(struct brunt_implicit *m, brunt_barrier_force *force, brunt_error *error) {
+static int weigh_start(struct brunt_implicit *m, brunt_error *error) {
     brunt_implicit_contact *c = &m->contact;
     const double start = 1 - m->weights.gamma;
     brunt_barrier_report unused;
@@ -87,10 +87,12 @@ static int weigh_start(struct brunt_implicit *m, brunt_barrier_force *force, bru
         return BRUNT_FAILED;
     for (int friction = 0; friction < 2; friction++) {
         const double *u = friction ? c->before : m->field.zero;
-        if (brunt_barrier_look_back(c->barrier, &m->team, u, m->field.u, &unused, c->force_before, error))
+        if (brunt_barrier_look_back(c->barrier, &m->team, u, m->field.u, &unused, &c->forces_before, error) ||
+            brunt_barrier_forces_extend(&c->forces, c->forces_before.count, error))
             return BRUNT_FAILED;
-        for (int32_t k = 0; k < c->pair_count + c->plane_count; k++) {
-            const brunt_barrier_force *before = &c->force_before[k];
+        brunt_barrier_force *force = c->forces.force;
+        for (int32_t k = 0; k < c->forces_before.count; k++) {
+            const brunt_barrier_force *before = &c->forces_before.force[k];
             for (int a = 0; a < 3; a++)
                 *(friction ? &force[k].friction[a] : &force[k].normal[a]) +=
                     start * (friction ? before->friction[a] : before->normal[a]);
@@ -100,17 +102,17 @@ static int weigh_start(struct brunt_implicit *m, brunt_barrier_force *force, bru
     return BRUNT_OK;
 }
 
-// Of load steps, whose work is by the trapezium and which have no friction: what planes do work with, in force_before.
+// Of load steps, whose work is by the trapezium and which have no friction: what planes do work with, in forces_before.
 static int weigh_work(struct brunt_implicit *m, brunt_error *error) {
     brunt_implicit_contact *c = &m->contact;
     const double work = m->weights.work;
     brunt_barrier_report unused;
-    if (brunt_barrier_look_back(c->barrier, &m->team, m->field.zero, m->field.u, &unused, c->force_before, error))
+    if (brunt_barrier_look_back(c->barrier, &m->team, m->field.zero, m->field.u, &unused, &c->forces_before, error))
         return BRUNT_FAILED;
-    for (int32_t k = 0; k < c->pair_count + c->plane_count; k++)
+    for (int32_t k = 0; k < c->plane_count; k++)
         for (int a = 0; a < 3; a++) {
-            double *before = &c->force_before[k].normal[a];
-            *before = (1 - work) * *before + work * c->force[k].normal[a];
+            double *before = &c->forces_before.force[k].normal[a];
+            *before = (1 - work) * *before + work * c->forces.force[k].normal[a];
         }
     return BRUNT_OK;
 }
@@ -124,15 +126,16 @@ static int weigh_forces(struct brunt_implicit *m, brunt_barrier_report *report, 
         if (add_friction(m, m->field.u, gamma, error)) return BRUNT_FAILED;
         add_to_gradient(m);
     }
-    if (brunt_barrier_look_back(c->barrier, &m->team, m->field.u, m->field.u, report, c->force, error))
+    if (brunt_barrier_look_back(c->barrier, &m->team, m->field.u, m->field.u, report, &c->forces, error))
         return BRUNT_FAILED;
     if (m->still) return weigh_work(m, error);
     if (gamma == 1) return BRUNT_OK;
-    for (int32_t k = 0; k < c->pair_count + c->plane_count; k++) {
-        c->force[k].heat *= gamma;
-        for (int a = 0; a < 3; a++) c->force[k].normal[a] *= gamma, c->force[k].friction[a] *= gamma;
+    for (int32_t k = 0; k < c->forces.count; k++) {
+        brunt_barrier_force *force = &c->forces.force[k];
+        force->heat *= gamma;
+        for (int a = 0; a < 3; a++) force->normal[a] *= gamma, force->friction[a] *= gamma;
     }
-    return weigh_start(m, c->force, error);
+    return weigh_start(m, error);
 }
 
 // Moments of all planes together: pairs have none.
@@ -150,16 +153,19 @@ static void account_moments(const struct brunt_implicit *m, brunt_impulse_accoun
 static void account_forces(brunt_world *world) {
     const struct brunt_implicit *m = world->plan.implicit;
     const brunt_implicit_contact *c = &m->contact;
-    for (int32_t p = 0; p < c->pair_count; p++) {
-        brunt_impulse_account *last = &world->pairs.pair[c->pair_account[p]].last;
-        for (int a = 0; a < 3; a++) last->impulse[a] -= m->dt * (c->force[p].normal[a] + c->force[p].friction[a]);
-        last->friction_loss += c->force[p].heat;
-        last->area = c->force[p].area;
+    int32_t pairs;
+    const brunt_barrier_pair *pair = brunt_barrier_pairs(c->barrier, &pairs);
+    for (int32_t p = 0; p < pairs; p++) {
+        brunt_impulse_account *last = &world->pairs.pair[pair[p].account].last;
+        const brunt_barrier_force *force = &c->forces.force[c->plane_count + p];
+        for (int a = 0; a < 3; a++) last->impulse[a] -= m->dt * (force->normal[a] + force->friction[a]);
+        last->friction_loss += force->heat;
+        last->area += force->area;
     }
     for (int32_t q = 0; q < c->plane_count; q++) {
         brunt_boundary *boundary = &world->boundaries.boundary[c->plane_boundary[q]];
-        const brunt_barrier_force *force = &c->force[c->pair_count + q],
-                                  *working = m->still ? &c->force_before[c->pair_count + q] : force;
+        const brunt_barrier_force *force = &c->forces.force[q],
+                                  *working = m->still ? &c->forces_before.force[q] : force;
         boundary->last.friction_loss += force->heat;
         boundary->last.area = force->area;
         for (int a = 0; a < 3; a++) {

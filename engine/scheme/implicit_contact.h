@@ -18,26 +18,37 @@ typedef struct brunt_implicit_contact {
     int32_t *owner, *point_node, point_count;
     int64_t *first;
     size_t x_capacity, area_capacity, weight_capacity, owner_capacity, point_node_capacity, first_capacity;
-    // Pairs and planes in their order, with their accounts.
-    brunt_barrier_pair *pair;
-    int32_t *pair_account; // among world->pairs
-    int32_t pair_count;
+    // What bodies are to each other.
+    const brunt_pairs *pairs; // of the world: accounts
+    bool *met;                // of each body: another meets it, or itself does, by a barrier
+    double *young;            // [Pa] of each body
+    double *half;             // [m] of each body: half its thickness in contact, of membranes; else 0
+    double distance;          // [m]
+    double stiffness;         // [Pa] of all; 0: of each pair and plane by what is softer
+    double slip_speed;        // [m/s]
+    // Planes in their order.
     brunt_barrier_plane *plane;
     int32_t *plane_boundary;
     bool **meets; // of each plane: the bodies it is for
     int32_t plane_count;
-    brunt_barrier_force *force, *force_before; // pairs, then planes
-    double *before;                            // [m] dt times velocities at the start; of Newmark
-    double *inverse_mass;                      // [1/kg] of nodes, 0: given; of Newmark, until a step was too long
+    brunt_barrier_forces forces, forces_before;
+    double *before;       // [m] dt times velocities at the start; of Newmark
+    double *inverse_mass; // [1/kg] of nodes, 0: given; of Newmark, until a step was too long
     size_t before_capacity, inverse_mass_capacity;
-    double distance; // [m]
-    double *half;    // [m] of each body: half its thickness in contact, of membranes; else 0
 } brunt_implicit_contact;
 
 // Pairs, planes and surfaces of a world whose bodies are made. BRUNT_OK, or the code of what is wrong.
 int brunt_implicit_contact_make(brunt_implicit_contact *c, brunt_world *world, const brunt_world_def *def,
                                 brunt_error *error);
 void brunt_implicit_contact_free(brunt_implicit_contact *c);
+// What bodies a <= b are to each other (brunt_barrier_pair_between), by the brunt_implicit_contact that `self` is.
+bool brunt_implicit_contact_pair(const void *self, int32_t a, int32_t b, brunt_barrier_pair *pair);
+// Room for the material points that may meet something: `count` of them, with at most `nodes` nodes in all.
+int brunt_implicit_contact_reserve(brunt_implicit_contact *c, const brunt_bodies *bodies, int32_t *count,
+                                   int64_t *nodes, brunt_error *error);
+// Refuses bodies that touch at the start, and warns of those within the distance. `given`: the scene says the distance.
+int brunt_implicit_contact_check(brunt_implicit_contact *c, brunt_world *world, const brunt_body_def **order,
+                                 bool given, brunt_error *error);
 // Aborts where surfaces, pairs and planes are not of what there is: so many bodies, boundaries and pairs of the world.
 void brunt_implicit_contact_validate(const brunt_implicit_contact *c, int bodies, int boundaries, int pairs);
 size_t brunt_implicit_contact_bytes(const brunt_implicit_contact *c);

@@ -153,8 +153,7 @@ static int make_contact(brunt_world *world, struct brunt_implicit *m, const brun
     if (status || !m->contact.barrier) return status;
     m->friction_iterations = def->contact.friction_iterations;
     m->term[m->term_count++] = brunt_barrier_term(m->contact.barrier);
-    for (int32_t p = 0; p < m->contact.pair_count; p++) m->rubs = m->rubs || m->contact.pair[p].friction > 0;
-    for (int32_t q = 0; q < m->contact.plane_count; q++) m->rubs = m->rubs || m->contact.plane[q].friction > 0;
+    m->rubs = brunt_barrier_has_friction(m->contact.barrier);
     if (m->rubs) m->term[m->term_count++] = brunt_barrier_friction_term(m->contact.barrier);
     return BRUNT_OK;
 }

@@ -205,8 +205,7 @@ static bool solve_holding(holding *h, int modes, double c[MODES]) {
 
 static bool meets_something(const struct brunt_implicit *m, int body) {
     const brunt_implicit_contact *c = &m->contact;
-    bool meets = false;
-    for (int32_t p = 0; p < c->pair_count; p++) meets = meets || c->pair[p].a == body || c->pair[p].b == body;
+    bool meets = c->met && c->met[body];
     for (int32_t q = 0; q < c->plane_count; q++) meets = meets || !c->plane[q].meets || c->plane[q].meets[body];
     return meets;
 }

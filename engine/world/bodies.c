@@ -118,8 +118,7 @@ static brunt_box box_of_particles(const brunt_filled *filled, int dim, double sp
     return box;
 }
 
-// Bounds of a body's shape where it is placed; without end where the shape has none.
-static brunt_box box_of_shape(const brunt_body_def *body, int dim) {
+brunt_box brunt_box_of_shape(const brunt_body_def *body, int dim) {
     double low[3] = {0}, high[3] = {0};
     brunt_box box = {{0}, {0}};
     const bool bounded = brunt_shape_bounds(&body->shape, dim, low, high);
@@ -157,7 +156,7 @@ static int check_overlap(const brunt_pairs *pairs, const brunt_world_def *def, c
     if (BRUNT_NEW(box, 2 * n, "boxes about bodies", error)) return BRUNT_FAILED;
     for (int i = 0; i < n; i++) {
         box[i] = box_of_particles(&filled[i], dim, lattice_spacing(def, order[i]));
-        box[n + i] = box_of_shape(order[i], dim);
+        box[n + i] = brunt_box_of_shape(order[i], dim);
     }
     brunt_box_pair *near;
     int64_t count;

@@ -5,10 +5,14 @@
 #include <stddef.h>
 
 #include "base/check.h"
+#include "base/sweep.h"
 #include "brunt.h"
 
 enum { BRUNT_WORLD_COOKIE = 0x6272756e }; // the mark of a definition that was filled by its default function
 enum { BRUNT_PAIR_LIMIT = 64 };           // of bodies in contact, with an account each
+
+// Bounds of a body's shape where it is placed; without end where the shape has none.
+brunt_box brunt_box_of_shape(const brunt_body_def *body, int dim);
 
 // Two pairs of bodies in contact that have one name, "a-b", which columns of the history are called by: of 'a-b' with
 // 'c' and 'a' with 'b-c'. Bodies by index, each pair in order of name. False: there are none.

@@ -153,6 +153,16 @@ static inline void case_step(barrier_case *c) {
     ck_assert_msg(brunt_barrier_set_step(c->barrier, &step, &error) == BRUNT_OK, "%s", error.message);
 }
 
+static inline bool case_meet(const void *self, int32_t a, int32_t b, brunt_barrier_pair *pair) {
+    const barrier_case *c = self;
+    for (int32_t i = 0; i < c->pairs; i++) {
+        if ((c->pair[i].a != a || c->pair[i].b != b) && (c->pair[i].a != b || c->pair[i].b != a)) continue;
+        *pair = c->pair[i];
+        return true;
+    }
+    return false;
+}
+
 // Ready for terms.
 static inline void case_ready(barrier_case *c) {
     const brunt_barrier_mesh mesh = {
@@ -160,7 +170,12 @@ static inline void case_ready(barrier_case *c) {
     brunt_error error = {0};
     c->barrier = brunt_barrier_make(&error);
     ck_assert_msg(brunt_barrier_set_mesh(c->barrier, &mesh, &error) == BRUNT_OK, "%s", error.message);
-    ck_assert_msg(brunt_barrier_set_pairs(c->barrier, c->pair, c->pairs, &error) == BRUNT_OK, "%s", error.message);
+    brunt_barrier_pair_source source = {.between = case_meet, .self = c};
+    for (int32_t i = 0; i < c->pairs; i++) {
+        source.range = fmax(source.range, c->pair[i].distance + c->pair[i].offset);
+        source.friction = source.friction || c->pair[i].friction > 0;
+    }
+    brunt_barrier_set_pairs(c->barrier, &source);
     case_step(c);
 }
 
@@ -201,10 +216,15 @@ static inline void case_lag(barrier_case *c, const double *u) {
     ck_assert_int_eq(brunt_barrier_lag(c->barrier, &team, u, &error), BRUNT_OK);
 }
 
+// `force`: of the first plane, or where there is none of the first pair that is near; NULL: not wanted.
 static inline brunt_barrier_report case_report(barrier_case *c, const double *u, brunt_barrier_force *force) {
     const brunt_team team = {c->threads, NULL};
     brunt_barrier_report report;
+    brunt_barrier_forces forces = {.count = 0};
     brunt_error error = {0};
-    ck_assert_int_eq(brunt_barrier_look_back(c->barrier, &team, u, u, &report, force, &error), BRUNT_OK);
+    ck_assert_int_eq(brunt_barrier_look_back(c->barrier, &team, u, u, &report, force ? &forces : NULL, &error),
+                     BRUNT_OK);
+    if (force) *force = forces.count ? forces.force[0] : (brunt_barrier_force){.area = 0};
+    brunt_barrier_forces_free(&forces);
     return report;
 }

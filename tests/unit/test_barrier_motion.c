@@ -313,7 +313,13 @@ START_TEST(friction_is_of_the_velocity) {
         static const double x[][2] = {{-5, 0}, {5, 0}, {0, -5}};
         case_polygon(c, 0, x, 3);
         case_particle(c, (double[3]){0.3, gap, 0}, 0.02, 1, 1, &state);
-        *case_pair(c, 0, 1, dhat, kappa) = (brunt_barrier_pair){0, 1, dhat, 0, kappa, mu, eps, {0, 1, 0}, NULL};
+        *case_pair(c, 0, 1, dhat, kappa) = (brunt_barrier_pair){.a = 0,
+                                                                .b = 1,
+                                                                .distance = dhat,
+                                                                .stiffness = kappa,
+                                                                .friction = mu,
+                                                                .slip_speed = eps,
+                                                                .share = {0, 1, 0}};
         if (newmark) c->factor = 2, c->before[c->particle_node[0] * 2] = 0.3 * c->dt;
         case_ready(c);
         double *u = case_unknowns(c), *g = case_unknowns(c);

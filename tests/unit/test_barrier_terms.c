@@ -479,10 +479,6 @@ START_TEST(bad_surfaces_are_refused) {
         const brunt_barrier_mesh mesh = {3, 4, 1, x, bodies, &facets[i]};
         ck_assert_int_eq(brunt_barrier_set_mesh(b, &mesh, &error), BRUNT_FAILED);
         ck_assert_msg(strstr(error.message, says[i]), "%s", error.message);
-        const brunt_barrier_pair pairs[2] = {{.a = 0, .b = 1, .distance = 1, .stiffness = 1},
-                                             {.a = 1, .b = 0, .distance = 1, .stiffness = 1}};
-        ck_assert_int_eq(brunt_barrier_set_pairs(b, pairs, 2, &error), BRUNT_FAILED);
-        ck_assert_msg(strstr(error.message, "twice"), "%s", error.message);
         brunt_barrier_free(b);
     }
 }

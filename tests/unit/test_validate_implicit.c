@@ -47,10 +47,10 @@ static void matrix_solver(brunt_world *w) { of(w)->newton.linear.ops = NULL; }
 static void barrier_facet(brunt_world *w) {
     of(w)->contact.barrier->facet[0][0] = of(w)->contact.barrier->vertex_count;
 }
-static void barrier_range(brunt_world *w) { of(w)->contact.barrier->range *= 0.5; }
+static void barrier_range(brunt_world *w) { of(w)->contact.barrier->source.range *= 0.5; }
 static void barrier_place(brunt_world *w) { of(w)->contact.barrier->contacts.contact[0].place[0] = -1; }
 static void barrier_force(brunt_world *w) { of(w)->contact.barrier->lagged.contact[0].normal_force = 0; }
-static void contact_pair(brunt_world *w) { of(w)->contact.pair_account[0] = w->pairs.count; }
+static void contact_pair(brunt_world *w) { of(w)->contact.barrier->pair[0].account = w->pairs.count; }
 static void surface_piece(brunt_world *w) { w->boundaries.surfaces.surface[0].particle[0].piece++; }
 static void surface_cell(brunt_world *w) { w->boundaries.surfaces.surface[0].cell_particle[0] = -1; }
 static void surface_traction(brunt_world *w) { w->boundaries.surfaces.surface[0].traction[0] = NAN; }
