@@ -310,6 +310,32 @@ static int try_step(brunt_world *world, double dt, brunt_newton_report *report, 
     return status;
 }
 
+// Whether nothing outside the bodies acts along an axis but loads: no node is held, no plane pushes or mirrors.
+static bool is_free(const struct brunt_implicit *m, int axis) {
+    const brunt_unknowns *u = &m->unknowns;
+    if (m->still || m->holds || m->drag.weight || m->contact.plane_count || u->images.any) return false;
+    bool held = false;
+    for (int64_t k = axis; k < brunt_implicit_components(m); k += u->dim) held = held || u->held[k];
+    return !held;
+}
+
+// A translation of everything changes no force but inertia's: what Newton's method has left of their sum is taken away
+// by one, and momentum is kept to rounding whatever its tolerance and that of its linear systems.
+static void balance_sums(struct brunt_implicit *m) {
+    const brunt_unknowns *unknowns = &m->unknowns;
+    const brunt_fields *f = &m->field;
+    for (int a = 0; a < unknowns->dim; a++) {
+        double left = 0, mass = 0;
+        if (!is_free(m, a)) continue;
+        for (int32_t n = 0; n < unknowns->count; n++) {
+            const int64_t k = (int64_t)n * unknowns->dim + a;
+            left += unknowns->mass[n] * (f->u[k] - f->aim[k]) - m->inertia.c * f->load[k];
+            mass += unknowns->mass[n];
+        }
+        for (int32_t n = 0; mass > 0 && n < unknowns->count; n++) f->u[(int64_t)n * unknowns->dim + a] -= left / mass;
+    }
+}
+
 // Planes that hold what lies on them do not push what comes to them.
 static int check_planes(const brunt_world *world, brunt_error *error) {
     const struct brunt_implicit *m = world->plan.implicit;
@@ -356,6 +382,7 @@ int brunt_pass_newton(brunt_world *world, brunt_step *step, brunt_error *error) 
     }
     sum.iterations_worst = sum.iterations;
     if (status) return withdraw(world, step->dt, &sum, &report, error);
+    balance_sums(m);
     sum.steps = 1;
     m->tried = sum;
     step->dt = step->kick = m->dt;
