@@ -94,18 +94,19 @@ static int make_load(brunt_node_set *set, brunt_messages *messages, brunt_error 
 }
 
 // Marks the components that a set prescribes: the first that does has them.
-static int make_prescribed(brunt_node_sets *sets, int index, brunt_error *error) {
-    const brunt_node_set *set = &sets->set[index];
+static int make_prescribed(brunt_node_sets *sets, brunt_node_set *set, brunt_error *error) {
     brunt_fem_body *fem = set->fem;
+    uint8_t **taken = &sets->taken[set->fem_index];
     if (!fem->held && BRUNT_NEW(fem->held, fem->node_count + 1, "nodes that are held", error)) return BRUNT_FAILED;
-    uint8_t(**holder)[3] = &sets->holder[set->fem_index];
-    if (!*holder && BRUNT_NEW(*holder, fem->node_count + 1, "nodes that are held", error)) return BRUNT_FAILED;
-    for (int32_t i = 0; i < set->node_count; i++)
-        for (int a = 0; a < fem->dim; a++) {
-            if (!set->def.component[a] || (*holder)[set->node[i]][a]) continue;
-            fem->held[set->node[i]] |= (uint8_t)(1 << a);
-            (*holder)[set->node[i]][a] = (uint8_t)(index + 1);
-        }
+    if (!*taken && BRUNT_NEW(*taken, fem->node_count + 1, "nodes that are held", error)) return BRUNT_FAILED;
+    if (BRUNT_NEW(set->holds, set->node_count + 1, "nodes that are held", error)) return BRUNT_FAILED;
+    unsigned wanted = 0;
+    for (int a = 0; a < fem->dim; a++) wanted |= (unsigned)set->def.component[a] << a;
+    for (int32_t i = 0; i < set->node_count; i++) {
+        const int32_t n = set->node[i];
+        set->holds[i] = (uint8_t)(wanted & ~(unsigned)(*taken)[n]);
+        (*taken)[n] |= set->holds[i], fem->held[n] |= set->holds[i];
+    }
     return BRUNT_OK;
 }
 
@@ -146,9 +147,8 @@ static int copy_definition(brunt_group_def *copy, const brunt_group_def *def, bo
 
 int brunt_node_sets_make(brunt_node_sets *sets, const brunt_world_def *def, const brunt_bodies *bodies,
                          brunt_boundary *boundaries, brunt_messages *messages, brunt_error *error) {
-    if (def->group_count > 255) return brunt_fail(error, BRUNT_BAD_INPUT, "boundaries: more than 255 groups");
     if (BRUNT_NEW(sets->set, def->group_count + 1, "groups of nodes", error) ||
-        BRUNT_NEW(sets->holder, bodies->fem_count + 1, "meshes with groups", error))
+        BRUNT_NEW(sets->taken, bodies->fem_count + 1, "meshes with groups", error))
         return BRUNT_FAILED;
     sets->count = def->group_count, sets->fem_count = bodies->fem_count;
     for (int k = 0; k < sets->count; k++) {
@@ -164,7 +164,7 @@ int brunt_node_sets_make(brunt_node_sets *sets, const brunt_world_def *def, cons
                 return brunt_fail(error, BRUNT_BAD_INPUT, "boundaries (%s).table: times must grow from point to point",
                                   set->boundary->name);
         if (is_idle(set)) continue;
-        status = set->does->moves ? make_prescribed(sets, k, error) : make_load(set, messages, error);
+        status = set->does->moves ? make_prescribed(sets, set, error) : make_load(set, messages, error);
         if (status) return status;
         sets->act = true;
         sets->has_gas = sets->has_gas || set->does->gas;
@@ -175,6 +175,7 @@ int brunt_node_sets_make(brunt_node_sets *sets, const brunt_world_def *def, cons
 void brunt_node_sets_free(brunt_node_sets *sets) {
     for (int k = 0; k < sets->count; k++) {
         brunt_node_set *set = &sets->set[k];
+        brunt_free(set->holds);
         brunt_free(set->face);
         brunt_free(set->whole);
         brunt_free(set->owner);
@@ -183,17 +184,16 @@ void brunt_node_sets_free(brunt_node_sets *sets) {
         brunt_free(set->area);
         brunt_free(set->def.table.points);
     }
-    for (int k = 0; k < sets->fem_count; k++) brunt_free(sets->holder[k]);
+    for (int k = 0; k < sets->fem_count; k++) brunt_free(sets->taken[k]);
     brunt_free(sets->set);
-    brunt_free(sets->holder);
+    brunt_free(sets->taken);
 }
 
 void brunt_node_sets_validate(const brunt_node_sets *sets) {
     for (int k = 0; k < sets->count; k++) {
         const brunt_node_set *set = &sets->set[k];
         BRUNT_ASSERT(set->fem && set->boundary && set->boundary->group == &set->def);
-        BRUNT_ASSERT(set->does->moves ? sets->holder[set->fem_index] && set->fem->held
-                                      : is_idle(set) || (set->force && set->fem->load));
+        BRUNT_ASSERT(set->does->moves ? set->holds && set->fem->held : is_idle(set) || (set->force && set->fem->load));
         BRUNT_ASSERT(set->face_count >= 0 && (!set->whole || set->face_count <= set->whole_count));
         BRUNT_ASSERT(!set->does->gas || set->gas_energy >= 0);
     }
@@ -336,9 +336,7 @@ double brunt_node_set_way(const brunt_node_set *set, const brunt_placement *goal
     return x - (double)brunt_fem_node(set->fem, node)[BRUNT_FEM_X + a];
 }
 
-static void prescribe(const brunt_node_sets *sets, int k, const double gravity[3], double time, double dt,
-                      double step) {
-    const brunt_node_set *set = &sets->set[k];
+static void prescribe(const brunt_node_set *set, const double gravity[3], double time, double dt, double step) {
     const brunt_group_def *def = &set->def;
     brunt_fem_body *fem = set->fem;
     brunt_impulse_account *last = &set->boundary->last;
@@ -352,7 +350,7 @@ static void prescribe(const brunt_node_sets *sets, int k, const double gravity[3
         brunt_fem_internal_force(fem, n, force);
         for (int a = 0; a < 3; a++) x[a] = (double)node[a];
         for (int a = 0; a < fem->dim; a++) {
-            if (sets->holder[set->fem_index][n][a] != k + 1) continue;
+            if (!(set->holds[i] >> a & 1)) continue;
             double mass = (double)node[BRUNT_FEM_MASS], trial = (double)node[BRUNT_FEM_V + a];
             double load = fem->load ? (double)fem->load[4 * (size_t)n + (size_t)a] : 0;
             old[a] = trial - dt * (((double)force[a] + load) / mass + gravity[a]);
@@ -368,20 +366,38 @@ static void prescribe(const brunt_node_sets *sets, int k, const double gravity[3
 void brunt_node_sets_prescribe(const brunt_node_sets *sets, const double gravity[3], double time, double dt,
                                double step) {
     for (int k = 0; k < sets->count; k++)
-        if (sets->set[k].does->moves) prescribe(sets, k, gravity, time, dt, step);
+        if (sets->set[k].does->moves) prescribe(&sets->set[k], gravity, time, dt, step);
 }
 
-void brunt_node_sets_account_contact(const brunt_node_sets *sets, const brunt_contact_surface *s) {
-    for (int k = 0; k < s->fem_count && sets->count; k++) {
-        if (!s->active[k] || !sets->holder[k]) continue;
-        for (int32_t n = s->node_range[k]; n < s->node_end[k]; n++)
-            for (int a = 0; a < s->dim; a++) {
-                int holder = sets->holder[k][s->node[n]][a];
-                if (!holder || s->output.impulse[n][a] == 0) continue;
-                double J[3] = {0};
-                J[a] = -s->output.impulse[n][a];
-                brunt_impulse_account *last = &sets->set[holder - 1].boundary->last;
-                brunt_impulse_account_record(last, &last->normal_loss, J, s->x[n], s->v[n], s->v[n], s->v[n]);
-            }
+// The first of ascending numbers from `at` on that is no less than n; as fast as it is near.
+static int32_t advance(const int32_t *number, int32_t at, int32_t end, int32_t n) {
+    int32_t step = 1;
+    for (; at + step <= end && number[at + step - 1] < n; step *= 2) at += step;
+    for (; step; step /= 2)
+        if (at + step <= end && number[at + step - 1] < n) at += step;
+    return at;
+}
+
+static void account_contact(const brunt_node_set *set, const brunt_contact_surface *s) {
+    brunt_impulse_account *last = &set->boundary->last;
+    const int32_t end = s->node_end[set->fem_index];
+    int32_t n = s->node_range[set->fem_index];
+    for (int32_t i = 0; i < set->node_count; i++) {
+        n = advance(s->node, n, end, set->node[i]);
+        if (n == end) return;
+        if (s->node[n] != set->node[i]) continue;
+        for (int a = 0; a < s->dim; a++) {
+            if (!(set->holds[i] >> a & 1) || s->output.impulse[n][a] == 0) continue;
+            double J[3] = {0};
+            J[a] = -s->output.impulse[n][a];
+            brunt_impulse_account_record(last, &last->normal_loss, J, s->x[n], s->v[n], s->v[n], s->v[n]);
+        }
+    }
+}
+
+void brunt_node_sets_account_contact(const brunt_node_sets *sets, const brunt_contact_surface *surface) {
+    for (int k = 0; k < sets->count && surface->fem_count; k++) {
+        const brunt_node_set *set = &sets->set[k];
+        if (set->holds && surface->active[set->fem_index]) account_contact(set, surface);
     }
 }

@@ -16,6 +16,7 @@ typedef struct brunt_node_set {
     int fem_index; // of the body, among those of elements
     const int32_t *node;
     int32_t node_count;
+    uint8_t *holds;     // of each node the components that it prescribes, as bits; NULL of loads
     int32_t (*face)[4]; // traction and pressure: the surface's faces that are all in the group
     int32_t face_count;
     // Of bodies that erode, the faces at the start and the elements they are of, by their numbers in the mesh; else
@@ -31,7 +32,7 @@ typedef struct brunt_node_set {
 typedef struct brunt_node_sets {
     brunt_node_set *set;
     int count, fem_count;
-    uint8_t (**holder)[3];          // of each body, node and component: the set that prescribes it + 1
+    uint8_t **taken;                // of each body and node: components that some set prescribes, as bits
     double **load_rate;             // of each body with loads that follow its surface: node_count, see load_step.c
     bool has_gas, act;              // act: one of them does something
     const brunt_node_set *gas_lost; // gas whose volume is no longer positive

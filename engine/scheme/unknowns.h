@@ -15,7 +15,7 @@ typedef struct brunt_images {
     brunt_fold fold;            // of `leader`, `follower`, `sign`
     int32_t *leader, *follower; // by node; `fold.count` of them
     double *sign, *mass; // of each component: 0 on its symmetry plane; [kg] with all images, 0 on its symmetry plane
-    int16_t *boundary;   // of each component: the symmetry plane that carries what images take, + 1; 0: none
+    int32_t *boundary;   // of each component: the symmetry plane that carries what images take, + 1; 0: none
     size_t leader_capacity, follower_capacity, sign_capacity, mass_capacity, boundary_capacity;
 } brunt_images;
 
@@ -36,7 +36,7 @@ typedef struct brunt_unknowns {
     size_t position_capacity, velocity_capacity;
     uint8_t *held; // of each component: whether it is given
     size_t held_capacity;
-    int16_t *holder; // of each component: the boundary that holds it, or whose images it has, + 1; 0: free
+    int32_t *holder; // of each component: the boundary that holds it, or whose images it has, + 1; 0: free
     size_t holder_capacity;
     double *target, *end; // [m], [m/s] displacement of held components over the step, velocity at its end
     size_t target_capacity, end_capacity;

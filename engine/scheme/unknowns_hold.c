@@ -14,15 +14,14 @@ static void hold(brunt_unknowns *u, int32_t n, int a, int w, double target, doub
     const size_t dof = (size_t)n * (size_t)u->dim + (size_t)a;
     if (u->held[dof]) return;
     u->held[dof] = 1;
-    u->holder[dof] = (int16_t)(w + 1);
+    u->holder[dof] = w + 1;
     u->target[dof] = target, u->end[dof] = end;
 }
 
 // ------------------------------------------------------------------------------------------ groups
 
 static void hold_group(brunt_unknowns *u, const brunt_world *world, int k, double dt) {
-    const brunt_node_sets *sets = &world->boundaries.sets;
-    const brunt_node_set *set = &sets->set[k];
+    const brunt_node_set *set = &world->boundaries.sets.set[k];
     const brunt_group_def *def = &set->def;
     const bool velocity = !set->does->goal;
     if (!set->does->moves) return;
@@ -33,7 +32,7 @@ static void hold_group(brunt_unknowns *u, const brunt_world *world, int k, doubl
     for (int32_t i = 0; i < set->node_count; i++) {
         const int32_t n = set->node[i];
         for (int a = 0; a < u->dim; a++) {
-            if (sets->holder[set->fem_index][n][a] != k + 1) continue;
+            if (!(set->holds[i] >> a & 1)) continue;
             const double way = velocity ? dt * middle * def->value[a] : brunt_node_set_way(set, &goal, n, a);
             hold(u, u->base[set->fem_index] + n, a, boundary, way, velocity ? then * def->value[a] : way / dt);
         }

@@ -33,7 +33,7 @@ static int symmetry_of(const brunt_unknowns *u, const brunt_world *world, int i,
 }
 
 // The boundary of the nearest symmetry plane across an axis, of the first one where there is none across it; + 1.
-static int16_t bearer(const brunt_symmetry_plane *symmetry, int count, const int32_t at[3], int axis) {
+static int32_t bearer(const brunt_symmetry_plane *symmetry, int count, const int32_t at[3], int axis) {
     int nearest = 0;
     for (int m = 1; m < count; m++) {
         const bool across = symmetry[m].axis == axis;
@@ -41,7 +41,7 @@ static int16_t bearer(const brunt_symmetry_plane *symmetry, int count, const int
                        abs(symmetry[m].node - at[axis]) < abs(symmetry[nearest].node - at[axis])))
             nearest = m;
     }
-    return (int16_t)(symmetry[nearest].boundary + 1);
+    return symmetry[nearest].boundary + 1;
 }
 
 // Node n at grid coordinates `at` of body i: whom it follows, with which signs.

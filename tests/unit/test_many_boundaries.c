@@ -1,0 +1,93 @@
+// Labels: unit
+//
+// Scenes of more boundaries than a byte counts, as those of hundreds of bodies have: each acts, on the bodies that it
+// names and no others.
+#include "tests/support/def_world.h"
+
+// A row of unit squares of one element each, apart.
+static brunt_world_def squares(int count, int groups, brunt_scheme scheme) {
+    brunt_world_def def = def_begin(2, 0);
+    brunt_free(def.bodies);
+    def.bodies = brunt_alloc((size_t)count * sizeof *def.bodies);
+    def.groups = brunt_alloc((size_t)groups * sizeof *def.groups);
+    def.scheme = scheme;
+    def.step = 1e-3;
+    def.contact.method = BRUNT_CONTACT_NONE;
+    def_material(&def, "neo-hookean", 1000, 1e6, 0.3);
+    for (int i = 0; i < count; i++) {
+        char name[24];
+        snprintf(name, sizeof name, "b%05d", i);
+        brunt_body_def *b = def_box(&def, name, XYZ(3 * i, 0, 0), XYZ(3 * i + 1, 1, 0));
+        b->method = BRUNT_FEM, b->element = BRUNT_QUAD4, b->size = 1;
+    }
+    return def;
+}
+
+static void move(brunt_world_def *def, int body, const char *group, double x, double y) {
+    brunt_group_def *g = &def->groups[def->group_count++];
+    *g = brunt_group_def_default();
+    snprintf(g->body, sizeof g->body, "b%05d", body), snprintf(g->group, sizeof g->group, "%s", group);
+    snprintf(g->name, sizeof g->name, "g%05d", def->group_count);
+    g->action = BRUNT_GROUP_VELOCITY;
+    g->value[0] = x, g->value[1] = y;
+}
+
+// Velocity of a node after a step, along an axis.
+static double velocity_of(brunt_world *world, int body, int node, int axis) {
+    double *v = world_field(world, body, "velocity");
+    const double value = v[3 * node + axis];
+    free(v);
+    return value;
+}
+
+// The two sides of each body go its own way, and a third group has none left of it.
+START_TEST(each_of_many_groups_moves_its_body) {
+    enum { COUNT = 100 };
+    brunt_world_def def = squares(COUNT, 3 * COUNT, _i ? BRUNT_IMPLICIT : BRUNT_EXPLICIT);
+    for (int i = 0; i < COUNT; i++) move(&def, i, "xmin", 1 + i, -i), move(&def, i, "xmax", 1 + i, -i);
+    for (int i = 0; i < COUNT; i++) move(&def, i, "surface", 0, 0);
+    brunt_world *world = world_take(&def);
+    world_steps(world, 2);
+    for (int i = 0; i < COUNT; i++)
+        for (int n = 0; n < 4; n++) {
+            ck_assert_double_eq_tol(velocity_of(world, i, n, 0), 1 + i, 1e-4);
+            ck_assert_double_eq_tol(velocity_of(world, i, n, 1), -i, 1e-4);
+        }
+    brunt_world_destroy(world);
+}
+END_TEST
+
+// Of groups that hold the same components of a node the first does, and the others what is left, however many they are.
+START_TEST(the_first_of_many_groups_holds) {
+    enum { COUNT = 600 };
+    brunt_world_def def = squares(1, COUNT, _i ? BRUNT_IMPLICIT : BRUNT_EXPLICIT);
+    for (int i = 0; i < COUNT - 1; i++) {
+        move(&def, 0, "xmin", 1 + i, 0);
+        def.groups[i].component[1] = false;
+    }
+    move(&def, 0, "surface", -1, -2);
+    brunt_world *world = world_take(&def);
+    world_steps(world, 1);
+    brunt_reaction last;
+    brunt_boundary_reaction(world, COUNT - 1, &last);
+    if (!_i) ck_assert_double_eq_tol(last.impulse[1], -2 * 1000, 1e-2); // of all its mass
+    for (int n = 0; n < 4; n++) {
+        double *x = world_field(world, 0, "position");
+        const bool left = x[3 * n] < 0.5;
+        free(x);
+        ck_assert_double_eq_tol(velocity_of(world, 0, n, 0), left ? 1 : -1, 1e-6);
+        ck_assert_double_eq_tol(velocity_of(world, 0, n, 1), -2, 1e-6);
+    }
+    brunt_world_destroy(world);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("many boundaries");
+    TCase *all = tcase_create("all");
+    tcase_set_timeout(all, 120);
+    tcase_add_loop_test(all, each_of_many_groups_moves_its_body, 0, 2);
+    tcase_add_loop_test(all, the_first_of_many_groups_holds, 0, 2);
+    suite_add_tcase(suite, all);
+    return suite_main(suite);
+}
