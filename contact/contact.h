@@ -42,8 +42,9 @@ typedef struct brunt_contact_context {
     int symmetry_count;
     brunt_boundary *boundaries; // what the symmetry planes are, and all others
     int boundary_count;
-    double time;     // [s] at the start of the step
-    brunt_body *mpm; // the bodies of material points
+    const struct brunt_boundary_lists *acting; // ... by the bodies they act on, planes/boundary_lists.h
+    double time;                               // [s] at the start of the step
+    brunt_body *mpm;                           // the bodies of material points
     int mpm_count;
     int threads;
     brunt_timer *timer; // of the pass

@@ -8,8 +8,9 @@
 #include "materials/material.h"
 
 typedef struct brunt_boundary_kind brunt_boundary_kind;
-typedef struct brunt_node_to_facet brunt_node_to_facet; // search/node_to_facet.h
-typedef struct brunt_particle_dofs brunt_particle_dofs; // search/particle_dof.h
+typedef struct brunt_boundary_lists brunt_boundary_lists; // planes/boundary_lists.h
+typedef struct brunt_node_to_facet brunt_node_to_facet;   // search/node_to_facet.h
+typedef struct brunt_particle_dofs brunt_particle_dofs;   // search/particle_dof.h
 
 struct brunt_boundary {
     char name[BRUNT_NAME_LENGTH];

@@ -3,6 +3,7 @@
 
 #include <stdlib.h>
 
+#include "contact/planes/boundary_lists.h"
 #include "mpm/particles.h"
 #include "mpm/mpm_body.h"
 
@@ -146,9 +147,10 @@ int brunt_broad_phase(const brunt_contact_context *m, brunt_node_to_facet **node
     for (int k = 0; k < s->fem_count; k++) {
         int32_t box = f->bodies.box_of[k];
         s->active[k] = f->bodies.first[box + 1] > f->bodies.first[box];
-        for (int w = 0; w < boundary_count && !s->active[k]; w++)
+        int w;
+        brunt_boundary_walk acting = brunt_boundaries_of(m->acting, s->fem[k]->index);
+        while (!s->active[k] && (w = brunt_boundary_next(&acting)) != BRUNT_NONE)
             s->active[k] = boundaries[w].kind->near_surface &&
-                           brunt_boundary_acts_on(&boundaries[w], s->fem[k]->index) &&
                            boundaries[w].kind->near_surface(s, k, &boundaries[w], m->time,
                                                             f->bodies.plane_travel + 1e-6 * s->mean_edge);
     }

@@ -491,12 +491,12 @@ static void find_behind(const brunt_contact_context *m, brunt_body *mpm, int mpm
     const brunt_boundary *boundary = &m->boundaries[w];
     if (!brunt_boundary_pushes(boundary)) return;
     *found = (brunt_overlap){.b = -1, .boundary = w};
-    for (int k = 0; k < s->fem_count; k++) {
-        if (boundary->body >= 0 && boundary->body != s->fem[k]->index) continue;
+    int k, end;
+    brunt_surface_meshes(s, boundary->body, &k, &end);
+    for (; k < end; k++)
         for (int32_t n = s->node_range[k]; n < s->node_end[k]; n++)
             if (!is_held(s, n) && keep_behind(&boundary->plane, s->x[n], 0, BEHIND * s->fem[k]->mean_edge, found))
                 found->a = s->fem[k]->index, found->any = true;
-    }
     for (int i = 0; i < mpm_count; i++) {
         if (boundary->body >= 0 && boundary->body != mpm[i].index) continue;
         if (!mpm[i].particles.field[BRUNT_FIELD_reach].components) continue; // no plane pushes it

@@ -14,6 +14,7 @@
 #include <string.h>
 
 #include "contact/distance/particle_extent.h"
+#include "contact/planes/boundary_lists.h"
 #include "contact/planes/condition.h"
 #include "mpm/particles.h"
 
@@ -113,9 +114,11 @@ int brunt_boundaries_meet_points(const brunt_contact_context *m, brunt_body *bod
                                  brunt_constraint_set *set, brunt_error *error) {
     if (brunt_particle_dofs_begin(m, body, dofs, error)) return BRUNT_FAILED;
     brunt_constraints_clear(set);
-    for (int k = 0; k < m->boundary_count; k++) {
-        brunt_boundary *boundary = &m->boundaries[k];
-        if (!boundary->kind->meet_points || !brunt_boundary_acts_on(boundary, body->index)) continue;
+    int w;
+    brunt_boundary_walk acting = brunt_boundaries_of(m->acting, body->index);
+    while ((w = brunt_boundary_next(&acting)) != BRUNT_NONE) {
+        brunt_boundary *boundary = &m->boundaries[w];
+        if (!boundary->kind->meet_points) continue;
         if (boundary->kind->meet_points(m, boundary, body, dofs, set, error)) return BRUNT_FAILED;
     }
     if (brunt_constraints_solve(set, MAX_SWEEPS, SWEEP_TOLERANCE, m->threads, m->timer, error)) return BRUNT_FAILED;

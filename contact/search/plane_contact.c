@@ -1,4 +1,5 @@
 // Planes and boundary nodes: those that push (condition separate) and those that hold (stick, slip, symmetry).
+#include "contact/planes/boundary_lists.h"
 #include "contact/planes/condition.h"
 #include "contact/search/node_to_facet_parts.h"
 #include "contact/search/plane_contact.h"
@@ -99,9 +100,10 @@ int brunt_plane_meet_surface(const brunt_contact_context *m, brunt_boundary *bou
     const brunt_contact_surface *s = m->surface;
     const double range = f->bodies.plane_travel + ON * s->mean_edge;
     const plane_job j = {.m = m, .boundary = boundary, .f = f, .constraints = set};
-    for (int k = 0; k < s->fem_count; k++) {
-        if (!s->active[k] || !brunt_boundary_acts_on(boundary, s->fem[k]->index)) continue;
-        if (!brunt_plane_near_surface(s, k, boundary, m->time, range)) continue;
+    int k, end;
+    brunt_surface_meshes(s, boundary->body, &k, &end);
+    for (; k < end; k++) {
+        if (!s->active[k] || !brunt_plane_near_surface(s, k, boundary, m->time, range)) continue;
         const int32_t back = s->node_range[k + 1] - s->node_end[k];
         const double half =
             brunt_boundary_pushes(boundary) && s->membrane.side ? s->membrane.side[s->fem[k]->index].half : 0;
@@ -116,13 +118,12 @@ int brunt_plane_meet_surface(const brunt_contact_context *m, brunt_boundary *bou
 // The plane that keeps component a of a node from moving: of those that hold it, the nearest. -1: none.
 static int fixing_plane(const brunt_contact_context *m, int32_t n, int a) {
     const brunt_contact_surface *s = m->surface;
-    const brunt_boundary *boundaries = m->boundaries;
-    int nearest = -1;
+    int nearest = -1, w;
     double least = INFINITY;
-    for (int w = 0; w < m->boundary_count; w++) {
-        const brunt_plane_def *plane = &boundaries[w].plane;
-        if (!brunt_boundary_holds(&boundaries[w])) continue;
-        if (boundaries[w].body >= 0 && boundaries[w].body != s->body[n]) continue;
+    brunt_boundary_walk acting = brunt_boundaries_of(m->acting, s->body[n]);
+    while ((w = brunt_boundary_next(&acting)) != BRUNT_NONE) {
+        const brunt_plane_def *plane = &m->boundaries[w].plane;
+        if (!brunt_boundary_holds(&m->boundaries[w])) continue;
         if (!(brunt_condition_components(plane, 3) >> a & 1)) continue;
         double gap = brunt_plane_distance(plane, m->time, s->x[n]);
         if (gap < least) least = gap, nearest = w;

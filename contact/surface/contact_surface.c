@@ -248,6 +248,17 @@ void brunt_surface_free(brunt_contact_surface *s) {
     *s = (brunt_contact_surface){0};
 }
 
+void brunt_surface_meshes(const brunt_contact_surface *s, int body, int *first, int *end) {
+    int low = 0, high = s->fem_count;
+    *first = 0, *end = s->fem_count;
+    if (body < 0) return;
+    while (low < high) { // in the order of the bodies
+        const int middle = low + (high - low) / 2;
+        *(s->fem[middle]->index < body ? &low : &high) = s->fem[middle]->index < body ? middle + 1 : middle;
+    }
+    *first = low, *end = low + (low < s->fem_count && s->fem[low]->index == body);
+}
+
 void brunt_surface_validate(const brunt_contact_surface *s) {
     for (int k = 0; k < s->fem_count; k++) {
         BRUNT_ASSERT(s->node_range[k] <= s->node_end[k] && s->node_end[k] <= s->node_range[k + 1]);

@@ -135,6 +135,8 @@ int64_t brunt_surface_slots(const brunt_contact_surface *surface);
 // [bytes] that it takes.
 size_t brunt_surface_bytes(const brunt_contact_surface *surface);
 void brunt_surface_free(brunt_contact_surface *surface);
+// Meshes first .. end of the surface are those of a body by its number among all; of -1: all.
+void brunt_surface_meshes(const brunt_contact_surface *surface, int body, int *first, int *end);
 // Bounds and speeds of every body's surface as it is now.
 void brunt_surface_bounds(brunt_contact_surface *surface, int threads, brunt_timer *timer);
 // The same while nothing is near, for a fraction of the work: bounds kept from an earlier step and widened by what the

@@ -29,6 +29,18 @@ int brunt_bodies_find(const brunt_bodies *bodies, const char *name) {
     return BRUNT_NONE;
 }
 
+void brunt_bodies_meshes(const brunt_bodies *bodies, int body, int *first, int *end) {
+    const brunt_fem_body *fem = body < 0 ? NULL : bodies->all[body].fem;
+    *first = fem ? (int)(fem - bodies->fem) : 0;
+    *end = fem ? *first + 1 : body < 0 ? bodies->fem_count : 0;
+}
+
+void brunt_bodies_points(const brunt_bodies *bodies, int body, int *first, int *end) {
+    const brunt_body *mpm = body < 0 ? NULL : bodies->all[body].mpm;
+    *first = mpm ? (int)(mpm - bodies->mpm) : 0;
+    *end = mpm ? *first + 1 : body < 0 ? bodies->mpm_count : 0;
+}
+
 brunt_body_ref *brunt_bodies_summed(const brunt_bodies *bodies, int i) {
     const bool points = i < bodies->mpm_count;
     return &bodies->all[points ? bodies->mpm[i].index : bodies->fem[i - bodies->mpm_count].index];

@@ -76,6 +76,9 @@ enum { BRUNT_BODY_ARRAYS = 2 };
 
 const char *brunt_bodies_name(const brunt_bodies *bodies, int body);
 const brunt_material *brunt_bodies_material(const brunt_bodies *bodies, int body);
+// Meshes first .. end are those of a body by its number among all; of -1: all. Of material points likewise.
+void brunt_bodies_meshes(const brunt_bodies *bodies, int body, int *first, int *end);
+void brunt_bodies_points(const brunt_bodies *bodies, int body, int *first, int *end);
 // The body of a name, BRUNT_NONE: there is none.
 int brunt_bodies_find(const brunt_bodies *bodies, const char *name);
 // Body `i` in the order that sums are taken in: points, then meshes, each by name.

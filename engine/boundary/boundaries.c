@@ -11,6 +11,7 @@ void brunt_boundaries_free(brunt_boundaries *all) {
     brunt_node_sets_free(&all->sets);
     brunt_boundary_surfaces_free(&all->surfaces);
     brunt_damping_free(&all->damping);
+    brunt_boundary_lists_free(&all->acting);
     brunt_free(all->boundary);
 }
 
@@ -33,6 +34,7 @@ void brunt_boundaries_validate(const brunt_boundaries *all, const brunt_bodies *
                      symmetry_plane->boundary < all->boundary_count);
         BRUNT_ASSERT(symmetry_plane->boundary < 0 || all->boundary[symmetry_plane->boundary].symmetry_plane == k);
     }
+    brunt_boundary_lists_validate(&all->acting, all->boundary, all->boundary_count);
     brunt_node_sets_validate(&all->sets);
     brunt_boundary_surfaces_validate(&all->surfaces, bodies);
     brunt_damping_validate(&all->damping, bodies);

@@ -6,11 +6,13 @@
 #include "boundary/gas.h"
 #include "boundary/load_step.h"
 #include "boundary/node_sets.h"
+#include "contact/planes/boundary_lists.h"
 #include "contact/planes/symmetry.h"
 
 typedef struct brunt_boundaries {
     brunt_boundary *boundary; // by kind, in their order
     int boundary_count;
+    brunt_boundary_lists acting; // of them, on each body
     brunt_symmetry_plane symmetry[BRUNT_MAX_PLANES];
     int symmetry_count;
     bool has_pushing_planes, has_conditions, has_friction; // planes that push, conditions at grid nodes

@@ -118,7 +118,7 @@ int brunt_pass_update(brunt_world *world, brunt_step *step, brunt_error *error) 
 }
 
 static void hold_nodes(brunt_boundary *boundary, brunt_body *body, double time) {
-    if (boundary->kind->hold_grid && acts_on(boundary, body)) boundary->kind->hold_grid(body, boundary, time);
+    if (boundary->kind->hold_grid) boundary->kind->hold_grid(body, boundary, time);
 }
 
 // Planes that stick or slip and regions, at the nodes of the grids; once more after what gives impulses to nodes that
@@ -216,7 +216,9 @@ static void musl_body(brunt_world *world, brunt_body *body, double dt) {
     brunt_parallel(world->settings.threads, body->grid.slot_count, SLOT_GRAIN, brunt_grid_sum, &nodes, timer);
     fold_symmetry(&world->boundaries, body, 1, false);
     brunt_parallel(world->settings.threads, body->grid.slot_count, SLOT_GRAIN, brunt_grid_update, &nodes, timer);
-    for (int w = 0; w < world->boundaries.boundary_count; w++) {
+    int w;
+    brunt_boundary_walk acting = brunt_boundaries_of(&world->boundaries.acting, body->index);
+    while ((w = brunt_boundary_next(&acting)) != BRUNT_NONE) {
         brunt_boundary boundary = world->boundaries.boundary[w];
         hold_nodes(&boundary, body, world->clock.time);
     }

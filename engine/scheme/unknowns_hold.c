@@ -61,15 +61,16 @@ static double distance(const brunt_unknowns *u, const brunt_plane_def *plane, do
 static void hold_nodes(brunt_unknowns *u, const brunt_world *world, int w, double dt) {
     const brunt_boundary *boundary = &world->boundaries.boundary[w];
     const brunt_bodies *bodies = &world->bodies;
-    for (int k = 0; boundary->kind->holds_meshes && k < bodies->fem_count; k++)
-        for (int32_t i = 0; brunt_boundary_acts_on(boundary, bodies->fem[k].index) && i < bodies->fem[k].node_count;
-             i++)
-            hold_node(u, world, w, u->base[k] + i, ON_PLANE * bodies->fem[k].mean_edge, dt);
-    for (int i = 0; i < bodies->mpm_count; i++) {
+    int k, i, end;
+    brunt_bodies_meshes(bodies, boundary->body, &k, &end);
+    for (; boundary->kind->holds_meshes && k < end; k++)
+        for (int32_t n = 0; n < bodies->fem[k].node_count; n++)
+            hold_node(u, world, w, u->base[k] + n, ON_PLANE * bodies->fem[k].mean_edge, dt);
+    brunt_bodies_points(bodies, boundary->body, &i, &end);
+    for (; i < end; i++) {
         const brunt_grid *grid = &bodies->mpm[i].grid;
-        const bool acts = brunt_boundary_acts_on(boundary, bodies->mpm[i].index);
         const double tolerance = ON_PLANE * (double)grid->h;
-        for (int64_t q = 0; acts && q < (int64_t)grid->slot_count * BRUNT_BLOCK_NODES; q++) {
+        for (int64_t q = 0; q < (int64_t)grid->slot_count * BRUNT_BLOCK_NODES; q++) {
             const int32_t n = u->number[i][q];
             if (n < 0 ||
                 (boundary->symmetry_plane >= 0 && distance(u, &boundary->plane, world->clock.time, n) < -tolerance))
@@ -107,11 +108,11 @@ int32_t brunt_unknowns_passed(const brunt_unknowns *u, const brunt_world *world,
         *boundary = &world->boundaries.boundary[w];
         const brunt_plane_def *plane = &(*boundary)->plane;
         if (!brunt_boundary_holds(*boundary)) continue;
-        for (int k = 0; k < bodies->fem_count; k++) {
+        int k, end;
+        brunt_bodies_meshes(bodies, (*boundary)->body, &k, &end);
+        for (; k < end; k++) {
             const double tolerance = ON_PLANE * bodies->fem[k].mean_edge;
-            const int32_t nodes =
-                brunt_boundary_acts_on(*boundary, bodies->fem[k].index) ? bodies->fem[k].node_count : 0;
-            for (int32_t n = u->base[k]; n < u->base[k] + nodes; n++) {
+            for (int32_t n = u->base[k]; n < u->base[k] + bodies->fem[k].node_count; n++) {
                 const double before = distance(u, plane, world->clock.time, n);
                 double after = before;
                 for (int a = 0; a < u->dim; a++)

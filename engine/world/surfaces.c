@@ -16,9 +16,9 @@ static const double THIN = 0.01; // mean edges
 
 static bool acts_on_fem(const brunt_world *world, const brunt_boundary *boundary) {
     if (!boundary->kind->meet_surface) return false;
-    for (int k = 0; k < world->bodies.fem_count; k++)
-        if (boundary->body < 0 || boundary->body == world->bodies.fem[k].index) return true;
-    return false;
+    int first, end;
+    brunt_bodies_meshes(&world->bodies, boundary->body, &first, &end);
+    return first < end;
 }
 
 // Smallest and largest mean edge among the bodies, for the choice of the contact grid.
@@ -162,7 +162,8 @@ int brunt_surfaces_overlap(brunt_world *world, brunt_error *error) {
     brunt_contact_context m = {.surface = s,
                                .pair_map = &world->pairs.map,
                                .body_count = world->bodies.count,
-                               .boundaries = world->boundaries.boundary};
+                               .boundaries = world->boundaries.boundary,
+                               .acting = &world->boundaries.acting};
     if (s->fem_count) {
         brunt_surface_bounds(s, world->settings.threads, NULL);
         for (int k = 0; k < s->fem_count; k++) s->active[k] = true;
@@ -239,6 +240,7 @@ brunt_contact_context brunt_contact_context_of(brunt_world *world, double dt, br
                                    .symmetry_count = world->boundaries.symmetry_count,
                                    .boundaries = world->boundaries.boundary,
                                    .boundary_count = world->boundaries.boundary_count,
+                                   .acting = &world->boundaries.acting,
                                    .time = world->clock.time,
                                    .mpm = world->bodies.mpm,
                                    .mpm_count = world->bodies.mpm_count,

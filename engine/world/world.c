@@ -65,8 +65,8 @@ static int check_symmetry(const brunt_world *world, brunt_error *error) {
         const brunt_boundary *boundary = &world->boundaries.boundary[w];
         const double *n = boundary->plane.normal, *at = boundary->plane.point;
         if (!boundary->kind->is_plane || !brunt_conditions[boundary->plane.condition].images) continue;
-        for (int i = 0; i < world->bodies.count; i++) {
-            if (boundary->body >= 0 && boundary->body != i) continue;
+        const int only = boundary->body, first = only < 0 ? 0 : only, end = only < 0 ? world->bodies.count : only + 1;
+        for (int i = first; i < end; i++) {
             brunt_body *mpm = world->bodies.all[i].mpm;
             const brunt_fem_body *fem = world->bodies.all[i].fem;
             const int64_t count = mpm ? mpm->particles.slots : fem->node_count;
@@ -199,6 +199,9 @@ brunt_world *brunt_world_create(const brunt_world_def *given, brunt_error *error
     if (!status)
         status = brunt_boundary_surfaces_make(&world->boundaries.surfaces, def, &world->bodies,
                                               world->boundaries.boundary + brunt_boundary_first(def, "surface"), error);
+    if (!status)
+        status = brunt_boundary_lists_make(&world->boundaries.acting, world->boundaries.boundary,
+                                           world->boundaries.boundary_count, world->bodies.count, error);
     if (!status) status = brunt_surfaces_make(world, def, error);
     if (!status) status = brunt_fem_tasks_make(world, error);
     if (!status) status = brunt_damping_make(&world->boundaries.damping, &world->bodies, error);

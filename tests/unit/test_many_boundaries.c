@@ -3,6 +3,7 @@
 // Scenes of more boundaries than a byte counts, as those of hundreds of bodies have: each acts, on the bodies that it
 // names and no others.
 #include "tests/support/def_world.h"
+#include "world/world.h"
 
 // A row of unit squares of one element each, apart.
 static brunt_world_def squares(int count, int groups, brunt_scheme scheme) {
@@ -82,12 +83,76 @@ START_TEST(the_first_of_many_groups_holds) {
 }
 END_TEST
 
+// Counts what each body of material points is held by in a step.
+static int64_t held;
+static void count_hold(brunt_body *body, brunt_boundary *b, double time) {
+    ck_assert(b->body < 0 || b->body == body->index);
+    (void)time, held++;
+}
+
+// Blocks of material points; of each its own region and plane, and one region of all in their middle.
+static brunt_world *held_points(int count) {
+    brunt_world_def def = def_begin(2, 1);
+    brunt_free(def.bodies), brunt_free(def.planes);
+    def.bodies = brunt_alloc((size_t)count * sizeof *def.bodies);
+    def.planes = brunt_alloc((size_t)count * sizeof *def.planes);
+    def.regions = brunt_alloc(((size_t)count + 1) * sizeof *def.regions);
+    def.kernel = BRUNT_LINEAR;
+    def.contact.method = BRUNT_CONTACT_NONE;
+    def_material(&def, "neo-hookean", 1000, 1e6, 0.3);
+    for (int i = 0; i < count; i++) {
+        char name[24];
+        snprintf(name, sizeof name, "b%05d", i);
+        def_box(&def, name, XYZ(4 * i, 0, 0), XYZ(4 * i + 1, 1, 0));
+        brunt_plane_def *plane = def_plane(&def, XYZ(0, -1, 0), XYZ(0, 1, 0), BRUNT_SEPARATE, 0);
+        memcpy(plane->body, name, sizeof name);
+    }
+    for (int i = 0; i <= count; i++) {
+        brunt_region_def *region = &def.regions[def.region_count++];
+        *region = brunt_region_def_default();
+        region->shape.kind = BRUNT_BOX;
+        for (int a = 0; a < 3; a++)
+            region->shape.min[a] = -1, region->shape.max[a] = 5 * count, region->component[a] = true;
+        if (i != count / 2) snprintf(region->body, sizeof region->body, "b%05d", i < count / 2 ? i : i - 1);
+    }
+    brunt_world *world = world_from(&def);
+    ck_assert_int_eq(brunt_boundary_count(world), 2 * count + 1);
+    return world;
+}
+
+// A step of the linear kernel holds nodes three times: after the forces, after planes, and of the new velocities. What
+// is looked at for a body is its own boundaries and that of all.
+START_TEST(a_body_looks_at_its_own_boundaries) {
+    enum { COUNT = 400 };
+    brunt_world *world = held_points(COUNT);
+    brunt_boundaries *all = &world->boundaries;
+    brunt_boundary_kind counted = *all->boundary[COUNT].kind;
+    counted.hold_grid = count_hold;
+    for (int w = COUNT; w <= 2 * COUNT; w++) all->boundary[w].kind = &counted;
+    held = 0;
+    world_steps(world, 1);
+    ck_assert_int_eq(held, 3 * 2 * COUNT);
+    for (int i = 0; i < COUNT; i++) {
+        brunt_boundary_walk walk = brunt_boundaries_of(&all->acting, i);
+        int seen = 0, before = -1, w;
+        while ((w = brunt_boundary_next(&walk)) != BRUNT_NONE) {
+            ck_assert_int_lt(before, w);
+            ck_assert(all->boundary[w].body == i || all->boundary[w].body == -1);
+            before = w, seen++;
+        }
+        ck_assert_int_eq(seen, 3);
+    }
+    brunt_world_destroy(world);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("many boundaries");
     TCase *all = tcase_create("all");
     tcase_set_timeout(all, 120);
     tcase_add_loop_test(all, each_of_many_groups_moves_its_body, 0, 2);
     tcase_add_loop_test(all, the_first_of_many_groups_holds, 0, 2);
+    tcase_add_test(all, a_body_looks_at_its_own_boundaries);
     suite_add_tcase(suite, all);
     return suite_main(suite);
 }

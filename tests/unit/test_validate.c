@@ -43,6 +43,7 @@ static void boundary_normal(brunt_world *w) { w->boundaries.boundary[0].plane.no
 static void boundary_symmetry(brunt_world *w) {
     w->boundaries.boundary[0].symmetry_plane = w->boundaries.symmetry_count;
 }
+static void boundary_acting(brunt_world *w) { w->boundaries.acting.list[0] = w->boundaries.boundary_count; }
 static void boundary_account(brunt_world *w) { w->boundaries.boundary[0].account.impulse[1] = NAN; }
 static void symmetry_count(brunt_world *w) { w->boundaries.symmetry_count = -1; }
 static void damping_active(brunt_world *w) { w->boundaries.damping.active = false; }
@@ -86,37 +87,22 @@ static void on_grid_of(brunt_world *w) { on_grid(w)->link[0].contact = on_grid(w
 static void on_grid_leader(brunt_world *w) { on_grid(w)->contact[0].leader = 1; }
 
 static const broken_row rows[] = {
-    {two_bodies, boundary_body},
-    {two_bodies, boundary_normal},
-    {two_bodies, boundary_symmetry},
-    {two_bodies, boundary_account},
-    {two_bodies, symmetry_count},
-    {two_bodies, damping_active},
-    {two_bodies, damping_count},
-    {two_bodies, ledger_number},
-    {two_bodies, ledger_scale},
-    {two_bodies, plan_pass},
-    {two_bodies, plan_order},
-    {two_bodies, plan_rows},
-    {two_bodies, timing_pass},
-    {two_bodies, clock_steps},
-    {two_bodies, clock_step},
-    {two_bodies, scratch_capacity},
-    {two_bodies, scratch_dofs},
-    {two_bodies, scratch_thread},
-    {two_bodies, grid_key},
-    {two_bodies, grid_source},
-    {two_bodies, grid_slot},
-    {two_bodies, pair_usual},
-    {meshes, pair_entry},
-    {meshes, pair_account},
-    {meshes, contact_rows},
-    {meshes, contact_frame},
-    {meshes, cache_face},
-    {meshes, cache_motion},
-    {meshes, cell_face},
-    {meshes, cell_order},
-    {mesh_on_grid, on_grid_of},
+    {two_bodies, boundary_body},    {two_bodies, boundary_acting},
+    {two_bodies, boundary_normal},  {two_bodies, boundary_symmetry},
+    {two_bodies, boundary_account}, {two_bodies, symmetry_count},
+    {two_bodies, damping_active},   {two_bodies, damping_count},
+    {two_bodies, ledger_number},    {two_bodies, ledger_scale},
+    {two_bodies, plan_pass},        {two_bodies, plan_order},
+    {two_bodies, plan_rows},        {two_bodies, timing_pass},
+    {two_bodies, clock_steps},      {two_bodies, clock_step},
+    {two_bodies, scratch_capacity}, {two_bodies, scratch_dofs},
+    {two_bodies, scratch_thread},   {two_bodies, grid_key},
+    {two_bodies, grid_source},      {two_bodies, grid_slot},
+    {two_bodies, pair_usual},       {meshes, pair_entry},
+    {meshes, pair_account},         {meshes, contact_rows},
+    {meshes, contact_frame},        {meshes, cache_face},
+    {meshes, cache_motion},         {meshes, cell_face},
+    {meshes, cell_order},           {mesh_on_grid, on_grid_of},
     {mesh_on_grid, on_grid_leader},
 };
 
