@@ -16,8 +16,8 @@ typedef enum scene_kind { SCENE_SCALAR, SCENE_MAP, SCENE_LIST } scene_kind;
 
 enum {
     SCENE_DEPTH_LIMIT = 40,
-    SCENE_NODE_LIMIT = 100000,  // values in a file with all aliases expanded
-    SCENE_TEXT_LIMIT = 4 << 20, // [bytes]
+    SCENE_FEW_NODES = 100000,    // values that any file may have with all aliases expanded, see brunt_tree_parse
+    SCENE_TEXT_LIMIT = 64 << 20, // [bytes]
     SCENE_MESSAGE_LIMIT = 200
 };
 
@@ -70,7 +70,9 @@ void *brunt_tree_alloc(scene_tree *tree, size_t bytes);
 char *brunt_tree_text(scene_tree *tree, const char *text, size_t length);
 void brunt_tree_free(scene_tree *tree); // all that the tree owns
 
-// Parses one document. `option` NULL: the file's own text; else an override's value. NULL after a message.
+// Parses one document. `option` NULL: the file's own text; else an override's value. NULL after a message. Values that
+// are typed take two bytes at least: there are no more of them, or aliases make them, which may do so up to
+// SCENE_FEW_NODES.
 scene_node *brunt_tree_parse(scene_tree *tree, const char *text, size_t length, const char *option);
 // Applies "path.to.key=value".
 void brunt_tree_set(scene_tree *tree, const char *option);

@@ -14,12 +14,6 @@
 
 #include "base/memory.h"
 
-typedef struct anchor {
-    char *name;
-    scene_node *node;
-    struct anchor *next;
-} anchor;
-
 typedef struct builder {
     scene_tree *tree;
     const char *option;
@@ -30,8 +24,9 @@ typedef struct builder {
         char *text;
         int line, column;
     } key[SCENE_DEPTH_LIMIT]; // of the value to come, per open map
-    anchor *anchors;
-    int line, column; // of the last event that had a place
+    scene_node anchors;       // a map by name, of what has what an anchor names as its first
+    int node_limit;           // values of the tree
+    int line, column;         // of the last event that had a place
     bool stop;
 } builder;
 
@@ -129,7 +124,8 @@ static bool readable(builder *b, const char *text, size_t length) {
     text_scan s = {.p = (const unsigned char *)text, .end = (const unsigned char *)text + length, .indentation = true};
     b->line = b->column = 1;
     if (length > SCENE_TEXT_LIMIT) {
-        snprintf(message, sizeof message, "the file is larger than 4 MiB, too large for a %s", format->name);
+        snprintf(message, sizeof message, "the file is larger than %d MiB, too large for a %s", SCENE_TEXT_LIMIT >> 20,
+                 format->name);
         complain(b, message);
         return false;
     }
@@ -172,9 +168,9 @@ static void take_place(builder *b, struct fy_event *event) {
 }
 
 static bool within_budget(builder *b) {
-    if (b->tree->node_count < SCENE_NODE_LIMIT) return true;
+    if (b->tree->node_count < b->node_limit) return true;
     char message[96];
-    snprintf(message, sizeof message, "more than %d values, with the aliases expanded", SCENE_NODE_LIMIT);
+    snprintf(message, sizeof message, "more than %d values, with the aliases expanded", b->node_limit);
     complain(b, message);
     b->stop = true;
     return false;
@@ -222,13 +218,16 @@ static bool key_is_due(const builder *b) {
 
 static void remember_anchor(builder *b, struct fy_token *token, scene_node *node) {
     if (!token) return;
-    anchor *a = brunt_tree_alloc(b->tree, sizeof *a);
-    if (!a) return;
-    a->name = token_text(b, token);
-    if (!a->name) return;
-    a->node = node;
-    a->next = b->anchors;
-    b->anchors = a;
+    char *name = token_text(b, token);
+    if (!name) return;
+    scene_node *a = brunt_tree_child(&b->anchors, name);
+    if (!a) { // else it names something else from now on
+        a = brunt_tree_alloc(b->tree, sizeof *a);
+        if (!a) return;
+        *a = (scene_node){.key = name};
+        brunt_tree_append(&b->anchors, a);
+    }
+    a->first = node;
 }
 
 static void refuse_tag(builder *b, struct fy_token *tag) {
@@ -316,11 +315,10 @@ static void on_alias(builder *b, struct fy_event *event) {
         b->stop = true;
         return;
     }
-    anchor *a = b->anchors;
-    while (a && strcmp(a->name, name) != 0) a = a->next;
+    const scene_node *a = brunt_tree_child(&b->anchors, name);
     char message[160];
     bool inside = false;
-    for (int i = 0; a && i < b->depth; i++) inside |= b->stack[i] == a->node;
+    for (int i = 0; a && i < b->depth; i++) inside |= b->stack[i] == a->first;
     if (!a || inside) {
         snprintf(message, sizeof message,
                  a ? "the alias *%.60s stands inside of what it names" : "the alias *%.60s names no anchor above it",
@@ -329,7 +327,7 @@ static void on_alias(builder *b, struct fy_event *event) {
         b->stop = true;
         return;
     }
-    scene_node *node = copy(b, a->node, b->depth);
+    scene_node *node = copy(b, a->first, b->depth);
     if (node) place(b, node);
 }
 
@@ -377,9 +375,11 @@ static const char byte_order_mark[] = "\xEF\xBB\xBF"; // of UTF-8: it may stand 
 
 scene_node *brunt_tree_parse(scene_tree *tree, const char *text, size_t length, const char *option) {
     if (!option && length >= 3 && !memcmp(text, byte_order_mark, 3)) text += 3, length -= 3;
-    builder b = {.tree = tree, .option = option, .line = 1, .column = 1};
+    builder b = {.tree = tree, .option = option, .anchors = {.kind = SCENE_MAP}, .line = 1, .column = 1};
     int messages = tree->message_count;
     if (!readable(&b, text, length)) return NULL;
+    const int typed = tree->node_count + (int)(length / 2);
+    b.node_limit = typed > SCENE_FEW_NODES ? typed : SCENE_FEW_NODES;
     b.line = b.column = 1;
     struct fy_diag_cfg diag_cfg;
     fy_diag_cfg_default(&diag_cfg);

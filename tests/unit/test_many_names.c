@@ -138,6 +138,51 @@ START_TEST(comparisons_grow_with_the_bodies) {
 }
 END_TEST
 
+// Values have no number that a file must not reach; only aliases must not make more of them than it has bytes for.
+START_TEST(ten_thousand_bodies_are_read) {
+    char *text = text_of(10000);
+    brunt_scene scene;
+    ck_assert_int_eq(brunt_scene_parse(text, strlen(text), "many.yaml", NULL, 0, &scene, stderr), BRUNT_OK);
+    ck_assert_int_eq(scene.world.body_count, 10000);
+    ck_assert_int_eq(scene.measure_count, 20000);
+    brunt_scene_free(&scene);
+    free(text);
+}
+END_TEST
+
+// Comparisons of names that reading bodies takes of which the second half have the velocities of the first, by aliases
+// or typed.
+static int64_t bodies_cost(int count, bool aliases) {
+    char *text;
+    size_t length;
+    FILE *out = open_memstream(&text, &length);
+    fputs("brunt: 1\ndimension: 2\ntime: {end: 1 ms}\n"
+          "materials: {rubber: {model: neo-hookean, density: 1000, E: 1 MPa, nu: 0.3}}\nbodies:\n",
+          out);
+    for (int i = 0; i < count; i++) {
+        fprintf(out, "  b%05d: {method: fem, material: rubber, size: 1, shape: {box: {min: [%d, 0], max: [%d, 1]}}, ",
+                i, 2 * i, 2 * i + 1);
+        if (!aliases)
+            fputs("velocity: [0, 0]}\n", out);
+        else
+            fprintf(out, i < count / 2 ? "velocity: &v%05d [0, 0]}\n" : "velocity: *v%05d}\n", i % (count / 2));
+    }
+    fclose(out);
+    brunt_scene scene;
+    comparisons = 0;
+    ck_assert_int_eq(brunt_scene_parse(text, strlen(text), "many.yaml", NULL, 0, &scene, stderr), BRUNT_OK);
+    brunt_scene_free(&scene);
+    free(text);
+    return comparisons;
+}
+
+START_TEST(comparisons_grow_with_the_anchors) {
+    const int64_t few = bodies_cost(250, true) - bodies_cost(250, false),
+                  many = bodies_cost(1000, true) - bodies_cost(1000, false);
+    ck_assert_msg(many <= 5 * few + 1000, "250 anchors %lld, 1000 anchors %lld", (long long)few, (long long)many);
+}
+END_TEST
+
 // Arrays of all bodies, one after the other, then those of the world.
 START_TEST(arrays_are_those_of_their_bodies) {
     char *text = text_of(20);
@@ -167,6 +212,8 @@ int main(void) {
     TCase *all = tcase_create("all");
     tcase_set_timeout(all, 120);
     tcase_add_test(all, comparisons_grow_with_the_bodies);
+    tcase_add_test(all, ten_thousand_bodies_are_read);
+    tcase_add_test(all, comparisons_grow_with_the_anchors);
     tcase_add_test(all, arrays_are_those_of_their_bodies);
     suite_add_tcase(suite, all);
     return suite_main(suite);
