@@ -7,7 +7,7 @@
 #include "boundary/kinds.h"
 #include "contact/methods/method.h"
 #include "materials/material.h"
-#include "world/definitions.h"
+#include "world/named_pairs.h"
 
 typedef struct refusals {
     brunt_refusal_fn *refuse;
@@ -123,33 +123,43 @@ static void look_at_boundaries(const brunt_world_def *def, refusals *r) {
     }
 }
 
-static brunt_contact_method method_of(const brunt_contact_def *contact, const brunt_body_def *a,
-                                      const brunt_body_def *b) {
-    brunt_contact_method method = contact->method;
-    for (int32_t p = 0; p < contact->pair_count; p++) {
-        const brunt_pair_def *pair = &contact->pairs[p];
-        if ((!strcmp(pair->a, a->name) && !strcmp(pair->b, b->name)) ||
-            (!strcmp(pair->a, b->name) && !strcmp(pair->b, a->name)))
-            method = pair->method;
+// The first two bodies of points that meet by a method that wants something else: by that of all, or one of their own.
+static int find_points(const brunt_world_def *def, brunt_named_pair *first, brunt_error *error) {
+    const brunt_contact_def *contact = &def->contact;
+    brunt_named_pairs named;
+    int status = brunt_named_pairs_make(&named, def, error);
+    const unsigned points = brunt_contact_accepts(contact->method, false, false) ? 0 : 1;
+    if (!status) status = brunt_first_usual_pair(def, &named, points, first, error);
+    for (int32_t q = 0; !status && q < named.count; q++) {
+        const brunt_named_pair *p = &named.pair[q];
+        const bool last = q + 1 == named.count || p[1].a != p->a || p[1].b != p->b;
+        if (first->a != BRUNT_NONE && (p->a > first->a || (p->a == first->a && p->b >= first->b))) break;
+        if (!last || p->a == p->b || def->bodies[p->a].method != BRUNT_MPM || def->bodies[p->b].method != BRUNT_MPM ||
+            brunt_contact_accepts(contact->pairs[p->at].method, false, false))
+            continue;
+        *first = *p;
+        break;
     }
-    return method;
+    brunt_named_pairs_free(&named);
+    return status;
 }
 
 // Bodies of material points have no surface that particles of others could be kept from.
 static void look_at_points(const brunt_world_def *def, refusals *r) {
-    for (int32_t i = 0; i < def->body_count; i++)
-        for (int32_t k = i + 1; k < def->body_count; k++) {
-            const brunt_body_def *a = &def->bodies[i], *b = &def->bodies[k];
-            const brunt_contact_method method = method_of(&def->contact, a, b);
-            if (a->method != BRUNT_MPM || b->method != BRUNT_MPM || brunt_contact_accepts(method, false, false))
-                continue;
-            set_owner(r, "bodies.%s", b->name);
-            say(r, ".method",
-                "%s wants %s, neither '%s' nor '%s' is: each has a grid of its own and no surface; method: fem is "
-                "wanted for one, or contact tied or none, for all or in pairs",
-                brunt_contact_word(method), brunt_contact_wants(method), a->name, b->name);
-            return;
-        }
+    brunt_named_pair p = {BRUNT_NONE, BRUNT_NONE, BRUNT_NONE};
+    brunt_error error;
+    if (find_points(def, &p, &error)) {
+        set_owner(r, "contact");
+        say(r, ".pairs", "%s", error.message);
+    }
+    if (p.a == BRUNT_NONE) return;
+    const brunt_body_def *a = &def->bodies[p.a], *b = &def->bodies[p.b];
+    const brunt_contact_method method = p.at == BRUNT_NONE ? def->contact.method : def->contact.pairs[p.at].method;
+    set_owner(r, "bodies.%s", b->name);
+    say(r, ".method",
+        "%s wants %s, neither '%s' nor '%s' is: each has a grid of its own and no surface; method: fem is "
+        "wanted for one, or contact tied or none, for all or in pairs",
+        brunt_contact_word(method), brunt_contact_wants(method), a->name, b->name);
 }
 
 static void look_at_contact(const brunt_world_def *def, refusals *r) {

@@ -21,6 +21,7 @@ typedef struct maker {
     const brunt_world_def *def;
     const brunt_body_def **order;
     bool crowded; // all pairs of one method and friction are one
+    bool *self;   // of each body: a pair with itself has been made
     candidate *list;
     int32_t count;
 } maker;
@@ -67,8 +68,8 @@ static int make_self_pair(const maker *m, int q, brunt_error *error) {
         REFUSE("contact.pairs[%d].method: contact of '%s' with itself is by %s", q, def->a,
                brunt_contact_word(brunt_contact_of_self(m->def->scheme)));
     if (!(def->friction >= 0)) REFUSE("contact.pairs[%d].friction: %g is negative", q, def->friction);
-    for (int p = 0; p < pairs->count; p++)
-        if (pairs->pair[p].a == a) REFUSE("contact.pairs[%d].between: '%s' is listed twice", q, def->a);
+    if (m->self[a]) REFUSE("contact.pairs[%d].between: '%s' is listed twice", q, def->a);
+    m->self[a] = true;
     brunt_contact *contact = &m->world->contact;
     contact->has_self = true;
     const unsigned meets = note_rows(m, def->method, true, true);
@@ -197,7 +198,9 @@ int brunt_pairs_make(brunt_world *world, const brunt_world_def *def, const brunt
     if (BRUNT_NEW(world->pairs.mesh, n, "bodies with pairs", error) ||
         BRUNT_NEW(world->pairs.pair, most + (size_t)named, "pairs of bodies", error))
         return BRUNT_FAILED;
-    int status = BRUNT_NEW(m.list, most, "pairs of bodies", error);
+    int status = BRUNT_NEW(m.list, most, "pairs of bodies", error) || BRUNT_NEW(m.self, n, "pairs of bodies", error)
+                     ? BRUNT_FAILED
+                     : BRUNT_OK;
     for (int i = 0; !status && i < n; i++) world->pairs.mesh[i] = order[i]->method != BRUNT_MPM;
     world->pairs.map.mesh = world->pairs.mesh;
     for (int k = 0; k < 3; k++) world->pairs.map.usual[k] = -1;
@@ -206,5 +209,6 @@ int brunt_pairs_make(brunt_world *world, const brunt_world_def *def, const brunt
     for (int32_t c = 0; !status && c < m.count; c++) status = make_pair(&m, &m.list[c], error);
     brunt_pair_map_sort(&world->pairs.map);
     brunt_free(m.list);
+    brunt_free(m.self);
     return status;
 }

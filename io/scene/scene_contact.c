@@ -5,16 +5,13 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "contact/methods/method.h"
-#include "world/definitions.h"
+#include "world/named_pairs.h"
 
 static bool has_mesh(const scene_reader *reader, const char *name) {
     const brunt_body_def *body = brunt_body_named(reader, name);
     return body && body->method != BRUNT_MPM;
-}
-
-static bool same_pair(const brunt_pair_def *pair, const char *a, const char *b) {
-    return (strcmp(pair->a, a) == 0 && strcmp(pair->b, b) == 0) || (strcmp(pair->a, b) == 0 && strcmp(pair->b, a) == 0);
 }
 
 static void check_pair_method(scene_reader *reader, const scene_node *method, const brunt_pair_def *pair) {
@@ -80,11 +77,6 @@ static void fill_pair(scene_reader *reader, scene_node *node, brunt_pair_def *pa
         check_self(reader, between, method, pair);
     else if (method && method->good)
         check_pair_method(reader, method, pair);
-    for (int i = 0; i < contact->pair_count; i++) {
-        const brunt_pair_def *other = &contact->pairs[i];
-        if (other != pair && *other->a && same_pair(other, pair->a, pair->b))
-            brunt_tree_complain(reader->tree, between, "this pair is there twice");
-    }
 }
 
 static void fill_pairs(scene_reader *reader, const scene_node *list) {
@@ -95,31 +87,41 @@ static void fill_pairs(scene_reader *reader, const scene_node *list) {
         fill_pair(reader, child, &contact->pairs[contact->pair_count++]);
 }
 
-// Whether a pair of its own gives two bodies another method than that of all.
-static bool overridden(const brunt_contact_def *contact, const char *a, const char *b) {
-    for (int i = 0; i < contact->pair_count; i++)
-        if (contact->pairs[i].method != contact->method && same_pair(&contact->pairs[i], a, b)) return true;
-    return false;
+static void check_twice(scene_reader *reader, const scene_node *list, const brunt_named_pairs *named) {
+    const int count = reader->scene->world.contact.pair_count;
+    bool *twice = brunt_entries_for(reader, count, sizeof *twice);
+    for (int32_t q = 1; twice && q < named->count; q++)
+        if (named->pair[q].a == named->pair[q - 1].a && named->pair[q].b == named->pair[q - 1].b)
+            twice[named->pair[q].at] = true;
+    int at = 0;
+    for (const scene_node *child = twice ? list->first : NULL; child; child = child->next, at++)
+        if (twice[at])
+            brunt_tree_complain(reader->tree, brunt_tree_child(child, "between"), "this pair is there twice");
+    brunt_free(twice);
 }
 
 // A method for all that two bodies cannot meet by: said once, with the first two it is wrong for. Bodies of material
 // points find one of their own.
-static void check_method(scene_reader *reader, const scene_node *method) {
+static void check_method(scene_reader *reader, const scene_node *method, const brunt_named_pairs *named) {
     const brunt_world_def *world = &reader->scene->world;
     const brunt_contact_method of_all = world->contact.method;
-    for (int a = 0; a < world->body_count; a++)
-        for (int b = a + 1; b < world->body_count; b++) {
-            const brunt_body_def *one = &world->bodies[a], *other = &world->bodies[b];
-            const bool mesh_a = one->method != BRUNT_MPM, mesh_b = other->method != BRUNT_MPM;
-            if ((!mesh_a && !mesh_b) || brunt_contact_accepts(of_all, mesh_a, mesh_b)) continue;
-            if (overridden(&world->contact, one->name, other->name)) continue;
-            brunt_tree_complain(reader->tree, method,
-                                "%s wants %s, which '%s' and '%s' are not: %s is wanted, or pairs with a method of "
-                                "their own",
-                                brunt_contact_word(of_all), brunt_contact_wants(of_all), one->name, other->name,
-                                brunt_contact_word(brunt_contact_default(world->scheme, true)));
-            return;
-        }
+    const unsigned mixed = brunt_contact_accepts(of_all, false, true) ? 0 : 2,
+                   meshes = brunt_contact_accepts(of_all, true, true) ? 0 : 4;
+    brunt_named_pair first;
+    if (brunt_first_usual_pair(world, named, mixed | meshes, &first, NULL)) reader->tree->exhausted = true;
+    if (first.a == BRUNT_NONE) return;
+    brunt_tree_complain(reader->tree, method,
+                        "%s wants %s, which '%s' and '%s' are not: %s is wanted, or pairs with a method of their own",
+                        brunt_contact_word(of_all), brunt_contact_wants(of_all), world->bodies[first.a].name,
+                        world->bodies[first.b].name, brunt_contact_word(brunt_contact_default(world->scheme, true)));
+}
+
+static void check_pairs(scene_reader *reader, const scene_node *list, const scene_node *method) {
+    brunt_named_pairs named;
+    if (brunt_named_pairs_make(&named, &reader->scene->world, NULL)) reader->tree->exhausted = true;
+    check_twice(reader, list, &named);
+    if (method && method->good) check_method(reader, method, &named);
+    brunt_named_pairs_free(&named);
 }
 
 // Whether all pairs but some, or some pairs, meet by a method of a row, which has bodies for it.
@@ -246,7 +248,7 @@ void brunt_fill_contact(scene_reader *reader) {
     contact->friction = brunt_real_of(node, "friction", 0);
     contact->allow_overlap = brunt_real_of(node, "initial_overlap", 0) == 1;
     fill_pairs(reader, brunt_tree_child(node, "pairs"));
-    if (method && method->good) check_method(reader, method);
+    check_pairs(reader, brunt_tree_child(node, "pairs"), method);
     fill_keys(reader, node);
     if (!fem && world->body_count && method && method->good) check_touch(reader, method, contact->method);
     check_touches(reader, brunt_tree_child(node, "pairs"));

@@ -5,7 +5,7 @@
 #include "../support/def_world.h"
 #include "base/sweep.h"
 #include "contact/contact.h"
-#include "world/definitions.h"
+#include "world/named_pairs.h"
 
 // Bodies of a few points and of one element, in turns, side by side and apart.
 static brunt_world_def many(int count) {
@@ -70,6 +70,60 @@ START_TEST(two_that_overlap_are_found) {
 }
 END_TEST
 
+static double random_number(uint64_t *seed) {
+    *seed = *seed * 6364136223846793005u + 1442695040888963407u;
+    return (double)(*seed >> 33) / 2147483648.0;
+}
+
+// Whether the method of all is that of two bodies: the last pair that names them says no other.
+static bool as_all(const brunt_world_def *def, int a, int b) {
+    brunt_contact_method method = def->contact.method;
+    for (int q = 0; q < def->contact.pair_count; q++) {
+        const brunt_pair_def *p = &def->contact.pairs[q];
+        const char *one = def->bodies[a].name, *other = def->bodies[b].name;
+        if ((!strcmp(p->a, one) && !strcmp(p->b, other)) || (!strcmp(p->a, other) && !strcmp(p->b, one)))
+            method = p->method;
+    }
+    return method == def->contact.method;
+}
+
+// The first two that meet as all do, of random bodies in no order and random pairs, some of them twice, against all by
+// all.
+START_TEST(the_first_usual_pair_is_found) {
+    enum { BODIES = 6, PAIRS = 40 };
+    uint64_t seed = 5 + (uint64_t)_i;
+    brunt_world_def def = many(BODIES);
+    def.contact.pairs = brunt_alloc(PAIRS * sizeof *def.contact.pairs);
+    for (int i = 0; i < BODIES; i++) {
+        snprintf(def.bodies[i].name, sizeof def.bodies[i].name, "b%d", (5 * i + 3) % BODIES);
+        def.bodies[i].method = random_number(&seed) < 0.5 ? BRUNT_FEM : BRUNT_MPM;
+    }
+    def.contact.pair_count = (int32_t)(PAIRS * random_number(&seed));
+    for (int q = 0; q < def.contact.pair_count; q++) {
+        brunt_pair_def *p = &def.contact.pairs[q];
+        snprintf(p->a, sizeof p->a, "b%d", (int)((BODIES + 1) * random_number(&seed))); // one is no body
+        snprintf(p->b, sizeof p->b, "b%d", (int)(BODIES * random_number(&seed)));
+        p->method = random_number(&seed) < 0.3 ? BRUNT_CONTACT_AUGURY : BRUNT_CONTACT_NONE;
+    }
+    brunt_named_pairs named;
+    ck_assert_int_eq(brunt_named_pairs_make(&named, &def, NULL), BRUNT_OK);
+    for (unsigned kinds = 0; kinds < 8; kinds++) {
+        int first[2] = {BRUNT_NONE, BRUNT_NONE};
+        for (int a = 0; a < BODIES && first[0] < 0; a++)
+            for (int b = a + 1; b < BODIES && first[0] < 0; b++) {
+                const int meshes = (def.bodies[a].method != BRUNT_MPM) + (def.bodies[b].method != BRUNT_MPM);
+                if (kinds >> meshes & 1 && as_all(&def, a, b)) first[0] = a, first[1] = b;
+            }
+        brunt_named_pair found;
+        ck_assert_int_eq(brunt_first_usual_pair(&def, &named, kinds, &found, NULL), BRUNT_OK);
+        ck_assert_int_eq(found.a, first[0]);
+        ck_assert_int_eq(found.b, first[1]);
+    }
+    brunt_named_pairs_free(&named);
+    brunt_world_def_free(&def);
+}
+END_TEST
+
 START_TEST(pairs_are_those_of_their_kind_or_their_own) {
     const uint8_t mesh[] = {0, 1, 0, 1, 1};
     brunt_pair_map map = {.mesh = mesh, .usual = {7, 8, -1}};
@@ -86,11 +140,6 @@ START_TEST(pairs_are_those_of_their_kind_or_their_own) {
     brunt_free(map.entry);
 }
 END_TEST
-
-static double random_number(uint64_t *seed) {
-    *seed = *seed * 6364136223846793005u + 1442695040888963407u;
-    return (double)(*seed >> 33) / 2147483648.0;
-}
 
 // Boxes in a plane or in space, some without end, some that only touch, against all by all.
 START_TEST(a_sweep_finds_what_all_by_all_finds) {
@@ -130,6 +179,7 @@ int main(void) {
     tcase_set_timeout(all, 120);
     tcase_add_test(all, memory_grows_with_the_bodies);
     tcase_add_loop_test(all, two_that_overlap_are_found, 0, 4);
+    tcase_add_loop_test(all, the_first_usual_pair_is_found, 0, 60);
     tcase_add_test(all, pairs_are_those_of_their_kind_or_their_own);
     tcase_add_loop_test(all, a_sweep_finds_what_all_by_all_finds, 0, 8);
     suite_add_tcase(suite, all);

@@ -183,6 +183,39 @@ START_TEST(comparisons_grow_with_the_anchors) {
 }
 END_TEST
 
+// Comparisons of names that reading takes of bodies of which each is named with the next by a pair of its own: meshes,
+// or points of implicit steps.
+static int64_t pairs_cost(int count, bool points) {
+    char *text;
+    size_t length;
+    FILE *out = open_memstream(&text, &length);
+    fprintf(out,
+            "brunt: 1\ndimension: 2\ntime: {end: 1 ms, step: 1 ms, scheme: %s}\n%s"
+            "materials: {rubber: {model: neo-hookean, density: 1000, E: 1 MPa, nu: 0.3}}\nbodies:\n",
+            points ? "implicit" : "explicit", points ? "grid: {cell: 1 m}\n" : "");
+    for (int i = 0; i < count; i++)
+        fprintf(out, "  b%05d: {method: %s, material: rubber, shape: {box: {min: [%d, 0], max: [%d, 1]}}}\n", i,
+                points ? "mpm" : "fem, size: 1 m", 2 * i, 2 * i + 1);
+    fprintf(out, "contact:\n  method: none\n  pairs:\n");
+    for (int i = 0; i + 1 < count; i++)
+        fprintf(out, "    - {between: [b%05d, b%05d], method: %s}\n", i + 1, i, points ? "tied" : "augury");
+    fclose(out);
+    brunt_scene scene;
+    comparisons = 0;
+    ck_assert_int_eq(brunt_scene_parse(text, strlen(text), "many.yaml", NULL, 0, &scene, stderr), BRUNT_OK);
+    const int64_t cost = comparisons;
+    ck_assert_int_eq(scene.world.contact.pair_count, count - 1);
+    brunt_scene_free(&scene);
+    free(text);
+    return cost;
+}
+
+START_TEST(comparisons_grow_with_the_pairs) {
+    const int64_t few = pairs_cost(100, _i), many = pairs_cost(400, _i);
+    ck_assert_msg(many <= 5 * few, "100 pairs %lld, 400 pairs %lld", (long long)few, (long long)many);
+}
+END_TEST
+
 // Arrays of all bodies, one after the other, then those of the world.
 START_TEST(arrays_are_those_of_their_bodies) {
     char *text = text_of(20);
@@ -214,6 +247,7 @@ int main(void) {
     tcase_add_test(all, comparisons_grow_with_the_bodies);
     tcase_add_test(all, ten_thousand_bodies_are_read);
     tcase_add_test(all, comparisons_grow_with_the_anchors);
+    tcase_add_loop_test(all, comparisons_grow_with_the_pairs, 0, 2);
     tcase_add_test(all, arrays_are_those_of_their_bodies);
     suite_add_tcase(suite, all);
     return suite_main(suite);
