@@ -22,13 +22,14 @@ typedef struct maker {
     const brunt_body_def **order;
     bool crowded; // all pairs of one method and friction are one
     bool *self;   // of each body: a pair with itself has been made
+    int selves;   // how many
     candidate *list;
     int32_t count;
 } maker;
 
-// In a crowded scene all pairs of one method and friction are one.
-static int find_alike(const brunt_pairs *pairs, const brunt_pair *pair) {
-    for (int p = 0; p < pairs->count; p++)
+// In a crowded scene all pairs of one method and friction are one, but those of a body with itself, which come first.
+static int find_alike(const brunt_pairs *pairs, int selves, const brunt_pair *pair) {
+    for (int p = selves; p < pairs->count; p++)
         if (pairs->pair[p].method == pair->method && pairs->pair[p].friction == pair->friction) return p;
     return BRUNT_NONE;
 }
@@ -180,7 +181,7 @@ static int make_pair(const maker *m, const candidate *c, brunt_error *error) {
         int status = settle_method(m, c, &pair, error);
         if (status) return status;
         if (m->crowded) pair.a = pair.b = -1;
-        index = m->crowded ? find_alike(pairs, &pair) : -1;
+        index = m->crowded ? find_alike(pairs, m->selves, &pair) : -1;
         if (index < 0) pairs->pair[index = pairs->count++] = pair;
         pairs->pair[index].meets |= pair.meets;
     }
@@ -205,6 +206,7 @@ int brunt_pairs_make(brunt_world *world, const brunt_world_def *def, const brunt
     world->pairs.map.mesh = world->pairs.mesh;
     for (int k = 0; k < 3; k++) world->pairs.map.usual[k] = -1;
     for (int q = 0; !status && q < named; q++) status = make_self_pair(&m, q, error);
+    m.selves = world->pairs.count;
     if (!status) list_candidates(&m);
     for (int32_t c = 0; !status && c < m.count; c++) status = make_pair(&m, &m.list[c], error);
     brunt_pair_map_sort(&world->pairs.map);

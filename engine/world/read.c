@@ -102,8 +102,9 @@ static void fill_force(const brunt_impulse_account *last, const brunt_impulse_ac
 int32_t brunt_pair_count(const brunt_world *world) { return world->pairs.count; }
 void brunt_pair_force(const brunt_world *world, int32_t index, brunt_reaction *force) {
     const brunt_pair *pair = &world->pairs.pair[index];
+    const bool first = !index || pair[-1].a >= 0; // behind those of bodies with themselves
     if (pair->a < 0)
-        snprintf(force->name, sizeof force->name, index ? "all%d" : "all", index + 1);
+        snprintf(force->name, sizeof force->name, first ? "all" : "all%d", index + 1);
     else
         snprintf(force->name, sizeof force->name, "%s-%s", brunt_body_name(world, pair->a),
                  brunt_body_name(world, pair->b));

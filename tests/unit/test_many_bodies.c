@@ -124,6 +124,35 @@ START_TEST(the_first_usual_pair_is_found) {
 }
 END_TEST
 
+// A membrane that meets itself by the method of all has a pair of its own beside the one of all others.
+START_TEST(a_membrane_and_itself_are_not_all) {
+    brunt_world_def def = def_begin(3, 0);
+    brunt_free(def.bodies);
+    def.bodies = brunt_alloc(20 * sizeof *def.bodies);
+    def_material(&def, "neo-hookean", 1000, 1e6, 0.3);
+    def.contact.method = BRUNT_CONTACT_AUGURY;
+    for (int i = 0; i < 14; i++) {
+        char name[24];
+        snprintf(name, sizeof name, "b%02d", i);
+        brunt_body_def *b = def_box(&def, name, XYZ(3 * i, 0, 0), XYZ(3 * i + 1, 1, 1));
+        b->method = i ? BRUNT_FEM : BRUNT_MEMBRANE, b->size = 1;
+        b->element = i ? BRUNT_HEX8 : BRUNT_MEMBRANE_QUAD4;
+        if (!i) b->thickness = 0.01;
+    }
+    def.contact.pairs = brunt_alloc(sizeof *def.contact.pairs);
+    def.contact.pair_count = 1;
+    def.contact.pairs[0] = (brunt_pair_def){.a = "b00", .b = "b00", .method = BRUNT_CONTACT_AUGURY};
+    brunt_world *world = world_take(&def);
+    brunt_reaction self, all;
+    ck_assert_int_eq(brunt_pair_count(world), 2);
+    brunt_pair_force(world, 0, &self);
+    brunt_pair_force(world, 1, &all);
+    ck_assert_str_eq(self.name, "b00-b00");
+    ck_assert_str_eq(all.name, "all");
+    brunt_world_destroy(world);
+}
+END_TEST
+
 START_TEST(pairs_are_those_of_their_kind_or_their_own) {
     const uint8_t mesh[] = {0, 1, 0, 1, 1};
     brunt_pair_map map = {.mesh = mesh, .usual = {7, 8, -1}};
@@ -180,6 +209,7 @@ int main(void) {
     tcase_add_test(all, memory_grows_with_the_bodies);
     tcase_add_loop_test(all, two_that_overlap_are_found, 0, 4);
     tcase_add_loop_test(all, the_first_usual_pair_is_found, 0, 60);
+    tcase_add_test(all, a_membrane_and_itself_are_not_all);
     tcase_add_test(all, pairs_are_those_of_their_kind_or_their_own);
     tcase_add_loop_test(all, a_sweep_finds_what_all_by_all_finds, 0, 8);
     suite_add_tcase(suite, all);
