@@ -58,10 +58,10 @@ struct brunt_boundary_kind {
     const char *doc;  // of a kind that lists its keys: what it does, and they; else NULL and none
     const brunt_boundary_key *keys;
     int key_count;
-    // Of a definition: how many, the entries, the names of an entry and of the one body it acts on (NULL: that of its
-    // nodes); frees all.
+    // Of a definition: how many; the next entry from *at on, which becomes what is behind it, NULL: no more; the names
+    // of an entry and of the one body it acts on (NULL: that of its nodes); frees all.
     int32_t (*count)(const brunt_boundary_kind *kind, const brunt_world_def *def);
-    const void *(*entry)(const brunt_boundary_kind *kind, const brunt_world_def *def, int32_t i);
+    const void *(*next)(const brunt_boundary_kind *kind, const brunt_world_def *def, int32_t *at);
     const char *(*name)(const void *entry);
     const char *(*body)(const void *entry);
     void (*free)(brunt_world_def *def);

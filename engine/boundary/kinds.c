@@ -34,19 +34,18 @@ int32_t brunt_boundary_first(const brunt_world_def *def, const char *word) {
     return first;
 }
 
-const void *brunt_boundary_entry(const brunt_world_def *def, int32_t w, const brunt_boundary_kind **kind) {
-    int k = 0;
-    for (; w >= count_of(def, k); k++) w -= count_of(def, k);
-    *kind = brunt_boundary_kinds[k];
-    return (*kind)->entry(*kind, def, w);
+bool brunt_boundary_entry_next(const brunt_world_def *def, brunt_boundary_entry *e) {
+    for (e->w++; e->k < brunt_boundary_kind_count; e->k++, e->at = 0) {
+        e->kind = brunt_boundary_kinds[e->k];
+        if ((e->entry = e->kind->next(e->kind, def, &e->at))) return true;
+    }
+    return false;
 }
 
-void brunt_boundary_name(const brunt_world_def *def, int32_t w, char out[BRUNT_NAME_LENGTH]) {
-    const brunt_boundary_kind *kind;
-    const void *entry = brunt_boundary_entry(def, w, &kind);
-    const char *given = kind->name(entry);
+void brunt_boundary_name(const brunt_boundary_entry *e, char out[BRUNT_NAME_LENGTH]) {
+    const char *given = e->kind->name(e->entry);
     if (given[0])
         memcpy(out, given, BRUNT_NAME_LENGTH);
     else
-        snprintf(out, BRUNT_NAME_LENGTH, "%s%d", kind->word, w + 1);
+        snprintf(out, BRUNT_NAME_LENGTH, "%s%d", e->kind->word, e->w + 1);
 }

@@ -24,10 +24,10 @@ int32_t brunt_listed_count(const brunt_boundary_kind *kind, const brunt_world_de
     return count;
 }
 
-const void *brunt_listed_entry(const brunt_boundary_kind *kind, const brunt_world_def *def, int32_t i) {
-    const brunt_boundary_def *entry = def->boundaries;
-    for (;; entry++)
-        if (is_of(entry, kind) && i-- == 0) return entry;
+const void *brunt_listed_next(const brunt_boundary_kind *kind, const brunt_world_def *def, int32_t *at) {
+    while (*at < def->boundary_count)
+        if (is_of(&def->boundaries[(*at)++], kind)) return &def->boundaries[*at - 1];
+    return NULL;
 }
 
 const char *brunt_listed_name(const void *one) { return ((const brunt_boundary_def *)one)->name; }

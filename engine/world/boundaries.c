@@ -16,15 +16,15 @@ int brunt_boundaries_make(brunt_world *world, const brunt_world_def *def, const 
     if (def->axisymmetric && world->bodies.has_particles)
         all->symmetry[all->symmetry_count++] =
             (brunt_symmetry_plane){.axis = 0, .node = (int32_t)round(-def->origin[0] / def->cell), .boundary = -1};
-    for (int w = 0; w < all->boundary_count; w++) {
-        brunt_boundary *boundary = &all->boundary[w];
-        const void *entry = brunt_boundary_entry(def, w, &boundary->kind);
-        const char *body = boundary->kind->body ? boundary->kind->body(entry) : "";
-        brunt_boundary_name(def, w, boundary->name);
+    for (brunt_boundary_entry e = {.w = -1}; brunt_boundary_entry_next(def, &e);) {
+        brunt_boundary *boundary = &all->boundary[e.w];
+        const char *body = e.kind->body ? e.kind->body(e.entry) : "";
+        boundary->kind = e.kind;
+        brunt_boundary_name(&e, boundary->name);
         boundary->symmetry_plane = boundary->body = -1;
         if (body[0] && (boundary->body = brunt_find_ordered(order, def->body_count, body)) < 0)
             REFUSE("boundaries (%s).body: there is no body '%s'", boundary->name, body);
-        const int status = boundary->kind->make(&m, entry, w, error);
+        const int status = e.kind->make(&m, e.entry, e.w, error);
         if (status) return status;
     }
     return BRUNT_OK;

@@ -147,12 +147,10 @@ static int check_materials(const brunt_world_def *def, brunt_error *error) {
 // ------------------------------------------------------------------------------------------ boundaries
 
 static int check_boundaries(const brunt_world_def *def, brunt_error *error) {
-    for (int32_t w = 0; w < brunt_boundary_entry_count(def); w++) {
-        const brunt_boundary_kind *kind;
-        const void *entry = brunt_boundary_entry(def, w, &kind);
-        BRUNT_TRY(brunt_check_name_ends("boundaries", w, kind->name(entry), error));
-        if (kind->body) BRUNT_TRY(brunt_check_name_ends("boundaries", w, kind->body(entry), error));
-        BRUNT_TRY(kind->check(def, entry, w, error));
+    for (brunt_boundary_entry e = {.w = -1}; brunt_boundary_entry_next(def, &e);) {
+        BRUNT_TRY(brunt_check_name_ends("boundaries", e.w, e.kind->name(e.entry), error));
+        if (e.kind->body) BRUNT_TRY(brunt_check_name_ends("boundaries", e.w, e.kind->body(e.entry), error));
+        BRUNT_TRY(e.kind->check(def, e.entry, e.w, error));
     }
     return BRUNT_OK;
 }
@@ -174,7 +172,7 @@ static int check_boundary_names(const brunt_world_def *def, brunt_error *error) 
     char(*name)[BRUNT_NAME_LENGTH];
     brunt_names sorted;
     if (BRUNT_NEW(name, count + 1, "names of boundaries", error)) return BRUNT_FAILED;
-    for (int32_t w = 0; w < count; w++) brunt_boundary_name(def, w, name[w]);
+    for (brunt_boundary_entry e = {.w = -1}; brunt_boundary_entry_next(def, &e);) brunt_boundary_name(&e, name[e.w]);
     int status = brunt_names_sort(&sorted, name[0], sizeof name[0], count, error);
     for (int32_t w = 0; w < count && !status; w++) {
         const int32_t first = brunt_names_find(&sorted, name[w], strlen(name[w]));

@@ -112,13 +112,12 @@ static void name_boundary(refusals *r, int32_t index, const char *name) {
 }
 
 static void look_at_boundaries(const brunt_world_def *def, refusals *r) {
-    for (int32_t w = 0; w < brunt_boundary_entry_count(def); w++) {
-        const brunt_boundary_kind *kind;
-        const void *entry = brunt_boundary_entry(def, w, &kind);
-        const char *key = "", *reason = kind->refusal ? kind->refusal(def, entry, &key) : NULL;
+    for (brunt_boundary_entry e = {.w = -1}; brunt_boundary_entry_next(def, &e);) {
+        const brunt_boundary_kind *kind = e.kind;
+        const char *key = "", *reason = kind->refusal ? kind->refusal(def, e.entry, &key) : NULL;
         if (!reason && brunt_scheme_minimises(def->scheme) && kind->hold_grid && !kind->hold_at)
             reason = EXPLICIT_ONLY; // which no row needs to say: its function is not there
-        name_boundary(r, w, kind->name(entry));
+        name_boundary(r, e.w, kind->name(e.entry));
         if (reason) say(r, key, "%s", reason);
     }
 }

@@ -31,12 +31,20 @@ static void add_profile(const brunt_measure *m, const point_set *set, double *di
     }
 }
 
+// Bodies first .. end are looked at: the one that is named, or all.
+static void bodies_of(const brunt_measure *m, const brunt_world *world, int32_t *first, int32_t *end) {
+    const int32_t only = *m->body ? brunt_find_body(world, m->body) : BRUNT_NONE;
+    *first = only < 0 ? 0 : only;
+    *end = only >= 0 ? only + 1 : *m->body ? 0 : brunt_body_count(world);
+}
+
 static int take(const brunt_measure *m, measure_source *from, double *value, brunt_error *error) {
     brunt_world *world = from->world;
     double difference = 0, whole = 0;
     int found = 0;
-    for (int32_t body = 0; body < brunt_body_count(world); body++) {
-        if (*m->body && strcmp(brunt_body_name(world, body), m->body) != 0) continue;
+    int32_t body, end;
+    bodies_of(m, world, &body, &end);
+    for (; body < end; body++) {
         if (!*m->body && brunt_body_find_field(world, body, m->field) < 0) continue;
         point_set set;
         int status = measure_read_points(m, world, body, &set, error);
@@ -57,9 +65,11 @@ static int check(const brunt_measure *m, const measure_source *from, brunt_error
     if (!m->curve.count) return brunt_fail(error, BRUNT_BAD_INPUT, "measures.%s: a profile wants a reference", m->name);
     if (*m->body && brunt_find_body(world, m->body) < 0)
         return brunt_fail(error, BRUNT_BAD_INPUT, "measures.%s: there is no body '%s'", m->name, m->body);
-    for (int32_t body = 0; *m->curve_unit && body < brunt_body_count(world); body++) {
+    int32_t body, end;
+    bodies_of(m, world, &body, &end);
+    for (; *m->curve_unit && body < end; body++) {
         const int32_t field = brunt_body_find_field(world, body, m->field);
-        if (field < 0 || (*m->body && strcmp(brunt_body_name(world, body), m->body) != 0)) continue;
+        if (field < 0) continue;
         const char *unit = brunt_body_field(world, body, field).unit;
         if (!measure_same_unit(unit, m->curve_unit))
             return brunt_fail(error, BRUNT_BAD_INPUT, "measures.%s: the reference is in %s, the field '%s' in %s",

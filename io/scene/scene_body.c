@@ -7,6 +7,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "base/names.h"
 #include "io/mesh/gmsh.h"
 #include "geometry/element_traits.h"
 #include "geometry/mesh_shape.h"
@@ -357,13 +358,11 @@ static void check_wave(scene_reader *reader, const scene_node *wave, const brunt
 
 // ---------------------------------------------------------------------------------------------------- bodies
 
-static void fill_body(scene_reader *reader, scene_node *node, brunt_body_def *body) {
-    brunt_world_def *world = &reader->scene->world;
+static void fill_body(scene_reader *reader, scene_node *node, const brunt_names *materials, brunt_body_def *body) {
     if (node->kind != SCENE_MAP) return;
     const scene_node *material = brunt_tree_child(node, "material"), *method = brunt_tree_child(node, "method");
-    body->material = -1;
-    for (int i = 0; i < world->material_count; i++)
-        if (strcmp(world->materials[i].name, brunt_text_of(node, "material", "")) == 0) body->material = i;
+    const char *of = brunt_text_of(node, "material", "");
+    body->material = brunt_names_find(materials, of, strlen(of));
     if (material && material->good && body->material < 0)
         brunt_complain_name(reader, material, "material", "materials");
     int mistakes = reader->tree->message_count;
@@ -392,12 +391,17 @@ void brunt_fill_bodies(scene_reader *reader) {
     const scene_node *map = brunt_tree_child(reader->tree->root, "bodies");
     int count = brunt_children_of(map, SCENE_MAP);
     world->bodies = brunt_entries_for(reader, count, sizeof *world->bodies);
+    brunt_names materials = {.count = 0};
     if (!world->bodies) return;
+    if (world->material_count &&
+        brunt_names_sort(&materials, world->materials[0].name, sizeof *world->materials, world->material_count, NULL))
+        reader->tree->exhausted = true;
     for (scene_node *child = map->first; child; child = child->next) {
         brunt_body_def *body = &world->bodies[world->body_count++];
         *body = brunt_body_def_default();
         snprintf(body->name, sizeof body->name, "%s", child->key);
-        fill_body(reader, child, body);
+        fill_body(reader, child, &materials, body);
     }
+    brunt_names_free(&materials);
     qsort(world->bodies, (size_t)world->body_count, sizeof *world->bodies, by_name);
 }

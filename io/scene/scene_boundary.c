@@ -85,12 +85,12 @@ static const boundary_reader readers[] = {BRUNT_BOUNDARY_KINDS(ROW)};
 enum { READERS = sizeof readers / sizeof *readers };
 
 // Of a kind that lists its keys. They say which number they fill; shapes and tables are read here.
-static void read_listed(scene_reader *reader, scene_node *node, const brunt_boundary_kind *kind) {
+static void read_listed(scene_reader *reader, scene_node *node, const brunt_boundary_kind *kind, int32_t number) {
     brunt_world_def *world = &reader->scene->world;
     brunt_boundary_def *def = &world->boundaries[world->boundary_count++];
     const scene_node *body = brunt_tree_child(node, "body");
     snprintf(def->kind, sizeof def->kind, "%s", kind->word);
-    fill_name(reader, node, kind->word, kind->count(kind, world), def->name);
+    fill_name(reader, node, kind->word, number, def->name);
     brunt_fill_fields(reader, node, "boundaries[]", SCENE_AT_LISTED, def);
     const scene_node *group = brunt_tree_child(node, kind->word);
     for (int k = 0; k < kind->key_count; k++) {
@@ -104,11 +104,12 @@ static void read_listed(scene_reader *reader, scene_node *node, const brunt_boun
                                 kind->word, body ? "this body is not" : "no body is");
 }
 
-static void read_boundary(scene_reader *reader, scene_node *node) {
+// `numbers`: of each kind that lists its keys, how many there have been.
+static void read_boundary(scene_reader *reader, scene_node *node, int32_t *numbers) {
     const boundary_reader *found = NULL;
     const brunt_boundary_kind *listed = NULL;
     const char *keys[32];
-    int count = 0, key_count = 0;
+    int count = 0, key_count = 0, k_listed = 0;
     for (int k = 0; k < READERS; k++) {
         keys[key_count++] = readers[k].key;
         if (brunt_tree_child(node, readers[k].key)) found = &readers[k], count++;
@@ -117,14 +118,14 @@ static void read_boundary(scene_reader *reader, scene_node *node) {
         const brunt_boundary_kind *kind = brunt_boundary_kinds[k];
         if (!kind->keys) continue;
         if (key_count < (int)(sizeof keys / sizeof *keys)) keys[key_count++] = kind->word;
-        if (brunt_tree_child(node, kind->word)) listed = kind, count++;
+        if (brunt_tree_child(node, kind->word)) listed = kind, k_listed = k, count++;
     }
     char names[400] = "";
     BRUNT_LIST_NAMES(names, (size_t)key_count, keys[i]);
     if (count != 1)
         brunt_tree_complain(reader->tree, node, "exactly one of %s is wanted", names);
     else if (listed)
-        read_listed(reader, node, listed);
+        read_listed(reader, node, listed, ++numbers[k_listed]);
     else
         found->read(reader, node);
 }
@@ -138,7 +139,9 @@ void brunt_fill_boundaries(scene_reader *reader) {
     BRUNT_BOUNDARY_KINDS(ENTRIES)
 #undef ENTRIES
     if (!(world->boundaries = brunt_entries_for(reader, count, sizeof *world->boundaries))) return;
-    for (scene_node *node = list->first; node; node = node->next)
-        if (node->kind == SCENE_MAP) read_boundary(reader, node);
+    int32_t *numbers = brunt_entries_for(reader, brunt_boundary_kind_count, sizeof *numbers);
+    for (scene_node *node = numbers ? list->first : NULL; node; node = node->next)
+        if (node->kind == SCENE_MAP) read_boundary(reader, node, numbers);
+    brunt_free(numbers);
     check_boundary_names(reader, list);
 }

@@ -15,19 +15,40 @@ static bool one_of(const char *name, const char *const *names, int count) {
     return false;
 }
 
-// "prefix.NAME.rest" or "prefix.NAME": whether NAME is `name`.
-static bool names_part(const char *rest, const char *name) {
-    size_t length = strlen(name);
-    return strncmp(rest, name, length) == 0 && (rest[length] == '.' || rest[length] == 0);
+// Names that columns of the history may have, maps each.
+struct scene_columns {
+    scene_node boundaries, gas, probes;
+    scene_node selves; // bodies whose contact with themselves is asked for
+};
+
+static void enter(scene_reader *reader, scene_node *map, const char *name) {
+    scene_node *node = brunt_tree_alloc(reader->tree, sizeof *node);
+    if (!node) return;
+    *node = (scene_node){.key = (char *)name};
+    brunt_tree_append(map, node);
 }
 
-// Whether contact of the body with itself is asked for.
-static bool meets_itself(const brunt_world_def *world, const char *body) {
+static void list_columns(scene_reader *reader, struct scene_columns *all) {
+    const brunt_world_def *world = &reader->scene->world;
+    const brunt_output_def *output = &reader->scene->output;
+    *all = (struct scene_columns){{.kind = SCENE_MAP}, {.kind = SCENE_MAP}, {.kind = SCENE_MAP}, {.kind = SCENE_MAP}};
+    for (brunt_boundary_entry e = {.w = -1}; brunt_boundary_entry_next(world, &e);)
+        enter(reader, &all->boundaries, e.kind->name(e.entry));
+    for (int32_t i = 0; i < world->group_count; i++)
+        if (brunt_group_rows[world->groups[i].action].gas) enter(reader, &all->gas, world->groups[i].name);
+    for (int i = 0; i < output->probe_count; i++) enter(reader, &all->probes, output->probes[i].name);
     for (int32_t p = 0; p < world->contact.pair_count; p++) {
         const brunt_pair_def *pair = &world->contact.pairs[p];
-        if (pair->method != BRUNT_CONTACT_NONE && strcmp(pair->a, body) == 0 && strcmp(pair->b, body) == 0) return true;
+        if (pair->method != BRUNT_CONTACT_NONE && strcmp(pair->a, pair->b) == 0) enter(reader, &all->selves, pair->a);
     }
-    return false;
+}
+
+// "prefix.NAME.rest" or "prefix.NAME": whether NAME is one of those.
+static bool names_part(const char *rest, const scene_node *names) {
+    char name[BRUNT_NAME_LENGTH];
+    const size_t length = strcspn(rest, ".");
+    snprintf(name, sizeof name, "%.*s", (int)length, rest);
+    return length < sizeof name && brunt_tree_child(names, name);
 }
 
 static bool pair_exists(const scene_reader *reader, const char *rest) {
@@ -38,23 +59,18 @@ static bool pair_exists(const scene_reader *reader, const char *rest) {
     for (char *dash = strchr(pair, '-'); dash; *dash = '-', dash = strchr(dash + 1, '-')) { // names may have some
         *dash = 0;
         const brunt_body_def *a = brunt_body_named(reader, pair), *b = brunt_body_named(reader, dash + 1);
-        if (a && b && (a != b || meets_itself(&reader->scene->world, a->name))) return true;
+        if (a && b && (a != b || brunt_tree_child(&reader->columns->selves, a->name))) return true;
     }
     return false;
 }
 
-static const char *gas_mistake(const brunt_world_def *world, const char *rest) {
+static const char *gas_mistake(const struct scene_columns *columns, const char *rest) {
     static const char *const quantities[] = {"volume", "pressure", "energy", "inflow"};
-    for (int i = 0; i < world->group_count; i++) {
-        const brunt_group_def *group = &world->groups[i];
-        size_t length = strlen(group->name);
-        if (!brunt_group_rows[group->action].gas || strncmp(rest, group->name, length) != 0 || rest[length] != '.')
-            continue;
-        return one_of(rest + length + 1, quantities, BRUNT_COUNT(quantities))
-                   ? NULL
-                   : "of gas there are volume, pressure, energy and inflow";
-    }
-    return "there is no boundary of that name with gas";
+    const char *dot = strchr(rest, '.');
+    if (!dot || !names_part(rest, &columns->gas)) return "there is no boundary of that name with gas";
+    return one_of(dot + 1, quantities, BRUNT_COUNT(quantities))
+               ? NULL
+               : "of gas there are volume, pressure, energy and inflow";
 }
 
 static const char *newton_mistake(const char *rest) {
@@ -74,7 +90,6 @@ static const char *column_mistake(const scene_reader *reader, const char *column
                                            "contact",        "friction",      "viscosity",  "transfer", "eroded",
                                            "heat",           "external_work", "initial",    "total",    "error",
                                            "error_relative", "scheme"};
-    const brunt_world_def *world = &reader->scene->world;
     static const char families[] =
         "columns are time, step, dt, energy.*, momentum.*, newton.*, body.NAME.*, contact.A-B.*, wall.NAME.*, "
         "gas.NAME.* and probe.NAME";
@@ -98,20 +113,11 @@ static const char *column_mistake(const scene_reader *reader, const char *column
     }
     if (family == 7 && strncmp(column, "contact", 7) == 0)
         return pair_exists(reader, rest) ? NULL : "there is no such pair of bodies, A-B is wanted";
-    if (family == 4 && strncmp(column, "wall", 4) == 0) {
-        for (int32_t w = 0; w < brunt_boundary_entry_count(world); w++) {
-            const brunt_boundary_kind *kind;
-            const void *entry = brunt_boundary_entry(world, w, &kind);
-            if (names_part(rest, kind->name(entry))) return NULL;
-        }
-        return "there is no boundary of that name";
-    }
-    if (family == 3 && strncmp(column, "gas", 3) == 0) return gas_mistake(world, rest);
-    if (family == 5 && strncmp(column, "probe", 5) == 0) {
-        for (int i = 0; i < reader->scene->output.probe_count; i++)
-            if (names_part(rest, reader->scene->output.probes[i].name)) return NULL;
-        return "there is no probe of that name";
-    }
+    if (family == 4 && strncmp(column, "wall", 4) == 0)
+        return names_part(rest, &reader->columns->boundaries) ? NULL : "there is no boundary of that name";
+    if (family == 3 && strncmp(column, "gas", 3) == 0) return gas_mistake(reader->columns, rest);
+    if (family == 5 && strncmp(column, "probe", 5) == 0)
+        return names_part(rest, &reader->columns->probes) ? NULL : "there is no probe of that name";
     return families;
 }
 
@@ -428,6 +434,9 @@ void brunt_fill_measures(scene_reader *reader) {
         reader->tree->exhausted = true;
         return;
     }
+    struct scene_columns columns;
+    list_columns(reader, &columns);
+    reader->columns = &columns;
     for (scene_node *node = map->first; node; node = node->next) {
         brunt_measure *measure = &scene->measures[scene->measure_count++];
         measure->component = -1;
@@ -444,4 +453,5 @@ void brunt_fill_measures(scene_reader *reader) {
         fill_unit(reader, node, measure);
         brunt_copy_text(reader, brunt_tree_child(node, "source"), measure->source, sizeof measure->source);
     }
+    reader->columns = NULL;
 }

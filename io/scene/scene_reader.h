@@ -16,7 +16,8 @@ typedef struct scene_reader {
     brunt_units *units;
     int dimension; // 0 when the file's is unusable
     brunt_scene *scene;
-    FILE *warnings; // of the scene, one a line
+    FILE *warnings;                      // of the scene, one a line
+    const struct scene_columns *columns; // of the history, while measures are filled
 } scene_reader;
 
 // Before it, scene_preset.c puts the keys of materials of the library in.
