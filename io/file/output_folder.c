@@ -192,25 +192,27 @@ void brunt_output_obstacle(const brunt_output_folder *out, const char *name, bru
         add_obstacle(found, name, ".part");
 }
 
-static bool is_numbered(const char *entry, const char *start, const char *ending) {
-    size_t length = strlen(start);
-    if (strncmp(entry, start, length) != 0 || !isdigit((unsigned char)entry[length])) return false;
-    entry += length;
-    entry += strspn(entry, "0123456789");
-    length = strlen(ending);
-    return !strncmp(entry, ending, length) && (!entry[length] || !strcmp(entry + length, ".part"));
+// Whether `entry` is one of the names with a number: "NAME_000.vtu".
+static bool is_numbered(const char *entry, size_t length, const brunt_names *names, const char *ending) {
+    const size_t end = strlen(ending);
+    if (length <= end || strncmp(entry + length - end, ending, end) != 0) return false;
+    length -= end;
+    const size_t before = length;
+    while (length && isdigit((unsigned char)entry[length - 1])) length--;
+    return length < before && length > 1 && entry[length - 1] == '_' &&
+           brunt_names_find(names, entry, length - 1) != BRUNT_NONE;
 }
 
-void brunt_output_numbered_obstacles(const brunt_output_folder *out, const char *name, const char *start,
+void brunt_output_numbered_obstacles(const brunt_output_folder *out, const char *name, const brunt_names *names,
                                      const char *ending, brunt_obstacles *found) {
     char path[2 * NAME_MAX_BYTES + 2];
     int folder = out->folder < 0 ? -1 : openat(out->folder, name, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
     DIR *directory = folder < 0 ? NULL : fdopendir(folder);
     if (!directory) return; // a link: an obstacle of its own
     for (struct dirent *entry; (entry = readdir(directory));) {
-        if (!is_numbered(entry->d_name, start, ending)) continue;
         size_t length = strlen(entry->d_name);
         if (length > 5 && !strcmp(entry->d_name + length - 5, ".part")) length -= 5;
+        if (!is_numbered(entry->d_name, length, names, ending)) continue;
         snprintf(path, sizeof path, "%.100s/%.*s", name, (int)length, entry->d_name);
         struct stat info;
         const bool file = look_at(out, path, entry->d_name[length] ? ".part" : "", &info) && S_ISREG(info.st_mode);

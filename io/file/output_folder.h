@@ -10,6 +10,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/names.h"
 #include "io/file/atomic_file.h"
 
 #define BRUNT_OUTPUT_LIST "brunt.files"
@@ -38,8 +39,9 @@ typedef struct brunt_obstacles {
 // Looks at `name`, and at what it is written aside as. A name that ends with a slash is a folder: it must be one, and
 // no link.
 void brunt_output_obstacle(const brunt_output_folder *out, const char *name, brunt_obstacles *found);
-// Likewise at all in the folder `name` that begins with `start`, goes on with digits and ends with `ending`.
-void brunt_output_numbered_obstacles(const brunt_output_folder *out, const char *name, const char *start,
+// Likewise at all in the folder `name` that begins with one of `names`, goes on with _ and digits and ends with
+// `ending`.
+void brunt_output_numbered_obstacles(const brunt_output_folder *out, const char *name, const brunt_names *names,
                                      const char *ending, brunt_obstacles *found);
 // BRUNT_OK when nothing is in the way; BRUNT_BAD_INPUT says what is.
 int brunt_output_refuse(const brunt_output_folder *out, const brunt_obstacles *found, brunt_error *error);

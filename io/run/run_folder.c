@@ -76,11 +76,12 @@ static int refuse_trace(const brunt_output_folder *folder, const char *trace, br
 static int refuse_foreign(const brunt_output_folder *folder, const brunt_scene *scene, brunt_error *error) {
     brunt_obstacles found = {0};
     for (int f = 0; f < FILES; f++) brunt_output_obstacle(folder, files[f], &found);
-    for (int32_t b = 0; b < scene->world.body_count; b++) {
-        char start[128];
-        snprintf(start, sizeof start, "%s_", scene->world.bodies[b].name);
-        brunt_output_numbered_obstacles(folder, "vtu", start, ".vtu", &found);
-    }
+    const brunt_body_def *bodies = scene->world.bodies;
+    brunt_names names;
+    if (bodies && brunt_names_sort(&names, bodies[0].name, sizeof *bodies, scene->world.body_count, error))
+        return BRUNT_FAILED;
+    if (bodies) brunt_output_numbered_obstacles(folder, "vtu", &names, ".vtu", &found);
+    if (bodies) brunt_names_free(&names);
     return brunt_output_refuse(folder, &found, error);
 }
 
@@ -130,7 +131,7 @@ int brunt_run_folder_prepare(brunt_output_folder *folder, const brunt_run_option
 
 int brunt_run_folder_list_picture(brunt_output_folder *folder, const brunt_world *world, int64_t number,
                                   brunt_error *error) {
-    enum { AT_ONCE = 16 };
+    enum { AT_ONCE = 256 };
     char names[AT_ONCE][128];
     const char *pointers[AT_ONCE];
     int status = BRUNT_OK;

@@ -6,9 +6,11 @@
 #include "io/output/history.h"
 #include "io/output/measures.h"
 #include "io/output/positions.h"
+#include "io/run/run_folder.h"
 #include "tests/support/small_scene.h"
 #include "world/world.h"
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 static int64_t comparisons;
@@ -225,6 +227,52 @@ START_TEST(comparisons_grow_with_the_pairs) {
 }
 END_TEST
 
+// Comparisons of names for a folder that has a picture of each body, which brunt lists or not.
+static int64_t folder_cost(int count, bool listed) {
+    char path[] = "/tmp/brunt_names_XXXXXX", name[200];
+    ck_assert_ptr_nonnull(mkdtemp(path));
+    snprintf(name, sizeof name, "%s/vtu", path);
+    ck_assert_int_eq(mkdir(name, 0777), 0);
+    snprintf(name, sizeof name, "%s/brunt.files", path);
+    FILE *list = fopen(name, "w");
+    fputs("# What brunt wrote into this folder, and may replace or remove; anything else stays.\nvtu/\n", list);
+    brunt_scene scene = {.world = brunt_world_def_default()};
+    scene.world.body_count = count, scene.world.bodies = brunt_alloc((size_t)count * sizeof *scene.world.bodies);
+    for (int i = 0; i < count; i++) {
+        snprintf(scene.world.bodies[i].name, sizeof scene.world.bodies[i].name, "b%05d", i);
+        snprintf(name, sizeof name, "%s/vtu/b%05d_000000.vtu", path, i);
+        fclose(fopen(name, "w"));
+        if (listed || i != count / 2) fprintf(list, "vtu/b%05d_000000.vtu\n", i);
+    }
+    fclose(list);
+    brunt_output_folder folder = {.folder = -1, .index = -1};
+    const brunt_run_options options = {.fresh = true};
+    brunt_error error = {0};
+    comparisons = 0;
+    const int status = brunt_run_folder_open(&folder, &scene, &options, path, &error);
+    const int64_t cost = comparisons;
+    ck_assert_int_eq(status, listed ? BRUNT_OK : BRUNT_BAD_INPUT);
+    snprintf(name, sizeof name, "vtu/b%05d_000000.vtu;", count / 2);
+    ck_assert_msg(listed || strstr(error.message, name), "%s", error.message);
+    brunt_output_close(&folder);
+    brunt_world_def_free(&scene.world);
+    for (int i = 0; i < count; i++) {
+        snprintf(name, sizeof name, "%s/vtu/b%05d_000000.vtu", path, i);
+        unlink(name);
+    }
+    snprintf(name, sizeof name, "%s/vtu", path), rmdir(name);
+    snprintf(name, sizeof name, "%s/brunt.files", path), unlink(name);
+    rmdir(path);
+    return cost;
+}
+
+START_TEST(comparisons_grow_with_the_pictures) {
+    folder_cost(20, false);
+    const int64_t few = folder_cost(250, true), many = folder_cost(1000, true);
+    ck_assert_msg(many <= 6 * few, "250 pictures %lld, 1000 pictures %lld", (long long)few, (long long)many);
+}
+END_TEST
+
 // Arrays of all bodies, one after the other, then those of the world.
 START_TEST(arrays_are_those_of_their_bodies) {
     char *text = text_of(20);
@@ -257,6 +305,7 @@ int main(void) {
     tcase_add_test(all, ten_thousand_bodies_are_read);
     tcase_add_test(all, comparisons_grow_with_the_anchors);
     tcase_add_loop_test(all, comparisons_grow_with_the_pairs, 0, 2);
+    tcase_add_test(all, comparisons_grow_with_the_pictures);
     tcase_add_test(all, arrays_are_those_of_their_bodies);
     suite_add_tcase(suite, all);
     return suite_main(suite);
