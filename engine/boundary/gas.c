@@ -135,16 +135,10 @@ double brunt_gas_push(brunt_node_set *set, double time, double dt) {
 // ------------------------------------------------------------------------------------------ to be read, and kept
 
 const brunt_node_set *brunt_gas_number(const brunt_node_sets *sets, int32_t index) {
-    for (int k = 0; k < sets->count; k++)
-        if (sets->set[k].does->gas && index-- == 0) return &sets->set[k];
-    return NULL;
+    return &sets->set[sets->gas[index]];
 }
 
-int32_t brunt_gas_sets(const brunt_node_sets *sets) {
-    int32_t count = 0;
-    for (int k = 0; k < sets->count; k++) count += sets->set[k].does->gas;
-    return count;
-}
+int32_t brunt_gas_sets(const brunt_node_sets *sets) { return sets->gas_count; }
 
 brunt_gas brunt_gas_now(const brunt_node_set *set) {
     const double gamma = set->def.gas.gamma;
@@ -164,11 +158,9 @@ int64_t brunt_gas_state_count(const brunt_node_sets *sets) {
 }
 
 void brunt_gas_state_get(const brunt_node_sets *sets, double *out) {
-    for (int k = 0; k < sets->count; k++)
-        if (sets->set[k].does->gas) out = brunt_saved_get(saved, ROWS, &sets->set[k], out);
+    for (int k = 0; k < sets->gas_count; k++) out = brunt_saved_get(saved, ROWS, &sets->set[sets->gas[k]], out);
 }
 
 void brunt_gas_state_set(brunt_node_sets *sets, const double *in) {
-    for (int k = 0; k < sets->count; k++)
-        if (sets->set[k].does->gas) in = brunt_saved_set(saved, ROWS, &sets->set[k], in);
+    for (int k = 0; k < sets->gas_count; k++) in = brunt_saved_set(saved, ROWS, &sets->set[sets->gas[k]], in);
 }

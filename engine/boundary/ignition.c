@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/error.h"
+#include "base/names.h"
 #include "boundary/ignition.h"
 
 static bool ignites(const brunt_detonation_def *d, const char *body) { return !d->body[0] || !strcmp(d->body, body); }
@@ -75,9 +76,8 @@ static bool is_explosive(const brunt_body_ref *ref) {
 }
 
 // D [m/s]: the first parameter of all that burns.
-static double detonation_speed(const brunt_world_def *def, const char *body) {
-    int i = 0;
-    while (strcmp(def->bodies[i].name, body) != 0) i++;
+static double detonation_speed(const brunt_world_def *def, const brunt_names *names, const char *body) {
+    const int32_t i = brunt_names_find(names, body, strlen(body));
     return def->materials[def->bodies[i].material].eos_parameters[0];
 }
 
@@ -129,13 +129,16 @@ int brunt_ignition_make(const brunt_bodies *bodies, const brunt_world_def *def, 
         int status = check(bodies, &def->detonations[k], k, error);
         if (status) return status;
     }
+    brunt_names names;
+    if (brunt_names_sort(&names, def->bodies[0].name, sizeof *def->bodies, def->body_count, error)) return BRUNT_FAILED;
     for (int i = 0; i < bodies->count; i++) {
         const brunt_body_ref *ref = &bodies->all[i];
         if (!is_explosive(ref)) continue;
         const char *name = brunt_bodies_name(bodies, i);
-        const double speed = detonation_speed(def, name);
+        const double speed = detonation_speed(def, &names, name);
         const double first = ref->mpm ? ignite_particles(def, ref->mpm, speed) : ignite_elements(def, ref->fem, speed);
         warn(messages, def, ref, name, speed, first);
     }
+    brunt_names_free(&names);
     return BRUNT_OK;
 }

@@ -109,8 +109,8 @@ double brunt_load_frequency(const brunt_node_sets *sets, const brunt_bodies *bod
     double *rate = sets->load_rate[fem], greatest = 0, gas = 0;
     const uint8_t all = (uint8_t)((1 << body->dim) - 1);
     memset(rate, 0, (size_t)body->node_count * sizeof *rate);
-    for (int k = 0; k < sets->count; k++)
-        if (sets->set[k].fem_index == fem && follows(&sets->set[k])) gas += look_at_faces(&sets->set[k], time, rate);
+    for (int k = sets->first[fem]; k != BRUNT_NONE; k = sets->set[k].next)
+        if (follows(&sets->set[k])) gas += look_at_faces(&sets->set[k], time, rate);
     for (int32_t n = 0; n < body->node_count; n++)
         if (!body->held || (body->held[n] & all) != all)
             greatest = fmax(greatest, rate[n] / (double)brunt_fem_node(body, n)[BRUNT_FEM_MASS]);

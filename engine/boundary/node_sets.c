@@ -69,9 +69,9 @@ static int take_faces(brunt_node_set *set, brunt_messages *messages, brunt_error
 
 const brunt_node_set *brunt_node_sets_follow(brunt_node_sets *sets, brunt_fem_body *fem, int32_t *element) {
     const brunt_node_set *opened = NULL;
-    for (int k = 0; k < sets->count; k++) {
+    for (int k = sets->first[fem - sets->fem]; k != BRUNT_NONE; k = sets->set[k].next) {
         brunt_node_set *set = &sets->set[k];
-        if (set->fem != fem || !set->whole_count) continue;
+        if (!set->whole_count) continue;
         brunt_fem_ranks(fem);
         set->face_count = 0;
         for (int32_t f = 0; f < set->whole_count; f++) {
@@ -145,12 +145,25 @@ static int copy_definition(brunt_group_def *copy, const brunt_group_def *def, bo
     return brunt_curve_copy(&copy->table, table, error);
 }
 
+// Which sets each body has, in their order, and which have gas.
+static void list_sets(brunt_node_sets *sets) {
+    for (int i = 0; i < sets->fem_count; i++) sets->first[i] = BRUNT_NONE;
+    for (int k = sets->count; k-- > 0;) {
+        int *first = &sets->first[sets->set[k].fem_index];
+        sets->set[k].next = *first, *first = k;
+    }
+    for (int k = 0; k < sets->count; k++)
+        if (sets->set[k].does->gas) sets->gas[sets->gas_count++] = k;
+}
+
 int brunt_node_sets_make(brunt_node_sets *sets, const brunt_world_def *def, const brunt_bodies *bodies,
                          brunt_boundary *boundaries, brunt_messages *messages, brunt_error *error) {
     if (BRUNT_NEW(sets->set, def->group_count + 1, "groups of nodes", error) ||
+        BRUNT_NEW(sets->gas, def->group_count + 1, "groups of nodes", error) ||
+        BRUNT_NEW(sets->first, bodies->fem_count + 1, "meshes with groups", error) ||
         BRUNT_NEW(sets->taken, bodies->fem_count + 1, "meshes with groups", error))
         return BRUNT_FAILED;
-    sets->count = def->group_count, sets->fem_count = bodies->fem_count;
+    sets->count = def->group_count, sets->fem_count = bodies->fem_count, sets->fem = bodies->fem;
     for (int k = 0; k < sets->count; k++) {
         brunt_node_set *set = &sets->set[k];
         set->boundary = &boundaries[k];
@@ -169,6 +182,7 @@ int brunt_node_sets_make(brunt_node_sets *sets, const brunt_world_def *def, cons
         sets->act = true;
         sets->has_gas = sets->has_gas || set->does->gas;
     }
+    list_sets(sets);
     return BRUNT_OK;
 }
 
@@ -186,10 +200,17 @@ void brunt_node_sets_free(brunt_node_sets *sets) {
     }
     for (int k = 0; k < sets->fem_count; k++) brunt_free(sets->taken[k]);
     brunt_free(sets->set);
+    brunt_free(sets->first);
+    brunt_free(sets->gas);
     brunt_free(sets->taken);
 }
 
 void brunt_node_sets_validate(const brunt_node_sets *sets) {
+    int listed = 0;
+    for (int i = 0; i < sets->fem_count; i++)
+        for (int k = sets->first[i], before = -1; k != BRUNT_NONE; before = k, k = sets->set[k].next, listed++)
+            BRUNT_ASSERT(k > before && k < sets->count && sets->set[k].fem_index == i);
+    BRUNT_ASSERT(listed == sets->count && sets->gas_count >= 0 && sets->gas_count <= sets->count);
     for (int k = 0; k < sets->count; k++) {
         const brunt_node_set *set = &sets->set[k];
         BRUNT_ASSERT(set->fem && set->boundary && set->boundary->group == &set->def);

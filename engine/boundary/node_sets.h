@@ -14,6 +14,7 @@ typedef struct brunt_node_set {
     brunt_boundary *boundary;    // its name, and where its impulses are recorded
     brunt_fem_body *fem;
     int fem_index; // of the body, among those of elements
+    int next;      // set of the same body; BRUNT_NONE: it is the last
     const int32_t *node;
     int32_t node_count;
     uint8_t *holds;     // of each node the components that it prescribes, as bits; NULL of loads
@@ -32,6 +33,9 @@ typedef struct brunt_node_set {
 typedef struct brunt_node_sets {
     brunt_node_set *set;
     int count, fem_count;
+    const brunt_fem_body *fem;      // the bodies
+    int *first;                     // of each of them its first set, BRUNT_NONE: it has none
+    int *gas, gas_count;            // sets with gas
     uint8_t **taken;                // of each body and node: components that some set prescribes, as bits
     double **load_rate;             // of each body with loads that follow its surface: node_count, see load_step.c
     bool has_gas, act;              // act: one of them does something

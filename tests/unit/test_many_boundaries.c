@@ -146,6 +146,29 @@ START_TEST(a_body_looks_at_its_own_boundaries) {
 }
 END_TEST
 
+// Pressure on the faces of each body: the step of a body is found from its own loads, and gas by its number.
+START_TEST(a_body_has_its_own_loads) {
+    enum { COUNT = 50 };
+    brunt_world_def def = squares(COUNT, 2 * COUNT, BRUNT_EXPLICIT);
+    for (int side = 0; side < 2; side++)
+        for (int i = 0; i < COUNT; i++) {
+            move(&def, i, side ? "xmax" : "xmin", 1e3 * (i + 1), 0);
+            def.groups[def.group_count - 1].action = BRUNT_GROUP_PRESSURE;
+        }
+    brunt_world *world = world_take(&def);
+    const brunt_node_sets *sets = &world->boundaries.sets;
+    world_steps(world, 1);
+    for (int i = 0; i < COUNT; i++) {
+        ck_assert_int_eq(sets->first[i], i);
+        ck_assert_int_eq(sets->set[i].next, COUNT + i);
+        ck_assert_int_eq(sets->set[COUNT + i].next, BRUNT_NONE);
+        // An edge of 1 m has a stiffness of its pressure, shared by nodes of a quarter of 1000 kg.
+        ck_assert_double_eq_tol(brunt_load_frequency(sets, &world->bodies, i, 0), 1e3 * (i + 1) / 250, 1e-3 * (i + 1));
+    }
+    brunt_world_destroy(world);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("many boundaries");
     TCase *all = tcase_create("all");
@@ -153,6 +176,7 @@ int main(void) {
     tcase_add_loop_test(all, each_of_many_groups_moves_its_body, 0, 2);
     tcase_add_loop_test(all, the_first_of_many_groups_holds, 0, 2);
     tcase_add_test(all, a_body_looks_at_its_own_boundaries);
+    tcase_add_test(all, a_body_has_its_own_loads);
     suite_add_tcase(suite, all);
     return suite_main(suite);
 }
