@@ -94,7 +94,7 @@ void brunt_tree_append(scene_node *parent, scene_node *child) {
     else
         parent->first = child;
     parent->last = child;
-    parent->count++;
+    child->rank = parent->count++;
     enter(parent, child);
 }
 
@@ -105,6 +105,7 @@ void brunt_tree_remove(scene_node *child) {
         before->next = child->next;
     else
         parent->first = child->next;
+    for (scene_node *node = child->next; node; node = node->next) node->rank--;
     if (parent->last == child) parent->last = before;
     parent->count--;
     child->parent = NULL;
@@ -128,28 +129,34 @@ void brunt_tree_path(const scene_node *node, char *out, size_t size) {
         if (up[depth]->key) {
             wrote = snprintf(out + used, size - used, "%s%.60s", used ? "." : "", up[depth]->key);
         } else {
-            int index = 0;
-            for (const scene_node *s = up[depth]->parent->first; s && s != up[depth]; s = s->next) index++;
-            wrote = snprintf(out + used, size - used, "[%d]", index);
+            wrote = snprintf(out + used, size - used, "[%d]", up[depth]->rank);
         }
         used += wrote > 0 ? (size_t)wrote : 0;
     }
 }
 
-static const scene_node *entry_at(const scene_node *list, const char *name, size_t length) {
-    int64_t index = 0;
-    for (const scene_node *entry = list->first; entry; entry = entry->next, index++) {
-        char number[24];
-        snprintf(number, sizeof number, "%lld", (long long)index);
-        const scene_node *named = brunt_tree_child(entry, "name");
-        const char *texts[] = {number, named ? named->text : NULL};
-        for (int t = 0; t < 2; t++)
-            if (texts[t] && strlen(texts[t]) == length && !strncmp(texts[t], name, length)) return entry;
+static bool is_called(const scene_node *entry, const char *name, size_t length) {
+    char number[24];
+    const scene_node *named = brunt_tree_child(entry, "name");
+    const bool by_number = isdigit((unsigned char)*name);
+    if (by_number) snprintf(number, sizeof number, "%d", entry->rank);
+    const char *texts[] = {by_number ? number : NULL, named ? named->text : NULL};
+    for (int t = 0; t < 2; t++)
+        if (texts[t] && strlen(texts[t]) == length && !strncmp(texts[t], name, length)) return true;
+    return false;
+}
+
+// From the one behind the last that was found on, and about.
+static const scene_node *entry_at(scene_tree *tree, const scene_node *list, const char *name, size_t length) {
+    const scene_node *entry = tree->found && tree->found->parent == list ? tree->found->next : NULL;
+    for (int i = 0; i < list->count; i++, entry = entry->next) {
+        if (!entry) entry = list->first;
+        if (is_called(entry, name, length)) return tree->found = entry;
     }
     return NULL;
 }
 
-const scene_node *brunt_tree_find(const scene_tree *tree, const char *message) {
+const scene_node *brunt_tree_find(scene_tree *tree, const char *message) {
     const scene_node *node = tree->root, *next = node;
     for (const char *p = message; next && *p;) {
         const bool entry = *p == '[' || !strncmp(p, " (", 2);
@@ -159,7 +166,7 @@ const scene_node *brunt_tree_find(const scene_tree *tree, const char *message) {
         if (!length || length >= sizeof key) break;
         snprintf(key, sizeof key, "%.*s", (int)length, p);
         next = !entry && node->kind == SCENE_MAP   ? brunt_tree_child(node, key)
-               : entry && node->kind == SCENE_LIST ? entry_at(node, key, length)
+               : entry && node->kind == SCENE_LIST ? entry_at(tree, node, key, length)
                                                    : NULL;
         if (next) node = next;
         p += length + (entry && p[length]);
@@ -253,12 +260,23 @@ static int by_place(const void *a, const void *b) {
     return x->serial - y->serial;
 }
 
+// Where a line of the source begins, from an earlier one on.
+typedef struct source_line {
+    const char *start;
+    int number;
+} source_line;
+
+static source_line first_line(const scene_tree *tree) {
+    const bool mark = tree->length >= 3 && !memcmp(tree->source, "\xEF\xBB\xBF", 3); // it has no column
+    return (source_line){tree->source + (mark ? 3 : 0), 1};
+}
+
 // The line and a caret under its column. Long lines are cut around the column; columns count characters, not bytes.
-static void excerpt(const scene_tree *tree, int line, int column, FILE *out) {
-    const char *p = tree->source, *end = tree->source + tree->length;
-    if (tree->length >= 3 && !memcmp(p, "\xEF\xBB\xBF", 3)) p += 3; // a byte order mark has no column
-    for (int l = 1; l < line && p < end; p++)
-        if (*p == '\n') l++;
+static void excerpt(const scene_tree *tree, source_line *from, int line, int column, FILE *out) {
+    const char *end = tree->source + tree->length, *p;
+    for (p = from->start; from->number < line && p < end; p++)
+        if (*p == '\n') from->number++;
+    from->start = p;
     if (p >= end) return;
     enum { WIDTH = 100 };
     int first = column > WIDTH - 20 ? column - (WIDTH - 20) : 1, at = 0;
@@ -281,13 +299,14 @@ void brunt_tree_report(scene_tree *tree, FILE *out) {
     size_t count = 0;
     for (scene_message *m = tree->messages; m && count < SCENE_MESSAGE_LIMIT; m = m->next) sorted[count++] = m;
     qsort(sorted, count, sizeof *sorted, by_place);
+    source_line at = first_line(tree);
     for (size_t i = 0; i < count; i++) {
         const scene_message *m = sorted[i];
         if (m->option) {
             fprintf(out, "--set %s: %s\n", m->option, m->text);
         } else if (m->line) {
             fprintf(out, "%s:%d:%d: %s\n", tree->name, m->line, m->column, m->text);
-            excerpt(tree, m->line, m->column, out);
+            excerpt(tree, &at, m->line, m->column, out);
         } else {
             fprintf(out, "%s: %s\n", tree->name, m->text);
         }
@@ -363,6 +382,7 @@ static void replace(scene_node *old, scene_node *fresh) {
     scene_node *parent = old->parent;
     fresh->parent = parent;
     fresh->next = old->next;
+    fresh->rank = old->rank;
     if (parent->first == old) {
         parent->first = fresh;
     } else {

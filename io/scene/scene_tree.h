@@ -31,6 +31,7 @@ typedef struct scene_node {
     const char *option; // the override it came from, NULL: the file
     struct scene_node *parent, *first, *last, *next;
     int count; // children
+    int rank;  // among those of its parent
     // Of a map its children by the bits of a hash of their keys, so that one of thousands is found at once.
     struct scene_node *index, *branch[2];
     // What checking leaves:
@@ -63,6 +64,7 @@ typedef struct scene_tree {
     const char *name;                  // of the file, for messages
     const char *source;                // its text; valid while it is read
     size_t length;
+    const scene_node *found; // the last entry of a list that a message named: the next one is mostly behind it
 } scene_tree;
 
 // Memory that lives as long as the tree. NULL and `exhausted` when there is none.
@@ -87,7 +89,7 @@ void brunt_tree_path(const scene_node *node, char *out, size_t size);
 
 // The node deepest on the path that a message begins with, "boundaries (rim).gas: ..." being that of the entry named
 // rim.
-const scene_node *brunt_tree_find(const scene_tree *tree, const char *message);
+const scene_node *brunt_tree_find(scene_tree *tree, const char *message);
 // Prints a message with the place of a node: of a scalar or an entry of a list its own, else of its key.
 void brunt_tree_say(const scene_tree *tree, const scene_node *node, const char *message, FILE *out);
 

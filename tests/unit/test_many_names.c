@@ -227,6 +227,47 @@ START_TEST(comparisons_grow_with_the_pairs) {
 }
 END_TEST
 
+// Comparisons of names that a scene takes of which every boundary is refused, or none; its messages.
+static int64_t refusals_cost(int count, bool refused, char **messages) {
+    char *text;
+    size_t length;
+    FILE *out = open_memstream(&text, &length);
+    fputs("brunt: 1\ndimension: 2\ntime: {end: 1 ms, step: 1 ms, scheme: implicit}\n"
+          "materials: {rubber: {model: neo-hookean, density: 1000, E: 1 MPa, nu: 0.3}}\nbodies:\n",
+          out);
+    for (int i = 0; i < count; i++)
+        fprintf(out, "  b%05d: {method: fem, material: rubber, size: 1, shape: {box: {min: [%d, 0], max: [%d, 1]}}}\n",
+                i, 2 * i, 2 * i + 1);
+    fputs("boundaries:\n", out);
+    for (int i = 0; i < count; i++)
+        fprintf(out, "  - {name: g%05d, body: b%05d, group: xmin, %s: %s}\n", i, i, refused ? "pressure" : "fix",
+                refused ? "1 Pa" : "[x]");
+    fclose(out);
+    brunt_scene scene;
+    out = open_memstream(messages, &length);
+    comparisons = 0;
+    ck_assert_int_eq(brunt_scene_parse(text, strlen(text), "many.yaml", NULL, 0, &scene, out),
+                     refused ? BRUNT_BAD_INPUT : BRUNT_OK);
+    const int64_t cost = comparisons;
+    fclose(out);
+    free(text);
+    brunt_scene_free(&scene);
+    return cost;
+}
+
+START_TEST(comparisons_grow_with_the_mistakes) {
+    char *few_messages, *messages, *none[2];
+    const int64_t few = refusals_cost(250, true, &few_messages) - refusals_cost(250, false, &none[0]),
+                  many = refusals_cost(1000, true, &messages) - refusals_cost(1000, false, &none[1]);
+    ck_assert_msg(many <= 5 * few + 1000, "250 mistakes %lld, 1000 mistakes %lld", (long long)few, (long long)many);
+    ck_assert_ptr_nonnull(strstr(messages, "many.yaml:1007:57: boundaries[0].pressure: this belongs to time.scheme"));
+    ck_assert_ptr_nonnull(strstr(messages, "many.yaml:1206:57: boundaries[199].pressure"));
+    ck_assert_ptr_nonnull(strstr(messages, "\n      - {name: g00199, body: b00199, group: xmin, pressure: 1 Pa}\n"));
+    ck_assert_ptr_nonnull(strstr(messages, "many.yaml: and 800 more mistakes\n"));
+    free(few_messages), free(messages), free(none[0]), free(none[1]);
+}
+END_TEST
+
 // Comparisons of names for a folder that has a picture of each body, which brunt lists or not.
 static int64_t folder_cost(int count, bool listed) {
     char path[] = "/tmp/brunt_names_XXXXXX", name[200];
@@ -305,6 +346,7 @@ int main(void) {
     tcase_add_test(all, ten_thousand_bodies_are_read);
     tcase_add_test(all, comparisons_grow_with_the_anchors);
     tcase_add_loop_test(all, comparisons_grow_with_the_pairs, 0, 2);
+    tcase_add_test(all, comparisons_grow_with_the_mistakes);
     tcase_add_test(all, comparisons_grow_with_the_pictures);
     tcase_add_test(all, arrays_are_those_of_their_bodies);
     suite_add_tcase(suite, all);
