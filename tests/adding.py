@@ -19,7 +19,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 TRIALS = ROOT / "tests" / "adding"
 KINDS = ["material", "element", "contact method", "contact method at nodes", "contact method by energy", "boundary", "boundary with a shape", "measure", "body key", "output field",
-         "preset", "condition of planes", "pass", "other key of a scene", "stored field"]
+         "preset", "condition of planes", "pass", "other key of a scene", "key of loads", "stored field"]
 # What is known to its rows alone: its list in a header and how code names one, but for what is none and the rows themselves.
 ROWS = {
     "contact method": ("engine/include/brunt/definition.h", r"#define BRUNT_CONTACT_METHODS\(X\)", "BRUNT_CONTACT_", ["contact/methods/"]),

@@ -4,18 +4,14 @@
 #include "brunt.h"
 
 typedef struct brunt_settings {
+    brunt_world_def given; // all of the definition but its lists; below: what is asked in many places, and what follows
     int dimension, threads;
     bool axisymmetric, has_gravity;
-    brunt_kernel kernel;
     brunt_transfer transfer;
     brunt_scheme scheme;
-    brunt_integrator integrator;        // of implicit steps
-    brunt_newton_def newton;            // of implicit steps
-    brunt_predictor predictor;          // of load steps
-    double flip, cell;                  // [-], [m] of the grids
-    double cfl, fixed_step, least_step; // [-], [s] 0: the stable one, [s]
-    double end, energy_limit;           // [s], [-]
-    double gravity[3], gravity_ramp;    // [m/s^2], [s]
+    brunt_newton_def newton;     // of implicit steps
+    double flip, cell;           // [-], [m] of the grids
+    double cfl, fixed_step, end; // [-], [s] 0: the stable one, [s]
 } brunt_settings;
 
 // Of a definition that has been looked over; `particles`: there are material points. Nothing to free, and no state:

@@ -167,12 +167,12 @@ static void set_options(brunt_world *world, struct brunt_implicit *m) {
     m->options.tolerance = m->tolerance = newton->tolerance * slowest;
     m->options.iterations = newton->iterations;
     m->options.accuracy = newton->accuracy;
-    m->weights = m->still ? weights_of_load_steps : weights_of[world->settings.integrator];
+    m->weights = m->still ? weights_of_load_steps : weights_of[world->settings.given.integrator];
     if (m->still) {
         m->options.tolerance = newton->tolerance;
         m->options.unbalance = brunt_static_unbalance;
         m->options.stable = true;
-        m->leads = world->settings.predictor == BRUNT_PREDICTOR_TANGENT;
+        m->leads = world->settings.given.predictor == BRUNT_PREDICTOR_TANGENT;
         m->proximal.everywhere = EVERYWHERE;
     } else {
         m->options.measure = brunt_implicit_measure;

@@ -124,8 +124,8 @@ static int refuse_step(brunt_world *world, double dt, brunt_error *error) {
              "the stable step is %.4g s: something moves, or its waves run, too fast to be computed with", stable);
     if (!(dt > 0)) return brunt_fail_step(&world->clock, NULL, error, reason);
     snprintf(reason, sizeof reason, "the stable step has become %.4g s, time.least_step is %.4g s", stable,
-             world->settings.least_step);
-    if (stable < world->settings.least_step) return brunt_fail_short(world, stable, error, reason);
+             world->settings.given.least_step);
+    if (stable < world->settings.given.least_step) return brunt_fail_short(world, stable, error, reason);
     snprintf(reason, sizeof reason,
              "the fixed step of %.6g s is larger than the stable one, %.6g s; time.cfl, a share of the stable one, is "
              "what explicit steps go by where it is given beside time.step",

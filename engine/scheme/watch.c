@@ -44,7 +44,7 @@ static int check_energy(brunt_world *world, brunt_error *error) {
     brunt_energy energy;
     brunt_world_energy(world, &energy);
     // Energy that transfers or an integrator make is as wrong as energy that is not accounted for.
-    const double limit = world->settings.energy_limit;
+    const double limit = world->settings.given.energy_limit;
     const double transfers = made_share(&energy, world->ledger.transfer), scheme = made_share(&energy, energy.scheme);
     if (!(fabs(energy.error_relative) > limit || transfers > limit || scheme > limit)) return BRUNT_OK;
     char reason[320], makers[160] = "";
@@ -64,7 +64,7 @@ static int watch_creep(brunt_world *world, brunt_error *error) {
     const struct brunt_clock *now = &world->clock;
     const double share = now->next_dt / now->longest;
     if (world->settings.fixed_step > 0 || now->time >= world->settings.end || !(share < 1e-3)) return BRUNT_OK;
-    const bool ends = share < 1e-6 && !(world->settings.least_step > 0);
+    const bool ends = share < 1e-6 && !(world->settings.given.least_step > 0);
     if (world->clock.creep_told && !ends) return BRUNT_OK;
     char why[160];
     snprintf(why, sizeof why, "the step has become %.4g s, %s of the longest so far%s", now->next_dt,
@@ -81,7 +81,7 @@ static int watch_energy(brunt_world *world, int every, brunt_error *error) {
     if (!isfinite(world->ledger.kinetic) || !isfinite(world->ledger.fem_kinetic) || !isfinite(now->next_dt))
         return brunt_fail_step(&world->clock, NULL, error, "the kinetic energy is not a finite number");
     if (world->bodies.has_fluid && (int64_t)now->steps % SPREAD_CHECK == 0) watch_spread(world);
-    if ((int64_t)now->steps % every != 0 || !isfinite(world->settings.energy_limit)) return BRUNT_OK;
+    if ((int64_t)now->steps % every != 0 || !isfinite(world->settings.given.energy_limit)) return BRUNT_OK;
     return check_energy(world, error);
 }
 

@@ -117,7 +117,7 @@ static int start(brunt_world *world, brunt_error *error) {
 // stress, and nothing to be unstable with.)
 static void warn_of_lone_points(brunt_world *world) {
     const double limit =
-        brunt_lone_points_cfl(world->settings.dimension, world->settings.kernel, world->settings.transfer);
+        brunt_lone_points_cfl(world->settings.dimension, world->settings.given.kernel, world->settings.transfer);
     if (world->settings.fixed_step > 0 || world->settings.cfl <= limit * (1 + 1e-9)) return;
     for (int i = 0; i < world->bodies.mpm_count; i++) {
         const brunt_body *body = &world->bodies.mpm[i];
