@@ -103,22 +103,32 @@ void brunt_block_matrix_product(const brunt_block_matrix *m, const brunt_team *t
     brunt_parallel(team->threads, m->nodes, row_grain(m), multiply_rows, &work, team->timer);
 }
 
+BRUNT_INLINE bool any_held(const uint8_t *held, int dim) {
+    return dim == 2 ? held[0] | held[1] : held[0] | held[1] | held[2];
+}
+
+BRUNT_INLINE void hold_row(const row_work *w, int64_t r, int dim) {
+    const uint8_t *row = w->held + r * dim;
+    const bool whole = any_held(row, dim);
+    for (int64_t k = w->m->first[r]; k < w->m->first[r + 1]; k++) {
+        const uint8_t *column = w->held + (int64_t)w->m->column[k] * dim;
+        if (!whole && !any_held(column, dim)) continue;
+        double *v = w->m->value + k * dim * dim;
+        for (int i = 0; i < dim; i++)
+            for (int j = 0; j < dim; j++)
+                if (row[i] || column[j]) v[i * dim + j] = w->m->column[k] == r && i == j ? w->diagonal : 0;
+    }
+}
+
 static void hold_rows(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
     const row_work *w = context;
-    const int dim = w->m->dim;
-    for (int64_t r = begin; r < end; r++)
-        for (int64_t k = w->m->first[r]; k < w->m->first[r + 1]; k++) {
-            const uint8_t *row = w->held + r * dim, *column = w->held + (int64_t)w->m->column[k] * dim;
-            double *v = w->m->value + k * dim * dim;
-            for (int i = 0; i < dim; i++)
-                for (int j = 0; j < dim; j++)
-                    if (row[i] || column[j]) v[i * dim + j] = w->m->column[k] == r && i == j ? w->diagonal : 0;
-        }
+    for (int64_t r = begin; r < end; r++) w->m->dim == 2 ? hold_row(w, r, 2) : hold_row(w, r, 3);
 }
 
 void brunt_block_matrix_hold(brunt_block_matrix *m, const brunt_team *team, const uint8_t *held, double diagonal) {
     row_work work = {.m = m, .held = held, .diagonal = diagonal};
+    if (!memchr(held, 1, (size_t)m->nodes * (size_t)m->dim)) return;
     brunt_parallel(team->threads, m->nodes, row_grain(m), hold_rows, &work, team->timer);
 }
 

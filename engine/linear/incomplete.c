@@ -8,7 +8,7 @@
 #include "base/memory.h"
 #include "base/simd.h"
 
-enum { JACOBI_GRAIN = 2048 };
+enum { JACOBI_GRAIN = 2048, ROW_GRAIN = 256, SIZE_GRAIN = 1024 };
 // Solutions read V from numbers of half the length, four at a time, which reach beyond the last.
 enum { BEYOND = 4 };
 typedef double four __attribute__((vector_size(32)));
@@ -30,7 +30,7 @@ static int reserve_arrays(brunt_incomplete *f, const brunt_team *team, brunt_err
            BRUNT_CAPACITY(f->place, nodes, 0, "rows of an incomplete factor", error) ||
            BRUNT_CAPACITY(f->turn, nodes, 0, "rows of an incomplete factor", error) ||
            BRUNT_CAPACITY(f->upper, nodes + 1, 0, "rows of an incomplete factor", error) ||
-           BRUNT_CAPACITY(f->lower, nodes + 2, 0, "rows of an incomplete factor", error) ||
+           BRUNT_CAPACITY(f->lower, nodes + 1, 0, "rows of an incomplete factor", error) ||
            BRUNT_CAPACITY(f->after, half + 1, 0, "blocks of an incomplete factor", error) ||
            BRUNT_CAPACITY(f->before, half + 1, 0, "blocks of an incomplete factor", error) ||
            BRUNT_CAPACITY(f->source, half + 1, 0, "blocks of an incomplete factor", error) ||
@@ -44,35 +44,100 @@ static int reserve_arrays(brunt_incomplete *f, const brunt_team *team, brunt_err
            BRUNT_CAPACITY(f->slot, nodes * (size_t)team->threads, 0, "rows of an incomplete factor", error);
 }
 
-// Columns right of the diagonal: by level, and those of a piece in ascending places.
-static void take_rows(brunt_incomplete *f) {
-    const brunt_block_matrix *a = f->a;
-    int64_t e = 0, *next = f->lower + 1;    // shifted by one: filling moves each to where the next one begins
-    const int turns = f->slabs > 1 ? 1 : 2; // through one slab forwards only
-    memset(f->lower, 0, ((size_t)a->nodes + 2) * sizeof *f->lower);
-    for (int32_t p = 0; p < a->nodes; p++) {
+typedef struct pattern_work {
+    brunt_incomplete *f;
+    int parts; // of the places, a thread each
+} pattern_work;
+
+// How many columns of each place are right of the diagonal, and left of it.
+static void count_rows(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    const pattern_work *w = context;
+    brunt_incomplete *f = w->f;
+    for (int64_t p = begin; p < end; p++) {
         const int32_t node = f->order[p];
-        f->upper[p] = e;
+        const int64_t from = f->a->first[node], to = f->a->first[node + 1];
+        int64_t right = 0;
+        for (int64_t k = from; k < to; k++) right += f->place[f->a->column[k]] > p;
+        f->upper[p + 1] = right, f->lower[p + 1] = to - from - 1 - right;
+    }
+}
+
+// Columns right of the diagonal: by level, and those of a piece in ascending places.
+static void take_rows(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    const pattern_work *w = context;
+    brunt_incomplete *f = w->f;
+    const brunt_block_matrix *a = f->a;
+    const int turns = f->slabs > 1 ? 1 : 2; // through one slab forwards only
+    for (int64_t p = begin; p < end; p++) {
+        const int32_t node = f->order[p];
+        int64_t e = f->upper[p];
         for (int turn = f->turn[node]; turn < 2 * f->levels; turn += turns)
-            for (int64_t k = 0; k < a->first[node + 1] - a->first[node]; k++) {
+            for (int64_t k = 0; k < a->first[node + 1] - a->first[node] && e < f->upper[p + 1]; k++) {
                 const int64_t at = turn % 2 ? a->first[node + 1] - 1 - k : a->first[node] + k;
                 const int32_t q = f->place[a->column[at]];
                 if (q <= p || f->turn[a->column[at]] != turn) continue;
                 f->after[e] = q, f->source[e++] = (int32_t)(at - a->first[node]);
-                next[q + 1]++;
             }
     }
-    f->upper[a->nodes] = e;
 }
 
-static void take_columns(brunt_incomplete *f) {
-    int64_t *next = f->lower + 1;
-    for (int32_t p = 0; p < f->a->nodes; p++) next[p + 1] += next[p];
-    for (int32_t p = 0; p < f->a->nodes; p++)
-        for (int64_t e = f->upper[p]; e < f->upper[p + 1]; e++) {
-            const int64_t at = next[f->after[e]]++;
-            f->before[at] = p, f->twin[at] = (int32_t)(e - f->upper[p]);
+static int64_t part_begin(const pattern_work *w, int64_t part) { return w->f->a->nodes * part / w->parts; }
+
+// What a part of the places brings to each column; then where in the column that begins, and at last all of it.
+static void count_columns(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    const pattern_work *w = context;
+    const brunt_incomplete *f = w->f;
+    for (int64_t part = begin; part < end; part++) {
+        int32_t *count = f->slot + part * f->a->nodes;
+        for (int64_t e = f->upper[part_begin(w, part)]; e < f->upper[part_begin(w, part + 1)]; e++)
+            count[f->after[e]]++;
+    }
+}
+
+static void begin_columns(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    const pattern_work *w = context;
+    const int64_t nodes = w->f->a->nodes;
+    for (int64_t q = begin; q < end; q++)
+        for (int32_t part = 0, sum = 0; part < w->parts; part++) {
+            const int32_t count = w->f->slot[part * nodes + q];
+            w->f->slot[part * nodes + q] = sum;
+            sum += count;
         }
+}
+
+static void take_columns(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    const pattern_work *w = context;
+    brunt_incomplete *f = w->f;
+    for (int64_t part = begin; part < end; part++) {
+        int32_t *next = f->slot + part * f->a->nodes;
+        for (int64_t p = part_begin(w, part); p < part_begin(w, part + 1); p++)
+            for (int64_t e = f->upper[p]; e < f->upper[p + 1]; e++) {
+                const int64_t at = f->lower[f->after[e]] + next[f->after[e]]++;
+                f->before[at] = (int32_t)p, f->twin[at] = (int32_t)(e - f->upper[p]);
+            }
+    }
+}
+
+static void take_pattern(brunt_incomplete *f, const brunt_team *team) {
+    const int64_t nodes = f->a->nodes;
+    const size_t slots = (size_t)nodes * (size_t)team->threads;
+    pattern_work work = {f, team->threads};
+    brunt_parallel(team->threads, nodes, ROW_GRAIN, count_rows, &work, team->timer);
+    f->upper[0] = f->lower[0] = 0;
+    for (int64_t p = 0; p < nodes; p++) f->upper[p + 1] += f->upper[p], f->lower[p + 1] += f->lower[p];
+    brunt_parallel(team->threads, nodes, ROW_GRAIN, take_rows, &work, team->timer);
+    memset(f->slot, 0, slots * sizeof *f->slot);
+    if (work.parts > 1) {
+        brunt_parallel_each(team->threads, work.parts, count_columns, &work, team->timer);
+        brunt_parallel(team->threads, nodes, SIZE_GRAIN, begin_columns, &work, team->timer);
+    }
+    brunt_parallel_each(team->threads, work.parts, take_columns, &work, team->timer);
+    memset(f->slot, 0, slots * sizeof *f->slot);
 }
 
 int brunt_incomplete_analyse(brunt_incomplete *f, const brunt_team *team, const brunt_block_matrix *a, bool whole,
@@ -84,9 +149,7 @@ int brunt_incomplete_analyse(brunt_incomplete *f, const brunt_team *team, const 
     if (!whole) return BRUNT_OK;
     if (reserve_arrays(f, team, error)) return BRUNT_FAILED;
     brunt_incomplete_order(f, slabs);
-    take_rows(f);
-    take_columns(f);
-    memset(f->slot, 0, (size_t)a->nodes * (size_t)team->threads * sizeof *f->slot);
+    take_pattern(f, team);
     return BRUNT_OK;
 }
 
@@ -194,22 +257,47 @@ static void factor_pieces(void *context, int64_t begin, int64_t end, int worker)
     }
 }
 
-// Sizes of nodes: 1 over the root of the greatest diagonal entry. BRUNT_NONE, or a node that has none above 0.
-static int32_t take_sizes(brunt_incomplete *f, const brunt_block_matrix *a) {
-    for (int32_t n = 0; n < a->nodes; n++) {
-        const double *block = a->value + a->diagonal[n] * a->dim * a->dim;
+typedef struct node_work {
+    brunt_incomplete *f;
+    const brunt_block_matrix *a;
+    int32_t *bad; // of each worker: the first node that it found fault with, or BRUNT_NONE
+} node_work;
+
+// Runs a task over nodes: BRUNT_NONE, or the first node that it found fault with.
+static int32_t over_nodes(brunt_incomplete *f, const brunt_team *team, const brunt_block_matrix *a,
+                          brunt_task_fn *task) {
+    int32_t bad[BRUNT_THREAD_LIMIT], first = BRUNT_NONE;
+    node_work work = {f, a, bad};
+    for (int t = 0; t < BRUNT_THREAD_LIMIT; t++) bad[t] = BRUNT_NONE;
+    brunt_parallel(team->threads, a->nodes, SIZE_GRAIN, task, &work, team->timer);
+    for (int t = 0; t < BRUNT_THREAD_LIMIT; t++)
+        if (bad[t] >= 0 && (first < 0 || bad[t] < first)) first = bad[t];
+    return first;
+}
+
+static void blame(const node_work *w, int worker, int64_t node) {
+    if (w->bad[worker] < 0 || node < w->bad[worker]) w->bad[worker] = (int32_t)node;
+}
+
+// Sizes of nodes: 1 over the root of the greatest diagonal entry. At fault: those that have none above 0.
+static void take_sizes(void *context, int64_t begin, int64_t end, int worker) {
+    const node_work *w = context;
+    const int dim = w->a->dim;
+    for (int64_t n = begin; n < end; n++) {
+        const double *block = w->a->value + w->a->diagonal[n] * dim * dim;
         double most = 0;
-        for (int i = 0; i < a->dim; i++) most = fmax(most, block[i * (a->dim + 1)]);
-        if (!(most > 0 && isfinite(most))) return n;
-        f->size[f->place[n]] = 1 / sqrt(most);
+        for (int i = 0; i < dim; i++) most = fmax(most, block[i * (dim + 1)]);
+        if (most > 0 && isfinite(most))
+            w->f->size[w->f->place[n]] = 1 / sqrt(most);
+        else
+            blame(w, worker, n);
     }
-    return BRUNT_NONE;
 }
 
 int32_t brunt_incomplete_factor(brunt_incomplete *f, const brunt_team *team, const brunt_block_matrix *a,
                                 double raise) {
     factor_work work = {.f = f, .a = a, .raise = raise};
-    const int32_t without = take_sizes(f, a);
+    const int32_t without = over_nodes(f, team, a, take_sizes);
     if (without >= 0) return without;
     for (int l = 0; l < f->levels; l++) {
         work.piece = l * f->slabs;
@@ -222,11 +310,15 @@ int32_t brunt_incomplete_factor(brunt_incomplete *f, const brunt_team *team, con
 
 // ------------------------------------------------------------------------------------------ solutions
 
-int32_t brunt_incomplete_jacobi(brunt_incomplete *f, const brunt_block_matrix *a) {
-    const int size = a->dim * a->dim;
-    for (int32_t i = 0; i < a->nodes; i++)
-        if (!invert(a->dim, a->value + a->diagonal[i] * size, f->inverse + (int64_t)i * size)) return i;
-    return BRUNT_NONE;
+static void take_inverses(void *context, int64_t begin, int64_t end, int worker) {
+    const node_work *w = context;
+    const int dim = w->a->dim, size = dim * dim;
+    for (int64_t n = begin; n < end; n++)
+        if (!invert(dim, w->a->value + w->a->diagonal[n] * size, w->f->inverse + n * size)) blame(w, worker, n);
+}
+
+int32_t brunt_incomplete_jacobi(brunt_incomplete *f, const brunt_team *team, const brunt_block_matrix *a) {
+    return over_nodes(f, team, a, take_inverses);
 }
 
 typedef struct apply_work {

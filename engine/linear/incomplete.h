@@ -40,7 +40,7 @@ void brunt_incomplete_order(brunt_incomplete *f, int slabs);
 // The factor with diagonal blocks multiplied by `raise`: BRUNT_NONE, or a node whose pivot is not positive definite.
 int32_t brunt_incomplete_factor(brunt_incomplete *f, const brunt_team *team, const brunt_block_matrix *a, double raise);
 // The inverse of each diagonal block: BRUNT_NONE, or the first node whose block is not positive definite.
-int32_t brunt_incomplete_jacobi(brunt_incomplete *f, const brunt_block_matrix *a);
+int32_t brunt_incomplete_jacobi(brunt_incomplete *f, const brunt_team *team, const brunt_block_matrix *a);
 // z = M^-1 r with the factor, or (whole false) with the diagonal blocks.
 void brunt_incomplete_apply(const brunt_incomplete *f, const brunt_team *team, bool whole, const double *r, double *z);
 void brunt_incomplete_free(brunt_incomplete *f);

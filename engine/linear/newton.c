@@ -134,10 +134,11 @@ static int make_pattern(newton_run *r) {
     return BRUNT_OK;
 }
 
-static int fill_matrix(newton_run *r, bool project) {
+// `again`: it has been filled since its pattern was made, which leaves it 0.
+static int fill_matrix(newton_run *r, bool project, bool again) {
     brunt_block_matrix *m = &r->n->matrix;
     brunt_matrix_free *f = &r->n->free;
-    brunt_block_matrix_zero(m, r->team);
+    if (again) brunt_block_matrix_zero(m, r->team);
     for (int t = 0; t < r->problem->count; t++)
         if (r->problem->terms[t].ops->hessian && !has_product(r, t))
             r->problem->terms[t].ops->hessian(r->problem->terms[t].self, r->team, r->u, project, m);
@@ -285,7 +286,7 @@ static int find_step(newton_run *r) {
         if (attempt > 0) phase(r, BRUNT_NEWTON_MATRIX);
         r->plain = attempt == 0;
         if (attempt <= 1) {
-            if (fill_matrix(r, !r->plain)) return BRUNT_FAILED;
+            if (fill_matrix(r, !r->plain, attempt > 0)) return BRUNT_FAILED;
             hold_matrix(r);
         }
         if (attempt == 1) r->report->projections++;
@@ -431,7 +432,7 @@ static int check_stable(newton_run *r) {
     if (!r->options->stable || !direct) return BRUNT_OK;
     phase(r, BRUNT_NEWTON_MATRIX);
     if (make_pattern(r)) return BRUNT_FAILED;
-    if (fill_matrix(r, false)) return BRUNT_FAILED;
+    if (fill_matrix(r, false, false)) return BRUNT_FAILED;
     hold_matrix(r);
     raise_matrix(r, 0, SPARE);
     phase(r, BRUNT_NEWTON_SOLVE);
@@ -504,7 +505,7 @@ int brunt_newton_lead(brunt_newton *newton, const brunt_team *team, const brunt_
     if (begin(&run) || take_gradient(&run)) return BRUNT_FAILED;
     phase(&run, BRUNT_NEWTON_MATRIX);
     if (make_pattern(&run)) return BRUNT_FAILED;
-    if (fill_matrix(&run, false)) return BRUNT_FAILED;
+    if (fill_matrix(&run, false, false)) return BRUNT_FAILED;
     if (options->matrix_free)
         brunt_matrix_free_hessian(&newton->free, team, lead->way, p);
     else

@@ -46,36 +46,70 @@ typedef struct pattern_work {
 
 static int32_t leader_of(const brunt_pattern *p, int32_t node) { return p->fold ? p->fold->leader[node] : node; }
 
-// Which stencils of lists that the pattern has not hold each node, in the order of lists and of stencils.
-static int list_holders(struct brunt_pattern_scratch *s, const brunt_pattern *p, brunt_error *error) {
-    int64_t entries = 0;
-    for (int l = 0; l < p->lists; l++)
-        if (p->stencils[l].count && !s->known[l])
-            entries += p->stencils[l].first[p->stencils[l].count] - p->stencils[l].first[0];
-    if (BRUNT_CAPACITY(s->first, (size_t)p->nodes + 2, 0, "nodes of a matrix", error) ||
-        BRUNT_CAPACITY(s->stencil, (size_t)entries * (p->fold ? 2 : 1), 0, "stencils of nodes of a matrix", error))
-        return BRUNT_FAILED;
-    int64_t *next = s->first + 1; // shifted by one: filling moves each to where the next one begins
-    memset(s->first, 0, ((size_t)p->nodes + 2) * sizeof *s->first);
-    for (int l = 0; l < p->lists; l++) {
-        const brunt_stencils *list = p->stencils + l;
-        if (s->known[l]) continue;
-        for (int64_t k = list->count ? list->first[0] : 0; list->count && k < list->first[list->count]; k++) {
-            BRUNT_ASSERT(list->node[k] >= 0 && list->node[k] < p->nodes);
-            next[list->node[k] + 1]++;
-            if (leader_of(p, list->node[k]) != list->node[k]) next[leader_of(p, list->node[k]) + 1]++;
+// Stencils of the lists that the pattern has not, one list after the other, in a part for each thread.
+typedef struct holder_work {
+    struct brunt_pattern_scratch *s;
+    const brunt_pattern *pattern;
+    int64_t stencils;
+    int parts;
+    bool fill; // else they are counted
+} holder_work;
+
+static void hold(const holder_work *w, int32_t *next, int32_t node, int64_t stencil) {
+    if (w->fill) w->s->stencil[w->s->first[node] + next[node]] = stencil;
+    next[node]++;
+}
+
+// By node, how many stencils of a part hold it: `next`.
+static void hold_list(const holder_work *w, int l, int64_t begin, int64_t end, int32_t *next) {
+    const brunt_stencils *list = w->pattern->stencils + l;
+    for (int64_t i = begin; i < end; i++)
+        for (int64_t k = list->first[i]; k < list->first[i + 1]; k++) {
+            const int32_t n = list->node[k], leader = leader_of(w->pattern, n);
+            BRUNT_ASSERT(n >= 0 && n < w->pattern->nodes);
+            hold(w, next, n, (int64_t)l << LIST_SHIFT | i);
+            if (leader != n) hold(w, next, leader, (int64_t)l << LIST_SHIFT | i);
+        }
+}
+
+static void hold_parts(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    const holder_work *w = context;
+    for (int64_t part = begin; part < end; part++) {
+        const int64_t from = w->stencils * part / w->parts, to = w->stencils * (part + 1) / w->parts;
+        int64_t first = 0;
+        for (int l = 0; l < w->pattern->lists; l++) {
+            const int64_t count = w->s->known[l] ? 0 : w->pattern->stencils[l].count;
+            const int64_t low = from - first < 0 ? 0 : from - first, high = to - first < count ? to - first : count;
+            if (low < high) hold_list(w, l, low, high, w->s->maker[part].mark);
+            first += count;
         }
     }
-    for (int32_t n = 0; n < p->nodes; n++) next[n + 1] += next[n];
-    for (int l = 0; l < p->lists; l++) {
-        const brunt_stencils *list = p->stencils + l;
-        for (int64_t i = 0; i < list->count && !s->known[l]; i++)
-            for (int64_t k = list->first[i]; k < list->first[i + 1]; k++) {
-                const int32_t n = list->node[k], leader = leader_of(p, n);
-                s->stencil[next[n]++] = (int64_t)l << LIST_SHIFT | i;
-                if (leader != n) s->stencil[next[leader]++] = (int64_t)l << LIST_SHIFT | i;
-            }
+}
+
+// Which stencils of lists that the pattern has not hold each node, in the order of lists and of stencils. Counts are in
+// the marks.
+static int list_holders(struct brunt_pattern_scratch *s, const brunt_team *team, const brunt_pattern *p,
+                        brunt_error *error) {
+    holder_work work = {.s = s, .pattern = p, .parts = team->threads};
+    for (int l = 0; l < p->lists; l++) work.stencils += s->known[l] ? 0 : p->stencils[l].count;
+    if (BRUNT_CAPACITY(s->first, (size_t)p->nodes + 1, 0, "nodes of a matrix", error)) return BRUNT_FAILED;
+    for (int t = 0; t < work.parts; t++) memset(s->maker[t].mark, 0, (size_t)p->nodes * sizeof *s->maker[t].mark);
+    brunt_parallel_each(team->threads, work.parts, hold_parts, &work, team->timer);
+    int64_t entries = 0;
+    for (int32_t n = 0; n < p->nodes; n++) {
+        s->first[n] = entries;
+        int32_t before = 0;
+        for (int t = 0; t < work.parts; t++) {
+            const int32_t count = s->maker[t].mark[n];
+            s->maker[t].mark[n] = before, before += count;
+        }
+        entries += before;
     }
+    s->first[p->nodes] = entries;
+    if (BRUNT_CAPACITY(s->stencil, (size_t)entries, 0, "stencils of nodes of a matrix", error)) return BRUNT_FAILED;
+    work.fill = true;
+    brunt_parallel_each(team->threads, work.parts, hold_parts, &work, team->timer);
     return BRUNT_OK;
 }
 
@@ -200,22 +234,39 @@ static bool all_couple(const brunt_block_matrix *m, const brunt_pattern *p, int3
            (A == a || B == b || couples(m, A, B));
 }
 
-static bool has_stencils(const brunt_block_matrix *m, const brunt_pattern *p, const brunt_stencils *list) {
-    for (int64_t s = 0; s < list->count; s++)
+typedef struct search_work {
+    const brunt_block_matrix *m;
+    const brunt_pattern *pattern;
+    const brunt_stencils *list;
+    bool *missing; // of each worker
+} search_work;
+
+static void find_missing(void *context, int64_t begin, int64_t end, int worker) {
+    const search_work *w = context;
+    const brunt_stencils *list = w->list;
+    for (int64_t s = begin; s < end && !w->missing[worker]; s++)
         for (int64_t i = list->first[s]; i < list->first[s + 1]; i++)
             for (int64_t j = list->first[s]; j < list->first[s + 1]; j++)
-                if (!all_couple(m, p, list->node[i], list->node[j])) return false;
-    return true;
+                if (!all_couple(w->m, w->pattern, list->node[i], list->node[j])) w->missing[worker] = true;
+}
+
+static bool has_stencils(const brunt_block_matrix *m, const brunt_team *team, const brunt_pattern *p,
+                         const brunt_stencils *list) {
+    bool missing[BRUNT_THREAD_LIMIT] = {false}, any = false;
+    search_work work = {m, p, list, missing};
+    brunt_parallel(team->threads, list->count, ROW_GRAIN, find_missing, &work, team->timer);
+    for (int t = 0; t < BRUNT_THREAD_LIMIT; t++) any = any || missing[t];
+    return !any;
 }
 
 // Whether a pattern that is kept has all of the stencils, and which lists it has.
-static bool complete(const brunt_block_matrix *m, const brunt_pattern *p, bool keep) {
+static bool complete(const brunt_block_matrix *m, const brunt_team *team, const brunt_pattern *p, bool keep) {
     struct brunt_pattern_scratch *s = m->scratch;
     bool all = keep;
     for (int l = 0; l < p->lists; l++) {
         const int64_t before = l < s->lists ? s->version[l] : 0;
         s->known[l] = keep && p->stencils[l].version && p->stencils[l].version == before;
-        all = all && (s->known[l] || has_stencils(m, p, &p->stencils[l]));
+        all = all && (s->known[l] || has_stencils(m, team, p, &p->stencils[l]));
         s->version[l] = p->stencils[l].version;
     }
     s->lists = p->lists;
@@ -241,7 +292,8 @@ static int make_versions(struct brunt_pattern_scratch *s, int lists, brunt_error
 static int new_rows(pattern_work *work, const brunt_team *team, brunt_error *error) {
     struct brunt_pattern_scratch *s = work->s;
     const int32_t nodes = work->pattern->nodes;
-    if (list_holders(s, work->pattern, error) || BRUNT_CAPACITY(s->row, (size_t)nodes, 0, "rows of a matrix", error))
+    if (list_holders(s, team, work->pattern, error) ||
+        BRUNT_CAPACITY(s->row, (size_t)nodes, 0, "rows of a matrix", error))
         return BRUNT_FAILED;
     for (int t = 0; t < team->threads; t++) {
         row_maker *w = s->maker + t;
@@ -292,7 +344,7 @@ int brunt_block_matrix_pattern(brunt_block_matrix *m, const brunt_team *team, co
     const bool keep = p->keep && m->pattern && m->nodes == p->nodes && m->dim == p->dim;
     pattern_work work = {m, p, m->scratch, keep};
     if (make_marks(m, team, p->nodes, error) || make_versions(m->scratch, p->lists, error)) return BRUNT_FAILED;
-    if (!complete(m, p, keep))
+    if (!complete(m, team, p, keep))
         if (new_rows(&work, team, error) || (!same_pattern(m, p) && take_rows(m, team, p, error))) return BRUNT_FAILED;
     brunt_block_matrix_zero(m, team);
     return BRUNT_OK;

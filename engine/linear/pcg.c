@@ -60,7 +60,7 @@ static brunt_linear_status pcg_factor(brunt_linear *s, const brunt_team *team, c
             s->report.tries++;
     }
     if (g->whole) return BRUNT_LINEAR_DONE;
-    const int32_t node = brunt_incomplete_jacobi(&g->factor, a);
+    const int32_t node = brunt_incomplete_jacobi(&g->factor, team, a);
     if (node < 0) return BRUNT_LINEAR_DONE;
     brunt_fail(error, BRUNT_FAILED, "The matrix is not positive definite: negative curvature in the block of node %d.",
                node);
