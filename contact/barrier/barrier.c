@@ -21,6 +21,7 @@ void brunt_barrier_free(brunt_barrier *b) {
     brunt_free(b->facet), brunt_free(b->body), brunt_free(b->edge), brunt_free(b->vertex_area);
     brunt_free(b->edge_area), brunt_free(b->edge_length2), brunt_free(b->pair), brunt_free(b->key);
     brunt_free(b->point_box), brunt_free(b->facet_box), brunt_free(b->edge_box);
+    brunt_free(b->far);
     brunt_near_cells_free(&b->facet_cells), brunt_near_cells_free(&b->edge_cells);
     brunt_near_list_free(&b->facets), brunt_near_list_free(&b->planes), brunt_near_list_free(&b->edges);
     brunt_free(b->task), brunt_free(b->task_energy), brunt_free(b->task_first);
@@ -166,6 +167,7 @@ int brunt_barrier_set_step(brunt_barrier *b, const brunt_barrier_step *step, bru
     BRUNT_ASSERT(step->before || step->factor == 1);
     (void)error;
     b->step = *step;
+    b->extent.known = false;
     b->contacts.count = b->lagged.count = 0;
     b->pair_count = b->key_count = 0;
     return BRUNT_OK;

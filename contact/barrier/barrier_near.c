@@ -1,22 +1,18 @@
 // What may come near while u moves by p: boxes that hold points, facets and edges on the way, and which of them meet.
 #include "contact/barrier/barrier_parts.h"
 
-typedef struct near_work {
-    brunt_barrier *b;
-    const double *u, *p;
-    double margin; // [m] more than the distances: rounding of boxes
-    bool *bad;     // of each worker: something is not a number
-} near_work;
+enum { PARTICLE_GRAIN = 512 };
+static const double ROUNDING = 1e-14; // of boxes, over the size of numbers that they are differences of
 
 // Where a place is on its way, from the origin of the boxes.
-static void swept_box(const near_work *w, int32_t place, brunt_near_box *box) {
+static void swept_box(const barrier_way *w, int32_t place, brunt_near_box *box) {
     const brunt_barrier *b = w->b;
     const double *x = barrier_start(b, place);
     double from[3], by[3];
     barrier_move(b, place, w->u, from), barrier_move(b, place, w->p, by);
     for (int k = 0; k < 3; k++) {
-        const double at = k < b->dim ? (x[k] - b->origin[k]) + from[k] : 0;
-        box->low[k] = fmin(at, at + by[k]), box->high[k] = fmax(at, at + by[k]);
+        const double at = k < b->dim ? (x[k] - b->origin[k]) + from[k] : 0, to = at + by[k];
+        box->low[k] = to < at ? to : at, box->high[k] = to > at ? to : at;
     }
 }
 
@@ -26,13 +22,14 @@ static bool finite_box(const brunt_near_box *box) {
     return sum == 0;
 }
 
-static void point_boxes(void *context, int64_t begin, int64_t end, int worker) {
-    near_work *w = context;
-    for (int64_t i = begin; i < end; i++) {
-        brunt_near_box *box = &w->b->point_box[i];
-        swept_box(w, (int32_t)i, box);
-        if (!finite_box(box)) w->bad[worker] = true;
-    }
+static void point_box(const barrier_way *w, int32_t point, int worker) {
+    brunt_near_box *box = &w->b->point_box[point];
+    swept_box(w, point, box);
+    if (!finite_box(box)) w->bad[worker] = true;
+}
+
+static void vertex_boxes(void *context, int64_t begin, int64_t end, int worker) {
+    for (int64_t i = begin; i < end; i++) point_box(context, (int32_t)i, worker);
 }
 
 // The box about some vertices' boxes, and `more` around it.
@@ -40,14 +37,15 @@ static void hull_box(const brunt_near_box *vertex, const int32_t *v, int count, 
     *box = vertex[v[0]];
     for (int i = 1; i < count; i++)
         for (int k = 0; k < 3; k++) {
-            box->low[k] = fmin(box->low[k], vertex[v[i]].low[k]);
-            box->high[k] = fmax(box->high[k], vertex[v[i]].high[k]);
+            const double low = vertex[v[i]].low[k], high = vertex[v[i]].high[k];
+            if (low < box->low[k]) box->low[k] = low;
+            if (high > box->high[k]) box->high[k] = high;
         }
     for (int k = 0; k < 3; k++) box->low[k] -= more, box->high[k] += more;
 }
 
 static void facet_boxes(void *context, int64_t begin, int64_t end, int worker) {
-    near_work *w = context;
+    const barrier_way *w = context;
     brunt_barrier *b = w->b;
     (void)worker;
     for (int64_t i = begin; i < end; i++)
@@ -55,7 +53,7 @@ static void facet_boxes(void *context, int64_t begin, int64_t end, int worker) {
 }
 
 static void edge_boxes(void *context, int64_t begin, int64_t end, int worker) {
-    near_work *w = context;
+    const barrier_way *w = context;
     brunt_barrier *b = w->b;
     (void)worker;
     for (int64_t i = begin; i < end; i++)
@@ -63,88 +61,112 @@ static void edge_boxes(void *context, int64_t begin, int64_t end, int worker) {
 }
 
 static bool facet_wanted(const void *context, int32_t point, int32_t facet) {
-    const brunt_barrier *b = ((const near_work *)context)->b;
+    const brunt_barrier *b = ((const barrier_way *)context)->b;
     const int32_t *f = b->facet[facet];
     if (f[0] == point || f[1] == point || f[2] == point) return false;
     return barrier_bodies_meet(b, barrier_body_of(b, point), b->body[f[0]], false);
 }
 
 static int64_t facets_of(const void *context, int32_t point, int32_t *out) {
-    const brunt_barrier *b = ((const near_work *)context)->b;
-    if (!(barrier_area_of(b, point) > 0)) return 0;
+    const brunt_barrier *b = ((const barrier_way *)context)->b;
+    if (barrier_is_far(b, point) || !(barrier_area_of(b, point) > 0)) return 0;
     return brunt_near_find(&b->facet_cells, &b->point_box[point], facet_wanted, context, point, out);
 }
 
 static bool edge_wanted(const void *context, int32_t edge, int32_t other) {
-    const brunt_barrier *b = ((const near_work *)context)->b;
+    const brunt_barrier *b = ((const barrier_way *)context)->b;
     const int32_t *e = b->edge[edge], *f = b->edge[other];
     if (other <= edge || e[0] == f[0] || e[0] == f[1] || e[1] == f[0] || e[1] == f[1]) return false;
     return barrier_bodies_meet(b, b->body[e[0]], b->body[f[0]], true);
 }
 
 static int64_t edges_of(const void *context, int32_t edge, int32_t *out) {
-    const brunt_barrier *b = ((const near_work *)context)->b;
+    const brunt_barrier *b = ((const barrier_way *)context)->b;
     brunt_near_box box; // without what the boxes of the others have already
     hull_box(b->point_box, b->edge[edge], 2, 0, &box);
     return brunt_near_find(&b->edge_cells, &box, edge_wanted, context, edge, out);
 }
 
-// Planes that a point may come near to: the nearest corner of its box, and how far the plane comes towards it.
-static int64_t planes_of(const void *context, int32_t point, int32_t *out) {
-    const near_work *w = context;
+// Whether a point may come near to a plane: the nearest corner of its box, and how far the plane comes towards it.
+static bool plane_is_near(const barrier_way *w, int32_t point, const brunt_near_box *box, int32_t i) {
     const brunt_barrier *b = w->b;
-    const brunt_near_box *box = &b->point_box[point];
+    const brunt_barrier_plane *plane = &b->step.planes[i];
+    if (plane->meets && !plane->meets[barrier_body_of(b, point)]) return false;
+    double from[3], by[3], gap = 0, comes = 0;
+    barrier_move(b, barrier_points(b) + i, w->u, from), barrier_move(b, barrier_points(b) + i, w->p, by);
+    for (int k = 0; k < b->dim; k++) {
+        const double n = plane->normal[k], corner = n > 0 ? box->low[k] : box->high[k];
+        gap += n * (corner - (plane->origin[k] - b->origin[k]) - from[k]);
+        comes += n * by[k];
+    }
+    return !(gap - fmax(comes, 0) > plane->distance + barrier_plane_offset(b, plane, point) + w->margin);
+}
+
+static int64_t planes_of(const void *context, int32_t point, int32_t *out) {
+    const barrier_way *w = context;
+    const brunt_barrier *b = w->b;
     int64_t found = 0;
-    if (!(barrier_area_of(b, point) > 0)) return 0;
+    if (!b->step.plane_count || barrier_is_far(b, point) || !(barrier_area_of(b, point) > 0)) return 0;
     for (int32_t i = 0; i < b->step.plane_count; i++) {
-        const brunt_barrier_plane *plane = &b->step.planes[i];
-        if (plane->meets && !plane->meets[barrier_body_of(b, point)]) continue;
-        double from[3], by[3], gap = 0, comes = 0;
-        barrier_move(b, barrier_points(b) + i, w->u, from), barrier_move(b, barrier_points(b) + i, w->p, by);
-        for (int k = 0; k < b->dim; k++) {
-            const double n = plane->normal[k], corner = n > 0 ? box->low[k] : box->high[k];
-            gap += n * (corner - (plane->origin[k] - b->origin[k]) - from[k]);
-            comes += n * by[k];
-        }
-        if (gap - fmax(comes, 0) > plane->distance + barrier_plane_offset(b, plane, point) + w->margin) continue;
+        if (!plane_is_near(w, point, &b->point_box[point], i)) continue;
         if (out) out[found] = i;
         found++;
     }
     return found;
 }
 
-// How large numbers are that boxes are differences of, times some rounding.
-static double rounding_of(const brunt_barrier *b, int32_t points) {
+// Boxes of material points that are not far from everything already by where all of them may go.
+static void particle_boxes(void *context, int64_t begin, int64_t end, int worker) {
+    const barrier_way *w = context;
+    brunt_barrier *b = w->b;
+    for (int64_t i = begin; i < end; i++) {
+        const int32_t point = b->vertex_count + (int32_t)i;
+        const double *x = b->step.particles.x[i];
+        brunt_near_box box = {{0}, {0}};
+        for (int k = 0; k < b->dim; k++)
+            box.low[k] = x[k] - b->origin[k] - w->reach[k], box.high[k] = x[k] - b->origin[k] + w->reach[k];
+        bool near = !finite_box(&box) || brunt_near_any(&b->facet_cells, &box);
+        for (int32_t k = 0; k < b->step.plane_count && !near; k++) near = plane_is_near(w, point, &box, k);
+        b->far[i] = !near;
+        if (near) point_box(w, point, worker);
+    }
+}
+
+// How large numbers are that boxes of vertices are differences of.
+static double size_of_vertices(const brunt_barrier *b) {
     double most = 0;
-    for (int32_t i = 0; i < points; i++) {
+    for (int32_t i = 0; i < b->vertex_count; i++) {
         const double *x = barrier_start(b, i);
         for (int k = 0; k < b->dim; k++)
             most = fmax(most, fabs(x[k]) + fmax(fabs(b->point_box[i].low[k]), fabs(b->point_box[i].high[k])));
     }
-    return 1e-14 * most;
+    return most;
 }
 
-static int make_boxes(near_work *w, const brunt_team *team, brunt_error *error) {
-    brunt_barrier *b = w->b;
-    const int32_t points = barrier_points(b);
-    bool bad[BRUNT_THREAD_LIMIT] = {false};
-    w->bad = bad;
-    for (int k = 0; k < 3; k++) b->origin[k] = points ? barrier_start(b, 0)[k] : 0;
-    brunt_parallel(team->threads, points, BARRIER_GRAIN, point_boxes, w, team->timer);
-    w->bad = NULL;
+static int check_boxes(const barrier_way *w, brunt_error *error) {
     for (int i = 0; i < BRUNT_THREAD_LIMIT; i++)
-        if (bad[i]) return brunt_fail(error, BRUNT_FAILED, "a point of contact is at a place that is not a number");
-    w->margin = rounding_of(b, points);
-    brunt_parallel(team->threads, b->facet_count, BARRIER_GRAIN, facet_boxes, w, team->timer);
-    brunt_parallel(team->threads, b->edge_count, BARRIER_GRAIN, edge_boxes, w, team->timer);
+        if (w->bad[i]) return brunt_fail(error, BRUNT_FAILED, "a point of contact is at a place that is not a number");
     return BRUNT_OK;
 }
 
-static int make_lists(near_work *w, const brunt_team *team, brunt_error *error) {
+// Of what has surfaces first: those say which material points are far from them.
+static int make_boxes(barrier_way *w, const brunt_team *team, brunt_error *error) {
     brunt_barrier *b = w->b;
+    for (int k = 0; k < 3; k++) b->origin[k] = barrier_points(b) ? barrier_start(b, 0)[k] : 0;
+    brunt_parallel(team->threads, b->vertex_count, BARRIER_GRAIN, vertex_boxes, w, team->timer);
+    if (check_boxes(w, error)) return BRUNT_FAILED;
+    w->margin = ROUNDING * fmax(size_of_vertices(b), barrier_take_reach(w, team));
+    brunt_parallel(team->threads, b->facet_count, BARRIER_GRAIN, facet_boxes, w, team->timer);
+    brunt_parallel(team->threads, b->edge_count, BARRIER_GRAIN, edge_boxes, w, team->timer);
     if (brunt_near_cells_make(&b->facet_cells, b->facet_box, b->facet_count, b->dim, error) ||
         brunt_near_cells_make(&b->edge_cells, b->edge_box, b->edge_count, b->dim, error))
         return BRUNT_FAILED;
+    brunt_parallel(team->threads, b->step.particles.count, PARTICLE_GRAIN, particle_boxes, w, team->timer);
+    return check_boxes(w, error);
+}
+
+static int make_lists(barrier_way *w, const brunt_team *team, brunt_error *error) {
+    brunt_barrier *b = w->b;
     return brunt_near_list_make(&b->facets, team, barrier_points(b), facets_of, w, error) ||
                    brunt_near_list_make(&b->planes, team, barrier_points(b), planes_of, w, error) ||
                    brunt_near_list_make(&b->edges, team, b->edge_count, edges_of, w, error)
@@ -183,9 +205,11 @@ static int make_tasks(brunt_barrier *b, int threads, brunt_error *error) {
 }
 
 int barrier_find_near(brunt_barrier *b, const brunt_team *team, const double *u, const double *p, brunt_error *error) {
-    near_work work = {.b = b, .u = u, .p = p};
+    bool bad[BRUNT_THREAD_LIMIT] = {false};
+    barrier_way work = {.b = b, .u = u, .p = p, .bad = bad};
     const size_t points = (size_t)barrier_points(b) + 1;
     if (BRUNT_CAPACITY(b->point_box, points, 0, "boxes about points", error) ||
+        BRUNT_CAPACITY(b->far, (size_t)b->step.particles.count + 1, 0, "points in contact", error) ||
         BRUNT_CAPACITY(b->facet_box, (size_t)b->facet_count + 1, 0, "boxes about facets", error) ||
         BRUNT_CAPACITY(b->edge_box, (size_t)b->edge_count + 1, 0, "boxes about edges", error))
         return BRUNT_FAILED;

@@ -85,6 +85,14 @@ typedef struct barrier_key {
     int32_t pair;
 } barrier_key;
 
+// Of the material points of a step, which do not change while it is sought.
+typedef struct barrier_extent {
+    bool known;
+    double size;       // [m] of |x| + |x - origin|, the most of any component
+    double spread;     // of a point's weights, the most that their sizes add up to
+    int32_t low, high; // the block nodes that move them are among low .. high - 1
+} barrier_extent;
+
 struct brunt_barrier {
     int dim;
     // Surface. Facets are simplices, vertices of each ascending (2D: the third -1).
@@ -100,10 +108,12 @@ struct brunt_barrier {
     int32_t pair_count, key_count; // keys that are being collected come behind those of the pairs
     size_t pair_capacity, key_capacity;
     brunt_barrier_step step;
+    barrier_extent extent;
     // What was found last.
     double origin[3]; // boxes are measured from it
     brunt_near_box *point_box, *facet_box, *edge_box;
-    size_t point_box_capacity, facet_box_capacity, edge_box_capacity;
+    bool *far; // material points that come near nothing, and have no box
+    size_t point_box_capacity, facet_box_capacity, edge_box_capacity, far_capacity;
     brunt_near_cells facet_cells, edge_cells;
     brunt_near_list facets, planes, edges; // of points, points, edges
     bool swept, stale;                     // found along a way; `sets` are not those of `contacts`
@@ -153,7 +163,20 @@ double barrier_share_of(const brunt_barrier *b, int32_t law, int8_t side, bool e
 // [m] what a point's surface stands off a plane.
 double barrier_plane_offset(const brunt_barrier *b, const brunt_barrier_plane *plane, int32_t point);
 
-// --- candidates (barrier_near.c)
+static inline bool barrier_is_far(const brunt_barrier *b, int32_t point) {
+    return point >= b->vertex_count && b->far[point - b->vertex_count];
+}
+
+// --- candidates (barrier_near.c, barrier_reach.c)
+typedef struct barrier_way {
+    brunt_barrier *b;
+    const double *u, *p;
+    double reach[3]; // [m] that no material point goes farther, from the start of the step
+    double margin;   // [m] more than the distances: rounding of boxes
+    bool *bad;       // of each worker: something is not a number
+} barrier_way;
+// Takes `reach`; how large the numbers are that boxes of material points are differences of.
+double barrier_take_reach(barrier_way *way, const brunt_team *team);
 int barrier_find_near(brunt_barrier *b, const brunt_team *team, const double *u, const double *p, brunt_error *error);
 
 // --- contacts (barrier_contacts.c)

@@ -131,6 +131,17 @@ int64_t brunt_near_find(const brunt_near_cells *c, const brunt_near_box *box, br
     return found;
 }
 
+bool brunt_near_any(const brunt_near_cells *c, const brunt_near_box *box) {
+    if (c->count == 0) return false;
+    for (int k = 0; k < c->dim; k++)
+        if (box->high[k] < c->low[k] || box->low[k] > c->high[k]) return false;
+    const cell_range r = range_of(c, box);
+    for (int32_t k = r.low[2]; k <= r.high[2]; k++)
+        for (int32_t j = r.low[1]; j <= r.high[1]; j++)
+            if (c->first[cell_index(c, r.low[0], j, k)] < c->first[cell_index(c, r.high[0], j, k) + 1]) return true;
+    return false;
+}
+
 typedef struct list_work {
     brunt_near_list *list;
     brunt_near_fn *find;

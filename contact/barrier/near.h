@@ -40,6 +40,9 @@ typedef bool brunt_near_wanted(const void *context, int32_t query, int32_t item)
 int64_t brunt_near_find(const brunt_near_cells *cells, const brunt_near_box *box, brunt_near_wanted *wanted,
                         const void *context, int32_t query, int32_t *out);
 
+// Whether items may be where a box is: false is sure.
+bool brunt_near_any(const brunt_near_cells *cells, const brunt_near_box *box);
+
 // Lists of what `find` gives for each query: how many it found (out NULL), and themselves. BRUNT_OK, or BRUNT_FAILED:
 // out of memory.
 typedef int64_t brunt_near_fn(const void *context, int32_t query, int32_t *out);
