@@ -145,10 +145,27 @@ BRUNT_INLINE void inverse_step(int dim, const mpm_tile *tile, int32_t at, lanes 
         }
 }
 
-// Adds V tau f^-T slope of a vector to the block's nodes, lane by lane.
+// Adds P slope of a vector to the nodes of its kernels, lane by lane.
+BRUNT_INLINE void spread_forces(int dim, int order, bool same, const kernel_lanes *k, const lanes P[9], double *force) {
+    for (int n = 0; n < kernel_nodes(dim, order); n++) {
+        const kernel_node node = node_of(dim, order, k, n);
+        for (int i = 0; i < dim; i++) {
+            lanes f = P[i * dim] * node.slope[0];
+            for (int j = 1; j < dim; j++) f += P[i * dim + j] * node.slope[j];
+            if (same) {
+                double sum = force[(k->base[0] + node.at) * dim + i];
+                for (int l = 0; l < BRUNT_LANES; l++) sum += (double)f[l];
+                force[(k->base[0] + node.at) * dim + i] = sum;
+                continue;
+            }
+            for (int l = 0; l < BRUNT_LANES; l++) force[(k->base[l] + node.at) * dim + i] += (double)f[l];
+        }
+    }
+}
+
+// Adds V tau f^-T slope of a vector to the block's nodes.
 BRUNT_INLINE void add_forces(int dim, int order, brunt_mpm_potential *p, const brunt_block *block, int64_t slot,
                              const mpm_tile *tile, int32_t at) {
-    double *force = tile->force;
     lanes inverse[9], P[9];
     kernel_lanes k;
     kernel_at(dim, order, p->body, block, slot, &k);
@@ -160,14 +177,10 @@ BRUNT_INLINE void add_forces(int dim, int order, brunt_mpm_potential *p, const b
             for (int a = 0; a < dim; a++) sum += lanes_load(tile->stress[i * dim + a] + at) * inverse[j * dim + a];
             P[i * dim + j] = lanes_select(volume > 0, volume * sum, lanes_set(0));
         }
-    for (int n = 0; n < kernel_nodes(dim, order); n++) {
-        const kernel_node node = node_of(dim, order, &k, n);
-        for (int i = 0; i < dim; i++) {
-            lanes f = P[i * dim] * node.slope[0];
-            for (int j = 1; j < dim; j++) f += P[i * dim + j] * node.slope[j];
-            for (int l = 0; l < BRUNT_LANES; l++) force[(k.base[l] + node.at) * dim + i] += (double)f[l];
-        }
-    }
+    if (k.same)
+        spread_forces(dim, order, true, &k, P, tile->force);
+    else
+        spread_forces(dim, order, false, &k, P, tile->force);
 }
 
 // Tangents of a vector times the volume, with f^-1 from both sides: for slopes in the configuration of the grid.

@@ -32,9 +32,9 @@ BRUNT_INLINE void motion_at(int dim, int order, const mpm_windows *w, const kern
     for (int n = 0; n < kernel_nodes(dim, order); n++) {
         const kernel_node node = node_of(dim, order, k, n);
         lanes u[3], v[3], old[3];
-        window_values(dim, w->u, k, node.at, u);
-        window_values(dim, w->v, k, node.at, v);
-        if (flip) window_values(dim, w->old, k, node.at, old);
+        window_values(dim, k->same, w->u, k, node.at, u);
+        window_values(dim, k->same, w->v, k, node.at, v);
+        if (flip) window_values(dim, k->same, w->old, k, node.at, old);
         for (int i = 0; i < dim; i++) {
             const lanes weighed = node.weight * v[i];
             m->v[i] += weighed, m->kinetic += weighed * v[i];

@@ -79,6 +79,7 @@ static inline void fill_window(const brunt_mpm_potential *p, const brunt_block *
 typedef struct kernel_lanes {
     lanes local[3], w[3][4], g[3][4];
     int base[BRUNT_LANES];
+    bool same; // all of one bin: nodes are read and written once for all
 } kernel_lanes;
 
 BRUNT_INLINE void kernel_at(int dim, int order, const brunt_body *body, const brunt_block *block, int64_t slot,
@@ -96,6 +97,8 @@ BRUNT_INLINE void kernel_at(int dim, int order, const brunt_body *body, const br
         k->base[l] = bins[0][l] * span + bins[1][l];
         if (dim == 3) k->base[l] = k->base[l] * span + bins[2][l];
     }
+    k->same = true;
+    for (int l = 1; l < BRUNT_LANES; l++) k->same &= k->base[l] == k->base[0];
     for (int a = 0; a < dim; a++) {
         const real corner = (real)(grid->origin[a] + (double)grid->h * (block->coord[a] * side));
         lanes bin;
@@ -134,25 +137,37 @@ BRUNT_INLINE kernel_node node_of(int dim, int order, const kernel_lanes *k, int 
     return out;
 }
 
-// The window's values at a node of the kernels.
-BRUNT_INLINE void window_values(int dim, const double *window, const kernel_lanes *k, int at, lanes out[3]) {
+// The window's values at a node of the kernels; `same` is k->same, or false.
+BRUNT_INLINE void window_values(int dim, bool same, const double *window, const kernel_lanes *k, int at, lanes out[3]) {
+    if (same) {
+        for (int i = 0; i < dim; i++) out[i] = lanes_set((real)window[(k->base[0] + at) * dim + i]);
+        return;
+    }
     for (int l = 0; l < BRUNT_LANES; l++)
         for (int i = 0; i < dim; i++) out[i][l] = (real)window[(k->base[l] + at) * dim + i];
 }
 
-// sum w u (NULL: not wanted) and sum u (x) slope.
-BRUNT_INLINE void field_at(int dim, int order, const double *window, const kernel_lanes *k, lanes *mean, lanes H[9]) {
+BRUNT_INLINE void field_of(int dim, int order, bool same, const double *window, const kernel_lanes *k, lanes *mean,
+                           lanes H[9]) {
     for (int c = 0; c < dim * dim; c++) H[c] = lanes_set(0);
     for (int i = 0; i < dim && mean; i++) mean[i] = lanes_set(0);
     for (int n = 0; n < kernel_nodes(dim, order); n++) {
         const kernel_node node = node_of(dim, order, k, n);
         lanes u[3] = {lanes_set(0), lanes_set(0), lanes_set(0)};
-        window_values(dim, window, k, node.at, u);
+        window_values(dim, same, window, k, node.at, u);
         for (int i = 0; i < dim; i++) {
             if (mean) mean[i] += node.weight * u[i];
             for (int j = 0; j < dim; j++) H[i * dim + j] += u[i] * node.slope[j];
         }
     }
+}
+
+// sum w u (NULL: not wanted) and sum u (x) slope.
+BRUNT_INLINE void field_at(int dim, int order, const double *window, const kernel_lanes *k, lanes *mean, lanes H[9]) {
+    if (k->same)
+        field_of(dim, order, true, window, k, mean, H);
+    else
+        field_of(dim, order, false, window, k, mean, H);
 }
 
 // The nodes of bins with particles follow one another in a window: the first one's place.
