@@ -21,7 +21,7 @@ void brunt_barrier_free(brunt_barrier *b) {
     brunt_free(b->facet), brunt_free(b->body), brunt_free(b->edge), brunt_free(b->vertex_area);
     brunt_free(b->edge_area), brunt_free(b->edge_length2), brunt_free(b->pair), brunt_free(b->key);
     brunt_free(b->point_box), brunt_free(b->facet_box), brunt_free(b->edge_box);
-    brunt_free(b->far);
+    brunt_free(b->far), brunt_free(b->asked);
     brunt_near_cells_free(&b->facet_cells), brunt_near_cells_free(&b->edge_cells);
     brunt_near_list_free(&b->facets), brunt_near_list_free(&b->planes), brunt_near_list_free(&b->edges);
     brunt_free(b->task), brunt_free(b->task_energy), brunt_free(b->task_first);

@@ -69,7 +69,7 @@ static bool facet_wanted(const void *context, int32_t point, int32_t facet) {
 
 static int64_t facets_of(const void *context, int32_t point, int32_t *out) {
     const brunt_barrier *b = ((const barrier_way *)context)->b;
-    if (barrier_is_far(b, point) || !(barrier_area_of(b, point) > 0)) return 0;
+    if (!(barrier_area_of(b, point) > 0)) return 0;
     return brunt_near_find(&b->facet_cells, &b->point_box[point], facet_wanted, context, point, out);
 }
 
@@ -106,13 +106,25 @@ static int64_t planes_of(const void *context, int32_t point, int32_t *out) {
     const barrier_way *w = context;
     const brunt_barrier *b = w->b;
     int64_t found = 0;
-    if (!b->step.plane_count || barrier_is_far(b, point) || !(barrier_area_of(b, point) > 0)) return 0;
+    if (!(barrier_area_of(b, point) > 0)) return 0;
     for (int32_t i = 0; i < b->step.plane_count; i++) {
         if (!plane_is_near(w, point, &b->point_box[point], i)) continue;
         if (out) out[found] = i;
         found++;
     }
     return found;
+}
+
+// Whether a material point is beyond all facets, and there are no planes: what most of them are is told at once.
+static bool is_beyond(const barrier_way *w, const double *x) {
+    const brunt_barrier *b = w->b;
+    const brunt_near_cells *c = &b->facet_cells;
+    bool beyond = b->facet_count == 0;
+    for (int k = 0; k < b->dim && !beyond; k++) {
+        const double at = x[k] - b->origin[k];
+        beyond = at + w->reach[k] < c->low[k] || at - w->reach[k] > c->high[k];
+    }
+    return beyond && !b->step.plane_count;
 }
 
 // Boxes of material points that are not far from everything already by where all of them may go.
@@ -123,6 +135,8 @@ static void particle_boxes(void *context, int64_t begin, int64_t end, int worker
         const int32_t point = b->vertex_count + (int32_t)i;
         const double *x = b->step.particles.x[i];
         brunt_near_box box = {{0}, {0}};
+        b->far[i] = is_beyond(w, x);
+        if (b->far[i]) continue;
         for (int k = 0; k < b->dim; k++)
             box.low[k] = x[k] - b->origin[k] - w->reach[k], box.high[k] = x[k] - b->origin[k] + w->reach[k];
         bool near = !finite_box(&box) || brunt_near_any(&b->facet_cells, &box);
@@ -130,6 +144,14 @@ static void particle_boxes(void *context, int64_t begin, int64_t end, int worker
         b->far[i] = !near;
         if (near) point_box(w, point, worker);
     }
+}
+
+// Vertices, and material points that are not far.
+static void list_asked(brunt_barrier *b) {
+    b->asked_count = 0;
+    for (int32_t i = 0; i < b->vertex_count; i++) b->asked[b->asked_count++] = i;
+    for (int32_t i = 0; i < b->step.particles.count; i++)
+        if (!b->far[i]) b->asked[b->asked_count++] = b->vertex_count + i;
 }
 
 // How large numbers are that boxes of vertices are differences of.
@@ -167,21 +189,27 @@ static int make_boxes(barrier_way *w, const brunt_team *team, brunt_error *error
 
 static int make_lists(barrier_way *w, const brunt_team *team, brunt_error *error) {
     brunt_barrier *b = w->b;
-    return brunt_near_list_make(&b->facets, team, barrier_points(b), facets_of, w, error) ||
-                   brunt_near_list_make(&b->planes, team, barrier_points(b), planes_of, w, error) ||
-                   brunt_near_list_make(&b->edges, team, b->edge_count, edges_of, w, error)
+    list_asked(b);
+    const int32_t points = barrier_points(b), at_facets = b->facet_count ? b->asked_count : 0,
+                  at_planes = b->step.plane_count ? b->asked_count : 0;
+    const brunt_near_queries facets = {points, b->asked, at_facets, facets_of, w},
+                             planes = {points, b->asked, at_planes, planes_of, w},
+                             edges = {.count = b->edge_count, .find = edges_of, .context = w};
+    return brunt_near_list_make(&b->facets, team, &facets, error) ||
+                   brunt_near_list_make(&b->planes, team, &planes, error) ||
+                   brunt_near_list_make(&b->edges, team, &edges, error)
                ? BRUNT_FAILED
                : BRUNT_OK;
 }
 
 // Points and edges that are near something; room for the threads, for as much as one of them is near.
 static int make_tasks(brunt_barrier *b, int threads, brunt_error *error) {
-    const int32_t points = barrier_points(b);
-    const size_t most = (size_t)points + (size_t)b->edge_count + 1;
+    const size_t most = (size_t)barrier_points(b) + (size_t)b->edge_count + 1;
     int64_t longest = 0;
     if (BRUNT_CAPACITY(b->task, most, 0, "points and edges that may be in contact", error)) return BRUNT_FAILED;
     b->task_count = 0;
-    for (int32_t i = 0; i < points; i++) {
+    for (int32_t k = 0; k < b->asked_count; k++) {
+        const int32_t i = b->asked[k];
         const int64_t near = b->facets.first[i + 1] - b->facets.first[i];
         if (near > longest) longest = near;
         if (near || b->planes.first[i + 1] > b->planes.first[i]) b->task[b->task_count++] = i;
@@ -210,6 +238,7 @@ int barrier_find_near(brunt_barrier *b, const brunt_team *team, const double *u,
     const size_t points = (size_t)barrier_points(b) + 1;
     if (BRUNT_CAPACITY(b->point_box, points, 0, "boxes about points", error) ||
         BRUNT_CAPACITY(b->far, (size_t)b->step.particles.count + 1, 0, "points in contact", error) ||
+        BRUNT_CAPACITY(b->asked, points, 0, "points in contact", error) ||
         BRUNT_CAPACITY(b->facet_box, (size_t)b->facet_count + 1, 0, "boxes about facets", error) ||
         BRUNT_CAPACITY(b->edge_box, (size_t)b->edge_count + 1, 0, "boxes about edges", error))
         return BRUNT_FAILED;

@@ -112,8 +112,10 @@ struct brunt_barrier {
     // What was found last.
     double origin[3]; // boxes are measured from it
     brunt_near_box *point_box, *facet_box, *edge_box;
-    bool *far; // material points that come near nothing, and have no box
-    size_t point_box_capacity, facet_box_capacity, edge_box_capacity, far_capacity;
+    bool *far;      // material points that come near nothing, and have no box
+    int32_t *asked; // points that are not far
+    int32_t asked_count;
+    size_t point_box_capacity, facet_box_capacity, edge_box_capacity, far_capacity, asked_capacity;
     brunt_near_cells facet_cells, edge_cells;
     brunt_near_list facets, planes, edges; // of points, points, edges
     bool swept, stale;                     // found along a way; `sets` are not those of `contacts`
@@ -162,10 +164,6 @@ static inline const brunt_barrier_pair *barrier_pair_of(const brunt_barrier *b, 
 double barrier_share_of(const brunt_barrier *b, int32_t law, int8_t side, bool edges);
 // [m] what a point's surface stands off a plane.
 double barrier_plane_offset(const brunt_barrier *b, const brunt_barrier_plane *plane, int32_t point);
-
-static inline bool barrier_is_far(const brunt_barrier *b, int32_t point) {
-    return point >= b->vertex_count && b->far[point - b->vertex_count];
-}
 
 // --- candidates (barrier_near.c, barrier_reach.c)
 typedef struct barrier_way {

@@ -11,13 +11,13 @@ typedef struct found {
     double finite; // 0, or not a number
 } found;
 
-typedef struct reach_work {
+typedef struct extent_work {
     const barrier_way *way;
     found *found;
-} reach_work;
+} extent_work;
 
 static void measure_particles(void *context, int64_t begin, int64_t end, int worker) {
-    const reach_work *w = context;
+    const extent_work *w = context;
     const brunt_barrier *b = w->way->b;
     const brunt_barrier_particles *p = &b->step.particles;
     found f = w->found[worker];
@@ -38,7 +38,7 @@ static void measure_particles(void *context, int64_t begin, int64_t end, int wor
 }
 
 static void measure_nodes(void *context, int64_t begin, int64_t end, int worker) {
-    const reach_work *w = context;
+    const extent_work *w = context;
     const barrier_way *way = w->way;
     const int64_t dim = way->b->dim, low = way->b->extent.low;
     found f = w->found[worker];
@@ -51,7 +51,7 @@ static void measure_nodes(void *context, int64_t begin, int64_t end, int worker)
     w->found[worker] = f;
 }
 
-static void take_extent(reach_work *w, const brunt_team *team) {
+static void take_extent(extent_work *w, const brunt_team *team) {
     brunt_barrier *b = w->way->b;
     barrier_extent *e = &b->extent;
     *e = (barrier_extent){.known = true, .low = INT32_MAX};
@@ -67,7 +67,7 @@ static void take_extent(reach_work *w, const brunt_team *team) {
 double barrier_take_reach(barrier_way *way, const brunt_team *team) {
     const barrier_extent *e = &way->b->extent;
     found all[BRUNT_THREAD_LIMIT];
-    reach_work work = {way, all};
+    extent_work work = {way, all};
     double most = 0;
     for (int t = 0; t < BRUNT_THREAD_LIMIT; t++) all[t] = (found){.low = INT32_MAX};
     for (int k = 0; k < 3; k++) way->reach[k] = 0;

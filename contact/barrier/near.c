@@ -144,14 +144,18 @@ bool brunt_near_any(const brunt_near_cells *c, const brunt_near_box *box) {
 
 typedef struct list_work {
     brunt_near_list *list;
-    brunt_near_fn *find;
-    const void *context;
+    const brunt_near_queries *queries;
 } list_work;
 
+static int32_t query_of(const brunt_near_queries *q, int64_t i) { return q->asked ? q->asked[i] : (int32_t)i; }
+
 static void list_count(void *context, int64_t begin, int64_t end, int worker) {
-    list_work *w = context;
+    const list_work *w = context;
     (void)worker;
-    for (int64_t q = begin; q < end; q++) w->list->first[q + 1] = w->find(w->context, (int32_t)q, NULL);
+    for (int64_t i = begin; i < end; i++) {
+        const int32_t q = query_of(w->queries, i);
+        w->list->first[q + 1] = w->queries->find(w->queries->context, q, NULL);
+    }
 }
 
 static int ascending(const void *a, const void *b) {
@@ -160,28 +164,43 @@ static int ascending(const void *a, const void *b) {
 }
 
 static void list_fill(void *context, int64_t begin, int64_t end, int worker) {
-    list_work *w = context;
+    const list_work *w = context;
     (void)worker;
-    for (int64_t q = begin; q < end; q++) {
+    for (int64_t i = begin; i < end; i++) {
+        const int32_t q = query_of(w->queries, i);
         const int64_t first = w->list->first[q], count = w->list->first[q + 1] - first;
         if (count == 0) continue;
-        const int64_t found = w->find(w->context, (int32_t)q, w->list->item + first);
+        const int64_t found = w->queries->find(w->queries->context, q, w->list->item + first);
         BRUNT_ASSERT(found == count);
         qsort(w->list->item + first, (size_t)count, sizeof *w->list->item, ascending);
     }
 }
 
-int brunt_near_list_make(brunt_near_list *list, const brunt_team *team, int32_t queries, brunt_near_fn *find,
-                         const void *context, brunt_error *error) {
-    list_work work = {list, find, context};
-    if (BRUNT_CAPACITY(list->first, (size_t)queries + 1, 0, "points and edges that may be in contact", error))
+// Counts become beginnings, of those that were not asked as well.
+static void add_up(brunt_near_list *list, const brunt_near_queries *queries, int64_t asked) {
+    int32_t next = 0;
+    int64_t sum = 0;
+    for (int64_t i = 0; i < asked; i++) {
+        const int32_t q = query_of(queries, i);
+        const int64_t count = list->first[q + 1];
+        while (next <= q) list->first[next++] = sum;
+        sum += count;
+    }
+    while (next <= queries->count) list->first[next++] = sum;
+}
+
+int brunt_near_list_make(brunt_near_list *list, const brunt_team *team, const brunt_near_queries *queries,
+                         brunt_error *error) {
+    list_work work = {list, queries};
+    const int64_t asked = queries->asked ? queries->asked_count : queries->count;
+    if (BRUNT_CAPACITY(list->first, (size_t)queries->count + 1, 0, "points and edges that may be in contact", error))
         return BRUNT_FAILED;
-    list->count = queries, list->first[0] = 0;
-    brunt_parallel(team->threads, queries, QUERIES, list_count, &work, team->timer);
-    for (int32_t q = 0; q < queries; q++) list->first[q + 1] += list->first[q];
-    if (BRUNT_CAPACITY(list->item, (size_t)list->first[queries] + 1, 0, "features near points and edges", error))
-        return BRUNT_FAILED;
-    brunt_parallel(team->threads, queries, QUERIES, list_fill, &work, team->timer);
+    list->count = queries->count;
+    brunt_parallel(team->threads, asked, QUERIES, list_count, &work, team->timer);
+    add_up(list, queries, asked);
+    const int64_t found = list->first[queries->count];
+    if (BRUNT_CAPACITY(list->item, (size_t)found + 1, 0, "features near points and edges", error)) return BRUNT_FAILED;
+    if (found) brunt_parallel(team->threads, asked, QUERIES, list_fill, &work, team->timer);
     return BRUNT_OK;
 }
 

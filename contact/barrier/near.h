@@ -43,9 +43,16 @@ int64_t brunt_near_find(const brunt_near_cells *cells, const brunt_near_box *box
 // Whether items may be where a box is: false is sure.
 bool brunt_near_any(const brunt_near_cells *cells, const brunt_near_box *box);
 
-// Lists of what `find` gives for each query: how many it found (out NULL), and themselves. BRUNT_OK, or BRUNT_FAILED:
-// out of memory.
+// Lists of what `find` gives for each query: how many it found (out NULL), and themselves. All others but the queries
+// `asked`, ascending (NULL: all are), find nothing. BRUNT_OK, or BRUNT_FAILED: out of memory.
 typedef int64_t brunt_near_fn(const void *context, int32_t query, int32_t *out);
-int brunt_near_list_make(brunt_near_list *list, const brunt_team *team, int32_t queries, brunt_near_fn *find,
-                         const void *context, brunt_error *error);
+typedef struct brunt_near_queries {
+    int32_t count; // in all
+    const int32_t *asked;
+    int32_t asked_count;
+    brunt_near_fn *find;
+    const void *context;
+} brunt_near_queries;
+int brunt_near_list_make(brunt_near_list *list, const brunt_team *team, const brunt_near_queries *queries,
+                         brunt_error *error);
 void brunt_near_list_free(brunt_near_list *list);

@@ -334,6 +334,7 @@ static void draw_boxes(uint64_t *state, int dim, int count, double large, brunt_
 START_TEST(search_finds_what_all_pairs_show) {
     enum { ITEM_LIMIT = 400 };
     static brunt_near_box item[ITEM_LIMIT], query[ITEM_LIMIT];
+    static int32_t asked[ITEM_LIMIT];
     brunt_near_cells cells = {0};
     brunt_near_list list = {0};
     uint64_t state = 9;
@@ -344,14 +345,19 @@ START_TEST(search_finds_what_all_pairs_show) {
         ck_assert_int_eq(brunt_near_cells_make(&cells, item, items, dim, NULL), 0);
         const brunt_team team = {1 + round % 3, NULL};
         const queries q = {&cells, query};
-        ck_assert_int_eq(brunt_near_list_make(&list, &team, count, found_by, &q, NULL), 0);
+        brunt_near_queries all = {.count = count, .find = found_by, .context = &q};
+        if (round % 2) all.asked = asked;
+        for (int i = 0; i < count; i++)
+            if (i % 4 != 1) asked[all.asked_count++] = i;
+        ck_assert_int_eq(brunt_near_list_make(&list, &team, &all, NULL), 0);
         for (int i = 0; i < count; i++) {
             int64_t at = list.first[i];
             for (int j = 0; j < items; j++) {
-                bool meet = (i + j) % 3 != 0;
+                bool meet = (i + j) % 3 != 0 && (i % 4 != 1 || !all.asked);
                 for (int k = 0; k < dim; k++)
                     meet &= query[i].low[k] <= item[j].high[k] && item[j].low[k] <= query[i].high[k];
                 if (!meet) continue;
+                ck_assert(brunt_near_any(&cells, &query[i]));
                 ck_assert_msg(at < list.first[i + 1] && list.item[at] == j, "round %d: %d does not find %d", round, i,
                               j);
                 at++;
