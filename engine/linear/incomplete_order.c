@@ -16,13 +16,13 @@ typedef struct cut {
     int64_t weight[BRUNT_LEVELS][BRUNT_SLABS]; // blocks
 } cut;
 
-// Slabs of about as many blocks each.
-static void cut_slabs(cut *c) {
+// Slabs of about as many blocks each, but for what the first of two has more than the other.
+static void cut_slabs(cut *c, int64_t more) {
     const brunt_block_matrix *a = c->a;
     const int64_t all = brunt_block_matrix_blocks(a);
     int32_t r = 0;
     for (int s = 0; s <= c->slabs; s++) {
-        while (r < a->nodes && a->first[r] * c->slabs < all * s) r++;
+        while (r < a->nodes && a->first[r] * c->slabs < all * s + more * (s == 1)) r++;
         c->begin[s] = s < c->slabs ? r : a->nodes;
     }
 }
@@ -63,9 +63,13 @@ static int64_t cost_of(const cut *c) {
     return cost;
 }
 
+// Of two slabs the first has what couples with the second last, alone: it is larger by as much, so that neither waits.
 static void cut_into(cut *c, int slabs) {
     c->slabs = slabs;
-    cut_slabs(c);
+    cut_slabs(c, 0);
+    find_levels(c);
+    if (slabs != 2) return;
+    cut_slabs(c, c->weight[0][1] - c->weight[0][0]);
     find_levels(c);
 }
 
