@@ -24,9 +24,11 @@ void brunt_barrier_free(brunt_barrier *b) {
     brunt_free(b->far), brunt_free(b->asked);
     brunt_near_cells_free(&b->facet_cells), brunt_near_cells_free(&b->edge_cells);
     brunt_near_list_free(&b->facets), brunt_near_list_free(&b->planes), brunt_near_list_free(&b->edges);
-    brunt_free(b->task), brunt_free(b->task_energy), brunt_free(b->task_first);
-    for (size_t i = 0; i < b->workspace_capacity / sizeof *b->workspace; i++)
-        brunt_free(b->workspace[i].feature), brunt_free(b->workspace[i].edge), brunt_free(b->workspace[i].vertex);
+    brunt_free(b->task), brunt_free(b->task_energy), brunt_free(b->task_first), brunt_free(b->task_place);
+    for (size_t i = 0; i < b->workspace_capacity / sizeof *b->workspace; i++) {
+        barrier_workspace *r = &b->workspace[i];
+        brunt_free(r->feature), brunt_free(r->edge), brunt_free(r->vertex), brunt_free(r->contact);
+    }
     brunt_free(b->workspace), brunt_free(b->contacts.contact), brunt_free(b->lagged.contact), brunt_free(b->rub);
     sets_free(&b->sets), sets_free(&b->lagged_sets);
     brunt_colours_free(&b->colours), brunt_colours_free(&b->lagged_colours);

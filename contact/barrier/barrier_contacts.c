@@ -181,28 +181,34 @@ void barrier_each_contact(const brunt_barrier *b, int64_t task, const double *u,
 typedef struct contacts_work {
     brunt_barrier *b;
     const double *u;
-    barrier_contact *list; // NULL: they are counted
+    barrier_contact *list;
 } contacts_work;
 
-typedef struct contacts_taken {
-    int64_t count;
-    barrier_contact *list;
-} contacts_taken;
-
 static void take_contact(void *context, const barrier_contact *c) {
-    contacts_taken *t = context;
-    if (t->list) t->list[t->count] = *c;
-    t->count++;
+    barrier_workspace *r = context;
+    if (BRUNT_CAPACITY_MORE(r->contact, "places of contact", &r->error)) return;
+    r->contact[r->contact_count++] = *c;
 }
 
-static void list_task(void *context, int64_t begin, int64_t end, int worker) {
+// Each thread keeps what it finds until all have their places.
+static void find_contacts(void *context, int64_t begin, int64_t end, int worker) {
     contacts_work *w = context;
+    barrier_workspace *r = &w->b->workspace[worker];
     for (int64_t i = begin; i < end; i++) {
-        int64_t *first = w->b->task_first;
-        if (w->list && first[i + 1] == first[i]) continue;
-        contacts_taken taken = {0, w->list ? w->list + first[i] : NULL};
-        barrier_each_contact(w->b, i, w->u, worker, take_contact, &taken);
-        if (!w->list) first[i + 1] = taken.count;
+        w->b->task_place[i] = (barrier_found){r->contact_count, worker};
+        barrier_each_contact(w->b, i, w->u, worker, take_contact, r);
+        w->b->task_first[i + 1] = r->contact_count - w->b->task_place[i].at;
+    }
+}
+
+static void place_contacts(void *context, int64_t begin, int64_t end, int worker) {
+    contacts_work *w = context;
+    (void)worker;
+    for (int64_t i = begin; i < end; i++) {
+        const int64_t first = w->b->task_first[i], count = w->b->task_first[i + 1] - first;
+        const barrier_found *from = &w->b->task_place[i];
+        if (count)
+            memcpy(w->list + first, w->b->workspace[from->worker].contact + from->at, (size_t)count * sizeof *w->list);
     }
 }
 
@@ -210,13 +216,16 @@ int barrier_list_contacts(brunt_barrier *b, const brunt_team *team, const double
                           brunt_error *error) {
     contacts_work work = {.b = b, .u = u};
     list->count = 0;
+    for (int t = 0; t < team->threads; t++) b->workspace[t].contact_count = 0, b->workspace[t].error.code = BRUNT_OK;
+    brunt_parallel(team->threads, b->task_count, BARRIER_TASK_GRAIN, find_contacts, &work, team->timer);
+    for (int t = 0; t < team->threads; t++)
+        if (brunt_hand_on(error, &b->workspace[t].error)) return BRUNT_FAILED;
     b->task_first[0] = 0;
-    brunt_parallel(team->threads, b->task_count, BARRIER_GRAIN, list_task, &work, team->timer);
     for (int64_t i = 0; i < b->task_count; i++) b->task_first[i + 1] += b->task_first[i];
     const int64_t count = b->task_first[b->task_count];
     if (BRUNT_CAPACITY(list->contact, (size_t)count + 1, 0, "places of contact", error)) return BRUNT_FAILED;
     list->count = count, work.list = list->contact;
-    brunt_parallel(team->threads, b->task_count, BARRIER_GRAIN, list_task, &work, team->timer);
+    brunt_parallel(team->threads, b->task_count, BARRIER_GRAIN, place_contacts, &work, team->timer);
     return BRUNT_OK;
 }
 
@@ -243,7 +252,7 @@ static void energy_task(void *context, int64_t begin, int64_t end, int worker) {
 brunt_energy_sum barrier_sum_energy(brunt_barrier *b, const brunt_team *team, const double *u) {
     contacts_work work = {.b = b, .u = u};
     brunt_energy_sum sum = {0};
-    brunt_parallel(team->threads, b->task_count, BARRIER_GRAIN, energy_task, &work, team->timer);
+    brunt_parallel(team->threads, b->task_count, BARRIER_TASK_GRAIN, energy_task, &work, team->timer);
     for (int64_t i = 0; i < b->task_count; i++)
         sum.value += b->task_energy[i][0], sum.magnitude += b->task_energy[i][1];
     if (!(sum.magnitude < INFINITY)) sum.value = INFINITY; // a gap of 0 in a corner: infinities of both signs

@@ -156,7 +156,7 @@ double barrier_limit(const brunt_barrier *b, const brunt_team *team, const doubl
     double least[BRUNT_THREAD_LIMIT], all = largest;
     limit_work work = {b, u, p, largest, least};
     for (int i = 0; i < BRUNT_THREAD_LIMIT; i++) least[i] = largest;
-    brunt_parallel(team->threads, b->task_count, BARRIER_GRAIN, limit_task, &work, team->timer);
+    brunt_parallel(team->threads, b->task_count, BARRIER_TASK_GRAIN, limit_task, &work, team->timer);
     for (int i = 0; i < BRUNT_THREAD_LIMIT; i++) all = fmin(all, least[i]);
     return all;
 }

@@ -180,8 +180,8 @@ static int make_boxes(barrier_way *w, const brunt_team *team, brunt_error *error
     w->margin = ROUNDING * fmax(size_of_vertices(b), barrier_take_reach(w, team));
     brunt_parallel(team->threads, b->facet_count, BARRIER_GRAIN, facet_boxes, w, team->timer);
     brunt_parallel(team->threads, b->edge_count, BARRIER_GRAIN, edge_boxes, w, team->timer);
-    if (brunt_near_cells_make(&b->facet_cells, b->facet_box, b->facet_count, b->dim, error) ||
-        brunt_near_cells_make(&b->edge_cells, b->edge_box, b->edge_count, b->dim, error))
+    if (brunt_near_cells_make(&b->facet_cells, team, b->facet_box, b->facet_count, b->dim, error) ||
+        brunt_near_cells_make(&b->edge_cells, team, b->edge_box, b->edge_count, b->dim, error))
         return BRUNT_FAILED;
     brunt_parallel(team->threads, b->step.particles.count, PARTICLE_GRAIN, particle_boxes, w, team->timer);
     return check_boxes(w, error);
@@ -218,6 +218,7 @@ static int make_tasks(brunt_barrier *b, int threads, brunt_error *error) {
         if (b->edges.first[i + 1] > b->edges.first[i]) b->task[b->task_count++] = -1 - i;
     if (BRUNT_CAPACITY(b->task_energy, (size_t)b->task_count + 1, 0, "points and edges near something", error) ||
         BRUNT_CAPACITY(b->task_first, (size_t)b->task_count + 1, 0, "points and edges near something", error) ||
+        BRUNT_CAPACITY(b->task_place, (size_t)b->task_count + 1, 0, "points and edges near something", error) ||
         BRUNT_CAPACITY(b->workspace, (size_t)threads, (size_t)b->workspace_count, "threads that look for contact",
                        error))
         return BRUNT_FAILED;

@@ -15,7 +15,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { BARRIER_DOFS = 3 * BRUNT_CLOSEST_PLACES, BARRIER_GRAIN = 64 };
+enum { BARRIER_DOFS = 3 * BRUNT_CLOSEST_PLACES, BARRIER_GRAIN = 64, BARRIER_TASK_GRAIN = 16 };
 
 // Of a pair or plane: what a contact needs to know.
 typedef struct barrier_law {
@@ -40,6 +40,7 @@ typedef struct barrier_contact {
 typedef struct barrier_rub {
     double slip[3]; // [m] dt times its velocity
     double part[3]; // at most of length 1
+    double energy;  // [J] where it was asked for last
 } barrier_rub;
 
 typedef struct barrier_contacts {
@@ -70,8 +71,17 @@ typedef struct barrier_workspace {
     barrier_feature *feature;
     barrier_shared *edge, *vertex;
     int64_t feature_count, edge_count, vertex_count;
-    size_t feature_capacity, edge_capacity, vertex_capacity;
+    barrier_contact *contact; // that it has found
+    int64_t contact_count;
+    size_t feature_capacity, edge_capacity, vertex_capacity, contact_capacity;
+    brunt_error error;
 } barrier_workspace;
+
+// Where the contacts of a task begin among those that a thread has found.
+typedef struct barrier_found {
+    int64_t at;
+    int worker;
+} barrier_found;
 
 typedef struct barrier_sets {
     int64_t *first, count;
@@ -124,7 +134,8 @@ struct brunt_barrier {
     int64_t task_count;
     double (*task_energy)[2];
     int64_t *task_first;
-    size_t task_capacity, task_energy_capacity, task_first_capacity;
+    barrier_found *task_place;
+    size_t task_capacity, task_energy_capacity, task_first_capacity, task_place_capacity;
     barrier_workspace *workspace;
     int32_t workspace_count;
     size_t workspace_capacity;

@@ -82,7 +82,7 @@ void barrier_slip_gradient(const brunt_barrier *b, const barrier_contact *c, con
 
 barrier_rub barrier_slip_begin(const brunt_barrier *b, const barrier_contact *c, const double *u) {
     const slip_law s = slip_at(b, c, u);
-    barrier_rub rub;
+    barrier_rub rub = {.energy = 0};
     for (int k = 0; k < 3; k++) rub.slip[k] = s.y[k], rub.part[k] = s.ratio * s.y[k];
     return rub;
 }

@@ -1,6 +1,8 @@
 // The two terms: the barrier, and friction with what it was at the last lag.
 #include "contact/barrier/barrier_parts.h"
 
+enum { AT_ONCE = 1024 }; // contacts whose forces are kept at a time
+
 // ---------------------------------------------------------------------------------------------------- barrier
 
 // All pairs that are near, as if they touched: what may couple on the way.
@@ -45,22 +47,43 @@ static bool list_at(brunt_barrier *b, const brunt_team *team, const double *u) {
     return !b->unsaid.code;
 }
 
-// Adds to g the forces of a list: of friction, which follow the slips at u, or of the barrier as it was listed.
-static void add_forces(const brunt_barrier *b, const barrier_contacts *list, bool friction, const double *u,
-                       double *g) {
-    for (int64_t i = 0; i < list->count; i++) {
-        double local[BARRIER_DOFS];
-        if (friction)
-            barrier_slip_gradient(b, &list->contact[i], u, local);
+typedef struct force_work {
+    brunt_barrier *b;
+    const barrier_contacts *list;
+    const double *u;
+    bool friction;
+    int64_t first; // of the contacts whose forces there is room for
+    double (*local)[BARRIER_DOFS];
+} force_work;
+
+static void take_forces(void *context, int64_t begin, int64_t end, int worker) {
+    const force_work *w = context;
+    (void)worker;
+    for (int64_t i = begin; i < end; i++) {
+        const barrier_contact *c = &w->list->contact[w->first + i];
+        if (w->friction)
+            barrier_slip_gradient(w->b, c, w->u, w->local[i]);
         else
-            barrier_contact_gradient(b, &list->contact[i], local);
-        barrier_add_gradient(b, &list->contact[i], local, g);
+            barrier_contact_gradient(w->b, c, w->local[i]);
+    }
+}
+
+// Adds to g the forces of a list, in its order: of friction, which follow the slips at u, or of the barrier as it was
+// listed.
+static void add_forces(force_work *w, const brunt_team *team, double *g) {
+    double room[AT_ONCE][BARRIER_DOFS];
+    w->local = room;
+    for (w->first = 0; w->first < w->list->count; w->first += AT_ONCE) {
+        const int64_t count = w->list->count - w->first < AT_ONCE ? w->list->count - w->first : AT_ONCE;
+        brunt_parallel(team->threads, count, BARRIER_TASK_GRAIN, take_forces, w, team->timer);
+        for (int64_t i = 0; i < count; i++) barrier_add_gradient(w->b, &w->list->contact[w->first + i], room[i], g);
     }
 }
 
 static void term_gradient(void *self, const brunt_team *team, const double *u, double *g) {
     brunt_barrier *b = self;
-    if (list_at(b, team, u)) add_forces(b, &b->contacts, false, u, g);
+    force_work work = {.b = b, .list = &b->contacts, .u = u};
+    if (list_at(b, team, u)) add_forces(&work, team, g);
 }
 
 static brunt_stencils term_stencils(void *self) {
@@ -118,26 +141,45 @@ int brunt_barrier_lag(brunt_barrier *b, const brunt_team *team, const double *u,
     return barrier_make_sets(b, list, &b->lagged_sets, error);
 }
 
+typedef struct slip_work {
+    brunt_barrier *b;
+    const double *u;
+} slip_work;
+
+static void follow_slips(void *context, int64_t begin, int64_t end, int worker) {
+    const slip_work *w = context;
+    (void)worker;
+    for (int64_t i = begin; i < end; i++) barrier_slip_follow(w->b, &w->b->lagged.contact[i], w->u, &w->b->rub[i]);
+}
+
 static int friction_look(void *self, const brunt_team *team, const double *u, const double *p, brunt_error *error) {
-    const brunt_barrier *b = self;
-    (void)team;
-    for (int64_t i = 0; i < b->lagged.count && !p; i++) barrier_slip_follow(b, &b->lagged.contact[i], u, &b->rub[i]);
+    brunt_barrier *b = self;
+    slip_work work = {b, u};
+    if (!p) brunt_parallel(team->threads, b->lagged.count, BARRIER_GRAIN, follow_slips, &work, team->timer);
     return brunt_hand_on(error, &b->unsaid);
 }
 
+static void take_slip_energies(void *context, int64_t begin, int64_t end, int worker) {
+    const slip_work *w = context;
+    (void)worker;
+    for (int64_t i = begin; i < end; i++)
+        w->b->rub[i].energy = barrier_slip_energy(w->b, &w->b->lagged.contact[i], w->u);
+}
+
 static brunt_energy_sum friction_energy(void *self, const brunt_team *team, const double *u) {
-    const brunt_barrier *b = self;
+    brunt_barrier *b = self;
     brunt_energy_sum sum = {0};
-    (void)team;
-    for (int64_t i = 0; i < b->lagged.count; i++) sum.value += barrier_slip_energy(b, &b->lagged.contact[i], u);
+    slip_work work = {b, u};
+    brunt_parallel(team->threads, b->lagged.count, BARRIER_GRAIN, take_slip_energies, &work, team->timer);
+    for (int64_t i = 0; i < b->lagged.count; i++) sum.value += b->rub[i].energy;
     sum.magnitude = sum.value;
     return sum;
 }
 
 static void friction_gradient(void *self, const brunt_team *team, const double *u, double *g) {
-    const brunt_barrier *b = self;
-    (void)team;
-    add_forces(b, &b->lagged, true, u, g);
+    brunt_barrier *b = self;
+    force_work work = {.b = b, .list = &b->lagged, .u = u, .friction = true};
+    add_forces(&work, team, g);
 }
 
 static brunt_stencils friction_stencils(void *self) {

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { ENTRIES = 32, CELLS = 8, SPARE = 4096, QUERIES = 64 };
+enum { ENTRIES = 32, CELLS = 8, SPARE = 4096, QUERIES = 64, PARTS = 64 };
 
 static int32_t cell_of(const brunt_near_cells *c, double x, int k) {
     const double i = floor((x - c->low[k]) / c->cell);
@@ -31,27 +31,67 @@ static int64_t cells_in(const cell_range *r) {
     return n;
 }
 
-// Cells of the mean box's size: larger ones where they, or the entries in them, would be many more than the items.
-static int64_t choose_cells(brunt_near_cells *c) {
-    double *high = c->high, mean = 0, span = 0;
-    for (int k = 0; k < 3; k++) c->n[k] = 1, c->low[k] = high[k] = 0;
-    for (int k = 0; k < c->dim; k++) {
-        c->low[k] = INFINITY, high[k] = -INFINITY;
-        for (int32_t i = 0; i < c->count; i++) {
-            c->low[k] = fmin(c->low[k], c->box[i].low[k]), high[k] = fmax(high[k], c->box[i].high[k]);
-            mean += (c->box[i].high[k] - c->box[i].low[k]) / c->dim / c->count;
-        }
-        span = fmax(span, high[k] - c->low[k]);
+typedef struct cells_work {
+    brunt_near_cells *c;
+    int parts; // of the items
+    bool fill; // else entries are counted
+    double low[PARTS][3], high[PARTS][3], mean[PARTS];
+    int64_t entries[PARTS];
+} cells_work;
+
+static int32_t part_begin(const cells_work *w, int64_t part) {
+    return (int32_t)((int64_t)w->c->count * part / w->parts);
+}
+
+static void take_bounds(void *context, int64_t begin, int64_t end, int worker) {
+    cells_work *w = context;
+    (void)worker;
+    for (int64_t part = begin; part < end; part++) {
+        double *low = w->low[part], *high = w->high[part], mean = 0;
+        for (int k = 0; k < 3; k++) low[k] = INFINITY, high[k] = -INFINITY;
+        for (int32_t i = part_begin(w, part); i < part_begin(w, part + 1); i++)
+            for (int k = 0; k < w->c->dim; k++) {
+                const double from = w->c->box[i].low[k], to = w->c->box[i].high[k];
+                if (from < low[k]) low[k] = from;
+                if (to > high[k]) high[k] = to;
+                mean += to - from;
+            }
+        w->mean[part] = mean;
     }
+}
+
+static void count_entries(void *context, int64_t begin, int64_t end, int worker) {
+    cells_work *w = context;
+    (void)worker;
+    for (int64_t part = begin; part < end; part++) {
+        w->entries[part] = 0;
+        for (int32_t i = part_begin(w, part); i < part_begin(w, part + 1); i++) {
+            const cell_range r = range_of(w->c, &w->c->box[i]);
+            w->entries[part] += cells_in(&r);
+        }
+    }
+}
+
+// Cells of the mean box's size: larger ones where they, or the entries in them, would be many more than the items.
+static int64_t choose_cells(cells_work *w, const brunt_team *team) {
+    brunt_near_cells *c = w->c;
+    double mean = 0, span = 0;
+    w->parts = PARTS;
+    brunt_parallel(team->threads, w->parts, 1, take_bounds, w, team->timer);
+    for (int k = 0; k < 3; k++) {
+        c->n[k] = 1, c->low[k] = k < c->dim ? INFINITY : 0, c->high[k] = k < c->dim ? -INFINITY : 0;
+        for (int part = 0; part < w->parts && k < c->dim; part++)
+            c->low[k] = fmin(c->low[k], w->low[part][k]), c->high[k] = fmax(c->high[k], w->high[part][k]);
+        span = fmax(span, c->high[k] - c->low[k]);
+    }
+    for (int part = 0; part < w->parts; part++) mean += w->mean[part] / c->dim / c->count;
     c->cell = fmax(fmax(mean, span / 1024), 1e-300);
     for (;; c->cell *= 2) {
         int64_t cells = 1, entries = 0;
-        for (int k = 0; k < c->dim; k++) cells *= c->n[k] = (int32_t)((high[k] - c->low[k]) / c->cell) + 1;
+        for (int k = 0; k < c->dim; k++) cells *= c->n[k] = (int32_t)((c->high[k] - c->low[k]) / c->cell) + 1;
         if (cells > CELLS * (int64_t)c->count + SPARE) continue;
-        for (int32_t i = 0; i < c->count; i++) {
-            const cell_range r = range_of(c, &c->box[i]);
-            entries += cells_in(&r);
-        }
+        brunt_parallel(team->threads, w->parts, 1, count_entries, w, team->timer);
+        for (int part = 0; part < w->parts; part++) entries += w->entries[part];
         if (entries <= ENTRIES * (int64_t)c->count + SPARE || cells == 1) return entries;
     }
 }
@@ -60,35 +100,57 @@ static int64_t cell_index(const brunt_near_cells *c, int32_t i, int32_t j, int32
     return ((int64_t)k * c->n[1] + j) * c->n[0] + i;
 }
 
-int brunt_near_cells_make(brunt_near_cells *c, const brunt_near_box *box, int32_t count, int dim, brunt_error *error) {
-    c->dim = dim, c->count = count, c->box = box;
-    if (count == 0) return BRUNT_OK;
-    const int64_t entries = choose_cells(c), cells = (int64_t)c->n[0] * c->n[1] * c->n[2];
-    if (BRUNT_CAPACITY(c->first, (size_t)cells + 1, 0, "cells of what may be in contact", error) ||
-        BRUNT_CAPACITY(c->item, (size_t)entries, 0, "items in cells of what may be in contact", error))
-        return BRUNT_FAILED;
-    memset(c->first, 0, ((size_t)cells + 1) * sizeof *c->first);
-    for (int fill = 0; fill < 2; fill++) {
-        for (int32_t b = count - 1; b >= 0; b--) { // downwards, since entries are filled from their ends
-            const cell_range r = range_of(c, &box[b]);
+// A part's items into their cells, where those of earlier parts end; or how many it has in each.
+static void fill_cells(void *context, int64_t begin, int64_t end, int worker) {
+    const cells_work *w = context;
+    brunt_near_cells *c = w->c;
+    (void)worker;
+    for (int64_t part = begin; part < end; part++) {
+        int32_t *next = c->next + part * c->n[0] * c->n[1] * c->n[2];
+        for (int32_t b = part_begin(w, part); b < part_begin(w, part + 1); b++) {
+            const cell_range r = range_of(c, &c->box[b]);
             for (int32_t k = r.low[2]; k <= r.high[2]; k++)
                 for (int32_t j = r.low[1]; j <= r.high[1]; j++)
                     for (int32_t i = r.low[0]; i <= r.high[0]; i++) {
-                        int64_t *at = &c->first[cell_index(c, i, j, k)];
-                        if (fill)
-                            c->item[--*at] = b;
-                        else
-                            ++*at;
+                        const int64_t cell = cell_index(c, i, j, k);
+                        if (w->fill) c->item[c->first[cell] + next[cell]] = b;
+                        next[cell]++;
                     }
         }
-        if (!fill)
-            for (int64_t i = 1; i <= cells; i++) c->first[i] += c->first[i - 1];
     }
+}
+
+int brunt_near_cells_make(brunt_near_cells *c, const brunt_team *team, const brunt_near_box *box, int32_t count,
+                          int dim, brunt_error *error) {
+    cells_work work = {.c = c};
+    c->dim = dim, c->count = count, c->box = box;
+    if (count == 0) return BRUNT_OK;
+    const int64_t entries = choose_cells(&work, team), cells = (int64_t)c->n[0] * c->n[1] * c->n[2];
+    work.parts = team->threads < PARTS ? team->threads : PARTS;
+    const size_t counts = (size_t)(cells * work.parts);
+    if (BRUNT_CAPACITY(c->first, (size_t)cells + 1, 0, "cells of what may be in contact", error) ||
+        BRUNT_CAPACITY(c->next, counts, 0, "cells of what may be in contact", error) ||
+        BRUNT_CAPACITY(c->item, (size_t)entries, 0, "items in cells of what may be in contact", error))
+        return BRUNT_FAILED;
+    memset(c->next, 0, counts * sizeof *c->next);
+    brunt_parallel_each(team->threads, work.parts, fill_cells, &work, team->timer);
+    c->first[0] = 0;
+    for (int64_t i = 0; i < cells; i++) {
+        int32_t before = 0;
+        for (int part = 0; part < work.parts; part++) {
+            int32_t *at = &c->next[part * cells + i];
+            const int32_t own = *at;
+            *at = before, before += own;
+        }
+        c->first[i + 1] = c->first[i] + before;
+    }
+    work.fill = true;
+    brunt_parallel_each(team->threads, work.parts, fill_cells, &work, team->timer);
     return BRUNT_OK;
 }
 
 void brunt_near_cells_free(brunt_near_cells *c) {
-    brunt_free(c->first), brunt_free(c->item);
+    brunt_free(c->first), brunt_free(c->item), brunt_free(c->next);
     *c = (brunt_near_cells){0};
 }
 

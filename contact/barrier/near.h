@@ -18,8 +18,8 @@ typedef struct brunt_near_cells {
     int32_t count;
     const brunt_near_box *box; // of the items; the caller's
     int64_t *first;            // items of cell c: item[first[c]] .. item[first[c + 1] - 1], ascending
-    int32_t *item;
-    size_t first_capacity, item_capacity;
+    int32_t *item, *next;      // (of each thread and cell, while they are filled: how many items it has)
+    size_t first_capacity, item_capacity, next_capacity;
 } brunt_near_cells;
 
 typedef struct brunt_near_list {
@@ -30,8 +30,8 @@ typedef struct brunt_near_list {
 } brunt_near_list;
 
 // Boxes are finite. BRUNT_OK, or BRUNT_FAILED: out of memory.
-int brunt_near_cells_make(brunt_near_cells *cells, const brunt_near_box *box, int32_t count, int dim,
-                          brunt_error *error);
+int brunt_near_cells_make(brunt_near_cells *cells, const brunt_team *team, const brunt_near_box *box, int32_t count,
+                          int dim, brunt_error *error);
 void brunt_near_cells_free(brunt_near_cells *cells);
 
 // Items whose box shares a point with `box` and that `wanted` takes for this query: their count, and themselves unless

@@ -342,8 +342,8 @@ START_TEST(search_finds_what_all_pairs_show) {
         const int dim = 2 + round % 2, items = draw_whole(&state, ITEM_LIMIT), count = draw_whole(&state, ITEM_LIMIT);
         draw_boxes(&state, dim, items, round % 4 == 0 ? 1e3 : 0.5, item);
         draw_boxes(&state, dim, count, 2, query);
-        ck_assert_int_eq(brunt_near_cells_make(&cells, item, items, dim, NULL), 0);
         const brunt_team team = {1 + round % 3, NULL};
+        ck_assert_int_eq(brunt_near_cells_make(&cells, &team, item, items, dim, NULL), 0);
         const queries q = {&cells, query};
         brunt_near_queries all = {.count = count, .find = found_by, .context = &q};
         if (round % 2) all.asked = asked;
