@@ -13,6 +13,8 @@
 #include "grid/bspline.h"
 #include "materials/material.h"
 
+static const double CREEP = 1e-5; // of the slowest wave speed: the slip speed by default
+
 // ------------------------------------------------------------------------------------------ stiffness and distance
 
 // [Pa] Young's modulus, or of what has none that of its waves.
@@ -250,7 +252,7 @@ static int make_barrier(brunt_implicit_contact *c, brunt_world *world, const bru
     for (int b = 0; b < world->bodies.count; b++) meets = meets || c->met[b];
     if (!meets) return BRUNT_OK;
     c->stiffness = def->contact.stiffness;
-    c->slip_speed = def->contact.slip_speed > 0 ? def->contact.slip_speed : 1e-3 * slowest_wave(&world->bodies);
+    c->slip_speed = def->contact.slip_speed > 0 ? def->contact.slip_speed : CREEP * slowest_wave(&world->bodies);
     c->distance = contact_distance(c, &world->bodies, &def->contact);
     fill_planes(c, world, def);
     if (!(c->barrier = brunt_barrier_make(error))) return BRUNT_FAILED;

@@ -67,7 +67,7 @@ END_TEST
 START_TEST(says_how_contact_is) {
     small_expect("check small.yaml --quick", 0, "  contact.distance 0.005 m, contact.stiffness 1e+05 Pa\n");
     small_expect("check small.yaml --quick", 0,
-                 "contact.slip_speed 0.03669 m/s, 0.001 of the slowest wave speed: what");
+                 "contact.slip_speed 0.0003669 m/s, 1e-05 of the slowest wave speed: what");
     ck_assert_int_eq(small_shell("grep -q 'barriers push' output"), 1);
     ck_assert_int_eq(small_shell("grep -q 'solver pcg: some' output"), 0);
     small_expect("check small.yaml --quick --set contact.friction=0 --set contact.distance='80 mm'", 0,
