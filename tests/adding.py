@@ -24,7 +24,7 @@ KINDS = ["material", "element", "contact method", "contact method at nodes", "co
 ROWS = {
     "contact method": ("engine/include/brunt/definition.h", r"#define BRUNT_CONTACT_METHODS\(X\)", "BRUNT_CONTACT_", ["contact/methods/"]),
     "form of augury": ("engine/include/brunt/definition.h", r"#define BRUNT_AUGURY_FORMS\(X\)", "BRUNT_AUGURY_", ["contact/methods/list.c"]),
-    "group action": ("engine/include/brunt/boundary_group.h", r"typedef enum brunt_group_action \{", "BRUNT_GROUP_",
+    "group action": ("engine/include/brunt/boundary_group.h", r"#define BRUNT_GROUP_ACTIONS\(X\)", "BRUNT_GROUP_",
                      ["engine/boundary/group_actions.c", "io/scene/boundary_group.c"]),
 }
 
@@ -33,7 +33,7 @@ def named_outside():
     """(kind, "file:line") of code that names one of a kind outside its rows"""
     for kind, (header, start, prefix, rows) in ROWS.items():
         list_of = re.search(start + r"(.*?)\n(?!    )", (ROOT / header).read_text(), re.S).group(1)
-        names = set(re.findall(rf"X\((\w+),|\b{prefix}(\w+)", list_of))
+        names = set(re.findall(rf"X\((\w+)[,)]|\b{prefix}(\w+)", list_of))
         name = re.compile(prefix + "(" + "|".join(a or b for a, b in names if a != "NONE") + r")\b")
         for folder in ("contact", "engine", "io", "materials"):
             for path in sorted((ROOT / folder).rglob("*.[ch]")):

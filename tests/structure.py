@@ -47,7 +47,7 @@ ELSEWHERE = [
     (r"^contact/|^engine/world/surfaces", r"(\w+_)?scatter(_\w+)?", "what contact gives to nodes, not particles to the grid"),
     (r"^(engine|contact)/", r"reach|\w+_(reach|REACH)", "a field of particles: columns of output have its name"),
     (r"^engine/(geometry/fill|world/definition_check|include/brunt/body)", r"(\w+_)?rings(_\w+)?|\w+_RINGS", "particles in rings: a word of scenes"),
-    (r"^(engine|io|materials)/", r"actions?|ACTIONS|posix_\w+|\w+_action", "of a group, of failure: keys of scenes; of POSIX"),
+    (r"^(engine|io|materials)/", r"actions?|ACTIONS|BRUNT_GROUP_ACTIONS|posix_\w+|\w+_action", "of a group, of failure: keys of scenes; of POSIX"),
     (r"^engine/", r"(\w+_)?drag(_\w+)?", "of damping"),
     (r"^(engine|io|contact)/", r"room", "how much a text or an array takes, of a function's own"),
     (r"", r"(\w+_)?places?(_\w+)?|\w+_PLACES?", "an index in a list; `place` of scenes"),

@@ -34,3 +34,6 @@ const brunt_group_row brunt_group_rows[] = {
         {.push = brunt_gas_push, .start = brunt_gas_start, .gas = true, .refusal = BRUNT_EXPLICIT_ONLY, .key = ".gas"},
 };
 const int brunt_group_row_count = BRUNT_COUNT(brunt_group_rows);
+
+#define ONE(name) +1
+_Static_assert(BRUNT_COUNT(brunt_group_rows) == BRUNT_GROUP_ACTIONS(ONE), "a row for each action");

@@ -1,4 +1,5 @@
 // Groups of nodes of a scene that are held, moved or loaded.
+#include "base/array.h"
 #include "io/scene/scene_boundary.h"
 
 #include <math.h>
@@ -48,26 +49,34 @@ static void fill_value(scene_reader *reader, const scene_node *value, brunt_grou
     for (int c = 0; c < (value->components ? 3 : 1); c++) group->value[c] = value->value[c];
 }
 
-// What can be done to a group of nodes: the key that says so, and what it means.
+// What can be done to a group of nodes: the key that says so, the action, and what its value means.
+// clang-format off
+#define ACTIONS(X) \
+    X("fix", VELOCITY, fill_fixed) \
+    X("velocity", VELOCITY, fill_motion) \
+    X("displacement", DISPLACEMENT, fill_motion) \
+    X("rotation", ROTATION, fill_rotation) \
+    X("traction", TRACTION, fill_value) \
+    X("pressure", PRESSURE, fill_value) \
+    X("gas", GAS, check_gas)
+// clang-format on
+#define ROW(key, action, fill) {key, BRUNT_GROUP_##action, fill},
 static const struct group_action {
     const char *key;
     brunt_group_action action;
     void (*fill)(scene_reader *reader, const scene_node *value, brunt_group_def *group);
-} actions[] = {{"fix", BRUNT_GROUP_VELOCITY, fill_fixed},
-               {"velocity", BRUNT_GROUP_VELOCITY, fill_motion},
-               {"displacement", BRUNT_GROUP_DISPLACEMENT, fill_motion},
-               {"rotation", BRUNT_GROUP_ROTATION, fill_rotation},
-               {"traction", BRUNT_GROUP_TRACTION, fill_value},
-               {"pressure", BRUNT_GROUP_PRESSURE, fill_value},
-               {"gas", BRUNT_GROUP_GAS, check_gas}};
-enum { ACTIONS = sizeof actions / sizeof *actions };
+} actions[] = {ACTIONS(ROW)};
+
+#define KEY_OF(key, action, fill) | 1u << BRUNT_GROUP_##action
+#define BIT_OF(action) | 1u << BRUNT_GROUP_##action
+_Static_assert((0u ACTIONS(KEY_OF)) == (0u BRUNT_GROUP_ACTIONS(BIT_OF)), "a key for each action");
 
 static void fill_action(scene_reader *reader, const scene_node *node, brunt_group_def *group) {
     const struct group_action *action = NULL;
     int count = 0;
     char names[200] = "";
-    BRUNT_LIST_NAMES(names, ACTIONS, actions[i].key);
-    for (size_t i = 0; i < ACTIONS; i++)
+    BRUNT_LIST_NAMES(names, BRUNT_COUNT(actions), actions[i].key);
+    for (size_t i = 0; i < BRUNT_COUNT(actions); i++)
         if (brunt_tree_child(node, actions[i].key)) action = &actions[i], count++;
     if (count != 1) {
         brunt_tree_complain(reader->tree, node, "exactly one of %s is wanted, %d are given", names, count);

@@ -9,15 +9,22 @@
 extern "C" {
 #endif
 
-// Nodes of a finite-element body that are held, moved or loaded.
-typedef enum brunt_group_action {
-    BRUNT_GROUP_VELOCITY,     // components of `value` times the table are the velocity [m/s]; fixed: value 0
-    BRUNT_GROUP_DISPLACEMENT, // ... are the displacement since the start [m]
-    BRUNT_GROUP_ROTATION,     // the displacement since the start is that of a turn by `rotation` times the table
-    BRUNT_GROUP_TRACTION,     // value [Pa] times the table acts on the undeformed area of the group's faces
-    BRUNT_GROUP_PRESSURE,     // value[0] [Pa] times the table acts against the outward normal of the deformed faces
-    BRUNT_GROUP_GAS // the pressure of gas that the group's faces enclose, less that outside, acts along their normal
-} brunt_group_action;
+// Nodes of a finite-element body that are held, moved or loaded. Velocity: components of `value` times the table are
+// the velocity [m/s]; fixed: value 0. Displacement: they are the displacement since the start [m]. Rotation: the
+// displacement since the start is that of a turn by `rotation` times the table. Traction: value [Pa] times the table
+// acts on the undeformed area of the group's faces. Pressure: value[0] [Pa] times the table acts against the outward
+// normal of the deformed faces. Gas: the pressure of gas that the group's faces enclose, less that outside, acts along
+// their normal.
+#define BRUNT_GROUP_ACTIONS(X)                                                                                         \
+    X(VELOCITY)                                                                                                        \
+    X(DISPLACEMENT)                                                                                                    \
+    X(ROTATION)                                                                                                        \
+    X(TRACTION)                                                                                                        \
+    X(PRESSURE)                                                                                                        \
+    X(GAS)
+#define BRUNT_GROUP_VALUE(name) BRUNT_GROUP_##name,
+typedef enum brunt_group_action { BRUNT_GROUP_ACTIONS(BRUNT_GROUP_VALUE) } brunt_group_action;
+#undef BRUNT_GROUP_VALUE
 // A turn about an axis, right-handed.
 typedef struct brunt_rotation_def {
     double angle;             // [rad]
