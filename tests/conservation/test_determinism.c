@@ -273,6 +273,33 @@ START_TEST(no_allocation_in_a_step) {
 }
 END_TEST
 
+// The same of meshes, which meet by augury, or by barriers in implicit steps.
+static brunt_world_def resting_meshes(int dimension, bool implicit) {
+    brunt_world_def def = resting(dimension);
+    def.cell = 0;
+    def.contact.method = implicit ? BRUNT_CONTACT_BARRIER : BRUNT_CONTACT_AUGURY;
+    for (int k = 0; k < 2; k++) {
+        brunt_body_def *b = &def.bodies[k];
+        b->method = BRUNT_FEM, b->element = dimension == 2 ? BRUNT_QUAD4 : BRUNT_HEX8, b->size = 0.25;
+        if (implicit) b->shape.min[1] += 0.005;
+    }
+    if (implicit) def.scheme = BRUNT_IMPLICIT, def.step = 1e-2, def.contact.distance = 0.01;
+    return def;
+}
+
+START_TEST(no_allocation_in_a_step_of_meshes) {
+    const bool implicit = _i / 2;
+    brunt_world_def def = resting_meshes(2 + _i % 2, implicit);
+    if (sizeof(real) != sizeof(double) && implicit) return;
+    brunt_world *world = world_take(&def);
+    double calls = allocations_per_step(world, implicit ? 50 : 400, implicit ? 50 : 200);
+    printf("  meshes at rest, %dD, %s: %g allocations a step\n", 2 + _i % 2, implicit ? "implicit" : "explicit", calls);
+    ck_assert_double_ne(world_pair(world, 0).impulse[1], 0);
+    ck_assert_double_eq(calls, 0);
+    brunt_world_destroy(world);
+}
+END_TEST
+
 // A body that goes through many blocks: arrays may grow, but by half of their size each time, so seldom; and what is
 // live stays within what one place needs.
 START_TEST(few_allocations_on_the_move) {
@@ -332,6 +359,7 @@ int main(void) {
     tcase_add_loop_test(bits, restored_knows_how_fast_bodies_are, 0, FLOORS);
     tcase_add_test(bits, nothing_passes_a_plane_in_a_step_that_finds_new_blocks);
     tcase_add_loop_test(memory, no_allocation_in_a_step, 0, 2);
+    tcase_add_loop_test(memory, no_allocation_in_a_step_of_meshes, 0, 4);
     tcase_add_loop_test(memory, few_allocations_on_the_move, 0, 2);
     tcase_add_loop_test(memory, nothing_is_left, 0, 2);
     return suite_main(suite);
