@@ -10,7 +10,7 @@
 #include "io/file/atomic_file.h"
 #include "io/file/hdf5_file.h"
 
-enum { FORMAT = 2, BLOCK = 1 << 17 }; // BLOCK: numbers at a time
+enum { FORMAT = 2, BLOCK = 1 << 17, FEW_LINES = 64 }; // BLOCK: numbers at a time
 
 // "body.rod.mass" -> "/body/rod/mass"
 static void dataset_name(const char *column_name, char out[COLUMN_NAME + 1]) {
@@ -19,21 +19,21 @@ static void dataset_name(const char *column_name, char out[COLUMN_NAME + 1]) {
         if (*c == '.') *c = '/';
 }
 
-static bool make_columns(const brunt_history *h, hid_t file, int64_t chunk) {
-    bool ok = brunt_hdf5_put_text(file, "title", h->title) && brunt_hdf5_put_text(file, "version", BRUNT_VERSION) &&
-              brunt_hdf5_put_integer(file, "run", (long long)h->run) &&
-              brunt_hdf5_put_text(file, "force", "mean over the interval since the line before");
-    for (int32_t c = 0; c < h->column_count && ok; c++) {
-        char name[COLUMN_NAME + 1];
-        dataset_name(h->columns[c].name, name);
-        hid_t set = brunt_hdf5_make(file, name, H5T_IEEE_F64LE, (hsize_t)h->rows, (hsize_t)chunk);
-        ok = set >= 0 && brunt_hdf5_put_text(set, "unit", h->columns[c].unit);
-        if (set >= 0) H5Dclose(set);
-    }
-    return ok;
+static bool put_texts(const brunt_history *h, hid_t file) {
+    return brunt_hdf5_put_text(file, "title", h->title) && brunt_hdf5_put_text(file, "version", BRUNT_VERSION) &&
+           brunt_hdf5_put_integer(file, "run", (long long)h->run) &&
+           brunt_hdf5_put_text(file, "force", "mean over the interval since the line before");
 }
 
-// Lines [first, first + count), which lie one after the other in `lines`, to their columns.
+static hid_t make_column(const brunt_history *h, hid_t file, int32_t c, const char *name, int64_t chunk) {
+    hid_t set = brunt_hdf5_make(file, name, H5T_IEEE_F64LE, (hsize_t)h->rows, (hsize_t)chunk);
+    if (set < 0 || brunt_hdf5_put_text(set, "unit", h->columns[c].unit)) return set;
+    H5Dclose(set);
+    return H5I_INVALID_HID;
+}
+
+// Lines [first, first + count), which lie one after the other in `lines`, to their columns. The first of them make the
+// columns, of which a chunk holds as many lines.
 static bool put_lines(const brunt_history *h, hid_t file, int64_t first, int64_t count, const double *lines,
                       double *values) {
     bool ok = true;
@@ -41,31 +41,34 @@ static bool put_lines(const brunt_history *h, hid_t file, int64_t first, int64_t
         char name[COLUMN_NAME + 1];
         dataset_name(h->columns[c].name, name);
         for (int64_t row = 0; row < count; row++) values[row] = lines[h->column_count * row + c];
-        hid_t set = H5Dopen2(file, name, H5P_DEFAULT);
-        ok = set >= 0 && brunt_hdf5_write_part(set, H5T_NATIVE_DOUBLE, first, count, values);
+        hid_t set = first ? H5Dopen2(file, name, H5P_DEFAULT) : make_column(h, file, c, name, count ? count : 1);
+        ok = set >= 0 && (!count || brunt_hdf5_write_part(set, H5T_NATIVE_DOUBLE, first, count, values));
         if (set >= 0) H5Dclose(set);
     }
     return ok;
 }
 
-// A block of lines at a time: no more of them is in memory.
+// Lines that are put at once: all, or no more than are to be in memory; of many columns some all the same, as all
+// columns are opened for each block of lines.
+static int64_t lines_at_once(const brunt_history *h) {
+    const int64_t fitting = BLOCK / h->column_count, most = fitting > FEW_LINES ? fitting : FEW_LINES;
+    return h->rows < 1 ? 1 : h->rows < most ? h->rows : most;
+}
+
 static int put_all(const brunt_history *h, hid_t file, const char *path, brunt_error *error) {
-    const int64_t most = BLOCK / h->column_count > 0 ? BLOCK / h->column_count : 1, block = h->rows < 1      ? 1
-                                                                                            : h->rows < most ? h->rows
-                                                                                                             : most;
+    const int64_t block = lines_at_once(h);
     double *lines = brunt_alloc(sizeof *lines * (size_t)(block * (h->column_count + 1)));
     line_reader r = {0};
     int status = lines ? brunt_history_open_lines(&r, h, brunt_history_lines_path(h), error)
                        : brunt_fail(error, BRUNT_FAILED, "out of memory while writing %s", path);
-    if (!status && !make_columns(h, file, block))
-        status = brunt_fail(error, BRUNT_IO_ERROR, "%s: HDF5 could not write the file", path);
-    for (int64_t first = 0; first < h->rows && !status; first += block) {
+    bool ok = status || put_texts(h, file);
+    for (int64_t first = 0; ok && !status && (first == 0 || first < h->rows); first += block) {
         const int64_t count = h->rows - first < block ? h->rows - first : block;
         for (int64_t row = 0; row < count && !status; row++)
             status = brunt_history_next_line(&r, NULL, lines + h->column_count * row, error);
-        if (!status && !put_lines(h, file, first, count, lines, lines + block * h->column_count))
-            status = brunt_fail(error, BRUNT_IO_ERROR, "%s: HDF5 could not write the file", path);
+        ok = status || put_lines(h, file, first, count, lines, lines + block * h->column_count);
     }
+    if (!ok) status = brunt_fail(error, BRUNT_IO_ERROR, "%s: HDF5 could not write the file", path);
     brunt_history_close_lines(&r);
     brunt_free(lines);
     return status;
