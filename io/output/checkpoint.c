@@ -179,7 +179,8 @@ static void remove_solution(struct fy_document *document, struct fy_node *root) 
 // The scene less what may change between the legs of a run, as block YAML; NULL when it is not YAML. Freed with
 // free().
 static char *comparable(const char *text) {
-    struct fy_parse_cfg quiet = {.flags = FYPCF_QUIET};
+    // Keys are not compared with each other: the text was written by this program, or has been read as a scene.
+    struct fy_parse_cfg quiet = {.flags = FYPCF_QUIET | FYPCF_ALLOW_DUPLICATE_KEYS};
     struct fy_document *document = fy_document_build_from_string(&quiet, text, FY_NT);
     struct fy_node *root = document ? fy_document_root(document) : NULL;
     char *out = NULL;

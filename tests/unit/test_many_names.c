@@ -3,6 +3,7 @@
 // What scenes of many bodies cost in comparisons of names, which do not depend on what else the machine does: four
 // times the bodies take some four times as many, while they are read, made into a world, and written about.
 #include "body/bodies.h"
+#include "io/output/checkpoint.h"
 #include "io/output/history.h"
 #include "io/output/measures.h"
 #include "io/output/positions.h"
@@ -12,6 +13,7 @@
 
 #include <dlfcn.h>
 #include <hdf5.h>
+#include <libfyaml.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -37,6 +39,12 @@ hid_t H5Dopen2(hid_t file, const char *name, hid_t access) {
     memcpy(&open_it, &found, sizeof open_it);
     opened++;
     return open_it(file, name, access);
+}
+
+// Of keys, by libfyaml.
+bool fy_node_compare(struct fy_node *a, struct fy_node *b) {
+    comparisons++;
+    return fy_node_compare_user(a, b, NULL, NULL, NULL, NULL);
 }
 
 // Squares of points and of an element in turns, apart, each of a material of its own; those of points are held by
@@ -77,10 +85,10 @@ static char *text_of(int count) {
     return text;
 }
 
-enum { READ, MADE, LISTED, SAMPLED, FETCHED, STATED, FOUND, STAGES };
-static const char *const stages[STAGES] = {"reading",          "making the world",  "listing columns",
-                                           "lines of history", "reading them back", "blocks of state",
-                                           "finding bodies"};
+enum { READ, MADE, LISTED, SAMPLED, FETCHED, STATED, IDENTIFIED, FOUND, STAGES };
+static const char *const stages[STAGES] = {"reading",           "making the world",  "listing columns",
+                                           "lines of history",  "reading them back", "blocks of state",
+                                           "identity of a run", "finding bodies"};
 
 static void take(int64_t *cost) {
     *cost = comparisons;
@@ -145,6 +153,8 @@ static void cost_of(int count, int64_t cost[STAGES]) {
     take(&cost[FETCHED]);
     look_at_state(world);
     take(&cost[STATED]);
+    ck_assert_uint_ne(brunt_checkpoint_identity(text, 0), brunt_checkpoint_identity("brunt: 1\n", 0));
+    take(&cost[IDENTIFIED]);
     for (int i = 0; i < count; i++) ck_assert_int_eq(brunt_find_body(world, scene.world.bodies[i].name), i);
     ck_assert_int_eq(brunt_find_body(world, "b"), BRUNT_NONE);
     take(&cost[FOUND]);
