@@ -22,12 +22,10 @@ static int symmetry_of(const brunt_unknowns *u, const brunt_world *world, int i,
     int count = 0;
     for (int m = 0; m < world->boundaries.symmetry_count; m++) {
         const brunt_symmetry_plane *symmetry_plane = &world->boundaries.symmetry[m];
-        bool acts = false;
-        for (int k = u->tie[i]; k < world->bodies.mpm_count && !acts; k++)
-            acts =
-                u->tie[k] == u->tie[i] && brunt_boundary_acts_on(&world->boundaries.boundary[symmetry_plane->boundary],
-                                                                 world->bodies.mpm[k].index);
-        if (acts) symmetry[count++] = *symmetry_plane;
+        int k, end;
+        brunt_bodies_points(&world->bodies, world->boundaries.boundary[symmetry_plane->boundary].body, &k, &end);
+        const bool all = end - k == world->bodies.mpm_count, one = k < end && u->tie[k] == u->tie[i];
+        if (all || one) symmetry[count++] = *symmetry_plane;
     }
     return count;
 }
