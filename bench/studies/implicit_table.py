@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # Where the time of an implicit step goes, by size, length of the step, solver and threads: runs a soft block that sags on a floor,
-# of material points and of elements, and writes bench/studies/implicit_table.md.
+# of material points and of elements, and two halves of one that meet, and writes bench/studies/implicit_table.md.
 #
 #   python3 bench/studies/implicit_table.py [-a] [-o FILE] [-m NODES] [-t THREADS] [-l SECONDS] [-p PATTERN] [BRUNT]
 #
@@ -31,37 +31,60 @@ grid: {{cell: {cell} m}}
 materials:
   soft: {{model: neo-hookean, density: 1000 kg/m^3, E: 1 MPa, nu: 0.3}}
 bodies:
-  block:
-    material: soft
-    shape: {{box: {{min: {low}, max: {high}}}}}
-    {method}
-boundaries:
+{bodies}boundaries:
   - {{name: floor, plane: {{point: {low}, normal: {up}}}, condition: stick}}
 loads: {{gravity: {down}}}
 output: {{every: 1000 s}}
 """
 
+BODY = """  {name}:
+    material: soft
+    shape: {{box: {{min: {low}, max: {high}}}}}
+    {method}
+"""
+GAP = 0.002  # [m] between halves that meet at 1 m/s, within their first step
+
 POINTS = "method: mpm\n    particles_per_cell: {}"
 MESH = "method: fem\n    element: {}\n    size: {} m"
+HALVES = " in contact"
 MODELS = {
     "points 2D": (2, POINTS.format(4), (32, 100, 220, 440)),
     "tri3": (2, MESH.format("tri3", CELL), (32, 100, 220, 440)),
     "points 3D": (3, POINTS.format(8), (8, 16, 25, 37)),
     "tet4": (3, MESH.format("tet4", CELL), (10, 18, 27, 38)),
+    "quad4": (2, MESH.format("quad4", CELL), (100, 220)),
+    "hex8": (3, MESH.format("hex8", CELL), (18, 27)),
+    "tri3 in contact": (2, MESH.format("tri3", CELL), (100, 220)),
+    "quad4 in contact": (2, MESH.format("quad4", CELL), (100, 220)),
+    "tet4 in contact": (3, MESH.format("tet4", CELL), (18, 24)),
+    "hex8 in contact": (3, MESH.format("hex8", CELL), (18, 24)),
 }
+FITTED = ("points 2D", "tri3", "points 3D", "tet4")  # by every solver and step; of the others pcg at c dt/h = 10
 BLOCKS = {"points 2D": 25, "tri3": 7, "points 3D": 125, "tet4": 15}  # that a node couples with, within
 PASSES = ("evaluate", "matrix", "solve", "limit", "search")
 SOLVERS = ("direct", "pcg", "matrix-free")
 
 
-def scene(dim, method, side, courant, solver):
+def corner(dim, value, last):
+    return "[" + ", ".join(["%.9g" % value] * (dim - 1) + ["%.9g" % last]) + "]"
+
+
+def bodies_of(dim, method, length, halves):
+    if not halves:
+        return BODY.format(name="block", low=corner(dim, 0, 0), high=corner(dim, length, length), method=method)
+    falls = method + "\n    velocity: " + corner(dim, 0, -1)
+    return (BODY.format(name="lower", low=corner(dim, 0, 0), high=corner(dim, length, length / 2), method=method) +
+            BODY.format(name="upper", low=corner(dim, 0, length / 2 + GAP), high=corner(dim, length, length + GAP), method=falls) +
+            "contact: {method: barrier, friction: 0.3}\n")
+
+
+def scene(model, side, courant, solver):
+    dim, method, _ = MODELS[model]
     step = courant * CELL / WAVE
-    length = side * CELL
-    vector = lambda value, last: "[" + ", ".join([value] * (dim - 1) + [last]) + "]"
     return SCENE.format(
-        dim=dim, end=STEPS * step * 1.0001, step=step, solver=solver, cell=CELL, method=method,
-        low="[" + ", ".join(["0"] * dim) + "]", high="[" + ", ".join(["%.9g" % length] * dim) + "]",
-        up=vector("0", "1"), down=vector("0", "-1"))
+        dim=dim, end=STEPS * step * 1.0001, step=step, solver=solver, cell=CELL,
+        bodies=bodies_of(dim, method, side * CELL, model.endswith(HALVES)),
+        low=corner(dim, 0, 0), up=corner(dim, 0, 1), down=corner(dim, 0, -1))
 
 
 def expected(model, nodes):
@@ -129,22 +152,31 @@ def number(text):
 
 
 def cheapest(rows):
-    """By body, size and step: the solver whose passes `matrix` and `solve` take least; and what two threads are worth."""
+    """By body, size and step: the solver whose passes `matrix` and `solve` take least."""
     lines = ["", "## The cheaper solver", "", "Passes `matrix` and `solve` on one thread [ms an iteration]; by how much the cheapest is cheaper than the",
-             "next; memory of the process [MB]; a step of one thread over one of two.", "",
-             "| body | nodes | c dt/h | " + " | ".join(SOLVERS) + " | cheapest | " + " | ".join("MB, " + s for s in SOLVERS) +
-             " | two threads, pcg | matrix-free |", "|---" * (6 + 2 * len(SOLVERS)) + "|"]
+             "next; memory of the process [MB].", "",
+             "| body | nodes | c dt/h | " + " | ".join(SOLVERS) + " | cheapest | " + " | ".join("MB, " + s for s in SOLVERS) + " |",
+             "|---" * 10 + "|"]
     for key in dict.fromkeys(tuple(r[:3]) for r in rows):
         own = {(r[3], r[4]): r for r in rows if tuple(r[:3]) == key}
         times = {s: float(own[s, "1"][8]) + float(own[s, "1"][9]) for s in SOLVERS if (s, "1") in own}
         if len(times) < 2:
             continue
         best, next_one = sorted(times, key=times.get)[:2]
-        gain = {s: float(own[s, "1"][12]) / float(own[s, "2"][12]) for s in SOLVERS if (s, "1") in own and (s, "2") in own}
         lines.append("| " + " | ".join(list(key) + [number(times.get(s)) for s in SOLVERS] +
                      ["%s by %.2g" % (best, times[next_one] / times[best])] +
-                     [own[s, "1"][13] if (s, "1") in own else "" for s in SOLVERS] +
-                     [number(gain.get("pcg")), number(gain.get("matrix-free"))]) + " |")
+                     [own[s, "1"][13] if (s, "1") in own else "" for s in SOLVERS]) + " |")
+    return "\n".join(lines) + "\n"
+
+
+def gains(rows):
+    """By body, size, step and solver: a step of one thread over one of two."""
+    lines = ["", "## Two threads", "", "A step of one thread over one of two.", "",
+             "| body | nodes | c dt/h | pcg | matrix-free |", "|---" * 5 + "|"]
+    steps = {tuple(r[:5]): float(r[12]) for r in rows}
+    for key in dict.fromkeys(tuple(r[:3]) for r in rows if r[4] == "2"):
+        gain = [steps[(*key, s, "1")] / steps[(*key, s, "2")] if (*key, s, "2") in steps else None for s in ("pcg", "matrix-free")]
+        lines.append("| " + " | ".join([*key, *(number(g) for g in gain)]) + " |")
     return "\n".join(lines) + "\n"
 
 
@@ -155,7 +187,7 @@ def place(row):
 def write(path, rows, end=""):
     rows = sorted(rows, key=place)
     with open(path, "w", encoding="utf-8") as file:
-        file.write(HEAD + "".join("| " + " | ".join(r) + " |\n" for r in rows) + missing(rows) + cheapest(rows) + end)
+        file.write(HEAD + "".join("| " + " | ".join(r) + " |\n" for r in rows) + missing(rows) + cheapest(rows) + gains(rows) + end)
 
 
 def measured(path):
@@ -200,15 +232,16 @@ def law_of(rows, dim):
 
 def fit(rows):
     """The constants of engine/linear/choose.c."""
-    pcg = [r for r in rows if r[3] == "pcg" and r[4] == "1"]
-    direct = [r for r in rows if r[3] == "direct" and r[4] == "1"]
-    if {r[0] for r in pcg} != set(MODELS) or {r[0] for r in direct} != set(MODELS):
+    pcg = [r for r in rows if r[0] in FITTED and r[3] == "pcg" and r[4] == "1"]
+    direct = [r for r in rows if r[0] in FITTED and r[3] == "direct" and r[4] == "1"]
+    if {r[0] for r in pcg} != set(FITTED) or {r[0] for r in direct} != set(FITTED):
         return ""
     lines = ["", "## What estimates go by", "",
              "Fitted to the rows of one thread, n nodes of b blocks (%s) in d dimensions:" %
              ", ".join("%s %d" % item for item in BLOCKS.items()), "",
              "| body | iterations of conjugate gradients: 1 + the lesser of |", "|---|---|"]
-    for model, (dim, *_) in MODELS.items():
+    for model in FITTED:
+        dim = MODELS[model][0]
         law = law_of([r for r in pcg if r[0] == model], dim)
         lines.append("| %s | %.2g c dt/h and %.2g n^(1/d), 1 over the root of the sum of 1/square |" % (model, *law))
     terms, seconds = [], []
@@ -238,7 +271,7 @@ def auto(brunt, rows):
         if "direct" not in seconds or "pcg" not in seconds:
             continue
         said = call(brunt, scenes[key].replace("solver: pcg", "solver: auto"), "check")
-        one, a, two, b = re.search(r"solver \w+: (\w+): some (\S+) s an iteration, (\w+) (\S+) s", said).groups()
+        one, a, two, b = re.search(r"solver (\w+): some (\S+) s an iteration, (\w+) (\S+) s", said).groups()
         estimate = {one: float(a), two: float(b)}
         losses.append(seconds[one] / min(seconds["direct"], seconds["pcg"]))
         lines.append("| %s | %.2g | %.2g | %s | %.2g |" % (" | ".join(key), estimate["direct"] / seconds["direct"],
@@ -250,7 +283,7 @@ def auto(brunt, rows):
 def missing(rows):
     """Direct solutions that were left out."""
     have = {(r[0], r[1]) for r in rows if r[3] == "direct"}
-    sizes = {(r[0], r[1]) for r in rows} - have
+    sizes = {(r[0], r[1]) for r in rows if r[0] in FITTED} - have
     texts = ["%s, %s nodes (%.2g s a factor)" % (model, nodes, expected(model, int(nodes)))
              for model, nodes in sorted(sizes, key=lambda k: (list(MODELS).index(k[0]), int(k[1])))]
     return "\nNo direct solution, by what it is expected to take: " + "; ".join(texts) + ".\n" if texts else ""
@@ -259,13 +292,16 @@ def missing(rows):
 def plan(most, limit):
     """Model, nodes, c dt/h, solver, threads, scene: sizes from small to large."""
     for size in range(4):
-        for model, (dim, method, sides) in MODELS.items():
-            nodes = (sides[size] + (3 if "points" in model else 1)) ** dim
-            for courant in (1, 10, 100, 1000) if nodes < SMALL else (10, 100):
+        for model, (dim, _, sides) in MODELS.items():
+            if size >= len(sides):
+                continue
+            fitted, layers = model in FITTED, 2 if model.endswith(HALVES) else 1
+            nodes = (sides[size] + (3 if "points" in model else 1)) ** (dim - 1) * (sides[size] + (3 if "points" in model else layers))
+            for courant in ((1, 10, 100, 1000) if nodes < SMALL else (10, 100)) if fitted else (10,):
                 for solver, threads in (("pcg", 1), ("pcg", 2), ("matrix-free", 1), ("matrix-free", 2), ("direct", 1)):
                     too_long = solver == "direct" and expected(model, nodes) > limit
-                    if nodes <= most and not too_long and (threads == 1 or nodes > SMALL):
-                        yield model, nodes, courant, solver, threads, scene(dim, method, sides[size], courant, solver)
+                    if nodes <= most and not too_long and (threads == 1 or nodes > SMALL) and (fitted or solver == "pcg"):
+                        yield model, nodes, courant, solver, threads, scene(model, sides[size], courant, solver)
 
 
 def main():
