@@ -115,7 +115,7 @@ int brunt_boundary_surfaces_make(brunt_boundary_surfaces *surfaces, const brunt_
 void brunt_boundary_surfaces_free(brunt_boundary_surfaces *surfaces) {
     for (int k = 0; k < surfaces->count; k++) {
         brunt_boundary_surface *s = &surfaces->surface[k];
-        brunt_free(s->def.table.points), brunt_free(s->particle), brunt_free(s->first), brunt_free(s->tangent);
+        brunt_free(s->def.table.points), brunt_free(s->particle), brunt_free(s->first);
         brunt_free(s->key), brunt_free(s->cell_first), brunt_free(s->cell_particle), brunt_free(s->traction);
     }
     brunt_free(surfaces->surface), brunt_free(surfaces->frame);
@@ -127,7 +127,7 @@ size_t brunt_boundary_surfaces_bytes(const brunt_boundary_surfaces *surfaces) {
     for (int k = 0; k < surfaces->count; k++) {
         const brunt_boundary_surface *s = &surfaces->surface[k];
         bytes += (size_t)s->particle_count * (sizeof *s->particle + sizeof *s->key + 2 * sizeof(int32_t)) +
-                 (size_t)s->pieces * (sizeof *s->tangent + (size_t)s->bodies * 3 * sizeof *s->traction);
+                 (size_t)s->pieces * (size_t)s->bodies * 3 * sizeof *s->traction;
     }
     return bytes;
 }
@@ -141,7 +141,7 @@ int brunt_boundary_surface_rows(const brunt_boundary_surface *s, int dim) {
 void brunt_boundary_surface_direction(const brunt_boundary_surface *s, const brunt_boundary_particle *b, int row,
                                       double out[3]) {
     const bool sticks = s->def.condition == BRUNT_STICK;
-    const double *direction = row == 0 ? b->normal : s->tangent[b->piece][row - 1];
+    const double *direction = row == 0 ? b->normal : b->tangent[row - 1];
     for (int a = 0; a < 3; a++) out[a] = sticks ? a == row : direction[a];
 }
 

@@ -11,6 +11,7 @@
 
 typedef struct brunt_boundary_particle {
     double x[3], normal[3]; // [m] at the start; [-], of length 1
+    double tangent[2][3];   // [-] across the normal and each other; the second of surfaces only
     double weight;          // [m^2] its part of the boundary, in plane strain [m]
     int32_t piece;
 } brunt_boundary_particle;
@@ -19,11 +20,10 @@ typedef struct brunt_boundary_surface {
     brunt_boundary_surface_def def; // without points and facets, with a table of its own
     brunt_boundary *boundary;       // its name, and where its impulses are recorded
     brunt_boundary_particle *particle;
-    int32_t particle_count, pieces; // particles of a piece follow each other
-    int32_t *first;                 // pieces + 1: of its particles
-    double (*tangent)[2][3];        // of each piece: [-] two directions across its normal, the second of a surface
-    double low[3], high[3], cell;   // [m] box around the particles; of the grid
-    uint64_t *key;                  // the cells that have particles, ascending
+    int32_t particle_count, pieces;             // particles of a piece follow each other
+    int32_t *first;                             // pieces + 1: of its particles
+    double low[3], high[3], cell;               // [m] box around the particles; of the grid
+    uint64_t *key;                              // the cells that have particles, ascending
     int32_t *cell_first, *cell_particle, cells; // the particles of each
     // Of each body of material points and piece: multipliers at the end of the last step [Pa], along the piece's
     // directions. They last.

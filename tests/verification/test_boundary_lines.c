@@ -302,6 +302,169 @@ END_TEST
 START_TEST(restart) { check_restart(carried(1), carried(1)); }
 END_TEST
 
+// Points in turn, of a line that may be closed.
+static brunt_boundary_surface_def *def_polyline(brunt_world_def *def, int count, bool closed,
+                                                brunt_condition condition) {
+    brunt_boundary_surface_def *s = &def->surfaces[def->surface_count++];
+    *s = brunt_boundary_surface_def_default();
+    s->condition = condition;
+    s->point = brunt_alloc((size_t)count * sizeof *s->point), s->point_count = count;
+    s->facet = brunt_alloc((size_t)count * sizeof *s->facet), s->facet_count = count - !closed;
+    for (int32_t f = 0; f < s->facet_count; f++)
+        memcpy(s->facet[f], (const int32_t[4]){f, (f + 1) % count, -1, -1}, sizeof s->facet[f]);
+    return s;
+}
+
+// A disk in a round hole that is as large, or a hexagon in one with corners: it rests in it, whatever the line lets go.
+START_TEST(hole) {
+    static const brunt_condition conditions[] = {BRUNT_STICK, BRUNT_SLIP, BRUNT_SEPARATE};
+    const int count = _i / 3 ? 64 : 6; // corners of 60 degrees
+    brunt_world_def def = lines(2, 0.1, 0.3);
+    brunt_body_def *b = def_body(&def, "disk");
+    brunt_boundary_surface_def *s = def_polyline(&def, count, true, conditions[_i % 3]);
+    if (count == 6) { // a hexagon
+        b->shape.kind = BRUNT_PRISM;
+        b->shape.points = brunt_alloc(6 * sizeof *b->shape.points), b->shape.point_count = 6;
+    } else {
+        b->shape.kind = BRUNT_SPHERE, b->shape.radius = 0.5;
+    }
+    for (int k = 0; k < count; k++) {
+        s->point[k][0] = 0.5 * cos(2 * PI * k / count), s->point[k][1] = 0.5 * sin(2 * PI * k / count);
+        if (count == 6) b->shape.points[k][0] = s->point[k][0], b->shape.points[k][1] = s->point[k][1];
+    }
+    b->particles_per_cell = 16;
+    def.gravity[0] = 0.3, def.gravity[1] = -1;
+    brunt_world *world = world_take(&def);
+    const brunt_body_sums before = world_sums(world, 0);
+    world_steps(world, 1);
+    const brunt_body_sums after = world_sums(world, 0);
+    const brunt_reaction f = world_boundary(world, 0);
+    const double mass = before.mass;
+    brunt_boundary_surface_report report;
+    brunt_boundary_surface_read(world, 0, &report);
+    const double sinks = before.centre[1] - after.centre[1], drift = world_momentum(world).linear_drift;
+    printf("  %d sides, %s: force %+.1e %+.1e, moment %.1e, sinks by %.1e, %d of %d pieces, momentum %.1e\n", count,
+           _i % 3 == 0   ? "stick"
+           : _i % 3 == 1 ? "slip"
+                         : "separate",
+           f.force[0] / mass + 0.3, f.force[1] / mass - 1, report.moment[2] / mass, sinks, report.active, report.pieces,
+           drift);
+    ck_assert_double_le(drift, 1e-10);
+    ck_assert_double_le(fabs(f.force[1] / mass - 1 + sinks / 0.01), 1e-10); // less what it is given
+    ck_assert_double_ge(sinks, 0);
+    ck_assert_double_le(sinks, 1e-2 * CELL);
+    ck_assert_double_le(fabs(report.moment[2]) / mass, 5e-3);
+    ck_assert_int_eq(report.pieces, count == 6 ? 18 : 20);
+    if (_i % 3 < 2) ck_assert_int_eq(report.active, report.pieces);
+    brunt_world_destroy(world);
+}
+END_TEST
+
+// A piece of a ring that slides in a round trough swings about its centre as a pendulum does.
+START_TEST(swings) {
+    enum { COUNT = 121 };
+    const brunt_condition condition = _i % 2 ? BRUNT_SEPARATE : BRUNT_SLIP;
+    brunt_world_def def = lines(2, 5e-3, 0.3);
+    const double R = 2, inner = 1.6, from = 0.4, half = 0.25;
+    brunt_body_def *b = def_body(&def, "sector");
+    b->shape.kind = BRUNT_INTERSECTION, b->shape.child_count = 2;
+    b->shape.children = brunt_alloc(2 * sizeof *b->shape.children);
+    b->shape.children[0] = (brunt_shape){.kind = BRUNT_TUBE, .radius = R, .inner_radius = inner};
+    b->shape.children[1] = (brunt_shape){.kind = BRUNT_PRISM, .point_count = 3};
+    b->shape.children[1].points = brunt_alloc(3 * sizeof *b->shape.points);
+    for (int k = 1; k < 3; k++) {
+        const double at = from + (k == 1 ? -half : half);
+        b->shape.children[1].points[k][0] = 3 * sin(at), b->shape.children[1].points[k][1] = -3 * cos(at);
+    }
+    b->particles_per_cell = 16;
+    brunt_boundary_surface_def *s = def_polyline(&def, COUNT, false, condition);
+    for (int k = 0; k < COUNT; k++) {
+        const double at = -1.2 + 2.4 * k / (COUNT - 1);
+        s->point[k][0] = R * sin(at), s->point[k][1] = -R * cos(at);
+    }
+    def.materials[0].strength_parameters[0] = 100 * YOUNG;
+    def.integrator = BRUNT_NEWMARK;
+    def.gravity[1] = -9.81;
+    brunt_world *world = world_take(&def);
+    const brunt_body_sums before = world_sums(world, 0);
+    const double arm = hypot(before.centre[0], before.centre[1]), square = (R * R + inner * inner) / 2;
+    const int steps = 160;
+    double angle = atan2(before.centre[0], -before.centre[1]), speed = 0;
+    for (int k = 0; k < steps * 100; k++) { // midpoint
+        const double dt = 5e-5, middle = angle + 0.5 * dt * speed;
+        speed -= dt * 9.81 * arm / square * sin(middle), angle = middle + 0.5 * dt * speed;
+    }
+    world_steps(world, steps);
+    const brunt_body_sums after = world_sums(world, 0);
+    const double found = atan2(after.centre[0], -after.centre[1]), away = hypot(after.centre[0], after.centre[1]);
+    printf("  %s: from angle %.5f to %.5f, %.5f wanted; off its circle by %+.1e cells; momentum %.1e, energy %.1e\n",
+           _i % 2 ? "separate" : "slip", from, found, angle, (away - arm) / CELL, world_momentum(world).linear_drift,
+           world_energy(world).error_relative);
+    ck_assert_double_le(fabs(found - angle), 1e-2 * (from - angle));
+    ck_assert_double_le(fabs(away - arm), 0.2 * CELL);
+    ck_assert_double_le(world_momentum(world).linear_drift, 1e-10);
+    ck_assert_double_le(fabs(world_energy(world).error_relative), 1e-6);
+    brunt_world_destroy(world);
+}
+END_TEST
+
+// Friction of a piece that bends is across its pressure at each place: tractions of its particles are of one size.
+START_TEST(rubs_round) {
+    enum { COUNT = 31 };
+    brunt_world_def def = lines(2, 5e-3, 0.3);
+    def_ball(&def, "disk", XYZ(0, 0, 0), 0.4);
+    brunt_boundary_surface_def *s = def_polyline(&def, COUNT, false, BRUNT_SEPARATE);
+    for (int k = 0; k < COUNT; k++)
+        s->point[k][0] = 0.4 * sin(PI * k / 30 - PI / 2), s->point[k][1] = -0.4 * cos(PI * k / 30 - PI / 2);
+    s->friction = 0.3;
+    def.gravity[0] = 2, def.gravity[1] = -9.81;
+    brunt_world *world = world_take(&def);
+    world_steps(world, 3);
+    const int64_t count = brunt_boundary_surface_size(world, 0);
+    double *values = malloc((size_t)count * 10 * sizeof *values), worst = 0, rubbing = 0;
+    int64_t *piece = malloc((size_t)count * sizeof *piece);
+    const brunt_boundary_surface_arrays arrays = {values, values + 3 * count, values + 6 * count, values + 9 * count,
+                                                  piece};
+    brunt_boundary_surface_particles(world, 0, &arrays);
+    for (int64_t b = 1; b < count; b++) {
+        const double *t = arrays.traction + 3 * b, *n = arrays.normal + 3 * b, size = hypot(t[0], t[1]);
+        rubbing = fmax(rubbing, fabs(t[0] * n[1] - t[1] * n[0]));
+        if (piece[b] == piece[b - 1] && size > 0) worst = fmax(worst, fabs(hypot(t[-3], t[-2]) / size - 1));
+    }
+    printf("  sizes within pieces differ by %.1e, most friction %.3g Pa\n", worst, rubbing);
+    ck_assert_double_gt(rubbing, 1);
+    ck_assert_double_le(worst, 1e-12);
+    free(values), free(piece);
+    brunt_world_destroy(world);
+}
+END_TEST
+
+// Teeth that the grid cannot tell apart hold as the line would that they are on; larger ones hold by themselves.
+START_TEST(teeth) {
+    static const double widths[] = {0.025, 0.05, 0.06, 0.068, 0.075, 0.085, 0.1};
+    enum { COUNT = 60 };
+    const double width = widths[_i / 2];
+    brunt_world_def def = lines(2, 0.1, 0.3);
+    def_box(&def, "block", XYZ(0.03, -0.25 * width, 0), XYZ(0.63, 0.6 - 0.25 * width, 0))->particles_per_cell = 16;
+    brunt_boundary_surface_def *s = def_polyline(&def, COUNT, false, _i % 2 ? BRUNT_SLIP : BRUNT_STICK);
+    for (int k = 0; k < COUNT; k++) s->point[k][0] = -0.2 + k * width, s->point[k][1] = -0.5 * width * (k % 2);
+    def.gravity[0] = 0.3, def.gravity[1] = -1;
+    brunt_world *world = world_take(&def);
+    world_steps(world, 3);
+    const brunt_reaction f = world_boundary(world, 0);
+    brunt_newton_counts n;
+    brunt_world_newton(world, &n, NULL);
+    printf("  teeth of %.2f cells, %s: force %.3f %.3f of the weight, momentum %.1e, %.1f iterations\n", width / CELL,
+           _i % 2 ? "slip" : "stick", f.force[0] / 360, f.force[1] / 360, world_momentum(world).linear_drift,
+           n.iterations / n.steps);
+    ck_assert_double_le(fabs(f.force[1] / 360 - 1), 1e-2);
+    if (_i % 2 == 0) ck_assert_double_le(fabs(f.force[0] / 360 + 0.3), 1e-2);
+    ck_assert_double_le(world_momentum(world).linear_drift, 1e-10);
+    ck_assert_double_le(n.iterations / n.steps, 4);
+    brunt_world_destroy(world);
+}
+END_TEST
+
 // Two lines in one place that go different ways: said with a name, the body's too.
 START_TEST(refuses) {
     brunt_world_def def = block(BRUNT_STICK, 1e-2, 0.02);
@@ -330,6 +493,10 @@ int main(void) {
     ADD_LOOP(hard, 8);
     ADD_LOOP(threads, 1);
     ADD_LOOP(restart, 1);
+    ADD_LOOP(hole, 6);
+    ADD_LOOP(swings, 2);
+    ADD_LOOP(rubs_round, 1);
+    ADD_LOOP(teeth, 14);
     ADD_LOOP(refuses, 1);
     return suite_main(suite);
 }
