@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/error.h"
 #include "boundary/boundary_surface.h"
 #include "grid/grid.h"
 #include "materials/material.h"
@@ -98,6 +99,7 @@ typedef struct search {
     int dim;
     point_box box;    // of the point that looks, its place as the surface was at the start
     double coming[3]; // [m] how far it goes within the step, as the surface sees it
+    int64_t *sides;   // where it is asked for on which sides points are: those in front, those behind
 } search;
 
 static void look_at(search *l, int32_t b) {
@@ -109,6 +111,10 @@ static void look_at(search *l, int32_t b) {
         return;
     }
     if (!crosses(l->dim, &l->box, d, p->normal, &enter, &leave)) return;
+    if (l->sides) {
+        l->sides[enter + leave < 0]++;
+        return;
+    }
     if (leave < -2 * BEHIND * l->box.half || enter > fmax(0, towards) + 2 * MARGIN * l->box.half) return;
     l->gap[b] = fmin(l->gap[b], fmax(enter, 0));
 }
@@ -167,4 +173,32 @@ void brunt_boundary_surface_extent(const brunt_boundary_surface *s, brunt_body *
             look_around(&l);
         }
     }
+}
+
+int brunt_boundary_surfaces_sides(const brunt_boundary_surfaces *surfaces, const brunt_bodies *bodies,
+                                  brunt_error *error) {
+    for (int k = 0; k < surfaces->count; k++)
+        for (int i = 0; i < bodies->mpm_count; i++) {
+            const brunt_boundary_surface *s = &surfaces->surface[k];
+            brunt_body *body = &bodies->mpm[i];
+            int64_t sides[2] = {0, 0};
+            double way[3];
+            brunt_boundary_surface_way(s, 0, way);
+            search l = {.s = s, .dim = body->particles.dim, .sides = sides};
+            if (s->def.condition != BRUNT_SEPARATE || !brunt_boundary_surface_acts(s, body)) continue;
+            for (int32_t b = 0; b < body->grid.block_count; b++)
+                for (int64_t n = 0; n < body->grid.blocks[b].count; n++) {
+                    l.box = box_of(body, body->grid.blocks[b].first + n, surfaces->frame[i]);
+                    for (int a = 0; a < l.dim; a++) l.box.x[a] -= way[a];
+                    look_around(&l);
+                }
+            if (sides[1] > 0 && sides[0] == 0)
+                return brunt_fail(error, BRUNT_BAD_INPUT,
+                                  "boundaries (%s): body '%s' is behind it: its normal points to what may leave it, "
+                                  "%s",
+                                  s->boundary->name, body->name,
+                                  l.dim == 2 ? "to the left of the line: turn the order of its points"
+                                             : "as the corners of its facets go round: turn them");
+        }
+    return BRUNT_OK;
 }

@@ -72,3 +72,7 @@ typedef struct brunt_boundary_extent {
 // holds the nearest so far, and INFINITY before the first body.
 void brunt_boundary_surface_extent(const brunt_boundary_surface *surface, brunt_body *body,
                                    const brunt_boundary_extent *extent, double *gap);
+// Before the first step: whether a body that a surface lets go is behind it, where nothing could hold it. BRUNT_OK, or
+// BRUNT_BAD_INPUT.
+int brunt_boundary_surfaces_sides(const brunt_boundary_surfaces *surfaces, const brunt_bodies *bodies,
+                                  brunt_error *error);

@@ -465,6 +465,22 @@ START_TEST(teeth) {
 }
 END_TEST
 
+// What a line lets go is not behind it.
+START_TEST(behind) {
+    for (int k = 0; k < 2; k++) {
+        brunt_world_def def = block(k ? BRUNT_SEPARATE : BRUNT_SLIP, 1e-2, 0.02);
+        memcpy(def.surfaces[0].facet[0], (const int32_t[4]){1, 0, -1, -1}, sizeof def.surfaces[0].facet[0]);
+        brunt_error error = {0};
+        brunt_world *world = brunt_world_create(&def, &error);
+        ck_assert_int_eq(world != NULL, !k); // a line that does not let go has no sides
+        if (k) printf("  %s\n", error.message);
+        if (k) ck_assert_ptr_nonnull(strstr(error.message, "body 'block' is behind it"));
+        if (world) brunt_world_destroy(world);
+        brunt_world_def_free(&def);
+    }
+}
+END_TEST
+
 // Two lines in one place that go different ways: said with a name, the body's too.
 START_TEST(refuses) {
     brunt_world_def def = block(BRUNT_STICK, 1e-2, 0.02);
@@ -497,6 +513,7 @@ int main(void) {
     ADD_LOOP(swings, 2);
     ADD_LOOP(rubs_round, 1);
     ADD_LOOP(teeth, 14);
+    ADD_LOOP(behind, 1);
     ADD_LOOP(refuses, 1);
     return suite_main(suite);
 }
