@@ -12,3 +12,4 @@
 // Particles, pieces and directions of a surface that has nothing but its boundary and the cell. BRUNT_OK, or what is
 // wrong.
 int brunt_boundary_cut_line(brunt_boundary_surface *s, const brunt_boundary_surface_def *def, brunt_error *error);
+int brunt_boundary_cut_facets(brunt_boundary_surface *s, const brunt_boundary_surface_def *def, brunt_error *error);

@@ -70,13 +70,13 @@ static int find_body(brunt_boundary_surface *s, const brunt_bodies *bodies, brun
                       s->boundary->name, s->def.body);
 }
 
-static int make_surface(brunt_boundary_surface *s, const brunt_boundary_surface_def *def, const brunt_bodies *bodies,
-                        brunt_error *error) {
+static int make_surface(brunt_boundary_surface *s, const brunt_boundary_surface_def *def, int dim,
+                        const brunt_bodies *bodies, brunt_error *error) {
     s->def = *def;
     s->def.point = NULL, s->def.facet = NULL;
     if (brunt_curve_copy(&s->def.table, &def->table, error)) return BRUNT_FAILED;
     int status = find_body(s, bodies, error);
-    if (!status) status = brunt_boundary_cut_line(s, def, error);
+    if (!status) status = (dim == 2 ? brunt_boundary_cut_line : brunt_boundary_cut_facets)(s, def, error);
     if (!status) status = sort_particles(s, error);
     if (status) return status;
     s->bodies = bodies->mpm_count;
@@ -106,7 +106,7 @@ int brunt_boundary_surfaces_make(brunt_boundary_surfaces *surfaces, const brunt_
         brunt_boundary_surface *s = &surfaces->surface[k];
         s->boundary = &boundaries[k];
         s->cell = def->cell;
-        const int status = make_surface(s, &def->surfaces[k], bodies, error);
+        const int status = make_surface(s, &def->surfaces[k], def->dimension, bodies, error);
         if (status) return status;
     }
     return BRUNT_OK;
@@ -173,7 +173,9 @@ void brunt_boundary_surfaces_validate(const brunt_boundary_surfaces *surfaces, c
         for (int32_t p = 0; p < s->particle_count; p++) {
             const int32_t piece = s->particle[p].piece;
             BRUNT_ASSERT(piece >= 0 && piece < s->pieces && p >= s->first[piece] && p < s->first[piece + 1]);
-            BRUNT_ASSERT(s->particle[p].weight > 0);
+            const double *n = s->particle[p].normal, *t = s->particle[p].tangent[0];
+            BRUNT_ASSERT(s->particle[p].weight > 0 && fabs(n[0] * n[0] + n[1] * n[1] + n[2] * n[2] - 1) < 1e-9);
+            BRUNT_ASSERT(fabs(n[0] * t[0] + n[1] * t[1] + n[2] * t[2]) < 1e-9);
         }
         for (int64_t i = 0; i < (int64_t)s->bodies * s->pieces * 3; i++) BRUNT_ASSERT(isfinite(s->traction[i]));
         BRUNT_ASSERT(s->active >= 0 && s->drift >= 0);

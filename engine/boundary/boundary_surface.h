@@ -1,8 +1,9 @@
 // Lines and surfaces anywhere in the grid of implicit material points, that hold what of them they reach.
 //
-// A line is cut into pieces of equal length, each with one traction [Pa], which is an unknown of the step: the mean of
-// the condition over the piece holds. Pieces are of the boundary, whatever the grid; shorter than about a cell they ask
-// for more than the grid can give. A piece sees the grid by its boundary particles.
+// A line is cut into pieces of equal length, a surface into pieces of about equal area, each with one traction [Pa],
+// which is an unknown of the step: the mean of the condition over the piece holds. Pieces are of the boundary, whatever
+// the grid; shorter than about a cell they ask for more than the grid can give. A piece sees the grid by its boundary
+// particles.
 #pragma once
 
 #include "base/messages.h"

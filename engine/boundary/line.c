@@ -26,10 +26,11 @@ static void free_all(brunt_world_def *def) {
 
 // Facets name corners that there are.
 static int check_facets(const brunt_boundary_surface_def *surface, int dim, int32_t index, brunt_error *error) {
-    if (surface->point_count < 2 || surface->facet_count < 1)
-        REFUSE("boundaries[%d]: a line wants two points at least", index);
+    if (surface->point_count < dim || surface->facet_count < 1)
+        REFUSE("boundaries[%d]: %s at least", index,
+               dim == 2 ? "a line wants two points" : "a surface wants a triangle");
     for (int32_t f = 0; f < surface->facet_count; f++)
-        for (int c = 0; c < dim; c++)
+        for (int c = 0; c < dim + (dim == 3 && surface->facet[f][3] != -1); c++)
             if (surface->facet[f][c] < 0 || surface->facet[f][c] >= surface->point_count)
                 REFUSE("boundaries[%d]: facet %d has corner %d of %d", index, f, surface->facet[f][c],
                        surface->point_count);
@@ -70,7 +71,7 @@ static const char *refusal(const brunt_world_def *def, const void *one, const ch
                    ? "newton.solver: pcg has no factor for the tractions of boundaries to follow with: direct or auto"
                    : "newton.solver: matrix-free has no factor for the tractions of boundaries to follow with: direct "
                      "or auto";
-    return def->dimension == 3 ? "surfaces in three dimensions hold nothing yet" : NULL;
+    return NULL;
 }
 
 // The rest follows with the bodies (boundary_surface.c).

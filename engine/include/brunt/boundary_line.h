@@ -17,16 +17,17 @@ typedef struct brunt_boundary_surface_def {
     char body[BRUNT_NAME_LENGTH]; // the one body it acts on; "" = all that are of material points
     double (*point)[3];           // [m] corners; owned by the definition
     int32_t point_count;          // >= 2
-    int32_t (*facet)[4];          // corners of each part, -1 where it has none: 2 of a line; owned by the definition
-    int32_t facet_count;          // >= 1
-    brunt_condition condition;    // stick, slip (in both directions, along the facets' normal) or separate
-    double friction;              // [-] >= 0, Coulomb, of separate; default 0
-    bool displacement;            // whether `value` is a displacement since the start [m], else a velocity [m/s]
-    double value[3];              // times the table; default 0
-    brunt_curve table;            // over time [s]; default 1 always; owned by the definition
-    double piece;                 // cells > 0, about: length of a piece; default 1.5
-    int32_t particles;            // > 0, a cell: boundary particles, by which a piece sees the grid; default 4
-    double about[3];              // [m] of the moments that are reported; default 0
+    int32_t (*facet)[4];       // corners of each part, -1 where it has none: 2 of a line, to whose left its normal is;
+                               // 3 or 4 of a surface, that go round its normal; owned by the definition
+    int32_t facet_count;       // >= 1
+    brunt_condition condition; // stick, slip (in both directions, along the facets' normal) or separate
+    double friction;           // [-] >= 0, Coulomb, of separate; default 0
+    bool displacement;         // whether `value` is a displacement since the start [m], else a velocity [m/s]
+    double value[3];           // times the table; default 0
+    brunt_curve table;         // over time [s]; default 1 always; owned by the definition
+    double piece;              // cells > 0, about: length of a piece, of a surface the edge of one; default 1.5
+    int32_t particles;         // > 0, a cell's length: boundary particles, by which a piece sees the grid; default 4
+    double about[3];           // [m] of the moments that are reported; default 0
 } brunt_boundary_surface_def;
 
 // With every default that is given above; what has none is not set.

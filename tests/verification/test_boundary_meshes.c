@@ -1,0 +1,456 @@
+// Labels: verification
+// Surfaces of facets anywhere in the grid that hold implicit material points: reactions, places, release, friction.
+#include <math.h>
+
+#include "tests/support/implicit_world.h"
+
+#ifdef BRUNT_FLOAT
+int main(void) { return 0; } // implicit steps want double
+#else
+
+static const double CELL = 0.1, DENSITY = 1000, YOUNG = 1e6;
+
+// How a test lies in space: turned, then shifted.
+typedef struct lie {
+    double turn[9], shift[3];
+} lie;
+
+// Turned about (1, 2, 2) / 3.
+static lie lying(double angle, double x, double y, double z) {
+    static const double axis[3] = {1.0 / 3, 2.0 / 3, 2.0 / 3};
+    lie l = {.shift = {x, y, z}};
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++) {
+            const int other = 3 - i - k;
+            const double across = i == k ? 0 : (k == (i + 1) % 3 ? -1 : 1) * axis[other % 3];
+            l.turn[3 * i + k] = cos(angle) * (i == k) + (1 - cos(angle)) * axis[i] * axis[k] + sin(angle) * across;
+        }
+    return l;
+}
+
+static void turned(const lie *l, const double v[3], double out[3]) {
+    for (int i = 0; i < 3; i++) out[i] = l->turn[3 * i] * v[0] + l->turn[3 * i + 1] * v[1] + l->turn[3 * i + 2] * v[2];
+}
+
+// Along an axis of the test.
+static double along(const lie *l, int axis, const double v[3]) {
+    return l->turn[axis] * v[0] + l->turn[3 + axis] * v[1] + l->turn[6 + axis] * v[2];
+}
+
+static brunt_world_def meshes(int order, double step, double nu) {
+    brunt_world_def def = def_begin(3, CELL);
+    def_material(&def, "neo-hookean", DENSITY, YOUNG, nu);
+    def.kernel = (brunt_kernel)order;
+    if (order == 1) def.transfer = BRUNT_PIC;
+    def.surfaces = brunt_alloc(DEF_CAPACITY * sizeof *def.surfaces);
+    go_implicit(&def, BRUNT_EULER, step);
+    def.newton.tolerance = 1e-15;
+    return def;
+}
+
+static brunt_body_def *def_block(brunt_world_def *def, const lie *l, const double low[3], const double high[3]) {
+    brunt_body_def *b = def_box(def, "block", low, high);
+    memcpy(b->place.rotation, l->turn, sizeof l->turn);
+    memcpy(b->place.translation, l->shift, sizeof l->shift);
+    return b;
+}
+
+// A rectangle from `corner` along u and v, in `parts` along each, of triangles or quadrangles; its normal is u x v.
+static brunt_boundary_surface_def *def_mesh(brunt_world_def *def, const lie *l, const double corner[3],
+                                            const double u[3], const double v[3], int parts, bool quads,
+                                            brunt_condition condition) {
+    brunt_boundary_surface_def *s = &def->surfaces[def->surface_count++];
+    *s = brunt_boundary_surface_def_default();
+    s->condition = condition;
+    s->point = brunt_alloc((size_t)(parts + 1) * (size_t)(parts + 1) * sizeof *s->point);
+    s->facet = brunt_alloc((size_t)parts * (size_t)parts * 2 * sizeof *s->facet);
+    for (int i = 0; i <= parts; i++)
+        for (int j = 0; j <= parts; j++) {
+            double x[3];
+            for (int k = 0; k < 3; k++) x[k] = corner[k] + u[k] * i / parts + v[k] * j / parts;
+            turned(l, x, s->point[s->point_count]);
+            for (int k = 0; k < 3; k++) s->point[s->point_count][k] += l->shift[k];
+            s->point_count++;
+        }
+    for (int i = 0; i < parts; i++)
+        for (int j = 0; j < parts; j++) {
+            const int32_t a = i * (parts + 1) + j, b = a + parts + 1;
+            const int32_t quad[4] = {a, b, b + 1, a + 1}, one[4] = {a, b, b + 1, -1}, other[4] = {a, b + 1, a + 1, -1};
+            memcpy(s->facet[s->facet_count++], quads ? quad : one, sizeof one);
+            if (!quads) memcpy(s->facet[s->facet_count++], other, sizeof other);
+        }
+    return s;
+}
+
+static void load_along(brunt_world_def *def, const lie *l, const double g[3]) { turned(l, g, def->gravity); }
+
+// The range of the tractions on boundary particles over their mean.
+static double uneven(const brunt_world *world, int surface) {
+    const int64_t count = brunt_boundary_surface_size(world, surface);
+    double *values = malloc((size_t)count * 10 * sizeof *values), low = INFINITY, high = 0;
+    int64_t *piece = malloc((size_t)count * sizeof *piece);
+    const brunt_boundary_surface_arrays arrays = {values, values + 3 * count, values + 6 * count, values + 9 * count,
+                                                  piece};
+    brunt_boundary_surface_particles(world, surface, &arrays);
+    for (int64_t b = 0; b < count; b++) {
+        const double *t = arrays.traction + 3 * b, size = sqrt(t[0] * t[0] + t[1] * t[1] + t[2] * t[2]);
+        low = fmin(low, size), high = fmax(high, size);
+    }
+    free(values), free(piece);
+    return high / low;
+}
+
+// A bar that hangs by a face, at any cut of the cells; the load acts along it, in one step as long as one likes.
+START_TEST(hangs) {
+    const int order = 2 - _i % 2;
+    const lie l = lying(_i / 2 % 2 ? 0.7 : 0, 0.0125 * (_i / 4), 0.03 * (_i / 4), _i / 4 == 3 ? 1e-9 : 0);
+    brunt_world_def def = meshes(order, 1e5, 0);
+    def_block(&def, &l, XYZ(0, 0, 0), XYZ(0.6, 0.3, 0.3))->particles_per_cell = 27;
+    def_mesh(&def, &l, XYZ(0, 0, 0), XYZ(0, 0.3, 0), XYZ(0, 0, 0.3), 2, _i % 3 == 0, BRUNT_STICK);
+    load_along(&def, &l, XYZ(0.3, 0, 0));
+    brunt_world *world = world_take(&def);
+    const brunt_body_sums before = world_sums(world, 0);
+    world_steps(world, 1);
+    const brunt_body_sums after = world_sums(world, 0);
+    const brunt_reaction f = world_boundary(world, 0);
+    const double weight = 0.054 * DENSITY * 0.3, exact = DENSITY * 0.3 * 0.36 / 3 / YOUNG;
+    double went[3];
+    for (int k = 0; k < 3; k++) went[k] = after.centre[k] - before.centre[k];
+    brunt_boundary_surface_report report;
+    brunt_boundary_surface_read(world, 0, &report);
+    const double *c = after.centre, *g = f.force;
+    double turn = 0;
+    for (int k = 0; k < 3; k++) {
+        const int i = (k + 1) % 3, j = (k + 2) % 3;
+        turn = fmax(turn, fabs(report.moment[k] - (c[i] * g[j] - c[j] * g[i])));
+    }
+    printf("  order %d turned %.1f: force %+.1e across %.1e, moment %.1e, centre %+.1e, traction %.4f\n", order,
+           _i / 2 % 2 ? 0.7 : 0, along(&l, 0, f.force) / weight + 1,
+           hypot(along(&l, 1, f.force), along(&l, 2, f.force)) / weight, turn / weight, along(&l, 0, went) / exact - 1,
+           uneven(world, 0));
+    ck_assert_int_eq(report.pieces, 4);
+    ck_assert_int_eq(report.active, 4);
+    ck_assert_double_le(fabs(along(&l, 0, f.force) / weight + 1), 1e-10);
+    ck_assert_double_le(hypot(along(&l, 1, f.force), along(&l, 2, f.force)) / weight, 1e-10);
+    ck_assert_double_le(turn / weight, 1e-10);
+    ck_assert_double_le(fabs(along(&l, 0, went) / exact - 1), order == 2 ? 1e-2 : 6e-2); // as the points fill cells
+    ck_assert_double_le(uneven(world, 0), 1.02);
+    brunt_world_destroy(world);
+}
+END_TEST
+
+// A block on a large plane, in a grid that lies askew to it.
+static brunt_world_def block(const lie *l, brunt_condition condition, double step, int parts) {
+    brunt_world_def def = meshes(2, step, 0.3);
+    def_block(&def, l, XYZ(0, 0, 0), XYZ(0.3, 0.4, 0.1));
+    def_mesh(&def, l, XYZ(-0.5, -0.5, 0), XYZ(3, 0, 0), XYZ(0, 1.5, 0), parts, false, condition);
+    return def;
+}
+
+static const double MASS = 12; // flat, so that it does not tip
+
+typedef struct way {
+    double of[3], momentum; // [m] of the block along the test's axes; drift of momentum
+} way;
+
+static way go(brunt_world *world, const lie *l, int steps) {
+    const brunt_body_sums before = world_sums(world, 0);
+    world_steps(world, steps);
+    const brunt_body_sums after = world_sums(world, 0);
+    double went[3];
+    for (int k = 0; k < 3; k++) went[k] = after.centre[k] - before.centre[k];
+    way w = {.momentum = world_momentum(world).linear_drift};
+    for (int k = 0; k < 3; k++) w.of[k] = along(l, k, went);
+    return w;
+}
+
+// Along a plane of triangles a block slides as if nothing were there, and presses with its weight.
+START_TEST(slides) {
+    const lie l = lying(_i / 2 ? 0.7 * _i : 0, 0.02, 0.01, 0.03);
+    const bool newmark = _i % 2;
+    brunt_world_def def = block(&l, _i / 2 == 1 ? BRUNT_SEPARATE : BRUNT_SLIP, 0.01, 3);
+    def.integrator = newmark ? BRUNT_NEWMARK : BRUNT_EULER;
+    load_along(&def, &l, XYZ(9.81 * 0.8, 0, -9.81 * 0.6));
+    brunt_world *world = world_take(&def);
+    const way w = go(world, &l, 25);
+    const brunt_reaction f = world_boundary(world, 0);
+    const double wanted = 0.5 * 9.81 * 0.8 * 0.0625 * (newmark ? 1 : 1.04), weight = MASS * 9.81 * 0.6 * 0.25;
+    printf("  %s %s: slid off by %+.1e, across %.1e %.1e cells, impulse off by %+.1e along %.1e, momentum %.1e\n",
+           _i / 2 == 1 ? "separate" : "slip", newmark ? "newmark" : "euler", w.of[0] / wanted - 1, w.of[1] / CELL,
+           w.of[2] / CELL, along(&l, 2, f.impulse) / weight - 1, along(&l, 0, f.impulse) / weight, w.momentum);
+    ck_assert_double_le(fabs(w.of[0] / wanted - 1), 1e-8);
+    ck_assert_double_le(fabs(w.of[1]), 1e-8 * CELL);
+    ck_assert_double_le(fabs(w.of[2]), 2e-2 * CELL);
+    ck_assert_double_le(fabs(along(&l, 2, f.impulse) / weight - 1), 1e-2);
+    ck_assert_double_le(fabs(along(&l, 0, f.impulse)) / weight, 1e-10);
+    ck_assert_double_le(w.momentum, 1e-10);
+    brunt_world_destroy(world);
+}
+END_TEST
+
+// A surface that carries a block along takes as much as the block is given, at every step.
+START_TEST(carries) {
+    const lie l = lying(0.7, 0.02, 0.01, 0.03);
+    brunt_world_def def = block(&l, BRUNT_STICK, 0.01, 3);
+    double v[3];
+    def.integrator = _i ? BRUNT_NEWMARK : BRUNT_EULER;
+    turned(&l, XYZ(0.3, 0.1, 0.2), v);
+    memcpy(def.surfaces[0].value, v, sizeof v);
+    def_velocity(&def.bodies[0], v[0], v[1], v[2]);
+    load_along(&def, &l, XYZ(0, 0, -1));
+    brunt_world *world = world_take(&def);
+    const way w = go(world, &l, 50);
+    const brunt_reaction f = world_boundary(world, 0);
+    const brunt_energy e = world_energy(world);
+    printf("  %s: impulse off by %+.1e, block by %+.1e %+.1e %+.1e cells, momentum %.1e, energy %.1e, work %.4f J\n",
+           _i ? "newmark" : "euler", along(&l, 2, f.impulse) / (MASS * 0.5) - 1, (w.of[0] - 0.15) / CELL,
+           (w.of[1] - 0.05) / CELL, (w.of[2] - 0.1) / CELL, w.momentum, e.error_relative, e.external_work);
+    ck_assert_double_le(fabs(along(&l, 2, f.impulse) / (MASS * 0.5) - 1), 1e-2);
+    ck_assert_double_le(fabs(w.of[0] - 0.15), 1e-3 * CELL);
+    ck_assert_double_le(fabs(w.of[1] - 0.05), 1e-3 * CELL);
+    ck_assert_double_le(fabs(w.of[2] - 0.1), 5e-3 * CELL);
+    ck_assert_double_le(w.momentum, 1e-10);
+    ck_assert_double_le(fabs(e.error_relative), 1e-6);
+    brunt_world_destroy(world);
+}
+END_TEST
+
+// Friction: a block on a slope stays below the angle of friction, and above it slides as Coulomb says.
+START_TEST(rubs) {
+    static const double friction[] = {0.9, 0.4};
+    const lie l = lying(0.7, 0.02, 0.01, 0.03);
+    const double mu = friction[_i], g[3] = {4.8, 1.4, -7.5}, pull = 5;
+    brunt_world_def def = block(&l, BRUNT_SEPARATE, _i ? 5e-3 : 0.1, 3); // what sticks comes to rest first
+    def.surfaces[0].friction = mu;
+    def.materials[0].strength_parameters[0] = 100 * YOUNG;
+    load_along(&def, &l, g);
+    brunt_world *world = world_take(&def);
+    const way w = go(world, &l, 15);
+    const brunt_reaction f = world_boundary(world, 0);
+    const brunt_body_sums s = world_sums(world, 0);
+    const double wanted = fmax(0, pull + mu * g[2]) * 0.075,
+                 speed = hypot(along(&l, 0, s.velocity), along(&l, 1, s.velocity));
+    brunt_newton_counts n;
+    brunt_world_newton(world, &n, NULL);
+    const double share = hypot(along(&l, 0, f.impulse), along(&l, 1, f.impulse)) / along(&l, 2, f.impulse),
+                 aside =
+                     (along(&l, 0, f.impulse) * g[1] - along(&l, 1, f.impulse) * g[0]) / pull / along(&l, 2, f.impulse);
+    printf("  friction %.1f: speed %.6f, %.6f wanted; force %.6f of the normal one, aside %.1e; momentum %.1e; %.1f "
+           "iterations a step\n",
+           mu, speed, wanted, share, aside, w.momentum, n.iterations / n.steps);
+    ck_assert_double_le(fabs(speed - wanted), 1e-4 * pull * 0.075);
+    ck_assert_double_le(fabs(share - fmin(mu, pull / -g[2])), 1e-4);
+    ck_assert_double_le(fabs(aside), 1e-4);
+    ck_assert_double_ge(f.friction_work, 0);
+    ck_assert_double_le(w.momentum, 1e-10);
+    ck_assert_double_le(fabs(world_energy(world).error_relative), 1e-5);
+    brunt_world_destroy(world);
+}
+END_TEST
+
+// What may leave a surface does so without being pulled; so does a body that the surface is moved away from.
+START_TEST(leaves) {
+    const lie l = lying(0.7, 0.02, 0.01, 0.03);
+    brunt_world_def def = block(&l, BRUNT_SEPARATE, 5e-3, 3);
+    if (_i)
+        turned(&l, XYZ(0, 0, -1), def.surfaces[0].value);
+    else
+        load_along(&def, &l, XYZ(0, 0, 5));
+    brunt_world *world = world_take(&def);
+    go(world, &l, 20);
+    const brunt_reaction f = world_boundary(world, 0);
+    printf("  impulse %.1e N s\n", along(&l, 2, f.impulse));
+    ck_assert_double_ge(along(&l, 2, f.impulse), -1e-12);
+    ck_assert_double_le(along(&l, 2, f.impulse), 1e-9);
+    brunt_world_destroy(world);
+}
+END_TEST
+
+// A block that comes to a surface meets it where its own particles end; until then there is no force.
+START_TEST(meets) {
+    const lie l = lying(0.35 * _i, 0.013 * _i, 0, 0.027 * _i);
+    brunt_world_def def = block(&l, _i % 2 ? BRUNT_SLIP : BRUNT_SEPARATE, 4e-3, 3);
+    double v[3], up[3];
+    turned(&l, XYZ(0, 0, -1), v), turned(&l, XYZ(0, 0, 0.06), up);
+    for (int k = 0; k < 3; k++) def.bodies[0].place.translation[k] += up[k];
+    def_velocity(&def.bodies[0], v[0], v[1], v[2]);
+    brunt_world *world = world_take(&def);
+    double first = -1;
+    for (int s = 0; s < 40 && first < 0; s++) {
+        world_steps(world, 1);
+        const brunt_reaction f = world_boundary(world, 0);
+        if (f.force[0] != 0 || f.force[1] != 0 || f.force[2] != 0) first = brunt_world_time(world);
+    }
+    printf("  %s: first force %.4f cells early\n", _i % 2 ? "slip" : "separate", (0.06 - first) / CELL);
+    ck_assert_double_ge(first, 0);
+    ck_assert_double_le(fabs(0.06 - first), 0.05 * CELL);
+    brunt_world_destroy(world);
+}
+END_TEST
+
+// A surface made of the six sides of a cube, in parts^2 quadrangles each, whose normals point inwards; drawn out to a
+// sphere unless it has teeth: then every other corner of its quadrangles is `teeth` [m] further in.
+static brunt_boundary_surface_def *def_hole(brunt_world_def *def, double radius, int parts, double teeth,
+                                            brunt_condition condition) {
+    brunt_boundary_surface_def *s = &def->surfaces[def->surface_count++];
+    *s = brunt_boundary_surface_def_default();
+    s->condition = condition;
+    s->point = brunt_alloc((size_t)(6 * parts * parts * 4) * sizeof *s->point);
+    s->facet = brunt_alloc((size_t)(6 * parts * parts) * sizeof *s->facet);
+    for (int side = 0; side < 6; side++)
+        for (int q = 0; q < parts * parts; q++) {
+            int32_t *corner = s->facet[s->facet_count++];
+            for (int k = 0; k < 4; k++) {
+                const int i = q / parts + (k == 1 || k == 2), j = q % parts + (k == 2 || k == 3);
+                const double a = tan(PI / 4 * (2.0 * i / parts - 1)), b = tan(PI / 4 * (2.0 * j / parts - 1));
+                const int n = side / 2, sign = side % 2 ? 1 : -1;
+                double x[3];
+                x[n] = sign, x[(n + 1) % 3] = sign < 0 ? a : b, x[(n + 2) % 3] = sign < 0 ? b : a;
+                const bool border = i == 0 || i == parts || j == 0 || j == parts;
+                const double size = teeth > 0 ? 1 : sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
+                for (int c = 0; c < 3; c++) x[c] *= radius / size;
+                if (!border && (i + j) % 2) x[n] -= sign * teeth;
+                int32_t at = 0; // corners of sides that meet are one
+                while (at < s->point_count && memcmp(s->point[at], x, sizeof x)) {
+                    double away = 0;
+                    for (int c = 0; c < 3; c++) away = fmax(away, fabs(s->point[at][c] - x[c]));
+                    if (away < 1e-9) break;
+                    at++;
+                }
+                if (at == s->point_count) memcpy(s->point[s->point_count++], x, sizeof x);
+                corner[k] = at;
+            }
+        }
+    return s;
+}
+
+// A ball in a round hole that is as large rests in it, whatever the surface lets go.
+START_TEST(hole) {
+    static const brunt_condition conditions[] = {BRUNT_STICK, BRUNT_SLIP, BRUNT_SEPARATE};
+    brunt_world_def def = meshes(2, 0.05, 0.3);
+    def_ball(&def, "ball", XYZ(0, 0, 0), 0.25)->particles_per_cell = 27;
+    def_hole(&def, 0.25, 5, 0, conditions[_i]);
+    def.gravity[0] = 0.3, def.gravity[1] = -1, def.gravity[2] = 0.2;
+    brunt_world *world = world_take(&def);
+    const brunt_body_sums before = world_sums(world, 0);
+    world_steps(world, 1);
+    const brunt_body_sums after = world_sums(world, 0);
+    const brunt_reaction f = world_boundary(world, 0);
+    brunt_boundary_surface_report report;
+    brunt_boundary_surface_read(world, 0, &report);
+    const double sinks = before.centre[1] - after.centre[1], size = before.mass;
+    printf("  condition %d: force %+.1e, moment %.1e %.1e %.1e, sinks by %.1e, %d of %d pieces, momentum %.1e\n", _i,
+           f.force[1] / size - 1, report.moment[0] / size, report.moment[1] / size, report.moment[2] / size, sinks,
+           report.active, report.pieces, world_momentum(world).linear_drift);
+    ck_assert_double_le(world_momentum(world).linear_drift, 1e-10);
+    ck_assert_double_ge(sinks, 0);
+    ck_assert_double_le(sinks, 1e-2 * CELL);
+    for (int k = 0; k < 3; k++) ck_assert_double_le(fabs(report.moment[k]) / size, 5e-3);
+    ck_assert_int_ge(report.pieces, 30); // of 0.785 m^2
+    ck_assert_int_le(report.pieces, 35);
+    brunt_world_destroy(world);
+}
+END_TEST
+
+// Facets that the grid cannot tell apart share pieces, whatever the edges between them.
+START_TEST(teeth) {
+    brunt_world_def def = meshes(2, 0.05, 0.3);
+    const double width = _i ? 0.04 : 0.15;
+    def_box(&def, "block", XYZ(-0.2, -0.2, -0.2), XYZ(0.2, 0.2, 0.2));
+    def_hole(&def, 0.2, _i ? 10 : 3, 0.5 * width, _i % 2 ? BRUNT_STICK : BRUNT_SLIP);
+    def.gravity[0] = 0.3, def.gravity[1] = -1, def.gravity[2] = 0.2;
+    brunt_world *world = world_take(&def);
+    world_steps(world, 2);
+    const brunt_reaction f = world_boundary(world, 0);
+    brunt_boundary_surface_report report;
+    brunt_boundary_surface_read(world, 0, &report);
+    printf("  %d of %d pieces, force %.4f of the weight, momentum %.1e\n", report.active, report.pieces,
+           f.force[1] / 64, world_momentum(world).linear_drift);
+    ck_assert_double_le(fabs(f.force[1] / 64 - 1), 2e-2);
+    ck_assert_double_le(world_momentum(world).linear_drift, 1e-10);
+    brunt_world_destroy(world);
+}
+END_TEST
+
+static brunt_world *rubbing(int threads, int parts, bool quads) {
+    const lie l = lying(0.7, 0.02, 0.01, 0.03);
+    brunt_world_def def = meshes(2, 5e-3, 0.3);
+    def_block(&def, &l, XYZ(0, 0, 0), XYZ(0.2, 0.2, 0.2));
+    def_mesh(&def, &l, XYZ(-0.3, -0.3, 0), XYZ(0.8, 0, 0), XYZ(0, 0.8, 0), parts, quads, BRUNT_SEPARATE);
+    def.surfaces[0].friction = 0.3;
+    turned(&l, XYZ(0.2, -0.1, 0), def.surfaces[0].value);
+    load_along(&def, &l, XYZ(1, 0.5, -9.81));
+    def.integrator = BRUNT_NEWMARK;
+    def.threads = threads;
+    return world_take(&def);
+}
+
+START_TEST(threads) {
+    brunt_world *world[] = {rubbing(1, 2, false), rubbing(2, 2, false), rubbing(5, 2, false)};
+    check_threads(world, 3, 4);
+}
+END_TEST
+
+START_TEST(restart) { check_restart(rubbing(1, 2, false), rubbing(1, 2, false)); }
+END_TEST
+
+// Triangles that are cut in four each, or are halves of quadrangles, are the same surface: pieces and particles are.
+START_TEST(finer) {
+    brunt_body_sums sums[3];
+    for (int k = 0; k < 3; k++) {
+        brunt_world *world = rubbing(1, k == 1 ? 4 : 2, k == 2);
+        world_steps(world, 10);
+        sums[k] = world_sums(world, 0);
+        brunt_world_destroy(world);
+    }
+    for (int k = 1; k < 3; k++) {
+        double worst = 0;
+        for (int a = 0; a < 3; a++)
+            worst = fmax(worst, fmax(fabs(sums[k].centre[a] - sums[0].centre[a]) / CELL,
+                                     fabs(sums[k].velocity[a] - sums[0].velocity[a])));
+        printf("  %s: off by %.1e\n", k == 1 ? "twice as fine" : "quadrangles", worst);
+        ck_assert_double_le(worst, 1e-8);
+    }
+}
+END_TEST
+
+// Corners go round one way, and what a surface lets go is before it.
+START_TEST(turned_over) {
+    static const char *const said[] = {"facets 1 and 2 turn against each other", "body 'block' is behind it",
+                                       "has no area", "facet 0 has corner 99 of 4"};
+    for (int k = 0; k < 4; k++) {
+        const lie l = lying(0.7, 0, 0, 0);
+        brunt_world_def def = block(&l, BRUNT_SEPARATE, 5e-3, 1);
+        brunt_error error = {0};
+        for (int32_t f = 0; f < (k == 1 ? 2 : 1); f++) {
+            int32_t *corner = def.surfaces[0].facet[f];
+            const int32_t kept = corner[1];
+            if (k < 2) corner[1] = corner[2], corner[2] = kept;
+            if (k == 2) corner[1] = corner[2];
+            if (k == 3) corner[2] = 99;
+        }
+        ck_assert_ptr_null(brunt_world_create(&def, &error));
+        printf("  %s\n", error.message);
+        ck_assert_ptr_nonnull(strstr(error.message, said[k]));
+        brunt_world_def_free(&def);
+    }
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("boundary_meshes");
+    ADD_LOOP(hangs, 16);
+    ADD_LOOP(slides, 6);
+    ADD_LOOP(carries, 2);
+    ADD_LOOP(rubs, 2);
+    ADD_LOOP(leaves, 2);
+    ADD_LOOP(meets, 8);
+    ADD_LOOP(hole, 3);
+    ADD_LOOP(teeth, 3);
+    ADD_LOOP(threads, 1);
+    ADD_LOOP(restart, 1);
+    ADD_LOOP(finer, 1);
+    ADD_LOOP(turned_over, 1);
+    return suite_main(suite);
+}
+#endif
