@@ -49,6 +49,18 @@ static void print_bodies(brunt_world *world) {
     }
 }
 
+// Lines and meshes that hold material points: into how many pieces they are cut.
+static void print_surfaces(const brunt_scene *scene, const brunt_world *world) {
+    const int32_t count = brunt_boundary_surface_count(world);
+    if (count) printf("boundaries in pieces\n");
+    for (int32_t s = 0; s < count; s++) {
+        brunt_boundary_surface_report report;
+        brunt_boundary_surface_read(world, s, &report);
+        printf("  %-20s %12d pieces of about %g cells, %lld boundary particles\n", report.name, (int)report.pieces,
+               scene->world.surfaces[s].piece, (long long)brunt_boundary_surface_size(world, s));
+    }
+}
+
 static void print_plan(brunt_world *world) {
     printf("effects\n");
     for (int32_t e = 0; e < brunt_effect_count(world); e++) {
@@ -241,6 +253,7 @@ static int check(const brunt_scene *scene, bool quick, brunt_error *error) {
         brunt_console console = {.out = stdout};
         brunt_run_warn(scene, world, &console);
         print_bodies(world);
+        print_surfaces(scene, world);
         print_plan(world);
         print_newton(scene, world);
         print_memory(world);

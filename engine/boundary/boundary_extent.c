@@ -198,7 +198,7 @@ int brunt_boundary_surfaces_sides(const brunt_boundary_surfaces *surfaces, const
                                   "%s",
                                   s->boundary->name, body->name,
                                   l.dim == 2 ? "to the left of the line: turn the order of its points"
-                                             : "as the corners of its facets go round: turn them");
+                                             : "as the corners of its facets go round: mesh.reversed turns it");
         }
     return BRUNT_OK;
 }

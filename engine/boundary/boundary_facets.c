@@ -15,11 +15,11 @@
 #include "base/memory.h"
 #include "boundary/boundary_pieces.h"
 
-static const double FINE = 1.5;           // edges of parts of triangles, of the wanted distance of particles
-static const double FULL[] = {0.9, 1.01}; // a region with this share of the rectangle around it is cut as a rectangle
-static const double SAME = 1e-6;          // pieces: places that are not told apart
-static const double PLAIN = 0.5;          // of a region's normals: their mean is its direction
-static const double SIDES = 0.1;          // of a region's border: it has sides across each other
+static const double FINE = 1.5;  // edges of parts of triangles, of the wanted distance of particles
+static const double FULL = 0.9;  // of the rectangle around a region: one that fills it is cut as a rectangle
+static const double SAME = 1e-6; // pieces: places that are not told apart
+static const double PLAIN = 0.5; // of a region's normals: their mean is its direction
+static const double SIDES = 0.1; // of a region's border: it has sides across each other
 
 typedef struct triangle {
     int32_t corner[3], facet, region;
@@ -451,7 +451,7 @@ static int32_t pieces_of(const cutter *c, const region *r) {
     extents(r, extent);
     const double full = r->area / (extent[0] * extent[1]), along = fmax(1, floor(extent[0] / c->size + SAME)),
                  across = fmax(1, floor(extent[1] / c->size + SAME));
-    const double count = full > FULL[0] && full < FULL[1] ? along * across : fmax(along, floor(r->area / room + SAME));
+    const double count = full > FULL && full < 2 - FULL ? along * across : fmax(along, floor(r->area / room + SAME));
     return (int32_t)fmin(count, r->end - r->first);
 }
 

@@ -87,7 +87,8 @@ static int fail_missing(const gmsh_file *file, const char *group, int dimension,
 typedef struct selection {
     const gmsh_file *file;
     int dimension;
-    bool membrane; // a surface in three dimensions
+    bool membrane;    // a surface in three dimensions
+    const char *what; // "sheet": it is, for messages
     bool all;
     bool *wanted; // of each physical group
     const char *name;
@@ -106,16 +107,16 @@ static int select_all(selection *s, brunt_error *error) {
             return brunt_fail(error, BRUNT_BAD_INPUT,
                               s->membrane
                                   ? "%s: has elements of dimension %d (%s): which physical group of dimension %d is "
-                                    "the sheet?"
+                                    "the %s?"
                                   : "%s: has elements of dimension %d (%s), the scene is of dimension %d",
                               file->path, gmsh_types[file->runs[r].type].dimension, gmsh_types[file->runs[r].type].name,
-                              s->dimension);
+                              s->dimension, s->what);
     if (groups <= 1) {
         s->all = true;
         return BRUNT_OK;
     }
     sentence text = {.length = 0};
-    add(&text, "%s: which physical group is the body? There are: ", file->path);
+    add(&text, "%s: which physical group is the %s? There are: ", file->path, s->what);
     list_groups(file, s->dimension, &text);
     return brunt_fail(error, BRUNT_BAD_INPUT, "%s", text.text);
 }
@@ -190,6 +191,12 @@ static int32_t number_nodes(const selection *s, int32_t *number) {
     return count;
 }
 
+// Places of the nodes that have numbers.
+static void fill_nodes(const gmsh_file *file, const int32_t *number, double (*nodes)[3]) {
+    for (int32_t n = 0; n < file->node_count; n++)
+        if (number[n] >= 0) memcpy(nodes[number[n]], file->x[n], sizeof *nodes);
+}
+
 static int fill_mesh(const selection *s, const int32_t *number, int32_t nodes, int64_t elements, brunt_mesh *mesh,
                      brunt_error *error) {
     const gmsh_file *file = s->file;
@@ -199,8 +206,7 @@ static int fill_mesh(const selection *s, const int32_t *number, int32_t nodes, i
     if (!mesh->nodes || !mesh->elements) return fail_memory(file, error);
     mesh->node_count = nodes;
     mesh->element_count = (int32_t)elements;
-    for (int32_t n = 0; n < file->node_count; n++)
-        if (number[n] >= 0) memcpy(mesh->nodes[number[n]], file->x[n], sizeof *mesh->nodes);
+    fill_nodes(file, number, mesh->nodes);
     for (int32_t r = 0; r < file->run_count; r++) {
         const gmsh_run *run = &file->runs[r];
         if (!selects(s, run)) continue;
@@ -409,7 +415,11 @@ static int read_body(const char *path, const char *group, int dimension, bool me
     *mesh = (brunt_mesh){0};
     gmsh_file file;
     int status = gmsh_file_read(path, &file, error);
-    selection s = {.file = &file, .dimension = dimension, .membrane = membrane, .name = group ? group : ""};
+    selection s = {.file = &file,
+                   .dimension = dimension,
+                   .membrane = membrane,
+                   .what = membrane ? "sheet" : "body",
+                   .name = group ? group : ""};
     if (!status) status = make_body(&s, mesh, warnings, error);
     gmsh_file_free(&file);
     return status;
@@ -426,13 +436,83 @@ int brunt_gmsh_read_membrane(const char *path, const char *group, brunt_mesh *me
     return read_body(path, group, 2, true, mesh, warnings, error);
 }
 
+// ---------------------------------------------------------------------------------------------------- facets
+
+// How many facets there are; of other elements than triangles and quadrangles, what they are.
+static int count_facets(const selection *s, int64_t *count, brunt_error *error) {
+    const char *path = s->file->path;
+    *count = 0;
+    for (int32_t r = 0; r < s->file->run_count; r++) {
+        const gmsh_run *run = &s->file->runs[r];
+        const gmsh_type *type = &gmsh_types[run->type];
+        if (!selects(s, run) || !run->count) continue;
+        if (type->nodes != 3 && type->nodes != 4)
+            return brunt_fail(error, BRUNT_BAD_INPUT, "%s: has %s: facets are 3-node triangles and 4-node quadrangles",
+                              path, type->name);
+        *count += run->count;
+    }
+    if (*count > 0 && *count <= INT32_MAX / 2) return BRUNT_OK;
+    if (*count)
+        return brunt_fail(error, BRUNT_BAD_INPUT, "%s: %lld facets, fewer than 2^30 are wanted", path,
+                          (long long)*count);
+    return s->all ? brunt_fail(error, BRUNT_BAD_INPUT, "%s: has no triangles and no quadrangles", path)
+                  : brunt_fail(error, BRUNT_BAD_INPUT, "%s: physical group '%.60s' has no triangles and no quadrangles",
+                               path, s->name);
+}
+
+static void fill_corners(const selection *s, const int32_t *number, int32_t (*corners)[4]) {
+    int32_t filled = 0;
+    for (int32_t r = 0; r < s->file->run_count; r++) {
+        const gmsh_run *run = &s->file->runs[r];
+        const int nodes = gmsh_types[run->type].nodes;
+        if (!selects(s, run)) continue;
+        for (int64_t e = 0; e < run->count; e++, filled++)
+            for (int k = 0; k < 4; k++)
+                corners[filled][k] =
+                    k < nodes ? number[s->file->element_nodes[run->first + (size_t)(e * nodes + k)]] : -1;
+    }
+}
+
+static int make_facets(selection *s, brunt_gmsh_facets *facets, brunt_error *error) {
+    const gmsh_file *file = s->file;
+    int32_t *number = brunt_alloc((size_t)file->node_count * sizeof *number + 1);
+    int64_t count;
+    s->wanted = brunt_alloc((size_t)file->physical_count + 1);
+    int status = !s->wanted || !number ? fail_memory(file, error)
+                 : *s->name            ? select_group(s, error)
+                                       : select_all(s, error);
+    if (!status) status = count_facets(s, &count, error);
+    if (!status) {
+        facets->point_count = number_nodes(s, number), facets->count = (int32_t)count;
+        facets->points = brunt_alloc((size_t)facets->point_count * sizeof *facets->points);
+        facets->corners = brunt_alloc((size_t)count * sizeof *facets->corners);
+        if (!facets->points || !facets->corners) status = fail_memory(file, error);
+    }
+    if (!status) fill_nodes(file, number, facets->points), fill_corners(s, number, facets->corners);
+    brunt_free(number), brunt_free(s->wanted);
+    return status;
+}
+
+int brunt_gmsh_read_facets(const char *path, const char *group, brunt_gmsh_facets *facets, brunt_error *error) {
+    *facets = (brunt_gmsh_facets){.count = 0};
+    gmsh_file file;
+    int status = gmsh_file_read(path, &file, error);
+    selection s = {.file = &file, .dimension = 2, .membrane = true, .what = "surface", .name = group ? group : ""};
+    if (!status) status = make_facets(&s, facets, error);
+    gmsh_file_free(&file);
+    if (!status) return BRUNT_OK;
+    brunt_free(facets->points), brunt_free(facets->corners);
+    *facets = (brunt_gmsh_facets){.count = 0};
+    return status;
+}
+
 // ---------------------------------------------------------------------------------------------------- in words
 
 static void describe_body(const gmsh_file *file, const char *name, int dimension, bool membrane, FILE *out) {
     brunt_mesh mesh = {0};
     brunt_mesh_quality q;
     brunt_error error = {0};
-    selection s = {.file = file, .dimension = dimension, .membrane = membrane, .name = name};
+    selection s = {.file = file, .dimension = dimension, .membrane = membrane, .what = "body", .name = name};
     int status = make_body(&s, &mesh, NULL, &error);
     if (!status) status = brunt_mesh_check(&mesh, &q, &error);
     if (status) {

@@ -23,6 +23,17 @@ int brunt_gmsh_read(const char *path, const char *group, int dimension, brunt_me
 // its group `surface`. A file that has solid elements as well needs the name of the physical surface.
 int brunt_gmsh_read_membrane(const char *path, const char *group, brunt_mesh *mesh, FILE *warnings, brunt_error *error);
 
+// Facets of a surface in three dimensions: those of the physical group, or of the file when there is no more than one,
+// in the order of the file and turned as they are there.
+typedef struct brunt_gmsh_facets {
+    double (*points)[3]; // [m]; of the facets only, in the order of the file
+    int32_t point_count;
+    int32_t (*corners)[4]; // of each facet; -1: a triangle has none
+    int32_t count;
+} brunt_gmsh_facets;
+// Triangles and quadrangles, for brunt_free; errors as above, after which there is nothing to free.
+int brunt_gmsh_read_facets(const char *path, const char *group, brunt_gmsh_facets *facets, brunt_error *error);
+
 // Says what is in a file: format, nodes and elements by kind, bounds, physical groups, and of each that can be a body
 // its quality. Errors as above.
 int brunt_gmsh_describe(const char *path, FILE *out, brunt_error *error);

@@ -1,5 +1,6 @@
-// Lines of a scene that hold material points.
+// Lines and meshes of a scene that hold material points.
 #include "contact/planes/condition.h"
+#include "io/mesh/gmsh.h"
 #include "io/scene/scene_boundary.h"
 
 #include <string.h>
@@ -29,14 +30,36 @@ static void fill_points(scene_reader *reader, const scene_node *line, brunt_boun
         brunt_tree_complain(reader->tree, points, "a closed line has three points at least");
 }
 
+// The facets of a surface, turned over if the scene says so.
+static void fill_mesh(scene_reader *reader, const scene_node *mesh, brunt_boundary_surface_def *def) {
+    scene_node *file = brunt_tree_child(mesh, "file");
+    const scene_node *group = brunt_tree_child(mesh, "group");
+    char name[BRUNT_NAME_LENGTH] = "", path[BRUNT_SCENE_PATH];
+    brunt_gmsh_facets facets;
+    brunt_error error = {0};
+    brunt_copy_text(reader, group, name, sizeof name);
+    if (!file || !file->good || (group && !*name) || !brunt_find_mesh(reader, file, path)) return;
+    if (brunt_gmsh_read_facets(path, name, &facets, &error)) {
+        brunt_tree_complain(reader->tree, group ? group : file, "%s", error.message);
+        return;
+    }
+    def->point = facets.points, def->point_count = facets.point_count;
+    def->facet = facets.corners, def->facet_count = facets.count;
+    for (int32_t f = 0; f < def->facet_count && brunt_real_of(mesh, "reversed", 0) != 0; f++) {
+        const int last = def->facet[f][3] < 0 ? 2 : 3;
+        const int32_t kept = def->facet[f][1];
+        def->facet[f][1] = def->facet[f][last], def->facet[f][last] = kept;
+    }
+}
+
 static void fill_condition(scene_reader *reader, const scene_node *node, brunt_boundary_surface_def *def) {
     scene_node *condition = brunt_tree_child(node, "condition");
     if (!condition) brunt_tree_complain(reader->tree, node, "'condition' is missing: one of stick, slip and separate");
     def->condition = (brunt_condition)(int)brunt_real_of(node, "condition", BRUNT_STICK);
     if (brunt_conditions[def->condition].images)
         brunt_tree_complain(reader->tree, condition,
-                            "a line is no plane of symmetry: stick, slip and separate are "
-                            "possible");
+                            "a %s is no plane of symmetry: stick, slip and separate are possible",
+                            reader->dimension == 2 ? "line" : "mesh");
     if (condition && condition->good && def->condition != BRUNT_SEPARATE)
         brunt_refuse_key(reader, node, "friction", "friction acts only with condition: separate");
     def->friction = brunt_real_of(node, "friction", 0);
@@ -47,29 +70,31 @@ static void fill_motion(scene_reader *reader, scene_node *node, brunt_boundary_s
                      *given = way ? way : velocity;
     def->displacement = way != NULL;
     if (velocity && way)
-        brunt_tree_complain_key(reader->tree, way, "velocity is given as well: one of both moves the line");
+        brunt_tree_complain_key(reader->tree, way, "velocity is given as well: one of both moves the %s",
+                                reader->dimension == 2 ? "line" : "mesh");
     if (!given) {
         brunt_refuse_key(reader, node, "table", "a table is the factor of velocity or displacement, there is neither");
         return;
     }
     if (given->free[0] || given->free[1] || given->free[2])
-        brunt_tree_complain(reader->tree, given, "`free` is for regions and groups; a line moves as a whole");
-    for (int a = 0; a < 2 && given->good; a++) def->value[a] = given->value[a];
+        brunt_tree_complain(reader->tree, given, "`free` is for regions and groups; a line or mesh moves as a whole");
+    for (int a = 0; a < reader->dimension && given->good; a++) def->value[a] = given->value[a];
     brunt_fill_table(reader, brunt_tree_child(node, "table"), &def->table);
 }
 
 void brunt_fill_surface(scene_reader *reader, scene_node *node, brunt_boundary_surface_def *def) {
-    const scene_node *line = brunt_tree_child(node, "line"), *body = brunt_tree_child(node, "body");
-    if (reader->dimension == 3) { // there is none, as has been said
+    const scene_node *line = brunt_tree_child(node, "line"), *mesh = brunt_tree_child(node, "mesh"),
+                     *shape = line ? line : mesh, *body = brunt_tree_child(node, "body");
+    if (reader->dimension != (line ? 2 : 3)) { // there is none, as has been said
         reader->scene->world.surface_count--;
         return;
     }
-    if (line->kind == SCENE_MAP) fill_points(reader, line, def);
+    if (shape->kind == SCENE_MAP) (line ? fill_points : fill_mesh)(reader, shape, def);
     fill_condition(reader, node, def);
     fill_motion(reader, node, def);
     brunt_fill_body_of(reader, node, def->body);
     if (!brunt_acts_on_particles(reader, def->body))
-        brunt_tree_complain_key(reader->tree, body ? body : line,
-                                "a line holds material points, %s of method mpm: `group` names nodes of elements",
-                                body ? "this body is not" : "no body is");
+        brunt_tree_complain_key(reader->tree, body ? body : shape,
+                                "a %s holds material points, %s of method mpm: `group` names nodes of elements",
+                                line ? "line" : "mesh", body ? "this body is not" : "no body is");
 }

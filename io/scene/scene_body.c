@@ -13,8 +13,6 @@
 #include "geometry/mesh_shape.h"
 #include "materials/prepared.h"
 
-enum { PATH_CAPACITY = 4096 };
-
 // Largest number of lattice intervals across anything: block coordinates are 32-bit.
 static const double CELL_COUNT_LIMIT = 1e9, PARTICLE_LIMIT = 2147483648.0, ELEMENT_LIMIT = 2147483648.0;
 
@@ -167,12 +165,11 @@ static void fill_particles(scene_reader *reader, scene_node *node, brunt_body_de
 
 // ---------------------------------------------------------------------------------------------------- finite elements
 
-// A path counts from the folder of the scene; the resolved scene, which lies elsewhere, has the whole path.
-static bool find_mesh(scene_reader *reader, scene_node *node, char path[PATH_CAPACITY]) {
+bool brunt_find_mesh(scene_reader *reader, scene_node *node, char path[BRUNT_SCENE_PATH]) {
     const char *source = reader->scene->source, *slash = strrchr(source, '/');
     int folder = slash && node->text[0] != '/' ? (int)(slash - source) + 1 : 0;
     struct stat status;
-    char joined[PATH_CAPACITY], *whole = NULL;
+    char joined[BRUNT_SCENE_PATH], *whole = NULL;
     int length = snprintf(joined, sizeof joined, "%.*s%s", folder, source, node->text);
     if (length < 0 || length >= (int)sizeof joined) {
         brunt_tree_complain(reader->tree, node, "the path is too long");
@@ -185,7 +182,7 @@ static bool find_mesh(scene_reader *reader, scene_node *node, char path[PATH_CAP
         brunt_tree_complain(reader->tree, node, "'%.400s' is not a file", joined);
     else if (!(whole = realpath(joined, NULL)))
         brunt_tree_complain(reader->tree, node, "the mesh file '%.400s' cannot be read: %s", joined, strerror(errno));
-    bool found = whole && snprintf(path, PATH_CAPACITY, "%s", whole) < PATH_CAPACITY;
+    bool found = whole && snprintf(path, BRUNT_SCENE_PATH, "%s", whole) < BRUNT_SCENE_PATH;
     free(whole);
     if (found) {
         char *kept = brunt_tree_text(reader->tree, path, strlen(path));
@@ -201,9 +198,9 @@ static bool read_mesh(scene_reader *reader, scene_node *node, brunt_body_def *bo
     const scene_node *group = brunt_tree_child(node, "group");
     brunt_refuse_key(reader, node, "element", "a mesh file has elements of its own");
     brunt_refuse_key(reader, node, "size", "a mesh file has elements of its own");
-    char name[BRUNT_NAME_LENGTH] = "", path[PATH_CAPACITY];
+    char name[BRUNT_NAME_LENGTH] = "", path[BRUNT_SCENE_PATH];
     brunt_copy_text(reader, group, name, sizeof name);
-    if (!mesh->good || !reader->dimension || (group && !*name) || !find_mesh(reader, mesh, path)) return false;
+    if (!mesh->good || !reader->dimension || (group && !*name) || !brunt_find_mesh(reader, mesh, path)) return false;
     brunt_error error = {0};
     int status = body->method == BRUNT_MEMBRANE
                      ? brunt_gmsh_read_membrane(path, name, &body->mesh, reader->warnings, &error)

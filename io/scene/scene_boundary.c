@@ -80,8 +80,15 @@ typedef struct boundary_reader {
     }
 BRUNT_BOUNDARY_KINDS(READER)
 
+// What holds material points is a line or a mesh.
+static void read_mesh(scene_reader *reader, scene_node *node) {
+    fill_name(reader, node, "mesh", reader->scene->world.surface_count + 1,
+              reader->scene->world.surfaces[reader->scene->world.surface_count].name);
+    read_surface(reader, node);
+}
+
 #define ROW(NAME, kind, type, word, what) {word, read_##kind},
-static const boundary_reader readers[] = {BRUNT_BOUNDARY_KINDS(ROW)};
+static const boundary_reader readers[] = {BRUNT_BOUNDARY_KINDS(ROW){"mesh", read_mesh}};
 enum { READERS = sizeof readers / sizeof *readers };
 
 // Of a kind that lists its keys. They say which number they fill; shapes and tables are read here.

@@ -64,6 +64,10 @@ void brunt_copy_text(scene_reader *reader, const scene_node *node, char *out, si
 int brunt_children_of(const scene_node *node, scene_kind kind); // 0 when it is of another kind
 // An array for as many entries as a map or list has; NULL for none, or when there is no memory.
 void *brunt_entries_for(scene_reader *reader, int count, size_t size);
+enum { BRUNT_SCENE_PATH = 4096 };
+// A path counts from the folder of the scene; the resolved scene, which lies elsewhere, has the whole path. Whether
+// there is a file to read.
+bool brunt_find_mesh(scene_reader *reader, scene_node *node, char path[BRUNT_SCENE_PATH]);
 bool brunt_nonzero(const double v[3]);
 // Says that `node` names nothing in the section `parent`, with the nearest name or all there are.
 void brunt_complain_name(scene_reader *reader, const scene_node *node, const char *what, const char *parent);

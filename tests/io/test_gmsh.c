@@ -114,6 +114,34 @@ START_TEST(bricks_of_gmsh) {
 }
 END_TEST
 
+// Facets of a surface, whatever its elements are.
+START_TEST(facets_of_gmsh) {
+    brunt_gmsh_facets facets;
+    brunt_error error = {0};
+    for (int f = 0; f < 6; f++) {
+        const char *name = f < 4 ? bricks[f] : f == 4 ? "disk_41_text.msh" : "disk_41_binary.msh";
+        ck_assert_int_eq(brunt_gmsh_read_facets(source(name), f < 4 ? "zmax" : "", &facets, &error), BRUNT_OK);
+        ck_assert_int_eq(facets.count, f < 4 ? 6 : 37);
+        ck_assert_int_eq(facets.point_count, f < 4 ? 12 : 27);
+        double area = 0;
+        for (int32_t e = 0; e < facets.count; e++)
+            for (int k = 0; k < 2; k++) { // its triangles
+                const int32_t *c = facets.corners[e];
+                ck_assert_int_eq(c[3] >= 0, f < 4);
+                if (c[1 + k] < 0 || c[2 + k] < 0) continue;
+                const double *o = facets.points[c[0]], *p = facets.points[c[1 + k]], *q = facets.points[c[2 + k]];
+                area += 0.5 * ((p[0] - o[0]) * (q[1] - o[1]) - (p[1] - o[1]) * (q[0] - o[0]));
+                ck_assert_double_eq(p[2], f < 4);
+            }
+        ck_assert_double_eq_tol(fabs(area), f < 4 ? 6 : 0.778823, 1e-6);
+        brunt_free(facets.points), brunt_free(facets.corners);
+    }
+    ck_assert_int_eq(brunt_gmsh_read_facets(source(bricks[0]), "zmid", &facets, &error), BRUNT_BAD_INPUT);
+    ck_assert_ptr_nonnull(strstr(error.message, "did you mean 'zmin'?"));
+    ck_assert_ptr_null(facets.points);
+}
+END_TEST
+
 START_TEST(disks_of_gmsh) {
     for (int f = 0; f < 2; f++) {
         brunt_mesh mesh = read_from(source(f ? "disk_41_binary.msh" : "disk_41_text.msh"), "disk", 2, NULL);
@@ -697,6 +725,7 @@ int main(void) {
     tcase_add_checked_fixture(tests, begin, end);
     tcase_add_test(tests, bricks_of_gmsh);
     tcase_add_test(tests, disks_of_gmsh);
+    tcase_add_test(tests, facets_of_gmsh);
     tcase_add_test(tests, every_kind_in_every_format);
     tcase_add_test(tests, bodies_are_physical_groups);
     tcase_add_test(tests, membranes_are_surfaces_in_space);

@@ -459,6 +459,22 @@ START_TEST(mesh_files) {
     ck_assert_int_eq(s.world.bodies[0].mesh.element_count, 1);
     ck_assert_int_eq(s.world.bodies[0].mesh.group_count, 2);
     brunt_scene_free(&s);
+    // ... and a surface that holds material points, as it is turned or the other way.
+    for (int reversed = 0; reversed < 2; reversed++) {
+        const char *surface[] = {
+            "time={end: 1, scheme: implicit, step: 0.1}", "grid={cell: 0.1}",
+            "bodies.b={method: mpm, material: m, shape: {box: {min: [0, 0, 0], max: [1, 1, 1]}}}",
+            reversed ? "boundaries=[{mesh: {file: two.msh, group: left face, reversed: true}, condition: slip}]"
+                     : "boundaries=[{mesh: {file: two.msh, group: left face}, condition: slip, velocity: [1, 2, 3]}]"};
+        ck_assert_msg(parse_file(name, scene, surface, 4, &s) == BRUNT_OK, "%s", messages);
+        const brunt_boundary_surface_def *def = &s.world.surfaces[0];
+        ck_assert(s.world.surface_count == 1 && def->facet_count == 1 && def->point_count == 3);
+        ck_assert(def->facet[0][0] == 0 && def->facet[0][1] == 1 + reversed && def->facet[0][2] == 2 - reversed);
+        ck_assert(def->facet[0][3] == -1 && def->condition == BRUNT_SLIP && !def->displacement);
+        for (int k = 0; k < 3; k++) NEAR(def->value[k], reversed ? 0 : k + 1);
+        ck_assert_str_eq(def->name, "mesh1");
+        brunt_scene_free(&s);
+    }
     const char *other = "bodies.b.group=shell";
     ck_assert_int_eq(brunt_scene_parse(scene, strlen(scene), name, &other, 1, &s, NULL), BRUNT_BAD_INPUT);
     remove(path);

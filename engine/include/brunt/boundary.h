@@ -18,7 +18,7 @@ extern "C" {
     X(PLANE, plane, brunt_plane, "plane", "a plane")                                                                   \
     X(REGION, region, brunt_region, "region", "a region")                                                              \
     X(GROUP, group, brunt_group, "group", "a group of nodes")                                                          \
-    X(LINE, surface, brunt_boundary_surface, "line", "a line")
+    X(LINE, surface, brunt_boundary_surface, "line", "a line or mesh")
 
 enum { BRUNT_BOUNDARY_NUMBERS = 16 };
 // A boundary of a kind whose keys a row in engine/boundary/KIND.c lists: numbers and vectors, in which places of
