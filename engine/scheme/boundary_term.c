@@ -7,8 +7,9 @@
 #include "linear/block_matrix.h"
 #include "scheme/boundary_rows.h"
 
-enum { SWEEP_LIMIT = 10 };
+enum { SWEEP_LIMIT = 10, SLOW_LIMIT = 30 };
 static const double EVEN = 1e-11;      // cells: how well what is held keeps its place within a step of Newton's method
+static const double SLOW = 1e-8;       // cells: what many sweeps leave of conditions that do not contradict each other
 static const double SETTLED = 1e-9;    // cells: the same of what may leave, at the end
 static const double SAME_BOUND = 1e-6; // of the greatest: bounds of friction
 
@@ -209,7 +210,9 @@ static int rows_sweep(void *term, const double *u, const double *step, double *g
         const double change = patch_sweep(r, p, u, step, multiplier);
         if (change > most) most = change, worst = p;
     }
-    if (worst < 0) return BRUNT_OK; // what is left of it is in t as it is: no force is lost
+    // What is left of it is in t as it is: no force is lost. Pieces of which little is reached go on slowly.
+    if (worst < 0 || r->swept >= SLOW_LIMIT) return BRUNT_OK;
+    if (r->swept >= SWEEP_LIMIT && most > SLOW) return never_ends(r, worst, error);
     for (int32_t p = 0; p < r->patch_count; p++) {
         double before[3], after[3], moved[3];
         brunt_boundary_patch_traction(r, p, u, before, moved);
@@ -220,8 +223,9 @@ static int rows_sweep(void *term, const double *u, const double *step, double *g
         add_forces(r, p, after, g);
     }
     r->sweeps++;
+    r->swept++;
     *changed = true;
-    return ++r->swept > SWEEP_LIMIT ? never_ends(r, worst, error) : BRUNT_OK;
+    return BRUNT_OK;
 }
 
 // Whether tractions and bounds at u are not yet those that it was found with.
