@@ -18,6 +18,7 @@
 static const double FINE = 1.5;  // edges of parts of triangles, of the wanted distance of particles
 static const double FULL = 0.9;  // of the rectangle around a region: one that fills it is cut as a rectangle
 static const double SAME = 1e-6; // pieces: places that are not told apart
+static const double FOLDS = 0.5; // cosine of the turn between facets at a corner that do not go on into each other
 static const double PLAIN = 0.5; // of a region's normals: their mean is its direction
 static const double SIDES = 0.1; // of a region's border: it has sides across each other
 
@@ -25,6 +26,7 @@ typedef struct triangle {
     int32_t corner[3], facet, region;
     double normal[3], area; // [m^2]
     double bend[3][3];      // of each edge: how the normal is other there, half way to the next one's
+    double around[3][3];    // of each corner: the mean normal of what goes on there without an edge
 } triangle;
 
 // Of a triangle, from `low` to `high` if it is forward.
@@ -178,6 +180,45 @@ static int join(cutter *c, brunt_error *error) {
     return BRUNT_OK;
 }
 
+// ------------------------------------------------------------------------------------------ normals of corners
+
+static double angle_at(const cutter *c, int32_t t, int k) {
+    const double *x = corner_of(c, t, k), *y = corner_of(c, t, (k + 1) % 3), *z = corner_of(c, t, (k + 2) % 3);
+    double a[3], b[3];
+    for (int i = 0; i < 3; i++) a[i] = y[i] - x[i], b[i] = z[i] - x[i];
+    return acos(fmax(-1, fmin(1, dot(a, b) / sqrt(dot(a, a) * dot(b, b)))));
+}
+
+static int compare_sorted(const void *a, const void *b);
+
+// Means of the normals around each corner, by the angles there, of triangles of one region that do not fold.
+static int find_corners(cutter *c, brunt_error *error) {
+    const int32_t count = 3 * c->triangles;
+    sorted *list;
+    if (BRUNT_NEW(list, count, "corners of a boundary", error)) return BRUNT_FAILED;
+    for (int32_t i = 0; i < count; i++) {
+        const triangle *t = &c->triangle[i / 3];
+        list[i] = (sorted){{t->corner[i % 3], region_of(c->triangle, i / 3)}, i};
+    }
+    qsort(list, (size_t)count, sizeof *list, compare_sorted);
+    for (int32_t first = 0, end; first < count; first = end) {
+        for (end = first; end < count && !memcmp(list[end].key, list[first].key, sizeof list->key);) end++;
+        for (int32_t i = first; i < end; i++) {
+            triangle *t = &c->triangle[list[i].particle / 3];
+            double *n = t->around[list[i].particle % 3], square = 0;
+            for (int32_t j = first; j < end; j++) {
+                const int32_t other = list[j].particle / 3;
+                const double *m = c->triangle[other].normal, weight = angle_at(c, other, list[j].particle % 3);
+                for (int k = 0; k < 3 && dot(m, t->normal) > FOLDS; k++) n[k] += weight * m[k];
+            }
+            for (int k = 0; k < 3; k++) square += n[k] * n[k];
+            for (int k = 0; k < 3; k++) n[k] /= sqrt(square);
+        }
+    }
+    brunt_free(list);
+    return BRUNT_OK;
+}
+
 // ------------------------------------------------------------------------------------------ regions
 
 // Directions of a region: its mean normal and two across it, from an axis of space; of one that turns much, of space.
@@ -302,8 +343,8 @@ static int find_regions(cutter *c, brunt_error *error) {
 
 // ------------------------------------------------------------------------------------------ particles
 
-// The normal at a place of a triangle, by its shares of the corners: where others go on without an edge, the turn is
-// spread over the distance from there to the middle, or half a piece if that is less.
+// The normal at a place of a triangle, by its shares of the corners: of one that is small beside a piece it goes evenly
+// from corner to corner; on others it turns within half a piece of the edges where they go on.
 static void normal_at(const cutter *c, int32_t t, const double share[3], double n[3]) {
     const triangle *of = &c->triangle[t];
     double length[3], round = 0, square = 0;
@@ -311,9 +352,13 @@ static void normal_at(const cutter *c, int32_t t, const double share[3], double 
         const double *a = corner_of(c, t, k), *b = corner_of(c, t, (k + 1) % 3);
         round += length[k] = hypot(hypot(b[0] - a[0], b[1] - a[1]), b[2] - a[2]);
     }
-    const double reach = fmin(2 * of->area / round, 0.5 * c->size);
-    memcpy(n, of->normal, sizeof of->normal);
-    for (int k = 0; k < 3; k++) {
+    const double inner = 2 * of->area / round, reach = 0.5 * c->size;
+    const bool small = inner < reach;
+    for (int a = 0; a < 3; a++) {
+        n[a] = of->normal[a];
+        for (int k = 0; k < 3 && small; k++) n[a] += share[k] * (of->around[k][a] - of->normal[a]);
+    }
+    for (int k = 0; k < 3 && !small; k++) {
         const double away = share[(k + 2) % 3] * 2 * of->area / length[k], near = fmax(0, 1 - away / reach);
         for (int a = 0; a < 3; a++) n[a] += near * of->bend[k][a];
     }
@@ -484,6 +529,7 @@ static int cut_all(cutter *c, brunt_error *error) {
         return BRUNT_FAILED;
     list_borders(c);
     BRUNT_TRY(join(c, error));
+    BRUNT_TRY(find_corners(c, error));
     BRUNT_TRY(find_regions(c, error));
     sort_regions(c);
     return cut_regions(c, error);
