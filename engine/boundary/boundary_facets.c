@@ -436,16 +436,30 @@ static void sort_along(cutter *c, const region *r, int32_t first, int32_t end, i
     qsort(c->order + first, (size_t)(end - first), sizeof *c->order, compare_sorted);
 }
 
-// Where the part `share` of the area ends.
+static double weight_of(const cutter *c, int32_t i) { return c->particle[c->order[i].particle].weight; }
+
+// Where so much of the area ends.
 static int32_t divide(const cutter *c, int32_t first, int32_t end, double wanted) {
     double sum = 0;
     int32_t i = first;
     for (; i < end - 1; i++) {
-        const double weight = c->particle[c->order[i].particle].weight;
-        if (i > first && sum + 0.5 * weight > wanted) break;
-        sum += weight;
+        if (i > first && sum + 0.5 * weight_of(c, i) > wanted) break;
+        sum += weight_of(c, i);
     }
     return i;
+}
+
+// Where normals are half way from the first to the last; the share of the area before that.
+static int32_t divide_turn(const cutter *c, int32_t first, int32_t end, double *share) {
+    const int64_t half = c->order[first].key[0] + (c->order[end - 1].key[0] - c->order[first].key[0]) / 2;
+    double before = 0, all = 0;
+    int32_t middle = first;
+    for (int32_t i = first; i < end; i++) {
+        if (c->order[i].key[0] <= half) middle = i + 1, before += weight_of(c, i);
+        all += weight_of(c, i);
+    }
+    *share = before / all;
+    return middle;
 }
 
 // Directions across the normals of a piece: those of its mean normal, turned as little as can be.
@@ -482,9 +496,12 @@ static void cut(cutter *c, const region *r, int32_t first, int32_t end, int32_t 
     double extent, area;
     const int axis = widest(c, r, first, end, &extent, &area);
     const double columns = fmin(pieces, fmax(2, round(extent / sqrt(area / pieces))));
-    const int32_t left = (int32_t)fmax(1, round(pieces * floor(columns / 2) / columns));
+    double share = floor(columns / 2) / columns;
+    int32_t middle = 0;
     sort_along(c, r, first, end, axis);
-    const int32_t middle = divide(c, first, end, area * left / pieces);
+    if (axis >= 3) middle = divide_turn(c, first, end, &share);
+    const int32_t left = (int32_t)fmin(pieces - 1, fmax(1, round(pieces * share)));
+    if (axis < 3) middle = divide(c, first, end, area * left / pieces);
     cut(c, r, first, middle, left);
     cut(c, r, middle, end, pieces - left);
 }

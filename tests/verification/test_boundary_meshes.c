@@ -88,6 +88,7 @@ static void load_along(brunt_world_def *def, const lie *l, const double g[3]) { 
 typedef struct sight {
     double area, force[3];       // [m^2], [N]
     double least, most;          // [m^2] of a piece
+    double unlike;               // least mean normal of a piece
     double range, within, round; // greatest traction over the least; how uneven it is in a piece; how far normals are
                                  // from those of a sphere
 } sight;
@@ -98,7 +99,8 @@ static sight look(const brunt_world *world, int surface) {
     int64_t *piece = malloc((size_t)count * sizeof *piece);
     const brunt_boundary_surface_arrays arrays = {values, values + 3 * count, values + 6 * count, values + 9 * count,
                                                   piece};
-    sight s = {.least = INFINITY};
+    sight s = {.least = INFINITY, .unlike = 1};
+    double mean[3] = {0, 0, 0};
     brunt_boundary_surface_particles(world, surface, &arrays);
     for (int64_t b = 0; b < count; b++) {
         const double *t = arrays.traction + 3 * b, *x = arrays.position + 3 * b, *n = arrays.normal + 3 * b;
@@ -110,6 +112,7 @@ static sight look(const brunt_world *world, int surface) {
         for (int k = 0; k < 3; k++) {
             s.force[k] += arrays.weight[b] * t[k];
             off += (n[k] + x[k] / away) * (n[k] + x[k] / away);
+            mean[k] += arrays.weight[b] * n[k];
         }
         s.round = fmax(s.round, sqrt(off));
         if (b > 0 && piece[b] == piece[b - 1] && size > 0) {
@@ -117,7 +120,9 @@ static sight look(const brunt_world *world, int surface) {
             s.within = fmax(s.within, fabs(before / size - 1));
         }
         if (b + 1 < count && piece[b] == piece[b + 1]) continue;
-        s.least = fmin(s.least, area), s.most = fmax(s.most, area), area = 0;
+        const double sum = sqrt(mean[0] * mean[0] + mean[1] * mean[1] + mean[2] * mean[2]);
+        s.unlike = fmin(s.unlike, sum / area);
+        s.least = fmin(s.least, area), s.most = fmax(s.most, area), area = mean[0] = mean[1] = mean[2] = 0;
     }
     s.range = high / low;
     free(values), free(piece);
@@ -422,6 +427,34 @@ START_TEST(hole) {
 }
 END_TEST
 
+// The two sides of a thin plate with round ends are not one piece, though they go over into each other.
+START_TEST(thin) {
+    enum { ROUND = 8 };
+    const lie l = lying(0.7, 0.02, 0.01, 0.03);
+    brunt_world_def def = block(&l, BRUNT_SLIP, 0.01, 1);
+    brunt_boundary_surface_def *s = &def.surfaces[def.surface_count++];
+    *s = brunt_boundary_surface_def_default();
+    s->point = brunt_alloc((size_t)(4 * ROUND + 4) * sizeof *s->point);
+    s->facet = brunt_alloc((size_t)(2 * ROUND + 2) * sizeof *s->facet);
+    for (int k = 0; k < 2 * ROUND + 2; k++) {
+        const int end = k > ROUND;
+        const double angle = PI * (k - end) / ROUND - PI / 2;
+        for (int side = 0; side < 2; side++) {
+            double *x = s->point[s->point_count++];
+            x[0] = (end ? -0.3 : 0.3) + 0.03 * cos(angle), x[1] = 0.5 * side, x[2] = 2 + 0.03 * sin(angle);
+        }
+        const int32_t next = k < 2 * ROUND + 1 ? 2 * k + 2 : 0, quad[4] = {2 * k, 2 * k + 1, next + 1, next};
+        memcpy(s->facet[s->facet_count++], quad, sizeof quad);
+    }
+    brunt_world *world = world_take(&def);
+    const sight seen = look(world, 1);
+    printf("  pieces of %.4f to %.4f m^2, least mean normal %.3f\n", seen.least, seen.most, seen.unlike);
+    ck_assert_double_ge(seen.unlike, 0.5);
+    ck_assert_double_ge(seen.least, 0.5 * 0.0225);
+    brunt_world_destroy(world);
+}
+END_TEST
+
 // Facets that the grid cannot tell apart share pieces, whatever the edges between them.
 START_TEST(teeth) {
     brunt_world_def def = meshes(2, 0.05, 0.3);
@@ -519,6 +552,7 @@ int main(void) {
     ADD_LOOP(meets, 8);
     ADD_LOOP(hole, 4);
     ADD_LOOP(teeth, 4);
+    ADD_LOOP(thin, 1);
     ADD_LOOP(threads, 1);
     ADD_LOOP(restart, 1);
     ADD_LOOP(finer, 1);
