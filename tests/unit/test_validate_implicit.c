@@ -52,15 +52,17 @@ static void barrier_place(brunt_world *w) { of(w)->contact.barrier->contacts.con
 static void barrier_force(brunt_world *w) { of(w)->contact.barrier->lagged.contact[0].normal_force = 0; }
 static void contact_pair(brunt_world *w) { of(w)->contact.barrier->pair[0].account = w->pairs.count; }
 static void surface_piece(brunt_world *w) { w->boundaries.surfaces.surface[0].particle[0].piece++; }
+static void surface_normal(brunt_world *w) { w->boundaries.surfaces.surface[0].particle[0].normal[0] += 1; }
+static void surface_tangent(brunt_world *w) { w->boundaries.surfaces.surface[0].particle[0].tangent[0][1] += 1; }
 static void surface_cell(brunt_world *w) { w->boundaries.surfaces.surface[0].cell_particle[0] = -1; }
 static void surface_traction(brunt_world *w) { w->boundaries.surfaces.surface[0].traction[0] = NAN; }
 
 static const broken_row rows[] = {
-    {implicit, implicit_terms},   {implicit, unknown_base},  {implicit, unknown_number}, {implicit, unknown_mass},
-    {implicit, unknown_holder},   {implicit, unknown_image}, {implicit, matrix_column},  {implicit, matrix_diagonal},
-    {implicit, matrix_solver},    {implicit, barrier_facet}, {implicit, barrier_range},  {implicit, barrier_place},
-    {implicit, barrier_force},    {implicit, contact_pair},  {implicit, surface_piece},  {implicit, surface_cell},
-    {implicit, surface_traction},
+    {implicit, implicit_terms},  {implicit, unknown_base},  {implicit, unknown_number},   {implicit, unknown_mass},
+    {implicit, unknown_holder},  {implicit, unknown_image}, {implicit, matrix_column},    {implicit, matrix_diagonal},
+    {implicit, matrix_solver},   {implicit, barrier_facet}, {implicit, barrier_range},    {implicit, barrier_place},
+    {implicit, barrier_force},   {implicit, contact_pair},  {implicit, surface_piece},    {implicit, surface_normal},
+    {implicit, surface_tangent}, {implicit, surface_cell},  {implicit, surface_traction},
 };
 
 START_TEST(broken_part_is_noticed) { check_noticed(&rows[_i]); }
