@@ -455,6 +455,66 @@ START_TEST(thin) {
 }
 END_TEST
 
+// A piece of a ring that slides in a round trough swings about its axis as a pendulum does.
+START_TEST(swings) {
+    enum { COUNT = 41, ACROSS = 3 };
+    const lie l = lying(0.7, 0.02, 0.01, 0.03);
+    brunt_world_def def = meshes(2, 5e-3, 0.3);
+    const double R = 2, inner = 1.7, from = 0.5, half = 0.1;
+    brunt_body_def *b = def_body(&def, "sector");
+    b->shape.kind = BRUNT_INTERSECTION, b->shape.child_count = 2;
+    b->shape.children = brunt_alloc(2 * sizeof *b->shape.children);
+    b->shape.children[0] =
+        (brunt_shape){.kind = BRUNT_TUBE, .radius = R, .inner_radius = inner, .length = 0.2, .axis = {0, 0, 1}};
+    b->shape.children[1] = (brunt_shape){.kind = BRUNT_PRISM, .point_count = 3, .min = {0, 0, -1}, .max = {0, 0, 1}};
+    b->shape.children[1].points = brunt_alloc(3 * sizeof *b->shape.points);
+    for (int k = 1; k < 3; k++) {
+        const double at = from + (k == 1 ? -half : half);
+        b->shape.children[1].points[k][0] = 3 * sin(at), b->shape.children[1].points[k][1] = -3 * cos(at);
+    }
+    memcpy(b->place.rotation, l.turn, sizeof l.turn), memcpy(b->place.translation, l.shift, sizeof l.shift);
+    brunt_boundary_surface_def *s =
+        def_mesh(&def, &l, XYZ(0, 0, 0), XYZ(1, 0, 0), XYZ(0, 1, 0), COUNT - 1, true, _i ? BRUNT_SEPARATE : BRUNT_SLIP);
+    s->facet_count = 0;
+    for (int i = 0; i < COUNT; i++)
+        for (int j = 0; j <= ACROSS; j++) { // counter-clockwise as seen from the axis
+            const double at = 0.9 * i / (COUNT - 1), x[3] = {R * sin(at), -R * cos(at), 0.3 - 0.4 * j / ACROSS};
+            const int32_t n = i * (ACROSS + 1) + j, quad[4] = {n, n + ACROSS + 1, n + ACROSS + 2, n + 1};
+            turned(&l, x, s->point[n]);
+            for (int k = 0; k < 3; k++) s->point[n][k] += l.shift[k];
+            if (i + 1 < COUNT && j < ACROSS) memcpy(s->facet[s->facet_count++], quad, sizeof quad);
+        }
+    def.materials[0].strength_parameters[0] = 100 * YOUNG;
+    def.integrator = BRUNT_NEWMARK;
+    load_along(&def, &l, XYZ(0, -9.81, 0));
+    brunt_world *world = world_take(&def);
+    double x[2], found[2], arm = 0;
+    for (int k = 0; k < 2; k++) {
+        if (k) world_steps(world, 40);
+        const brunt_body_sums sums = world_sums(world, 0);
+        double c[3];
+        for (int a = 0; a < 3; a++) c[a] = sums.centre[a] - l.shift[a];
+        for (int a = 0; a < 2; a++) x[a] = along(&l, a, c);
+        found[k] = atan2(x[0], -x[1]);
+        if (!k) arm = hypot(x[0], x[1]);
+    }
+    double angle = found[0], speed = 0;
+    for (int k = 0; k < 4000; k++) { // midpoint
+        const double dt = 5e-5, middle = angle + 0.5 * dt * speed;
+        speed -= dt * 9.81 * arm * 2 / (R * R + inner * inner) * sin(middle), angle = middle + 0.5 * dt * speed;
+    }
+    const double wanted = found[0] - angle;
+    printf("  %s: way %.5f, %.5f wanted; off its circle by %+.1e cells; momentum %.1e, energy %.1e\n",
+           _i ? "separate" : "slip", found[0] - found[1], wanted, (hypot(x[0], x[1]) - arm) / CELL,
+           world_momentum(world).linear_drift, world_energy(world).error_relative);
+    ck_assert_double_le(fabs(found[1] - angle), 2e-2 * wanted);
+    ck_assert_double_le(fabs(hypot(x[0], x[1]) - arm), 0.1 * CELL);
+    ck_assert_double_le(world_momentum(world).linear_drift, 1e-10);
+    ck_assert_double_le(fabs(world_energy(world).error_relative), 1e-6);
+    brunt_world_destroy(world);
+}
+END_TEST
+
 // Facets that the grid cannot tell apart share pieces, whatever the edges between them.
 START_TEST(teeth) {
     brunt_world_def def = meshes(2, 0.05, 0.3);
@@ -551,6 +611,7 @@ int main(void) {
     ADD_LOOP(leaves, 2);
     ADD_LOOP(meets, 8);
     ADD_LOOP(hole, 4);
+    ADD_LOOP(swings, 2);
     ADD_LOOP(teeth, 4);
     ADD_LOOP(thin, 1);
     ADD_LOOP(threads, 1);
