@@ -11,7 +11,9 @@
 // be held on. Of a spacing, beyond the half of it.
 static const double MARGIN = 0.1;
 static const double ROUNDING_SHARE = 1e-9;
-static const double BEHIND = 1; // spacings: how far material may be behind a surface and still be pushed out
+// Spacings: how far material may be behind a surface and still be pushed out; of a thin wall half way through it.
+static const double BEHIND = 1;
+static const double AGAINST = -0.5; // cosine between normals of the two sides of a wall
 
 // The own box of a material point: a cube of half edge `half` [m], turned as the body was placed and deformed: F is of
 // both.
@@ -115,22 +117,29 @@ static void look_at(search *l, int32_t b) {
         l->sides[enter + leave < 0]++;
         return;
     }
-    if (leave < -2 * BEHIND * l->box.half || enter > fmax(0, towards) + 2 * MARGIN * l->box.half) return;
+    if (leave < -fmin(2 * BEHIND * l->box.half, 0.5 * p->back) || enter > fmax(0, towards) + 2 * MARGIN * l->box.half)
+        return;
     l->gap[b] = fmin(l->gap[b], fmax(enter, 0));
 }
 
-static void look_in_cell(search *l, const int32_t at[3]) {
+// The cell there; BRUNT_NONE: it has no particles.
+static int32_t cell_at(const brunt_boundary_surface *s, const int32_t at[3]) {
     const uint64_t key = brunt_key(at);
-    int32_t low = 0, high = l->s->cells;
+    int32_t low = 0, high = s->cells;
     while (low < high) {
         const int32_t middle = low + (high - low) / 2;
-        if (l->s->key[middle] < key)
+        if (s->key[middle] < key)
             low = middle + 1;
         else
             high = middle;
     }
-    if (low == l->s->cells || l->s->key[low] != key) return;
-    for (int32_t k = l->s->cell_first[low]; k < l->s->cell_first[low + 1]; k++) look_at(l, l->s->cell_particle[k]);
+    return low < s->cells && s->key[low] == key ? low : BRUNT_NONE;
+}
+
+static void look_in_cell(search *l, const int32_t at[3]) {
+    const int32_t cell = cell_at(l->s, at);
+    if (cell < 0) return;
+    for (int32_t k = l->s->cell_first[cell]; k < l->s->cell_first[cell + 1]; k++) look_at(l, l->s->cell_particle[k]);
 }
 
 // The boundary particles in the box that the point goes over within the step.
@@ -171,6 +180,36 @@ void brunt_boundary_surface_extent(const brunt_boundary_surface *s, brunt_body *
                 l.coming[a] = leaves ? (double)v[a][p] * extent->dt - extent->step[a] : 0;
             }
             look_around(&l);
+        }
+    }
+}
+
+// Whether q is the other side of the wall behind p; how far away.
+static bool is_back(const brunt_boundary_surface *s, const brunt_boundary_particle *p, const brunt_boundary_particle *q,
+                    double *away) {
+    double depth = 0, square = 0, turn = 0;
+    for (int a = 0; a < 3; a++) {
+        const double d = q->x[a] - p->x[a];
+        depth -= d * p->normal[a], square += d * d, turn += p->normal[a] * q->normal[a];
+    }
+    const double beside = s->cell / s->def.particles;
+    *away = depth;
+    return turn < AGAINST && depth > 0 && depth < s->cell && square - depth * depth < beside * beside;
+}
+
+void brunt_boundary_surface_backs(brunt_boundary_surface *s) {
+    for (int32_t b = 0; b < s->particle_count; b++) {
+        brunt_boundary_particle *p = &s->particle[b];
+        int32_t at[3], to[3];
+        double away;
+        p->back = INFINITY;
+        if (s->def.condition != BRUNT_SEPARATE) continue;
+        for (int a = 0; a < 3; a++) at[a] = (int32_t)floor((p->x[a] - s->low[a]) / s->cell);
+        for (int k = 0; k < 27; k++) {
+            to[0] = at[0] + k / 9 - 1, to[1] = at[1] + k / 3 % 3 - 1, to[2] = at[2] + k % 3 - 1;
+            const int32_t cell = cell_at(s, to);
+            for (int32_t i = cell < 0 ? 0 : s->cell_first[cell]; cell >= 0 && i < s->cell_first[cell + 1]; i++)
+                if (is_back(s, p, &s->particle[s->cell_particle[i]], &away)) p->back = fmin(p->back, away);
         }
     }
 }

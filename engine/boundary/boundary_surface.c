@@ -79,6 +79,7 @@ static int make_surface(brunt_boundary_surface *s, const brunt_boundary_surface_
     if (!status) status = (dim == 2 ? brunt_boundary_cut_line : brunt_boundary_cut_facets)(s, def, error);
     if (!status) status = sort_particles(s, error);
     if (status) return status;
+    brunt_boundary_surface_backs(s);
     s->bodies = bodies->mpm_count;
     return BRUNT_NEW(s->traction, (size_t)s->bodies * (size_t)s->pieces * 3 + 1, "tractions of a boundary", error);
 }

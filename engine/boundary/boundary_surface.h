@@ -14,6 +14,7 @@ typedef struct brunt_boundary_particle {
     double x[3], normal[3]; // [m] at the start; [-], of length 1
     double tangent[2][3];   // [-] across the normal and each other; the second of surfaces only
     double weight;          // [m^2] its part of the boundary, in plane strain [m]
+    double back;            // [m] how far behind it the surface is once more, the other way round; INFINITY: it is not
     int32_t piece;
 } brunt_boundary_particle;
 
@@ -73,6 +74,8 @@ typedef struct brunt_boundary_extent {
 // holds the nearest so far, and INFINITY before the first body.
 void brunt_boundary_surface_extent(const brunt_boundary_surface *surface, brunt_body *body,
                                    const brunt_boundary_extent *extent, double *gap);
+// Finds how far behind the particles of a surface that lets go its other side is, if it is within a cell.
+void brunt_boundary_surface_backs(brunt_boundary_surface *surface);
 // Before the first step: whether a body that a surface lets go is behind it, where nothing could hold it. BRUNT_OK, or
 // BRUNT_BAD_INPUT.
 int brunt_boundary_surfaces_sides(const brunt_boundary_surfaces *surfaces, const brunt_bodies *bodies,

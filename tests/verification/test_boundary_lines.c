@@ -465,6 +465,25 @@ START_TEST(teeth) {
 }
 END_TEST
 
+// A thin wall has two sides: what lies on one leaves it without being pulled by the other.
+START_TEST(wall) {
+    static const double thickness[] = {0.01, 0.03, 0.06, 0.2};
+    brunt_world_def def = block(BRUNT_SEPARATE, 5e-3, 0);
+    def.surface_count = 0;
+    brunt_free(def.surfaces[0].point), brunt_free(def.surfaces[0].facet);
+    brunt_boundary_surface_def *s = def_polyline(&def, 4, true, BRUNT_SEPARATE);
+    for (int k = 0; k < 4; k++)
+        s->point[k][0] = k == 0 || k == 3 ? -0.5 : 1, s->point[k][1] = k < 2 ? 0 : -thickness[_i / 2];
+    def.gravity[1] = _i % 2 ? -5 : 5;
+    brunt_world *world = world_take(&def);
+    world_steps(world, 20);
+    const brunt_reaction f = world_boundary(world, 0);
+    printf("  %.2f cells thick: impulse %.4f of the weight's\n", thickness[_i / 2] / CELL, f.impulse[1] / 180);
+    ck_assert_double_le(fabs(f.impulse[1] / 180 - _i % 2), _i % 2 ? 5e-2 : 1e-9);
+    brunt_world_destroy(world);
+}
+END_TEST
+
 // What a line lets go is not behind it.
 START_TEST(behind) {
     for (int k = 0; k < 2; k++) {
@@ -513,6 +532,7 @@ int main(void) {
     ADD_LOOP(swings, 2);
     ADD_LOOP(rubs_round, 1);
     ADD_LOOP(teeth, 14);
+    ADD_LOOP(wall, 8);
     ADD_LOOP(behind, 1);
     ADD_LOOP(refuses, 1);
     return suite_main(suite);
