@@ -319,9 +319,9 @@ static double within_domain(newton_run *r) {
     return t;
 }
 
-// Whether u + share * step, of energy e, may be gone to: it is not higher, or so near that rounding has the say, of sums
-// or of strains: these are differences of numbers of order 1, so that an energy W is off by rounding times sqrt(W m c^2)
-// whatever is added to it. A step below tolerance is taken as it is.
+// Whether u + share * step, of energy e, may be gone to: it is not higher, or so near that rounding has the say, of
+// sums or of strains: these are differences of numbers of order 1, so that an energy W is off by rounding times sqrt(W
+// m c^2) whatever is added to it. A step below tolerance is taken as it is.
 static bool acceptable(const newton_run *r, brunt_energy_sum e, double noise, bool whole) {
     if (whole && (small(r) || -r->slope < CLOSE * noise)) return true;
     return e.value <= r->energy.value + fmax(noise, ROUNDING * sqrt(e.magnitude * e.moduli));
