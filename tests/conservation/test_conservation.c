@@ -136,7 +136,7 @@ START_TEST(oblique_collision) {
 END_TEST
 
 // Blocks that fill the quadrants around one node and run into each other there.
-static brunt_world_def source(choice c, int count) {
+static brunt_world_def meeting(choice c, int count) {
     static const char *const names[] = {"north-east", "north-west", "south-west", "south-east"};
     static const double sign[4][2] = {{1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
     brunt_world_def def = begin(c, 1e6);
@@ -153,7 +153,7 @@ static brunt_world_def source(choice c, int count) {
 
 static void run_meeting(int i, int count) {
     choice c = choose(i);
-    brunt_world_def def = source(c, count);
+    brunt_world_def def = meeting(c, count);
     brunt_world *world = world_take(&def);
     world_until(world, soft(c) ? 0.03 : 0.08);
     judge_momentum(count == 3 ? "three bodies" : "four bodies", c, world);
@@ -182,7 +182,7 @@ START_TEST(order_of_bodies) {
     uint64_t first = 0;
     int others = 0;
     for (int o = 0; o < 6; o++) {
-        brunt_world_def def = source(c, 3);
+        brunt_world_def def = meeting(c, 3);
         brunt_body_def bodies[3];
         memcpy(bodies, def.bodies, sizeof bodies);
         for (int b = 0; b < 3; b++) def.bodies[b] = bodies[orders[o][b]];

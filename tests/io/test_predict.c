@@ -23,19 +23,19 @@ static const char touching[] =
     "output: {every: 20 ms, history: 2 ms}\n";
 
 // Two blocks of elements that meet after half of the time.
-static const char source[] = "brunt: 1\n"
-                             "dimension: 2\n"
-                             "time: {end: 0.4 s, cfl: 0.5}\n"
-                             "grid: {cell: 12.5 mm}\n"
-                             "materials:\n"
-                             "  rubber: {model: neo-hookean, density: 1000 kg/m^3, E: 1 MPa, nu: 0.3}\n"
-                             "bodies:\n"
-                             "  left: {method: fem, size: 8 mm, material: rubber, shape: {box: {min: [0, 0], max: "
-                             "[0.5, 1]}}, velocity: [1, 0]}\n"
-                             "  right: {method: fem, size: 8 mm, material: rubber, shape: {box: {min: [0.9, 0], "
-                             "max: [1.4, 1]}}, velocity: [-1, 0]}\n"
-                             "contact: {method: augury}\n"
-                             "output: {every: 20 ms, history: 2 ms}\n";
+static const char meeting[] = "brunt: 1\n"
+                              "dimension: 2\n"
+                              "time: {end: 0.4 s, cfl: 0.5}\n"
+                              "grid: {cell: 12.5 mm}\n"
+                              "materials:\n"
+                              "  rubber: {model: neo-hookean, density: 1000 kg/m^3, E: 1 MPa, nu: 0.3}\n"
+                              "bodies:\n"
+                              "  left: {method: fem, size: 8 mm, material: rubber, shape: {box: {min: [0, 0], max: "
+                              "[0.5, 1]}}, velocity: [1, 0]}\n"
+                              "  right: {method: fem, size: 8 mm, material: rubber, shape: {box: {min: [0.9, 0], "
+                              "max: [1.4, 1]}}, velocity: [-1, 0]}\n"
+                              "contact: {method: augury}\n"
+                              "output: {every: 20 ms, history: 2 ms}\n";
 
 // A rod that is pressed together on a wall until its step is a fraction of the first.
 static const char pressed[] = "brunt: 1\n"
@@ -163,7 +163,7 @@ START_TEST(steps_that_shrink_are_counted) {
 END_TEST
 
 START_TEST(a_fixed_step_is_kept) {
-    made m = make_text(source, "time={end: 0.4 s, step: 0.1 ms}");
+    made m = make_text(meeting, "time={end: 0.4 s, step: 0.1 ms}");
     brunt_prediction p = predict(&m, false);
     ck_assert_double_eq_tol(p.steps, 4000, 1);
     destroy(&m);
@@ -171,7 +171,7 @@ START_TEST(a_fixed_step_is_kept) {
 END_TEST
 
 START_TEST(quick_leaves_the_rehearsal_out) {
-    made m = make_text(source, NULL);
+    made m = make_text(meeting, NULL);
     brunt_prediction p = predict(&m, true);
     ck_assert(p.factor == 0 && p.rehearsed < 1);
     ck_assert_ptr_nonnull(strstr(p.note, "not rehearsed"));
@@ -183,7 +183,7 @@ START_TEST(given_meshes_stay_and_it_says_so) {
     made m;
     brunt_error error = {0};
     const char *set = "time.end=1 s";
-    small_scene_of(source, &m.scene, &set, 1);
+    small_scene_of(meeting, &m.scene, &set, 1);
     for (int32_t b = 0; b < m.scene.world.body_count; b++) {
         brunt_body_def *body = &m.scene.world.bodies[b];
         ck_assert_int_eq(brunt_mesh_shape(&body->shape, 2, BRUNT_QUAD4, body->size, &body->mesh, &error), BRUNT_OK);
@@ -214,7 +214,7 @@ START_TEST(worlds_that_cannot_be_made_are_passed_over) {
         "bodies.left={method: mpm, material: rubber, shape: {box: {min: [12.5 mm, 0], max: [0.5, 1]}}}", "time.end=4 s",
         "contact.method=multi-velocity"};
     made m;
-    small_scene_of(source, &m.scene, sets, 5);
+    small_scene_of(meeting, &m.scene, sets, 5);
     make(&m);
     brunt_prediction p = predict(&m, false);
     ck_assert(p.steps > 0 && p.step_seconds > 0);
@@ -225,7 +225,7 @@ END_TEST
 
 // The world itself is as good as before: what it was made of is still the scene's.
 START_TEST(the_scene_is_left_as_it_was) {
-    made m = make_text(source, NULL), again = make_text(source, NULL);
+    made m = make_text(meeting, NULL), again = make_text(meeting, NULL);
     predict(&m, false);
     char *before = small_scene_resolved(&again.scene), *after = small_scene_resolved(&m.scene);
     ck_assert_str_eq(before, after);

@@ -22,7 +22,7 @@ static brunt_world *two_bodies(void) {
 }
 
 // A mesh that meets another, or a block of points, by a method.
-static brunt_world *source(brunt_contact_method method, bool points) {
+static brunt_world *meeting(brunt_contact_method method, bool points) {
     brunt_world_def def = def_begin(2, 0.1);
     def_material(&def, "neo-hookean", 1000, 1e5, 0.3);
     def_velocity(def_mesh(&def, "left", XYZ(0, 0, 0), XYZ(0.4, 0.3, 0)), 1, 0, 0);
@@ -33,8 +33,8 @@ static brunt_world *source(brunt_contact_method method, bool points) {
     def.contact.method = method;
     return world_take(&def);
 }
-static brunt_world *meshes(void) { return source(BRUNT_CONTACT_AUGURY, false); }
-static brunt_world *mesh_on_grid(void) { return source(BRUNT_CONTACT_MULTI_VELOCITY, true); }
+static brunt_world *meshes(void) { return meeting(BRUNT_CONTACT_AUGURY, false); }
+static brunt_world *mesh_on_grid(void) { return meeting(BRUNT_CONTACT_MULTI_VELOCITY, true); }
 
 // ------------------------------------------------------------------------------------------ what breaks them
 

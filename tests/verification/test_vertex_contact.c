@@ -6,11 +6,11 @@
 typedef enum feature { FACE, EDGE, CROSSED_EDGE, CORNER } feature; // what a body turns to the other one
 typedef enum matter { COARSE, FINE, POINTS } matter;               // elements: two or three a side
 
-typedef struct source {
+typedef struct meeting {
     int dimension;
     feature a, b;
     matter of_a, of_b;
-} source;
+} meeting;
 
 // How the scene lies: what would be along x is along the first column.
 typedef struct frame {
@@ -107,7 +107,7 @@ static void add(brunt_world_def *def, const char *name, feature f, matter of, co
     move_mesh(&b->mesh, all, shift);
 }
 
-static brunt_world *meet(const source *m, const frame *g) {
+static brunt_world *meet(const meeting *m, const frame *g) {
     brunt_world_def def = def_begin(m->dimension, 0.25);
     def_material(&def, "neo-hookean", 1000, 1e6, 0.3);
     def.contact.method = BRUNT_CONTACT_AUGURY;
@@ -125,7 +125,7 @@ typedef struct outcome {
     double linear, angular;
 } outcome;
 
-static outcome measure(const source *m, const frame *g) {
+static outcome measure(const meeting *m, const frame *g) {
     brunt_world *world = meet(m, g);
     world_until(world, 0.4);
     const brunt_reaction f = world_pair(world, 0);
@@ -144,7 +144,7 @@ static outcome measure(const source *m, const frame *g) {
 
 // Elements of both, or of one and points of the other: then the grid must be symmetric about the line, too, which it is
 // across y in any case, and across both unless a corner is on the line.
-static const source meetings[] = {
+static const meeting meetings[] = {
     {2, CORNER, CORNER, COARSE, COARSE},   {2, CORNER, CORNER, COARSE, FINE},
     {2, CORNER, FACE, COARSE, COARSE},     {2, CORNER, FACE, COARSE, FINE},
     {3, CORNER, CORNER, COARSE, COARSE},   {3, CORNER, CORNER, COARSE, FINE},
@@ -165,7 +165,7 @@ static const source meetings[] = {
 enum { MEETINGS = sizeof meetings / sizeof meetings[0], FRAMES = 4 };
 
 // As it is, by a quarter turn, by an odd angle and far away, mirrored; in either order, with friction and without.
-static frame frame_of(int k, const source *m) {
+static frame frame_of(int k, const meeting *m) {
     frame g = {.swapped = k % 2, .friction = k > 1 ? 0.3 : 0};
     const bool points = m->of_a == POINTS || m->of_b == POINTS;
     unturned(g.turn);
@@ -182,7 +182,7 @@ static frame frame_of(int k, const source *m) {
 START_TEST(impulse_is_along_the_line_of_centres) {
     static const char *const name[] = {"face", "edge", "crossed edge", "corner"}, *const of[] = {"coarse", "fine",
                                                                                                  "points"};
-    const source *m = &meetings[_i];
+    const meeting *m = &meetings[_i];
     const bool points = m->of_a == POINTS || m->of_b == POINTS;
     const bool even = !points || m->dimension == 2 || (m->a != CORNER && m->b != CORNER);
     double worst = 0;
@@ -205,7 +205,7 @@ END_TEST
 // ------------------------------------------------------------------------------------------ mirror images
 
 // Velocities of all nodes, as if the scene had not been turned. free()
-static double *velocities(const source *m, const frame *g, int64_t *count) {
+static double *velocities(const meeting *m, const frame *g, int64_t *count) {
     brunt_world *world = meet(m, g);
     world_until(world, 0.15);
     *count = brunt_body_nodes(world, 0) + brunt_body_nodes(world, 1);
@@ -224,7 +224,7 @@ static double *velocities(const source *m, const frame *g, int64_t *count) {
 
 // They meet beside the middle, so that all turn; faces and elements are in another order in the mirror.
 START_TEST(mirror_image_does_as_the_thing) {
-    const source *m = &meetings[_i];
+    const meeting *m = &meetings[_i];
     if (m->of_a == POINTS || m->of_b == POINTS) return;
     const bool lie[] = {true, true, m->dimension == 3};
     frame g = {.friction = 0.3, .aside = {0, 0.0625, 0}};
@@ -240,7 +240,7 @@ START_TEST(mirror_image_does_as_the_thing) {
         worst = fmax(worst, most);
         free(image);
     }
-    hard_case("C06", worst, 1e-10, 1e-10, "source %d and its mirror images: velocities of nodes off by [m/s]", _i);
+    hard_case("C06", worst, 1e-10, 1e-10, "meeting %d and its mirror images: velocities of nodes off by [m/s]", _i);
     free(thing);
 }
 END_TEST
