@@ -12,6 +12,15 @@ static inline void go_implicit(brunt_world_def *def, brunt_integrator integrator
     def->newton.tolerance = 1e-11; // momentum is kept as far as forces balance
 }
 
+// The same, with room for lines and surfaces that hold material points; solved to rounding.
+static inline void hold_by_surfaces(brunt_world_def *def, int order, double step) {
+    def->kernel = (brunt_kernel)order;
+    if (order == 1) def->transfer = BRUNT_PIC;
+    def->surfaces = brunt_alloc(DEF_CAPACITY * sizeof *def->surfaces);
+    go_implicit(def, BRUNT_EULER, step);
+    def->newton.tolerance = 1e-15;
+}
+
 // Whether worlds that differ in their threads only have the same state after some steps; destroys them.
 static inline void check_threads(brunt_world *const *world, int count, int steps) {
     uint64_t first = 0;

@@ -14,11 +14,7 @@ static const double CELL = 0.1, DENSITY = 1000, YOUNG = 1e6;
 static brunt_world_def lines(int order, double step, double nu) {
     brunt_world_def def = def_begin(2, CELL);
     def_material(&def, "neo-hookean", DENSITY, YOUNG, nu);
-    def.kernel = (brunt_kernel)order;
-    if (order == 1) def.transfer = BRUNT_PIC;
-    def.surfaces = brunt_alloc(DEF_CAPACITY * sizeof *def.surfaces);
-    go_implicit(&def, BRUNT_EULER, step);
-    def.newton.tolerance = 1e-15;
+    hold_by_surfaces(&def, order, step);
     return def;
 }
 

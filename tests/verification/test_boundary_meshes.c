@@ -40,11 +40,7 @@ static double along(const lie *l, int axis, const double v[3]) {
 static brunt_world_def meshes(int order, double step, double nu) {
     brunt_world_def def = def_begin(3, CELL);
     def_material(&def, "neo-hookean", DENSITY, YOUNG, nu);
-    def.kernel = (brunt_kernel)order;
-    if (order == 1) def.transfer = BRUNT_PIC;
-    def.surfaces = brunt_alloc(DEF_CAPACITY * sizeof *def.surfaces);
-    go_implicit(&def, BRUNT_EULER, step);
-    def.newton.tolerance = 1e-15;
+    hold_by_surfaces(&def, order, step);
     return def;
 }
 
