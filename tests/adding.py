@@ -83,7 +83,7 @@ def run():
     for kind in KINDS:
         with open(patch(kind), encoding="utf-8") as text:
             subprocess.run(["patch", "-p1", "-s"], cwd=copy / "source", stdin=text, check=True)
-    settings = ["-DCMAKE_BUILD_TYPE=Release", "-DBRUNT_TESTS=OFF", "-DBRUNT_BENCH=OFF", "-DBRUNT_WERROR=ON"]
+    settings = ["-DCMAKE_BUILD_TYPE=Debug", "-DBRUNT_TESTS=OFF", "-DBRUNT_BENCH=OFF", "-DBRUNT_WERROR=ON"]
     subprocess.run(["cmake", "-S", copy / "source", "-B", copy / "build", *settings], check=True, stdout=subprocess.DEVNULL)
     subprocess.run(["cmake", "--build", copy / "build", "-j2"], check=True, stdout=subprocess.DEVNULL)
     for scene in sorted(TRIALS.glob("*.yaml")):

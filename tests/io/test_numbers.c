@@ -219,8 +219,7 @@ START_TEST(every_key_with_a_number_is_swept) {
 END_TEST
 
 START_TEST(what_is_too_large_or_no_number_is_refused_everywhere) {
-    static const char *const bad[] = {"1e155", "1e300", "-1e300", "inf",   "-.inf",
-                                      "nan",   ".nan",  "1.1e30", "-2e30", "1e400"};
+    static const char *const bad[] = {"1e155", "-1e300", "inf", ".nan", "1.1e30", "-2e30", "1e400"};
     for (int t = 0; t < TEXTS; t++)
         for (size_t b = 0; b < sizeof bad / sizeof *bad; b++) ck_assert_int_gt(swap_each(texts[t], bad[b]), 15);
 }
