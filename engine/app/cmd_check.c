@@ -7,11 +7,15 @@
 
 #include "app/app.h"
 #include "base/array.h"
+#include "base/memory.h"
 #include "io/output/history.h"
+#include "io/output/parts.h"
 #include "io/performance/machine.h"
 #include "io/performance/predict.h"
 #include "io/performance/progress.h"
 #include "io/run/run.h"
+#include "io/scene/crowd.h"
+#include "materials/material.h"
 
 static void print_size(double bytes, int width) {
     static const char *const units[] = {"B", "kB", "MB", "GB", "TB"};
@@ -31,21 +35,82 @@ static void print_mesh(brunt_world *world, int32_t body) {
                report.added_mass);
 }
 
-static void print_bodies(brunt_world *world) {
-    printf("bodies\n");
-    for (int32_t b = 0; b < brunt_body_count(world); b++) {
+static void print_body(brunt_world *world, int32_t b) {
+    brunt_body_sums sums;
+    char size[96];
+    bool fem = brunt_body_method(world, b) != BRUNT_MPM;
+    brunt_body_totals(world, b, &sums);
+    if (fem)
+        snprintf(size, sizeof size, "%10lld %s elements, %lld nodes", (long long)brunt_body_elements(world, b),
+                 brunt_element_name(brunt_body_element(world, b)), (long long)brunt_body_nodes(world, b));
+    else
+        snprintf(size, sizeof size, "%12lld particles", (long long)brunt_body_particles(world, b));
+    printf("  %-20s %-20s %s  mass %.6g kg  velocity [%.6g, %.6g, %.6g] m/s\n", brunt_body_name(world, b),
+           brunt_body_material(world, b), size, sums.mass, sums.velocity[0], sums.velocity[1], sums.velocity[2]);
+    if (fem) print_mesh(world, b);
+}
+
+// Young's modulus of a body of the definition; NAN: its material has none.
+static double young_of(const brunt_world_def *def, int32_t body) {
+    const brunt_material_def *material = &def->materials[def->bodies[body].material];
+    const brunt_model *model = brunt_find_strength(material->strength);
+    for (int p = 0; model && p < model->parameter_count; p++)
+        if (!strcmp(model->parameters[p].key, "E")) return material->strength_parameters[p];
+    return NAN;
+}
+
+typedef struct spread {
+    double least, greatest, mean, sd;
+} spread;
+
+static void spread_add(spread *s, double value, int64_t before) {
+    const double off = value - s->mean;
+    s->least = before ? fmin(s->least, value) : value, s->greatest = before ? fmax(s->greatest, value) : value;
+    s->mean += off / (double)(before + 1);
+    s->sd += off * (value - s->mean); // of squares, until it ends
+}
+
+static void print_spread(const char *what, spread s, int64_t count, const char *unit) {
+    printf(", %s %.5g to %.5g %s", what, s.least, s.greatest, unit);
+    if (s.greatest > s.least) printf(" (mean %.5g, sd %.4g)", s.mean, sqrt(s.sd / (double)count));
+}
+
+// Members of a crowd together: what was made of its keys.
+static void print_crowd(const brunt_scene *scene, brunt_world *world, int32_t first, int32_t end) {
+    const brunt_world_def *def = &scene->world;
+    char name[BRUNT_NAME_LENGTH];
+    double mass = 0, step = INFINITY;
+    int64_t elements = 0, particles = 0;
+    spread radius = {0}, young = {0};
+    for (int32_t b = first; b < end; b++) {
         brunt_body_sums sums;
-        char size[96];
-        bool fem = brunt_body_method(world, b) != BRUNT_MPM;
+        brunt_mesh_report report = {.least_step = INFINITY};
         brunt_body_totals(world, b, &sums);
-        if (fem)
-            snprintf(size, sizeof size, "%10lld %s elements, %lld nodes", (long long)brunt_body_elements(world, b),
-                     brunt_element_name(brunt_body_element(world, b)), (long long)brunt_body_nodes(world, b));
+        if (brunt_body_method(world, b) == BRUNT_FEM) brunt_body_mesh(world, b, &report);
+        step = fmin(step, report.least_step), mass += sums.mass;
+        elements += brunt_body_elements(world, b), particles += brunt_body_particles(world, b);
+        spread_add(&radius, def->bodies[b].shape.radius, b - first);
+        spread_add(&young, young_of(def, b), b - first);
+    }
+    brunt_part_name(world, first, name);
+    printf("  %-20s %-20s %10d bodies, %lld %s, mass %.6g kg\n      ", name, brunt_body_material(world, first),
+           (int)(end - first), (long long)(elements ? elements : particles),
+           elements ? brunt_element_name(brunt_body_element(world, first)) : "particles", mass);
+    printf("%s.1 to %s.%d", name, name, (int)(end - first));
+    print_spread("radius", radius, end - first, "m");
+    if (!isnan(young.mean)) print_spread("E", young, end - first, "Pa");
+    if (isfinite(step)) printf(", least stable step %.4g s", step);
+    putchar('\n');
+}
+
+static void print_bodies(const brunt_scene *scene, brunt_world *world) {
+    printf("bodies\n");
+    for (int32_t b = 0, end; b < brunt_body_count(world); b = end) {
+        end = brunt_part_end(world, b);
+        if (end > b + 1)
+            print_crowd(scene, world, b, end);
         else
-            snprintf(size, sizeof size, "%12lld particles", (long long)brunt_body_particles(world, b));
-        printf("  %-20s %-20s %s  mass %.6g kg  velocity [%.6g, %.6g, %.6g] m/s\n", brunt_body_name(world, b),
-               brunt_body_material(world, b), size, sums.mass, sums.velocity[0], sums.velocity[1], sums.velocity[2]);
-        if (fem) print_mesh(world, b);
+            print_body(world, b);
     }
 }
 
@@ -77,20 +142,59 @@ static double points_of(const brunt_world *world) {
     return (double)(brunt_world_particles(world) + brunt_world_elements(world));
 }
 
-static void print_memory(brunt_world *world) {
+// A line of the table: an array, or the same one of all members of a crowd.
+typedef struct array_line {
+    char name[160];
+    brunt_array array;
+    double bytes;
+} array_line;
+
+// "grains.17: nodes" is "grains: nodes".
+static void name_line(const char *name, char *out, size_t room) {
+    const int crowd = brunt_crowd_of(name);
+    const size_t digits = crowd ? strspn(name + crowd + 1, "0123456789") : 0;
+    if (digits)
+        snprintf(out, room, "%.*s%s", crowd, name, name + crowd + 1 + digits);
+    else
+        snprintf(out, room, "%s", name);
+}
+
+// Members come one after the other: what one has is among the last lines, if it is there.
+static void add_array(array_line *line, int32_t *count, const brunt_array *array) {
+    enum { ARRAYS_OF_A_BODY = 64 };
+    char name[160];
+    name_line(array->name, name, sizeof name);
+    for (int32_t k = *count - 1; k >= 0 && k >= *count - ARRAYS_OF_A_BODY; k--) {
+        if (strcmp(line[k].name, name) != 0) continue;
+        line[k].bytes += (double)array->bytes;
+        return;
+    }
+    line[*count] = (array_line){.array = *array, .bytes = (double)array->bytes};
+    memcpy(line[(*count)++].name, name, sizeof name);
+}
+
+static int print_memory(const brunt_world *world, brunt_error *error) {
+    array_line *line;
+    int32_t count = 0;
     double total = 0;
+    if (BRUNT_NEW(line, (size_t)brunt_array_count(world) + 1, "a list of arrays", error)) return BRUNT_FAILED;
     printf("arrays\n");
     for (int32_t a = 0; a < brunt_array_count(world); a++) {
-        brunt_array array = brunt_world_array(world, a);
-        printf("  %-52s %2d x [%-8s] ", array.name, array.components, array.unit);
-        print_size((double)array.bytes, 10);
-        printf("\n");
+        const brunt_array array = brunt_world_array(world, a);
+        add_array(line, &count, &array);
         total += (double)array.bytes;
+    }
+    for (int32_t k = 0; k < count; k++) {
+        printf("  %-52s %2d x [%-8s] ", line[k].name, line[k].array.components, line[k].array.unit);
+        print_size(line[k].bytes, 10);
+        printf("\n");
     }
     printf("  %-68s", "all arrays");
     print_size(total, 10);
     printf(", %.0f bytes a %s\n", total / points_of(world),
            brunt_world_elements(world) ? "particle or element" : "particle");
+    brunt_free(line);
+    return BRUNT_OK;
 }
 
 static const char *plural(double count) { return count == 1 ? "" : "s"; }
@@ -252,12 +356,12 @@ static int check(const brunt_scene *scene, bool quick, brunt_error *error) {
                (int)scene->measure_count);
         brunt_console console = {.out = stdout};
         brunt_run_warn(scene, world, &console);
-        print_bodies(world);
+        print_bodies(scene, world);
         print_surfaces(scene, world);
         print_plan(world);
         print_newton(scene, world);
-        print_memory(world);
-        status = print_cost(&machine, scene, world, history, quick, error);
+        status = print_memory(world, error);
+        if (!status) status = print_cost(&machine, scene, world, history, quick, error);
         if (status) fprintf(stderr, "brunt: the scene fails in its first steps: %s\n", error->message);
     }
     brunt_machine_free(&machine);

@@ -12,7 +12,9 @@
 #include "base/error.h"
 #include "base/array.h"
 #include "base/memory.h"
+#include "io/output/parts.h"
 #include "io/output/positions.h"
+#include "io/scene/crowd.h"
 
 // ---------------------------------------------------------------------------------------------------- columns
 
@@ -127,11 +129,41 @@ static void add_momentum(brunt_history *h, brunt_world *world) {
     add(h, "momentum.angular_drift", "1", m.angular_drift);
 }
 
-static void add_body(brunt_history *h, brunt_world *world, int32_t body) {
+// Of bodies [first, end); those of which nothing is left have no place.
+static void sum_bodies(brunt_world *world, int32_t first, int32_t end, brunt_body_sums *all) {
+    brunt_body_totals(world, first, all);
+    if (end == first + 1) return;
+    *all = (brunt_body_sums){.low = {INFINITY, INFINITY, INFINITY}, .high = {-INFINITY, -INFINITY, -INFINITY}};
+    for (int32_t b = first; b < end; b++) {
+        brunt_body_sums one;
+        brunt_body_totals(world, b, &one);
+        if (!(one.mass > 0)) continue;
+        all->mass += one.mass;
+        all->kinetic += one.kinetic, all->internal += one.internal, all->plastic += one.plastic;
+        for (int c = 0; c < 3; c++) {
+            all->centre[c] += one.mass * one.centre[c], all->velocity[c] += one.mass * one.velocity[c];
+            all->low[c] = fmin(all->low[c], one.low[c]), all->high[c] = fmax(all->high[c], one.high[c]);
+        }
+    }
+    for (int c = 0; c < 3 && all->mass > 0; c++) all->centre[c] /= all->mass, all->velocity[c] /= all->mass;
+}
+
+static void add_eroded(brunt_history *h, brunt_world *world, int32_t first, int32_t end, const char *name) {
+    double pieces = 0, mass = 0;
+    for (int32_t b = first; b < end; b++) {
+        brunt_eroded eroded;
+        brunt_body_eroded(world, b, &eroded);
+        pieces += (double)(eroded.elements + eroded.particles), mass += eroded.mass;
+    }
+    add_named(h, "1", pieces, "body.%s.eroded", name);
+    add_named(h, "kg", mass, "body.%s.eroded_mass", name);
+}
+
+// Bodies [first, end), under one name.
+static void add_bodies(brunt_history *h, brunt_world *world, int32_t first, int32_t end, const char *body_name) {
     brunt_body_sums sums;
-    brunt_body_totals(world, body, &sums);
+    sum_bodies(world, first, end, &sums);
     char name[COLUMN_NAME];
-    const char *body_name = brunt_body_name(world, body);
     add_named(h, "kg", sums.mass, "body.%s.mass", body_name);
     snprintf(name, sizeof name, "body.%s.position", body_name);
     add_vector(h, name, "m", sums.centre);
@@ -144,11 +176,19 @@ static void add_body(brunt_history *h, brunt_world *world, int32_t body) {
     add_named(h, "J", sums.kinetic, "body.%s.kinetic", body_name);
     add_named(h, "J", sums.internal, "body.%s.internal", body_name);
     add_named(h, "J", sums.plastic, "body.%s.plastic", body_name);
-    if (!brunt_effect_on(world, "erosion")) return;
-    brunt_eroded eroded;
-    brunt_body_eroded(world, body, &eroded);
-    add_named(h, "1", (double)(eroded.elements + eroded.particles), "body.%s.eroded", body_name);
-    add_named(h, "kg", eroded.mass, "body.%s.eroded_mass", body_name);
+    if (brunt_effect_on(world, "erosion")) add_eroded(h, world, first, end, body_name);
+}
+
+// Each body, all members of a crowd as one, and those members that measures ask for.
+static void add_parts(brunt_history *h, brunt_world *world) {
+    for (int32_t b = 0, end; b < brunt_body_count(world); b = end) {
+        char name[BRUNT_NAME_LENGTH];
+        end = brunt_part_end(world, b);
+        brunt_part_name(world, b, name);
+        add_bodies(h, world, b, end, name);
+    }
+    for (int32_t m = 0; m < h->member_count; m++)
+        add_bodies(h, world, h->members[m], h->members[m] + 1, brunt_body_name(world, h->members[m]));
 }
 
 // Where the probe's id is among those there are now, -1 when it has eroded. Uses the scratch.
@@ -206,7 +246,7 @@ static void traverse(brunt_history *h, brunt_world *world) {
     add_energy(h, world);
     add_momentum(h, world);
     add_newton(h, world);
-    for (int32_t b = 0; b < brunt_body_count(world); b++) add_body(h, world, b);
+    add_parts(h, world);
     const bool flat = brunt_world_dimension(world) == 2 && !brunt_effect_on(world, "axisymmetric");
     for (int32_t p = 0; p < brunt_pair_count(world); p++) {
         brunt_reaction force;
@@ -261,10 +301,34 @@ static int find_probe(brunt_world *world, const brunt_probe *def, probe *out, br
     return BRUNT_OK;
 }
 
+static int compare_bodies(const void *a, const void *b) {
+    const int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
+    return (x > y) - (x < y);
+}
+
+// Members of crowds that the columns of measures begin with, "body.grains.17.".
+static void find_members(brunt_history *h, const brunt_world *world, const brunt_scene *scene) {
+    int32_t found = 0;
+    for (int32_t m = 0; m < scene->measure_count; m++) {
+        char name[BRUNT_NAME_LENGTH];
+        const char *from = scene->measures[m].column, *end = from + strlen(from);
+        if (strncmp(from, "body.", 5) != 0) continue;
+        while (end > from && *end != '.') end--;
+        snprintf(name, sizeof name, "%.*s", (int)(end - from > 5 ? end - from - 5 : 0), from + 5);
+        const int32_t body = brunt_crowd_of(name) ? brunt_find_body(world, name) : BRUNT_NONE;
+        if (body >= 0) h->members[found++] = body;
+    }
+    qsort(h->members, (size_t)found, sizeof *h->members, compare_bodies);
+    for (int32_t i = 0; i < found; i++)
+        if (!i || h->members[i] != h->members[i - 1]) h->members[h->member_count++] = h->members[i];
+}
+
 brunt_history *brunt_history_create(brunt_world *world, const brunt_scene *scene, brunt_error *error) {
     brunt_history *h = brunt_alloc(sizeof *h);
     if (h) h->probes = brunt_alloc(sizeof *h->probes * (size_t)scene->output.probe_count);
-    if (!h || !h->probes) {
+    if (h) h->members = brunt_alloc(sizeof *h->members * (size_t)scene->measure_count);
+    if (!h || !h->probes || !h->members) {
+        if (h) brunt_free(h->probes), brunt_free(h->members);
         brunt_free(h);
         brunt_fail(error, BRUNT_FAILED, "out of memory");
         return NULL;
@@ -277,6 +341,7 @@ brunt_history *brunt_history_create(brunt_world *world, const brunt_scene *scene
         }
         h->probe_count++;
     }
+    find_members(h, world, scene);
     h->declaring = true;
     traverse(h, world);
     h->declaring = false;
@@ -305,6 +370,7 @@ void brunt_history_destroy(brunt_history *history) {
     brunt_names_free(&history->names);
     brunt_free(history->lines);
     brunt_free(history->probes);
+    brunt_free(history->members);
     brunt_free(history->scratch);
     brunt_free(history);
 }

@@ -11,7 +11,13 @@
 #include "base/memory.h"
 #include "io/file/input_file.h"
 
-bool brunt_history_counts(const char *name) { return strncmp(name, "probe.", 6) != 0; }
+// "body.grains.17.position_x": of one that is asked for.
+static bool is_of_member(const char *name) {
+    const char *dot = strncmp(name, "body.", 5) == 0 ? strchr(name + 5, '.') : NULL;
+    return dot && dot[1] >= '0' && dot[1] <= '9';
+}
+
+bool brunt_history_counts(const char *name) { return strncmp(name, "probe.", 6) != 0 && !is_of_member(name); }
 
 uint64_t brunt_history_hash_value(uint64_t hash, double value) {
     uint64_t bits;

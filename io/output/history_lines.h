@@ -36,6 +36,8 @@ struct brunt_history {
     bool resumed; // lines are in a file that is to be gone on with
     probe *probes;
     int32_t probe_count;
+    int32_t *members; // of crowds, that measures ask for: bodies in their order, each once
+    int32_t member_count;
     double *scratch; // a field of a probe's body
     size_t scratch_capacity;
     FILE *csv;
@@ -58,7 +60,7 @@ typedef struct line_reader {
     uint64_t hash; // of the lines so far
 } line_reader;
 
-// False: of a probe, which may change between the legs of a run.
+// False: of a probe or a member of a crowd, which may change between the legs of a run.
 bool brunt_history_counts(const char *column_name);
 uint64_t brunt_history_hash_value(uint64_t hash, double value);
 void brunt_history_print_line(const brunt_history *h, const double *values, FILE *out);

@@ -2,10 +2,13 @@
 
 #include <stdio.h>
 
+#include "base/array.h"
 #include "io/file/atomic_file.h"
+#include "io/output/parts.h"
 
-int32_t brunt_picture_parts(const brunt_world *world) {
-    return brunt_body_count(world) + brunt_boundary_surface_count(world);
+int32_t brunt_picture_next(const brunt_world *world, int32_t part) {
+    const int32_t bodies = brunt_body_count(world), next = part < bodies ? brunt_part_end(world, part) : part + 1;
+    return next < bodies + brunt_boundary_surface_count(world) ? next : BRUNT_NONE;
 }
 
 // What a part is of; *boundary: whether that is a line or surface.
@@ -13,8 +16,12 @@ static void part_name(const brunt_world *world, int32_t part, char out[BRUNT_NAM
     const int32_t bodies = brunt_body_count(world);
     brunt_boundary_surface_report report;
     *boundary = part >= bodies;
-    if (*boundary) brunt_boundary_surface_read(world, part - bodies, &report);
-    snprintf(out, BRUNT_NAME_LENGTH, "%s", *boundary ? report.name : brunt_body_name(world, part));
+    if (!*boundary) {
+        brunt_part_name(world, part, out);
+        return;
+    }
+    brunt_boundary_surface_read(world, part - bodies, &report);
+    snprintf(out, BRUNT_NAME_LENGTH, "%s", report.name);
 }
 
 void brunt_picture_name(char out[128], const brunt_world *world, int32_t part, int64_t number) {
@@ -33,13 +40,13 @@ int brunt_pvd_write(const char *path, const brunt_world *world, const double *ti
           "header_type=\"UInt64\">\n  <Collection>\n",
           file.stream);
     for (int64_t n = 0; n < count; n++)
-        for (int32_t b = 0; b < brunt_picture_parts(world); b++) {
+        for (int32_t b = 0, number = 0; b >= 0; b = brunt_picture_next(world, b), number++) {
             char name[128], part[BRUNT_NAME_LENGTH];
             bool boundary;
             brunt_picture_name(name, world, b, n);
             part_name(world, b, part, &boundary);
             fprintf(file.stream, "    <DataSet timestep=\"%.17g\" group=\"\" part=\"%d\" name=\"%s\" file=\"%s\"/>\n",
-                    times[n], (int)b, part, name);
+                    times[n], (int)number, part, name);
         }
     fputs("  </Collection>\n</VTKFile>\n", file.stream);
     return brunt_atomic_commit(&file, error);

@@ -3,8 +3,9 @@
 
 #include "brunt.h"
 
-// Parts of a picture, a file each: the bodies, then the lines and surfaces that hold material points.
-int32_t brunt_picture_parts(const brunt_world *world);
+// Parts of a picture, a file each: the bodies, all members of a crowd as one, then the lines and surfaces that hold
+// material points. From 0 on: the part behind one; BRUNT_NONE: there is none.
+int32_t brunt_picture_next(const brunt_world *world, int32_t part);
 // Name of a part of picture `number`, inside the output folder: "vtu/<body>_<number>.vtu", of a boundary
 // "vtu/boundary.<name>_<number>.vtu".
 void brunt_picture_name(char out[128], const brunt_world *world, int32_t part, int64_t number);

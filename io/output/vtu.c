@@ -10,7 +10,9 @@
 #include "io/file/input_file.h"
 #include "base/array.h"
 #include "base/memory.h"
+#include "io/output/parts.h"
 #include "io/output/positions.h"
+#include "io/scene/crowd.h"
 
 // Uncompressed bytes of a zlib block. VTK's own default is 32768; larger blocks compress better and read as fast.
 enum { BLOCK_BYTES = 262144 };
@@ -227,12 +229,12 @@ enum { PICTURE_FIELDS = 256 };
 // A body's picture while it is put together, with the memory that is behind it.
 typedef struct picture {
     brunt_world *world;
-    int32_t body;
+    int32_t body, end; // as far as the members of a crowd go, which are alike
     bool elements;
     brunt_vtu_grid grid;
     brunt_vtu_array arrays[PICTURE_FIELDS];
     int array_count;
-    void *memory[PICTURE_FIELDS + 5];
+    void *memory[PICTURE_FIELDS + 7];
     int memory_count;
 } picture;
 
@@ -246,45 +248,93 @@ static void *picture_alloc(picture *p, size_t bytes, brunt_error *error) {
     return memory;
 }
 
-static int add_ids(picture *p, int64_t count, bool at_cells, brunt_error *error) {
-    int64_t *ids = picture_alloc(p, sizeof *ids * (size_t)count, error);
-    if (!ids) return BRUNT_FAILED;
-    for (int64_t i = 0; i < count; i++) ids[i] = i;
-    const brunt_location here = at_cells ? BRUNT_AT_ELEMENTS : p->elements ? BRUNT_AT_NODES : BRUNT_AT_PARTICLES;
-    const int32_t field = brunt_location_ids(p->world, p->body, here);
-    if (field >= 0) {
-        double *values = picture_alloc(p, sizeof *values * (size_t)count, error);
-        if (!values) return BRUNT_FAILED;
-        brunt_body_read(p->world, p->body, field, values);
-        for (int64_t i = 0; i < count; i++) ids[i] = (int64_t)values[i];
+// Of all its bodies.
+static int64_t size_of(const picture *p, brunt_location at) {
+    int64_t size = 0;
+    for (int32_t b = p->body; b < p->end; b++) size += brunt_body_size(p->world, b, at);
+    return size;
+}
+
+// A field of all bodies that have it, one after the other. NULL: there is no memory.
+static double *read_all(picture *p, const char *name, brunt_location at, int components, brunt_error *error) {
+    const size_t count = (size_t)size_of(p, at) * (size_t)components;
+    double *values = picture_alloc(p, sizeof *values * count, error), *to = values;
+    for (int32_t b = p->body; values && b < p->end; b++) {
+        const int32_t field = brunt_body_find_field(p->world, b, name);
+        if (field >= 0) brunt_body_read(p->world, b, field, to);
+        to += brunt_body_size(p->world, b, at) * components;
     }
+    return values;
+}
+
+static int add_integers(picture *p, const char *name, int64_t *values, bool at_cells) {
     p->arrays[p->array_count++] =
-        (brunt_vtu_array){.name = "id", .components = 1, .integers = ids, .at_cells = at_cells};
+        (brunt_vtu_array){.name = name, .components = 1, .integers = values, .at_cells = at_cells};
     return BRUNT_OK;
+}
+
+static int add_ids(picture *p, bool at_cells, brunt_error *error) {
+    const brunt_location here = at_cells ? BRUNT_AT_ELEMENTS : p->elements ? BRUNT_AT_NODES : BRUNT_AT_PARTICLES;
+    int64_t *ids = picture_alloc(p, sizeof *ids * (size_t)size_of(p, here), error), *to = ids;
+    for (int32_t b = p->body; ids && b < p->end; b++) {
+        const int32_t field = brunt_location_ids(p->world, b, here);
+        const int64_t count = brunt_body_size(p->world, b, here);
+        double *values = field >= 0 ? brunt_alloc(sizeof *values * (size_t)count) : NULL;
+        if (field >= 0 && !values) return brunt_fail(error, BRUNT_FAILED, "out of memory for a picture's ids");
+        if (values) brunt_body_read(p->world, b, field, values);
+        for (int64_t i = 0; i < count; i++) *to++ = values ? (int64_t)values[i] : i;
+        brunt_free(values);
+    }
+    return ids ? add_integers(p, "id", ids, at_cells) : BRUNT_FAILED;
+}
+
+// Of a crowd: whose each is, by its number.
+static int add_members(picture *p, bool at_cells, brunt_error *error) {
+    const brunt_location here = at_cells ? BRUNT_AT_ELEMENTS : p->elements ? BRUNT_AT_NODES : BRUNT_AT_PARTICLES;
+    if (p->end == p->body + 1) return BRUNT_OK;
+    int64_t *members = picture_alloc(p, sizeof *members * (size_t)size_of(p, here), error), *to = members;
+    for (int32_t b = p->body; members && b < p->end; b++) {
+        const char *name = brunt_body_name(p->world, b);
+        const int64_t number = strtoll(name + brunt_crowd_of(name) + 1, NULL, 10);
+        for (int64_t i = 0; i < brunt_body_size(p->world, b, here); i++) *to++ = number;
+    }
+    return members ? add_integers(p, "member", members, at_cells) : BRUNT_FAILED;
+}
+
+static int add_cells(picture *p, brunt_error *error) {
+    brunt_world *world = p->world;
+    const brunt_element_traits *element = brunt_element_traits_of(brunt_body_element(world, p->body));
+    p->grid.cell_count = size_of(p, BRUNT_AT_ELEMENTS);
+    p->grid.cell_nodes = element->nodes;
+    p->grid.cell_type = element->shape->vtk_cell;
+    int32_t *cells = picture_alloc(p, sizeof *cells * (size_t)element->nodes * (size_t)p->grid.cell_count, error);
+    int32_t *to = cells, first = 0;
+    for (int32_t b = p->body; cells && b < p->end; b++) {
+        const int64_t corners = element->nodes * brunt_body_size(world, b, BRUNT_AT_ELEMENTS);
+        brunt_body_connectivity(world, b, to);
+        for (int64_t i = 0; i < corners; i++) to[i] += first;
+        to += corners, first += (int32_t)brunt_body_size(world, b, BRUNT_AT_NODES);
+    }
+    p->grid.cells = cells;
+    return cells ? BRUNT_OK : BRUNT_FAILED;
 }
 
 static int add_grid(picture *p, brunt_error *error) {
     brunt_world *world = p->world;
     p->elements = brunt_body_method(world, p->body) != BRUNT_MPM;
-    p->grid.point_count = brunt_body_size(world, p->body, p->elements ? BRUNT_AT_NODES : BRUNT_AT_PARTICLES);
-    int32_t position = brunt_body_find_field(world, p->body, "position");
-    if (position < 0)
+    const brunt_location here = p->elements ? BRUNT_AT_NODES : BRUNT_AT_PARTICLES;
+    p->grid.point_count = size_of(p, here);
+    if (p->grid.point_count > INT32_MAX)
+        return brunt_fail(error, BRUNT_FAILED, "a picture of '%s' has more than %d points",
+                          brunt_body_name(world, p->body), INT32_MAX);
+    if (brunt_body_find_field(world, p->body, "position") < 0)
         return brunt_fail(error, BRUNT_FAILED, "body '%s' has no field 'position'", brunt_body_name(world, p->body));
-    double *points = picture_alloc(p, sizeof *points * 3 * (size_t)p->grid.point_count, error);
-    if (!points) return BRUNT_FAILED;
-    brunt_body_read(world, p->body, position, points);
-    p->grid.points = points;
-    int status = add_ids(p, p->grid.point_count, false, error);
-    if (status || !p->elements) return status;
-    const brunt_element_traits *element = brunt_element_traits_of(brunt_body_element(world, p->body));
-    p->grid.cell_count = brunt_body_size(world, p->body, BRUNT_AT_ELEMENTS);
-    p->grid.cell_nodes = element->nodes;
-    p->grid.cell_type = element->shape->vtk_cell;
-    int32_t *cells = picture_alloc(p, sizeof *cells * (size_t)element->nodes * (size_t)p->grid.cell_count, error);
-    if (!cells) return BRUNT_FAILED;
-    brunt_body_connectivity(world, p->body, cells);
-    p->grid.cells = cells;
-    return add_ids(p, p->grid.cell_count, true, error);
+    if (!(p->grid.points = read_all(p, "position", here, 3, error))) return BRUNT_FAILED;
+    int status = add_ids(p, false, error);
+    if (!status) status = add_members(p, false, error);
+    if (!status && p->elements) status = add_cells(p, error);
+    if (!status && p->elements) status = add_ids(p, true, error);
+    return !status && p->elements ? add_members(p, true, error) : status;
 }
 
 static int add_field(picture *p, const char *name, brunt_error *error) {
@@ -294,11 +344,9 @@ static int add_field(picture *p, const char *name, brunt_error *error) {
         return BRUNT_OK;
     for (int a = 0; a < p->array_count; a++)
         if (strcmp(p->arrays[a].name, name) == 0) return BRUNT_OK;
-    brunt_field_info info = brunt_body_field(p->world, p->body, field);
-    size_t count = (size_t)brunt_body_size(p->world, p->body, info.at) * (size_t)info.components;
-    double *values = picture_alloc(p, sizeof *values * count, error);
+    const brunt_field_info info = brunt_body_field(p->world, p->body, field);
+    const double *values = read_all(p, name, info.at, info.components, error);
     if (!values) return BRUNT_FAILED;
-    brunt_body_read(p->world, p->body, field, values);
     p->arrays[p->array_count++] = (brunt_vtu_array){
         .name = info.name, .components = info.components, .values = values, .at_cells = info.at == BRUNT_AT_ELEMENTS};
     return BRUNT_OK;
@@ -322,7 +370,7 @@ int brunt_vtu_write_body(const char *path, brunt_world *world, int32_t body, con
     picture *p = brunt_alloc(sizeof *p);
     if (!p) return brunt_fail(error, BRUNT_FAILED, "out of memory while writing %s", path);
     p->world = world;
-    p->body = body;
+    p->body = body, p->end = brunt_part_end(world, body);
     int status = add_grid(p, error);
     for (int f = 0; f < field_count && !status; f++)
         status = strcmp(fields[f], "default") == 0 ? add_default(p, error) : add_field(p, fields[f], error);

@@ -34,7 +34,7 @@ int brunt_vtu_write(const char *path, double time, const brunt_vtu_grid *grid, c
                     int array_count, bool float32, brunt_error *error);
 
 // One body of a world: its ids and the named fields it has; a name it has not is left out. "default" stands for what
-// the body's method always shows.
+// the body's method always shows. Of the first member of a crowd all of them, with their numbers as `member`.
 int brunt_vtu_write_body(const char *path, brunt_world *world, int32_t body, const char (*fields)[64], int field_count,
                          bool float32, brunt_error *error);
 

@@ -97,7 +97,7 @@ static int write_picture(run *r, brunt_error *error) {
     char path[BRUNT_PATH_LENGTH], name[128];
     int status = brunt_run_folder_list_picture(&r->output, r->world, number, error);
     const int32_t bodies = brunt_body_count(r->world);
-    for (int32_t b = 0; b < brunt_picture_parts(r->world) && !status; b++) {
+    for (int32_t b = 0; b >= 0 && !status; b = brunt_picture_next(r->world, b)) {
         brunt_picture_name(name, r->world, b, number);
         status = path_in(r, name, path, error);
         if (!status && b < bodies)

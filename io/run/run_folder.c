@@ -135,12 +135,12 @@ int brunt_run_folder_list_picture(brunt_output_folder *folder, const brunt_world
     char names[AT_ONCE][128];
     const char *pointers[AT_ONCE];
     int status = BRUNT_OK;
-    for (int32_t b = 0; b < brunt_picture_parts(world) && !status; b += AT_ONCE) {
+    for (int32_t b = 0; b >= 0 && !status;) {
         int32_t count = 0;
         brunt_obstacles found = {0};
         brunt_output_obstacle(folder, "vtu/", &found);
-        for (; count < AT_ONCE && b + count < brunt_picture_parts(world); count++) {
-            brunt_picture_name(names[count], world, b + count, number);
+        for (; count < AT_ONCE && b >= 0; count++, b = brunt_picture_next(world, b)) {
+            brunt_picture_name(names[count], world, b, number);
             pointers[count] = names[count];
             brunt_output_obstacle(folder, names[count], &found);
         }

@@ -1,5 +1,5 @@
 // Bodies of a scene: what each method needs of them, and which keys are the other's.
-#include "io/scene/scene_reader.h"
+#include "io/scene/scene_crowd.h"
 
 #include <errno.h>
 #include <math.h>
@@ -7,6 +7,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "base/memory.h"
 #include "base/names.h"
 #include "io/mesh/gmsh.h"
 #include "geometry/element_traits.h"
@@ -17,6 +18,12 @@
 static const double CELL_COUNT_LIMIT = 1e9, PARTICLE_LIMIT = 2147483648.0, ELEMENT_LIMIT = 2147483648.0;
 
 // ---------------------------------------------------------------------------------------------------- size
+
+// What says how large a body is: its shape, or the crowd that it is the first of.
+static const scene_node *shape_of(const scene_node *node) {
+    const scene_node *shape = brunt_tree_child(node, "shape");
+    return shape ? shape : brunt_tree_child(node, "crowd");
+}
 
 typedef struct extents {
     double smallest, largest, volume, surface, farthest; // of the box around it: [m], [m^dimension], [m^2]
@@ -82,7 +89,7 @@ static void check_faces(scene_reader *reader, const scene_node *node, const brun
 }
 
 static void check_meshing(scene_reader *reader, const scene_node *node, const brunt_body_def *body) {
-    const scene_node *shape = brunt_tree_child(node, "shape"), *edge = brunt_tree_child(node, "size");
+    const scene_node *shape = shape_of(node), *edge = brunt_tree_child(node, "size");
     brunt_shape_kind kind = body->shape.kind;
     brunt_mesh_cut cut;
     brunt_error error = {0};
@@ -154,12 +161,11 @@ static void fill_jitter(scene_reader *reader, scene_node *node, brunt_body_def *
 }
 
 static void fill_particles(scene_reader *reader, scene_node *node, brunt_body_def *body, bool measurable) {
-    if (!brunt_tree_child(node, "shape"))
+    if (!shape_of(node))
         brunt_tree_complain_key(reader->tree, node, "'shape' is missing: what is filled with particles");
     int mistakes = reader->tree->message_count;
     fill_count(reader, node, body);
-    if (measurable && mistakes == reader->tree->message_count)
-        check_filling(reader, brunt_tree_child(node, "shape"), body);
+    if (measurable && mistakes == reader->tree->message_count) check_filling(reader, shape_of(node), body);
     fill_jitter(reader, node, body);
 }
 
@@ -308,7 +314,7 @@ static void fill_membrane(scene_reader *reader, scene_node *node, brunt_body_def
 }
 
 static void fill_fem(scene_reader *reader, scene_node *node, brunt_body_def *body, bool measurable) {
-    bool shape = brunt_tree_child(node, "shape"), mesh = brunt_tree_child(node, "mesh"), known = false;
+    bool shape = shape_of(node), mesh = brunt_tree_child(node, "mesh"), known = false;
     if (body->method == BRUNT_MEMBRANE) fill_membrane(reader, node, body);
     if (shape == mesh) {
         brunt_tree_complain_key(reader->tree, node, "exactly one of shape and mesh is wanted, %s given",
@@ -355,7 +361,9 @@ static void check_wave(scene_reader *reader, const scene_node *wave, const brunt
 
 // ---------------------------------------------------------------------------------------------------- bodies
 
-static void fill_body(scene_reader *reader, scene_node *node, const brunt_names *materials, brunt_body_def *body) {
+// `crowd` NULL: it is none.
+static void fill_body(scene_reader *reader, scene_node *node, const brunt_names *materials, const brunt_crowd *crowd,
+                      brunt_body_def *body) {
     if (node->kind != SCENE_MAP) return;
     const scene_node *material = brunt_tree_child(node, "material"), *method = brunt_tree_child(node, "method");
     const char *of = brunt_text_of(node, "material", "");
@@ -365,8 +373,9 @@ static void fill_body(scene_reader *reader, scene_node *node, const brunt_names 
     int mistakes = reader->tree->message_count;
     const scene_node *shape = brunt_tree_child(node, "shape");
     brunt_fill_shape_def(reader, shape, &body->shape);
+    if (crowd) brunt_crowd_shape(crowd, &body->shape);
     body->place = brunt_fill_placement(reader, brunt_tree_child(node, "place"));
-    bool measurable = shape && shape->good && reader->dimension && mistakes == reader->tree->message_count;
+    bool measurable = ((shape && shape->good) || crowd) && reader->dimension && mistakes == reader->tree->message_count;
     body->method = (brunt_method)(int)brunt_real_of(node, "method", BRUNT_MPM);
     // Without a method it is not known which keys are wanted.
     if (method && method->good) brunt_fill_fields(reader, node, "bodies.*", 1u << body->method, body);
@@ -383,22 +392,59 @@ static int by_name(const void *a, const void *b) {
     return strcmp(((const brunt_body_def *)a)->name, ((const brunt_body_def *)b)->name);
 }
 
-void brunt_fill_bodies(scene_reader *reader) {
+// Bodies of the scene's keys, and in `crowd` which of those are crowds: of others the radius is 0.
+static int64_t count_bodies(scene_reader *reader, const scene_node *map, brunt_crowd *crowd) {
+    int64_t count = 0;
+    for (scene_node *child = map->first; child; child = child->next, crowd++) {
+        if (child->kind != SCENE_MAP || !brunt_read_crowd(reader, child, crowd)) crowd->radius = 0;
+        count += crowd->radius > 0 ? brunt_crowd_size(crowd) : 1;
+    }
+    return count;
+}
+
+static void fill_all(scene_reader *reader, const scene_node *map, const brunt_names *materials,
+                     const brunt_crowd *crowd) {
     brunt_world_def *world = &reader->scene->world;
-    const scene_node *map = brunt_tree_child(reader->tree->root, "bodies");
-    int count = brunt_children_of(map, SCENE_MAP);
-    world->bodies = brunt_entries_for(reader, count, sizeof *world->bodies);
-    brunt_names materials = {.count = 0};
-    if (!world->bodies) return;
-    if (world->material_count &&
-        brunt_names_sort(&materials, world->materials[0].name, sizeof *world->materials, world->material_count, NULL))
-        reader->tree->exhausted = true;
-    for (scene_node *child = map->first; child; child = child->next) {
-        brunt_body_def *body = &world->bodies[world->body_count++];
+    for (scene_node *child = map->first; child; child = child->next, crowd++) {
+        const bool many = crowd->radius > 0;
+        brunt_body_def *body = &world->bodies[world->body_count];
         *body = brunt_body_def_default();
         snprintf(body->name, sizeof body->name, "%s", child->key);
-        fill_body(reader, child, &materials, body);
+        fill_body(reader, child, materials, many ? crowd : NULL, body);
+        if (many) brunt_expand_crowd(reader, child, crowd, body);
+        world->body_count += many ? (int32_t)brunt_crowd_size(crowd) : 1;
+    }
+}
+
+// Members of crowds may have materials of their own: room for them, before names are looked up where they are.
+static void reserve_materials(scene_reader *reader, const brunt_crowd *crowds, int count) {
+    brunt_world_def *world = &reader->scene->world;
+    const int more = brunt_crowd_materials(crowds, count);
+    brunt_material_def *all = more ? brunt_entries_for(reader, world->material_count + more, sizeof *all) : NULL;
+    if (!all) return;
+    if (world->material_count) memcpy(all, world->materials, (size_t)world->material_count * sizeof *all);
+    brunt_free(world->materials);
+    world->materials = all;
+}
+
+void brunt_fill_bodies(scene_reader *reader) {
+    enum { LIMIT = 4 * BRUNT_CROWD_LIMIT };
+    brunt_world_def *world = &reader->scene->world;
+    const scene_node *map = brunt_tree_child(reader->tree->root, "bodies");
+    const int keys = brunt_children_of(map, SCENE_MAP);
+    brunt_crowd *crowds = brunt_entries_for(reader, keys, sizeof *crowds);
+    const int64_t count = crowds ? count_bodies(reader, map, crowds) : 0;
+    if (count > LIMIT) brunt_tree_complain_key(reader->tree, map, "more than %d bodies cannot be held", LIMIT);
+    if (count <= LIMIT) world->bodies = brunt_entries_for(reader, (int)count, sizeof *world->bodies);
+    brunt_names materials = {.count = 0};
+    if (world->bodies) reserve_materials(reader, crowds, keys);
+    if (world->bodies && world->material_count &&
+        brunt_names_sort(&materials, world->materials[0].name, sizeof *world->materials, world->material_count, NULL))
+        reader->tree->exhausted = true;
+    if (world->bodies && !reader->tree->exhausted) {
+        fill_all(reader, map, &materials, crowds);
+        qsort(world->bodies, (size_t)world->body_count, sizeof *world->bodies, by_name);
     }
     brunt_names_free(&materials);
-    qsort(world->bodies, (size_t)world->body_count, sizeof *world->bodies, by_name);
+    brunt_free(crowds);
 }

@@ -1,6 +1,6 @@
 // Contact of a scene: the method for all, for single pairs, and what goes with which bodies.
 #include "base/array.h"
-#include "io/scene/scene_reader.h"
+#include "io/scene/scene_crowd.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -9,14 +9,20 @@
 #include "contact/methods/method.h"
 #include "world/named_pairs.h"
 
+// A body, or the first of a crowd: all of one method; NULL: there is none.
+static const brunt_body_def *first_named(const scene_reader *reader, const char *name) {
+    int32_t first;
+    return brunt_bodies_named(reader, name, &first) ? &reader->scene->world.bodies[first] : NULL;
+}
+
 static bool has_mesh(const scene_reader *reader, const char *name) {
-    const brunt_body_def *body = brunt_body_named(reader, name);
+    const brunt_body_def *body = first_named(reader, name);
     return body && body->method != BRUNT_MPM;
 }
 
 static void check_pair_method(scene_reader *reader, const scene_node *method, const brunt_pair_def *pair) {
-    const bool known = brunt_body_named(reader, pair->a) && brunt_body_named(reader, pair->b),
-               a = has_mesh(reader, pair->a), b = has_mesh(reader, pair->b);
+    const bool known = first_named(reader, pair->a) && first_named(reader, pair->b), a = has_mesh(reader, pair->a),
+               b = has_mesh(reader, pair->b);
     if (brunt_contact_accepts(pair->method, a, b) || (!known && brunt_contact_accepts(pair->method, true, true)))
         return;
     brunt_tree_complain(reader->tree, method, "%s wants %s, which '%s' and '%s' are not",
@@ -48,6 +54,13 @@ static void check_self(scene_reader *reader, const scene_node *between, const sc
                             pair->a);
 }
 
+// A body, or a crowd: all its members.
+static void check_bodies(scene_reader *reader, const scene_node *node) {
+    int32_t first;
+    if (!node->good || !node->text || brunt_bodies_named(reader, node->text, &first) < 2)
+        brunt_check_body_name(reader, node);
+}
+
 static void fill_pair(scene_reader *reader, scene_node *node, brunt_pair_def *pair) {
     brunt_contact_def *contact = &reader->scene->world.contact;
     if (node->kind != SCENE_MAP) return;
@@ -69,22 +82,60 @@ static void fill_pair(scene_reader *reader, scene_node *node, brunt_pair_def *pa
                             between->count);
         return;
     }
-    brunt_check_body_name(reader, between->first);
-    brunt_check_body_name(reader, between->last);
+    check_bodies(reader, between->first);
+    check_bodies(reader, between->last);
     brunt_copy_text(reader, between->first, pair->a, sizeof pair->a);
     brunt_copy_text(reader, between->last, pair->b, sizeof pair->b);
-    if (strcmp(pair->a, pair->b) == 0)
+    int32_t first;
+    if (strcmp(pair->a, pair->b) == 0 && brunt_bodies_named(reader, pair->a, &first) > 1)
+        brunt_tree_complain(reader->tree, between, "members of a crowd meet by what contact says of all");
+    else if (strcmp(pair->a, pair->b) == 0)
         check_self(reader, between, method, pair);
     else if (method && method->good)
         check_pair_method(reader, method, pair);
 }
 
+// How many pairs of bodies an entry is: a crowd stands for all its members.
+static int64_t pairs_of(const scene_reader *reader, const scene_node *node) {
+    const scene_node *between = node->kind == SCENE_MAP ? brunt_tree_child(node, "between") : NULL;
+    int32_t first;
+    if (!between || !between->good || between->count != 2 || !strcmp(between->first->text, between->last->text))
+        return 1;
+    const int64_t a = brunt_bodies_named(reader, between->first->text, &first),
+                  b = brunt_bodies_named(reader, between->last->text, &first);
+    return a * b > 1 ? a * b : 1;
+}
+
+// From the first of them, which has the names that were given, to as many.
+static void spread_pairs(const scene_reader *reader, brunt_pair_def *pair) {
+    const brunt_body_def *body = reader->scene->world.bodies;
+    const brunt_pair_def given = *pair;
+    int32_t first[2];
+    const int32_t a = brunt_bodies_named(reader, given.a, &first[0]),
+                  b = brunt_bodies_named(reader, given.b, &first[1]);
+    for (int32_t i = 0; i < a; i++)
+        for (int32_t k = 0; k < b; k++, pair++) {
+            *pair = given;
+            memcpy(pair->a, body[first[0] + i].name, sizeof pair->a);
+            memcpy(pair->b, body[first[1] + k].name, sizeof pair->b);
+        }
+}
+
 static void fill_pairs(scene_reader *reader, const scene_node *list) {
+    enum { LIMIT = 4 * BRUNT_CROWD_LIMIT };
     brunt_contact_def *contact = &reader->scene->world.contact;
-    contact->pairs = brunt_entries_for(reader, brunt_children_of(list, SCENE_LIST), sizeof *contact->pairs);
+    int64_t all = 0;
+    if (!list || list->kind != SCENE_LIST) return;
+    for (const scene_node *child = list->first; child; child = child->next) all += pairs_of(reader, child);
+    if (all > LIMIT) brunt_tree_complain_key(reader->tree, list, "more than %d pairs of bodies cannot be held", LIMIT);
+    contact->pairs = all > LIMIT ? NULL : brunt_entries_for(reader, (int)all, sizeof *contact->pairs);
     if (!contact->pairs) return;
-    for (scene_node *child = list->first; child; child = child->next)
-        fill_pair(reader, child, &contact->pairs[contact->pair_count++]);
+    for (scene_node *child = list->first; child; child = child->next) {
+        const int64_t count = pairs_of(reader, child);
+        fill_pair(reader, child, &contact->pairs[contact->pair_count]);
+        if (count > 1) spread_pairs(reader, &contact->pairs[contact->pair_count]);
+        contact->pair_count += (int32_t)count;
+    }
 }
 
 static void check_twice(scene_reader *reader, const scene_node *list, const brunt_named_pairs *named) {
@@ -93,10 +144,12 @@ static void check_twice(scene_reader *reader, const scene_node *list, const brun
     for (int32_t q = 1; twice && q < named->count; q++)
         if (named->pair[q].a == named->pair[q - 1].a && named->pair[q].b == named->pair[q - 1].b)
             twice[named->pair[q].at] = true;
-    int at = 0;
-    for (const scene_node *child = twice ? list->first : NULL; child; child = child->next, at++)
-        if (twice[at])
-            brunt_tree_complain(reader->tree, brunt_tree_child(child, "between"), "this pair is there twice");
+    int64_t at = 0;
+    for (const scene_node *child = twice ? list->first : NULL; child; child = child->next) {
+        bool again = false;
+        for (int64_t end = at + pairs_of(reader, child); at < end && at < count; at++) again = again || twice[at];
+        if (again) brunt_tree_complain(reader->tree, brunt_tree_child(child, "between"), "this pair is there twice");
+    }
     brunt_free(twice);
 }
 
@@ -210,9 +263,10 @@ static void check_touch(scene_reader *reader, const scene_node *method, brunt_co
 
 static void check_touches(scene_reader *reader, const scene_node *list) {
     const brunt_contact_def *contact = &reader->scene->world.contact;
-    int i = 0;
-    for (scene_node *child = contact->pairs ? list->first : NULL; child; child = child->next, i++) {
-        const brunt_pair_def *pair = &contact->pairs[i];
+    int64_t i = 0;
+    for (scene_node *child = contact->pairs ? list->first : NULL; child;
+         i += pairs_of(reader, child), child = child->next) {
+        const brunt_pair_def *pair = &contact->pairs[i]; // the first of a crowd: all are of one method
         const brunt_body_def *a = brunt_body_named(reader, pair->a), *b = brunt_body_named(reader, pair->b);
         const scene_node *method = child->kind == SCENE_MAP ? brunt_tree_child(child, "method") : NULL;
         if (a && b && a != b && a->method == BRUNT_MPM && b->method == BRUNT_MPM && method && method->good)
@@ -226,8 +280,9 @@ static void check_pair_columns(scene_reader *reader) {
     int32_t first[2], second[2];
     if (!brunt_pairs_of_one_name(world, first, second)) return;
     const brunt_body_def *body = world->bodies;
-    const scene_node *node = brunt_tree_child(brunt_tree_child(reader->tree->root, "bodies"), body[second[0]].name);
-    brunt_tree_complain_key(reader->tree, node,
+    const scene_node *all = brunt_tree_child(reader->tree->root, "bodies"),
+                     *node = brunt_tree_child(all, body[second[0]].name);
+    brunt_tree_complain_key(reader->tree, node ? node : all, // a member of a crowd has no key of its own
                             "the pair of '%s' and '%s' has the name of that of '%s' and '%s' in the history, "
                             "contact.%s-%s: another name is wanted",
                             body[second[0]].name, body[second[1]].name, body[first[0]].name, body[first[1]].name,

@@ -2,8 +2,9 @@
 #include "base/array.h"
 #include "boundary/group_actions.h"
 #include "boundary/kinds.h"
-#include "io/scene/scene_reader.h"
+#include "io/scene/scene_crowd.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <string.h>
 
@@ -51,9 +52,9 @@ static bool names_part(const char *rest, const scene_node *names) {
     return length < sizeof name && brunt_tree_child(names, name);
 }
 
-static bool pair_exists(const scene_reader *reader, const char *rest) {
+// Whether "A-B", `length` long, is a pair of bodies that meet.
+static bool is_pair(const scene_reader *reader, const char *rest, size_t length) {
     char pair[2 * BRUNT_NAME_LENGTH];
-    const size_t length = strcspn(rest, ".");
     if (length >= sizeof pair) return false;
     snprintf(pair, sizeof pair, "%.*s", (int)length, rest);
     for (char *dash = strchr(pair, '-'); dash; *dash = '-', dash = strchr(dash + 1, '-')) { // names may have some
@@ -62,6 +63,27 @@ static bool pair_exists(const scene_reader *reader, const char *rest) {
         if (a && b && (a != b || brunt_tree_child(&reader->columns->selves, a->name))) return true;
     }
     return false;
+}
+
+// Members of crowds have a dot in their names.
+static bool pair_exists(const scene_reader *reader, const char *rest) {
+    for (size_t length = strcspn(rest, ".");; length += 1 + strcspn(rest + length + 1, ".")) {
+        if (is_pair(reader, rest, length)) return true;
+        if (!rest[length]) return false;
+    }
+}
+
+static bool body_exists(const scene_reader *reader, const char *rest) {
+    char name[BRUNT_NAME_LENGTH];
+    const size_t length = strcspn(rest, ".");
+    int32_t first;
+    snprintf(name, sizeof name, "%.*s", (int)length, rest);
+    if (length >= sizeof name) return false;
+    const int32_t count = brunt_bodies_named(reader, name, &first);
+    if (count < 2 || rest[length] != '.' || !isdigit((unsigned char)rest[length + 1])) return count > 0;
+    const size_t whole = length + 1 + strcspn(rest + length + 1, ".");
+    snprintf(name, sizeof name, "%.*s", (int)whole, rest);
+    return whole < sizeof name && brunt_body_named(reader, name);
 }
 
 static const char *gas_mistake(const struct scene_columns *columns, const char *rest) {
@@ -105,12 +127,8 @@ static const char *column_mistake(const scene_reader *reader, const char *column
                      "eroded, heat, scheme, external_work, initial, total, error, error_relative";
     if (family == 8 && strncmp(column, "momentum", 8) == 0) return NULL;
     if (family == 6 && strncmp(column, "newton", 6) == 0) return newton_mistake(rest);
-    if (family == 4 && strncmp(column, "body", 4) == 0) {
-        char name[BRUNT_NAME_LENGTH];
-        const size_t length = strcspn(rest, ".");
-        snprintf(name, sizeof name, "%.*s", (int)length, rest);
-        return length < sizeof name && brunt_body_named(reader, name) ? NULL : "there is no such body";
-    }
+    if (family == 4 && strncmp(column, "body", 4) == 0)
+        return body_exists(reader, rest) ? NULL : "there is no such body";
     if (family == 7 && strncmp(column, "contact", 7) == 0)
         return pair_exists(reader, rest) ? NULL : "there is no such pair of bodies, A-B is wanted";
     if (family == 4 && strncmp(column, "wall", 4) == 0)

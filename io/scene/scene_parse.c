@@ -1,5 +1,5 @@
 // The world that a checked tree describes, and what its keys must say together.
-#include "io/scene/scene_reader.h"
+#include "io/scene/scene_crowd.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -93,7 +93,13 @@ void brunt_refuse_key(scene_reader *reader, const scene_node *node, const char *
 
 void brunt_check_body_name(scene_reader *reader, const scene_node *node) {
     if (!node || !node->good || !node->text) return;
-    if (!brunt_tree_child(brunt_tree_child(reader->tree->root, "bodies"), node->text))
+    int32_t first;
+    const int32_t count = brunt_bodies_named(reader, node->text, &first);
+    if (count > 1)
+        brunt_tree_complain(reader->tree, node, "'%s' is a crowd, one of its %d members is wanted, as %s.1", node->text,
+                            (int)count, node->text);
+    else if (!brunt_body_named(reader, node->text) &&
+             !brunt_tree_child(brunt_tree_child(reader->tree->root, "bodies"), node->text))
         brunt_complain_name(reader, node, "body", "bodies");
 }
 

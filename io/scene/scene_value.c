@@ -24,10 +24,19 @@ static bool usable_name(const char *name) {
     return true;
 }
 
+// "grains.17": a member of a crowd, where bodies are named.
+static bool is_member(const char *name) {
+    char crowd[BRUNT_NAME_LENGTH];
+    const size_t length = strcspn(name, ".");
+    snprintf(crowd, sizeof crowd, "%.*s", (int)length, name);
+    return length < sizeof crowd && usable_name(crowd) && name[length] && name[length + 1] &&
+           strspn(name + length + 1, "0123456789") == strlen(name + length + 1);
+}
+
 bool brunt_check_name(scene_reader *reader, const scene_node *node, const char *name, bool at_key) {
     void (*complain)(scene_tree *, const scene_node *, const char *, ...) =
         at_key ? brunt_tree_complain_key : brunt_tree_complain;
-    if (!usable_name(name)) {
+    if (!usable_name(name) && (at_key || !is_member(name))) {
         complain(reader->tree, node, "'%.60s' is not a name: letters, digits, _ and - are wanted", name);
         return false;
     }
