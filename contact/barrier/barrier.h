@@ -86,7 +86,7 @@ typedef struct brunt_barrier_step {
     brunt_barrier_particles particles;
     const brunt_barrier_plane *planes;
     int32_t plane_count;
-    double dt; // [s]
+    double dt; // [s]; of load steps 1, slip speeds are the lengths [m] that friction gives by
     // What friction takes for the slip: dt v = factor u + (1 - factor) before, of all unknowns, before = dt v_n [m].
     // Backward Euler and static steps: 1 and NULL; Newmark: 2.
     double factor;
@@ -116,6 +116,15 @@ brunt_term brunt_barrier_term(brunt_barrier *barrier);
 brunt_term brunt_barrier_friction_term(brunt_barrier *barrier);
 // Takes normal forces and directions of friction at u.
 int brunt_barrier_lag(brunt_barrier *barrier, const brunt_team *team, const double *u, brunt_error *error);
+// Load steps: from now on friction keeps, from step to step, how far surfaces have given along each other; of vertices
+// of meshes at bodies and planes, as the mesh is now. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_barrier_keep_slips(brunt_barrier *barrier, brunt_error *error);
+// The step has ended at u: takes what is kept of it, and friction as it is there.
+int brunt_barrier_keep(brunt_barrier *barrier, const brunt_team *team, const double *u, brunt_error *error);
+// That as numbers, for checkpoints.
+int64_t brunt_barrier_kept_count(const brunt_barrier *barrier); // of NULL 0
+void brunt_barrier_kept_get(const brunt_barrier *barrier, double *out);
+void brunt_barrier_kept_set(brunt_barrier *barrier, const double *in);
 // [m] of all that is in contact where the barrier was last looked at; INFINITY: nothing is.
 double brunt_barrier_least_gap(const brunt_barrier *barrier);
 bool brunt_barrier_has_friction(const brunt_barrier *barrier); // some pair or plane has

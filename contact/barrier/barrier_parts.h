@@ -38,10 +38,18 @@ typedef struct barrier_contact {
 // Of a contact that rubs, on the way to the minimum: the slip where that was looked at last, and the part of the
 // greatest force that friction takes, as an unknown of its own (barrier_slip.c).
 typedef struct barrier_rub {
-    double slip[3]; // [m] dt times its velocity
+    double kept[3]; // [m] that the surfaces had given before the step
+    double slip[3]; // [m] dt times its velocity, and that
     double part[3]; // at most of length 1
     double energy;  // [J] where it was asked for last
 } barrier_rub;
+
+// What a vertex keeps of a body or a plane (-2 - its number) that it touches; force 0: it touches nothing there.
+enum { BARRIER_KEPT = 3 };
+typedef struct barrier_kept {
+    int32_t other;
+    double force, slip[3]; // [N], [m]
+} barrier_kept;
 
 typedef struct barrier_contacts {
     barrier_contact *contact;
@@ -140,8 +148,10 @@ struct brunt_barrier {
     int32_t workspace_count;
     size_t workspace_capacity;
     barrier_contacts contacts, lagged;
-    barrier_rub *rub; // of `lagged`
-    size_t rub_capacity;
+    barrier_rub *rub;   // of `lagged`
+    barrier_kept *kept; // BARRIER_KEPT of each vertex, where load steps keep slips
+    bool keeps;
+    size_t rub_capacity, kept_capacity;
     barrier_sets sets, lagged_sets;
     brunt_colours colours, lagged_colours;
 };
@@ -215,11 +225,15 @@ double barrier_slip_energy(const brunt_barrier *b, const barrier_contact *c, con
 void barrier_slip_force(const brunt_barrier *b, const barrier_contact *c, const double *u, double force[3]);
 void barrier_slip_gradient(const brunt_barrier *b, const barrier_contact *c, const double *u, double *gradient);
 // What there is of a contact that begins to be minimised at u; what it becomes where that goes on to another u.
-barrier_rub barrier_slip_begin(const brunt_barrier *b, const barrier_contact *c, const double *u);
+void barrier_slip_begin(const brunt_barrier *b, const barrier_contact *c, const double *u, barrier_rub *rub);
 void barrier_slip_follow(const brunt_barrier *b, const barrier_contact *c, const double *u, barrier_rub *rub);
 // The Hessian where `rub` has the force at u, as it has at the minimum and where the slip stays as it is.
 void barrier_slip_hessian(const brunt_barrier *b, const barrier_contact *c, const barrier_rub *rub, const double *u,
                           double *hessian);
+
+// --- from load step to load step (barrier_memory.c)
+// How far the surfaces of a contact had given before the step [m]; 0: nothing is kept.
+void barrier_kept_slip(const brunt_barrier *b, const barrier_contact *c, double slip[3]);
 
 // --- into the unknowns (barrier_sum.c)
 void barrier_add_gradient(const brunt_barrier *b, const barrier_contact *c, const double *local, double *g);

@@ -44,6 +44,7 @@ static slip_law slip_at(const brunt_barrier *b, const barrier_contact *c, const 
     barrier_slip_of(b, c, u, y);
     if (step->before) barrier_slip_of(b, c, step->before, before);
     for (int k = 0; k < 3; k++) y[k] = step->factor * y[k] + (1 - step->factor) * before[k];
+    for (int k = 0; k < 3 && b->keeps; k++) y[k] += b->rub[c - b->lagged.contact].kept[k];
     return law_at(b, c, y);
 }
 
@@ -80,11 +81,11 @@ void barrier_slip_gradient(const brunt_barrier *b, const barrier_contact *c, con
 // Put into the balance of forces that gives the gradient as it is, and for the Hessian r (1 - (1/r)' w y^T / |y|),
 // which is positive as long as |w| <= 1, and which is the true one where w = r y. Its symmetric part is taken.
 
-barrier_rub barrier_slip_begin(const brunt_barrier *b, const barrier_contact *c, const double *u) {
+void barrier_slip_begin(const brunt_barrier *b, const barrier_contact *c, const double *u, barrier_rub *rub) {
+    *rub = (barrier_rub){.energy = 0};
+    barrier_kept_slip(b, c, rub->kept);
     const slip_law s = slip_at(b, c, u);
-    barrier_rub rub = {.energy = 0};
-    for (int k = 0; k < 3; k++) rub.slip[k] = s.y[k], rub.part[k] = s.ratio * s.y[k];
-    return rub;
+    for (int k = 0; k < 3; k++) rub->slip[k] = s.y[k], rub->part[k] = s.ratio * s.y[k];
 }
 
 void barrier_slip_follow(const brunt_barrier *b, const barrier_contact *c, const double *u, barrier_rub *rub) {

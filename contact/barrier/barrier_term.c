@@ -137,7 +137,7 @@ int brunt_barrier_lag(brunt_barrier *b, const brunt_team *team, const double *u,
         if (c->normal_force > 0 && barrier_law_of(b, c->law).friction > 0) list->contact[kept++] = *c;
     }
     list->count = kept;
-    for (int64_t i = 0; i < kept; i++) b->rub[i] = barrier_slip_begin(b, &list->contact[i], u);
+    for (int64_t i = 0; i < kept; i++) barrier_slip_begin(b, &list->contact[i], u, &b->rub[i]);
     return barrier_make_sets(b, list, &b->lagged_sets, error);
 }
 

@@ -51,6 +51,8 @@ void brunt_barrier_validate(const brunt_barrier *b) {
     validate_contacts(b, &b->lagged);
     validate_sets(&b->sets);
     validate_sets(&b->lagged_sets);
+    for (int64_t i = 0; b->keeps && i < (int64_t)b->vertex_count * BARRIER_KEPT; i++)
+        BRUNT_ASSERT(b->kept[i].force >= 0 && isfinite(b->kept[i].slip[0] + b->kept[i].slip[1] + b->kept[i].slip[2]));
     for (int64_t i = 0; i < b->lagged.count; i++) {
         const double *part = b->rub[i].part;
         BRUNT_ASSERT(b->lagged.contact[i].normal_force > 0);

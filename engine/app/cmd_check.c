@@ -280,6 +280,9 @@ static void print_barrier(const brunt_world *world) {
         printf("  contact.slip_speed %.4g m/s, %.3g of the slowest wave speed: what sticks creeps by up to that, "
                "and slower sliding has less than Coulomb's friction\n",
                v.slip_speed, v.slip_speed / v.slowest_wave);
+    if (v.slip_length > 0)
+        printf("  contact.slip_length %.4g m: surfaces that rub give by up to that along each other, then they slip\n",
+               v.slip_length);
 }
 
 // What implicit steps solve, and whether they are short enough for the grid.

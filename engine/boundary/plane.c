@@ -51,7 +51,8 @@ static const char *refusal(const brunt_world_def *def, const void *one, const ch
     const brunt_plane_def *plane = one;
     const brunt_condition_row *row = &brunt_conditions[plane->condition];
     *key = ".friction";
-    if (def->scheme == BRUNT_STATIC && plane->friction > 0) return BRUNT_FRICTION_NOT_STATIC;
+    if (def->scheme == BRUNT_STATIC && plane->friction > 0 && !brunt_friction_in_load_steps(def))
+        return BRUNT_FRICTION_NOT_STATIC;
     *key = ".condition";
     return !row->pushes && !row->sticks && oblique(plane)
                ? "implicit steps hold nodes on planes that are normal to an axis"

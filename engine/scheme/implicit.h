@@ -131,6 +131,12 @@ double brunt_static_unbalance(void *context, const double *gradient);
 // The step to try, in parts of a load step; the least part of one that is tried.
 double brunt_static_wanted(const brunt_world *world);
 double brunt_static_least(const brunt_settings *settings);
+// --- static_friction.c
+// From where held components are at their places to equilibrium with friction, by as many iterations as are allowed.
+typedef int brunt_minimise(struct brunt_implicit *m, brunt_newton_report *report, brunt_error *error);
+int brunt_static_rub(struct brunt_implicit *m, brunt_minimise *minimise, brunt_newton_report *report,
+                     brunt_error *error);
+// --- static_step.c
 // Records the work of forces that are unbalanced where the step begins: particles on a new grid bring them, the
 // transfer's; meshes only have them where a run begins, and what they settle by is lost to the scheme.
 void brunt_static_settle(brunt_world *world);

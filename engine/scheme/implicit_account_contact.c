@@ -102,19 +102,25 @@ static int weigh_start(struct brunt_implicit *m, brunt_error *error) {
     return BRUNT_OK;
 }
 
-// Of load steps, whose work is by the trapezium and which have no friction: what planes do work with, in forces_before.
+// Of load steps, whose work is by the trapezium: what planes do work with, in forces_before, and the heat of friction.
+// Then what friction keeps for the next step.
 static int weigh_work(struct brunt_implicit *m, brunt_error *error) {
     brunt_implicit_contact *c = &m->contact;
     const double work = m->weights.work;
     brunt_barrier_report unused;
-    if (brunt_barrier_look_back(c->barrier, &m->team, m->field.zero, m->field.u, &unused, &c->forces_before, error))
+    if (m->rubs && brunt_barrier_lag(c->barrier, &m->team, m->field.zero, error)) return BRUNT_FAILED;
+    if (brunt_barrier_look_back(c->barrier, &m->team, m->field.zero, m->field.u, &unused, &c->forces_before, error) ||
+        brunt_barrier_forces_extend(&c->forces, c->forces_before.count, error))
         return BRUNT_FAILED;
-    for (int32_t k = 0; k < c->plane_count; k++)
+    for (int32_t k = 0; k < c->forces_before.count; k++) {
+        brunt_barrier_force *before = &c->forces_before.force[k], *after = &c->forces.force[k];
+        after->heat = (1 - work) * before->heat + work * after->heat;
         for (int a = 0; a < 3; a++) {
-            double *before = &c->forces_before.force[k].normal[a];
-            *before = (1 - work) * *before + work * c->forces.force[k].normal[a];
+            before->normal[a] = (1 - work) * before->normal[a] + work * after->normal[a];
+            before->friction[a] = (1 - work) * before->friction[a] + work * after->friction[a];
         }
-    return BRUNT_OK;
+    }
+    return brunt_barrier_keep(c->barrier, &m->team, m->field.u, error);
 }
 
 // Of pairs and planes, and the heat of friction over the step's way, weighed as the integrator does. What is at the end

@@ -1,4 +1,5 @@
 // Surfaces, particles and planes that barriers keep apart.
+#include "boundary/kinds.h"
 #include "contact/methods/method.h"
 #include "contact/planes/condition.h"
 #include "scheme/implicit.h"
@@ -14,6 +15,7 @@
 #include "materials/material.h"
 
 static const double CREEP = 1e-5; // of the slowest wave speed: the slip speed by default
+static const double GIVES = 0.01; // of the distance: the slip length of load steps by default
 
 // ------------------------------------------------------------------------------------------ stiffness and distance
 
@@ -254,9 +256,14 @@ static int make_barrier(brunt_implicit_contact *c, brunt_world *world, const bru
     c->stiffness = def->contact.stiffness;
     c->slip_speed = def->contact.slip_speed > 0 ? def->contact.slip_speed : CREEP * slowest_wave(&world->bodies);
     c->distance = contact_distance(c, &world->bodies, &def->contact);
+    if (def->scheme == BRUNT_STATIC)
+        c->slip_speed = def->contact.slip_length > 0 ? def->contact.slip_length : GIVES * c->distance;
     fill_planes(c, world, def);
     if (!(c->barrier = brunt_barrier_make(error))) return BRUNT_FAILED;
     if ((status = make_surfaces(c, world, error))) return status;
+    if (def->scheme == BRUNT_STATIC && brunt_friction_in_load_steps(def) &&
+        (status = brunt_barrier_keep_slips(c->barrier, error)))
+        return status;
     const brunt_barrier_pair_source source = pair_source(c, world->bodies.count);
     brunt_barrier_set_pairs(c->barrier, &source);
     return brunt_implicit_contact_check(c, world, order, def->contact.distance > 0, error);
@@ -300,7 +307,8 @@ bool brunt_world_barrier(const brunt_world *world, brunt_barrier_values *values)
         .distance = c->distance, .stiffness = {INFINITY, 0}, .slowest_wave = slowest_wave(&world->bodies)};
     take_pairs(values, c, world->bodies.count);
     for (int32_t q = 0; q < c->plane_count; q++) take_stiffness(values, c->plane[q].stiffness);
-    if (brunt_barrier_has_friction(c->barrier)) values->slip_speed = c->slip_speed;
+    if (brunt_barrier_has_friction(c->barrier))
+        *(brunt_world_static(world) ? &values->slip_length : &values->slip_speed) = c->slip_speed;
     return true;
 }
 

@@ -25,7 +25,7 @@ typedef struct brunt_implicit_contact {
     double *half;             // [m] of each body: half its thickness in contact, of membranes; else 0
     double distance;          // [m]
     double stiffness;         // [Pa] of all; 0: of each pair and plane by what is softer
-    double slip_speed;        // [m/s]
+    double slip_speed;        // [m/s]; of load steps the slip length [m]
     // Planes in their order.
     brunt_barrier_plane *plane;
     int32_t *plane_boundary;

@@ -25,7 +25,7 @@ static void take_forces(brunt_world *world) {
     brunt_implicit_ask(m, BRUNT_TRIAL_START);
     brunt_implicit_gradient(m, m->fixed_terms, friction, f->u, f->gradient);
     brunt_implicit_ask(m, BRUNT_TRIAL_END);
-    brunt_implicit_gradient(m, friction, m->term_count, m->contact.before, f->step);
+    brunt_implicit_gradient(m, friction, m->term_count, m->still ? f->u : m->contact.before, f->step);
     if (m->holds) brunt_implicit_surfaces_before(m, f->force_before);
     for (int64_t k = 0; k < brunt_implicit_components(m); k++) f->force_before[k] -= f->gradient[k] + f->step[k];
 }
@@ -60,7 +60,7 @@ static int begin_try(brunt_world *world, double dt, brunt_error *error) {
     if (m->holds && brunt_implicit_surfaces_begin(world, dt, error)) return BRUNT_FAILED;
     const double gamma = m->weights.gamma;
     const brunt_contact_rule rule = {
-        .dt = dt, .factor = gamma / (2 * m->weights.alpha * m->weights.beta), .rest = m->field.u};
+        .dt = m->still ? 1 : dt, .factor = gamma / (2 * m->weights.alpha * m->weights.beta), .rest = m->field.u};
     if (brunt_implicit_contact_begin(&m->contact, world, &m->unknowns, &m->team, &rule, error)) return BRUNT_FAILED;
     for (int t = 0; t < m->term_count; t++)
         if (m->term[t].ops->look && m->term[t].ops->look(m->term[t].self, &m->team, m->field.u, NULL, error))
@@ -274,11 +274,22 @@ static int settle(struct brunt_implicit *m, brunt_newton_report *report, brunt_e
     return brunt_fail(error, BRUNT_FAILED, "friction at boundaries does not settle within %d solutions.", ROUND_LIMIT);
 }
 
+// Of load steps with friction: once held components are at their places, where something is in the way by a potential
+// with the normal forces of the start.
+static int go_and_rub(struct brunt_implicit *m, brunt_newton_report *report, brunt_error *error) {
+    double way;
+    if (free_way(m, &way, error)) return BRUNT_FAILED;
+    if (way < 1 && go_and_minimise(m, report, error)) return BRUNT_FAILED;
+    for (int64_t k = 0; k < brunt_implicit_components(m); k++)
+        if (m->unknowns.held[k]) m->field.u[k] = m->unknowns.target[k];
+    return brunt_static_rub(m, minimise, report, error);
+}
+
 static int solve_step(brunt_world *world, double dt, brunt_newton_report *report, brunt_error *error) {
     struct brunt_implicit *m = world->plan.implicit;
     int status = begin_try(world, dt, error);
     if (!status) status = lead(m, error);
-    if (!status) status = go_and_minimise(m, report, error);
+    if (!status) status = m->still && m->rubs ? go_and_rub(m, report, error) : go_and_minimise(m, report, error);
     if (!status && m->holds) status = settle(m, report, error);
     return status;
 }
@@ -303,7 +314,7 @@ static int try_step(brunt_world *world, double dt, brunt_newton_report *report, 
     m->tried = (brunt_newton_counts){.least_gap = INFINITY, .least_part = INFINITY};
     int status = find_tractions(world, dt, report, error);
     if (!status) status = solve_step(world, dt, report, error);
-    for (int k = 1; !status && m->rubs && k < m->friction_iterations; k++) {
+    for (int k = 1; !status && m->rubs && !m->still && k < m->friction_iterations; k++) {
         if (brunt_barrier_lag(m->contact.barrier, &m->team, m->field.u, error)) return BRUNT_FAILED;
         status = minimise(m, report, error);
     }

@@ -202,7 +202,8 @@ static int check_contact(const brunt_world_def *def, brunt_error *error) {
                         {".cell", &contact->cell, 1, BRUNT_NOT_NEGATIVE},
                         {".distance", &contact->distance, 1, BRUNT_NOT_NEGATIVE},
                         {".stiffness", &contact->stiffness, 1, BRUNT_NOT_NEGATIVE},
-                        {".slip_speed", &contact->slip_speed, 1, BRUNT_NOT_NEGATIVE});
+                        {".slip_speed", &contact->slip_speed, 1, BRUNT_NOT_NEGATIVE},
+                        {".slip_length", &contact->slip_length, 1, BRUNT_NOT_NEGATIVE});
     if (contact->friction_iterations < 1)
         REFUSE("contact.friction_iterations: %d is less than 1", contact->friction_iterations);
     for (int32_t q = 0; q < contact->pair_count; q++) {

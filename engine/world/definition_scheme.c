@@ -202,6 +202,7 @@ static void look_at_equilibrium(const brunt_world_def *def, const brunt_body_def
 static void look_at_friction(const brunt_world_def *def, refusals *r) {
     static const char *const why = BRUNT_FRICTION_NOT_STATIC;
     const brunt_contact_def *contact = &def->contact;
+    if (brunt_friction_in_load_steps(def)) return;
     set_owner(r, "contact");
     if (contact->friction > 0) say(r, ".friction", "%s", why);
     for (int32_t q = 0; q < contact->pair_count; q++) {

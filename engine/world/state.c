@@ -119,7 +119,7 @@ static brunt_state_block world_info(const brunt_world *world, int index) {
                               brunt_node_to_facet_state_count(&world->contact.surface),
                               brunt_surface_affine_count(&world->contact.surface),
                               brunt_erosion_state_count(&world->erosion),
-                              brunt_saved_count(newton_table, NEWTON_ROWS)};
+                              brunt_saved_count(newton_table, NEWTON_ROWS) + brunt_implicit_kept_count(&world->plan)};
     _Static_assert(BRUNT_COUNT(names) == BRUNT_COUNT(counts), "a count for each block of the world");
     snprintf(block.name, sizeof block.name, "%s", names[index]);
     block.count = counts[index];
@@ -128,7 +128,8 @@ static brunt_state_block world_info(const brunt_world *world, int index) {
 
 static void world_get(brunt_world *world, int block, double *to) {
     if (block == EROSION_BLOCK) brunt_erosion_state_get(&world->erosion, to);
-    if (block == NEWTON_BLOCK) brunt_saved_get(newton_table, NEWTON_ROWS, world, to);
+    if (block == NEWTON_BLOCK)
+        brunt_implicit_kept_get(&world->plan, brunt_saved_get(newton_table, NEWTON_ROWS, world, to));
     if (block == 3) brunt_node_to_facet_state_get(world->contact.node_to_facet, &world->contact.surface, to);
     if (block == 4) brunt_surface_affine_get(&world->contact.surface, to);
     if (block == 0) to = brunt_saved_get(clock_table, CLOCK_ROWS, world, to);
@@ -143,7 +144,8 @@ static void world_get(brunt_world *world, int block, double *to) {
 
 static int world_set(brunt_world *world, int block, const double *from, brunt_error *error) {
     if (block == EROSION_BLOCK) brunt_erosion_state_set(&world->erosion, from);
-    if (block == NEWTON_BLOCK) brunt_saved_set(newton_table, NEWTON_ROWS, world, from);
+    if (block == NEWTON_BLOCK)
+        brunt_implicit_kept_set(&world->plan, brunt_saved_set(newton_table, NEWTON_ROWS, world, from));
     if (block == 3 && brunt_node_to_facet_state_set(&world->contact.node_to_facet, &world->contact.surface,
                                                     world->bodies.mpm_count, from, error))
         return BRUNT_FAILED;

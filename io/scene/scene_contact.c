@@ -240,6 +240,7 @@ static void fill_keys(scene_reader *reader, scene_node *node) {
     contact->distance = take(reader, node, "distance", 0);
     contact->stiffness = take(reader, node, "stiffness", 0);
     contact->slip_speed = take(reader, node, "slip_speed", 0);
+    contact->slip_length = take(reader, node, "slip_length", 0);
     contact->friction_iterations = (int)take(reader, node, "friction_iterations", 1);
 }
 

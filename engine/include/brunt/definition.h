@@ -106,8 +106,10 @@ typedef struct brunt_contact_def {
     double distance;  // [m] >= 0: gaps beyond it know nothing of each other; 0 (default) = a tenth of the shortest edge
                       // or spacing of particles
     double stiffness; // [Pa] >= 0 of the barrier; 0 (default) = a tenth of Young's modulus of the softer body of a pair
-    double slip_speed; // [m/s] >= 0: below it friction grows with the speed; 0 (default) = 1e-5 of the slowest wave
-                       // speed
+    double slip_speed;  // [m/s] >= 0: below it friction grows with the speed; 0 (default) = 1e-5 of the slowest wave
+                        // speed
+    double slip_length; // [m] >= 0 of load steps: surfaces that rub give by up to that, then they slip; 0 (default) = a
+                        // hundredth of the distance
     int friction_iterations; // >= 1: solutions of a step, each with the pressures of the one before; default 1
     bool allow_overlap;    // accept bodies that overlap at the start (meshes: by more than a fifth of an edge), or lie
                            // behind a plane of condition separate; default false: an error

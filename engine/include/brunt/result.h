@@ -170,6 +170,7 @@ typedef struct brunt_barrier_values {
     double distance;                 // [m]
     double stiffness[2];             // [Pa] least and greatest of pairs and planes
     double slip_speed, slowest_wave; // [m/s]; slip_speed 0: nothing rubs
+    double slip_length;              // [m] of load steps, in place of slip_speed
 } brunt_barrier_values;
 bool brunt_world_barrier(const brunt_world *world, brunt_barrier_values *values); // false: no barrier
 

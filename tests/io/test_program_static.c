@@ -1,0 +1,175 @@
+// Labels: io
+//
+// Friction of load steps, as a user meets it: Coulomb's law, what surfaces have given is kept from step to step and
+// over a restart, and what has no equilibrium is said with body and exit code 70.
+#include "tests/support/small_program.h"
+
+#include <jansson.h>
+
+#ifndef BRUNT_FLOAT
+static const char block[] =
+    "brunt: 1\ntitle: a block is pressed, then sheared to and fro\ndimension: 2\n"
+    "time: {scheme: static, steps: 20}\nnewton: {tolerance: 1e-9, iterations: 200}\n"
+    "materials: {m: {model: linear-elastic, density: 1000 kg/m^3, E: 50 MPa, nu: 0.3}}\nbodies:\n"
+    "  lower: {method: fem, element: quad4, size: 2 mm, material: m, shape: {box: {min: [-20 mm, 0], max: [20 mm, 4 "
+    "mm]}}}\n"
+    "  upper: {method: fem, element: quad4, size: 2 mm, material: m, shape: {box: {min: [-5 mm, 4.006 mm], max: [5 mm, "
+    "8.006 mm]}}}\n"
+    "boundaries:\n"
+    "  - {name: base, body: lower, group: ymin, fix: [x, y]}\n"
+    "  - {name: press, body: upper, group: ymax, displacement: [free, -0.04 mm], table: [[0 s, 0], [0.2 s, 1]]}\n"
+    "  - {name: shear, body: upper, group: ymax, displacement: [0.1 mm, free], table: [[0.2 s, 0], [0.4 s, 1], [0.6 s, "
+    "1], "
+    "[1 s, -1]]}\n"
+    "contact: {method: barrier, friction: 0.3, distance: 10 um}\n"
+    "output: {history: 0 s, every: none}\n";
+
+enum { ROWS = 64 };
+// A column of history.csv of a folder; how many lines there are.
+static int read_column(const char *folder, const char *name, double value[ROWS]) {
+    char path[200], line[20000];
+    snprintf(path, sizeof path, "%s/%s/history.csv", small_folder, folder);
+    FILE *file = fopen(path, "r");
+    ck_assert(file && fgets(line, sizeof line, file));
+    int column = -1, count = 0, at = 0;
+    for (char *head = strtok(line, ","); head; head = strtok(NULL, ","), at++)
+        if (!strncmp(head, name, strlen(name)) && head[strlen(name)] == ' ') column = at;
+    ck_assert_msg(column >= 0, "no column %s", name);
+    for (; fgets(line, sizeof line, file) && count < ROWS; count++) {
+        char *cell = line;
+        for (int c = 0; c < column; c++) cell = strchr(cell, ',') + 1;
+        value[count] = strtod(cell, NULL);
+    }
+    fclose(file);
+    return count;
+}
+
+// Forces stay below Coulomb's bound and come to it, the other way when the shear is turned; where nothing moves any
+// more nothing changes, though each load step begins anew; what the base takes is what goes through the contact.
+START_TEST(friction_is_kept_from_step_to_step) {
+    double time[ROWS], fx[ROWS], fy[ROWS], base[ROWS], error[ROWS], heat[ROWS], iterations[ROWS];
+    small_put("block.yaml", block);
+    small_expect("run block.yaml -t 1 -q -o out", 0, NULL);
+    const int rows = read_column("out", "time", time);
+    read_column("out", "contact.lower-upper.force_x", fx), read_column("out", "contact.lower-upper.force_y", fy);
+    read_column("out", "wall.base.force_x", base), read_column("out", "energy.error_relative", error);
+    read_column("out", "energy.friction", heat), read_column("out", "newton.iterations", iterations);
+    ck_assert_int_eq(rows, 21);
+    for (int r = 1; r < rows; r++) {
+        ck_assert_double_le(fabs(fx[r]), 1.0002 * 0.3 * fy[r]);
+        ck_assert_double_eq_tol(base[r], fx[r], 1e-6 * fy[r]);
+        ck_assert_double_lt(fabs(error[r]), 1e-8);
+        ck_assert_double_ge(heat[r], heat[r - 1] * (1 - 1e-3));
+    }
+    ck_assert_double_eq_tol(fx[4], 0, 1e-6 * fy[4]);
+    ck_assert_double_eq_tol(fx[8], -0.3 * fy[8], 1e-3 * fy[8]);
+    for (int r = 9; r <= 12; r++) { // nothing moves
+        ck_assert_double_eq_tol(fx[r], fx[8], 1e-6 * fy[8]);
+        ck_assert_double_eq(iterations[r], 0);
+    }
+    ck_assert_double_lt(fabs(fx[13]), 0.5 * fabs(fx[12])); // sticks on its way back
+    ck_assert_double_eq_tol(heat[13], heat[12], 1e-3 * heat[12]);
+    ck_assert_double_eq_tol(fx[20], 0.3 * fy[20], 1e-3 * fy[20]);
+    // Heat of the way back at full slip: mu N a millimetre.
+    ck_assert_double_eq_tol(heat[20] - heat[19], 0.3 * fy[20] * 0.025e-3, 2e-3 * (heat[20] - heat[19]));
+}
+END_TEST
+
+static uint64_t hash_of(const char *folder) {
+    char path[200];
+    snprintf(path, sizeof path, "%s/%s/summary.json", small_folder, folder);
+    json_t *summary = json_load_file(path, 0, NULL);
+    const uint64_t hash = strtoull(json_string_value(json_object_get(summary, "state_hash")), NULL, 16);
+    json_decref(summary);
+    return hash;
+}
+
+// While it sticks with a force that an earlier step has left.
+START_TEST(friction_is_kept_over_a_restart) {
+    small_put("block.yaml", block);
+    small_expect("run block.yaml -t 1 -q -o one", 0, NULL);
+    small_expect("run block.yaml -t 2 -q -o two", 0, NULL);
+    // The step that turns takes the most iterations of all, one more than are allowed in the first leg.
+    double iterations[ROWS], most = 0;
+    const int rows = read_column("one", "newton.iterations", iterations);
+    for (int r = 0; r < 13; r++) most = fmax(most, iterations[r]);
+    ck_assert(rows == 21 && iterations[13] > most);
+    char words[200];
+    snprintf(words, sizeof words, "run block.yaml -t 1 -q -o legs --set newton.iterations=%g --set newton.cut=0",
+             iterations[13] - 1);
+    small_expect(words, 70, "time 0.6 s");
+    small_expect("run block.yaml -t 2 -q -o legs --resume", 0, NULL);
+    ck_assert_uint_eq(hash_of("one"), hash_of("two"));
+    ck_assert_uint_eq(hash_of("one"), hash_of("legs"));
+    ck_assert_int_eq(small_shell("cmp one/history.csv two/history.csv"), 0);
+}
+END_TEST
+
+// A wedge of slope 0.2 is pressed down on its like, with nothing that keeps it from sliding but friction, and a smooth
+// wall after a way: above 0.2 it stays, below it slides there and leaves the wall what friction does not take.
+static const char wedges[] =
+    "brunt: 1\ntitle: wedges\ndimension: 2\ntime: {scheme: static, steps: 4}\n"
+    "newton: {tolerance: 1e-8, iterations: 300}\n"
+    "materials: {m: {model: linear-elastic, density: 1000 kg/m^3, E: 50 MPa, nu: 0.3}}\nbodies:\n"
+    "  lower: {method: fem, element: quad4, size: 1 mm, material: m, shape: {polygon: {points: [[-2 mm, 0], [12 mm, "
+    "0], "
+    "[12 mm, 4.4 mm], [-2 mm, 1.6 mm]]}}}\n"
+    "  upper: {method: fem, element: quad4, size: 1 mm, material: m, shape: {polygon: {points: [[0, 2.005 mm], [10 mm, "
+    "4.005 mm], [10 mm, 6 mm], [0, 6 mm]]}}}\n"
+    "boundaries:\n"
+    "  - {name: base, body: lower, group: side1, fix: [x, y]}\n"
+    "  - {name: press, body: upper, group: side3, displacement: [free, -0.05 mm]}\n"
+    "  - {name: wall, body: upper, plane: {point: [-0.05 mm, 0], normal: [1, 0]}, condition: separate}\n"
+    "contact: {method: barrier, friction: 0.21, distance: 10 um}\noutput: {history: 0 s, every: none}\n";
+
+START_TEST(wedge_slides_below_its_slope_alone) {
+    double x[ROWS], wall[ROWS], up[ROWS];
+    small_put("wedges.yaml", wedges);
+    small_expect("run wedges.yaml -t 1 -q -o sticks", 0, NULL);
+    int last = read_column("sticks", "body.upper.position_x", x) - 1;
+    read_column("sticks", "wall.wall.force_x", wall);
+    ck_assert_double_eq(wall[last], 0);
+    const double elastic = x[last] - x[0];
+    for (int k = 0; k < 3; k++) {
+        const double mu[] = {0.19, 0.1, 0};
+        char words[200];
+        snprintf(words, sizeof words, "run wedges.yaml -t 1 -q -o slides --set contact.friction=%g", mu[k]);
+        small_expect(words, 0, NULL);
+        read_column("slides", "body.upper.position_x", x), read_column("slides", "wall.wall.force_x", wall);
+        last = read_column("slides", "wall.base.force_y", up) - 1;
+        ck_assert_double_lt(x[last] - x[0], elastic - 8e-6);
+        // Statics of the wedge: friction takes mu of what presses at most; what spreads pushes the wall as well.
+        const double least = (0.2 - mu[k]) / (1 + 0.2 * mu[k]), share = wall[last] / up[last];
+        ck_assert_double_ge(share, least - 3e-3);
+        if (mu[k] == 0) ck_assert_double_eq_tol(share, 0.2, 3e-3);
+    }
+}
+END_TEST
+
+// Without the wall it has no equilibrium: that is said, and nothing of it is kept.
+START_TEST(what_slides_away_is_70) {
+    small_put("wedges.yaml", wedges);
+    ck_assert_int_eq(
+        small_shell("sed '/name: wall/d; s/friction: 0.21/friction: 0.19/; s/iterations: 300/iterations: 60, cut: 1/' "
+                    "wedges.yaml > away.yaml"),
+        0);
+    small_expect("run away.yaml -t 1 -q -o away", 70, "body 'upper'");
+    small_expect("run away.yaml -t 1 -q -o away", 70, "friction does not settle within 60 iterations");
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("program_static");
+    TCase *tests = tcase_create("program_static");
+    tcase_add_checked_fixture(tests, small_folder_make, small_folder_remove);
+    tcase_set_timeout(tests, 0);
+    tcase_add_test(tests, friction_is_kept_from_step_to_step);
+    tcase_add_test(tests, friction_is_kept_over_a_restart);
+    tcase_add_test(tests, wedge_slides_below_its_slope_alone);
+    tcase_add_test(tests, what_slides_away_is_70);
+    suite_add_tcase(suite, tests);
+    return suite_main(suite);
+}
+#else
+int main(void) { return 0; }
+#endif
