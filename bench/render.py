@@ -60,6 +60,8 @@ def arguments():
     p.add_argument("--radius", type=float, help="of the spheres [m]; default: from the volume field, or the spacing")
     p.add_argument("--point-size", type=float, default=3, help="pixels, with --style points")
     p.add_argument("--edges", choices=["auto", "on", "off"], default="auto", help="of elements; auto: up to 30,000 faces")
+    p.add_argument("--links", metavar="FILE.vtu", help="contact.links of the same time: a line for each two bodies that push, as wide as "
+                   "their force, from grey to red with friction's share of its bound")
     p.add_argument("--mirror", default="", help="planes through the origin to mirror at: any of x, y, z")
     p.add_argument("--cut", action="append", default=[], metavar="AXIS<VALUE",
                    help="show only what has a coordinate below (x<0.01) or above (x>0.01) a value [m]; repeatable")
@@ -335,6 +337,44 @@ def particle_actor(vtk, np, args, particles, table, scale):
     return actor
 
 
+def links_actor(vtk, np, path):
+    """A bar for each link, in the plane of x and y, before what else there is."""
+    from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+    grid = read_file(vtk, path)
+    arrays = [grid.GetCellData().GetArray(name) for name in ("normal", "share")]
+    if None in arrays:
+        fail(65, f"{path}: no picture of links: fields 'normal' and 'share' of cells are wanted")
+    if not grid.GetNumberOfCells():
+        return vtk.vtkActor()
+    force, share = (vtk_to_numpy(array).astype(float) for array in arrays)
+    ends = vtk_to_numpy(grid.GetPoints().GetData()).astype(float).reshape(-1, 2, 3)
+    way = ends[:, 1] - ends[:, 0]
+    length = np.linalg.norm(way, axis=1)
+    widest = 0.08 * np.median(length)  # half the width of the greatest force
+    across = np.stack([-way[:, 1], way[:, 0], np.zeros(len(way))], axis=1) / np.maximum(length, 1e-300)[:, None]
+    across *= (widest * force / force.max())[:, None]
+    corners = np.stack([ends[:, 0] - across, ends[:, 1] - across, ends[:, 1] + across, ends[:, 0] + across], axis=1)
+    corners[:, :, 2] += 0.01 * np.median(length)
+    points, cells, data = vtk.vtkPoints(), vtk.vtkCellArray(), vtk.vtkPolyData()
+    points.SetData(numpy_to_vtk(np.ascontiguousarray(corners.reshape(-1, 3)), deep=True))
+    for i in range(len(force)):
+        cells.InsertNextCell(4, [4 * i, 4 * i + 1, 4 * i + 2, 4 * i + 3])
+    data.SetPoints(points)
+    data.SetPolys(cells)
+    data.GetCellData().SetScalars(numpy_to_vtk(np.ascontiguousarray(share), deep=True))
+    colours = vtk.vtkColorTransferFunction()
+    colours.AddRGBPoint(0, 0.1, 0.1, 0.1)
+    colours.AddRGBPoint(1, 1.0, 0.15, 0.1)
+    mapper = vtk.vtkPolyDataMapper()
+    mapper.SetInputData(data)
+    mapper.SetLookupTable(colours)
+    mapper.SetUseLookupTableScalarRange(True)
+    actor = vtk.vtkActor()
+    actor.SetMapper(mapper)
+    actor.GetProperty().LightingOff()
+    return actor
+
+
 def surface_actor(vtk, args, surface, table, edges, scale):
     mapper = vtk.vtkPolyDataMapper()
     mapper.SetInputData(surface)
@@ -373,6 +413,8 @@ def make_scene(vtk, np, args, scale):
     edges = args.edges == "on" or args.edges == "auto" and sum(s.GetNumberOfCells() for s in surfaces) <= 30000
     for surface in surfaces:
         renderer.AddActor(surface_actor(vtk, args, surface, table, edges, scale))
+    if args.links:
+        renderer.AddActor(links_actor(vtk, np, args.links))
         points.append(vtk_to_numpy(surface.GetPoints().GetData()).astype(float))
 
     unit = args.unit if args.unit is not None else file_unit(args.files[0], args.field)

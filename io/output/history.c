@@ -120,6 +120,19 @@ static void add_newton(brunt_history *h, const brunt_world *world) {
     add(h, "newton.least_part", "1", isfinite(last.least_part) ? last.least_part : NAN);
 }
 
+// Of the bodies that push each other in load steps.
+static void add_links(brunt_history *h, const brunt_world *world) {
+    int32_t count;
+    brunt_link_sums sums;
+    if (!brunt_world_static(world) || !brunt_world_links(world, &count)) return;
+    brunt_world_link_sums(world, &sums);
+    add(h, "links.count", "1", sums.count);
+    add(h, "links.mean", "N", sums.mean);
+    add(h, "links.sd", "N", sums.sd);
+    add(h, "links.greatest", "N", sums.greatest);
+    add(h, "links.slipping", "1", sums.slipping);
+}
+
 static void add_momentum(brunt_history *h, brunt_world *world) {
     brunt_momentum m;
     brunt_world_momentum(world, &m);
@@ -246,6 +259,7 @@ static void traverse(brunt_history *h, brunt_world *world) {
     add_energy(h, world);
     add_momentum(h, world);
     add_newton(h, world);
+    add_links(h, world);
     add_parts(h, world);
     const bool flat = brunt_world_dimension(world) == 2 && !brunt_effect_on(world, "axisymmetric");
     for (int32_t p = 0; p < brunt_pair_count(world); p++) {

@@ -6,16 +6,29 @@
 #include "io/file/atomic_file.h"
 #include "io/output/parts.h"
 
+static int32_t links_part(const brunt_world *world) {
+    return brunt_body_count(world) + brunt_boundary_surface_count(world);
+}
+
+bool brunt_picture_is_links(const brunt_world *world, int32_t part) {
+    int32_t count;
+    return part == links_part(world) && brunt_world_static(world) && brunt_world_links(world, &count);
+}
+
 int32_t brunt_picture_next(const brunt_world *world, int32_t part) {
     const int32_t bodies = brunt_body_count(world), next = part < bodies ? brunt_part_end(world, part) : part + 1;
-    return next < bodies + brunt_boundary_surface_count(world) ? next : BRUNT_NONE;
+    return next < links_part(world) || brunt_picture_is_links(world, next) ? next : BRUNT_NONE;
 }
 
 // What a part is of; *boundary: whether that is a line or surface.
 static void part_name(const brunt_world *world, int32_t part, char out[BRUNT_NAME_LENGTH], bool *boundary) {
     const int32_t bodies = brunt_body_count(world);
     brunt_boundary_surface_report report;
-    *boundary = part >= bodies;
+    *boundary = part >= bodies && !brunt_picture_is_links(world, part);
+    if (part >= bodies && !*boundary) {
+        snprintf(out, BRUNT_NAME_LENGTH, "contact.links");
+        return;
+    }
     if (!*boundary) {
         brunt_part_name(world, part, out);
         return;

@@ -42,5 +42,10 @@ int brunt_vtu_write_body(const char *path, brunt_world *world, int32_t body, con
 int brunt_vtu_write_boundary(const char *path, const brunt_world *world, int32_t surface, bool float32,
                              brunt_error *error);
 
+// Bodies that push each other, as the last step has left them: a line from centre to centre each (to a plate, to
+// where the other ends), with the size of the normal force, the
+// force on the first, friction, its share of the bound, and both bodies by number.
+int brunt_vtu_write_links(const char *path, brunt_world *world, bool float32, brunt_error *error);
+
 // Says what a .vtu or .pvd file holds.
 int brunt_vtu_describe(const char *path, FILE *out, brunt_error *error);

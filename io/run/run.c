@@ -103,6 +103,8 @@ static int write_picture(run *r, brunt_error *error) {
         if (!status && b < bodies)
             status = brunt_vtu_write_body(path, r->world, b, (const char(*)[64])output->fields, output->field_count,
                                           output->float32, error);
+        else if (!status && brunt_picture_is_links(r->world, b))
+            status = brunt_vtu_write_links(path, r->world, output->float32, error);
         else if (!status)
             status = brunt_vtu_write_boundary(path, r->world, b - bodies, output->float32, error);
     }

@@ -110,6 +110,21 @@ static json_t *momentum_of(brunt_world *world) {
     return momentum;
 }
 
+// Of load steps with contact, NULL of others.
+static json_t *links_of(const brunt_world *world) {
+    int32_t count;
+    brunt_link_sums s;
+    if (!brunt_world_static(world) || !brunt_world_links(world, &count)) return NULL;
+    brunt_world_link_sums(world, &s);
+    json_t *links = json_object();
+    json_object_set_new(links, "count", json_integer((json_int_t)s.count));
+    json_object_set_new(links, "mean", number(s.mean));
+    json_object_set_new(links, "sd", number(s.sd));
+    json_object_set_new(links, "greatest", number(s.greatest));
+    json_object_set_new(links, "slipping", json_integer((json_int_t)s.slipping));
+    return links;
+}
+
 // Of implicit steps, NULL of others.
 static json_t *newton_of(const brunt_world *world) {
     brunt_newton_counts n;
@@ -156,6 +171,7 @@ static void set_newton(json_t *object, const brunt_world *world) {
     brunt_newton_counts n;
     if (!brunt_world_newton(world, &n, NULL)) return;
     json_object_set_new(object, "newton", newton_of(world));
+    json_object_set_new(object, "links", links_of(world));
     json_object_set_new(object, "least_gap", number(n.least_gap));
 }
 
@@ -284,6 +300,16 @@ static void print_eroded(brunt_world *world, brunt_console *console) {
     }
 }
 
+static void print_links(brunt_world *world, brunt_console *console) {
+    int32_t count;
+    brunt_link_sums s;
+    if (!brunt_world_static(world) || !brunt_world_links(world, &count)) return;
+    brunt_world_link_sums(world, &s);
+    brunt_console_print(console,
+                        "links: %.0f bodies push each other, mean %.6g, spread %.4g, greatest %.6g %s, %.0f slip\n",
+                        s.count, s.mean, s.sd, s.greatest, brunt_world_dimension(world) == 2 ? "N/m" : "N", s.slipping);
+}
+
 static void print_newton(brunt_world *world, brunt_console *console) {
     brunt_newton_counts n;
     if (!brunt_world_newton(world, &n, NULL)) return;
@@ -345,6 +371,7 @@ void brunt_summary_print(const brunt_summary *s, const brunt_scene *scene, brunt
     print_energy(world, console);
     print_eroded(world, console);
     print_newton(world, console);
+    print_links(world, console);
     brunt_console_print(console, "momentum drift: linear %.2e, angular %.2e\n", m.linear_drift, m.angular_drift);
     brunt_console_print(console, "state hash 0x%016llx\n", (unsigned long long)brunt_world_hash(world));
     print_measures(s, scene, console);

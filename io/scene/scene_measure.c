@@ -112,8 +112,9 @@ static const char *column_mistake(const scene_reader *reader, const char *column
                                            "contact",        "friction",      "viscosity",  "transfer", "eroded",
                                            "heat",           "external_work", "initial",    "total",    "error",
                                            "error_relative", "scheme"};
+    static const char *const links[] = {"count", "mean", "sd", "greatest", "slipping"};
     static const char families[] =
-        "columns are time, step, dt, energy.*, momentum.*, newton.*, body.NAME.*, contact.A-B.*, wall.NAME.*, "
+        "columns are time, step, dt, energy.*, momentum.*, newton.*, links.*, body.NAME.*, contact.A-B.*, wall.NAME.*, "
         "gas.NAME.* and probe.NAME";
     const char *dot = strchr(column, '.');
     if (!dot) return one_of(column, plain, BRUNT_COUNT(plain)) ? NULL : families;
@@ -127,6 +128,9 @@ static const char *column_mistake(const scene_reader *reader, const char *column
                      "eroded, heat, scheme, external_work, initial, total, error, error_relative";
     if (family == 8 && strncmp(column, "momentum", 8) == 0) return NULL;
     if (family == 6 && strncmp(column, "newton", 6) == 0) return newton_mistake(rest);
+    if (family == 5 && strncmp(column, "links", 5) == 0)
+        return one_of(rest, links, BRUNT_COUNT(links)) ? NULL
+                                                       : "of links there are count, mean, sd, greatest, slipping";
     if (family == 4 && strncmp(column, "body", 4) == 0)
         return body_exists(reader, rest) ? NULL : "there is no such body";
     if (family == 7 && strncmp(column, "contact", 7) == 0)
@@ -205,6 +209,17 @@ static void fill_profile(scene_reader *reader, scene_node *where, brunt_measure 
     if (zero) brunt_tree_complain(reader->tree, reference, "it is 0 everywhere, distances are relative to its size");
 }
 
+// Columns that the scheme has not got are not measured, which is said where nothing worse is wrong with them.
+static void note_absent(scene_reader *reader, const scene_node *where, brunt_measure *measure, bool sound) {
+    const brunt_scheme scheme = reader->scene->world.scheme;
+    const bool links = !strncmp(measure->column, "links.", 6) && scheme != BRUNT_STATIC;
+    measure->absent = links || (!strncmp(measure->column, "newton.", 7) && !brunt_scheme_minimises(scheme));
+    if (measure->absent && sound)
+        brunt_scene_warn_at(reader, where, false,
+                            links ? "not measured: links are of static steps"
+                                  : "not measured: Newton's method is of implicit and static steps");
+}
+
 static void fill_kind(scene_reader *reader, scene_node *node, brunt_measure *measure) {
     static const char *const kinds[] = {
 #define X(NAME, name) #name,
@@ -235,10 +250,7 @@ static void fill_kind(scene_reader *reader, scene_node *node, brunt_measure *mea
         brunt_copy_text(reader, where, measure->column, sizeof measure->column);
         const char *mistake = where->good ? column_mistake(reader, where->text) : NULL;
         if (mistake) brunt_tree_complain(tree, where, "'%.100s' is no column of the history: %s", where->text, mistake);
-        measure->absent =
-            !strncmp(measure->column, "newton.", 7) && !brunt_scheme_minimises(reader->scene->world.scheme);
-        if (measure->absent && !mistake)
-            brunt_scene_warn_at(reader, where, false, "not measured: Newton's method is of implicit and static steps");
+        note_absent(reader, where, measure, mistake == NULL);
         return;
     }
     if (where->kind != SCENE_MAP) return;

@@ -158,6 +158,70 @@ START_TEST(what_slides_away_is_70) {
 }
 END_TEST
 
+// Nine disks in a square, pressed by 30 N/m a row: each contact carries that, of as many as there are, and the picture
+// has a line for each.
+static const char square[] =
+    "brunt: 1\ntitle: nine disks\ndimension: 2\ntime: {scheme: static, steps: 2}\nnewton: {tolerance: 1e-8}\n"
+    "materials:\n  soft: {model: linear-elastic, density: 1000 kg/m^3, E: 2.75 MPa, nu: 0.3}\n"
+    "  stiff: {model: linear-elastic, density: 1000 kg/m^3, E: 200 MPa, nu: 0.3}\nbodies:\n"
+    "  grains: {method: fem, element: tri3, size: 2 mm, material: soft, crowd: {lattice: square, count: [3, 3], "
+    "radius: 5 mm, "
+    "gap: 30 um}}\n"
+    "  top: {method: fem, element: quad4, size: 2.5 mm, material: stiff, shape: {box: {min: [0.1 mm, 30.09 mm], max: "
+    "[30.19 mm, "
+    "35.09 mm]}}}\n"
+    "  right: {method: fem, element: quad4, size: 2.5 mm, material: stiff, shape: {box: {min: [30.09 mm, 0.1 mm], max: "
+    "[35.09 mm, "
+    "30.19 mm]}}}\n"
+    "boundaries:\n"
+    "  - {name: left, plane: {point: [0, 0], normal: [1, 0]}, condition: separate}\n"
+    "  - {name: bottom, plane: {point: [0, 0], normal: [0, 1]}, condition: separate}\n"
+    "  - {body: top, group: ymax, traction: [0, -2991.0269 Pa], table: [[0 s, 0], [1 s, 1]]}\n"
+    "  - {body: right, group: xmax, traction: [-2991.0269 Pa, 0], table: [[0 s, 0], [1 s, 1]]}\n"
+    "  - {body: top, group: surface, fix: [x]}\n  - {body: right, group: surface, fix: [y]}\n"
+    "contact: {method: barrier, friction: 0.5, distance: 50 um, pairs: [{between: [grains, top], friction: 0}, "
+    "{between: [grains, right], friction: 0}, {between: [top, right], method: none}]}\noutput: {every: 1 s, history: 0 "
+    "s}\n";
+
+START_TEST(links_are_told) {
+    double count[ROWS], mean[ROWS], sd[ROWS], slipping[ROWS];
+    char path[200];
+    small_put("square.yaml", square);
+    small_expect("run square.yaml -t 1 -o out", 0, "links: 18 bodies push each other, mean ");
+    const int last = read_column("out", "links.count", count) - 1;
+    read_column("out", "links.mean", mean), read_column("out", "links.sd", sd);
+    read_column("out", "links.slipping", slipping);
+    ck_assert_double_eq(count[0], 0);
+    ck_assert_double_eq(count[last], 18);
+    ck_assert_double_eq_tol(mean[last], 30, 0.003 * 30);
+    ck_assert_double_lt(sd[last], 0.003 * 30);
+    ck_assert_double_eq(slipping[last], 0);
+    small_expect("info out/vtu/contact.links_000001.vtu", 0, "elements   18");
+    snprintf(path, sizeof path, "%s/out/summary.json", small_folder);
+    json_t *summary = json_load_file(path, 0, NULL), *links = json_object_get(summary, "links");
+    ck_assert_int_eq(json_integer_value(json_object_get(links, "count")), 18);
+    ck_assert_double_eq(json_real_value(json_object_get(links, "mean")), mean[last]);
+    json_decref(summary);
+}
+END_TEST
+
+// What is hard for a packing finds its equilibrium, or ends with the body that has none.
+START_TEST(hard_packings_settle_or_say_why) {
+    small_put("square.yaml", square);
+    small_expect("run square.yaml -t 1 -q -o out --set contact.friction=1e-3", 0, NULL);
+    small_expect("run square.yaml -t 1 -q -o out --set contact.friction=0", 0, NULL);
+    small_expect("run square.yaml -t 1 -q -o out --set 'bodies.grains.random={E: {between: [1 kPa, 10 MPa]}}'", 0,
+                 NULL);
+    small_expect("run square.yaml -t 1 -q -o out --set time.steps=6 --set 'boundaries[2].table=[[0 s, 0], [0.5 s, 1], "
+                 "[1 s, 0.2]]'",
+                 0, NULL);
+    small_expect("run square.yaml -t 1 -q -o out --set bodies.grains.crowd.gap=0", 65, "bodies.grains.1 touches");
+    small_expect("run square.yaml -t 1 -q -o out --set newton.cut=0 --set 'bodies.grains.crowd.radius=4 mm' --set "
+                 "'bodies.grains.crowd.gap=2.03 mm'",
+                 70, "of a load step, halved 0 times");
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("program_static");
     TCase *tests = tcase_create("program_static");
@@ -167,6 +231,8 @@ int main(void) {
     tcase_add_test(tests, friction_is_kept_over_a_restart);
     tcase_add_test(tests, wedge_slides_below_its_slope_alone);
     tcase_add_test(tests, what_slides_away_is_70);
+    tcase_add_test(tests, links_are_told);
+    tcase_add_test(tests, hard_packings_settle_or_say_why);
     suite_add_tcase(suite, tests);
     return suite_main(suite);
 }

@@ -174,6 +174,22 @@ typedef struct brunt_barrier_values {
 } brunt_barrier_values;
 bool brunt_world_barrier(const brunt_world *world, brunt_barrier_values *values); // false: no barrier
 
+// Two bodies that are near each other, of implicit and static steps with a barrier, as the last step has left them:
+// what pushes and rubs body a, and b the other way. In two dimensions [N/m].
+typedef struct brunt_link {
+    int32_t a, b;
+    double force[3], normal, friction; // [N] both; their sizes
+    double share;                      // [-] friction of Coulomb's bound; 0 where there is none
+} brunt_link;
+bool brunt_world_links(const brunt_world *world, int32_t *count);     // false: no barrier
+brunt_link brunt_world_link(const brunt_world *world, int32_t index); // 0 <= index < count
+// Of the links with a force: how many, the mean of the normal forces, its standard deviation, the greatest [N]; those
+// that have come to 0.99 of their bound.
+typedef struct brunt_link_sums {
+    double count, mean, sd, greatest, slipping;
+} brunt_link_sums;
+void brunt_world_link_sums(const brunt_world *world, brunt_link_sums *sums);
+
 // Gas in enclosed volumes.
 typedef struct brunt_gas {
     char name[BRUNT_NAME_LENGTH];    // of its boundary
