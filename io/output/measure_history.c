@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/error.h"
 #include "base/memory.h"
 
@@ -26,18 +27,25 @@ static double period(const double *time, const double *value, int64_t count, dou
     return rises > 1 ? (last - first) / (double)(rises - 1) : NAN;
 }
 
-// Reduces the samples of a column within [from, to]. Times at the ends of the window count: output times carry
-// rounding.
-static double reduce_history(const brunt_measure *m, const double *time, const double *value, int64_t rows) {
-    double tolerance = 1e-9 * fmax(isfinite(m->from) ? fabs(m->from) : 0, isfinite(m->to) ? fabs(m->to) : 0);
-    int64_t first = 0, last = rows - 1;
-    while (first < rows && time[first] < m->from - tolerance) first++;
-    while (last >= 0 && time[last] > m->to + tolerance) last--;
-    if (first > last) return NAN;
-    int64_t count = last - first + 1;
+// The lines within [from, to] that have a value: a gap of what is near nothing and a probe of what has eroded have
+// none. Times at the ends of the window count: output times carry rounding.
+static int64_t keep_lines(const brunt_measure *m, double *time, double *value, int64_t rows) {
+    const double tolerance = 1e-9 * fmax(isfinite(m->from) ? fabs(m->from) : 0, isfinite(m->to) ? fabs(m->to) : 0);
+    const bool of_a_line = m->take == BRUNT_TAKE_END || m->take == BRUNT_TAKE_INITIAL; // whether it has one or not
+    int64_t kept = 0;
+    for (int64_t r = 0; r < rows; r++) {
+        if (time[r] < m->from - tolerance || time[r] > m->to + tolerance || (isnan(value[r]) && !of_a_line)) continue;
+        time[kept] = time[r], value[kept++] = value[r];
+    }
+    return kept;
+}
+
+// Reduces the samples of a column, which all have a value.
+static double reduce_history(const brunt_measure *m, const double *time, const double *value, int64_t count) {
+    const int64_t first = 0, last = count - 1;
+    if (!count) return NAN;
     double least = value[first], most = value[first];
     for (int64_t r = first; r <= last; r++) {
-        if (isnan(value[r])) return NAN;
         least = fmin(least, value[r]);
         most = fmax(most, value[r]);
     }
@@ -94,7 +102,7 @@ static double between(const double *x, const double *y, int stride, int64_t coun
 
 // The distance of the history, less `minus` over `divisor`, from the curve, over the curve's range. Both are linear
 // between their points, so that the greatest is at a point of either or at an end of the window. NAN where the history
-// has none: a run that ended before the window did.
+// has none: a run that ended before the window did, a line within it without a value.
 static int reduce_distance(const brunt_measure *m, const double *time, const double *value, int64_t rows,
                            double divisor, double *out, brunt_error *error) {
     const double(*points)[2] = (const double(*)[2])m->curve.points;
@@ -114,12 +122,24 @@ static int reduce_distance(const brunt_measure *m, const double *time, const dou
     at[used++] = m->to;
     for (c = 0; c < count; c++) least = fmin(least, points[c][1]), most = fmax(most, points[c][1]);
     int64_t row = 0, point = 0;
+    bool whole = true;
     for (int64_t i = 0; i < used; i++) {
         double h = (between(time, value, 1, rows, at[i], &row) - m->minus) / divisor;
         distance[i] = (h - between(points[0], points[0] + 1, 2, count, at[i], &point)) / (most - least);
+        whole = whole && !isnan(distance[i]);
     }
-    *out = reduce_history(m, at, distance, used);
+    if (whole) *out = reduce_history(m, at, distance, used);
     brunt_free(at);
+    return BRUNT_OK;
+}
+
+static int reduce_lines(const brunt_measure *m, const double *time, const double *value, int64_t rows, double *out,
+                        brunt_error *error) {
+    double *lines;
+    if (BRUNT_NEW(lines, 2 * rows + 1, "lines of a measure", error)) return BRUNT_FAILED;
+    memcpy(lines, time, sizeof *lines * (size_t)rows), memcpy(lines + rows, value, sizeof *lines * (size_t)rows);
+    *out = reduce_history(m, lines, lines + rows, keep_lines(m, lines, lines + rows, rows));
+    brunt_free(lines);
     return BRUNT_OK;
 }
 
@@ -130,10 +150,7 @@ static int take(const brunt_measure *m, measure_source *from, double *value, bru
     if (status) return status;
     const int64_t rows = brunt_history_rows(from->history);
     from->initial = rows ? column[0] : NAN;
-    if (!m->curve.count) {
-        *value = reduce_history(m, time, column, rows);
-        return BRUNT_OK;
-    }
+    if (!m->curve.count) return reduce_lines(m, time, column, rows, value, error);
     const double divisor = (m->relative_to_initial ? from->initial : 1) * (isnan(m->relative_to) ? 1 : m->relative_to);
     return reduce_distance(m, time, column, rows, divisor, value, error);
 }

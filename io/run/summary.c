@@ -336,6 +336,11 @@ static void print_measures(const brunt_summary *summary, const brunt_scene *scen
             brunt_console_print(console, "  %-28s   not measured\n", m->name);
             continue;
         }
+        if (isnan(r->value)) {
+            brunt_console_print(console, "  %-28s   no value, there is nothing to take it from%s\n", m->name,
+                                r->judged ? "  FAIL" : "");
+            continue;
+        }
         brunt_console_print(console, "  %-28s %14.7g %-8s", m->name, r->value, m->unit);
         if (!isnan(m->expect))
             brunt_console_print(console, "  expected %.7g, off by %.3g%s", m->expect,
