@@ -285,15 +285,17 @@ static void take_stiffness(brunt_barrier_values *values, double stiffness) {
     values->stiffness[1] = fmax(values->stiffness[1], stiffness);
 }
 
-// Of two bodies the softer one counts: no pair is softer than the softest body, nor stiffer than the second stiffest
-// (but a body with itself, which is not looked at).
+// Of two bodies the softer one counts: no pair is softer than the softest body, nor stiffer than the second stiffest,
+// but for a body with itself.
 static void take_pairs(brunt_barrier_values *values, const brunt_implicit_contact *c, int bodies) {
     double softest = INFINITY, stiffest[2] = {0, 0};
+    brunt_barrier_pair itself;
     for (int b = 0; b < bodies; b++) {
         if (!c->met[b]) continue;
         softest = fmin(softest, c->young[b]);
         stiffest[1] = fmax(stiffest[1], fmin(stiffest[0], c->young[b]));
         stiffest[0] = fmax(stiffest[0], c->young[b]);
+        if (brunt_implicit_contact_pair(c, b, b, &itself)) take_stiffness(values, itself.stiffness);
     }
     if (softest == INFINITY) return;
     take_stiffness(values, stiffness_of(c, softest, INFINITY));

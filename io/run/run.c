@@ -300,6 +300,7 @@ static int make_world(run *r, brunt_error *error) {
     for (int32_t m = 0; m < scene->measure_count && !status; m++)
         status = brunt_measure_initial(&scene->measures[m], r->world, &r->measure_initial[m], error);
     r->state.mesh_hash = hash_meshes(scene);
+    if (!status) status = brunt_scene_take_values(scene, r->world, error);
     if (!status) status = make_scene_text(r, error);
     if (!status) brunt_history_identify(r->history, brunt_checkpoint_identity(r->scene_text, r->state.mesh_hash));
     return status;

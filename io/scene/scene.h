@@ -109,6 +109,9 @@ void brunt_scene_complain(const brunt_scene *scene, const char *message, FILE *o
 // The scene as resolved: every default filled in but methods of contact, SI units. It reads back to the same scene. Of
 // methods that are not given each scheme has its own; keys of the other scheme stay, so that it can be run by that.
 int brunt_scene_write(const brunt_scene *scene, FILE *out);
+// Defaults that the bodies decide: of barriers the distance, the slip speed of what rubs, and the stiffness, where all
+// pairs and planes have the same. Written from then on; the world is that of the scene.
+int brunt_scene_take_values(const brunt_scene *scene, const brunt_world *world, brunt_error *error);
 // The reference of all keys, made from the table that parses them. `section` NULL: all. False when there is no such
 // section.
 bool brunt_scene_keys(const char *section, FILE *out);

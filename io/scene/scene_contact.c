@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/error.h"
 #include "base/memory.h"
 #include "contact/methods/method.h"
 #include "world/named_pairs.h"
@@ -309,4 +310,24 @@ void brunt_fill_contact(scene_reader *reader) {
     if (!fem && world->body_count && method && method->good) check_touch(reader, method, contact->method);
     check_touches(reader, brunt_tree_child(node, "pairs"));
     check_pair_columns(reader);
+}
+
+static bool add_number(scene_reader *reader, scene_node *map, const char *key, double value) {
+    char text[32];
+    brunt_format_number(value, text);
+    return brunt_tree_child(map, key) || brunt_add_default(reader, map, key, text);
+}
+
+int brunt_scene_take_values(const brunt_scene *scene, const brunt_world *world, brunt_error *error) {
+    scene_tree *tree = scene->resolved;
+    scene_node *contact = brunt_tree_child(tree->root, "contact");
+    brunt_barrier_values v;
+    if (!contact || contact->kind != SCENE_MAP || !brunt_world_barrier(world, &v)) return BRUNT_OK;
+    scene_reader reader = {.tree = tree, .units = brunt_units_open(), .dimension = scene->world.dimension};
+    const bool one = v.stiffness[0] == v.stiffness[1];
+    const bool added = reader.units && add_number(&reader, contact, "distance", v.distance) &&
+                       (!one || add_number(&reader, contact, "stiffness", v.stiffness[0])) &&
+                       (!(v.slip_speed > 0) || add_number(&reader, contact, "slip_speed", v.slip_speed));
+    if (reader.units) brunt_units_close(reader.units);
+    return added ? BRUNT_OK : brunt_fail(error, BRUNT_FAILED, "out of memory for the resolved scene");
 }

@@ -76,6 +76,71 @@ START_TEST(says_how_contact_is) {
 }
 END_TEST
 
+static void check_same_state(const char *one, const char *other) {
+    json_t *a = summary_of(one), *b = summary_of(other);
+    ck_assert_str_eq(json_string_value(json_object_get(a, "state_hash")),
+                     json_string_value(json_object_get(b, "state_hash")));
+    json_decref(a), json_decref(b);
+}
+
+static const char three[] =
+    "brunt: 1\n"
+    "dimension: 2\n"
+    "time: {scheme: implicit, end: 4 ms, step: 2 ms}\n"
+    "materials:\n"
+    "  soft: {model: neo-hookean, density: 1000, E: 1e6, nu: 0.3}\n"
+    "  hard: {model: neo-hookean, density: 1000, E: 2e6, nu: 0.3}\n"
+    "bodies:\n"
+    "  a: {method: fem, material: soft, size: 0.1, shape: {box: {min: [0, 0], max: [1, 0.2]}}}\n"
+    "  b: {method: fem, material: hard, size: 0.1, shape: {box: {min: [0, 0.3], max: [1, 0.5]}}}\n"
+    "  c: {method: fem, material: hard, size: 0.1, shape: {box: {min: [0, 0.6], max: [1, 0.8]}}}\n"
+    "contact: {friction: 0.2}\n";
+
+// What bodies decide by default stands in the resolved scene, from which the same steps follow, also where a finer mesh
+// would have another default; stiffnesses that differ from pair to pair have no place there.
+START_TEST(has_its_defaults_in_the_scene) {
+    small_expect("run small.yaml -o out --set time.end=20ms", 0, "done");
+    ck_assert_int_eq(small_shell("grep -q '^  distance: 0.00[45]' out/scene.yaml"), 0);
+    ck_assert_int_eq(small_shell("grep -q '^  stiffness: 100000$' out/scene.yaml"), 0);
+    ck_assert_int_eq(small_shell("grep -q '^  slip_speed: 0.00036' out/scene.yaml"), 0);
+    ck_assert_int_eq(small_shell("grep -q '^  friction_iterations: 1$' out/scene.yaml"), 0);
+    small_expect("run out/scene.yaml -o again", 0, "done");
+    check_same_state("out", "again");
+    ck_assert_int_eq(small_shell("cmp out/scene.yaml again/scene.yaml"), 0);
+    small_expect("run small.yaml -o set --set time.end=20ms --set contact.friction=0 --set contact.stiffness=2e5", 0,
+                 "done");
+    ck_assert_int_eq(small_shell("grep -q '^  stiffness: 200000$' set/scene.yaml"), 0);
+    ck_assert_int_eq(small_shell("grep -q slip_speed set/scene.yaml"), 1); // nothing rubs
+    small_expect("run small.yaml -o explicit --set time.end=1ms --set time.scheme=explicit --set time.step=0.2ms", 0,
+                 "done");
+    ck_assert_int_eq(small_shell("grep -q 'distance:' explicit/scene.yaml"), 1);
+    small_put("three.yaml", three);
+    small_expect("check three.yaml --quick", 0, "contact.stiffness 1e+05 to 2e+05 Pa");
+    small_expect("run three.yaml -o three --set time.end=4ms", 0, "done");
+    ck_assert_int_eq(small_shell("grep -q '^  distance: 0.0[01]' three/scene.yaml"), 0);
+    ck_assert_int_eq(small_shell("grep -q '^  stiffness' three/scene.yaml"), 1);
+}
+END_TEST
+
+// Before bodies are near each other there is no gap: a least one is of the lines that have one.
+START_TEST(has_a_least_gap_from_where_there_is_one) {
+    ck_assert_int_eq(
+        small_shell("printf 'measures:\\n  least: {history: newton.least_gap, take: min}\\n"
+                    "  first: {history: newton.least_gap, take: initial}\\n"
+                    "  before: {history: newton.least_gap, take: min, to: 2 ms, expect: 1 m, tolerance: 1}\\n'"
+                    " >> small.yaml"),
+        0);
+    small_expect("run small.yaml -o out", 0,
+                 "before                         no value, there is nothing to take it from  FAIL");
+    json_t *s = summary_of("out"), *m = json_object_get(s, "measures");
+    ck_assert_double_eq(number_at(json_object_get(m, "least"), NULL, "value"), number_at(s, NULL, "least_gap"));
+    ck_assert(json_is_null(json_object_get(json_object_get(m, "first"), "value")));
+    ck_assert(json_is_null(json_object_get(json_object_get(m, "before"), "value")));
+    ck_assert(json_is_false(json_object_get(json_object_get(m, "before"), "ok")));
+    json_decref(s);
+}
+END_TEST
+
 START_TEST(is_the_scheme_that_is_set) {
     small_expect("run small.yaml -o out --set time.scheme=explicit --set time.step=0.2ms", 0, "done");
     json_t *s = summary_of("out");
@@ -226,13 +291,6 @@ START_TEST(that_does_not_converge_is_70) {
 }
 END_TEST
 
-static void check_same_state(const char *one, const char *other) {
-    json_t *a = summary_of(one), *b = summary_of(other);
-    ck_assert_str_eq(json_string_value(json_object_get(a, "state_hash")),
-                     json_string_value(json_object_get(b, "state_hash")));
-    json_decref(a), json_decref(b);
-}
-
 // A step that was not solved has changed nothing: a run goes on by other keys of its solution with the bits, pictures
 // and lines of one that had them from there on.
 START_TEST(goes_on_where_a_step_failed) {
@@ -272,6 +330,8 @@ int main(void) {
     tcase_set_timeout(tests, 0);
     tcase_add_test(tests, says_what_it_does);
     tcase_add_test(tests, says_how_contact_is);
+    tcase_add_test(tests, has_its_defaults_in_the_scene);
+    tcase_add_test(tests, has_a_least_gap_from_where_there_is_one);
     tcase_add_test(tests, keeps_momentum);
     tcase_add_test(tests, is_the_scheme_that_is_set);
     tcase_add_test(tests, runs_by_both);
