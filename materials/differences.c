@@ -38,8 +38,12 @@ static void begin(difference_step *s, const brunt_material *material, const brun
     s->material = material, s->trial = trial;
     for (int k = 0; k < BRUNT_COMPONENTS; k++) {
         brunt_material_points *points = &s->points[k];
-        *points = (brunt_material_points){
-            .count = trial->count, .dim = trial->dim, .dt = step_time(trial), .cell = 1, .volume = s->volume};
+        *points = (brunt_material_points){.count = trial->count,
+                                          .dim = trial->dim,
+                                          .dt = step_time(trial),
+                                          .finite = true,
+                                          .cell = 1,
+                                          .volume = s->volume};
         for (int c = 0; c < trial->dim * trial->dim; c++) points->F[c] = s->F[c], points->L[c] = s->L[c];
         for (int c = 0; c < BRUNT_SYMMETRIC(trial->dim); c++) points->stress[c] = s->stress[c];
         for (int c = 0; c < BRUNT_MAX_STATE; c++) points->state[c] = s->state[k][c];
@@ -60,20 +64,6 @@ static bool is_still(const brunt_trial_points *trial) {
         for (int32_t q = 0; q < trial->count; q++)
             most = (real)fmax((double)most, fabs((double)trial->f[c][q] - (c % (trial->dim + 1) == 0)));
     return most <= 64 * LANES_REAL_EPSILON;
-}
-
-// The update of a viscous fluid takes half of the step's work to be that of the stress before: here the stress at the
-// end does all of it, and is found first.
-static void find_viscous_stress(const brunt_material *material, const brunt_material_points *points) {
-    const brunt_model *model = material->model[BRUNT_STRENGTH];
-    if (!model->shear_viscous) return;
-    const size_t bytes = (size_t)points->count * sizeof(real);
-    brunt_material_points first = *points;
-    real state[BRUNT_MAX_STATE][POINT_LIMIT];
-    first.may_reshape = false, first.plastic_increment = NULL;
-    for (int c = 0; c < states_of(model, points->dim); c++)
-        memcpy(state[c], points->state[c], bytes), first.state[c] = state[c];
-    model->update(material->constants[BRUNT_STRENGTH], &first);
 }
 
 // What a viscous fluid has beside pressure, as the integrator wants it.
@@ -109,7 +99,6 @@ static brunt_update_result step(difference_step *s, int k, int b, real h) {
         else
             memset(s->stress[c], 0, bytes);
     }
-    find_viscous_stress(s->material, &s->points[BRUNT_STRENGTH]);
     const brunt_update_result result = brunt_material_update(s->material, s->points, s->plastic, s->viscous, NULL);
     weigh_viscous_stress(s);
     return result;
@@ -194,9 +183,8 @@ brunt_update_result brunt_material_commit_by_differences(const brunt_material *m
         for (int32_t q = 0; q < trial->count; q++)
             L[c][q] = (trial->f[c][q] - (real)(c % (dim + 1) == 0)) / step_time(trial);
     for (int k = 0; k < BRUNT_COMPONENTS; k++) {
-        points[k].dt = step_time(trial);
+        points[k].dt = step_time(trial), points[k].finite = true;
         for (int c = 0; c < dim * dim; c++) points[k].L[c] = L[c];
     }
-    find_viscous_stress(material, &points[BRUNT_STRENGTH]);
     return brunt_material_update(material, points, plastic, viscous, NULL);
 }

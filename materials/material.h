@@ -37,6 +37,7 @@ typedef struct brunt_material_points {
     real cell;        // [m] length scale of the discretisation (for the artificial viscosity)
     real wave_speed;  // [m/s] of the undeformed body (for the artificial viscosity)
     const real *L[9]; // velocity gradient over the step [1/s], BRUNT_MATRIX(dim) components
+    bool finite;      // an implicit step: dt L = f - I may be of any size, a turn by radians among them
     real *F[9];       // deformation gradient at the end of the step [-] (already updated: F = (I + dt L) F_old)
     real *stress[6];  // Kirchhoff stress [Pa]; in: of the last step, out: of this step; BRUNT_SYMMETRIC(dim) components
     bool may_reshape; // F is the points' own memory (material points): a fluid may replace it by one of the same J

@@ -131,10 +131,6 @@ BRUNT_INLINE brunt_update_result update_dim(int dim, bool viscous, const real *k
     return result;
 }
 
-static brunt_update_result update(const real *constants, const brunt_material_points *points) {
-    return points->dim == 2 ? update_dim(2, true, constants, points) : update_dim(3, true, constants, points);
-}
-
 static brunt_update_result update_inviscid(const real *constants, const brunt_material_points *points) {
     return points->dim == 2 ? update_dim(2, false, constants, points) : update_dim(3, false, constants, points);
 }
@@ -161,13 +157,10 @@ typedef struct viscous_step {
     lanes e[3], modulus; // [-]; mu J_old / dt [Pa]
 } viscous_step;
 
-BRUNT_INLINE viscous_step viscous_step_at(int dim, const real *k, const brunt_trial_points *trial, int32_t i) {
-    viscous_step s;
-    lanes H[9], B[6];
-    load_trial_gradient(dim, trial->F, i, H);
-    lanes J = 1 + volume_change(dim, H);
-    load_trial_gradient(dim, trial->f, i, H);
-    s.modulus = k[VISCOSITY] / trial->dt * J / (1 + volume_change(dim, H));
+// Of a displacement gradient of the step, f - I.
+BRUNT_INLINE viscous_step viscous_step_of(int dim, lanes modulus, const lanes H[9]) {
+    viscous_step s = {.modulus = modulus / (1 + volume_change(dim, H))};
+    lanes B[6];
     B[ZZ] = lanes_set(0);
     finger_strain(dim, H, B);
     s.axes = principal_of(dim, B);
@@ -175,6 +168,14 @@ BRUNT_INLINE viscous_step viscous_step_at(int dim, const real *k, const brunt_tr
     lanes mean = (s.e[0] + s.e[1] + s.e[2]) * (real)(1.0 / 3);
     for (int a = 0; a < 3; a++) s.e[a] -= mean;
     return s;
+}
+
+BRUNT_INLINE viscous_step viscous_step_at(int dim, const real *k, const brunt_trial_points *trial, int32_t i) {
+    lanes H[9];
+    load_trial_gradient(dim, trial->F, i, H);
+    const lanes modulus = k[VISCOSITY] / trial->dt * (1 + volume_change(dim, H));
+    load_trial_gradient(dim, trial->f, i, H);
+    return viscous_step_of(dim, modulus, H);
 }
 
 // Of the step; the potential is half of it.
@@ -219,27 +220,55 @@ static void respond_inviscid(const real *constants, const brunt_trial_points *tr
     for (int c = 0; c < BRUNT_TANGENT(trial->dim) && trial->tangent[0]; c++) memset(trial->tangent[c], 0, bytes);
 }
 
+// The step is taken: its stress, and what it dissipates.
+BRUNT_INLINE void take_step(int dim, const viscous_step *s, const brunt_material_points *points, int32_t i,
+                            lanes change) {
+    lanes tau[6], value[3];
+    const lanes work = dissipation(s);
+    for (int a = 0; a < 3; a++) value[a] = 2 * s->modulus * s->e[a];
+    principal_tensor(dim, &s->axes, value, tau);
+    for (int c = 0; c < BRUNT_SYMMETRIC(dim); c++) lanes_store(points->stress[c] + i, tau[c]);
+    real *sum = points->state[VISCOUS_WORK] + i;
+    lanes_store(sum, lanes_load(sum) + work);
+    if (points->plastic_increment) lanes_store(points->plastic_increment + i, work);
+    if (points->may_reshape) reshape(dim, points, i, change);
+}
+
 BRUNT_INLINE brunt_update_result commit_dim(int dim, const real *k, const brunt_trial_points *trial,
                                             const brunt_material_points *points) {
     update_record record = update_begin();
     for (int32_t i = 0; i < points->count; i += BRUNT_LANES) {
-        lanes H[9], tau[6], value[3];
+        lanes H[9];
         const viscous_step s = viscous_step_at(dim, k, trial, i);
         load_trial_gradient(dim, trial->F, i, H);
-        lanes change = volume_change(dim, H), work = dissipation(&s);
+        const lanes change = volume_change(dim, H);
         note_deformation(&record, 1 + change, i);
-        for (int a = 0; a < 3; a++) value[a] = 2 * s.modulus * s.e[a];
-        principal_tensor(dim, &s.axes, value, tau);
-        for (int c = 0; c < BRUNT_SYMMETRIC(dim); c++) lanes_store(points->stress[c] + i, tau[c]);
-        real *sum = points->state[VISCOUS_WORK] + i;
-        lanes_store(sum, lanes_load(sum) + work);
-        if (points->plastic_increment) lanes_store(points->plastic_increment + i, work);
-        if (points->may_reshape) reshape(dim, points, i, change);
+        take_step(dim, &s, points, i, change);
     }
     return update_end(&record, points, NULL);
 }
 
 TRIAL_COMMIT
+
+// The same from f - I = L dt, beside an equation of state that has no potential.
+BRUNT_INLINE brunt_update_result finite_dim(int dim, const real *k, const brunt_material_points *points) {
+    update_record record = update_begin();
+    for (int32_t i = 0; i < points->count; i += BRUNT_LANES) {
+        lanes H[9];
+        load_displacement_gradient(dim, points, i, H);
+        const lanes change = volume_change(dim, H), modulus = k[VISCOSITY] / points->dt * (1 + change);
+        for (int c = 0; c < dim * dim; c++) H[c] = points->dt * lanes_load(points->L[c] + i);
+        const viscous_step s = viscous_step_of(dim, modulus, H);
+        note_deformation(&record, 1 + change, i);
+        take_step(dim, &s, points, i, change);
+    }
+    return update_end(&record, points, NULL);
+}
+
+static brunt_update_result update(const real *constants, const brunt_material_points *points) {
+    if (points->finite) return points->dim == 2 ? finite_dim(2, constants, points) : finite_dim(3, constants, points);
+    return points->dim == 2 ? update_dim(2, true, constants, points) : update_dim(3, true, constants, points);
+}
 
 static const brunt_model_potential viscous_potentials = {.respond = respond, .commit = commit};
 static const brunt_model_potential inviscid_potentials = {.respond = respond_inviscid};

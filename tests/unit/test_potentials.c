@@ -316,36 +316,43 @@ START_TEST(stress_and_tangent) {
 }
 END_TEST
 
-// A turn after the step changes neither the potential, and the stress turns with it.
+// The response to a step that all lanes take: its energy, and the stress.
+static double respond_to(trial *t, const double *f, double *tau) {
+    for (int l = 0; l < BRUNT_LANES; l++) set(t, l, f);
+    respond(t, false);
+    for (int c = 0; c < t->m; c++) tau[c] = (double)t->tau[c][0];
+    return (double)t->density[0];
+}
+
+// A turn after the step changes neither the potential, and the stress turns with it. A turn alone of what is at rest is
+// nothing, however large: what flows has no rate.
 START_TEST(turns_are_free) {
-    const named_material *from = &materials[_i % POTENTIALS];
-    const int dim = _i / POTENTIALS + 2;
+    const named_material *from = &materials[_i % MATERIALS];
+    const int dim = _i / MATERIALS + 2;
     static trial t;
     uint64_t seed = 3;
     if (!from->objective) return;
     begin(&t, from, dim);
+    double rest = 0;
     for (int kind = 0; kind < SHAPES; kind++) {
-        double f[9], R[9], turned[9], tau[9], back[9], size = 1e-6 * 2e6;
+        double f[9], R[9], turned[9], straight[9], found[9], size = 1e-6 * 2e6;
         shape(kind, dim, &seed, f);
         turn(dim, 2.3, R);
         product(dim, R, f, turned);
-        for (int l = 0; l < BRUNT_LANES; l++) set(&t, l, l ? turned : f);
-        if (BRUNT_LANES == 1) return;
-        respond(&t, false);
-        const double scale = fabs((double)t.density[0]) + 1e-9;
-        ck_assert_double_le(fabs((double)(t.density[1] - t.density[0])), 1e-9 * scale + 1e-9);
+        const double energy = respond_to(&t, f, straight), again = respond_to(&t, turned, found);
+        if (kind == 0) rest = energy;
+        if (!isfinite(energy) && !isfinite(again)) continue; // beyond what an equation of state has
+        ck_assert_double_le(fabs(again - energy), 1e-9 * (fabs(energy) + 1e-9) + 1e-9);
+        for (int c = 0; c < dim * dim; c++) size += fabs(straight[c]);
         for (int i = 0; i < dim; i++)
             for (int j = 0; j < dim; j++) {
-                tau[i * dim + j] = back[i * dim + j] = 0;
-                size += fabs((double)t.tau[i * dim + j][0]);
-            }
-        for (int i = 0; i < dim; i++)
-            for (int j = 0; j < dim; j++)
+                double tau = 0;
                 for (int p = 0; p < dim; p++)
-                    for (int q = 0; q < dim; q++)
-                        tau[i * dim + j] += R[i * dim + p] * (double)t.tau[p * dim + q][0] * R[j * dim + q];
-        for (int c = 0; c < dim * dim; c++) ck_assert_double_le(fabs(tau[c] - (double)t.tau[c][1]), 1e-9 * size);
-        if (kind == 4) ck_assert_double_le(fabs((double)t.density[1]), 1e-9); // a mere turn of what is at rest
+                    for (int q = 0; q < dim; q++) tau += R[i * dim + p] * straight[p * dim + q] * R[j * dim + q];
+                ck_assert_msg(fabs(tau - found[i * dim + j]) <= 1e-9 * size, "%s %dD, shape %d: %.9g %.9g", from->name,
+                              dim, kind, tau, found[i * dim + j]);
+            }
+        if (kind == 4) ck_assert_double_le(fabs(again - rest), 1e-9 * (1 + fabs(rest)));
     }
 }
 END_TEST
@@ -530,7 +537,7 @@ int main(void) {
     TCase *all = tcase_create("all");
     if (sizeof(real) == sizeof(double)) { // what implicit steps are of
         tcase_add_loop_test(all, stress_and_tangent, 0, 2 * MATERIALS);
-        tcase_add_loop_test(all, turns_are_free, 0, 2 * POTENTIALS);
+        tcase_add_loop_test(all, turns_are_free, 0, 2 * MATERIALS);
         tcase_add_loop_test(all, commits, 0, 2 * POTENTIALS);
         tcase_add_test(all, hencky_agrees_with_the_explicit_return);
         tcase_add_loop_test(all, projection, 0, 2);

@@ -158,6 +158,38 @@ START_TEST(as_explicit) {
 }
 END_TEST
 
+// ------------------------------------------------------------------------------------------ a turn is no flow
+
+// A block whose surface is turned by 70 degrees a step, three times: what is inside follows, there is no rate of shear,
+// no stress of it and nothing that it takes.
+START_TEST(turned) {
+    const int dim = _i % 2 + 2;
+    const brunt_integrator integrator = _i / 2 % 2 ? BRUNT_NEWMARK : BRUNT_EULER;
+    const char *eos = equations[_i / 4];
+    brunt_world_def def = def_begin(dim, 1);
+    fluid(&def, eos, 100);
+    brunt_body_def *b = def_box(&def, "film", XYZ(0, 0, 0), XYZ(1, 1, 1));
+    b->method = BRUNT_FEM, b->element = dim == 2 ? BRUNT_QUAD4 : BRUNT_HEX8, b->size = 0.5;
+    brunt_group_def *turn = hold(&def, "surface", 0, 0);
+    turn->action = BRUNT_GROUP_ROTATION, turn->component[1] = turn->component[2] = true;
+    turn->rotation = (brunt_rotation_def){.angle = 210 * PI / 180, .axis = {0, 0, 1}, .about = {0.5, 0.5, 0}};
+    turn->table.points = brunt_alloc(2 * sizeof *turn->table.points), turn->table.count = 2;
+    memcpy(turn->table.points, (const double[2][2]){{0, 0}, {0.3, 1}}, 2 * sizeof *turn->table.points);
+    go_implicit(&def, integrator, 0.1);
+    brunt_world *world = world_take(&def);
+    world_steps(world, 3);
+    double *stress = world_field(world, 0, "stress"), most = 0;
+    for (int64_t k = 0; k < 6 * brunt_body_elements(world, 0); k++) most = fmax(most, fabs(stress[k]));
+    const brunt_energy e = world_energy(world);
+    printf("  %dD, %s, %s: stress up to %.1e Pa, viscosity took %.1e J\n", dim,
+           integrator == BRUNT_NEWMARK ? "newmark" : "euler", eos, most, e.viscosity);
+    ck_assert_double_le(most, 1e-9); // of 1e4 Pa of the fluid's bulk, and of 40 Pa that the turn would be as a shear
+    ck_assert_double_le(fabs(e.viscosity), 1e-12);
+    free(stress);
+    brunt_world_destroy(world);
+}
+END_TEST
+
 static brunt_world *sheared(int threads) {
     brunt_world_def def = column("tait", BRUNT_NEWMARK, 0.01);
     def.threads = threads;
@@ -177,6 +209,7 @@ int main(void) {
     ADD_LOOP(shear_wave, 2 * EQUATIONS);
     ADD_LOOP(between_plates, 4);
     ADD_LOOP(as_explicit, 4 * EQUATIONS);
+    ADD_LOOP(turned, 4 * EQUATIONS);
     ADD_LOOP(threads_and_restart, 1);
     return suite_main(suite);
 }
