@@ -155,6 +155,32 @@ static int lead(struct brunt_implicit *m, brunt_error *error) {
     return BRUNT_OK;
 }
 
+static double energy_of(const struct brunt_implicit *m, const double *u) {
+    double sum = 0;
+    for (int t = 0; t < m->term_count; t++) sum += m->term[t].ops->energy(m->term[t].self, &m->team, u).value;
+    return sum;
+}
+
+// Begins where held components are at their places and all others where their velocities take them, if nothing is in
+// the way and the energy there is less than with those others at rest, or held components cannot go there alone. What
+// slides on, or sticks to what is moved, then begins with its slip, not with that of all bodies at once.
+static int coast(struct brunt_implicit *m, brunt_error *error) {
+    const brunt_fields *f = &m->field;
+    const int64_t count = brunt_implicit_components(m);
+    double way, part;
+    // Load steps have no velocities, what has no potential no energy, nor have tractions that are searched for.
+    if (m->still || m->forces || m->holds) return BRUNT_OK;
+    if (free_way(m, &way, error)) return BRUNT_FAILED;
+    for (int64_t k = 0; k < count; k++)
+        f->step[k] = m->unknowns.held[k] ? m->unknowns.target[k] : m->dt * m->unknowns.velocity[k];
+    if (free_part(m, &part, error)) return BRUNT_FAILED;
+    if (part < 1) return BRUNT_OK;
+    for (int64_t k = 0; k < count; k++) f->gradient[k] = m->unknowns.held[k] ? m->unknowns.target[k] : 0;
+    if (way == 1 && !(energy_of(m, f->step) < energy_of(m, f->gradient))) return BRUNT_OK;
+    memcpy(f->u, f->step, (size_t)count * sizeof *f->u);
+    return BRUNT_OK;
+}
+
 // Weights of held components that are not where they are to be: `heavy` times their inertia, or of what has no mass
 // that of the heaviest node; in load steps times the stiffness of nodes. Those are free until they are let go.
 static void pull(struct brunt_implicit *m, double heavy) {
@@ -289,6 +315,7 @@ static int solve_step(brunt_world *world, double dt, brunt_newton_report *report
     struct brunt_implicit *m = world->plan.implicit;
     int status = begin_try(world, dt, error);
     if (!status) status = lead(m, error);
+    if (!status) status = coast(m, error);
     if (!status) status = m->still && m->rubs ? go_and_rub(m, report, error) : go_and_minimise(m, report, error);
     if (!status && m->holds) status = settle(m, report, error);
     return status;

@@ -211,6 +211,30 @@ START_TEST(pushed) {
 }
 END_TEST
 
+// Where bodies coast to is where a step begins: points that go along with a plate that is drawn (0), or slide on one
+// that stays (1), are at once nearly where they are to be.
+START_TEST(coasts) {
+    brunt_world_def def = begin(2, BRUNT_EULER, 0.01);
+    mesh(&def, "plate", XYZ(-1, -0.25, 0), XYZ(3, 0, 0), 0.25);
+    brunt_group_def *draw = hold(&def, "plate", "surface");
+    draw->value[0] = _i == 0;
+    def_velocity(def_box(&def, "points", XYZ(0, 0.02, 0), XYZ(0.5, 0.52, 0)), 1, 0, 0);
+    def.contact.friction = _i ? 0.05 : 0.5, def.gravity[1] = -10;
+    def.newton.tolerance = 1e-6;
+    brunt_world *world = world_take(&def);
+    brunt_newton_counts before, after;
+    world_steps(world, 40);
+    brunt_world_newton(world, &before, NULL);
+    world_steps(world, 40);
+    brunt_world_newton(world, &after, NULL);
+    printf("  %g iterations in 40 steps, at %.3f m/s\n", after.iterations - before.iterations,
+           world_sums(world, 1).velocity[0]);
+    ck_assert_double_le(after.iterations - before.iterations, 100); // from where bodies were 200 and more
+    ck_assert_double_eq_tol(world_sums(world, 1).velocity[0], _i ? 1 - 0.05 * 10 * 0.8 : 1, 0.02);
+    brunt_world_destroy(world);
+}
+END_TEST
+
 // ------------------------------------------------------------------------------------------ solvers
 
 // Points on elements that are held, drawn along with friction: whichever solver, the same places.
@@ -326,6 +350,7 @@ int main(void) {
     ADD_LOOP(pressed_and_sheared, 2);
     ADD_LOOP(collide, 3);
     ADD_LOOP(rough_steps_keep_momentum, 3);
+    ADD_LOOP(coasts, 2);
     ADD_LOOP(pushed, 2);
     ADD_LOOP(chatters, 1);
     ADD_LOOP(whichever_solver, 1);
