@@ -235,6 +235,31 @@ START_TEST(coasts) {
 }
 END_TEST
 
+// However many solutions of a step friction may have, none is sought once pressures no longer change.
+START_TEST(friction_settles) {
+    double iterations[3], speed[3];
+    for (int k = 0; k < 3; k++) {
+        brunt_world_def def = begin(2, BRUNT_EULER, 0.01);
+        mesh(&def, "floor", XYZ(-1, -0.25, 0), XYZ(3, 0, 0), 0.25);
+        hold(&def, "floor", "surface");
+        def_velocity(mesh(&def, "block", XYZ(0, 0.01, 0), XYZ(0.5, 0.51, 0), 0.25), 1, -1, 0);
+        def.contact.friction = 0.3, def.gravity[1] = -10, def.newton.tolerance = 1e-8;
+        def.contact.friction_iterations = k == 0 ? 1 : k == 1 ? 50 : 1000;
+        brunt_world *world = world_take(&def);
+        world_steps(world, 10);
+        brunt_newton_counts counts;
+        brunt_world_newton(world, &counts, NULL);
+        iterations[k] = counts.iterations, speed[k] = world_sums(world, 0).velocity[0];
+        brunt_world_destroy(world);
+    }
+    printf("  %g, %g, %g iterations, at %.6f, %.6f, %.6f m/s\n", iterations[0], iterations[1], iterations[2], speed[0],
+           speed[1], speed[2]);
+    ck_assert_double_lt(iterations[1], 10 * 50);
+    ck_assert_double_eq(iterations[2], iterations[1]);
+    ck_assert_double_eq(speed[2], speed[1]);
+}
+END_TEST
+
 // ------------------------------------------------------------------------------------------ solvers
 
 // Points on elements that are held, drawn along with friction: whichever solver, the same places.
@@ -351,6 +376,7 @@ int main(void) {
     ADD_LOOP(collide, 3);
     ADD_LOOP(rough_steps_keep_momentum, 3);
     ADD_LOOP(coasts, 2);
+    ADD_LOOP(friction_settles, 1);
     ADD_LOOP(pushed, 2);
     ADD_LOOP(chatters, 1);
     ADD_LOOP(whichever_solver, 1);

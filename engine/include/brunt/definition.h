@@ -110,7 +110,7 @@ typedef struct brunt_contact_def {
                         // speed
     double slip_length; // [m] >= 0 of load steps: surfaces that rub give by up to that, then they slip; 0 (default) = a
                         // hundredth of the distance
-    int friction_iterations; // >= 1: solutions of a step, each with the pressures of the one before; default 1
+    int friction_iterations; // >= 1: solutions of a step at most, each with the pressures of the one before; default 1
     bool allow_overlap;    // accept bodies that overlap at the start (meshes: by more than a fifth of an edge), or lie
                            // behind a plane of condition separate; default false: an error
     brunt_pair_def *pairs; // what holds of two bodies instead of the above
