@@ -14,9 +14,10 @@
 // and friction goes back by their transpose, so that it acts there.
 //
 // All points of a step together must satisfy: u_n >= target, normal impulse >= 0, one of them 0; friction impulse
-// within the Coulomb cone and against what is left of slip. Solved by projected Jacobi sweeps: a point's correction is
-// scaled by its row sum of the coupling matrix (in units of its own effective mass), so that a uniform approach is met
-// in one sweep and no sweep can add energy. Neither the order of points nor the number of threads changes a bit.
+// within the Coulomb cone and against what is left of slip. Points that hold: u_n = target, and where they stick no
+// slip is left. Solved by projected Jacobi sweeps: a point's correction is scaled by its row sum of the coupling matrix
+// (in units of its own effective mass), so that a uniform approach is met in one sweep and no sweep can add energy.
+// Neither the order of points nor the number of threads changes a bit.
 //
 // Accelerated sweeps (Nesterov 1983, with the restarts of O'Donoghue and Candes 2015; contact: Mazhar, Heyn, Negrut and
 // Tasora 2015) begin with a share of the last correction on top. Where touches are many to a node they need a
@@ -46,13 +47,15 @@ typedef struct brunt_constraint_entry {
 } brunt_constraint_entry;
 
 typedef struct brunt_constraint {
-    int32_t first, count; // entries
-    double x[3];          // [m] where
-    double n[3];          // out of the master, unit
-    double facet[3];      // n_f: normal of the master's facet; unused for planes
-    double gap;           // [m] before the step
-    double target;        // [m/s] least u_n
-    double friction;
+    int32_t first, count;           // entries
+    double x[3];                    // [m] where
+    double n[3];                    // out of the master, unit
+    double facet[3];                // n_f: normal of the master's facet; unused for planes
+    double gap;                     // [m] before the step
+    double target;                  // [m/s] least u_n
+    double friction;                // of what sticks: greater than 0
+    double least;                   // [N s] of the normal impulse: 0; -INFINITY: it holds
+    bool sticks;                    // friction has no bound
     double plane[3];                // [m/s] velocity of the master when it is a plane; 0 for facets
     brunt_impulse_account *account; // where the point is recorded: impulse on the slave times `sign`
     double sign; // of a body with itself 0: it gets both, and the account neither, but what they dissipate
@@ -133,6 +136,10 @@ int32_t brunt_constraints_friction_point(brunt_constraint_set *set, const double
 // Makes room for so many points and entries in all, which the caller then fills. BRUNT_OK, or BRUNT_FAILED: out of
 // memory.
 int brunt_constraints_reserve(brunt_constraint_set *set, int32_t point_count, int32_t entry_count, brunt_error *error);
+// Whether a point has given an impulse: what lets go only by pushing.
+static inline bool brunt_constraint_acts(const brunt_constraint *constraint) {
+    return constraint->least < 0 || constraint->normal_impulse > 0;
+}
 // Relative velocity of a point, with the degree-of-freedom nodes' v (old: as they were before the forces).
 void brunt_constraint_velocity(const brunt_constraint_set *set, const brunt_constraint *constraint, bool old,
                                double u[3]);

@@ -6,12 +6,15 @@
 #include <math.h>
 #include <stdbool.h>
 
-// Adds `asked`, which would end the approach, to the normal impulse in all [N s], but leaves no less than 0 of it. What
-// that changes it by.
-static inline double brunt_coulomb_normal(double *normal_impulse, double asked) {
-    const double now = fmax(0, *normal_impulse + asked), added = now - *normal_impulse;
+// Adds `asked`, which would end the approach, to the normal impulse in all [N s], but leaves no less than `least` of
+// it: 0 of what lets go, -INFINITY of what holds. What that changes it by.
+static inline double brunt_coulomb_bound(double *normal_impulse, double least, double asked) {
+    const double now = fmax(least, *normal_impulse + asked), added = now - *normal_impulse;
     *normal_impulse = now;
     return added;
+}
+static inline double brunt_coulomb_normal(double *normal_impulse, double asked) {
+    return brunt_coulomb_bound(normal_impulse, 0, asked);
 }
 
 // The size of an impulse of `size` across the normal that the cone lets through [N s].

@@ -30,7 +30,8 @@ void brunt_constraints_validate(const brunt_constraint_set *p) {
         BRUNT_ASSERT(c->first >= 0 && c->count > 0 && end <= p->entry_count);
         BRUNT_ASSERT(c->friction_point >= 0 && c->friction_point <= p->friction_point_count);
         BRUNT_ASSERT(fabs(c->n[0] * c->n[0] + c->n[1] * c->n[1] + c->n[2] * c->n[2] - 1) < 1e-6);
-        BRUNT_ASSERT(c->account && c->friction >= 0 && c->normal_impulse >= 0);
+        BRUNT_ASSERT(c->account && c->friction >= 0 && c->least <= 0 && c->normal_impulse >= c->least);
+        BRUNT_ASSERT(!c->sticks || c->friction > 0);
     }
 }
 
@@ -283,7 +284,8 @@ static double solve_constraint(const brunt_constraint_set *p, brunt_constraint *
     brunt_constraint_velocity(p, constraint, false, u);
     for (int a = 0; a < 3; a++) along += u[a] * constraint->n[a];
     double unit = constraint->scale / constraint->row_sum;
-    const double step = brunt_coulomb_normal(&constraint->normal_impulse, (constraint->target - along) * unit);
+    const double step =
+        brunt_coulomb_bound(&constraint->normal_impulse, constraint->least, (constraint->target - along) * unit);
     double changed = fabs(step) / unit;
     for (int a = 0; a < 3; a++) J[a] = step * constraint->n[a];
     if (constraint->friction > 0) {
@@ -295,8 +297,9 @@ static double solve_constraint(const brunt_constraint_set *p, brunt_constraint *
         double wanted[3], change[3];
         for (int a = 0; a < 3; a++)
             wanted[a] = constraint->friction_impulse[a] - (u[a] - along * constraint->n[a]) * unit_t;
-        constraint->slips = brunt_coulomb_project(3, constraint->friction, constraint->normal_impulse, wanted,
-                                                  constraint->friction_impulse, change);
+        constraint->slips =
+            brunt_coulomb_project(3, constraint->friction, constraint->sticks ? INFINITY : constraint->normal_impulse,
+                                  wanted, constraint->friction_impulse, change);
         for (int a = 0; a < 3; a++) rub[a] += change[a];
         changed = fmax(changed, brunt_coulomb_norm(3, change) / unit_t);
     }
@@ -412,7 +415,7 @@ static void account_velocity(const brunt_constraint *constraint, double sign, do
 static void account_constraints(brunt_constraint_set *p) {
     for (int32_t k = 0; k < p->constraint_count; k++) {
         const brunt_constraint *constraint = &p->constraint[k];
-        if (!(constraint->normal_impulse > 0)) continue;
+        if (!brunt_constraint_acts(constraint)) continue;
         constraint->account->area += constraint->area;
         // The account is of the second body: the slave's impulse, or the reaction to it; within one body there are
         // both.

@@ -15,14 +15,15 @@ typedef struct brunt_particle_dofs brunt_particle_dofs;   // search/particle_dof
 struct brunt_boundary {
     char name[BRUNT_NAME_LENGTH];
     const brunt_boundary_kind *kind;
-    brunt_plane_def plane;         // of a plane; normal of unit length
-    brunt_region_def where;        // of a region; shares the world's definition
-    const brunt_group_def *group;  // of a group, NULL for the others
-    brunt_boundary_def given;      // of a kind that lists its keys; shares the world's definition
-    int body;                      // the one it acts on, -1: all, or that of its group
-    int symmetry_plane;            // index of the symmetry plane it has become, -1
-    brunt_impulse_account account; // since the start
-    brunt_impulse_account last;    // of the last step
+    brunt_plane_def plane;                  // of a plane; normal of unit length
+    brunt_region_def where;                 // of a region; shares the world's definition
+    const brunt_group_def *group;           // of a group, NULL for the others
+    brunt_boundary_def given;               // of a kind that lists its keys; shares the world's definition
+    struct brunt_boundary_surface *surface; // of a line or mesh
+    int body;                               // the one it acts on, -1: all, or that of its group
+    int symmetry_plane;                     // index of the symmetry plane it has become, -1
+    brunt_impulse_account account;          // since the start
+    brunt_impulse_account last;             // of the last step
 };
 
 // What makes boundaries of a definition.
@@ -87,6 +88,9 @@ struct brunt_boundary_kind {
     // Adds the constraints of the particles of a body that it would catch. BRUNT_OK, or BRUNT_FAILED: out of memory.
     int (*meet_points)(const brunt_contact_context *m, brunt_boundary *b, brunt_body *body, brunt_particle_dofs *dofs,
                        brunt_constraint_set *set, brunt_error *error);
+    // ... and once they are solved, what they are read for; such boundaries are solved further.
+    void (*met_points)(const brunt_contact_context *m, brunt_boundary *b, const brunt_body *body,
+                       const brunt_constraint_set *set);
 };
 
 // Whether it acts on a body.

@@ -217,7 +217,7 @@ static void account_symmetry(const brunt_contact_context *m, const brunt_particl
         const bool carries = constraint->bearer > 0 && constraint->bearer == dofs->tag + 1;
         const double factor = carries ? 1 : -1;
         double normal_impulse[3];
-        if ((constraint->tag != dofs->tag && !carries) || !(constraint->normal_impulse > 0)) continue;
+        if ((constraint->tag != dofs->tag && !carries) || !brunt_constraint_acts(constraint)) continue;
         for (int a = 0; a < 3; a++) normal_impulse[a] = constraint->normal_impulse * constraint->n[a];
         add_moment(constraint->x, normal_impulse, factor, linear, angular);
         add_moment(constraint->friction_point ? set->friction_point[constraint->friction_point - 1].x : constraint->x,

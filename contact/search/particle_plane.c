@@ -18,9 +18,10 @@
 #include "contact/planes/condition.h"
 #include "mpm/particles.h"
 
-enum { MAX_SWEEPS = 16 };
+enum { MAX_SWEEPS = 16, MORE_SWEEPS = 64 };
 static const double SWEEP_TOLERANCE =
     1e-2; // of the greatest correction of velocity in the first sweep: what is left is met again next step
+static const double FINE_TOLERANCE = 1e-4; // ... where lines and meshes act
 static const double NEAR = 0.5; // cells: how far from a plane particles are looked at, if nothing moves faster
 
 typedef struct plane_job {
@@ -110,18 +111,34 @@ int brunt_plane_meet_points(const brunt_contact_context *m, brunt_boundary *boun
     return brunt_boundary_pushes(boundary) ? add_plane(&j, error) : BRUNT_OK;
 }
 
+// Lines and meshes hold and stick, too: what sweeps leave of that is slip, which no later step takes back.
+static int solve(const brunt_contact_context *m, brunt_constraint_set *set, bool further, brunt_error *error) {
+    if (!further) return brunt_constraints_solve(set, MAX_SWEEPS, SWEEP_TOLERANCE, m->threads, m->timer, error);
+    set->accelerated = true;
+    const int status = brunt_constraints_solve(set, MORE_SWEEPS, FINE_TOLERANCE, m->threads, m->timer, error);
+    set->accelerated = false;
+    return status;
+}
+
 int brunt_boundaries_meet_points(const brunt_contact_context *m, brunt_body *body, brunt_particle_dofs *dofs,
                                  brunt_constraint_set *set, brunt_error *error) {
     if (brunt_particle_dofs_begin(m, body, dofs, error)) return BRUNT_FAILED;
     brunt_constraints_clear(set);
     int w;
+    bool further = false, met = false;
     brunt_boundary_walk acting = brunt_boundaries_of(m->acting, body->index);
     while ((w = brunt_boundary_next(&acting)) != BRUNT_NONE) {
         brunt_boundary *boundary = &m->boundaries[w];
         if (!boundary->kind->meet_points) continue;
+        const int32_t before = set->constraint_count;
         if (boundary->kind->meet_points(m, boundary, body, dofs, set, error)) return BRUNT_FAILED;
+        met = met || boundary->kind->met_points;
+        further = further || (boundary->kind->met_points && set->constraint_count > before);
     }
-    if (brunt_constraints_solve(set, MAX_SWEEPS, SWEEP_TOLERANCE, m->threads, m->timer, error)) return BRUNT_FAILED;
+    if (solve(m, set, further, error)) return BRUNT_FAILED;
+    acting = brunt_boundaries_of(m->acting, body->index);
+    while (met && (w = brunt_boundary_next(&acting)) != BRUNT_NONE)
+        if (m->boundaries[w].kind->met_points) m->boundaries[w].kind->met_points(m, &m->boundaries[w], body, set);
     brunt_particle_dofs_scatter(m, body, dofs, set);
     return BRUNT_OK;
 }

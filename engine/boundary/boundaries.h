@@ -15,8 +15,8 @@ typedef struct brunt_boundaries {
     brunt_boundary_lists acting; // of them, on each body
     brunt_symmetry_plane symmetry[BRUNT_MAX_PLANES];
     int symmetry_count;
-    bool has_pushing_planes, has_conditions, has_friction; // planes that push, conditions at grid nodes
-    bool has_detonations;                                  // explosives are lit
+    bool meets_points, has_conditions, has_friction; // planes that push, lines and meshes; conditions at grid nodes
+    bool has_detonations;                            // explosives are lit
     brunt_node_sets sets;
     brunt_boundary_surfaces surfaces;
     brunt_damping damping;

@@ -122,8 +122,7 @@ static void look_at(search *l, int32_t b) {
     l->gap[b] = fmin(l->gap[b], fmax(enter, 0));
 }
 
-// The cell there; BRUNT_NONE: it has no particles.
-static int32_t cell_at(const brunt_boundary_surface *s, const int32_t at[3]) {
+int32_t brunt_boundary_surface_cell(const brunt_boundary_surface *s, const int32_t at[3]) {
     const uint64_t key = brunt_key(at);
     int32_t low = 0, high = s->cells;
     while (low < high) {
@@ -137,7 +136,7 @@ static int32_t cell_at(const brunt_boundary_surface *s, const int32_t at[3]) {
 }
 
 static void look_in_cell(search *l, const int32_t at[3]) {
-    const int32_t cell = cell_at(l->s, at);
+    const int32_t cell = brunt_boundary_surface_cell(l->s, at);
     if (cell < 0) return;
     for (int32_t k = l->s->cell_first[cell]; k < l->s->cell_first[cell + 1]; k++) look_at(l, l->s->cell_particle[k]);
 }
@@ -207,7 +206,7 @@ void brunt_boundary_surface_backs(brunt_boundary_surface *s) {
         for (int a = 0; a < 3; a++) at[a] = (int32_t)floor((p->x[a] - s->low[a]) / s->cell);
         for (int k = 0; k < 27; k++) {
             to[0] = at[0] + k / 9 - 1, to[1] = at[1] + k / 3 % 3 - 1, to[2] = at[2] + k % 3 - 1;
-            const int32_t cell = cell_at(s, to);
+            const int32_t cell = brunt_boundary_surface_cell(s, to);
             for (int32_t i = cell < 0 ? 0 : s->cell_first[cell]; cell >= 0 && i < s->cell_first[cell + 1]; i++)
                 if (is_back(s, p, &s->particle[s->cell_particle[i]], &away)) p->back = fmin(p->back, away);
         }

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "base/check.h"
 #include "base/error.h"
 #include "base/memory.h"
 #include "boundary/boundary_pieces.h"
@@ -66,21 +67,24 @@ static int find_body(brunt_boundary_surface *s, const brunt_bodies *bodies, brun
     if (bodies->all[s->boundary->body].mpm) return BRUNT_OK;
     return brunt_fail(error, BRUNT_BAD_INPUT,
                       "boundaries (%s).body: '%s' is of elements, lines and surfaces hold material points: group "
-                      "names nodes of elements",
+                      "names nodes of elements, and contact is with a mesh that one moves",
                       s->boundary->name, s->def.body);
 }
 
-static int make_surface(brunt_boundary_surface *s, const brunt_boundary_surface_def *def, int dim,
+static int make_surface(brunt_boundary_surface *s, const brunt_boundary_surface_def *def, const brunt_world_def *world,
                         const brunt_bodies *bodies, brunt_error *error) {
     s->def = *def;
     s->def.point = NULL, s->def.facet = NULL;
     if (brunt_curve_copy(&s->def.table, &def->table, error)) return BRUNT_FAILED;
     int status = find_body(s, bodies, error);
-    if (!status) status = (dim == 2 ? brunt_boundary_cut_line : brunt_boundary_cut_facets)(s, def, error);
+    if (!status) status = (world->dimension == 2 ? brunt_boundary_cut_line : brunt_boundary_cut_facets)(s, def, error);
     if (!status) status = sort_particles(s, error);
     if (status) return status;
     brunt_boundary_surface_backs(s);
     s->bodies = bodies->mpm_count;
+    s->boundary->surface = s;
+    if (!brunt_scheme_minimises(world->scheme))
+        BRUNT_TRY(brunt_boundary_surface_points(s, def, world->dimension, error));
     return BRUNT_NEW(s->traction, (size_t)s->bodies * (size_t)s->pieces * 3 + 1, "tractions of a boundary", error);
 }
 
@@ -107,7 +111,7 @@ int brunt_boundary_surfaces_make(brunt_boundary_surfaces *surfaces, const brunt_
         brunt_boundary_surface *s = &surfaces->surface[k];
         s->boundary = &boundaries[k];
         s->cell = def->cell;
-        const int status = make_surface(s, &def->surfaces[k], def->dimension, bodies, error);
+        const int status = make_surface(s, &def->surfaces[k], def, bodies, error);
         if (status) return status;
     }
     return BRUNT_OK;
@@ -118,6 +122,7 @@ void brunt_boundary_surfaces_free(brunt_boundary_surfaces *surfaces) {
         brunt_boundary_surface *s = &surfaces->surface[k];
         brunt_free(s->def.table.points), brunt_free(s->particle), brunt_free(s->first);
         brunt_free(s->key), brunt_free(s->cell_first), brunt_free(s->cell_particle), brunt_free(s->traction);
+        brunt_facets_free(&s->facets), brunt_free(s->rate), brunt_free(s->touching);
     }
     brunt_free(surfaces->surface), brunt_free(surfaces->frame);
     *surfaces = (brunt_boundary_surfaces){.count = 0};
@@ -127,6 +132,8 @@ size_t brunt_boundary_surfaces_bytes(const brunt_boundary_surfaces *surfaces) {
     size_t bytes = 0;
     for (int k = 0; k < surfaces->count; k++) {
         const brunt_boundary_surface *s = &surfaces->surface[k];
+        bytes += brunt_facets_bytes(&s->facets) + s->touching_capacity;
+        bytes += s->rate ? (size_t)s->pieces * sizeof *s->rate : 0;
         bytes += (size_t)s->particle_count * (sizeof *s->particle + sizeof *s->key + 2 * sizeof(int32_t)) +
                  (size_t)s->pieces * (size_t)s->bodies * 3 * sizeof *s->traction;
     }
@@ -180,6 +187,8 @@ void brunt_boundary_surfaces_validate(const brunt_boundary_surfaces *surfaces, c
         }
         for (int64_t i = 0; i < (int64_t)s->bodies * s->pieces * 3; i++) BRUNT_ASSERT(isfinite(s->traction[i]));
         BRUNT_ASSERT(s->active >= 0 && s->drift >= 0);
+        BRUNT_ASSERT(s->boundary->surface == s && s->speed[0] >= 0);
+        brunt_facets_validate(&s->facets);
         validate_cells(s);
     }
 }

@@ -8,6 +8,7 @@
 
 #include "base/messages.h"
 #include "body/bodies.h"
+#include "boundary/facets.h"
 #include "contact/planes/boundary.h"
 
 typedef struct brunt_boundary_particle {
@@ -17,6 +18,11 @@ typedef struct brunt_boundary_particle {
     double back;            // [m] how far behind it the surface is once more, the other way round; INFINITY: it is not
     int32_t piece;
 } brunt_boundary_particle;
+
+// A material point that a surface meets in an explicit step.
+typedef struct brunt_touching {
+    int32_t constraint, particle; // of the set of the body; the boundary particle that is nearest
+} brunt_touching;
 
 typedef struct brunt_boundary_surface {
     brunt_boundary_surface_def def; // without points and facets, with a table of its own
@@ -34,6 +40,13 @@ typedef struct brunt_boundary_surface {
     // Of the last step.
     int32_t active; // pieces that hold something
     double drift;   // [m/s] greatest rate, as mean of a piece, at which what is held leaves its place
+    // Of explicit steps.
+    brunt_facets facets;
+    double speed[3];   // [m/s] the first: the greatest that it ever has
+    double (*rate)[2]; // of each piece: sum of the rates at which its points leave [m/s], how many
+    brunt_touching *touching;
+    size_t touching_capacity;
+    int32_t touching_count;
 } brunt_boundary_surface;
 
 typedef struct brunt_boundary_surfaces {
@@ -54,14 +67,30 @@ int brunt_boundary_surface_rows(const brunt_boundary_surface *surface, int dim);
 // The direction of a row of its traction at a boundary particle.
 void brunt_boundary_surface_direction(const brunt_boundary_surface *surface, const brunt_boundary_particle *particle,
                                       int row, double out[3]);
-// How far it has gone since the start [m].
+// How far it has gone since the start [m]; where it is by then, if it turns as well.
 void brunt_boundary_surface_way(const brunt_boundary_surface *surface, double time, double way[3]);
+brunt_placement brunt_boundary_surface_place(const brunt_boundary_surface *surface, double time);
+// The cell at these coordinates, counted from `low`; BRUNT_NONE: it has no particles.
+int32_t brunt_boundary_surface_cell(const brunt_boundary_surface *surface, const int32_t at[3]);
 // Whether it holds a body of material points.
 bool brunt_boundary_surface_acts(const brunt_boundary_surface *surface, const brunt_body *body);
 // What lasts from step to step.
 int64_t brunt_boundary_surfaces_state_count(const brunt_boundary_surfaces *surfaces);
 double *brunt_boundary_surfaces_state_get(const brunt_boundary_surfaces *surfaces, double *out);
 const double *brunt_boundary_surfaces_state_set(brunt_boundary_surfaces *surfaces, const double *in);
+
+// --- surface_points.c: explicit steps
+// The facets of a surface that has all else, and how fast it is at most. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_boundary_surface_points(brunt_boundary_surface *surface, const brunt_boundary_surface_def *def, int dim,
+                                  brunt_error *error);
+// Before a step: nothing is held.
+void brunt_boundary_surfaces_open(brunt_boundary_surfaces *surfaces);
+// What a kind of boundary is asked for (contact/planes/boundary.h).
+const double *brunt_boundary_surface_speed(const brunt_boundary *boundary);
+int brunt_boundary_surface_meet(const brunt_contact_context *m, brunt_boundary *boundary, brunt_body *body,
+                                brunt_particle_dofs *dofs, brunt_constraint_set *set, brunt_error *error);
+void brunt_boundary_surface_met(const brunt_contact_context *m, brunt_boundary *boundary, const brunt_body *body,
+                                const brunt_constraint_set *set);
 
 // --- boundary_extent.c
 // When a body is looked at: how far the surface has gone, and how far it goes over the step [m], which takes dt [s].

@@ -1,10 +1,12 @@
 // Lines and surfaces that hold material points, as kinds of boundaries: what they do is in boundary_surface.c, and by
 // terms of implicit steps.
+#include <math.h>
 #include <stdio.h>
 
 #include "base/check.h"
 #include "base/error.h"
 #include "base/memory.h"
+#include "boundary/boundaries.h"
 #include "boundary/kinds.h"
 
 #define REFUSE(...) return brunt_fail(error, BRUNT_BAD_INPUT, __VA_ARGS__)
@@ -12,7 +14,8 @@
 BRUNT_BOUNDARY_ENTRIES(surface, brunt_boundary_surface)
 
 brunt_boundary_surface_def brunt_boundary_surface_def_default(void) {
-    return (brunt_boundary_surface_def){.condition = BRUNT_STICK, .piece = 1.5, .particles = 4};
+    return (brunt_boundary_surface_def){
+        .condition = BRUNT_STICK, .piece = 1.5, .particles = 4, .rotation = {.axis = {0, 0, 1}}};
 }
 
 static void free_all(brunt_world_def *def) {
@@ -52,6 +55,16 @@ static int check(const brunt_world_def *def, const void *one, int32_t w, brunt_e
     BRUNT_CHECK_NUMBERS(owner, {".friction", &surface->friction, 1, BRUNT_NOT_NEGATIVE},
                         {".value", surface->value, 3, BRUNT_ANY_NUMBER}, {".piece", &surface->piece, 1, BRUNT_POSITIVE},
                         {".about", surface->about, 3, BRUNT_ANY_NUMBER});
+    const brunt_rotation_def *turn = &surface->rotation;
+    const int turned = turn->angle != 0 && isfinite(turn->angle);
+    BRUNT_CHECK_NUMBERS(owner, {".rotation.angle", &turn->angle, 1, BRUNT_ANY_NUMBER},
+                        {".rotation.axis", turn->axis, 3 * turned, BRUNT_ANY_NUMBER},
+                        {".rotation.about", turn->about, 3 * turned, BRUNT_ANY_NUMBER});
+    if (turned && !(hypot(hypot(turn->axis[0], turn->axis[1]), turn->axis[2]) > 0))
+        REFUSE("%s.rotation.axis: the axis has zero length", owner);
+    if (turned && !surface->displacement &&
+        (surface->value[0] != 0 || surface->value[1] != 0 || surface->value[2] != 0))
+        REFUSE("%s.rotation: it goes with a displacement, since the table is the factor of both", owner);
     if (surface->friction > 0 && surface->condition != BRUNT_SEPARATE)
         REFUSE("%s.friction: friction acts only with condition separate", owner);
     if (surface->particles < 1) REFUSE("%s.particles_per_cell: %d is less than 1", owner, surface->particles);
@@ -60,11 +73,15 @@ static int check(const brunt_world_def *def, const void *one, int32_t w, brunt_e
 }
 
 static const char *refusal(const brunt_world_def *def, const void *one, const char **key) {
-    (void)one;
     *key = "";
+    if (def->scheme == BRUNT_EXPLICIT) return NULL;
+    if (((const brunt_boundary_surface_def *)one)->rotation.angle != 0) {
+        *key = ".rotation";
+        return BRUNT_EXPLICIT_ONLY ": in implicit steps a line or mesh moves without turning";
+    }
     if (def->scheme != BRUNT_IMPLICIT) {
         *key = def->dimension == 2 ? ".line" : ".mesh";
-        return "this belongs to time.scheme: implicit; others have plane and region";
+        return BRUNT_NOT_STATIC "; load steps have plane and region";
     }
     if (brunt_solver_iterates(def->newton.solver))
         return def->newton.solver == BRUNT_SOLVER_PCG
@@ -76,11 +93,17 @@ static const char *refusal(const brunt_world_def *def, const void *one, const ch
 
 // The rest follows with the bodies (boundary_surface.c).
 static int make(const brunt_boundary_making *m, const void *one, int w, brunt_error *error) {
-    (void)m, (void)one, (void)w, (void)error;
+    (void)w, (void)error;
+    if (m->def->scheme != BRUNT_EXPLICIT) return BRUNT_OK;
+    m->all->meets_points = true;
+    m->all->has_friction = m->all->has_friction || ((const brunt_boundary_surface_def *)one)->friction > 0;
     return BRUNT_OK;
 }
 
 const brunt_boundary_kind brunt_kind_surface = {
     BRUNT_BOUNDARY_ROW("surface"),
     .refusal = refusal,
+    .velocity = brunt_boundary_surface_speed,
+    .meet_points = brunt_boundary_surface_meet,
+    .met_points = brunt_boundary_surface_met,
 };

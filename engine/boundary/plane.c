@@ -123,7 +123,7 @@ static int make(const brunt_boundary_making *m, const void *one, int index, brun
     }
     if (row->of_fluids && has_fluid(def))
         brunt_warn(m->messages, "boundaries[%d] (%s): %s", index, boundary->name, row->of_fluids);
-    all->has_pushing_planes = all->has_pushing_planes || row->pushes;
+    all->meets_points = all->meets_points || row->pushes;
     all->has_conditions = all->has_conditions || !row->pushes;
     all->has_friction = all->has_friction || (row->pushes && plane->friction > 0);
     return BRUNT_OK;

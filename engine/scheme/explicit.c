@@ -18,7 +18,7 @@ static bool grid_contact(const brunt_world *world) { return world->contact.has_g
 static bool surfaces(const brunt_world *world) { return world->contact.has_surfaces; }
 static bool conditions_of_contact(const brunt_world *world) { return conditions(world) && grid_contact(world); }
 static bool conditions_of_surfaces(const brunt_world *world) { return conditions(world) && surfaces(world); }
-static bool boundaries(const brunt_world *world) { return particles(world) && world->boundaries.has_pushing_planes; }
+static bool boundaries(const brunt_world *world) { return particles(world) && world->boundaries.meets_points; }
 static bool conditions_of_boundaries(const brunt_world *world) { return conditions(world) && boundaries(world); }
 static bool remapping(const brunt_world *world) { return particles(world) && world->transfers.musl_velocity; }
 static bool erosion(const brunt_world *world) { return world->erosion.active; }

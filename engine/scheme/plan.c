@@ -87,7 +87,7 @@ static bool has_symmetry_planes(const brunt_boundaries *boundaries) {
     X(membranes, has_membranes(&world->bodies), "bodies: method membrane")                                             \
     X(tension_only, has_tension_only(&world->bodies), "bodies: tension_only")                                          \
     X(total_lagrangian, has_total_lagrangian(&world->bodies), "bodies: lagrangian total")                              \
-    X(boundaries, world->boundaries.has_pushing_planes, "boundaries: condition separate")                              \
+    X(boundaries, world->boundaries.meets_points, "boundaries: condition separate, line, mesh")                        \
     X(axisymmetric, world->settings.axisymmetric, "axisymmetric")                                                      \
     X(symmetry, has_symmetry_planes(&world->boundaries), "boundaries: condition symmetry or slip")                     \
     X(conditions, world->boundaries.has_conditions, "boundaries: stick, oblique slip, region")                         \

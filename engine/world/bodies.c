@@ -242,7 +242,7 @@ static int make_particles(brunt_world *world, const brunt_world_def *def, const 
     if ((status = set_erosion(from, filled->count, body, error))) return status;
     world->bodies.has_fluid = world->bodies.has_fluid || body->material.model[BRUNT_STRENGTH]->fluid;
     brunt_particle_needs needs = {.affine = def->transfer == BRUNT_APIC,
-                                  .reach = world->contact.rows || world->boundaries.has_pushing_planes,
+                                  .reach = world->contact.rows || world->boundaries.meets_points,
                                   .grid_velocity = world->transfers.musl_velocity && def->transfer == BRUNT_FLIP,
                                   .total = from->total_lagrangian};
     memcpy(needs.models, body->material.model, sizeof needs.models);

@@ -29,22 +29,25 @@ void brunt_boundary_surface_particles(const brunt_world *world, int32_t index,
                                       const brunt_boundary_surface_arrays *out) {
     const brunt_boundary_surface *s = &world->boundaries.surfaces.surface[index];
     const int rows = brunt_boundary_surface_rows(s, world->settings.dimension);
-    double way[3], direction[3];
-    brunt_boundary_surface_way(s, world->clock.time, way);
+    const brunt_placement place = brunt_boundary_surface_place(s, world->clock.time);
+    double direction[3];
     for (int32_t b = 0; b < s->particle_count; b++) {
         const brunt_boundary_particle *p = &s->particle[b];
         double *traction = out->traction + 3 * (size_t)b;
         for (int a = 0; a < 3; a++) {
-            out->position[3 * (size_t)b + (size_t)a] = p->x[a] + way[a];
-            out->normal[3 * (size_t)b + (size_t)a] = p->normal[a];
-            traction[a] = 0;
+            out->position[3 * (size_t)b + (size_t)a] = place.translation[a];
+            out->normal[3 * (size_t)b + (size_t)a] = traction[a] = 0;
+            for (int i = 0; i < 3; i++) {
+                out->position[3 * (size_t)b + (size_t)a] += place.rotation[3 * a + i] * p->x[i];
+                out->normal[3 * (size_t)b + (size_t)a] += place.rotation[3 * a + i] * p->normal[i];
+            }
         }
         for (int k = 0; k < rows; k++) {
             double t = 0;
             for (int i = 0; i < s->bodies; i++)
                 t -= s->traction[3 * ((size_t)i * (size_t)s->pieces + (size_t)p->piece) + (size_t)k];
             brunt_boundary_surface_direction(s, p, k, direction);
-            for (int a = 0; a < 3; a++) traction[a] += t * direction[a];
+            for (int a = 0; a < 9; a++) traction[a / 3] += t * place.rotation[a] * direction[a % 3];
         }
         out->weight[b] = p->weight, out->piece[b] = p->piece;
     }

@@ -27,16 +27,19 @@ static void fill_motion(scene_reader *reader, const scene_node *motion, brunt_gr
 }
 
 // In three dimensions the axis must be given; in two there is but one.
-static void fill_rotation(scene_reader *reader, const scene_node *turn, brunt_group_def *group) {
-    brunt_rotation_def *rotation = &group->rotation;
+void brunt_fill_rotation(scene_reader *reader, const scene_node *turn, brunt_rotation_def *rotation) {
     if (turn->kind != SCENE_MAP) return;
     const scene_node *axis = brunt_tree_child(turn, "axis");
     rotation->angle = brunt_real_of(turn, "angle", 0);
     brunt_vector_of(turn, "about", rotation->about);
     if (!axis && reader->dimension == 3)
-        brunt_tree_complain(reader->tree, turn, "'axis' is missing: the direction about which the group turns");
+        brunt_tree_complain(reader->tree, turn, "'axis' is missing: the direction about which it turns");
     if (!axis || !brunt_vector_of(turn, "axis", rotation->axis)) return;
     if (!brunt_nonzero(rotation->axis)) brunt_tree_complain(reader->tree, axis, "the axis has zero length");
+}
+
+static void fill_rotation(scene_reader *reader, const scene_node *turn, brunt_group_def *group) {
+    brunt_fill_rotation(reader, turn, &group->rotation);
 }
 
 static void fill_fixed(scene_reader *reader, const scene_node *axes, brunt_group_def *group) {

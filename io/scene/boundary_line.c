@@ -67,18 +67,27 @@ static void fill_condition(scene_reader *reader, const scene_node *node, brunt_b
 
 static void fill_motion(scene_reader *reader, scene_node *node, brunt_boundary_surface_def *def) {
     const scene_node *velocity = brunt_tree_child(node, "velocity"), *way = brunt_tree_child(node, "displacement"),
-                     *given = way ? way : velocity;
-    def->displacement = way != NULL;
+                     *turn = brunt_tree_child(node, "rotation"),
+                     *given = way        ? way
+                              : velocity ? velocity
+                                         : turn;
+    def->displacement = way != NULL || turn != NULL;
+    if (turn) brunt_fill_rotation(reader, turn, &def->rotation);
+    if (turn && velocity)
+        brunt_tree_complain_key(reader->tree, velocity,
+                                "rotation is given as well, which goes with a displacement: the "
+                                "table is the factor of both");
     if (velocity && way)
         brunt_tree_complain_key(reader->tree, way, "velocity is given as well: one of both moves the %s",
                                 reader->dimension == 2 ? "line" : "mesh");
     if (!given) {
-        brunt_refuse_key(reader, node, "table", "a table is the factor of velocity or displacement, there is neither");
+        brunt_refuse_key(reader, node, "table",
+                         "a table is the factor of velocity, displacement or rotation, there is none of them");
         return;
     }
-    if (given->free[0] || given->free[1] || given->free[2])
+    if (given != turn && (given->free[0] || given->free[1] || given->free[2]))
         brunt_tree_complain(reader->tree, given, "`free` is for regions and groups; a line or mesh moves as a whole");
-    for (int a = 0; a < reader->dimension && given->good; a++) def->value[a] = given->value[a];
+    for (int a = 0; a < reader->dimension && given != turn && given->good; a++) def->value[a] = given->value[a];
     brunt_fill_table(reader, brunt_tree_child(node, "table"), &def->table);
 }
 
@@ -95,6 +104,7 @@ void brunt_fill_surface(scene_reader *reader, scene_node *node, brunt_boundary_s
     brunt_fill_body_of(reader, node, def->body);
     if (!brunt_acts_on_particles(reader, def->body))
         brunt_tree_complain_key(reader->tree, body ? body : shape,
-                                "a %s holds material points, %s of method mpm: `group` names nodes of elements",
+                                "a %s holds material points, %s of method mpm: `group` names nodes of elements, and "
+                                "contact is with a mesh that one moves",
                                 line ? "line" : "mesh", body ? "this body is not" : "no body is");
 }

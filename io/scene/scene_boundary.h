@@ -14,6 +14,8 @@ void brunt_fill_body_of(scene_reader *reader, const scene_node *node, char name[
 bool brunt_acts_on_particles(const scene_reader *reader, const char *name);
 // A vector of which some components may be free.
 void brunt_fill_partial(scene_reader *reader, const scene_node *node, bool component[3], double value[3]);
+// A turn; in three dimensions its axis must be given.
+void brunt_fill_rotation(scene_reader *reader, const scene_node *turn, brunt_rotation_def *rotation);
 // Factors over time.
 void brunt_fill_table(scene_reader *reader, const scene_node *node, brunt_curve *table);
 // "plane, region and group": names of a list, one after the other; `name` of i.

@@ -50,8 +50,6 @@ static const char *const of_one[][2] = {
     {"brazilian_disk", "half their spacing out from their centres, in implicit ones at the centres"},
     {"cube_twist", "half their spacing out from their centres, in implicit ones at the centres"},
     {"friction_slope", "half their spacing out from their centres, in implicit ones at the centres"},
-    {"cylinder_slope_3d", "mesh: this belongs to time.scheme: implicit; others have plane and region"},
-    {"cylinder_slope", "line: this belongs to time.scheme: implicit; others have plane and region"},
     {"tube_press", "contact of a body with itself is for membranes in explicit steps"}};
 
 static bool is_implicit(const char *name) {
