@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "tests/support/implicit_world.h"
+#include "tests/support/surface_world.h"
 
 #ifdef BRUNT_FLOAT
 int main(void) { return 0; } // implicit steps want double
@@ -16,18 +17,6 @@ static brunt_world_def lines(int order, double step, double nu) {
     def_material(&def, "neo-hookean", DENSITY, YOUNG, nu);
     hold_by_surfaces(&def, order, step);
     return def;
-}
-
-static brunt_boundary_surface_def *def_line(brunt_world_def *def, double x0, double y0, double x1, double y1,
-                                            brunt_condition condition) {
-    brunt_boundary_surface_def *s = &def->surfaces[def->surface_count++];
-    *s = brunt_boundary_surface_def_default();
-    s->condition = condition;
-    s->point = brunt_alloc(2 * sizeof *s->point), s->point_count = 2;
-    s->facet = brunt_alloc(sizeof *s->facet), s->facet_count = 1;
-    s->point[0][0] = x0, s->point[0][1] = y0, s->point[1][0] = x1, s->point[1][1] = y1;
-    memcpy(s->facet[0], (const int32_t[4]){0, 1, -1, -1}, sizeof s->facet[0]);
-    return s;
 }
 
 // A bar of length 2 and thickness 0.5 that hangs from its face, in a grid that is turned by an angle and shifted; the
@@ -297,19 +286,6 @@ END_TEST
 
 START_TEST(restart) { check_restart(carried(1), carried(1)); }
 END_TEST
-
-// Points in turn, of a line that may be closed.
-static brunt_boundary_surface_def *def_polyline(brunt_world_def *def, int count, bool closed,
-                                                brunt_condition condition) {
-    brunt_boundary_surface_def *s = &def->surfaces[def->surface_count++];
-    *s = brunt_boundary_surface_def_default();
-    s->condition = condition;
-    s->point = brunt_alloc((size_t)count * sizeof *s->point), s->point_count = count;
-    s->facet = brunt_alloc((size_t)count * sizeof *s->facet), s->facet_count = count - !closed;
-    for (int32_t f = 0; f < s->facet_count; f++)
-        memcpy(s->facet[f], (const int32_t[4]){f, (f + 1) % count, -1, -1}, sizeof s->facet[f]);
-    return s;
-}
 
 // A disk in a round hole that is as large, or a hexagon in one with corners: it rests in it, whatever the line lets go.
 START_TEST(hole) {
