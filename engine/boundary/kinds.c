@@ -3,6 +3,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "materials/material.h"
+
 #define DECLARE(NAME, kind, type, word, what) extern const brunt_boundary_kind brunt_kind_##kind;
 BRUNT_BOUNDARY_KINDS(DECLARE)
 // Those that list their keys, with their own file and nothing else.
@@ -48,4 +50,12 @@ void brunt_boundary_name(const brunt_boundary_entry *e, char out[BRUNT_NAME_LENG
         memcpy(out, given, BRUNT_NAME_LENGTH);
     else
         snprintf(out, BRUNT_NAME_LENGTH, "%s%d", e->kind->word, e->w + 1);
+}
+
+bool brunt_boundary_has_fluid(const brunt_world_def *def) {
+    for (int i = 0; i < def->body_count; i++) {
+        const brunt_model *model = brunt_find_strength(def->materials[def->bodies[i].material].strength);
+        if (def->bodies[i].method == BRUNT_MPM && model && model->fluid) return true;
+    }
+    return false;
 }

@@ -29,6 +29,8 @@ typedef struct brunt_boundary_entry {
     int32_t k, at; // where the next is looked for: kind, and place in what there is of it
 } brunt_boundary_entry;
 bool brunt_boundary_entry_next(const brunt_world_def *def, brunt_boundary_entry *e);
+// Whether a body of material points is a fluid.
+bool brunt_boundary_has_fluid(const brunt_world_def *def);
 // The name of its columns in the history: its own, or one by its kind and number.
 void brunt_boundary_name(const brunt_boundary_entry *e, char out[BRUNT_NAME_LENGTH]);
 

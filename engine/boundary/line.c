@@ -93,10 +93,17 @@ static const char *refusal(const brunt_world_def *def, const void *one, const ch
 
 // The rest follows with the bodies (boundary_surface.c).
 static int make(const brunt_boundary_making *m, const void *one, int w, brunt_error *error) {
-    (void)w, (void)error;
+    (void)error;
+    const brunt_boundary_surface_def *surface = one;
     if (m->def->scheme != BRUNT_EXPLICIT) return BRUNT_OK;
+    if (surface->condition == BRUNT_SEPARATE && brunt_boundary_has_fluid(m->def))
+        brunt_warn(
+            m->messages,
+            "boundaries[%d] (%s): beside a line or mesh of condition separate the pressure of fluids is wrong in "
+            "the two nearest rows of particles, and gas at rest tears there",
+            w, m->all->boundary[w].name);
     m->all->meets_points = true;
-    m->all->has_friction = m->all->has_friction || ((const brunt_boundary_surface_def *)one)->friction > 0;
+    m->all->has_friction = m->all->has_friction || surface->friction > 0;
     return BRUNT_OK;
 }
 

@@ -70,14 +70,6 @@ static int plane_axis(const brunt_plane_def *plane, int dim) {
     return BRUNT_NONE;
 }
 
-static bool has_fluid(const brunt_world_def *def) {
-    for (int i = 0; i < def->body_count; i++) {
-        const brunt_model *model = brunt_find_strength(def->materials[def->bodies[i].material].strength);
-        if (def->bodies[i].method == BRUNT_MPM && model && model->fluid) return true;
-    }
-    return false;
-}
-
 static int make(const brunt_boundary_making *m, const void *one, int index, brunt_error *error) {
     const brunt_world_def *def = m->def;
     brunt_boundaries *all = m->all;
@@ -109,7 +101,7 @@ static int make(const brunt_boundary_making *m, const void *one, int index, brun
             const brunt_symmetry_plane *other = &all->symmetry[k];
             int32_t apart = (int32_t)round(at) - other->node;
             if (other->boundary >= 0 && other->axis == axis && apart != 0 && abs(apart) <= (int)def->kernel &&
-                has_fluid(def))
+                brunt_boundary_has_fluid(def))
                 brunt_warn(
                     m->messages,
                     "boundaries[%d] (%s): this plane of symmetry or slip and '%s' are %d cells apart; the kernel "
@@ -121,7 +113,7 @@ static int make(const brunt_boundary_making *m, const void *one, int index, brun
             (brunt_symmetry_plane){.axis = axis, .node = (int32_t)round(at), .boundary = index};
         return BRUNT_OK;
     }
-    if (row->of_fluids && has_fluid(def))
+    if (row->of_fluids && brunt_boundary_has_fluid(def))
         brunt_warn(m->messages, "boundaries[%d] (%s): %s", index, boundary->name, row->of_fluids);
     all->meets_points = all->meets_points || row->pushes;
     all->has_conditions = all->has_conditions || !row->pushes;

@@ -80,7 +80,8 @@ int brunt_boundary_surface_points(brunt_boundary_surface *s, const brunt_boundar
 }
 
 const double *brunt_boundary_surface_speed(const brunt_boundary *boundary) {
-    return boundary->surface ? boundary->surface->speed : NULL;
+    static const double still[3] = {0, 0, 0};
+    return boundary->surface ? boundary->surface->speed : still;
 }
 
 // ------------------------------------------------------------------------------------------ what touches
@@ -231,16 +232,34 @@ static int add_block(const surface_job *j, int32_t b, brunt_error *error) {
     return BRUNT_OK;
 }
 
-// Whether the points of a block are all too far away. Those of a total-Lagrangian body are not where its nodes are.
-static bool is_far(const surface_job *j, int32_t b) {
+// Whether the points of blocks with these coordinates are all too far away. Those of a total-Lagrangian body are not
+// where its nodes are.
+static bool is_far(const surface_job *j, const int32_t low[3], const int32_t high[3]) {
     const brunt_grid *grid = &j->body->grid;
     const double h = (double)grid->h;
-    double middle[3] = {0}, x[3];
+    double middle[3] = {0}, x[3], square = 0;
     if (brunt_total_lagrangian(&j->body->particles)) return false;
-    for (int a = 0; a < grid->dim; a++)
-        middle[a] = grid->origin[a] + h * ((grid->blocks[b].coord[a] + 0.5) * grid->side + 0.5 * (grid->order - 1));
+    for (int a = 0; a < grid->dim; a++) {
+        const double half = 0.5 * h * ((high[a] + 1 - low[a]) * grid->side + 1);
+        middle[a] = grid->origin[a] + h * (low[a] * grid->side + 0.5 * grid->order - 1) + half;
+        square += half * half;
+    }
     into(&j->now, middle, x);
-    return brunt_facets_are_far(&j->s->facets, x, sqrt(grid->dim) * 0.5 * (grid->side + 1) * h + j->near + 4 * h);
+    return brunt_facets_are_far(&j->s->facets, x, sqrt(square) + j->near + 4 * h);
+}
+
+// The same of all blocks.
+static bool all_far(const surface_job *j) {
+    const brunt_grid *grid = &j->body->grid;
+    if (!grid->block_count) return true;
+    int32_t low[3], high[3];
+    memcpy(low, grid->blocks[0].coord, sizeof low), memcpy(high, low, sizeof high);
+    for (int32_t b = 1; b < grid->block_count; b++)
+        for (int a = 0; a < grid->dim; a++) {
+            const int32_t at = grid->blocks[b].coord[a];
+            low[a] = at < low[a] ? at : low[a], high[a] = at > high[a] ? at : high[a];
+        }
+    return is_far(j, low, high);
 }
 
 int brunt_boundary_surface_meet(const brunt_contact_context *m, brunt_boundary *boundary, brunt_body *body,
@@ -250,27 +269,34 @@ int brunt_boundary_surface_meet(const brunt_contact_context *m, brunt_boundary *
     j.now = brunt_boundary_surface_place(s, m->time), j.then = brunt_boundary_surface_place(s, m->time + m->dt);
     j.near = NEAR * (double)body->grid.h + ((double)body->speed + s->speed[0]) * m->dt;
     s->touching_count = 0;
-    for (int32_t b = 0; b < body->grid.block_count; b++)
-        if (!is_far(&j, b)) BRUNT_TRY(add_block(&j, b, error));
+    if (all_far(&j)) return BRUNT_OK;
+    for (int32_t b = 0; b < body->grid.block_count; b++) {
+        const int32_t *at = body->grid.blocks[b].coord;
+        if (!is_far(&j, at, at)) BRUNT_TRY(add_block(&j, b, error));
+    }
     return BRUNT_OK;
 }
 
 // ------------------------------------------------------------------------------------------ what came of it
 
+static void compare(const brunt_boundary_surface *s, int32_t b, const double at[3], double *least, int32_t *best) {
+    double square = 0;
+    for (int a = 0; a < 3; a++) square += (s->particle[b].x[a] - at[a]) * (s->particle[b].x[a] - at[a]);
+    if (square < *least) *least = square, *best = b;
+}
+
 static int32_t nearest_particle(const brunt_boundary_surface *s, const double at[3]) {
-    int32_t best = 0, cell[3], near[3];
+    int32_t best = BRUNT_NONE, cell[3], near[3];
     double least = INFINITY;
     for (int a = 0; a < 3; a++) cell[a] = (int32_t)floor((at[a] - s->low[a]) / s->cell);
     for (int k = 0; k < 27; k++) {
         near[0] = cell[0] + k / 9 - 1, near[1] = cell[1] + k / 3 % 3 - 1, near[2] = cell[2] + k % 3 - 1;
         const int32_t c = brunt_boundary_surface_cell(s, near);
-        for (int32_t i = c < 0 ? 0 : s->cell_first[c]; c >= 0 && i < s->cell_first[c + 1]; i++) {
-            const int32_t b = s->cell_particle[i];
-            double square = 0;
-            for (int a = 0; a < 3; a++) square += pow(s->particle[b].x[a] - at[a], 2);
-            if (square < least) least = square, best = b;
-        }
+        for (int32_t i = c < 0 ? 0 : s->cell_first[c]; c >= 0 && i < s->cell_first[c + 1]; i++)
+            compare(s, s->cell_particle[i], at, &least, &best);
     }
+    if (best >= 0) return best;
+    for (int32_t b = 0; b < s->particle_count; b++) compare(s, b, at, &least, &best); // few a cell, and far apart
     return best;
 }
 
@@ -307,9 +333,9 @@ static void add_impulse(const brunt_boundary_surface *s, const brunt_touching *t
 static void close_pieces(brunt_boundary_surface *s, const brunt_contact_context *m, bool axisymmetric,
                          double *traction) {
     for (int32_t piece = 0; piece < s->pieces; piece++) {
+        if (!(s->rate[piece][1] > 0)) continue;
         const double scale = m->kick * area_of(s, piece, axisymmetric);
         for (int k = 0; k < 3; k++) traction[3 * (size_t)piece + (size_t)k] /= scale;
-        if (!(s->rate[piece][1] > 0)) continue;
         s->active++;
         s->drift = fmax(s->drift, fabs(s->rate[piece][0]) / s->rate[piece][1]);
     }

@@ -175,6 +175,70 @@ START_TEST(rubs) {
 }
 END_TEST
 
+// A disk that does not slip rolls down with 2/3 of what it would slide with.
+START_TEST(rolls) {
+    const lie l = lying(-PI / 4);
+    brunt_world_def def = explicit_def(2);
+    def_ball(&def, "disk", XYZ(l.s * -0.4, l.c * 0.4, 0), 0.4);
+    def.bodies[0].fill = BRUNT_FILL_RINGS;
+    def.materials[0].strength_parameters[0] = 10 * YOUNG;
+    turned_line(&def, &l, -2, 5, 0, BRUNT_SEPARATE)->friction = 1;
+    def.gravity[0] = 3 * l.c + 5 * l.s, def.gravity[1] = 3 * l.s - 5 * l.c; // 3 along it, 5 onto it
+    def.gravity_ramp = 0.05;
+    brunt_world *world = world_take(&def);
+    const brunt_body_sums before = world_sums(world, 0);
+    world_until(world, 0.6);
+    const brunt_body_sums after = world_sums(world, 0);
+    const double d[3] = {after.centre[0] - before.centre[0], after.centre[1] - before.centre[1]};
+    const double way = 3 * (0.5 * 0.55 * 0.55 + 0.5 * 0.05 * 0.55 + 0.05 * 0.05 / 6);
+    printf("  rolls %.4f of what slides, across %+.1e cells\n", along(&l, d) / way, across(&l, d) / CELL);
+    ck_assert_double_eq_tol(along(&l, d) / way, 2.0 / 3, 0.035); // its lattice and kernels turn harder
+    ck_assert_double_le(fabs(across(&l, d)), 0.03 * CELL);
+    ck_assert_double_le(world_momentum(world).angular_drift, 10 * ROUNDING);
+    brunt_world_destroy(world);
+}
+END_TEST
+
+// What lies there stays where it is, and what lies a little behind the line is not thrown out of it.
+START_TEST(rests) {
+    const lie l = lying(0.3);
+    brunt_world_def def = explicit_def(2);
+    turned_box(&def, &l, 0.03, _i ? -0.005 : 0, 0.4, 0.4)->total_lagrangian = _i == 2;
+    turned_line(&def, &l, -2, 3, 0, BRUNT_SEPARATE)->friction = 0.5;
+    if (!_i) def.gravity[0] = 9.81 * l.s, def.gravity[1] = -9.81 * l.c;
+    brunt_world *world = world_take(&def);
+    const double start = across(&l, world_sums(world, 0).centre);
+    world_until(world, 3);
+    const double settled = across(&l, world_sums(world, 0).centre);
+    world_until(world, 6);
+    const brunt_body_sums after = world_sums(world, 0);
+    printf("  went %.1e cells, then %.1e, energy %.1e J\n", (settled - start) / CELL,
+           (across(&l, after.centre) - settled) / CELL, world_energy(world).kinetic);
+    ck_assert_double_le(fabs(settled - start), 0.01 * CELL);
+    ck_assert_double_le(fabs(across(&l, after.centre) - settled), 1e-3 * CELL);
+    ck_assert_double_le(world_energy(world).kinetic, 1e-4);
+    if (!_i) ck_assert_double_eq_tol(across(&l, world_boundary(world, 0).force), 160 * 9.81, 1);
+    brunt_world_destroy(world);
+}
+END_TEST
+
+// What a line lets go is not behind it at the start; one that holds has no sides.
+START_TEST(behind) {
+    for (int k = 0; k < 2; k++) {
+        const lie l = lying(0);
+        brunt_world_def def = explicit_def(2);
+        turned_box(&def, &l, 0.03, 0, 0.4, 0.4);
+        turned_line(&def, &l, 3, -2, 0, k ? BRUNT_SEPARATE : BRUNT_SLIP);
+        brunt_error error = {0};
+        brunt_world *world = brunt_world_create(&def, &error);
+        ck_assert_int_eq(world != NULL, !k);
+        if (k) ck_assert_ptr_nonnull(strstr(error.message, "body 'block' is behind it"));
+        if (world) brunt_world_destroy(world);
+        brunt_world_def_free(&def);
+    }
+}
+END_TEST
+
 // A line that sticks carries a block along as it goes, and holds its weight; one that stops gives it back.
 START_TEST(carries) {
     static const double table[3][2] = {{0, 0}, {0.2, 1}, {1, 1}};
@@ -568,6 +632,9 @@ int main(void) {
     ADD_LOOP(meets, 16);
     ADD_LOOP(moves, 1);
     ADD_LOOP(rubs, 3);
+    ADD_LOOP(rolls, 1);
+    ADD_LOOP(rests, 3);
+    ADD_LOOP(behind, 1);
     ADD_LOOP(carries, 1);
     ADD_LOOP(turns, 2);
     ADD_LOOP(corners, 4);
