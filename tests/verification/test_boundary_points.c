@@ -222,6 +222,23 @@ START_TEST(rests) {
 }
 END_TEST
 
+// What comes while it is behind the line is pushed out with no more than it came with.
+START_TEST(pushed_out) {
+    const lie l = lying(0);
+    brunt_world_def def = explicit_def(2);
+    def_velocity(turned_box(&def, &l, 0.03, -0.01, 0.4, 0.4), 0, -0.1, 0);
+    turned_line(&def, &l, -2, 3, 0, BRUNT_SEPARATE);
+    brunt_world *world = world_take(&def);
+    const double start = world_energy(world).kinetic;
+    world_until(world, 0.5);
+    const brunt_energy e = world_energy(world);
+    printf("  leaves with %.3f of its speed\n", world_sums(world, 0).velocity[1] / 0.1);
+    ck_assert_double_le(e.kinetic + e.internal, start);
+    ck_assert_double_gt(world_sums(world, 0).velocity[1], 0);
+    brunt_world_destroy(world);
+}
+END_TEST
+
 // What a line lets go is not behind it at the start; one that holds has no sides.
 START_TEST(behind) {
     for (int k = 0; k < 2; k++) {
@@ -634,6 +651,7 @@ int main(void) {
     ADD_LOOP(rubs, 3);
     ADD_LOOP(rolls, 1);
     ADD_LOOP(rests, 3);
+    ADD_LOOP(pushed_out, 1);
     ADD_LOOP(behind, 1);
     ADD_LOOP(carries, 1);
     ADD_LOOP(turns, 2);
