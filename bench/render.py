@@ -413,9 +413,9 @@ def make_scene(vtk, np, args, scale):
     edges = args.edges == "on" or args.edges == "auto" and sum(s.GetNumberOfCells() for s in surfaces) <= 30000
     for surface in surfaces:
         renderer.AddActor(surface_actor(vtk, args, surface, table, edges, scale))
+        points.append(vtk_to_numpy(surface.GetPoints().GetData()).astype(float))
     if args.links:
         renderer.AddActor(links_actor(vtk, np, args.links))
-        points.append(vtk_to_numpy(surface.GetPoints().GetData()).astype(float))
 
     unit = args.unit if args.unit is not None else file_unit(args.files[0], args.field)
     title = args.title or args.field.replace("_", " ")
