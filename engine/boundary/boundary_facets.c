@@ -13,6 +13,7 @@
 #include "base/check.h"
 #include "base/error.h"
 #include "base/memory.h"
+#include "base/vector.h"
 #include "boundary/boundary_pieces.h"
 
 static const double FINE = 1.5;  // edges of parts of triangles, of the wanted distance of particles
@@ -60,10 +61,6 @@ typedef struct cutter {
     double size; // [m] of a piece
 } cutter;
 
-static double dot(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-static void cross(const double *a, const double *b, double *out) {
-    for (int k = 0; k < 3; k++) out[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
-}
 static const double *corner_of(const cutter *c, int32_t t, int k) { return c->def->point[c->triangle[t].corner[k]]; }
 
 // ------------------------------------------------------------------------------------------ triangles

@@ -6,6 +6,7 @@
 
 #include "base/array.h"
 #include "base/memory.h"
+#include "base/vector.h"
 
 enum { LEAF = 4, DEEP = 64, FOUND = 256 };
 static const double ON = 1e-9; // of the range: so near the way to a place has no direction
@@ -15,14 +16,6 @@ typedef struct found {
     int32_t part, feature[2]; // its corners that the point is between: an edge's, one twice; -1: it is within the part
     double at[3], d[3], square;
 } found;
-
-static double dot(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-static void less(const double *a, const double *b, double *out) {
-    for (int k = 0; k < 3; k++) out[k] = a[k] - b[k];
-}
-static void cross(const double *a, const double *b, double *out) {
-    for (int k = 0; k < 3; k++) out[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
-}
 
 // ------------------------------------------------------------------------------------------ the tree
 

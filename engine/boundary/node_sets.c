@@ -6,6 +6,7 @@
 #include "base/array.h"
 #include "base/error.h"
 #include "base/memory.h"
+#include "base/vector.h"
 #include "boundary/curve.h"
 #include "boundary/gas.h"
 #include "boundary/node_sets.h"
@@ -227,10 +228,6 @@ static void face_corners(const brunt_fem_body *fem, const int32_t node[4], bool 
     for (int c = 0; c < 4 && node[c] >= 0; c++)
         for (int a = 0; a < 3; a++)
             x[c][a] = (double)(start ? fem->start[4 * (size_t)node[c] + (size_t)a] : brunt_fem_node(fem, node[c])[a]);
-}
-
-static void cross(const double a[3], const double b[3], double out[3]) {
-    for (int i = 0; i < 3; i++) out[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
 }
 
 // With x = m + a xi + b eta + c xi eta, the normal (a + c eta) x (b + c xi) = a x b + xi a x c + eta c x b is linear,

@@ -13,6 +13,7 @@
 
 #include "base/array.h"
 #include "base/check.h"
+#include "base/vector.h"
 #include "boundary/boundary_surface.h"
 #include "boundary/curve.h"
 #include "contact/distance/particle_extent.h"
@@ -106,8 +107,6 @@ typedef struct point {
 } point;
 
 static bool leaves(const surface_job *j) { return j->s->def.condition == BRUNT_SEPARATE; }
-
-static double dot(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 // Which of the places around a point hold it: of what it may leave those before it and the nearest of those behind it,
 // but for the other side of a thin wall.

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/memory.h"
+#include "base/vector.h"
 #include "geometry/element_traits.h"
 
 #include <math.h>
@@ -124,10 +125,6 @@ static void look_at_corner(const double *x, const double *const to[3], int dimen
     double scaled = product > 0 ? factor * determinant / product : 0;
     look->least = fmin(look->least, determinant);
     if (!(scaled >= look->shape)) look->shape = scaled; // one that is not a number stays
-}
-
-static void cross(const double *a, const double *b, double *c) {
-    for (int d = 0; d < 3; d++) c[d] = a[(d + 1) % 3] * b[(d + 2) % 3] - a[(d + 2) % 3] * b[(d + 1) % 3];
 }
 
 // Corners of a membrane's element as seen along its normal, that of its diagonals: area and shape are what they make in
