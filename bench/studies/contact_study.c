@@ -7,6 +7,7 @@
 //   form      node_to_facet|averaged_facets|averaged_surface|published|none|rigid
 //   transfer  pic|apic, of the published form
 //   n         iterations or sweeps (-1: the form's own)            mu        friction
+//   touch     elastic|inelastic
 //   element   tet4|hex8                                            end       [s]
 //   speed     factor on the velocities                             stiff     factor on E
 //   e1, r1    factors on E and density of the first body           dt        factor on the time step
@@ -32,6 +33,7 @@ typedef struct settings {
     int n, samples, threads, trace, bodies, rounds;
     const char *rows;
     brunt_augury_form form;
+    brunt_touch_kind touch;
     int none, rigid;
     brunt_transfer transfer;
     brunt_element_kind element;
@@ -81,6 +83,7 @@ static settings read_settings(int argc, char **argv) {
              : !strcmp(form, "averaged_surface") ? BRUNT_AUGURY_AVERAGED_SURFACE
              : !strcmp(form, "published")        ? BRUNT_AUGURY_PUBLISHED
                                                  : BRUNT_AUGURY_NODE_TO_FACET;
+    s.touch = strcmp(word(argc, argv, "touch", "elastic"), "elastic") ? BRUNT_TOUCH_INELASTIC : BRUNT_TOUCH_ELASTIC;
     s.transfer = !strcmp(word(argc, argv, "transfer", "apic"), "pic") ? BRUNT_PIC : BRUNT_APIC;
     s.element = !strcmp(word(argc, argv, "element", "tet4"), "hex8") ? BRUNT_HEX8 : BRUNT_TET4;
     return s;
@@ -108,6 +111,7 @@ static brunt_world_def begin(const settings *s, int bodies) {
     def.contact.iterations = s->n;
     def.contact.cell = s->grid * s->h;
     def.contact.friction = s->mu;
+    def.contact.touch = s->touch;
     return def;
 }
 
@@ -189,7 +193,7 @@ static void run_cubes(const settings *s, const char *kind) {
         brunt_gap_measure(probe, &depth, &distance);
         brunt_world_energy(world, &energy);
         deepest = fmax(deepest, depth), closest = fmin(closest, distance);
-        most = fmax(most, (energy.kinetic + energy.internal + energy.hourglass) / energy.initial);
+        most = fmax(most, (energy.kinetic + energy.internal + energy.hourglass + energy.transfer) / energy.initial);
         if (s->trace)
             printf("%g kinetic %.4f internal %.4f hourglass %.4f contact %.4f depth %.4fh\n", brunt_world_time(world),
                    energy.kinetic / energy.initial, energy.internal / energy.initial, energy.hourglass / energy.initial,
@@ -204,8 +208,8 @@ static void run_cubes(const settings *s, const char *kind) {
     brunt_gap_measure(probe, &depth, &distance);
     printf("%s h=%g status=%d E/E0=%.4f max=%.4f contact=%.4f error=%.1e pen=%.4fh near=%.4fh now=%.2fh dP=%.1e "
            "dL=%.1e v=(%.2f %.2f %.2f) apart=%.2f steps=%lld wall=%.1f\n",
-           kind, s->h, status, (energy.kinetic + energy.internal + energy.hourglass) / energy.initial, most,
-           energy.contact / energy.initial, energy.error_relative, deepest / s->h, closest / s->h,
+           kind, s->h, status, (energy.kinetic + energy.internal + energy.hourglass + energy.transfer) / energy.initial,
+           most, energy.contact / energy.initial, energy.error_relative, deepest / s->h, closest / s->h,
            depth > 0 ? -depth / s->h : distance / s->h, p.linear_drift, p.angular_drift, b.velocity[0] - a.velocity[0],
            b.velocity[1] - a.velocity[1], b.velocity[2] - a.velocity[2], (b.velocity[1] - a.velocity[1]),
            (long long)brunt_world_steps(world), brunt_clock() - from - measuring);

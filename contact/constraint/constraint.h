@@ -46,6 +46,15 @@ typedef struct brunt_constraint_entry {
     double height_gradient[3]; // 0 of a slave; height grad beta_k of a master
 } brunt_constraint_entry;
 
+// What pushes have taken of a slave, to be given back at its release (release.h).
+typedef struct brunt_touch_energy {
+    double held;           // [J]
+    int32_t met, releases; // of its constraints in this step: how many there are, and do not push
+    bool pushed;           // some do
+} brunt_touch_energy;
+
+typedef struct brunt_release brunt_release; // release.c
+
 typedef struct brunt_constraint {
     int32_t first, count;           // entries
     double x[3];                    // [m] where
@@ -58,6 +67,7 @@ typedef struct brunt_constraint {
     bool sticks;                    // friction has no bound
     double plane[3];                // [m/s] velocity of the master when it is a plane; 0 for facets
     brunt_impulse_account *account; // where the point is recorded: impulse on the slave times `sign`
+    brunt_touch_energy *touch;      // of the slave; NULL: what its pushes take is lost
     double sign; // of a body with itself 0: it gets both, and the account neither, but what they dissipate
     double area; // [m^2] it stands for in the account's area
     int32_t tag; // the caller's
@@ -103,6 +113,11 @@ typedef struct brunt_constraint_set {
     size_t applied_capacity;
     double *changed; // [m/s] of each chunk of points: greatest correction of the sweep
     size_t changed_capacity;
+    bool gives_back;        // constraints have touches ...
+    double leap;            // [m/s] ... what comes faster is lost: it would be thrown past what is near
+    double shallow;         // [m] ... what is deeper is given nothing back until it is out again
+    brunt_release *release; // of each
+    size_t release_capacity;
     // Of accelerated sweeps, else unused: what points and nodes had after the sweep before, and of each chunk how much
     // of its correction goes back on the last one's (see solve.c).
     bool accelerated;
@@ -143,6 +158,10 @@ static inline bool brunt_constraint_acts(const brunt_constraint *constraint) {
 // Relative velocity of a point, with the degree-of-freedom nodes' v (old: as they were before the forces).
 void brunt_constraint_velocity(const brunt_constraint_set *set, const brunt_constraint *constraint, bool old,
                                double u[3]);
+// What friction does to a constraint with the normal impulse it has, as far as it is concerned; added to `rub`.
+void brunt_constraint_rub(const brunt_constraint_set *set, brunt_constraint *constraint, double rub[3]);
+// Gives degree-of-freedom nodes the impulses in `applied`.
+void brunt_constraints_apply(brunt_constraint_set *set, int threads, brunt_timer *timer);
 // Solves with at most `sweeps` sweeps, until the greatest correction of one is no more than `tolerance` of that of the
 // first; what is left is met in the next step. Records every point. BRUNT_OK, or BRUNT_FAILED: out of memory.
 int brunt_constraints_solve(brunt_constraint_set *set, int sweeps, double tolerance, int threads, brunt_timer *timer,

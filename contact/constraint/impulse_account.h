@@ -7,12 +7,13 @@
 
 // A condition that is imposed from outside, and what it has done so far.
 typedef struct brunt_impulse_account {
-    double impulse[3];    // [N s] on the bodies (a pair: on its second body; of a body with itself 0)
-    double angular[3];    // [N m s] about the origin, on the bodies
-    double external_work; // [J] done on the bodies by prescribed motion
-    double normal_loss;   // [J] dissipated by the normal impulse
-    double friction_loss; // [J] dissipated by the tangential impulse
-    double area;          // [m^2] that touched in the last step
+    double impulse[3];         // [N s] on the bodies (a pair: on its second body; of a body with itself 0)
+    double angular[3];         // [N m s] about the origin, on the bodies
+    double external_work;      // [J] done on the bodies by prescribed motion
+    double normal_loss;        // [J] dissipated by the normal impulse
+    double friction_loss;      // [J] dissipated by the tangential impulse
+    double area;               // [m^2] that touched in the last step
+    double unspent, overspent; // [J] while a step gives back what touches took (release.c)
 } brunt_impulse_account;
 
 // Aborts where a number of it is none.

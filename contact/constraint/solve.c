@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "contact/constraint/release.h"
 
 enum { GRAIN = 128 };
 
@@ -51,6 +52,7 @@ void brunt_constraints_free(brunt_constraint_set *p) {
     brunt_free(p->point_past);
     brunt_free(p->dof_past);
     brunt_free(p->turned_back);
+    brunt_free(p->release);
     memset(p, 0, sizeof *p);
 }
 
@@ -274,6 +276,22 @@ static void sum_rows(void *context, int64_t begin, int64_t end, int worker) {
     }
 }
 
+// Brings what is left of slip, of relative velocity u, to what friction allows; the impulse is added to `rub`. Returns
+// the velocity it is worth [m/s].
+static double rub_with(const brunt_constraint_set *p, brunt_constraint *constraint, double u[3], double rub[3]) {
+    const double unit_t = constraint->scale / constraint->row_sum_t;
+    if (constraint->friction_point) velocity(p, constraint, constraint->first + constraint->count, false, u);
+    const double along = u[0] * constraint->n[0] + u[1] * constraint->n[1] + u[2] * constraint->n[2];
+    double wanted[3], change[3];
+    for (int a = 0; a < 3; a++)
+        wanted[a] = constraint->friction_impulse[a] - (u[a] - along * constraint->n[a]) * unit_t;
+    constraint->slips =
+        brunt_coulomb_project(3, constraint->friction, constraint->sticks ? INFINITY : constraint->normal_impulse,
+                              wanted, constraint->friction_impulse, change);
+    for (int a = 0; a < 3; a++) rub[a] += change[a];
+    return brunt_coulomb_norm(3, change) / unit_t;
+}
+
 // Brings one point to its condition, as far as it is concerned; the impulse goes to `J`, that of friction to `rub`,
 // which is the same without a friction point. Returns the velocity it is worth [m/s].
 static double solve_constraint(const brunt_constraint_set *p, brunt_constraint *constraint, double J[3],
@@ -286,24 +304,15 @@ static double solve_constraint(const brunt_constraint_set *p, brunt_constraint *
     double unit = constraint->scale / constraint->row_sum;
     const double step =
         brunt_coulomb_bound(&constraint->normal_impulse, constraint->least, (constraint->target - along) * unit);
-    double changed = fabs(step) / unit;
+    const double changed = fabs(step) / unit;
     for (int a = 0; a < 3; a++) J[a] = step * constraint->n[a];
-    if (constraint->friction > 0) {
-        const double unit_t = constraint->scale / constraint->row_sum_t;
-        if (constraint->friction_point) {
-            velocity(p, constraint, constraint->first + constraint->count, false, u);
-            along = u[0] * constraint->n[0] + u[1] * constraint->n[1] + u[2] * constraint->n[2];
-        }
-        double wanted[3], change[3];
-        for (int a = 0; a < 3; a++)
-            wanted[a] = constraint->friction_impulse[a] - (u[a] - along * constraint->n[a]) * unit_t;
-        constraint->slips =
-            brunt_coulomb_project(3, constraint->friction, constraint->sticks ? INFINITY : constraint->normal_impulse,
-                                  wanted, constraint->friction_impulse, change);
-        for (int a = 0; a < 3; a++) rub[a] += change[a];
-        changed = fmax(changed, brunt_coulomb_norm(3, change) / unit_t);
-    }
-    return changed;
+    return constraint->friction > 0 ? fmax(changed, rub_with(p, constraint, u, rub)) : changed;
+}
+
+void brunt_constraint_rub(const brunt_constraint_set *p, brunt_constraint *constraint, double rub[3]) {
+    double u[3];
+    brunt_constraint_velocity(p, constraint, false, u);
+    rub_with(p, constraint, u, rub);
 }
 
 // Begins a sweep with a share of the last one's correction on top. What it had before goes to `past`.
@@ -472,6 +481,10 @@ static double accelerate(brunt_constraint_set *p, int64_t chunks, double weight)
     return next;
 }
 
+void brunt_constraints_apply(brunt_constraint_set *p, int threads, brunt_timer *timer) {
+    brunt_parallel(threads, (p->dof_node_count + GRAIN - 1) / GRAIN, 1, move_dof_nodes, p, timer);
+}
+
 int brunt_constraints_solve(brunt_constraint_set *p, int sweeps, double tolerance, int threads, brunt_timer *timer,
                             brunt_error *error) {
     p->sweeps = 0;
@@ -491,8 +504,9 @@ int brunt_constraints_solve(brunt_constraint_set *p, int sweeps, double toleranc
         first = fmax(first, greatest);
         if (p->accelerated) weight = accelerate(p, chunks, weight);
         if (p->sweeps == sweeps || greatest <= tolerance * first) p->momentum = 0;
-        brunt_parallel(threads, groups, 1, move_dof_nodes, p, timer);
+        brunt_constraints_apply(p, threads, timer);
     }
+    if (p->gives_back && brunt_constraints_release(p, threads, timer, error)) return BRUNT_FAILED;
     account_constraints(p);
     return BRUNT_OK;
 }

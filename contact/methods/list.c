@@ -56,6 +56,10 @@ static int act_at_facets(const brunt_contact_context *m, brunt_contact_work *wor
     brunt_constraint_set *set = work->constraints;
     brunt_node_to_facet *facets = *work->node_to_facet;
     brunt_constraints_clear(set);
+    set->gives_back = work->def->touch == BRUNT_TOUCH_ELASTIC;
+    set->leap = BRUNT_LEAP * m->surface->mean_edge / m->dt;
+    set->shallow = BRUNT_SHALLOW * m->surface->mean_edge;
+    if (set->gives_back && brunt_node_touches_make(facets, m->surface->node_count, error)) return BRUNT_FAILED;
     for (int w = 0; w < m->boundary_count; w++)
         if (m->boundaries[w].kind->meet_surface &&
             m->boundaries[w].kind->meet_surface(m, &m->boundaries[w], facets, set, error))
@@ -159,7 +163,7 @@ const brunt_contact_row brunt_contact_node_to_facet = {
     .forms = FORM(NODE_TO_FACET),
     .schemes = EXPLICIT,
     .meets = BRUNT_MEET_AT_FACETS,
-    .keys = "form cell tolerance iterations",
+    .keys = "form cell tolerance iterations touch",
     .self = BRUNT_SELF_MEMBRANES,
     .knows_membranes = true,
     .planes = true,

@@ -88,8 +88,16 @@ static bool cross_between(const brunt_contact_surface *s, const edge_pair *p, do
     return between_nodes(at.s, at.aa, touch) && between_nodes(at.t, at.bb, touch);
 }
 
+// Of either edge's nodes the one that has most of the crossing: what touches take is kept there.
+static int32_t nearest_node(const edge_pair *p) {
+    const bool first = fabs(p->at.s - 0.5) >= fabs(p->at.t - 0.5);
+    const double at = first ? p->at.s : p->at.t;
+    return p->edge[first ? 0 : 1]->node[at < 0.5 ? 0 : 1];
+}
+
 // Whether two edges meet within the step, and how.
-static bool edges_meet(const brunt_contact_context *m, double travel, edge_pair *p) {
+static bool edges_meet(const brunt_contact_context *m, const brunt_node_to_facet *f, edge_pair *p) {
+    const double travel = f->bodies.travel;
     const brunt_contact_surface *s = m->surface;
     double a[2][3], b[2][3];
     ends_at(s, p->edge[0], 0, a), ends_at(s, p->edge[1], 0, b);
@@ -101,7 +109,9 @@ static bool edges_meet(const brunt_contact_context *m, double travel, edge_pair 
     if (p->gap < -way_across(p)) return false;
     const double approach = rate(p, s->v);
     p->target = brunt_node_to_facet_target(s, p->gap, approach, p->gap < 0 ? rate(p, s->old) : 0, m->dt);
-    if (!(approach < p->target + TOUCH * s->mean_edge / m->dt)) return false;
+    if (!(approach < p->target + TOUCH * s->mean_edge / m->dt) &&
+        !brunt_node_holds(&f->touches, nearest_node(p), TOUCHED_EDGE))
+        return false;
     return cross_between(s, p, p->gap > 0 && approach < 0 ? fmin(p->gap / -approach, m->dt) : 0);
 }
 
@@ -134,6 +144,8 @@ static int add_constraint(const brunt_contact_context *m, brunt_node_to_facet *f
     memcpy(constraint->facet, p->n, sizeof constraint->facet);
     constraint->target = p->target;
     constraint->tag = p->at.s < 0.5 ? a[0] : a[1];
+    if (!s->membrane.side || !(s->membrane.side[p->body[0]].faces || s->membrane.side[p->body[1]].faces))
+        constraint->touch = brunt_node_touch(&f->touches, nearest_node(p), TOUCHED_EDGE);
     for (int i = 0; i < 4; i++) {
         const int32_t node = i < 2 ? a[i] : b[i - 2];
         const double share = i < 2 ? p->at.s : p->at.t, weight = i % 2 ? share : 1 - share,
@@ -212,7 +224,7 @@ static int bodies_meet(const brunt_contact_context *m, brunt_node_to_facet *f, c
             const feature_edge *master = &edges->feature[b[k].feature];
             edge_pair p = {.edge = {slave, master},
                            .body = {m->surface->fem[fem[0]]->index, m->surface->fem[fem[1]]->index}};
-            if (!edges_near(slave, master, travel) || !edges_meet(m, travel, &p)) continue;
+            if (!edges_near(slave, master, travel) || !edges_meet(m, f, &p)) continue;
             if (add_constraint(m, f, &p, constraints, error)) return BRUNT_FAILED;
         }
     }

@@ -1,12 +1,12 @@
 #include "contact/search/node_to_facet_parts.h"
 
 #include "contact/distance/point_facet.h"
+#include "contact/search/nearest.h"
 #include "mpm/particles.h"
 #include "base/parallel.h"
 #include "mpm/mpm_body.h"
 
 enum { GRAIN = 64 };
-static const double SHALLOW = 0.02;    // mean edges: depths that may be pushed out against a load
 static const double CORRECTION = 0.2;  // share of a penetration that is pushed out in a step ...
 static const double RESTITUTION = 0.5; // ... but no faster than this share of the approach, so that it adds no energy
 
@@ -26,7 +26,7 @@ typedef struct search_job {
 double brunt_node_to_facet_target(const brunt_contact_surface *s, double gap, double approach, double before,
                                   double dt) {
     if (gap >= 0) return -gap / dt;
-    double came = gap > -SHALLOW * s->mean_edge ? approach : before;
+    double came = gap > -BRUNT_SHALLOW * s->mean_edge ? approach : before;
     return fmin(CORRECTION * -gap / dt, RESTITUTION * fmax(0, -came));
 }
 
@@ -107,7 +107,8 @@ static void find_node_candidates(const search_job *j, int k, int32_t n, int work
         h->target = brunt_node_to_facet_target(
             s, h->gap, approach, h->gap < 0 ? brunt_node_to_facet_approach(s, h, s->x[n], s->old[n], s->old) : 0,
             m->dt);
-        if (!(approach < h->target + 1e-6 * s->mean_edge / m->dt)) continue;
+        if (!(approach < h->target + 1e-6 * s->mean_edge / m->dt) && !brunt_node_holds(&f->touches, n, TOUCHED_FACET))
+            continue;
         if (h->feature.any) keep_master(f, s, h, s->x[n], worker);
         f->nodes.candidate[BRUNT_MAX_CANDIDATES * n + kept++] = *h;
     }
@@ -199,6 +200,9 @@ static void fill_constraints(void *context, int64_t begin, int64_t end, int work
                 (brunt_constraint_entry){.dof_node = f->nodes.dof_of[n], .weight = {1, 1, 1}};
             brunt_node_to_facet_entries(f, master, constraint, j->constraints->entry + entry + 1);
             constraint->target = h->target;
+            // Not of membranes: what is light between heavy ones is thrown through.
+            if (!is_membrane(s, s->body[n]) && !is_membrane(s, h->body))
+                constraint->touch = brunt_node_touch(&f->touches, n, TOUCHED_FACET);
             entry += constraint->count;
         }
     }
@@ -307,6 +311,7 @@ void brunt_node_to_facet_finish(const brunt_contact_context *m, brunt_body *mpm,
     brunt_contact_surface *s = m->surface;
     for (int32_t n = 0; n < s->node_count; n++) {
         int32_t at = f->nodes.dof_of[n];
+        if (at < 0 && f->touches.of) brunt_node_forgets(f, s, n);
         if (at < 0 || (s->membrane.front && s->membrane.front[n] != n)) continue;
         for (int a = 0; a < 3; a++) {
             s->output.impulse[n][a] += constraints->dof_node[at].impulse[a];

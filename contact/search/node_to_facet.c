@@ -8,6 +8,7 @@ void brunt_node_to_facet_free(brunt_node_to_facet *f) {
     for (int t = 0; t < f->particles.list_count; t++) brunt_free(f->particles.list[t].candidate);
     for (int t = 0; t < f->nodes.masters_count; t++) brunt_free(f->nodes.masters[t].master);
     brunt_feature_edges_free(&f->edges);
+    brunt_node_touches_free(&f->touches);
     void *owned[] = {f->bodies.box,     f->bodies.pair,     f->bodies.box_of,
                      f->bodies.first,   f->bodies.list,     f->cells.first,
                      f->cells.face,     f->cells.x,         f->cells.box,
@@ -46,5 +47,6 @@ int brunt_node_to_facet_make(brunt_node_to_facet **node_to_facet, int mpm_count,
 void brunt_node_to_facet_validate(const brunt_node_to_facet *f, const brunt_contact_surface *s) {
     if (!f) return;
     brunt_distance_cache_validate(&f->cache, s->node_count, s->face_count);
+    brunt_node_touches_validate(&f->touches, s->node_count);
     brunt_facet_cells_validate(&f->cells, s->face_count);
 }

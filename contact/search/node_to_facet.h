@@ -14,6 +14,9 @@
 #include "contact/planes/boundary.h"
 #include "contact/planes/symmetry.h"
 
+#define BRUNT_LEAP 0.1     // mean edges: how far a node may come in a step and be thrown back
+#define BRUNT_SHALLOW 0.02 // mean edges: depths that may be pushed out against a load
+
 // Marks in surface->active which bodies have another one, or a boundary (planes with condition separate and
 // others), near; call after brunt_surface_bounds, before brunt_surface_gather_state. BRUNT_OK, or BRUNT_FAILED: out of
 // memory, or (`far`) a place or a way of a step is not a number that can be worked with.
@@ -43,6 +46,15 @@ void brunt_node_to_facet_state_get(const brunt_node_to_facet *node_to_facet, con
                                    double *out);
 int brunt_node_to_facet_state_set(brunt_node_to_facet **node_to_facet, brunt_contact_surface *surface, int mpm_count,
                                   const double *in, brunt_error *error);
+// What touches have taken of nodes and their release gives back [J] (constraint/release.h): room for it where a scene
+// wants that (BRUNT_OK, or BRUNT_FAILED: out of memory), the sum, and as it is saved, after the state above.
+int brunt_node_touches_make(brunt_node_to_facet *node_to_facet, int32_t nodes, brunt_error *error);
+double brunt_node_to_facet_held(const brunt_node_to_facet *node_to_facet, const brunt_contact_surface *surface);
+int64_t brunt_node_touches_state_count(const brunt_contact_surface *surface);
+void brunt_node_touches_state_get(const brunt_node_to_facet *node_to_facet, const brunt_contact_surface *surface,
+                                  double *out);
+int brunt_node_touches_state_set(brunt_node_to_facet *node_to_facet, const brunt_contact_surface *surface,
+                                 const double *in, brunt_error *error);
 void brunt_node_to_facet_free(brunt_node_to_facet *node_to_facet);
 // Aborts where what is remembered is not of this surface. NULL: nothing is.
 void brunt_node_to_facet_validate(const brunt_node_to_facet *node_to_facet, const brunt_contact_surface *surface);

@@ -11,6 +11,7 @@
 #include "contact/search/distance_cache.h"
 #include "contact/search/edge_edge.h"
 #include "contact/search/facet_cells.h"
+#include "contact/search/node_touches.h"
 
 static inline double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
@@ -18,6 +19,7 @@ struct brunt_node_to_facet {
     near_bodies bodies;
     facet_cells cells;
     distance_cache cache;
+    node_touches touches;
     node_candidates nodes;
     near_edges edges;
     particle_candidates particles;
@@ -32,6 +34,13 @@ int brunt_node_to_facet_make(brunt_node_to_facet **node_to_facet, int mpm_count,
 // --- distance_cache.c
 // Room for what is remembered of so many nodes. BRUNT_OK, or BRUNT_FAILED: out of memory.
 int brunt_distance_cache_fit(brunt_node_to_facet *f, int32_t nodes, int32_t kept, brunt_error *error);
+
+// --- node_touches.c
+// BRUNT_OK, or BRUNT_FAILED: out of memory. After the surface was renewed: what is held follows its nodes.
+int brunt_node_touches_renew(node_touches *touches, const brunt_contact_surface *surface, brunt_error *error);
+
+// A node that is in no constraint of the step: what it holds is lost, of facets where none is near any more.
+void brunt_node_forgets(brunt_node_to_facet *f, const brunt_contact_surface *surface, int32_t n);
 
 // --- facet_cells.c
 // Makes the cells anew when they no longer hold all that may be near. BRUNT_OK, or BRUNT_FAILED: out of memory.

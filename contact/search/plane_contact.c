@@ -54,7 +54,8 @@ static int add_plane_constraint(const plane_job *j, int32_t n, int32_t back, dou
         before += plane->normal[a] * (s->old[n][a] - plane->velocity[a]);
     }
     double target = brunt_node_to_facet_target(s, gap, approach, before, j->m->dt);
-    if (!(approach < target + 1e-6 * s->mean_edge / j->m->dt)) return BRUNT_OK;
+    if (!(approach < target + 1e-6 * s->mean_edge / j->m->dt) && !brunt_node_holds(&j->f->touches, n, TOUCHED_PLANE))
+        return BRUNT_OK;
     int32_t at = brunt_constraints_add(constraints, error),
             dof_node = brunt_node_to_facet_dof_node(j->f, s, n, constraints, error);
     if (at < 0 || dof_node < 0) return BRUNT_FAILED;
@@ -65,6 +66,7 @@ static int add_plane_constraint(const plane_job *j, int32_t n, int32_t back, dou
     constraint->gap = gap, constraint->target = target, constraint->friction = plane->friction;
     constraint->account = &j->boundary->last, constraint->sign = 1, constraint->tag = n,
     constraint->area = brunt_node_to_facet_area(s, n, plane->normal);
+    if (!back) constraint->touch = brunt_node_touch(&j->f->touches, n, TOUCHED_PLANE);
     if (back) constraint->area += brunt_node_to_facet_area(s, n + back, plane->normal);
     return brunt_constraints_entry(constraints, dof_node, 1, error) < 0 ? BRUNT_FAILED : BRUNT_OK;
 }

@@ -118,6 +118,7 @@ void brunt_ledger_energy(const brunt_ledger *now, const brunt_accounts *accounts
                              .contact = now->barrier,
                              .external_work = now->gravity_work};
     add_bodies(accounts->bodies, energy);
+    energy->mechanical = energy->kinetic + energy->internal - 0.5 * (now->stress_work + now->fem_stress_work);
     energy->hourglass = now->hourglass_stored + now->hourglass_lost;
     energy->viscosity += now->damping.loss + now->eroded_viscosity;
     energy->plastic += now->eroded_plastic;

@@ -193,6 +193,7 @@ brunt_accounts brunt_accounts_of(const brunt_world *world) {
 void brunt_world_energy(brunt_world *world, brunt_energy *energy) {
     const brunt_accounts accounts = brunt_accounts_of(world);
     brunt_ledger_energy(&world->ledger, &accounts, energy);
+    energy->contact_held = brunt_node_to_facet_held(world->contact.node_to_facet, &world->contact.surface);
 }
 
 void brunt_world_momentum(brunt_world *world, brunt_momentum *momentum) {

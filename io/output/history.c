@@ -90,10 +90,11 @@ static void add_energy(brunt_history *h, brunt_world *world) {
     brunt_world_energy(world, &e);
     add(h, "energy.kinetic", "J", e.kinetic);
     add(h, "energy.internal", "J", e.internal);
-    add(h, "energy.mechanical", "J", e.kinetic + e.internal);
+    add(h, "energy.mechanical", "J", e.mechanical);
     add(h, "energy.plastic", "J", e.plastic);
     add(h, "energy.hourglass", "J", e.hourglass);
     add(h, "energy.contact", "J", e.contact);
+    add(h, "energy.contact_held", "J", e.contact_held);
     add(h, "energy.friction", "J", e.friction);
     add(h, "energy.viscosity", "J", e.viscosity);
     add(h, "energy.transfer", "J", e.transfer);

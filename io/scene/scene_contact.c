@@ -238,6 +238,7 @@ static void fill_keys(scene_reader *reader, scene_node *node) {
     contact->transfer = take(reader, node, "transfer", 1) == 0 ? BRUNT_PIC : BRUNT_APIC;
     contact->tolerance = take(reader, node, "tolerance", contact->tolerance);
     contact->iterations = (int)take(reader, node, "iterations", -1);
+    contact->touch = (brunt_touch_kind)(int)take(reader, node, "touch", contact->touch);
     contact->distance = take(reader, node, "distance", 0);
     contact->stiffness = take(reader, node, "stiffness", 0);
     contact->slip_speed = take(reader, node, "slip_speed", 0);

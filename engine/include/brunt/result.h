@@ -13,10 +13,13 @@ extern "C" {
 typedef struct brunt_energy { // [J]; in 2D per metre of thickness
     double kinetic;           // with the affine part of APIC; as velocities, of the middle of the last step
     double internal;          // stored
+    double mechanical; // kinetic + internal, both at the end of the last step: with what stress does to velocities from
+                       // its middle on
     double plastic, hourglass, contact, friction, viscosity, transfer,
         eroded;           // taken out, each by its cause; damping is viscosity;
                           // eroded: kinetic and stored energy that left with elements, nodes and material points;
                           // contact of implicit steps: what barriers have stored, which comes back
+    double contact_held;  // of contact: what release will give back, contact.touch elastic; a part, no term of the sum
     double scheme;        // taken out by the integrator of implicit steps: backward Euler damps what is fast
     double heat;          // of plastic: what has warmed the material; a part, no term of the sum
     double external_work; // done on the bodies by gravity, boundaries and prescribed motion

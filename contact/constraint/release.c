@@ -1,0 +1,181 @@
+#include "contact/constraint/release.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "base/vector.h"
+
+enum { GRAIN = 128, ROUNDS = 4 };
+static const double LEAST_TAKEN = 1e-3; // of what the impulse would take of its own mass alone
+static const double LEAST_LEFT = 1e-3;  // of what was held
+
+// What a touch does in a step, of each constraint that has one.
+struct brunt_release {
+    double impulse; // [N s] given back
+    double work;    // [J] of it, beyond what the pushes would have done without
+    bool settled;   // it releases
+    double pressed; // [m/s] by how much the pushes of the step have changed u_n
+    double taken;   // [J] by its push
+    double left;    // [J] of what it is to give back; below 0: too much was given, since others gave beside it
+};
+
+static double along(const brunt_constraint_set *p, const brunt_constraint *c, bool old) {
+    double u[3];
+    brunt_constraint_velocity(p, c, old, u);
+    return dot(u, c->n);
+}
+
+// What the impulses of the step have changed u_n by.
+static double pressed(const brunt_constraint_set *p, const brunt_constraint *c) {
+    double sum = 0;
+    for (int32_t e = c->first; e < c->first + c->count; e++) {
+        const brunt_constraint_entry *entry = &p->entry[e];
+        const brunt_dof_node *node = &p->dof_node[entry->dof_node];
+        double by[3];
+        for (int a = 0; a < 3; a++) by[a] = node->impulse[a] * node->inverse[a];
+        const double rise = dot(c->facet, by);
+        for (int a = 0; a < 3; a++) sum += c->n[a] * (entry->weight[a] * by[a] + rise * entry->height_gradient[a]);
+    }
+    return sum;
+}
+
+static void note_taken(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    brunt_constraint_set *p = context;
+    for (int64_t k = begin * GRAIN; k < end * GRAIN && k < p->constraint_count; k++) {
+        const brunt_constraint *c = &p->constraint[k];
+        p->release[k] = (brunt_release){0};
+        if (!c->touch || !(c->normal_impulse > 0)) continue;
+        const double old = along(p, c, true);
+        if (old > -p->leap) p->release[k].taken = -0.5 * c->normal_impulse * (old + along(p, c, false));
+    }
+}
+
+// Whether one that does not push may give back, and whether it does.
+static bool may_release(const brunt_constraint_set *p, const brunt_constraint *c) {
+    return c->scale > 0 && c->gap >= -p->shallow;
+}
+static bool releases(const brunt_constraint_set *p, const brunt_constraint *c) {
+    return c->touch && !c->touch->pushed && c->touch->held > 0 && may_release(p, c);
+}
+
+// Books what pushes have taken. Whether anything is to be given back.
+static bool book_touches(brunt_constraint_set *p) {
+    bool any = false;
+    for (int32_t k = 0; k < p->constraint_count; k++)
+        if (p->constraint[k].touch)
+            *p->constraint[k].touch = (brunt_touch_energy){.held = p->constraint[k].touch->held};
+    for (int32_t k = 0; k < p->constraint_count; k++) {
+        const brunt_constraint *c = &p->constraint[k];
+        if (!c->touch) continue;
+        c->touch->met++;
+        if (c->normal_impulse > 0) {
+            c->touch->pushed = true;
+            c->touch->held += p->release[k].taken;
+            // What presses without an approach takes rounding alone, the root of which would be a kick.
+            const double alone = 0.5 * c->normal_impulse * c->normal_impulse / c->scale;
+            if (c->touch->held > 0 && c->touch->held < LEAST_TAKEN * alone) c->touch->held = 0;
+        } else if (may_release(p, c)) {
+            c->touch->releases++;
+        }
+    }
+    for (int32_t k = 0; k < p->constraint_count && !any; k++) {
+        const brunt_constraint *c = &p->constraint[k];
+        any = releases(p, c);
+    }
+    return any;
+}
+
+// The share of what is left that may be given: the rest pays for what others of the pair have given too much.
+static double payable(const brunt_impulse_account *account) {
+    return account->unspent > account->overspent ? 1 - account->overspent / account->unspent : 0;
+}
+
+// Whether a constraint gives back, or owes; and its share of what its touch holds or owes.
+static bool is_settled(const brunt_constraint_set *p, const brunt_constraint *c) {
+    return releases(p, c) || (c->touch && c->touch->held < 0);
+}
+static double share(const brunt_constraint_set *p, const brunt_constraint *c) {
+    return c->touch->held / (releases(p, c) ? c->touch->releases : c->touch->met);
+}
+
+// What is left, of each constraint and of each pair.
+static void sum_left(brunt_constraint_set *p) {
+    for (int32_t k = 0; k < p->constraint_count; k++)
+        p->constraint[k].account->unspent = p->constraint[k].account->overspent = 0;
+    for (int32_t k = 0; k < p->constraint_count; k++) {
+        const brunt_constraint *c = &p->constraint[k];
+        if (!is_settled(p, c)) continue;
+        const double left = p->release[k].left = share(p, c) - p->release[k].work;
+        *(left > 0 ? &c->account->unspent : &c->account->overspent) += fabs(left);
+    }
+}
+
+// The impulse with which what is left to be given back is: that its work, as far as all give alike, is that.
+static void give(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    brunt_constraint_set *p = context;
+    for (int64_t k = begin * GRAIN; k < end * GRAIN && k < p->constraint_count; k++) {
+        brunt_constraint *c = &p->constraint[k];
+        brunt_release *r = &p->release[k];
+        double *push = p->applied[k].impulse,
+               *rub = c->friction_point ? p->applied[p->constraint_count + c->friction_point - 1].impulse : push;
+        for (int a = 0; a < 3; a++) push[a] = rub[a] = 0;
+        if (!releases(p, c)) continue;
+        const double unit = c->scale / c->row_sum, left = payable(c->account) * r->left;
+        if (!(left > 0)) continue;
+        if (!(r->impulse > 0)) r->pressed = pressed(p, c);
+        const double b = along(p, c, true) + along(p, c, false) + r->pressed + r->impulse / unit;
+        const double J = 0.5 * unit * (sqrt(b * b + 8 * left / unit) - b);
+        c->normal_impulse = r->impulse += J;
+        for (int a = 0; a < 3; a++) push[a] = J * c->n[a];
+        if (c->friction > 0) brunt_constraint_rub(p, c, rub);
+    }
+}
+
+static void note_work(void *context, int64_t begin, int64_t end, int worker) {
+    (void)worker;
+    brunt_constraint_set *p = context;
+    for (int64_t k = begin * GRAIN; k < end * GRAIN && k < p->constraint_count; k++) {
+        const brunt_constraint *c = &p->constraint[k];
+        brunt_release *r = &p->release[k];
+        if (r->impulse > 0) r->work = 0.5 * r->impulse * (along(p, c, true) + along(p, c, false) + r->pressed);
+    }
+}
+
+// What is left stays held; what was given too much is owed by who gave it, as far as the others of the pair cannot pay.
+static void settle(brunt_constraint_set *p) {
+    sum_left(p);
+    for (int32_t k = 0; k < p->constraint_count; k++) {
+        brunt_constraint *c = &p->constraint[k];
+        const brunt_impulse_account *a = c->account;
+        brunt_release *r = &p->release[k];
+        r->settled = is_settled(p, c);
+        if (!r->settled) continue;
+        if (fabs(r->left) < LEAST_LEFT * fabs(c->touch->held)) r->left = 0;
+        if (r->left < 0)
+            r->left *= a->overspent > a->unspent ? 1 - a->unspent / a->overspent : 0;
+        else
+            r->left *= payable(a);
+    }
+    for (int32_t k = 0; k < p->constraint_count; k++)
+        if (p->release[k].settled) p->constraint[k].touch->held = 0;
+    for (int32_t k = 0; k < p->constraint_count; k++)
+        if (p->release[k].settled) p->constraint[k].touch->held += p->release[k].left;
+}
+
+int brunt_constraints_release(brunt_constraint_set *p, int threads, brunt_timer *timer, brunt_error *error) {
+    if (BRUNT_CAPACITY(p->release, (size_t)p->constraint_count, 0, "contact points", error)) return BRUNT_FAILED;
+    const int64_t chunks = (p->constraint_count + GRAIN - 1) / GRAIN;
+    brunt_parallel(threads, chunks, 1, note_taken, p, timer);
+    if (!book_touches(p)) return BRUNT_OK;
+    for (int round = 0; round < ROUNDS; round++) {
+        sum_left(p);
+        brunt_parallel(threads, chunks, 1, give, p, timer);
+        brunt_constraints_apply(p, threads, timer);
+        brunt_parallel(threads, chunks, 1, note_work, p, timer);
+    }
+    settle(p);
+    return BRUNT_OK;
+}

@@ -1,0 +1,12 @@
+// Release gives back what touch took. Contact stops the half element behind a node in one step, which dissipates its
+// energy, an error of first order in the elements. Lumped elements at the stable step are exact (d'Alembert's solution
+// of a bar on a wall): there half the mass of the end element stops in one step, and is thrown off in one step at
+// release. So each slave keeps what its pushes have dissipated, and in the first step in which none of its constraints
+// pushes gets it back, as an impulse at the same point, along the same normal and with the same transpose: momenta stay
+// exact, and no more energy is given back than was taken.
+#pragma once
+
+#include "contact/constraint/constraint.h"
+
+// After the sweeps of a set whose constraints have touches. BRUNT_OK, or BRUNT_FAILED: out of memory.
+int brunt_constraints_release(brunt_constraint_set *set, int threads, brunt_timer *timer, brunt_error *error);

@@ -1,0 +1,25 @@
+// What touches have taken of the nodes of a surface (constraint/release.h), kept from step to step, by what they touch:
+// a node may leave one while another pushes. That of crossing edges is kept at one of their nodes. Private to the
+// search.
+#pragma once
+
+#include "contact/constraint/constraint.h"
+
+typedef enum touched { TOUCHED_FACET, TOUCHED_EDGE, TOUCHED_PLANE, TOUCHED_COUNT } touched;
+
+typedef struct node_touches {
+    brunt_touch_energy (*of)[TOUCHED_COUNT];    // each node's; NULL: nothing is given back
+    brunt_touch_energy (*spare)[TOUCHED_COUNT]; // while they are put in a new order
+    size_t of_capacity, spare_capacity;
+} node_touches;
+
+// The touch of a node; NULL: none is kept.
+static inline brunt_touch_energy *brunt_node_touch(const node_touches *touches, int32_t n, touched what) {
+    return touches->of ? &touches->of[n][what] : NULL;
+}
+// Whether a node has something to be given back.
+static inline bool brunt_node_holds(const node_touches *touches, int32_t n, touched what) {
+    return touches->of && touches->of[n][what].held > 0;
+}
+void brunt_node_touches_free(node_touches *touches);
+void brunt_node_touches_validate(const node_touches *touches, int32_t nodes);
