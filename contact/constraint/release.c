@@ -6,9 +6,10 @@
 #include "base/array.h"
 #include "base/vector.h"
 
-enum { GRAIN = 128, ROUNDS = 4 };
+enum { GRAIN = 128, ROUNDS = 16 };
 static const double LEAST_TAKEN = 1e-3; // of what the impulse would take of its own mass alone
 static const double LEAST_LEFT = 1e-3;  // of what was held
+static const double LAST_LEFT = 0.01;   // of what all hold: rounds end
 
 // What a touch does in a step, of each constraint that has one.
 struct brunt_release {
@@ -100,8 +101,9 @@ static double share(const brunt_constraint_set *p, const brunt_constraint *c) {
     return c->touch->held / (releases(p, c) ? c->touch->releases : c->touch->met);
 }
 
-// What is left, of each constraint and of each pair.
-static void sum_left(brunt_constraint_set *p) {
+// What is left, of each constraint, of each pair and in all.
+static double sum_left(brunt_constraint_set *p) {
+    double all = 0;
     for (int32_t k = 0; k < p->constraint_count; k++)
         p->constraint[k].account->unspent = p->constraint[k].account->overspent = 0;
     for (int32_t k = 0; k < p->constraint_count; k++) {
@@ -109,7 +111,9 @@ static void sum_left(brunt_constraint_set *p) {
         if (!is_settled(p, c)) continue;
         const double left = p->release[k].left = share(p, c) - p->release[k].work;
         *(left > 0 ? &c->account->unspent : &c->account->overspent) += fabs(left);
+        all += fmax(left, 0);
     }
+    return all;
 }
 
 // The impulse with which what is left to be given back is: that its work, as far as all give alike, is that.
@@ -170,8 +174,11 @@ int brunt_constraints_release(brunt_constraint_set *p, int threads, brunt_timer 
     const int64_t chunks = (p->constraint_count + GRAIN - 1) / GRAIN;
     brunt_parallel(threads, chunks, 1, note_taken, p, timer);
     if (!book_touches(p)) return BRUNT_OK;
+    double held = 0;
     for (int round = 0; round < ROUNDS; round++) {
-        sum_left(p);
+        const double left = sum_left(p);
+        held = fmax(held, left);
+        if (left <= LAST_LEFT * held) break;
         brunt_parallel(threads, chunks, 1, give, p, timer);
         brunt_constraints_apply(p, threads, timer);
         brunt_parallel(threads, chunks, 1, note_work, p, timer);

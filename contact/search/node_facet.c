@@ -309,9 +309,11 @@ static void mark_gaps(brunt_contact_surface *s) {
 void brunt_node_to_facet_finish(const brunt_contact_context *m, brunt_body *mpm, brunt_node_to_facet *f,
                                 const brunt_constraint_set *constraints) {
     brunt_contact_surface *s = m->surface;
+    int k = 0;
     for (int32_t n = 0; n < s->node_count; n++) {
         int32_t at = f->nodes.dof_of[n];
-        if (at < 0 && f->touches.of) brunt_node_forgets(f, s, n);
+        while (s->node_range[k + 1] <= n) k++;
+        if (at < 0 && f->touches.of) brunt_node_forgets(f, s, k, n);
         if (at < 0 || (s->membrane.front && s->membrane.front[n] != n)) continue;
         for (int a = 0; a < 3; a++) {
             s->output.impulse[n][a] += constraints->dof_node[at].impulse[a];

@@ -39,8 +39,8 @@ int brunt_distance_cache_fit(brunt_node_to_facet *f, int32_t nodes, int32_t kept
 // BRUNT_OK, or BRUNT_FAILED: out of memory. After the surface was renewed: what is held follows its nodes.
 int brunt_node_touches_renew(node_touches *touches, const brunt_contact_surface *surface, brunt_error *error);
 
-// A node that is in no constraint of the step: what it holds is lost, of facets where none is near any more.
-void brunt_node_forgets(brunt_node_to_facet *f, const brunt_contact_surface *surface, int32_t n);
+// A node of body k that is in no constraint of the step: what it holds is lost, of facets where none is near any more.
+void brunt_node_forgets(brunt_node_to_facet *f, const brunt_contact_surface *surface, int k, int32_t n);
 
 // --- facet_cells.c
 // Makes the cells anew when they no longer hold all that may be near. BRUNT_OK, or BRUNT_FAILED: out of memory.

@@ -18,11 +18,11 @@ int brunt_node_touches_make(brunt_node_to_facet *f, int32_t nodes, brunt_error *
 }
 
 // What slides past a rim is in no constraint for a while, and comes back.
-void brunt_node_forgets(brunt_node_to_facet *f, const brunt_contact_surface *s, int32_t n) {
+void brunt_node_forgets(brunt_node_to_facet *f, const brunt_contact_surface *s, int k, int32_t n) {
     const node_distance *cached = &f->cache.node[n];
     brunt_touch_energy *of = f->touches.of[n];
     of[TOUCHED_PLANE].held = 0;
-    if (cached->distance - (f->cache.motion - cached->motion) > FAR * s->mean_edge)
+    if (!s->active[k] || cached->distance - (f->cache.motion - cached->motion) > FAR * s->mean_edge)
         of[TOUCHED_FACET].held = of[TOUCHED_EDGE].held = 0;
 }
 
@@ -43,8 +43,9 @@ int brunt_node_touches_renew(node_touches *t, const brunt_contact_surface *s, br
 
 double brunt_node_to_facet_held(const brunt_node_to_facet *f, const brunt_contact_surface *s) {
     double sum = 0;
-    for (int32_t n = 0; f && f->touches.of && n < s->node_count; n++)
-        for (int what = 0; what < TOUCHED_COUNT; what++) sum += f->touches.of[n][what].held;
+    for (int k = 0; f && f->touches.of && k < s->fem_count; k++)
+        for (int32_t n = s->node_range[k]; s->motion.was_active[k] && n < s->node_range[k + 1]; n++)
+            for (int what = 0; what < TOUCHED_COUNT; what++) sum += f->touches.of[n][what].held;
     return sum;
 }
 
