@@ -116,6 +116,9 @@ brunt_term brunt_barrier_term(brunt_barrier *barrier);
 brunt_term brunt_barrier_friction_term(brunt_barrier *barrier);
 // Takes normal forces and directions of friction at u.
 int brunt_barrier_lag(brunt_barrier *barrier, const brunt_team *team, const double *u, brunt_error *error);
+// Friction is that of the normal forces and directions at u, wherever it is asked for: it has no potential then, only
+// forces, whose derivative is not symmetric. Until it is told to go by the last lag again.
+void brunt_barrier_follow(brunt_barrier *barrier, bool live);
 // Load steps: from now on friction keeps, from step to step, how far surfaces have given along each other; of vertices
 // of meshes at bodies and planes, as the mesh is now. BRUNT_OK, or BRUNT_FAILED: out of memory.
 int brunt_barrier_keep_slips(brunt_barrier *barrier, brunt_error *error);

@@ -50,6 +50,11 @@ double barrier_contact_force(const brunt_barrier *b, const barrier_contact *c) {
     return -weighted(b, c, &v) * v.db;
 }
 
+double barrier_contact_force_slope(const brunt_barrier *b, const barrier_contact *c) {
+    brunt_barrier_value v;
+    return -weighted(b, c, &v) * v.ddb;
+}
+
 bool barrier_contact_is_stiffer(const brunt_barrier *b, const barrier_contact *c, double *step) {
     brunt_barrier_value v;
     const double area = weighted(b, c, &v);

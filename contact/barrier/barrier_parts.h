@@ -151,6 +151,7 @@ struct brunt_barrier {
     barrier_rub *rub;   // of `lagged`
     barrier_kept *kept; // BARRIER_KEPT of each vertex, where load steps keep slips
     bool keeps;
+    bool live; // friction follows normal forces and directions as they are, not as they were at the last lag
     size_t rub_capacity, kept_capacity;
     barrier_sets sets, lagged_sets;
     brunt_colours colours, lagged_colours;
@@ -214,6 +215,8 @@ void barrier_contact_gradient(const brunt_barrier *b, const barrier_contact *c, 
 void barrier_contact_hessian(const brunt_barrier *b, const barrier_contact *c, bool project, double *hessian);
 // [N] with which the features push each other apart; of contacts of negative weight negative.
 double barrier_contact_force(const brunt_barrier *b, const barrier_contact *c);
+// [N/m] Its slope by the gap.
+double barrier_contact_force_slope(const brunt_barrier *b, const barrier_contact *c);
 // Whether a contact that pushes is stiffer for what it moves than `step` [s] follows: then `step` is what does.
 bool barrier_contact_is_stiffer(const brunt_barrier *b, const barrier_contact *c, double *step);
 
@@ -230,6 +233,9 @@ void barrier_slip_follow(const brunt_barrier *b, const barrier_contact *c, const
 // The Hessian where `rub` has the force at u, as it has at the minimum and where the slip stays as it is.
 void barrier_slip_hessian(const brunt_barrier *b, const barrier_contact *c, const barrier_rub *rub, const double *u,
                           double *hessian);
+
+// The derivative of the force that friction has where normal forces and directions follow u, by places: not symmetric.
+void barrier_slip_tangent(const brunt_barrier *b, const barrier_contact *c, const double *u, double *tangent);
 
 // --- from load step to load step (barrier_memory.c)
 // How far the surfaces of a contact had given before the step [m]; 0: nothing is kept.

@@ -102,6 +102,44 @@ void barrier_slip_follow(const brunt_barrier *b, const barrier_contact *c, const
     for (int k = 0; k < 3; k++) rub->part[k] /= sqrt(square);
 }
 
+// g_i = w_i f of place i, f = F r(|y|) y with F = mu N: dg_i = dw_i f + w_i (dF r y + F d(r y)). The first place is a
+// point, w = 1, so that its rows of the Hessian of d are dn, and n times those of the others their dw.
+void barrier_slip_tangent(const brunt_barrier *b, const barrier_contact *c, const double *u, double *tangent) {
+    const int dim = b->dim, places = c->at.places, rows = places * dim;
+    const slip_law s = slip_at(b, c, u);
+    const double *n = c->at.n, greatest = greatest_force(b, c), slope = barrier_contact_force_slope(b, c),
+                 mu = c->normal_force > 0 ? greatest / c->normal_force : 0;
+    double turn[BARRIER_DOFS * BARRIER_DOFS] = {0}, move[BRUNT_CLOSEST_PLACES][3], apart = 0;
+    brunt_closest_hessian(&c->at, dim, 0, 1, turn);
+    for (int i = 0; i < places; i++) {
+        barrier_move(b, c->place[i], u, move[i]);
+        for (int k = 0; k < 3; k++) apart += c->at.w[i] * move[i][k] * n[k];
+    }
+    // d(r y) = r (dy + (r'/r) y (y . dy) / |y|), and r' / r = -(1/r)' r
+    const double bend = s.size > 0 ? s.ratio * s.bend / s.size : 0;
+    for (int j = 0; j < places; j++)
+        for (int l = 0; l < dim; l++) {
+            const int column = j * dim + l;
+            double dn[3] = {0}, dw[BRUNT_CLOSEST_PLACES] = {0}, dy[3] = {0}, across = 0, along = 0, normal = 0;
+            for (int k = 0; k < dim; k++) dn[k] = turn[k * rows + column];
+            for (int i = 1; i < places; i++)
+                for (int k = 0; k < dim; k++) dw[i] += n[k] * turn[(i * dim + k) * rows + column];
+            for (int k = 0; k < dim; k++) {
+                dy[k] = (k == l) * c->at.w[j];
+                for (int i = 1; i < places; i++) dy[k] += dw[i] * move[i][k];
+                across += dy[k] * n[k], normal += dn[k] * s.y[k];
+            }
+            for (int k = 0; k < dim; k++) dy[k] -= across * n[k] + apart * dn[k] + normal * n[k];
+            for (int k = 0; k < dim; k++) along += s.y[k] * dy[k];
+            const double dF = mu * slope * c->at.w[j] * n[l];
+            for (int k = 0; k < dim; k++) {
+                const double f = greatest * s.ratio * s.y[k],
+                             df = dF * s.ratio * s.y[k] + greatest * s.ratio * (dy[k] - bend * along * s.y[k]);
+                for (int i = 0; i < places; i++) tangent[(i * dim + k) * rows + column] = c->at.w[i] * df + dw[i] * f;
+            }
+        }
+}
+
 void barrier_slip_hessian(const brunt_barrier *b, const barrier_contact *c, const barrier_rub *rub, const double *u,
                           double *h) {
     const slip_law s = slip_at(b, c, u);

@@ -122,10 +122,8 @@ brunt_term brunt_barrier_term(brunt_barrier *barrier) {
 
 // --------------------------------------------------------------------------------------------------- friction
 
-// Contacts that rub at u, with their normal forces.
-int brunt_barrier_lag(brunt_barrier *b, const brunt_team *team, const double *u, brunt_error *error) {
-    const int code = barrier_find_near(b, team, u, NULL, error);
-    if (code) return code;
+// Contacts that rub at u, of what is near, with their normal forces.
+static int list_rubbing(brunt_barrier *b, const brunt_team *team, const double *u, brunt_error *error) {
     if (barrier_list_contacts(b, team, u, &b->lagged, error) ||
         BRUNT_CAPACITY(b->rub, (size_t)b->lagged.count + 1, 0, "places that rub", error))
         return BRUNT_FAILED;
@@ -138,8 +136,15 @@ int brunt_barrier_lag(brunt_barrier *b, const brunt_team *team, const double *u,
     }
     list->count = kept;
     for (int64_t i = 0; i < kept; i++) barrier_slip_begin(b, &list->contact[i], u, &b->rub[i]);
-    return barrier_make_sets(b, list, &b->lagged_sets, error);
+    return BRUNT_OK;
 }
+
+int brunt_barrier_lag(brunt_barrier *b, const brunt_team *team, const double *u, brunt_error *error) {
+    if (barrier_find_near(b, team, u, NULL, error) || list_rubbing(b, team, u, error)) return BRUNT_FAILED;
+    return barrier_make_sets(b, &b->lagged, &b->lagged_sets, error);
+}
+
+void brunt_barrier_follow(brunt_barrier *b, bool live) { b->live = live; }
 
 typedef struct slip_work {
     brunt_barrier *b;
@@ -155,6 +160,7 @@ static void follow_slips(void *context, int64_t begin, int64_t end, int worker) 
 static int friction_look(void *self, const brunt_team *team, const double *u, const double *p, brunt_error *error) {
     brunt_barrier *b = self;
     slip_work work = {b, u};
+    if (b->live) return p ? BRUNT_OK : brunt_barrier_lag(b, team, u, error);
     if (!p) brunt_parallel(team->threads, b->lagged.count, BARRIER_GRAIN, follow_slips, &work, team->timer);
     return brunt_hand_on(error, &b->unsaid);
 }
@@ -179,6 +185,7 @@ static brunt_energy_sum friction_energy(void *self, const brunt_team *team, cons
 static void friction_gradient(void *self, const brunt_team *team, const double *u, double *g) {
     brunt_barrier *b = self;
     force_work work = {.b = b, .list = &b->lagged, .u = u, .friction = true};
+    if (b->live && list_rubbing(b, team, u, &b->unsaid)) return;
     add_forces(&work, team, g);
 }
 

@@ -7,18 +7,13 @@
 
 // ------------------------------------------------------------------------------------------------- derivatives
 
-// Of all unknowns: gradient of the energy, Hessian of the gradient, by central differences, of their own size.
-static void check_term(barrier_case *c, brunt_term term, double *u, double h) {
+// The Hessian of a term at u, as a whole matrix.
+static double *take_dense(const barrier_case *c, brunt_term term, const double *u) {
     const int n = c->nodes * c->dim;
     const brunt_team team = {c->threads, NULL};
-    double *g = case_unknowns(c), *up = case_unknowns(c), *down = case_unknowns(c), slope_size = 0, force_size = 0;
-    brunt_block_matrix m = {0};
-    case_look(c, u, NULL);
-    // Friction's force is an unknown of its own on the way: where nothing moves any more, it is that of the slip.
-    for (int k = 0; k < 2; k++) ck_assert_int_eq(term.ops->look(term.self, &team, u, NULL, NULL), BRUNT_OK);
-    case_gradient(c, term, u, g);
     const brunt_stencils stencils = term.ops->stencils(term.self);
     const brunt_pattern pattern = {c->dim, c->nodes, &stencils, 1, false, NULL};
+    brunt_block_matrix m = {0};
     ck_assert_int_eq(brunt_block_matrix_pattern(&m, &team, &pattern, NULL), BRUNT_OK);
     term.ops->hessian(term.self, &team, u, false, &m);
     double *dense = calloc((size_t)n * (size_t)n, sizeof *dense);
@@ -28,26 +23,43 @@ static void check_term(barrier_case *c, brunt_term term, double *u, double h) {
                 for (int j = 0; j < c->dim; j++)
                     dense[(r * c->dim + i) * n + m.column[k] * c->dim + j] =
                         m.value[k * c->dim * c->dim + i * c->dim + j];
+    brunt_block_matrix_free(&m);
+    return dense;
+}
+
+// Of all unknowns: gradient of the energy, where it has one, Hessian of the gradient, by central differences, of their
+// own size. How far the Hessian is from symmetric, of its size.
+static double check_term(barrier_case *c, brunt_term term, double *u, double h, bool energy) {
+    const int n = c->nodes * c->dim;
+    const brunt_team team = {c->threads, NULL};
+    double *g = case_unknowns(c), *up = case_unknowns(c), *down = case_unknowns(c), slope_size = 0, force_size = 0;
+    case_look(c, u, NULL);
+    // Friction's force is an unknown of its own on the way: where nothing moves any more, it is that of the slip.
+    for (int k = 0; k < 2; k++) ck_assert_int_eq(term.ops->look(term.self, &team, u, NULL, NULL), BRUNT_OK);
+    case_gradient(c, term, u, g);
+    double *dense = take_dense(c, term, u);
     for (int i = 0; i < n; i++) force_size = fmax(force_size, fabs(g[i]));
     for (int i = 0; i < n * n; i++) slope_size = fmax(slope_size, fabs(dense[i]));
     ck_assert_msg(force_size > 0, "nothing touches");
-    double worst = 0, worst_slope = 0;
+    double worst = 0, worst_slope = 0, lean = 0;
     for (int i = 0; i < n; i++) {
         const double was = u[i];
         u[i] = was + h;
-        const double more = case_energy(c, term, u);
+        const double more = energy ? case_energy(c, term, u) : 0;
         case_gradient(c, term, u, up);
         u[i] = was - h;
-        const double less = case_energy(c, term, u);
+        const double less = energy ? case_energy(c, term, u) : 0;
         case_gradient(c, term, u, down);
         u[i] = was;
-        worst = fmax(worst, fabs((more - less) / (2 * h) - g[i]) / force_size);
-        for (int j = 0; j < n; j++)
+        if (energy) worst = fmax(worst, fabs((more - less) / (2 * h) - g[i]) / force_size);
+        for (int j = 0; j < n; j++) {
             worst_slope = fmax(worst_slope, fabs((up[j] - down[j]) / (2 * h) - dense[j * n + i]) / slope_size);
+            lean = fmax(lean, fabs(dense[j * n + i] - dense[i * n + j]) / slope_size);
+        }
     }
     ck_assert_msg(worst < 1e-7 && worst_slope < 1e-7, "gradient off by %g, Hessian by %g", worst, worst_slope);
-    brunt_block_matrix_free(&m);
     free(dense), free(g), free(up), free(down);
+    return lean;
 }
 
 // Two rectangles that nearly touch, leaning, their vertices moved at random.
@@ -117,10 +129,33 @@ START_TEST(derivatives_of_whole_terms) {
             if (newmark) c->factor = 2, draw_unknowns(c, c->before, 4e-4, 5);
             case_ready(c);
             draw_unknowns(c, u, 1e-3, 21);
-            if (!newmark) check_term(c, brunt_barrier_term(c->barrier), u, 2e-8);
+            if (!newmark) check_term(c, brunt_barrier_term(c->barrier), u, 2e-8, true);
             case_lag(c, u);
             draw_unknowns(c, u, 4e-4, 22);
-            check_term(c, brunt_barrier_friction_term(c->barrier), u, 2e-8);
+            check_term(c, brunt_barrier_friction_term(c->barrier), u, 2e-8, true);
+            free(u), case_end(c);
+        }
+}
+END_TEST
+
+// Friction that follows what presses, and what has been kept of the step before: forces without an energy, whose
+// derivative is not symmetric. Of points at facets, at vertices and at planes, that creep and that slip.
+START_TEST(friction_that_follows_has_its_derivative) {
+    static const int of_points[] = {0, 1, 4, 5, 6};
+    for (size_t k = 0; k < sizeof of_points / sizeof *of_points; k++)
+        for (int slips = 0; slips < 2; slips++) {
+            barrier_case *c = make_case(of_points[k]);
+            const brunt_team team = {c->threads, NULL};
+            double *u = case_unknowns(c);
+            c->pair[0].slip_speed = slips ? 1e-3 : 0.5;
+            case_ready(c);
+            ck_assert_int_eq(brunt_barrier_keep_slips(c->barrier, NULL), BRUNT_OK);
+            draw_unknowns(c, u, 1e-3, 23);
+            ck_assert_int_eq(brunt_barrier_keep(c->barrier, &team, u, NULL), BRUNT_OK);
+            draw_unknowns(c, u, 1e-3, 24);
+            brunt_barrier_follow(c->barrier, true);
+            const double lean = check_term(c, brunt_barrier_friction_term(c->barrier), u, 2e-8, false);
+            ck_assert_msg(lean > 1e-2, "case %d: symmetric to %g", of_points[k], lean);
             free(u), case_end(c);
         }
 }
@@ -488,6 +523,7 @@ int main(void) {
     Suite *suite = suite_create("barrier terms");
     TCase *terms = tcase_create("terms");
     tcase_add_test(terms, derivatives_of_whole_terms);
+    tcase_add_test(terms, friction_that_follows_has_its_derivative);
     tcase_add_test(terms, sums_are_constant_along_a_polygon);
     tcase_add_test(terms, sums_are_constant_along_a_triangulation);
     tcase_add_test(terms, a_pair_has_the_energy_of_its_method);
