@@ -74,8 +74,9 @@ struct brunt_implicit {
     bool holds; // there are surfaces, the two below are of them
     brunt_boundary_rows rows;
     brunt_ghost ghost;
-    bool rubs;   // there is friction
-    bool forces; // materials without a potential: Newton's method has no energy to lower
+    brunt_balance balance; // of the last load step; not of the state
+    bool rubs;             // there is friction
+    bool forces;           // materials without a potential: Newton's method has no energy to lower
     int friction_iterations;
     double *moved; // [m] of the particles of a body: a field of the unknowns where they are
     size_t moved_capacity;
@@ -132,6 +133,9 @@ double brunt_static_unbalance(void *context, const double *gradient);
 // The step to try, in parts of a load step; the least part of one that is tried.
 double brunt_static_wanted(const brunt_world *world);
 double brunt_static_least(const brunt_settings *settings);
+// --- static_balance.c
+// What the forces on bodies leave, once `field.gradient` and `field.contact` are those at the end.
+void brunt_static_take_balance(struct brunt_implicit *m);
 // --- static_friction.c
 // From where held components are at their places to equilibrium with friction, by as many iterations as are allowed.
 typedef int brunt_minimise(struct brunt_implicit *m, brunt_newton_report *report, brunt_error *error);

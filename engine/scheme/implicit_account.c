@@ -145,6 +145,7 @@ int brunt_implicit_account(brunt_world *world, brunt_step *step, brunt_error *er
         account_groups(world, 1 - gamma, 1 - work);
     }
     if (!m->still) return BRUNT_OK;
+    brunt_static_take_balance(m);
     brunt_static_settle(world);
     brunt_static_watch(world, bodies.work - (bodies.after - bodies.before), bodies.work);
     return BRUNT_OK;

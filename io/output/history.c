@@ -121,6 +121,14 @@ static void add_newton(brunt_history *h, const brunt_world *world) {
     add(h, "newton.least_part", "1", isfinite(last.least_part) ? last.least_part : NAN);
 }
 
+// What load steps leave of the forces on bodies.
+static void add_balance(brunt_history *h, const brunt_world *world) {
+    brunt_balance balance;
+    if (!brunt_world_balance(world, &balance)) return;
+    add(h, "balance.body", "1", balance.body);
+    add(h, "balance.all", "1", balance.all);
+}
+
 // Of the bodies that push each other in load steps.
 static void add_links(brunt_history *h, const brunt_world *world) {
     int32_t count;
@@ -260,6 +268,7 @@ static void traverse(brunt_history *h, brunt_world *world) {
     add_energy(h, world);
     add_momentum(h, world);
     add_newton(h, world);
+    add_balance(h, world);
     add_links(h, world);
     add_parts(h, world);
     const bool flat = brunt_world_dimension(world) == 2 && !brunt_effect_on(world, "axisymmetric");

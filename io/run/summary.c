@@ -125,6 +125,17 @@ static json_t *links_of(const brunt_world *world) {
     return links;
 }
 
+// Of load steps, NULL of others.
+static json_t *balance_of(const brunt_world *world) {
+    brunt_balance b;
+    if (!brunt_world_balance(world, &b)) return NULL;
+    json_t *balance = json_object();
+    json_object_set_new(balance, "body", number(b.body));
+    json_object_set_new(balance, "all", number(b.all));
+    if (b.worst >= 0) json_object_set_new(balance, "worst", json_string(brunt_body_name(world, b.worst)));
+    return balance;
+}
+
 // Of implicit steps, NULL of others.
 static json_t *newton_of(const brunt_world *world) {
     brunt_newton_counts n;
@@ -171,6 +182,7 @@ static void set_newton(json_t *object, const brunt_world *world) {
     brunt_newton_counts n;
     if (!brunt_world_newton(world, &n, NULL)) return;
     json_object_set_new(object, "newton", newton_of(world));
+    json_object_set_new(object, "balance", balance_of(world));
     json_object_set_new(object, "links", links_of(world));
     json_object_set_new(object, "least_gap", number(n.least_gap));
 }
@@ -310,6 +322,13 @@ static void print_links(brunt_world *world, brunt_console *console) {
                         s.count, s.mean, s.sd, s.greatest, brunt_world_dimension(world) == 2 ? "N/m" : "N", s.slipping);
 }
 
+static void print_balance(brunt_world *world, brunt_console *console) {
+    brunt_balance b;
+    if (!brunt_world_balance(world, &b) || b.worst < 0) return;
+    brunt_console_print(console, "balance: forces on %s leave %.3g of them, those on all bodies %.3g\n",
+                        brunt_body_name(world, b.worst), b.body, b.all);
+}
+
 static void print_newton(brunt_world *world, brunt_console *console) {
     brunt_newton_counts n;
     if (!brunt_world_newton(world, &n, NULL)) return;
@@ -376,6 +395,7 @@ void brunt_summary_print(const brunt_summary *s, const brunt_scene *scene, brunt
     print_energy(world, console);
     print_eroded(world, console);
     print_newton(world, console);
+    print_balance(world, console);
     print_links(world, console);
     brunt_console_print(console, "momentum drift: linear %.2e, angular %.2e\n", m.linear_drift, m.angular_drift);
     brunt_console_print(console, "state hash 0x%016llx\n", (unsigned long long)brunt_world_hash(world));

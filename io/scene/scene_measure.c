@@ -113,9 +113,10 @@ static const char *column_mistake(const scene_reader *reader, const char *column
                                            "heat",           "external_work", "initial",    "total",    "error",
                                            "error_relative", "scheme"};
     static const char *const links[] = {"count", "mean", "sd", "greatest", "slipping"};
+    static const char *const balances[] = {"body", "all"};
     static const char families[] =
-        "columns are time, step, dt, energy.*, momentum.*, newton.*, links.*, body.NAME.*, contact.A-B.*, wall.NAME.*, "
-        "gas.NAME.* and probe.NAME";
+        "columns are time, step, dt, energy.*, momentum.*, newton.*, balance.*, links.*, body.NAME.*, contact.A-B.*, "
+        "wall.NAME.*, gas.NAME.* and probe.NAME";
     const char *dot = strchr(column, '.');
     if (!dot) return one_of(column, plain, BRUNT_COUNT(plain)) ? NULL : families;
     const char *rest = dot + 1;
@@ -128,6 +129,8 @@ static const char *column_mistake(const scene_reader *reader, const char *column
                      "eroded, heat, scheme, external_work, initial, total, error, error_relative";
     if (family == 8 && strncmp(column, "momentum", 8) == 0) return NULL;
     if (family == 6 && strncmp(column, "newton", 6) == 0) return newton_mistake(rest);
+    if (family == 7 && strncmp(column, "balance", 7) == 0)
+        return one_of(rest, balances, BRUNT_COUNT(balances)) ? NULL : "of balances there are body and all";
     if (family == 5 && strncmp(column, "links", 5) == 0)
         return one_of(rest, links, BRUNT_COUNT(links)) ? NULL
                                                        : "of links there are count, mean, sd, greatest, slipping";
@@ -212,11 +215,12 @@ static void fill_profile(scene_reader *reader, scene_node *where, brunt_measure 
 // Columns that the scheme has not got are not measured, which is said where nothing worse is wrong with them.
 static void note_absent(scene_reader *reader, const scene_node *where, brunt_measure *measure, bool sound) {
     const brunt_scheme scheme = reader->scene->world.scheme;
-    const bool links = !strncmp(measure->column, "links.", 6) && scheme != BRUNT_STATIC;
-    measure->absent = links || (!strncmp(measure->column, "newton.", 7) && !brunt_scheme_minimises(scheme));
+    const bool loads =
+        scheme != BRUNT_STATIC && (!strncmp(measure->column, "links.", 6) || !strncmp(measure->column, "balance.", 8));
+    measure->absent = loads || (!strncmp(measure->column, "newton.", 7) && !brunt_scheme_minimises(scheme));
     if (measure->absent && sound)
         brunt_scene_warn_at(reader, where, false,
-                            links ? "not measured: links are of static steps"
+                            loads ? "not measured: links and balances are of static steps"
                                   : "not measured: Newton's method is of implicit and static steps");
 }
 

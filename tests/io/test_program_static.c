@@ -184,7 +184,7 @@ static const char square[] =
     "s}\n";
 
 START_TEST(links_are_told) {
-    double count[ROWS], mean[ROWS], sd[ROWS], slipping[ROWS];
+    double count[ROWS], mean[ROWS], sd[ROWS], slipping[ROWS], body[ROWS], all[ROWS];
     char path[200];
     small_put("square.yaml", square);
     small_expect("run square.yaml -t 1 -o out", 0, "links: 18 bodies push each other, mean ");
@@ -196,12 +196,21 @@ START_TEST(links_are_told) {
     ck_assert_double_eq_tol(mean[last], 30, 0.003 * 30);
     ck_assert_double_lt(sd[last], 0.003 * 30);
     ck_assert_double_eq(slipping[last], 0);
+    // What Newton's method has left of each body, and of all, as forces at the end have it.
+    read_column("out", "balance.body", body), read_column("out", "balance.all", all);
+    ck_assert(body[last] > 0 && body[last] < 1e-8 && all[last] > 0 && all[last] < 1e-10);
     small_expect("info out/vtu/contact.links_000001.vtu", 0, "elements   18");
     snprintf(path, sizeof path, "%s/out/summary.json", small_folder);
     json_t *summary = json_load_file(path, 0, NULL), *links = json_object_get(summary, "links");
     ck_assert_int_eq(json_integer_value(json_object_get(links, "count")), 18);
     ck_assert_double_eq(json_real_value(json_object_get(links, "mean")), mean[last]);
+    json_t *balance = json_object_get(summary, "balance");
+    ck_assert_double_eq(json_real_value(json_object_get(balance, "body")), body[last]);
+    ck_assert_ptr_nonnull(json_string_value(json_object_get(balance, "worst")));
     json_decref(summary);
+    small_expect("run square.yaml -t 1 -q -o loose --set newton.tolerance=1e-2", 0, NULL);
+    read_column("loose", "balance.body", body);
+    ck_assert_double_gt(body[last], 1e-8);
 }
 END_TEST
 

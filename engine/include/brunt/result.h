@@ -193,6 +193,14 @@ typedef struct brunt_link_sums {
 } brunt_link_sums;
 void brunt_world_link_sums(const brunt_world *world, brunt_link_sums *sums);
 
+// Of the last load step: what the forces on bodies leave unbalanced, the sizes of sums over those on their nodes, of
+// contact, loads and reactions: of the body that balances least, and of all together.
+typedef struct brunt_balance {
+    double body, all; // [-]; 0 before the first step of a run
+    int32_t worst;    // which body; -1: none
+} brunt_balance;
+bool brunt_world_balance(const brunt_world *world, brunt_balance *balance); // false: no load steps
+
 // Gas in enclosed volumes.
 typedef struct brunt_gas {
     char name[BRUNT_NAME_LENGTH];    // of its boundary
