@@ -165,9 +165,46 @@ static void look_around(search *l) {
             for (int32_t z = from[2]; z <= to[2]; z++) look_in_cell(l, (const int32_t[3]){x, y, z});
 }
 
-void brunt_boundary_surface_extent(const brunt_boundary_surface *s, brunt_body *body,
+// Whether the middle of the point's box goes through the surface at b, and ends deeper behind it than it is pushed out.
+static bool passes(const search *l, int32_t b) {
+    const brunt_boundary_particle *p = &l->s->particle[b];
+    const double deep = (1 + 2 * BEHIND) * l->box.half, beside = l->s->cell / l->s->def.particles;
+    double from = 0, towards = 0, square = 0;
+    for (int a = 0; a < l->dim; a++) {
+        from += (l->box.x[a] - p->x[a]) * p->normal[a];
+        towards += l->coming[a] * p->normal[a];
+    }
+    if (!(from > 0) || !(from + towards < -deep)) return false;
+    for (int a = 0; a < l->dim; a++) {
+        const double off = l->box.x[a] - p->x[a] - from / towards * l->coming[a];
+        square += off * off;
+    }
+    return square < beside * beside;
+}
+
+// Farther than from the surface to where it is not pushed out any more.
+static bool goes_far(const search *l) {
+    double square = 0;
+    for (int a = 0; a < l->dim; a++) square += l->coming[a] * l->coming[a];
+    return square > 4 * BEHIND * BEHIND * l->box.half * l->box.half;
+}
+
+// The particles that the middle of its box may go through.
+static bool passes_any(const search *l) {
+    const brunt_boundary_surface *s = l->s;
+    for (int a = 0; a < l->dim; a++)
+        if (!(fmin(l->box.x[a], l->box.x[a] + l->coming[a]) <= s->high[a] + s->cell &&
+              fmax(l->box.x[a], l->box.x[a] + l->coming[a]) >= s->low[a] - s->cell))
+            return false;
+    for (int32_t b = 0; b < s->particle_count; b++)
+        if (passes(l, b)) return true;
+    return false;
+}
+
+bool brunt_boundary_surface_extent(const brunt_boundary_surface *s, brunt_body *body,
                                    const brunt_boundary_extent *extent, double *gap) {
     search l = {.s = s, .gap = gap, .dim = body->particles.dim};
+    bool passed = false;
     real *const *v = brunt_field(&body->particles, BRUNT_FIELD_velocity);
     const bool leaves = s->def.condition == BRUNT_SEPARATE;
     for (int32_t b = 0; b < body->grid.block_count; b++) {
@@ -176,11 +213,14 @@ void brunt_boundary_surface_extent(const brunt_boundary_surface *s, brunt_body *
             l.box = box_of(body, p, extent->frame);
             for (int a = 0; a < l.dim; a++) {
                 l.box.x[a] -= extent->way[a];
-                l.coming[a] = leaves ? (double)v[a][p] * extent->dt - extent->step[a] : 0;
+                const double goes = extent->moved ? extent->moved[p * l.dim + a] : (double)v[a][p] * extent->dt;
+                l.coming[a] = leaves ? goes - extent->step[a] : 0;
             }
             look_around(&l);
+            if (extent->moved && leaves && !passed) passed = goes_far(&l) && passes_any(&l);
         }
     }
+    return passed;
 }
 
 // Whether q is the other side of the wall behind p; how far away.

@@ -97,11 +97,13 @@ void brunt_boundary_surface_met(const brunt_contact_context *m, brunt_boundary *
 typedef struct brunt_boundary_extent {
     double way[3], step[3], dt;
     const double *frame; // of the body
+    const double *moved; // [m] how far each of its slots goes, all components; NULL: as far as its velocity takes it
 } brunt_boundary_extent;
 // How far the body is from each boundary particle, along its normal [m]: the own boxes of its material points reach it.
 // 0 where they do; of a surface that they can leave also what they come to within the step; INFINITY elsewhere. `gap`
-// holds the nearest so far, and INFINITY before the first body.
-void brunt_boundary_surface_extent(const brunt_boundary_surface *surface, brunt_body *body,
+// holds the nearest so far, and INFINITY before the first body. Whether a material point goes through the surface
+// within the step, by a way that is given, and ends where it is not pushed out any more.
+bool brunt_boundary_surface_extent(const brunt_boundary_surface *surface, brunt_body *body,
                                    const brunt_boundary_extent *extent, double *gap);
 // Finds how far behind the particles of a surface that lets go its other side is, if it is within a cell.
 void brunt_boundary_surface_backs(brunt_boundary_surface *surface);

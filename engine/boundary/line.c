@@ -77,11 +77,7 @@ static const char *refusal(const brunt_world_def *def, const void *one, const ch
     if (def->scheme == BRUNT_EXPLICIT) return NULL;
     if (((const brunt_boundary_surface_def *)one)->rotation.angle != 0) {
         *key = ".rotation";
-        return BRUNT_EXPLICIT_ONLY ": in implicit steps a line or mesh moves without turning";
-    }
-    if (def->scheme != BRUNT_IMPLICIT) {
-        *key = def->dimension == 2 ? ".line" : ".mesh";
-        return BRUNT_NOT_STATIC "; load steps have plane and region";
+        return BRUNT_EXPLICIT_ONLY ": in implicit and load steps a line or mesh moves without turning";
     }
     if (brunt_solver_iterates(def->newton.solver))
         return def->newton.solver == BRUNT_SOLVER_PCG

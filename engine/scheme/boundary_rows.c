@@ -69,7 +69,8 @@ static int add_particle(brunt_boundary_rows *rows, brunt_boundary_patch *p, cons
 static double stiffness(const brunt_boundary_rows *rows, int body) {
     const brunt_material *material = &rows->bodies->mpm[body].material;
     const double c = (double)material->wave_speed, h = rows->cell;
-    return STIFF * (double)material->density * (c * c / h + 4 * h / (rows->dt * rows->dt));
+    const double inertia = rows->still ? 0 : 4 * h / (rows->dt * rows->dt);
+    return STIFF * (double)material->density * (c * c / h + inertia);
 }
 
 // How the surface moves along the rows, at a boundary particle that is `gap` from the body.
@@ -88,7 +89,8 @@ static void close_patch(brunt_boundary_rows *rows, brunt_boundary_patch *p) {
     const brunt_boundary_surface *s = p->surface;
     const double *kept = s->traction + 3 * ((size_t)p->body * (size_t)s->pieces + (size_t)p->piece);
     for (int k = 0; k < p->rows; k++) p->multiplier[k] = p->before[k] = kept[k];
-    p->bound = p->rubs ? s->def.friction * fmax(0, -kept[0]) : 0;
+    // In load steps what rubs sticks until it is known what presses: there is nothing else that could hold it.
+    p->bound = !p->rubs ? 0 : rows->still ? INFINITY : s->def.friction * fmax(0, -kept[0]);
     p->stiffness = stiffness(rows, p->body);
     for (int64_t k = rows->first[rows->patch_count]; k < rows->first[rows->patch_count + 1]; k++)
         rows->mark[rows->node[k]] = 0;
@@ -100,7 +102,7 @@ static int add_patch(brunt_boundary_rows *rows, brunt_boundary_surface *s, int32
                      const brunt_boundary_extent *extent, brunt_error *error) {
     const size_t count = (size_t)rows->patch_count;
     bool any = false;
-    for (int32_t b = s->first[piece]; b < s->first[piece + 1]; b++) any = any || rows->gap[b] < INFINITY;
+    for (int32_t b = s->first[piece]; b < s->first[piece + 1]; b++) any = any || rows->here[b] < INFINITY;
     if (!any) return BRUNT_OK;
     if (BRUNT_CAPACITY(rows->patch, count + 1, count, "pieces of boundaries", error) ||
         BRUNT_CAPACITY(rows->first, count + 2, count + 1, "pieces of boundaries", error))
@@ -112,30 +114,45 @@ static int add_patch(brunt_boundary_rows *rows, brunt_boundary_surface *s, int32
     rows->first[count + 1] = rows->first[count];
     for (int32_t b = s->first[piece]; b < s->first[piece + 1]; b++) {
         double share;
-        if (rows->gap[b] == INFINITY) continue;
+        if (rows->here[b] == INFINITY) continue;
         if (add_particle(rows, p, &s->particle[b], extent->way, &share, error)) return BRUNT_FAILED;
-        add_motion(p, &s->particle[b], extent, share, rows->gap[b]);
+        add_motion(p, &s->particle[b], extent, share, rows->here[b]);
+        if (!(share > 0)) rows->unseen = s;
     }
     close_patch(rows, p);
     return BRUNT_OK;
 }
 
+// Which parts of what a step asks are made.
+typedef struct build {
+    brunt_world *world;
+    bool looks, adds;          // distances; patches
+    brunt_boundary_ways *ways; // how far material points go, with distances beside those of before; NULL: by velocities
+    void *context;
+} build;
+
+// Distances of a body, and those that are tied to it, from the particles of a surface.
+static void look_at_body(brunt_boundary_rows *rows, brunt_boundary_surface *s, int i, brunt_boundary_extent *extent,
+                         const build *b) {
+    for (int32_t k = 0; k < s->particle_count && !b->ways; k++) rows->here[k] = INFINITY;
+    for (int other = i; other < rows->bodies->mpm_count; other++) {
+        brunt_body *body = &rows->bodies->mpm[other];
+        if (rows->unknowns->tie[other] != i || !brunt_boundary_surface_acts(s, body)) continue;
+        extent->frame = rows->surfaces->frame[other];
+        extent->moved = b->ways ? b->ways(b->context, other) : NULL;
+        if (brunt_boundary_surface_extent(s, body, extent, rows->here)) rows->passed = s;
+    }
+}
+
 static int add_surface(brunt_boundary_rows *rows, brunt_boundary_surface *s, brunt_boundary_extent *extent,
-                       brunt_error *error) {
-    const brunt_unknowns *u = rows->unknowns;
-    if (BRUNT_CAPACITY(rows->gap, (size_t)s->particle_count + 1, 0, "particles of boundaries", error))
-        return BRUNT_FAILED;
+                       const build *b, brunt_error *error) {
     for (int i = 0; i < rows->bodies->mpm_count; i++) {
-        if (u->tie[i] != i) continue;
-        for (int32_t b = 0; b < s->particle_count; b++) rows->gap[b] = INFINITY;
-        for (int other = i; other < rows->bodies->mpm_count; other++) {
-            brunt_body *body = &rows->bodies->mpm[other];
-            extent->frame = rows->surfaces->frame[other];
-            if (u->tie[other] == i && brunt_boundary_surface_acts(s, body))
-                brunt_boundary_surface_extent(s, body, extent, rows->gap);
-        }
-        for (int32_t piece = 0; piece < s->pieces; piece++)
+        if (rows->unknowns->tie[i] != i) continue;
+        if (b->looks) look_at_body(rows, s, i, extent, b);
+        for (int32_t k = 0; k < s->particle_count; k++) rows->reached += rows->here[k] < INFINITY;
+        for (int32_t piece = 0; piece < s->pieces && b->adds; piece++)
             if (add_patch(rows, s, piece, i, extent, error)) return BRUNT_FAILED;
+        rows->here += s->particle_count;
     }
     return BRUNT_OK;
 }
@@ -156,26 +173,54 @@ static int reserve_arrays(brunt_boundary_rows *rows, brunt_error *error) {
                           error);
 }
 
-int brunt_boundary_rows_step(brunt_boundary_rows *rows, brunt_world *world, const brunt_unknowns *unknowns, double dt,
-                             brunt_error *error) {
-    rows->unknowns = unknowns, rows->bodies = &world->bodies, rows->surfaces = &world->boundaries.surfaces;
-    rows->patch_count = 0, rows->version++, rows->dt = dt, rows->swept = 0;
-    if (BRUNT_CAPACITY(rows->first, 1, 0, "pieces of boundaries", error) ||
-        BRUNT_CAPACITY(rows->mark, (size_t)unknowns->count + 1, 0, "unknowns", error))
-        return BRUNT_FAILED;
-    memset(rows->mark, 0, (size_t)unknowns->count * sizeof *rows->mark);
-    rows->first[0] = 0;
+static int reserve_gaps(brunt_boundary_rows *rows, brunt_error *error) {
+    size_t count = 1;
+    rows->any_leave = false;
+    for (int k = 0; k < rows->surfaces->count; k++) {
+        const brunt_boundary_surface *s = &rows->surfaces->surface[k];
+        rows->any_leave = rows->any_leave || s->def.condition == BRUNT_SEPARATE;
+        count += (size_t)s->particle_count * (size_t)rows->bodies->mpm_count;
+    }
+    return BRUNT_CAPACITY(rows->gap, count, 0, "particles of boundaries", error);
+}
+
+static int go_round(brunt_boundary_rows *rows, const build *b, brunt_error *error) {
+    const double now = b->world->clock.time, then = now + rows->dt;
+    rows->here = rows->gap, rows->reached = 0, rows->passed = NULL;
+    if (b->adds) rows->patch_count = 0, rows->version++, rows->unseen = NULL, rows->first[0] = 0;
     for (int k = 0; k < rows->surfaces->count; k++) {
         brunt_boundary_surface *s = &rows->surfaces->surface[k];
-        brunt_boundary_extent extent = {.dt = dt};
+        brunt_boundary_extent extent = {.dt = rows->dt};
         double end[3];
-        brunt_boundary_surface_way(s, world->clock.time, extent.way);
-        brunt_boundary_surface_way(s, world->clock.time + dt, end);
+        brunt_boundary_surface_way(s, now, extent.way);
+        brunt_boundary_surface_way(s, then, end);
         for (int a = 0; a < 3; a++) extent.step[a] = end[a] - extent.way[a];
         rows->cell = s->cell;
-        if (add_surface(rows, s, &extent, error)) return BRUNT_FAILED;
+        if (add_surface(rows, s, &extent, b, error)) return BRUNT_FAILED;
     }
-    return reserve_arrays(rows, error);
+    return b->adds ? reserve_arrays(rows, error) : BRUNT_OK;
+}
+
+int brunt_boundary_rows_step(brunt_boundary_rows *rows, brunt_world *world, const brunt_unknowns *unknowns, double dt,
+                             brunt_error *error) {
+    const build b = {.world = world, .looks = true, .adds = true};
+    rows->unknowns = unknowns, rows->bodies = &world->bodies, rows->surfaces = &world->boundaries.surfaces;
+    rows->dt = dt, rows->swept = 0;
+    if (BRUNT_CAPACITY(rows->first, 1, 0, "pieces of boundaries", error) ||
+        BRUNT_CAPACITY(rows->mark, (size_t)unknowns->count + 1, 0, "unknowns", error) || reserve_gaps(rows, error))
+        return BRUNT_FAILED;
+    memset(rows->mark, 0, (size_t)unknowns->count * sizeof *rows->mark);
+    return go_round(rows, &b, error);
+}
+
+int brunt_boundary_rows_grow(brunt_boundary_rows *rows, brunt_world *world, brunt_boundary_ways *ways, void *context,
+                             bool *grown, brunt_error *error) {
+    const build look = {.world = world, .looks = true, .ways = ways, .context = context},
+                add = {.world = world, .adds = true};
+    const int64_t reached = rows->reached;
+    if (go_round(rows, &look, error)) return BRUNT_FAILED;
+    *grown = rows->reached > reached;
+    return *grown ? go_round(rows, &add, error) : BRUNT_OK;
 }
 
 void brunt_boundary_rows_free(brunt_boundary_rows *rows) {

@@ -36,11 +36,17 @@ typedef struct brunt_boundary_rows {
     int64_t version;
     int32_t patch_count;
     int32_t *mark; // of each unknown: its place in the patch under way + 1
-    double *gap;   // of the boundary particles of a surface
+    double *gap;   // [m] how far boundary particles are from what reaches them: of each surface and body
+    double *here;  // those of the surface and body under way
     double *dense;
     double cell, dt; // [m], [s]
-    int64_t sweeps;  // of the run
-    int swept;       // in the iteration under way
+    bool still;      // load steps: no inertia
+    int64_t reached; // boundary particles with a distance
+    bool any_leave;  // surfaces that material may leave
+    // One that material comes to from where no node of it is, one that it went through, NULL: none.
+    const brunt_boundary_surface *unseen, *passed;
+    int64_t sweeps; // of the run
+    int swept;      // in the iteration under way
     size_t patch_capacity, first_capacity, node_capacity, weight_capacity, mark_capacity, gap_capacity, dense_capacity;
 } brunt_boundary_rows;
 
@@ -51,6 +57,14 @@ size_t brunt_boundary_rows_bytes(const brunt_boundary_rows *rows);
 // The patches of a step of `dt`, with the multipliers that the surfaces have kept. BRUNT_OK, or BRUNT_FAILED.
 int brunt_boundary_rows_step(brunt_boundary_rows *rows, brunt_world *world, const brunt_unknowns *unknowns, double dt,
                              brunt_error *error);
+// How far the material points of a body go within the step, all components of each slot [m].
+typedef const double *brunt_boundary_ways(void *context, int body);
+// The same patches, with what else comes to surfaces that it may leave by these ways. *grown: whether there was more.
+// BRUNT_OK, or BRUNT_FAILED.
+int brunt_boundary_rows_grow(brunt_boundary_rows *rows, brunt_world *world, brunt_boundary_ways *ways, void *context,
+                             bool *grown, brunt_error *error);
+// Sum of the sizes of all forces at u [N].
+double brunt_boundary_rows_forces(const brunt_boundary_rows *rows, const double *u);
 // Once u is a minimum: multipliers and bounds of friction as they are there. Whether that changed them.
 bool brunt_boundary_rows_settle(brunt_boundary_rows *rows, const double *u);
 // t at u [Pa], C u - prescribed [m^3], of a patch.

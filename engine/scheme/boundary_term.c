@@ -162,6 +162,18 @@ static void rows_hessian(void *term, const brunt_team *team, const double *u, bo
     for (int32_t p = 0; p < r->patch_count; p++) add_patch_matrix(r, p, u, h);
 }
 
+double brunt_boundary_rows_forces(const brunt_boundary_rows *r, const double *u) {
+    double sum = 0, t[3], moved[3], F[3];
+    for (int32_t p = 0; p < r->patch_count; p++) {
+        brunt_boundary_patch_traction(r, p, u, t, moved);
+        for (int64_t k = r->first[p]; k < r->first[p + 1]; k++) {
+            brunt_boundary_patch_force(r, p, k, t, F);
+            sum += fabs(F[0]) + fabs(F[1]) + fabs(F[2]);
+        }
+    }
+    return sum;
+}
+
 // ------------------------------------------------------------------------------------------ multipliers
 
 // The multiplier of rows that the matrix has, as it is to be where C u is `moved`; the greatest change over b h. What

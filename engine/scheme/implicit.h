@@ -170,6 +170,9 @@ int brunt_implicit_account(brunt_world *world, brunt_step *step, brunt_error *er
 // --- implicit_surface.c: lines and surfaces that hold material points
 // Rows of the step that is tried. BRUNT_OK, or BRUNT_FAILED.
 int brunt_implicit_surfaces_begin(brunt_world *world, double dt, brunt_error *error);
+// What comes, by u, to surfaces that it may leave. *grown: whether there was more than was known, for another solution.
+// BRUNT_OK, or BRUNT_FAILED: it comes from too far, or went through.
+int brunt_implicit_surfaces_meet(brunt_world *world, bool *grown, brunt_error *error);
 // Adds the forces of their tractions at the start of the step to `force` [N].
 void brunt_implicit_surfaces_before(const struct brunt_implicit *m, double *force);
 // Keeps the tractions at u: those that the next step begins with.

@@ -300,6 +300,24 @@ static int settle(struct brunt_implicit *m, brunt_newton_report *report, brunt_e
     return brunt_fail(error, BRUNT_FAILED, "friction at boundaries does not settle within %d solutions.", ROUND_LIMIT);
 }
 
+// What comes to a surface within a step is known once it has an end, and that is found anew with what the surface
+// holds.
+static int meet(brunt_world *world, brunt_newton_report *report, brunt_error *error) {
+    enum { ROUND_LIMIT = 60 };
+    struct brunt_implicit *m = world->plan.implicit;
+    for (int k = 0; k < ROUND_LIMIT; k++) {
+        bool grown;
+        if (brunt_implicit_surfaces_meet(world, &grown, error)) {
+            report->result = BRUNT_NEWTON_BLOCKED;
+            return BRUNT_FAILED;
+        }
+        if (!grown) return BRUNT_OK;
+        if (minimise(m, report, error) || settle(m, report, error)) return BRUNT_FAILED;
+    }
+    report->result = BRUNT_NEWTON_ITERATIONS;
+    return brunt_fail(error, BRUNT_FAILED, "what comes to boundaries finds no end within %d solutions.", ROUND_LIMIT);
+}
+
 // Of load steps with friction: once held components are at their places, where something is in the way by a potential
 // with the normal forces of the start.
 static int go_and_rub(struct brunt_implicit *m, brunt_newton_report *report, brunt_error *error) {
@@ -318,6 +336,7 @@ static int solve_step(brunt_world *world, double dt, brunt_newton_report *report
     if (!status) status = coast(m, error);
     if (!status) status = m->still && m->rubs ? go_and_rub(m, report, error) : go_and_minimise(m, report, error);
     if (!status && m->holds) status = settle(m, report, error);
+    if (!status && m->holds && m->rows.any_leave) status = meet(world, report, error);
     return status;
 }
 

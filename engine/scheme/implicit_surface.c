@@ -10,6 +10,23 @@ int brunt_implicit_surfaces_begin(brunt_world *world, double dt, brunt_error *er
     return brunt_boundary_rows_step(&m->rows, world, &m->unknowns, dt, error);
 }
 
+static const double *ways_of(void *context, int body) {
+    struct brunt_implicit *m = context;
+    brunt_mpm_interpolate(m->mpm[body], &m->team, m->field.u, m->moved);
+    return m->moved;
+}
+
+int brunt_implicit_surfaces_meet(brunt_world *world, bool *grown, brunt_error *error) {
+    struct brunt_implicit *m = world->plan.implicit;
+    if (brunt_boundary_rows_grow(&m->rows, world, ways_of, m, grown, error)) return BRUNT_FAILED;
+    if (!*grown && m->rows.passed)
+        return brunt_fail(error, BRUNT_FAILED, "material goes through boundary '%s'.", m->rows.passed->boundary->name);
+    if (!m->rows.unseen) return BRUNT_OK;
+    return brunt_fail(error, BRUNT_FAILED,
+                      "material comes to boundary '%s' from farther than the nodes of its grid reach.",
+                      m->rows.unseen->boundary->name);
+}
+
 // Adds the forces of tractions to `sum`, with a sign.
 static void add_forces(const struct brunt_implicit *m, int32_t patch, const double t[3], double sign, double *sum) {
     const int dim = m->unknowns.dim;
@@ -38,16 +55,17 @@ static void account_impulses(const struct brunt_implicit *m, int32_t patch, cons
     for (int a = 0; a < 3; a++) last->impulse[a] += part.impulse[a], last->angular[a] += part.angular[a];
 }
 
-// The greatest rate at which a row's material leaves what holds it.
+// The greatest rate at which a row's material leaves what holds it; in load steps, of the pseudo-time.
 static double rate_of(const struct brunt_implicit *m, int32_t patch) {
     const brunt_boundary_patch *p = &m->rows.patch[patch];
     const int dim = m->unknowns.dim;
+    const double *v = m->still ? m->field.u : m->field.v, each = m->still ? 1 / m->dt : 1;
     double most = 0;
     for (int row = 0; row < (p->leaves ? 0 : p->rows); row++) {
         double rate = -p->prescribed[row] / m->dt;
         for (int64_t k = m->rows.first[patch]; k < m->rows.first[patch + 1]; k++)
             for (int a = 0; a < dim; a++)
-                rate += m->rows.weight[k][3 * row + a] * m->field.v[m->rows.node[k] * (int64_t)dim + a];
+                rate += each * m->rows.weight[k][3 * row + a] * v[m->rows.node[k] * (int64_t)dim + a];
         most = fmax(most, fabs(rate) / p->size);
     }
     return most;
@@ -57,14 +75,15 @@ static void account_patch(struct brunt_implicit *m, int32_t patch) {
     const brunt_boundary_patch *p = &m->rows.patch[patch];
     brunt_boundary_surface *s = p->surface;
     brunt_impulse_account *last = &s->boundary->last;
-    const double gamma = m->weights.gamma;
+    const double gamma = m->weights.gamma, work = m->weights.work;
     double t[3], moved[3], mean[3] = {0, 0, 0};
     brunt_boundary_patch_traction(&m->rows, patch, m->field.u, t, moved);
     add_forces(m, patch, t, -1, m->field.gradient);
     for (int k = 0; k < p->rows; k++) {
+        const double working = work * t[k] + (1 - work) * p->before[k];
         mean[k] = gamma * t[k] + (1 - gamma) * p->before[k];
-        last->external_work -= mean[k] * p->prescribed[k];
-        *(k == 0 || !p->rubs ? &last->normal_loss : &last->friction_loss) += mean[k] * moved[k];
+        last->external_work -= working * p->prescribed[k];
+        *(k == 0 || !p->rubs ? &last->normal_loss : &last->friction_loss) += working * moved[k];
     }
     account_impulses(m, patch, mean, last);
     if (!(p->leaves && t[0] == 0)) last->area += p->size, s->active++;
@@ -78,7 +97,7 @@ static void account_ghost(brunt_world *world) {
     memset(m->field.step, 0, (size_t)all * sizeof *m->field.step);
     brunt_ghost_ops.gradient(&m->ghost, &m->team, m->field.u, m->field.step);
     for (int64_t k = 0; k < all; k++) {
-        world->ledger.scheme += m->weights.gamma * m->field.step[k] * m->field.u[k];
+        world->ledger.scheme += m->weights.work * m->field.step[k] * m->field.u[k];
         m->field.gradient[k] += m->field.step[k];
     }
 }

@@ -193,6 +193,7 @@ int brunt_implicit_make(brunt_world *world, const brunt_world_def *def, brunt_er
     m->still = world->settings.scheme == BRUNT_STATIC;
     m->team.threads = world->settings.threads;
     m->holds = world->boundaries.surfaces.count > 0;
+    m->rows.still = m->still;
     BRUNT_TRY(brunt_boundary_surfaces_sides(&world->boundaries.surfaces, bodies, error));
     if (BRUNT_NEW(m->fem, bodies->fem_count + 1, "potentials of meshes", error) ||
         BRUNT_NEW(m->mpm, bodies->mpm_count + 1, "potentials of bodies of points", error) ||

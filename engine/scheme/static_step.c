@@ -73,6 +73,7 @@ double brunt_static_unbalance(void *context, const double *gradient) {
     double left = 0, reactions = 0;
     for (int64_t k = 0; k < brunt_implicit_components(m); k++)
         *(m->unknowns.held[k] ? &reactions : &left) += fabs(gradient[k]);
+    if (m->holds) reactions += brunt_boundary_rows_forces(&m->rows, m->field.u);
     const double act = fmax(m->scale.least, reactions), share = act > 0 ? left / act : left > 0 ? 1 : 0;
     const double counts = left <= m->scale.rounding ? 0 : share;
     // Where it has converged its stability is asked for next: that bodies which contact alone holds slide on its
@@ -121,6 +122,8 @@ typedef struct piece {
     int32_t first, count;
     int modes;
     double middle[3], size;
+    const brunt_boundary_rows *rows; // NULL: it has none
+    int body;                        // whose they are
 } piece;
 
 static int32_t node_of(const piece *p, int32_t i) { return p->node ? p->node[i] : p->first + i; }
@@ -160,6 +163,28 @@ typedef struct holding {
     double A[MODES][MODES], b[MODES], all;
 } holding;
 
+// What pieces of surfaces hold, along their rows.
+static void add_rows(const piece *p, holding *h) {
+    const brunt_boundary_rows *rows = p->rows;
+    const int dim = p->u->dim;
+    for (int32_t patch = 0; rows && patch < rows->patch_count; patch++) {
+        const brunt_boundary_patch *at = &rows->patch[patch];
+        for (int row = 0; at->body == p->body && !at->leaves && row < at->rows; row++) {
+            double along[MODES] = {0}, mode[MODES][3], square = 0;
+            for (int64_t e = rows->first[patch]; e < rows->first[patch + 1]; e++) {
+                rigid_modes(p, rows->node[e], mode);
+                for (int a = 0; a < dim; a++) {
+                    const double w = rows->weight[e][3 * row + a];
+                    square += w * w;
+                    for (int k = 0; k < p->modes; k++) along[k] += w * mode[k][a];
+                }
+            }
+            for (int k = 0; k < p->modes; k++)
+                for (int q = 0; q < p->modes; q++) h->A[k][q] += along[k] * along[q] / square;
+        }
+    }
+}
+
 static void take_holding(const piece *p, const double *load, holding *h) {
     const int dim = p->u->dim;
     double mode[MODES][3];
@@ -176,6 +201,7 @@ static void take_holding(const piece *p, const double *load, holding *h) {
             }
         }
     }
+    add_rows(p, h);
 }
 
 // Solves (A + spare I) c = b by Cholesky; whether A alone was definite. What A cannot give of b is spare c.
@@ -201,6 +227,14 @@ static bool solve_holding(holding *h, int modes, double c[MODES]) {
     }
     for (int k = 0; k < modes; k++) c[k] *= spare;
     return least > 100 * spare;
+}
+
+// Whether it comes to a surface that it may leave.
+static bool meets_surface(const struct brunt_implicit *m, int i) {
+    bool meets = false;
+    for (int32_t p = 0; m->holds && p < m->rows.patch_count; p++)
+        meets = meets || (m->rows.patch[p].body == i && m->rows.patch[p].leaves);
+    return meets;
 }
 
 static bool meets_something(const struct brunt_implicit *m, int body) {
@@ -236,7 +270,8 @@ static int check_points(brunt_world *world, int i, brunt_error *error) {
     struct brunt_implicit *m = world->plan.implicit;
     const brunt_unknowns *u = &m->unknowns;
     piece p = {.u = u, .first = u->mesh_count, .modes = u->dim == 2 ? 3 : MODES};
-    bool meets = false;
+    p.rows = m->holds ? &m->rows : NULL, p.body = i;
+    bool meets = meets_surface(m, i);
     int32_t *node;
     uint8_t *seen = NULL;
     int status = BRUNT_NEW(node, u->count + 1, "unknowns of points", error);

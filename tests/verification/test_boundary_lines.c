@@ -187,6 +187,26 @@ START_TEST(stops) {
 }
 END_TEST
 
+// What is at rest and falls within a step, however long, is stopped by the line: by more steps where it begins farther
+// off than the grid reaches.
+START_TEST(falls) {
+    const double gap = _i % 2 ? 0.4 : 0.03, step = _i / 2 ? 10 : 0.5;
+    brunt_world_def def = block(BRUNT_SEPARATE, step, 0.02);
+    for (int k = 0; k < 2; k++) def.surfaces[0].point[k][1] = 0.02 - gap;
+    def.gravity[1] = -1;
+    def.newton.cut = 12;
+    brunt_world *world = world_take(&def);
+    const double before = world_sums(world, 0).centre[1];
+    for (int s = 0; s < 400 && brunt_world_time(world) < 3; s++) world_steps(world, 1);
+    const double way = before - world_sums(world, 0).centre[1];
+    brunt_newton_counts n;
+    brunt_world_newton(world, &n, NULL);
+    printf("  from %.2f m, dt %g: came %.4f cells short of the line, %g cuts\n", gap, step, (gap - way) / CELL, n.cuts);
+    ck_assert_double_le(fabs(way - gap), 0.1 * CELL);
+    brunt_world_destroy(world);
+}
+END_TEST
+
 // What may leave a line does so without being pulled, and what may not stays; a body that is moved away from it by the
 // line's own motion likewise.
 START_TEST(leaves) {
@@ -494,6 +514,7 @@ int main(void) {
     ADD_LOOP(slides, 4);
     ADD_LOOP(meets, 16);
     ADD_LOOP(stops, 1);
+    ADD_LOOP(falls, 4);
     ADD_LOOP(leaves, 2);
     ADD_LOOP(rubs, 3);
     ADD_LOOP(twice, 1);
