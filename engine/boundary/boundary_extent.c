@@ -2,7 +2,9 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/error.h"
+#include "base/memory.h"
 #include "boundary/boundary_surface.h"
 #include "grid/grid.h"
 #include "materials/material.h"
@@ -101,8 +103,29 @@ typedef struct search {
     int dim;
     point_box box;    // of the point that looks, its place as the surface was at the start
     double coming[3]; // [m] how far it goes within the step, as the surface sees it
-    int64_t *sides;   // where it is asked for on which sides points are: those in front, those behind
+    struct sides *sides;
 } search;
+
+enum { IN_FRONT = 1, BEHIND_IT = 2, DEEP = 4 };
+
+// On which sides of a surface points are, where that is asked for.
+typedef struct sides {
+    int64_t front, behind; // points at boundary particles
+    uint8_t *mark;         // of each boundary particle: a point near it in front, one behind, one too deep
+} sides;
+
+// Where the ray out of a boundary particle enters and leaves the box. Explicit steps push nothing out that is behind as
+// a whole, implicit ones what is so by a spacing.
+static void take_side(const search *l, int32_t b, double enter, double leave) {
+    const double spacing = 2 * l->box.half, depth = -0.5 * (enter + leave),
+                 lost = (MARGIN + (l->s->facets.count ? 0 : BEHIND)) * spacing;
+    uint8_t *mark = &l->sides->mark[b];
+    if (fabs(depth) <= (1 + MARGIN) * spacing) {
+        *(depth <= 0 ? &l->sides->front : &l->sides->behind) += 1;
+        *mark |= depth <= 0 ? IN_FRONT : BEHIND_IT;
+    }
+    if (leave < -lost && leave > -lost - (1 + MARGIN) * spacing) *mark |= DEEP;
+}
 
 static void look_at(search *l, int32_t b) {
     const brunt_boundary_particle *p = &l->s->particle[b];
@@ -114,7 +137,7 @@ static void look_at(search *l, int32_t b) {
     }
     if (!crosses(l->dim, &l->box, d, p->normal, &enter, &leave)) return;
     if (l->sides) {
-        l->sides[enter + leave < 0]++;
+        take_side(l, b, enter, leave);
         return;
     }
     if (leave < -fmin(2 * BEHIND * l->box.half, 0.5 * p->back) || enter > fmax(0, towards) + 2 * MARGIN * l->box.half)
@@ -147,8 +170,9 @@ static void look_around(search *l) {
     int32_t from[3] = {0}, to[3] = {0};
     double cells = 1;
     for (int a = 0; a < l->dim; a++) {
-        const double extent =
-            l->box.extent[a] * (1 + 2 * MARGIN) + (s->def.condition == BRUNT_SEPARATE ? 2 * BEHIND * l->box.half : 0);
+        const double extent = l->box.extent[a] * (1 + 2 * MARGIN) +
+                              (s->def.condition == BRUNT_SEPARATE ? 2 * BEHIND * l->box.half : 0) +
+                              (l->sides ? 4 * l->box.half : 0);
         const double low = l->box.x[a] - extent + fmin(0, l->coming[a]),
                      high = l->box.x[a] + extent + fmax(0, l->coming[a]);
         if (!(low <= s->high[a] && high >= s->low[a])) return;
@@ -253,30 +277,56 @@ void brunt_boundary_surface_backs(brunt_boundary_surface *s) {
     }
 }
 
-int brunt_boundary_surfaces_sides(const brunt_boundary_surfaces *surfaces, const brunt_bodies *bodies,
-                                  brunt_error *error) {
-    for (int k = 0; k < surfaces->count; k++)
-        for (int i = 0; i < bodies->mpm_count; i++) {
-            const brunt_boundary_surface *s = &surfaces->surface[k];
-            brunt_body *body = &bodies->mpm[i];
-            int64_t sides[2] = {0, 0};
-            double way[3];
-            brunt_boundary_surface_way(s, 0, way);
-            search l = {.s = s, .dim = body->particles.dim, .sides = sides};
-            if (s->def.condition != BRUNT_SEPARATE || !brunt_boundary_surface_acts(s, body)) continue;
-            for (int32_t b = 0; b < body->grid.block_count; b++)
-                for (int64_t n = 0; n < body->grid.blocks[b].count; n++) {
-                    l.box = box_of(body, body->grid.blocks[b].first + n, surfaces->frame[i]);
-                    for (int a = 0; a < l.dim; a++) l.box.x[a] -= way[a];
-                    look_around(&l);
-                }
-            if (sides[1] > 0 && sides[0] == 0)
-                return brunt_fail(error, BRUNT_BAD_INPUT,
-                                  "boundaries (%s): body '%s' is behind it: its normal points to what may leave it, "
-                                  "%s",
-                                  s->boundary->name, body->name,
-                                  l.dim == 2 ? "to the left of the line: turn the order of its points"
-                                             : "as the corners of its facets go round: mesh.reversed turns it");
+// On which sides of a surface a body is when the run begins.
+static void find_sides(const brunt_boundary_surface *s, brunt_body *body, const double *frame, sides *found) {
+    double way[3];
+    brunt_boundary_surface_way(s, 0, way);
+    search l = {.s = s, .dim = body->particles.dim, .sides = found};
+    for (int32_t b = 0; b < body->grid.block_count; b++)
+        for (int64_t n = 0; n < body->grid.blocks[b].count; n++) {
+            l.box = box_of(body, body->grid.blocks[b].first + n, frame);
+            for (int a = 0; a < l.dim; a++) l.box.x[a] -= way[a];
+            look_around(&l);
         }
+}
+
+static int check_sides(const brunt_boundary_surface *s, const brunt_body *body, const sides *found, bool may_pass,
+                       brunt_error *error) {
+    if (found->behind > 0 && found->front == 0)
+        return brunt_fail(error, BRUNT_BAD_INPUT,
+                          "boundaries (%s): body '%s' is behind it: its normal points to what may leave it, %s",
+                          s->boundary->name, body->name,
+                          body->particles.dim == 2 ? "to the left of the line: turn the order of its points"
+                                                   : "as the corners of its facets go round: mesh.reversed turns it");
+    for (int32_t b = 0; b < s->particle_count && !may_pass; b++) {
+        const double *x = s->particle[b].x;
+        if (found->mark[b] == (IN_FRONT | BEHIND_IT | DEEP))
+            return brunt_fail(error, BRUNT_BAD_INPUT,
+                              "boundaries (%s): it goes through body '%s' near (%.4g, %.4g, %.4g) m: what is behind it "
+                              "there would not be held, since condition separate acts on its side alone; move one of "
+                              "them, or cut the body there",
+                              s->boundary->name, body->name, x[0], x[1], x[2]);
+    }
+    return BRUNT_OK;
+}
+
+int brunt_boundary_surfaces_sides(const brunt_boundary_surfaces *surfaces, const brunt_bodies *bodies, bool may_pass,
+                                  brunt_error *error) {
+    for (int k = 0; k < surfaces->count; k++) {
+        const brunt_boundary_surface *s = &surfaces->surface[k];
+        uint8_t *mark;
+        int status = BRUNT_OK;
+        if (s->def.condition != BRUNT_SEPARATE) continue;
+        if (BRUNT_NEW(mark, s->particle_count + 1, "particles of a boundary", error)) return BRUNT_FAILED;
+        for (int i = 0; i < bodies->mpm_count && !status; i++) {
+            sides found = {.mark = mark};
+            if (!brunt_boundary_surface_acts(s, &bodies->mpm[i])) continue;
+            memset(mark, 0, (size_t)s->particle_count);
+            find_sides(s, &bodies->mpm[i], surfaces->frame[i], &found);
+            status = check_sides(s, &bodies->mpm[i], &found, may_pass, error);
+        }
+        brunt_free(mark);
+        if (status) return status;
+    }
     return BRUNT_OK;
 }

@@ -107,7 +107,7 @@ bool brunt_boundary_surface_extent(const brunt_boundary_surface *surface, brunt_
                                    const brunt_boundary_extent *extent, double *gap);
 // Finds how far behind the particles of a surface that lets go its other side is, if it is within a cell.
 void brunt_boundary_surface_backs(brunt_boundary_surface *surface);
-// Before the first step: whether a body that a surface lets go is behind it, where nothing could hold it. BRUNT_OK, or
-// BRUNT_BAD_INPUT.
-int brunt_boundary_surfaces_sides(const brunt_boundary_surfaces *surfaces, const brunt_bodies *bodies,
+// Before the first step: whether a body that a surface lets go is behind it, where nothing could hold it, or on both of
+// its sides, unless that `may_pass`. BRUNT_OK, or BRUNT_BAD_INPUT.
+int brunt_boundary_surfaces_sides(const brunt_boundary_surfaces *surfaces, const brunt_bodies *bodies, bool may_pass,
                                   brunt_error *error);

@@ -194,7 +194,7 @@ int brunt_implicit_make(brunt_world *world, const brunt_world_def *def, brunt_er
     m->team.threads = world->settings.threads;
     m->holds = world->boundaries.surfaces.count > 0;
     m->rows.still = m->still;
-    BRUNT_TRY(brunt_boundary_surfaces_sides(&world->boundaries.surfaces, bodies, error));
+    BRUNT_TRY(brunt_boundary_surfaces_sides(&world->boundaries.surfaces, bodies, def->contact.allow_overlap, error));
     if (BRUNT_NEW(m->fem, bodies->fem_count + 1, "potentials of meshes", error) ||
         BRUNT_NEW(m->mpm, bodies->mpm_count + 1, "potentials of bodies of points", error) ||
         BRUNT_NEW(m->term, bodies->count + BRUNT_OTHER_TERM_LIMIT, "terms of a step", error) ||

@@ -492,6 +492,35 @@ START_TEST(behind) {
 }
 END_TEST
 
+// A line that lets go does not go through a body: what would be behind it is said with its place, but for less
+// than is pushed out. Explicit steps may be told to begin so.
+START_TEST(through) {
+    static const struct {
+        double up; // of the line, from the block's foot
+        brunt_condition condition;
+        bool explicit, allowed, wrong;
+    } cases[] = {{-0.01, BRUNT_SEPARATE, false, false, false}, {0.03, BRUNT_SEPARATE, false, false, false},
+                 {0.3, BRUNT_SEPARATE, false, false, true},    {0.57, BRUNT_SEPARATE, false, false, true},
+                 {0.3, BRUNT_SLIP, false, false, false},       {0.3, BRUNT_STICK, false, false, false},
+                 {-0.01, BRUNT_SEPARATE, true, false, false},  {0.01, BRUNT_SEPARATE, true, false, false},
+                 {0.09, BRUNT_SEPARATE, true, false, true},    {0.3, BRUNT_SEPARATE, true, false, true},
+                 {0.3, BRUNT_SEPARATE, true, true, false},     {0.3, BRUNT_SLIP, true, false, false}};
+    brunt_world_def def = block(cases[_i].condition, 1e-2, 0.02);
+    brunt_error error = {0};
+    for (int c = 0; c < 2; c++) def.surfaces[0].point[c][1] = 0.02 + cases[_i].up;
+    if (cases[_i].explicit)
+        def.scheme = BRUNT_EXPLICIT, def.step = 0, def.contact.method = brunt_world_def_default().contact.method;
+    def.contact.allow_overlap = cases[_i].allowed;
+    brunt_world *world = brunt_world_create(&def, &error);
+    printf("  %s, %.2f m up: %s\n", cases[_i].explicit ? "explicit" : "implicit", cases[_i].up,
+           world ? "taken" : error.message);
+    ck_assert_int_eq(world == NULL, cases[_i].wrong);
+    if (!world) ck_assert_ptr_nonnull(strstr(error.message, "it goes through body 'block' near ("));
+    if (world) brunt_world_destroy(world);
+    brunt_world_def_free(&def);
+}
+END_TEST
+
 // Two lines in one place that go different ways: said with a name, the body's too.
 START_TEST(refuses) {
     brunt_world_def def = block(BRUNT_STICK, 1e-2, 0.02);
@@ -527,6 +556,7 @@ int main(void) {
     ADD_LOOP(teeth, 14);
     ADD_LOOP(wall, 8);
     ADD_LOOP(behind, 1);
+    ADD_LOOP(through, 12);
     ADD_LOOP(refuses, 1);
     return suite_main(suite);
 }
