@@ -38,12 +38,14 @@ typedef struct brunt_dof_node {
     double load, load_t;
     bool crossed; // some push along what others rub along: both loads are of the greater weights
     bool turns;   // some of the constraints on it
+    bool angular; // v[0] is an angular velocity: entries have levers in place of weights
 } brunt_dof_node;
 
 typedef struct brunt_constraint_entry {
     int32_t dof_node;
     double weight[3];          // w_s of a slave, -beta_k of a master, by component: symmetry planes turn some of them
-    double height_gradient[3]; // 0 of a slave; height grad beta_k of a master
+    double height_gradient[3]; // 0 of a slave; height grad beta_k of a master; a lever [m] of an angular velocity, with
+                               // `facet` (1, 0, 0)
 } brunt_constraint_entry;
 
 // What pushes have taken of a slave, to be given back at its release (release.h).

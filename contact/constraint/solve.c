@@ -206,6 +206,11 @@ static double greatest_component(const double weight[3]) {
     return fmax(fabs(weight[0]), fmax(fabs(weight[1]), fabs(weight[2])));
 }
 
+// The most of its impulse that a constraint gives a component of a node.
+static double share_of(const brunt_dof_node *node, const struct brunt_constraint_column *by) {
+    return node->angular ? brunt_coulomb_norm(3, by->height_gradient) : greatest_component(by->weight);
+}
+
 // Whether diagonal matrix D leaves unit vector n in its direction.
 static bool keeps_direction(const double D[3], const double n[3]) {
     const int one = n[0] != 0 ? 0 : n[1] != 0 ? 1 : 2;
@@ -238,11 +243,11 @@ static void load_dof_nodes(void *context, int64_t begin, int64_t end, int worker
         for (int32_t q = first; q < last; q++) {
             const struct brunt_constraint_column *by = &p->column[q];
             const brunt_constraint *constraint = &p->constraint[by->constraint];
-            const double along = greatest_component(by->weight);
+            const double along = share_of(node, by);
             double across = along;
             node->turns = node->turns || constraint->turns;
             node->crossed = node->crossed || is_crossed(p, normal, by);
-            if (constraint->friction_point) across = greatest_component(p->column[++q].weight);
+            if (constraint->friction_point) across = share_of(node, &p->column[++q]);
             push += along * constraint->scale, rub += across * constraint->scale;
             both += fmax(along, across) * constraint->scale;
         }
@@ -259,12 +264,14 @@ static void sum_rows(void *context, int64_t begin, int64_t end, int worker) {
         double along[3] = {0}, across[3] = {0};
         for (int32_t e = constraint->first; e < constraint->first + constraint->count; e++) {
             const brunt_dof_node *s = &p->dof_node[p->entry[e].dof_node];
-            const double *weight = p->entry[e].weight,
-                         *other = p->entry[e + (constraint->friction_point ? constraint->count : 0)].weight;
+            const brunt_constraint_entry *own = &p->entry[e],
+                                         *other = own + (constraint->friction_point ? constraint->count : 0);
             for (int a = 0; a < 3; a++) {
-                const double push = fabs(weight[a]), rub = fabs(other[a]), both = fmax(push, rub);
-                along[a] += (s->crossed ? both : push) * s->load * s->inverse[a];
-                across[a] += (s->crossed ? both : rub) * s->load_t * s->inverse[a];
+                const double push = fabs(s->angular ? own->height_gradient[a] : own->weight[a]),
+                             rub = fabs(s->angular ? other->height_gradient[a] : other->weight[a]),
+                             both = fmax(push, rub), inverse = s->inverse[s->angular ? 0 : a];
+                along[a] += (s->crossed ? both : push) * s->load * inverse;
+                across[a] += (s->crossed ? both : rub) * s->load_t * inverse;
             }
         }
         for (int a = 0; a < 3; a++) {

@@ -83,8 +83,7 @@ static int make_surface(brunt_boundary_surface *s, const brunt_boundary_surface_
     brunt_boundary_surface_backs(s);
     s->bodies = bodies->mpm_count;
     s->boundary->surface = s;
-    if (!brunt_scheme_minimises(world->scheme))
-        BRUNT_TRY(brunt_boundary_surface_points(s, def, world->dimension, error));
+    if (!brunt_scheme_minimises(world->scheme)) BRUNT_TRY(brunt_boundary_surface_points(s, def, world, error));
     return BRUNT_NEW(s->traction, (size_t)s->bodies * (size_t)s->pieces * 3 + 1, "tractions of a boundary", error);
 }
 
@@ -195,8 +194,10 @@ void brunt_boundary_surfaces_validate(const brunt_boundary_surfaces *surfaces, c
 
 // ------------------------------------------------------------------------------------------ state
 
-// Tractions, and what was reported of the last step.
-static int64_t state_of(const brunt_boundary_surface *s) { return (int64_t)s->bodies * s->pieces * 3 + 2; }
+// Tractions, a free tool, and what was reported of the last step.
+static int64_t state_of(const brunt_boundary_surface *s) {
+    return (int64_t)s->bodies * s->pieces * 3 + (s->tool.free ? BRUNT_TOOL_STATE : 0) + 2;
+}
 
 int64_t brunt_boundary_surfaces_state_count(const brunt_boundary_surfaces *surfaces) {
     int64_t count = 0;
@@ -207,9 +208,11 @@ int64_t brunt_boundary_surfaces_state_count(const brunt_boundary_surfaces *surfa
 double *brunt_boundary_surfaces_state_get(const brunt_boundary_surfaces *surfaces, double *out) {
     for (int k = 0; k < surfaces->count; k++) {
         const brunt_boundary_surface *s = &surfaces->surface[k];
-        memcpy(out, s->traction, (size_t)(state_of(s) - 2) * sizeof *out);
-        out += state_of(s);
-        out[-2] = s->active, out[-1] = s->drift;
+        const size_t tractions = (size_t)s->bodies * (size_t)s->pieces * 3;
+        memcpy(out, s->traction, tractions * sizeof *out);
+        out += tractions;
+        if (s->tool.free) out = brunt_tool_state_get(&s->tool, out);
+        *out++ = s->active, *out++ = s->drift;
     }
     return out;
 }
@@ -217,9 +220,12 @@ double *brunt_boundary_surfaces_state_get(const brunt_boundary_surfaces *surface
 const double *brunt_boundary_surfaces_state_set(brunt_boundary_surfaces *surfaces, const double *in) {
     for (int k = 0; k < surfaces->count; k++) {
         brunt_boundary_surface *s = &surfaces->surface[k];
-        memcpy(s->traction, in, (size_t)(state_of(s) - 2) * sizeof *in);
-        in += state_of(s);
-        s->active = (int32_t)in[-2], s->drift = in[-1];
+        const size_t tractions = (size_t)s->bodies * (size_t)s->pieces * 3;
+        memcpy(s->traction, in, tractions * sizeof *in);
+        in += tractions;
+        if (s->tool.free) in = brunt_tool_state_set(&s->tool, in);
+        if (s->tool.free) brunt_boundary_surface_hurry(s);
+        s->active = (int32_t)*in++, s->drift = *in++;
     }
     return in;
 }

@@ -9,6 +9,7 @@
 #include "base/messages.h"
 #include "body/bodies.h"
 #include "boundary/facets.h"
+#include "boundary/tool.h"
 #include "contact/planes/boundary.h"
 
 typedef struct brunt_boundary_particle {
@@ -42,7 +43,9 @@ typedef struct brunt_boundary_surface {
     double drift;   // [m/s] greatest rate, as mean of a piece, at which what is held leaves its place
     // Of explicit steps.
     brunt_facets facets;
-    double speed[3];   // [m/s] the first: the greatest that it ever has
+    brunt_tool tool;   // free, if it has a mass
+    double lever;      // [m] farthest place of it from what it turns about
+    double speed[3];   // [m/s] the first: the greatest that it ever has, of a free tool that it has
     double (*rate)[2]; // of each piece: sum of the rates at which its points leave [m/s], how many
     brunt_touching *touching;
     size_t touching_capacity;
@@ -81,10 +84,13 @@ const double *brunt_boundary_surfaces_state_set(brunt_boundary_surfaces *surface
 
 // --- surface_points.c: explicit steps
 // The facets of a surface that has all else, and how fast it is at most. BRUNT_OK, or BRUNT_FAILED: out of memory.
-int brunt_boundary_surface_points(brunt_boundary_surface *surface, const brunt_boundary_surface_def *def, int dim,
-                                  brunt_error *error);
-// Before a step: nothing is held.
-void brunt_boundary_surfaces_open(brunt_boundary_surfaces *surfaces);
+int brunt_boundary_surface_points(brunt_boundary_surface *surface, const brunt_boundary_surface_def *def,
+                                  const brunt_world_def *world, brunt_error *error);
+// Takes the speed of a free tool as it is.
+void brunt_boundary_surface_hurry(brunt_boundary_surface *surface);
+// Before a step: nothing is held, gravity acts on free tools over `kick`; after it: they have gone their way.
+void brunt_boundary_surfaces_open(brunt_boundary_surfaces *surfaces, const double gravity[3], double kick);
+void brunt_boundary_surfaces_close(brunt_boundary_surfaces *surfaces, double dt);
 // What a kind of boundary is asked for (contact/planes/boundary.h).
 const double *brunt_boundary_surface_speed(const brunt_boundary *boundary);
 int brunt_boundary_surface_meet(const brunt_contact_context *m, brunt_boundary *boundary, brunt_body *body,

@@ -40,6 +40,35 @@ static int check_facets(const brunt_boundary_surface_def *surface, int dim, int3
     return BRUNT_OK;
 }
 
+// A free tool: what it has, and that nothing else says how it moves.
+static int check_tool(const brunt_world_def *def, const brunt_boundary_surface_def *tool, const char *owner,
+                      brunt_error *error) {
+    const double *I = tool->inertia, *w = tool->spin;
+    const bool turns = I[0] > 0 || I[1] > 0 || I[2] > 0, spins = w[0] != 0 || w[1] != 0 || w[2] != 0;
+    BRUNT_CHECK_NUMBERS(owner, {".mass", &tool->mass, 1, BRUNT_NOT_NEGATIVE},
+                        {".inertia", tool->inertia, 3, BRUNT_NOT_NEGATIVE},
+                        {".center", tool->center, 3, BRUNT_ANY_NUMBER}, {".spin", tool->spin, 3, BRUNT_ANY_NUMBER});
+    if (turns && !(tool->mass > 0)) REFUSE("%s.inertia: it goes with a mass", owner);
+    if (spins && !turns) REFUSE("%s.spin: it goes with an inertia, without one nothing turns", owner);
+    if (!(tool->mass > 0)) return BRUNT_OK;
+    if (tool->displacement || tool->rotation.angle != 0 || tool->table.count)
+        REFUSE("%s.mass: what has a mass goes as forces have it: velocity is that at the start, and displacement, "
+               "rotation "
+               "and table prescribe a motion",
+               owner);
+    if (turns && def->dimension == 2 && (I[0] > 0 || I[1] > 0 || w[0] != 0 || w[1] != 0 || !(I[2] > 0)))
+        REFUSE("%s.inertia: in two dimensions it turns about z alone", owner);
+    for (int a = 0; a < 3 && turns && def->dimension == 3; a++)
+        if (!(I[a] > 0) || I[a] > (I[(a + 1) % 3] + I[(a + 2) % 3]) * (1 + 1e-12))
+            REFUSE("%s.inertia: each is above 0 and no more than the sum of the other two", owner);
+    if (def->axisymmetric && (turns || tool->value[0] != 0))
+        REFUSE("%s.mass: a ring moves along its axis, and does not turn", owner);
+    for (int32_t p = 0; p < def->plane_count; p++)
+        if (def->planes[p].condition == BRUNT_SYMMETRY)
+            REFUSE("%s.mass: a free tool and its image by a plane of symmetry would be two", owner);
+    return BRUNT_OK;
+}
+
 static int check(const brunt_world_def *def, const void *one, int32_t w, brunt_error *error) {
     const brunt_boundary_surface_def *surface = one;
     char owner[80];
@@ -67,6 +96,7 @@ static int check(const brunt_world_def *def, const void *one, int32_t w, brunt_e
         REFUSE("%s.rotation: it goes with a displacement, since the table is the factor of both", owner);
     if (surface->friction > 0 && surface->condition != BRUNT_SEPARATE)
         REFUSE("%s.friction: friction acts only with condition separate", owner);
+    BRUNT_TRY(check_tool(def, surface, owner, error));
     if (surface->particles < 1) REFUSE("%s.particles_per_cell: %d is less than 1", owner, surface->particles);
     if (!(def->cell > 0)) REFUSE("%s: it holds material points, and there are none", owner);
     return BRUNT_OK;
@@ -75,6 +105,10 @@ static int check(const brunt_world_def *def, const void *one, int32_t w, brunt_e
 static const char *refusal(const brunt_world_def *def, const void *one, const char **key) {
     *key = "";
     if (def->scheme == BRUNT_EXPLICIT) return NULL;
+    if (((const brunt_boundary_surface_def *)one)->mass > 0) {
+        *key = ".mass";
+        return BRUNT_EXPLICIT_ONLY ": in implicit and load steps the motion of a line or mesh is prescribed";
+    }
     if (((const brunt_boundary_surface_def *)one)->rotation.angle != 0) {
         *key = ".rotation";
         return BRUNT_EXPLICIT_ONLY ": in implicit and load steps a line or mesh moves without turning";

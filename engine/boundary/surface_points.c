@@ -30,6 +30,7 @@ static const double RESTITUTION = 0.5, LIFT = 0.02, CORRECTION = 0.2;
 
 brunt_placement brunt_boundary_surface_place(const brunt_boundary_surface *s, double time) {
     const brunt_rotation_def *by = &s->def.rotation;
+    if (s->tool.free) return brunt_tool_place(&s->tool);
     brunt_placement place = brunt_placement_identity();
     double way[3];
     if (by->angle != 0)
@@ -64,19 +65,27 @@ static double greatest(const brunt_curve *table, bool rate) {
     return most;
 }
 
-int brunt_boundary_surface_points(brunt_boundary_surface *s, const brunt_boundary_surface_def *def, int dim,
-                                  brunt_error *error) {
-    double square = 0, lever = 0;
-    if (brunt_facets_make(&s->facets, def, dim, error) ||
+void brunt_boundary_surface_hurry(brunt_boundary_surface *s) {
+    double spin[3];
+    brunt_tool_spin(&s->tool, spin);
+    s->speed[0] = sqrt(dot(s->tool.v, s->tool.v)) + s->lever * sqrt(dot(spin, spin));
+}
+
+int brunt_boundary_surface_points(brunt_boundary_surface *s, const brunt_boundary_surface_def *def,
+                                  const brunt_world_def *world, brunt_error *error) {
+    double square = 0;
+    brunt_tool_make(&s->tool, def, world->dimension, world->axisymmetric);
+    if (brunt_facets_make(&s->facets, def, world->dimension, error) ||
         BRUNT_NEW(s->rate, (size_t)s->pieces + 1, "pieces of a boundary", error))
         return BRUNT_FAILED;
     for (int a = 0; a < 3; a++) square += def->value[a] * def->value[a];
     for (int32_t k = 0; k < def->point_count; k++) {
-        const double *x = def->point[k], *about = def->rotation.about;
-        lever = fmax(lever, hypot(hypot(x[0] - about[0], x[1] - about[1]), x[2] - about[2]));
+        const double *x = def->point[k], *about = s->tool.free ? def->center : def->rotation.about;
+        s->lever = fmax(s->lever, hypot(hypot(x[0] - about[0], x[1] - about[1]), x[2] - about[2]));
     }
     s->speed[0] = sqrt(square) * greatest(&s->def.table, def->displacement) +
-                  fabs(def->rotation.angle) * lever * greatest(&s->def.table, true);
+                  fabs(def->rotation.angle) * s->lever * greatest(&s->def.table, true);
+    if (s->tool.free) brunt_boundary_surface_hurry(s);
     return BRUNT_OK;
 }
 
@@ -167,8 +176,9 @@ static int rub(const surface_job *j, const point *p, const double n[3], double d
     brunt_extent_arm(j->body, p->slot, n, distance, arm, kernel_arm);
     for (int a = 0; a < 3; a++) at[a] = p->x[a] + arm[a];
     brunt_particle_nodes_find(j->body, p->block, p->slot, kernel_arm, &at_arm);
-    return brunt_particle_dofs_friction_point(j->body, &at_arm, at, j->dofs, j->set, error) < 0 ? BRUNT_FAILED
-                                                                                                : BRUNT_OK;
+    if (brunt_particle_dofs_friction_point(j->body, &at_arm, at, j->dofs, j->set, error) < 0) return BRUNT_FAILED;
+    if (j->s->tool.free) brunt_tool_rub(&j->s->tool, at, j->set);
+    return BRUNT_OK;
 }
 
 static int add_touch(const surface_job *j, point *p, const brunt_touch *touch, brunt_error *error) {
@@ -183,7 +193,8 @@ static int add_touch(const surface_job *j, point *p, const brunt_touch *touch, b
     if (at < 0 || BRUNT_CAPACITY_MORE(s->touching, "material points at a boundary", error)) return BRUNT_FAILED;
     s->touching[s->touching_count++] = (brunt_touching){at, nearest_particle(s, touch->at)};
     brunt_constraint *c = &j->set->constraint[at];
-    memcpy(c->x, p->x, sizeof c->x), memcpy(c->n, n, sizeof c->n), memcpy(c->plane, v, sizeof c->plane);
+    memcpy(c->x, p->x, sizeof c->x), memcpy(c->n, n, sizeof c->n);
+    if (!s->tool.free) memcpy(c->plane, v, sizeof c->plane);
     c->gap = gap, c->target = target;
     c->least = leaves(j) ? 0 : -INFINITY, c->sticks = s->def.condition == BRUNT_STICK;
     c->friction = c->sticks ? 1 : s->def.friction;
@@ -191,6 +202,7 @@ static int add_touch(const surface_job *j, point *p, const brunt_touch *touch, b
     c->area = pow(j->body->spacing, j->body->particles.dim - 1);
     const double friction = c->friction;
     if (brunt_particle_dofs_enter(j->body, &p->under, 1, j->dofs, j->set, error)) return BRUNT_FAILED;
+    if (s->tool.free && brunt_tool_enter(&s->tool, p->x, j->set, error)) return BRUNT_FAILED;
     return friction > 0 ? rub(j, p, n, touch->distance, error) : BRUNT_OK;
 }
 
@@ -266,6 +278,7 @@ int brunt_boundary_surface_meet(const brunt_contact_context *m, brunt_boundary *
     brunt_boundary_surface *s = boundary->surface;
     surface_job j = {.m = m, .boundary = boundary, .s = s, .body = body, .dofs = dofs, .set = set};
     j.now = brunt_boundary_surface_place(s, m->time), j.then = brunt_boundary_surface_place(s, m->time + m->dt);
+    if (s->tool.free) j.then = brunt_tool_place_after(&s->tool, m->dt), s->tool.node = BRUNT_NONE;
     j.near = NEAR * (double)body->grid.h + ((double)body->speed + s->speed[0]) * m->dt;
     s->touching_count = 0;
     if (all_far(&j)) return BRUNT_OK;
@@ -299,8 +312,23 @@ static int32_t nearest_particle(const brunt_boundary_surface *s, const double at
     return best;
 }
 
-void brunt_boundary_surfaces_open(brunt_boundary_surfaces *surfaces) {
-    for (int k = 0; k < surfaces->count; k++) surfaces->surface[k].active = 0, surfaces->surface[k].drift = 0;
+void brunt_boundary_surfaces_open(brunt_boundary_surfaces *surfaces, const double gravity[3], double kick) {
+    for (int k = 0; k < surfaces->count; k++) {
+        brunt_boundary_surface *s = &surfaces->surface[k];
+        s->active = 0, s->drift = 0;
+        if (!s->tool.free) continue;
+        brunt_tool_begin(&s->tool, gravity, kick);
+        brunt_boundary_surface_hurry(s);
+    }
+}
+
+void brunt_boundary_surfaces_close(brunt_boundary_surfaces *surfaces, double dt) {
+    for (int k = 0; k < surfaces->count; k++) {
+        brunt_boundary_surface *s = &surfaces->surface[k];
+        if (!s->tool.free) continue;
+        brunt_tool_end(&s->tool, dt, &s->boundary->last);
+        brunt_boundary_surface_hurry(s);
+    }
 }
 
 // Area of a piece [m^2], in plane strain [m]; of what stands for a circle all of that.
@@ -357,4 +385,5 @@ void brunt_boundary_surface_met(const brunt_contact_context *m, brunt_boundary *
         rate[1]++;
     }
     close_pieces(s, m, brunt_axisymmetric(&body->particles), traction);
+    if (s->tool.free) brunt_tool_take(&s->tool, set);
 }

@@ -149,13 +149,14 @@ int brunt_pass_contact(brunt_world *world, brunt_step *step, brunt_error *error)
 }
 
 int brunt_pass_boundaries(brunt_world *world, brunt_step *step, brunt_error *error) {
-    brunt_boundary_surfaces_open(&world->boundaries.surfaces);
+    brunt_boundary_surfaces_open(&world->boundaries.surfaces, step->gravity, step->kick);
     brunt_contact_context m = brunt_contact_context_of(world, step->dt, NULL);
     m.kick = step->kick;
     for (int i = 0; i < world->bodies.mpm_count; i++)
         if (brunt_boundaries_meet_points(&m, &world->bodies.mpm[i], &world->scratch.planes, &world->contact.constraints,
                                          error))
             return brunt_fail_inner(&world->clock, &world->bodies.mpm[i], error);
+    brunt_boundary_surfaces_close(&world->boundaries.surfaces, step->dt);
     return BRUNT_OK;
 }
 

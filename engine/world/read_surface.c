@@ -5,6 +5,15 @@
 
 int32_t brunt_boundary_surface_count(const brunt_world *world) { return world->boundaries.surfaces.count; }
 
+static void read_tool(const brunt_tool *tool, brunt_boundary_surface_report *report) {
+    report->mass = tool->mass;
+    for (int a = 0; a < 3; a++) report->position[a] = tool->centre[a] + tool->way[a];
+    memcpy(report->velocity, tool->v, sizeof tool->v);
+    memcpy(report->angular_momentum, tool->momentum, sizeof tool->momentum);
+    brunt_tool_spin(tool, report->spin);
+    report->kinetic = brunt_tool_kinetic(tool), report->gravity_work = tool->gravity_work;
+}
+
 void brunt_boundary_surface_read(const brunt_world *world, int32_t index, brunt_boundary_surface_report *report) {
     const brunt_boundary_surface *s = &world->boundaries.surfaces.surface[index];
     const brunt_impulse_account *last = &s->boundary->last, *all = &s->boundary->account;
@@ -19,6 +28,7 @@ void brunt_boundary_surface_read(const brunt_world *world, int32_t index, brunt_
         report->moment[a] = kick > 0 ? (last->angular[a] - turn) / kick : 0;
         report->impulse[a] = all->impulse[a];
     }
+    if (s->tool.free) read_tool(&s->tool, report);
 }
 
 int64_t brunt_boundary_surface_size(const brunt_world *world, int32_t index) {

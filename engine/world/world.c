@@ -132,7 +132,9 @@ static void warn_of_lone_points(brunt_world *world) {
 
 static int finish_explicit(brunt_world *world, const brunt_world_def *def, brunt_error *error) {
     int status = def->contact.allow_overlap ? BRUNT_OK : brunt_surfaces_overlap(world, error);
-    if (!status) status = brunt_boundary_surfaces_sides(&world->boundaries.surfaces, &world->bodies, def->contact.allow_overlap, error);
+    if (!status)
+        status = brunt_boundary_surfaces_sides(&world->boundaries.surfaces, &world->bodies, def->contact.allow_overlap,
+                                               error);
     if (!status) warn_of_lone_points(world);
     return status;
 }

@@ -73,6 +73,18 @@ static void add_gas(brunt_history *h, const brunt_world *world, int32_t index) {
     add_named(h, "J", gas.inflow, "gas.%s.inflow", gas.name);
 }
 
+static void add_tool(brunt_history *h, const brunt_boundary_surface_report *now) {
+    char name[COLUMN_NAME];
+    snprintf(name, sizeof name, "wall.%s.position", now->name);
+    add_vector(h, name, "m", now->position);
+    snprintf(name, sizeof name, "wall.%s.velocity", now->name);
+    add_vector(h, name, "m/s", now->velocity);
+    snprintf(name, sizeof name, "wall.%s.spin", now->name);
+    add_vector(h, name, "rad/s", now->spin);
+    add_named(h, "J", now->kinetic, "wall.%s.kinetic", now->name);
+    add_named(h, "J", now->gravity_work, "wall.%s.gravity_work", now->name);
+}
+
 // Beside the force, which it has as every boundary: of the last step.
 static void add_surface(brunt_history *h, const brunt_world *world, int32_t index) {
     brunt_boundary_surface_report now;
@@ -83,6 +95,7 @@ static void add_surface(brunt_history *h, const brunt_world *world, int32_t inde
     add_named(h, "J", now.work, "wall.%s.work", now.name);
     add_named(h, "m/s", now.drift, "wall.%s.drift", now.name);
     add_named(h, "1", now.active, "wall.%s.active", now.name);
+    if (now.mass > 0) add_tool(h, &now);
 }
 
 static void add_energy(brunt_history *h, brunt_world *world) {

@@ -158,6 +158,16 @@ static json_t *newton_of(const brunt_world *world) {
     return newton;
 }
 
+static void set_tool(json_t *entry, const brunt_boundary_surface_report *now) {
+    json_object_set_new(entry, "mass", number(now->mass));
+    json_object_set_new(entry, "position", vector(now->position));
+    json_object_set_new(entry, "velocity", vector(now->velocity));
+    json_object_set_new(entry, "spin", vector(now->spin));
+    json_object_set_new(entry, "angular_momentum", vector(now->angular_momentum));
+    json_object_set_new(entry, "kinetic", number(now->kinetic));
+    json_object_set_new(entry, "gravity_work", number(now->gravity_work));
+}
+
 // Lines and surfaces that hold material points, NULL where there are none.
 static json_t *boundaries_of(const brunt_world *world) {
     if (!brunt_boundary_surface_count(world)) return NULL;
@@ -173,6 +183,7 @@ static json_t *boundaries_of(const brunt_world *world) {
         json_object_set_new(entry, "drift", number(now.drift));
         json_object_set_new(entry, "pieces", json_integer(now.pieces));
         json_object_set_new(entry, "active", json_integer(now.active));
+        if (now.mass > 0) set_tool(entry, &now);
         json_object_set_new(all, now.name, entry);
     }
     return all;

@@ -65,6 +65,42 @@ static void fill_condition(scene_reader *reader, const scene_node *node, brunt_b
     def->friction = brunt_real_of(node, "friction", 0);
 }
 
+// Three numbers of one: in two dimensions about z, in three about all axes if `all`.
+static void fill_turn(scene_reader *reader, scene_node *node, bool all, double out[3]) {
+    if (!node || !node->good) return;
+    if (node->components == 3) {
+        for (int a = 0; a < 3; a++) out[a] = node->value[a];
+    } else if (reader->dimension == 3 && !all) {
+        brunt_tree_complain(reader->tree, node, "in three dimensions an angular velocity is a vector");
+    } else {
+        for (int a = reader->dimension == 2 ? 2 : 0; a < 3; a++) out[a] = node->value[0];
+    }
+}
+
+// What a rigid tool has that is free.
+static void fill_tool(scene_reader *reader, scene_node *node, brunt_boundary_surface_def *def) {
+    static const char *const parts[] = {"inertia", "center", "spin"};
+    static const char *const prescribed[] = {"displacement", "rotation", "table"};
+    scene_node *mass = brunt_tree_child(node, "mass"), *inertia = brunt_tree_child(node, "inertia");
+    for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) {
+        if (!mass) brunt_refuse_key(reader, node, parts[k], "it is of a free tool, which has a mass");
+        if (mass && k > 0 && !inertia)
+            brunt_refuse_key(reader, node, parts[k], "without inertia the tool does not turn");
+    }
+    for (size_t k = 0; mass && k < sizeof prescribed / sizeof *prescribed; k++)
+        brunt_refuse_key(reader, node, prescribed[k], "mass is given as well: what is free goes as forces have it");
+    if (inertia && !brunt_tree_child(node, "center"))
+        brunt_tree_complain_key(reader->tree, inertia, "center is missing: about what the tool turns");
+    fill_turn(reader, inertia, true, def->inertia);
+    for (int a = 0; inertia && inertia->good && a < inertia->components; a++)
+        if (!(inertia->value[a] > 0)) {
+            brunt_tree_complain(reader->tree, inertia, "%g is not above 0", inertia->value[a]);
+            break;
+        }
+    fill_turn(reader, brunt_tree_child(node, "spin"), false, def->spin);
+    brunt_vector_of(node, "center", def->center);
+}
+
 static void fill_motion(scene_reader *reader, scene_node *node, brunt_boundary_surface_def *def) {
     const scene_node *velocity = brunt_tree_child(node, "velocity"), *way = brunt_tree_child(node, "displacement"),
                      *turn = brunt_tree_child(node, "rotation"),
@@ -72,6 +108,7 @@ static void fill_motion(scene_reader *reader, scene_node *node, brunt_boundary_s
                               : velocity ? velocity
                                          : turn;
     def->displacement = way != NULL || turn != NULL;
+    fill_tool(reader, node, def);
     if (turn) brunt_fill_rotation(reader, turn, &def->rotation);
     if (turn && velocity)
         brunt_tree_complain_key(reader->tree, velocity,

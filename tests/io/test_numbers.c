@@ -124,6 +124,18 @@ static const char flat_text[] =
     "  - {name: line, line: {points: [[0, 0], [1, 0], [1, 1]]}, condition: separate, friction: 0.2, piece: 2,\n"
     "    particles_per_cell: 5, about: [1, 2], displacement: [0.1, 0.2], table: [[0, 0], [1, 2]]}\n";
 
+static const char tool_text[] =
+    "brunt: 1\n"
+    "dimension: 2\n"
+    "time: {end: 1 ms}\n"
+    "grid: {cell: 0.1}\n"
+    "materials: {gum: {model: neo-hookean, density: 1000, E: 1e6, nu: 0.4}}\n"
+    "bodies:\n"
+    "  block: {method: mpm, material: gum, shape: {box: {min: [0, 0], max: [1, 1]}}}\n"
+    "boundaries:\n"
+    "  - {name: tool, line: {points: [[5, 0], [6, 0], [6, 1]], closed: true}, condition: separate, mass: 3,\n"
+    "    inertia: 0.7, center: [5.5, 0.5], velocity: [0.3, 0.4], spin: 0.6}\n";
+
 static const char static_text[] =
     "brunt: 1\n"
     "dimension: 3\n"
@@ -145,8 +157,8 @@ static const char crowd_text[] =
     "    radius_spread: 0.1, gap: 1 mm}, random: {E: {normal: [1e6, 2e5], between: [5e5, 2e6]}, seed: 3}}\n"
     "contact: {method: barrier, friction: 0.2, slip_length: 1 um}\n";
 
-static const char *const texts[] = {small_scene_text, small_elements_text, rich_text, implicit_text,
-                                    flat_text,        static_text,         crowd_text};
+static const char *const texts[] = {small_scene_text, small_elements_text, rich_text,   implicit_text,
+                                    flat_text,        tool_text,           static_text, crowd_text};
 enum { TEXTS = sizeof texts / sizeof *texts };
 
 static int parse(const char *text, char **messages) {

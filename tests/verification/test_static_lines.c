@@ -197,7 +197,7 @@ START_TEST(not_held) {
 }
 END_TEST
 
-// Friction bears what is below its cone, and no more: a block under its weight and a load along the floor.
+// Friction carries what is below its cone, and no more: a block under its weight and a load along the floor.
 START_TEST(rubs) {
     brunt_world_def def = begin(2, 2, 4, 0.3);
     def_box(&def, "block", XYZ(0.03, 0.02, 0), XYZ(0.83, 0.42, 0));
@@ -213,7 +213,7 @@ START_TEST(rubs) {
 }
 END_TEST
 
-// A column that is shortened between a foot that holds it and a line that it may leave buckles: it bears Euler's load,
+// A column that is shortened between a foot that holds it and a line that it may leave buckles: it carries Euler's load,
 // with ends that do not turn, and no more.
 START_TEST(buckles) {
     brunt_world_def def = begin(2, 2, 30, 0);
@@ -222,7 +222,7 @@ START_TEST(buckles) {
     def_line(&def, 0.03, 0.02, 0.03 + H, 0.02, BRUNT_STICK)->piece = 1;
     brunt_boundary_surface_def *top = def_line(&def, 1, 0.02 + L, -1, 0.02 + L, BRUNT_SEPARATE);
     top->piece = 1;
-    top->displacement = true, top->value[1] = -0.03; // straight it would bear 3 kN
+    top->displacement = true, top->value[1] = -0.03; // straight it would carry 3 kN
     set_table(top, 2, (const double[2][2]){{0, 0}, {1, 1}});
     brunt_world *world = world_take(&def);
     double most = 0, last = 0;
@@ -230,7 +230,7 @@ START_TEST(buckles) {
         world_steps(world, 1), most = fmax(most, last = world_boundary(world, 0).force[1]);
     brunt_newton_counts n;
     brunt_world_newton(world, &n, NULL);
-    printf("  bears %.1f N at most, %.1f N at the end, Euler %.1f N; %g cuts\n", most, last, wanted, n.cuts);
+    printf("  carries %.1f N at most, %.1f N at the end, Euler %.1f N; %g cuts\n", most, last, wanted, n.cuts);
     ck_assert_double_le(fabs(most / wanted - 1), 0.1);
     ck_assert_double_gt(last, 0);
     brunt_world_destroy(world);

@@ -31,6 +31,13 @@ typedef struct brunt_boundary_surface_def {
     double piece;                // cells > 0, about: length of a piece, of a surface the edge of one; default 1.5
     int32_t particles;           // > 0, a cell's length: boundary particles, by which a piece sees the grid; default 4
     double about[3];             // [m] of the moments that are reported; default 0
+    // Explicit steps: a rigid tool that is free, begins with `value` as its velocity and has neither table,
+    // displacement nor rotation. In plane strain all is of a thickness of 1 m.
+    double mass;       // [kg] >= 0; default 0: its motion is prescribed
+    double inertia[3]; // [kg m^2] about axes through `center` along those of the scene, its principal ones, in two
+                       // dimensions the third; default 0: it does not turn
+    double center[3];  // [m] of mass, at the start; default 0
+    double spin[3];    // [rad/s] at the start; default 0
 } brunt_boundary_surface_def;
 
 // With every default that is given above; what has none is not set.

@@ -128,6 +128,10 @@ typedef struct brunt_boundary_surface_report {
     double work;                // [J] that its motion has done on the bodies since the start
     double drift;               // [m/s] >= 0 greatest rate at which a piece's material leaves what holds it
     int32_t pieces, active;     // >= 1; >= 0, those that hold something
+    double mass;                // [kg] of a free tool; 0: it is none, and all that follows is 0
+    double position[3], velocity[3], spin[3]; // [m], [m/s] of its centre of mass, [rad/s]
+    double angular_momentum[3];               // [kg m^2/s] about that
+    double kinetic, gravity_work;             // [J], the latter since the start
 } brunt_boundary_surface_report;
 int32_t brunt_boundary_surface_count(const brunt_world *world); // 0: there are none
 // The next three: 0 <= index < brunt_boundary_surface_count, which is not looked at.
