@@ -213,8 +213,8 @@ START_TEST(rubs) {
 }
 END_TEST
 
-// A column that is shortened between a foot that holds it and a line that it may leave buckles: it carries Euler's load,
-// with ends that do not turn, and no more.
+// A column that is shortened between a foot that holds it and a line that it may leave buckles: it carries Euler's
+// load, with ends that do not turn, and no more.
 START_TEST(buckles) {
     brunt_world_def def = begin(2, 2, 30, 0);
     const double L = 2, H = 0.2, I = H * H * H / 12, wanted = PI * PI * YOUNG * I / (L * L);
