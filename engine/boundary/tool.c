@@ -10,8 +10,8 @@
 static const double ROUNDING = 1e-16; // of the momentum: what iterations for its mean may leave
 enum { ITERATION_LIMIT = 100 };
 
-void brunt_tool_make(brunt_tool *t, const brunt_boundary_surface_def *def, int dim, bool rings) {
-    *t = (brunt_tool){.free = def->mass > 0, .dim = dim, .rings = rings, .mass = def->mass, .node = BRUNT_NONE};
+void brunt_tool_make(brunt_tool *t, const brunt_boundary_surface_def *def, int dim, bool axial) {
+    *t = (brunt_tool){.free = def->mass > 0, .dim = dim, .axial = axial, .mass = def->mass, .node = BRUNT_NONE};
     t->frame[0] = 1;
     if (!t->free) return;
     for (int a = 0; a < 3; a++) {
@@ -119,7 +119,7 @@ void brunt_tool_begin(brunt_tool *t, const double gravity[3], double kick) {
     t->told = 0;
     for (int a = 0; a < 3; a++) {
         t->impulse[a] = t->moment[a] = 0;
-        t->gravity[a] = a < t->dim && !(t->rings && a == 0) ? t->mass * gravity[a] * kick : 0;
+        t->gravity[a] = a < t->dim && !(t->axial && a == 0) ? t->mass * gravity[a] * kick : 0;
         t->v[a] += t->gravity[a] / t->mass;
     }
 }
@@ -133,7 +133,7 @@ static int make_nodes(brunt_tool *t, brunt_constraint_set *set, brunt_error *err
     brunt_dof_node *centre = &set->dof_node[t->node];
     for (int a = 0; a < t->dim; a++) {
         centre->v[a] = t->v[a], centre->old[a] = t->old[a];
-        centre->inverse[a] = t->rings && a == 0 ? 0 : 1 / t->mass;
+        centre->inverse[a] = t->axial && a == 0 ? 0 : 1 / t->mass;
     }
     axes_of(t, axis);
     brunt_tool_spin(t, spin);

@@ -15,7 +15,7 @@
 enum { BRUNT_TOOL_STATE = 14 };
 
 typedef struct brunt_tool {
-    bool free, turns, rings; // rings: along the axis only
+    bool free, turns, axial; // axial: of an axisymmetric world, along the axis only
     int dim;
     double mass, inertia[3]; // [kg], [kg m^2] about the scene's axes through the centre at the start
     double centre[3];        // [m] at the start
@@ -27,7 +27,7 @@ typedef struct brunt_tool {
     int32_t node; // first of its degrees of freedom in the constraints under way, BRUNT_NONE: it has none
 } brunt_tool;
 
-void brunt_tool_make(brunt_tool *tool, const brunt_boundary_surface_def *def, int dim, bool rings);
+void brunt_tool_make(brunt_tool *tool, const brunt_boundary_surface_def *def, int dim, bool axial);
 // Where it is, of places as they were at the start; and where it will be after a step of `dt` if nothing touches it.
 brunt_placement brunt_tool_place(const brunt_tool *tool);
 brunt_placement brunt_tool_place_after(const brunt_tool *tool, double dt);

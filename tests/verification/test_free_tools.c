@@ -137,6 +137,35 @@ START_TEST(drop_weight) {
 }
 END_TEST
 
+// The same about an axis: a plate on the end of a rod, with the area of the whole circle.
+START_TEST(axial) {
+    const double R = 0.4, L = 4, m = 400, v = 0.1, speed = sqrt(YOUNG / DENSITY),
+                 rate = DENSITY * speed * PI * R * R / m;
+    brunt_world_def def = begin(2, 0);
+    def.axisymmetric = true;
+    snprintf(def.materials[0].strength, sizeof def.materials[0].strength, "linear-elastic");
+    def_box(&def, "rod", XYZ(0, 0, 0), XYZ(R, L, 0));
+    brunt_boundary_surface_def *q = def_line(&def, 0, 0, 0.6, 0, BRUNT_SEPARATE);
+    q->mass = m, q->value[1] = v, q->friction = 0.3;
+    brunt_world *world = world_take(&def);
+    double worst = 0;
+    for (int k = 1; k <= 20; k++) {
+        world_until(world, k * 0.9 * 2 * L / speed / 20);
+        const double wanted = v * exp(-rate * (brunt_world_time(world) - 0.5 * brunt_world_dt(world)));
+        worst = fmax(worst, fabs(tool_of(world, 0).velocity[1] - wanted) / v);
+    }
+    const brunt_boundary_surface_report e = tool_of(world, 0);
+    const double off = world_momentum(world).linear[1] + m * e.velocity[1] - m * v;
+    printf("  speed off by %.4f of it at most, momentum %.1e, energy %.1e\n", worst, off / (m * v),
+           (e.kinetic + e.work) / (0.5 * m * v * v) - 1);
+    ck_assert_double_le(worst, 0.03);
+    ck_assert_double_le(fabs(off), ROUNDING * m * v);
+    ck_assert_double_le(fabs((e.kinetic + e.work) / (0.5 * m * v * v) - 1), ROUNDING);
+    ck_assert(e.velocity[0] == 0 && e.position[0] == 0);
+    brunt_world_destroy(world);
+}
+END_TEST
+
 // A tool that spins and flies hits one block, or two that lie side by side, off its middle and with friction; of any
 // mass.
 static brunt_world_def hit(int dim, double mass, bool two, brunt_condition condition) {
@@ -296,6 +325,7 @@ int main(void) {
     Suite *suite = suite_create("free_tools");
     ADD_LOOP(flies, 3);
     ADD_LOOP(drop_weight, 4);
+    ADD_LOOP(axial, 1);
     ADD_LOOP(hits, 48);
     ADD_LOOP(lies, 2);
     ADD_LOOP(threads, 1);
