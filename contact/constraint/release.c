@@ -62,7 +62,7 @@ static bool releases(const brunt_constraint_set *p, const brunt_constraint *c) {
 }
 
 // Books what pushes have taken. Whether anything is to be given back.
-static bool book_touches(brunt_constraint_set *p) {
+static bool account_touches(brunt_constraint_set *p) {
     bool any = false;
     for (int32_t k = 0; k < p->constraint_count; k++)
         if (p->constraint[k].touch)
@@ -148,7 +148,7 @@ static void note_work(void *context, int64_t begin, int64_t end, int worker) {
     }
 }
 
-// What is left stays held; what was given too much is owed by who gave it, as far as the others of the pair cannot pay.
+// What is left stays held; what was given too much is owed by what got it, as far as the others of the pair cannot pay.
 static void settle(brunt_constraint_set *p) {
     sum_left(p);
     for (int32_t k = 0; k < p->constraint_count; k++) {
@@ -173,7 +173,7 @@ int brunt_constraints_release(brunt_constraint_set *p, int threads, brunt_timer 
     if (BRUNT_CAPACITY(p->release, (size_t)p->constraint_count, 0, "contact points", error)) return BRUNT_FAILED;
     const int64_t chunks = (p->constraint_count + GRAIN - 1) / GRAIN;
     brunt_parallel(threads, chunks, 1, note_taken, p, timer);
-    if (!book_touches(p)) return BRUNT_OK;
+    if (!account_touches(p)) return BRUNT_OK;
     double held = 0;
     for (int round = 0; round < ROUNDS; round++) {
         const double left = sum_left(p);

@@ -107,9 +107,8 @@ static const double *set_account(brunt_impulse_account *account, const double *i
 }
 
 // What touches hold: of scenes that give it back.
-static int64_t touches_count(const brunt_world *world) {
-    return world->contact.def.touch == BRUNT_TOUCH_ELASTIC ? brunt_node_touches_state_count(&world->contact.surface)
-                                                           : 0;
+static int64_t touches_count(const brunt_contact *contact) {
+    return contact->def.touch == BRUNT_TOUCH_ELASTIC ? brunt_node_touches_state_count(&contact->surface) : 0;
 }
 
 static brunt_state_block world_info(const brunt_world *world, int index) {
@@ -122,7 +121,7 @@ static brunt_state_block world_info(const brunt_world *world, int index) {
                                   brunt_gas_state_count(&world->boundaries.sets) +
                                   brunt_boundary_surfaces_state_count(&world->boundaries.surfaces),
                               world->pairs.count * account,
-                              brunt_node_to_facet_state_count(&world->contact.surface) + touches_count(world),
+                              brunt_node_to_facet_state_count(&world->contact.surface) + touches_count(&world->contact),
                               brunt_surface_affine_count(&world->contact.surface),
                               brunt_erosion_state_count(&world->erosion),
                               brunt_saved_count(newton_table, NEWTON_ROWS) + brunt_implicit_kept_count(&world->plan)};
@@ -132,24 +131,25 @@ static brunt_state_block world_info(const brunt_world *world, int index) {
     return block;
 }
 
-static void get_search(const brunt_contact *contact, bool touches, double *to) {
+static void get_search(const brunt_contact *contact, double *to) {
     brunt_node_to_facet_state_get(contact->node_to_facet, &contact->surface, to);
     to += brunt_node_to_facet_state_count(&contact->surface);
-    if (touches) brunt_node_touches_state_get(contact->node_to_facet, &contact->surface, to);
+    if (touches_count(contact)) brunt_node_touches_state_get(contact->node_to_facet, &contact->surface, to);
 }
 
-static int set_search(brunt_contact *contact, int mpm_count, bool touches, const double *from, brunt_error *error) {
+static int set_search(brunt_contact *contact, int mpm_count, const double *from, brunt_error *error) {
     if (brunt_node_to_facet_state_set(&contact->node_to_facet, &contact->surface, mpm_count, from, error))
         return BRUNT_FAILED;
     from += brunt_node_to_facet_state_count(&contact->surface);
-    return touches ? brunt_node_touches_state_set(contact->node_to_facet, &contact->surface, from, error) : BRUNT_OK;
+    return touches_count(contact) ? brunt_node_touches_state_set(contact->node_to_facet, &contact->surface, from, error)
+                                  : BRUNT_OK;
 }
 
 static void world_get(brunt_world *world, int block, double *to) {
     if (block == EROSION_BLOCK) brunt_erosion_state_get(&world->erosion, to);
     if (block == NEWTON_BLOCK)
         brunt_implicit_kept_get(&world->plan, brunt_saved_get(newton_table, NEWTON_ROWS, world, to));
-    if (block == SEARCH_BLOCK) get_search(&world->contact, touches_count(world) > 0, to);
+    if (block == SEARCH_BLOCK) get_search(&world->contact, to);
     if (block == 4) brunt_surface_affine_get(&world->contact.surface, to);
     if (block == 0) to = brunt_saved_get(clock_table, CLOCK_ROWS, world, to);
     for (int i = 0; block == 0 && i < world->bodies.mpm_count; i++) *to++ = (double)world->bodies.mpm[i].speed;
@@ -165,9 +165,7 @@ static int world_set(brunt_world *world, int block, const double *from, brunt_er
     if (block == EROSION_BLOCK) brunt_erosion_state_set(&world->erosion, from);
     if (block == NEWTON_BLOCK)
         brunt_implicit_kept_set(&world->plan, brunt_saved_set(newton_table, NEWTON_ROWS, world, from));
-    if (block == SEARCH_BLOCK &&
-        set_search(&world->contact, world->bodies.mpm_count, touches_count(world) > 0, from, error))
-        return BRUNT_FAILED;
+    if (block == SEARCH_BLOCK && set_search(&world->contact, world->bodies.mpm_count, from, error)) return BRUNT_FAILED;
     if (block == 4) brunt_surface_affine_set(&world->contact.surface, from);
     if (block == 0) from = brunt_saved_set(clock_table, CLOCK_ROWS, world, from);
     for (int i = 0; block == 0 && i < world->bodies.mpm_count; i++) world->bodies.mpm[i].speed = (real)*from++;
