@@ -109,4 +109,5 @@ def main():
     sys.exit(count[0] > 0 or count[1] == 0)
 
 
-main()
+if __name__ == "__main__":
+    main()
