@@ -7,7 +7,7 @@
 //   form      node_to_facet|averaged_facets|averaged_surface|published|none|rigid
 //   transfer  pic|apic, of the published form
 //   n         iterations or sweeps (-1: the form's own)            mu        friction
-//   touch     elastic|inelastic
+//   touch     inelastic|elastic (contact_table.md is of the first)
 //   element   tet4|hex8                                            end       [s]
 //   speed     factor on the velocities                             stiff     factor on E
 //   e1, r1    factors on E and density of the first body           dt        factor on the time step
@@ -83,7 +83,7 @@ static settings read_settings(int argc, char **argv) {
              : !strcmp(form, "averaged_surface") ? BRUNT_AUGURY_AVERAGED_SURFACE
              : !strcmp(form, "published")        ? BRUNT_AUGURY_PUBLISHED
                                                  : BRUNT_AUGURY_NODE_TO_FACET;
-    s.touch = strcmp(word(argc, argv, "touch", "elastic"), "elastic") ? BRUNT_TOUCH_INELASTIC : BRUNT_TOUCH_ELASTIC;
+    s.touch = strcmp(word(argc, argv, "touch", "inelastic"), "elastic") ? BRUNT_TOUCH_INELASTIC : BRUNT_TOUCH_ELASTIC;
     s.transfer = !strcmp(word(argc, argv, "transfer", "apic"), "pic") ? BRUNT_PIC : BRUNT_APIC;
     s.element = !strcmp(word(argc, argv, "element", "tet4"), "hex8") ? BRUNT_HEX8 : BRUNT_TET4;
     return s;

@@ -7,17 +7,21 @@
 #include "base/vector.h"
 
 enum { GRAIN = 128, ROUNDS = 16 };
-static const double LEAST_TAKEN = 1e-3; // of what the impulse would take of its own mass alone
-static const double LEAST_LEFT = 1e-3;  // of what was held
-static const double LAST_LEFT = 0.01;   // of what all hold: rounds end
+static const double LEAST_PUSH = 1e-9;   // of what would stop it
+static const double LEAST_TAKEN = 1e-3;  // of what the impulse would take of its own mass alone
+static const double LEAST_MOTION = 1e-6; // of the energy of its motion, whichever way: at least so much is that
+static const double LEAST_LEFT = 1e-3;   // of what was held
+static const double LAST_LEFT = 0.01;    // of what all hold: rounds end
 
 // What a touch does in a step, of each constraint that has one.
 struct brunt_release {
     double impulse; // [N s] given back
     double work;    // [J] of it, beyond what the pushes would have done without
     bool settled;   // it releases
+    bool pushes;    // by more than rounding, as of what slides along a wall
     double pressed; // [m/s] by how much the pushes of the step have changed u_n
     double taken;   // [J] by its push
+    double alone;   // [J] what it would take of its own mass alone
     double left;    // [J] of what it is to give back; below 0: too much was given, since others gave beside it
 };
 
@@ -46,10 +50,15 @@ static void note_taken(void *context, int64_t begin, int64_t end, int worker) {
     brunt_constraint_set *p = context;
     for (int64_t k = begin * GRAIN; k < end * GRAIN && k < p->constraint_count; k++) {
         const brunt_constraint *c = &p->constraint[k];
-        p->release[k] = (brunt_release){0};
+        brunt_release *r = &p->release[k];
+        *r = (brunt_release){0};
         if (!c->touch || !(c->normal_impulse > 0)) continue;
-        const double old = along(p, c, true);
-        if (old > -p->leap) p->release[k].taken = -0.5 * c->normal_impulse * (old + along(p, c, false));
+        double old[3], now[3];
+        brunt_constraint_velocity(p, c, true, old), brunt_constraint_velocity(p, c, false, now);
+        const double motion = dot(old, old) + dot(now, now), J = c->normal_impulse;
+        r->pushes = J > LEAST_PUSH * c->scale * sqrt(motion);
+        r->alone = 0.5 * fmax(J * J / c->scale, LEAST_MOTION * c->scale * motion);
+        if (r->pushes && dot(old, c->n) > -p->leap) r->taken = -0.5 * J * (dot(old, c->n) + dot(now, c->n));
     }
 }
 
@@ -71,19 +80,19 @@ static bool account_touches(brunt_constraint_set *p) {
         const brunt_constraint *c = &p->constraint[k];
         if (!c->touch) continue;
         c->touch->met++;
-        if (c->normal_impulse > 0) {
+        if (p->release[k].pushes) {
             c->touch->pushed = true;
             c->touch->held += p->release[k].taken;
-            // What presses without an approach takes rounding alone, the root of which would be a kick.
-            const double alone = 0.5 * c->normal_impulse * c->normal_impulse / c->scale;
-            if (c->touch->held > 0 && c->touch->held < LEAST_TAKEN * alone) c->touch->held = 0;
+            c->touch->alone = fmax(c->touch->alone, p->release[k].alone);
         } else if (may_release(p, c)) {
             c->touch->releases++;
         }
     }
-    for (int32_t k = 0; k < p->constraint_count && !any; k++) {
+    for (int32_t k = 0; k < p->constraint_count; k++) {
         const brunt_constraint *c = &p->constraint[k];
-        any = releases(p, c);
+        // What presses without an approach takes rounding alone, the root of which would be a kick.
+        if (c->touch && c->touch->held > 0 && c->touch->held < LEAST_TAKEN * c->touch->alone) c->touch->held = 0;
+        any = any || releases(p, c);
     }
     return any;
 }
@@ -157,11 +166,11 @@ static void settle(brunt_constraint_set *p) {
         brunt_release *r = &p->release[k];
         r->settled = is_settled(p, c);
         if (!r->settled) continue;
-        if (fabs(r->left) < LEAST_LEFT * fabs(c->touch->held)) r->left = 0;
         if (r->left < 0)
             r->left *= a->overspent > a->unspent ? 1 - a->unspent / a->overspent : 0;
         else
             r->left *= payable(a);
+        if (fabs(r->left) < LEAST_LEFT * fabs(c->touch->held)) r->left = 0;
     }
     for (int32_t k = 0; k < p->constraint_count; k++)
         if (p->release[k].settled) p->constraint[k].touch->held = 0;

@@ -255,6 +255,16 @@ static void load_dof_nodes(void *context, int64_t begin, int64_t end, int worker
     }
 }
 
+// The part of an angular velocity in the row sums of an entry that pushes and of one that rubs.
+static void add_levers(const brunt_dof_node *s, const brunt_constraint_entry *own, const brunt_constraint_entry *rubs,
+                       double along[3], double across[3]) {
+    for (int a = 0; a < 3; a++) {
+        const double push = fabs(own->height_gradient[a]), rub = fabs(rubs->height_gradient[a]), both = fmax(push, rub);
+        along[a] += (s->crossed ? both : push) * s->load * s->inverse[0];
+        across[a] += (s->crossed ? both : rub) * s->load_t * s->inverse[0];
+    }
+}
+
 // Row sums, in units of the effective masses.
 static void sum_rows(void *context, int64_t begin, int64_t end, int worker) {
     (void)worker;
@@ -265,13 +275,16 @@ static void sum_rows(void *context, int64_t begin, int64_t end, int worker) {
         for (int32_t e = constraint->first; e < constraint->first + constraint->count; e++) {
             const brunt_dof_node *s = &p->dof_node[p->entry[e].dof_node];
             const brunt_constraint_entry *own = &p->entry[e],
-                                         *other = own + (constraint->friction_point ? constraint->count : 0);
+                                         *rubs = own + (constraint->friction_point ? constraint->count : 0);
+            if (s->angular) {
+                add_levers(s, own, rubs, along, across);
+                continue;
+            }
+            const double *weight = own->weight, *other = rubs->weight;
             for (int a = 0; a < 3; a++) {
-                const double push = fabs(s->angular ? own->height_gradient[a] : own->weight[a]),
-                             rub = fabs(s->angular ? other->height_gradient[a] : other->weight[a]),
-                             both = fmax(push, rub), inverse = s->inverse[s->angular ? 0 : a];
-                along[a] += (s->crossed ? both : push) * s->load * inverse;
-                across[a] += (s->crossed ? both : rub) * s->load_t * inverse;
+                const double push = fabs(weight[a]), rub = fabs(other[a]), both = fmax(push, rub);
+                along[a] += (s->crossed ? both : push) * s->load * s->inverse[a];
+                across[a] += (s->crossed ? both : rub) * s->load_t * s->inverse[a];
             }
         }
         for (int a = 0; a < 3; a++) {
