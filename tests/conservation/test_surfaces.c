@@ -243,7 +243,6 @@ static double cubes_about(form f, brunt_touch_kind touch, int count, bool backwa
     return drift;
 }
 
-// Touches are released where pushes are exactly 0, and the root of what they took is given back: rounding grows.
 START_TEST(order_of_bodies_does_not_matter) {
     static const int counts[] = {3, 4, 8};
     const form f = (form)(_i % FORMS);
@@ -258,7 +257,7 @@ START_TEST(order_of_bodies_does_not_matter) {
     ck_assert_double_lt(drift, 100 * ROUNDING);
     ck_assert_double_gt(fabs(one[0][0] - 2), 0.1);     // they met
     const bool in_order = f == SMOOTH || f == SURFACE; // they take pair after pair
-    ck_assert_double_lt(far, in_order ? 0.2 : f == AFFINE && touch == BRUNT_TOUCH_ELASTIC ? 1e-4 : 1e3 * ROUNDING);
+    ck_assert_double_lt(far, in_order ? 0.2 : 1e3 * ROUNDING);
 }
 END_TEST
 
@@ -378,7 +377,7 @@ START_TEST(overlap_makes_no_energy) {
     for (int k = 0; k < 60; k++) {
         world_steps(world, 10);
         brunt_energy e = world_energy(world);
-        most = fmax(most, stored(&e) - e.initial);
+        most = fmax(most, stored(&e) - e.initial - fmax(e.error, 0)); // the integrator's own error is asserted below
         fastest = fmax(fastest, fmax(body_speed(world, 0), body_speed(world, 1)));
     }
     brunt_energy e = world_energy(world);
@@ -388,8 +387,7 @@ START_TEST(overlap_makes_no_energy) {
         hard_case("C17", fmax(0, most) / pressed, 1, 1,
                   "meshes, overlap %g h, %g m/s: energy made [of what pressing takes]", overlap / h, speed);
     }
-    // Far below what pressing them would take; with touches that give back, pushing them apart is not paid by loss.
-    ck_assert_double_lt(most, ROUNDING * (e.initial + pressed) + (f == AFFINE && speed > 0 ? 0.01 * pressed : 0));
+    ck_assert_double_lt(most, ROUNDING * (e.initial + pressed)); // far below what pressing them would take
     ck_assert_double_lt(fabs(e.error), 1e-3 * fmax(e.initial, pressed));
     brunt_world_destroy(world);
 }
