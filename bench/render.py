@@ -4,8 +4,8 @@
     /usr/bin/python3 bench/render.py out/taylor_bar/vtu/rod_000040.vtu -o rod.png --field plastic_strain --mirror xy
 
 Particles are drawn as balls, elements as the surface of their mesh, in the places of the file (deformed). Several files are
-shown together, with one colour scale. Needs python3-vtk9; where there is no display, xvfb too
-(`sh cmake/install.sh picture`). Exit codes as those of brunt: 64 bad usage, 65 bad input, 74 file system.
+shown together, with one colour scale; one that has not got the field, as the points of a boundary, is grey.
+Needs python3-vtk9; where there is no display, xvfb too (`sh cmake/install.sh picture`). Exit codes as those of brunt: 64 bad usage, 65 bad input, 74 file system.
 """
 import argparse
 import io
@@ -132,14 +132,16 @@ def values_of(np, array, component, path, field):
     return values[:, index]
 
 
-def find_field(grid, field, path):
-    """The array and whether it belongs to the points."""
+def find_field(grid, field, path, needed):
+    """The array and whether it belongs to the points; (None, True): the file has none, and is drawn grey."""
     names = []
     for data, at_points in ((grid.GetPointData(), True), (grid.GetCellData(), False)):
         if data.GetArray(field) is not None:
             return data.GetArray(field), at_points
         names += [data.GetArrayName(i) for i in range(data.GetNumberOfArrays())]
-    fail(65, f"{path}: no field '{field}', there are {', '.join(names) or 'none'}")
+    if needed:
+        fail(65, f"{path}: no field '{field}', there are {', '.join(names) or 'none'}")
+    return None, True
 
 
 def is_mesh(grid):
@@ -149,15 +151,17 @@ def is_mesh(grid):
 def load(vtk, np, args):
     """Particles (places, values, radii) and the surfaces of meshes, of all files; the time of the last."""
     particles, surfaces, time = [], [], None
-    for path in args.files:
-        grid = read_file(vtk, path)
-        array, at_points = find_field(grid, args.field, path)
+    grids = [read_file(vtk, path) for path in args.files]
+    coloured = [g.GetPointData().HasArray(args.field) or g.GetCellData().HasArray(args.field) for g in grids]
+    for path, grid in zip(args.files, grids):
+        array, at_points = find_field(grid, args.field, path, not any(coloured))
         stamp = grid.GetFieldData().GetArray("TimeValue")
         if stamp is not None and stamp.GetNumberOfTuples():
             time = stamp.GetTuple1(0)
         if not grid.GetNumberOfPoints():
             continue
-        values = values_of(np, array, args.component, path, args.field)
+        values = (values_of(np, array, args.component, path, args.field) if array
+                  else np.full(grid.GetNumberOfPoints(), np.nan))
         if is_mesh(grid):
             surfaces += surfaces_of(vtk, np, args, grid, values, at_points)
         elif at_points:
@@ -272,6 +276,7 @@ def colour_table(vtk, args, low, high):
     transfer = vtk.vtkColorTransferFunction()
     for share, red, green, blue in COLOURS[args.colours]:
         transfer.AddRGBPoint(low + share * (high - low), red, green, blue)
+    transfer.SetNanColor(0.6, 0.6, 0.6)
     return transfer
 
 
