@@ -1,13 +1,15 @@
 // Membranes in implicit steps. Everything of an element (membrane.inc) follows from three vectors that are linear in
 // its nodes' displacements, y = (F_1, F_2, q), y_m = y_m at the start + sum_a s_ma u_a with s_ma = b_a1, b_a2, gamma_a:
 //   E(y) = V W(Cbar) + k/2 (|q|^2 - s^2) + k_w/2 (s - w0)^2,
-//   Cbar = F_a . F_b + (|q|^2 - w0^2) M_ab,   s = q . n,   n = F_1 x F_2 / |F_1 x F_2|,
+//   Cbar = F_a . F_b + (|q|^2 - w0^2) M_ab,   s = q . n,   n = g N,   N = F_1 x F_2,   g = 1 / |N| or as crushed,
 // so that gradient and Hessian by y, 9 and 9 x 9 (6 of triangles), are all there is. With S and A = 4 d2W/dCdC
 //   dE = V S_ab F_b . dF_a + V (S:M) q . dq + k q . dq + t ds,                     t = k_w (s - w0) - k s
 //   d2E = V (S_ab dF_a . dF_b + (S:M) |dq|^2 + e A e) + k |dq|^2 + (k_w - k) ds^2 + t d2s,
-//   e = sym(F . dF) + q . dq M,   ds = n . dq + w . dN,   N = F_1 x F_2,   w = (q - s n) / |N|,
-//   d2s = 2 dq . P dN / |N| - [2 (n . dN)(q . dN) + s |dN|^2 - 3 s (n . dN)^2] / |N|^2 + 2 w . (dF_1 x dF_2).
+//   e = sym(F . dF) + q . dq M,   ds = n . dq + w . dN,   w = g q + 2 g' (q . N) N,
+//   d2s = 2 dq . dn + 2 g' (2 (N . dN)(q . dN) + (q . N) |dN|^2) + 4 g'' (q . N)(N . dN)^2 + 2 w . (dF_1 x dF_2),
+//   dn = g dN + 2 g' (N . dN) N, with g' and g'' by |N|^2.
 // W is infinite where Cbar is not positive; a membrane may otherwise turn as it likes, so that steps have no limit.
+#include "fem/crushed.h"
 #include "fem/layout.h"
 #include "fem/potential_parts.h"
 #include "linear/project.h"
@@ -135,18 +137,31 @@ static void respond(const fem_call *call, int64_t slot, int32_t there, int32_t c
 // --------------------------------------------------------------------------------- springs of the warping mode
 
 typedef struct warping {
-    double n[3], w[3], size, s; // of F_1 x F_2; |F_1 x F_2|; q . n [m]
-    double by_y[Y];             // ds
+    double N[3], n[3], w[3], g[3], along, s; // F_1 x F_2; g N; g, g', g'' of |N|^2; q . N, q . n [m]
+    double by_y[Y];                          // ds
 } warping;
+
+// Half of what |q|^2 - s^2 is, with its digits where q is along n.
+static double flat_part(const warping *at, const double *q) {
+    double flat = at->s * at->s * (1 - inner(at->n, at->n));
+    for (int i = 0; i < 3; i++) flat += (q[i] - at->s * at->n[i]) * (q[i] - at->s * at->n[i]);
+    return 0.5 * flat;
+}
 
 static warping warping_at(const double y[Y]) {
     warping at;
-    double N[3];
-    vector_product(y, y + 3, N);
-    at.size = sqrt(inner(N, N));
-    for (int i = 0; i < 3; i++) at.n[i] = N[i] / at.size;
-    at.s = inner(y + 6, at.n);
-    for (int i = 0; i < 3; i++) at.w[i] = (y[6 + i] - at.s * at.n[i]) / at.size, at.by_y[6 + i] = at.n[i];
+    const double *q = y + 6, crushed = BRUNT_CRUSHED * BRUNT_CRUSHED;
+    vector_product(y, y + 3, at.N);
+    const double area = inner(at.N, at.N);
+    if (area >= crushed)
+        at.g[0] = 1 / sqrt(area), at.g[1] = -0.5 * at.g[0] / area, at.g[2] = 0.75 * at.g[0] / (area * area);
+    else
+        at.g[0] = (3 - area / crushed) / (2 * BRUNT_CRUSHED), at.g[1] = -0.5 / (BRUNT_CRUSHED * crushed), at.g[2] = 0;
+    at.along = inner(q, at.N), at.s = at.g[0] * at.along;
+    for (int i = 0; i < 3; i++) {
+        at.n[i] = at.by_y[6 + i] = at.g[0] * at.N[i];
+        at.w[i] = at.g[0] * q[i] + 2 * at.g[1] * at.along * at.N[i];
+    }
     vector_product(y + 3, at.w, at.by_y), vector_product(at.w, y, at.by_y + 3);
     return at;
 }
@@ -163,16 +178,17 @@ static void normal_slope(const double y[Y], double D[3][6]) {
 
 // Adds `t` d2s.
 static void add_warping_curvature(const double y[Y], const warping *at, double t, double h[Y][Y]) {
-    const double *q = y + 6, *n = at->n, over = 1 / at->size;
+    const double *q = y + 6, *N = at->N;
     double D[3][6], K[3][3], KD[3][6] = {{0}}, PD[3][6] = {{0}};
     normal_slope(y, D);
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
-            K[i][j] = -(n[i] * q[j] + q[i] * n[j] + (i == j ? at->s : 0) - 3 * at->s * n[i] * n[j]) * over * over;
+            K[i][j] = 2 * at->g[1] * (N[i] * q[j] + q[i] * N[j] + (i == j ? at->along : 0)) +
+                      4 * at->g[2] * at->along * N[i] * N[j];
     for (int i = 0; i < 3; i++)
         for (int c = 0; c < 6; c++)
             for (int j = 0; j < 3; j++)
-                KD[i][c] += K[i][j] * D[j][c], PD[i][c] += ((i == j) - n[i] * n[j]) * over * D[j][c];
+                KD[i][c] += K[i][j] * D[j][c], PD[i][c] += ((i == j) * at->g[0] + 2 * at->g[1] * N[i] * N[j]) * D[j][c];
     for (int r = 0; r < 6; r++)
         for (int c = 0; c < 6; c++)
             for (int i = 0; i < 3; i++) h[r][c] += t * D[i][r] * KD[i][c];
@@ -197,10 +213,8 @@ static void add_energy(const brunt_fem_potential *p, int64_t slot, const membran
     sum->value += stored, sum->magnitude += fabs(stored);
     if (p->nodes == 3 || !(stored < INFINITY)) return;
     const warping at = warping_at(tile->y[s]);
-    double flat = 0;
-    for (int i = 0; i < 3; i++) flat += (q[i] - at.s * at.n[i]) * (q[i] - at.s * at.n[i]);
     const double rise = at.s - membrane->warp,
-                 held = 0.5 * (membrane->spring * flat + membrane->warp_spring * rise * rise);
+                 held = membrane->spring * flat_part(&at, q) + 0.5 * membrane->warp_spring * rise * rise;
     sum->value += held, sum->magnitude += held;
 }
 

@@ -119,5 +119,45 @@ static inline brunt_mesh quarter_disk(int m, int rings) {
     return mesh;
 }
 
+// Greatest omega^2 of a free element by differences of its forces, by Rayleigh quotients of a power iteration.
+static inline double true_frequency(brunt_fem_body *body) {
+    const int count = 3 * body->node_count;
+    double K[12][12], v[12], w[12], h = 1e-6, quotient = 0;
+    for (int j = 0; j < count; j++) {
+        real *x = brunt_fem_node(body, j / 3) + j % 3, at = *x;
+        for (int side = 0; side < 2; side++) {
+            *x = (real)((double)at + (side ? h : -h));
+            forces(body, 1e-3);
+            for (int i = 0; i < count; i++) {
+                real f[3];
+                brunt_fem_internal_force(body, i / 3, f);
+                double root = sqrt((double)brunt_fem_node(body, i / 3)[BRUNT_FEM_MASS] *
+                                   (double)brunt_fem_node(body, j / 3)[BRUNT_FEM_MASS]);
+                double value = (side ? -1 : 1) * (double)f[i % 3] / (2 * h * root);
+                K[i][j] = side ? K[i][j] + value : value;
+            }
+        }
+        *x = at;
+    }
+    // Shifted, so that the greatest eigenvalue is not outdone by a negative one.
+    double shift = 0;
+    for (int i = 0; i < count; i++)
+        for (int j = 0; j < count; j++) shift = fmax(shift, fabs(K[i][j]));
+    if (!(shift > 0)) return 0; // slack
+    for (int i = 0; i < count; i++) v[i] = uniform(-1, 1);
+    for (int step = 0; step < 3000; step++) {
+        double norm = 0;
+        for (int i = 0; i < count; i++) {
+            w[i] = shift * v[i];
+            for (int j = 0; j < count; j++) w[i] += 0.5 * (K[i][j] + K[j][i]) * v[j];
+            norm += w[i] * w[i];
+        }
+        quotient = sqrt(norm) - shift;
+        for (int i = 0; i < count; i++) v[i] = w[i] / sqrt(norm);
+    }
+    forces(body, 1e-3);
+    return quotient;
+}
+
 #define FOR_MEMBRANES(kind)                                                                                            \
     for (brunt_element_kind kind = BRUNT_MEMBRANE_QUAD4; (int)kind <= BRUNT_MEMBRANE_TRI3; kind++)
