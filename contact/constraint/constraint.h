@@ -110,6 +110,8 @@ typedef struct brunt_constraint_set {
     size_t column_capacity;
     int32_t *column_first;
     size_t column_first_capacity;
+    double (*begun)[3]; // [m/s] of each node before the first sweep
+    size_t begun_capacity;
     struct brunt_constraint_impulse {
         double impulse[3], facet[3];
     } * applied; // of each point, then of each friction point
@@ -124,6 +126,7 @@ typedef struct brunt_constraint_set {
     // Of accelerated sweeps, else unused: what points and nodes had after the sweep before, and of each chunk how much
     // of its correction goes back on the last one's (see solve.c).
     bool accelerated;
+    bool levers;     // of the last solution: it had to count how facets turn under what rubs above them
     int sweeps;      // of the last solution
     double momentum; // [-] share of the last sweep's correction that the next one begins with
     struct brunt_constraint_past {

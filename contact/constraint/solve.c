@@ -11,6 +11,7 @@
 #include "contact/constraint/release.h"
 
 enum { GRAIN = 128 };
+static const double DIVERGES = 10; // times the correction of the first sweep is left
 
 // Three components, and one number that does not count: whatever follows them in memory.
 typedef double quad __attribute__((vector_size(32)));
@@ -47,6 +48,7 @@ void brunt_constraints_free(brunt_constraint_set *p) {
     brunt_free(p->dof_node);
     brunt_free(p->column);
     brunt_free(p->column_first);
+    brunt_free(p->begun);
     brunt_free(p->applied);
     brunt_free(p->changed);
     brunt_free(p->point_past);
@@ -161,6 +163,7 @@ static int transpose(brunt_constraint_set *p, brunt_error *error) {
            points = (size_t)p->constraint_count + (size_t)p->friction_point_count + 1;
     if (BRUNT_CAPACITY(p->column, entries, 0, "entries of contact points", error) ||
         BRUNT_CAPACITY(p->column_first, dof_nodes + 1, 0, "nodes that contact moves", error) ||
+        BRUNT_CAPACITY(p->begun, dof_nodes, 0, "nodes that contact moves", error) ||
         BRUNT_CAPACITY(p->applied, points, 0, "impulses of contact points", error) ||
         BRUNT_CAPACITY(p->changed, points / GRAIN + 2, 0, "groups of contact points", error))
         return BRUNT_FAILED;
@@ -206,9 +209,18 @@ static double greatest_component(const double weight[3]) {
     return fmax(fabs(weight[0]), fmax(fabs(weight[1]), fabs(weight[2])));
 }
 
+// What turning a facet under a point of contact adds to the most of its impulse that a node gets. Of facets that are
+// wide beside the height of that point it is small, and only slows the sweeps down: it counts where they diverge
+// without.
+static double lever(const brunt_constraint_set *p, const double height_gradient[3]) {
+    return p->levers ? brunt_coulomb_norm(3, height_gradient) : 0;
+}
+
 // The most of its impulse that a constraint gives a component of a node.
-static double share_of(const brunt_dof_node *node, const struct brunt_constraint_column *by) {
-    return node->angular ? brunt_coulomb_norm(3, by->height_gradient) : greatest_component(by->weight);
+static double share_of(const brunt_constraint_set *p, const brunt_dof_node *node,
+                       const struct brunt_constraint_column *by) {
+    return node->angular ? brunt_coulomb_norm(3, by->height_gradient)
+                         : greatest_component(by->weight) + lever(p, by->height_gradient);
 }
 
 // Whether diagonal matrix D leaves unit vector n in its direction.
@@ -238,16 +250,17 @@ static void load_dof_nodes(void *context, int64_t begin, int64_t end, int worker
         const int32_t first = p->column_first[s], last = p->column_first[s + 1];
         const double *normal = first < last ? p->constraint[p->column[first].constraint].n : NULL;
         double push = 0, rub = 0, both = 0;
+        memcpy(p->begun[s], node->v, sizeof p->begun[s]);
         node->turns = false;
         node->crossed = normal && !keeps_direction(node->inverse, normal);
         for (int32_t q = first; q < last; q++) {
             const struct brunt_constraint_column *by = &p->column[q];
             const brunt_constraint *constraint = &p->constraint[by->constraint];
-            const double along = share_of(node, by);
+            const double along = share_of(p, node, by);
             double across = along;
             node->turns = node->turns || constraint->turns;
             node->crossed = node->crossed || is_crossed(p, normal, by);
-            if (constraint->friction_point) across = share_of(node, &p->column[++q]);
+            if (constraint->friction_point) across = share_of(p, node, &p->column[++q]);
             push += along * constraint->scale, rub += across * constraint->scale;
             both += fmax(along, across) * constraint->scale;
         }
@@ -272,6 +285,7 @@ static void sum_rows(void *context, int64_t begin, int64_t end, int worker) {
     for (int64_t k = begin * GRAIN; k < end * GRAIN && k < p->constraint_count; k++) {
         brunt_constraint *constraint = &p->constraint[k];
         double along[3] = {0}, across[3] = {0};
+        constraint->row_sum = constraint->row_sum_t = 0;
         for (int32_t e = constraint->first; e < constraint->first + constraint->count; e++) {
             const brunt_dof_node *s = &p->dof_node[p->entry[e].dof_node];
             const brunt_constraint_entry *own = &p->entry[e],
@@ -280,9 +294,10 @@ static void sum_rows(void *context, int64_t begin, int64_t end, int worker) {
                 add_levers(s, own, rubs, along, across);
                 continue;
             }
-            const double *weight = own->weight, *other = rubs->weight;
+            const double *weight = own->weight, *other = rubs->weight, turn = lever(p, own->height_gradient),
+                         rub_turn = lever(p, rubs->height_gradient);
             for (int a = 0; a < 3; a++) {
-                const double push = fabs(weight[a]), rub = fabs(other[a]), both = fmax(push, rub);
+                const double push = fabs(weight[a]) + turn, rub = fabs(other[a]) + rub_turn, both = fmax(push, rub);
                 along[a] += (s->crossed ? both : push) * s->load * s->inverse[a];
                 across[a] += (s->crossed ? both : rub) * s->load_t * s->inverse[a];
             }
@@ -505,26 +520,55 @@ void brunt_constraints_apply(brunt_constraint_set *p, int threads, brunt_timer *
     brunt_parallel(threads, (p->dof_node_count + GRAIN - 1) / GRAIN, 1, move_dof_nodes, p, timer);
 }
 
-int brunt_constraints_solve(brunt_constraint_set *p, int sweeps, double tolerance, int threads, brunt_timer *timer,
-                            brunt_error *error) {
-    p->sweeps = 0;
-    if (!p->constraint_count) return BRUNT_OK;
-    if (transpose(p, error)) return BRUNT_FAILED;
+// As before the first sweep.
+static void take_back(brunt_constraint_set *p) {
+    for (int32_t k = 0; k < p->constraint_count; k++) {
+        brunt_constraint *constraint = &p->constraint[k];
+        constraint->normal_impulse = 0;
+        memset(constraint->friction_impulse, 0, sizeof constraint->friction_impulse);
+    }
+    for (int32_t s = 0; s < p->dof_node_count; s++) {
+        memcpy(p->dof_node[s].v, p->begun[s], sizeof p->begun[s]);
+        memset(p->dof_node[s].impulse, 0, sizeof p->dof_node[s].impulse);
+    }
+}
+
+// Sweeps to the tolerance; `*converges`: what is left is not far more than there was.
+static int sweep(brunt_constraint_set *p, int sweeps, double tolerance, int threads, brunt_timer *timer,
+                 bool *converges, brunt_error *error) {
     const int64_t chunks = (p->constraint_count + GRAIN - 1) / GRAIN, groups = (p->dof_node_count + GRAIN - 1) / GRAIN;
-    brunt_parallel(threads, chunks, 1, weigh_constraints, p, timer);
     brunt_parallel(threads, groups, 1, load_dof_nodes, p, timer);
     brunt_parallel(threads, chunks, 1, sum_rows, p, timer);
-    double first = 0, greatest = INFINITY, weight = 1;
+    double start = 0, first = 0, greatest = INFINITY, weight = 1;
     if (p->accelerated && begin_acceleration(p, error)) return BRUNT_FAILED;
+    p->sweeps = 0;
     while (p->sweeps < sweeps && !(greatest <= tolerance * first)) {
         brunt_parallel(threads, chunks, 1, solve_chunks, p, timer);
         p->sweeps++;
         greatest = 0;
         for (int64_t c = 0; c < chunks; c++) greatest = fmax(greatest, p->changed[c]);
         first = fmax(first, greatest);
+        if (p->sweeps == 1) start = first;
         if (p->accelerated) weight = accelerate(p, chunks, weight);
         if (p->sweeps == sweeps || greatest <= tolerance * first) p->momentum = 0;
         brunt_constraints_apply(p, threads, timer);
+    }
+    *converges = greatest <= DIVERGES * start;
+    return BRUNT_OK;
+}
+
+int brunt_constraints_solve(brunt_constraint_set *p, int sweeps, double tolerance, int threads, brunt_timer *timer,
+                            brunt_error *error) {
+    bool converges;
+    p->sweeps = 0, p->levers = false;
+    if (!p->constraint_count) return BRUNT_OK;
+    if (transpose(p, error)) return BRUNT_FAILED;
+    brunt_parallel(threads, (p->constraint_count + GRAIN - 1) / GRAIN, 1, weigh_constraints, p, timer);
+    if (sweep(p, sweeps, tolerance, threads, timer, &converges, error)) return BRUNT_FAILED;
+    if (!converges) {
+        take_back(p);
+        p->levers = true;
+        if (sweep(p, sweeps, tolerance, threads, timer, &converges, error)) return BRUNT_FAILED;
     }
     if (p->gives_back && brunt_constraints_release(p, threads, timer, error)) return BRUNT_FAILED;
     account_constraints(p);
