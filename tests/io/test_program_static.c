@@ -255,6 +255,22 @@ START_TEST(hard_packings_settle_or_say_why) {
 }
 END_TEST
 
+// Three disks, two below: the coefficient that keeps the lower ones from being pushed apart is tan 15 deg, within 1 %.
+// Below it nothing is kept of the step, and the body that slides is told.
+START_TEST(pyramid_stands_above_its_friction_alone) {
+    const double least = tan(atan(1) / 3), part[] = {1.01, 0.99};
+    for (size_t k = 0; k < sizeof part / sizeof *part; k++) {
+        char words[400];
+        snprintf(
+            words, sizeof words,
+            "run %s/bench/scenes/pyramid.yaml -t 1 -q -o pyramid --set output.every=none --set contact.friction=%.6f",
+            getenv("BRUNT_SOURCE"), part[k] * least);
+        small_expect(words, k ? 70 : 0, k ? "friction does not settle" : NULL);
+        if (k) ck_assert_int_eq(small_shell("grep -Eq \"body '(left|right)' at\" output"), 0);
+    }
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("program_static");
     TCase *tests = tcase_create("program_static");
@@ -267,6 +283,7 @@ int main(void) {
     tcase_add_test(tests, links_are_told);
     tcase_add_test(tests, hexagonal_packings_settle);
     tcase_add_test(tests, hard_packings_settle_or_say_why);
+    tcase_add_test(tests, pyramid_stands_above_its_friction_alone);
     suite_add_tcase(suite, tests);
     return suite_main(suite);
 }
