@@ -123,6 +123,16 @@ static int weigh_work(struct brunt_implicit *m, brunt_error *error) {
     return brunt_barrier_keep(c->barrier, &m->team, m->field.u, error);
 }
 
+static int tell_tractions(struct brunt_implicit *m, brunt_error *error) {
+    brunt_implicit_contact *c = &m->contact;
+    if (brunt_barrier_tell(c->barrier, m->field.u, &c->tractions, error)) return BRUNT_FAILED;
+    for (int32_t i = 0; i < c->tractions.count; i++) {
+        brunt_traction *one = &c->tractions.traction[i];
+        if (one->boundary >= 0) one->boundary = c->plane_boundary[one->boundary];
+    }
+    return BRUNT_OK;
+}
+
 // Of pairs and planes, and the heat of friction over the step's way, weighed as the integrator does. What is at the end
 // comes first, since the start wants friction as it was there.
 static int weigh_forces(struct brunt_implicit *m, brunt_barrier_report *report, brunt_error *error) {
@@ -134,6 +144,7 @@ static int weigh_forces(struct brunt_implicit *m, brunt_barrier_report *report, 
     }
     if (brunt_barrier_look_back(c->barrier, &m->team, m->field.u, m->field.u, report, &c->forces, error))
         return BRUNT_FAILED;
+    if (c->tells && tell_tractions(m, error)) return BRUNT_FAILED;
     if (m->still) return weigh_work(m, error);
     if (gamma == 1) return BRUNT_OK;
     for (int32_t k = 0; k < c->forces.count; k++) {

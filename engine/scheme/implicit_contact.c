@@ -322,6 +322,7 @@ void brunt_implicit_contact_free(brunt_implicit_contact *c) {
                          c->met,  c->plane_boundary, c->meets, c->plane, c->before, c->inverse_mass};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) brunt_free(all[k]);
     brunt_barrier_forces_free(&c->forces), brunt_barrier_forces_free(&c->forces_before);
+    brunt_barrier_tractions_free(&c->tractions);
     *c = (brunt_implicit_contact){.barrier = NULL};
 }
 

@@ -32,6 +32,8 @@ typedef struct brunt_implicit_contact {
     bool **meets; // of each plane: the bodies it is for
     int32_t plane_count;
     brunt_barrier_forces forces, forces_before;
+    bool tells; // tractions
+    brunt_barrier_tractions tractions;
     double *before;       // [m] dt times velocities at the start; of Newmark
     double *inverse_mass; // [1/kg] of nodes, 0: given; of Newmark, until a step was too long
     size_t before_capacity, inverse_mass_capacity;

@@ -1,4 +1,4 @@
-// Bodies that push each other, as the last implicit or static step has left them.
+// Bodies that push each other, and their tractions, as the last implicit or static step has left them.
 #include <math.h>
 
 #include "contact/contact.h"
@@ -46,4 +46,19 @@ void brunt_world_link_sums(const brunt_world *world, brunt_link_sums *sums) {
         sums->slipping += link.share > SLIPS;
     }
     if (sums->count > 0) sums->sd = sqrt(sums->sd / sums->count);
+}
+
+int brunt_world_tell_tractions(brunt_world *world, brunt_error *error) {
+    struct brunt_implicit *m = world->plan.implicit;
+    if (!contact_of(&world->plan) || m->unknowns.dim != 2)
+        return brunt_fail(error, BRUNT_BAD_INPUT,
+                          "output.tractions: of two dimensions, implicit or load steps and contact.method barrier");
+    m->contact.tells = true;
+    return BRUNT_OK;
+}
+
+const brunt_traction *brunt_world_tractions(const brunt_world *world, int32_t *count) {
+    const brunt_implicit_contact *c = contact_of(&world->plan);
+    *count = c ? c->tractions.count : 0;
+    return c ? c->tractions.traction : NULL;
 }

@@ -16,6 +16,7 @@
 #include "io/performance/progress.h"
 #include "io/output/pvd.h"
 #include "io/run/run_folder.h"
+#include "io/output/tractions.h"
 #include "io/run/summary.h"
 #include "base/parallel.h"
 #include "io/performance/trace.h"
@@ -250,6 +251,10 @@ int brunt_run_check(const brunt_scene *scene, brunt_world *world, const brunt_hi
         if (messages) brunt_scene_complain(scene, mistakes ? found.message : error->message, messages);
         mistakes++;
     }
+    if (scene->output.tractions && brunt_world_tell_tractions(world, mistakes ? &found : error)) {
+        if (messages) brunt_scene_complain(scene, mistakes ? found.message : error->message, messages);
+        mistakes++;
+    }
     return mistakes ? BRUNT_BAD_INPUT : BRUNT_OK;
 }
 
@@ -396,6 +401,8 @@ static int finish(run *r, const char *status_name, const char *reason, bool eval
     char path[BRUNT_PATH_LENGTH];
     if (!status) status = path_in(r, "summary.json", path, error);
     if (!status) status = brunt_summary_write(path, &summary, scene, r->world, error);
+    if (!status && scene->output.tractions) status = path_in(r, "tractions.csv", path, error);
+    if (!status && scene->output.tractions) status = brunt_tractions_write(path, r->world, error);
     if (!status) brunt_console_print(&r->console, "results are in %s (open brunt.pvd in ParaView)\n", r->folder);
     brunt_free(results);
     return status;

@@ -12,8 +12,9 @@
 #include "io/run/summary.h"
 #include "io/performance/trace.h"
 
-static const char *const files[] = {"scene.yaml", "log.txt",       "summary.json",           "brunt.pvd", "history.csv",
-                                    "history.h5", "checkpoint.h5", "checkpoint.previous.h5", "vtu/"};
+static const char *const files[] = {"scene.yaml",    "log.txt",    "summary.json",  "brunt.pvd",
+                                    "history.csv",   "history.h5", "checkpoint.h5", "checkpoint.previous.h5",
+                                    "tractions.csv", "vtu/"};
 enum { FILES = sizeof files / sizeof *files };
 
 // ---------------------------------------------------------------------------------------------------- what stays

@@ -77,6 +77,7 @@ typedef struct brunt_output_def {
     char (*fields)[64];
     int32_t field_count; // owned; what pictures hold besides id; "default": what the body's method always shows
     bool float32;        // pictures in single precision; default true
+    bool tractions;      // tractions.csv at the end
     brunt_probe *probes;
     int32_t probe_count; // owned
 } brunt_output_def;

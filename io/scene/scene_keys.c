@@ -244,6 +244,7 @@ static const scene_key own_rows[] = {
     {"output.checkpoint", SCENE_REAL, "s", "600", 0, INFINITY, false, true, "none", 0, false, "wall time between checkpoints; 0: with every picture; none: at the end and on signals", .field = SCENE_FIELD(brunt_output_def, checkpoint)},
     {"output.fields", SCENE_NAMES, NULL, "[default]", NONE, "fields in pictures; default: velocity, and of fem and membrane bodies displacement, stress, plastic_strain and what contact does, where there are"},
     {"output.precision", SCENE_WORD, NULL, "float32", ANY, "float32|float64", 0, false, "of numbers in pictures"},
+    {"output.tractions", SCENE_WORD, NULL, "false", ANY, "false|true", 0, false, "2D, barriers: true: tractions.csv, at the end: along the rims of meshes in contact, of each node the pressure and the traction along the rim (which has the body to its left)", .field = SCENE_FIELD(brunt_output_def, tractions)},
     {"output.probes", SCENE_NAMED, NULL, OPTIONAL, NONE, "single particles, nodes or elements to follow in the history, by name"},
     {"output.probes.*.body", SCENE_NAME, NULL, REQUIRED, NONE, "its body"},
     {"output.probes.*.point", SCENE_VECTOR, "m", REQUIRED, NONE, "the particle, node or element (where the field lives) nearest to it at the start is followed"},

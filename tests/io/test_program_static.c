@@ -105,6 +105,57 @@ START_TEST(friction_is_kept_over_a_restart) {
 }
 END_TEST
 
+// A line of tractions.csv.
+typedef struct rim_line {
+    char body[32], other[32];
+    double along, x, y, normal, tangential;
+} rim_line;
+
+static int read_rims(const char *folder, rim_line line[ROWS]) {
+    char path[200], text[400];
+    int count = 0;
+    snprintf(path, sizeof path, "%s/%s/tractions.csv", small_folder, folder);
+    FILE *file = fopen(path, "r");
+    ck_assert(file && fgets(text, sizeof text, file));
+    ck_assert_str_eq(text, "body,other,along [m],x [m],y [m],normal [Pa],tangential [Pa]\n");
+    for (rim_line *l = line; fgets(text, sizeof text, file) && count < ROWS; count++, l++)
+        ck_assert_int_eq(sscanf(text, "%31[^,],%31[^,],%lf,%lf,%lf,%lf,%lf", l->body, l->other, &l->along, &l->x, &l->y,
+                                &l->normal, &l->tangential),
+                         7);
+    fclose(file);
+    return count;
+}
+
+// Nodes' forces over 2 mm each add up to the force between the bodies, on both rims. Where all slips, each node has
+// Coulomb's friction along its rim: that of the upper block runs to +x, where it is pushed, that of the lower one to
+// -x.
+START_TEST(tractions_are_told_along_rims) {
+    double fx[ROWS], fy[ROWS], sum[2][2] = {{0}};
+    rim_line line[ROWS];
+    small_put("block.yaml", block);
+    small_expect("run block.yaml -t 1 -q -o out --set output.tractions=true", 0, NULL);
+    const int count = read_rims("out", line), last = read_column("out", "contact.lower-upper.force_x", fx) - 1;
+    read_column("out", "contact.lower-upper.force_y", fy);
+    ck_assert_int_ge(count, 2 * 5);
+    for (int k = 0; k < count; k++) {
+        const bool upper = line[k].body[0] == 'u';
+        ck_assert_str_eq(line[k].other, upper ? "lower" : "upper");
+        ck_assert_double_eq_tol(line[k].tangential, 0.3 * line[k].normal, 1e-3 * line[k].normal);
+        sum[upper][0] += 2e-3 * line[k].normal, sum[upper][1] += 2e-3 * line[k].tangential;
+        if (k == 0 || strcmp(line[k].body, line[k - 1].body)) continue;
+        const double way = hypot(line[k].x - line[k - 1].x, line[k].y - line[k - 1].y);
+        ck_assert((line[k].x > line[k - 1].x) == upper);
+        ck_assert_double_eq_tol(line[k].along - line[k - 1].along, way, 1e-9);
+    }
+    for (int side = 0; side < 2; side++) {
+        ck_assert_double_eq_tol(sum[side][0], fy[last], 1e-3 * fy[last]); // surfaces lean by a little
+        ck_assert_double_eq_tol(sum[side][1], fx[last], 1e-3 * fx[last]);
+    }
+    small_expect("run block.yaml -t 1 -q -o out --set contact.friction=0 --set output.tractions=true", 0, NULL);
+    for (int k = read_rims("out", line) - 1; k >= 0; k--) ck_assert_double_eq(line[k].tangential, 0);
+}
+END_TEST
+
 // A wedge of slope 0.2 is pressed down on its like, with nothing that keeps it from sliding but friction, and a smooth
 // wall after a way: above 0.2 it stays, below it slides there and leaves the wall what friction does not take.
 static const char wedges[] =
@@ -278,6 +329,7 @@ int main(void) {
     tcase_set_timeout(tests, 0);
     tcase_add_test(tests, friction_is_kept_from_step_to_step);
     tcase_add_test(tests, friction_is_kept_over_a_restart);
+    tcase_add_test(tests, tractions_are_told_along_rims);
     tcase_add_test(tests, wedge_slides_below_its_slope_alone);
     tcase_add_test(tests, what_slides_away_is_70);
     tcase_add_test(tests, links_are_told);

@@ -197,6 +197,17 @@ typedef struct brunt_link_sums {
 } brunt_link_sums;
 void brunt_world_link_sums(const brunt_world *world, brunt_link_sums *sums);
 
+// In two dimensions, with a barrier: what a node of a mesh has from another body or a boundary, as the last step has
+// left it, from when it has been asked to tell.
+typedef struct brunt_traction {
+    int32_t body, other, boundary; // numbers; other below 0: a boundary, else boundary below 0
+    double along;                  // [m] the rim, the body to the left, from its node of the least number
+    double position[3];            // [m]
+    double normal, tangential;     // [Pa] of pressure; along the rim
+} brunt_traction;
+int brunt_world_tell_tractions(brunt_world *world, brunt_error *error); // of the steps to come; not in space: BAD_INPUT
+const brunt_traction *brunt_world_tractions(const brunt_world *world, int32_t *count); // until the next step
+
 // Of the last load step: what the forces on bodies leave unbalanced, the sizes of sums over those on their nodes, of
 // contact, loads and reactions: of the body that balances least, and of all together.
 typedef struct brunt_balance {
