@@ -175,14 +175,15 @@ typedef struct brunt_barrier_report {
     brunt_barrier_stiffest stiffest;
 } brunt_barrier_report;
 
-// In two dimensions, at u, after brunt_barrier_look_back there: tractions along the rims of meshes, by bodies and along
-// them; `boundary` is the number of a plane. BRUNT_OK, or BRUNT_FAILED: out of memory.
+// In two dimensions, at u, after brunt_barrier_look_back there: tractions along the rims of meshes, whose vertices were
+// at `rest`, by bodies and along them; `boundary` is the number of a plane. BRUNT_OK, or BRUNT_FAILED: out of memory.
 typedef struct brunt_barrier_tractions {
     brunt_traction *traction;
     int32_t count;
     size_t traction_capacity;
 } brunt_barrier_tractions;
-int brunt_barrier_tell(const brunt_barrier *barrier, const double *u, brunt_barrier_tractions *to, brunt_error *error);
+int brunt_barrier_tell(const brunt_barrier *barrier, const double (*rest)[3], const double *u,
+                       brunt_barrier_tractions *to, brunt_error *error);
 void brunt_barrier_tractions_free(brunt_barrier_tractions *tractions);
 
 // At u, the end of the step; friction there works along the displacements `way` [m]. `forces` NULL: not wanted.

@@ -6,16 +6,10 @@
 
 typedef struct rims {
     const brunt_barrier *b;
-    const double *u;
-    int32_t (*next)[2]; // vertices beside each, BRUNT_NONE
-    double *along;      // [m] of each; NAN: not yet walked
+    const double (*rest)[3]; // [m]
+    int32_t (*next)[2];      // vertices beside each, BRUNT_NONE
+    double *along;           // [m] of each; NAN: not yet walked
 } rims;
-
-static void place_of(const rims *r, int32_t v, double place[3]) {
-    double move[3];
-    barrier_move(r->b, v, r->u, move);
-    for (int k = 0; k < 3; k++) place[k] = r->b->step.x[v][k] + move[k];
-}
 
 // From a vertex of a rim to the next one; BRUNT_NONE where it ends or closes.
 static int32_t step_on(const rims *r, int32_t from, int32_t at, int32_t first) {
@@ -26,15 +20,14 @@ static int32_t step_on(const rims *r, int32_t from, int32_t at, int32_t first) {
 // Twice the area that a rim encloses on its way by this neighbour of its first vertex; and how far each vertex is along
 // it, where that is asked for.
 static double walk(const rims *r, int32_t first, int32_t second, bool note) {
-    double area = 0, along = 0, start[3], before[3], here[3];
-    place_of(r, first, start);
-    memcpy(before, start, sizeof before);
+    const double *start = r->rest[first], *before = start;
+    double area = 0, along = 0;
     for (int32_t from = first, at = second; at >= 0;) {
-        place_of(r, at, here);
+        const double *here = r->rest[at];
         area += (before[0] - start[0]) * (here[1] - start[1]) - (before[1] - start[1]) * (here[0] - start[0]);
         along += hypot(here[0] - before[0], here[1] - before[1]);
         if (note) r->along[at] = along;
-        memcpy(before, here, sizeof before);
+        before = here;
         const int32_t to = step_on(r, from, at, first);
         from = at, at = to;
     }
@@ -71,6 +64,7 @@ static int by_place(const void *left, const void *right) {
 
 typedef struct tellers {
     rims rims;
+    const double *u;
     brunt_barrier_tractions *to;
     int32_t *last, *before; // entry of each vertex, and of each entry the one of its vertex before it
 } tellers;
@@ -85,7 +79,8 @@ static brunt_traction *entry_of(tellers *t, int32_t v, int32_t other, int32_t pl
     brunt_traction *one = &t->to->traction[at];
     t->before[at] = t->last[v], t->last[v] = at;
     *one = (brunt_traction){.body = t->rims.b->body[v], .other = other, .boundary = plane, .along = t->rims.along[v]};
-    place_of(&t->rims, v, one->position);
+    barrier_move(t->rims.b, v, t->u, one->position);
+    for (int k = 0; k < 3; k++) one->position[k] += t->rims.b->step.x[v][k];
     return one;
 }
 
@@ -97,7 +92,7 @@ static void add_contacts(tellers *t, const barrier_contacts *list, bool friction
         const barrier_contact *c = &list->contact[i];
         const bool plane = barrier_law_is_plane(b, c->law);
         double f[3] = {0}, force;
-        if (friction) barrier_slip_force(b, c, t->rims.u, f);
+        if (friction) barrier_slip_force(b, c, t->u, f);
         force = friction ? f[0] * c->at.n[1] - f[1] * c->at.n[0] : barrier_contact_force(b, c);
         for (int k = 0; k < c->at.places; k++) {
             const int32_t v = c->place[k];
@@ -126,9 +121,10 @@ static int tell(tellers *t, brunt_error *error) {
     return BRUNT_OK;
 }
 
-int brunt_barrier_tell(const brunt_barrier *b, const double *u, brunt_barrier_tractions *to, brunt_error *error) {
+int brunt_barrier_tell(const brunt_barrier *b, const double (*rest)[3], const double *u, brunt_barrier_tractions *to,
+                       brunt_error *error) {
     BRUNT_ASSERT(b->dim == 2);
-    tellers t = {.rims = {.b = b, .u = u}, .to = to};
+    tellers t = {.rims = {.b = b, .rest = rest}, .u = u, .to = to};
     to->count = 0;
     const int status = tell(&t, error);
     brunt_free(t.rims.next), brunt_free(t.rims.along), brunt_free(t.last), brunt_free(t.before);

@@ -125,7 +125,8 @@ static int weigh_work(struct brunt_implicit *m, brunt_error *error) {
 
 static int tell_tractions(struct brunt_implicit *m, brunt_error *error) {
     brunt_implicit_contact *c = &m->contact;
-    if (brunt_barrier_tell(c->barrier, m->field.u, &c->tractions, error)) return BRUNT_FAILED;
+    if (brunt_barrier_tell(c->barrier, (const double(*)[3])c->rest, m->field.u, &c->tractions, error))
+        return BRUNT_FAILED;
     for (int32_t i = 0; i < c->tractions.count; i++) {
         brunt_traction *one = &c->tractions.traction[i];
         if (one->boundary >= 0) one->boundary = c->plane_boundary[one->boundary];

@@ -143,9 +143,8 @@ START_TEST(tractions_are_told_along_rims) {
         ck_assert_double_eq_tol(line[k].tangential, 0.3 * line[k].normal, 1e-3 * line[k].normal);
         sum[upper][0] += 2e-3 * line[k].normal, sum[upper][1] += 2e-3 * line[k].tangential;
         if (k == 0 || strcmp(line[k].body, line[k - 1].body)) continue;
-        const double way = hypot(line[k].x - line[k - 1].x, line[k].y - line[k - 1].y);
         ck_assert((line[k].x > line[k - 1].x) == upper);
-        ck_assert_double_eq_tol(line[k].along - line[k - 1].along, way, 1e-9);
+        ck_assert_double_eq_tol(line[k].along - line[k - 1].along, 2e-3, 1e-9);
     }
     for (int side = 0; side < 2; side++) {
         ck_assert_double_eq_tol(sum[side][0], fy[last], 1e-3 * fy[last]); // surfaces lean by a little

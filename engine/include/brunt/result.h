@@ -201,7 +201,7 @@ void brunt_world_link_sums(const brunt_world *world, brunt_link_sums *sums);
 // left it, from when it has been asked to tell.
 typedef struct brunt_traction {
     int32_t body, other, boundary; // numbers; other below 0: a boundary, else boundary below 0
-    double along;                  // [m] the rim, the body to the left, from its node of the least number
+    double along;                  // [m] the rim at the start, the body to the left, from its node of the least number
     double position[3];            // [m]
     double normal, tangential;     // [Pa] of pressure; along the rim
 } brunt_traction;
